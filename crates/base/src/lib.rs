@@ -1,0 +1,27 @@
+//! The ground that every Burgeon crate stands on: portable maths, seeds, cancellation, tasks, reports, digests.
+//!
+//! Nothing here knows about geometry or files.
+//!
+//! | module | owns |
+//! |---|---|
+//! | [`ops`] | transcendental functions with the same bits on every platform |
+//! | `seed` | [`Seed`], [`Draw`], [`Stream`]: randomness as a value |
+//! | `task` | [`CancelToken`], [`Executor`], [`Run`]: how something is computed, never what |
+//! | `report` | [`Report`], [`Warning`]: what a computation wants to tell its user |
+//! | `digest` | [`Digest`]: a fingerprint of a result that does not depend on the machine |
+//! | `units` | [`Unit`], [`UpAxis`], [`Angle`]: conversions at the door |
+//! | `ids` | [`define_id!`]: typed `u32` handles |
+
+mod digest;
+mod ids;
+pub mod ops;
+mod report;
+mod seed;
+mod task;
+mod units;
+
+pub use digest::{Digest, Digestible};
+pub use report::{Report, Stage, Warning};
+pub use seed::{Draw, Seed, Stream};
+pub use task::{CancelToken, Cancelled, Clock, Executor, NoClock, Run, Serial, map_indexed};
+pub use units::{Angle, NotFinite, Tolerance, Unit, UpAxis};

@@ -1,0 +1,141 @@
+//! How something is computed (never what): cancellation, threads, clocks.
+
+use core::fmt;
+use core::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
+
+/// A flag that a shell sets and a computation polls.
+#[derive(Clone, Debug, Default)]
+pub struct CancelToken(Arc<AtomicBool>);
+
+impl CancelToken {
+    /// A token that nobody has cancelled.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Asks every computation that holds this token to stop.
+    pub fn cancel(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    /// Fails once [`cancel`](Self::cancel) was called.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn check(&self) -> Result<(), Cancelled> {
+        if self.0.load(Ordering::Relaxed) { Err(Cancelled) } else { Ok(()) }
+    }
+}
+
+/// The user asked to stop; nothing was changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("cancelled")]
+pub struct Cancelled;
+
+/// Runs independent jobs, on as many threads as the shell allows. The core never makes threads itself.
+pub trait Executor: Sync {
+    /// Calls `job(0)` to `job(n - 1)`, each once, in any order, and returns when all are done.
+    fn for_each(&self, n: usize, job: &(dyn Fn(usize) + Sync));
+}
+
+/// One job after another, on the caller's thread.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Serial;
+
+impl Executor for Serial {
+    fn for_each(&self, n: usize, job: &(dyn Fn(usize) + Sync)) {
+        (0..n).for_each(job);
+    }
+}
+
+/// `(0..n).map(f)`, spread over `executor`, collected in index order: the same result for any thread count.
+///
+/// ```
+/// assert_eq!(base::map_indexed(&base::Serial, 4, |i| i * i), [0, 1, 4, 9]);
+/// ```
+pub fn map_indexed<T: Send>(executor: &dyn Executor, n: usize, f: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    let slots: Vec<Mutex<Option<T>>> = (0..n).map(|_| Mutex::new(None)).collect();
+    executor.for_each(n, &|i| {
+        let value = f(i);
+        if let Ok(mut slot) = slots[i].lock() {
+            *slot = Some(value);
+        }
+    });
+    let values: Vec<T> = slots.into_iter().filter_map(|s| s.into_inner().ok().flatten()).collect();
+    debug_assert_eq!(values.len(), n, "the executor must call every job exactly once");
+    values
+}
+
+/// Time as the shell sees it: the core reads no clock of its own.
+pub trait Clock: Sync {
+    /// Milliseconds since any fixed moment.
+    fn now_ms(&self) -> f64;
+}
+
+/// A clock that stands still, for callers that want no timings.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoClock;
+
+impl Clock for NoClock {
+    fn now_ms(&self) -> f64 {
+        0.0
+    }
+}
+
+/// The machinery of one computation. Never saved: it cannot change a result, only when and whether it comes.
+#[derive(Clone, Copy)]
+pub struct Run<'a> {
+    /// Polled between steps.
+    pub cancel: &'a CancelToken,
+    /// Where independent parts are computed.
+    pub executor: &'a dyn Executor,
+    /// Read for the stage times of the report only.
+    pub clock: &'a dyn Clock,
+}
+
+impl fmt::Debug for Run<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Run").field("cancel", self.cancel).finish_non_exhaustive()
+    }
+}
+
+impl Run<'static> {
+    /// One thread, no clock, never cancelled: what tests and doctests want.
+    pub fn plain() -> Self {
+        static NEVER: std::sync::OnceLock<CancelToken> = std::sync::OnceLock::new();
+        Self { cancel: NEVER.get_or_init(CancelToken::new), executor: &Serial, clock: &NoClock }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Backwards;
+    impl Executor for Backwards {
+        fn for_each(&self, n: usize, job: &(dyn Fn(usize) + Sync)) {
+            std::thread::scope(|s| {
+                for k in 0..2 {
+                    s.spawn(move || (0..n).rev().filter(|i| i % 2 == k).for_each(job));
+                }
+            });
+        }
+    }
+
+    #[test]
+    fn map_indexed_keeps_order_on_any_executor() {
+        let want: Vec<usize> = (0..101).map(|i| i * 3).collect();
+        assert_eq!(map_indexed(&Backwards, 101, |i| i * 3), want);
+        assert_eq!(map_indexed(&Serial, 101, |i| i * 3), want);
+    }
+
+    #[test]
+    fn cancel_reaches_every_clone() {
+        let token = CancelToken::new();
+        let copy = token.clone();
+        assert_eq!(copy.check(), Ok(()));
+        token.cancel();
+        assert_eq!(copy.check(), Err(Cancelled));
+    }
+}

@@ -1,0 +1,106 @@
+//! Conversions at the door: inside, everything is metres, radians, days, right-handed, +Y up.
+
+use crate::ops::PI;
+
+/// A value that must be finite was not.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("{what} must be a finite number in {range}, not {value}")]
+pub struct NotFinite {
+    /// What the value is.
+    pub what: &'static str,
+    /// The range that it must lie in.
+    pub range: &'static str,
+    /// The value given.
+    pub value: f64,
+}
+
+/// A checked angle, radians inside.
+///
+/// ```
+/// let golden = base::Angle::from_deg(137.507_8)?;
+/// assert!((golden.radians() - 2.399_96).abs() < 1e-4);
+/// assert!(base::Angle::from_deg(f64::NAN).is_err());
+/// # Ok::<(), base::NotFinite>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+pub struct Angle(f64);
+
+impl Angle {
+    /// An angle given in degrees.
+    ///
+    /// # Errors
+    /// [`NotFinite`] for NaN and infinities.
+    pub fn from_deg(degrees: f64) -> Result<Self, NotFinite> {
+        if degrees.is_finite() {
+            Ok(Self(degrees * (PI / 180.0)))
+        } else {
+            Err(NotFinite { what: "an angle", range: "degrees", value: degrees })
+        }
+    }
+
+    /// Radians.
+    pub const fn radians(self) -> f64 {
+        self.0
+    }
+
+    /// Degrees, for files and people.
+    pub fn degrees(self) -> f64 {
+        self.0 * (180.0 / PI)
+    }
+}
+
+/// A length below which two points are one, in metres.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+pub struct Tolerance(f64);
+
+impl Tolerance {
+    /// A tolerance in metres.
+    ///
+    /// # Errors
+    /// [`NotFinite`] unless `metres` is finite and above 0.
+    pub fn metres(metres: f64) -> Result<Self, NotFinite> {
+        if metres.is_finite() && metres > 0.0 {
+            Ok(Self(metres))
+        } else {
+            Err(NotFinite { what: "a tolerance", range: "(0, infinity) m", value: metres })
+        }
+    }
+
+    /// Metres.
+    pub const fn get(self) -> f64 {
+        self.0
+    }
+}
+
+/// The unit of lengths in a file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Unit {
+    /// Metres, the unit inside.
+    #[default]
+    Metre,
+    /// Centimetres.
+    Centimetre,
+    /// Millimetres.
+    Millimetre,
+}
+
+impl Unit {
+    /// Metres per unit.
+    pub const fn metres(self) -> f64 {
+        match self {
+            Self::Metre => 1.0,
+            Self::Centimetre => 0.01,
+            Self::Millimetre => 0.001,
+        }
+    }
+}
+
+/// Which axis of a file points up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum UpAxis {
+    /// +Y, as inside and in glTF.
+    #[default]
+    Y,
+    /// +Z, as in Blender and most survey data: file (x, y, z) is inside (x, z, -y).
+    Z,
+}

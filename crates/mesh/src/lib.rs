@@ -1,0 +1,11 @@
+//! Triangle meshes and materials: what every maker's plant ends as, and what files and pictures are made of.
+//!
+//! `plant -> skin -> Model -> formats | render`
+//!
+//! Knows nothing of plants or GPUs. f32/u32 columns in metres, right-handed, +Y up.
+
+mod material;
+mod trimesh;
+
+pub use material::{AlphaMode, Material, MaterialId, MaterialKind, Texture};
+pub use trimesh::{Bounds, Fault, Model, Part, TriMesh};

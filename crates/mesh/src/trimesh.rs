@@ -1,0 +1,288 @@
+//! Columns of vertices and triangles.
+
+use base::{Digest, Digestible};
+use glam::DVec3;
+
+use crate::{Material, MaterialId};
+
+/// A triangle mesh as columns. Optional columns are empty or as long as `positions`.
+///
+/// Triangles wind counter-clockwise seen from outside (from the upper side, for blades).
+///
+/// ```
+/// let mut m = mesh::TriMesh::default();
+/// m.positions = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+/// m.triangles = vec![[0, 1, 2]];
+/// m.compute_normals();
+/// assert_eq!(m.normals[0], [0.0, 0.0, 1.0]);
+/// assert_eq!(m.validate().count(), 0);
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TriMesh {
+    /// Metres.
+    pub positions: Vec<[f32; 3]>,
+    /// Unit vectors.
+    pub normals: Vec<[f32; 3]>,
+    /// Texture coordinates, v down as in glTF.
+    pub uvs: Vec<[f32; 2]>,
+    /// Linear RGB multiplied with the material's base colour (tint of single organs).
+    pub colors: Vec<[f32; 3]>,
+    /// Corner indices.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// A mesh with its name and material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// Unique within the model, such as `leaves`.
+    pub name: String,
+    /// Row of [`Model::materials`].
+    pub material: MaterialId,
+    /// The triangles.
+    pub mesh: TriMesh,
+}
+
+/// Parts and materials: what is written to a file and drawn in a picture.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Model {
+    /// Name of the whole, used as the root node's name.
+    pub name: String,
+    /// Meshes, each with one material.
+    pub parts: Vec<Part>,
+    /// Materials that the parts refer to.
+    pub materials: Vec<Material>,
+}
+
+/// An axis-aligned box in metres; empty when `min > max`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// Lowest corner.
+    pub min: DVec3,
+    /// Highest corner.
+    pub max: DVec3,
+}
+
+impl Bounds {
+    /// The box that holds nothing.
+    pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
+
+    /// Grows to hold `p`.
+    pub fn include(&mut self, p: DVec3) {
+        self.min = self.min.min(p);
+        self.max = self.max.max(p);
+    }
+
+    /// Nothing was included.
+    pub fn is_empty(&self) -> bool {
+        self.min.x > self.max.x
+    }
+
+    /// Edge lengths; zero when empty.
+    pub fn size(&self) -> DVec3 {
+        if self.is_empty() { DVec3::ZERO } else { self.max - self.min }
+    }
+
+    /// The middle; the origin when empty.
+    pub fn centre(&self) -> DVec3 {
+        if self.is_empty() { DVec3::ZERO } else { (self.min + self.max) * 0.5 }
+    }
+}
+
+/// Something that is wrong with a mesh or a model.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Fault {
+    /// A coordinate is NaN or infinite.
+    #[error("vertex {0} is not finite")]
+    NotFinite(usize),
+    /// A triangle names a vertex that is not there.
+    #[error("triangle {0} names a vertex that is not there")]
+    Dangling(usize),
+    /// A triangle uses one vertex twice.
+    #[error("triangle {0} uses one vertex twice")]
+    Degenerate(usize),
+    /// An optional column is neither empty nor full.
+    #[error("column {0} is neither empty nor as long as the positions")]
+    Ragged(&'static str),
+    /// A normal is not of unit length.
+    #[error("normal {0} is not of unit length")]
+    Normal(usize),
+    /// A part names a material that is not there.
+    #[error("part {0} names a material that is not there")]
+    Material(usize),
+}
+
+fn to_f64(p: [f32; 3]) -> DVec3 {
+    DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2]))
+}
+
+/// Rounds a model coordinate to the mesh's precision.
+#[expect(clippy::cast_possible_truncation, reason = "f64 in the model, f32 in the mesh, by design")]
+fn to_f32(p: DVec3) -> [f32; 3] {
+    [p.x as f32, p.y as f32, p.z as f32]
+}
+
+impl TriMesh {
+    /// Appends a vertex position and returns its index.
+    ///
+    /// # Panics
+    /// Beyond four billion vertices.
+    pub fn push(&mut self, p: DVec3) -> u32 {
+        let index = u32::try_from(self.positions.len());
+        self.positions.push(to_f32(p));
+        #[expect(clippy::expect_used, reason = "four billion vertices are a bug, not data")]
+        index.expect("more vertices than u32 can name")
+    }
+
+    /// Position of a vertex as f64.
+    pub fn position(&self, index: u32) -> DVec3 {
+        to_f64(self.positions[index as usize])
+    }
+
+    /// Smooth normals: the sum of the adjacent triangles' area-weighted normals. A vertex of no area gets +Y.
+    pub fn compute_normals(&mut self) {
+        let mut sums = vec![DVec3::ZERO; self.positions.len()];
+        for &[a, b, c] in &self.triangles {
+            let (pa, pb, pc) = (self.position(a), self.position(b), self.position(c));
+            let n = (pb - pa).cross(pc - pa);
+            for i in [a, b, c] {
+                sums[i as usize] += n;
+            }
+        }
+        self.normals = sums.into_iter().map(|n| to_f32(n.try_normalize().unwrap_or(DVec3::Y))).collect();
+    }
+
+    /// Appends `other`, whose filled columns must be the same as this mesh's (or this mesh empty).
+    pub fn append(&mut self, other: &Self) {
+        #[expect(clippy::cast_possible_truncation, reason = "push and validate guard the u32 range")]
+        let base = self.positions.len() as u32;
+        self.positions.extend_from_slice(&other.positions);
+        self.normals.extend_from_slice(&other.normals);
+        self.uvs.extend_from_slice(&other.uvs);
+        self.colors.extend_from_slice(&other.colors);
+        self.triangles.extend(other.triangles.iter().map(|t| t.map(|i| i + base)));
+    }
+
+    /// The box around all positions.
+    pub fn bounds(&self) -> Bounds {
+        let mut b = Bounds::EMPTY;
+        self.positions.iter().for_each(|&p| b.include(to_f64(p)));
+        b
+    }
+
+    /// Everything that is wrong. Cost: linear.
+    pub fn validate(&self) -> impl Iterator<Item = Fault> + '_ {
+        let n = self.positions.len();
+        let ragged =
+            [("normals", self.normals.len()), ("uvs", self.uvs.len()), ("colors", self.colors.len())]
+                .into_iter()
+                .filter(move |&(_, len)| len != 0 && len != n)
+                .map(|(name, _)| Fault::Ragged(name));
+        let finite = self.positions.iter().enumerate();
+        let finite =
+            finite.filter(|(_, p)| !p.iter().all(|x| x.is_finite())).map(|(i, _)| Fault::NotFinite(i));
+        let normals = self.normals.iter().enumerate();
+        let normals = normals
+            .filter(|&(_, &v)| !((to_f64(v).length() - 1.0).abs() < 1e-3))
+            .map(|(i, _)| Fault::Normal(i));
+        let triangles = self.triangles.iter().enumerate().filter_map(move |(i, &[a, b, c])| {
+            if [a, b, c].iter().any(|&v| v as usize >= n) {
+                Some(Fault::Dangling(i))
+            } else if a == b || b == c || c == a {
+                Some(Fault::Degenerate(i))
+            } else {
+                None
+            }
+        });
+        ragged.chain(finite).chain(normals).chain(triangles)
+    }
+}
+
+impl Digestible for TriMesh {
+    fn digest(&self, d: &mut Digest) {
+        d.add(&self.positions).add(&self.normals).add(&self.uvs).add(&self.colors).add(&self.triangles);
+    }
+}
+
+impl Model {
+    /// Vertices of all parts.
+    pub fn vertex_count(&self) -> usize {
+        self.parts.iter().map(|p| p.mesh.positions.len()).sum()
+    }
+
+    /// Triangles of all parts.
+    pub fn triangle_count(&self) -> usize {
+        self.parts.iter().map(|p| p.mesh.triangles.len()).sum()
+    }
+
+    /// The box around all parts.
+    pub fn bounds(&self) -> Bounds {
+        let mut b = Bounds::EMPTY;
+        for part in &self.parts {
+            let pb = part.mesh.bounds();
+            if !pb.is_empty() {
+                b.include(pb.min);
+                b.include(pb.max);
+            }
+        }
+        b
+    }
+
+    /// The material of a part.
+    pub fn material(&self, part: &Part) -> &Material {
+        &self.materials[part.material.index()]
+    }
+
+    /// Everything that is wrong with any part.
+    pub fn validate(&self) -> impl Iterator<Item = Fault> + '_ {
+        self.parts.iter().enumerate().flat_map(move |(i, part)| {
+            let missing = part.material.index() >= self.materials.len();
+            missing.then_some(Fault::Material(i)).into_iter().chain(part.mesh.validate())
+        })
+    }
+}
+
+impl Digestible for Model {
+    fn digest(&self, d: &mut Digest) {
+        for part in &self.parts {
+            d.add(part.name.as_str()).add(&part.material.raw()).add(&part.mesh);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn validate_names_every_fault() {
+        let mut m = TriMesh {
+            positions: vec![[0.0; 3], [f32::NAN, 0.0, 0.0], [0.0, 1.0, 0.0]],
+            normals: vec![[0.0, 0.0, 2.0]],
+            triangles: vec![[0, 1, 9], [1, 1, 2]],
+            ..TriMesh::default()
+        };
+        let faults: Vec<Fault> = m.validate().collect();
+        let want = [
+            Fault::Ragged("normals"),
+            Fault::NotFinite(1),
+            Fault::Normal(0),
+            Fault::Dangling(0),
+            Fault::Degenerate(1),
+        ];
+        assert_eq!(faults, want);
+        m.positions[1][0] = 1.0;
+        m.triangles = vec![[0, 1, 2]];
+        m.compute_normals();
+        assert_eq!(m.validate().count(), 0, "{m:?}");
+    }
+
+    #[test]
+    fn append_shifts_indices() {
+        let mut a =
+            TriMesh { positions: vec![[0.0; 3]; 3], triangles: vec![[0, 1, 2]], ..TriMesh::default() };
+        let b = a.clone();
+        a.append(&b);
+        assert_eq!(a.triangles, [[0, 1, 2], [3, 4, 5]]);
+    }
+}

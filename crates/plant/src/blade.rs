@@ -1,0 +1,91 @@
+//! The sheet of a leaf or petal: an outline in the plane, lifted and bent into space.
+
+use base::{Digest, Digestible};
+use glam::{DVec2, DVec3};
+
+/// A leaf or petal in its own frame: x across, y from root to tip, z towards the upper side.
+///
+/// The outline is a simple polygon, counter-clockwise, without a repeated first point, in metres at scale 1.
+/// The root is the origin. A point `(x, y)` of the plane is put into space by [`Blade::point`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Blade {
+    /// The margin, at least 3 points.
+    pub outline: Vec<DVec2>,
+    /// The midrib from root to tip, at least 2 points, inside the outline (ends may lie on it).
+    pub midrib: Vec<DVec2>,
+    /// Further veins that the user drew, each at least 2 points.
+    pub veins: Vec<Vec<DVec2>>,
+    /// The surface on which the blade lies before it is bent.
+    pub lift: Lift,
+    /// How it is bent.
+    pub relief: Relief,
+}
+
+/// The height of the undeformed blade over its frame's plane.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub enum Lift {
+    /// In the plane.
+    #[default]
+    Flat,
+    /// On a cone (paper 000, Eq 3; see `geom::Cone`), in the blade's local coordinates.
+    Cone {
+        /// The cone and the sheet of it on which this petal lies.
+        cone: geom::Cone,
+        /// Which of the two sheets.
+        sheet: geom::Sheet,
+    },
+}
+
+/// Bending and hollowing (paper 000, Eq 5 and section 6.2), all as shares of the blade's length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Relief {
+    /// Quartic coefficient A of Eq 5, positive bends the tip away from the upper side. About -0.2 to 0.2.
+    pub bend_a: f64,
+    /// Quadratic coefficient B of Eq 5. About -0.3 to 0.5.
+    pub bend_b: f64,
+    /// Depth of the hollow at the middle, H. About 0 to 0.2; negative bulges.
+    pub hollow: f64,
+    /// Fold along the midrib: slope of the halves, 0 flat, positive lifts the margins (V section).
+    pub fold: f64,
+    /// Height of waves along the margin. 0 to about 0.1.
+    pub wave: f64,
+    /// Keep lengths along the midrib when bending, instead of keeping the projection (x, y).
+    pub keep_length: bool,
+}
+
+impl Default for Relief {
+    fn default() -> Self {
+        Self { bend_a: 0.0, bend_b: 0.0, hollow: 0.0, fold: 0.0, wave: 0.0, keep_length: false }
+    }
+}
+
+impl Digestible for Blade {
+    fn digest(&self, d: &mut Digest) {
+        d.add(&self.outline).add(&self.midrib).add(&self.veins);
+        match self.lift {
+            Lift::Flat => {
+                d.add(&0_u8);
+            }
+            Lift::Cone { cone, sheet } => {
+                d.add(&1_u8).add(&cone.apex).add(&cone.axis).add(&cone.half_angle).add(&(sheet as u8));
+            }
+        }
+        let r = self.relief;
+        d.add(&r.bend_a).add(&r.bend_b).add(&r.hollow).add(&r.fold).add(&r.wave).add(&r.keep_length);
+    }
+}
+
+impl Blade {
+    /// The length from root to tip in the plane, metres.
+    pub fn length(&self) -> f64 {
+        self.midrib.last().map_or(0.0, |tip| tip.length())
+    }
+
+    /// Puts a point of the plane into space (local coordinates, scale 1).
+    ///
+    /// Guaranteed: with `keep_length` off, x and y stay as they are, so the view along z is the drawing.
+    pub fn point(&self, p: DVec2) -> DVec3 {
+        DVec3::new(p.x, p.y, 0.0) // replaced by the blade model
+    }
+}

@@ -1,0 +1,17 @@
+//! The multiscale plant: every maker's output, and all that skin, formats and studio read.
+//!
+//! `maker -> Plant -> skin -> Model`
+//!
+//! Topology (axes, nodes, organs by `u32` handles) stands apart from geometry (columns). Scales follow MTG
+//! (Godin and Caraglio 1998): a plant is decomposed (`/`) into axes, an axis into nodes that succeed one
+//! another (`<`); axes and organs are borne (`+`) by nodes.
+
+mod blade;
+mod organ;
+mod topology;
+mod validate;
+
+pub use blade::{Blade, Lift, Relief};
+pub use organ::{Flower, FlowerId, Frame, Organ, OrganId, OrganKind, Shape, ShapeId};
+pub use topology::{Axis, AxisId, AxisKind, NodeId, Nodes, Plant};
+pub use validate::Fault;

@@ -1,0 +1,197 @@
+//! Leaves, petals and the other organs that nodes bear.
+
+use base::{Digest, Digestible};
+use glam::{DVec2, DVec3};
+
+use crate::{Blade, NodeId};
+
+base::define_id! {
+    /// One organ.
+    pub struct OrganId;
+}
+base::define_id! {
+    /// One shape, which organs may share.
+    pub struct ShapeId;
+}
+base::define_id! {
+    /// One flower.
+    pub struct FlowerId;
+}
+
+/// What an organ is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[non_exhaustive]
+pub enum OrganKind {
+    /// Green blade.
+    Leaf,
+    /// Coloured blade of a flower.
+    Petal,
+    /// The centre of a flower.
+    Disc,
+    /// Fruit, or a body such as a cactus's.
+    Fruit,
+    /// Stamen: filament and anther.
+    Stamen,
+    /// Pistil.
+    Pistil,
+    /// Thorn or spine.
+    Thorn,
+}
+
+/// A local right-handed frame in the plant: `right` x `along` = `normal`, unit vectors at right angles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// Where the organ is attached (the root of a blade), metres.
+    pub origin: DVec3,
+    /// Local +x: across.
+    pub right: DVec3,
+    /// Local +y: from root to tip.
+    pub along: DVec3,
+    /// Local +z: the upper (inner) side.
+    pub normal: DVec3,
+}
+
+impl Frame {
+    /// The frame at `origin` whose y axis is `along` and whose z axis is as near to `towards` as can be.
+    /// Falls back to any right angle when the two are parallel, to +Y when `along` is zero.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// let f = plant::Frame::looking(DVec3::ZERO, DVec3::Y, DVec3::Z);
+    /// assert_eq!((f.right, f.along, f.normal), (DVec3::X, DVec3::Y, DVec3::Z));
+    /// ```
+    pub fn looking(origin: DVec3, along: DVec3, towards: DVec3) -> Self {
+        let along = along.try_normalize().unwrap_or(DVec3::Y);
+        let side = along.cross(towards);
+        let right =
+            if side.length_squared() > 1e-24 { side.normalize() } else { along.any_orthonormal_vector() };
+        Self { origin, right, along, normal: right.cross(along) }
+    }
+
+    /// From local to plant coordinates, with the organ's scale.
+    pub fn place(&self, local: DVec3, scale: f64) -> DVec3 {
+        self.origin + (self.right * local.x + self.along * local.y + self.normal * local.z) * scale
+    }
+
+    /// Rotates a local direction into the plant.
+    pub fn rotate(&self, local: DVec3) -> DVec3 {
+        self.right * local.x + self.along * local.y + self.normal * local.z
+    }
+
+    /// From plant to local coordinates (inverse of [`place`](Self::place) with scale 1).
+    pub fn localise(&self, world: DVec3) -> DVec3 {
+        let d = world - self.origin;
+        DVec3::new(d.dot(self.right), d.dot(self.along), d.dot(self.normal))
+    }
+}
+
+/// The form of an organ in its own frame, in metres at scale 1.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Shape {
+    /// A leaf or petal: a bent sheet.
+    Blade(Blade),
+    /// A dome around the local z axis: the disc of a flower. Base at z = 0.
+    Dome {
+        /// Radius of the base.
+        radius_m: f64,
+        /// Height of the top over the base.
+        height_m: f64,
+    },
+    /// A body of revolution around the local y axis: `(radius, y)` from the lower to the upper pole.
+    Revolution {
+        /// The generating line; radii 0 or more.
+        profile: Vec<DVec2>,
+    },
+    /// A round strand (filament, style, thorn) along local points with a radius at each, its end closed.
+    Strand {
+        /// Local points, root first.
+        path: Vec<DVec3>,
+        /// Radius at each point.
+        radius_m: Vec<f64>,
+        /// Radius of the ball at its end (anther, stigma); 0 for none.
+        knob_m: f64,
+    },
+}
+
+/// One organ: a shape placed in the plant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Organ {
+    /// What it is.
+    pub kind: OrganKind,
+    /// The node that bears it; `None` for an organ of a drawing without any axis.
+    pub bearer: Option<NodeId>,
+    /// The flower that it belongs to.
+    pub flower: Option<FlowerId>,
+    /// Its form.
+    pub shape: ShapeId,
+    /// Where it is and which way it looks.
+    pub frame: Frame,
+    /// Size relative to the shape, above 0.
+    pub scale: f64,
+    /// Linear RGB that multiplies the material's colour; `[1, 1, 1]` leaves it as it is.
+    pub tint: [f32; 3],
+    /// A key that is stable under edits of other parts.
+    pub key: u64,
+    /// The stroke it was read from; `None` for what the program placed.
+    pub source: Option<u32>,
+}
+
+/// A flower: the petals on one cone or several nested ones, a disc, stamens.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Flower {
+    /// The node that bears it.
+    pub bearer: Option<NodeId>,
+    /// The apex of its cone, where petals are rooted, metres.
+    pub centre: DVec3,
+    /// Unit vector along its axis, from the stem outwards.
+    pub axis: DVec3,
+    /// Half opening angle of its outermost whorl, radians, 0 (closed) to pi/2 (flat).
+    pub half_angle: f64,
+    /// Number of whorls, 1 or more; 0 for a flower without petals.
+    pub whorls: u32,
+}
+
+impl Digestible for Frame {
+    fn digest(&self, d: &mut Digest) {
+        d.add(&self.origin).add(&self.right).add(&self.along).add(&self.normal);
+    }
+}
+
+impl Digestible for Organ {
+    fn digest(&self, d: &mut Digest) {
+        d.add(&(self.kind as u8)).add(&self.bearer.map(NodeId::raw)).add(&self.flower.map(FlowerId::raw));
+        d.add(&self.shape.raw())
+            .add(&self.frame)
+            .add(&self.scale)
+            .add(&self.tint)
+            .add(&self.key)
+            .add(&self.source);
+    }
+}
+
+impl Digestible for Flower {
+    fn digest(&self, d: &mut Digest) {
+        d.add(&self.bearer.map(NodeId::raw)).add(&self.centre).add(&self.axis);
+        d.add(&self.half_angle).add(&self.whorls);
+    }
+}
+
+impl Digestible for Shape {
+    fn digest(&self, d: &mut Digest) {
+        match self {
+            Self::Blade(b) => {
+                d.add(&0_u8).add(b);
+            }
+            Self::Dome { radius_m, height_m } => {
+                d.add(&1_u8).add(radius_m).add(height_m);
+            }
+            Self::Revolution { profile } => {
+                d.add(&2_u8).add(profile);
+            }
+            Self::Strand { path, radius_m, knob_m } => {
+                d.add(&3_u8).add(path).add(radius_m).add(knob_m);
+            }
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! Axes and nodes.
+
+use core::ops::Range;
+
+use base::{Digest, Digestible};
+use glam::DVec3;
+
+use crate::{Flower, Organ, Shape};
+
+base::define_id! {
+    /// One axis: a trunk, branch, twig, stem, stalk or root.
+    pub struct AxisId;
+}
+base::define_id! {
+    /// One node: a point of an axis where something may be borne.
+    pub struct NodeId;
+}
+
+/// What an axis is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[non_exhaustive]
+pub enum AxisKind {
+    /// Woody: trunk or branch.
+    Branch,
+    /// Woody, grown by the program inside a contour.
+    Twig,
+    /// Green stem of a herb or flower.
+    Stem,
+    /// Stalk of one leaf.
+    Petiole,
+    /// Below ground.
+    Root,
+}
+
+/// One axis. Its nodes are consecutive rows, base first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// What it is.
+    pub kind: AxisKind,
+    /// The node that bears it; `None` for an axis that stands on the ground. The axis's own first node lies at
+    /// the bearer's position.
+    pub bearer: Option<NodeId>,
+    /// 0 for an axis without a bearer, else one more than the order of the bearer's axis.
+    pub order: u32,
+    /// A key that is stable under edits of other parts: what random draws for this axis are derived from.
+    pub key: u64,
+    /// Rows of its nodes.
+    pub nodes: Range<u32>,
+    /// The stroke it was read from, by index in the drawing; `None` for what the program grew.
+    pub source: Option<u32>,
+}
+
+impl Axis {
+    /// Handles of its nodes, base first.
+    pub fn node_ids(&self) -> impl DoubleEndedIterator<Item = NodeId> + ExactSizeIterator + use<> {
+        (self.nodes.start as usize..self.nodes.end as usize).map(NodeId::new)
+    }
+}
+
+/// The node columns, all of one length.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Nodes {
+    /// Metres, +Y up, ground at y = 0.
+    pub position: Vec<DVec3>,
+    /// Radius of the axis at the node, metres, 0 or more. Where an axis is borne, its first node has the
+    /// radius of the new axis, not of its bearer.
+    pub radius_m: Vec<f64>,
+    /// The axis that each node belongs to.
+    pub axis: Vec<AxisId>,
+}
+
+/// A plant of any maker.
+///
+/// ```
+/// use glam::DVec3;
+/// use plant::{AxisKind, Plant};
+/// let mut p = Plant::default();
+/// let stem = p.add_axis(AxisKind::Stem, None, 1, &[DVec3::ZERO, DVec3::Y], None);
+/// let node = p.axis(stem).node_ids().last().ok_or("empty")?;
+/// p.add_axis(AxisKind::Stem, Some(node), 2, &[DVec3::Y, DVec3::new(0.5, 1.5, 0.0)], None);
+/// assert_eq!((p.axes.len(), p.nodes.position.len(), p.axes[1].order), (2, 4, 1));
+/// assert_eq!(p.validate().count(), 0);
+/// # Ok::<(), &str>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Plant {
+    /// Name for files and reports.
+    pub name: String,
+    /// Axes; a bearer's axis always comes before the axes that it bears.
+    pub axes: Vec<Axis>,
+    /// Node columns.
+    pub nodes: Nodes,
+    /// Leaves, petals, discs, fruits, stamens.
+    pub organs: Vec<Organ>,
+    /// Flowers, each a group of organs.
+    pub flowers: Vec<Flower>,
+    /// Organ shapes; many organs may share one.
+    pub shapes: Vec<Shape>,
+}
+
+impl Plant {
+    /// Adds an axis through `points` (at least 2; the first at the bearer), radii 0 until set.
+    pub fn add_axis(
+        &mut self,
+        kind: AxisKind,
+        bearer: Option<NodeId>,
+        key: u64,
+        points: &[DVec3],
+        source: Option<u32>,
+    ) -> AxisId {
+        let id = AxisId::new(self.axes.len());
+        let start = NodeId::new(self.nodes.position.len()).raw();
+        let end = NodeId::new(self.nodes.position.len() + points.len()).raw();
+        let order = bearer.map_or(0, |b| self.axes[self.nodes.axis[b.index()].index()].order + 1);
+        self.nodes.position.extend_from_slice(points);
+        self.nodes.radius_m.extend(points.iter().map(|_| 0.0));
+        self.nodes.axis.extend(points.iter().map(|_| id));
+        self.axes.push(Axis { kind, bearer, order, key, nodes: start..end, source });
+        id
+    }
+
+    /// The axis of a handle.
+    pub fn axis(&self, id: AxisId) -> &Axis {
+        &self.axes[id.index()]
+    }
+
+    /// Positions along an axis, base first.
+    pub fn axis_points(&self, id: AxisId) -> &[DVec3] {
+        let r = &self.axes[id.index()].nodes;
+        &self.nodes.position[r.start as usize..r.end as usize]
+    }
+
+    /// Radii along an axis, base first, metres.
+    pub fn axis_radii(&self, id: AxisId) -> &[f64] {
+        let r = &self.axes[id.index()].nodes;
+        &self.nodes.radius_m[r.start as usize..r.end as usize]
+    }
+
+    /// Adds a shape and returns its handle.
+    pub fn add_shape(&mut self, shape: Shape) -> crate::ShapeId {
+        self.shapes.push(shape);
+        crate::ShapeId::new(self.shapes.len() - 1)
+    }
+
+    /// The fingerprint of the whole plant: the same on every platform and for any thread count.
+    pub fn digest_hex(&self) -> String {
+        let mut d = Digest::new();
+        d.add(self);
+        d.hex()
+    }
+}
+
+impl Digestible for Plant {
+    fn digest(&self, d: &mut Digest) {
+        d.add(&(self.axes.len() as u64));
+        for a in &self.axes {
+            d.add(&(a.kind as u8)).add(&a.bearer.map(NodeId::raw)).add(&a.order).add(&a.key);
+            d.add(&a.nodes.start).add(&a.nodes.end).add(&a.source);
+        }
+        d.add(&self.nodes.position).add(&self.nodes.radius_m);
+        d.add(&self.organs).add(&self.flowers).add(&self.shapes);
+    }
+}

@@ -1,0 +1,23 @@
+//! Hand-drawn strokes to a plant (He and Cheng 2021, "paper 000").
+//!
+//! `Drawing -> Ink (clean strokes) -> classes -> Reading (what was meant) -> Plant`
+//!
+//! | step | module | paper |
+//! |---|---|---|
+//! | resample, smooth, normalise | `clean` | section 3, Eq 1 |
+//! | stroke classes | `classify` | section 4.1 |
+//! | flowers, leaves, branch hierarchy | `structure` | sections 4.1, 4.2 |
+//! | fill contours | `fill` | section 4.3, Eq 2 |
+//! | depth | `depth` | section 5, Eq 3, 4 |
+//! | radii, plant | `build` | section 6, Eq 5 to 7 |
+
+mod drawing;
+mod reading;
+mod spec;
+
+pub use drawing::{Drawing, InkSample, Stroke, StrokeMode};
+pub use reading::{
+    Attachment, AxisReading, BladeReading, DiscReading, FlowerReading, FruitReading, OrganWord, Reading,
+    RegionKind, RegionReading, StrokeClass, StrokeReading,
+};
+pub use spec::{BranchDepth, FillSpec, LeafDepth, ReliefSpec, SketchSpec, TaperSpec};

@@ -1,0 +1,124 @@
+//! What can be asked of the sketch maker.
+
+use serde::{Deserialize, Serialize};
+
+/// How the depth of branches is found (paper 000, section 5.2).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum BranchDepth {
+    /// Eq 4 as printed: the sum of the angles between siblings.
+    Paper,
+    /// Riesz energy of the angles: siblings spread evenly (the sum cannot tell even from two clumps).
+    #[default]
+    Riesz,
+}
+
+/// How the depth of leaves is found (paper 000, section 5.3).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LeafDepth {
+    /// The light prior as printed: every leaf turns to the same side.
+    Paper,
+    /// The light prior with left and right kept.
+    Signed,
+    /// The front view of the model is the drawing; the blade leaves the plane by tilt and bend only.
+    #[default]
+    Drawn,
+}
+
+/// Eq 2: growth of twigs and midribs inside a contour.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct FillSpec {
+    /// Attraction by the contour, k_p. 0 to 1, default 0.55 (Fig 2b of the paper).
+    pub contour_pull: f64,
+    /// Attraction along the bearer, k_b. 0 to 1, default 0.35.
+    pub bearer_pull: f64,
+    /// Memory of the last direction, k_m. 0 to 1, default 0.1.
+    pub memory: f64,
+    /// How many twigs and leaves relative to the default, 0.1 to 10, default 1.
+    pub density: f64,
+    /// Pull against gravity on grown twigs, -1 (weeping) to 1 (upright), default 0.1.
+    pub tropism: f64,
+}
+
+impl Default for FillSpec {
+    fn default() -> Self {
+        Self { contour_pull: 0.55, bearer_pull: 0.35, memory: 0.1, density: 1.0, tropism: 0.1 }
+    }
+}
+
+/// Eq 7: how an axis thins from base to tip: r(x) = (s^(-alpha x) + m) / (1 + m).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct TaperSpec {
+    /// s, above 1, default 100.
+    pub s: f64,
+    /// alpha, above 0, default 0.5.
+    pub alpha: f64,
+    /// m, 0 or more, default 0: the tip is 0.1 of the base.
+    pub m: f64,
+}
+
+impl Default for TaperSpec {
+    fn default() -> Self {
+        Self { s: 100.0, alpha: 0.5, m: 0.0 }
+    }
+}
+
+/// Eq 5 and section 6.2: how blades bend and hollow, as shares of their length.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ReliefSpec {
+    /// A of Eq 5 for petals, -0.2 to 0.2, default 0.08.
+    pub petal_bend_a: f64,
+    /// B of Eq 5 for petals, -0.3 to 0.5, default 0.06.
+    pub petal_bend_b: f64,
+    /// Hollow of petals, 0 to 0.3, default 0.08.
+    pub petal_hollow: f64,
+    /// A of Eq 5 for leaves, default 0.05.
+    pub leaf_bend_a: f64,
+    /// B of Eq 5 for leaves, default 0.18.
+    pub leaf_bend_b: f64,
+    /// Fold of leaves along the midrib, slope of the halves, 0 to 1, default 0.25.
+    pub leaf_fold: f64,
+}
+
+impl Default for ReliefSpec {
+    fn default() -> Self {
+        Self {
+            petal_bend_a: 0.08,
+            petal_bend_b: 0.06,
+            petal_hollow: 0.08,
+            leaf_bend_a: 0.05,
+            leaf_bend_b: 0.18,
+            leaf_fold: 0.25,
+        }
+    }
+}
+
+/// Everything that can be asked of the sketch maker; saved with the document.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct SketchSpec {
+    /// Height of the plant in metres, above 0. `None`: 8 m for a tree, 0.5 m for a herb.
+    pub height_m: Option<f64>,
+    /// Depth of branches.
+    pub branch_depth: BranchDepth,
+    /// Depth of leaves.
+    pub leaf_depth: LeafDepth,
+    /// Flowers (by index in the reading) that face away from the viewer: orthography cannot tell.
+    pub flipped_flowers: Vec<u32>,
+    /// Pipe model exponent t of Eq 6, 1.8 to 3. `None`: 2 for a tree, 2.5 for a herb.
+    pub pipe_exponent: Option<f64>,
+    /// Thinning along an axis.
+    pub taper: TaperSpec,
+    /// Growth inside contours.
+    pub fill: FillSpec,
+    /// Bending of blades.
+    pub relief: ReliefSpec,
+    /// Pull of light (upwards) on recovered branches, -1 to 1, default 0.
+    pub phototropism: f64,
+    /// Sag of recovered branches under gravity, 0 to 1, default 0.
+    pub gravity: f64,
+}
