@@ -11,11 +11,16 @@
 //! | depth | `depth` | section 5, Eq 3, 4 |
 //! | radii, plant | `build` | section 6, Eq 5 to 7 |
 
+mod build;
 mod drawing;
+mod fill;
+mod map;
 mod reading;
 mod spec;
 
+pub use build::{Built, build};
 pub use drawing::{Drawing, InkSample, Stroke, StrokeMode};
+pub use map::PlantMap;
 pub use reading::{
     Attachment, AxisReading, BladeReading, DiscReading, FlowerReading, FruitReading, OrganWord, Reading,
     RegionKind, RegionReading, StrokeClass, StrokeReading,

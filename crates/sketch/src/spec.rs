@@ -30,11 +30,11 @@ pub enum LeafDepth {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct FillSpec {
-    /// Attraction by the contour, k_p. 0 to 1, default 0.55 (Fig 2b of the paper).
+    /// Attraction by the contour, `k_p`. 0 to 1, default 0.55 (Fig 2b of the paper).
     pub contour_pull: f64,
-    /// Attraction along the bearer, k_b. 0 to 1, default 0.35.
+    /// Attraction along the bearer, `k_b`. 0 to 1, default 0.35.
     pub bearer_pull: f64,
-    /// Memory of the last direction, k_m. 0 to 1, default 0.1.
+    /// Memory of the last direction, `k_m`. 0 to 1, default 0.1.
     pub memory: f64,
     /// How many twigs and leaves relative to the default, 0.1 to 10, default 1.
     pub density: f64,
