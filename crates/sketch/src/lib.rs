@@ -12,6 +12,7 @@
 //! | radii, plant | `build` | section 6, Eq 5 to 7 |
 
 mod build;
+mod clean;
 mod drawing;
 mod fill;
 mod map;
@@ -19,6 +20,7 @@ mod reading;
 mod spec;
 
 pub use build::{Built, build};
+pub use clean::{Ink, InkMap, InkStroke, clean};
 pub use drawing::{Drawing, InkSample, Stroke, StrokeMode};
 pub use map::PlantMap;
 pub use reading::{
