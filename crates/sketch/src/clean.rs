@@ -370,7 +370,10 @@ mod tests {
         let ink = clean(&lines(&[line, vec![DVec2::new(2.0, 2.0)], vec![DVec2::X, DVec2::Y]]), &mut report);
         assert_eq!(codes(&report), ["sample-skipped", "stray-skipped", "stroke-skipped"]);
         assert_eq!((ink.strokes.len(), ink.strokes[1].index, &ink.skipped[..]), (2, 2, &[1][..]));
-        assert!((ink.map.scale - 1.0 / ops::hypot(19.0, 2.0)).abs() < 1e-3, "the stray must not set the scale");
+        assert!(
+            (ink.map.scale - 1.0 / ops::hypot(19.0, 2.0)).abs() < 1e-3,
+            "the stray must not set the scale"
+        );
     }
 
     #[test]
