@@ -1,5 +1,41 @@
 //! Geometry for plants, in f64: curves, frames, fits, triangulation, neighbours. Knows nothing of plants.
+//!
+//! Every function takes whatever a pen or a file can give. A point is *usable* if all its coordinates are
+//! finite and at most 1e100 in size (so that squares and their sums stay finite); others are left out, as
+//! each function says. Nothing here panics on user data.
+//!
+//! | module | owns |
+//! |---|---|
+//! | `polyline` | length, resampling, smoothing, simplification, nearest point on open lines |
+//! | `polygon` | area, inside test, hull, cross-sections of closed lines |
+//! | `outline` | [`simple_outline`]: the polygon that a scribble means |
+//! | `pca` | principal axes and their box |
+//! | `ellipse`, `cone` | the flower's ellipse and cone (paper 000, section 5.1) |
+//! | `cluster` | mean shift |
+//! | `curve`, `frame` | smooth curves through points, frames along them |
+//! | `triangulate` | constrained Delaunay triangulation of a blade |
+//! | `grid` | neighbours |
 
+mod cluster;
 mod cone;
+mod curve;
+mod frame;
+mod grid;
+mod outline;
+mod pca;
+mod polygon;
+mod polyline;
+mod vector;
 
+pub use cluster::mean_shift;
 pub use cone::{Cone, Sheet};
+pub use curve::{bezier_quadratic_c1, catmull_rom};
+pub use frame::{Frame3, rotation_minimising_frames};
+pub use grid::{Grid2, Grid3};
+pub use outline::{self_crossings, simple_outline};
+pub use pca::{Pca2, pca2};
+pub use polygon::{centroid, contains, convex_hull, farthest_pair, medial_axis_width, signed_area};
+pub use polyline::{
+    Closest, closest_on_polyline, point_at, point_at3, polyline_length, polyline_length3, resample,
+    resample3, simplify, smooth_gaussian, smooth_gaussian_closed, tangent_at, tangent_at3, turning_angles,
+};

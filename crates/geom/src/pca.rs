@@ -1,0 +1,80 @@
+//! Points -> principal axes and the box along them.
+
+use crate::vector::Vector;
+use glam::DVec2;
+
+/// Principal axes of a set of points in the plane.
+///
+/// ```
+/// use glam::DVec2;
+/// let p = geom::pca2(&[DVec2::ZERO, DVec2::new(4.0, 0.0), DVec2::new(2.0, 1.0)]).unwrap();
+/// assert!((p.major - DVec2::X).length() < 1e-12);
+/// assert_eq!(p.extent, [4.0, 1.0]);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pca2 {
+    /// The mean of the points.
+    pub centre: DVec2,
+    /// Unit direction of greatest variance; x > 0, or x = 0 and y > 0.
+    pub major: DVec2,
+    /// Unit direction at a right angle, left of `major`.
+    pub minor: DVec2,
+    /// Variances along the two axes (mean squares), greatest first, never negative.
+    pub lambda: [f64; 2],
+    /// Edge lengths along the two axes of the box around the points.
+    pub extent: [f64; 2],
+}
+
+/// Principal axes of the usable points; `None` if there is none.
+///
+/// Points without a preferred direction (all equal, or a regular polygon) have the x axis as `major`.
+pub fn pca2(points: &[DVec2]) -> Option<Pca2> {
+    let usable = || points.iter().copied().filter(|p| p.usable());
+    let n = usable().count() as f64;
+    let first = usable().next()?;
+    // Relative to the first point: far from the origin the mean would lose digits.
+    let centre = first + usable().map(|p| p - first).sum::<DVec2>() / n;
+    let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+    for d in usable().map(|p| p - centre) {
+        xx += d.x * d.x / n;
+        xy += d.x * d.y / n;
+        yy += d.y * d.y / n;
+    }
+    let half = 0.5 * (xx - yy);
+    let spread = (half * half + xy * xy).sqrt();
+    let mean = 0.5 * (xx + yy);
+    // Of the two rows of the eigenvector equation the one without cancellation.
+    let major = if half >= 0.0 { DVec2::new(half + spread, xy) } else { DVec2::new(xy, spread - half) };
+    // 1e-12: an anisotropy of rounding size is no direction.
+    let major = if spread > mean * 1e-12 { major.direction().unwrap_or(DVec2::X) } else { DVec2::X };
+    let major = if major.x < 0.0 || (major.x <= 0.0 && major.y < 0.0) { -major } else { major };
+    let minor = major.perp();
+    let extent = [major, minor].map(|axis| {
+        let along = || usable().map(|p| (p - centre).dot(axis));
+        along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
+    });
+    Some(Pca2 { centre, major, minor, lambda: [mean + spread, (mean - spread).max(0.0)], extent })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn axes_of_a_turned_rectangle() {
+        let axis = DVec2::from_angle(2.2);
+        let at = |u: f64, v: f64| DVec2::new(100.0, -7.0) + axis * u + axis.perp() * v;
+        let p = pca2(&[at(3.0, 1.0), at(-3.0, 1.0), at(-3.0, -1.0), at(3.0, -1.0)]).unwrap();
+        assert!(p.major.perp_dot(axis).abs() < 1e-12 && p.major.x > 0.0, "{p:?}");
+        assert!((p.lambda[0] - 9.0).abs() < 1e-9 && (p.lambda[1] - 1.0).abs() < 1e-9, "{p:?}");
+        assert!((p.extent[0] - 6.0).abs() < 1e-9 && (p.extent[1] - 2.0).abs() < 1e-9, "{p:?}");
+    }
+
+    #[test]
+    fn vertical_line_and_degenerate_input() {
+        let p = pca2(&[DVec2::ZERO, DVec2::NAN, DVec2::new(0.0, 2.0)]).unwrap();
+        assert_eq!((p.major, p.extent), (DVec2::Y, [2.0, 0.0]));
+        assert_eq!(pca2(&[DVec2::NAN]), None);
+        assert_eq!(pca2(&[DVec2::ONE; 3]).map(|p| (p.major, p.lambda)), Some((DVec2::X, [0.0, 0.0])));
+    }
+}

@@ -1,0 +1,267 @@
+//! Closed line -> its measures: area, inside, hull, cross-sections.
+//!
+//! A polygon is a list of corners whose first is not repeated (repeating it does no harm), counter-clockwise
+//! unless said otherwise. Corners that are not usable are left out.
+
+use crate::polyline::{point_at, polyline_length, tangent_at};
+use crate::vector::{Vector, distinct_closed};
+use glam::DVec2;
+
+/// The usable edges of a polygon.
+fn edges(polygon: &[DVec2]) -> impl Iterator<Item = (DVec2, DVec2)> {
+    let usable = || polygon.iter().copied().filter(|p| p.usable());
+    let skip = usable().count().min(1);
+    usable().zip(usable().skip(skip).chain(usable().take(1)))
+}
+
+/// The area of a polygon, positive if it is counter-clockwise; parts run round twice count twice.
+pub fn signed_area(polygon: &[DVec2]) -> f64 {
+    let Some(origin) = polygon.iter().copied().find(|p| p.usable()) else { return 0.0 };
+    // Relative to a corner: far from the origin the products would drown the area.
+    edges(polygon).map(|(a, b)| 0.5 * (a - origin).perp_dot(b - origin)).sum()
+}
+
+/// The centre of gravity of a polygon's area; the mean of its corners if it has no area; else the origin.
+pub fn centroid(polygon: &[DVec2]) -> DVec2 {
+    let Some(origin) = polygon.iter().copied().find(|p| p.usable()) else { return DVec2::ZERO };
+    let (mut area, mut size, mut moment) = (0.0, 0.0, DVec2::ZERO);
+    let (mut mean, mut n) = (DVec2::ZERO, 0.0);
+    for (a, b) in edges(polygon).map(|(a, b)| (a - origin, b - origin)) {
+        let double = a.perp_dot(b);
+        area += 0.5 * double;
+        size += double.abs();
+        moment += (a + b) * (double / 6.0);
+        mean += a;
+        n += 1.0;
+    }
+    // 1e-12: what is left of cancelled products is no area.
+    if area.abs() > 1e-12 * size && (moment / area).usable() {
+        origin + moment / area
+    } else {
+        origin + mean / n
+    }
+}
+
+/// Whether a point lies inside a polygon, by the even-odd rule; on the edge either answer may come.
+///
+/// False if `p` is not usable. Cost: linear.
+pub fn contains(polygon: &[DVec2], p: DVec2) -> bool {
+    p.usable() && edges(polygon).filter(|&(a, b)| crosses_ray(a, b, p)).count() % 2 == 1
+}
+
+/// Whether the ray from `p` to the right crosses the edge; half open in y, so a corner counts once.
+pub(crate) fn crosses_ray(a: DVec2, b: DVec2, p: DVec2) -> bool {
+    if (a.y > p.y) == (b.y > p.y) {
+        return false;
+    }
+    // p is left of the crossing: the sign of the turn, seen upwards.
+    let turn = (b - a).perp_dot(p - a);
+    if b.y > a.y { turn > 0.0 } else { turn < 0.0 }
+}
+
+/// Indices of the hull's corners, counter-clockwise from the leftmost lowest; repeated places once.
+fn hull_indices(points: &[DVec2]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..points.len()).filter(|&i| points[i].usable()).collect();
+    let key = |i: usize| (points[i].x + 0.0, points[i].y + 0.0); // + 0.0: no negative zero
+    order.sort_by(|&a, &b| {
+        let (p, q) = (key(a), key(b));
+        p.0.total_cmp(&q.0).then(p.1.total_cmp(&q.1)).then(a.cmp(&b))
+    });
+    order.dedup_by(|b, a| points[*a] == points[*b]);
+    if order.len() < 3 {
+        return order;
+    }
+    let mut hull: Vec<usize> = Vec::with_capacity(order.len() + 1);
+    let mut half = |indices: &mut dyn Iterator<Item = usize>| {
+        let base = hull.len();
+        for i in indices {
+            while hull.len() > base + 1 {
+                let (a, b) = (points[hull[hull.len() - 2]], points[hull[hull.len() - 1]]);
+                if (b - a).perp_dot(points[i] - b) > 0.0 {
+                    break;
+                }
+                hull.pop();
+            }
+            hull.push(i);
+        }
+        hull.pop(); // the next half begins with it
+    };
+    half(&mut order.iter().copied());
+    half(&mut order.iter().rev().copied());
+    hull
+}
+
+/// The convex hull, counter-clockwise, without corners on straight edges. Cost: n log n.
+///
+/// One point for one place, two for a straight line, none without a usable point.
+///
+/// Andrew 1979, monotone chain.
+pub fn convex_hull(points: &[DVec2]) -> Vec<DVec2> {
+    hull_indices(points).into_iter().map(|i| points[i]).collect()
+}
+
+/// The two points that lie farthest apart, by index, the lower index first; `None` for no usable point.
+///
+/// A set in one place gives a pair of one index twice. Cost: n log n and the square of the hull's corners.
+pub fn farthest_pair(points: &[DVec2]) -> Option<(usize, usize)> {
+    let mut hull = hull_indices(points);
+    hull.sort_unstable();
+    let first = *hull.first()?;
+    let mut best = (0.0, (first, first));
+    for (k, &i) in hull.iter().enumerate() {
+        for &j in &hull[k + 1..] {
+            let d = points[i].distance_squared(points[j]);
+            if d > best.0 {
+                best = (d, (i, j));
+            }
+        }
+    }
+    Some(best.1)
+}
+
+/// The piece of a straight line inside a polygon that holds, or lies nearest to, the line's own point.
+fn cross_section(polygon: &[DVec2], at: DVec2, across: DVec2) -> Option<(f64, f64)> {
+    let along = across.perp();
+    let mut hits: Vec<f64> = Vec::new();
+    for (a, b) in edges(polygon) {
+        let (sa, sb) = ((a - at).dot(along), (b - at).dot(along));
+        if (sa > 0.0) != (sb > 0.0) {
+            let t = sa / (sa - sb);
+            hits.push((a + (b - a) * t - at).dot(across));
+        }
+    }
+    hits.sort_by(f64::total_cmp);
+    let outside = |&(lo, hi): &(f64, f64)| lo.max(-hi).max(0.0);
+    hits.chunks_exact(2).map(|w| (w[0], w[1])).min_by(|p, q| outside(p).total_cmp(&outside(q)))
+}
+
+/// Cross-sections of an elongated polygon from one end to the other: centres and half widths.
+///
+/// `samples` (at least 2, at most 10 000) sections stand at equal distances on the way from `from` to `to`, both
+/// included; the way is the straight line at first and then, once, the line of the centres found, so that a
+/// bent leaf is cut across its own direction. Where a section misses the polygon the half width is 0. Empty if the polygon has fewer
+/// than 3 usable corners or an end is not usable. Cost: samples x corners.
+pub fn medial_axis_width(polygon: &[DVec2], from: DVec2, to: DVec2, samples: usize) -> Vec<(DVec2, f64)> {
+    let polygon = distinct_closed(polygon);
+    if polygon.len() < 3 || !from.usable() || !to.usable() {
+        return vec![];
+    }
+    let samples = samples.clamp(2, 10_000);
+    let straight = sections(&polygon, &[from, to], samples);
+    let mut way: Vec<DVec2> = vec![from];
+    way.extend(straight[1..samples - 1].iter().map(|s| s.0));
+    way.push(to);
+    // Centres jump where a lobe begins; a mean of five keeps the directions calm.
+    let calm: Vec<DVec2> = (0..way.len())
+        .map(|i| {
+            let half = 2.min(i).min(way.len() - 1 - i);
+            way[i - half..=i + half].iter().sum::<DVec2>() / (2 * half + 1) as f64
+        })
+        .collect();
+    sections(&polygon, &calm, samples)
+}
+
+fn sections(polygon: &[DVec2], way: &[DVec2], samples: usize) -> Vec<(DVec2, f64)> {
+    let total = polyline_length(way);
+    (0..samples)
+        .map(|k| {
+            let at = total * (k as f64 / (samples - 1) as f64);
+            let here = point_at(way, at).unwrap_or(DVec2::ZERO);
+            let found = tangent_at(way, at).and_then(|t| {
+                let across = t.perp();
+                cross_section(polygon, here, across)
+                    .map(|(lo, hi)| (here + across * (0.5 * (lo + hi)), 0.5 * (hi - lo)))
+            });
+            found.unwrap_or((here, 0.0))
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use base::ops;
+
+    fn square() -> Vec<DVec2> {
+        vec![DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y]
+    }
+
+    #[test]
+    fn square_measures() {
+        assert_eq!(signed_area(&square()), 1.0);
+        assert_eq!(centroid(&square()), DVec2::splat(0.5));
+        assert!(contains(&square(), DVec2::splat(0.3)) && !contains(&square(), DVec2::new(1.5, 0.5)));
+        let mut repeated = square();
+        repeated.insert(2, DVec2::NAN);
+        repeated.push(DVec2::ZERO);
+        assert_eq!((signed_area(&repeated), centroid(&repeated)), (1.0, DVec2::splat(0.5)));
+        repeated.reverse();
+        assert_eq!(signed_area(&repeated), -1.0);
+    }
+
+    #[test]
+    fn far_from_the_origin_nothing_is_lost() {
+        let far: Vec<_> = square().iter().map(|p| *p + DVec2::splat(1e9)).collect();
+        assert_eq!((signed_area(&far), centroid(&far)), (1.0, DVec2::splat(1e9 + 0.5)));
+    }
+
+    #[test]
+    fn a_ray_through_corners_counts_once() {
+        let diamond = [DVec2::X, DVec2::Y, -DVec2::X, -DVec2::Y];
+        assert!(contains(&diamond, DVec2::ZERO) && !contains(&diamond, DVec2::new(-2.0, 0.0)));
+        assert!(!contains(&diamond, DVec2::new(-2.0, 1.0)) && !contains(&diamond, DVec2::NAN));
+    }
+
+    #[test]
+    fn without_area_the_mean() {
+        assert_eq!(centroid(&[DVec2::ZERO, DVec2::X * 2.0]), DVec2::X);
+        assert_eq!((centroid(&[]), signed_area(&[])), (DVec2::ZERO, 0.0));
+        assert_eq!((centroid(&[DVec2::ONE]), signed_area(&[DVec2::ONE])), (DVec2::ONE, 0.0));
+    }
+
+    #[test]
+    fn hull_drops_inner_and_straight_points() {
+        let mut points = square();
+        points.extend([DVec2::splat(0.5), DVec2::new(0.5, 0.0), DVec2::X, DVec2::NAN]);
+        assert_eq!(convex_hull(&points), square());
+        assert_eq!(convex_hull(&[DVec2::X; 3]), vec![DVec2::X]);
+        assert_eq!(convex_hull(&[DVec2::ZERO, DVec2::ONE, DVec2::splat(0.5)]), vec![DVec2::ZERO, DVec2::ONE]);
+    }
+
+    #[test]
+    fn farthest_pair_is_a_diagonal() {
+        assert_eq!(farthest_pair(&square()), Some((0, 2)));
+        assert_eq!(farthest_pair(&[DVec2::NAN, DVec2::X, DVec2::X]), Some((1, 1)));
+        assert_eq!(farthest_pair(&[]), None);
+    }
+
+    #[test]
+    fn sections_of_an_ellipse_follow_it() {
+        let n = 400;
+        let ellipse: Vec<DVec2> = (0..n)
+            .map(|i| ops::TAU * f64::from(i) / f64::from(n))
+            .map(|a| DVec2::new(ops::cos(a), 3.0 * ops::sin(a)))
+            .collect();
+        for (c, half) in medial_axis_width(&ellipse, DVec2::new(0.0, -3.0), DVec2::new(0.0, 3.0), 21) {
+            let expected = (1.0 - c.y * c.y / 9.0).max(0.0).sqrt();
+            assert!(c.x.abs() < 1e-9 && (half - expected).abs() < 1e-3, "{c} {half} {expected}");
+        }
+    }
+
+    #[test]
+    fn sections_of_a_bent_strip_keep_its_width() {
+        // A quarter ring of radii 4 and 5: half width 0.5 everywhere, centres at radius 4.5.
+        let arc = |r: f64, back: bool| {
+            (0..=60).map(move |i| {
+                let i = if back { 60 - i } else { i };
+                DVec2::from_angle(f64::from(i) * ops::FRAC_PI_2 / 60.0) * r
+            })
+        };
+        let ring: Vec<DVec2> = arc(5.0, false).chain(arc(4.0, true)).collect();
+        let found = medial_axis_width(&ring, DVec2::new(4.5, 0.0), DVec2::new(0.0, 4.5), 40);
+        for (c, half) in &found[4..36] {
+            assert!((c.length() - 4.5).abs() < 0.03 && (half - 0.5).abs() < 0.03, "{c} {half}");
+        }
+        assert!(medial_axis_width(&ring, DVec2::NAN, DVec2::X, 5).is_empty());
+    }
+}
