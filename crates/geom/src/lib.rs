@@ -19,6 +19,7 @@
 mod cluster;
 mod cone;
 mod curve;
+mod ellipse;
 mod frame;
 mod grid;
 mod outline;
@@ -28,8 +29,9 @@ mod polyline;
 mod vector;
 
 pub use cluster::mean_shift;
-pub use cone::{Cone, Sheet};
+pub use cone::{Cone, FlowerCone, Sheet, flower_cone};
 pub use curve::{bezier_quadratic_c1, catmull_rom};
+pub use ellipse::{Ellipse, fit_ellipse, fit_ellipse_harmonic};
 pub use frame::{Frame3, rotation_minimising_frames};
 pub use grid::{Grid2, Grid3};
 pub use outline::{self_crossings, simple_outline};
