@@ -8,10 +8,12 @@
 
 mod blade;
 mod organ;
+mod phyllotaxis;
 mod topology;
 mod validate;
 
 pub use blade::{Blade, Lift, Relief};
 pub use organ::{Flower, FlowerId, Frame, Organ, OrganId, OrganKind, Shape, ShapeId};
+pub use phyllotaxis::{Divergence, Phyllotaxis};
 pub use topology::{Axis, AxisId, AxisKind, NodeId, Nodes, Plant};
 pub use validate::Fault;
