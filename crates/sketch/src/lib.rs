@@ -18,6 +18,7 @@ mod fill;
 mod map;
 mod reading;
 mod spec;
+mod template;
 
 pub use build::{Built, build};
 pub use clean::{Ink, InkMap, InkStroke, clean};
@@ -28,3 +29,4 @@ pub use reading::{
     RegionKind, RegionReading, StrokeClass, StrokeReading,
 };
 pub use spec::{BranchDepth, FillSpec, LeafDepth, ReliefSpec, SketchSpec, TaperSpec};
+pub use template::LeafForm;

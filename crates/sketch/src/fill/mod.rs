@@ -1,14 +1,36 @@
 //! Contours filled with twigs and leaves (paper 000, section 4.3).
 //!
 //! `Reading::regions + the plant's drawn axes -> grown twigs and leaves`
+//!
+//! | region | becomes | module |
+//! |---|---|---|
+//! | branch contour | twigs by Eq 2 | `twigs` |
+//! | leaf contour | leaves on midribs by Eq 2 | `leaves` |
+//! | crown | limbs, branches, twigs, leaves | `crown`, `foliage` |
+//!
+//! All of them grow in the body that the contour stands for (`volume`) towards points strewn in it
+//! (`scatter`). Bounded: 4,000 twigs and 20,000 leaves a region.
 
-use base::{Cancelled, Report, Run, Seed};
-use plant::{AxisId, Plant, ShapeId};
+mod crown;
+mod foliage;
+mod grow;
+mod leaves;
+mod scatter;
+mod twigs;
+mod volume;
 
-use crate::{PlantMap, Reading, SketchSpec};
+use base::{Cancelled, Draw, Report, Run, Seed};
+use glam::{DVec2, DVec3};
+use plant::{AxisId, AxisKind, Phyllotaxis, Plant, Shape, ShapeId};
+
+use crate::{FillSpec, LeafForm, PlantMap, Reading, RegionKind, RegionReading, SketchSpec};
+use crown::{Crown, Habit};
+use foliage::Foliage;
+use leaves::Leaves;
+use twigs::Twigs;
+use volume::{Inflation, Volume};
 
 /// What filling needs to know about the plant that it grows on.
-#[expect(dead_code, reason = "read as soon as contours are filled")]
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FillContext<'a> {
     /// What was asked for.
@@ -27,20 +49,204 @@ pub(crate) struct FillContext<'a> {
 
 /// Fills every region of the reading with twigs and leaves, borne by the plant's axes.
 ///
-/// Radii of the new axes are left 0: they are set when the whole plant stands.
+/// Guaranteed: nodes and leaf roots inside a contour stay inside it as seen from the front; radii of the new
+/// axes are 0 until they are set when the whole plant stands; the same input gives the same plant.
+/// Not guaranteed: blades may overlap the contour a little. Contours without area are skipped with a warning.
+///
+/// Cost: about 1 ms for a crown of 900 leaves; near linear in twigs and leaves.
 ///
 /// # Errors
 /// [`Cancelled`] when the caller asked to stop.
 pub(crate) fn fill(
-    _plant: &mut Plant,
+    plant: &mut Plant,
     reading: &Reading,
-    _ctx: &FillContext<'_>,
+    ctx: &FillContext<'_>,
     run: &Run<'_>,
     report: &mut Report,
 ) -> Result<(), Cancelled> {
-    run.cancel.check()?;
-    if !reading.regions.is_empty() {
-        report.warn("contour-empty", format!("{} contours were left empty", reading.regions.len()));
+    let mut forms: Vec<(LeafForm, ShapeId)> = Vec::new();
+    let drawn = foliage::measured(plant, ctx.templates);
+    let mut born: Vec<(u64, u64)> = Vec::new();
+    for (row, region) in reading.regions.iter().enumerate() {
+        run.cancel.check()?;
+        let outline: Vec<DVec2> = region.outline.iter().map(|&p| ctx.map.plant_from_ink(p)).collect();
+        let inflation =
+            if region.kind == RegionKind::Crown { Inflation::Rows } else { Inflation::Ball };
+        let Some(mut volume) = Volume::new(&outline, inflation) else {
+            report.warn("contour-empty", format!("contour {} encloses nothing and was left empty", row + 1));
+            continue;
+        };
+        let bearers = bearers(plant, region, ctx, &volume);
+        // Named by its bearer and its rank among that bearer's contours, so that editing one leaves others be.
+        let bearer = bearers.first().map_or(0, |&a| plant.axis(a).key);
+        let rank = born.iter().filter(|(b, _)| *b == bearer).count() as u64;
+        born.push((bearer, rank));
+        let seed = ctx.seed.child(bearer).child(rank);
+        lay(plant, &mut volume, &bearers, region.kind);
+        let spec = tame(ctx.spec.fill);
+        let mut look = Look { forms: &mut forms, drawn: &drawn, seed, spec };
+        let (axes, leaves) = match region.kind {
+            RegionKind::Twigs => {
+                let kind = if ctx.woody { AxisKind::Twig } else { AxisKind::Stem };
+                let twigs = Twigs { volume: &volume, spec, seed, bearers: &bearers, kind };
+                (twigs.grow(plant, &mut Vec::new()), 0)
+            }
+            RegionKind::Leaves => {
+                let (foliage, leaves) = look.of_cluster(plant, &volume);
+                let kind = if ctx.woody { AxisKind::Twig } else { AxisKind::Stem };
+                Leaves { volume: &volume, spec, seed, bearers: &bearers, foliage, leaves, kind }.grow(plant)
+            }
+            RegionKind::Crown => {
+                let habit = Habit::of(&volume, plant.axis_points(bearers[0]));
+                let (foliage, leaves) = look.of_crown(plant, &volume, habit);
+                let woody = ctx.woody;
+                let bearers = &bearers;
+                Crown { volume: &volume, spec, seed, bearers, foliage, leaves, habit, woody }.grow(plant)
+            }
+        };
+        if axes + leaves == 0 {
+            report.warn("contour-empty", format!("nothing could grow in contour {}", row + 1));
+        }
     }
     Ok(())
 }
+
+/// The plant's axes that run into a region; where the reading's have all degenerated, a new stem. Never empty.
+fn bearers(plant: &mut Plant, region: &RegionReading, ctx: &FillContext<'_>, volume: &Volume) -> Vec<AxisId> {
+    let known = region.bearers.iter().filter_map(|&row| ctx.axis_of_reading.get(row).copied().flatten());
+    let mut axes: Vec<AxisId> = known.collect();
+    axes.dedup();
+    // The trunk first: of the lowest order, then the one with the lowest foot.
+    axes.sort_by(|&a, &b| {
+        let foot = |x| plant.axis_points(x).first().map_or(0.0, |p: &DVec3| p.y);
+        plant.axis(a).order.cmp(&plant.axis(b).order).then(foot(a).total_cmp(&foot(b)))
+    });
+    if axes.is_empty() {
+        let low = volume.low().y;
+        let middle = |t: f64| {
+            let y = low + t * volume.height();
+            let x = volume.row(y).map_or(0.5 * (volume.low().x + volume.high().x), |(x, _)| x);
+            DVec3::new(x, y, 0.0)
+        };
+        let points: Vec<DVec3> = (0..4).map(|i| middle(0.02 + 0.09 * f64::from(i))).collect();
+        let kind = if ctx.woody { AxisKind::Branch } else { AxisKind::Stem };
+        let key = ctx.seed.child(u64::from(region.source.unwrap_or(u32::MAX))).number();
+        axes.push(plant.add_axis(kind, None, key, &points, region.source));
+    }
+    axes
+}
+
+/// Puts the body where its bearers are in depth.
+fn lay(plant: &Plant, volume: &mut Volume, bearers: &[AxisId], kind: RegionKind) {
+    let inside = |p: &&DVec3| volume.contains_xy(p.truncate());
+    let points = || bearers.iter().flat_map(|&a| plant.axis_points(a));
+    let mut lines: Vec<DVec3> = points().filter(inside).copied().collect();
+    if lines.is_empty() {
+        lines = bearers.iter().filter_map(|&a| plant.axis_points(a).last().copied()).collect();
+    }
+    if kind == RegionKind::Crown {
+        // A crown is round about its trunk.
+        let trunk = plant.axis_points(bearers[0]);
+        let z = trunk.iter().rfind(inside).or(trunk.last()).map_or(0.0, |p| p.z);
+        volume.centre_at(z);
+    } else {
+        let stride = lines.len().div_ceil(24).max(1);
+        let few: Vec<DVec3> = lines.into_iter().step_by(stride).collect();
+        volume.follow(&few);
+    }
+}
+
+/// The numbers within their documented ranges; defaults for what is not finite.
+fn tame(spec: FillSpec) -> FillSpec {
+    let d = FillSpec::default();
+    let fix = |x: f64, lo: f64, hi: f64, or: f64| if x.is_finite() { x.clamp(lo, hi) } else { or };
+    FillSpec {
+        contour_pull: fix(spec.contour_pull, 0.0, 1.0, d.contour_pull),
+        bearer_pull: fix(spec.bearer_pull, 0.0, 1.0, d.bearer_pull),
+        memory: fix(spec.memory, 0.0, 1.0, d.memory),
+        density: fix(spec.density, 0.1, 10.0, d.density),
+        tropism: fix(spec.tropism, -1.0, 1.0, d.tropism),
+    }
+}
+
+/// Chooses leaves: the user's, where leaves were drawn, else botanical forms.
+struct Look<'a> {
+    forms: &'a mut Vec<(LeafForm, ShapeId)>,
+    drawn: &'a [(ShapeId, f64)],
+    seed: Seed,
+    spec: FillSpec,
+}
+
+impl Look<'_> {
+    fn form(&mut self, plant: &mut Plant, form: LeafForm) -> (ShapeId, f64) {
+        if let Some((_, id)) = self.forms.iter().find(|(f, _)| *f == form) {
+            return (*id, 1.0);
+        }
+        let id = plant.add_shape(Shape::Blade(form.blade()));
+        self.forms.push((form, id));
+        (id, 1.0)
+    }
+
+    /// Length of the drawn leaves: their median.
+    fn natural(&self) -> Option<f64> {
+        let mut lengths: Vec<f64> = self.drawn.iter().map(|(_, l)| *l).collect();
+        lengths.sort_by(f64::total_cmp);
+        lengths.get(lengths.len() / 2).copied()
+    }
+
+    fn of_crown(&mut self, plant: &mut Plant, volume: &Volume, habit: Habit) -> (Foliage, usize) {
+        // Diameter of the circle with the contour's area.
+        let diameter = (volume.area * 4.0 / base::ops::PI).sqrt();
+        let conifer = habit == Habit::Excurrent;
+        // 1/15: fewer and larger leaves than a real tree's read as foliage at the size of a drawing.
+        let mut length = diameter / if conifer { 11.0 } else { 15.0 };
+        let mut shapes = self.drawn.to_vec();
+        if let Some(natural) = self.natural() {
+            length = natural.clamp(diameter / 40.0, diameter / 6.0);
+        } else if conifer {
+            shapes.push(self.form(plant, LeafForm::Spray));
+        } else {
+            const FORMS: [LeafForm; 4] =
+                [LeafForm::Ovate, LeafForm::Elliptic, LeafForm::Cordate, LeafForm::Lobed];
+            let form = FORMS[self.seed.stream(Draw::Template).below(FORMS.len())];
+            shapes.push(self.form(plant, form));
+        }
+        let leaves = leaves::leaves_for(volume.area, length, 1.35 * self.spec.density);
+        let middle = 0.5 * (volume.low() + volume.high());
+        let core = DVec2::new(middle.x, volume.low().y + 0.35 * volume.height());
+        let foliage = Foliage {
+            shapes,
+            length,
+            phyllotaxis: if conifer { Phyllotaxis::Opposite } else { Phyllotaxis::default() },
+            insertion: if conifer { 0.7 } else { 0.95 },
+            light: if conifer { 0.25 } else { 0.75 },
+            core: core.extend(volume.mid(core)),
+            most: leaves::MOST_LEAVES,
+        };
+        (foliage, leaves)
+    }
+
+    fn of_cluster(&mut self, plant: &mut Plant, volume: &Volume) -> (Foliage, usize) {
+        let mut shapes = self.drawn.to_vec();
+        let room = 1.6 * volume.inradius;
+        let length = self.natural().map_or_else(|| leaves::default_length(volume), |l| l.min(room));
+        if shapes.is_empty() {
+            shapes.push(self.form(plant, LeafForm::Ovate));
+        }
+        let leaves = leaves::leaves_for(volume.area, length, 1.0 * self.spec.density);
+        let core = 0.5 * (volume.low() + volume.high());
+        let foliage = Foliage {
+            shapes,
+            length,
+            phyllotaxis: Phyllotaxis::default(),
+            insertion: 0.9,
+            light: 0.5,
+            core: core.extend(volume.mid(core)),
+            most: leaves::MOST_LEAVES,
+        };
+        (foliage, leaves)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -126,6 +126,16 @@ impl Volume {
         self.cell
     }
 
+    /// Half the depth of the body where it is deepest.
+    pub(super) fn deepest(&self) -> f64 {
+        self.depth.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// Volume of the body, m3.
+    pub(super) fn bulk(&self) -> f64 {
+        2.0 * self.cell * self.cell * self.depth.iter().sum::<f64>()
+    }
+
     /// Lays the middle of the body on the lines that run through it, instead of on z = 0.
     pub(super) fn follow(&mut self, lines: &[DVec3]) {
         if lines.is_empty() {

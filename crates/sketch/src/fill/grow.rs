@@ -1,0 +1,163 @@
+//! Growth of one axis towards its attraction point, and the places where further ones may start.
+//!
+//! Paper 000, Eq 2: `p' = p + r (k_p v_p + k_b v_b + k_m v_m)`, all three directions unit vectors.
+
+use base::Stream;
+use glam::DVec3;
+use plant::{AxisId, AxisKind, NodeId, Plant};
+
+use super::volume::Volume;
+use crate::FillSpec;
+
+/// A place where an axis may start.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Site {
+    pub(super) node: NodeId,
+    pub(super) at: DVec3,
+    /// Unit direction of its axis.
+    pub(super) tangent: DVec3,
+    /// 0 trunk, 1 limb, 2 branch, 3 twig: how far from the trunk, counted in what was grown here.
+    pub(super) level: u32,
+    /// Arc length from the trunk's entry, metres.
+    pub(super) path: f64,
+    /// Axes that start here already.
+    pub(super) used: u32,
+}
+
+/// Adds the inner nodes of an axis to `sites`.
+pub(super) fn add_sites(plant: &Plant, axis: AxisId, level: u32, path: f64, sites: &mut Vec<Site>) {
+    let points = plant.axis_points(axis);
+    let mut at = path;
+    for (i, node) in plant.axis(axis).node_ids().enumerate().skip(1) {
+        at += points[i].distance(points[i - 1]);
+        sites.push(Site { node, at: points[i], tangent: tangent(points, i), level, path: at, used: 0 });
+    }
+}
+
+/// Unit direction of a line at one of its points; up where it has none.
+pub(super) fn tangent(points: &[DVec3], i: usize) -> DVec3 {
+    let (a, b) = (points[i.saturating_sub(1)], points[(i + 1).min(points.len() - 1)]);
+    (b - a).try_normalize().unwrap_or(DVec3::Y)
+}
+
+/// The right-hand side of Eq 2 without the step: what pulls, where the bearer runs, where growth came from.
+pub(super) fn eq2(spec: &FillSpec, pull: DVec3, bearer: DVec3, last: DVec3) -> DVec3 {
+    spec.contour_pull * pull + spec.bearer_pull * bearer + spec.memory * last
+}
+
+/// Grows from `from` to the attraction point `target` by Eq 2 in steps of `step`, inside `volume`.
+///
+/// The bearer's pull fades over the way, so that the axis leaves along its bearer and arrives at its target.
+/// Not guaranteed: that it arrives; it ends where the contour is in the way. `out` starts with `from`.
+pub(super) fn grow_toward(
+    volume: &Volume,
+    spec: &FillSpec,
+    (from, bearer): (DVec3, DVec3),
+    target: DVec3,
+    step: f64,
+    wobble: &mut Stream,
+    out: &mut Vec<DVec3>,
+) {
+    out.clear();
+    out.push(from);
+    let whole = from.distance(target);
+    if !(whole > 0.0 && step > 0.0) {
+        return;
+    }
+    let (mut p, mut last) = (from, bearer);
+    // 2 ways of 3 lengths: a way that is longer than that has lost its target.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded by min")]
+    let steps = (3.0 * whole / step).ceil().min(200.0) as usize;
+    for _ in 0..steps {
+        let to = target - p;
+        let left = to.length();
+        if left <= 1.3 * step {
+            push_inside(volume, p, target, out);
+            return;
+        }
+        let fade = (left / whole).min(1.0);
+        let noise = DVec3::new(wobble.normal(), wobble.normal(), wobble.normal()) * 0.05;
+        let sum = eq2(spec, to / left, bearer * fade, last) + DVec3::Y * (spec.tropism * fade) + noise;
+        last = sum.try_normalize().unwrap_or(to / left);
+        let Some(q) = push_inside(volume, p, p + last * step, out) else {
+            return;
+        };
+        p = q;
+    }
+}
+
+/// Appends `q` if the way from `p` stays inside the contour, else the nearest inner point that does.
+fn push_inside(volume: &Volume, p: DVec3, mut q: DVec3, out: &mut Vec<DVec3>) -> Option<DVec3> {
+    let entering = !volume.contains_xy(p.truncate());
+    if !entering && !volume.contains_xy(q.truncate()) {
+        let wall = volume.nearest_xy(q.truncate());
+        let back = wall + (wall - q.truncate()).normalize_or_zero() * volume.cell();
+        q = back.extend(q.z);
+        if !volume.contains_xy(back) {
+            return None;
+        }
+    }
+    if !entering {
+        let xy = q.truncate();
+        let (mid, half) = (volume.mid(xy), volume.half_depth(xy));
+        q.z = q.z.clamp(mid - half, mid + half);
+        let crosses = [0.25, 0.5, 0.75].iter().any(|&t| !volume.contains_xy(p.lerp(q, t).truncate()));
+        if crosses || p.distance(q) < 1e-3 * volume.cell() {
+            return None;
+        }
+    }
+    out.push(q);
+    Some(q)
+}
+
+/// The site from which `target` is best reached, or `None` if none is fit.
+///
+/// Cost: the way to the target, longer where the angle of departure is unlike 25 to 75 degrees, where many
+/// start already, where the contour is in between; plus a share of the way back to the trunk (balancing
+/// factor of Cuntz et al. 2010), which keeps detours short.
+pub(super) fn attach(volume: &Volume, sites: &[Site], target: DVec3, avoid_level: u32) -> Option<usize> {
+    let mut best: Option<(f64, usize)> = None;
+    for (i, s) in sites.iter().enumerate() {
+        let to = target - s.at;
+        let d = to.length();
+        let bound = best.map_or(f64::INFINITY, |(c, _)| c);
+        if d < 1e-9 || d >= bound {
+            continue;
+        }
+        let c = to.dot(s.tangent) / d;
+        // cos 75 = 0.26, cos 25 = 0.91.
+        let angle = 2.0 * (0.26 - c).max(0.0) + 2.0 * (c - 0.91).max(0.0);
+        let level = if s.level <= avoid_level { 0.5 } else { 0.0 };
+        let mut cost = d * (1.0 + angle + level + 0.35 * f64::from(s.used)) + 0.2 * s.path;
+        if cost < bound && !volume.sees(s.at.truncate(), target.truncate()) {
+            cost += 3.0 * d;
+        }
+        if cost < bound {
+            best = Some((cost, i));
+        }
+    }
+    best.map(|(_, i)| i)
+}
+
+/// Adds an axis that starts at a site; `None` for fewer than 2 points.
+pub(super) fn add_axis(
+    plant: &mut Plant,
+    site: &mut Site,
+    kind: AxisKind,
+    points: &[DVec3],
+) -> Option<AxisId> {
+    if points.len() < 2 {
+        return None;
+    }
+    let bearer_key = plant.axis(plant.nodes.axis[site.node.index()]).key;
+    // Node within its axis, and rank among those that start at the node.
+    let rank = site.node.raw() - plant.axis(plant.nodes.axis[site.node.index()]).nodes.start;
+    let key = key_of(bearer_key, u64::from(rank) << 8 | u64::from(site.used.min(255)));
+    site.used += 1;
+    Some(plant.add_axis(kind, Some(site.node), key, points, None))
+}
+
+/// A key from the bearer's key and the birth rank.
+pub(super) const fn key_of(bearer: u64, rank: u64) -> u64 {
+    base::Seed::new(bearer).child(rank).number()
+}
