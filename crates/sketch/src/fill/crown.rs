@@ -125,7 +125,8 @@ impl Crown<'_> {
     fn aim(&self, from: DVec3, azimuth: f64, elevation: f64, share: f64) -> DVec3 {
         let ((sa, ca), (se, ce)) = (sin_cos(azimuth), sin_cos(elevation));
         let direction = DVec3::new(ca * ce, se, sa * ce);
-        let reach = self.volume.ray(from, direction, 2.0 * self.volume.height() + 4.0 * self.volume.half_width);
+        let reach =
+            self.volume.ray(from, direction, 2.0 * self.volume.height() + 4.0 * self.volume.half_width);
         from + direction * (reach * share)
     }
 
@@ -184,11 +185,8 @@ impl Crown<'_> {
             let site = bases[((f * bases.len() as f64) as usize).min(bases.len() - 1)];
             let azimuth = start + spiral.azimuth(i, 0) + stream.range(-0.25, 0.25);
             // Low limbs spread, high ones rise; shrubs' stems fan out from steep to slanting.
-            let elevation = if shrub {
-                ops::lerp(1.35, 0.55, f)
-            } else {
-                ops::lerp(0.3, 1.15, f) / wide.max(0.8)
-            };
+            let elevation =
+                if shrub { ops::lerp(1.35, 0.55, f) } else { ops::lerp(0.3, 1.15, f) / wide.max(0.8) };
             let from = sites[site].at;
             let anchor = if v.contains(from) { from } else { self.entry(from) };
             let target = self.aim(anchor, azimuth, elevation, 0.74);
@@ -304,10 +302,8 @@ impl Crown<'_> {
             let per = count_of(ops::lerp(6.5, 4.0, up) * density, 3, 16);
             for k in 0..per {
                 let rank = whorl * 16 + k;
-                let azimuth = start
-                    + ops::TAU * (k as f64 / per as f64)
-                    + 2.4 * whorl as f64
-                    + stream.range(-0.2, 0.2);
+                let azimuth =
+                    start + ops::TAU * (k as f64 / per as f64) + 2.4 * whorl as f64 + stream.range(-0.2, 0.2);
                 // Old boughs hang, young ones rise.
                 let elevation = ops::lerp(-0.12, 0.75, up * up) + stream.range(-0.08, 0.08);
                 self.bough(plant, &mut sites[site], (azimuth, elevation, rank), &mut points, placed);

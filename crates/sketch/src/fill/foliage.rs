@@ -31,7 +31,14 @@ pub(super) struct Foliage {
 /// Puts leaves on the nodes of an axis from arc-length share `from` to its tip, and one at the tip.
 ///
 /// No leaf is rooted outside the contour. Stops when the region has its `most` leaves.
-pub(super) fn dress(plant: &mut Plant, volume: &Volume, foliage: &Foliage, axis: AxisId, from: f64, placed: &mut usize) {
+pub(super) fn dress(
+    plant: &mut Plant,
+    volume: &Volume,
+    foliage: &Foliage,
+    axis: AxisId,
+    from: f64,
+    placed: &mut usize,
+) {
     let (key, nodes) = (plant.axis(axis).key, plant.axis(axis).nodes.clone());
     let n = plant.axis_points(axis).len();
     let start = Seed::new(key).stream(Draw::Phyllotaxis).range(0.0, ops::TAU);

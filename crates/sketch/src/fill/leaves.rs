@@ -48,7 +48,8 @@ impl Leaves<'_> {
         let mut tips = scatter(v, self.leaves, &mut stream, |_| true);
         // From the bearer outwards, so that twigs grown for near leaves carry the far ones.
         tips.sort_by(|a, b| {
-            let near = |t: &DVec3| sites.iter().map(|s| s.at.distance_squared(*t)).fold(f64::INFINITY, f64::min);
+            let near =
+                |t: &DVec3| sites.iter().map(|s| s.at.distance_squared(*t)).fold(f64::INFINITY, f64::min);
             near(a).total_cmp(&near(b))
         });
         let mut points = Vec::new();
@@ -88,7 +89,8 @@ impl Leaves<'_> {
         }
         let bearer_axis = plant.nodes.axis[site.node.index()];
         let rank = u64::from(site.node.raw() - plant.axis(bearer_axis).nodes.start);
-        let leaf = Seed::new(key_of(plant.axis(bearer_axis).key, 1 << 40 | rank << 12 | u64::from(site.used)));
+        let leaf =
+            Seed::new(key_of(plant.axis(bearer_axis).key, 1 << 40 | rank << 12 | u64::from(site.used)));
         let size = f.length * (1.0 + 0.15 * leaf.stream(Draw::Size).normal()).clamp(0.65, 1.35);
         let way = tip - site.at;
         let target = site.at + way.normalize_or_zero() * size;

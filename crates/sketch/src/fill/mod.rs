@@ -70,8 +70,7 @@ pub(crate) fn fill(
     for (row, region) in reading.regions.iter().enumerate() {
         run.cancel.check()?;
         let outline: Vec<DVec2> = region.outline.iter().map(|&p| ctx.map.plant_from_ink(p)).collect();
-        let inflation =
-            if region.kind == RegionKind::Crown { Inflation::Rows } else { Inflation::Ball };
+        let inflation = if region.kind == RegionKind::Crown { Inflation::Rows } else { Inflation::Ball };
         let Some(mut volume) = Volume::new(&outline, inflation) else {
             report.warn("contour-empty", format!("contour {} encloses nothing and was left empty", row + 1));
             continue;

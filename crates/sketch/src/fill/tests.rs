@@ -30,8 +30,18 @@ pub(super) fn contour(name: &str) -> (Vec<DVec2>, f64) {
         "concave" => (
             // A crescent that opens downwards around the trunk.
             [
-                (0.2, 0.35), (0.3, 0.33), (0.36, 0.5), (0.5, 0.6), (0.64, 0.5), (0.7, 0.33), (0.8, 0.35), (0.78, 0.6),
-                (0.65, 0.8), (0.5, 0.86), (0.35, 0.8), (0.22, 0.6),
+                (0.2, 0.35),
+                (0.3, 0.33),
+                (0.36, 0.5),
+                (0.5, 0.6),
+                (0.64, 0.5),
+                (0.7, 0.33),
+                (0.8, 0.35),
+                (0.78, 0.6),
+                (0.65, 0.8),
+                (0.5, 0.86),
+                (0.35, 0.8),
+                (0.22, 0.6),
             ]
             .map(|(x, y)| DVec2::new(x, y))
             .to_vec(),
@@ -82,14 +92,8 @@ pub(super) fn grown(outline: Vec<DVec2>, kind: RegionKind, lines: &[Vec<DVec2>],
     let metres = outline.iter().map(|&p| map.plant_from_ink(p)).collect();
     let bearers = (0..lines.len()).collect();
     reading.regions.push(RegionReading { outline, kind, bearers, source: None, color: None });
-    let ctx = FillContext {
-        spec,
-        seed: Seed::new(1),
-        map,
-        axis_of_reading: &axes,
-        templates: &[],
-        woody: true,
-    };
+    let ctx =
+        FillContext { spec, seed: Seed::new(1), map, axis_of_reading: &axes, templates: &[], woody: true };
     let mut report = Report::default();
     fill(&mut plant, &reading, &ctx, &Run::plain(), &mut report).expect("nobody cancels");
     Made { plant, outlines: vec![metres], drawn, report }
@@ -102,7 +106,12 @@ pub(super) fn line(a: (f64, f64), b: (f64, f64), n: u32) -> Vec<DVec2> {
 
 pub(super) fn tree(name: &str, spec: &SketchSpec) -> Made {
     let (outline, top) = contour(name);
-    grown(outline, RegionKind::Crown, &[line((0.5, if name == "bush" { top - 0.01 } else { 0.0 }), (0.5, top), 30)], spec)
+    grown(
+        outline,
+        RegionKind::Crown,
+        &[line((0.5, if name == "bush" { top - 0.01 } else { 0.0 }), (0.5, top), 30)],
+        spec,
+    )
 }
 
 const CROWNS: [&str; 8] = ["round", "flat", "tall", "lobed", "cone", "concave", "bush", "egg"];
@@ -183,7 +192,8 @@ fn a_contour_without_area_is_left_empty_with_a_warning() {
     let flat: Vec<DVec2> = line((0.1, 0.5), (0.9, 0.5), 20);
     for outline in [flat, vec![], vec![DVec2::ZERO; 5], vec![DVec2::NAN; 4]] {
         for kind in [RegionKind::Crown, RegionKind::Leaves, RegionKind::Twigs] {
-            let made = grown(outline.clone(), kind, &[line((0.5, 0.0), (0.5, 0.9), 20)], &SketchSpec::default());
+            let made =
+                grown(outline.clone(), kind, &[line((0.5, 0.0), (0.5, 0.9), 20)], &SketchSpec::default());
             assert_eq!((made.plant.axes.len(), made.plant.organs.len()), (1, 0));
             assert_eq!(made.report.warnings.len(), 1);
         }
@@ -245,7 +255,7 @@ proptest! {
         squash in 0.1_f64..1.0,
         foot in -0.3_f64..1.2,
         top in 0.0_f64..1.0,
-        kind in 0..3,
+        kind in 0_usize..3,
     ) {
         // Star-shaped polygons: simple by construction, with deep notches.
         let n = radii.len() as f64;

@@ -36,7 +36,8 @@ impl Twigs<'_> {
         if sites.is_empty() {
             return 0;
         }
-        let mean = sites.iter().map(|s| v.clearance(s.at.truncate()).max(0.0)).sum::<f64>() / sites.len() as f64;
+        let mean =
+            sites.iter().map(|s| v.clearance(s.at.truncate()).max(0.0)).sum::<f64>() / sites.len() as f64;
         let reach = mean.max(0.25 * v.inradius);
         // 0.3: a contour five times as long as its half width gets some fifteen twigs, as in sketch (a) of the
         // paper's Table 1.

@@ -63,7 +63,8 @@ impl Volume {
         let longest = (hi - lo).max_element();
         let area = shoelace(outline).abs();
         // A sliver narrower than a cell on average has no room for anything.
-        if !longest.is_finite() || !(area > longest * longest / CELLS) || longest < 1e-9 {
+        let sound = longest.is_finite() && area > longest * longest / CELLS && longest > 1e-9;
+        if !sound {
             return None;
         }
         let cell = longest / CELLS;
@@ -211,7 +212,8 @@ impl Volume {
 
     /// The nearest point of the contour, in the plane.
     pub(super) fn nearest_xy(&self, p: DVec2) -> DVec2 {
-        let clamped = p.clamp(self.lo, self.lo + DVec2::new(self.nx as f64, self.ny as f64) * self.cell * 0.999_9);
+        let clamped =
+            p.clamp(self.lo, self.lo + DVec2::new(self.nx as f64, self.ny as f64) * self.cell * 0.999_9);
         self.cell_of(clamped).map_or(p, |(ix, iy)| self.nearest[iy * self.nx + ix])
     }
 
@@ -251,9 +253,7 @@ impl Volume {
                 _ => {}
             }
         }
-        best.map(|(a, b)| {
-            (self.lo.x + self.cell * 0.5 * (a + b) as f64, self.cell * 0.5 * (b - a) as f64)
-        })
+        best.map(|(a, b)| (self.lo.x + self.cell * 0.5 * (a + b) as f64, self.cell * 0.5 * (b - a) as f64))
     }
 
     fn centre(&self, ix: usize, iy: usize) -> DVec2 {
@@ -377,7 +377,8 @@ impl Volume {
                 let mut best_d = best.distance_squared(c);
                 for dy in -1_isize..=1 {
                     for dx in -1_isize..=1 {
-                        let (Some(jx), Some(jy)) = (ix.checked_add_signed(dx), iy.checked_add_signed(dy)) else {
+                        let (Some(jx), Some(jy)) = (ix.checked_add_signed(dx), iy.checked_add_signed(dy))
+                        else {
                             continue;
                         };
                         if jx < self.nx && jy < self.ny {
@@ -392,9 +393,9 @@ impl Volume {
                 self.nearest[i] = best;
             }
         }
-        for i in 0..self.clear.len() {
+        for (i, &inner) in inside.iter().enumerate() {
             let d = self.nearest[i].distance(self.centre(i % self.nx, i / self.nx));
-            self.clear[i] = if inside[i] { d } else { -d };
+            self.clear[i] = if inner { d } else { -d };
         }
     }
 
