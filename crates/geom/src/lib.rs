@@ -26,6 +26,7 @@ mod outline;
 mod pca;
 mod polygon;
 mod polyline;
+mod triangulate;
 mod vector;
 
 pub use cluster::mean_shift;
@@ -41,3 +42,4 @@ pub use polyline::{
     Closest, closest_on_polyline, point_at, point_at3, polyline_length, polyline_length3, resample,
     resample3, simplify, smooth_gaussian, smooth_gaussian_closed, tangent_at, tangent_at3, turning_angles,
 };
+pub use triangulate::{TriangulateError, Triangulation, triangulate_blade};

@@ -110,7 +110,7 @@ pub fn self_crossings(points: &[DVec2]) -> usize {
     crossings_up_to(&distinct_closed(points), usize::MAX)
 }
 
-fn crossings_up_to(corners: &[DVec2], enough: usize) -> usize {
+pub(crate) fn crossings_up_to(corners: &[DVec2], enough: usize) -> usize {
     let n = corners.len();
     if n < 3 {
         return 0;
