@@ -1,0 +1,212 @@
+//! Colour of fragments and of the background, tile by tile.
+
+use base::{Cancelled, Run, map_indexed, ops};
+use glam::{DVec2, DVec3};
+
+use crate::camera::Camera;
+use crate::light::{DepthMap, SUN, Sky, sunlit};
+use crate::picture::Picture;
+use crate::raster::{Bins, NONE, TILE, Visible, pattern};
+use crate::scene::Scene;
+use crate::spec::{Background, PictureSpec};
+use crate::texture::{linear, srgb};
+
+/// How much of the computed ground shadow is shown: full strength looks hard on a pale ground.
+const SHADOW_STRENGTH: f64 = 0.72;
+
+struct Frame<'a> {
+    scene: &'a Scene,
+    sky: &'a Sky,
+    spec: &'a PictureSpec,
+    camera: Camera,
+    sun: Vec<DepthMap>,
+    bins: Bins,
+    pattern: Vec<DVec2>,
+}
+
+/// One picture of the scene; `spec` is clamped.
+pub(crate) fn frame(
+    scene: &Scene,
+    sky: &Sky,
+    spec: &PictureSpec,
+    camera: Camera,
+    run: &Run<'_>,
+) -> Result<Picture, Cancelled> {
+    let frame = Frame {
+        scene,
+        sky,
+        spec,
+        camera,
+        sun: sky.sun(scene, camera.level_frame(), run)?,
+        bins: Bins::new(scene, &camera, spec.width, spec.height),
+        pattern: pattern(spec.supersample),
+    };
+    let count = frame.bins.columns * frame.bins.rows;
+    let tiles = map_indexed(run.executor, count, |k| run.cancel.check().ok().map(|()| frame.tile(k)));
+    let Some(tiles) = tiles.into_iter().collect::<Option<Vec<Picture>>>() else { return Err(Cancelled) };
+    let mut picture = Picture::filled(spec.width, spec.height, [0; 4]);
+    for (tile, (x, y)) in tiles.iter().zip((0..count).map(|k| frame.corner(k))) {
+        picture.paste(tile, x, y);
+    }
+    Ok(picture)
+}
+
+impl Frame<'_> {
+    #[expect(clippy::cast_possible_truncation, reason = "inside the picture, at most 8192")]
+    fn corner(&self, tile: usize) -> (u32, u32) {
+        ((tile % self.bins.columns * TILE) as u32, (tile / self.bins.columns * TILE) as u32)
+    }
+
+    #[expect(clippy::cast_possible_truncation, reason = "tiles are small")]
+    fn tile(&self, tile: usize) -> Picture {
+        let (x0, y0) = self.corner(tile);
+        let mut out = Picture::filled(TILE as u32, TILE as u32, [0; 4]);
+        let perspective = self.camera.is_perspective();
+        let empty = self.bins.of_tile(tile).is_empty();
+        let visible =
+            (!empty).then(|| Visible::draw(self.scene, &self.bins, tile, &self.pattern, perspective));
+        let pixels = out.pixels.chunks_exact_mut(4).enumerate();
+        for (i, rgba) in pixels {
+            let (x, y) = (i % TILE, i / TILE);
+            let at = DVec2::new(f64::from(x0) + x as f64, f64::from(y0) + y as f64);
+            if at.x >= f64::from(self.spec.width) || at.y >= f64::from(self.spec.height) {
+                continue;
+            }
+            let ids = visible.as_ref().map_or(&[][..], |v| v.pixel(x, y));
+            rgba.copy_from_slice(&self.pixel(at, ids));
+        }
+        out
+    }
+
+    // Averages the fragments of a pixel: each triangle is shaded once, in the middle of its samples.
+    fn pixel(&self, at: DVec2, ids: &[u32]) -> [u8; 4] {
+        let (mut color, mut alpha) = (DVec3::ZERO, 0.0);
+        let share = 1.0 / self.pattern.len() as f64;
+        let mut free = self.pattern.len() - ids.len();
+        for (k, &id) in ids.iter().enumerate() {
+            if id == NONE {
+                free += 1;
+                continue;
+            }
+            if ids[..k].contains(&id) {
+                continue;
+            }
+            let mine = ids.iter().zip(&self.pattern).skip(k).filter(|&(&other, _)| other == id);
+            let (sum, count) = mine.fold((DVec2::ZERO, 0.0), |(sum, n), (_, &s)| (sum + s, n + 1.0));
+            color += self.fragment(id, at + sum / count) * (count * share);
+            alpha += count * share;
+        }
+        if free > 0 {
+            let share = free as f64 * share;
+            let (behind, a) = self.behind(at + 0.5);
+            color += behind * (a * share);
+            alpha += a * share;
+        }
+        if alpha <= 0.0 {
+            return [0; 4];
+        }
+        let c = color / alpha;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 255")]
+        let a = (alpha.min(1.0) * 255.0 + 0.5) as u8;
+        if a == 0 { [0; 4] } else { [srgb(c.x), srgb(c.y), srgb(c.z), a] }
+    }
+
+    /// Display-linear colour of a triangle at a pixel position.
+    fn fragment(&self, id: u32, at: DVec2) -> DVec3 {
+        let triangle = &self.scene.triangles[id as usize];
+        let Some(flat) = &self.bins.flats[id as usize] else { return DVec3::ZERO };
+        let surface = &self.scene.surfaces[triangle.surface as usize];
+        let w = flat.surface_weights(at, self.camera.is_perspective());
+        let corners = self.scene.corners(triangle);
+        let [a, b, c] = corners;
+        let p = a.at * w.x + b.at * w.y + c.at * w.z;
+        let view = self.camera.toward_viewer(p);
+        let face = (b.at - a.at).cross(c.at - a.at).normalize_or(view);
+        let mut normal = (a.normal * w.x + b.normal * w.y + c.normal * w.z).normalize_or(face);
+        let [sa, sb, sc] = triangle.corners.map(|i| self.sky.vertices[i as usize]);
+        let side = |k: usize| sa[k] * w.x + sb[k] * w.y + sc[k] * w.z;
+        let (mut front, mut rear) = (side(0), side(1));
+        // The side that is seen decides, whatever the file says about winding.
+        let facing = if face.dot(view) < 0.0 { -face } else { face };
+        if normal.dot(facing) < 0.0 {
+            normal = -normal;
+            core::mem::swap(&mut front, &mut rear);
+        }
+        let mut color = surface.color * (a.color * w.x + b.color * w.y + c.color * w.z);
+        if let Some(texture) = &surface.texture {
+            let uv = a.uv * w.x + b.uv * w.y + c.uv * w.z;
+            let uv_area = (b.uv - a.uv).perp_dot(c.uv - a.uv).abs() * 0.5;
+            let texels = uv_area * texture.texel_count() / flat.pixel_area().max(1e-3);
+            let lod = if texels > 1.0 { 0.5 * ops::ln(texels) / core::f64::consts::LN_2 } else { 0.0 };
+            color *= texture.sample(uv, lod).0;
+        }
+        let color = color.min(DVec3::splat(0.95));
+        let through = (color * surface.through).min(DVec3::splat(0.95));
+        let t = surface.translucency;
+        let mut light = color * front * (1.0 - t) + through * rear * t;
+        let power = 2.0 / (surface.roughness * surface.roughness * surface.roughness * surface.roughness);
+        let power = power.clamp(1.0, 600.0);
+        let (mut on, mut behind, mut gloss) = (0.0, 0.0, 0.0);
+        let mean = self.sun.first().map_or(DVec3::Y, |m| m.toward);
+        let cos = normal.dot(mean);
+        if cos.abs() > 1e-3 && (cos > 0.0 || t > 0.0) {
+            let lit = sunlit(&self.sun, p, face);
+            if cos > 0.0 {
+                on = cos * lit;
+                let half = (mean + view).normalize_or(normal);
+                gloss = lit * cos * 0.04 * (power + 8.0) / 8.0 * ops::powf(normal.dot(half).max(0.0), power);
+            } else {
+                behind = -cos * lit;
+            }
+        }
+        light += color * SUN * (on * (1.0 - t)) + through * SUN * (behind * t) + SUN * gloss;
+        tone(light * self.spec.exposure)
+    }
+
+    /// Display-linear colour and alpha of what is behind the model.
+    fn behind(&self, at: DVec2) -> (DVec3, f64) {
+        let shade = if self.spec.ground_shadow { self.ground_shade(at) } else { DVec3::ONE };
+        match self.spec.background {
+            Background::Transparent => {
+                let alpha = 1.0 - (shade.x + shade.y + shade.z) / 3.0;
+                (DVec3::ZERO, if alpha < 0.004 { 0.0 } else { alpha })
+            }
+            Background::Plain([r, g, b]) => (DVec3::new(linear(r), linear(g), linear(b)) * shade, 1.0),
+            Background::Sky => {
+                // From above there is only ground.
+                let level = 1.0 - self.camera.ray(at).1.y.abs();
+                let t = (1.0 - at.y / f64::from(self.spec.height)) * ops::smoothstep(0.0, 0.5, level);
+                let low = DVec3::new(0.80, 0.79, 0.755);
+                let mid = DVec3::new(0.90, 0.90, 0.88);
+                let high = DVec3::new(0.70, 0.80, 0.885);
+                let sky = low.lerp(mid, ops::smoothstep(0.0, 0.45, t));
+                (sky.lerp(high, ops::smoothstep(0.35, 1.0, t)) * shade, 1.0)
+            }
+        }
+    }
+
+    // Light on the ground at a pixel as a share of its light without the model.
+    fn ground_shade(&self, at: DVec2) -> DVec3 {
+        let (origin, direction) = self.camera.ray(at);
+        if direction.y > -1e-6 || self.sun.is_empty() {
+            return DVec3::ONE;
+        }
+        let mut p = origin + direction * ((self.scene.ground - origin.y) / direction.y);
+        p.y = self.scene.ground;
+        let level = self.sun[0].toward.y;
+        let lit = sunlit(&self.sun, p, DVec3::Y);
+        let full = SUN * level + self.sky.open;
+        let here = SUN * (level * lit) + self.sky.on_ground(p);
+        DVec3::ONE.lerp((here / full).min(DVec3::ONE), SHADOW_STRENGTH)
+    }
+}
+
+// Linear up to 0.6, then a soft shoulder that reaches 1 at infinity: highlights keep their hue.
+fn tone(x: DVec3) -> DVec3 {
+    let shoulder = |x: f64| {
+        const KNEE: f64 = 0.6;
+        let over = (x - KNEE).max(0.0) / (1.0 - KNEE);
+        x.min(KNEE) + (1.0 - KNEE) * over / (1.0 + over)
+    };
+    DVec3::new(shoulder(x.x), shoulder(x.y), shoulder(x.z))
+}
