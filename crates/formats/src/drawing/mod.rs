@@ -1,0 +1,290 @@
+//! bytes -> [`sketch::Drawing`]s, y up, in whatever unit the file has.
+
+mod inkml;
+mod json;
+mod mode;
+mod quickdraw;
+mod svg;
+mod xml;
+
+use std::io::{BufRead, Read};
+
+use base::Warning;
+use sketch::Drawing;
+
+use crate::error::{DrawingError, FileFault, Place};
+pub use json::write_drawing;
+
+/// Largest file (or line of a file with a drawing a line) that is read whole: 64 MiB.
+pub const MAX_DRAWING_BYTES: u64 = 64 << 20;
+
+/// The file formats that hold strokes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum DrawingFormat {
+    /// Scalable Vector Graphics; one drawing a file.
+    Svg,
+    /// Ink Markup Language (W3C 2011); one drawing a file.
+    InkMl,
+    /// One JSON object a line, as in "Quick, Draw!"; any number of drawings a file.
+    Ndjson,
+    /// Our own `drawing/1`; one drawing a file.
+    Json,
+}
+
+impl DrawingFormat {
+    /// Every format.
+    pub const ALL: [Self; 4] = [Self::Svg, Self::InkMl, Self::Ndjson, Self::Json];
+
+    /// The name for messages.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Svg => "SVG",
+            Self::InkMl => "InkML",
+            Self::Ndjson => "ndjson",
+            Self::Json => "drawing JSON",
+        }
+    }
+
+    /// The format that a file's extension (without the dot, any case) stands for.
+    ///
+    /// ```
+    /// use formats::DrawingFormat;
+    /// assert_eq!(DrawingFormat::from_extension("SVG"), Some(DrawingFormat::Svg));
+    /// assert_eq!(DrawingFormat::from_extension("docx"), None);
+    /// ```
+    pub fn from_extension(extension: &str) -> Option<Self> {
+        match extension.to_ascii_lowercase().as_str() {
+            "svg" => Some(Self::Svg),
+            "inkml" | "ink" => Some(Self::InkMl),
+            "ndjson" | "jsonl" => Some(Self::Ndjson),
+            "json" => Some(Self::Json),
+            _ => None,
+        }
+    }
+
+    /// The format that the first bytes of a file look like.
+    ///
+    /// ```
+    /// use formats::DrawingFormat;
+    /// assert_eq!(DrawingFormat::sniff(b"<?xml version='1.0'?><svg/>"), Some(DrawingFormat::Svg));
+    /// assert_eq!(DrawingFormat::sniff(br#"{"word":"leaf","drawing":[]}"#), Some(DrawingFormat::Ndjson));
+    /// ```
+    pub fn sniff(start: &[u8]) -> Option<Self> {
+        let head = &start[..start.len().min(4096)];
+        let has = |word: &str| head.windows(word.len()).any(|w| w == word.as_bytes());
+        let first = head.iter().find(|b| !b.is_ascii_whitespace() && !matches!(b, 0xef | 0xbb | 0xbf))?;
+        match first {
+            b'<' if has("<svg") || has(":svg") => Some(Self::Svg),
+            b'<' if has("<ink") || has(":ink") => Some(Self::InkMl),
+            b'{' if has("\"burgeon\"") => Some(Self::Json),
+            b'{' if has("\"drawing\"") || has("\"key_id\"") => Some(Self::Ndjson),
+            b'{' if has("\"strokes\"") => Some(Self::Json),
+            _ => None,
+        }
+    }
+}
+
+/// A drawing and what its reader has to say about it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReadDrawing {
+    /// The strokes, y up.
+    pub drawing: Drawing,
+    /// What was left out or taken in another way than it was drawn.
+    pub warnings: Vec<Warning>,
+}
+
+/// The drawings of a file, one at a time: see [`read_drawings`].
+#[derive(Debug)]
+pub struct Drawings<R>(State<R>);
+
+#[derive(Debug)]
+enum State<R> {
+    One { input: R, format: DrawingFormat, name: String },
+    Lines(quickdraw::Lines<R>),
+    Done,
+}
+
+/// Reads the drawings of `input`.
+///
+/// `name` (a file's stem) names drawings that bear no name of their own. An `.ndjson` file yields one item a
+/// line and holds no more than one line in memory; its bad lines are errors of single items and the lines
+/// after them are still read. The other formats yield exactly one item.
+///
+/// Not guaranteed: finite coordinates, strokes of two points or more. Cleaning is the sketch crate's work.
+///
+/// ```
+/// use formats::{DrawingFormat, read_drawings};
+/// let svg = br#"<svg xmlns="http://www.w3.org/2000/svg"><path d="M0 0L3 4"/></svg>"#;
+/// let read = read_drawings(&svg[..], DrawingFormat::Svg, "stem").next().unwrap()?;
+/// assert_eq!(read.drawing.strokes[0].samples[1].at, glam::DVec2::new(3.0, -4.0));
+/// # Ok::<(), formats::DrawingError>(())
+/// ```
+pub fn read_drawings<R: BufRead>(input: R, format: DrawingFormat, name: &str) -> Drawings<R> {
+    let name = name.to_owned();
+    Drawings(match format {
+        DrawingFormat::Ndjson => State::Lines(quickdraw::Lines::new(input, name)),
+        _ => State::One { input, format, name },
+    })
+}
+
+impl<R: BufRead> Iterator for Drawings<R> {
+    type Item = Result<ReadDrawing, DrawingError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        match core::mem::replace(&mut self.0, State::Done) {
+            State::Done => None,
+            State::One { input, format, name } => Some(read_one(input, format, &name)),
+            State::Lines(mut lines) => {
+                let item = lines.next();
+                if item.is_some() {
+                    self.0 = State::Lines(lines);
+                }
+                item
+            }
+        }
+    }
+}
+
+fn read_one(input: impl Read, format: DrawingFormat, name: &str) -> Result<ReadDrawing, DrawingError> {
+    let file = |fault| DrawingError::new(format, Place::File, fault);
+    let mut bytes = Vec::new();
+    input.take(MAX_DRAWING_BYTES + 1).read_to_end(&mut bytes).map_err(|e| file(FileFault::Io(e)))?;
+    if bytes.len() as u64 > MAX_DRAWING_BYTES {
+        return Err(file(FileFault::TooMuch {
+            what: "the size in bytes",
+            limit: MAX_DRAWING_BYTES,
+            advice: "simplify the drawing or split it into several files",
+        }));
+    }
+    let text = text_of(bytes).map_err(file)?;
+    if text.trim().is_empty() {
+        return Err(file(FileFault::Empty));
+    }
+    let mut report = base::Report::default();
+    let drawing = match format {
+        DrawingFormat::Svg => svg::read(&text, name, &mut report)?,
+        DrawingFormat::InkMl => inkml::read(&text, name, &mut report)?,
+        DrawingFormat::Json => json::read(&text, name, &mut report)?,
+        DrawingFormat::Ndjson => quickdraw::read_line(&text, 1, name, &mut report)?,
+    };
+    if drawing.strokes.is_empty() {
+        return Err(file(FileFault::NoStrokes));
+    }
+    Ok(ReadDrawing { drawing, warnings: report.warnings })
+}
+
+/// Text from UTF-8 (a byte order mark is dropped) or UTF-16 with a byte order mark.
+fn text_of(bytes: Vec<u8>) -> Result<String, FileFault> {
+    let utf16 = |big: bool| {
+        let units = bytes[2..].chunks_exact(2).map(|b| {
+            let pair = [b[0], b[1]];
+            if big { u16::from_be_bytes(pair) } else { u16::from_le_bytes(pair) }
+        });
+        char::decode_utf16(units).collect::<Result<String, _>>().map_err(|_| FileFault::NotUtf8)
+    };
+    match bytes.get(..2) {
+        Some([0xff, 0xfe]) => return utf16(false),
+        Some([0xfe, 0xff]) => return utf16(true),
+        _ => {}
+    }
+    let mut text = String::from_utf8(bytes).map_err(|_| FileFault::NotUtf8)?;
+    if text.starts_with('\u{feff}') {
+        text.drain(..'\u{feff}'.len_utf8());
+    }
+    Ok(text)
+}
+
+/// Length of the number that `text` starts with (SVG and InkML grammar: `1.5.5-3e2` holds three); 0 if none.
+pub(crate) fn number_end(text: &str) -> usize {
+    let bytes = text.as_bytes();
+    let digits = |mut i: usize| {
+        while bytes.get(i).is_some_and(u8::is_ascii_digit) {
+            i += 1;
+        }
+        i
+    };
+    let start = usize::from(matches!(bytes.first(), Some(b'+' | b'-')));
+    let whole = digits(start);
+    let mut end = whole;
+    let mut any = whole > start;
+    if bytes.get(whole) == Some(&b'.') {
+        end = digits(whole + 1);
+        any |= end > whole + 1;
+    }
+    if !any {
+        return 0;
+    }
+    if matches!(bytes.get(end), Some(b'e' | b'E')) {
+        let sign = end + 1 + usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
+        let exponent = digits(sign);
+        if exponent > sign {
+            end = exponent;
+        }
+    }
+    end
+}
+
+/// `#rgb`, `#rrggbb`, `rgb(..)` and the sixteen HTML names plus the common ones that drawing programs write.
+pub(crate) fn parse_color(text: &str) -> Option<[u8; 3]> {
+    let text = text.trim();
+    if let Some(hex) = text.strip_prefix('#') {
+        if !hex.is_ascii() {
+            return None;
+        }
+        let digit = |i: usize| u8::from_str_radix(hex.get(i..=i)?, 16).ok();
+        let pair = |i: usize| u8::from_str_radix(hex.get(i..i + 2)?, 16).ok();
+        return match hex.len() {
+            3 | 4 => Some([digit(0)? * 17, digit(1)? * 17, digit(2)? * 17]),
+            6 | 8 => Some([pair(0)?, pair(2)?, pair(4)?]),
+            _ => None,
+        };
+    }
+    let lower = text.to_ascii_lowercase();
+    if let Some(inner) = lower.strip_prefix("rgba(").or_else(|| lower.strip_prefix("rgb(")) {
+        let mut out = [0_u8; 3];
+        let mut parts = inner.trim_end_matches(')').split([',', ' ', '/']).filter(|p| !p.is_empty());
+        for channel in &mut out {
+            let part = parts.next()?;
+            let value = match part.strip_suffix('%') {
+                Some(p) => p.parse::<f64>().ok()? * 2.55,
+                None => part.parse::<f64>().ok()?,
+            };
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a byte")]
+            let byte = value.round().clamp(0.0, 255.0) as u8;
+            *channel = byte;
+        }
+        return Some(out);
+    }
+    NAMED.iter().find(|(name, _)| *name == lower).map(|&(_, rgb)| rgb)
+}
+
+const NAMED: [(&str, [u8; 3]); 28] = [
+    ("black", [0, 0, 0]),
+    ("white", [255, 255, 255]),
+    ("gray", [128, 128, 128]),
+    ("grey", [128, 128, 128]),
+    ("silver", [192, 192, 192]),
+    ("red", [255, 0, 0]),
+    ("maroon", [128, 0, 0]),
+    ("yellow", [255, 255, 0]),
+    ("olive", [128, 128, 0]),
+    ("lime", [0, 255, 0]),
+    ("green", [0, 128, 0]),
+    ("darkgreen", [0, 100, 0]),
+    ("forestgreen", [34, 139, 34]),
+    ("aqua", [0, 255, 255]),
+    ("cyan", [0, 255, 255]),
+    ("teal", [0, 128, 128]),
+    ("blue", [0, 0, 255]),
+    ("navy", [0, 0, 128]),
+    ("fuchsia", [255, 0, 255]),
+    ("magenta", [255, 0, 255]),
+    ("purple", [128, 0, 128]),
+    ("violet", [238, 130, 238]),
+    ("pink", [255, 192, 203]),
+    ("orange", [255, 165, 0]),
+    ("gold", [255, 215, 0]),
+    ("brown", [165, 42, 42]),
+    ("saddlebrown", [139, 69, 19]),
+    ("tan", [210, 180, 140]),
+];

@@ -1,0 +1,161 @@
+use sketch::StrokeMode;
+
+use super::*;
+
+fn drawing(body: &str) -> (Drawing, Vec<String>) {
+    let text = format!(
+        "<svg xmlns='http://www.w3.org/2000/svg' xmlns:xlink='http://www.w3.org/1999/xlink' \
+         xmlns:inkscape='http://www.inkscape.org/namespaces/inkscape' viewBox='0 0 100 100'>{body}</svg>"
+    );
+    let mut report = Report::default();
+    let d = read(&text, "t", &mut report).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    (d, report.warnings.into_iter().map(|w| w.message).collect())
+}
+
+fn failure(body: &str) -> String {
+    let text = format!("<svg xmlns='http://www.w3.org/2000/svg'>{body}</svg>");
+    read(&text, "t", &mut Report::default()).expect_err("refused").to_string()
+}
+
+fn ends(d: &Drawing) -> Vec<[[f64; 2]; 2]> {
+    let end = |s: &Stroke| {
+        [s.samples[0].at.to_array(), s.samples[s.samples.len() - 1].at.to_array()]
+            .map(|p| p.map(|x| (x * 1e9).round() / 1e9 + 0.0))
+    };
+    d.strokes.iter().map(end).collect()
+}
+
+#[test]
+fn shapes_become_strokes_with_y_up() {
+    let (d, w) = drawing(
+        "<g stroke='black' fill='none'><path d='M0 0C1 2 3 4 5 6M7 8l1 0'/><polyline points='1,2 3,4'/>\
+         <polygon points='0 0 1 0 1 1'/><line x1='1' y1='2' x2='3' y2='4'/><rect x='1' y='1' width='2' height='3'/>\
+         <rect x='1' y='1' width='20' height='30' rx='2'/><circle cx='5' cy='5' r='2'/><ellipse cx='5' cy='5' rx='2' ry='1'/></g>",
+    );
+    assert_eq!(w, Vec::<String>::new());
+    assert_eq!(
+        ends(&d),
+        [
+            [[0.0, 0.0], [5.0, -6.0]],
+            [[7.0, -8.0], [8.0, -8.0]],
+            [[1.0, -2.0], [3.0, -4.0]],
+            [[0.0, 0.0], [0.0, 0.0]],
+            [[1.0, -2.0], [3.0, -4.0]],
+            [[1.0, -1.0], [1.0, -1.0]],
+            [[3.0, -1.0], [3.0, -1.0]],
+            [[7.0, -5.0], [7.0, -5.0]],
+            [[7.0, -5.0], [7.0, -5.0]],
+        ]
+    );
+    assert_eq!(d.strokes[3].samples.len(), 4, "a polygon comes back to its start");
+}
+
+#[test]
+fn transforms_nest_and_use_is_placed() {
+    let (d, _) = drawing(
+        "<defs><g id='twig'><line id='l' x2='1' y2='0' stroke='#0a0'/></g></defs>\
+         <g transform='translate(10 0)'><g transform='scale(2)'><use xlink:href='#twig' x='3' transform='rotate(90)'/></g></g>\
+         <use href='#l' y='7'/>",
+    );
+    assert_eq!(ends(&d), [[[10.0, -6.0], [10.0, -8.0]], [[0.0, -7.0], [1.0, -7.0]]]);
+    assert_eq!(d.strokes[0].color, Some([0, 170, 0]));
+}
+
+#[test]
+fn modes_come_from_layers_ids_and_classes() {
+    let (d, _) = drawing(
+        "<g stroke='black' inkscape:label='Leaf Contour 2' id='layer1'><path d='M0 0L1 1'/>\
+         <path id='branch_contour-3' d='M0 0L1 1'/><g id='parts'><path d='M0 0L1 1'/></g></g>\
+         <path stroke='red' class='big leaf-contour' d='M0 0L1 1'/><path stroke='red' id='p9' d='M0 0L1 1'/>",
+    );
+    use StrokeMode::{BranchContour, LeafContour, Parts};
+    let modes: Vec<StrokeMode> = d.strokes.iter().map(|s| s.mode).collect();
+    assert_eq!(modes, [LeafContour, BranchContour, Parts, LeafContour, Parts]);
+    assert_eq!(d.strokes[4].id.as_deref(), Some("p9"));
+}
+
+#[test]
+fn colours_are_inherited_from_attributes_styles_and_sheets() {
+    let (d, _) = drawing(
+        "<style>/* x */ .a{stroke:#123456;fill:none} #b, .c { stroke: rgb(1,2,3) }</style>\
+         <g style='stroke:#ff0000;fill:none'><path d='M0 0L1 1'/><path class='a' d='M0 0L1 1'/>\
+         <path id='b' stroke='blue' d='M0 0L1 1'/><path stroke='green' style='stroke: currentColor' color='#010101' d='M0 0L1 1'/></g>\
+         <path fill='#00ff00' d='M0 0L9 0L9 9Z'/>",
+    );
+    let colors: Vec<_> = d.strokes.iter().filter_map(|s| s.color).collect();
+    assert_eq!(colors, [[255, 0, 0], [18, 52, 86], [1, 2, 3], [1, 1, 1], [0, 255, 0]]);
+}
+
+#[test]
+fn what_is_not_seen_is_left_out_and_said() {
+    let (d, w) = drawing(
+        "<rect width='100%' height='100%' fill='white'/><g display='none'><path stroke='red' d='M0 0L1 1'/></g>\
+         <path visibility='hidden' stroke='red' d='M0 0L1 1'/><path fill='none' d='M0 0L1 1'/>\
+         <text>hello</text><image/><use href='#nothing'/><clipPath><path stroke='red' d='M0 0L1 1'/></clipPath>\
+         <path id='seen' stroke='red' d='M0 0L1 1'/>",
+    );
+    assert_eq!(d.strokes.len(), 1);
+    let all = w.join("\n");
+    for word in [
+        "whole sheet (1)",
+        "hidden (2)",
+        "without stroke and fill (1)",
+        "text (1)",
+        "image (1)",
+        "not in the file (1)",
+    ] {
+        assert!(all.contains(word), "{word} in {all}");
+    }
+}
+
+#[test]
+fn broken_path_data_is_named_and_the_rest_kept() {
+    let (d, w) = drawing("<g stroke='red'>\n<path id='p' d='M0 0L1 1L2'/><path d='M5 5L6 6'/></g>");
+    assert_eq!(ends(&d), [[[0.0, 0.0], [1.0, -1.0]], [[5.0, -5.0], [6.0, -6.0]]]);
+    assert!(w[0].contains("line 2, <path> `p`: the attribute `d` is broken"), "{w:?}");
+}
+
+#[test]
+fn use_bombs_are_refused() {
+    let mut body = String::from("<defs><path id='u0' d='M0 0L1 1' stroke='red'/>");
+    for i in 1..12 {
+        let uses = format!("<use href='#u{}'/>", i - 1).repeat(10);
+        body += &format!("<g id='u{i}'>{uses}</g>");
+    }
+    let m = failure(&format!("{body}</defs><use href='#u11'/>"));
+    assert!(m.contains("after expanding `use`"), "{m}");
+    let m = failure("<g id='a'><use href='#b'/></g><g id='b'><use href='#a'/></g>");
+    assert!(m.contains("nesting of `use`") && m.contains("line 1"), "{m}");
+    let m = failure("<use id='s' href='#s'/>");
+    assert!(m.contains("nesting of `use`"), "{m}");
+}
+
+#[test]
+fn a_use_of_a_large_path_is_bounded_by_points() {
+    let long = "1 1 ".repeat(400_000);
+    let uses = "<use href='#l'/>".repeat(500);
+    let m = failure(&format!("<defs><polyline id='l' stroke='red' points='{long}'/></defs>{uses}"));
+    assert!(m.contains("number of points"), "{m}");
+}
+
+#[test]
+fn a_filled_pen_outline_is_reduced_and_said() {
+    let (d, w) = drawing("<path fill='#123' d='M10 10L50 12L90 10L90 11L50 13L10 11Z'/>");
+    assert!(w[0].contains("variable-width pen"), "{w:?}");
+    let s = &d.strokes[0];
+    assert!(s.samples.iter().all(|p| p.pressure.is_some() && p.at.y < -10.0 && p.at.y > -13.0), "{s:?}");
+    let length: f64 = s.samples.windows(2).map(|w| (w[1].at - w[0].at).length()).sum();
+    assert!((length - 80.0).abs() < 3.0, "{length}");
+    let (_, w) = drawing("<path stroke='red' d='M10 10L50 12L90 10L90 11L50 13L10 11Z'/>");
+    assert!(w.is_empty(), "a stroked shape is what it is: {w:?}");
+}
+
+#[test]
+fn wrong_numbers_pass_or_are_named_but_never_hang() {
+    let (d, _) = drawing(
+        "<g stroke='red'><path d='M1e300 1e300C-1e300 0 1e308 1e308 0 0'/><path d='M1e999 0L1 1'/><circle r='1e300'/>\
+         <path d='M3 3'/><path d=''/><circle r='-1'/><rect width='NaN' height='1'/></g>",
+    );
+    assert_eq!(d.strokes.len(), 4);
+    assert!(d.strokes.iter().all(|s| s.samples.len() < 2000));
+}

@@ -1,0 +1,191 @@
+//! What can be wrong with a file: what, where, and what to do about it.
+
+use core::fmt;
+use std::io;
+
+use crate::{DrawingFormat, ModelFormat};
+
+/// Where in a file something is.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Place {
+    /// The file as a whole.
+    #[default]
+    File,
+    /// A line, from 1; the column, from 1, where known.
+    Line {
+        /// Line from 1.
+        line: u64,
+        /// Column from 1.
+        column: Option<u64>,
+    },
+    /// An XML element.
+    Element {
+        /// Tag and id, such as ``path `leaf-3` ``.
+        name: String,
+        /// Line from 1.
+        line: u64,
+    },
+    /// Bytes from the start of the file.
+    Byte(u64),
+    /// A named part of the file, such as `mesh 3` or `stroke 2, point 7`.
+    Item(String),
+}
+
+impl Place {
+    pub(crate) fn line(line: usize) -> Self {
+        Self::Line { line: line as u64, column: None }
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::File => Ok(()),
+            Self::Line { line, column: None } => write!(f, ", line {line}"),
+            Self::Line { line, column: Some(column) } => write!(f, ", line {line}, column {column}"),
+            Self::Element { name, line } => write!(f, ", line {line}, {name}"),
+            Self::Byte(at) => write!(f, ", byte {at}"),
+            Self::Item(item) => write!(f, ", {item}"),
+        }
+    }
+}
+
+/// What is wrong with a file of strokes or with a model, as data for messages.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FileFault {
+    /// Nothing in it, or only white space.
+    #[error("the file is empty; was it saved completely?")]
+    Empty,
+    /// The text or the bytes break the format's grammar.
+    #[error("{what}; {advice}")]
+    Malformed {
+        /// What was found.
+        what: String,
+        /// What to do.
+        advice: &'static str,
+    },
+    /// The file ends in the middle of something.
+    #[error("the file ends inside {inside}; it is cut off: save or copy it again")]
+    Truncated {
+        /// What was not finished.
+        inside: String,
+    },
+    /// Allowed by the format, not read by us.
+    #[error("{what} is not supported; {advice}")]
+    Unsupported {
+        /// What it is.
+        what: String,
+        /// What to do.
+        advice: &'static str,
+    },
+    /// Beyond a bound that keeps hostile files harmless.
+    #[error("{what} goes beyond the limit of {limit}; {advice}")]
+    TooMuch {
+        /// What is counted.
+        what: &'static str,
+        /// The bound.
+        limit: u64,
+        /// What to do.
+        advice: &'static str,
+    },
+    /// There is not one stroke.
+    #[error("there is no stroke in it; draw lines, paths or shapes that are visible")]
+    NoStrokes,
+    /// The bytes are not UTF-8 text.
+    #[error("the text is not UTF-8; save it again with that encoding")]
+    NotUtf8,
+    /// Reading failed.
+    #[error("it could not be read: {0}")]
+    Io(#[from] io::Error),
+}
+
+impl FileFault {
+    pub(crate) fn malformed(what: impl Into<String>, advice: &'static str) -> Self {
+        Self::Malformed { what: what.into(), advice }
+    }
+
+    pub(crate) fn unsupported(what: impl Into<String>, advice: &'static str) -> Self {
+        Self::Unsupported { what: what.into(), advice }
+    }
+}
+
+/// A drawing could not be read.
+#[derive(Debug, thiserror::Error)]
+#[error("{}{place}: {fault}", format.word())]
+pub struct DrawingError {
+    /// The format it was read as.
+    pub format: DrawingFormat,
+    /// Where.
+    pub place: Place,
+    /// What and what to do.
+    pub fault: FileFault,
+}
+
+impl DrawingError {
+    pub(crate) fn new(format: DrawingFormat, place: Place, fault: FileFault) -> Self {
+        Self { format, place, fault }
+    }
+}
+
+/// A model could not be read.
+#[derive(Debug, thiserror::Error)]
+#[error("{}{place}: {fault}", format.word())]
+pub struct ModelError {
+    /// The format it was read as.
+    pub format: ModelFormat,
+    /// Where.
+    pub place: Place,
+    /// What and what to do.
+    pub fault: FileFault,
+}
+
+impl ModelError {
+    pub(crate) fn new(format: ModelFormat, place: Place, fault: FileFault) -> Self {
+        Self { format, place, fault }
+    }
+}
+
+/// Something could not be written; nothing usable was.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum WriteError {
+    /// The sink refused bytes.
+    #[error("writing failed: {0}")]
+    Io(#[from] io::Error),
+    /// The model is not sound: a bug of its maker.
+    #[error("part `{part}` cannot be written: {fault}")]
+    Model {
+        /// Name of the part.
+        part: String,
+        /// What is wrong with it.
+        fault: mesh::Fault,
+    },
+    /// A texture's pixels do not fit its size, or the size is zero.
+    #[error("a texture of {width} by {height} pixels with {bytes} bytes cannot be encoded")]
+    Texture {
+        /// Pixels across.
+        width: u32,
+        /// Pixels down.
+        height: u32,
+        /// Bytes given.
+        bytes: usize,
+    },
+    /// The format cannot hold that much.
+    #[error("{what} is too large for {format}: split the model or choose another format")]
+    TooLarge {
+        /// What is too large.
+        what: &'static str,
+        /// Name of the format.
+        format: &'static str,
+    },
+    /// The format is only read.
+    #[error("{format} is read but not written; choose {instead}")]
+    ReadOnly {
+        /// The format asked for.
+        format: &'static str,
+        /// What to choose.
+        instead: &'static str,
+    },
+}

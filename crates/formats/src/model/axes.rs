@@ -1,0 +1,61 @@
+//! Units and up axes at the border: inside everything is metres, +Y up.
+
+use base::{Unit, UpAxis};
+use mesh::Model;
+
+/// Unit and up axis of a file whose format does not fix them (OBJ, PLY, STL).
+///
+/// ```
+/// use base::{Unit, UpAxis};
+/// let spec = formats::ExportSpec { up: UpAxis::Z, unit: Unit::Centimetre };
+/// assert_eq!(spec.point([1.0, 2.0, 3.0]), [100.0, -300.0, 200.0]);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ExportSpec {
+    /// Default +Y.
+    pub up: UpAxis,
+    /// Default metres.
+    pub unit: Unit,
+}
+
+impl ExportSpec {
+    /// Metres, +Y up.
+    pub fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// A model's position as the file has it.
+    pub fn point(&self, p: [f32; 3]) -> [f32; 3] {
+        let per_metre = match self.unit {
+            Unit::Metre => return self.direction(p),
+            Unit::Centimetre => 100.0,
+            Unit::Millimetre => 1000.0,
+        };
+        self.direction(p).map(|x| x * per_metre)
+    }
+
+    /// A model's direction as the file has it.
+    pub fn direction(&self, n: [f32; 3]) -> [f32; 3] {
+        match self.up {
+            UpAxis::Y => n,
+            UpAxis::Z => [n[0], -n[2], n[1]],
+        }
+    }
+
+    /// Turns what was read into metres, +Y up.
+    pub(crate) fn import(&self, model: &mut Model) {
+        if self.is_default() {
+            return;
+        }
+        let turn = |p: [f32; 3]| match self.up {
+            UpAxis::Y => p,
+            UpAxis::Z => [p[0], p[2], -p[1]],
+        };
+        #[expect(clippy::cast_possible_truncation, reason = "0.01 and 0.001 as f32")]
+        let metres = self.unit.metres() as f32;
+        for part in &mut model.parts {
+            part.mesh.positions.iter_mut().for_each(|p| *p = turn(*p).map(|x| x * metres));
+            part.mesh.normals.iter_mut().for_each(|n| *n = turn(*n));
+        }
+    }
+}
