@@ -3,6 +3,8 @@
 use base::{Digest, Digestible};
 use glam::{DVec2, DVec3};
 
+use crate::BladeSurface;
+
 /// A leaf or petal in its own frame: x across, y from root to tip, z towards the upper side.
 ///
 /// The outline is a simple polygon, counter-clockwise, without a repeated first point, in metres at scale 1.
@@ -28,6 +30,11 @@ pub enum Lift {
     /// In the plane.
     #[default]
     Flat,
+    /// In a tilted plane through the root: `z = slope.x * x + slope.y * y`. The view along z stays as drawn.
+    Tilt {
+        /// Rise per unit across and along the blade.
+        slope: DVec2,
+    },
     /// On a cone (paper 000, Eq 3; see `geom::Cone`), in the blade's local coordinates.
     Cone {
         /// The cone and the sheet of it on which this petal lies.
@@ -70,6 +77,9 @@ impl Digestible for Blade {
             Lift::Cone { cone, sheet } => {
                 d.add(&1_u8).add(&cone.apex).add(&cone.axis).add(&cone.half_angle).add(&(sheet as u8));
             }
+            Lift::Tilt { slope } => {
+                d.add(&2_u8).add(&slope);
+            }
         }
         let r = self.relief;
         d.add(&r.bend_a).add(&r.bend_b).add(&r.hollow).add(&r.fold).add(&r.wave).add(&r.keep_length);
@@ -82,10 +92,31 @@ impl Blade {
         self.midrib.last().map_or(0.0, |tip| tip.length())
     }
 
-    /// Puts a point of the plane into space (local coordinates, scale 1).
+    /// The blade ready to be evaluated at many points: tables of its width and lengths are made once.
+    ///
+    /// Cost: linear in the points of the outline and midrib.
+    pub fn surface(&self) -> BladeSurface<'_> {
+        BladeSurface::new(self)
+    }
+
+    /// Puts one point of the plane into space (local coordinates, scale 1); [`surface`](Self::surface) for many.
     ///
     /// Guaranteed: with `keep_length` off, x and y stay as they are, so the view along z is the drawing.
+    /// Paper 000, Eq 5 and section 6.2.
+    ///
+    /// ```
+    /// use glam::{DVec2, DVec3};
+    /// use plant::{Blade, Lift, Relief};
+    /// let blade = Blade {
+    ///     outline: vec![DVec2::ZERO, DVec2::new(0.3, 0.5), DVec2::Y, DVec2::new(-0.3, 0.5)],
+    ///     midrib: vec![DVec2::ZERO, DVec2::Y],
+    ///     veins: vec![],
+    ///     lift: Lift::Flat,
+    ///     relief: Relief { bend_a: 0.1, bend_b: 0.2, ..Relief::default() },
+    /// };
+    /// assert!(blade.point(DVec2::Y).distance(DVec3::new(0.0, 1.0, -0.3)) < 1e-12);
+    /// ```
     pub fn point(&self, p: DVec2) -> DVec3 {
-        DVec3::new(p.x, p.y, 0.0) // replaced by the blade model
+        self.surface().point(p)
     }
 }

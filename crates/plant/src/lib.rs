@@ -9,11 +9,15 @@
 mod blade;
 mod organ;
 mod phyllotaxis;
+mod pipe;
+mod relief;
 mod topology;
 mod validate;
 
 pub use blade::{Blade, Lift, Relief};
 pub use organ::{Flower, FlowerId, Frame, Organ, OrganId, OrganKind, Shape, ShapeId};
 pub use phyllotaxis::{Divergence, Phyllotaxis};
+pub use pipe::{PipeModel, Taper, pipe_radii};
+pub use relief::BladeSurface;
 pub use topology::{Axis, AxisId, AxisKind, NodeId, Nodes, Plant};
 pub use validate::Fault;

@@ -114,7 +114,7 @@ impl Plant {
                         .chain(&b.midrib)
                         .chain(b.veins.iter().flatten())
                         .all(|p| p.is_finite())
-                    && b.outline.iter().all(|&p| b.point(p).is_finite())
+                    && b.surface().points(&b.outline).iter().all(|p| p.is_finite())
             }
             Shape::Dome { radius_m, height_m } => positive(*radius_m) && height_m.is_finite(),
             Shape::Revolution { profile } => {
