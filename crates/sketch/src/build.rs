@@ -1,16 +1,23 @@
-//! `Reading -> Plant`: depth, organs, filled contours, radii.
+//! The whole way from a reading to a plant.
+//!
+//! `Reading -> AxisPlans with depth -> axes -> leaves, flowers, thorns, fruits -> filled contours -> radii`
 
 use base::{Cancelled, Report, Run, Seed};
-use glam::DVec2;
-use plant::Plant;
+use geom::contains;
+use glam::{DVec2, DVec3};
+use plant::{AxisId, AxisKind, NodeId, PipeModel, Plant, ShapeId, Taper, pipe_radii};
 
+use crate::depth::{
+    Bearing, LocalBlade, Part, Plans, Scene, bend_by_light_and_weight, blade_key, branch_depths, leaf_shape,
+    place_flower, place_fruit, place_leaf, place_thorn,
+};
 use crate::fill::{FillContext, fill};
-use crate::{PlantMap, Reading, SketchSpec};
+use crate::{BladeReading, PlantMap, Reading, RegionKind, SketchSpec};
 
 /// A plant and how it lies in the drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Built {
-    /// The plant.
+    /// The plant: `plant.validate()` finds nothing wrong with it.
     pub plant: Plant,
     /// From the drawing's ink to the plant's metres.
     pub map: PlantMap,
@@ -18,8 +25,33 @@ pub struct Built {
 
 /// Builds the plant of a reading.
 ///
+/// `reading`: whatever [`read`](crate::read) or a caller made; coordinates that are not finite, lines without
+/// length and references to rows that are not there are left out. Guaranteed: the same plant for the same reading,
+/// spec and seed, on every platform; a clean `validate()`; with `leaf_depth` drawn, light and weight 0, the front
+/// view of axes, petals and leaves is the drawing. Not guaranteed: that anything is left of a reading of nothing.
+/// Books its time under `depth`. Paper 000, sections 4.3 to 6.
+///
 /// # Errors
 /// [`Cancelled`] when the caller asked to stop.
+///
+/// ```
+/// use base::{Report, Run, Seed};
+/// use glam::DVec2;
+/// use plant::AxisKind;
+/// use sketch::{AxisReading, Reading, SketchSpec, build};
+/// let stem = AxisReading {
+///     points: vec![DVec2::new(0.2, 0.0), DVec2::new(0.2, 0.5)],
+///     kind: AxisKind::Stem,
+///     bearer: None,
+///     half_width: vec![],
+///     source: Some(0),
+/// };
+/// let reading = Reading { axes: vec![stem], ..Reading::default() };
+/// let built = build(&reading, &SketchSpec::default(), Seed::new(1), &Run::plain(), &mut Report::default())?;
+/// let top = built.plant.axis_points(built.plant.nodes.axis[0]).last().copied();
+/// assert!(top.is_some_and(|p| (p.y - 0.5).abs() < 1e-12)); // a herb of half a metre
+/// # Ok::<(), base::Cancelled>(())
+/// ```
 pub fn build(
     reading: &Reading,
     spec: &SketchSpec,
@@ -27,9 +59,242 @@ pub fn build(
     run: &Run<'_>,
     report: &mut Report,
 ) -> Result<Built, Cancelled> {
-    let map = PlantMap { metres_per_ink: spec.height_m.unwrap_or(1.0), origin_ink: DVec2::ZERO };
+    run.cancel.check()?;
+    let started = run.clock.now_ms();
+    let map = plant_map(reading, spec);
+    let mut plans = Plans::new(reading);
+    branch_depths(&mut plans, spec.branch_depth, seed);
+    bend_by_light_and_weight(&mut plans, spec);
+    run.cancel.check()?;
+
     let mut plant = Plant::default();
-    let ctx = FillContext { spec, seed, map, axis_of_reading: &[], templates: &[], woody: reading.woody };
+    let ids = add_axes(&mut plant, &plans, map);
+    let scene = Scene { spec, seed, map, plans: &plans, ids: &ids };
+    let crowned = Crowned::new(reading);
+    let leaves = leaf_shapes(&mut plant, &scene, reading);
+    let templates: Vec<ShapeId> = leaves.iter().map(|l| l.shape).collect();
+    for leaf in leaves.iter().filter(|l| !crowned.holds(l.leaf.root)) {
+        place_leaf(&mut plant, &scene, leaf.leaf, (leaf.shape, &leaf.local), leaf.key, None);
+    }
+    run.cancel.check()?;
+    for (i, flower) in reading.flowers.iter().enumerate().filter(|(_, f)| !crowned.holds(f.centre)) {
+        place_flower(&mut plant, &scene, i, flower, None);
+    }
+    for (i, thorn) in reading.thorns.iter().enumerate() {
+        place_thorn(&mut plant, &scene, thorn, i);
+    }
+    for (i, fruit) in reading.fruits.iter().enumerate().filter(|(_, f)| !crowned.holds(middle(&f.outline))) {
+        place_fruit(&mut plant, &scene, fruit, i, None);
+    }
+    report.book("depth", run.clock.now_ms() - started);
+    run.cancel.check()?;
+
+    let ctx =
+        FillContext { spec, seed, map, axis_of_reading: &ids, templates: &templates, woody: reading.woody };
     fill(&mut plant, reading, &ctx, run, report)?;
+    run.cancel.check()?;
+
+    let started = run.clock.now_ms();
+    hang_in_crowns(&mut plant, &scene, reading, &crowned, &leaves);
+    let model = pipes(&plant, &plans, &ids, reading, spec, map);
+    pipe_radii(&mut plant, &model);
+    report.book("depth", run.clock.now_ms() - started);
+    debug_assert_eq!(plant.validate().next(), None, "a built plant is sound");
     Ok(Built { plant, map })
+}
+
+/// Scale and origin: the main axis stands at x = 0 on the ground, and the plant has the height asked for.
+fn plant_map(reading: &Reading, spec: &SketchSpec) -> PlantMap {
+    let sound = |p: &DVec2| p.is_finite() && p.abs().max_element() < 1e6;
+    let standing = |a: &&crate::AxisReading| a.bearer.is_none() && a.kind != AxisKind::Root;
+    let foot = |a: &crate::AxisReading| a.points.iter().copied().find(|p| sound(p));
+    let length = |a: &crate::AxisReading| geom::polyline_length(&a.points);
+    let main = reading
+        .axes
+        .iter()
+        .filter(standing)
+        .filter(|a| foot(a).is_some())
+        .reduce(|a, b| if length(b) > length(a) { b } else { a });
+    let blades = reading.leaves.iter().chain(reading.flowers.iter().flat_map(|f| &f.petals));
+    let lines = (reading.axes.iter().map(|a| &a.points))
+        .chain(blades.map(|b| &b.outline))
+        .chain(reading.regions.iter().map(|r| &r.outline))
+        .chain(reading.fruits.iter().map(|f| &f.outline));
+    let (mut low, mut high) = (DVec2::splat(f64::INFINITY), DVec2::splat(f64::NEG_INFINITY));
+    for p in lines.flatten().filter(|p| sound(p)) {
+        low = low.min(*p);
+        high = high.max(*p);
+    }
+    for f in reading.flowers.iter().filter(|f| sound(&f.centre)) {
+        let r = f.disc.map_or(0.0, |d| if d.radius.is_finite() { d.radius.clamp(0.0, 1e6) } else { 0.0 });
+        low = low.min(f.centre - r);
+        high = high.max(f.centre + r);
+    }
+    if low.x > high.x {
+        (low, high) = (DVec2::ZERO, DVec2::ONE);
+    }
+    let ground = reading.axes.iter().filter(standing).filter_map(foot).map(|p| p.y);
+    let ground = ground.reduce(f64::min).unwrap_or(low.y);
+    let origin_ink = DVec2::new(main.and_then(foot).map_or(0.5 * (low.x + high.x), |p| p.x), ground);
+    let tall = high.y - ground;
+    // A plant that lies flat on the ground line has its breadth instead of a height.
+    let extent = if tall > 1e-3 { tall } else { (high - low).max_element() };
+    let extent = if extent > 1e-6 { extent } else { 1.0 };
+    let usual = if reading.woody { 8.0 } else { 0.5 };
+    let height = spec.height_m.filter(|h| h.is_finite() && (1e-6..1e6).contains(h)).unwrap_or(usual);
+    PlantMap { metres_per_ink: height / extent, origin_ink }
+}
+
+fn add_axes(plant: &mut Plant, plans: &Plans, map: PlantMap) -> Vec<Option<AxisId>> {
+    let mut ids: Vec<Option<AxisId>> = Vec::with_capacity(plans.rows.len());
+    for plan in &plans.rows {
+        let id = plan.as_ref().map(|plan| {
+            let points: Vec<DVec3> = plan
+                .points
+                .iter()
+                .map(|p| map.plant_at_depth(p.truncate(), p.z * map.metres_per_ink))
+                .collect();
+            let bearer = plan.bearer.and_then(|(row, node)| {
+                let id = ids.get(row).copied().flatten()?;
+                plant.axis(id).node_ids().nth(node)
+            });
+            plant.add_axis(plan.kind, bearer, plan.key, &points, plan.source)
+        });
+        ids.push(id);
+    }
+    ids
+}
+
+/// A drawn leaf that has a shape.
+struct DrawnLeaf<'a> {
+    leaf: &'a BladeReading,
+    shape: ShapeId,
+    local: LocalBlade,
+    key: u64,
+}
+
+fn leaf_shapes<'a>(plant: &mut Plant, scene: &Scene<'_>, reading: &'a Reading) -> Vec<DrawnLeaf<'a>> {
+    let mut of_stroke = std::collections::BTreeMap::new();
+    let mut leaves = Vec::with_capacity(reading.leaves.len());
+    for leaf in &reading.leaves {
+        let rank = of_stroke.entry(leaf.source).or_insert(0_usize);
+        let key = blade_key(Part::Leaf, leaf, *rank, 0);
+        *rank += 1;
+        if let Some((shape, local)) = leaf_shape(plant, scene, leaf, key) {
+            leaves.push(DrawnLeaf { leaf, shape, local, key });
+        }
+    }
+    leaves
+}
+
+/// The crowns of a reading: what was drawn inside one hangs at the front of what grows in it.
+struct Crowned<'a>(Vec<&'a [DVec2]>);
+
+impl<'a> Crowned<'a> {
+    fn new(reading: &'a Reading) -> Self {
+        let crowns = reading.regions.iter().filter(|r| r.kind == RegionKind::Crown && r.outline.len() >= 3);
+        Self(crowns.map(|r| r.outline.as_slice()).collect())
+    }
+
+    fn holds(&self, p: DVec2) -> bool {
+        p.is_finite() && self.0.iter().any(|outline| contains(outline, p))
+    }
+}
+
+fn middle(outline: &[DVec2]) -> DVec2 {
+    #[expect(clippy::cast_precision_loss, reason = "a count")]
+    let n = outline.len().max(1) as f64;
+    outline.iter().sum::<DVec2>() / n
+}
+
+/// Places what was drawn inside crowns: on the twig that comes nearest to the viewer there.
+fn hang_in_crowns(
+    plant: &mut Plant,
+    scene: &Scene<'_>,
+    reading: &Reading,
+    crowned: &Crowned<'_>,
+    leaves: &[DrawnLeaf<'_>],
+) {
+    if crowned.0.is_empty() {
+        return;
+    }
+    let grown = plant.nodes.position.len();
+    let front = |plant: &Plant, root: DVec2| -> Option<(Bearing, DVec3)> {
+        let at = scene.map.plant_from_ink(root);
+        // Twice as far aside as it is nearer to the viewer: near twigs win over far ones in front.
+        let worth = |p: &DVec3| p.z - 2.0 * p.truncate().distance(at);
+        let (node, position) = plant.nodes.position[..grown]
+            .iter()
+            .enumerate()
+            .max_by(|a, b| worth(a.1).total_cmp(&worth(b.1)).then(b.0.cmp(&a.0)))?;
+        let axis = plant.nodes.axis.get(node)?;
+        let bearing = Bearing {
+            node: NodeId::new(node),
+            position: *position,
+            drawn: scene.map.ink_from_plant(position.truncate()),
+            along: DVec2::Y,
+            half_width: 0.0,
+            key: plant.axis(*axis).key,
+        };
+        let depth = position.z + 0.015 * scene.map.metres_per_ink;
+        Some((bearing, at.extend(depth)))
+    };
+    for leaf in leaves.iter().filter(|l| crowned.holds(l.leaf.root)) {
+        let seat = front(plant, leaf.leaf.root);
+        place_leaf(plant, scene, leaf.leaf, (leaf.shape, &leaf.local), leaf.key, seat);
+    }
+    for (i, flower) in reading.flowers.iter().enumerate().filter(|(_, f)| crowned.holds(f.centre)) {
+        let seat = front(plant, flower.centre);
+        place_flower(plant, scene, i, flower, seat);
+    }
+    for (i, fruit) in reading.fruits.iter().enumerate() {
+        let centre = middle(&fruit.outline);
+        if crowned.holds(centre) {
+            let seat = front(plant, centre);
+            place_fruit(plant, scene, fruit, i, seat);
+        }
+    }
+}
+
+/// The pipe model of this plant: base radii from sizes, drawn half widths where there are some.
+fn pipes(
+    plant: &Plant,
+    plans: &Plans,
+    ids: &[Option<AxisId>],
+    reading: &Reading,
+    spec: &SketchSpec,
+    map: PlantMap,
+) -> PipeModel {
+    let woody = reading.woody;
+    let height = plant.nodes.position.iter().map(|p| p.y).fold(0.0, f64::max);
+    // Trees: a fortieth of the height. Herbs: a ninetieth. A longer axis than the plant is tall counts itself.
+    let slender = if woody { 1.0 / 40.0 } else { 1.0 / 90.0 };
+    let mut ground = Vec::new();
+    for (i, axis) in plant.axes.iter().enumerate().filter(|(_, a)| a.bearer.is_none()) {
+        let id = AxisId::new(i);
+        let length = geom::polyline_length3(plant.axis_points(id));
+        let size = if axis.kind == AxisKind::Root {
+            0.5 * length
+        } else {
+            length.max(0.5 * height.min(2.0 * length))
+        };
+        ground.push((id, size * slender));
+    }
+    let mut drawn = Vec::new();
+    for (plan, id) in plans.rows.iter().zip(ids) {
+        if let (Some(plan), Some(id)) = (plan, id)
+            && plan.half_width.len() == plan.points.len()
+        {
+            drawn.push((*id, plan.half_width.iter().map(|w| w * map.metres_per_ink).collect()));
+        }
+    }
+    let taper = Taper { s: spec.taper.s, alpha: spec.taper.alpha, m: spec.taper.m };
+    PipeModel {
+        exponent: spec.pipe_exponent.filter(|t| t.is_finite()).unwrap_or(if woody { 2.0 } else { 2.5 }),
+        taper,
+        min_radius_m: height * if woody { 4e-4 } else { 1e-3 },
+        max_per_length: 0.08,
+        ground,
+        drawn,
+    }
 }

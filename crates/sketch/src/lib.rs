@@ -13,6 +13,7 @@
 
 mod build;
 mod clean;
+mod depth;
 mod drawing;
 mod fill;
 mod map;

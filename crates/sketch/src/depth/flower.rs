@@ -1,0 +1,363 @@
+//! Flowers on cones (paper 000, section 5.1; methods 1.2 to 1.4).
+//!
+//! `FlowerReading -> cone (nested ones for inner whorls) -> petals, disc, stamens`
+
+use base::{Draw, ops};
+use geom::{Cone, FlowerCone, Sheet, flower_cone};
+use glam::{DVec2, DVec3};
+use plant::{AxisKind, Blade, Flower, FlowerId, Frame, Lift, NodeId, Organ, OrganKind, Plant, Relief, Shape};
+
+use super::axes::{Part, key_of};
+use super::leaf::LocalBlade;
+use super::scene::{Bearing, Scene, around_one, sane};
+use crate::{BladeReading, FlowerReading};
+
+/// Half opening of a flower whose drawing does not tell (60 degrees).
+const OPEN: f64 = ops::PI / 3.0;
+/// How much steeper each inner whorl stands.
+const STEEPER: f64 = 0.78;
+/// Below this the axis lies in the drawing plane and petals alternate between front and back.
+const SIDEWAYS: f64 = 0.08;
+/// A petal that would become longer than this many times its drawn length is tilted instead.
+const STEEPEST: f64 = 1.7;
+/// Distance in depth of neighbouring petals, share of a petal's length: less would flicker.
+const APART: f64 = 0.015;
+
+/// A flower on its way: everything in metres.
+struct Corolla {
+    /// Drawn middle.
+    centre: DVec2,
+    fit: FlowerCone,
+    /// Mean length of petals in the drawing.
+    petal: f64,
+    facing: f64,
+}
+
+impl Corolla {
+    /// The nested cone of a whorl: same apex and axis, steeper from ring to ring.
+    fn cone(&self, whorl: u32) -> Cone {
+        let steep = ops::powf(STEEPER, f64::from(whorl.min(8)));
+        let half_angle = (self.fit.cone.half_angle * steep).max(0.2).min(self.fit.cone.half_angle);
+        Cone { half_angle, ..self.fit.cone }
+    }
+
+    fn cot(&self) -> f64 {
+        let (s, c) = ops::sin_cos(self.fit.cone.half_angle);
+        if s > 1e-9 { (c / s).clamp(0.0, 6.0) } else { 6.0 }
+    }
+}
+
+/// Adds a drawn flower: petals, disc, stamens; and a stalk where its stem ends short of it.
+pub(crate) fn place_flower(
+    plant: &mut Plant,
+    scene: &Scene<'_>,
+    index: usize,
+    flower: &FlowerReading,
+    seat: Option<(Bearing, DVec3)>,
+) {
+    if !flower.centre.is_finite() || flower.centre.abs().max_element() > 1e6 {
+        return;
+    }
+    let bearing = match seat {
+        Some((b, _)) => Some(b),
+        None => scene.bearing(plant, flower.bearer),
+    };
+    let mut at = scene.seat(flower.centre, bearing.as_ref());
+    if let Some((_, given)) = seat {
+        at.z = given.z;
+    }
+    let source = flower.petals.iter().find_map(|p| p.source).or(flower.disc.and_then(|d| d.source));
+    let key = key_of(Part::Flower, source, index as u64, bearing.map_or(0, |b| b.key));
+    let link = key_of(Part::Link, None, 0, key);
+    let bearer = scene.stalk(plant, bearing.as_ref(), flower.centre, at, AxisKind::Stem, link);
+    let facing = !u32::try_from(index).is_ok_and(|i| scene.spec.flipped_flowers.contains(&i));
+    let corolla = corolla(scene, flower, at, facing);
+    let mut whorls: Vec<u32> = flower.petals.iter().map(|p| p.whorl).collect();
+    whorls.sort_unstable();
+    whorls.dedup();
+    plant.flowers.push(Flower {
+        bearer,
+        centre: corolla.fit.cone.apex,
+        axis: corolla.fit.cone.axis,
+        half_angle: corolla.fit.cone.half_angle.clamp(0.0, ops::FRAC_PI_2),
+        whorls: u32::try_from(whorls.len()).unwrap_or(u32::MAX),
+    });
+    let part = Organs { plant, scene, flower: FlowerId::new(0), bearer, key };
+    let id = FlowerId::new(part.plant.flowers.len() - 1);
+    let mut part = Organs { flower: id, ..part };
+    for (ring, &whorl) in whorls.iter().enumerate() {
+        part.whorl(flower, &corolla, whorl, u32::try_from(ring).unwrap_or(u32::MAX));
+    }
+    part.centre(flower, &corolla);
+}
+
+/// The cone of a flower seated at `at`, metres.
+fn corolla(scene: &Scene<'_>, flower: &FlowerReading, at: DVec3, facing: bool) -> Corolla {
+    let s = scene.map.metres_per_ink;
+    let centre = at.truncate();
+    let place = |p: DVec2| centre + (p - flower.centre) * s;
+    let outer = flower.petals.iter().map(|p| p.whorl).min().unwrap_or(0);
+    let outer: Vec<&BladeReading> = flower
+        .petals
+        .iter()
+        .filter(|p| p.whorl == outer && p.tip.is_finite() && p.root.is_finite())
+        .collect();
+    let tips: Vec<DVec2> = outer.iter().map(|p| place(p.tip)).collect();
+    #[expect(clippy::cast_precision_loss, reason = "petals")]
+    let n = outer.len().max(1) as f64;
+    let reach = tips.iter().map(|t| t.distance(centre)).sum::<f64>() / n;
+    let petal = outer.iter().map(|p| p.tip.distance(p.root) * s).sum::<f64>() / n;
+    let disc = flower.disc.map_or(0.0, |d| if d.radius.is_finite() { d.radius.abs() * s } else { 0.0 });
+    let petal = if petal > 0.0 { petal } else { disc.max(0.02 * s) };
+    let sound = |f: &FlowerCone| {
+        f.cone.axis.is_finite()
+            && (f.cone.axis.length() - 1.0).abs() < 1e-6
+            && f.cone.half_angle > 0.0
+            && f.cone.half_angle <= ops::FRAC_PI_2 + 1e-9
+            && f.height.is_finite()
+    };
+    let z = if facing { 1.0 } else { -1.0 };
+    let mut fit = flower_cone(centre, &tips, facing).filter(sound).unwrap_or_else(|| {
+        // One or two petals tell nothing: open, facing the viewer.
+        let (sin, cos) = ops::sin_cos(OPEN);
+        let cone = Cone { apex: DVec3::ZERO, axis: DVec3::Z * z, half_angle: OPEN };
+        let radius = reach.max(1e-9);
+        FlowerCone { cone, height: radius * cos / sin, radius, rho: 1.0 }
+    });
+    let mut corolla = Corolla { centre, fit, petal, facing: if fit.cone.axis.z < 0.0 { -1.0 } else { 1.0 } };
+    // The ring of the roots, not the apex, sits on the stem: so the disc does.
+    let rim = (outer.iter().map(|p| p.root.distance(flower.centre) * s).sum::<f64>() / n).min(reach);
+    let back = fit.cone.axis.z * rim * corolla.cot();
+    fit.cone.apex = centre.extend(at.z - back);
+    corolla.fit = fit;
+    corolla
+}
+
+/// What the organs of one flower have in common.
+struct Organs<'a, 'b> {
+    plant: &'a mut Plant,
+    scene: &'a Scene<'b>,
+    flower: FlowerId,
+    bearer: Option<NodeId>,
+    key: u64,
+}
+
+impl Organs<'_, '_> {
+    fn push(&mut self, kind: OrganKind, shape: Shape, frame: Frame, key: u64, source: Option<u32>) {
+        let shape = self.plant.add_shape(shape);
+        let tint = self.scene.tint(if kind == OrganKind::Petal { key } else { self.key });
+        self.plant.organs.push(Organ {
+            kind,
+            bearer: self.bearer,
+            flower: Some(self.flower),
+            shape,
+            frame,
+            scale: 1.0,
+            tint,
+            key,
+            source,
+        });
+    }
+
+    /// The petals of one ring, in angular order.
+    fn whorl(&mut self, flower: &FlowerReading, corolla: &Corolla, whorl: u32, ring: u32) {
+        let cone = corolla.cone(ring);
+        let middle = corolla.fit.cone.axis.truncate().try_normalize().unwrap_or(DVec2::Y);
+        let mut petals: Vec<(f64, usize, &BladeReading)> = flower
+            .petals
+            .iter()
+            .enumerate()
+            .filter(|(_, p)| p.whorl == whorl && p.tip.is_finite() && p.root.is_finite())
+            .map(|(i, p)| {
+                let d = p.tip - flower.centre;
+                // From the flower's own direction, so that a sideways flower is ordered from flank to flank.
+                (ops::atan2(middle.perp_dot(d), middle.dot(d)), i, p)
+            })
+            .collect();
+        petals.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let front = petals
+            .iter()
+            .enumerate()
+            .min_by(|a, b| a.1.0.abs().total_cmp(&b.1.0.abs()))
+            .map_or(0, |(rank, _)| rank);
+        let count = petals.len();
+        let s = self.scene.map.metres_per_ink;
+        for (rank, &(_, i, petal)) in petals.iter().enumerate() {
+            let tip = corolla.centre + (petal.tip - flower.centre) * s;
+            let even = rank.abs_diff(front).is_multiple_of(2);
+            let sheet = if corolla.fit.cone.axis.z.abs() < SIDEWAYS {
+                if even { Sheet::Near } else { Sheet::Far }
+            } else {
+                let (_, cos) = ops::sin_cos(cone.half_angle);
+                let (_, outer) = ops::sin_cos(corolla.fit.cone.half_angle);
+                let height = corolla.fit.height * if outer > 1e-6 { cos / outer } else { 1.0 };
+                let reach = tip.distance(corolla.centre) / corolla.fit.radius.max(1e-12);
+                cone.sheet_for_tip(tip, height * reach.clamp(0.1, 1.0))
+            };
+            let last_odd = count % 2 == 1 && count > 1 && rank + 1 == count;
+            let step = if last_odd { 2.0 } else { f64::from(u8::from(!even)) };
+            let lift = step * APART * corolla.petal;
+            let rank = flower.petals[..i].iter().filter(|p| p.source == petal.source).count();
+            let key = key_of(Part::Petal, petal.source, rank as u64, self.key);
+            self.petal(flower, petal, corolla, (cone, sheet), lift, key);
+        }
+    }
+
+    fn petal(
+        &mut self,
+        flower: &FlowerReading,
+        petal: &BladeReading,
+        corolla: &Corolla,
+        (cone, sheet): (Cone, Sheet),
+        lift: f64,
+        key: u64,
+    ) {
+        let s = self.scene.map.metres_per_ink;
+        let place = |p: DVec2| corolla.centre + (p - flower.centre) * s;
+        let (root, tip) = (place(petal.root), place(petal.tip));
+        let on_cone = |p: DVec2| p.extend(cone.depth(p, sheet));
+        let (root3, tip3) = (on_cone(root), on_cone(tip));
+        // The inner side faces the axis: it is the upper one.
+        let out = (tip3 - cone.apex).try_normalize().unwrap_or(DVec3::Z);
+        let inner = (cone.axis - out * cone.axis.dot(out)).try_normalize().unwrap_or(DVec3::Z);
+        let mirrored = inner.z < 0.0;
+        let Some(local) = LocalBlade::new(petal, s, mirrored) else { return };
+        let drawn = root.distance(tip).max(1e-12);
+        let depth = |p: &DVec2| cone.depth(place(*p), sheet) - root3.z;
+        let deepest = petal.outline.iter().map(|p| depth(p).abs()).fold(0.0, f64::max);
+        let sound = root3.is_finite() && deepest.is_finite() && deepest <= 1.5 * STEEPEST * drawn;
+        let origin_z = if root3.is_finite() { root3.z } else { cone.apex.z };
+        let origin_z = origin_z.clamp(cone.apex.z - 3.0 * corolla.petal, cone.apex.z + 3.0 * corolla.petal);
+        let frame = local.frame(root.extend(origin_z + lift * corolla.facing));
+        let lift = if sound {
+            let to = |v: DVec3| DVec3::new(v.dot(frame.right), v.dot(frame.along), v.dot(frame.normal));
+            // The offset of neighbours moves the petal's cone with it.
+            let apex = to(cone.apex - root.extend(root3.z));
+            let sheet = match (mirrored, sheet) {
+                (false, s) => s,
+                (true, Sheet::Near) => Sheet::Far,
+                (true, Sheet::Far) => Sheet::Near,
+            };
+            Lift::Cone { cone: Cone { apex, axis: to(cone.axis), half_angle: cone.half_angle }, sheet }
+        } else {
+            // Nearly along the line of sight the cone would stretch the petal without end.
+            let rise = if tip3.is_finite() { (tip3.z - root3.z) / drawn } else { 0.0 };
+            let rise = if rise.is_finite() { rise.clamp(-STEEPEST, STEEPEST) } else { 0.0 };
+            Lift::Tilt { slope: DVec2::new(0.0, if mirrored { -rise } else { rise }) }
+        };
+        let mut curl = self.scene.seed.child(key).stream(Draw::Curl);
+        let spec = &self.scene.spec.relief;
+        // Seen from its edge a petal's normal lies in the drawing: only the part along the view may move.
+        let seen = inner.z.abs().max(0.2);
+        let relief = Relief {
+            bend_a: sane(spec.petal_bend_a, 1.0) * seen * around_one(curl.uniform(), 0.35),
+            bend_b: sane(spec.petal_bend_b, 1.0) * seen * around_one(curl.uniform(), 0.35),
+            hollow: sane(spec.petal_hollow, 1.0) * seen * around_one(curl.uniform(), 0.25),
+            fold: 0.0,
+            wave: 0.012 * curl.uniform(),
+            keep_length: false,
+        };
+        let blade = Blade { outline: local.outline, midrib: local.midrib, veins: local.veins, lift, relief };
+        self.push(OrganKind::Petal, Shape::Blade(blade), frame, key, petal.source);
+    }
+
+    /// Disc, stamens, pistil: as drawn, else what such a flower has.
+    fn centre(&mut self, flower: &FlowerReading, corolla: &Corolla) {
+        let cone = corolla.fit.cone;
+        let s = self.scene.map.metres_per_ink;
+        let open = cone.axis.z.abs() > 0.35;
+        let drawn = flower.disc.filter(|d| d.centre.is_finite() && d.radius.is_finite() && d.radius > 0.0);
+        let radius = drawn.map_or(0.18 * corolla.petal, |d| (d.radius * s).min(1e6 * s));
+        let middle = drawn.map_or(corolla.centre, |d| corolla.centre + (d.centre - flower.centre) * s);
+        // As high as the petals stand at its rim, or they would cover it.
+        let rim = radius * corolla.cot().min(1.5);
+        let top = cone.apex.z + cone.axis.z * rim;
+        if drawn.is_some() || (open && !flower.petals.is_empty()) {
+            let origin = middle.extend(top);
+            let frame = facing_frame(origin, cone.axis);
+            let height_m = 0.42 * radius;
+            let key = key_of(Part::Disc, drawn.and_then(|d| d.source), 0, self.key);
+            let source = drawn.and_then(|d| d.source);
+            self.push(OrganKind::Disc, Shape::Dome { radius_m: radius, height_m }, frame, key, source);
+        }
+        if flower.stamens.iter().any(|l| l.len() >= 2) {
+            self.drawn_stamens(flower, corolla);
+        } else if drawn.is_none() && !flower.petals.is_empty() {
+            self.default_stamens(corolla, if open { 0.42 * radius } else { 0.0 });
+        }
+    }
+
+    fn drawn_stamens(&mut self, flower: &FlowerReading, corolla: &Corolla) {
+        let s = self.scene.map.metres_per_ink;
+        let fit = corolla.fit.cone;
+        let inner = Cone { half_angle: (0.6 * fit.half_angle).max(0.1).min(fit.half_angle), ..fit };
+        let limit = 1.5 * corolla.petal;
+        for (i, line) in flower.stamens.iter().enumerate() {
+            let mut path: Vec<DVec3> = Vec::with_capacity(line.len());
+            for p in line.iter().filter(|p| p.is_finite() && p.abs().max_element() < 1e6) {
+                let xy = corolla.centre + (*p - flower.centre) * s;
+                let sheet = if fit.axis.z < 0.0 { Sheet::Far } else { Sheet::Near };
+                let z = inner.depth(xy, sheet) - fit.apex.z;
+                let z = if z.is_finite() { z.clamp(-limit, limit) } else { 0.0 };
+                path.push(xy.extend(fit.apex.z + z));
+            }
+            path.dedup();
+            let Some(&origin) = path.first().filter(|_| path.len() >= 2) else { continue };
+            let key = key_of(Part::Stamen, None, i as u64, self.key);
+            self.strand(OrganKind::Stamen, origin, &path, corolla.petal, key);
+        }
+    }
+
+    /// A pistil and six stamens, about the axis.
+    fn default_stamens(&mut self, corolla: &Corolla, raised: f64) {
+        let cone = corolla.fit.cone;
+        let base = cone.apex
+            + cone.axis * (0.5 * raised)
+            + DVec3::Z * (cone.axis.z * 0.18 * corolla.petal * corolla.cot().min(1.5));
+        let side = facing_frame(base, cone.axis);
+        let mut draw = self.scene.seed.child(self.key).stream(Draw::Phyllotaxis);
+        let first = draw.range(0.0, ops::TAU);
+        for i in 0..=6_u32 {
+            let pistil = i == 0;
+            let lean = if pistil { 0.0 } else { (0.45 * cone.half_angle).min(0.5) };
+            let (s, c) = ops::sin_cos(first + f64::from(i) * ops::TAU / 6.0 + draw.range(-0.1, 0.1));
+            let across = side.right * c + side.along * s;
+            let long = corolla.petal * if pistil { 0.42 } else { draw.range(0.3, 0.36) };
+            let path: Vec<DVec3> = (0..=5_i32)
+                .map(|k| {
+                    let t = f64::from(k) / 5.0;
+                    let (s, c) = ops::sin_cos(lean * (0.5 + 0.5 * t));
+                    let foot = if pistil { DVec3::ZERO } else { across * (0.05 * corolla.petal) };
+                    base + foot + (cone.axis * c + across * s) * (long * t)
+                })
+                .collect();
+            let kind = if pistil { OrganKind::Pistil } else { OrganKind::Stamen };
+            let key = key_of(Part::Stamen, None, u64::from(i), self.key);
+            self.strand(kind, path[0], &path, corolla.petal, key);
+        }
+    }
+
+    fn strand(&mut self, kind: OrganKind, origin: DVec3, path: &[DVec3], petal: f64, key: u64) {
+        let thick = petal * if kind == OrganKind::Pistil { 0.016 } else { 0.009 };
+        let last = path.len().saturating_sub(1).max(1);
+        #[expect(clippy::cast_precision_loss, reason = "points of one strand")]
+        let radius_m = (0..path.len()).map(|i| thick * ops::lerp(1.0, 0.7, i as f64 / last as f64)).collect();
+        let shape = Shape::Strand {
+            path: path.iter().map(|&p| p - origin).collect(),
+            radius_m,
+            knob_m: petal * if kind == OrganKind::Pistil { 0.035 } else { 0.028 },
+        };
+        let frame = Frame { origin, right: DVec3::X, along: DVec3::Y, normal: DVec3::Z };
+        self.push(kind, shape, frame, key, None);
+    }
+}
+
+/// A frame whose normal is `axis`.
+fn facing_frame(origin: DVec3, axis: DVec3) -> Frame {
+    let up = DVec3::Y - axis * axis.y;
+    let along = up.try_normalize().filter(|_| up.length_squared() > 1e-6).unwrap_or_else(|| {
+        let flat = DVec3::X - axis * axis.x;
+        flat.try_normalize().unwrap_or(DVec3::Z)
+    });
+    Frame { origin, right: along.cross(axis), along, normal: axis }
+}

@@ -1,0 +1,17 @@
+//! From flat reading to depth (paper 000, section 5): axes by entropy, flowers by cones, leaves by the light prior.
+//!
+//! `Reading -> AxisPlan (nodes) -> z of every node -> organs in space`
+
+mod axes;
+mod branch;
+mod flower;
+mod leaf;
+mod scene;
+mod solid;
+
+pub(crate) use axes::{Part, Plans};
+pub(crate) use branch::{bend_by_light_and_weight, branch_depths};
+pub(crate) use flower::place_flower;
+pub(crate) use leaf::{LocalBlade, blade_key, leaf_shape, place_leaf};
+pub(crate) use scene::{Bearing, Scene};
+pub(crate) use solid::{place_fruit, place_thorn};

@@ -1,0 +1,115 @@
+//! What placing an organ needs: the reading, the map to metres, the axes that already stand.
+
+use base::{Draw, Seed, ops};
+use glam::{DVec2, DVec3};
+use plant::{AxisId, AxisKind, NodeId, Plant};
+
+use super::Plans;
+use crate::{Attachment, PlantMap, SketchSpec};
+
+/// Roots farther from their bearer than this get a stalk, ink units: nearer ones read as touching.
+const TOUCHING: f64 = 0.012;
+
+/// The half-built plant as organs see it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Scene<'a> {
+    pub(crate) spec: &'a SketchSpec,
+    pub(crate) seed: Seed,
+    pub(crate) map: PlantMap,
+    pub(crate) plans: &'a Plans,
+    /// The plant's axis of each planned row.
+    pub(crate) ids: &'a [Option<AxisId>],
+}
+
+/// The node that bears something.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bearing {
+    pub(crate) node: NodeId,
+    /// Where it is, metres.
+    pub(crate) position: DVec3,
+    /// Where it was drawn, ink units.
+    pub(crate) drawn: DVec2,
+    /// Direction of the axis in the drawing, unit.
+    pub(crate) along: DVec2,
+    /// Drawn half width of the axis, ink units; 0 for a line.
+    pub(crate) half_width: f64,
+    /// Key of the axis.
+    pub(crate) key: u64,
+}
+
+impl Scene<'_> {
+    /// The node of an attachment; `None` where there is no such axis.
+    pub(crate) fn bearing(&self, plant: &Plant, at: Option<Attachment>) -> Option<Bearing> {
+        let (row, node) = self.plans.locate(at?)?;
+        let plan = self.plans.rows.get(row)?.as_ref()?;
+        let id = (*self.ids.get(row)?)?;
+        let handle = plant.axis(id).node_ids().nth(node)?;
+        Some(Bearing {
+            node: handle,
+            position: *plant.nodes.position.get(handle.index())?,
+            drawn: *plan.drawn.get(node)?,
+            along: plan.direction(node, 0.03),
+            half_width: plan.width_at(node),
+            key: plan.key,
+        })
+    }
+
+    /// Where an organ drawn at `root` (ink) sits: at its bearer's depth, before the bark of a bearer drawn thick.
+    pub(crate) fn seat(&self, root: DVec2, bearing: Option<&Bearing>) -> DVec3 {
+        let Some(b) = bearing else { return self.map.plant_at_depth(root, 0.0) };
+        let shift = b.position.truncate() - self.map.plant_from_ink(b.drawn);
+        let off = (root - b.drawn).dot(b.along.perp()).abs();
+        let front = (b.half_width * b.half_width - off * off).max(0.0).sqrt() * self.map.metres_per_ink;
+        (self.map.plant_from_ink(root) + shift).extend(b.position.z + front)
+    }
+
+    /// The node that bears an organ seated at `seat` and drawn at `root`: the bearing's own where they touch, else
+    /// the end of a new stalk between them. The stalk has no source: it was not drawn.
+    pub(crate) fn stalk(
+        &self,
+        plant: &mut Plant,
+        bearing: Option<&Bearing>,
+        root: DVec2,
+        seat: DVec3,
+        kind: AxisKind,
+        key: u64,
+    ) -> Option<NodeId> {
+        let b = bearing?;
+        let gap = root.distance(b.drawn);
+        if gap <= TOUCHING.max(1.1 * b.half_width) {
+            return Some(b.node);
+        }
+        let reach = seat - b.position;
+        // A slight bow away from straight, upwards, as stalks grow.
+        let bow = DVec3::Y * (0.06 * reach.truncate().length());
+        let points: Vec<DVec3> = (0..=4_i32)
+            .map(|i| {
+                let t = f64::from(i) / 4.0;
+                b.position + reach * t + bow * (4.0 * t * (1.0 - t))
+            })
+            .collect();
+        let mut points = points;
+        points[0] = b.position;
+        points[4] = seat;
+        let id = plant.add_axis(kind, Some(b.node), key, &points, None);
+        plant.axis(id).node_ids().last()
+    }
+
+    /// A slight variation of brightness and warmth, so that no two organs look alike.
+    pub(crate) fn tint(&self, key: u64) -> [f32; 3] {
+        let mut s = self.seed.child(key).stream(Draw::Tint);
+        let (light, warm) = (s.range(0.88, 1.12), s.range(-0.05, 0.05));
+        #[expect(clippy::cast_possible_truncation, reason = "a colour")]
+        [light * (1.0 + warm), light, light * (1.0 - warm)].map(|c| c as f32)
+    }
+}
+
+/// A number of the spec, kept within what the geometry can bear; nonsense becomes 0.
+pub(crate) fn sane(x: f64, most: f64) -> f64 {
+    if x.is_finite() { x.clamp(-most, most) } else { 0.0 }
+}
+
+/// A factor around 1.
+pub(crate) fn around_one(u: f64, share: f64) -> f64 {
+    ops::lerp(1.0 - share, 1.0 + share, u)
+}
