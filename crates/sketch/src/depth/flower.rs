@@ -9,7 +9,7 @@ use plant::{AxisKind, Blade, Flower, FlowerId, Frame, Lift, NodeId, Organ, Organ
 
 use super::axes::{Part, key_of};
 use super::leaf::LocalBlade;
-use super::scene::{Bearing, Scene, around_one, sane};
+use super::scene::{Bearing, Scene, around_one, sane, usable};
 use crate::{BladeReading, FlowerReading};
 
 /// Half opening of a flower whose drawing does not tell (60 degrees).
@@ -30,6 +30,8 @@ struct Corolla {
     fit: FlowerCone,
     /// Mean length of petals in the drawing.
     petal: f64,
+    /// Mean distance of tips from the middle.
+    reach: f64,
     facing: f64,
 }
 
@@ -39,6 +41,11 @@ impl Corolla {
         let steep = ops::powf(STEEPER, f64::from(whorl.min(8)));
         let half_angle = (self.fit.cone.half_angle * steep).max(0.2).min(self.fit.cone.half_angle);
         Cone { half_angle, ..self.fit.cone }
+    }
+
+    /// Length of a generator from the apex to the rim.
+    fn slant(&self) -> f64 {
+        (self.fit.height * self.fit.height + self.fit.radius * self.fit.radius).sqrt()
     }
 
     fn cot(&self) -> f64 {
@@ -55,7 +62,7 @@ pub(crate) fn place_flower(
     flower: &FlowerReading,
     seat: Option<(Bearing, DVec3)>,
 ) {
-    if !flower.centre.is_finite() || flower.centre.abs().max_element() > 1e6 {
+    if !usable(flower.centre) {
         return;
     }
     let bearing = match seat {
@@ -97,11 +104,8 @@ fn corolla(scene: &Scene<'_>, flower: &FlowerReading, at: DVec3, facing: bool) -
     let centre = at.truncate();
     let place = |p: DVec2| centre + (p - flower.centre) * s;
     let outer = flower.petals.iter().map(|p| p.whorl).min().unwrap_or(0);
-    let outer: Vec<&BladeReading> = flower
-        .petals
-        .iter()
-        .filter(|p| p.whorl == outer && p.tip.is_finite() && p.root.is_finite())
-        .collect();
+    let outer: Vec<&BladeReading> =
+        flower.petals.iter().filter(|p| p.whorl == outer && usable(p.tip) && usable(p.root)).collect();
     let tips: Vec<DVec2> = outer.iter().map(|p| place(p.tip)).collect();
     #[expect(clippy::cast_precision_loss, reason = "petals")]
     let n = outer.len().max(1) as f64;
@@ -124,7 +128,13 @@ fn corolla(scene: &Scene<'_>, flower: &FlowerReading, at: DVec3, facing: bool) -
         let radius = reach.max(1e-9);
         FlowerCone { cone, height: radius * cos / sin, radius, rho: 1.0 }
     });
-    let mut corolla = Corolla { centre, fit, petal, facing: if fit.cone.axis.z < 0.0 { -1.0 } else { 1.0 } };
+    let mut corolla = Corolla {
+        centre,
+        fit,
+        petal,
+        reach: reach.max(1e-12),
+        facing: if fit.cone.axis.z < 0.0 { -1.0 } else { 1.0 },
+    };
     // The ring of the roots, not the apex, sits on the stem: so the disc does.
     let rim = (outer.iter().map(|p| p.root.distance(flower.centre) * s).sum::<f64>() / n).min(reach);
     let back = fit.cone.axis.z * rim * corolla.cot();
@@ -167,7 +177,7 @@ impl Organs<'_, '_> {
             .petals
             .iter()
             .enumerate()
-            .filter(|(_, p)| p.whorl == whorl && p.tip.is_finite() && p.root.is_finite())
+            .filter(|(_, p)| p.whorl == whorl && usable(p.tip) && usable(p.root))
             .map(|(i, p)| {
                 let d = p.tip - flower.centre;
                 // From the flower's own direction, so that a sideways flower is ordered from flank to flank.
@@ -182,17 +192,19 @@ impl Organs<'_, '_> {
             .map_or(0, |(rank, _)| rank);
         let count = petals.len();
         let s = self.scene.map.metres_per_ink;
+        // An inner ring's rim is lower as its petals are shorter.
+        #[expect(clippy::cast_precision_loss, reason = "petals")]
+        let reach =
+            petals.iter().map(|p| p.2.tip.distance(flower.centre) * s).sum::<f64>() / count.max(1) as f64;
+        let height =
+            corolla.fit.height * if ring == 0 { 1.0 } else { (reach / corolla.reach).clamp(0.1, 1.0) };
         for (rank, &(_, i, petal)) in petals.iter().enumerate() {
             let tip = corolla.centre + (petal.tip - flower.centre) * s;
             let even = rank.abs_diff(front).is_multiple_of(2);
             let sheet = if corolla.fit.cone.axis.z.abs() < SIDEWAYS {
                 if even { Sheet::Near } else { Sheet::Far }
             } else {
-                let (_, cos) = ops::sin_cos(cone.half_angle);
-                let (_, outer) = ops::sin_cos(corolla.fit.cone.half_angle);
-                let height = corolla.fit.height * if outer > 1e-6 { cos / outer } else { 1.0 };
-                let reach = tip.distance(corolla.centre) / corolla.fit.radius.max(1e-12);
-                cone.sheet_for_tip(tip, height * reach.clamp(0.1, 1.0))
+                cone.sheet_for_tip(tip, height)
             };
             let last_odd = count % 2 == 1 && count > 1 && rank + 1 == count;
             let step = if last_odd { 2.0 } else { f64::from(u8::from(!even)) };
@@ -225,7 +237,9 @@ impl Organs<'_, '_> {
         let drawn = root.distance(tip).max(1e-12);
         let depth = |p: &DVec2| cone.depth(place(*p), sheet) - root3.z;
         let deepest = petal.outline.iter().map(|p| depth(p).abs()).fold(0.0, f64::max);
-        let sound = root3.is_finite() && deepest.is_finite() && deepest <= 1.5 * STEEPEST * drawn;
+        // A petal may point at the viewer, but not be much longer than its neighbours are.
+        let limit = (1.5 * STEEPEST * drawn).max(1.25 * corolla.slant().min(2.5 * corolla.petal));
+        let sound = root3.is_finite() && deepest.is_finite() && deepest <= limit;
         let origin_z = if root3.is_finite() { root3.z } else { cone.apex.z };
         let origin_z = origin_z.clamp(cone.apex.z - 3.0 * corolla.petal, cone.apex.z + 3.0 * corolla.petal);
         let frame = local.frame(root.extend(origin_z + lift * corolla.facing));
@@ -266,7 +280,7 @@ impl Organs<'_, '_> {
         let cone = corolla.fit.cone;
         let s = self.scene.map.metres_per_ink;
         let open = cone.axis.z.abs() > 0.35;
-        let drawn = flower.disc.filter(|d| d.centre.is_finite() && d.radius.is_finite() && d.radius > 0.0);
+        let drawn = flower.disc.filter(|d| usable(d.centre) && d.radius.is_finite() && d.radius > 0.0);
         let radius = drawn.map_or(0.18 * corolla.petal, |d| (d.radius * s).min(1e6 * s));
         let middle = drawn.map_or(corolla.centre, |d| corolla.centre + (d.centre - flower.centre) * s);
         // As high as the petals stand at its rim, or they would cover it.
@@ -294,7 +308,7 @@ impl Organs<'_, '_> {
         let limit = 1.5 * corolla.petal;
         for (i, line) in flower.stamens.iter().enumerate() {
             let mut path: Vec<DVec3> = Vec::with_capacity(line.len());
-            for p in line.iter().filter(|p| p.is_finite() && p.abs().max_element() < 1e6) {
+            for p in line.iter().filter(|p| usable(**p)) {
                 let xy = corolla.centre + (*p - flower.centre) * s;
                 let sheet = if fit.axis.z < 0.0 { Sheet::Far } else { Sheet::Near };
                 let z = inner.depth(xy, sheet) - fit.apex.z;

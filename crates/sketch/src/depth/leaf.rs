@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use plant::{AxisKind, Blade, Frame, Lift, Organ, OrganKind, Plant, Relief, Shape, ShapeId};
 
 use super::axes::{Part, key_of};
-use super::scene::{Bearing, Scene, around_one, sane};
+use super::scene::{Bearing, Scene, around_one, sane, usable};
 use crate::{BladeReading, LeafDepth};
 
 /// Largest slope of a `drawn` leaf out of the plane: 35 degrees along it, 25 across.
@@ -32,7 +32,7 @@ pub(crate) struct LocalBlade {
 impl LocalBlade {
     /// `mirrored`: the blade's upper side looks away from the viewer. `None` for an outline without extent.
     pub(crate) fn new(blade: &BladeReading, metres_per_ink: f64, mirrored: bool) -> Option<Self> {
-        let sound = |p: &DVec2| p.is_finite() && p.abs().max_element() < 1e6;
+        let sound = |p: &DVec2| usable(*p);
         let mut outline: Vec<DVec2> = blade.outline.iter().copied().filter(sound).collect();
         outline.dedup();
         if outline.len() < 3 || !sound(&blade.root) {

@@ -113,3 +113,8 @@ pub(crate) fn sane(x: f64, most: f64) -> f64 {
 pub(crate) fn around_one(u: f64, share: f64) -> f64 {
     ops::lerp(1.0 - share, 1.0 + share, u)
 }
+
+/// A coordinate pair that geometry can bear: finite and not farther off than any drawing reaches.
+pub(crate) fn usable(p: DVec2) -> bool {
+    p.is_finite() && p.abs().max_element() < 1e6
+}

@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use plant::{AxisKind, Frame, Organ, OrganKind, Plant, Shape};
 
 use super::axes::{Part, key_of};
-use super::scene::{Bearing, Scene};
+use super::scene::{Bearing, Scene, usable};
 use crate::{Attachment, FruitReading};
 
 /// Rings of a fruit from pole to pole.
@@ -20,8 +20,7 @@ pub(crate) fn place_fruit(
     rank: usize,
     seat: Option<(Bearing, DVec3)>,
 ) {
-    let outline: Vec<DVec2> =
-        fruit.outline.iter().copied().filter(|p| p.is_finite() && p.abs().max_element() < 1e6).collect();
+    let outline: Vec<DVec2> = fruit.outline.iter().copied().filter(|&p| usable(p)).collect();
     let Some(Pca2 { centre, major, lambda, .. }) = pca2(&outline) else { return };
     let bearing = match seat {
         Some((b, _)) => Some(b),
@@ -102,8 +101,7 @@ pub(crate) fn place_thorn(
     thorn: &(Vec<DVec2>, Option<Attachment>, Option<u32>),
     rank: usize,
 ) {
-    let line: Vec<DVec2> =
-        thorn.0.iter().copied().filter(|p| p.is_finite() && p.abs().max_element() < 1e6).collect();
+    let line: Vec<DVec2> = thorn.0.iter().copied().filter(|&p| usable(p)).collect();
     let (Some(&root), Some(&tip)) = (line.first(), line.last()) else { return };
     let length = root.distance(tip);
     if length < 1e-6 {

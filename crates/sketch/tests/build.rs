@@ -1,0 +1,442 @@
+//! Readings made by hand and at random -> plants.
+
+use base::{CancelToken, Report, Run, Seed, ops};
+use glam::{DVec2, DVec3};
+use plant::{AxisId, AxisKind, Lift, OrganKind, Plant, Shape};
+use proptest::prelude::*;
+use sketch::{
+    Attachment, AxisReading, BladeReading, BranchDepth, Built, DiscReading, FlowerReading, FruitReading,
+    LeafDepth, Reading, RegionKind, RegionReading, SketchSpec, build,
+};
+
+fn v(x: f64, y: f64) -> DVec2 {
+    DVec2::new(x, y)
+}
+
+fn around(k: u32, n: u32, phase: f64) -> DVec2 {
+    let (s, c) = ops::sin_cos(ops::TAU * f64::from(k) / f64::from(n) + phase);
+    v(c, s)
+}
+
+fn made(reading: &Reading, spec: &SketchSpec) -> Built {
+    build(reading, spec, Seed::new(1), &Run::plain(), &mut Report::default()).expect("not cancelled")
+}
+
+fn axis(points: Vec<DVec2>, bearer: Option<(usize, f64)>, source: u32) -> AxisReading {
+    AxisReading {
+        points,
+        kind: AxisKind::Stem,
+        bearer: bearer.map(|(axis, at)| Attachment { axis, at }),
+        half_width: vec![],
+        source: Some(source),
+    }
+}
+
+/// A lens from root to tip.
+fn blade(root: DVec2, tip: DVec2, width: f64, source: u32) -> BladeReading {
+    let point = |i: i32, s: f64| {
+        let t = f64::from(i) / 12.0;
+        root.lerp(tip, t) - (tip - root).perp() * (s * width * 4.0 * t * (1.0 - t))
+    };
+    let outline = (0..=12).map(|i| point(i, 0.5)).chain((1..12).rev().map(|i| point(i, -0.5))).collect();
+    BladeReading {
+        outline,
+        root,
+        tip,
+        midrib: vec![root, root.lerp(tip, 0.5), tip],
+        veins: vec![],
+        bearer: None,
+        whorl: 0,
+        source: Some(source),
+        color: None,
+    }
+}
+
+fn daisy(centre: DVec2, n: u32, size: f64, first_source: u32) -> FlowerReading {
+    let petals = (0..n)
+        .map(|k| {
+            let d = around(k, n, 0.3);
+            blade(centre + d * (0.2 * size), centre + d * size, 0.45, first_source + k)
+        })
+        .collect();
+    let disc = Some(DiscReading { centre, radius: 0.2 * size, source: Some(first_source + n) });
+    FlowerReading { centre, petals, disc, stamens: vec![], bearer: None }
+}
+
+fn herb() -> Reading {
+    let wavy = (0..=30).map(|i| f64::from(i)).map(|i| v(0.3 + 0.02 * ops::sin(i * 0.2), i * 0.02)).collect();
+    let mut flower = daisy(v(0.30, 0.62), 7, 0.16, 10);
+    flower.bearer = Some(Attachment { axis: 0, at: 0.61 });
+    let mut leaves = Vec::new();
+    for i in 0..5_u32 {
+        let h = 0.1 + 0.08 * f64::from(i);
+        let side = if i % 2 == 0 { 1.0 } else { -1.0 };
+        let mut leaf = blade(v(0.3 + 0.03 * side, h), v(0.3 + 0.16 * side, h + 0.08), 0.4, 1 + i);
+        leaf.bearer = Some(Attachment { axis: 0, at: h });
+        leaves.push(leaf);
+    }
+    Reading { axes: vec![axis(wavy, None, 0)], flowers: vec![flower], leaves, ..Reading::default() }
+}
+
+fn tree() -> Reading {
+    let mut axes = vec![axis(vec![v(0.3, 0.0), v(0.31, 0.4), v(0.3, 0.8)], None, 0)];
+    for i in 0..6_u32 {
+        let h = 0.3 + 0.07 * f64::from(i);
+        let side = if i % 2 == 0 { 1.0 } else { -1.0 };
+        let at = geom::closest_on_polyline(&axes[0].points, v(0.3, h)).expect("a line");
+        let line = vec![at.point, at.point + v(0.12 * side, 0.05), at.point + v(0.2 * side, 0.15)];
+        axes.push(axis(line, Some((0, at.at)), i + 1));
+    }
+    axes.iter_mut().for_each(|a| a.kind = AxisKind::Branch);
+    Reading { axes, woody: true, ..Reading::default() }
+}
+
+/// The front view of every drawn blade of a kind, in ink.
+fn front(built: &Built, kind: OrganKind) -> Vec<(u32, Vec<DVec2>)> {
+    let plant = &built.plant;
+    let organs = plant.organs.iter().filter(|o| o.kind == kind);
+    organs
+        .filter_map(|o| {
+            let Shape::Blade(b) = &plant.shapes[o.shape.index()] else { return None };
+            let points = b.surface().points(&b.outline).into_iter().map(|p| o.frame.place(p, o.scale));
+            Some((o.source?, points.map(|p| built.map.ink_from_plant(p.truncate())).collect()))
+        })
+        .collect()
+}
+
+fn same_loop(a: &[DVec2], b: &[DVec2]) -> f64 {
+    let nearest = |p: DVec2, of: &[DVec2]| of.iter().map(|q| q.distance(p)).fold(f64::INFINITY, f64::min);
+    a.iter().map(|&p| nearest(p, b)).chain(b.iter().map(|&p| nearest(p, a))).fold(0.0, f64::max)
+}
+
+#[test]
+fn front_view_of_petals_and_drawn_leaves_is_the_drawing() {
+    let reading = herb();
+    for flipped_flowers in [vec![], vec![0]] {
+        let built = made(&reading, &SketchSpec { flipped_flowers, ..SketchSpec::default() });
+        assert_eq!(built.plant.validate().next(), None);
+        for (kind, drawn) in [
+            (OrganKind::Petal, reading.flowers[0].petals.iter().collect::<Vec<_>>()),
+            (OrganKind::Leaf, reading.leaves.iter().collect()),
+        ] {
+            let seen = front(&built, kind);
+            assert_eq!(seen.len(), drawn.len());
+            for blade in drawn {
+                let (_, outline) = seen.iter().find(|s| Some(s.0) == blade.source).expect("there");
+                assert!(same_loop(outline, &blade.outline) < 1e-9, "{kind:?} {:?}", blade.source);
+            }
+        }
+    }
+}
+
+#[test]
+fn axes_project_onto_their_strokes() {
+    let reading = tree();
+    for branch_depth in [BranchDepth::Paper, BranchDepth::Riesz] {
+        let built = made(&reading, &SketchSpec { branch_depth, ..SketchSpec::default() });
+        assert_eq!(built.plant.validate().next(), None);
+        for (i, a) in built.plant.axes.iter().enumerate() {
+            let line = &reading.axes[a.source.expect("drawn") as usize].points;
+            for p in built.plant.axis_points(AxisId::new(i)) {
+                let ink = built.map.ink_from_plant(p.truncate());
+                let off = geom::closest_on_polyline(line, ink).expect("a line").distance;
+                assert!(off < 1e-9, "axis {i}: {off}");
+            }
+        }
+        let depth = built.plant.nodes.position.iter().map(|p| p.z.abs()).fold(0.0, f64::max);
+        assert!(depth > 0.5, "an 8 m tree has depth, not {depth}");
+    }
+}
+
+#[test]
+fn a_made_cone_is_recovered() {
+    // 8 petals on a cone of half angle 40 degrees whose axis is 35 degrees out of the sheet.
+    let (theta, half) = (35.0_f64.to_radians(), 40.0_f64.to_radians());
+    let axis = DVec3::new(0.0, ops::cos(theta), ops::sin(theta));
+    let across = axis.cross(DVec3::X);
+    let tip = |k: u32| {
+        let d = around(k, 8, 0.2);
+        (axis * ops::cos(half) + (DVec3::X * d.x + across * d.y) * ops::sin(half)) * 0.2
+    };
+    let centre = v(0.5, 0.3);
+    let petals = (0..8).map(|k| blade(centre, centre + tip(k).truncate(), 0.2, k)).collect();
+    let flower = FlowerReading { centre, petals, disc: None, stamens: vec![], bearer: None };
+    let built = made(&Reading { flowers: vec![flower], ..Reading::default() }, &SketchSpec::default());
+    let got = &built.plant.flowers[0];
+    assert!((got.half_angle - half).abs() < 1e-6, "{} {half}", got.half_angle);
+    assert!(got.axis.distance(axis) < 1e-6, "{}", got.axis);
+    let petals = built.plant.organs.iter().filter(|o| o.kind == OrganKind::Petal);
+    for o in petals {
+        let Shape::Blade(b) = &built.plant.shapes[o.shape.index()] else { panic!("a blade") };
+        let mut flat = b.clone();
+        flat.relief = plant::Relief::default();
+        let z = o.frame.place(flat.point(*b.midrib.last().expect("a tip")), 1.0).z - got.centre.z;
+        let want = tip(o.source.expect("drawn")).z * built.map.metres_per_ink;
+        // Neighbours are set apart by 1.5 % of a petal, the last of an odd ring by twice that.
+        assert!((z - want).abs() < 0.035 * 0.2 * built.map.metres_per_ink, "{:?}: {z} {want}", o.source);
+    }
+}
+
+#[test]
+fn edge_on_flowers_keep_their_area_and_use_both_sheets() {
+    let centre = v(0.5, 0.2);
+    let petals = (0..5_u32)
+        .map(|k| {
+            let x = -0.16 + 0.08 * f64::from(k);
+            blade(centre + v(0.2 * x, 0.0), v(0.5 + x, 0.42), 0.4, k)
+        })
+        .collect();
+    let flower = FlowerReading { centre, petals, disc: None, stamens: vec![], bearer: None };
+    let built = made(&Reading { flowers: vec![flower], ..Reading::default() }, &SketchSpec::default());
+    assert_eq!(built.plant.validate().next(), None);
+    let mut sides = [0, 0];
+    for o in built.plant.organs.iter().filter(|o| o.kind == OrganKind::Petal) {
+        let Shape::Blade(b) = &built.plant.shapes[o.shape.index()] else { panic!("a blade") };
+        let points: Vec<DVec3> =
+            b.surface().points(&b.outline).iter().map(|&p| o.frame.place(p, 1.0)).collect();
+        let area: f64 = (1..points.len() - 1)
+            .map(|i| 0.5 * (points[i] - points[0]).cross(points[i + 1] - points[0]).length())
+            .sum();
+        assert!(area > 1e-4, "{area}");
+        sides[usize::from(points.iter().map(|p| p.z).sum::<f64>() > 0.0)] += 1;
+    }
+    assert!(sides[0] >= 2 && sides[1] >= 2, "{sides:?}");
+}
+
+#[test]
+fn inner_whorls_stand_steeper_and_nearer() {
+    let mut flower = daisy(v(0.5, 0.5), 6, 0.2, 0);
+    let mut inner = daisy(v(0.5, 0.5), 6, 0.2, 10).petals;
+    inner.iter_mut().for_each(|p| p.whorl = 1);
+    flower.petals.extend(inner);
+    let built = made(&Reading { flowers: vec![flower], ..Reading::default() }, &SketchSpec::default());
+    assert_eq!(built.plant.flowers[0].whorls, 2);
+    let tip = |source: u32| {
+        let o = built.plant.organs.iter().find(|o| o.source == Some(source)).expect("there");
+        let Shape::Blade(b) = &built.plant.shapes[o.shape.index()] else { panic!("a blade") };
+        let Lift::Cone { cone, .. } = b.lift else { panic!("on a cone") };
+        (o.frame.place(b.point(*b.midrib.last().expect("tip")), 1.0).z, cone.half_angle)
+    };
+    let (outer, inner) = (tip(0), tip(10));
+    assert!(inner.0 > outer.0 && inner.1 < outer.1, "{outer:?} {inner:?}");
+}
+
+#[test]
+fn the_same_seed_gives_the_same_plant_and_another_seed_another() {
+    let digest = |seed: u64| {
+        let run = Run::plain();
+        let built = build(&herb(), &SketchSpec::default(), Seed::new(seed), &run, &mut Report::default());
+        built.expect("not cancelled").plant.digest_hex()
+    };
+    assert_eq!(digest(1), digest(1));
+    assert_ne!(digest(1), digest(2));
+}
+
+#[test]
+fn a_new_leaf_leaves_the_other_organs_as_they_were() {
+    let reading = herb();
+    let mut more = reading.clone();
+    let mut leaf = blade(v(0.33, 0.14), v(0.45, 0.1), 0.4, 90);
+    leaf.bearer = Some(Attachment { axis: 0, at: 0.14 });
+    more.leaves.insert(2, leaf);
+    let (a, b) = (made(&reading, &SketchSpec::default()), made(&more, &SketchSpec::default()));
+    for o in a.plant.organs.iter().filter(|o| o.source.is_some()) {
+        let p = b.plant.organs.iter().find(|p| p.source == o.source && p.kind == o.kind).expect("there");
+        assert_eq!((o.key, o.frame, o.tint), (p.key, p.frame, p.tint));
+        assert_eq!(a.plant.shapes[o.shape.index()], b.plant.shapes[p.shape.index()]);
+    }
+}
+
+#[test]
+fn cancelling_stops_the_build() {
+    let token = CancelToken::new();
+    token.cancel();
+    let run = Run { cancel: &token, ..Run::plain() };
+    let got = build(&herb(), &SketchSpec::default(), Seed::new(1), &run, &mut Report::default());
+    assert!(got.is_err());
+}
+
+#[test]
+fn heights_are_those_asked_for() {
+    for (woody, height_m, want) in
+        [(true, None, 8.0), (false, None, 0.5), (false, Some(1.2), 1.2), (true, Some(f64::NAN), 8.0)]
+    {
+        let built = made(&Reading { woody, ..tree() }, &SketchSpec { height_m, ..SketchSpec::default() });
+        let top = built.plant.nodes.position.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
+        assert!((top - want).abs() < 1e-9, "{top} {want}");
+        assert_eq!(built.plant.nodes.position[0], DVec3::ZERO, "the main axis stands at the origin");
+    }
+}
+
+#[test]
+fn light_modes_lay_leaves_flat() {
+    for leaf_depth in [LeafDepth::Paper, LeafDepth::Signed] {
+        let built = made(&herb(), &SketchSpec { leaf_depth, ..SketchSpec::default() });
+        assert_eq!(built.plant.validate().next(), None);
+        for o in built.plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf) {
+            assert!(o.frame.normal.y > 0.8, "within 30 degrees of the horizontal: {}", o.frame.normal);
+        }
+    }
+}
+
+#[test]
+fn drawn_leaves_fan_out_in_depth() {
+    let built = made(&herb(), &SketchSpec::default());
+    let mut tips = Vec::new();
+    for o in built.plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf) {
+        let Shape::Blade(b) = &built.plant.shapes[o.shape.index()] else { panic!("a blade") };
+        tips.push(o.frame.place(b.point(*b.midrib.last().expect("tip")), 1.0).z);
+    }
+    let spread = tips.iter().copied().fold(f64::NEG_INFINITY, f64::max)
+        - tips.iter().copied().fold(f64::INFINITY, f64::min);
+    assert!(spread > 0.02, "a herb of half a metre is no card: {tips:?}");
+}
+
+#[test]
+fn stalks_bridge_the_gap_to_the_bearer() {
+    let built = made(&herb(), &SketchSpec::default());
+    for o in built.plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf) {
+        let node = o.bearer.expect("borne");
+        assert!(built.plant.nodes.position[node.index()].distance(o.frame.origin) < 1e-12);
+    }
+    assert!(built.plant.axes.iter().any(|a| a.kind == AxisKind::Petiole && a.source.is_none()));
+}
+
+#[test]
+fn radii_are_sane_for_trees_and_herbs() {
+    let (tree, herb) = (made(&tree(), &SketchSpec::default()), made(&herb(), &SketchSpec::default()));
+    let base = |b: &Built| b.plant.nodes.radius_m[0];
+    assert!((0.1..0.35).contains(&base(&tree)), "{}", base(&tree));
+    assert!((0.003..0.01).contains(&base(&herb)), "{}", base(&herb));
+    for b in [&tree, &herb] {
+        for (i, a) in b.plant.axes.iter().enumerate() {
+            let r = b.plant.axis_radii(AxisId::new(i));
+            assert!(r.iter().all(|r| *r > 0.0) && r.windows(2).all(|w| w[1] <= w[0] + 1e-15));
+            assert!(a.bearer.is_none_or(|n| r[0] <= b.plant.nodes.radius_m[n.index()]));
+        }
+    }
+}
+
+#[test]
+fn what_is_drawn_in_a_crown_hangs_on_what_grows_there() {
+    let ring = |centre: DVec2, r: f64| (0..40).map(|k| centre + around(k, 40, 0.0) * r).collect::<Vec<_>>();
+    let mut reading = tree();
+    reading.regions.push(RegionReading {
+        outline: ring(v(0.3, 0.6), 0.3),
+        kind: RegionKind::Crown,
+        bearers: vec![0],
+        source: Some(20),
+        color: None,
+    });
+    let outline = ring(v(0.42, 0.6), 0.03);
+    reading.fruits.push(FruitReading { outline, bearer: None, source: Some(21), color: None });
+    let built = made(&reading, &SketchSpec::default());
+    assert_eq!(built.plant.validate().next(), None);
+    let fruit = built.plant.organs.iter().find(|o| o.kind == OrganKind::Fruit).expect("an apple");
+    assert!(fruit.bearer.is_some(), "it hangs on a twig");
+}
+
+fn any_point() -> impl Strategy<Value = DVec2> {
+    let coordinate = prop_oneof![
+        24 => -0.2..1.2_f64,
+        4 => Just(0.5),
+        1 => prop_oneof![Just(f64::NAN), Just(f64::INFINITY), Just(1e300), Just(-1e12), Just(1e-300)],
+    ];
+    (coordinate.clone(), coordinate).prop_map(|(x, y)| v(x, y))
+}
+
+fn any_line(most: usize) -> impl Strategy<Value = Vec<DVec2>> {
+    prop_oneof![
+        4 => prop::collection::vec(any_point(), 0..most),
+        1 => (any_point(), 0..most).prop_map(|(p, n)| vec![p; n]),
+    ]
+}
+
+fn any_bearer() -> impl Strategy<Value = Option<Attachment>> {
+    prop::option::of((0..6_usize, prop_oneof![4 => -0.5..2.0_f64, 1 => Just(f64::NAN)]))
+        .prop_map(|b| b.map(|(axis, at)| Attachment { axis, at }))
+}
+
+fn any_axis() -> impl Strategy<Value = AxisReading> {
+    let kinds = [AxisKind::Branch, AxisKind::Stem, AxisKind::Petiole, AxisKind::Root, AxisKind::Twig];
+    let kind = prop::sample::select(kinds.to_vec());
+    (any_line(9), kind, any_bearer(), prop::bool::ANY, prop::option::of(0..5_u32)).prop_map(
+        |(points, kind, bearer, wide, source)| {
+            let half_width = if wide { points.iter().map(|p| 0.05 * p.x).collect() } else { vec![] };
+            AxisReading { points, kind, bearer, half_width, source }
+        },
+    )
+}
+
+fn any_blade() -> impl Strategy<Value = BladeReading> {
+    (any_line(9), any_point(), any_point(), any_line(4), any_bearer(), 0..3_u32, prop::option::of(0..5_u32))
+        .prop_map(|(outline, root, tip, midrib, bearer, whorl, source)| BladeReading {
+            veins: vec![midrib.clone()],
+            outline,
+            root,
+            tip,
+            midrib,
+            bearer,
+            whorl,
+            source,
+            color: None,
+        })
+}
+
+fn any_flower() -> impl Strategy<Value = FlowerReading> {
+    let disc = prop::option::of((any_point(), -0.1..0.3_f64));
+    let stamens = prop::collection::vec(any_line(4), 0..3);
+    (any_point(), prop::collection::vec(any_blade(), 0..7), disc, stamens, any_bearer()).prop_map(
+        |(centre, petals, disc, stamens, bearer)| FlowerReading {
+            centre,
+            petals,
+            disc: disc.map(|(centre, radius)| DiscReading { centre, radius, source: None }),
+            stamens,
+            bearer,
+        },
+    )
+}
+
+prop_compose! {
+    fn any_reading()(
+        axes in prop::collection::vec(any_axis(), 0..6),
+        flowers in prop::collection::vec(any_flower(), 0..3),
+        leaves in prop::collection::vec(any_blade(), 0..4),
+        fruits in prop::collection::vec((any_line(8), any_bearer()), 0..3),
+        thorns in prop::collection::vec((any_line(4), any_bearer()), 0..3),
+        woody in prop::bool::ANY,
+    ) -> Reading {
+        let fruits = fruits.into_iter().map(|(outline, bearer)| FruitReading {
+            outline, bearer, source: None, color: None,
+        }).collect();
+        let thorns = thorns.into_iter().map(|(line, bearer)| (line, bearer, None)).collect();
+        Reading { axes, flowers, leaves, fruits, thorns, woody, ..Reading::default() }
+    }
+}
+
+fn all_finite(plant: &Plant) -> bool {
+    plant.organs.iter().all(|o| o.frame.origin.is_finite())
+        && plant.nodes.position.iter().all(|p| p.is_finite())
+        && plant.nodes.radius_m.iter().all(|r| r.is_finite())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(300) })]
+    #[test]
+    fn any_reading_gives_a_sound_plant(
+        reading in any_reading(),
+        paper in prop::bool::ANY,
+        leaf_depth in prop::sample::select(vec![LeafDepth::Paper, LeafDepth::Signed, LeafDepth::Drawn]),
+        pull in prop::sample::select(vec![0.0, 0.7, f64::NAN]),
+    ) {
+        let branch_depth = if paper { BranchDepth::Paper } else { BranchDepth::Riesz };
+        let mut spec = SketchSpec {
+            branch_depth, leaf_depth, phototropism: pull, gravity: pull, ..SketchSpec::default()
+        };
+        spec.relief.leaf_bend_b = pull;
+        let built = made(&reading, &spec);
+        prop_assert_eq!(built.plant.validate().next(), None);
+        prop_assert!(all_finite(&built.plant));
+        prop_assert_eq!(built.plant.digest_hex(), made(&reading, &spec).plant.digest_hex());
+    }
+}
