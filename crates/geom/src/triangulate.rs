@@ -30,7 +30,7 @@ const JOIN: f64 = 0.4;
 /// let square = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
 /// let midrib = [DVec2::new(0.5, 0.0), DVec2::new(0.5, 1.0)];
 /// let t = geom::triangulate_blade(&square, &[&midrib], 0.2).unwrap();
-/// assert!(t.triangles.len() > 50 && t.boundary.len() >= 20);
+/// assert!(t.triangles.len() > 35 && t.boundary.len() >= 20);
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Triangulation {
@@ -248,33 +248,39 @@ fn corner_stops(margin: &[DVec2], at: &[f64], edge: f64) -> Vec<Stop> {
     let n = margin.len();
     let total = at[n];
     let reach = (0.5 * edge).min(0.2 * total);
+    let sharp = 1.0 - ops::cos(SHARP);
+    // Arc length of a corner counted on over the seam, round after round.
+    let along = |k: usize| at[k % n] + (k / n) as f64 * total;
     let mut stops = vec![];
-    for i in 0..n {
-        // The farthest corners within reach, at least the next ones; so the window of a sparse polygon is its
-        // own two sides.
-        let (mut ahead, mut behind) = (1, 1);
-        let gone = |k: usize| (at[(i + k) % n] - at[i] + if i + k >= n { total } else { 0.0 }).abs();
-        let come = |k: usize| (at[i] - at[(i + n - k) % n] + if k > i { total } else { 0.0 }).abs();
-        while ahead + 1 < n / 2 && gone(ahead + 1) <= reach {
-            ahead += 1;
-        }
-        while behind + 1 < n / 2 && come(behind + 1) <= reach {
+    // In the second round there are corners before and after. The window reaches to the farthest corners
+    // within reach, at least the next ones: that of a sparse polygon is its own two sides.
+    let (mut behind, mut ahead) = (0, 0);
+    for i in n..2 * n {
+        let here = along(i);
+        while behind + 1 < i && here - along(behind) > reach {
             behind += 1;
         }
-        let (back, next) = (margin[(i + n - 1) % n], margin[(i + 1) % n]);
-        let own = angle(margin[i] - back, next - margin[i]);
-        let (back, next) = (margin[(i + n - behind) % n], margin[(i + ahead) % n]);
-        let wide = angle(margin[i] - back, next - margin[i]);
-        if own > SHARP || wide > SHARP {
+        ahead = ahead.max(i + 1);
+        while along(ahead + 1) - here <= reach {
+            ahead += 1;
+        }
+        let corner = |back: usize, next: usize| {
+            let p = margin[i % n];
+            bend(p - margin[back % n], margin[next % n] - p)
+        };
+        let (own, wide) = (corner(i - 1, i + 1), corner(behind, ahead));
+        if own > sharp || wide > sharp {
             // The window's turn tells a tip from a tremor; a corner's own turn decides between equals.
-            stops.push(Stop { at: at[i], rank: wide + 0.1 * own });
+            stops.push(Stop { at: at[i - n], rank: wide + 0.1 * own });
         }
     }
     stops
 }
 
-fn angle(a: DVec2, b: DVec2) -> f64 {
-    ops::atan2(a.perp_dot(b).abs(), a.dot(b))
+/// One minus the cosine of the angle between two directions: grows with the turn, from 0 to 2.
+fn bend(a: DVec2, b: DVec2) -> f64 {
+    let lengths = (a.length_squared() * b.length_squared()).sqrt();
+    if lengths > 0.0 { 1.0 - a.dot(b) / lengths } else { 0.0 }
 }
 
 /// Stops in order, at least `gap` apart (round the seam too), the higher ranks kept.
@@ -348,8 +354,9 @@ fn vein_point(
     if is_end && let Some((_, i)) = nearest(margin).filter(near(0.5)) {
         return Some(i);
     }
-    let away = closest_on_polyline(closed, p).map_or(0.0, |c| c.distance);
-    if away < JOIN * edge || !contains(margin, p) {
+    let clear = JOIN * JOIN * edge * edge;
+    let too_close = |pair: &[DVec2]| nearest_on_segment(pair[0], pair[1], p).1.distance_squared(p) < clear;
+    if closed.windows(2).any(too_close) || !contains(margin, p) {
         return None;
     }
     let first = margin.len();
