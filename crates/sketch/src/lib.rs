@@ -12,6 +12,7 @@
 //! | radii, plant | `build` | section 6, Eq 5 to 7 |
 
 mod build;
+mod classify;
 mod clean;
 mod depth;
 mod drawing;
@@ -22,6 +23,10 @@ mod spec;
 mod template;
 
 pub use build::{Built, build};
+pub use classify::{
+    Classified, ModelError, StrokeFeatures, StrokeFigures, StrokeModelTexts, StrokeRow, StrokeSource,
+    classify, cross_validate_strokes, features, read_stroke_table, train_strokes, write_stroke_table,
+};
 pub use clean::{Ink, InkMap, InkStroke, clean};
 pub use drawing::{Drawing, InkSample, Stroke, StrokeMode};
 pub use map::PlantMap;

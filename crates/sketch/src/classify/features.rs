@@ -1,0 +1,595 @@
+//! What can be measured of a stroke: `InkStroke -> Shape -> StrokeFeatures` (with what [`context`](super::context) adds).
+
+use base::ops;
+use glam::DVec2;
+
+/// Samples that a stroke is measured on: a corolla of twelve petals still has eight on each.
+pub(super) const SAMPLES: usize = 96;
+
+macro_rules! columns {
+    ($($(#[$doc:meta])* $name:ident,)+) => {
+        /// What the classifier sees of one stroke: scale-free numbers, about -1 to 3 each, always finite.
+        ///
+        /// Nothing here depends on the direction in which a stroke was drawn, nor on left and right.
+        #[derive(Clone, Copy, Debug, Default, PartialEq)]
+        pub struct StrokeFeatures { $($(#[$doc])* pub $name: f64,)+ }
+
+        impl StrokeFeatures {
+            /// The features' names, in the order of [`values`](Self::values): the header of the table.
+            pub const NAMES: [&'static str; [$(stringify!($name)),+].len()] = [$(stringify!($name)),+];
+
+            /// The numbers in the order of [`NAMES`](Self::NAMES).
+            pub fn values(&self) -> [f64; Self::NAMES.len()] { [$(self.$name),+] }
+
+            /// The features of a row of the table.
+            pub fn from_values(values: [f64; Self::NAMES.len()]) -> Self {
+                let [$($name),+] = values;
+                Self { $($name),+ }
+            }
+
+            /// Anything that is not finite becomes 0, anything huge is cut to 10.
+            pub(super) fn tamed(self) -> Self {
+                Self::from_values(self.values().map(|x| if x.is_finite() { x.clamp(-10.0, 10.0) } else { 0.0 }))
+            }
+        }
+    };
+}
+
+columns! {
+    /// Distance of the two ends over length: the paper's first feature.
+    gap,
+    /// Square root of the smaller over the larger eigenvalue of the points' covariance: the paper's second, turned
+    /// over so that it stays in \[0, 1\].
+    slim,
+    /// Root of the area of the principal box over length: the paper's third, made scale-free.
+    box_area,
+    /// Area enclosed when the ends are joined, over that of a circle of the same length.
+    round,
+    /// That area over the area of the convex hull.
+    solid,
+    /// Perimeter of the convex hull over length.
+    hull,
+    /// Total turning, in full turns, as ln(1 + turns).
+    turning,
+    /// Net turning over total turning.
+    turn_one_way,
+    /// Net turning in full turns, at most 3.
+    turns,
+    /// ln(1 + corners above 50 degrees).
+    corners,
+    /// ln(1 + corners above 100 degrees).
+    cusps,
+    /// ln(1 + corners that turn against the way round): the notches between lobes.
+    inward,
+    /// ln(1 + corners that turn with it): the corners of a pot.
+    outward,
+    /// The sharpest corner over a half turn.
+    sharpest,
+    /// ln(1 + crossings with itself).
+    crossings,
+    /// ln(1 + maxima of the distance from the middle).
+    lobes,
+    /// Spread of the distance from the middle over its mean.
+    wavy,
+    /// Share of the length that runs straight.
+    straight,
+    /// Share of the length that is nearly upright.
+    upright,
+    /// Share of the length that is nearly level.
+    level,
+    /// Width of the lower third over that of the upper third, as a balance -1 to 1.
+    foot,
+    /// Where the gap between the ends lies: -1 below, 1 above the middle, 0 when closed.
+    opening,
+    /// How level the line between the ends is, times the gap.
+    opening_level,
+    /// Length over the drawing's diagonal.
+    length,
+    /// Width of its box over the drawing's.
+    width,
+    /// Height of its box over the drawing's.
+    height,
+    /// Height over width plus height.
+    tall,
+    /// Its lowest point in the drawing's box.
+    bottom,
+    /// Its highest point in the drawing's box.
+    top,
+    /// Mean height of its two ends in the drawing's box.
+    ends_at,
+    /// Level distance of its two ends over the drawing's width.
+    ends_apart,
+    /// Distance of its middle from the upright middle line of the drawing.
+    aside,
+    /// Number in the order of drawing, 0 first, 1 last.
+    order,
+    /// 1 for the first stroke.
+    first,
+    /// Share of the strokes that are shorter.
+    rank,
+    /// Length over the longest stroke's.
+    of_longest,
+    /// Length over the whole ink's.
+    of_ink,
+    /// ln(1 + strokes of about its size and form).
+    alike,
+    /// The same as a share of the other strokes.
+    alike_share,
+    /// Share of it inside the outline that holds most of it.
+    inside,
+    /// Area of that outline's box over the drawing's.
+    inside_area,
+    /// Roundness of that outline.
+    inside_round,
+    /// Solidity of that outline.
+    inside_solid,
+    /// ln(1 + corners of that outline).
+    inside_corners,
+    /// Share of it inside the drawing's body: the largest region that one stroke or two joined ones enclose.
+    in_body,
+    /// 1 for a stroke of the body's outline.
+    is_body,
+    /// Share of it inside the convex hull of all other strokes.
+    amid,
+    /// ln(1 + strokes inside it).
+    holds,
+    /// Length of the ink inside it over its own.
+    holds_ink,
+    /// Roundness of the roundest stroke inside it.
+    holds_round,
+    /// Distance from its lower end to the nearest other stroke, diagonals, at most 0.2, over 0.2.
+    low_gap,
+    /// Distance from its upper end to the nearest other stroke.
+    high_gap,
+    /// Where its lower end meets that stroke: 0 at an end, 1 in the middle.
+    low_where,
+    /// Where its upper end meets that stroke.
+    high_where,
+    /// Roundness of the stroke that the lower end is nearest to.
+    low_round,
+    /// Roundness of the stroke that the upper end is nearest to.
+    high_round,
+    /// Length of the stroke at the lower end over both lengths.
+    low_length,
+    /// Length of the stroke at the upper end over both lengths.
+    high_length,
+    /// ln(1 + ends of other strokes that lie on it).
+    guests,
+    /// Share of those ends that lie below its middle.
+    guests_below,
+    /// ln(1 + lines whose upper end lies on its lower half).
+    stems,
+    /// Share of its two ends that touch another stroke.
+    ends_touch,
+    /// 1 where both ends touch the same stroke.
+    both_same,
+    /// ln(1 + strokes that cross it).
+    crossed,
+    /// How well another stroke runs beside it at an even distance, 0 to 1.
+    partner,
+    /// Distance of that stroke over its length.
+    partner_gap,
+    /// Share of the rest of the ink above its top.
+    ink_above,
+    /// Share of the rest of the ink below its bottom.
+    ink_below,
+    /// Share of the other strokes that lie in its box widened by a tenth of the diagonal.
+    company,
+    /// Largest roundness of a stroke that lies mostly above its middle.
+    round_above,
+    /// Largest roundness of a stroke that lies mostly below its middle.
+    round_below,
+    /// Width of the widest stroke that lies mostly above its middle, over the drawing's width.
+    wide_above,
+    /// Width of the widest stroke that lies mostly below its middle, over the drawing's width.
+    wide_below,
+    /// Best pair of upright parallel lines below its middle.
+    pair_below,
+    /// Best pair of upright parallel lines above its middle.
+    pair_above,
+    /// Largest corner count of a stroke that lies mostly above its middle.
+    corners_above,
+    /// Roundness of the stroke drawn before it; -1 for the first.
+    before_round,
+    /// Roundness of the stroke drawn after it; -1 for the last.
+    after_round,
+    /// Length of the stroke drawn before over both lengths.
+    before_length,
+    /// Length of the stroke drawn after over both lengths.
+    after_length,
+    /// The drawing: ln(strokes) / 4.
+    d_strokes,
+    /// The drawing: height over width plus height.
+    d_tall,
+    /// The drawing: total ink over its diagonal, as ln(1 + ink).
+    d_ink,
+    /// The drawing: share of strokes that enclose an area.
+    d_round,
+    /// The drawing: area of the largest enclosed region over the box.
+    d_largest,
+    /// The drawing: share of strokes shorter than a tenth of the diagonal.
+    d_short,
+    /// The drawing: share of strokes that lie inside another.
+    d_inside,
+    /// The drawing: best pair of parallel upright lines, 0 to 1.
+    d_pair,
+    /// The drawing: mean uprightness of the line strokes.
+    d_upright,
+    /// The drawing: width of the lowest fifth of the ink over the width.
+    d_foot,
+    /// The drawing: width of the highest third of the ink over the width.
+    d_head,
+    /// The drawing: roundness of its first stroke.
+    d_first_round,
+    /// The drawing: where the first stroke's middle lies, 0 bottom, 1 top.
+    d_first_at,
+    /// The drawing: ln(1 + most corners of any stroke).
+    d_corners,
+    /// The drawing: ln(1 + most strokes inside one).
+    d_holds,
+    /// The drawing: ln(1 + most ends on one stroke).
+    d_guests,
+    /// The drawing: ln(1 + most strokes of one size and form).
+    d_alike,
+    /// The drawing: roundness of its lowest wide stroke.
+    d_base_round,
+    /// The drawing: opening of its lowest wide stroke.
+    d_base_opening,
+    /// The drawing: height of its lowest wide stroke over width plus height.
+    d_base_tall,
+    /// The drawing: area of its body's box over its own.
+    d_body_area,
+    /// The drawing: solidity of its body.
+    d_body_solid,
+    /// The drawing: height over width plus height of its body.
+    d_body_tall,
+    /// The drawing: slimness of its body.
+    d_body_slim,
+    /// The drawing: lowest point of its body.
+    d_body_bottom,
+}
+
+/// One stroke, measured on its own.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Shape {
+    /// [`SAMPLES`] points at even arc length.
+    pub(super) points: Vec<DVec2>,
+    /// Convex hull, counter-clockwise.
+    pub(super) hull: Vec<DVec2>,
+    pub(super) length: f64,
+    pub(super) min: DVec2,
+    pub(super) max: DVec2,
+    pub(super) middle: DVec2,
+    /// Area with the ends joined.
+    pub(super) area: f64,
+    pub(super) round: f64,
+    /// Number of corners above 50 degrees.
+    pub(super) corner_count: f64,
+}
+
+impl Shape {
+    pub(super) fn size(&self) -> DVec2 {
+        self.max - self.min
+    }
+
+    pub(super) fn first(&self) -> DVec2 {
+        self.points.first().copied().unwrap_or_default()
+    }
+
+    pub(super) fn last(&self) -> DVec2 {
+        self.points.last().copied().unwrap_or_default()
+    }
+
+    /// It encloses an area rather than being a line.
+    pub(super) fn encloses(&self) -> bool {
+        self.round > 0.2
+    }
+}
+
+/// Even samples, box, hull and area of a stroke, and the features that need nothing else.
+pub(super) fn shape(points: &[DVec2]) -> (Shape, StrokeFeatures) {
+    let (points, length) = even_samples(points);
+    let mut s = Shape { length, ..Shape::default() };
+    let mut f = StrokeFeatures::default();
+    let n = points.len();
+    if n < 3 || length <= 1e-12 {
+        let p = points.first().copied().unwrap_or_default();
+        (s.min, s.max, s.middle, s.points) = (p, p, p, vec![p; SAMPLES]);
+        return (s, f);
+    }
+    let count = n as f64;
+    s.min = points.iter().fold(points[0], |a, &p| a.min(p));
+    s.max = points.iter().fold(points[0], |a, &p| a.max(p));
+    s.middle = points.iter().sum::<DVec2>() / count;
+    s.hull = convex_hull(&points);
+    s.area = signed_area(&points).abs();
+    s.points = points;
+    s.round = 4.0 * ops::PI * s.area / (length * length);
+    let hull_area = signed_area(&s.hull).abs();
+    f.gap = s.first().distance(s.last()) / length;
+    principal(&s, &mut f);
+    f.round = s.round;
+    f.solid = if hull_area > 1e-12 { s.area / hull_area } else { 0.0 };
+    f.hull = perimeter(&s.hull) / length;
+    bending(&mut s, &mut f);
+    f.crossings = ops::ln(1.0 + self_crossings(&s.points));
+    radial(&s, &mut f);
+    slopes(&s, &mut f);
+    openings(&s, &mut f);
+    (s, f)
+}
+
+/// `SAMPLES` points at even arc length and the length.
+fn even_samples(points: &[DVec2]) -> (Vec<DVec2>, f64) {
+    let length: f64 = points.windows(2).map(|w| w[0].distance(w[1])).sum();
+    if points.len() < 2 || length <= 0.0 || !length.is_finite() {
+        return (points.first().copied().filter(|p| p.is_finite()).into_iter().collect(), 0.0);
+    }
+    let mut out = Vec::with_capacity(SAMPLES);
+    let step = length / (SAMPLES - 1) as f64;
+    let (mut segment, mut behind) = (0, 0.0);
+    for k in 0..SAMPLES {
+        let at = step * k as f64;
+        let mut here = points[segment].distance(points[segment + 1]);
+        while behind + here < at && segment + 2 < points.len() {
+            behind += here;
+            segment += 1;
+            here = points[segment].distance(points[segment + 1]);
+        }
+        let t = if here > 0.0 { ((at - behind) / here).clamp(0.0, 1.0) } else { 0.0 };
+        out.push(points[segment].lerp(points[segment + 1], t));
+    }
+    (out, length)
+}
+
+/// Square root of the eigenvalue ratio of the points' covariance, and the unit vector of the larger one.
+pub(super) fn slimness(points: &[DVec2]) -> (f64, DVec2) {
+    let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+    let middle = points.iter().sum::<DVec2>() / points.len().max(1) as f64;
+    for &p in points {
+        let d = p - middle;
+        xx += d.x * d.x;
+        xy += d.x * d.y;
+        yy += d.y * d.y;
+    }
+    let mean = (xx + yy) / 2.0;
+    let root = ((xx - yy) * (xx - yy) / 4.0 + xy * xy).sqrt();
+    let (large, small) = (mean + root, (mean - root).max(0.0));
+    let slim = if large > 0.0 { (small / large).sqrt() } else { 0.0 };
+    let (sin, cos) = ops::sin_cos(0.5 * ops::atan2(2.0 * xy, xx - yy));
+    (slim, DVec2::new(cos, sin))
+}
+
+/// The paper's features 2 and 3.
+fn principal(s: &Shape, f: &mut StrokeFeatures) {
+    let (slim, u) = slimness(&s.points);
+    let v = u.perp();
+    f.slim = slim;
+    let reach = |axis: DVec2| {
+        let (lo, hi) = s.points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), p| {
+            let x = p.dot(axis);
+            (lo.min(x), hi.max(x))
+        });
+        (hi - lo).max(0.0)
+    };
+    f.box_area = (reach(u) * reach(v)).sqrt() / s.length;
+}
+
+/// Signed angle from `a` to `b`, radians; 0 where one of them has no length.
+fn angle(a: DVec2, b: DVec2) -> f64 {
+    if a.length_squared() > 0.0 && b.length_squared() > 0.0 {
+        ops::atan2(a.perp_dot(b), a.dot(b))
+    } else {
+        0.0
+    }
+}
+
+/// Turning, corners and straight parts.
+fn bending(s: &mut Shape, f: &mut StrokeFeatures) {
+    // Two samples to each side: a corner that the pen rounded off still counts, the jitter of the hand does not.
+    const REACH: usize = 2;
+    let p = &s.points;
+    let n = p.len();
+    let (mut total, mut net) = (0.0, 0.0);
+    for k in (REACH..n - REACH).step_by(REACH) {
+        let a = angle(p[k] - p[k - REACH], p[k + REACH] - p[k]);
+        total += a.abs();
+        net += a;
+    }
+    f.turning = ops::ln(1.0 + total / ops::TAU);
+    f.turn_one_way = if total > 1e-9 { net.abs() / total } else { 0.0 };
+    f.turns = (net.abs() / ops::TAU).min(3.0);
+    let signed: Vec<f64> =
+        (0..n)
+            .map(|k| {
+                if k < REACH || k + REACH >= n {
+                    0.0
+                } else {
+                    angle(p[k] - p[k - REACH], p[k + REACH] - p[k])
+                }
+            })
+            .collect();
+    let bend: Vec<f64> = signed.iter().map(|a| a.abs()).collect();
+    let (mut corners, mut cusps, mut straight, mut inward) = (0.0, 0.0, 0.0, 0.0);
+    let way = signed_area(p);
+    for k in 0..n {
+        let lo = k.saturating_sub(REACH);
+        let hi = (k + REACH).min(n - 1);
+        let peak = (lo..k).all(|j| bend[j] < bend[k]) && (k + 1..=hi).all(|j| bend[j] <= bend[k]);
+        if peak && bend[k] > 50.0 / 180.0 * ops::PI {
+            corners += 1.0;
+            if signed[k] * way < 0.0 {
+                inward += 1.0;
+            }
+        }
+        if peak && bend[k] > 100.0 / 180.0 * ops::PI {
+            cusps += 1.0;
+        }
+        if bend[k] < 0.12 {
+            straight += 1.0;
+        }
+    }
+    f.corners = ops::ln(1.0 + corners);
+    f.cusps = ops::ln(1.0 + cusps);
+    f.inward = ops::ln(1.0 + inward);
+    f.outward = ops::ln(1.0 + corners - inward);
+    f.sharpest = bend.iter().fold(0.0_f64, |a, &b| a.max(b)) / ops::PI;
+    f.straight = straight / n as f64;
+    s.corner_count = corners;
+}
+
+/// Distance from the middle along the way: lobes and waviness.
+fn radial(s: &Shape, f: &mut StrokeFeatures) {
+    let n = s.points.len();
+    let r: Vec<f64> = s.points.iter().map(|p| p.distance(s.middle)).collect();
+    let mean = r.iter().sum::<f64>() / n as f64;
+    if mean <= 0.0 {
+        return;
+    }
+    let spread = (r.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / n as f64).sqrt();
+    f.wavy = spread / mean;
+    // A lobe rises and falls by a tenth of the mean radius.
+    let (mut lobes, mut rising, mut low, mut high) = (0.0, true, r[0], r[0]);
+    for &x in &r {
+        if rising {
+            high = high.max(x);
+            if x < high - 0.1 * mean {
+                (lobes, rising, low) = (lobes + 1.0, false, x);
+            }
+        } else {
+            low = low.min(x);
+            if x > low + 0.1 * mean {
+                (rising, high) = (true, x);
+            }
+        }
+    }
+    f.lobes = ops::ln(1.0_f64 + lobes);
+}
+
+/// Shares of upright and level running, and the widths of the lower and the upper third.
+fn slopes(s: &Shape, f: &mut StrokeFeatures) {
+    let (mut upright, mut level) = (0.0, 0.0);
+    for w in s.points.windows(3).step_by(2) {
+        let d = (w[2] - w[0]).abs();
+        if d.y > 2.0 * d.x {
+            upright += 1.0;
+        }
+        if d.x > 2.0 * d.y {
+            level += 1.0;
+        }
+    }
+    let steps = ((s.points.len() - 1) / 2) as f64;
+    (f.upright, f.level) = (upright / steps, level / steps);
+    let third = s.size().y / 3.0;
+    let span = |lo: f64, hi: f64| {
+        let (a, b) = s
+            .points
+            .iter()
+            .filter(|p| p.y >= lo && p.y <= hi)
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), p| (a.min(p.x), b.max(p.x)));
+        (b - a).max(0.0)
+    };
+    let (low, high) = (span(s.min.y, s.min.y + third), span(s.max.y - third, s.max.y));
+    f.foot = if low + high > 1e-9 { (low - high) / (low + high) } else { 0.0 };
+    let size = s.size();
+    f.tall = size.y / (size.x + size.y).max(1e-12);
+}
+
+/// Where the ends are, seen from the middle.
+fn openings(s: &Shape, f: &mut StrokeFeatures) {
+    let (a, b) = (s.first(), s.last());
+    let ends = (a + b) / 2.0;
+    let half = (s.size().y / 2.0).max(1e-12);
+    f.opening = ((ends.y - s.middle.y) / half).clamp(-1.0, 1.0);
+    let d = (b - a).abs();
+    f.opening_level = if d.x + d.y > 1e-12 { d.x / (d.x + d.y) * f.gap } else { 0.0 };
+}
+
+pub(super) fn signed_area(polygon: &[DVec2]) -> f64 {
+    let Some(&last) = polygon.last() else { return 0.0 };
+    let mut before = last;
+    let mut twice = 0.0;
+    for &p in polygon {
+        twice += before.perp_dot(p);
+        before = p;
+    }
+    twice / 2.0
+}
+
+fn perimeter(polygon: &[DVec2]) -> f64 {
+    let Some(&last) = polygon.last() else { return 0.0 };
+    let mut before = last;
+    let mut sum = 0.0;
+    for &p in polygon {
+        sum += before.distance(p);
+        before = p;
+    }
+    sum
+}
+
+/// Andrew's monotone chain, counter-clockwise.
+pub(super) fn convex_hull(points: &[DVec2]) -> Vec<DVec2> {
+    let mut sorted = points.to_vec();
+    sorted.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    sorted.dedup();
+    if sorted.len() < 3 {
+        return sorted;
+    }
+    let mut hull: Vec<DVec2> = Vec::with_capacity(sorted.len() + 1);
+    let mut floor = 0;
+    for pass in 0..2 {
+        for i in 0..sorted.len() {
+            let p = if pass == 0 { sorted[i] } else { sorted[sorted.len() - 1 - i] };
+            while hull.len() >= floor + 2 {
+                let (a, b) = (hull[hull.len() - 2], hull[hull.len() - 1]);
+                if (b - a).perp_dot(p - b) > 0.0 {
+                    break;
+                }
+                hull.pop();
+            }
+            hull.push(p);
+        }
+        hull.pop();
+        floor = hull.len();
+    }
+    hull
+}
+
+/// Even-odd rule.
+pub(super) fn contains(polygon: &[DVec2], p: DVec2) -> bool {
+    let Some(&last) = polygon.last() else { return false };
+    let mut a = last;
+    let mut odd = false;
+    for &b in polygon {
+        if (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x) {
+            odd = !odd;
+        }
+        a = b;
+    }
+    odd
+}
+
+/// The open segments `ab` and `cd` cross.
+pub(super) fn cross(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> bool {
+    let side = |p: DVec2, q: DVec2, r: DVec2| (q - p).perp_dot(r - p);
+    side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
+}
+
+/// Crossings of every second chord.
+fn self_crossings(points: &[DVec2]) -> f64 {
+    let p: Vec<DVec2> = points.iter().copied().step_by(2).collect();
+    let mut count = 0.0;
+    for i in 0..p.len().saturating_sub(3) {
+        let (lo, hi) = (p[i].min(p[i + 1]), p[i].max(p[i + 1]));
+        for j in i + 2..p.len() - 1 {
+            let (c, d) = (p[j], p[j + 1]);
+            if c.x.max(d.x) < lo.x || c.x.min(d.x) > hi.x || c.y.max(d.y) < lo.y || c.y.min(d.y) > hi.y {
+                continue;
+            }
+            if cross(p[i], p[i + 1], c, d) {
+                count += 1.0;
+            }
+        }
+    }
+    count
+}

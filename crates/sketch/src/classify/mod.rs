@@ -1,0 +1,64 @@
+//! What each stroke is (paper 000, section 4.1): `Ink -> Vec<Classified>`.
+//!
+//! | step | module |
+//! |---|---|
+//! | a stroke on its own | `features` |
+//! | a stroke among the others | `context` |
+//! | the support vector machine | `svm`, `model` |
+//! | the table it is trained from, and how good it is | `table`, `training` |
+
+use std::sync::OnceLock;
+
+mod context;
+mod features;
+mod model;
+mod svm;
+mod table;
+mod training;
+
+pub use context::features;
+pub use features::StrokeFeatures;
+pub use model::Classified;
+pub use svm::ModelError;
+pub use table::{StrokeRow, StrokeSource, read_stroke_table, write_stroke_table};
+pub use training::{StrokeFigures, StrokeModelTexts, cross_validate_strokes, train_strokes};
+
+use crate::{Ink, StrokeClass};
+use model::StrokeModels;
+
+/// The models in the repository.
+fn trained() -> Option<&'static StrokeModels> {
+    static MODELS: OnceLock<Option<StrokeModels>> = OnceLock::new();
+    MODELS
+        .get_or_init(|| {
+            StrokeModels::parse(&StrokeModelTexts {
+                scale: include_str!("../../data/strokes.scale").to_owned(),
+                classes: include_str!("../../data/strokes.model").to_owned(),
+                closed: include_str!("../../data/closed.model").to_owned(),
+            })
+            .ok()
+        })
+        .as_ref()
+}
+
+/// Finds out what each stroke is.
+///
+/// One answer per stroke of `ink.strokes`, in its order, the same on every platform. Not guaranteed: that it is
+/// right (see `docs/strokes.md`); the user can override any class. About 20 microseconds a stroke; linear in
+/// strokes beyond 48.
+///
+/// ```
+/// use glam::DVec2;
+/// let stem = vec![DVec2::ZERO, DVec2::new(3.0, 300.0)];
+/// let ink = sketch::clean(&sketch::Drawing::from_polylines("stem", &[stem]), &mut base::Report::default());
+/// assert_eq!(sketch::classify(&ink)[0].class, sketch::StrokeClass::Axis);
+/// ```
+pub fn classify(ink: &Ink) -> Vec<Classified> {
+    let rows = features(ink);
+    // A test reads the models, so they are always there.
+    let unknown = Classified { class: StrokeClass::Other, confidence: 0.0 };
+    rows.iter().map(|f| trained().map_or(unknown, |m| m.decide(f))).collect()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,176 @@
+//! The committed models, figures and odd ink.
+
+use base::{Draw, Report, Seed, ops};
+use glam::DVec2;
+use proptest::prelude::*;
+
+use super::*;
+use crate::{Drawing, InkStroke, clean};
+
+fn committed() -> StrokeModelTexts {
+    StrokeModelTexts {
+        scale: include_str!("../../data/strokes.scale").to_owned(),
+        classes: include_str!("../../data/strokes.model").to_owned(),
+        closed: include_str!("../../data/closed.model").to_owned(),
+    }
+}
+
+fn table() -> Vec<StrokeRow> {
+    read_stroke_table(include_str!("../../data/strokes.csv")).expect("the committed table can be read")
+}
+
+#[test]
+fn committed_models_are_what_the_table_trains() {
+    let (rows, kept) = (table(), committed());
+    let fresh = train_strokes(&rows).expect("the table trains");
+    let kept = StrokeModels::parse(&kept).expect("the committed models can be read");
+    let fresh = StrokeModels::parse(&fresh).expect("the trained models can be read");
+    // Not the text: training calls std's exp, whose last digit differs between platforms.
+    for row in &rows {
+        let (a, b) = (kept.decide(&row.features), fresh.decide(&row.features));
+        let same = a.class == b.class && (a.confidence - b.confidence).abs() < 1e-3;
+        assert!(same, "run `cargo xtask train-strokes`: {} {} {a:?} {b:?}", row.drawing, row.stroke);
+    }
+}
+
+#[test]
+fn table_round_trips() {
+    let rows = table();
+    assert_eq!(write_stroke_table(&rows), include_str!("../../data/strokes.csv"), "written as it was read");
+}
+
+#[test]
+fn held_out_drawings_are_recognised() {
+    let figures = cross_validate_strokes(&table(), Seed::new(1)).expect("the table trains");
+    assert!(figures.three_features >= 0.985, "three features {}", figures.three_features);
+    assert!(figures.not_swapped >= 0.99, "closed or line {}", figures.not_swapped);
+    assert!(figures.macro_f1 >= 0.76, "macro F1 {}", figures.macro_f1);
+}
+
+#[test]
+fn features_do_not_depend_on_direction_nor_on_left_and_right() {
+    let mut stream = Seed::new(3).stream(Draw::Test);
+    let lines: Vec<Vec<DVec2>> = (0..12)
+        .map(|_| {
+            let mut p = DVec2::new(stream.uniform(), stream.uniform());
+            (0..20)
+                .map(|_| {
+                    p += DVec2::new(stream.range(-0.1, 0.1), stream.range(-0.1, 0.1));
+                    p
+                })
+                .collect()
+        })
+        .collect();
+    let rows_of =
+        |lines: &[Vec<DVec2>]| features(&clean(&Drawing::from_polylines("x", lines), &mut Report::default()));
+    let plain = rows_of(&lines);
+    let turned: Vec<Vec<DVec2>> = lines
+        .iter()
+        .map(|l| l.iter().rev().map(|p| DVec2::new(-p.x, p.y) * 250.0 + DVec2::new(7.0, -3.0)).collect())
+        .collect();
+    for (i, (a, b)) in plain.iter().zip(rows_of(&turned)).enumerate() {
+        for ((name, x), y) in StrokeFeatures::NAMES.iter().zip(a.values()).zip(b.values()) {
+            // Counts may flip where a corner or an end lies just at its threshold; sizes and shares may not.
+            let smooth =
+                ["gap", "slim", "box_area", "round", "solid", "hull", "length", "bottom", "aside", "order"];
+            if smooth.contains(name) {
+                assert!((x - y).abs() < 0.02, "stroke {i}, {name}: {x} and {y}");
+            }
+        }
+    }
+}
+
+#[test]
+fn odd_ink_is_survived() {
+    let stroke = |points: Vec<DVec2>| InkStroke { points, ..InkStroke::default() };
+    let with = |strokes: Vec<InkStroke>| Ink { strokes, ..Ink::default() };
+    assert!(classify(&with(vec![])).is_empty(), "no strokes, no answers");
+    let odd = with(vec![
+        stroke(vec![]),
+        stroke(vec![DVec2::ONE]),
+        stroke(vec![DVec2::ONE; 5]),
+        stroke(vec![DVec2::NAN; 5]),
+        stroke(vec![DVec2::splat(1e300), DVec2::splat(-1e300)]),
+        stroke(vec![DVec2::ZERO, DVec2::X]),
+    ]);
+    assert_eq!(classify(&odd).len(), 6, "one answer per stroke");
+    let alike = with(vec![stroke((0..40).map(|k| DVec2::new(f64::from(k), 1.0) * 0.01).collect()); 60]);
+    for row in features(&alike).iter().chain(&features(&odd)) {
+        assert!(row.values().iter().all(|x| x.is_finite()), "{row:?}");
+    }
+}
+
+#[test]
+fn many_strokes_are_linear() {
+    let mut stream = Seed::new(8).stream(Draw::Test);
+    let one = |p: DVec2| InkStroke { points: vec![p, p + DVec2::new(0.01, 0.02)], ..InkStroke::default() };
+    let mut strokes: Vec<InkStroke> =
+        (0..1500).map(|_| one(DVec2::new(stream.uniform(), stream.uniform()))).collect();
+    strokes.extend((0..1500).map(|_| one(DVec2::splat(0.5))));
+    let ink = Ink { strokes, ..Ink::default() };
+    let most = context::companion_counts(&ink).into_iter().max().unwrap_or(0);
+    assert!(most <= 52, "a stroke is compared with {most} others");
+    assert_eq!(classify(&ink).len(), 3000, "one answer per stroke");
+}
+
+#[test]
+fn broken_models_are_refused_with_their_line() {
+    let good = committed();
+    let spoilt = StrokeModelTexts { classes: good.classes.replacen("1:", "x:", 1), ..good.clone() };
+    assert!(StrokeModels::parse(&spoilt).is_err_and(|e| e.line > 0), "a vector without an index");
+    let short = StrokeModelTexts { scale: good.scale.lines().skip(1).collect(), ..good };
+    assert!(StrokeModels::parse(&short).is_err(), "a feature is missing");
+}
+
+/// A hand-like closed loop: root, tip, half width.
+fn petal(root: DVec2, tip: DVec2, half: f64, wobble: &mut base::Stream) -> Vec<DVec2> {
+    let along = tip - root;
+    let across = along.perp().normalize_or_zero() * half;
+    (0..=40)
+        .map(|k| {
+            let a = f64::from(k) / 40.0 * ops::TAU;
+            let t = (1.0 - ops::cos(a)) / 2.0;
+            let jitter = DVec2::new(wobble.range(-1.0, 1.0), wobble.range(-1.0, 1.0)) * half * 0.03;
+            root + along * t + across * ops::sin(a) + jitter
+        })
+        .collect()
+}
+
+fn words(lines: &[Vec<DVec2>]) -> Vec<&'static str> {
+    let ink = clean(&Drawing::from_polylines("made", lines), &mut Report::default());
+    classify(&ink).iter().map(|c| c.class.word()).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+    #[test]
+    fn any_ink_is_classified_without_panic(
+        lines in prop::collection::vec(prop::collection::vec((-1e3..1e3_f64, prop_oneof![-1.0..1.0_f64, Just(0.0)]), 0..12), 0..70)
+    ) {
+        let lines: Vec<Vec<DVec2>> = lines.into_iter().map(|l| l.into_iter().map(|(x, y)| DVec2::new(x, y)).collect()).collect();
+        let ink = clean(&Drawing::from_polylines("any", &lines), &mut Report::default());
+        let found = classify(&ink);
+        prop_assert_eq!(found.len(), ink.strokes.len());
+        prop_assert!(found.iter().all(|c| c.confidence > 0.0 && c.confidence <= 1.0));
+    }
+}
+
+#[test]
+fn petal_of_a_flower_is_closed_and_its_stem_a_line() {
+    let mut wobble = Seed::new(2).stream(Draw::Test);
+    let mut lines =
+        vec![(0..30).map(|k| DVec2::new(0.02 * ops::sin(f64::from(k) * 0.2), f64::from(k) / 30.0)).collect()];
+    for k in 0..6 {
+        let (s, c) = ops::sin_cos(f64::from(k) * ops::TAU / 6.0 + 0.3);
+        let centre = DVec2::new(0.0, 1.0);
+        lines.push(petal(
+            centre + DVec2::new(c, s) * 0.05,
+            centre + DVec2::new(c, s) * 0.4,
+            0.1,
+            &mut wobble,
+        ));
+    }
+    let found = words(&lines);
+    assert_eq!(found[0], "axis", "{found:?}");
+    assert!(found[1..].iter().filter(|w| **w == "blade").count() >= 5, "{found:?}");
+}

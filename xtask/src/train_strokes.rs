@@ -1,0 +1,260 @@
+//! `cargo xtask train-strokes`: the table of measured strokes -> the classifier's models and `docs/strokes.md`.
+
+use std::{
+    collections::BTreeMap,
+    fmt::Write as _,
+    fs,
+    path::{Path, PathBuf},
+};
+
+use glam::DVec2;
+use serde_json::Value;
+use sketch::{
+    Drawing, InkSample, Stroke, StrokeClass, StrokeFigures, StrokeRow, StrokeSource, cross_validate_strokes,
+    read_stroke_table, train_strokes, write_stroke_table,
+};
+
+/// Fold seeds that the figures are averaged over.
+const SEEDS: u64 = 8;
+/// Of SPG's drawings every so many are measured: enough to learn from, too few to drown the others.
+const SPG: [(&str, usize, [StrokeClass; 4]); 2] = [
+    ("apple", 8, [StrokeClass::Axis, StrokeClass::Blade, StrokeClass::Fruit, StrokeClass::Other]),
+    (
+        "cactus",
+        12,
+        [StrokeClass::TrunkOutline, StrokeClass::TrunkOutline, StrokeClass::Axis, StrokeClass::Pot],
+    ),
+];
+/// At most so many strokes of one part of one SPG drawing: thorns come by the dozen.
+const PER_PART: usize = 3;
+
+/// Trains the models from the table, prints how good they are, and writes models and figures into the repository.
+///
+/// `--measure <folder>` first measures the drawings of a folder like `shared/data/sketches` anew.
+///
+/// # Errors
+/// A sentence that names the file and what is wrong with it.
+#[expect(clippy::print_stdout, reason = "the figures are what the command is for")]
+pub(crate) fn run(args: &[String]) -> Result<(), String> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().ok_or("xtask has no parent folder")?.to_owned();
+    let data = root.join("crates/sketch/data");
+    let table = data.join("strokes.csv");
+    match args {
+        [] => {}
+        [flag, folder] if flag == "--measure" => {
+            let rows = measure(Path::new(folder))?;
+            write(&table, &write_stroke_table(&rows))?;
+            println!("measured {} strokes into {}", rows.len(), table.display());
+        }
+        _ => return Err("usage: cargo xtask train-strokes [--measure <sketches folder>]".to_owned()),
+    }
+    let rows = read_stroke_table(&read(&table)?).map_err(|e| format!("{}: {e}", table.display()))?;
+    let mut figures = Vec::new();
+    for seed in 0..SEEDS {
+        figures.push(cross_validate_strokes(&rows, base::Seed::new(seed)).map_err(|e| e.to_string())?);
+    }
+    let block = figures_block(&rows, &figures);
+    println!("{block}");
+    let models = train_strokes(&rows).map_err(|e| e.to_string())?;
+    write(&data.join("strokes.scale"), &models.scale)?;
+    write(&data.join("strokes.model"), &models.classes)?;
+    write(&data.join("closed.model"), &models.closed)?;
+    update_docs(&root.join("docs/strokes.md"), &block)
+}
+
+/// The block of `docs/strokes.md` that this command owns.
+fn figures_block(rows: &[StrokeRow], all: &[StrokeFigures]) -> String {
+    let mut out = String::new();
+    let count = all.len().max(1) as f64;
+    let spread = |get: &dyn Fn(&StrokeFigures) -> f64| {
+        let mean = all.iter().map(get).sum::<f64>() / count;
+        let variance = all.iter().map(|f| (get(f) - mean) * (get(f) - mean)).sum::<f64>() / count;
+        (mean, variance.sqrt())
+    };
+    let clear = rows.iter().filter(|r| r.source == StrokeSource::Public && r.is_clear()).count();
+    let _ = writeln!(
+        out,
+        "{clear} clear strokes, 10 folds by drawing, dealt {} times (mean, spread of the dealings):\n",
+        all.len()
+    );
+    let _ = writeln!(out, "| figure | mean | spread |\n|---|---|---|");
+    for (name, (mean, deviation)) in [
+        ("macro F1 of the classes with 20 or more clear strokes", spread(&|f| f.macro_f1)),
+        (
+            "closed outlines and lines: class in the right group, any third class counted wrong",
+            spread(&|f| f.grouped),
+        ),
+        ("closed outlines and lines: not taken for the other group", spread(&|f| f.not_swapped)),
+        ("closed outlines and lines: the three features alone", spread(&|f| f.three_features)),
+    ] {
+        let _ = writeln!(out, "| {name} | {mean:.3} | {deviation:.3} |");
+    }
+    let _ = writeln!(out, "\n| class | F1 mean | spread |\n|---|---|---|");
+    for (k, class) in StrokeClass::ALL.into_iter().enumerate() {
+        if all.iter().all(|f| f.f1[k].is_some()) {
+            let (mean, deviation) = spread(&|f| f.f1[k].unwrap_or(0.0));
+            let _ = writeln!(out, "| {} | {mean:.3} | {deviation:.3} |", class.word());
+        }
+    }
+    if let Some(first) = all.first() {
+        let _ = writeln!(out, "\nConfusion of the first dealing (rows: label, columns: found):\n");
+        let words: Vec<&str> = StrokeClass::ALL.iter().map(|c| c.word()).collect();
+        let _ = writeln!(out, "| | {} |\n|---|{}", words.join(" | "), "---|".repeat(words.len()));
+        for (word, row) in words.iter().zip(&first.confusion) {
+            let cells: Vec<String> =
+                row.iter().map(|n| if *n == 0 { String::new() } else { n.to_string() }).collect();
+            let _ = writeln!(out, "| **{word}** | {} |", cells.join(" | "));
+        }
+    }
+    parts_block(&mut out, all);
+    out
+}
+
+/// How SPG's parts were found, over all dealings.
+fn parts_block(out: &mut String, all: &[StrokeFigures]) {
+    let mut parts: BTreeMap<(&str, StrokeClass), BTreeMap<StrokeClass, usize>> = BTreeMap::new();
+    for (kind, label, found) in all.iter().flat_map(|f| &f.parts) {
+        *parts.entry((kind, *label)).or_default().entry(*found).or_default() += 1;
+    }
+    let _ = writeln!(
+        out,
+        "\nSPG drawings (strokes of which nine tenths of the points bear one label), found as:\n"
+    );
+    let _ = writeln!(out, "| drawing | label | found |\n|---|---|---|");
+    for ((kind, label), found) in parts {
+        let sum: usize = found.values().sum();
+        let mut shares: Vec<(usize, StrokeClass)> = found.into_iter().map(|(c, n)| (n, c)).collect();
+        shares.sort_by(|a, b| b.cmp(a));
+        let words: Vec<String> = shares
+            .iter()
+            .map(|(n, c)| format!("{} {:.1} %", c.word(), 100.0 * *n as f64 / sum as f64))
+            .collect();
+        let _ = writeln!(
+            out,
+            "| {kind} | {} ({}) | {} |",
+            label.word(),
+            sum / all.len().max(1),
+            words.join(", ")
+        );
+    }
+}
+
+fn update_docs(path: &Path, block: &str) -> Result<(), String> {
+    const OPEN: &str = "<!-- figures: written by cargo xtask train-strokes -->\n";
+    const CLOSE: &str = "<!-- end of figures -->\n";
+    let text = read(path)?;
+    let parts = text.split_once(OPEN).and_then(|(a, rest)| rest.split_once(CLOSE).map(|(_, b)| (a, b)));
+    let (before, after) =
+        parts.ok_or_else(|| format!("{}: the figures' marks are missing", path.display()))?;
+    write(path, &format!("{before}{OPEN}{block}{CLOSE}{after}"))
+}
+
+fn read(path: &Path) -> Result<String, String> {
+    fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))
+}
+
+fn write(path: &Path, text: &str) -> Result<(), String> {
+    fs::write(path, text).map_err(|e| format!("{}: {e}", path.display()))
+}
+
+fn json_lines(path: &Path) -> Result<Vec<Value>, String> {
+    let parse = |(k, line): (usize, &str)| {
+        serde_json::from_str(line).map_err(|e| format!("{}, line {}: {e}", path.display(), k + 1))
+    };
+    read(path)?.lines().enumerate().filter(|(_, l)| !l.trim().is_empty()).map(parse).collect()
+}
+
+fn text_of<'a>(value: &'a Value, key: &str) -> &'a str {
+    value.get(key).and_then(Value::as_str).unwrap_or_default()
+}
+
+fn list(value: Option<&Value>) -> &[Value] {
+    value.and_then(Value::as_array).map_or(&[], Vec::as_slice)
+}
+
+/// Label of one stroke of a drawing.
+struct Label {
+    stroke: u32,
+    class: StrokeClass,
+    unsure: bool,
+    mixed: bool,
+}
+
+/// Measures every labelled drawing of a folder.
+fn measure(sketches: &Path) -> Result<Vec<StrokeRow>, String> {
+    let quickdraw = sketches.join("quickdraw");
+    let entries = fs::read_dir(&quickdraw).map_err(|e| format!("{}: {e}", quickdraw.display()))?;
+    let mut files: Vec<PathBuf> = entries.flatten().map(|f| f.path()).collect();
+    files.sort();
+    let mut drawings = BTreeMap::new();
+    for file in files {
+        for line in json_lines(&file)? {
+            drawings.insert(text_of(&line, "key_id").to_owned(), line);
+        }
+    }
+    let mut rows = Vec::new();
+    for line in json_lines(&sketches.join("labels.ndjson"))? {
+        let key = text_of(&line, "key_id");
+        let drawing = drawings.get(key).ok_or_else(|| format!("labels.ndjson: there is no drawing {key}"))?;
+        let label = |l: &Value| {
+            let class = StrokeClass::from_word(text_of(l, "label"));
+            let flag = |name: &str| l.get(name).and_then(Value::as_bool).unwrap_or(false);
+            let stroke = l.get("stroke").and_then(Value::as_u64).and_then(|s| u32::try_from(s).ok());
+            let (class, stroke) = class.zip(stroke).ok_or_else(|| format!("labels.ndjson, {key}: {l}"))?;
+            Ok(Label { stroke, class, unsure: flag("unsure"), mixed: flag("mixed") })
+        };
+        let labels: Vec<Label> = list(line.get("labels")).iter().map(label).collect::<Result<_, String>>()?;
+        measure_drawing(&mut rows, StrokeSource::Public, text_of(&line, "word"), drawing, &labels);
+    }
+    for (kind, every, classes) in SPG {
+        for line in json_lines(&sketches.join(format!("spg/{kind}.ndjson")))?.iter().step_by(every) {
+            let mut seen = [0_usize; 4];
+            let labels: Vec<Label> = (0..)
+                .zip(list(line.get("drawing")))
+                .filter_map(|(stroke, s)| {
+                    let marks = list(s.get(2));
+                    let count = |k: &u64| marks.iter().filter(|m| m.as_u64() == Some(*k)).count();
+                    let (part, class) =
+                        (0_u64..).zip(classes).find(|(k, _)| 10 * count(k) >= 9 * marks.len().max(1))?;
+                    let seen = seen.get_mut(usize::try_from(part).ok()?)?;
+                    *seen += 1;
+                    (*seen <= PER_PART).then_some(Label { stroke, class, unsure: false, mixed: false })
+                })
+                .collect();
+            measure_drawing(&mut rows, StrokeSource::Parts, kind, line, &labels);
+        }
+    }
+    Ok(rows)
+}
+
+fn measure_drawing(
+    rows: &mut Vec<StrokeRow>,
+    source: StrokeSource,
+    kind: &str,
+    line: &Value,
+    labels: &[Label],
+) {
+    let stroke = |s: &Value| {
+        let column = |k: usize| list(s.get(k)).iter().filter_map(Value::as_f64);
+        // Points lie y down in the files.
+        let samples = column(0).zip(column(1)).map(|(x, y)| InkSample::from(DVec2::new(x, -y))).collect();
+        Stroke { samples, ..Stroke::default() }
+    };
+    let drawing = text_of(line, "key_id");
+    let strokes = list(line.get("drawing")).iter().map(stroke).collect();
+    let ink = sketch::clean(&Drawing { name: drawing.to_owned(), strokes }, &mut base::Report::default());
+    for (stroke, features) in ink.strokes.iter().zip(sketch::features(&ink)) {
+        if let Some(label) = labels.iter().find(|l| l.stroke == stroke.index) {
+            rows.push(StrokeRow {
+                source,
+                kind: kind.replace(' ', "_"),
+                drawing: drawing.to_owned(),
+                stroke: stroke.index,
+                label: label.class,
+                unsure: label.unsure,
+                mixed: label.mixed,
+                features,
+            });
+        }
+    }
+}
