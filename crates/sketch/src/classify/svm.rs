@@ -114,7 +114,7 @@ impl Svm {
         };
         for (line, content) in lines {
             let mut words = content.split_whitespace();
-            let coefficients = numbers(line, words.by_ref().take(classes - 1))?;
+            let coefficients: Vec<f64> = numbers(line, words.by_ref().take(classes - 1))?;
             if coefficients.len() < classes - 1 {
                 return Err(fault(line, "too few coefficients"));
             }
