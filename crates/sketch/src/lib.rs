@@ -16,6 +16,7 @@ mod classify;
 mod clean;
 mod depth;
 mod drawing;
+mod fidelity;
 mod fill;
 mod map;
 mod reading;
@@ -29,6 +30,7 @@ pub use classify::{
 };
 pub use clean::{Ink, InkMap, InkStroke, clean};
 pub use drawing::{Drawing, InkSample, Stroke, StrokeMode};
+pub use fidelity::{Fidelity, StrokeFidelity, fidelity};
 pub use map::PlantMap;
 pub use reading::{
     Attachment, AxisReading, BladeReading, DiscReading, FlowerReading, FruitReading, OrganWord, Reading,

@@ -64,7 +64,7 @@ fn daisy(centre: DVec2, n: u32, size: f64, first_source: u32) -> FlowerReading {
 }
 
 fn herb() -> Reading {
-    let wavy = (0..=30).map(|i| f64::from(i)).map(|i| v(0.3 + 0.02 * ops::sin(i * 0.2), i * 0.02)).collect();
+    let wavy = (0..=30).map(f64::from).map(|i| v(0.3 + 0.02 * ops::sin(i * 0.2), i * 0.02)).collect();
     let mut flower = daisy(v(0.30, 0.62), 7, 0.16, 10);
     flower.bearer = Some(Attachment { axis: 0, at: 0.61 });
     let mut leaves = Vec::new();
