@@ -12,7 +12,7 @@ use plant::{AxisId, AxisKind, Phyllotaxis, Plant};
 
 use super::foliage::{Foliage, dress};
 use super::grow::{Site, add_axis, add_sites, attach, grow_toward, tangent};
-use super::scatter::scatter;
+use super::scatter::{scatter, scatter_front, scatter_rim};
 use super::volume::Volume;
 use crate::FillSpec;
 
@@ -33,6 +33,8 @@ pub(super) struct Crown<'a> {
     pub(super) habit: Habit,
     /// Branches are woody.
     pub(super) woody: bool,
+    /// Which contour of its bearer this is.
+    pub(super) salt: u64,
 }
 
 /// The build of a crown.
@@ -113,10 +115,11 @@ impl Crown<'_> {
                 let points = plant.axis_points(axis);
                 if let (Some(node), Some(&at)) = (plant.axis(axis).node_ids().next(), points.first()) {
                     let tangent = tangent(points, 0);
-                    sites.insert(0, Site { node, at, tangent, level: 0, path: 0.0, used: 0 });
+                    sites.insert(0, Site { node, at, tangent, level: 0, path: 0.0, used: 0, salt: 0 });
                 }
             }
         }
+        sites.iter_mut().for_each(|s| s.salt = self.salt);
         sites
     }
 
@@ -246,35 +249,37 @@ impl Crown<'_> {
     /// Twigs of the third level, on the shell of the body, and the leaves.
     fn twigs(&self, plant: &mut Plant, sites: &mut [Site], branches: &[AxisId], placed: &mut usize) {
         let v = self.volume;
+        let n = count_of(self.leaves as f64 / 6.5, 24, MOST_TWIGS);
+        self.fill_shell(plant, sites, n, placed);
+        for &axis in branches {
+            dress(plant, v, &self.foliage, axis, 0.5, placed);
+        }
+    }
+
+    /// Up to `n` leafy twigs from `sites` to points of the shell and of the contour's rim.
+    fn fill_shell(&self, plant: &mut Plant, sites: &mut [Site], n: usize, placed: &mut usize) {
+        let v = self.volume;
         let length = self.foliage.length;
-        let n = count_of(self.leaves as f64 / 7.0, 24, MOST_TWIGS);
         let mut stream = self.seed.child(3).stream(Draw::Attractors);
-        // Leaves live where light is: a shell of 0.6 of the radius, its outer half twice as dense.
+        // Leaves live where light is: a shell of 0.55 of the radius.
         let margin = (0.3 * length).min(0.2 * v.inradius);
-        let mut targets = scatter(v, n, &mut stream, |p| {
+        let mut targets = scatter_rim(v, n / 7, (margin, 0.5), &mut stream);
+        // As many evenly in the drawing's plane as in the shell: no holes in the front view.
+        targets.extend(scatter_front(v, n / 2, (margin, 0.95), &mut stream));
+        targets.extend(scatter(v, n - targets.len(), &mut stream, |p| {
             let inset = v.inset(p);
             inset > margin && inset < 0.55 * v.inradius
-        });
+        }));
         near_first(&mut targets, sites);
-        let step = (0.5 * length).min(0.2 * v.inradius);
-        let mut twigs: Vec<(usize, u32, Vec<DVec3>)> = Vec::with_capacity(targets.len());
+        let step = (0.45 * length).min(0.2 * v.inradius);
         let mut points = Vec::new();
         for target in targets {
             let Some(i) = attach(v, sites, target, 1) else { continue };
             let from = sites[i];
             grow_toward(v, &self.spec, (from.at, from.tangent), target, step, &mut stream, &mut points);
-            if points.len() >= 2 {
-                sites[i].used += 1;
-                twigs.push((i, sites[i].used, points.clone()));
+            if let Some(axis) = add_axis(plant, &mut sites[i], self.twig_kind(), &points) {
+                dress(plant, v, &self.foliage, axis, 0.18, placed);
             }
-        }
-        for (i, _, points) in &twigs {
-            if let Some(axis) = add_axis(plant, &mut sites[*i], self.twig_kind(), points) {
-                dress(plant, v, &self.foliage, axis, 0.25, placed);
-            }
-        }
-        for &axis in branches {
-            dress(plant, v, &self.foliage, axis, 0.7, placed);
         }
     }
 
@@ -286,31 +291,41 @@ impl Crown<'_> {
             .map(|i| low + height * (0.985 - 0.01 * f64::from(i)))
             .find_map(|y| v.row(y).map(|(x, _)| DVec2::new(x, y)))
             .unwrap_or(0.5 * (v.low() + v.high()));
-        let step = height / 26.0;
-        self.leader(plant, sites, top.extend(v.mid(top)), step);
+        let step = height / 48.0;
+        if let Some(leader) = self.leader(plant, sites, top.extend(v.mid(top)), step) {
+            dress(plant, v, &self.foliage, leader, 0.88, placed);
+        }
         let trunk = sites.clone();
         let mut stream = self.seed.stream(Draw::Phyllotaxis);
-        let start = stream.range(0.0, ops::TAU);
         let mut points = Vec::new();
         let density = ops::powf(self.spec.density, 0.5);
-        let (mut y, mut whorl) = (low + 0.02 * height, 0);
+        let mut boughs = Vec::new();
+        let (mut y, mut whorl) = (low + 0.035 * height, 0);
         while y < top.y - 0.02 * height && whorl < 60 {
             let up = ((y - low) / height).clamp(0.0, 1.0);
-            let nearest = (0..trunk.len())
-                .min_by(|&a, &b| (trunk[a].at.y - y).abs().total_cmp(&(trunk[b].at.y - y).abs()));
-            let Some(site) = nearest else { return };
-            let per = count_of(ops::lerp(6.5, 4.0, up) * density, 3, 16);
+            let spacing = height * ops::lerp(0.075, 0.045, up) / density;
+            // An even number, every other whorl with boughs in the drawing plane: they reach the drawn contour.
+            let per = 2 * count_of(ops::lerp(3.6, 2.6, up) * density, 2, 8);
             for k in 0..per {
                 let rank = whorl * 16 + k;
-                let azimuth =
-                    start + ops::TAU * (k as f64 / per as f64) + 2.4 * whorl as f64 + stream.range(-0.2, 0.2);
-                // Old boughs hang, young ones rise.
-                let elevation = ops::lerp(-0.12, 0.75, up * up) + stream.range(-0.08, 0.08);
-                self.bough(plant, &mut sites[site], (azimuth, elevation, rank), &mut points, placed);
+                let turn = k as f64 + if whorl % 2 == 0 { 0.0 } else { 0.5 };
+                let azimuth = ops::TAU * turn / per as f64 + stream.range(-0.14, 0.14);
+                // Old boughs stand out flat, young ones rise.
+                let elevation = ops::lerp(0.0, 0.7, up * up) + stream.range(-0.05, 0.06);
+                // Boughs of one whorl start at nearly, not quite, the same height.
+                let start = y + spacing * stream.range(-0.35, 0.35);
+                let Some(site) = nearest_in_height(&trunk, start) else { return };
+                let own =
+                    self.bough(plant, &mut sites[site], (azimuth, elevation, rank), &mut points, placed);
+                boughs.extend(own);
             }
             whorl += 1;
-            y += height * ops::lerp(0.085, 0.045, up) / density;
+            y += spacing;
         }
+        // What the whorls left open: short shoots from the boughs.
+        boughs.extend(trunk);
+        let n = count_of(self.leaves as f64 / 5.0, 24, MOST_TWIGS);
+        self.fill_shell(plant, &mut boughs, n, placed);
     }
 
     /// One bough with its laterals and sprays.
@@ -321,7 +336,7 @@ impl Crown<'_> {
         (azimuth, elevation, rank): (f64, f64, usize),
         points: &mut Vec<DVec3>,
         placed: &mut usize,
-    ) {
+    ) -> Vec<Site> {
         let v = self.volume;
         let length = self.foliage.length;
         let from = site.at;
@@ -330,15 +345,16 @@ impl Crown<'_> {
         let reach = target.distance(from);
         let step = (0.55 * length).max(reach / 24.0);
         if reach < 1.2 * step {
-            return;
+            return Vec::new();
         }
         let seed = self.seed.child(rank as u64);
         let mut stream = seed.stream(Draw::TwigPlace);
-        // Boughs leave the trunk at right angles and lift their ends.
-        let flat = (target - from).with_y(0.0).normalize_or_zero();
+        // Old boughs sag and lift their ends, young ones start upwards.
+        let up = ((from.y - v.low().y) / v.height()).clamp(0.0, 1.0);
+        let flat = (target - from).with_y(0.0).normalize_or_zero() + DVec3::Y * ops::lerp(-0.3, 0.5, up);
         let spec = FillSpec { tropism: 0.0, ..self.spec };
         grow_toward(v, &spec, (from, flat), target, step, &mut stream, points);
-        let Some(axis) = add_axis(plant, site, self.kind(), points) else { return };
+        let Some(axis) = add_axis(plant, site, self.kind(), points) else { return Vec::new() };
         let bough: Vec<DVec3> = points.clone();
         dress(plant, v, &self.foliage, axis, 0.1, placed);
         let mut own = Vec::new();
@@ -361,6 +377,7 @@ impl Crown<'_> {
                 dress(plant, v, &self.foliage, twig, 0.2, placed);
             }
         }
+        own
     }
 }
 
@@ -369,6 +386,10 @@ pub(super) fn count_of(x: f64, least: usize, most: usize) -> usize {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "float casts saturate")]
     let n = x.round().max(0.0) as usize;
     n.clamp(least, most)
+}
+
+fn nearest_in_height(sites: &[Site], y: f64) -> Option<usize> {
+    (0..sites.len()).min_by(|&a, &b| (sites[a].at.y - y).abs().total_cmp(&(sites[b].at.y - y).abs()))
 }
 
 /// Sorts targets by their distance to what stands already, nearest first: near ones become stepping stones.

@@ -59,17 +59,32 @@ pub(super) fn dress(
                 return;
             }
             let leaf = Seed::new(key_of(key, u64::from(rank) << 8 | k as u64));
-            plant.organs.push(organ(foliage, node, at, along, azimuth + start, leaf));
+            let organ = organ(foliage, node, at, along, azimuth + start, leaf);
+            plant.organs.push(held_in(volume, foliage, organ));
             *placed += 1;
         }
         if i == n - 1 && *placed < foliage.most {
             // The terminal leaf continues the twig.
             let leaf = Seed::new(key_of(key, u64::from(rank) << 8 | 0xff));
             let terminal = Foliage { insertion: 0.2, ..foliage.clone() };
-            plant.organs.push(organ(&terminal, node, at, along, start, leaf));
+            let organ = organ(&terminal, node, at, along, start, leaf);
+            plant.organs.push(held_in(volume, foliage, organ));
             *placed += 1;
         }
     }
+}
+
+/// Makes a leaf smaller (at most by half) whose tip would stand out from the contour by more than a third of its
+/// length.
+fn held_in(volume: &Volume, foliage: &Foliage, mut organ: Organ) -> Organ {
+    let reach = |scale: f64| organ.frame.origin + organ.frame.along * (foliage.length * scale);
+    for scale in [1.0, 0.75] {
+        let over = -volume.clearance(reach(scale).truncate());
+        if over > 0.33 * foliage.length {
+            organ.scale *= 0.72;
+        }
+    }
+    organ
 }
 
 fn organ(foliage: &Foliage, node: NodeId, at: DVec3, twig: DVec3, azimuth: f64, leaf: Seed) -> Organ {

@@ -22,6 +22,8 @@ pub(super) struct Site {
     pub(super) path: f64,
     /// Axes that start here already.
     pub(super) used: u32,
+    /// Tells the contours of one drawn axis apart: 0 for what was grown.
+    pub(super) salt: u64,
 }
 
 /// Adds the inner nodes of an axis to `sites`.
@@ -30,7 +32,15 @@ pub(super) fn add_sites(plant: &Plant, axis: AxisId, level: u32, path: f64, site
     let mut at = path;
     for (i, node) in plant.axis(axis).node_ids().enumerate().skip(1) {
         at += points[i].distance(points[i - 1]);
-        sites.push(Site { node, at: points[i], tangent: tangent(points, i), level, path: at, used: 0 });
+        sites.push(Site {
+            node,
+            at: points[i],
+            tangent: tangent(points, i),
+            level,
+            path: at,
+            used: 0,
+            salt: 0,
+        });
     }
 }
 
@@ -76,6 +86,7 @@ pub(super) fn grow_toward(
             return;
         }
         let fade = (left / whole).min(1.0);
+        let fade = fade * fade;
         let noise = DVec3::new(wobble.normal(), wobble.normal(), wobble.normal()) * 0.05;
         let sum = eq2(spec, to / left, bearer * fade, last) + DVec3::Y * (spec.tropism * fade) + noise;
         last = sum.try_normalize().unwrap_or(to / left);
@@ -149,12 +160,17 @@ pub(super) fn add_axis(
     if points.len() < 2 {
         return None;
     }
-    let bearer_key = plant.axis(plant.nodes.axis[site.node.index()]).key;
-    // Node within its axis, and rank among those that start at the node.
-    let rank = site.node.raw() - plant.axis(plant.nodes.axis[site.node.index()]).nodes.start;
-    let key = key_of(bearer_key, u64::from(rank) << 8 | u64::from(site.used.min(255)));
-    site.used += 1;
+    let key = child_key(plant, site);
     Some(plant.add_axis(kind, Some(site.node), key, points, None))
+}
+
+/// The next key of what starts at a site: from the bearer's key, the node's rank on it and the birth rank there.
+pub(super) fn child_key(plant: &Plant, site: &mut Site) -> u64 {
+    let bearer = plant.axis(plant.nodes.axis[site.node.index()]);
+    let rank = u64::from(site.node.raw() - bearer.nodes.start);
+    let key = key_of(bearer.key, site.salt << 48 | rank << 16 | u64::from(site.used & 0xffff));
+    site.used += 1;
+    key
 }
 
 /// A key from the bearer's key and the birth rank.

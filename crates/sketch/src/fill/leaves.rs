@@ -8,8 +8,8 @@ use plant::{AxisId, AxisKind, Frame, Organ, OrganKind, Plant};
 
 use super::crown::count_of;
 use super::foliage::Foliage;
-use super::grow::{Site, add_axis, add_sites, attach, grow_toward, key_of};
-use super::scatter::scatter;
+use super::grow::{Site, add_axis, add_sites, attach, child_key, grow_toward};
+use super::scatter::scatter_front;
 use super::twigs::inner_sites;
 use super::volume::Volume;
 use crate::FillSpec;
@@ -29,56 +29,59 @@ pub(super) struct Leaves<'a> {
     pub(super) leaves: usize,
     /// What twigs are, where some are needed to carry leaves.
     pub(super) kind: AxisKind,
+    /// Which contour of its bearer this is.
+    pub(super) salt: u64,
 }
 
 impl Leaves<'_> {
     /// Grows the leaves; returns the number of axes and leaves added.
     ///
-    /// Tips are strewn evenly over the body; each midrib starts at the place of a bearer from which its tip is
-    /// best reached. Tips farther away than a leaf is long get a twig first.
+    /// The middles of leaves are strewn evenly over the contour; each midrib starts at the place of a bearer
+    /// from which its middle is best reached, and runs on as far beyond it as leaves are long. Middles farther
+    /// away than that get a twig first.
     pub(super) fn grow(&self, plant: &mut Plant) -> (usize, usize) {
         let v = self.volume;
         let axes = plant.axes.len();
-        let mut sites = inner_sites(plant, v, self.bearers);
+        let mut sites = inner_sites(plant, v, self.bearers, self.salt);
         if sites.is_empty() {
             return (0, 0);
         }
         let length = self.foliage.length;
         let mut stream = self.seed.stream(Draw::Attractors);
-        let mut tips = scatter(v, self.leaves, &mut stream, |_| true);
+        let mut middles = scatter_front(v, self.leaves, (0.25 * length, 0.75), &mut stream);
         // From the bearer outwards, so that twigs grown for near leaves carry the far ones.
-        tips.sort_by(|a, b| {
+        middles.sort_by(|a, b| {
             let near =
                 |t: &DVec3| sites.iter().map(|s| s.at.distance_squared(*t)).fold(f64::INFINITY, f64::min);
             near(a).total_cmp(&near(b))
         });
         let mut points = Vec::new();
         let mut placed = 0;
-        for tip in tips {
-            let Some(mut i) = attach(v, &sites, tip, u32::MAX) else { continue };
+        for middle in middles {
+            let Some(mut i) = attach(v, &sites, middle, u32::MAX) else { continue };
             let from = sites[i];
-            let way = from.at.distance(tip);
-            if way > 1.5 * length && from.level < 4 {
-                let target = from.at.lerp(tip, (way - 0.7 * length) / way);
-                let step = 0.45 * length;
+            let way = from.at.distance(middle);
+            if way > 0.85 * length && from.level < 4 {
+                let target = from.at.lerp(middle, (way - 0.45 * length) / way);
+                let step = 0.3 * length;
                 grow_toward(v, &self.spec, (from.at, from.tangent), target, step, &mut stream, &mut points);
                 let Some(axis) = add_axis(plant, &mut sites[i], self.kind, &points) else { continue };
                 add_sites(plant, axis, from.level + 1, from.path, &mut sites);
                 i = sites.len() - 1;
             }
-            if self.leaf(plant, &mut sites[i], tip, &mut stream, &mut points) {
+            if self.leaf(plant, &mut sites[i], middle, &mut stream, &mut points) {
                 placed += 1;
             }
         }
         (plant.axes.len() - axes, placed)
     }
 
-    /// One midrib from a site towards a tip, and its leaf: root on its start, tip on its end.
+    /// One midrib from a site through a middle, and its leaf: root on its start, tip on its end.
     fn leaf(
         &self,
         plant: &mut Plant,
         site: &mut Site,
-        tip: DVec3,
+        middle: DVec3,
         stream: &mut base::Stream,
         points: &mut Vec<DVec3>,
     ) -> bool {
@@ -87,12 +90,11 @@ impl Leaves<'_> {
         if !v.contains_xy(site.at.truncate()) {
             return false;
         }
-        let bearer_axis = plant.nodes.axis[site.node.index()];
-        let rank = u64::from(site.node.raw() - plant.axis(bearer_axis).nodes.start);
-        let leaf =
-            Seed::new(key_of(plant.axis(bearer_axis).key, 1 << 40 | rank << 12 | u64::from(site.used)));
+        let leaf = Seed::new(child_key(plant, site));
         let size = f.length * (1.0 + 0.15 * leaf.stream(Draw::Size).normal()).clamp(0.65, 1.35);
-        let way = tip - site.at;
+        let way = middle - site.at;
+        // Half a leaf beyond the middle, within what leaves of one plant differ by.
+        let size = size * (way.length() / f.length + 0.5).clamp(0.8, 1.3);
         let target = site.at + way.normalize_or_zero() * size;
         grow_toward(v, &self.spec, (site.at, site.tangent), target, size / 5.0, stream, points);
         let Some(&end) = points.last() else { return false };
@@ -101,7 +103,6 @@ impl Leaves<'_> {
         if midrib.length() < 0.45 * f.length {
             return false;
         }
-        site.used += 1;
         let mut angle = leaf.stream(Draw::LeafAngle);
         let jitter = DVec3::new(angle.normal(), angle.normal(), angle.normal()) * 0.3;
         let out = (site.at - f.core).normalize_or_zero();
@@ -133,5 +134,5 @@ pub(super) fn leaves_for(area: f64, length: f64, layers: f64) -> usize {
 
 /// Length of a default leaf for a contour that is filled with leaves: some 30 of them.
 pub(super) fn default_length(volume: &Volume) -> f64 {
-    0.3 * volume.area.sqrt().min(3.0 * volume.inradius)
+    0.27 * volume.area.sqrt().min(3.0 * volume.inradius)
 }

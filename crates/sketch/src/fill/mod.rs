@@ -87,20 +87,22 @@ pub(crate) fn fill(
         let (axes, leaves) = match region.kind {
             RegionKind::Twigs => {
                 let kind = if ctx.woody { AxisKind::Twig } else { AxisKind::Stem };
-                let twigs = Twigs { volume: &volume, spec, seed, bearers: &bearers, kind };
+                let twigs = Twigs { volume: &volume, spec, seed, bearers: &bearers, kind, salt: rank };
                 (twigs.grow(plant, &mut Vec::new()), 0)
             }
             RegionKind::Leaves => {
                 let (foliage, leaves) = look.of_cluster(plant, &volume);
                 let kind = if ctx.woody { AxisKind::Twig } else { AxisKind::Stem };
-                Leaves { volume: &volume, spec, seed, bearers: &bearers, foliage, leaves, kind }.grow(plant)
+                Leaves { volume: &volume, spec, seed, bearers: &bearers, foliage, leaves, kind, salt: rank }
+                    .grow(plant)
             }
             RegionKind::Crown => {
                 let habit = Habit::of(&volume, plant.axis_points(bearers[0]));
                 let (foliage, leaves) = look.of_crown(plant, &volume, habit);
                 let woody = ctx.woody;
                 let bearers = &bearers;
-                Crown { volume: &volume, spec, seed, bearers, foliage, leaves, habit, woody }.grow(plant)
+                Crown { volume: &volume, spec, seed, bearers, foliage, leaves, habit, woody, salt: rank }
+                    .grow(plant)
             }
         };
         if axes + leaves == 0 {
@@ -198,7 +200,7 @@ impl Look<'_> {
         let diameter = (volume.area * 4.0 / base::ops::PI).sqrt();
         let conifer = habit == Habit::Excurrent;
         // 1/15: fewer and larger leaves than a real tree's read as foliage at the size of a drawing.
-        let mut length = diameter / if conifer { 11.0 } else { 15.0 };
+        let mut length = diameter / if conifer { 9.5 } else { 15.0 };
         let mut shapes = self.drawn.to_vec();
         if let Some(natural) = self.natural() {
             length = natural.clamp(diameter / 40.0, diameter / 6.0);
@@ -210,7 +212,7 @@ impl Look<'_> {
             let form = FORMS[self.seed.stream(Draw::Template).below(FORMS.len())];
             shapes.push(self.form(plant, form));
         }
-        let leaves = leaves::leaves_for(volume.area, length, 1.35 * self.spec.density);
+        let leaves = leaves::leaves_for(volume.area, length, 1.85 * self.spec.density);
         let middle = 0.5 * (volume.low() + volume.high());
         let core = DVec2::new(middle.x, volume.low().y + 0.35 * volume.height());
         let foliage = Foliage {
@@ -232,7 +234,7 @@ impl Look<'_> {
         if shapes.is_empty() {
             shapes.push(self.form(plant, LeafForm::Ovate));
         }
-        let leaves = leaves::leaves_for(volume.area, length, 1.0 * self.spec.density);
+        let leaves = leaves::leaves_for(volume.area, length, 1.1 * self.spec.density);
         let core = 0.5 * (volume.low() + volume.high());
         let foliage = Foliage {
             shapes,

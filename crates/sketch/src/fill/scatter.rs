@@ -54,6 +54,60 @@ pub(super) fn scatter(
     flat.iter().map(lift).collect()
 }
 
+/// At most `n` points at least `margin` inside the contour, evenly strewn as seen from the front; their depths
+/// are spread over the middle `share` of the body. Cost: linear in `n`.
+pub(super) fn scatter_front(
+    volume: &Volume,
+    n: usize,
+    (margin, share): (f64, f64),
+    stream: &mut Stream,
+) -> Vec<DVec3> {
+    let (lo, hi) = (volume.low(), volume.high());
+    let mut flat: Vec<DVec3> = Vec::with_capacity(n);
+    let mut spacing = 1.05 * (volume.area / n.max(1) as f64).sqrt();
+    for _ in 0..ROUNDS {
+        if flat.len() == n {
+            break;
+        }
+        let mut buckets = Buckets::new(lo.extend(0.0), hi.extend(0.0), spacing);
+        for (i, &p) in flat.iter().enumerate() {
+            buckets.add(i, p);
+        }
+        for _ in 0..n * DARTS {
+            let xy = DVec2::new(stream.range(lo.x, hi.x), stream.range(lo.y, hi.y));
+            if volume.clearance(xy) > margin && !buckets.any_within(&flat, xy.extend(0.0), spacing) {
+                buckets.add(flat.len(), xy.extend(0.0));
+                flat.push(xy.extend(0.0));
+                if flat.len() == n {
+                    break;
+                }
+            }
+        }
+        spacing *= 0.84;
+    }
+    for p in &mut flat {
+        let xy = p.truncate();
+        p.z = volume.mid(xy) + share * volume.half_depth(xy) * stream.range(-1.0, 1.0);
+    }
+    flat
+}
+
+/// At most `n` points along the drawn contour, `margin` inside it: they make the front view fill it. Their
+/// depths are spread over the middle `share` of the body.
+pub(super) fn scatter_rim(
+    volume: &Volume,
+    n: usize,
+    (margin, share): (f64, f64),
+    stream: &mut Stream,
+) -> Vec<DVec3> {
+    let inner = |p: DVec2| {
+        let q = p + volume.inward(p) * margin;
+        let z = volume.mid(q) + share * volume.half_depth(q) * stream.range(-1.0, 1.0);
+        volume.contains_xy(q).then_some(q.extend(z))
+    };
+    volume.rim(n).into_iter().filter_map(inner).collect()
+}
+
 const NONE: u32 = u32::MAX;
 
 /// Cubes with the points in them as linked lists: one row a cube, one a point.

@@ -235,6 +235,7 @@ fn the_three_coefficient_sets_of_the_paper_bend_twigs_to_the_contour_more_and_mo
         let first: Vec<f64> = made.plant.axes[made.drawn..]
             .iter()
             .filter(|a| a.order == 1)
+            .take(25)
             .map(|a| {
                 let p = &made.plant.nodes.position[a.nodes.start as usize..a.nodes.end as usize];
                 (p[1] - p[0]).normalize().y

@@ -9,7 +9,7 @@ use plant::{AxisId, AxisKind, Phyllotaxis, Plant};
 
 use super::crown::{MOST_TWIGS, count_of};
 use super::grow::{Site, add_axis, add_sites, attach, eq2, grow_toward};
-use super::scatter::scatter;
+use super::scatter::{scatter, scatter_rim};
 use super::volume::Volume;
 use crate::FillSpec;
 
@@ -21,6 +21,8 @@ pub(super) struct Twigs<'a> {
     pub(super) seed: Seed,
     pub(super) bearers: &'a [AxisId],
     pub(super) kind: AxisKind,
+    /// Which contour of its bearer this is.
+    pub(super) salt: u64,
 }
 
 impl Twigs<'_> {
@@ -32,7 +34,7 @@ impl Twigs<'_> {
     pub(super) fn grow(&self, plant: &mut Plant, sites: &mut Vec<Site>) -> usize {
         let before = plant.axes.len();
         let v = self.volume;
-        sites.extend(inner_sites(plant, v, self.bearers));
+        sites.extend(inner_sites(plant, v, self.bearers, self.salt));
         if sites.is_empty() {
             return 0;
         }
@@ -43,36 +45,42 @@ impl Twigs<'_> {
         // paper's Table 1.
         let spacing = 0.3 * reach / self.spec.density;
         let mut stream = self.seed.stream(Draw::Attractors);
-        let attractors = self.attractors(reach, &mut stream);
+        let contour = self.attractors(reach, 320, &mut stream);
+        let mut wobble = self.seed.stream(Draw::TwigPlace);
         let step = reach / 7.0;
         let starts = spaced(plant, sites, spacing);
         let spiral = Phyllotaxis::default();
         let turn = self.seed.stream(Draw::Phyllotaxis).range(0.0, ops::TAU);
         let mut points = Vec::new();
-        let mut taken = vec![false; attractors.len()];
         for (rank, &i) in starts.iter().enumerate().take(MOST_TWIGS) {
             let azimuth = turn + spiral.azimuth(u32::try_from(rank).unwrap_or(u32::MAX), 0);
-            self.follow(sites[i], azimuth, step, &attractors, &mut taken, &mut points);
+            self.follow(sites[i], azimuth, step, &contour, &mut wobble, &mut points);
             let path = sites[i].path;
             if let Some(axis) = self.keep(plant, &mut sites[i], &points, step) {
                 add_sites(plant, axis, 1, path, sites);
             }
         }
-        // Second order: what is farther from every twig than they are from each other.
-        let gap = 1.1 * ops::cbrt(v.bulk() / count_of(2.2 * starts.len() as f64, 8, MOST_TWIGS) as f64);
-        let empty: Vec<DVec3> = attractors
-            .iter()
-            .filter(|a| sites.iter().all(|s| s.at.distance_squared(**a) > 0.4 * gap * gap))
-            .copied()
-            .collect();
+        // Second order: twigs from twigs to what no twig has come near to.
+        let gap = 0.42 * reach / ops::cbrt(self.spec.density);
+        let covered = |sites: &[Site], p: DVec3| {
+            sites.iter().any(|s| {
+                let d = s.at - p;
+                // Gaps in depth are not seen in the drawing: they count half.
+                d.truncate().length_squared() + 0.25 * d.z * d.z < gap * gap
+            })
+        };
+        let n = count_of(90.0 * self.spec.density, 40, MOST_TWIGS);
+        let empty = self.attractors(reach, n, &mut stream);
+        // A twig that starts near the contour would run along it.
+        let mut inner: Vec<Site> = sites.iter().filter(|s| v.inset(s.at) > 0.3 * reach).copied().collect();
         for target in empty.into_iter().take(MOST_TWIGS.saturating_sub(starts.len())) {
-            if sites.iter().any(|s| s.at.distance_squared(target) < 0.4 * gap * gap) {
+            if covered(sites, target) {
                 continue;
             }
-            let Some(i) = attach(v, sites, target, 0) else { continue };
-            let from = sites[i];
+            let Some(i) = attach(v, &inner, target, 0) else { continue };
+            let from = inner[i];
             grow_toward(v, &self.spec, (from.at, from.tangent), target, step, &mut stream, &mut points);
-            if let Some(axis) = self.keep(plant, &mut sites[i], &points, step) {
+            if let Some(axis) = self.keep(plant, &mut inner[i], &points, step) {
                 add_sites(plant, axis, 2, from.path, sites);
             }
         }
@@ -86,25 +94,26 @@ impl Twigs<'_> {
     }
 
     /// Points on the contour (drawn in by a little) and on the body's front and back.
-    fn attractors(&self, reach: f64, stream: &mut base::Stream) -> Vec<DVec3> {
+    fn attractors(&self, reach: f64, n: usize, stream: &mut base::Stream) -> Vec<DVec3> {
         let v = self.volume;
         let margin = (0.12 * reach).max(v.cell());
-        let n = count_of(110.0 * self.spec.density, 40, MOST_TWIGS);
-        scatter(v, n, stream, |p| {
+        let mut points = scatter_rim(v, n / 2, (margin, 0.4), stream);
+        points.extend(scatter(v, n - points.len(), stream, |p| {
             let inset = v.inset(p);
             inset > margin && inset < margin + 0.22 * v.inradius
-        })
+        }));
+        points
     }
 
-    /// One twig by Eq 2: in every step towards the nearest free attraction point on its side, along its
+    /// One twig by Eq 2: in every step towards the nearest attraction points on its side, along its
     /// bearer, and on as it went.
     fn follow(
         &self,
         site: Site,
         azimuth: f64,
         step: f64,
-        attractors: &[DVec3],
-        taken: &mut [bool],
+        contour: &[DVec3],
+        wobble: &mut base::Stream,
         out: &mut Vec<DVec3>,
     ) {
         let v = self.volume;
@@ -113,34 +122,30 @@ impl Twigs<'_> {
         let across = site.tangent.cross(DVec3::Z).try_normalize().unwrap_or(DVec3::X);
         let front = across.cross(site.tangent);
         let (sa, ca) = sin_cos(azimuth);
-        let side = (across * ca + front * (0.8 * sa)).normalize_or_zero();
+        // Rather in the drawing's plane than towards the viewer: that is where the contour was drawn.
+        let side = (across * ca + front * (0.65 * sa)).normalize_or_zero();
         let (mut p, mut last) = (site.at, site.tangent);
         for _ in 0..60 {
-            let mut best: Option<(f64, usize)> = None;
-            for (k, a) in attractors.iter().enumerate() {
-                let from_start = *a - site.at;
-                let d = p.distance_squared(*a);
-                if !taken[k]
-                    && best.is_none_or(|(b, _)| d < b)
-                    && from_start.dot(side) > 0.3 * from_start.length()
-                    && from_start.dot(site.tangent) > -0.1 * from_start.length()
-                {
-                    best = Some((d, k));
+            // The paper takes the nearest point; a mean that falls off as 1/d^4 is as near and does not jump.
+            let (mut toward, mut nearest) = (DVec3::ZERO, f64::INFINITY);
+            for &a in contour {
+                let from_start = a - site.at;
+                if from_start.dot(side) > 0.4 * from_start.length() {
+                    let d2 = p.distance_squared(a).max(1e-18);
+                    toward += (a - p) / (d2 * d2 * d2.sqrt());
+                    nearest = nearest.min(d2);
                 }
             }
-            let Some((d, k)) = best else { return };
-            let to = (attractors[k] - p) / d.sqrt().max(1e-12);
-            let pull = eq2(&self.spec, to, site.tangent, last) + DVec3::Y * (0.5 * self.spec.tropism);
+            let Some(toward) = toward.try_normalize() else { return };
+            let noise = DVec3::new(wobble.normal(), wobble.normal(), wobble.normal()) * 0.06;
+            let pull =
+                eq2(&self.spec, toward, site.tangent, last) + DVec3::Y * (0.5 * self.spec.tropism) + noise;
             let q = p + pull * step;
-            let arrived = d.sqrt() < 1.2 * step;
-            let q = if arrived { attractors[k] } else { q };
-            let mid = p.lerp(q, 0.5).truncate();
-            if !(v.contains_xy(q.truncate()) && v.contains_xy(mid)) {
+            if !(v.contains_xy(q.truncate()) && v.contains_xy(p.lerp(q, 0.5).truncate())) {
                 return;
             }
             out.push(q);
-            if arrived || v.inset(q) < 0.5 * step {
-                taken[k] = true;
+            if nearest.sqrt() < 0.6 * step || v.inset(q) < 0.5 * step {
                 return;
             }
             last = (q - p).try_normalize().unwrap_or(last);
@@ -150,7 +155,7 @@ impl Twigs<'_> {
 }
 
 /// Places on the drawn axes inside the contour; where there is none, the place nearest to it.
-pub(super) fn inner_sites(plant: &Plant, volume: &Volume, bearers: &[AxisId]) -> Vec<Site> {
+pub(super) fn inner_sites(plant: &Plant, volume: &Volume, bearers: &[AxisId], salt: u64) -> Vec<Site> {
     let mut sites = Vec::new();
     let mut outside: Option<(f64, Site)> = None;
     for &axis in bearers {
@@ -170,6 +175,7 @@ pub(super) fn inner_sites(plant: &Plant, volume: &Volume, bearers: &[AxisId]) ->
     if sites.is_empty() {
         sites.extend(outside.map(|(_, s)| s));
     }
+    sites.iter_mut().for_each(|s| s.salt = salt);
     sites
 }
 

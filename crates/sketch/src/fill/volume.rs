@@ -217,6 +217,33 @@ impl Volume {
         self.cell_of(clamped).map_or(p, |(ix, iy)| self.nearest[iy * self.nx + ix])
     }
 
+    /// At most `n` points of the contour at equal arc lengths.
+    pub(super) fn rim(&self, n: usize) -> Vec<DVec2> {
+        let count = self.outline.len();
+        let edge = |e: usize| (self.outline[e], self.outline[(e + 1) % count]);
+        let whole: f64 = (0..count).map(|e| edge(e).0.distance(edge(e).1)).sum();
+        let spacing = whole / n.max(1) as f64;
+        let mut out = Vec::with_capacity(n);
+        let (mut at, mut next) = (0.0, 0.5 * spacing);
+        for (a, b) in (0..count).map(edge) {
+            let long = a.distance(b);
+            while next < at + long && out.len() < n {
+                out.push(a.lerp(b, (next - at) / long));
+                next += spacing;
+            }
+            at += long;
+        }
+        out
+    }
+
+    /// Unit direction into the contour from a point on it; zero where it has none.
+    pub(super) fn inward(&self, p: DVec2) -> DVec2 {
+        let h = DVec2::splat(self.cell);
+        let dx = self.clearance(p + h * DVec2::X) - self.clearance(p - h * DVec2::X);
+        let dy = self.clearance(p + h * DVec2::Y) - self.clearance(p - h * DVec2::Y);
+        DVec2::new(dx, dy).normalize_or_zero()
+    }
+
     /// Distance from an inner point to the surface along a unit vector, at most `reach`; to half a cell.
     pub(super) fn ray(&self, from: DVec3, direction: DVec3, reach: f64) -> f64 {
         let step = self.cell * 0.5;
