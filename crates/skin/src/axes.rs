@@ -1,0 +1,255 @@
+//! Axes -> tubes: axes that continue one another become one tube, the others grow out of their bearers.
+
+use base::{Cancelled, Run, map_indexed};
+use glam::DVec3;
+use mesh::TriMesh;
+use plant::{AxisId, AxisKind, NodeId, Plant};
+
+use crate::fork::{Bearer, Collar};
+use crate::rings::place;
+use crate::spec::{Budget, SkinSpec, whole};
+use crate::spine::Spine;
+use crate::tube::{Circle, Sleeve, drop_flat};
+
+/// Which part of the model an axis belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Surface {
+    Bark,
+    Stem,
+    Root,
+}
+
+impl Surface {
+    fn of(kind: AxisKind) -> Self {
+        match kind {
+            AxisKind::Branch | AxisKind::Twig => Self::Bark,
+            AxisKind::Root => Self::Root,
+            // Stem, petiole, and kinds to come that are not known to be woody.
+            _ => Self::Stem,
+        }
+    }
+}
+
+/// Axes that follow one another tip to base, meshed as one tube.
+#[derive(Debug)]
+struct Chain {
+    axes: Vec<AxisId>,
+    bearer: Option<NodeId>,
+    surface: Surface,
+}
+
+/// One finished tube.
+#[derive(Debug)]
+pub(crate) struct Tube {
+    pub surface: Surface,
+    pub mesh: TriMesh,
+}
+
+/// Where an axis lies: its chain, and the number of its first node among the chain's points.
+type Place = (usize, usize);
+
+// Tubes are made in groups of this many: one job each would cost more than the tube.
+const GROUP: usize = 16;
+
+/// The tubes of every axis, in the order of the axes.
+///
+/// # Errors
+/// [`Cancelled`].
+pub(crate) fn tubes(
+    plant: &Plant,
+    spec: &SkinSpec,
+    budget: &Budget,
+    run: &Run<'_>,
+) -> Result<Vec<Tube>, Cancelled> {
+    let (chains, places) = chains(plant);
+    let spines = grouped(run, chains.len(), |i| spine(plant, &chains[i], budget))?;
+    let thickest = spines.iter().flatten().map(|s| s.r[0]).fold(0.0, f64::max);
+    let sides: Vec<u32> =
+        spines.iter().map(|s| s.as_ref().map_or(3, |s| budget.sides(s.r[0], spec.sides))).collect();
+    // Circles for every number of sides that can occur, 3 to 24.
+    let circles: Vec<Circle> = (0..=24).map(Circle::new).collect();
+    grouped(run, chains.len(), |i| {
+        let (chain, spine) = (&chains[i], spines[i].as_ref()?);
+        let bearer = chain.bearer.and_then(|node| {
+            let axis = *plant.nodes.axis.get(node.index())?;
+            let &(host, offset) = places.get(axis.index())?;
+            let local = node.index().checked_sub(plant.axis(axis).nodes.start as usize)? + offset;
+            let host_spine = spines.get(host)?.as_ref()?;
+            let at = host_spine.knots.partition_point(|&(_, input)| input < local);
+            let (sample, _) = *host_spine.knots.get(at).or(host_spine.knots.last())?;
+            Some(Bearer { spine: host_spine, sample, sides: sides[host] })
+        });
+        // The bark of a trunk repeats twice around, so that its texels are not much larger than a twig's.
+        let repeats = match chain.surface {
+            Surface::Bark if spine.r[0] > 0.6 * thickest => 2,
+            _ => 1,
+        };
+        let circle = circles.get(sides[i] as usize)?;
+        let mesh = sleeve(spine, bearer.as_ref(), circle, repeats, budget.rings(spine.length()));
+        Some(Tube { surface: chain.surface, mesh })
+    })
+    .map(|tubes| tubes.into_iter().flatten().collect())
+}
+
+/// [`map_indexed`] in groups, with a look at the cancel flag before each.
+fn grouped<T: Send>(run: &Run<'_>, n: usize, f: impl Fn(usize) -> T + Sync) -> Result<Vec<T>, Cancelled> {
+    let groups = map_indexed(run.executor, n.div_ceil(GROUP), |g| {
+        run.cancel.check()?;
+        Ok((g * GROUP..n.min((g + 1) * GROUP)).map(&f).collect::<Vec<T>>())
+    });
+    let mut out = Vec::with_capacity(n);
+    for group in groups {
+        out.extend(group?);
+    }
+    Ok(out)
+}
+
+/// One tube: fillet or flat base, rings, round tip.
+fn sleeve(
+    spine: &Spine,
+    bearer: Option<&Bearer<'_>>,
+    circle: &Circle,
+    repeats: u32,
+    rows: f64,
+) -> TriMesh {
+    let mut mesh = TriMesh::default();
+    // Small twigs spend fewer rows on their ends, so that some are left for the middle.
+    let (steps, tip) = if rows < 9.0 { (1, 1) } else { (3, 2) };
+    let ends = f64::from(steps + tip);
+    let capacity = (circle.sides() + 1) * (whole(rows) as usize + 4);
+    mesh.positions.reserve(capacity);
+    mesh.normals.reserve(capacity);
+    mesh.uvs.reserve(capacity);
+    mesh.triangles.reserve(2 * capacity);
+    let mut out = Sleeve::new(&mut mesh, circle, repeats);
+    let rings = (rows - ends).max(3.0);
+    match bearer.and_then(|b| Collar::new(spine, b, circle, steps, rings)) {
+        Some((collar, rings)) => {
+            collar.write(&mut out, spine.p[0], rings[0].radius);
+            out.rings(&rings);
+            out.round_tip(&rings[rings.len() - 1], tip);
+        }
+        None => {
+            let rings = place(spine, 0.0, rings);
+            out.flat_base(&rings[0]);
+            out.rings(&rings);
+            out.round_tip(&rings[rings.len() - 1], tip);
+        }
+    }
+    drop_flat(&mut mesh);
+    mesh
+}
+
+/// Groups axes that continue their bearer's tip; also says where each axis went.
+fn chains(plant: &Plant) -> (Vec<Chain>, Vec<Place>) {
+    let n = plant.axes.len();
+    let heir = heirs(plant);
+    let mut chains: Vec<Chain> = Vec::with_capacity(n);
+    let mut places: Vec<Place> = vec![(usize::MAX, 0); n];
+    for i in 0..n {
+        if places[i].0 != usize::MAX {
+            continue;
+        }
+        let id = AxisId::new(i);
+        let axis = plant.axis(id);
+        let mut chain = Chain { axes: vec![id], bearer: axis.bearer, surface: Surface::of(axis.kind) };
+        places[i] = (chains.len(), 0);
+        let mut offset = axis.nodes.len();
+        let mut tip = i;
+        while let Some(next) = heir[tip] {
+            // The heir's first node is the bearer's last: it stands for both.
+            places[next] = (chains.len(), offset - 1);
+            offset += plant.axes[next].nodes.len() - 1;
+            chain.axes.push(AxisId::new(next));
+            tip = next;
+        }
+        chains.push(chain);
+    }
+    (chains, places)
+}
+
+/// For each axis the one that continues it: borne by its last node, of the same surface, not turning away by
+/// more than 65 degrees, the thickest and straightest of them.
+fn heirs(plant: &Plant) -> Vec<Option<usize>> {
+    let mut heir: Vec<Option<(f64, usize)>> = vec![None; plant.axes.len()];
+    for (i, axis) in plant.axes.iter().enumerate() {
+        let Some(bearer) = axis.bearer else { continue };
+        let Some(&host) = plant.nodes.axis.get(bearer.index()) else { continue };
+        // A bearer comes before what it bears: chains cannot close to a ring.
+        if host.index() >= i || plant.axis(host).nodes.end as usize != bearer.index() + 1 {
+            continue;
+        }
+        if Surface::of(plant.axis(host).kind) != Surface::of(axis.kind) || axis.nodes.len() < 2 {
+            continue;
+        }
+        let (a, b) = (end_direction(plant, host), start_direction(plant, AxisId::new(i)));
+        let cos = a.dot(b);
+        let radius = plant.axis_radii(AxisId::new(i)).first().copied().unwrap_or(0.0);
+        let tip = plant.axis_radii(host).last().copied().unwrap_or(0.0);
+        // cos 65 degrees; and a thin stalk on a stout end is a stalk, not the stem going on.
+        if cos < 0.42 || radius < 0.45 * tip {
+            continue;
+        }
+        let score = radius * cos;
+        if heir[host.index()].is_none_or(|(best, _)| score > best) {
+            heir[host.index()] = Some((score, i));
+        }
+    }
+    heir.into_iter().map(|h| h.map(|(_, i)| i)).collect()
+}
+
+fn start_direction(plant: &Plant, id: AxisId) -> DVec3 {
+    direction(plant.axis_points(id).iter())
+}
+
+fn end_direction(plant: &Plant, id: AxisId) -> DVec3 {
+    -direction(plant.axis_points(id).iter().rev())
+}
+
+/// From the first point to the first one that differs.
+fn direction<'a>(mut points: impl Iterator<Item = &'a DVec3>) -> DVec3 {
+    let Some(&a) = points.next() else { return DVec3::Y };
+    points.find_map(|&b| (b - a).try_normalize()).unwrap_or(DVec3::Y)
+}
+
+fn spine(plant: &Plant, chain: &Chain, budget: &Budget) -> Option<Spine> {
+    let mut points: Vec<DVec3> = Vec::new();
+    let mut radii: Vec<f64> = Vec::new();
+    for (k, &id) in chain.axes.iter().enumerate() {
+        let (p, r) = (plant.axis_points(id), plant.axis_radii(id));
+        if k == 0 {
+            points.extend_from_slice(p);
+            radii.extend_from_slice(r);
+        } else {
+            // At the joint the radii of tip and heir meet in the middle.
+            if let (Some(tip), Some(first)) = (radii.last_mut(), r.first()) {
+                *tip = 0.5 * (*tip + *first);
+            }
+            points.extend_from_slice(p.get(1..)?);
+            radii.extend_from_slice(r.get(1..)?);
+        }
+    }
+    let length = geom_length(&points);
+    let rows = budget.rings(length);
+    // A branch leaves a little in its bearer's direction before it takes its own.
+    let first = chain.bearer.and_then(|node| {
+        let host = *plant.nodes.axis.get(node.index())?;
+        let range = &plant.axis(host).nodes;
+        let (a, b) = (node.index().checked_sub(1)?, node.index() + 1);
+        let a = a.max(range.start as usize);
+        let b = b.min((range.end as usize).checked_sub(1)?);
+        let along = (*plant.nodes.position.get(b)? - *plant.nodes.position.get(a)?).try_normalize()?;
+        let own = start_direction(plant, chain.axes[0]);
+        let forward = own.dot(along) > -0.3;
+        (forward && own.is_finite()).then(|| (own + along * 0.3).normalize_or(own))
+    });
+    let mut spine = Spine::new(&points, &radii, 4 * whole(rows) as usize, first)?;
+    if chain.bearer.is_none() && chain.surface == Surface::Bark {
+        spine.root_flare();
+    }
+    Some(spine)
+}
+
+fn geom_length(points: &[DVec3]) -> f64 {
+    points.windows(2).map(|w| w[0].distance(w[1])).filter(|d| d.is_finite()).fold(0.0, |sum, d| sum + d)
+}

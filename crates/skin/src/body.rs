@@ -1,0 +1,220 @@
+//! Discs, fruits, stamens, thorns -> triangles in their own frames.
+
+use base::ops;
+use glam::{DVec2, DVec3};
+use mesh::TriMesh;
+
+use crate::spec::whole;
+use crate::texture::{DISC_RADIUS, RECEPTACLE_AT, unevenness};
+use crate::tube::{Circle, TubeSpec, drop_flat, narrow, narrow2, tube};
+
+/// Columns that grow together.
+#[derive(Default)]
+struct Columns(TriMesh);
+
+impl Columns {
+    fn vertex(&mut self, p: DVec3, uv: (f64, f64)) -> u32 {
+        self.0.uvs.push(narrow2(uv.0, uv.1));
+        self.0.push(p)
+    }
+
+    /// Two triangles between columns `j` and `j + 1` of the rows that start at `a` and `b`.
+    fn quad(&mut self, a: u32, b: u32, j: u32) {
+        self.0.triangles.push([a + j, a + j + 1, b + j]);
+        self.0.triangles.push([a + j + 1, b + j + 1, b + j]);
+    }
+}
+
+/// A disc: a dome of florets around +z, closed below by the receptacle. About `triangles` triangles.
+pub(crate) fn dome(radius: f64, height: f64, triangles: f64) -> TriMesh {
+    let sides = whole((1.5 * triangles).sqrt().round().clamp(8.0, 64.0));
+    let rows = (sides / 3).max(3);
+    let circle = Circle::new(sides);
+    let mut out = Columns::default();
+    let at = |q: f64, (cos, sin): (f64, f64)| {
+        // Florets stand uneven; the rim keeps its place.
+        let rough = 0.05 * radius * unevenness(q * cos, q * sin) * (1.0 - q * q);
+        let swell = (1.0 - q * q).max(0.0).sqrt() * (1.0 - 0.18 * (1.0 - q) * (1.0 - q));
+        DVec3::new(radius * q * cos, radius * q * sin, height * swell + rough)
+    };
+    let apex = out.vertex(at(0.0, (1.0, 0.0)), (0.5, 0.5));
+    for k in 1..=rows {
+        // Even steps of the angle: rows crowd at the rim, where the dome is steep.
+        let q = ops::sin(ops::FRAC_PI_2 * f64::from(k) / f64::from(rows));
+        for &(cos, sin) in &circle.0[..sides as usize] {
+            out.vertex(at(q, (cos, sin)), (0.5 + DISC_RADIUS * q * cos, 0.5 - DISC_RADIUS * q * sin));
+        }
+    }
+    let first = |k: u32| apex + 1 + (k - 1) * sides;
+    for j in 0..sides {
+        let next = (j + 1) % sides;
+        out.0.triangles.push([apex, first(1) + j, first(1) + next]);
+        for k in 1..rows {
+            let (a, b) = (first(k), first(k + 1));
+            out.0.triangles.push([a + j, b + j, b + next]);
+            out.0.triangles.push([a + j, b + next, a + next]);
+        }
+    }
+    // The receptacle: a shallow cup below, green, with vertices of its own for the hard rim.
+    let depth = 0.55 * height.abs().max(0.4 * radius);
+    let rim = out.0.positions.len();
+    for &corner in &circle.0[..sides as usize] {
+        out.vertex(at(1.0, corner), RECEPTACLE_AT);
+    }
+    let cup = out.0.positions.len();
+    for &(cos, sin) in &circle.0[..sides as usize] {
+        out.vertex(DVec3::new(0.6 * radius * cos, 0.6 * radius * sin, -0.6 * depth), RECEPTACLE_AT);
+    }
+    let foot = out.vertex(DVec3::new(0.0, 0.0, -depth), RECEPTACLE_AT);
+    let (rim, cup) = (crate::parts::index(rim), crate::parts::index(cup));
+    for j in 0..sides {
+        let next = (j + 1) % sides;
+        out.0.triangles.push([rim + j, cup + j, rim + next]);
+        out.0.triangles.push([cup + j, cup + next, rim + next]);
+        out.0.triangles.push([cup + j, foot, cup + next]);
+    }
+    drop_flat(&mut out.0);
+    out.0.compute_normals();
+    out.0
+}
+
+/// A body of revolution around +y; with `ribs` the skin is fluted, as a cactus's is.
+pub(crate) fn revolution(profile: &[DVec2], triangles: f64, ribs: u32) -> TriMesh {
+    let line = generating_line(profile, triangles);
+    if line.len() < 2 {
+        return TriMesh::default();
+    }
+    #[expect(clippy::cast_precision_loss, reason = "a few dozen rows")]
+    let rows = line.len() as f64;
+    let sides = whole((0.5 * triangles / rows).round().clamp(8.0, 64.0));
+    let sides = if ribs > 0 { (4 * ribs).min(64) } else { sides };
+    let circle = Circle::new(sides);
+    let (low, high) = (line[0].y, line[line.len() - 1].y);
+    let height = if (high - low).abs() > 0.0 { high - low } else { 1.0 };
+    let mut out = Columns::default();
+    let mut rows: Vec<u32> = Vec::with_capacity(line.len());
+    for p in &line {
+        rows.push(crate::parts::index(out.0.positions.len()));
+        for (j, &(cos, sin)) in (0_u32..).zip(&circle.0) {
+            let u = f64::from(j) / f64::from(sides);
+            let flute = if ribs > 0 { 1.0 + 0.07 * (ops::cos(ops::TAU * f64::from(ribs) * u) - 1.0) } else { 1.0 };
+            // +y is the axis: the angle runs from +z towards +x, so that rows wind outwards.
+            let r = p.x * flute;
+            out.vertex(DVec3::new(r * sin, p.y, r * cos), (u, (high - p.y) / height));
+        }
+    }
+    for pair in rows.windows(2) {
+        for j in 0..sides {
+            out.quad(pair[0], pair[1], j);
+        }
+    }
+    for (end, row) in [(line[0], rows[0]), (line[line.len() - 1], rows[rows.len() - 1])] {
+        if end.x <= 0.0 {
+            continue;
+        }
+        let lower = row == rows[0];
+        let pole = out.vertex(DVec3::new(0.0, end.y, 0.0), (0.5, (high - end.y) / height));
+        for j in 0..sides {
+            let (a, b) = if lower { (row + j + 1, row + j) } else { (row + j, row + j + 1) };
+            out.0.triangles.push([a, b, pole]);
+        }
+    }
+    drop_flat(&mut out.0);
+    smooth_seam(&mut out.0, &rows, sides);
+    out.0
+}
+
+/// The profile, smooth and with few enough points; from the lower to the upper pole.
+fn generating_line(profile: &[DVec2], triangles: f64) -> Vec<DVec2> {
+    let mut points: Vec<DVec3> = Vec::with_capacity(profile.len());
+    for p in profile.iter().filter(|p| p.is_finite()) {
+        let q = DVec3::new(p.x.max(0.0), p.y, 0.0);
+        if points.last() != Some(&q) {
+            points.push(q);
+        }
+    }
+    if points.len() < 2 {
+        return Vec::new();
+    }
+    if points[0].y > points[points.len() - 1].y {
+        points.reverse();
+    }
+    let rows = (0.3 * triangles).sqrt().clamp(4.0, 64.0);
+    let smooth = geom::catmull_rom(&points, 6);
+    let step = geom::polyline_length3(&smooth) / rows;
+    if !(step.is_finite() && step > 0.0) {
+        return Vec::new();
+    }
+    geom::resample3(&smooth, step).iter().map(|p| DVec2::new(p.x.max(0.0), p.y)).collect()
+}
+
+/// Smooth normals that agree along the seam and at the poles.
+fn smooth_seam(mesh: &mut TriMesh, rows: &[u32], sides: u32) {
+    mesh.compute_normals();
+    let wide = |n: [f32; 3]| DVec3::new(f64::from(n[0]), f64::from(n[1]), f64::from(n[2]));
+    for &row in rows {
+        let (a, b) = (row as usize, (row + sides) as usize);
+        let same = (1..sides as usize).all(|j| mesh.positions[a + j] == mesh.positions[a]);
+        let n = if same {
+            // A pole: every copy looks along the axis.
+            DVec3::Y * if row == rows[0] { -1.0 } else { 1.0 }
+        } else {
+            (wide(mesh.normals[a]) + wide(mesh.normals[b])).try_normalize().unwrap_or(DVec3::Y)
+        };
+        let range = if same { a..b + 1 } else { a..a + 1 };
+        mesh.normals[range].fill(narrow(n));
+        mesh.normals[b] = narrow(n);
+    }
+}
+
+/// A strand with a closed end and, for `knob > 0`, a ball at it. The texture's upper half (v below one half) is
+/// the ball's, the lower half the strand's, its foot at v = 1; without a ball the whole texture is the
+/// strand's, its foot at v = 0.
+pub(crate) fn strand(path: &[DVec3], radii: &[f64], knob: f64, fine: bool) -> TriMesh {
+    let (sides, rings) = if fine { (7, 8) } else { (4, 3) };
+    let mut mesh = tube(path, radii, &TubeSpec { sides, rings, repeats: 1 });
+    let most = mesh.uvs.iter().map(|uv| uv[1]).fold(f32::MIN_POSITIVE, f32::max);
+    for uv in &mut mesh.uvs {
+        let along = (uv[1] / most).clamp(0.0, 1.0);
+        uv[1] = if knob > 0.0 { 1.0 - 0.5 * along } else { along };
+    }
+    if knob > 0.0 && !mesh.positions.is_empty() {
+        let (Some(&end), before) = (path.last(), path.iter().rev().nth(1)) else { return mesh };
+        let axis = before.and_then(|b| (end - *b).try_normalize()).unwrap_or(DVec3::Y);
+        mesh.append(&ball(end, axis, knob, if fine { 8 } else { 5 }));
+    }
+    mesh
+}
+
+/// A ball, a little longer along its axis, for anthers and stigmas.
+fn ball(centre: DVec3, axis: DVec3, radius: f64, sides: u32) -> TriMesh {
+    let circle = Circle::new(sides);
+    let across = axis.any_orthonormal_vector();
+    let up = axis.cross(across);
+    let rows = sides / 2;
+    let mut out = Columns::default();
+    let mut normals = Vec::new();
+    let mut starts = Vec::new();
+    for k in 0..=rows {
+        let (sin, cos) = ops::sin_cos(ops::PI * f64::from(k) / f64::from(rows));
+        starts.push(crate::parts::index(out.0.positions.len()));
+        // The poles' sine is not quite 0 in floating point; their copies must coincide.
+        let sin = if k == 0 || k == rows { 0.0 } else { sin };
+        for (j, &(c, s)) in (0_u32..).zip(&circle.0) {
+            let n = (across * c + up * s) * sin - axis * cos;
+            normals.push(narrow(n.normalize_or(axis)));
+            let p = centre + n * radius - axis * (cos * 0.35 * radius);
+            let v = 0.02 + 0.46 * (1.0 - f64::from(k) / f64::from(rows));
+            out.vertex(p, (f64::from(j) / f64::from(sides), v));
+        }
+    }
+    for pair in starts.windows(2) {
+        for j in 0..sides {
+            out.quad(pair[0], pair[1], j);
+        }
+    }
+    let mut mesh = out.0;
+    mesh.normals = normals;
+    drop_flat(&mut mesh);
+    mesh
+}

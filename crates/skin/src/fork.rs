@@ -1,0 +1,201 @@
+//! Where a branch leaves its bearer: a fillet from the bearer's surface to the branch's own tube.
+
+use glam::DVec3;
+
+use crate::rings::{Ring, place};
+use crate::spine::{Spine, Station};
+use crate::tube::{Circle, Sleeve};
+
+/// The bearer of a branch.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bearer<'a> {
+    pub spine: &'a Spine,
+    /// The sample at which the branch starts.
+    pub sample: usize,
+    /// Sides of the bearer's tube: its flat faces lie deeper than its radius.
+    pub sides: u32,
+}
+
+/// Where the fillet lies along a branch, as arc lengths of its spine.
+#[derive(Clone, Copy, Debug)]
+struct Reach {
+    /// Where the centre line leaves the bearer.
+    exit: f64,
+    /// Where the fillet ends and the branch's own tube starts.
+    top: f64,
+}
+
+/// The rows of a fillet: `rows` x (sides + 1) corners and normals, from foot to top; the top row is the tube's
+/// first ring.
+#[derive(Debug, Default)]
+pub(crate) struct Collar {
+    pub corners: Vec<DVec3>,
+    pub normals: Vec<DVec3>,
+    pub width: usize,
+    /// Where the tube's rings start.
+    pub top: f64,
+}
+
+// A branch that runs along its bearer leaves it only far out; from this sine on its fillet is cut short.
+const SHALLOWEST: f64 = 0.22;
+
+/// Where `branch` leaves its bearer; `None` where it never does (it ends inside).
+fn reach(branch: &Spine, bearer: &Bearer<'_>) -> Option<Reach> {
+    let mut hint = bearer.sample;
+    let mut exit = None;
+    for (p, s) in branch.p.iter().zip(&branch.s) {
+        let (station, near) = bearer.spine.nearest(*p, hint);
+        hint = near;
+        if station.centre.distance(*p) > station.radius {
+            exit = Some((*s, station));
+            break;
+        }
+    }
+    let (exit, at) = exit?;
+    let own = branch.at(exit);
+    let cos = own.tangent.dot(at.tangent);
+    let sin = (1.0 - cos * cos).max(0.0).sqrt().max(SHALLOWEST);
+    // On a thick bearer the fillet is as long as the branch is thick; on one of like thickness it may take 1.2
+    // of the bearer's radius.
+    let length = 1.2 * at.radius.min(2.2 * own.radius);
+    let top = exit + own.radius * cos.abs() / sin + length;
+    let room = branch.length() - exit;
+    Some(Reach { exit, top: top.min(exit + 0.6 * room) })
+}
+
+impl Collar {
+    /// The fillet of `branch` on its bearer with `steps` rows between foot and top, and the tube's rings.
+    ///
+    /// Its foot lies on the bearer's surface, sunk just below the flat faces, with the bearer's normals: light
+    /// passes from one to the other without an edge. `None` where the branch ends inside its bearer.
+    pub(crate) fn new(
+        branch: &Spine,
+        bearer: &Bearer<'_>,
+        circle: &Circle,
+        steps: u32,
+        rings: f64,
+    ) -> Option<(Self, Vec<Ring>)> {
+        let reach = reach(branch, bearer)?;
+        let rings = place(branch, reach.top, rings);
+        let top = rings.first()?;
+        let at = branch.at(reach.exit);
+        let (axis, hint) = bearer.spine.nearest(at.centre, bearer.sample);
+        // Seen from the top ring, the branch comes from where it left the bearer.
+        let back = (at.centre - top.centre).try_normalize().unwrap_or(-top.tangent);
+        let flare = (0.9 * axis.radius - top.radius).clamp(0.0, 0.9 * top.radius).max(0.12 * top.radius);
+        let width = circle.sides() + 1;
+        let sunk = base::ops::cos(base::ops::PI / f64::from(bearer.sides.max(3))) * 0.97;
+        let mut collar = Self {
+            corners: vec![DVec3::ZERO; width * (steps as usize + 2)],
+            normals: vec![DVec3::ZERO; width * (steps as usize + 2)],
+            width,
+            top: reach.top,
+        };
+        for (j, &corner) in circle.0.iter().enumerate() {
+            let ray = top.ray(corner);
+            let q = top.centre + ray * top.radius;
+            let knee = bearer.surface(hit(q, back, &axis), hint, 1.0);
+            let foot = bearer.surface(hit(q + ray * flare, back, &axis), hint, sunk);
+            for k in 0..=steps + 1 {
+                // Even steps of the parameter crowd a little at the knee, where the fillet turns.
+                let u = f64::from(k) / f64::from(steps + 1);
+                let (a, b, c) = ((1.0 - u) * (1.0 - u), 2.0 * u * (1.0 - u), u * u);
+                collar.corners[k as usize * width + j] = foot.0 * a + knee.0 * b + q * c;
+            }
+            collar.normals[j] = foot.1;
+            collar.normals[width * (steps as usize + 1) + j] = top.normal(ray);
+        }
+        collar.inner_normals(steps as usize);
+        Some((collar, rings))
+    }
+
+    fn inner_normals(&mut self, steps: usize) {
+        let w = self.width;
+        for k in 1..=steps {
+            for j in 0..w {
+                let (before, after) = (if j == 0 { w - 2 } else { j - 1 }, if j == w - 1 { 1 } else { j + 1 });
+                let around = self.corners[k * w + after] - self.corners[k * w + before];
+                let along = self.corners[(k + 1) * w + j] - self.corners[(k - 1) * w + j];
+                let normal = around.cross(along).try_normalize();
+                self.normals[k * w + j] = normal.unwrap_or(self.normals[(steps + 1) * w + j]);
+            }
+        }
+    }
+
+    /// Writes the closed base and every row but the last, which is the tube's first ring.
+    pub(crate) fn write(&self, out: &mut Sleeve<'_>, start: DVec3, radius: f64) {
+        let rows = self.corners.len() / self.width - 1;
+        for k in 0..rows {
+            let row = k * self.width..(k + 1) * self.width;
+            let corners = &self.corners[row.clone()];
+            #[expect(clippy::cast_precision_loss, reason = "at most 64 sides")]
+            let centre = corners[1..].iter().sum::<DVec3>() / (self.width - 1) as f64;
+            out.row(centre, radius, corners, &self.normals[row]);
+            if k == 0 {
+                out.hidden_base(start, (start - centre).try_normalize().unwrap_or(DVec3::NEG_Y));
+            }
+        }
+    }
+}
+
+impl Bearer<'_> {
+    /// The point of the bearer's surface (times `share` of its radius) nearest to `p`, and the normal there.
+    fn surface(&self, p: DVec3, hint: usize, share: f64) -> (DVec3, DVec3) {
+        let (at, _) = self.spine.nearest(p, hint);
+        let d = p - at.centre;
+        let out = d - at.tangent * d.dot(at.tangent);
+        let ray = out.try_normalize().unwrap_or_else(|| at.tangent.any_orthonormal_vector());
+        (at.centre + ray * (at.radius * share), (ray - at.tangent * at.slope).normalize())
+    }
+}
+
+/// Where the line from `q` along `d` meets the cylinder of a station first; its nearest point where it passes.
+fn hit(q: DVec3, d: DVec3, cylinder: &Station) -> DVec3 {
+    let square = |v: DVec3| v - cylinder.tangent * v.dot(cylinder.tangent);
+    let (w, a) = (square(q - cylinder.centre), square(d));
+    let aa = a.length_squared();
+    if aa < 1e-9 {
+        return q;
+    }
+    let b = -w.dot(a) / aa;
+    let inside = b * b - (w.length_squared() - cylinder.radius * cylinder.radius) / aa;
+    // Beyond 8 radii the line runs along the bearer rather than into it.
+    let far = 8.0 * cylinder.radius + (q - cylinder.centre).length();
+    q + d * (b - inside.max(0.0).sqrt()).clamp(0.0, far)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn foot_lies_inside_the_bearer_and_top_outside() {
+        for (angle, thick) in [(1.5, 0.02), (1.0, 0.05), (0.6, 0.08), (0.3, 0.03), (2.3, 0.095)] {
+            let (sin, cos) = base::ops::sin_cos(angle);
+            let trunk = Spine::new(&[DVec3::ZERO, DVec3::Y * 2.0], &[0.1, 0.1], 100, None).unwrap();
+            let dir = DVec3::new(sin, cos, 0.0);
+            let branch =
+                Spine::new(&[DVec3::Y, DVec3::Y + dir * 1.5], &[thick, thick * 0.6], 100, None).unwrap();
+            let bearer = Bearer { spine: &trunk, sample: 50, sides: 8 };
+            let circle = Circle::new(8);
+            let (collar, rings) = Collar::new(&branch, &bearer, &circle, 3, 20.0).unwrap();
+            for foot in &collar.corners[..collar.width] {
+                let r = (foot.x * foot.x + foot.z * foot.z).sqrt();
+                // Inside even the flat faces of the eight-sided bearer.
+                assert!(r < 0.1 * base::ops::cos(base::ops::PI / 8.0), "angle {angle}: foot at {r}");
+            }
+            let top = &collar.corners[collar.corners.len() - collar.width..];
+            let (_, s) = (rings[0].centre, rings[0].s);
+            assert!(top.iter().all(|p| p.x.is_finite()), "top at {s}");
+            assert!(s < branch.length(), "top at {s}");
+        }
+    }
+
+    #[test]
+    fn branch_that_ends_inside_has_no_collar() {
+        let trunk = Spine::new(&[DVec3::ZERO, DVec3::Y * 2.0], &[0.5, 0.5], 100, None).unwrap();
+        let twig = Spine::new(&[DVec3::Y, DVec3::new(0.2, 1.0, 0.0)], &[0.01, 0.01], 10, None).unwrap();
+        let bearer = Bearer { spine: &trunk, sample: 50, sides: 8 };
+        assert!(Collar::new(&twig, &bearer, &Circle::new(6), 2, 8.0).is_none());
+    }
+}

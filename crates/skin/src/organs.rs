@@ -1,0 +1,220 @@
+//! Organs -> meshes: each shape is triangulated once, its organs are moved and tinted copies.
+
+use base::{Cancelled, Draw, Run, Seed, map_indexed};
+use glam::DVec3;
+use mesh::TriMesh;
+use plant::{Organ, OrganKind, Plant, Shape};
+
+use crate::blade::blade_mesh;
+use crate::body::{dome, revolution, strand};
+use crate::parts::Slot;
+use crate::spec::{Budget, PetalColor, SkinSpec};
+use crate::tube::narrow;
+
+// Organs are copied in groups of about this many vertices: one job each would cost more than the copy.
+const GROUP: usize = 6000;
+
+/// The organs' meshes, gathered by slot in the order of the organs.
+///
+/// # Errors
+/// [`Cancelled`].
+pub(crate) fn organs(
+    plant: &Plant,
+    spec: &SkinSpec,
+    budget: &Budget,
+    run: &Run<'_>,
+) -> Result<Vec<(Slot, TriMesh)>, Cancelled> {
+    let scales = scales(plant);
+    let ground = Ground::new(plant, spec, budget);
+    let shapes = map_indexed(run.executor, plant.shapes.len(), |i| {
+        run.cancel.check()?;
+        Ok(scales[i].map_or_else(TriMesh::default, |scale| ground.shape(&plant.shapes[i], scale, budget)))
+    });
+    let shapes: Vec<TriMesh> = shapes.into_iter().collect::<Result<_, Cancelled>>()?;
+    let mut order: Vec<(Slot, usize)> = plant
+        .organs
+        .iter()
+        .enumerate()
+        .filter(|(_, o)| shapes.get(o.shape.index()).is_some_and(|m| !m.triangles.is_empty()) && sound(o))
+        .map(|(i, o)| (ground.slot(o, &plant.shapes[o.shape.index()]), i))
+        .collect();
+    order.sort_by_key(|&(slot, _)| slot);
+    let groups = groups(&order, |i| shapes[plant.organs[i].shape.index()].positions.len());
+    let meshes = map_indexed(run.executor, groups.len(), |g| {
+        run.cancel.check()?;
+        let members = &order[groups[g].clone()];
+        let mut mesh = TriMesh::default();
+        let vertices: usize =
+            members.iter().map(|&(_, i)| shapes[plant.organs[i].shape.index()].positions.len()).sum();
+        mesh.positions.reserve_exact(vertices);
+        mesh.normals.reserve_exact(vertices);
+        mesh.uvs.reserve_exact(vertices);
+        mesh.colors.reserve_exact(vertices);
+        for &(slot, i) in members {
+            let organ = &plant.organs[i];
+            place(&mut mesh, &shapes[organ.shape.index()], organ, tint(organ, slot, spec));
+        }
+        Ok((members[0].0, mesh))
+    });
+    meshes.into_iter().collect()
+}
+
+fn sound(organ: &Organ) -> bool {
+    let f = &organ.frame;
+    let axes = f.right.is_finite() && f.along.is_finite() && f.normal.is_finite();
+    axes && f.origin.is_finite() && organ.scale.is_finite() && organ.scale > 0.0
+}
+
+/// The largest scale at which each shape is used; `None` for a shape that nobody uses.
+fn scales(plant: &Plant) -> Vec<Option<f64>> {
+    let mut scales = vec![None; plant.shapes.len()];
+    for organ in plant.organs.iter().filter(|o| sound(o)) {
+        if let Some(s) = scales.get_mut(organ.shape.index()) {
+            *s = Some(organ.scale.max(s.unwrap_or(0.0)));
+        }
+    }
+    scales
+}
+
+/// Runs of one slot with about [`GROUP`] vertices each.
+fn groups(order: &[(Slot, usize)], vertices: impl Fn(usize) -> usize) -> Vec<core::ops::Range<usize>> {
+    let mut out = Vec::new();
+    let (mut start, mut held) = (0, 0);
+    for (k, &(slot, i)) in order.iter().enumerate() {
+        if k > start && (held > GROUP || slot != order[start].0) {
+            out.push(start..k);
+            (start, held) = (k, 0);
+        }
+        held += vertices(i);
+    }
+    if start < order.len() {
+        out.push(start..order.len());
+    }
+    out
+}
+
+/// What the plant as a whole decides for its organs.
+struct Ground {
+    petals: PetalColor,
+    /// Fruits taller than this are the plant's body.
+    body_from: f64,
+    /// Many thorns or stamens: coarse ones.
+    fine_strands: bool,
+}
+
+impl Ground {
+    fn new(plant: &Plant, spec: &SkinSpec, budget: &Budget) -> Self {
+        let strands = plant
+            .organs
+            .iter()
+            .filter(|o| matches!(o.kind, OrganKind::Stamen | OrganKind::Pistil | OrganKind::Thorn))
+            .count();
+        let thorny = plant.organs.iter().any(|o| o.kind == OrganKind::Thorn);
+        let mut key = Seed::new(spec.seed.number());
+        for b in plant.name.bytes() {
+            key = key.child(u64::from(b));
+        }
+        let n = key.stream(Draw::Tint).below(PetalColor::ALL.len());
+        Self {
+            petals: spec.petals.unwrap_or(PetalColor::ALL[n]),
+            // A cactus pad is a good part of its plant; an apple is not.
+            body_from: budget.size() * if thorny { 0.12 } else { 0.4 },
+            fine_strands: strands <= 150,
+        }
+    }
+
+    fn is_body(&self, shape: &Shape, scale: f64) -> bool {
+        let Shape::Revolution { profile } = shape else { return false };
+        let (low, high) =
+            profile.iter().filter(|p| p.is_finite()).fold((0.0_f64, 0.0_f64), |(a, b), p| (a.min(p.y), b.max(p.y)));
+        (high - low) * scale > self.body_from
+    }
+
+    fn shape(&self, shape: &Shape, scale: f64, budget: &Budget) -> TriMesh {
+        let triangles = |area: f64| budget.blade_triangles(area * scale * scale);
+        match shape {
+            Shape::Blade(blade) => blade_mesh(blade, triangles(geom::signed_area(&blade.outline).abs())),
+            // A dome is smooth: two fifths of what a blade of its size has.
+            Shape::Dome { radius_m, height_m } if radius_m.is_finite() && height_m.is_finite() => {
+                dome(*radius_m, *height_m, 0.4 * triangles(base::ops::PI * radius_m * radius_m))
+            }
+            Shape::Revolution { profile } => {
+                let area = |w: &[glam::DVec2]| (w[0].x + w[1].x) * w[0].distance(w[1]);
+                let area: f64 = profile.windows(2).map(area).filter(|a| a.is_finite()).sum();
+                if self.is_body(shape, scale) {
+                    revolution(profile, 4.0 * triangles(area), 16)
+                } else {
+                    revolution(profile, triangles(area), 0)
+                }
+            }
+            Shape::Strand { path, radius_m, knob_m } => {
+                let knob = if knob_m.is_finite() { *knob_m } else { 0.0 };
+                strand(path, radius_m, knob, self.fine_strands && budget.detail >= 0.5)
+            }
+            _ => TriMesh::default(),
+        }
+    }
+
+    fn slot(&self, organ: &Organ, shape: &Shape) -> Slot {
+        let drawn = drawn_color(organ.tint).is_some();
+        match organ.kind {
+            OrganKind::Petal if drawn => Slot::DrawnPetal,
+            OrganKind::Petal => Slot::Petal(self.petals),
+            OrganKind::Disc if drawn => Slot::DrawnDisc,
+            OrganKind::Disc => Slot::Disc,
+            OrganKind::Fruit if drawn => Slot::DrawnFruit,
+            OrganKind::Fruit if self.is_body(shape, organ.scale) => Slot::Body,
+            OrganKind::Fruit => Slot::Fruit,
+            OrganKind::Stamen | OrganKind::Pistil => Slot::Stamen,
+            OrganKind::Thorn => Slot::Thorn,
+            _ if drawn => Slot::DrawnLeaf,
+            _ => Slot::Leaf,
+        }
+    }
+}
+
+/// The colour in which an organ was drawn. A tint near white only varies the material; black is the colour of
+/// ink, not of a plant.
+fn drawn_color(tint: [f32; 3]) -> Option<[f32; 3]> {
+    let low = tint.into_iter().fold(f32::MAX, f32::min);
+    let high = tint.into_iter().fold(0.0, f32::max);
+    (tint.iter().all(|x| x.is_finite()) && low < 0.55 && high > 0.04).then_some(tint)
+}
+
+/// The vertex colour of an organ: its tint, varied a little in brightness and hue.
+fn tint(organ: &Organ, slot: Slot, spec: &SkinSpec) -> [f32; 3] {
+    let mut draw = spec.seed.child(organ.key).stream(Draw::Tint);
+    let (light, warm) = (draw.uniform(), draw.uniform());
+    let strength = spec.variation.clamp(0.0, 1.0);
+    // Leaves of one plant differ more than its petals do.
+    let (light, warm) = match slot {
+        Slot::Leaf | Slot::DrawnLeaf => (0.26 * light, 0.24 * (warm - 0.5)),
+        _ => (0.12 * light, 0.08 * (warm - 0.5)),
+    };
+    let [light, warm] = [light, warm].map(|x| x * strength);
+    let own = match organ.kind {
+        // The stamens' texture in the green of a pistil.
+        OrganKind::Pistil => [0.62, 0.86, 0.42],
+        _ => [1.0; 3],
+    };
+    let ink = organ.tint.iter().all(|x| *x < 0.04);
+    let hue = [1.0 + warm.min(0.0), 1.0, 1.0 - 0.9 * warm.abs()];
+    [0, 1, 2].map(|i| {
+        let given = if ink || !organ.tint[i].is_finite() { 1.0 } else { f64::from(organ.tint[i]) };
+        #[expect(clippy::cast_possible_truncation, reason = "a colour of the mesh")]
+        let x = (given * own[i] * hue[i] * (1.0 - light)).clamp(0.0, 1.0) as f32;
+        x
+    })
+}
+
+/// Appends a moved and coloured copy of `local`.
+fn place(out: &mut TriMesh, local: &TriMesh, organ: &Organ, color: [f32; 3]) {
+    let first = crate::parts::index(out.positions.len());
+    let f = &organ.frame;
+    let wide = |p: &[f32; 3]| DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2]));
+    out.positions.extend(local.positions.iter().map(|p| narrow(f.place(wide(p), organ.scale))));
+    out.normals.extend(local.normals.iter().map(|n| narrow(f.rotate(wide(n)))));
+    out.uvs.extend_from_slice(&local.uvs);
+    out.colors.resize(out.positions.len(), color);
+    out.triangles.extend(local.triangles.iter().map(|t| t.map(|i| i + first)));
+}

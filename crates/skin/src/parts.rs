@@ -1,0 +1,166 @@
+//! Kinds of surface: their materials, and the parts that gather them.
+
+use mesh::{Material, MaterialId, MaterialKind, Model, Part, TriMesh};
+
+use crate::PetalColor;
+use crate::texture::Motif;
+
+/// A vertex count as the index of the next vertex.
+pub(crate) fn index(n: usize) -> u32 {
+    // Four billion vertices do not fit in memory: saturating keeps the arithmetic whole, validate() names it.
+    u32::try_from(n).unwrap_or(u32::MAX)
+}
+
+/// What a part of the model is made of; one part and one material each, in this order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Slot {
+    Bark,
+    Stem,
+    Root,
+    Leaf,
+    /// Leaves in the colour in which they were drawn.
+    DrawnLeaf,
+    Petal(PetalColor),
+    DrawnPetal,
+    Disc,
+    DrawnDisc,
+    Fruit,
+    DrawnFruit,
+    Body,
+    Stamen,
+    Thorn,
+}
+
+impl Slot {
+    fn kind(self) -> MaterialKind {
+        match self {
+            Self::Bark => MaterialKind::Bark,
+            Self::Stem | Self::Body | Self::Thorn => MaterialKind::Stem,
+            Self::Root => MaterialKind::Root,
+            Self::Leaf | Self::DrawnLeaf => MaterialKind::Leaf,
+            Self::Petal(_) | Self::DrawnPetal => MaterialKind::Petal,
+            Self::Disc | Self::DrawnDisc => MaterialKind::Disc,
+            Self::Fruit | Self::DrawnFruit => MaterialKind::Fruit,
+            Self::Stamen => MaterialKind::Stamen,
+        }
+    }
+
+    /// Names of the part and of its material.
+    fn names(self) -> (&'static str, String) {
+        match self {
+            Self::Bark => ("branches", "bark".into()),
+            Self::Stem => ("stems", "stem".into()),
+            Self::Root => ("roots", "root".into()),
+            Self::Leaf => ("leaves", "leaf".into()),
+            Self::DrawnLeaf => ("leaves-drawn", "leaf-drawn".into()),
+            Self::Petal(color) => ("petals", format!("petal-{}", color.word())),
+            Self::DrawnPetal => ("petals-drawn", "petal-drawn".into()),
+            Self::Disc => ("discs", "disc".into()),
+            Self::DrawnDisc => ("discs-drawn", "disc-drawn".into()),
+            Self::Fruit => ("fruits", "fruit".into()),
+            Self::DrawnFruit => ("fruits-drawn", "fruit-drawn".into()),
+            Self::Body => ("bodies", "body".into()),
+            Self::Stamen => ("stamens", "stamen".into()),
+            Self::Thorn => ("thorns", "thorn".into()),
+        }
+    }
+
+    fn motif(self) -> Motif {
+        match self {
+            Self::Bark => Motif::Bark,
+            Self::Stem => Motif::Stem,
+            Self::Root => Motif::Root,
+            Self::Leaf => Motif::Leaf,
+            Self::DrawnLeaf => Motif::PaleLeaf,
+            Self::Petal(color) => Motif::Petal(color),
+            Self::DrawnPetal => Motif::PalePetal,
+            Self::Disc => Motif::Disc,
+            Self::DrawnDisc => Motif::PaleDisc,
+            Self::Fruit => Motif::Fruit,
+            Self::DrawnFruit => Motif::PaleFruit,
+            Self::Body => Motif::Body,
+            Self::Stamen => Motif::Stamen,
+            Self::Thorn => Motif::Thorn,
+        }
+    }
+
+    /// Linear colour that stands for the texture where none is wanted: its mean.
+    fn plain_color(self) -> [f32; 3] {
+        match self {
+            Self::Bark => [0.126, 0.084, 0.055],
+            Self::Stem => [0.111, 0.223, 0.034],
+            Self::Root => [0.27, 0.168, 0.092],
+            Self::Leaf => [0.051, 0.149, 0.018],
+            Self::Petal(color) => match color {
+                PetalColor::Pink => [0.80, 0.33, 0.42],
+                PetalColor::White => [0.90, 0.91, 0.80],
+                PetalColor::Yellow => [0.93, 0.60, 0.03],
+                PetalColor::Violet => [0.26, 0.14, 0.50],
+                PetalColor::Red => [0.52, 0.02, 0.01],
+                PetalColor::Orange => [0.87, 0.26, 0.02],
+                PetalColor::Blue => [0.20, 0.29, 0.73],
+                PetalColor::Magenta => [0.55, 0.06, 0.23],
+            },
+            Self::Disc => [0.55, 0.25, 0.02],
+            Self::Fruit => [0.56, 0.06, 0.02],
+            Self::Body => [0.06, 0.16, 0.05],
+            Self::Stamen => [0.72, 0.55, 0.15],
+            Self::Thorn => [0.28, 0.16, 0.08],
+            Self::DrawnLeaf | Self::DrawnPetal | Self::DrawnDisc | Self::DrawnFruit => [1.0; 3],
+        }
+    }
+
+    fn material(self, textures: bool) -> Material {
+        let kind = self.kind();
+        let color = if textures { [1.0; 3] } else { self.plain_color() };
+        let mut m = Material::plain(self.names().1, kind, color);
+        m.texture = textures.then(|| self.motif().texture());
+        (m.roughness, m.translucency) = match kind {
+            MaterialKind::Leaf => (0.55, 0.4),
+            MaterialKind::Petal => (0.65, 0.4),
+            MaterialKind::Stem => (0.65, 0.0),
+            MaterialKind::Fruit => (0.35, 0.0),
+            MaterialKind::Stamen | MaterialKind::Disc => (0.8, 0.0),
+            _ => (0.95, 0.0),
+        };
+        m.double_sided = matches!(kind, MaterialKind::Leaf | MaterialKind::Petal);
+        m
+    }
+}
+
+/// Gathers meshes by slot, in slot order; empty ones leave no part.
+pub(crate) fn model(name: &str, mut meshes: Vec<(Slot, TriMesh)>, textures: bool) -> Model {
+    let mut model = Model { name: name.to_owned(), ..Model::default() };
+    meshes.retain(|(_, m)| !m.triangles.is_empty());
+    // Stable: meshes of one slot keep their order.
+    meshes.sort_by_key(|(slot, _)| *slot);
+    let mut rest = meshes.as_slice();
+    while let Some(&(slot, ref first)) = rest.first() {
+        let n = rest.iter().take_while(|(s, _)| *s == slot).count();
+        let (these, after) = rest.split_at(n);
+        rest = after;
+        let mesh = match these {
+            [_] => first.clone(),
+            _ => joined(these),
+        };
+        let material = MaterialId::new(model.materials.len());
+        model.materials.push(slot.material(textures));
+        model.parts.push(Part { name: slot.names().0.to_owned(), material, mesh });
+    }
+    model
+}
+
+fn joined(meshes: &[(Slot, TriMesh)]) -> TriMesh {
+    let mut all = TriMesh::default();
+    let (vertices, triangles) =
+        meshes.iter().fold((0, 0), |(v, t), (_, m)| (v + m.positions.len(), t + m.triangles.len()));
+    all.positions.reserve_exact(vertices);
+    all.normals.reserve_exact(vertices);
+    all.uvs.reserve_exact(vertices);
+    all.colors.reserve_exact(if meshes[0].1.colors.is_empty() { 0 } else { vertices });
+    all.triangles.reserve_exact(triangles);
+    for (_, m) in meshes {
+        all.append(m);
+    }
+    all
+}

@@ -1,0 +1,173 @@
+//! Procedural textures: painted once, the same everywhere, shared by every model.
+
+mod blades;
+mod bodies;
+mod noise;
+mod tubes;
+
+use std::sync::{Arc, OnceLock};
+
+use mesh::Texture;
+
+use crate::PetalColor;
+
+pub(crate) use bodies::{DISC_RADIUS, RECEPTACLE_AT};
+
+/// Height of the florets over the dome of a disc at a place of its unit circle, about -1 to 1.
+pub(crate) fn unevenness(x: f64, y: f64) -> f64 {
+    noise::gradient(5.0 * x + 8.0, 5.0 * y + 8.0, (64, 64), 31)
+}
+
+/// An sRGB colour, each channel 0 to 1. Textures are mixed in sRGB, as paint is chosen by eye.
+pub(crate) type Paint = [f64; 3];
+
+/// A texture that this crate can paint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Motif {
+    Bark,
+    Stem,
+    Root,
+    Leaf,
+    /// A leaf without colour, to be multiplied with a drawn one.
+    PaleLeaf,
+    Petal(PetalColor),
+    /// A petal without colour, to be multiplied with a drawn one.
+    PalePetal,
+    Disc,
+    PaleDisc,
+    Fruit,
+    PaleFruit,
+    /// A green, ribbed body, such as a cactus's.
+    Body,
+    Stamen,
+    Thorn,
+}
+
+const MOTIFS: usize = 13 + PetalColor::ALL.len();
+
+impl Motif {
+    fn slot(self) -> usize {
+        match self {
+            Self::Bark => 0,
+            Self::Stem => 1,
+            Self::Root => 2,
+            Self::Leaf => 3,
+            Self::PaleLeaf => 4,
+            Self::PalePetal => 5,
+            Self::Disc => 6,
+            Self::PaleDisc => 7,
+            Self::Fruit => 8,
+            Self::PaleFruit => 9,
+            Self::Body => 10,
+            Self::Stamen => 11,
+            Self::Thorn => 12,
+            Self::Petal(color) => 13 + color as usize,
+        }
+    }
+
+    /// The texture, painted on first use (about 10 ms) and kept for the life of the process.
+    pub(crate) fn texture(self) -> Arc<Texture> {
+        static PAINTED: [OnceLock<Arc<Texture>>; MOTIFS] = [const { OnceLock::new() }; MOTIFS];
+        PAINTED[self.slot()].get_or_init(|| Arc::new(self.paint())).clone()
+    }
+
+    fn paint(self) -> Texture {
+        match self {
+            Self::Bark => canvas(256, 256, tubes::bark),
+            Self::Stem => canvas(128, 128, tubes::stem),
+            Self::Root => canvas(128, 128, tubes::root),
+            Self::Leaf => canvas(256, 512, |u, v| blades::leaf(&blades::GREEN, u, v)),
+            Self::PaleLeaf => canvas(256, 512, |u, v| blades::leaf(&blades::PALE_GREEN, u, v)),
+            Self::Petal(color) => {
+                let inks = blades::inks(color);
+                canvas(128, 256, |u, v| blades::petal(&inks, u, v))
+            }
+            Self::PalePetal => canvas(128, 256, |u, v| blades::petal(&blades::PALE_PETAL, u, v)),
+            Self::Disc => bodies::disc(256, &bodies::YELLOW_DISC),
+            Self::PaleDisc => bodies::disc(256, &bodies::PALE_DISC),
+            Self::Fruit => canvas(128, 128, |u, v| bodies::fruit(&bodies::RED_FRUIT, u, v)),
+            Self::PaleFruit => canvas(128, 128, |u, v| bodies::fruit(&bodies::PALE_FRUIT, u, v)),
+            Self::Body => canvas(256, 128, bodies::ribbed),
+            Self::Stamen => canvas(64, 64, bodies::stamen),
+            Self::Thorn => canvas(32, 64, bodies::thorn),
+        }
+    }
+}
+
+/// Paints `f(u, v)` at the middle of each pixel; v runs down.
+fn canvas(width: u32, height: u32, f: impl Fn(f64, f64) -> Paint) -> Texture {
+    let mut pixels = Vec::with_capacity(4 * (width * height) as usize);
+    for j in 0..height {
+        let v = (f64::from(j) + 0.5) / f64::from(height);
+        for i in 0..width {
+            let u = (f64::from(i) + 0.5) / f64::from(width);
+            let [r, g, b] = f(u, v).map(byte);
+            pixels.extend_from_slice(&[r, g, b, 255]);
+        }
+    }
+    Texture { width, height, pixels }
+}
+
+fn byte(x: f64) -> u8 {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a byte's range")]
+    let b = (x.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
+    b
+}
+
+fn mix(a: Paint, b: Paint, t: f64) -> Paint {
+    let t = t.clamp(0.0, 1.0);
+    [0, 1, 2].map(|i| base::ops::lerp(a[i], b[i], t))
+}
+
+fn shade(a: Paint, factor: f64) -> Paint {
+    a.map(|x| x * factor)
+}
+
+/// 1 at 0, 0 from `width` on, smooth.
+fn line(distance: f64, width: f64) -> f64 {
+    1.0 - base::ops::smoothstep(0.0, width, distance.abs())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn every() -> Vec<Motif> {
+        use Motif as M;
+        let mut all = vec![M::Bark, M::Stem, M::Root, M::Leaf, M::PaleLeaf, M::PalePetal, M::Disc, M::PaleDisc];
+        all.extend([M::Fruit, M::PaleFruit, M::Body, M::Stamen, M::Thorn]);
+        all.extend(PetalColor::ALL.map(M::Petal));
+        all
+    }
+
+    #[test]
+    fn every_motif_has_its_own_slot_and_is_whole() {
+        let mut slots: Vec<usize> = every().into_iter().map(Motif::slot).collect();
+        slots.sort_unstable();
+        assert_eq!(slots, (0..MOTIFS).collect::<Vec<_>>());
+        for motif in every() {
+            let t = motif.texture();
+            assert_eq!(t.pixels.len(), 4 * (t.width * t.height) as usize, "{motif:?}");
+            assert!(t.pixels.chunks(4).all(|p| p[3] == 255), "{motif:?} is opaque");
+            let (low, high) = t.pixels.chunks(4).fold((255, 0), |(a, b), p| (p[1].min(a), p[1].max(b)));
+            assert!(high - low > 10, "{motif:?} is not flat: {low}..{high}");
+        }
+    }
+
+    #[test]
+    fn leaves_are_green_and_bark_tiles() {
+        let leaf = Motif::Leaf.texture();
+        let green = leaf.pixels.chunks(4).filter(|p| p[1] > p[0] && p[1] > p[2]).count();
+        assert!(green * 100 > leaf.pixels.len() / 4 * 98, "{green}");
+        // Neighbours across the seam differ no more than neighbours elsewhere do at their most.
+        let bark = Motif::Bark.texture();
+        let at = |x: u32, y: u32| i32::from(bark.pixels[4 * (y * bark.width + x) as usize]);
+        let (w, h) = (bark.width, bark.height);
+        let inside = (0..h).map(|y| (at(100, y) - at(101, y)).abs()).sum::<i32>();
+        let seam = (0..h).map(|y| (at(w - 1, y) - at(0, y)).abs()).sum::<i32>();
+        assert!(seam < 3 * inside + 300, "across {seam} against {inside}");
+        let inside = (0..w).map(|x| (at(x, 100) - at(x, 101)).abs()).sum::<i32>();
+        let seam = (0..w).map(|x| (at(x, h - 1) - at(x, 0)).abs()).sum::<i32>();
+        assert!(seam < 3 * inside + 300, "down {seam} against {inside}");
+    }
+}
