@@ -183,7 +183,9 @@ impl TriMesh {
             finite.filter(|(_, p)| !p.iter().all(|x| x.is_finite())).map(|(i, _)| Fault::NotFinite(i));
         let normals = self.normals.iter().enumerate();
         let normals = normals
-            .filter(|&(_, &v)| !((to_f64(v).length() - 1.0).abs() < 1e-3))
+            .filter(|&(_, &v)| {
+                (to_f64(v).length() - 1.0).abs().partial_cmp(&1e-3) != Some(core::cmp::Ordering::Less)
+            })
             .map(|(i, _)| Fault::Normal(i));
         let triangles = self.triangles.iter().enumerate().filter_map(move |(i, &[a, b, c])| {
             if [a, b, c].iter().any(|&v| v as usize >= n) {

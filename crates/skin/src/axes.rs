@@ -105,13 +105,7 @@ fn grouped<T: Send>(run: &Run<'_>, n: usize, f: impl Fn(usize) -> T + Sync) -> R
 }
 
 /// One tube: fillet or flat base, rings, round tip.
-fn sleeve(
-    spine: &Spine,
-    bearer: Option<&Bearer<'_>>,
-    circle: &Circle,
-    repeats: u32,
-    rows: f64,
-) -> TriMesh {
+fn sleeve(spine: &Spine, bearer: Option<&Bearer<'_>>, circle: &Circle, repeats: u32, rows: f64) -> TriMesh {
     let mut mesh = TriMesh::default();
     // Small twigs spend fewer rows on their ends, so that some are left for the middle.
     let (steps, tip) = if rows < 9.0 { (1, 1) } else { (3, 2) };

@@ -97,7 +97,8 @@ pub(crate) fn revolution(profile: &[DVec2], triangles: f64, ribs: u32) -> TriMes
         rows.push(crate::parts::index(out.0.positions.len()));
         for (j, &(cos, sin)) in (0_u32..).zip(&circle.0) {
             let u = f64::from(j) / f64::from(sides);
-            let flute = if ribs > 0 { 1.0 + 0.07 * (ops::cos(ops::TAU * f64::from(ribs) * u) - 1.0) } else { 1.0 };
+            let flute =
+                if ribs > 0 { 1.0 + 0.07 * (ops::cos(ops::TAU * f64::from(ribs) * u) - 1.0) } else { 1.0 };
             // +y is the axis: the angle runs from +z towards +x, so that rows wind outwards.
             let r = p.x * flute;
             out.vertex(DVec3::new(r * sin, p.y, r * cos), (u, (high - p.y) / height));

@@ -16,6 +16,7 @@
 //! | `texture`, `parts` | painted textures, materials, parts |
 
 mod axes;
+
 mod blade;
 mod body;
 mod fork;

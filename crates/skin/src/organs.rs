@@ -125,8 +125,10 @@ impl Ground {
 
     fn is_body(&self, shape: &Shape, scale: f64) -> bool {
         let Shape::Revolution { profile } = shape else { return false };
-        let (low, high) =
-            profile.iter().filter(|p| p.is_finite()).fold((0.0_f64, 0.0_f64), |(a, b), p| (a.min(p.y), b.max(p.y)));
+        let (low, high) = profile
+            .iter()
+            .filter(|p| p.is_finite())
+            .fold((0.0_f64, 0.0_f64), |(a, b), p| (a.min(p.y), b.max(p.y)));
         (high - low) * scale > self.body_from
     }
 

@@ -13,8 +13,6 @@ pub(crate) struct Ring {
     pub up: DVec3,
     pub radius: f64,
     pub slope: f64,
-    /// Arc length along the spine.
-    pub s: f64,
 }
 
 impl Ring {
@@ -38,7 +36,7 @@ pub(crate) fn place(spine: &Spine, from: f64, count: f64) -> Vec<Ring> {
     let stations = stations(spine, from, count);
     let tangents = eased_tangents(&stations);
     let mut rings: Vec<Ring> = Vec::with_capacity(stations.len());
-    for (&(station, s), tangent) in stations.iter().zip(tangents) {
+    for (&station, tangent) in stations.iter().zip(tangents) {
         let across = match rings.last() {
             None => tangent.any_orthonormal_vector(),
             Some(before) => transport(before, station.centre, tangent),
@@ -50,14 +48,13 @@ pub(crate) fn place(spine: &Spine, from: f64, count: f64) -> Vec<Ring> {
             up: tangent.cross(across),
             radius: station.radius,
             slope: station.slope,
-            s,
         });
     }
     rings
 }
 
 /// Equal shares of a weight made of length, turning and swelling.
-fn stations(spine: &Spine, from: f64, count: f64) -> Vec<(Station, f64)> {
+fn stations(spine: &Spine, from: f64, count: f64) -> Vec<Station> {
     let length = spine.length();
     let from = from.clamp(0.0, length * 0.98);
     let start = spine.s.partition_point(|&s| s <= from).clamp(1, spine.s.len() - 1) - 1;
@@ -66,9 +63,8 @@ fn stations(spine: &Spine, from: f64, count: f64) -> Vec<(Station, f64)> {
     let (mut turning, mut swelling, mut radius) = (0.0, 0.0, 0.0);
     let pieces = start..spine.s.len() - 1;
     let turn = |k: usize| (spine.t[k + 1] - spine.t[k]).length();
-    let swell = |k: usize| {
-        (spine.r[k + 1] - spine.r[k]).abs() / (spine.r[k + 1] + spine.r[k]).max(f64::MIN_POSITIVE)
-    };
+    let swell =
+        |k: usize| (spine.r[k + 1] - spine.r[k]).abs() / (spine.r[k + 1] + spine.r[k]).max(f64::MIN_POSITIVE);
     let visible = |k: usize| (spine.s[k + 1] - spine.s[k].max(from)).max(0.0);
     for k in pieces.clone() {
         turning += turn(k);
@@ -89,9 +85,9 @@ fn stations(spine: &Spine, from: f64, count: f64) -> Vec<(Station, f64)> {
     let mut out = Vec::with_capacity(n as usize);
     let mut k = 0;
     for j in 0..n {
-        let s = match j {
-            0 => from,
-            _ if j == n - 1 => length,
+        let station = match j {
+            0 => spine.at(from),
+            _ if j == n - 1 => spine.at(length),
             _ => {
                 let target = total * f64::from(j) / f64::from(n - 1);
                 while k + 2 < weight.len() && weight[k + 1] < target {
@@ -99,34 +95,29 @@ fn stations(spine: &Spine, from: f64, count: f64) -> Vec<(Station, f64)> {
                 }
                 let u = (target - weight[k]) / (weight[k + 1] - weight[k]).max(f64::MIN_POSITIVE);
                 let (a, b) = (spine.s[start + k].max(from), spine.s[start + k + 1]);
-                base::ops::lerp(a, b, u.clamp(0.0, 1.0))
+                spine.station(start + k, base::ops::lerp(a, b, u.clamp(0.0, 1.0)))
             }
         };
-        let station = match j {
-            0 => spine.at(from),
-            _ if j == n - 1 => spine.at(length),
-            _ => spine.station(start + k, s),
-        };
-        out.push((station, s));
+        out.push(station);
     }
     out
 }
 
 /// Ring plane normals whose turn from ring to ring keeps the planes apart within the tube.
-fn eased_tangents(stations: &[(Station, f64)]) -> Vec<DVec3> {
+fn eased_tangents(stations: &[Station]) -> Vec<DVec3> {
     let n = stations.len();
     let limit = |i: usize| {
-        let chord = stations[i].0.centre.distance(stations[i - 1].0.centre);
-        let reach = CLEARANCE * stations[i].0.radius.max(stations[i - 1].0.radius);
+        let chord = stations[i].centre.distance(stations[i - 1].centre);
+        let reach = CLEARANCE * stations[i].radius.max(stations[i - 1].radius);
         // Planes that turn by a meet at chord / (2 tan(a / 2)) from the line; held as the cosine of a.
         let half = chord / (2.0 * reach.max(f64::MIN_POSITIVE));
         (1.0 - half * half) / (1.0 + half * half)
     };
-    let tight = (1..n).any(|i| stations[i].0.tangent.dot(stations[i - 1].0.tangent) < limit(i));
+    let tight = (1..n).any(|i| stations[i].tangent.dot(stations[i - 1].tangent) < limit(i));
     if !tight {
-        return stations.iter().map(|(s, _)| s.tangent).collect();
+        return stations.iter().map(|s| s.tangent).collect();
     }
-    let mut forward: Vec<DVec3> = stations.iter().map(|(s, _)| s.tangent).collect();
+    let mut forward: Vec<DVec3> = stations.iter().map(|s| s.tangent).collect();
     let mut backward = forward.clone();
     for i in 1..n {
         forward[i] = within(forward[i - 1], forward[i], limit(i));

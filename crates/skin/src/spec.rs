@@ -28,14 +28,7 @@ pub struct SkinSpec {
 
 impl Default for SkinSpec {
     fn default() -> Self {
-        Self {
-            detail: 1.0,
-            sides: 8,
-            textures: true,
-            petals: None,
-            variation: 1.0,
-            seed: Seed::default(),
-        }
+        Self { detail: 1.0, sides: 8, textures: true, petals: None, variation: 1.0, seed: Seed::default() }
     }
 }
 

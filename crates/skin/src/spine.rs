@@ -34,12 +34,7 @@ impl Spine {
     /// Points that are not finite or repeat their predecessor are dropped; `None` when fewer than 2 remain.
     /// Missing radii are the last one given. Where the axis bends more sharply than its thickness allows, the
     /// line is eased, ends kept.
-    pub(crate) fn new(
-        points: &[DVec3],
-        radii: &[f64],
-        samples: usize,
-        first: Option<DVec3>,
-    ) -> Option<Self> {
+    pub(crate) fn new(points: &[DVec3], radii: &[f64], samples: usize, first: Option<DVec3>) -> Option<Self> {
         let (keep, total) = clean(points);
         if keep.len() < 2 {
             return None;
@@ -169,11 +164,8 @@ impl Spine {
 
 /// Indices of the points to keep, and the length of the line through them.
 fn clean(points: &[DVec3]) -> (Vec<usize>, f64) {
-    let rough: f64 = points
-        .windows(2)
-        .map(|w| w[0].distance(w[1]))
-        .filter(|d| d.is_finite())
-        .fold(0.0, |sum, d| sum + d);
+    let rough: f64 =
+        points.windows(2).map(|w| w[0].distance(w[1])).filter(|d| d.is_finite()).fold(0.0, |sum, d| sum + d);
     let eps = rough * 1e-9;
     let mut keep: Vec<usize> = Vec::with_capacity(points.len());
     let mut total = 0.0;
@@ -222,10 +214,7 @@ fn tangents(q: &[DVec3], first: Option<DVec3>) -> Vec<DVec3> {
 
 fn hermite(p: DVec3, m: DVec3, q: DVec3, n: DVec3, u: f64) -> DVec3 {
     let (u2, u3) = (u * u, u * u * u);
-    p * (2.0 * u3 - 3.0 * u2 + 1.0)
-        + m * (u3 - 2.0 * u2 + u)
-        + q * (3.0 * u2 - 2.0 * u3)
-        + n * (u3 - u2)
+    p * (2.0 * u3 - 3.0 * u2 + 1.0) + m * (u3 - 2.0 * u2 + u) + q * (3.0 * u2 - 2.0 * u3) + n * (u3 - u2)
 }
 
 /// Two passes of (1 2 1)/4: a change of taper at a node should not show as a ridge.

@@ -134,7 +134,8 @@ mod tests {
 
     fn every() -> Vec<Motif> {
         use Motif as M;
-        let mut all = vec![M::Bark, M::Stem, M::Root, M::Leaf, M::PaleLeaf, M::PalePetal, M::Disc, M::PaleDisc];
+        let mut all =
+            vec![M::Bark, M::Stem, M::Root, M::Leaf, M::PaleLeaf, M::PalePetal, M::Disc, M::PaleDisc];
         all.extend([M::Fruit, M::PaleFruit, M::Body, M::Stamen, M::Thorn]);
         all.extend(PetalColor::ALL.map(M::Petal));
         all
