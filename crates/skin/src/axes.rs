@@ -15,6 +15,8 @@ use crate::tube::{Circle, Sleeve, drop_flat};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Surface {
     Bark,
+    /// Thin branches, still smooth.
+    YoungBark,
     Stem,
     Root,
 }
@@ -51,6 +53,11 @@ type Place = (usize, usize);
 // Tubes are made in groups of this many: one job each would cost more than the tube.
 const GROUP: usize = 16;
 
+// Branches thinner than this share of the thickest are young: no plates yet.
+const YOUNG: f64 = 0.24;
+// A plant whose thickest branch is thinner than this share of its size has no old wood.
+const SLENDER: f64 = 0.02;
+
 /// The tubes of every axis, in the order of the axes.
 ///
 /// # Errors
@@ -63,7 +70,7 @@ pub(crate) fn tubes(
 ) -> Result<Vec<Tube>, Cancelled> {
     let (chains, places) = chains(plant);
     let spines = grouped(run, chains.len(), |i| spine(plant, &chains[i], budget))?;
-    let thickest = spines.iter().flatten().map(|s| s.r[0]).fold(0.0, f64::max);
+    let thickest = spines.iter().flatten().map(Spine::stout).fold(0.0, f64::max);
     let sides: Vec<u32> =
         spines.iter().map(|s| s.as_ref().map_or(3, |s| budget.sides(s.r[0], spec.sides))).collect();
     // Circles for every number of sides that can occur, 3 to 24.
@@ -79,14 +86,20 @@ pub(crate) fn tubes(
             let (sample, _) = *host_spine.knots.get(at).or(host_spine.knots.last())?;
             Some(Bearer { spine: host_spine, sample, sides: sides[host] })
         });
-        // The bark of a trunk repeats twice around, so that its texels are not much larger than a twig's.
-        let repeats = match chain.surface {
-            Surface::Bark if spine.r[0] > 0.6 * thickest => 2,
+        let surface = match chain.surface {
+            Surface::Bark if spine.stout() < YOUNG * thickest.max(SLENDER * budget.size()) => {
+                Surface::YoungBark
+            }
+            surface => surface,
+        };
+        // Bark repeats three times around the thickest branch, so that its plates are of like size on all.
+        let repeats = match surface {
+            Surface::Bark => whole((3.0 * spine.stout() / thickest).round()).clamp(1, 3),
             _ => 1,
         };
         let circle = circles.get(sides[i] as usize)?;
         let mesh = sleeve(spine, bearer.as_ref(), circle, repeats, budget.rings(spine.length()));
-        Some(Tube { surface: chain.surface, mesh })
+        Some(Tube { surface, mesh })
     })
     .map(|tubes| tubes.into_iter().flatten().collect())
 }

@@ -116,9 +116,6 @@ fn x_at(line: &[DVec2], y: f64) -> f64 {
     let crossing = line.windows(2).find(|w| (w[0].y <= y) != (w[1].y <= y));
     match crossing {
         Some(w) => base::ops::lerp(w[0].x, w[1].x, (y - w[0].y) / (w[1].y - w[0].y)),
-        None => line
-            .iter()
-            .min_by(|a, b| (a.y - y).abs().total_cmp(&(b.y - y).abs()))
-            .map_or(0.0, |p| p.x),
+        None => line.iter().min_by(|a, b| (a.y - y).abs().total_cmp(&(b.y - y).abs())).map_or(0.0, |p| p.x),
     }
 }

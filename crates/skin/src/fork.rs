@@ -80,7 +80,8 @@ impl Collar {
         let (axis, hint) = bearer.spine.nearest(at.centre, bearer.sample);
         // Seen from the top ring, the branch comes from where it left the bearer.
         let back = (at.centre - top.centre).try_normalize().unwrap_or(-top.tangent);
-        let flare = (0.9 * axis.radius - top.radius).clamp(0.0, 0.9 * top.radius).max(0.12 * top.radius);
+        // How far the foot spreads along the bearer's surface, beyond where the bare tube would meet it.
+        let spread = 0.8 * top.radius.min(axis.radius);
         let width = circle.sides() + 1;
         let sunk = base::ops::cos(base::ops::PI / f64::from(bearer.sides.max(3))) * 0.97;
         let mut collar = Self {
@@ -92,7 +93,8 @@ impl Collar {
             let ray = top.ray(corner);
             let q = top.centre + ray * top.radius;
             let knee = bearer.surface(hit(q, back, &axis), hint, 1.0);
-            let foot = bearer.surface(hit(q + ray * flare, back, &axis), hint, sunk);
+            let out = (ray - knee.1 * ray.dot(knee.1)).normalize_or_zero();
+            let foot = bearer.surface(knee.0 + out * spread, hint, sunk);
             for k in 0..=steps + 1 {
                 // Even steps of the parameter crowd a little at the knee, where the fillet turns.
                 let u = f64::from(k) / f64::from(steps + 1);

@@ -73,6 +73,7 @@ pub fn skin(plant: &Plant, spec: &SkinSpec, run: &Run<'_>) -> Result<Model, Canc
     let budget = budget(plant, spec);
     let slot = |surface| match surface {
         Surface::Bark => Slot::Bark,
+        Surface::YoungBark => Slot::YoungBark,
         Surface::Stem => Slot::Stem,
         Surface::Root => Slot::Root,
     };

@@ -98,7 +98,7 @@ struct Ground {
     petals: PetalColor,
     /// Fruits taller than this are the plant's body.
     body_from: f64,
-    /// Many thorns or stamens: coarse ones.
+    /// Few enough stamens and thorns to give each more than three rings.
     fine_strands: bool,
 }
 
@@ -119,7 +119,7 @@ impl Ground {
             petals: spec.petals.unwrap_or(PetalColor::ALL[n]),
             // A cactus pad is a good part of its plant; an apple is not.
             body_from: budget.size() * if thorny { 0.12 } else { 0.4 },
-            fine_strands: strands <= 150,
+            fine_strands: strands <= 40,
         }
     }
 

@@ -15,6 +15,7 @@ pub(crate) fn index(n: usize) -> u32 {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Slot {
     Bark,
+    YoungBark,
     Stem,
     Root,
     Leaf,
@@ -34,7 +35,7 @@ pub(crate) enum Slot {
 impl Slot {
     fn kind(self) -> MaterialKind {
         match self {
-            Self::Bark => MaterialKind::Bark,
+            Self::Bark | Self::YoungBark => MaterialKind::Bark,
             Self::Stem | Self::Body | Self::Thorn => MaterialKind::Stem,
             Self::Root => MaterialKind::Root,
             Self::Leaf | Self::DrawnLeaf => MaterialKind::Leaf,
@@ -49,6 +50,7 @@ impl Slot {
     fn names(self) -> (&'static str, String) {
         match self {
             Self::Bark => ("branches", "bark".into()),
+            Self::YoungBark => ("twigs", "bark-young".into()),
             Self::Stem => ("stems", "stem".into()),
             Self::Root => ("roots", "root".into()),
             Self::Leaf => ("leaves", "leaf".into()),
@@ -68,6 +70,7 @@ impl Slot {
     fn motif(self) -> Motif {
         match self {
             Self::Bark => Motif::Bark,
+            Self::YoungBark => Motif::YoungBark,
             Self::Stem => Motif::Stem,
             Self::Root => Motif::Root,
             Self::Leaf => Motif::Leaf,
@@ -88,6 +91,7 @@ impl Slot {
     fn plain_color(self) -> [f32; 3] {
         match self {
             Self::Bark => [0.126, 0.084, 0.055],
+            Self::YoungBark => [0.13, 0.095, 0.055],
             Self::Stem => [0.111, 0.223, 0.034],
             Self::Root => [0.27, 0.168, 0.092],
             Self::Leaf => [0.051, 0.149, 0.018],

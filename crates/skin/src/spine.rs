@@ -111,6 +111,11 @@ impl Spine {
         }
     }
 
+    /// The radius an eighth of the way up: past the collar or root flare.
+    pub(crate) fn stout(&self) -> f64 {
+        self.r[self.r.len() / 8]
+    }
+
     pub(crate) fn length(&self) -> f64 {
         self.s.last().copied().unwrap_or(0.0)
     }

@@ -140,9 +140,10 @@ fn thick_line_that_jitters_does_not_fold() {
 fn every_tube_of_a_tree_is_closed() {
     for p in [scenes::fork(), scenes::tree(56, AxisKind::Branch)] {
         let model = skinned(&p);
-        let mesh = part(&model, "branches");
-        assert_eq!(open_edges(mesh), 0, "{}", p.name);
-        assert!(volume(mesh) > 0.0, "{}", p.name);
+        for part in &model.parts {
+            assert_eq!(open_edges(&part.mesh), 0, "{} of {}", part.name, p.name);
+            assert!(volume(&part.mesh) > 0.0, "{} of {}", part.name, p.name);
+        }
     }
 }
 

@@ -99,9 +99,10 @@ pub(super) fn petal(inks: &PetalInks, u: f64, v: f64) -> Paint {
         let phase = fan * n;
         line(phase - phase.round(), width)
     };
-    let coarse = vein(9.0, 0.20) * (1.0 - ops::smoothstep(0.55, 0.98, y));
-    let fine = vein(27.0, 0.30) * ops::smoothstep(0.15, 0.5, y) * (1.0 - ops::smoothstep(0.75, 1.0, y));
-    let veined = mix(body, inks.vein, 0.38 * coarse + 0.16 * fine);
+    // No more than the texture's pixels can show: four to a line at its finest.
+    let coarse = vein(5.0, 0.22) * ops::smoothstep(0.03, 0.15, y) * (1.0 - ops::smoothstep(0.55, 0.98, y));
+    let fine = vein(13.0, 0.42) * ops::smoothstep(0.25, 0.6, y) * (1.0 - ops::smoothstep(0.75, 1.0, y));
+    let veined = mix(body, inks.vein, 0.34 * coarse + 0.14 * fine);
     // Matter is thicker, so deeper in colour, along the middle of the lower half.
     let keel = line(x, 0.35) * (1.0 - y);
     shade(mix(veined, inks.vein, 0.10 * keel), 1.0 + 0.05 * mottle)

@@ -68,7 +68,7 @@ pub(super) fn disc(size: u32, inks: &DiscInks) -> Texture {
                     continue;
                 }
                 // A bud is a ball with a dimple.
-                let tone = 1.12 - 0.5 * d * d - 0.22 * line(d, 0.35);
+                let tone = 1.12 - 0.38 * d * d - 0.22 * line(d, 0.35);
                 let paint = mix(inks.gap, shade(body, tone), 1.0 - ops::smoothstep(0.72, 1.0, d));
                 let at = 4 * (j * size + i) as usize;
                 for (k, x) in paint.into_iter().enumerate() {
@@ -96,8 +96,9 @@ pub(super) const PALE_FRUIT: FruitInks =
 pub(super) fn fruit(inks: &FruitInks, u: f64, v: f64) -> Paint {
     let patch = octaves(3.0 * u, 2.0 * v, (3, 2), 1, 3);
     let streak = gradient(26.0 * u, 2.0 * v, (26, 2), 2);
-    let ends = ops::smoothstep(0.80, 1.0, v).max(1.0 - ops::smoothstep(0.0, 0.10, v));
-    let skin = mix(inks.sun, inks.shadow, 0.18 + 0.7 * patch + 0.22 * streak + 0.55 * ends);
+    // Paler in the shade below and around the stalk.
+    let ends = 0.35 * ops::smoothstep(0.55, 1.05, v) + 0.35 * (1.0 - ops::smoothstep(0.0, 0.22, v));
+    let skin = mix(inks.sun, inks.shadow, 0.14 + 0.6 * patch + 0.22 * streak + ends);
     let (near, _) = super::noise::cells(14.0 * u, 10.0 * v, (14, 10), 4);
     mix(skin, inks.dot, 0.5 * line(near, 0.10))
 }

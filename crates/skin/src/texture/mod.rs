@@ -25,6 +25,7 @@ pub(crate) type Paint = [f64; 3];
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Motif {
     Bark,
+    YoungBark,
     Stem,
     Root,
     Leaf,
@@ -43,7 +44,7 @@ pub(crate) enum Motif {
     Thorn,
 }
 
-const MOTIFS: usize = 13 + PetalColor::ALL.len();
+const MOTIFS: usize = 14 + PetalColor::ALL.len();
 
 impl Motif {
     fn slot(self) -> usize {
@@ -61,7 +62,8 @@ impl Motif {
             Self::Body => 10,
             Self::Stamen => 11,
             Self::Thorn => 12,
-            Self::Petal(color) => 13 + color as usize,
+            Self::YoungBark => 13,
+            Self::Petal(color) => 14 + color as usize,
         }
     }
 
@@ -74,6 +76,7 @@ impl Motif {
     fn paint(self) -> Texture {
         match self {
             Self::Bark => canvas(256, 256, tubes::bark),
+            Self::YoungBark => canvas(128, 128, tubes::young_bark),
             Self::Stem => canvas(128, 128, tubes::stem),
             Self::Root => canvas(128, 128, tubes::root),
             Self::Leaf => canvas(256, 512, |u, v| blades::leaf(&blades::GREEN, u, v)),
@@ -136,7 +139,7 @@ mod tests {
         use Motif as M;
         let mut all =
             vec![M::Bark, M::Stem, M::Root, M::Leaf, M::PaleLeaf, M::PalePetal, M::Disc, M::PaleDisc];
-        all.extend([M::Fruit, M::PaleFruit, M::Body, M::Stamen, M::Thorn]);
+        all.extend([M::YoungBark, M::Fruit, M::PaleFruit, M::Body, M::Stamen, M::Thorn]);
         all.extend(PetalColor::ALL.map(M::Petal));
         all
     }

@@ -28,7 +28,13 @@ pub(crate) fn blade(length: f64, width: f64, belly: f64, tip: f64, relief: Relie
     Blade { outline: outline(length, width, belly, tip), midrib, veins: Vec::new(), lift: Lift::Flat, relief }
 }
 
-pub(crate) fn organ(kind: OrganKind, bearer: Option<NodeId>, shape: ShapeId, frame: Frame, key: u64) -> Organ {
+pub(crate) fn organ(
+    kind: OrganKind,
+    bearer: Option<NodeId>,
+    shape: ShapeId,
+    frame: Frame,
+    key: u64,
+) -> Organ {
     Organ { kind, bearer, flower: None, shape, frame, scale: 1.0, tint: [1.0; 3], key, source: None }
 }
 
