@@ -97,7 +97,8 @@ pub(super) fn fruit(inks: &FruitInks, u: f64, v: f64) -> Paint {
     let patch = octaves(3.0 * u, 2.0 * v, (3, 2), 1, 3);
     let streak = gradient(26.0 * u, 2.0 * v, (26, 2), 2);
     // Paler in the shade below and around the stalk.
-    let ends = 0.35 * ops::smoothstep(0.55, 1.05, v) + 0.35 * (1.0 - ops::smoothstep(0.0, 0.22, v));
+    let from = v + 0.25 * patch;
+    let ends = 0.30 * ops::smoothstep(0.55, 1.1, from) + 0.25 * (1.0 - ops::smoothstep(0.0, 0.3, from));
     let skin = mix(inks.sun, inks.shadow, 0.14 + 0.6 * patch + 0.22 * streak + ends);
     let (near, _) = super::noise::cells(14.0 * u, 10.0 * v, (14, 10), 4);
     mix(skin, inks.dot, 0.5 * line(near, 0.10))

@@ -6,26 +6,29 @@ use base::ops;
 
 /// Grey-brown bark: ridges along the trunk that part and meet again, dark furrows between.
 pub(super) fn bark(u: f64, v: f64) -> Paint {
-    const FURROW: Paint = [0.175, 0.135, 0.105];
-    const BROWN: Paint = [0.415, 0.335, 0.260];
-    const GREY: Paint = [0.585, 0.530, 0.460];
-    // Furrows are where slow noise, stretched along the trunk, passes zero; a sway keeps them from being
-    // straight.
-    let sway = 0.30 * gradient(3.0 * u, 4.0 * v, (3, 4), 11) + 0.10 * gradient(8.0 * u, 9.0 * v, (8, 9), 12);
-    let wide =
-        gradient(6.0 * u + sway, 2.0 * v, (6, 2), 3) + 0.45 * gradient(12.0 * u + sway, 5.0 * v, (12, 5), 4);
-    let fine = gradient(17.0 * u + 1.5 * sway, 5.0 * v, (17, 5), 5)
-        + 0.4 * gradient(34.0 * u, 11.0 * v, (34, 11), 6);
-    // Short cross breaks cut ridges into plates.
-    let breaks = gradient(5.0 * u, 11.0 * v, (5, 11), 7);
-    let depth =
-        ops::smoothstep(0.0, 0.30, wide.abs()) * (0.62 + 0.38 * ops::smoothstep(0.0, 0.30, fine.abs()));
-    let depth = depth * (1.0 - 0.35 * ops::smoothstep(0.45, 0.75, breaks));
-    let grain = octaves(40.0 * u, 16.0 * v, (40, 16), 9, 2);
+    const FURROW: Paint = [0.225, 0.175, 0.135];
+    const BROWN: Paint = [0.40, 0.325, 0.255];
+    const GREY: Paint = [0.57, 0.515, 0.445];
+    // Four wavering furrows run through the tile; neighbours come near one another and part.
+    let sway = 0.50 * gradient(4.0 * u, 3.0 * v, (4, 3), 11) + 0.20 * gradient(9.0 * u, 8.0 * v, (9, 8), 12);
+    let first = furrow(4.0 * u + sway, 0.13 + 0.09 * gradient(4.0 * u, 5.0 * v, (4, 5), 13));
+    // Others start and end between them.
+    let sway =
+        0.55 * gradient(4.0 * u, 4.0 * v, (4, 4), 14) + 0.22 * gradient(10.0 * u, 9.0 * v, (10, 9), 15);
+    let alive = ops::smoothstep(-0.05, 0.35, gradient(4.0 * u, 3.0 * v, (4, 3), 16));
+    let second = alive * furrow(4.0 * u + 0.5 + sway, 0.09);
+    let fibre = octaves(22.0 * u + 0.8 * sway, 3.0 * v, (22, 3), 9, 3);
+    let grain = octaves(36.0 * u, 20.0 * v, (36, 20), 10, 2);
     let patch = gradient(2.0 * u, 2.0 * v, (2, 2), 21);
-    let ridge = mix(BROWN, GREY, 0.42 + 0.35 * patch + 0.45 * (wide.abs() - 0.3) + 0.5 * grain);
-    let ridge = shade(ridge, 1.0 + 0.22 * grain);
-    mix(FURROW, ridge, 0.10 + 0.90 * depth)
+    let depth = (1.0 - first) * (1.0 - 0.75 * second);
+    let ridge = mix(BROWN, GREY, 0.10 + 0.55 * depth + 0.25 * patch + 0.55 * fibre + 0.25 * grain);
+    mix(FURROW, shade(ridge, 1.0 + 0.20 * grain), 0.12 + 0.88 * depth + 0.35 * fibre)
+}
+
+/// 1 in the middle of a furrow, which is where `phase` is whole; 0 beyond `width`.
+fn furrow(phase: f64, width: f64) -> f64 {
+    let off = (phase - phase.round()).abs();
+    1.0 - ops::smoothstep(0.15 * width, 1.7 * width.max(0.02), off)
 }
 
 /// Smooth bark of a young branch, olive brown with pale breathing pores across it.
