@@ -12,7 +12,7 @@ use proptest::prelude::*;
 use skin::{SkinSpec, TubeSpec, skin, tube};
 
 fn skinned(p: &Plant) -> Model {
-    let model = skin(p, &SkinSpec::default(), &Run::plain()).unwrap();
+    let model = skin(p, &SkinSpec::default(), &Run::plain()).expect("nobody cancels");
     assert_eq!(model.validate().collect::<Vec<_>>(), [], "{}", p.name);
     model
 }
