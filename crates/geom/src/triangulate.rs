@@ -162,9 +162,10 @@ fn inside_box(vein: &[DVec2]) -> Vec<Vec<DVec2>> {
 /// The edge length, enlarged until the points it leads to can be afforded. The lattice fills a box of 1 x 1.
 fn affordable(margin: &[DVec2], veins: &[Vec<DVec2>], edge: f64) -> f64 {
     let lines = 2.0 * (polyline_length(margin) + veins.iter().map(|v| polyline_length(v)).sum::<f64>());
-    let mut edge = edge;
-    // The loop ends: lines are at most a million times a few boxes long.
-    while signed_area(margin) / (0.75 * edge * edge) + lines / edge > MAX_POINTS || edge * edge < 2e-6 {
+    // 1.5e-3: half a million lattice places in the box. From there the loop ends soon; from an edge so small
+    // that it is 0 here it never would.
+    let mut edge = edge.max(1.5e-3);
+    while signed_area(margin) / (0.75 * edge * edge) + lines / edge > MAX_POINTS {
         edge *= 1.2;
     }
     edge
@@ -600,6 +601,8 @@ mod tests {
 
     #[test]
     fn sizes_do_not_matter() {
+        let vanishing = triangulate_blade(&[p(0.0, 0.0), p(1e90, 0.0), p(0.0, 1e90)], &[], 5e-324);
+        assert!(vanishing.is_ok(), "an edge of no size beside the blade is enlarged");
         for scale in [1e-90, 1e-9, 1.0, 1e80] {
             let big: Vec<DVec2> = leaf(80, 0.02).iter().map(|&q| q * scale).collect();
             let t = triangulate_blade(&big, &[&[p(0.0, 0.0), p(0.0, scale)]], 0.06 * scale).unwrap();
