@@ -147,6 +147,11 @@ impl Crown<'_> {
         grow_toward(self.volume, &spec, (from.at, from.tangent), top, step, &mut wobble, &mut points);
         let axis = add_axis(plant, &mut sites[highest], self.kind(), &points)?;
         add_sites(plant, axis, 0, from.path, sites);
+        // A trunk that ends below the crown has done its part: the crown grows from what is inside.
+        let inside = |s: &Site| self.volume.contains_xy(s.at.truncate());
+        if sites.iter().any(inside) {
+            sites.retain(inside);
+        }
         Some(axis)
     }
 

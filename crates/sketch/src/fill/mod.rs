@@ -28,7 +28,7 @@ use crown::{Crown, Habit};
 use foliage::Foliage;
 use leaves::Leaves;
 use twigs::Twigs;
-use volume::{Inflation, Volume};
+use volume::{Inflation, Volume, above};
 
 /// What filling needs to know about the plant that it grows on.
 #[derive(Clone, Copy, Debug)]
@@ -75,6 +75,13 @@ pub(crate) fn fill(
             report.warn("contour-empty", format!("contour {} encloses nothing and was left empty", row + 1));
             continue;
         };
+        // Many people draw a tree in one line: what hangs below the crown is its trunk, not foliage.
+        if region.kind == RegionKind::Crown
+            && let Some(neck) = volume.neck()
+            && let Some(crown) = Volume::new(&above(&outline, neck), inflation)
+        {
+            volume = crown;
+        }
         let bearers = bearers(plant, region, ctx, &volume);
         // Named by its bearer and its rank among that bearer's contours, so that editing one leaves others be.
         let bearer = bearers.first().map_or(0, |&a| plant.axis(a).key);

@@ -153,6 +153,31 @@ fn crowns_of_all_forms_become_leafy_trees() {
 }
 
 #[test]
+fn a_crown_drawn_in_one_line_with_its_trunk_has_no_leaves_on_the_trunk() {
+    let outline: Vec<DVec2> = [
+        (0.45, 0.0),
+        (0.55, 0.0),
+        (0.55, 0.4),
+        (0.75, 0.42),
+        (0.85, 0.6),
+        (0.75, 0.8),
+        (0.5, 0.9),
+        (0.25, 0.8),
+        (0.15, 0.6),
+        (0.25, 0.42),
+        (0.45, 0.4),
+    ]
+    .map(|(x, y)| DVec2::new(x, y))
+    .to_vec();
+    let made =
+        grown(outline, RegionKind::Crown, &[line((0.5, 0.0), (0.5, 0.45), 20)], &SketchSpec::default());
+    assert_eq!(made.plant.validate().next(), None);
+    let lowest = made.plant.organs.iter().map(|o| o.frame.origin.y).fold(f64::INFINITY, f64::min);
+    assert!(lowest > 0.38 * 8.0, "a leaf at {lowest} m, the crown begins at 3.2 m");
+    assert!(made.plant.organs.len() > 400, "{}", made.plant.organs.len());
+}
+
+#[test]
 fn the_same_drawing_gives_the_same_plant() {
     let spec = SketchSpec::default();
     for name in ["round", "cone", "bush"] {

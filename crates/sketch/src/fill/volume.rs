@@ -283,6 +283,27 @@ impl Volume {
         best.map(|(a, b)| (self.lo.x + self.cell * 0.5 * (a + b) as f64, self.cell * 0.5 * (b - a) as f64))
     }
 
+    /// Height at which a crown begins that was drawn in one line with its trunk; `None` where there is no such
+    /// neck.
+    ///
+    /// A neck is one narrow run (below 0.4 of the widest row), at least 0.12 of the height long, and opens at once
+    /// (1.8 times as wide 0.08 of the height farther up): what opens evenly is a shrub.
+    pub(super) fn neck(&self) -> Option<f64> {
+        let (low, height) = (self.low().y, self.height());
+        let width = |t: f64| self.row(low + t * height).map_or(0.0, |(_, w)| w);
+        let narrow = 0.4 * self.half_width;
+        let rows = (0..40).map(|i| 0.01 + 0.02 * f64::from(i));
+        let single = |t: f64| self.inner_cells(low + t * height) as f64 * self.cell <= 2.1 * width(t);
+        let top = rows.take_while(|&t| width(t) < narrow && single(t)).last()?;
+        let opens = width(top + 0.08) > 1.8 * width(0.75 * top);
+        (top >= 0.12 && opens).then_some(low + (top + 0.02) * height)
+    }
+
+    fn inner_cells(&self, y: f64) -> usize {
+        let Some((_, iy)) = self.cell_of(DVec2::new(self.lo.x, y)) else { return 0 };
+        self.clear[iy * self.nx..(iy + 1) * self.nx].iter().filter(|&&c| c > 0.0).count()
+    }
+
     fn centre(&self, ix: usize, iy: usize) -> DVec2 {
         self.lo + DVec2::new(ix as f64 + 0.5, iy as f64 + 0.5) * self.cell
     }
@@ -447,6 +468,22 @@ impl Volume {
             }
         }
     }
+}
+
+/// The part of a polygon above a height (Sutherland and Hodgman; parts may stay joined along the cut).
+pub(super) fn above(outline: &[DVec2], y: f64) -> Vec<DVec2> {
+    let n = outline.len();
+    let mut out = Vec::with_capacity(n + 4);
+    for i in 0..n {
+        let (a, b) = (outline[i], outline[(i + 1) % n]);
+        if a.y >= y {
+            out.push(a);
+        }
+        if (a.y >= y) != (b.y >= y) {
+            out.push(DVec2::new(a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y), y));
+        }
+    }
+    out
 }
 
 fn shoelace(outline: &[DVec2]) -> f64 {
