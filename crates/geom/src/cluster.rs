@@ -34,23 +34,17 @@ pub fn mean_shift(points: &[DVec2], bandwidth: f64) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).filter(|&i| rests[i].is_some()).collect();
     order.sort_by_key(|&i| (core::cmp::Reverse(rests[i].map_or(0, |r| r.1)), i));
     let mut modes: Vec<DVec2> = Vec::new();
-    let mut label: Vec<Option<usize>> = vec![None; points.len()];
-    for i in order {
-        let Some((rest, _)) = rests[i] else { continue };
-        let nearest = modes
-            .iter()
-            .enumerate()
-            .map(|(k, &m)| (Vector::distance(m, rest), k))
-            .filter(|&(d, _)| d < reach || d <= 0.0)
-            .min_by(|a, b| a.0.total_cmp(&b.0));
-        label[i] = Some(nearest.map_or_else(
-            || {
-                modes.push(rest);
-                modes.len() - 1
-            },
-            |(_, k)| k,
-        ));
+    let nearest = |modes: &[DVec2], rest: DVec2| {
+        let distances = modes.iter().enumerate().map(|(k, &m)| (Vector::distance(m, rest), k));
+        distances.filter(|&(d, _)| d < reach || d <= 0.0).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, k)| k)
+    };
+    for (rest, _) in order.into_iter().filter_map(|i| rests[i]) {
+        if nearest(&modes, rest).is_none() {
+            modes.push(rest);
+        }
     }
+    // Only now that all modes are known: else equal points could go to different ones.
+    let label = rests.into_iter().map(|rest| rest.and_then(|(rest, _)| nearest(&modes, rest)));
 
     let mut number: Vec<Option<usize>> = vec![None; modes.len()];
     let mut next = 0;
@@ -59,7 +53,6 @@ pub fn mean_shift(points: &[DVec2], bandwidth: f64) -> Vec<usize> {
         next - 1
     };
     label
-        .into_iter()
         .map(|mode| match mode {
             Some(m) => *number[m].get_or_insert_with(&mut fresh),
             None => fresh(),

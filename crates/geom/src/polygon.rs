@@ -137,10 +137,10 @@ fn cross_section(polygon: &[DVec2], at: DVec2, across: DVec2) -> Option<(f64, f6
 
 /// Cross-sections of an elongated polygon from one end to the other: centres and half widths.
 ///
-/// `samples` (at least 2, at most 10 000) sections stand at equal distances on the way from `from` to `to`, both
-/// included; the way is the straight line at first and then, once, the line of the centres found, so that a
-/// bent leaf is cut across its own direction. Where a section misses the polygon the half width is 0. Empty if the polygon has fewer
-/// than 3 usable corners or an end is not usable. Cost: samples x corners.
+/// `samples` (at least 2, at most 10 000) sections stand at equal distances on the way from `from` to `to`,
+/// both included; the way is the straight line at first and then, once, the line of the centres found, so
+/// that a bent leaf is cut across its own direction. Where a section misses the polygon the half width is 0.
+/// Empty if the polygon has fewer than 3 usable corners or an end is not usable. Cost: samples x corners.
 pub fn medial_axis_width(polygon: &[DVec2], from: DVec2, to: DVec2, samples: usize) -> Vec<(DVec2, f64)> {
     let polygon = distinct_closed(polygon);
     if polygon.len() < 3 || !from.usable() || !to.usable() {

@@ -173,7 +173,7 @@ pub(crate) fn nearest_on_segment(a: DVec2, b: DVec2, p: DVec2) -> (f64, DVec2) {
     let along = b - a;
     let squared = along.length_squared();
     let t = if squared > 0.0 { ((p - a).dot(along) / squared).clamp(0.0, 1.0) } else { 0.0 };
-    (t, a + along * t)
+    (t, if t >= 1.0 { b } else { a + along * t })
 }
 
 /// The point of a line nearest to a given point.
