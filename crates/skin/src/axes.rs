@@ -92,9 +92,9 @@ pub(crate) fn tubes(
             }
             surface => surface,
         };
-        // Bark repeats five times around the thickest branch, so that its ridges are of like size on all.
+        // Bark repeats three times around the thickest branch, so that its ridges are of like size on all.
         let repeats = match surface {
-            Surface::Bark => whole((5.0 * spine.stout() / thickest).round()).clamp(1, 5),
+            Surface::Bark => whole((3.0 * spine.stout() / thickest).round()).clamp(1, 3),
             _ => 1,
         };
         let circle = circles.get(sides[i] as usize)?;

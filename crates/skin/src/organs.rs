@@ -110,7 +110,7 @@ impl Ground {
             .filter(|o| matches!(o.kind, OrganKind::Stamen | OrganKind::Pistil | OrganKind::Thorn))
             .count();
         let thorny = plant.organs.iter().any(|o| o.kind == OrganKind::Thorn);
-        let mut key = Seed::new(spec.seed.number());
+        let mut key: Seed = spec.seed;
         for b in plant.name.bytes() {
             key = key.child(u64::from(b));
         }

@@ -1,6 +1,6 @@
 //! Leaves and petals: u across with the midrib at one half, v from the tip (0) down to the root (1).
 
-use super::noise::{cells, gradient, octaves, random};
+use super::noise::{gradient, octaves, random};
 use super::{Paint, line, mix, shade};
 use crate::PetalColor;
 use base::ops;
@@ -13,7 +13,7 @@ pub(super) struct LeafInks {
 }
 
 pub(super) const GREEN: LeafInks =
-    LeafInks { dark: [0.165, 0.335, 0.085], light: [0.345, 0.52, 0.155], vein: [0.60, 0.70, 0.36] };
+    LeafInks { dark: [0.190, 0.365, 0.105], light: [0.385, 0.565, 0.185], vein: [0.64, 0.73, 0.40] };
 pub(super) const PALE_GREEN: LeafInks =
     LeafInks { dark: [0.80, 0.82, 0.80], light: [0.98, 0.99, 0.97], vein: [1.0, 1.0, 1.0] };
 
@@ -37,13 +37,12 @@ pub(super) fn leaf(inks: &LeafInks, u: f64, v: f64) -> Paint {
     let side = alive * fade * line(off, 0.085 * (1.15 - 0.7 * across));
     let midrib = line(x, 0.060 * (1.08 - 0.85 * y));
     // The finest net, hardly seen.
-    let (near, next) = cells(26.0 * u, 40.0 * v, (26, 40), 2);
-    let net = 1.0 - ops::smoothstep(0.0, 0.16, next - near);
+    let net = 1.0 - ops::smoothstep(0.0, 0.14, gradient(22.0 * u, 34.0 * v, (22, 34), 2).abs());
     // The lamina swells between veins: lighter in the middle, dark along them.
     let swell = 0.5 - 0.5 * ops::cos(ops::TAU * off.min(0.5));
-    let mottle = octaves(5.0 * u, 8.0 * v, (5, 8), 7, 4);
+    let mottle = octaves(5.0 * u, 8.0 * v, (5, 8), 7, 3);
     let lamina = mix(inks.dark, inks.light, 0.34 + 0.26 * swell * alive + 0.75 * mottle + 0.10 * y);
-    let lamina = mix(lamina, inks.vein, 0.10 * net);
+    let lamina = mix(lamina, inks.vein, 0.07 * net);
     let shadow = 1.0 - 0.16 * line(x, 0.16) * (1.0 - midrib);
     mix(shade(lamina, shadow), inks.vein, (0.95 * midrib).max(0.62 * side))
 }

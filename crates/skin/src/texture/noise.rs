@@ -6,14 +6,17 @@ pub(crate) fn gradient(x: f64, y: f64, period: (i32, i32), salt: u32) -> f64 {
     let (u, v) = (x - fx, y - fy);
     #[expect(clippy::cast_possible_truncation, reason = "texture coordinates are small")]
     let (ix, iy) = (fx as i32, fy as i32);
-    let corner = |dx: i32, dy: i32| {
-        let h = hash((ix + dx).rem_euclid(period.0), (iy + dy).rem_euclid(period.1), salt);
-        let (gx, gy) = DIRECTIONS[(h >> 28) as usize];
-        gx * (u - f64::from(dx)) + gy * (v - f64::from(dy))
+    // Wrapped once per axis: four remainders a corner would cost more than the noise.
+    let (x0, y0) = (ix.rem_euclid(period.0), iy.rem_euclid(period.1));
+    let x1 = if x0 + 1 == period.0 { 0 } else { x0 + 1 };
+    let y1 = if y0 + 1 == period.1 { 0 } else { y0 + 1 };
+    let corner = |cx: i32, cy: i32, dx: f64, dy: f64| {
+        let (gx, gy) = DIRECTIONS[(hash(cx, cy, salt) >> 28) as usize];
+        gx * dx + gy * dy
     };
     let (su, sv) = (fade(u), fade(v));
-    let low = base::ops::lerp(corner(0, 0), corner(1, 0), su);
-    let high = base::ops::lerp(corner(0, 1), corner(1, 1), su);
+    let low = base::ops::lerp(corner(x0, y0, u, v), corner(x1, y0, u - 1.0, v), su);
+    let high = base::ops::lerp(corner(x0, y1, u, v - 1.0), corner(x1, y1, u - 1.0, v - 1.0), su);
     1.5 * base::ops::lerp(low, high, sv)
 }
 

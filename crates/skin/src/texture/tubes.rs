@@ -9,16 +9,17 @@ pub(super) fn bark(u: f64, v: f64) -> Paint {
     const FURROW: Paint = [0.225, 0.175, 0.135];
     const BROWN: Paint = [0.40, 0.325, 0.255];
     const GREY: Paint = [0.57, 0.515, 0.445];
-    // Four wavering furrows run through the tile; neighbours come near one another and part.
-    let sway = 0.50 * gradient(4.0 * u, 3.0 * v, (4, 3), 11) + 0.20 * gradient(9.0 * u, 8.0 * v, (9, 8), 12);
-    let first = furrow(4.0 * u + sway, 0.13 + 0.09 * gradient(4.0 * u, 5.0 * v, (4, 5), 13));
+    // Seven wavering furrows run through the tile; neighbours come near one another and part.
+    let sway =
+        0.60 * gradient(6.0 * u, 3.0 * v, (6, 3), 11) + 0.24 * gradient(15.0 * u, 8.0 * v, (15, 8), 12);
+    let first = furrow(7.0 * u + sway, 0.13 + 0.10 * gradient(6.0 * u, 4.0 * v, (6, 4), 13));
     // Others start and end between them.
     let sway =
-        0.55 * gradient(4.0 * u, 4.0 * v, (4, 4), 14) + 0.22 * gradient(10.0 * u, 9.0 * v, (10, 9), 15);
-    let alive = ops::smoothstep(-0.05, 0.35, gradient(4.0 * u, 3.0 * v, (4, 3), 16));
-    let second = alive * furrow(4.0 * u + 0.5 + sway, 0.09);
-    let fibre = octaves(22.0 * u + 0.8 * sway, 3.0 * v, (22, 3), 9, 3);
-    let grain = octaves(36.0 * u, 20.0 * v, (36, 20), 10, 2);
+        0.60 * gradient(7.0 * u, 4.0 * v, (7, 4), 14) + 0.24 * gradient(16.0 * u, 9.0 * v, (16, 9), 15);
+    let alive = ops::smoothstep(-0.05, 0.35, gradient(6.0 * u, 3.0 * v, (6, 3), 16));
+    let second = alive * furrow(7.0 * u + 0.5 + sway, 0.09);
+    let fibre = octaves(34.0 * u + 0.8 * sway, 3.0 * v, (34, 3), 9, 2);
+    let grain = octaves(56.0 * u, 26.0 * v, (56, 26), 10, 2);
     let patch = gradient(2.0 * u, 2.0 * v, (2, 2), 21);
     let depth = (1.0 - first) * (1.0 - 0.75 * second);
     let ridge = mix(BROWN, GREY, 0.10 + 0.55 * depth + 0.25 * patch + 0.55 * fibre + 0.25 * grain);
