@@ -119,3 +119,91 @@ fn x_at(line: &[DVec2], y: f64) -> f64 {
         None => line.iter().min_by(|a, b| (a.y - y).abs().total_cmp(&(b.y - y).abs())).map_or(0.0, |p| p.x),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use plant::{Lift, Relief};
+
+    fn leaf(relief: Relief) -> Blade {
+        let half: Vec<DVec2> = (0..=16)
+            .map(|k| f64::from(k) / 16.0)
+            .map(|t| DVec2::new(0.3 * (t * (1.0 - t)).sqrt(), t))
+            .collect();
+        let mut outline = half.clone();
+        outline.extend(half[1..16].iter().rev().map(|p| DVec2::new(-p.x, p.y)));
+        let midrib = vec![DVec2::ZERO, DVec2::new(0.0, 0.5), DVec2::new(0.0, 1.0)];
+        Blade { outline, midrib, veins: Vec::new(), lift: Lift::Flat, relief }
+    }
+
+    #[test]
+    fn boundary_is_the_outline_and_the_area_is_whole() {
+        let blade = leaf(Relief::default());
+        let mesh = blade_mesh(&blade, 300.0);
+        let mut edges: Vec<(u32, u32)> = mesh
+            .triangles
+            .iter()
+            .flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)])
+            .map(|(a, b)| (a.min(b), a.max(b)))
+            .collect();
+        edges.sort_unstable();
+        let border = edges.chunk_by(|a, b| a == b).filter(|run| run.len() == 1).map(|run| run[0]);
+        let mut closed = blade.outline.clone();
+        closed.push(blade.outline[0]);
+        let mut around = 0.0;
+        for (a, b) in border {
+            let (p, q) = (mesh.position(a), mesh.position(b));
+            around += p.distance(q);
+            for p in [p, q] {
+                let off = geom::closest_on_polyline(&closed, p.truncate()).map_or(9.0, |c| c.distance);
+                assert!(off < 1e-6, "{p} is {off} off the outline");
+            }
+        }
+        let want = closed_length(&blade.outline);
+        assert!((around / want - 1.0).abs() < 0.02, "{around} against {want}");
+        let area: f64 = mesh
+            .triangles
+            .iter()
+            .map(|t| t.map(|i| mesh.position(i)))
+            .map(|[a, b, c]| 0.5 * (b - a).cross(c - a).z)
+            .inspect(|a| assert!(*a > 0.0, "a triangle looks down"))
+            .sum();
+        let want = geom::signed_area(&blade.outline);
+        assert!((area / want - 1.0).abs() < 0.02, "{area} against {want}");
+    }
+
+    #[test]
+    fn counts_follow_the_wish_and_the_midrib_is_at_one_half() {
+        let blade = leaf(Relief { bend_b: 0.2, fold: 0.3, hollow: 0.1, ..Relief::default() });
+        for wish in [32.0, 100.0, 300.0, 780.0] {
+            let mesh = blade_mesh(&blade, wish);
+            let n = f64::from(crate::parts::index(mesh.triangles.len()));
+            assert!((n / wish - 1.0).abs() < 0.3, "{n} for {wish}");
+            assert_eq!(mesh.validate().count(), 0, "{wish}");
+            let mut on_midrib = 0;
+            for (p, uv) in mesh.positions.iter().zip(&mesh.uvs) {
+                assert!((0.0..=1.0).contains(&uv[0]) && (0.0..=1.0).contains(&uv[1]), "{uv:?}");
+                if p[0].abs() < 1e-4 {
+                    on_midrib += 1;
+                    assert!((uv[0] - 0.5).abs() < 1e-3, "{uv:?}");
+                }
+            }
+            assert!(on_midrib >= 3, "{on_midrib} on the midrib: it cannot fold");
+        }
+    }
+
+    #[test]
+    fn outline_without_area_gives_nothing_and_a_crossed_one_something() {
+        let mut flat = leaf(Relief::default());
+        flat.outline.iter_mut().for_each(|p| p.x = 0.0);
+        assert!(blade_mesh(&flat, 300.0).triangles.is_empty());
+        let mut nan = leaf(Relief::default());
+        nan.outline[3].x = f64::NAN;
+        assert_eq!(blade_mesh(&nan, 300.0).validate().count(), 0);
+        let mut crossed = leaf(Relief::default());
+        crossed.outline.swap(4, 9);
+        let mesh = blade_mesh(&crossed, 300.0);
+        assert!(!mesh.triangles.is_empty());
+        assert_eq!(mesh.validate().count(), 0);
+    }
+}

@@ -67,7 +67,7 @@ impl Motif {
         }
     }
 
-    /// The texture, painted on first use (about 10 ms) and kept for the life of the process.
+    /// The texture, painted on first use (up to about 30 ms) and kept for the life of the process.
     pub(crate) fn texture(self) -> Arc<Texture> {
         static PAINTED: [OnceLock<Arc<Texture>>; MOTIFS] = [const { OnceLock::new() }; MOTIFS];
         PAINTED[self.slot()].get_or_init(|| Arc::new(self.paint())).clone()
