@@ -18,6 +18,8 @@ pub(crate) enum Surface {
     /// Thin branches, still smooth.
     YoungBark,
     Stem,
+    /// Green and thick: the body and arms of a cactus.
+    Flesh,
     Root,
 }
 
@@ -58,6 +60,9 @@ const YOUNG: f64 = 0.24;
 // A plant whose thickest branch is thinner than this share of its size has no old wood.
 const SLENDER: f64 = 0.02;
 
+// Green axes thicker than this share of the plant's size are bodies, not stems.
+const FLESHY: f64 = 0.035;
+
 /// The tubes of every axis, in the order of the axes.
 ///
 /// # Errors
@@ -90,6 +95,7 @@ pub(crate) fn tubes(
             Surface::Bark if spine.stout() < YOUNG * thickest.max(SLENDER * budget.size()) => {
                 Surface::YoungBark
             }
+            Surface::Stem if spine.stout() > FLESHY * budget.size() => Surface::Flesh,
             surface => surface,
         };
         // Bark repeats three times around the thickest branch, so that its ridges are of like size on all.

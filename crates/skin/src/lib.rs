@@ -47,7 +47,8 @@ use crate::spec::Budget;
 /// ([`Model::validate`] is clean); every tube closed; a side branch's foot inside its bearer; the same bits for
 /// any executor. One part per kind of surface, in the order bark, stems, roots, leaves, petals, discs, fruits,
 /// stamens, thorns; kinds that do not occur leave no part. Organs have vertex colours: their tint, varied by
-/// seed and key. A tint with a channel below 0.55 is taken for the colour in which the organ was drawn, and a
+/// seed and key. A tint with a channel below 0.55, or whose channels differ by more than
+/// 3 to 10, is taken for the colour in which the organ was drawn, and a
 /// texture without a hue of its own is used.
 /// Not guaranteed: that organs do not pass through one another, or that tubes at a fork share vertices.
 /// Cost: linear in axes and organs; about 70 ns a triangle. The first use of a kind of surface also paints its
@@ -75,6 +76,7 @@ pub fn skin(plant: &Plant, spec: &SkinSpec, run: &Run<'_>) -> Result<Model, Canc
         Surface::Bark => Slot::Bark,
         Surface::YoungBark => Slot::YoungBark,
         Surface::Stem => Slot::Stem,
+        Surface::Flesh => Slot::Body,
         Surface::Root => Slot::Root,
     };
     let tubes = axes::tubes(plant, spec, &budget, run)?;

@@ -175,12 +175,12 @@ impl Ground {
     }
 }
 
-/// The colour in which an organ was drawn. A tint near white only varies the material; black is the colour of
+/// The colour in which an organ was drawn. A tint near white (makers vary it by a tenth) only varies the material; black is the colour of
 /// ink, not of a plant.
 fn drawn_color(tint: [f32; 3]) -> Option<[f32; 3]> {
     let low = tint.into_iter().fold(f32::MAX, f32::min);
     let high = tint.into_iter().fold(0.0, f32::max);
-    (tint.iter().all(|x| x.is_finite()) && low < 0.55 && high > 0.04).then_some(tint)
+    (tint.iter().all(|x| x.is_finite()) && (low < 0.55 || high > 1.3 * low) && high > 0.04).then_some(tint)
 }
 
 /// The vertex colour of an organ: its tint, varied a little in brightness and hue.

@@ -161,10 +161,15 @@ fn joined(meshes: &[(Slot, TriMesh)]) -> TriMesh {
     all.positions.reserve_exact(vertices);
     all.normals.reserve_exact(vertices);
     all.uvs.reserve_exact(vertices);
-    all.colors.reserve_exact(if meshes[0].1.colors.is_empty() { 0 } else { vertices });
+    // A body may be tube or organ: tubes have no tint, so beside tinted meshes they are white.
+    let tinted = meshes.iter().any(|(_, m)| !m.colors.is_empty());
+    all.colors.reserve_exact(if tinted { vertices } else { 0 });
     all.triangles.reserve_exact(triangles);
     for (_, m) in meshes {
         all.append(m);
+        if tinted {
+            all.colors.resize(all.positions.len(), [1.0; 3]);
+        }
     }
     all
 }

@@ -229,6 +229,30 @@ fn drawn_colours_and_bodies_find_their_parts() {
     }
 }
 
+#[test]
+fn thick_green_axis_is_a_body_beside_tinted_ones() {
+    let mut p = scenes::still_life();
+    let arm = [DVec3::new(0.0, 0.2, 0.0), DVec3::new(0.2, 0.3, 0.0), DVec3::new(0.22, 0.5, 0.0)];
+    let id = p.add_axis(AxisKind::Stem, None, 77, &arm, None);
+    scenes::set_radii(&mut p, id, 0.07, 0.06);
+    let model = skinned(&p);
+    let bodies = part(&model, "bodies");
+    assert_eq!(bodies.colors.len(), bodies.positions.len());
+    assert_eq!(bodies.colors[0], [1.0; 3]);
+    assert!(model.parts.iter().all(|p| p.name != "stems"));
+}
+
+#[test]
+fn pale_drawn_colours_are_told_from_variation() {
+    let mut p = scenes::flower(3);
+    let pink = [0.95, 0.62, 0.68];
+    for (k, o) in p.organs.iter_mut().filter(|o| o.kind == plant::OrganKind::Petal).enumerate() {
+        o.tint = if k == 0 { pink } else { [0.9, 0.82, 0.78] };
+    }
+    let model = skinned(&p);
+    assert_eq!(part(&model, "petals-drawn").triangles.len() * 2, part(&model, "petals").triangles.len());
+}
+
 struct Threads;
 impl Executor for Threads {
     fn for_each(&self, n: usize, job: &(dyn Fn(usize) + Sync)) {
