@@ -45,7 +45,7 @@ impl LeafForm {
         Self::Leaflet,
     ];
 
-    /// The blade: root at the origin, tip at (0, 1), counter-clockwise, flat, 12 to 42 points.
+    /// The blade: root at the origin, tip at (0, 1), counter-clockwise, flat, 12 to 34 points.
     pub fn blade(self) -> Blade {
         let right = match self {
             // Half widths over length from herbarium-like proportions: 0.27 is a pear leaf, 0.09 a willow's.
@@ -116,9 +116,9 @@ fn lobed() -> Vec<DVec2> {
 
 /// Needles as slender teeth, leaning forward at 50 degrees.
 fn spray() -> Vec<DVec2> {
-    let mut right = Vec::with_capacity(20);
-    for i in 0..9 {
-        let v = 0.03 + 0.095 * f64::from(i);
+    let mut right = Vec::with_capacity(15);
+    for i in 0..7 {
+        let v = 0.03 + 0.122 * f64::from(i);
         let reach = 0.24 * (1.0 - 0.45 * v * v);
         right.push(DVec2::new(0.022, v));
         right.push(DVec2::new(0.022 + 0.77 * reach, v + 0.64 * reach));
@@ -142,7 +142,7 @@ mod tests {
             let blade = form.blade();
             let o = &blade.outline;
             let n = o.len();
-            assert!((12..=42).contains(&n), "{form:?}: {n} points");
+            assert!((12..=34).contains(&n), "{form:?}: {n} points");
             let area: f64 = (0..n).map(|i| o[i].perp_dot(o[(i + 1) % n])).sum::<f64>() * 0.5;
             assert!(area > 0.04 && area < 0.6, "{form:?}: area {area}");
             for i in 0..n {

@@ -206,8 +206,8 @@ impl Look<'_> {
         // Diameter of the circle with the contour's area.
         let diameter = (volume.area * 4.0 / base::ops::PI).sqrt();
         let conifer = habit == Habit::Excurrent;
-        // 1/15: fewer and larger leaves than a real tree's read as foliage at the size of a drawing.
-        let mut length = diameter / if conifer { 9.5 } else { 15.0 };
+        // 1/13: fewer and larger leaves than a real tree's read as foliage at the size of a drawing.
+        let mut length = diameter / if conifer { 8.5 } else { 13.0 };
         let mut shapes = self.drawn.to_vec();
         if let Some(natural) = self.natural() {
             length = natural.clamp(diameter / 40.0, diameter / 6.0);
@@ -219,7 +219,7 @@ impl Look<'_> {
             let form = FORMS[self.seed.stream(Draw::Template).below(FORMS.len())];
             shapes.push(self.form(plant, form));
         }
-        let leaves = leaves::leaves_for(volume.area, length, 1.85 * self.spec.density);
+        let leaves = leaves::leaves_for(volume.area, length, 2.15 * self.spec.density);
         let middle = 0.5 * (volume.low() + volume.high());
         let core = DVec2::new(middle.x, volume.low().y + 0.35 * volume.height());
         let foliage = Foliage {
