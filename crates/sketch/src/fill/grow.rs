@@ -130,11 +130,13 @@ pub(super) fn attach(volume: &Volume, sites: &[Site], target: DVec3, avoid_level
     let mut best: Option<(f64, usize)> = None;
     for (i, s) in sites.iter().enumerate() {
         let to = target - s.at;
-        let d = to.length();
         let bound = best.map_or(f64::INFINITY, |(c, _)| c);
-        if d < 1e-9 || d >= bound {
+        // No cost is less than the way itself: most sites end here, without a root.
+        let d2 = to.length_squared();
+        if d2 < 1e-18 || d2 >= bound * bound {
             continue;
         }
+        let d = d2.sqrt();
         let c = to.dot(s.tangent) / d;
         // cos 75 = 0.26, cos 25 = 0.91.
         let angle = 2.0 * (0.26 - c).max(0.0) + 2.0 * (c - 0.91).max(0.0);

@@ -53,7 +53,7 @@ pub(crate) struct FillContext<'a> {
 /// axes are 0 until they are set when the whole plant stands; the same input gives the same plant.
 /// Not guaranteed: blades may overlap the contour a little. Contours without area are skipped with a warning.
 ///
-/// Cost: about 1 ms for a crown of 900 leaves; near linear in twigs and leaves.
+/// Cost: 1 to 3 ms for a crown of 1,100 leaves; linear in leaves, twigs times branches for finding where to start.
 ///
 /// # Errors
 /// [`Cancelled`] when the caller asked to stop.
