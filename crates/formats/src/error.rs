@@ -94,8 +94,11 @@ pub enum FileFault {
     #[error("there is no stroke in it; draw lines, paths or shapes that are visible")]
     NoStrokes,
     /// The bytes are not UTF-8 text.
-    #[error("the text is not UTF-8; save it again with that encoding")]
-    NotUtf8,
+    #[error("after {after} bytes the text is not UTF-8; save it again with that encoding")]
+    NotUtf8 {
+        /// Good bytes before.
+        after: u64,
+    },
     /// Reading failed.
     #[error("it could not be read: {0}")]
     Io(#[from] io::Error),

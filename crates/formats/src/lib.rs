@@ -1,6 +1,7 @@
 //! Readers of strokes, readers and writers of models, on byte streams: no paths, no file system.
 //!
-//! bytes -> [`read_drawings`] -> [`sketch::Drawing`]; [`mesh::Model`] -> [`write_glb`] -> bytes.
+//! bytes -> [`read_drawings`] -> [`sketch::Drawing`]; bytes -> [`read_model`] -> [`mesh::Model`] ->
+//! [`write_model`] -> bytes.
 //!
 //! What comes in may be hostile: sizes, nesting and expansion are bounded, errors name the place and what to
 //! do, and nothing panics. Inside, y points up and lengths are metres; everything else is turned at this
@@ -9,7 +10,12 @@
 mod drawing;
 mod error;
 mod model;
+mod summary;
 
 pub use drawing::{DrawingFormat, Drawings, MAX_DRAWING_BYTES, ReadDrawing, read_drawings, write_drawing};
 pub use error::{DrawingError, FileFault, ModelError, Place, WriteError};
-pub use model::{ExportSpec, ModelFormat, PngCache, read_picture, write_glb, write_glb_with, write_png};
+pub use model::{
+    ExportSpec, MAX_MODEL_BYTES, ModelFormat, ObjFiles, PngCache, Resolver, no_files, obj_files, read_model,
+    read_picture, write_glb, write_glb_with, write_model, write_ply, write_png, write_stl,
+};
+pub use summary::{DrawingSummary, MaterialSummary, ModelSummary, PartSummary};

@@ -1,4 +1,4 @@
-//! InkML (W3C Recommendation, 2011) -> strokes. Y points down, as the standard says, unless its channel is
+//! `InkML` (W3C Recommendation, 2011) -> strokes. Y points down, as the standard says, unless its channel is
 //! oriented `-ve`. Brush widths and canvas transforms are left aside.
 
 use std::collections::BTreeMap;
@@ -14,6 +14,9 @@ use crate::DrawingFormat;
 use crate::error::{DrawingError, FileFault, Place};
 
 const FORMAT: DrawingFormat = DrawingFormat::InkMl;
+
+/// Channels of a trace; tablets have fewer than twenty.
+const MAX_CHANNELS: usize = 64;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Role {
@@ -253,6 +256,11 @@ fn layout(node: Node<'_, '_>) -> Result<Layout, DrawingError> {
         }
         layout.regular += 1;
     }
+    if layout.channels.len() > MAX_CHANNELS {
+        let advice = "leave channels other than X, Y, T and F out";
+        let fault = FileFault::TooMuch { what: "the number of channels", limit: MAX_CHANNELS as u64, advice };
+        return Err(DrawingError::new(FORMAT, xml::place(node), fault));
+    }
     let missing = [(Role::X, "X"), (Role::Y, "Y")]
         .into_iter()
         .find(|(role, _)| layout.channels[..layout.regular].iter().all(|c| c.role != *role));
@@ -392,7 +400,8 @@ fn value<'t>(text: &'t str, track: &mut Track) -> Result<(bool, &'t str), String
     }
     let (number, rest) = if let Some(hex) = text.strip_prefix('#') {
         let end = hex.find(|c: char| !c.is_ascii_hexdigit()).unwrap_or(hex.len());
-        let n = u64::from_str_radix(&hex[..end], 16).map_err(|_| "a broken hexadecimal number".to_owned())?;
+        let n = u64::from_str_radix(&hex[..end], 16)
+            .map_err(|e| format!("a hexadecimal number is broken: {e}"))?;
         #[expect(clippy::cast_precision_loss, reason = "tablet coordinates stay far below 2^53")]
         let n = n as f64;
         (n, &hex[end..])
@@ -400,7 +409,7 @@ fn value<'t>(text: &'t str, track: &mut Track) -> Result<(bool, &'t str), String
         let end = super::number_end(text);
         let n = text[..end].parse::<f64>();
         (
-            n.map_err(|_| format!("{:?} is no number", text.chars().take(12).collect::<String>()))?,
+            n.map_err(|e| format!("{:?} is no number ({e})", text.chars().take(12).collect::<String>()))?,
             &text[end..],
         )
     };

@@ -180,21 +180,24 @@ fn text_of(bytes: Vec<u8>) -> Result<String, FileFault> {
             let pair = [b[0], b[1]];
             if big { u16::from_be_bytes(pair) } else { u16::from_le_bytes(pair) }
         });
-        char::decode_utf16(units).collect::<Result<String, _>>().map_err(|_| FileFault::NotUtf8)
+        char::decode_utf16(units).collect::<Result<String, _>>().map_err(|e| {
+            FileFault::malformed(format!("the UTF-16 text is broken: {e}"), "save it again as UTF-8")
+        })
     };
     match bytes.get(..2) {
         Some([0xff, 0xfe]) => return utf16(false),
         Some([0xfe, 0xff]) => return utf16(true),
         _ => {}
     }
-    let mut text = String::from_utf8(bytes).map_err(|_| FileFault::NotUtf8)?;
+    let mut text = String::from_utf8(bytes)
+        .map_err(|e| FileFault::NotUtf8 { after: e.utf8_error().valid_up_to() as u64 })?;
     if text.starts_with('\u{feff}') {
         text.drain(..'\u{feff}'.len_utf8());
     }
     Ok(text)
 }
 
-/// Length of the number that `text` starts with (SVG and InkML grammar: `1.5.5-3e2` holds three); 0 if none.
+/// Length of the number that `text` starts with (the grammar of SVG and ink: `1.5.5-3e2` holds three); 0 if none.
 pub(crate) fn number_end(text: &str) -> usize {
     let bytes = text.as_bytes();
     let digits = |mut i: usize| {

@@ -143,10 +143,7 @@ pub(super) fn read_line(
 }
 
 fn stroke(rows: &[Vec<f64>]) -> Result<Stroke, String> {
-    let (xs, ys, rest) = match rows {
-        [xs, ys, rest @ ..] => (xs, ys, rest),
-        _ => return Err(format!("it has {} rows", rows.len())),
-    };
+    let [xs, ys, rest @ ..] = rows else { return Err(format!("it has {} rows", rows.len())) };
     if xs.len() != ys.len() {
         return Err(format!("it has {} x but {} y", xs.len(), ys.len()));
     }

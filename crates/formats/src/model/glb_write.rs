@@ -61,7 +61,8 @@ pub fn write_glb_with(model: &Model, cache: &mut PngCache, mut out: impl Write) 
     let word = |n: usize| {
         u32::try_from(n)
             .map(u32::to_le_bytes)
-            .map_err(|_| WriteError::TooLarge { what: "the model", format: "GLB (4 GiB)" })
+            .ok()
+            .ok_or(WriteError::TooLarge { what: "the model", format: "GLB (4 GiB)" })
     };
     out.write_all(b"glTF")?;
     out.write_all(&2_u32.to_le_bytes())?;
@@ -82,7 +83,7 @@ fn room(model: &Model) -> usize {
 }
 
 fn row(n: usize) -> Result<u32, WriteError> {
-    u32::try_from(n).map_err(|_| WriteError::TooLarge { what: "the number of parts", format: "glTF" })
+    u32::try_from(n).ok().ok_or(WriteError::TooLarge { what: "the number of parts", format: "glTF" })
 }
 
 struct Writer {

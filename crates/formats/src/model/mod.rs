@@ -1,17 +1,35 @@
 //! bytes <-> [`mesh::Model`].
 
 mod axes;
+mod glb_read;
 mod glb_write;
 mod gltf;
+mod gltf_bytes;
+mod obj_read;
+mod obj_write;
 mod picture;
+mod ply_read;
+mod ply_write;
+mod stl;
 
-use mesh::Model;
+use std::io::{Read, Write};
+
+use base::Report;
+use mesh::{MaterialKind, Model};
 
 pub use axes::ExportSpec;
 pub use glb_write::{write_glb, write_glb_with};
+pub use obj_write::{ObjFiles, obj_files};
 pub use picture::{PngCache, read_picture, write_png};
+pub use ply_write::write_ply;
+pub use stl::write_stl;
 
-use crate::error::WriteError;
+use crate::error::{FileFault, ModelError, Place, WriteError};
+
+/// Largest model file that is read: 1 GiB.
+pub const MAX_MODEL_BYTES: u64 = 1 << 30;
+/// Most vertices or triangles of a model that is read.
+pub(crate) const MAX_ROWS: usize = 32 << 20;
 
 /// The file formats that hold models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -84,6 +102,93 @@ impl ModelFormat {
     }
 }
 
+/// Finds a file that a model refers to (a material file, a texture) by the name that the model uses.
+pub type Resolver<'a> = &'a dyn Fn(&str) -> Option<Vec<u8>>;
+
+/// A resolver that finds nothing.
+pub fn no_files(_: &str) -> Option<Vec<u8>> {
+    None
+}
+
+/// Reads a model.
+///
+/// `spec` says which unit and up axis the file has where the format does not (OBJ, PLY, STL); the model comes
+/// back in metres, +Y up. `resolve` finds the files that an OBJ refers to. Missing normals are computed.
+/// Guaranteed: `model.validate()` finds nothing but degenerate triangles. What was left out is told in
+/// `report`.
+///
+/// # Errors
+/// [`ModelError`] with the place in the file and what to do.
+pub fn read_model(
+    input: impl Read,
+    format: ModelFormat,
+    name: &str,
+    spec: &ExportSpec,
+    resolve: Resolver<'_>,
+    report: &mut Report,
+) -> Result<Model, ModelError> {
+    let file = |fault| ModelError::new(format, Place::File, fault);
+    let mut bytes = Vec::new();
+    input.take(MAX_MODEL_BYTES + 1).read_to_end(&mut bytes).map_err(|e| file(FileFault::Io(e)))?;
+    if bytes.len() as u64 > MAX_MODEL_BYTES {
+        return Err(file(FileFault::TooMuch {
+            what: "the size in bytes",
+            limit: MAX_MODEL_BYTES,
+            advice: "split the model into several files",
+        }));
+    }
+    if bytes.is_empty() {
+        return Err(file(FileFault::Empty));
+    }
+    let mut model = match format {
+        ModelFormat::Glb | ModelFormat::Gltf => {
+            if !spec.is_default() {
+                report.warn(
+                    "gltf-fixed-units",
+                    "glTF is always in metres with +Y up: the unit and up axis asked for were not used",
+                );
+            }
+            return glb_read::read(&bytes, format, name, resolve, report);
+        }
+        ModelFormat::Obj => obj_read::read(&bytes, name, resolve, report)?,
+        ModelFormat::Ply => ply_read::read(&bytes, name, report)?,
+        ModelFormat::Stl => stl::read(&bytes, name, report)?,
+    };
+    spec.import(&mut model);
+    for part in &mut model.parts {
+        if part.mesh.normals.len() != part.mesh.positions.len() {
+            part.mesh.compute_normals();
+        }
+    }
+    Ok(model)
+}
+
+/// Writes a model to one stream. An OBJ is written without its material file: see [`obj_files`].
+///
+/// # Errors
+/// [`WriteError`] of the sink or for a model that is not sound.
+pub fn write_model(
+    model: &Model,
+    format: ModelFormat,
+    spec: &ExportSpec,
+    mut out: impl Write,
+    report: &mut Report,
+) -> Result<(), WriteError> {
+    if format.fixed_axes() && !spec.is_default() {
+        report.warn(
+            "gltf-fixed-units",
+            "glTF is always in metres with +Y up: the unit and up axis asked for were not used",
+        );
+    }
+    match format {
+        ModelFormat::Glb => write_glb(model, out),
+        ModelFormat::Gltf => Err(WriteError::ReadOnly { format: "glTF as JSON", instead: ".glb" }),
+        ModelFormat::Obj => Ok(out.write_all(&obj_files(model, "model", spec)?.obj)?),
+        ModelFormat::Ply => write_ply(model, spec, out),
+        ModelFormat::Stl => write_stl(model, spec, out),
+    }
+}
+
 /// Refuses models that no file should be made of. Degenerate triangles may pass.
 pub(crate) fn check(model: &Model) -> Result<(), WriteError> {
     for part in &model.parts {
@@ -111,4 +216,33 @@ pub(crate) fn unit(n: [f32; 3]) -> [f32; 3] {
     } else {
         [0.0, 1.0, 0.0]
     }
+}
+
+/// Distinct names: a repeated one gets `-2`, `-3`, ...
+#[derive(Debug, Default)]
+pub(crate) struct Names(std::collections::BTreeMap<String, usize>);
+
+impl Names {
+    pub(crate) fn fresh(&mut self, wanted: &str, otherwise: &str) -> String {
+        let wanted = if wanted.trim().is_empty() { otherwise } else { wanted };
+        let mut name = wanted.to_owned();
+        while self.0.contains_key(&name) {
+            let count = self.0.entry(wanted.to_owned()).or_insert(1);
+            *count += 1;
+            name = format!("{wanted}-{count}");
+        }
+        self.0.insert(name.clone(), 1);
+        name
+    }
+}
+
+/// The kind that a word or a name such as `leaf-2` stands for.
+pub(crate) fn kind_of(name: &str) -> MaterialKind {
+    use MaterialKind::{Bark, Disc, Fruit, Leaf, Other, Petal, Root, Stamen, Stem};
+    let lower = name.to_ascii_lowercase();
+    let word = lower.split(|c: char| !c.is_ascii_alphabetic()).next().unwrap_or_default();
+    [Bark, Stem, Leaf, Petal, Disc, Fruit, Root, Stamen]
+        .into_iter()
+        .find(|k| k.word() == word)
+        .unwrap_or(Other)
 }

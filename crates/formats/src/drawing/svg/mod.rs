@@ -25,9 +25,11 @@ const FORMAT: DrawingFormat = DrawingFormat::Svg;
 /// Deepest chain of `use` elements; drawing programs stay below 4.
 const MAX_USE: usize = 16;
 /// Most elements after all `use` are expanded.
-const MAX_ELEMENTS: usize = 2_000_000;
-/// Most control points after all `use` are expanded.
-const MAX_POINTS: usize = 20_000_000;
+const MAX_ELEMENTS: usize = 500_000;
+/// Most pieces of paths after all `use` are expanded.
+const MAX_PIECES: usize = 6_000_000;
+/// Most bytes of attributes after all `use` are expanded: each expansion reads them again.
+const MAX_WORK: usize = 256 << 20;
 
 /// A curve's error as a share of the drawing's diagonal: a tenth of the step that cleaning resamples with.
 const FLATNESS: f64 = 5e-4;
@@ -45,7 +47,8 @@ struct Reader<'a> {
     viewport: DVec2,
     shapes: Vec<Shape>,
     elements: usize,
-    points: usize,
+    pieces: usize,
+    work: usize,
     left_out: BTreeMap<&'static str, usize>,
     broken: Vec<String>,
 }
@@ -74,7 +77,8 @@ pub(super) fn read(text: &str, name: &str, report: &mut Report) -> Result<Drawin
         viewport: viewport(root),
         shapes: Vec::new(),
         elements: 0,
-        points: 0,
+        pieces: 0,
+        work: 0,
         left_out: BTreeMap::new(),
         broken: Vec::new(),
     };
@@ -114,8 +118,12 @@ impl<'a> Reader<'a> {
         if self.elements > MAX_ELEMENTS {
             return Err(limit("the number of elements after expanding `use`", MAX_ELEMENTS));
         }
-        if self.points > MAX_POINTS {
-            return Err(limit("the number of points after expanding `use`", MAX_POINTS));
+        if self.pieces > MAX_PIECES {
+            return Err(limit("the number of points after expanding `use`", MAX_PIECES));
+        }
+        self.work += node.attributes().map(|a| a.value().len()).sum::<usize>();
+        if self.work > MAX_WORK {
+            return Err(limit("the text after expanding `use`, in bytes,", MAX_WORK));
         }
         if depth.elements > xml::MAX_DEPTH {
             return Err(limit("the nesting of elements", xml::MAX_DEPTH));
@@ -214,7 +222,7 @@ impl<'a> Reader<'a> {
         let mut paths = paths;
         for path in &mut paths {
             path.transform(here);
-            self.points += 3 * path.pieces.len() + 1;
+            self.pieces += path.pieces.len() + 1;
         }
         let id = node.attribute("id").map(str::to_owned);
         self.shapes.push(Shape { paths, style, id });

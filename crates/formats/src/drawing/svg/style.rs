@@ -113,8 +113,8 @@ fn declarations(text: &str) -> impl Iterator<Item = (&str, &str)> {
 /// The rules of `<style>` elements that have one plain selector: `tag`, `.class`, `#id`, `*`.
 #[derive(Debug, Default)]
 pub(super) struct Sheet {
-    /// Selector -> the properties that concern us, in order.
-    rules: BTreeMap<String, Vec<(String, String)>>,
+    /// Selector -> the properties that concern us; a later value replaces an earlier one.
+    rules: BTreeMap<String, BTreeMap<String, String>>,
     /// Selectors that were not understood.
     pub(super) ignored: usize,
 }
@@ -131,7 +131,8 @@ impl Sheet {
             rest = after;
             let wanted: Vec<(String, String)> = declarations(body)
                 .filter(|(name, _)| matches!(*name, "color" | "stroke" | "fill" | "visibility" | "display"))
-                .map(|(name, value)| (name.to_owned(), value.to_owned()))
+                // No value that we understand is longer; every element reads them.
+                .map(|(name, value)| (name.to_owned(), value.chars().take(64).collect()))
                 .collect();
             if wanted.is_empty() {
                 continue;

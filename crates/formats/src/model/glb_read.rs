@@ -1,0 +1,345 @@
+//! glTF 2.0, binary or JSON -> Model, with node transforms applied.
+
+use std::sync::Arc;
+
+use base::Report;
+use glam::{DMat3, DMat4, DQuat, DVec3};
+use mesh::{AlphaMode, MaterialId, Model, Part, TriMesh};
+
+use super::gltf::{FAN, Material, Node, POINTS, Primitive, Root, STRIP, TRIANGLES};
+use super::gltf_bytes::{Bytes, Fault, broken, chunks, item, load_uri, unsupported};
+use super::{MAX_ROWS, Names, Resolver, kind_of, read_picture, unit};
+use crate::ModelFormat;
+use crate::error::{FileFault, ModelError, Place};
+
+/// Largest JSON part.
+const MAX_JSON: usize = 256 << 20;
+/// Most objects and arrays in it: each costs far more memory than its two bytes.
+const MAX_OBJECTS: usize = 2_000_000;
+/// Deepest nesting of nodes.
+const MAX_DEPTH: usize = 1_000;
+/// Pixels of all textures together, in bytes.
+const MAX_TEXTURES: usize = 1 << 30;
+
+/// Extensions that may be required and still leave the shape readable.
+const HARMLESS: [&str; 5] = [
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+    "KHR_lights_punctual",
+    "KHR_materials_unlit",
+    "KHR_materials_",
+];
+
+pub(super) fn read(
+    bytes: &[u8],
+    format: ModelFormat,
+    name: &str,
+    resolve: Resolver<'_>,
+    report: &mut Report,
+) -> Result<Model, ModelError> {
+    let (json, bin) = chunks(bytes, format)?;
+    let file = |fault| ModelError::new(format, Place::File, fault);
+    let too_much = |what, limit: usize| {
+        file(FileFault::TooMuch { what, limit: limit as u64, advice: "split the model into several files" })
+    };
+    if json.len() > MAX_JSON {
+        return Err(too_much("the JSON part in bytes", MAX_JSON));
+    }
+    if json.iter().filter(|b| matches!(b, b'{' | b'[')).count() > MAX_OBJECTS {
+        return Err(too_much("the number of objects", MAX_OBJECTS));
+    }
+    let root: Root = serde_json::from_slice(json).map_err(|e| {
+        let place = Place::Line { line: e.line() as u64, column: Some(e.column() as u64) };
+        let fault = if e.is_eof() {
+            FileFault::Truncated { inside: "the JSON part".into() }
+        } else {
+            FileFault::malformed(e.to_string(), "export the model again")
+        };
+        ModelError::new(format, place, fault)
+    })?;
+    let at = |(place, fault): Fault| ModelError::new(format, place, fault);
+    let bytes = Bytes::load(&root, bin, resolve).map_err(at)?;
+    for extension in &root.extensions_required {
+        if !HARMLESS.iter().any(|h| extension == h || (h.ends_with('_') && extension.starts_with(h))) {
+            return Err(at(unsupported(Place::File, format!("the extension {extension}"))));
+        }
+    }
+    let mut reader = Reader {
+        root: &root,
+        bytes,
+        model: Model { name: name.to_owned(), ..Model::default() },
+        names: Names::default(),
+        rows: 0,
+        report,
+        default_material: None,
+        skipped: 0,
+    };
+    reader.materials(resolve);
+    reader.scene().map_err(at)?;
+    Ok(reader.model)
+}
+
+struct Reader<'a> {
+    root: &'a Root,
+    bytes: Bytes<'a>,
+    model: Model,
+    names: Names,
+    rows: usize,
+    report: &'a mut Report,
+    default_material: Option<MaterialId>,
+    skipped: usize,
+}
+
+fn local_matrix(node: &Node) -> DMat4 {
+    match node.matrix {
+        Some(m) => DMat4::from_cols_array(&m),
+        None => DMat4::from_scale_rotation_translation(
+            node.scale.map_or(DVec3::ONE, DVec3::from),
+            // A quaternion of no length turns nothing.
+            node.rotation
+                .map(DQuat::from_array)
+                .filter(|q| q.length_squared() > 0.0)
+                .map_or(DQuat::IDENTITY, |q| if q.is_normalized() { q } else { q.normalize() }),
+            node.translation.map_or(DVec3::ZERO, DVec3::from),
+        ),
+    }
+}
+
+impl Reader<'_> {
+    fn materials(&mut self, resolve: Resolver<'_>) {
+        let root = self.root;
+        let mut images: Vec<Option<Option<Arc<mesh::Texture>>>> = vec![None; root.images.len()];
+        let mut pixels = 0_usize;
+        let mut names = Names::default();
+        for (i, material) in root.materials.iter().enumerate() {
+            let info = material.pbr_metallic_roughness.base_color_texture.as_ref();
+            let source = info.and_then(|t| root.textures.get(t.index as usize)).and_then(|t| t.source);
+            let mut texture = None;
+            if let Some((slot, image)) = source.and_then(|s| {
+                let s = s as usize;
+                Some((images.get_mut(s)?, root.images.get(s)?))
+            }) {
+                texture = slot
+                    .get_or_insert_with(|| {
+                        let bytes = match (image.buffer_view, &image.uri) {
+                            (Some(view), _) => self.bytes.view(root, view).ok().map(|(b, _)| b.to_vec()),
+                            (None, Some(uri)) => load_uri(uri, resolve, &Place::File).ok(),
+                            (None, None) => None,
+                        };
+                        let picture =
+                            bytes.filter(|_| pixels < MAX_TEXTURES).and_then(|b| read_picture(&b))?;
+                        pixels = pixels.saturating_add(picture.pixels.len());
+                        Some(Arc::new(picture))
+                    })
+                    .clone();
+            }
+            let name = names.fresh(material.name.as_deref().unwrap_or_default(), "material");
+            if texture.is_none() && info.is_some() {
+                let message = format!("the texture of material `{name}` could not be read and was left out");
+                self.report.warn("texture-missing", message);
+            }
+            debug_assert_eq!(i, self.model.materials.len(), "materials keep their rows");
+            self.model.materials.push(self::material(material, name, texture));
+        }
+    }
+
+    fn scene(&mut self) -> Result<(), Fault> {
+        let root = self.root;
+        let scene = root.scenes.get(root.scene.unwrap_or(0) as usize);
+        let mut has_parent = vec![false; root.nodes.len()];
+        for &child in root.nodes.iter().flat_map(|n| &n.children) {
+            if let Some(flag) = has_parent.get_mut(child as usize) {
+                *flag = true;
+            }
+        }
+        // A file without scenes is a library; take what stands at the top.
+        let tops: Vec<u32> = match scene {
+            Some(scene) => scene.nodes.clone(),
+            None => (0_u32..).zip(&has_parent).filter(|(_, h)| !**h).map(|(i, _)| i).collect(),
+        };
+        let title = match tops.as_slice() {
+            [only] => {
+                root.nodes.get(*only as usize).and_then(|n| n.name.clone().filter(|_| n.mesh.is_none()))
+            }
+            _ => None,
+        };
+        if let Some(name) = title.or_else(|| scene.and_then(|s| s.name.clone())) {
+            self.model.name = name;
+        }
+        let mut visited = vec![false; root.nodes.len()];
+        let mut stack: Vec<(u32, DMat4, usize)> =
+            tops.iter().rev().map(|&n| (n, DMat4::IDENTITY, 0)).collect();
+        while let Some((index, parent, depth)) = stack.pop() {
+            let node = root
+                .nodes
+                .get(index as usize)
+                .ok_or_else(|| broken(item("node", index), "it is not there"))?;
+            if core::mem::replace(&mut visited[index as usize], true) {
+                return Err(broken(item("node", index), "it stands in the scene twice or inside itself"));
+            }
+            if depth > MAX_DEPTH {
+                return Err(broken(item("node", index), "it is nested too deeply"));
+            }
+            if node.extensions.as_ref().is_some_and(|e| e.get("EXT_mesh_gpu_instancing").is_some()) {
+                return Err(unsupported(item("node", index), "instances (EXT_mesh_gpu_instancing)"));
+            }
+            let world = parent * local_matrix(node);
+            if let Some(mesh) = node.mesh {
+                self.mesh(mesh, node.name.as_deref(), world)?;
+            }
+            stack.extend(node.children.iter().rev().map(|&c| (c, world, depth + 1)));
+        }
+        if self.skipped > 0 {
+            let message = format!("left out: {} meshes made of lines", self.skipped);
+            self.report.warn("gltf-left-out", message);
+        }
+        Ok(())
+    }
+
+    fn mesh(&mut self, index: u32, node: Option<&str>, world: DMat4) -> Result<(), Fault> {
+        let root = self.root;
+        let mesh =
+            root.meshes.get(index as usize).ok_or_else(|| broken(item("mesh", index), "it is not there"))?;
+        for primitive in &mesh.primitives {
+            let place = item("mesh", index);
+            if primitive.extensions.as_ref().is_some_and(|e| e.get("KHR_draco_mesh_compression").is_some()) {
+                return Err(unsupported(place, "compressed geometry (KHR_draco_mesh_compression)"));
+            }
+            let Some(mut columns) = self.primitive(primitive, &place)? else {
+                self.skipped += 1;
+                continue;
+            };
+            apply(&mut columns, world);
+            if let Some(i) = columns.positions.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
+                return Err(broken(place, format!("vertex {i} is not finite")));
+            }
+            if columns.normals.is_empty() {
+                columns.compute_normals();
+            }
+            let material = match primitive.material {
+                Some(m) if (m as usize) < root.materials.len() => MaterialId::new(m as usize),
+                Some(m) => return Err(broken(place, format!("its material {m} is not there"))),
+                None => self.default_material(),
+            };
+            let wanted = node.or(mesh.name.as_deref()).unwrap_or_default();
+            let name = self.names.fresh(wanted, "part");
+            self.model.parts.push(Part { name, material, mesh: columns });
+        }
+        Ok(())
+    }
+
+    fn default_material(&mut self) -> MaterialId {
+        let materials = &mut self.model.materials;
+        *self.default_material.get_or_insert_with(|| {
+            materials.push(mesh::Material::plain("default", mesh::MaterialKind::Other, [1.0; 3]));
+            MaterialId::new(materials.len() - 1)
+        })
+    }
+
+    /// The columns of a primitive; `None` for lines.
+    fn primitive(&mut self, p: &Primitive, place: &Place) -> Result<Option<TriMesh>, Fault> {
+        let mode = p.mode.unwrap_or(TRIANGLES);
+        if !matches!(mode, POINTS | TRIANGLES | STRIP | FAN) {
+            return Ok(None);
+        }
+        let (root, bytes) = (self.root, &self.bytes);
+        let Some(position) = p.attributes.position else {
+            return Err(broken(place.clone(), "it has no positions"));
+        };
+        let count = bytes.count(root, position)?;
+        let corners = p.indices.map_or(Ok(count), |i| bytes.count(root, i))?;
+        self.rows = self.rows.saturating_add(count).saturating_add(corners / 3);
+        if self.rows > MAX_ROWS {
+            let advice = "split the model into several files";
+            let fault = FileFault::TooMuch {
+                what: "vertices and triangles of all nodes",
+                limit: MAX_ROWS as u64,
+                advice,
+            };
+            return Err((place.clone(), fault));
+        }
+        let mut mesh = TriMesh { positions: bytes.floats(root, position)?, ..TriMesh::default() };
+        if let Some(i) = p.attributes.normal {
+            mesh.normals = bytes.floats::<3>(root, i)?.into_iter().map(unit).collect();
+        }
+        if let Some(i) = p.attributes.uv {
+            mesh.uvs = bytes.floats(root, i)?;
+        }
+        if let Some(i) = p.attributes.color {
+            mesh.colors = bytes.floats(root, i)?;
+        }
+        for (name, length) in
+            [("NORMAL", mesh.normals.len()), ("TEXCOORD_0", mesh.uvs.len()), ("COLOR_0", mesh.colors.len())]
+        {
+            if length != 0 && length != count {
+                return Err(broken(place.clone(), format!("{name} has {length} rows for {count} vertices")));
+            }
+        }
+        let indices = match p.indices {
+            Some(i) => bytes.indices(root, i)?,
+            None => (0..u32::try_from(count).unwrap_or(u32::MAX)).collect(),
+        };
+        if let Some(bad) = indices.iter().find(|&&i| i as usize >= count) {
+            return Err(broken(place.clone(), format!("index {bad} is beyond its {count} vertices")));
+        }
+        mesh.triangles = match mode {
+            TRIANGLES => indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
+            STRIP => {
+                let turned = |(i, t): (usize, &[u32])| {
+                    if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] }
+                };
+                indices.windows(3).enumerate().map(turned).collect()
+            }
+            FAN => indices.windows(2).skip(1).map(|w| [indices[0], w[0], w[1]]).collect(),
+            _ => Vec::new(),
+        };
+        Ok(Some(mesh))
+    }
+}
+
+/// Places a mesh in the world; a mirrored one is turned so that its triangles face outside again.
+fn apply(mesh: &mut TriMesh, world: DMat4) {
+    if world == DMat4::IDENTITY {
+        return;
+    }
+    let wide = |p: [f32; 3]| DVec3::from(p.map(f64::from));
+    #[expect(clippy::cast_possible_truncation, reason = "meshes are f32 by design")]
+    let narrow = |p: DVec3| p.to_array().map(|x| x as f32);
+    let linear = DMat3::from_mat4(world);
+    let determinant = linear.determinant();
+    mesh.positions.iter_mut().for_each(|p| *p = narrow(world.transform_point3(wide(*p))));
+    if determinant != 0.0 {
+        // Cofactors: the inverse transpose without its division, so that tiny scales stay exact.
+        let (x, y, z) = (linear.x_axis, linear.y_axis, linear.z_axis);
+        let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * determinant.signum();
+        for n in &mut mesh.normals {
+            *n = unit(narrow((cofactors * wide(*n)).normalize_or_zero()));
+        }
+    }
+    if determinant < 0.0 {
+        mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    }
+}
+
+fn material(m: &Material, name: String, texture: Option<Arc<mesh::Texture>>) -> mesh::Material {
+    let pbr = &m.pbr_metallic_roughness;
+    let extra = |key: &str| m.extras.as_ref().and_then(|e| e.get(key));
+    let [r, g, b, _] = pbr.base_color_factor.unwrap_or([1.0; 4]);
+    let kind = kind_of(extra("kind").and_then(|k| k.as_str()).unwrap_or(&name));
+    #[expect(clippy::cast_possible_truncation, reason = "a share between 0 and 1")]
+    let translucency = extra("translucency").and_then(serde_json::Value::as_f64).unwrap_or(0.0) as f32;
+    mesh::Material {
+        name,
+        kind,
+        base_color: [r, g, b],
+        roughness: pbr.roughness_factor.unwrap_or(1.0),
+        translucency: translucency.clamp(0.0, 1.0),
+        texture,
+        // Blended leaves are drawn with holes: sorting them is what nobody does well.
+        alpha: match m.alpha_mode.as_deref() {
+            None | Some("OPAQUE") => AlphaMode::Opaque,
+            Some(_) => AlphaMode::Mask,
+        },
+        double_sided: m.double_sided,
+    }
+}

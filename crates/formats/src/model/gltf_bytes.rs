@@ -1,0 +1,271 @@
+//! Checked access to the bytes behind a glTF document. Everything here may be hostile.
+
+use std::borrow::Cow;
+
+use super::Resolver;
+use super::gltf::{Accessor, FLOAT, I8, I16, Root, U8, U16, U32};
+use crate::ModelFormat;
+use crate::error::{FileFault, ModelError, Place};
+
+pub(super) type Fault = (Place, FileFault);
+
+const EXPORT_AGAIN: &str = "export the model again, uncompressed, as .glb";
+
+pub(super) fn item(kind: &str, index: impl core::fmt::Display) -> Place {
+    Place::Item(format!("{kind} {index}"))
+}
+
+pub(super) fn broken(place: Place, what: impl Into<String>) -> Fault {
+    (place, FileFault::malformed(what, EXPORT_AGAIN))
+}
+
+pub(super) fn unsupported(place: Place, what: impl Into<String>) -> Fault {
+    (place, FileFault::unsupported(what, EXPORT_AGAIN))
+}
+
+/// The JSON text and the binary chunk.
+pub(super) fn chunks(bytes: &[u8], format: ModelFormat) -> Result<(&[u8], Option<&[u8]>), ModelError> {
+    if !bytes.starts_with(b"glTF") {
+        if bytes.trim_ascii_start().starts_with(b"{") || format == ModelFormat::Gltf {
+            return Ok((bytes, None));
+        }
+        let fault = FileFault::malformed("it does not begin with `glTF`", "is it really a GLB file?");
+        return Err(ModelError::new(format, Place::Byte(0), fault));
+    }
+    let cut = |at: usize, inside: &str| {
+        ModelError::new(format, Place::Byte(at as u64), FileFault::Truncated { inside: inside.to_owned() })
+    };
+    let word = |at: usize| {
+        let b = bytes.get(at..at + 4)?;
+        Some(u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
+    };
+    match word(4) {
+        Some(2) => {}
+        Some(version) => {
+            let fault = FileFault::unsupported(format!("GLB version {version}"), "export it as glTF 2.0");
+            return Err(ModelError::new(format, Place::Byte(4), fault));
+        }
+        None => return Err(cut(4, "the header")),
+    }
+    let (mut json, mut bin) = (None, None);
+    let mut at = 12;
+    // The specification has two chunks; further ones are skipped.
+    while at + 8 <= bytes.len() && bin.is_none() {
+        let (Some(length), Some(kind)) = (word(at), word(at + 4)) else { break };
+        let end = (at + 8).saturating_add(length as usize);
+        let Some(chunk) = bytes.get(at + 8..end) else { return Err(cut(at, "the chunk that begins here")) };
+        match &kind.to_le_bytes() {
+            b"JSON" if json.is_none() => json = Some(chunk),
+            b"BIN\0" => bin = Some(chunk),
+            _ => {}
+        }
+        at = end;
+    }
+    json.map(|json| (json, bin)).ok_or_else(|| cut(12, "the JSON chunk"))
+}
+
+/// The buffers of a document.
+#[derive(Debug)]
+pub(super) struct Bytes<'a> {
+    buffers: Vec<Cow<'a, [u8]>>,
+}
+
+impl<'a> Bytes<'a> {
+    pub(super) fn load(root: &Root, bin: Option<&'a [u8]>, resolve: Resolver<'_>) -> Result<Self, Fault> {
+        let mut buffers = Vec::with_capacity(root.buffers.len());
+        for (i, buffer) in root.buffers.iter().enumerate() {
+            let data = match (&buffer.uri, bin) {
+                (None, Some(bin)) if i == 0 => Cow::Borrowed(bin),
+                (None, _) => return Err(broken(item("buffer", i), "it has no data")),
+                (Some(uri), _) => Cow::Owned(load_uri(uri, resolve, &item("buffer", i))?),
+            };
+            if (data.len() as u64) < buffer.byte_length {
+                let inside = format!("{} of {} bytes", data.len(), buffer.byte_length);
+                return Err((item("buffer", i), FileFault::Truncated { inside }));
+            }
+            buffers.push(data);
+        }
+        Ok(Self { buffers })
+    }
+
+    /// The bytes of a buffer view, and its stride.
+    pub(super) fn view(&self, root: &Root, index: u32) -> Result<(&[u8], Option<u64>), Fault> {
+        let place = || item("bufferView", index);
+        let view = root.buffer_views.get(index as usize).ok_or_else(|| broken(place(), "it is not there"))?;
+        if view.extensions.as_ref().is_some_and(|e| e.get("EXT_meshopt_compression").is_some()) {
+            return Err(unsupported(place(), "compressed data (EXT_meshopt_compression)"));
+        }
+        let buffer = self
+            .buffers
+            .get(view.buffer as usize)
+            .ok_or_else(|| broken(place(), "its buffer is not there"))?;
+        let range = usize::try_from(view.byte_offset)
+            .ok()
+            .zip(usize::try_from(view.byte_length).ok())
+            .and_then(|(from, length)| buffer.get(from..from.checked_add(length)?));
+        Ok((range.ok_or_else(|| broken(place(), "it reaches beyond its buffer"))?, view.byte_stride))
+    }
+
+    fn accessor<'r>(&self, root: &'r Root, index: u32) -> Result<&'r Accessor, Fault> {
+        root.accessors.get(index as usize).ok_or_else(|| broken(item("accessor", index), "it is not there"))
+    }
+
+    /// Number of rows of an accessor, before anything is read.
+    pub(super) fn count(&self, root: &Root, index: u32) -> Result<usize, Fault> {
+        usize::try_from(self.accessor(root, index)?.count)
+            .map_err(|e| broken(item("accessor", index), format!("its count is absurd: {e}")))
+    }
+
+    /// Calls `each` with the raw bytes of every row.
+    fn rows(
+        &self,
+        root: &Root,
+        index: u32,
+        components: usize,
+        mut each: impl FnMut(&[u8]),
+    ) -> Result<(), Fault> {
+        let accessor = self.accessor(root, index)?;
+        let place = || item("accessor", index);
+        if accessor.sparse.is_some() {
+            return Err(unsupported(place(), "a sparse accessor"));
+        }
+        let Some(view) = accessor.buffer_view else {
+            return Err(unsupported(place(), "an accessor without data"));
+        };
+        let size = components
+            * match accessor.component_type {
+                U8 | I8 => 1,
+                U16 | I16 => 2,
+                U32 | FLOAT => 4,
+                other => return Err(broken(place(), format!("component type {other} does not exist"))),
+            };
+        let (bytes, stride) = self.view(root, view)?;
+        let stride = stride.map_or(Some(size), |s| usize::try_from(s).ok()).filter(|&s| s >= size);
+        let stride = stride.ok_or_else(|| broken(place(), "its stride is smaller than its elements"))?;
+        let count = self.count(root, index)?;
+        let data = usize::try_from(accessor.byte_offset).ok().and_then(|from| bytes.get(from..));
+        let needed = count.checked_sub(1).map_or(Some(0), |n| n.checked_mul(stride)?.checked_add(size));
+        match (data, needed) {
+            (Some(data), Some(needed)) if needed <= data.len() => {
+                (0..count).for_each(|i| each(&data[i * stride..i * stride + size]));
+                Ok(())
+            }
+            _ => Err(broken(place(), "it reaches beyond its buffer view")),
+        }
+    }
+
+    /// An accessor as rows of `N` floats; integers are scaled if the accessor says `normalized`.
+    /// A `VEC4` may be read as three: its alpha is dropped.
+    pub(super) fn floats<const N: usize>(&self, root: &Root, index: u32) -> Result<Vec<[f32; N]>, Fault> {
+        let accessor = self.accessor(root, index)?;
+        let components =
+            components(&accessor.shape).filter(|&c| c == N || (c == 4 && N == 3)).ok_or_else(|| {
+                broken(item("accessor", index), format!("{:?} is not its type", accessor.shape))
+            })?;
+        let (kind, scaled) = (accessor.component_type, accessor.normalized);
+        let mut out = Vec::new();
+        self.rows(root, index, components, |row| {
+            let mut values = [0.0_f32; N];
+            let size = row.len() / components;
+            for (value, raw) in values.iter_mut().zip(row.chunks_exact(size)) {
+                *value = number(raw, kind, scaled);
+            }
+            out.push(values);
+        })?;
+        Ok(out)
+    }
+
+    /// An accessor as indices.
+    pub(super) fn indices(&self, root: &Root, index: u32) -> Result<Vec<u32>, Fault> {
+        let accessor = self.accessor(root, index)?;
+        if accessor.shape != "SCALAR" || !matches!(accessor.component_type, U8 | U16 | U32) {
+            return Err(broken(item("accessor", index), "it holds no indices"));
+        }
+        let mut out = Vec::new();
+        self.rows(root, index, 1, |raw| {
+            out.push(match *raw {
+                [a] => u32::from(a),
+                [a, b] => u32::from(u16::from_le_bytes([a, b])),
+                [a, b, c, d] => u32::from_le_bytes([a, b, c, d]),
+                _ => 0,
+            });
+        })?;
+        Ok(out)
+    }
+}
+
+fn components(shape: &str) -> Option<usize> {
+    match shape {
+        "SCALAR" => Some(1),
+        "VEC2" => Some(2),
+        "VEC3" => Some(3),
+        "VEC4" => Some(4),
+        _ => None,
+    }
+}
+
+fn number(raw: &[u8], kind: u32, scaled: bool) -> f32 {
+    let (value, most) = match (kind, raw) {
+        (FLOAT, &[a, b, c, d]) => return f32::from_le_bytes([a, b, c, d]),
+        (U8, &[a]) => (f32::from(a), 255.0),
+        (I8, &[a]) => (f32::from(i8::from_le_bytes([a])), 127.0),
+        (U16, &[a, b]) => (f32::from(u16::from_le_bytes([a, b])), 65_535.0),
+        (I16, &[a, b]) => (f32::from(i16::from_le_bytes([a, b])), 32_767.0),
+        #[expect(clippy::cast_precision_loss, reason = "an integer position beyond 2^24 is rounded")]
+        (U32, &[a, b, c, d]) => (u32::from_le_bytes([a, b, c, d]) as f32, 4_294_967_295.0),
+        _ => (0.0, 1.0),
+    };
+    if scaled { (value / most).max(-1.0) } else { value }
+}
+
+/// The bytes that a `data:` URI holds or that `resolve` finds.
+pub(super) fn load_uri(uri: &str, resolve: Resolver<'_>, place: &Place) -> Result<Vec<u8>, Fault> {
+    if let Some(rest) = uri.strip_prefix("data:") {
+        let data = rest.split_once(";base64,").map(|(_, data)| data);
+        return data.and_then(base64).ok_or_else(|| broken(place.clone(), "its data URI is not base64"));
+    }
+    resolve(uri).ok_or_else(|| {
+        let what = format!("the file {:?} that it refers to was not found", shown(uri));
+        (place.clone(), FileFault::malformed(what, "put it beside the model, or save everything in one .glb"))
+    })
+}
+
+fn shown(uri: &str) -> String {
+    uri.chars().take(100).collect()
+}
+
+fn base64(text: &str) -> Option<Vec<u8>> {
+    let mut out = Vec::with_capacity(text.len() / 4 * 3 + 3);
+    let (mut bits, mut held) = (0_u32, 0_u32);
+    for b in text.bytes() {
+        let value = match b {
+            b'A'..=b'Z' => b - b'A',
+            b'a'..=b'z' => b - b'a' + 26,
+            b'0'..=b'9' => b - b'0' + 52,
+            b'+' | b'-' => 62,
+            b'/' | b'_' => 63,
+            b'=' => break,
+            b if b.is_ascii_whitespace() => continue,
+            _ => return None,
+        };
+        bits = (bits << 6) | u32::from(value);
+        held += 6;
+        if held >= 8 {
+            held -= 8;
+            out.push(((bits >> held) & 0xff) as u8);
+        }
+    }
+    Some(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn base64_decodes() {
+        assert_eq!(base64("aGVsbG8gbGVhZg==").as_deref(), Some(&b"hello leaf"[..]));
+        assert_eq!(base64("aGVsbG8\nhIQ").as_deref(), Some(&b"hello!!"[..]));
+        assert_eq!(base64("a*b"), None);
+    }
+}

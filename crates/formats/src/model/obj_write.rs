@@ -1,0 +1,134 @@
+//! Model -> Wavefront OBJ, its material file and its textures.
+
+use std::io::Write as _;
+use std::sync::Arc;
+
+use mesh::{AlphaMode, Model};
+
+use super::picture::{PngCache, srgb};
+use super::{ExportSpec, check, unit};
+use crate::error::WriteError;
+
+/// The files that make up an OBJ. The OBJ names its material file and that its textures: keep the names.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ObjFiles {
+    /// `STEM.obj`.
+    pub obj: Vec<u8>,
+    /// `STEM.mtl`.
+    pub mtl: Vec<u8>,
+    /// Name and bytes of each texture, `STEM-MATERIAL.png`.
+    pub textures: Vec<(String, Vec<u8>)>,
+}
+
+/// Writes a model as OBJ, MTL and PNG files; `stem` is their common name without folder and extension.
+///
+/// Guaranteed: names, positions, normals, texture coordinates, materials and colours come back when read here;
+/// other programs do not see kind, translucency and sidedness, which OBJ has no words for.
+///
+/// # Errors
+/// [`WriteError`] for a model that is not sound.
+///
+/// ```
+/// let files = formats::obj_files(&mesh::Model::default(), "oak", &formats::ExportSpec::default())?;
+/// assert!(files.obj.starts_with(b"# Burgeon"));
+/// # Ok::<(), formats::WriteError>(())
+/// ```
+pub fn obj_files(model: &Model, stem: &str, spec: &ExportSpec) -> Result<ObjFiles, WriteError> {
+    check(model)?;
+    let stem = file_name(stem, "model");
+    let mut obj = Vec::with_capacity(64 + 100 * model.vertex_count() + 40 * model.triangle_count());
+    writeln!(obj, "# Burgeon {}; {}, +{:?} up", env!("CARGO_PKG_VERSION"), spec.unit_word(), spec.up)?;
+    writeln!(obj, "# model {}\nmtllib {stem}.mtl", one_line(&model.name))?;
+    // OBJ counts all vertices of a file, from 1.
+    let (mut v, mut vt, mut vn) = (1_usize, 1_usize, 1_usize);
+    for part in model.parts.iter().filter(|p| !p.mesh.positions.is_empty()) {
+        let mesh = &part.mesh;
+        writeln!(obj, "o {}\nusemtl {}", one_line(&part.name), one_line(&model.material(part).name))?;
+        for (i, &p) in mesh.positions.iter().enumerate() {
+            let [x, y, z] = spec.point(p);
+            write!(obj, "v {x} {y} {z}")?;
+            if let Some(c) = mesh.colors.get(i) {
+                let [r, g, b] = c.map(srgb);
+                write!(obj, " {r} {g} {b}")?;
+            }
+            obj.push(b'\n');
+        }
+        for [u, v] in &mesh.uvs {
+            // OBJ's v points up.
+            writeln!(obj, "vt {u} {}", 1.0 - v)?;
+        }
+        for &n in &mesh.normals {
+            let [x, y, z] = spec.direction(unit(n));
+            writeln!(obj, "vn {x} {y} {z}")?;
+        }
+        for t in &mesh.triangles {
+            obj.push(b'f');
+            for i in t.map(|i| i as usize) {
+                match (mesh.uvs.is_empty(), mesh.normals.is_empty()) {
+                    (true, true) => write!(obj, " {}", v + i)?,
+                    (false, true) => write!(obj, " {}/{}", v + i, vt + i)?,
+                    (true, false) => write!(obj, " {}//{}", v + i, vn + i)?,
+                    (false, false) => write!(obj, " {}/{}/{}", v + i, vt + i, vn + i)?,
+                }
+            }
+            obj.push(b'\n');
+        }
+        v += mesh.positions.len();
+        vt += mesh.uvs.len();
+        vn += mesh.normals.len();
+    }
+    let (mtl, textures) = materials(model, &stem)?;
+    Ok(ObjFiles { obj, mtl, textures })
+}
+
+type Textures = Vec<(String, Vec<u8>)>;
+
+fn materials(model: &Model, stem: &str) -> Result<(Vec<u8>, Textures), WriteError> {
+    let mut mtl = Vec::new();
+    let mut textures: Textures = Vec::new();
+    let mut written: Vec<(Arc<mesh::Texture>, String)> = Vec::new();
+    let mut cache = PngCache::new();
+    for m in &model.materials {
+        let [r, g, b] = m.base_color;
+        let sides = if m.double_sided { " double-sided" } else { "" };
+        writeln!(mtl, "newmtl {}", one_line(&m.name))?;
+        // What MTL has no word for, in a comment that our own reader understands.
+        writeln!(mtl, "# burgeon kind={} translucency={}{sides}", m.kind.word(), m.translucency)?;
+        writeln!(mtl, "Kd {r} {g} {b}\nKs 0 0 0\nPr {}\nPm 0\nd 1\nillum 1", m.roughness)?;
+        if let Some(texture) = &m.texture {
+            let known = written.iter().find(|(t, _)| Arc::ptr_eq(t, texture) || t == texture);
+            let name = match known {
+                Some((_, name)) => name.clone(),
+                None => {
+                    let mut name = format!("{stem}-{}.png", file_name(&m.name, "texture"));
+                    while textures.iter().any(|(n, _)| *n == name) {
+                        name.insert_str(name.len() - 4, "-2");
+                    }
+                    textures.push((name.clone(), cache.png(texture)?.to_vec()));
+                    written.push((Arc::clone(texture), name.clone()));
+                    name
+                }
+            };
+            writeln!(mtl, "map_Kd {name}")?;
+            if m.alpha == AlphaMode::Mask {
+                writeln!(mtl, "map_d {name}")?;
+            }
+        }
+        mtl.push(b'\n');
+    }
+    Ok((mtl, textures))
+}
+
+/// A name that stays within its line.
+fn one_line(name: &str) -> String {
+    let name: String = name.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    if name.trim().is_empty() { "unnamed".into() } else { name.trim().to_owned() }
+}
+
+/// A name that every file system takes.
+fn file_name(name: &str, otherwise: &str) -> String {
+    let keep = |c: char| if c.is_alphanumeric() || matches!(c, '-' | '_' | '.') { c } else { '-' };
+    let name: String = name.chars().map(keep).take(100).collect();
+    let name = name.trim_matches('.');
+    if name.is_empty() { otherwise.to_owned() } else { name.to_owned() }
+}

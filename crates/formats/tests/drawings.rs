@@ -1,0 +1,163 @@
+//! Readers of drawings on whole files: real ones, large ones, wrong ones.
+
+use formats::{DrawingError, DrawingFormat, DrawingSummary, ReadDrawing, read_drawings, write_drawing};
+use glam::DVec2;
+use sketch::{Drawing, InkSample, Stroke, StrokeMode};
+
+fn all(bytes: &[u8], format: DrawingFormat) -> Vec<Result<ReadDrawing, DrawingError>> {
+    read_drawings(bytes, format, "file").collect()
+}
+
+fn error(bytes: &[u8], format: DrawingFormat) -> String {
+    all(bytes, format).remove(0).expect_err("refused").to_string()
+}
+
+#[test]
+fn ndjson_yields_good_lines_and_names_bad_ones() {
+    let text = "{\"word\":\"house plant\",\"key_id\":\"77\",\"drawing\":[[[1,2],[3,4],[0,9]]]}\n\nnot json\n\
+                {\"word\":\"leaf\",\"drawing\":[[[1,2,3],[3,4]]]}\n{\"key_id\":5,\"drawing\":[]}\n{\"drawing\":[[[7],[8]]]}";
+    let items = all(text.as_bytes(), DrawingFormat::Ndjson);
+    let told: Vec<String> = items
+        .iter()
+        .map(|i| i.as_ref().map_or_else(ToString::to_string, |r| r.drawing.name.clone()))
+        .collect();
+    assert_eq!(told[0], "house-plant-77");
+    assert!(told[1].starts_with("ndjson, line 3, column 2: "), "{}", told[1]);
+    assert!(told[2].contains("line 4, stroke 0: it has 3 x but 2 y"), "{}", told[2]);
+    assert!(told[3].contains("line 5: there is no stroke"), "{}", told[3]);
+    assert_eq!(told[4], "file-6");
+    let first = &items[0].as_ref().expect("good").drawing.strokes[0].samples[1];
+    assert_eq!(*first, InkSample { at: DVec2::new(2.0, -4.0), time_ms: Some(9.0), pressure: None });
+}
+
+#[test]
+fn json_round_trip_keeps_everything() {
+    let sample = |x: f64, time_ms, pressure| InkSample { at: DVec2::new(x, -x / 3.0), time_ms, pressure };
+    let drawing = Drawing {
+        name: "a \"quoted\" name".into(),
+        strokes: vec![
+            Stroke {
+                samples: vec![
+                    sample(0.1, Some(0.0), Some(0.5)),
+                    sample(1e-9, None, Some(1.0)),
+                    sample(3e200, Some(7.5), None),
+                ],
+                mode: StrokeMode::LeafContour,
+                color: Some([1, 171, 255]),
+                id: Some("s<1>".into()),
+            },
+            Stroke {
+                samples: vec![sample(5.0, None, None)],
+                mode: StrokeMode::BranchContour,
+                ..Stroke::default()
+            },
+            Stroke { samples: vec![], ..Stroke::default() },
+        ],
+    };
+    let mut bytes = Vec::new();
+    write_drawing(&drawing, &mut bytes).expect("writes");
+    assert_eq!(all(&bytes, DrawingFormat::Json).remove(0).expect("reads").drawing, drawing);
+    assert_eq!(DrawingFormat::sniff(&bytes), Some(DrawingFormat::Json));
+}
+
+#[test]
+fn wrong_json_says_what_where_and_what_to_do() {
+    for (text, want) in [
+        ("{\"burgeon\":\"drawing/1\",\n\"strokes\":[{\"points\":[[1,NaN]]}]}", "line 2, column"),
+        ("{\"burgeon\":\"drawing/9\",\"strokes\":[]}", "drawing/9"),
+        ("{\"strokes\":[]}", "\"burgeon\" is missing"),
+        (
+            "{\"burgeon\":\"drawing/1\",\"strokes\":[{\"points\":[[1]]}]}",
+            "stroke 0, point 0: x or y is missing",
+        ),
+        (
+            "{\"burgeon\":\"drawing/1\",\"strokes\":[{\"mode\":\"crown\",\"points\":[]}]}",
+            "\"crown\" is unknown",
+        ),
+        ("{\"burgeon\":\"drawing/1\",\"strokes\":[", "cut off"),
+        ("{\"burgeon\":\"drawing/1\",\"strokes\":[{\"points\":[[1,1e999]]}]}", "out of range"),
+        ("{\"burgeon\":\"drawing/1\",\"strokes\":[]}", "no stroke"),
+        ("   \n", "empty"),
+    ] {
+        let e = error(text.as_bytes(), DrawingFormat::Json);
+        assert!(e.starts_with("drawing JSON") && e.contains(want), "{want} in {e}");
+    }
+    assert!(error(&[0xff, 0x41, 0x42], DrawingFormat::Json).contains("not UTF-8"));
+    assert!(error(&b"[".repeat(100_000), DrawingFormat::Json).len() < 300);
+    assert!(error(&b"{\"drawing\":[[[".repeat(50_000), DrawingFormat::Ndjson).len() < 300);
+}
+
+#[test]
+fn empty_files_and_wrong_formats_are_errors() {
+    for format in DrawingFormat::ALL {
+        assert!(error(b"", format).contains("empty"), "{format:?}");
+        error(b"\x89PNG\r\n\x1a\n", format);
+    }
+    assert!(error(b"<html></html>", DrawingFormat::Svg).contains("<html>, not <svg>"));
+    assert!(error(b"<svg/>", DrawingFormat::InkMl).contains("not <ink>"));
+}
+
+#[test]
+fn utf16_with_a_mark_is_read() {
+    let text = "<svg><path id='bl\u{e4}tt' stroke='red' d='M0 0L1 1'/></svg>";
+    let mut bytes = vec![0xff, 0xfe];
+    text.encode_utf16().for_each(|u| bytes.extend(u.to_le_bytes()));
+    let read = all(&bytes, DrawingFormat::Svg).remove(0).expect("reads");
+    assert_eq!(read.drawing.strokes[0].id.as_deref(), Some("bl\u{e4}tt"));
+}
+
+#[test]
+fn a_hundred_thousand_strokes_are_read() {
+    let mut svg = String::from("<svg><g stroke='red'>");
+    for i in 0..100_000 {
+        svg += &format!("<path d='M{i} 0l1 2'/>");
+    }
+    svg += "</g></svg>";
+    let read = all(svg.as_bytes(), DrawingFormat::Svg).remove(0).expect("reads");
+    assert_eq!(read.drawing.strokes.len(), 100_000);
+    let mut bytes = Vec::new();
+    write_drawing(&read.drawing, &mut bytes).expect("writes");
+    assert_eq!(all(&bytes, DrawingFormat::Json).remove(0).expect("reads").drawing, read.drawing);
+}
+
+#[test]
+fn a_style_sheet_of_many_rules_does_not_slow_each_element() {
+    let mut svg = String::from("<svg><style>");
+    (0..200_000).for_each(|_| svg += "path{stroke:red}");
+    svg += "</style>";
+    (0..20_000).for_each(|_| svg += "<path d='M0 0L1 1'/>");
+    svg += "</svg>";
+    let start = std::time::Instant::now();
+    let read = all(svg.as_bytes(), DrawingFormat::Svg).remove(0).expect("reads");
+    assert_eq!(read.drawing.strokes[9].color, Some([255, 0, 0]));
+    assert!(start.elapsed().as_secs() < 10, "{:?}", start.elapsed());
+}
+
+/// Every drawing of the shared data folder, where it is there.
+#[test]
+fn real_drawings_are_read() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/sketches");
+    if !std::path::Path::new(folder).is_dir() {
+        println!("skipped: {folder} is not there");
+        return;
+    }
+    let mut counts = [0_usize; 2];
+    for (row, sub) in ["quickdraw", "spg"].iter().enumerate() {
+        let entries = std::fs::read_dir(format!("{folder}/{sub}")).expect("a folder");
+        for path in entries.filter_map(Result::ok).map(|e| e.path()) {
+            if path.extension().is_none_or(|e| e != "ndjson") {
+                continue;
+            }
+            let file = std::io::BufReader::new(std::fs::File::open(&path).expect("opens"));
+            for read in read_drawings(file, DrawingFormat::Ndjson, "d") {
+                let read = read.unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+                let info = DrawingSummary::of(&read.drawing, &read.warnings);
+                assert!(info.points > 1 && info.not_finite == 0, "{info:?}");
+                // Raw drawings have times; the labels in the third row of the others are none.
+                assert_eq!(info.times, row == 0, "{}: {}", path.display(), info.name);
+                counts[row] += 1;
+            }
+        }
+    }
+    assert_eq!(counts, [138, 1446], "every drawing");
+}

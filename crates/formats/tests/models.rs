@@ -1,0 +1,315 @@
+//! What is written comes back the same.
+
+use std::sync::Arc;
+
+use base::{Report, Unit, UpAxis};
+use formats::{
+    ExportSpec, ModelFormat, ModelSummary, no_files, obj_files, read_model, write_glb, write_model,
+};
+use mesh::{AlphaMode, Material, MaterialId, MaterialKind, Model, Part, Texture, TriMesh};
+
+fn grid(n: u32, at: f64) -> TriMesh {
+    let mut m = TriMesh::default();
+    let f = |i: u32| f64::from(i) / f64::from(n);
+    for j in 0..=n {
+        for i in 0..=n {
+            m.push(glam::DVec3::new(f(i) + at, f(j), 0.1 * f(i) * f(j)));
+            m.uvs.push([f(i) as f32, f(j) as f32]);
+            m.colors.push([1.0, 0.5, f(j) as f32]);
+        }
+    }
+    for j in 0..n {
+        for i in 0..n {
+            let a = j * (n + 1) + i;
+            m.triangles.extend([[a, a + 1, a + n + 2], [a, a + n + 2, a + n + 1]]);
+        }
+    }
+    m.compute_normals();
+    m
+}
+
+fn model() -> Model {
+    let pixels: Vec<u8> =
+        (0..16 * 8).flat_map(|i| [i as u8, 120, 40, if i % 7 == 0 { 0 } else { 255 }]).collect();
+    let texture = Arc::new(Texture { width: 16, height: 8, pixels });
+    let leaf = Material {
+        texture: Some(Arc::clone(&texture)),
+        alpha: AlphaMode::Mask,
+        double_sided: true,
+        translucency: 0.25,
+        roughness: 0.5,
+        ..Material::plain("leaf", MaterialKind::Leaf, [0.25, 0.5, 0.125])
+    };
+    let petal =
+        Material { texture: Some(texture), ..Material::plain("rose petal", MaterialKind::Petal, [1.0; 3]) };
+    let bark = Material::plain("bark", MaterialKind::Bark, [0.5, 0.25, 0.125]);
+    let mut bare = grid(2, 3.0);
+    bare.colors.clear();
+    bare.uvs.clear();
+    let part = |name: &str, id, mesh| Part { name: name.into(), material: MaterialId::new(id), mesh };
+    Model {
+        name: "an oak".into(),
+        parts: vec![
+            part("leaves", 0, grid(9, 0.0)),
+            part("petals 2", 1, grid(3, 1.5)),
+            part("trunk", 2, bare),
+        ],
+        materials: vec![leaf, petal, bark],
+    }
+}
+
+fn read(bytes: &[u8], format: ModelFormat, spec: &ExportSpec) -> Model {
+    let mut report = Report::default();
+    let m = read_model(bytes, format, "x", spec, &no_files, &mut report).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(report.warnings, [], "nothing to warn of");
+    assert_eq!(m.validate().collect::<Vec<_>>(), [], "sound");
+    m
+}
+
+fn worst<const N: usize>(a: &[[f32; N]], b: &[[f32; N]]) -> f32 {
+    assert_eq!(a.len(), b.len(), "as many rows");
+    a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+}
+
+#[test]
+fn glb_comes_back_identical() {
+    let m = model();
+    let mut glb = Vec::new();
+    write_glb(&m, &mut glb).expect("writes");
+    assert_eq!(read(&glb, ModelFormat::Glb, &ExportSpec::default()), m);
+}
+
+#[test]
+fn large_indices_come_back() {
+    let mut m = model();
+    m.parts[0].mesh = grid(260, 0.0);
+    let mut glb = Vec::new();
+    write_glb(&m, &mut glb).expect("writes");
+    assert_eq!(read(&glb, ModelFormat::Glb, &ExportSpec::default()), m);
+}
+
+#[test]
+fn obj_comes_back_with_its_materials() {
+    let m = model();
+    let spec = ExportSpec { up: UpAxis::Z, unit: Unit::Centimetre };
+    let files = obj_files(&m, "my oak", &spec).expect("writes");
+    assert_eq!(files.textures.len(), 1, "a shared texture is written once");
+    let resolve = |name: &str| match name {
+        "my-oak.mtl" => Some(files.mtl.clone()),
+        name => files.textures.iter().find(|(n, _)| n == name).map(|(_, b)| b.clone()),
+    };
+    let mut report = Report::default();
+    let back =
+        read_model(&files.obj[..], ModelFormat::Obj, "x", &spec, &resolve, &mut report).expect("reads");
+    assert_eq!(report.warnings, []);
+    assert_eq!((&back.name, &back.materials), (&m.name, &m.materials));
+    for (a, b) in m.parts.iter().zip(&back.parts) {
+        assert_eq!((&a.name, a.material, &a.mesh.triangles), (&b.name, b.material, &b.mesh.triangles));
+        assert!(worst(&a.mesh.positions, &b.mesh.positions) < 1e-6);
+        assert!(worst(&a.mesh.normals, &b.mesh.normals) < 1e-6);
+        assert!(worst(&a.mesh.uvs, &b.mesh.uvs) < 1e-6);
+        assert!(worst(&a.mesh.colors, &b.mesh.colors) < 1e-5);
+    }
+}
+
+#[test]
+fn obj_of_other_programs_is_read() {
+    let text = "mtllib a.mtl\ng one\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl red\nf 1 2 3 4\nf -4 -2 \\\n -1\ng two\nl 1 2\nf 1 2 4\n";
+    let mut report = Report::default();
+    let m = read_model(
+        text.as_bytes(),
+        ModelFormat::Obj,
+        "x",
+        &ExportSpec::default(),
+        &|name| (name == "a.mtl").then(|| b"newmtl red\nKd 1 0 0\nmap_Kd -s 1 1 1 gone.png\n".to_vec()),
+        &mut report,
+    )
+    .expect("reads");
+    assert_eq!(m.parts.iter().map(|p| p.mesh.triangles.len()).collect::<Vec<_>>(), [3, 1]);
+    assert_eq!(m.materials[0].base_color, [1.0, 0.0, 0.0]);
+    assert_eq!(m.parts[0].mesh.normals[0], [0.0, 0.0, 1.0], "normals are made where there are none");
+    let codes: Vec<_> = report.warnings.iter().map(|w| w.code).collect();
+    assert_eq!(codes, ["texture-missing", "obj-left-out"]);
+}
+
+#[test]
+fn ply_comes_back_as_one_mesh() {
+    let m = model();
+    for spec in [ExportSpec::default(), ExportSpec { up: UpAxis::Z, unit: Unit::Millimetre }] {
+        let mut ply = Vec::new();
+        write_model(&m, ModelFormat::Ply, &spec, &mut ply, &mut Report::default()).expect("writes");
+        let back = read(&ply, ModelFormat::Ply, &spec);
+        let mesh = &back.parts[0].mesh;
+        assert_eq!((mesh.positions.len(), mesh.triangles.len()), (m.vertex_count(), m.triangle_count()));
+        let first = &m.parts[0].mesh;
+        assert!(worst(&first.positions, &mesh.positions[..100]) < 1e-6);
+        assert!(worst(&first.normals, &mesh.normals[..100]) < 1e-6);
+        assert!(worst(&first.uvs, &mesh.uvs[..100]) < 1e-6);
+        assert_eq!(first.triangles[..], mesh.triangles[..first.triangles.len()]);
+        let trunk = mesh.colors.last().expect("colours");
+        assert!(worst(&[*trunk], &[[0.5, 0.25, 0.125]]) < 0.005, "base colour as vertex colour: {trunk:?}");
+    }
+}
+
+#[test]
+fn ply_text_and_big_endian_are_read() {
+    let header = |format: &str| {
+        format!(
+            "ply\nformat {format} 1.0\ncomment x\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+             property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 1\nproperty list uchar int vertex_indices\n\
+             element edge 1\nproperty int a\nend_header\n"
+        )
+    };
+    let text = header("ascii") + "0 0 0 255 0 0\n1 0 0 0 255 0\n1 1 0 0 0 255\n0 1 0 9 9 9\n4 0 1 2 3\n7\n";
+    let mut big = header("binary_big_endian").into_bytes();
+    for (p, c) in [
+        ([0.0, 0.0], [255, 0, 0]),
+        ([1.0, 0.0], [0, 255, 0]),
+        ([1.0, 1.0], [0, 0, 255]),
+        ([0.0_f32, 1.0], [9, 9, 9_u8]),
+    ] {
+        [p[0], p[1], 0.0].iter().for_each(|x: &f32| big.extend(x.to_be_bytes()));
+        big.extend(c);
+    }
+    big.push(4);
+    (0..4_i32).chain([7]).for_each(|i| big.extend(i.to_be_bytes()));
+    let mut models = Vec::new();
+    for bytes in [text.into_bytes(), big] {
+        let mut report = Report::default();
+        let m = read_model(&bytes[..], ModelFormat::Ply, "q", &ExportSpec::default(), &no_files, &mut report);
+        assert_eq!(report.warnings.len(), 1, "edges are left out and said");
+        models.push(m.unwrap_or_else(|e| panic!("{e}")));
+    }
+    assert_eq!(models[0], models[1]);
+    assert_eq!(models[0].parts[0].mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
+    assert_eq!(models[0].parts[0].mesh.colors[0], [1.0, 0.0, 0.0]);
+}
+
+#[test]
+fn stl_comes_back_welded() {
+    let m = model();
+    let spec = ExportSpec { up: UpAxis::Z, unit: Unit::Metre };
+    let mut stl = Vec::new();
+    write_model(&m, ModelFormat::Stl, &spec, &mut stl, &mut Report::default()).expect("writes");
+    let back = read(&stl, ModelFormat::Stl, &spec);
+    assert_eq!(back.triangle_count(), m.triangle_count());
+    assert_eq!(back.vertex_count(), m.vertex_count(), "one vertex for each place");
+    let (a, b) = (m.bounds(), back.bounds());
+    assert!((a.min - b.min).length() + (a.max - b.max).length() < 1e-5);
+    let text = "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid x\n";
+    assert_eq!(read(text.as_bytes(), ModelFormat::Stl, &ExportSpec::default()).triangle_count(), 1);
+}
+
+#[test]
+fn gltf_node_transforms_are_applied() {
+    // One triangle in a data URI; the node turns it by a quarter about z, mirrors x, and lifts it by 10.
+    let json = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+        "nodes":[{"name":"plant","children":[1],"translation":[0,10,0]},{"name":"leaf","mesh":0,"rotation":[0,0,0.70710678118654752,0.70710678118654752],"scale":[-1,1,1]}],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+        "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],
+        "bufferViews":[{"buffer":0,"byteLength":36}],
+        "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}"#;
+    let m = read(json.as_bytes(), ModelFormat::Gltf, &ExportSpec::default());
+    assert_eq!((m.name.as_str(), m.parts[0].name.as_str()), ("plant", "leaf"));
+    let mesh = &m.parts[0].mesh;
+    assert!(
+        worst(&mesh.positions, &[[0.0, 10.0, 0.0], [0.0, 9.0, 0.0], [-1.0, 10.0, 0.0]]) < 1e-6,
+        "{mesh:?}"
+    );
+    assert_eq!(mesh.triangles, [[0, 2, 1]], "a mirrored triangle is turned to face outside");
+    assert_eq!(mesh.normals[0], [0.0, 0.0, 1.0]);
+}
+
+#[test]
+fn hostile_gltf_is_refused_with_its_place() {
+    let with = |nodes: &str, meshes: &str, accessor: &str| {
+        format!(
+            r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[0]}}],"nodes":{nodes},"meshes":{meshes},
+            "accessors":[{accessor}],"bufferViews":[{{"buffer":0,"byteLength":36}}],
+            "buffers":[{{"byteLength":36,"uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}}]}}"#
+        )
+    };
+    let good = r#"{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}"#;
+    let mesh = r#"[{"primitives":[{"attributes":{"POSITION":0}}]}]"#;
+    let cases = [
+        (with(r#"[{"children":[0]}]"#, mesh, good), "node 0"),
+        (with(r#"[{"mesh":7}]"#, mesh, good), "mesh 7"),
+        (with(r#"[{"mesh":0}]"#, mesh, &good.replace("\"count\":3", "\"count\":4000000000")), "TooMuch"),
+        (
+            with(r#"[{"mesh":0}]"#, mesh, &good.replace("\"count\":3", "\"count\":4")),
+            "accessor 0: it reaches beyond",
+        ),
+        (with(r#"[{"mesh":0}]"#, mesh, &good.replace("5126", "5125000")), "component type"),
+        (with(r#"[{"mesh":0}]"#, &mesh.replace(":0}", ":0},\"material\":3"), good), "material 3"),
+        (with(r#"[{"mesh":0}]"#, mesh, &good.replace("\"count\"", "\"sparse\":{},\"count\"")), "sparse"),
+    ];
+    for (json, want) in cases {
+        let e = read_model(
+            json.as_bytes(),
+            ModelFormat::Gltf,
+            "x",
+            &ExportSpec::default(),
+            &no_files,
+            &mut Report::default(),
+        )
+        .expect_err(want);
+        let told = format!("{e} {:?}", e.fault);
+        assert!(told.contains(want), "{want} in {told}");
+    }
+}
+
+#[test]
+fn lying_headers_are_refused_before_anything_is_reserved() {
+    let ply = "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000000\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+    let list = "ply\nformat binary_little_endian 1.0\nelement face 1\nproperty list uint int vertex_indices\nend_header\n\u{7f}\u{7f}\u{7f}\u{7f}";
+    let mut stl = vec![0_u8; 84];
+    stl[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
+    for (bytes, format) in [
+        (ply.as_bytes(), ModelFormat::Ply),
+        (list.as_bytes(), ModelFormat::Ply),
+        (&stl[..], ModelFormat::Stl),
+        (b"glTF\x02\0\0\0\xff\xff\xff\xff\xff\xff\xff\xffJSON{}", ModelFormat::Glb),
+    ] {
+        let e = read_model(bytes, format, "x", &ExportSpec::default(), &no_files, &mut Report::default())
+            .expect_err("refused");
+        assert!(e.to_string().contains("cut off"), "{e}");
+    }
+}
+
+#[test]
+fn a_wish_for_other_units_of_gltf_is_answered() {
+    let mut report = Report::default();
+    let spec = ExportSpec { up: UpAxis::Z, unit: Unit::Metre };
+    write_model(&model(), ModelFormat::Glb, &spec, Vec::new(), &mut report).expect("writes");
+    assert_eq!(report.warnings[0].code, "gltf-fixed-units");
+    assert!(write_model(&model(), ModelFormat::Gltf, &spec, Vec::new(), &mut report).is_err());
+}
+
+#[test]
+fn the_summary_says_what_is_there() {
+    let info = ModelSummary::of(&model(), &[]);
+    assert_eq!((info.parts.len(), info.materials[0].texture, info.vertices), (3, Some([16, 8]), 125));
+    assert_eq!((info.min, info.unit, info.warnings.len()), ([0.0; 3], "m", 0));
+    assert!(serde_json::to_string(&info).expect("JSON").contains("\"kind\":\"leaf\""));
+}
+
+/// The real scan in the shared data folder, where it is there.
+#[test]
+fn a_real_scan_is_read() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/scans/tomato_series/03-10.ply");
+    let Ok(bytes) = std::fs::read(path) else {
+        println!("skipped: {path} is not there");
+        return;
+    };
+    let m = read_model(
+        &bytes[..],
+        ModelFormat::Ply,
+        "scan",
+        &ExportSpec::default(),
+        &no_files,
+        &mut Report::default(),
+    )
+    .unwrap_or_else(|e| panic!("{e}"));
+    assert!(m.vertex_count() > 10_000, "{}", m.vertex_count());
+    assert!(m.bounds().size().min_element() > 0.0);
+}
