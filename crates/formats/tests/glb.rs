@@ -1,4 +1,5 @@
 //! GLB files: sound models become files that other programs read.
+#![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "test data are small numbers")]
 
 use std::sync::Arc;
 

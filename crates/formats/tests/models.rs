@@ -1,4 +1,5 @@
 //! What is written comes back the same.
+#![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "test data are small numbers")]
 
 use std::sync::Arc;
 
@@ -262,7 +263,7 @@ fn hostile_gltf_is_refused_with_its_place() {
 fn lying_headers_are_refused_before_anything_is_reserved() {
     let ply = "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000000\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
     let list = "ply\nformat binary_little_endian 1.0\nelement face 1\nproperty list uint int vertex_indices\nend_header\n\u{7f}\u{7f}\u{7f}\u{7f}";
-    let mut stl = vec![0_u8; 84];
+    let mut stl = [0_u8; 84];
     stl[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
     for (bytes, format) in [
         (ply.as_bytes(), ModelFormat::Ply),
