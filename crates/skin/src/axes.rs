@@ -127,7 +127,9 @@ fn grouped<T: Send>(run: &Run<'_>, n: usize, f: impl Fn(usize) -> T + Sync) -> R
 fn sleeve(spine: &Spine, bearer: Option<&Bearer<'_>>, circle: &Circle, repeats: u32, rows: f64) -> TriMesh {
     let mut mesh = TriMesh::default();
     // Small twigs spend fewer rows on their ends, so that some are left for the middle.
-    let (steps, tip) = if rows < 9.0 { (1, 1) } else { (3, 2) };
+    // A thick tube's tip is large enough to show its corners.
+    let round = if circle.sides() > 12 { 4 } else { 2 };
+    let (steps, tip) = if rows < 9.0 { (1, 1) } else { (3, round) };
     let ends = f64::from(steps + tip);
     let capacity = (circle.sides() + 1) * (whole(rows) as usize + 4);
     mesh.positions.reserve(capacity);
