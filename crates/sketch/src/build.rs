@@ -8,8 +8,8 @@ use glam::{DVec2, DVec3};
 use plant::{AxisId, AxisKind, NodeId, PipeModel, Plant, ShapeId, Taper, pipe_radii};
 
 use crate::depth::{
-    Bearing, LocalBlade, Part, Plans, Scene, bend_by_light_and_weight, blade_key, branch_depths, leaf_shape,
-    place_flower, place_fruit, place_leaf, place_thorn,
+    Bearing, LocalBlade, Part, Plans, Scene, bend_by_light_and_weight, blade_key, branch_depths, coloured,
+    leaf_shape, place_flower, place_fruit, place_leaf, place_thorn,
 };
 use crate::fill::{FillContext, fill};
 use crate::{BladeReading, PlantMap, Reading, RegionKind, SketchSpec};
@@ -69,7 +69,9 @@ pub fn build(
 
     let mut plant = Plant::default();
     let ids = add_axes(&mut plant, &plans, map);
-    let scene = Scene { spec, seed, map, plans: &plans, ids: &ids };
+    let blades = reading.leaves.iter().chain(reading.flowers.iter().flat_map(|f| &f.petals));
+    let colors = blades.filter_map(|b| b.color).chain(reading.fruits.iter().filter_map(|f| f.color));
+    let scene = Scene { spec, seed, map, plans: &plans, ids: &ids, coloured: coloured(colors) };
     let crowned = Crowned::new(reading);
     let leaves = leaf_shapes(&mut plant, &scene, reading);
     let templates: Vec<ShapeId> = leaves.iter().map(|l| l.shape).collect();

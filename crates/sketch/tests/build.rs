@@ -293,6 +293,24 @@ fn drawn_leaves_fan_out_in_depth() {
 }
 
 #[test]
+fn coloured_pens_colour_organs_and_one_pen_does_not() {
+    let tints = |leaf: [u8; 3], petal: [u8; 3]| {
+        let mut reading = herb();
+        reading.leaves.iter_mut().for_each(|b| b.color = Some(leaf));
+        reading.flowers[0].petals.iter_mut().for_each(|b| b.color = Some(petal));
+        let built = made(&reading, &SketchSpec::default());
+        let of = |kind| built.plant.organs.iter().find(|o| o.kind == kind).expect("there").tint;
+        (of(OrganKind::Leaf), of(OrganKind::Petal))
+    };
+    let (leaf, petal) = tints([40, 160, 30], [230, 40, 90]);
+    assert!(leaf[1] > 3.0 * leaf[0] && petal[0] > 3.0 * petal[1], "{leaf:?} {petal:?}");
+    for one in [[0, 0, 0], [20, 20, 230]] {
+        let (leaf, petal) = tints(one, one);
+        assert!(leaf.iter().chain(&petal).all(|c| (0.8..1.2).contains(c)), "a pen's colour: {leaf:?}");
+    }
+}
+
+#[test]
 fn stalks_bridge_the_gap_to_the_bearer() {
     let built = made(&herb(), &SketchSpec::default());
     for o in built.plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf) {

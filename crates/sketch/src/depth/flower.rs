@@ -89,7 +89,7 @@ pub(crate) fn place_flower(
         half_angle: corolla.fit.cone.half_angle.clamp(0.0, ops::FRAC_PI_2),
         whorls: u32::try_from(whorls.len()).unwrap_or(u32::MAX),
     });
-    let part = Organs { plant, scene, flower: FlowerId::new(0), bearer, key };
+    let part = Organs { plant, scene, flower: FlowerId::new(0), bearer, key, color: None };
     let id = FlowerId::new(part.plant.flowers.len() - 1);
     let mut part = Organs { flower: id, ..part };
     for (ring, &whorl) in whorls.iter().enumerate() {
@@ -150,12 +150,15 @@ struct Organs<'a, 'b> {
     flower: FlowerId,
     bearer: Option<NodeId>,
     key: u64,
+    /// Of the petal at hand.
+    color: Option<[u8; 3]>,
 }
 
 impl Organs<'_, '_> {
     fn push(&mut self, kind: OrganKind, shape: Shape, frame: Frame, key: u64, source: Option<u32>) {
         let shape = self.plant.add_shape(shape);
-        let tint = self.scene.tint(if kind == OrganKind::Petal { key } else { self.key });
+        let petal = kind == OrganKind::Petal;
+        let tint = self.scene.tint(if petal { key } else { self.key }, self.color.filter(|_| petal));
         self.plant.organs.push(Organ {
             kind,
             bearer: self.bearer,
@@ -272,6 +275,7 @@ impl Organs<'_, '_> {
             keep_length: false,
         };
         let blade = Blade { outline: local.outline, midrib: local.midrib, veins: local.veins, lift, relief };
+        self.color = petal.color;
         self.push(OrganKind::Petal, Shape::Blade(blade), frame, key, petal.source);
     }
 

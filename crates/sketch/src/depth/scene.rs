@@ -19,6 +19,8 @@ pub(crate) struct Scene<'a> {
     pub(crate) plans: &'a Plans,
     /// The plant's axis of each planned row.
     pub(crate) ids: &'a [Option<AxisId>],
+    /// Drawn with coloured pens: organs take the colour that they were drawn in.
+    pub(crate) coloured: bool,
 }
 
 /// The node that bears something.
@@ -95,13 +97,36 @@ impl Scene<'_> {
         plant.axis(id).node_ids().last()
     }
 
-    /// A slight variation of brightness and warmth, so that no two organs look alike.
-    pub(crate) fn tint(&self, key: u64) -> [f32; 3] {
+    /// The colour in which an organ was drawn, if the drawing is a coloured one, else white; varied slightly in
+    /// brightness and warmth, so that no two organs look alike.
+    pub(crate) fn tint(&self, key: u64, color: Option<[u8; 3]>) -> [f32; 3] {
         let mut s = self.seed.child(key).stream(Draw::Tint);
         let (light, warm) = (s.range(0.88, 1.12), s.range(-0.05, 0.05));
+        let drawn = color.filter(|&c| self.coloured && is_coloured(c)).map_or([1.0; 3], |c| c.map(linear));
+        let varied = [light * (1.0 + warm), light, light * (1.0 - warm)];
         #[expect(clippy::cast_possible_truncation, reason = "a colour")]
-        [light * (1.0 + warm), light, light * (1.0 - warm)].map(|c| c as f32)
+        [0, 1, 2].map(|i| (drawn[i] * varied[i]) as f32)
     }
+}
+
+/// Whether a drawing was made with coloured pens: its organs have two different colours at least, one of which is
+/// no ink. A drawing in one colour tells the colour of the pen.
+pub(crate) fn coloured(mut colors: impl Iterator<Item = [u8; 3]> + Clone) -> bool {
+    let Some(first) = colors.next() else { return false };
+    let other = colors.clone().any(|c| c.iter().zip(&first).any(|(a, b)| a.abs_diff(*b) > 24));
+    other && (is_coloured(first) || colors.any(is_coloured))
+}
+
+/// Not black, grey or white.
+fn is_coloured(c: [u8; 3]) -> bool {
+    let (low, high) = c.iter().fold((u8::MAX, 0), |(l, h), &x| (l.min(x), h.max(x)));
+    high - low > 30
+}
+
+/// sRGB to linear (IEC 61966-2-1).
+fn linear(byte: u8) -> f64 {
+    let c = f64::from(byte) / 255.0;
+    if c <= 0.040_45 { c / 12.92 } else { ops::powf((c + 0.055) / 1.055, 2.4) }
 }
 
 /// A number of the spec, kept within what the geometry can bear; nonsense becomes 0.

@@ -55,7 +55,7 @@ pub(crate) fn place_fruit(
         shape,
         frame: Frame::looking(origin, along.extend(0.0), DVec3::Z),
         scale: 1.0,
-        tint: scene.tint(key),
+        tint: scene.tint(key, fruit.color),
         key,
         source: fruit.source,
     });
