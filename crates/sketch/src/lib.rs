@@ -21,6 +21,7 @@ mod fill;
 mod map;
 mod reading;
 mod spec;
+mod structure;
 mod template;
 
 pub use build::{Built, build};
@@ -37,4 +38,5 @@ pub use reading::{
     RegionKind, RegionReading, StrokeClass, StrokeReading,
 };
 pub use spec::{BranchDepth, FillSpec, LeafDepth, ReliefSpec, SketchSpec, TaperSpec};
+pub use structure::{ReadingFault, read};
 pub use template::LeafForm;
