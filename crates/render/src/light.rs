@@ -19,10 +19,10 @@ const SUN_RADIUS: f64 = 0.035;
 /// Cells along an edge of the ground's light grid.
 const GROUND_CELLS: usize = 96;
 /// Light of the sun on a surface that faces it, as reflected by pure white.
-pub(crate) const SUN: DVec3 = DVec3::new(0.86, 0.80, 0.70);
-const ZENITH: DVec3 = DVec3::new(0.40, 0.46, 0.55);
-const HORIZON: DVec3 = DVec3::new(0.46, 0.46, 0.45);
-const BOUNCE: DVec3 = DVec3::new(0.26, 0.25, 0.22);
+pub(crate) const SUN: DVec3 = DVec3::new(0.98, 0.91, 0.80);
+const ZENITH: DVec3 = DVec3::new(0.44, 0.50, 0.59);
+const HORIZON: DVec3 = DVec3::new(0.51, 0.51, 0.50);
+const BOUNCE: DVec3 = DVec3::new(0.30, 0.29, 0.26);
 
 /// Light from a direction of the sky (or of the pale ground below the horizon).
 fn radiance(d: DVec3) -> DVec3 {
@@ -131,13 +131,15 @@ impl DepthMap {
                 let (u, v) = (us[0] + us[2] * y, vs[0] + vs[2] * y);
                 for (x, texel) in (from..).zip(texels) {
                     let x = x as f32;
-                    if !mask.hole(u + us[1] * x, v + vs[1] * x) {
-                        *texel = texel.max(z + plane[1] * x);
+                    let z = z + plane[1] * x;
+                    if z > *texel && !mask.hole(u + us[1] * x, v + vs[1] * x) {
+                        *texel = z;
                     }
                 }
             } else {
                 for (x, texel) in (from..).zip(texels) {
-                    *texel = texel.max(z + plane[1] * x as f32);
+                    let z = z + plane[1] * x as f32;
+                    *texel = if z > *texel { z } else { *texel };
                 }
             }
         }

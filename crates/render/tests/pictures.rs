@@ -1,4 +1,5 @@
 //! What a picture must show, pixel by pixel.
+#![expect(clippy::unwrap_used, reason = "tests")]
 
 use std::sync::Arc;
 
@@ -7,7 +8,10 @@ use glam::DVec3;
 use mesh::{AlphaMode, Material, MaterialId, MaterialKind, Model, Part, Texture, TriMesh};
 use render::{Background, Camera, Picture, PictureSpec, View, render};
 
-fn model(parts: &[(&[[f32; 3]], &[[u32; 3]], [f32; 3])]) -> Model {
+/// Positions, triangles and colour of a part.
+type Body<'a> = (&'a [[f32; 3]], &'a [[u32; 3]], [f32; 3]);
+
+fn model(parts: &[Body<'_>]) -> Model {
     let mut out = Model::default();
     for (k, &(positions, triangles, color)) in parts.iter().enumerate() {
         let mesh =
