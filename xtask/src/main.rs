@@ -1,5 +1,6 @@
 //! Chores: see `cargo xtask`.
 
+mod made_strokes;
 mod train_strokes;
 
 use std::process::ExitCode;

@@ -14,6 +14,8 @@ use sketch::{
     read_stroke_table, train_strokes, write_stroke_table,
 };
 
+use crate::made_strokes::made_sketches;
+
 /// Fold seeds that the figures are averaged over.
 const SEEDS: u64 = 8;
 /// Of SPG's drawings every so many are measured: enough to learn from, too few to drown the others.
@@ -58,7 +60,6 @@ pub(crate) fn run(args: &[String]) -> Result<(), String> {
     let models = train_strokes(&rows).map_err(|e| e.to_string())?;
     write(&data.join("strokes.scale"), &models.scale)?;
     write(&data.join("strokes.model"), &models.classes)?;
-    write(&data.join("closed.model"), &models.closed)?;
     update_docs(&root.join("docs/strokes.md"), &block)
 }
 
@@ -224,6 +225,21 @@ fn measure(sketches: &Path) -> Result<Vec<StrokeRow>, String> {
             measure_drawing(&mut rows, StrokeSource::Parts, kind, line, &labels);
         }
     }
+    for (number, made) in made_sketches().into_iter().enumerate() {
+        let (lines, classes): (Vec<_>, Vec<_>) = made.lines.into_iter().unzip();
+        let mut seen = [0_usize; 12];
+        let labels: Vec<Label> = (0..)
+            .zip(classes)
+            .filter(|(_, class)| {
+                let seen = &mut seen[*class as usize];
+                *seen += 1;
+                *seen <= PER_PART
+            })
+            .map(|(stroke, class)| Label { stroke, class, unsure: false, mixed: false })
+            .collect();
+        let drawing = Drawing::from_polylines(format!("made-{number}"), &lines);
+        measure_ink(&mut rows, StrokeSource::Made, made.kind, &drawing, &labels);
+    }
     Ok(rows)
 }
 
@@ -240,15 +256,25 @@ fn measure_drawing(
         let samples = column(0).zip(column(1)).map(|(x, y)| InkSample::from(DVec2::new(x, -y))).collect();
         Stroke { samples, ..Stroke::default() }
     };
-    let drawing = text_of(line, "key_id");
-    let strokes = list(line.get("drawing")).iter().map(stroke).collect();
-    let ink = sketch::clean(&Drawing { name: drawing.to_owned(), strokes }, &mut base::Report::default());
+    let name = text_of(line, "key_id").to_owned();
+    let drawing = Drawing { name, strokes: list(line.get("drawing")).iter().map(stroke).collect() };
+    measure_ink(rows, source, kind, &drawing, labels);
+}
+
+fn measure_ink(
+    rows: &mut Vec<StrokeRow>,
+    source: StrokeSource,
+    kind: &str,
+    drawing: &Drawing,
+    labels: &[Label],
+) {
+    let ink = sketch::clean(drawing, &mut base::Report::default());
     for (stroke, features) in ink.strokes.iter().zip(sketch::features(&ink)) {
         if let Some(label) = labels.iter().find(|l| l.stroke == stroke.index) {
             rows.push(StrokeRow {
                 source,
                 kind: kind.replace(' ', "_"),
-                drawing: drawing.to_owned(),
+                drawing: drawing.name.clone(),
                 stroke: stroke.index,
                 label: label.class,
                 unsure: label.unsure,

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use base::ops;
 use glam::DVec2;
 
-use super::features::{Shape, StrokeFeatures, contains, convex_hull, cross, shape, signed_area, slimness};
+use super::features::{Shape, StrokeFeatures, contains, convex_hull, shape, signed_area};
 use crate::Ink;
 
 /// Most strokes that one stroke is compared with: the longest ones and its neighbours. Keeps a drawing of
@@ -64,14 +64,16 @@ struct Body {
     min: DVec2,
     max: DVec2,
     solid: f64,
-    slim: f64,
 }
 
-/// What the others need to know of a stroke's features.
+/// What the others and the whole drawing need to know of a stroke.
 struct Told {
-    solid: f64,
     corners: f64,
+    gap: f64,
+    /// How well another upright line runs beside it, 0 to 1.
     pair: f64,
+    /// Strokes inside it.
+    held: f64,
 }
 
 /// The strokes nearest to the two ends.
@@ -141,23 +143,19 @@ impl Scene {
             self.alike(i, f);
             self.sides(i, f);
         }
+        let mut told = Vec::with_capacity(rows.len());
         for (i, f) in rows.iter_mut().enumerate() {
-            self.partner(i, f);
+            let even = self.partner(i, f);
+            let pair = if f.upright > 0.6 && f.length > 0.2 { even } else { 0.0 };
+            told.push(Told { corners: f.corners, gap: f.gap, pair, held: 0.0 });
         }
-        let told: Vec<Told> = rows
-            .iter()
-            .map(|f| Told {
-                solid: f.solid,
-                corners: f.corners,
-                pair: if f.upright > 0.6 && f.length > 0.2 { f.partner } else { 0.0 },
-            })
-            .collect();
         for (i, f) in rows.iter_mut().enumerate() {
             self.around(i, &told, f);
-            self.holding(i, &told, f);
-            self.meeting(i, f);
+            let held = self.holding(i, &told, f);
+            self.meeting(i, &told, f);
+            told[i].held = held;
         }
-        self.whole(&mut rows);
+        self.whole(&told, &mut rows);
         rows.into_iter().map(StrokeFeatures::tamed).collect()
     }
 
@@ -169,10 +167,7 @@ impl Scene {
         f.width = s.size().x / self.size.x;
         f.height = s.size().y / self.size.y;
         f.bottom = s.min.y / self.size.y;
-        f.top = s.max.y / self.size.y;
-        f.ends_at = (s.first().y + s.last().y) / 2.0 / self.size.y;
         f.ends_apart = (s.first().x - s.last().x).abs() / self.size.x;
-        f.aside = 2.0 * ((s.min.x + s.max.x) / 2.0 / self.size.x - 0.5).abs();
         f.order = share(to_f64(i), to_f64(n.saturating_sub(1)));
         f.first = if i == 0 { 1.0 } else { 0.0 };
         f.rank = rank;
@@ -195,26 +190,19 @@ impl Scene {
         };
         let count = to_f64(self.companions[i].iter().filter(|&&j| same(j)).count());
         f.alike = log1(count);
-        f.alike_share = share(count, to_f64(self.companions[i].len()));
     }
 
-    /// What is above and below.
+    /// How many strokes share its place.
     fn sides(&self, i: usize, f: &mut StrokeFeatures) {
         let s = &self.shapes[i];
         let margin = DVec2::splat(0.1);
-        let (mut above, mut below, mut rest, mut company) = (0.0, 0.0, 0.0, 0.0);
+        let mut company = 0.0;
         for &j in &self.companions[i] {
             let o = &self.shapes[j];
-            rest += o.length;
-            let height = (o.max.y - o.min.y).max(1e-9);
-            above += o.length * ((o.max.y - s.max.y) / height).clamp(0.0, 1.0);
-            below += o.length * ((s.min.y - o.min.y) / height).clamp(0.0, 1.0);
             if o.min.cmpge(s.min - margin).all() && o.max.cmple(s.max + margin).all() {
                 company += 1.0;
             }
         }
-        f.ink_above = share(above, rest);
-        f.ink_below = share(below, rest);
         f.company = share(company, to_f64(self.companions[i].len()));
     }
 
@@ -230,53 +218,55 @@ impl Scene {
                 f.corners_above = f.corners_above.max(told[j].corners);
                 f.pair_above = f.pair_above.max(told[j].pair);
             } else {
-                f.round_below = f.round_below.max(o.round);
                 f.wide_below = f.wide_below.max(wide);
                 f.pair_below = f.pair_below.max(told[j].pair);
             }
         }
     }
 
-    /// What holds it and what it holds.
-    fn holding(&self, i: usize, told: &[Told], f: &mut StrokeFeatures) {
+    /// What holds it, and how many strokes it holds.
+    fn holding(&self, i: usize, told: &[Told], f: &mut StrokeFeatures) -> f64 {
         let s = &self.shapes[i];
+        let mut held_here = 0.0;
         let mut hull = Vec::new();
         for &j in &self.companions[i] {
             let o = &self.shapes[j];
             hull.extend_from_slice(&o.hull);
+            let hull_area = signed_area(&o.hull).abs();
+            if hull_area > 0.02 * o.length * o.length && o.length > s.length {
+                let held = part_inside(s, &o.hull, o);
+                if held > f.in_hull + 0.05 {
+                    f.in_hull = held;
+                }
+            }
             if o.round > 0.1 && o.area > 0.0 {
-                let held = part_inside(s, &o.points, o);
+                let held = part_inside(s, &o.coarse, o);
                 if held > f.inside + 0.05 {
                     f.inside = held;
-                    f.inside_area = o.size().x * o.size().y / (self.size.x * self.size.y);
                     f.inside_round = o.round;
-                    f.inside_solid = told[j].solid;
                     f.inside_corners = told[j].corners;
                 }
             }
-            if s.round > 0.1 && o.length < s.length && part_inside(o, &s.points, s) > 0.7 {
-                f.holds += 1.0;
-                f.holds_ink += o.length;
-                f.holds_round = f.holds_round.max(o.round);
+            if s.round > 0.1 && o.length < s.length && part_inside(o, &s.coarse, s) > 0.7 {
+                held_here += 1.0;
             }
         }
-        f.holds = log1(f.holds);
-        f.holds_ink = share(f.holds_ink, s.length);
         f.is_body = if self.body.members.contains(&i) { 1.0 } else { 0.0 };
         f.in_body = share_inside(s, &self.body.outline);
         let hull = convex_hull(&hull);
         if hull.len() > 2 {
             f.amid = share_inside(s, &hull);
         }
+        held_here
     }
 
     /// How its ends meet other strokes, and theirs meet it.
-    fn meeting(&self, i: usize, f: &mut StrokeFeatures) {
+    fn meeting(&self, i: usize, told: &[Told], f: &mut StrokeFeatures) {
         let s = &self.shapes[i];
         let (low, high) = (lower_end(s), upper_end(s));
         let mut best = Meeting { low: (LOOSE, usize::MAX), high: (LOOSE, usize::MAX) };
         let (mut at_low, mut at_high) = (0, 0);
-        let (mut guests, mut guests_below, mut stems, mut crossed) = (0.0, 0.0, 0.0, 0.0);
+        let (mut guests, mut stems) = (0.0, 0.0);
         for &j in &self.companions[i] {
             let o = &self.shapes[j];
             let d = distance_to(o, low, best.low.0.max(TOUCH));
@@ -295,42 +285,45 @@ impl Scene {
             for end in [o.first(), o.last()] {
                 if distance_to(s, end, TOUCH).0 < TOUCH {
                     guests += 1.0;
-                    if end.y < (s.min.y + s.max.y) / 2.0 {
-                        guests_below += 1.0;
-                        if !o.encloses() && end == upper_end(o) {
-                            stems += 1.0;
-                        }
+                    let below = end.y < (s.min.y + s.max.y) / 2.0;
+                    if below && !o.encloses() && end == upper_end(o) {
+                        stems += 1.0;
                     }
                 }
-            }
-            if strokes_cross(s, o) {
-                crossed += 1.0;
             }
         }
         f.low_gap = best.low.0 / LOOSE;
         f.high_gap = best.high.0 / LOOSE;
-        let told = |j: usize, at: usize| {
-            self.shapes.get(j).map_or((0.0, -0.5, 0.0), |o| {
-                let along = to_f64(at) / to_f64(o.points.len().max(2) - 1);
-                (2.0 * along.min(1.0 - along), o.round, share(o.length, o.length + s.length))
-            })
+        let host = |j: usize| {
+            self.shapes.get(j).map_or((-0.5, 0.0), |o| (o.round, share(o.length, o.length + s.length)))
         };
-        (f.low_where, f.low_round, f.low_length) = told(best.low.1, at_low);
-        (f.high_where, f.high_round, f.high_length) = told(best.high.1, at_high);
+        (f.low_round, f.low_length) = host(best.low.1);
+        (f.high_round, f.high_length) = host(best.high.1);
+        if let Some(o) = self.shapes.get(best.low.1) {
+            let along = to_f64(at_low) / to_f64(o.points.len().max(2) - 1);
+            f.low_where = 2.0 * along.min(1.0 - along);
+        }
+        let (near, at) =
+            if best.low.0 <= best.high.0 { (best.low.1, at_low) } else { (best.high.1, at_high) };
+        if let Some((m, o)) = told.get(near).zip(self.shapes.get(near)) {
+            f.near_gap = m.gap;
+            let last = o.points.len() - 1;
+            let along = (o.points[(at + 4).min(last)] - o.points[at.saturating_sub(4)]).normalize_or_zero();
+            f.near_along = (s.last() - s.first()).normalize_or_zero().dot(along).abs();
+        }
         let touching = |d: f64| if d < TOUCH { 0.5 } else { 0.0 };
         f.ends_touch = touching(best.low.0) + touching(best.high.0);
         f.stems = log1(stems);
         f.guests = log1(guests);
-        f.guests_below = share(guests_below, guests);
-        f.crossed = log1(crossed);
     }
 
-    /// The stroke that runs best beside it: the other side of a trunk.
-    fn partner(&self, i: usize, f: &mut StrokeFeatures) {
+    /// How well another stroke runs beside it at an even distance, 0 to 1: the other side of a trunk.
+    fn partner(&self, i: usize, f: &mut StrokeFeatures) -> f64 {
         const STATIONS: usize = 8;
         let s = &self.shapes[i];
+        let mut best = 0.0;
         if s.points.len() < STATIONS {
-            return;
+            return best;
         }
         let station = |o: &Shape, k: usize| o.points[k * (o.points.len() - 1) / (STATIONS - 1)];
         for &j in &self.companions[i] {
@@ -353,23 +346,24 @@ impl Scene {
                 let even = (1.0 - 4.0 * spread / s.length).max(0.0)
                     * (1.0 - 2.0 * (mean.dot(chord)).abs() / s.length).max(0.0)
                     * (1.0 - beside / s.length).max(0.0);
-                if even > f.partner {
-                    f.partner = even;
+                if even > best {
+                    best = even;
                     f.partner_gap = beside / s.length;
                 }
             }
         }
+        best
     }
 
     /// Statistics of the whole drawing, the same on every row.
-    fn whole(&self, rows: &mut [StrokeFeatures]) {
+    fn whole(&self, told: &[Told], rows: &mut [StrokeFeatures]) {
         let n = to_f64(rows.len());
-        let Some((first, shape)) = rows.first().copied().zip(self.shapes.first()) else { return };
+        if rows.is_empty() {
+            return;
+        }
         let box_area = self.size.x * self.size.y;
         let mean = |g: &dyn Fn(&StrokeFeatures) -> f64| rows.iter().map(g).sum::<f64>() / n;
         let most = |g: &dyn Fn(&StrokeFeatures) -> f64| rows.iter().map(g).fold(0.0_f64, f64::max);
-        let lines: Vec<&StrokeFeatures> = rows.iter().filter(|f| f.round < 0.2).collect();
-        let line_length: f64 = lines.iter().map(|f| f.length).sum();
         let body_size = self.body.max - self.body.min;
         // The lowest of the strokes that span a fifth of the drawing: the pot, if there is one.
         let base = rows
@@ -385,24 +379,14 @@ impl Scene {
             d_round: to_f64(self.shapes.iter().filter(|s| s.encloses()).count()) / n,
             d_largest: self.shapes.iter().fold(0.0_f64, |a, s| a.max(s.area)) / box_area,
             d_short: mean(&|f| if f.length < 0.1 { 1.0 } else { 0.0 }),
-            d_inside: mean(&|f| if f.inside > 0.7 { 1.0 } else { 0.0 }),
-            d_pair: most(&|f| if f.upright > 0.6 && f.length > 0.2 { f.partner } else { 0.0 }),
-            d_upright: share(lines.iter().map(|f| f.upright * f.length).sum(), line_length),
+            d_pair: told.iter().fold(0.0_f64, |a, t| a.max(t.pair)),
             d_foot: self.band(0.0, 0.2),
-            d_head: self.band(0.67, 1.0),
-            d_first_round: first.round,
-            d_first_at: shape.middle.y / self.size.y,
             d_corners: most(&|f| f.corners),
-            d_holds: most(&|f| f.holds),
-            d_guests: most(&|f| f.guests),
-            d_alike: most(&|f| f.alike),
+            d_holds: log1(told.iter().fold(0.0_f64, |a, t| a.max(t.held))),
             d_base_round: base.round,
             d_base_opening: base.opening,
-            d_base_tall: base.tall,
             d_body_area: share(body_size.x * body_size.y, box_area),
             d_body_solid: self.body.solid,
-            d_body_tall: share(body_size.y, body_size.x + body_size.y),
-            d_body_slim: self.body.slim,
             d_body_bottom: self.body.min.y / self.size.y,
             ..StrokeFeatures::default()
         };
@@ -413,24 +397,14 @@ impl Scene {
             f.d_round = d.d_round;
             f.d_largest = d.d_largest;
             f.d_short = d.d_short;
-            f.d_inside = d.d_inside;
             f.d_pair = d.d_pair;
-            f.d_upright = d.d_upright;
             f.d_foot = d.d_foot;
-            f.d_head = d.d_head;
-            f.d_first_round = d.d_first_round;
-            f.d_first_at = d.d_first_at;
             f.d_corners = d.d_corners;
             f.d_holds = d.d_holds;
-            f.d_guests = d.d_guests;
-            f.d_alike = d.d_alike;
             f.d_base_round = d.d_base_round;
             f.d_base_opening = d.d_base_opening;
-            f.d_base_tall = d.d_base_tall;
             f.d_body_area = d.d_body_area;
             f.d_body_solid = d.d_body_solid;
-            f.d_body_tall = d.d_body_tall;
-            f.d_body_slim = d.d_body_slim;
             f.d_body_bottom = d.d_body_bottom;
         }
     }
@@ -449,8 +423,8 @@ impl Scene {
 
 /// The body of a drawing: see [`Body`].
 fn body(shapes: &[Shape]) -> Body {
-    // Joined ends may be this far apart: a tenth of the drawing's diagonal.
-    const JOIN: f64 = 0.1;
+    // Joined ends may be this far apart: a seventh of the drawing's diagonal.
+    const JOIN: f64 = 0.15;
     let mut big: Vec<usize> = (0..shapes.len()).collect();
     big.sort_by(|&a, &b| shapes[b].length.total_cmp(&shapes[a].length).then(a.cmp(&b)));
     big.truncate(6);
@@ -461,8 +435,8 @@ fn body(shapes: &[Shape]) -> Body {
             let hull = convex_hull(&outline);
             let min = outline.iter().fold(DVec2::INFINITY, |a, &p| a.min(p));
             let max = outline.iter().fold(DVec2::NEG_INFINITY, |a, &p| a.max(p));
-            let (solid, slim) = (share(area, signed_area(&hull).abs()), slimness(&outline).0);
-            best = (area, Body { outline, members, min, max, solid, slim });
+            let solid = share(area, signed_area(&hull).abs());
+            best = (area, Body { outline, members, min, max, solid });
         }
     };
     for &a in &big {
@@ -504,29 +478,8 @@ fn part_inside(s: &Shape, polygon: &[DVec2], o: &Shape) -> f64 {
         return 0.0;
     }
     const EVERY: usize = 8;
-    let coarse: Vec<DVec2> = polygon.iter().copied().step_by(2).collect();
-    let inside = s.points.iter().skip(EVERY / 2).step_by(EVERY).filter(|&&p| contains(&coarse, p)).count();
+    let inside = s.points.iter().skip(EVERY / 2).step_by(EVERY).filter(|&&p| contains(polygon, p)).count();
     to_f64(inside) / to_f64(s.points.len().saturating_sub(EVERY / 2).div_ceil(EVERY).max(1))
-}
-
-/// Chords over six samples cross.
-fn strokes_cross(s: &Shape, o: &Shape) -> bool {
-    const EVERY: usize = 5;
-    let chord = |x: &Shape, k: usize| (x.points[k], x.points[(k + EVERY).min(x.points.len() - 1)]);
-    for i in (0..s.points.len()).step_by(EVERY) {
-        let (a, b) = chord(s, i);
-        let (low, high) = (a.min(b), a.max(b));
-        if low.cmpgt(o.max).any() || high.cmplt(o.min).any() {
-            continue;
-        }
-        for j in (0..o.points.len()).step_by(EVERY) {
-            let (c, d) = chord(o, j);
-            if cross(a, b, c, d) {
-                return true;
-            }
-        }
-    }
-    false
 }
 
 /// Share of the strokes that are shorter, for each.

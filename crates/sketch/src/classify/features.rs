@@ -51,34 +51,24 @@ columns! {
     hull,
     /// Total turning, in full turns, as ln(1 + turns).
     turning,
-    /// Net turning over total turning.
-    turn_one_way,
     /// Net turning in full turns, at most 3.
     turns,
     /// ln(1 + corners above 50 degrees).
     corners,
-    /// ln(1 + corners above 100 degrees).
-    cusps,
     /// ln(1 + corners that turn against the way round): the notches between lobes.
     inward,
-    /// ln(1 + corners that turn with it): the corners of a pot.
-    outward,
     /// The sharpest corner over a half turn.
     sharpest,
     /// ln(1 + crossings with itself).
     crossings,
     /// ln(1 + maxima of the distance from the middle).
     lobes,
-    /// Spread of the distance from the middle over its mean.
-    wavy,
     /// Share of the length that runs straight.
     straight,
     /// Share of the length that is nearly upright.
     upright,
     /// Share of the length that is nearly level.
     level,
-    /// Width of the lower third over that of the upper third, as a balance -1 to 1.
-    foot,
     /// Where the gap between the ends lies: -1 below, 1 above the middle, 0 when closed.
     opening,
     /// How level the line between the ends is, times the gap.
@@ -93,14 +83,8 @@ columns! {
     tall,
     /// Its lowest point in the drawing's box.
     bottom,
-    /// Its highest point in the drawing's box.
-    top,
-    /// Mean height of its two ends in the drawing's box.
-    ends_at,
     /// Level distance of its two ends over the drawing's width.
     ends_apart,
-    /// Distance of its middle from the upright middle line of the drawing.
-    aside,
     /// Number in the order of drawing, 0 first, 1 last.
     order,
     /// 1 for the first stroke.
@@ -113,38 +97,30 @@ columns! {
     of_ink,
     /// ln(1 + strokes of about its size and form).
     alike,
-    /// The same as a share of the other strokes.
-    alike_share,
     /// Share of it inside the outline that holds most of it.
     inside,
-    /// Area of that outline's box over the drawing's.
-    inside_area,
     /// Roundness of that outline.
     inside_round,
-    /// Solidity of that outline.
-    inside_solid,
     /// ln(1 + corners of that outline).
     inside_corners,
     /// Share of it inside the drawing's body: the largest region that one stroke or two joined ones enclose.
     in_body,
+    /// Share of it inside the convex hull of the one other stroke that holds most of it.
+    in_hull,
+    /// Straightness of the stroke at the nearer end: its gap.
+    near_gap,
+    /// Cosine of the angle between it and that stroke where they meet.
+    near_along,
     /// 1 for a stroke of the body's outline.
     is_body,
     /// Share of it inside the convex hull of all other strokes.
     amid,
-    /// ln(1 + strokes inside it).
-    holds,
-    /// Length of the ink inside it over its own.
-    holds_ink,
-    /// Roundness of the roundest stroke inside it.
-    holds_round,
     /// Distance from its lower end to the nearest other stroke, diagonals, at most 0.2, over 0.2.
     low_gap,
     /// Distance from its upper end to the nearest other stroke.
     high_gap,
     /// Where its lower end meets that stroke: 0 at an end, 1 in the middle.
     low_where,
-    /// Where its upper end meets that stroke.
-    high_where,
     /// Roundness of the stroke that the lower end is nearest to.
     low_round,
     /// Roundness of the stroke that the upper end is nearest to.
@@ -155,30 +131,18 @@ columns! {
     high_length,
     /// ln(1 + ends of other strokes that lie on it).
     guests,
-    /// Share of those ends that lie below its middle.
-    guests_below,
     /// ln(1 + lines whose upper end lies on its lower half).
     stems,
     /// Share of its two ends that touch another stroke.
     ends_touch,
     /// 1 where both ends touch the same stroke.
     both_same,
-    /// ln(1 + strokes that cross it).
-    crossed,
-    /// How well another stroke runs beside it at an even distance, 0 to 1.
-    partner,
-    /// Distance of that stroke over its length.
+    /// Distance of the stroke that runs best beside it, over its length.
     partner_gap,
-    /// Share of the rest of the ink above its top.
-    ink_above,
-    /// Share of the rest of the ink below its bottom.
-    ink_below,
     /// Share of the other strokes that lie in its box widened by a tenth of the diagonal.
     company,
     /// Largest roundness of a stroke that lies mostly above its middle.
     round_above,
-    /// Largest roundness of a stroke that lies mostly below its middle.
-    round_below,
     /// Width of the widest stroke that lies mostly above its middle, over the drawing's width.
     wide_above,
     /// Width of the widest stroke that lies mostly below its middle, over the drawing's width.
@@ -209,42 +173,22 @@ columns! {
     d_largest,
     /// The drawing: share of strokes shorter than a tenth of the diagonal.
     d_short,
-    /// The drawing: share of strokes that lie inside another.
-    d_inside,
     /// The drawing: best pair of parallel upright lines, 0 to 1.
     d_pair,
-    /// The drawing: mean uprightness of the line strokes.
-    d_upright,
     /// The drawing: width of the lowest fifth of the ink over the width.
     d_foot,
-    /// The drawing: width of the highest third of the ink over the width.
-    d_head,
-    /// The drawing: roundness of its first stroke.
-    d_first_round,
-    /// The drawing: where the first stroke's middle lies, 0 bottom, 1 top.
-    d_first_at,
     /// The drawing: ln(1 + most corners of any stroke).
     d_corners,
     /// The drawing: ln(1 + most strokes inside one).
     d_holds,
-    /// The drawing: ln(1 + most ends on one stroke).
-    d_guests,
-    /// The drawing: ln(1 + most strokes of one size and form).
-    d_alike,
     /// The drawing: roundness of its lowest wide stroke.
     d_base_round,
     /// The drawing: opening of its lowest wide stroke.
     d_base_opening,
-    /// The drawing: height of its lowest wide stroke over width plus height.
-    d_base_tall,
     /// The drawing: area of its body's box over its own.
     d_body_area,
     /// The drawing: solidity of its body.
     d_body_solid,
-    /// The drawing: height over width plus height of its body.
-    d_body_tall,
-    /// The drawing: slimness of its body.
-    d_body_slim,
     /// The drawing: lowest point of its body.
     d_body_bottom,
 }
@@ -254,6 +198,8 @@ columns! {
 pub(super) struct Shape {
     /// [`SAMPLES`] points at even arc length.
     pub(super) points: Vec<DVec2>,
+    /// Every second of them, as a polygon.
+    pub(super) coarse: Vec<DVec2>,
     /// Convex hull, counter-clockwise.
     pub(super) hull: Vec<DVec2>,
     pub(super) length: f64,
@@ -263,8 +209,6 @@ pub(super) struct Shape {
     /// Area with the ends joined.
     pub(super) area: f64,
     pub(super) round: f64,
-    /// Number of corners above 50 degrees.
-    pub(super) corner_count: f64,
 }
 
 impl Shape {
@@ -303,6 +247,7 @@ pub(super) fn shape(points: &[DVec2]) -> (Shape, StrokeFeatures) {
     s.middle = points.iter().sum::<DVec2>() / count;
     s.hull = convex_hull(&points);
     s.area = signed_area(&points).abs();
+    s.coarse = points.iter().copied().step_by(2).collect();
     s.points = points;
     s.round = 4.0 * ops::PI * s.area / (length * length);
     let hull_area = signed_area(&s.hull).abs();
@@ -311,7 +256,7 @@ pub(super) fn shape(points: &[DVec2]) -> (Shape, StrokeFeatures) {
     f.round = s.round;
     f.solid = if hull_area > 1e-12 { s.area / hull_area } else { 0.0 };
     f.hull = perimeter(&s.hull) / length;
-    bending(&mut s, &mut f);
+    bending(&s, &mut f);
     f.crossings = ops::ln(1.0 + self_crossings(&s.points));
     radial(&s, &mut f);
     slopes(&s, &mut f);
@@ -343,7 +288,7 @@ fn even_samples(points: &[DVec2]) -> (Vec<DVec2>, f64) {
 }
 
 /// Square root of the eigenvalue ratio of the points' covariance, and the unit vector of the larger one.
-pub(super) fn slimness(points: &[DVec2]) -> (f64, DVec2) {
+fn slimness(points: &[DVec2]) -> (f64, DVec2) {
     let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
     let middle = points.iter().sum::<DVec2>() / points.len().max(1) as f64;
     for &p in points {
@@ -385,7 +330,7 @@ fn angle(a: DVec2, b: DVec2) -> f64 {
 }
 
 /// Turning, corners and straight parts.
-fn bending(s: &mut Shape, f: &mut StrokeFeatures) {
+fn bending(s: &Shape, f: &mut StrokeFeatures) {
     // Two samples to each side: a corner that the pen rounded off still counts, the jitter of the hand does not.
     const REACH: usize = 2;
     let p = &s.points;
@@ -397,7 +342,6 @@ fn bending(s: &mut Shape, f: &mut StrokeFeatures) {
         net += a;
     }
     f.turning = ops::ln(1.0 + total / ops::TAU);
-    f.turn_one_way = if total > 1e-9 { net.abs() / total } else { 0.0 };
     f.turns = (net.abs() / ops::TAU).min(3.0);
     let signed: Vec<f64> =
         (0..n)
@@ -410,7 +354,7 @@ fn bending(s: &mut Shape, f: &mut StrokeFeatures) {
             })
             .collect();
     let bend: Vec<f64> = signed.iter().map(|a| a.abs()).collect();
-    let (mut corners, mut cusps, mut straight, mut inward) = (0.0, 0.0, 0.0, 0.0);
+    let (mut corners, mut straight, mut inward) = (0.0, 0.0, 0.0);
     let way = signed_area(p);
     for k in 0..n {
         let lo = k.saturating_sub(REACH);
@@ -422,23 +366,17 @@ fn bending(s: &mut Shape, f: &mut StrokeFeatures) {
                 inward += 1.0;
             }
         }
-        if peak && bend[k] > 100.0 / 180.0 * ops::PI {
-            cusps += 1.0;
-        }
         if bend[k] < 0.12 {
             straight += 1.0;
         }
     }
     f.corners = ops::ln(1.0 + corners);
-    f.cusps = ops::ln(1.0 + cusps);
     f.inward = ops::ln(1.0 + inward);
-    f.outward = ops::ln(1.0 + corners - inward);
     f.sharpest = bend.iter().fold(0.0_f64, |a, &b| a.max(b)) / ops::PI;
     f.straight = straight / n as f64;
-    s.corner_count = corners;
 }
 
-/// Distance from the middle along the way: lobes and waviness.
+/// Distance from the middle along the way: lobes.
 fn radial(s: &Shape, f: &mut StrokeFeatures) {
     let n = s.points.len();
     let r: Vec<f64> = s.points.iter().map(|p| p.distance(s.middle)).collect();
@@ -446,8 +384,6 @@ fn radial(s: &Shape, f: &mut StrokeFeatures) {
     if mean <= 0.0 {
         return;
     }
-    let spread = (r.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / n as f64).sqrt();
-    f.wavy = spread / mean;
     // A lobe rises and falls by a tenth of the mean radius.
     let (mut lobes, mut rising, mut low, mut high) = (0.0, true, r[0], r[0]);
     for &x in &r {
@@ -466,7 +402,7 @@ fn radial(s: &Shape, f: &mut StrokeFeatures) {
     f.lobes = ops::ln(1.0_f64 + lobes);
 }
 
-/// Shares of upright and level running, and the widths of the lower and the upper third.
+/// Shares of upright and level running.
 fn slopes(s: &Shape, f: &mut StrokeFeatures) {
     let (mut upright, mut level) = (0.0, 0.0);
     for w in s.points.windows(3).step_by(2) {
@@ -480,17 +416,6 @@ fn slopes(s: &Shape, f: &mut StrokeFeatures) {
     }
     let steps = ((s.points.len() - 1) / 2) as f64;
     (f.upright, f.level) = (upright / steps, level / steps);
-    let third = s.size().y / 3.0;
-    let span = |lo: f64, hi: f64| {
-        let (a, b) = s
-            .points
-            .iter()
-            .filter(|p| p.y >= lo && p.y <= hi)
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), p| (a.min(p.x), b.max(p.x)));
-        (b - a).max(0.0)
-    };
-    let (low, high) = (span(s.min.y, s.min.y + third), span(s.max.y - third, s.max.y));
-    f.foot = if low + high > 1e-9 { (low - high) / (low + high) } else { 0.0 };
     let size = s.size();
     f.tall = size.y / (size.x + size.y).max(1e-12);
 }
@@ -570,7 +495,7 @@ pub(super) fn contains(polygon: &[DVec2], p: DVec2) -> bool {
 }
 
 /// The open segments `ab` and `cd` cross.
-pub(super) fn cross(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> bool {
+fn cross(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> bool {
     let side = |p: DVec2, q: DVec2, r: DVec2| (q - p).perp_dot(r - p);
     side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
 }

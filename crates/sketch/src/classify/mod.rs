@@ -34,7 +34,6 @@ fn trained() -> Option<&'static StrokeModels> {
             StrokeModels::parse(&StrokeModelTexts {
                 scale: include_str!("../../data/strokes.scale").to_owned(),
                 classes: include_str!("../../data/strokes.model").to_owned(),
-                closed: include_str!("../../data/closed.model").to_owned(),
             })
             .ok()
         })

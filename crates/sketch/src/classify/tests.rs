@@ -11,7 +11,6 @@ fn committed() -> StrokeModelTexts {
     StrokeModelTexts {
         scale: include_str!("../../data/strokes.scale").to_owned(),
         classes: include_str!("../../data/strokes.model").to_owned(),
-        closed: include_str!("../../data/closed.model").to_owned(),
     }
 }
 
@@ -41,10 +40,15 @@ fn table_round_trips() {
 
 #[test]
 fn held_out_drawings_are_recognised() {
-    let figures = cross_validate_strokes(&table(), Seed::new(1)).expect("the table trains");
-    assert!(figures.three_features >= 0.985, "three features {}", figures.three_features);
-    assert!(figures.not_swapped >= 0.99, "closed or line {}", figures.not_swapped);
-    assert!(figures.macro_f1 >= 0.76, "macro F1 {}", figures.macro_f1);
+    let rows = table();
+    let mut macro_f1 = 0.0;
+    for seed in 0..3 {
+        let figures = cross_validate_strokes(&rows, Seed::new(seed)).expect("the table trains");
+        assert!(figures.three_features >= 0.99, "the three features alone: {}", figures.three_features);
+        assert!(figures.not_swapped >= 0.99, "closed or line: {}", figures.not_swapped);
+        macro_f1 += figures.macro_f1 / 3.0;
+    }
+    assert!(macro_f1 >= 0.80, "macro F1 {macro_f1}");
 }
 
 #[test]
@@ -72,7 +76,7 @@ fn features_do_not_depend_on_direction_nor_on_left_and_right() {
         for ((name, x), y) in StrokeFeatures::NAMES.iter().zip(a.values()).zip(b.values()) {
             // Counts may flip where a corner or an end lies just at its threshold; sizes and shares may not.
             let smooth =
-                ["gap", "slim", "box_area", "round", "solid", "hull", "length", "bottom", "aside", "order"];
+                ["gap", "slim", "box_area", "round", "solid", "hull", "length", "bottom", "width", "order"];
             if smooth.contains(name) {
                 assert!((x - y).abs() < 0.02, "stroke {i}, {name}: {x} and {y}");
             }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use base::{Draw, Seed};
 
 use super::model::StrokeModels;
-use super::svm::{Learner, ModelError, RbfLearner, Scale};
+use super::svm::{Learner, ModelError, RbfLearner, Scale, Svm};
 use super::table::{StrokeRow, StrokeSource};
 use crate::StrokeClass;
 
@@ -25,8 +25,6 @@ pub struct StrokeModelTexts {
     pub scale: String,
     /// The classes, LIBSVM text; label numbers are places in [`StrokeClass::ALL`].
     pub classes: String,
-    /// Closed outline (1) or line (0) by the paper's three features, LIBSVM text.
-    pub closed: String,
 }
 
 /// How well strokes of drawings that were not trained on were recognised.
@@ -50,7 +48,7 @@ pub struct StrokeFigures {
 }
 
 /// 1 for closed outlines, 0 for lines, `None` for what is neither.
-pub(super) fn closed(class: StrokeClass) -> Option<bool> {
+fn closed(class: StrokeClass) -> Option<bool> {
     match class {
         StrokeClass::Blade | StrokeClass::Corolla | StrokeClass::Crown | StrokeClass::Disc => Some(true),
         StrokeClass::Axis | StrokeClass::Vein => Some(false),
@@ -75,15 +73,23 @@ fn train(rows: &[&StrokeRow]) -> Result<StrokeModelTexts, ModelError> {
     let scale = Scale::of(&values);
     let scaled: Vec<Vec<f64>> = values.iter().map(|v| scale.apply(v)).collect();
     let labels: Vec<i32> = clear.iter().map(|r| number(r.label)).collect();
-    let (three, sides): (Vec<Vec<f64>>, Vec<i32>) = clear
-        .iter()
-        .filter_map(|r| closed(r.label).map(|c| (StrokeModels::three(&r.features).to_vec(), i32::from(c))))
-        .unzip();
     Ok(StrokeModelTexts {
         scale: scale.to_text(&super::features::StrokeFeatures::NAMES),
         classes: CLASSES.learn(&scaled, &labels)?,
-        closed: CLOSED.learn(&three, &sides)?,
     })
+}
+
+/// The paper's three features (section 4.1), each in \[0, 1\].
+fn three(row: &StrokeRow) -> Vec<f64> {
+    vec![row.features.gap, row.features.slim, row.features.box_area]
+}
+
+/// The paper's own machine: closed outline (1) or line (0) by the three features alone. It is here to measure by.
+fn train_three(rows: &[&StrokeRow]) -> Result<Svm, ModelError> {
+    let clear = rows.iter().filter(|r| r.is_clear());
+    let (values, sides): (Vec<Vec<f64>>, Vec<i32>) =
+        clear.filter_map(|r| closed(r.label).map(|c| (three(r), i32::from(c)))).unzip();
+    Svm::parse(&CLOSED.learn(&values, &sides)?, 3)
 }
 
 fn number(class: StrokeClass) -> i32 {
@@ -107,8 +113,11 @@ pub fn cross_validate_strokes(rows: &[StrokeRow], seed: Seed) -> Result<StrokeFi
         let training: Vec<&StrokeRow> =
             rows.iter().zip(&fold).filter(|(_, f)| **f != k).map(|(r, _)| r).collect();
         let models = StrokeModels::parse(&train(&training)?)?;
+        let paper = train_three(&training)?;
         for (i, row) in rows.iter().enumerate().filter(|(i, _)| fold[*i] == k) {
-            found[i] = Some((models.decide(&row.features).class, models.is_closed(&row.features)));
+            let is_closed =
+                paper.labels.iter().zip(paper.shares(&three(row))).any(|(&l, s)| l == 1 && s > 0.5);
+            found[i] = Some((models.decide(&row.features).class, is_closed));
         }
     }
     Ok(figures(rows, &found))
