@@ -1,21 +1,83 @@
-//! Chores: see `cargo xtask`.
+//! `cargo xtask`: set-up, checks and chores. Installs what is missing, so that a fresh machine with rustup and
+//! Node needs nothing else.
 
+mod layers;
+mod shell;
+mod toolchain;
 mod made_strokes;
 mod train_strokes;
+mod web;
 
 use std::process::ExitCode;
 
+use shell::{Outcome, cargo, repository, say};
+
+const HELP: &str = "\
+cargo xtask COMMAND
+
+  run            sets up what is missing, turns the sample sketch into out/sample.glb and a picture
+  test           sets up what the tests need and runs them all: native, WASM in Node, Khronos validator
+  layers         checks that each crate uses only what ARCHITECTURE.md allows
+  clippy-wasm    lints the core for wasm32
+  train-strokes  trains the stroke classifier from its table (see docs/strokes.md)
+  setup          installs the wasm32 target and the WASM tools only
+";
+
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
-    let done = match args.split_first() {
-        Some((task, rest)) if task == "train-strokes" => train_strokes::run(rest),
-        _ => Err("usage: cargo xtask train-strokes [--measure <sketches folder>]".to_owned()),
+    let rest = args.get(1..).unwrap_or_default();
+    let outcome = match args.first().map(String::as_str) {
+        Some("run") => run(),
+        Some("test") => test(),
+        Some("layers") => layers::check(),
+        Some("clippy-wasm") => toolchain::clippy_wasm(),
+        Some("train-strokes") => train_strokes::run(rest),
+        Some("setup") => web::setup().map(|_| ()),
+        Some("help" | "-h" | "--help") | None => {
+            say(HELP);
+            Ok(())
+        }
+        Some(other) => Err(format!("no such command: {other}\n\n{HELP}")),
     };
-    match done {
+    match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => {
-            eprintln!("{message}");
+            eprintln!("xtask: {message}");
             ExitCode::FAILURE
         }
     }
+}
+
+/// The main job on the sample sketch, as a newcomer would do it.
+fn run() -> Outcome {
+    let root = repository();
+    cargo(&["build", "--release", "--package", "burgeon-cli"])?;
+    std::fs::create_dir_all(root.join("out")).map_err(|e| format!("cannot make the folder out: {e}"))?;
+    let burgeon = shell::target_dir().join("release").join(format!("burgeon{}", std::env::consts::EXE_SUFFIX));
+    say("\n$ burgeon sketch fixtures/sketches/sample.svg -o out/sample.glb --png out/sample.png");
+    shell::command(&burgeon, &[
+        "sketch",
+        "fixtures/sketches/sample.svg",
+        "-o",
+        "out/sample.glb",
+        "--png",
+        "out/sample.png",
+        "--report",
+        "out/sample.json",
+    ])?;
+    say("
+Made from fixtures/sketches/sample.svg:
+  out/sample.glb   the plant: open it in Blender, Godot, Unity or any glTF viewer
+  out/sample.png   a picture of it
+  out/sample.json  what each stroke was understood as, counts, times, fidelity
+Next: draw your own (docs/drawings.md) and give it to the same command.");
+    Ok(())
+}
+
+/// Everything that must be green.
+fn test() -> Outcome {
+    let tools = web::setup()?;
+    cargo(&["test", "--workspace", "--no-fail-fast"])?;
+    web::test(&tools)?;
+    Ok(())
 }

@@ -1,1 +1,35 @@
-//! .
+//! Burgeon: three-dimensional plants out of what people can draw, measure or point at.
+//!
+//! This is the facade: the one crate that programs use. It joins the makers with skinning, pictures and files.
+//!
+//! `Drawing -> make_from_sketch -> Made { plant, model, item } -> formats | render`
+//!
+//! ```
+//! use burgeon::{Run, Seed, SketchOptions, make_from_sketch};
+//! use burgeon::sketch::Drawing;
+//! use burgeon::glam::DVec2;
+//!
+//! let line: Vec<DVec2> = (0..40).map(|i| DVec2::new(0.02 * f64::from(i % 7), f64::from(i))).collect();
+//! let drawing = Drawing::from_polylines("a stem", &[line]);
+//! let made = make_from_sketch(&drawing, &SketchOptions::default(), Seed::new(1), &Run::plain())?;
+//! assert_eq!(made.item.counts.branches, 1);
+//! assert!(made.model.triangle_count() > 100);
+//! # Ok::<(), burgeon::MakeError>(())
+//! ```
+
+mod make;
+mod report;
+
+pub use base::{
+    Angle, CancelToken, Cancelled, Clock, Executor, NoClock, Report, Run, Seed, Serial, Unit, UpAxis, Warning,
+    map_indexed,
+};
+pub use make::{ClassOverrides, Made, MakeError, SketchOptions, make_from_sketch};
+pub use report::{
+    Counts, Fidelity, InputReport, ItemReport, REPORT_SCHEMA, RunReport, StrokeReport, TimingsMs,
+};
+
+pub use {formats, geom, glam, mesh, plant, render, sketch, skin};
+
+/// The version that is written into reports and files.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");

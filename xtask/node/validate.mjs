@@ -1,0 +1,16 @@
+// node validate.mjs FOLDER : Khronos glTF validator over every .glb below the folder; no errors, no warnings.
+import { readFileSync, readdirSync } from 'node:fs';
+import { join } from 'node:path';
+import validator from 'gltf-validator';
+
+const files = readdirSync(process.argv[2], { recursive: true }).filter((f) => f.endsWith('.glb')).sort();
+let bad = 0;
+for (const file of files) {
+  const { issues } = await validator.validateBytes(new Uint8Array(readFileSync(join(process.argv[2], file))));
+  if (issues.numErrors + issues.numWarnings === 0) continue;
+  bad += 1;
+  const first = issues.messages.slice(0, 3).map((m) => `${m.code} ${m.pointer} ${m.message}`).join('; ');
+  console.error(`${file}: ${issues.numErrors} errors, ${issues.numWarnings} warnings: ${first}`);
+}
+console.log(`valid GLB files: ${files.length - bad} passed, ${bad} failed`);
+process.exit(bad || !files.length ? 1 : 0);

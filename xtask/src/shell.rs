@@ -1,0 +1,83 @@
+//! Running other programs and finding the repository.
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Success, or a message for the person at the terminal.
+pub(crate) type Outcome<T = ()> = Result<T, String>;
+
+/// Prints a line for the person at the terminal.
+#[expect(clippy::print_stdout, reason = "this is a program for the terminal")]
+pub(crate) fn say(text: &str) {
+    println!("{text}");
+}
+
+/// The folder of the workspace.
+pub(crate) fn repository() -> PathBuf {
+    // xtask lies directly below the root.
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or_else(|| Path::new(".")).to_path_buf()
+}
+
+/// Where cargo builds.
+pub(crate) fn target_dir() -> PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| repository().join("target"), PathBuf::from)
+}
+
+/// Where tools that several checkouts share are kept.
+pub(crate) fn cache_dir() -> PathBuf {
+    let base = std::env::var_os("XDG_CACHE_HOME")
+        .map(PathBuf::from)
+        .or_else(|| std::env::var_os("HOME").map(|h| PathBuf::from(h).join(".cache")))
+        .unwrap_or_else(target_dir);
+    base.join("burgeon")
+}
+
+/// A command in the repository, with its program and arguments.
+pub(crate) fn prepare(program: impl AsRef<OsStr>, args: &[&str]) -> Command {
+    let mut c = Command::new(program);
+    c.args(args).current_dir(repository());
+    c
+}
+
+/// Runs a prepared command to its end; its output goes to the terminal.
+pub(crate) fn finish(mut command: Command) -> Outcome {
+    let what = describe(&command);
+    match command.status() {
+        Ok(status) if status.success() => Ok(()),
+        Ok(status) => Err(format!("`{what}` failed ({status})")),
+        Err(e) => Err(format!("`{what}` could not be started: {e}")),
+    }
+}
+
+/// Runs a prepared command and returns what it printed.
+pub(crate) fn output(mut command: Command) -> Outcome<String> {
+    let what = describe(&command);
+    let out = command.output().map_err(|e| format!("`{what}` could not be started: {e}"))?;
+    if out.status.success() {
+        Ok(String::from_utf8_lossy(&out.stdout).into_owned())
+    } else {
+        Err(format!("`{what}` failed ({}): {}", out.status, String::from_utf8_lossy(&out.stderr).trim()))
+    }
+}
+
+/// Runs a program in the repository.
+pub(crate) fn command(program: impl AsRef<OsStr>, args: &[&str]) -> Outcome {
+    finish(prepare(program, args))
+}
+
+/// Runs the cargo that runs this program.
+pub(crate) fn cargo(args: &[&str]) -> Outcome {
+    say(&format!("$ cargo {}", args.join(" ")));
+    command(cargo_path(), args)
+}
+
+/// The cargo that runs this program.
+pub(crate) fn cargo_path() -> PathBuf {
+    std::env::var_os("CARGO").map_or_else(|| PathBuf::from("cargo"), PathBuf::from)
+}
+
+fn describe(c: &Command) -> String {
+    let words = std::iter::once(c.get_program()).chain(c.get_args());
+    words.map(|w| w.to_string_lossy()).collect::<Vec<_>>().join(" ")
+}

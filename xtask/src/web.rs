@@ -1,0 +1,142 @@
+//! The WASM build and the checks that run in Node.
+
+use std::path::{Path, PathBuf};
+
+use crate::shell::{Outcome, cache_dir, cargo_path, command, finish, output, prepare, repository, say, target_dir};
+use crate::toolchain::{TARGET, WasmCargo, is_root_on_debian, shown, wasm_cargo};
+
+/// Everything that the WASM tests need.
+#[derive(Debug)]
+pub(crate) struct Tools {
+    cargo: WasmCargo,
+    wasm_bindgen: PathBuf,
+}
+
+/// Installs what is missing.
+pub(crate) fn setup() -> Outcome<Tools> {
+    let node = output(prepare("node", &["--version"])).map_err(|_| {
+        let how = if is_root_on_debian() { " (Debian: `apt-get install nodejs npm`)" } else { "" };
+        format!("Node is missing: install version 20 or newer{how}")
+    })?;
+    say(&format!("node {}", node.trim()));
+    let cargo = wasm_cargo()?;
+    let wasm_bindgen = wasm_bindgen()?;
+    if !node_folder().join("node_modules").exists() {
+        say("$ npm ci (in xtask/node)");
+        let mut c = prepare("npm", &["ci", "--no-fund", "--no-audit", "--silent"]);
+        c.current_dir(node_folder());
+        finish(c)?;
+    }
+    Ok(Tools { cargo, wasm_bindgen })
+}
+
+fn node_folder() -> PathBuf {
+    repository().join("xtask/node")
+}
+
+/// wasm-bindgen's program, of the version of the crate in the lock file.
+fn wasm_bindgen() -> Outcome<PathBuf> {
+    let lock = std::fs::read_to_string(repository().join("Cargo.lock")).map_err(|e| format!("Cargo.lock: {e}"))?;
+    let version = lock
+        .split("[[package]]")
+        .find(|p| p.contains("name = \"wasm-bindgen\"\n"))
+        .and_then(|p| p.split("version = \"").nth(1)?.split('"').next())
+        .ok_or("Cargo.lock names no wasm-bindgen")?
+        .to_owned();
+    let root = cache_dir().join(format!("wasm-bindgen-{version}"));
+    let program = root.join("bin").join(format!("wasm-bindgen{}", std::env::consts::EXE_SUFFIX));
+    if program.exists() {
+        return Ok(program);
+    }
+    say(&format!("$ cargo install wasm-bindgen-cli --version ={version} (once)"));
+    // No --locked: the lock file inside that crate may name versions that a registry does not serve.
+    let root_arg = root.to_string_lossy().into_owned();
+    let exact = format!("={version}");
+    let mut c = prepare(cargo_path(), &["install", "--quiet", "wasm-bindgen-cli", "--version", &exact]);
+    c.args(["--no-default-features", "--bin", "wasm-bindgen", "--root", &root_arg]);
+    c.env("CARGO_PROFILE_RELEASE_OPT_LEVEL", "1");
+    finish(c)?;
+    Ok(program)
+}
+
+/// Builds the WASM package, runs it in Node beside the native program, and validates every GLB.
+pub(crate) fn test(tools: &Tools) -> Outcome {
+    let out = target_dir().join("xtask-test");
+    let _ = std::fs::remove_dir_all(&out);
+    std::fs::create_dir_all(&out).map_err(|e| format!("{}: {e}", shown(&out)))?;
+    build_wasm(tools, &out.join("wasm"))?;
+    let drawings = fixture_drawings()?;
+    let native = native_models(&drawings, &out.join("native"))?;
+    say(&format!("$ node digests.mjs ({} drawings)", drawings.len()));
+    let mut c = prepare("node", &["xtask/node/digests.mjs"]);
+    c.arg(out.join("wasm/burgeon_wasm.js")).arg(&native).args(&drawings);
+    finish(c)?;
+    say("$ node validate.mjs (Khronos validator)");
+    let mut c = prepare("node", &["xtask/node/validate.mjs"]);
+    c.arg(out.join("native"));
+    finish(c)
+}
+
+/// Builds the package for Node into `to`.
+fn build_wasm(tools: &Tools, to: &Path) -> Outcome {
+    let args = ["build", "--package", "burgeon-wasm", "--target", TARGET];
+    say(&format!("$ cargo {}", args.join(" ")));
+    let c = tools.cargo.command(&args);
+    finish(c)?;
+    let built = match tools.cargo {
+        WasmCargo::Own => target_dir(),
+        WasmCargo::Debian => target_dir().join("debian"),
+    };
+    let wasm = built.join(TARGET).join("debug/burgeon_wasm.wasm");
+    let (wasm, to) = (wasm.to_string_lossy().into_owned(), to.to_string_lossy().into_owned());
+    command(&tools.wasm_bindgen, &["--target", "nodejs", "--out-dir", &to, &wasm])
+}
+
+/// Every drawing among the fixtures, in order of name.
+fn fixture_drawings() -> Outcome<Vec<PathBuf>> {
+    let mut folders = vec![repository().join("fixtures/sketches")];
+    let mut drawings = Vec::new();
+    while let Some(folder) = folders.pop() {
+        let entries = std::fs::read_dir(&folder).map_err(|e| format!("{}: {e}", shown(&folder)))?;
+        for path in entries.filter_map(Result::ok).map(|e| e.path()) {
+            let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
+            if path.is_dir() {
+                folders.push(path);
+            } else if matches!(extension, "svg" | "inkml" | "ndjson" | "json") {
+                drawings.push(path);
+            }
+        }
+    }
+    drawings.sort();
+    if drawings.is_empty() { Err("no drawings under fixtures/sketches".into()) } else { Ok(drawings) }
+}
+
+/// Makes every drawing with the native program on one and on four threads; returns the report of the first.
+fn native_models(drawings: &[PathBuf], to: &Path) -> Outcome<PathBuf> {
+    std::fs::create_dir_all(to).map_err(|e| format!("{}: {e}", shown(to)))?;
+    let burgeon = target_dir().join("debug").join(format!("burgeon{}", std::env::consts::EXE_SUFFIX));
+    crate::shell::cargo(&["build", "--package", "burgeon-cli"])?;
+    let mut reports = Vec::new();
+    for threads in ["1", "4"] {
+        let report = to.join(format!("threads-{threads}.json"));
+        let folder = to.join(threads);
+        let mut c = prepare(&burgeon, &["sketch", "--quiet", "--threads", threads]);
+        c.args(drawings).arg("-o").arg(&folder).arg("--report").arg(&report);
+        finish(c)?;
+        let text = std::fs::read_to_string(&report).map_err(|e| format!("{}: {e}", shown(&report)))?;
+        let json: serde_json::Value = serde_json::from_str(&text).map_err(|e| format!("{}: {e}", shown(&report)))?;
+        let digests: Vec<String> = json["items"]
+            .as_array()
+            .into_iter()
+            .flatten()
+            .map(|item| format!("{} {}", item["name"], item["digest"]))
+            .collect();
+        reports.push((report, digests));
+    }
+    if reports[0].1 == reports[1].1 && !reports[0].1.is_empty() {
+        say(&format!("{} digests are the same on 1 and 4 threads", reports[0].1.len()));
+        Ok(reports.swap_remove(0).0)
+    } else {
+        Err("digests differ between 1 and 4 threads, or there are none".into())
+    }
+}
