@@ -1,6 +1,7 @@
 //! `cargo xtask`: set-up, checks and chores. Installs what is missing, so that a fresh machine with rustup and
 //! Node needs nothing else.
 
+mod gallery;
 mod layers;
 mod shell;
 mod toolchain;
@@ -17,6 +18,7 @@ cargo xtask COMMAND
 
   run            sets up what is missing, turns the sample sketch into out/sample.glb and a picture
   test           sets up what the tests need and runs them all: native, WASM in Node, Khronos validator
+  gallery        makes every fixture drawing and writes docs/gallery.md and docs/table1.md
   layers         checks that each crate uses only what ARCHITECTURE.md allows
   clippy-wasm    lints the core for wasm32
   train-strokes  trains the stroke classifier from its table (see docs/strokes.md)
@@ -29,6 +31,7 @@ fn main() -> ExitCode {
     let outcome = match args.first().map(String::as_str) {
         Some("run") => run(),
         Some("test") => test(),
+        Some("gallery") => gallery::run(),
         Some("layers") => layers::check(),
         Some("clippy-wasm") => toolchain::clippy_wasm(),
         Some("train-strokes") => train_strokes::run(rest),

@@ -1,0 +1,122 @@
+//! `cargo xtask gallery`: makes every fixture drawing again and writes docs/table1.md and docs/gallery.md with
+//! the pictures and the figures of that very run.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::shell::{Outcome, cargo, command, repository, say, target_dir};
+
+/// Table 1 of paper 000: strokes, leaves or petals, branches, triangles, milliseconds.
+const PAPER: [(&str, [u32; 5]); 8] = [
+    ("a", [15, 0, 56, 29_888, 145]),
+    ("b", [7, 6, 1, 5_132, 148]),
+    ("c", [13, 34, 7, 20_558, 236]),
+    ("d", [22, 19, 3, 11_972, 188]),
+    ("e", [31, 27, 4, 10_464, 230]),
+    ("f", [27, 16, 21, 13_360, 217]),
+    ("g", [31, 142, 22, 67_918, 1711]),
+    ("h", [25, 126, 13, 37_528, 967]),
+];
+
+/// Makes the pictures and writes both pages.
+pub(crate) fn run() -> Outcome {
+    cargo(&["build", "--release", "--package", "burgeon-cli"])?;
+    let mut page = String::from(
+        "# The eight sketches of the paper's Table 1\n\n\
+         He and Cheng (2021) report eight drawings by users. Theirs are not published, so these are our own of the \
+         same make-up. Each cell reads *ours / the paper's*. Written by `cargo xtask gallery`, which makes the \
+         models, the pictures and this page; times are one run of the command line, from strokes in memory to \
+         meshes in memory (`docs/performance.md` has the benchmark).\n\n\
+         | | drawing | model | strokes | leaves or petals | branches | triangles | time, ms |\n\
+         |---|---|---|---|---|---|---|---|\n",
+    );
+    for (name, [strokes, blades, branches, triangles, ms]) in PAPER {
+        let item = make(&format!("table1/{name}"))?;
+        let counts = &item["counts"];
+        let count = |key: &str| counts[key].as_u64().unwrap_or_default();
+        let times = &item["timings_ms"];
+        let time = |key: &str| times[key].as_f64().unwrap_or_default();
+        let core = time("total") - time("read") - time("write");
+        let _ = writeln!(
+            page,
+            "| {name} | <img src=\"../fixtures/sketches/table1/{name}.svg\" width=\"150\"> | \
+             <img src=\"pictures/table1/{name}.png\" width=\"260\"> | {} / {strokes} | {} / {blades} | {} / {branches} | \
+             {} / {triangles} | {core:.1} / {ms} |",
+            item["strokes"].as_array().map_or(0, Vec::len),
+            count("leaves") + count("petals"),
+            count("branches"),
+            count("triangles"),
+        );
+    }
+    write(&repository().join("docs/table1.md"), &page)?;
+
+    let mut page = String::from(
+        "# Gallery\n\nDrawings of this repository and what `burgeon sketch` makes of them, without any setting. \
+         Written by `cargo xtask gallery`. The eight of the [paper's Table 1](table1.md) come last.\n\n\
+         | drawing | model | what it was understood as |\n|---|---|---|\n",
+    );
+    let folder = repository().join("fixtures/sketches/gallery");
+    let entries = std::fs::read_dir(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    let mut names: Vec<String> = entries
+        .filter_map(|e| Some(e.ok()?.path().file_stem()?.to_str()?.to_owned()))
+        .map(|name| format!("gallery/{name}"))
+        .collect();
+    names.sort();
+    names.extend(PAPER.iter().map(|(name, _)| format!("table1/{name}")));
+    for name in &names {
+        let item = make(name)?;
+        let _ = writeln!(
+            page,
+            "| <img src=\"../fixtures/sketches/{name}.svg\" width=\"180\"> | \
+             <img src=\"pictures/{name}.png\" width=\"320\"> | {} |",
+            summary(&item)
+        );
+    }
+    write(&repository().join("docs/gallery.md"), &page)?;
+    make("sample")?;
+    say(&format!("docs/table1.md and docs/gallery.md: {} drawings", names.len()));
+    Ok(())
+}
+
+fn write(path: &Path, text: &str) -> Outcome {
+    std::fs::write(path, text).map_err(|e| format!("{}: {e}", path.display()))
+}
+
+/// Makes one fixture, its picture in docs/pictures, and returns the report's item.
+fn make(name: &str) -> Outcome<Value> {
+    let root = repository();
+    let picture = root.join(format!("docs/pictures/{name}.png"));
+    let scratch = target_dir().join("gallery");
+    for folder in [picture.parent(), Some(scratch.as_path())].into_iter().flatten() {
+        std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    }
+    let burgeon = target_dir().join("release").join(format!("burgeon{}", std::env::consts::EXE_SUFFIX));
+    let report = scratch.join("report.json");
+    let as_text = |p: &Path| p.to_string_lossy().into_owned();
+    command(&burgeon, &[
+        "sketch",
+        &format!("fixtures/sketches/{name}.svg"),
+        "-o",
+        &as_text(&scratch.join("model.glb")),
+        "--png",
+        &as_text(&picture),
+        "--size",
+        "480x560",
+        "--report",
+        &as_text(&report),
+        "--quiet",
+    ])?;
+    let text = std::fs::read_to_string(&report).map_err(|e| format!("{}: {e}", report.display()))?;
+    let mut json: Value = serde_json::from_str(&text).map_err(|e| format!("{}: {e}", report.display()))?;
+    Ok(json["items"][0].take())
+}
+
+/// One line about a plant: its name, and counts that are not 0.
+fn summary(item: &Value) -> String {
+    let counts = &item["counts"];
+    let parts = ["flowers", "petals", "leaves", "branches", "triangles"].into_iter();
+    let parts = parts.filter_map(|key| counts[key].as_u64().filter(|&n| n > 0).map(|n| format!("{n} {key}")));
+    format!("{} strokes: {}", item["strokes"].as_array().map_or(0, Vec::len), parts.collect::<Vec<_>>().join(", "))
+}
