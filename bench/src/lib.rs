@@ -19,8 +19,8 @@ pub fn table1(name: &str) -> Drawing {
     #[expect(clippy::expect_used, reason = "a benchmark without its input is worth nothing")]
     {
         let bytes = std::fs::read(&path).expect("the fixture is in the repository");
-        let mut drawings = read_drawings(&bytes, DrawingFormat::Svg).expect("the fixture is an SVG");
-        drawings.next().expect("the fixture has a drawing").expect("the fixture can be read")
+        let mut drawings = read_drawings(bytes.as_slice(), DrawingFormat::Svg, name);
+        drawings.next().expect("the fixture has a drawing").expect("the fixture can be read").drawing
     }
 }
 

@@ -14,9 +14,9 @@ pub(crate) struct Tools {
 
 /// Installs what is missing.
 pub(crate) fn setup() -> Outcome<Tools> {
-    let node = output(prepare("node", &["--version"])).map_err(|_| {
+    let node = output(prepare("node", &["--version"])).map_err(|missing| {
         let how = if is_root_on_debian() { " (Debian: `apt-get install nodejs npm`)" } else { "" };
-        format!("Node is missing: install version 20 or newer{how}")
+        format!("Node is missing: install version 20 or newer{how} ({missing})")
     })?;
     say(&format!("node {}", node.trim()));
     let cargo = wasm_cargo()?;

@@ -12,8 +12,12 @@ use wasm_bindgen::prelude::*;
 #[wasm_bindgen]
 pub fn sketch_report(file_name: &str, bytes: &[u8], seed: u64) -> Result<String, JsError> {
     let mut items: Vec<ItemReport> = Vec::new();
-    for drawing in formats::read_drawings(bytes, DrawingFormat::from_name(file_name)?)? {
-        let made = make_from_sketch(&drawing?, &SketchOptions::default(), Seed::new(seed), &Run::plain())?;
+    let (stem, extension) = file_name.rsplit_once('.').unwrap_or((file_name, ""));
+    let format = DrawingFormat::from_extension(extension)
+        .or_else(|| DrawingFormat::sniff(bytes))
+        .ok_or_else(|| JsError::new("not a drawing: give an SVG, InkML, ndjson or JSON file"))?;
+    for read in formats::read_drawings(bytes, format, stem) {
+        let made = make_from_sketch(&read?.drawing, &SketchOptions::default(), Seed::new(seed), &Run::plain())?;
         items.push(made.item);
     }
     Ok(serde_json::to_string(&items)?)

@@ -94,8 +94,7 @@ pub fn make_from_sketch(
     }
     let reading = report.stage("structure", run.clock, |r| sketch::read(&ink, &classes, r));
     run.cancel.check()?;
-    let built =
-        report.stage("depth", run.clock, |r| sketch::build(&reading, &options.spec, seed, run, r))?;
+    let built = sketch::build(&reading, &options.spec, seed, run, &mut report)?; // books `depth` itself
     let mut plant = built.plant;
     plant.name.clone_from(&drawing.name);
     let mut model = report.stage("mesh", run.clock, |_| skin::skin(&plant, &options.skin, run))?;
