@@ -1,6 +1,10 @@
 //! Strokes in memory to meshes in memory, on two threads. `cargo bench --bench sketch`
 
-#![expect(clippy::unwrap_used, clippy::print_stdout, reason = "a benchmark without its input is worth nothing")]
+#![expect(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a benchmark without its input is worth nothing"
+)]
 
 use burgeon::glam::DVec2;
 use burgeon::sketch::Drawing;
@@ -65,7 +69,8 @@ fn leafy(leaves: u32) -> Drawing {
         for k in 0..100.min(leaves - row * 100) {
             let root = DVec2::new(2.0 + f64::from(k), y);
             let up = if k % 2 == 0 { 1.0 } else { -1.0 };
-            let outline = [(0.0, 0.0), (0.35, 0.4), (0.4, 0.9), (0.0, 1.6), (-0.4, 0.9), (-0.35, 0.4), (-0.02, 0.02)];
+            let outline =
+                [(0.0, 0.0), (0.35, 0.4), (0.4, 0.9), (0.0, 1.6), (-0.4, 0.9), (-0.35, 0.4), (-0.02, 0.02)];
             lines.push(outline.map(|(x, y)| root + DVec2::new(x, y * up)).to_vec());
         }
     }

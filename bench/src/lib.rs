@@ -15,7 +15,8 @@ pub const TABLE1: [&str; 8] = ["a", "b", "c", "d", "e", "f", "g", "h"];
 /// # Panics
 /// When the fixture cannot be read: a benchmark without its input is worth nothing.
 pub fn table1(name: &str) -> Drawing {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(format!("../fixtures/sketches/table1/{name}.svg"));
+    let path =
+        PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(format!("../fixtures/sketches/table1/{name}.svg"));
     #[expect(clippy::expect_used, reason = "a benchmark without its input is worth nothing")]
     {
         let bytes = std::fs::read(&path).expect("the fixture is in the repository");

@@ -95,19 +95,22 @@ fn make(name: &str) -> Outcome<Value> {
     let burgeon = target_dir().join("release").join(format!("burgeon{}", std::env::consts::EXE_SUFFIX));
     let report = scratch.join("report.json");
     let as_text = |p: &Path| p.to_string_lossy().into_owned();
-    command(&burgeon, &[
-        "sketch",
-        &format!("fixtures/sketches/{name}.svg"),
-        "-o",
-        &as_text(&scratch.join("model.glb")),
-        "--png",
-        &as_text(&picture),
-        "--size",
-        "480x560",
-        "--report",
-        &as_text(&report),
-        "--quiet",
-    ])?;
+    command(
+        &burgeon,
+        &[
+            "sketch",
+            &format!("fixtures/sketches/{name}.svg"),
+            "-o",
+            &as_text(&scratch.join("model.glb")),
+            "--png",
+            &as_text(&picture),
+            "--size",
+            "480x560",
+            "--report",
+            &as_text(&report),
+            "--quiet",
+        ],
+    )?;
     let text = std::fs::read_to_string(&report).map_err(|e| format!("{}: {e}", report.display()))?;
     let mut json: Value = serde_json::from_str(&text).map_err(|e| format!("{}: {e}", report.display()))?;
     Ok(json["items"][0].take())
@@ -118,5 +121,9 @@ fn summary(item: &Value) -> String {
     let counts = &item["counts"];
     let parts = ["flowers", "petals", "leaves", "branches", "triangles"].into_iter();
     let parts = parts.filter_map(|key| counts[key].as_u64().filter(|&n| n > 0).map(|n| format!("{n} {key}")));
-    format!("{} strokes: {}", item["strokes"].as_array().map_or(0, Vec::len), parts.collect::<Vec<_>>().join(", "))
+    format!(
+        "{} strokes: {}",
+        item["strokes"].as_array().map_or(0, Vec::len),
+        parts.collect::<Vec<_>>().join(", ")
+    )
 }

@@ -53,9 +53,8 @@ fn read(path: &Path) -> Outcome<String> {
 
 /// Rows ``| `crate` | `a`, `b` | ...`` of the document: a crate and the crates that it may use.
 fn table(document: &str) -> BTreeMap<String, Vec<String>> {
-    let quoted = |cell: &str| -> Vec<String> {
-        cell.split('`').skip(1).step_by(2).map(str::to_owned).collect()
-    };
+    let quoted =
+        |cell: &str| -> Vec<String> { cell.split('`').skip(1).step_by(2).map(str::to_owned).collect() };
     let rows = document.lines().filter(|l| l.starts_with("| `"));
     let cells = rows.map(|l| l.split('|').skip(1).take(2).map(quoted).collect::<Vec<_>>());
     cells
@@ -120,7 +119,9 @@ fn kurbo_with_std(metadata: &Value) -> Option<String> {
     let nodes = metadata["resolve"]["nodes"].as_array()?;
     let mut kurbo = nodes.iter().filter(|n| n["id"].as_str().is_some_and(|id| id.contains("kurbo@")));
     let has_std = |n: &Value| n["features"].as_array().is_some_and(|f| f.iter().any(|f| f == "std"));
-    kurbo.any(has_std).then(|| "kurbo is built with its feature `std`: results differ between machines".into())
+    kurbo
+        .any(has_std)
+        .then(|| "kurbo is built with its feature `std`: results differ between machines".into())
 }
 
 #[cfg(test)]
@@ -129,7 +130,9 @@ mod tests {
 
     #[test]
     fn table_reads_crates_and_what_they_may_use() {
-        let t = table("text\n| crate | may use |\n|---|---|\n| `base` | – | x |\n| `geom` | `base`, `x` | `no` |\n");
+        let t = table(
+            "text\n| crate | may use |\n|---|---|\n| `base` | – | x |\n| `geom` | `base`, `x` | `no` |\n",
+        );
         assert_eq!(t["base"], Vec::<String>::new());
         assert_eq!(t["geom"], ["base", "x"]);
     }

@@ -56,18 +56,22 @@ fn run() -> Outcome {
     let root = repository();
     cargo(&["build", "--release", "--package", "burgeon-cli"])?;
     std::fs::create_dir_all(root.join("out")).map_err(|e| format!("cannot make the folder out: {e}"))?;
-    let burgeon = shell::target_dir().join("release").join(format!("burgeon{}", std::env::consts::EXE_SUFFIX));
+    let burgeon =
+        shell::target_dir().join("release").join(format!("burgeon{}", std::env::consts::EXE_SUFFIX));
     say("\n$ burgeon sketch fixtures/sketches/sample.svg -o out/sample.glb --png out/sample.png");
-    shell::command(&burgeon, &[
-        "sketch",
-        "fixtures/sketches/sample.svg",
-        "-o",
-        "out/sample.glb",
-        "--png",
-        "out/sample.png",
-        "--report",
-        "out/sample.json",
-    ])?;
+    shell::command(
+        &burgeon,
+        &[
+            "sketch",
+            "fixtures/sketches/sample.svg",
+            "-o",
+            "out/sample.glb",
+            "--png",
+            "out/sample.png",
+            "--report",
+            "out/sample.json",
+        ],
+    )?;
     say("
 Made from fixtures/sketches/sample.svg:
   out/sample.glb   the plant: open it in Blender, Godot, Unity or any glTF viewer

@@ -197,14 +197,17 @@ fn build_std(home: &Path, std_lib: &Path) -> Outcome {
     let package = home.join("std");
     let source = package.join("src");
     std::fs::create_dir_all(&source).map_err(|e| format!("{}: {e}", source.display()))?;
-    let write = |path: PathBuf, text: &str| std::fs::write(&path, text).map_err(|e| format!("{}: {e}", path.display()));
+    let write = |path: PathBuf, text: &str| {
+        std::fs::write(&path, text).map_err(|e| format!("{}: {e}", path.display()))
+    };
     write(source.join("lib.rs"), "")?;
     write(
         package.join("Cargo.toml"),
         "[package]\nname = \"std-for-wasm\"\nversion = \"0.0.0\"\nedition = \"2021\"\n[workspace]\n\
          [profile.release]\npanic = \"abort\"\n",
     )?;
-    let mut c = WasmCargo::Debian.command(&["build", "--release", "--target", TARGET, "-Zbuild-std=std,panic_abort"]);
+    let mut c =
+        WasmCargo::Debian.command(&["build", "--release", "--target", TARGET, "-Zbuild-std=std,panic_abort"]);
     c.current_dir(&package).env_remove("CARGO_TARGET_DIR");
     c.env("RUSTC_BOOTSTRAP", "1").env("RUSTFLAGS", "-Cembed-bitcode=yes");
     finish(c)?;

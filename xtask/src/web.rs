@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::shell::{Outcome, cache_dir, cargo_path, command, finish, output, prepare, repository, say, target_dir};
+use crate::shell::{
+    Outcome, cache_dir, cargo_path, command, finish, output, prepare, repository, say, target_dir,
+};
 use crate::toolchain::{TARGET, WasmCargo, is_root_on_debian, shown, wasm_cargo};
 
 /// Everything that the WASM tests need.
@@ -36,7 +38,8 @@ fn node_folder() -> PathBuf {
 
 /// wasm-bindgen's program, of the version of the crate in the lock file.
 fn wasm_bindgen() -> Outcome<PathBuf> {
-    let lock = std::fs::read_to_string(repository().join("Cargo.lock")).map_err(|e| format!("Cargo.lock: {e}"))?;
+    let lock =
+        std::fs::read_to_string(repository().join("Cargo.lock")).map_err(|e| format!("Cargo.lock: {e}"))?;
     let version = lock
         .split("[[package]]")
         .find(|p| p.contains("name = \"wasm-bindgen\"\n"))
@@ -124,7 +127,8 @@ fn native_models(drawings: &[PathBuf], to: &Path) -> Outcome<PathBuf> {
         c.args(drawings).arg("-o").arg(&folder).arg("--report").arg(&report);
         finish(c)?;
         let text = std::fs::read_to_string(&report).map_err(|e| format!("{}: {e}", shown(&report)))?;
-        let json: serde_json::Value = serde_json::from_str(&text).map_err(|e| format!("{}: {e}", shown(&report)))?;
+        let json: serde_json::Value =
+            serde_json::from_str(&text).map_err(|e| format!("{}: {e}", shown(&report)))?;
         let digests: Vec<String> = json["items"]
             .as_array()
             .into_iter()

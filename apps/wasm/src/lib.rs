@@ -17,7 +17,8 @@ pub fn sketch_report(file_name: &str, bytes: &[u8], seed: u64) -> Result<String,
         .or_else(|| DrawingFormat::sniff(bytes))
         .ok_or_else(|| JsError::new("not a drawing: give an SVG, InkML, ndjson or JSON file"))?;
     for read in formats::read_drawings(bytes, format, stem) {
-        let made = make_from_sketch(&read?.drawing, &SketchOptions::default(), Seed::new(seed), &Run::plain())?;
+        let made =
+            make_from_sketch(&read?.drawing, &SketchOptions::default(), Seed::new(seed), &Run::plain())?;
         items.push(made.item);
     }
     Ok(serde_json::to_string(&items)?)

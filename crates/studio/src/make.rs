@@ -42,7 +42,9 @@ pub struct Made {
 #[non_exhaustive]
 pub enum MakeError {
     /// The drawing has no stroke that could be used.
-    #[error("drawing \"{name}\" has no usable stroke ({strokes} in the file): draw at least one line of two points")]
+    #[error(
+        "drawing \"{name}\" has no usable stroke ({strokes} in the file): draw at least one line of two points"
+    )]
     NoStrokes {
         /// Name of the drawing.
         name: String,
@@ -50,7 +52,9 @@ pub enum MakeError {
         strokes: usize,
     },
     /// A class was set for a stroke that is not there.
-    #[error("a class is set for stroke {index}, but drawing \"{name}\" has {strokes} strokes (numbered from 0)")]
+    #[error(
+        "a class is set for stroke {index}, but drawing \"{name}\" has {strokes} strokes (numbered from 0)"
+    )]
     NoSuchStroke {
         /// Name of the drawing.
         name: String,
@@ -95,6 +99,7 @@ pub fn make_from_sketch(
     let reading = report.stage("structure", run.clock, |r| sketch::read(&ink, &classes, r));
     run.cancel.check()?;
     let built = sketch::build(&reading, &options.spec, seed, run, &mut report)?; // books `depth` itself
+    let fidelity = sketch::fidelity(&built, &reading, &ink);
     let mut plant = built.plant;
     plant.name.clone_from(&drawing.name);
     let mut model = report.stage("mesh", run.clock, |_| skin::skin(&plant, &options.skin, run))?;
@@ -109,7 +114,10 @@ pub fn make_from_sketch(
         strokes: reading.strokes.iter().map(stroke_report).collect(),
         counts,
         timings_ms: TimingsMs::from_report(&report),
-        fidelity: Fidelity { reprojection_mean: built.fidelity.mean, reprojection_p95: built.fidelity.p95 },
+        fidelity: fidelity.map_or_else(Fidelity::default, |f| Fidelity {
+            reprojection_mean: f.reprojection_mean,
+            reprojection_p95: f.reprojection_p95,
+        }),
         digest: plant.digest_hex(),
         warnings: report.warnings.iter().map(ToString::to_string).collect(),
     };
