@@ -3,9 +3,9 @@
 
 mod gallery;
 mod layers;
+mod made_strokes;
 mod shell;
 mod toolchain;
-mod made_strokes;
 mod train_strokes;
 mod web;
 
