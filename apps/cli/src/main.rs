@@ -1,1 +1,64 @@
-fn main() {}
+//! The `burgeon` command: parse, read, call, report. No algorithms.
+
+mod args;
+mod classes;
+mod convert;
+mod failure;
+mod files;
+mod info;
+mod machine;
+mod output;
+mod picture;
+mod report;
+mod say;
+mod sketch;
+
+use std::process::ExitCode;
+
+use clap::Parser as _;
+use clap::error::ErrorKind;
+
+use args::{Cli, Command};
+
+fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(e) => return usage(&e),
+    };
+    // A panic is our bug: one line and status 1 instead of Rust's own text and status 101.
+    std::panic::set_hook(Box::new(|info| {
+        let place = info.location().map_or_else(String::new, |l| format!(" ({}:{})", l.file(), l.line()));
+        let what = info.payload_as_str().unwrap_or("no message");
+        say::error(&format!("internal error, a bug in burgeon: {what}{place}"));
+    }));
+    let outcome = std::panic::catch_unwind(|| match cli.command {
+        Command::Sketch(args) => sketch::sketch(&args),
+        Command::Render(args) => picture::render(&args),
+        Command::Convert(args) => convert::convert(&args),
+        Command::Info(args) => info::info(&args),
+    });
+    match outcome {
+        Ok(Ok(())) => ExitCode::SUCCESS,
+        Ok(Err(failure)) => failure.tell(),
+        Err(_) => ExitCode::from(1),
+    }
+}
+
+// Help and version as they are; bad usage as one line.
+fn usage(e: &clap::Error) -> ExitCode {
+    if matches!(
+        e.kind(),
+        ErrorKind::DisplayHelp
+            | ErrorKind::DisplayVersion
+            | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand
+    ) {
+        let _ = e.print();
+        return ExitCode::from(if e.use_stderr() { 2 } else { 0 });
+    }
+    let text = e.to_string();
+    let lines = text.lines().map(str::trim);
+    let lines = lines.take_while(|l| !l.starts_with("Usage:") && !l.starts_with("For more information"));
+    let line = lines.filter(|l| !l.is_empty()).collect::<Vec<_>>().join(" ");
+    say::error(&format!("{} (see --help)", line.trim_start_matches("error: ")));
+    ExitCode::from(2)
+}

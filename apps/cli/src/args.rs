@@ -1,0 +1,488 @@
+//! Names, options and help of every command: a contract with other programs.
+
+use std::path::PathBuf;
+
+use burgeon::formats::ModelFormat;
+use burgeon::render::{Background, PictureSpec, View};
+use burgeon::sketch::{BranchDepth, LeafDepth};
+use burgeon::skin::PetalColor;
+use burgeon::{Seed, Unit, UpAxis};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Three-dimensional plants out of what people can draw.
+///
+/// Exit status: 0 on success, 2 for bad usage or bad input (one line on stderr says what, where and what to do),
+/// 1 for a bug of burgeon, 130 after Ctrl-C. Files are written whole or not at all.
+#[derive(Debug, Parser)]
+#[command(
+    name = "burgeon",
+    version,
+    max_term_width = 100,
+    subcommand_required = true,
+    arg_required_else_help = true
+)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Turn drawn strokes into a plant
+    Sketch(Box<SketchArgs>),
+    /// Make a picture of a model
+    Render(RenderArgs),
+    /// Convert a model or a drawing to another format
+    Convert(ConvertArgs),
+    /// Say what is in a model or a drawing
+    Info(InfoArgs),
+}
+
+/// Options of every command.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Running")]
+pub(crate) struct CommonArgs {
+    /// Number of threads, 1 to 256 [default: all of the machine]. The result does not depend on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub(crate) threads: Option<u16>,
+    /// Print nothing but errors; show no progress.
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+    /// Write the report to a JSON file: what was read, understood, counted and timed.
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) report: Option<PathBuf>,
+    /// Print the report as JSON on stdout instead of the summary.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// How pictures are taken.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Picture")]
+pub(crate) struct PictureArgs {
+    /// Size of the picture in pixels, each 1 to 8192.
+    #[arg(long, value_name = "WxH", default_value = "1024x768", value_parser = size)]
+    pub(crate) size: (u32, u32),
+    /// From where: front is orthographic and shows what was drawn; turntable is a sheet of views all around.
+    #[arg(long, value_enum, default_value_t = ViewWord::ThreeQuarter)]
+    pub(crate) view: ViewWord,
+    /// Views of a turntable, 1 to 64.
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub(crate) frames: u32,
+    /// What is behind: sky, transparent, white or a colour as #rrggbb.
+    #[arg(long, value_name = "sky|transparent|white|#rrggbb", default_value = "sky", value_parser = background)]
+    pub(crate) background: Background,
+    /// Leave out the shadow on the ground.
+    #[arg(long)]
+    pub(crate) no_shadow: bool,
+    /// Samples along a pixel's edge, 1 (rough) to 6 (finest).
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=6))]
+    pub(crate) supersample: u32,
+}
+
+impl PictureArgs {
+    pub(crate) fn spec(&self, seed: u64) -> PictureSpec {
+        PictureSpec {
+            width: self.size.0,
+            height: self.size.1,
+            view: match self.view {
+                ViewWord::Front => View::Front,
+                ViewWord::ThreeQuarter => View::ThreeQuarter,
+                ViewWord::Side => View::Side,
+                ViewWord::Top => View::Top,
+                ViewWord::Turntable => View::Turntable { frames: self.frames },
+            },
+            background: self.background,
+            ground_shadow: !self.no_shadow,
+            supersample: self.supersample,
+            seed: Seed::new(seed),
+            ..PictureSpec::default()
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum ViewWord {
+    /// Orthographic, the drawing's own view
+    Front,
+    /// Perspective from the front right, a little above
+    ThreeQuarter,
+    /// Orthographic, from the plant's right
+    Side,
+    /// Orthographic, from above
+    Top,
+    /// A sheet of perspective views all around
+    Turntable,
+}
+
+/// Axes and unit of files whose format does not fix them.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Geometry")]
+pub(crate) struct AxesArgs {
+    /// Axis that points up in OBJ, PLY and STL files; glTF is always +Y.
+    #[arg(long, value_enum, default_value_t = UpWord::Y)]
+    pub(crate) up: UpWord,
+    /// Unit of length in OBJ, PLY and STL files; glTF is always in metres.
+    #[arg(long, value_enum, default_value_t = UnitWord::M)]
+    pub(crate) unit: UnitWord,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum UpWord {
+    /// +Y
+    Y,
+    /// +Z
+    Z,
+}
+
+impl From<UpWord> for UpAxis {
+    fn from(word: UpWord) -> Self {
+        match word {
+            UpWord::Y => Self::Y,
+            UpWord::Z => Self::Z,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum UnitWord {
+    /// Metres
+    M,
+    /// Centimetres
+    Cm,
+    /// Millimetres
+    Mm,
+}
+
+impl From<UnitWord> for Unit {
+    fn from(word: UnitWord) -> Self {
+        match word {
+            UnitWord::M => Self::Metre,
+            UnitWord::Cm => Self::Centimetre,
+            UnitWord::Mm => Self::Millimetre,
+        }
+    }
+}
+
+/// Turn drawn strokes into a plant.
+///
+/// Lines become stems and branches, closed outlines petals and leaves; a trunk and a crown become a tree.
+/// Seen from the front the plant is the drawing.
+#[derive(Args, Debug)]
+#[command(after_long_help = SKETCH_EXAMPLES)]
+pub(crate) struct SketchArgs {
+    /// Drawings: .svg, .inkml, .ndjson (one drawing a line) or .json.
+    #[arg(value_name = "IN", required = true)]
+    pub(crate) inputs: Vec<PathBuf>,
+    /// The model: .glb, .obj or .ply. For several drawings a folder, which is created and gets one model each.
+    #[arg(long, short, value_name = "OUT", required_unless_present_any = ["png", "report", "json"])]
+    pub(crate) output: Option<PathBuf>,
+    /// Format of the models in a folder.
+    #[arg(long, value_enum, default_value_t = FormatWord::Glb)]
+    pub(crate) format: FormatWord,
+    /// Also make a picture. For several drawings a folder, which is created and gets one picture each.
+    #[arg(long, value_name = "FILE.png")]
+    pub(crate) png: Option<PathBuf>,
+    /// Number that all chance follows from; another number gives another plant of the same drawing.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) reading: ReadingArgs,
+    #[command(flatten)]
+    pub(crate) surface: SurfaceArgs,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
+    #[command(flatten)]
+    pub(crate) axes: AxesArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+const SKETCH_EXAMPLES: &str = "Examples:
+  burgeon sketch daisy.svg -o daisy.glb --png daisy.png
+  burgeon sketch trees.ndjson -o trees/ --format obj --png trees/
+  burgeon sketch daisy.svg --report daisy.json        (what each stroke was understood as)
+  burgeon sketch daisy.svg -o daisy.glb --classes daisy.json   (after correcting a class in it)
+
+Class files (--classes), by the stroke's index from 0; classes are blade, corolla, axis, trunk_outline,
+crown, vein, disc, pot, ground, fruit, scribble and other:
+  CSV    lines of  stroke,class  or  drawing,stroke,class
+  JSON   {\"3\": \"axis\"}  or  {\"drawing name\": {\"3\": \"axis\"}}  or a report of this command";
+
+/// How the drawing is understood and given depth.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Plant")]
+pub(crate) struct ReadingArgs {
+    /// Height of the plant in metres, above 0 to 1000 [default: 8 for a tree, 0.5 for a herb].
+    #[arg(long, value_name = "METRES", value_parser = above_zero)]
+    pub(crate) height: Option<f64>,
+    /// How branches leave the drawing's plane: riesz spreads siblings evenly, paper is the published entropy
+    /// [default: riesz].
+    #[arg(long, value_enum, value_name = "MODE", hide_default_value = true)]
+    pub(crate) branch_depth: Option<BranchDepthWord>,
+    /// How leaves leave the drawing's plane: drawn keeps the front view, paper turns all leaves to one side as
+    /// published, signed keeps left and right [default: drawn].
+    #[arg(long, value_enum, value_name = "MODE")]
+    pub(crate) leaf_depth: Option<LeafDepthWord>,
+    /// Set what strokes are: a CSV or JSON file, see the end of this help.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) classes: Option<PathBuf>,
+    /// Flowers that face away from the viewer, by number from 0, separated by commas [default: none].
+    #[arg(long, value_name = "N,N", value_delimiter = ',')]
+    pub(crate) flip_flowers: Vec<u32>,
+    /// How many twigs and leaves fill contours and crowns, relative to the usual, 0.1 to 10 [default: 1].
+    #[arg(long, value_name = "X", value_parser = |s: &str| ranged(s, 0.1, 10.0))]
+    pub(crate) density: Option<f64>,
+    /// Direction of grown twigs, -1 (weeping) to 1 (upright) [default: 0.1].
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, -1.0, 1.0))]
+    pub(crate) tropism: Option<f64>,
+    /// Exponent of the pipe model, 1.8 to 3: higher makes branches below forks thinner
+    /// [default: 2 for a tree, 2.5 for a herb].
+    #[arg(long, value_name = "X", value_parser = |s: &str| ranged(s, 1.8, 3.0))]
+    pub(crate) pipe_exponent: Option<f64>,
+    /// Pull of light on drawn branches, -1 to 1, upwards [default: 0].
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, -1.0, 1.0))]
+    pub(crate) phototropism: Option<f64>,
+    /// Sag of drawn branches, 0 to 1 [default: 0].
+    #[arg(long, value_name = "X", value_parser = |s: &str| ranged(s, 0.0, 1.0))]
+    pub(crate) gravity: Option<f64>,
+    /// All settings of the sketch maker as JSON (what is missing keeps its default); options above win over it.
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) spec: Option<PathBuf>,
+}
+
+/// How the plant is meshed and coloured.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Surface")]
+pub(crate) struct SurfaceArgs {
+    /// Fineness of the meshes, 0.1 to 8; triangle counts grow in proportion.
+    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = |s: &str| ranged(s, 0.1, 8.0))]
+    pub(crate) detail: f64,
+    /// Sides of an ordinary branch, 3 to 24; thick branches get more.
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(3..=24))]
+    pub(crate) sides: u32,
+    /// Plain colours instead of textures.
+    #[arg(long)]
+    pub(crate) no_textures: bool,
+    /// Colour of petals that were drawn without one [default: by seed and name].
+    #[arg(long, value_enum, value_name = "COLOUR")]
+    pub(crate) petals: Option<PetalWord>,
+    /// Variation of colour from organ to organ, 0 (none) to 1.
+    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = |s: &str| ranged(s, 0.0, 1.0))]
+    pub(crate) variation: f64,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum BranchDepthWord {
+    /// The sum of the angles between siblings, as published
+    Paper,
+    /// Siblings spread evenly
+    Riesz,
+}
+
+impl From<BranchDepthWord> for BranchDepth {
+    fn from(word: BranchDepthWord) -> Self {
+        match word {
+            BranchDepthWord::Paper => Self::Paper,
+            BranchDepthWord::Riesz => Self::Riesz,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum LeafDepthWord {
+    /// The front view is the drawing
+    Drawn,
+    /// Leaves turn to the light, all to one side, as published
+    Paper,
+    /// Leaves turn to the light, left and right kept
+    Signed,
+}
+
+impl From<LeafDepthWord> for LeafDepth {
+    fn from(word: LeafDepthWord) -> Self {
+        match word {
+            LeafDepthWord::Drawn => Self::Drawn,
+            LeafDepthWord::Paper => Self::Paper,
+            LeafDepthWord::Signed => Self::Signed,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum PetalWord {
+    /// Rose pink with a pale base
+    Pink,
+    /// White with a greenish base
+    White,
+    /// Warm yellow
+    Yellow,
+    /// Violet blue with a pale base
+    Violet,
+    /// Poppy red with a dark base
+    Red,
+    /// Orange with a yellow base
+    Orange,
+    /// Sky blue with a white base
+    Blue,
+}
+
+impl From<PetalWord> for PetalColor {
+    fn from(word: PetalWord) -> Self {
+        match word {
+            PetalWord::Pink => Self::Pink,
+            PetalWord::White => Self::White,
+            PetalWord::Yellow => Self::Yellow,
+            PetalWord::Violet => Self::Violet,
+            PetalWord::Red => Self::Red,
+            PetalWord::Orange => Self::Orange,
+            PetalWord::Blue => Self::Blue,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum FormatWord {
+    /// Binary glTF: one file with textures and materials
+    Glb,
+    /// Wavefront OBJ with its material file and textures beside it
+    Obj,
+    /// PLY: one mesh with colours
+    Ply,
+}
+
+impl FormatWord {
+    pub(crate) const fn format(self) -> ModelFormat {
+        match self {
+            Self::Glb => ModelFormat::Glb,
+            Self::Obj => ModelFormat::Obj,
+            Self::Ply => ModelFormat::Ply,
+        }
+    }
+
+    pub(crate) const fn extension(self) -> &'static str {
+        match self {
+            Self::Glb => "glb",
+            Self::Obj => "obj",
+            Self::Ply => "ply",
+        }
+    }
+}
+
+/// Make a picture of a model.
+///
+/// The model fills the picture but for a margin and stands on the ground in the light of a soft sun.
+#[derive(Args, Debug)]
+#[command(after_long_help = "Examples:
+  burgeon render daisy.glb -o daisy.png
+  burgeon render tree.obj -o tree.png --view turntable --size 1600x900
+  burgeon render tree.glb -o tree.png --background transparent --no-shadow")]
+pub(crate) struct RenderArgs {
+    /// The model: .glb, .gltf, .obj, .ply or .stl.
+    #[arg(value_name = "MODEL")]
+    pub(crate) input: PathBuf,
+    /// The picture: .png.
+    #[arg(long, short, value_name = "PNG")]
+    pub(crate) output: PathBuf,
+    /// Number that the pattern of the lights follows from.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
+    #[command(flatten)]
+    pub(crate) axes: AxesArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+/// Convert a model or a drawing to another format.
+///
+/// Models: .glb, .gltf, .obj, .ply and .stl to .glb, .obj or .ply.
+/// Drawings: .svg, .inkml, .ndjson and .json to .json.
+/// A drawing becomes a model with `burgeon sketch`.
+#[derive(Args, Debug)]
+#[command(after_long_help = "Examples:
+  burgeon convert oak.glb -o oak.obj
+  burgeon convert scan.ply -o scan.glb --up z --unit mm
+  burgeon convert scan.ply -o scan.obj --in-unit mm --unit m")]
+pub(crate) struct ConvertArgs {
+    /// The file to read.
+    #[arg(value_name = "IN")]
+    pub(crate) input: PathBuf,
+    /// The file to write; its extension says the format.
+    #[arg(long, short, value_name = "OUT")]
+    pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) axes: AxesArgs,
+    /// Axis that points up in the input, where it differs from --up.
+    #[arg(long, value_enum, value_name = "UP", help_heading = "Geometry")]
+    pub(crate) in_up: Option<UpWord>,
+    /// Unit of length in the input, where it differs from --unit.
+    #[arg(long, value_enum, value_name = "UNIT", help_heading = "Geometry")]
+    pub(crate) in_unit: Option<UnitWord>,
+    /// Also make a picture of a model.
+    #[arg(long, value_name = "FILE.png")]
+    pub(crate) png: Option<PathBuf>,
+    /// Number that the pattern of the picture's lights follows from.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+/// Say what is in a model or a drawing: counts, bounds, units, and what is wrong with it.
+#[derive(Args, Debug)]
+pub(crate) struct InfoArgs {
+    /// The file: a model (.glb, .gltf, .obj, .ply, .stl) or a drawing (.svg, .inkml, .ndjson, .json).
+    #[arg(value_name = "FILE")]
+    pub(crate) input: PathBuf,
+    #[command(flatten)]
+    pub(crate) axes: AxesArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+fn size(text: &str) -> Result<(u32, u32), String> {
+    let parts = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    match parts {
+        Some((w, h)) if (1..=8192).contains(&w) && (1..=8192).contains(&h) => Ok((w, h)),
+        _ => Err("give width and height in pixels, each 1 to 8192, such as 1024x768".into()),
+    }
+}
+
+fn background(text: &str) -> Result<Background, String> {
+    let hex = || {
+        let hex = text.strip_prefix('#').filter(|h| h.len() == 6 && h.is_ascii())?;
+        let byte = |i: usize| u8::from_str_radix(hex.get(i..i + 2)?, 16).ok();
+        Some(Background::Plain([byte(0)?, byte(2)?, byte(4)?]))
+    };
+    match text {
+        "sky" => Ok(Background::Sky),
+        "transparent" => Ok(Background::Transparent),
+        "white" => Ok(Background::Plain([255; 3])),
+        _ => hex().ok_or_else(|| "give sky, transparent, white or a colour such as #f0f4e8".into()),
+    }
+}
+
+fn ranged(text: &str, low: f64, high: f64) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|x| (low..=high).contains(x))
+        .ok_or_else(|| format!("give a number from {low} to {high}"))
+}
+
+fn above_zero(text: &str) -> Result<f64, String> {
+    ranged(text, f64::MIN_POSITIVE, 1000.0).map_err(|_| "give a number above 0, up to 1000".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory as _;
+
+    #[test]
+    fn commands_are_consistent() {
+        super::Cli::command().debug_assert();
+    }
+}

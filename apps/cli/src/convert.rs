@@ -1,0 +1,97 @@
+//! `burgeon convert`: models to models, drawings to drawings.
+
+use burgeon::formats::{DrawingFormat, ModelFormat, PngCache, read_drawings, write_drawing};
+use burgeon::{ItemReport, RunReport};
+
+use crate::args::ConvertArgs;
+use crate::failure::{Failure, Outcome};
+use crate::files::{self, Kind};
+use crate::machine::Machine;
+use crate::{output, picture, report, say};
+
+pub(crate) fn convert(args: &ConvertArgs) -> Outcome {
+    let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
+    output::check_target(&args.output)?;
+    let (_, kind) = files::open(&args.input)?;
+    let to_drawing = files::extension(&args.output).is_some_and(|e| e.eq_ignore_ascii_case("json"));
+    let item = match (kind, to_drawing) {
+        (Kind::Drawing(format), true) => drawing(args, format, &machine)?,
+        (Kind::Model(_), false) => model(args, &machine)?,
+        (Kind::Drawing(_), false) => {
+            return Err(Failure::at(
+                &args.input,
+                "is a drawing: it converts to .json only; `burgeon sketch` makes a model of it",
+            ));
+        }
+        (Kind::Model(_), true) => {
+            return Err(Failure::at(&args.output, "a model converts to .glb, .obj or .ply, not to .json"));
+        }
+    };
+    if !machine.quiet {
+        item.warnings.iter().for_each(|w| say::warning(&format!("{}: {w}", args.input.display())));
+        let what = match kind {
+            Kind::Model(_) => say::counted(item.counts.triangles, "triangle", "triangles"),
+            Kind::Drawing(_) => format!("drawing \"{}\"", item.name),
+        };
+        say::line(&format!("{}: {what}; {:.0} ms", item.output, item.timings_ms.total));
+    }
+    let mut run = RunReport::new("convert", args.seed);
+    run.input.path = args.input.display().to_string();
+    run.input.drawings = u64::from(to_drawing);
+    run.items.push(item);
+    run.ok = 1;
+    report::finish(&run, &args.common)
+}
+
+fn model(args: &ConvertArgs, machine: &Machine) -> Outcome<ItemReport> {
+    let format: ModelFormat = files::writable(&args.output)?;
+    let read_axes = files::axes(args.in_up.unwrap_or(args.axes.up), args.in_unit.unwrap_or(args.axes.unit));
+    let (read, read_ms) = machine.timed(|| files::read_model(&args.input, &read_axes));
+    let (model, _, mut warnings) = read?;
+    machine.cancel.check()?;
+    let (written, write_ms) = machine.timed(|| {
+        let axes = files::axes(args.axes.up, args.axes.unit);
+        files::write_model(&args.output, &model, format, &axes, &mut PngCache::new())
+    });
+    warnings.extend(written?);
+    if let Some(png) = &args.png {
+        let spec = args.picture.spec(args.seed);
+        let drawn =
+            machine.with_progress("picture", |_| burgeon::render::render(&model, &spec, &machine.run()))?;
+        picture::write(png, &drawn)?;
+    }
+    let mut item = picture::model_item(&model, &args.output, &warnings);
+    item.timings_ms.add_io(read_ms, write_ms);
+    Ok(item)
+}
+
+fn drawing(args: &ConvertArgs, format: DrawingFormat, machine: &Machine) -> Outcome<ItemReport> {
+    if args.png.is_some() {
+        return Err(Failure::at(
+            &args.input,
+            "is a drawing; `burgeon sketch --png` makes a picture of its plant",
+        ));
+    }
+    let (file, _) = files::open(&args.input)?;
+    let mut drawings = read_drawings(file, format, &files::stem(&args.input));
+    let (first, read_ms) = machine.timed(|| drawings.next());
+    let first = first.ok_or_else(|| Failure::at(&args.input, "holds no drawing"))?;
+    let first = first.map_err(|e| Failure::at(&args.input, e))?;
+    if drawings.next().is_some() {
+        return Err(Failure::at(
+            &args.input,
+            "holds several drawings, a .json file holds one; split the file by lines",
+        ));
+    }
+    let (written, write_ms) =
+        machine.timed(|| output::write_whole(&args.output, |out| write_drawing(&first.drawing, out)));
+    written?;
+    let mut item = ItemReport {
+        name: first.drawing.name.clone(),
+        output: args.output.display().to_string(),
+        warnings: first.warnings.iter().map(ToString::to_string).collect(),
+        ..ItemReport::default()
+    };
+    item.timings_ms.add_io(read_ms, write_ms);
+    Ok(item)
+}

@@ -1,0 +1,64 @@
+//! What ends a command early, and with which exit status.
+
+use std::fmt;
+use std::path::Path;
+use std::process::ExitCode;
+
+/// One clear line for the user: what, where, what to do.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// Bad usage or bad input: exit status 2.
+    Bad(String),
+    /// The outcome was told already (a batch with failing drawings): exit status 2, nothing more to say.
+    Told,
+    /// The user pressed Ctrl-C: exit status 130.
+    Cancelled,
+    /// Our own bug: exit status 1.
+    Bug(String),
+}
+
+pub(crate) type Outcome<T = ()> = Result<T, Failure>;
+
+impl Failure {
+    /// Bad input in a file.
+    pub(crate) fn at(path: &Path, what: impl fmt::Display) -> Self {
+        Self::Bad(format!("{}: {what}", path.display()))
+    }
+
+    /// The operating system refused.
+    pub(crate) fn io(path: &Path, doing: &str, error: &std::io::Error) -> Self {
+        let reason = match error.kind() {
+            std::io::ErrorKind::NotFound => "there is no such file or folder; check the spelling".to_owned(),
+            std::io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
+            std::io::ErrorKind::IsADirectory => "it is a folder; name a file in it".to_owned(),
+            std::io::ErrorKind::StorageFull => "the disk is full".to_owned(),
+            _ => error.to_string(),
+        };
+        Self::Bad(format!("{}: cannot be {doing}: {reason}", path.display()))
+    }
+
+    /// Tells the user on stderr, in one line.
+    pub(crate) fn tell(&self) -> ExitCode {
+        match self {
+            Self::Bad(line) => {
+                crate::say::error(line);
+                ExitCode::from(2)
+            }
+            Self::Told => ExitCode::from(2),
+            Self::Cancelled => {
+                crate::say::error("stopped by the user; nothing half-written was left behind");
+                ExitCode::from(130)
+            }
+            Self::Bug(line) => {
+                crate::say::error(&format!("internal error, a bug in burgeon: {line}"));
+                ExitCode::from(1)
+            }
+        }
+    }
+}
+
+impl From<burgeon::Cancelled> for Failure {
+    fn from(_: burgeon::Cancelled) -> Self {
+        Self::Cancelled
+    }
+}

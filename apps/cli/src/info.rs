@@ -1,0 +1,199 @@
+//! `burgeon info`: what is in a file.
+
+use std::path::Path;
+
+use burgeon::formats::{DrawingFormat, DrawingSummary, ModelSummary, read_drawings};
+use serde::Serialize;
+
+use crate::args::InfoArgs;
+use crate::failure::{Failure, Outcome};
+use crate::files::{self, Kind};
+use crate::machine::Machine;
+use crate::{report, say};
+
+/// Drawings of a file that are listed one by one.
+const LISTED: usize = 20;
+/// Warnings of a file with many drawings that are listed one by one.
+const WARNINGS: usize = 50;
+
+pub(crate) fn info(args: &InfoArgs) -> Outcome {
+    let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
+    let (file, kind) = files::open(&args.input)?;
+    let bytes = file.get_ref().metadata().map_err(|e| Failure::io(&args.input, "read", &e))?.len();
+    drop(file);
+    let (format, content) = match kind {
+        Kind::Model(_) => {
+            let axes = files::axes(args.axes.up, args.axes.unit);
+            let (model, format, warnings) = files::read_model(&args.input, &axes)?;
+            (format.word(), Content::Model(ModelSummary::of(&model, &warnings)))
+        }
+        Kind::Drawing(format) => (format.word(), Content::Drawings(drawings(&args.input, format)?)),
+    };
+    let path = args.input.display().to_string();
+    let info = Info { schema: "burgeon.info/1", version: burgeon::VERSION, path, bytes, format, content };
+    if !machine.quiet {
+        info.lines().iter().for_each(|l| say::line(l));
+    }
+    report::finish_any(&info, &args.common)
+}
+
+#[derive(Serialize)]
+struct Info {
+    schema: &'static str,
+    version: &'static str,
+    path: String,
+    bytes: u64,
+    format: &'static str,
+    #[serde(flatten)]
+    content: Content,
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "snake_case")]
+enum Content {
+    Model(ModelSummary),
+    Drawings(Drawings),
+}
+
+/// Counts over all drawings of a file, and the first of them.
+#[derive(Default, Serialize)]
+struct Drawings {
+    count: usize,
+    strokes: usize,
+    points: usize,
+    failed: usize,
+    first: Vec<DrawingSummary>,
+    warnings: Vec<String>,
+}
+
+fn drawings(path: &Path, format: DrawingFormat) -> Outcome<Drawings> {
+    let (file, _) = files::open(path)?;
+    let mut out = Drawings::default();
+    let mut last = None;
+    for item in read_drawings(file, format, &files::stem(path)) {
+        match item {
+            Ok(read) => {
+                let mut summary = DrawingSummary::of(&read.drawing, &read.warnings);
+                out.count += 1;
+                out.strokes += summary.strokes;
+                out.points += summary.points;
+                if summary.not_finite > 0 {
+                    let points = say::counted(summary.not_finite as u64, "point is", "points are");
+                    summary.warnings.push(format!("{points} not finite"));
+                }
+                out.warnings.extend(summary.warnings.iter().map(|w| format!("{}: {w}", summary.name)));
+                if out.first.len() < LISTED {
+                    out.first.push(summary);
+                }
+            }
+            Err(e) => {
+                out.failed += 1;
+                out.warnings.push(e.to_string());
+                last = Some(e);
+            }
+        }
+        out.warnings.truncate(WARNINGS);
+    }
+    match last {
+        Some(e) if out.count == 0 => Err(Failure::at(path, e)),
+        None if out.count == 0 => Err(Failure::at(path, "holds no drawing")),
+        _ => Ok(out),
+    }
+}
+
+impl Drawings {
+    fn lines(&self, out: &mut Vec<String>) {
+        let count = |n: usize, one, many| say::counted(n as u64, one, many);
+        if self.count > 1 || self.failed > 0 {
+            let drawings = count(self.count, "drawing", "drawings");
+            let strokes = count(self.strokes, "stroke", "strokes");
+            out.push(format!("  {drawings}, {strokes}, {}", count(self.points, "point", "points")));
+        }
+        out.extend(self.first.iter().map(drawing_line));
+        if self.count > self.first.len() {
+            out.push(format!("  and {} more", say::grouped((self.count - self.first.len()) as u64)));
+        }
+        if self.failed > 0 {
+            out.push(format!("  {} cannot be read", count(self.failed, "drawing", "drawings")));
+        }
+    }
+}
+
+fn drawing_line(d: &DrawingSummary) -> String {
+    let strokes = say::counted(d.strokes as u64, "stroke", "strokes");
+    let points = say::counted(d.points as u64, "point", "points");
+    let (w, h) = (short(d.max[0] - d.min[0]), short(d.max[1] - d.min[1]));
+    let extras = [
+        (d.modes[1] > 0, "branch contours"),
+        (d.modes[2] > 0, "leaf contours"),
+        (d.times, "times"),
+        (d.pressures, "pressure"),
+    ];
+    let extras: Vec<&str> = extras.iter().filter(|e| e.0).map(|e| e.1).collect();
+    let extras = if extras.is_empty() { String::new() } else { format!(", with {}", extras.join(", ")) };
+    format!("  {}: {strokes}, {points}, {w} x {h} units of the file{extras}", d.name)
+}
+
+// Four digits or so, whatever the size.
+fn short(x: f64) -> String {
+    match x.abs() {
+        a if a == 0.0 || (0.001..1e6).contains(&a) => {
+            let digits = if a >= 100.0 { 1 } else { 4 };
+            let text = format!("{x:.digits$}");
+            text.trim_end_matches('0').trim_end_matches('.').to_owned()
+        }
+        _ => format!("{x:.3e}"),
+    }
+}
+
+fn model_lines(m: &ModelSummary, out: &mut Vec<String>) {
+    let count = |n: usize, one, many| say::counted(n as u64, one, many);
+    let triangles = count(m.triangles, "triangle", "triangles");
+    out.push(format!("  {}, {triangles}", count(m.vertices, "vertex", "vertices")));
+    let [w, h, d] = m.size.map(short);
+    out.push(format!("  {w} m wide (x), {h} m high (y), {d} m deep (z); {} up", m.up));
+    let [low, high] = [m.min, m.max].map(|p| p.map(short).join(", "));
+    out.push(format!("  from ({low}) to ({high})"));
+    for part in &m.parts {
+        let columns = [(part.uvs, "texture coordinates"), (part.colors, "colours")];
+        let columns: Vec<&str> = columns.iter().filter(|c| c.0).map(|c| c.1).collect();
+        let with = if columns.is_empty() { String::new() } else { format!(", {}", columns.join(", ")) };
+        let triangles = count(part.triangles, "triangle", "triangles");
+        out.push(format!("  part {}: {triangles}{with}, material {}", part.name, part.material));
+    }
+    for material in &m.materials {
+        let texture = material.texture.map_or_else(String::new, |[w, h]| format!(", texture {w}x{h}"));
+        let sides = if material.double_sided { ", double-sided" } else { "" };
+        out.push(format!("  material {}: {}{texture}{sides}", material.name, material.kind));
+    }
+}
+
+impl Info {
+    fn lines(&self) -> Vec<String> {
+        let bytes = say::counted(self.bytes, "byte", "bytes");
+        let mut out = vec![format!("{}: {}, {bytes}", self.path, self.format)];
+        let warnings = match &self.content {
+            Content::Model(m) => {
+                model_lines(m, &mut out);
+                &m.warnings
+            }
+            Content::Drawings(d) => {
+                d.lines(&mut out);
+                &d.warnings
+            }
+        };
+        out.extend(warnings.iter().map(|w| format!("  warning: {w}")));
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::short;
+
+    #[test]
+    fn numbers_are_short() {
+        let got = [0.0, 12.5, 1234.56, -0.25, 1e300, 1e-9].map(short);
+        assert_eq!(got, ["0", "12.5", "1234.6", "-0.25", "1.000e300", "1.000e-9"]);
+    }
+}

@@ -1,0 +1,191 @@
+//! Threads, time, Ctrl-C and the progress line: what the core leaves to its shell.
+
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Condvar, Mutex, OnceLock};
+use std::time::{Duration, Instant};
+
+use burgeon::{CancelToken, Clock, Executor, Run};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+/// Independent jobs on a number of threads.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Threads(pub(crate) usize);
+
+impl Threads {
+    /// `asked`, or as many as the machine has.
+    pub(crate) fn new(asked: Option<u16>) -> Self {
+        let all = || std::thread::available_parallelism().map_or(1, usize::from);
+        Self(asked.map_or_else(all, usize::from).max(1))
+    }
+}
+
+impl Executor for Threads {
+    fn for_each(&self, n: usize, job: &(dyn Fn(usize) + Sync)) {
+        let threads = self.0.min(n);
+        if threads <= 1 {
+            (0..n).for_each(job);
+            return;
+        }
+        let next = AtomicUsize::new(0);
+        let work = || {
+            loop {
+                let i = next.fetch_add(1, Ordering::Relaxed);
+                if i >= n {
+                    break;
+                }
+                job(i);
+            }
+        };
+        std::thread::scope(|scope| {
+            for _ in 1..threads {
+                scope.spawn(work);
+            }
+            work();
+        });
+    }
+}
+
+/// Milliseconds since the program started.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct WallClock(Instant);
+
+impl WallClock {
+    pub(crate) fn start() -> Self {
+        Self(Instant::now())
+    }
+}
+
+impl Clock for WallClock {
+    fn now_ms(&self) -> f64 {
+        self.0.elapsed().as_secs_f64() * 1000.0
+    }
+}
+
+/// A token that Ctrl-C cancels. A second Ctrl-C ends the program at once.
+pub(crate) fn cancel_on_ctrl_c() -> &'static CancelToken {
+    static TOKEN: OnceLock<CancelToken> = OnceLock::new();
+    TOKEN.get_or_init(|| {
+        let token = CancelToken::new();
+        let shared = token.clone();
+        let pressed = AtomicBool::new(false);
+        // Without a handler Ctrl-C still ends the program; outputs are complete or absent either way.
+        let _ = ctrlc::set_handler(move || {
+            if pressed.swap(true, Ordering::Relaxed) {
+                std::process::exit(130);
+            }
+            shared.cancel();
+        });
+        token
+    })
+}
+
+/// Everything that a command computes with.
+#[derive(Debug)]
+pub(crate) struct Machine {
+    pub(crate) threads: Threads,
+    pub(crate) clock: WallClock,
+    pub(crate) cancel: &'static CancelToken,
+    /// Print nothing but errors, and show no progress.
+    pub(crate) quiet: bool,
+}
+
+impl Machine {
+    pub(crate) fn new(threads: Option<u16>, quiet: bool) -> Self {
+        let clock = WallClock::start();
+        Self { threads: Threads::new(threads), clock, cancel: cancel_on_ctrl_c(), quiet }
+    }
+
+    /// A run on all threads.
+    pub(crate) fn run(&self) -> Run<'_> {
+        Run { cancel: self.cancel, executor: &self.threads, clock: &self.clock }
+    }
+
+    /// A run on the calling thread, for batches whose drawings are spread over threads already.
+    pub(crate) fn single(&self) -> Run<'_> {
+        Run { cancel: self.cancel, executor: &burgeon::Serial, clock: &self.clock }
+    }
+
+    /// Runs `work` and its clock.
+    pub(crate) fn timed<T>(&self, work: impl FnOnce() -> T) -> (T, f64) {
+        let start = self.clock.now_ms();
+        let value = work();
+        (value, self.clock.now_ms() - start)
+    }
+
+    /// Runs `work` with a progress line on a terminal once it has taken a second.
+    pub(crate) fn with_progress<T>(&self, what: &str, work: impl FnOnce(&Progress) -> T) -> T {
+        let progress = Progress { done: AtomicUsize::new(0), total: AtomicUsize::new(0) };
+        if self.quiet || !std::io::IsTerminal::is_terminal(&std::io::stderr()) {
+            return work(&progress);
+        }
+        let over = (Mutex::new(false), Condvar::new());
+        std::thread::scope(|scope| {
+            scope.spawn(|| show(what, &progress, &over));
+            let value = work(&progress);
+            if let Ok(mut flag) = over.0.lock() {
+                *flag = true;
+            }
+            over.1.notify_all();
+            value
+        })
+    }
+}
+
+/// How far a command is; parts are counted by the work itself.
+#[derive(Debug)]
+pub(crate) struct Progress {
+    done: AtomicUsize,
+    total: AtomicUsize,
+}
+
+impl Progress {
+    pub(crate) fn expect(&self, parts: usize) {
+        self.total.store(parts, Ordering::Relaxed);
+    }
+
+    pub(crate) fn reached(&self, parts: usize) {
+        self.done.store(parts, Ordering::Relaxed);
+    }
+}
+
+fn show(what: &str, progress: &Progress, (over, bell): &(Mutex<bool>, Condvar)) {
+    // Waits; true when the work is over.
+    let wait = |time: u64| -> bool {
+        let Ok(flag) = over.lock() else { return true };
+        bell.wait_timeout_while(flag, Duration::from_millis(time), |over| !*over).map_or(true, |(f, _)| *f)
+    };
+    if wait(1000) {
+        return;
+    }
+    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+    let known = progress.total.load(Ordering::Relaxed) > 0;
+    let template = if known { "{msg} [{bar:30}] {percent} % {elapsed}" } else { "{spinner} {msg} {elapsed}" };
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style);
+    }
+    bar.set_message(what.to_owned());
+    loop {
+        if known {
+            bar.set_length(progress.total.load(Ordering::Relaxed) as u64);
+            bar.set_position(progress.done.load(Ordering::Relaxed) as u64);
+        }
+        bar.tick();
+        if wait(100) {
+            break;
+        }
+    }
+    bar.finish_and_clear();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn threads_do_every_job_once() {
+        for threads in [1, 3, 8] {
+            let got = burgeon::map_indexed(&Threads(threads), 100, |i| i * 2);
+            assert_eq!(got, (0..100).map(|i| i * 2).collect::<Vec<_>>());
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! `burgeon render`, and pictures for the other commands.
+
+use std::path::Path;
+
+use burgeon::render::Picture;
+use burgeon::{Counts, Digest, ItemReport, RunReport, Warning};
+
+use crate::args::RenderArgs;
+use crate::failure::{Failure, Outcome};
+use crate::machine::Machine;
+use crate::{files, output, report, say};
+
+pub(crate) fn render(args: &RenderArgs) -> Outcome {
+    let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
+    if !files::extension(&args.output).is_some_and(|e| e.eq_ignore_ascii_case("png")) {
+        return Err(Failure::at(&args.output, "pictures are written as PNG; end the name with .png"));
+    }
+    output::check_target(&args.output)?;
+    let axes = files::axes(args.axes.up, args.axes.unit);
+    let (read, read_ms) = machine.timed(|| files::read_model(&args.input, &axes));
+    let (model, _, warnings) = read?;
+    let spec = args.picture.spec(args.seed);
+    let (picture, draw_ms) = machine.timed(|| {
+        machine.with_progress("picture", |_| burgeon::render::render(&model, &spec, &machine.run()))
+    });
+    let picture = picture?;
+    let (written, write_ms) = machine.timed(|| write(&args.output, &picture));
+    written?;
+    let mut run = RunReport::new("render", args.seed);
+    run.input.path = args.input.display().to_string();
+    let mut item = model_item(&model, &args.output, &warnings);
+    item.timings_ms.mesh = draw_ms;
+    item.timings_ms.total = draw_ms;
+    item.timings_ms.add_io(read_ms, write_ms);
+    if !machine.quiet {
+        item.warnings.iter().for_each(|w| say::warning(&format!("{}: {w}", args.input.display())));
+        let triangles = say::counted(item.counts.triangles, "triangle", "triangles");
+        let size = format!("{}x{}", picture.width, picture.height);
+        say::line(&format!(
+            "{}: {size}, {triangles}; {:.0} ms",
+            args.output.display(),
+            item.timings_ms.total
+        ));
+    }
+    run.items.push(item);
+    run.ok = 1;
+    report::finish(&run, &args.common)
+}
+
+/// A report's item about a model.
+pub(crate) fn model_item(model: &burgeon::mesh::Model, output: &Path, warnings: &[Warning]) -> ItemReport {
+    let counts = Counts {
+        vertices: model.vertex_count() as u64,
+        triangles: model.triangle_count() as u64,
+        ..Counts::default()
+    };
+    let mut digest = Digest::new();
+    digest.add(model);
+    ItemReport {
+        name: model.name.clone(),
+        output: output.display().to_string(),
+        counts,
+        digest: digest.hex(),
+        warnings: warnings.iter().map(ToString::to_string).collect(),
+        ..ItemReport::default()
+    }
+}
+
+/// Writes a picture as PNG.
+pub(crate) fn write(path: &Path, picture: &Picture) -> Outcome {
+    output::write_whole(path, |out| {
+        burgeon::formats::write_png(picture.width, picture.height, &picture.pixels, out)
+    })
+}

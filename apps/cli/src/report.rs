@@ -1,0 +1,48 @@
+//! The report's way out, and the summary for people.
+
+use std::path::Path;
+
+use burgeon::{ItemReport, RunReport};
+use serde::Serialize;
+
+use crate::args::CommonArgs;
+use crate::failure::{Failure, Outcome};
+use crate::{output, say};
+
+/// Writes the report where it was asked for.
+pub(crate) fn finish(report: &RunReport, args: &CommonArgs) -> Outcome {
+    finish_any(report, args)
+}
+
+/// [`finish`] for reports of other shapes.
+pub(crate) fn finish_any(report: &impl Serialize, args: &CommonArgs) -> Outcome {
+    if args.report.is_none() && !args.json {
+        return Ok(());
+    }
+    let text = serde_json::to_string_pretty(report)
+        .map_err(|e| Failure::Bug(format!("the report cannot be written as JSON: {e}")))?;
+    if let Some(path) = &args.report {
+        output::write_whole(path, |out| Ok(writeln!(out, "{text}")?))?;
+    }
+    if args.json {
+        say::line(&text);
+    }
+    Ok(())
+}
+
+/// One line about a plant: where it is and what it has.
+pub(crate) fn summary(item: &ItemReport, png: Option<&Path>) -> String {
+    let c = &item.counts;
+    let parts = [
+        (c.flowers, "flower", "flowers"),
+        (c.petals, "petal", "petals"),
+        (c.leaves, "leaf", "leaves"),
+        (c.branches, "branch", "branches"),
+        (c.triangles, "triangle", "triangles"),
+    ];
+    let parts = parts.into_iter().filter(|p| p.0 > 0).map(|(n, one, many)| say::counted(n, one, many));
+    let made = [Some(item.output.clone()), png.map(|p| p.display().to_string())];
+    let made: Vec<String> = made.into_iter().flatten().filter(|s| !s.is_empty()).collect();
+    let made = if made.is_empty() { item.name.clone() } else { made.join(", ") };
+    format!("{made}: {}; {:.0} ms", parts.collect::<Vec<_>>().join(", "), item.timings_ms.total)
+}

@@ -1,0 +1,447 @@
+//! `burgeon sketch`: one drawing to one model, or many drawings to a folder.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use burgeon::formats::{Drawings, ModelFormat, PngCache, ReadDrawing, read_drawings};
+use burgeon::sketch::{Drawing, SketchSpec};
+use burgeon::skin::SkinSpec;
+use burgeon::{ItemReport, Made, MakeError, Run, RunReport, Seed, SketchOptions, make_from_sketch};
+
+use crate::args::{ReadingArgs, SketchArgs, SurfaceArgs};
+use crate::classes::Classes;
+use crate::failure::{Failure, Outcome};
+use crate::files::{self, Kind};
+use crate::machine::{Machine, Progress};
+use crate::{output, picture, say};
+
+pub(crate) fn sketch(args: &SketchArgs) -> Outcome {
+    let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
+    let job = Job::new(args)?;
+    let report = if job.is_batch() {
+        job.batch(&machine)?
+    } else {
+        machine.with_progress("drawing to plant", |_| job.one(&machine))?
+    };
+    crate::report::finish(&report, &args.common)?;
+    if report.failed > 0 { Err(Failure::Told) } else { Ok(()) }
+}
+
+/// Everything that is asked, read and checked before the first drawing.
+struct Job<'a> {
+    args: &'a SketchArgs,
+    spec: SketchSpec,
+    skin: SkinSpec,
+    classes: Classes,
+}
+
+impl<'a> Job<'a> {
+    fn new(args: &'a SketchArgs) -> Outcome<Self> {
+        let spec = sketch_spec(&args.reading)?;
+        let classes = args.reading.classes.as_deref().map(Classes::read).transpose()?.unwrap_or_default();
+        Ok(Self { args, spec, skin: skin_spec(&args.surface, args.seed), classes })
+    }
+
+    /// The output is a folder: it is one, looks like one, or there are several inputs.
+    fn is_batch(&self) -> bool {
+        let folder = |path: &Path| {
+            let known = files::extension(path)
+                .is_some_and(|e| ModelFormat::from_extension(e).is_some() || e.eq_ignore_ascii_case("png"));
+            path.is_dir() || path.as_os_str().to_string_lossy().ends_with(['/', '\\']) || !known
+        };
+        let output = self.args.output.as_deref().or(self.args.png.as_deref());
+        self.args.inputs.len() > 1 || output.is_some_and(folder)
+    }
+
+    fn options(&self, drawing: &Drawing) -> SketchOptions {
+        let classes = self.classes.of_drawing(&drawing.name);
+        SketchOptions { spec: self.spec.clone(), skin: self.skin.clone(), classes }
+    }
+
+    fn report(&self) -> RunReport {
+        let mut report = RunReport::new("sketch", self.args.seed);
+        let paths = self.args.inputs.iter().map(|p| p.display().to_string());
+        report.input.path = paths.collect::<Vec<_>>().join(", ");
+        report
+    }
+
+    /// The one drawing of the one input.
+    fn one(&self, machine: &Machine) -> Outcome<RunReport> {
+        let input = &self.args.inputs[0];
+        for target in [&self.args.output, &self.args.png, &self.args.common.report].into_iter().flatten() {
+            output::check_target(target)?;
+        }
+        let format = self.args.output.as_deref().map(files::writable).transpose()?;
+        let mut drawings = open(input)?;
+        let (first, read_ms) = machine.timed(|| drawings.next());
+        let read = first
+            .ok_or_else(|| Failure::at(input, "holds no drawing"))?
+            .map_err(|e| Failure::at(input, e))?;
+        if drawings.next().is_some() {
+            return Err(Failure::at(
+                input,
+                "holds several drawings; give a folder: -o FOLDER (one model each)",
+            ));
+        }
+        let mut report = self.report();
+        report.input.drawings = 1;
+        report.input.strokes = read.drawing.strokes.len() as u64;
+        let target = Target { model: self.args.output.clone().zip(format), png: self.args.png.clone() };
+        let mut cache = PngCache::new();
+        let item = self.make(&read, &target, read_ms, &mut cache, machine, &machine.run());
+        let item = item.map_err(|failure| match failure {
+            Failure::Bad(line) if !line.starts_with(&input.display().to_string()) => Failure::at(input, line),
+            other => other,
+        })?;
+        report.ok = 1;
+        self.warn_of_unused(&mut report);
+        if !machine.quiet {
+            for warning in item.warnings.iter().chain(&report.warnings) {
+                say::warning(&format!("{}: {warning}", input.display()));
+            }
+            say::line(&crate::report::summary(&item, self.args.png.as_deref()));
+        }
+        report.items.push(item);
+        Ok(report)
+    }
+
+    fn warn_of_unused(&self, report: &mut RunReport) {
+        for name in self.classes.unused() {
+            report
+                .warnings
+                .push(format!("the class file names drawing \"{name}\", which is not among the input"));
+        }
+    }
+
+    /// Makes one plant and writes its files.
+    fn make(
+        &self,
+        read: &ReadDrawing,
+        target: &Target,
+        read_ms: f64,
+        cache: &mut PngCache,
+        machine: &Machine,
+        run: &Run<'_>,
+    ) -> Outcome<ItemReport> {
+        let drawing = &read.drawing;
+        let made = make_from_sketch(drawing, &self.options(drawing), Seed::new(self.args.seed), run);
+        let Made { model, mut item, .. } = made.map_err(|e| match e {
+            MakeError::Cancelled(_) => Failure::Cancelled,
+            other => Failure::Bad(other.to_string()),
+        })?;
+        let mut warnings: Vec<String> = read.warnings.iter().map(ToString::to_string).collect();
+        warnings.append(&mut item.warnings);
+        item.warnings = warnings;
+        run.cancel.check()?;
+        let (written, write_ms) = machine.timed(|| {
+            let Some((path, format)) = &target.model else { return Ok(Vec::new()) };
+            item.output = path.display().to_string();
+            let axes = files::axes(self.args.axes.up, self.args.axes.unit);
+            files::write_model(path, &model, *format, &axes, cache)
+        });
+        item.warnings.extend(written?.iter().map(ToString::to_string));
+        item.timings_ms.add_io(read_ms, write_ms);
+        if let Some(png) = &target.png {
+            let drawn = burgeon::render::render(&model, &self.args.picture.spec(self.args.seed), run)?;
+            picture::write(png, &drawn)?;
+        }
+        Ok(item)
+    }
+
+    /// Every drawing of every input, spread over threads; memory holds one drawing a thread.
+    fn batch(&self, machine: &Machine) -> Outcome<RunReport> {
+        self.classes.fits_batch(self.args.reading.classes.as_deref())?;
+        for folder in [&self.args.output, &self.args.png].into_iter().flatten() {
+            output::make_folder(folder)?;
+        }
+        if let Some(report) = &self.args.common.report {
+            output::check_target(report)?;
+        }
+        let queue = Mutex::new(Queue::new(&self.args.inputs));
+        let done = Mutex::new(Done::default());
+        let strokes = AtomicU64::new(0);
+        let keep_items = self.args.common.report.is_some() || self.args.common.json;
+        machine.with_progress("drawings to plants", |progress| {
+            burgeon::map_indexed(&machine.threads, machine.threads.0, |_| {
+                let mut cache = PngCache::new();
+                while machine.cancel.check().is_ok() {
+                    let Some(next) = pull(&queue, machine, progress) else { break };
+                    let outcome = next.read.and_then(|read| {
+                        strokes.fetch_add(read.drawing.strokes.len() as u64, Ordering::Relaxed);
+                        let target = self.target(&next.name);
+                        self.make(&read, &target, next.read_ms, &mut cache, machine, &machine.single())
+                    });
+                    if let Ok(mut done) = done.lock() {
+                        done.add(next.index, &next.place, outcome, keep_items);
+                    }
+                }
+            })
+        });
+        machine.cancel.check()?;
+        let (Ok(done), Ok(queue)) = (done.into_inner(), queue.into_inner()) else {
+            return Err(Failure::Bug("a thread of the batch died".into()));
+        };
+        let mut report = self.report();
+        report.input.drawings = queue.count;
+        report.input.strokes = strokes.into_inner();
+        self.close(report, done, machine)
+    }
+
+    fn close(&self, mut report: RunReport, mut done: Done, machine: &Machine) -> Outcome<RunReport> {
+        if let Some(bug) = done.bug {
+            return Err(Failure::Bug(bug));
+        }
+        done.items.sort_by_key(|(index, _)| *index);
+        done.failures.sort_by_key(|(index, _)| *index);
+        report.ok = done.ok;
+        report.failed = done.failures.len() as u64;
+        report.items = done.items.into_iter().map(|(_, item)| item).collect();
+        report.warnings = done.failures.into_iter().map(|(_, line)| line).collect();
+        for line in &report.warnings {
+            say::error(line);
+        }
+        let failures = report.warnings.len();
+        self.warn_of_unused(&mut report);
+        if !machine.quiet {
+            report.warnings[failures..].iter().for_each(|w| say::warning(w));
+            if done.warnings > 0 {
+                let count = say::counted(done.warnings, "warning", "warnings");
+                say::warning(&format!("{count} about single drawings; --report FILE.json lists them"));
+            }
+            let folder = self.args.output.as_deref().or(self.args.png.as_deref());
+            let folder = folder.map_or_else(String::new, |f| format!(" in {}", f.display()));
+            let failed = match report.failed {
+                0 => String::new(),
+                n => format!(", {} failed", say::counted(n, "drawing", "drawings")),
+            };
+            let made = say::counted(report.ok, "plant", "plants");
+            say::line(&format!(
+                "{made}{folder}{failed}; {:.1} s",
+                burgeon::Clock::now_ms(&machine.clock) / 1000.0
+            ));
+        }
+        Ok(report)
+    }
+
+    fn target(&self, name: &str) -> Target {
+        let extension = self.args.format.extension();
+        let file = |folder: &PathBuf, extension: &str| folder.join(format!("{name}.{extension}"));
+        Target {
+            model: self.args.output.as_ref().map(|f| (file(f, extension), self.args.format.format())),
+            png: self.args.png.as_ref().map(|f| file(f, "png")),
+        }
+    }
+}
+
+/// The files of one plant.
+struct Target {
+    model: Option<(PathBuf, ModelFormat)>,
+    png: Option<PathBuf>,
+}
+
+/// What came out of a batch so far.
+#[derive(Default)]
+struct Done {
+    ok: u64,
+    warnings: u64,
+    items: Vec<(u64, ItemReport)>,
+    failures: Vec<(u64, String)>,
+    bug: Option<String>,
+}
+
+impl Done {
+    fn add(&mut self, index: u64, place: &str, outcome: Outcome<ItemReport>, keep: bool) {
+        match outcome {
+            Ok(item) => {
+                self.ok += 1;
+                self.warnings += item.warnings.len() as u64;
+                if keep {
+                    self.items.push((index, item));
+                }
+            }
+            Err(Failure::Bad(line)) => self.failures.push((index, format!("{place}: {line}"))),
+            Err(Failure::Bug(line)) => self.bug = Some(format!("{place}: {line}")),
+            Err(Failure::Told | Failure::Cancelled) => {}
+        }
+    }
+}
+
+/// One drawing of a batch, or why it could not be read.
+struct Next {
+    index: u64,
+    /// Where it comes from, for messages.
+    place: String,
+    /// Safe and unique in the folder.
+    name: String,
+    read: Outcome<ReadDrawing>,
+    read_ms: f64,
+}
+
+/// The drawings of all inputs in order, read one at a time.
+struct Queue<'a> {
+    inputs: std::slice::Iter<'a, PathBuf>,
+    open: Option<(&'a PathBuf, Drawings<BufReader<File>>, u64)>,
+    names: BTreeMap<String, u64>,
+    count: u64,
+    files: usize,
+}
+
+impl<'a> Queue<'a> {
+    fn new(inputs: &'a [PathBuf]) -> Self {
+        Self { inputs: inputs.iter(), open: None, names: BTreeMap::new(), count: 0, files: 0 }
+    }
+
+    fn next(&mut self) -> Option<(String, Outcome<ReadDrawing>)> {
+        loop {
+            if let Some((path, drawings, of_file)) = &mut self.open {
+                if let Some(item) = drawings.next() {
+                    *of_file += 1;
+                    let place = path.display().to_string();
+                    return Some((place, item.map_err(|e| Failure::Bad(e.to_string()))));
+                }
+                let empty = *of_file == 0;
+                let place = path.display().to_string();
+                self.open = None;
+                if empty {
+                    return Some((place, Err(Failure::Bad("holds no drawing".into()))));
+                }
+            }
+            let path = self.inputs.next()?;
+            self.files += 1;
+            match open(path) {
+                Ok(drawings) => self.open = Some((path, drawings, 0)),
+                Err(Failure::Bad(line)) => {
+                    let place = path.display().to_string();
+                    let line = line.trim_start_matches(&place).trim_start_matches(": ").to_owned();
+                    return Some((place, Err(Failure::Bad(line))));
+                }
+                Err(other) => return Some((path.display().to_string(), Err(other))),
+            }
+        }
+    }
+}
+
+// Under the lock: the next drawing gets its number and its name, so that both are the same for any threads.
+fn pull(queue: &Mutex<Queue<'_>>, machine: &Machine, progress: &Progress) -> Option<Next> {
+    let mut queue = queue.lock().ok()?;
+    let (next, read_ms) = machine.timed(|| queue.next());
+    let (mut place, read) = next?;
+    let index = queue.count;
+    queue.count += 1;
+    progress.expect(queue.inputs.len() + queue.files);
+    progress.reached(queue.files.saturating_sub(1));
+    let mut name = String::new();
+    if let Ok(read) = &read {
+        name = unique(&mut queue.names, &safe(&read.drawing.name));
+        place = format!("{place}, drawing \"{}\"", read.drawing.name);
+    }
+    Some(Next { index, place, name, read, read_ms })
+}
+
+fn open(path: &Path) -> Outcome<Drawings<BufReader<File>>> {
+    match files::open(path)? {
+        (file, Kind::Drawing(format)) => Ok(read_drawings(file, format, &files::stem(path))),
+        (_, Kind::Model(format)) => Err(Failure::at(
+            path,
+            format_args!("is a model ({}), not a drawing; `burgeon render` makes its picture", format.word()),
+        )),
+    }
+}
+
+/// A file name from a drawing's name: letters, digits, `-`, `_` and inner dots of ASCII, at most 80.
+fn safe(name: &str) -> String {
+    let mut out = String::new();
+    for c in name.chars().take(200) {
+        let c = if c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.') { c } else { '-' };
+        if !(c == '-' && out.ends_with('-')) {
+            out.push(c);
+        }
+    }
+    out.truncate(80);
+    let out = out.trim_matches(['-', '.']);
+    // Names that Windows keeps for devices.
+    let device = |s: &str| {
+        let s = s.split('.').next().unwrap_or(s).to_ascii_lowercase();
+        matches!(s.as_str(), "con" | "prn" | "aux" | "nul")
+            || (s.len() == 4
+                && (s.starts_with("com") || s.starts_with("lpt"))
+                && s.ends_with(|c: char| c.is_ascii_digit()))
+    };
+    match out {
+        "" => "drawing".into(),
+        name if device(name) => format!("{name}-drawing"),
+        name => name.into(),
+    }
+}
+
+/// `name`, or `name-2`, `name-3`, ...: no two alike on a disk that does not tell case apart. `taken` holds every
+/// name given and the next number to try for it.
+fn unique(taken: &mut BTreeMap<String, u64>, name: &str) -> String {
+    let key = name.to_ascii_lowercase();
+    let Some(&first) = taken.get(&key) else {
+        taken.insert(key, 2);
+        return name.to_owned();
+    };
+    let mut k = first;
+    while taken.contains_key(&format!("{key}-{k}")) {
+        k += 1;
+    }
+    taken.insert(format!("{key}-{k}"), 2);
+    taken.insert(key, k + 1);
+    format!("{name}-{k}")
+}
+
+fn sketch_spec(args: &ReadingArgs) -> Outcome<SketchSpec> {
+    let mut spec = match &args.spec {
+        Some(path) => {
+            let text = std::fs::read_to_string(path).map_err(|e| Failure::io(path, "read", &e))?;
+            serde_json::from_str(&text).map_err(|e| Failure::at(path, e))?
+        }
+        None => SketchSpec::default(),
+    };
+    spec.height_m = args.height.or(spec.height_m);
+    spec.branch_depth = args.branch_depth.map_or(spec.branch_depth, Into::into);
+    spec.leaf_depth = args.leaf_depth.map_or(spec.leaf_depth, Into::into);
+    if !args.flip_flowers.is_empty() {
+        spec.flipped_flowers.clone_from(&args.flip_flowers);
+    }
+    spec.fill.density = args.density.unwrap_or(spec.fill.density);
+    spec.fill.tropism = args.tropism.unwrap_or(spec.fill.tropism);
+    spec.pipe_exponent = args.pipe_exponent.or(spec.pipe_exponent);
+    spec.phototropism = args.phototropism.unwrap_or(spec.phototropism);
+    spec.gravity = args.gravity.unwrap_or(spec.gravity);
+    Ok(spec)
+}
+
+fn skin_spec(args: &SurfaceArgs, seed: u64) -> SkinSpec {
+    SkinSpec {
+        detail: args.detail,
+        sides: args.sides,
+        textures: !args.no_textures,
+        petals: args.petals.map(Into::into),
+        variation: args.variation,
+        seed: Seed::new(seed),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_safe_and_unique() {
+        let safe_names = ["flower 3/../x", "..", "", "NUL", "com1.x", "Grüne Rose", "a.b"].map(safe);
+        assert_eq!(
+            safe_names,
+            ["flower-3-..-x", "drawing", "drawing", "NUL-drawing", "com1.x-drawing", "Gr-ne-Rose", "a.b"]
+        );
+        assert!(safe(&"x".repeat(500)).len() == 80);
+        let mut taken = BTreeMap::new();
+        let names = ["rose", "Rose", "rose-2", "rose"].map(|n| unique(&mut taken, n));
+        assert_eq!(names, ["rose", "Rose-2", "rose-2-2", "rose-3"]);
+    }
+}

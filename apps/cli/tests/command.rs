@@ -1,0 +1,317 @@
+//! The built binary as other programs call it.
+#![expect(clippy::unwrap_used, clippy::panic, reason = "tests")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+/// A folder of its own for a test, emptied first.
+fn folder(test: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
+    let _ = fs::remove_dir_all(&path);
+    fs::create_dir_all(&path).unwrap();
+    path
+}
+
+fn burgeon(folder: &Path, args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_burgeon")).args(args).current_dir(folder).output().unwrap()
+}
+
+fn status(out: &Output) -> i32 {
+    out.status.code().unwrap()
+}
+
+/// The output of a command that must succeed.
+fn good(folder: &Path, args: &[&str]) -> String {
+    let out = burgeon(folder, args);
+    assert_eq!(status(&out), 0, "{args:?}: {}", String::from_utf8_lossy(&out.stderr));
+    String::from_utf8(out.stdout).unwrap()
+}
+
+/// The one line of error of a command that must fail as bad usage or bad input.
+fn bad(folder: &Path, args: &[&str]) -> String {
+    let out = burgeon(folder, args);
+    let text = String::from_utf8(out.stderr.clone()).unwrap();
+    assert_eq!(status(&out), 2, "{args:?}: {text}");
+    assert_eq!(text.lines().count(), 1, "one line, not {text:?}");
+    assert!(text.starts_with("error: "), "{text}");
+    text
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> =
+        fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+fn json(path: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
+}
+
+/// A stem with two leaves and a five-petalled flower, in a hand's uneven lines.
+const FLOWER: &str = r##"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 200 300">
+<path fill="none" stroke="#000" d="M100 100C98 150 104 210 101 290"/>
+<path fill="none" stroke="#000" d="M101 220C120 190 150 185 165 190C155 210 130 225 101 221"/>
+<path fill="none" stroke="#000" d="M101 250C80 225 55 220 40 226C50 243 75 255 100 251"/>
+<path fill="none" stroke="#000" d="M100 90C85 70 88 40 100 30C113 41 116 70 101 90"/>
+<path fill="none" stroke="#000" d="M100 90C112 70 138 58 152 66C150 82 122 98 101 91"/>
+<path fill="none" stroke="#000" d="M100 91C122 96 136 118 132 132C118 134 103 112 100 92"/>
+<path fill="none" stroke="#000" d="M99 91C96 112 80 132 66 130C64 116 78 97 98 90"/>
+<path fill="none" stroke="#000" d="M98 90C76 96 50 82 48 66C62 58 88 70 99 89"/>
+</svg>"##;
+
+/// Three drawings, one broken line and one empty drawing.
+const BATCH: &str = concat!(
+    r#"{"word":"flower","key_id":"1","drawing":[[[10,12,11],[200,120,20]],[[11,40,60,40,12],[120,80,90,120,121]]]}"#,
+    "\n",
+    r#"{"word":"flower","key_id":"2","drawing":[[[100,98,101],[250,120,10]]]}"#,
+    "\nthis is no drawing\n",
+    r#"{"word":"a/b: c","key_id":"3","drawing":[[[0,3,9],[0,50,120]]]}"#,
+    "\n",
+    r#"{"word":"nothing","key_id":"4","drawing":[]}"#,
+    "\n"
+);
+
+#[test]
+fn sketch_writes_model_picture_and_report() {
+    let dir = folder("sketch");
+    fs::write(dir.join("rose.svg"), FLOWER).unwrap();
+    let args = ["sketch", "rose.svg", "-o", "rose.glb", "--png", "rose.png", "--size", "80x60"];
+    let said = good(&dir, &[&args[..], &["--report", "rose.json"]].concat());
+    assert!(said.starts_with("rose.glb, rose.png: ") && said.lines().count() == 1, "{said}");
+    assert_eq!(names(&dir), ["rose.glb", "rose.json", "rose.png", "rose.svg"]);
+    assert!(fs::read(dir.join("rose.glb")).unwrap().starts_with(b"glTF"));
+    let png = fs::read(dir.join("rose.png")).unwrap();
+    assert_eq!((&png[1..4], &png[16..24]), (&b"PNG"[..], &[0, 0, 0, 80, 0, 0, 0, 60][..]));
+
+    let report = json(&dir.join("rose.json"));
+    assert_eq!(report["schema"], "burgeon.report/1");
+    assert_eq!((&report["command"], &report["seed"]), (&"sketch".into(), &1.into()));
+    assert!(report["version"].is_string());
+    assert_eq!(report["input"], serde_json::json!({"path": "rose.svg", "drawings": 1, "strokes": 8}));
+    assert_eq!((&report["ok"], &report["failed"]), (&1.into(), &0.into()));
+    let item = &report["items"][0];
+    assert_eq!(item["output"], "rose.glb");
+    let strokes = item["strokes"].as_array().unwrap();
+    assert_eq!(strokes.len(), 8);
+    for stroke in strokes {
+        assert!(stroke["index"].is_u64() && stroke["class"].is_string() && stroke["organ"].is_string());
+        assert!((0.0..=1.0).contains(&stroke["confidence"].as_f64().unwrap()), "{stroke}");
+    }
+    for key in ["flowers", "petals", "leaves", "branches", "nodes", "axes", "vertices", "triangles"] {
+        assert!(item["counts"][key].is_u64(), "{key}");
+    }
+    assert!(item["counts"]["triangles"].as_u64().unwrap() > 100);
+    for key in ["read", "preprocess", "classify", "structure", "depth", "mesh", "write", "total"] {
+        assert!(item["timings_ms"][key].as_f64().unwrap() >= 0.0, "{key}");
+    }
+    for key in ["reprojection_mean", "reprojection_p95"] {
+        assert!(item["fidelity"][key].is_f64(), "{key}");
+    }
+    assert!(item["digest"].as_str().unwrap().chars().all(|c| c.is_ascii_hexdigit()));
+    assert!(item["warnings"].is_array());
+}
+
+#[test]
+fn report_goes_to_stdout_alone() {
+    let dir = folder("json");
+    fs::write(dir.join("rose.svg"), FLOWER).unwrap();
+    let said = good(&dir, &["sketch", "rose.svg", "--json"]);
+    let report: Value = serde_json::from_str(&said).unwrap();
+    assert_eq!(report["items"][0]["output"], "");
+    assert_eq!(names(&dir), ["rose.svg"], "nothing is written without -o");
+    assert_eq!(good(&dir, &["sketch", "rose.svg", "-o", "rose.glb", "--quiet"]), "");
+}
+
+#[test]
+fn threads_change_nothing() {
+    let dir = folder("threads");
+    fs::write(dir.join("rose.svg"), FLOWER).unwrap();
+    fs::write(dir.join("many.ndjson"), BATCH).unwrap();
+    let mut seen = Vec::new();
+    for threads in ["1", "4"] {
+        let one = format!("rose-{threads}.glb");
+        let picture = format!("rose-{threads}.png");
+        let args = ["sketch", "rose.svg", "-o", &one, "--png", &picture, "--size", "90x70", "--threads", threads];
+        good(&dir, &args);
+        let many = format!("many-{threads}");
+        let report = format!("many-{threads}.json");
+        let out = burgeon(&dir, &["sketch", "many.ndjson", "-o", &many, "--threads", threads, "--report", &report]);
+        assert_eq!(status(&out), 2);
+        let report = json(&dir.join(report));
+        let digests: Vec<Value> =
+            report["items"].as_array().unwrap().iter().map(|i| serde_json::json!([i["name"], i["digest"]])).collect();
+        let files: Vec<(String, Vec<u8>)> =
+            names(&dir.join(&many)).into_iter().map(|n| (n.clone(), fs::read(dir.join(&many).join(n)).unwrap())).collect();
+        seen.push((fs::read(dir.join(one)).unwrap(), fs::read(dir.join(picture)).unwrap(), digests, files, report["warnings"].clone()));
+    }
+    assert!(seen[0] == seen[1], "1 and 4 threads differ");
+}
+
+#[test]
+fn batch_goes_on_past_bad_drawings() {
+    let dir = folder("batch");
+    fs::write(dir.join("many.ndjson"), BATCH).unwrap();
+    let out = burgeon(&dir, &["sketch", "many.ndjson", "-o", "out/deep", "--report", "r.json"]);
+    let errors = String::from_utf8(out.stderr.clone()).unwrap();
+    assert_eq!(status(&out), 2, "{errors}");
+    let report = json(&dir.join("r.json"));
+    assert_eq!((&report["ok"], &report["failed"]), (&3.into(), &2.into()), "{report:#}");
+    let warnings: Vec<&str> = report["warnings"].as_array().unwrap().iter().map(|w| w.as_str().unwrap()).collect();
+    assert_eq!(warnings.len(), 2);
+    assert!(warnings[0].contains("many.ndjson") && warnings[0].contains("line 3"), "{warnings:?}");
+    assert!(errors.contains("line 3"), "{errors}");
+    let files = names(&dir.join("out/deep"));
+    assert_eq!(files.len(), 3, "{files:?}");
+    for (item, file) in report["items"].as_array().unwrap().iter().map(|i| (i, i["output"].as_str().unwrap())) {
+        assert!(dir.join(file).is_file(), "{item}");
+        assert!(Path::new(file).parent() == Some(Path::new("out/deep")), "{file} is outside");
+    }
+    let out = burgeon(&dir, &["sketch", "many.ndjson", "-o", "obj", "--format", "obj", "--no-textures"]);
+    assert_eq!(status(&out), 2);
+    assert_eq!(names(&dir.join("obj")).iter().filter(|n| n.ends_with(".obj")).count(), 3);
+}
+
+#[test]
+fn several_drawings_need_a_folder() {
+    let dir = folder("several");
+    fs::write(dir.join("many.ndjson"), BATCH).unwrap();
+    fs::write(dir.join("rose.svg"), FLOWER).unwrap();
+    let line = bad(&dir, &["sketch", "many.ndjson", "-o", "one.glb"]);
+    assert!(line.contains("several drawings") && line.contains("-o FOLDER"), "{line}");
+    assert_eq!(names(&dir), ["many.ndjson", "rose.svg"]);
+    good(&dir, &["sketch", "rose.svg", "rose.svg", "-o", "both", "--quiet"]);
+    assert_eq!(names(&dir.join("both")), ["rose-2.glb", "rose.glb"]);
+}
+
+#[test]
+fn bad_input_is_told_in_one_line_and_leaves_nothing() {
+    let dir = folder("bad");
+    fs::write(dir.join("empty.svg"), "").unwrap();
+    fs::write(dir.join("cut.svg"), &FLOWER[..300]).unwrap();
+    fs::write(dir.join("dot.json"), r#"{"burgeon":"drawing/1","name":"dot","strokes":[{"points":[[1,1]]}]}"#).unwrap();
+    fs::write(dir.join("noise.glb"), b"glTF but not really").unwrap();
+    fs::write(dir.join("what.xyz"), "hello").unwrap();
+    fs::write(dir.join("rose.svg"), FLOWER).unwrap();
+    fs::write(dir.join("wrong.csv"), "0,blade\n1,petall\n").unwrap();
+    fs::write(dir.join("far.csv"), "99,axis\n").unwrap();
+    fs::create_dir(dir.join("folder.glb")).unwrap();
+    let before = names(&dir);
+    for (args, parts) in [
+        (&["sketch", "missing.svg", "-o", "x.glb"][..], &["missing.svg", "no such file"][..]),
+        (&["sketch", "empty.svg", "-o", "x.glb"], &["empty.svg", "empty"]),
+        (&["sketch", "cut.svg", "-o", "x.glb"], &["cut.svg", "SVG"]),
+        (&["sketch", "dot.json", "-o", "x.glb"], &["dot.json", "at least one line"]),
+        (&["sketch", "what.xyz", "-o", "x.glb"], &["what.xyz", ".svg"]),
+        (&["sketch", "noise.glb", "-o", "x.glb"], &["noise.glb", "not a drawing"]),
+        (&["sketch", "rose.svg", "-o", "no/where/x.glb"], &["no/where", "does not exist"]),
+        (&["sketch", "rose.svg", "-o", "x.gltf"], &["x.gltf", ".glb"]),
+        (&["sketch", "rose.svg", "-o", "x.glb", "--classes", "wrong.csv"], &["wrong.csv", "line 2", "petall"]),
+        (&["sketch", "rose.svg", "-o", "x.glb", "--classes", "far.csv"], &["rose.svg", "stroke 99"]),
+        (&["sketch", "rose.svg", "-o", "x.glb", "--report", "no/r.json"], &["no/r.json", "does not exist"]),
+        (&["sketch", "rose.svg"], &["--output"]),
+        (&["sketch", "rose.svg", "-o", "x.glb", "--detail", "99"], &["--detail", "0.1 to 8"]),
+        (&["sketch", "rose.svg", "-o", "x.glb", "--size", "9000x1"], &["--size", "8192"]),
+        (&["sketch", "rose.svg", "-o", "x.glb", "--threads", "0"], &["--threads", "1..=256"]),
+        (&["render", "noise.glb", "-o", "x.png"], &["noise.glb"]),
+        (&["render", "rose.svg", "-o", "x.png"], &["rose.svg", "burgeon sketch"]),
+        (&["render", "noise.glb", "-o", "x.jpg"], &["x.jpg", ".png"]),
+        (&["convert", "rose.svg", "-o", "x.glb"], &["rose.svg", "burgeon sketch"]),
+        (&["convert", "noise.glb", "-o", "x.docx"], &["x.docx", ".glb"]),
+        (&["info", "what.xyz"], &["what.xyz", "neither"]),
+        (&["info", "folder.glb"], &["folder.glb", "is a folder"]),
+        (&["forest", "x"], &["forest"]),
+    ] {
+        let line = bad(&dir, args);
+        assert!(parts.iter().all(|p| line.contains(p)), "{args:?} said {line:?} without {parts:?}");
+        assert_eq!(names(&dir), before, "{args:?} left something");
+    }
+}
+
+#[test]
+fn failed_write_keeps_the_old_file() {
+    let dir = folder("keep");
+    fs::write(dir.join("rose.svg"), FLOWER).unwrap();
+    fs::write(dir.join("cut.svg"), &FLOWER[..300]).unwrap();
+    fs::write(dir.join("x.glb"), "the old one").unwrap();
+    bad(&dir, &["sketch", "cut.svg", "-o", "x.glb"]);
+    assert_eq!(fs::read_to_string(dir.join("x.glb")).unwrap(), "the old one");
+    good(&dir, &["sketch", "rose.svg", "-o", "x.glb"]);
+    assert!(fs::read(dir.join("x.glb")).unwrap().starts_with(b"glTF"));
+    assert_eq!(names(&dir), ["cut.svg", "rose.svg", "x.glb"]);
+}
+
+#[test]
+fn classes_can_be_corrected_in_the_report() {
+    let dir = folder("classes");
+    fs::write(dir.join("rose.svg"), FLOWER).unwrap();
+    good(&dir, &["sketch", "rose.svg", "--report", "r.json"]);
+    let mut report = json(&dir.join("r.json"));
+    report["items"][0]["strokes"][1]["class"] = "scribble".into();
+    fs::write(dir.join("r.json"), report.to_string()).unwrap();
+    let said = good(&dir, &["sketch", "rose.svg", "--classes", "r.json", "--json"]);
+    let again: Value = serde_json::from_str(&said).unwrap();
+    let strokes = &again["items"][0]["strokes"];
+    assert_eq!((&strokes[1]["class"], &strokes[1]["confidence"]), (&"scribble".into(), &1.0.into()));
+    assert_ne!(again["items"][0]["digest"], report["items"][0]["digest"]);
+}
+
+#[test]
+fn models_convert_render_and_explain_themselves() {
+    let dir = folder("models");
+    fs::write(dir.join("rose.svg"), FLOWER).unwrap();
+    good(&dir, &["sketch", "rose.svg", "-o", "rose.glb", "-q"]);
+    good(&dir, &["convert", "rose.glb", "-o", "rose.obj"]);
+    assert!(names(&dir).contains(&"rose.mtl".into()), "{:?}", names(&dir));
+    good(&dir, &["convert", "rose.obj", "-o", "back.glb"]);
+    good(&dir, &["convert", "rose.glb", "-o", "rose.ply", "--up", "z", "--unit", "mm"]);
+    good(&dir, &["convert", "rose.svg", "-o", "drawing.json"]);
+    let info = |args: &[&str]| -> Value {
+        serde_json::from_str(&good(&dir, &[&["info", "--json"][..], args].concat())).unwrap()
+    };
+    let (first, back) = (info(&["rose.glb"]), info(&["back.glb"]));
+    let ply = info(&["rose.ply", "--up", "z", "--unit", "mm"]);
+    let size = |v: &Value, k: usize| v["model"]["size"][k].as_f64().unwrap();
+    for other in [&back, &ply] {
+        assert_eq!(first["model"]["triangles"], other["model"]["triangles"]);
+        for k in 0..3 {
+            assert!((size(&first, k) - size(other, k)).abs() < 1e-4, "{first:#} {other:#}");
+        }
+    }
+    let raw = info(&["rose.ply"]);
+    assert!((size(&raw, 2) - 1000.0 * size(&first, 1)).abs() < 0.1, "z is up, in millimetres: {raw:#}");
+    assert_eq!(info(&["drawing.json"])["drawings"]["strokes"], 8);
+    let text = good(&dir, &["info", "rose.glb"]);
+    assert!(text.contains("m high (y)") && text.contains("material"), "{text}");
+    for (view, name) in [("front", "a.png"), ("turntable", "b.png")] {
+        let args = ["render", "rose.glb", "-o", name, "--view", view, "--size", "120x90", "--background", "#e8f0e0"];
+        good(&dir, &args);
+        assert!(fs::read(dir.join(name)).unwrap().starts_with(b"\x89PNG"));
+    }
+}
+
+#[test]
+fn help_documents_every_option() {
+    let dir = folder("help");
+    for command in ["sketch", "render", "convert", "info"] {
+        let text = good(&dir, &[command, "--help"]);
+        for block in text.split("\n\n").filter(|b| b.trim_start().starts_with('-')) {
+            let mut lines = block.lines().filter(|l| !l.trim_start().starts_with('-'));
+            assert!(lines.any(|l| l.trim().len() > 8), "{command}: {block:?} is not explained");
+        }
+    }
+    assert!(good(&dir, &["--version"]).starts_with("burgeon "));
+}
+
+#[test]
+fn own_fixtures_make_plants() {
+    let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/sketches/sample.svg");
+    let dir = folder("fixtures");
+    let report: Value = serde_json::from_str(&good(&dir, &["sketch", sample.to_str().unwrap(), "--json"])).unwrap();
+    let Some(item) = report["items"].get(0) else { panic!("{report:#}") };
+    assert!(item["counts"]["petals"].as_u64().unwrap() > 3, "{item:#}");
+    assert!(item["counts"]["leaves"].as_u64().unwrap() >= 1, "{item:#}");
+}
