@@ -29,12 +29,23 @@ pub(crate) struct Cli {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Turn drawn strokes into a plant
+    ///
+    /// Lines become stems and branches, closed outlines petals and leaves; a trunk and a crown become a tree.
+    /// Seen from the front the plant is the drawing. Strokes on a layer, or with an id, named branch-contour or
+    /// leaf-contour are filled with twigs or leaves.
     Sketch(Box<SketchArgs>),
     /// Make a picture of a model
+    ///
+    /// The model fills the picture but for a margin and stands on the ground in the light of a soft sun.
     Render(RenderArgs),
     /// Convert a model or a drawing to another format
+    ///
+    /// Models: .glb, .gltf, .obj, .ply and .stl to .glb, .obj, .ply or .stl. Drawings: .svg, .inkml, .ndjson and
+    /// .json to .json. A drawing becomes a model with `burgeon sketch`.
     Convert(ConvertArgs),
     /// Say what is in a model or a drawing
+    ///
+    /// Counts, bounds, units, parts and materials, and what is wrong with it.
     Info(InfoArgs),
 }
 
@@ -164,17 +175,13 @@ impl From<UnitWord> for Unit {
     }
 }
 
-/// Turn drawn strokes into a plant.
-///
-/// Lines become stems and branches, closed outlines petals and leaves; a trunk and a crown become a tree.
-/// Seen from the front the plant is the drawing.
 #[derive(Args, Debug)]
 #[command(after_long_help = SKETCH_EXAMPLES)]
 pub(crate) struct SketchArgs {
     /// Drawings: .svg, .inkml, .ndjson (one drawing a line) or .json.
     #[arg(value_name = "IN", required = true)]
     pub(crate) inputs: Vec<PathBuf>,
-    /// The model: .glb, .obj or .ply. For several drawings a folder, which is created and gets one model each.
+    /// The model: .glb, .obj, .ply or .stl. For several drawings a folder, which is created and gets one model each.
     #[arg(long, short, value_name = "OUT", required_unless_present_any = ["png", "report", "json"])]
     pub(crate) output: Option<PathBuf>,
     /// Format of the models in a folder.
@@ -201,13 +208,14 @@ pub(crate) struct SketchArgs {
 const SKETCH_EXAMPLES: &str = "Examples:
   burgeon sketch daisy.svg -o daisy.glb --png daisy.png
   burgeon sketch trees.ndjson -o trees/ --format obj --png trees/
-  burgeon sketch daisy.svg --report daisy.json        (what each stroke was understood as)
-  burgeon sketch daisy.svg -o daisy.glb --classes daisy.json   (after correcting a class in it)
+  burgeon sketch daisy.svg --report daisy.json                  what was each stroke taken for?
+  burgeon sketch daisy.svg -o daisy.glb --classes daisy.json    ... corrected in that file
 
-Class files (--classes), by the stroke's index from 0; classes are blade, corolla, axis, trunk_outline,
-crown, vein, disc, pot, ground, fruit, scribble and other:
+Class files (--classes) set strokes by their index from 0:
   CSV    lines of  stroke,class  or  drawing,stroke,class
-  JSON   {\"3\": \"axis\"}  or  {\"drawing name\": {\"3\": \"axis\"}}  or a report of this command";
+  JSON   {\"3\": \"axis\"}  or  {\"drawing name\": {\"3\": \"axis\"}}
+  JSON   a report of this command (--report) in which classes were corrected
+Classes: blade, corolla, axis, trunk_outline, crown, vein, disc, pot, ground, fruit, scribble, other";
 
 /// How the drawing is understood and given depth.
 #[derive(Args, Debug)]
@@ -369,9 +377,6 @@ impl FormatWord {
     }
 }
 
-/// Make a picture of a model.
-///
-/// The model fills the picture but for a margin and stands on the ground in the light of a soft sun.
 #[derive(Args, Debug)]
 #[command(after_long_help = "Examples:
   burgeon render daisy.glb -o daisy.png
@@ -395,11 +400,6 @@ pub(crate) struct RenderArgs {
     pub(crate) common: CommonArgs,
 }
 
-/// Convert a model or a drawing to another format.
-///
-/// Models: .glb, .gltf, .obj, .ply and .stl to .glb, .obj or .ply.
-/// Drawings: .svg, .inkml, .ndjson and .json to .json.
-/// A drawing becomes a model with `burgeon sketch`.
 #[derive(Args, Debug)]
 #[command(after_long_help = "Examples:
   burgeon convert oak.glb -o oak.obj
@@ -432,7 +432,6 @@ pub(crate) struct ConvertArgs {
     pub(crate) common: CommonArgs,
 }
 
-/// Say what is in a model or a drawing: counts, bounds, units, and what is wrong with it.
 #[derive(Args, Debug)]
 pub(crate) struct InfoArgs {
     /// The file: a model (.glb, .gltf, .obj, .ply, .stl) or a drawing (.svg, .inkml, .ndjson, .json).
@@ -474,7 +473,8 @@ fn ranged(text: &str, low: f64, high: f64) -> Result<f64, String> {
 }
 
 fn above_zero(text: &str) -> Result<f64, String> {
-    ranged(text, f64::MIN_POSITIVE, 1000.0).map_err(|_| "give a number above 0, up to 1000".into())
+    let inside = |x: &f64| *x > 0.0 && *x <= 1000.0;
+    text.parse().ok().filter(inside).ok_or_else(|| "give a number above 0, up to 1000".into())
 }
 
 #[cfg(test)]

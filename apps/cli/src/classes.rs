@@ -63,7 +63,7 @@ impl Classes {
         {
             return Ok(()); // a header
         }
-        let index = stroke.parse().map_err(|_| format!("\"{stroke}\" is not a stroke's number (from 0)"))?;
+        let index = index_of(stroke)?;
         let class = class_of(class.unwrap_or_default())?;
         self.of(name).insert(index, class);
         Ok(())
@@ -109,7 +109,7 @@ impl Classes {
     }
 
     fn add_entry(&mut self, name: Option<&str>, stroke: &str, class: &Value) -> Result<(), String> {
-        let index = stroke.parse().map_err(|_| format!("\"{stroke}\" is not a stroke's number (from 0)"))?;
+        let index = index_of(stroke)?;
         let word = class.as_str().ok_or_else(|| format!("the class of stroke {index} is not a word"))?;
         let class = class_of(word)?;
         self.of(name).insert(index, class);
@@ -157,6 +157,10 @@ impl Classes {
         let is_used = |name: &String| used.as_ref().is_ok_and(|used| used.contains(name));
         self.named.keys().filter(|name| !is_used(name)).map(String::as_str).collect()
     }
+}
+
+fn index_of(text: &str) -> Result<u32, String> {
+    text.parse().ok().ok_or_else(|| format!("\"{text}\" is not a stroke's number (from 0)"))
 }
 
 fn class_of(word: &str) -> Result<StrokeClass, String> {

@@ -28,7 +28,9 @@ fn main() -> ExitCode {
     // A panic is our bug: one line and status 1 instead of Rust's own text and status 101.
     std::panic::set_hook(Box::new(|info| {
         let place = info.location().map_or_else(String::new, |l| format!(" ({}:{})", l.file(), l.line()));
-        let what = info.payload_as_str().unwrap_or("no message");
+        let payload = info.payload();
+        let what = payload.downcast_ref::<&str>().copied().map(str::to_owned);
+        let what = what.or_else(|| payload.downcast_ref::<String>().cloned()).unwrap_or_default();
         say::error(&format!("internal error, a bug in burgeon: {what}{place}"));
     }));
     let outcome = std::panic::catch_unwind(|| match cli.command {

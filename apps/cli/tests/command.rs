@@ -135,18 +135,32 @@ fn threads_change_nothing() {
     for threads in ["1", "4"] {
         let one = format!("rose-{threads}.glb");
         let picture = format!("rose-{threads}.png");
-        let args = ["sketch", "rose.svg", "-o", &one, "--png", &picture, "--size", "90x70", "--threads", threads];
+        let args =
+            ["sketch", "rose.svg", "-o", &one, "--png", &picture, "--size", "90x70", "--threads", threads];
         good(&dir, &args);
         let many = format!("many-{threads}");
         let report = format!("many-{threads}.json");
-        let out = burgeon(&dir, &["sketch", "many.ndjson", "-o", &many, "--threads", threads, "--report", &report]);
+        let out =
+            burgeon(&dir, &["sketch", "many.ndjson", "-o", &many, "--threads", threads, "--report", &report]);
         assert_eq!(status(&out), 2);
         let report = json(&dir.join(report));
-        let digests: Vec<Value> =
-            report["items"].as_array().unwrap().iter().map(|i| serde_json::json!([i["name"], i["digest"]])).collect();
-        let files: Vec<(String, Vec<u8>)> =
-            names(&dir.join(&many)).into_iter().map(|n| (n.clone(), fs::read(dir.join(&many).join(n)).unwrap())).collect();
-        seen.push((fs::read(dir.join(one)).unwrap(), fs::read(dir.join(picture)).unwrap(), digests, files, report["warnings"].clone()));
+        let digests: Vec<Value> = report["items"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|i| serde_json::json!([i["name"], i["digest"]]))
+            .collect();
+        let files: Vec<(String, Vec<u8>)> = names(&dir.join(&many))
+            .into_iter()
+            .map(|n| (n.clone(), fs::read(dir.join(&many).join(n)).unwrap()))
+            .collect();
+        seen.push((
+            fs::read(dir.join(one)).unwrap(),
+            fs::read(dir.join(picture)).unwrap(),
+            digests,
+            files,
+            report["warnings"].clone(),
+        ));
     }
     assert!(seen[0] == seen[1], "1 and 4 threads differ");
 }
@@ -160,13 +174,15 @@ fn batch_goes_on_past_bad_drawings() {
     assert_eq!(status(&out), 2, "{errors}");
     let report = json(&dir.join("r.json"));
     assert_eq!((&report["ok"], &report["failed"]), (&3.into(), &2.into()), "{report:#}");
-    let warnings: Vec<&str> = report["warnings"].as_array().unwrap().iter().map(|w| w.as_str().unwrap()).collect();
+    let warnings: Vec<&str> =
+        report["warnings"].as_array().unwrap().iter().map(|w| w.as_str().unwrap()).collect();
     assert_eq!(warnings.len(), 2);
     assert!(warnings[0].contains("many.ndjson") && warnings[0].contains("line 3"), "{warnings:?}");
     assert!(errors.contains("line 3"), "{errors}");
     let files = names(&dir.join("out/deep"));
     assert_eq!(files.len(), 3, "{files:?}");
-    for (item, file) in report["items"].as_array().unwrap().iter().map(|i| (i, i["output"].as_str().unwrap())) {
+    for (item, file) in report["items"].as_array().unwrap().iter().map(|i| (i, i["output"].as_str().unwrap()))
+    {
         assert!(dir.join(file).is_file(), "{item}");
         assert!(Path::new(file).parent() == Some(Path::new("out/deep")), "{file} is outside");
     }
@@ -192,7 +208,8 @@ fn bad_input_is_told_in_one_line_and_leaves_nothing() {
     let dir = folder("bad");
     fs::write(dir.join("empty.svg"), "").unwrap();
     fs::write(dir.join("cut.svg"), &FLOWER[..300]).unwrap();
-    fs::write(dir.join("dot.json"), r#"{"burgeon":"drawing/1","name":"dot","strokes":[{"points":[[1,1]]}]}"#).unwrap();
+    fs::write(dir.join("dot.json"), r#"{"burgeon":"drawing/1","name":"dot","strokes":[{"points":[[1,1]]}]}"#)
+        .unwrap();
     fs::write(dir.join("noise.glb"), b"glTF but not really").unwrap();
     fs::write(dir.join("what.xyz"), "hello").unwrap();
     fs::write(dir.join("rose.svg"), FLOWER).unwrap();
@@ -209,7 +226,10 @@ fn bad_input_is_told_in_one_line_and_leaves_nothing() {
         (&["sketch", "noise.glb", "-o", "x.glb"], &["noise.glb", "not a drawing"]),
         (&["sketch", "rose.svg", "-o", "no/where/x.glb"], &["no/where", "does not exist"]),
         (&["sketch", "rose.svg", "-o", "x.gltf"], &["x.gltf", ".glb"]),
-        (&["sketch", "rose.svg", "-o", "x.glb", "--classes", "wrong.csv"], &["wrong.csv", "line 2", "petall"]),
+        (
+            &["sketch", "rose.svg", "-o", "x.glb", "--classes", "wrong.csv"],
+            &["wrong.csv", "line 2", "petall"],
+        ),
         (&["sketch", "rose.svg", "-o", "x.glb", "--classes", "far.csv"], &["rose.svg", "stroke 99"]),
         (&["sketch", "rose.svg", "-o", "x.glb", "--report", "no/r.json"], &["no/r.json", "does not exist"]),
         (&["sketch", "rose.svg"], &["--output"]),
@@ -287,7 +307,8 @@ fn models_convert_render_and_explain_themselves() {
     let text = good(&dir, &["info", "rose.glb"]);
     assert!(text.contains("m high (y)") && text.contains("material"), "{text}");
     for (view, name) in [("front", "a.png"), ("turntable", "b.png")] {
-        let args = ["render", "rose.glb", "-o", name, "--view", view, "--size", "120x90", "--background", "#e8f0e0"];
+        let args =
+            ["render", "rose.glb", "-o", name, "--view", view, "--size", "120x90", "--background", "#e8f0e0"];
         good(&dir, &args);
         assert!(fs::read(dir.join(name)).unwrap().starts_with(b"\x89PNG"));
     }
@@ -310,7 +331,8 @@ fn help_documents_every_option() {
 fn own_fixtures_make_plants() {
     let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/sketches/sample.svg");
     let dir = folder("fixtures");
-    let report: Value = serde_json::from_str(&good(&dir, &["sketch", sample.to_str().unwrap(), "--json"])).unwrap();
+    let report: Value =
+        serde_json::from_str(&good(&dir, &["sketch", sample.to_str().unwrap(), "--json"])).unwrap();
     let Some(item) = report["items"].get(0) else { panic!("{report:#}") };
     assert!(item["counts"]["petals"].as_u64().unwrap() > 3, "{item:#}");
     assert!(item["counts"]["leaves"].as_u64().unwrap() >= 1, "{item:#}");
