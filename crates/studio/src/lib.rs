@@ -21,7 +21,7 @@ mod make;
 mod report;
 
 pub use base::{
-    Angle, CancelToken, Cancelled, Clock, Executor, NoClock, Report, Run, Seed, Serial, Unit, UpAxis,
+    Angle, CancelToken, Cancelled, Clock, Digest, Executor, NoClock, Report, Run, Seed, Serial, Unit, UpAxis,
     Warning, map_indexed,
 };
 pub use make::{ClassOverrides, Made, MakeError, SketchOptions, make_from_sketch};
