@@ -363,8 +363,10 @@ impl Forest {
             })
             .min_by(|x, y| x.0.total_cmp(&y.0));
         match found {
-            // Neighbours on the ground are stems of their own, not branches from one another's feet.
-            Some((_, last, bearer)) if bearer.at > 0.12 * self.length(bearer.axis) => {
+            // Neighbours on the ground and lines as long as the bearer are stems of their own.
+            Some((_, last, bearer))
+                if bearer.at > 0.12 * self.length(bearer.axis) && length < 0.6 * self.length(bearer.axis) =>
+            {
                 self.push(oriented(&line.points, last), Vec::new(), Some(bearer), line.source)
             }
             _ => self.push(points, Vec::new(), None, line.source),

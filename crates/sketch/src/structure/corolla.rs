@@ -127,7 +127,7 @@ pub(super) fn split(points: &[DVec2], core: &Core, stroke: usize) -> Vec<Sheetle
 }
 
 /// Both ends and every low place with at least `depth` of rise on both sides before the next one.
-fn dips(values: &[f64], depth: f64) -> Vec<usize> {
+pub(super) fn dips(values: &[f64], depth: f64) -> Vec<usize> {
     let n = values.len();
     if n < 2 {
         return Vec::new();

@@ -20,7 +20,7 @@ use crate::{DiscReading, OrganWord, StrokeClass};
 
 /// Roots this near together, as a share of the median petal length, are one flower (methods 1.7).
 const BANDWIDTH: f64 = 0.25;
-/// Roots that are clustered one by one; more are first thinned to cells (bounds the pairs).
+/// Roots that are clustered by mean shift; more are told apart by cells.
 const MOST_ROOTS: usize = 2_000;
 
 /// A flower before its petals are read.
@@ -461,18 +461,14 @@ fn clusters(points: &[DVec2], bandwidth: f64) -> Vec<Vec<usize>> {
             groups.entry(c).or_default().push(i);
         }
     } else {
-        // Points of one small cell move together, so the number of pairs stays bounded.
+        // So many roots are told apart by cells of a bandwidth: linear, and coarse as such a drawing is.
         let mut cells: BTreeMap<(i64, i64), Vec<usize>> = BTreeMap::new();
         for (i, p) in points.iter().enumerate() {
             #[expect(clippy::cast_possible_truncation, reason = "saturates")]
-            let key = |v: f64| (v / (0.25 * bandwidth).max(2e-3)).floor() as i64;
+            let key = |v: f64| (v / bandwidth.max(1e-4)).floor() as i64;
             cells.entry((key(p.x), key(p.y))).or_default().push(i);
         }
-        let members: Vec<Vec<usize>> = cells.into_values().collect();
-        let means: Vec<DVec2> = members.iter().map(|m| mean(m.iter().map(|&i| points[i]))).collect();
-        for (k, c) in mean_shift(&means, bandwidth.min(0.02)).into_iter().enumerate() {
-            groups.entry(c).or_default().extend(&members[k]);
-        }
+        groups = cells.into_values().enumerate().collect();
     }
     groups.into_values().filter(|g| g.len() > 2).collect()
 }

@@ -9,6 +9,7 @@
 //! | `flowers` | which blades are petals of one flower | 4.1 |
 //! | `branches` | the hierarchy of axes | 4.2 |
 //! | `attach` | who bears what | beyond |
+//! | `second` | classes that the whole drawing contradicts | beyond |
 //! | `validate` | what every reading guarantees | |
 
 mod attach;
@@ -20,6 +21,7 @@ mod flowers;
 mod near;
 mod outlines;
 mod rings;
+mod second;
 mod validate;
 mod veins;
 
@@ -64,6 +66,7 @@ const SCRIBBLE_AREA: f64 = 0.008;
 /// ```
 pub fn read(ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
     let mut draft = Draft::new(ink, classes);
+    second::thoughts(&mut draft);
     draft.contours();
     draft.find_soil();
     outlines::trunk_sides(&mut draft);

@@ -338,6 +338,48 @@ fn a_fruit_or_a_contour_drawn_as_a_line_is_still_a_plant() {
     assert_eq!(read(&ink, &[], &mut Report::default()).axes.len(), 1);
 }
 
+#[test]
+fn a_leaf_taken_for_a_body_is_seen_by_its_midrib_unless_the_user_says_so() {
+    let strokes = [leaf((5.0, 3.0), (5.0, 10.0), 4.0), line((5.0, 9.5), (5.0, 0.0))];
+    let ink = clean(&Drawing::from_polylines("leaf", &strokes), &mut Report::default());
+    let body = |confidence| {
+        [StrokeClass::TrunkOutline, StrokeClass::Axis].map(|class| Classified { class, confidence })
+    };
+    let guessed = read(&ink, &body(0.6), &mut Report::default());
+    assert_eq!((guessed.leaves.len(), guessed.strokes[0].class), (1, StrokeClass::Blade));
+    let set = read(&ink, &body(1.0), &mut Report::default());
+    assert_eq!((set.leaves.len(), set.strokes[0].class), (0, StrokeClass::TrunkOutline));
+}
+
+#[test]
+fn grass_is_neither_trunks_nor_a_crown() {
+    let stalks: Vec<_> = (0..6).map(|i| line((f64::from(i), 0.0), (f64::from(i) + 0.3, 3.0))).collect();
+    let ink = clean(&Drawing::from_polylines("grass", &stalks), &mut Report::default());
+    let r = read(
+        &ink,
+        &[Classified { class: StrokeClass::TrunkOutline, confidence: 0.5 }; 6],
+        &mut Report::default(),
+    );
+    assert!(
+        r.axes.len() == 6 && r.axes.iter().all(|a| a.half_width.is_empty() && a.bearer.is_none()),
+        "{r:?}"
+    );
+    let zigzag = path(&[
+        (0.0, 0.0),
+        (0.5, 3.0),
+        (1.0, 0.0),
+        (1.5, 3.0),
+        (2.0, 0.0),
+        (2.5, 3.0),
+        (3.0, 0.0),
+        (3.5, 3.0),
+        (4.0, 0.0),
+    ]);
+    let ink = clean(&Drawing::from_polylines("grass", &[zigzag]), &mut Report::default());
+    let r = read(&ink, &[Classified { class: StrokeClass::Crown, confidence: 0.5 }], &mut Report::default());
+    assert_eq!((r.leaves.len(), r.regions.len()), (4, 0));
+}
+
 fn any_class() -> impl Strategy<Value = StrokeClass> {
     (0..StrokeClass::ALL.len()).prop_map(|k| StrokeClass::ALL[k])
 }
