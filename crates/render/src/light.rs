@@ -10,8 +10,8 @@ use glam::{DVec2, DVec3};
 use crate::scene::{Scene, Triangle};
 use crate::spec::PictureSpec;
 
-/// Lamps of the whole sky and of the ground's glow. 72: more do not change a picture visibly.
-const SKY_LAMPS: usize = 72;
+/// Lamps of the whole sky and of the ground's glow. 48: more do not change a picture visibly.
+const SKY_LAMPS: usize = 48;
 /// Lamps of the sun's disc.
 const SUN_LAMPS: usize = 14;
 /// Angular radius of the sun, radians. Larger than the real one (0.005): a hazy day, as in a studio.
@@ -88,6 +88,12 @@ impl DepthMap {
         let low = a[1].min(b[1]).min(c[1]);
         let high = a[1].max(b[1]).max(c[1]);
         let (first_row, last_row) = (up(low), (high as usize).min(last));
+        let left = a[0].min(b[0]).min(c[0]).max(0.0);
+        let right = a[0].max(b[0]).max(c[0]);
+        // Most triangles of a large plant lie between the texels' centres.
+        if first_row > last_row || up(left) > right as usize {
+            return;
+        }
         let sign = 1.0 / area;
         // Barycentric weight of the corner across from each edge: w(x, y) = w[0] + w[1] x + w[2] y.
         let weight = |p: [f32; 3], q: [f32; 3]| {
@@ -103,8 +109,6 @@ impl DepthMap {
         let uv = scene.corners(t).map(|v| v.uv.as_vec2());
         let us = blend(uv[0].x, uv[1].x, uv[2].x);
         let vs = blend(uv[0].y, uv[1].y, uv[2].y);
-        let left = a[0].min(b[0]).min(c[0]).max(0.0);
-        let right = a[0].max(b[0]).max(c[0]);
         for row in first_row..=last_row {
             let y = row as f32;
             let (mut from, mut to) = (left, right);
@@ -224,7 +228,7 @@ impl Sky {
         if scene.triangles.is_empty() {
             return Ok(sky);
         }
-        let size = (map_size / 3).clamp(96, 320);
+        let size = (map_size / 3).clamp(96, 256);
         let maps = map_indexed(run.executor, SKY_LAMPS, |k| {
             run.cancel.check().ok().map(|()| DepthMap::new(scene, directions[k], size))
         });
