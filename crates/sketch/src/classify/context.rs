@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use base::ops;
 use glam::DVec2;
 
-use super::features::{Shape, StrokeFeatures, contains, convex_hull, shape, signed_area};
+use super::features::{Shape, StrokeFeatures, convex_hull, shape, signed_area};
+use super::region::Region;
 use crate::Ink;
 
 /// Most strokes that one stroke is compared with: the longest ones and its neighbours. Keeps a drawing of
@@ -13,6 +14,8 @@ use crate::Ink;
 const COMPANIONS: usize = 48;
 /// Of those, the longest of the whole drawing.
 const LONGEST: usize = 16;
+/// Strokes, longest first, that can hold others.
+const MOST_REGIONS: usize = 2000;
 /// Cells along the diagonal of the grid in which neighbours are looked up.
 const CELLS: f64 = 24.0;
 /// Strokes kept in one cell.
@@ -54,12 +57,15 @@ struct Scene {
     ink: f64,
     longest: f64,
     body: Body,
+    /// Hull of all strokes.
+    hull: Vec<DVec2>,
+    hull_region: Region,
 }
 
 /// The largest region that one stroke, or two whose ends meet, enclose.
 #[derive(Clone, Debug, Default)]
 struct Body {
-    outline: Vec<DVec2>,
+    region: Region,
     members: [usize; 2],
     min: DVec2,
     max: DVec2,
@@ -109,22 +115,34 @@ fn distance_to(s: &Shape, p: DVec2, reach: f64) -> (f64, usize) {
     if outside.length_squared() > reach * reach {
         return (f64::INFINITY, 0);
     }
+    // Samples lie at even steps: a run of segments is passed over where its middle is too far for any of them.
+    const RUN: usize = 12;
+    let last = s.points.len().saturating_sub(1);
+    let half_run = s.length / last.max(1) as f64 * (RUN / 2 + 1) as f64;
     let mut best = (f64::INFINITY, 0);
-    for (k, w) in s.points.windows(2).enumerate() {
-        let d = w[1] - w[0];
-        let t = share((p - w[0]).dot(d), d.length_squared()).clamp(0.0, 1.0);
-        let here = (w[0] + d * t - p).length_squared();
-        if here < best.0 {
-            best = (here, k);
+    for start in (0..last).step_by(RUN) {
+        let end = (start + RUN).min(last);
+        let bound = best.0.min(reach) + half_run;
+        if s.points[usize::midpoint(start, end)].distance_squared(p) > bound * bound {
+            continue;
+        }
+        for k in start..end {
+            let (a, d) = (s.points[k], s.points[k + 1] - s.points[k]);
+            let t = share((p - a).dot(d), d.length_squared()).clamp(0.0, 1.0);
+            let here = (a + d * t).distance(p);
+            if here < best.0 {
+                best = (here, k);
+            }
         }
     }
-    (best.0.sqrt(), best.1)
+    best
 }
 
 impl Scene {
     fn new(ink: &Ink) -> Self {
-        let (shapes, rows): (Vec<Shape>, Vec<StrokeFeatures>) =
+        let (mut shapes, rows): (Vec<Shape>, Vec<StrokeFeatures>) =
             ink.strokes.iter().map(|s| shape(&s.points)).unzip();
+        enclose(&mut shapes);
         let low = shapes.iter().fold(DVec2::INFINITY, |a, s| a.min(s.min));
         let high = shapes.iter().fold(DVec2::NEG_INFINITY, |a, s| a.max(s.max));
         let size = if shapes.is_empty() { DVec2::ONE } else { (high - low).max(DVec2::splat(1e-6)) };
@@ -132,7 +150,9 @@ impl Scene {
         let longest = shapes.iter().fold(0.0_f64, |a, s| a.max(s.length));
         let companions = companions(&shapes);
         let body = body(&shapes);
-        Self { shapes, rows, companions, size, ink: total, longest, body }
+        let hull = convex_hull(&shapes.iter().flat_map(|s| s.hull.iter().copied()).collect::<Vec<_>>());
+        let hull_region = Region::new(&hull);
+        Self { shapes, rows, companions, size, ink: total, longest, body, hull, hull_region }
     }
 
     fn rows(mut self) -> Vec<StrokeFeatures> {
@@ -228,36 +248,41 @@ impl Scene {
     fn holding(&self, i: usize, told: &[Told], f: &mut StrokeFeatures) -> f64 {
         let s = &self.shapes[i];
         let mut held_here = 0.0;
-        let mut hull = Vec::new();
         for &j in &self.companions[i] {
             let o = &self.shapes[j];
-            hull.extend_from_slice(&o.hull);
-            let hull_area = signed_area(&o.hull).abs();
-            if hull_area > 0.02 * o.length * o.length && o.length > s.length {
-                let held = part_inside(s, &o.hull, o);
+            if o.hull_area > 0.02 * o.length * o.length && o.length > s.length {
+                let held = part_inside(s, &o.hull_region, o);
                 if held > f.in_hull + 0.05 {
                     f.in_hull = held;
                 }
             }
             if o.round > 0.1 && o.area > 0.0 {
-                let held = part_inside(s, &o.coarse, o);
+                let held = part_inside(s, &o.region, o);
                 if held > f.inside + 0.05 {
                     f.inside = held;
                     f.inside_round = o.round;
                     f.inside_corners = told[j].corners;
                 }
             }
-            if s.round > 0.1 && o.length < s.length && part_inside(o, &s.coarse, s) > 0.7 {
+            if s.round > 0.1 && o.length < s.length && part_inside(o, &s.region, s) > 0.7 {
                 held_here += 1.0;
             }
         }
         f.is_body = if self.body.members.contains(&i) { 1.0 } else { 0.0 };
-        f.in_body = share_inside(s, &self.body.outline);
-        let hull = convex_hull(&hull);
-        if hull.len() > 2 {
-            f.amid = share_inside(s, &hull);
-        }
+        f.in_body = share_inside(s, &self.body.region);
+        f.amid = self.amid(i);
         held_here
+    }
+
+    /// Share of a stroke inside the hull of all the others; of all strokes in a drawing of very many.
+    fn amid(&self, i: usize) -> f64 {
+        let s = &self.shapes[i];
+        if self.shapes.len() > COMPANIONS + 1 || !s.hull.iter().any(|p| self.hull.contains(p)) {
+            return share_inside(s, &self.hull_region);
+        }
+        let others = self.shapes.iter().enumerate().filter(|(j, _)| *j != i);
+        let points: Vec<DVec2> = others.flat_map(|(_, o)| o.hull.iter().copied()).collect();
+        share_inside(s, &Region::new(&convex_hull(&points)))
     }
 
     /// How its ends meet other strokes, and theirs meet it.
@@ -421,12 +446,31 @@ impl Scene {
     }
 }
 
+/// Fills in what the shapes enclose: of the longest ones only, so that very many strokes fit into memory.
+fn enclose(shapes: &mut [Shape]) {
+    for &i in by_length(shapes).iter().take(MOST_REGIONS) {
+        let Some(s) = shapes.get_mut(i) else { continue };
+        if s.round > 0.1 {
+            s.region = Region::new(&s.points.iter().copied().step_by(2).collect::<Vec<_>>());
+        }
+        if s.hull_area > 0.02 * s.length * s.length {
+            s.hull_region = Region::new(&s.hull);
+        }
+    }
+}
+
+/// Numbers of the strokes, longest first.
+fn by_length(shapes: &[Shape]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..shapes.len()).collect();
+    order.sort_by(|&a, &b| shapes[b].length.total_cmp(&shapes[a].length).then(a.cmp(&b)));
+    order
+}
+
 /// The body of a drawing: see [`Body`].
 fn body(shapes: &[Shape]) -> Body {
     // Joined ends may be this far apart: a seventh of the drawing's diagonal.
     const JOIN: f64 = 0.15;
-    let mut big: Vec<usize> = (0..shapes.len()).collect();
-    big.sort_by(|&a, &b| shapes[b].length.total_cmp(&shapes[a].length).then(a.cmp(&b)));
+    let mut big = by_length(shapes);
     big.truncate(6);
     let mut best = (0.0, Body::default());
     let mut offer = |outline: Vec<DVec2>, members: [usize; 2]| {
@@ -436,7 +480,7 @@ fn body(shapes: &[Shape]) -> Body {
             let min = outline.iter().fold(DVec2::INFINITY, |a, &p| a.min(p));
             let max = outline.iter().fold(DVec2::NEG_INFINITY, |a, &p| a.max(p));
             let solid = share(area, signed_area(&hull).abs());
-            best = (area, Body { outline, members, min, max, solid });
+            best = (area, Body { region: Region::new(&outline), members, min, max, solid });
         }
     };
     for &a in &big {
@@ -466,20 +510,22 @@ fn body(shapes: &[Shape]) -> Body {
 }
 
 /// Share of `s` inside a polygon.
-fn share_inside(s: &Shape, polygon: &[DVec2]) -> f64 {
+fn share_inside(s: &Shape, region: &Region) -> f64 {
     const EVERY: usize = 6;
-    let inside = s.points.iter().skip(EVERY / 2).step_by(EVERY).filter(|&&p| contains(polygon, p)).count();
+    let inside = s.points.iter().skip(EVERY / 2).step_by(EVERY).filter(|&&p| region.contains(p)).count();
     to_f64(inside) / to_f64(s.points.len().saturating_sub(EVERY / 2).div_ceil(EVERY).max(1))
 }
 
-/// Share of `s` inside `polygon`, whose box is `o`'s.
-fn part_inside(s: &Shape, polygon: &[DVec2], o: &Shape) -> f64 {
+/// Share of `s` inside `region`, whose box is `o`'s.
+fn part_inside(s: &Shape, region: &Region, o: &Shape) -> f64 {
     if s.min.cmpgt(o.max).any() || s.max.cmplt(o.min).any() {
         return 0.0;
     }
     const EVERY: usize = 8;
-    let inside = s.points.iter().skip(EVERY / 2).step_by(EVERY).filter(|&&p| contains(polygon, p)).count();
-    to_f64(inside) / to_f64(s.points.len().saturating_sub(EVERY / 2).div_ceil(EVERY).max(1))
+    let in_box = |p: DVec2| p.cmpge(o.min).all() && p.cmple(o.max).all();
+    let inside = |&&p: &&DVec2| in_box(p) && region.contains(p);
+    let count = s.points.iter().skip(EVERY / 2).step_by(EVERY).filter(inside).count();
+    to_f64(count) / to_f64(s.points.len().saturating_sub(EVERY / 2).div_ceil(EVERY).max(1))
 }
 
 /// Share of the strokes that are shorter, for each.
@@ -497,8 +543,7 @@ fn companions(shapes: &[Shape]) -> Vec<Vec<usize>> {
     if n <= COMPANIONS + 1 {
         return (0..n).map(|i| (0..n).filter(|&j| j != i).collect()).collect();
     }
-    let mut by_length: Vec<usize> = (0..n).collect();
-    by_length.sort_by(|&a, &b| shapes[b].length.total_cmp(&shapes[a].length).then(a.cmp(&b)));
+    let longest = by_length(shapes);
     let cell = |p: DVec2| ((p.x * CELLS).floor(), (p.y * CELLS).floor());
     #[expect(clippy::cast_possible_truncation, reason = "ink coordinates lie in [0, 1]; `as` saturates")]
     let key = |x: f64, y: f64| (x as i64, y as i64);
@@ -532,7 +577,7 @@ fn companions(shapes: &[Shape]) -> Vec<Vec<usize>> {
             });
             near.retain(|&j| j != i);
             near.truncate(COMPANIONS - LONGEST);
-            near.extend(by_length.iter().take(LONGEST).filter(|&&j| j != i));
+            near.extend(longest.iter().take(LONGEST).filter(|&&j| j != i));
             near.extend([i.wrapping_sub(1), i + 1].into_iter().filter(|&j| j < n));
             near.sort_unstable();
             near.dedup();

@@ -3,6 +3,8 @@
 use base::ops;
 use glam::DVec2;
 
+use super::region::Region;
+
 /// Samples that a stroke is measured on: a corolla of twelve petals still has eight on each.
 pub(super) const SAMPLES: usize = 96;
 
@@ -198,8 +200,11 @@ columns! {
 pub(super) struct Shape {
     /// [`SAMPLES`] points at even arc length.
     pub(super) points: Vec<DVec2>,
-    /// Every second of them, as a polygon.
-    pub(super) coarse: Vec<DVec2>,
+    /// What every second of them encloses; empty for lines.
+    pub(super) region: Region,
+    /// What the hull encloses; empty for straight lines.
+    pub(super) hull_region: Region,
+    pub(super) hull_area: f64,
     /// Convex hull, counter-clockwise.
     pub(super) hull: Vec<DVec2>,
     pub(super) length: f64,
@@ -247,10 +252,10 @@ pub(super) fn shape(points: &[DVec2]) -> (Shape, StrokeFeatures) {
     s.middle = points.iter().sum::<DVec2>() / count;
     s.hull = convex_hull(&points);
     s.area = signed_area(&points).abs();
-    s.coarse = points.iter().copied().step_by(2).collect();
     s.points = points;
     s.round = 4.0 * ops::PI * s.area / (length * length);
     let hull_area = signed_area(&s.hull).abs();
+    s.hull_area = hull_area;
     f.gap = s.first().distance(s.last()) / length;
     principal(&s, &mut f);
     f.round = s.round;
@@ -335,14 +340,6 @@ fn bending(s: &Shape, f: &mut StrokeFeatures) {
     const REACH: usize = 2;
     let p = &s.points;
     let n = p.len();
-    let (mut total, mut net) = (0.0, 0.0);
-    for k in (REACH..n - REACH).step_by(REACH) {
-        let a = angle(p[k] - p[k - REACH], p[k + REACH] - p[k]);
-        total += a.abs();
-        net += a;
-    }
-    f.turning = ops::ln(1.0 + total / ops::TAU);
-    f.turns = (net.abs() / ops::TAU).min(3.0);
     let signed: Vec<f64> =
         (0..n)
             .map(|k| {
@@ -353,6 +350,13 @@ fn bending(s: &Shape, f: &mut StrokeFeatures) {
                 }
             })
             .collect();
+    let (mut total, mut net) = (0.0, 0.0);
+    for a in signed[REACH..n - REACH].iter().step_by(REACH) {
+        total += a.abs();
+        net += a;
+    }
+    f.turning = ops::ln(1.0 + total / ops::TAU);
+    f.turns = (net.abs() / ops::TAU).min(3.0);
     let bend: Vec<f64> = signed.iter().map(|a| a.abs()).collect();
     let (mut corners, mut straight, mut inward) = (0.0, 0.0, 0.0);
     let way = signed_area(p);
@@ -478,20 +482,6 @@ pub(super) fn convex_hull(points: &[DVec2]) -> Vec<DVec2> {
         floor = hull.len();
     }
     hull
-}
-
-/// Even-odd rule.
-pub(super) fn contains(polygon: &[DVec2], p: DVec2) -> bool {
-    let Some(&last) = polygon.last() else { return false };
-    let mut a = last;
-    let mut odd = false;
-    for &b in polygon {
-        if (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x) {
-            odd = !odd;
-        }
-        a = b;
-    }
-    odd
 }
 
 /// The open segments `ab` and `cd` cross.

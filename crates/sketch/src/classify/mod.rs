@@ -3,7 +3,7 @@
 //! | step | module |
 //! |---|---|
 //! | a stroke on its own | `features` |
-//! | a stroke among the others | `context` |
+//! | a stroke among the others | `context`, `region` |
 //! | the support vector machine | `svm`, `model` |
 //! | the table it is trained from, and how good it is | `table`, `training` |
 
@@ -12,6 +12,7 @@ use std::sync::OnceLock;
 mod context;
 mod features;
 mod model;
+mod region;
 mod svm;
 mod table;
 mod training;

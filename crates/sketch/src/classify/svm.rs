@@ -149,10 +149,7 @@ impl Svm {
         let kernel: Vec<f64> = self
             .vectors
             .chunks_exact(self.columns.max(1))
-            .map(|v| {
-                let d: f64 = v.iter().zip(row).map(|(a, b)| (a - b) * (a - b)).sum();
-                ops::exp(-self.gamma * d)
-            })
+            .map(|v| ops::exp(-self.gamma * distance_squared(v, row)))
             .collect();
         let n = self.labels.len();
         let mut doubt = vec![0.0; n];
@@ -176,6 +173,19 @@ impl Svm {
         let sum: f64 = shares.iter().sum();
         shares.into_iter().map(|s| s / sum).collect()
     }
+}
+
+/// In four sums side by side, which the processor adds at once.
+fn distance_squared(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; 4];
+    let (a4, b4) = (a.chunks_exact(4), b.chunks_exact(4));
+    let rest: f64 = a4.remainder().iter().zip(b4.remainder()).map(|(x, y)| (x - y) * (x - y)).sum();
+    for (x, y) in a4.zip(b4) {
+        for k in 0..4 {
+            sums[k] += (x[k] - y[k]) * (x[k] - y[k]);
+        }
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
 fn numbers<'a, T: core::str::FromStr>(
