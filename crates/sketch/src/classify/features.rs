@@ -459,7 +459,17 @@ fn perimeter(polygon: &[DVec2]) -> f64 {
 /// Andrew's monotone chain, counter-clockwise.
 pub(super) fn convex_hull(points: &[DVec2]) -> Vec<DVec2> {
     let mut sorted = points.to_vec();
-    sorted.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    sorted.sort_by(left_to_right);
+    hull_of_sorted(sorted)
+}
+
+/// The order in which a hull is made.
+pub(super) fn left_to_right(a: &DVec2, b: &DVec2) -> core::cmp::Ordering {
+    a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y))
+}
+
+/// The convex hull of points that are sorted from left to right.
+pub(super) fn hull_of_sorted(mut sorted: Vec<DVec2>) -> Vec<DVec2> {
     sorted.dedup();
     if sorted.len() < 3 {
         return sorted;

@@ -152,16 +152,21 @@ impl Svm {
             .map(|v| ops::exp(-self.gamma * distance_squared(v, row)))
             .collect();
         let n = self.labels.len();
+        // For each class the weighed kernels of its own vectors against each other class.
+        let mut halves = vec![0.0; n * (n - 1)];
+        for class in 0..n {
+            let row = &mut halves[class * (n - 1)..(class + 1) * (n - 1)];
+            for v in self.starts[class]..self.starts[class + 1] {
+                for (sum, c) in row.iter_mut().zip(&self.coefficients[v * (n - 1)..]) {
+                    *sum += c * kernel[v];
+                }
+            }
+        }
         let mut doubt = vec![0.0; n];
         let mut pair = 0;
         for i in 0..n {
             for j in i + 1..n {
-                let half = |class: usize, column: usize| -> f64 {
-                    (self.starts[class]..self.starts[class + 1])
-                        .map(|v| self.coefficients[v * (n - 1) + column] * kernel[v])
-                        .sum()
-                };
-                let d = half(i, j - 1) + half(j, i) - self.rho[pair];
+                let d = halves[i * (n - 1) + j - 1] + halves[j * (n - 1) + i] - self.rho[pair];
                 let e = ops::exp(-2.0 * d.clamp(-8.0, 8.0));
                 // 1 / p is 1 + e for i, and 1 + 1 / e for j.
                 doubt[i] += 1.0 + e;
