@@ -156,9 +156,12 @@ impl Svm {
         let mut halves = vec![0.0; n * (n - 1)];
         for class in 0..n {
             let row = &mut halves[class * (n - 1)..(class + 1) * (n - 1)];
-            for v in self.starts[class]..self.starts[class + 1] {
-                for (sum, c) in row.iter_mut().zip(&self.coefficients[v * (n - 1)..]) {
-                    *sum += c * kernel[v];
+            let own = self.starts[class]..self.starts[class + 1];
+            for (weights, k) in
+                self.coefficients.chunks_exact(n - 1).zip(&kernel).take(own.end).skip(own.start)
+            {
+                for (sum, c) in row.iter_mut().zip(weights) {
+                    *sum += c * k;
                 }
             }
         }
