@@ -22,6 +22,7 @@ cargo xtask COMMAND
   layers         checks that each crate uses only what ARCHITECTURE.md allows
   clippy-wasm    lints the core for wasm32
   train-strokes  trains the stroke classifier from its table (see docs/strokes.md)
+  test-web       the WASM and validator part of `test` alone
   setup          installs the wasm32 target and the WASM tools only
 ";
 
@@ -35,6 +36,7 @@ fn main() -> ExitCode {
         Some("layers") => layers::check(),
         Some("clippy-wasm") => toolchain::clippy_wasm(),
         Some("train-strokes") => train_strokes::run(rest),
+        Some("test-web") => web::setup().and_then(|tools| web::test(&tools)),
         Some("setup") => web::setup().map(|_| ()),
         Some("help" | "-h" | "--help") | None => {
             say(HELP);
