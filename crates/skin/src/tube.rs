@@ -101,7 +101,7 @@ impl<'a> Sleeve<'a> {
 
     fn vertex(&mut self, p: DVec3, normal: DVec3, u: f64, v: f64) -> u32 {
         let i = self.mesh.push(p);
-        self.mesh.normals.push(narrow(normal.try_normalize().unwrap_or(glam::DVec3::Y)));
+        self.mesh.normals.push(narrow(normal.try_normalize().unwrap_or(DVec3::Y)));
         self.mesh.uvs.push(narrow2(u, v));
         i
     }
