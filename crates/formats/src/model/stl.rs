@@ -1,6 +1,6 @@
 //! Stereolithography: bare triangles. Binary is written; binary and text are read.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::io::Write;
 
 use base::Report;
@@ -129,7 +129,7 @@ fn read_text(bytes: &[u8]) -> Result<Vec<[f32; 3]>, ModelError> {
 /// One vertex for all corners at exactly the same place, in the order of their first use.
 fn weld(corners: &[[f32; 3]]) -> TriMesh {
     let mut mesh = TriMesh::default();
-    let mut known: HashMap<[u32; 3], u32> = HashMap::new();
+    let mut known: BTreeMap<[u32; 3], u32> = BTreeMap::new();
     let mut index = |p: [f32; 3]| {
         // -0 and 0 are one place.
         let key = p.map(|x| (x + 0.0).to_bits());
