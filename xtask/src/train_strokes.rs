@@ -269,7 +269,7 @@ fn measure_ink(
     labels: &[Label],
 ) {
     let ink = sketch::clean(drawing, &mut base::Report::default());
-    for (stroke, features) in ink.strokes.iter().zip(sketch::features(&ink)) {
+    for (stroke, features) in ink.strokes.iter().zip(sketch::features(&ink, &base::Run::plain())) {
         if let Some(label) = labels.iter().find(|l| l.stroke == stroke.index) {
             rows.push(StrokeRow {
                 source,

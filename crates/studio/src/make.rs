@@ -90,7 +90,7 @@ pub fn make_from_sketch(
     if ink.strokes.is_empty() {
         return Err(MakeError::NoStrokes { name: drawing.name.clone(), strokes });
     }
-    let mut classes = report.stage("classify", run.clock, |_| sketch::classify(&ink));
+    let mut classes = report.stage("classify", run.clock, |_| sketch::classify(&ink, run));
     for (stroke, class) in ink.strokes.iter().zip(&mut classes) {
         if let Some(&wanted) = options.classes.get(&stroke.index) {
             *class = sketch::Classified { class: wanted, confidence: 1.0 };

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use base::ops;
+use base::{Executor, Run, map_indexed, ops};
 use glam::DVec2;
 
 use super::features::{
@@ -30,25 +30,25 @@ const TOUCH: f64 = 0.03;
 /// Measures every stroke of a drawing, on its own and among the others.
 ///
 /// One row per stroke of `ink.strokes`, in its order; every number is finite. No feature depends on the
-/// direction of a stroke, nor on left and right. About 50 microseconds a stroke in a sketch of 30; linear
-/// in strokes beyond 48.
+/// direction of a stroke, nor on left and right. About 50 microseconds a stroke in a sketch of 30, spread over
+/// the executor's threads; linear in strokes beyond 48.
 ///
 /// ```
 /// use glam::DVec2;
 /// let stem = vec![DVec2::ZERO, DVec2::new(0.0, 300.0)];
 /// let ink = sketch::clean(&sketch::Drawing::from_polylines("stem", &[stem]), &mut base::Report::default());
-/// let rows = sketch::features(&ink);
+/// let rows = sketch::features(&ink, &base::Run::plain());
 /// assert_eq!((rows.len(), rows[0].upright), (1, 1.0));
 /// assert!((rows[0].gap - 1.0).abs() < 1e-9);
 /// ```
-pub fn features(ink: &Ink) -> Vec<StrokeFeatures> {
-    Scene::new(ink).rows()
+pub fn features(ink: &Ink, run: &Run<'_>) -> Vec<StrokeFeatures> {
+    Scene::new(ink, run.executor).rows(run.executor)
 }
 
 /// With how many others each stroke is compared.
 #[cfg(test)]
 pub(super) fn companion_counts(ink: &Ink) -> Vec<usize> {
-    Scene::new(ink).companions.iter().map(Vec::len).collect()
+    Scene::new(ink, &base::Serial).companions.iter().map(Vec::len).collect()
 }
 
 struct Scene {
@@ -143,9 +143,9 @@ fn distance_to(s: &Shape, p: DVec2, reach: f64) -> (f64, usize) {
 }
 
 impl Scene {
-    fn new(ink: &Ink) -> Self {
-        let (mut shapes, rows): (Vec<Shape>, Vec<StrokeFeatures>) =
-            ink.strokes.iter().map(|s| shape(&s.points)).unzip();
+    fn new(ink: &Ink, executor: &dyn Executor) -> Self {
+        let measured = map_indexed(executor, ink.strokes.len(), |i| shape(&ink.strokes[i].points));
+        let (mut shapes, rows): (Vec<Shape>, Vec<StrokeFeatures>) = measured.into_iter().unzip();
         enclose(&mut shapes);
         let low = shapes.iter().fold(DVec2::INFINITY, |a, s| a.min(s.min));
         let high = shapes.iter().fold(DVec2::NEG_INFINITY, |a, s| a.max(s.max));
@@ -167,25 +167,29 @@ impl Scene {
         Self { shapes, rows, companions, size, ink: total, longest, body, corners, hull_region, on_hull }
     }
 
-    fn rows(mut self) -> Vec<StrokeFeatures> {
+    fn rows(mut self, executor: &dyn Executor) -> Vec<StrokeFeatures> {
         let mut rows = core::mem::take(&mut self.rows);
         let ranks = ranks(&self.shapes);
-        for (i, (f, rank)) in rows.iter_mut().zip(ranks).enumerate() {
-            self.place(i, rank, f);
-            self.alike(i, f);
-            self.sides(i, f);
-        }
-        let mut told = Vec::with_capacity(rows.len());
-        for (i, f) in rows.iter_mut().enumerate() {
-            let even = self.partner(i, f);
+        let alone = map_indexed(executor, rows.len(), |i| {
+            let mut f = rows[i];
+            self.place(i, ranks[i], &mut f);
+            self.alike(i, &mut f);
+            self.sides(i, &mut f);
+            let even = self.partner(i, &mut f);
             let pair = if f.upright > 0.6 && f.length > 0.2 { even } else { 0.0 };
-            told.push(Told { corners: f.corners, gap: f.gap, pair, held: 0.0 });
-        }
-        for (i, f) in rows.iter_mut().enumerate() {
-            self.around(i, &told, f);
-            let held = self.holding(i, &told, f);
-            self.meeting(i, &told, f);
-            told[i].held = held;
+            (Told { corners: f.corners, gap: f.gap, pair, held: 0.0 }, f)
+        });
+        let mut told: Vec<Told>;
+        (told, rows) = alone.into_iter().unzip();
+        let among = map_indexed(executor, rows.len(), |i| {
+            let mut f = rows[i];
+            self.around(i, &told, &mut f);
+            let held = self.holding(i, &told, &mut f);
+            self.meeting(i, &told, &mut f);
+            (held, f)
+        });
+        for ((told, row), (held, f)) in told.iter_mut().zip(&mut rows).zip(among) {
+            (told.held, *row) = (held, f);
         }
         self.whole(&told, &mut rows);
         rows.into_iter().map(StrokeFeatures::tamed).collect()

@@ -24,6 +24,8 @@ pub use svm::ModelError;
 pub use table::{StrokeRow, StrokeSource, read_stroke_table, write_stroke_table};
 pub use training::{StrokeFigures, StrokeModelTexts, cross_validate_strokes, train_strokes};
 
+use base::{Run, map_indexed};
+
 use crate::{Ink, StrokeClass};
 use model::StrokeModels;
 
@@ -51,15 +53,15 @@ fn trained() -> Option<&'static StrokeModels> {
 /// use glam::DVec2;
 /// let stem = vec![DVec2::ZERO, DVec2::new(3.0, 300.0)];
 /// let ink = sketch::clean(&sketch::Drawing::from_polylines("stem", &[stem]), &mut base::Report::default());
-/// let classes = sketch::classify(&ink);
+/// let classes = sketch::classify(&ink, &base::Run::plain());
 /// assert_eq!(classes.len(), ink.strokes.len());
 /// assert!((0.0..=1.0).contains(&classes[0].confidence));
 /// ```
-pub fn classify(ink: &Ink) -> Vec<Classified> {
-    let rows = features(ink);
+pub fn classify(ink: &Ink, run: &Run<'_>) -> Vec<Classified> {
+    let rows = features(ink, run);
     // A test reads the models, so they are always there.
     let unknown = Classified { class: StrokeClass::Other, confidence: 0.0 };
-    rows.iter().map(|f| trained().map_or(unknown, |m| m.decide(f))).collect()
+    map_indexed(run.executor, rows.len(), |i| trained().map_or(unknown, |m| m.decide(&rows[i])))
 }
 
 #[cfg(test)]

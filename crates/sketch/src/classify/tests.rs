@@ -1,6 +1,6 @@
 //! The committed models, figures and odd ink.
 
-use base::{Draw, Report, Seed, ops};
+use base::{Draw, Report, Run, Seed, ops};
 use glam::DVec2;
 use proptest::prelude::*;
 
@@ -65,8 +65,9 @@ fn features_do_not_depend_on_direction_nor_on_left_and_right() {
                 .collect()
         })
         .collect();
-    let rows_of =
-        |lines: &[Vec<DVec2>]| features(&clean(&Drawing::from_polylines("x", lines), &mut Report::default()));
+    let rows_of = |lines: &[Vec<DVec2>]| {
+        features(&clean(&Drawing::from_polylines("x", lines), &mut Report::default()), &Run::plain())
+    };
     let plain = rows_of(&lines);
     let turned: Vec<Vec<DVec2>> = lines
         .iter()
@@ -88,7 +89,7 @@ fn features_do_not_depend_on_direction_nor_on_left_and_right() {
 fn odd_ink_is_survived() {
     let stroke = |points: Vec<DVec2>| InkStroke { points, ..InkStroke::default() };
     let with = |strokes: Vec<InkStroke>| Ink { strokes, ..Ink::default() };
-    assert!(classify(&with(vec![])).is_empty(), "no strokes, no answers");
+    assert!(classify(&with(vec![]), &Run::plain()).is_empty(), "no strokes, no answers");
     let odd = with(vec![
         stroke(vec![]),
         stroke(vec![DVec2::ONE]),
@@ -97,9 +98,9 @@ fn odd_ink_is_survived() {
         stroke(vec![DVec2::splat(1e300), DVec2::splat(-1e300)]),
         stroke(vec![DVec2::ZERO, DVec2::X]),
     ]);
-    assert_eq!(classify(&odd).len(), 6, "one answer per stroke");
+    assert_eq!(classify(&odd, &Run::plain()).len(), 6, "one answer per stroke");
     let alike = with(vec![stroke((0..40).map(|k| DVec2::new(f64::from(k), 1.0) * 0.01).collect()); 60]);
-    for row in features(&alike).iter().chain(&features(&odd)) {
+    for row in features(&alike, &Run::plain()).iter().chain(&features(&odd, &Run::plain())) {
         assert!(row.values().iter().all(|x| x.is_finite()), "{row:?}");
     }
 }
@@ -114,7 +115,7 @@ fn many_strokes_are_linear() {
     let ink = Ink { strokes, ..Ink::default() };
     let most = context::companion_counts(&ink).into_iter().max().unwrap_or(0);
     assert!(most <= 52, "a stroke is compared with {most} others");
-    assert_eq!(classify(&ink).len(), 3000, "one answer per stroke");
+    assert_eq!(classify(&ink, &Run::plain()).len(), 3000, "one answer per stroke");
 }
 
 #[test]
@@ -142,7 +143,7 @@ fn petal(root: DVec2, tip: DVec2, half: f64, wobble: &mut base::Stream) -> Vec<D
 
 fn words(lines: &[Vec<DVec2>]) -> Vec<&'static str> {
     let ink = clean(&Drawing::from_polylines("made", lines), &mut Report::default());
-    classify(&ink).iter().map(|c| c.class.word()).collect()
+    classify(&ink, &Run::plain()).iter().map(|c| c.class.word()).collect()
 }
 
 proptest! {
@@ -153,7 +154,7 @@ proptest! {
     ) {
         let lines: Vec<Vec<DVec2>> = lines.into_iter().map(|l| l.into_iter().map(|(x, y)| DVec2::new(x, y)).collect()).collect();
         let ink = clean(&Drawing::from_polylines("any", &lines), &mut Report::default());
-        let found = classify(&ink);
+        let found = classify(&ink, &Run::plain());
         prop_assert_eq!(found.len(), ink.strokes.len());
         prop_assert!(found.iter().all(|c| c.confidence > 0.0 && c.confidence <= 1.0));
     }
