@@ -1,11 +1,12 @@
 //! What the benchmarks share: the drawings of Table 1 and two threads.
 
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::OnceLock;
 
 use burgeon::formats::{DrawingFormat, read_drawings};
 use burgeon::sketch::Drawing;
 use burgeon::{Clock, Executor};
+use rayon::prelude::*;
 
 /// The eight drawings of the paper's Table 1.
 pub const TABLE1: [&str; 8] = ["a", "b", "c", "d", "e", "f", "g", "h"];
@@ -48,21 +49,11 @@ pub struct TwoThreads;
 
 impl Executor for TwoThreads {
     fn for_each(&self, n: usize, job: &(dyn Fn(usize) + Sync)) {
-        let next = AtomicUsize::new(0);
-        let work = || {
-            loop {
-                let i = next.fetch_add(1, Ordering::Relaxed);
-                if i >= n {
-                    break;
-                }
-                job(i);
-            }
-        };
-        std::thread::scope(|scope| {
-            if n > 1 {
-                scope.spawn(work);
-            }
-            work();
+        static POOL: OnceLock<rayon::ThreadPool> = OnceLock::new();
+        #[expect(clippy::expect_used, reason = "a benchmark on one thread would not measure what it says")]
+        let pool = POOL.get_or_init(|| {
+            rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("two threads can be made")
         });
+        pool.install(|| (0..n).into_par_iter().with_max_len(1).for_each(job));
     }
 }

@@ -6,42 +6,34 @@ use std::time::{Duration, Instant};
 
 use burgeon::{CancelToken, Clock, Executor, Run};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use rayon::prelude::*;
 
 /// Independent jobs on a number of threads.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Threads(pub(crate) usize);
+#[derive(Debug)]
+pub(crate) struct Threads {
+    pub(crate) count: usize,
+    /// None for one thread, or where the system grants no more.
+    pool: Option<rayon::ThreadPool>,
+}
 
 impl Threads {
     /// `asked`, or as many as the machine has.
     pub(crate) fn new(asked: Option<u16>) -> Self {
         let all = || std::thread::available_parallelism().map_or(1, usize::from);
-        Self(asked.map_or_else(all, usize::from).max(1))
+        let count = asked.map_or_else(all, usize::from).max(1);
+        let pool = || rayon::ThreadPoolBuilder::new().num_threads(count).build().ok();
+        Self { count, pool: (count > 1).then(pool).flatten() }
     }
 }
 
 impl Executor for Threads {
     fn for_each(&self, n: usize, job: &(dyn Fn(usize) + Sync)) {
-        let threads = self.0.min(n);
-        if threads <= 1 {
-            (0..n).for_each(job);
-            return;
+        match &self.pool {
+            Some(pool) if n > 1 => {
+                pool.install(|| (0..n).into_par_iter().with_max_len(1).for_each(job));
+            }
+            _ => (0..n).for_each(job),
         }
-        let next = AtomicUsize::new(0);
-        let work = || {
-            loop {
-                let i = next.fetch_add(1, Ordering::Relaxed);
-                if i >= n {
-                    break;
-                }
-                job(i);
-            }
-        };
-        std::thread::scope(|scope| {
-            for _ in 1..threads {
-                scope.spawn(work);
-            }
-            work();
-        });
     }
 }
 
@@ -184,7 +176,7 @@ mod tests {
     #[test]
     fn threads_do_every_job_once() {
         for threads in [1, 3, 8] {
-            let got = burgeon::map_indexed(&Threads(threads), 100, |i| i * 2);
+            let got = burgeon::map_indexed(&Threads::new(Some(threads)), 100, |i| i * 2);
             assert_eq!(got, (0..100).map(|i| i * 2).collect::<Vec<_>>());
         }
     }

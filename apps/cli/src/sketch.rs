@@ -166,7 +166,7 @@ impl<'a> Job<'a> {
         let strokes = AtomicU64::new(0);
         let keep_items = self.args.common.report.is_some() || self.args.common.json;
         machine.with_progress("drawings to plants", |progress| {
-            burgeon::map_indexed(&machine.threads, machine.threads.0, |_| {
+            burgeon::map_indexed(&machine.threads, machine.threads.count, |_| {
                 let mut cache = PngCache::new();
                 while machine.cancel.check().is_ok() {
                     let Some(next) = pull(&queue, machine, progress) else { break };

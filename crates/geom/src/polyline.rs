@@ -207,17 +207,25 @@ pub fn closest_on_polyline(points: &[DVec2], p: DVec2) -> Option<Closest> {
         return None;
     }
     let (index, &only) = points.iter().enumerate().find(|(_, q)| q.usable())?;
-    let mut best = Closest { index, t: 0.0, point: only, distance: Vector::distance(only, p), at: 0.0 };
-    let mut done = 0.0;
-    for (index, a, b) in usable_pairs(points) {
-        let (t, point) = nearest_on_segment(a, b, p);
-        let (distance, length) = (Vector::distance(point, p), Vector::distance(a, b));
-        if distance < best.distance {
-            best = Closest { index, t, point, distance, at: done + length * t };
+    let (mut index, mut t, mut point) = (index, 0.0, only);
+    // Squares, and no lengths yet: this loop is most of many a measurement.
+    let mut nearest = only.distance_squared(p);
+    for (k, a, b) in usable_pairs(points) {
+        // The box around a segment is asked first: it takes no division.
+        let outside = (a.min(b) - p).max(p - a.max(b)).max(DVec2::ZERO);
+        if outside.length_squared() >= nearest {
+            continue;
         }
-        done += length;
+        let (s, q) = nearest_on_segment(a, b, p);
+        let squared = q.distance_squared(p);
+        if squared < nearest {
+            (index, t, point, nearest) = (k, s, q, squared);
+        }
     }
-    Some(best)
+    let at = length_of(points.get(..=index).unwrap_or_default());
+    let on = usable_pairs(points.get(index..).unwrap_or_default()).next();
+    let at = at + on.map_or(0.0, |(_, a, b)| t * Vector::distance(a, b));
+    Some(Closest { index, t, point, distance: Vector::distance(point, p), at })
 }
 
 /// The segment at an arc length, with the share of it that lies before.

@@ -415,7 +415,10 @@ fn lattice_points(points: &[DVec2], count: usize, vein_edges: &[[usize; 2]], edg
         for column in (0..columns).filter(|c| !struck[row * columns + c]) {
             let p = at(row, column);
             if xs.partition_point(|&x| x < p.x) % 2 == 1 {
-                out.push(p);
+                // A hair off the lattice: six points on one circle would need exact arithmetic at every turn.
+                let k = out.len() as f64;
+                let off = DVec2::new(0.754_877_666 * k, 0.569_840_290 * k).fract() - 0.5;
+                out.push(p + off * (1e-3 * edge));
             }
         }
     }
@@ -430,18 +433,20 @@ fn join(
 ) -> Result<Triangulation, TriangulateError> {
     let fault = TriangulateError::Internal { points: count };
     let vertices: Vec<Point2<f64>> = points.iter().map(|p| Point2::new(p.x, p.y)).collect();
-    let margin: Vec<[usize; 2]> = (0..count).map(|i| [i, (i + 1) % count]).collect();
-    let mut conflicts = 0;
+    // Without the margin first: loading is a third faster, and most of the margin's edges come by themselves.
     let mut net =
-        ConstrainedDelaunayTriangulation::<Point2<f64>>::try_bulk_load_cdt(vertices, margin, |_| {
-            conflicts += 1;
-        })
-        .map_err(|_unusable_coordinate| fault)?;
-    if conflicts > 0 || net.num_vertices() != points.len() {
+        ConstrainedDelaunayTriangulation::<Point2<f64>>::try_bulk_load_cdt(vertices, vec![], |_| {})
+            .map_err(|_unusable_coordinate| fault)?;
+    if net.num_vertices() != points.len() {
         return Err(fault);
     }
+    let handle = spade::handles::FixedVertexHandle::from_index;
+    for i in 0..count {
+        if net.try_add_constraint(handle(i), handle((i + 1) % count)).is_empty() {
+            return Err(fault);
+        }
+    }
     for &[a, b] in vein_edges {
-        let handle = spade::handles::FixedVertexHandle::from_index;
         // A vein that crosses one before it (or the margin) is left out there, not split.
         net.try_add_constraint(handle(a), handle(b));
     }

@@ -4,6 +4,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use base::{Run, map_indexed};
 use geom::{closest_on_polyline, resample};
 use glam::{DVec2, DVec3};
 use plant::{AxisId, OrganKind, Shape};
@@ -59,33 +60,29 @@ pub struct StrokeFidelity {
 ///     AxisReading { points, kind: AxisKind::Stem, bearer: None, half_width: vec![], source: Some(0) };
 /// let reading = Reading { axes: vec![stem], ..Reading::default() };
 /// let built = build(&reading, &SketchSpec::default(), Seed::new(1), &Run::plain(), &mut Report::default())?;
-/// assert!(fidelity(&built, &reading, &ink).is_some_and(|f| f.reprojection_p95 < 1e-9));
+/// assert!(fidelity(&built, &reading, &ink, &Run::plain()).is_some_and(|f| f.reprojection_p95 < 1e-9));
 /// # Ok::<(), base::Cancelled>(())
 /// ```
-pub fn fidelity(built: &Built, reading: &Reading, ink: &Ink) -> Option<Fidelity> {
+pub fn fidelity(built: &Built, reading: &Reading, ink: &Ink, run: &Run<'_>) -> Option<Fidelity> {
     let lines = front_view(built, reading);
+    let compared = map_indexed(run.executor, ink.strokes.len(), |i| {
+        let stroke = &ink.strokes[i];
+        let lines = lines.get(&stroke.index)?;
+        let line = sampled(&stroke.points);
+        let distance = |l: &[DVec2], p: DVec2| closest_on_polyline(l, p).map(|c| c.distance);
+        let to_model = |p: &DVec2| lines.iter().filter_map(|l| distance(l, *p)).fold(f64::INFINITY, f64::min);
+        let own: Vec<f64> = line.iter().map(to_model).filter(|d| d.is_finite()).collect();
+        let stroke_line = Pieces::new(core::slice::from_ref(&line));
+        let beyond: Vec<f64> = lines.iter().flat_map(|l| stroke_line.distances(&sampled(l))).collect();
+        (!own.is_empty()).then_some((stroke.index, own, beyond))
+    });
     let (mut drawn, mut excess) = (Vec::new(), Vec::new());
     let mut strokes = Vec::new();
-    for stroke in &ink.strokes {
-        let Some(lines) = lines.get(&stroke.index) else { continue };
-        let to_model = |p: &DVec2| {
-            lines
-                .iter()
-                .filter_map(|l| closest_on_polyline(l, *p))
-                .map(|c| c.distance)
-                .fold(f64::INFINITY, f64::min)
-        };
-        let own: Vec<f64> = sampled(&stroke.points).iter().map(to_model).filter(|d| d.is_finite()).collect();
-        if own.is_empty() {
-            continue;
-        }
-        let line = sampled(&stroke.points);
-        for p in lines.iter().flat_map(|l| sampled(l)) {
-            excess.extend(closest_on_polyline(&line, p).map(|c| c.distance));
-        }
+    for (index, own, beyond) in compared.into_iter().flatten() {
         let max = own.iter().copied().fold(0.0, f64::max);
-        strokes.push(StrokeFidelity { index: stroke.index, mean: mean(&own), max });
+        strokes.push(StrokeFidelity { index, mean: mean(&own), max });
         drawn.extend(own);
+        excess.extend(beyond);
     }
     if strokes.is_empty() {
         return None;
@@ -153,6 +150,47 @@ fn front_view(built: &Built, reading: &Reading) -> BTreeMap<u32, Vec<Vec<DVec2>>
     lines
 }
 
+/// Lines cut into short pieces with the box of each, so that a point looks at the near ones only.
+struct Pieces<'a>(Vec<(DVec2, DVec2, &'a [DVec2])>);
+
+impl<'a> Pieces<'a> {
+    fn new(lines: &'a [Vec<DVec2>]) -> Self {
+        const SEGMENTS: usize = 8;
+        let mut pieces = Vec::new();
+        for line in lines {
+            for start in (0..line.len().max(2) - 1).step_by(SEGMENTS) {
+                let piece = line.get(start..line.len().min(start + SEGMENTS + 1)).unwrap_or_default();
+                let low = piece.iter().fold(DVec2::INFINITY, |a, &p| a.min(p));
+                let high = piece.iter().fold(DVec2::NEG_INFINITY, |a, &p| a.max(p));
+                pieces.push((low, high, piece));
+            }
+        }
+        Self(pieces)
+    }
+
+    /// Distances of points along another line; infinite without lines.
+    fn distances(&self, points: &[DVec2]) -> Vec<f64> {
+        // The piece nearest to one point is tried first for the next: most others then are too far at once.
+        let mut guess = 0;
+        let distance = |p: &DVec2| {
+            let to_piece =
+                |k: usize| closest_on_polyline(self.0[k].2, *p).map_or(f64::INFINITY, |c| c.distance);
+            let mut best = if self.0.is_empty() { f64::INFINITY } else { to_piece(guess) };
+            for (k, (low, high, _)) in self.0.iter().enumerate() {
+                let outside = (*low - *p).max(*p - *high).max(DVec2::ZERO);
+                if outside.length_squared() < best * best {
+                    let here = to_piece(k);
+                    if here < best {
+                        (best, guess) = (here, k);
+                    }
+                }
+            }
+            best
+        };
+        points.iter().map(distance).filter(|d| d.is_finite()).collect()
+    }
+}
+
 fn sampled(line: &[DVec2]) -> Vec<DVec2> {
     let length = geom::polyline_length(line);
     resample(line, (length / SAMPLES).max(1e-9))
@@ -170,7 +208,7 @@ fn p95(values: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use base::{Report, Run, Seed};
+    use base::{Report, Seed};
     use plant::AxisKind;
 
     use super::*;
@@ -211,7 +249,7 @@ mod tests {
         let (reading, ink) = stem_and_leaf(shift);
         let spec = SketchSpec { leaf_depth, ..SketchSpec::default() };
         let built = build(&reading, &spec, Seed::new(1), &Run::plain(), &mut Report::default());
-        fidelity(&built.expect("not cancelled"), &reading, &ink).expect("two strokes")
+        fidelity(&built.expect("not cancelled"), &reading, &ink, &Run::plain()).expect("two strokes")
     }
 
     #[test]
@@ -235,6 +273,6 @@ mod tests {
         let reading = Reading { axes: vec![], leaves: vec![], ..reading };
         let run = Run::plain();
         let built = build(&reading, &SketchSpec::default(), Seed::new(1), &run, &mut Report::default());
-        assert_eq!(fidelity(&built.expect("not cancelled"), &reading, &ink), None);
+        assert_eq!(fidelity(&built.expect("not cancelled"), &reading, &ink, &run), None);
     }
 }

@@ -83,7 +83,7 @@ pub fn skin(plant: &Plant, spec: &SkinSpec, run: &Run<'_>) -> Result<Model, Canc
     let mut meshes: Vec<_> = tubes.into_iter().map(|t| (slot(t.surface), t.mesh)).collect();
     meshes.extend(organs::organs(plant, spec, &budget, run)?);
     run.cancel.check()?;
-    Ok(parts::model(&plant.name, meshes, spec.textures))
+    Ok(parts::model(&plant.name, meshes, spec.textures.then_some(run.executor)))
 }
 
 fn budget(plant: &Plant, spec: &SkinSpec) -> Budget {

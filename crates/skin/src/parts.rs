@@ -1,5 +1,6 @@
 //! Kinds of surface: their materials, and the parts that gather them.
 
+use base::Executor;
 use mesh::{Material, MaterialId, MaterialKind, Model, Part, TriMesh};
 
 use crate::PetalColor;
@@ -114,11 +115,11 @@ impl Slot {
         }
     }
 
-    fn material(self, textures: bool) -> Material {
+    fn material(self, textures: Option<&dyn Executor>) -> Material {
         let kind = self.kind();
-        let color = if textures { [1.0; 3] } else { self.plain_color() };
+        let color = if textures.is_some() { [1.0; 3] } else { self.plain_color() };
         let mut m = Material::plain(self.names().1, kind, color);
-        m.texture = textures.then(|| self.motif().texture());
+        m.texture = textures.map(|executor| self.motif().texture(executor));
         (m.roughness, m.translucency) = match kind {
             MaterialKind::Leaf => (0.55, 0.4),
             MaterialKind::Petal => (0.65, 0.4),
@@ -132,8 +133,8 @@ impl Slot {
     }
 }
 
-/// Gathers meshes by slot, in slot order; empty ones leave no part.
-pub(crate) fn model(name: &str, mut meshes: Vec<(Slot, TriMesh)>, textures: bool) -> Model {
+/// Gathers meshes by slot, in slot order; empty ones leave no part. Textures are painted on `textures`, if wanted.
+pub(crate) fn model(name: &str, mut meshes: Vec<(Slot, TriMesh)>, textures: Option<&dyn Executor>) -> Model {
     let mut model = Model { name: name.to_owned(), ..Model::default() };
     meshes.retain(|(_, m)| !m.triangles.is_empty());
     // Stable: meshes of one slot keep their order.

@@ -99,7 +99,7 @@ pub fn make_from_sketch(
     let reading = report.stage("structure", run.clock, |r| sketch::read(&ink, &classes, r));
     run.cancel.check()?;
     let built = sketch::build(&reading, &options.spec, seed, run, &mut report)?; // books `depth` itself
-    let fidelity = sketch::fidelity(&built, &reading, &ink);
+    let fidelity = sketch::fidelity(&built, &reading, &ink, run);
     let mut plant = built.plant;
     plant.name.clone_from(&drawing.name);
     let mut model = report.stage("mesh", run.clock, |_| skin::skin(&plant, &options.skin, run))?;

@@ -59,11 +59,8 @@ struct Scene {
     ink: f64,
     longest: f64,
     body: Body,
-    /// Corners of all hulls from left to right, and whose they are.
-    corners: Vec<(DVec2, usize)>,
-    /// What the hull of all strokes encloses, and which strokes have a corner on it.
-    hull_region: Region,
-    on_hull: Vec<bool>,
+    /// What the hull of all the other strokes encloses, a stroke each; in a drawing of very many that of all strokes.
+    amid: Vec<Region>,
 }
 
 /// The largest region that one stroke, or two whose ends meet, enclose.
@@ -154,17 +151,8 @@ impl Scene {
         let longest = shapes.iter().fold(0.0_f64, |a, s| a.max(s.length));
         let companions = companions(&shapes);
         let body = body(&shapes);
-        let mut corners: Vec<(DVec2, usize)> =
-            shapes.iter().enumerate().flat_map(|(i, s)| s.hull.iter().map(move |&p| (p, i))).collect();
-        corners.sort_by(|a, b| left_to_right(&a.0, &b.0).then(a.1.cmp(&b.1)));
-        let mut hull = hull_of_sorted(corners.iter().map(|c| c.0).collect());
-        let hull_region = Region::new(&hull);
-        hull.sort_by(left_to_right);
-        let mut on_hull = vec![false; shapes.len()];
-        for (p, i) in &corners {
-            on_hull[*i] |= hull.binary_search_by(|h| left_to_right(h, p)).is_ok();
-        }
-        Self { shapes, rows, companions, size, ink: total, longest, body, corners, hull_region, on_hull }
+        let amid = amid(&shapes);
+        Self { shapes, rows, companions, size, ink: total, longest, body, amid }
     }
 
     fn rows(mut self, executor: &dyn Executor) -> Vec<StrokeFeatures> {
@@ -286,18 +274,8 @@ impl Scene {
         }
         f.is_body = if self.body.members.contains(&i) { 1.0 } else { 0.0 };
         f.in_body = share_inside(s, &self.body.region);
-        f.amid = self.amid(i);
+        f.amid = self.amid.get(i).or(self.amid.first()).map_or(0.0, |region| share_inside(s, region));
         held_here
-    }
-
-    /// Share of a stroke inside the hull of all the others; of all strokes in a drawing of very many.
-    fn amid(&self, i: usize) -> f64 {
-        let s = &self.shapes[i];
-        if self.shapes.len() > COMPANIONS + 1 || !self.on_hull[i] {
-            return share_inside(s, &self.hull_region);
-        }
-        let others = self.corners.iter().filter(|(_, j)| *j != i).map(|(p, _)| *p).collect();
-        share_inside(s, &Region::new(&hull_of_sorted(others)))
     }
 
     /// How its ends meet other strokes, and theirs meet it.
@@ -459,6 +437,31 @@ impl Scene {
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), p| (a.min(p.x), b.max(p.x)));
         (b - a).max(0.0) / self.size.x
     }
+}
+
+/// See [`Scene::amid`].
+fn amid(shapes: &[Shape]) -> Vec<Region> {
+    let both = |a: &[DVec2], b: &[DVec2]| {
+        let mut corners = [a, b].concat();
+        corners.sort_by(left_to_right);
+        hull_of_sorted(corners)
+    };
+    if shapes.len() > COMPANIONS + 1 {
+        let all: Vec<DVec2> = shapes.iter().flat_map(|s| s.hull.iter().copied()).collect();
+        return vec![Region::new(&convex_hull(&all))];
+    }
+    // Hulls of the strokes after each, then of those before it.
+    let mut after = vec![Vec::new(); shapes.len() + 1];
+    for (i, s) in shapes.iter().enumerate().rev() {
+        after[i] = both(&after[i + 1], &s.hull);
+    }
+    let mut before = Vec::new();
+    let mut regions = Vec::with_capacity(shapes.len());
+    for (s, after) in shapes.iter().zip(after.iter().skip(1)) {
+        regions.push(Region::new(&both(&before, after)));
+        before = both(&before, &s.hull);
+    }
+    regions
 }
 
 /// Fills in what the shapes enclose: of the longest ones only, so that very many strokes fit into memory.

@@ -2,7 +2,7 @@
 
 use super::noise::{gradient, octaves};
 use super::{Paint, byte, canvas, line, mix, shade};
-use base::ops;
+use base::{Executor, ops};
 use mesh::Texture;
 
 /// The colours of a flower's disc.
@@ -42,8 +42,8 @@ fn floret(n: u32) -> (f64, f64) {
 }
 
 /// Florets in spirals, opening from the rim inwards.
-pub(super) fn disc(size: u32, inks: &DiscInks) -> Texture {
-    let ground = canvas(size, size, |u, v| {
+pub(super) fn disc(executor: &dyn Executor, size: u32, inks: &DiscInks) -> Texture {
+    let ground = canvas(executor, size, size, &|u, v| {
         let r = ops::hypot(u - 0.5, v - 0.5) / DISC_RADIUS;
         if r < 1.03 { shade(inks.gap, 0.9 + 0.2 * gradient(9.0 * u, 9.0 * v, (9, 9), 2)) } else { RECEPTACLE }
     });

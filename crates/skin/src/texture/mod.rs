@@ -7,6 +7,7 @@ mod tubes;
 
 use std::sync::{Arc, OnceLock};
 
+use base::{Executor, map_indexed};
 use mesh::Texture;
 
 use crate::PetalColor;
@@ -67,48 +68,58 @@ impl Motif {
         }
     }
 
-    /// The texture, painted on first use (up to about 30 ms) and kept for the life of the process.
-    pub(crate) fn texture(self) -> Arc<Texture> {
+    /// The texture, painted on first use (up to about 30 ms on one thread) and kept for the life of the process.
+    pub(crate) fn texture(self, executor: &dyn Executor) -> Arc<Texture> {
         static PAINTED: [OnceLock<Arc<Texture>>; MOTIFS] = [const { OnceLock::new() }; MOTIFS];
-        PAINTED[self.slot()].get_or_init(|| Arc::new(self.paint())).clone()
+        PAINTED[self.slot()].get_or_init(|| Arc::new(self.paint(executor))).clone()
     }
 
-    fn paint(self) -> Texture {
+    fn paint(self, executor: &dyn Executor) -> Texture {
+        let canvas = |width, height, f: &Paints<'_>| canvas(executor, width, height, f);
         match self {
-            Self::Bark => canvas(256, 256, tubes::bark),
-            Self::YoungBark => canvas(128, 128, tubes::young_bark),
-            Self::Stem => canvas(128, 128, tubes::stem),
-            Self::Root => canvas(128, 128, tubes::root),
-            Self::Leaf => canvas(256, 512, |u, v| blades::leaf(&blades::GREEN, u, v)),
-            Self::PaleLeaf => canvas(256, 512, |u, v| blades::leaf(&blades::PALE_GREEN, u, v)),
+            Self::Bark => canvas(256, 256, &tubes::bark),
+            Self::YoungBark => canvas(128, 128, &tubes::young_bark),
+            Self::Stem => canvas(128, 128, &tubes::stem),
+            Self::Root => canvas(128, 128, &tubes::root),
+            Self::Leaf => canvas(256, 512, &|u, v| blades::leaf(&blades::GREEN, u, v)),
+            Self::PaleLeaf => canvas(256, 512, &|u, v| blades::leaf(&blades::PALE_GREEN, u, v)),
             Self::Petal(color) => {
                 let inks = blades::inks(color);
-                canvas(128, 256, |u, v| blades::petal(&inks, u, v))
+                canvas(128, 256, &|u, v| blades::petal(&inks, u, v))
             }
-            Self::PalePetal => canvas(128, 256, |u, v| blades::petal(&blades::PALE_PETAL, u, v)),
-            Self::Disc => bodies::disc(256, &bodies::YELLOW_DISC),
-            Self::PaleDisc => bodies::disc(256, &bodies::PALE_DISC),
-            Self::Fruit => canvas(128, 128, |u, v| bodies::fruit(&bodies::RED_FRUIT, u, v)),
-            Self::PaleFruit => canvas(128, 128, |u, v| bodies::fruit(&bodies::PALE_FRUIT, u, v)),
-            Self::Body => canvas(256, 128, bodies::ribbed),
-            Self::Stamen => canvas(64, 64, bodies::stamen),
-            Self::Thorn => canvas(32, 64, bodies::thorn),
+            Self::PalePetal => canvas(128, 256, &|u, v| blades::petal(&blades::PALE_PETAL, u, v)),
+            Self::Disc => bodies::disc(executor, 256, &bodies::YELLOW_DISC),
+            Self::PaleDisc => bodies::disc(executor, 256, &bodies::PALE_DISC),
+            Self::Fruit => canvas(128, 128, &|u, v| bodies::fruit(&bodies::RED_FRUIT, u, v)),
+            Self::PaleFruit => canvas(128, 128, &|u, v| bodies::fruit(&bodies::PALE_FRUIT, u, v)),
+            Self::Body => canvas(256, 128, &bodies::ribbed),
+            Self::Stamen => canvas(64, 64, &bodies::stamen),
+            Self::Thorn => canvas(32, 64, &bodies::thorn),
         }
     }
 }
 
+/// Paint at u and v.
+type Paints<'a> = dyn Fn(f64, f64) -> Paint + Sync + 'a;
+
 /// Paints `f(u, v)` at the middle of each pixel; v runs down.
-fn canvas(width: u32, height: u32, f: impl Fn(f64, f64) -> Paint) -> Texture {
-    let mut pixels = Vec::with_capacity(4 * (width * height) as usize);
-    for j in 0..height {
-        let v = (f64::from(j) + 0.5) / f64::from(height);
-        for i in 0..width {
-            let u = (f64::from(i) + 0.5) / f64::from(width);
-            let [r, g, b] = f(u, v).map(byte);
-            pixels.extend_from_slice(&[r, g, b, 255]);
+fn canvas(executor: &dyn Executor, width: u32, height: u32, f: &Paints<'_>) -> Texture {
+    // Rows that one job paints: some tenths of a millisecond.
+    const ROWS: u32 = 16;
+    let bands = map_indexed(executor, height.div_ceil(ROWS) as usize, |band| {
+        let first = ROWS * u32::try_from(band).unwrap_or(u32::MAX);
+        let mut pixels = Vec::with_capacity(4 * (width * ROWS) as usize);
+        for j in first..height.min(first.saturating_add(ROWS)) {
+            let v = (f64::from(j) + 0.5) / f64::from(height);
+            for i in 0..width {
+                let u = (f64::from(i) + 0.5) / f64::from(width);
+                let [r, g, b] = f(u, v).map(byte);
+                pixels.extend_from_slice(&[r, g, b, 255]);
+            }
         }
-    }
-    Texture { width, height, pixels }
+        pixels
+    });
+    Texture { width, height, pixels: bands.concat() }
 }
 
 fn byte(x: f64) -> u8 {
@@ -150,7 +161,7 @@ mod tests {
         slots.sort_unstable();
         assert_eq!(slots, (0..MOTIFS).collect::<Vec<_>>());
         for motif in every() {
-            let t = motif.texture();
+            let t = motif.texture(&base::Serial);
             assert_eq!(t.pixels.len(), 4 * (t.width * t.height) as usize, "{motif:?}");
             assert!(t.pixels.chunks(4).all(|p| p[3] == 255), "{motif:?} is opaque");
             let (low, high) = t.pixels.chunks(4).fold((255, 0), |(a, b), p| (p[1].min(a), p[1].max(b)));
@@ -160,11 +171,11 @@ mod tests {
 
     #[test]
     fn leaves_are_green_and_bark_tiles() {
-        let leaf = Motif::Leaf.texture();
+        let leaf = Motif::Leaf.texture(&base::Serial);
         let green = leaf.pixels.chunks(4).filter(|p| p[1] > p[0] && p[1] > p[2]).count();
         assert!(green * 100 > leaf.pixels.len() / 4 * 98, "{green}");
         // Neighbours across the seam differ no more than neighbours elsewhere do at their most.
-        let bark = Motif::Bark.texture();
+        let bark = Motif::Bark.texture(&base::Serial);
         let at = |x: u32, y: u32| i32::from(bark.pixels[4 * (y * bark.width + x) as usize]);
         let (w, h) = (bark.width, bark.height);
         let inside = (0..h).map(|y| (at(100, y) - at(101, y)).abs()).sum::<i32>();

@@ -2,10 +2,8 @@
 
 /// Gradient noise on a lattice that repeats every `period` cells in x and in y; about -1 to 1.
 pub(crate) fn gradient(x: f64, y: f64, period: (i32, i32), salt: u32) -> f64 {
-    let (fx, fy) = (x.floor(), y.floor());
-    let (u, v) = (x - fx, y - fy);
-    #[expect(clippy::cast_possible_truncation, reason = "texture coordinates are small")]
-    let (ix, iy) = (fx as i32, fy as i32);
+    let (ix, iy) = (floor(x), floor(y));
+    let (u, v) = (x - f64::from(ix), y - f64::from(iy));
     // Wrapped once per axis: four remainders a corner would cost more than the noise.
     let (x0, y0) = (ix.rem_euclid(period.0), iy.rem_euclid(period.1));
     let x1 = if x0 + 1 == period.0 { 0 } else { x0 + 1 };
@@ -34,9 +32,8 @@ pub(crate) fn octaves(x: f64, y: f64, period: (i32, i32), salt: u32, n: u32) -> 
 
 /// Distances to the nearest and second nearest of one random point per cell, repeating every `period` cells.
 pub(crate) fn cells(x: f64, y: f64, period: (i32, i32), salt: u32) -> (f64, f64) {
-    let (fx, fy) = (x.floor(), y.floor());
-    #[expect(clippy::cast_possible_truncation, reason = "texture coordinates are small")]
-    let (ix, iy) = (fx as i32, fy as i32);
+    let (ix, iy) = (floor(x), floor(y));
+    let (fx, fy) = (f64::from(ix), f64::from(iy));
     let (mut first, mut second) = (9.0_f64, 9.0_f64);
     for dy in -1..=1 {
         for dx in -1..=1 {
@@ -58,6 +55,13 @@ pub(crate) fn cells(x: f64, y: f64, period: (i32, i32), salt: u32) -> (f64, f64)
 /// A number in \[0, 1) for an integer.
 pub(crate) fn random(k: i32, salt: u32) -> f64 {
     unit(hash(k, 77, salt))
+}
+
+/// Of a small number. `f64::floor` is a call into a library on processors without SSE 4.1.
+fn floor(x: f64) -> i32 {
+    #[expect(clippy::cast_possible_truncation, reason = "texture coordinates are small")]
+    let toward_zero = x as i32;
+    toward_zero - i32::from(f64::from(toward_zero) > x)
 }
 
 fn unit(h: u32) -> f64 {
