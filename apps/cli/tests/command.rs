@@ -337,3 +337,39 @@ fn own_fixtures_make_plants() {
     assert!(item["counts"]["petals"].as_u64().unwrap() > 3, "{item:#}");
     assert!(item["counts"]["leaves"].as_u64().unwrap() >= 1, "{item:#}");
 }
+
+/// Table 1 of paper 000: drawings of the same make-up give models of the same make-up.
+#[test]
+fn the_eight_sketches_of_table_1_have_the_papers_counts() {
+    // Strokes, leaves and petals, branches, triangles.
+    const PAPER: [(&str, [u64; 4]); 8] = [
+        ("a", [15, 0, 56, 29_888]),
+        ("b", [7, 6, 1, 5_132]),
+        ("c", [13, 34, 7, 20_558]),
+        ("d", [22, 19, 3, 11_972]),
+        ("e", [31, 27, 4, 10_464]),
+        ("f", [27, 16, 21, 13_360]),
+        ("g", [31, 142, 22, 67_918]),
+        ("h", [25, 126, 13, 37_528]),
+    ];
+    let dir = folder("table1");
+    for (name, [strokes, blades, branches, triangles]) in PAPER {
+        let drawing =
+            Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../fixtures/sketches/table1/{name}.svg"));
+        let report: Value =
+            serde_json::from_str(&good(&dir, &["sketch", drawing.to_str().unwrap(), "--json"])).unwrap();
+        let item = &report["items"][0];
+        let count = |key: &str| item["counts"][key].as_u64().unwrap();
+        assert_eq!(item["strokes"].as_array().unwrap().len() as u64, strokes, "{name}");
+        for (what, ours, paper, percent) in [
+            ("leaves and petals", count("leaves") + count("petals"), blades, 5),
+            ("branches", count("branches"), branches, 5),
+            ("triangles", count("triangles"), triangles, 20),
+        ] {
+            assert!(
+                100 * ours.abs_diff(paper) <= percent * paper,
+                "{name}: {ours} {what}, the paper has {paper}"
+            );
+        }
+    }
+}

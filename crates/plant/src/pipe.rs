@@ -39,7 +39,7 @@ pub struct PipeModel {
     pub exponent: f64,
     /// Thinning between forks.
     pub taper: Taper,
-    /// No axis becomes thinner than this, metres (unless its bearer is).
+    /// No axis becomes thinner than this, metres (unless its bearer is); leaf stalks may have 0.6 of it.
     pub min_radius_m: f64,
     /// An axis whose base radius would exceed this share of its length is thinned to it.
     pub max_per_length: f64,
@@ -137,10 +137,11 @@ pub fn pipe_radii(plant: &mut Plant, model: &PipeModel) {
             *slot = Some(sound(r));
         }
     }
-    let floor = sound(model.min_radius_m);
+    let least = sound(model.min_radius_m);
     for i in 0..plant.axes.len() {
         let id = AxisId::new(i);
         let (kind, bearer) = (plant.axes[i].kind, plant.axes[i].bearer);
+        let floor = least * if kind == AxisKind::Petiole { 0.6 } else { 1.0 };
         let rows = plant.axes[i].nodes.start as usize..plant.axes[i].nodes.end as usize;
         if let Some(radii) = drawn[i].filter(|r| r.len() == rows.len()) {
             plant.nodes.radius_m[rows].iter_mut().zip(radii).for_each(|(to, &r)| *to = sound(r));

@@ -258,6 +258,31 @@ fn hang_in_crowns(
     }
 }
 
+/// The share of its drawn width that a trunk keeps at each node: it dissolves on its way through a crown, of
+/// which the drawing shows the outside only.
+fn thinned_in_crowns(points: &[DVec3], reading: &Reading, map: PlantMap) -> Vec<f64> {
+    let crowns: Vec<(Vec<DVec2>, f64)> = (reading.regions.iter())
+        .filter(|r| r.kind == RegionKind::Crown && r.outline.len() >= 3)
+        .map(|r| r.outline.iter().map(|&p| map.plant_from_ink(p)).collect::<Vec<DVec2>>())
+        .map(|outline| {
+            let top = outline.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
+            (outline, top)
+        })
+        .collect();
+    let mut entry: Option<(f64, f64)> = None;
+    let share = |p: &DVec3| {
+        if entry.is_none() {
+            let crown = crowns.iter().find(|(outline, _)| contains(outline, p.truncate()));
+            entry = crown.map(|&(_, top)| (p.y, top));
+        }
+        // A seventh is left at the crown's top.
+        entry.map_or(1.0, |(from, top)| {
+            1.0 - 0.86 * ((p.y - from) / (top - from).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
+        })
+    };
+    points.iter().map(share).collect()
+}
+
 /// The pipe model of this plant: base radii from sizes, drawn half widths where there are some.
 fn pipes(
     plant: &Plant,
@@ -287,14 +312,16 @@ fn pipes(
         if let (Some(plan), Some(id)) = (plan, id)
             && plan.half_width.len() == plan.points.len()
         {
-            drawn.push((*id, plan.half_width.iter().map(|w| w * map.metres_per_ink).collect()));
+            let inside = thinned_in_crowns(plant.axis_points(*id), reading, map);
+            let radii = plan.half_width.iter().zip(inside);
+            drawn.push((*id, radii.map(|(w, share)| w * share * map.metres_per_ink).collect()));
         }
     }
     let taper = Taper { s: spec.taper.s, alpha: spec.taper.alpha, m: spec.taper.m };
     PipeModel {
         exponent: spec.pipe_exponent.filter(|t| t.is_finite()).unwrap_or(if woody { 2.0 } else { 2.5 }),
         taper,
-        min_radius_m: height * if woody { 4e-4 } else { 1e-3 },
+        min_radius_m: height * if woody { 1.2e-3 } else { 1e-3 },
         max_per_length: 0.08,
         ground,
         drawn,

@@ -40,6 +40,8 @@ struct Chain {
     axes: Vec<AxisId>,
     bearer: Option<NodeId>,
     surface: Surface,
+    /// A leaf stalk: thin and one of many.
+    stalk: bool,
 }
 
 /// One finished tube.
@@ -76,8 +78,12 @@ pub(crate) fn tubes(
     let (chains, places) = chains(plant);
     let spines = grouped(run, chains.len(), |i| spine(plant, &chains[i], budget))?;
     let thickest = spines.iter().flatten().map(Spine::stout).fold(0.0, f64::max);
-    let sides: Vec<u32> =
-        spines.iter().map(|s| s.as_ref().map_or(3, |s| budget.sides(s.r[0], spec.sides))).collect();
+    let least = |i: usize| if chains[i].stalk { spec.sides.min(5) } else { spec.sides };
+    let sides: Vec<u32> = spines
+        .iter()
+        .enumerate()
+        .map(|(i, s)| s.as_ref().map_or(3, |s| budget.sides(s.r[0], least(i))))
+        .collect();
     // Circles for every number of sides that can occur, 3 to 24.
     let circles: Vec<Circle> = (0..=24).map(Circle::new).collect();
     grouped(run, chains.len(), |i| {
@@ -104,7 +110,7 @@ pub(crate) fn tubes(
             _ => 1,
         };
         let circle = circles.get(sides[i] as usize)?;
-        let mesh = sleeve(spine, bearer.as_ref(), circle, repeats, budget.rings(spine.length()));
+        let mesh = sleeve(spine, bearer.as_ref(), circle, repeats, rows(budget, chain, spine.length()));
         Some(Tube { surface, mesh })
     })
     .map(|tubes| tubes.into_iter().flatten().collect())
@@ -155,6 +161,12 @@ fn sleeve(spine: &Spine, bearer: Option<&Bearer<'_>>, circle: &Circle, repeats: 
     mesh
 }
 
+/// Rings of a chain; stalks make do with a third.
+fn rows(budget: &Budget, chain: &Chain, length: f64) -> f64 {
+    let rows = budget.rings(length);
+    if chain.stalk { (0.35 * rows).max(4.0) } else { rows }
+}
+
 /// Groups axes that continue their bearer's tip; also says where each axis went.
 fn chains(plant: &Plant) -> (Vec<Chain>, Vec<Place>) {
     let n = plant.axes.len();
@@ -167,7 +179,12 @@ fn chains(plant: &Plant) -> (Vec<Chain>, Vec<Place>) {
         }
         let id = AxisId::new(i);
         let axis = plant.axis(id);
-        let mut chain = Chain { axes: vec![id], bearer: axis.bearer, surface: Surface::of(axis.kind) };
+        let mut chain = Chain {
+            axes: vec![id],
+            bearer: axis.bearer,
+            surface: Surface::of(axis.kind),
+            stalk: axis.kind == AxisKind::Petiole,
+        };
         places[i] = (chains.len(), 0);
         let mut offset = axis.nodes.len();
         let mut tip = i;
@@ -245,7 +262,7 @@ fn spine(plant: &Plant, chain: &Chain, budget: &Budget) -> Option<Spine> {
         }
     }
     let length = geom_length(&points);
-    let rows = budget.rings(length);
+    let rows = rows(budget, chain, length);
     // A branch leaves a little in its bearer's direction before it takes its own.
     let first = chain.bearer.and_then(|node| {
         let host = *plant.nodes.axis.get(node.index())?;

@@ -172,7 +172,7 @@ fn smooth_seam(mesh: &mut TriMesh, rows: &[u32], sides: u32) {
 /// the ball's, the lower half the strand's, its foot at v = 1; without a ball the whole texture is the
 /// strand's, its foot at v = 0.
 pub(crate) fn strand(path: &[DVec3], radii: &[f64], knob: f64, fine: bool) -> TriMesh {
-    let (sides, rings) = if fine { (5, 5) } else { (4, 3) };
+    let (sides, rings) = if fine { (4, 4) } else { (4, 3) };
     let mut mesh = tube(path, radii, &TubeSpec { sides, rings, repeats: 1 });
     let most = mesh.uvs.iter().map(|uv| uv[1]).fold(f32::MIN_POSITIVE, f32::max);
     for uv in &mut mesh.uvs {
@@ -182,7 +182,7 @@ pub(crate) fn strand(path: &[DVec3], radii: &[f64], knob: f64, fine: bool) -> Tr
     if knob > 0.0 && !mesh.positions.is_empty() {
         let (Some(&end), before) = (path.last(), path.iter().rev().nth(1)) else { return mesh };
         let axis = before.and_then(|b| (end - *b).try_normalize()).unwrap_or(DVec3::Y);
-        mesh.append(&ball(end, axis, knob, if fine { 8 } else { 4 }));
+        mesh.append(&ball(end, axis, knob, if fine { 6 } else { 4 }));
     }
     mesh
 }

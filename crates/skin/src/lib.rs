@@ -99,17 +99,17 @@ fn budget(plant: &Plant, spec: &SkinSpec) -> Budget {
         include(organ.frame.origin);
         include(organ.frame.origin + organ.frame.along * reach);
     }
-    let (mut length, mut counted) = (0.0, 0.0);
+    let (mut length, mut counted) = (0.0, 0_u32);
     for axis in plant.axes.iter().filter(|a| a.kind != AxisKind::Petiole) {
         let points = plant.nodes.position.get(axis.nodes.start as usize..axis.nodes.end as usize);
         let own: f64 = points.unwrap_or_default().windows(2).map(|w| w[0].distance(w[1])).sum();
         if own.is_finite() {
             length += own;
-            counted += 1.0;
+            counted += 1;
         }
     }
-    let mean = if counted > 0.0 { length / counted } else { 1.0 };
-    Budget::new(spec.detail, bounds.size().length(), mean, plant.axes.len(), plant.organs.len())
+    let mean = if counted > 0 { length / f64::from(counted) } else { 1.0 };
+    Budget::new(spec.detail, bounds.size().length(), mean, counted as usize, plant.organs.len())
 }
 
 /// How far a shape reaches from its root, metres at scale 1.

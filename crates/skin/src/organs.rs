@@ -135,7 +135,13 @@ impl Ground {
     fn shape(&self, shape: &Shape, scale: f64, budget: &Budget) -> TriMesh {
         let triangles = |area: f64| budget.blade_triangles(area * scale * scale);
         match shape {
-            Shape::Blade(blade) => blade_mesh(blade, triangles(geom::signed_area(&blade.outline).abs())),
+            Shape::Blade(blade) => {
+                let area = geom::signed_area(&blade.outline).abs();
+                // A toothed or lobed margin (perimeter^2 / area of 30 to 300, 12 for a plain leaf) needs edges.
+                let around = crate::blade::closed_length(&blade.outline);
+                let least = (4.0 * around / area.max(f64::MIN_POSITIVE).sqrt()).clamp(14.0, 40.0);
+                blade_mesh(blade, triangles(area).max(least * budget.detail.min(1.0)))
+            }
             // A dome is smooth: two fifths of what a blade of its size has.
             Shape::Dome { radius_m, height_m } if radius_m.is_finite() && height_m.is_finite() => {
                 dome(*radius_m, *height_m, 0.4 * triangles(base::ops::PI * radius_m * radius_m))

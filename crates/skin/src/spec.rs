@@ -98,8 +98,10 @@ pub(crate) struct Budget {
 const RINGS: f64 = 32.0;
 // Above these totals (at detail 1) axes and blades share: a crown of thousands of twigs and leaves stays a
 // model that a game or a page can hold, while every sketch of the paper's Table 1 stays below.
-const ALL_RINGS: f64 = 12_000.0;
+const ALL_RINGS: f64 = 2_600.0;
 const ALL_BLADES: f64 = 64_000.0;
+// Beyond this many blades each is one of a crowd and the sum falls too.
+const CROWD: f64 = 200.0;
 
 impl Budget {
     pub(crate) fn new(detail: f64, size: f64, axis_length: f64, axes: usize, blades: usize) -> Self {
@@ -143,12 +145,13 @@ impl Budget {
     /// Triangles of a blade with this area (m2, at the size at which it is placed).
     ///
     /// By the fourth root of its area relative to the plant's box: Table 1's six large petals have 780 each,
-    /// its 142 leaves 408, its 126 small ones 251. Where many blades share a plant each gets less, down to 32:
+    /// its 142 leaves 408, its 126 small ones 251. Where many blades share a plant each gets less, down to 14:
     /// enough for a midrib and a margin, so that even crown leaves fold.
     pub(crate) fn blade_triangles(&self, area: f64) -> f64 {
         let relative = (area / (self.size * self.size)).clamp(1e-6, 1.0);
-        let by_size = 780.0 * (relative / 0.04).sqrt().sqrt();
-        let by_count = (ALL_BLADES / self.blades).max(32.0);
+        let by_size = 780.0 * base::ops::powf(relative / 0.04, 0.3);
+        let crowd = base::ops::powf((CROWD / self.blades).min(1.0), 0.4);
+        let by_count = (crowd * ALL_BLADES / self.blades).max(14.0);
         (by_size.clamp(32.0, 1200.0).min(by_count) * self.detail).clamp(8.0, 20_000.0)
     }
 }

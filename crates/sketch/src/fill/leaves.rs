@@ -27,8 +27,6 @@ pub(super) struct Leaves<'a> {
     pub(super) foliage: Foliage,
     /// Leaves wanted.
     pub(super) leaves: usize,
-    /// What twigs are, where some are needed to carry leaves.
-    pub(super) kind: AxisKind,
     /// Which contour of its bearer this is.
     pub(super) salt: u64,
 }
@@ -38,7 +36,7 @@ impl Leaves<'_> {
     ///
     /// The middles of leaves are strewn evenly over the contour; each midrib starts at the place of a bearer
     /// from which its middle is best reached, and runs on as far beyond it as leaves are long. Middles farther
-    /// away than that get a twig first.
+    /// away than that get a stalk first, which may carry further ones.
     pub(super) fn grow(&self, plant: &mut Plant) -> (usize, usize) {
         let v = self.volume;
         let axes = plant.axes.len();
@@ -65,7 +63,7 @@ impl Leaves<'_> {
                 let target = from.at.lerp(middle, (way - 0.45 * length) / way);
                 let step = 0.3 * length;
                 grow_toward(v, &self.spec, (from.at, from.tangent), target, step, &mut stream, &mut points);
-                let Some(axis) = add_axis(plant, &mut sites[i], self.kind, &points) else { continue };
+                let Some(axis) = add_axis(plant, &mut sites[i], AxisKind::Petiole, &points) else { continue };
                 add_sites(plant, axis, from.level + 1, from.path, &mut sites);
                 i = sites.len() - 1;
             }
@@ -91,14 +89,17 @@ impl Leaves<'_> {
             return false;
         }
         let leaf = Seed::new(child_key(plant, site));
-        let size = f.length * (1.0 + 0.15 * leaf.stream(Draw::Size).normal()).clamp(0.65, 1.35);
+        let size = f.length * (1.0 + 0.15 * leaf.stream(Draw::Size).normal()).clamp(0.75, 1.2);
         let way = middle - site.at;
         // Half a leaf beyond the middle, within what leaves of one plant differ by.
-        let size = size * (way.length() / f.length + 0.5).clamp(0.8, 1.3);
+        let size = size * (way.length() / f.length + 0.5).clamp(0.85, 1.15);
         let target = site.at + way.normalize_or_zero() * size;
         grow_toward(v, &self.spec, (site.at, site.tangent), target, size / 5.0, stream, points);
         let Some(&end) = points.last() else { return false };
-        let midrib = end - site.at;
+        let mut midrib = end - site.at;
+        // Where the body recedes from its bearer a midrib would run to the back rather than across the drawing.
+        let flat = midrib.truncate().length();
+        midrib.z = midrib.z.clamp(-0.8 * flat, 0.8 * flat);
         // A midrib that the contour cut short is no leaf.
         if midrib.length() < 0.45 * f.length {
             return false;
@@ -117,7 +118,8 @@ impl Leaves<'_> {
             flower: None,
             shape,
             frame,
-            scale: (midrib.length() / unit).max(f64::MIN_POSITIVE),
+            // Drawn leaves of one plant differ by a fifth or so: larger ones would be of another plant.
+            scale: (midrib.length().clamp(0.75 * f.length, 1.2 * f.length) / unit).max(f64::MIN_POSITIVE),
             tint: [value; 3],
             key: leaf.number(),
             source: None,

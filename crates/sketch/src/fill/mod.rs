@@ -99,8 +99,7 @@ pub(crate) fn fill(
             }
             RegionKind::Leaves => {
                 let (foliage, leaves) = look.of_cluster(plant, &volume);
-                let kind = if ctx.woody { AxisKind::Twig } else { AxisKind::Stem };
-                Leaves { volume: &volume, spec, seed, bearers: &bearers, foliage, leaves, kind, salt: rank }
+                Leaves { volume: &volume, spec, seed, bearers: &bearers, foliage, leaves, salt: rank }
                     .grow(plant)
             }
             RegionKind::Crown => {
@@ -206,8 +205,8 @@ impl Look<'_> {
         // Diameter of the circle with the contour's area.
         let diameter = (volume.area * 4.0 / base::ops::PI).sqrt();
         let conifer = habit == Habit::Excurrent;
-        // 1/13: fewer and larger leaves than a real tree's read as foliage at the size of a drawing.
-        let mut length = diameter / if conifer { 8.5 } else { 13.0 };
+        // 1/11: fewer and larger leaves than a real tree's read as foliage at the size of a drawing.
+        let mut length = diameter / if conifer { 8.5 } else { 11.0 };
         let mut shapes = self.drawn.to_vec();
         if let Some(natural) = self.natural() {
             length = natural.clamp(diameter / 40.0, diameter / 6.0);
@@ -219,7 +218,8 @@ impl Look<'_> {
             let form = FORMS[self.seed.stream(Draw::Template).below(FORMS.len())];
             shapes.push(self.form(plant, form));
         }
-        let leaves = leaves::leaves_for(volume.area, length, 2.15 * self.spec.density);
+        let leaves =
+            leaves::leaves_for(volume.area, length, if conifer { 2.15 } else { 3.2 } * self.spec.density);
         let middle = 0.5 * (volume.low() + volume.high());
         let core = DVec2::new(middle.x, volume.low().y + 0.35 * volume.height());
         let foliage = Foliage {
@@ -241,7 +241,7 @@ impl Look<'_> {
         if shapes.is_empty() {
             shapes.push(self.form(plant, LeafForm::Ovate));
         }
-        let leaves = leaves::leaves_for(volume.area, length, 1.1 * self.spec.density);
+        let leaves = leaves::leaves_for(volume.area, length, 0.64 * self.spec.density);
         let core = 0.5 * (volume.low() + volume.high());
         let foliage = Foliage {
             shapes,

@@ -8,8 +8,8 @@ use glam::{DVec2, DVec3};
 use plant::{AxisId, AxisKind, Phyllotaxis, Plant};
 
 use super::crown::{MOST_TWIGS, count_of};
-use super::grow::{Site, add_axis, add_sites, attach, eq2, grow_toward};
-use super::scatter::{scatter, scatter_rim};
+use super::grow::{Site, add_axis, add_sites, attach, grow_toward};
+use super::scatter::{scatter_front, scatter_rim};
 use super::volume::Volume;
 use crate::FillSpec;
 
@@ -25,12 +25,15 @@ pub(super) struct Twigs<'a> {
     pub(super) salt: u64,
 }
 
+// Table 1 of the paper: sketch (a) grows 45 twigs in four contours, sketch (f) 11 in one.
+const TWIGS: f64 = 11.0;
+
 impl Twigs<'_> {
     /// Grows the twigs; returns how many. `sites` gets the places on bearers and twigs inside the contour.
     ///
-    /// Twigs start along the bearers at equal arc lengths, in a spiral around them, and are drawn to the
-    /// nearest attraction point on their side (paper 000, section 4.3). What stays empty then is reached by
-    /// twigs from twigs.
+    /// A bearer that ends well below the far side of its contour goes on there as a leading shoot. Twigs start
+    /// along bearers and leaders at equal arc lengths, in a spiral around them, and are drawn to the contour on
+    /// their side (paper 000, section 4.3). What stays empty then is reached by twigs from twigs.
     pub(super) fn grow(&self, plant: &mut Plant, sites: &mut Vec<Site>) -> usize {
         let before = plant.axes.len();
         let v = self.volume;
@@ -38,119 +41,116 @@ impl Twigs<'_> {
         if sites.is_empty() {
             return 0;
         }
-        let mean =
-            sites.iter().map(|s| v.clearance(s.at.truncate()).max(0.0)).sum::<f64>() / sites.len() as f64;
-        let reach = mean.max(0.25 * v.inradius);
-        // 0.3: a contour five times as long as its half width gets some fifteen twigs, as in sketch (a) of the
-        // paper's Table 1.
-        let spacing = 0.3 * reach / self.spec.density;
-        let mut stream = self.seed.stream(Draw::Attractors);
-        let contour = self.attractors(reach, 320, &mut stream);
+        let wanted = count_of(TWIGS * self.spec.density, 2, MOST_TWIGS);
         let mut wobble = self.seed.stream(Draw::TwigPlace);
-        let step = reach / 7.0;
-        let starts = spaced(plant, sites, spacing);
+        let mut points = Vec::new();
+        self.leaders(plant, sites, &mut wobble, &mut points);
+        let leaders = plant.axes.len() - before;
+        // Three in five from the bearers: crowns of young trees branch about once more.
+        let first = count_of(0.62 * (wanted as f64), 1, MOST_TWIGS).saturating_sub(leaders).max(1);
+        let starts = spaced(plant, sites, first);
         let spiral = Phyllotaxis::default();
         let turn = self.seed.stream(Draw::Phyllotaxis).range(0.0, ops::TAU);
-        let mut points = Vec::new();
-        for (rank, &i) in starts.iter().enumerate().take(MOST_TWIGS) {
+        for (rank, &i) in starts.iter().enumerate() {
             let azimuth = turn + spiral.azimuth(u32::try_from(rank).unwrap_or(u32::MAX), 0);
-            self.follow(sites[i], azimuth, step, &contour, &mut wobble, &mut points);
-            let path = sites[i].path;
-            if let Some(axis) = self.keep(plant, &mut sites[i], &points, step) {
-                add_sites(plant, axis, 1, path, sites);
-            }
+            let from = sites[i];
+            // Low ones stand off, those near the tip go on with their bearer.
+            let insertion = ops::lerp(1.0, 0.65, rank as f64 / first as f64);
+            let target = self.aim(from, azimuth, insertion);
+            self.shoot(plant, &mut sites[i], target, &mut wobble, &mut points).into_iter().for_each(|axis| {
+                add_sites(plant, axis, 1, from.path, sites);
+            });
         }
-        // Second order: twigs from twigs to what no twig has come near to.
-        let gap = 0.42 * reach / ops::cbrt(self.spec.density);
-        let covered = |sites: &[Site], p: DVec3| {
-            sites.iter().any(|s| {
-                let d = s.at - p;
-                // Gaps in depth are not seen in the drawing: they count half.
-                d.truncate().length_squared() + 0.25 * d.z * d.z < gap * gap
-            })
-        };
-        let n = count_of(90.0 * self.spec.density, 40, MOST_TWIGS);
-        let empty = self.attractors(reach, n, &mut stream);
-        // A twig that starts near the contour would run along it.
-        let mut inner: Vec<Site> = sites.iter().filter(|s| v.inset(s.at) > 0.3 * reach).copied().collect();
-        for target in empty.into_iter().take(MOST_TWIGS.saturating_sub(starts.len())) {
-            if covered(sites, target) {
-                continue;
-            }
-            let Some(i) = attach(v, &inner, target, 0) else { continue };
-            let from = inner[i];
-            grow_toward(v, &self.spec, (from.at, from.tangent), target, step, &mut stream, &mut points);
-            if let Some(axis) = self.keep(plant, &mut inner[i], &points, step) {
-                add_sites(plant, axis, 2, from.path, sites);
+        let mut stream = self.seed.stream(Draw::Attractors);
+        let margin = (0.1 * v.inradius).max(v.cell());
+        let mut empty = scatter_rim(v, 3 * wanted, (margin, 0.4), &mut stream);
+        empty.extend(scatter_front(v, 3 * wanted, (margin, 0.7), &mut stream));
+        while plant.axes.len() - before < wanted {
+            // Always into the widest gap; gaps in depth are not seen in the drawing and count half.
+            let gap = |t: &DVec3| {
+                let near = sites.iter().map(|s| {
+                    let d = s.at - *t;
+                    d.truncate().length_squared() + 0.25 * d.z * d.z
+                });
+                near.fold(f64::INFINITY, f64::min)
+            };
+            let widest = (0..empty.len()).max_by(|&a, &b| gap(&empty[a]).total_cmp(&gap(&empty[b])));
+            let Some(target) = widest.map(|k| empty.swap_remove(k)) else { break };
+            let Some(i) = attach(v, sites, target, 0) else { continue };
+            let from = sites[i];
+            if let Some(axis) = self.shoot(plant, &mut sites[i], target, &mut stream, &mut points) {
+                add_sites(plant, axis, from.level + 1, from.path, sites);
             }
         }
         plant.axes.len() - before
     }
 
-    fn keep(&self, plant: &mut Plant, site: &mut Site, points: &[DVec3], step: f64) -> Option<AxisId> {
-        // Shorter than two steps it would be a bud.
-        let long = points.first().zip(points.last()).is_some_and(|(a, b)| a.distance(*b) > 1.5 * step);
-        if long { add_axis(plant, site, self.kind, points) } else { None }
-    }
-
-    /// Points on the contour (drawn in by a little) and on the body's front and back.
-    fn attractors(&self, reach: f64, n: usize, stream: &mut base::Stream) -> Vec<DVec3> {
-        let v = self.volume;
-        let margin = (0.12 * reach).max(v.cell());
-        let mut points = scatter_rim(v, n / 2, (margin, 0.4), stream);
-        points.extend(scatter(v, n - points.len(), stream, |p| {
-            let inset = v.inset(p);
-            inset > margin && inset < margin + 0.22 * v.inradius
-        }));
-        points
-    }
-
-    /// One twig by Eq 2: in every step towards the nearest attraction points on its side, along its
-    /// bearer, and on as it went.
-    fn follow(
+    /// Continues bearers whose tips are far from the contour ahead of them.
+    fn leaders(
         &self,
-        site: Site,
-        azimuth: f64,
-        step: f64,
-        contour: &[DVec3],
+        plant: &mut Plant,
+        sites: &mut Vec<Site>,
         wobble: &mut base::Stream,
-        out: &mut Vec<DVec3>,
+        points: &mut Vec<DVec3>,
     ) {
         let v = self.volume;
-        out.clear();
-        out.push(site.at);
-        let across = site.tangent.cross(DVec3::Z).try_normalize().unwrap_or(DVec3::X);
-        let front = across.cross(site.tangent);
-        let (sa, ca) = sin_cos(azimuth);
+        let middle = 0.5 * (v.low() + v.high());
+        let middle = middle.extend(v.mid(middle));
+        // The last place of every bearer is its tip, or where the contour was left.
+        let axis_of = |plant: &Plant, s: &Site| plant.nodes.axis[s.node.index()];
+        let tips: Vec<usize> = (0..sites.len())
+            .filter(|&i| {
+                let last =
+                    plant.axis(axis_of(plant, &sites[i])).nodes.end as usize == sites[i].node.index() + 1;
+                last || sites.len() == 1
+            })
+            .collect();
+        for i in tips {
+            let from = sites[i];
+            let start = if v.contains(from.at) { from.at } else { from.at.lerp(middle, 0.35) };
+            let to_middle = (middle - start).normalize_or_zero();
+            let ahead = (from.tangent + 0.5 * to_middle).try_normalize().unwrap_or(from.tangent);
+            let room = v.ray(start, ahead, 2.0 * v.height() + 4.0 * v.half_width);
+            if room < 0.4 * v.inradius {
+                continue;
+            }
+            let target = start + ahead * (0.9 * room);
+            if let Some(axis) = self.shoot(plant, &mut sites[i], target, wobble, points) {
+                add_sites(plant, axis, 0, from.path, sites);
+            }
+        }
+    }
+
+    /// Where a twig from `from` goes: near the contour on the side that an azimuth about its bearer tells.
+    fn aim(&self, from: Site, azimuth: f64, insertion: f64) -> DVec3 {
+        let v = self.volume;
+        let across = from.tangent.cross(DVec3::Z).try_normalize().unwrap_or(DVec3::X);
+        let front = across.cross(from.tangent);
+        let ((sa, ca), (si, ci)) = (sin_cos(azimuth), sin_cos(insertion));
         // Rather in the drawing's plane than towards the viewer: that is where the contour was drawn.
         let side = (across * ca + front * (0.65 * sa)).normalize_or_zero();
-        let (mut p, mut last) = (site.at, site.tangent);
-        for _ in 0..60 {
-            // The paper takes the nearest point; a mean that falls off as 1/d^4 is as near and does not jump.
-            let (mut toward, mut nearest) = (DVec3::ZERO, f64::INFINITY);
-            for &a in contour {
-                let from_start = a - site.at;
-                if from_start.dot(side) > 0.4 * from_start.length() {
-                    let d2 = p.distance_squared(a).max(1e-18);
-                    toward += (a - p) / (d2 * d2 * d2.sqrt());
-                    nearest = nearest.min(d2);
-                }
-            }
-            let Some(toward) = toward.try_normalize() else { return };
-            let noise = DVec3::new(wobble.normal(), wobble.normal(), wobble.normal()) * 0.06;
-            let pull =
-                eq2(&self.spec, toward, site.tangent, last) + DVec3::Y * (0.5 * self.spec.tropism) + noise;
-            let q = p + pull * step;
-            if !(v.contains_xy(q.truncate()) && v.contains_xy(p.lerp(q, 0.5).truncate())) {
-                return;
-            }
-            out.push(q);
-            if nearest.sqrt() < 0.6 * step || v.inset(q) < 0.5 * step {
-                return;
-            }
-            last = (q - p).try_normalize().unwrap_or(last);
-            p = q;
+        let direction = from.tangent * ci + side * si;
+        let room = v.ray(from.at, direction, 2.6 * v.inradius);
+        from.at + direction * (0.92 * room)
+    }
+
+    /// One twig by Eq 2, unless it would be no more than a bud.
+    fn shoot(
+        &self,
+        plant: &mut Plant,
+        site: &mut Site,
+        target: DVec3,
+        wobble: &mut base::Stream,
+        points: &mut Vec<DVec3>,
+    ) -> Option<AxisId> {
+        let whole = site.at.distance(target);
+        let step = (whole / 9.0).max(0.04 * self.volume.inradius);
+        if whole < 0.2 * self.volume.inradius {
+            return None;
         }
+        grow_toward(self.volume, &self.spec, (site.at, site.tangent), target, step, wobble, points);
+        let long = points.last().is_some_and(|end| end.distance(site.at) > 2.0 * step);
+        if long { add_axis(plant, site, self.kind, points) } else { None }
     }
 }
 
@@ -183,20 +183,21 @@ fn distance_to(volume: &Volume, p: DVec2) -> f64 {
     volume.nearest_xy(p).distance(p)
 }
 
-/// Sites about `spacing` apart along each axis, the tip's included.
-pub(super) fn spaced(plant: &Plant, sites: &[Site], spacing: f64) -> Vec<usize> {
-    let mut out = Vec::new();
-    let mut last: Option<(AxisId, f64)> = None;
+/// About `n` sites at equal arc lengths, counted through all axes; half a space is left at the start.
+fn spaced(plant: &Plant, sites: &[Site], n: usize) -> Vec<usize> {
+    let mut along = Vec::with_capacity(sites.len());
+    let mut sum = 0.0;
     for (i, s) in sites.iter().enumerate() {
-        let axis = plant.nodes.axis[s.node.index()];
-        let far = match last {
-            Some((a, at)) => a != axis || s.path - at >= spacing,
-            None => true,
-        };
-        if far {
-            out.push(i);
-            last = Some((axis, s.path));
+        let same = i > 0 && plant.nodes.axis[s.node.index()] == plant.nodes.axis[sites[i - 1].node.index()];
+        if same {
+            sum += s.at.distance(sites[i - 1].at);
         }
+        along.push(sum);
     }
+    let mut out: Vec<usize> = (0..n)
+        .map(|k| sum * (k as f64 + 0.5) / n as f64)
+        .map(|at| along.partition_point(|a| *a < at).min(sites.len() - 1))
+        .collect();
+    out.dedup();
     out
 }
