@@ -164,12 +164,13 @@ pub fn simple_outline(points: &[DVec2]) -> Option<Vec<DVec2>> {
         return None;
     }
     let no_area = NO_AREA * size * size;
+    // Turned round before the test, not after it: a touch that is decided by the last bit may be decided
+    // otherwise when the same edges run the other way.
+    if signed_area(&corners) < 0.0 {
+        corners.reverse();
+    }
     if crossings_up_to(&corners, 1) == 0 {
-        let area = signed_area(&corners);
-        if area < 0.0 {
-            corners.reverse();
-        }
-        return (area.abs() > no_area).then_some(corners);
+        return (signed_area(&corners) > no_area).then_some(corners);
     }
     // At least the spacing of numbers at the drawing's place, so that going back from the grid is exact.
     let unit = (size / STEPS).max(lo.abs().max(hi.abs()).max_element() * 4.0 * f64::EPSILON);
@@ -343,6 +344,34 @@ mod tests {
 
     fn p(x: f64, y: f64) -> DVec2 {
         DVec2::new(x, y)
+    }
+
+    #[test]
+    fn a_touch_that_the_last_bit_decides_is_simple_whichever_way_it_runs() {
+        // The last corner lies on the fourth edge, but for rounding.
+        let mut corners: Vec<DVec2> = [
+            (0.3055251773482429, 0.0016531079842704414),
+            (0.30828245342287797, 0.0016742396690292633),
+            (0.32188778828911147, 0.0057297216443345875),
+            (0.7291009440347793, 0.14149686972335282),
+            (0.3055326330044744, 0.5650651807536579),
+            (0.2914136893034643, 0.5526142563493811),
+            (0.16434319599437278, 0.42554376304028957),
+            (0.18160799885096526, 0.42442439280151834),
+            (0.44617342095661383, 0.4244243928015184),
+        ]
+        .map(|(x, y)| p(x, y))
+        .to_vec();
+        for _ in 0..2 {
+            for start in 0..corners.len() {
+                let mut ring = corners.clone();
+                ring.rotate_left(start);
+                let outline = simple_outline(&ring).unwrap();
+                assert_eq!(self_crossings(&outline), 0, "from corner {start}");
+                assert!(signed_area(&outline) > 0.03, "the larger part, if it falls into two");
+            }
+            corners.reverse();
+        }
     }
 
     /// A circle drawn by hand: from angle `from` over `turns` turns, with a wobble of the radius.

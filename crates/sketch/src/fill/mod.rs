@@ -70,18 +70,10 @@ pub(crate) fn fill(
     for (row, region) in reading.regions.iter().enumerate() {
         run.cancel.check()?;
         let outline: Vec<DVec2> = region.outline.iter().map(|&p| ctx.map.plant_from_ink(p)).collect();
-        let inflation = if region.kind == RegionKind::Crown { Inflation::Rows } else { Inflation::Ball };
-        let Some(mut volume) = Volume::new(&outline, inflation) else {
+        let Some((_, mut volume)) = body(outline, region.kind) else {
             report.warn("contour-empty", format!("contour {} encloses nothing and was left empty", row + 1));
             continue;
         };
-        // Many people draw a tree in one line: what hangs below the crown is its trunk, not foliage.
-        if region.kind == RegionKind::Crown
-            && let Some(neck) = volume.neck()
-            && let Some(crown) = Volume::new(&above(&outline, neck), inflation)
-        {
-            volume = crown;
-        }
         let bearers = bearers(plant, region, ctx, &volume);
         // Named by its bearer and its rank among that bearer's contours, so that editing one leaves others be.
         let bearer = bearers.first().map_or(0, |&a| plant.axis(a).key);
@@ -116,6 +108,22 @@ pub(crate) fn fill(
         }
     }
     Ok(())
+}
+
+/// The part of a contour that is filled, and its body; `None` where it encloses nothing.
+///
+/// Many people draw a tree in one line: what hangs below the crown is its trunk, not foliage.
+fn body(outline: Vec<DVec2>, kind: RegionKind) -> Option<(Vec<DVec2>, Volume)> {
+    let inflation = if kind == RegionKind::Crown { Inflation::Rows } else { Inflation::Ball };
+    let whole = Volume::new(&outline, inflation)?;
+    if kind == RegionKind::Crown
+        && let Some(neck) = whole.neck()
+        && let crown = above(&outline, neck)
+        && let Some(volume) = Volume::new(&crown, inflation)
+    {
+        return Some((crown, volume));
+    }
+    Some((outline, whole))
 }
 
 /// The plant's axes that run into a region; where the reading's have all degenerated, a new stem. Never empty.
