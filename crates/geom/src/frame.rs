@@ -95,7 +95,7 @@ fn double_reflection(from: &Frame3, place: DVec3, tangent: DVec3) -> DVec3 {
 }
 
 /// A unit vector at right angles to the unit vector `tangent`, as near to `wish` as can be.
-fn perpendicular(tangent: DVec3, wish: Option<DVec3>) -> DVec3 {
+pub(crate) fn perpendicular(tangent: DVec3, wish: Option<DVec3>) -> DVec3 {
     let across = |v: DVec3| {
         let v = v.direction()?;
         let v = v - tangent * Vector::dot(v, tangent);

@@ -15,6 +15,7 @@
 //! | `curve`, `frame` | smooth curves through points, frames along them |
 //! | `triangulate` | constrained Delaunay triangulation of a blade |
 //! | `grid` | neighbours |
+//! | `spline` | ball B-spline curves and their tubes, tensor-product surfaces (paper 004) |
 
 mod cluster;
 mod cone;
@@ -26,6 +27,7 @@ mod outline;
 mod pca;
 mod polygon;
 mod polyline;
+mod spline;
 mod triangulate;
 mod vector;
 
@@ -41,5 +43,9 @@ pub use polygon::{centroid, contains, convex_hull, farthest_pair, medial_axis_wi
 pub use polyline::{
     Closest, closest_on_polyline, point_at, point_at3, polyline_length, polyline_length3, resample,
     resample3, simplify, smooth_gaussian, smooth_gaussian_closed, tangent_at, tangent_at3, turning_angles,
+};
+pub use spline::{
+    Ball, BallBSpline, Basis, Blend, EndCap, MAX_DEGREE, NaturalCubic, RingRule, SplineError, SplineSurface,
+    SurfacePoint, Tube, TubeSpec, Weights, chord_parameters,
 };
 pub use triangulate::{TriangulateError, Triangulation, triangulate_blade};
