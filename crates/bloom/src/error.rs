@@ -1,0 +1,117 @@
+//! Two shapes without shared vertices -> how far they are apart.
+
+use base::{Run, map_indexed};
+use geom::Grid3;
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use crate::BloomError;
+
+/// Distances from the points of one shape to the nearest points of another, metres.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Distances {
+    /// As paper 003 defines its error: the mean over x, y and z of the absolute difference. Up to root 3 below
+    /// the Euclidean mean.
+    pub paper: f64,
+    /// Mean Euclidean distance.
+    pub mean: f64,
+    /// Root of the mean square.
+    pub rms: f64,
+    /// 95 of 100 points are nearer.
+    pub p95: f64,
+    /// The greatest.
+    pub max: f64,
+    /// Points measured.
+    pub points: usize,
+}
+
+/// Distances both ways, and how much of the measured shape is met.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ShapeError {
+    /// From each measured point to the reconstruction: what the paper states.
+    pub to_model: Distances,
+    /// From each reconstructed point to the measurement: parts of the model that are not there.
+    pub to_scan: Distances,
+    /// Share of measured points nearer than [`ShapeError::TOLERANCE`] to the reconstruction, 0 to 1.
+    pub coverage: f64,
+}
+
+impl ShapeError {
+    /// The distance within which a measured point counts as met: the 2 mm of paper 003.
+    pub const TOLERANCE: f64 = 0.002;
+}
+
+/// Compares a measured with a reconstructed shape, point to nearest point.
+///
+/// Points that are not finite are left out. The distances include the spacing of the points: a shape sampled
+/// anew is not at 0 from itself. Cost: n log n.
+///
+/// # Errors
+/// [`BloomError::TooFew`] if a shape has no finite point, [`BloomError::Cancelled`].
+///
+/// ```
+/// use glam::DVec3;
+/// let measured = [DVec3::ZERO, DVec3::X];
+/// let moved = measured.map(|p| p + DVec3::new(0.003, 0.0, 0.004));
+/// let e = bloom::compare(&measured, &moved, &base::Run::plain())?;
+/// assert!((e.to_model.mean - 0.005).abs() < 1e-12);
+/// assert!((e.to_model.paper - 0.007 / 3.0).abs() < 1e-12);
+/// # Ok::<(), bloom::BloomError>(())
+/// ```
+pub fn compare(measured: &[DVec3], model: &[DVec3], run: &Run<'_>) -> Result<ShapeError, BloomError> {
+    let (to_model, coverage) = one_way(measured, model, "the model", run)?;
+    let (to_scan, _) = one_way(model, measured, "the scan", run)?;
+    Ok(ShapeError { to_model, to_scan, coverage })
+}
+
+fn one_way(from: &[DVec3], to: &[DVec3], what: &str, run: &Run<'_>) -> Result<(Distances, f64), BloomError> {
+    run.cancel.check()?;
+    let grid = Grid3::new(to, 0.0);
+    let pieces: Vec<&[DVec3]> = from.chunks(4096).collect();
+    let rows = map_indexed(run.executor, pieces.len(), |i| {
+        let near = |p: &DVec3| grid.nearest(*p, f64::INFINITY).map(|k| (to[k] - *p).abs());
+        pieces[i].iter().filter(|p| p.is_finite()).filter_map(near).collect::<Vec<DVec3>>()
+    });
+    let gaps: Vec<DVec3> = rows.into_iter().flatten().collect();
+    if gaps.is_empty() {
+        return Err(BloomError::TooFew { what: what.to_owned(), is: 0, wanted: 1 });
+    }
+    let n = gaps.len() as f64;
+    let mut lengths: Vec<f64> = gaps.iter().map(|d| d.length()).collect();
+    let met = lengths.iter().filter(|&&d| d <= ShapeError::TOLERANCE).count() as f64 / n;
+    let paper = gaps.iter().map(|d| d.x + d.y + d.z).sum::<f64>() / (3.0 * n);
+    let mean = lengths.iter().sum::<f64>() / n;
+    let rms = (lengths.iter().map(|d| d * d).sum::<f64>() / n).sqrt();
+    lengths.sort_unstable_by(f64::total_cmp);
+    let last = lengths.len() - 1;
+    let figures = Distances {
+        paper,
+        mean,
+        rms,
+        p95: lengths[last * 95 / 100],
+        max: lengths[last],
+        points: lengths.len(),
+    };
+    Ok((figures, met))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_of_a_known_shift_and_a_part_that_is_missing() {
+        let grid: Vec<DVec3> =
+            (0..100).map(|i| DVec3::new(f64::from(i % 10), f64::from(i / 10), 0.0)).collect();
+        let shift = DVec3::new(0.001, -0.002, 0.002);
+        let moved: Vec<DVec3> = grid.iter().map(|p| *p + shift).collect();
+        let e = compare(&grid, &moved, &Run::plain()).unwrap();
+        let (a, b) = (e.to_model, e.to_scan);
+        assert!((a.mean - 0.003).abs() < 1e-9 && (a.rms - 0.003).abs() < 1e-9, "{e:?}");
+        assert!((a.paper - 0.005 / 3.0).abs() < 1e-9 && (b.max - 0.003).abs() < 1e-9, "{e:?}");
+        assert!(e.coverage <= 0.0, "3 mm is not met: {e:?}");
+        let e = compare(&grid, &moved[..50], &Run::plain()).unwrap();
+        assert!(e.to_model.max > 4.9 && e.to_scan.max < 0.004, "the missing half shows one way: {e:?}");
+        assert!(compare(&grid, &[DVec3::NAN], &Run::plain()).is_err(), "nothing to compare with");
+    }
+}

@@ -1,0 +1,49 @@
+//! What can go wrong here.
+
+/// Something about the input makes the result impossible.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BloomError {
+    /// A lattice has too few or too many control points, or not those that were asked for.
+    #[error(
+        "a lattice of {counts:?} control points does not fit; give 2 to 16 along each axis, such as 4x4x4"
+    )]
+    Lattice {
+        /// Control points along each axis.
+        counts: [usize; 3],
+    },
+    /// Two columns that belong together differ in length.
+    #[error("{what}: {is} rows, {wanted} are wanted")]
+    Length {
+        /// What it is.
+        what: &'static str,
+        /// Rows there.
+        is: usize,
+        /// Rows needed.
+        wanted: usize,
+    },
+    /// There are too few points to work with.
+    #[error(
+        "{what} has {is} usable points, at least {wanted} are needed; scan it more densely or leave it out"
+    )]
+    TooFew {
+        /// What it is.
+        what: String,
+        /// Points there.
+        is: usize,
+        /// Points needed.
+        wanted: usize,
+    },
+    /// A series cannot be fitted.
+    #[error(transparent)]
+    Fit(#[from] crate::FitError),
+    /// The user asked to stop.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+impl From<base::Cancelled> for BloomError {
+    fn from(_: base::Cancelled) -> Self {
+        Self::Cancelled
+    }
+}
