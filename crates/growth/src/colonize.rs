@@ -1,0 +1,583 @@
+//! Space colonisation: branches grow towards the attraction points that are nearest to them.
+//!
+//! `roots + attractors -> Skeleton` (Runions, Lane and Prusinkiewicz 2007; paper 001, Eq 1 and 2)
+
+use base::{Report, Run};
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use crate::error::{GrowthError, usable, within};
+use crate::field::{Change, Field, NOBODY};
+use crate::{JointId, Obstacles, Skeleton, Tropism};
+
+/// How branches grow towards attraction points.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ColonizeSpec {
+    /// Distance `d_i` within which a joint perceives a point, metres, above 0, default 1.
+    pub attraction_m: f64,
+    /// Distance `d_k` at which a point is consumed, metres, above 0 and at most `attraction_m` (else that is raised
+    /// to it, with a warning), default 0.4.
+    pub kill_m: f64,
+    /// Length D of one step, metres; default half of `kill_m`. Above twice `kill_m`, points can be stepped over.
+    pub step_m: Option<f64>,
+    /// What else pulls: light, gravity, wind. Default none.
+    pub tropisms: Vec<Tropism>,
+    /// Share of the last direction kept in each step, 0 to 10, default 0.
+    pub inertia: f64,
+    /// A point steers one step before it is consumed, as in paper 001, instead of being consumed as soon as a joint
+    /// comes near (Runions). Needed where `kill_m` is near `attraction_m`: else hardly any point steers. Default
+    /// false.
+    pub steer_before_kill: bool,
+    /// Growth stops, with a warning, at this many joints; 1 to 2^31, default 4 million.
+    pub max_joints: u32,
+}
+
+impl Default for ColonizeSpec {
+    fn default() -> Self {
+        Self {
+            attraction_m: 1.0,
+            kill_m: 0.4,
+            step_m: None,
+            tropisms: Vec::new(),
+            inertia: 0.0,
+            steer_before_kill: false,
+            max_joints: 4_000_000,
+        }
+    }
+}
+
+/// What became of an attraction point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fate {
+    /// Consumed by a joint.
+    Reached(JointId),
+    /// Not reached: too far from every joint, or hidden behind obstacles.
+    Unreached,
+    /// It lies in an obstacle, of this index, or in its clearance (`None`).
+    Buried(Option<usize>),
+    /// It is not a finite point within 1e6 m.
+    Unusable,
+}
+
+/// What colonisation made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Colonized {
+    /// The joints, those given first.
+    pub skeleton: Skeleton,
+    /// What became of each attraction point, in the order given.
+    pub fates: Vec<Fate>,
+    /// Rounds of growth, those of the trunk included.
+    pub rounds: u32,
+}
+
+/// The numbers of a spec, checked.
+#[derive(Clone, Debug)]
+struct Steps {
+    attraction: f64,
+    kill: f64,
+    step: f64,
+    pull: DVec3,
+    inertia: f64,
+    late: bool,
+    most: usize,
+}
+
+impl ColonizeSpec {
+    fn check(&self, report: &mut Report) -> Result<Steps, GrowthError> {
+        let length = |field, x| within(field, x, 1e-6, 1e6, "above 0 and at most 1e6 m");
+        let kill = length("kill_m", self.kill_m)?;
+        let mut attraction = length("attraction_m", self.attraction_m)?;
+        if kill > attraction {
+            report.warn(
+                "attraction-raised",
+                format!(
+                    "attraction distance {attraction} m is below the kill distance: {kill} m was used for both"
+                ),
+            );
+            attraction = kill;
+        }
+        let step = length("step_m", self.step_m.unwrap_or(0.5 * kill))?;
+        within("inertia", self.inertia, 0.0, 10.0, "0 to 10")?;
+        let most = within("max_joints", f64::from(self.max_joints), 1.0, 2_147_483_648.0, "1 to 2^31")?;
+        let pull = Tropism::sum(&self.tropisms)?;
+        if step > 2.0 * kill {
+            report.warn(
+                "step-long",
+                format!("steps of {step} m can pass points by, which are consumed within {kill} m only"),
+            );
+        }
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 2^31")]
+        Ok(Steps {
+            attraction,
+            kill,
+            step,
+            pull,
+            inertia: self.inertia,
+            late: self.steer_before_kill,
+            most: most as usize,
+        })
+    }
+}
+
+/// Grows trees from `roots` until every attraction point is consumed or cannot be reached.
+///
+/// `roots`: one tree each; they compete. `attractors`: any points; those that are not finite or lie in an obstacle
+/// are left out. Guaranteed: it ends; every point has a [`Fate`]; a clean `validate()`; no joint in an obstacle or
+/// its clearance; the same bits everywhere. Where growth stalls (a joint pulled to two sides alike), the joint
+/// grows straight to its nearest point. A root that perceives nothing first grows a trunk: up, then to the nearest
+/// point. Not guaranteed: that all points are reached. Cost: about linear in points and joints.
+///
+/// # Errors
+/// [`GrowthError`]: numbers out of range, no roots, a root in an obstacle, cancelled.
+///
+/// ```
+/// use base::{Report, Run};
+/// use glam::DVec3;
+/// use growth::{ColonizeSpec, Fate, Obstacles, colonize};
+/// let attractors = [DVec3::new(1.0, 2.0, 0.0), DVec3::new(-1.0, 2.0, 0.0)];
+/// let spec = ColonizeSpec { attraction_m: 1.5, kill_m: 0.2, ..ColonizeSpec::default() };
+/// let none = Obstacles::none();
+/// let tree = colonize(&[DVec3::ZERO], &attractors, &none, &spec, &Run::plain(), &mut Report::default())?;
+/// assert!(tree.fates.iter().all(|f| matches!(f, Fate::Reached(_))));
+/// # Ok::<(), growth::GrowthError>(())
+/// ```
+pub fn colonize(
+    roots: &[DVec3],
+    attractors: &[DVec3],
+    obstacles: &Obstacles,
+    spec: &ColonizeSpec,
+    run: &Run<'_>,
+    report: &mut Report,
+) -> Result<Colonized, GrowthError> {
+    colonize_from(plant_roots(roots, obstacles)?, attractors, obstacles, spec, run, report)
+}
+
+/// The skeleton of roots alone.
+pub(crate) fn plant_roots(roots: &[DVec3], obstacles: &Obstacles) -> Result<Skeleton, GrowthError> {
+    if roots.is_empty() {
+        return Err(GrowthError::NoRoots);
+    }
+    let mut skeleton = Skeleton::default();
+    for (root, &at) in roots.iter().enumerate() {
+        if !usable(at) {
+            return Err(GrowthError::Root { root });
+        }
+        if let Some(obstacle) = obstacles.inside(at) {
+            return Err(GrowthError::RootInObstacle { root, obstacle });
+        }
+        #[expect(clippy::cast_possible_truncation, reason = "fewer roots than joints")]
+        skeleton.push_root(at, root as u32);
+    }
+    Ok(skeleton)
+}
+
+/// As [`colonize`], from a skeleton that is there already: its joints stay as they are, and all may grow on.
+///
+/// This is how later life cycles, and branches after pruning, grow.
+///
+/// # Errors
+/// As [`colonize`].
+pub fn colonize_from(
+    skeleton: Skeleton,
+    attractors: &[DVec3],
+    obstacles: &Obstacles,
+    spec: &ColonizeSpec,
+    run: &Run<'_>,
+    report: &mut Report,
+) -> Result<Colonized, GrowthError> {
+    let steps = spec.check(report)?;
+    if skeleton.is_empty() {
+        return Err(GrowthError::NoRoots);
+    }
+    let started = run.clock.now_ms();
+    let mut fates = vec![Fate::Unreached; attractors.len()];
+    for (fate, &p) in fates.iter_mut().zip(attractors) {
+        if !usable(p) {
+            *fate = Fate::Unusable;
+        } else if !obstacles.is_empty() && !obstacles.free(p) {
+            *fate = Fate::Buried(obstacles.inside(p));
+        }
+    }
+    let free: Vec<bool> = fates.iter().map(|f| *f == Fate::Unreached).collect();
+    let field = Field::new(attractors, &free, steps.attraction);
+    let birth = skeleton.age();
+    let mut colony = Colony {
+        load: Load::new(&skeleton),
+        skeleton,
+        field,
+        fates,
+        obstacles,
+        steps,
+        birth,
+        fresh: vec![],
+        doomed: vec![],
+    };
+    colony.settle(run)?;
+    colony.grow(run, report)?;
+    let rounds = colony.birth - birth;
+    let Colony { skeleton, fates, .. } = colony;
+    tell(&fates, report);
+    report.book("grow", run.clock.now_ms() - started);
+    debug_assert_eq!(skeleton.validate().next(), None, "a grown skeleton is sound");
+    Ok(Colonized { skeleton, fates, rounds })
+}
+
+/// Cuts off `joint` and all that grew from it, and lets the tree grow into the room that this leaves.
+///
+/// `grown` and `attractors`: the result of [`colonize`] and what it was given. Guaranteed: what was not cut off stays
+/// where it is; the points that the cut branch had consumed attract again, all others do not.
+///
+/// # Errors
+/// As [`colonize`].
+///
+/// ```
+/// use base::{Report, Run};
+/// use glam::DVec3;
+/// use growth::{ColonizeSpec, JointId, Obstacles, colonize, regrow};
+/// let points = [DVec3::new(1.0, 1.0, 0.0), DVec3::new(-1.0, 1.0, 0.0)];
+/// let (spec, none) = (ColonizeSpec { attraction_m: 3.0, ..ColonizeSpec::default() }, Obstacles::none());
+/// let (run, mut report) = (Run::plain(), Report::default());
+/// let tree = colonize(&[DVec3::ZERO], &points, &none, &spec, &run, &mut report)?;
+/// let again = regrow(&tree, JointId::new(3), &points, &none, &spec, &run, &mut report)?;
+/// assert_eq!(again.skeleton.position[..3], tree.skeleton.position[..3]);
+/// # Ok::<(), growth::GrowthError>(())
+/// ```
+pub fn regrow(
+    grown: &Colonized,
+    joint: JointId,
+    attractors: &[DVec3],
+    obstacles: &Obstacles,
+    spec: &ColonizeSpec,
+    run: &Run<'_>,
+    report: &mut Report,
+) -> Result<Colonized, GrowthError> {
+    let (left, new_id) = grown.skeleton.keep_mapped(|j| j != joint.index());
+    let mut fates = grown.fates.clone();
+    let mut freed = Vec::new();
+    for (i, fate) in fates.iter_mut().enumerate() {
+        if let Fate::Reached(j) = *fate {
+            match new_id.get(j.index()).copied().flatten() {
+                Some(now) => *fate = Fate::Reached(now),
+                None => freed.push(i),
+            }
+        }
+    }
+    let points: Vec<DVec3> = freed.iter().filter_map(|&i| attractors.get(i).copied()).collect();
+    let again = colonize_from(left, &points, obstacles, spec, run, report)?;
+    for (&i, &fate) in freed.iter().zip(&again.fates) {
+        fates[i] = fate;
+    }
+    Ok(Colonized { fates, ..again })
+}
+
+fn tell(fates: &[Fate], report: &mut Report) {
+    let count = |f: fn(&Fate) -> bool| fates.iter().filter(|x| f(x)).count();
+    let n = fates.len();
+    let lost = count(|f| *f == Fate::Unreached);
+    if lost > 0 {
+        report.warn("attractors-unreached", format!("{lost} of {n} attraction points could not be reached"));
+    }
+    let buried = count(|f| matches!(f, Fate::Buried(_)));
+    if buried > 0 {
+        report.warn("attractors-buried", format!("{buried} of {n} attraction points lie in obstacles"));
+    }
+    let bad = count(|f| *f == Fate::Unusable);
+    if bad > 0 {
+        report.warn(
+            "attractors-unusable",
+            format!("{bad} of {n} attraction points are no finite points within 1e6 m"),
+        );
+    }
+}
+
+/// What each joint is pulled by, and which joints' pull has changed since they last grew.
+struct Load {
+    /// Sum of unit vectors to the points that have this joint as their nearest.
+    sum: Vec<DVec3>,
+    count: Vec<u32>,
+    queued: Vec<bool>,
+    queue: Vec<u32>,
+    /// Children as lists: a joint never grows the same child twice.
+    first: Vec<u32>,
+    next: Vec<u32>,
+}
+
+impl Load {
+    fn new(skeleton: &Skeleton) -> Self {
+        let n = skeleton.len();
+        let mut load = Self {
+            sum: vec![DVec3::ZERO; n],
+            count: vec![0; n],
+            queued: vec![false; n],
+            queue: Vec::with_capacity(256),
+            first: vec![NOBODY; n],
+            next: vec![NOBODY; n],
+        };
+        for (j, parent) in skeleton.parent.iter().enumerate() {
+            if let Some(p) = parent {
+                load.adopt(p.index(), JointId::new(j).raw());
+            }
+        }
+        load
+    }
+
+    fn add_joint(&mut self, parent: usize, joint: u32) {
+        self.sum.push(DVec3::ZERO);
+        self.count.push(0);
+        self.queued.push(false);
+        self.first.push(NOBODY);
+        self.next.push(NOBODY);
+        self.adopt(parent, joint);
+    }
+
+    fn adopt(&mut self, parent: usize, joint: u32) {
+        self.next[joint as usize] = self.first[parent];
+        self.first[parent] = joint;
+    }
+
+    fn wake(&mut self, joint: u32) {
+        if !self.queued[joint as usize] {
+            self.queued[joint as usize] = true;
+            self.queue.push(joint);
+        }
+    }
+
+    /// A point leaves a joint.
+    fn lose(&mut self, joint: u32, at: DVec3, place: DVec3) {
+        let j = joint as usize;
+        self.count[j] -= 1;
+        // Without points the sum is exactly zero, not the dust of many additions.
+        self.sum[j] = if self.count[j] == 0 { DVec3::ZERO } else { self.sum[j] - towards(at, place) };
+        self.wake(joint);
+    }
+
+    /// A point comes to a joint.
+    fn gain(&mut self, joint: u32, at: DVec3, place: DVec3) {
+        self.count[joint as usize] += 1;
+        self.sum[joint as usize] += towards(at, place);
+        self.wake(joint);
+    }
+}
+
+fn towards(from: DVec3, to: DVec3) -> DVec3 {
+    (to - from).normalize_or_zero()
+}
+
+struct Colony<'a> {
+    skeleton: Skeleton,
+    field: Field,
+    load: Load,
+    fates: Vec<Fate>,
+    obstacles: &'a Obstacles,
+    steps: Steps,
+    birth: u32,
+    /// Joints of this round that no point has chosen between yet.
+    fresh: Vec<u32>,
+    /// Points that steer once more before they are consumed.
+    doomed: Vec<u32>,
+}
+
+impl Colony<'_> {
+    /// Lets the points choose between the joints that are there, and grows a trunk where a root sees none.
+    fn settle(&mut self, run: &Run<'_>) -> Result<(), GrowthError> {
+        for j in 0..self.skeleton.len() {
+            if j % 1024 == 0 {
+                run.cancel.check()?;
+            }
+            self.offer(JointId::new(j).raw());
+        }
+        let children = self.skeleton.children();
+        let lonely = |j: &usize| self.skeleton.parent[*j].is_none() && children[*j] == 0;
+        let roots: Vec<usize> = (0..self.skeleton.len()).filter(lonely).collect();
+        let started = self.birth;
+        let mut last = started;
+        for root in roots {
+            run.cancel.check()?;
+            self.birth = started;
+            self.grow_trunk(JointId::new(root).raw());
+            last = last.max(self.birth);
+        }
+        self.birth = last;
+        Ok(())
+    }
+
+    /// Up to the height of the nearest point, then towards it, until the tip perceives something.
+    fn grow_trunk(&mut self, root: u32) {
+        let from = self.skeleton.position[root as usize];
+        let nearest = |p: DVec3| {
+            let all = self.field.iter().map(|(_, q, ..)| q);
+            all.reduce(|a, b| if b.distance_squared(p) < a.distance_squared(p) { b } else { a })
+        };
+        if self.load.count[root as usize] > 0 {
+            return;
+        }
+        let Some(goal) = nearest(from) else { return };
+        // Three times the straight way leaves room to go up first and around things.
+        let budget = 3.0 * from.distance(goal) / self.steps.step + 8.0;
+        let (mut tip, mut heading, mut steps) = (root, DVec3::Y, 0.0);
+        while self.load.count[tip as usize] == 0 && steps < budget && self.skeleton.len() < self.steps.most {
+            let at = self.skeleton.position[tip as usize];
+            let below = at.y + 0.5 * self.steps.attraction < goal.y;
+            let aim = if below { DVec3::Y } else { (heading + towards(at, goal)).normalize_or(DVec3::Y) };
+            self.birth += 1;
+            let Some(next) = self.push(tip, aim, self.steps.step) else { return };
+            let Some(&p) = self.skeleton.position.get(next as usize) else { return };
+            heading = towards(at, p);
+            tip = next;
+            steps += 1.0;
+            self.offer_fresh();
+        }
+    }
+
+    fn grow(&mut self, run: &Run<'_>, report: &mut Report) -> Result<(), GrowthError> {
+        // Methods, section 2: after so many rounds without a point consumed, growth goes in circles.
+        let patience = 2.0 * self.steps.attraction / self.steps.step + 2.0;
+        let mut quiet = 0.0;
+        let mut queue = Vec::with_capacity(self.load.queue.capacity());
+        while self.field.alive() > 0 {
+            run.cancel.check()?;
+            if self.skeleton.len() >= self.steps.most {
+                let n = self.skeleton.len();
+                report.warn("growth-stopped", format!("growth stopped at {n} joints, the most allowed"));
+                break;
+            }
+            self.birth += 1;
+            let before = self.field.alive();
+            core::mem::swap(&mut queue, &mut self.load.queue);
+            for &joint in &queue {
+                self.load.queued[joint as usize] = false;
+                self.sprout(joint);
+            }
+            queue.clear();
+            self.consume_doomed();
+            if self.fresh.is_empty() || quiet > patience {
+                if !self.go_straight() {
+                    self.birth -= 1;
+                    break;
+                }
+                quiet = 0.0;
+            } else {
+                self.offer_fresh();
+            }
+            quiet = if self.field.alive() < before { 0.0 } else { quiet + 1.0 };
+            self.field.narrow();
+        }
+        Ok(())
+    }
+
+    /// Eq 1 and 2: one step along the mean direction of the points that are nearest to this joint.
+    fn sprout(&mut self, joint: u32) {
+        let j = joint as usize;
+        if self.load.count[j] == 0 || self.skeleton.len() >= self.steps.most {
+            return;
+        }
+        let mean = self.load.sum[j].normalize_or_zero();
+        let last = self.skeleton.heading(JointId::new(j)) * self.steps.inertia;
+        if let Some(direction) = (mean + last + self.steps.pull).try_normalize() {
+            self.push(joint, direction, self.steps.step);
+        }
+    }
+
+    /// Adds a child one step away, around obstacles, unless there is one already; its row.
+    fn push(&mut self, parent: u32, wish: DVec3, step: f64) -> Option<u32> {
+        let from = self.skeleton.position[parent as usize];
+        let direction =
+            if self.obstacles.is_empty() { wish } else { self.obstacles.steer(from, wish, step)? };
+        let at = from + direction * step;
+        let twin2 = 1e-6 * self.steps.step * self.steps.step;
+        let mut child = self.load.first[parent as usize];
+        while child != NOBODY {
+            if self.skeleton.position[child as usize].distance_squared(at) < twin2 {
+                return None;
+            }
+            child = self.load.next[child as usize];
+        }
+        let joint = self.skeleton.push(at, JointId::new(parent as usize), self.birth).raw();
+        self.load.add_joint(parent as usize, joint);
+        self.fresh.push(joint);
+        Some(joint)
+    }
+
+    /// Consumes the points that have steered their last step.
+    fn consume_doomed(&mut self) {
+        let mut doomed = core::mem::take(&mut self.doomed);
+        for &id in &doomed {
+            if let Some((owner, place)) = self.field.give_up(id) {
+                self.fates[id as usize] = Fate::Reached(JointId::new(owner as usize));
+                self.load.lose(owner, self.skeleton.position[owner as usize], place);
+            }
+        }
+        doomed.clear();
+        self.doomed = doomed;
+    }
+
+    fn offer_fresh(&mut self) {
+        let mut fresh = core::mem::take(&mut self.fresh);
+        for &joint in &fresh {
+            self.offer(joint);
+        }
+        fresh.clear();
+        self.fresh = fresh;
+    }
+
+    /// Lets the points choose whether this joint is nearer to them than what they had.
+    fn offer(&mut self, joint: u32) {
+        let Self { field, load, skeleton, fates, obstacles, steps, doomed, .. } = self;
+        let at = skeleton.position[joint as usize];
+        let open = obstacles.is_empty();
+        field.offer(
+            at,
+            joint,
+            if steps.late { -1.0 } else { steps.kill * steps.kill },
+            |place| open || !obstacles.blocks(at, place),
+            |change: Change| {
+                if change.from != NOBODY {
+                    load.lose(change.from, skeleton.position[change.from as usize], change.place);
+                }
+                if change.killed {
+                    fates[change.id as usize] = Fate::Reached(JointId::new(joint as usize));
+                } else {
+                    load.gain(joint, at, change.place);
+                    if steps.late && at.distance_squared(change.place) <= steps.kill * steps.kill {
+                        doomed.push(change.id);
+                    }
+                }
+            },
+        );
+    }
+
+    /// Breaks a stall: every joint with points grows straight to the nearest of them. A point that does not come
+    /// nearer is given up, so that each call gets on. Whether there was anything to do.
+    fn go_straight(&mut self) -> bool {
+        self.offer_fresh();
+        let mut goals: Vec<(u32, f64, u32, DVec3)> = self
+            .field
+            .iter()
+            .filter(|&(_, _, owner, _)| owner != NOBODY)
+            .map(|(id, place, owner, d2)| (owner, d2, id, place))
+            .collect();
+        goals.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
+        goals.dedup_by_key(|g| g.0);
+        for &(owner, d2, _, place) in &goals {
+            let at = self.skeleton.position[owner as usize];
+            let step = self.steps.step.min(d2.sqrt());
+            if self.skeleton.len() < self.steps.most && step > 0.0 {
+                self.push(owner, towards(at, place), step);
+            }
+        }
+        self.offer_fresh();
+        for &(owner, before, id, _) in &goals {
+            if self.field.distance2(id).is_some_and(|now| now >= before)
+                && let Some((_, place)) = self.field.give_up(id)
+            {
+                self.load.lose(owner, self.skeleton.position[owner as usize], place);
+            }
+        }
+        !goals.is_empty()
+    }
+}
+
+#[cfg(test)]
+#[path = "colonize_tests.rs"]
+mod tests;

@@ -1,0 +1,414 @@
+//! Crown envelopes and the attraction points scattered in them.
+//!
+//! `Envelope -> Region -> attractors`
+
+use base::{Draw, Seed};
+use geom::{Grid3, contains};
+use glam::{DVec2, DVec3};
+use serde::{Deserialize, Serialize};
+
+use crate::error::{FAR_M, GrowthError, usable, within};
+use crate::solid::Solid;
+
+/// The space that a crown may fill. Metres, +Y up.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "shape", rename_all = "kebab-case", deny_unknown_fields)]
+#[non_exhaustive]
+pub enum Envelope {
+    /// A ball.
+    Sphere {
+        /// Its middle.
+        centre: DVec3,
+        /// Above 0.
+        radius_m: f64,
+    },
+    /// A ball stretched along the axes.
+    Ellipsoid {
+        /// Its middle.
+        centre: DVec3,
+        /// Half its extents, each above 0.
+        radii_m: DVec3,
+    },
+    /// An upright cone, its point up.
+    Cone {
+        /// Middle of its base.
+        base: DVec3,
+        /// Radius of its base, above 0.
+        radius_m: f64,
+        /// Above 0.
+        height_m: f64,
+    },
+    /// An upright cylinder.
+    Cylinder {
+        /// Middle of its base.
+        base: DVec3,
+        /// Above 0.
+        radius_m: f64,
+        /// Above 0.
+        height_m: f64,
+    },
+    /// A surface of revolution about the vertical through `base`.
+    Revolution {
+        /// Where the heights of the profile start.
+        base: DVec3,
+        /// `(radius, height)`, at least 2 points, heights rising, radii 0 or more.
+        profile: Vec<DVec2>,
+    },
+    /// A closed outline drawn in the plane z = `centre_z`; across the plane each height is as deep as it is wide.
+    Outline {
+        /// At least 3 points.
+        polygon: Vec<DVec2>,
+        /// The plane of the drawing.
+        centre_z_m: f64,
+        /// Depth over width, above 0; 1 gives round sections.
+        depth: f64,
+    },
+    /// A closed mesh. Small holes and inverted faces are borne (winding number).
+    Mesh {
+        /// Vertices.
+        vertices: Vec<DVec3>,
+        /// Corners of each triangle.
+        triangles: Vec<[u32; 3]>,
+    },
+    /// A cloud of points: the space within `reach_m` of any of them.
+    Points {
+        /// At least one usable point.
+        points: Vec<DVec3>,
+        /// Above 0.
+        reach_m: f64,
+    },
+}
+
+impl Default for Envelope {
+    /// The crown of a young broadleaf tree: a ball of 2 m radius, its middle 4 m above the ground.
+    fn default() -> Self {
+        Self::Sphere { centre: DVec3::new(0.0, 4.0, 0.0), radius_m: 2.0 }
+    }
+}
+
+/// An envelope made ready to be asked.
+///
+/// ```
+/// use glam::DVec3;
+/// use growth::Envelope;
+/// let crown = Envelope::Cone { base: DVec3::ZERO, radius_m: 1.0, height_m: 3.0 }.prepare()?;
+/// assert!(crown.contains(DVec3::new(0.3, 1.5, 0.3)) && !crown.contains(DVec3::new(0.5, 2.5, 0.0)));
+/// let points = crown.scatter(100, 0.0, base::Seed::new(1), |_| true)?;
+/// assert!(points.len() == 100 && points.iter().all(|&p| crown.contains(p)));
+/// # Ok::<(), growth::GrowthError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Region {
+    form: Form,
+    lo: DVec3,
+    hi: DVec3,
+}
+
+#[derive(Clone, Debug)]
+enum Form {
+    Ellipsoid(DVec3, DVec3),
+    Revolution(DVec3, Vec<DVec2>),
+    Outline(Vec<DVec2>, f64, f64),
+    Mesh(Solid),
+    Points(Grid3, f64),
+}
+
+impl Envelope {
+    /// Checks the numbers and builds what fast answers need.
+    ///
+    /// Cost: linear in points, n log n in triangles.
+    ///
+    /// # Errors
+    /// [`GrowthError::Field`] for numbers out of range, [`GrowthError::Mesh`] for a mesh without volume.
+    pub fn prepare(&self) -> Result<Region, GrowthError> {
+        let length = |field, x| within(field, x, 1e-6, FAR_M, "above 0 and at most 1e6 m");
+        let place = |field, p: DVec3| {
+            if usable(p) {
+                Ok(p)
+            } else {
+                let value = p.to_array().into_iter().find(|c| c.abs() > FAR_M || !c.is_finite());
+                Err(GrowthError::Field {
+                    field,
+                    range: "a finite point within 1e6 m",
+                    value: value.unwrap_or(f64::NAN),
+                })
+            }
+        };
+        let form = match self {
+            Self::Sphere { centre, radius_m } => Form::Ellipsoid(
+                place("envelope.centre", *centre)?,
+                DVec3::splat(length("envelope.radius_m", *radius_m)?),
+            ),
+            Self::Ellipsoid { centre, radii_m } => {
+                for r in radii_m.to_array() {
+                    length("envelope.radii_m", r)?;
+                }
+                Form::Ellipsoid(place("envelope.centre", *centre)?, *radii_m)
+            }
+            Self::Cone { base, radius_m, height_m } => {
+                let (r, h) =
+                    (length("envelope.radius_m", *radius_m)?, length("envelope.height_m", *height_m)?);
+                Form::Revolution(place("envelope.base", *base)?, vec![DVec2::new(r, 0.0), DVec2::new(0.0, h)])
+            }
+            Self::Cylinder { base, radius_m, height_m } => {
+                let (r, h) =
+                    (length("envelope.radius_m", *radius_m)?, length("envelope.height_m", *height_m)?);
+                Form::Revolution(place("envelope.base", *base)?, vec![DVec2::new(r, 0.0), DVec2::new(r, h)])
+            }
+            Self::Revolution { base, profile } => {
+                check_profile(profile)?;
+                Form::Revolution(place("envelope.base", *base)?, profile.clone())
+            }
+            Self::Outline { polygon, centre_z_m, depth } => {
+                within("envelope.depth", *depth, 1e-3, 1e3, "0.001 to 1000")?;
+                within("envelope.centre_z_m", *centre_z_m, -FAR_M, FAR_M, "within 1e6 m")?;
+                for p in polygon {
+                    place("envelope.polygon", p.extend(0.0))?;
+                }
+                if polygon.len() < 3 || geom::signed_area(polygon).abs() < 1e-9 {
+                    let value = geom::signed_area(polygon);
+                    return Err(GrowthError::Field {
+                        field: "envelope.polygon",
+                        range: "an outline with an area",
+                        value,
+                    });
+                }
+                Form::Outline(polygon.clone(), *centre_z_m, *depth)
+            }
+            Self::Mesh { vertices, triangles } => Form::Mesh(Solid::new(vertices, triangles)?),
+            Self::Points { points, reach_m } => {
+                let reach = length("envelope.reach_m", *reach_m)?;
+                let good: Vec<DVec3> = points.iter().copied().filter(|&p| usable(p)).collect();
+                if good.is_empty() {
+                    return Err(GrowthError::Field {
+                        field: "envelope.points",
+                        range: "at least one finite point",
+                        value: 0.0,
+                    });
+                }
+                Form::Points(Grid3::new(&good, reach), reach)
+            }
+        };
+        let (lo, hi) = self.bounds(&form);
+        Ok(Region { form, lo, hi })
+    }
+
+    fn bounds(&self, form: &Form) -> (DVec3, DVec3) {
+        let of = |points: &mut dyn Iterator<Item = DVec3>| {
+            points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), p| (lo.min(p), hi.max(p)))
+        };
+        match (form, self) {
+            (Form::Ellipsoid(c, r), _) => (*c - *r, *c + *r),
+            (Form::Revolution(base, profile), _) => {
+                let r = profile.iter().map(|p| p.x).fold(0.0, f64::max);
+                let (low, high) = (profile[0].y, profile[profile.len() - 1].y);
+                (*base + DVec3::new(-r, low, -r), *base + DVec3::new(r, high, r))
+            }
+            (Form::Outline(polygon, z, depth), _) => {
+                let (lo, hi) = of(&mut polygon.iter().map(|p| p.extend(0.0)));
+                let half = 0.5 * (hi.x - lo.x) * depth;
+                (lo.with_z(z - half), hi.with_z(z + half))
+            }
+            (Form::Mesh(solid), _) => solid.bounds(),
+            (Form::Points(_, reach), Self::Points { points, .. }) => {
+                let (lo, hi) = of(&mut points.iter().copied().filter(|&p| usable(p)));
+                (lo - *reach, hi + *reach)
+            }
+            (Form::Points(..), _) => (DVec3::ZERO, DVec3::ZERO),
+        }
+    }
+}
+
+fn check_profile(profile: &[DVec2]) -> Result<(), GrowthError> {
+    let fault = |range, value| Err(GrowthError::Field { field: "envelope.profile", range, value });
+    if profile.len() < 2 {
+        return fault("at least 2 points (radius, height)", profile.len() as f64);
+    }
+    for p in profile {
+        within("envelope.profile", p.x, 0.0, FAR_M, "radii from 0 to 1e6 m")?;
+        within("envelope.profile", p.y, -FAR_M, FAR_M, "heights within 1e6 m")?;
+    }
+    if let Some(w) = profile.windows(2).find(|w| w[1].y <= w[0].y) {
+        return fault("heights that rise", w[1].y);
+    }
+    if profile.iter().all(|p| p.x <= 0.0) {
+        return fault("a radius above 0", 0.0);
+    }
+    Ok(())
+}
+
+impl Region {
+    /// Whether a point lies in the envelope (points on its surface may go either way).
+    pub fn contains(&self, p: DVec3) -> bool {
+        if !(p.cmpge(self.lo).all() && p.cmple(self.hi).all()) {
+            return false;
+        }
+        match &self.form {
+            Form::Ellipsoid(centre, radii) => ((p - *centre) / *radii).length_squared() <= 1.0,
+            Form::Revolution(base, profile) => {
+                let q = p - *base;
+                let above = profile.partition_point(|c| c.y <= q.y).clamp(1, profile.len() - 1);
+                let (a, b) = (profile[above - 1], profile[above]);
+                let r = a.x + (b.x - a.x) * ((q.y - a.y) / (b.y - a.y));
+                q.x * q.x + q.z * q.z <= r * r
+            }
+            Form::Outline(polygon, centre_z, depth) => {
+                let flat = p.truncate();
+                contains(polygon, flat) && {
+                    let (left, right) = chord(polygon, flat);
+                    let half = 0.5 * (right - left) * depth;
+                    let across = (p.x - 0.5 * (left + right)) / (0.5 * (right - left)).max(1e-12);
+                    let deep = (p.z - centre_z) / half.max(1e-12);
+                    across * across + deep * deep <= 1.0
+                }
+            }
+            Form::Mesh(solid) => solid.inside(p),
+            Form::Points(grid, reach) => grid.nearest(p, *reach).is_some(),
+        }
+    }
+
+    /// Lower and upper corner of the box around the envelope.
+    pub const fn bounds(&self) -> (DVec3, DVec3) {
+        (self.lo, self.hi)
+    }
+
+    /// `count` points spread evenly at random in the envelope where `free` holds.
+    ///
+    /// `hollow`, 0 to 0.99: points whose place is still inside when moved away from the middle by `1 / hollow` are
+    /// left out, so that only a shell is filled (Runions 2007, Fig 7); 0 fills all. Guaranteed: the first points
+    /// do not depend on `count`. Cost: about `count` times box over envelope volume.
+    ///
+    /// # Errors
+    /// [`GrowthError::NoRoom`] if fewer than all points find a place in 2000 + 200 `count` tries.
+    pub fn scatter(
+        &self,
+        count: usize,
+        hollow: f64,
+        seed: Seed,
+        free: impl Fn(DVec3) -> bool,
+    ) -> Result<Vec<DVec3>, GrowthError> {
+        let hollow = if hollow.is_finite() { hollow.clamp(0.0, 0.99) } else { 0.0 };
+        let middle = (self.lo + self.hi) * 0.5;
+        let shell = |p: DVec3| hollow <= 0.0 || !self.contains(middle + (p - middle) / hollow);
+        let mut stream = seed.stream(Draw::Attractors);
+        let tries = count.saturating_mul(200).saturating_add(2000);
+        let mut points = Vec::with_capacity(count.min(1 << 24));
+        for _ in 0..tries {
+            if points.len() >= count {
+                break;
+            }
+            let u = DVec3::new(stream.uniform(), stream.uniform(), stream.uniform());
+            let p = self.lo + (self.hi - self.lo) * u;
+            if self.contains(p) && shell(p) && free(p) {
+                points.push(p);
+            }
+        }
+        if points.len() < count {
+            return Err(GrowthError::NoRoom { found: points.len(), wanted: count, tries });
+        }
+        Ok(points)
+    }
+}
+
+/// Where the horizontal through an inner point leaves the outline, left and right.
+fn chord(polygon: &[DVec2], p: DVec2) -> (f64, f64) {
+    let (mut left, mut right) = (f64::NEG_INFINITY, f64::INFINITY);
+    for i in 0..polygon.len() {
+        let (a, b) = (polygon[i], polygon[(i + 1) % polygon.len()]);
+        if (a.y > p.y) != (b.y > p.y) {
+            let x = a.x + (b.x - a.x) * ((p.y - a.y) / (b.y - a.y));
+            if x <= p.x {
+                left = left.max(x);
+            } else {
+                right = right.min(x);
+            }
+        }
+    }
+    if left.is_finite() && right.is_finite() { (left, right) } else { (p.x, p.x) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solid::tests::sphere;
+
+    fn volume(e: &Envelope) -> f64 {
+        let region = e.prepare().expect("sound");
+        let (lo, hi) = region.bounds();
+        let mut s = Seed::new(7).stream(Draw::Test);
+        let n = 40_000;
+        let hits = (0..n).filter(|_| {
+            let u = DVec3::new(s.uniform(), s.uniform(), s.uniform());
+            region.contains(lo + (hi - lo) * u)
+        });
+        let size = hi - lo;
+        size.x * size.y * size.z * hits.count() as f64 / f64::from(n)
+    }
+
+    #[test]
+    fn volumes_are_those_of_the_solids() {
+        let ball = 4.0 / 3.0 * base::ops::PI;
+        let (vertices, triangles) = sphere(24, 32);
+        let circle: Vec<DVec2> =
+            (0..64).map(|i| DVec2::from_angle(f64::from(i) * base::ops::TAU / 64.0)).collect();
+        let half_circle: Vec<DVec2> = (0..=32)
+            .map(|i| {
+                let (s, c) = base::ops::sin_cos(base::ops::PI * f64::from(i) / 32.0);
+                DVec2::new(s.max(0.0), -c)
+            })
+            .collect();
+        let at = DVec3::new(3.0, 5.0, -2.0);
+        let cases = [
+            (Envelope::Sphere { centre: at, radius_m: 1.0 }, ball),
+            (Envelope::Ellipsoid { centre: at, radii_m: DVec3::new(1.0, 2.0, 3.0) }, 6.0 * ball),
+            (Envelope::Cone { base: at, radius_m: 1.0, height_m: 3.0 }, base::ops::PI),
+            (Envelope::Cylinder { base: at, radius_m: 2.0, height_m: 0.5 }, 2.0 * base::ops::PI),
+            (Envelope::Revolution { base: at, profile: half_circle }, ball),
+            (Envelope::Outline { polygon: circle, centre_z_m: 4.0, depth: 1.0 }, ball),
+            (Envelope::Mesh { vertices, triangles }, ball),
+            (Envelope::Points { points: vec![at, at, DVec3::NAN], reach_m: 1.0 }, ball),
+        ];
+        for (e, want) in cases {
+            let got = volume(&e);
+            assert!((got / want - 1.0).abs() < 0.03, "{e:?}: {got}, not {want}");
+        }
+    }
+
+    #[test]
+    fn scatter_keeps_its_first_points_and_fills_only_the_shell_when_hollow() {
+        let region = Envelope::default().prepare().expect("sound");
+        let few = region.scatter(50, 0.0, Seed::new(1), |_| true).expect("room");
+        let many = region.scatter(500, 0.0, Seed::new(1), |_| true).expect("room");
+        assert_eq!(few[..], many[..50]);
+        let shell = region.scatter(500, 0.8, Seed::new(1), |_| true).expect("room");
+        let r = |p: &DVec3| p.distance(DVec3::new(0.0, 4.0, 0.0));
+        assert!(shell.iter().all(|p| r(p) >= 1.6 - 1e-9 && r(p) <= 2.0));
+    }
+
+    #[test]
+    fn nonsense_is_refused_by_name() {
+        let bad = [
+            Envelope::Sphere { centre: DVec3::ZERO, radius_m: f64::NAN },
+            Envelope::Sphere { centre: DVec3::NAN, radius_m: 1.0 },
+            Envelope::Cone { base: DVec3::ZERO, radius_m: 1.0, height_m: 0.0 },
+            Envelope::Revolution { base: DVec3::ZERO, profile: vec![DVec2::ONE] },
+            Envelope::Revolution { base: DVec3::ZERO, profile: vec![DVec2::ONE, DVec2::X] },
+            Envelope::Outline { polygon: vec![DVec2::ZERO; 5], centre_z_m: 0.0, depth: 1.0 },
+            Envelope::Points { points: vec![DVec3::NAN], reach_m: 1.0 },
+        ];
+        for e in bad {
+            assert!(matches!(e.prepare(), Err(GrowthError::Field { .. })), "{e:?}");
+        }
+        let region = Envelope::default().prepare().expect("sound");
+        let none = region.scatter(5, 0.0, Seed::new(1), |_| false);
+        assert_eq!(none, Err(GrowthError::NoRoom { found: 0, wanted: 5, tries: 3000 }));
+    }
+
+    #[test]
+    fn an_envelope_is_read_back_from_its_file_form() {
+        let e = Envelope::Cone { base: DVec3::ZERO, radius_m: 1.0, height_m: 3.0 };
+        let text = serde_json::to_string(&e).expect("plain data");
+        assert!(text.contains(r#""shape":"cone""#), "{text}");
+        assert_eq!(serde_json::from_str::<Envelope>(&text).ok(), Some(e));
+    }
+}

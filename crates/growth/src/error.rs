@@ -1,0 +1,99 @@
+//! What can stop growth.
+
+use base::Cancelled;
+
+/// Why nothing could be grown.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum GrowthError {
+    /// The caller asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// A number of the spec is out of range or not finite.
+    #[error("{field} must be {range}, not {value}")]
+    Field {
+        /// The field.
+        field: &'static str,
+        /// What it must be.
+        range: &'static str,
+        /// The value given.
+        value: f64,
+    },
+    /// There is no root to grow from.
+    #[error("nothing to grow from: no roots were given")]
+    NoRoots,
+    /// A root is not a finite point.
+    #[error("root {root} is not a finite point within 1e6 m of the origin")]
+    Root {
+        /// Its index.
+        root: usize,
+    },
+    /// A root stands in an obstacle.
+    #[error("root {root} stands inside obstacle {obstacle}")]
+    RootInObstacle {
+        /// Index of the root.
+        root: usize,
+        /// Index of the obstacle.
+        obstacle: usize,
+    },
+    /// A mesh cannot bound anything.
+    #[error("mesh: {0}")]
+    Mesh(#[from] MeshFault),
+    /// The envelope has hardly any room for attractors.
+    #[error(
+        "the envelope is empty or almost so: {found} of {wanted} points found a place in {tries} tries; \
+         make it larger or free it of obstacles"
+    )]
+    NoRoom {
+        /// Points placed.
+        found: usize,
+        /// Points wanted.
+        wanted: usize,
+        /// Points tried.
+        tries: usize,
+    },
+}
+
+/// What is wrong with a mesh that should bound a volume.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MeshFault {
+    /// No triangle with an area.
+    #[error("it has no triangle with an area")]
+    Empty,
+    /// A triangle names a vertex that is not there.
+    #[error("triangle {triangle} names vertex {vertex}, but there are {vertices}")]
+    Index {
+        /// The triangle.
+        triangle: usize,
+        /// The vertex it names.
+        vertex: u32,
+        /// How many there are.
+        vertices: usize,
+    },
+    /// A vertex is not a finite point.
+    #[error("vertex {vertex} is not a finite point within 1e6 m of the origin")]
+    Vertex {
+        /// The vertex.
+        vertex: usize,
+    },
+}
+
+/// Farther than this from the origin nothing grows: 1e6 m leaves a tenth of a nanometre of resolution.
+pub(crate) const FAR_M: f64 = 1e6;
+
+/// Fails unless `value` lies in `lo..=hi`.
+pub(crate) fn within(
+    field: &'static str,
+    value: f64,
+    lo: f64,
+    hi: f64,
+    range: &'static str,
+) -> Result<f64, GrowthError> {
+    if (lo..=hi).contains(&value) { Ok(value) } else { Err(GrowthError::Field { field, range, value }) }
+}
+
+/// Finite and not absurdly far away.
+pub(crate) fn usable(p: glam::DVec3) -> bool {
+    p.is_finite() && p.abs().max_element() <= FAR_M
+}

@@ -1,0 +1,364 @@
+//! A triangle mesh as a volume: inside, nearest point, blocked views.
+//!
+//! `vertices + triangles -> bounding-volume tree -> answers`
+
+use base::ops::{self, PI};
+use glam::DVec3;
+
+use crate::error::{MeshFault, usable};
+
+/// Triangles per leaf of the tree.
+const LEAF: usize = 4;
+/// Nodes waiting in a walk: two per level, and median splits of fewer than 2^32 triangles have under 32 levels.
+const STACK: usize = 80;
+
+/// A mesh that answers questions about the volume within; holes and inverted faces are borne (see `inside`).
+#[derive(Clone, Debug)]
+pub(crate) struct Solid {
+    triangles: Vec<[DVec3; 3]>,
+    nodes: Vec<Node>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    lo: DVec3,
+    hi: DVec3,
+    start: u32,
+    end: u32,
+    /// The second child; the first follows its parent. 0 for a leaf.
+    right: u32,
+    /// Sum of area vectors and where it acts: what the node looks like from afar.
+    dipole: DVec3,
+    centre: DVec3,
+    radius: f64,
+}
+
+impl Solid {
+    pub(crate) fn new(vertices: &[DVec3], indices: &[[u32; 3]]) -> Result<Self, MeshFault> {
+        if let Some(vertex) = vertices.iter().position(|&v| !usable(v)) {
+            return Err(MeshFault::Vertex { vertex });
+        }
+        let mut triangles = Vec::with_capacity(indices.len());
+        for (triangle, corners) in indices.iter().enumerate() {
+            let mut t = [DVec3::ZERO; 3];
+            for (to, &vertex) in t.iter_mut().zip(corners) {
+                *to = *vertices.get(vertex as usize).ok_or(MeshFault::Index {
+                    triangle,
+                    vertex,
+                    vertices: vertices.len(),
+                })?;
+            }
+            if area(&t).length_squared() > 0.0 {
+                triangles.push(t);
+            }
+        }
+        if triangles.is_empty() || triangles.len() > u32::MAX as usize {
+            return Err(MeshFault::Empty);
+        }
+        let mut solid = Self { nodes: Vec::with_capacity(2 * triangles.len() / LEAF + 1), triangles };
+        solid.split(0, solid.triangles.len());
+        Ok(solid)
+    }
+
+    /// Adds the node of triangles `start..end` and all below it; halving bounds the depth.
+    fn split(&mut self, start: usize, end: usize) {
+        let me = self.nodes.len();
+        self.nodes.push(summary(&self.triangles[start..end], start, end));
+        if end - start <= LEAF {
+            return;
+        }
+        let extent = self.nodes[me].hi - self.nodes[me].lo;
+        let axis = if extent.x >= extent.y && extent.x >= extent.z {
+            0
+        } else if extent.y >= extent.z {
+            1
+        } else {
+            2
+        };
+        let middle = (end - start) / 2;
+        let key = |t: &[DVec3; 3]| t[0][axis] + t[1][axis] + t[2][axis];
+        self.triangles[start..end].select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)));
+        self.split(start, start + middle);
+        self.nodes[me].right = row(self.nodes.len());
+        self.split(start + middle, end);
+    }
+
+    pub(crate) fn bounds(&self) -> (DVec3, DVec3) {
+        (self.nodes[0].lo, self.nodes[0].hi)
+    }
+
+    /// Inside by the generalised winding number (Jacobson et al. 2013; the tree as in Barill et al. 2018): its
+    /// size above one half. So inverted meshes count as right ones, and small holes do not matter.
+    pub(crate) fn inside(&self, p: DVec3) -> bool {
+        let (lo, hi) = self.bounds();
+        if p.cmplt(lo).any() || p.cmpgt(hi).any() {
+            return false;
+        }
+        self.winding(p).abs() > 0.5
+    }
+
+    fn winding(&self, p: DVec3) -> f64 {
+        let mut sum = 0.0;
+        self.walk(|node, triangles| {
+            let to = node.centre - p;
+            let distance2 = to.length_squared();
+            // 3 radii: the dipole is then off by less than a hundredth of its value.
+            if distance2 > 9.0 * node.radius * node.radius {
+                sum += node.dipole.dot(to) / (distance2 * distance2.sqrt());
+                return false;
+            }
+            if node.right == 0 {
+                sum += triangles.iter().map(|t| solid_angle(t, p)).sum::<f64>();
+            }
+            true
+        });
+        sum / (4.0 * PI)
+    }
+
+    /// The nearest point of the surface and the (unit) normal of its triangle.
+    pub(crate) fn nearest(&self, p: DVec3) -> (DVec3, DVec3) {
+        let mut best = (f64::INFINITY, DVec3::ZERO, 0);
+        self.walk(|node, triangles| {
+            let gap = (node.lo - p).max(p - node.hi).max(DVec3::ZERO);
+            if gap.length_squared() >= best.0 {
+                return false;
+            }
+            if node.right == 0 {
+                for (i, t) in triangles.iter().enumerate() {
+                    let q = closest_on_triangle(t, p);
+                    let d2 = q.distance_squared(p);
+                    if d2 < best.0 {
+                        best = (d2, q, node.start as usize + i);
+                    }
+                }
+            }
+            true
+        });
+        (best.1, area(&self.triangles[best.2]).normalize_or(DVec3::Y))
+    }
+
+    /// Whether the segment from `a` to `b` meets the surface.
+    pub(crate) fn blocks(&self, a: DVec3, b: DVec3) -> bool {
+        let d = b - a;
+        let mut hit = false;
+        self.walk(|node, triangles| {
+            if hit || !segment_meets_box(a, d, node.lo, node.hi) {
+                return false;
+            }
+            if node.right == 0 {
+                hit = triangles.iter().any(|t| segment_meets_triangle(a, d, t));
+            }
+            true
+        });
+        hit
+    }
+
+    /// Visits nodes; the children of a node only where `visit` says so.
+    fn walk(&self, mut visit: impl FnMut(&Node, &[[DVec3; 3]]) -> bool) {
+        let mut stack = [0_u32; STACK];
+        let mut waiting = 1;
+        while waiting > 0 {
+            waiting -= 1;
+            let at = stack[waiting];
+            let node = &self.nodes[at as usize];
+            let inner = visit(node, &self.triangles[node.start as usize..node.end as usize]);
+            if inner && node.right != 0 && waiting + 2 <= STACK {
+                stack[waiting] = node.right;
+                stack[waiting + 1] = at + 1;
+                waiting += 2;
+            }
+        }
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "fewer than 2^32 triangles, checked in `new`")]
+const fn row(i: usize) -> u32 {
+    i as u32
+}
+
+fn summary(triangles: &[[DVec3; 3]], start: usize, end: usize) -> Node {
+    let (mut lo, mut hi) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let (mut dipole, mut centre, mut whole) = (DVec3::ZERO, DVec3::ZERO, 0.0);
+    for t in triangles {
+        let a = area(t);
+        let size = a.length();
+        dipole += a;
+        centre += (t[0] + t[1] + t[2]) * (size / 3.0);
+        whole += size;
+        for &v in t {
+            lo = lo.min(v);
+            hi = hi.max(v);
+        }
+    }
+    centre /= whole;
+    let radius = triangles.iter().flatten().map(|v| v.distance(centre)).fold(0.0, f64::max);
+    Node { lo, hi, start: row(start), end: row(end), right: 0, dipole, centre, radius }
+}
+
+/// Normal of a triangle with its area as length.
+fn area(t: &[DVec3; 3]) -> DVec3 {
+    (t[1] - t[0]).cross(t[2] - t[0]) * 0.5
+}
+
+/// Van Oosterom and Strackee 1983.
+fn solid_angle(t: &[DVec3; 3], p: DVec3) -> f64 {
+    let (a, b, c) = (t[0] - p, t[1] - p, t[2] - p);
+    let (la, lb, lc) = (a.length(), b.length(), c.length());
+    let over = a.dot(b.cross(c));
+    let under = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+    2.0 * ops::atan2(over, under)
+}
+
+/// The nearest point by the regions of the triangle: a corner, an edge or the face.
+fn closest_on_triangle(t: &[DVec3; 3], p: DVec3) -> DVec3 {
+    let on_edge = |a: DVec3, b: DVec3| {
+        let d = b - a;
+        a + d * ((p - a).dot(d) / d.length_squared().max(1e-300)).clamp(0.0, 1.0)
+    };
+    let n = area(t);
+    let over_face = (0..3).all(|i| {
+        let (a, b) = (t[i], t[(i + 1) % 3]);
+        (b - a).cross(p - a).dot(n) >= 0.0
+    });
+    if over_face {
+        return p - n * ((p - t[0]).dot(n) / n.length_squared());
+    }
+    let candidates = [on_edge(t[0], t[1]), on_edge(t[1], t[2]), on_edge(t[2], t[0])];
+    let mut best = candidates[0];
+    for q in &candidates[1..] {
+        if q.distance_squared(p) < best.distance_squared(p) {
+            best = *q;
+        }
+    }
+    best
+}
+
+/// Slab test.
+pub(crate) fn segment_meets_box(a: DVec3, d: DVec3, lo: DVec3, hi: DVec3) -> bool {
+    let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
+    for i in 0..3 {
+        if d[i].abs() < 1e-300 {
+            if a[i] < lo[i] || a[i] > hi[i] {
+                return false;
+            }
+        } else {
+            let (s, t) = ((lo[i] - a[i]) / d[i], (hi[i] - a[i]) / d[i]);
+            enter = enter.max(s.min(t));
+            leave = leave.min(s.max(t));
+        }
+    }
+    enter <= leave
+}
+
+/// Moeller and Trumbore 1997, both sides.
+fn segment_meets_triangle(a: DVec3, d: DVec3, t: &[DVec3; 3]) -> bool {
+    let (e1, e2) = (t[1] - t[0], t[2] - t[0]);
+    let h = d.cross(e2);
+    let det = e1.dot(h);
+    if det.abs() < 1e-300 {
+        return false;
+    }
+    let s = a - t[0];
+    let u = s.dot(h) / det;
+    let q = s.cross(e1);
+    let v = d.dot(q) / det;
+    let along = e2.dot(q) / det;
+    u >= 0.0 && v >= 0.0 && u + v <= 1.0 && (0.0..=1.0).contains(&along)
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// A box from 0 to 1, outward faces.
+    pub(crate) fn cube() -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        let v = (0..8)
+            .map(|i| DVec3::new(f64::from(i & 1), f64::from((i >> 1) & 1), f64::from((i >> 2) & 1)))
+            .collect();
+        let t = vec![
+            [0, 2, 1],
+            [1, 2, 3],
+            [4, 5, 6],
+            [5, 7, 6],
+            [0, 1, 4],
+            [1, 5, 4],
+            [2, 6, 3],
+            [3, 6, 7],
+            [0, 4, 2],
+            [2, 4, 6],
+            [1, 3, 5],
+            [3, 7, 5],
+        ];
+        (v, t)
+    }
+
+    /// A sphere of radius 1 by rings and sectors.
+    pub(crate) fn sphere(rings: u32, sectors: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        let mut v = vec![];
+        for i in 0..=rings {
+            let (s, c) = ops::sin_cos(PI * f64::from(i) / f64::from(rings));
+            for j in 0..sectors {
+                let (sj, cj) = ops::sin_cos(ops::TAU * f64::from(j) / f64::from(sectors));
+                v.push(DVec3::new(s * cj, c, s * sj));
+            }
+        }
+        let mut t = vec![];
+        for i in 0..rings {
+            for j in 0..sectors {
+                let at = |i, j| i * sectors + j % sectors;
+                t.push([at(i, j), at(i, j + 1), at(i + 1, j)]);
+                t.push([at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)]);
+            }
+        }
+        (v, t)
+    }
+
+    #[test]
+    fn inside_of_cube_sphere_inverted_and_open() {
+        let (v, t) = cube();
+        let inverted: Vec<_> = t.iter().map(|&[a, b, c]| [a, c, b]).collect();
+        // Without one of its twelve triangles.
+        for faces in [&t[..], &inverted, &t[1..]] {
+            let solid = Solid::new(&v, faces).expect("sound");
+            assert!(solid.inside(DVec3::splat(0.5)), "{} faces", faces.len());
+            assert!(!solid.inside(DVec3::new(0.5, 0.5, 1.2)));
+            assert!(!solid.inside(DVec3::splat(-0.1)));
+        }
+        let (v, t) = sphere(24, 32);
+        let solid = Solid::new(&v, &t).expect("sound");
+        let mut s = base::Seed::new(3).stream(base::Draw::Test);
+        for _ in 0..2000 {
+            let p = DVec3::new(s.range(-1.2, 1.2), s.range(-1.2, 1.2), s.range(-1.2, 1.2));
+            let r = p.length();
+            // Between the ball inscribed in the mesh and the ball around it nothing is promised.
+            if !(0.98..=1.0).contains(&r) {
+                assert_eq!(solid.inside(p), r < 0.99, "{p}");
+                let (q, _) = solid.nearest(p);
+                assert!((q.distance(p) - (r - 1.0).abs()).abs() < 0.02, "{p} {q}");
+            }
+        }
+    }
+
+    #[test]
+    fn views_are_blocked_by_surfaces_only() {
+        let (v, t) = cube();
+        let solid = Solid::new(&v, &t).expect("sound");
+        let at = DVec3::new;
+        assert!(solid.blocks(at(-1.0, 0.4, 0.3), at(2.0, 0.5, 0.6)));
+        assert!(solid.blocks(at(0.5, 0.4, 0.3), at(0.5, 3.0, 0.3)), "from within");
+        assert!(!solid.blocks(at(-1.0, 0.4, 0.3), at(-0.1, 0.4, 0.3)), "ends before");
+        assert!(!solid.blocks(at(-1.0, 2.0, 0.3), at(2.0, 2.0, 0.6)), "passes by");
+        assert!(!solid.blocks(at(0.2, 0.4, 0.3), at(0.8, 0.6, 0.6)), "stays within");
+    }
+
+    #[test]
+    fn broken_meshes_are_named() {
+        let (mut v, t) = cube();
+        assert_eq!(Solid::new(&v, &[]).err(), Some(MeshFault::Empty));
+        assert_eq!(Solid::new(&v, &[[0, 0, 1]]).err(), Some(MeshFault::Empty));
+        let missing = MeshFault::Index { triangle: 0, vertex: 99, vertices: 8 };
+        assert_eq!(Solid::new(&v, &[[0, 99, 1]]).err(), Some(missing));
+        v[3] = DVec3::NAN;
+        assert_eq!(Solid::new(&v, &t).err(), Some(MeshFault::Vertex { vertex: 3 }));
+    }
+}

@@ -1,0 +1,43 @@
+//! Steady pulls on growing tips.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use crate::error::{GrowthError, usable, within};
+
+/// A pull in one direction: light from above, weight downwards, wind.
+///
+/// ```
+/// use glam::DVec3;
+/// use growth::Tropism;
+/// let bent = Tropism::sum(&[Tropism::UPWARDS, Tropism { direction: DVec3::X, strength: 0.5 }])?;
+/// assert_eq!(bent, DVec3::new(0.5, 0.2, 0.0));
+/// # Ok::<(), growth::GrowthError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Tropism {
+    /// Where to; any length above 0.
+    pub direction: DVec3,
+    /// Relative to the pull of free space (which is 1), -10 to 10.
+    pub strength: f64,
+}
+
+impl Tropism {
+    /// A gentle pull to the light.
+    pub const UPWARDS: Self = Self { direction: DVec3::Y, strength: 0.2 };
+
+    /// All pulls together.
+    ///
+    /// # Errors
+    /// [`GrowthError::Field`] for a direction without length or numbers out of range.
+    pub fn sum(all: &[Self]) -> Result<DVec3, GrowthError> {
+        all.iter().try_fold(DVec3::ZERO, |sum, t| {
+            within("tropism.strength", t.strength, -10.0, 10.0, "-10 to 10")?;
+            let unit = if usable(t.direction) { t.direction.try_normalize() } else { None };
+            let range = "a finite direction with a length";
+            let fault = GrowthError::Field { field: "tropism.direction", range, value: t.direction.length() };
+            Ok(sum + unit.ok_or(fault)? * t.strength)
+        })
+    }
+}
