@@ -12,7 +12,8 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 /// Three-dimensional plants out of what people can draw.
 ///
 /// Exit status: 0 on success, 2 for bad usage or bad input (one line on stderr says what, where and what to do),
-/// 1 for a bug of burgeon, 130 after Ctrl-C. Files are written whole or not at all.
+/// 1 for a bug of burgeon, 130 after Ctrl-C or another request to end (what was finished by then stays). Files
+/// are written whole or not at all. An input named - is standard input.
 #[derive(Debug, Parser)]
 #[command(
     name = "burgeon",
@@ -178,7 +179,7 @@ impl From<UnitWord> for Unit {
 #[derive(Args, Debug)]
 #[command(after_long_help = SKETCH_EXAMPLES)]
 pub(crate) struct SketchArgs {
-    /// Drawings: .svg, .inkml, .ndjson (one drawing a line) or .json.
+    /// Drawings: .svg, .inkml, .ndjson (one drawing a line) or .json; - for standard input.
     #[arg(value_name = "IN", required = true)]
     pub(crate) inputs: Vec<PathBuf>,
     /// The model: .glb, .obj, .ply or .stl. For several drawings a folder, which is created and gets one model each.
@@ -191,7 +192,7 @@ pub(crate) struct SketchArgs {
     #[arg(long, value_name = "FILE.png")]
     pub(crate) png: Option<PathBuf>,
     /// Number that all chance follows from; another number gives another plant of the same drawing.
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, allow_hyphen_values = true, value_parser = seed)]
     pub(crate) seed: u64,
     #[command(flatten)]
     pub(crate) reading: ReadingArgs,
@@ -221,8 +222,8 @@ Classes: blade, corolla, axis, trunk_outline, crown, vein, disc, pot, ground, fr
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Plant")]
 pub(crate) struct ReadingArgs {
-    /// Height of the plant in metres, above 0 to 1000 [default: 8 for a tree, 0.5 for a herb].
-    #[arg(long, value_name = "METRES", value_parser = above_zero)]
+    /// Height of the plant in metres, 0.001 to 1000 [default: 8 for a tree, 0.5 for a herb].
+    #[arg(long, value_name = "METRES", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 0.001, 1000.0))]
     pub(crate) height: Option<f64>,
     /// How branches leave the drawing's plane: riesz spreads siblings evenly, paper is the published entropy
     /// [default: riesz].
@@ -239,20 +240,20 @@ pub(crate) struct ReadingArgs {
     #[arg(long, value_name = "N,N", value_delimiter = ',')]
     pub(crate) flip_flowers: Vec<u32>,
     /// How many twigs and leaves fill contours and crowns, relative to the usual, 0.1 to 10 [default: 1].
-    #[arg(long, value_name = "X", value_parser = |s: &str| ranged(s, 0.1, 10.0))]
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 0.1, 10.0))]
     pub(crate) density: Option<f64>,
     /// Direction of grown twigs, -1 (weeping) to 1 (upright) [default: 0.1].
     #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, -1.0, 1.0))]
     pub(crate) tropism: Option<f64>,
     /// Exponent of the pipe model, 1.8 to 3: higher makes branches below forks thinner
     /// [default: 2 for a tree, 2.5 for a herb].
-    #[arg(long, value_name = "X", value_parser = |s: &str| ranged(s, 1.8, 3.0))]
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 1.8, 3.0))]
     pub(crate) pipe_exponent: Option<f64>,
     /// Pull of light on drawn branches, -1 to 1, upwards [default: 0].
     #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, -1.0, 1.0))]
     pub(crate) phototropism: Option<f64>,
     /// Sag of drawn branches, 0 to 1 [default: 0].
-    #[arg(long, value_name = "X", value_parser = |s: &str| ranged(s, 0.0, 1.0))]
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 0.0, 1.0))]
     pub(crate) gravity: Option<f64>,
     /// All settings of the sketch maker as JSON (what is missing keeps its default); options above win over it.
     #[arg(long, value_name = "FILE.json")]
@@ -264,7 +265,7 @@ pub(crate) struct ReadingArgs {
 #[command(next_help_heading = "Surface")]
 pub(crate) struct SurfaceArgs {
     /// Fineness of the meshes, 0.1 to 8; triangle counts grow in proportion.
-    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = |s: &str| ranged(s, 0.1, 8.0))]
+    #[arg(long, value_name = "X", allow_hyphen_values = true, default_value_t = 1.0, value_parser = |s: &str| ranged(s, 0.1, 8.0))]
     pub(crate) detail: f64,
     /// Sides of an ordinary branch, 3 to 24; thick branches get more.
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(3..=24))]
@@ -276,7 +277,7 @@ pub(crate) struct SurfaceArgs {
     #[arg(long, value_enum, value_name = "COLOUR")]
     pub(crate) petals: Option<PetalWord>,
     /// Variation of colour from organ to organ, 0 (none) to 1.
-    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = |s: &str| ranged(s, 0.0, 1.0))]
+    #[arg(long, value_name = "X", allow_hyphen_values = true, default_value_t = 1.0, value_parser = |s: &str| ranged(s, 0.0, 1.0))]
     pub(crate) variation: f64,
 }
 
@@ -390,7 +391,7 @@ pub(crate) struct RenderArgs {
     #[arg(long, short, value_name = "PNG")]
     pub(crate) output: PathBuf,
     /// Number that the pattern of the lights follows from.
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, allow_hyphen_values = true, value_parser = seed)]
     pub(crate) seed: u64,
     #[command(flatten)]
     pub(crate) picture: PictureArgs,
@@ -424,7 +425,7 @@ pub(crate) struct ConvertArgs {
     #[arg(long, value_name = "FILE.png")]
     pub(crate) png: Option<PathBuf>,
     /// Number that the pattern of the picture's lights follows from.
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, allow_hyphen_values = true, value_parser = seed)]
     pub(crate) seed: u64,
     #[command(flatten)]
     pub(crate) picture: PictureArgs,
@@ -465,16 +466,15 @@ fn background(text: &str) -> Result<Background, String> {
     }
 }
 
+fn seed(text: &str) -> Result<u64, String> {
+    text.parse().ok().ok_or_else(|| format!("give a whole number from 0 to {}", u64::MAX))
+}
+
 fn ranged(text: &str, low: f64, high: f64) -> Result<f64, String> {
     text.parse()
         .ok()
         .filter(|x| (low..=high).contains(x))
         .ok_or_else(|| format!("give a number from {low} to {high}"))
-}
-
-fn above_zero(text: &str) -> Result<f64, String> {
-    let inside = |x: &f64| *x > 0.0 && *x <= 1000.0;
-    text.parse().ok().filter(inside).ok_or_else(|| "give a number above 0, up to 1000".into())
 }
 
 #[cfg(test)]

@@ -10,9 +10,6 @@ use serde_json::Value;
 
 use crate::failure::{Failure, Outcome};
 
-/// Largest class file that is read: 16 MiB.
-const MAX_BYTES: u64 = 16 << 20;
-
 /// The overrides of a run, by the drawing's name.
 #[derive(Debug, Default)]
 pub(crate) struct Classes {
@@ -24,11 +21,7 @@ pub(crate) struct Classes {
 
 impl Classes {
     pub(crate) fn read(path: &Path) -> Outcome<Self> {
-        let size = std::fs::metadata(path).map_err(|e| Failure::io(path, "read", &e))?.len();
-        if size > MAX_BYTES {
-            return Err(Failure::at(path, "is larger than 16 MiB, too large for a class file"));
-        }
-        let text = std::fs::read_to_string(path).map_err(|e| Failure::io(path, "read", &e))?;
+        let text = crate::files::read_text(path)?;
         Self::parse(&text).map_err(|what| Failure::at(path, what))
     }
 

@@ -11,12 +11,17 @@ use crate::{output, picture, report, say};
 
 pub(crate) fn convert(args: &ConvertArgs) -> Outcome {
     let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
-    output::check_target(&args.output)?;
-    let (_, kind) = files::open(&args.input)?;
+    let outputs =
+        [("-o", Some(&args.output)), ("--png", args.png.as_ref()), ("--report", args.common.report.as_ref())];
+    output::check_outputs(&outputs, &[&args.input])?;
+    if let Some(png) = &args.png {
+        picture::check_name(png)?;
+    }
+    let (input, kind) = files::open(&args.input)?;
     let to_drawing = files::extension(&args.output).is_some_and(|e| e.eq_ignore_ascii_case("json"));
     let item = match (kind, to_drawing) {
-        (Kind::Drawing(format), true) => drawing(args, format, &machine)?,
-        (Kind::Model(_), false) => model(args, &machine)?,
+        (Kind::Drawing(format), true) => drawing(args, input, format, &machine)?,
+        (Kind::Model(_), false) => model(args, input, kind, &machine)?,
         (Kind::Drawing(_), false) => {
             return Err(Failure::at(
                 &args.input,
@@ -24,7 +29,10 @@ pub(crate) fn convert(args: &ConvertArgs) -> Outcome {
             ));
         }
         (Kind::Model(_), true) => {
-            return Err(Failure::at(&args.output, "a model converts to .glb, .obj or .ply, not to .json"));
+            return Err(Failure::at(
+                &args.output,
+                "a model converts to .glb, .obj, .ply or .stl, not to .json",
+            ));
         }
     };
     if !machine.quiet {
@@ -43,10 +51,10 @@ pub(crate) fn convert(args: &ConvertArgs) -> Outcome {
     report::finish(&run, &args.common)
 }
 
-fn model(args: &ConvertArgs, machine: &Machine) -> Outcome<ItemReport> {
+fn model(args: &ConvertArgs, input: files::Input, kind: Kind, machine: &Machine) -> Outcome<ItemReport> {
     let format: ModelFormat = files::writable(&args.output)?;
     let read_axes = files::axes(args.in_up.unwrap_or(args.axes.up), args.in_unit.unwrap_or(args.axes.unit));
-    let (read, read_ms) = machine.timed(|| files::read_model(&args.input, &read_axes));
+    let (read, read_ms) = machine.timed(|| files::read_opened_model(&args.input, input, kind, &read_axes));
     let (model, _, mut warnings) = read?;
     machine.cancel.check()?;
     let (written, write_ms) = machine.timed(|| {
@@ -65,15 +73,19 @@ fn model(args: &ConvertArgs, machine: &Machine) -> Outcome<ItemReport> {
     Ok(item)
 }
 
-fn drawing(args: &ConvertArgs, format: DrawingFormat, machine: &Machine) -> Outcome<ItemReport> {
+fn drawing(
+    args: &ConvertArgs,
+    input: files::Input,
+    format: DrawingFormat,
+    machine: &Machine,
+) -> Outcome<ItemReport> {
     if args.png.is_some() {
         return Err(Failure::at(
             &args.input,
             "is a drawing; `burgeon sketch --png` makes a picture of its plant",
         ));
     }
-    let (file, _) = files::open(&args.input)?;
-    let mut drawings = read_drawings(file, format, &files::stem(&args.input));
+    let mut drawings = read_drawings(input, format, &files::stem(&args.input));
     let (first, read_ms) = machine.timed(|| drawings.next());
     let first = first.ok_or_else(|| Failure::at(&args.input, "holds no drawing"))?;
     let first = first.map_err(|e| Failure::at(&args.input, e))?;

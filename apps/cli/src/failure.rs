@@ -11,7 +11,7 @@ pub(crate) enum Failure {
     Bad(String),
     /// The outcome was told already (a batch with failing drawings): exit status 2, nothing more to say.
     Told,
-    /// The user pressed Ctrl-C: exit status 130.
+    /// The user pressed Ctrl-C, or the program was asked to end: exit status 130.
     Cancelled,
     /// Our own bug: exit status 1.
     Bug(String),
@@ -29,9 +29,17 @@ impl Failure {
     pub(crate) fn io(path: &Path, doing: &str, error: &std::io::Error) -> Self {
         let reason = match error.kind() {
             std::io::ErrorKind::NotFound => "there is no such file or folder; check the spelling".to_owned(),
-            std::io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
+            std::io::ErrorKind::PermissionDenied => {
+                "permission denied; choose another place or change its rights".to_owned()
+            }
+            std::io::ErrorKind::ReadOnlyFilesystem => {
+                "the disk is read-only; choose another place".to_owned()
+            }
             std::io::ErrorKind::IsADirectory => "it is a folder; name a file in it".to_owned(),
-            std::io::ErrorKind::StorageFull => "the disk is full".to_owned(),
+            std::io::ErrorKind::StorageFull | std::io::ErrorKind::QuotaExceeded => {
+                "the disk is full; make room or choose another place".to_owned()
+            }
+            std::io::ErrorKind::InvalidFilename => "the name is too long; choose a shorter one".to_owned(),
             _ => error.to_string(),
         };
         Self::Bad(format!("{}: cannot be {doing}: {reason}", path.display()))
@@ -46,7 +54,9 @@ impl Failure {
             }
             Self::Told => ExitCode::from(2),
             Self::Cancelled => {
-                crate::say::error("stopped by the user; nothing half-written was left behind");
+                crate::say::error(
+                    "stopped; files that were written are whole, nothing half-written was left",
+                );
                 ExitCode::from(130)
             }
             Self::Bug(line) => {

@@ -1,7 +1,7 @@
 //! Files by their extension or, failing that, by their first bytes.
 
 use std::fs::File;
-use std::io::{BufReader, Read as _, Seek as _};
+use std::io::{BufRead, BufReader, Cursor, Read};
 use std::path::{Component, Path};
 
 use burgeon::formats::{DrawingFormat, ExportSpec, ModelFormat, PngCache, obj_files, write_glb_with};
@@ -22,39 +22,72 @@ pub(crate) fn extension(path: &Path) -> Option<&str> {
     path.extension().and_then(|e| e.to_str())
 }
 
+/// Bytes of a file, a pipe or standard input.
+pub(crate) type Input = Box<dyn BufRead + Send>;
+
+/// `-` stands for standard input.
+pub(crate) fn is_stdin(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
 /// The file's name without extension, for names of drawings and models.
 pub(crate) fn stem(path: &Path) -> String {
+    if is_stdin(path) {
+        return "drawing".into();
+    }
     path.file_stem().map_or_else(|| "drawing".into(), |s| s.to_string_lossy().into_owned())
 }
 
-/// Opens a file and finds out what it holds.
-pub(crate) fn open(path: &Path) -> Outcome<(BufReader<File>, Kind)> {
+/// Opens a file and finds out what it holds. Read once and never sought in: pipes are as good as files.
+pub(crate) fn open(path: &Path) -> Outcome<(Input, Kind)> {
     let failed = |e: &std::io::Error| Failure::io(path, "read", e);
-    if path.is_dir() {
+    let mut input: Box<dyn Read + Send> = if is_stdin(path) {
+        Box::new(std::io::stdin())
+    } else if path.is_dir() {
         return Err(Failure::at(path, "is a folder; name the files in it"));
-    }
-    let mut file = File::open(path).map_err(|e| failed(&e))?;
+    } else {
+        Box::new(File::open(path).map_err(|e| failed(&e))?)
+    };
     let known = extension(path).and_then(|e| {
         let drawing = DrawingFormat::from_extension(e).map(Kind::Drawing);
         drawing.or_else(|| ModelFormat::from_extension(e).map(Kind::Model))
     });
-    let kind = match known {
-        Some(kind) => kind,
-        None => {
-            let mut start = Vec::new();
-            file.by_ref().take(4096).read_to_end(&mut start).map_err(|e| failed(&e))?;
-            file.rewind().map_err(|e| failed(&e))?;
-            let drawing = DrawingFormat::sniff(&start).map(Kind::Drawing);
-            drawing.or_else(|| ModelFormat::sniff(&start).map(Kind::Model)).ok_or_else(|| {
-                Failure::at(
-                    path,
-                    "is neither a drawing (.svg, .inkml, .ndjson, .json) nor a model (.glb, .gltf, .obj, .ply, \
-                     .stl); give the file the extension of its format",
-                )
-            })?
-        }
-    };
-    Ok((BufReader::new(file), kind))
+    if let Some(kind) = known {
+        return Ok((Box::new(BufReader::new(input)), kind));
+    }
+    let mut start = Vec::new();
+    input.by_ref().take(4096).read_to_end(&mut start).map_err(|e| failed(&e))?;
+    if start.is_empty() {
+        return Err(Failure::at(path, "is empty; was it saved completely?"));
+    }
+    let drawing = DrawingFormat::sniff(&start).map(Kind::Drawing);
+    let kind = drawing.or_else(|| ModelFormat::sniff(&start).map(Kind::Model)).ok_or_else(|| {
+        Failure::at(
+            path,
+            "is neither a drawing (.svg, .inkml, .ndjson, .json) nor a model (.glb, .gltf, .obj, .ply, .stl); \
+             give the file the extension of its format",
+        )
+    })?;
+    Ok((Box::new(BufReader::new(Cursor::new(start).chain(input))), kind))
+}
+
+/// The text of a small file, such as settings: at most 16 MiB.
+pub(crate) fn read_text(path: &Path) -> Outcome<String> {
+    const MAX_BYTES: u64 = 16 << 20;
+    let failed = |e: &std::io::Error| Failure::io(path, "read", e);
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(|e| failed(&e))?;
+    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(|e| failed(&e))?;
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(Failure::at(
+            path,
+            "is larger than 16 MiB, too large for such a file; is it the right one?",
+        ));
+    }
+    String::from_utf8(bytes).map_err(|e| {
+        let after = e.utf8_error().valid_up_to();
+        Failure::at(path, format_args!("after {after} bytes the text is not UTF-8; save it again as UTF-8"))
+    })
 }
 
 pub(crate) fn axes(up: crate::args::UpWord, unit: crate::args::UnitWord) -> ExportSpec {
@@ -63,7 +96,17 @@ pub(crate) fn axes(up: crate::args::UpWord, unit: crate::args::UnitWord) -> Expo
 
 /// Reads a model, with what its reader has to say.
 pub(crate) fn read_model(path: &Path, axes: &ExportSpec) -> Outcome<(Model, ModelFormat, Vec<Warning>)> {
-    let (file, kind) = open(path)?;
+    let (input, kind) = open(path)?;
+    read_opened_model(path, input, kind, axes)
+}
+
+/// [`read_model`] of a file that is open already.
+pub(crate) fn read_opened_model(
+    path: &Path,
+    input: Input,
+    kind: Kind,
+    axes: &ExportSpec,
+) -> Outcome<(Model, ModelFormat, Vec<Warning>)> {
     let format = match kind {
         Kind::Model(format) => format,
         Kind::Drawing(format) => {
@@ -78,7 +121,7 @@ pub(crate) fn read_model(path: &Path, axes: &ExportSpec) -> Outcome<(Model, Mode
     };
     let mut report = Report::default();
     let beside = |name: &str| resolve(path, name);
-    let model = burgeon::formats::read_model(file, format, &stem(path), axes, &beside, &mut report);
+    let model = burgeon::formats::read_model(input, format, &stem(path), axes, &beside, &mut report);
     Ok((model.map_err(|e| Failure::at(path, e))?, format, report.warnings))
 }
 
@@ -94,10 +137,11 @@ fn resolve(model: &Path, name: &str) -> Option<Vec<u8>> {
         return None;
     }
     let path = model.parent().unwrap_or_else(|| Path::new("")).join(relative);
-    let file = File::open(path).ok()?;
-    if !file.metadata().ok().is_some_and(|m| m.is_file() && m.len() <= MAX_SIDE_FILE) {
+    // Asked before it is opened: opening a pipe waits for its writer.
+    if !std::fs::metadata(&path).is_ok_and(|m| m.is_file() && m.len() <= MAX_SIDE_FILE) {
         return None;
     }
+    let file = File::open(path).ok()?;
     let mut bytes = Vec::new();
     file.take(MAX_SIDE_FILE).read_to_end(&mut bytes).ok()?;
     Some(bytes)
@@ -137,7 +181,7 @@ pub(crate) fn write_model(
             for (name, png) in &files.textures {
                 bytes(&path.with_file_name(name), png)?;
             }
-            bytes(&path.with_extension("mtl"), &files.mtl)?;
+            bytes(&path.with_file_name(&files.mtl_name), &files.mtl)?;
             bytes(path, &files.obj)?;
         }
         _ => output::write_whole(path, |out| {

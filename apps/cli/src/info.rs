@@ -18,16 +18,16 @@ const WARNINGS: usize = 50;
 
 pub(crate) fn info(args: &InfoArgs) -> Outcome {
     let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
-    let (file, kind) = files::open(&args.input)?;
-    let bytes = file.get_ref().metadata().map_err(|e| Failure::io(&args.input, "read", &e))?.len();
-    drop(file);
+    let (input, kind) = files::open(&args.input)?;
+    // A pipe has no size.
+    let bytes = std::fs::metadata(&args.input).ok().filter(std::fs::Metadata::is_file).map(|m| m.len());
     let (format, content) = match kind {
         Kind::Model(_) => {
             let axes = files::axes(args.axes.up, args.axes.unit);
-            let (model, format, warnings) = files::read_model(&args.input, &axes)?;
+            let (model, format, warnings) = files::read_opened_model(&args.input, input, kind, &axes)?;
             (format.word(), Content::Model(ModelSummary::of(&model, &warnings)))
         }
-        Kind::Drawing(format) => (format.word(), Content::Drawings(drawings(&args.input, format)?)),
+        Kind::Drawing(format) => (format.word(), Content::Drawings(drawings(&args.input, input, format)?)),
     };
     let path = args.input.display().to_string();
     let info = Info { schema: "burgeon.info/1", version: burgeon::VERSION, path, bytes, format, content };
@@ -42,7 +42,8 @@ struct Info {
     schema: &'static str,
     version: &'static str,
     path: String,
-    bytes: u64,
+    /// Null for standard input and pipes.
+    bytes: Option<u64>,
     format: &'static str,
     #[serde(flatten)]
     content: Content,
@@ -66,11 +67,10 @@ struct Drawings {
     warnings: Vec<String>,
 }
 
-fn drawings(path: &Path, format: DrawingFormat) -> Outcome<Drawings> {
-    let (file, _) = files::open(path)?;
+fn drawings(path: &Path, input: files::Input, format: DrawingFormat) -> Outcome<Drawings> {
     let mut out = Drawings::default();
-    let mut last = None;
-    for item in read_drawings(file, format, &files::stem(path)) {
+    let mut first_error = None;
+    for item in read_drawings(input, format, &files::stem(path)) {
         match item {
             Ok(read) => {
                 let mut summary = DrawingSummary::of(&read.drawing, &read.warnings);
@@ -89,12 +89,12 @@ fn drawings(path: &Path, format: DrawingFormat) -> Outcome<Drawings> {
             Err(e) => {
                 out.failed += 1;
                 out.warnings.push(e.to_string());
-                last = Some(e);
+                first_error.get_or_insert(e);
             }
         }
         out.warnings.truncate(WARNINGS);
     }
-    match last {
+    match first_error {
         Some(e) if out.count == 0 => Err(Failure::at(path, e)),
         None if out.count == 0 => Err(Failure::at(path, "holds no drawing")),
         _ => Ok(out),
@@ -170,8 +170,9 @@ fn model_lines(m: &ModelSummary, out: &mut Vec<String>) {
 
 impl Info {
     fn lines(&self) -> Vec<String> {
-        let bytes = say::counted(self.bytes, "byte", "bytes");
-        let mut out = vec![format!("{}: {}, {bytes}", self.path, self.format)];
+        let bytes =
+            self.bytes.map_or_else(String::new, |n| format!(", {}", say::counted(n, "byte", "bytes")));
+        let mut out = vec![format!("{}: {}{bytes}", self.path, self.format)];
         let warnings = match &self.content {
             Content::Model(m) => {
                 model_lines(m, &mut out);

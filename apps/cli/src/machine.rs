@@ -53,7 +53,7 @@ impl Clock for WallClock {
     }
 }
 
-/// A token that Ctrl-C cancels. A second Ctrl-C ends the program at once.
+/// A token that Ctrl-C and requests to end (SIGTERM, SIGHUP) cancel. A second one ends the program at once.
 pub(crate) fn cancel_on_ctrl_c() -> &'static CancelToken {
     static TOKEN: OnceLock<CancelToken> = OnceLock::new();
     TOKEN.get_or_init(|| {
@@ -63,6 +63,7 @@ pub(crate) fn cancel_on_ctrl_c() -> &'static CancelToken {
         // Without a handler Ctrl-C still ends the program; outputs are complete or absent either way.
         let _ = ctrlc::set_handler(move || {
             if pressed.swap(true, Ordering::Relaxed) {
+                crate::output::remove_drafts();
                 std::process::exit(130);
             }
             shared.cancel();

@@ -12,10 +12,9 @@ use crate::{files, output, report, say};
 
 pub(crate) fn render(args: &RenderArgs) -> Outcome {
     let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
-    if !files::extension(&args.output).is_some_and(|e| e.eq_ignore_ascii_case("png")) {
-        return Err(Failure::at(&args.output, "pictures are written as PNG; end the name with .png"));
-    }
-    output::check_target(&args.output)?;
+    check_name(&args.output)?;
+    let outputs = [("-o", Some(&args.output)), ("--report", args.common.report.as_ref())];
+    output::check_outputs(&outputs, &[&args.input])?;
     let axes = files::axes(args.axes.up, args.axes.unit);
     let (read, read_ms) = machine.timed(|| files::read_model(&args.input, &axes));
     let (model, _, warnings) = read?;
@@ -45,6 +44,15 @@ pub(crate) fn render(args: &RenderArgs) -> Outcome {
     run.items.push(item);
     run.ok = 1;
     report::finish(&run, &args.common)
+}
+
+/// Pictures are PNG, whatever the name says: so the name must say it.
+pub(crate) fn check_name(path: &Path) -> Outcome {
+    if files::extension(path).is_some_and(|e| e.eq_ignore_ascii_case("png")) {
+        Ok(())
+    } else {
+        Err(Failure::at(path, "pictures are written as PNG; end the name with .png"))
+    }
 }
 
 /// A report's item about a model.

@@ -25,7 +25,7 @@ pub(crate) fn finish_any(report: &impl Serialize, args: &CommonArgs) -> Outcome 
         output::write_whole(path, |out| Ok(writeln!(out, "{text}")?))?;
     }
     if args.json {
-        say::line(&text);
+        say::data(&text).map_err(|e| Failure::io(Path::new("standard output"), "written", &e))?;
     }
     Ok(())
 }

@@ -1,10 +1,28 @@
 //! Lines for people. A closed pipe is no error.
 
-use std::io::{IsTerminal, Write, stderr, stdout};
+use std::io::{self, IsTerminal, Write, stderr, stdout};
 
-/// A line on stdout.
+/// A line on stdout for people; what stands in names of files and drawings cannot steer the terminal.
 pub(crate) fn line(text: &str) {
-    let _ = writeln!(stdout(), "{text}");
+    let _ = writeln!(stdout(), "{}", printable(text));
+}
+
+/// Text for other programs on stdout: that it did not arrive is an error, but for a reader that went away.
+pub(crate) fn data(text: &str) -> io::Result<()> {
+    let mut out = stdout().lock();
+    match writeln!(out, "{text}").and_then(|()| out.flush()) {
+        Err(e) if e.kind() != io::ErrorKind::BrokenPipe => Err(e),
+        _ => Ok(()),
+    }
+}
+
+/// Control characters and those that turn the direction of writing become the replacement character.
+fn printable(text: &str) -> String {
+    let bad = |c: char| {
+        c.is_control()
+            || matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+    };
+    text.chars().map(|c| if bad(c) { char::REPLACEMENT_CHARACTER } else { c }).collect()
 }
 
 /// `error: ...` on stderr; line breaks inside become spaces.
@@ -18,7 +36,7 @@ pub(crate) fn warning(text: &str) {
 }
 
 fn tagged(tag: &str, color: &str, text: &str) {
-    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let text = printable(&text.split_whitespace().collect::<Vec<_>>().join(" "));
     let mut out = stderr().lock();
     let plain = !out.is_terminal() || std::env::var_os("NO_COLOR").is_some();
     let _ = if plain {
@@ -48,6 +66,11 @@ pub(crate) fn counted(n: u64, one: &str, many: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    #[test]
+    fn names_cannot_steer_the_terminal() {
+        assert_eq!(super::printable("a\x1b[31mb\u{202e}c\u{7f}é🌹"), "a\u{fffd}[31mb\u{fffd}c\u{fffd}é🌹");
+    }
+
     #[test]
     fn thousands_are_grouped() {
         let got = [0, 999, 1000, 1_234_567].map(super::grouped);

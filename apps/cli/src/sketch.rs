@@ -1,8 +1,6 @@
 //! `burgeon sketch`: one drawing to one model, or many drawings to a folder.
 
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::BufReader;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -22,7 +20,7 @@ use crate::{output, picture, say};
 pub(crate) fn sketch(args: &SketchArgs) -> Outcome {
     let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
     let job = Job::new(args)?;
-    let report = if job.is_batch() {
+    let report = if job.is_batch()? {
         job.batch(&machine)?
     } else {
         machine.with_progress("drawing to plant", |_| job.one(&machine))?
@@ -46,15 +44,27 @@ impl<'a> Job<'a> {
         Ok(Self { args, spec, skin: skin_spec(&args.surface, args.seed), classes })
     }
 
-    /// The output is a folder: it is one, looks like one, or there are several inputs.
-    fn is_batch(&self) -> bool {
-        let folder = |path: &Path| {
-            let known = files::extension(path)
-                .is_some_and(|e| ModelFormat::from_extension(e).is_some() || e.eq_ignore_ascii_case("png"));
-            path.is_dir() || path.as_os_str().to_string_lossy().ends_with(['/', '\\']) || !known
-        };
-        let output = self.args.output.as_deref().or(self.args.png.as_deref());
-        self.args.inputs.len() > 1 || output.is_some_and(folder)
+    /// The outputs are folders, rather than files.
+    fn is_batch(&self) -> Outcome<bool> {
+        let many = self.args.inputs.len() > 1;
+        let model = |e: &str| ModelFormat::from_extension(e).is_some();
+        let picture = |e: &str| e.eq_ignore_ascii_case("png");
+        let output =
+            self.args.output.as_deref().map(|p| {
+                names_folder(p, "-o", model, "models are written as .glb, .obj, .ply or .stl", many)
+            });
+        let png = self
+            .args
+            .png
+            .as_deref()
+            .map(|p| names_folder(p, "--png", picture, "pictures are written as .png", many));
+        match (output.transpose()?, png.transpose()?) {
+            (Some(a), Some(b)) if a != b => {
+                let path = self.args.png.as_deref().unwrap_or(Path::new(""));
+                Err(Failure::at(path, "-o and --png name a file and a folder; give two files or two folders"))
+            }
+            (a, b) => Ok(many || a.or(b).unwrap_or(false)),
+        }
     }
 
     fn options(&self, drawing: &Drawing) -> SketchOptions {
@@ -72,10 +82,13 @@ impl<'a> Job<'a> {
     /// The one drawing of the one input.
     fn one(&self, machine: &Machine) -> Outcome<RunReport> {
         let input = &self.args.inputs[0];
-        for target in [&self.args.output, &self.args.png, &self.args.common.report].into_iter().flatten() {
-            output::check_target(target)?;
-        }
         let format = self.args.output.as_deref().map(files::writable).transpose()?;
+        let outputs = [
+            ("-o", self.args.output.as_ref()),
+            ("--png", self.args.png.as_ref()),
+            ("--report", self.args.common.report.as_ref()),
+        ];
+        output::check_outputs(&outputs, &[input])?;
         let mut drawings = open(input)?;
         let (first, read_ms) = machine.timed(|| drawings.next());
         let read = first
@@ -158,9 +171,8 @@ impl<'a> Job<'a> {
         for folder in [&self.args.output, &self.args.png].into_iter().flatten() {
             output::make_folder(folder)?;
         }
-        if let Some(report) = &self.args.common.report {
-            output::check_target(report)?;
-        }
+        let inputs: Vec<&PathBuf> = self.args.inputs.iter().collect();
+        output::check_outputs(&[("--report", self.args.common.report.as_ref())], &inputs)?;
         let queue = Mutex::new(Queue::new(&self.args.inputs));
         let done = Mutex::new(Done::default());
         let strokes = AtomicU64::new(0);
@@ -198,11 +210,18 @@ impl<'a> Job<'a> {
         done.items.sort_by_key(|(index, _)| *index);
         done.failures.sort_by_key(|(index, _)| *index);
         report.ok = done.ok;
-        report.failed = done.failures.len() as u64;
+        report.failed = done.failed;
         report.items = done.items.into_iter().map(|(_, item)| item).collect();
         report.warnings = done.failures.into_iter().map(|(_, line)| line).collect();
-        for line in &report.warnings {
-            say::error(line);
+        report.warnings.iter().take(TOLD_FAILURES).for_each(|line| say::error(line));
+        let listed = report.warnings.len() as u64;
+        if listed < done.failed {
+            report.warnings.push(format!("{} failures more are not listed", done.failed - listed));
+        }
+        let more = done.failed.saturating_sub(TOLD_FAILURES as u64);
+        if more > 0 {
+            let more = say::counted(more, "drawing", "drawings");
+            say::error(&format!("{more} more failed; --report FILE.json lists them"));
         }
         let failures = report.warnings.len();
         self.warn_of_unused(&mut report);
@@ -243,12 +262,19 @@ struct Target {
     png: Option<PathBuf>,
 }
 
+/// Failures of a batch that are told on stderr.
+const TOLD_FAILURES: usize = 20;
+/// Failures of a batch that are kept for the report: a file of noise may have millions of lines.
+const LISTED_FAILURES: usize = 10_000;
+
 /// What came out of a batch so far.
 #[derive(Default)]
 struct Done {
     ok: u64,
     warnings: u64,
     items: Vec<(u64, ItemReport)>,
+    failed: u64,
+    /// The first of them, at most [`LISTED_FAILURES`].
     failures: Vec<(u64, String)>,
     bug: Option<String>,
 }
@@ -263,7 +289,12 @@ impl Done {
                     self.items.push((index, item));
                 }
             }
-            Err(Failure::Bad(line)) => self.failures.push((index, format!("{place}: {line}"))),
+            Err(Failure::Bad(line)) => {
+                self.failed += 1;
+                if self.failures.len() < LISTED_FAILURES {
+                    self.failures.push((index, format!("{place}: {line}")));
+                }
+            }
             Err(Failure::Bug(line)) => self.bug = Some(format!("{place}: {line}")),
             Err(Failure::Told | Failure::Cancelled) => {}
         }
@@ -284,7 +315,7 @@ struct Next {
 /// The drawings of all inputs in order, read one at a time.
 struct Queue<'a> {
     inputs: std::slice::Iter<'a, PathBuf>,
-    open: Option<(&'a PathBuf, Drawings<BufReader<File>>, u64)>,
+    open: Option<(&'a PathBuf, Drawings<files::Input>, u64)>,
     names: BTreeMap<String, u64>,
     count: u64,
     files: usize,
@@ -342,13 +373,42 @@ fn pull(queue: &Mutex<Queue<'_>>, machine: &Machine, progress: &Progress) -> Opt
     Some(Next { index, place, name, read, read_ms })
 }
 
-fn open(path: &Path) -> Outcome<Drawings<BufReader<File>>> {
+fn open(path: &Path) -> Outcome<Drawings<files::Input>> {
     match files::open(path)? {
         (file, Kind::Drawing(format)) => Ok(read_drawings(file, format, &files::stem(path))),
         (_, Kind::Model(format)) => Err(Failure::at(
             path,
             format_args!("is a model ({}), not a drawing; `burgeon render` makes its picture", format.word()),
         )),
+    }
+}
+
+/// Whether an output names a folder: it is one, ends like one, or has no extension. `known` are the extensions
+/// of its files; anything else is refused rather than made a folder.
+fn names_folder(
+    path: &Path,
+    option: &str,
+    known: impl Fn(&str) -> bool,
+    formats: &str,
+    many: bool,
+) -> Outcome<bool> {
+    if path.as_os_str() == "-" {
+        return output::check_target(path).map(|()| false);
+    }
+    if path.is_dir() || path.as_os_str().to_string_lossy().ends_with(['/', std::path::MAIN_SEPARATOR]) {
+        return Ok(true);
+    }
+    match files::extension(path) {
+        None => Ok(true),
+        Some(e) if !known(e) => Err(Failure::at(
+            path,
+            format_args!("{formats}; end {option} with one of them, or with / for a folder"),
+        )),
+        Some(_) if many => Err(Failure::at(
+            path,
+            format_args!("names one file for several drawings; give a folder: {option} FOLDER"),
+        )),
+        Some(_) => Ok(false),
     }
 }
 
@@ -398,8 +458,13 @@ fn unique(taken: &mut BTreeMap<String, u64>, name: &str) -> String {
 fn sketch_spec(args: &ReadingArgs) -> Outcome<SketchSpec> {
     let mut spec = match &args.spec {
         Some(path) => {
-            let text = std::fs::read_to_string(path).map_err(|e| Failure::io(path, "read", &e))?;
-            serde_json::from_str(&text).map_err(|e| Failure::at(path, e))?
+            let text = files::read_text(path)?;
+            let spec: SketchSpec = serde_json::from_str(&text)
+                .map_err(|e| Failure::at(path, format_args!("is not a sketch spec: {e}")))?;
+            if let Some(fault) = spec.validate().next() {
+                return Err(Failure::at(path, fault));
+            }
+            spec
         }
         None => SketchSpec::default(),
     };

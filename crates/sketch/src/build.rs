@@ -60,6 +60,13 @@ pub fn build(
     report: &mut Report,
 ) -> Result<Built, Cancelled> {
     run.cancel.check()?;
+    if let Some(flip) = spec.flipped_flowers.iter().find(|&&i| i as usize >= reading.flowers.len()) {
+        let flowers = reading.flowers.len();
+        report.warn(
+            "no-such-flower",
+            format!("flower {flip} is to be flipped, but there are {flowers} flowers, numbered from 0"),
+        );
+    }
     let started = run.clock.now_ms();
     let map = plant_map(reading, spec);
     let mut plans = Plans::new(reading);

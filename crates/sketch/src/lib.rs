@@ -37,6 +37,6 @@ pub use reading::{
     Attachment, AxisReading, BladeReading, DiscReading, FlowerReading, FruitReading, OrganWord, Reading,
     RegionKind, RegionReading, StrokeClass, StrokeReading,
 };
-pub use spec::{BranchDepth, FillSpec, LeafDepth, ReliefSpec, SketchSpec, TaperSpec};
+pub use spec::{BranchDepth, FillSpec, LeafDepth, ReliefSpec, SketchSpec, SpecFault, TaperSpec};
 pub use structure::{ReadingFault, read};
 pub use template::LeafForm;

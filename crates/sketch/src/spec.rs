@@ -122,3 +122,58 @@ pub struct SketchSpec {
     /// Sag of recovered branches under gravity, 0 to 1, default 0.
     pub gravity: f64,
 }
+
+/// A number of a [`SketchSpec`] that lies outside its range.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("{field} is {value}, but must be from {low} to {high}")]
+pub struct SpecFault {
+    /// The field, as it stands in the file.
+    pub field: &'static str,
+    /// What was given.
+    pub value: f64,
+    /// Smallest value.
+    pub low: f64,
+    /// Largest value.
+    pub high: f64,
+}
+
+impl SketchSpec {
+    /// Every number that lies outside its range. The maker itself takes any spec: it clamps what would break it.
+    ///
+    /// ```
+    /// use sketch::SketchSpec;
+    /// let spec = SketchSpec { gravity: 7.0, ..SketchSpec::default() };
+    /// let fault = spec.validate().next().unwrap();
+    /// assert_eq!(fault.to_string(), "gravity is 7, but must be from 0 to 1");
+    /// assert_eq!(SketchSpec::default().validate().count(), 0);
+    /// ```
+    pub fn validate(&self) -> impl Iterator<Item = SpecFault> + use<> {
+        let (fill, taper, relief) = (&self.fill, &self.taper, &self.relief);
+        let optional =
+            [("height_m", self.height_m, 0.001, 1000.0), ("pipe_exponent", self.pipe_exponent, 1.8, 3.0)];
+        let optional = optional.into_iter().filter_map(|(f, v, low, high)| Some((f, v?, low, high)));
+        let rest = [
+            ("phototropism", self.phototropism, -1.0, 1.0),
+            ("gravity", self.gravity, 0.0, 1.0),
+            ("fill.contour_pull", fill.contour_pull, 0.0, 1.0),
+            ("fill.bearer_pull", fill.bearer_pull, 0.0, 1.0),
+            ("fill.memory", fill.memory, 0.0, 1.0),
+            ("fill.density", fill.density, 0.1, 10.0),
+            ("fill.tropism", fill.tropism, -1.0, 1.0),
+            // Beyond these bounds an axis is a thread or a post.
+            ("taper.s", taper.s, 1.001, 1e6),
+            ("taper.alpha", taper.alpha, 0.001, 10.0),
+            ("taper.m", taper.m, 0.0, 1000.0),
+            ("relief.petal_bend_a", relief.petal_bend_a, -0.2, 0.2),
+            ("relief.petal_bend_b", relief.petal_bend_b, -0.3, 0.5),
+            ("relief.petal_hollow", relief.petal_hollow, 0.0, 0.3),
+            ("relief.leaf_bend_a", relief.leaf_bend_a, -0.2, 0.2),
+            ("relief.leaf_bend_b", relief.leaf_bend_b, -0.3, 0.5),
+            ("relief.leaf_fold", relief.leaf_fold, 0.0, 1.0),
+        ];
+        optional
+            .chain(rest)
+            .filter(|(_, value, low, high)| !(low..=high).contains(&value))
+            .map(|(field, value, low, high)| SpecFault { field, value, low, high })
+    }
+}

@@ -16,6 +16,8 @@ pub struct ObjFiles {
     pub obj: Vec<u8>,
     /// `STEM.mtl`.
     pub mtl: Vec<u8>,
+    /// The name by which the OBJ refers to it: the stem with every character that OBJ cannot hold replaced.
+    pub mtl_name: String,
     /// Name and bytes of each texture, `STEM-MATERIAL.png`.
     pub textures: Vec<(String, Vec<u8>)>,
 }
@@ -78,7 +80,7 @@ pub fn obj_files(model: &Model, stem: &str, spec: &ExportSpec) -> Result<ObjFile
         vn += mesh.normals.len();
     }
     let (mtl, textures) = materials(model, &stem)?;
-    Ok(ObjFiles { obj, mtl, textures })
+    Ok(ObjFiles { obj, mtl, mtl_name: format!("{stem}.mtl"), textures })
 }
 
 type Textures = Vec<(String, Vec<u8>)>;
