@@ -431,7 +431,7 @@ impl Colony<'_> {
     }
 
     fn grow(&mut self, run: &Run<'_>, report: &mut Report) -> Result<(), GrowthError> {
-        // Methods, section 2: after so many rounds without a point consumed, growth goes in circles.
+        // Twice the rounds that the farthest perceived point takes: then growth goes in circles.
         let patience = 2.0 * self.steps.attraction / self.steps.step + 2.0;
         let mut quiet = 0.0;
         let mut queue = Vec::with_capacity(self.load.queue.capacity());

@@ -39,6 +39,9 @@ pub enum GrowthError {
     /// A mesh cannot bound anything.
     #[error("mesh: {0}")]
     Mesh(#[from] MeshFault),
+    /// The rules of an L-system are at fault.
+    #[error(transparent)]
+    Lsystem(#[from] crate::LsystemError),
     /// The envelope has hardly any room for attractors.
     #[error(
         "the envelope is empty or almost so: {found} of {wanted} points found a place in {tries} tries; \

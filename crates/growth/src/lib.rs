@@ -8,22 +8,30 @@
 //! | `obstacle` | boxes, balls, cylinders, planes and meshes that growth goes around |
 //! | `colonize` | space colonisation (Runions 2007) |
 //! | `competition` | life cycles of attraction points (paper 001) |
+//! | `self_organize` | buds that compete for light, shedding, wood (Palubicki 2009) |
+//! | `lsystem` | rules read from text |
 //! | `skeleton` | what growers make: joints and the joints they grew from |
 
+mod arrangement;
 mod colonize;
 mod competition;
 mod envelope;
 mod error;
 mod field;
+mod lsystem;
 mod obstacle;
+mod self_organize;
 mod skeleton;
 mod solid;
 mod tropism;
 
+pub use arrangement::Arrangement;
 pub use colonize::{ColonizeSpec, Colonized, Fate, colonize, colonize_from, regrow};
 pub use competition::{Competed, CompetitionSpec, Cycle, compete};
 pub use envelope::{Envelope, Region};
 pub use error::{GrowthError, MeshFault};
+pub use lsystem::{LeafMark, Lsystem, LsystemError, LsystemTree, OAK_RULES, grow_lsystem};
 pub use obstacle::{Obstacle, Obstacles};
+pub use self_organize::{Light, Resource, SelfOrganized, SelfOrganizingSpec, self_organize};
 pub use skeleton::{JointId, Skeleton, SkeletonFault};
 pub use tropism::Tropism;

@@ -1,0 +1,70 @@
+//! Phyllotaxis as it stands in a spec.
+
+use plant::{Divergence, Phyllotaxis};
+use serde::{Deserialize, Serialize};
+
+use crate::GrowthError;
+use crate::error::within;
+
+/// How buds or leaves stand around their axis.
+///
+/// ```
+/// use growth::Arrangement;
+/// use plant::Phyllotaxis;
+/// assert_eq!(Arrangement::Decussate.phyllotaxis()?, Phyllotaxis::Decussate);
+/// # Ok::<(), growth::GrowthError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+#[non_exhaustive]
+pub enum Arrangement {
+    /// One a node, turned by the divergence from the one before.
+    Spiral {
+        /// Degrees; 137.5 in most plants.
+        divergence_deg: f64,
+    },
+    /// One a node, in two rows.
+    Distichous,
+    /// Two a node, all in one plane.
+    Opposite,
+    /// Two a node, each pair across the one before.
+    Decussate,
+    /// Several a node, 2 to 12.
+    Whorled {
+        /// How many.
+        count: u32,
+    },
+}
+
+impl Default for Arrangement {
+    fn default() -> Self {
+        Self::Spiral { divergence_deg: 137.507_764 }
+    }
+}
+
+impl Arrangement {
+    /// The checked form.
+    ///
+    /// # Errors
+    /// [`GrowthError::Field`] for a divergence that is not finite or a whorl of other than 2 to 12.
+    pub fn phyllotaxis(self) -> Result<Phyllotaxis, GrowthError> {
+        Ok(match self {
+            Self::Spiral { divergence_deg } => {
+                let d = within("divergence_deg", divergence_deg, -360.0, 360.0, "-360 to 360")?;
+                let fault = |e: base::NotFinite| GrowthError::Field {
+                    field: "divergence_deg",
+                    range: "-360 to 360",
+                    value: e.value,
+                };
+                Phyllotaxis::Spiral(Divergence::from_deg(d).map_err(fault)?)
+            }
+            Self::Distichous => Phyllotaxis::Distichous,
+            Self::Opposite => Phyllotaxis::Opposite,
+            Self::Decussate => Phyllotaxis::Decussate,
+            Self::Whorled { count } => {
+                within("whorl count", f64::from(count), 2.0, 12.0, "2 to 12")?;
+                Phyllotaxis::Whorled(count)
+            }
+        })
+    }
+}

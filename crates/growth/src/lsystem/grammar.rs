@@ -1,0 +1,244 @@
+//! The text of an L-system: settings, constants, rules.
+
+use glam::DVec3;
+
+use super::LsystemError;
+use super::expr::{Expression, Reader};
+
+/// Parameters of one module: more are a slip.
+const MOST_PARAMETERS: usize = 8;
+/// What a rule may not rewrite: brackets, and the marks that the grammar itself uses.
+const RESERVED: &[u8] = b"[](),;#";
+
+/// A module as a rule writes it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Written {
+    pub(super) symbol: u8,
+    pub(super) arguments: Vec<Expression>,
+}
+
+/// One way of rewriting a module.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Rule {
+    /// As written, for messages.
+    pub(super) text: String,
+    pub(super) line: usize,
+    pub(super) symbol: u8,
+    pub(super) arity: usize,
+    pub(super) condition: Option<Expression>,
+    pub(super) chance: f64,
+    pub(super) successor: Vec<Written>,
+}
+
+/// An L-system that was read.
+///
+/// ```
+/// let text = "axiom = A(1)\nsteps = 3\nA(x) if x > 0.1 -> F(x) [ +(30) A(x / 2) ] A(x * 0.8)";
+/// assert!(growth::Lsystem::parse(text).is_ok());
+/// let slip = growth::Lsystem::parse("axiom = A\nA -> [ F").unwrap_err();
+/// assert_eq!(slip.to_string(), "line 2: a ] is missing");
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lsystem {
+    pub(super) axiom: Vec<Written>,
+    pub(super) rules: Vec<Rule>,
+    /// Rewriting steps.
+    pub steps: u32,
+    /// What turns without a number turn by, degrees; default 25.
+    pub angle_deg: f64,
+    /// Length of `F` without a number, metres; default 0.2.
+    pub length_m: f64,
+    /// Diameter at the start, metres; 0, the default, leaves radii to the pipe model.
+    pub width_m: f64,
+    /// Direction and strength of what bends every step; default none.
+    pub tropism: (DVec3, f64),
+}
+
+impl Lsystem {
+    /// Reads an L-system.
+    ///
+    /// One statement a line; `#` starts a comment. Settings: `axiom = MODULES`, `steps = N` (0 to 100, default 5),
+    /// `angle = DEGREES`, `length = METRES`, `width = METRES`, `tropism = X Y Z STRENGTH`, `let NAME = EXPRESSION`.
+    /// Rules: `A(x, y) if CONDITION prob NUMBER -> MODULES`; `if` and `prob` may be left out. Rules for the same
+    /// module share by their `prob`; if those sum to less than 1, the module stays with the rest. A module is one
+    /// character, with numbers in parentheses. For the turtle: `F(l)` step, `+(a)` `-(a)` left and right, `&(a)`
+    /// `^(a)` down and up, `\(a)` `/(a)` roll, `|` turn around, `$` roll level, `!(d)` diameter, `L(s)` leaf of that
+    /// scale, `[` `]` branch. All others are skipped. Prusinkiewicz and Lindenmayer 1990, chapters 1 and 2.
+    ///
+    /// # Errors
+    /// [`LsystemError`] with the line.
+    pub fn parse(text: &str) -> Result<Self, LsystemError> {
+        let mut system = Self {
+            axiom: Vec::new(),
+            rules: Vec::new(),
+            steps: 5,
+            angle_deg: 25.0,
+            length_m: 0.2,
+            width_m: 0.0,
+            tropism: (DVec3::NEG_Y, 0.0),
+        };
+        let mut constants: Vec<(String, f64)> = Vec::new();
+        for (number, line) in text.lines().enumerate() {
+            let line = line.split('#').next().unwrap_or_default().trim();
+            if line.is_empty() {
+                continue;
+            }
+            let fault = |why: String| LsystemError::Syntax { line: number + 1, why };
+            if let Some((left, right)) = line.split_once("->") {
+                let rule =
+                    read_rule(left.trim(), right.trim(), line, number + 1, &constants).map_err(fault)?;
+                system.rules.push(rule);
+            } else if let Some((name, value)) = line.split_once('=') {
+                system.set(name.trim(), value.trim(), &mut constants).map_err(fault)?;
+            } else {
+                return Err(fault("neither a setting (name = value) nor a rule (A -> B)".into()));
+            }
+        }
+        if system.axiom.is_empty() {
+            return Err(LsystemError::NoAxiom);
+        }
+        Ok(system)
+    }
+
+    fn set(&mut self, name: &str, value: &str, constants: &mut Vec<(String, f64)>) -> Result<(), String> {
+        let number = |lo: f64, hi: f64| {
+            let x = evaluate(value, constants)?;
+            if (lo..=hi).contains(&x) { Ok(x) } else { Err(format!("{name} must be {lo} to {hi}, not {x}")) }
+        };
+        match name {
+            "axiom" => self.axiom = read_modules(value, &[], constants)?,
+            "steps" => {
+                let n = number(0.0, 100.0)?;
+                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 100")]
+                let n = n as u32;
+                self.steps = n;
+            }
+            "angle" => self.angle_deg = number(-360.0, 360.0)?,
+            "length" => self.length_m = number(0.0, 1e4)?,
+            "width" => self.width_m = number(0.0, 100.0)?,
+            "tropism" => {
+                let c: Vec<f64> =
+                    value.split_whitespace().map(|w| evaluate(w, constants)).collect::<Result<_, _>>()?;
+                let &[x, y, z, strength] = c.as_slice() else {
+                    return Err("tropism needs four numbers: x y z strength".into());
+                };
+                let direction = DVec3::new(x, y, z).try_normalize();
+                self.tropism = (direction.ok_or("tropism needs a direction with a length")?, strength);
+                if !strength.is_finite() {
+                    return Err("the strength of tropism is no finite number".into());
+                }
+            }
+            _ => {
+                let Some(name) = name.strip_prefix("let ").map(str::trim) else {
+                    return Err(format!("`{name}` is no setting; constants are written `let {name} = ...`"));
+                };
+                let word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+                if !name.starts_with(|c: char| c.is_ascii_alphabetic()) || !name.chars().all(word) {
+                    return Err(format!("`{name}` is no name"));
+                }
+                let x = evaluate(value, constants)?;
+                constants.push((name.to_owned(), x));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A constant expression.
+fn evaluate(text: &str, constants: &[(String, f64)]) -> Result<f64, String> {
+    let mut reader = Reader::new(text, &[], constants);
+    let e = reader.expression()?;
+    reader.skip_space();
+    if reader.at < text.len() {
+        return Err(format!("`{}` is left over", &text[reader.at..]));
+    }
+    let x = e.value(&[], base::Seed::new(0), &mut Vec::new());
+    if x.is_finite() { Ok(x) } else { Err(format!("`{text}` is no finite number")) }
+}
+
+fn read_rule(
+    left: &str,
+    right: &str,
+    text: &str,
+    line: usize,
+    constants: &[(String, f64)],
+) -> Result<Rule, String> {
+    let symbol = *left.as_bytes().first().ok_or("a rule needs a module before ->")?;
+    if !symbol.is_ascii_graphic() || RESERVED.contains(&symbol) {
+        return Err(format!("`{left}` is no module that can be rewritten"));
+    }
+    let mut rest = left[1..].trim_start();
+    let mut parameters = Vec::new();
+    if let Some(inner) = rest.strip_prefix('(') {
+        let (names, after) = inner.split_once(')').ok_or("a ) is missing")?;
+        parameters = names.split(',').map(|n| n.trim().to_owned()).collect();
+        rest = after.trim_start();
+        let word = |n: &String| {
+            n.starts_with(|c: char| c.is_ascii_alphabetic())
+                && n.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+        };
+        if !parameters.iter().all(word) || parameters.len() > MOST_PARAMETERS {
+            return Err(format!("`{names}`: up to {MOST_PARAMETERS} names were expected"));
+        }
+    }
+    let mut condition = None;
+    if let Some(after) = rest.strip_prefix("if ") {
+        let (test, chance) = after.split_once(" prob ").map_or((after, ""), |(a, b)| (a, b));
+        let mut reader = Reader::new(test, &parameters, constants);
+        condition = Some(reader.expression()?);
+        reader.skip_space();
+        if reader.at < test.len() {
+            return Err(format!("`{}` is left over after the condition", &test[reader.at..]));
+        }
+        rest = chance;
+    } else if let Some(after) = rest.strip_prefix("prob ") {
+        rest = after;
+    } else if !rest.is_empty() {
+        return Err(format!("`{rest}`: `if`, `prob` or -> was expected"));
+    }
+    let chance = if rest.is_empty() { 1.0 } else { evaluate(rest, constants)? };
+    if !(0.0..=1e6).contains(&chance) {
+        return Err(format!("prob must be 0 or more, not {chance}"));
+    }
+    let successor = read_modules(right, &parameters, constants)?;
+    Ok(Rule { text: text.to_owned(), line, symbol, arity: parameters.len(), condition, chance, successor })
+}
+
+fn read_modules(
+    text: &str,
+    parameters: &[String],
+    constants: &[(String, f64)],
+) -> Result<Vec<Written>, String> {
+    let mut modules = Vec::new();
+    let mut reader = Reader::new(text, parameters, constants);
+    let mut open = 0_usize;
+    loop {
+        reader.skip_space();
+        let Some(&symbol) = text.as_bytes().get(reader.at) else { break };
+        if !symbol.is_ascii_graphic() || b"(),;".contains(&symbol) {
+            return Err(format!("`{}` is no module", char::from(symbol)));
+        }
+        reader.at += 1;
+        match symbol {
+            b'[' => open += 1,
+            b']' => open = open.checked_sub(1).ok_or("a ] without its [")?,
+            _ => {}
+        }
+        let mut arguments = Vec::new();
+        // A parenthesis belongs to a module only if it follows at once.
+        if text.as_bytes().get(reader.at) == Some(&b'(') {
+            reader.at += 1;
+            loop {
+                arguments.push(reader.expression()?);
+                if reader.take(")") {
+                    break;
+                }
+                if !reader.take(",") || arguments.len() >= MOST_PARAMETERS {
+                    return Err(format!("`{}`: a ) is missing", char::from(symbol)));
+                }
+            }
+        }
+        modules.push(Written { symbol, arguments });
+    }
+    if open > 0 { Err("a ] is missing".into()) } else { Ok(modules) }
+}

@@ -1,0 +1,171 @@
+//! Who gets how much: the extended Borchert-Honda model and the priority model.
+//!
+//! `light of each bud -> summed towards the base -> vigour shared towards the tips`
+
+use super::grove::{Grove, NONE};
+
+/// Which side of a fork gets how much.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Sharing {
+    /// `lambda` for the main axis.
+    Fork { lambda: f64 },
+    /// Weights by rank along each axis.
+    Rank { w_max: f64, w_min: f64, kappa: u32 },
+}
+
+/// Sums and shares of one cycle; kept between cycles so that nothing is allocated.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Flow {
+    /// Light gathered by each joint and all above it.
+    pub(super) light: Vec<f64>,
+    /// Internodes of each joint's subtree, itself included.
+    pub(super) size: Vec<f64>,
+    /// Vigour that enters each joint.
+    vigour: Vec<f64>,
+    /// Vigour of each terminal bud (by joint) and axillary bud (by joint and place).
+    pub(super) terminal: Vec<f64>,
+    pub(super) axillary: Vec<f64>,
+    items: Vec<Item>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Item {
+    light: f64,
+    target: Target,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Target {
+    Tip(usize),
+    Bud(usize),
+    Branch(usize),
+}
+
+impl Flow {
+    /// Sums light from the tips to the bases. `bud_light` is that of any bud at each joint.
+    pub(super) fn gather(&mut self, grove: &Grove, bud_light: &[f64]) {
+        let n = grove.len();
+        self.light.clear();
+        self.light.resize(n, 0.0);
+        self.size.clear();
+        self.size.resize(n, 1.0);
+        for j in (0..n).rev() {
+            let mut light = self.light[j];
+            if grove.main[j] == NONE {
+                light += bud_light[j];
+            }
+            light += f64::from(grove.waiting_buds(j)) * bud_light[j];
+            // Children come after their parents: theirs have been added already.
+            self.light[j] = light;
+            if let Some(p) = grove.parent(j) {
+                self.light[p] += light;
+                self.size[p] += self.size[j];
+            }
+        }
+    }
+
+    /// Shares `alpha` times the light of each tree among its buds.
+    pub(super) fn share(&mut self, grove: &Grove, bud_light: &[f64], alpha: f64, sharing: Sharing) {
+        let n = grove.len();
+        self.vigour.clear();
+        self.vigour.resize(n, 0.0);
+        self.terminal.clear();
+        self.terminal.resize(n, 0.0);
+        self.axillary.clear();
+        self.axillary.resize(n * grove.per_node, 0.0);
+        for j in 0..n {
+            if grove.parent(j).is_none() {
+                self.vigour[j] = alpha * self.light[j];
+            }
+            match sharing {
+                Sharing::Fork { lambda } => self.share_fork(grove, bud_light, j, lambda),
+                Sharing::Rank { .. } => {
+                    if grove.starts_axis(j) {
+                        self.share_axis(grove, bud_light, j, sharing);
+                    }
+                }
+            }
+        }
+    }
+
+    /// `v_m = v lambda Q_m / (lambda Q_m + (1 - lambda) Q_l)`, and the rest to the laterals (section 4.2).
+    fn share_fork(&mut self, grove: &Grove, bud_light: &[f64], j: usize, lambda: f64) {
+        let v = self.vigour[j];
+        if v <= 0.0 {
+            return;
+        }
+        let main = grove.main[j];
+        let q_main = if main == NONE { bud_light[j] } else { self.light[main as usize] };
+        let q_side = (self.light[j] - q_main).max(0.0);
+        let (m, l) = (lambda * q_main, (1.0 - lambda) * q_side);
+        // A fork in the dark shares by lambda alone.
+        let share = if m + l > 0.0 { m / (m + l) } else { lambda };
+        if main == NONE {
+            self.terminal[j] = v * share;
+        } else {
+            self.vigour[main as usize] = v * share;
+        }
+        let rest = v * (1.0 - share);
+        if q_side > 0.0 {
+            for k in grove.bud_range(j) {
+                let child = grove.lateral[k];
+                if child == NONE {
+                    if grove.waits[k] {
+                        self.axillary[k] = rest * bud_light[j] / q_side;
+                    }
+                } else {
+                    self.vigour[child as usize] = rest * self.light[child as usize] / q_side;
+                }
+            }
+        }
+    }
+
+    /// The priority model: the tip of the axis first, then what it bears by falling light; weights fall linearly
+    /// from `w_max` to `w_min` at rank `kappa`.
+    fn share_axis(&mut self, grove: &Grove, bud_light: &[f64], start: usize, sharing: Sharing) {
+        let Sharing::Rank { w_max, w_min, kappa } = sharing else { return };
+        let v = self.vigour[start];
+        let mut items = core::mem::take(&mut self.items);
+        items.clear();
+        let mut j = start;
+        loop {
+            for k in grove.bud_range(j) {
+                let child = grove.lateral[k];
+                if child != NONE {
+                    let c = child as usize;
+                    items.push(Item { light: self.light[c], target: Target::Branch(c) });
+                } else if grove.waits[k] {
+                    items.push(Item { light: bud_light[j], target: Target::Bud(k) });
+                }
+            }
+            if grove.main[j] == NONE {
+                break;
+            }
+            j = grove.main[j] as usize;
+        }
+        items.push(Item { light: bud_light[j], target: Target::Tip(j) });
+        let mean = |i: &Item| match i.target {
+            Target::Tip(_) => f64::INFINITY,
+            Target::Bud(_) => i.light,
+            Target::Branch(c) => i.light / self.size[c],
+        };
+        // Stable: equal light keeps the order along the axis, tip last before it is put first.
+        items.sort_by(|a, b| mean(b).total_cmp(&mean(a)));
+        let weight = |rank: usize| {
+            let t = (rank as f64 / f64::from(kappa.max(1))).min(1.0);
+            w_max + (w_min - w_max) * t
+        };
+        let whole: f64 = items.iter().enumerate().map(|(r, i)| i.light * weight(r)).sum();
+        if whole > 0.0 {
+            for (rank, item) in items.iter().enumerate() {
+                let part = v * item.light * weight(rank) / whole;
+                match item.target {
+                    Target::Tip(j) => self.terminal[j] = part,
+                    Target::Bud(k) => self.axillary[k] = part,
+                    Target::Branch(c) => self.vigour[c] = part,
+                }
+            }
+        }
+        self.items = items;
+    }
+}

@@ -1,0 +1,123 @@
+//! Free space as markers: a bud has light if any free marker is nearest to it and in its cone.
+
+use geom::Grid3;
+use glam::DVec3;
+
+use super::grove::{Grove, NONE};
+
+/// Nobody's marker.
+const FREE: u32 = u32::MAX;
+
+/// Markers and what the buds of the last look found. Palubicki et al. 2009, section 4.1.
+#[derive(Clone, Debug)]
+pub(super) struct Space {
+    markers: Vec<DVec3>,
+    grid: Grid3,
+    gone: Vec<bool>,
+    occupancy: f64,
+    perception: f64,
+    cos_half: f64,
+    /// Nearest bud of each marker in this look: distance squared and the bud's row.
+    best: Vec<(f64, u32)>,
+    /// Sum of directions of each bud: `1 + per_node` rows a joint, the terminal bud first.
+    sum: Vec<DVec3>,
+    stride: usize,
+    near: Vec<usize>,
+}
+
+impl Space {
+    /// `reach`: occupancy and perception radius, metres; `half_angle` of the cone, radians.
+    pub(super) fn new(markers: &[DVec3], reach: (f64, f64), half_angle: f64) -> Self {
+        Self {
+            grid: Grid3::new(markers, reach.1),
+            gone: vec![false; markers.len()],
+            best: vec![(f64::INFINITY, FREE); markers.len()],
+            markers: markers.to_vec(),
+            occupancy: reach.0,
+            perception: reach.1,
+            cos_half: base::ops::cos(half_angle),
+            sum: Vec::new(),
+            stride: 1,
+            near: Vec::new(),
+        }
+    }
+
+    /// Markers within the occupancy radius of new joints are gone for ever.
+    pub(super) fn take_room(&mut self, joints: &[DVec3]) {
+        let mut near = core::mem::take(&mut self.near);
+        for &p in joints {
+            near.clear();
+            self.grid.within(p, self.occupancy, &mut near);
+            near.iter().for_each(|&m| self.gone[m] = true);
+        }
+        self.near = near;
+    }
+
+    /// Gives every free marker to the nearest bud in whose cone it lies.
+    pub(super) fn look(&mut self, grove: &Grove) {
+        self.stride = 1 + grove.per_node;
+        self.best.fill((f64::INFINITY, FREE));
+        self.sum.clear();
+        self.sum.resize(grove.len() * self.stride, DVec3::ZERO);
+        for j in 0..grove.len() {
+            if grove.main[j] == NONE {
+                self.claim(grove.skeleton.position[j], grove.heading[j], j * self.stride);
+            }
+            for (i, k) in grove.bud_range(j).enumerate() {
+                if grove.waits[k] {
+                    let row = j * self.stride + 1 + i;
+                    self.claim(grove.skeleton.position[j], grove.bud_heading[k], row);
+                }
+            }
+        }
+        for (m, &(_, row)) in self.best.iter().enumerate() {
+            if row != FREE {
+                let j = row as usize / self.stride;
+                self.sum[row as usize] += (self.markers[m] - grove.skeleton.position[j]).normalize_or_zero();
+            }
+        }
+    }
+
+    fn claim(&mut self, at: DVec3, heading: DVec3, row: usize) {
+        let mut near = core::mem::take(&mut self.near);
+        near.clear();
+        self.grid.within(at, self.perception, &mut near);
+        for &m in near.iter().filter(|&&m| !self.gone[m]) {
+            let to = self.markers[m] - at;
+            let d2 = to.length_squared();
+            if d2 < self.best[m].0 && to.dot(heading) >= self.cos_half * d2.sqrt() {
+                #[expect(
+                    clippy::cast_possible_truncation,
+                    reason = "fewer buds than 2^32: joints are bounded"
+                )]
+                let row = row as u32;
+                self.best[m] = (d2, row);
+            }
+        }
+        self.near = near;
+    }
+
+    /// Mean Q of the buds of a joint that found room (1) or did not (0), and the way of the first that did.
+    pub(super) fn of_joint(&self, j: usize) -> (f64, DVec3) {
+        let rows = &self.sum[j * self.stride..(j + 1) * self.stride];
+        let found = rows.iter().find(|s| **s != DVec3::ZERO);
+        found.map_or((0.0, DVec3::ZERO), |s| (1.0, s.normalize_or_zero()))
+    }
+
+    /// The way V of one bud.
+    pub(super) fn of_bud(&self, joint: usize, bud: Option<usize>) -> DVec3 {
+        let per_node = self.stride - 1;
+        let row = joint * self.stride + bud.map_or(0, |k| 1 + k - joint * per_node);
+        self.sum[row].normalize_or_zero()
+    }
+
+    /// Forgets what the buds of shed joints found.
+    pub(super) fn keep(&mut self, stays: &[bool]) {
+        let mut row = 0;
+        let stride = self.stride;
+        self.sum.retain(|_| {
+            row += 1;
+            stays[(row - 1) / stride]
+        });
+    }
+}

@@ -1,0 +1,202 @@
+//! What can be asked of self-organising growth.
+
+use glam::DVec3;
+use plant::Phyllotaxis;
+use serde::{Deserialize, Serialize};
+
+use crate::error::within;
+use crate::{Arrangement, Envelope, GrowthError, Tropism};
+
+/// How buds learn how much light they have.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+#[non_exhaustive]
+pub enum Light {
+    /// Shadow propagation: Q = max(C - s + a, 0), direction down the shadow's gradient.
+    Shadow {
+        /// Side of a voxel, metres; default two internodes.
+        #[serde(default)]
+        voxel_m: Option<f64>,
+        /// What a joint adds to its own voxel, above 0 and at most 100.
+        a: f64,
+        /// The fall of the shadow from layer to layer, above 1 and at most 100.
+        b: f64,
+        /// Layers below that are shaded, 1 to 32.
+        layers: u32,
+        /// Full light C, above 0.
+        full: f64,
+    },
+    /// Space colonisation: Q = 1 for a bud that is nearest to a free marker in its cone, else 0.
+    Space {
+        /// Where markers are, relative to the root.
+        envelope: Envelope,
+        /// How many for each tree, 1 to 10 million.
+        markers: u32,
+        /// Radius in which a joint removes markers, internodes; 2 in the paper.
+        occupancy: f64,
+        /// Radius in which a bud sees markers, internodes; 4 to 6 in the paper.
+        perception: f64,
+        /// Half opening angle of the cone of sight, degrees; 45.
+        half_angle_deg: f64,
+    },
+}
+
+impl Default for Light {
+    fn default() -> Self {
+        Self::Shadow { voxel_m: None, a: 0.03, b: 1.8, layers: 6, full: 1.0 }
+    }
+}
+
+/// How what was gathered is shared.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+#[non_exhaustive]
+pub enum Resource {
+    /// The extended Borchert-Honda model.
+    BorchertHonda {
+        /// Bias for the main axis, 0 to 1; 0.46 makes a bush, 0.54 a leader.
+        lambda: f64,
+        /// The bias after `lambda_years`; default the same.
+        #[serde(default)]
+        lambda_late: Option<f64>,
+    },
+    /// The priority model: weights by rank along each axis.
+    Priority {
+        /// Weight of the tip, above 0.
+        w_max: f64,
+        /// Weight from rank `kappa` on, 0 or more.
+        w_min: f64,
+        /// Rank, 1 or more.
+        kappa: u32,
+    },
+}
+
+impl Default for Resource {
+    fn default() -> Self {
+        Self::BorchertHonda { lambda: 0.52, lambda_late: None }
+    }
+}
+
+/// Self-organising growth. Metres, years, degrees.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct SelfOrganizingSpec {
+    /// Years of growth, 0 to 1000, default 25.
+    pub years: u32,
+    /// Length of an internode at vigour 1, above 0, default 0.25.
+    pub internode_m: f64,
+    /// How buds learn their light.
+    pub light: Light,
+    /// How it is shared.
+    pub resource: Resource,
+    /// Years until `lambda_late` holds, default 10.
+    pub lambda_years: u32,
+    /// Vigour per unit of light, above 0 and at most 100, default 2.
+    pub alpha: f64,
+    /// Weight xi of the best-lit direction, 0 to 10, default 0.25.
+    pub light_weight: f64,
+    /// Weight eta and direction of what else pulls, default 0.2 upwards.
+    pub tropisms: Vec<Tropism>,
+    /// How axillary buds stand, default a golden spiral.
+    pub arrangement: Arrangement,
+    /// Between a shoot and the buds at its side, 0 to 180 degrees, default 45.
+    pub branch_angle_deg: f64,
+    /// Standard deviation of that angle and of the azimuths, 0 to 60 degrees, default 4.
+    pub jitter_deg: f64,
+    /// A branch with less light per internode is shed, 0 or more, default 0.3.
+    pub shed_below: f64,
+    /// Years that a branch is spared, default 3.
+    pub shed_after_years: u32,
+    /// Most internodes of one shoot a year, 1 to 100, default 6.
+    pub most_per_shoot: u32,
+    /// Exponent n of the pipe model, 1 to 4, default 2.4.
+    pub pipe_exponent: f64,
+    /// Radius of a fresh shoot, above 0, default 0.004.
+    pub tip_radius_m: f64,
+    /// Whether a bud suffers from the shadow of its own leaf (paper 001 has no correction), default false.
+    pub self_shadow: bool,
+    /// Most joints of all trees together, default 2 million.
+    pub max_joints: u32,
+}
+
+impl Default for SelfOrganizingSpec {
+    fn default() -> Self {
+        Self {
+            years: 25,
+            internode_m: 0.25,
+            light: Light::default(),
+            resource: Resource::default(),
+            lambda_years: 10,
+            alpha: 2.0,
+            light_weight: 0.25,
+            tropisms: vec![Tropism::UPWARDS],
+            arrangement: Arrangement::default(),
+            branch_angle_deg: 45.0,
+            jitter_deg: 4.0,
+            shed_below: 0.3,
+            shed_after_years: 3,
+            most_per_shoot: 6,
+            pipe_exponent: 2.4,
+            tip_radius_m: 0.004,
+            self_shadow: false,
+            max_joints: 2_000_000,
+        }
+    }
+}
+
+/// What follows from checked numbers.
+pub(super) struct Numbers {
+    pub(super) phyllotaxis: Phyllotaxis,
+    pub(super) pull: DVec3,
+}
+
+impl SelfOrganizingSpec {
+    pub(super) fn check(&self) -> Result<Numbers, GrowthError> {
+        within("years", f64::from(self.years), 0.0, 1000.0, "0 to 1000")?;
+        within("internode_m", self.internode_m, 1e-4, 1e3, "0.0001 to 1000 m")?;
+        within("alpha", self.alpha, 1e-6, 100.0, "above 0 and at most 100")?;
+        within("light_weight", self.light_weight, 0.0, 10.0, "0 to 10")?;
+        within("branch_angle_deg", self.branch_angle_deg, 0.0, 180.0, "0 to 180")?;
+        within("jitter_deg", self.jitter_deg, 0.0, 60.0, "0 to 60")?;
+        within("shed_below", self.shed_below, 0.0, 1e6, "0 or more")?;
+        within("most_per_shoot", f64::from(self.most_per_shoot), 1.0, 100.0, "1 to 100")?;
+        within("pipe_exponent", self.pipe_exponent, 1.0, 4.0, "1 to 4")?;
+        within("tip_radius_m", self.tip_radius_m, 1e-6, 10.0, "above 0 and at most 10 m")?;
+        within("max_joints", f64::from(self.max_joints), 1.0, 2_147_483_648.0, "1 to 2^31")?;
+        match &self.light {
+            Light::Shadow { voxel_m, a, b, layers, full } => {
+                if let Some(v) = voxel_m {
+                    within(
+                        "light.voxel_m",
+                        *v,
+                        0.1 * self.internode_m,
+                        1e3,
+                        "a tenth of an internode to 1000 m",
+                    )?;
+                }
+                within("light.a", *a, 1e-6, 100.0, "above 0 and at most 100")?;
+                within("light.b", *b, 1.0, 100.0, "1 to 100")?;
+                within("light.layers", f64::from(*layers), 1.0, 32.0, "1 to 32")?;
+                within("light.full", *full, 1e-6, 1e6, "above 0")?;
+            }
+            Light::Space { markers, occupancy, perception, half_angle_deg, .. } => {
+                within("light.markers", f64::from(*markers), 1.0, 1e7, "1 to 10 million")?;
+                within("light.occupancy", *occupancy, 0.01, 100.0, "0.01 to 100 internodes")?;
+                within("light.perception", *perception, 0.01, 100.0, "0.01 to 100 internodes")?;
+                within("light.half_angle_deg", *half_angle_deg, 0.1, 180.0, "0.1 to 180")?;
+            }
+        }
+        match self.resource {
+            Resource::BorchertHonda { lambda, lambda_late } => {
+                within("lambda", lambda, 0.0, 1.0, "0 to 1")?;
+                within("lambda_late", lambda_late.unwrap_or(lambda), 0.0, 1.0, "0 to 1")?;
+            }
+            Resource::Priority { w_max, w_min, kappa } => {
+                within("w_max", w_max, 1e-6, 1e6, "above 0")?;
+                within("w_min", w_min, 0.0, 1e6, "0 or more")?;
+                within("kappa", f64::from(kappa), 1.0, 1e6, "1 or more")?;
+            }
+        }
+        Ok(Numbers { phyllotaxis: self.arrangement.phyllotaxis()?, pull: Tropism::sum(&self.tropisms)? })
+    }
+}

@@ -1,0 +1,160 @@
+use super::*;
+use crate::{Envelope, Obstacle, Tropism};
+
+fn grow(spec: &SelfOrganizingSpec, roots: &[DVec3]) -> SelfOrganized {
+    let none = Obstacles::none();
+    let got = self_organize(roots, &none, spec, Seed::new(1), &Run::plain(), &mut Report::default())
+        .expect("sound");
+    assert_eq!(got.skeleton.validate().count(), 0);
+    got
+}
+
+fn height(s: &Skeleton) -> f64 {
+    s.position.iter().map(|p| p.y).fold(0.0, f64::max)
+}
+
+#[test]
+fn vigour_is_shared_without_loss() {
+    // A fork with a tip, a waiting bud and a branch.
+    let mut root = Skeleton::default();
+    root.push_root(DVec3::ZERO, 0);
+    let mut grove = Grove::new(root, 1);
+    let a = grove.grow(0, None, DVec3::Y, 1.0, 1);
+    let b = grove.grow(a, None, DVec3::Y, 1.0, 1);
+    grove.waits[a] = true;
+    let c = grove.grow(a, Some(a), DVec3::X, 1.0, 2);
+    grove.waits[b] = true;
+    grove.waits[c] = true;
+    let light = [0.0, 0.0, 0.8, 0.3];
+    for sharing in [Sharing::Fork { lambda: 0.5 }, Sharing::Rank { w_max: 1.0, w_min: 0.1, kappa: 2 }] {
+        let mut flow = Flow::default();
+        flow.gather(&grove, &light);
+        assert!((flow.light[0] - 2.2).abs() < 1e-12 && flow.size[0] == 4.0, "{flow:?}");
+        flow.share(&grove, &light, 2.0, sharing);
+        let all: f64 = flow.terminal.iter().chain(&flow.axillary).sum();
+        assert!((all - 4.4).abs() < 1e-12, "{sharing:?}: {all}");
+    }
+    let mut flow = Flow::default();
+    flow.gather(&grove, &light);
+    flow.share(&grove, &light, 2.0, Sharing::Fork { lambda: 0.6 });
+    // At a: Q_m 1.6, Q_l 0.6; the main side gets .96 / (.96 + .24) of 4.4, its tip .6 / (.6 + .4) of that.
+    let main = 4.4 * 0.96 / 1.2;
+    assert!((flow.terminal[b] - main * 0.6).abs() < 1e-12, "{flow:?}");
+}
+
+#[test]
+fn more_leader_bias_makes_a_taller_and_slimmer_tree() {
+    let of = |lambda: f64| {
+        let resource = Resource::BorchertHonda { lambda, lambda_late: None };
+        let tree = grow(&SelfOrganizingSpec { resource, ..SelfOrganizingSpec::default() }, &[DVec3::ZERO]);
+        let wide = tree.skeleton.position.iter().map(|p| p.x.abs().max(p.z.abs())).fold(0.0, f64::max);
+        (height(&tree.skeleton), wide)
+    };
+    let (bush, leader) = (of(0.46), of(0.56));
+    assert!(leader.0 > 1.2 * bush.0, "{leader:?} {bush:?}");
+    assert!(leader.1 / leader.0 < bush.1 / bush.0, "{leader:?} {bush:?}");
+}
+
+#[test]
+fn later_years_only_add_and_shed() {
+    let spec = SelfOrganizingSpec::default();
+    let five = grow(&SelfOrganizingSpec { years: 5, ..spec.clone() }, &[DVec3::ZERO]);
+    let ten = grow(&SelfOrganizingSpec { years: 10, ..spec }, &[DVec3::ZERO]);
+    assert!(ten.skeleton.len() > 2 * five.skeleton.len());
+    let young = ten.skeleton.at_age(5);
+    assert!(young.position.iter().all(|p| five.skeleton.position.contains(p)));
+    assert_eq!(ten.skeleton.len(), 1 + ten.generated - ten.shed);
+}
+
+#[test]
+fn shade_is_shed_and_makes_a_bole() {
+    let spec = SelfOrganizingSpec { years: 30, ..SelfOrganizingSpec::default() };
+    let (kept, all) =
+        (grow(&spec, &[DVec3::ZERO]), grow(&SelfOrganizingSpec { shed_below: 0.0, ..spec }, &[DVec3::ZERO]));
+    assert!(kept.shed > 0 && all.shed == 0);
+    let low =
+        |s: &Skeleton| s.position.iter().filter(|p| p.y < 0.25 * height(s)).count() as f64 / s.len() as f64;
+    assert!(low(&kept.skeleton) < low(&all.skeleton), "{} {}", low(&kept.skeleton), low(&all.skeleton));
+}
+
+#[test]
+fn wood_remembers_what_was_shed() {
+    let tree = grow(&SelfOrganizingSpec { years: 30, ..SelfOrganizingSpec::default() }, &[DVec3::ZERO]);
+    let s = &tree.skeleton;
+    let n = SelfOrganizingSpec::default().pipe_exponent;
+    let mut above = vec![0.0; s.len()];
+    for j in (1..s.len()).rev() {
+        let p = s.parent[j].expect("one tree").index();
+        above[p] += ops::powf(s.radius_m[j], n);
+        assert!(s.radius_m[p] >= s.radius_m[j] * (1.0 - 1e-9), "{j}");
+    }
+    assert!(ops::powf(s.radius_m[0], n) > above[0] * 0.999);
+    let thicker = (0..s.len()).filter(|&j| ops::powf(s.radius_m[j], n) > above[j] * 1.001 && above[j] > 0.0);
+    let thicker = thicker.count();
+    assert!(thicker > 0, "wood of shed branches is still there: {thicker}, {} shed", tree.shed);
+}
+
+#[test]
+fn a_neighbour_takes_light() {
+    let spec = SelfOrganizingSpec { years: 20, ..SelfOrganizingSpec::default() };
+    let apart = [DVec3::ZERO, DVec3::X * 0.8];
+    let (alone, both) = (grow(&spec, &apart[..1]), grow(&spec, &apart));
+    let first = both.skeleton.tree(0);
+    let mean = |s: &Skeleton| s.position.iter().map(|p| p.x).sum::<f64>() / s.len() as f64;
+    assert!(mean(&first) < mean(&alone.skeleton) - 0.05, "{} {}", mean(&first), mean(&alone.skeleton));
+}
+
+#[test]
+fn space_and_priority_models_grow_trees_too() {
+    let light = Light::Space {
+        envelope: Envelope::Ellipsoid {
+            centre: DVec3::new(0.0, 3.0, 0.0),
+            radii_m: DVec3::new(2.0, 3.0, 2.0),
+        },
+        markers: 20_000,
+        occupancy: 2.0,
+        perception: 4.0,
+        half_angle_deg: 45.0,
+    };
+    let resource = Resource::Priority { w_max: 1.0, w_min: 0.1, kappa: 5 };
+    for (light, resource) in
+        [(light.clone(), Resource::default()), (Light::default(), resource), (light, resource)]
+    {
+        let spec = SelfOrganizingSpec {
+            light,
+            resource,
+            years: 20,
+            // Lit or dark: one lit tip on a branch of ten internodes is light enough.
+            shed_below: 0.03,
+            ..SelfOrganizingSpec::default()
+        };
+        let tree = grow(&spec, &[DVec3::ZERO]);
+        assert!(
+            height(&tree.skeleton) > 2.0 && tree.skeleton.len() > 150,
+            "{spec:?}: {}",
+            tree.skeleton.len()
+        );
+        let forks = tree.skeleton.children().iter().filter(|&&c| c > 1).count();
+        assert!(forks > 10, "{forks}");
+    }
+}
+
+#[test]
+fn shoots_keep_out_of_obstacles_and_within_limits() {
+    let roof = Obstacle::Box { min: DVec3::new(-3.0, 1.5, -3.0), max: DVec3::new(0.5, 1.8, 3.0) };
+    let obstacles = Obstacles::new(&[roof], 0.02).expect("sound");
+    let spec = SelfOrganizingSpec { years: 16, max_joints: 700, ..SelfOrganizingSpec::default() };
+    let mut report = Report::default();
+    let got = self_organize(&[DVec3::ZERO], &obstacles, &spec, Seed::new(1), &Run::plain(), &mut report);
+    let s = got.expect("sound").skeleton;
+    assert!(s.position.iter().all(|&p| obstacles.inside(p).is_none()));
+    assert!(height(&s) > 1.9, "it finds its way out: {}", height(&s));
+    assert!(s.len() < 800);
+    let bad = SelfOrganizingSpec {
+        tropisms: vec![Tropism { direction: DVec3::NAN, strength: 1.0 }],
+        ..SelfOrganizingSpec::default()
+    };
+    let none = Obstacles::none();
+    let got = self_organize(&[DVec3::ZERO], &none, &bad, Seed::new(1), &Run::plain(), &mut report);
+    assert!(matches!(got, Err(GrowthError::Field { field: "tropism.direction", .. })));
+}
