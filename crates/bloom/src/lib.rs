@@ -10,22 +10,34 @@
 //! | `obb` | [`Obb`]: the box of an organ |
 //! | `lattice` | [`Lattice`], [`Weights`]: Bernstein free-form deformation |
 //! | `logistic` | [`fit_logistic`]: K, p0, r with their errors |
+//! | `clean` | [`clean`]: stray points and the ground go |
+//! | `segment` | [`organs`]: stem and leaves, and regions along them |
+//! | `law` | [`GrowthLaw`]: fitted, saved, moved to another species |
+//! | `motion` | [`Motion`]: the shape at any day |
 //! | `register` | [`register`]: the lattice that carries one scan into another |
 //! | `error` | [`compare`]: distances both ways |
 
+mod clean;
 mod error;
 mod errors;
 mod kernel;
 mod lattice;
+mod law;
 mod linalg;
 mod logistic;
+mod motion;
 mod obb;
 mod register;
+mod segment;
 mod thin;
 
+pub use clean::{CleanSpec, Cleaned, clean};
 pub use error::{Distances, ShapeError, compare};
 pub use errors::BloomError;
 pub use lattice::{Lattice, Weights};
+pub use law::{GrowthLaw, LAW_SCHEMA, LawFault, LawSpec, Quantity, RegionLaw, Stage, fit_stages};
 pub use logistic::{Fit, FitError, Logistic, Offset, fit_law, fit_logistic};
+pub use motion::{Motion, MotionSpec, name_alike};
 pub use obb::Obb;
 pub use register::{RegisterSpec, Registration, register};
+pub use segment::{Organ, SegmentSpec, match_organs, organ_at, organs, single_organ};

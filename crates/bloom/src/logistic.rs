@@ -108,7 +108,7 @@ pub enum FitError {
 
 /// Fits K, p0 and r to values at days that increase strictly; at least 3.
 ///
-/// Guaranteed: a least-squares minimum to rounding, the lowest of those reached from eight rates of either
+/// Guaranteed: within K/p0 from 1e-4 to 1e4 and a rate of at most 60 a span a least-squares minimum to rounding, the lowest of those reached from eight rates of either
 /// sign, the best two of which are followed. Not guaranteed: that the series determines all three parameters
 /// (see the standard errors). Cost: about 8 microseconds for 25 values with [`fit_law`], n times that here, as
 /// each value is left out once.
@@ -201,7 +201,11 @@ impl Scaled {
         let q = k / p0;
         let last = self.x[self.x.len() - 1];
         let pole_free = |x: f64| 1.0 + (q - 1.0) * ops::exp(-r * x) > 1e-12;
-        if !(q > 0.0 && q.is_finite() && pole_free(self.x[0]) && pole_free(last)) {
+        // Beyond these bounds a curve is a step or a straight exponential: a series whose best fit lies there
+        // determines no logistic, and its parameters would run away.
+        let span = last - self.x[0];
+        let bounded = (1e-4..=1e4).contains(&q) && (r * span).abs() <= 60.0;
+        if !(bounded && pole_free(self.x[0]) && pole_free(last)) {
             return None;
         }
         let mut s = State { p, sse: 0.0, normal: [[0.0; 3]; 3], gradient: [0.0; 3] };

@@ -22,6 +22,82 @@ pub(crate) fn voxels(points: &[DVec3], cell: f64) -> Vec<([i32; 3], u32)> {
     keyed
 }
 
+/// Occupied cubes of a cloud, sorted, each with its points.
+#[derive(Clone, Debug)]
+pub(crate) struct Voxels {
+    /// Edge of a cube, metres.
+    pub(crate) cell: f64,
+    /// Places of the cubes: z, y, x.
+    pub(crate) keys: Vec<[i32; 3]>,
+    /// First row of each cube in `order`, and the number of rows at the end.
+    pub(crate) start: Vec<usize>,
+    /// Indices of points, cube by cube.
+    pub(crate) order: Vec<u32>,
+}
+
+impl Voxels {
+    /// Cubes as fine as 1/256 of the cloud, or coarser until a cube holds `occupancy` points in the mean.
+    pub(crate) fn new(points: &[DVec3], occupancy: f64) -> Self {
+        let mut cell = (extent(points) / 256.0).max(1e-12);
+        loop {
+            let keyed = voxels(points, cell);
+            let cubes = count(&keyed);
+            if keyed.len() as f64 >= occupancy * cubes as f64 || cubes <= 8 {
+                return Self::of(&keyed, cell);
+            }
+            cell *= 1.3;
+        }
+    }
+
+    fn of(keyed: &[([i32; 3], u32)], cell: f64) -> Self {
+        let mut v = Self { cell, keys: vec![], start: vec![], order: Vec::with_capacity(keyed.len()) };
+        for cube in keyed.chunk_by(|a, b| a.0 == b.0) {
+            v.keys.push(cube[0].0);
+            v.start.push(v.order.len());
+            v.order.extend(cube.iter().map(|&(_, i)| i));
+        }
+        v.start.push(v.order.len());
+        v
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.keys.len()
+    }
+
+    /// Points of a cube.
+    pub(crate) fn rows(&self, cube: usize) -> &[u32] {
+        &self.order[self.start[cube]..self.start[cube + 1]]
+    }
+
+    /// Calls `f` with every occupied cube at most `reach` cubes away along each axis, itself too.
+    pub(crate) fn near(&self, cube: usize, reach: i32, mut f: impl FnMut(usize)) {
+        let [z, y, x] = self.keys[cube];
+        for dz in -reach..=reach {
+            for dy in -reach..=reach {
+                let low = [z.saturating_add(dz), y.saturating_add(dy), x.saturating_sub(reach)];
+                let mut at = self.keys.partition_point(|k| *k < low);
+                while let Some(k) = self.keys.get(at) {
+                    if k[0] != low[0] || k[1] != low[1] || k[2] > x.saturating_add(reach) {
+                        break;
+                    }
+                    f(at);
+                    at += 1;
+                }
+            }
+        }
+    }
+
+    /// Mean of each cube's points.
+    pub(crate) fn means(&self, points: &[DVec3]) -> Vec<DVec3> {
+        (0..self.len())
+            .map(|c| {
+                let rows = self.rows(c);
+                rows.iter().map(|&i| points[i as usize]).sum::<DVec3>() / rows.len() as f64
+            })
+            .collect()
+    }
+}
+
 /// Edge of the box around the finite points, the longest.
 pub(crate) fn extent(points: &[DVec3]) -> f64 {
     let (low, high) = points

@@ -3,7 +3,7 @@
 use core::fmt;
 use std::io;
 
-use crate::{DrawingFormat, ModelFormat};
+use crate::{CloudFormat, DrawingFormat, ModelFormat};
 
 /// Where in a file something is.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -146,6 +146,24 @@ pub struct ModelError {
 
 impl ModelError {
     pub(crate) fn new(format: ModelFormat, place: Place, fault: FileFault) -> Self {
+        Self { format, place, fault }
+    }
+}
+
+/// A scan could not be read.
+#[derive(Debug, thiserror::Error)]
+#[error("{}{place}: {fault}", format.word())]
+pub struct CloudError {
+    /// The format it was read as.
+    pub format: CloudFormat,
+    /// Where.
+    pub place: Place,
+    /// What and what to do.
+    pub fault: FileFault,
+}
+
+impl CloudError {
+    pub(crate) fn new(format: CloudFormat, place: Place, fault: FileFault) -> Self {
         Self { format, place, fault }
     }
 }

@@ -1,19 +1,21 @@
 //! Readers of strokes, readers and writers of models, on byte streams: no paths, no file system.
 //!
 //! bytes -> [`read_drawings`] -> [`sketch::Drawing`]; bytes -> [`read_model`] -> [`mesh::Model`] ->
-//! [`write_model`] -> bytes.
+//! [`write_model`] -> bytes; bytes -> [`read_cloud`] -> [`mesh::PointCloud`].
 //!
 //! What comes in may be hostile: sizes, nesting and expansion are bounded, errors name the place and what to
 //! do, and nothing panics. Inside, y points up and lengths are metres; everything else is turned at this
 //! border.
 
+mod cloud;
 mod drawing;
 mod error;
 mod model;
 mod summary;
 
+pub use cloud::{CloudFormat, MAX_CLOUD_BYTES, read_cloud, write_cloud_ply};
 pub use drawing::{DrawingFormat, Drawings, MAX_DRAWING_BYTES, ReadDrawing, read_drawings, write_drawing};
-pub use error::{DrawingError, FileFault, ModelError, Place, WriteError};
+pub use error::{CloudError, DrawingError, FileFault, ModelError, Place, WriteError};
 pub use model::{
     ExportSpec, MAX_MODEL_BYTES, ModelFormat, ObjFiles, PngCache, Resolver, no_files, obj_files, read_model,
     read_picture, write_glb, write_glb_with, write_model, write_ply, write_png, write_stl,

@@ -4,8 +4,10 @@
 //!
 //! Knows nothing of plants or GPUs. f32/u32 columns in metres, right-handed, +Y up.
 
+mod cloud;
 mod material;
 mod trimesh;
 
+pub use cloud::PointCloud;
 pub use material::{AlphaMode, Material, MaterialId, MaterialKind, Texture};
 pub use trimesh::{Bounds, Fault, Model, Part, TriMesh};

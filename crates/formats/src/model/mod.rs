@@ -8,7 +8,7 @@ mod gltf_bytes;
 mod obj_read;
 mod obj_write;
 mod picture;
-mod ply_read;
+pub(crate) mod ply_read;
 mod ply_write;
 mod stl;
 

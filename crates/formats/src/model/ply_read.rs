@@ -13,7 +13,7 @@ use crate::error::{FileFault, ModelError, Place};
 const MAX_HEADER_LINES: usize = 1_000;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Scalar {
+pub(crate) enum Scalar {
     I8,
     U8,
     I16,
@@ -39,7 +39,7 @@ impl Scalar {
         })
     }
 
-    fn size(self) -> usize {
+    pub(crate) fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
             Self::I16 | Self::U16 => 2,
@@ -54,22 +54,22 @@ impl Scalar {
 }
 
 #[derive(Debug)]
-struct Property {
-    name: String,
+pub(crate) struct Property {
+    pub(crate) name: String,
     /// Type of a list's length.
     list: Option<Scalar>,
-    scalar: Scalar,
+    pub(crate) scalar: Scalar,
 }
 
 #[derive(Debug)]
-struct Element {
-    name: String,
-    count: usize,
-    properties: Vec<Property>,
+pub(crate) struct Element {
+    pub(crate) name: String,
+    pub(crate) count: usize,
+    pub(crate) properties: Vec<Property>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Coding {
+pub(crate) enum Coding {
     Text,
     Little,
     Big,
@@ -82,38 +82,14 @@ fn fail(place: Place, what: impl Into<String>) -> ModelError {
 
 pub(super) fn read(bytes: &[u8], name: &str, report: &mut Report) -> Result<Model, ModelError> {
     let (coding, elements, body) = header(bytes)?;
-    let mut input = Input { bytes, at: body, coding };
+    let mut input = Input::new(bytes, body, coding);
     let mut mesh = TriMesh::default();
     let mut left_out = Vec::new();
     for element in &elements {
         if element.properties.is_empty() {
             continue;
         }
-        // The least that a row can take: a lying count is found before anything is made for it.
-        let least: usize = match coding {
-            Coding::Text => element.properties.len(),
-            _ => element.properties.iter().map(|p| p.list.unwrap_or(p.scalar).size()).sum(),
-        };
-        let there = (bytes.len() - input.at.min(bytes.len())) / least.max(1);
-        if element.count > there + 1 {
-            let inside = format!(
-                "element `{}`: {} rows are announced, at most {there} are there",
-                element.name, element.count
-            );
-            return Err(ModelError::new(
-                ModelFormat::Ply,
-                Place::Byte(input.at as u64),
-                FileFault::Truncated { inside },
-            ));
-        }
-        if element.count > MAX_ROWS {
-            let fault = FileFault::TooMuch {
-                what: "the number of rows",
-                limit: MAX_ROWS as u64,
-                advice: "split the model into several files",
-            };
-            return Err(ModelError::new(ModelFormat::Ply, Place::Item(element.name.clone()), fault));
-        }
+        check_count(&input, element)?;
         match element.name.as_str() {
             "vertex" => vertices(&mut input, element, &mut mesh)?,
             "face" => faces(&mut input, element, &mut mesh)?,
@@ -145,7 +121,38 @@ pub(super) fn read(bytes: &[u8], name: &str, report: &mut Report) -> Result<Mode
     })
 }
 
-fn header(bytes: &[u8]) -> Result<(Coding, Vec<Element>, usize), ModelError> {
+/// Refuses a count that the bytes after it cannot hold, or that is beyond the bound.
+pub(crate) fn check_count(input: &Input<'_>, element: &Element) -> Result<(), ModelError> {
+    let (bytes, coding) = (input.bytes, input.coding);
+    // The least that a row can take: a lying count is found before anything is made for it.
+    let least: usize = match coding {
+        Coding::Text => element.properties.len(),
+        _ => element.properties.iter().map(|p| p.list.unwrap_or(p.scalar).size()).sum(),
+    };
+    let there = (bytes.len() - input.at.min(bytes.len())) / least.max(1);
+    if element.count > there + 1 {
+        let inside = format!(
+            "element `{}`: {} rows are announced, at most {there} are there",
+            element.name, element.count
+        );
+        return Err(ModelError::new(
+            ModelFormat::Ply,
+            Place::Byte(input.at as u64),
+            FileFault::Truncated { inside },
+        ));
+    }
+    if element.count > MAX_ROWS {
+        let fault = FileFault::TooMuch {
+            what: "the number of rows",
+            limit: MAX_ROWS as u64,
+            advice: "split the model into several files",
+        };
+        return Err(ModelError::new(ModelFormat::Ply, Place::Item(element.name.clone()), fault));
+    }
+    Ok(())
+}
+
+pub(crate) fn header(bytes: &[u8]) -> Result<(Coding, Vec<Element>, usize), ModelError> {
     let mut at = 0;
     let mut elements: Vec<Element> = Vec::new();
     let mut coding = None;
@@ -198,21 +205,25 @@ fn header(bytes: &[u8]) -> Result<(Coding, Vec<Element>, usize), ModelError> {
 
 /// One row: scalars in the order of the properties (0 for lists), and the list that was asked for.
 #[derive(Debug, Default)]
-struct Row {
-    values: Vec<f64>,
+pub(crate) struct Row {
+    pub(crate) values: Vec<f64>,
     list: Vec<f64>,
     /// Which property's list is kept.
     wanted: Option<usize>,
 }
 
-struct Input<'a> {
+pub(crate) struct Input<'a> {
     bytes: &'a [u8],
     at: usize,
     coding: Coding,
 }
 
-impl Input<'_> {
-    fn row(&mut self, element: &Element, index: usize, row: &mut Row) -> Result<(), ModelError> {
+impl<'a> Input<'a> {
+    pub(crate) fn new(bytes: &'a [u8], at: usize, coding: Coding) -> Self {
+        Self { bytes, at, coding }
+    }
+
+    pub(crate) fn row(&mut self, element: &Element, index: usize, row: &mut Row) -> Result<(), ModelError> {
         row.values.clear();
         for (k, property) in element.properties.iter().enumerate() {
             let cut = || {

@@ -1,0 +1,230 @@
+//! A raw scan -> the plant alone: stray points and the ground plane are taken out.
+
+use base::{Cancelled, Draw, Run, Seed};
+use glam::DVec3;
+
+use crate::linalg::eigen;
+use crate::thin::{Voxels, extent, thin};
+
+/// What is taken out of a scan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CleanSpec {
+    /// Take stray points and specks out. Default true.
+    pub outliers: bool,
+    /// Take a ground plane (table, soil, turntable) out if there is one. Default true.
+    pub plane: bool,
+    /// Upward direction of the scan; the ground is what lies across it, at the bottom. Default +Y.
+    pub up: DVec3,
+    /// Keep only points of this box, corner to corner. Default everything.
+    pub crop: Option<[DVec3; 2]>,
+    /// Least share of the points in a plane for it to be ground, 0 to 1. Default 0.1.
+    pub plane_share: f64,
+}
+
+impl Default for CleanSpec {
+    fn default() -> Self {
+        Self { outliers: true, plane: true, up: DVec3::Y, crop: None, plane_share: 0.1 }
+    }
+}
+
+/// What was kept, and how much went for which reason.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Cleaned {
+    /// Rows of the points that were kept, in order.
+    pub kept: Vec<usize>,
+    /// Points outside the crop box, or not finite.
+    pub cropped: usize,
+    /// Points of the ground plane.
+    pub ground: usize,
+    /// Stray points and specks.
+    pub outliers: usize,
+}
+
+/// Takes stray points and the ground out of a scan.
+///
+/// A point is stray if the cubes around its own hold less than a tenth of what is usual, or if its connected
+/// piece holds less than 1 point in 200. A plane is ground if it lies across `up` (within 25 degrees), holds
+/// `plane_share` of the points and 97 of 100 of the others lie above it. Guaranteed: at least one point is
+/// kept of a cloud with a finite point inside the crop box. Cost: n log n; 5 million points take a few seconds.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn clean(points: &[DVec3], spec: &CleanSpec, seed: Seed, run: &Run<'_>) -> Result<Cleaned, Cancelled> {
+    let inside = |p: DVec3| match spec.crop {
+        Some([a, b]) => p.cmpge(a.min(b)).all() && p.cmple(a.max(b)).all(),
+        None => true,
+    };
+    let mut kept: Vec<usize> =
+        (0..points.len()).filter(|&i| points[i].is_finite() && inside(points[i])).collect();
+    let mut out = Cleaned { cropped: points.len() - kept.len(), ..Cleaned::default() };
+    run.cancel.check()?;
+    if spec.plane {
+        let before = kept.len();
+        let here: Vec<DVec3> = kept.iter().map(|&i| points[i]).collect();
+        if let Some((normal, level, width)) = ground(&here, spec, seed) {
+            kept.retain(|&i| normal.dot(points[i]) - level > width);
+        }
+        out.ground = before - kept.len();
+    }
+    run.cancel.check()?;
+    if spec.outliers && kept.len() > 32 {
+        let before = kept.len();
+        let here: Vec<DVec3> = kept.iter().map(|&i| points[i]).collect();
+        let good = dense(&here);
+        let mut row = 0;
+        kept.retain(|_| {
+            row += 1;
+            good[row - 1]
+        });
+        out.outliers = before - kept.len();
+    }
+    out.kept = kept;
+    Ok(out)
+}
+
+/// Normal (upwards), level and half width of a ground plane.
+fn ground(points: &[DVec3], spec: &CleanSpec, seed: Seed) -> Option<(DVec3, f64, f64)> {
+    let few: Vec<DVec3> = thin(points, 3000).into_iter().map(|i| points[i as usize]).collect();
+    if few.len() < 50 {
+        return None;
+    }
+    let up = spec.up.try_normalize().unwrap_or(DVec3::Y);
+    let width = extent(points) * 0.008;
+    let mut stream = seed.stream(Draw::Sampling);
+    let mut best: Option<(usize, DVec3, f64)> = None;
+    for _ in 0..400 {
+        let [a, b, c] = [0; 3].map(|_: u8| few[stream.below(few.len())]);
+        let Some(n) = (b - a).cross(c - a).try_normalize() else { continue };
+        let n = if n.dot(up) < 0.0 { -n } else { n };
+        // cos 25 degrees
+        if n.dot(up) < 0.906 {
+            continue;
+        }
+        let level = n.dot(a);
+        let count = few.iter().filter(|p| (n.dot(**p) - level).abs() <= width).count();
+        if best.as_ref().is_none_or(|b| count > b.0) {
+            best = Some((count, n, level));
+        }
+    }
+    let (_, n, level) = best?;
+    // Least squares through what lies near it.
+    let near: Vec<DVec3> = few.iter().copied().filter(|p| (n.dot(*p) - level).abs() <= width).collect();
+    let centre = near.iter().sum::<DVec3>() / near.len() as f64;
+    let mut m = [[0.0; 3]; 3];
+    for d in near.iter().map(|p| (*p - centre).to_array()) {
+        for i in 0..3 {
+            for j in 0..3 {
+                m[i][j] += d[i] * d[j];
+            }
+        }
+    }
+    let (_, vectors) = eigen(m);
+    let refined = DVec3::from_array(vectors[2]);
+    let refined = if refined.dot(up) < 0.0 { -refined } else { refined };
+    let n = if refined.dot(up) > 0.906 { refined } else { n };
+    let level = n.dot(centre);
+    let within = points.iter().filter(|p| (n.dot(**p) - level).abs() <= width).count();
+    let below = points.iter().filter(|p| n.dot(**p) - level < -width).count();
+    let others = points.len() - within;
+    let is_ground = within as f64 >= spec.plane_share * points.len() as f64
+        && below as f64 <= 0.03 * others as f64
+        && others > 16;
+    is_ground.then_some((n, level, width))
+}
+
+/// Which points lie in company.
+fn dense(points: &[DVec3]) -> Vec<bool> {
+    let v = Voxels::new(points, 4.0);
+    let mut company = vec![0_usize; v.len()];
+    for (c, sum) in company.iter_mut().enumerate() {
+        v.near(c, 1, |k| *sum += v.rows(k).len());
+    }
+    let mut sorted: Vec<usize> = company.clone();
+    sorted.sort_unstable();
+    let usual = sorted[sorted.len() / 2];
+    let mut piece = vec![usize::MAX; v.len()];
+    let mut sizes: Vec<usize> = Vec::new();
+    let mut stack = Vec::new();
+    for c in 0..v.len() {
+        if piece[c] != usize::MAX || company[c] * 10 < usual {
+            continue;
+        }
+        let mark = sizes.len();
+        sizes.push(0);
+        piece[c] = mark;
+        stack.push(c);
+        while let Some(c) = stack.pop() {
+            sizes[mark] += v.rows(c).len();
+            v.near(c, 2, |k| {
+                if piece[k] == usize::MAX && company[k] * 10 >= usual {
+                    piece[k] = mark;
+                    stack.push(k);
+                }
+            });
+        }
+    }
+    let mut good = vec![false; points.len()];
+    for c in 0..v.len() {
+        if piece[c] != usize::MAX && sizes[piece[c]] * 200 >= points.len() {
+            v.rows(c).iter().for_each(|&i| good[i as usize] = true);
+        }
+    }
+    // A cloud of specks only is what there is.
+    if good.iter().any(|g| *g) { good } else { vec![true; points.len()] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use base::ops;
+
+    /// A stem of 10 cm on a table of 30 x 30 cm, with stray points far above.
+    fn scene() -> (Vec<DVec3>, usize, usize) {
+        let mut s = Seed::new(3).stream(Draw::Test);
+        let mut p = Vec::new();
+        for _ in 0..8000 {
+            p.push(DVec3::new(s.range(-0.15, 0.15), 0.0003 * s.normal(), s.range(-0.15, 0.15)));
+        }
+        let table = p.len();
+        for _ in 0..4000 {
+            let a = s.range(0.0, ops::TAU);
+            p.push(DVec3::new(0.005 * ops::cos(a), s.range(0.004, 0.1), 0.005 * ops::sin(a)));
+        }
+        for _ in 0..20 {
+            p.push(DVec3::new(s.range(-0.1, 0.1), s.range(0.12, 0.2), s.range(-0.1, 0.1)));
+        }
+        p.push(DVec3::NAN);
+        (p, table, table + 4000)
+    }
+
+    #[test]
+    fn the_stem_stays_the_table_and_the_strays_go() {
+        let (p, table, stem) = scene();
+        let c = clean(&p, &CleanSpec::default(), Seed::new(1), &Run::plain()).unwrap();
+        let kept_stem = c.kept.iter().filter(|&&i| (table..stem).contains(&i)).count();
+        assert!(kept_stem > 3900, "{kept_stem} of the stem's 4000 points are left");
+        assert!(c.kept.len() - kept_stem < 5, "{} others are left", c.kept.len() - kept_stem);
+        assert_eq!((c.cropped, c.kept.len() + c.cropped + c.ground + c.outliers), (1, p.len()));
+    }
+
+    #[test]
+    fn a_leaf_is_no_ground() {
+        let mut s = Seed::new(5).stream(Draw::Test);
+        // A level leaf on a stalk: most of the points in one plane, but the stalk hangs below.
+        let mut p: Vec<DVec3> =
+            (0..3000).map(|_| DVec3::new(s.range(0.0, 0.04), 0.05, s.range(0.0, 0.02))).collect();
+        p.extend((0..600).map(|_| DVec3::new(0.0, s.range(0.0, 0.05), 0.01)));
+        let c = clean(&p, &CleanSpec::default(), Seed::new(1), &Run::plain()).unwrap();
+        assert_eq!(c.ground, 0);
+        assert!(c.kept.len() > 3500, "{c:?}");
+    }
+
+    #[test]
+    fn crop_and_hostile_points() {
+        let spec = CleanSpec { crop: Some([DVec3::ONE, DVec3::ZERO]), ..CleanSpec::default() };
+        let p = [DVec3::splat(0.5), DVec3::splat(2.0), DVec3::NAN];
+        let c = clean(&p, &spec, Seed::new(1), &Run::plain()).unwrap();
+        assert_eq!((c.kept, c.cropped), (vec![0], 2));
+        assert!(clean(&[], &CleanSpec::default(), Seed::new(1), &Run::plain()).unwrap().kept.is_empty());
+    }
+}

@@ -1,0 +1,540 @@
+//! A cleaned plant -> its stem and leaves, each with the way along it.
+//!
+//! Distances along the surface from the foot cut the plant into bands; connected pieces of bands make a tree (a
+//! Reeb graph); its branches are organs.
+
+use std::collections::BinaryHeap;
+
+use geom::Grid3;
+use glam::{DQuat, DVec3};
+
+use crate::BloomError;
+use crate::thin::Voxels;
+
+/// One organ of a scan.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Organ {
+    /// `stem`, `leaf-1`, ... or what the user calls it.
+    pub name: String,
+    /// Rows of the organ's points in the cloud it was cut from.
+    pub rows: Vec<usize>,
+    /// The points, metres.
+    pub points: Vec<DVec3>,
+    /// Way along the organ from its base, 0 to 1, one a point.
+    pub way: Vec<f64>,
+    /// Where it sits on its bearer.
+    pub base: DVec3,
+    /// Its farthest place along the surface.
+    pub tip: DVec3,
+}
+
+impl Organ {
+    /// Rows of `points` by region: equal parts of the way from base to tip, base first.
+    pub fn regions(&self, count: usize) -> Vec<Vec<usize>> {
+        let count = count.max(1);
+        let mut out = vec![Vec::new(); count];
+        for (i, w) in self.way.iter().enumerate() {
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to count")]
+            let k = ((w * count as f64) as usize).min(count - 1);
+            out[k].push(i);
+        }
+        out
+    }
+}
+
+/// How a plant is cut into organs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SegmentSpec {
+    /// Upward direction; the foot is the lowest place along it. Default +Y.
+    pub up: DVec3,
+    /// Where the plant (or the single organ) is attached; the lowest place if `None`.
+    pub foot: Option<DVec3>,
+    /// Branches shorter than this share of the longest way are parts of what bears them, 0 to 1. Default 0.06.
+    pub least_length: f64,
+    /// Branches with a smaller share of the points are parts of what bears them, 0 to 1. Default 0.004.
+    pub least_points: f64,
+}
+
+impl Default for SegmentSpec {
+    fn default() -> Self {
+        Self { up: DVec3::Y, foot: None, least_length: 0.06, least_points: 0.004 }
+    }
+}
+
+/// Cubes of a plant with their way from the foot.
+struct Ways {
+    voxels: Voxels,
+    means: Vec<DVec3>,
+    way: Vec<f64>,
+    parent: Vec<usize>,
+}
+
+const NONE: usize = usize::MAX;
+
+/// Cuts a plant into stem and leaves. The stem comes first; leaves follow by size, largest first.
+///
+/// Pieces that do not hang together with the foot are bridged over the shortest gap. A stem runs from the foot to
+/// the first fork, and on through forks as long as it stays thin and upright. Guaranteed: every finite point
+/// belongs to exactly one organ. Not guaranteed: organs that touch one another are one. Cost: n log n.
+///
+/// # Errors
+/// [`BloomError::TooFew`] below 16 finite points.
+pub fn organs(points: &[DVec3], spec: &SegmentSpec) -> Result<Vec<Organ>, BloomError> {
+    let ways = ways(points, spec)?;
+    let tree = Tree::new(&ways, spec);
+    let labels = tree.labels(&ways, spec);
+    let count = labels.iter().copied().max().unwrap_or(0) + 1;
+    let mut out: Vec<Organ> = (0..count).map(|label| cut(points, &ways, |c| labels[c] == label)).collect();
+    if out.len() > 1 {
+        out[1..].sort_by_key(|o| core::cmp::Reverse(o.points.len()));
+    }
+    for (i, organ) in out.iter_mut().enumerate() {
+        organ.name = if i == 0 { "stem".into() } else { format!("leaf-{i}") };
+    }
+    Ok(out)
+}
+
+/// Of all organs the one that is nearest to a place: a seed point that a person picked.
+///
+/// # Errors
+/// As [`organs`].
+pub fn organ_at(points: &[DVec3], place: DVec3, spec: &SegmentSpec) -> Result<Organ, BloomError> {
+    let all = organs(points, spec)?;
+    let nearest =
+        |o: &Organ| o.points.iter().map(|p| p.distance_squared(place)).fold(f64::INFINITY, f64::min);
+    let best = all.into_iter().min_by(|a, b| nearest(a).total_cmp(&nearest(b)));
+    best.ok_or_else(|| BloomError::TooFew { what: "the scan".into(), is: 0, wanted: 16 })
+}
+
+/// The whole cloud as one organ, such as a petal that was cut out already.
+///
+/// # Errors
+/// [`BloomError::TooFew`] below 16 finite points.
+pub fn single_organ(points: &[DVec3], name: &str, spec: &SegmentSpec) -> Result<Organ, BloomError> {
+    let ways = ways(points, spec)?;
+    let mut organ = cut(points, &ways, |_| true);
+    organ.name = name.to_owned();
+    Ok(organ)
+}
+
+fn ways(points: &[DVec3], spec: &SegmentSpec) -> Result<Ways, BloomError> {
+    let is = points.iter().filter(|p| p.is_finite()).count();
+    if is < 16 {
+        return Err(BloomError::TooFew { what: "the scan".into(), is, wanted: 16 });
+    }
+    let voxels = Voxels::new(points, 3.0);
+    let means = voxels.means(points);
+    let up = spec.up.try_normalize().unwrap_or(DVec3::Y);
+    let height = |c: &usize| match spec.foot {
+        Some(foot) => means[*c].distance(foot),
+        None => means[*c].dot(up),
+    };
+    let foot = (0..means.len()).min_by(|a, b| height(a).total_cmp(&height(b))).unwrap_or(0);
+    let mut ways =
+        Ways { way: vec![f64::INFINITY; means.len()], parent: vec![NONE; means.len()], voxels, means };
+    ways.way[foot] = 0.0;
+    let mut front = vec![foot];
+    // A scan in more pieces than this is dust, which belongs to what is nearest.
+    for _ in 0..200 {
+        ways.spread(&front);
+        let (reached, lost): (Vec<usize>, Vec<usize>) =
+            (0..ways.way.len()).partition(|&c| ways.way[c].is_finite());
+        let places: Vec<DVec3> = reached.iter().map(|&c| ways.means[c]).collect();
+        let grid = Grid3::new(&places, 0.0);
+        let gap = |c: usize| {
+            let k = grid.nearest(ways.means[c], f64::INFINITY)?;
+            Some((ways.means[c].distance(places[k]), c, reached[k]))
+        };
+        let bridge = lost.into_iter().filter_map(gap).min_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((length, to, from)) = bridge else { break };
+        ways.way[to] = ways.way[from] + length;
+        ways.parent[to] = from;
+        front = vec![to];
+    }
+    for c in 0..ways.way.len() {
+        if !ways.way[c].is_finite() {
+            ways.way[c] = 0.0;
+        }
+    }
+    Ok(ways)
+}
+
+#[derive(PartialEq)]
+struct Step(f64, usize);
+impl Eq for Step {}
+impl PartialOrd for Step {
+    fn partial_cmp(&self, other: &Self) -> Option<core::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+impl Ord for Step {
+    fn cmp(&self, other: &Self) -> core::cmp::Ordering {
+        other.0.total_cmp(&self.0).then(other.1.cmp(&self.1))
+    }
+}
+
+impl Ways {
+    /// Dijkstra 1959 from cubes whose way is known.
+    fn spread(&mut self, from: &[usize]) {
+        let mut heap: BinaryHeap<Step> = from.iter().map(|&c| Step(self.way[c], c)).collect();
+        let mut near = Vec::new();
+        while let Some(Step(way, c)) = heap.pop() {
+            if way > self.way[c] {
+                continue;
+            }
+            near.clear();
+            self.voxels.near(c, 2, |k| near.push(k));
+            for &k in &near {
+                let next = way + self.means[c].distance(self.means[k]);
+                if k != c && next < self.way[k] {
+                    self.way[k] = next;
+                    self.parent[k] = c;
+                    heap.push(Step(next, k));
+                }
+            }
+        }
+    }
+}
+
+/// Connected pieces of bands.
+struct Tree {
+    /// The piece of each cube.
+    piece: Vec<usize>,
+    /// The piece below each piece; `NONE` for the first.
+    below: Vec<usize>,
+    above: Vec<Vec<usize>>,
+    /// Mean place, and root mean square distance from it.
+    middle: Vec<DVec3>,
+    spread: Vec<f64>,
+    /// Of the piece and all above it: points, and the longest way from the piece.
+    points: Vec<usize>,
+    reach: Vec<f64>,
+    band: f64,
+}
+
+impl Tree {
+    fn new(ways: &Ways, _: &SegmentSpec) -> Self {
+        let n = ways.way.len();
+        let longest = ways.way.iter().copied().fold(0.0, f64::max);
+        let band = (3.0 * ways.voxels.cell).max(longest / 400.0).max(1e-12);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 400 bands")]
+        let band_of = |c: usize| (ways.way[c] / band) as usize;
+        let mut order: Vec<usize> = (0..n).collect();
+        order.sort_by(|&a, &b| band_of(a).cmp(&band_of(b)).then(a.cmp(&b)));
+        let mut tree = Self {
+            piece: vec![NONE; n],
+            below: vec![],
+            above: vec![],
+            middle: vec![],
+            spread: vec![],
+            points: vec![],
+            reach: vec![],
+            band,
+        };
+        let mut stack = Vec::new();
+        let mut members = Vec::new();
+        for &first in &order {
+            if tree.piece[first] != NONE {
+                continue;
+            }
+            let mark = tree.below.len();
+            members.clear();
+            stack.push(first);
+            tree.piece[first] = mark;
+            while let Some(c) = stack.pop() {
+                members.push(c);
+                ways.voxels.near(c, 2, |k| {
+                    if tree.piece[k] == NONE && band_of(k) == band_of(first) {
+                        tree.piece[k] = mark;
+                        stack.push(k);
+                    }
+                });
+            }
+            // The cube with the shortest way came from the piece below.
+            let lowest = members.iter().copied().min_by(|&a, &b| ways.way[a].total_cmp(&ways.way[b]));
+            let mut from = lowest.map_or(NONE, |c| ways.parent[c]);
+            while from != NONE && tree.piece[from] == mark {
+                from = ways.parent[from];
+            }
+            let below = if from == NONE { NONE } else { tree.piece[from] };
+            tree.below.push(if below == NONE || below >= mark { NONE } else { below });
+            tree.above.push(vec![]);
+            let count: usize = members.iter().map(|&c| ways.voxels.rows(c).len()).sum();
+            let mean = members.iter().map(|&c| ways.means[c]).sum::<DVec3>() / members.len() as f64;
+            let square: f64 = members.iter().map(|&c| ways.means[c].distance_squared(mean)).sum();
+            tree.middle.push(mean);
+            tree.spread.push((square / members.len() as f64).sqrt());
+            tree.points.push(count);
+            tree.reach.push(band);
+        }
+        for p in (1..tree.below.len()).rev() {
+            let below = tree.below[p];
+            if below != NONE {
+                tree.above[below].push(p);
+                tree.points[below] += tree.points[p];
+                tree.reach[below] = tree.reach[below].max(tree.reach[p] + band);
+            }
+        }
+        tree
+    }
+
+    /// 0 for the stem, 1 and on for each organ; one a cube.
+    fn labels(&self, ways: &Ways, spec: &SegmentSpec) -> Vec<usize> {
+        let total: usize = self.points.first().copied().unwrap_or(0);
+        let longest = self.reach.first().copied().unwrap_or(0.0);
+        let is_branch = |p: usize| {
+            self.reach[p] >= spec.least_length * longest
+                && self.points[p] as f64 >= spec.least_points * total as f64
+        };
+        let branches =
+            |p: usize| self.above[p].iter().copied().filter(|&a| is_branch(a)).collect::<Vec<usize>>();
+        let up = spec.up.try_normalize().unwrap_or(DVec3::Y);
+        let mut label = vec![NONE; self.below.len()];
+        let mut next = 1;
+        let mut stem_width: Option<f64> = None;
+        let mut first_fork: Option<DVec3> = None;
+        let mut work = if self.below.is_empty() { vec![] } else { vec![0] };
+        while let Some(start) = work.pop() {
+            // Along the stem to the next fork.
+            let mut chain = vec![start];
+            let mut fork = branches(start);
+            while let [only] = fork[..] {
+                chain.push(only);
+                fork = branches(only);
+            }
+            let mut widths: Vec<f64> = chain.iter().map(|&p| self.spread[p]).collect();
+            widths.sort_unstable_by(f64::total_cmp);
+            stem_width = stem_width.or(Some(widths[widths.len() / 2]));
+            chain.iter().for_each(|&p| label[p] = 0);
+            for b in fork {
+                let place = first_fork.get_or_insert(self.middle[chain[chain.len() - 1]]);
+                if self.is_internode(b, &branches, stem_width.unwrap_or(0.0), up, *place) {
+                    work.push(b);
+                } else {
+                    label[b] = next;
+                    next += 1;
+                }
+            }
+        }
+        if next == 1 {
+            // No fork: a single organ or a bare stem.
+            return vec![0; ways.way.len()];
+        }
+        for p in 0..label.len() {
+            if label[p] == NONE {
+                label[p] = if self.below[p] == NONE { 0 } else { label[self.below[p]] };
+            }
+        }
+        self.piece.iter().map(|&p| if p == NONE { 0 } else { label[p] }).collect()
+    }
+
+    /// Short, or thin and upright and at least three bands long; and it forks again.
+    fn is_internode(
+        &self,
+        start: usize,
+        branches: &dyn Fn(usize) -> Vec<usize>,
+        width: f64,
+        up: DVec3,
+        node: DVec3,
+    ) -> bool {
+        let mut chain = vec![start];
+        let mut fork = branches(start);
+        while let [only] = fork[..] {
+            chain.push(only);
+            fork = branches(only);
+        }
+        // Leaves that part a little later than the others part at the same node.
+        let longest = self.reach.first().copied().unwrap_or(0.0);
+        let last = chain[chain.len() - 1];
+        let short = self.middle[last].distance(node) <= 0.1 * longest;
+        let way = (self.middle[last] - self.middle[start]).normalize_or_zero();
+        let mean = chain.iter().map(|&p| self.spread[p]).sum::<f64>() / chain.len() as f64;
+        let thin = chain.len() >= 3 && way.dot(up) > 0.6 && mean < 1.6 * width.max(0.5 * self.band);
+        fork.len() > 1 && (short || thin)
+    }
+}
+
+fn cut(points: &[DVec3], ways: &Ways, mine: impl Fn(usize) -> bool) -> Organ {
+    let cubes: Vec<usize> = (0..ways.way.len()).filter(|&c| mine(c)).collect();
+    let low = cubes.iter().map(|&c| ways.way[c]).fold(f64::INFINITY, f64::min);
+    let high = cubes.iter().map(|&c| ways.way[c]).fold(0.0, f64::max);
+    let span = (high - low).max(1e-12);
+    let mut organ = Organ::default();
+    let tip = cubes.iter().copied().max_by(|&a, &b| ways.way[a].total_cmp(&ways.way[b]));
+    organ.tip = tip.map_or(DVec3::ZERO, |c| ways.means[c]);
+    // The base: the mean of the first 4 of 100 of the way.
+    let first: Vec<DVec3> =
+        cubes.iter().filter(|&&c| ways.way[c] <= low + 0.04 * span).map(|&c| ways.means[c]).collect();
+    organ.base = first.iter().sum::<DVec3>() / first.len().max(1) as f64;
+    let mut rows: Vec<(usize, f64)> = cubes
+        .iter()
+        .flat_map(|&c| ways.voxels.rows(c).iter().map(move |&i| (i as usize, (ways.way[c] - low) / span)))
+        .collect();
+    rows.sort_unstable_by_key(|r| r.0);
+    for (i, way) in rows {
+        organ.rows.push(i);
+        organ.points.push(points[i]);
+        organ.way.push(way.clamp(0.0, 1.0));
+    }
+    organ
+}
+
+/// Pairs of organs that are the same at two days: rows of `a` and of `b`, each at most once.
+///
+/// The stem is the stem. A leaf is the one whose direction has turned least (at most 80 degrees), lengths and
+/// shares of the points deciding between near ones. As pots are turned and stems twist, all leaves may turn
+/// together about `up` by up to 60 degrees, at a price.
+pub fn match_organs(a: &[Organ], b: &[Organ], up: DVec3) -> Vec<(usize, usize)> {
+    let up = up.try_normalize().unwrap_or(DVec3::Y);
+    let mut best: Option<(f64, Vec<(usize, usize)>)> = None;
+    for step in -6..=6_i32 {
+        let angle = f64::from(step) * (10.0 / 180.0 * base::ops::PI);
+        let (cost, pairs) = match_turned(a, b, up, angle);
+        let cost = cost + 0.4 * angle.abs();
+        if best.as_ref().is_none_or(|(c, _)| cost < *c) {
+            best = Some((cost, pairs));
+        }
+    }
+    best.map_or_else(Vec::new, |b| b.1)
+}
+
+/// The pairs if all leaves turned by `angle`, and what they cost; an organ without partner costs 1.
+fn match_turned(a: &[Organ], b: &[Organ], up: DVec3, angle: f64) -> (f64, Vec<(usize, usize)>) {
+    let turn = DQuat::from_axis_angle(up, angle);
+    let direction = |o: &Organ| {
+        let d = o.tip - o.base;
+        let level = d - up * d.dot(up);
+        level.try_normalize().or_else(|| d.try_normalize()).unwrap_or(DVec3::X)
+    };
+    let total = |all: &[Organ]| all.iter().map(|o| o.points.len()).sum::<usize>().max(1) as f64;
+    let (all_a, all_b) = (total(a), total(b));
+    let size = |o: &Organ| o.base.distance(o.tip).max(1e-9);
+    let mut out = Vec::new();
+    let mut costs = Vec::new();
+    for (i, x) in a.iter().enumerate() {
+        for (j, y) in b.iter().enumerate() {
+            let stems = (x.name == "stem", y.name == "stem");
+            if stems == (true, true) {
+                out.push((i, j));
+            } else if stems == (false, false) {
+                let angle = base::ops::acos_clamped((turn * direction(x)).dot(direction(y)));
+                let growth = base::ops::ln(size(y) / size(x)).abs();
+                let share = (y.points.len().max(1) as f64 / all_b) / (x.points.len().max(1) as f64 / all_a);
+                if angle < 1.4 {
+                    costs.push((angle + 0.4 * growth + 0.2 * base::ops::ln(share).abs(), i, j));
+                }
+            }
+        }
+    }
+    costs.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
+    let mut sum = 0.0;
+    for (cost, i, j) in costs {
+        if out.iter().all(|&(p, q)| p != i && q != j) {
+            out.push((i, j));
+            sum += cost;
+        }
+    }
+    sum += (a.len().min(b.len()) - out.len().min(a.len().min(b.len()))) as f64;
+    out.sort_unstable();
+    (sum, out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use base::{Draw, Seed, ops};
+
+    /// A stem of 30 mm with three leaves at azimuths 0, 120 and 240 degrees; how many points each.
+    fn seedling(lengths: [f64; 3]) -> (Vec<DVec3>, Vec<usize>) {
+        let mut s = Seed::new(2).stream(Draw::Test);
+        let mut points = Vec::new();
+        for _ in 0..3000 {
+            let a = s.range(0.0, ops::TAU);
+            points.push(DVec3::new(0.0012 * ops::cos(a), s.range(0.0, 0.03), 0.0012 * ops::sin(a)));
+        }
+        let mut sizes = vec![3000];
+        for (k, length) in lengths.into_iter().enumerate() {
+            let (sin, cos) = ops::sin_cos(ops::TAU * k as f64 / 3.0);
+            for _ in 0..5000 {
+                let (v, u) = (s.uniform(), s.range(-1.0, 1.0));
+                let half =
+                    if v < 0.25 { 0.001 } else { 0.008 * ops::sin(ops::PI * (v - 0.25) / 0.75) + 0.0005 };
+                let (r, across) = (length * v, u * half);
+                points.push(DVec3::new(
+                    r * cos - across * sin,
+                    0.03 + 0.3 * r * (1.0 - v),
+                    r * sin + across * cos,
+                ));
+            }
+            sizes.push(5000);
+        }
+        (points, sizes)
+    }
+
+    #[test]
+    fn a_seedling_falls_into_its_stem_and_leaves() {
+        let (points, sizes) = seedling([0.03, 0.03, 0.03]);
+        let got = organs(&points, &SegmentSpec::default()).unwrap();
+        assert_eq!(got.len(), 4, "{:?}", got.iter().map(|o| (&o.name, o.rows.len())).collect::<Vec<_>>());
+        assert_eq!(got.iter().map(|o| o.rows.len()).sum::<usize>(), points.len());
+        let mut begin = 0;
+        for size in sizes {
+            let share = |o: &Organ| o.rows.iter().filter(|&&i| (begin..begin + size).contains(&i)).count();
+            let best = got.iter().map(share).max().unwrap();
+            assert!(best * 100 > size * 88, "{best} of {size} points lie in one organ");
+            begin += size;
+        }
+        assert!(got[0].base.y < 0.003 && got[0].tip.y > 0.025, "{:?} {:?}", got[0].base, got[0].tip);
+        for leaf in &got[1..] {
+            assert!(
+                leaf.tip.length() > 0.03 && leaf.base.distance(DVec3::Y * 0.03) < 0.006,
+                "{:?}",
+                leaf.base
+            );
+            let regions = leaf.regions(3);
+            assert!(
+                regions.iter().all(|r| r.len() > 300),
+                "{:?}",
+                regions.iter().map(Vec::len).collect::<Vec<_>>()
+            );
+            let mean = |r: &[usize]| {
+                r.iter().map(|&i| leaf.points[i].distance(leaf.base)).sum::<f64>() / r.len() as f64
+            };
+            assert!(mean(&regions[0]) < mean(&regions[1]) && mean(&regions[1]) < mean(&regions[2]));
+        }
+    }
+
+    #[test]
+    fn a_seed_point_picks_its_organ_and_leaves_are_found_again_after_turning() {
+        let (points, _) = seedling([0.03, 0.025, 0.02]);
+        let one = organ_at(&points, DVec3::new(0.025, 0.031, 0.0), &SegmentSpec::default()).unwrap();
+        assert!(one.points.iter().filter(|p| p.x > 0.01).count() * 2 > one.points.len(), "{:?}", one.tip);
+        let q = DQuat::from_rotation_y(0.6);
+        let turned: Vec<DVec3> = points.iter().map(|p| q * *p * 1.2).collect();
+        let (a, b) = (
+            organs(&points, &SegmentSpec::default()).unwrap(),
+            organs(&turned, &SegmentSpec::default()).unwrap(),
+        );
+        let pairs = match_organs(&a, &b, DVec3::Y);
+        assert_eq!(pairs.len(), 4);
+        for (i, j) in pairs {
+            assert!((q * a[i].tip * 1.2).distance(b[j].tip) < 0.006, "{} is not {}", a[i].name, b[j].name);
+        }
+    }
+
+    #[test]
+    fn one_petal_and_too_few_points() {
+        let (points, _) = seedling([0.03; 3]);
+        let petal = single_organ(
+            &points[3000..8000],
+            "petal",
+            &SegmentSpec { foot: Some(DVec3::ZERO), ..Default::default() },
+        );
+        let petal = petal.unwrap();
+        assert!(petal.rows.len() == 5000 && petal.base.length() < 0.032, "{:?}", petal.base);
+        assert!(matches!(
+            organs(&points[..9], &SegmentSpec::default()),
+            Err(BloomError::TooFew { is: 9, .. })
+        ));
+    }
+}

@@ -1,0 +1,129 @@
+//! The growing tomato of the shared data: split, matched, and each day predicted from the others.
+#![expect(clippy::unwrap_used, clippy::print_stdout, reason = "tests; what they measure is told")]
+
+use base::{Run, Seed};
+use bloom::{
+    CleanSpec, GrowthLaw, LawSpec, Motion, MotionSpec, SegmentSpec, ShapeError, Stage, clean, compare,
+    fit_stages, name_alike, organs,
+};
+use glam::DVec3;
+use std::path::Path;
+
+/// Millimetres with +Z up, as the scanner wrote them, to metres with +Y up.
+fn turned(p: [f64; 3]) -> DVec3 {
+    DVec3::new(p[0], p[2], -p[1]) * 1e-3
+}
+
+fn scan(folder: &Path, day: &str) -> Vec<DVec3> {
+    if let Ok(text) = std::fs::read_to_string(folder.join(format!("{day}.xyz"))) {
+        let row = |l: &str| {
+            let n: Vec<f64> = l.split_whitespace().map(|w| w.parse().unwrap()).collect();
+            turned([n[0], n[1], n[2]])
+        };
+        return text.lines().map(row).collect();
+    }
+    let bytes = std::fs::read(folder.join(format!("{day}.ply"))).unwrap();
+    let at = bytes.windows(11).position(|w| w == b"end_header\n").unwrap() + 11;
+    let f = |b: &[u8]| f64::from(f32::from_le_bytes(b.try_into().unwrap()));
+    bytes[at..].chunks_exact(12).map(|r| turned([f(&r[..4]), f(&r[4..8]), f(&r[8..])])).collect()
+}
+
+fn stages() -> Option<Vec<Stage>> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/scans/tomato_series");
+    if !folder.is_dir() {
+        println!("skipped: no tomato series beside the repository");
+        return None;
+    }
+    let run = Run::plain();
+    let mut stages: Vec<Stage> = Vec::new();
+    for (name, day) in [("03-05", 5.0), ("03-06", 6.0), ("03-10", 10.0)] {
+        let all = scan(&folder, name);
+        let spec = CleanSpec { plane: false, ..CleanSpec::default() };
+        let kept = clean(&all, &spec, Seed::new(1), &run).unwrap();
+        // Every point of a large scan would take minutes without optimisation.
+        let step = kept.kept.len().div_ceil(25_000);
+        let points: Vec<DVec3> = kept.kept.iter().step_by(step).map(|&i| all[i]).collect();
+        let mut found = organs(&points, &SegmentSpec::default()).unwrap();
+        if let Some(before) = stages.last() {
+            name_alike(&before.organs, &mut found, DVec3::Y);
+        }
+        println!("{name}: {} points, {} stray", all.len(), kept.outliers);
+        for o in &found {
+            println!(
+                "  {}: {} points, base {:.1} tip {:.1} mm",
+                o.name,
+                o.points.len(),
+                o.base * 1e3,
+                o.tip * 1e3
+            );
+        }
+        stages.push(Stage { day, organs: found });
+    }
+    Some(stages)
+}
+
+fn told(what: &str, e: &ShapeError) {
+    let (a, b) = (e.to_model, e.to_scan);
+    println!(
+        "{what}: paper {:.2} mean {:.2} rms {:.2} max {:.2} mm, back mean {:.2} rms {:.2} max {:.2} mm, within 2 mm {:.1} %",
+        a.paper * 1e3,
+        a.mean * 1e3,
+        a.rms * 1e3,
+        a.max * 1e3,
+        b.mean * 1e3,
+        b.rms * 1e3,
+        b.max * 1e3,
+        e.coverage * 100.0
+    );
+}
+
+fn all(stage: &Stage) -> Vec<DVec3> {
+    stage.organs.iter().flat_map(|o| o.points.iter().copied()).collect()
+}
+
+#[test]
+fn the_series_is_split_alike_and_every_day_is_predicted() {
+    let Some(stages) = stages() else { return };
+    let run = Run::plain();
+    for s in &stages {
+        let names: Vec<&str> = s.organs.iter().map(|o| o.name.as_str()).collect();
+        assert!(["stem", "leaf-1", "leaf-2"].iter().all(|n| names.contains(n)), "{names:?}");
+    }
+    let law = fit_stages("tomato", &stages, &LawSpec::default()).unwrap();
+    for l in &law.laws {
+        println!(
+            "{} {} {}: K {:.2} p0 {:.2} r {:.3} offset {:.2} R2 {:.3} values {:.2?}",
+            l.organ,
+            l.region,
+            l.axis.word(),
+            l.law.k * 1e3,
+            l.law.p0 * 1e3,
+            l.law.r,
+            l.law.offset * 1e3,
+            l.r2,
+            l.values.iter().map(|v| v * 1e3).collect::<Vec<_>>()
+        );
+    }
+    let motion = Motion::new(&stages, law, MotionSpec::default(), &run).unwrap();
+    for (organ, from, to, r) in &motion.residuals {
+        told(&format!("residual {organ} {from} -> {to}"), r);
+    }
+    for (k, day) in [0.0, 1.0, 5.0].into_iter().enumerate() {
+        let e = compare(&all(&stages[k]), &motion.at(day, &run).unwrap(), &run).unwrap();
+        told(&format!("through all stages, day {day}"), &e);
+        assert!(e.to_model.paper < 0.001, "{e:?}");
+    }
+    // Leave-one-out: the middle day from the first and the last alone, at a straight pace.
+    let ends = [stages[0].clone(), stages[2].clone()];
+    let mut alone = GrowthLaw::logistic("none", 5.0, 1.0);
+    alone.laws[0].r2 = 0.0;
+    for (what, law, straight) in [("straight pace", &alone, false), ("straight lines", &alone, true)] {
+        let spec = MotionSpec { straight, ..MotionSpec::default() };
+        let motion = Motion::new(&ends, law.clone(), spec, &run).unwrap();
+        let e = compare(&all(&stages[1]), &motion.at(1.0, &run).unwrap(), &run).unwrap();
+        told(&format!("6 March left out, {what}"), &e);
+        if what == "straight pace" {
+            assert!(e.to_model.paper < 0.003, "{e:?}");
+        }
+    }
+}

@@ -1,0 +1,186 @@
+//! bytes -> [`mesh::PointCloud`]: scans as PLY, XYZ or TXT, PCD, LAS and OBJ.
+
+mod las;
+mod pcd;
+mod ply;
+mod text;
+
+use std::io::{Read, Write};
+
+use base::{Report, Unit, UpAxis};
+use glam::DVec3;
+use mesh::PointCloud;
+
+use crate::ExportSpec;
+use crate::error::{CloudError, FileFault, Place, WriteError};
+
+/// Largest scan that is read: 1 GiB.
+pub const MAX_CLOUD_BYTES: u64 = 1 << 30;
+/// Most points of a scan: 32 million.
+pub(crate) const MAX_POINTS: usize = 32 << 20;
+
+/// The file formats that hold scans.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum CloudFormat {
+    /// Polygon file format, text or binary; faces are left out.
+    Ply,
+    /// One point a line: x y z and more columns, separated by spaces, commas or semicolons.
+    Xyz,
+    /// Point cloud data of PCL, text, binary or compressed.
+    Pcd,
+    /// LAS 1.0 to 1.4, uncompressed.
+    Las,
+    /// Vertices of a Wavefront OBJ; faces are left out.
+    Obj,
+}
+
+impl CloudFormat {
+    /// Every format.
+    pub const ALL: [Self; 5] = [Self::Ply, Self::Xyz, Self::Pcd, Self::Las, Self::Obj];
+
+    /// The name for messages.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Ply => "PLY",
+            Self::Xyz => "XYZ",
+            Self::Pcd => "PCD",
+            Self::Las => "LAS",
+            Self::Obj => "OBJ",
+        }
+    }
+
+    /// The format that a file's extension (without the dot, any case) stands for.
+    ///
+    /// ```
+    /// use formats::CloudFormat;
+    /// assert_eq!(CloudFormat::from_extension("TXT"), Some(CloudFormat::Xyz));
+    /// ```
+    pub fn from_extension(extension: &str) -> Option<Self> {
+        match extension.to_ascii_lowercase().as_str() {
+            "ply" => Some(Self::Ply),
+            "xyz" | "txt" | "csv" | "asc" | "pts" | "xyzn" | "xyzrgb" => Some(Self::Xyz),
+            "pcd" => Some(Self::Pcd),
+            "las" | "laz" => Some(Self::Las),
+            "obj" => Some(Self::Obj),
+            _ => None,
+        }
+    }
+}
+
+/// Reads a scan.
+///
+/// `spec` says which unit and up axis the file has; the cloud comes back in metres, +Y up. Points that are not
+/// finite are left out and told in `report`, as is everything else that was not read. Guaranteed:
+/// [`PointCloud::is_sound`], at least one point. Cost: linear; 5 million points of a binary PLY take well under a
+/// second, of a text a few.
+///
+/// # Errors
+/// [`CloudError`] with the place in the file and what to do.
+pub fn read_cloud(
+    input: impl Read,
+    format: CloudFormat,
+    spec: &ExportSpec,
+    report: &mut Report,
+) -> Result<PointCloud, CloudError> {
+    let file = |fault| CloudError::new(format, Place::File, fault);
+    let mut bytes = Vec::new();
+    input.take(MAX_CLOUD_BYTES + 1).read_to_end(&mut bytes).map_err(|e| file(FileFault::Io(e)))?;
+    if bytes.len() as u64 > MAX_CLOUD_BYTES {
+        return Err(file(FileFault::TooMuch {
+            what: "the size in bytes",
+            limit: MAX_CLOUD_BYTES,
+            advice: "thin the scan out or split it into several files",
+        }));
+    }
+    if bytes.iter().all(u8::is_ascii_whitespace) {
+        return Err(file(FileFault::Empty));
+    }
+    let mut sink = Sink { cloud: PointCloud::default(), dropped: 0 };
+    match format {
+        CloudFormat::Ply => ply::read(&bytes, &mut sink, report)?,
+        CloudFormat::Xyz => text::read(&bytes, &mut sink, report)?,
+        CloudFormat::Pcd => pcd::read(&bytes, &mut sink)?,
+        CloudFormat::Las => las::read(&bytes, &mut sink, report)?,
+        CloudFormat::Obj => text::read_obj(&bytes, &mut sink)?,
+    }
+    let Sink { mut cloud, dropped } = sink;
+    if cloud.points.is_empty() {
+        let what = if dropped > 0 { "none of its points is finite" } else { "there is no point in it" };
+        return Err(file(FileFault::malformed(what, "export the scan again")));
+    }
+    if dropped > 0 {
+        report.warn("points-not-finite", format!("left out: {dropped} points that are not finite numbers"));
+    }
+    let metres = spec.unit.metres();
+    if spec.up == UpAxis::Z {
+        cloud.points.iter_mut().for_each(|p| *p = DVec3::new(p.x, p.z, -p.y));
+    }
+    if spec.unit != Unit::Metre {
+        cloud.points.iter_mut().for_each(|p| *p *= metres);
+    }
+    Ok(cloud)
+}
+
+/// Writes a scan as binary PLY: double coordinates, and colours where there are some.
+///
+/// # Errors
+/// [`WriteError`] of the sink.
+pub fn write_cloud_ply(cloud: &PointCloud, spec: &ExportSpec, mut out: impl Write) -> Result<(), WriteError> {
+    let colors = cloud.colors.len() == cloud.points.len() && !cloud.colors.is_empty();
+    write!(
+        out,
+        "ply\nformat binary_little_endian 1.0\ncomment unit {}\nelement vertex {}\nproperty double x\n\
+         property double y\nproperty double z\n",
+        spec.unit_word(),
+        cloud.points.len()
+    )?;
+    if colors {
+        out.write_all(b"property uchar red\nproperty uchar green\nproperty uchar blue\n")?;
+    }
+    out.write_all(b"end_header\n")?;
+    let per_metre = 1.0 / spec.unit.metres();
+    for (i, p) in cloud.points.iter().enumerate() {
+        let p = if spec.up == UpAxis::Z { DVec3::new(p.x, -p.z, p.y) } else { *p };
+        for x in (p * per_metre).to_array() {
+            out.write_all(&x.to_le_bytes())?;
+        }
+        if colors {
+            out.write_all(&cloud.colors[i])?;
+        }
+    }
+    Ok(())
+}
+
+/// What the readers fill.
+struct Sink {
+    cloud: PointCloud,
+    dropped: u64,
+}
+
+impl Sink {
+    /// Takes a point in; `false` when there are too many.
+    fn push(&mut self, p: [f64; 3], color: Option<[u8; 3]>) -> bool {
+        // 1e100: as everywhere in the core, so that squares stay finite.
+        if !p.iter().all(|x| x.abs() <= 1e100) {
+            self.dropped += 1;
+            return true;
+        }
+        if let Some(color) = color {
+            self.cloud.colors.push(color);
+        }
+        self.cloud.points.push(DVec3::from_array(p));
+        self.cloud.points.len() <= MAX_POINTS
+    }
+}
+
+fn too_many(format: CloudFormat) -> CloudError {
+    let fault = FileFault::TooMuch {
+        what: "the number of points",
+        limit: MAX_POINTS as u64,
+        advice: "thin the scan out or split it into several files",
+    };
+    CloudError::new(format, Place::File, fault)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,218 @@
+use super::*;
+use base::Unit;
+use proptest::prelude::*;
+
+fn read(bytes: &[u8], format: CloudFormat) -> Result<PointCloud, String> {
+    let mut report = Report::default();
+    read_cloud(bytes, format, &ExportSpec::default(), &mut report).map_err(|e| e.to_string())
+}
+
+fn points(bytes: &[u8], format: CloudFormat) -> Vec<[f64; 3]> {
+    read(bytes, format).unwrap().points.into_iter().map(DVec3::into).collect()
+}
+
+const TWO: [[f64; 3]; 2] = [[1.0, 2.0, 3.0], [-0.5, 0.25, 1e3]];
+
+#[expect(clippy::cast_possible_truncation, reason = "small numbers")]
+fn narrow(x: f64) -> f32 {
+    x as f32
+}
+
+fn las(minor: u8, scale: f64, offset: f64, count: u32, rows: &[[i32; 3]]) -> Vec<u8> {
+    let mut b = vec![0_u8; 227];
+    b[..4].copy_from_slice(b"LASF");
+    b[24] = 1;
+    b[25] = minor;
+    b[94..96].copy_from_slice(&227_u16.to_le_bytes());
+    b[96..100].copy_from_slice(&227_u32.to_le_bytes());
+    b[105..107].copy_from_slice(&20_u16.to_le_bytes());
+    b[107..111].copy_from_slice(&count.to_le_bytes());
+    for k in 0..3 {
+        b[131 + 8 * k..139 + 8 * k].copy_from_slice(&scale.to_le_bytes());
+        b[155 + 8 * k..163 + 8 * k].copy_from_slice(&offset.to_le_bytes());
+    }
+    for row in rows {
+        row.iter().for_each(|x| b.extend_from_slice(&x.to_le_bytes()));
+        b.extend_from_slice(&[0; 8]);
+    }
+    b
+}
+
+#[test]
+fn every_format_gives_the_same_two_points() {
+    use CloudFormat::{Las, Obj, Pcd, Ply, Xyz};
+    assert_eq!(points(b"1 2 3\n-0.5 0.25 1e3\n", Xyz), TWO);
+    assert_eq!(points(b"# c\nx,y,z,i\n1,2,3,9\r\n-0.5,0.25,1000,8\r\n", Xyz), TWO);
+    assert_eq!(points(b"2\n1;2;3\n-0.5;0.25;1000", Xyz), TWO);
+    assert_eq!(points(b"o a\nv 1 2 3\nvn 0 0 1\nv -0.5 0.25 1000\nf 1 2 1\n", Obj), TWO);
+    let ply =
+        b"ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n\
+        element face 1\nproperty list uchar int vertex_indices\nend_header\n1 2 3\n-0.5 0.25 1000\n3 0 1 0\n";
+    assert_eq!(points(ply, Ply), TWO);
+    let head = "VERSION .7\nFIELDS i x y z\nSIZE 2 4 4 8\nTYPE U F F F\nCOUNT 1 1 1 1\nWIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA ";
+    assert_eq!(points(format!("{head}ascii\n7 1 2 3\n8 -0.5 0.25 1000\n").as_bytes(), Pcd), TWO);
+    let mut pcd = format!("{head}binary\n").into_bytes();
+    for p in TWO {
+        pcd.extend_from_slice(&7_u16.to_le_bytes());
+        pcd.extend_from_slice(&narrow(p[0]).to_le_bytes());
+        pcd.extend_from_slice(&narrow(p[1]).to_le_bytes());
+        pcd.extend_from_slice(&p[2].to_le_bytes());
+    }
+    assert_eq!(points(&pcd, Pcd), TWO);
+    let mut plain = Vec::new();
+    TWO.iter().for_each(|_| plain.extend_from_slice(&7_u16.to_le_bytes()));
+    TWO.iter().for_each(|p| plain.extend_from_slice(&narrow(p[0]).to_le_bytes()));
+    TWO.iter().for_each(|p| plain.extend_from_slice(&narrow(p[1]).to_le_bytes()));
+    TWO.iter().for_each(|p| plain.extend_from_slice(&p[2].to_le_bytes()));
+    // One literal of 2 bytes, a copy of them (length 2 + 0 is 3 at least in LZF, so literals only here).
+    let mut packed = Vec::new();
+    plain.chunks(32).for_each(|c| {
+        packed.push(u8::try_from(c.len() - 1).unwrap());
+        packed.extend_from_slice(c);
+    });
+    let mut pcd = format!("{head}binary_compressed\n").into_bytes();
+    pcd.extend_from_slice(&u32::try_from(packed.len()).unwrap().to_le_bytes());
+    pcd.extend_from_slice(&u32::try_from(plain.len()).unwrap().to_le_bytes());
+    pcd.extend_from_slice(&packed);
+    assert_eq!(points(&pcd, Pcd), TWO);
+    assert_eq!(points(&las(2, 0.25, 1.0, 2, &[[0, 4, 8], [-6, -3, 3996]]), Las), TWO);
+}
+
+#[test]
+fn lzf_copies_repeat() {
+    // "ab", then 6 bytes copied from 2 back: length code 4 (= 6 - 2).
+    let header = "FIELDS x y z\nSIZE 1 1 1\nTYPE U U U\nCOUNT 1 1 1\nPOINTS 3\nDATA binary_compressed\n";
+    let data = [1, b'a', b'b', 4 << 5, 1, 0, b'c'];
+    let mut pcd = header.as_bytes().to_vec();
+    pcd.extend_from_slice(&7_u32.to_le_bytes());
+    pcd.extend_from_slice(&9_u32.to_le_bytes());
+    pcd.extend_from_slice(&data);
+    let got = points(&pcd, CloudFormat::Pcd);
+    assert_eq!(got, [[97.0, 98.0, 97.0], [98.0, 97.0, 98.0], [97.0, 98.0, 99.0]]);
+}
+
+#[test]
+fn units_axes_and_colours() {
+    let mut report = Report::default();
+    let spec = ExportSpec { up: UpAxis::Z, unit: Unit::Millimetre };
+    let c = read_cloud(&b"1000 2000 3000 255 0 7\n0 0 0 1 2 3\n"[..], CloudFormat::Xyz, &spec, &mut report)
+        .unwrap();
+    assert!((c.points[0] - DVec3::new(1.0, 3.0, -2.0)).length() < 1e-12, "{:?}", c.points);
+    assert_eq!(c.colors, [[255, 0, 7], [1, 2, 3]]);
+    let mut ply = Vec::new();
+    write_cloud_ply(&c, &spec, &mut ply).unwrap();
+    let back = read_cloud(&ply[..], CloudFormat::Ply, &spec, &mut report).unwrap();
+    assert!(back.points.iter().zip(&c.points).all(|(a, b)| (*a - *b).length() < 1e-12));
+    assert_eq!(back.colors, c.colors);
+}
+
+#[test]
+fn hostile_and_broken_files_are_refused_with_place_and_advice() {
+    use CloudFormat::{Las, Obj, Pcd, Ply, Xyz};
+    let pcd = |points: &str, data: &str| {
+        format!("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nPOINTS {points}\nDATA {data}\n")
+            .into_bytes()
+    };
+    let huge = "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\n\
+        property float z\nend_header\n";
+    let mut zip_bomb = pcd("33000000", "binary_compressed");
+    zip_bomb.extend_from_slice(&4_u32.to_le_bytes());
+    zip_bomb.extend_from_slice(&396_000_000_u32.to_le_bytes());
+    zip_bomb.extend_from_slice(&[0; 4]);
+    let mut laz = las(2, 0.1, 0.0, 0, &[]);
+    laz[104] = 0x83;
+    let cases: Vec<(Vec<u8>, CloudFormat, &str)> = vec![
+        (b" \n\n".to_vec(), Xyz, "empty"),
+        (b"1 2\n".to_vec(), Xyz, "line 1"),
+        (b"1 2 3\n1 2 x\n".to_vec(), Xyz, "line 2"),
+        (b"1 2 3\n1 2 3 4\n".to_vec(), Xyz, "4 columns"),
+        (b"\0\x01\x02\x03".to_vec(), Xyz, "not text"),
+        (b"nan nan nan\n".to_vec(), Xyz, "finite"),
+        (b"v 1 2\n".to_vec(), Obj, "line 1"),
+        (b"f 1 2 3\n".to_vec(), Obj, "no point"),
+        (huge.as_bytes().to_vec(), Ply, "4000000000 rows are announced"),
+        (b"ply\n".to_vec(), Ply, "header"),
+        (pcd("4000000000", "binary"), Pcd, "limit"),
+        (pcd("9", "binary"), Pcd, "9 are announced"),
+        (pcd("9", "ascii"), Pcd, "9 are announced"),
+        (pcd("-1", "ascii"), Pcd, "POINTS is broken"),
+        (zip_bomb, Pcd, "cannot unpack"),
+        (b"FIELDS a b\nSIZE 4 4\nTYPE F F\nPOINTS 1\nDATA ascii\n1 2\n".to_vec(), Pcd, "no x, y and z"),
+        (las(2, 0.0, 0.0, 1, &[[0; 3]]), Las, "scale"),
+        (las(2, 0.1, 1e300, 1, &[[0; 3]]), Las, "absurd"),
+        (las(2, 0.1, f64::NAN, 1, &[[0; 3]]), Las, "absurd"),
+        (las(2, 0.1, 0.0, 4_000_000_000, &[[0; 3]]), Las, "announced"),
+        (laz, Las, "LAZ"),
+        (b"LASF".to_vec(), Las, "header"),
+    ];
+    for (bytes, format, want) in cases {
+        let e = read(&bytes, format).unwrap_err();
+        assert!(e.contains(want), "{format:?}: {e:?} should say {want:?}");
+    }
+}
+
+#[test]
+fn points_that_are_no_numbers_are_left_out_and_told() {
+    let mut report = Report::default();
+    let c = read_cloud(
+        &b"1 2 3\nnan 0 0\n1 inf 0\n4 5 6\n"[..],
+        CloudFormat::Xyz,
+        &ExportSpec::default(),
+        &mut report,
+    );
+    assert_eq!(c.unwrap().points.len(), 2);
+    assert!(report.warnings.iter().any(|w| w.message.contains("2 points")), "{report:?}");
+}
+
+#[test]
+fn the_real_scans_are_read() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/scans");
+    if !folder.is_dir() {
+        println!("skipped: no scans beside the repository");
+        return;
+    }
+    for (name, want) in [
+        ("tomato_series/03-05.xyz", 24_795),
+        ("tomato_series/03-06.xyz", 50_000),
+        ("tomato_series/03-10.ply", 261_379),
+        ("single_leaves/soybean_11_20190508T043118_pot1_1.txt", 3_290),
+        ("single_leaves/sugarbeet_f00012_20170829T010129_pot1_1.txt", 2_266),
+    ] {
+        let path = folder.join(name);
+        let format = CloudFormat::from_extension(path.extension().unwrap().to_str().unwrap()).unwrap();
+        let bytes = std::fs::read(path).unwrap();
+        assert_eq!(points(&bytes, format).len(), want, "{name}");
+    }
+}
+
+proptest! {
+    #[test]
+    fn any_bytes_are_points_or_an_error(
+        bytes in prop::collection::vec(any::<u8>(), 0..300),
+        lines in prop::collection::vec("[-0-9a-z .,;e]{0,20}", 0..12),
+        which in 0..5_usize,
+        cut in 0..400_usize,
+    ) {
+        let format = CloudFormat::ALL[which];
+        let head: &[u8] = match format {
+            CloudFormat::Ply => b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nend_header\n",
+            CloudFormat::Pcd => b"FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 2\nDATA binary\n",
+            _ => b"",
+        };
+        let mut all = if format == CloudFormat::Las { las(4, 0.1, 0.0, 2, &[[1; 3]; 2]) } else { head.to_vec() };
+        for (k, b) in bytes.iter().enumerate() {
+            let n = all.len();
+            if n > 0 && k % 3 == 0 {
+                all[(k * 37 + usize::from(*b)) % n] = *b;
+            } else {
+                all.push(*b);
+            }
+        }
+        all.truncate(cut.max(1) * 2);
+        for input in [all, lines.join("\n").into_bytes()] {
+            if let Ok(cloud) = read(&input, format) {
+                prop_assert!(cloud.is_sound() && !cloud.points.is_empty());
+            }
+        }
+    }
+}
