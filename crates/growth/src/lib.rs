@@ -11,6 +11,9 @@
 //! | `self_organize` | buds that compete for light, shedding, wood (Palubicki 2009) |
 //! | `lsystem` | rules read from text |
 //! | `skeleton` | what growers make: joints and the joints they grew from |
+//! | `wood` | axes, smooth courses, radii |
+//! | `leaves` | phyllotaxis, culled by shadow propagation |
+//! | `tree` | the whole way: [`grow`] |
 
 mod arrangement;
 mod colonize;
@@ -18,20 +21,26 @@ mod competition;
 mod envelope;
 mod error;
 mod field;
+mod leaves;
 mod lsystem;
 mod obstacle;
 mod self_organize;
 mod skeleton;
 mod solid;
+mod tree;
 mod tropism;
+mod wood;
 
 pub use arrangement::Arrangement;
 pub use colonize::{ColonizeSpec, Colonized, Fate, colonize, colonize_from, regrow};
 pub use competition::{Competed, CompetitionSpec, Cycle, compete};
 pub use envelope::{Envelope, Region};
 pub use error::{GrowthError, MeshFault};
+pub use leaves::{LeafCount, LeafSpec, add_leaves};
 pub use lsystem::{LeafMark, Lsystem, LsystemError, LsystemTree, OAK_RULES, grow_lsystem};
 pub use obstacle::{Obstacle, Obstacles};
 pub use self_organize::{Light, Resource, SelfOrganized, SelfOrganizingSpec, self_organize};
 pub use skeleton::{JointId, Skeleton, SkeletonFault};
+pub use tree::{Grown, Method, TreeSpec, grow};
 pub use tropism::Tropism;
+pub use wood::{Wood, WoodSpec, make_wood};

@@ -1,0 +1,439 @@
+//! Leaves on the thin shoots, where light reaches.
+//!
+//! `Plant + LeafSpec -> candidates by phyllotaxis -> shadows -> the brightest` (paper 001, section 3.3)
+
+use base::ops::{self, PI};
+use base::{Draw, Report, Run, Seed};
+use glam::{DVec2, DVec3};
+use plant::{AxisId, Blade, Frame, Lift, NodeId, Organ, OrganKind, Phyllotaxis, Plant, Relief, Shape};
+use serde::{Deserialize, Serialize};
+
+use crate::error::within;
+use crate::self_organize::ShadowGrid;
+use crate::{Arrangement, GrowthError, LeafMark, Obstacles};
+
+/// What leaves a tree bears.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct LeafSpec {
+    /// How they stand around the shoot, default a golden spiral.
+    pub arrangement: Arrangement,
+    /// Between two nodes of a shoot, metres, above 0, default 0.06.
+    pub spacing_m: f64,
+    /// Length of a blade, metres, above 0, default 0.09.
+    pub length_m: f64,
+    /// Width over length of the blade that [`blade`](Self::blade) makes, 0.01 to 3, default 0.5.
+    pub width: f64,
+    /// Standard deviation of the length as a share of it, 0 to 0.5, default 0.1.
+    pub size_variation: f64,
+    /// Between shoot and blade, degrees, 0 to 180, default 55.
+    pub angle_deg: f64,
+    /// How far blades hang, -1 to 1 (all down), default 0.15.
+    pub droop: f64,
+    /// Shoots bear leaves where they are not thicker than this, metres; default 0.009: two of the usual tips.
+    pub max_radius_m: f64,
+    /// Share of the leaves kept, the best lit ones, 0 to 1; default 1. Many, suitable and few in Fig 11 of paper 001.
+    pub leaf_keep: f64,
+    /// Leaves with less light fall in any case, 0 or more (full light is 1), default 0.
+    pub min_light: f64,
+    /// What a leaf adds to the shadow of its own voxel (k of Eq 5), above 0, default 0.03.
+    pub shade: f64,
+    /// The fall of the shadow from layer to layer (b of Eq 5), above 1, default 1.8.
+    pub shade_fall: f64,
+    /// Layers below a leaf that it shades, 1 to 32, default 6.
+    pub shade_layers: u32,
+    /// Side of a voxel, metres; default two blade lengths.
+    pub voxel_m: Option<f64>,
+    /// Whether a leaf suffers from its own shadow, as in the paper (Palubicki adds it back). Default false.
+    pub self_shadow: bool,
+    /// Most leaves that are considered, default 2 million.
+    pub max_leaves: u32,
+}
+
+impl Default for LeafSpec {
+    fn default() -> Self {
+        Self {
+            arrangement: Arrangement::default(),
+            spacing_m: 0.06,
+            length_m: 0.09,
+            width: 0.5,
+            size_variation: 0.1,
+            angle_deg: 55.0,
+            droop: 0.15,
+            max_radius_m: 0.009,
+            leaf_keep: 1.0,
+            min_light: 0.0,
+            shade: 0.03,
+            shade_fall: 1.8,
+            shade_layers: 6,
+            voxel_m: None,
+            self_shadow: false,
+            max_leaves: 2_000_000,
+        }
+    }
+}
+
+impl LeafSpec {
+    /// A plain blade of length 1: broadest in the middle, a little folded and bent.
+    pub fn blade(&self) -> Blade {
+        let half = 0.5 * if self.width.is_finite() { self.width.clamp(0.01, 3.0) } else { 0.5 };
+        let right: Vec<DVec2> = (1..8)
+            .map(|i| {
+                let v = f64::from(i) / 8.0;
+                DVec2::new(half * ops::powf(ops::sin(PI * ops::powf(v, 0.85)), 0.9), v)
+            })
+            .collect();
+        let mut outline = vec![DVec2::ZERO];
+        outline.extend_from_slice(&right);
+        outline.push(DVec2::Y);
+        outline.extend(right.iter().rev().map(|p| DVec2::new(-p.x, p.y)));
+        let midrib = (0..=4).map(|i| DVec2::new(0.0, f64::from(i) / 4.0)).collect();
+        let relief = Relief { bend_a: 0.05, bend_b: 0.12, fold: 0.2, ..Relief::default() };
+        Blade { outline, midrib, veins: Vec::new(), lift: Lift::Flat, relief }
+    }
+
+    fn check(&self) -> Result<Phyllotaxis, GrowthError> {
+        within("spacing_m", self.spacing_m, 1e-4, 1e3, "0.0001 to 1000 m")?;
+        within("length_m", self.length_m, 1e-4, 100.0, "0.0001 to 100 m")?;
+        within("width", self.width, 0.01, 3.0, "0.01 to 3")?;
+        within("size_variation", self.size_variation, 0.0, 0.5, "0 to 0.5")?;
+        within("angle_deg", self.angle_deg, 0.0, 180.0, "0 to 180")?;
+        within("droop", self.droop, -1.0, 1.0, "-1 to 1")?;
+        within("max_radius_m", self.max_radius_m, 0.0, 100.0, "0 to 100 m")?;
+        within("leaf_keep", self.leaf_keep, 0.0, 1.0, "0 to 1")?;
+        within("min_light", self.min_light, 0.0, 1e6, "0 or more")?;
+        within("shade", self.shade, 1e-6, 100.0, "above 0 and at most 100")?;
+        within("shade_fall", self.shade_fall, 1.0, 100.0, "1 to 100")?;
+        within("shade_layers", f64::from(self.shade_layers), 1.0, 32.0, "1 to 32")?;
+        if let Some(v) = self.voxel_m {
+            within("voxel_m", v, 1e-3, 1e3, "0.001 to 1000 m")?;
+        }
+        self.arrangement.phyllotaxis()
+    }
+}
+
+/// How many leaves there are and were.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LeafCount {
+    /// Places for leaves by phyllotaxis.
+    pub placed: usize,
+    /// Of these, in an obstacle and left out.
+    pub buried: usize,
+    /// Fallen for want of light.
+    pub fallen: usize,
+    /// On the plant.
+    pub kept: usize,
+}
+
+/// A leaf that might be.
+struct Candidate {
+    bearer: NodeId,
+    frame: Frame,
+    scale: f64,
+    key: u64,
+}
+
+/// Sets leaves on the thin shoots of a plant, or at `marks` if there are any, and lets the shaded ones fall.
+///
+/// `blade`: any blade; it is scaled to the length asked for. Guaranteed: a clean `validate()`; no leaf's root, middle
+/// or tip in an obstacle; of the same tree, a smaller `leaf_keep` keeps a part of what a larger one keeps. Cost:
+/// linear in places for leaves, times the square of `shade_layers`.
+///
+/// # Errors
+/// [`GrowthError::Field`], [`GrowthError::Cancelled`].
+///
+/// ```
+/// use base::{Report, Run, Seed};
+/// use glam::DVec3;
+/// use growth::{LeafSpec, Obstacles, add_leaves};
+/// use plant::{AxisKind, Plant};
+/// let mut plant = Plant::default();
+/// plant.add_axis(AxisKind::Branch, None, 1, &[DVec3::ZERO, DVec3::Y], None);
+/// let spec = LeafSpec { leaf_keep: 0.5, ..LeafSpec::default() };
+/// let (run, none) = (Run::plain(), Obstacles::none());
+/// let n = add_leaves(&mut plant, &spec, spec.blade(), &[], &none, Seed::new(1), &run, &mut Report::default())?;
+/// assert_eq!((n.placed, n.kept, plant.organs.len()), (16, 8, 8));
+/// # Ok::<(), growth::GrowthError>(())
+/// ```
+#[expect(clippy::too_many_arguments, reason = "what, where, around what, and how; all are different things")]
+pub fn add_leaves(
+    plant: &mut Plant,
+    spec: &LeafSpec,
+    blade: Blade,
+    marks: &[(NodeId, LeafMark)],
+    obstacles: &Obstacles,
+    seed: Seed,
+    run: &Run<'_>,
+    report: &mut Report,
+) -> Result<LeafCount, GrowthError> {
+    let phyllotaxis = spec.check()?;
+    let started = run.clock.now_ms();
+    let mut all = Vec::new();
+    // Everything is measured along the blade that was given.
+    let length = blade.length();
+    let scale = if length > 1e-9 && length.is_finite() { spec.length_m / length } else { spec.length_m };
+    if marks.is_empty() {
+        for a in 0..plant.axes.len() {
+            if a % 256 == 0 {
+                run.cancel.check()?;
+            }
+            on_axis(plant, AxisId::new(a), spec, phyllotaxis, scale, seed, &mut all);
+        }
+    } else {
+        for (i, (node, mark)) in marks.iter().enumerate().take(spec.max_leaves as usize) {
+            let key = seed.child(i as u64).number();
+            let frame = Frame::looking(plant.nodes.position[node.index()], mark.heading, mark.up);
+            let size = if mark.scale.is_finite() { mark.scale.clamp(0.0, 1e3) } else { 1.0 };
+            if size > 0.0 {
+                all.push(Candidate { bearer: *node, frame, scale: scale * size, key });
+            }
+        }
+    }
+    if all.len() >= spec.max_leaves as usize {
+        report.warn(
+            "leaves-stopped",
+            format!("no more than {} places for leaves were considered", spec.max_leaves),
+        );
+    }
+    let placed = all.len();
+    let tip = |c: &Candidate, share: f64| c.frame.origin + c.frame.along * (share * c.scale * length);
+    if !obstacles.is_empty() {
+        all.retain(|c| [0.0, 0.5, 1.0].iter().all(|&s| obstacles.inside(tip(c, s)).is_none()));
+    }
+    let buried = placed - all.len();
+    run.cancel.check()?;
+    let light = light_of(&all, |c| tip(c, 0.5), spec);
+    let keeps = brightest(&all, &light, spec);
+    let shape = (!all.is_empty()).then(|| plant.add_shape(Shape::Blade(blade)));
+    let mut kept = 0;
+    for (c, _) in all.iter().zip(&keeps).filter(|(_, k)| **k) {
+        let Some(shape) = shape else { break };
+        kept += 1;
+        plant.organs.push(Organ {
+            kind: OrganKind::Leaf,
+            bearer: Some(c.bearer),
+            flower: None,
+            shape,
+            frame: c.frame,
+            scale: c.scale,
+            tint: [1.0; 3],
+            key: c.key,
+            source: None,
+        });
+    }
+    report.book("leaves", run.clock.now_ms() - started);
+    Ok(LeafCount { placed, buried, fallen: all.len() - kept, kept })
+}
+
+/// Places on the thin part of one axis, from its tip down, so that the tip always has its leaf.
+fn on_axis(
+    plant: &Plant,
+    id: AxisId,
+    spec: &LeafSpec,
+    phyllotaxis: Phyllotaxis,
+    scale: f64,
+    seed: Seed,
+    all: &mut Vec<Candidate>,
+) {
+    let axis = plant.axis(id);
+    let (points, radii) = (plant.axis_points(id), plant.axis_radii(id));
+    let frames = geom::rotation_minimising_frames(points, None);
+    let own = seed.child(axis.key);
+    let offset = ops::TAU * own.stream(Draw::Phyllotaxis).uniform();
+    let (mut number, mut until_next) = (0_u32, 0.0);
+    for i in (1..points.len()).rev() {
+        let (from, to) = (points[i], points[i - 1]);
+        let length = from.distance(to);
+        // A bare base: a borne shoot has no leaf within its bearer's bark.
+        let bare = if i == 1 && axis.bearer.is_some() { 0.5 * spec.spacing_m } else { 0.0 };
+        while until_next <= length - bare {
+            let t = if length > 0.0 { until_next / length } else { 0.0 };
+            let radius = radii[i] + (radii[i - 1] - radii[i]) * t;
+            if radius > spec.max_radius_m || all.len() >= spec.max_leaves as usize {
+                return;
+            }
+            let frame = &frames[i];
+            for (azimuth, k) in phyllotaxis.azimuths(number).zip(0_u64..) {
+                let key = own.child(u64::from(number)).child(k);
+                let around = azimuth + offset;
+                let (s, c) = ops::sin_cos(around);
+                let out = frame.normal * c + frame.binormal * s;
+                let at = from + (to - from) * t + out * radius;
+                let node = axis.nodes.start as usize + if t > 0.5 { i - 1 } else { i };
+                all.push(leaf(spec, at, frame.tangent, out, scale, key, NodeId::new(node)));
+            }
+            number += 1;
+            until_next += spec.spacing_m;
+        }
+        until_next -= length;
+    }
+}
+
+fn leaf(
+    spec: &LeafSpec,
+    at: DVec3,
+    shoot: DVec3,
+    out: DVec3,
+    scale: f64,
+    key: Seed,
+    bearer: NodeId,
+) -> Candidate {
+    let mut stream = key.stream(Draw::LeafAngle);
+    // 8 degrees: leaves of one shoot differ, but its phyllotaxis is still seen.
+    let angle = (spec.angle_deg + 8.0 * stream.normal()) * (PI / 180.0);
+    let (s, c) = ops::sin_cos(angle);
+    let stands = shoot * c + out * s;
+    let along = (stands * (1.0 - spec.droop.abs()) - DVec3::Y * spec.droop).normalize_or(stands);
+    let size = 1.0 + spec.size_variation * key.stream(Draw::Size).normal().clamp(-2.5, 2.5);
+    // The upper side looks to the light; a blade that hangs straight down turns it outwards.
+    let towards = DVec3::Y + out * 0.3;
+    Candidate {
+        bearer,
+        frame: Frame::looking(at, along, towards),
+        scale: scale * size.max(0.1),
+        key: key.number(),
+    }
+}
+
+/// Eq 6: Q = max(C - s, 0) with C = 1, and the leaf's own shadow added back unless the spec says otherwise.
+fn light_of(all: &[Candidate], middle: impl Fn(&Candidate) -> DVec3, spec: &LeafSpec) -> Vec<f64> {
+    let corners = all.iter().map(&middle);
+    let (lo, hi) = corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), p| (lo.min(p), hi.max(p)));
+    if all.is_empty() {
+        return Vec::new();
+    }
+    // A voxel much smaller than the tree over 200 makes a grid that no memory holds.
+    let least = (hi - lo).max_element() / 200.0;
+    let voxel = spec.voxel_m.unwrap_or(2.0 * spec.length_m).max(least);
+    let mut grid = ShadowGrid::new(voxel, spec.shade, spec.shade_fall, spec.shade_layers);
+    grid.cover(lo, hi);
+    all.iter().for_each(|c| grid.add(middle(c), 1));
+    let own = if spec.self_shadow { 0.0 } else { grid.own() };
+    // Not cut off at 0: in deep shade, too, one leaf has more light than another.
+    all.iter().map(|c| 1.0 - grid.sample(middle(c)).0 + own).collect()
+}
+
+/// Which leaves stay: enough light, and among the brightest; keys decide between equals.
+fn brightest(all: &[Candidate], light: &[f64], spec: &LeafSpec) -> Vec<bool> {
+    let mut keeps = vec![false; all.len()];
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a length")]
+    let wanted = (spec.leaf_keep * all.len() as f64).round() as usize;
+    let mut rows: Vec<usize> = (0..all.len()).collect();
+    let order = |a: &usize, b: &usize| {
+        light[*b].total_cmp(&light[*a]).then(all[*a].key.cmp(&all[*b].key)).then(a.cmp(b))
+    };
+    if wanted < rows.len() && wanted > 0 {
+        rows.select_nth_unstable_by(wanted - 1, order);
+    }
+    for &r in rows.iter().take(wanted) {
+        keeps[r] = light[r].max(0.0) >= spec.min_light;
+    }
+    keeps
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{CompetitionSpec, Obstacle, WoodSpec, compete, make_wood};
+
+    fn bare() -> Plant {
+        let run = Run::plain();
+        let spec = CompetitionSpec { points: 800, kill_m: 0.25, ..CompetitionSpec::default() };
+        let tree =
+            compete(&[DVec3::ZERO], &Obstacles::none(), &spec, Seed::new(1), &run, &mut Report::default());
+        make_wood(&tree.expect("sound").skeleton, &WoodSpec::default(), &Obstacles::none(), &run)
+            .expect("sound")
+            .plant
+    }
+
+    fn dressed(spec: &LeafSpec, obstacles: &Obstacles) -> (Plant, LeafCount) {
+        let mut plant = bare();
+        let run = Run::plain();
+        let count = add_leaves(
+            &mut plant,
+            spec,
+            spec.blade(),
+            &[],
+            obstacles,
+            Seed::new(1),
+            &run,
+            &mut Report::default(),
+        )
+        .expect("sound");
+        assert_eq!(plant.validate().next(), None);
+        assert_eq!(
+            (count.kept, count.placed),
+            (plant.organs.len(), count.kept + count.fallen + count.buried)
+        );
+        (plant, count)
+    }
+
+    #[test]
+    fn fewer_leaves_are_a_part_of_many_and_the_bright_ones() {
+        let none = Obstacles::none();
+        let of = |leaf_keep: f64| dressed(&LeafSpec { leaf_keep, ..LeafSpec::default() }, &none);
+        let ((many, all), (some, half), (few, tenth)) = (of(1.0), of(0.5), of(0.1));
+        assert!(all.placed > 3000 && all.kept == all.placed, "{all:?}");
+        assert!(half.kept.abs_diff(all.placed / 2) <= 1 && tenth.kept.abs_diff(all.placed / 10) <= 1);
+        let keys = |p: &Plant| p.organs.iter().map(|o| o.key).collect::<std::collections::BTreeSet<_>>();
+        assert!(keys(&few).is_subset(&keys(&some)) && keys(&some).is_subset(&keys(&many)));
+        let height =
+            |p: &Plant| p.organs.iter().map(|o| o.frame.origin.y).sum::<f64>() / p.organs.len() as f64;
+        assert!(height(&few) > height(&many) + 0.3, "light comes from above");
+    }
+
+    #[test]
+    fn leaves_follow_their_phyllotaxis() {
+        let mut plant = Plant::default();
+        let line = [DVec3::ZERO, DVec3::Y * 0.5, DVec3::Y];
+        let axis = plant.add_axis(plant::AxisKind::Branch, None, 1, &line, None);
+        assert_eq!(plant.axis_radii(axis), [0.0; 3]);
+        let spec = LeafSpec { arrangement: Arrangement::Decussate, spacing_m: 0.1, ..LeafSpec::default() };
+        let run = Run::plain();
+        let none = Obstacles::none();
+        let n = add_leaves(
+            &mut plant,
+            &spec,
+            spec.blade(),
+            &[],
+            &none,
+            Seed::new(1),
+            &run,
+            &mut Report::default(),
+        );
+        assert_eq!(n.map(|n| n.kept), Ok(22));
+        let out = |i: usize| {
+            let a = plant.organs[i].frame.along;
+            DVec3::new(a.x, 0.0, a.z).normalize()
+        };
+        for i in 0..10 {
+            assert!(out(2 * i).dot(out(2 * i + 1)) < -0.99, "pairs stand opposite");
+            assert!(out(2 * i).dot(out(2 * i + 2)).abs() < 0.1, "each pair across the last");
+        }
+    }
+
+    #[test]
+    fn no_leaf_hangs_in_an_obstacle() {
+        let rock = Obstacle::Sphere { centre: DVec3::new(0.8, 4.2, 0.0), radius_m: 0.9 };
+        let obstacles = Obstacles::new(&[rock], 0.0).expect("sound");
+        let (plant, count) = dressed(&LeafSpec::default(), &obstacles);
+        assert!(count.buried > 50, "{count:?}");
+        for o in &plant.organs {
+            assert!(obstacles.inside(o.frame.place(DVec3::Y, o.scale)).is_none());
+        }
+    }
+
+    #[test]
+    fn dark_leaves_fall_by_threshold_too() {
+        let spec = LeafSpec { min_light: 0.8, ..LeafSpec::default() };
+        let (_, count) = dressed(&spec, &Obstacles::none());
+        assert!(count.fallen > 100 && count.kept > 100, "{count:?}");
+        let mut plant = bare();
+        let bad = LeafSpec { leaf_keep: 1.5, ..LeafSpec::default() };
+        let run = Run::plain();
+        let none = Obstacles::none();
+        let got =
+            add_leaves(&mut plant, &bad, bad.blade(), &[], &none, Seed::new(1), &run, &mut Report::default());
+        assert_eq!(got, Err(GrowthError::Field { field: "leaf_keep", range: "0 to 1", value: 1.5 }));
+    }
+}

@@ -1,0 +1,279 @@
+//! The whole way from a spec to a plant.
+//!
+//! `TreeSpec -> Skeleton (any method) -> wood -> leaves -> Plant`
+
+use base::{Report, Run, Seed};
+use glam::DVec3;
+use plant::{Blade, NodeId, Plant};
+use serde::{Deserialize, Serialize};
+
+use crate::colonize::plant_roots;
+use crate::error::within;
+use crate::{
+    ColonizeSpec, CompetitionSpec, Envelope, GrowthError, LeafCount, LeafMark, LeafSpec, Lsystem, Obstacle,
+    Obstacles, SelfOrganizingSpec, Skeleton, WoodSpec, add_leaves, colonize_from, compete, grow_lsystem,
+    make_wood, self_organize,
+};
+
+/// How a tree grows.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+#[non_exhaustive]
+pub enum Method {
+    /// Space colonisation (Runions 2007).
+    Colonization {
+        /// The space of the crown, relative to the root.
+        envelope: Envelope,
+        /// Attraction points for each tree, 1 to 10 million.
+        points: u32,
+        /// Share of the envelope left empty inside, 0 to 0.99.
+        #[serde(default)]
+        hollow: f64,
+        /// Distances and pulls.
+        #[serde(default)]
+        steps: ColonizeSpec,
+    },
+    /// Competition for space in life cycles (paper 001).
+    Competition(CompetitionSpec),
+    /// Buds that compete for light (Palubicki 2009).
+    SelfOrganizing(SelfOrganizingSpec),
+    /// Rules (Prusinkiewicz and Lindenmayer 1990). Obstacles cut off what grows into them.
+    Lsystem {
+        /// The text that [`Lsystem::parse`] reads.
+        rules: String,
+        /// Most modules of all trees, 1 to 100 million.
+        most_modules: u32,
+    },
+}
+
+/// One or several trees of one kind, grown together.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct TreeSpec {
+    /// For files and reports.
+    pub name: String,
+    /// Where trees stand, metres; default one at the origin.
+    pub roots: Vec<DVec3>,
+    /// What they grow around. Default nothing.
+    pub obstacles: Vec<Obstacle>,
+    /// Distance that joints keep from obstacles, metres, 0 or more, default 0.05.
+    pub clearance_m: f64,
+    /// The trees as they were after so many steps or years of growth; default none: to the end.
+    pub age: Option<u32>,
+    /// How they grow.
+    pub method: Method,
+    /// How skeletons become wood.
+    pub wood: WoodSpec,
+    /// What leaves they bear; none for dead or winter trees. Default [`LeafSpec::default`].
+    pub leaves: Option<LeafSpec>,
+}
+
+impl Default for TreeSpec {
+    fn default() -> Self {
+        Self {
+            name: "tree".into(),
+            roots: vec![DVec3::ZERO],
+            obstacles: Vec::new(),
+            clearance_m: 0.05,
+            age: None,
+            method: Method::Competition(CompetitionSpec::default()),
+            wood: WoodSpec::default(),
+            leaves: Some(LeafSpec::default()),
+        }
+    }
+}
+
+/// A grown plant and what it was made of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grown {
+    /// The plant: `plant.validate()` finds nothing wrong with it.
+    pub plant: Plant,
+    /// The skeleton under it: for pruning, ages and measures.
+    pub skeleton: Skeleton,
+    /// Leaves placed, fallen and kept.
+    pub leaves: LeafCount,
+    /// Nodes in obstacles: 0 unless something is wrong.
+    pub nodes_in_obstacles: usize,
+    /// Leaves whose root, middle or tip lies in an obstacle: 0 unless something is wrong.
+    pub leaves_in_obstacles: usize,
+}
+
+/// Grows trees of any method and dresses them with leaves of the given blade ([`LeafSpec::blade`] if none).
+///
+/// Guaranteed: the same plant for the same spec and seed, on every platform and any thread count; it ends; a clean
+/// `validate()`. Books its time under `grow`, `wood` and `leaves`.
+///
+/// # Errors
+/// [`GrowthError`]: whatever is wrong with the spec, or cancelled.
+///
+/// ```
+/// use base::{Report, Run, Seed};
+/// use growth::{TreeSpec, grow};
+/// let tree = grow(&TreeSpec::default(), None, Seed::new(1), &Run::plain(), &mut Report::default())?;
+/// assert!(tree.plant.axes.len() > 100 && tree.leaves.kept == tree.plant.organs.len());
+/// # Ok::<(), growth::GrowthError>(())
+/// ```
+pub fn grow(
+    spec: &TreeSpec,
+    blade: Option<Blade>,
+    seed: Seed,
+    run: &Run<'_>,
+    report: &mut Report,
+) -> Result<Grown, GrowthError> {
+    let obstacles = Obstacles::new(&spec.obstacles, spec.clearance_m)?;
+    let (mut skeleton, mut marks) = bones(spec, &obstacles, seed, run, report)?;
+    if let Some(age) = spec.age {
+        let (young, new_id) = {
+            let old = skeleton;
+            let (mut young, new_id) = old.keep_mapped(|j| old.birth[j] <= age);
+            if !matches!(spec.method, Method::Lsystem { .. }) {
+                young.radius_m.fill(0.0);
+            }
+            (young, new_id)
+        };
+        skeleton = young;
+        marks.retain_mut(|m| {
+            let now = new_id[m.joint.index()];
+            m.joint = now.unwrap_or(m.joint);
+            now.is_some()
+        });
+    }
+    let started = run.clock.now_ms();
+    let mut wood_spec = spec.wood.clone();
+    if let Method::SelfOrganizing(s) = &spec.method {
+        // One exponent and one tip for the wood that growth kept account of.
+        (wood_spec.pipe_exponent, wood_spec.tip_radius_m) = (s.pipe_exponent, s.tip_radius_m);
+    }
+    let wood = make_wood(&skeleton, &wood_spec, &obstacles, run)?;
+    report.book("wood", run.clock.now_ms() - started);
+    let mut plant = wood.plant;
+    plant.name.clone_from(&spec.name);
+    let mut leaves = LeafCount::default();
+    if let Some(leaf) = &spec.leaves {
+        let places: Vec<(NodeId, LeafMark)> =
+            marks.iter().filter_map(|m| Some((wood.node_of_joint[m.joint.index()]?, *m))).collect();
+        let blade = blade.unwrap_or_else(|| leaf.blade());
+        leaves = add_leaves(&mut plant, leaf, blade, &places, &obstacles, seed, run, report)?;
+    }
+    let inside = |p: DVec3| obstacles.inside(p).is_some();
+    let nodes_in_obstacles = plant.nodes.position.iter().filter(|p| inside(**p)).count();
+    let leaves_in_obstacles = plant.organs.iter().filter(|o| inside(o.frame.origin)).count();
+    debug_assert_eq!(plant.validate().next(), None, "a grown plant is sound");
+    Ok(Grown { plant, skeleton, leaves, nodes_in_obstacles, leaves_in_obstacles })
+}
+
+/// The skeleton by whichever method, and the leaves that rules set.
+fn bones(
+    spec: &TreeSpec,
+    obstacles: &Obstacles,
+    seed: Seed,
+    run: &Run<'_>,
+    report: &mut Report,
+) -> Result<(Skeleton, Vec<LeafMark>), GrowthError> {
+    let skeleton = match &spec.method {
+        Method::Colonization { envelope, points, hollow, steps } => {
+            within("points", f64::from(*points), 1.0, 1e7, "1 to 10 million")?;
+            let roots = plant_roots(&spec.roots, obstacles)?;
+            let region = envelope.prepare()?;
+            let mut attractors = Vec::new();
+            for (root, i) in spec.roots.iter().zip(0_u64..) {
+                let free = |p: DVec3| obstacles.free(*root + p);
+                let own = region.scatter(*points as usize, *hollow, seed.child(i), free)?;
+                attractors.extend(own.into_iter().map(|p| *root + p));
+            }
+            colonize_from(roots, &attractors, obstacles, steps, run, report)?.skeleton
+        }
+        Method::Competition(s) => compete(&spec.roots, obstacles, s, seed, run, report)?.skeleton,
+        Method::SelfOrganizing(s) => self_organize(&spec.roots, obstacles, s, seed, run, report)?.skeleton,
+        Method::Lsystem { rules, most_modules } => {
+            plant_roots(&spec.roots, obstacles)?;
+            let system = Lsystem::parse(rules)?;
+            let tree = grow_lsystem(&spec.roots, &system, *most_modules, seed, run, report)?;
+            if obstacles.is_empty() {
+                return Ok((tree.skeleton, tree.leaves));
+            }
+            let s = &tree.skeleton;
+            let open = |j: usize| match s.parent[j] {
+                None => true,
+                Some(p) => {
+                    obstacles.free(s.position[j]) && !obstacles.blocks(s.position[p.index()], s.position[j])
+                }
+            };
+            let (cut, new_id) = s.keep_mapped(open);
+            let marks = tree.leaves.iter();
+            let marks = marks.filter_map(|m| Some(LeafMark { joint: new_id[m.joint.index()]?, ..*m }));
+            return Ok((cut, marks.collect()));
+        }
+    };
+    Ok((skeleton, Vec::new()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::OAK_RULES;
+
+    fn methods() -> Vec<Method> {
+        vec![
+            Method::Colonization {
+                envelope: Envelope::default(),
+                points: 600,
+                hollow: 0.0,
+                steps: ColonizeSpec::default(),
+            },
+            Method::Competition(CompetitionSpec { points: 600, ..CompetitionSpec::default() }),
+            Method::SelfOrganizing(SelfOrganizingSpec { years: 14, ..SelfOrganizingSpec::default() }),
+            Method::Lsystem { rules: OAK_RULES.into(), most_modules: 1_000_000 },
+        ]
+    }
+
+    fn tree(spec: &TreeSpec) -> Grown {
+        let got = grow(spec, None, Seed::new(3), &Run::plain(), &mut Report::default()).expect("sound");
+        assert_eq!(got.plant.validate().next(), None, "{}", spec.name);
+        got
+    }
+
+    #[test]
+    fn every_method_makes_a_sound_plant_again_and_again() {
+        for method in methods() {
+            let spec = TreeSpec { name: format!("{method:?}"), method, ..TreeSpec::default() };
+            let a = tree(&spec);
+            assert!(a.plant.axes.len() > 40 && a.leaves.kept > 300, "{}: {:?}", spec.name, a.leaves);
+            assert_eq!(a.plant.digest_hex(), tree(&spec).plant.digest_hex());
+        }
+    }
+
+    #[test]
+    fn every_method_keeps_out_of_obstacles() {
+        let house = Obstacle::Box { min: DVec3::new(0.6, 0.0, -3.0), max: DVec3::new(6.0, 4.5, 3.0) };
+        for method in methods() {
+            let obstacles = vec![house.clone()];
+            let spec = TreeSpec { name: format!("{method:?}"), method, obstacles, ..TreeSpec::default() };
+            let got = tree(&spec);
+            assert_eq!((got.nodes_in_obstacles, got.leaves_in_obstacles), (0, 0), "{}", spec.name);
+            assert!(got.plant.axes.len() > 20, "{}", spec.name);
+        }
+    }
+
+    #[test]
+    fn a_younger_tree_is_smaller() {
+        for method in &methods()[..3] {
+            let spec = TreeSpec { method: method.clone(), ..TreeSpec::default() };
+            let old = tree(&spec);
+            let young = tree(&TreeSpec { age: Some(old.skeleton.age() / 2), ..spec });
+            assert!(young.skeleton.len() < old.skeleton.len() && !young.plant.axes.is_empty());
+            assert!(young.plant.nodes.radius_m[0] < old.plant.nodes.radius_m[0]);
+        }
+    }
+
+    #[test]
+    fn specs_are_read_back_from_their_file_form() {
+        for method in methods() {
+            let spec = TreeSpec { method, ..TreeSpec::default() };
+            let text = serde_json::to_string(&spec).expect("plain data");
+            assert_eq!(serde_json::from_str::<TreeSpec>(&text).ok(), Some(spec), "{text}");
+        }
+        let few = r#"{"method": {"kind": "competition", "points": 100}, "roots": [[0, 0, 0], [3, 0, 0]]}"#;
+        assert_eq!(serde_json::from_str::<TreeSpec>(few).map(|s| s.roots.len()).ok(), Some(2));
+    }
+}

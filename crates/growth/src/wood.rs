@@ -1,0 +1,410 @@
+//! Skeleton -> plant: axes with orders, smooth courses and radii.
+//!
+//! `Skeleton -> main child of each joint -> axes -> C1 Bezier -> pipe radii -> Plant`
+
+use base::ops;
+use base::{Cancelled, Run, Seed};
+use glam::DVec3;
+use plant::{AxisKind, NodeId, Plant};
+use serde::{Deserialize, Serialize};
+
+use crate::error::within;
+use crate::{GrowthError, JointId, Obstacles, Skeleton};
+
+/// How a skeleton becomes wood.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct WoodSpec {
+    /// Exponent t of `r^t = sum of r_i^t` (paper 001, Eq 4), 1 to 4, default 2.4; trees are measured at 1.8 to 2.6.
+    pub pipe_exponent: f64,
+    /// Radius of a tip, metres, above 0, default 0.004.
+    pub tip_radius_m: f64,
+    /// What every internode adds to the pipes, as a share of a tip's, 0 to 1, default 0.05. It makes shoots taper
+    /// between forks; 0 is Eq 4 to the letter.
+    pub internode_share: f64,
+    /// Radius at the foot of the thickest trunk, metres; what lies between it and the tips is stretched in
+    /// proportion. Default none: as the pipe model has it.
+    pub trunk_radius_m: Option<f64>,
+    /// Smooths courses to quadratic Bezier pieces that join with one tangent (Eq 3, C1 variant). Default true.
+    pub smooth: bool,
+    /// How often every joint is moved half-way to the one it grew from (Runions 2007, step e), 0 to 10: angles at
+    /// forks become acute and courses straighter; each time costs half an internode of size. Default 1.
+    pub relax: u32,
+    /// Joints that bear nothing are left out where this takes the course aside by less than this share of the radius,
+    /// 0 to 10, default 0.25.
+    pub thin_out: f64,
+}
+
+impl Default for WoodSpec {
+    fn default() -> Self {
+        Self {
+            pipe_exponent: 2.4,
+            tip_radius_m: 0.004,
+            internode_share: 0.05,
+            trunk_radius_m: None,
+            smooth: true,
+            relax: 1,
+            thin_out: 0.25,
+        }
+    }
+}
+
+/// A plant made of a skeleton.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wood {
+    /// Axes only; `validate()` finds nothing wrong with it.
+    pub plant: Plant,
+    /// The node of each joint; `None` for joints that were left out and for trees without a single internode.
+    pub node_of_joint: Vec<Option<NodeId>>,
+}
+
+/// Makes a plant of a skeleton.
+///
+/// The child with most wood above it, turned least, continues an axis; the others start axes of the next order.
+/// Radii follow the pipe model, except where the skeleton has its own (`radius_m` above 0). Guaranteed: a clean
+/// `validate()`; joints outside obstacles stay outside; an axis's key depends on where it starts and on its
+/// bearer's alone. Cost: n log n in joints at most.
+///
+/// # Errors
+/// [`GrowthError::Field`], [`GrowthError::Cancelled`].
+///
+/// ```
+/// use base::Run;
+/// use glam::DVec3;
+/// use growth::{Obstacles, Skeleton, WoodSpec, make_wood};
+/// let mut s = Skeleton::default();
+/// let root = s.push_root(DVec3::ZERO, 0);
+/// let fork = s.push(DVec3::Y, root, 1);
+/// s.push(DVec3::new(0.5, 2.0, 0.0), fork, 2);
+/// s.push(DVec3::new(-0.1, 2.0, 0.0), fork, 2);
+/// let spec = WoodSpec { pipe_exponent: 2.0, internode_share: 0.0, ..WoodSpec::default() };
+/// let wood = make_wood(&s, &spec, &Obstacles::none(), &Run::plain())?;
+/// assert_eq!(wood.plant.axes.len(), 2);
+/// assert!((wood.plant.nodes.radius_m[0] - 0.004 * 2_f64.sqrt()).abs() < 1e-12);
+/// # Ok::<(), growth::GrowthError>(())
+/// ```
+pub fn make_wood(
+    skeleton: &Skeleton,
+    spec: &WoodSpec,
+    obstacles: &Obstacles,
+    run: &Run<'_>,
+) -> Result<Wood, GrowthError> {
+    within("pipe_exponent", spec.pipe_exponent, 1.0, 4.0, "1 to 4")?;
+    within("tip_radius_m", spec.tip_radius_m, 1e-6, 10.0, "above 0 and at most 10 m")?;
+    within("internode_share", spec.internode_share, 0.0, 1.0, "0 to 1")?;
+    within("thin_out", spec.thin_out, 0.0, 10.0, "0 to 10")?;
+    if let Some(r) = spec.trunk_radius_m {
+        within("trunk_radius_m", r, spec.tip_radius_m, 100.0, "the tips' radius to 100 m")?;
+    }
+    within("relax", f64::from(spec.relax), 0.0, 10.0, "0 to 10")?;
+    let radius = radii(skeleton, spec);
+    let relaxed = relax(skeleton, spec.relax, obstacles);
+    let skeleton = &relaxed;
+    run.cancel.check()?;
+    let main = main_children(skeleton, &radius);
+    let wood = axes(skeleton, &main, &radius, spec, obstacles, run)?;
+    debug_assert_eq!(wood.plant.validate().next(), None, "wood is sound");
+    Ok(wood)
+}
+
+/// Eq 4 from the tips down; a radius that the skeleton brings along holds.
+fn radii(skeleton: &Skeleton, spec: &WoodSpec) -> Vec<f64> {
+    let t = spec.pipe_exponent;
+    let tip = ops::powf(spec.tip_radius_m, t);
+    let mut pipes = vec![0.0; skeleton.len()];
+    for j in (0..skeleton.len()).rev() {
+        let is_tip = pipes[j] <= 0.0;
+        pipes[j] += if is_tip { tip } else { tip * spec.internode_share };
+        let own = skeleton.radius_m[j];
+        if own > 0.0 {
+            pipes[j] = ops::powf(own, t);
+        }
+        // The foot of a tree is as thick as what stands on it.
+        if let Some(p) = skeleton.parent[j] {
+            pipes[p.index()] += pipes[j];
+        }
+    }
+    let mut radius: Vec<f64> = pipes.iter().map(|p| ops::powf(*p, 1.0 / t)).collect();
+    let thickest = radius.iter().copied().fold(0.0, f64::max);
+    if let Some(wanted) = spec.trunk_radius_m.filter(|_| thickest > spec.tip_radius_m * 1.0001) {
+        let stretch = (wanted - spec.tip_radius_m) / (thickest - spec.tip_radius_m);
+        for r in &mut radius {
+            *r = (spec.tip_radius_m + (*r - spec.tip_radius_m) * stretch).max(0.1 * spec.tip_radius_m);
+        }
+    }
+    radius
+}
+
+/// Moves joints half-way to the ones they grew from, unless that leads into an obstacle.
+fn relax(skeleton: &Skeleton, times: u32, obstacles: &Obstacles) -> Skeleton {
+    let mut relaxed = skeleton.clone();
+    for _ in 0..times {
+        // Parents come first: from the end on, each still has its old place when its children look.
+        for j in (0..relaxed.len()).rev() {
+            let Some(p) = relaxed.parent[j] else { continue };
+            let middle = (relaxed.position[j] + relaxed.position[p.index()]) * 0.5;
+            if obstacles.is_empty() || obstacles.free(middle) {
+                relaxed.position[j] = middle;
+            }
+        }
+    }
+    relaxed
+}
+
+/// The child that continues each joint's axis.
+fn main_children(skeleton: &Skeleton, radius: &[f64]) -> Vec<Option<JointId>> {
+    let mut main: Vec<Option<JointId>> = vec![None; skeleton.len()];
+    let mut best = vec![f64::NEG_INFINITY; skeleton.len()];
+    for (j, thickness) in radius.iter().enumerate() {
+        let Some(p) = skeleton.parent[j] else { continue };
+        let id = JointId::new(j);
+        let turn = skeleton.heading(id).dot(skeleton.heading(p));
+        // A straight child of two thirds of the radius wins over a thick one at right angles.
+        let score = thickness * (2.0 + turn);
+        if score > best[p.index()] {
+            best[p.index()] = score;
+            main[p.index()] = Some(id);
+        }
+    }
+    main
+}
+
+/// One axis to be made: its first joint beyond the bearer, and where the bearer is.
+struct Start {
+    joint: usize,
+    key: u64,
+}
+
+fn axes(
+    skeleton: &Skeleton,
+    main: &[Option<JointId>],
+    radius: &[f64],
+    spec: &WoodSpec,
+    obstacles: &Obstacles,
+    run: &Run<'_>,
+) -> Result<Wood, Cancelled> {
+    let mut plant = Plant::default();
+    let mut node_of_joint: Vec<Option<NodeId>> = vec![None; skeleton.len()];
+    // Children of each joint that start axes, in order.
+    let mut starts: Vec<Start> = Vec::new();
+    let mut side: Vec<Vec<u32>> = vec![Vec::new(); skeleton.len()];
+    for j in 0..skeleton.len() {
+        match skeleton.parent[j] {
+            None => {
+                starts.push(Start { joint: j, key: Seed::new(u64::from(skeleton.tree[j])).child(1).number() })
+            }
+            Some(p) if main[p.index()] != Some(JointId::new(j)) => {
+                side[p.index()].push(JointId::new(j).raw())
+            }
+            Some(_) => {}
+        }
+    }
+    let (mut chain, mut points, mut kept) = (Vec::new(), Vec::new(), Vec::new());
+    let mut next = 0;
+    while next < starts.len() {
+        if next % 256 == 0 {
+            run.cancel.check()?;
+        }
+        let Start { joint, key } = starts[next];
+        next += 1;
+        chain.clear();
+        chain.extend(skeleton.parent[joint].map(JointId::index));
+        let mut at = Some(joint);
+        while let Some(j) = at {
+            chain.push(j);
+            at = main[j].map(JointId::index);
+        }
+        if chain.len() < 2 {
+            continue;
+        }
+        let bearer = skeleton.parent[joint].and_then(|p| node_of_joint[p.index()]);
+        if skeleton.parent[joint].is_some() && bearer.is_none() {
+            continue;
+        }
+        course(skeleton, &chain, spec.smooth, obstacles, &mut points);
+        if let Some(b) = bearer {
+            points[0] = plant.nodes.position[b.index()];
+        }
+        let bears = |i: usize| !side[chain[i]].is_empty();
+        thin_out(&chain, &points, radius, spec.thin_out, bears, &mut kept);
+        let line: Vec<DVec3> = kept.iter().map(|&i| points[i]).collect();
+        let id = plant.add_axis(AxisKind::Branch, bearer, key, &line, None);
+        for (node, &i) in plant.axis(id).node_ids().zip(&kept) {
+            // A borne axis starts with its own radius, not with its bearer's.
+            let own = if i == 0 && bearer.is_some() { chain[1] } else { chain[i] };
+            plant.nodes.radius_m[node.index()] = radius[own];
+            if i > 0 || bearer.is_none() {
+                node_of_joint[chain[i]] = Some(node);
+            }
+        }
+        for &j in &chain[usize::from(bearer.is_some())..] {
+            for &s in &side[j] {
+                let p = skeleton.position[s as usize];
+                let place = p.x.to_bits() ^ p.y.to_bits().rotate_left(21) ^ p.z.to_bits().rotate_left(42);
+                starts.push(Start { joint: s as usize, key: Seed::new(key).child(place).number() });
+            }
+        }
+    }
+    Ok(Wood { plant, node_of_joint })
+}
+
+/// Positions along a chain of joints. Smooth: the middle of each Bezier piece, whose ends are the middles of the
+/// internodes and whose control point is the joint (Eq 3 with P0 = (M0 + M1) / 2, P1 = M1, P2 = (M1 + M2) / 2).
+fn course(
+    skeleton: &Skeleton,
+    chain: &[usize],
+    smooth: bool,
+    obstacles: &Obstacles,
+    points: &mut Vec<DVec3>,
+) {
+    let at = |i: usize| skeleton.position[chain[i]];
+    points.clear();
+    for i in 0..chain.len() {
+        let here = at(i);
+        let inner = smooth && i > 0 && i + 1 < chain.len();
+        let middle = if inner { (at(i - 1) + here * 6.0 + at(i + 1)) / 8.0 } else { here };
+        // What was steered around a corner must not be smoothed into it.
+        let open = obstacles.is_empty() || obstacles.free(middle);
+        points.push(if open { middle } else { here });
+    }
+}
+
+/// Leaves out joints that bear nothing and hardly bend the course.
+fn thin_out(
+    chain: &[usize],
+    points: &[DVec3],
+    radius: &[f64],
+    share: f64,
+    bears: impl Fn(usize) -> bool,
+    kept: &mut Vec<usize>,
+) {
+    kept.clear();
+    kept.push(0);
+    let mut last = 0;
+    let end = points.len() - 1;
+    for i in 1..end {
+        let (a, b) = (points[last], points[i + 1]);
+        let d = (b - a).normalize_or_zero();
+        let aside = |p: DVec3| (p - a - d * (p - a).dot(d)).length();
+        // Eight at a time: a long straight trunk still gets a node now and then.
+        let straight = i - last < 8 && (last + 1..=i).all(|k| aside(points[k]) < share * radius[chain[k]]);
+        let thins = (radius[chain[i + 1]] / radius[chain[last.max(1)]]) < 0.7;
+        if bears(i) || !straight || thins {
+            kept.push(i);
+            last = i;
+        }
+    }
+    kept.push(end);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{CompetitionSpec, Obstacle, compete};
+    use base::Report;
+
+    fn oak(obstacles: &Obstacles) -> Skeleton {
+        let run = Run::plain();
+        let spec = CompetitionSpec { points: 600, ..CompetitionSpec::default() };
+        compete(&[DVec3::ZERO], obstacles, &spec, Seed::new(1), &run, &mut Report::default())
+            .expect("sound")
+            .skeleton
+    }
+
+    #[test]
+    fn eq_4_holds_at_every_fork_of_the_plant() {
+        let s = oak(&Obstacles::none());
+        for t in [2.0, 2.4, 3.0] {
+            let spec =
+                WoodSpec { pipe_exponent: t, internode_share: 0.0, thin_out: 0.0, ..WoodSpec::default() };
+            let wood = make_wood(&s, &spec, &Obstacles::none(), &Run::plain()).expect("sound");
+            let p = &wood.plant;
+            let power = |r: f64| ops::powf(r, t);
+            let mut forks = 0;
+            for a in &p.axes {
+                let rows: Vec<usize> = a.node_ids().map(NodeId::index).collect();
+                for w in rows.windows(2).skip(1) {
+                    let side: f64 = p
+                        .axes
+                        .iter()
+                        .filter(|b| b.bearer.is_some_and(|n| n.index() == w[0]))
+                        .map(|b| power(p.nodes.radius_m[b.nodes.start as usize]))
+                        .sum();
+                    let (below, above) = (power(p.nodes.radius_m[w[0]]), power(p.nodes.radius_m[w[1]]));
+                    assert!((below - above - side).abs() < 1e-9 * below, "{t}");
+                    forks += usize::from(side > 0.0);
+                }
+            }
+            assert!(forks > 50, "{forks}");
+        }
+    }
+
+    #[test]
+    fn every_joint_that_forks_or_ends_is_a_node() {
+        let s = oak(&Obstacles::none());
+        let wood = make_wood(&s, &WoodSpec::default(), &Obstacles::none(), &Run::plain()).expect("sound");
+        let children = s.children();
+        for (j, c) in children.iter().enumerate() {
+            if *c != 1 {
+                assert!(wood.node_of_joint[j].is_some(), "{j}");
+            }
+        }
+        let p = &wood.plant;
+        assert_eq!(p.validate().count(), 0);
+        let tips = children.iter().filter(|&&c| c == 0).count();
+        assert_eq!(p.axes.len(), tips, "an axis for each tip");
+        assert!(p.nodes.position.len() < s.len() + p.axes.len());
+        assert!(p.axes.iter().map(|a| a.order).max() > Some(2));
+        let keys: std::collections::BTreeSet<u64> = p.axes.iter().map(|a| a.key).collect();
+        assert_eq!(keys.len(), p.axes.len());
+    }
+
+    #[test]
+    fn pruning_one_branch_leaves_the_keys_of_others() {
+        let s = oak(&Obstacles::none());
+        let spec = WoodSpec { smooth: false, relax: 0, ..WoodSpec::default() };
+        let keys = |s: &Skeleton| -> std::collections::BTreeSet<u64> {
+            let wood = make_wood(s, &spec, &Obstacles::none(), &Run::plain()).expect("sound");
+            wood.plant.axes.iter().map(|a| a.key).collect()
+        };
+        let last_tip = JointId::new(s.len() - 1);
+        let (all, cut) = (keys(&s), keys(&s.prune(last_tip)));
+        assert!(cut.difference(&all).count() <= 2, "{}", cut.difference(&all).count());
+    }
+
+    #[test]
+    fn smoothing_softens_the_turns_and_keeps_out_of_obstacles() {
+        let rock = Obstacle::Box { min: DVec3::new(0.5, 2.5, -1.0), max: DVec3::new(1.5, 4.5, 1.0) };
+        let obstacles = Obstacles::new(&[rock], 0.03).expect("sound");
+        let s = oak(&obstacles);
+        let turn = |smooth: bool| {
+            let relax = u32::from(smooth);
+            let spec = WoodSpec { smooth, relax, thin_out: 0.0, ..WoodSpec::default() };
+            let p = make_wood(&s, &spec, &obstacles, &Run::plain()).expect("sound").plant;
+            assert!(p.nodes.position.iter().all(|&q| obstacles.inside(q).is_none()));
+            let axes = (0..p.axes.len()).map(plant::AxisId::new);
+            let turns = axes.flat_map(|a| {
+                let points = p.axis_points(a);
+                let turn = |w: &[DVec3]| (w[1] - w[0]).angle_between(w[2] - w[1]);
+                points.windows(3).map(turn).collect::<Vec<_>>()
+            });
+            let turns: Vec<f64> = turns.collect();
+            turns.iter().sum::<f64>() / turns.len() as f64
+        };
+        assert!(turn(true) < 0.85 * turn(false), "{} {}", turn(true), turn(false));
+    }
+
+    #[test]
+    fn a_trunk_as_thick_as_asked_for_and_a_root_alone() {
+        let s = oak(&Obstacles::none());
+        let spec = WoodSpec { trunk_radius_m: Some(0.3), ..WoodSpec::default() };
+        let p = make_wood(&s, &spec, &Obstacles::none(), &Run::plain()).expect("sound").plant;
+        assert!((p.nodes.radius_m[0] - 0.3).abs() < 1e-9);
+        let thinnest = p.nodes.radius_m.iter().copied().fold(1.0, f64::min);
+        assert!((thinnest - 0.004).abs() < 1e-9, "{thinnest}");
+        let mut alone = Skeleton::default();
+        alone.push_root(DVec3::ZERO, 0);
+        let p = make_wood(&alone, &spec, &Obstacles::none(), &Run::plain()).expect("sound").plant;
+        assert!(p.axes.is_empty() && p.validate().count() == 0);
+    }
+}
