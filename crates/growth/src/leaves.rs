@@ -152,7 +152,7 @@ struct Candidate {
 /// let spec = LeafSpec { leaf_keep: 0.5, ..LeafSpec::default() };
 /// let (run, none) = (Run::plain(), Obstacles::none());
 /// let n = add_leaves(&mut plant, &spec, spec.blade(), &[], &none, Seed::new(1), &run, &mut Report::default())?;
-/// assert_eq!((n.placed, n.kept, plant.organs.len()), (16, 8, 8));
+/// assert_eq!((n.placed, n.kept, plant.organs.len()), (17, 9, 9));
 /// # Ok::<(), growth::GrowthError>(())
 /// ```
 #[expect(clippy::too_many_arguments, reason = "what, where, around what, and how; all are different things")]
