@@ -17,6 +17,7 @@
 //! # Ok::<(), burgeon::MakeError>(())
 //! ```
 
+mod evaluate;
 mod make;
 mod report;
 
@@ -24,12 +25,13 @@ pub use base::{
     Angle, CancelToken, Cancelled, Clock, Digest, Executor, NoClock, Report, Run, Seed, Serial, Unit, UpAxis,
     Warning, map_indexed,
 };
+pub use evaluate::{Evaluator, FrontView};
 pub use make::{ClassOverrides, Made, MakeError, SketchOptions, make_from_sketch};
 pub use report::{
     Counts, Fidelity, InputReport, ItemReport, REPORT_SCHEMA, RunReport, StrokeReport, TimingsMs,
 };
 
-pub use {formats, geom, glam, mesh, plant, render, sketch, skin};
+pub use {document, formats, geom, glam, mesh, plant, render, sketch, skin};
 
 /// The version that is written into reports and files.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
