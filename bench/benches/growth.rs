@@ -64,7 +64,7 @@ fn scaling() {
         let grown = grown.unwrap();
         let lost = grown.fates.iter().filter(|f| **f == Fate::Unreached).count();
         println!("{n:7} {best:8.2} {:8} {:7} {lost:8}", grown.skeleton.len(), grown.rounds);
-        logs.push(((n as f64).ln(), best.ln()));
+        logs.push((base::ops::ln(n as f64), base::ops::ln(best)));
     }
     let k = logs.len() as f64;
     let (mx, my) = (logs.iter().map(|l| l.0).sum::<f64>() / k, logs.iter().map(|l| l.1).sum::<f64>() / k);

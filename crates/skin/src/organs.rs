@@ -114,9 +114,20 @@ impl Ground {
         for b in plant.name.bytes() {
             key = key.child(u64::from(b));
         }
-        let n = key.stream(Draw::Tint).below(PetalColor::ALL.len());
+        // Many rays round a disc are a daisy's or a sunflower's, which are never blue or red.
+        const RAYS: [PetalColor; 4] =
+            [PetalColor::Yellow, PetalColor::White, PetalColor::Orange, PetalColor::Yellow];
+        let of_kind = |kind| plant.organs.iter().filter(|o| o.kind == kind).count();
+        let rays =
+            of_kind(OrganKind::Disc) > 0 && of_kind(OrganKind::Petal) >= 9 * plant.flowers.len().max(1);
+        let mut tint = key.stream(Draw::Tint);
+        let chosen = if rays {
+            RAYS[tint.below(RAYS.len())]
+        } else {
+            PetalColor::ALL[tint.below(PetalColor::ALL.len())]
+        };
         Self {
-            petals: spec.petals.unwrap_or(PetalColor::ALL[n]),
+            petals: spec.petals.unwrap_or(chosen),
             // A cactus pad is a good part of its plant; an apple is not.
             body_from: budget.size() * if thorny { 0.12 } else { 0.4 },
             fine_strands: strands <= 40,
