@@ -3,6 +3,8 @@
 use core::fmt;
 use std::io;
 
+use base::Report;
+
 use crate::{CloudFormat, DrawingFormat, ModelFormat};
 
 /// Where in a file something is.
@@ -91,10 +93,13 @@ pub enum FileFault {
         advice: &'static str,
     },
     /// There is not one stroke.
-    #[error("there is no stroke in it; draw lines, paths or shapes that are visible")]
-    NoStrokes,
+    #[error("there is no stroke in it{because}; draw lines, paths or shapes that are visible")]
+    NoStrokes {
+        /// What there was instead, in brackets; may be empty.
+        because: String,
+    },
     /// The bytes are not UTF-8 text.
-    #[error("after {after} bytes the text is not UTF-8; save it again with that encoding")]
+    #[error("after {after} bytes the text is not UTF-8; save it again as UTF-8")]
     NotUtf8 {
         /// Good bytes before.
         after: u64,
@@ -105,6 +110,13 @@ pub enum FileFault {
 }
 
 impl FileFault {
+    /// [`Self::NoStrokes`] for the reasons that its reader gave.
+    pub(crate) fn no_strokes(report: &Report) -> Self {
+        let reasons: Vec<&str> = report.warnings.iter().take(3).map(|w| w.message.as_str()).collect();
+        let because = if reasons.is_empty() { String::new() } else { format!(" ({})", reasons.join("; ")) };
+        Self::NoStrokes { because }
+    }
+
     pub(crate) fn malformed(what: impl Into<String>, advice: &'static str) -> Self {
         Self::Malformed { what: what.into(), advice }
     }

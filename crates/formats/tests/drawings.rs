@@ -161,3 +161,73 @@ fn real_drawings_are_read() {
     }
     assert_eq!(counts, [138, 1446], "every drawing");
 }
+
+/// Gives one good line, then fails for ever.
+struct Failing(Vec<u8>);
+
+impl std::io::Read for Failing {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        if self.0.is_empty() {
+            return Err(std::io::Error::other("the disk is gone"));
+        }
+        let n = buffer.len().min(self.0.len());
+        buffer[..n].copy_from_slice(&self.0[..n]);
+        self.0.drain(..n);
+        Ok(n)
+    }
+}
+
+#[test]
+fn an_input_that_fails_ends() {
+    let line = b"{\"word\":\"a\",\"drawing\":[[[1,2],[3,4]]]}\n{\"word\":".to_vec();
+    let input = std::io::BufReader::new(Failing(line));
+    let got: Vec<_> = read_drawings(input, DrawingFormat::Ndjson, "x").take(10).collect();
+    assert_eq!(got.len(), 2, "{got:?}");
+    assert!(got[0].is_ok() && got[1].as_ref().is_err_and(|e| e.to_string().contains("the disk is gone")));
+}
+
+#[test]
+fn why_there_is_no_stroke_is_told() {
+    for (body, part) in [
+        ("<path stroke='red' display='none' d='M0 0L1 1'/>", "left out: hidden (1)"),
+        ("<path stroke='red' d='MNaN 0L1 1'/>", "`d` is broken"),
+        ("<text>leaf</text>", "left out: text (1)"),
+    ] {
+        let text = format!("<svg xmlns='http://www.w3.org/2000/svg'>{body}</svg>");
+        let message = error(text.as_bytes(), DrawingFormat::Svg);
+        assert!(message.contains("no stroke") && message.contains(part), "{body}: {message}");
+    }
+    let nan = br#"{"burgeon":"drawing/1","strokes":[{"points":[[NaN,1],[2,3]]}]}"#;
+    let message = error(nan, DrawingFormat::Json);
+    assert!(
+        message.contains("column 47") && message.contains("NaN") && message.contains("leave"),
+        "{message}"
+    );
+}
+
+#[test]
+fn latin_1_is_read_where_xml_says_so() {
+    let body =
+        "<svg xmlns='http://www.w3.org/2000/svg'><path id='Bl\u{fc}te' stroke='red' d='M0 0L1 1'/></svg>";
+    let bytes = |text: &str| text.chars().map(|c| u8::try_from(c).expect("Latin-1")).collect::<Vec<u8>>();
+    let said = bytes(&format!("<?xml version='1.0' encoding='ISO-8859-1'?>{body}"));
+    let read = all(&said, DrawingFormat::Svg).remove(0).expect("reads");
+    assert_eq!(read.drawing.strokes[0].id.as_deref(), Some("Bl\u{fc}te"));
+    let message = error(&bytes(body), DrawingFormat::Svg);
+    assert!(message.contains("save it again as UTF-8"), "{message}");
+}
+
+/// Found by fuzzing: four kilobytes that become a million elements.
+#[test]
+fn nested_use_ends_soon() {
+    let mut text =
+        String::from("<svg xmlns='http://www.w3.org/2000/svg'><path id='u0' stroke='red' d='M0 0L1 1'/>");
+    for i in 1..14 {
+        let inner = format!("<use href='#u{}'/>", i - 1).repeat(10);
+        text += &format!("<g id='u{i}'>{inner}</g>");
+    }
+    let start = std::time::Instant::now();
+    let message = error((text + "</svg>").as_bytes(), DrawingFormat::Svg);
+    assert!(message.contains("after expanding `use`"), "{message}");
+    assert!(start.elapsed().as_secs() < 5, "{:?}", start.elapsed());
+}

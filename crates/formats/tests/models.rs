@@ -314,3 +314,13 @@ fn a_real_scan_is_read() {
     assert!(m.vertex_count() > 10_000, "{}", m.vertex_count());
     assert!(m.bounds().size().min_element() > 0.0);
 }
+
+/// Found by fuzzing: the squares of these normals are beyond f32.
+#[test]
+fn tiny_and_huge_normals_become_units() {
+    for n in ["1e-23 0 0", "1e-42 2e-42 0", "1e30 -1e30 0", "3e38 3e38 3e38", "0 0 0"] {
+        let text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn {n}\nf 1//1 2//1 3//1\n");
+        let read = read(text.as_bytes(), ModelFormat::Obj, &ExportSpec::default());
+        assert_eq!(read.validate().next(), None, "{n}");
+    }
+}

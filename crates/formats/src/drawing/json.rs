@@ -53,6 +53,12 @@ pub(super) fn error_at(format: DrawingFormat, line: usize, e: &serde_json::Error
     let what = message.rsplit_once(" at line ").map_or(message.as_str(), |(head, _)| head).to_owned();
     let fault = if e.is_eof() {
         FileFault::Truncated { inside: "a JSON value".into() }
+    } else if e.is_syntax() && what.starts_with("expected value") {
+        // The commonest way to get here: a program that writes its not-a-number as it is.
+        FileFault::malformed(
+            format!("{what} (NaN and Infinity are none in JSON)"),
+            "leave such points out or mend the file there",
+        )
     } else {
         FileFault::malformed(what, "see docs/drawings.md for the form of this file")
     };

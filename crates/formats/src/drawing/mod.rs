@@ -168,12 +168,20 @@ fn read_one(input: impl Read, format: DrawingFormat, name: &str) -> Result<ReadD
         DrawingFormat::Ndjson => quickdraw::read_line(&text, 1, name, &mut report)?,
     };
     if drawing.strokes.is_empty() {
-        return Err(file(FileFault::NoStrokes));
+        return Err(file(FileFault::no_strokes(&report)));
     }
     Ok(ReadDrawing { drawing, warnings: report.warnings })
 }
 
-/// Text from UTF-8 (a byte order mark is dropped) or UTF-16 with a byte order mark.
+/// The XML declaration names the encoding of older drawing programs, whose bytes are the first 256 characters.
+fn says_latin1(bytes: &[u8]) -> bool {
+    let head = String::from_utf8_lossy(&bytes[..bytes.len().min(200)]).to_ascii_lowercase();
+    let declaration = head.split("?>").next().unwrap_or_default();
+    declaration.starts_with("<?xml")
+        && ["iso-8859-1", "windows-1252", "latin1"].iter().any(|name| declaration.contains(name))
+}
+
+/// Text from UTF-8 (a byte order mark is dropped), UTF-16 with a byte order mark, or Latin-1 where XML says so.
 fn text_of(bytes: Vec<u8>) -> Result<String, FileFault> {
     let utf16 = |big: bool| {
         let units = bytes[2..].chunks_exact(2).map(|b| {
@@ -188,6 +196,9 @@ fn text_of(bytes: Vec<u8>) -> Result<String, FileFault> {
         Some([0xff, 0xfe]) => return utf16(false),
         Some([0xfe, 0xff]) => return utf16(true),
         _ => {}
+    }
+    if says_latin1(&bytes) && std::str::from_utf8(&bytes).is_err() {
+        return Ok(bytes.into_iter().map(char::from).collect());
     }
     let mut text = String::from_utf8(bytes)
         .map_err(|e| FileFault::NotUtf8 { after: e.utf8_error().valid_up_to() as u64 })?;

@@ -39,21 +39,29 @@ pub(super) struct Lines<R> {
     name: String,
     line: usize,
     drawings: usize,
+    /// Reading failed: what follows would fail for ever.
+    broken: bool,
 }
 
 impl<R: BufRead> Lines<R> {
     pub(super) fn new(input: R, name: String) -> Self {
-        Self { input, name, line: 0, drawings: 0 }
+        Self { input, name, line: 0, drawings: 0, broken: false }
     }
 
     pub(super) fn next(&mut self) -> Option<Result<ReadDrawing, DrawingError>> {
+        if self.broken {
+            return None;
+        }
         loop {
             let mut bytes = Vec::new();
             let read = self.input.by_ref().take(MAX_DRAWING_BYTES).read_until(b'\n', &mut bytes);
             self.line += 1;
             let fail = |line, fault| Some(Err(DrawingError::new(FORMAT, Place::line(line), fault)));
             match read {
-                Err(e) => return fail(self.line, FileFault::Io(e)),
+                Err(e) => {
+                    self.broken = true;
+                    return fail(self.line, FileFault::Io(e));
+                }
                 Ok(0) if self.drawings == 0 => {
                     self.drawings = 1;
                     return Some(Err(DrawingError::new(FORMAT, Place::File, FileFault::Empty)));
@@ -64,7 +72,10 @@ impl<R: BufRead> Lines<R> {
             if bytes.len() as u64 == MAX_DRAWING_BYTES && bytes.last() != Some(&b'\n') {
                 self.drawings += 1;
                 return match self.skip_line() {
-                    Err(e) => fail(self.line, FileFault::Io(e)),
+                    Err(e) => {
+                        self.broken = true;
+                        fail(self.line, FileFault::Io(e))
+                    }
                     Ok(()) => fail(
                         self.line,
                         FileFault::TooMuch {
@@ -87,7 +98,7 @@ impl<R: BufRead> Lines<R> {
             let mut report = Report::default();
             return Some(read_line(&text, self.line, &fallback, &mut report).and_then(|drawing| {
                 if drawing.strokes.is_empty() {
-                    Err(DrawingError::new(FORMAT, Place::line(self.line), FileFault::NoStrokes))
+                    Err(DrawingError::new(FORMAT, Place::line(self.line), FileFault::no_strokes(&report)))
                 } else {
                     Ok(ReadDrawing { drawing, warnings: report.warnings })
                 }

@@ -15,6 +15,7 @@ mod stl;
 use std::io::{Read, Write};
 
 use base::Report;
+use glam::DVec3;
 use mesh::{MaterialKind, Model};
 
 pub use axes::ExportSpec;
@@ -208,11 +209,13 @@ pub(crate) fn check(model: &Model) -> Result<(), WriteError> {
 
 /// A unit normal in any case: glTF's validator and lighting demand it.
 pub(crate) fn unit(n: [f32; 3]) -> [f32; 3] {
-    let length = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt();
+    // In f64: the squares of 1e-23 and of 1e20 are beyond f32.
+    let wide = DVec3::from(n.map(f64::from));
+    let length = wide.length();
     if (length - 1.0).abs() < 1e-4 {
         n
     } else if length > 0.0 && length.is_finite() {
-        n.map(|x| x / length)
+        (wide / length).as_vec3().to_array()
     } else {
         [0.0, 1.0, 0.0]
     }

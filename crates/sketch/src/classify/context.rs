@@ -42,7 +42,7 @@ const TOUCH: f64 = 0.03;
 /// assert!((rows[0].gap - 1.0).abs() < 1e-9);
 /// ```
 pub fn features(ink: &Ink, run: &Run<'_>) -> Vec<StrokeFeatures> {
-    Scene::new(ink, run.executor).rows(run.executor)
+    Scene::new(ink, run.executor).rows(run)
 }
 
 /// With how many others each stroke is compared.
@@ -155,11 +155,14 @@ impl Scene {
         Self { shapes, rows, companions, size, ink: total, longest, body, amid }
     }
 
-    fn rows(mut self, executor: &dyn Executor) -> Vec<StrokeFeatures> {
+    fn rows(mut self, run: &Run<'_>) -> Vec<StrokeFeatures> {
         let mut rows = core::mem::take(&mut self.rows);
         let ranks = ranks(&self.shapes);
-        let alone = map_indexed(executor, rows.len(), |i| {
+        let alone = map_indexed(run.executor, rows.len(), |i| {
             let mut f = rows[i];
+            if run.cancel.check().is_err() {
+                return (Told { corners: f.corners, gap: f.gap, pair: 0.0, held: 0.0 }, f);
+            }
             self.place(i, ranks[i], &mut f);
             self.alike(i, &mut f);
             self.sides(i, &mut f);
@@ -169,8 +172,11 @@ impl Scene {
         });
         let mut told: Vec<Told>;
         (told, rows) = alone.into_iter().unzip();
-        let among = map_indexed(executor, rows.len(), |i| {
+        let among = map_indexed(run.executor, rows.len(), |i| {
             let mut f = rows[i];
+            if run.cancel.check().is_err() {
+                return (0.0, f);
+            }
             self.around(i, &told, &mut f);
             let held = self.holding(i, &told, &mut f);
             self.meeting(i, &told, &mut f);

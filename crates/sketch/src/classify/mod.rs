@@ -47,7 +47,7 @@ fn trained() -> Option<&'static StrokeModels> {
 ///
 /// One answer per stroke of `ink.strokes`, in its order, the same on every platform. Not guaranteed: that it is
 /// right (see `docs/strokes.md`); the user can override any class. About 0.1 ms a stroke in a
-/// sketch of 30; linear in strokes beyond 48.
+/// sketch of 30; linear in strokes beyond 48. A cancelled run ends soon, with classes that mean nothing.
 ///
 /// ```
 /// use glam::DVec2;
@@ -61,7 +61,10 @@ pub fn classify(ink: &Ink, run: &Run<'_>) -> Vec<Classified> {
     let rows = features(ink, run);
     // A test reads the models, so they are always there.
     let unknown = Classified { class: StrokeClass::Other, confidence: 0.0 };
-    map_indexed(run.executor, rows.len(), |i| trained().map_or(unknown, |m| m.decide(&rows[i])))
+    map_indexed(run.executor, rows.len(), |i| {
+        let model = trained().filter(|_| run.cancel.check().is_ok());
+        model.map_or(unknown, |m| m.decide(&rows[i]))
+    })
 }
 
 #[cfg(test)]

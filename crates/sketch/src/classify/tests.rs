@@ -179,3 +179,14 @@ fn petal_of_a_flower_is_closed_and_its_stem_a_line() {
     assert_eq!(found[0], "axis", "{found:?}");
     assert!(found[1..].iter().filter(|w| **w == "blade").count() >= 5, "{found:?}");
 }
+
+#[test]
+fn a_cancelled_run_judges_nothing() {
+    let line = |x: f64| (0..9).map(|i| DVec2::new(x, f64::from(i))).collect::<Vec<_>>();
+    let ink = clean(&Drawing::from_polylines("stems", &[line(0.0), line(5.0)]), &mut Report::default());
+    let cancel = base::CancelToken::new();
+    let run = Run { cancel: &cancel, ..Run::plain() };
+    assert!(classify(&ink, &run).iter().all(|c| c.confidence > 0.0));
+    cancel.cancel();
+    assert_eq!(classify(&ink, &run), [Classified { class: StrokeClass::Other, confidence: 0.0 }; 2]);
+}

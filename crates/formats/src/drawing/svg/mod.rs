@@ -25,7 +25,7 @@ const FORMAT: DrawingFormat = DrawingFormat::Svg;
 /// Deepest chain of `use` elements; drawing programs stay below 4.
 const MAX_USE: usize = 16;
 /// Most elements after all `use` are expanded.
-const MAX_ELEMENTS: usize = 500_000;
+const MAX_ELEMENTS: usize = 200_000;
 /// Most pieces of paths after all `use` are expanded.
 const MAX_PIECES: usize = 6_000_000;
 /// Most bytes of attributes after all `use` are expanded: each expansion reads them again.
