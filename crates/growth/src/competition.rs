@@ -90,11 +90,12 @@ impl CompetitionSpec {
             attraction_m: 0.9,
             kill_m: 0.5,
             lifespan: 2,
+            step_m: Some(0.1),
             joints_share: 1.0,
-            points_per_joint: 60,
+            points_per_joint: 260,
             ball_m: Some(2.2),
-            ball_height: 0.25,
-            tier_m: Some(0.55),
+            ball_height: 0.3,
+            tier_m: Some(0.5),
             ..Self::default()
         }
     }
@@ -136,12 +137,13 @@ impl CompetitionSpec {
             attraction_m: 1.0,
             kill_m: 0.4,
             lifespan: 3,
-            joints_share: 0.35,
-            points_per_joint: 40,
+            step_m: Some(0.12),
+            joints_share: 0.6,
+            points_per_joint: 45,
             ball_m: Some(1.9),
-            ball_height: 0.5,
-            tier_m: Some(0.45),
-            shrink: 0.7,
+            ball_height: 0.4,
+            tier_m: Some(0.4),
+            shrink: 0.6,
             tropisms: vec![Tropism { direction: DVec3::NEG_Y, strength: 0.15 }],
             ..Self::default()
         }
