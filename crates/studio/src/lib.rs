@@ -17,6 +17,7 @@
 //! # Ok::<(), burgeon::MakeError>(())
 //! ```
 
+mod leaves;
 mod make;
 mod report;
 
@@ -24,12 +25,16 @@ pub use base::{
     Angle, CancelToken, Cancelled, Clock, Digest, Executor, NoClock, Report, Run, Seed, Serial, Unit, UpAxis,
     Warning, map_indexed,
 };
+pub use leaves::{
+    FaceCounts, FitError, LeafError, LeafOptions, LeafReport, LeafTexture, MadeLeaf, ShootSpec, leaf_blade,
+    make_leaf, make_leaf_of, make_shoot,
+};
 pub use make::{ClassOverrides, Made, MakeError, SketchOptions, make_from_sketch};
 pub use report::{
     Counts, Fidelity, InputReport, ItemReport, REPORT_SCHEMA, RunReport, StrokeReport, TimingsMs,
 };
 
-pub use {formats, geom, glam, mesh, plant, render, sketch, skin};
+pub use {formats, geom, glam, leaf, mesh, plant, render, sketch, skin};
 
 /// The version that is written into reports and files.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

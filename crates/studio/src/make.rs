@@ -120,6 +120,7 @@ pub fn make_from_sketch(
         }),
         digest: plant.digest_hex(),
         warnings: report.warnings.iter().map(ToString::to_string).collect(),
+        ..ItemReport::default()
     };
     Ok(Made { reading, plant, model, item })
 }

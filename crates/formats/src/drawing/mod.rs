@@ -174,7 +174,7 @@ fn read_one(input: impl Read, format: DrawingFormat, name: &str) -> Result<ReadD
 }
 
 /// Text from UTF-8 (a byte order mark is dropped) or UTF-16 with a byte order mark.
-fn text_of(bytes: Vec<u8>) -> Result<String, FileFault> {
+pub(crate) fn text_of(bytes: Vec<u8>) -> Result<String, FileFault> {
     let utf16 = |big: bool| {
         let units = bytes[2..].chunks_exact(2).map(|b| {
             let pair = [b[0], b[1]];
