@@ -78,6 +78,9 @@ impl FlatLeaf {
     pub fn outline(&self) -> Vec<DVec2> {
         let (n, rows) = (self.columns, self.rows());
         let middle = n / 2;
+        if rows == 0 {
+            return Vec::new();
+        }
         let lowest = self.points[middle..n].iter();
         let right = (1..rows).map(|i| &self.points[i * n + n - 1]);
         // The tip is one point.

@@ -475,12 +475,17 @@ pub fn leaf_blade(leaf: &Leaf, marks: &FullMarks, length_m: f64) -> plant::Blade
     let midrib = flat.midrib();
     let length = midrib.last().map_or(1.0, |tip| tip.length()).max(f64::MIN_POSITIVE);
     let scale = length_m / length;
+    let mut outline = flat.outline();
+    if geom::self_crossings(&outline) > 0 {
+        // A folded or badly measured base overlaps itself when it is laid flat.
+        outline = geom::simple_outline(&outline).unwrap_or(outline);
+    }
     let scaled = |line: Vec<glam::DVec2>| line.into_iter().map(|p| p * scale).collect::<Vec<_>>();
     let mut relief = plant::Relief { keep_length: true, ..plant::Relief::default() };
     (relief.bend_a, relief.bend_b) = bend_of(marks);
     relief.fold = fold_of(marks);
     plant::Blade {
-        outline: scaled(flat.outline()),
+        outline: scaled(outline),
         midrib: scaled(midrib),
         veins: flat.side_veins().into_iter().map(scaled).collect(),
         lift: plant::Lift::Flat,

@@ -342,8 +342,8 @@ pub fn marks_template(rows: usize) -> String {
          # Look at the upper side with the tip up. Row 1 is the pair of side veins nearest to the tip, the last row\n\
          # the lowest pair. Each row has 7 marks at equal distances along its veins, from the right margin (1) over\n\
          # the midrib (4) to the left margin (7). The tip is marked once.\n\
-         # thickness: of the side vein at the mark; at mark 4 where it leaves the midrib. Enough: marks 1 and 4.\n\
-         # midrib: thickness of the midrib itself, at the tip and at mark 4 of each row.\n\
+         # Column thickness: of the side vein at the mark; at mark 4 where it leaves the midrib. Enough: marks 1 and 4.\n\
+         # Column midrib: thickness of the midrib itself, at the tip and at mark 4 of each row.\n\
          # A thickness that was not measured stays empty and is interpolated.\n\
          row,mark,x,y,z,thickness,midrib\n\
          tip,,,,,,\n",
