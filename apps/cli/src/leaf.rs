@@ -12,7 +12,7 @@ use burgeon::mesh::Model;
 use burgeon::{ItemReport, LeafError, LeafOptions, LeafTexture, Report, RunReport, Seed, ShootSpec};
 use clap::{Args, ValueEnum};
 
-use crate::args::{AxesArgs, CommonArgs, PictureArgs, above_zero, ranged};
+use crate::args::{AxesArgs, CommonArgs, PictureArgs, ranged};
 use crate::failure::{Failure, Outcome};
 use crate::machine::Machine;
 use crate::{files, output, picture, report, say};
@@ -129,10 +129,10 @@ pub(crate) struct PlantArgs {
     #[arg(long, conflicts_with = "days")]
     pub(crate) plant: bool,
     /// Number of leaves of the plant, 1 to 200.
-    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=200))]
+    #[arg(long, value_name = "N", default_value_t = 22, value_parser = clap::value_parser!(u32).range(1..=200))]
     pub(crate) leaves: u32,
-    /// Height of the plant's stem in metres, above 0 to 1000.
-    #[arg(long, value_name = "METRES", default_value_t = 1.3, value_parser = above_zero)]
+    /// Height of the plant's stem in metres, 0.01 to 1000.
+    #[arg(long, value_name = "METRES", default_value_t = 1.0, value_parser = |s: &str| ranged(s, 0.01, 1000.0))]
     pub(crate) height: f64,
     /// Angle between successive leaves in degrees, -360 to 360; 8 degrees of chance come to it.
     #[arg(long, value_name = "DEGREES", default_value_t = 137.0, allow_hyphen_values = true,

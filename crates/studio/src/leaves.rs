@@ -277,9 +277,9 @@ fn area(mesh: &TriMesh) -> f64 {
 /// A whole shoot of measured leaves (paper 004, section 3 and Fig 9).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShootSpec {
-    /// Number of leaves, 1 to 200. Default 20.
+    /// Number of leaves, 1 to 200. Default 22.
     pub leaves: u32,
-    /// Height of the stem, metres, above 0. Default 1.3.
+    /// Height of the stem, metres, above 0. Default 1.0.
     pub height_m: f64,
     /// Angle between successive leaves, degrees. Default 137, with 8 of deviation.
     pub azimuth_deg: f64,
@@ -289,7 +289,7 @@ pub struct ShootSpec {
 
 impl Default for ShootSpec {
     fn default() -> Self {
-        Self { leaves: 20, height_m: 1.3, azimuth_deg: 137.0, stem_radius_m: 0.014 }
+        Self { leaves: 22, height_m: 1.0, azimuth_deg: 137.0, stem_radius_m: 0.014 }
     }
 }
 
@@ -381,7 +381,7 @@ pub fn make_shoot(
 /// The stem as a ball curve from the ground up, a little unsteady.
 fn stem(spec: &ShootSpec, seed: Seed) -> Result<BallBSpline, SplineError> {
     let mut stream = seed.stream(Draw::Curl);
-    let height = if spec.height_m > 0.0 { spec.height_m.min(100.0) } else { 1.3 };
+    let height = if spec.height_m > 0.0 { spec.height_m.min(1000.0) } else { 1.0 };
     let radius = if spec.stem_radius_m > 0.0 { spec.stem_radius_m.min(0.2 * height) } else { 0.014 };
     let mut sway = DVec3::ZERO;
     let marks: Vec<Ball> = (0..=6)
@@ -401,7 +401,8 @@ fn stem_mesh(stem: &BallBSpline, sides: usize) -> TriMesh {
     let tube = stem.tube(&at, &TubeSpec { sides, cap: EndCap::Round(4), ..TubeSpec::default() });
     let mut mesh = TriMesh::default();
     tube.positions.iter().for_each(|&p| {
-        mesh.push(p);
+        // The lower end stands flat on the ground.
+        mesh.push(DVec3::new(p.x, p.y.max(0.0), p.z));
     });
     mesh.triangles.extend(tube.quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]));
     mesh.triangles.extend(&tube.triangles);
@@ -423,8 +424,8 @@ impl Place {
     fn new(k: usize, count: u32, spec: &ShootSpec, stem: &BallBSpline, seed: Seed) -> Self {
         let key = seed.child(k as u64);
         let t = if count > 1 { k as f64 / f64::from(count - 1) } else { 0.5 };
-        // Internodes shorten towards the top: 6 % of the height below the first leaf.
-        let height = 0.06 + 0.93 * (1.0 - (1.0 - t) * (1.0 - 0.35 * t)).clamp(0.0, 1.0);
+        // Internodes shorten towards the top, where the youngest leaves crowd: 5 % of the height are bare.
+        let height = 0.05 + 0.95 * (1.0 - ops::powf(1.0 - t, 1.7));
         let ball = stem.ball(height);
         let noise = key.stream(Draw::Phyllotaxis).normal().clamp(-2.5, 2.5) * 8.0;
         let azimuth = (spec.azimuth_deg * k as f64 + noise) * (ops::PI / 180.0);
@@ -433,7 +434,7 @@ impl Place {
         let tilt = (-10.0 + 55.0 * t * t + 5.0 * angle.normal().clamp(-2.0, 2.0)) * (ops::PI / 180.0);
         let mut size = key.stream(Draw::Size);
         // The largest leaves stand a third of the way up (tobacco), the youngest are a third as long.
-        let grown = 0.78 + 0.22 * ops::smoothstep(0.0, 0.3, t) - 0.68 * ops::smoothstep(0.45, 1.0, t);
+        let grown = 0.78 + 0.22 * ops::smoothstep(0.0, 0.3, t) - 0.6 * ops::smoothstep(0.45, 1.0, t);
         let outwards = DQuat::from_xyzw(0.0, ops::sin(0.5 * azimuth), 0.0, ops::cos(0.5 * azimuth));
         let shade = 1.0 + 0.1 * key.stream(Draw::Tint).normal().clamp(-2.0, 2.0);
         // Young leaves are lighter and yellower.
