@@ -3,16 +3,20 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use burgeon::formats::{MarksAxes, PngCache, ReadMarks, marks_template, read_marks, read_picture};
+use burgeon::formats::{
+    CloudFormat, MarksAxes, PngCache, ReadMarks, marks_template, read_cloud, read_marks, read_picture,
+    write_marks,
+};
 use burgeon::geom::RingRule;
 use burgeon::leaf::{
-    FullMarks, LeafGrowth, LeafSpec, MeshSpec, Pose, SurfaceKind, ThicknessRule, VeinParameters,
+    FullMarks, LeafGrowth, LeafSpec, Marks, MeshSpec, Pose, ScanSpec, SurfaceKind, ThicknessRule,
+    VeinParameters,
 };
 use burgeon::mesh::Model;
 use burgeon::{ItemReport, LeafError, LeafOptions, LeafTexture, Report, RunReport, Seed, ShootSpec};
 use clap::{Args, ValueEnum};
 
-use crate::args::{AxesArgs, CommonArgs, PictureArgs, ranged};
+use crate::args::{AxesArgs, CommonArgs, PictureArgs, UnitWord, ranged};
 use crate::failure::{Failure, Outcome};
 use crate::machine::Machine;
 use crate::{files, output, picture, report, say};
@@ -32,6 +36,12 @@ pub(crate) struct LeafArgs {
     /// Rows of the template, 2 to 1000.
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(2..=1000))]
     pub(crate) rows: u32,
+    /// DATA is the scan of one leaf (.ply, .xyz, .txt, .pcd, .las, .obj): find midrib, outline, stalk and surface.
+    #[arg(long, conflicts_with_all = ["template", "plant", "days"])]
+    pub(crate) scan: bool,
+    /// Also write the leaf as marks, such as those found in a scan or grown between stages.
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) marks: Option<PathBuf>,
     /// Also make a picture.
     #[arg(long, value_name = "FILE.png")]
     pub(crate) png: Option<PathBuf>,
@@ -60,6 +70,7 @@ const LEAF_EXAMPLES: &str = "Examples:
   burgeon leaf marks.csv -o leaf.glb --curl 0.3 --wilt 0.6
   burgeon leaf d5.csv d9.csv d15.csv --days 5,9,15 --day 12 -o leaf.glb
   burgeon leaf low.csv middle.csv high.csv --plant -o tobacco.glb
+  burgeon leaf --scan cloud.txt --unit mm -o leaf.glb --marks found.csv
 
 Marks are a CSV file with the columns row,mark,x,y,z,thickness,midrib. Lines `# unit: mm`, `# up: z` and
 `# thickness: diameter` in the file win over --unit, --up and --thickness.";
@@ -192,6 +203,7 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
     let outputs = [
         ("-o", args.output.as_ref()),
         ("--png", args.png.as_ref()),
+        ("--marks", args.marks.as_ref()),
         ("--report", args.common.report.as_ref()),
     ];
     output::check_outputs(&outputs, &args.inputs.iter().collect::<Vec<_>>())?;
@@ -203,7 +215,12 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
             "burgeon leaf needs a file of marks; --template makes one to fill in (see --help)".into(),
         ));
     }
-    if args.output.is_none() && args.png.is_none() && args.common.report.is_none() && !args.common.json {
+    if args.output.is_none()
+        && args.marks.is_none()
+        && args.png.is_none()
+        && args.common.report.is_none()
+        && !args.common.json
+    {
         return Err(Failure::Bad(
             "say what to make of it: -o OUT, --png FILE.png, --report FILE.json or --json".into(),
         ));
@@ -212,8 +229,13 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
     if let Some(png) = &args.png {
         picture::check_name(png)?;
     }
-    let (model, mut item) = make(args, &machine)?;
+    let Product { model, mut item, marks } =
+        if args.scan { scan(args, &machine)? } else { make(args, &machine)? };
     machine.cancel.check()?;
+    if let Some(path) = &args.marks {
+        let marks = marks.ok_or_else(|| Failure::at(path, "a whole plant has no marks; drop --marks"))?;
+        output::write_whole(path, |out| write_marks(&marks, &item.name, out))?;
+    }
     let (written, write_ms) = machine.timed(|| {
         let Some((path, format)) = args.output.as_deref().zip(format) else { return Ok(Vec::new()) };
         item.output = path.display().to_string();
@@ -252,6 +274,17 @@ fn template(args: &LeafArgs) -> Outcome {
 fn summary(item: &ItemReport, png: Option<&Path>) -> String {
     let line = report::summary(item, png);
     match &item.leaf {
+        Some(l) if l.scan.is_some() => {
+            let f = &l.fit_error;
+            let fit = format!(
+                "{:.0} mm long, RMS {:.2} mm, 95 % within {:.2} mm, {:.1} % of the cloud explained",
+                l.length_mm,
+                f.rms_mm,
+                f.p95_mm,
+                100.0 * f.explained
+            );
+            line.replacen("; ", &format!(", {fit}; "), 1)
+        }
         Some(l) => {
             let counts = format!(
                 "{} rows, {:.0} mm, veins {}/{}, blade {}/{}",
@@ -305,7 +338,48 @@ fn options(args: &LeafArgs, in_file: Option<ThicknessRule>) -> Outcome<LeafOptio
     Ok(LeafOptions { spec, mesh, pose, texture })
 }
 
-fn make(args: &LeafArgs, machine: &Machine) -> Outcome<(Model, ItemReport)> {
+/// What comes out before it is written.
+struct Product {
+    model: Model,
+    item: ItemReport,
+    marks: Option<Marks>,
+}
+
+/// A scan to a leaf.
+fn scan(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
+    let [path] = args.inputs.as_slice() else {
+        return Err(Failure::Bad("--scan takes one cloud, of one leaf; give one file".into()));
+    };
+    let format = files::extension(path).and_then(CloudFormat::from_extension);
+    let format = format.ok_or_else(|| {
+        Failure::at(path, "is not named as a scan; end the name with .ply, .xyz, .txt, .pcd, .las or .obj")
+    })?;
+    let mut report = Report::default();
+    let axes = files::axes(args.axes.up, args.axes.unit);
+    let file = std::fs::File::open(path).map_err(|e| Failure::io(path, "read", &e))?;
+    let (cloud, read_ms) = machine.timed(|| read_cloud(file, format, &axes, &mut report));
+    let mut points = cloud.map_err(|e| Failure::at(path, e))?.points;
+    let first = points.first().copied().unwrap_or_default();
+    let size = points.iter().fold([first; 2], |[a, b], &p| [a.min(p), b.max(p)]);
+    // 10 m: no leaf is longer, and scanners of leaves write millimetres.
+    if (size[1] - size[0]).max_element() > 10.0 && matches!(args.axes.unit, UnitWord::M) {
+        points.iter_mut().for_each(|p| *p *= 0.001);
+        report.warn(
+            "unit-guessed",
+            "the cloud is more than 10 m wide: it was taken for millimetres; say --unit mm",
+        );
+    }
+    let made = machine.with_progress("scan", |_| {
+        let (name, spec) = (files::stem(path), ScanSpec::default());
+        burgeon::make_leaf_from_scan(&name, &points, &spec, &machine.run())
+    });
+    let (model, mut item, found) = made.map_err(|e| failure(args, e))?;
+    item.warnings.splice(0..0, report.warnings.iter().map(ToString::to_string));
+    item.timings_ms.add_io(read_ms, 0.0);
+    Ok(Product { model, item, marks: Some(found.marks) })
+}
+
+fn make(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
     let several = args.plant.plant || !args.look.days.is_empty();
     if args.inputs.len() > 1 && !several {
         return Err(Failure::Bad(
@@ -325,7 +399,7 @@ fn make(args: &LeafArgs, machine: &Machine) -> Outcome<(Model, ItemReport)> {
         one.warnings.iter().for_each(|w| report.warnings.push(w.clone()));
         full.push(one.marks.complete(&mut report).map_err(|e| Failure::at(path, e))?);
     }
-    let (model, mut item) = if args.plant.plant {
+    let (model, mut item, marks) = if args.plant.plant {
         let spec = ShootSpec {
             leaves: args.plant.leaves,
             height_m: args.plant.height,
@@ -337,15 +411,15 @@ fn make(args: &LeafArgs, machine: &Machine) -> Outcome<(Model, ItemReport)> {
         });
         let (model, mut item) = made.map_err(|e| failure(args, e))?;
         item.warnings.splice(0..0, report.warnings.iter().map(ToString::to_string));
-        (model, item)
+        (model, item, None)
     } else {
         let marks = grown(args, full)?;
         let made = burgeon::make_leaf_of(&name, &marks, &options, seed, &machine.run(), report);
         let made = made.map_err(|e| failure(args, e))?;
-        (made.model, made.item)
+        (made.model, made.item, Some(made.marks.to_marks()))
     };
     item.timings_ms.add_io(read_ms, 0.0);
-    Ok((model, item))
+    Ok(Product { model, item, marks })
 }
 
 fn failure(args: &LeafArgs, error: LeafError) -> Failure {

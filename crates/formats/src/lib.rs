@@ -17,7 +17,6 @@ mod summary;
 pub use cloud::{CloudFormat, MAX_CLOUD_BYTES, read_cloud, write_cloud_ply};
 pub use drawing::{DrawingFormat, Drawings, MAX_DRAWING_BYTES, ReadDrawing, read_drawings, write_drawing};
 pub use error::{CloudError, DrawingError, FileFault, ModelError, Place, WriteError};
-pub use error::{DrawingError, FileFault, ModelError, Place, WriteError};
 pub use leaves::{
     LeafFileError, MAX_LEAF_BYTES, MarksAxes, ReadMarks, marks_template, read_marks, write_marks,
 };

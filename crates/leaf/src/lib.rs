@@ -9,6 +9,7 @@
 //! | `meshes` | [`LeafMesh`]: tubes and grid at any resolution, the counts of the paper's Table 1 |
 //! | `pose` | curl and wilt |
 //! | `growth` | a leaf between measured stages |
+//! | `scan` | a leaf found in a cloud of points |
 //! | `flat` | the leaf unrolled into a plane: template of a blade, texture coordinates |
 //! | `colour` | a texture coloured by the distance from the veins |
 //!
@@ -21,6 +22,7 @@ mod growth;
 mod marks;
 mod meshes;
 mod pose;
+mod scan;
 
 pub use blade::{Leaf, LeafSpec, SurfaceKind, ThicknessRule, Vein, VeinParameters};
 pub use colour::{LeafColours, vein_texture};
@@ -29,3 +31,4 @@ pub use growth::{GrowthError, LeafGrowth};
 pub use marks::{FullMarks, FullRow, MARKS_A_ROW, MarkRow, Marks, MarksError};
 pub use meshes::{LeafMesh, MeshSpec};
 pub use pose::Pose;
+pub use scan::{ScanError, ScanLeaf, ScanSpec, fit_scan};

@@ -5,7 +5,10 @@ use std::sync::Arc;
 use base::{Cancelled, Digest, Draw, Report, Run, Seed, ops};
 use geom::{Ball, BallBSpline, EndCap, SplineError, TubeSpec};
 use glam::{DQuat, DVec3};
-use leaf::{FlatLeaf, FullMarks, Leaf, LeafColours, LeafMesh, LeafSpec, Marks, MarksError, MeshSpec, Pose};
+use leaf::{
+    FlatLeaf, FullMarks, Leaf, LeafColours, LeafMesh, LeafSpec, Marks, MarksError, MeshSpec, Pose, ScanError,
+    ScanLeaf, ScanSpec,
+};
 use mesh::{Material, MaterialId, MaterialKind, Model, Part, Texture, TriMesh};
 use serde::{Deserialize, Serialize};
 
@@ -59,6 +62,9 @@ pub enum LeafError {
     /// The surface cannot be made.
     #[error(transparent)]
     Spline(#[from] SplineError),
+    /// No leaf in a scan.
+    #[error(transparent)]
+    Scan(#[from] ScanError),
     /// Nothing to put on a plant.
     #[error("a plant needs at least one leaf")]
     NoLeaves,
@@ -90,6 +96,26 @@ pub struct LeafReport {
     pub swallowed_rings: u64,
     /// Rings at which a vein is thicker than it bends.
     pub crossing_rings: u64,
+    /// Of a scan: what was found in it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scan: Option<ScanReport>,
+}
+
+/// What was found in a scan.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ScanReport {
+    /// Points read, without those that are no numbers.
+    pub points: u64,
+    /// Points left out because their neighbours are far.
+    pub outliers: u64,
+    /// Share of the blade that has a point within 2 mm; the rest are holes that were bridged.
+    pub covered: f64,
+    /// Length of the stalk, millimetres; 0 if there is none.
+    pub stalk_mm: f64,
+    /// Length of the outline, millimetres.
+    pub outline_mm: f64,
+    /// Greatest width across the midrib, millimetres.
+    pub width_mm: f64,
 }
 
 /// Vertices and faces of a mesh.
@@ -265,6 +291,7 @@ fn leaf_report(marks: &FullMarks, leaf: &Leaf, meshes: &LeafMesh, options: &Leaf
         vein_gap_mm: 1e3 * leaf.vein_gap(8),
         swallowed_rings: meshes.swallowed as u64,
         crossing_rings: meshes.crossing as u64,
+        scan: None,
     }
 }
 
@@ -272,6 +299,102 @@ fn leaf_report(marks: &FullMarks, leaf: &Leaf, meshes: &LeafMesh, options: &Leaf
 fn area(mesh: &TriMesh) -> f64 {
     let p = |i: u32| mesh.position(i);
     mesh.triangles.iter().map(|&[a, b, c]| 0.5 * (p(b) - p(a)).cross(p(c) - p(a)).length()).sum()
+}
+
+/// Makes a leaf from the points of a scan: blade, midrib and stalk, with their distances from the cloud.
+///
+/// # Errors
+/// [`LeafError::Scan`].
+pub fn make_leaf_from_scan(
+    name: &str,
+    points: &[DVec3],
+    spec: &ScanSpec,
+    run: &Run<'_>,
+) -> Result<(Model, ItemReport, ScanLeaf), LeafError> {
+    let mut report = Report::default();
+    let found = report.stage("structure", run.clock, |r| leaf::fit_scan(points, spec, run, r))?;
+    let n = found.columns;
+    let rows = found.grid.len() / n;
+    let mut blade = TriMesh::default();
+    for (k, &p) in found.grid.iter().enumerate() {
+        blade.push(p);
+        #[expect(clippy::cast_possible_truncation, reason = "texture coordinates are f32")]
+        blade.uvs.push([(k % n) as f32 / (n - 1) as f32, 1.0 - (k / n) as f32 / (rows - 1) as f32]);
+    }
+    let index = |i: usize| u32::try_from(i).unwrap_or(u32::MAX);
+    for i in 1..rows {
+        for j in 1..n {
+            let (a, b) = ((i - 1) * n + j - 1, (i - 1) * n + j);
+            blade.triangles.push([a, b, b + n].map(index));
+            blade.triangles.push([a, b + n, a + n].map(index));
+        }
+    }
+    blade.compute_normals();
+    let line = found.midrib();
+    let base = found.marks.rows.last().and_then(|r| r.midrib).unwrap_or(0.001) * 0.5;
+    let last = (line.len() - 1).max(1) as f64;
+    let balls: Vec<Ball> =
+        line.iter().enumerate().map(|(k, &p)| Ball::new(p, base * (1.0 - 0.8 * k as f64 / last))).collect();
+    let mut veins = curve_mesh(&BallBSpline::fit(&balls, 12)?, 60);
+    if let Some(stalk) = &found.stalk {
+        veins.append(&curve_mesh(stalk, 40));
+    }
+    let width = found.grid.chunks(n).map(geom::polyline_length3).fold(0.0, f64::max);
+    let mut outline = found.outline();
+    outline.extend(outline.first().copied());
+    let about = LeafReport {
+        surface: "scan".into(),
+        rows: rows as u64,
+        length_mm: 1e3 * geom::polyline_length3(&line),
+        area_mm2: 1e6 * area(&blade),
+        veins: FaceCounts { vertices: veins.positions.len() as u64, faces: veins.triangles.len() as u64 },
+        blade: FaceCounts { vertices: blade.positions.len() as u64, faces: ((rows - 1) * (n - 1)) as u64 },
+        fit_error: FitError { explained: found.explained, ..FitError::of(&found.distances) },
+        scan: Some(ScanReport {
+            points: (found.used + found.outliers) as u64,
+            outliers: found.outliers as u64,
+            covered: found.covered,
+            stalk_mm: found.stalk.as_ref().map_or(0.0, |s| 1e3 * s.length(200)),
+            outline_mm: 1e3 * geom::polyline_length3(&outline),
+            width_mm: 1e3 * width,
+        }),
+        ..LeafReport::default()
+    };
+    let mut model = Model { name: name.into(), ..Model::default() };
+    model.materials = leaf_materials(None, 0.0).into();
+    let part =
+        |name: &str, material, mesh| Part { name: name.into(), material: MaterialId::new(material), mesh };
+    model.parts = vec![part("blade", 0, blade), part("veins", 1, veins)];
+    let counts = Counts {
+        leaves: 1,
+        vertices: model.vertex_count() as u64,
+        triangles: model.triangle_count() as u64,
+        ..Counts::default()
+    };
+    let item = ItemReport {
+        name: name.into(),
+        counts,
+        timings_ms: TimingsMs::from_report(&report),
+        digest: digest(&model),
+        warnings: report.warnings.iter().map(ToString::to_string).collect(),
+        leaf: Some(about),
+        ..ItemReport::default()
+    };
+    Ok((model, item, found))
+}
+
+fn curve_mesh(curve: &BallBSpline, steps: u32) -> TriMesh {
+    let (a, b) = curve.domain();
+    let at: Vec<f64> = (0..=steps).map(|k| ops::lerp(a, b, f64::from(k) / f64::from(steps))).collect();
+    let tube = curve.tube(&at, &TubeSpec { cap: EndCap::Round(3), ..TubeSpec::default() });
+    let mut mesh = TriMesh::default();
+    tube.positions.iter().for_each(|&p| {
+        mesh.push(p);
+    });
+    mesh.triangles.extend(tube.quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]));
+    mesh.triangles.extend(&tube.triangles);
+    mesh.compute_normals();
+    mesh
 }
 
 /// A whole shoot of measured leaves (paper 004, section 3 and Fig 9).
@@ -603,6 +726,32 @@ mod tests {
         assert_eq!(ia.counts.leaves, 7);
         let (_, other) = make_shoot("t", &forms, &spec, &options, Seed::new(3), &run).unwrap();
         assert_ne!(ia.digest, other.digest);
+    }
+
+    #[test]
+    fn real_scans_are_explained() {
+        let folder = format!("{}/../../../shared/data/scans/single_leaves", env!("CARGO_MANIFEST_DIR"));
+        let Ok(files) = std::fs::read_dir(&folder) else {
+            println!("{folder} is absent: nothing tested");
+            return;
+        };
+        let axes = formats::ExportSpec { unit: base::Unit::Millimetre, ..formats::ExportSpec::default() };
+        for path in files.filter_map(Result::ok).map(|f| f.path()) {
+            if path.extension().is_none_or(|e| e != "txt") {
+                continue;
+            }
+            let bytes = std::fs::read(&path).unwrap();
+            let mut report = Report::default();
+            let cloud =
+                formats::read_cloud(bytes.as_slice(), formats::CloudFormat::Xyz, &axes, &mut report).unwrap();
+            let spec = ScanSpec::default();
+            let (model, item, _) = make_leaf_from_scan("t", &cloud.points, &spec, &Run::plain()).unwrap();
+            let about = item.leaf.unwrap();
+            let fit = about.fit_error;
+            println!("{}: {fit:?} {:?}", path.display(), about.scan);
+            assert_eq!(model.validate().next(), None);
+            assert!(fit.rms_mm < 1.5 && fit.p95_mm < 3.0 && fit.explained > 0.85, "{path:?} {fit:?}");
+        }
     }
 
     #[test]

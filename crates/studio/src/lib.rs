@@ -26,8 +26,8 @@ pub use base::{
     Warning, map_indexed,
 };
 pub use leaves::{
-    FaceCounts, FitError, LeafError, LeafOptions, LeafReport, LeafTexture, MadeLeaf, ShootSpec, leaf_blade,
-    make_leaf, make_leaf_of, make_shoot,
+    FaceCounts, FitError, LeafError, LeafOptions, LeafReport, LeafTexture, MadeLeaf, ScanReport, ShootSpec,
+    leaf_blade, make_leaf, make_leaf_from_scan, make_leaf_of, make_shoot,
 };
 pub use make::{ClassOverrides, Made, MakeError, SketchOptions, make_from_sketch};
 pub use report::{
