@@ -5,7 +5,7 @@
 
 use base::{Report, Run, map_indexed};
 use geom::{Ball, BallBSpline, Grid3, HeightField, SplineError};
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use crate::marks::{MARKS_A_ROW, MarkRow, Marks};
 
@@ -203,31 +203,9 @@ fn stalk_points(points: &[DVec3], spacing: f64, run: &Run<'_>) -> Vec<bool> {
         // 0.06: a strip four times as long as wide; the margin of a blade has 0.25 and more.
         geom::pca3(&near).is_some_and(|(_, _, v)| near.len() >= 5 && v[1] < 0.06 * v[0])
     });
-    let mut group = vec![usize::MAX; points.len()];
-    let mut groups: Vec<Vec<usize>> = Vec::new();
     let link = 4.0 * spacing;
     let linked = Grid3::new(points, link);
-    for start in 0..points.len() {
-        if !line[start] || group[start] != usize::MAX {
-            continue;
-        }
-        let id = groups.len();
-        let mut members = vec![start];
-        group[start] = id;
-        let mut next = 0;
-        while next < members.len() {
-            let mut near = Vec::new();
-            linked.within(points[members[next]], link, &mut near);
-            for i in near {
-                if line[i] && group[i] == usize::MAX {
-                    group[i] = id;
-                    members.push(i);
-                }
-            }
-            next += 1;
-        }
-        groups.push(members);
-    }
+    let (group, groups) = pieces(points, &linked, link, |i| line[i]);
     let extent = |members: &[usize]| {
         let first = points[members[0]];
         let far = members.iter().map(|&i| points[i].distance(first)).fold(0.0, f64::max);
@@ -237,7 +215,63 @@ fn stalk_points(points: &[DVec3], spacing: f64, run: &Run<'_>) -> Vec<bool> {
     let longest = longest.filter(|g| g.2 >= 10).max_by(|a, b| a.1.total_cmp(&b.1));
     // A scrap of margin is no stalk: it must be a good part of the leaf.
     let stalk = longest.filter(|g| g.1 > 0.5 * variances[0].sqrt()).map(|g| g.0);
-    group.iter().map(|&g| stalk == Some(g)).collect()
+    let Some(stalk) = stalk else { return vec![false; points.len()] };
+    let mut thin: Vec<bool> = group.iter().map(|&g| g == Some(stalk)).collect();
+    // The largest rest is the blade. Another piece belongs to what is nearer to it: the loose end of a stalk to
+    // the stalk, the far side of a hole to the blade.
+    let (rest, rests) = pieces(points, &linked, link, |i| !thin[i]);
+    let blade = (0..rests.len()).max_by_key(|&k| rests[k].len());
+    let of = |wanted: &dyn Fn(usize) -> bool| -> Vec<DVec3> {
+        (0..points.len()).filter(|&i| wanted(i)).map(|i| points[i]).collect()
+    };
+    let blade_points = of(&|i| rest[i].is_some() && rest[i] == blade);
+    let stalk_points = of(&|i| thin[i]);
+    let (near_blade, near_stalk) = (Grid3::new(&blade_points, link), Grid3::new(&stalk_points, link));
+    for (_, members) in rests.iter().enumerate().filter(|(k, _)| Some(*k) != blade) {
+        let nearest = |grid: &Grid3, of: &[DVec3]| {
+            let each = members
+                .iter()
+                .filter_map(|&i| Some(of[grid.nearest(points[i], f64::INFINITY)?].distance(points[i])));
+            each.fold(f64::INFINITY, f64::min)
+        };
+        if nearest(&near_stalk, &stalk_points) < nearest(&near_blade, &blade_points) {
+            members.iter().for_each(|&i| thin[i] = true);
+        }
+    }
+    thin
+}
+
+/// The points that `wanted` names, in pieces linked by steps of at most `link`: each point's piece, and pieces.
+fn pieces(
+    points: &[DVec3],
+    grid: &Grid3,
+    link: f64,
+    wanted: impl Fn(usize) -> bool,
+) -> (Vec<Option<usize>>, Vec<Vec<usize>>) {
+    let mut group = vec![None; points.len()];
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    let mut near = Vec::new();
+    for start in 0..points.len() {
+        if !wanted(start) || group[start].is_some() {
+            continue;
+        }
+        let id = Some(groups.len());
+        let mut members = vec![start];
+        group[start] = id;
+        let mut next = 0;
+        while next < members.len() {
+            grid.within(points[members[next]], link, &mut near);
+            for &i in near.iter().filter(|&&i| wanted(i)) {
+                if group[i].is_none() {
+                    group[i] = id;
+                    members.push(i);
+                }
+            }
+            next += 1;
+        }
+        groups.push(members);
+    }
+    (group, groups)
 }
 
 fn plane_of(blade: &[DVec3], stem: &[DVec3], report: &mut Report) -> Option<Plane> {
@@ -463,8 +497,8 @@ fn stalk_curve(stem: &[DVec3], base: DVec3) -> Option<BallBSpline> {
     };
     let mut radii: Vec<f64> = stem.iter().map(|&p| off(p)).collect();
     radii.sort_unstable_by(f64::total_cmp);
-    // The scanner sees the near half: points lie from the middle of the strip to its edge.
-    let radius = radii[radii.len() * 3 / 4].max(1e-6);
+    // The scanner sees the near half: its points lie about a radius from their mean line, strays farther.
+    let radius = radii[radii.len() / 2].max(1e-6);
     let balls: Vec<Ball> = line.iter().map(|&p| Ball::new(p, radius)).collect();
     BallBSpline::interpolate(&balls).ok()
 }
@@ -553,6 +587,7 @@ fn marks_of(grid: &[DVec3], columns: usize, stalk: Option<&BallBSpline>) -> Mark
 #[cfg(test)]
 mod tests {
     use base::{Draw, Seed, ops};
+    use glam::DVec2;
 
     use super::*;
 

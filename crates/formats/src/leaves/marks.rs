@@ -451,6 +451,30 @@ mod tests {
     }
 
     #[test]
+    fn damaged_files_never_panic() {
+        let text = written();
+        let mut stream = base::Seed::new(7).stream(base::Draw::Test);
+        let odd = [b',', b'\n', b'-', b'0', b'9', b'e', b'#', b':', 0xff, b'\t'];
+        let mut refused = 0;
+        for _ in 0..2000 {
+            let mut bytes = text.clone().into_bytes();
+            for _ in 0..=stream.below(4) {
+                let at = stream.below(bytes.len());
+                match stream.below(3) {
+                    0 => bytes[at] = odd[stream.below(odd.len())],
+                    1 => drop(bytes.remove(at)),
+                    _ => bytes.truncate(at.max(1)),
+                }
+            }
+            match read_marks(bytes.as_slice(), "x", MarksAxes::default()) {
+                Ok(read) => drop(read.marks.complete(&mut base::Report::default())),
+                Err(e) => refused += usize::from(!e.to_string().is_empty()),
+            }
+        }
+        assert!(refused > 200, "{refused}");
+    }
+
+    #[test]
     fn leaf_of_an_odd_size_is_told() {
         let back = read(&written().replace("unit: mm", "unit: m")).unwrap();
         assert_eq!(back.warnings[0].code, "leaf-size");
