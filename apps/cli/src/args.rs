@@ -184,7 +184,8 @@ impl From<UnitWord> for Unit {
 #[derive(Args, Debug)]
 #[command(after_long_help = SKETCH_EXAMPLES)]
 pub(crate) struct SketchArgs {
-    /// Drawings: .svg, .inkml, .ndjson (one drawing a line) or .json; - for standard input.
+    /// Drawings: .svg, .inkml, .ndjson (one drawing a line) or .json; projects: .burgeon, with their settings;
+    /// - for standard input.
     #[arg(value_name = "IN", required = true)]
     pub(crate) inputs: Vec<PathBuf>,
     /// The model: .glb, .obj, .ply or .stl. For several drawings a folder, which is created and gets one model each.
@@ -196,9 +197,10 @@ pub(crate) struct SketchArgs {
     /// Also make a picture. For several drawings a folder, which is created and gets one picture each.
     #[arg(long, value_name = "FILE.png")]
     pub(crate) png: Option<PathBuf>,
-    /// Number that all chance follows from; another number gives another plant of the same drawing.
-    #[arg(long, value_name = "N", default_value_t = 1, allow_hyphen_values = true, value_parser = seed)]
-    pub(crate) seed: u64,
+    /// Number that all chance follows from; another number gives another plant of the same drawing
+    /// [default: 1, or the project's].
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = seed)]
+    pub(crate) seed: Option<u64>,
     #[command(flatten)]
     pub(crate) reading: ReadingArgs,
     #[command(flatten)]
@@ -269,21 +271,21 @@ pub(crate) struct ReadingArgs {
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Surface")]
 pub(crate) struct SurfaceArgs {
-    /// Fineness of the meshes, 0.1 to 8; triangle counts grow in proportion.
-    #[arg(long, value_name = "X", allow_hyphen_values = true, default_value_t = 1.0, value_parser = |s: &str| ranged(s, 0.1, 8.0))]
-    pub(crate) detail: f64,
-    /// Sides of an ordinary branch, 3 to 24; thick branches get more.
-    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(3..=24))]
-    pub(crate) sides: u32,
+    /// Fineness of the meshes, 0.1 to 8; triangle counts grow in proportion [default: 1].
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 0.1, 8.0))]
+    pub(crate) detail: Option<f64>,
+    /// Sides of an ordinary branch, 3 to 24; thick branches get more [default: 8].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(3..=24))]
+    pub(crate) sides: Option<u32>,
     /// Plain colours instead of textures.
     #[arg(long)]
     pub(crate) no_textures: bool,
     /// Colour of petals that were drawn without one [default: by seed and name].
     #[arg(long, value_enum, value_name = "COLOUR")]
     pub(crate) petals: Option<PetalWord>,
-    /// Variation of colour from organ to organ, 0 (none) to 1.
-    #[arg(long, value_name = "X", allow_hyphen_values = true, default_value_t = 1.0, value_parser = |s: &str| ranged(s, 0.0, 1.0))]
-    pub(crate) variation: f64,
+    /// Variation of colour from organ to organ, 0 (none) to 1 [default: 1].
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 0.0, 1.0))]
+    pub(crate) variation: Option<f64>,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -440,7 +442,8 @@ pub(crate) struct ConvertArgs {
 
 #[derive(Args, Debug)]
 pub(crate) struct InfoArgs {
-    /// The file: a model (.glb, .gltf, .obj, .ply, .stl) or a drawing (.svg, .inkml, .ndjson, .json).
+    /// The file: a model (.glb, .gltf, .obj, .ply, .stl), a drawing (.svg, .inkml, .ndjson, .json) or a project
+    /// (.burgeon).
     #[arg(value_name = "FILE")]
     pub(crate) input: PathBuf,
     #[command(flatten)]

@@ -1,6 +1,6 @@
 //! `burgeon convert`: models to models, drawings to drawings.
 
-use burgeon::formats::{DrawingFormat, ModelFormat, PngCache, read_drawings, write_drawing};
+use burgeon::formats::{DrawingFormat, ModelFormat, PngCache, ReadDrawing, read_drawings, write_drawing};
 use burgeon::{ItemReport, RunReport};
 
 use crate::args::ConvertArgs;
@@ -21,11 +21,18 @@ pub(crate) fn convert(args: &ConvertArgs) -> Outcome {
     let to_drawing = files::extension(&args.output).is_some_and(|e| e.eq_ignore_ascii_case("json"));
     let item = match (kind, to_drawing) {
         (Kind::Drawing(format), true) => drawing(args, input, format, &machine)?,
+        (Kind::Project, true) => project(args, input, &machine)?,
         (Kind::Model(_), false) => model(args, input, kind, &machine)?,
         (Kind::Drawing(_), false) => {
             return Err(Failure::at(
                 &args.input,
                 "is a drawing: it converts to .json only; `burgeon sketch` makes a model of it",
+            ));
+        }
+        (Kind::Project, false) => {
+            return Err(Failure::at(
+                &args.input,
+                "is a project: it converts to .json only; `burgeon sketch` makes a model of it",
             ));
         }
         (Kind::Model(_), true) => {
@@ -39,7 +46,7 @@ pub(crate) fn convert(args: &ConvertArgs) -> Outcome {
         item.warnings.iter().for_each(|w| say::warning(&format!("{}: {w}", args.input.display())));
         let what = match kind {
             Kind::Model(_) => say::counted(item.counts.triangles, "triangle", "triangles"),
-            Kind::Drawing(_) => format!("drawing \"{}\"", item.name),
+            Kind::Drawing(_) | Kind::Project => format!("drawing \"{}\"", item.name),
         };
         say::line(&format!("{}: {what}; {:.0} ms", item.output, item.timings_ms.total));
     }
@@ -73,18 +80,25 @@ fn model(args: &ConvertArgs, input: files::Input, kind: Kind, machine: &Machine)
     Ok(item)
 }
 
+fn no_picture(args: &ConvertArgs) -> Outcome {
+    let why = "is a drawing; `burgeon sketch --png` makes a picture of its plant";
+    if args.png.is_some() { Err(Failure::at(&args.input, why)) } else { Ok(()) }
+}
+
+fn project(args: &ConvertArgs, input: files::Input, machine: &Machine) -> Outcome<ItemReport> {
+    no_picture(args)?;
+    let (read, read_ms) = machine
+        .timed(|| files::read_project(&args.input, input).and_then(|p| files::drawing_of(&args.input, &p)));
+    write(args, &read?, read_ms, machine)
+}
+
 fn drawing(
     args: &ConvertArgs,
     input: files::Input,
     format: DrawingFormat,
     machine: &Machine,
 ) -> Outcome<ItemReport> {
-    if args.png.is_some() {
-        return Err(Failure::at(
-            &args.input,
-            "is a drawing; `burgeon sketch --png` makes a picture of its plant",
-        ));
-    }
+    no_picture(args)?;
     let mut drawings = read_drawings(input, format, &files::stem(&args.input));
     let (first, read_ms) = machine.timed(|| drawings.next());
     let first = first.ok_or_else(|| Failure::at(&args.input, "holds no drawing"))?;
@@ -95,6 +109,10 @@ fn drawing(
             "holds several drawings, a .json file holds one; split the file by lines",
         ));
     }
+    write(args, &first, read_ms, machine)
+}
+
+fn write(args: &ConvertArgs, first: &ReadDrawing, read_ms: f64, machine: &Machine) -> Outcome<ItemReport> {
     let (written, write_ms) =
         machine.timed(|| output::write_whole(&args.output, |out| write_drawing(&first.drawing, out)));
     written?;

@@ -4,7 +4,10 @@ use std::fs::File;
 use std::io::{BufRead, BufReader, Cursor, Read};
 use std::path::{Component, Path};
 
-use burgeon::formats::{DrawingFormat, ExportSpec, ModelFormat, PngCache, obj_files, write_glb_with};
+use burgeon::document::{self, Document, MAX_PROJECT_BYTES};
+use burgeon::formats::{
+    DrawingFormat, ExportSpec, ModelFormat, PngCache, ReadDrawing, obj_files, write_glb_with,
+};
 use burgeon::mesh::Model;
 use burgeon::{Report, Warning};
 
@@ -16,6 +19,8 @@ use crate::output;
 pub(crate) enum Kind {
     Drawing(DrawingFormat),
     Model(ModelFormat),
+    /// A `.burgeon` file.
+    Project,
 }
 
 pub(crate) fn extension(path: &Path) -> Option<&str> {
@@ -50,7 +55,8 @@ pub(crate) fn open(path: &Path) -> Outcome<(Input, Kind)> {
     };
     let known = extension(path).and_then(|e| {
         let drawing = DrawingFormat::from_extension(e).map(Kind::Drawing);
-        drawing.or_else(|| ModelFormat::from_extension(e).map(Kind::Model))
+        let project = e.eq_ignore_ascii_case("burgeon").then_some(Kind::Project);
+        drawing.or_else(|| ModelFormat::from_extension(e).map(Kind::Model)).or(project)
     });
     if let Some(kind) = known {
         return Ok((Box::new(BufReader::new(input)), kind));
@@ -61,11 +67,12 @@ pub(crate) fn open(path: &Path) -> Outcome<(Input, Kind)> {
         return Err(Failure::at(path, "is empty; was it saved completely?"));
     }
     let drawing = DrawingFormat::sniff(&start).map(Kind::Drawing);
-    let kind = drawing.or_else(|| ModelFormat::sniff(&start).map(Kind::Model)).ok_or_else(|| {
+    let project = document::is_project(&start).then_some(Kind::Project);
+    let kind = drawing.or_else(|| ModelFormat::sniff(&start).map(Kind::Model)).or(project).ok_or_else(|| {
         Failure::at(
             path,
-            "is neither a drawing (.svg, .inkml, .ndjson, .json) nor a model (.glb, .gltf, .obj, .ply, .stl); \
-             give the file the extension of its format",
+            "is neither a drawing (.svg, .inkml, .ndjson, .json), nor a project (.burgeon), nor a model (.glb, .gltf, \
+             .obj, .ply, .stl); give the file the extension of its format",
         )
     })?;
     Ok((Box::new(BufReader::new(Cursor::new(start).chain(input))), kind))
@@ -88,6 +95,22 @@ pub(crate) fn read_text(path: &Path) -> Outcome<String> {
         let after = e.utf8_error().valid_up_to();
         Failure::at(path, format_args!("after {after} bytes the text is not UTF-8; save it again as UTF-8"))
     })
+}
+
+/// Reads a project.
+pub(crate) fn read_project(path: &Path, input: Input) -> Outcome<Document> {
+    let mut bytes = Vec::new();
+    let bounded = input.take(MAX_PROJECT_BYTES as u64 + 1).read_to_end(&mut bytes);
+    bounded.map_err(|e| Failure::io(path, "read", &e))?;
+    document::read_project(&bytes).map_err(|e| Failure::at(path, e))
+}
+
+/// A document's drawing, as if it had been read from a file of strokes.
+pub(crate) fn drawing_of(path: &Path, document: &Document) -> Outcome<ReadDrawing> {
+    if document.strokes().is_empty() {
+        return Err(Failure::at(path, "holds no stroke; open it in the Studio and draw"));
+    }
+    Ok(ReadDrawing { drawing: document.drawing(), warnings: Vec::new() })
 }
 
 pub(crate) fn axes(up: crate::args::UpWord, unit: crate::args::UnitWord) -> ExportSpec {
@@ -117,6 +140,9 @@ pub(crate) fn read_opened_model(
                     format.word()
                 ),
             ));
+        }
+        Kind::Project => {
+            return Err(Failure::at(path, "is a project, not a model; `burgeon sketch` makes a model of it"));
         }
     };
     let mut report = Report::default();

@@ -28,6 +28,13 @@ pub(crate) fn info(args: &InfoArgs) -> Outcome {
             (format.word(), Content::Model(ModelSummary::of(&model, &warnings)))
         }
         Kind::Drawing(format) => (format.word(), Content::Drawings(drawings(&args.input, input, format)?)),
+        Kind::Project => {
+            let document = files::read_project(&args.input, input)?;
+            let read = files::drawing_of(&args.input, &document)?;
+            let mut out = Drawings::default();
+            out.add(DrawingSummary::of(&read.drawing, &read.warnings));
+            ("project", Content::Drawings(out))
+        }
     };
     let path = args.input.display().to_string();
     let info = Info { schema: "burgeon.info/1", version: burgeon::VERSION, path, bytes, format, content };
@@ -73,18 +80,7 @@ fn drawings(path: &Path, input: files::Input, format: DrawingFormat) -> Outcome<
     for item in read_drawings(input, format, &files::stem(path)) {
         match item {
             Ok(read) => {
-                let mut summary = DrawingSummary::of(&read.drawing, &read.warnings);
-                out.count += 1;
-                out.strokes += summary.strokes;
-                out.points += summary.points;
-                if summary.not_finite > 0 {
-                    let points = say::counted(summary.not_finite as u64, "point is", "points are");
-                    summary.warnings.push(format!("{points} not finite"));
-                }
-                out.warnings.extend(summary.warnings.iter().map(|w| format!("{}: {w}", summary.name)));
-                if out.first.len() < LISTED {
-                    out.first.push(summary);
-                }
+                out.add(DrawingSummary::of(&read.drawing, &read.warnings));
             }
             Err(e) => {
                 out.failed += 1;
@@ -102,6 +98,20 @@ fn drawings(path: &Path, input: files::Input, format: DrawingFormat) -> Outcome<
 }
 
 impl Drawings {
+    fn add(&mut self, mut summary: DrawingSummary) {
+        self.count += 1;
+        self.strokes += summary.strokes;
+        self.points += summary.points;
+        if summary.not_finite > 0 {
+            let points = say::counted(summary.not_finite as u64, "point is", "points are");
+            summary.warnings.push(format!("{points} not finite"));
+        }
+        self.warnings.extend(summary.warnings.iter().map(|w| format!("{}: {w}", summary.name)));
+        if self.first.len() < LISTED {
+            self.first.push(summary);
+        }
+    }
+
     fn lines(&self, out: &mut Vec<String>) {
         let count = |n: usize, one, many| say::counted(n as u64, one, many);
         if self.count > 1 || self.failed > 0 {

@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use burgeon::formats::{Drawings, ModelFormat, PngCache, ReadDrawing, read_drawings};
-use burgeon::sketch::{Drawing, SketchSpec};
+use burgeon::document::Document;
+use burgeon::formats::{DrawingError, Drawings, ModelFormat, PngCache, ReadDrawing, read_drawings};
+use burgeon::sketch::SketchSpec;
 use burgeon::skin::SkinSpec;
 use burgeon::{ItemReport, Made, MakeError, Run, RunReport, Seed, SketchOptions, make_from_sketch};
 
@@ -32,16 +33,16 @@ pub(crate) fn sketch(args: &SketchArgs) -> Outcome {
 /// Everything that is asked, read and checked before the first drawing.
 struct Job<'a> {
     args: &'a SketchArgs,
-    spec: SketchSpec,
-    skin: SkinSpec,
+    /// From --spec; without, the defaults or the project's own.
+    spec: Option<SketchSpec>,
     classes: Classes,
 }
 
 impl<'a> Job<'a> {
     fn new(args: &'a SketchArgs) -> Outcome<Self> {
-        let spec = sketch_spec(&args.reading)?;
+        let spec = args.reading.spec.as_deref().map(read_spec).transpose()?;
         let classes = args.reading.classes.as_deref().map(Classes::read).transpose()?.unwrap_or_default();
-        Ok(Self { args, spec, skin: skin_spec(&args.surface, args.seed), classes })
+        Ok(Self { args, spec, classes })
     }
 
     /// The outputs are folders, rather than files.
@@ -67,13 +68,26 @@ impl<'a> Job<'a> {
         }
     }
 
-    fn options(&self, drawing: &Drawing) -> SketchOptions {
-        let classes = self.classes.of_drawing(&drawing.name);
-        SketchOptions { spec: self.spec.clone(), skin: self.skin.clone(), classes }
+    /// What the project asks for, or the defaults; options of the command line win over both.
+    fn options(&self, input: &Input) -> SketchOptions {
+        let mut options = input.project.as_deref().map(SketchOptions::of_document).unwrap_or_default();
+        if let Some(spec) = &self.spec {
+            options.spec.clone_from(spec);
+        }
+        set_sketch(&mut options.spec, &self.args.reading);
+        set_skin(&mut options.skin, &self.args.surface);
+        options.skin.seed = self.seed(input.project.as_deref());
+        options.classes.extend(self.classes.of_drawing(&input.read.drawing.name));
+        options
     }
 
-    fn report(&self) -> RunReport {
-        let mut report = RunReport::new("sketch", self.args.seed);
+    fn seed(&self, project: Option<&Document>) -> Seed {
+        let own = || project.map_or_else(Seed::default, |p| p.settings().seed);
+        self.args.seed.map_or_else(own, Seed::new)
+    }
+
+    fn report(&self, project: Option<&Document>) -> RunReport {
+        let mut report = RunReport::new("sketch", self.seed(project).number());
         let paths = self.args.inputs.iter().map(|p| p.display().to_string());
         report.input.path = paths.collect::<Vec<_>>().join(", ");
         report
@@ -89,20 +103,21 @@ impl<'a> Job<'a> {
             ("--report", self.args.common.report.as_ref()),
         ];
         output::check_outputs(&outputs, &[input])?;
-        let mut drawings = open(input)?;
-        let (first, read_ms) = machine.timed(|| drawings.next());
-        let read = first
-            .ok_or_else(|| Failure::at(input, "holds no drawing"))?
-            .map_err(|e| Failure::at(input, e))?;
+        let (first, read_ms) = machine.timed(|| -> Outcome<(Input, Source)> {
+            let mut drawings = open(input)?;
+            let first = drawings.next().ok_or_else(|| Failure::at(input, "holds no drawing"))?;
+            Ok((first.map_err(|e| Failure::at(input, e))?, drawings))
+        });
+        let (read, mut drawings) = first?;
         if drawings.next().is_some() {
             return Err(Failure::at(
                 input,
                 "holds several drawings; give a folder: -o FOLDER (one model each)",
             ));
         }
-        let mut report = self.report();
+        let mut report = self.report(read.project.as_deref());
         report.input.drawings = 1;
-        report.input.strokes = read.drawing.strokes.len() as u64;
+        report.input.strokes = read.read.drawing.strokes.len() as u64;
         let target = Target { model: self.args.output.clone().zip(format), png: self.args.png.clone() };
         let mut cache = PngCache::new();
         let item = self.make(&read, &target, read_ms, &mut cache, machine, &machine.run());
@@ -133,15 +148,16 @@ impl<'a> Job<'a> {
     /// Makes one plant and writes its files.
     fn make(
         &self,
-        read: &ReadDrawing,
+        input: &Input,
         target: &Target,
         read_ms: f64,
         cache: &mut PngCache,
         machine: &Machine,
         run: &Run<'_>,
     ) -> Outcome<ItemReport> {
-        let drawing = &read.drawing;
-        let made = make_from_sketch(drawing, &self.options(drawing), Seed::new(self.args.seed), run);
+        let Input { read, project } = input;
+        let seed = self.seed(project.as_deref());
+        let made = make_from_sketch(&read.drawing, &self.options(input), seed, run);
         let Made { model, mut item, .. } = made.map_err(|e| match e {
             MakeError::Cancelled(_) => Failure::Cancelled,
             other => Failure::Bad(other.to_string()),
@@ -159,7 +175,7 @@ impl<'a> Job<'a> {
         item.warnings.extend(written?.iter().map(ToString::to_string));
         item.timings_ms.add_io(read_ms, write_ms);
         if let Some(png) = &target.png {
-            let drawn = burgeon::render::render(&model, &self.args.picture.spec(self.args.seed), run)?;
+            let drawn = burgeon::render::render(&model, &self.args.picture.spec(seed.number()), run)?;
             picture::write(png, &drawn)?;
         }
         Ok(item)
@@ -183,7 +199,7 @@ impl<'a> Job<'a> {
                 while machine.cancel.check().is_ok() {
                     let Some(next) = pull(&queue, machine, progress) else { break };
                     let outcome = next.read.and_then(|read| {
-                        strokes.fetch_add(read.drawing.strokes.len() as u64, Ordering::Relaxed);
+                        strokes.fetch_add(read.read.drawing.strokes.len() as u64, Ordering::Relaxed);
                         let target = self.target(&next.name);
                         self.make(&read, &target, next.read_ms, &mut cache, machine, &machine.single())
                     });
@@ -197,7 +213,7 @@ impl<'a> Job<'a> {
         let (Ok(done), Ok(queue)) = (done.into_inner(), queue.into_inner()) else {
             return Err(Failure::Bug("a thread of the batch died".into()));
         };
-        let mut report = self.report();
+        let mut report = self.report(None);
         report.input.drawings = queue.count;
         report.input.strokes = strokes.into_inner();
         self.close(report, done, machine)
@@ -308,14 +324,35 @@ struct Next {
     place: String,
     /// Safe and unique in the folder.
     name: String,
-    read: Outcome<ReadDrawing>,
+    read: Outcome<Input>,
     read_ms: f64,
+}
+
+/// A drawing, and the project that it lies in.
+struct Input {
+    read: ReadDrawing,
+    project: Option<Box<Document>>,
+}
+
+/// What a file gives: drawings one at a time, or the one of a project.
+enum Source {
+    Drawings(Drawings<files::Input>),
+    Project(Option<Box<Input>>),
+}
+
+impl Source {
+    fn next(&mut self) -> Option<Result<Input, DrawingError>> {
+        match self {
+            Self::Drawings(drawings) => Some(drawings.next()?.map(|read| Input { read, project: None })),
+            Self::Project(input) => Some(Ok(*input.take()?)),
+        }
+    }
 }
 
 /// The drawings of all inputs in order, read one at a time.
 struct Queue<'a> {
     inputs: std::slice::Iter<'a, PathBuf>,
-    open: Option<(&'a PathBuf, Drawings<files::Input>, u64)>,
+    open: Option<(&'a PathBuf, Source, u64)>,
     names: BTreeMap<String, u64>,
     count: u64,
     files: usize,
@@ -326,7 +363,7 @@ impl<'a> Queue<'a> {
         Self { inputs: inputs.iter(), open: None, names: BTreeMap::new(), count: 0, files: 0 }
     }
 
-    fn next(&mut self) -> Option<(String, Outcome<ReadDrawing>)> {
+    fn next(&mut self) -> Option<(String, Outcome<Input>)> {
         loop {
             if let Some((path, drawings, of_file)) = &mut self.open {
                 if let Some(item) = drawings.next() {
@@ -367,15 +404,22 @@ fn pull(queue: &Mutex<Queue<'_>>, machine: &Machine, progress: &Progress) -> Opt
     progress.reached(queue.files.saturating_sub(1));
     let mut name = String::new();
     if let Ok(read) = &read {
-        name = unique(&mut queue.names, &safe(&read.drawing.name));
-        place = format!("{place}, drawing \"{}\"", read.drawing.name);
+        name = unique(&mut queue.names, &safe(&read.read.drawing.name));
+        place = format!("{place}, drawing \"{}\"", read.read.drawing.name);
     }
     Some(Next { index, place, name, read, read_ms })
 }
 
-fn open(path: &Path) -> Outcome<Drawings<files::Input>> {
+fn open(path: &Path) -> Outcome<Source> {
     match files::open(path)? {
-        (file, Kind::Drawing(format)) => Ok(read_drawings(file, format, &files::stem(path))),
+        (file, Kind::Drawing(format)) => {
+            Ok(Source::Drawings(read_drawings(file, format, &files::stem(path))))
+        }
+        (file, Kind::Project) => {
+            let document = files::read_project(path, file)?;
+            let read = files::drawing_of(path, &document)?;
+            Ok(Source::Project(Some(Box::new(Input { read, project: Some(Box::new(document)) }))))
+        }
         (_, Kind::Model(format)) => Err(Failure::at(
             path,
             format_args!("is a model ({}), not a drawing; `burgeon render` makes its picture", format.word()),
@@ -455,19 +499,17 @@ fn unique(taken: &mut BTreeMap<String, u64>, name: &str) -> String {
     format!("{name}-{k}")
 }
 
-fn sketch_spec(args: &ReadingArgs) -> Outcome<SketchSpec> {
-    let mut spec = match &args.spec {
-        Some(path) => {
-            let text = files::read_text(path)?;
-            let spec: SketchSpec = serde_json::from_str(&text)
-                .map_err(|e| Failure::at(path, format_args!("is not a sketch spec: {e}")))?;
-            if let Some(fault) = spec.validate().next() {
-                return Err(Failure::at(path, fault));
-            }
-            spec
-        }
-        None => SketchSpec::default(),
-    };
+fn read_spec(path: &Path) -> Outcome<SketchSpec> {
+    let text = files::read_text(path)?;
+    let spec: SketchSpec = serde_json::from_str(&text)
+        .map_err(|e| Failure::at(path, format_args!("is not a sketch spec: {e}")))?;
+    if let Some(fault) = spec.validate().next() {
+        return Err(Failure::at(path, fault));
+    }
+    Ok(spec)
+}
+
+fn set_sketch(spec: &mut SketchSpec, args: &ReadingArgs) {
     spec.height_m = args.height.or(spec.height_m);
     spec.branch_depth = args.branch_depth.map_or(spec.branch_depth, Into::into);
     spec.leaf_depth = args.leaf_depth.map_or(spec.leaf_depth, Into::into);
@@ -479,18 +521,14 @@ fn sketch_spec(args: &ReadingArgs) -> Outcome<SketchSpec> {
     spec.pipe_exponent = args.pipe_exponent.or(spec.pipe_exponent);
     spec.phototropism = args.phototropism.unwrap_or(spec.phototropism);
     spec.gravity = args.gravity.unwrap_or(spec.gravity);
-    Ok(spec)
 }
 
-fn skin_spec(args: &SurfaceArgs, seed: u64) -> SkinSpec {
-    SkinSpec {
-        detail: args.detail,
-        sides: args.sides,
-        textures: !args.no_textures,
-        petals: args.petals.map(Into::into),
-        variation: args.variation,
-        seed: Seed::new(seed),
-    }
+fn set_skin(skin: &mut SkinSpec, args: &SurfaceArgs) {
+    skin.detail = args.detail.unwrap_or(skin.detail);
+    skin.sides = args.sides.unwrap_or(skin.sides);
+    skin.textures &= !args.no_textures;
+    skin.petals = args.petals.map(Into::into).or(skin.petals);
+    skin.variation = args.variation.unwrap_or(skin.variation);
 }
 
 #[cfg(test)]

@@ -319,3 +319,32 @@ fn the_eight_sketches_of_table_1_have_the_papers_counts() {
         }
     }
 }
+
+#[test]
+fn a_project_brings_its_settings_and_options_win_over_them() {
+    let dir = folder("project");
+    let fixture = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/projects/version-1.burgeon");
+    fs::copy(fixture, dir.join("sample.burgeon")).unwrap();
+    good(&dir, &["sketch", "sample.burgeon", "-o", "a.glb", "--report", "a.json"]);
+    let report = json(&dir.join("a.json"));
+    assert_eq!((&report["seed"], &report["input"]["strokes"]), (&7.into(), &15.into()));
+    assert_eq!(report["items"][0]["strokes"][0]["confidence"], 1.0, "a class that the person set");
+    assert!(good(&dir, &["info", "a.glb"]).contains("petal-violet"));
+    good(&dir, &["sketch", "sample.burgeon", "-o", "b.glb", "--seed", "8", "--petals", "white"]);
+    assert!(good(&dir, &["info", "b.glb"]).contains("petal-white"));
+    // The same drawing without the project's settings is another plant; with them it is the same.
+    good(&dir, &["convert", "sample.burgeon", "-o", "sample.json"]);
+    let settings = ["--seed", "7", "--leaf-depth", "signed", "--density", "1.5"];
+    good(&dir, &[&["sketch", "sample.json", "-o", "c.glb", "--report", "c.json"], &settings[..]].concat());
+    assert_eq!(json(&dir.join("c.json"))["items"][0]["digest"], report["items"][0]["digest"]);
+    good(&dir, &["sketch", "sample.json", "-o", "d.glb", "--report", "d.json"]);
+    assert_ne!(json(&dir.join("d.json"))["items"][0]["digest"], report["items"][0]["digest"]);
+    assert!(good(&dir, &["info", "sample.burgeon"]).contains("15 strokes"));
+
+    let mut bytes = fs::read(fixture).unwrap();
+    bytes.truncate(bytes.len() / 2);
+    fs::write(dir.join("half.burgeon"), bytes).unwrap();
+    assert!(bad(&dir, &["sketch", "half.burgeon", "-o", "e.glb"]).contains("not a whole zip file"));
+    assert!(bad(&dir, &["render", "sample.burgeon", "-o", "e.png"]).contains("`burgeon sketch`"));
+    assert!(!dir.join("e.glb").exists());
+}

@@ -1,8 +1,19 @@
 //! Burgeon for the browser and Node: parses, converts, calls. No algorithms.
+//!
+//! | part | for |
+//! |---|---|
+//! | [`sketch_report`] | Node: a file of drawings to the report's items |
+//! | [`StudioSession`] | the Studio's worker: one document, its undo history, its plant |
+
+mod host;
+mod session;
+mod wire;
 
 use burgeon::formats::{self, DrawingFormat};
 use burgeon::{ItemReport, Run, Seed, SketchOptions, make_from_sketch};
 use wasm_bindgen::prelude::*;
+
+use crate::session::{Column, Session};
 
 /// Makes a plant from every drawing of a file (SVG, InkML, QuickDraw ndjson or our JSON, told by its name)
 /// and returns the report's items as a JSON array.
@@ -22,4 +33,170 @@ pub fn sketch_report(file_name: &str, bytes: &[u8], seed: u64) -> Result<String,
         items.push(made.item);
     }
     Ok(serde_json::to_string(&items)?)
+}
+
+fn told<T>(outcome: Result<T, String>) -> Result<T, JsError> {
+    outcome.map_err(|message| JsError::new(&message))
+}
+
+/// The document of the Studio with its history and its plant. Lives in a worker; nothing here waits for the page.
+///
+/// JSON in and out is typed for the page in `wire.rs`. Errors are messages for people; after an error nothing
+/// has changed.
+#[wasm_bindgen]
+#[derive(Debug)]
+pub struct StudioSession(Session);
+
+#[wasm_bindgen]
+impl StudioSession {
+    /// An empty document.
+    #[wasm_bindgen(constructor)]
+    #[expect(clippy::new_without_default, reason = "called from JavaScript only")]
+    pub fn new() -> Self {
+        host::tell_of_panics();
+        Self(Session::default())
+    }
+
+    /// Opens any file that is read: `Opened` as JSON. A project or drawing takes the document's place (one step of
+    /// undo, or none with `fresh`), a model is only looked at. `row` picks a drawing of an ndjson file.
+    ///
+    /// # Errors
+    /// What is wrong with the file and what to do.
+    pub fn open(&mut self, file_name: &str, bytes: &[u8], row: u32, fresh: bool) -> Result<String, JsError> {
+        told(self.0.open(file_name, bytes, row, fresh))
+    }
+
+    /// Adds a stroke and returns its number. `samples`: x, y (up), milliseconds, pressure of each point; NaN where
+    /// not known.
+    ///
+    /// # Errors
+    /// When no point is finite, or the mode is unknown.
+    pub fn add_stroke(&mut self, mode: &str, samples: &[f64]) -> Result<u32, JsError> {
+        told(self.0.add_stroke(mode, samples))
+    }
+
+    /// Shows a stroke that is still being drawn; an empty one takes it away.
+    ///
+    /// # Errors
+    /// When the mode is unknown.
+    pub fn draft(&mut self, mode: &str, samples: &[f64]) -> Result<(), JsError> {
+        told(self.0.draft(mode, samples))
+    }
+
+    /// Does a `Command` (JSON).
+    ///
+    /// # Errors
+    /// Why it was refused.
+    pub fn run(&mut self, command: &str) -> Result<(), JsError> {
+        told(self.0.run(command))
+    }
+
+    /// Opens a gesture: what is staged up to `commit` is one step of this name.
+    ///
+    /// # Errors
+    /// While another is open.
+    pub fn begin(&mut self, name: &str) -> Result<(), JsError> {
+        told(self.0.begin(name))
+    }
+
+    /// Replaces what the open gesture did by one `Command` (JSON).
+    ///
+    /// # Errors
+    /// Why it was refused.
+    pub fn stage(&mut self, command: &str) -> Result<(), JsError> {
+        told(self.0.stage(command))
+    }
+
+    /// Closes the gesture.
+    pub fn commit(&mut self) {
+        self.0.commit();
+    }
+
+    /// Closes the gesture and takes back what it did.
+    pub fn abandon(&mut self) {
+        self.0.abandon();
+    }
+
+    /// Takes the last step back and returns its name.
+    pub fn undo(&mut self) -> Option<String> {
+        self.0.undo()
+    }
+
+    /// Does the last step that was taken back again and returns its name.
+    pub fn redo(&mut self) -> Option<String> {
+        self.0.redo()
+    }
+
+    /// The document as `DocumentState` (JSON), without points.
+    ///
+    /// # Errors
+    /// Never, but for our own bugs.
+    pub fn state(&self) -> Result<String, JsError> {
+        told(self.0.state())
+    }
+
+    /// Numbers of strokes whose points the page does not have yet; they count as had from now on.
+    pub fn fresh_strokes(&mut self) -> Vec<u32> {
+        self.0.fresh_strokes()
+    }
+
+    /// x, y (up) and pressure (NaN where not known) of each point of a stroke.
+    pub fn stroke_points(&self, id: u32) -> Vec<f64> {
+        self.0.stroke_points(id)
+    }
+
+    /// Brings the plant up to date: `View` as JSON.
+    ///
+    /// # Errors
+    /// `cancelled`, or why no plant could be made.
+    pub fn evaluate(&mut self) -> Result<String, JsError> {
+        told(self.0.evaluate())
+    }
+
+    /// Three floats a vertex, metres.
+    pub fn positions(&self, part: usize) -> Vec<f32> {
+        self.0.column(part, Column::Positions)
+    }
+
+    /// Three floats a vertex.
+    pub fn normals(&self, part: usize) -> Vec<f32> {
+        self.0.column(part, Column::Normals)
+    }
+
+    /// Two floats a vertex, v down; may be empty.
+    pub fn uvs(&self, part: usize) -> Vec<f32> {
+        self.0.column(part, Column::Uvs)
+    }
+
+    /// Three floats a vertex, linear; may be empty.
+    pub fn colors(&self, part: usize) -> Vec<f32> {
+        self.0.column(part, Column::Colors)
+    }
+
+    /// Three indices a triangle.
+    pub fn indices(&self, part: usize) -> Vec<u32> {
+        self.0.indices(part)
+    }
+
+    /// RGBA bytes of a texture by its number in `View`.
+    pub fn texture(&self, number: usize) -> Vec<u8> {
+        self.0.texture(number)
+    }
+
+    /// The document as a `.burgeon` file.
+    ///
+    /// # Errors
+    /// Never, but for our own bugs.
+    pub fn save(&self) -> Result<Vec<u8>, JsError> {
+        told(self.0.save())
+    }
+
+    /// What is shown as a file: `glb`, `obj` (a zip with its material file and textures), `ply`, `stl`, or the
+    /// drawing as `json`.
+    ///
+    /// # Errors
+    /// When there is nothing to export.
+    pub fn export(&mut self, format: &str) -> Result<Vec<u8>, JsError> {
+        told(self.0.export(format))
+    }
 }

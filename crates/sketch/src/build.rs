@@ -12,6 +12,7 @@ use crate::depth::{
     leaf_shape, place_flower, place_fruit, place_leaf, place_thorn,
 };
 use crate::fill::{FillContext, fill};
+use crate::front::Front;
 use crate::{BladeReading, PlantMap, Reading, RegionKind, SketchSpec};
 
 /// A plant and how it lies in the drawing.
@@ -197,16 +198,31 @@ fn leaf_shapes<'a>(plant: &mut Plant, scene: &Scene<'_>, reading: &'a Reading) -
 }
 
 /// The crowns of a reading: what was drawn inside one hangs at the front of what grows in it.
-struct Crowned<'a>(Vec<&'a [DVec2]>);
+struct Crowned<'a>(Vec<Crown<'a>>);
+
+struct Crown<'a> {
+    outline: &'a [DVec2],
+    low: DVec2,
+    high: DVec2,
+}
 
 impl<'a> Crowned<'a> {
     fn new(reading: &'a Reading) -> Self {
         let crowns = reading.regions.iter().filter(|r| r.kind == RegionKind::Crown && r.outline.len() >= 3);
-        Self(crowns.map(|r| r.outline.as_slice()).collect())
+        Self(
+            crowns
+                .map(|r| Crown {
+                    outline: &r.outline,
+                    low: r.outline.iter().copied().fold(DVec2::INFINITY, DVec2::min),
+                    high: r.outline.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max),
+                })
+                .collect(),
+        )
     }
 
     fn holds(&self, p: DVec2) -> bool {
-        p.is_finite() && self.0.iter().any(|outline| contains(outline, p))
+        let boxed = |c: &Crown<'_>| p.cmpge(c.low).all() && p.cmple(c.high).all();
+        p.is_finite() && self.0.iter().any(|c| boxed(c) && contains(c.outline, p))
     }
 }
 
@@ -227,15 +243,14 @@ fn hang_in_crowns(
     if crowned.0.is_empty() {
         return;
     }
-    let grown = plant.nodes.position.len();
+    // What is hung does not bear what is hung after it.
+    let grown = plant.nodes.position.clone();
+    let nodes = Front::new(&grown);
     let front = |plant: &Plant, root: DVec2| -> Option<(Bearing, DVec3)> {
         let at = scene.map.plant_from_ink(root);
         // Twice as far aside as it is nearer to the viewer: near twigs win over far ones in front.
-        let worth = |p: &DVec3| p.z - 2.0 * p.truncate().distance(at);
-        let (node, position) = plant.nodes.position[..grown]
-            .iter()
-            .enumerate()
-            .max_by(|a, b| worth(a.1).total_cmp(&worth(b.1)).then(b.0.cmp(&a.0)))?;
+        let node = nodes.nearest_to_viewer(at)?;
+        let position = grown.get(node)?;
         let axis = plant.nodes.axis.get(node)?;
         let bearing = Bearing {
             node: NodeId::new(node),

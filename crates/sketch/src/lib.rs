@@ -18,6 +18,7 @@ mod depth;
 mod drawing;
 mod fidelity;
 mod fill;
+mod front;
 mod map;
 mod reading;
 mod spec;

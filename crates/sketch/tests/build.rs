@@ -458,3 +458,28 @@ proptest! {
         prop_assert_eq!(built.plant.digest_hex(), made(&reading, &spec).plant.digest_hex());
     }
 }
+
+#[test]
+fn contours_by_the_thousand_share_the_leaves() {
+    let contours = |n: u32| {
+        let mut reading = tree();
+        reading.regions = (0..n)
+            .map(|i| {
+                let centre = v(0.05 * f64::from(i % 20), 0.3 + 0.05 * f64::from(i / 20 % 20));
+                RegionReading {
+                    outline: (0..16).map(|k| centre + around(k, 16, 0.0) * 0.02).collect(),
+                    kind: RegionKind::Leaves,
+                    bearers: vec![0],
+                    source: Some(20 + i),
+                    color: None,
+                }
+            })
+            .collect();
+        let mut spec = SketchSpec::default();
+        spec.fill.density = 10.0;
+        made(&reading, &spec).plant.organs.len()
+    };
+    let (few, many) = (contours(10), contours(3000));
+    assert!(few > 1000, "{few}: density is kept");
+    assert!((100_000..=200_000).contains(&many), "{many}: bounded, whatever is drawn");
+}

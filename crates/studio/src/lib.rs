@@ -17,6 +17,7 @@
 //! # Ok::<(), burgeon::MakeError>(())
 //! ```
 
+mod evaluate;
 mod leaves;
 mod make;
 mod report;
@@ -25,6 +26,7 @@ pub use base::{
     Angle, CancelToken, Cancelled, Clock, Digest, Executor, NoClock, Report, Run, Seed, Serial, Unit, UpAxis,
     Warning, map_indexed,
 };
+pub use evaluate::{Evaluator, FrontView};
 pub use leaves::{
     FaceCounts, FitError, LeafError, LeafOptions, LeafReport, LeafTexture, MadeLeaf, ScanReport, ShootSpec,
     leaf_blade, make_leaf, make_leaf_from_scan, make_leaf_of, make_shoot,
@@ -34,7 +36,7 @@ pub use report::{
     Counts, Fidelity, InputReport, ItemReport, REPORT_SCHEMA, RunReport, StrokeReport, TimingsMs,
 };
 
-pub use {formats, geom, glam, leaf, mesh, plant, render, sketch, skin};
+pub use {document, formats, geom, glam, leaf, mesh, plant, render, sketch, skin};
 
 /// The version that is written into reports and files.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -9,7 +9,7 @@
 //! | crown | limbs, branches, twigs, leaves | `crown`, `foliage` |
 //!
 //! All of them grow in the body that the contour stands for (`volume`) towards points strewn in it
-//! (`scatter`). Bounded: 4,000 twigs and 20,000 leaves a region.
+//! (`scatter`). Bounded: 4,000 twigs and 20,000 leaves a region, and about [`MOST_GROWN`] leaves a drawing.
 
 mod crown;
 mod foliage;
@@ -18,6 +18,8 @@ mod leaves;
 mod scatter;
 mod twigs;
 mod volume;
+
+use std::collections::BTreeMap;
 
 use base::{Cancelled, Draw, Report, Run, Seed};
 use glam::{DVec2, DVec3};
@@ -29,6 +31,12 @@ use foliage::Foliage;
 use leaves::Leaves;
 use twigs::Twigs;
 use volume::{Inflation, Volume, above};
+
+/// Most leaves that grow in all contours of a drawing together; a fair share of them in each.
+pub(crate) const MOST_GROWN: usize = 200_000;
+
+/// Axes of a plant at which contours are left empty: a million nodes or more, a gigabyte of meshes.
+const MOST_AXES: usize = 250_000;
 
 /// What filling needs to know about the plant that it grows on.
 #[derive(Clone, Copy, Debug)]
@@ -66,9 +74,22 @@ pub(crate) fn fill(
 ) -> Result<(), Cancelled> {
     let mut forms: Vec<(LeafForm, ShapeId)> = Vec::new();
     let drawn = foliage::measured(plant, ctx.templates);
-    let mut born: Vec<(u64, u64)> = Vec::new();
+    let natural = foliage::median_length(&drawn);
+    let share = MOST_GROWN / reading.regions.len().max(1);
+    let mut born: BTreeMap<u64, u64> = BTreeMap::new();
     for (row, region) in reading.regions.iter().enumerate() {
         run.cancel.check()?;
+        if plant.axes.len() > MOST_AXES {
+            let left = reading.regions.len() - row;
+            report.warn(
+                "contours-beyond-limit",
+                format!(
+                    "the plant has {} axes: {left} contours were left empty; draw several plants",
+                    plant.axes.len()
+                ),
+            );
+            break;
+        }
         let outline: Vec<DVec2> = region.outline.iter().map(|&p| ctx.map.plant_from_ink(p)).collect();
         let Some((_, mut volume)) = body(outline, region.kind) else {
             report.warn("contour-empty", format!("contour {} encloses nothing and was left empty", row + 1));
@@ -77,12 +98,13 @@ pub(crate) fn fill(
         let bearers = bearers(plant, region, ctx, &volume);
         // Named by its bearer and its rank among that bearer's contours, so that editing one leaves others be.
         let bearer = bearers.first().map_or(0, |&a| plant.axis(a).key);
-        let rank = born.iter().filter(|(b, _)| *b == bearer).count() as u64;
-        born.push((bearer, rank));
+        let next = born.entry(bearer).or_default();
+        let rank = *next;
+        *next += 1;
         let seed = ctx.seed.child(bearer).child(rank);
         lay(plant, &mut volume, &bearers, region.kind);
         let spec = tame(ctx.spec.fill);
-        let mut look = Look { forms: &mut forms, drawn: &drawn, seed, spec };
+        let mut look = Look { forms: &mut forms, drawn: &drawn, natural, share, seed, spec };
         let (axes, leaves) = match region.kind {
             RegionKind::Twigs => {
                 let kind = if ctx.woody { AxisKind::Twig } else { AxisKind::Stem };
@@ -188,6 +210,10 @@ fn tame(spec: FillSpec) -> FillSpec {
 struct Look<'a> {
     forms: &'a mut Vec<(LeafForm, ShapeId)>,
     drawn: &'a [(ShapeId, f64)],
+    /// Length of the drawn leaves: their median.
+    natural: Option<f64>,
+    /// Most leaves for this contour.
+    share: usize,
     seed: Seed,
     spec: FillSpec,
 }
@@ -202,13 +228,6 @@ impl Look<'_> {
         (id, 1.0)
     }
 
-    /// Length of the drawn leaves: their median.
-    fn natural(&self) -> Option<f64> {
-        let mut lengths: Vec<f64> = self.drawn.iter().map(|(_, l)| *l).collect();
-        lengths.sort_by(f64::total_cmp);
-        lengths.get(lengths.len() / 2).copied()
-    }
-
     fn of_crown(&mut self, plant: &mut Plant, volume: &Volume, habit: Habit) -> (Foliage, usize) {
         // Diameter of the circle with the contour's area.
         let diameter = (volume.area * 4.0 / base::ops::PI).sqrt();
@@ -216,7 +235,7 @@ impl Look<'_> {
         // 1/11: fewer and larger leaves than a real tree's read as foliage at the size of a drawing.
         let mut length = diameter / if conifer { 8.5 } else { 11.0 };
         let mut shapes = self.drawn.to_vec();
-        if let Some(natural) = self.natural() {
+        if let Some(natural) = self.natural {
             length = natural.clamp(diameter / 40.0, diameter / 6.0);
         } else if conifer {
             shapes.push(self.form(plant, LeafForm::Spray));
@@ -237,15 +256,15 @@ impl Look<'_> {
             insertion: if conifer { 0.7 } else { 0.95 },
             light: if conifer { 0.25 } else { 0.75 },
             core: core.extend(volume.mid(core)),
-            most: leaves::MOST_LEAVES,
+            most: leaves::MOST_LEAVES.min(self.share),
         };
-        (foliage, leaves)
+        (foliage, leaves.min(self.share))
     }
 
     fn of_cluster(&mut self, plant: &mut Plant, volume: &Volume) -> (Foliage, usize) {
         let mut shapes = self.drawn.to_vec();
         let room = 1.6 * volume.inradius;
-        let length = self.natural().map_or_else(|| leaves::default_length(volume), |l| l.min(room));
+        let length = self.natural.map_or_else(|| leaves::default_length(volume), |l| l.min(room));
         if shapes.is_empty() {
             shapes.push(self.form(plant, LeafForm::Ovate));
         }
@@ -258,9 +277,9 @@ impl Look<'_> {
             insertion: 0.9,
             light: 0.5,
             core: core.extend(volume.mid(core)),
-            most: leaves::MOST_LEAVES,
+            most: leaves::MOST_LEAVES.min(self.share),
         };
-        (foliage, leaves)
+        (foliage, leaves.min(self.share))
     }
 }
 

@@ -1,0 +1,57 @@
+//! What the browser gives: time, a sign to stop, a place for complaints.
+
+use burgeon::{CancelToken, Clock, Executor};
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen::prelude::*;
+
+#[cfg(target_arch = "wasm32")]
+#[wasm_bindgen]
+extern "C" {
+    #[wasm_bindgen(js_namespace = performance)]
+    fn now() -> f64;
+    #[wasm_bindgen(js_namespace = console)]
+    fn error(text: &str);
+    // Set by the worker; true when the page wants the evaluation to stop.
+    #[wasm_bindgen(js_namespace = globalThis, js_name = burgeonStop)]
+    fn burgeon_stop() -> bool;
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+fn now() -> f64 {
+    0.0
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+fn burgeon_stop() -> bool {
+    false
+}
+
+/// Lets a panic say where it came from before the worker dies.
+pub(crate) fn tell_of_panics() {
+    #[cfg(target_arch = "wasm32")]
+    std::panic::set_hook(Box::new(|info| error(&info.to_string())));
+}
+
+/// The browser's clock.
+pub(crate) struct Host;
+
+impl Clock for Host {
+    fn now_ms(&self) -> f64 {
+        now()
+    }
+}
+
+/// One job after another, with a look at the page's wish before each: the only thread there is cannot be
+/// interrupted from outside.
+pub(crate) struct Attentive<'a>(pub(crate) &'a CancelToken);
+
+impl Executor for Attentive<'_> {
+    fn for_each(&self, n: usize, job: &(dyn Fn(usize) + Sync)) {
+        for i in 0..n {
+            if burgeon_stop() {
+                self.0.cancel();
+            }
+            job(i);
+        }
+    }
+}

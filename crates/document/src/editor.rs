@@ -1,0 +1,161 @@
+//! Named, unlimited undo over a document.
+
+use crate::{Command, CommandError, Document, Event};
+
+/// One step of the history: what one undo takes back.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Step {
+    /// What it is called: [`Command::name`] of its first command, or the gesture's name.
+    pub name: String,
+    /// What happened, in order.
+    pub events: Vec<Event>,
+}
+
+/// A document with its history.
+///
+/// Guaranteed: a refused command changes nothing; undo of any step gives back the document before it, bit for bit;
+/// `document().validate()` is empty after every call.
+///
+/// ```
+/// use document::{Command, Editor};
+/// let mut editor = Editor::default();
+/// editor.run(Command::Rename("rose".into()))?;
+/// assert_eq!(editor.undo(), Some("rename"));
+/// assert_eq!(editor.document().settings().name, "plant");
+/// # Ok::<(), document::CommandError>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Editor {
+    document: Document,
+    done: Vec<Step>,
+    undone: Vec<Step>,
+    gesture: Option<Step>,
+    revision: u64,
+}
+
+impl Editor {
+    /// An editor of a document that was read; its history is empty.
+    pub fn new(document: Document) -> Self {
+        Self { document, ..Self::default() }
+    }
+
+    /// The document as it is now, an open gesture included.
+    pub fn document(&self) -> &Document {
+        &self.document
+    }
+
+    /// Grows with every change, undo and redo included; never returns to an earlier value.
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// Steps that can be undone, oldest first.
+    pub fn done(&self) -> &[Step] {
+        &self.done
+    }
+
+    /// Steps that can be redone; the next one is last.
+    pub fn undone(&self) -> &[Step] {
+        &self.undone
+    }
+
+    /// Does what a command asks, as one step, or as part of the open gesture.
+    ///
+    /// # Errors
+    /// [`CommandError`]; then nothing changed.
+    pub fn run(&mut self, command: Command) -> Result<(), CommandError> {
+        let name = command.name();
+        let event = command.decide(&self.document)?;
+        event.apply(&mut self.document);
+        self.revision += 1;
+        self.undone.clear();
+        match &mut self.gesture {
+            Some(step) => step.events.push(event),
+            None => self.done.push(Step { name: name.into(), events: vec![event] }),
+        }
+        debug_assert!(self.document.validate().next().is_none(), "{:?}", self.document.validate().next());
+        Ok(())
+    }
+
+    /// Opens a gesture: commands up to [`Editor::commit`] become one step of this name.
+    ///
+    /// # Errors
+    /// [`CommandError::Gesture`] while another is open.
+    pub fn begin_gesture(&mut self, name: &str) -> Result<(), CommandError> {
+        if self.gesture.is_some() {
+            return Err(CommandError::Gesture("a gesture is open already"));
+        }
+        self.gesture = Some(Step { name: name.into(), events: Vec::new() });
+        Ok(())
+    }
+
+    /// Replaces what the open gesture did so far by one command: a drag shows its latest state only.
+    ///
+    /// # Errors
+    /// [`CommandError`]; then the gesture is as it was before the call.
+    pub fn stage(&mut self, command: Command) -> Result<(), CommandError> {
+        let Some(mut step) = self.gesture.take() else {
+            return Err(CommandError::Gesture("no gesture is open"));
+        };
+        let mut document = self.document.clone(); // cheap: strokes are shared
+        step.events.iter().rev().for_each(|e| e.revert(&mut document));
+        let outcome = match command.decide(&document) {
+            Ok(event) => {
+                event.apply(&mut document);
+                self.undone.clear();
+                step.events = vec![event];
+                Ok(())
+            }
+            // Dragged back to where it began.
+            Err(CommandError::Nothing(_)) => {
+                step.events.clear();
+                Ok(())
+            }
+            Err(error) => Err(error),
+        };
+        if outcome.is_ok() {
+            self.document = document;
+            self.revision += 1;
+        }
+        self.gesture = Some(step);
+        outcome
+    }
+
+    /// Closes the gesture; if it changed anything it is one step now. Returns whether it did.
+    pub fn commit(&mut self) -> bool {
+        let Some(step) = self.gesture.take() else { return false };
+        let changed = !step.events.is_empty();
+        if changed {
+            self.done.push(step);
+        }
+        changed
+    }
+
+    /// Closes the gesture and takes back what it did.
+    pub fn cancel_gesture(&mut self) {
+        if let Some(step) = self.gesture.take() {
+            step.events.iter().rev().for_each(|e| e.revert(&mut self.document));
+            self.revision += 1;
+        }
+    }
+
+    /// Takes the last step back and returns its name; an open gesture is closed first.
+    pub fn undo(&mut self) -> Option<&str> {
+        self.commit();
+        let step = self.done.pop()?;
+        step.events.iter().rev().for_each(|e| e.revert(&mut self.document));
+        self.revision += 1;
+        self.undone.push(step);
+        self.undone.last().map(|s| s.name.as_str())
+    }
+
+    /// Does the last step that was taken back again and returns its name.
+    pub fn redo(&mut self) -> Option<&str> {
+        self.commit();
+        let step = self.undone.pop()?;
+        step.events.iter().for_each(|e| e.apply(&mut self.document));
+        self.revision += 1;
+        self.done.push(step);
+        self.done.last().map(|s| s.name.as_str())
+    }
+}

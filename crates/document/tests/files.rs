@@ -1,0 +1,101 @@
+//! Project files that are hostile, damaged, newer or older.
+#![expect(clippy::unwrap_used, reason = "tests")]
+
+use document::{Document, ProjectError, is_project, pack, read_project, write_project};
+use glam::DVec2;
+use proptest::prelude::*;
+use sketch::Drawing;
+
+fn sample() -> Vec<u8> {
+    let lines = [vec![DVec2::ZERO, DVec2::new(0.1, 0.7), DVec2::new(0.2, 1.4)], vec![DVec2::ONE, DVec2::X]];
+    write_project(&Document::from_drawing(&Drawing::from_polylines("sample", &lines)), "test").unwrap()
+}
+
+fn project(manifest: &str, document: &str) -> Vec<u8> {
+    let entry = |name: &str, text: &str| (name.to_owned(), text.as_bytes().to_vec());
+    pack(&[entry("manifest.json", manifest), entry("document.json", document)]).unwrap()
+}
+
+const V1: &str = r#"{"burgeon":"project/1"}"#;
+
+fn refusal(bytes: &[u8]) -> String {
+    read_project(bytes).unwrap_err().to_string()
+}
+
+#[test]
+fn refusals_say_what_and_what_to_do() {
+    assert!(is_project(&sample()));
+    for (bytes, words) in [
+        (Vec::new(), "not a whole zip"),
+        (b"PK\x03\x04 but no more".to_vec(), "not a whole zip"),
+        (sample()[..sample().len() / 2].to_vec(), "not a whole zip"),
+        (pack(&[("x.txt".into(), vec![1])]).unwrap(), "no \"manifest.json\""),
+        (pack(&[("manifest.json".into(), V1.into())]).unwrap(), "no \"document.json\""),
+        (project(r#"{"burgeon":"project/2"}"#, "{}"), "take a newer Burgeon"),
+        (project("[", "{}"), "manifest.json: EOF"),
+        (project(V1, "{}"), "missing field `name`"),
+        (project(V1, r#"{"name":"a","seed":1,"strokes":[],"more":1}"#), "unknown field `more`"),
+        (project(V1, r#"{"name":"a","seed":1,"strokes":[{"x":[1],"y":[]}]}"#), "stroke 0: its columns"),
+        (project(V1, r#"{"name":"a","seed":1,"strokes":[{"x":[],"y":[]}]}"#), "no point"),
+        (project(V1, r#"{"name":"a","seed":1,"strokes":[{"x":[1e999],"y":[0]}]}"#), "out of range"),
+        (project(V1, r#"{"name":"a","seed":-1,"strokes":[]}"#), "invalid value"),
+        (project(V1, r#"{"name":"a","seed":1,"strokes":[],"skin":{"petals":"plaid"}}"#), "petal colour"),
+        (project(V1, r#"{"name":"a","seed":1,"strokes":[],"skin":{"detail":1e9}}"#), "0.1 to 8"),
+        (
+            project(V1, r#"{"name":"a","seed":1,"strokes":[],"sketch":{"fill":{"density":1e300}}}"#),
+            "fill.density is",
+        ),
+    ] {
+        let said = refusal(&bytes);
+        assert!(said.starts_with("project file") && said.contains(words), "{said:?} has no {words:?}");
+    }
+}
+
+#[test]
+fn a_bomb_is_refused_before_it_unfolds() {
+    let zeros = vec![b' '; 300 << 20];
+    let bomb = pack(&[("manifest.json".into(), V1.into()), ("document.json".into(), zeros)]).unwrap();
+    assert!(bomb.len() < 1 << 20, "{} bytes", bomb.len());
+    assert!(matches!(read_project(&bomb), Err(ProjectError::Archive(_))));
+    assert!(refusal(&bomb).contains("bytes in one file"));
+    let many: Vec<_> = (0..300).map(|k| (format!("{k}"), Vec::new())).collect();
+    assert!(refusal(&pack(&many).unwrap()).contains("256 files"));
+}
+
+#[test]
+fn a_deep_document_is_refused() {
+    let deep = format!(r#"{{"name":"a","seed":1,"strokes":[{}"#, "[".repeat(100_000));
+    assert!(refusal(&project(V1, &deep)).starts_with("project file, document.json"));
+}
+
+#[test]
+fn files_of_version_1_stay_readable() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/projects/version-1.burgeon");
+    let document = read_project(&std::fs::read(path).unwrap()).unwrap();
+    assert_eq!(document.settings().name, "sample");
+    assert_eq!((document.strokes().len(), document.settings().seed.number()), (15, 7));
+    assert_eq!(document.classes().len(), 1, "one correction");
+    assert_eq!(document.settings().skin.petals.map(skin::PetalColor::word), Some("violet"));
+    assert_eq!(document.strokes()[0].stroke.samples.len(), 141);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1500))]
+
+    #[test]
+    fn damaged_files_never_panic(
+        edits in proptest::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+        cut in any::<prop::sample::Index>(),
+        shorten in any::<bool>(),
+    ) {
+        let mut bytes = sample();
+        for (at, value) in edits {
+            let at = at.index(bytes.len());
+            bytes[at] = value;
+        }
+        if shorten { bytes.truncate(cut.index(bytes.len())); }
+        if let Ok(document) = read_project(&bytes) {
+            prop_assert_eq!(document.validate().collect::<Vec<_>>(), vec![]);
+        }
+    }
+}

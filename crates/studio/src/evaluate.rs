@@ -1,0 +1,304 @@
+//! From a drawing to its plant in stages, each kept until what it depends on changes.
+//!
+//! `drawing -> ink, classes | + corrections -> reading | + spec, seed -> plant | + skin -> model`
+
+use base::{Report, Run, Seed, Stage, Warning};
+use glam::DVec2;
+use mesh::Model;
+use plant::Plant;
+use sketch::{Built, Classified, Drawing, Ink, Reading, SketchSpec};
+use skin::SkinSpec;
+
+use crate::make::{ClassOverrides, MakeError, SketchOptions};
+use crate::report::{Counts, Fidelity, ItemReport, StrokeReport, TimingsMs};
+
+/// How a drawing lies in the front view of its model: `plant.xy = (drawing - origin) * metres_per_unit`, z towards
+/// the viewer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrontView {
+    /// Metres for each unit of the drawing, above 0.
+    pub metres_per_unit: f64,
+    /// The point of the drawing that is the model's origin: on the ground, at the root of the main axis.
+    pub origin: DVec2,
+}
+
+/// Makes plants from a drawing that changes: an update does again only what a change touches.
+///
+/// A seed or a setting of depth leaves the reading alone, a correction leaves the classifier alone, a colour leaves
+/// the plant alone. Guaranteed: the same result as from a fresh evaluator; after an error the last result stays.
+///
+/// ```
+/// use burgeon::{Evaluator, Run, Seed, SketchOptions};
+/// use burgeon::glam::DVec2;
+/// use burgeon::sketch::Drawing;
+/// let line: Vec<DVec2> = (0..40).map(|i| DVec2::new(0.02 * f64::from(i % 7), f64::from(i))).collect();
+/// let drawing = Drawing::from_polylines("a stem", &[line]);
+/// let mut evaluator = Evaluator::default();
+/// evaluator.update(&drawing, &SketchOptions::default(), Seed::new(1), &Run::plain())?;
+/// evaluator.update(&drawing, &SketchOptions::default(), Seed::new(2), &Run::plain())?;
+/// assert_eq!(evaluator.stages_done(), ["depth", "mesh"]);
+/// # Ok::<(), burgeon::MakeError>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Evaluator {
+    strokes: Option<Kept<Drawing, (Ink, Vec<Classified>)>>,
+    reading: Option<Kept<ClassOverrides, Reading>>,
+    plant: Option<Kept<PlantFrom, (Built, Fidelity)>>,
+    model: Option<Kept<SkinSpec, Model>>,
+    done: Vec<&'static str>,
+}
+
+/// What a plant is made from, besides its reading: the name goes into the plant.
+type PlantFrom = (SketchSpec, Seed, String);
+
+/// A result, what it was made from (besides the stage before it), and what was said meanwhile.
+#[derive(Clone, Debug)]
+struct Kept<K, V> {
+    from: K,
+    value: V,
+    warnings: Vec<Warning>,
+}
+
+impl Evaluator {
+    /// Brings everything up to date and reports.
+    ///
+    /// # Errors
+    /// [`MakeError`]: nothing usable in the drawing, a correction of a missing stroke, or a cancelled run.
+    pub fn update(
+        &mut self,
+        drawing: &Drawing,
+        options: &SketchOptions,
+        seed: Seed,
+        run: &Run<'_>,
+    ) -> Result<ItemReport, MakeError> {
+        self.done.clear();
+        let count = drawing.strokes.len();
+        if let Some((&index, _)) = options.classes.range(u32::try_from(count).unwrap_or(u32::MAX)..).next() {
+            return Err(MakeError::NoSuchStroke { name: drawing.name.clone(), index, strokes: count });
+        }
+        let mut stages = Vec::new();
+        if self.strokes.as_ref().is_none_or(|k| k.from.strokes != drawing.strokes) {
+            let mut report = Report::default();
+            let ink = report.stage("preprocess", run.clock, |r| sketch::clean(drawing, r));
+            if ink.strokes.is_empty() {
+                return Err(MakeError::NoStrokes { name: drawing.name.clone(), strokes: count });
+            }
+            let classes = report.stage("classify", run.clock, |_| sketch::classify(&ink, run));
+            run.cancel.check()?;
+            self.reading = None;
+            self.strokes =
+                Some(Self::keep(&mut self.done, &mut stages, drawing.clone(), (ink, classes), report));
+        }
+        self.read(&options.classes, &mut stages, run)?;
+        self.build(&options.spec, seed, &drawing.name, &mut stages, run)?;
+        self.mesh(&options.skin, &mut stages, run)?;
+        Ok(self.item(&drawing.name, stages))
+    }
+
+    fn keep<K, V>(
+        done: &mut Vec<&'static str>,
+        stages: &mut Vec<Stage>,
+        from: K,
+        value: V,
+        report: Report,
+    ) -> Kept<K, V> {
+        done.extend(report.stages.iter().map(|s| s.name));
+        stages.extend(report.stages);
+        Kept { from, value, warnings: report.warnings }
+    }
+
+    fn read(
+        &mut self,
+        wanted: &ClassOverrides,
+        stages: &mut Vec<Stage>,
+        run: &Run<'_>,
+    ) -> Result<(), MakeError> {
+        let Some(strokes) = &self.strokes else { return Ok(()) };
+        if self.reading.as_ref().is_some_and(|k| k.from == *wanted) {
+            return Ok(());
+        }
+        let (ink, classes) = &strokes.value;
+        let mut classes = classes.clone();
+        for (stroke, class) in ink.strokes.iter().zip(&mut classes) {
+            if let Some(&wanted) = wanted.get(&stroke.index) {
+                *class = Classified { class: wanted, confidence: 1.0 };
+            }
+        }
+        let mut report = Report::default();
+        let reading = report.stage("structure", run.clock, |r| sketch::read(ink, &classes, r));
+        run.cancel.check()?;
+        self.plant = None;
+        self.reading = Some(Self::keep(&mut self.done, stages, wanted.clone(), reading, report));
+        Ok(())
+    }
+
+    fn build(
+        &mut self,
+        spec: &SketchSpec,
+        seed: Seed,
+        name: &str,
+        stages: &mut Vec<Stage>,
+        run: &Run<'_>,
+    ) -> Result<(), MakeError> {
+        let (Some(strokes), Some(reading)) = (&self.strokes, &self.reading) else { return Ok(()) };
+        let same =
+            |k: &Kept<(SketchSpec, Seed, String), _>| (&k.from.0, k.from.1, &*k.from.2) == (spec, seed, name);
+        if self.plant.as_ref().is_some_and(same) {
+            return Ok(());
+        }
+        let mut report = Report::default();
+        let mut built = sketch::build(&reading.value, spec, seed, run, &mut report)?; // books `depth` itself
+        let fidelity = sketch::fidelity(&built, &reading.value, &strokes.value.0, run);
+        let fidelity = fidelity.map_or_else(Fidelity::default, |f| Fidelity {
+            reprojection_mean: f.reprojection_mean,
+            reprojection_p95: f.reprojection_p95,
+        });
+        run.cancel.check()?;
+        name.clone_into(&mut built.plant.name);
+        self.model = None;
+        let from = (spec.clone(), seed, name.to_owned());
+        self.plant = Some(Self::keep(&mut self.done, stages, from, (built, fidelity), report));
+        Ok(())
+    }
+
+    fn mesh(&mut self, skin: &SkinSpec, stages: &mut Vec<Stage>, run: &Run<'_>) -> Result<(), MakeError> {
+        let Some(plant) = &self.plant else { return Ok(()) };
+        if self.model.as_ref().is_some_and(|k| k.from == *skin) {
+            return Ok(());
+        }
+        let mut report = Report::default();
+        let plant = &plant.value.0.plant;
+        let mut model = report.stage("mesh", run.clock, |_| skin::skin(plant, skin, run))?;
+        model.name.clone_from(&plant.name);
+        self.model = Some(Self::keep(&mut self.done, stages, skin.clone(), model, report));
+        Ok(())
+    }
+
+    fn item(&self, name: &str, stages: Vec<Stage>) -> ItemReport {
+        let mut report = Report { stages, ..Report::default() };
+        let (Some(strokes), Some(reading), Some(plant), Some(model)) =
+            (&self.strokes, &self.reading, &self.plant, &self.model)
+        else {
+            return ItemReport::default(); // update fills all four before it comes here
+        };
+        for warnings in [&strokes.warnings, &reading.warnings, &plant.warnings, &model.warnings] {
+            report.warnings.extend_from_slice(warnings);
+        }
+        let (built, fidelity) = &plant.value;
+        let mut counts = Counts::of_plant(&built.plant);
+        counts.vertices = model.value.vertex_count() as u64;
+        counts.triangles = model.value.triangle_count() as u64;
+        ItemReport {
+            name: name.to_owned(),
+            output: String::new(),
+            strokes: reading.value.strokes.iter().map(stroke_report).collect(),
+            counts,
+            timings_ms: TimingsMs::from_report(&report),
+            fidelity: *fidelity,
+            digest: built.plant.digest_hex(),
+            warnings: report.warnings.iter().map(ToString::to_string).collect(),
+            ..ItemReport::default()
+        }
+    }
+
+    /// The stages that the last update did again, by their names in reports.
+    pub fn stages_done(&self) -> &[&'static str] {
+        &self.done
+    }
+
+    /// The model of the last update that succeeded so far.
+    pub fn model(&self) -> Option<&Model> {
+        Some(&self.model.as_ref()?.value)
+    }
+
+    /// How the drawing lies in the model's front view.
+    pub fn front(&self) -> Option<FrontView> {
+        let ink = self.strokes.as_ref()?.value.0.map;
+        let map = self.plant.as_ref()?.value.0.map;
+        Some(FrontView {
+            metres_per_unit: map.metres_per_ink * ink.scale,
+            origin: ink.to_drawing(map.origin_ink),
+        })
+    }
+
+    /// The reading, plant and model of the last update; the evaluator is empty then.
+    pub(crate) fn take(&mut self) -> Option<(Reading, Plant, Model)> {
+        let (reading, plant, model) = (self.reading.take()?, self.plant.take()?, self.model.take()?);
+        self.strokes = None;
+        Some((reading.value, plant.value.0.plant, model.value))
+    }
+}
+
+fn stroke_report(s: &sketch::StrokeReading) -> StrokeReport {
+    StrokeReport {
+        index: s.index,
+        class: s.class.word().into(),
+        organ: s.organ.word().into(),
+        confidence: s.confidence,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+
+    use super::*;
+    use skin::PetalColor;
+
+    fn drawing() -> Drawing {
+        let stem: Vec<DVec2> = (0..40).map(|i| DVec2::new(0.02 * f64::from(i % 7), f64::from(i))).collect();
+        let leaf: Vec<DVec2> = (0..=30)
+            .map(|k| {
+                let a = f64::from(k) / 30.0 * base::ops::TAU;
+                DVec2::new(7.0 - 7.0 * base::ops::cos(a), 15.0 + 3.0 * base::ops::sin(a))
+            })
+            .collect();
+        Drawing::from_polylines("herb", &[stem, leaf])
+    }
+
+    /// What an update did again, after checking that a fresh evaluator gives the same.
+    fn step(e: &mut Evaluator, d: &Drawing, o: &SketchOptions, seed: u64) -> Vec<&'static str> {
+        let item = e.update(d, o, Seed::new(seed), &Run::plain()).unwrap();
+        let mut fresh = Evaluator::default();
+        let again = fresh.update(d, o, Seed::new(seed), &Run::plain()).unwrap();
+        assert_eq!((&item, e.model(), e.front()), (&again, fresh.model(), fresh.front()));
+        e.stages_done().to_vec()
+    }
+
+    #[test]
+    fn only_what_a_change_touches_is_done_again() {
+        let (mut e, mut d, mut o) = (Evaluator::default(), drawing(), SketchOptions::default());
+        let all = ["preprocess", "classify", "structure", "depth", "mesh"];
+        assert_eq!(step(&mut e, &d, &o, 1), all);
+        assert_eq!(step(&mut e, &d, &o, 1), [""; 0]);
+        o.skin.petals = Some(PetalColor::Blue);
+        assert_eq!(step(&mut e, &d, &o, 1), all[4..]);
+        assert_eq!(step(&mut e, &d, &o, 2), all[3..]);
+        o.spec.fill.density = 2.0;
+        assert_eq!(step(&mut e, &d, &o, 2), all[3..]);
+        o.classes.insert(1, sketch::StrokeClass::Axis);
+        assert_eq!(step(&mut e, &d, &o, 2), all[2..]);
+        d.strokes.pop();
+        o.classes.clear();
+        assert_eq!(step(&mut e, &d, &o, 2), all);
+    }
+
+    #[test]
+    fn an_error_keeps_the_last_result() {
+        let (mut e, d, o) = (Evaluator::default(), drawing(), SketchOptions::default());
+        step(&mut e, &d, &o, 1);
+        let before = e.model().cloned();
+        assert!(e.update(&Drawing::default(), &o, Seed::new(1), &Run::plain()).is_err());
+        assert_eq!(e.model().cloned(), before);
+        assert_eq!(step(&mut e, &d, &o, 1), [""; 0]);
+    }
+
+    #[test]
+    fn the_front_view_is_where_the_drawing_is() {
+        let (mut e, d, o) = (Evaluator::default(), drawing(), SketchOptions::default());
+        step(&mut e, &d, &o, 1);
+        let front = e.front().unwrap();
+        let bounds = e.model().unwrap().bounds();
+        let top = (DVec2::new(0.0, 39.0) - front.origin) * front.metres_per_unit;
+        assert!((bounds.max.y - top.y).abs() < 0.02, "{} {}", bounds.max, top);
+    }
+}
