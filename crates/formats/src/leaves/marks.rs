@@ -459,6 +459,9 @@ mod tests {
         for _ in 0..2000 {
             let mut bytes = text.clone().into_bytes();
             for _ in 0..=stream.below(4) {
+                if bytes.is_empty() {
+                    break;
+                }
                 let at = stream.below(bytes.len());
                 match stream.below(3) {
                     0 => bytes[at] = odd[stream.below(odd.len())],
