@@ -348,3 +348,32 @@ fn a_project_brings_its_settings_and_options_win_over_them() {
     assert!(bad(&dir, &["render", "sample.burgeon", "-o", "e.png"]).contains("`burgeon sketch`"));
     assert!(!dir.join("e.glb").exists());
 }
+
+/// Drawings whose strokes are understood only together: a smooth crown on a trunk, a pot, fronds, a rosette.
+#[test]
+fn the_gallery_is_understood() {
+    // Least and most of: flowers, petals, leaves, branches.
+    const KNOWN: [(&str, [(u64, u64); 4]); 9] = [
+        ("apple-tree", [(0, 0), (0, 0), (300, 3000), (50, 400)]),
+        ("cactus", [(0, 0), (0, 0), (0, 0), (3, 3)]),
+        ("dandelion", [(1, 1), (9, 16), (4, 4), (1, 9)]),
+        ("grass", [(0, 0), (0, 0), (0, 9), (0, 9)]),
+        ("house-plant", [(0, 0), (0, 0), (5, 5), (5, 8)]),
+        ("maple", [(0, 0), (0, 0), (1, 1), (0, 1)]),
+        ("palm", [(0, 0), (0, 0), (8, 8), (1, 1)]),
+        ("pine", [(0, 0), (0, 0), (300, 3000), (50, 400)]),
+        ("poplar", [(0, 0), (0, 0), (300, 3000), (50, 400)]),
+    ];
+    let dir = folder("gallery");
+    for (name, ranges) in KNOWN {
+        let drawing =
+            Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../fixtures/sketches/gallery/{name}.svg"));
+        let report: Value =
+            serde_json::from_str(&good(&dir, &["sketch", drawing.to_str().unwrap(), "--json"])).unwrap();
+        let counts = &report["items"][0]["counts"];
+        for (what, (least, most)) in ["flowers", "petals", "leaves", "branches"].iter().zip(ranges) {
+            let n = counts[what].as_u64().unwrap();
+            assert!((least..=most).contains(&n), "{name}: {n} {what}");
+        }
+    }
+}

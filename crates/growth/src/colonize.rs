@@ -387,6 +387,7 @@ impl Colony<'_> {
             }
             self.offer(JointId::new(j).raw());
         }
+        self.settle_points();
         let children = self.skeleton.children();
         let lonely = |j: &usize| self.skeleton.parent[*j].is_none() && children[*j] == 0;
         let roots: Vec<usize> = (0..self.skeleton.len()).filter(lonely).collect();
@@ -519,32 +520,38 @@ impl Colony<'_> {
         }
         fresh.clear();
         self.fresh = fresh;
+        self.settle_points();
     }
 
     /// Lets the points choose whether this joint is nearer to them than what they had.
     fn offer(&mut self, joint: u32) {
-        let Self { field, load, skeleton, fates, obstacles, steps, doomed, .. } = self;
+        let Self { field, skeleton, obstacles, .. } = self;
         let at = skeleton.position[joint as usize];
-        let open = obstacles.is_empty();
-        field.offer(
-            at,
-            joint,
-            if steps.late { -1.0 } else { steps.kill * steps.kill },
-            |place| open || !obstacles.blocks(at, place),
-            |change: Change| {
-                if change.from != NOBODY {
-                    load.lose(change.from, skeleton.position[change.from as usize], change.place);
+        if obstacles.is_empty() {
+            field.offer(at, joint, |_| true);
+        } else {
+            field.offer(at, joint, |place| !obstacles.blocks(at, place));
+        }
+    }
+
+    /// Ends a round: moves the pull of points that changed hands, and consumes those that were reached.
+    fn settle_points(&mut self) {
+        let Self { field, load, skeleton, fates, steps, doomed, .. } = self;
+        let kill2 = steps.kill * steps.kill;
+        field.settle(if steps.late { -1.0 } else { kill2 }, |change: Change| {
+            if change.from != NOBODY {
+                load.lose(change.from, skeleton.position[change.from as usize], change.place);
+            }
+            let at = skeleton.position[change.to as usize];
+            if change.killed {
+                fates[change.id as usize] = Fate::Reached(JointId::new(change.to as usize));
+            } else {
+                load.gain(change.to, at, change.place);
+                if steps.late && at.distance_squared(change.place) <= kill2 {
+                    doomed.push(change.id);
                 }
-                if change.killed {
-                    fates[change.id as usize] = Fate::Reached(JointId::new(joint as usize));
-                } else {
-                    load.gain(joint, at, change.place);
-                    if steps.late && at.distance_squared(change.place) <= steps.kill * steps.kill {
-                        doomed.push(change.id);
-                    }
-                }
-            },
-        );
+            }
+        });
     }
 
     /// Breaks a stall: every joint with points grows straight to the nearest of them. A point that does not come

@@ -9,42 +9,54 @@ use glam::DVec3;
 pub(crate) const NOBODY: u32 = u32::MAX;
 /// No place: the point is gone.
 const GONE: u32 = u32::MAX;
+/// Not moved in this round.
+const STILL: u32 = u32::MAX - 1;
 /// Points per cell aimed at: fewer cost more cells to visit, more cost more points to test.
-const PER_CELL: f64 = 5.0;
+const PER_CELL: f64 = 6.0;
+/// Cells along a side of a block, and in a block.
+const SIDE: usize = 4;
+const BLOCK: usize = SIDE * SIDE * SIDE;
 
-/// What an offer did to one point.
+/// What a round of offers did to one point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Change {
-    /// The joint that had it; [`NOBODY`] if none.
+    /// The joint that had it before; [`NOBODY`] if none.
     pub(crate) from: u32,
+    /// The joint that has it now.
+    pub(crate) to: u32,
     /// The point.
     pub(crate) place: DVec3,
     /// Its index in the input.
     pub(crate) id: u32,
-    /// It was near enough to be consumed.
+    /// It was near enough to be consumed, and is gone.
     pub(crate) killed: bool,
 }
 
 #[derive(Clone, Debug)]
 pub(crate) struct Field {
-    x: Vec<f64>,
-    y: Vec<f64>,
-    z: Vec<f64>,
-    /// Squared distance to the nearest joint so far; the squared perception radius while there is none.
-    best2: Vec<f64>,
+    /// x, y, z, and the squared distance to the nearest joint so far; the squared perception radius while there is
+    /// none. Side by side, because they are always read together.
+    points: Vec<[f64; 4]>,
     owner: Vec<u32>,
+    /// The owner before this round, or [`STILL`].
+    before: Vec<u32>,
     id: Vec<u32>,
     /// Slot of each point by input index, or [`GONE`].
     slot: Vec<u32>,
-    /// First slot of each cell and number of points left in it.
+    /// Points that changed hands in this round, by input index.
+    moved: Vec<u32>,
+    /// First slot of each cell and number of points left in it. The 64 cells of a block lie side by side.
     start: Vec<u32>,
     left: Vec<u32>,
     /// Upper bound of `best2` in each cell; 0 where it is empty.
     reach2: Vec<f64>,
+    /// The same for each block.
+    block_reach2: Vec<f64>,
     far: f64,
     lo: DVec3,
     cell: f64,
-    dims: [usize; 3],
+    /// Numbers of blocks.
+    blocks: [usize; 3],
     alive: usize,
 }
 
@@ -53,24 +65,26 @@ impl Field {
     /// `perception_m` is above 0.
     pub(crate) fn new(points: &[DVec3], usable: &[bool], perception_m: f64) -> Self {
         let good: Vec<u32> = (0..index(points.len())).filter(|&i| usable[i as usize]).collect();
-        let (lo, cell, dims) = layout(points, &good, perception_m);
-        let cells = dims[0] * dims[1] * dims[2];
+        let (lo, cell, blocks) = layout(points, &good, perception_m);
+        let count = blocks[0] * blocks[1] * blocks[2];
+        let cells = count * BLOCK;
+        let n = good.len();
         let mut field = Self {
-            x: vec![0.0; good.len()],
-            y: vec![0.0; good.len()],
-            z: vec![0.0; good.len()],
-            best2: vec![perception_m * perception_m; good.len()],
-            owner: vec![NOBODY; good.len()],
-            id: vec![0; good.len()],
+            points: vec![[0.0; 4]; n],
+            owner: vec![NOBODY; n],
+            before: vec![STILL; n],
+            id: vec![0; n],
             slot: vec![GONE; points.len()],
+            moved: Vec::with_capacity(n),
             start: vec![0; cells + 1],
             left: vec![0; cells],
             reach2: vec![0.0; cells],
+            block_reach2: vec![0.0; count],
             far: perception_m,
             lo,
             cell,
-            dims,
-            alive: good.len(),
+            blocks,
+            alive: n,
         };
         // Counting sort: the order within a cell is the order of the input.
         let of: Vec<u32> = good.iter().map(|&i| index(field.cell_index(points[i as usize]))).collect();
@@ -81,6 +95,7 @@ impl Field {
             field.start[c + 1] = field.start[c] + field.left[c];
             if field.left[c] > 0 {
                 field.reach2[c] = perception_m * perception_m;
+                field.block_reach2[c / BLOCK] = perception_m * perception_m;
             }
         }
         let mut next = field.start.clone();
@@ -88,7 +103,8 @@ impl Field {
             let s = next[c as usize] as usize;
             next[c as usize] += 1;
             let p = points[i as usize];
-            (field.x[s], field.y[s], field.z[s], field.id[s]) = (p.x, p.y, p.z, i);
+            field.points[s] = [p.x, p.y, p.z, perception_m * perception_m];
+            field.id[s] = i;
             field.slot[i as usize] = index(s);
         }
         field
@@ -101,30 +117,22 @@ impl Field {
 
     /// Lets every point within its present distance choose the new joint at `p`, where `sees` the point.
     #[inline]
-    pub(crate) fn offer(
-        &mut self,
-        p: DVec3,
-        joint: u32,
-        kill2: f64,
-        sees: impl Fn(DVec3) -> bool,
-        mut changed: impl FnMut(Change),
-    ) {
-        let (from, to) = (self.coordinates(p - self.far), self.coordinates(p + self.far));
+    pub(crate) fn offer(&mut self, p: DVec3, joint: u32, sees: impl Fn(DVec3) -> bool) {
+        let (from, to) = (self.block_of(p - self.far), self.block_of(p + self.far));
         for k in from[2]..=to[2] {
-            let dz = self.gap(p.z, 2, k);
-            let dz2 = dz * dz;
+            let gz = self.gaps(p.z, 2, k);
             for j in from[1]..=to[1] {
-                let dy = self.gap(p.y, 1, j);
-                let dyz2 = dy * dy + dz2;
-                let row = (k * self.dims[1] + j) * self.dims[0];
+                let gy = self.gaps(p.y, 1, j);
+                let near_yz = least(&gy) + least(&gz);
+                let row = (k * self.blocks[1] + j) * self.blocks[0];
                 for i in from[0]..=to[0] {
-                    let reach2 = self.reach2[row + i];
-                    if reach2 <= dyz2 {
+                    let reach2 = self.block_reach2[row + i];
+                    if reach2 <= near_yz {
                         continue;
                     }
-                    let dx = self.gap(p.x, 0, i);
-                    if reach2 > dx * dx + dyz2 {
-                        self.offer_cell(row + i, p, joint, kill2, &sees, &mut changed);
+                    let gx = self.gaps(p.x, 0, i);
+                    if reach2 > near_yz + least(&gx) {
+                        self.offer_block(row + i, [&gx, &gy, &gz], p, joint, &sees);
                     }
                 }
             }
@@ -132,39 +140,76 @@ impl Field {
     }
 
     #[inline]
-    fn offer_cell(
+    fn offer_block(
         &mut self,
-        cell: usize,
+        block: usize,
+        gaps: [&[f64; SIDE]; 3],
         p: DVec3,
         joint: u32,
-        kill2: f64,
         sees: &impl Fn(DVec3) -> bool,
-        changed: &mut impl FnMut(Change),
     ) {
-        let mut a = self.start[cell] as usize;
-        let mut end = a + self.left[cell] as usize;
-        let mut worst = 0.0_f64;
-        while a < end {
-            let (dx, dy, dz) = (self.x[a] - p.x, self.y[a] - p.y, self.z[a] - p.z);
-            let d2 = dx * dx + dy * dy + dz * dz;
-            if d2 < self.best2[a] {
-                let place = DVec3::new(self.x[a], self.y[a], self.z[a]);
-                if sees(place) {
-                    let killed = d2 <= kill2;
-                    changed(Change { from: self.owner[a], place, id: self.id[a], killed });
-                    if killed {
-                        end -= 1;
-                        self.remove(cell, a);
-                        continue;
+        let first = block * BLOCK;
+        let reach2 = self.block_reach2[block];
+        let mut visited = false;
+        for (z, gz) in gaps[2].iter().enumerate() {
+            for (y, gy) in gaps[1].iter().enumerate() {
+                let yz = gy + gz;
+                if reach2 <= yz {
+                    continue;
+                }
+                let row = first + (z * SIDE + y) * SIDE;
+                // Read at once: the four are one line of memory.
+                let Some(&reach) = self.reach2[row..].first_chunk::<SIDE>() else { continue };
+                for (x, gx) in gaps[0].iter().enumerate() {
+                    if reach[x] > yz + gx {
+                        self.offer_cell(row + x, p, joint, sees);
+                        visited = true;
                     }
-                    self.best2[a] = d2;
-                    self.owner[a] = joint;
                 }
             }
-            worst = worst.max(self.best2[a]);
-            a += 1;
+        }
+        if visited {
+            let cells = &self.reach2[first..first + BLOCK];
+            self.block_reach2[block] = cells.iter().copied().fold(0.0, |a, b| if b > a { b } else { a });
+        }
+    }
+
+    #[inline]
+    fn offer_cell(&mut self, cell: usize, p: DVec3, joint: u32, sees: &impl Fn(DVec3) -> bool) {
+        let from = self.start[cell] as usize;
+        let Self { points, owner, before, id, moved, .. } = self;
+        let mut worst = 0.0_f64;
+        for (q, a) in points[from..from + self.left[cell] as usize].iter_mut().zip(from..) {
+            let (dx, dy, dz) = (q[0] - p.x, q[1] - p.y, q[2] - p.z);
+            let d2 = dx * dx + dy * dy + dz * dz;
+            if d2 < q[3] && sees(DVec3::new(q[0], q[1], q[2])) {
+                if before[a] == STILL {
+                    before[a] = owner[a];
+                    moved.push(id[a]);
+                }
+                owner[a] = joint;
+                q[3] = d2;
+            }
+            worst = if q[3] > worst { q[3] } else { worst };
         }
         self.reach2[cell] = worst;
+    }
+
+    /// Ends a round of offers: tells of every point that changed hands, and removes those within the kill distance.
+    pub(crate) fn settle(&mut self, kill2: f64, mut changed: impl FnMut(Change)) {
+        let mut moved = core::mem::take(&mut self.moved);
+        for &id in &moved {
+            let a = self.slot[id as usize] as usize;
+            let place = self.place(a);
+            let killed = self.points[a][3] <= kill2;
+            changed(Change { from: self.before[a], to: self.owner[a], place, id, killed });
+            self.before[a] = STILL;
+            if killed {
+                self.remove(self.cell_index(place), a);
+            }
+        }
+        moved.clear();
+        self.moved = moved;
     }
 
     /// Takes the point of slot `a` out of its cell; the cell's last one takes its slot.
@@ -172,16 +217,22 @@ impl Field {
         let last = (self.start[cell] + self.left[cell]) as usize - 1;
         self.slot[self.id[a] as usize] = GONE;
         if a != last {
-            self.x[a] = self.x[last];
-            self.y[a] = self.y[last];
-            self.z[a] = self.z[last];
-            self.best2[a] = self.best2[last];
+            self.points[a] = self.points[last];
             self.owner[a] = self.owner[last];
+            self.before[a] = self.before[last];
             self.id[a] = self.id[last];
             self.slot[self.id[a] as usize] = index(a);
         }
         self.left[cell] -= 1;
         self.alive -= 1;
+        if self.left[cell] == 0 {
+            self.reach2[cell] = 0.0;
+        }
+    }
+
+    fn place(&self, a: usize) -> DVec3 {
+        let [x, y, z, _] = self.points[a];
+        DVec3::new(x, y, z)
     }
 
     /// Gives up the point with input index `id`; its joint if it had one, and its place.
@@ -191,7 +242,7 @@ impl Field {
             return None;
         }
         let a = a as usize;
-        let place = DVec3::new(self.x[a], self.y[a], self.z[a]);
+        let place = self.place(a);
         let owner = self.owner[a];
         self.remove(self.cell_index(place), a);
         Some((owner, place))
@@ -199,43 +250,62 @@ impl Field {
 
     /// Narrows the search to what the worst-served point still needs. Call now and then.
     pub(crate) fn narrow(&mut self) {
-        self.far = self.reach2.iter().copied().fold(0.0, f64::max).sqrt();
+        self.far = self.block_reach2.iter().copied().fold(0.0, f64::max).sqrt();
     }
 
     /// Every point left: input index, place, owner, squared distance to it.
     pub(crate) fn iter(&self) -> impl Iterator<Item = (u32, DVec3, u32, f64)> + '_ {
         (0..self.left.len()).flat_map(move |c| {
             let start = self.start[c] as usize;
-            (start..start + self.left[c] as usize).map(|a| {
-                (self.id[a], DVec3::new(self.x[a], self.y[a], self.z[a]), self.owner[a], self.best2[a])
-            })
+            (start..start + self.left[c] as usize)
+                .map(|a| (self.id[a], self.place(a), self.owner[a], self.points[a][3]))
         })
     }
 
     /// Squared distance of point `id` to its joint; `None` if it is gone.
     pub(crate) fn distance2(&self, id: u32) -> Option<f64> {
         let a = self.slot[id as usize];
-        (a != GONE).then(|| self.best2[a as usize])
+        (a != GONE).then(|| self.points[a as usize][3])
     }
 
-    /// Distance from a coordinate to a cell's range; the outermost cells reach to infinity.
+    /// Squared distances from a coordinate to the ranges of a block's cells; the outermost cells of the grid reach
+    /// to infinity.
     #[inline]
-    fn gap(&self, p: f64, axis: usize, i: usize) -> f64 {
-        let low = self.lo[axis] + i as f64 * self.cell;
-        let below = if i == 0 { 0.0 } else { low - p };
-        let above = if i + 1 == self.dims[axis] { 0.0 } else { p - (low + self.cell) };
-        below.max(above).max(0.0)
+    fn gaps(&self, p: f64, axis: usize, block: usize) -> [f64; SIDE] {
+        let last = self.blocks[axis] * SIDE - 1;
+        let mut gaps = [0.0; SIDE];
+        for (k, gap) in gaps.iter_mut().enumerate() {
+            let i = block * SIDE + k;
+            let low = self.lo[axis] + i as f64 * self.cell;
+            let below = if i == 0 { 0.0 } else { low - p };
+            let above = if i == last { 0.0 } else { p - (low + self.cell) };
+            let d = if below > above { below } else { above };
+            let d = if d > 0.0 { d } else { 0.0 };
+            *gap = d * d;
+        }
+        gaps
     }
 
-    fn coordinates(&self, p: DVec3) -> [usize; 3] {
+    fn cell_of(&self, p: DVec3) -> [usize; 3] {
         let q = (p - self.lo) / self.cell;
-        [0, 1, 2].map(|i| clamp_to(q[i], self.dims[i]))
+        [0, 1, 2].map(|i| clamp_to(q[i], self.blocks[i] * SIDE))
+    }
+
+    fn block_of(&self, p: DVec3) -> [usize; 3] {
+        self.cell_of(p).map(|c| c / SIDE)
     }
 
     fn cell_index(&self, p: DVec3) -> usize {
-        let [i, j, k] = self.coordinates(p);
-        (k * self.dims[1] + j) * self.dims[0] + i
+        let [i, j, k] = self.cell_of(p);
+        let block = (k / SIDE * self.blocks[1] + j / SIDE) * self.blocks[0] + i / SIDE;
+        block * BLOCK + (k % SIDE * SIDE + j % SIDE) * SIDE + i % SIDE
     }
+}
+
+/// The least of a block's squared gaps.
+#[inline]
+fn least(gaps: &[f64; SIDE]) -> f64 {
+    gaps.iter().copied().fold(f64::INFINITY, |a, b| if b < a { b } else { a })
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "more than 2^32 attractors do not fit in memory")]
@@ -248,7 +318,7 @@ fn clamp_to(x: f64, n: usize) -> usize {
     if x > 0.0 { (x as usize).min(n - 1) } else { 0 }
 }
 
-/// Lower corner, cell size and numbers of cells. Laid over the bulk of the points: a far outlier falls into an
+/// Lower corner, cell size and numbers of blocks. Laid over the bulk of the points: a far outlier falls into an
 /// outermost cell and must not make all cells large.
 fn layout(points: &[DVec3], good: &[u32], perception_m: f64) -> (DVec3, f64, [usize; 3]) {
     if good.is_empty() {
@@ -265,18 +335,18 @@ fn layout(points: &[DVec3], good: &[u32], perception_m: f64) -> (DVec3, f64, [us
         let mut sample: Vec<f64> = good.iter().step_by(every).map(|&i| points[i as usize][axis]).collect();
         sample.sort_unstable_by(f64::total_cmp);
         let (a, b) = (sample[sample.len() / 50], sample[sample.len() - 1 - sample.len() / 50]);
-        let margin = 0.5 * (b - a) + perception_m;
+        let margin = 0.2 * (b - a);
         lo[axis] = lo[axis].max(a - margin);
         hi[axis] = hi[axis].min(b + margin);
     }
     let size = (hi - lo).max(DVec3::splat(1e-9));
     let per_cell = size.x * size.y * size.z * PER_CELL / good.len() as f64;
-    // An eighth: below that a new joint visits more cells than points.
-    let mut cell = base::ops::cbrt(per_cell).clamp(perception_m / 8.0, perception_m);
+    // A sixteenth: below that a new joint visits more cells than points.
+    let mut cell = base::ops::cbrt(per_cell).clamp(perception_m / 16.0, perception_m);
     let most = 2.0 * good.len() as f64 + 64.0;
-    let counts = |cell: f64| size.to_array().map(|s| (s / cell).floor() + 1.0);
-    while counts(cell).iter().product::<f64>() > most {
-        cell *= 1.25;
+    let counts = |cell: f64| size.to_array().map(|s| (s / (cell * SIDE as f64)).floor() + 1.0);
+    while counts(cell).iter().product::<f64>() * BLOCK as f64 > most && counts(cell) != [1.0; 3] {
+        cell *= 1.1;
     }
     (lo, cell, counts(cell).map(|c| clamp_to(c, usize::MAX)))
 }
@@ -298,17 +368,13 @@ mod tests {
             let mut field = Field::new(&points, &finite, perception);
             let mut killed = vec![false; points.len()];
             for (j, &p) in joints.iter().enumerate() {
-                field.offer(
-                    p,
-                    index(j),
-                    kill * kill,
-                    |_| true,
-                    |c| {
-                        if c.killed {
-                            killed[c.id as usize] = true;
-                        }
-                    },
-                );
+                field.offer(p, index(j), |_| true);
+                if j % 3 == 0 || j + 1 == joints.len() {
+                    field.settle(kill * kill, |c| {
+                        killed[c.id as usize] |= c.killed;
+                        assert_ne!(c.from, c.to);
+                    });
+                }
                 if j % 10 == 0 {
                     field.narrow();
                 }
@@ -336,13 +402,14 @@ mod tests {
         points.push(DVec3::splat(1e5));
         let field = Field::new(&points, &vec![true; points.len()], 0.5);
         assert!(field.cell < 0.3, "{}", field.cell);
-        assert!(field.left.iter().all(|&n| n < 60));
+        assert!(field.left.iter().all(|&n| n < 80));
     }
 
     #[test]
     fn given_up_points_are_gone() {
         let mut field = Field::new(&[DVec3::ZERO, DVec3::X], &[true; 2], 2.0);
-        field.offer(DVec3::Y, 7, 0.01, |_| true, |_| ());
+        field.offer(DVec3::Y, 7, |_| true);
+        field.settle(0.01, |c| assert_eq!((c.from, c.to, c.killed), (NOBODY, 7, false)));
         assert_eq!(field.distance2(1), Some(2.0));
         assert_eq!(field.give_up(1), Some((7, DVec3::X)));
         assert_eq!((field.give_up(1), field.distance2(1), field.alive()), (None, None, 1));

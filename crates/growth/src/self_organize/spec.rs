@@ -95,15 +95,15 @@ pub struct SelfOrganizingSpec {
     pub alpha: f64,
     /// Weight xi of the best-lit direction, 0 to 10, default 0.25.
     pub light_weight: f64,
-    /// Weight eta and direction of what else pulls, default 0.2 upwards.
+    /// Weight eta and direction of what else pulls, default 0.05 upwards.
     pub tropisms: Vec<Tropism>,
     /// How axillary buds stand, default a golden spiral.
     pub arrangement: Arrangement,
-    /// Between a shoot and the buds at its side, 0 to 180 degrees, default 45.
+    /// Between a shoot and the buds at its side, 0 to 180 degrees, default 60.
     pub branch_angle_deg: f64,
     /// Standard deviation of that angle and of the azimuths, 0 to 60 degrees, default 4.
     pub jitter_deg: f64,
-    /// A branch with less light per internode is shed, 0 or more, default 0.3.
+    /// A branch with less light per internode is shed, 0 or more, default 0.15.
     pub shed_below: f64,
     /// Years that a branch is spared, default 3.
     pub shed_after_years: u32,
@@ -129,11 +129,11 @@ impl Default for SelfOrganizingSpec {
             lambda_years: 10,
             alpha: 2.0,
             light_weight: 0.25,
-            tropisms: vec![Tropism::UPWARDS],
+            tropisms: vec![Tropism { strength: 0.05, ..Tropism::UPWARDS }],
             arrangement: Arrangement::default(),
-            branch_angle_deg: 45.0,
+            branch_angle_deg: 60.0,
             jitter_deg: 4.0,
-            shed_below: 0.3,
+            shed_below: 0.15,
             shed_after_years: 3,
             most_per_shoot: 6,
             pipe_exponent: 2.4,

@@ -17,6 +17,8 @@ pub(super) type Thorn = (Vec<DVec2>, Option<Attachment>, Option<u32>);
 
 /// A leaf nearer to its bearer than this sits on it; farther, it has a stalk.
 const SESSILE: f64 = 0.02;
+/// More lines than this are no tuft of grass that a person drew.
+const MOST_GRASS: usize = 2_000;
 /// Leaves and flowers farther than this from every axis are borne by none.
 const FAR: f64 = 0.25;
 
@@ -54,6 +56,62 @@ pub(super) fn fronds(draft: &mut Draft<'_>) {
                 draft.set_organ(line.source, OrganWord::Leaf);
                 draft.blades.push(blade);
             }
+            None => draft.lines.push(line),
+        }
+    }
+}
+
+/// Single lines that stand beside one another, with nothing that they bear, are blades of grass.
+pub(super) fn grass_blades(draft: &mut Draft<'_>) {
+    const FEWEST: usize = 4;
+    let bare = draft.blades.is_empty()
+        && draft.regions.is_empty()
+        && draft.forest.axes.is_empty()
+        && !draft.class.iter().any(|c| {
+            use StrokeClass::{Corolla, Crown, Disc, Fruit, Pot, Scribble};
+            [Corolla, Crown, Disc, Fruit, Pot, Scribble].contains(c)
+        });
+    if !bare || draft.lines.len() < FEWEST || draft.lines.len() > MOST_GRASS {
+        return;
+    }
+    let mut near = Near::new(0.04);
+    for (i, line) in draft.lines.iter().enumerate() {
+        near.add_line(i, &line.points);
+    }
+    // A branch starts somewhere along another line; a blade of grass on the ground or where others start.
+    let foot = |l: &Line| {
+        let (a, b) = (l.points[0], l.points[l.points.len() - 1]);
+        if a.y < b.y { a } else { b }
+    };
+    let level = |l: &Line| {
+        let (a, b) = (l.points[0], l.points[l.points.len() - 1]);
+        (a.y - b.y).abs() < 0.15 * (a.x - b.x).abs()
+    };
+    let branches = (0..draft.lines.len())
+        .filter(|&i| {
+            let p = foot(&draft.lines[i]);
+            let own =
+                |j: usize| j != i && foot(&draft.lines[j]).distance(p) > 0.06 && !level(&draft.lines[j]);
+            near.nearest(p, 0.02, own).is_some()
+        })
+        .count();
+    if branches * 3 > draft.lines.len() || draft.lines.iter().all(level) {
+        return;
+    }
+    for line in std::mem::take(&mut draft.lines) {
+        let stroke = line.source.and_then(|i| draft.ink.strokes.binary_search_by_key(&i, |s| s.index).ok());
+        let last = line.points[0].y > line.points[line.points.len() - 1].y;
+        let blade = stroke.filter(|_| !level(&line)).and_then(|k| {
+            let points = oriented(&line.points, last);
+            Sheetlet::lens(&points, k, 0.028 * polyline_length(&points))
+        });
+        match blade {
+            Some(blade) => {
+                draft.set_organ(line.source, OrganWord::Leaf);
+                draft.blades.push(Sheetlet { leaf: true, ..blade });
+            }
+            // The line of the ground under it.
+            None if level(&line) => draft.set_organ(line.source, OrganWord::Ignored),
             None => draft.lines.push(line),
         }
     }

@@ -27,6 +27,8 @@ pub(super) struct Sheetlet {
     pub(super) gap_width: f64,
     /// The root, where the way it was drawn leaves no doubt (a piece of a corolla).
     pub(super) root: Option<DVec2>,
+    /// Surely a leaf, whatever stands round it: a frond, a blade of grass.
+    pub(super) leaf: bool,
     /// Stroke of the ink that it came from.
     pub(super) stroke: usize,
     /// Longest diameter.
@@ -57,6 +59,7 @@ impl Sheetlet {
             },
             gap_width: first.distance(last),
             root: None,
+            leaf: false,
             outline,
             stroke,
             size,

@@ -19,6 +19,8 @@ const CELLS: f64 = 80.0;
 const MOST_LIMBS: usize = 24;
 /// Points along a limb: this share of the drawing apart.
 const LIMB_STEP: f64 = 0.012;
+/// A drawn end lies this far from where its limb begins: lines across a foot sag.
+const SLACK: f64 = 0.015;
 
 /// One limb of a body, base first.
 #[derive(Clone, Debug)]
@@ -51,7 +53,9 @@ pub(super) fn limbs(ring: &Ring, base: Option<DVec2>) -> Vec<Limb> {
     let mut limbs: Vec<Limb> = Vec::new();
     for _ in 0..MOST_LIMBS {
         let first = limbs.is_empty();
-        let Some(far) = mask.farthest(root, &way, &covered, first) else { break };
+        // A trunk that was left open above ends in the middle of the opening.
+        let top = if first { mask.top(ring, base) } else { None };
+        let Some(far) = top.or_else(|| mask.farthest(root, &way, &covered, first)) else { break };
         let mut path = vec![far];
         let mut at = far;
         while at != root && covered[at].is_none() {
@@ -140,12 +144,14 @@ impl Limb {
             self.half_width = vec![0.0; n];
             return;
         }
-        if let Some(i) = (0..n).find(|&i| at[i] >= self.half_width[i] && at[i] > 0.0) {
+        // Until the sides are clearly nearer than the end is: the distance to the end itself grows as fast as the way.
+        if let Some(i) = (0..n).find(|&i| at[i] > 1.25 * self.half_width[i] + SLACK) {
             let w = self.half_width[i].min(0.5 * total);
             self.half_width[..i].iter_mut().for_each(|h| *h = h.max(w));
         }
         if self.closed_end
-            && let Some(i) = (0..n).rev().find(|&i| total - at[i] >= self.half_width[i] && i + 1 < n)
+            && let Some(i) =
+                (0..n).rev().find(|&i| total - at[i] > 1.25 * self.half_width[i] + SLACK && i + 1 < n)
         {
             let radius = self.half_width[i];
             for (width, at) in self.half_width.iter_mut().zip(&at).skip(i + 1) {
@@ -270,6 +276,21 @@ impl Mask {
             let x = low.iter().map(|p| p.x).sum::<f64>() / (low.len() as f64).max(1.0);
             if low.is_empty() { lo.midpoint(hi) } else { DVec2::new(x, lo.y) }
         })
+    }
+
+    /// The cell in the middle of a wide opening at the body's upper end.
+    fn top(&self, ring: &Ring, base: DVec2) -> Option<usize> {
+        let (lo, hi) = bounds(&ring.points)?;
+        let height = hi.y - lo.y;
+        let middle = ring
+            .gaps
+            .iter()
+            .map(|&g| ring.gap(g))
+            .filter(|(a, b)| a.distance(*b) > 3.0 * self.cell && a.distance(*b) < 0.5 * height)
+            .map(|(a, b)| a.midpoint(b))
+            .filter(|m| m.y > lo.y + 0.75 * height && m.distance(base) > 0.5 * height)
+            .max_by(|a, b| a.y.total_cmp(&b.y))?;
+        self.nearest_inside(middle)
     }
 
     /// Distance to the outside in cells (chamfer 1, sqrt 2: within 8 %).

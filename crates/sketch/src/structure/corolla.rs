@@ -120,6 +120,7 @@ pub(super) fn split(points: &[DVec2], core: &Core, stroke: usize) -> Vec<Sheetle
         if let Some(mut blade) = Sheetlet::new(&ring, stroke) {
             blade.root = Some(blade.nearest(root).0);
             blade.gap = root;
+            blade.leaf = !matches!(core, Core::Point(..));
             pieces.push(blade);
         }
     }

@@ -183,13 +183,13 @@ pub(super) fn gather(
 
     by_disc(draft, discs, &mut flowers, &mut roots, &mut taken);
     // Petals begin and end at the centre: the pen's own gap tells before anything that happens to touch.
-    let free: Vec<usize> = (0..n).filter(|&i| !taken[i]).collect();
+    let free: Vec<usize> = (0..n).filter(|&i| !taken[i] && !draft.blades[i].leaf).collect();
     let gaps: Vec<DVec2> = free.iter().map(|&i| draft.blades[i].gap).collect();
     for members in clusters(&gaps, BANDWIDTH * usual) {
         let members: Vec<usize> = members.into_iter().map(|m| free[m]).collect();
         let narrow =
             |i: &usize| draft.blades[*i].gap_width < 0.5 * draft.blades[*i].size || roots[*i].is_some();
-        if members.iter().all(narrow) && is_flower(draft, &members, usual, bearers) {
+        if members.iter().all(narrow) && is_flower(draft, &members, usual, bearers, discs) {
             let centre = mean(members.iter().map(|&i| draft.blades[i].gap));
             for &i in &members {
                 taken[i] = true;
@@ -198,7 +198,7 @@ pub(super) fn gather(
             flowers.push(FlowerDraft { centre, petals: members, ..FlowerDraft::default() });
         }
     }
-    rosettes(draft, usual, bearers, &mut flowers, &mut roots, &mut taken);
+    rosettes(draft, usual, (bearers, discs), &mut flowers, &mut roots, &mut taken);
     adopt(draft, usual, &mut flowers, &mut roots, &mut taken);
     let roots: Vec<DVec2> =
         roots.iter().zip(&draft.blades).map(|(r, b)| r.unwrap_or_else(|| bearers.root_of(b))).collect();
@@ -247,8 +247,23 @@ fn by_disc(
     }
 }
 
+/// The open top of a trunk is near: what stands round it are fronds.
+fn bears_fronds(draft: &Draft<'_>, centre: DVec2, usual: f64) -> bool {
+    draft.open_top
+        && draft.bodies.iter().any(|&r| {
+            let top = draft.forest.axes[r].points.last();
+            top.is_some_and(|t| t.distance(centre) < 0.6 * usual + draft.forest.half_width(r, f64::INFINITY))
+        })
+}
+
 /// The paper's rule, more than 2, with what tells leaves on a branch from petals on a stem's end.
-fn is_flower(draft: &Draft<'_>, members: &[usize], usual: f64, bearers: &Bearers) -> bool {
+fn is_flower(
+    draft: &Draft<'_>,
+    members: &[usize],
+    usual: f64,
+    bearers: &Bearers,
+    discs: &[(DiscReading, usize)],
+) -> bool {
     if members.len() < 3 {
         return false;
     }
@@ -256,6 +271,9 @@ fn is_flower(draft: &Draft<'_>, members: &[usize], usual: f64, bearers: &Bearers
     let mut angles: Vec<f64> =
         members.iter().map(|&i| draft.blades[i].middle - centre).map(|v| ops::atan2(v.y, v.x)).collect();
     angles.sort_by(f64::total_cmp);
+    if bears_fronds(draft, centre, usual) || bearers.leads_up(centre, usual, discs) {
+        return false;
+    }
     let widest = angles
         .windows(2)
         .map(|w| w[1] - w[0])
@@ -281,12 +299,14 @@ fn is_flower(draft: &Draft<'_>, members: &[usize], usual: f64, bearers: &Bearers
 fn rosettes(
     draft: &Draft<'_>,
     usual: f64,
-    bearers: &Bearers,
+    (bearers, discs): (&Bearers, &[(DiscReading, usize)]),
     flowers: &mut Vec<FlowerDraft>,
     roots: &mut [Option<DVec2>],
     taken: &mut [bool],
 ) {
-    let free: Vec<usize> = (0..draft.blades.len()).filter(|&i| !taken[i] && roots[i].is_none()).collect();
+    let free: Vec<usize> = (0..draft.blades.len())
+        .filter(|&i| !taken[i] && roots[i].is_none() && !draft.blades[i].leaf)
+        .collect();
     if free.len() < 3 || free.len() > MOST_ROOTS {
         return;
     }
@@ -298,6 +318,9 @@ fn rosettes(
         }
         let centre = mean(members.iter().map(|&i| draft.blades[i].middle));
         let feet: Vec<(DVec2, f64)> = members.iter().map(|&i| draft.blades[i].nearest(centre)).collect();
+        if bears_fronds(draft, centre, usual) || bearers.leads_up(centre, usual, discs) {
+            continue;
+        }
         let close = members.iter().zip(&feet).all(|(&i, f)| f.1 < 0.25 * draft.blades[i].size)
             && !matches!(bearers.stand(centre, 0.2 * usual), Stand::Along | Stand::Body);
         let mut angles: Vec<f64> =
@@ -366,6 +389,8 @@ pub(super) struct Bearers {
     lines: usize,
     length: Vec<f64>,
     soil: usize,
+    /// Both ends of the first lines; more are no stems of flowers.
+    ends: Vec<(DVec2, DVec2)>,
 }
 
 impl Bearers {
@@ -385,7 +410,20 @@ impl Bearers {
         for line in &draft.soil {
             near.add_line(soil, line);
         }
-        Self { near, lines, length, soil }
+        let ends =
+            draft.lines.iter().take(200).map(|l| (l.points[0], l.points[l.points.len() - 1])).collect();
+        Self { near, lines, length, soil, ends }
+    }
+
+    /// A stem begins near `p` and ends at a drawn disc well above: what stands at its foot are leaves.
+    fn leads_up(&self, p: DVec2, usual: f64, discs: &[(DiscReading, usize)]) -> bool {
+        self.ends.iter().any(|&(a, b)| {
+            let (foot, top) = if a.y < b.y { (a, b) } else { (b, a) };
+            let at_disc = |d: &DiscReading| d.centre.distance(top) < 2.0 * d.radius + 0.03;
+            foot.distance(p) < 0.5 * usual.max(0.08)
+                && top.y - foot.y > 1.2 * usual
+                && discs.iter().any(|(d, _)| at_disc(d) && d.centre.distance(p) > usual)
+        })
     }
 
     fn stand(&self, p: DVec2, r: f64) -> Stand {

@@ -9,7 +9,7 @@
 //! | `flowers` | which blades are petals of one flower | 4.1 |
 //! | `branches` | the hierarchy of axes | 4.2 |
 //! | `attach` | who bears what | beyond |
-//! | `second` | classes that the whole drawing contradicts | beyond |
+//! | `second`, `standing` | classes that the whole drawing contradicts | beyond |
 //! | `validate` | what every reading guarantees | |
 
 mod attach;
@@ -22,6 +22,7 @@ mod near;
 mod outlines;
 mod rings;
 mod second;
+mod standing;
 mod validate;
 mod veins;
 
@@ -82,6 +83,7 @@ pub fn read(ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
     draft.last_resort(&discs, report);
     let thorns = outlines::thorns(&mut draft);
     attach::fronds(&mut draft);
+    attach::grass_blades(&mut draft);
     let (discs, nuts) = attach::part_discs(&draft, discs);
     let bearers = flowers::Bearers::new(&draft);
     let (mut flowers, roots) = flowers::gather(&mut draft, &discs, &bearers);
@@ -133,6 +135,8 @@ struct Draft<'a> {
     forest: Forest,
     /// Rows of outlined bodies that stand on the ground.
     bodies: Vec<usize>,
+    /// Two of the lines are surely the sides of a trunk.
+    trunk: bool,
     /// A body is open above: a trunk, not a cactus.
     open_top: bool,
     /// Rows that were led on into a crown.
@@ -159,6 +163,7 @@ impl<'a> Draft<'a> {
             regions: Vec::new(),
             forest: Forest::new(),
             bodies: Vec::new(),
+            trunk: false,
             open_top: false,
             led: Vec::new(),
             soil: Vec::new(),

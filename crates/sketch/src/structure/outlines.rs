@@ -85,7 +85,7 @@ pub(super) fn bodies(draft: &mut Draft<'_>) {
             as_lines(draft, ring);
             continue;
         }
-        draft.open_top |= closed.first().is_some_and(|l| !l.closed_end);
+        draft.open_top |= draft.trunk || closed.first().is_some_and(|l| !l.closed_end);
         let first = draft.forest.add_body(closed, base.map(|b| b.0), source);
         draft.bodies.extend(first.filter(|_| base.is_none()));
         for &part in &ring.parts {

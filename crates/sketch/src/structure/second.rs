@@ -10,13 +10,17 @@ use super::blade::split_stalks;
 use super::corolla::{dips, winding};
 use super::near::bounds;
 use super::outlines::neck;
-use super::{Draft, StrokeMode};
+use super::rings::rings;
+use super::{Draft, StrokeMode, standing};
 use crate::{InkStroke, StrokeClass};
 
 /// Corrects what the whole drawing contradicts.
 pub(super) fn thoughts(draft: &mut Draft<'_>) {
     lone_leaf(draft);
+    halves_of_a_leaf(draft);
     tree_in_one_stroke(draft);
+    palm_in_one_stroke(draft);
+    standing::thoughts(draft);
     zigzags(draft);
     grass(draft);
 }
@@ -26,12 +30,12 @@ fn any(draft: &Draft<'_>, classes: &[StrokeClass]) -> bool {
 }
 
 /// How far apart a stroke's ends are, as a share of its length.
-fn openness(s: &InkStroke) -> f64 {
+pub(super) fn openness(s: &InkStroke) -> f64 {
     s.points[0].distance(s.points[s.points.len() - 1]) / s.length.max(1e-12)
 }
 
 /// May be thought over: not set by the user.
-fn unsure(draft: &Draft<'_>, k: usize) -> bool {
+pub(super) fn unsure(draft: &Draft<'_>, k: usize) -> bool {
     draft.confidence[k] < 1.0 && draft.ink.strokes[k].mode == StrokeMode::Parts
 }
 
@@ -39,7 +43,7 @@ fn unsure(draft: &Draft<'_>, k: usize) -> bool {
 /// its midrib rather than a body.
 fn lone_leaf(draft: &mut Draft<'_>) {
     use StrokeClass::{Axis, Blade, Corolla, Crown, Disc, Fruit, Other, TrunkOutline, Vein};
-    if any(draft, &[Crown, Corolla, Blade, Disc]) {
+    if any(draft, &[Crown, Blade, Disc]) || draft.of_class(Corolla).len() > 1 {
         return;
     }
     let area =
@@ -47,15 +51,19 @@ fn lone_leaf(draft: &mut Draft<'_>) {
     let largest = (0..draft.class.len()).max_by(|&a, &b| area(a).total_cmp(&area(b)).then(b.cmp(&a)));
     let Some(k) = largest.filter(|&k| {
         unsure(draft, k)
-            && [TrunkOutline, Fruit, Other].contains(&draft.class[k])
+            && [TrunkOutline, Fruit, Other, Corolla].contains(&draft.class[k])
             && openness(&draft.ink.strokes[k]) < 0.35
     }) else {
         return;
     };
     let (points, _) = split_stalks(&draft.ink.strokes[k].points, 0.35);
     let (Some(outline), Some(pca)) = (simple_outline(&points), pca2(&points)) else { return };
-    // Arms of a cactus leave hollows in its hull.
-    if signed_area(&outline) < 0.75 * signed_area(&convex_hull(&points)) {
+    // Arms of a cactus leave hollows in its hull; those of a lobed leaf have a midrib from end to end.
+    let lobed = draft.class[k] == Corolla;
+    if lobed && any(draft, &[TrunkOutline, StrokeClass::Pot, StrokeClass::Ground]) {
+        return;
+    }
+    if !lobed && signed_area(&outline) < 0.75 * signed_area(&convex_hull(&points)) {
         return;
     }
     let size = pca.extent[0].max(pca.extent[1]);
@@ -74,6 +82,10 @@ fn lone_leaf(draft: &mut Draft<'_>) {
         .collect();
     let along = |s: &InkStroke| {
         let run: DVec2 = s.points[s.points.len() - 1] - s.points[0];
+        if lobed {
+            return run.length() > 0.6 * size.min(pca.extent[1].max(pca.extent[0]))
+                && run.length() > 0.8 * s.length;
+        }
         run.dot(pca.major).abs() > 0.35 * size
             && run.length() > 0.8 * s.length
             && run.dot(pca.major).abs() > 0.85 * run.length()
@@ -84,6 +96,79 @@ fn lone_leaf(draft: &mut Draft<'_>) {
             if inside(&draft.ink.strokes[j]) > 0.6 {
                 draft.class[j] = Vein;
             }
+        }
+    }
+}
+
+/// One or two lines that close round drawn veins are a leaf, not the sides of a trunk.
+fn halves_of_a_leaf(draft: &mut Draft<'_>) {
+    use StrokeClass::{Blade, Corolla, Crown, Disc, Pot, TrunkOutline, Vein};
+    if any(draft, &[Crown, Corolla, Blade, Disc, Pot]) || !any(draft, &[Vein]) || draft.class.len() > 60 {
+        return;
+    }
+    let sides: Vec<usize> = draft.of_class(TrunkOutline).into_iter().filter(|&k| unsure(draft, k)).collect();
+    let veins = draft.of_class(Vein);
+    // The other half may have been taken for a vein: its ends are those of the first.
+    let mut parts = sides.clone();
+    if let [side] = sides[..] {
+        let s = &draft.ink.strokes[side].points;
+        let (a, b) = (s[0], s[s.len() - 1]);
+        let near = 0.15 * a.distance(b);
+        let from_side = |v: usize| {
+            let p = &draft.ink.strokes[v].points;
+            p[p.len() / 2].distance(s[s.len() / 2])
+        };
+        let twins = veins.iter().copied().filter(|&v| {
+            let p = &draft.ink.strokes[v].points;
+            let (c, d) = (p[0], p[p.len() - 1]);
+            openness(&draft.ink.strokes[side]) > 0.35
+                && ((a.distance(c) < near && b.distance(d) < near)
+                    || (a.distance(d) < near && b.distance(c) < near))
+        });
+        parts.extend(twins.max_by(|&v, &w| from_side(v).total_cmp(&from_side(w))));
+    }
+    let points: Vec<&[DVec2]> = parts.iter().map(|&k| draft.ink.strokes[k].points.as_slice()).collect();
+    for ring in rings(&points) {
+        let hull = convex_hull(&ring.points);
+        let (Some(outline), Some((lo, hi))) = (simple_outline(&ring.points), bounds(&ring.points)) else {
+            continue;
+        };
+        let size = lo.distance(hi);
+        let shut = ring.gaps.iter().all(|&g| {
+            let (a, b) = ring.gap(g);
+            // The open foot of a cactus is a side of its hull; a midrib drawn in one go with the margin is not.
+            a.distance(b) < 0.2 * size || super::blade::nearest_on_ring(&hull, a.midpoint(b)).1 > 0.1 * size
+        });
+        let full = signed_area(&outline) > 0.7 * signed_area(&hull) && size > 0.5;
+        let inner = veins.iter().any(|&v| {
+            let p = &draft.ink.strokes[v].points;
+            !ring.parts.iter().any(|&r| parts[r] == v) && contains(&outline, p[p.len() / 2])
+        });
+        if shut && full && inner {
+            ring.parts.iter().for_each(|&r| draft.class[parts[r]] = Blade);
+        }
+    }
+}
+
+/// An outline with many deep hollows round its upper part is a palm in one stroke; a cactus has two arms.
+fn palm_in_one_stroke(draft: &mut Draft<'_>) {
+    use StrokeClass::{Corolla, TrunkOutline};
+    if draft.class.len() > 3 {
+        return;
+    }
+    for k in draft.of_class(TrunkOutline) {
+        let points = &draft.ink.strokes[k].points;
+        let (hull, Some((lo, hi))) = (convex_hull(points), bounds(points)) else { continue };
+        let upper: Vec<DVec2> = points.iter().copied().filter(|p| p.y > lo.y + 0.4 * (hi.y - lo.y)).collect();
+        if !unsure(draft, k) || hull.len() < 3 || upper.is_empty() {
+            continue;
+        }
+        let middle = geom::centroid(&upper);
+        let away: Vec<f64> = points.iter().map(|p| p.distance(middle)).collect();
+        let reach = away.iter().copied().fold(0.0, f64::max);
+        let hollow = simple_outline(points).is_none_or(|o| signed_area(&o) < 0.6 * signed_area(&hull));
+        if hollow && dips(&away, 0.13 * reach).len() >= 7 {
+            draft.class[k] = Corolla;
         }
     }
 }
@@ -100,15 +185,25 @@ fn tree_in_one_stroke(draft: &mut Draft<'_>) {
     // One of several pieces of a body is no tree.
     let main: Vec<usize> = bodies.into_iter().filter(|&k| length(k) > 0.7 * total).collect();
     for k in main {
-        let head = unsure(draft, k)
-            .then(|| simple_outline(&draft.ink.strokes[k].points))
-            .flatten()
-            .and_then(|o| neck(&o))
-            .map(|n| n.1);
-        if head.is_some_and(|h| signed_area(&h) > 0.78 * signed_area(&convex_hull(&h))) {
+        let points = &draft.ink.strokes[k].points;
+        let Some(outline) = unsure(draft, k).then(|| simple_outline(points)).flatten() else { continue };
+        let head = neck(&outline).map(|n| n.1);
+        if head.is_some_and(|h| signed_area(&h) > 0.78 * signed_area(&convex_hull(&h)))
+            || closes_above_its_trunk(points, &outline)
+        {
             draft.class[k] = Crown;
         }
     }
+}
+
+/// The pen met its own line where crown and trunk meet: the outline is the crown, and the rest hangs below it.
+fn closes_above_its_trunk(points: &[DVec2], outline: &[DVec2]) -> bool {
+    let (Some((lo, hi)), Some(all)) = (bounds(outline), bounds(points)) else { return false };
+    let below: Vec<DVec2> = points.iter().copied().filter(|p| p.y < lo.y - 0.01).collect();
+    let hangs = bounds(&below).is_some_and(|(l, h)| {
+        h.x - l.x < 0.4 * (hi.x - lo.x) && lo.y - l.y > 0.2 * (all.1.y - all.0.y) && h.x - l.x > 0.02
+    });
+    hangs && signed_area(outline) > 0.6 * signed_area(&convex_hull(outline))
 }
 
 /// A stroke that goes up and down and on to the side is a row of grass blades, where no trunk needs a crown.
@@ -140,7 +235,7 @@ fn zigzags(draft: &mut Draft<'_>) {
 /// Several single lines and nothing that a trunk could carry: stalks of grass, not sides of trunks.
 fn grass(draft: &mut Draft<'_>) {
     use StrokeClass::{Axis, Blade, Corolla, Crown, Disc, Fruit, Scribble, TrunkOutline};
-    if any(draft, &[Crown, Corolla, Blade, Disc, Scribble]) {
+    if draft.trunk || any(draft, &[Crown, Corolla, Blade, Disc, Scribble]) {
         return;
     }
     let line = |k: usize| {
