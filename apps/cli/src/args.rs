@@ -35,6 +35,11 @@ pub(crate) enum Command {
     /// Seen from the front the plant is the drawing. Strokes on a layer, or with an id, named branch-contour or
     /// leaf-contour are filled with twigs or leaves.
     Sketch(Box<SketchArgs>),
+    /// Turn marks measured on a leaf into a leaf or a whole plant
+    ///
+    /// Veins become solid balls along a spline, the blade a surface through the same points. Works from a CSV file
+    /// of 7 marks along each pair of side veins.
+    Leaf(Box<crate::leaf::LeafArgs>),
     /// Make a picture of a model
     ///
     /// The model fills the picture but for a margin and stands on the ground in the light of a soft sun.
@@ -473,7 +478,7 @@ fn seed(text: &str) -> Result<u64, String> {
     text.parse().ok().ok_or_else(|| format!("give a whole number from 0 to {}", u64::MAX))
 }
 
-fn ranged(text: &str, low: f64, high: f64) -> Result<f64, String> {
+pub(crate) fn ranged(text: &str, low: f64, high: f64) -> Result<f64, String> {
     text.parse()
         .ok()
         .filter(|x| (low..=high).contains(x))

@@ -6,6 +6,7 @@ mod convert;
 mod failure;
 mod files;
 mod info;
+mod leaf;
 mod machine;
 mod output;
 mod picture;
@@ -35,6 +36,7 @@ fn main() -> ExitCode {
     }));
     let outcome = std::panic::catch_unwind(|| match cli.command {
         Command::Sketch(args) => sketch::sketch(&args),
+        Command::Leaf(args) => leaf::leaf(&args),
         Command::Render(args) => picture::render(&args),
         Command::Convert(args) => convert::convert(&args),
         Command::Info(args) => info::info(&args),

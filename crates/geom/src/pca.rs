@@ -1,12 +1,12 @@
 //! Points -> principal axes and the box along them.
 
 use crate::vector::Vector;
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 /// Principal axes of a set of points in the plane.
 ///
 /// ```
-/// use glam::DVec2;
+/// use glam::{DVec2, DVec3};
 /// let p = geom::pca2(&[DVec2::ZERO, DVec2::new(4.0, 0.0), DVec2::new(2.0, 1.0)]).unwrap();
 /// assert!((p.major - DVec2::X).length() < 1e-12);
 /// assert_eq!(p.extent, [4.0, 1.0]);
@@ -56,9 +56,48 @@ pub fn pca2(points: &[DVec2]) -> Option<Pca2> {
     Some(Pca2 { centre, major, minor, lambda: [mean + spread, (mean - spread).max(0.0)], extent })
 }
 
+/// The mean of the usable points, their principal axes (unit, at right angles, greatest variance first, right
+/// handed) and the variances along them; `None` if there is no usable point.
+pub fn pca3(points: &[DVec3]) -> Option<(DVec3, [DVec3; 3], [f64; 3])> {
+    let usable = || points.iter().copied().filter(|p| p.usable());
+    let n = usable().count() as f64;
+    let first = usable().next()?;
+    let centre = first + usable().map(|p| p - first).sum::<DVec3>() / n;
+    let mut m = nalgebra::Matrix3::zeros();
+    for d in usable().map(|p| p - centre) {
+        let d = nalgebra::Vector3::new(d.x, d.y, d.z);
+        m += d * d.transpose() / n;
+    }
+    // Powers of two do not change the directions; the solver works best near 1.
+    let scale = m.amax();
+    let eigen = nalgebra::SymmetricEigen::new(if scale > 0.0 { m / scale } else { m });
+    let mut order = [0, 1, 2];
+    order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
+    let axis = |k: usize| {
+        let v = eigen.eigenvectors.column(k);
+        DVec3::new(v[0], v[1], v[2]).direction().unwrap_or(DVec3::X)
+    };
+    let (a, b) = (axis(order[0]), axis(order[1]));
+    let variances = order.map(|k| (eigen.eigenvalues[k] * scale).max(0.0));
+    Some((centre, [a, b, a.cross(b)], variances))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn pca3_finds_the_axes_of_a_box() {
+        let corners: Vec<DVec3> = (0..8)
+            .map(|k| DVec3::new(f64::from(k % 2), 5.0 * f64::from(k / 2 % 2), 2.0 * f64::from(k / 4)))
+            .collect();
+        let (centre, axes, variances) = pca3(&corners).unwrap();
+        assert!(centre.distance(DVec3::new(0.5, 2.5, 1.0)) < 1e-12);
+        assert!(axes[0].y.abs() > 1.0 - 1e-12 && axes[1].z.abs() > 1.0 - 1e-12);
+        assert!((axes[0].cross(axes[1]) - axes[2]).length() < 1e-12);
+        assert!((variances[0] - 6.25).abs() < 1e-12 && (variances[2] - 0.25).abs() < 1e-12);
+        assert_eq!(pca3(&[DVec3::NAN]), None);
+    }
 
     #[test]
     fn axes_of_a_turned_rectangle() {

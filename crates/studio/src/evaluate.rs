@@ -197,6 +197,7 @@ impl Evaluator {
             fidelity: *fidelity,
             digest: built.plant.digest_hex(),
             warnings: report.warnings.iter().map(ToString::to_string).collect(),
+            ..ItemReport::default()
         }
     }
 

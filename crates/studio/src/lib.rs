@@ -18,6 +18,7 @@
 //! ```
 
 mod evaluate;
+mod leaves;
 mod make;
 mod report;
 
@@ -26,12 +27,16 @@ pub use base::{
     Warning, map_indexed,
 };
 pub use evaluate::{Evaluator, FrontView};
+pub use leaves::{
+    FaceCounts, FitError, LeafError, LeafOptions, LeafReport, LeafTexture, MadeLeaf, ScanReport, ShootSpec,
+    leaf_blade, make_leaf, make_leaf_from_scan, make_leaf_of, make_shoot,
+};
 pub use make::{ClassOverrides, Made, MakeError, SketchOptions, make_from_sketch};
 pub use report::{
     Counts, Fidelity, InputReport, ItemReport, REPORT_SCHEMA, RunReport, StrokeReport, TimingsMs,
 };
 
-pub use {document, formats, geom, glam, mesh, plant, render, sketch, skin};
+pub use {document, formats, geom, glam, leaf, mesh, plant, render, sketch, skin};
 
 /// The version that is written into reports and files.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

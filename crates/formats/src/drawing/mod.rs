@@ -182,7 +182,7 @@ fn says_latin1(bytes: &[u8]) -> bool {
 }
 
 /// Text from UTF-8 (a byte order mark is dropped), UTF-16 with a byte order mark, or Latin-1 where XML says so.
-fn text_of(bytes: Vec<u8>) -> Result<String, FileFault> {
+pub(crate) fn text_of(bytes: Vec<u8>) -> Result<String, FileFault> {
     let utf16 = |big: bool| {
         let units = bytes[2..].chunks_exact(2).map(|b| {
             let pair = [b[0], b[1]];

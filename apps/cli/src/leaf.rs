@@ -1,0 +1,459 @@
+//! `burgeon leaf`: measured marks to a leaf or a whole plant.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use burgeon::formats::{
+    CloudFormat, MarksAxes, PngCache, ReadMarks, marks_template, read_cloud, read_marks, read_picture,
+    write_marks,
+};
+use burgeon::geom::RingRule;
+use burgeon::leaf::{
+    FullMarks, LeafGrowth, LeafSpec, Marks, MeshSpec, Pose, ScanSpec, SurfaceKind, ThicknessRule,
+    VeinParameters,
+};
+use burgeon::mesh::Model;
+use burgeon::{ItemReport, LeafError, LeafOptions, LeafTexture, Report, RunReport, Seed, ShootSpec};
+use clap::{Args, ValueEnum};
+
+use crate::args::{AxesArgs, CommonArgs, PictureArgs, UnitWord, ranged};
+use crate::failure::{Failure, Outcome};
+use crate::machine::Machine;
+use crate::{files, output, picture, report, say};
+
+#[derive(Args, Debug)]
+#[command(after_long_help = LEAF_EXAMPLES)]
+pub(crate) struct LeafArgs {
+    /// Marks of a leaf (.csv); several for --days and --plant. `-` reads standard input.
+    #[arg(value_name = "DATA")]
+    pub(crate) inputs: Vec<PathBuf>,
+    /// The model: .glb, .obj, .ply or .stl. With --template the file to fill in.
+    #[arg(long, short, value_name = "OUT")]
+    pub(crate) output: Option<PathBuf>,
+    /// Write a file of marks to fill in, with instructions, to -o or to standard output.
+    #[arg(long)]
+    pub(crate) template: bool,
+    /// Rows of the template, 2 to 1000.
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(2..=1000))]
+    pub(crate) rows: u32,
+    /// DATA is the scan of one leaf (.ply, .xyz, .txt, .pcd, .las, .obj): find midrib, outline, stalk and surface.
+    #[arg(long, conflicts_with_all = ["template", "plant", "days"])]
+    pub(crate) scan: bool,
+    /// Also write the leaf as marks, such as those found in a scan or grown between stages.
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) marks: Option<PathBuf>,
+    /// Also make a picture.
+    #[arg(long, value_name = "FILE.png")]
+    pub(crate) png: Option<PathBuf>,
+    /// Number that all chance follows from.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) shape: ShapeArgs,
+    #[command(flatten)]
+    pub(crate) look: LookArgs,
+    #[command(flatten)]
+    pub(crate) plant: PlantArgs,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
+    #[command(flatten)]
+    pub(crate) axes: AxesArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+const LEAF_EXAMPLES: &str = "Examples:
+  burgeon leaf --template -o marks.csv                           a file to fill in
+  burgeon leaf marks.csv -o leaf.glb --png leaf.png
+  burgeon leaf marks.csv -o leaf.glb --surface bezier            bezier, approximate, interpolate or nurbs
+  burgeon leaf marks.csv -o leaf.glb --rings envelope --caps     the exact surface of the veins
+  burgeon leaf marks.csv -o leaf.glb --curl 0.3 --wilt 0.6
+  burgeon leaf d5.csv d9.csv d15.csv --days 5,9,15 --day 12 -o leaf.glb
+  burgeon leaf low.csv middle.csv high.csv --plant -o tobacco.glb
+  burgeon leaf --scan cloud.txt --unit mm -o leaf.glb --marks found.csv
+
+Marks are a CSV file with the columns row,mark,x,y,z,thickness,midrib. Lines `# unit: mm`, `# up: z` and
+`# thickness: diameter` in the file win over --unit, --up and --thickness.";
+
+/// How blade and veins are made.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Leaf")]
+pub(crate) struct ShapeArgs {
+    /// Surface of the blade.
+    #[arg(long, value_enum, default_value_t = SurfaceWord::Interpolate)]
+    pub(crate) surface: SurfaceWord,
+    /// Rings of the veins: circles across the vein as published, or the exact surface of its balls.
+    #[arg(long, value_enum, default_value_t = RingsWord::Plain)]
+    pub(crate) rings: RingsWord,
+    /// What a measured thickness is [default: what the file says, else diameter].
+    #[arg(long, value_enum)]
+    pub(crate) thickness: Option<ThicknessWord>,
+    /// Parameters of side veins: those of the blade, on which they then lie, or their own chord lengths as
+    /// published (they meet the blade at the marks only).
+    #[arg(long, value_enum, default_value_t = ParametersWord::Shared)]
+    pub(crate) parameters: ParametersWord,
+    /// Pull of the thickest vein on a NURBS blade, 1 (none) to 100.
+    #[arg(long, value_name = "X", default_value_t = 4.0, value_parser = |s: &str| ranged(s, 1.0, 100.0))]
+    pub(crate) vein_weight: f64,
+    /// Parts of each span between marks, 1 to 64.
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub(crate) subdivisions: u32,
+    /// Points around a vein, 3 to 64.
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(3..=64))]
+    pub(crate) sides: u32,
+    /// Round ends on the veins.
+    #[arg(long)]
+    pub(crate) caps: bool,
+    /// A vein along the margin too.
+    #[arg(long)]
+    pub(crate) margin_vein: bool,
+}
+
+/// How the leaf is bent and coloured.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Look")]
+pub(crate) struct LookArgs {
+    /// Roll about the midrib, -1 (below) to 1 (margins meet above); 0 as measured.
+    #[arg(long, value_name = "X", default_value_t = 0.0, allow_hyphen_values = true,
+          value_parser = |s: &str| ranged(s, -1.0, 1.0))]
+    pub(crate) curl: f64,
+    /// Loss of stiffness, 0 (as measured) to 1 (hanging limp).
+    #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = |s: &str| ranged(s, 0.0, 1.0))]
+    pub(crate) wilt: f64,
+    /// Colour of the blade: veins (painted by the distance from them), plain, or a picture of the pressed leaf
+    /// (.png or .jpg), cropped to its box with the tip at the top.
+    #[arg(long, value_name = "veins|plain|FILE", default_value = "veins")]
+    pub(crate) texture: PathBuf,
+    /// Days on which the leaf was measured, one a file, in order.
+    #[arg(long, value_name = "D,D,...", value_delimiter = ',', requires = "day")]
+    pub(crate) days: Vec<f64>,
+    /// The day to show, between the first and the last of --days.
+    #[arg(long, value_name = "D", requires = "days")]
+    pub(crate) day: Option<f64>,
+}
+
+/// A whole plant of the leaves.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Plant")]
+pub(crate) struct PlantArgs {
+    /// A plant with the leaves on one stem: the first file is the form of the lowest leaves.
+    #[arg(long, conflicts_with = "days")]
+    pub(crate) plant: bool,
+    /// Number of leaves of the plant, 1 to 200.
+    #[arg(long, value_name = "N", default_value_t = 22, value_parser = clap::value_parser!(u32).range(1..=200))]
+    pub(crate) leaves: u32,
+    /// Height of the plant's stem in metres, 0.01 to 1000.
+    #[arg(long, value_name = "METRES", default_value_t = 1.0, value_parser = |s: &str| ranged(s, 0.01, 1000.0))]
+    pub(crate) height: f64,
+    /// Angle between successive leaves in degrees, -360 to 360; 8 degrees of chance come to it.
+    #[arg(long, value_name = "DEGREES", default_value_t = 137.0, allow_hyphen_values = true,
+          value_parser = |s: &str| ranged(s, -360.0, 360.0))]
+    pub(crate) azimuth: f64,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum SurfaceWord {
+    /// Through all marks, with the folds of the blade
+    Interpolate,
+    /// A B-spline near the marks
+    Approximate,
+    /// One smooth polynomial
+    Bezier,
+    /// As approximate, drawn towards thick veins
+    Nurbs,
+}
+
+impl From<SurfaceWord> for SurfaceKind {
+    fn from(word: SurfaceWord) -> Self {
+        match word {
+            SurfaceWord::Interpolate => Self::Interpolate,
+            SurfaceWord::Approximate => Self::Approximate,
+            SurfaceWord::Bezier => Self::Bezier,
+            SurfaceWord::Nurbs => Self::Nurbs,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum RingsWord {
+    /// Circles across the vein
+    Plain,
+    /// Where each ball touches the surface of all
+    Envelope,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum ThicknessWord {
+    /// As callipers measure
+    Diameter,
+    /// As the formulas take it
+    Radius,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum ParametersWord {
+    /// Those of the blade
+    Shared,
+    /// Chord lengths of the vein's own marks
+    Own,
+}
+
+pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
+    let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
+    let outputs = [
+        ("-o", args.output.as_ref()),
+        ("--png", args.png.as_ref()),
+        ("--marks", args.marks.as_ref()),
+        ("--report", args.common.report.as_ref()),
+    ];
+    output::check_outputs(&outputs, &args.inputs.iter().collect::<Vec<_>>())?;
+    if args.template {
+        return template(args);
+    }
+    if args.inputs.is_empty() {
+        return Err(Failure::Bad(
+            "burgeon leaf needs a file of marks; --template makes one to fill in (see --help)".into(),
+        ));
+    }
+    if args.output.is_none()
+        && args.marks.is_none()
+        && args.png.is_none()
+        && args.common.report.is_none()
+        && !args.common.json
+    {
+        return Err(Failure::Bad(
+            "say what to make of it: -o OUT, --png FILE.png, --report FILE.json or --json".into(),
+        ));
+    }
+    let format = args.output.as_deref().map(files::writable).transpose()?;
+    if let Some(png) = &args.png {
+        picture::check_name(png)?;
+    }
+    let Product { model, mut item, marks } =
+        if args.scan { scan(args, &machine)? } else { make(args, &machine)? };
+    machine.cancel.check()?;
+    if let Some(path) = &args.marks {
+        let marks = marks.ok_or_else(|| Failure::at(path, "a whole plant has no marks; drop --marks"))?;
+        output::write_whole(path, |out| write_marks(&marks, &item.name, out))?;
+    }
+    let (written, write_ms) = machine.timed(|| {
+        let Some((path, format)) = args.output.as_deref().zip(format) else { return Ok(Vec::new()) };
+        item.output = path.display().to_string();
+        let axes = files::axes(args.axes.up, args.axes.unit);
+        files::write_model(path, &model, format, &axes, &mut PngCache::new())
+    });
+    item.warnings.extend(written?.iter().map(ToString::to_string));
+    item.timings_ms.add_io(0.0, write_ms);
+    if let Some(png) = &args.png {
+        let spec = args.picture.spec(args.seed);
+        let drawn =
+            machine.with_progress("picture", |_| burgeon::render::render(&model, &spec, &machine.run()))?;
+        picture::write(png, &drawn)?;
+    }
+    let mut run = RunReport::new("leaf", args.seed);
+    run.input.path = args.inputs.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(", ");
+    if !machine.quiet {
+        item.warnings.iter().for_each(|w| say::warning(&format!("{}: {w}", run.input.path)));
+        say::line(&summary(&item, args.png.as_deref()));
+    }
+    run.items.push(item);
+    run.ok = 1;
+    report::finish(&run, &args.common)
+}
+
+fn template(args: &LeafArgs) -> Outcome {
+    let text = marks_template(args.rows as usize);
+    match &args.output {
+        Some(path) => output::write_whole(path, |out| Ok(out.write_all(text.as_bytes())?)),
+        None => {
+            say::data(text.trim_end()).map_err(|e| Failure::io(Path::new("standard output"), "written", &e))
+        }
+    }
+}
+
+fn summary(item: &ItemReport, png: Option<&Path>) -> String {
+    let line = report::summary(item, png);
+    match &item.leaf {
+        Some(l) if l.scan.is_some() => {
+            let f = &l.fit_error;
+            let fit = format!(
+                "{:.0} mm long, RMS {:.2} mm, 95 % within {:.2} mm, {:.1} % of the cloud explained",
+                l.length_mm,
+                f.rms_mm,
+                f.p95_mm,
+                100.0 * f.explained
+            );
+            line.replacen("; ", &format!(", {fit}; "), 1)
+        }
+        Some(l) => {
+            let counts = format!(
+                "{} rows, {:.0} mm, veins {}/{}, blade {}/{}",
+                l.rows, l.length_mm, l.veins.vertices, l.veins.faces, l.blade.vertices, l.blade.faces
+            );
+            line.replacen("; ", &format!(", {counts}; "), 1)
+        }
+        None => line,
+    }
+}
+
+/// What the options ask for.
+fn options(args: &LeafArgs, in_file: Option<ThicknessRule>) -> Outcome<LeafOptions> {
+    let thickness = match args.shape.thickness {
+        _ if in_file.is_some() => in_file.unwrap_or_default(),
+        Some(ThicknessWord::Radius) => ThicknessRule::Radius,
+        Some(ThicknessWord::Diameter) | None => ThicknessRule::Diameter,
+    };
+    let spec = LeafSpec {
+        surface: args.shape.surface.into(),
+        thickness,
+        parameters: match args.shape.parameters {
+            ParametersWord::Shared => VeinParameters::Shared,
+            ParametersWord::Own => VeinParameters::Own,
+        },
+        vein_weight: args.shape.vein_weight,
+    };
+    let mesh = MeshSpec {
+        subdivisions: args.shape.subdivisions as usize,
+        sides: args.shape.sides as usize,
+        rings: match args.shape.rings {
+            RingsWord::Plain => RingRule::Plain,
+            RingsWord::Envelope => RingRule::Envelope,
+        },
+        caps: args.shape.caps,
+        margin: args.shape.margin_vein,
+    };
+    let pose = Pose { curl: args.look.curl, wilt: args.look.wilt, ..Pose::default() };
+    let texture = match args.look.texture.to_str() {
+        Some("veins") => LeafTexture::Veins,
+        Some("plain") => LeafTexture::Plain,
+        _ => {
+            let path = &args.look.texture;
+            let bytes = std::fs::read(path).map_err(|e| Failure::io(path, "read", &e))?;
+            let picture = read_picture(&bytes);
+            let picture =
+                picture.ok_or_else(|| Failure::at(path, "is no PNG or JPEG picture that can be read"))?;
+            LeafTexture::Picture(Arc::new(picture))
+        }
+    };
+    Ok(LeafOptions { spec, mesh, pose, texture })
+}
+
+/// What comes out before it is written.
+struct Product {
+    model: Model,
+    item: ItemReport,
+    marks: Option<Marks>,
+}
+
+/// A scan to a leaf.
+fn scan(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
+    let [path] = args.inputs.as_slice() else {
+        return Err(Failure::Bad("--scan takes one cloud, of one leaf; give one file".into()));
+    };
+    let format = files::extension(path).and_then(CloudFormat::from_extension);
+    let format = format.ok_or_else(|| {
+        Failure::at(path, "is not named as a scan; end the name with .ply, .xyz, .txt, .pcd, .las or .obj")
+    })?;
+    let mut report = Report::default();
+    let axes = files::axes(args.axes.up, args.axes.unit);
+    let file = std::fs::File::open(path).map_err(|e| Failure::io(path, "read", &e))?;
+    let (cloud, read_ms) = machine.timed(|| read_cloud(file, format, &axes, &mut report));
+    let mut points = cloud.map_err(|e| Failure::at(path, e))?.points;
+    let first = points.first().copied().unwrap_or_default();
+    let size = points.iter().fold([first; 2], |[a, b], &p| [a.min(p), b.max(p)]);
+    // 10 m: no leaf is longer, and scanners of leaves write millimetres.
+    if (size[1] - size[0]).max_element() > 10.0 && matches!(args.axes.unit, UnitWord::M) {
+        points.iter_mut().for_each(|p| *p *= 0.001);
+        report.warn(
+            "unit-guessed",
+            "the cloud is more than 10 m wide: it was taken for millimetres; say --unit mm",
+        );
+    }
+    let made = machine.with_progress("scan", |_| {
+        let (name, spec) = (files::stem(path), ScanSpec::default());
+        burgeon::make_leaf_from_scan(&name, &points, &spec, &machine.run())
+    });
+    let (model, mut item, found) = made.map_err(|e| failure(args, e))?;
+    item.warnings.splice(0..0, report.warnings.iter().map(ToString::to_string));
+    item.timings_ms.add_io(read_ms, 0.0);
+    Ok(Product { model, item, marks: Some(found.marks) })
+}
+
+fn make(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
+    let several = args.plant.plant || !args.look.days.is_empty();
+    if args.inputs.len() > 1 && !several {
+        return Err(Failure::Bad(
+            "several files make one leaf only with --days (stages of one leaf) or --plant (a whole plant)"
+                .into(),
+        ));
+    }
+    let (read, read_ms) =
+        machine.timed(|| args.inputs.iter().map(|p| read(p, args)).collect::<Outcome<Vec<_>>>());
+    let read = read?;
+    let name = read.first().map_or_else(|| "leaf".into(), |r| r.name.clone());
+    let options = options(args, read.iter().find_map(|r| r.thickness))?;
+    let seed = Seed::new(args.seed);
+    let mut report = Report::default();
+    let mut full = Vec::with_capacity(read.len());
+    for (one, path) in read.iter().zip(&args.inputs) {
+        one.warnings.iter().for_each(|w| report.warnings.push(w.clone()));
+        full.push(one.marks.complete(&mut report).map_err(|e| Failure::at(path, e))?);
+    }
+    let (model, mut item, marks) = if args.plant.plant {
+        let spec = ShootSpec {
+            leaves: args.plant.leaves,
+            height_m: args.plant.height,
+            azimuth_deg: args.plant.azimuth,
+            ..ShootSpec::default()
+        };
+        let made = machine.with_progress("plant", |_| {
+            burgeon::make_shoot("plant", &full, &spec, &options, seed, &machine.run())
+        });
+        let (model, mut item) = made.map_err(|e| failure(args, e))?;
+        item.warnings.splice(0..0, report.warnings.iter().map(ToString::to_string));
+        (model, item, None)
+    } else {
+        let marks = grown(args, full)?;
+        let made = burgeon::make_leaf_of(&name, &marks, &options, seed, &machine.run(), report);
+        let made = made.map_err(|e| failure(args, e))?;
+        (made.model, made.item, Some(made.marks.to_marks()))
+    };
+    item.timings_ms.add_io(read_ms, 0.0);
+    Ok(Product { model, item, marks })
+}
+
+fn failure(args: &LeafArgs, error: LeafError) -> Failure {
+    match error {
+        LeafError::Cancelled(_) => Failure::Cancelled,
+        other => Failure::at(args.inputs.first().map_or(Path::new("leaf"), PathBuf::as_path), other),
+    }
+}
+
+/// The one leaf, or the leaf of the day that was asked for.
+fn grown(args: &LeafArgs, mut full: Vec<FullMarks>) -> Outcome<FullMarks> {
+    let Some(day) = args.look.day else {
+        return full.pop().ok_or_else(|| Failure::Bug("no leaf was read".into()));
+    };
+    if args.look.days.len() != full.len() {
+        return Err(Failure::Bad(format!(
+            "--days names {} for {}; give one day a file",
+            say::counted(args.look.days.len() as u64, "day", "days"),
+            say::counted(full.len() as u64, "file", "files")
+        )));
+    }
+    let stages = args.look.days.iter().copied().zip(full).collect();
+    LeafGrowth::new(stages).and_then(|g| g.at(day)).map_err(|e| Failure::Bad(e.to_string()))
+}
+
+fn read(path: &Path, args: &LeafArgs) -> Outcome<ReadMarks> {
+    let axes = MarksAxes { unit: args.axes.unit.into(), up: args.axes.up.into() };
+    let name = files::stem(path);
+    let read = if files::is_stdin(path) {
+        read_marks(std::io::stdin().lock(), &name, axes)
+    } else if path.is_dir() {
+        return Err(Failure::at(path, "is a folder; name a file of marks in it"));
+    } else {
+        read_marks(std::fs::File::open(path).map_err(|e| Failure::io(path, "read", &e))?, &name, axes)
+    };
+    read.map_err(|e| Failure::at(path, e))
+}

@@ -1,0 +1,26 @@
+//! Files of measured leaves: marks as CSV.
+
+mod marks;
+
+use crate::error::{FileFault, Place};
+
+pub use marks::{MarksAxes, ReadMarks, marks_template, read_marks, write_marks};
+
+/// Largest file of leaf marks that is read: 16 MiB, far more than a person can measure.
+pub const MAX_LEAF_BYTES: u64 = 16 << 20;
+
+/// A file of a leaf could not be read.
+#[derive(Debug, thiserror::Error)]
+#[error("leaf marks{place}: {fault}")]
+pub struct LeafFileError {
+    /// Where.
+    pub place: Place,
+    /// What and what to do.
+    pub fault: FileFault,
+}
+
+impl LeafFileError {
+    pub(crate) fn new(place: Place, fault: FileFault) -> Self {
+        Self { place, fault }
+    }
+}

@@ -1,0 +1,312 @@
+//! Marks -> veins as ball B-splines and a blade as a spline surface, both of the same controls.
+
+use geom::{Ball, BallBSpline, NaturalCubic, SplineError, SplineSurface};
+use glam::DVec3;
+
+use crate::marks::{FullMarks, MARKS_A_ROW};
+
+/// Which surface is laid through or near the marks (paper 004, section 2.2).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum SurfaceKind {
+    /// One polynomial of the marks as controls: smooth, far from the marks.
+    Bezier,
+    /// A bicubic B-spline of the marks as controls: smooth, near the marks.
+    Approximate,
+    /// A bicubic B-spline through all marks: keeps the folds of the blade.
+    #[default]
+    Interpolate,
+    /// As `Approximate`, drawn towards the marks on thick veins.
+    Nurbs,
+}
+
+impl SurfaceKind {
+    /// All kinds, in the paper's order.
+    pub const ALL: [Self; 4] = [Self::Bezier, Self::Approximate, Self::Interpolate, Self::Nurbs];
+
+    /// The word used in files, options and reports.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Bezier => "bezier",
+            Self::Approximate => "approximate",
+            Self::Interpolate => "interpolate",
+            Self::Nurbs => "nurbs",
+        }
+    }
+}
+
+/// What a measured thickness is to its vein's ball.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ThicknessRule {
+    /// A calliper's reading: the ball's diameter.
+    #[default]
+    Diameter,
+    /// The ball's radius, as the paper's formulas take it.
+    Radius,
+}
+
+/// Which parameters an interpolating side vein has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum VeinParameters {
+    /// Those of the blade, so that the vein lies on it.
+    #[default]
+    Shared,
+    /// The chord lengths of its own marks, as the paper has them: vein and blade meet at the marks only.
+    Own,
+}
+
+/// How a leaf is made of its marks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeafSpec {
+    /// The blade's surface.
+    pub surface: SurfaceKind,
+    /// What a measured thickness is.
+    pub thickness: ThicknessRule,
+    /// Parameters of interpolating veins.
+    pub parameters: VeinParameters,
+    /// Weight of the thickest vein's mark for [`SurfaceKind::Nurbs`], 1 to 100; the margin has 1. Default 4.
+    pub vein_weight: f64,
+}
+
+impl Default for LeafSpec {
+    fn default() -> Self {
+        Self {
+            surface: SurfaceKind::default(),
+            thickness: ThicknessRule::default(),
+            parameters: VeinParameters::default(),
+            // 4: the blade visibly follows the midrib, and folds beside it stay soft.
+            vein_weight: 4.0,
+        }
+    }
+}
+
+/// One vein: a ball B-spline and the parameters of its marks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Vein {
+    /// Centre line and radius, from the midrib's root, or from the left margin to the right.
+    pub curve: BallBSpline,
+    /// Parameters at which marks lie (or count most); they split the curve into spans for meshing.
+    pub marks: Vec<f64>,
+}
+
+/// A leaf as curves and a surface.
+///
+/// The surface has u from left to right (mark 7 to mark 1), v from the last row to the tip, so that
+/// `du x dv` points to the upper side. Guaranteed with shared parameters: every vein lies on the blade.
+///
+/// ```
+/// # use glam::DVec3;
+/// use leaf::{Leaf, LeafSpec, MarkRow, Marks};
+/// let row = |y: f64| MarkRow {
+///     points: std::array::from_fn(|j| DVec3::new(0.03 - 0.01 * j as f64, y, 0.0)),
+///     midrib: Some(0.002),
+///     ..MarkRow::default()
+/// };
+/// let marks = Marks { rows: vec![row(0.06), row(0.0)], tip: DVec3::Y * 0.1, tip_thickness: None };
+/// let full = marks.complete(&mut base::Report::default())?;
+/// let leaf = Leaf::new(&full, &LeafSpec::default())?;
+/// let middle = leaf.midrib.curve.ball(0.3);
+/// assert!(middle.centre.distance(leaf.blade.point(leaf.middle, 0.3)) < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Leaf {
+    /// The blade.
+    pub blade: SplineSurface,
+    /// The midrib, from root to tip.
+    pub midrib: Vein,
+    /// The side veins from the last row up, each from left to right.
+    pub sides: Vec<Vein>,
+    /// The margin from the last row to the tip, left and right, as thick as it was measured.
+    pub margins: [Vein; 2],
+    /// The parameter u of the midrib.
+    pub middle: f64,
+}
+
+impl Leaf {
+    /// Lays a blade and veins through or near marks.
+    ///
+    /// Cost: linear in the marks for interpolation.
+    ///
+    /// # Errors
+    /// [`SplineError`] for marks of which [`Marks::validate`](crate::Marks::validate) would complain, and for
+    /// more than 63 rows with [`SurfaceKind::Bezier`].
+    pub fn new(marks: &FullMarks, spec: &LeafSpec) -> Result<Self, SplineError> {
+        let grid = Grid::new(marks, spec);
+        let n = MARKS_A_ROW;
+        let blade = match spec.surface {
+            SurfaceKind::Bezier => SplineSurface::bezier(&grid.points, n)?,
+            SurfaceKind::Approximate => SplineSurface::approximate(&grid.points, n)?,
+            SurfaceKind::Interpolate => SplineSurface::interpolate(&grid.points, n)?,
+            SurfaceKind::Nurbs => SplineSurface::nurbs(&grid.points, &grid.weights(spec), n)?,
+        };
+        let solve = match spec.surface {
+            SurfaceKind::Interpolate => {
+                Some((NaturalCubic::new(blade.columns_at())?, NaturalCubic::new(blade.rows_at())?))
+            }
+            _ => None,
+        };
+        let (us, vs) = (blade.columns_at().to_vec(), blade.rows_at().to_vec());
+        let across = |radii: &[f64]| match &solve {
+            Some((u, _)) => u.controls(radii),
+            None => Ok(radii.to_vec()),
+        };
+        let along = |radii: &[f64]| match &solve {
+            Some((_, v)) => v.controls(radii),
+            None => Ok(radii.to_vec()),
+        };
+        let middle = us[n / 2];
+        let midrib = Vein { curve: blade.column_vein(middle, &along(&grid.midrib)?)?, marks: vs.clone() };
+        let mut sides = Vec::with_capacity(grid.rows);
+        for (i, &v) in vs.iter().enumerate().take(grid.rows) {
+            let radii = &grid.radii[i * n..(i + 1) * n];
+            let own = solve.is_some() && spec.parameters == VeinParameters::Own;
+            sides.push(if own {
+                own_vein(&grid.points[i * n..(i + 1) * n], radii)?
+            } else {
+                Vein { curve: blade.row_vein(v, &across(radii)?)?, marks: us.clone() }
+            });
+        }
+        let margin = |j: usize| -> Result<Vein, SplineError> {
+            let radii: Vec<f64> = (0..=grid.rows).map(|i| grid.radii[i * n + j]).collect();
+            Ok(Vein { curve: blade.column_vein(us[j], &along(&radii)?)?, marks: vs.clone() })
+        };
+        let margins = [margin(0)?, margin(n - 1)?];
+        Ok(Self { blade, midrib, sides, margins, middle })
+    }
+
+    /// The farthest that any vein's centre line is from the place on the blade where it should lie, metres.
+    ///
+    /// At `steps` parameters a span. Rounding noise with [`VeinParameters::Shared`].
+    pub fn vein_gap(&self, steps: usize) -> f64 {
+        let mut gap: f64 = 0.0;
+        for t in samples(&self.midrib.marks, steps) {
+            gap = gap.max(self.midrib.curve.ball(t).centre.distance(self.blade.point(self.middle, t)));
+        }
+        let us = samples(self.blade.columns_at(), steps);
+        for (side, &v) in self.sides.iter().zip(self.blade.rows_at()) {
+            for (&t, &u) in samples(&side.marks, steps).iter().zip(&us) {
+                gap = gap.max(side.curve.ball(t).centre.distance(self.blade.point(u, v)));
+            }
+        }
+        gap
+    }
+}
+
+/// The parameters that split each span between `marks` into `steps` equal parts.
+pub(crate) fn samples(marks: &[f64], steps: usize) -> Vec<f64> {
+    let steps = steps.max(1);
+    let mut out = Vec::with_capacity(marks.len() * steps);
+    for w in marks.windows(2) {
+        out.extend((0..steps).map(|k| base::ops::lerp(w[0], w[1], k as f64 / steps as f64)));
+    }
+    out.extend(marks.last());
+    out
+}
+
+fn own_vein(points: &[DVec3], radii: &[f64]) -> Result<Vein, SplineError> {
+    let marks = geom::chord_parameters(points).ok_or(SplineError::TooFew { needed: 2, given: 1 })?;
+    let balls: Vec<Ball> = points.iter().zip(radii).map(|(&p, &r)| Ball::new(p, r)).collect();
+    Ok(Vein { curve: BallBSpline::interpolate_at(&NaturalCubic::new(&marks)?, &balls)?, marks })
+}
+
+/// Marks in the surface's order: rows from the last to the tip, columns from left to right.
+struct Grid {
+    rows: usize,
+    points: Vec<DVec3>,
+    radii: Vec<f64>,
+    midrib: Vec<f64>,
+}
+
+impl Grid {
+    fn new(marks: &FullMarks, spec: &LeafSpec) -> Self {
+        let radius = match spec.thickness {
+            ThicknessRule::Diameter => 0.5,
+            ThicknessRule::Radius => 1.0,
+        };
+        let rows = marks.rows.len();
+        let up = || marks.rows.iter().rev();
+        let mut points: Vec<DVec3> = up().flat_map(|r| r.points.into_iter().rev()).collect();
+        points.extend([marks.tip; MARKS_A_ROW]);
+        let mut radii: Vec<f64> = up().flat_map(|r| r.thickness.into_iter().rev()).collect();
+        radii.extend([marks.tip_thickness; MARKS_A_ROW]);
+        let mut midrib: Vec<f64> = up().map(|r| r.midrib).collect();
+        midrib.push(marks.tip_thickness);
+        radii.iter_mut().chain(&mut midrib).for_each(|r| *r *= radius);
+        Self { rows, points, radii, midrib }
+    }
+
+    /// 1 for the thinnest vein, `vein_weight` for the thickest, even between; the midrib's own in its column.
+    fn weights(&self, spec: &LeafSpec) -> Vec<f64> {
+        let n = MARKS_A_ROW;
+        let thick = |k: usize| if k % n == n / 2 { self.midrib[k / n] } else { self.radii[k] };
+        let all: Vec<f64> = (0..self.points.len()).map(thick).collect();
+        let (lo, hi) = all.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), &x| (a.min(x), b.max(x)));
+        let most = spec.vein_weight.clamp(1.0, 100.0);
+        let share = |x: f64| if hi > lo { (x - lo) / (hi - lo) } else { 0.0 };
+        all.iter().map(|&x| 1.0 + (most - 1.0) * share(x)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use base::Report;
+
+    use super::*;
+    use crate::marks::tests::sample;
+
+    fn full(rows: usize) -> FullMarks {
+        sample(rows).complete(&mut Report::default()).unwrap()
+    }
+
+    #[test]
+    fn veins_lie_on_every_kind_of_blade() {
+        for surface in SurfaceKind::ALL {
+            let leaf = Leaf::new(&full(9), &LeafSpec { surface, ..LeafSpec::default() }).unwrap();
+            assert!(leaf.vein_gap(13) < 1e-9, "{surface:?} {}", leaf.vein_gap(13));
+        }
+    }
+
+    #[test]
+    fn veins_of_own_parameters_meet_the_blade_at_the_marks_only() {
+        let spec = LeafSpec { parameters: VeinParameters::Own, ..LeafSpec::default() };
+        let leaf = Leaf::new(&full(9), &spec).unwrap();
+        assert!(leaf.vein_gap(1) < 1e-12, "{}", leaf.vein_gap(1));
+        assert!(leaf.vein_gap(8) > 1e-7, "{}", leaf.vein_gap(8));
+    }
+
+    #[test]
+    fn interpolating_leaf_passes_through_marks_with_their_thickness() {
+        let marks = full(6);
+        let leaf = Leaf::new(&marks, &LeafSpec::default()).unwrap();
+        for (i, row) in marks.rows.iter().rev().enumerate() {
+            let vein = &leaf.sides[i];
+            for (j, t) in vein.marks.iter().enumerate() {
+                let ball = vein.curve.ball(*t);
+                assert!(ball.centre.distance(row.points[6 - j]) < 1e-14, "{i} {j}");
+                assert!((ball.radius - 0.5 * row.thickness[6 - j]).abs() < 1e-15, "{i} {j}");
+            }
+            let ball = leaf.midrib.curve.ball(leaf.midrib.marks[i]);
+            assert!((ball.radius - 0.5 * row.midrib).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn thickness_as_radius_doubles_the_veins() {
+        let thin = Leaf::new(&full(4), &LeafSpec::default()).unwrap();
+        let spec = LeafSpec { thickness: ThicknessRule::Radius, ..LeafSpec::default() };
+        let thick = Leaf::new(&full(4), &spec).unwrap();
+        let r = |l: &Leaf| l.midrib.curve.ball(0.4).radius;
+        assert!((r(&thick) - 2.0 * r(&thin)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn nurbs_comes_nearer_to_the_midrib_than_the_plain_spline() {
+        let mut marks = full(8);
+        marks.rows.iter_mut().for_each(|r| r.points[3].z = -0.2);
+        let depth = |surface| {
+            let leaf = Leaf::new(&marks, &LeafSpec { surface, ..LeafSpec::default() }).unwrap();
+            leaf.blade.point(leaf.middle, 0.5).z
+        };
+        assert!(depth(SurfaceKind::Nurbs) < depth(SurfaceKind::Approximate) - 0.005);
+    }
+}

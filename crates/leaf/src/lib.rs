@@ -1,0 +1,34 @@
+//! Leaves from measured veins (paper 004): marks -> veins with thickness and a blade through the same points.
+//!
+//! `Marks -> complete -> Leaf { veins, blade } -> LeafMesh`
+//!
+//! | module | owns |
+//! |---|---|
+//! | `marks` | [`Marks`]: what was measured, what is missing, the paper's rule for missing thickness |
+//! | `blade` | [`Leaf`]: the four surfaces, veins that lie on them |
+//! | `meshes` | [`LeafMesh`]: tubes and grid at any resolution, the counts of the paper's Table 1 |
+//! | `pose` | curl and wilt |
+//! | `growth` | a leaf between measured stages |
+//! | `scan` | a leaf found in a cloud of points |
+//! | `flat` | the leaf unrolled into a plane: template of a blade, texture coordinates |
+//! | `colour` | a texture coloured by the distance from the veins |
+//!
+//! Lengths are metres. A leaf knows nothing of the plant that bears it.
+
+mod blade;
+mod colour;
+mod flat;
+mod growth;
+mod marks;
+mod meshes;
+mod pose;
+mod scan;
+
+pub use blade::{Leaf, LeafSpec, SurfaceKind, ThicknessRule, Vein, VeinParameters};
+pub use colour::{LeafColours, vein_texture};
+pub use flat::FlatLeaf;
+pub use growth::{GrowthError, LeafGrowth};
+pub use marks::{FullMarks, FullRow, MARKS_A_ROW, MarkRow, Marks, MarksError};
+pub use meshes::{LeafMesh, MeshSpec};
+pub use pose::Pose;
+pub use scan::{ScanError, ScanLeaf, ScanSpec, fit_scan};

@@ -1,0 +1,645 @@
+//! A scanned leaf -> midrib, outline, stalk and a surface, with its distances from the cloud.
+//!
+//! points -> neighbours (outliers) -> stalk (where the cloud is a line) -> plane of the blade -> height field ->
+//! margins, midrib -> grid
+
+use base::{Report, Run, map_indexed};
+use geom::{Ball, BallBSpline, Grid3, HeightField, SplineError};
+use glam::DVec3;
+
+use crate::marks::{MARKS_A_ROW, MarkRow, Marks};
+
+/// How a leaf is sought in a cloud. Lengths in metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScanSpec {
+    /// Rows of the surface's grid, 8 to 400. Default 64.
+    pub rows: usize,
+    /// Columns of the grid, 8 to 400, made odd. Default 41.
+    pub columns: usize,
+    /// A point this near to the model is explained by it. Default 0.002.
+    pub explained_m: f64,
+    /// Stiffness of the surface, above 0: 0.01 follows the cloud, 1 is smooth. Default 0.05.
+    pub smoothing: f64,
+}
+
+impl Default for ScanSpec {
+    fn default() -> Self {
+        Self { rows: 64, columns: 41, explained_m: 0.002, smoothing: 0.05 }
+    }
+}
+
+/// A leaf found in a scan, in the scan's coordinates.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScanLeaf {
+    /// Points of the blade, row after row from base to tip, each from left to right.
+    pub grid: Vec<DVec3>,
+    /// Points a row; the midrib is the middle one.
+    pub columns: usize,
+    /// The stalk, from the blade outwards, where the cloud has one.
+    pub stalk: Option<BallBSpline>,
+    /// Points of the cloud that were used, and those that were dropped as outliers.
+    pub used: usize,
+    /// Outliers: far from their neighbours, compared with the others.
+    pub outliers: usize,
+    /// Distance of each used point from the model, metres.
+    pub distances: Vec<f64>,
+    /// Share of all points of the cloud, outliers too, that are within `explained_m` of the model.
+    pub explained: f64,
+    /// Share of the blade that has a point of the cloud within `explained_m`: what is not covered is a hole or
+    /// was bridged.
+    pub covered: f64,
+    /// The blade as marks, for the other commands; thickness unknown but for the stalk's at the last row.
+    pub marks: Marks,
+}
+
+/// Why no leaf was found.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ScanError {
+    /// Too few points, or all in one place or line.
+    #[error(
+        "{0} points are too few for a leaf, or lie on a line; a blade needs at least 100 that spread over it"
+    )]
+    TooFew(usize),
+    /// More points than one leaf needs.
+    #[error("{0} points are too many for one leaf; thin the cloud out to at most {1}")]
+    TooMany(usize, usize),
+    /// The surface could not be fitted.
+    #[error("no surface fits the cloud: {0}")]
+    Spline(#[from] SplineError),
+    /// The user asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] base::Cancelled),
+}
+
+const MOST_POINTS: usize = 2_000_000;
+
+/// The plane in which the blade is seen: x across, y from base to tip, z the upper side.
+#[derive(Clone, Copy)]
+struct Plane {
+    origin: DVec3,
+    x: DVec3,
+    y: DVec3,
+    z: DVec3,
+}
+
+impl Plane {
+    fn local(&self, p: DVec3) -> DVec3 {
+        let d = p - self.origin;
+        DVec3::new(d.dot(self.x), d.dot(self.y), d.dot(self.z))
+    }
+
+    fn world(&self, p: DVec3) -> DVec3 {
+        self.origin + self.x * p.x + self.y * p.y + self.z * p.z
+    }
+}
+
+/// Finds one leaf in a cloud of points: outliers, stalk, midrib, margins, surface.
+///
+/// The blade must be a height over its own plane (folded back on itself it is not). Which end is the base is
+/// known from the stalk; without one it is the broader end, and `report` says so. Which side is the upper one
+/// follows +Y. Cost: linear in the points, times their neighbours.
+///
+/// # Errors
+/// [`ScanError`].
+pub fn fit_scan(
+    points: &[DVec3],
+    spec: &ScanSpec,
+    run: &Run<'_>,
+    report: &mut Report,
+) -> Result<ScanLeaf, ScanError> {
+    let all: Vec<DVec3> = points.iter().copied().filter(|p| p.abs().max_element() < 1e6).collect();
+    if all.len() < 100 {
+        return Err(ScanError::TooFew(all.len()));
+    }
+    if all.len() > MOST_POINTS {
+        return Err(ScanError::TooMany(all.len(), MOST_POINTS));
+    }
+    let (used, spacing) = without_outliers(&all, run);
+    let outliers = all.len() - used.len();
+    if used.len() < 100 || spacing <= 0.0 {
+        return Err(ScanError::TooFew(used.len()));
+    }
+    if outliers > 0 {
+        report.warn("outliers", format!("{outliers} points far from their neighbours were left out"));
+    }
+    run.cancel.check()?;
+    let thin = stalk_points(&used, spacing, run);
+    let blade: Vec<DVec3> = used.iter().zip(&thin).filter(|(_, t)| !**t).map(|(p, _)| *p).collect();
+    let stem: Vec<DVec3> = used.iter().zip(&thin).filter(|(_, t)| **t).map(|(p, _)| *p).collect();
+    if blade.len() < 100 {
+        return Err(ScanError::TooFew(blade.len()));
+    }
+    run.cancel.check()?;
+    let plane = plane_of(&blade, &stem, report).ok_or(ScanError::TooFew(blade.len()))?;
+    let flat: Vec<DVec3> = blade.iter().map(|&p| plane.local(p)).collect();
+    let field = surface_of(&flat, spacing, spec.smoothing)?;
+    run.cancel.check()?;
+    let lines = Lines::of(&flat, &field, spec.rows.clamp(8, 400), spacing);
+    let columns = spec.columns.clamp(8, 400) | 1;
+    let grid: Vec<DVec3> = lines.grid(columns, &field).into_iter().map(|p| plane.world(p)).collect();
+    let stalk = stalk_curve(&stem, grid[columns / 2]);
+    let model = Near::new(&grid, columns, stalk.as_ref());
+    let distance = |points: &[DVec3]| map_indexed(run.executor, points.len(), |k| model.distance(points[k]));
+    let distances = distance(&used);
+    let explained =
+        distance(&all).iter().filter(|&&d| d <= spec.explained_m).count() as f64 / all.len() as f64;
+    let cloud = Grid3::new(&used, spec.explained_m);
+    let covered = grid.iter().filter(|&&p| cloud.nearest(p, spec.explained_m).is_some()).count();
+    let covered = covered as f64 / grid.len() as f64;
+    let marks = marks_of(&grid, columns, stalk.as_ref());
+    Ok(ScanLeaf { grid, columns, stalk, used: used.len(), outliers, distances, explained, covered, marks })
+}
+
+impl ScanLeaf {
+    /// The midrib from base to tip.
+    pub fn midrib(&self) -> Vec<DVec3> {
+        self.grid.chunks(self.columns).map(|row| row[self.columns / 2]).collect()
+    }
+
+    /// The outline, up the right margin from the base and down the left.
+    pub fn outline(&self) -> Vec<DVec3> {
+        let n = self.columns;
+        let right = self.grid.chunks(n).map(|row| row[n - 1]);
+        let left = self.grid.chunks(n).rev().map(|row| row[0]);
+        right.chain(left).collect()
+    }
+}
+
+/// The points whose neighbours are as near as those of others, and the median distance to the sixth.
+fn without_outliers(all: &[DVec3], run: &Run<'_>) -> (Vec<DVec3>, f64) {
+    let Some((_, _, variances)) = geom::pca3(all) else { return (vec![], 0.0) };
+    let wide = variances[0].sqrt();
+    // About 20 points a ball if the points cover a disc.
+    let reach = 4.0 * wide * (20.0 / all.len() as f64).sqrt();
+    let grid = Grid3::new(all, reach);
+    let sixth = map_indexed(run.executor, all.len(), |k| {
+        let mut near = Vec::new();
+        grid.within(all[k], reach, &mut near);
+        let mut d: Vec<f64> = near.iter().map(|&i| all[i].distance(all[k])).collect();
+        d.sort_unstable_by(f64::total_cmp);
+        d.get(6).copied().unwrap_or(f64::INFINITY)
+    });
+    let mut sorted: Vec<f64> = sixth.clone();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let median = sorted[sorted.len() / 2];
+    // Four times: stalks are thinner covered than blades, and their points must stay.
+    let kept = all.iter().zip(&sixth).filter(|(_, d)| **d <= 4.0 * median).map(|(p, _)| *p).collect();
+    (kept, if median.is_finite() { median } else { 0.0 })
+}
+
+/// True for points of the stalk: around them the cloud is a line, and together they are a long piece.
+fn stalk_points(points: &[DVec3], spacing: f64, run: &Run<'_>) -> Vec<bool> {
+    let Some((_, _, variances)) = geom::pca3(points) else { return vec![false; points.len()] };
+    // Wider than a stalk is thick, narrower than a blade.
+    let reach = (0.45 * variances[0].sqrt()).max(3.0 * spacing);
+    let grid = Grid3::new(points, reach);
+    let line = map_indexed(run.executor, points.len(), |k| {
+        let mut near = Vec::new();
+        grid.within(points[k], reach, &mut near);
+        // At most 64 neighbours, evenly taken: enough for a direction.
+        let step = near.len().div_ceil(64).max(1);
+        let near: Vec<DVec3> = near.iter().step_by(step).map(|&i| points[i]).collect();
+        // 0.06: a strip four times as long as wide; the margin of a blade has 0.25 and more.
+        geom::pca3(&near).is_some_and(|(_, _, v)| near.len() >= 5 && v[1] < 0.06 * v[0])
+    });
+    let link = 4.0 * spacing;
+    let linked = Grid3::new(points, link);
+    let (group, groups) = pieces(points, &linked, link, |i| line[i]);
+    let extent = |members: &[usize]| {
+        let first = points[members[0]];
+        let far = members.iter().map(|&i| points[i].distance(first)).fold(0.0, f64::max);
+        members.iter().map(|&i| points[i].distance(first)).fold(far, f64::max)
+    };
+    let longest = groups.iter().enumerate().map(|(k, m)| (k, extent(m), m.len()));
+    let longest = longest.filter(|g| g.2 >= 10).max_by(|a, b| a.1.total_cmp(&b.1));
+    // A scrap of margin is no stalk: it must be a good part of the leaf.
+    let stalk = longest.filter(|g| g.1 > 0.5 * variances[0].sqrt()).map(|g| g.0);
+    let Some(stalk) = stalk else { return vec![false; points.len()] };
+    let mut thin: Vec<bool> = group.iter().map(|&g| g == Some(stalk)).collect();
+    // The largest rest is the blade. Another piece belongs to what is nearer to it: the loose end of a stalk to
+    // the stalk, the far side of a hole to the blade.
+    let (rest, rests) = pieces(points, &linked, link, |i| !thin[i]);
+    let blade = (0..rests.len()).max_by_key(|&k| rests[k].len());
+    let of = |wanted: &dyn Fn(usize) -> bool| -> Vec<DVec3> {
+        (0..points.len()).filter(|&i| wanted(i)).map(|i| points[i]).collect()
+    };
+    let blade_points = of(&|i| rest[i].is_some() && rest[i] == blade);
+    let stalk_points = of(&|i| thin[i]);
+    let (near_blade, near_stalk) = (Grid3::new(&blade_points, link), Grid3::new(&stalk_points, link));
+    for (_, members) in rests.iter().enumerate().filter(|(k, _)| Some(*k) != blade) {
+        let nearest = |grid: &Grid3, of: &[DVec3]| {
+            let each = members
+                .iter()
+                .filter_map(|&i| Some(of[grid.nearest(points[i], f64::INFINITY)?].distance(points[i])));
+            each.fold(f64::INFINITY, f64::min)
+        };
+        if nearest(&near_stalk, &stalk_points) < nearest(&near_blade, &blade_points) {
+            members.iter().for_each(|&i| thin[i] = true);
+        }
+    }
+    thin
+}
+
+/// The points that `wanted` names, in pieces linked by steps of at most `link`: each point's piece, and pieces.
+fn pieces(
+    points: &[DVec3],
+    grid: &Grid3,
+    link: f64,
+    wanted: impl Fn(usize) -> bool,
+) -> (Vec<Option<usize>>, Vec<Vec<usize>>) {
+    let mut group = vec![None; points.len()];
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    let mut near = Vec::new();
+    for start in 0..points.len() {
+        if !wanted(start) || group[start].is_some() {
+            continue;
+        }
+        let id = Some(groups.len());
+        let mut members = vec![start];
+        group[start] = id;
+        let mut next = 0;
+        while next < members.len() {
+            grid.within(points[members[next]], link, &mut near);
+            for &i in near.iter().filter(|&&i| wanted(i)) {
+                if group[i].is_none() {
+                    group[i] = id;
+                    members.push(i);
+                }
+            }
+            next += 1;
+        }
+        groups.push(members);
+    }
+    (group, groups)
+}
+
+fn plane_of(blade: &[DVec3], stem: &[DVec3], report: &mut Report) -> Option<Plane> {
+    let (centre, axes, variances) = geom::pca3(blade)?;
+    if variances[1] <= 1e-9 * variances[0] {
+        return None;
+    }
+    let z = if axes[2].y < 0.0 { -axes[2] } else { axes[2] };
+    let nearest = |p: DVec3| blade.iter().map(|q| q.distance_squared(p)).fold(f64::INFINITY, f64::min);
+    let join = stem.iter().map(|&p| (nearest(p), p)).min_by(|a, b| a.0.total_cmp(&b.0));
+    let y = match join {
+        // From where the stalk joins across the middle of the blade.
+        Some((_, join)) => centre - join,
+        None => {
+            let along = |p: &DVec3| (*p - centre).dot(axes[0]);
+            let far = blade.iter().map(along).fold(0.0_f64, |a, b| a.max(b.abs()));
+            let third = |sign: f64| {
+                let end = blade.iter().filter(|p| sign * along(p) > 0.5 * far);
+                end.map(|p| (*p - centre).dot(axes[1]).abs()).fold(0.0, f64::max)
+            };
+            report.warn(
+                "no-stalk",
+                "no stalk was found: the broader end was taken for the base, which may be wrong",
+            );
+            if third(1.0) > third(-1.0) { -axes[0] } else { axes[0] }
+        }
+    };
+    let y = (y - z * y.dot(z)).try_normalize()?;
+    Some(Plane { origin: centre, x: y.cross(z), y, z })
+}
+
+/// The surface, by repeated fits that count far points less (Tukey's biweight).
+fn surface_of(flat: &[DVec3], spacing: f64, smoothing: f64) -> Result<HeightField, SplineError> {
+    let size = |axis: fn(&DVec3) -> f64| {
+        let (lo, hi) =
+            flat.iter().map(axis).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
+        hi - lo
+    };
+    let (wide, long) = (size(|p| p.x), size(|p| p.y));
+    // A control every four points' distances, at most 18 a side: folds of a centimetre on a hand-long leaf.
+    let step = (wide.max(long) / 15.0).max(4.0 * spacing);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped before the cast")]
+    let count = |x: f64| ((x / step).ceil().clamp(1.0, 15.0) as usize) + 3;
+    let controls = [count(wide), count(long)];
+    let mut weights = vec![1.0; flat.len()];
+    let mut field = HeightField::fit(flat, &weights, controls, smoothing)?;
+    for _ in 0..4 {
+        let off: Vec<f64> = flat.iter().map(|p| (p.z - field.height(p.x, p.y).0).abs()).collect();
+        let mut sorted = off.clone();
+        sorted.sort_unstable_by(f64::total_cmp);
+        // 4.685 deviations, the deviation from the median (Huber 1981); not below rounding.
+        let scale = (4.685 * 1.4826 * sorted[sorted.len() / 2]).max(1e-9);
+        for (w, d) in weights.iter_mut().zip(&off) {
+            let x = d / scale;
+            *w = if x < 1.0 { (1.0 - x * x) * (1.0 - x * x) } else { 0.0 };
+        }
+        field = HeightField::fit(flat, &weights, controls, smoothing)?;
+    }
+    Ok(field)
+}
+
+/// Margins and midrib by stations from base to tip, in the blade's plane.
+struct Lines {
+    y: Vec<f64>,
+    left: Vec<f64>,
+    middle: Vec<f64>,
+    right: Vec<f64>,
+}
+
+impl Lines {
+    fn of(flat: &[DVec3], field: &HeightField, rows: usize, spacing: f64) -> Self {
+        let mut ys: Vec<f64> = flat.iter().map(|p| p.y).collect();
+        ys.sort_unstable_by(f64::total_cmp);
+        let (lo, hi) = (ys[0], ys[ys.len() - 1]);
+        let y: Vec<f64> = (0..rows).map(|i| base::ops::lerp(lo, hi, i as f64 / (rows - 1) as f64)).collect();
+        // A slab must hold some lines of the scanner.
+        let half = ((hi - lo) / rows as f64).max(1.5 * spacing);
+        let mut slabs: Vec<Vec<f64>> = vec![vec![]; rows];
+        for p in flat {
+            for (i, &at) in y.iter().enumerate() {
+                if (p.y - at).abs() <= half {
+                    slabs[i].push(p.x);
+                }
+            }
+        }
+        let ends: Vec<Option<(f64, f64)>> = slabs
+            .iter_mut()
+            .map(|slab| {
+                slab.sort_unstable_by(f64::total_cmp);
+                // The first and last in a hundred may be stray.
+                let cut = slab.len() / 100;
+                Some((*slab.get(cut)?, *slab.get(slab.len().checked_sub(1 + cut)?)?))
+            })
+            .collect();
+        let ends = bridged(&ends);
+        let (left, right): (Vec<f64>, Vec<f64>) = ends.into_iter().unzip();
+        let (left, right) = (smooth(&left, 1), smooth(&right, 1));
+        let middle = crease(&y, &left, &right, field);
+        Self { y, left, middle, right }
+    }
+
+    fn grid(&self, columns: usize, field: &HeightField) -> Vec<DVec3> {
+        let half = columns / 2;
+        let mut out = Vec::with_capacity(columns * self.y.len());
+        for (i, &y) in self.y.iter().enumerate() {
+            for j in 0..columns {
+                let x = if j <= half {
+                    base::ops::lerp(self.left[i], self.middle[i], j as f64 / half as f64)
+                } else {
+                    base::ops::lerp(self.middle[i], self.right[i], (j - half) as f64 / half as f64)
+                };
+                out.push(DVec3::new(x, y, field.height(x, y).0));
+            }
+        }
+        out
+    }
+}
+
+/// Stations without points take the mean of their neighbours (holes across the whole blade).
+fn bridged(ends: &[Option<(f64, f64)>]) -> Vec<(f64, f64)> {
+    let known: Vec<(usize, (f64, f64))> =
+        ends.iter().enumerate().filter_map(|(i, e)| Some((i, (*e)?))).collect();
+    (0..ends.len())
+        .map(|i| {
+            let after = known.partition_point(|k| k.0 < i);
+            match (after.checked_sub(1).map(|k| known[k].1), known.get(after).map(|k| k.1)) {
+                (_, Some(b)) if known[after].0 == i => b,
+                (Some(a), Some(b)) => (0.5 * (a.0 + b.0), 0.5 * (a.1 + b.1)),
+                (Some(e), None) | (None, Some(e)) => e,
+                (None, None) => (0.0, 0.0),
+            }
+        })
+        .collect()
+}
+
+fn smooth(line: &[f64], passes: usize) -> Vec<f64> {
+    let mut line = line.to_vec();
+    for _ in 0..passes {
+        let old = line.clone();
+        for i in 1..old.len().saturating_sub(1) {
+            line[i] = 0.25 * old[i - 1] + 0.5 * old[i] + 0.25 * old[i + 1];
+        }
+    }
+    line
+}
+
+/// The midrib: the line near the middle along which the blade is folded most, as a valley or as a ridge.
+fn crease(y: &[f64], left: &[f64], right: &[f64], field: &HeightField) -> Vec<f64> {
+    const PLACES: usize = 31;
+    let rows = y.len();
+    // The middle half of each station.
+    let place = |i: usize, k: usize| {
+        let share = 0.25 + 0.5 * k as f64 / (PLACES - 1) as f64;
+        base::ops::lerp(left[i], right[i], share)
+    };
+    let bend = |i: usize, k: usize| {
+        let h = (0.12 * (right[i] - left[i])).max(1e-9);
+        let x = place(i, k);
+        let z = |x: f64| field.height(x, y[i]).0;
+        (z(x - h) - 2.0 * z(x) + z(x + h)) / h
+    };
+    let bends: Vec<[f64; PLACES]> = (0..rows).map(|i| core::array::from_fn(|k| bend(i, k))).collect();
+    let path = |sign: f64| -> (f64, Vec<usize>) {
+        let mut score = vec![[0.0_f64; PLACES]; rows];
+        let mut from = vec![[0_usize; PLACES]; rows];
+        for i in 0..rows {
+            for k in 0..PLACES {
+                let aside = (k as f64 - (PLACES / 2) as f64) / (PLACES / 2) as f64;
+                // Without a fold the line runs in the middle; a fold of a tenth outweighs it.
+                let own = sign * bends[i][k] - 0.1 * aside * aside;
+                let near = k.saturating_sub(2)..(k + 3).min(PLACES);
+                let best = if i == 0 {
+                    None
+                } else {
+                    let cost = |j: usize| score[i - 1][j] - 0.02 * (j.abs_diff(k) * j.abs_diff(k)) as f64;
+                    near.map(|j| (cost(j), j)).max_by(|a, b| a.0.total_cmp(&b.0))
+                };
+                (score[i][k], from[i][k]) = best.map_or((own, k), |(s, j)| (s + own, j));
+            }
+        }
+        let end = (0..PLACES).max_by(|&a, &b| score[rows - 1][a].total_cmp(&score[rows - 1][b])).unwrap_or(0);
+        let mut line = vec![end; rows];
+        for i in (1..rows).rev() {
+            line[i - 1] = from[i][line[i]];
+        }
+        (score[rows - 1][end], line)
+    };
+    let (valley, ridge) = (path(1.0), path(-1.0));
+    let line = if ridge.0 > valley.0 { ridge.1 } else { valley.1 };
+    let xs: Vec<f64> = line.iter().enumerate().map(|(i, &k)| place(i, k)).collect();
+    // Steps of a place are not the midrib's: smoothed over about a twelfth of the leaf.
+    smooth(&xs, 12)
+}
+
+/// The stalk's centre line by distance from where it joins, with its mean radius.
+fn stalk_curve(stem: &[DVec3], base: DVec3) -> Option<BallBSpline> {
+    let far = stem.iter().map(|p| p.distance(base)).fold(0.0, f64::max);
+    let bins = 10;
+    let mut sums = vec![(DVec3::ZERO, 0.0); bins];
+    let bin = |p: DVec3| {
+        let k = (p.distance(base) / far * bins as f64).floor();
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "clamped before the cast"
+        )]
+        let k = k.clamp(0.0, (bins - 1) as f64) as usize;
+        k
+    };
+    if stem.is_empty() || far <= 0.0 {
+        return None;
+    }
+    for &p in stem {
+        let sum = &mut sums[bin(p)];
+        sum.0 += p;
+        sum.1 += 1.0;
+    }
+    let mut line = vec![base];
+    line.extend(sums.iter().filter(|s| s.1 > 0.0).map(|s| s.0 / s.1));
+    let off = |p: DVec3| {
+        let d = |w: &[DVec3]| segment_distance(p, w[0], w[1]);
+        line.windows(2).map(d).fold(f64::INFINITY, f64::min)
+    };
+    let mut radii: Vec<f64> = stem.iter().map(|&p| off(p)).collect();
+    radii.sort_unstable_by(f64::total_cmp);
+    // The scanner sees the near half: its points lie about a radius from their mean line, strays farther.
+    let radius = radii[radii.len() / 2].max(1e-6);
+    let balls: Vec<Ball> = line.iter().map(|&p| Ball::new(p, radius)).collect();
+    BallBSpline::interpolate(&balls).ok()
+}
+
+fn segment_distance(p: DVec3, a: DVec3, b: DVec3) -> f64 {
+    let d = b - a;
+    let l = d.length_squared();
+    let t = if l > 0.0 { ((p - a).dot(d) / l).clamp(0.0, 1.0) } else { 0.0 };
+    p.distance(a + d * t)
+}
+
+/// Distances from the model: the triangles around the nearest point of the grid, and the stalk's tube.
+struct Near<'a> {
+    grid: &'a [DVec3],
+    columns: usize,
+    index: Grid3,
+    stalk: Vec<Ball>,
+}
+
+impl<'a> Near<'a> {
+    fn new(grid: &'a [DVec3], columns: usize, stalk: Option<&BallBSpline>) -> Self {
+        let stalk =
+            stalk.map_or_else(Vec::new, |s| (0..=200).map(|k| s.ball(f64::from(k) / 200.0)).collect());
+        Self { grid, columns, index: Grid3::new(grid, 0.0), stalk }
+    }
+
+    fn distance(&self, p: DVec3) -> f64 {
+        let tube = self.stalk.windows(2).map(|w| {
+            let d = segment_distance(p, w[0].centre, w[1].centre);
+            (d - w[0].radius).abs()
+        });
+        let tube = tube.fold(f64::INFINITY, f64::min);
+        let Some(near) = self.index.nearest(p, f64::INFINITY) else { return tube };
+        let (n, rows) = (self.columns, self.grid.len() / self.columns);
+        let (i, j) = (near / n, near % n);
+        let mut best = tube;
+        // Two cells to each side: the nearest point of a stretched grid need not be on the nearest triangle.
+        for y in i.saturating_sub(2)..(i + 2).min(rows - 1) {
+            for x in j.saturating_sub(2)..(j + 2).min(n - 1) {
+                let at = |dy: usize, dx: usize| self.grid[(y + dy) * n + x + dx];
+                let (a, b, c, d) = (at(0, 0), at(0, 1), at(1, 1), at(1, 0));
+                best = best.min(triangle_distance(p, a, b, c)).min(triangle_distance(p, a, c, d));
+            }
+        }
+        best
+    }
+}
+
+fn triangle_distance(p: DVec3, a: DVec3, b: DVec3, c: DVec3) -> f64 {
+    let n = (b - a).cross(c - a);
+    let area = n.length_squared();
+    if area > 0.0 {
+        // Inside the prism over the triangle: the distance from its plane.
+        let inside = |u: DVec3, v: DVec3| (v - u).cross(p - u).dot(n) >= 0.0;
+        if inside(a, b) && inside(b, c) && inside(c, a) {
+            return (p - a).dot(n).abs() / area.sqrt();
+        }
+    }
+    segment_distance(p, a, b).min(segment_distance(p, b, c)).min(segment_distance(p, c, a))
+}
+
+/// Twelve rows of seven marks, from the tip down, right to left.
+fn marks_of(grid: &[DVec3], columns: usize, stalk: Option<&BallBSpline>) -> Marks {
+    let rows = grid.len() / columns;
+    let count = 12.min(rows - 1);
+    let at = |k: usize| {
+        // Row 1 is next to the tip, the last is the base.
+        let i = (rows - 1) * (count - 1 - k) / count;
+        let row = &grid[i * columns..(i + 1) * columns];
+        let points = core::array::from_fn(|j| row[(MARKS_A_ROW - 1 - j) * (columns - 1) / (MARKS_A_ROW - 1)]);
+        MarkRow { points, ..MarkRow::default() }
+    };
+    let mut marks = Marks { rows: (0..count).map(at).collect(), ..Marks::default() };
+    marks.tip = grid[(rows - 1) * columns + columns / 2];
+    let length = marks.length();
+    let base = stalk.map_or(0.012 * length, |s| 2.0 * s.ball(0.0).radius);
+    if let Some(last) = marks.rows.last_mut() {
+        last.midrib = Some(base);
+    }
+    if let Some(first) = marks.rows.first_mut() {
+        first.midrib = Some(0.25 * base);
+    }
+    marks
+}
+
+#[cfg(test)]
+mod tests {
+    use base::{Draw, Seed, ops};
+    use glam::DVec2;
+
+    use super::*;
+
+    /// A leaf of 60 mm with a stalk of 40 mm, bent and folded, noise 0.2 mm, a hole and strays.
+    fn cloud() -> Vec<DVec3> {
+        let mut s = Seed::new(11).stream(Draw::Test);
+        let mut out = Vec::new();
+        let shape = |x: f64, y: f64| DVec3::new(x, 0.25 * x.abs() - 6.0 * (y - 0.01) * (y - 0.01), -y);
+        while out.len() < 4000 {
+            let (x, y) = (s.range(-0.02, 0.02), s.range(0.0, 0.06));
+            let half = 0.018 * ops::sin(ops::PI * (y / 0.06));
+            let hole = DVec2::new(x - 0.008, y - 0.03).length() < 0.004;
+            if x.abs() < half && !hole {
+                out.push(shape(x, y) + DVec3::Y * (0.0002 * s.normal()));
+            }
+        }
+        for _ in 0..250 {
+            let (t, a) = (s.range(0.0, 0.04), s.range(0.0, ops::PI));
+            out.push(DVec3::new(0.001 * ops::cos(a), 0.3 * t + 0.001 * ops::sin(a), t));
+        }
+        out.extend([DVec3::new(0.3, 0.2, 0.1), DVec3::new(-0.2, 0.3, 0.0), DVec3::NAN]);
+        out
+    }
+
+    #[test]
+    fn a_made_leaf_is_found_to_its_noise() {
+        let mut report = Report::default();
+        let leaf = fit_scan(&cloud(), &ScanSpec::default(), &Run::plain(), &mut report).unwrap();
+        assert!((2..=12).contains(&leaf.outliers), "{}", leaf.outliers);
+        let n = leaf.distances.len() as f64;
+        let rms = (leaf.distances.iter().map(|d| d * d).sum::<f64>() / n).sqrt();
+        assert!(rms < 0.0005, "{rms}");
+        assert!(leaf.explained > 0.98 && leaf.covered > 0.95, "{} {}", leaf.explained, leaf.covered);
+        assert!(leaf.stalk.is_some());
+        // The midrib lies in the valley x = 0 and runs from the stalk (z = 0) to the tip (z = -0.06).
+        let midrib = leaf.midrib();
+        let worst = midrib.iter().map(|p| p.x.abs()).fold(0.0, f64::max);
+        assert!(worst < 0.0025, "{worst}");
+        assert!(midrib[0].z > -0.01 && midrib[midrib.len() - 1].z < -0.055);
+        let full = leaf.marks.complete(&mut Report::default()).unwrap();
+        // The arc is 63 mm long; a few millimetres of its narrow ends pass for stalk.
+        let length = geom::polyline_length3(&full.midrib());
+        assert!(length > 0.048 && length < 0.068, "{length}");
+    }
+
+    #[test]
+    fn clouds_that_are_no_leaf_are_refused() {
+        let fit = |p: &[DVec3]| fit_scan(p, &ScanSpec::default(), &Run::plain(), &mut Report::default());
+        assert!(matches!(fit(&[]), Err(ScanError::TooFew(0))));
+        assert!(matches!(fit(&[DVec3::NAN; 500]), Err(ScanError::TooFew(0))));
+        assert!(fit(&[DVec3::ONE; 500]).is_err());
+        let line: Vec<DVec3> = (0..500).map(|k| DVec3::X * (0.001 * f64::from(k))).collect();
+        assert!(fit(&line).is_err());
+    }
+}
