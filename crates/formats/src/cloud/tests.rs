@@ -164,27 +164,6 @@ fn points_that_are_no_numbers_are_left_out_and_told() {
     assert!(report.warnings.iter().any(|w| w.message.contains("2 points")), "{report:?}");
 }
 
-#[test]
-fn the_real_scans_are_read() {
-    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/scans");
-    if !folder.is_dir() {
-        println!("skipped: no scans beside the repository");
-        return;
-    }
-    for (name, want) in [
-        ("tomato_series/03-05.xyz", 24_795),
-        ("tomato_series/03-06.xyz", 50_000),
-        ("tomato_series/03-10.ply", 261_379),
-        ("single_leaves/soybean_11_20190508T043118_pot1_1.txt", 3_290),
-        ("single_leaves/sugarbeet_f00012_20170829T010129_pot1_1.txt", 2_266),
-    ] {
-        let path = folder.join(name);
-        let format = CloudFormat::from_extension(path.extension().unwrap().to_str().unwrap()).unwrap();
-        let bytes = std::fs::read(path).unwrap();
-        assert_eq!(points(&bytes, format).len(), want, "{name}");
-    }
-}
-
 proptest! {
     #[test]
     fn any_bytes_are_points_or_an_error(
