@@ -17,7 +17,8 @@ pub use cloud::{CloudFormat, MAX_CLOUD_BYTES, read_cloud, write_cloud_ply};
 pub use drawing::{DrawingFormat, Drawings, MAX_DRAWING_BYTES, ReadDrawing, read_drawings, write_drawing};
 pub use error::{CloudError, DrawingError, FileFault, ModelError, Place, WriteError};
 pub use model::{
-    ExportSpec, MAX_MODEL_BYTES, ModelFormat, ObjFiles, PngCache, Resolver, no_files, obj_files, read_model,
-    read_picture, write_glb, write_glb_with, write_model, write_ply, write_png, write_stl,
+    ExportSpec, MAX_MODEL_BYTES, ModelFormat, Morph, ObjFiles, PngCache, Resolver, no_files, obj_files,
+    read_model, read_picture, write_glb, write_glb_morph, write_glb_with, write_model, write_ply, write_png,
+    write_stl,
 };
 pub use summary::{DrawingSummary, MaterialSummary, ModelSummary, PartSummary};
