@@ -48,6 +48,9 @@ pub(crate) enum Command {
     ///
     /// Counts, bounds, units, parts and materials, and what is wrong with it.
     Info(InfoArgs),
+    /// Grow organs through scans of several days; flowers that open
+    #[command(subcommand)]
+    Bloom(crate::bloom::BloomCommand),
 }
 
 /// Options of every command.
@@ -447,7 +450,7 @@ pub(crate) struct InfoArgs {
     pub(crate) common: CommonArgs,
 }
 
-fn size(text: &str) -> Result<(u32, u32), String> {
+pub(crate) fn size(text: &str) -> Result<(u32, u32), String> {
     let parts = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
     match parts {
         Some((w, h)) if (1..=8192).contains(&w) && (1..=8192).contains(&h) => Ok((w, h)),
@@ -473,7 +476,7 @@ fn seed(text: &str) -> Result<u64, String> {
     text.parse().ok().ok_or_else(|| format!("give a whole number from 0 to {}", u64::MAX))
 }
 
-fn ranged(text: &str, low: f64, high: f64) -> Result<f64, String> {
+pub(crate) fn ranged(text: &str, low: f64, high: f64) -> Result<f64, String> {
     text.parse()
         .ok()
         .filter(|x| (low..=high).contains(x))

@@ -59,13 +59,13 @@ fn rose(spec: FlowerSpec) -> FlowerSpec {
             widest: 0.66,
             claw: 0.35,
             point: 0.1,
-            insertion: [mix(0.0088, 0.0022), mix(0.0, 0.0045)],
-            bud: [mix(22.0, 4.0), mix(4.0, 1.0), mix(-6.0, -2.0)],
+            insertion: [mix(0.0088, 0.0027), mix(0.0, 0.0045)],
+            bud: [mix(22.0, 4.0), mix(3.0, 0.0), mix(-14.0, -4.0)],
             open: [mix(70.0, 9.0), mix(62.0, 9.0), mix(88.0, 12.0)],
             wilted: [mix(92.0, 28.0), mix(108.0, 40.0), mix(142.0, 62.0)],
             delay: mix(0.0, 0.3),
             phase: 36.0 * f64::from(k) + 11.0,
-            lean: mix(0.0004, 0.00026),
+            lean: mix(0.0004, 0.0005),
             colors: [[0.72, 0.30, 0.20], [0.62, 0.03, 0.07]],
         }
     };
@@ -86,7 +86,7 @@ fn rose(spec: FlowerSpec) -> FlowerSpec {
         ..PLAIN
     };
     let whorls = core::iter::once(sepals).chain((0..6).map(ring)).collect();
-    FlowerSpec { whorls, stamens: (14, 0.008, 18.0), pistil: 0.005, stalk: 0.16, ..spec }
+    FlowerSpec { whorls, stamens: (14, 0.008, 18.0), pistil: 0.005, stalk: 0.07, ..spec }
 }
 
 fn lily(spec: FlowerSpec) -> FlowerSpec {
@@ -120,7 +120,7 @@ fn lily(spec: FlowerSpec) -> FlowerSpec {
         whorls: vec![outer, inner],
         stamens: (6, 0.075, 17.0),
         pistil: 0.085,
-        stalk: 0.3,
+        stalk: 0.1,
         rate: 1.0,
         ..spec
     }
@@ -155,7 +155,7 @@ fn tulip(spec: FlowerSpec) -> FlowerSpec {
         whorls: vec![outer, inner],
         stamens: (6, 0.022, 14.0),
         pistil: 0.026,
-        stalk: 0.28,
+        stalk: 0.09,
         days: [5.0, 4.0],
         ..spec
     }
@@ -173,7 +173,7 @@ fn sunflower(spec: FlowerSpec) -> FlowerSpec {
             claw: 0.35,
             point: 0.95,
             insertion: [0.046 - 0.006 * t, 0.006 * t],
-            bud: [24.0 - 10.0 * t, -22.0 - 5.0 * t, -42.0 - 5.0 * t],
+            bud: [24.0 - 10.0 * t, -12.0 - 4.0 * t, -28.0 - 4.0 * t],
             open: [82.0 - 14.0 * t, 84.0 - 14.0 * t, 92.0 - 14.0 * t],
             wilted: [96.0 - 12.0 * t, 128.0 - 14.0 * t, 160.0 - 14.0 * t],
             delay: 0.05 * t,
@@ -190,7 +190,7 @@ fn sunflower(spec: FlowerSpec) -> FlowerSpec {
         claw: 0.9,
         point: 1.0,
         insertion: [0.05, -0.008],
-        bud: [30.0, -16.0, -34.0],
+        bud: [30.0, -7.0, -20.0],
         open: [96.0, 104.0, 118.0],
         wilted: [104.0, 138.0, 166.0],
         lean: 0.0006,
@@ -199,7 +199,7 @@ fn sunflower(spec: FlowerSpec) -> FlowerSpec {
         ..PLAIN
     };
     let whorls = core::iter::once(bracts).chain((0..4).map(ring)).collect();
-    FlowerSpec { whorls, disc: 0.04, stalk: 0.5, days: [8.0, 6.0], rate: 0.75, mesh: [12, 6], ..spec }
+    FlowerSpec { whorls, disc: 0.04, stalk: 0.14, days: [8.0, 6.0], rate: 0.75, mesh: [12, 6], ..spec }
 }
 
 fn clivia(spec: FlowerSpec) -> FlowerSpec {
@@ -232,7 +232,7 @@ fn clivia(spec: FlowerSpec) -> FlowerSpec {
         whorls: vec![outer, inner],
         stamens: (6, 0.045, 11.0),
         pistil: 0.052,
-        stalk: 0.3,
+        stalk: 0.14,
         umbel: 12,
         days: [7.0, 5.0],
         rate: 0.85,
