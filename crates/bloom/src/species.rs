@@ -190,7 +190,7 @@ fn sunflower(spec: FlowerSpec) -> FlowerSpec {
         claw: 0.9,
         point: 1.0,
         insertion: [0.05, -0.008],
-        bud: [30.0, -7.0, -20.0],
+        bud: [34.0, 8.0, -4.0],
         open: [96.0, 104.0, 118.0],
         wilted: [104.0, 138.0, 166.0],
         lean: 0.0006,
