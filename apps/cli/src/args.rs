@@ -53,6 +53,9 @@ pub(crate) enum Command {
     ///
     /// Counts, bounds, units, parts and materials, and what is wrong with it.
     Info(InfoArgs),
+    /// Grow organs through scans of several days; flowers that open
+    #[command(subcommand)]
+    Bloom(crate::bloom::BloomCommand),
 }
 
 /// Options of every command.
@@ -452,7 +455,7 @@ pub(crate) struct InfoArgs {
     pub(crate) common: CommonArgs,
 }
 
-fn size(text: &str) -> Result<(u32, u32), String> {
+pub(crate) fn size(text: &str) -> Result<(u32, u32), String> {
     let parts = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
     match parts {
         Some((w, h)) if (1..=8192).contains(&w) && (1..=8192).contains(&h) => Ok((w, h)),

@@ -1,6 +1,7 @@
 //! The `burgeon` command: parse, read, call, report. No algorithms.
 
 mod args;
+mod bloom;
 mod classes;
 mod convert;
 mod failure;
@@ -13,6 +14,7 @@ mod picture;
 mod report;
 mod say;
 mod sketch;
+mod stages;
 
 use std::process::ExitCode;
 
@@ -40,6 +42,7 @@ fn main() -> ExitCode {
         Command::Render(args) => picture::render(&args),
         Command::Convert(args) => convert::convert(&args),
         Command::Info(args) => info::info(&args),
+        Command::Bloom(command) => bloom::bloom(&command),
     });
     match outcome {
         Ok(Ok(())) => ExitCode::SUCCESS,

@@ -14,12 +14,16 @@
 //! | `segment` | [`organs`]: stem and leaves, and regions along them |
 //! | `law` | [`GrowthLaw`]: fitted, saved, moved to another species |
 //! | `motion` | [`Motion`]: the shape at any day |
+//! | `flower`, `species` | [`FlowerSpec`]: whole flowers that open and wilt |
+//! | `overlap` | [`overlap_share`]: do petals pass through one another |
+//! | `plot` | [`plot_svg`]: fits with their points |
 //! | `register` | [`register`]: the lattice that carries one scan into another |
 //! | `error` | [`compare`]: distances both ways |
 
 mod clean;
 mod error;
 mod errors;
+mod flower;
 mod kernel;
 mod lattice;
 mod law;
@@ -27,17 +31,24 @@ mod linalg;
 mod logistic;
 mod motion;
 mod obb;
+mod overlap;
+mod plot;
 mod register;
 mod segment;
+mod species;
 mod thin;
 
 pub use clean::{CleanSpec, Cleaned, clean};
 pub use error::{Distances, ShapeError, compare};
 pub use errors::BloomError;
+pub use flower::{FlowerFrame, FlowerSpec, Whorl};
 pub use lattice::{Lattice, Weights};
 pub use law::{GrowthLaw, LAW_SCHEMA, LawFault, LawSpec, Quantity, RegionLaw, Stage, fit_stages};
 pub use logistic::{Fit, FitError, Logistic, Offset, fit_law, fit_logistic};
 pub use motion::{Motion, MotionSpec, name_alike};
 pub use obb::Obb;
+pub use overlap::overlap_share;
+pub use plot::plot_svg;
 pub use register::{RegisterSpec, Registration, register};
 pub use segment::{Organ, SegmentSpec, match_organs, organ_at, organs, single_organ};
+pub use species::preset;

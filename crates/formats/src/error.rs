@@ -213,6 +213,12 @@ pub enum WriteError {
         /// Name of the format.
         format: &'static str,
     },
+    /// A key of an animation does not fit the model, or its time does not come after the one before.
+    #[error("key {key} (from 0) of the animation has other parts or vertices, or does not come later")]
+    Keys {
+        /// Its index from 0.
+        key: usize,
+    },
     /// The format is only read.
     #[error("{format} is read but not written; choose {instead}")]
     ReadOnly {

@@ -21,7 +21,8 @@ pub use leaves::{
     LeafFileError, MAX_LEAF_BYTES, MarksAxes, ReadMarks, marks_template, read_marks, write_marks,
 };
 pub use model::{
-    ExportSpec, MAX_MODEL_BYTES, ModelFormat, ObjFiles, PngCache, Resolver, no_files, obj_files, read_model,
-    read_picture, write_glb, write_glb_with, write_model, write_ply, write_png, write_stl,
+    ExportSpec, MAX_MODEL_BYTES, ModelFormat, Morph, ObjFiles, PngCache, Resolver, no_files, obj_files,
+    read_model, read_picture, write_glb, write_glb_morph, write_glb_with, write_model, write_ply, write_png,
+    write_stl,
 };
 pub use summary::{DrawingSummary, MaterialSummary, ModelSummary, PartSummary};

@@ -36,7 +36,7 @@ pub use report::{
     Counts, Fidelity, InputReport, ItemReport, REPORT_SCHEMA, RunReport, StrokeReport, TimingsMs,
 };
 
-pub use {document, formats, geom, glam, leaf, mesh, plant, render, sketch, skin};
+pub use {bloom, document, formats, geom, glam, leaf, mesh, plant, render, sketch, skin};
 
 /// The version that is written into reports and files.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

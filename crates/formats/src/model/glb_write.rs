@@ -7,8 +7,8 @@ use mesh::{AlphaMode, Model, TriMesh};
 use serde_json::json;
 
 use super::gltf::{
-    Accessor, Asset, Attributes, Buffer, FLOAT, Image, Material, Mesh, Node, POINTS, Pbr, Primitive, Root,
-    Sampler, Scene, Texture, TextureInfo, U16, U32, View,
+    Accessor, Animation, Asset, Attributes, Buffer, Channel, FLOAT, Image, Keys, Material, Mesh, Node,
+    POINTS, Pbr, Primitive, Root, Sampler, Scene, Target, Texture, TextureInfo, U16, U32, View,
 };
 use super::{PngCache, check, unit};
 use crate::error::WriteError;
@@ -41,7 +41,52 @@ pub fn write_glb(model: &Model, out: impl Write) -> Result<(), WriteError> {
 ///
 /// # Errors
 /// As [`write_glb`].
-pub fn write_glb_with(model: &Model, cache: &mut PngCache, mut out: impl Write) -> Result<(), WriteError> {
+pub fn write_glb_with(model: &Model, cache: &mut PngCache, out: impl Write) -> Result<(), WriteError> {
+    write(model, &Morph::default(), cache, out)
+}
+
+/// Later shapes of a model, for a morph animation: keys after the model itself, which is the shape at `start`.
+#[derive(Clone, Debug, Default)]
+pub struct Morph<'a> {
+    /// Name of the animation.
+    pub name: &'a str,
+    /// Second at which the model itself is seen.
+    pub start: f32,
+    /// Seconds, increasing, and the model at each: the same parts with as many vertices.
+    pub keys: Vec<(f32, &'a Model)>,
+}
+
+/// [`write_glb`] with an animation that leads through the keys of `morph`, linear between them.
+///
+/// Each key is a morph target (position and normal) of every part; viewers blend two at a time. Players that know
+/// no morph targets show the model itself.
+///
+/// # Errors
+/// As [`write_glb`]; [`WriteError::Keys`] if a key has other parts or vertices, or times do not increase.
+pub fn write_glb_morph(model: &Model, morph: &Morph<'_>, out: impl Write) -> Result<(), WriteError> {
+    let mut before = morph.start;
+    for (index, (time, key)) in morph.keys.iter().enumerate() {
+        let same = key.parts.len() == model.parts.len()
+            && key.parts.iter().zip(&model.parts).all(|(a, b)| {
+                a.mesh.positions.len() == b.mesh.positions.len()
+                    && a.mesh.normals.len() == b.mesh.normals.len()
+                    && a.mesh.positions.iter().flatten().all(|x| x.is_finite())
+            });
+        let later = *time > before && time.is_finite();
+        if !same || !later {
+            return Err(WriteError::Keys { key: index });
+        }
+        before = *time;
+    }
+    write(model, morph, &mut PngCache::new(), out)
+}
+
+fn write(
+    model: &Model,
+    morph: &Morph<'_>,
+    cache: &mut PngCache,
+    mut out: impl Write,
+) -> Result<(), WriteError> {
     check(model)?;
     let mut w = Writer { root: Root::default(), bin: Vec::with_capacity(room(model)) };
     w.root.asset = Asset {
@@ -50,7 +95,8 @@ pub fn write_glb_with(model: &Model, cache: &mut PngCache, mut out: impl Write) 
         extras: Some(json!({ "unit": "metre", "up": "+Y" })),
     };
     w.materials(model, cache)?;
-    w.nodes(model)?;
+    w.nodes(model, morph)?;
+    w.animation(model, morph)?;
     if !w.bin.is_empty() {
         w.root.buffers.push(Buffer { byte_length: w.bin.len() as u64, uri: None });
     }
@@ -203,11 +249,64 @@ impl Writer {
         Ok(())
     }
 
-    fn nodes(&mut self, model: &Model) -> Result<(), WriteError> {
+    /// What a key adds to positions and normals.
+    fn target(&mut self, mesh: &TriMesh, key: &TriMesh) -> Result<Attributes, WriteError> {
+        let minus = |a: [f32; 3], b: [f32; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+        let moved: Vec<[f32; 3]> =
+            key.positions.iter().zip(&mesh.positions).map(|(&a, &b)| minus(a, b)).collect();
+        let mut target =
+            Attributes { position: Some(self.column("VEC3", &moved, true)?), ..Default::default() };
+        if !mesh.normals.is_empty() {
+            let pairs = key.normals.iter().zip(&mesh.normals);
+            let turned: Vec<[f32; 3]> = pairs.map(|(&a, &b)| minus(unit(a), unit(b))).collect();
+            target.normal = Some(self.column("VEC3", &turned, false)?);
+        }
+        Ok(target)
+    }
+
+    /// One channel a part, all with the same keys: of all weights only that of the key is 1.
+    fn animation(&mut self, model: &Model, morph: &Morph<'_>) -> Result<(), WriteError> {
+        let n = morph.keys.len();
+        if n == 0 || self.root.meshes.is_empty() {
+            return Ok(());
+        }
+        let times: Vec<f32> = core::iter::once(morph.start).chain(morph.keys.iter().map(|k| k.0)).collect();
+        let input = self.scalars(&times, true)?;
+        let weights: Vec<f32> =
+            (0..=n).flat_map(|k| (1..=n).map(move |t| if t == k { 1.0 } else { 0.0 })).collect();
+        let output = self.scalars(&weights, false)?;
+        let keys = Keys { input, interpolation: "LINEAR".into(), output };
+        let moving = self.root.nodes.iter().enumerate().filter(|(_, node)| node.mesh.is_some());
+        let channels = moving
+            .map(|(node, _)| {
+                Ok(Channel { sampler: 0, target: Target { node: row(node)?, path: "weights".into() } })
+            })
+            .collect::<Result<Vec<Channel>, WriteError>>()?;
+        let name = if morph.name.is_empty() { model.name.clone() } else { morph.name.to_owned() };
+        self.root.animations.push(Animation { name, channels, samplers: vec![keys] });
+        Ok(())
+    }
+
+    fn scalars(&mut self, values: &[f32], bounds: bool) -> Result<u32, WriteError> {
+        let view = self.view(None, |bin| bin.extend(values.iter().flat_map(|x| x.to_le_bytes())))?;
+        let end = |start: f32, f: fn(f32, f32) -> f32| vec![f64::from(values.iter().copied().fold(start, f))];
+        self.root.accessors.push(Accessor {
+            buffer_view: Some(view),
+            component_type: FLOAT,
+            count: values.len() as u64,
+            shape: "SCALAR".into(),
+            min: bounds.then(|| end(f32::INFINITY, f32::min)),
+            max: bounds.then(|| end(f32::NEG_INFINITY, f32::max)),
+            ..Accessor::default()
+        });
+        row(self.root.accessors.len() - 1)
+    }
+
+    fn nodes(&mut self, model: &Model, morph: &Morph<'_>) -> Result<(), WriteError> {
         let name = if model.name.is_empty() { "model" } else { &model.name };
         self.root.nodes.push(Node { name: Some(name.to_owned()), ..Node::default() });
         let mut children = Vec::new();
-        for part in model.parts.iter().filter(|p| !p.mesh.positions.is_empty()) {
+        for (index, part) in model.parts.iter().enumerate().filter(|(_, p)| !p.mesh.positions.is_empty()) {
             let mesh = &part.mesh;
             let normals: Vec<[f32; 3]> = mesh.normals.iter().map(|&n| unit(n)).collect();
             let mut attributes = Attributes {
@@ -227,14 +326,24 @@ impl Writer {
                 attributes.color = Some(self.column("VEC3", &colors, false)?);
             }
             let points = mesh.triangles.is_empty();
+            let mut targets = Vec::with_capacity(morph.keys.len());
+            for (_, key) in &morph.keys {
+                targets.push(self.target(mesh, &key.parts[index].mesh)?);
+            }
+            let weights = vec![0.0; targets.len()];
             let primitive = Primitive {
+                targets,
                 attributes,
                 indices: if points { None } else { Some(self.indices(mesh)?) },
                 material: Some(part.material.raw()),
                 mode: points.then_some(POINTS),
                 extensions: None,
             };
-            self.root.meshes.push(Mesh { name: Some(part.name.clone()), primitives: vec![primitive] });
+            self.root.meshes.push(Mesh {
+                name: Some(part.name.clone()),
+                primitives: vec![primitive],
+                weights,
+            });
             self.root.nodes.push(Node {
                 name: Some(part.name.clone()),
                 mesh: Some(row(self.root.meshes.len() - 1)?),
@@ -252,4 +361,58 @@ impl Writer {
 /// 0 to 1, as glTF demands; NaN is 0.
 fn share(x: f32) -> f32 {
     if x.is_nan() { 0.0 } else { x.clamp(0.0, 1.0) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mesh::{MaterialId, Part};
+
+    fn model(height: f32) -> Model {
+        let mut mesh = TriMesh {
+            positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, height, 0.0]],
+            triangles: vec![[0, 1, 2]],
+            ..TriMesh::default()
+        };
+        mesh.compute_normals();
+        Model {
+            name: "petal".into(),
+            parts: vec![Part { name: "petals".into(), material: MaterialId::new(0), mesh }],
+            materials: vec![mesh::Material::plain("petal", mesh::MaterialKind::Petal, [1.0; 3])],
+        }
+    }
+
+    #[test]
+    fn morph_targets_and_their_animation_are_written_and_read_back_as_the_first_shape() {
+        let (a, b, c) = (model(1.0), model(2.0), model(4.0));
+        let morph = Morph { name: "opening", start: 0.0, keys: vec![(1.0, &b), (2.5, &c)] };
+        let mut glb = Vec::new();
+        write_glb_morph(&a, &morph, &mut glb).unwrap();
+        let length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
+        let json: serde_json::Value = serde_json::from_slice(&glb[20..20 + length]).unwrap();
+        let targets = json["meshes"][0]["primitives"][0]["targets"].as_array().unwrap();
+        assert_eq!(targets.len(), 2);
+        let max = |t: usize| {
+            json["accessors"][targets[t]["POSITION"].as_u64().unwrap() as usize]["max"][1].as_f64()
+        };
+        assert_eq!((max(0), max(1)), (Some(1.0), Some(3.0)), "what a key adds");
+        let animation = &json["animations"][0];
+        assert_eq!(animation["channels"][0]["target"]["path"], "weights");
+        let input = &json["accessors"][animation["samplers"][0]["input"].as_u64().unwrap() as usize];
+        assert_eq!((input["min"][0].as_f64(), input["max"][0].as_f64()), (Some(0.0), Some(2.5)));
+        let output = &json["accessors"][animation["samplers"][0]["output"].as_u64().unwrap() as usize];
+        assert_eq!(output["count"], 6, "three keys, two weights each");
+        let mut report = base::Report::default();
+        let back = crate::read_model(
+            &glb[..],
+            crate::ModelFormat::Glb,
+            "x",
+            &crate::ExportSpec::default(),
+            &crate::no_files,
+            &mut report,
+        );
+        assert_eq!(back.unwrap().parts[0].mesh.positions, a.parts[0].mesh.positions);
+        let disorder = Morph { keys: vec![(2.0, &b), (2.0, &c)], ..morph };
+        assert!(matches!(write_glb_morph(&a, &disorder, &mut Vec::new()), Err(WriteError::Keys { key: 1 })));
+    }
 }

@@ -64,6 +64,27 @@ schema! {
         buffer_views: Vec<View>,
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         buffers: Vec<Buffer>,
+        // Written, never read: an animation that we do not know must not make a model unreadable.
+        #[serde(skip_deserializing, skip_serializing_if = "Vec::is_empty")]
+        animations: Vec<Animation>,
+    }
+    struct Animation {
+        name: String,
+        channels: Vec<Channel>,
+        samplers: Vec<Keys>,
+    }
+    struct Channel {
+        sampler: u32,
+        target: Target,
+    }
+    struct Target {
+        node: u32,
+        path: String,
+    }
+    struct Keys {
+        input: u32,
+        interpolation: String,
+        output: u32,
     }
     struct Asset {
         version: String,
@@ -102,6 +123,8 @@ schema! {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         name: Option<String>,
         primitives: Vec<Primitive>,
+        #[serde(skip_deserializing, skip_serializing_if = "Vec::is_empty")]
+        weights: Vec<f32>,
     }
     struct Primitive {
         attributes: Attributes,
@@ -111,6 +134,8 @@ schema! {
         material: Option<u32>,
         #[serde(skip_serializing_if = "Option::is_none")]
         mode: Option<u32>,
+        #[serde(skip_deserializing, skip_serializing_if = "Vec::is_empty")]
+        targets: Vec<Attributes>,
         #[serde(default, skip_serializing_if = "Option::is_none")]
         extensions: Option<Value>,
     }

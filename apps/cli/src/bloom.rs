@@ -1,0 +1,708 @@
+//! `burgeon bloom`: growth laws from scans, shapes at any day, whole flowers that open.
+
+use std::path::{Path, PathBuf};
+
+use burgeon::bloom::{
+    self, FlowerSpec, GrowthLaw, LawSpec, Motion, MotionSpec, Quantity, RegisterSpec, ShapeError,
+};
+use burgeon::formats::{ExportSpec, ModelFormat, Morph, PngCache, write_cloud_ply, write_glb_morph};
+use burgeon::glam::DVec3;
+use burgeon::mesh::{Material, MaterialId, MaterialKind, Model, Part, PointCloud, TriMesh};
+use burgeon::{Digest, RunReport, Seed};
+use clap::{Args, Subcommand};
+use serde::Serialize;
+
+use crate::args::{AxesArgs, CommonArgs, PictureArgs, ViewWord};
+use crate::failure::{Failure, Outcome};
+use crate::machine::Machine;
+use crate::stages::{self, Loaded};
+use crate::{files, output, picture, report, say};
+
+/// The two commands.
+#[derive(Debug, Subcommand)]
+pub(crate) enum BloomCommand {
+    /// Fit growth laws to scans of several days
+    ///
+    /// Reads the scans that a stages file names, cleans them, splits them into organs and regions, and fits a
+    /// logistic law f(x) = K / (1 + (K / p0 - 1) exp(-r x)) to the means of x, y and z of each region.
+    Fit(Box<FitArgs>),
+    /// Make a plant's shape at any day, or the animation of all days
+    ///
+    /// Control points around each organ of the first shape move along the law to the last shape. START is a scan, a
+    /// model, a stages file (all its stages are met), or a whole flower: rose, lily, tulip, sunflower, clivia.
+    Run(Box<BloomRunArgs>),
+}
+
+#[derive(Args, Debug)]
+#[command(after_long_help = "Stages file (TOML):
+  name = \"tomato\"
+  unit = \"mm\"            # m, cm or mm [default: --unit]
+  up = \"z\"               # y or z [default: --up]
+  split = \"auto\"         # auto: stem and leaves are found; none: each file is one organ
+  clean = true           # take stray points and the ground out
+  [[stage]]
+  file = \"march-05.xyz\"  # .ply .xyz .txt .pcd .las .obj, beside the stages file
+  day = 5
+  # organ = \"petal-1\"    # the file is this organ; several files a day give several organs
+  # region = 1           # ... or only this region of it, from 1 at the base
+  # seed = [x, y, z]     # the organ at this place is cut out, in the file's unit
+  # base = [x, y, z]     # where the organ is attached
+  # crop = [[x, y, z], [x, y, z]]
+
+Examples:
+  burgeon bloom fit stages.toml -o tomato.law.json --plot tomato.svg")]
+pub(crate) struct FitArgs {
+    /// The stages file.
+    #[arg(value_name = "STAGES.toml")]
+    pub(crate) input: PathBuf,
+    /// The law: .json.
+    #[arg(long, short, value_name = "LAW.json")]
+    pub(crate) output: PathBuf,
+    /// Plot of the fits with their points: .svg.
+    #[arg(long, value_name = "FIT.svg")]
+    pub(crate) plot: Option<PathBuf>,
+    /// Parts of each organ from base to tip, 1 to 20.
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=20))]
+    pub(crate) regions: u32,
+    /// Number that the search for the ground follows from.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) axes: AxesArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+#[derive(Args, Debug)]
+#[command(after_long_help = "Examples:
+  burgeon bloom run stages.toml --law tomato.law.json --day 8 -o day8.ply
+  burgeon bloom run first.ply --end last.ply --law lily.law.json --day 3 -o day3.ply --compare scan3.ply --unit mm
+  burgeon bloom run first.glb --end last.glb --law lily.law.json --frames 20 -o opening.glb
+  burgeon bloom run rose -o rose.glb --frames 16 --png rose.png
+  burgeon bloom run rose --law lily.law.json -o rose-as-lily/ --frames 16 --format obj")]
+pub(crate) struct BloomRunArgs {
+    /// First shape: a scan or a model; or a stages file (.toml); or rose, lily, tulip, sunflower, clivia.
+    #[arg(value_name = "START")]
+    pub(crate) start: String,
+    /// The result: .glb (animation, or one shape with --day), .ply, .obj or .stl (one shape), or a folder (a file a
+    /// frame).
+    #[arg(long, short, value_name = "OUT")]
+    pub(crate) output: PathBuf,
+    /// Last shape: a scan or a model.
+    #[arg(long, value_name = "END")]
+    pub(crate) end: Option<PathBuf>,
+    /// The law that sets the pace [default: a straight line; for a flower its own].
+    #[arg(long, value_name = "LAW.json")]
+    pub(crate) law: Option<PathBuf>,
+    /// Control points along the three axes of each organ, each 2 to 16.
+    #[arg(long, value_name = "LxMxN", default_value = "4x4x4", value_parser = lattice)]
+    pub(crate) lattice: [usize; 3],
+    /// Shapes of an animation or of a folder, 2 to 1000.
+    #[arg(long, value_name = "N", default_value_t = 12, value_parser = clap::value_parser!(u32).range(2..=1000))]
+    pub(crate) frames: u32,
+    /// One shape, at this day in the count of the stages (0 is the start where there are none).
+    #[arg(long, value_name = "D", allow_hyphen_values = true)]
+    pub(crate) day: Option<f64>,
+    /// Day of START [default: the first of the law].
+    #[arg(long, value_name = "D", allow_hyphen_values = true)]
+    pub(crate) start_day: Option<f64>,
+    /// Day of END [default: the last of the law].
+    #[arg(long, value_name = "D", allow_hyphen_values = true)]
+    pub(crate) end_day: Option<f64>,
+    /// Measure the shape of --day against a scan.
+    #[arg(long, value_name = "SCAN", requires = "day")]
+    pub(crate) compare: Option<PathBuf>,
+    /// Do not split scans into organs: each is one organ. Models with faces are never split.
+    #[arg(long)]
+    pub(crate) whole: bool,
+    /// Do not take stray points and the ground out of scans.
+    #[arg(long)]
+    pub(crate) no_clean: bool,
+    /// Control points move on straight lines, as published, instead of turning with their organ.
+    #[arg(long)]
+    pub(crate) straight: bool,
+    /// Seconds of an animation, above 0 to 600.
+    #[arg(long, value_name = "S", default_value_t = 6.0, value_parser = |s: &str| crate::args::ranged(s, 0.01, 600.0))]
+    pub(crate) seconds: f64,
+    /// Format of the files in a folder.
+    #[arg(long, value_enum, default_value_t = crate::args::FormatWord::Glb)]
+    pub(crate) format: crate::args::FormatWord,
+    /// Also make a picture of the shape at --day; without it of the last shape (for a flower, of full bloom).
+    #[arg(long, value_name = "FILE.png")]
+    pub(crate) png: Option<PathBuf>,
+    /// Number that all chance follows from.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Size of the picture in pixels, each 1 to 8192.
+    #[arg(long, value_name = "WxH", default_value = "1024x768", value_parser = crate::args::size)]
+    pub(crate) size: (u32, u32),
+    /// From where the picture is taken.
+    #[arg(long, value_enum, default_value_t = ViewWord::ThreeQuarter)]
+    pub(crate) view: ViewWord,
+    #[command(flatten)]
+    pub(crate) axes: AxesArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+fn lattice(text: &str) -> Result<[usize; 3], String> {
+    let parts: Option<Vec<usize>> = text.split(['x', 'X']).map(|w| w.parse().ok()).collect();
+    match parts.as_deref() {
+        Some(&[a, b, c]) if [a, b, c].iter().all(|n| (2..=16).contains(n)) => Ok([a, b, c]),
+        _ => Err("give the control points along three axes, each 2 to 16, such as 4x4x4".into()),
+    }
+}
+
+/// A law as the report tells it, lengths in metres.
+#[derive(Debug, Serialize)]
+struct LawReport {
+    organ: String,
+    region: usize,
+    axis: Quantity,
+    #[serde(rename = "K")]
+    k: f64,
+    p0: f64,
+    r: f64,
+    offset: f64,
+    standard_errors: Option<[f64; 3]>,
+    r2: f64,
+    r2_adjusted: Option<f64>,
+    loo_rmse: Option<f64>,
+}
+
+/// What `fit` adds to the report.
+#[derive(Debug, Serialize)]
+struct FitReport {
+    #[serde(flatten)]
+    run: RunReport,
+    laws: Vec<LawReport>,
+    stages: Vec<stages::Told>,
+}
+
+/// Distances in millimetres: measured to reconstructed, and back.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct ErrorReport {
+    paper_mm: f64,
+    mean_mm: f64,
+    rms_mm: f64,
+    p95_mm: f64,
+    max_mm: f64,
+    coverage: f64,
+    back_paper_mm: f64,
+    back_mean_mm: f64,
+    back_rms_mm: f64,
+    back_max_mm: f64,
+}
+
+impl From<ShapeError> for ErrorReport {
+    fn from(e: ShapeError) -> Self {
+        let (a, b) = (e.to_model, e.to_scan);
+        Self {
+            paper_mm: a.paper * 1e3,
+            mean_mm: a.mean * 1e3,
+            rms_mm: a.rms * 1e3,
+            p95_mm: a.p95 * 1e3,
+            max_mm: a.max * 1e3,
+            coverage: e.coverage,
+            back_paper_mm: b.paper * 1e3,
+            back_mean_mm: b.mean * 1e3,
+            back_rms_mm: b.rms * 1e3,
+            back_max_mm: b.max * 1e3,
+        }
+    }
+}
+
+#[derive(Debug, Serialize)]
+struct ResidualReport {
+    organ: String,
+    from_day: f64,
+    to_day: f64,
+    #[serde(flatten)]
+    error: ErrorReport,
+}
+
+/// What `run` adds to the report.
+#[derive(Debug, Serialize)]
+struct MotionReport {
+    #[serde(flatten)]
+    run: RunReport,
+    frames: u32,
+    day: Option<f64>,
+    lattice: [usize; 3],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<ErrorReport>,
+    /// What the registration of each organ left.
+    residuals: Vec<ResidualReport>,
+    /// Share of petal triangles that cross another petal, at each frame of a flower.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    overlap: Vec<f64>,
+    stages: Vec<stages::Told>,
+}
+
+pub(crate) fn bloom(command: &BloomCommand) -> Outcome {
+    match command {
+        BloomCommand::Fit(args) => fit(args),
+        BloomCommand::Run(args) => run(args),
+    }
+}
+
+fn bad(path: &Path) -> impl Fn(bloom::BloomError) -> Failure + '_ {
+    move |e| match e {
+        bloom::BloomError::Cancelled => Failure::Cancelled,
+        e => Failure::at(path, e),
+    }
+}
+
+fn fit(args: &FitArgs) -> Outcome {
+    let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
+    output::check_target(&args.output)?;
+    if let Some(plot) = &args.plot {
+        output::check_target(plot)?;
+    }
+    let axes = files::axes(args.axes.up, args.axes.unit);
+    let (loaded, read_ms) = machine.timed(|| {
+        machine.with_progress("scans", |_| stages::load(&args.input, &axes, Seed::new(args.seed), &machine))
+    });
+    let loaded = loaded?;
+    let spec = LawSpec { regions: args.regions as usize, ..LawSpec::default() };
+    let (law, fit_ms) = machine.timed(|| bloom::fit_stages(&loaded.name, &loaded.stages, &spec));
+    let law = law.map_err(bad(&args.input))?;
+    if law.laws.is_empty() {
+        return Err(Failure::at(
+            &args.input,
+            "no organ is there on 3 days; label organs by hand (organ = \"leaf-1\") or add stages",
+        ));
+    }
+    let text = serde_json::to_string_pretty(&law)
+        .map_err(|e| Failure::Bug(format!("the law cannot be written as JSON: {e}")))?;
+    let (written, write_ms) = machine.timed(|| {
+        output::write_whole(&args.output, |out| Ok(writeln!(out, "{text}")?))?;
+        match &args.plot {
+            Some(plot) => {
+                output::write_whole(plot, |out| Ok(out.write_all(bloom::plot_svg(&law).as_bytes())?))
+            }
+            None => Ok(()),
+        }
+    });
+    written?;
+    let mut run = head("bloom fit", args.seed, &args.input.display().to_string(), &law.name, &args.output);
+    if let Some(item) = run.items.first_mut() {
+        item.timings_ms.structure = fit_ms;
+        item.timings_ms.total = fit_ms;
+        item.timings_ms.add_io(read_ms, write_ms);
+        item.warnings.clone_from(&loaded.warnings);
+    }
+    if !machine.quiet {
+        loaded.warnings.iter().for_each(|w| say::warning(w));
+        for l in &law.laws {
+            say::line(&format!(
+                "{} region {} {}: K {:.3} mm, p0 {:.3} mm, r {:.4} a day, R2 {:.3}{}",
+                l.organ,
+                l.region,
+                l.axis.word(),
+                l.law.k * 1e3,
+                l.law.p0 * 1e3,
+                l.law.r,
+                l.r2,
+                l.loo_rmse.map_or(String::new(), |e| format!(", leave-one-out {:.3} mm", e * 1e3))
+            ));
+        }
+        say::line(&format!("{}: {} laws", args.output.display(), law.laws.len()));
+    }
+    let laws = law.laws.iter().map(|l| LawReport {
+        organ: l.organ.clone(),
+        region: l.region,
+        axis: l.axis,
+        k: l.law.k,
+        p0: l.law.p0,
+        r: l.law.r,
+        offset: l.law.offset,
+        standard_errors: l.standard_errors,
+        r2: l.r2,
+        r2_adjusted: l.r2_adjusted,
+        loo_rmse: l.loo_rmse,
+    });
+    let report = FitReport { run, laws: laws.collect(), stages: loaded.told };
+    report::finish_any(&report, &args.common)
+}
+
+fn head(command: &str, seed: u64, input: &str, name: &str, output: &Path) -> RunReport {
+    let mut run = RunReport::new(command, seed);
+    run.input.path = input.to_owned();
+    run.items.push(burgeon::ItemReport {
+        name: name.to_owned(),
+        output: output.display().to_string(),
+        ..burgeon::ItemReport::default()
+    });
+    run.ok = 1;
+    run
+}
+
+fn read_law(path: &Path) -> Outcome<GrowthLaw> {
+    let text = files::read_text(path)?;
+    let law: GrowthLaw = serde_json::from_str(&text).map_err(|e| {
+        Failure::at(path, format_args!("is no growth law: {e}; make one with `burgeon bloom fit`"))
+    })?;
+    let fault = law.validate().next();
+    match fault {
+        Some(fault) => Err(Failure::at(path, format_args!("cannot be used: {fault}"))),
+        None => Ok(law),
+    }
+}
+
+/// The model of a day, and the share of petal triangles that cross another petal.
+type Shape<'a> = Box<dyn Fn(f64) -> Outcome<(Model, Option<f64>)> + 'a>;
+
+/// Shapes over time, wherever they come from.
+struct Show<'a> {
+    name: String,
+    /// First and last day, in the user's count.
+    days: [f64; 2],
+    /// The day of a picture that names none.
+    best: f64,
+    shape: Shape<'a>,
+}
+
+fn run(args: &BloomRunArgs) -> Outcome {
+    let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
+    let law = args.law.as_deref().map(read_law).transpose()?;
+    if args.day.is_some_and(|d| !d.is_finite()) {
+        return Err(Failure::Bad("--day must be a finite number".into()));
+    }
+    let start = Path::new(&args.start);
+    if let Some(spec) = bloom::preset(&args.start).filter(|_| !start.exists()) {
+        return flower(args, &spec, law, &machine);
+    }
+    let axes = files::axes(args.axes.up, args.axes.unit);
+    let options = stages::Options { clean: !args.no_clean, split: !args.whole };
+    let (loaded, read_ms) = machine.timed(|| {
+        machine.with_progress("scans", |_| load_shapes(args, &axes, options, law.as_ref(), &machine))
+    });
+    let loaded = loaded?;
+    let first_day = loaded.stages.first().map_or(0.0, |s| s.day);
+    let last_day = loaded.stages.last().map_or(0.0, |s| s.day);
+    let law = law.unwrap_or_else(|| straight_law(last_day - first_day));
+    let spec = MotionSpec {
+        register: RegisterSpec { counts: args.lattice, ..RegisterSpec::default() },
+        straight: args.straight,
+    };
+    let compute = machine.run();
+    let (motion, fit_ms) = machine.timed(|| {
+        machine.with_progress("registration", |_| Motion::new(&loaded.stages, law, spec, &compute))
+    });
+    let motion = motion.map_err(bad(start))?;
+    let mut error = None;
+    if let (Some(scan), Some(day)) = (&args.compare, args.day) {
+        let measured = stages::read_points(scan, &axes, options.clean, Seed::new(args.seed), &machine)?;
+        let shape = motion.at(day - first_day, &compute).map_err(bad(scan))?;
+        error = Some(ErrorReport::from(bloom::compare(&measured.0, &shape, &compute).map_err(bad(scan))?));
+    }
+    let show = Show {
+        name: loaded.name.clone(),
+        days: [first_day, last_day],
+        best: last_day,
+        shape: Box::new(|day| {
+            let points = motion.at(day - first_day, &compute).map_err(bad(start))?;
+            Ok((assemble(&loaded, &motion, &points), None))
+        }),
+    };
+    let (written, write_ms) = machine.timed(|| write_show(args, &show, &axes, &machine));
+    let written = written?;
+    let mut head = head("bloom run", args.seed, &args.start, &loaded.name, &args.output);
+    head.items[0].warnings.clone_from(&loaded.warnings);
+    let residuals = motion.residuals.iter().map(|(organ, from, to, e)| ResidualReport {
+        organ: organ.clone(),
+        from_day: from + first_day,
+        to_day: to + first_day,
+        error: ErrorReport::from(*e),
+    });
+    let residuals = residuals.collect();
+    let told =
+        Told { head, residuals, error, stages: loaded.told.clone(), times: [read_ms, fit_ms, write_ms] };
+    tell(args, &machine, told, written)
+}
+
+/// Everything that the report of `run` is made of, beside what was written.
+struct Told {
+    head: RunReport,
+    residuals: Vec<ResidualReport>,
+    error: Option<ErrorReport>,
+    stages: Vec<stages::Told>,
+    times: [f64; 3],
+}
+
+fn tell(args: &BloomRunArgs, machine: &Machine, mut told: Told, written: Written) -> Outcome {
+    let item = &mut told.head.items[0];
+    item.counts.vertices = written.vertices;
+    item.counts.triangles = written.triangles;
+    item.digest = written.digest;
+    item.timings_ms.structure = told.times[1];
+    item.timings_ms.total = told.times[1];
+    item.timings_ms.add_io(told.times[0], told.times[2]);
+    if !machine.quiet {
+        item.warnings.iter().for_each(|w| say::warning(w));
+        if let Some(e) = &told.error {
+            say::line(&format!(
+                "error: {:.3} mm (mean over x, y, z), {:.3} mean, {:.3} rms, {:.3} max, {:.1} % within 2 mm",
+                e.paper_mm,
+                e.mean_mm,
+                e.rms_mm,
+                e.max_mm,
+                e.coverage * 100.0
+            ));
+        }
+        let frames = say::counted(u64::from(written.frames), "shape", "shapes");
+        let points = say::counted(written.vertices, "point", "points");
+        say::line(&format!(
+            "{}: {frames} of {points}; {:.0} ms",
+            args.output.display(),
+            item.timings_ms.total
+        ));
+    }
+    let report = MotionReport {
+        run: told.head,
+        frames: written.frames,
+        day: args.day,
+        lattice: args.lattice,
+        error: told.error,
+        residuals: told.residuals,
+        overlap: written.overlap,
+        stages: told.stages,
+    };
+    report::finish_any(&report, &args.common)
+}
+
+fn straight_law(span: f64) -> GrowthLaw {
+    let mut law = GrowthLaw::logistic("straight", span.max(1e-9), 1.0);
+    // A law without say: the pace is a straight line.
+    law.laws.iter_mut().for_each(|l| l.r2 = 0.0);
+    law
+}
+
+fn load_shapes(
+    args: &BloomRunArgs,
+    axes: &ExportSpec,
+    options: stages::Options,
+    law: Option<&GrowthLaw>,
+    machine: &Machine,
+) -> Outcome<Loaded> {
+    let start = Path::new(&args.start);
+    if files::extension(start).is_some_and(|e| e.eq_ignore_ascii_case("toml")) {
+        return stages::load(start, axes, Seed::new(args.seed), machine);
+    }
+    if !start.exists() {
+        let names = FlowerSpec::PRESETS.join(", ");
+        return Err(Failure::Bad(format!(
+            "{}: there is no such file, and no such flower ({names}); check the spelling",
+            args.start
+        )));
+    }
+    let Some(end) = &args.end else {
+        return Err(Failure::Bad(
+            "--end is missing: name the last shape, or give a stages file as START".into(),
+        ));
+    };
+    let first = args.start_day.or(law.map(|l| l.first_day)).unwrap_or(0.0);
+    let last = args.end_day.or(law.map(|l| l.first_day + l.span_days)).unwrap_or(first + 1.0);
+    let ordered = last > first;
+    if !ordered {
+        return Err(Failure::Bad(format!(
+            "the day of END ({last}) does not come after that of START ({first})"
+        )));
+    }
+    stages::load_pair(start, first, end, last, options, axes, Seed::new(args.seed), machine)
+}
+
+/// Meshes keep their faces; points of scans become a part an organ.
+fn assemble(loaded: &Loaded, motion: &Motion, points: &[DVec3]) -> Model {
+    let mut model = Model { name: loaded.name.clone(), ..Model::default() };
+    for (name, rows) in &motion.organs {
+        let mut mesh = TriMesh::default();
+        for p in &points[rows.clone()] {
+            mesh.push(*p);
+        }
+        let leafy = name != "stem";
+        if let Some(first) = loaded.mesh.as_ref().filter(|m| m.positions.len() == mesh.positions.len()) {
+            mesh.triangles.clone_from(&first.triangles);
+            mesh.uvs.clone_from(&first.uvs);
+            mesh.colors.clone_from(&first.colors);
+            mesh.compute_normals();
+        }
+        let material = model.materials.len();
+        let kind = if leafy { MaterialKind::Leaf } else { MaterialKind::Stem };
+        let color = if leafy { [0.13, 0.33, 0.06] } else { [0.25, 0.38, 0.12] };
+        let mut look = Material::plain(format!("{}-{}", kind.word(), material + 1), kind, color);
+        look.double_sided = true;
+        model.materials.push(look);
+        model.parts.push(Part { name: name.clone(), material: MaterialId::new(material), mesh });
+    }
+    model
+}
+
+fn flower(args: &BloomRunArgs, spec: &FlowerSpec, law: Option<GrowthLaw>, machine: &Machine) -> Outcome {
+    if args.end.is_some() || args.compare.is_some() {
+        return Err(Failure::Bad(format!(
+            "{} is a whole flower: it takes no --end and no --compare",
+            spec.name
+        )));
+    }
+    let law = law.unwrap_or_else(|| GrowthLaw::logistic(&spec.name, spec.days[0], spec.rate));
+    let axes = files::axes(args.axes.up, args.axes.unit);
+    let show = Show {
+        name: spec.name.clone(),
+        days: [0.0, spec.days[0] + spec.days[1]],
+        best: spec.days[0],
+        shape: Box::new(|day| {
+            let frame = spec.at(day, &law, Seed::new(args.seed));
+            let overlap = frame.overlap();
+            Ok((frame.model, Some(overlap)))
+        }),
+    };
+    let (written, write_ms) = machine.timed(|| write_show(args, &show, &axes, machine));
+    let written = written?;
+    let mut head = head("bloom run", args.seed, &args.start, &spec.name, &args.output);
+    let petals: u32 = spec.whorls.iter().map(|w| w.count).sum();
+    head.items[0].counts.flowers = u64::from(spec.umbel);
+    head.items[0].counts.petals = u64::from(petals) * u64::from(spec.umbel);
+    let told = Told { head, residuals: vec![], error: None, stages: vec![], times: [0.0, 0.0, write_ms] };
+    tell(args, machine, told, written)
+}
+
+/// What was written.
+#[derive(Default)]
+struct Written {
+    frames: u32,
+    vertices: u64,
+    triangles: u64,
+    digest: String,
+    overlap: Vec<f64>,
+}
+
+impl Written {
+    fn take(&mut self, model: &Model, overlap: Option<f64>) {
+        self.frames += 1;
+        self.vertices = model.vertex_count() as u64;
+        self.triangles = model.triangle_count() as u64;
+        self.overlap.extend(overlap);
+    }
+}
+
+fn write_show(
+    args: &BloomRunArgs,
+    show: &Show<'_>,
+    axes: &ExportSpec,
+    machine: &Machine,
+) -> Outcome<Written> {
+    let mut written = Written::default();
+    let mut digest = Digest::new();
+    let extension = files::extension(&args.output).map(str::to_ascii_lowercase);
+    let at = |k: u32| {
+        let share = f64::from(k) / f64::from(args.frames - 1);
+        show.days[0] + (show.days[1] - show.days[0]) * share
+    };
+    let one = |day: f64, path: &Path, written: &mut Written, digest: &mut Digest| -> Outcome {
+        machine.cancel.check()?;
+        let (model, overlap) = (show.shape)(day)?;
+        digest.add(&model);
+        written.take(&model, overlap);
+        write_one(path, &model, axes)
+    };
+    match (extension.as_deref(), args.day) {
+        (None, None) => {
+            output::make_folder(&args.output)?;
+            for k in 0..args.frames {
+                let name = format!("{}-{k:03}.{}", show.name, args.format.extension());
+                one(at(k), &args.output.join(name), &mut written, &mut digest)?;
+            }
+        }
+        (None, Some(_)) => {
+            return Err(Failure::at(&args.output, "has no extension; end it with .glb, .ply, .obj or .stl"));
+        }
+        (Some(_), Some(day)) => one(day, &args.output, &mut written, &mut digest)?,
+        (Some("glb"), None) => {
+            let mut models = Vec::new();
+            for k in 0..args.frames {
+                machine.cancel.check()?;
+                let (model, overlap) = (show.shape)(at(k))?;
+                digest.add(&model);
+                written.take(&model, overlap);
+                models.push(model);
+            }
+            if let Some((first, later)) = models.split_first() {
+                #[expect(clippy::cast_possible_truncation, reason = "seconds of an animation")]
+                let second = |k: usize| (args.seconds * (k + 1) as f64 / f64::from(args.frames - 1)) as f32;
+                let keys = later.iter().enumerate().map(|(k, m)| (second(k), m)).collect();
+                let morph = Morph { name: "growth", start: 0.0, keys };
+                output::write_whole(&args.output, |out| write_glb_morph(first, &morph, out))?;
+            }
+        }
+        (Some(_), None) => one(show.best, &args.output, &mut written, &mut digest)?,
+    }
+    if let Some(png) = &args.png {
+        let (model, _) = (show.shape)(args.day.unwrap_or(show.best))?;
+        let look = PictureArgs {
+            size: args.size,
+            view: args.view,
+            frames: 8,
+            background: burgeon::render::Background::Sky,
+            no_shadow: false,
+            supersample: 4,
+        };
+        let spec = look.spec(args.seed);
+        let model = with_dots(model);
+        let drawn =
+            machine.with_progress("picture", |_| burgeon::render::render(&model, &spec, &machine.run()))?;
+        picture::write(png, &drawn)?;
+    }
+    written.digest = digest.hex();
+    Ok(written)
+}
+
+/// Clouds as PLY in double precision, everything else by the writers of models.
+fn write_one(path: &Path, model: &Model, axes: &ExportSpec) -> Outcome {
+    let bare = model.parts.iter().all(|p| p.mesh.triangles.is_empty());
+    let format: ModelFormat = files::writable(path)?;
+    if bare && format == ModelFormat::Ply {
+        let mut cloud = PointCloud::default();
+        for part in &model.parts {
+            let color = model.material(part).base_color;
+            for p in &part.mesh.positions {
+                cloud.points.push(DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2])));
+                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 255")]
+                cloud.colors.push(color.map(|c| (c.clamp(0.0, 1.0).sqrt() * 255.0) as u8));
+            }
+        }
+        return output::write_whole(path, |out| write_cloud_ply(&cloud, axes, out));
+    }
+    if bare && matches!(format, ModelFormat::Stl) {
+        return Err(Failure::at(
+            path,
+            "a cloud of points has no triangles for STL; choose .ply, .obj or .glb",
+        ));
+    }
+    files::write_model(path, model, format, axes, &mut PngCache::new()).map(drop)
+}
+
+/// Points are drawn as small tetrahedra.
+fn with_dots(mut model: Model) -> Model {
+    let size = model.bounds().size().max_element() * 0.0022;
+    for part in model.parts.iter_mut().filter(|p| p.mesh.triangles.is_empty()) {
+        // More than 40,000 dots show nothing more.
+        let step = part.mesh.positions.len().div_ceil(40_000).max(1);
+        let mut dots = TriMesh::default();
+        for p in part.mesh.positions.iter().step_by(step) {
+            let p = DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2]));
+            let corners = [
+                DVec3::new(1.0, 1.0, 1.0),
+                DVec3::new(-1.0, -1.0, 1.0),
+                DVec3::new(-1.0, 1.0, -1.0),
+                DVec3::new(1.0, -1.0, -1.0),
+            ];
+            let [a, b, c, d] = corners.map(|q| dots.push(p + q * size));
+            dots.triangles.extend([[a, b, c], [a, d, b], [a, c, d], [b, d, c]]);
+        }
+        dots.compute_normals();
+        part.mesh = dots;
+    }
+    model
+}

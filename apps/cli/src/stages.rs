@@ -1,0 +1,435 @@
+//! Stages files and scans: read, cleaned, split into organs that carry the same names on every day.
+
+use std::fs::File;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+
+use burgeon::bloom::{self, CleanSpec, Organ, SegmentSpec, Stage};
+use burgeon::formats::{CloudFormat, ExportSpec, read_cloud};
+use burgeon::glam::DVec3;
+use burgeon::mesh::TriMesh;
+use burgeon::{Report, Seed, Unit, UpAxis};
+use serde::{Deserialize, Serialize};
+
+use crate::failure::{Failure, Outcome};
+use crate::files;
+use crate::machine::Machine;
+
+/// A stages file.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StagesFile {
+    name: Option<String>,
+    unit: Option<UnitWord>,
+    up: Option<UpWord>,
+    #[serde(default)]
+    split: Split,
+    #[serde(default = "yes")]
+    clean: bool,
+    #[serde(default)]
+    stage: Vec<StageEntry>,
+}
+
+fn yes() -> bool {
+    true
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Split {
+    #[default]
+    Auto,
+    None,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum UnitWord {
+    M,
+    Cm,
+    Mm,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum UpWord {
+    Y,
+    Z,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StageEntry {
+    file: PathBuf,
+    day: f64,
+    unit: Option<UnitWord>,
+    organ: Option<String>,
+    region: Option<usize>,
+    seed: Option<[f64; 3]>,
+    base: Option<[f64; 3]>,
+    crop: Option<[[f64; 3]; 2]>,
+}
+
+/// What was done to a scan.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Told {
+    file: String,
+    day: f64,
+    points: usize,
+    cropped: usize,
+    ground: usize,
+    outliers: usize,
+    organs: Vec<OrganTold>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct OrganTold {
+    name: String,
+    points: usize,
+}
+
+/// Stages ready for fitting and motion.
+#[derive(Debug)]
+pub(crate) struct Loaded {
+    pub(crate) name: String,
+    pub(crate) stages: Vec<Stage>,
+    pub(crate) told: Vec<Told>,
+    pub(crate) warnings: Vec<String>,
+    /// Faces of the first shape, where it is a model.
+    pub(crate) mesh: Option<TriMesh>,
+}
+
+/// How scans are treated.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Options {
+    pub(crate) clean: bool,
+    pub(crate) split: bool,
+}
+
+/// Points of a scan or of a model, in metres, +Y up, and the model's faces.
+fn read_any(path: &Path, axes: &ExportSpec, report: &mut Report) -> Outcome<(Vec<DVec3>, Option<TriMesh>)> {
+    let cloud = files::extension(path).and_then(CloudFormat::from_extension);
+    if path.is_dir() {
+        return Err(Failure::at(path, "is a folder; name a file in it"));
+    }
+    if cloud.is_none() || has_faces(path) {
+        let (model, _, warnings) = files::read_model(path, axes)?;
+        report.warnings.extend(warnings);
+        let mut mesh = TriMesh::default();
+        for part in &model.parts {
+            // Only positions and faces: parts may differ in their other columns.
+            mesh.append(&TriMesh {
+                positions: part.mesh.positions.clone(),
+                triangles: part.mesh.triangles.clone(),
+                ..TriMesh::default()
+            });
+        }
+        let points =
+            mesh.positions.iter().map(|p| DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2])));
+        let points = points.collect();
+        return Ok((points, (!mesh.triangles.is_empty()).then_some(mesh)));
+    }
+    let format = cloud.unwrap_or(CloudFormat::Xyz);
+    let file = File::open(path).map_err(|e| Failure::io(path, "read", &e))?;
+    let cloud = read_cloud(BufReader::new(file), format, axes, report).map_err(|e| Failure::at(path, e))?;
+    Ok((cloud.points, None))
+}
+
+/// A PLY whose header announces faces, or an OBJ with an `f` line.
+fn has_faces(path: &Path) -> bool {
+    use std::io::Read as _;
+    let Ok(mut file) = File::open(path) else { return false };
+    let extension = files::extension(path).unwrap_or_default().to_ascii_lowercase();
+    let mut start = Vec::new();
+    let limit = if extension == "obj" { 64 << 20 } else { 8192 };
+    if file.by_ref().take(limit).read_to_end(&mut start).is_err() {
+        return false;
+    }
+    match extension.as_str() {
+        "ply" => {
+            let head = String::from_utf8_lossy(&start);
+            let head = head.split("end_header").next().unwrap_or_default();
+            head.lines().any(|l| l.starts_with("element face") && !l.trim_end().ends_with(" 0"))
+        }
+        "obj" => start.windows(3).any(|w| w == b"\nf "),
+        _ => false,
+    }
+}
+
+/// A scan for comparison: its points, cleaned.
+pub(crate) fn read_points(
+    path: &Path,
+    axes: &ExportSpec,
+    clean: bool,
+    seed: Seed,
+    machine: &Machine,
+) -> Outcome<(Vec<DVec3>, Vec<String>)> {
+    let mut report = Report::default();
+    let (points, mesh) = read_any(path, axes, &mut report)?;
+    let warnings = report.warnings.iter().map(|w| format!("{}: {w}", path.display())).collect();
+    if !clean || mesh.is_some() {
+        return Ok((points, warnings));
+    }
+    let kept = bloom::clean(&points, &CleanSpec::default(), seed, &machine.run())?.kept;
+    Ok((kept.into_iter().map(|i| points[i]).collect(), warnings))
+}
+
+/// Reads and cleans one scan; tells what went.
+fn prepare(
+    path: &Path,
+    day: f64,
+    axes: &ExportSpec,
+    spec: Option<&CleanSpec>,
+    seed: Seed,
+    machine: &Machine,
+    warnings: &mut Vec<String>,
+) -> Outcome<(Vec<DVec3>, Option<TriMesh>, Told)> {
+    machine.cancel.check()?;
+    let mut report = Report::default();
+    let (points, mesh) = read_any(path, axes, &mut report)?;
+    warnings.extend(report.warnings.iter().map(|w| format!("{}: {w}", path.display())));
+    let mut told = Told {
+        file: path.display().to_string(),
+        day,
+        points: points.len(),
+        cropped: 0,
+        ground: 0,
+        outliers: 0,
+        organs: vec![],
+    };
+    let Some(spec) = spec.filter(|_| mesh.is_none()) else { return Ok((points, mesh, told)) };
+    let cleaned = bloom::clean(&points, spec, seed, &machine.run())?;
+    told.cropped = cleaned.cropped;
+    told.ground = cleaned.ground;
+    told.outliers = cleaned.outliers;
+    if cleaned.ground > 0 {
+        warnings.push(format!(
+            "{}: {} points of a ground plane were left out",
+            path.display(),
+            cleaned.ground
+        ));
+    }
+    if cleaned.outliers * 20 > points.len() {
+        warnings.push(format!(
+            "{}: {} of {} points were left out as stray; `clean = false` keeps them",
+            path.display(),
+            cleaned.outliers,
+            points.len()
+        ));
+    }
+    Ok((cleaned.kept.into_iter().map(|i| points[i]).collect(), mesh, told))
+}
+
+fn bad(path: &Path) -> impl Fn(bloom::BloomError) -> Failure + '_ {
+    move |e| Failure::at(path, e)
+}
+
+/// Stages of a file.
+pub(crate) fn load(path: &Path, axes: &ExportSpec, seed: Seed, machine: &Machine) -> Outcome<Loaded> {
+    let text = files::read_text(path)?;
+    let file: StagesFile = toml::from_str(&text).map_err(|e| {
+        let line = e.span().map_or(1, |s| text[..s.start.min(text.len())].lines().count().max(1));
+        Failure::at(path, format_args!("line {line}: {}; see `burgeon bloom fit --help`", e.message()))
+    })?;
+    if file.stage.is_empty() {
+        return Err(Failure::at(path, "names no stage; add [[stage]] with file and day"));
+    }
+    let mut out = Loaded {
+        name: file.name.clone().unwrap_or_else(|| files::stem(path)),
+        stages: vec![],
+        told: vec![],
+        warnings: vec![],
+        mesh: None,
+    };
+    for entry in &file.stage {
+        if !entry.day.is_finite() {
+            return Err(Failure::at(path, format_args!("the day of {} is no number", entry.file.display())));
+        }
+        add_entry(path, &file, entry, axes, seed, machine, &mut out)?;
+    }
+    for stage in &mut out.stages {
+        stage.organs.retain(|o| o.points.len() >= 8);
+    }
+    alike(&mut out, file.split == Split::Auto);
+    Ok(out)
+}
+
+fn add_entry(
+    path: &Path,
+    file: &StagesFile,
+    entry: &StageEntry,
+    axes: &ExportSpec,
+    seed: Seed,
+    machine: &Machine,
+    out: &mut Loaded,
+) -> Outcome {
+    let unit = match entry.unit.or(file.unit) {
+        Some(UnitWord::M) => Unit::Metre,
+        Some(UnitWord::Cm) => Unit::Centimetre,
+        Some(UnitWord::Mm) => Unit::Millimetre,
+        None => axes.unit,
+    };
+    let up = match file.up {
+        Some(UpWord::Y) => UpAxis::Y,
+        Some(UpWord::Z) => UpAxis::Z,
+        None => axes.up,
+    };
+    let axes = ExportSpec { up, unit };
+    let place = |p: [f64; 3]| {
+        let p = if up == UpAxis::Z { DVec3::new(p[0], p[2], -p[1]) } else { DVec3::from_array(p) };
+        p * unit.metres()
+    };
+    let scan = path.parent().unwrap_or_else(|| Path::new("")).join(&entry.file);
+    let clean = CleanSpec {
+        outliers: file.clean,
+        plane: file.clean,
+        crop: entry.crop.map(|c| c.map(place)),
+        ..CleanSpec::default()
+    };
+    let (points, mesh, mut told) =
+        prepare(&scan, entry.day, &axes, Some(&clean), seed, machine, &mut out.warnings)?;
+    let spec = SegmentSpec { foot: entry.base.map(place), ..SegmentSpec::default() };
+    let mut found = match (&entry.organ, entry.seed) {
+        (Some(name), Some(at)) => {
+            let mut one = bloom::organ_at(&points, place(at), &spec).map_err(bad(&scan))?;
+            one.name.clone_from(name);
+            vec![one]
+        }
+        (None, Some(at)) => vec![bloom::organ_at(&points, place(at), &spec).map_err(bad(&scan))?],
+        (Some(name), None) => vec![bloom::single_organ(&points, name, &spec).map_err(bad(&scan))?],
+        (None, None) if file.split == Split::None || mesh.is_some() => {
+            vec![bloom::single_organ(&points, "organ", &spec).map_err(bad(&scan))?]
+        }
+        (None, None) => bloom::organs(&points, &spec).map_err(bad(&scan))?,
+    };
+    if let (Some(base), [one]) = (entry.base.map(place), &mut found[..]) {
+        one.base = base;
+    }
+    told.organs = found.iter().map(|o| OrganTold { name: o.name.clone(), points: o.points.len() }).collect();
+    out.told.push(told);
+    if out.stages.is_empty() {
+        out.mesh = mesh;
+    }
+    #[expect(clippy::float_cmp, reason = "the same literal in the same file")]
+    let same_day = out.stages.last().is_some_and(|s| s.day == entry.day);
+    if !same_day {
+        out.stages.push(Stage { day: entry.day, organs: vec![] });
+    }
+    if let Some(stage) = out.stages.last_mut() {
+        for organ in found {
+            add_organ(stage, organ, entry.region);
+        }
+    }
+    Ok(())
+}
+
+/// A region of an organ joins the other regions of the same day.
+fn add_organ(stage: &mut Stage, mut organ: Organ, region: Option<usize>) {
+    let Some(region) = region else {
+        stage.organs.push(organ);
+        return;
+    };
+    // Files of regions say the place along the organ themselves: whole numbers, brought to 0..1 at the end.
+    #[expect(clippy::cast_precision_loss, reason = "a handful of regions")]
+    let place = region.clamp(1, 20) as f64;
+    organ.way.iter_mut().for_each(|w| *w = (place - 1.0 + w.clamp(0.001, 0.999)) / 20.0);
+    match stage.organs.iter_mut().find(|o| o.name == organ.name) {
+        Some(whole) => {
+            whole.points.extend(organ.points);
+            whole.way.extend(organ.way);
+            whole.rows = (0..whole.points.len()).collect();
+            if region == 1 {
+                whole.base = organ.base;
+            } else {
+                whole.tip = organ.tip;
+            }
+        }
+        None => stage.organs.push(organ),
+    }
+}
+
+/// Brings organs under the same names, stretches ways of regions, warns of unlike sizes.
+fn alike(out: &mut Loaded, split: bool) {
+    let size = |s: &Stage| {
+        let all = || s.organs.iter().flat_map(|o| &o.points);
+        let low = all().fold(DVec3::INFINITY, |a, &p| a.min(p));
+        let high = all().fold(DVec3::NEG_INFINITY, |a, &p| a.max(p));
+        (high - low).max_element()
+    };
+    for stage in &mut out.stages {
+        for organ in &mut stage.organs {
+            let longest = organ.way.iter().copied().fold(0.0, f64::max);
+            if longest > 0.0 && longest < 0.999 {
+                // Regions were marked in twentieths: as many as there are become the whole way.
+                let whole = (longest * 20.0).ceil() / 20.0;
+                organ.way.iter_mut().for_each(|w| *w /= whole);
+            }
+        }
+    }
+    for k in 1..out.stages.len() {
+        let (before, now) = out.stages.split_at_mut(k);
+        let (Some(before), Some(now)) = (before.last(), now.first_mut()) else { continue };
+        let (a, b) = (size(before), size(now));
+        if b > 8.0 * a || a > 8.0 * b {
+            out.warnings.push(format!(
+                "the scans of day {} and day {} differ in size by a factor of {:.1}; are their units the same?",
+                before.day,
+                now.day,
+                (b / a).max(a / b)
+            ));
+        }
+        if split && now.organs.iter().any(|o| o.name == "stem") {
+            bloom::name_alike(&before.organs, &mut now.organs, DVec3::Y);
+        }
+    }
+}
+
+/// First and last shape, each a file.
+#[expect(clippy::too_many_arguments, reason = "two of everything; a struct would only name them twice")]
+pub(crate) fn load_pair(
+    first: &Path,
+    first_day: f64,
+    last: &Path,
+    last_day: f64,
+    options: Options,
+    axes: &ExportSpec,
+    seed: Seed,
+    machine: &Machine,
+) -> Outcome<Loaded> {
+    let mut out =
+        Loaded { name: files::stem(first), stages: vec![], told: vec![], warnings: vec![], mesh: None };
+    let spec = SegmentSpec::default();
+    let clean = CleanSpec { outliers: options.clean, plane: options.clean, ..CleanSpec::default() };
+    let mut split = options.split;
+    for (path, day) in [(first, first_day), (last, last_day)] {
+        let (points, mesh, mut told) =
+            prepare(path, day, axes, Some(&clean), seed, machine, &mut out.warnings)?;
+        // A model with faces is one organ, and then so is its partner.
+        split &= mesh.is_none();
+        let organs = if split {
+            bloom::organs(&points, &spec).map_err(bad(path))?
+        } else {
+            vec![bloom::single_organ(&points, "organ", &spec).map_err(bad(path))?]
+        };
+        told.organs =
+            organs.iter().map(|o| OrganTold { name: o.name.clone(), points: o.points.len() }).collect();
+        out.told.push(told);
+        if out.stages.is_empty() {
+            out.mesh = mesh;
+        }
+        out.stages.push(Stage { day, organs });
+    }
+    // A scan that falls into stem and leaves cannot meet one that is a single organ.
+    let counts: Vec<usize> = out.stages.iter().map(|s| s.organs.len()).collect();
+    if split && counts.contains(&1) && counts.iter().any(|&c| c > 1) {
+        out.warnings
+            .push("one shape is a single organ and the other is not: both are taken as one organ".into());
+        for stage in &mut out.stages {
+            let all: Vec<DVec3> = stage.organs.iter().flat_map(|o| o.points.iter().copied()).collect();
+            stage.organs = vec![bloom::single_organ(&all, "organ", &spec).map_err(bad(first))?];
+        }
+        split = false;
+    }
+    alike(&mut out, split);
+    Ok(out)
+}

@@ -1,0 +1,140 @@
+//! `burgeon bloom` as other programs call it.
+#![expect(clippy::unwrap_used, reason = "tests")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn folder(test: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
+    let _ = fs::remove_dir_all(&path);
+    fs::create_dir_all(&path).unwrap();
+    path
+}
+
+fn burgeon(folder: &Path, args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_burgeon")).args(args).current_dir(folder).output().unwrap()
+}
+
+fn good(folder: &Path, args: &[&str]) {
+    let out = burgeon(folder, args);
+    assert!(out.status.success(), "{args:?}: {}", String::from_utf8_lossy(&out.stderr));
+}
+
+fn bad(folder: &Path, args: &[&str], want: &str) {
+    let out = burgeon(folder, args);
+    let text = String::from_utf8_lossy(&out.stderr).into_owned();
+    assert_eq!(out.status.code(), Some(2), "{args:?}: {text}");
+    assert!(text.lines().count() == 1 && text.contains(want), "{text:?} should say {want:?}");
+}
+
+/// A leaf of `length` mm that rises by `rise`, as text.
+fn leaf(length: f64, rise: f64) -> String {
+    let mut text = String::new();
+    for i in 0..40 {
+        for j in 0..15 {
+            let (v, u) = (f64::from(i) / 39.0, f64::from(j) / 7.0 - 1.0);
+            let half = 0.2 * length * (1.0 - (2.0 * v - 1.0) * (2.0 * v - 1.0)) + 0.5;
+            text += &format!("{} {} {}\n", u * half, rise * v * length, v * length);
+        }
+    }
+    text
+}
+
+fn json(path: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
+}
+
+#[test]
+fn a_law_is_fitted_and_drives_a_day_an_animation_and_another_species() {
+    let dir = folder("bloom_law");
+    let mut stages = String::from("name = \"made\"\nunit = \"mm\"\nsplit = \"none\"\n");
+    for (k, (day, length)) in [(0, 20.0), (2, 31.0), (4, 42.0), (7, 50.0), (9, 52.0)].iter().enumerate() {
+        fs::write(dir.join(format!("s{k}.xyz")), leaf(*length, 0.2 + 0.01 * f64::from(*day))).unwrap();
+        stages += &format!("[[stage]]\nfile = \"s{k}.xyz\"\nday = {day}\nbase = [0, 0, 0]\n");
+    }
+    fs::write(dir.join("stages.toml"), &stages).unwrap();
+    good(
+        &dir,
+        &["bloom", "fit", "stages.toml", "-o", "law.json", "--plot", "fit.svg", "--report", "fit.json"],
+    );
+    let laws = json(&dir.join("fit.json"))["laws"].as_array().unwrap().clone();
+    assert_eq!(laws.len(), 10, "size, and three coordinates of three regions");
+    assert!(laws.iter().all(|l| l["K"].is_f64() && l["organ"] == "organ"), "{laws:?}");
+    assert!(laws[0]["r2"].as_f64().unwrap() > 0.98 && laws[0]["loo_rmse"].is_f64(), "{:?}", laws[0]);
+    assert!(fs::read_to_string(dir.join("fit.svg")).unwrap().contains("<polyline"));
+
+    let run = [
+        "bloom",
+        "run",
+        "s0.xyz",
+        "--end",
+        "s4.xyz",
+        "--law",
+        "law.json",
+        "--unit",
+        "mm",
+        "--whole",
+        "--no-clean",
+    ];
+    let with = |more: &[&'static str]| [&run[..], more].concat();
+    good(&dir, &with(&["--day", "4", "-o", "day4.ply", "--compare", "s2.xyz", "--report", "run.json"]));
+    let report = json(&dir.join("run.json"));
+    let error = &report["error"];
+    assert!(error["mean_mm"].as_f64().unwrap() < 1.5, "{error}");
+    assert!(error["paper_mm"].as_f64().unwrap() <= error["mean_mm"].as_f64().unwrap(), "{error}");
+    assert!(error["coverage"].as_f64().unwrap() > 0.8, "{error}");
+    good(&dir, &with(&["--frames", "5", "-o", "grow.glb"]));
+    let glb = fs::read(dir.join("grow.glb")).unwrap();
+    assert!(glb.windows(11).any(|w| w == b"\"animations"), "a morph animation");
+    good(
+        &dir,
+        &["bloom", "run", "lily", "--law", "law.json", "--frames", "3", "-o", "lily", "--format", "obj"],
+    );
+    assert!(["lily-000.obj", "lily-002.obj"].iter().all(|n| dir.join("lily").join(n).is_file()));
+}
+
+#[test]
+fn flowers_open_and_their_overlap_is_told() {
+    let dir = folder("bloom_flower");
+    good(
+        &dir,
+        &["bloom", "run", "tulip", "-o", "tulip.glb", "--frames", "4", "--report", "r.json", "--quiet"],
+    );
+    let report = json(&dir.join("r.json"));
+    let overlap = report["overlap"].as_array().unwrap();
+    assert!(overlap.len() == 4 && overlap.iter().all(|o| o.as_f64() == Some(0.0)), "{overlap:?}");
+    assert_eq!((&report["frames"], &report["items"][0]["counts"]["petals"]), (&4.into(), &6.into()));
+}
+
+#[test]
+fn bad_input_is_one_clear_line() {
+    let dir = folder("bloom_bad");
+    fs::write(dir.join("a.xyz"), leaf(20.0, 0.1)).unwrap();
+    fs::write(dir.join("nan.xyz"), "nan nan nan\n").unwrap();
+    let stage = |days: &[i32]| {
+        days.iter()
+            .map(|d| format!("[[stage]]\nfile = \"a.xyz\"\nday = {d}\norgan = \"x\"\n"))
+            .collect::<String>()
+    };
+    fs::write(dir.join("one.toml"), stage(&[1])).unwrap();
+    fs::write(dir.join("disorder.toml"), stage(&[1, 3, 2])).unwrap();
+    fs::write(dir.join("none.toml"), "name = \"x\"\n").unwrap();
+    fs::write(dir.join("typo.toml"), "[[stage]]\nfil = \"a.xyz\"\nday = 1\n").unwrap();
+    fs::write(dir.join("nan.toml"), "[[stage]]\nfile = \"nan.xyz\"\nday = 1\n").unwrap();
+    fs::write(dir.join("law.json"), "{\"schema\": \"burgeon.law/1\"}").unwrap();
+    let fit = |name: &str, want: &str| bad(&dir, &["bloom", "fit", name, "-o", "law"], want);
+    fit("one.toml", "at least 3");
+    fit("disorder.toml", "does not come after");
+    fit("none.toml", "names no stage");
+    fit("typo.toml", "fil");
+    fit("nan.toml", "finite");
+    fit("missing.toml", "no such file");
+    bad(&dir, &["bloom", "run", "dandelion", "-o", "x.glb"], "no such flower");
+    bad(&dir, &["bloom", "run", "rose", "--law", "law.json", "-o", "x.glb"], "no growth law");
+    bad(&dir, &["bloom", "run", "a.xyz", "-o", "x.glb"], "--end is missing");
+    bad(&dir, &["bloom", "run", "a.xyz", "--end", "a.xyz", "-o", "x.glb", "--lattice", "1x4x4"], "2 to 16");
+    assert!(!dir.join("law").exists() && !dir.join("x.glb").exists(), "nothing is half-written");
+}

@@ -1,0 +1,73 @@
+//! Free-form deformation and growth laws. The peers (NumPy, scipy) are timed by `docs/bloom.md`'s script.
+//!
+//! `cargo bench -p burgeon-bench --bench bloom`
+#![expect(clippy::expect_used, reason = "a benchmark of sound input")]
+
+use burgeon::Run;
+use burgeon::bloom::{Lattice, Logistic, Obb, Offset, Weights, fit_law, fit_logistic, preset};
+use burgeon::glam::DVec3;
+use divan::{Bencher, black_box};
+
+fn main() {
+    divan::main();
+}
+
+/// Points in a box of petal shape, spread by a fixed rule.
+fn points(n: usize) -> Vec<DVec3> {
+    (0..n)
+        .map(|i| {
+            let part = |k: usize| ((i * k) % 10_007) as f64 / 10_007.0;
+            DVec3::new(0.06 * part(7919), 0.03 * part(6101), 0.004 * part(3571))
+        })
+        .collect()
+}
+
+#[divan::bench(args = [3, 4, 5, 6, 8])]
+fn deform_200_000(bencher: Bencher<'_, '_>, count: usize) {
+    let points = points(200_000);
+    let obb = Obb::fit(&points, 0.05).expect("there are points");
+    let counts = [count; 3];
+    let weights = Weights::new(&obb, counts, &points).expect("sound counts");
+    let mut lattice = Lattice::of_box(&obb, counts).expect("sound counts");
+    lattice.points.iter_mut().enumerate().for_each(|(i, p)| *p += DVec3::Y * (i as f64 * 1e-5));
+    let mut out = vec![DVec3::ZERO; points.len()];
+    bencher.bench_local(|| {
+        weights.apply_with(black_box(&lattice), &mut out, &Run::plain()).expect("the lattice fits");
+        out[0]
+    });
+}
+
+#[divan::bench]
+fn weights_200_000(bencher: Bencher<'_, '_>) {
+    let points = points(200_000);
+    let obb = Obb::fit(&points, 0.05).expect("there are points");
+    bencher.bench_local(|| Weights::new(&obb, [4, 4, 4], black_box(&points)));
+}
+
+fn series() -> (Vec<f64>, Vec<f64>) {
+    let law = Logistic { k: 60.0, p0: 6.0, r: 0.4, offset: 0.0 };
+    let days: Vec<f64> = (0..25).map(f64::from).collect();
+    let wobble = |i: usize| 0.6 * (((i * 37) % 11) as f64 / 5.0 - 1.0);
+    let values = days.iter().enumerate().map(|(i, d)| law.value(*d) + wobble(i)).collect();
+    (days, values)
+}
+
+#[divan::bench]
+fn logistic_25(bencher: Bencher<'_, '_>) {
+    let (days, values) = series();
+    bencher.bench_local(|| fit_law(black_box(&days), black_box(&values), Offset::Auto));
+}
+
+#[divan::bench]
+fn logistic_25_with_leave_one_out(bencher: Bencher<'_, '_>) {
+    let (days, values) = series();
+    bencher.bench_local(|| fit_logistic(black_box(&days), black_box(&values), Offset::Auto));
+}
+
+#[divan::bench]
+fn overlap_of_a_tulip(bencher: Bencher<'_, '_>) {
+    let spec = preset("tulip").expect("a preset");
+    let law = burgeon::bloom::GrowthLaw::logistic("tulip", 5.0, 1.0);
+    let frame = spec.at(2.0, &law, burgeon::Seed::new(1));
+    bencher.bench_local(|| frame.overlap());
+}

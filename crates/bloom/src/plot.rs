@@ -1,0 +1,95 @@
+//! A growth law -> a picture of its fits with their points.
+
+use core::fmt::Write as _;
+
+use crate::{GrowthLaw, RegionLaw};
+
+const WIDTH: f64 = 300.0;
+const HEIGHT: f64 = 190.0;
+const COLUMNS: usize = 4;
+
+/// All laws as panels of an SVG: measured values as dots, the fit as a line, K, p0, r and R2 beside. Values in mm,
+/// days in the series' own count.
+///
+/// ```
+/// let svg = bloom::plot_svg(&bloom::GrowthLaw::logistic("lily", 6.0, 0.9));
+/// assert!(svg.starts_with("<svg") && svg.contains("lily"));
+/// ```
+pub fn plot_svg(law: &GrowthLaw) -> String {
+    let rows = law.laws.len().div_ceil(COLUMNS);
+    let (w, h) = (WIDTH * COLUMNS.min(law.laws.len().max(1)) as f64, HEIGHT * rows as f64 + 34.0);
+    let mut s = String::new();
+    let _ = write!(
+        s,
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {w} {h}\" width=\"{w}\" height=\"{h}\" \
+         font-family=\"sans-serif\" font-size=\"11\">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n\
+         <text x=\"12\" y=\"22\" font-size=\"15\">{}: logistic growth laws (mm by day)</text>\n",
+        escaped(&law.name)
+    );
+    for (i, row) in law.laws.iter().enumerate() {
+        let (x, y) = ((i % COLUMNS) as f64 * WIDTH, (i / COLUMNS) as f64 * HEIGHT + 34.0);
+        panel(&mut s, law, row, x, y);
+    }
+    s.push_str("</svg>\n");
+    s
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+fn panel(s: &mut String, law: &GrowthLaw, row: &RegionLaw, x0: f64, y0: f64) {
+    let (left, right, top, bottom) = (x0 + 46.0, x0 + WIDTH - 12.0, y0 + 40.0, y0 + HEIGHT - 22.0);
+    let curve: Vec<(f64, f64)> = (0..=60)
+        .map(|k| {
+            let day = law.span_days * f64::from(k) / 60.0;
+            (day, row.law.value(day) * 1e3)
+        })
+        .filter(|p| p.1.is_finite())
+        .collect();
+    let dots: Vec<(f64, f64)> = row.days.iter().zip(&row.values).map(|(d, v)| (*d, v * 1e3)).collect();
+    let all = || curve.iter().chain(&dots).map(|p| p.1);
+    let low = all().fold(f64::INFINITY, f64::min);
+    let high = all().fold(f64::NEG_INFINITY, f64::max);
+    let pad = 0.08 * (high - low).max(1e-6);
+    let (low, high) = (low - pad, high + pad);
+    let px = |d: f64| left + (right - left) * d / law.span_days.max(1e-12);
+    let py = |v: f64| bottom - (bottom - top) * (v - low) / (high - low);
+    let region = if row.region == 0 { "whole".to_owned() } else { format!("region {}", row.region) };
+    let _ = write!(
+        s,
+        "<g><text x=\"{left:.0}\" y=\"{:.0}\" font-weight=\"bold\">{} {region} {}</text>\n\
+         <text x=\"{left:.0}\" y=\"{:.0}\" fill=\"#555\">K {:.2} p0 {:.2} r {:.3} R2 {:.3}</text>\n\
+         <path d=\"M{left:.1} {top:.1}V{bottom:.1}H{right:.1}\" fill=\"none\" stroke=\"#888\"/>\n",
+        y0 + 14.0,
+        escaped(&row.organ),
+        row.axis.word(),
+        y0 + 29.0,
+        row.law.k * 1e3,
+        row.law.p0 * 1e3,
+        row.law.r,
+        row.r2
+    );
+    for (v, y) in [(low + pad, bottom - 2.0), (high - pad, top + 8.0)] {
+        let _ = writeln!(s, "<text x=\"{:.0}\" y=\"{y:.0}\" text-anchor=\"end\">{v:.2}</text>", left - 4.0);
+    }
+    for d in [0.0, law.span_days] {
+        let day = law.first_day + d;
+        let _ = writeln!(
+            s,
+            "<text x=\"{:.0}\" y=\"{:.0}\" text-anchor=\"middle\">{day}</text>",
+            px(d),
+            bottom + 14.0
+        );
+    }
+    let line: Vec<String> = curve.iter().map(|&(d, v)| format!("{:.1},{:.1}", px(d), py(v))).collect();
+    let _ = writeln!(
+        s,
+        "<polyline points=\"{}\" fill=\"none\" stroke=\"#2a7d3f\" stroke-width=\"1.6\"/>",
+        line.join(" ")
+    );
+    for (d, v) in dots {
+        let _ = writeln!(s, "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"3\" fill=\"#c2185b\"/>", px(d), py(v));
+    }
+    s.push_str("</g>\n");
+}

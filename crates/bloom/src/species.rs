@@ -1,0 +1,284 @@
+//! Five flowers as data.
+
+use crate::flower::{FlowerSpec, Whorl};
+
+const PLAIN: Whorl = Whorl {
+    count: 6,
+    length: 0.05,
+    width: 0.02,
+    widest: 0.5,
+    claw: 0.3,
+    point: 0.5,
+    insertion: [0.004, 0.0],
+    bud: [20.0, 0.0, -8.0],
+    open: [30.0, 50.0, 80.0],
+    wilted: [60.0, 100.0, 140.0],
+    delay: 0.0,
+    phase: 0.0,
+    lean: 0.002,
+    colors: [[0.8; 3]; 2],
+};
+
+/// A flower by name: rose, lily, tulip, sunflower or clivia.
+///
+/// ```
+/// assert!(bloom::preset("lily").is_some() && bloom::preset("oak").is_none());
+/// ```
+pub fn preset(name: &str) -> Option<FlowerSpec> {
+    let spec = FlowerSpec {
+        name: name.to_owned(),
+        whorls: vec![],
+        stamens: (0, 0.0, 0.0),
+        pistil: 0.0,
+        disc: 0.0,
+        stalk: 0.25,
+        umbel: 1,
+        days: [6.0, 4.0],
+        rate: 0.95,
+        mesh: [14, 10],
+    };
+    match name {
+        "rose" => Some(rose(spec)),
+        "lily" => Some(lily(spec)),
+        "tulip" => Some(tulip(spec)),
+        "sunflower" => Some(sunflower(spec)),
+        "clivia" => Some(clivia(spec)),
+        _ => None,
+    }
+}
+
+fn rose(spec: FlowerSpec) -> FlowerSpec {
+    // Six rings of five, the inner ones shorter, later and less open.
+    let ring = |k: u32| {
+        let t = f64::from(k) / 5.0;
+        let mix = |a: f64, b: f64| a + (b - a) * t;
+        Whorl {
+            count: 5,
+            length: mix(0.042, 0.026),
+            width: mix(0.046, 0.026),
+            widest: 0.66,
+            claw: 0.35,
+            point: 0.1,
+            insertion: [mix(0.0088, 0.0027), mix(0.0, 0.0045)],
+            bud: [mix(22.0, 4.0), mix(3.0, 0.0), mix(-14.0, -4.0)],
+            open: [mix(70.0, 9.0), mix(62.0, 9.0), mix(88.0, 12.0)],
+            wilted: [mix(92.0, 28.0), mix(108.0, 40.0), mix(142.0, 62.0)],
+            delay: mix(0.0, 0.3),
+            phase: 36.0 * f64::from(k) + 11.0,
+            lean: mix(0.0004, 0.0005),
+            colors: [[0.72, 0.30, 0.20], [0.62, 0.03, 0.07]],
+        }
+    };
+    let sepals = Whorl {
+        count: 5,
+        length: 0.026,
+        width: 0.010,
+        widest: 0.3,
+        claw: 0.7,
+        point: 1.0,
+        insertion: [0.0108, -0.0012],
+        bud: [26.0, 8.0, 0.0],
+        open: [95.0, 105.0, 125.0],
+        wilted: [100.0, 125.0, 155.0],
+        lean: 0.0003,
+        phase: 3.0,
+        colors: [[0.12, 0.28, 0.05], [0.14, 0.34, 0.07]],
+        ..PLAIN
+    };
+    let whorls = core::iter::once(sepals).chain((0..6).map(ring)).collect();
+    FlowerSpec { whorls, stamens: (14, 0.008, 18.0), pistil: 0.005, stalk: 0.07, ..spec }
+}
+
+fn lily(spec: FlowerSpec) -> FlowerSpec {
+    let outer = Whorl {
+        count: 3,
+        length: 0.105,
+        width: 0.026,
+        widest: 0.55,
+        claw: 0.35,
+        point: 0.9,
+        insertion: [0.0065, 0.0],
+        bud: [9.0, 2.5, -5.5],
+        open: [20.0, 46.0, 128.0],
+        wilted: [34.0, 92.0, 158.0],
+        lean: 0.0007,
+        colors: [[0.55, 0.70, 0.30], [0.92, 0.80, 0.84]],
+        ..PLAIN
+    };
+    let inner = Whorl {
+        width: 0.036,
+        insertion: [0.0045, 0.0012],
+        bud: [7.0, 1.5, -5.0],
+        open: [17.0, 42.0, 120.0],
+        wilted: [28.0, 82.0, 150.0],
+        phase: 60.0,
+        delay: 0.06,
+        length: 0.102,
+        ..outer
+    };
+    FlowerSpec {
+        whorls: vec![outer, inner],
+        stamens: (6, 0.075, 17.0),
+        pistil: 0.085,
+        stalk: 0.1,
+        rate: 1.0,
+        ..spec
+    }
+}
+
+fn tulip(spec: FlowerSpec) -> FlowerSpec {
+    let outer = Whorl {
+        count: 3,
+        length: 0.062,
+        width: 0.046,
+        widest: 0.52,
+        claw: 0.5,
+        point: 0.6,
+        insertion: [0.0085, 0.0],
+        bud: [36.0, -2.0, -22.0],
+        open: [66.0, 4.0, 14.0],
+        wilted: [94.0, 78.0, 92.0],
+        lean: 0.0009,
+        colors: [[0.80, 0.55, 0.04], [0.70, 0.05, 0.03]],
+        ..PLAIN
+    };
+    let inner = Whorl {
+        insertion: [0.006, 0.0014],
+        bud: [34.0, -3.0, -22.0],
+        open: [62.0, 2.0, 10.0],
+        wilted: [84.0, 62.0, 74.0],
+        phase: 60.0,
+        length: 0.060,
+        ..outer
+    };
+    FlowerSpec {
+        whorls: vec![outer, inner],
+        stamens: (6, 0.022, 14.0),
+        pistil: 0.026,
+        stalk: 0.09,
+        days: [5.0, 4.0],
+        ..spec
+    }
+}
+
+fn sunflower(spec: FlowerSpec) -> FlowerSpec {
+    // Petals stand beside one another, not over one another: four rings of 13 around the disc.
+    let ring = |k: u32| {
+        let t = f64::from(k) / 3.0;
+        Whorl {
+            count: 13,
+            length: 0.075 - 0.01 * t,
+            width: 0.022,
+            widest: 0.45,
+            claw: 0.35,
+            point: 0.95,
+            insertion: [0.046 - 0.006 * t, 0.006 * t],
+            bud: [24.0 - 10.0 * t, -12.0 - 4.0 * t, -28.0 - 4.0 * t],
+            open: [82.0 - 14.0 * t, 84.0 - 14.0 * t, 92.0 - 14.0 * t],
+            wilted: [96.0 - 12.0 * t, 128.0 - 14.0 * t, 160.0 - 14.0 * t],
+            delay: 0.05 * t,
+            phase: 27.7 / 4.0 * f64::from(k * 2 % 5) + 3.0 * t,
+            lean: 0.0006,
+            colors: [[0.80, 0.36, 0.01], [0.88, 0.56, 0.01]],
+        }
+    };
+    let bracts = Whorl {
+        count: 13,
+        length: 0.05,
+        width: 0.022,
+        widest: 0.3,
+        claw: 0.9,
+        point: 1.0,
+        insertion: [0.05, -0.008],
+        bud: [34.0, 8.0, -4.0],
+        open: [96.0, 104.0, 118.0],
+        wilted: [104.0, 138.0, 166.0],
+        lean: 0.0006,
+        phase: 9.0,
+        colors: [[0.10, 0.26, 0.04], [0.13, 0.33, 0.06]],
+        ..PLAIN
+    };
+    let whorls = core::iter::once(bracts).chain((0..4).map(ring)).collect();
+    FlowerSpec { whorls, disc: 0.04, stalk: 0.14, days: [8.0, 6.0], rate: 0.75, mesh: [12, 6], ..spec }
+}
+
+fn clivia(spec: FlowerSpec) -> FlowerSpec {
+    let outer = Whorl {
+        count: 3,
+        length: 0.062,
+        width: 0.015,
+        widest: 0.62,
+        claw: 0.4,
+        point: 0.6,
+        insertion: [0.0035, 0.0],
+        bud: [9.0, 2.0, -5.0],
+        open: [16.0, 26.0, 52.0],
+        wilted: [10.0, 6.0, -2.0],
+        lean: 0.0004,
+        colors: [[0.85, 0.50, 0.06], [0.82, 0.17, 0.02]],
+        ..PLAIN
+    };
+    let inner = Whorl {
+        width: 0.021,
+        insertion: [0.0024, 0.0008],
+        bud: [7.0, 1.0, -4.0],
+        open: [13.0, 22.0, 45.0],
+        wilted: [7.5, 4.0, -2.0],
+        phase: 60.0,
+        length: 0.060,
+        ..outer
+    };
+    FlowerSpec {
+        whorls: vec![outer, inner],
+        stamens: (6, 0.045, 11.0),
+        pistil: 0.052,
+        stalk: 0.14,
+        umbel: 12,
+        days: [7.0, 5.0],
+        rate: 0.85,
+        mesh: [12, 6],
+        ..spec
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::GrowthLaw;
+    use base::Seed;
+
+    #[test]
+    fn petals_never_cross_from_bud_to_wilted() {
+        for name in FlowerSpec::PRESETS {
+            let spec = preset(name).unwrap();
+            let law = GrowthLaw::logistic(name, spec.days[0], spec.rate);
+            let mut worst = 0.0_f64;
+            let first = spec.at(0.0, &law, Seed::new(1));
+            for k in 0..=12 {
+                let day = (spec.days[0] + spec.days[1]) * f64::from(k) / 12.0;
+                let frame = spec.at(day, &law, Seed::new(1));
+                assert_eq!(frame.model.validate().count(), 0, "{name} at {day}");
+                assert_eq!(frame.model.triangle_count(), first.model.triangle_count(), "{name}");
+                let share = frame.overlap();
+                println!(
+                    "{name} day {day:.1}: {:.3} % of {} triangles cross",
+                    share * 100.0,
+                    frame.model.triangle_count()
+                );
+                worst = worst.max(share);
+            }
+            assert!(worst < 0.001, "{name}: {worst}");
+        }
+    }
+
+    #[test]
+    fn a_bud_is_slim_and_a_bloom_is_wide_and_stamens_grow() {
+        for name in FlowerSpec::PRESETS {
+            let spec = preset(name).unwrap();
+            let law = GrowthLaw::logistic(name, spec.days[0], spec.rate);
+            let width = |day: f64| spec.at(day, &law, Seed::new(1)).model.bounds().size();
+            let (bud, bloom) = (width(0.0), width(spec.days[0]));
+            assert!(bloom.x > 1.15 * bud.x, "{name}: {bud} {bloom}");
+        }
+    }
+}
