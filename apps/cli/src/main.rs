@@ -12,6 +12,7 @@ mod picture;
 mod report;
 mod say;
 mod sketch;
+mod studio;
 
 use std::process::ExitCode;
 
@@ -38,6 +39,7 @@ fn main() -> ExitCode {
         Command::Render(args) => picture::render(&args),
         Command::Convert(args) => convert::convert(&args),
         Command::Info(args) => info::info(&args),
+        Command::Studio(args) => studio::studio(&args),
     });
     match outcome {
         Ok(Ok(())) => ExitCode::SUCCESS,
