@@ -5,6 +5,7 @@ mod gallery;
 mod layers;
 mod made_strokes;
 mod shell;
+mod studio;
 mod toolchain;
 mod train_strokes;
 mod web;
@@ -16,13 +17,17 @@ use shell::{Outcome, cargo, repository, say};
 const HELP: &str = "\
 cargo xtask COMMAND
 
-  run            sets up what is missing, turns the sample sketch into out/sample.glb and a picture
-  test           sets up what the tests need and runs them all: native, WASM in Node, Khronos validator
+  run            sets up what is missing, turns the sample sketch into out/sample.glb and a picture, then builds the
+                 Studio and opens it with the sample (not with --no-open, in CI, or where there is no screen)
+  studio [FILE]  builds the Studio and opens it; options of `burgeon studio` may follow
+  build-web      builds the Studio as a folder of static files, apps/studio-web/dist
+  test           sets up what the tests need and runs them all: native, WASM in Node, Khronos validator, Studio
   gallery        makes every fixture drawing and writes docs/gallery.md and docs/table1.md
   layers         checks that each crate uses only what ARCHITECTURE.md allows
   clippy-wasm    lints the core for wasm32
   train-strokes  trains the stroke classifier from its table (see docs/strokes.md)
-  test-web       the WASM and validator part of `test` alone
+  test-web       the WASM, validator and Studio part of `test` alone
+  test-studio    the Studio part of `test` alone
   setup          installs the wasm32 target and the WASM tools only
 ";
 
@@ -30,13 +35,18 @@ fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let rest = args.get(1..).unwrap_or_default();
     let outcome = match args.first().map(String::as_str) {
-        Some("run") => run(),
+        Some("run") => run(rest),
         Some("test") => test(),
         Some("gallery") => gallery::run(),
         Some("layers") => layers::check(),
         Some("clippy-wasm") => toolchain::clippy_wasm(),
         Some("train-strokes") => train_strokes::run(rest),
-        Some("test-web") => web::setup().and_then(|tools| web::test(&tools)),
+        Some("studio") => web::setup().and_then(|tools| studio::open(&tools, rest)),
+        Some("build-web") => web::setup().and_then(|tools| studio::build(&tools, true)),
+        Some("test-web") => {
+            web::setup().and_then(|tools| web::test(&tools).and_then(|()| studio::test(&tools)))
+        }
+        Some("test-studio") => web::setup().and_then(|tools| studio::test(&tools)),
         Some("setup") => web::setup().map(|_| ()),
         Some("help" | "-h" | "--help") | None => {
             say(HELP);
@@ -54,7 +64,7 @@ fn main() -> ExitCode {
 }
 
 /// The main job on the sample sketch, as a newcomer would do it.
-fn run() -> Outcome {
+fn run(args: &[String]) -> Outcome {
     let root = repository();
     cargo(&["build", "--release", "--package", "burgeon-cli"])?;
     std::fs::create_dir_all(root.join("out")).map_err(|e| format!("cannot make the folder out: {e}"))?;
@@ -80,7 +90,15 @@ Made from fixtures/sketches/sample.svg:
   out/sample.png   a picture of it
   out/sample.json  what each stroke was understood as, counts, times, fidelity
 Next: draw your own (docs/drawings.md) and give it to the same command.");
-    Ok(())
+    if args.iter().any(|a| a == "--no-open") || studio::headless() {
+        say(
+            "The Studio is not opened here (--no-open, CI or no screen). `cargo xtask studio` builds and serves it.",
+        );
+        return Ok(());
+    }
+    say("\nNow the Studio: draw on the left, see it grow on the right.");
+    let sample = root.join("fixtures/sketches/sample.svg").to_string_lossy().into_owned();
+    studio::open(&web::setup()?, &[sample])
 }
 
 /// Everything that must be green.
@@ -88,5 +106,5 @@ fn test() -> Outcome {
     let tools = web::setup()?;
     cargo(&["test", "--workspace", "--no-fail-fast"])?;
     web::test(&tools)?;
-    Ok(())
+    studio::test(&tools)
 }

@@ -67,7 +67,8 @@ pub(crate) fn test(tools: &Tools) -> Outcome {
     let out = target_dir().join("xtask-test");
     let _ = std::fs::remove_dir_all(&out);
     std::fs::create_dir_all(&out).map_err(|e| format!("{}: {e}", shown(&out)))?;
-    build_wasm(tools, &out.join("wasm"))?;
+    let wasm = build_wasm(tools, false)?;
+    bindgen(tools, &wasm, "nodejs", &out.join("wasm"))?;
     let drawings = fixture_drawings()?;
     let native = native_models(&drawings, &out.join("native"))?;
     say(&format!("$ node digests.mjs ({} drawings)", drawings.len()));
@@ -80,9 +81,12 @@ pub(crate) fn test(tools: &Tools) -> Outcome {
     finish(c)
 }
 
-/// Builds the package for Node into `to`.
-fn build_wasm(tools: &Tools, to: &Path) -> Outcome {
-    let args = ["build", "--package", "burgeon-wasm", "--target", TARGET];
+/// Builds the core for the browser and returns the file.
+pub(crate) fn build_wasm(tools: &Tools, release: bool) -> Outcome<PathBuf> {
+    let mut args = vec!["build", "--package", "burgeon-wasm", "--target", TARGET];
+    if release {
+        args.push("--release");
+    }
     say(&format!("$ cargo {}", args.join(" ")));
     let c = tools.cargo.command(&args);
     finish(c)?;
@@ -90,9 +94,17 @@ fn build_wasm(tools: &Tools, to: &Path) -> Outcome {
         WasmCargo::Own => target_dir(),
         WasmCargo::Debian => target_dir().join("debian"),
     };
-    let wasm = built.join(TARGET).join("debug/burgeon_wasm.wasm");
+    let profile = if release { "release" } else { "debug" };
+    Ok(built.join(TARGET).join(profile).join("burgeon_wasm.wasm"))
+}
+
+/// Makes the JavaScript package of a built core: `target` is `nodejs` or `web`.
+pub(crate) fn bindgen(tools: &Tools, wasm: &Path, target: &str, to: &Path) -> Outcome {
     let (wasm, to) = (wasm.to_string_lossy().into_owned(), to.to_string_lossy().into_owned());
-    command(&tools.wasm_bindgen, &["--target", "nodejs", "--out-dir", &to, &wasm])
+    // Names of functions double the download and serve only debuggers.
+    let slim = ["--remove-name-section", "--remove-producers-section"];
+    let args = [&["--target", target, "--out-dir", &to][..], &slim, &[&wasm]].concat();
+    command(&tools.wasm_bindgen, &args)
 }
 
 /// Every drawing among the fixtures, in order of name.

@@ -56,6 +56,11 @@ pub(crate) enum Command {
     /// Grow organs through scans of several days; flowers that open
     #[command(subcommand)]
     Bloom(crate::bloom::BloomCommand),
+    /// Open the Studio: draw on the left, see the plant grow on the right
+    ///
+    /// Serves the built Studio on 127.0.0.1, to this machine's own browser only, and opens it. Nothing is sent
+    /// anywhere: plants are made in the browser.
+    Studio(StudioArgs),
 }
 
 /// Options of every command.
@@ -453,6 +458,26 @@ pub(crate) struct InfoArgs {
     pub(crate) axes: AxesArgs,
     #[command(flatten)]
     pub(crate) common: CommonArgs,
+}
+
+#[derive(Args, Debug)]
+#[command(after_long_help = "Examples:
+  burgeon studio
+  burgeon studio daisy.svg
+  burgeon studio --no-open --port 8080")]
+pub(crate) struct StudioArgs {
+    /// A drawing, project or model to open.
+    #[arg(value_name = "FILE")]
+    pub(crate) file: Option<PathBuf>,
+    /// Port of 127.0.0.1, 1 to 65535, or 0 for any free one [default: 7734, or the next free one].
+    #[arg(long, value_name = "N")]
+    pub(crate) port: Option<u16>,
+    /// Open no browser.
+    #[arg(long)]
+    pub(crate) no_open: bool,
+    /// The folder of the built Studio [default: found beside the program].
+    #[arg(long, value_name = "DIR")]
+    pub(crate) folder: Option<PathBuf>,
 }
 
 pub(crate) fn size(text: &str) -> Result<(u32, u32), String> {

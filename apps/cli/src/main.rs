@@ -15,6 +15,7 @@ mod report;
 mod say;
 mod sketch;
 mod stages;
+mod studio;
 
 use std::process::ExitCode;
 
@@ -43,6 +44,7 @@ fn main() -> ExitCode {
         Command::Convert(args) => convert::convert(&args),
         Command::Info(args) => info::info(&args),
         Command::Bloom(command) => bloom::bloom(&command),
+        Command::Studio(args) => studio::studio(&args),
     });
     match outcome {
         Ok(Ok(())) => ExitCode::SUCCESS,

@@ -89,8 +89,6 @@ impl Session {
         } else {
             self.editor.run(Command::Open(Box::new(document))).map_err(words)?;
         }
-        // Numbers of strokes start again in another document.
-        self.given.clear();
         self.draft = None;
         self.guest = None;
         Ok(())
@@ -124,8 +122,9 @@ impl Session {
 
     pub(crate) fn run(&mut self, command: &str) -> Told {
         let command = parse(command)?;
+        self.editor.run(command).map_err(words)?;
         self.guest = None;
-        self.editor.run(command).map_err(words)
+        Ok(())
     }
 
     pub(crate) fn begin(&mut self, name: &str) -> Told {

@@ -28,7 +28,7 @@ export interface Skin { detail: number; sides: number; textures: boolean; petals
 export type Command =
   | { do: "remove"; ids: number[] } | { do: "move"; ids: number[]; x: number; y: number }
   | { do: "class"; ids: number[]; class: StrokeClass | null } | { do: "mode"; ids: number[]; mode: StrokeMode }
-  | { do: "color"; ids: number[]; color: [number, number, number] | null } | { do: "clear" }
+  | { do: "color"; ids: number[]; color: [number, number, number] | null } | { do: "clear" } | { do: "new" }
   | { do: "rename"; name: string } | { do: "seed"; seed: string } | { do: "sketch"; spec: SketchSpec }
   | { do: "skin"; skin: Skin };
 export interface StrokeState { id: number; mode: StrokeMode; class: StrokeClass | null; color: [number, number, number] | null }
@@ -60,16 +60,41 @@ export interface View {
 #[derive(Debug, Deserialize)]
 #[serde(tag = "do", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum WireCommand {
-    Remove { ids: Vec<u32> },
-    Move { ids: Vec<u32>, x: f64, y: f64 },
-    Class { ids: Vec<u32>, class: Option<StrokeClass> },
-    Mode { ids: Vec<u32>, mode: StrokeMode },
-    Color { ids: Vec<u32>, color: Option<[u8; 3]> },
+    Remove {
+        ids: Vec<u32>,
+    },
+    Move {
+        ids: Vec<u32>,
+        x: f64,
+        y: f64,
+    },
+    Class {
+        ids: Vec<u32>,
+        class: Option<StrokeClass>,
+    },
+    Mode {
+        ids: Vec<u32>,
+        mode: StrokeMode,
+    },
+    Color {
+        ids: Vec<u32>,
+        color: Option<[u8; 3]>,
+    },
+    /// An empty document in the place of this one.
+    New,
     Clear,
-    Rename { name: String },
-    Seed { seed: String },
-    Sketch { spec: Box<SketchSpec> },
-    Skin { skin: Skin },
+    Rename {
+        name: String,
+    },
+    Seed {
+        seed: String,
+    },
+    Sketch {
+        spec: Box<SketchSpec>,
+    },
+    Skin {
+        skin: Skin,
+    },
 }
 
 impl WireCommand {
@@ -81,6 +106,7 @@ impl WireCommand {
             Self::Class { ids: i, class } => Command::SetClass(ids(i), class),
             Self::Mode { ids: i, mode } => Command::SetMode(ids(i), mode),
             Self::Color { ids: i, color } => Command::SetColor(ids(i), color),
+            Self::New => Command::Open(Box::default()),
             Self::Clear => Command::Clear,
             Self::Rename { name } => Command::Rename(name),
             Self::Seed { seed } => {

@@ -1,0 +1,312 @@
+//! What is answered to a request: a pure function of its head, so that it can be tested and fuzzed without a network.
+
+use std::path::{Path, PathBuf};
+
+use crate::failure::{Failure, Outcome};
+
+/// Nothing but the page's own files; WebAssembly may be compiled, data of the page may be shown as pictures.
+pub(crate) const POLICY: &str = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; \
+    style-src 'self'; img-src 'self' blob: data:; connect-src 'self'; manifest-src 'self'; base-uri 'none'; \
+    form-action 'none'; frame-ancestors 'none'";
+
+/// Headers of every answer, the refusals included.
+const ALWAYS: &str = "X-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\n\
+    Cross-Origin-Opener-Policy: same-origin\r\nCross-Origin-Embedder-Policy: require-corp\r\n\
+    Cross-Origin-Resource-Policy: same-origin\r\nPermissions-Policy: camera=(), microphone=(), geolocation=()\r\n\
+    Connection: close\r\n";
+
+const TYPES: [(&str, &str); 8] = [
+    ("html", "text/html; charset=utf-8"),
+    ("js", "text/javascript; charset=utf-8"),
+    ("css", "text/css; charset=utf-8"),
+    ("wasm", "application/wasm"),
+    ("svg", "image/svg+xml"),
+    ("png", "image/png"),
+    ("json", "application/json"),
+    ("webmanifest", "application/manifest+json"),
+];
+
+/// A folder that is served on one port of this machine.
+#[derive(Debug)]
+pub(crate) struct Site {
+    root: PathBuf,
+    hosts: [String; 2],
+    opened: Option<PathBuf>,
+}
+
+/// Status line, headers with the empty line, and the body's file (none for HEAD).
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) struct Answer {
+    pub(crate) status: u16,
+    pub(crate) head: String,
+    pub(crate) body: Vec<u8>,
+}
+
+impl Site {
+    pub(crate) fn new(folder: &Path, port: u16, opened: Option<PathBuf>) -> Outcome<Self> {
+        let root = folder.canonicalize().map_err(|e| Failure::io(folder, "read", &e))?;
+        Ok(Self { root, hosts: ["127.0.0.1", "localhost"].map(|h| format!("{h}:{port}")), opened })
+    }
+
+    /// The answer to a request whose head (up to and without the empty line) is `head`.
+    pub(crate) fn answer(&self, head: &[u8]) -> Answer {
+        match self.checked(head) {
+            Ok((path, body)) => self.file(&path, body),
+            Err((status, why)) => refusal(status, why),
+        }
+    }
+
+    // The path of a request that may be answered, and whether its body is wanted.
+    fn checked(&self, head: &[u8]) -> Result<(PathBuf, bool), (u16, &'static str)> {
+        let text = str::from_utf8(head).ok().filter(|t| !t.contains('\0'));
+        let mut lines = text.ok_or((400, "the request is no text"))?.split("\r\n");
+        let mut words = lines.next().unwrap_or_default().split(' ');
+        let (Some(method), Some(target), Some(version), None) =
+            (words.next(), words.next(), words.next(), words.next())
+        else {
+            return Err((400, "the request line is broken"));
+        };
+        if !matches!(version, "HTTP/1.0" | "HTTP/1.1") {
+            return Err((505, "only HTTP/1.1 is spoken here"));
+        }
+        let (mut host, mut origin, mut site, mut mode) = (None, None, None, None);
+        for line in lines {
+            let (name, value) = line.split_once(':').ok_or((400, "a header is broken"))?;
+            let value = value.trim();
+            let slot = match name.to_ascii_lowercase().as_str() {
+                "host" => &mut host,
+                "origin" => &mut origin,
+                "sec-fetch-site" => &mut site,
+                "sec-fetch-mode" => &mut mode,
+                "content-length" if value != "0" => return Err((413, "nothing is taken in here")),
+                "transfer-encoding" | "upgrade" => return Err((413, "nothing is taken in here")),
+                _ => continue,
+            };
+            if slot.replace(value).is_some() {
+                return Err((400, "a header is given twice"));
+            }
+        }
+        // Another name for this address would let a foreign page speak to us (DNS rebinding).
+        let ours = |h: &str| self.hosts.iter().any(|own| own == h);
+        if !host.is_some_and(ours) {
+            return Err((421, "this is the Studio of another address"));
+        }
+        let own_origin = |o: &str| o.strip_prefix("http://").is_some_and(ours);
+        let foreign =
+            site.is_some_and(|s| matches!(s, "cross-site" | "same-site")) && mode != Some("navigate");
+        if foreign || origin.is_some_and(|o| !own_origin(o)) {
+            return Err((403, "another page may not ask here"));
+        }
+        if !matches!(method, "GET" | "HEAD") {
+            return Err((405, "files are only read here"));
+        }
+        let path = self.path(target).ok_or((404, "there is no such file"))?;
+        Ok((path, method == "GET"))
+    }
+
+    /// The file that a target names; nothing outside the folder, whatever links lie in it.
+    fn path(&self, target: &str) -> Option<PathBuf> {
+        let path = target.split(['?', '#']).next()?.strip_prefix('/')?;
+        let path = unescaped(path)?;
+        if let Some(name) = path.strip_prefix("opened/") {
+            let opened = self.opened.as_ref()?;
+            return (opened.file_name()?.to_str()? == name).then(|| opened.clone());
+        }
+        let path = if path.is_empty() { "index.html" } else { &path };
+        let plain = |part: &str| {
+            !part.is_empty()
+                && !part.starts_with('.')
+                && part.bytes().all(|b| b.is_ascii_alphanumeric() || matches!(b, b'.' | b'-' | b'_'))
+        };
+        if !path.split('/').all(plain) {
+            return None;
+        }
+        let file = self.root.join(path).canonicalize().ok()?;
+        let known = file.extension().and_then(|e| e.to_str()).is_some_and(|e| TYPES.iter().any(|t| t.0 == e));
+        (known && file.starts_with(&self.root) && file.is_file()).then_some(file)
+    }
+
+    fn file(&self, path: &Path, wanted: bool) -> Answer {
+        let Ok(bytes) = std::fs::read(path) else { return refusal(404, "there is no such file") };
+        let inside = path.strip_prefix(&self.root).ok();
+        let extension = path.extension().and_then(|e| e.to_str()).filter(|_| inside.is_some());
+        let kind = TYPES.iter().find(|t| Some(t.0) == extension).map_or("application/octet-stream", |t| t.1);
+        // Built files bear their content in their name.
+        let forever = inside.is_some_and(|p| p.starts_with("assets"));
+        let cache = if forever { "public, max-age=31536000, immutable" } else { "no-cache" };
+        let head = format!(
+            "HTTP/1.1 200 OK\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nCache-Control: {cache}\r\n\
+             Content-Security-Policy: {POLICY}\r\n{ALWAYS}\r\n",
+            bytes.len()
+        );
+        Answer { status: 200, head, body: if wanted { bytes } else { Vec::new() } }
+    }
+}
+
+/// An answer that gives nothing but a reason.
+pub(crate) fn refusal(status: u16, why: &str) -> Answer {
+    let body = format!("{why}\n").into_bytes();
+    let allow = if status == 405 { "Allow: GET, HEAD\r\n" } else { "" };
+    let head = format!(
+        "HTTP/1.1 {status} Refused\r\nContent-Type: text/plain; charset=utf-8\r\nContent-Length: {}\r\n{allow}\
+         Cache-Control: no-store\r\nContent-Security-Policy: default-src 'none'\r\n{ALWAYS}\r\n",
+        body.len()
+    );
+    Answer { status, head, body }
+}
+
+/// Percent escapes to text; `None` for broken ones, for what is no UTF-8 and for control characters.
+fn unescaped(text: &str) -> Option<String> {
+    let mut bytes = Vec::with_capacity(text.len());
+    let mut rest = text.as_bytes();
+    while let Some((&first, after)) = rest.split_first() {
+        if first == b'%' {
+            let digit = |b: &u8| char::from(*b).to_digit(16).and_then(|d| u8::try_from(d).ok());
+            bytes.push(digit(after.first()?)? * 16 + digit(after.get(1)?)?);
+            rest = after.get(2..)?;
+        } else {
+            bytes.push(first);
+            rest = after;
+        }
+    }
+    String::from_utf8(bytes).ok().filter(|t| !t.chars().any(char::is_control))
+}
+
+/// Text as part of an address.
+pub(crate) fn escaped(text: &str) -> String {
+    use std::fmt::Write as _;
+    text.bytes().fold(String::new(), |mut out, b| {
+        if b.is_ascii_alphanumeric() || matches!(b, b'-' | b'_' | b'.' | b'~') {
+            out.push(char::from(b));
+        } else {
+            let _ = write!(out, "%{b:02X}");
+        }
+        out
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::fs;
+
+    /// A site in a folder of its own, with a secret beside it and a link to the secret inside.
+    fn site(test: &str) -> (Site, PathBuf) {
+        let base = std::env::temp_dir().join(format!("burgeon-site-{test}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&base);
+        let root = base.join("dist");
+        fs::create_dir_all(root.join("assets")).unwrap();
+        fs::write(root.join("index.html"), "<!doctype html>page").unwrap();
+        fs::write(root.join("assets/a-1.js"), "code").unwrap();
+        fs::write(root.join(".hidden.js"), "hidden").unwrap();
+        fs::write(root.join("notes.txt"), "no type").unwrap();
+        fs::write(base.join("secret.js"), "secret").unwrap();
+        fs::write(base.join("my rose.svg"), "<svg/>").unwrap();
+        #[cfg(unix)]
+        std::os::unix::fs::symlink(base.join("secret.js"), root.join("link.js")).unwrap();
+        (Site::new(&root, 7734, Some(base.join("my rose.svg"))).unwrap(), base)
+    }
+
+    fn get(site: &Site, line: &str, headers: &str) -> Answer {
+        site.answer(format!("{line}\r\nHost: 127.0.0.1:7734{headers}").as_bytes())
+    }
+
+    #[test]
+    fn files_of_the_folder_are_served_with_strict_headers() {
+        let (site, base) = site("serves");
+        let page = get(&site, "GET / HTTP/1.1", "\r\nAccept: */*");
+        assert_eq!((page.status, page.body.as_slice()), (200, &b"<!doctype html>page"[..]));
+        for header in ["default-src 'none'", "nosniff", "frame-ancestors 'none'", "require-corp", "text/html"]
+        {
+            assert!(page.head.contains(header), "{header}: {}", page.head);
+        }
+        assert!(!page.head.contains("unsafe-inline") && !page.head.contains("'unsafe-eval'"));
+        let script = get(&site, "GET /assets/a-1.js?x=1 HTTP/1.1", "\r\nOrigin: http://127.0.0.1:7734");
+        assert!(
+            script.status == 200
+                && script.head.contains("immutable")
+                && script.head.contains("text/javascript")
+        );
+        let head = get(&site, "HEAD / HTTP/1.1", "");
+        assert!(head.status == 200 && head.body.is_empty() && head.head.contains("Content-Length: 19"));
+        let opened = get(&site, "GET /opened/my%20rose.svg HTTP/1.1", "");
+        assert!(opened.status == 200 && opened.head.contains("application/octet-stream"), "{}", opened.head);
+        fs::remove_dir_all(base).unwrap();
+    }
+
+    #[test]
+    fn everything_else_is_refused() {
+        let (site, base) = site("refuses");
+        for (line, headers, status) in [
+            ("GET /../secret.js HTTP/1.1", "", 404),
+            ("GET /%2e%2e/secret.js HTTP/1.1", "", 404),
+            ("GET /..%2fsecret.js HTTP/1.1", "", 404),
+            ("GET /assets/..\\..\\secret.js HTTP/1.1", "", 404),
+            ("GET //secret.js HTTP/1.1", "", 404),
+            ("GET /link.js HTTP/1.1", "", 404),
+            ("GET /.hidden.js HTTP/1.1", "", 404),
+            ("GET /notes.txt HTTP/1.1", "", 404),
+            ("GET /assets HTTP/1.1", "", 404),
+            ("GET /opened/secret.js HTTP/1.1", "", 404),
+            ("GET /opened/../secret.js HTTP/1.1", "", 404),
+            ("GET /a%00.js HTTP/1.1", "", 404),
+            ("GET /%zz HTTP/1.1", "", 404),
+            ("GET http://127.0.0.1:7734/ HTTP/1.1", "", 404),
+            ("POST / HTTP/1.1", "", 405),
+            ("PUT /index.html HTTP/1.1", "\r\nContent-Length: 5", 413),
+            ("POST / HTTP/1.1", "\r\nTransfer-Encoding: chunked", 413),
+            ("OPTIONS * HTTP/1.1", "", 405),
+            ("GET / HTTP/1.1", "\r\nOrigin: http://evil.example", 403),
+            ("GET / HTTP/1.1", "\r\nOrigin: null", 403),
+            ("GET /assets/a-1.js HTTP/1.1", "\r\nSec-Fetch-Site: cross-site\r\nSec-Fetch-Mode: no-cors", 403),
+            ("GET / HTTP/1.1", "\r\nHost: 127.0.0.1:7734", 400),
+            ("GET / HTTP/2.0", "", 505),
+            ("GET /", "", 400),
+            ("GET / HTTP/1.1 x", "", 400),
+            ("GET / HTTP/1.1", "\r\nbroken", 400),
+        ] {
+            let answer = get(&site, line, headers);
+            assert_eq!(answer.status, status, "{line}{headers}");
+            assert!(!answer.body.windows(6).any(|w| w == b"secret"), "{line}");
+            assert!(answer.head.contains("nosniff") && answer.head.ends_with("\r\n\r\n"));
+        }
+        for host in
+            ["evil.example", "127.0.0.1", "127.0.0.1:80", "127.0.0.1:7734.evil.example", "[::1]:7734", ""]
+        {
+            let answer = site.answer(format!("GET / HTTP/1.1\r\nHost: {host}").as_bytes());
+            assert_eq!(answer.status, 421, "{host}");
+        }
+        assert_eq!(site.answer(b"GET / HTTP/1.1").status, 421);
+        assert_eq!(site.answer(b"\xff\xfe").status, 400);
+        // A link from elsewhere may bring a person here.
+        let link = get(&site, "GET / HTTP/1.1", "\r\nSec-Fetch-Site: cross-site\r\nSec-Fetch-Mode: navigate");
+        assert_eq!(link.status, 200);
+        fs::remove_dir_all(base).unwrap();
+    }
+
+    #[test]
+    fn names_survive_the_address() {
+        for name in ["my rose.svg", "玫瑰.burgeon", "100%.json", "a+b&c=d#e?f.svg"] {
+            assert_eq!(unescaped(&escaped(name)).as_deref(), Some(name));
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn no_request_gets_out_of_the_folder_or_panics(
+            target in "(/|\\.\\.|\\.|%2e|%2f|%5c|\\\\|secret|\\.js|assets|link|opened|[a-z%?#])*",
+            junk in proptest::collection::vec(any::<u8>(), 0..60),
+        ) {
+            let (site, base) = site("fuzz");
+            let mut head = format!("GET {target} HTTP/1.1\r\nHost: 127.0.0.1:7734").into_bytes();
+            let answer = site.answer(&head);
+            prop_assert!(!answer.body.windows(6).any(|w| w == b"secret"));
+            head.extend(&junk);
+            let answer = site.answer(&head);
+            prop_assert!(!answer.body.windows(6).any(|w| w == b"secret"));
+            site.answer(&junk);
+            let _ = fs::remove_dir_all(base);
+        }
+    }
+}

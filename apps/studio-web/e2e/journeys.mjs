@@ -1,0 +1,276 @@
+// What people do with the Studio, step by step.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+
+const data = (page, key) => page.evaluate((k) => document.body.dataset[k] ?? '', key);
+const count = async (page, key) => Number(await data(page, key));
+const TESTS = { is: (n, m) => n === m, above: (n, m) => n > m };
+// The page's policy allows no text to become code, so the tests are named.
+async function until(page, key, [test, value], what) {
+  const began = Date.now();
+  while (Date.now() - began < 45_000) {
+    if (TESTS[test](await count(page, key), value)) return;
+    await page.waitForTimeout(40);
+  }
+  throw new Error(`${what}: ${key} is ${await data(page, key)}, not ${test} ${value}`);
+}
+
+async function begin(page, url) {
+  await page.goto(url);
+  await page.waitForFunction(() => document.body.dataset.ready === 'true');
+}
+
+/** Moves the mouse along points of the sheet (pixels from its upper left corner) with the button down. */
+async function draw(page, points) {
+  const box = await page.locator('.sheet').boundingBox();
+  const [first, ...rest] = points;
+  await page.mouse.move(box.x + first[0], box.y + first[1]);
+  await page.mouse.down();
+  for (const [x, y] of rest) await page.mouse.move(box.x + x, box.y + y);
+  await page.mouse.up();
+}
+
+const line = (x0, y0, x1, y1, bow = 0, n = 7) => Array.from({ length: n + 1 }, (_, i) => {
+  const t = i / n;
+  return [x0 + (x1 - x0) * t + bow * 4 * t * (1 - t), y0 + (y1 - y0) * t];
+});
+
+/** A petal or leaf as a nearly closed outline from its root. */
+function blade(x, y, angle, length, half) {
+  const [c, s] = [Math.cos(angle), Math.sin(angle)];
+  return Array.from({ length: 13 }, (_, i) => {
+    const a = (i / 12) * Math.PI * 2;
+    const [along, across] = [length * (1 - Math.cos(a)) / 2, half * Math.sin(a)];
+    return [x + along * c - across * s, y + along * s + across * c];
+  });
+}
+
+async function drawFlower(page) {
+  const strokes = [line(250, 540, 250, 245, 8), ...[0, 1, 2, 3, 4].map((k) => blade(250, 210, -Math.PI / 2 + (k * 2 * Math.PI) / 5, 95, 28)),
+    blade(255, 430, -0.6, 110, 25), blade(253, 480, Math.PI + 0.5, 100, 23)];
+  for (const [i, stroke] of strokes.entries()) {
+    await draw(page, stroke);
+    await until(page, 'strokes', ['is', i + 1], 'a stroke was drawn');
+  }
+  await until(page, 'flowers', ['above', 0], 'a flower was drawn');
+  return strokes.length;
+}
+
+/** A sample, opened as a person does. */
+async function sample(page) {
+  await page.click('#b-samples');
+  await page.click('[data-sample=sample]');
+  await until(page, 'flowers', ['is', 1], 'the sample is open');
+  return 15;
+}
+
+async function exported(page, format) {
+  await page.click('#b-export');
+  const [download] = await Promise.all([page.waitForEvent('download'), page.click(`[data-format=${format}]`)]);
+  return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
+}
+
+async function flower({ page, url, shot }) {
+  await begin(page, url);
+  assert.equal(await page.locator('.empty').isVisible(), true);
+  await shot('empty');
+  await drawFlower(page);
+  assert.equal(await page.locator('.empty').isVisible(), false);
+  assert.ok(await count(page, 'triangles') > 500);
+  await page.waitForTimeout(1500);
+  await shot('flower');
+  const glb = await exported(page, 'glb');
+  assert.match(glb.name, /\.glb$/);
+  assert.equal(glb.bytes.subarray(0, 4).toString(), 'glTF');
+  for (const [format, start] of [['obj', 'PK'], ['ply', 'ply'], ['png', '\x89PNG']]) {
+    const file = await exported(page, format);
+    assert.equal(file.bytes.subarray(0, start.length).toString('latin1'), start, format);
+    assert.ok(file.bytes.length > 2000, format);
+  }
+  await page.keyboard.press('f');
+  await page.waitForTimeout(700);
+  await shot('front');
+  assert.equal(await page.locator('#b-front').getAttribute('aria-pressed'), 'true');
+}
+
+async function live({ page, url }) {
+  await begin(page, url);
+  const box = await page.locator('.sheet').boundingBox();
+  await page.mouse.move(box.x + 250, box.y + 480);
+  await page.mouse.down();
+  for (const [x, y] of line(250, 480, 265, 130, 12)) await page.mouse.move(box.x + x, box.y + y);
+  await until(page, 'triangles', ['above', 0], 'the plant follows the pen before it is lifted');
+  assert.equal(await count(page, 'strokes'), 0);
+  await page.mouse.up();
+  await until(page, 'strokes', ['is', 1], 'the stroke is kept');
+}
+
+async function undo({ page, url }) {
+  await begin(page, url);
+  const n = 3;
+  for (let i = 0; i < n; i += 1) {
+    await draw(page, line(200 + 30 * i, 500, 220 + 30 * i, 200, 6));
+    await until(page, 'strokes', ['is', i + 1], 'a stroke was drawn');
+  }
+  await until(page, 'triangles', ['above', 0], 'a plant');
+  for (let i = n - 1; i >= 0; i -= 1) {
+    await page.keyboard.press('Control+z');
+    await until(page, 'strokes', ['is', i], 'undo');
+  }
+  await until(page, 'parts', ['is', 0], 'nothing is left');
+  assert.equal(await page.locator('#b-undo').isDisabled(), true);
+  for (let i = 1; i <= n; i += 1) {
+    await page.keyboard.press('Control+Shift+z');
+    await until(page, 'strokes', ['is', i], 'redo');
+  }
+  await until(page, 'triangles', ['above', 0], 'the plant is back');
+}
+
+async function reload({ page, url }) {
+  await begin(page, url);
+  const n = await sample(page) + 1;
+  await draw(page, line(100, 400, 120, 250, 6));
+  await until(page, 'strokes', ['is', n], 'a stroke was drawn');
+  await page.keyboard.press('r');
+  await page.waitForFunction(() => /Saved/.test(document.querySelector('#b-kept').textContent));
+  await page.waitForTimeout(900);
+  const digest = await data(page, 'digest');
+  await page.reload();
+  await until(page, 'strokes', ['is', n], 'the drawing is recovered');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, digest)
+    .catch(async () => { throw new Error(`another plant after reload: ${await data(page, 'digest')} instead of ${digest}`); });
+}
+
+async function chinese({ page, url, shot }) {
+  await begin(page, url);
+  assert.match(await page.locator('.empty h1').textContent(), /画一株植物/);
+  assert.equal(await page.evaluate(() => document.documentElement.lang), 'zh-Hans');
+  await page.click('#b-samples');
+  await page.click('[data-sample=sunflower]');
+  await until(page, 'triangles', ['above', 0], 'a sample in Chinese');
+  await shot('chinese');
+  await page.click('#b-language');
+  assert.match(await page.locator('#b-export').textContent(), /Export/);
+  await page.reload();
+  await page.waitForFunction(() => document.body.dataset.ready === 'true');
+  assert.match(await page.locator('#b-export').textContent(), /Export/, 'the choice is kept');
+}
+
+async function correct({ page, url, shot }) {
+  await begin(page, `${url}?open=opened%2Ftulip.svg`);
+  await until(page, 'triangles', ['above', 0], 'the file named on the command line is open');
+  const before = await data(page, 'digest');
+  await page.locator('.sheet').focus();
+  await page.keyboard.press(']');
+  await page.locator('.card').waitFor();
+  await page.waitForTimeout(1200);
+  await shot('correct');
+  await page.locator('.card .chip', { hasText: 'fruit' }).click();
+  await page.waitForFunction((d) => document.body.dataset.digest !== d, before);
+  assert.equal(await page.locator('.card .chip[aria-pressed=true]', { hasText: 'fruit' }).count(), 1);
+  await page.keyboard.press('Control+z');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, before);
+}
+
+async function fault({ page, url, troubles }) {
+  await begin(page, url);
+  const n = await sample(page);
+  const digest = await data(page, 'digest');
+  const [worker] = page.workers();
+  await worker.evaluate(() => { setTimeout(() => { throw new Error('made to fall by the test'); }); }).catch(() => {});
+  await page.locator('.note.bad', { hasText: 'started again' }).waitFor();
+  await draw(page, line(150, 300, 150, 100, 8));
+  await until(page, 'strokes', ['is', n + 1], 'the stroke after the fault');
+  await page.keyboard.press('Control+z');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, digest);
+  const others = troubles.splice(0).filter((t) => !t.includes('made to fall by the test'));
+  assert.deepEqual(others, []);
+}
+
+async function refuse({ page, url }) {
+  await begin(page, url);
+  await sample(page);
+  const digest = await data(page, 'digest');
+  for (const [name, text] of [['broken.svg', '<svg'], ['broken.burgeon', 'PK\x03\x04'], ['word.docx', 'no'], ['x.glb', 'glTF']]) {
+    await page.evaluate(([n, t]) => {
+      const transfer = new DataTransfer();
+      transfer.items.add(new File([t], n));
+      document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true }));
+    }, [name, text]);
+    await page.locator('.note.bad', { hasText: name }).waitFor();
+  }
+  assert.equal(await data(page, 'digest'), digest);
+}
+
+async function keyboard({ page, url }) {
+  await begin(page, url);
+  await page.keyboard.press('Tab');
+  assert.notEqual(await page.evaluate(() => document.activeElement.tagName), 'BODY');
+  await page.locator('#b-samples').focus();
+  await page.keyboard.press('Enter');
+  await page.locator('[data-sample=sample]').focus();
+  await page.keyboard.press('Enter');
+  await until(page, 'triangles', ['above', 0], 'a sample by keyboard');
+  const before = await data(page, 'digest');
+  await page.locator('.sheet').focus();
+  await page.keyboard.press('[');
+  await page.keyboard.press('Delete');
+  await until(page, 'strokes', ['is', 14], 'a stroke erased by keyboard');
+  await page.waitForFunction((d) => document.body.dataset.digest !== d, before);
+  await page.keyboard.press('?');
+  await page.locator('dialog').waitFor();
+  await page.keyboard.press('Escape');
+  await page.locator('dialog').waitFor({ state: 'detached' });
+}
+
+async function touch({ page, url, shot, context }) {
+  await begin(page, url);
+  const cdp = await context.newCDPSession(page);
+  const box = await page.locator('.sheet').boundingBox();
+  const send = (type, points) => cdp.send('Input.dispatchTouchEvent', {
+    type, touchPoints: points.map(([x, y], id) => ({ x: box.x + x, y: box.y + y, id })),
+  });
+  const path = line(box.width / 2, box.height - 40, box.width / 2, 60, 12);
+  await send('touchStart', [path[0]]);
+  for (const p of path.slice(1)) await send('touchMove', [p]);
+  await send('touchEnd', []);
+  await until(page, 'strokes', ['is', 1], 'a finger draws');
+  await send('touchStart', [[100, 200]]);
+  await send('touchStart', [[100, 200], [200, 200]]);
+  await send('touchMove', [[60, 200], [260, 220]]);
+  await send('touchEnd', []);
+  await page.waitForTimeout(500);
+  assert.equal(await count(page, 'strokes'), 1, 'two fingers do not draw');
+  await shot('tablet');
+}
+
+async function guarded({ page, url }) {
+  const page_ = await page.goto(url);
+  const headers = page_.headers();
+  assert.match(headers['content-security-policy'], /default-src 'none'/);
+  assert.equal(headers['x-content-type-options'], 'nosniff');
+  await page.waitForFunction(() => document.body.dataset.ready === 'true');
+  assert.equal(await page.evaluate(() => crossOriginIsolated), true);
+  for (const path of ['/..%2fpackage.json', '/%2e%2e/package.json', '/.gitignore', '/opened/x.svg']) {
+    const answer = await page.request.get(new URL(path, url).href);
+    assert.equal(answer.status(), 404, path);
+  }
+  const rebound = await page.request.get(url, { headers: { Host: 'evil.example' } });
+  assert.equal(rebound.status(), 421);
+  assert.equal((await page.request.post(url, { data: 'x' })).status(), 413);
+  assert.equal((await page.request.get(url, { headers: { Origin: 'http://evil.example' } })).status(), 403);
+}
+
+export const journeys = [
+  ['draw a flower and export it', flower],
+  ['the plant follows the pen', live],
+  ['undo and redo everything', undo],
+  ['reload and recover', reload],
+  ['Chinese', chinese, { locale: 'zh-CN' }],
+  ['say what a stroke is', correct],
+  ['the worker dies', fault],
+  ['files that cannot be read', refuse],
+  ['keyboard only', keyboard],
+  ['a tablet with fingers', touch, { viewport: { width: 600, height: 800 }, hasTouch: true, isMobile: false }],
+  ['the server is guarded', guarded],
+];

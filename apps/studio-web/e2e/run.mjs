@@ -1,0 +1,62 @@
+// node e2e/run.mjs CHROMIUM BURGEON OUT : the main journeys through the Studio, in a real browser, against the real
+// server. Pictures of each go to OUT.
+import { spawn } from 'node:child_process';
+import { mkdirSync, rmSync } from 'node:fs';
+import { join } from 'node:path';
+import { chromium } from 'playwright-core';
+import { journeys } from './journeys.mjs';
+
+const [browserPath, burgeon, out] = process.argv.slice(2);
+rmSync(out, { recursive: true, force: true });
+mkdirSync(out, { recursive: true });
+
+const server = spawn(burgeon, ['studio', '--no-open', '--port', '0', '--folder', 'dist', '../../fixtures/sketches/gallery/tulip.svg'], {
+  stdio: ['ignore', 'pipe', 'inherit'],
+});
+const url = await new Promise((resolve, reject) => {
+  let said = '';
+  server.stdout.on('data', (d) => {
+    said += d;
+    const found = /http:\/\/127\.0\.0\.1:\d+\//.exec(said);
+    if (found) resolve(found[0]);
+  });
+  server.on('error', reject);
+  server.on('exit', (code) => reject(new Error(`burgeon studio ended with ${code}`)));
+});
+
+const browser = await chromium.launch({
+  executablePath: browserPath,
+  args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run',
+    '--disable-background-networking', '--disable-component-update', '--disable-sync'],
+});
+
+let failed = 0;
+const only = process.env.ONLY;
+for (const [name, journey, options] of journeys) {
+  if (only && !name.includes(only)) continue;
+  const context = await browser.newContext({ viewport: { width: 1000, height: 640 }, locale: 'en-GB', acceptDownloads: true, ...options });
+  const page = await context.newPage();
+  const troubles = [];
+  const foreign = [];
+  page.on('pageerror', (e) => troubles.push(`error in the page: ${e.message}`));
+  page.on('console', (m) => { if (m.type() === 'error') troubles.push(`console: ${m.text()}`); });
+  page.on('request', (r) => { if (!/^(blob|data):/.test(r.url()) && !r.url().startsWith(url)) foreign.push(r.url()); });
+  page.setDefaultTimeout(60_000);
+  const began = Date.now();
+  try {
+    await journey({ page, context, url, out, shot: (file) => page.screenshot({ path: join(out, `${file}.png`) }), troubles });
+    if (foreign.length > 0) throw new Error(`asked other hosts: ${foreign.join(', ')}`);
+    if (troubles.length > 0) throw new Error(troubles.join('\n'));
+    console.log(`ok      ${name} (${((Date.now() - began) / 1000).toFixed(1)} s)`);
+  } catch (e) {
+    failed += 1;
+    console.log(`FAILED  ${name}: ${e.message}${troubles.length > 0 ? `\n        ${troubles.join('\n        ')}` : ''}`);
+    await page.screenshot({ path: join(out, `failed-${name.replace(/\W+/g, '-')}.png`) }).catch(() => {});
+  }
+  await context.close();
+}
+await browser.close();
+server.removeAllListeners('exit');
+server.kill();
+console.log(`Studio journeys: ${failed} failed; pictures in ${out}`);
+process.exit(failed > 0 ? 1 : 0);

@@ -1,0 +1,189 @@
+/** Opening, saving, exporting, keeping. */
+import type { Engine } from './engine';
+import type { ExportFormat, Opened, Request } from './protocol';
+import { SAMPLES } from './samples';
+import { keep, kept } from './store';
+import { t } from './text';
+import { dialog, download, el, note } from './ui';
+
+/** Larger files are refused before they are read into memory. */
+const MAX_MB = 256;
+const ACCEPT = '.burgeon,.svg,.inkml,.ndjson,.json,.glb,.gltf,.obj,.ply,.stl';
+const TYPES: Record<string, string> = {
+  glb: 'model/gltf-binary', obj: 'application/zip', ply: 'application/octet-stream', stl: 'model/stl', json: 'application/json',
+};
+
+export interface FilesEvents {
+  opened(): void;
+  picture(): Promise<Blob> | undefined;
+  name(): string;
+  empty(): boolean;
+  looking(name: string): void;
+}
+
+export class Files {
+  onKept: () => void = () => {};
+  private timer = 0;
+  private stale = false;
+  private toldOfStorage = false;
+
+  constructor(private readonly engine: Engine, private readonly events: FilesEvents) {}
+
+  /** Files may be dropped anywhere, and pasted. */
+  listen(host: HTMLElement): void {
+    const over = (on: boolean) => (e: DragEvent): void => {
+      e.preventDefault();
+      host.classList.toggle('dropping', on && (e.dataTransfer?.types.includes('Files') ?? false));
+      host.dataset['drop'] = t('note.dropped');
+    };
+    host.addEventListener('dragover', over(true));
+    host.addEventListener('dragleave', (e) => { if (!e.relatedTarget) over(false)(e); });
+    host.addEventListener('drop', (e) => {
+      over(false)(e);
+      const file = e.dataTransfer?.files[0];
+      if (file) void this.openFile(file);
+    });
+  }
+
+  choose(): void {
+    const input = el('input', { type: 'file', accept: ACCEPT });
+    input.addEventListener('change', () => { const file = input.files?.[0]; if (file) void this.openFile(file); });
+    input.click();
+  }
+
+  async openFile(file: File): Promise<void> {
+    if (file.size > MAX_MB << 20) {
+      note(t('note.unreadable', { name: file.name, why: t('note.large', { limit: MAX_MB }) }), 'bad');
+      return;
+    }
+    try {
+      await this.open(file.name, new Uint8Array(await file.arrayBuffer()));
+    } catch (e) {
+      note(t('note.unreadable', { name: file.name, why: (e as Error).message }), 'bad');
+    }
+  }
+
+  /** Opens bytes; a file of several drawings asks which. */
+  async open(name: string, bytes: Uint8Array, row = 0, fresh = false, quiet = false): Promise<void> {
+    const opened = await this.engine.ask<Opened>({ kind: 'open', name, bytes, row, fresh });
+    if (opened.kind === 'model') this.events.looking(opened.name || name);
+    this.events.opened();
+    this.changed();
+    if (!quiet) {
+      note(t('note.opened', { name }));
+      if (opened.warnings.length > 0) note(opened.warnings.slice(0, 3).join(' · '), 'bad');
+    }
+    if (opened.names.length > 1 && row === 0) this.pick(name, bytes, opened.names);
+  }
+
+  private pick(name: string, bytes: Uint8Array, names: string[]): void {
+    const list = el('div', { class: 'menu' });
+    names.forEach((each, row) => list.append(el('button', {
+      type: 'button', onclick: () => { d.close(); if (row > 0) this.open(name, bytes, row).catch((e: Error) => note(e.message, 'bad')); },
+    }, `${row + 1}. ${each}`)));
+    const d = dialog(t('dialog.pick'), el('p', { class: 'muted' }, t('dialog.pick.hint', { count: names.length })), list);
+  }
+
+  samples(): void {
+    const list = el('div', { class: 'samples' });
+    for (const { name, url } of SAMPLES) {
+      list.append(el('button', { type: 'button', 'data-sample': name, onclick: () => { d.close(); void this.openUrl(`${name}.svg`, url); } },
+        el('img', { src: url, alt: '', loading: 'lazy' }), el('span', {}, name.replaceAll('-', ' '))));
+    }
+    const d = dialog(t('dialog.samples'), list);
+  }
+
+  private async openUrl(name: string, url: string): Promise<void> {
+    try {
+      const answer = await fetch(url);
+      if (!answer.ok) throw new Error(`${answer.status}`);
+      await this.open(name, new Uint8Array(await answer.arrayBuffer()));
+    } catch (e) {
+      note(t('note.unreadable', { name, why: (e as Error).message }), 'bad');
+    }
+  }
+
+  fresh(): void {
+    this.engine.ask({ kind: 'command', command: { do: 'new' } }).then(() => { this.events.opened(); this.changed(); }).catch(() => undefined);
+  }
+
+  async save(): Promise<void> {
+    const bytes = await this.engine.ask<Uint8Array<ArrayBuffer>>({ kind: 'save' });
+    const name = `${safe(this.events.name())}.burgeon`;
+    download(name, bytes, 'application/zip');
+    note(t('note.exported', { name }));
+  }
+
+  async exportAs(format: ExportFormat | 'png'): Promise<void> {
+    if (this.events.empty()) {
+      note(t('note.nothing'), 'bad');
+      return;
+    }
+    try {
+      const name = `${safe(this.events.name())}.${format === 'obj' ? 'obj.zip' : format}`;
+      if (format === 'png') {
+        const picture = await this.events.picture();
+        if (!picture) throw new Error(t('note.nowebgl'));
+        download(name, picture, 'image/png');
+      } else {
+        download(name, await this.engine.ask<Uint8Array<ArrayBuffer>>({ kind: 'export', format }), TYPES[format] ?? '');
+      }
+      note(t('note.exported', { name }));
+    } catch (e) {
+      note(t('note.refused', { why: (e as Error).message }), 'bad');
+    }
+  }
+
+  // Keeping ------------------------------------------------------------------------------------------------------
+
+  /** Something was done: keep it soon. */
+  changed(request?: Request): void {
+    if (request?.kind === 'draft' || request?.kind === 'begin' || request?.kind === 'stage') return;
+    this.stale = true;
+    clearTimeout(this.timer);
+    this.timer = window.setTimeout(() => void this.keepNow(), 400);
+  }
+
+  async keepNow(): Promise<void> {
+    if (!this.stale) return;
+    this.stale = false;
+    try {
+      const bytes = await this.engine.ask<Uint8Array>({ kind: 'save' });
+      await keep({ bytes, name: this.events.name(), time: Date.now() });
+      this.onKept();
+    } catch (e) {
+      if ((e as Error).message === 'restarted') {
+        this.changed();
+      } else if (!this.toldOfStorage) {
+        this.toldOfStorage = true;
+        note(t('note.storage'), 'bad');
+      }
+    }
+  }
+
+  /** What the address asks for, else what was drawn last. */
+  async restore(): Promise<void> {
+    const wanted = new URLSearchParams(location.search).get('open');
+    // Only what this very server offers: a link must not make the page fetch from elsewhere.
+    if (wanted && /^opened\/[^/\\?#]+$/.test(wanted)) {
+      history.replaceState(null, '', location.pathname);
+      const name = wanted.slice('opened/'.length);
+      await this.openUrl(name, `./opened/${encodeURIComponent(name)}`);
+      return;
+    }
+    try {
+      const last = await kept();
+      if (!last) return;
+      await this.open('autosave.burgeon', last.bytes, 0, true, true);
+      if (Number(document.body.dataset['strokes']) > 0) note(t('note.restored'));
+    } catch {
+      this.toldOfStorage = true;
+      note(t('note.storage'), 'bad');
+    }
+  }
+}
+
+/** A file name of the plant's name. */
+function safe(name: string): string {
+  return name.replace(/[\\/:*?"<>|\u0000-\u001f]+/g, '-').replace(/^[.\s-]+|[.\s-]+$/g, '').slice(0, 80) || 'plant';
+}

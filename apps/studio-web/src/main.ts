@@ -1,0 +1,15 @@
+/** The page. */
+import { App } from './app';
+import { setLanguage } from './text';
+import { setting } from './store';
+
+const chosen = setting('language');
+const own = navigator.language.toLowerCase().startsWith('zh') ? 'zh' : 'en';
+setLanguage(chosen === 'zh' || chosen === 'en' ? chosen : own);
+const host = document.getElementById('app');
+if (host) new App(host).begin();
+
+// Only a page of its own server may keep itself for later: not a file, not a page under development.
+if (import.meta.env.PROD && 'serviceWorker' in navigator && window.isSecureContext) {
+  navigator.serviceWorker.register('./sw.js').catch(() => undefined);
+}

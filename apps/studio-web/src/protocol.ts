@@ -1,0 +1,55 @@
+/** What page and worker say to one another. Meshes and strokes travel as typed arrays, never as JSON. */
+import type { Command, DocumentState, Opened, StrokeMode, View } from './wasm/burgeon_wasm';
+
+export type { Command, DocumentState, Opened, StrokeMode, View };
+export type ExportFormat = 'glb' | 'obj' | 'ply' | 'stl' | 'json';
+
+/** What the page asks. Those that change the document are kept in the page's journal. */
+export type Request =
+  | { kind: 'open'; name: string; bytes: Uint8Array; row: number; fresh: boolean }
+  | { kind: 'stroke'; mode: StrokeMode; samples: Float64Array }
+  | { kind: 'command'; command: Command }
+  | { kind: 'begin'; name: string }
+  | { kind: 'stage'; command: Command }
+  | { kind: 'commit' }
+  | { kind: 'abandon' }
+  | { kind: 'undo' }
+  | { kind: 'redo' }
+  | { kind: 'draft'; mode: StrokeMode; samples: Float64Array }
+  | { kind: 'save' }
+  | { kind: 'export'; format: ExportFormat };
+
+export type ToWorker =
+  | { kind: 'start'; wasm: string; stop: Int32Array | null; journal: Request[]; hold: boolean }
+  | { kind: 'ask'; seq: number; request: Request };
+
+export interface PartArrays {
+  positions: Float32Array;
+  normals: Float32Array;
+  uvs: Float32Array;
+  colors: Float32Array;
+  indices: Uint32Array;
+}
+
+export interface TexturePixels {
+  number: number;
+  width: number;
+  height: number;
+  pixels: Uint8Array;
+}
+
+/** Points of a stroke: x, y (up), pressure (NaN where not known). */
+export interface StrokePoints {
+  id: number;
+  points: Float64Array;
+}
+
+export type FromWorker =
+  | { kind: 'ready' }
+  | { kind: 'done'; seq: number; value: unknown }
+  | { kind: 'refused'; seq: number; why: string }
+  | { kind: 'state'; state: DocumentState; fresh: StrokePoints[] }
+  | { kind: 'view'; view: View; parts: PartArrays[]; textures: TexturePixels[] }
+  | { kind: 'busy' }
+  | { kind: 'failed'; why: string }
+  | { kind: 'fault'; why: string };

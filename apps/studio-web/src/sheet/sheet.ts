@@ -1,0 +1,506 @@
+/** The sheet: what was drawn, and the tools that change it. It knows nothing of plants. */
+import { inkOf } from '../colours';
+import type { DocumentState, StrokeMode, StrokePoints } from '../protocol';
+import { boxOf, distance, fitted, toDrawing, toScreen, zoomed, type Box, type Viewport } from './geometry';
+import { Pen } from './pen';
+
+export type Tool = StrokeMode | 'erase' | 'select';
+
+export interface SheetEvents {
+  stroke(mode: StrokeMode, samples: Float64Array): void;
+  draft(mode: StrokeMode, samples: Float64Array): void;
+  undraft(): void;
+  erase(ids: number[]): void;
+  moveBegin(): void;
+  moveTo(ids: number[], x: number, y: number): void;
+  moveEnd(keep: boolean): void;
+  selected(ids: number[], anchor: { x: number; y: number } | undefined): void;
+  viewport(): void;
+}
+
+interface Stroke {
+  id: number;
+  mode: StrokeMode;
+  points: Float64Array;
+  box: Box;
+  organ: string | undefined;
+}
+
+/** How near a pointer must come to a stroke, in pixels: a fingertip is coarser. */
+const REACH = { mouse: 8, pen: 8, touch: 18 } as const;
+const reachOf = (type: string): number => REACH[type as keyof typeof REACH] ?? 8;
+
+type Act =
+  | { kind: 'draw'; pen: Pen; mode: StrokeMode }
+  | { kind: 'erase'; ids: Set<number> }
+  | { kind: 'move'; from: [number, number]; moved: boolean }
+  | { kind: 'band'; from: [number, number]; to: [number, number]; add: boolean }
+  | { kind: 'pan'; x: number; y: number };
+
+export class Sheet {
+  readonly element = document.createElement('div');
+  private readonly base = document.createElement('canvas');
+  private readonly top = document.createElement('canvas');
+  private strokes: Stroke[] = [];
+  private points = new Map<number, Float64Array>();
+  private selection = new Set<number>();
+  private view: Viewport = { scale: 1, x: 0, y: 0 };
+  private tool: Tool = 'parts';
+  private dark = false;
+  private act: Act | undefined;
+  private pointers = new Map<number, [number, number]>();
+  private actor = -1;
+  private penSeen = false;
+  private space = false;
+  private pinch: { distance: number; x: number; y: number } | undefined;
+  private draftOrgan: string | undefined;
+  /** A stroke that was lifted and is not in the document yet: shown until it is. */
+  private pending: { pen: Pen; mode: StrokeMode } | undefined;
+  private baseStale = true;
+  private frame = 0;
+  private placed = false;
+
+  constructor(private readonly events: SheetEvents, label: string) {
+    this.element.className = 'sheet';
+    this.element.tabIndex = 0;
+    this.element.setAttribute('role', 'application');
+    this.element.setAttribute('aria-label', label);
+    this.element.append(this.base, this.top);
+    const on = this.element.addEventListener.bind(this.element);
+    on('pointerdown', (e) => this.down(e));
+    on('pointermove', (e) => this.move(e));
+    on('pointerup', (e) => this.up(e, true));
+    on('pointercancel', (e) => this.up(e, false));
+    on('wheel', (e) => this.wheel(e), { passive: false });
+    on('contextmenu', (e) => e.preventDefault());
+    on('keydown', (e) => { if (e.code === 'Space') { this.space = true; e.preventDefault(); } });
+    on('keyup', (e) => { if (e.code === 'Space') this.space = false; });
+    on('blur', () => { this.space = false; });
+    new ResizeObserver(() => this.resize()).observe(this.element);
+  }
+
+  // What is shown -----------------------------------------------------------------------------------------------
+
+  setState(state: DocumentState, fresh: StrokePoints[]): void {
+    for (const { id, points } of fresh) this.points.set(id, points);
+    const organs = new Map(this.strokes.map((s) => [s.id, s.organ]));
+    const there = new Set(state.strokes.map((s) => s.id));
+    for (const id of [...this.points.keys()]) if (!there.has(id)) this.points.delete(id);
+    this.strokes = state.strokes.flatMap(({ id, mode }) => {
+      const points = this.points.get(id);
+      const box = points && boxOf(points, 3);
+      return points && box ? [{ id, mode, points, box, organ: organs.get(id) }] : [];
+    });
+    this.pending = undefined;
+    const left = [...this.selection].filter((id) => there.has(id));
+    if (left.length !== this.selection.size) this.select(left);
+    this.redraw(true);
+  }
+
+  /** The stroke that was lifted will not come. */
+  dropPending(): void {
+    this.pending = undefined;
+    this.redraw(false);
+  }
+
+  /** What each row of the document was understood as; a row beyond the document is the stroke being drawn. */
+  setOrgans(organs: Map<number, string>): void {
+    this.strokes.forEach((s, row) => { s.organ = organs.get(row); });
+    this.draftOrgan = organs.get(this.strokes.length);
+    this.redraw(true);
+  }
+
+  setTool(tool: Tool): void {
+    this.tool = tool;
+    this.element.dataset['tool'] = tool;
+    if (tool !== 'select') this.select([]);
+  }
+
+  setDark(dark: boolean): void {
+    this.dark = dark;
+    this.redraw(true);
+  }
+
+  setLabel(label: string): void {
+    this.element.setAttribute('aria-label', label);
+  }
+
+  get selected(): number[] {
+    return [...this.selection];
+  }
+
+  select(ids: number[]): void {
+    this.selection = new Set(ids);
+    this.events.selected(ids, this.anchor());
+    this.redraw(false);
+  }
+
+  /** Selects the stroke after (or before) the selected one. */
+  selectNext(step: number): void {
+    const n = this.strokes.length;
+    if (n === 0) return;
+    const now = this.strokes.findIndex((s) => this.selection.has(s.id));
+    const next = now < 0 ? (step > 0 ? 0 : n - 1) : (now + step + n) % n;
+    this.select([this.strokes[next]!.id]);
+  }
+
+  /** One unit of the drawing per this many screen pixels. */
+  get unitsPerPixel(): number {
+    return 1 / this.view.scale;
+  }
+
+  /** The part of the drawing that is seen. */
+  seen(): Box {
+    const [left, top] = toDrawing(this.view, 0, 0);
+    const [right, bottom] = toDrawing(this.view, this.element.clientWidth, this.element.clientHeight);
+    return { left, top, right, bottom };
+  }
+
+  get isEmpty(): boolean {
+    return this.strokes.length === 0 && !this.pending && this.act?.kind !== 'draw';
+  }
+
+  fit(): void {
+    const box = this.strokes.reduce<Box | undefined>((b, s) => boxOf(s.points, 3, b), undefined);
+    const { clientWidth: w, clientHeight: h } = this.element;
+    this.view = box ? fitted(box, w, h) : { scale: 1, x: w / 2, y: h * 0.85 };
+    this.redraw(true);
+    this.events.viewport();
+  }
+
+  // Pointers ----------------------------------------------------------------------------------------------------
+
+  private place(e: PointerEvent | WheelEvent): [number, number] {
+    const box = this.element.getBoundingClientRect();
+    return [e.clientX - box.left, e.clientY - box.top];
+  }
+
+  private down(e: PointerEvent): void {
+    this.element.focus({ preventScroll: true });
+    const at = this.place(e);
+    this.pointers.set(e.pointerId, at);
+    this.element.setPointerCapture(e.pointerId);
+    if (e.pointerType === 'pen') this.penSeen = true;
+    const fingers = e.pointerType === 'touch' ? this.pointers.size : 0;
+    if (fingers === 2) {
+      this.abort();
+      this.pinch = this.pinchNow();
+      return;
+    }
+    if (this.act) return;
+    this.actor = e.pointerId;
+    // With a pen at hand, fingers and the palm only move the sheet.
+    const palm = e.pointerType === 'touch' && this.penSeen;
+    if (palm || this.space || e.button === 1) {
+      this.act = { kind: 'pan', x: at[0], y: at[1] };
+    } else if (e.button === 2) {
+      const hit = this.hit(at, reachOf(e.pointerType));
+      this.select(hit ? [hit.id] : []);
+    } else if (e.button === 5 || e.buttons === 32 || this.tool === 'erase') {
+      this.act = { kind: 'erase', ids: new Set() };
+      this.rub(at, reachOf(e.pointerType));
+    } else if (this.tool === 'select') {
+      this.grab(at, e);
+    } else {
+      const pen = new Pen();
+      this.act = { kind: 'draw', pen, mode: this.tool };
+      this.trace(e, pen, false);
+      this.redraw(false);
+    }
+  }
+
+  private grab(at: [number, number], e: PointerEvent): void {
+    const hit = this.hit(at, reachOf(e.pointerType));
+    if (!hit) {
+      this.act = { kind: 'band', from: at, to: at, add: e.shiftKey };
+      return;
+    }
+    const chosen = new Set(this.selection);
+    if (e.shiftKey) {
+      if (!chosen.delete(hit.id)) chosen.add(hit.id);
+    } else if (!chosen.has(hit.id)) {
+      chosen.clear();
+      chosen.add(hit.id);
+    }
+    this.select([...chosen]);
+    this.act = { kind: 'move', from: at, moved: false };
+  }
+
+  private trace(e: PointerEvent, pen: Pen, last: boolean): void {
+    const { left, top } = this.element.getBoundingClientRect();
+    const all = last ? [] : (e.getCoalescedEvents?.() ?? []);
+    for (const c of all.length > 0 ? all : [e]) pen.add(c, left, top, this.view, last);
+  }
+
+  private move(e: PointerEvent): void {
+    const at = this.place(e);
+    if (this.pointers.has(e.pointerId)) this.pointers.set(e.pointerId, at);
+    if (this.pinch && this.pointers.size >= 2) {
+      const now = this.pinchNow();
+      this.view = zoomed(this.view, now.distance / this.pinch.distance, this.pinch.x, this.pinch.y);
+      this.view = { ...this.view, x: this.view.x + now.x - this.pinch.x, y: this.view.y + now.y - this.pinch.y };
+      this.pinch = now;
+      this.moved();
+      return;
+    }
+    if (!this.act || e.pointerId !== this.actor) return;
+    const act = this.act;
+    switch (act.kind) {
+      case 'draw':
+        this.trace(e, act.pen, false);
+        if (act.pen.length > 2) this.events.draft(act.mode, act.pen.samples);
+        break;
+      case 'erase':
+        this.rub(at, reachOf(e.pointerType));
+        break;
+      case 'move': {
+        const [dx, dy] = [(at[0] - act.from[0]) / this.view.scale, (act.from[1] - at[1]) / this.view.scale];
+        if (!act.moved && Math.hypot(at[0] - act.from[0], at[1] - act.from[1]) < 4) return;
+        if (!act.moved) this.events.moveBegin();
+        act.moved = true;
+        this.events.moveTo(this.selected, dx, dy);
+        break;
+      }
+      case 'band':
+        act.to = at;
+        break;
+      case 'pan':
+        this.view = { ...this.view, x: this.view.x + at[0] - act.x, y: this.view.y + at[1] - act.y };
+        [act.x, act.y] = at;
+        this.moved();
+        break;
+    }
+    this.redraw(false);
+  }
+
+  private up(e: PointerEvent, kept: boolean): void {
+    this.pointers.delete(e.pointerId);
+    if (this.pointers.size < 2) this.pinch = undefined;
+    if (!this.act || e.pointerId !== this.actor) return;
+    if (!kept) {
+      this.abort();
+      return;
+    }
+    const act = this.act;
+    this.act = undefined;
+    switch (act.kind) {
+      case 'draw':
+        this.trace(e, act.pen, true);
+        // A dot is a slip of the hand.
+        if (act.pen.length > 2) {
+          this.pending = { pen: act.pen, mode: act.mode };
+          this.events.stroke(act.mode, act.pen.samples);
+        } else {
+          this.events.undraft();
+        }
+        break;
+      case 'erase':
+        if (act.ids.size > 0) this.events.erase([...act.ids]);
+        break;
+      case 'move':
+        if (act.moved) this.events.moveEnd(true);
+        break;
+      case 'band':
+        this.band(act.from, act.to, act.add);
+        break;
+      case 'pan':
+        break;
+    }
+    this.redraw(true);
+  }
+
+  /** Leaves what was begun: a second finger came, or the system took the pointer away. */
+  private abort(): void {
+    const act = this.act;
+    this.act = undefined;
+    if (act?.kind === 'draw') this.events.undraft();
+    if (act?.kind === 'move' && act.moved) this.events.moveEnd(false);
+    this.redraw(true);
+  }
+
+  private band(from: [number, number], to: [number, number], add: boolean): void {
+    const [x0, y0] = toDrawing(this.view, Math.min(from[0], to[0]), Math.max(from[1], to[1]));
+    const [x1, y1] = toDrawing(this.view, Math.max(from[0], to[0]), Math.min(from[1], to[1]));
+    const inside = this.strokes.filter((s) => s.box.left >= x0 && s.box.right <= x1 && s.box.bottom >= y0 && s.box.top <= y1);
+    this.select([...(add ? this.selection : []), ...inside.map((s) => s.id)]);
+  }
+
+  private pinchNow(): { distance: number; x: number; y: number } {
+    const [a, b] = [...this.pointers.values()];
+    const p: [number, number] = a ?? [0, 0];
+    const q: [number, number] = b ?? p;
+    return { distance: Math.max(1, Math.hypot(p[0] - q[0], p[1] - q[1])), x: (p[0] + q[0]) / 2, y: (p[1] + q[1]) / 2 };
+  }
+
+  private wheel(e: WheelEvent): void {
+    e.preventDefault();
+    const [x, y] = this.place(e);
+    if (e.shiftKey) this.view = { ...this.view, x: this.view.x - (e.deltaX || e.deltaY), y: this.view.y };
+    else this.view = zoomed(this.view, Math.exp(-e.deltaY * (e.ctrlKey ? 0.01 : 0.0015)), x, y);
+    this.moved();
+  }
+
+  private moved(): void {
+    this.redraw(true);
+    this.events.viewport();
+  }
+
+  private hit(at: [number, number], reach: number): Stroke | undefined {
+    const [x, y] = toDrawing(this.view, at[0], at[1]);
+    const r = reach / this.view.scale;
+    let best: Stroke | undefined;
+    let least = r;
+    for (const s of this.strokes) {
+      const b = s.box;
+      if (x < b.left - r || x > b.right + r || y < b.bottom - r || y > b.top + r) continue;
+      const d = distance(s.points, 3, x, y);
+      // The later stroke lies on top.
+      if (d <= least) [best, least] = [s, d];
+    }
+    return best;
+  }
+
+  private rub(at: [number, number], reach: number): void {
+    if (this.act?.kind !== 'erase') return;
+    const hit = this.hit(at, reach);
+    if (hit) {
+      this.act.ids.add(hit.id);
+      this.redraw(true);
+    }
+  }
+
+  private anchor(): { x: number; y: number } | undefined {
+    const chosen = this.strokes.filter((s) => this.selection.has(s.id));
+    const box = chosen.reduce<Box | undefined>((b, s) => boxOf(s.points, 3, b), undefined);
+    if (!box) return undefined;
+    const [x, y] = toScreen(this.view, box.right, (box.bottom + box.top) / 2);
+    return { x, y };
+  }
+
+  // Drawing -----------------------------------------------------------------------------------------------------
+
+  private resize(): void {
+    const ratio = Math.min(3, devicePixelRatio || 1);
+    const { clientWidth: w, clientHeight: h } = this.element;
+    for (const canvas of [this.base, this.top]) {
+      canvas.width = Math.max(1, Math.round(w * ratio));
+      canvas.height = Math.max(1, Math.round(h * ratio));
+    }
+    if (!this.placed && w > 0) {
+      this.placed = true;
+      this.fit();
+    }
+    this.moved();
+  }
+
+  private redraw(base: boolean): void {
+    this.baseStale ||= base;
+    if (this.frame) return;
+    this.frame = requestAnimationFrame(() => {
+      this.frame = 0;
+      if (this.baseStale) this.drawBase();
+      this.baseStale = false;
+      this.drawTop();
+    });
+  }
+
+  private clear(canvas: HTMLCanvasElement): CanvasRenderingContext2D | undefined {
+    const c = canvas.getContext('2d');
+    if (!c) return undefined;
+    const ratio = canvas.width / Math.max(1, this.element.clientWidth);
+    c.setTransform(ratio, 0, 0, ratio, 0, 0);
+    c.clearRect(0, 0, this.element.clientWidth, this.element.clientHeight);
+    c.lineCap = 'round';
+    c.lineJoin = 'round';
+    return c;
+  }
+
+  private drawBase(): void {
+    const c = this.clear(this.base);
+    if (!c) return;
+    this.grid(c);
+    const gone = this.act?.kind === 'erase' ? this.act.ids : undefined;
+    for (const s of this.strokes) {
+      c.globalAlpha = gone?.has(s.id) ? 0.15 : 1;
+      this.ink(c, s.points.length / 3, (i) => [s.points[3 * i]!, s.points[3 * i + 1]!, s.points[3 * i + 2]!], s.mode, s.organ);
+    }
+    c.globalAlpha = 1;
+  }
+
+  private drawTop(): void {
+    const c = this.clear(this.top);
+    if (!c) return;
+    const live = this.act?.kind === 'draw' ? this.act : this.pending;
+    // A layer that was only cleared may be shown with its old picture by browsers that draw without a graphics card.
+    this.top.style.visibility = live || this.selection.size > 0 || this.act?.kind === 'band' ? 'visible' : 'hidden';
+    for (const s of this.strokes) {
+      if (!this.selection.has(s.id)) continue;
+      c.globalAlpha = 0.3;
+      this.line(c, s.points.length / 3, (i) => [s.points[3 * i]!, s.points[3 * i + 1]!, NaN], this.accent(), 11);
+      c.globalAlpha = 1;
+      this.ink(c, s.points.length / 3, (i) => [s.points[3 * i]!, s.points[3 * i + 1]!, s.points[3 * i + 2]!], s.mode, s.organ);
+    }
+    if (live) this.ink(c, live.pen.length, (i) => live.pen.row(i), live.mode, this.draftOrgan);
+    if (this.act?.kind === 'band') {
+      const { from, to } = this.act;
+      c.strokeStyle = this.accent();
+      c.setLineDash([5, 4]);
+      c.strokeRect(Math.min(from[0], to[0]), Math.min(from[1], to[1]), Math.abs(to[0] - from[0]), Math.abs(to[1] - from[1]));
+      c.setLineDash([]);
+    }
+  }
+
+  private accent(): string {
+    return this.dark ? '#8ecbff' : '#1769aa';
+  }
+
+  /** Dots at a step of the drawing that is 24 to 60 pixels wide. */
+  private grid(c: CanvasRenderingContext2D): void {
+    let step = 10 ** Math.floor(Math.log10(60 / this.view.scale));
+    for (const f of [5, 2]) if (step * f * this.view.scale <= 60) { step *= f; break; }
+    const { left, right, top, bottom } = this.seen();
+    c.fillStyle = this.dark ? 'rgba(255,255,255,0.10)' : 'rgba(60,50,30,0.13)';
+    if (((right - left) / step) * ((top - bottom) / step) > 12_000) return;
+    for (let x = Math.ceil(left / step) * step; x <= right; x += step) {
+      for (let y = Math.ceil(bottom / step) * step; y <= top; y += step) {
+        const [sx, sy] = toScreen(this.view, x, y);
+        c.fillRect(sx - 0.75, sy - 0.75, 1.5, 1.5);
+      }
+    }
+  }
+
+  private ink(c: CanvasRenderingContext2D, n: number, row: (i: number) => [number, number, number], mode: StrokeMode, organ?: string): void {
+    const fallback = mode === 'branch-contour' ? 'twig_contour' : mode === 'leaf-contour' ? 'leaf_contour' : undefined;
+    c.setLineDash(mode === 'parts' ? [] : [9, 7]);
+    this.line(c, n, row, inkOf(organ ?? fallback, this.dark), 2.6);
+    c.setLineDash([]);
+  }
+
+  private line(c: CanvasRenderingContext2D, n: number, row: (i: number) => [number, number, number], color: string, width: number): void {
+    c.strokeStyle = color;
+    c.lineWidth = width;
+    if (n === 0) return;
+    const pressed = Number.isFinite(row(0)[2]) || Number.isFinite(row(n - 1)[2]);
+    let [px, py] = toScreen(this.view, row(0)[0], row(0)[1]);
+    c.beginPath();
+    c.moveTo(px, py);
+    let [mx, my] = [px, py];
+    for (let i = 1; i < n; i += 1) {
+      const [x, y, p] = row(i);
+      const [sx, sy] = toScreen(this.view, x, y);
+      const [nx, ny] = [(px + sx) / 2, (py + sy) / 2];
+      if (pressed) {
+        // Each piece has its own width.
+        c.lineWidth = width * (Number.isFinite(p) ? 0.4 + 1.3 * p : 1);
+        c.beginPath();
+        c.moveTo(mx, my);
+      }
+      c.quadraticCurveTo(px, py, nx, ny);
+      if (pressed) c.stroke();
+      [px, py, mx, my] = [sx, sy, nx, ny];
+    }
+    if (pressed) { c.beginPath(); c.moveTo(mx, my); }
+    c.lineTo(px, py);
+    c.stroke();
+  }
+}

@@ -1,0 +1,33 @@
+import { en, type TextKey } from './en';
+import { zh } from './zh';
+
+export type { TextKey };
+export type Language = 'en' | 'zh';
+
+const tables: Record<Language, Record<TextKey, string>> = { en, zh };
+let language: Language = 'en';
+
+export function setLanguage(to: Language): void {
+  language = to;
+  document.documentElement.lang = to === 'zh' ? 'zh-Hans' : 'en';
+}
+
+export function currentLanguage(): Language {
+  return language;
+}
+
+/** The text of a key in the current language, with `{name}` replaced. */
+export function t(key: TextKey, values: Record<string, string | number> = {}): string {
+  return tables[language][key].replace(/\{(\w+)\}/g, (whole, name: string) => String(values[name] ?? whole));
+}
+
+/** The text of a key made of parts; the last part itself if there is no such key. */
+export function tOf(group: string, word: string): string {
+  const key = `${group}.${word}`;
+  return key in en ? t(key as TextKey) : word;
+}
+
+/** Whole numbers in the language's own grouping. */
+export function number(n: number): string {
+  return new Intl.NumberFormat(language === 'zh' ? 'zh-CN' : 'en').format(n);
+}

@@ -1,0 +1,142 @@
+/** Small pieces of the page: elements, icons, notes, dialogs. */
+import { t } from './text';
+
+type Child = Node | string;
+
+/** An element with attributes and children; `on...` are listeners. */
+export function el<K extends keyof HTMLElementTagNameMap>(
+  tag: K,
+  attributes: Record<string, string | ((e: Event) => void)> = {},
+  ...children: Child[]
+): HTMLElementTagNameMap[K] {
+  const e = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (typeof value === 'function') e.addEventListener(name.replace(/^on/, ''), value);
+    else e.setAttribute(name, value);
+  }
+  e.append(...children);
+  return e;
+}
+
+/** Line icons on a grid of 24. */
+const PATHS = {
+  parts: 'M4 20l1.2-4.4L16.500 4.300a1.900 1.900 0 0 1 2.700 0l.5.5a1.900 1.900 0 0 1 0 2.700L8.400 18.800zM14.500 6.300l3.200 3.200',
+  'branch-contour': 'M12 21v-6m0 0l-4-4m4 4l4.500-5M8 11V8m0 3H5.500M16.500 10l.3-3m-.3 3l2.700-.4',
+  'leaf-contour': 'M6 19c-2-8 3-14 13-14c1 10-5 15-11 13M5 21c2-5 5-8 9-10',
+  erase: 'M9 19l-5-5a1.500 1.500 0 0 1 0-2l7.500-7.500a1.500 1.500 0 0 1 2 0l5.500 5.500a1.500 1.500 0 0 1 0 2L12 19zM7.500 8.500l7.500 7.500M9 19h11',
+  select: 'M6 4l12 7-5.200 1.700L9.500 18z',
+  fit: 'M4 9V5a1 1 0 0 1 1-1h4M15 4h4a1 1 0 0 1 1 1v4M20 15v4a1 1 0 0 1-1 1h-4M9 20H5a1 1 0 0 1-1-1v-4',
+  undo: 'M9 7L4.500 11.500L9 16M5 11.500h9a5 5 0 0 1 0 10h-2',
+  redo: 'M15 7l4.500 4.500L15 16M19 11.500h-9a5 5 0 0 0 0 10h2',
+  dice: 'M5.500 4h13A1.500 1.500 0 0 1 20 5.500v13a1.500 1.500 0 0 1-1.500 1.500h-13A1.500 1.500 0 0 1 4 18.500v-13A1.500 1.500 0 0 1 5.500 4zM8.500 8.500h.01M15.500 8.500h.01M12 12h.01M8.500 15.500h.01M15.500 15.500h.01',
+  open: 'M4 19V6a1 1 0 0 1 1-1h4.500l2 2.500H18a1 1 0 0 1 1 1V11M4 19l2.300-7.200A1 1 0 0 1 7.300 11H20.500l-2.300 8z',
+  save: 'M5 4h11l4 4v11a1 1 0 0 1-1 1H5a1 1 0 0 1-1-1V5a1 1 0 0 1 1-1zM8 4v5h7V4M7.500 20v-6.500h9V20',
+  export: 'M12 15V4m0 0L8 8m4-4l4 4M5 14v5a1 1 0 0 0 1 1h12a1 1 0 0 0 1-1v-5',
+  samples: 'M4 5h7v7H4zM13 5h7v7h-7zM4 14h7v6H4zM13 14h7v6h-7z',
+  settings: 'M4 7h9m5 0h2M4 17h3m5 0h8M15.500 4.800a2.200 2.200 0 1 1 0 4.400a2.200 2.200 0 0 1 0-4.400zM9.500 14.800a2.200 2.200 0 1 1 0 4.400a2.200 2.200 0 0 1 0-4.400z',
+  theme: 'M12 4a8 8 0 1 0 0 16zM12 4a8 8 0 0 1 0 16',
+  help: 'M12 3.500a8.500 8.500 0 1 1 0 17a8.500 8.500 0 0 1 0-17zM9.500 9.500a2.500 2.500 0 1 1 3.600 2.300c-.8.400-1.100.9-1.100 1.900M12 16.800h.01',
+  front: 'M5 4h14v16H5zM12 16v-5m0 0c-2.500 0-3.500-1.500-3.500-3.500c2.300 0 3.500 1.300 3.500 3.500zm0 2c2.200 0 3.300-1.300 3.300-3c-2 0-3.300 1-3.300 3z',
+  wire: 'M12 3.500l7.500 4.300v8.400L12 20.500l-7.500-4.300V7.800zM4.500 7.800L12 12l7.500-4.200M12 12v8.500',
+  fresh: 'M6 3.500h8l4.500 4.500v12.500H6zM14 3.500V8h4.500M12 11v6m-3-3h6',
+  close: 'M6 6l12 12M18 6L6 18',
+} as const;
+
+export type IconName = keyof typeof PATHS;
+
+export function icon(name: IconName): SVGSVGElement {
+  const space = 'http://www.w3.org/2000/svg';
+  const svg = document.createElementNS(space, 'svg');
+  svg.setAttribute('viewBox', '0 0 24 24');
+  svg.setAttribute('aria-hidden', 'true');
+  const path = document.createElementNS(space, 'path');
+  path.setAttribute('d', PATHS[name]);
+  svg.append(path);
+  return svg;
+}
+
+export function button(name: IconName, label: string, act: () => void, key = ''): HTMLButtonElement {
+  const b = el('button', { type: 'button', class: 'icon', onclick: act }, icon(name));
+  relabel(b, label, key);
+  return b;
+}
+
+export function relabel(b: HTMLElement, label: string, key = ''): void {
+  b.title = key ? `${label}  (${key})` : label;
+  b.setAttribute('aria-label', label);
+}
+
+const notes = el('div', { class: 'notes', role: 'status', 'aria-live': 'polite' });
+
+/** A line at the foot of the page; bad news stay longer and are told at once. */
+export function note(text: string, tone: 'good' | 'bad' = 'good', action?: { label: string; act: () => void }): void {
+  if (!notes.isConnected) document.body.append(notes);
+  for (const other of notes.children) if (other.getAttribute('data-text') === text) other.remove();
+  const line = el('div', { class: `note ${tone}`, 'data-text': text }, el('span', {}, text));
+  if (tone === 'bad') line.setAttribute('role', 'alert');
+  const gone = (): void => line.remove();
+  if (action) line.append(el('button', { type: 'button', onclick: () => { gone(); action.act(); } }, action.label));
+  const close = button('close', t('dialog.close'), gone);
+  line.append(close);
+  notes.append(line);
+  while (notes.children.length > 4) notes.firstElementChild?.remove();
+  setTimeout(gone, tone === 'bad' ? 12_000 : 4_500);
+}
+
+/** A modal dialog; Escape, the cross and a click beside it close it. */
+export function dialog(title: string, ...content: Child[]): HTMLDialogElement {
+  const d = el('dialog', { 'aria-label': title });
+  const close = button('close', t('dialog.close'), () => d.close());
+  d.append(el('header', {}, el('h2', {}, title), close), ...content);
+  d.addEventListener('close', () => d.remove());
+  d.addEventListener('click', (e) => { if (e.target === d) d.close(); });
+  document.body.append(d);
+  d.showModal();
+  return d;
+}
+
+/** A panel below a button; it closes when something else is used. */
+export function popover(anchor: HTMLElement, content: HTMLElement, label: string): void {
+  const open = document.querySelector('.popover');
+  const mine = open?.getAttribute('data-for') === anchor.id && anchor.id !== '';
+  closePopover();
+  if (mine) return;
+  const p = el('div', { class: 'popover', role: 'dialog', 'aria-label': label, 'data-for': anchor.id }, content);
+  document.body.append(p);
+  const box = anchor.getBoundingClientRect();
+  p.style.top = `${box.bottom + 6}px`;
+  p.style.left = `${Math.max(8, Math.min(box.left, innerWidth - p.offsetWidth - 8))}px`;
+  anchor.setAttribute('aria-expanded', 'true');
+  p.querySelector<HTMLElement>('button, input, select')?.focus();
+  const away = (e: Event): void => {
+    if (e instanceof KeyboardEvent ? e.key === 'Escape' : !p.contains(e.target as Node) && !anchor.contains(e.target as Node)) {
+      closePopover();
+      if (e instanceof KeyboardEvent) anchor.focus();
+    }
+  };
+  document.addEventListener('pointerdown', away, true);
+  document.addEventListener('keydown', away, true);
+  cleanup = () => {
+    document.removeEventListener('pointerdown', away, true);
+    document.removeEventListener('keydown', away, true);
+    anchor.setAttribute('aria-expanded', 'false');
+    p.remove();
+  };
+}
+
+let cleanup: (() => void) | undefined;
+
+export function closePopover(): void {
+  cleanup?.();
+  cleanup = undefined;
+}
+
+/** Gives a file to the person. */
+export function download(name: string, bytes: BlobPart, type: string): void {
+  const url = URL.createObjectURL(new Blob([bytes], { type }));
+  const a = el('a', { href: url, download: name });
+  document.body.append(a);
+  a.click();
+  a.remove();
+  setTimeout(() => URL.revokeObjectURL(url), 30_000);
+}

@@ -1,0 +1,123 @@
+/** Sky, ground and light around the plant. Everything is about one unit high: the plant is scaled, not the world. */
+import * as THREE from 'three';
+
+const SKY_VERTEX = `
+varying vec3 direction;
+void main() {
+  direction = normalize(position);
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+}`;
+const SKY_FRAGMENT = `
+uniform vec3 zenith;
+uniform vec3 horizon;
+uniform vec3 below;
+varying vec3 direction;
+void main() {
+  float h = normalize(direction).y;
+  vec3 c = h > 0.0 ? mix(horizon, zenith, pow(h, 0.55)) : mix(horizon, below, min(1.0, -h * 4.0));
+  gl_FragColor = vec4(c, 1.0);
+  #include <colorspace_fragment>
+}`;
+
+interface Mood {
+  zenith: number;
+  horizon: number;
+  below: number;
+  ground: number;
+  sun: number;
+  sunPower: number;
+  ambient: number;
+}
+
+const LIGHT: Mood = {
+  zenith: 0x8fbfe8, horizon: 0xf1f5ee, below: 0xe6e8da, ground: 0xdfe2cf, sun: 0xfff1d6, sunPower: 2.9, ambient: 0.75,
+};
+const DARK: Mood = {
+  zenith: 0x0b1420, horizon: 0x23343f, below: 0x1a2626, ground: 0x202d2a, sun: 0xffe6c0, sunPower: 2.6, ambient: 0.5,
+};
+
+export class Stage {
+  readonly scene = new THREE.Scene();
+  private readonly sky: THREE.Mesh<THREE.SphereGeometry, THREE.ShaderMaterial>;
+  private readonly ground: THREE.Mesh<THREE.CircleGeometry, THREE.MeshBasicMaterial>;
+  private readonly shadow: THREE.Mesh<THREE.CircleGeometry, THREE.ShadowMaterial>;
+  private readonly sun = new THREE.DirectionalLight();
+  private readonly fill = new THREE.HemisphereLight();
+
+  private readonly sheet = new THREE.Color();
+
+  /** `shadowSize`: pixels along an edge of the shadow map. */
+  constructor(shadowSize: number) {
+    const uniforms = {
+      zenith: { value: new THREE.Color() }, horizon: { value: new THREE.Color() }, below: { value: new THREE.Color() },
+    };
+    this.sky = new THREE.Mesh(
+      new THREE.SphereGeometry(60, 32, 16),
+      new THREE.ShaderMaterial({
+        uniforms, vertexShader: SKY_VERTEX, fragmentShader: SKY_FRAGMENT, side: THREE.BackSide, depthWrite: false,
+      }),
+    );
+    // Fades into the sky's lower half, so that there is no edge of the world.
+    this.ground = new THREE.Mesh(
+      new THREE.CircleGeometry(6, 64),
+      new THREE.MeshBasicMaterial({ transparent: true, depthWrite: false, alphaMap: fade(), toneMapped: false }),
+    );
+    this.shadow = new THREE.Mesh(new THREE.CircleGeometry(6, 48), new THREE.ShadowMaterial({ opacity: 0.26 }));
+    for (const [disc, y] of [[this.ground, -0.002], [this.shadow, 0]] as const) {
+      disc.rotation.x = -Math.PI / 2;
+      disc.position.y = y;
+    }
+    this.ground.renderOrder = -1;
+    this.shadow.receiveShadow = true;
+    this.sun.position.set(1.6, 3.2, 2.2);
+    this.sun.target.position.set(0, 0.45, 0);
+    this.sun.castShadow = true;
+    this.sun.shadow.mapSize.set(shadowSize, shadowSize);
+    this.sun.shadow.radius = 5;
+    this.sun.shadow.bias = -0.0004;
+    this.sun.shadow.normalBias = 0.004;
+    const box = this.sun.shadow.camera;
+    [box.left, box.right, box.bottom, box.top, box.near, box.far] = [-1.1, 1.1, -1.1, 1.1, 0.5, 8];
+    this.scene.add(this.sky, this.ground, this.shadow, this.sun, this.sun.target, this.fill);
+  }
+
+  setDark(dark: boolean): void {
+    const mood = dark ? DARK : LIGHT;
+    const { uniforms } = this.sky.material;
+    uniforms['zenith']!.value.set(mood.zenith);
+    uniforms['horizon']!.value.set(mood.horizon);
+    uniforms['below']!.value.set(mood.below);
+    this.sheet.set(mood.horizon);
+    this.ground.material.color.set(mood.ground);
+    this.shadow.material.opacity = dark ? 0.5 : 0.26;
+    this.sun.color.set(mood.sun);
+    this.sun.intensity = mood.sunPower;
+    this.fill.color.set(dark ? 0x9db4cc : 0xdfeeff);
+    this.fill.groundColor.set(dark ? 0x2b3226 : 0x9a9a78);
+    this.fill.intensity = mood.ambient * 2;
+  }
+
+  /** The front view is a plain sheet: no ground in perspective. */
+  setFlat(flat: boolean): void {
+    this.sky.visible = !flat;
+    this.ground.visible = !flat;
+    this.shadow.visible = !flat;
+    this.scene.background = flat ? this.sheet : null;
+  }
+}
+
+function fade(): THREE.Texture {
+  const size = 256;
+  const canvas = document.createElement('canvas');
+  canvas.width = canvas.height = size;
+  const c = canvas.getContext('2d');
+  if (c) {
+    const g = c.createRadialGradient(size / 2, size / 2, 0, size / 2, size / 2, size / 2);
+    g.addColorStop(0, '#fff');
+    g.addColorStop(0.35, '#c0c0c0');
+    g.addColorStop(1, '#000');
+    c.fillStyle = g;
+    c.fillRect(0, 0, size, size);
+  }
+  return new THREE.CanvasTexture(canvas);
+}

@@ -1,0 +1,262 @@
+/** The right side: the plant in three dimensions, turned by hand, or from the front exactly as it was drawn. */
+import * as THREE from 'three';
+import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+import type { PartArrays, TexturePixels, View } from '../protocol';
+import type { Box } from '../sheet/geometry';
+import { PlantMeshes } from './plant';
+import { Stage } from './stage';
+
+/** Least time between pictures that the processor draws. */
+const SLOW_MS = 300;
+
+export class PlantView {
+  readonly element = document.createElement('div');
+  private readonly renderer: THREE.WebGLRenderer;
+  private readonly stage: Stage;
+  private readonly plant = new PlantMeshes();
+  private readonly far = new THREE.PerspectiveCamera(32, 1, 0.01, 200);
+  private readonly flat = new THREE.OrthographicCamera(-1, 1, 1, -1, -50, 50);
+  private readonly controls: OrbitControls;
+  private view: View | undefined;
+  private scale = 1;
+  private front = false;
+  private sheetSeen: Box | undefined;
+  private follow = true;
+  private readonly slow: boolean;
+  private frame = 0;
+  private last = 0;
+  private rendered = 0;
+  private wish: { target: THREE.Vector3; distance: number } | undefined;
+  onFrontChange: (front: boolean) => void = () => {};
+  onContext: (lost: boolean) => void = () => {};
+
+  /** Throws where the browser has no WebGL 2. */
+  constructor(label: string) {
+    this.slow = drawnBySoftware();
+    this.renderer = new THREE.WebGLRenderer({ antialias: !this.slow, powerPreference: 'high-performance' });
+    this.renderer.shadowMap.enabled = true;
+    // The light stands still: its shadows change with the plant only.
+    this.renderer.shadowMap.autoUpdate = false;
+    this.renderer.shadowMap.type = THREE.PCFShadowMap;
+    this.renderer.toneMapping = THREE.NeutralToneMapping;
+    this.renderer.toneMappingExposure = 1.08;
+    this.stage = new Stage(this.slow ? 512 : 2048);
+    this.element.className = 'view';
+    const canvas = this.renderer.domElement;
+    canvas.tabIndex = 0;
+    canvas.setAttribute('role', 'img');
+    this.setLabel(label);
+    this.element.append(canvas);
+    this.stage.scene.add(this.plant.group);
+    this.far.position.set(1.25, 0.95, 2.6);
+    this.controls = new OrbitControls(this.far, canvas);
+    this.controls.enableDamping = true;
+    this.controls.dampingFactor = 0.12;
+    this.controls.minDistance = 0.1;
+    this.controls.maxDistance = 12;
+    this.controls.maxPolarAngle = Math.PI * 0.53;
+    this.controls.target.set(0, 0.48, 0);
+    this.controls.addEventListener('change', () => this.redraw());
+    canvas.addEventListener('pointerdown', (e) => this.taken(e.button === 0));
+    canvas.addEventListener('wheel', () => this.taken(false), { passive: true });
+    canvas.addEventListener('keydown', (e) => this.key(e));
+    canvas.addEventListener('webglcontextlost', (e) => { e.preventDefault(); this.onContext(true); });
+    canvas.addEventListener('webglcontextrestored', () => { this.onContext(false); this.redraw(); });
+    new ResizeObserver(() => this.resize()).observe(this.element);
+  }
+
+  setLabel(label: string): void {
+    this.renderer.domElement.setAttribute('aria-label', label);
+  }
+
+  setDark(dark: boolean): void {
+    this.stage.setDark(dark);
+    this.redraw();
+  }
+
+  setWire(wire: boolean): void {
+    this.plant.setWire(wire);
+    this.redraw();
+  }
+
+  forget(): void {
+    this.plant.forget();
+  }
+
+  update(view: View, parts: PartArrays[], textures: TexturePixels[]): void {
+    this.view = view;
+    this.plant.update(view, parts, textures);
+    this.renderer.shadowMap.needsUpdate = true;
+    const [min, max] = [new THREE.Vector3(...view.min), new THREE.Vector3(...view.max)];
+    const size = max.clone().sub(min);
+    const largest = Math.max(size.x, size.y, size.z);
+    if (largest > 0) {
+      this.scale = 1 / largest;
+      this.plant.group.scale.setScalar(this.scale);
+      // Roots below the ground are shown: the ground sinks no plant.
+      this.plant.group.position.y = Math.max(0, -min.y * this.scale);
+      if (this.follow) this.frameAll(min, max, parts.length > 0 && this.wish === undefined);
+    }
+    this.lay();
+    this.redraw();
+  }
+
+  /** Shows the whole plant and follows it again. */
+  frameNow(): void {
+    this.follow = true;
+    this.setFront(false);
+    if (this.view) this.frameAll(new THREE.Vector3(...this.view.min), new THREE.Vector3(...this.view.max), false);
+    this.redraw();
+  }
+
+  /** The front view shows the same part of the plane as the sheet. */
+  setFront(front: boolean): void {
+    if (front === this.front) return;
+    this.front = front;
+    this.stage.setFlat(front);
+    this.lay();
+    this.redraw();
+    this.onFrontChange(front);
+  }
+
+  get isFront(): boolean {
+    return this.front;
+  }
+
+  setSheetSeen(box: Box): void {
+    this.sheetSeen = box;
+    if (this.front) {
+      this.lay();
+      this.redraw();
+    }
+  }
+
+  /** The picture as it is shown now. */
+  async picture(): Promise<Blob> {
+    this.render();
+    const canvas = this.renderer.domElement;
+    return new Promise((resolve, reject) => {
+      canvas.toBlob((b) => (b ? resolve(b) : reject(new Error('no picture'))), 'image/png');
+    });
+  }
+
+  private frameAll(min: THREE.Vector3, max: THREE.Vector3, now: boolean): void {
+    const s = this.scale;
+    const up = this.plant.group.position.y;
+    const target = min.clone().add(max).multiplyScalar(s / 2);
+    target.y += up;
+    if (max.equals(min)) return;
+    const radius = max.clone().sub(min).length() * s * 0.5;
+    const angle = THREE.MathUtils.degToRad(this.far.fov / 2);
+    const across = Math.min(1, this.far.aspect);
+    const distance = (radius / Math.sin(angle) / across) * 0.98;
+    this.wish = { target, distance };
+    if (now) {
+      this.glide(1);
+    }
+  }
+
+  /** Moves the camera a share of the way to where it should be; true when it is there. */
+  private glide(share: number): boolean {
+    if (!this.wish) return true;
+    const { target, distance } = this.wish;
+    const arm = this.far.position.clone().sub(this.controls.target);
+    const length = arm.length() + (distance - arm.length()) * share;
+    this.controls.target.lerp(target, share);
+    this.far.position.copy(this.controls.target).add(arm.setLength(length));
+    return Math.abs(length - distance) < 1e-3 && this.controls.target.distanceTo(target) < 1e-3;
+  }
+
+  /** A hand took the camera: it is no longer moved by itself, and turning leaves the front view. */
+  private taken(turns: boolean): void {
+    if (this.front && turns) this.setFront(false);
+    this.wish = undefined;
+    if (!turns) this.follow = false;
+  }
+
+  private key(e: KeyboardEvent): void {
+    const turn: Record<string, [number, number]> = {
+      ArrowLeft: [-0.12, 0], ArrowRight: [0.12, 0], ArrowUp: [0, -0.1], ArrowDown: [0, 0.1],
+    };
+    const by = turn[e.key];
+    const zoom = e.key === '+' || e.key === '=' ? 0.88 : e.key === '-' ? 1.14 : 0;
+    if (!by && !zoom) return;
+    e.preventDefault();
+    e.stopPropagation();
+    this.taken(by !== undefined);
+    const arm = new THREE.Spherical().setFromVector3(this.far.position.clone().sub(this.controls.target));
+    if (by) {
+      arm.theta += by[0];
+      arm.phi = Math.min(this.controls.maxPolarAngle, Math.max(0.05, arm.phi + by[1]));
+    } else {
+      arm.radius = Math.min(12, Math.max(0.1, arm.radius * zoom));
+    }
+    this.far.position.setFromSpherical(arm).add(this.controls.target);
+    this.redraw();
+  }
+
+  private lay(): void {
+    const { clientWidth: w, clientHeight: h } = this.element;
+    this.far.aspect = w / Math.max(1, h);
+    this.far.updateProjectionMatrix();
+    const front = this.view?.front;
+    if (!front || !this.sheetSeen) return;
+    const k = front.metres_per_unit * this.scale;
+    const seen = this.sheetSeen;
+    const up = this.plant.group.position.y;
+    // The sheet's height decides; its middle is the picture's middle, whatever the widths are.
+    const [cx, cy] = [((seen.left + seen.right) / 2 - front.x) * k, ((seen.bottom + seen.top) / 2 - front.y) * k + up];
+    const half = ((seen.top - seen.bottom) / 2) * k;
+    const wide = half * this.far.aspect;
+    [this.flat.left, this.flat.right, this.flat.bottom, this.flat.top] = [cx - wide, cx + wide, cy - half, cy + half];
+    this.flat.position.set(0, 0, 10);
+    this.flat.updateProjectionMatrix();
+  }
+
+  private resize(): void {
+    const { clientWidth: w, clientHeight: h } = this.element;
+    if (w === 0 || h === 0) return;
+    this.renderer.setPixelRatio(this.slow ? 0.75 : Math.min(2, devicePixelRatio || 1));
+    this.renderer.setSize(w, h, false);
+    this.lay();
+    if (this.follow && this.view) {
+      this.frameAll(new THREE.Vector3(...this.view.min), new THREE.Vector3(...this.view.max), false);
+    }
+    this.redraw();
+  }
+
+  private redraw(): void {
+    if (this.frame) return;
+    if (this.wish === undefined) this.last = performance.now();
+    // Drawing without a graphics card takes the whole processor: the pen goes before the picture.
+    const wait = this.slow ? SLOW_MS - (performance.now() - this.rendered) : 0;
+    if (wait > 0) {
+      this.frame = window.setTimeout(() => { this.frame = 0; this.rendered = 0; this.redraw(); }, wait);
+      return;
+    }
+    this.frame = requestAnimationFrame(() => {
+      this.frame = 0;
+      const now = performance.now();
+      const there = this.glide(1 - Math.exp(-Math.min(now - this.last, 400) / 120));
+      this.last = now;
+      this.controls.update();
+      this.render();
+      this.rendered = performance.now();
+      if (!there) this.redraw();
+    });
+  }
+
+  private render(): void {
+    this.renderer.render(this.stage.scene, this.front && this.view?.front ? this.flat : this.far);
+  }
+}
+
+/** Without a graphics card everything is drawn by the processor: then less is asked of it. Throws without WebGL 2. */
+function drawnBySoftware(): boolean {
+  const gl = document.createElement('canvas').getContext('webgl2');
+  if (!gl) throw new Error('no WebGL 2');
+  const info = gl.getExtension('WEBGL_debug_renderer_info');
+  const name = String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
+  gl.getExtension('WEBGL_lose_context')?.loseContext();
+  return /swiftshader|llvmpipe|software|basic render/i.test(name);
+}

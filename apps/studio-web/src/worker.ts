@@ -1,0 +1,138 @@
+/** The worker: owns the session, answers requests in order, and grows the plant when nothing else is to do. */
+import init, { StudioSession } from './wasm/burgeon_wasm.js';
+import type { FromWorker, PartArrays, Request, TexturePixels, ToWorker, View } from './protocol';
+
+const page = self as unknown as DedicatedWorkerGlobalScope;
+let session: StudioSession | undefined;
+let stop: Int32Array | null = null;
+let stale = false;
+let scheduled = false;
+const sent = new Set<number>();
+
+// Looked at by the evaluation between its steps.
+(globalThis as { burgeonStop?: () => boolean }).burgeonStop = () => stop !== null && Atomics.load(stop, 0) !== 0;
+
+function tell(message: FromWorker, transfer: Transferable[] = []): void {
+  page.postMessage(message, transfer);
+}
+
+const words = (e: unknown): string => (e instanceof Error ? e.message : String(e));
+
+/** After a trap the memory of the session is not to be trusted: the page starts another worker. */
+function fault(e: unknown): void {
+  session = undefined;
+  tell({ kind: 'fault', why: words(e) });
+}
+
+function answer(s: StudioSession, request: Request): unknown {
+  switch (request.kind) {
+    case 'open': return JSON.parse(s.open(request.name, request.bytes, request.row, request.fresh));
+    case 'stroke': return s.add_stroke(request.mode, request.samples);
+    case 'command': return s.run(JSON.stringify(request.command));
+    case 'begin': return s.begin(request.name);
+    case 'stage': return s.stage(JSON.stringify(request.command));
+    case 'commit': return s.commit();
+    case 'abandon': return s.abandon();
+    case 'undo': return s.undo();
+    case 'redo': return s.redo();
+    case 'draft': return s.draft(request.mode, request.samples);
+    case 'save': return s.save();
+    case 'export': return s.export(request.format);
+  }
+}
+
+function tellState(s: StudioSession): void {
+  const state = JSON.parse(s.state());
+  const fresh = [...s.fresh_strokes()].map((id) => ({ id, points: s.stroke_points(id) }));
+  tell({ kind: 'state', state, fresh }, fresh.map((f) => f.points.buffer));
+}
+
+function tellView(s: StudioSession, view: View): void {
+  const transfer: Transferable[] = [];
+  const parts: PartArrays[] = view.parts.map((_, i) => {
+    const part = {
+      positions: s.positions(i), normals: s.normals(i), uvs: s.uvs(i), colors: s.colors(i), indices: s.indices(i),
+    };
+    transfer.push(...Object.values(part).map((column) => column.buffer));
+    return part;
+  });
+  const textures: TexturePixels[] = [];
+  for (const { texture } of view.materials) {
+    if (texture && !sent.has(texture.number)) {
+      sent.add(texture.number);
+      const pixels = s.texture(texture.number);
+      transfer.push(pixels.buffer);
+      textures.push({ ...texture, pixels });
+    }
+  }
+  tell({ kind: 'view', view, parts, textures }, transfer);
+}
+
+function evaluate(): void {
+  scheduled = false;
+  if (!session || !stale) return;
+  stale = false;
+  try {
+    const view: View = JSON.parse(session.evaluate());
+    tellView(session, view);
+  } catch (e) {
+    if (e instanceof WebAssembly.RuntimeError || e instanceof RangeError) fault(e);
+    else {
+      stale = words(e) === 'cancelled';
+      tell({ kind: 'failed', why: words(e) });
+    }
+  }
+}
+
+/** Requests that wait already go first: only the latest state is grown. */
+function schedule(): void {
+  stale = true;
+  if (!scheduled) {
+    scheduled = true;
+    setTimeout(evaluate, 0);
+    tell({ kind: 'busy' });
+  }
+}
+
+async function start(message: Extract<ToWorker, { kind: 'start' }>): Promise<void> {
+  stop = message.stop;
+  await init({ module_or_path: message.wasm });
+  const s = new StudioSession();
+  for (const request of message.journal) {
+    try {
+      answer(s, request);
+    } catch (e) {
+      if (e instanceof WebAssembly.RuntimeError) throw e; // a refusal was refused the first time too
+    }
+  }
+  session = s;
+  tell({ kind: 'ready' });
+  tellState(s);
+  if (!message.hold) schedule();
+}
+
+page.onmessage = ({ data }: MessageEvent<ToWorker>) => {
+  if (data.kind === 'start') {
+    start(data).catch(fault);
+    return;
+  }
+  if (stop) Atomics.store(stop, 0, 0);
+  const { seq, request } = data;
+  if (!session) {
+    tell({ kind: 'refused', seq, why: 'the plant maker is not there' });
+    return;
+  }
+  try {
+    const value = answer(session, request);
+    const bytes = value instanceof Uint8Array ? [value.buffer] : [];
+    const quiet = request.kind === 'save' || request.kind === 'export' || request.kind === 'begin';
+    // The state first: who waits for the answer may look at it.
+    if (!quiet && request.kind !== 'draft') tellState(session);
+    tell({ kind: 'done', seq, value }, bytes);
+    if (!quiet) schedule();
+  } catch (e) {
+    tell({ kind: 'refused', seq, why: words(e) });
+    if (stale) schedule(); // stopped for a change that did not come
+    if (e instanceof WebAssembly.RuntimeError || e instanceof RangeError) fault(e);
+  }
+};

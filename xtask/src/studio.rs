@@ -1,0 +1,104 @@
+//! The Studio: its packages, its build, and its tests in a real browser.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::shell::{Outcome, cargo, finish, output, prepare, repository, say, target_dir};
+use crate::toolchain::{apt_install, is_root_on_debian};
+use crate::web::{Tools, bindgen, build_wasm};
+
+fn folder() -> PathBuf {
+    repository().join("apps/studio-web")
+}
+
+/// An npm command in the Studio's folder.
+fn npm(args: &[&str]) -> Outcome {
+    say(&format!("$ npm {} (in apps/studio-web)", args.join(" ")));
+    let program = if cfg!(windows) { "npm.cmd" } else { "npm" };
+    let mut c = prepare(program, args);
+    c.current_dir(folder());
+    finish(c)
+}
+
+/// Installs the packages of the lock file, if they are not those that are there.
+fn packages() -> Outcome {
+    let lock = folder().join("package-lock.json");
+    let stamp = folder().join("node_modules/.burgeon-lock");
+    let wanted = std::fs::read(&lock).map_err(|e| format!("{}: {e}", lock.display()))?;
+    if std::fs::read(&stamp).is_ok_and(|there| there == wanted) {
+        return Ok(());
+    }
+    npm(&["ci", "--no-fund", "--no-audit", "--silent"])?;
+    std::fs::write(&stamp, wanted).map_err(|e| format!("{}: {e}", stamp.display()))
+}
+
+/// Builds the folder of static files `apps/studio-web/dist`.
+pub(crate) fn build(tools: &Tools, release: bool) -> Outcome {
+    packages()?;
+    let wasm = build_wasm(tools, release)?;
+    bindgen(tools, &wasm, "web", &folder().join("src/wasm"))?;
+    npm(&["run", "--silent", "build", "--", "--logLevel", "warn"])
+}
+
+/// Whether there is no screen for a browser, or nobody to look at it.
+pub(crate) fn headless() -> bool {
+    let set = |name: &str| std::env::var_os(name).is_some_and(|v| !v.is_empty());
+    let screenless = cfg!(target_os = "linux") && !set("DISPLAY") && !set("WAYLAND_DISPLAY");
+    set("CI") || screenless
+}
+
+/// Builds the Studio and serves it until Ctrl-C; `args` go to `burgeon studio`.
+pub(crate) fn open(tools: &Tools, args: &[String]) -> Outcome {
+    build(tools, true)?;
+    cargo(&["build", "--release", "--package", "burgeon-cli"])?;
+    let mut c = prepare(burgeon("release"), &["studio", "--folder"]);
+    c.arg(folder().join("dist")).args(args);
+    finish(c)
+}
+
+fn burgeon(profile: &str) -> PathBuf {
+    target_dir().join(profile).join(format!("burgeon{}", std::env::consts::EXE_SUFFIX))
+}
+
+/// Types, texts and geometry in Node, then the main journeys in a browser.
+pub(crate) fn test(tools: &Tools) -> Outcome {
+    build(tools, false)?;
+    npm(&["run", "--silent", "check"])?;
+    npm(&["run", "--silent", "test"])?;
+    let Some(browser) = browser() else {
+        say("skipped: the Studio's journeys need Chromium; install it or name it in BURGEON_CHROMIUM");
+        return Ok(());
+    };
+    cargo(&["build", "--package", "burgeon-cli"])?;
+    say(&format!("$ node e2e/run.mjs ({})", browser.display()));
+    let mut c = prepare("node", &["e2e/run.mjs"]);
+    c.current_dir(folder()).arg(browser).arg(burgeon("debug")).arg(target_dir().join("studio-test"));
+    finish(c)
+}
+
+/// A Chromium: named, found, or installed where that needs no question.
+fn browser() -> Option<PathBuf> {
+    if let Some(named) = std::env::var_os("BURGEON_CHROMIUM") {
+        return Some(named.into());
+    }
+    let find = || {
+        ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"].into_iter().find(|name| {
+            let mut c = Command::new(name);
+            c.arg("--version");
+            output(c).is_ok()
+        })
+    };
+    let found = find().or_else(|| {
+        if !is_root_on_debian() {
+            return None;
+        }
+        let update = || finish(prepare("apt-get", &["update", "-qq"]));
+        let installed =
+            apt_install(&["chromium"]).or_else(|_| update().and_then(|()| apt_install(&["chromium"])));
+        if let Err(e) = installed {
+            say(&e);
+        }
+        find()
+    });
+    found.map(|name| Path::new(name).to_path_buf())
+}
