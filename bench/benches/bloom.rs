@@ -1,4 +1,4 @@
-//! Free-form deformation and growth laws. The peers (NumPy, scipy) are timed by `docs/bloom.md`'s script.
+//! Free-form deformation and growth laws. The peers (`NumPy`, scipy) are timed by `docs/bloom.md`'s script.
 //!
 //! `cargo bench -p burgeon-bench --bench bloom`
 #![expect(clippy::expect_used, reason = "a benchmark of sound input")]

@@ -318,7 +318,6 @@ pub fn make_leaf_from_scan(
     let mut blade = TriMesh::default();
     for (k, &p) in found.grid.iter().enumerate() {
         blade.push(p);
-        #[expect(clippy::cast_possible_truncation, reason = "texture coordinates are f32")]
         blade.uvs.push([(k % n) as f32 / (n - 1) as f32, 1.0 - (k / n) as f32 / (rows - 1) as f32]);
     }
     let index = |i: usize| u32::try_from(i).unwrap_or(u32::MAX);

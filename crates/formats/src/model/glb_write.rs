@@ -392,15 +392,15 @@ mod tests {
         let json: serde_json::Value = serde_json::from_slice(&glb[20..20 + length]).unwrap();
         let targets = json["meshes"][0]["primitives"][0]["targets"].as_array().unwrap();
         assert_eq!(targets.len(), 2);
-        let max = |t: usize| {
-            json["accessors"][targets[t]["POSITION"].as_u64().unwrap() as usize]["max"][1].as_f64()
-        };
+        let accessor =
+            |index: &serde_json::Value| &json["accessors"][usize::try_from(index.as_u64().unwrap()).unwrap()];
+        let max = |t: usize| accessor(&targets[t]["POSITION"])["max"][1].as_f64();
         assert_eq!((max(0), max(1)), (Some(1.0), Some(3.0)), "what a key adds");
         let animation = &json["animations"][0];
         assert_eq!(animation["channels"][0]["target"]["path"], "weights");
-        let input = &json["accessors"][animation["samplers"][0]["input"].as_u64().unwrap() as usize];
+        let input = accessor(&animation["samplers"][0]["input"]);
         assert_eq!((input["min"][0].as_f64(), input["max"][0].as_f64()), (Some(0.0), Some(2.5)));
-        let output = &json["accessors"][animation["samplers"][0]["output"].as_u64().unwrap() as usize];
+        let output = accessor(&animation["samplers"][0]["output"]);
         assert_eq!(output["count"], 6, "three keys, two weights each");
         let mut report = base::Report::default();
         let back = crate::read_model(
