@@ -9,6 +9,8 @@ use burgeon::skin::PetalColor;
 use burgeon::{Seed, Unit, UpAxis};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::files::PlantFormat;
+
 /// Three-dimensional plants out of what people can draw.
 ///
 /// Exit status: 0 on success, 2 for bad usage or bad input (one line on stderr says what, where and what to do),
@@ -144,10 +146,10 @@ pub(crate) enum ViewWord {
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Geometry")]
 pub(crate) struct AxesArgs {
-    /// Axis that points up in OBJ, PLY and STL files; glTF is always +Y.
-    #[arg(long, value_enum, default_value_t = UpWord::Y)]
-    pub(crate) up: UpWord,
-    /// Unit of length in OBJ, PLY and STL files; glTF is always in metres.
+    /// Axis that points up in OBJ, PLY, STL, MTG and QSM files; glTF is always +Y [default: y; z for MTG and QSM].
+    #[arg(long, value_enum)]
+    pub(crate) up: Option<UpWord>,
+    /// Unit of length in OBJ, PLY, STL, MTG and QSM files; glTF is always in metres.
     #[arg(long, value_enum, default_value_t = UnitWord::M)]
     pub(crate) unit: UnitWord,
 }
@@ -196,12 +198,16 @@ pub(crate) struct SketchArgs {
     /// - for standard input.
     #[arg(value_name = "IN", required = true)]
     pub(crate) inputs: Vec<PathBuf>,
-    /// The model: .glb, .obj, .ply or .stl. For several drawings a folder, which is created and gets one model each.
-    #[arg(long, short, value_name = "OUT", required_unless_present_any = ["png", "report", "json"])]
+    /// The model: .glb, .obj, .ply or .stl; or the plant's structure: .mtg (multiscale tree graph). For several
+    /// drawings a folder, which is created and gets one file each.
+    #[arg(long, short, value_name = "OUT", required_unless_present_any = ["png", "qsm", "report", "json"])]
     pub(crate) output: Option<PathBuf>,
-    /// Format of the models in a folder.
-    #[arg(long, value_enum, default_value_t = FormatWord::Glb)]
-    pub(crate) format: FormatWord,
+    /// Format of the files in a folder.
+    #[arg(long, value_enum, default_value_t = PlantFormatWord::Glb)]
+    pub(crate) format: PlantFormatWord,
+    /// Also write the branches as cylinders, one a row, as `TreeQSM` has them. For several drawings a folder.
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) qsm: Option<PathBuf>,
     /// Also make a picture. For several drawings a folder, which is created and gets one picture each.
     #[arg(long, value_name = "FILE.png")]
     pub(crate) png: Option<PathBuf>,
@@ -224,6 +230,7 @@ pub(crate) struct SketchArgs {
 const SKETCH_EXAMPLES: &str = "Examples:
   burgeon sketch daisy.svg -o daisy.glb --png daisy.png
   burgeon sketch trees.ndjson -o trees/ --format obj --png trees/
+  burgeon sketch oak.svg -o oak.mtg --qsm oak.csv               structure for programs of the field
   burgeon sketch daisy.svg --report daisy.json                  what was each stroke taken for?
   burgeon sketch daisy.svg -o daisy.glb --classes daisy.json    ... corrected in that file
 
@@ -376,11 +383,35 @@ pub(crate) enum FormatWord {
 }
 
 impl FormatWord {
-    pub(crate) const fn format(self) -> ModelFormat {
+    pub(crate) const fn extension(self) -> &'static str {
         match self {
-            Self::Glb => ModelFormat::Glb,
-            Self::Obj => ModelFormat::Obj,
-            Self::Ply => ModelFormat::Ply,
+            Self::Glb => "glb",
+            Self::Obj => "obj",
+            Self::Ply => "ply",
+        }
+    }
+}
+
+/// What a plant is written as.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum PlantFormatWord {
+    /// Binary glTF: one file with textures and materials
+    Glb,
+    /// Wavefront OBJ with its material file and textures beside it
+    Obj,
+    /// PLY: one mesh with colours
+    Ply,
+    /// Multiscale tree graph: axes, nodes and organs as text
+    Mtg,
+}
+
+impl PlantFormatWord {
+    pub(crate) const fn format(self) -> PlantFormat {
+        match self {
+            Self::Glb => PlantFormat::Model(ModelFormat::Glb),
+            Self::Obj => PlantFormat::Model(ModelFormat::Obj),
+            Self::Ply => PlantFormat::Model(ModelFormat::Ply),
+            Self::Mtg => PlantFormat::Mtg,
         }
     }
 
@@ -389,6 +420,7 @@ impl FormatWord {
             Self::Glb => "glb",
             Self::Obj => "obj",
             Self::Ply => "ply",
+            Self::Mtg => "mtg",
         }
     }
 }

@@ -60,7 +60,7 @@ pub(crate) fn convert(args: &ConvertArgs) -> Outcome {
 
 fn model(args: &ConvertArgs, input: files::Input, kind: Kind, machine: &Machine) -> Outcome<ItemReport> {
     let format: ModelFormat = files::writable(&args.output)?;
-    let read_axes = files::axes(args.in_up.unwrap_or(args.axes.up), args.in_unit.unwrap_or(args.axes.unit));
+    let read_axes = files::axes(args.in_up.or(args.axes.up), args.in_unit.unwrap_or(args.axes.unit));
     let (read, read_ms) = machine.timed(|| files::read_opened_model(&args.input, input, kind, &read_axes));
     let (model, _, mut warnings) = read?;
     machine.cancel.check()?;

@@ -6,11 +6,13 @@ use std::path::{Component, Path};
 
 use burgeon::document::{self, Document, MAX_PROJECT_BYTES};
 use burgeon::formats::{
-    DrawingFormat, ExportSpec, ModelFormat, PngCache, ReadDrawing, obj_files, write_glb_with,
+    DrawingFormat, ExportSpec, ModelFormat, PngCache, ReadDrawing, obj_files, write_glb_with, write_mtg,
 };
 use burgeon::mesh::Model;
+use burgeon::plant::Plant;
 use burgeon::{Report, Warning};
 
+use crate::args::{AxesArgs, UnitWord, UpWord};
 use crate::failure::{Failure, Outcome};
 use crate::output;
 
@@ -113,8 +115,9 @@ pub(crate) fn drawing_of(path: &Path, document: &Document) -> Outcome<ReadDrawin
     Ok(ReadDrawing { drawing: document.drawing(), warnings: Vec::new() })
 }
 
-pub(crate) fn axes(up: crate::args::UpWord, unit: crate::args::UnitWord) -> ExportSpec {
-    ExportSpec { up: up.into(), unit: unit.into() }
+/// Axes of models: +Y up if nothing was asked for.
+pub(crate) fn axes(up: impl Into<Option<UpWord>>, unit: UnitWord) -> ExportSpec {
+    ExportSpec { up: up.into().unwrap_or(UpWord::Y).into(), unit: unit.into() }
 }
 
 /// Reads a model, with what its reader has to say.
@@ -185,6 +188,64 @@ pub(crate) fn writable(path: &Path) -> Outcome<ModelFormat> {
             "models are written as .glb, .obj, .ply or .stl; end the name with one of them",
         )),
     }
+}
+
+/// What a plant is written as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum PlantFormat {
+    /// Its meshes.
+    Model(ModelFormat),
+    /// Its structure, as a multiscale tree graph.
+    Mtg,
+}
+
+impl PlantFormat {
+    pub(crate) fn from_extension(extension: &str) -> Option<Self> {
+        if extension.eq_ignore_ascii_case("mtg") {
+            return Some(Self::Mtg);
+        }
+        ModelFormat::from_extension(extension).map(Self::Model)
+    }
+}
+
+/// The format of a plant's file name, if we write it.
+pub(crate) fn plant_writable(path: &Path) -> Outcome<PlantFormat> {
+    match extension(path).and_then(PlantFormat::from_extension) {
+        Some(PlantFormat::Mtg) => Ok(PlantFormat::Mtg),
+        Some(PlantFormat::Model(_)) => writable(path).map(PlantFormat::Model),
+        None => Err(Failure::at(
+            path,
+            "plants are written as .glb, .obj, .ply, .stl or .mtg; end the name with one of them",
+        )),
+    }
+}
+
+/// Writes a plant whole: its model, or its structure with +Z up unless `up` says otherwise.
+pub(crate) fn write_plant(
+    path: &Path,
+    (plant, model): (&Plant, &Model),
+    format: PlantFormat,
+    args: &AxesArgs,
+    cache: &mut PngCache,
+) -> Outcome<Vec<Warning>> {
+    match format {
+        PlantFormat::Model(format) => write_model(path, model, format, &axes(args.up, args.unit), cache),
+        PlantFormat::Mtg => {
+            let axes = field_axes(args);
+            output::write_whole(path, |out| write_mtg(plant, &axes, out)).map(|()| Vec::new())
+        }
+    }
+}
+
+/// Writes a plant's cylinders whole, with +Z up unless `args` say otherwise.
+pub(crate) fn write_qsm(path: &Path, plant: &Plant, args: &AxesArgs) -> Outcome {
+    let axes = field_axes(args);
+    output::write_whole(path, |out| burgeon::formats::write_qsm(plant, &axes, out))
+}
+
+// The programs that read MTG and QSM files have Z upwards.
+fn field_axes(args: &AxesArgs) -> ExportSpec {
+    axes(args.up.unwrap_or(UpWord::Z), args.unit)
 }
 
 /// Writes a model whole: for an OBJ first its textures and its material file.

@@ -16,7 +16,7 @@ use burgeon::mesh::Model;
 use burgeon::{ItemReport, LeafError, LeafOptions, LeafTexture, Report, RunReport, Seed, ShootSpec};
 use clap::{Args, ValueEnum};
 
-use crate::args::{AxesArgs, CommonArgs, PictureArgs, UnitWord, ranged};
+use crate::args::{AxesArgs, CommonArgs, PictureArgs, UnitWord, UpWord, ranged};
 use crate::failure::{Failure, Outcome};
 use crate::machine::Machine;
 use crate::{files, output, picture, report, say};
@@ -446,7 +446,7 @@ fn grown(args: &LeafArgs, mut full: Vec<FullMarks>) -> Outcome<FullMarks> {
 }
 
 fn read(path: &Path, args: &LeafArgs) -> Outcome<ReadMarks> {
-    let axes = MarksAxes { unit: args.axes.unit.into(), up: args.axes.up.into() };
+    let axes = MarksAxes { unit: args.axes.unit.into(), up: args.axes.up.unwrap_or(UpWord::Y).into() };
     let name = files::stem(path);
     let read = if files::is_stdin(path) {
         read_marks(std::io::stdin().lock(), &name, axes)

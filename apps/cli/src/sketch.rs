@@ -6,7 +6,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use burgeon::document::Document;
-use burgeon::formats::{DrawingError, Drawings, ModelFormat, PngCache, ReadDrawing, read_drawings};
+use burgeon::formats::{DrawingError, Drawings, PngCache, ReadDrawing, read_drawings};
 use burgeon::sketch::SketchSpec;
 use burgeon::skin::SkinSpec;
 use burgeon::{ItemReport, Made, MakeError, Run, RunReport, Seed, SketchOptions, make_from_sketch};
@@ -14,7 +14,7 @@ use burgeon::{ItemReport, Made, MakeError, Run, RunReport, Seed, SketchOptions, 
 use crate::args::{ReadingArgs, SketchArgs, SurfaceArgs};
 use crate::classes::Classes;
 use crate::failure::{Failure, Outcome};
-use crate::files::{self, Kind};
+use crate::files::{self, Kind, PlantFormat};
 use crate::machine::{Machine, Progress};
 use crate::{output, picture, say};
 
@@ -48,24 +48,36 @@ impl<'a> Job<'a> {
     /// The outputs are folders, rather than files.
     fn is_batch(&self) -> Outcome<bool> {
         let many = self.args.inputs.len() > 1;
-        let model = |e: &str| ModelFormat::from_extension(e).is_some();
+        let model = |e: &str| PlantFormat::from_extension(e).is_some();
         let picture = |e: &str| e.eq_ignore_ascii_case("png");
-        let output =
-            self.args.output.as_deref().map(|p| {
-                names_folder(p, "-o", model, "models are written as .glb, .obj, .ply or .stl", many)
-            });
+        let table = |e: &str| e.eq_ignore_ascii_case("csv");
+        let output = self.args.output.as_deref().map(|p| {
+            names_folder(p, "-o", model, "plants are written as .glb, .obj, .ply, .stl or .mtg", many)
+        });
         let png = self
             .args
             .png
             .as_deref()
             .map(|p| names_folder(p, "--png", picture, "pictures are written as .png", many));
-        match (output.transpose()?, png.transpose()?) {
-            (Some(a), Some(b)) if a != b => {
-                let path = self.args.png.as_deref().unwrap_or(Path::new(""));
-                Err(Failure::at(path, "-o and --png name a file and a folder; give two files or two folders"))
+        let qsm = self
+            .args
+            .qsm
+            .as_deref()
+            .map(|p| names_folder(p, "--qsm", table, "cylinders are written as .csv", many));
+        let (output, png, qsm) = (output.transpose()?, png.transpose()?, qsm.transpose()?);
+        let first = output.or(png).or(qsm);
+        for (folder, path, option) in [(png, &self.args.png, "--png"), (qsm, &self.args.qsm, "--qsm")] {
+            if folder.is_some() && folder != first {
+                let other = if output.is_some() { "-o" } else { "--png" };
+                return Err(Failure::at(
+                    path.as_deref().unwrap_or(Path::new("")),
+                    format_args!(
+                        "{other} and {option} name a file and a folder; give two files or two folders"
+                    ),
+                ));
             }
-            (a, b) => Ok(many || a.or(b).unwrap_or(false)),
         }
+        Ok(many || first.unwrap_or(false))
     }
 
     /// What the project asks for, or the defaults; options of the command line win over both.
@@ -96,10 +108,11 @@ impl<'a> Job<'a> {
     /// The one drawing of the one input.
     fn one(&self, machine: &Machine) -> Outcome<RunReport> {
         let input = &self.args.inputs[0];
-        let format = self.args.output.as_deref().map(files::writable).transpose()?;
+        let format = self.args.output.as_deref().map(files::plant_writable).transpose()?;
         let outputs = [
             ("-o", self.args.output.as_ref()),
             ("--png", self.args.png.as_ref()),
+            ("--qsm", self.args.qsm.as_ref()),
             ("--report", self.args.common.report.as_ref()),
         ];
         output::check_outputs(&outputs, &[input])?;
@@ -118,7 +131,11 @@ impl<'a> Job<'a> {
         let mut report = self.report(read.project.as_deref());
         report.input.drawings = 1;
         report.input.strokes = read.read.drawing.strokes.len() as u64;
-        let target = Target { model: self.args.output.clone().zip(format), png: self.args.png.clone() };
+        let target = Target {
+            plant: self.args.output.clone().zip(format),
+            png: self.args.png.clone(),
+            qsm: self.args.qsm.clone(),
+        };
         let mut cache = PngCache::new();
         let item = self.make(&read, &target, read_ms, &mut cache, machine, &machine.run());
         let item = item.map_err(|failure| match failure {
@@ -158,7 +175,7 @@ impl<'a> Job<'a> {
         let Input { read, project } = input;
         let seed = self.seed(project.as_deref());
         let made = make_from_sketch(&read.drawing, &self.options(input), seed, run);
-        let Made { model, mut item, .. } = made.map_err(|e| match e {
+        let Made { plant, model, mut item, .. } = made.map_err(|e| match e {
             MakeError::Cancelled(_) => Failure::Cancelled,
             other => Failure::Bad(other.to_string()),
         })?;
@@ -167,13 +184,18 @@ impl<'a> Job<'a> {
         item.warnings = warnings;
         run.cancel.check()?;
         let (written, write_ms) = machine.timed(|| {
-            let Some((path, format)) = &target.model else { return Ok(Vec::new()) };
+            if let Some(path) = &target.qsm {
+                files::write_qsm(path, &plant, &self.args.axes)?;
+            }
+            let Some((path, format)) = &target.plant else { return Ok(Vec::new()) };
             item.output = path.display().to_string();
-            let axes = files::axes(self.args.axes.up, self.args.axes.unit);
-            files::write_model(path, &model, *format, &axes, cache)
+            files::write_plant(path, (&plant, &model), *format, &self.args.axes, cache)
         });
         item.warnings.extend(written?.iter().map(ToString::to_string));
         item.timings_ms.add_io(read_ms, write_ms);
+        if self.args.common.report.is_some() || self.args.common.json {
+            item.plant = Some(plant.measure());
+        }
         if let Some(png) = &target.png {
             let drawn = burgeon::render::render(&model, &self.args.picture.spec(seed.number()), run)?;
             picture::write(png, &drawn)?;
@@ -184,7 +206,7 @@ impl<'a> Job<'a> {
     /// Every drawing of every input, spread over threads; memory holds one drawing a thread.
     fn batch(&self, machine: &Machine) -> Outcome<RunReport> {
         self.classes.fits_batch(self.args.reading.classes.as_deref())?;
-        for folder in [&self.args.output, &self.args.png].into_iter().flatten() {
+        for folder in [&self.args.output, &self.args.png, &self.args.qsm].into_iter().flatten() {
             output::make_folder(folder)?;
         }
         let inputs: Vec<&PathBuf> = self.args.inputs.iter().collect();
@@ -247,7 +269,8 @@ impl<'a> Job<'a> {
                 let count = say::counted(done.warnings, "warning", "warnings");
                 say::warning(&format!("{count} about single drawings; --report FILE.json lists them"));
             }
-            let folder = self.args.output.as_deref().or(self.args.png.as_deref());
+            let args = &self.args;
+            let folder = args.output.as_deref().or(args.png.as_deref()).or(args.qsm.as_deref());
             let folder = folder.map_or_else(String::new, |f| format!(" in {}", f.display()));
             let failed = match report.failed {
                 0 => String::new(),
@@ -266,16 +289,18 @@ impl<'a> Job<'a> {
         let extension = self.args.format.extension();
         let file = |folder: &PathBuf, extension: &str| folder.join(format!("{name}.{extension}"));
         Target {
-            model: self.args.output.as_ref().map(|f| (file(f, extension), self.args.format.format())),
+            plant: self.args.output.as_ref().map(|f| (file(f, extension), self.args.format.format())),
             png: self.args.png.as_ref().map(|f| file(f, "png")),
+            qsm: self.args.qsm.as_ref().map(|f| file(f, "csv")),
         }
     }
 }
 
 /// The files of one plant.
 struct Target {
-    model: Option<(PathBuf, ModelFormat)>,
+    plant: Option<(PathBuf, PlantFormat)>,
     png: Option<PathBuf>,
+    qsm: Option<PathBuf>,
 }
 
 /// Failures of a batch that are told on stderr.

@@ -62,6 +62,41 @@ fn sketch_writes_model_picture_and_report() {
 }
 
 #[test]
+fn sketch_writes_the_structure_and_measures_it() {
+    let dir = folder("structure");
+    fs::write(dir.join("rose.svg"), FLOWER).unwrap();
+    let args = ["sketch", "rose.svg", "-o", "rose.mtg", "--qsm", "rose.csv", "--report", "rose.json"];
+    good(&dir, &args);
+    let mtg = fs::read_to_string(dir.join("rose.mtg")).unwrap();
+    assert!(mtg.contains("metres and Z upwards") && mtg.contains("\n/P1\n\t/A1\t"), "{mtg}");
+    let petals = mtg.lines().filter(|l| l.trim_start().starts_with("+K")).count() as u64;
+    let report = json(&dir.join("rose.json"));
+    let item = &report["items"][0];
+    assert_eq!(item["counts"]["petals"], petals);
+    let csv = fs::read_to_string(dir.join("rose.csv")).unwrap();
+    let rows: Vec<Vec<f64>> =
+        csv.lines().skip(1).map(|l| l.split(',').map(|x| x.parse().unwrap()).collect()).collect();
+    let plant = &item["plant"];
+    let number = |key: &str| plant[key].as_f64().unwrap();
+    let length: f64 = rows.iter().map(|r| r[1]).sum();
+    assert!(rows.len() > 3 && (length - number("length_m")).abs() < 1e-4, "{plant}");
+    // The stem of a flower stands upright: +Z in this file.
+    assert!(rows[0][7] > 0.5 && rows[0][8] == 0.0, "{:?}", rows[0]);
+    assert!(number("height_m") > 0.3 && number("wood_volume_m3") > 0.0 && number("leaf_area_m2") > 0.0);
+    assert!(plant["dbh_m"].is_null(), "a rose is no tree");
+    assert_eq!(plant["strahler"]["streams"].as_array().unwrap().len() as u64, plant["strahler"]["order"]);
+    good(&dir, &["sketch", "rose.svg", "-o", "y.mtg", "--up", "y", "--unit", "mm"]);
+    assert!(fs::read_to_string(dir.join("y.mtg")).unwrap().contains("millimetres and Y upwards"));
+    fs::write(dir.join("many.ndjson"), BATCH).unwrap();
+    let args = ["sketch", "many.ndjson", "-o", "out", "--format", "mtg", "--qsm", "tables/"];
+    assert_eq!(status(&burgeon(&dir, &args)), 2, "two of the drawings are none");
+    assert_eq!(names(&dir.join("out")).len(), 3);
+    assert_eq!(names(&dir.join("tables")).len(), 3);
+    let said = bad(&dir, &["sketch", "rose.svg", "-o", "a.glb", "--qsm", "tables/"]);
+    assert!(said.contains("give two files or two folders"), "{said}");
+}
+
+#[test]
 fn report_goes_to_stdout_alone() {
     let dir = folder("json");
     fs::write(dir.join("rose.svg"), FLOWER).unwrap();

@@ -1,7 +1,8 @@
 //! Readers of strokes, readers and writers of models, on byte streams: no paths, no file system.
 //!
 //! bytes -> [`read_drawings`] -> [`sketch::Drawing`]; bytes -> [`read_model`] -> [`mesh::Model`] ->
-//! [`write_model`] -> bytes; bytes -> [`read_cloud`] -> [`mesh::PointCloud`].
+//! [`write_model`] -> bytes; bytes -> [`read_cloud`] -> [`mesh::PointCloud`]; `plant::Plant` -> [`write_mtg`],
+//! [`write_qsm`] -> bytes.
 //!
 //! What comes in may be hostile: sizes, nesting and expansion are bounded, errors name the place and what to
 //! do, and nothing panics. Inside, y points up and lengths are metres; everything else is turned at this
@@ -12,6 +13,7 @@ mod drawing;
 mod error;
 mod leaves;
 mod model;
+mod plant;
 mod summary;
 
 pub use cloud::{CloudFormat, MAX_CLOUD_BYTES, read_cloud, write_cloud_ply};
@@ -25,4 +27,5 @@ pub use model::{
     read_model, read_picture, write_glb, write_glb_morph, write_glb_with, write_model, write_ply, write_png,
     write_stl,
 };
+pub use plant::{write_mtg, write_qsm};
 pub use summary::{DrawingSummary, MaterialSummary, ModelSummary, PartSummary};

@@ -15,6 +15,7 @@
 //! | `curve`, `frame` | smooth curves through points, frames along them |
 //! | `triangulate` | constrained Delaunay triangulation of a blade |
 //! | `grid` | neighbours |
+//! | `hull3` | convex hulls in space |
 //! | `spline` | ball B-spline curves and their tubes, tensor-product surfaces (paper 004) |
 
 mod cluster;
@@ -23,6 +24,7 @@ mod curve;
 mod ellipse;
 mod frame;
 mod grid;
+mod hull3;
 mod outline;
 mod pca;
 mod polygon;
@@ -37,6 +39,7 @@ pub use curve::{bezier_quadratic_c1, catmull_rom};
 pub use ellipse::{Ellipse, fit_ellipse, fit_ellipse_harmonic};
 pub use frame::{Frame3, rotation_minimising_frames};
 pub use grid::{Grid2, Grid3};
+pub use hull3::{Hull3, convex_hull3};
 pub use outline::{self_crossings, simple_outline};
 pub use pca::{Pca2, pca2, pca3};
 pub use polygon::{centroid, contains, convex_hull, farthest_pair, medial_axis_width, signed_area};

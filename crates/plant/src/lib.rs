@@ -7,6 +7,7 @@
 //! another (`<`); axes and organs are borne (`+`) by nodes.
 
 mod blade;
+mod measure;
 mod organ;
 mod phyllotaxis;
 mod pipe;
@@ -15,6 +16,7 @@ mod topology;
 mod validate;
 
 pub use blade::{Blade, Lift, Relief};
+pub use measure::{Measures, OrderMeasures, RadiusExponent, Strahler};
 pub use organ::{Flower, FlowerId, Frame, Organ, OrganId, OrganKind, Shape, ShapeId};
 pub use phyllotaxis::{Divergence, Phyllotaxis};
 pub use pipe::{PipeModel, Taper, pipe_radii};

@@ -77,6 +77,9 @@ pub struct ItemReport {
     pub digest: String,
     /// What was not as the user might expect.
     pub warnings: Vec<String>,
+    /// Of a plant with axes: what a botanist would measure on it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plant: Option<plant::Measures>,
     /// Of `leaf`: veins, blade and how well they fit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub leaf: Option<crate::LeafReport>,

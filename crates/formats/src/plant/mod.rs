@@ -1,0 +1,82 @@
+//! [`plant::Plant`] -> bytes: the two text formats in which the field keeps the structure of plants.
+
+mod mtg;
+mod qsm;
+
+pub use mtg::write_mtg;
+pub use qsm::write_qsm;
+
+use base::{Unit, UpAxis};
+use glam::DVec3;
+use plant::{AxisId, NodeId, Plant};
+
+use crate::ExportSpec;
+
+/// A length in metres as the file has it.
+fn length(spec: &ExportSpec, metres: f64) -> f64 {
+    match spec.unit {
+        Unit::Metre => metres,
+        Unit::Centimetre => metres * 100.0,
+        Unit::Millimetre => metres * 1000.0,
+    }
+}
+
+/// A direction as the file has it.
+fn turn(spec: &ExportSpec, v: DVec3) -> DVec3 {
+    match spec.up {
+        UpAxis::Y => v,
+        UpAxis::Z => DVec3::new(v.x, -v.z, v.y),
+    }
+}
+
+fn place(spec: &ExportSpec, p: DVec3) -> DVec3 {
+    turn(spec, p.map(|x| length(spec, x)))
+}
+
+/// A plain decimal with `digits` digits after the point at most: readers of MTG split at the `+` of `1e+5`.
+fn decimal(x: f64, digits: usize) -> String {
+    let mut text = format!("{x:.digits$}");
+    if text.contains('.') {
+        text.truncate(text.trim_end_matches('0').trim_end_matches('.').len());
+    }
+    if text == "-0" { "0".into() } else { text }
+}
+
+/// A length or position to a micrometre.
+fn micrometres(spec: &ExportSpec, x: f64) -> String {
+    let digits = match spec.unit {
+        Unit::Metre => 6,
+        Unit::Centimetre => 4,
+        Unit::Millimetre => 3,
+    };
+    decimal(x, digits)
+}
+
+/// What an axis stands on, as a node that is a place of its own: the first node of a borne axis is not, it lies at
+/// its bearer.
+fn standing_on(plant: &Plant, mut node: NodeId) -> NodeId {
+    loop {
+        let axis = plant.axis(plant.nodes.axis[node.index()]);
+        match axis.bearer {
+            // Bearers come first, so this goes down to an end.
+            Some(bearer) if axis.nodes.start as usize == node.index() => node = bearer,
+            _ => return node,
+        }
+    }
+}
+
+/// The axes, and their number on the way up from 1.
+fn numbered(plant: &Plant) -> impl Iterator<Item = (AxisId, usize)> + '_ {
+    (0..plant.axes.len()).map(|i| (AxisId::new(i), i + 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_plain_decimals() {
+        let written = [1.0, -0.0, 0.1, 1e-9, -1e-9, 123_456.789_012_3, 1e10, -2.5].map(|x| decimal(x, 6));
+        assert_eq!(written, ["1", "0", "0.1", "0", "0", "123456.789012", "10000000000", "-2.5"]);
+    }
+}

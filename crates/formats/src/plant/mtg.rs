@@ -1,0 +1,275 @@
+//! Plant -> multiscale tree graph (Godin and Caraglio 1998), as `AMAPmod` and `OpenAlea` read it.
+
+use std::io::Write;
+
+use glam::DVec3;
+use plant::{AxisId, AxisKind, NodeId, Organ, OrganKind, Plant, Shape};
+
+use super::{decimal, length, micrometres, numbered, place, standing_on, turn};
+use crate::{ExportSpec, WriteError};
+
+/// Columns of numbers and words after the code.
+const FEATURES: [(&str, &str); 15] = [
+    ("Kind", "ALPHA"),
+    ("XX", "REAL"),
+    ("YY", "REAL"),
+    ("ZZ", "REAL"),
+    ("BotDia", "REAL"),
+    ("TopDia", "REAL"),
+    ("Length", "REAL"),
+    ("Area", "REAL"),
+    ("Flower", "INT"),
+    ("DX", "REAL"),
+    ("DY", "REAL"),
+    ("DZ", "REAL"),
+    ("NX", "REAL"),
+    ("NY", "REAL"),
+    ("NZ", "REAL"),
+];
+
+/// Writes a sound plant as MTG text (FORM-A): the plant `P`, its axes `A`, their nodes `N` and organs (`L` leaf, `K`
+/// petal, `D` disc, `U` fruit, `S` stamen, `C` pistil, `T` thorn).
+///
+/// A node has its position (`XX`, `YY`, `ZZ`) and the diameter there (`TopDia`); the first node of a borne axis has
+/// the diameter at the axis's base, too (`BotDia`), and is the axis's second point: the first lies at the bearer.
+/// Organs have their root's position, length, one-sided area, direction (`DX` to `DZ`) and upper side (`NX` to `NZ`).
+/// Lengths are in `spec`'s unit, to a micrometre; areas in its square. Not written: the outlines of blades, colours,
+/// strokes. Cost: linear.
+///
+/// # Errors
+/// [`WriteError::Io`].
+///
+/// ```
+/// use glam::DVec3;
+/// let mut p = plant::Plant::default();
+/// p.add_axis(plant::AxisKind::Branch, None, 1, &[DVec3::ZERO, DVec3::Y * 2.0], None);
+/// let mut out = Vec::new();
+/// formats::write_mtg(&p, &formats::ExportSpec::default(), &mut out)?;
+/// assert!(String::from_utf8(out)?.contains("\n\t^<N2"));
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
+pub fn write_mtg(plant: &Plant, spec: &ExportSpec, out: impl Write) -> Result<(), WriteError> {
+    let borne = Borne::of(plant);
+    let deepest = plant.axes.iter().map(|a| a.order as usize).max().unwrap_or(0);
+    // The plant, an axis of each order, and what the last of them bear.
+    let areas = plant.shapes.iter().map(Shape::one_side_m2).collect();
+    let mut writer = Writer { plant, spec, out, columns: deepest + 3, areas };
+    writer.head()?;
+    writer.line(0, "/P1", &Row::default())?;
+    for (id, _) in numbered(plant).filter(|(id, _)| plant.axis(*id).bearer.is_none()) {
+        writer.tree(id, &borne)?;
+    }
+    let lone = plant.organs.iter().enumerate().filter(|(_, o)| o.bearer.is_none());
+    for ((i, organ), k) in lone.zip(plant.axes.len() + 1..) {
+        // An organ must belong to an axis, so each that hangs in the air has one of its own.
+        writer.line(1, &format!("/A{k}"), &Row::kind("none"))?;
+        writer.organ(1, "^/", i, organ)?;
+    }
+    Ok(())
+}
+
+/// What each node bears, in order: rows of axes and of organs.
+struct Borne {
+    axes: Vec<(NodeId, AxisId)>,
+    organs: Vec<(NodeId, usize)>,
+}
+
+impl Borne {
+    fn of(plant: &Plant) -> Self {
+        let axes =
+            numbered(plant).filter_map(|(id, _)| Some((standing_on(plant, plant.axis(id).bearer?), id)));
+        let organs = plant.organs.iter().enumerate();
+        let organs = organs.filter_map(|(i, o)| Some((standing_on(plant, o.bearer?), i)));
+        let (mut axes, mut organs): (Vec<_>, Vec<_>) = (axes.collect(), organs.collect());
+        // Stable: in the order of the plant at each node.
+        axes.sort_by_key(|(node, _)| *node);
+        organs.sort_by_key(|(node, _)| *node);
+        Self { axes, organs }
+    }
+
+    fn on<T: Copy>(list: &[(NodeId, T)], node: NodeId) -> impl Iterator<Item = T> + '_ {
+        let from = list.partition_point(|(n, _)| *n < node);
+        list[from..].iter().take_while(move |(n, _)| *n == node).map(|(_, x)| *x)
+    }
+}
+
+/// The features of one line; empty where there is nothing to say.
+#[derive(Default)]
+struct Row {
+    kind: &'static str,
+    at: Option<DVec3>,
+    base: Option<f64>,
+    top: Option<f64>,
+    length: Option<f64>,
+    area: Option<f64>,
+    flower: Option<u32>,
+    along: Option<DVec3>,
+    normal: Option<DVec3>,
+}
+
+impl Row {
+    fn kind(kind: &'static str) -> Self {
+        Self { kind, ..Self::default() }
+    }
+}
+
+struct Writer<'a, W> {
+    plant: &'a Plant,
+    spec: &'a ExportSpec,
+    out: W,
+    columns: usize,
+    /// Of each shape, one side, at scale 1.
+    areas: Vec<f64>,
+}
+
+/// An axis on the way, and how far it is written.
+struct Frame {
+    axis: AxisId,
+    /// The next of its nodes.
+    node: usize,
+    /// What the last node bears and is still to be written.
+    waiting: Vec<AxisId>,
+}
+
+impl<W: Write> Writer<'_, W> {
+    fn head(&mut self) -> Result<(), WriteError> {
+        let up = match self.spec.up {
+            base::UpAxis::Y => 'Y',
+            base::UpAxis::Z => 'Z',
+        };
+        let out = &mut self.out;
+        writeln!(out, "# Burgeon {}", env!("CARGO_PKG_VERSION"))?;
+        writeln!(
+            out,
+            "# Lengths in {} and {up} upwards. TopDia is the diameter at a node",
+            self.spec.unit_word()
+        )?;
+        writeln!(out, "CODE:\tFORM-A\n\nCLASSES:\nSYMBOL\tSCALE\tDECOMPOSITION\tINDEXATION\tDEFINITION")?;
+        writeln!(out, "$\t0\tFREE\tFREE\tIMPLICIT\nP\t1\tFREE\tFREE\tEXPLICIT\nA\t2\tFREE\tFREE\tEXPLICIT")?;
+        for symbol in ["N", "L", "K", "D", "U", "S", "C", "T"] {
+            writeln!(out, "{symbol}\t3\tFREE\tFREE\tEXPLICIT")?;
+        }
+        writeln!(out, "\nDESCRIPTION:\nLEFT\tRIGHT\tRELTYPE\tMAX\nA\tA\t+\t?")?;
+        writeln!(out, "N\tN\t<\t1\nN\tN,L,K,D,U,S,C,T\t+\t?\n\nFEATURES:\nNAME\tTYPE")?;
+        for (name, kind) in FEATURES {
+            writeln!(out, "{name}\t{kind}")?;
+        }
+        write!(out, "\nMTG:\nENTITY-CODE{}", "\t".repeat(self.columns))?;
+        let names: Vec<&str> = FEATURES.iter().map(|(name, _)| *name).collect();
+        Ok(writeln!(out, "{}", names.join("\t"))?)
+    }
+
+    fn line(&mut self, column: usize, code: &str, row: &Row) -> Result<(), WriteError> {
+        let spec = self.spec;
+        let long = |x: Option<f64>| x.map(|x| micrometres(spec, length(spec, x))).unwrap_or_default();
+        let unit = |v: Option<DVec3>| {
+            v.map_or_else(Default::default, |v| turn(spec, v).to_array().map(|x| decimal(x, 6)))
+        };
+        let at =
+            row.at.map_or_else(Default::default, |p| place(spec, p).to_array().map(|x| micrometres(spec, x)));
+        let area = row.area.map(|a| decimal(length(spec, length(spec, a)), 9)).unwrap_or_default();
+        let flower = row.flower.map(|f| f.to_string()).unwrap_or_default();
+        let (dir, up): ([String; 3], [String; 3]) = (unit(row.along), unit(row.normal));
+        let at: [String; 3] = at;
+        let (before, after) = ("\t".repeat(column), "\t".repeat(self.columns - column));
+        let mut text = format!("{before}{code}{after}{}", row.kind);
+        let numbers =
+            at.iter().cloned().chain([long(row.base), long(row.top), long(row.length), area, flower]);
+        for cell in numbers.chain(dir).chain(up) {
+            text.push('\t');
+            text.push_str(&cell);
+        }
+        Ok(writeln!(self.out, "{}", text.trim_end_matches('\t'))?)
+    }
+
+    /// An axis that stands on the ground and all that it bears; with a stack of its own, as orders may be many.
+    fn tree(&mut self, root: AxisId, borne: &Borne) -> Result<(), WriteError> {
+        let mut stack: Vec<Frame> = Vec::new();
+        self.open(root, 1, "/", &mut stack)?;
+        while let Some(frame) = stack.last_mut() {
+            if let Some(child) = frame.waiting.pop() {
+                let column = stack.len() + 1;
+                self.open(child, column, "+", &mut stack)?;
+                continue;
+            }
+            let axis = self.plant.axis(frame.axis);
+            let Some(node) = axis.node_ids().nth(frame.node) else {
+                stack.pop();
+                continue;
+            };
+            let first = if axis.bearer.is_some() { 1 } else { 0 };
+            // Numbered so that node k of every axis is its k-th point after the bearer.
+            let code = if frame.node == first {
+                format!("^/N{}", frame.node + 1 - first)
+            } else {
+                format!("^<N{}", frame.node + 1 - first)
+            };
+            let borne_base = (first == 1 && frame.node == 1).then_some(axis.nodes.start as usize);
+            frame.node += 1;
+            frame.waiting = Borne::on(&borne.axes, node).collect();
+            frame.waiting.reverse();
+            let column = stack.len();
+            let row = Row {
+                at: Some(self.plant.nodes.position[node.index()]),
+                base: borne_base.map(|b| 2.0 * self.plant.nodes.radius_m[b]),
+                top: Some(2.0 * self.plant.nodes.radius_m[node.index()]),
+                ..Row::default()
+            };
+            self.line(column, &code, &row)?;
+            for organ in Borne::on(&borne.organs, node) {
+                self.organ(column + 1, "+", organ, &self.plant.organs[organ])?;
+            }
+        }
+        Ok(())
+    }
+
+    fn open(
+        &mut self,
+        id: AxisId,
+        column: usize,
+        edge: &str,
+        stack: &mut Vec<Frame>,
+    ) -> Result<(), WriteError> {
+        let axis = self.plant.axis(id);
+        let kind = match axis.kind {
+            AxisKind::Branch if axis.order == 0 => "trunk",
+            AxisKind::Branch => "branch",
+            AxisKind::Twig => "twig",
+            AxisKind::Stem => "stem",
+            AxisKind::Petiole => "petiole",
+            AxisKind::Root => "root",
+            _ => "axis",
+        };
+        stack.push(Frame { axis: id, node: usize::from(axis.bearer.is_some()), waiting: Vec::new() });
+        self.line(column, &format!("{edge}A{}", id.index() + 1), &Row::kind(kind))
+    }
+
+    fn organ(&mut self, column: usize, edge: &str, row: usize, organ: &Organ) -> Result<(), WriteError> {
+        let (symbol, kind) = match organ.kind {
+            OrganKind::Petal => ('K', "petal"),
+            OrganKind::Disc => ('D', "disc"),
+            OrganKind::Fruit => ('U', "fruit"),
+            OrganKind::Stamen => ('S', "stamen"),
+            OrganKind::Pistil => ('C', "pistil"),
+            OrganKind::Thorn => ('T', "thorn"),
+            _ => ('L', "leaf"),
+        };
+        let shape = &self.plant.shapes[organ.shape.index()];
+        let long = match shape {
+            Shape::Blade(b) => Some(b.length()),
+            Shape::Strand { path, .. } => Some(geom::polyline_length3(path)),
+            _ => None,
+        };
+        let features = Row {
+            kind,
+            at: Some(organ.frame.origin),
+            length: long.map(|l| l * organ.scale),
+            area: Some(self.areas[organ.shape.index()] * organ.scale * organ.scale),
+            flower: organ.flower.map(|f| f.raw() + 1),
+            along: Some(organ.frame.along),
+            normal: Some(organ.frame.normal),
+            ..Row::default()
+        };
+        self.line(column, &format!("{edge}{symbol}{}", row + 1), &features)
+    }
+}

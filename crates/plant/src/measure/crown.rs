@@ -1,0 +1,154 @@
+//! Height, crown and leaf area.
+
+use base::ops;
+use glam::{DVec2, DVec3};
+
+use crate::{Blade, OrganKind, Plant, Shape};
+
+pub(super) struct Crown {
+    pub(super) height_m: f64,
+    pub(super) base_m: Option<f64>,
+    pub(super) volume_m3: f64,
+    pub(super) projection_m2: f64,
+}
+
+/// See [`super::Measures`] for what belongs to a crown.
+pub(super) fn crown(plant: &Plant, shoot: &[bool]) -> Crown {
+    let has_leaves = plant.organs.iter().any(|o| o.kind == OrganKind::Leaf);
+    let live = live_axes(plant, has_leaves);
+    let base_m = base(plant, shoot, &live);
+    let mut points = Vec::new();
+    let mut height_m = 0.0_f64;
+    for (i, axis) in plant.axes.iter().enumerate().filter(|(i, _)| shoot[*i]) {
+        let rows = axis.nodes.start as usize..axis.nodes.end as usize;
+        let line = &plant.nodes.position[rows];
+        height_m = line.iter().fold(height_m, |h, p| h.max(p.y));
+        if axis.bearer.is_some() {
+            points.extend(line.iter().filter(|_| live[i]));
+        } else if let Some(base) = base_m {
+            points.extend(line.iter().filter(|p| p.y >= base));
+        }
+    }
+    let margins: Vec<Vec<DVec3>> = plant.shapes.iter().map(margin).collect();
+    for organ in &plant.organs {
+        let places = margins[organ.shape.index()].iter().map(|&p| organ.frame.place(p, organ.scale));
+        let from = points.len();
+        points.extend(places);
+        height_m = points[from..].iter().fold(height_m, |h, p| h.max(p.y));
+        // Flowers and fruits reach higher, but are no crown.
+        if organ.kind != OrganKind::Leaf {
+            points.truncate(from);
+        }
+    }
+    let flat: Vec<DVec2> = points.iter().map(|p| DVec2::new(p.x, p.z)).collect();
+    let projection_m2 = geom::signed_area(&geom::convex_hull(&flat)).abs();
+    let volume_m3 = geom::convex_hull3(&points).map_or(0.0, |h| h.volume());
+    Crown { height_m, base_m, volume_m3, projection_m2 }
+}
+
+/// Which axes bear leaves, themselves or through others; all of them on a plant without leaves.
+fn live_axes(plant: &Plant, has_leaves: bool) -> Vec<bool> {
+    let mut live = vec![!has_leaves; plant.axes.len()];
+    let axis_of = |node: crate::NodeId| plant.nodes.axis[node.index()].index();
+    for organ in plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf) {
+        if let Some(b) = organ.bearer {
+            live[axis_of(b)] = true;
+        }
+    }
+    for i in (0..live.len()).rev().filter(|_| has_leaves) {
+        if let Some(b) = plant.axes[i].bearer.filter(|_| live[i]) {
+            live[axis_of(b)] = true;
+        }
+    }
+    live
+}
+
+/// The lowest place where a main axis bears a live axis (a leaf stalk, too) or a leaf.
+fn base(plant: &Plant, shoot: &[bool], live: &[bool]) -> Option<f64> {
+    let on_main = |node: crate::NodeId| {
+        let axis = plant.nodes.axis[node.index()].index();
+        shoot[axis] && plant.axes[axis].bearer.is_none()
+    };
+    let axes = plant.axes.iter().zip(live).filter(|(a, live)| **live && a.kind != crate::AxisKind::Root);
+    let leaves = plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf);
+    let bearers = axes.filter_map(|(a, _)| a.bearer).chain(leaves.filter_map(|o| o.bearer));
+    let heights = bearers.filter(|b| on_main(*b)).map(|b| plant.nodes.position[b.index()].y);
+    heights.fold(None, |low: Option<f64>, y| Some(low.map_or(y, |l| l.min(y))))
+}
+
+/// Local points whose convex hull is that of the shape, nearly: a bent blade bulges between its margin and midrib.
+fn margin(shape: &Shape) -> Vec<DVec3> {
+    match shape {
+        Shape::Blade(b) => {
+            let surface = b.surface();
+            let mut points = surface.points(&b.outline);
+            points.extend(surface.points(&b.midrib));
+            points
+        }
+        Shape::Dome { radius_m, height_m } => {
+            let mut points = ring(*radius_m, |x, z| DVec3::new(x, z, 0.0));
+            points.push(DVec3::Z * *height_m);
+            points
+        }
+        Shape::Revolution { profile } => {
+            profile.iter().flat_map(|p| ring(p.x, |x, z| DVec3::new(x, p.y, z))).collect()
+        }
+        Shape::Strand { path, .. } => path.clone(),
+    }
+}
+
+fn ring(radius: f64, place: impl Fn(f64, f64) -> DVec3) -> Vec<DVec3> {
+    let at = |i: u32| ops::sin_cos(f64::from(i) * ops::TAU / 8.0);
+    (0..8).map(at).map(|(s, c)| place(radius * c, radius * s)).collect()
+}
+
+/// One side of all leaves.
+pub(super) fn leaf_area(plant: &Plant) -> f64 {
+    let areas: Vec<Option<f64>> = {
+        let mut used = vec![false; plant.shapes.len()];
+        let leaves = plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf);
+        leaves.for_each(|o| used[o.shape.index()] = true);
+        plant.shapes.iter().zip(used).map(|(s, used)| used.then(|| s.one_side_m2())).collect()
+    };
+    let leaves = plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf);
+    leaves.map(|o| areas[o.shape.index()].unwrap_or(0.0) * o.scale * o.scale).sum()
+}
+
+impl Shape {
+    /// The area of one side at scale 1, square metres: of the bent sheet for a blade (to about half a per cent),
+    /// half of the surface for what is round (Chen and Black 1992). Cost: a blade is triangulated.
+    pub fn one_side_m2(&self) -> f64 {
+        match self {
+            Self::Blade(b) => blade_area(b),
+            // A spherical cap, and half of the surface for what is round.
+            Self::Dome { radius_m: r, height_m: h } => ops::PI * (r * r + h * h) / 2.0,
+            Self::Revolution { profile } => {
+                let strip = |w: &[DVec2]| ops::PI * (w[0].x + w[1].x) * w[0].distance(w[1]);
+                profile.windows(2).map(strip).sum::<f64>() / 2.0
+            }
+            Self::Strand { path, radius_m, .. } => {
+                let piece = |(p, r): (&[DVec3], &[f64])| ops::PI * (r[0] + r[1]) * p[0].distance(p[1]);
+                path.windows(2).zip(radius_m.windows(2)).map(piece).sum::<f64>() / 2.0
+            }
+        }
+    }
+}
+
+/// The area of the bent sheet: that of its outline in the plane, times how much bending stretches its triangles.
+fn blade_area(blade: &Blade) -> f64 {
+    let plane = geom::signed_area(&blade.outline).abs();
+    let size = blade.outline.iter().fold(0.0_f64, |s, p| s.max(p.length()));
+    // A twelfth of the blade: bends are smooth over that.
+    let Ok(flat) = geom::triangulate_blade(&blade.outline, &[], size / 12.0) else { return plane };
+    let bent = blade.surface().points(&flat.points);
+    let (mut flat_area, mut bent_area) = (0.0, 0.0);
+    for t in &flat.triangles {
+        let [a, b, c] = t.map(|i| flat.points[i as usize]);
+        flat_area += (b - a).perp_dot(c - a) / 2.0;
+        let [a, b, c] = t.map(|i| bent[i as usize]);
+        bent_area += (b - a).cross(c - a).length() / 2.0;
+    }
+    // An outline that crosses itself was mended: then only the triangles know its area.
+    let mended = (plane - flat_area).abs() > 0.05 * flat_area;
+    if mended || flat_area <= 0.0 { bent_area.max(flat_area) } else { plane * (bent_area / flat_area) }
+}
