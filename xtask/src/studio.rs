@@ -1,6 +1,6 @@
 //! The Studio: its packages, its build, and its tests in a real browser.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::Command;
 
 use crate::shell::{Outcome, cargo, finish, output, prepare, repository, say, target_dir};
@@ -81,12 +81,18 @@ fn browser() -> Option<PathBuf> {
     if let Some(named) = std::env::var_os("BURGEON_CHROMIUM") {
         return Some(named.into());
     }
+    // The whole path: what starts the browser looks at no search path.
     let find = || {
-        ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"].into_iter().find(|name| {
-            let mut c = Command::new(name);
-            c.arg("--version");
-            output(c).is_ok()
-        })
+        let folders: Vec<PathBuf> =
+            std::env::var_os("PATH").map(|p| std::env::split_paths(&p).collect()).unwrap_or_default();
+        ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"]
+            .into_iter()
+            .flat_map(|name| folders.iter().map(move |folder| folder.join(name)))
+            .find(|path| {
+                let mut c = Command::new(path);
+                c.arg("--version");
+                path.is_file() && output(c).is_ok()
+            })
     };
     let found = find().or_else(|| {
         if !is_root_on_debian() {
@@ -100,5 +106,5 @@ fn browser() -> Option<PathBuf> {
         }
         find()
     });
-    found.map(|name| Path::new(name).to_path_buf())
+    found
 }
