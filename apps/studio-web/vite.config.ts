@@ -48,5 +48,6 @@ export default defineConfig({
   },
   // Drawings that serve as samples lie outside this folder.
   server: { host: '127.0.0.1', fs: { allow: ['../..'] } },
-  test: { include: ['src/**/*.test.ts'] },
+  // The contrast of colours is read from the style sheet itself.
+  test: { include: ['src/**/*.test.ts'], css: true },
 } as Parameters<typeof defineConfig>[0]);

@@ -64,9 +64,11 @@ async function sample(page) {
   return 15;
 }
 
-async function exported(page, format) {
+async function exported(page, format, levels) {
   await page.click('#b-export');
-  const [download] = await Promise.all([page.waitForEvent('download'), page.click(`[data-format=${format}]`)]);
+  await page.click(`[data-format=${format}]`);
+  if (levels) await page.selectOption('.export select', String(levels));
+  const [download] = await Promise.all([page.waitForEvent('download'), page.click('#b-export-go')]);
   return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
 }
 
@@ -87,6 +89,9 @@ async function flower({ page, url, shot }) {
     assert.equal(file.bytes.subarray(0, start.length).toString('latin1'), start, format);
     assert.ok(file.bytes.length > 2000, format);
   }
+  const levels = await exported(page, 'glb', 3);
+  assert.match(levels.name, /\.glb\.zip$/);
+  assert.ok(levels.bytes.includes('plant_LOD2.glb'), 'three levels of detail');
   await page.keyboard.press('f');
   await page.waitForTimeout(700);
   await shot('front');
@@ -107,23 +112,209 @@ async function live({ page, url }) {
 
 async function undo({ page, url }) {
   await begin(page, url);
-  const n = 3;
-  for (let i = 0; i < n; i += 1) {
-    await draw(page, line(200 + 30 * i, 500, 220 + 30 * i, 200, 6));
-    await until(page, 'strokes', ['is', i + 1], 'a stroke was drawn');
-  }
+  const n = 100;
+  // A quick hand: the strokes come faster than plants can be made of them.
+  await page.evaluate((count) => {
+    const sheet = document.querySelector('.sheet');
+    sheet.setPointerCapture = () => {};
+    const box = sheet.getBoundingClientRect();
+    for (let i = 0; i < count; i += 1) {
+      const [x, y] = [box.left + 120 + 28 * (i % 10), box.top + 530 - 45 * Math.floor(i / 10)];
+      const send = (type, k) => sheet.dispatchEvent(new PointerEvent(type, {
+        pointerType: 'mouse', pointerId: 1, clientX: x + 2 * k, clientY: y - 8 * k, buttons: 1, bubbles: true, isPrimary: true,
+      }));
+      send('pointerdown', 0);
+      for (let k = 1; k < 4; k += 1) send('pointermove', k);
+      send('pointerup', 4);
+    }
+  }, n);
+  await until(page, 'strokes', ['is', n], 'a hundred strokes');
   await until(page, 'triangles', ['above', 0], 'a plant');
-  for (let i = n - 1; i >= 0; i -= 1) {
-    await page.keyboard.press('Control+z');
-    await until(page, 'strokes', ['is', i], 'undo');
-  }
+  for (let i = 0; i < n; i += 1) await page.keyboard.press('Control+z');
+  await until(page, 'strokes', ['is', 0], 'undo of all');
   await until(page, 'parts', ['is', 0], 'nothing is left');
   assert.equal(await page.locator('#b-undo').isDisabled(), true);
-  for (let i = 1; i <= n; i += 1) {
-    await page.keyboard.press('Control+Shift+z');
-    await until(page, 'strokes', ['is', i], 'redo');
-  }
+  for (let i = 0; i < n; i += 1) await page.keyboard.press('Control+Shift+z');
+  await until(page, 'strokes', ['is', n], 'redo of all');
   await until(page, 'triangles', ['above', 0], 'the plant is back');
+}
+
+async function habits({ page, url, shot }) {
+  await begin(page, url);
+  const n = await sample(page);
+  const digest = await data(page, 'digest');
+  await page.locator('.sheet').focus();
+  await page.keyboard.press('Control+a');
+  await page.keyboard.press('Control+d');
+  await until(page, 'strokes', ['is', 2 * n], 'everything twice');
+  await page.keyboard.press('Delete');
+  await until(page, 'strokes', ['is', n], 'the copies were selected, and go');
+  await page.keyboard.press(']');
+  await page.keyboard.press('Control+c');
+  await page.waitForTimeout(300);
+  await page.keyboard.press('Control+v');
+  await until(page, 'strokes', ['is', n + 1], 'one stroke pasted');
+  await page.keyboard.press('Control+x');
+  await until(page, 'strokes', ['is', n], 'and cut');
+  for (let i = 0; i < 4; i += 1) await page.keyboard.press('Control+z');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, digest);
+  await page.keyboard.press('Control+k');
+  await page.locator('.palette input').fill('skel');
+  await shot('palette');
+  await page.keyboard.press('Enter');
+  await page.waitForFunction(() => document.querySelector('#b-skeleton').getAttribute('aria-pressed') === 'true');
+  await page.keyboard.press('i');
+  assert.match(await page.locator('.statsbox').textContent(), /Height/);
+  await page.waitForTimeout(900);
+  await shot('skeleton');
+  await page.keyboard.press('k');
+  await page.keyboard.press('i');
+  await page.click('#b-lock');
+  await page.keyboard.press('r');
+  await page.locator('.note', { hasText: 'locked' }).waitFor();
+  assert.equal(await page.locator('#b-grid').isDisabled(), true);
+  await page.click('#b-lock');
+  await page.keyboard.press('g');
+  await page.locator('.variations[data-full=true]').waitFor();
+  assert.equal(await page.locator('.variations canvas').count(), 9);
+  await shot('variations');
+  assert.equal(await data(page, 'digest'), digest, 'looking changes nothing');
+  await page.locator('.variations button').nth(4).click();
+  await page.waitForFunction((d) => document.body.dataset.digest !== d, digest);
+}
+
+async function share({ page, url, shot, context }) {
+  await begin(page, url);
+  await sample(page);
+  const petals = await page.locator('#b-counts').textContent();
+  await page.click('#b-share');
+  const link = await page.locator('dialog textarea').inputValue();
+  await shot('share');
+  assert.ok(link.startsWith(url) && link.length < 32_000, `${link.length}`);
+  const other = await context.newPage();
+  await other.goto(url);
+  await other.waitForFunction(() => document.body.dataset.ready === 'true');
+  await other.goto('about:blank');
+  await other.goto(link);
+  await until(other, 'flowers', ['is', 1], 'the link opens');
+  assert.equal((await other.locator('#b-counts').textContent()).split('Triangles')[0], petals.split('Triangles')[0]);
+  assert.equal(await other.evaluate(() => location.hash), '', 'the link is taken out of the address');
+  for (const hash of ['#d=AAAA', '#d=%3Cscript%3E', `#d=${'A'.repeat(40_000)}`]) {
+    const before = await data(other, 'digest');
+    await other.waitForTimeout(900); // kept by now
+    await other.goto('about:blank');
+    await other.goto(url + hash);
+    await other.locator('.note.bad', { hasText: 'cannot be opened' }).waitFor();
+    await until(other, 'flowers', ['is', 1], 'what was here is still here');
+    assert.equal(await data(other, 'digest'), before);
+  }
+  await other.close();
+}
+
+async function photo({ page, url, shot }) {
+  await begin(page, url);
+  // A photograph made here: a red flower's petal on green.
+  await page.evaluate(async () => {
+    const canvas = document.createElement('canvas');
+    [canvas.width, canvas.height] = [600, 800];
+    const c = canvas.getContext('2d');
+    c.fillStyle = '#c8d8b0'; c.fillRect(0, 0, 600, 800);
+    c.fillStyle = '#3f7d2a'; c.fillRect(290, 300, 20, 500);
+    for (let k = 0; k < 5; k += 1) {
+      c.save(); c.translate(300, 280); c.rotate((k * 2 * Math.PI) / 5);
+      const g = c.createLinearGradient(0, 0, 0, -200); g.addColorStop(0, '#f7d14a'); g.addColorStop(0.4, '#e2502a'); g.addColorStop(1, '#7a0f3a');
+      c.fillStyle = g; c.beginPath(); c.ellipse(0, -110, 50, 100, 0, 0, 7); c.fill(); c.restore();
+    }
+    const blob = await new Promise((r) => canvas.toBlob(r, 'image/jpeg', 0.9));
+    const transfer = new DataTransfer();
+    transfer.items.add(new File([blob], 'flower.jpg', { type: 'image/jpeg' }));
+    document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true }));
+  });
+  await page.locator('.note', { hasText: 'Trace' }).waitFor();
+  const box = await page.locator('.sheet').boundingBox();
+  // The photograph fills 86 % of the height, in the middle.
+  const k = (box.height * 0.86) / 800;
+  const [ox, oy] = [box.width / 2 - 300 * k, box.height * 0.07];
+  const at = (points) => points.map(([x, y]) => [ox + x * k, oy + y * k]);
+  let n = 0;
+  const trace = async (points) => { await draw(page, at(points)); n += 1; await until(page, 'strokes', ['is', n], 'traced'); };
+  await trace(line(300, 790, 300, 300, 4));
+  for (let i = 0; i < 5; i += 1) await trace(blade(300, 275, -Math.PI / 2 + (i * 2 * Math.PI) / 5, 195, 48));
+  await until(page, 'flowers', ['is', 1], 'a traced flower');
+  await page.waitForTimeout(1500);
+  await shot('photo');
+  const glb = await exported(page, 'glb');
+  assert.ok(glb.bytes.includes('petals-traced'), 'petals have the photograph as their texture');
+  await page.click('#b-photo');
+  await page.getByText('Traced parts take its colours').click();
+  await page.keyboard.press('Escape');
+  await page.waitForTimeout(700);
+  assert.ok(!(await exported(page, 'glb')).bytes.includes('petals-traced'), 'not when that is switched off');
+  await page.waitForFunction(() => /Saved/.test(document.querySelector('#b-kept').textContent));
+  await page.waitForTimeout(900);
+  await page.reload();
+  await until(page, 'strokes', ['is', n], 'drawing and photograph are recovered');
+  await page.click('#b-photo');
+  assert.equal(await page.getByText('Traced parts take its colours').locator('xpath=..').locator('input').isChecked(), false);
+}
+
+async function symmetry({ page, url, shot }) {
+  await begin(page, url);
+  await draw(page, line(250, 530, 250, 150, 2));
+  await until(page, 'strokes', ['is', 1], 'a stem');
+  await until(page, 'triangles', ['above', 0], 'a plant');
+  await page.keyboard.press('m');
+  await draw(page, blade(252, 400, -0.5, 120, 28));
+  await until(page, 'strokes', ['is', 3], 'a leaf on each side');
+  await until(page, 'parts', ['above', 1], 'leaves');
+  await page.waitForTimeout(900);
+  await shot('symmetry');
+  await page.keyboard.press('Control+z');
+  await until(page, 'strokes', ['is', 1], 'one step of undo');
+}
+
+async function firstRun({ page, url, shot }) {
+  await page.goto(url);
+  await page.locator('.tour').waitFor();
+  await shot('tour');
+  for (const title of ['See it grow', 'Say what is what', 'Take it with you']) {
+    await page.locator('.tour .primary').click();
+    assert.equal(await page.locator('.tour strong').textContent(), title);
+  }
+  await page.locator('.tour .primary').click();
+  assert.equal(await page.locator('.tour').count(), 0);
+  await page.reload();
+  await page.waitForFunction(() => document.body.dataset.ready === 'true');
+  assert.equal(await page.locator('.tour').count(), 0, 'it comes once');
+}
+
+/** A pen with pressure; a palm that rests on the glass meanwhile draws nothing. */
+async function pen({ page, url, shot, context }) {
+  await begin(page, url);
+  const box = await page.locator('.sheet').boundingBox();
+  await page.evaluate(() => {
+    const sheet = document.querySelector('.sheet');
+    sheet.setPointerCapture = () => {};
+    window.pointer = (type, kind, id, x, y, pressure) => {
+      const box = sheet.getBoundingClientRect();
+      sheet.dispatchEvent(new PointerEvent(type, { pointerType: kind, pointerId: id, clientX: box.left + x, clientY: box.top + y, pressure, buttons: type === 'pointerup' ? 0 : 1, bubbles: true, isPrimary: true }));
+    };
+  });
+  const send = (...a) => page.evaluate((args) => window.pointer(...args), a);
+  const path = line(box.width / 2, box.height - 60, box.width / 2 + 20, 80, 10, 20);
+  await send('pointerdown', 'pen', 5, path[0][0], path[0][1], 0.2);
+  await send('pointerdown', 'touch', 6, box.width - 40, box.height - 40, 0.5);
+  for (const [i, [x, y]] of path.entries()) await send('pointermove', 'pen', 5, x, y, 0.2 + 0.035 * i);
+  await send('pointermove', 'touch', 6, box.width - 44, box.height - 44, 0.5);
+  await send('pointerup', 'touch', 6, box.width - 44, box.height - 44, 0);
+  await send('pointerup', 'pen', 5, path.at(-1)[0], path.at(-1)[1], 0);
+  await until(page, 'strokes', ['is', 1], 'the pen draws, the palm does not');
+  await send('pointerdown', 'touch', 7, 100, 300, 0.5);
+  for (let i = 1; i < 8; i += 1) await send('pointermove', 'touch', 7, 100 + 20 * i, 300, 0.5);
+  await send('pointerup', 'touch', 7, 240, 300, 0);
+  await page.waitForTimeout(400);
+  assert.equal(await count(page, 'strokes'), 1, 'with a pen at hand a finger moves the sheet');
+  await shot('pen');
 }
 
 async function reload({ page, url }) {
@@ -262,9 +453,15 @@ async function guarded({ page, url }) {
 }
 
 export const journeys = [
+  ['the first run', firstRun, { fresh: true }],
   ['draw a flower and export it', flower],
   ['the plant follows the pen', live],
-  ['undo and redo everything', undo],
+  ['undo and redo a hundred steps', undo],
+  ['copy, palette, skeleton, lock, variations', habits],
+  ['a link to a drawing', share],
+  ['trace a photograph', photo],
+  ['symmetry', symmetry],
+  ['a pen on a tablet, and a palm', pen, { viewport: { width: 820, height: 1180 }, hasTouch: true }],
   ['reload and recover', reload],
   ['Chinese', chinese, { locale: 'zh-CN' }],
   ['say what a stroke is', correct],

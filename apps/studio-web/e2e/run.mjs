@@ -35,6 +35,7 @@ const only = process.env.ONLY;
 for (const [name, journey, options] of journeys) {
   if (only && !name.includes(only)) continue;
   const context = await browser.newContext({ viewport: { width: 1000, height: 640 }, locale: 'en-GB', acceptDownloads: true, ...options });
+  if (!options?.fresh) await context.addInitScript(() => localStorage.setItem('burgeon.tour', 'done'));
   const page = await context.newPage();
   const troubles = [];
   const foreign = [];

@@ -2,16 +2,26 @@
 import { Card, dot } from './correct';
 import { Engine } from './engine';
 import { Files } from './files';
+import { asPng, photoPanel, placed } from './photo';
+import { openPalette, type Action } from './palette';
 import type { Command, DocumentState, Request, StrokeMode, View } from './protocol';
 import { Sheet, type Tool } from './sheet/sheet';
 import { settingsPanel } from './settings';
+import { statsTable } from './stats';
 import { setSetting, setting } from './store';
 import { currentLanguage, number, setLanguage, t, tOf, type TextKey } from './text';
+import { endTour, firstRun, tour } from './tour';
 import { button, closePopover, dialog, el, icon, note, popover, relabel, type IconName } from './ui';
+import { openVariations } from './variations';
 import { PlantView } from './view/view';
 
 const TOOLS: readonly [Tool, string][] = [['parts', 'P'], ['branch-contour', 'B'], ['leaf-contour', 'L'], ['erase', 'E'], ['select', 'V']];
 type Theme = 'auto' | 'light' | 'dark';
+type Look = 'solid' | 'wire' | 'skeleton';
+/** Size of a picture in the grid of variations. */
+const LOOK_SIZE = [200, 190] as const;
+/** A flash of work shorter than this only disturbs. */
+const MOMENT_MS = 200;
 
 export class App {
   private readonly engine: Engine;
@@ -25,22 +35,40 @@ export class App {
   private drafted = false;
   private tool: Tool = 'parts';
   private theme: Theme = 'auto';
-  private wire = false;
+  private look: Look = 'solid';
+  private locked = false;
+  private statsOn = false;
+  private steady = 1;
+  private clip = '';
+  /** How many strokes at the end of the document shall be selected when they are there. */
+  private selectLast = 0;
   private started = false;
   private busyTimer = 0;
   private readonly system = matchMedia('(prefers-color-scheme: dark)');
   private parts: Record<string, HTMLElement> = {};
+  private photoFrom: DocumentState['photo'] = null;
 
   constructor(private readonly host: HTMLElement) {
     this.engine = new Engine({
       ready: () => this.ready(),
-      state: (state, fresh) => { this.state = state; this.sheet.setState(state, fresh); this.showState(); },
+      state: (state, fresh, photo) => {
+        this.state = state;
+        this.sheet.setState(state, fresh);
+        if (photo) void createImageBitmap(new Blob([photo])).then((image) => this.sheet.setImage(image), () => undefined);
+        if (this.selectLast > 0) {
+          this.setTool('select');
+          this.sheet.select(state.strokes.slice(-this.selectLast).map((s) => s.id));
+          this.selectLast = 0;
+        }
+        this.showState();
+      },
       view: (view, parts, textures) => {
         this.seen = view;
         this.view?.update(view, parts, textures);
         this.sheet.setOrgans(new Map((view.item?.strokes ?? []).map((s) => [s.index, s.organ])));
         this.idle();
         this.showView();
+        this.refreshSkeleton();
         this.sendDraft();
       },
       busy: () => this.busy(),
@@ -52,7 +80,16 @@ export class App {
       dead: () => { this.idle(); note(t('note.noworker'), 'bad'); },
     });
     this.sheet = new Sheet({
-      stroke: (mode, samples) => { this.draft = undefined; this.drafted = false; this.ask({ kind: 'stroke', mode, samples }); },
+      stroke: (mode, samples, mirror) => {
+        this.draft = undefined;
+        this.drafted = false;
+        if (mirror) this.ask({ kind: 'begin', name: 'draw' });
+        this.ask({ kind: 'stroke', mode, samples });
+        if (mirror) {
+          this.ask({ kind: 'stroke', mode, samples: mirror });
+          this.ask({ kind: 'commit' });
+        }
+      },
       draft: (mode, samples) => { this.draft = { mode, samples }; this.showEmpty(); if (!this.engine.growing) this.sendDraft(); },
       undraft: () => {
         this.draft = undefined;
@@ -68,6 +105,14 @@ export class App {
         if (ids.length > 0 && anchor && this.state) this.card.show(ids, anchor, this.state, this.seen, this.dark);
         else this.card.hide();
       },
+      photoBegin: () => { this.photoFrom = this.state?.photo ?? null; this.ask({ kind: 'begin', name: 'photo' }); },
+      photoMove: (dx, dy) => {
+        const p = this.photoFrom;
+        if (!p) return;
+        const { width, opacity, paint } = p;
+        this.ask({ kind: 'stage', command: { do: 'photo', x: p.x + dx, y: p.y + dy, width, opacity, paint } });
+      },
+      photoEnd: (keep) => this.ask(keep ? { kind: 'commit' } : { kind: 'abandon' }),
       viewport: () => {
         this.view?.setSheetSeen(this.sheet.seen());
         const ids = this.sheet.selected;
@@ -81,9 +126,12 @@ export class App {
       name: () => this.state?.name ?? t('app.untitled'),
       empty: () => !this.seen || this.seen.parts.length === 0,
       looking: (name) => this.looking(name),
+      photo: (file) => this.layPhoto(file),
     });
     const theme = setting('theme');
     this.theme = theme === 'light' || theme === 'dark' ? theme : 'auto';
+    this.steady = Math.min(3, Math.max(0, Number(setting('steady') ?? 1) || 0));
+    this.sheet.steady = this.steady;
   }
 
   private get dark(): boolean {
@@ -101,6 +149,7 @@ export class App {
     this.build();
     this.files.listen(document.body);
     document.addEventListener('keydown', (e) => this.key(e));
+    document.addEventListener('paste', (e) => this.paste(e));
     this.system.addEventListener('change', () => this.applyTheme());
     document.addEventListener('visibilitychange', () => { if (document.hidden) void this.files.keepNow(); });
     this.engine.start();
@@ -109,12 +158,16 @@ export class App {
   private ready(): void {
     if (this.started) return;
     this.started = true;
-    void this.files.restore().finally(() => { document.body.dataset['ready'] = 'true'; });
+    void this.files.restore().finally(() => {
+      document.body.dataset['ready'] = 'true';
+      if ((this.state?.strokes.length ?? 0) === 0) firstRun();
+    });
   }
 
   // Asking -------------------------------------------------------------------------------------------------------
 
   private ask(request: Request): void {
+    if (request.kind === 'stroke') endTour();
     this.engine.ask(request).then(() => this.files.changed(request)).catch((e: Error) => {
       if (request.kind === 'stroke') this.sheet.dropPending();
       if (e.message !== 'restarted') note(t('note.refused', { why: e.message }), 'bad');
@@ -155,6 +208,8 @@ export class App {
         hold('redo', button('redo', t('redo'), () => this.ask({ kind: 'redo' }), 'Ctrl+Shift+Z'))),
       el('span', { class: 'group' },
         hold('dice', button('dice', t('dice'), () => this.roll(), 'R')),
+        hold('lock', button('unlock', t('lock'), () => this.toggleLock())),
+        hold('grid', button('grid', t('variations.title'), () => this.openVariations(), 'G')),
         hold('settings', button('settings', t('menu.settings'), () => this.openSettings()))),
       el('span', { class: 'space' }),
       el('span', { class: 'group' },
@@ -162,16 +217,21 @@ export class App {
         main('samples', 'menu.samples', () => this.files.samples()),
         main('open', 'menu.open', () => this.files.choose(), 'Ctrl+O'),
         main('save', 'menu.save', () => void this.files.save(), 'Ctrl+S'),
-        main('export', 'menu.export', () => this.openExport(), 'Ctrl+E')),
+        main('share', 'menu.share', () => void this.files.share()),
+        main('export', 'menu.export', () => this.files.chooseExport(), 'Ctrl+E')),
       el('span', { class: 'group' },
         hold('language', el('button', { type: 'button', class: 'plain', title: t('menu.language.hint'), onclick: () => this.switchLanguage() }, t('menu.language'))),
         hold('theme', button('theme', t('menu.theme'), () => this.switchTheme())),
+        hold('commands', button('commands', t('palette.title'), () => this.openPalette(), 'Ctrl+K')),
         hold('help', button('help', t('menu.help'), () => this.help(), '?'))));
     const tools = el('div', { class: 'tools', role: 'toolbar', 'aria-orientation': 'vertical' });
     for (const [tool, key] of TOOLS) {
       tools.append(hold(tool, button(tool, t(`tool.${tool}` as TextKey), () => this.setTool(tool), key)));
     }
-    tools.append(el('hr'), hold('fit', button('fit', t('tool.fit'), () => this.sheet.fit(), '0')));
+    tools.append(el('hr'),
+      hold('mirror', button('mirror', t('tool.mirror'), () => this.toggleMirror(), 'M')),
+      hold('photo', button('photo', t('tool.photo'), () => this.openPhoto(), 'U')),
+      hold('fit', button('fit', t('tool.fit'), () => this.sheet.fit(), '0')));
     const empty = hold('empty', el('div', { class: 'empty' },
       el('h1', {}, t('sheet.empty')), el('p', {}, t('sheet.empty.hint')),
       el('button', { type: 'button', class: 'link', onclick: () => this.files.samples() }, t('sheet.empty.sample'))));
@@ -179,9 +239,13 @@ export class App {
     const seeButtons = el('div', { class: 'tools right-tools', role: 'toolbar' },
       hold('front', button('front', t('view.front'), () => this.view?.setFront(!this.view.isFront), 'F')),
       hold('frame', button('fit', t('view.frame'), () => this.view?.frameNow(), 'Shift+0')),
-      hold('wire', button('wire', t('view.wire'), () => this.toggleWire(), 'W')));
+      hold('wire', button('wire', t('view.wire'), () => this.setLook(this.look === 'wire' ? 'solid' : 'wire'), 'W')),
+      hold('skeleton', button('skeleton', t('view.skeleton'), () => this.setLook(this.look === 'skeleton' ? 'solid' : 'skeleton'), 'K')),
+      hold('stats', button('stats', t('view.stats'), () => this.toggleStats(), 'I')),
+      hold('picture', button('picture', t('export.png'), () => void this.files.picture())));
     const right = el('section', { class: 'right' },
       ...(this.view ? [this.view.element, seeButtons] : [el('p', { class: 'nogl' }, t('note.nowebgl'))]),
+      hold('statsbox', el('div', { class: 'statsbox' })),
       hold('grows', el('p', { class: 'grows' }, t('view.empty'))), hold('looking', el('p', { class: 'looking' })));
     const split = el('div', { class: 'split', role: 'separator', 'aria-orientation': 'vertical', tabindex: '0' });
     const body = el('main', {}, left, split, right);
@@ -195,6 +259,7 @@ export class App {
     if (this.started) p['busy']!.hidden = true;
     this.files.onKept = () => { p['kept']!.textContent = t('status.saved'); };
     this.setTool(this.tool);
+    this.showSwitches();
     this.applyTheme();
     this.showState();
     this.showView();
@@ -221,13 +286,141 @@ export class App {
     for (const [name] of TOOLS) this.parts[name]?.setAttribute('aria-pressed', String(name === tool));
   }
 
-  private toggleWire(): void {
-    this.wire = !this.wire;
-    this.view?.setWire(this.wire);
-    this.parts['wire']?.setAttribute('aria-pressed', String(this.wire));
+  private setLook(look: Look): void {
+    this.look = look;
+    this.view?.setWire(look === 'wire');
+    if (look === 'skeleton') this.refreshSkeleton();
+    else this.view?.setSkeleton(undefined);
+    this.showSwitches();
+  }
+
+  private refreshSkeleton(): void {
+    if (this.look !== 'skeleton') return;
+    this.engine.ask<Float32Array>({ kind: 'skeleton' }).then((pairs) => { if (this.look === 'skeleton') this.view?.setSkeleton(pairs); }, () => undefined);
+  }
+
+  private toggleStats(): void {
+    this.statsOn = !this.statsOn;
+    this.showSwitches();
+    this.showView();
+  }
+
+  private toggleMirror(): void {
+    // The main axis's root, where there is a plant; else the middle of the sheet.
+    const seen = this.sheet.seen();
+    const root = this.state && this.state.strokes.length > 0 ? this.seen?.front?.x : undefined;
+    this.sheet.setAxis(this.sheet.symmetric ? undefined : (root ?? (seen.left + seen.right) / 2));
+    this.showSwitches();
+  }
+
+  private toggleLock(): void {
+    this.locked = !this.locked;
+    this.showSwitches();
+  }
+
+  private showSwitches(): void {
+    const press = (name: string, on: boolean): void => this.parts[name]?.setAttribute('aria-pressed', String(on));
+    press('wire', this.look === 'wire');
+    press('skeleton', this.look === 'skeleton');
+    press('stats', this.statsOn);
+    press('mirror', this.sheet.symmetric);
+    press('lock', this.locked);
+    this.parts['lock']?.replaceChildren(icon(this.locked ? 'lock' : 'unlock'));
+    this.parts['statsbox']!.hidden = !this.statsOn;
+    for (const name of ['dice', 'grid']) (this.parts[name] as HTMLButtonElement).disabled = this.locked;
+  }
+
+  private openVariations(): void {
+    if (this.locked || !this.state || this.state.strokes.length === 0) return;
+    openVariations(this.engine, this.state.seed, {
+      snapshot: (sent) => this.view?.snapshot(sent, ...LOOK_SIZE),
+      take: (seed) => this.run({ do: 'seed', seed }),
+    });
+  }
+
+  private openPhoto(): void {
+    popover(this.parts['photo']!, photoPanel(() => this.state?.photo ?? null, this.sheet.placing, {
+      run: (c) => { this.run(c); if (c.do === 'photo-off') closePopover(); },
+      begin: (name) => this.ask({ kind: 'begin', name }),
+      stage: (command) => this.ask({ kind: 'stage', command }),
+      commit: () => this.ask({ kind: 'commit' }),
+      choose: () => { closePopover(); this.files.choose('image/*'); },
+      placing: (on) => { this.sheet.placing = on; },
+    }), t('tool.photo'));
+  }
+
+  private async layPhoto(file: File): Promise<void> {
+    const { png, aspect } = await asPng(file);
+    const { x, y, width } = placed(this.sheet.seen(), aspect);
+    await this.engine.ask({ kind: 'photo', png, x, y, width });
+    this.files.changed();
+    note(t('note.photo'));
+  }
+
+  // Clipboard ----------------------------------------------------------------------------------------------------
+
+  private async copy(): Promise<boolean> {
+    const ids = this.sheet.selected;
+    if (ids.length === 0) return false;
+    try {
+      this.clip = await this.engine.ask<string>({ kind: 'copy', ids });
+    } catch {
+      return false;
+    }
+    await navigator.clipboard.writeText(this.clip).catch(() => undefined); // our own copy serves this page
+    return true;
+  }
+
+  private async cut(): Promise<void> {
+    const ids = this.sheet.selected;
+    if (await this.copy()) this.run({ do: 'remove', ids });
+  }
+
+  private paste(e: ClipboardEvent): void {
+    if ((e.target as HTMLElement).matches('input, textarea') || document.querySelector('dialog[open]')) return;
+    const file = e.clipboardData?.files[0];
+    if (file) {
+      void this.files.openFile(file);
+      return;
+    }
+    void this.pasteText(e.clipboardData?.getData('text/plain') ?? '');
+  }
+
+  private async pasteText(given: string): Promise<void> {
+    const text = /^\s*[{<]/.test(given) ? given : this.clip;
+    if (text === '') return;
+    const step = 24 * this.sheet.unitsPerPixel;
+    try {
+      // The state comes before the answer.
+      this.selectLast = 0;
+      const ids = await this.engine.ask<Uint32Array>({ kind: 'paste', text, x: step, y: -step });
+      this.files.changed();
+      this.setTool('select');
+      this.sheet.select([...ids]);
+    } catch (error) {
+      note(t('note.refused', { why: (error as Error).message }), 'bad');
+    }
+  }
+
+  private duplicate(): void {
+    const ids = this.sheet.selected;
+    if (ids.length === 0) return;
+    const step = 24 * this.sheet.unitsPerPixel;
+    this.selectLast = ids.length;
+    this.run({ do: 'duplicate', ids, x: step, y: -step });
+  }
+
+  private setSteady(strength: number): void {
+    this.steady = strength;
+    this.sheet.steady = strength;
+    setSetting('steady', String(strength));
   }
 
   private roll(): void {
+    if (this.locked) {
+      note(t('note.locked'));
+      return;
+    }
     const [n] = crypto.getRandomValues(new Uint32Array(1));
     this.run({ do: 'seed', seed: String(1 + (n! % 999_999)) });
   }
@@ -238,15 +431,41 @@ export class App {
     popover(this.parts['settings']!, settingsPanel(state, {
       run: (c) => this.run(c), begin: (name) => this.ask({ kind: 'begin', name }),
       stage: (command) => this.ask({ kind: 'stage', command }), commit: () => this.ask({ kind: 'commit' }),
+      steady: this.steady, setSteady: (strength) => this.setSteady(strength),
     }), t('menu.settings'));
   }
 
-  private openExport(): void {
-    const list = el('div', { class: 'menu', role: 'menu' });
-    for (const format of ['glb', 'obj', 'ply', 'stl', 'png', 'json'] as const) {
-      list.append(el('button', { type: 'button', role: 'menuitem', 'data-format': format, onclick: () => { closePopover(); void this.files.exportAs(format); } }, t(`export.${format}`)));
-    }
-    popover(this.parts['export']!, list, t('menu.export'));
+  /** Everything the page can do: for the palette. */
+  private actions(): Action[] {
+    const a = (id: string, key: TextKey, act: () => void, keys = ''): Action => ({ id, label: t(key), act, ...(keys ? { keys } : {}) });
+    return [
+      ...TOOLS.map(([tool, keys]) => a(tool, `tool.${tool}` as TextKey, () => this.setTool(tool), keys)),
+      a('undo', 'undo', () => this.ask({ kind: 'undo' }), 'Ctrl+Z'), a('redo', 'redo', () => this.ask({ kind: 'redo' }), 'Ctrl+Shift+Z'),
+      a('new', 'menu.new', () => this.files.fresh()), a('open', 'menu.open', () => this.files.choose(), 'Ctrl+O'),
+      a('samples', 'menu.samples', () => this.files.samples()), a('save', 'menu.save', () => void this.files.save(), 'Ctrl+S'),
+      a('export', 'menu.export', () => this.files.chooseExport(), 'Ctrl+E'), a('share', 'menu.share', () => void this.files.share()),
+      a('dice', 'dice', () => this.roll(), 'R'), a('lock', 'lock', () => this.toggleLock()), a('grid', 'variations.title', () => this.openVariations(), 'G'),
+      a('settings', 'menu.settings', () => this.openSettings()), a('mirror', 'tool.mirror', () => this.toggleMirror(), 'M'),
+      a('photo', 'tool.photo', () => this.openPhoto(), 'U'), a('fit', 'tool.fit', () => this.sheet.fit(), '0'),
+      a('front', 'view.front', () => this.view?.setFront(!this.view.isFront), 'F'), a('frame', 'view.frame', () => this.view?.frameNow(), 'Shift+0'),
+      a('wire', 'view.wire', () => this.setLook(this.look === 'wire' ? 'solid' : 'wire'), 'W'),
+      a('skeleton', 'view.skeleton', () => this.setLook(this.look === 'skeleton' ? 'solid' : 'skeleton'), 'K'),
+      a('stats', 'view.stats', () => this.toggleStats(), 'I'), a('picture', 'export.png', () => void this.files.picture()),
+      a('all', 'act.all', () => this.selectAll(), 'Ctrl+A'), a('copy', 'act.copy', () => void this.copy(), 'Ctrl+C'),
+      a('paste', 'act.paste', () => void this.pasteText(''), 'Ctrl+V'), a('duplicate', 'act.duplicate', () => this.duplicate(), 'Ctrl+D'),
+      a('clear', 'act.clear', () => this.run({ do: 'clear' })),
+      a('language', 'menu.language.hint', () => this.switchLanguage()), a('theme', 'menu.theme', () => this.switchTheme()),
+      a('tour', 'tour.again', () => tour()), a('help', 'dialog.help', () => this.help(), '?'),
+    ];
+  }
+
+  private openPalette(): void {
+    openPalette(this.actions());
+  }
+
+  private selectAll(): void {
+    this.setTool('select');
+    this.sheet.select(this.state?.strokes.map((s) => s.id) ?? []);
   }
 
   private switchLanguage(): void {
@@ -276,12 +495,15 @@ export class App {
   private help(): void {
     const rows: [string, TextKey][] = [
       ['P B L E V', 'key.tools'], ['Ctrl+Z · Ctrl+Shift+Z', 'key.undo'], ['Ctrl+O · Ctrl+S · Ctrl+E', 'key.files'],
-      ['R', 'key.dice'], ['F', 'key.front'], ['[ ]', 'key.next'], ['← ↑ → ↓', 'key.nudge'], ['Del', 'key.delete'], ['?', 'key.help'],
+      ['Ctrl+C · Ctrl+X · Ctrl+V · Ctrl+D', 'key.copy'], ['Ctrl+A', 'act.all'], ['Del', 'key.delete'], ['[ ]', 'key.next'], ['← ↑ → ↓', 'key.nudge'],
+      ['M', 'tool.mirror'], ['U', 'tool.photo'], ['R', 'key.dice'], ['G', 'variations.title'],
+      ['F', 'key.front'], ['W · K', 'key.looks'], ['I', 'view.stats'], ['Ctrl+K', 'palette.title'], ['?', 'key.help'],
     ];
     const keys = el('dl', { class: 'keys' });
     for (const [key, text] of rows) keys.append(el('dt', {}, el('kbd', {}, key)), el('dd', {}, t(text)));
     const texts = (['help.draw', 'help.pan', 'help.correct', 'help.drop'] as const).map((k) => el('li', {}, t(k)));
-    dialog(t('dialog.help'), el('ul', {}, ...texts), keys);
+    const again = el('button', { type: 'button', class: 'link', onclick: () => { d.close(); tour(); } }, t('tour.again'));
+    const d = dialog(t('dialog.help'), el('ul', {}, ...texts), keys, again);
   }
 
   private key(e: KeyboardEvent): void {
@@ -301,8 +523,12 @@ export class App {
       case 'y': return () => this.ask({ kind: 'redo' });
       case 's': return () => void this.files.save();
       case 'o': return () => this.files.choose();
-      case 'e': return () => this.openExport();
-      case 'a': return () => { this.setTool('select'); this.sheet.select(this.state?.strokes.map((s) => s.id) ?? []); };
+      case 'e': return () => this.files.chooseExport();
+      case 'k': return () => this.openPalette();
+      case 'a': return () => this.selectAll();
+      case 'c': return this.sheet.selected.length > 0 && !getSelection()?.toString() ? () => void this.copy() : undefined;
+      case 'x': return this.sheet.selected.length > 0 ? () => void this.cut() : undefined;
+      case 'd': return () => this.duplicate();
       default: return undefined;
     }
   }
@@ -319,7 +545,12 @@ export class App {
     switch (e.key) {
       case 'r': case 'R': return () => this.roll();
       case 'f': case 'F': return () => this.view?.setFront(!this.view.isFront);
-      case 'w': case 'W': return () => this.toggleWire();
+      case 'w': case 'W': return () => this.setLook(this.look === 'wire' ? 'solid' : 'wire');
+      case 'k': case 'K': return () => this.setLook(this.look === 'skeleton' ? 'solid' : 'skeleton');
+      case 'i': case 'I': return () => this.toggleStats();
+      case 'g': case 'G': return () => this.openVariations();
+      case 'm': case 'M': return () => this.toggleMirror();
+      case 'u': case 'U': return () => this.openPhoto();
       case '0': return () => this.sheet.fit();
       case ')': return () => this.view?.frameNow();
       case '?': return () => this.help();
@@ -372,6 +603,7 @@ export class App {
       counts.push(t('status.time', { ms: number(Math.round(seen.item!.timings_ms.total)) }));
     }
     p['counts']!.textContent = counts.join('  ·  ');
+    if (this.statsOn) p['statsbox']!.replaceChildren(statsTable(this.state, seen));
     p['counts']!.title = (seen?.item?.warnings ?? []).join('\n');
     p['grows']!.hidden = (seen?.parts.length ?? 0) > 0;
     const organs = [...new Set((seen?.item?.strokes ?? []).map((s) => s.organ))];
@@ -387,11 +619,10 @@ export class App {
 
   private busy(): void {
     if (this.busyTimer) return;
-    // A flash of work shorter than this only disturbs.
     this.busyTimer = window.setTimeout(() => {
       this.parts['busytext']!.textContent = t('status.working');
       this.parts['busy']!.hidden = false;
-    }, 250);
+    }, MOMENT_MS);
   }
 
   private idle(): void {

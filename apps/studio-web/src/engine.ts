@@ -7,7 +7,7 @@ import type { DocumentState, FromWorker, PartArrays, Request, StrokePoints, Text
 
 export interface EngineEvents {
   ready(): void;
-  state(state: DocumentState, fresh: StrokePoints[]): void;
+  state(state: DocumentState, fresh: StrokePoints[], photo: Uint8Array<ArrayBuffer> | null): void;
   view(view: View, parts: PartArrays[], textures: TexturePixels[]): void;
   busy(): void;
   /** No plant could be made; the last one stays. */
@@ -19,7 +19,7 @@ export interface EngineEvents {
 }
 
 const CHANGES: ReadonlySet<Request['kind']> = new Set([
-  'open', 'stroke', 'command', 'begin', 'stage', 'commit', 'abandon', 'undo', 'redo',
+  'open', 'stroke', 'paste', 'photo', 'command', 'begin', 'stage', 'commit', 'abandon', 'undo', 'redo',
 ]);
 
 export class Engine {
@@ -101,7 +101,7 @@ export class Engine {
         break;
       }
       case 'state':
-        this.events.state(message.state, message.fresh);
+        this.events.state(message.state, message.fresh, message.photo);
         break;
       case 'view':
         this.growing = false;

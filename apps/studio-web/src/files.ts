@@ -1,6 +1,9 @@
 /** Opening, saving, exporting, keeping. */
 import type { Engine } from './engine';
-import type { ExportFormat, Opened, Request } from './protocol';
+import type { ExportOptions, Opened, Request } from './protocol';
+import { openExport, type Target } from './exporting';
+import { decode, isLink, link } from './share';
+import { isPhoto } from './photo';
 import { SAMPLES } from './samples';
 import { keep, kept } from './store';
 import { t } from './text';
@@ -8,9 +11,9 @@ import { dialog, download, el, note } from './ui';
 
 /** Larger files are refused before they are read into memory. */
 const MAX_MB = 256;
-const ACCEPT = '.burgeon,.svg,.inkml,.ndjson,.json,.glb,.gltf,.obj,.ply,.stl';
+const ACCEPT = '.burgeon,.svg,.inkml,.ndjson,.json,.glb,.gltf,.obj,.ply,.stl,image/*';
 const TYPES: Record<string, string> = {
-  glb: 'model/gltf-binary', obj: 'application/zip', ply: 'application/octet-stream', stl: 'model/stl', json: 'application/json',
+  glb: 'model/gltf-binary', ply: 'application/octet-stream', stl: 'model/stl', json: 'application/json',
 };
 
 export interface FilesEvents {
@@ -19,6 +22,8 @@ export interface FilesEvents {
   name(): string;
   empty(): boolean;
   looking(name: string): void;
+  /** A picture was given: it goes under the drawing. */
+  photo(file: File): Promise<void>;
 }
 
 export class Files {
@@ -45,8 +50,8 @@ export class Files {
     });
   }
 
-  choose(): void {
-    const input = el('input', { type: 'file', accept: ACCEPT });
+  choose(accept = ACCEPT): void {
+    const input = el('input', { type: 'file', accept });
     input.addEventListener('change', () => { const file = input.files?.[0]; if (file) void this.openFile(file); });
     input.click();
   }
@@ -57,7 +62,8 @@ export class Files {
       return;
     }
     try {
-      await this.open(file.name, new Uint8Array(await file.arrayBuffer()));
+      if (isPhoto(file)) await this.events.photo(file);
+      else await this.open(file.name, new Uint8Array(await file.arrayBuffer()));
     } catch (e) {
       note(t('note.unreadable', { name: file.name, why: (e as Error).message }), 'bad');
     }
@@ -114,19 +120,47 @@ export class Files {
     note(t('note.exported', { name }));
   }
 
-  async exportAs(format: ExportFormat | 'png'): Promise<void> {
-    if (this.events.empty()) {
+  /** A link with the whole document in it, onto the clipboard. */
+  async share(): Promise<void> {
+    try {
+      const to = link(await this.engine.ask<Uint8Array>({ kind: 'share' }));
+      if (to === undefined) {
+        note(t('note.link.long'), 'bad');
+        return;
+      }
+      const field = el('textarea', { class: 'field', readonly: '', rows: '4', 'aria-label': t('share.title') });
+      field.value = to;
+      dialog(t('share.title'), el('p', { class: 'muted' }, t('share.hint', { size: Math.ceil(to.length / 1000) })), field);
+      field.select();
+      await navigator.clipboard.writeText(to).then(() => note(t('note.link.copied')), () => undefined);
+    } catch (e) {
+      note(t('note.refused', { why: (e as Error).message }), 'bad');
+    }
+  }
+
+  /** A picture of the view as it is. */
+  async picture(): Promise<void> {
+    await this.exportAs('png', { levels: 1, up: 'y', unit: 'm' });
+  }
+
+  chooseExport(): void {
+    openExport((format, options) => void this.exportAs(format, options));
+  }
+
+  private async exportAs(format: Target, options: ExportOptions): Promise<void> {
+    if (format !== 'json' && this.events.empty()) {
       note(t('note.nothing'), 'bad');
       return;
     }
     try {
-      const name = `${safe(this.events.name())}.${format === 'obj' ? 'obj.zip' : format}`;
+      const zipped = format === 'obj' || (options.levels > 1 && format !== 'png' && format !== 'json');
+      const name = `${safe(this.events.name())}.${zipped ? `${format}.zip` : format}`;
       if (format === 'png') {
         const picture = await this.events.picture();
         if (!picture) throw new Error(t('note.nowebgl'));
         download(name, picture, 'image/png');
       } else {
-        download(name, await this.engine.ask<Uint8Array<ArrayBuffer>>({ kind: 'export', format }), TYPES[format] ?? '');
+        download(name, await this.engine.ask<Uint8Array<ArrayBuffer>>({ kind: 'export', format, options }), zipped ? 'application/zip' : (TYPES[format] ?? ''));
       }
       note(t('note.exported', { name }));
     } catch (e) {
@@ -171,6 +205,25 @@ export class Files {
       await this.openUrl(name, `./opened/${encodeURIComponent(name)}`);
       return;
     }
+    const shared = isLink(location.hash) ? location.hash : '';
+    if (shared) history.replaceState(null, '', location.pathname);
+    await this.restoreLast();
+    if (shared) await this.openShared(shared);
+  }
+
+  /** A link is a step of undo over what was here: it destroys nothing. */
+  private async openShared(hash: string): Promise<void> {
+    const bytes = decode(hash);
+    try {
+      if (!bytes) throw new Error(t('note.link.bad'));
+      await this.open('link.burgeon', bytes, 0, false, true);
+      note(t('note.link.opened'));
+    } catch (e) {
+      note(t('note.unreadable', { name: t('share.title'), why: (e as Error).message }), 'bad');
+    }
+  }
+
+  private async restoreLast(): Promise<void> {
     try {
       const last = await kept();
       if (!last) return;

@@ -1,7 +1,7 @@
 /** What page and worker say to one another. Meshes and strokes travel as typed arrays, never as JSON. */
-import type { Command, DocumentState, Opened, StrokeMode, View } from './wasm/burgeon_wasm';
+import type { Command, DocumentState, ExportOptions, Opened, PhotoState, StrokeMode, View } from './wasm/burgeon_wasm';
 
-export type { Command, DocumentState, Opened, StrokeMode, View };
+export type { Command, DocumentState, ExportOptions, Opened, PhotoState, StrokeMode, View };
 export type ExportFormat = 'glb' | 'obj' | 'ply' | 'stl' | 'json';
 
 /** What the page asks. Those that change the document are kept in the page's journal. */
@@ -15,9 +15,15 @@ export type Request =
   | { kind: 'abandon' }
   | { kind: 'undo' }
   | { kind: 'redo' }
+  | { kind: 'paste'; text: string; x: number; y: number }
+  | { kind: 'photo'; png: Uint8Array; x: number; y: number; width: number }
+  | { kind: 'copy'; ids: number[] }
+  | { kind: 'variant'; seed: string; detail: number }
+  | { kind: 'skeleton' }
+  | { kind: 'share' }
   | { kind: 'draft'; mode: StrokeMode; samples: Float64Array }
   | { kind: 'save' }
-  | { kind: 'export'; format: ExportFormat };
+  | { kind: 'export'; format: ExportFormat; options: ExportOptions };
 
 export type ToWorker =
   | { kind: 'start'; wasm: string; stop: Int32Array | null; journal: Request[]; hold: boolean }
@@ -44,12 +50,19 @@ export interface StrokePoints {
   points: Float64Array;
 }
 
+/** A plant as it travels. */
+export interface Sent {
+  view: View;
+  parts: PartArrays[];
+  textures: TexturePixels[];
+}
+
 export type FromWorker =
   | { kind: 'ready' }
   | { kind: 'done'; seq: number; value: unknown }
   | { kind: 'refused'; seq: number; why: string }
-  | { kind: 'state'; state: DocumentState; fresh: StrokePoints[] }
-  | { kind: 'view'; view: View; parts: PartArrays[]; textures: TexturePixels[] }
+  | { kind: 'state'; state: DocumentState; fresh: StrokePoints[]; photo: Uint8Array<ArrayBuffer> | null }
+  | ({ kind: 'view' } & Sent)
   | { kind: 'busy' }
   | { kind: 'failed'; why: string }
   | { kind: 'fault'; why: string };

@@ -8,6 +8,9 @@ export interface SettingsEvents {
   begin(name: string): void;
   stage(command: Command): void;
   commit(): void;
+  /** Strength of the stabiliser of the pen, 0 to 3. */
+  steady: number;
+  setSteady(strength: number): void;
 }
 
 type Sketch = DocumentState['sketch'];
@@ -70,6 +73,7 @@ export function settingsPanel(now: () => DocumentState, events: SettingsEvents):
     choice('set.branch_depth', ['riesz', 'paper'], now().sketch.branch_depth, (word) =>
       events.run(sketch(now(), { branch_depth: word as Sketch['branch_depth'] })), 'set.branch_depth'),
   );
+  panel.append(el('hr'), choice('set.steady', ['0', '1', '2', '3'], String(events.steady), (word) => events.setSteady(Number(word)), 'set.steady'));
   return panel;
 }
 

@@ -1,6 +1,6 @@
 /** The worker: owns the session, answers requests in order, and grows the plant when nothing else is to do. */
 import init, { StudioSession } from './wasm/burgeon_wasm.js';
-import type { FromWorker, PartArrays, Request, TexturePixels, ToWorker, View } from './protocol';
+import type { FromWorker, PartArrays, Request, Sent, TexturePixels, ToWorker, View } from './protocol';
 
 const page = self as unknown as DedicatedWorkerGlobalScope;
 let session: StudioSession | undefined;
@@ -37,23 +37,40 @@ function answer(s: StudioSession, request: Request): unknown {
     case 'redo': return s.redo();
     case 'draft': return s.draft(request.mode, request.samples);
     case 'save': return s.save();
-    case 'export': return s.export(request.format);
+    case 'paste': return s.paste(request.text, request.x, request.y);
+    case 'photo': return s.place_photo(request.png, request.x, request.y, request.width);
+    case 'copy': return s.copy(Uint32Array.from(request.ids));
+    case 'skeleton': return s.skeleton();
+    case 'share': return s.share();
+    case 'export': return s.export(request.format, JSON.stringify(request.options));
+    case 'variant': {
+      const view: View = JSON.parse(s.variant(request.seed, request.detail));
+      try {
+        return pack(s, view);
+      } finally {
+        s.end_variant();
+      }
+    }
   }
 }
 
 function tellState(s: StudioSession): void {
   const state = JSON.parse(s.state());
   const fresh = [...s.fresh_strokes()].map((id) => ({ id, points: s.stroke_points(id) }));
-  tell({ kind: 'state', state, fresh }, fresh.map((f) => f.points.buffer));
+  const png = s.fresh_photo() as Uint8Array<ArrayBuffer>;
+  const photo = png.length > 0 ? png : null;
+  tell({ kind: 'state', state, fresh, photo }, [...fresh.map((f) => f.points.buffer), ...(photo ? [photo.buffer] : [])]);
 }
 
-function tellView(s: StudioSession, view: View): void {
-  const transfer: Transferable[] = [];
+/** Requests that change nothing and are not followed by a new plant. */
+const QUIET: ReadonlySet<Request['kind']> = new Set(['save', 'export', 'begin', 'copy', 'variant', 'skeleton', 'share']);
+
+/** The columns of what the session shows, and textures that the page does not have. */
+function pack(s: StudioSession, view: View): Sent {
   const parts: PartArrays[] = view.parts.map((_, i) => {
     const part = {
       positions: s.positions(i), normals: s.normals(i), uvs: s.uvs(i), colors: s.colors(i), indices: s.indices(i),
     };
-    transfer.push(...Object.values(part).map((column) => column.buffer));
     return part;
   });
   const textures: TexturePixels[] = [];
@@ -61,11 +78,14 @@ function tellView(s: StudioSession, view: View): void {
     if (texture && !sent.has(texture.number)) {
       sent.add(texture.number);
       const pixels = s.texture(texture.number);
-      transfer.push(pixels.buffer);
       textures.push({ ...texture, pixels });
     }
   }
-  tell({ kind: 'view', view, parts, textures }, transfer);
+  return { view, parts, textures };
+}
+
+function buffers({ parts, textures }: Sent): Transferable[] {
+  return [...parts.flatMap((p) => Object.values(p).map((c: Float32Array | Uint32Array) => c.buffer)), ...textures.map((x) => x.pixels.buffer)];
 }
 
 function evaluate(): void {
@@ -74,7 +94,8 @@ function evaluate(): void {
   stale = false;
   try {
     const view: View = JSON.parse(session.evaluate());
-    tellView(session, view);
+    const sent = pack(session, view);
+    tell({ kind: 'view', ...sent }, buffers(sent));
   } catch (e) {
     if (e instanceof WebAssembly.RuntimeError || e instanceof RangeError) fault(e);
     else {
@@ -124,8 +145,8 @@ page.onmessage = ({ data }: MessageEvent<ToWorker>) => {
   }
   try {
     const value = answer(session, request);
-    const bytes = value instanceof Uint8Array ? [value.buffer] : [];
-    const quiet = request.kind === 'save' || request.kind === 'export' || request.kind === 'begin';
+    const bytes = ArrayBuffer.isView(value) ? [value.buffer] : request.kind === 'variant' ? buffers(value as Sent) : [];
+    const quiet = QUIET.has(request.kind);
     // The state first: who waits for the answer may look at it.
     if (!quiet && request.kind !== 'draft') tellState(session);
     tell({ kind: 'done', seq, value }, bytes);

@@ -91,6 +91,61 @@ impl StudioSession {
         told(self.0.run(command))
     }
 
+    /// Strokes as a drawing in our JSON.
+    ///
+    /// # Errors
+    /// When none of them is there.
+    pub fn copy(&self, ids: &[u32]) -> Result<String, JsError> {
+        told(self.0.copy(ids))
+    }
+
+    /// Adds the strokes of a drawing given as text (our JSON, SVG, InkML), moved; returns their numbers.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn paste(&mut self, text: &str, x: f64, y: f64) -> Result<Vec<u32>, JsError> {
+        told(self.0.paste(text, x, y))
+    }
+
+    /// Puts a photograph (PNG) under the drawing: left lower corner and width in the drawing's unit.
+    ///
+    /// # Errors
+    /// When it is no PNG or too large.
+    pub fn place_photo(&mut self, png: &[u8], x: f64, y: f64, width: f64) -> Result<(), JsError> {
+        told(self.0.place_photo(png, x, y, width))
+    }
+
+    /// The photograph's file if the page has another one, else empty.
+    pub fn fresh_photo(&mut self) -> Vec<u8> {
+        self.0.fresh_photo()
+    }
+
+    /// Shows the plant of another seed (`View` as JSON; the columns follow it) until `end_variant`.
+    ///
+    /// # Errors
+    /// `cancelled`, or why there is none.
+    pub fn variant(&mut self, seed: &str, detail: f64) -> Result<String, JsError> {
+        told(self.0.variant(seed, detail))
+    }
+
+    /// Goes back to the plant itself.
+    pub fn end_variant(&mut self) {
+        self.0.end_variant();
+    }
+
+    /// Pairs of points of the axes: x, y, z, order.
+    pub fn skeleton(&self) -> Vec<f32> {
+        self.0.skeleton()
+    }
+
+    /// A small `.burgeon` file for a link: rounded, without times and photograph.
+    ///
+    /// # Errors
+    /// Never, but for our own bugs.
+    pub fn share(&self) -> Result<Vec<u8>, JsError> {
+        told(self.0.share())
+    }
+
     /// Opens a gesture: what is staged up to `commit` is one step of this name.
     ///
     /// # Errors
@@ -192,11 +247,11 @@ impl StudioSession {
     }
 
     /// What is shown as a file: `glb`, `obj` (a zip with its material file and textures), `ply`, `stl`, or the
-    /// drawing as `json`.
+    /// drawing as `json`. `options`: `ExportOptions` as JSON; several levels of detail come as a zip.
     ///
     /// # Errors
     /// When there is nothing to export.
-    pub fn export(&mut self, format: &str) -> Result<Vec<u8>, JsError> {
-        told(self.0.export(format))
+    pub fn export(&mut self, format: &str, options: &str) -> Result<Vec<u8>, JsError> {
+        told(self.0.export(format, options))
     }
 }

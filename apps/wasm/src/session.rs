@@ -3,18 +3,20 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use burgeon::document::{self, Command, Document, Editor, NewStroke, StrokeId};
+use burgeon::document::{self, Command, Document, Editor, NewStroke, Photo, StrokeId};
 use burgeon::formats::{
     self, DrawingFormat, ExportSpec, ModelFormat, no_files, obj_files, read_drawings, read_model,
 };
 use burgeon::glam::DVec2;
 use burgeon::mesh::{AlphaMode, Model, Texture};
+use burgeon::plant::{OrganKind, Shape};
 use burgeon::sketch::{Drawing, InkSample, Stroke, StrokeMode};
-use burgeon::{CancelToken, Evaluator, ItemReport, MakeError, Report, Run, SketchOptions};
+use burgeon::{CancelToken, Evaluator, ItemReport, MakeError, Report, Run, Seed, SketchOptions};
 
 use crate::host::{Attentive, Host};
 use crate::wire::{
-    DocumentState, Front, MaterialView, Opened, PartView, Skin, StrokeState, TextureView, View, WireCommand,
+    DocumentState, ExportOptions, Front, MaterialView, Opened, PartView, PhotoState, Skin, StrokeState,
+    TextureView, View, WireCommand,
 };
 
 /// Drawings of a file that are offered for choice.
@@ -28,11 +30,15 @@ pub(crate) struct Session {
     draft: Option<Stroke>,
     /// A model file that is looked at instead of the plant.
     guest: Option<Model>,
+    /// Another plant of the same drawing, looked at for a moment.
+    variant: Option<Model>,
     /// The document has no usable stroke: nothing is shown.
     bare: bool,
     /// Points that the page has. Holding them keeps their addresses from being used again.
     given: BTreeMap<u32, Arc<Stroke>>,
     textures: Vec<Arc<Texture>>,
+    /// The photograph that the page has.
+    given_photo: Option<Arc<[u8]>>,
 }
 
 /// A column of vertices.
@@ -121,7 +127,7 @@ impl Session {
     }
 
     pub(crate) fn run(&mut self, command: &str) -> Told {
-        let command = parse(command)?;
+        let command = self.parse(command)?;
         self.editor.run(command).map_err(words)?;
         self.guest = None;
         Ok(())
@@ -132,7 +138,8 @@ impl Session {
     }
 
     pub(crate) fn stage(&mut self, command: &str) -> Told {
-        self.editor.stage(parse(command)?).map_err(words)
+        let command = self.parse(command)?;
+        self.editor.stage(command).map_err(words)
     }
 
     pub(crate) fn commit(&mut self) {
@@ -141,6 +148,62 @@ impl Session {
 
     pub(crate) fn abandon(&mut self) {
         self.editor.cancel_gesture();
+    }
+
+    fn parse(&self, command: &str) -> Told<Command> {
+        let photo = self.editor.document().settings().photo.as_ref();
+        serde_json::from_str::<WireCommand>(command).map_err(words)?.command(photo)
+    }
+
+    /// Strokes as a drawing in our JSON, for the clipboard.
+    pub(crate) fn copy(&self, ids: &[u32]) -> Told<String> {
+        let document = self.editor.document();
+        let chosen = document.strokes().iter().filter(|s| ids.contains(&s.id.0));
+        let strokes: Vec<Stroke> = chosen.map(|s| Stroke::clone(&s.stroke)).collect();
+        if strokes.is_empty() {
+            return Err("no stroke is selected".into());
+        }
+        let mut out = Vec::new();
+        let drawing = Drawing { name: document.settings().name.clone(), strokes };
+        formats::write_drawing(&drawing, &mut out).map_err(words)?;
+        String::from_utf8(out).map_err(words)
+    }
+
+    /// Adds the strokes of any drawing as text, moved; their numbers.
+    pub(crate) fn paste(&mut self, text: &str, x: f64, y: f64) -> Told<Vec<u32>> {
+        let format = DrawingFormat::sniff(text.as_bytes()).ok_or("the clipboard holds no drawing")?;
+        let read = read_drawings(text.as_bytes(), format, "clipboard").next();
+        let read = read.ok_or("the clipboard holds no drawing")?.map_err(words)?;
+        let mut strokes = read.drawing.strokes;
+        for p in strokes.iter_mut().flat_map(|s| &mut s.samples) {
+            p.at += DVec2::new(x, y);
+        }
+        let before = self.editor.document().strokes().len();
+        let new = strokes.into_iter().map(|stroke| NewStroke { stroke, class: None }).collect();
+        self.editor.run(Command::AddStrokes(new)).map_err(words)?;
+        self.guest = None;
+        Ok(self.editor.document().strokes().iter().skip(before).map(|s| s.id.0).collect())
+    }
+
+    /// Puts a photograph under the drawing.
+    pub(crate) fn place_photo(&mut self, png: &[u8], x: f64, y: f64, width: f64) -> Told {
+        let mut photo = Photo::new(png.into()).map_err(words)?;
+        (photo.x, photo.y, photo.width) = (x, y, width);
+        self.editor.run(Command::SetPhoto(Some(Box::new(photo)))).map_err(words)
+    }
+
+    /// The photograph's file if the page has another one; empty if it has this one or there is none.
+    pub(crate) fn fresh_photo(&mut self) -> Vec<u8> {
+        let photo = self.editor.document().settings().photo.as_ref().map(|p| Arc::clone(p.png()));
+        let same = match (&photo, &self.given_photo) {
+            (Some(now), Some(had)) => Arc::ptr_eq(now, had),
+            (None, _) => true,
+            _ => false,
+        };
+        if photo.is_some() {
+            self.given_photo.clone_from(&photo);
+        }
+        photo.filter(|_| !same).map_or_else(Vec::new, |p| p.to_vec())
     }
 
     pub(crate) fn undo(&mut self) -> Option<String> {
@@ -172,6 +235,7 @@ impl Session {
             sketch: &settings.sketch,
             skin: Skin::of(&settings.skin),
             strokes: strokes.collect(),
+            photo: settings.photo.as_ref().map(PhotoState::of),
         };
         serde_json::to_string(&state).map_err(words)
     }
@@ -262,7 +326,10 @@ impl Session {
 
     /// What is shown: the guest, else the plant.
     fn model(&self) -> Option<&Model> {
-        self.guest.as_ref().or_else(|| self.evaluator.model().filter(|_| !self.bare))
+        self.variant
+            .as_ref()
+            .or(self.guest.as_ref())
+            .or_else(|| self.evaluator.model().filter(|_| !self.bare))
     }
 
     pub(crate) fn column(&self, part: usize, column: Column) -> Vec<f32> {
@@ -285,13 +352,67 @@ impl Session {
         self.textures.get(number).map_or_else(Vec::new, |t| t.pixels.clone())
     }
 
+    /// Makes the plant of another seed for a look, with fewer triangles; [`Session::end_variant`] goes back.
+    pub(crate) fn variant(&mut self, seed: &str, detail: f64) -> Told<String> {
+        let seed = Seed::new(seed.parse().ok().ok_or("the seed is a whole number")?);
+        let document = self.editor.document();
+        let mut options = SketchOptions::of_document(document);
+        options.skin.seed = seed;
+        options.skin.detail = (options.skin.detail * detail).clamp(0.1, 8.0);
+        let mut aside = self.evaluator.clone();
+        let cancel = CancelToken::new();
+        let run = Run { cancel: &cancel, executor: &Attentive(&cancel), clock: &Host };
+        aside.update(&document.drawing(), &options, seed, &run).map_err(words)?;
+        self.variant = aside.model().cloned();
+        serde_json::to_string(&self.view(None)).map_err(words)
+    }
+
+    pub(crate) fn end_variant(&mut self) {
+        self.variant = None;
+    }
+
+    /// Pairs of points of the plant's axes: x, y, z and order of each; then of its blades, from root to tip, with
+    /// "order" 100 (leaves) or 101 (petals). Empty while a model file is looked at.
+    pub(crate) fn skeleton(&self) -> Vec<f32> {
+        let plant = self.evaluator.plant().filter(|_| self.guest.is_none() && !self.bare);
+        let Some(plant) = plant else { return Vec::new() };
+        let mut out = Vec::new();
+        for axis in &plant.axes {
+            let nodes = plant.nodes.position.get(axis.nodes.start as usize..axis.nodes.end as usize);
+            for pair in nodes.unwrap_or_default().windows(2) {
+                for p in pair {
+                    let p = p.as_vec3();
+                    #[expect(clippy::cast_precision_loss, reason = "orders are small")]
+                    out.extend([p.x, p.y, p.z, axis.order as f32]);
+                }
+            }
+        }
+        for organ in &plant.organs {
+            let Some(Shape::Blade(blade)) = plant.shapes.get(organ.shape.index()) else { continue };
+            let tip = organ.frame.origin + organ.frame.along * (blade.length() * organ.scale);
+            let kind = if organ.kind == OrganKind::Petal { 101.0 } else { 100.0 };
+            for p in [organ.frame.origin, tip].map(|p| p.as_vec3()) {
+                out.extend([p.x, p.y, p.z, kind]);
+            }
+        }
+        out
+    }
+
+    /// A small project for a link.
+    pub(crate) fn share(&self) -> Told<Vec<u8>> {
+        let document = self.editor.document().compact();
+        document::write_project(&document, burgeon::VERSION).map_err(words)
+    }
+
     pub(crate) fn save(&self) -> Told<Vec<u8>> {
         document::write_project(self.editor.document(), burgeon::VERSION).map_err(words)
     }
 
-    pub(crate) fn export(&mut self, format: &str) -> Told<Vec<u8>> {
-        let mut out = Vec::new();
+    pub(crate) fn export(&mut self, format: &str, options: &str) -> Told<Vec<u8>> {
+        let options: ExportOptions = serde_json::from_str(options).map_err(words)?;
+        let spec = options.spec()?;
         if format == "json" {
+            let mut out = Vec::new();
             formats::write_drawing(&self.editor.document().drawing(), &mut out).map_err(words)?;
             return Ok(out);
         }
@@ -299,22 +420,56 @@ impl Session {
             self.draft = None;
             self.evaluate()?;
         }
+        let format = ModelFormat::from_extension(format)
+            .ok_or_else(|| format!("models are not written as {format:?}"))?;
         let model = self.model().ok_or("there is no plant yet: draw at least one line")?;
-        let spec = ExportSpec::default();
-        match ModelFormat::from_extension(format) {
-            Some(ModelFormat::Obj) => {
-                let files = obj_files(model, "plant", &spec).map_err(words)?;
-                let mut all = vec![("plant.obj".into(), files.obj), ("plant.mtl".into(), files.mtl)];
-                all.extend(files.textures);
-                out = document::pack(&all).map_err(words)?;
-            }
-            Some(format) => {
-                formats::write_model(model, format, &spec, &mut out, &mut Report::default()).map_err(words)?
-            }
-            None => return Err(format!("models are not written as {format:?}")),
+        if options.levels <= 1 || self.guest.is_some() {
+            let mut files = written(model, format, "plant", &spec)?;
+            // One file is given as it is, an OBJ with its materials as a zip.
+            return match files.len() {
+                1 => Ok(files.swap_remove(0).1),
+                _ => document::pack(&files).map_err(words),
+            };
         }
-        Ok(out)
+        let mut files = written(model, format, "plant_LOD0", &spec)?;
+        let document = self.editor.document();
+        let (drawing, seed) = (document.drawing(), document.settings().seed);
+        let mut asked = SketchOptions::of_document(document);
+        let mut aside = self.evaluator.clone();
+        let cancel = CancelToken::new();
+        let run = Run { cancel: &cancel, executor: &Attentive(&cancel), clock: &Host };
+        for level in 1..options.levels.min(4) {
+            asked.skin.detail = (asked.skin.detail / 3.0).max(0.1);
+            asked.skin.sides = (asked.skin.sides / 2).max(3);
+            aside.update(&drawing, &asked, seed, &run).map_err(words)?;
+            let model = aside.model().ok_or("internal: no model")?;
+            files.extend(written(model, format, &format!("plant_LOD{level}"), &spec)?);
+        }
+        document::pack(&files).map_err(words)
     }
+}
+
+/// The files of a model.
+fn written(
+    model: &Model,
+    format: ModelFormat,
+    stem: &str,
+    spec: &ExportSpec,
+) -> Told<Vec<(String, Vec<u8>)>> {
+    if format == ModelFormat::Obj {
+        let files = obj_files(model, stem, spec).map_err(words)?;
+        let mut all = vec![(format!("{stem}.obj"), files.obj), (format!("{stem}.mtl"), files.mtl)];
+        all.extend(files.textures);
+        return Ok(all);
+    }
+    let mut out = Vec::new();
+    formats::write_model(model, format, spec, &mut out, &mut Report::default()).map_err(words)?;
+    let extension = match format {
+        ModelFormat::Ply => "ply",
+        ModelFormat::Stl => "stl",
+        _ => "glb",
+    };
+    Ok(vec![(format!("{stem}.{extension}"), out)])
 }
 
 fn number_of(textures: &mut Vec<Arc<Texture>>, texture: &Arc<Texture>) -> usize {
@@ -323,10 +478,6 @@ fn number_of(textures: &mut Vec<Arc<Texture>>, texture: &Arc<Texture>) -> usize 
         textures.push(Arc::clone(texture));
         textures.len() - 1
     })
-}
-
-fn parse(command: &str) -> Told<Command> {
-    serde_json::from_str::<WireCommand>(command).map_err(words)?.command()
 }
 
 fn stroke(mode: &str, samples: &[f64]) -> Told<Stroke> {
@@ -460,17 +611,17 @@ mod tests {
             assert_eq!(s.state().unwrap(), state, "{name}");
         }
         for format in ["glb", "ply", "stl"] {
-            let file = s.export(format).unwrap();
+            let file = s.export(format, "{}").unwrap();
             let mut other = Session::default();
             let opened = json(&other.open(&format!("plant.{format}"), &file, 0, false).unwrap());
             assert_eq!(opened["kind"], "model");
             let view = json(&other.evaluate().unwrap());
             assert!(!view["parts"].as_array().unwrap().is_empty() && view["max"][1].as_f64().unwrap() > 0.1);
-            assert!(other.export("glb").unwrap().starts_with(b"glTF"));
+            assert!(other.export("glb", "{}").unwrap().starts_with(b"glTF"));
         }
-        assert!(s.export("obj").unwrap().starts_with(b"PK"));
-        assert!(s.export("exe").is_err());
-        let drawing = s.export("json").unwrap();
+        assert!(s.export("obj", "{}").unwrap().starts_with(b"PK"));
+        assert!(s.export("exe", "{}").is_err());
+        let drawing = s.export("json", "{}").unwrap();
         assert_eq!(json(&Session::default().open("d.json", &drawing, 0, false).unwrap())["kind"], "drawing");
         let two = concat!(
             r#"{"word":"a","drawing":[[[0,9],[0,90]]]}"#,
@@ -499,5 +650,86 @@ mod tests {
         let after = s.evaluate().unwrap();
         assert_eq!(json(&before)["item"]["digest"], json(&after)["item"]["digest"]);
         assert!(s.draft("crayon", &[]).is_err() && s.run(r#"{"do":"explode"}"#).is_err());
+    }
+
+    fn photo() -> Vec<u8> {
+        let pixels: Vec<u8> = (0..64).flat_map(|k| [200, 3 * (k % 8), 3 * (k / 8), 255]).collect();
+        let mut png = Vec::new();
+        formats::write_png(8, 8, &pixels, &mut png).unwrap();
+        png
+    }
+
+    #[test]
+    fn traced_organs_take_the_photograph_and_others_do_not() {
+        let mut s = Session::default();
+        s.open("sample.svg", &sample(), 0, true).unwrap();
+        let plain = json(&s.evaluate().unwrap());
+        let points = s.stroke_points(0);
+        let (x, y) = (points[0], points[1]);
+        assert!(s.place_photo(b"GIF", x, y, 1.0).is_err());
+        s.place_photo(&photo(), -1e4, -1e4, 2e4).unwrap();
+        assert_eq!((s.fresh_photo(), s.fresh_photo()), (photo(), Vec::new()));
+        let traced = json(&s.evaluate().unwrap());
+        assert_eq!(traced["item"]["digest"], plain["item"]["digest"], "the plant is the same");
+        assert_eq!(traced["stages"].as_array().unwrap().len(), 1, "only the surface is made again");
+        let names = |v: &Value| -> Vec<String> {
+            v["parts"].as_array().unwrap().iter().map(|p| p["name"].as_str().unwrap().to_owned()).collect()
+        };
+        assert!(names(&traced).contains(&"petals-traced".to_owned()), "{:?}", names(&traced));
+        let part = names(&traced).iter().position(|n| n == "petals-traced").unwrap();
+        let uvs = s.column(part, Column::Uvs);
+        assert_eq!(uvs.len() / 2, s.column(part, Column::Positions).len() / 3);
+        assert!(uvs.iter().all(|x| (0.0..=1.0).contains(x)));
+        // A small photograph far away traces nothing; one that does not paint neither.
+        s.run(r#"{"do":"photo","x":-9000,"y":-9000,"width":1,"opacity":0.5,"paint":true}"#).unwrap();
+        assert_eq!(names(&json(&s.evaluate().unwrap())), names(&plain));
+        s.run(r#"{"do":"photo","x":-1e4,"y":-1e4,"width":2e4,"opacity":0.2,"paint":false}"#).unwrap();
+        assert_eq!(names(&json(&s.evaluate().unwrap())), names(&plain));
+        let mut other = Session::default();
+        other.open("p.burgeon", &s.save().unwrap(), 0, true).unwrap();
+        assert_eq!(other.fresh_photo(), photo());
+        s.run(r#"{"do":"photo-off"}"#).unwrap();
+        assert!(s.run(r#"{"do":"photo","x":0,"y":0,"width":1,"opacity":0.2,"paint":true}"#).is_err());
+        assert_eq!(s.undo().as_deref(), Some("photo"));
+    }
+
+    #[test]
+    fn copies_variants_levels_and_links() {
+        let mut s = Session::default();
+        s.open("sample.svg", &sample(), 0, true).unwrap();
+        let plant = json(&s.evaluate().unwrap());
+        let text = s.copy(&[0, 1]).unwrap();
+        assert!(s.copy(&[99]).is_err() && s.paste("no drawing", 0.0, 0.0).is_err());
+        assert_eq!(s.paste(&text, 5.0, 0.0).unwrap(), [15, 16]);
+        assert_eq!(s.stroke_points(15)[0], s.stroke_points(0)[0] + 5.0);
+        s.run(r#"{"do":"duplicate","ids":[0],"x":0,"y":1}"#).unwrap();
+        assert_eq!((s.undo().as_deref(), s.undo().as_deref()), (Some("duplicate"), Some("draw")));
+
+        let other = json(&s.variant("77", 0.4).unwrap());
+        let positions = s.column(0, Column::Positions);
+        s.end_variant();
+        assert!(other["item"].is_null() && !positions.is_empty());
+        let again = json(&s.evaluate().unwrap());
+        assert_eq!(
+            again["item"]["digest"], plant["item"]["digest"],
+            "a look at another seed changes nothing"
+        );
+        assert!(s.column(0, Column::Positions).len() > positions.len());
+        assert_eq!(s.skeleton().len() % 8, 0);
+        assert!(!s.skeleton().is_empty());
+
+        let levels = s.export("glb", r#"{"levels":3}"#).unwrap();
+        assert!(
+            levels.starts_with(b"PK")
+                && levels.windows(9).any(|w| w == b"LOD2.glb\0" || &w[..8] == b"LOD2.glb")
+        );
+        assert!(s.export("ply", r#"{"up":"x"}"#).is_err());
+
+        let link = s.share().unwrap();
+        assert!(link.len() < 16 << 10, "{} bytes", link.len());
+        let mut linked = Session::default();
+        linked.open("x.burgeon", &link, 0, true).unwrap();
+        let shared = json(&linked.evaluate().unwrap());
+        assert_eq!(shared["item"]["counts"]["flowers"], plant["item"]["counts"]["flowers"]);
     }
 }

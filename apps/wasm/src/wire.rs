@@ -1,11 +1,11 @@
 //! What travels between worker and session as JSON, and the same as TypeScript types.
 
 use burgeon::ItemReport;
-use burgeon::document::Command;
+use burgeon::document::{Command, Photo};
 use burgeon::glam::DVec2;
 use burgeon::sketch::{SketchSpec, StrokeClass, StrokeMode};
 use burgeon::skin::{PetalColor, SkinSpec};
-use burgeon::{Seed, document::StrokeId};
+use burgeon::{Seed, Unit, UpAxis, document::StrokeId, formats::ExportSpec};
 use serde::{Deserialize, Serialize};
 use wasm_bindgen::prelude::*;
 
@@ -29,13 +29,19 @@ export type Command =
   | { do: "remove"; ids: number[] } | { do: "move"; ids: number[]; x: number; y: number }
   | { do: "class"; ids: number[]; class: StrokeClass | null } | { do: "mode"; ids: number[]; mode: StrokeMode }
   | { do: "color"; ids: number[]; color: [number, number, number] | null } | { do: "clear" } | { do: "new" }
+  | { do: "duplicate"; ids: number[]; x: number; y: number }
+  | { do: "photo"; x: number; y: number; width: number; opacity: number; paint: boolean } | { do: "photo-off" }
   | { do: "rename"; name: string } | { do: "seed"; seed: string } | { do: "sketch"; spec: SketchSpec }
   | { do: "skin"; skin: Skin };
 export interface StrokeState { id: number; mode: StrokeMode; class: StrokeClass | null; color: [number, number, number] | null }
 export interface DocumentState {
   revision: number; undo: string | null; redo: string | null; steps: number; name: string; seed: string;
-  sketch: SketchSpec; skin: Skin; strokes: StrokeState[];
+  sketch: SketchSpec; skin: Skin; strokes: StrokeState[]; photo: PhotoState | null;
 }
+export interface PhotoState {
+  x: number; y: number; width: number; height: number; opacity: number; paint: boolean; pixels: [number, number];
+}
+export interface ExportOptions { levels: number; up: "y" | "z"; unit: "m" | "cm" | "mm" }
 export interface Opened { kind: "project" | "drawing" | "model"; name: string; names: string[]; warnings: string[] }
 export interface StrokeReport { index: number; class: StrokeClass; organ: string; confidence: number }
 export interface Item {
@@ -80,6 +86,20 @@ pub(crate) enum WireCommand {
         ids: Vec<u32>,
         color: Option<[u8; 3]>,
     },
+    Duplicate {
+        ids: Vec<u32>,
+        x: f64,
+        y: f64,
+    },
+    /// How the photograph lies.
+    Photo {
+        x: f64,
+        y: f64,
+        width: f64,
+        opacity: f64,
+        paint: bool,
+    },
+    PhotoOff,
     /// An empty document in the place of this one.
     New,
     Clear,
@@ -98,7 +118,8 @@ pub(crate) enum WireCommand {
 }
 
 impl WireCommand {
-    pub(crate) fn command(self) -> Result<Command, String> {
+    /// `photo`: the one that lies under the drawing now.
+    pub(crate) fn command(self, photo: Option<&Photo>) -> Result<Command, String> {
         let ids = |ids: Vec<u32>| ids.into_iter().map(StrokeId).collect();
         Ok(match self {
             Self::Remove { ids: i } => Command::RemoveStrokes(ids(i)),
@@ -106,6 +127,14 @@ impl WireCommand {
             Self::Class { ids: i, class } => Command::SetClass(ids(i), class),
             Self::Mode { ids: i, mode } => Command::SetMode(ids(i), mode),
             Self::Color { ids: i, color } => Command::SetColor(ids(i), color),
+            Self::Duplicate { ids: i, x, y } => Command::Duplicate(ids(i), DVec2::new(x, y)),
+            Self::Photo { x, y, width, opacity, paint } => {
+                let mut photo = photo.cloned().ok_or("there is no photograph under the drawing")?;
+                (photo.x, photo.y, photo.width) = (x, y, width);
+                (photo.opacity, photo.paint) = (opacity, paint);
+                Command::SetPhoto(Some(Box::new(photo)))
+            }
+            Self::PhotoOff => Command::SetPhoto(None),
             Self::New => Command::Open(Box::default()),
             Self::Clear => Command::Clear,
             Self::Rename { name } => Command::Rename(name),
@@ -172,6 +201,58 @@ pub(crate) struct DocumentState<'a> {
     pub(crate) sketch: &'a SketchSpec,
     pub(crate) skin: Skin,
     pub(crate) strokes: Vec<StrokeState>,
+    pub(crate) photo: Option<PhotoState>,
+}
+
+#[derive(Debug, Serialize)]
+pub(crate) struct PhotoState {
+    x: f64,
+    y: f64,
+    width: f64,
+    height: f64,
+    opacity: f64,
+    paint: bool,
+    pixels: (u32, u32),
+}
+
+impl PhotoState {
+    pub(crate) fn of(p: &Photo) -> Self {
+        let Photo { x, y, width, opacity, paint, .. } = *p;
+        Self { x, y, width, height: p.height(), opacity, paint, pixels: p.size() }
+    }
+}
+
+/// How a model is written.
+#[derive(Debug, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(crate) struct ExportOptions {
+    /// Levels of detail, 1 to 4: each has about a third of the triangles of the one before.
+    pub(crate) levels: u32,
+    pub(crate) up: String,
+    pub(crate) unit: String,
+}
+
+impl Default for ExportOptions {
+    fn default() -> Self {
+        Self { levels: 1, up: "y".into(), unit: "m".into() }
+    }
+}
+
+impl ExportOptions {
+    pub(crate) fn spec(&self) -> Result<ExportSpec, String> {
+        let up = match self.up.as_str() {
+            "y" => UpAxis::Y,
+            "z" => UpAxis::Z,
+            other => return Err(format!("up is y or z, not {other:?}")),
+        };
+        let unit = match self.unit.as_str() {
+            "m" => Unit::Metre,
+            "cm" => Unit::Centimetre,
+            "mm" => Unit::Millimetre,
+            other => return Err(format!("the unit is m, cm or mm, not {other:?}")),
+        };
+        Ok(ExportSpec { up, unit })
+    }
 }
 
 #[derive(Debug, Default, Serialize)]

@@ -10,7 +10,7 @@ use skin::SkinSpec;
 
 use crate::event::Event;
 use crate::state::{NAME_LENGTH, Settings, range_fault, sound};
-use crate::{Document, DocumentStroke, StrokeId};
+use crate::{Document, DocumentStroke, Photo, StrokeId};
 
 /// A stroke that is to be added.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -35,6 +35,8 @@ impl NewStroke {
 pub enum Command {
     /// Adds strokes after the others. Points that are not finite are left out.
     AddStrokes(Vec<NewStroke>),
+    /// Adds moved copies of strokes after the others, with what was said of them.
+    Duplicate(Vec<StrokeId>, DVec2),
     /// Erases strokes.
     RemoveStrokes(Vec<StrokeId>),
     /// Moves strokes, in the drawing's unit, y up.
@@ -55,6 +57,8 @@ pub enum Command {
     SetSketch(Box<SketchSpec>),
     /// Sets how the plant is meshed and coloured.
     SetSkin(SkinSpec),
+    /// Puts a photograph under the drawing, changes how it lies there, or takes it away.
+    SetPhoto(Option<Box<Photo>>),
     /// Puts another document in the place of this one.
     Open(Box<Document>),
 }
@@ -88,6 +92,7 @@ impl Command {
     pub fn name(&self) -> &'static str {
         match self {
             Self::AddStrokes(_) => "draw",
+            Self::Duplicate(..) => "duplicate",
             Self::RemoveStrokes(_) => "erase",
             Self::MoveStrokes(..) => "move",
             Self::SetClass(..) => "class",
@@ -98,6 +103,7 @@ impl Command {
             Self::SetSeed(_) => "seed",
             Self::SetSketch(_) => "sketch",
             Self::SetSkin(_) => "skin",
+            Self::SetPhoto(_) => "photo",
             Self::Open(_) => "open",
         }
     }
@@ -106,17 +112,11 @@ impl Command {
     pub(crate) fn decide(self, document: &Document) -> Result<Event, CommandError> {
         match self {
             Self::AddStrokes(strokes) => add(strokes, document),
+            Self::Duplicate(ids, by) => duplicate(&ids, by, document),
             Self::RemoveStrokes(ids) => remove(&rows(&ids, document)?, document),
             Self::Clear => remove(&(0..document.strokes.len()).collect::<Vec<_>>(), document),
             Self::MoveStrokes(ids, by) => edit(&ids, document, |s| {
-                let mut stroke = Stroke::clone(&s.stroke);
-                for sample in &mut stroke.samples {
-                    sample.at += by;
-                    if !sample.at.is_finite() {
-                        return Err(CommandError::TooFar);
-                    }
-                }
-                s.stroke = Arc::new(stroke);
+                s.stroke = Arc::new(moved(&s.stroke, by)?);
                 Ok(())
             }),
             Self::SetClass(ids, class) => edit(&ids, document, |s| {
@@ -138,6 +138,7 @@ impl Command {
             Self::SetSeed(seed) => set(document, |s| s.seed = seed),
             Self::SetSketch(sketch) => set(document, |s| s.sketch = *sketch),
             Self::SetSkin(skin) => set(document, |s| s.skin = SkinSpec { seed: s.skin.seed, ..skin }),
+            Self::SetPhoto(photo) => set(document, |s| s.photo = photo.map(|p| *p)),
             Self::Open(other) => Ok(Event::Opened { before: Box::new(document.clone()), after: other }),
         }
     }
@@ -157,6 +158,25 @@ fn add(strokes: Vec<NewStroke>, document: &Document) -> Result<Event, CommandErr
         return Err(CommandError::Nothing("the stroke has no point"));
     }
     Ok(Event::Added { rows, next_id: (document.next_id, next) })
+}
+
+fn moved(stroke: &Stroke, by: DVec2) -> Result<Stroke, CommandError> {
+    let mut stroke = stroke.clone();
+    for sample in &mut stroke.samples {
+        sample.at += by;
+        if !sample.at.is_finite() {
+            return Err(CommandError::TooFar);
+        }
+    }
+    Ok(stroke)
+}
+
+fn duplicate(ids: &[StrokeId], by: DVec2, document: &Document) -> Result<Event, CommandError> {
+    let copies = rows(ids, document)?.into_iter().map(|row| {
+        let s = &document.strokes[row];
+        Ok(NewStroke { stroke: moved(&s.stroke, by)?, class: s.class })
+    });
+    add(copies.collect::<Result<_, CommandError>>()?, document)
 }
 
 fn rows(ids: &[StrokeId], document: &Document) -> Result<Vec<usize>, CommandError> {

@@ -13,10 +13,12 @@ use skin::{PetalColor, SkinSpec};
 
 use crate::archive::{ArchiveError, pack, unpack};
 use crate::state::{range_fault, shortened};
-use crate::{Document, DocumentStroke, Settings, StrokeId};
+use crate::{Document, DocumentStroke, Photo, PhotoError, Settings, StrokeId};
 
 /// The form that this version writes, as `manifest.json` names it.
-pub const PROJECT_SCHEMA: &str = "project/1";
+pub const PROJECT_SCHEMA: &str = "project/2";
+/// Earlier forms that are read.
+const EARLIER: [&str; 1] = ["project/1"];
 /// Largest project file that is read, and largest entry in it: 64 MiB and 256 MiB.
 pub const MAX_PROJECT_BYTES: usize = 64 << 20;
 const MAX_ENTRY_BYTES: usize = 256 << 20;
@@ -27,6 +29,7 @@ const MAX_POINTS: usize = 4_000_000;
 
 const MANIFEST: &str = "manifest.json";
 const DOCUMENT: &str = "document.json";
+const PHOTO: &str = "photo.png";
 
 /// Why a project could not be read or written.
 #[derive(Debug, thiserror::Error)]
@@ -65,6 +68,9 @@ pub enum ProjectError {
     /// A setting is out of its range.
     #[error("project file: {0}")]
     Setting(String),
+    /// The photograph cannot be used.
+    #[error("project file, photo.png: {0}")]
+    Photo(#[from] PhotoError),
     /// Beyond the bounds that keep hostile files harmless.
     #[error("project file: more than {limit} {what}; split the drawing")]
     TooMuch {
@@ -82,7 +88,40 @@ struct Manifest {
     made_by: String,
 }
 
+/// Form 2: as form 1, and a photograph.
 #[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct DocumentV2 {
+    name: String,
+    seed: u64,
+    #[serde(default)]
+    sketch: SketchSpec,
+    #[serde(default)]
+    skin: SkinV1,
+    strokes: Vec<StrokeV1>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    photo: Option<PhotoV2>,
+}
+
+/// How `photo.png` lies under the drawing.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PhotoV2 {
+    x: f64,
+    y: f64,
+    width: f64,
+    opacity: f64,
+    paint: bool,
+}
+
+impl From<DocumentV1> for DocumentV2 {
+    fn from(v1: DocumentV1) -> Self {
+        let DocumentV1 { name, seed, sketch, skin, strokes } = v1;
+        Self { name, seed, sketch, skin, strokes, photo: None }
+    }
+}
+
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct DocumentV1 {
     name: String,
@@ -164,19 +203,22 @@ pub fn is_project(start: &[u8]) -> bool {
 /// ```
 pub fn write_project(document: &Document, version: &str) -> Result<Vec<u8>, ProjectError> {
     let settings = document.settings();
-    let file = DocumentV1 {
+    let photo = settings.photo.as_ref();
+    let file = DocumentV2 {
         name: settings.name.clone(),
         seed: settings.seed.number(),
         sketch: settings.sketch.clone(),
         skin: SkinV1::from(&settings.skin),
         strokes: document.strokes().iter().map(to_file).collect(),
+        photo: photo.map(|p| PhotoV2 { x: p.x, y: p.y, width: p.width, opacity: p.opacity, paint: p.paint }),
     };
     let manifest = Manifest { burgeon: PROJECT_SCHEMA.into(), made_by: version.into() };
     let json = |entry, source| ProjectError::Json { entry, source };
-    let files = [
+    let mut files = vec![
         (MANIFEST.to_owned(), serde_json::to_vec(&manifest).map_err(|e| json(MANIFEST, e))?),
         (DOCUMENT.to_owned(), serde_json::to_vec(&file).map_err(|e| json(DOCUMENT, e))?),
     ];
+    files.extend(photo.map(|p| (PHOTO.to_owned(), p.png().to_vec())));
     Ok(pack(&files)?)
 }
 
@@ -207,21 +249,33 @@ pub fn read_project(bytes: &[u8]) -> Result<Document, ProjectError> {
     if bytes.len() > MAX_PROJECT_BYTES {
         return Err(ProjectError::TooMuch { what: "bytes", limit: MAX_PROJECT_BYTES });
     }
-    let mut entries = unpack(bytes, &[MANIFEST, DOCUMENT], MAX_ENTRY_BYTES)?;
+    let mut entries = unpack(bytes, &[MANIFEST, DOCUMENT, PHOTO], MAX_ENTRY_BYTES)?;
     let manifest = entries.remove(MANIFEST).ok_or(ProjectError::Missing(MANIFEST))?;
     let manifest: Manifest =
         serde_json::from_slice(&manifest).map_err(|source| ProjectError::Json { entry: MANIFEST, source })?;
-    // Older forms get their branch here, with a fixture in fixtures/projects.
-    if manifest.burgeon != PROJECT_SCHEMA {
+    let earlier = EARLIER.contains(&manifest.burgeon.as_str());
+    if manifest.burgeon != PROJECT_SCHEMA && !earlier {
         return Err(ProjectError::Version { found: manifest.burgeon.chars().take(40).collect() });
     }
     let document = entries.remove(DOCUMENT).ok_or(ProjectError::Missing(DOCUMENT))?;
-    let file: DocumentV1 =
-        serde_json::from_slice(&document).map_err(|source| ProjectError::Json { entry: DOCUMENT, source })?;
-    from_v1(file)
+    let json = |source| ProjectError::Json { entry: DOCUMENT, source };
+    // Every form is read by its own structs and then brought forward; each has a file in fixtures/projects.
+    let mut file: DocumentV2 = if earlier {
+        serde_json::from_slice::<DocumentV1>(&document).map_err(json)?.into()
+    } else {
+        serde_json::from_slice(&document).map_err(json)?
+    };
+    let photo = match file.photo.take() {
+        Some(PhotoV2 { x, y, width, opacity, paint }) => {
+            let png = entries.remove(PHOTO).ok_or(ProjectError::Missing(PHOTO))?;
+            Some(Photo { x, y, width, opacity, paint, ..Photo::new(png.into())? })
+        }
+        None => None,
+    };
+    checked(file, photo)
 }
 
-fn from_v1(file: DocumentV1) -> Result<Document, ProjectError> {
+fn checked(file: DocumentV2, photo: Option<Photo>) -> Result<Document, ProjectError> {
     if file.strokes.len() > MAX_STROKES {
         return Err(ProjectError::TooMuch { what: "strokes", limit: MAX_STROKES });
     }
@@ -237,8 +291,13 @@ fn from_v1(file: DocumentV1) -> Result<Document, ProjectError> {
     };
     let SkinV1 { detail, sides, textures, variation, .. } = file.skin;
     let skin = SkinSpec { detail, sides, textures, petals, variation, ..SkinSpec::default() };
-    let settings =
-        Settings { name: shortened(&file.name), seed: Seed::new(file.seed), sketch: file.sketch, skin };
+    let settings = Settings {
+        name: shortened(&file.name),
+        seed: Seed::new(file.seed),
+        sketch: file.sketch,
+        skin,
+        photo,
+    };
     let mut document = Document { settings, ..Document::default() };
     if let Some(fault) = range_fault(&document.settings) {
         return Err(ProjectError::Setting(fault));

@@ -4,8 +4,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use base::Seed;
+use glam::DVec2;
 use sketch::{Drawing, SketchSpec, Stroke, StrokeClass};
 use skin::SkinSpec;
+
+use crate::Photo;
 
 /// Names one stroke for as long as the document lives, whatever is drawn or erased around it. Never reused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -33,6 +36,8 @@ pub struct Settings {
     pub sketch: SketchSpec,
     /// How the plant is meshed and coloured. Its `seed` is not saved: it always follows [`Settings::seed`].
     pub skin: SkinSpec,
+    /// What lies under the drawing.
+    pub photo: Option<Photo>,
 }
 
 impl Default for Settings {
@@ -42,6 +47,7 @@ impl Default for Settings {
             seed: Seed::default(),
             sketch: SketchSpec::default(),
             skin: SkinSpec::default(),
+            photo: None,
         }
     }
 }
@@ -128,6 +134,34 @@ impl Document {
         self.strokes.iter().position(|s| s.id == id)
     }
 
+    /// A smaller document that looks the same: points on a grid of at most 1/10,000 of the drawing's diagonal, without
+    /// their times; without the photograph. For links, not for files.
+    pub fn compact(&self) -> Self {
+        let mut document = self.clone();
+        document.settings.photo = None;
+        let points = || self.strokes.iter().flat_map(|s| s.stroke.samples.iter().map(|p| p.at));
+        let (low, high) = points().fold((DVec2::MAX, DVec2::MIN), |(a, b), p| (a.min(p), b.max(p)));
+        let size = (high - low).length();
+        // A power of ten has few digits as text.
+        let mut step = 1.0;
+        while size > 0.0 && size.is_finite() && step * 10_000.0 > size && step > 1e-12 {
+            step *= 0.1;
+        }
+        let per_step = (1.0 / step).round();
+        let on_grid = |x: f64| (x * per_step).round() / per_step;
+        for s in &mut document.strokes {
+            let mut stroke = Stroke::clone(&s.stroke);
+            for p in &mut stroke.samples {
+                p.at = DVec2::new(on_grid(p.at.x), on_grid(p.at.y));
+                p.time_ms = None;
+                p.pressure = p.pressure.map(|x| (x * 100.0).round() / 100.0);
+            }
+            stroke.samples.dedup_by(|b, a| a.at == b.at);
+            s.stroke = Arc::new(stroke);
+        }
+        document
+    }
+
     pub(crate) fn give_id(&mut self) -> StrokeId {
         let id = StrokeId(self.next_id);
         self.next_id = self.next_id.saturating_add(1);
@@ -176,6 +210,9 @@ pub fn range_fault(settings: &Settings) -> Option<String> {
         ("sides", f64::from(skin.sides), 3.0, 24.0),
         ("variation", skin.variation, 0.0, 1.0),
     ];
+    if let Some(fault) = settings.photo.as_ref().and_then(Photo::fault) {
+        return Some(fault);
+    }
     let odd = rows.into_iter().find(|&(_, value, low, high)| !(low..=high).contains(&value));
     odd.map(|(name, value, low, high)| format!("{name} is {value}, but must be from {low} to {high}"))
 }

@@ -17,6 +17,7 @@ fn project(manifest: &str, document: &str) -> Vec<u8> {
 }
 
 const V1: &str = r#"{"burgeon":"project/1"}"#;
+const V2: &str = r#"{"burgeon":"project/2"}"#;
 
 fn refusal(bytes: &[u8]) -> String {
     read_project(bytes).unwrap_err().to_string()
@@ -31,7 +32,14 @@ fn refusals_say_what_and_what_to_do() {
         (sample()[..sample().len() / 2].to_vec(), "not a whole zip"),
         (pack(&[("x.txt".into(), vec![1])]).unwrap(), "no \"manifest.json\""),
         (pack(&[("manifest.json".into(), V1.into())]).unwrap(), "no \"document.json\""),
-        (project(r#"{"burgeon":"project/2"}"#, "{}"), "take a newer Burgeon"),
+        (project(r#"{"burgeon":"project/3"}"#, "{}"), "take a newer Burgeon"),
+        (
+            project(
+                V2,
+                r#"{"name":"a","seed":1,"strokes":[],"photo":{"x":0,"y":0,"width":1,"opacity":1,"paint":true}}"#,
+            ),
+            "no \"photo.png\"",
+        ),
         (project("[", "{}"), "manifest.json: EOF"),
         (project(V1, "{}"), "missing field `name`"),
         (project(V1, r#"{"name":"a","seed":1,"strokes":[],"more":1}"#), "unknown field `more`"),
@@ -77,6 +85,61 @@ fn files_of_version_1_stay_readable() {
     assert_eq!(document.classes().len(), 1, "one correction");
     assert_eq!(document.settings().skin.petals.map(skin::PetalColor::word), Some("violet"));
     assert_eq!(document.strokes()[0].stroke.samples.len(), 141);
+}
+
+#[test]
+fn files_of_version_2_stay_readable() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/projects/version-2.burgeon");
+    let document = read_project(&std::fs::read(path).unwrap()).unwrap();
+    assert_eq!((document.strokes().len(), document.settings().seed.number()), (15, 7));
+    let photo = document.settings().photo.as_ref().unwrap();
+    assert_eq!((photo.size(), photo.x, photo.y, photo.width), ((8, 8), -10.0, -20.0, 900.0));
+    assert_eq!((photo.opacity, photo.paint, photo.height()), (0.25, true, 900.0));
+    let again = read_project(&write_project(&document, "test").unwrap()).unwrap();
+    assert_eq!(again, document);
+}
+
+#[test]
+fn photographs_are_bounded() {
+    let doc =
+        r#"{"name":"a","seed":1,"strokes":[],"photo":{"x":0,"y":0,"width":W,"opacity":1,"paint":true}}"#;
+    let with = |png: &[u8], width: &str| {
+        let entry = |name: &str, bytes: &[u8]| (name.to_owned(), bytes.to_vec());
+        let document = doc.replace('W', width);
+        let all = [
+            entry("manifest.json", V2.as_bytes()),
+            entry("document.json", document.as_bytes()),
+            entry("photo.png", png),
+        ];
+        read_project(&pack(&all).unwrap()).map_err(|e| e.to_string())
+    };
+    let png =
+        |w: u32, h: u32| [&b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR"[..], &w.to_be_bytes(), &h.to_be_bytes()].concat();
+    assert!(with(&png(4096, 1), "1").is_ok());
+    for (bytes, width, words) in [
+        (png(4097, 1), "1", "smaller"),
+        (png(0, 1), "1", "no PNG"),
+        (b"JFIF".to_vec(), "1", "no PNG"),
+        (png(1, 1), "0", "out of reach"),
+        (png(1, 1), "1e300", "out of reach"),
+    ] {
+        let said = with(&bytes, width).unwrap_err();
+        assert!(said.contains(words), "{said}");
+    }
+}
+
+#[test]
+fn a_compact_document_is_small_and_looks_the_same() {
+    let line: Vec<DVec2> =
+        (0..500).map(|k| DVec2::new(f64::from(k) * 0.731_234_567, f64::from(k % 7) / 3.0)).collect();
+    let document = Document::from_drawing(&Drawing::from_polylines("line", &[line.clone()]));
+    let compact = document.compact();
+    assert_eq!(compact.validate().count(), 0);
+    let size = |d: &Document| write_project(d, "test").unwrap().len();
+    assert!(size(&compact) * 3 < size(&document) * 2, "{} {}", size(&compact), size(&document));
+    for (a, b) in compact.strokes()[0].stroke.samples.iter().zip(&line) {
+        assert!((a.at - *b).length() < 365.0 / 10_000.0, "{} {b}", a.at);
+    }
 }
 
 proptest! {

@@ -1,7 +1,9 @@
 //! Undo of every command is the identity, for any sequence of commands.
 
 use base::Seed;
-use document::{Command, CommandError, Document, Editor, NewStroke, StrokeId, read_project, write_project};
+use document::{
+    Command, CommandError, Document, Editor, NewStroke, Photo, StrokeId, read_project, write_project,
+};
 use glam::DVec2;
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -37,6 +39,15 @@ fn command() -> impl Strategy<Value = Command> {
         1 => (ids(), class).prop_map(|(ids, class)| Command::SetClass(ids, class)),
         1 => ids().prop_map(|ids| Command::SetMode(ids, StrokeMode::LeafContour)),
         1 => (ids(), any::<[u8; 3]>()).prop_map(|(ids, color)| Command::SetColor(ids, Some(color))),
+        2 => (ids(), point()).prop_map(|(ids, by)| Command::Duplicate(ids, by)),
+        1 => proptest::option::of((point(), -1.0..3.0f64, any::<bool>())).prop_map(|photo| {
+            Command::SetPhoto(photo.map(|(at, size, paint)| {
+                let png = [&b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x02\0\0\0\x03"[..], &[1; 9]].concat();
+                let mut photo = Photo::new(png.into()).expect("a PNG header");
+                (photo.x, photo.y, photo.width, photo.opacity, photo.paint) = (at.x, at.y, size, size / 2.0, paint);
+                Box::new(photo)
+            }))
+        }),
         1 => Just(Command::Clear),
         1 => ".{0,300}".prop_map(Command::Rename),
         1 => any::<u64>().prop_map(|n| Command::SetSeed(Seed::new(n))),

@@ -9,6 +9,7 @@ use crate::fork::{Bearer, Collar};
 use crate::rings::place;
 use crate::spec::{Budget, SkinSpec, whole};
 use crate::spine::Spine;
+use crate::traced::Traced;
 use crate::tube::{Circle, Sleeve, drop_flat};
 
 /// Which part of the model an axis belongs to.
@@ -48,6 +49,7 @@ struct Chain {
 #[derive(Debug)]
 pub(crate) struct Tube {
     pub surface: Surface,
+    pub traced: bool,
     pub mesh: TriMesh,
 }
 
@@ -73,6 +75,7 @@ pub(crate) fn tubes(
     plant: &Plant,
     spec: &SkinSpec,
     budget: &Budget,
+    traced: Option<&Traced>,
     run: &Run<'_>,
 ) -> Result<Vec<Tube>, Cancelled> {
     let (chains, places) = chains(plant);
@@ -110,8 +113,12 @@ pub(crate) fn tubes(
             _ => 1,
         };
         let circle = circles.get(sides[i] as usize)?;
-        let mesh = sleeve(spine, bearer.as_ref(), circle, repeats, rows(budget, chain, spine.length()));
-        Some(Tube { surface, mesh })
+        let mut mesh = sleeve(spine, bearer.as_ref(), circle, repeats, rows(budget, chain, spine.length()));
+        let traced = traced.filter(|t| chain.axes.iter().all(|&a| t.has(plant.axis(a).source)));
+        if let Some(traced) = traced {
+            traced.tube(&mut mesh, spine);
+        }
+        Some(Tube { surface, traced: traced.is_some(), mesh })
     })
     .map(|tubes| tubes.into_iter().flatten().collect())
 }

@@ -13,6 +13,7 @@
 //! | `spine`, `rings`, `tube` | smooth centre lines, cross-sections, [`tube`] |
 //! | `fork`, `axes` | fillets at forks; which axes are one tube |
 //! | `blade`, `body`, `organs` | [`blade_mesh`]; discs, fruits, strands; placed copies |
+//! | `traced` | [`Traced`]: organs in the colours of a photograph |
 //! | `texture`, `parts` | painted textures, materials, parts |
 
 mod axes;
@@ -26,10 +27,12 @@ mod rings;
 mod spec;
 mod spine;
 mod texture;
+mod traced;
 mod tube;
 
 pub use blade::blade_mesh;
 pub use spec::{PetalColor, SkinSpec};
+pub use traced::Traced;
 pub use tube::{TubeSpec, tube};
 
 use base::{Cancelled, Run};
@@ -70,6 +73,21 @@ use crate::spec::Budget;
 /// # Ok::<(), base::Cancelled>(())
 /// ```
 pub fn skin(plant: &Plant, spec: &SkinSpec, run: &Run<'_>) -> Result<Model, Cancelled> {
+    skin_traced(plant, spec, None, run)
+}
+
+/// As [`skin()`]; organs and axes that were traced over a photograph take their texture from it.
+///
+/// Guaranteed: the same surface; traced parts come last, have the photograph as their texture and coordinates within it.
+///
+/// # Errors
+/// [`Cancelled`] when the caller's token says so.
+pub fn skin_traced(
+    plant: &Plant,
+    spec: &SkinSpec,
+    traced: Option<&Traced>,
+    run: &Run<'_>,
+) -> Result<Model, Cancelled> {
     run.cancel.check()?;
     let budget = budget(plant, spec);
     let slot = |surface| match surface {
@@ -79,11 +97,12 @@ pub fn skin(plant: &Plant, spec: &SkinSpec, run: &Run<'_>) -> Result<Model, Canc
         Surface::Flesh => Slot::Body,
         Surface::Root => Slot::Root,
     };
-    let tubes = axes::tubes(plant, spec, &budget, run)?;
-    let mut meshes: Vec<_> = tubes.into_iter().map(|t| (slot(t.surface), t.mesh)).collect();
-    meshes.extend(organs::organs(plant, spec, &budget, run)?);
+    let tubes = axes::tubes(plant, spec, &budget, traced, run)?;
+    let slot_of = |t: &axes::Tube| if t.traced { slot(t.surface).traced() } else { slot(t.surface) };
+    let mut meshes: Vec<_> = tubes.into_iter().map(|t| (slot_of(&t), t.mesh)).collect();
+    meshes.extend(organs::organs(plant, spec, &budget, traced, run)?);
     run.cancel.check()?;
-    Ok(parts::model(&plant.name, meshes, spec.textures.then_some(run.executor)))
+    Ok(parts::model(&plant.name, meshes, spec.textures.then_some(run.executor), traced.map(|t| &t.texture)))
 }
 
 fn budget(plant: &Plant, spec: &SkinSpec) -> Budget {

@@ -9,6 +9,7 @@ use crate::blade::blade_mesh;
 use crate::body::{dome, revolution, strand};
 use crate::parts::Slot;
 use crate::spec::{Budget, PetalColor, SkinSpec};
+use crate::traced::Traced;
 use crate::tube::narrow;
 
 // Organs are copied in groups of about this many vertices: one job each would cost more than the copy.
@@ -22,10 +23,12 @@ pub(crate) fn organs(
     plant: &Plant,
     spec: &SkinSpec,
     budget: &Budget,
+    traced: Option<&Traced>,
     run: &Run<'_>,
 ) -> Result<Vec<(Slot, TriMesh)>, Cancelled> {
     let scales = scales(plant);
     let ground = Ground::new(plant, spec, budget);
+    let of_photo = |o: &Organ| traced.filter(|t| t.has(o.source));
     let shapes = map_indexed(run.executor, plant.shapes.len(), |i| {
         run.cancel.check()?;
         Ok(scales[i].map_or_else(TriMesh::default, |scale| ground.shape(&plant.shapes[i], scale, budget)))
@@ -36,7 +39,10 @@ pub(crate) fn organs(
         .iter()
         .enumerate()
         .filter(|(_, o)| shapes.get(o.shape.index()).is_some_and(|m| !m.triangles.is_empty()) && sound(o))
-        .map(|(i, o)| (ground.slot(o, &plant.shapes[o.shape.index()]), i))
+        .map(|(i, o)| {
+            let slot = ground.slot(o, &plant.shapes[o.shape.index()]);
+            (if of_photo(o).is_some() { slot.traced() } else { slot }, i)
+        })
         .collect();
     order.sort_by_key(|&(slot, _)| slot);
     let groups = groups(&order, |i| shapes[plant.organs[i].shape.index()].positions.len());
@@ -52,7 +58,13 @@ pub(crate) fn organs(
         mesh.colors.reserve_exact(vertices);
         for &(slot, i) in members {
             let organ = &plant.organs[i];
-            place(&mut mesh, &shapes[organ.shape.index()], organ, tint(organ, slot, spec));
+            let first = mesh.positions.len();
+            let photo = of_photo(organ);
+            let color = if photo.is_some() { [1.0; 3] } else { tint(organ, slot, spec) };
+            place(&mut mesh, &shapes[organ.shape.index()], organ, color);
+            if let Some(photo) = photo {
+                photo.organ(&mut mesh, first);
+            }
         }
         Ok((members[0].0, mesh))
     });

@@ -1,7 +1,9 @@
 //! Kinds of surface: their materials, and the parts that gather them.
 
+use std::sync::Arc;
+
 use base::Executor;
-use mesh::{Material, MaterialId, MaterialKind, Model, Part, TriMesh};
+use mesh::{Material, MaterialId, MaterialKind, Model, Part, Texture, TriMesh};
 
 use crate::PetalColor;
 use crate::texture::Motif;
@@ -31,11 +33,19 @@ pub(crate) enum Slot {
     Body,
     Stamen,
     Thorn,
+    /// In the colours of the photograph that it was traced over.
+    Traced(MaterialKind),
 }
 
 impl Slot {
+    /// The same surface in the colours of a photograph.
+    pub(crate) fn traced(self) -> Self {
+        Self::Traced(self.kind())
+    }
+
     fn kind(self) -> MaterialKind {
         match self {
+            Self::Traced(kind) => kind,
             Self::Bark | Self::YoungBark => MaterialKind::Bark,
             Self::Stem | Self::Body | Self::Thorn => MaterialKind::Stem,
             Self::Root => MaterialKind::Root,
@@ -65,6 +75,20 @@ impl Slot {
             Self::Body => ("bodies", "body".into()),
             Self::Stamen => ("stamens", "stamen".into()),
             Self::Thorn => ("thorns", "thorn".into()),
+            Self::Traced(kind) => {
+                let part = match kind {
+                    MaterialKind::Bark => "branches-traced",
+                    MaterialKind::Stem => "stems-traced",
+                    MaterialKind::Leaf => "leaves-traced",
+                    MaterialKind::Petal => "petals-traced",
+                    MaterialKind::Disc => "discs-traced",
+                    MaterialKind::Fruit => "fruits-traced",
+                    MaterialKind::Root => "roots-traced",
+                    MaterialKind::Stamen => "stamens-traced",
+                    MaterialKind::Other => "others-traced",
+                };
+                (part, format!("{}-traced", kind.word()))
+            }
         }
     }
 
@@ -75,7 +99,8 @@ impl Slot {
             Self::Stem => Motif::Stem,
             Self::Root => Motif::Root,
             Self::Leaf => Motif::Leaf,
-            Self::DrawnLeaf => Motif::PaleLeaf,
+            // A photograph takes the place of this one.
+            Self::DrawnLeaf | Self::Traced(_) => Motif::PaleLeaf,
             Self::Petal(color) => Motif::Petal(color),
             Self::DrawnPetal => Motif::PalePetal,
             Self::Disc => Motif::Disc,
@@ -111,15 +136,20 @@ impl Slot {
             Self::Body => [0.06, 0.16, 0.05],
             Self::Stamen => [0.72, 0.55, 0.15],
             Self::Thorn => [0.28, 0.16, 0.08],
-            Self::DrawnLeaf | Self::DrawnPetal | Self::DrawnDisc | Self::DrawnFruit => [1.0; 3],
+            Self::DrawnLeaf | Self::DrawnPetal | Self::DrawnDisc | Self::DrawnFruit | Self::Traced(_) => {
+                [1.0; 3]
+            }
         }
     }
 
-    fn material(self, textures: Option<&dyn Executor>) -> Material {
+    fn material(self, textures: Option<&dyn Executor>, photo: Option<&Arc<Texture>>) -> Material {
         let kind = self.kind();
         let color = if textures.is_some() { [1.0; 3] } else { self.plain_color() };
         let mut m = Material::plain(self.names().1, kind, color);
-        m.texture = textures.map(|executor| self.motif().texture(executor));
+        m.texture = match self {
+            Self::Traced(_) => photo.cloned(),
+            _ => textures.map(|executor| self.motif().texture(executor)),
+        };
         (m.roughness, m.translucency) = match kind {
             MaterialKind::Leaf => (0.55, 0.4),
             MaterialKind::Petal => (0.65, 0.4),
@@ -134,7 +164,12 @@ impl Slot {
 }
 
 /// Gathers meshes by slot, in slot order; empty ones leave no part. Textures are painted on `textures`, if wanted.
-pub(crate) fn model(name: &str, mut meshes: Vec<(Slot, TriMesh)>, textures: Option<&dyn Executor>) -> Model {
+pub(crate) fn model(
+    name: &str,
+    mut meshes: Vec<(Slot, TriMesh)>,
+    textures: Option<&dyn Executor>,
+    photo: Option<&Arc<Texture>>,
+) -> Model {
     let mut model = Model { name: name.to_owned(), ..Model::default() };
     meshes.retain(|(_, m)| !m.triangles.is_empty());
     // Stable: meshes of one slot keep their order.
@@ -149,7 +184,7 @@ pub(crate) fn model(name: &str, mut meshes: Vec<(Slot, TriMesh)>, textures: Opti
             _ => joined(these),
         };
         let material = MaterialId::new(model.materials.len());
-        model.materials.push(slot.material(textures));
+        model.materials.push(slot.material(textures, photo));
         model.parts.push(Part { name: slot.names().0.to_owned(), material, mesh });
     }
     model

@@ -2,12 +2,15 @@
 //!
 //! `drawing -> ink, classes | + corrections -> reading | + spec, seed -> plant | + skin -> model`
 
+use std::sync::Arc;
+
 use base::{Report, Run, Seed, Stage, Warning};
+use document::Photo;
 use glam::DVec2;
-use mesh::Model;
+use mesh::{Model, Texture};
 use plant::Plant;
 use sketch::{Built, Classified, Drawing, Ink, Reading, SketchSpec};
-use skin::SkinSpec;
+use skin::{SkinSpec, Traced};
 
 use crate::make::{ClassOverrides, MakeError, SketchOptions};
 use crate::report::{Counts, Fidelity, ItemReport, StrokeReport, TimingsMs};
@@ -44,12 +47,17 @@ pub struct Evaluator {
     strokes: Option<Kept<Drawing, (Ink, Vec<Classified>)>>,
     reading: Option<Kept<ClassOverrides, Reading>>,
     plant: Option<Kept<PlantFrom, (Built, Fidelity)>>,
-    model: Option<Kept<SkinSpec, Model>>,
+    model: Option<Kept<ModelFrom, Model>>,
+    /// The photograph that was decoded last.
+    picture: Option<(Arc<[u8]>, Option<Arc<Texture>>)>,
     done: Vec<&'static str>,
 }
 
 /// What a plant is made from, besides its reading: the name goes into the plant.
 type PlantFrom = (SketchSpec, Seed, String);
+
+/// What a model is made from, besides its plant. How strongly a photograph shows is no matter for it.
+type ModelFrom = (SkinSpec, Option<Photo>);
 
 /// A result, what it was made from (besides the stage before it), and what was said meanwhile.
 #[derive(Clone, Debug)]
@@ -91,7 +99,11 @@ impl Evaluator {
         }
         self.read(&options.classes, &mut stages, run)?;
         self.build(&options.spec, seed, &drawing.name, &mut stages, run)?;
-        self.mesh(&options.skin, &mut stages, run)?;
+        let mut photo = options.photo.clone().filter(|p| p.paint);
+        if let Some(photo) = &mut photo {
+            photo.opacity = 1.0;
+        }
+        self.mesh(&options.skin, photo, &mut stages, run)?;
         Ok(self.item(&drawing.name, stages))
     }
 
@@ -161,17 +173,50 @@ impl Evaluator {
         Ok(())
     }
 
-    fn mesh(&mut self, skin: &SkinSpec, stages: &mut Vec<Stage>, run: &Run<'_>) -> Result<(), MakeError> {
-        let Some(plant) = &self.plant else { return Ok(()) };
-        if self.model.as_ref().is_some_and(|k| k.from == *skin) {
+    fn mesh(
+        &mut self,
+        skin: &SkinSpec,
+        photo: Option<Photo>,
+        stages: &mut Vec<Stage>,
+        run: &Run<'_>,
+    ) -> Result<(), MakeError> {
+        if self.model.as_ref().is_some_and(|k| (&k.from.0, &k.from.1) == (skin, &photo)) {
             return Ok(());
         }
         let mut report = Report::default();
+        let traced = photo.as_ref().and_then(|p| self.traced(p, &mut report));
+        let Some(plant) = &self.plant else { return Ok(()) };
         let plant = &plant.value.0.plant;
-        let mut model = report.stage("mesh", run.clock, |_| skin::skin(plant, skin, run))?;
+        let mut model =
+            report.stage("mesh", run.clock, |_| skin::skin_traced(plant, skin, traced.as_ref(), run))?;
         model.name.clone_from(&plant.name);
-        self.model = Some(Self::keep(&mut self.done, stages, skin.clone(), model, report));
+        self.model = Some(Self::keep(&mut self.done, stages, (skin.clone(), photo), model, report));
         Ok(())
+    }
+
+    /// The photograph in the plant's plane; `None` if it does not decode.
+    fn traced(&mut self, photo: &Photo, report: &mut Report) -> Option<Traced> {
+        let known = self.picture.as_ref().is_some_and(|(png, _)| Arc::ptr_eq(png, photo.png()));
+        if !known {
+            let texture = formats::read_picture(photo.png()).map(Arc::new);
+            self.picture = Some((Arc::clone(photo.png()), texture));
+        }
+        let Some(texture) = self.picture.as_ref().and_then(|(_, t)| t.clone()) else {
+            report.warn(
+                "photo",
+                "the photograph under the drawing cannot be decoded; its colours are not used",
+            );
+            return None;
+        };
+        let front = self.front()?;
+        let drawing = &self.strokes.as_ref()?.from;
+        let place = |x: f64, y: f64| (DVec2::new(x, y) - front.origin) * front.metres_per_unit;
+        let corner = place(photo.x, photo.y + photo.height());
+        // A stroke that leaves the picture was not traced over it.
+        let inside = |s: &sketch::Stroke| s.samples.iter().all(|p| photo.covers(p.at.x, p.at.y));
+        let strokes = (0..).zip(&drawing.strokes).filter(|(_, s)| inside(s)).map(|(i, _)| i).collect();
+        let size_m = (photo.width * front.metres_per_unit, photo.height() * front.metres_per_unit);
+        Some(Traced { texture, strokes, corner_m: (corner.x, corner.y), size_m })
     }
 
     fn item(&self, name: &str, stages: Vec<Stage>) -> ItemReport {
@@ -209,6 +254,11 @@ impl Evaluator {
     /// The model of the last update that succeeded so far.
     pub fn model(&self) -> Option<&Model> {
         Some(&self.model.as_ref()?.value)
+    }
+
+    /// The plant of the last update that succeeded so far.
+    pub fn plant(&self) -> Option<&Plant> {
+        Some(&self.plant.as_ref()?.value.0.plant)
     }
 
     /// How the drawing lies in the model's front view.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use base::{Cancelled, Run, Seed};
-use document::Document;
+use document::{Document, Photo};
 use mesh::Model;
 use plant::Plant;
 use sketch::{Drawing, Reading, SketchSpec, StrokeClass};
@@ -24,6 +24,8 @@ pub struct SketchOptions {
     pub skin: SkinSpec,
     /// Classes that the user set.
     pub classes: ClassOverrides,
+    /// A photograph under the drawing, whose colours traced organs take.
+    pub photo: Option<Photo>,
 }
 
 impl SketchOptions {
@@ -34,6 +36,7 @@ impl SketchOptions {
             spec: settings.sketch.clone(),
             skin: SkinSpec { seed: settings.seed, ..settings.skin.clone() },
             classes: document.classes(),
+            photo: settings.photo.clone(),
         }
     }
 }

@@ -1,13 +1,14 @@
 /** The sheet: what was drawn, and the tools that change it. It knows nothing of plants. */
 import { inkOf } from '../colours';
-import type { DocumentState, StrokeMode, StrokePoints } from '../protocol';
+import type { DocumentState, PhotoState, StrokeMode, StrokePoints } from '../protocol';
 import { boxOf, distance, fitted, toDrawing, toScreen, zoomed, type Box, type Viewport } from './geometry';
 import { Pen } from './pen';
 
 export type Tool = StrokeMode | 'erase' | 'select';
 
 export interface SheetEvents {
-  stroke(mode: StrokeMode, samples: Float64Array): void;
+  /** `mirror`: the same stroke on the other side of the line of symmetry. */
+  stroke(mode: StrokeMode, samples: Float64Array, mirror: Float64Array | undefined): void;
   draft(mode: StrokeMode, samples: Float64Array): void;
   undraft(): void;
   erase(ids: number[]): void;
@@ -16,6 +17,10 @@ export interface SheetEvents {
   moveEnd(keep: boolean): void;
   selected(ids: number[], anchor: { x: number; y: number } | undefined): void;
   viewport(): void;
+  photoBegin(): void;
+  /** By how far, in the drawing's unit, since the drag began. */
+  photoMove(x: number, y: number): void;
+  photoEnd(keep: boolean): void;
 }
 
 interface Stroke {
@@ -35,6 +40,7 @@ type Act =
   | { kind: 'erase'; ids: Set<number> }
   | { kind: 'move'; from: [number, number]; moved: boolean }
   | { kind: 'band'; from: [number, number]; to: [number, number]; add: boolean }
+  | { kind: 'photo'; from: [number, number]; moved: boolean }
   | { kind: 'pan'; x: number; y: number };
 
 export class Sheet {
@@ -51,11 +57,20 @@ export class Sheet {
   private pointers = new Map<number, [number, number]>();
   private actor = -1;
   private penSeen = false;
+  private penDown = false;
   private space = false;
   private pinch: { distance: number; x: number; y: number } | undefined;
   private draftOrgan: string | undefined;
   /** A stroke that was lifted and is not in the document yet: shown until it is. */
   private pending: { pen: Pen; mode: StrokeMode } | undefined;
+  private photo: PhotoState | null = null;
+  private image: ImageBitmap | undefined;
+  /** Drags move the photograph. */
+  placing = false;
+  /** The line of symmetry, if there is one: its x in the drawing. */
+  private axis: number | undefined;
+  /** Strength of the stabiliser, 0 to 3. */
+  steady = 1;
   private baseStale = true;
   private frame = 0;
   private placed = false;
@@ -82,6 +97,8 @@ export class Sheet {
   // What is shown -----------------------------------------------------------------------------------------------
 
   setState(state: DocumentState, fresh: StrokePoints[]): void {
+    this.photo = state.photo;
+    if (!state.photo) this.placing = false;
     for (const { id, points } of fresh) this.points.set(id, points);
     const organs = new Map(this.strokes.map((s) => [s.id, s.organ]));
     const there = new Set(state.strokes.map((s) => s.id));
@@ -95,6 +112,21 @@ export class Sheet {
     const left = [...this.selection].filter((id) => there.has(id));
     if (left.length !== this.selection.size) this.select(left);
     this.redraw(true);
+  }
+
+  setImage(image: ImageBitmap): void {
+    this.image?.close();
+    this.image = image;
+    this.redraw(true);
+  }
+
+  setAxis(axis: number | undefined): void {
+    this.axis = axis;
+    this.redraw(true);
+  }
+
+  get symmetric(): boolean {
+    return this.axis !== undefined;
   }
 
   /** The stroke that was lifted will not come. */
@@ -157,11 +189,13 @@ export class Sheet {
   }
 
   get isEmpty(): boolean {
-    return this.strokes.length === 0 && !this.pending && this.act?.kind !== 'draw';
+    return this.strokes.length === 0 && !this.photo && !this.pending && this.act?.kind !== 'draw';
   }
 
   fit(): void {
-    const box = this.strokes.reduce<Box | undefined>((b, s) => boxOf(s.points, 3, b), undefined);
+    const p = this.photo;
+    const under: Box | undefined = p ? { left: p.x, bottom: p.y, right: p.x + p.width, top: p.y + p.height } : undefined;
+    const box = this.strokes.reduce<Box | undefined>((b, s) => boxOf(s.points, 3, b), under);
     const { clientWidth: w, clientHeight: h } = this.element;
     this.view = box ? fitted(box, w, h) : { scale: 1, x: w / 2, y: h * 0.85 };
     this.redraw(true);
@@ -178,10 +212,20 @@ export class Sheet {
   private down(e: PointerEvent): void {
     this.element.focus({ preventScroll: true });
     const at = this.place(e);
-    this.pointers.set(e.pointerId, at);
+    const touch = e.pointerType === 'touch';
+    // The palm rests on the glass while the pen is down.
+    if (touch && this.penDown) return;
+    if (e.pointerType === 'pen') {
+      this.penSeen = true;
+      this.penDown = true;
+      // The palm often comes first: what it began is none of the hand's meaning.
+      if (this.act) this.abort();
+      this.pinch = undefined;
+      this.pointers.clear();
+    }
+    if (touch) this.pointers.set(e.pointerId, at);
     this.element.setPointerCapture(e.pointerId);
-    if (e.pointerType === 'pen') this.penSeen = true;
-    const fingers = e.pointerType === 'touch' ? this.pointers.size : 0;
+    const fingers = touch ? this.pointers.size : 0;
     if (fingers === 2) {
       this.abort();
       this.pinch = this.pinchNow();
@@ -199,10 +243,12 @@ export class Sheet {
     } else if (e.button === 5 || e.buttons === 32 || this.tool === 'erase') {
       this.act = { kind: 'erase', ids: new Set() };
       this.rub(at, reachOf(e.pointerType));
+    } else if (this.placing) {
+      this.act = { kind: 'photo', from: at, moved: false };
     } else if (this.tool === 'select') {
       this.grab(at, e);
     } else {
-      const pen = new Pen();
+      const pen = new Pen(this.steady);
       this.act = { kind: 'draw', pen, mode: this.tool };
       this.trace(e, pen, false);
       this.redraw(false);
@@ -235,7 +281,7 @@ export class Sheet {
   private move(e: PointerEvent): void {
     const at = this.place(e);
     if (this.pointers.has(e.pointerId)) this.pointers.set(e.pointerId, at);
-    if (this.pinch && this.pointers.size >= 2) {
+    if (this.pinch && e.pointerType === 'touch' && this.pointers.size >= 2) {
       const now = this.pinchNow();
       this.view = zoomed(this.view, now.distance / this.pinch.distance, this.pinch.x, this.pinch.y);
       this.view = { ...this.view, x: this.view.x + now.x - this.pinch.x, y: this.view.y + now.y - this.pinch.y };
@@ -264,6 +310,11 @@ export class Sheet {
       case 'band':
         act.to = at;
         break;
+      case 'photo':
+        if (!act.moved) this.events.photoBegin();
+        act.moved = true;
+        this.events.photoMove((at[0] - act.from[0]) / this.view.scale, (act.from[1] - at[1]) / this.view.scale);
+        break;
       case 'pan':
         this.view = { ...this.view, x: this.view.x + at[0] - act.x, y: this.view.y + at[1] - act.y };
         [act.x, act.y] = at;
@@ -274,6 +325,7 @@ export class Sheet {
   }
 
   private up(e: PointerEvent, kept: boolean): void {
+    if (e.pointerType === 'pen') this.penDown = false;
     this.pointers.delete(e.pointerId);
     if (this.pointers.size < 2) this.pinch = undefined;
     if (!this.act || e.pointerId !== this.actor) return;
@@ -289,7 +341,9 @@ export class Sheet {
         // A dot is a slip of the hand.
         if (act.pen.length > 2) {
           this.pending = { pen: act.pen, mode: act.mode };
-          this.events.stroke(act.mode, act.pen.samples);
+          const { axis } = this;
+          const mirror = axis !== undefined && act.pen.beside(axis) ? act.pen.mirrored(axis) : undefined;
+          this.events.stroke(act.mode, act.pen.samples, mirror);
         } else {
           this.events.undraft();
         }
@@ -303,6 +357,9 @@ export class Sheet {
       case 'band':
         this.band(act.from, act.to, act.add);
         break;
+      case 'photo':
+        if (act.moved) this.events.photoEnd(true);
+        break;
       case 'pan':
         break;
     }
@@ -315,6 +372,7 @@ export class Sheet {
     this.act = undefined;
     if (act?.kind === 'draw') this.events.undraft();
     if (act?.kind === 'move' && act.moved) this.events.moveEnd(false);
+    if (act?.kind === 'photo' && act.moved) this.events.photoEnd(false);
     this.redraw(true);
   }
 
@@ -418,6 +476,7 @@ export class Sheet {
   private drawBase(): void {
     const c = this.clear(this.base);
     if (!c) return;
+    this.under(c);
     this.grid(c);
     const gone = this.act?.kind === 'erase' ? this.act.ids : undefined;
     for (const s of this.strokes) {
@@ -440,7 +499,15 @@ export class Sheet {
       c.globalAlpha = 1;
       this.ink(c, s.points.length / 3, (i) => [s.points[3 * i]!, s.points[3 * i + 1]!, s.points[3 * i + 2]!], s.mode, s.organ);
     }
-    if (live) this.ink(c, live.pen.length, (i) => live.pen.row(i), live.mode, this.draftOrgan);
+    if (live) {
+      this.ink(c, live.pen.length, (i) => live.pen.row(i), live.mode, this.draftOrgan);
+      const { axis } = this;
+      if (axis !== undefined && live.pen.beside(axis)) {
+        c.globalAlpha = 0.55;
+        this.ink(c, live.pen.length, (i) => { const [x, y, p] = live.pen.row(i); return [2 * axis - x, y, p]; }, live.mode, this.draftOrgan);
+        c.globalAlpha = 1;
+      }
+    }
     if (this.act?.kind === 'band') {
       const { from, to } = this.act;
       c.strokeStyle = this.accent();
@@ -452,6 +519,29 @@ export class Sheet {
 
   private accent(): string {
     return this.dark ? '#8ecbff' : '#1769aa';
+  }
+
+  /** The photograph and the line of symmetry. */
+  private under(c: CanvasRenderingContext2D): void {
+    const p = this.photo;
+    if (p && this.image) {
+      const [x, y] = toScreen(this.view, p.x, p.y + p.height);
+      c.globalAlpha = p.opacity;
+      c.imageSmoothingQuality = 'high';
+      c.drawImage(this.image, x, y, p.width * this.view.scale, p.height * this.view.scale);
+      c.globalAlpha = 1;
+    }
+    if (this.axis !== undefined) {
+      const [x] = toScreen(this.view, this.axis, 0);
+      c.strokeStyle = this.accent();
+      c.lineWidth = 1;
+      c.setLineDash([3, 5]);
+      c.beginPath();
+      c.moveTo(x, 0);
+      c.lineTo(x, this.element.clientHeight);
+      c.stroke();
+      c.setLineDash([]);
+    }
   }
 
   /** Dots at a step of the drawing that is 24 to 60 pixels wide. */

@@ -1,6 +1,6 @@
 /** The plant as three.js meshes, updated in place where only numbers changed. */
 import * as THREE from 'three';
-import type { PartArrays, TexturePixels, View } from '../protocol';
+import type { PartArrays, Sent, TexturePixels, View } from '../protocol';
 
 type MaterialView = View['materials'][number];
 
@@ -33,6 +33,21 @@ export class PlantMeshes {
       mesh.geometry.dispose();
       this.group.remove(mesh);
     }
+  }
+
+  /** A plant of its own that shares textures and materials; the caller disposes its geometries. */
+  build({ view, parts, textures }: Sent): THREE.Group {
+    for (const t of textures) this.addTexture(t);
+    const group = new THREE.Group();
+    view.parts.forEach(({ material }, i) => {
+      const [columns, look] = [parts[i], view.materials[material]];
+      if (!columns || !look) return;
+      const mesh = new THREE.Mesh(new THREE.BufferGeometry(), this.material(look, columns.colors.length > 0));
+      fill(mesh.geometry, columns);
+      mesh.castShadow = mesh.receiveShadow = true;
+      group.add(mesh);
+    });
+    return group;
   }
 
   setWire(wire: boolean): void {

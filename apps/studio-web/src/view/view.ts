@@ -1,10 +1,15 @@
 /** The right side: the plant in three dimensions, turned by hand, or from the front exactly as it was drawn. */
 import * as THREE from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
-import type { PartArrays, TexturePixels, View } from '../protocol';
+import type { PartArrays, Sent, TexturePixels, View } from '../protocol';
 import type { Box } from '../sheet/geometry';
 import { PlantMeshes } from './plant';
 import { Stage } from './stage';
+
+/** Colours of axes by order: 0, 1, 2, 3 and more; each shows on light and dark sky. */
+const ORDERS = [0x8a4b14, 0xc0600f, 0x1f8a55, 0x2079c0, 0x8a4fb5].map((c) => new THREE.Color(c));
+/** Leaves and petals among the axes. */
+const BLADES = [0x3f9a3a, 0xd0407a].map((c) => new THREE.Color(c));
 
 /** Least time between pictures that the processor draws. */
 const SLOW_MS = 300;
@@ -14,6 +19,10 @@ export class PlantView {
   private readonly renderer: THREE.WebGLRenderer;
   private readonly stage: Stage;
   private readonly plant = new PlantMeshes();
+  /** Holds what is shown of the plant, at the size of the stage. */
+  private readonly holder = new THREE.Group();
+  private bones: THREE.LineSegments | undefined;
+  private readonly boneLook = new THREE.LineBasicMaterial({ vertexColors: true, toneMapped: false });
   private readonly far = new THREE.PerspectiveCamera(32, 1, 0.01, 200);
   private readonly flat = new THREE.OrthographicCamera(-1, 1, 1, -1, -50, 50);
   private readonly controls: OrbitControls;
@@ -47,7 +56,8 @@ export class PlantView {
     canvas.setAttribute('role', 'img');
     this.setLabel(label);
     this.element.append(canvas);
-    this.stage.scene.add(this.plant.group);
+    this.holder.add(this.plant.group);
+    this.stage.scene.add(this.holder);
     this.far.position.set(1.25, 0.95, 2.6);
     this.controls = new OrbitControls(this.far, canvas);
     this.controls.enableDamping = true;
@@ -74,6 +84,68 @@ export class PlantView {
     this.redraw();
   }
 
+  /** The axes as lines in the place of the plant: pairs of points with the order of each (100 leaf, 101 petal); none shows the plant. */
+  setSkeleton(pairs: Float32Array | undefined): void {
+    if (this.bones) {
+      this.bones.geometry.dispose();
+      this.holder.remove(this.bones);
+      this.bones = undefined;
+    }
+    this.plant.group.visible = pairs === undefined;
+    if (pairs) {
+      const n = pairs.length / 4;
+      const [positions, colors] = [new Float32Array(3 * n), new Float32Array(3 * n)];
+      for (let i = 0; i < n; i += 1) {
+        positions.set(pairs.subarray(4 * i, 4 * i + 3), 3 * i);
+        const kind = pairs[4 * i + 3]!;
+        const { r, g, b } = kind >= 100 ? BLADES[kind - 100]! : ORDERS[Math.min(kind, ORDERS.length - 1)]!;
+        colors.set([r, g, b], 3 * i);
+      }
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute('position', new THREE.BufferAttribute(positions, 3));
+      geometry.setAttribute('color', new THREE.BufferAttribute(colors, 3));
+      this.bones = new THREE.LineSegments(geometry, this.boneLook);
+      this.holder.add(this.bones);
+    }
+    this.renderer.shadowMap.needsUpdate = true;
+    this.redraw();
+  }
+
+  /** A small picture of another plant from where this one is seen. */
+  snapshot(sent: Sent, width: number, height: number): HTMLCanvasElement {
+    const group = this.plant.build(sent);
+    const [min, max] = [new THREE.Vector3(...sent.view.min), new THREE.Vector3(...sent.view.max)];
+    const size = max.clone().sub(min);
+    const scale = 1 / Math.max(size.x, size.y, size.z, 1e-9);
+    group.scale.setScalar(scale);
+    group.position.y = Math.max(0, -min.y * scale);
+    const camera = new THREE.PerspectiveCamera(this.far.fov, width / height, 0.01, 200);
+    const target = min.clone().add(max).multiplyScalar(scale / 2);
+    target.y += group.position.y;
+    const distance = (size.length() * scale * 0.48) / Math.sin(THREE.MathUtils.degToRad(camera.fov / 2)) / Math.min(1, width / height);
+    camera.position.copy(this.far.position).sub(this.controls.target).setLength(distance).add(target);
+    camera.lookAt(target);
+    const { scene } = this.stage;
+    this.holder.visible = false;
+    this.stage.setFlat(false);
+    scene.add(group);
+    this.renderer.setPixelRatio(1);
+    this.renderer.setSize(width, height, false);
+    this.renderer.shadowMap.needsUpdate = true;
+    this.renderer.render(scene, camera);
+    const canvas = document.createElement('canvas');
+    [canvas.width, canvas.height] = [width, height];
+    canvas.getContext('2d')?.drawImage(this.renderer.domElement, 0, 0);
+    scene.remove(group);
+    for (const mesh of group.children) (mesh as THREE.Mesh).geometry.dispose();
+    this.holder.visible = true;
+    this.stage.setFlat(this.front);
+    this.renderer.shadowMap.needsUpdate = true;
+    this.resize();
+    this.render();
+    return canvas;
+  }
+
   setWire(wire: boolean): void {
     this.plant.setWire(wire);
     this.redraw();
@@ -92,9 +164,9 @@ export class PlantView {
     const largest = Math.max(size.x, size.y, size.z);
     if (largest > 0) {
       this.scale = 1 / largest;
-      this.plant.group.scale.setScalar(this.scale);
+      this.holder.scale.setScalar(this.scale);
       // Roots below the ground are shown: the ground sinks no plant.
-      this.plant.group.position.y = Math.max(0, -min.y * this.scale);
+      this.holder.position.y = Math.max(0, -min.y * this.scale);
       if (this.follow) this.frameAll(min, max, parts.length > 0 && this.wish === undefined);
     }
     this.lay();
@@ -142,7 +214,7 @@ export class PlantView {
 
   private frameAll(min: THREE.Vector3, max: THREE.Vector3, now: boolean): void {
     const s = this.scale;
-    const up = this.plant.group.position.y;
+    const up = this.holder.position.y;
     const target = min.clone().add(max).multiplyScalar(s / 2);
     target.y += up;
     if (max.equals(min)) return;
@@ -203,7 +275,7 @@ export class PlantView {
     if (!front || !this.sheetSeen) return;
     const k = front.metres_per_unit * this.scale;
     const seen = this.sheetSeen;
-    const up = this.plant.group.position.y;
+    const up = this.holder.position.y;
     // The sheet's height decides; its middle is the picture's middle, whatever the widths are.
     const [cx, cy] = [((seen.left + seen.right) / 2 - front.x) * k, ((seen.bottom + seen.top) / 2 - front.y) * k + up];
     const half = ((seen.top - seen.bottom) / 2) * k;

@@ -1,0 +1,30 @@
+/** Figures of the plant that is shown: every one was counted or measured. */
+import type { DocumentState, View } from './protocol';
+import { number, t, type TextKey } from './text';
+import { el } from './ui';
+
+export function statsTable(state: DocumentState | undefined, view: View | undefined): HTMLElement {
+  const table = el('dl', { class: 'stats' });
+  const row = (key: TextKey, value: string): void => { table.append(el('dt', {}, t(key)), el('dd', {}, value)); };
+  if (!view || view.parts.length === 0) {
+    table.append(el('dt', {}, t('view.empty')));
+    return table;
+  }
+  const metres = (x: number): string => (x >= 1 ? `${x.toFixed(2)} m` : `${(x * 100).toFixed(1)} cm`);
+  row('stats.height', metres(view.max[1] - view.min[1]));
+  row('stats.width', metres(Math.max(view.max[0] - view.min[0], view.max[2] - view.min[2])));
+  const { item } = view;
+  if (item) {
+    const c = item.counts;
+    for (const kind of ['flowers', 'petals', 'leaves', 'branches'] as const) row(`stats.${kind}`, number(c[kind]));
+    row('stats.nodes', number(c.nodes));
+    row('stats.vertices', number(c.vertices));
+    row('stats.triangles', number(c.triangles));
+    row('stats.parts', number(view.parts.length));
+    row('stats.error', `${(item.fidelity.reprojection_mean * 100).toFixed(2)} %`);
+    row('stats.time', `${item.timings_ms.total.toFixed(1)} ms`);
+    row('stats.seed', state?.seed ?? '');
+    row('stats.digest', item.digest.slice(0, 8));
+  }
+  return table;
+}

@@ -1,0 +1,102 @@
+//! A photograph under the drawing.
+
+use std::sync::Arc;
+
+/// Most bytes and longest side of a photograph that a document holds: 24 MiB, 4,096 pixels.
+pub const MAX_PHOTO_BYTES: usize = 24 << 20;
+const MAX_SIDE: u32 = 4096;
+
+/// A photograph under the drawing, and how it lies there.
+///
+/// It is held as PNG: what every platform decodes to the same pixels.
+#[derive(Clone, PartialEq)]
+pub struct Photo {
+    pub(crate) png: Arc<[u8]>,
+    pub(crate) size: (u32, u32),
+    /// Left edge, in the drawing's unit.
+    pub x: f64,
+    /// Lower edge, in the drawing's unit, y up.
+    pub y: f64,
+    /// Width, in the drawing's unit, above 0; the height follows from the picture.
+    pub width: f64,
+    /// How strongly it shows under the drawing, 0 to 1. No matter for the plant.
+    pub opacity: f64,
+    /// Whether organs that were traced over it take its colours.
+    pub paint: bool,
+}
+
+impl std::fmt::Debug for Photo {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { png, size, x, y, width, opacity, paint } = self;
+        write!(f, "Photo {{ {} bytes, {size:?}, at {x} {y}, {width} wide, {opacity}, {paint} }}", png.len())
+    }
+}
+
+/// Why a picture was not taken as a photograph.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PhotoError {
+    /// Not the first bytes of a PNG.
+    #[error("the photograph is no PNG; save it as PNG")]
+    NotPng,
+    /// Beyond the bounds.
+    #[error("the photograph has more than {MAX_SIDE} pixels a side or 24 MB; make it smaller")]
+    TooLarge,
+}
+
+impl Photo {
+    /// A photograph whose left lower corner is at the origin, one unit wide, half strong, that paints.
+    ///
+    /// Guaranteed: its size is believed from the header and bounded. Not guaranteed: that its pixels decode.
+    ///
+    /// # Errors
+    /// [`PhotoError`] for what is no PNG or is too large.
+    ///
+    /// ```
+    /// assert!(document::Photo::new(b"GIF89a".as_slice().into()).is_err());
+    /// ```
+    pub fn new(png: Arc<[u8]>) -> Result<Self, PhotoError> {
+        let header = png.get(..24).filter(|h| h.starts_with(b"\x89PNG\r\n\x1a\n") && &h[12..16] == b"IHDR");
+        let header = header.ok_or(PhotoError::NotPng)?;
+        let number =
+            |at: usize| u32::from_be_bytes([header[at], header[at + 1], header[at + 2], header[at + 3]]);
+        let size = (number(16), number(20));
+        if size.0 == 0 || size.1 == 0 {
+            return Err(PhotoError::NotPng);
+        }
+        if size.0.max(size.1) > MAX_SIDE || png.len() > MAX_PHOTO_BYTES {
+            return Err(PhotoError::TooLarge);
+        }
+        Ok(Self { png, size, x: 0.0, y: 0.0, width: 1.0, opacity: 0.5, paint: true })
+    }
+
+    /// The picture's bytes.
+    pub fn png(&self) -> &Arc<[u8]> {
+        &self.png
+    }
+
+    /// Pixels across and down, each 1 to 4,096.
+    pub fn size(&self) -> (u32, u32) {
+        self.size
+    }
+
+    /// Height in the drawing's unit.
+    pub fn height(&self) -> f64 {
+        self.width * f64::from(self.size.1) / f64::from(self.size.0)
+    }
+
+    /// Whether a point of the drawing lies on the picture.
+    pub fn covers(&self, x: f64, y: f64) -> bool {
+        (self.x..=self.x + self.width).contains(&x) && (self.y..=self.y + self.height()).contains(&y)
+    }
+
+    /// What is out of its range, as a sentence.
+    pub(crate) fn fault(&self) -> Option<String> {
+        let near = |v: f64| v.abs() <= 1e9;
+        if !(near(self.x) && near(self.y) && self.width > 1e-9 && self.width <= 1e9) {
+            return Some("the photograph lies out of reach; put it nearer and make it larger".into());
+        }
+        (!(0.0..=1.0).contains(&self.opacity))
+            .then(|| format!("opacity is {}, but must be from 0 to 1", self.opacity))
+    }
+}

@@ -1,0 +1,63 @@
+//! Organs that were traced over a photograph take its pixels: their texture coordinates are their place in the front
+//! view, which is where they were drawn.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use glam::DVec3;
+use mesh::{Texture, TriMesh};
+
+use crate::spine::Spine;
+use crate::tube::narrow2;
+
+// Hands trace a little outside an edge: organs take what lies this much nearer to their middle.
+const INSET: f64 = 0.95;
+// A tube shows the middle of its stroke only: what lies beside a thin stem is not the stem.
+const ACROSS: f64 = 0.5;
+
+/// A photograph in the plant's plane.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Traced {
+    /// Its pixels.
+    pub texture: Arc<Texture>,
+    /// Strokes that were traced over it, by index in the drawing.
+    pub strokes: BTreeSet<u32>,
+    /// Left and upper edge of the picture, metres in the plant's plane z = 0.
+    pub corner_m: (f64, f64),
+    /// Its width and height, metres, above 0.
+    pub size_m: (f64, f64),
+}
+
+impl Traced {
+    /// Whether what was read from a stroke was traced.
+    pub(crate) fn has(&self, source: Option<u32>) -> bool {
+        source.is_some_and(|s| self.strokes.contains(&s))
+    }
+
+    fn uv(&self, p: DVec3) -> [f32; 2] {
+        let (u, v) = ((p.x - self.corner_m.0) / self.size_m.0, (self.corner_m.1 - p.y) / self.size_m.1);
+        narrow2(u.clamp(0.0, 1.0), v.clamp(0.0, 1.0))
+    }
+
+    /// Texture coordinates of the vertices from `first` on: one organ.
+    pub(crate) fn organ(&self, mesh: &mut TriMesh, first: usize) {
+        let wide = |p: &[f32; 3]| DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2]));
+        let places = mesh.positions.get(first..).unwrap_or_default();
+        #[expect(clippy::cast_precision_loss, reason = "counts far below 2^52")]
+        let middle = places.iter().map(wide).sum::<DVec3>() / places.len().max(1) as f64;
+        mesh.uvs.truncate(first);
+        mesh.uvs.extend(places.iter().map(|p| self.uv(middle + (wide(p) - middle) * INSET)));
+    }
+
+    /// Texture coordinates of a tube around `spine`.
+    pub(crate) fn tube(&self, mesh: &mut TriMesh, spine: &Spine) {
+        let mut hint = 0;
+        mesh.uvs.clear();
+        for p in &mesh.positions {
+            let p = DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2]));
+            let (station, near) = spine.nearest(p, hint);
+            hint = near;
+            mesh.uvs.push(self.uv(station.centre + (p - station.centre) * ACROSS));
+        }
+    }
+}
