@@ -28,6 +28,7 @@ cargo xtask COMMAND
   train-strokes  trains the stroke classifier from its table (see docs/strokes.md)
   test-web       the WASM, validator and Studio part of `test` alone
   test-studio    the Studio part of `test` alone
+  bench-web      measures the Studio in a browser: pen, undo, opening, memory, first paint, transfer
   setup          installs the wasm32 target and the WASM tools only
 ";
 
@@ -47,6 +48,7 @@ fn main() -> ExitCode {
             web::setup().and_then(|tools| web::test(&tools).and_then(|()| studio::test(&tools)))
         }
         Some("test-studio") => web::setup().and_then(|tools| studio::test(&tools)),
+        Some("bench-web") => web::setup().and_then(|tools| studio::bench(&tools)),
         Some("setup") => web::setup().map(|_| ()),
         Some("help" | "-h" | "--help") | None => {
             say(HELP);

@@ -76,6 +76,17 @@ pub(crate) fn test(tools: &Tools) -> Outcome {
     finish(c)
 }
 
+/// Measures the released Studio in a browser and prints a table.
+pub(crate) fn bench(tools: &Tools) -> Outcome {
+    build(tools, true)?;
+    let browser = browser().ok_or("Chromium is missing: install it or name it in BURGEON_CHROMIUM")?;
+    cargo(&["build", "--package", "burgeon-cli"])?;
+    say(&format!("$ node e2e/bench.mjs ({})", browser.display()));
+    let mut c = prepare("node", &["e2e/bench.mjs"]);
+    c.current_dir(folder()).arg(browser).arg(burgeon("debug"));
+    finish(c)
+}
+
 /// A Chromium: named, found, or installed where that needs no question.
 fn browser() -> Option<PathBuf> {
     if let Some(named) = std::env::var_os("BURGEON_CHROMIUM") {
@@ -94,7 +105,7 @@ fn browser() -> Option<PathBuf> {
                 path.is_file() && output(c).is_ok()
             })
     };
-    let found = find().or_else(|| {
+    find().or_else(|| {
         if !is_root_on_debian() {
             return None;
         }
@@ -105,6 +116,5 @@ fn browser() -> Option<PathBuf> {
             say(&e);
         }
         find()
-    });
-    found
+    })
 }

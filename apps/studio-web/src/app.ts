@@ -3,6 +3,7 @@ import { Card, dot } from './correct';
 import { Engine } from './engine';
 import { Files } from './files';
 import { asPng, photoPanel, placed } from './photo';
+import { measured } from './measure';
 import { openPalette, type Action } from './palette';
 import type { Command, DocumentState, Request, StrokeMode, View } from './protocol';
 import { Sheet, type Tool } from './sheet/sheet';
@@ -46,6 +47,8 @@ export class App {
   private busyTimer = 0;
   private readonly system = matchMedia('(prefers-color-scheme: dark)');
   private parts: Record<string, HTMLElement> = {};
+  /** When the draft that is grown now was sent. */
+  private draftAt = 0;
   private photoFrom: DocumentState['photo'] = null;
 
   constructor(private readonly host: HTMLElement) {
@@ -65,6 +68,8 @@ export class App {
       view: (view, parts, textures) => {
         this.seen = view;
         this.view?.update(view, parts, textures);
+        if (this.draftAt > 0) measured('pen', this.draftAt);
+        this.draftAt = 0;
         this.sheet.setOrgans(new Map((view.item?.strokes ?? []).map((s) => [s.index, s.organ])));
         this.idle();
         this.showView();
@@ -159,6 +164,7 @@ export class App {
     if (this.started) return;
     this.started = true;
     void this.files.restore().finally(() => {
+      document.body.dataset['readyAt'] = String(performance.now());
       document.body.dataset['ready'] = 'true';
       if ((this.state?.strokes.length ?? 0) === 0) firstRun();
     });
@@ -168,7 +174,8 @@ export class App {
 
   private ask(request: Request): void {
     if (request.kind === 'stroke') endTour();
-    this.engine.ask(request).then(() => this.files.changed(request)).catch((e: Error) => {
+    const start = performance.now();
+    this.engine.ask(request).then(() => { if (request.kind === 'undo') measured('undo', start); this.files.changed(request); }).catch((e: Error) => {
       if (request.kind === 'stroke') this.sheet.dropPending();
       if (e.message !== 'restarted') note(t('note.refused', { why: e.message }), 'bad');
     });
@@ -185,6 +192,7 @@ export class App {
     this.draft = undefined;
     this.drafted = true;
     this.engine.growing = true;
+    this.draftAt = performance.now();
     this.engine.ask({ kind: 'draft', ...draft }).catch(() => { this.engine.growing = false; });
   }
 
@@ -441,7 +449,7 @@ export class App {
     return [
       ...TOOLS.map(([tool, keys]) => a(tool, `tool.${tool}` as TextKey, () => this.setTool(tool), keys)),
       a('undo', 'undo', () => this.ask({ kind: 'undo' }), 'Ctrl+Z'), a('redo', 'redo', () => this.ask({ kind: 'redo' }), 'Ctrl+Shift+Z'),
-      a('new', 'menu.new', () => this.files.fresh()), a('open', 'menu.open', () => this.files.choose(), 'Ctrl+O'),
+      a('new', 'menu.new', () => this.files.fresh()), a('close', 'act.close', () => { this.view?.forget(); void this.files.close(); }), a('open', 'menu.open', () => this.files.choose(), 'Ctrl+O'),
       a('samples', 'menu.samples', () => this.files.samples()), a('save', 'menu.save', () => void this.files.save(), 'Ctrl+S'),
       a('export', 'menu.export', () => this.files.chooseExport(), 'Ctrl+E'), a('share', 'menu.share', () => void this.files.share()),
       a('dice', 'dice', () => this.roll(), 'R'), a('lock', 'lock', () => this.toggleLock()), a('grid', 'variations.title', () => this.openVariations(), 'G'),

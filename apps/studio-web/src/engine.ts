@@ -19,7 +19,7 @@ export interface EngineEvents {
 }
 
 const CHANGES: ReadonlySet<Request['kind']> = new Set([
-  'open', 'stroke', 'paste', 'photo', 'command', 'begin', 'stage', 'commit', 'abandon', 'undo', 'redo',
+  'open', 'close', 'stroke', 'paste', 'photo', 'command', 'begin', 'stage', 'commit', 'abandon', 'undo', 'redo',
 ]);
 
 export class Engine {
@@ -57,6 +57,7 @@ export class Engine {
     const seq = ++this.seq;
     if (CHANGES.has(request.kind)) {
       if (request.kind === 'stage') this.forget('stage'); // only the last of a drag counts
+      if (request.kind === 'close') this.journal = []; // what was before is forgotten here too
       this.journal.push(request);
       // What is being grown is out of date already; a gesture's beginning changes nothing yet.
       if (this.stop && request.kind !== 'begin') Atomics.store(this.stop, 0, 1);

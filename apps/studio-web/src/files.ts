@@ -5,6 +5,7 @@ import { openExport, type Target } from './exporting';
 import { decode, isLink, link } from './share';
 import { isPhoto } from './photo';
 import { SAMPLES } from './samples';
+import { measured } from './measure';
 import { keep, kept } from './store';
 import { t } from './text';
 import { dialog, download, el, note } from './ui';
@@ -71,7 +72,9 @@ export class Files {
 
   /** Opens bytes; a file of several drawings asks which. */
   async open(name: string, bytes: Uint8Array, row = 0, fresh = false, quiet = false): Promise<void> {
+    const start = performance.now();
     const opened = await this.engine.ask<Opened>({ kind: 'open', name, bytes, row, fresh });
+    measured('open', start);
     if (opened.kind === 'model') this.events.looking(opened.name || name);
     this.events.opened();
     this.changed();
@@ -111,6 +114,13 @@ export class Files {
 
   fresh(): void {
     this.engine.ask({ kind: 'command', command: { do: 'new' } }).then(() => { this.events.opened(); this.changed(); }).catch(() => undefined);
+  }
+
+  /** Forgets the document and its history. */
+  async close(): Promise<void> {
+    await this.engine.ask({ kind: 'close' });
+    this.events.opened();
+    this.changed();
   }
 
   async save(): Promise<void> {

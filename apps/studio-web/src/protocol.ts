@@ -15,6 +15,8 @@ export type Request =
   | { kind: 'abandon' }
   | { kind: 'undo' }
   | { kind: 'redo' }
+  /** Starts empty and forgets everything. */
+  | { kind: 'close' }
   | { kind: 'paste'; text: string; x: number; y: number }
   | { kind: 'photo'; png: Uint8Array; x: number; y: number; width: number }
   | { kind: 'copy'; ids: number[] }

@@ -37,6 +37,9 @@ function answer(s: StudioSession, request: Request): unknown {
     case 'redo': return s.redo();
     case 'draft': return s.draft(request.mode, request.samples);
     case 'save': return s.save();
+    case 'close':
+      sent.clear();
+      return s.close();
     case 'paste': return s.paste(request.text, request.x, request.y);
     case 'photo': return s.place_photo(request.png, request.x, request.y, request.width);
     case 'copy': return s.copy(Uint32Array.from(request.ids));

@@ -66,6 +66,11 @@ impl StudioSession {
         told(self.0.open(file_name, bytes, row, fresh))
     }
 
+    /// Starts empty and forgets everything, the history too.
+    pub fn close(&mut self) {
+        self.0.close();
+    }
+
     /// Adds a stroke and returns its number. `samples`: x, y (up), milliseconds, pressure of each point; NaN where
     /// not known.
     ///

@@ -88,6 +88,11 @@ impl Session {
         serde_json::to_string(&opened).map_err(words)
     }
 
+    /// Starts empty and forgets the history: the memory of the document is given back.
+    pub(crate) fn close(&mut self) {
+        *self = Self::default();
+    }
+
     fn place(&mut self, document: Document, fresh: bool) -> Told {
         self.editor.cancel_gesture();
         if fresh {

@@ -132,7 +132,7 @@ fn photographs_are_bounded() {
 fn a_compact_document_is_small_and_looks_the_same() {
     let line: Vec<DVec2> =
         (0..500).map(|k| DVec2::new(f64::from(k) * 0.731_234_567, f64::from(k % 7) / 3.0)).collect();
-    let document = Document::from_drawing(&Drawing::from_polylines("line", &[line.clone()]));
+    let document = Document::from_drawing(&Drawing::from_polylines("line", std::slice::from_ref(&line)));
     let compact = document.compact();
     assert_eq!(compact.validate().count(), 0);
     let size = |d: &Document| write_project(d, "test").unwrap().len();

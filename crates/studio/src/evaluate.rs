@@ -49,12 +49,15 @@ pub struct Evaluator {
     plant: Option<Kept<PlantFrom, (Built, Fidelity)>>,
     model: Option<Kept<ModelFrom, Model>>,
     /// The photograph that was decoded last.
-    picture: Option<(Arc<[u8]>, Option<Arc<Texture>>)>,
+    picture: Option<Decoded>,
     done: Vec<&'static str>,
 }
 
 /// What a plant is made from, besides its reading: the name goes into the plant.
 type PlantFrom = (SketchSpec, Seed, String);
+
+/// A photograph's file and its pixels, if it has any that decode.
+type Decoded = (Arc<[u8]>, Option<Arc<Texture>>);
 
 /// What a model is made from, besides its plant. How strongly a photograph shows is no matter for it.
 type ModelFrom = (SkinSpec, Option<Photo>);

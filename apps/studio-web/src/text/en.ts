@@ -174,6 +174,7 @@ export const en = {
   'act.paste': 'Paste',
   'act.duplicate': 'Duplicate what is selected',
   'act.clear': 'Erase every stroke',
+  'act.close': 'Close: start empty, forget the history',
   'step.duplicate': 'duplicate',
   'step.photo': 'photograph',
   'photo.hint': 'Lay a photograph under the drawing and trace it. What you trace takes its colours.',

@@ -176,6 +176,7 @@ export const zh: Record<TextKey, string> = {
   'act.paste': '粘贴',
   'act.duplicate': '再制所选',
   'act.clear': '擦除所有笔画',
+  'act.close': '关闭：从空白开始，清除历史',
   'step.duplicate': '再制',
   'step.photo': '照片',
   'photo.hint': '把照片放在画下描摹，描出的器官会取用它的颜色。',

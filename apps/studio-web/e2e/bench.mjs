@@ -1,0 +1,170 @@
+// node e2e/bench.mjs CHROMIUM BURGEON : measures the Studio as built in dist/, in a real browser against the real server.
+import { spawn } from 'node:child_process';
+import { readdirSync, readFileSync } from 'node:fs';
+import { extname } from 'node:path';
+import { gzipSync } from 'node:zlib';
+import { chromium } from 'playwright-core';
+
+const [browserPath, burgeon] = process.argv.slice(2);
+const server = spawn(burgeon, ['studio', '--no-open', '--port', '0', '--folder', 'dist'], { stdio: ['ignore', 'pipe', 'inherit'] });
+const url = await new Promise((resolve, reject) => {
+  let said = '';
+  server.stdout.on('data', (d) => {
+    said += d;
+    const found = /http:\/\/127\.0\.0\.1:\d+\//.exec(said);
+    if (found) resolve(found[0]);
+  });
+  server.on('exit', (code) => reject(new Error(`burgeon studio ended with ${code}`)));
+});
+const browser = await chromium.launch({
+  executablePath: browserPath,
+  args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run',
+    '--disable-background-networking', '--disable-component-update', '--disable-sync', '--enable-blink-features=ForceEagerMeasureMemory'],
+});
+
+const at = (sorted, share) => sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))] ?? NaN;
+const row = (what, value, target = '') => console.log(`| ${what} | ${value} | ${target} |`);
+const ms = (x) => `${x.toFixed(1)} ms`;
+const load = readFileSync('/proc/loadavg', 'utf8').split(' ')[0];
+console.log(`load ${load}\n\n| what | measured | target |\n|---|---|---|`);
+
+async function fresh() {
+  const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, locale: 'en-GB' });
+  await context.addInitScript(() => {
+    localStorage.setItem('burgeon.tour', 'done');
+    window.measured = { pen: [], undo: [], open: [] };
+    new PerformanceObserver((list) => {
+      for (const e of list.getEntries()) if (e.name.startsWith('burgeon.')) window.measured[e.name.slice(8)]?.push(e.duration);
+    }).observe({ type: 'measure' });
+  });
+  const page = await context.newPage();
+  await page.goto(url);
+  await page.waitForFunction(() => document.body.dataset.ready === 'true');
+  return { context, page };
+}
+
+async function drop(page, name, text) {
+  await page.evaluate(([n, t]) => {
+    const transfer = new DataTransfer();
+    transfer.items.add(new File([t], n));
+    document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true }));
+  }, [name, text]);
+}
+
+// Transfer and first paint.
+{
+  let bytes = 0;
+  for (const file of ['index.html', ...readdirSync('dist/assets').map((f) => `assets/${f}`)]) {
+    if (['.html', '.js', '.css', '.wasm'].includes(extname(file))) bytes += gzipSync(readFileSync(`dist/${file}`), { level: 9 }).length;
+  }
+  row('transfer without samples, gzip', `${(bytes / 1e6).toFixed(2)} MB`, '< 2 MB');
+  const [paints, usable] = [[], []];
+  for (let i = 0; i < 5; i += 1) {
+    const { context, page } = await fresh();
+    const [paint, ready] = await page.evaluate(() => [performance.getEntriesByName('first-contentful-paint')[0]?.startTime ?? NaN, Number(document.body.dataset.readyAt)]);
+    paints.push(paint);
+    usable.push(ready);
+    await context.close();
+  }
+  row('first paint, median of 5', ms(at(paints.sort((a, b) => a - b), 0.5)), '< 1000 ms');
+  row('usable, median of 5', ms(at(usable.sort((a, b) => a - b), 0.5)), '< 2000 ms');
+}
+
+// The pen.
+for (const sketch of ['a', 'b', 'c', 'd', 'e', 'f', 'g', 'h']) {
+  const { context, page } = await fresh();
+  await drop(page, `${sketch}.svg`, readFileSync(`../../fixtures/sketches/table1/${sketch}.svg`, 'utf8'));
+  await page.waitForFunction(() => Number(document.body.dataset.triangles) > 0);
+  await page.waitForTimeout(1500);
+  const triangles = await page.evaluate(() => Number(document.body.dataset.triangles));
+  const [pens, undos] = await page.evaluate(async () => {
+    const sheet = document.querySelector('.sheet');
+    sheet.setPointerCapture = () => {};
+    const box = sheet.getBoundingClientRect();
+    const send = (type, x, y) => sheet.dispatchEvent(new PointerEvent(type, { pointerType: 'pen', pointerId: 1, pressure: 0.5, clientX: x, clientY: y, buttons: 1, bubbles: true, isPrimary: true }));
+    const pause = (t) => new Promise((r) => { setTimeout(r, t); });
+    window.measured.pen.length = 0;
+    for (let stroke = 0; stroke < 4; stroke += 1) {
+      const [x, y] = [box.left + box.width * (0.45 + 0.03 * stroke), box.top + box.height * 0.5];
+      send('pointerdown', x, y);
+      for (let i = 1; i <= 30; i += 1) {
+        send('pointermove', x + 2 * i, y - 3 * i + 8 * Math.sin(i / 4));
+        await pause(60);
+      }
+      send('pointerup', x + 60, y - 90);
+      await pause(300);
+    }
+    const pens = [...window.measured.pen];
+    window.measured.undo.length = 0;
+    for (let i = 0; i < 4; i += 1) {
+      document.querySelector('#b-undo').click();
+      await pause(300);
+    }
+    return [pens, [...window.measured.undo]];
+  });
+  pens.sort((a, b) => a - b);
+  undos.sort((a, b) => a - b);
+  row(`${sketch}: pen point to meshes, median / p95 of ${pens.length} (${triangles} triangles)`, `${ms(at(pens, 0.5))} / ${ms(at(pens, 0.95))}`, 'gh'.includes(sketch) ? '<= 50 ms' : '<= 16 ms');
+  row(`${sketch}: undo, largest of ${undos.length}`, ms(undos.at(-1) ?? NaN), '<= 16 ms');
+  await context.close();
+}
+
+// A large project: saved by the page itself, then opened.
+{
+  const { context, page } = await fresh();
+  let seed = 1;
+  const random = () => { seed = (seed * 16807) % 2147483647; return seed / 2147483647; };
+  const strokes = Array.from({ length: 60 }, (_, s) => ({
+    points: Array.from({ length: 5200 }, (_, i) => [10 * (s % 10) + random(), 10 * Math.floor(s / 10) + i / 600 + random(), 4 * i, random()]),
+  }));
+  await drop(page, 'large.json', JSON.stringify({ burgeon: 'drawing/1', name: 'large', y: 'up', strokes }));
+  await page.waitForFunction(() => Number(document.body.dataset.strokes) === 60);
+  const [download] = await Promise.all([page.waitForEvent('download'), page.click('#b-save')]);
+  const bytes = readFileSync(await download.path());
+  await page.evaluate((text) => { window.large = Uint8Array.from(atob(text), (c) => c.charCodeAt(0)); }, bytes.toString('base64'));
+  const times = await page.evaluate(async () => {
+    const pause = (t) => new Promise((r) => { setTimeout(r, t); });
+    window.measured.open.length = 0;
+    for (let i = 1; i <= 3; i += 1) {
+      document.querySelector('#b-fresh').click();
+      await pause(1500);
+      const transfer = new DataTransfer();
+      transfer.items.add(new File([window.large], 'large.burgeon'));
+      document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true }));
+      while (window.measured.open.length < i) await pause(50);
+      await pause(500);
+    }
+    return window.measured.open;
+  });
+  row(`opening a project of ${(bytes.length / 1e6).toFixed(1)} MB, median of ${times.length}`, ms(at(times.sort((a, b) => a - b), 0.5)), '<= 1000 ms');
+  await context.close();
+}
+
+// Memory over a hundred documents.
+{
+  const { context, page } = await fresh();
+  const text = readFileSync('../../fixtures/sketches/table1/b.svg', 'utf8');
+  const memory = () => page.evaluate(async () => (await performance.measureUserAgentSpecificMemory()).bytes);
+  const turn = (n) => page.evaluate(async ([svg, times]) => {
+    const until = async (test) => { while (!test()) await new Promise((r) => { setTimeout(r, 5); }); };
+    for (let i = 0; i < times; i += 1) {
+      const transfer = new DataTransfer();
+      transfer.items.add(new File([svg], 'b.svg'));
+      document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true }));
+      await until(() => Number(document.body.dataset.triangles) > 0);
+      document.querySelector('#b-commands').click();
+      document.querySelector('#p-close').click();
+      await until(() => Number(document.body.dataset.parts) === 0 && Number(document.body.dataset.strokes) === 0);
+    }
+  }, [text, n]);
+  await turn(10);
+  const before = await memory();
+  await turn(100);
+  const after = await memory();
+  row('memory after 10 and after 110 documents opened and closed', `${(before / 1e6).toFixed(1)} MB, ${(after / 1e6).toFixed(1)} MB`, 'the same');
+  await context.close();
+}
+await browser.close();
+server.removeAllListeners('exit');
+server.kill();
+process.exit(0);
