@@ -291,12 +291,18 @@ fn tell(fates: &[Fate], report: &mut Report) {
     }
 }
 
+/// The points that have a joint as their nearest; together in memory, because they change together.
+#[derive(Clone, Copy, Default)]
+struct Pull {
+    /// Sum of unit vectors to them.
+    sum: DVec3,
+    count: u32,
+    queued: bool,
+}
+
 /// What each joint is pulled by, and which joints' pull has changed since they last grew.
 struct Load {
-    /// Sum of unit vectors to the points that have this joint as their nearest.
-    sum: Vec<DVec3>,
-    count: Vec<u32>,
-    queued: Vec<bool>,
+    pulls: Vec<Pull>,
     queue: Vec<u32>,
     /// Children as lists: a joint never grows the same child twice.
     first: Vec<u32>,
@@ -307,9 +313,7 @@ impl Load {
     fn new(skeleton: &Skeleton) -> Self {
         let n = skeleton.len();
         let mut load = Self {
-            sum: vec![DVec3::ZERO; n],
-            count: vec![0; n],
-            queued: vec![false; n],
+            pulls: vec![Pull::default(); n],
             queue: Vec::with_capacity(256),
             first: vec![NOBODY; n],
             next: vec![NOBODY; n],
@@ -323,9 +327,7 @@ impl Load {
     }
 
     fn add_joint(&mut self, parent: usize, joint: u32) {
-        self.sum.push(DVec3::ZERO);
-        self.count.push(0);
-        self.queued.push(false);
+        self.pulls.push(Pull::default());
         self.first.push(NOBODY);
         self.next.push(NOBODY);
         self.adopt(parent, joint);
@@ -336,27 +338,25 @@ impl Load {
         self.first[parent] = joint;
     }
 
-    fn wake(&mut self, joint: u32) {
-        if !self.queued[joint as usize] {
-            self.queued[joint as usize] = true;
+    /// A point leaves a joint.
+    fn lose(&mut self, joint: u32, at: DVec3, place: DVec3) {
+        let pull = &mut self.pulls[joint as usize];
+        pull.count -= 1;
+        // Without points the sum is exactly zero, not the dust of many additions.
+        pull.sum = if pull.count == 0 { DVec3::ZERO } else { pull.sum - towards(at, place) };
+        if !core::mem::replace(&mut pull.queued, true) {
             self.queue.push(joint);
         }
     }
 
-    /// A point leaves a joint.
-    fn lose(&mut self, joint: u32, at: DVec3, place: DVec3) {
-        let j = joint as usize;
-        self.count[j] -= 1;
-        // Without points the sum is exactly zero, not the dust of many additions.
-        self.sum[j] = if self.count[j] == 0 { DVec3::ZERO } else { self.sum[j] - towards(at, place) };
-        self.wake(joint);
-    }
-
     /// A point comes to a joint.
     fn gain(&mut self, joint: u32, at: DVec3, place: DVec3) {
-        self.count[joint as usize] += 1;
-        self.sum[joint as usize] += towards(at, place);
-        self.wake(joint);
+        let pull = &mut self.pulls[joint as usize];
+        pull.count += 1;
+        pull.sum += towards(at, place);
+        if !core::mem::replace(&mut pull.queued, true) {
+            self.queue.push(joint);
+        }
     }
 }
 
@@ -410,14 +410,17 @@ impl Colony<'_> {
             let all = self.field.iter().map(|(_, q, ..)| q);
             all.reduce(|a, b| if b.distance_squared(p) < a.distance_squared(p) { b } else { a })
         };
-        if self.load.count[root as usize] > 0 {
+        if self.load.pulls[root as usize].count > 0 {
             return;
         }
         let Some(goal) = nearest(from) else { return };
         // Three times the straight way leaves room to go up first and around things.
         let budget = 3.0 * from.distance(goal) / self.steps.step + 8.0;
         let (mut tip, mut heading, mut steps) = (root, DVec3::Y, 0.0);
-        while self.load.count[tip as usize] == 0 && steps < budget && self.skeleton.len() < self.steps.most {
+        while self.load.pulls[tip as usize].count == 0
+            && steps < budget
+            && self.skeleton.len() < self.steps.most
+        {
             let at = self.skeleton.position[tip as usize];
             let below = at.y + 0.5 * self.steps.attraction < goal.y;
             let aim = if below { DVec3::Y } else { (heading + towards(at, goal)).normalize_or(DVec3::Y) };
@@ -447,7 +450,7 @@ impl Colony<'_> {
             let before = self.field.alive();
             core::mem::swap(&mut queue, &mut self.load.queue);
             for &joint in &queue {
-                self.load.queued[joint as usize] = false;
+                self.load.pulls[joint as usize].queued = false;
                 self.sprout(joint);
             }
             queue.clear();
@@ -470,11 +473,13 @@ impl Colony<'_> {
     /// Eq 1 and 2: one step along the mean direction of the points that are nearest to this joint.
     fn sprout(&mut self, joint: u32) {
         let j = joint as usize;
-        if self.load.count[j] == 0 || self.skeleton.len() >= self.steps.most {
+        let Pull { sum, count, .. } = self.load.pulls[j];
+        if count == 0 || self.skeleton.len() >= self.steps.most {
             return;
         }
-        let mean = self.load.sum[j].normalize_or_zero();
-        let last = self.skeleton.heading(JointId::new(j)) * self.steps.inertia;
+        let mean = sum.normalize_or_zero();
+        let inertia = self.steps.inertia;
+        let last = if inertia > 0.0 { self.skeleton.heading(JointId::new(j)) * inertia } else { DVec3::ZERO };
         if let Some(direction) = (mean + last + self.steps.pull).try_normalize() {
             self.push(joint, direction, self.steps.step);
         }

@@ -2,8 +2,10 @@
 //!
 //! Flat arrays sorted by cell. Every cell knows how far the nearest joint of its worst-served point is, so a new
 //! joint visits only cells in which it can be nearer to something: that, not the perception radius, sets the cost.
+//! Cells and points are sifted in f32, four at a time and with room for its errors; what is left is tested in f64. So
+//! the sieve's precision never shows in a result.
 
-use glam::DVec3;
+use glam::{DVec3, Vec4};
 
 /// No joint.
 pub(crate) const NOBODY: u32 = u32::MAX;
@@ -16,6 +18,10 @@ const PER_CELL: f64 = 6.0;
 /// Cells along a side of a block, and in a block.
 const SIDE: usize = 4;
 const BLOCK: usize = SIDE * SIDE * SIDE;
+const ROWS: usize = SIDE * SIDE;
+
+/// Points that are sifted together: one line of memory.
+const LANES: usize = 4;
 
 /// What a round of offers did to one point.
 #[derive(Clone, Copy, Debug)]
@@ -32,26 +38,53 @@ pub(crate) struct Change {
     pub(crate) killed: bool,
 }
 
+/// Four points, measured from the grid's corner, and no less than their squared distances to their joints. Where there
+/// is no point, that is minus infinity.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+struct Sieve {
+    x: Vec4,
+    y: Vec4,
+    z: Vec4,
+    best2: Vec4,
+}
+
+const EMPTY: Sieve = Sieve { x: Vec4::ZERO, y: Vec4::ZERO, z: Vec4::ZERO, best2: Vec4::NEG_INFINITY };
+
+/// One point; side by side, because all of it is read together.
+#[derive(Clone, Copy, Debug)]
+struct Spot {
+    place: DVec3,
+    /// Squared distance to the nearest joint so far; the squared perception radius while there is none.
+    best2: f64,
+    owner: u32,
+    /// The owner before this round, or [`STILL`].
+    before: u32,
+    id: u32,
+}
+
 #[derive(Clone, Debug)]
 pub(crate) struct Field {
-    /// x, y, z, and the squared distance to the nearest joint so far; the squared perception radius while there is
-    /// none. Side by side, because they are always read together.
-    points: Vec<[f64; 4]>,
-    owner: Vec<u32>,
-    /// The owner before this round, or [`STILL`].
-    before: Vec<u32>,
-    id: Vec<u32>,
+    /// By slot. A cell's slots begin at a multiple of [`LANES`].
+    spots: Vec<Spot>,
+    /// The same points, `LANES` slots each.
+    sieve: Vec<Sieve>,
     /// Slot of each point by input index, or [`GONE`].
     slot: Vec<u32>,
-    /// Points that changed hands in this round, by input index.
+    /// Slots of the points that changed hands in this round, and input indices of those to be removed.
     moved: Vec<u32>,
+    dead: Vec<u32>,
     /// First slot of each cell and number of points left in it. The 64 cells of a block lie side by side.
     start: Vec<u32>,
     left: Vec<u32>,
-    /// Upper bound of `best2` in each cell; 0 where it is empty.
-    reach2: Vec<f64>,
+    /// Upper bound of `best2` in each cell, by block; 0 where it is empty.
+    reach2: Vec<[Vec4; ROWS]>,
     /// The same for each block.
-    block_reach2: Vec<f64>,
+    block_reach2: Vec<f32>,
+    /// Squared gaps between a joint and the cells, by axis: a workspace.
+    gaps: [Vec<Vec4>; 3],
+    /// Largest coordinate in the sieve.
+    span: f64,
     far: f64,
     lo: DVec3,
     cell: f64,
@@ -70,16 +103,17 @@ impl Field {
         let cells = count * BLOCK;
         let n = good.len();
         let mut field = Self {
-            points: vec![[0.0; 4]; n],
-            owner: vec![NOBODY; n],
-            before: vec![STILL; n],
-            id: vec![0; n],
+            spots: Vec::new(),
+            sieve: Vec::new(),
             slot: vec![GONE; points.len()],
             moved: Vec::with_capacity(n),
+            dead: Vec::new(),
             start: vec![0; cells + 1],
             left: vec![0; cells],
-            reach2: vec![0.0; cells],
+            reach2: vec![[Vec4::ZERO; ROWS]; count],
             block_reach2: vec![0.0; count],
+            gaps: [0, 1, 2].map(|i| vec![Vec4::ZERO; blocks[i]]),
+            span: 0.0,
             far: perception_m,
             lo,
             cell,
@@ -91,23 +125,39 @@ impl Field {
         for &c in &of {
             field.left[c as usize] += 1;
         }
+        let far2 = above(perception_m * perception_m);
         for c in 0..cells {
-            field.start[c + 1] = field.start[c] + field.left[c];
+            let room = field.left[c].next_multiple_of(index(LANES));
+            field.start[c + 1] = field.start[c] + room;
             if field.left[c] > 0 {
-                field.reach2[c] = perception_m * perception_m;
-                field.block_reach2[c / BLOCK] = perception_m * perception_m;
+                field.reach2[c / BLOCK][c % BLOCK / SIDE][c % SIDE] = far2;
+                field.block_reach2[c / BLOCK] = far2;
             }
         }
+        let slots = field.start[cells] as usize;
+        let best2 = perception_m * perception_m;
+        let none = Spot { place: DVec3::ZERO, best2, owner: NOBODY, before: STILL, id: 0 };
+        field.spots = vec![none; slots];
+        field.sieve = vec![EMPTY; slots / LANES];
         let mut next = field.start.clone();
         for (&i, &c) in good.iter().zip(&of) {
             let s = next[c as usize] as usize;
             next[c as usize] += 1;
-            let p = points[i as usize];
-            field.points[s] = [p.x, p.y, p.z, perception_m * perception_m];
-            field.id[s] = i;
+            let place = points[i as usize];
+            field.spots[s] = Spot { place, id: i, ..none };
+            field.span = field.span.max((place - lo).abs().max_element());
+            field.sift(s);
             field.slot[i as usize] = index(s);
         }
         field
+    }
+
+    /// Copies a slot into the sieve.
+    fn sift(&mut self, slot: usize) {
+        let spot = &self.spots[slot];
+        let (at, lane, k) = ((spot.place - self.lo).as_vec3(), &mut self.sieve[slot / LANES], slot % LANES);
+        (lane.x[k], lane.y[k], lane.z[k]) = (at.x, at.y, at.z);
+        lane.best2[k] = above(spot.best2);
     }
 
     /// Points not yet consumed or given up.
@@ -119,120 +169,140 @@ impl Field {
     #[inline]
     pub(crate) fn offer(&mut self, p: DVec3, joint: u32, sees: impl Fn(DVec3) -> bool) {
         let (from, to) = (self.block_of(p - self.far), self.block_of(p + self.far));
+        let mut gaps = core::mem::take(&mut self.gaps);
+        for (axis, gaps) in gaps.iter_mut().enumerate() {
+            for (block, gap) in (from[axis]..=to[axis]).zip(gaps[from[axis]..].iter_mut()) {
+                *gap = self.gaps_to(p[axis], axis, block);
+            }
+        }
+        let new = self.newcomer(p, joint);
         for k in from[2]..=to[2] {
-            let gz = self.gaps(p.z, 2, k);
+            let gz = gaps[2][k];
+            let near_z = gz.min_element();
             for j in from[1]..=to[1] {
-                let gy = self.gaps(p.y, 1, j);
-                let near_yz = least(&gy) + least(&gz);
+                let gy = gaps[1][j];
+                let near_yz = near_z + gy.min_element();
                 let row = (k * self.blocks[1] + j) * self.blocks[0];
-                for i in from[0]..=to[0] {
-                    let reach2 = self.block_reach2[row + i];
-                    if reach2 <= near_yz {
-                        continue;
-                    }
-                    let gx = self.gaps(p.x, 0, i);
-                    if reach2 > near_yz + least(&gx) {
-                        self.offer_block(row + i, [&gx, &gy, &gz], p, joint, &sees);
+                for (i, &gx) in gaps[0].iter().enumerate().take(to[0] + 1).skip(from[0]) {
+                    if self.block_reach2[row + i] > near_yz + gx.min_element() {
+                        self.offer_block(row + i, [gx, gy, gz], &new, &sees);
                     }
                 }
             }
         }
+        self.gaps = gaps;
+    }
+
+    fn newcomer(&self, p: DVec3, joint: u32) -> Newcomer {
+        let at = p - self.lo;
+        // Coordinates in f32 are off by 2^-24 of their size, their difference by as much again: e on each axis. Of a
+        // point at d that makes at most 2 sqrt(3) d e + 3 e^2.
+        let e = (self.span + at.abs().max_element()) / 8_388_608.0;
+        let slack = above(4.0 * self.far * e + 4.0 * e * e);
+        Newcomer { p, at: at.as_vec3().to_array().map(Vec4::splat), slack, joint }
     }
 
     #[inline]
     fn offer_block(
         &mut self,
         block: usize,
-        gaps: [&[f64; SIDE]; 3],
-        p: DVec3,
-        joint: u32,
+        [gx, gy, gz]: [Vec4; 3],
+        new: &Newcomer,
         sees: &impl Fn(DVec3) -> bool,
     ) {
-        let first = block * BLOCK;
-        let reach2 = self.block_reach2[block];
-        let mut visited = false;
-        for (z, gz) in gaps[2].iter().enumerate() {
-            for (y, gy) in gaps[1].iter().enumerate() {
-                let yz = gy + gz;
-                if reach2 <= yz {
-                    continue;
-                }
-                let row = first + (z * SIDE + y) * SIDE;
-                // Read at once: the four are one line of memory.
-                let Some(&reach) = self.reach2[row..].first_chunk::<SIDE>() else { continue };
-                for (x, gx) in gaps[0].iter().enumerate() {
-                    if reach[x] > yz + gx {
-                        self.offer_cell(row + x, p, joint, sees);
-                        visited = true;
-                    }
-                }
+        let mut near = 0_u64;
+        let gy = gy.to_array();
+        for (z, (rows, gz)) in self.reach2[block].chunks_exact(SIDE).zip(gz.to_array()).enumerate() {
+            for (y, (row, gy)) in rows.iter().zip(gy).enumerate() {
+                let bits = row.cmpgt(gx + Vec4::splat(gy + gz)).bitmask();
+                near |= u64::from(bits) << ((z * SIDE + y) * SIDE);
             }
         }
-        if visited {
-            let cells = &self.reach2[first..first + BLOCK];
-            self.block_reach2[block] = cells.iter().copied().fold(0.0, |a, b| if b > a { b } else { a });
+        if near == 0 {
+            return;
         }
+        while near != 0 {
+            let cell = near.trailing_zeros() as usize;
+            near &= near - 1;
+            let reach = self.offer_cell(block * BLOCK + cell, new, sees);
+            self.reach2[block][cell / SIDE][cell % SIDE] = reach;
+        }
+        let most = self.reach2[block].iter().fold(Vec4::ZERO, |a, b| a.max(*b));
+        self.block_reach2[block] = most.max_element();
     }
 
+    /// The new upper bound of the cell.
     #[inline]
-    fn offer_cell(&mut self, cell: usize, p: DVec3, joint: u32, sees: &impl Fn(DVec3) -> bool) {
-        let from = self.start[cell] as usize;
-        let Self { points, owner, before, id, moved, .. } = self;
-        let mut worst = 0.0_f64;
-        for (q, a) in points[from..from + self.left[cell] as usize].iter_mut().zip(from..) {
-            let (dx, dy, dz) = (q[0] - p.x, q[1] - p.y, q[2] - p.z);
-            let d2 = dx * dx + dy * dy + dz * dz;
-            if d2 < q[3] && sees(DVec3::new(q[0], q[1], q[2])) {
-                if before[a] == STILL {
-                    before[a] = owner[a];
-                    moved.push(id[a]);
+    fn offer_cell(&mut self, cell: usize, new: &Newcomer, sees: &impl Fn(DVec3) -> bool) -> f32 {
+        let from = self.start[cell] as usize / LANES;
+        let to = from + (self.left[cell] as usize).div_ceil(LANES);
+        let mut worst = Vec4::ZERO;
+        for (lane, group) in self.sieve[from..to].iter_mut().zip(from..) {
+            let (dx, dy, dz) = (lane.x - new.at[0], lane.y - new.at[1], lane.z - new.at[2]);
+            let room = lane.best2 - (dx * dx + dy * dy + dz * dz);
+            let mut near = room.cmpgt(Vec4::splat(-new.slack)).bitmask();
+            while near != 0 {
+                let k = near.trailing_zeros() as usize;
+                near &= near - 1;
+                let slot = group * LANES + k;
+                let spot = &mut self.spots[slot];
+                let d2 = spot.place.distance_squared(new.p);
+                if d2 < spot.best2 && sees(spot.place) {
+                    if spot.before == STILL {
+                        spot.before = spot.owner;
+                        self.moved.push(index(slot));
+                    }
+                    spot.owner = new.joint;
+                    spot.best2 = d2;
+                    lane.best2[k] = above(d2);
                 }
-                owner[a] = joint;
-                q[3] = d2;
             }
-            worst = if q[3] > worst { q[3] } else { worst };
+            worst = worst.max(lane.best2);
         }
-        self.reach2[cell] = worst;
+        worst.max_element()
     }
 
     /// Ends a round of offers: tells of every point that changed hands, and removes those within the kill distance.
     pub(crate) fn settle(&mut self, kill2: f64, mut changed: impl FnMut(Change)) {
         let mut moved = core::mem::take(&mut self.moved);
-        for &id in &moved {
-            let a = self.slot[id as usize] as usize;
-            let place = self.place(a);
-            let killed = self.points[a][3] <= kill2;
-            changed(Change { from: self.before[a], to: self.owner[a], place, id, killed });
-            self.before[a] = STILL;
+        for &slot in &moved {
+            let spot = &mut self.spots[slot as usize];
+            let killed = spot.best2 <= kill2;
+            let Spot { place, before: from, owner: to, id, .. } = *spot;
+            spot.before = STILL;
             if killed {
-                self.remove(self.cell_index(place), a);
+                self.dead.push(id);
             }
+            changed(Change { from, to, place, id, killed });
         }
         moved.clear();
         self.moved = moved;
+        // Only now: removing one moves another to its slot.
+        let mut dead = core::mem::take(&mut self.dead);
+        for &id in &dead {
+            self.remove(self.slot[id as usize] as usize);
+        }
+        dead.clear();
+        self.dead = dead;
     }
 
     /// Takes the point of slot `a` out of its cell; the cell's last one takes its slot.
-    fn remove(&mut self, cell: usize, a: usize) {
+    fn remove(&mut self, a: usize) {
+        debug_assert!(self.moved.is_empty(), "slots are fixed during a round");
+        let cell = self.cell_index(self.spots[a].place);
         let last = (self.start[cell] + self.left[cell]) as usize - 1;
-        self.slot[self.id[a] as usize] = GONE;
+        self.slot[self.spots[a].id as usize] = GONE;
         if a != last {
-            self.points[a] = self.points[last];
-            self.owner[a] = self.owner[last];
-            self.before[a] = self.before[last];
-            self.id[a] = self.id[last];
-            self.slot[self.id[a] as usize] = index(a);
+            self.spots[a] = self.spots[last];
+            self.sift(a);
+            self.slot[self.spots[a].id as usize] = index(a);
         }
+        self.sieve[last / LANES].best2[last % LANES] = f32::NEG_INFINITY;
         self.left[cell] -= 1;
         self.alive -= 1;
         if self.left[cell] == 0 {
-            self.reach2[cell] = 0.0;
+            self.reach2[cell / BLOCK][cell % BLOCK / SIDE][cell % SIDE] = 0.0;
         }
-    }
-
-    fn place(&self, a: usize) -> DVec3 {
-        let [x, y, z, _] = self.points[a];
-        DVec3::new(x, y, z)
     }
 
     /// Gives up the point with input index `id`; its joint if it had one, and its place.
@@ -241,16 +311,14 @@ impl Field {
         if a == GONE {
             return None;
         }
-        let a = a as usize;
-        let place = self.place(a);
-        let owner = self.owner[a];
-        self.remove(self.cell_index(place), a);
+        let Spot { owner, place, .. } = self.spots[a as usize];
+        self.remove(a as usize);
         Some((owner, place))
     }
 
     /// Narrows the search to what the worst-served point still needs. Call now and then.
     pub(crate) fn narrow(&mut self) {
-        self.far = self.block_reach2.iter().copied().fold(0.0, f64::max).sqrt();
+        self.far = f64::from(self.block_reach2.iter().copied().fold(0.0, f32::max)).sqrt();
     }
 
     /// Every point left: input index, place, owner, squared distance to it.
@@ -258,32 +326,32 @@ impl Field {
         (0..self.left.len()).flat_map(move |c| {
             let start = self.start[c] as usize;
             (start..start + self.left[c] as usize)
-                .map(|a| (self.id[a], self.place(a), self.owner[a], self.points[a][3]))
+                .map(|a| &self.spots[a])
+                .map(|s| (s.id, s.place, s.owner, s.best2))
         })
     }
 
     /// Squared distance of point `id` to its joint; `None` if it is gone.
     pub(crate) fn distance2(&self, id: u32) -> Option<f64> {
         let a = self.slot[id as usize];
-        (a != GONE).then(|| self.points[a as usize][3])
+        (a != GONE).then(|| self.spots[a as usize].best2)
     }
 
-    /// Squared distances from a coordinate to the ranges of a block's cells; the outermost cells of the grid reach
-    /// to infinity.
+    /// Squared distances, no more than they are, from a coordinate to the ranges of a block's cells; the outermost
+    /// cells of the grid reach to infinity.
     #[inline]
-    fn gaps(&self, p: f64, axis: usize, block: usize) -> [f64; SIDE] {
+    fn gaps_to(&self, p: f64, axis: usize, block: usize) -> Vec4 {
         let last = self.blocks[axis] * SIDE - 1;
-        let mut gaps = [0.0; SIDE];
-        for (k, gap) in gaps.iter_mut().enumerate() {
+        let gap = |k: usize| {
             let i = block * SIDE + k;
             let low = self.lo[axis] + i as f64 * self.cell;
             let below = if i == 0 { 0.0 } else { low - p };
             let above = if i == last { 0.0 } else { p - (low + self.cell) };
             let d = if below > above { below } else { above };
             let d = if d > 0.0 { d } else { 0.0 };
-            *gap = d * d;
-        }
-        gaps
+            beneath(d * d)
+        };
+        Vec4::new(gap(0), gap(1), gap(2), gap(3))
     }
 
     fn cell_of(&self, p: DVec3) -> [usize; 3] {
@@ -302,10 +370,28 @@ impl Field {
     }
 }
 
-/// The least of a block's squared gaps.
+/// A new joint.
+struct Newcomer {
+    p: DVec3,
+    /// As in the sieve.
+    at: [Vec4; 3],
+    /// What a squared distance in the sieve may be too large by.
+    slack: f32,
+    joint: u32,
+}
+
+/// At least `x`, which is 0 or more: a millionth covers what f32 rounds, in sums of three, too.
+#[expect(clippy::cast_possible_truncation, reason = "rounded up after")]
 #[inline]
-fn least(gaps: &[f64; SIDE]) -> f64 {
-    gaps.iter().copied().fold(f64::INFINITY, |a, b| if b < a { b } else { a })
+fn above(x: f64) -> f32 {
+    if x > 0.0 { (x as f32) * 1.000_001 + f32::MIN_POSITIVE } else { 0.0 }
+}
+
+/// At most `x`, which is 0 or more.
+#[expect(clippy::cast_possible_truncation, reason = "rounded down after")]
+#[inline]
+fn beneath(x: f64) -> f32 {
+    (x as f32) * 0.999_999
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "more than 2^32 attractors do not fit in memory")]
