@@ -75,6 +75,11 @@ pub(crate) fn test(tools: &Tools) -> Outcome {
     let mut c = prepare("node", &["xtask/node/digests.mjs"]);
     c.arg(out.join("wasm/burgeon_wasm.js")).arg(&native).args(&drawings);
     finish(c)?;
+    let (organs, leaves) = native_organs(&out)?;
+    say("$ node organs.mjs (leaves and flowers)");
+    let mut c = prepare("node", &["xtask/node/organs.mjs"]);
+    c.arg(out.join("wasm/burgeon_wasm.js")).arg(&organs).arg(FRAMES).args(&leaves);
+    finish(c)?;
     say("$ node validate.mjs (Khronos validator)");
     let mut c = prepare("node", &["xtask/node/validate.mjs"]);
     c.arg(out.join("native"));
@@ -124,6 +129,52 @@ fn fixture_drawings() -> Outcome<Vec<PathBuf>> {
     }
     drawings.sort();
     if drawings.is_empty() { Err("no drawings under fixtures/sketches".into()) } else { Ok(drawings) }
+}
+
+/// Shapes of each flower in the comparison.
+const FRAMES: &str = "5";
+
+/// The digests of every leaf of the fixtures and of every flower, by the native program on one and on four threads;
+/// returns their file and the leaves' files.
+fn native_organs(out: &Path) -> Outcome<(PathBuf, Vec<PathBuf>)> {
+    let burgeon = target_dir().join("debug").join(format!("burgeon{}", std::env::consts::EXE_SUFFIX));
+    let leaves: Vec<PathBuf> =
+        (1..=3).map(|k| repository().join(format!("fixtures/leaves/leaf{k}.csv"))).collect();
+    let mut all = Vec::new();
+    for threads in ["1", "4"] {
+        let mut digests = serde_json::Map::new();
+        let report = out.join("organ.json");
+        let mut digest_of = |name: String, c: &mut std::process::Command| -> Outcome {
+            c.args(["--quiet", "--threads", threads, "--report"]).arg(&report);
+            let status = c.status().map_err(|e| format!("{}: {e}", shown(&burgeon)))?;
+            let text = std::fs::read_to_string(&report).map_err(|e| format!("{}: {e}", shown(&report)))?;
+            let json: serde_json::Value =
+                serde_json::from_str(&text).map_err(|e| format!("{}: {e}", shown(&report)))?;
+            let digest = json["items"][0]["digest"].clone();
+            if !status.success() || digest.as_str().is_none_or(str::is_empty) {
+                return Err(format!("{name}: the native program made nothing"));
+            }
+            digests.insert(name, digest);
+            Ok(())
+        };
+        for leaf in &leaves {
+            let name = leaf.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+            digest_of(name, prepare(&burgeon, &["leaf"]).arg(leaf))?;
+        }
+        for species in ["rose", "lily", "tulip", "sunflower", "clivia"] {
+            let mut c = prepare(&burgeon, &["bloom", "run", species, "--frames", FRAMES, "-o"]);
+            digest_of(species.into(), c.arg(out.join("flower.glb")))?;
+        }
+        all.push(digests);
+    }
+    if all[0] != all[1] {
+        return Err("digests of leaves or flowers differ between 1 and 4 threads".into());
+    }
+    say(&format!("{} digests of leaves and flowers are the same on 1 and 4 threads", all[0].len()));
+    let path = out.join("organs.json");
+    let text = serde_json::Value::Object(all.swap_remove(0)).to_string();
+    std::fs::write(&path, text).map_err(|e| format!("{}: {e}", shown(&path)))?;
+    Ok((path, leaves))
 }
 
 /// Makes every drawing with the native program on one and on four threads; returns the report of the first.

@@ -277,6 +277,10 @@ pub(crate) struct ReadingArgs {
     /// Sag of drawn branches, 0 to 1 [default: 0].
     #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 0.0, 1.0))]
     pub(crate) gravity: Option<f64>,
+    /// A leaf that the plant bears instead of the drawn or built-in ones: marks (.csv), a vein graph (.json) or a
+    /// model of one leaf (.glb, .obj, .ply, .stl) with its root at the origin.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) leaf_template: Option<PathBuf>,
     /// All settings of the sketch maker as JSON (what is missing keeps its default); options above win over it.
     #[arg(long, value_name = "FILE.json")]
     pub(crate) spec: Option<PathBuf>,

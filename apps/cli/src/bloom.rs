@@ -8,13 +8,14 @@ use burgeon::bloom::{
 use burgeon::formats::{ExportSpec, ModelFormat, Morph, PngCache, write_cloud_ply, write_glb_morph};
 use burgeon::glam::DVec3;
 use burgeon::mesh::{Material, MaterialId, MaterialKind, Model, Part, PointCloud, TriMesh};
-use burgeon::{Digest, RunReport, Seed};
+use burgeon::{Digest, MakeError, OpeningError, OpeningPlant, RunReport, Seed};
 use clap::{Args, Subcommand};
 use serde::Serialize;
 
 use crate::args::{AxesArgs, CommonArgs, PictureArgs, ViewWord};
 use crate::failure::{Failure, Outcome};
 use crate::machine::Machine;
+use crate::petals::{drawing, is_drawing, petal_form};
 use crate::stages::{self, Loaded};
 use crate::{files, output, picture, report, say};
 
@@ -29,7 +30,8 @@ pub(crate) enum BloomCommand {
     /// Make a plant's shape at any day, or the animation of all days
     ///
     /// Control points around each organ of the first shape move along the law to the last shape. START is a scan, a
-    /// model, a stages file (all its stages are met), or a whole flower: rose, lily, tulip, sunflower, clivia.
+    /// model, a stages file (all its stages are met), a whole flower (rose, lily, tulip, sunflower, clivia), or a drawing of
+    /// flowers (.svg, .inkml, .json, .burgeon), which then open.
     Run(Box<BloomRunArgs>),
 }
 
@@ -79,9 +81,11 @@ pub(crate) struct FitArgs {
   burgeon bloom run first.ply --end last.ply --law lily.law.json --day 3 -o day3.ply --compare scan3.ply --unit mm
   burgeon bloom run first.glb --end last.glb --law lily.law.json --frames 20 -o opening.glb
   burgeon bloom run rose -o rose.glb --frames 16 --png rose.png
+  burgeon bloom run rose --petal petal.csv -o own-rose.glb       petals from marks, a model or a drawing
+  burgeon bloom run flower.svg -o flower.glb                     a drawn flower opens and wilts
   burgeon bloom run rose --law lily.law.json -o rose-as-lily/ --frames 16 --format obj")]
 pub(crate) struct BloomRunArgs {
-    /// First shape: a scan or a model; or a stages file (.toml); or rose, lily, tulip, sunflower, clivia.
+    /// First shape: a scan or a model; or a stages file (.toml); or rose, lily, tulip, sunflower, clivia; or a drawing.
     #[arg(value_name = "START")]
     pub(crate) start: String,
     /// The result: .glb (animation, or one shape with --day), .ply, .obj or .stl (one shape), or a folder (a file a
@@ -91,6 +95,10 @@ pub(crate) struct BloomRunArgs {
     /// Last shape: a scan or a model.
     #[arg(long, value_name = "END")]
     pub(crate) end: Option<PathBuf>,
+    /// Form of the petals of a whole flower: marks of a petal (.csv), a model of one, or a drawing whose first petal
+    /// or leaf it is.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) petal: Option<PathBuf>,
     /// The law that sets the pace [default: a straight line; for a flower its own].
     #[arg(long, value_name = "LAW.json")]
     pub(crate) law: Option<PathBuf>,
@@ -371,7 +379,17 @@ fn run(args: &BloomRunArgs) -> Outcome {
     }
     let start = Path::new(&args.start);
     if let Some(spec) = bloom::preset(&args.start).filter(|_| !start.exists()) {
-        return flower(args, &spec, law, &machine);
+        return flower(args, spec, law, &machine);
+    }
+    if args.petal.is_some() {
+        return Err(Failure::Bad(format!(
+            "--petal is for whole flowers ({}); {} is none",
+            FlowerSpec::PRESETS.join(", "),
+            args.start
+        )));
+    }
+    if is_drawing(start) {
+        return drawn_flower(args, start, law, &machine);
     }
     let axes = files::axes(args.axes.up, args.axes.unit);
     let options = stages::Options { clean: !args.no_clean, split: !args.whole };
@@ -539,13 +557,56 @@ fn assemble(loaded: &Loaded, motion: &Motion, points: &[DVec3]) -> Model {
     model
 }
 
-fn flower(args: &BloomRunArgs, spec: &FlowerSpec, law: Option<GrowthLaw>, machine: &Machine) -> Outcome {
+fn no_end(args: &BloomRunArgs, name: &str) -> Outcome {
     if args.end.is_some() || args.compare.is_some() {
-        return Err(Failure::Bad(format!(
-            "{} is a whole flower: it takes no --end and no --compare",
-            spec.name
-        )));
+        return Err(Failure::Bad(format!("{name} is a whole flower: it takes no --end and no --compare")));
     }
+    Ok(())
+}
+
+/// A drawing whose flowers open.
+fn drawn_flower(args: &BloomRunArgs, path: &Path, law: Option<GrowthLaw>, machine: &Machine) -> Outcome {
+    no_end(args, &args.start)?;
+    let ((drawing, options), read_ms) = {
+        let (read, ms) = machine.timed(|| drawing(path));
+        (read?, ms)
+    };
+    let seed = Seed::new(args.seed);
+    let (plant, made_ms) = machine.timed(|| OpeningPlant::new(&drawing, &options, seed, &machine.run()));
+    let plant = plant.map_err(|e| match e {
+        OpeningError::Make(MakeError::Cancelled(_)) => Failure::Cancelled,
+        other => Failure::at(path, other),
+    })?;
+    let law = law.unwrap_or_else(|| plant.law());
+    let axes = files::axes(args.axes.up, args.axes.unit);
+    let show = Show {
+        name: files::stem(path),
+        days: [0.0, plant.days[0] + plant.days[1]],
+        best: plant.days[0],
+        shape: Box::new(|day| {
+            let (model, overlap) = plant.at(day, &law, seed);
+            Ok((model, Some(overlap)))
+        }),
+    };
+    let (written, write_ms) = machine.timed(|| write_show(args, &show, &axes, machine));
+    let written = written?;
+    let mut head = head("bloom run", args.seed, &args.start, &plant.name, &args.output);
+    head.items[0].counts = plant.item.counts;
+    (head.items[0].counts.flowers, head.items[0].counts.petals) = plant.counts();
+    head.items[0].warnings.clone_from(&plant.item.warnings);
+    let times = [read_ms, made_ms, write_ms];
+    tell(args, machine, Told { head, residuals: vec![], error: None, stages: vec![], times }, written)
+}
+
+fn flower(args: &BloomRunArgs, spec: FlowerSpec, law: Option<GrowthLaw>, machine: &Machine) -> Outcome {
+    no_end(args, &spec.name)?;
+    let spec = match &args.petal {
+        Some(path) => {
+            let (form, aspect) = petal_form(path, args.seed, machine)?;
+            spec.with_petals(form, aspect)
+        }
+        None => spec,
+    };
     let law = law.unwrap_or_else(|| GrowthLaw::logistic(&spec.name, spec.days[0], spec.rate));
     let axes = files::axes(args.axes.up, args.axes.unit);
     let show = Show {

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use burgeon::formats::{
-    CloudFormat, MarksAxes, PngCache, ReadMarks, marks_template, read_cloud, read_marks, read_picture,
-    write_marks,
+    CloudFormat, ExportSpec, MarksAxes, PngCache, ReadMarks, marks_template, read_cloud, read_marks,
+    read_picture, read_vein_graph, write_marks,
 };
 use burgeon::geom::RingRule;
 use burgeon::leaf::{
@@ -13,7 +13,9 @@ use burgeon::leaf::{
     VeinParameters,
 };
 use burgeon::mesh::Model;
-use burgeon::{ItemReport, LeafError, LeafOptions, LeafTexture, Report, RunReport, Seed, ShootSpec};
+use burgeon::{
+    ItemReport, LeafError, LeafOptions, LeafTemplate, LeafTexture, Report, RunReport, Seed, ShootSpec,
+};
 use clap::{Args, ValueEnum};
 
 use crate::args::{AxesArgs, CommonArgs, PictureArgs, UnitWord, UpWord, ranged};
@@ -24,7 +26,8 @@ use crate::{files, output, picture, report, say};
 #[derive(Args, Debug)]
 #[command(after_long_help = LEAF_EXAMPLES)]
 pub(crate) struct LeafArgs {
-    /// Marks of a leaf (.csv); several for --days and --plant. `-` reads standard input.
+    /// Marks of a leaf (.csv) or its vein graph (.json); several for --days and --plant. `-` reads marks from
+    /// standard input.
     #[arg(value_name = "DATA")]
     pub(crate) inputs: Vec<PathBuf>,
     /// The model: .glb, .obj, .ply or .stl. With --template the file to fill in.
@@ -39,6 +42,9 @@ pub(crate) struct LeafArgs {
     /// DATA is the scan of one leaf (.ply, .xyz, .txt, .pcd, .las, .obj): find midrib, outline, stalk and surface.
     #[arg(long, conflicts_with_all = ["template", "plant", "days"])]
     pub(crate) scan: bool,
+    /// Length of the midrib in metres, 0.002 to 10, for a vein graph in pixels [default: 0.1, with a warning].
+    #[arg(long, value_name = "METRES", value_parser = |s: &str| ranged(s, 0.002, 10.0))]
+    pub(crate) length: Option<f64>,
     /// Also write the leaf as marks, such as those found in a scan or grown between stages.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) marks: Option<PathBuf>,
@@ -71,9 +77,11 @@ const LEAF_EXAMPLES: &str = "Examples:
   burgeon leaf d5.csv d9.csv d15.csv --days 5,9,15 --day 12 -o leaf.glb
   burgeon leaf low.csv middle.csv high.csv --plant -o tobacco.glb
   burgeon leaf --scan cloud.txt --unit mm -o leaf.glb --marks found.csv
+  burgeon leaf veins.json --length 0.06 -o leaf.glb --marks found.csv
 
 Marks are a CSV file with the columns row,mark,x,y,z,thickness,midrib. Lines `# unit: mm`, `# up: z` and
-`# thickness: diameter` in the file win over --unit, --up and --thickness.";
+`# thickness: diameter` in the file win over --unit, --up and --thickness.
+A vein graph is {\"unit\": \"pixel\", \"nodes_xyr\": [[x, y, radius], ...], \"edges\": [[0, 1], ...]}.";
 
 /// How blade and veins are made.
 #[derive(Args, Debug)]
@@ -447,13 +455,50 @@ fn grown(args: &LeafArgs, mut full: Vec<FullMarks>) -> Outcome<FullMarks> {
 
 fn read(path: &Path, args: &LeafArgs) -> Outcome<ReadMarks> {
     let axes = MarksAxes { unit: args.axes.unit.into(), up: args.axes.up.unwrap_or(UpWord::Y).into() };
+    read_leaf(path, axes, args.length)
+}
+
+/// Marks from a file of marks or of a vein graph.
+fn read_leaf(path: &Path, axes: MarksAxes, length_m: Option<f64>) -> Outcome<ReadMarks> {
     let name = files::stem(path);
-    let read = if files::is_stdin(path) {
-        read_marks(std::io::stdin().lock(), &name, axes)
-    } else if path.is_dir() {
+    if files::is_stdin(path) {
+        return read_marks(std::io::stdin().lock(), &name, axes).map_err(|e| Failure::at(path, e));
+    }
+    if path.is_dir() {
         return Err(Failure::at(path, "is a folder; name a file of marks in it"));
-    } else {
-        read_marks(std::fs::File::open(path).map_err(|e| Failure::io(path, "read", &e))?, &name, axes)
-    };
-    read.map_err(|e| Failure::at(path, e))
+    }
+    let file = std::fs::File::open(path).map_err(|e| Failure::io(path, "read", &e))?;
+    if !files::extension(path).is_some_and(|e| e.eq_ignore_ascii_case("json")) {
+        return read_marks(file, &name, axes).map_err(|e| Failure::at(path, e));
+    }
+    let read = read_vein_graph(file).map_err(|e| Failure::at(path, e))?;
+    let mut report = Report { warnings: read.warnings, ..Report::default() };
+    let mut marks = read.graph.marks(&mut report).map_err(|e| Failure::at(path, e))?;
+    if read.unit.is_none() || length_m.is_some() {
+        if length_m.is_none() {
+            report
+                .warn("length-guessed", "the graph is in pixels: the leaf was made 0.1 m long; say --length");
+        }
+        marks = marks.scaled(length_m.unwrap_or(0.1) / marks.length());
+    }
+    // A radius is no calliper's reading, but its double is.
+    Ok(ReadMarks { name, marks, thickness: Some(ThicknessRule::Diameter), warnings: report.warnings })
+}
+
+/// A leaf for other makers' plants, from marks (.csv), a vein graph (.json) or a model of a leaf.
+pub(crate) fn template_of(path: &Path, seed: u64, machine: &Machine) -> Outcome<LeafTemplate> {
+    let marks =
+        files::extension(path).is_some_and(|e| ["csv", "json"].iter().any(|k| e.eq_ignore_ascii_case(k)));
+    if !marks {
+        let (model, _, _) = files::read_model(path, &ExportSpec::default())?;
+        return LeafTemplate::of_model(&model).map_err(|e| Failure::at(path, e));
+    }
+    let read = read_leaf(path, MarksAxes::default(), None)?;
+    let full = read.marks.complete(&mut Report::default()).map_err(|e| Failure::at(path, e))?;
+    LeafTemplate::of_marks(&full, &LeafOptions::default(), Seed::new(seed), &machine.run()).map_err(|e| {
+        match e {
+            LeafError::Cancelled(_) => Failure::Cancelled,
+            other => Failure::at(path, other),
+        }
+    })
 }

@@ -10,6 +10,7 @@ mod info;
 mod leaf;
 mod machine;
 mod output;
+mod petals;
 mod picture;
 mod report;
 mod say;

@@ -9,7 +9,9 @@ use burgeon::document::Document;
 use burgeon::formats::{DrawingError, Drawings, PngCache, ReadDrawing, read_drawings};
 use burgeon::sketch::SketchSpec;
 use burgeon::skin::SkinSpec;
-use burgeon::{ItemReport, Made, MakeError, Run, RunReport, Seed, SketchOptions, make_from_sketch};
+use burgeon::{
+    ItemReport, LeafTemplate, Made, MakeError, Run, RunReport, Seed, SketchOptions, make_from_sketch,
+};
 
 use crate::args::{ReadingArgs, SketchArgs, SurfaceArgs};
 use crate::classes::Classes;
@@ -20,7 +22,7 @@ use crate::{output, picture, say};
 
 pub(crate) fn sketch(args: &SketchArgs) -> Outcome {
     let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
-    let job = Job::new(args)?;
+    let job = Job::new(args, &machine)?;
     let report = if job.is_batch()? {
         job.batch(&machine)?
     } else {
@@ -36,13 +38,18 @@ struct Job<'a> {
     /// From --spec; without, the defaults or the project's own.
     spec: Option<SketchSpec>,
     classes: Classes,
+    /// From --leaf-template.
+    leaf: Option<LeafTemplate>,
 }
 
 impl<'a> Job<'a> {
-    fn new(args: &'a SketchArgs) -> Outcome<Self> {
+    fn new(args: &'a SketchArgs, machine: &Machine) -> Outcome<Self> {
         let spec = args.reading.spec.as_deref().map(read_spec).transpose()?;
         let classes = args.reading.classes.as_deref().map(Classes::read).transpose()?.unwrap_or_default();
-        Ok(Self { args, spec, classes })
+        let template = args.reading.leaf_template.as_deref();
+        let leaf =
+            template.map(|p| crate::leaf::template_of(p, args.seed.unwrap_or(1), machine)).transpose()?;
+        Ok(Self { args, spec, classes, leaf })
     }
 
     /// The outputs are folders, rather than files.
@@ -90,6 +97,7 @@ impl<'a> Job<'a> {
         set_skin(&mut options.skin, &self.args.surface);
         options.skin.seed = self.seed(input.project.as_deref());
         options.classes.extend(self.classes.of_drawing(&input.read.drawing.name));
+        options.leaf.clone_from(&self.leaf);
         options
     }
 

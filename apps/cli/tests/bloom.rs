@@ -138,3 +138,29 @@ fn bad_input_is_one_clear_line() {
     bad(&dir, &["bloom", "run", "a.xyz", "--end", "a.xyz", "-o", "x.glb", "--lattice", "1x4x4"], "2 to 16");
     assert!(!dir.join("law").exists() && !dir.join("x.glb").exists(), "nothing is half-written");
 }
+
+#[test]
+fn drawn_flowers_open_and_own_petals_are_taken() {
+    let dir = folder("bloom_drawn");
+    let fixture = |name: &str| format!("{}/../../fixtures/{name}", env!("CARGO_MANIFEST_DIR"));
+    let drawing = fixture("sketches/gallery/tulip.svg");
+    good(&dir, &["bloom", "run", &drawing, "-o", "t.glb", "--frames", "4", "--report", "t.json", "--quiet"]);
+    let report = json(&dir.join("t.json"));
+    assert!(report["items"][0]["counts"]["flowers"].as_u64() >= Some(1), "{report}");
+    assert!(report["items"][0]["counts"]["petals"].as_u64() >= Some(3), "{report}");
+    assert_eq!(report["overlap"].as_array().unwrap().len(), 4);
+    let digest = |args: &[&str]| {
+        good(&dir, &[args, &["--day", "6", "-o", "x.glb", "--report", "x.json", "--quiet"]].concat());
+        json(&dir.join("x.json"))["items"][0]["digest"].as_str().unwrap().to_owned()
+    };
+    let marks = fixture("leaves/leaf1.csv");
+    let own = [
+        digest(&["bloom", "run", "lily"]),
+        digest(&["bloom", "run", "lily", "--petal", &marks]),
+        digest(&["bloom", "run", "lily", "--petal", &drawing]),
+    ];
+    assert!(own[0] != own[1] && own[1] != own[2] && own[0] != own[2], "{own:?}");
+    bad(&dir, &["bloom", "run", &fixture("sketches/gallery/oak.svg"), "-o", "x.glb"], "no flower was found");
+    bad(&dir, &["bloom", "run", &drawing, "--petal", &marks, "-o", "y.glb"], "--petal is for whole flowers");
+    assert!(!dir.join("y.glb").exists());
+}

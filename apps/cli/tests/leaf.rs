@@ -85,3 +85,126 @@ fn growth_pose_and_plant_are_made() {
     assert!(bad(&at, &["leaf"]).contains("--template"));
     assert!(bad(&at, &["leaf", "none.csv", "-o", "x.glb"]).contains("none.csv"));
 }
+
+/// A feather of a leaf as a vein graph in pixels: midrib, six pairs of side veins.
+fn vein_graph() -> String {
+    let (mut nodes, mut edges) = (Vec::new(), Vec::new());
+    for k in 0..=50 {
+        nodes.push(format!("[100, {}, {}]", 600 - 10 * k, 6.0 - 0.08 * f64::from(k)));
+        edges.extend((k > 0).then(|| format!("[{}, {k}]", k - 1)));
+    }
+    for pair in 0..6_u32 {
+        let foot = 3 + 7 * pair;
+        for side in [-1.0, 1.0] {
+            let mut last = foot as usize;
+            for i in 1..=8 {
+                let t = f64::from(i) * (14.0 - 1.5 * f64::from(pair));
+                let y = 600.0 - 10.0 * f64::from(foot) - 0.6 * t;
+                nodes.push(format!("[{}, {y}, 2.0]", 100.0 + side * t));
+                edges.push(format!("[{last}, {}]", nodes.len() - 1));
+                last = nodes.len() - 1;
+            }
+        }
+    }
+    format!(r#"{{"unit": "pixel", "nodes_xyr": [{}], "edges": [{}]}}"#, nodes.join(","), edges.join(","))
+}
+
+#[test]
+fn vein_graph_becomes_a_leaf_as_long_as_was_said() {
+    let at = folder("leaf-graph");
+    fs::write(at.join("veins.json"), vein_graph()).unwrap();
+    let args = [
+        "leaf",
+        "veins.json",
+        "--length",
+        "0.06",
+        "-o",
+        "v.glb",
+        "--marks",
+        "m.csv",
+        "--json",
+        "--texture",
+        "plain",
+    ];
+    let report: Value = serde_json::from_str(&good(&at, &args)).unwrap();
+    let leaf = &report["items"][0]["leaf"];
+    assert_eq!(leaf["rows"], 7, "{leaf}");
+    assert!((leaf["length_mm"].as_f64().unwrap() - 60.0).abs() < 1e-6, "{leaf}");
+    assert!(leaf["vein_gap_mm"].as_f64().unwrap() < 1e-6, "{leaf}");
+    // The marks that were found make the same leaf again.
+    let again: Value =
+        serde_json::from_str(&good(&at, &["leaf", "m.csv", "--json", "--texture", "plain"])).unwrap();
+    assert_eq!(again["items"][0]["leaf"]["rows"], 7);
+
+    for (name, text, want) in [
+        ("no.json", "{}".to_owned(), "nodes_xyr"),
+        ("edge.json", vein_graph().replace("[0, 1]", "[0, 99999]"), "99999"),
+        ("thin.json", vein_graph().replacen("600, 6]", "600, 0]", 1), "radius"),
+        ("unit.json", vein_graph().replace("pixel", "mile"), "a unit is m, cm, mm or pixel"),
+        ("cut.json", vein_graph()[..400].to_owned(), "line 1"),
+    ] {
+        fs::write(at.join(name), text).unwrap();
+        let error = bad(&at, &["leaf", name, "-o", "x.glb"]);
+        assert!(error.contains(name) && error.contains(want), "{error}");
+    }
+    assert!(!at.join("x.glb").exists());
+}
+
+#[test]
+fn any_leaf_becomes_the_leaf_of_a_sketched_plant() {
+    let at = folder("leaf-on-plant");
+    let drawing = format!("{}/../../fixtures/sketches/gallery/house-plant.svg", env!("CARGO_MANIFEST_DIR"));
+    fs::write(at.join("veins.json"), vein_graph()).unwrap();
+    good(&at, &["leaf", &fixture("leaf1.csv"), "-o", "leaf.glb"]);
+    let digest = |template: Option<&str>| {
+        let mut args = vec!["sketch", drawing.as_str(), "-o", "plant.glb", "--json"];
+        args.extend(template.iter().flat_map(|t| ["--leaf-template", t]));
+        let report: Value = serde_json::from_str(&good(&at, &args)).unwrap();
+        let item = &report["items"][0];
+        (item["digest"].as_str().unwrap().to_owned(), item["counts"]["leaves"].as_u64().unwrap())
+    };
+    let (plain, leaves) = digest(None);
+    let mut seen = vec![plain];
+    for template in [fixture("leaf1.csv"), "leaf.glb".into(), "veins.json".into()] {
+        let (digest, count) = digest(Some(&template));
+        assert_eq!(count, leaves, "{template}");
+        assert!(!seen.contains(&digest), "{template}: another leaf makes another plant");
+        seen.push(digest);
+    }
+    let error = bad(&at, &["sketch", &drawing, "-o", "x.glb", "--leaf-template", &drawing]);
+    assert!(error.contains("house-plant.svg"), "{error}");
+    let error = bad(&at, &["sketch", &drawing, "-o", "x.glb", "--leaf-template", "none.csv"]);
+    assert!(error.contains("none.csv"), "{error}");
+}
+
+#[test]
+fn wrong_marks_are_told_with_their_place() {
+    let at = folder("leaf-bad");
+    let whole = fs::read_to_string(fixture("leaf1.csv")).unwrap();
+    let line = |start: &str| whole.lines().find(|l| l.starts_with(start)).unwrap().to_owned();
+    let (tip, mark) = (line("tip,"), line("3,4,"));
+    let mut fields: Vec<&str> = mark.split(',').collect();
+    fields[5] = "0";
+    let zero = fields.join(",");
+    fields[5] = "-0.4";
+    let negative = fields.join(",");
+    fields[2] = "NaN";
+    let nan = fields.join(",");
+    for (name, text, want) in [
+        ("missing.csv", whole.replace(&format!("{mark}\n"), ""), "row 3 has 6 of 7 marks: mark 4 is missing"),
+        ("tips.csv", format!("{whole}{tip}\n"), "the tip is given twice"),
+        ("zero.csv", whole.replace(&mark, &zero), "must be above 0"),
+        ("negative.csv", whole.replace(&mark, &negative), "must be above 0"),
+        ("nan.csv", whole.replace(&mark, &nan), "no finite number"),
+        ("short.csv", whole.replace(&mark, "3,4,1.0,2.0"), "z is missing"),
+        ("twice.csv", format!("{whole}{mark}\n"), "row 3, mark 4 is given twice"),
+        ("empty.csv", String::new(), "empty"),
+    ] {
+        fs::write(at.join(name), text).unwrap();
+        let error = bad(&at, &["leaf", name, "-o", "x.glb"]);
+        assert!(error.contains(name) && error.contains(want), "{error}");
+    }
+    fs::write(at.join("few.xyz"), "1 2 3\n4 5 6\n").unwrap();
+    assert!(bad(&at, &["leaf", "--scan", "few.xyz", "-o", "x.glb"]).contains("at least 100"));
+    assert!(!at.join("x.glb").exists());
+}

@@ -3,6 +3,7 @@
 //! | part | for |
 //! |---|---|
 //! | [`sketch_report`] | Node: a file of drawings to the report's items |
+//! | [`leaf_report`], [`flower_digest`] | Node: the same bits as natively for leaves and flowers |
 //! | [`StudioSession`] | the Studio's worker: one document, its undo history, its plant |
 
 mod host;
@@ -10,7 +11,9 @@ mod session;
 mod wire;
 
 use burgeon::formats::{self, DrawingFormat};
-use burgeon::{ItemReport, Run, Seed, SketchOptions, make_from_sketch};
+use burgeon::{
+    Digest, ItemReport, LeafOptions, Run, Seed, SketchOptions, bloom, make_from_sketch, make_leaf,
+};
 use wasm_bindgen::prelude::*;
 
 use crate::session::{Column, Session};
@@ -33,6 +36,39 @@ pub fn sketch_report(file_name: &str, bytes: &[u8], seed: u64) -> Result<String,
         items.push(made.item);
     }
     Ok(serde_json::to_string(&items)?)
+}
+
+/// Makes a leaf from a file of marks, with default options, and returns the report's item as JSON.
+///
+/// # Errors
+/// A message for people when the file holds no leaf.
+#[wasm_bindgen]
+pub fn leaf_report(file_name: &str, bytes: &[u8], seed: u64) -> Result<String, JsError> {
+    let name = file_name.rsplit_once('.').map_or(file_name, |(stem, _)| stem);
+    let read = formats::read_marks(bytes, name, formats::MarksAxes::default())?;
+    let mut options = LeafOptions::default();
+    options.spec.thickness = read.thickness.unwrap_or_default();
+    let made = make_leaf(&read.name, &read.marks, &options, Seed::new(seed), &Run::plain())?;
+    Ok(serde_json::to_string(&made.item)?)
+}
+
+/// The digest of a whole flower of its species at even days from bud to wilted, as `burgeon bloom run` reports it.
+///
+/// # Errors
+/// A message for people for a species that is not known, or fewer than 2 frames.
+#[wasm_bindgen]
+pub fn flower_digest(species: &str, frames: u32, seed: u64) -> Result<String, JsError> {
+    let spec = bloom::preset(species).ok_or_else(|| JsError::new("there is no such flower"))?;
+    if frames < 2 {
+        return Err(JsError::new("a flower that opens has at least 2 frames"));
+    }
+    let law = bloom::GrowthLaw::logistic(&spec.name, spec.days[0], spec.rate);
+    let mut digest = Digest::new();
+    for k in 0..frames {
+        let day = (spec.days[0] + spec.days[1]) * (f64::from(k) / f64::from(frames - 1));
+        digest.add(&spec.at(day, &law, Seed::new(seed)).model);
+    }
+    Ok(digest.hex())
 }
 
 fn told<T>(outcome: Result<T, String>) -> Result<T, JsError> {

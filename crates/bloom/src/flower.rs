@@ -5,8 +5,8 @@
 //! leans: one edge lies inside its neighbour, the other outside, so petals may overlap but never meet; whorls are
 //! nested.
 
-use base::{Draw, Seed, ops};
-use glam::{DQuat, DVec3};
+use base::{Seed, ops};
+use glam::{DQuat, DVec2, DVec3};
 use mesh::{Material, MaterialId, MaterialKind, Model, Part, TriMesh};
 
 use crate::{GrowthLaw, Quantity};
@@ -42,6 +42,70 @@ pub struct Whorl {
     pub lean: f64,
     /// Linear colour at the base and at the tip.
     pub colors: [[f32; 3]; 2],
+    /// Sepals or bracts: they keep their form when petals are replaced.
+    pub sepal: bool,
+    /// The petal's own outline, drawn or measured; without one it is made of the shares above.
+    pub form: Option<PetalForm>,
+}
+
+impl Default for Whorl {
+    /// Six slender petals of 5 cm.
+    fn default() -> Self {
+        crate::species::PLAIN
+    }
+}
+
+/// Half widths of a petal at even places from base to tip, as shares of the greatest.
+///
+/// ```
+/// use glam::DVec2;
+/// let rhombus = [DVec2::ZERO, DVec2::new(0.3, 0.5), DVec2::Y, DVec2::new(-0.3, 0.5)];
+/// let (form, aspect) = bloom::PetalForm::of_outline(&rhombus).unwrap();
+/// assert!((aspect - 0.6).abs() < 1e-9 && (form.half_width(0.25) - 0.5).abs() < 0.03);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PetalForm(pub [f64; 17]);
+
+impl PetalForm {
+    /// From an outline with its root at the origin and its tip on +y; also its width as a share of its length.
+    /// None for an outline without area.
+    pub fn of_outline(outline: &[DVec2]) -> Option<(Self, f64)> {
+        let tip = outline.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
+        let sound = tip.is_finite() && tip > 0.0 && outline.len() >= 3;
+        if !sound {
+            return None;
+        }
+        let width = |y: f64| {
+            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+            for (a, b) in outline.iter().zip(outline.iter().cycle().skip(1)) {
+                if (a.y <= y) != (b.y <= y) {
+                    let x = ops::lerp(a.x, b.x, (y - a.y) / (b.y - a.y));
+                    (low, high) = (low.min(x), high.max(x));
+                }
+            }
+            (high - low).max(0.0)
+        };
+        // A little inside the ends, where an outline is one point.
+        let widths: [f64; 17] = core::array::from_fn(|k| width(tip * (0.004 + 0.992 * k as f64 / 16.0)));
+        let widest = widths.iter().copied().fold(0.0, f64::max);
+        let aspect = widest / tip;
+        (aspect.is_finite() && aspect > 0.01).then(|| (Self(widths.map(|w| w / widest)), aspect))
+    }
+
+    /// The mean of several.
+    pub fn mean(forms: &[Self]) -> Option<Self> {
+        let n = forms.len() as f64;
+        (n > 0.0).then(|| Self(core::array::from_fn(|k| forms.iter().map(|f| f.0[k]).sum::<f64>() / n)))
+    }
+
+    /// Half the width at `v`, 0 at the base to 1 at the tip, as a share of the greatest.
+    pub fn half_width(&self, v: f64) -> f64 {
+        let at = v.clamp(0.0, 1.0) * 16.0;
+        let low = at.floor().min(15.0);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 15")]
+        let k = low as usize;
+        ops::lerp(self.0[k], self.0[k + 1], at - low)
+    }
 }
 
 /// A flower that opens.
@@ -57,8 +121,10 @@ pub struct FlowerSpec {
     pub pistil: f64,
     /// Radius of a disc of florets, metres; 0 for none.
     pub disc: f64,
-    /// Length of the stalk, metres.
+    /// Length of the stalk, metres; 0 for a flower without one, such as one that is put on a plant.
     pub stalk: f64,
+    /// Angle by which the open flower nods, degrees; wilting adds to it.
+    pub nod: f64,
     /// Flowers of an umbel; 1 for a single flower.
     pub umbel: u32,
     /// Days from bud to full bloom, and from there to wilted.
@@ -104,10 +170,13 @@ struct Profile {
     angle: [f64; 3],
     length: f64,
     width: f64,
+    /// How far it has opened and wilted, 0 to 1.
+    open: f64,
+    wilt: f64,
 }
 
 /// Degrees to radians.
-fn rad(d: f64) -> f64 {
+pub(crate) fn rad(d: f64) -> f64 {
     d * (ops::PI / 180.0)
 }
 
@@ -129,13 +198,19 @@ impl Whorl {
         let open = blend3(self.bud, self.open, g);
         Profile {
             angle: blend3(open, self.wilted, [wilt; 3]).map(rad),
-            length: self.length * ops::lerp(0.62, 1.0, size) * (1.0 - 0.12 * wilt),
-            width: self.width * ops::lerp(0.7, 1.0, size) * (1.0 - 0.3 * wilt),
+            // Withered petals are about a quarter shorter and half as wide: they roll in and dry.
+            length: self.length * ops::lerp(0.62, 1.0, size) * (1.0 - 0.24 * wilt),
+            width: self.width * ops::lerp(0.55, 1.0, size) * (1.0 - 0.45 * wilt),
+            open: size.clamp(0.0, 1.0),
+            wilt,
         }
     }
 
     /// Half width at `v` as a share of the greatest.
     fn outline(&self, v: f64) -> f64 {
+        if let Some(form) = &self.form {
+            return form.half_width(v).max(0.02);
+        }
         let w = self.widest.clamp(0.2, 0.9);
         if v < w {
             let t = v / w;
@@ -145,6 +220,23 @@ impl Whorl {
             let round = (1.0 - t * t).max(0.0).sqrt();
             ops::lerp(round, 1.0 - t * t * (1.0 - 0.3 * (1.0 - t)), self.point).max(0.0) * (1.0 - 0.02) + 0.02
         }
+    }
+}
+
+impl Whorl {
+    /// The colour at a place: from base to tip, a little deeper along the middle; withering browns it from the
+    /// margin and the tip inwards.
+    #[expect(clippy::cast_possible_truncation, reason = "colours are f32")]
+    fn color(&self, u: f64, v: f64, wilt: f64) -> [f32; 3] {
+        let share = ops::smoothstep(0.0, 0.6, v) as f32;
+        let middle = (1.0 - 0.14 * (1.0 - u.abs()) * (1.0 - u.abs())) as f32;
+        let dry = if self.sepal { [0.17, 0.15, 0.045] } else { [0.14, 0.08, 0.033] };
+        let withered = (wilt * ops::lerp(0.55, 0.95, (v * v).max(u * u))) as f32;
+        [0, 1, 2].map(|q| {
+            let fresh = (self.colors[0][q] + (self.colors[1][q] - self.colors[0][q]) * share) * middle;
+            // Some of the petal's own colour stays.
+            fresh + (0.8 * dry[q] + 0.2 * fresh - fresh) * withered
+        })
     }
 }
 
@@ -168,7 +260,7 @@ impl FlowerSpec {
             let mut petals = Vec::new();
             let profile = whorl.profile(self, law, day);
             for f in 0..flowers {
-                let place = self.place(f);
+                let place = self.place(f, day);
                 for k in 0..whorl.count {
                     self.petal(whorl, &profile, k, place, &mut mesh);
                     let triangles = mesh.triangles.len() - petals.len();
@@ -184,16 +276,33 @@ impl FlowerSpec {
             .progress("petal", Quantity::Size, 0.3, 0.0, law.span_days, share * law.span_days)
             .clamp(0.0, 1.0);
         let wilt = ((day - opening) / wilting).clamp(0.0, 1.0);
-        self.centre(&mut frame, g, wilt, seed);
-        self.stalks(&mut frame);
+        self.centre(&mut frame, g, wilt, day, seed);
+        self.stalks(&mut frame, day);
         frame
     }
 
+    /// Petals of this form in all whorls but those of sepals; `aspect` is width over length.
+    #[must_use]
+    pub fn with_petals(mut self, form: PetalForm, aspect: f64) -> Self {
+        for whorl in self.whorls.iter_mut().filter(|w| !w.sepal) {
+            whorl.form = Some(form);
+            whorl.width = whorl.length * aspect;
+        }
+        self
+    }
+
     /// Where flower `f` of the umbel sits, and how it is turned.
-    fn place(&self, f: u32) -> (DVec3, DQuat) {
+    pub(crate) fn place(&self, f: u32, day: f64) -> (DVec3, DQuat) {
         let n = self.umbel.max(1);
         if n == 1 {
-            return (DVec3::Y * self.stalk, DQuat::IDENTITY);
+            let [opening, wilting] = self.days.map(|d| d.max(1e-6));
+            let open = ops::smoothstep(0.0, 1.0, (day / opening).clamp(0.0, 1.0));
+            let wilt = ops::smoothstep(0.0, 1.0, ((day - opening) / wilting).clamp(0.0, 1.0));
+            let nod = rad(self.nod * (0.35 + 0.65 * open + 0.6 * wilt));
+            let (s, c) = ops::sin_cos(0.5 * nod);
+            // The stalk stays where it is: only the head turns, towards +Z.
+            let forward = 0.22 * self.stalk * ops::sin(rad(self.nod));
+            return (DVec3::new(0.0, self.stalk, forward), DQuat::from_xyzw(s, 0.0, 0.0, c));
         }
         // Evenly over a cap of 75 degrees (Vogel's spiral), each on its own pedicel.
         let t = (f64::from(f) + 0.5) / f64::from(n);
@@ -206,6 +315,13 @@ impl FlowerSpec {
 
     fn pedicel(&self) -> f64 {
         self.whorls.first().map_or(0.05, |w| 1.1 * w.length)
+    }
+
+    /// Height of the waves of margins, as a share of the petal's length: soft in bloom, crumpled when withered.
+    fn waves(&self, azimuth: f64, v: f64, profile: &Profile) -> f64 {
+        let soft = 0.010 * profile.open * ops::sin(5.0 * azimuth + 2.0 * v);
+        let crumpled = ops::sin(9.0 * azimuth + 7.0 * v) + 0.6 * ops::sin(16.0 * azimuth - 11.0 * v);
+        soft * (1.0 - profile.wilt) + 0.019 * profile.wilt * crumpled
     }
 
     fn petal(&self, whorl: &Whorl, profile: &Profile, k: u32, place: (DVec3, DQuat), mesh: &mut TriMesh) {
@@ -229,17 +345,16 @@ impl FlowerSpec {
                 let spread = (half / radius.max(1e-4)).min(0.9 * ops::PI).min(0.85 * apart);
                 for j in 0..=columns {
                     let u = 2.0 * f64::from(j) / f64::from(columns) - 1.0;
-                    let lean = whorl.lean * u;
-                    let (r, y) = (radius + lean * c, height - lean * s);
                     let (sin, cos) = ops::sin_cos(azimuth + u * spread);
+                    // Waves are those of the whole flower: petals that lie over one another wave together.
+                    // Near the axis there is no room for them.
+                    let room = profile.length.min(4.0 * radius) * v * v;
+                    let wave = room * self.waves(azimuth + u * spread, v, profile);
+                    let lean = whorl.lean * u + wave;
+                    let (r, y) = (radius + lean * c, height - lean * s);
                     let p = place.0 + place.1 * DVec3::new(r.max(1e-5) * cos, y, r.max(1e-5) * sin);
                     mesh.push(p);
-                    let color = [0, 1, 2].map(|q| {
-                        #[expect(clippy::cast_possible_truncation, reason = "colours are f32")]
-                        let share = ops::smoothstep(0.0, 0.6, v) as f32;
-                        whorl.colors[0][q] + (whorl.colors[1][q] - whorl.colors[0][q]) * share
-                    });
-                    mesh.colors.push(color);
+                    mesh.colors.push(whorl.color(u, v, profile.wilt));
                     #[expect(clippy::cast_possible_truncation, reason = "texture coordinates are f32")]
                     mesh.uvs.push([(0.5 + 0.5 * u) as f32, 1.0 - v as f32]);
                 }
@@ -249,94 +364,6 @@ impl FlowerSpec {
             height += c * step;
         }
         quads(mesh, start, rows, columns);
-    }
-
-    fn centre(&self, frame: &mut FlowerFrame, g: f64, wilt: f64, seed: Seed) {
-        let mut stamens = TriMesh::default();
-        let mut disc = TriMesh::default();
-        for f in 0..self.umbel.max(1) {
-            let place = self.place(f);
-            let lowest = self.whorls.iter().map(|w| w.insertion[1]).fold(f64::INFINITY, f64::min);
-            let base = if lowest.is_finite() { lowest } else { 0.0 };
-            let (count, length, spread) = self.stamens;
-            for k in 0..count {
-                let mut stream = seed.child(u64::from(f)).child(u64::from(k)).stream(Draw::Size);
-                let azimuth = f64::from(k) * rad(137.507_8);
-                let tilt = rad(spread
-                    * ops::lerp(0.25, 1.0, g)
-                    * ops::lerp(0.6, 1.0, f64::from(k) / f64::from(count.max(1)))
-                    + 18.0 * wilt);
-                let long = length * ops::lerp(0.45, 1.0, g) * stream.range(0.9, 1.0) * (1.0 - 0.15 * wilt);
-                let (s, c) = ops::sin_cos(azimuth);
-                let out = DVec3::new(ops::sin(tilt) * c, ops::cos(tilt), ops::sin(tilt) * s);
-                let foot = DVec3::new(0.0015 * c, base, 0.0015 * s);
-                let tip = foot + out * long + DVec3::Y * (0.1 * long);
-                let thick = (0.012 * length).clamp(0.0003, 0.0012);
-                tube(
-                    &mut stamens,
-                    &[foot, foot.lerp(tip, 0.5) + out * (0.03 * long), tip].map(|p| place.0 + place.1 * p),
-                    thick,
-                    [0.75, 0.8, 0.5],
-                );
-                let anther = (0.09 * length).clamp(0.001, 0.006);
-                let along = DVec3::Y.cross(out).try_normalize().unwrap_or(DVec3::X);
-                tube(
-                    &mut stamens,
-                    &[tip - along * anther, tip, tip + along * anther].map(|p| place.0 + place.1 * p),
-                    thick * 2.2,
-                    [0.75, 0.35, 0.05],
-                );
-            }
-            if self.pistil > 0.0 {
-                let long = self.pistil * ops::lerp(0.5, 1.0, g);
-                let at = |y: f64| place.0 + place.1 * DVec3::new(0.0, base + y, 0.0);
-                let thick = (0.03 * self.pistil).clamp(0.0008, 0.004);
-                tube(&mut stamens, &[at(0.0), at(0.6 * long), at(long)], thick, [0.55, 0.7, 0.25]);
-                tube(
-                    &mut stamens,
-                    &[at(long), at(long + 1.5 * thick), at(long + 2.5 * thick)],
-                    1.8 * thick,
-                    [0.6, 0.75, 0.3],
-                );
-            }
-            if self.disc > 0.0 {
-                florets(&mut disc, self.disc * ops::lerp(0.75, 1.0, g), base, place, g);
-            }
-        }
-        if !stamens.positions.is_empty() {
-            let none = vec![u32::MAX; stamens.triangles.len()];
-            finish(frame, "stamens".into(), 1, stamens, none);
-        }
-        if !disc.positions.is_empty() {
-            let none = vec![u32::MAX; disc.triangles.len()];
-            finish(frame, "disc".into(), 2, disc, none);
-        }
-    }
-
-    fn stalks(&self, frame: &mut FlowerFrame) {
-        let mut mesh = TriMesh::default();
-        let green = [0.16, 0.32, 0.07];
-        let thick = self.whorls.first().map_or(0.002, |w| 0.03 * w.length + 0.001).max(0.28 * self.disc);
-        let slim = thick.min(0.006);
-        tube(
-            &mut mesh,
-            &[DVec3::ZERO, DVec3::new(0.01 * self.stalk, 0.5 * self.stalk, 0.0), DVec3::Y * self.stalk],
-            slim,
-            green,
-        );
-        for f in 0..self.umbel.max(1) {
-            let (place, turn) = self.place(f);
-            if self.umbel > 1 {
-                let foot = DVec3::Y * self.stalk;
-                tube(&mut mesh, &[foot, foot.lerp(place, 0.5) + DVec3::Y * 0.004, place], 0.5 * slim, green);
-            }
-            // The receptacle joins stalk and petals.
-            let wide = self.whorls.iter().map(|w| w.insertion[0]).fold(0.0, f64::max).max(self.disc);
-            let low = -0.6 * wide - 0.002;
-            bowl(&mut mesh, place, turn, wide, low, green);
-        }
-        let none = vec![u32::MAX; mesh.triangles.len()];
-        finish(frame, "stalk".into(), 3, mesh, none);
     }
 }
 
@@ -354,14 +381,20 @@ fn materials() -> Vec<Material> {
     ]
 }
 
-fn finish(frame: &mut FlowerFrame, name: String, material: usize, mut mesh: TriMesh, petals: Vec<u32>) {
+pub(crate) fn finish(
+    frame: &mut FlowerFrame,
+    name: String,
+    material: usize,
+    mut mesh: TriMesh,
+    petals: Vec<u32>,
+) {
     mesh.compute_normals();
     frame.model.parts.push(Part { name, material: MaterialId::new(material), mesh });
     frame.petals.push(petals);
 }
 
 /// Triangles of a grid of `rows` by `columns` quads from vertex `start` on.
-fn quads(mesh: &mut TriMesh, start: u32, rows: u32, columns: u32) {
+pub(crate) fn quads(mesh: &mut TriMesh, start: u32, rows: u32, columns: u32) {
     let across = columns + 1;
     for i in 0..rows {
         for j in 0..columns {
@@ -369,54 +402,5 @@ fn quads(mesh: &mut TriMesh, start: u32, rows: u32, columns: u32) {
             mesh.triangles.push([a, a + across, a + 1]);
             mesh.triangles.push([a + 1, a + across, a + across + 1]);
         }
-    }
-}
-
-/// A six-sided tube through three points.
-fn tube(mesh: &mut TriMesh, line: &[DVec3; 3], radius: f64, color: [f32; 3]) {
-    let start = u32::try_from(mesh.positions.len()).unwrap_or(u32::MAX);
-    let frames = geom::rotation_minimising_frames(line, None);
-    for f in &frames {
-        for k in 0..=6 {
-            let (s, c) = ops::sin_cos(ops::TAU * f64::from(k) / 6.0);
-            mesh.push(f.origin + (f.normal * c + f.binormal * s) * radius);
-            mesh.colors.push(color);
-            mesh.uvs.push([0.0, 0.0]);
-        }
-    }
-    quads(mesh, start, 2, 6);
-    mesh.triangles.iter_mut().rev().take(24).for_each(|t| t.swap(1, 2));
-}
-
-fn bowl(mesh: &mut TriMesh, place: DVec3, turn: DQuat, wide: f64, low: f64, color: [f32; 3]) {
-    let start = u32::try_from(mesh.positions.len()).unwrap_or(u32::MAX);
-    let rings = [(0.08, low), (0.6, 0.45 * low), (1.0, -0.0005), (0.5, 0.0)];
-    for (r, y) in rings {
-        for k in 0..=12 {
-            let (s, c) = ops::sin_cos(ops::TAU * f64::from(k) / 12.0);
-            mesh.push(place + turn * DVec3::new(wide * r * c, y, wide * r * s));
-            mesh.colors.push(color);
-            mesh.uvs.push([0.0, 0.0]);
-        }
-    }
-    quads(mesh, start, 3, 12);
-}
-
-/// A domed disc of florets in Vogel's spiral (phyllotaxis of 137.5 degrees), outer ones open.
-fn florets(mesh: &mut TriMesh, radius: f64, base: f64, place: (DVec3, DQuat), g: f64) {
-    let count = 260;
-    for k in 0..count {
-        let share = (f64::from(k) + 0.5) / f64::from(count);
-        let r = radius * share.sqrt();
-        let (s, c) = ops::sin_cos(f64::from(k) * rad(137.507_8));
-        let dome = 0.22 * radius * (1.0 - share);
-        let foot = DVec3::new(r * c, base + dome - 0.002, r * s);
-        let long = 0.07 * radius * ops::lerp(0.6, 1.0 + share, g) + 0.002;
-        let up = DVec3::new(0.25 * c * share, 1.0, 0.25 * s * share).normalize_or(DVec3::Y);
-        #[expect(clippy::cast_possible_truncation, reason = "colours are f32")]
-        let t = share as f32;
-        let color = [0.12 + 0.25 * t, 0.06 + 0.1 * t, 0.015];
-        let line = [foot, foot + up * (0.6 * long), foot + up * long].map(|p| place.0 + place.1 * p);
-        tube(mesh, &line, 0.042 * radius, color);
     }
 }

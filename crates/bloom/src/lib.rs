@@ -14,12 +14,13 @@
 //! | `segment` | [`organs`]: stem and leaves, and regions along them |
 //! | `law` | [`GrowthLaw`]: fitted, saved, moved to another species |
 //! | `motion` | [`Motion`]: the shape at any day |
-//! | `flower`, `species` | [`FlowerSpec`]: whole flowers that open and wilt |
+//! | `flower`, `centre`, `species` | [`FlowerSpec`]: whole flowers that open and wilt |
 //! | `overlap` | [`overlap_share`]: do petals pass through one another |
 //! | `plot` | [`plot_svg`]: fits with their points |
 //! | `register` | [`register`]: the lattice that carries one scan into another |
 //! | `error` | [`compare`]: distances both ways |
 
+mod centre;
 mod clean;
 mod error;
 mod errors;
@@ -41,7 +42,7 @@ mod thin;
 pub use clean::{CleanSpec, Cleaned, clean};
 pub use error::{Distances, ShapeError, compare};
 pub use errors::BloomError;
-pub use flower::{FlowerFrame, FlowerSpec, Whorl};
+pub use flower::{FlowerFrame, FlowerSpec, PetalForm, Whorl};
 pub use lattice::{Lattice, Weights};
 pub use law::{GrowthLaw, LAW_SCHEMA, LawFault, LawSpec, Quantity, RegionLaw, Stage, fit_stages};
 pub use logistic::{Fit, FitError, Logistic, Offset, fit_law, fit_logistic};

@@ -2,7 +2,7 @@
 
 use crate::flower::{FlowerSpec, Whorl};
 
-const PLAIN: Whorl = Whorl {
+pub(crate) const PLAIN: Whorl = Whorl {
     count: 6,
     length: 0.05,
     width: 0.02,
@@ -17,6 +17,8 @@ const PLAIN: Whorl = Whorl {
     phase: 0.0,
     lean: 0.002,
     colors: [[0.8; 3]; 2],
+    sepal: false,
+    form: None,
 };
 
 /// A flower by name: rose, lily, tulip, sunflower or clivia.
@@ -32,6 +34,7 @@ pub fn preset(name: &str) -> Option<FlowerSpec> {
         pistil: 0.0,
         disc: 0.0,
         stalk: 0.25,
+        nod: 0.0,
         umbel: 1,
         days: [6.0, 4.0],
         rate: 0.95,
@@ -55,18 +58,19 @@ fn rose(spec: FlowerSpec) -> FlowerSpec {
         Whorl {
             count: 5,
             length: mix(0.042, 0.026),
-            width: mix(0.046, 0.026),
-            widest: 0.66,
+            width: mix(0.058, 0.032),
+            widest: 0.7,
             claw: 0.35,
-            point: 0.1,
+            point: 0.12,
             insertion: [mix(0.0088, 0.0027), mix(0.0, 0.0045)],
             bud: [mix(22.0, 4.0), mix(3.0, 0.0), mix(-14.0, -4.0)],
-            open: [mix(70.0, 9.0), mix(62.0, 9.0), mix(88.0, 12.0)],
+            open: [mix(66.0, 8.0), mix(48.0, 5.0), mix(104.0, 14.0)],
             wilted: [mix(92.0, 28.0), mix(108.0, 40.0), mix(142.0, 62.0)],
             delay: mix(0.0, 0.3),
             phase: 36.0 * f64::from(k) + 11.0,
             lean: mix(0.0004, 0.0005),
-            colors: [[0.72, 0.30, 0.20], [0.62, 0.03, 0.07]],
+            colors: [[0.62, 0.20, 0.12], [0.58, 0.022, 0.06]],
+            ..PLAIN
         }
     };
     let sepals = Whorl {
@@ -83,10 +87,19 @@ fn rose(spec: FlowerSpec) -> FlowerSpec {
         lean: 0.0003,
         phase: 3.0,
         colors: [[0.12, 0.28, 0.05], [0.14, 0.34, 0.07]],
+        sepal: true,
         ..PLAIN
     };
     let whorls = core::iter::once(sepals).chain((0..6).map(ring)).collect();
-    FlowerSpec { whorls, stamens: (14, 0.008, 18.0), pistil: 0.005, stalk: 0.07, ..spec }
+    FlowerSpec {
+        whorls,
+        stamens: (14, 0.008, 18.0),
+        pistil: 0.005,
+        stalk: 0.09,
+        nod: 34.0,
+        mesh: [18, 14],
+        ..spec
+    }
 }
 
 fn lily(spec: FlowerSpec) -> FlowerSpec {
@@ -102,7 +115,7 @@ fn lily(spec: FlowerSpec) -> FlowerSpec {
         open: [20.0, 46.0, 128.0],
         wilted: [34.0, 92.0, 158.0],
         lean: 0.0007,
-        colors: [[0.55, 0.70, 0.30], [0.92, 0.80, 0.84]],
+        colors: [[0.66, 0.76, 0.40], [0.92, 0.60, 0.71]],
         ..PLAIN
     };
     let inner = Whorl {
@@ -118,9 +131,10 @@ fn lily(spec: FlowerSpec) -> FlowerSpec {
     };
     FlowerSpec {
         whorls: vec![outer, inner],
-        stamens: (6, 0.075, 17.0),
-        pistil: 0.085,
-        stalk: 0.1,
+        stamens: (6, 0.078, 17.0),
+        pistil: 0.088,
+        stalk: 0.13,
+        nod: 66.0,
         rate: 1.0,
         ..spec
     }
@@ -139,7 +153,7 @@ fn tulip(spec: FlowerSpec) -> FlowerSpec {
         open: [66.0, 4.0, 14.0],
         wilted: [94.0, 78.0, 92.0],
         lean: 0.0009,
-        colors: [[0.80, 0.55, 0.04], [0.70, 0.05, 0.03]],
+        colors: [[0.78, 0.50, 0.03], [0.68, 0.045, 0.025]],
         ..PLAIN
     };
     let inner = Whorl {
@@ -153,6 +167,7 @@ fn tulip(spec: FlowerSpec) -> FlowerSpec {
     };
     FlowerSpec {
         whorls: vec![outer, inner],
+        nod: 10.0,
         stamens: (6, 0.022, 14.0),
         pistil: 0.026,
         stalk: 0.09,
@@ -174,12 +189,13 @@ fn sunflower(spec: FlowerSpec) -> FlowerSpec {
             point: 0.95,
             insertion: [0.046 - 0.006 * t, 0.006 * t],
             bud: [24.0 - 10.0 * t, -12.0 - 4.0 * t, -28.0 - 4.0 * t],
-            open: [82.0 - 14.0 * t, 84.0 - 14.0 * t, 92.0 - 14.0 * t],
+            open: [84.0 - 8.0 * t, 84.0 - 8.0 * t, 93.0 - 8.0 * t],
             wilted: [96.0 - 12.0 * t, 128.0 - 14.0 * t, 160.0 - 14.0 * t],
             delay: 0.05 * t,
             phase: 27.7 / 4.0 * f64::from(k * 2 % 5) + 3.0 * t,
             lean: 0.0006,
-            colors: [[0.80, 0.36, 0.01], [0.88, 0.56, 0.01]],
+            colors: [[0.78, 0.33, 0.006], [0.88, 0.55, 0.008]],
+            ..PLAIN
         }
     };
     let bracts = Whorl {
@@ -196,10 +212,20 @@ fn sunflower(spec: FlowerSpec) -> FlowerSpec {
         lean: 0.0006,
         phase: 9.0,
         colors: [[0.10, 0.26, 0.04], [0.13, 0.33, 0.06]],
+        sepal: true,
         ..PLAIN
     };
     let whorls = core::iter::once(bracts).chain((0..4).map(ring)).collect();
-    FlowerSpec { whorls, disc: 0.04, stalk: 0.14, days: [8.0, 6.0], rate: 0.75, mesh: [12, 6], ..spec }
+    FlowerSpec {
+        whorls,
+        disc: 0.042,
+        stalk: 0.22,
+        nod: 58.0,
+        days: [8.0, 6.0],
+        rate: 0.75,
+        mesh: [12, 6],
+        ..spec
+    }
 }
 
 fn clivia(spec: FlowerSpec) -> FlowerSpec {

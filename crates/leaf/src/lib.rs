@@ -5,6 +5,7 @@
 //! | module | owns |
 //! |---|---|
 //! | `marks` | [`Marks`]: what was measured, what is missing, the paper's rule for missing thickness |
+//! | `graph` | [`VeinGraph`]: a network of veins with radii -> marks |
 //! | `blade` | [`Leaf`]: the four surfaces, veins that lie on them |
 //! | `meshes` | [`LeafMesh`]: tubes and grid at any resolution, the counts of the paper's Table 1 |
 //! | `pose` | curl and wilt |
@@ -18,6 +19,7 @@
 mod blade;
 mod colour;
 mod flat;
+mod graph;
 mod growth;
 mod marks;
 mod meshes;
@@ -27,6 +29,7 @@ mod scan;
 pub use blade::{Leaf, LeafSpec, SurfaceKind, ThicknessRule, Vein, VeinParameters};
 pub use colour::{LeafColours, vein_texture};
 pub use flat::FlatLeaf;
+pub use graph::{GraphError, VeinGraph};
 pub use growth::{GrowthError, LeafGrowth};
 pub use marks::{FullMarks, FullRow, MARKS_A_ROW, MarkRow, Marks, MarksError};
 pub use meshes::{LeafMesh, MeshSpec};

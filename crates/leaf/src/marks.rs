@@ -109,9 +109,24 @@ impl Marks {
         geom::polyline_length3(&line)
     }
 
+    /// All places scaled about the origin, thickness too.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let rows = self.rows.iter().map(|r| MarkRow {
+            points: r.points.map(|p| p * factor),
+            thickness: r.thickness.map(|t| t.map(|t| t * factor)),
+            midrib: r.midrib.map(|t| t * factor),
+        });
+        Self {
+            rows: rows.collect(),
+            tip: self.tip * factor,
+            tip_thickness: self.tip_thickness.map(|t| t * factor),
+        }
+    }
+
     /// Everything that is wrong with the places and thicknesses.
     pub fn validate(&self) -> impl Iterator<Item = MarksError> + '_ {
-        let usable = |p: DVec3| p.abs().max_element() < 1e100;
+        let usable = |p: DVec3| p.is_finite() && p.abs().max_element() < 1e100;
         let few = (self.rows.len() < 2).then_some(MarksError::TooFewRows(self.rows.len()));
         let tip = (!usable(self.tip)).then_some(MarksError::NotFinite { row: 0, mark: 1 });
         let wrong = |row: usize, mark: usize, t: Option<f64>| {

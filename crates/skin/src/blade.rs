@@ -33,7 +33,7 @@ pub fn blade_mesh(blade: &Blade, triangles: f64) -> TriMesh {
         geom::triangulate_blade(&simple, &[], edge)
     });
     let Ok(flat) = flat else { return TriMesh::default() };
-    let chart = Chart::new(blade);
+    let chart = BladeChart::new(blade);
     let surface = blade.surface();
     let mut mesh = TriMesh { triangles: flat.triangles, ..TriMesh::default() };
     mesh.positions.reserve(flat.points.len());
@@ -41,8 +41,8 @@ pub fn blade_mesh(blade: &Blade, triangles: f64) -> TriMesh {
     for &p in &flat.points {
         let lifted = surface.point(p);
         mesh.push(if lifted.is_finite() { lifted } else { DVec3::new(p.x, p.y, 0.0) });
-        let (u, v) = chart.uv(p);
-        mesh.uvs.push(narrow2(u, v));
+        let uv = chart.uv(p);
+        mesh.uvs.push(narrow2(uv.x, uv.y));
     }
     drop_flat(&mut mesh);
     mesh.compute_normals();
@@ -74,8 +74,23 @@ const STRIP: f64 = 0.39;
 // Steps along the midrib at which its x is kept.
 const STEPS: u32 = 32;
 
-/// Texture coordinates of a blade: relative to its midrib, in the box of its outline.
-struct Chart {
+/// Texture coordinates of a blade: u from its midrib (0.5) to its widest place (0 and 1), v from tip (0) to root.
+///
+/// ```
+/// use glam::DVec2;
+/// use plant::{Blade, Lift, Relief};
+/// let blade = Blade {
+///     outline: vec![DVec2::ZERO, DVec2::new(0.3, 0.5), DVec2::Y, DVec2::new(-0.3, 0.5)],
+///     midrib: vec![DVec2::ZERO, DVec2::Y],
+///     veins: vec![],
+///     lift: Lift::Flat,
+///     relief: Relief::default(),
+/// };
+/// let chart = skin::BladeChart::new(&blade);
+/// assert!(chart.place(chart.uv(DVec2::new(0.1, 0.4))).distance(DVec2::new(0.1, 0.4)) < 1e-12);
+/// ```
+#[derive(Clone, Debug)]
+pub struct BladeChart {
     low: f64,
     height: f64,
     half_width: f64,
@@ -83,8 +98,9 @@ struct Chart {
     midrib: Vec<f64>,
 }
 
-impl Chart {
-    fn new(blade: &Blade) -> Self {
+impl BladeChart {
+    /// The chart of a blade. Cost: linear in its outline.
+    pub fn new(blade: &Blade) -> Self {
         let (low, high) =
             blade.outline.iter().fold((f64::MAX, f64::MIN), |(a, b), p| (a.min(p.y), b.max(p.y)));
         let height = (high - low).max(f64::MIN_POSITIVE);
@@ -104,10 +120,17 @@ impl Chart {
         base::ops::lerp(self.midrib[k], self.midrib[k + 1], at - whole)
     }
 
-    fn uv(&self, p: DVec2) -> (f64, f64) {
+    /// Where a point of the blade's plane is in its texture, 0 to 1 each.
+    pub fn uv(&self, p: DVec2) -> DVec2 {
         let u = 0.5 + 0.5 * (p.x - self.middle(p.y)) / self.half_width;
         let v = 1.0 - (p.y - self.low) / self.height;
-        (u.clamp(0.0, 1.0), v.clamp(0.0, 1.0))
+        DVec2::new(u, v).clamp(DVec2::ZERO, DVec2::ONE)
+    }
+
+    /// The point of the blade's plane at a place of its texture.
+    pub fn place(&self, uv: DVec2) -> DVec2 {
+        let y = self.low + (1.0 - uv.y) * self.height;
+        DVec2::new(self.middle(y) + (2.0 * uv.x - 1.0) * self.half_width, y)
     }
 }
 

@@ -12,7 +12,7 @@
 //! | `spec` | [`SkinSpec`], [`PetalColor`]; how triangles are shared out |
 //! | `spine`, `rings`, `tube` | smooth centre lines, cross-sections, [`tube`] |
 //! | `fork`, `axes` | fillets at forks; which axes are one tube |
-//! | `blade`, `body`, `organs` | [`blade_mesh`]; discs, fruits, strands; placed copies |
+//! | `blade`, `body`, `organs` | [`blade_mesh`], [`BladeChart`]; discs, fruits, strands; placed copies |
 //! | `traced` | [`Traced`]: organs in the colours of a photograph |
 //! | `texture`, `parts` | painted textures, materials, parts |
 
@@ -30,7 +30,7 @@ mod texture;
 mod traced;
 mod tube;
 
-pub use blade::blade_mesh;
+pub use blade::{BladeChart, blade_mesh};
 pub use spec::{PetalColor, SkinSpec};
 pub use traced::Traced;
 pub use tube::{TubeSpec, tube};

@@ -14,6 +14,7 @@ use skin::{SkinSpec, Traced};
 
 use crate::make::{ClassOverrides, MakeError, SketchOptions};
 use crate::report::{Counts, Fidelity, ItemReport, StrokeReport, TimingsMs};
+use crate::template::LeafTemplate;
 
 /// How a drawing lies in the front view of its model: `plant.xy = (drawing - origin) * metres_per_unit`, z towards
 /// the viewer.
@@ -54,7 +55,7 @@ pub struct Evaluator {
 }
 
 /// What a plant is made from, besides its reading: the name goes into the plant.
-type PlantFrom = (SketchSpec, Seed, String);
+type PlantFrom = (SketchSpec, Seed, String, Option<LeafTemplate>);
 
 /// A photograph's file and its pixels, if it has any that decode.
 type Decoded = (Arc<[u8]>, Option<Arc<Texture>>);
@@ -101,7 +102,7 @@ impl Evaluator {
                 Some(Self::keep(&mut self.done, &mut stages, drawing.clone(), (ink, classes), report));
         }
         self.read(&options.classes, &mut stages, run)?;
-        self.build(&options.spec, seed, &drawing.name, &mut stages, run)?;
+        self.build(options, seed, &drawing.name, &mut stages, run)?;
         let mut photo = options.photo.clone().filter(|p| p.paint);
         if let Some(photo) = &mut photo {
             photo.opacity = 1.0;
@@ -149,15 +150,16 @@ impl Evaluator {
 
     fn build(
         &mut self,
-        spec: &SketchSpec,
+        options: &SketchOptions,
         seed: Seed,
         name: &str,
         stages: &mut Vec<Stage>,
         run: &Run<'_>,
     ) -> Result<(), MakeError> {
         let (Some(strokes), Some(reading)) = (&self.strokes, &self.reading) else { return Ok(()) };
+        let (spec, leaf) = (&options.spec, &options.leaf);
         let same =
-            |k: &Kept<(SketchSpec, Seed, String), _>| (&k.from.0, k.from.1, &*k.from.2) == (spec, seed, name);
+            |k: &Kept<PlantFrom, _>| (&k.from.0, k.from.1, &*k.from.2, &k.from.3) == (spec, seed, name, leaf);
         if self.plant.as_ref().is_some_and(same) {
             return Ok(());
         }
@@ -169,9 +171,16 @@ impl Evaluator {
             reprojection_p95: f.reprojection_p95,
         });
         run.cancel.check()?;
+        // After the measure against the drawing: the user's leaf is not what was drawn.
+        if let Some(leaf) = leaf {
+            let count = leaf.apply(&mut built.plant);
+            if count == 0 {
+                report.warn("no-leaves", "the plant has no leaf that could get the template's form");
+            }
+        }
         name.clone_into(&mut built.plant.name);
         self.model = None;
-        let from = (spec.clone(), seed, name.to_owned());
+        let from = (spec.clone(), seed, name.to_owned(), leaf.clone());
         self.plant = Some(Self::keep(&mut self.done, stages, from, (built, fidelity), report));
         Ok(())
     }
@@ -189,10 +198,13 @@ impl Evaluator {
         let mut report = Report::default();
         let traced = photo.as_ref().and_then(|p| self.traced(p, &mut report));
         let Some(plant) = &self.plant else { return Ok(()) };
-        let plant = &plant.value.0.plant;
+        let (plant, leaf) = (&plant.value.0.plant, &plant.from.3);
         let mut model =
             report.stage("mesh", run.clock, |_| skin::skin_traced(plant, skin, traced.as_ref(), run))?;
         model.name.clone_from(&plant.name);
+        if let Some(leaf) = leaf {
+            leaf.dress(&mut model);
+        }
         self.model = Some(Self::keep(&mut self.done, stages, (skin.clone(), photo), model, report));
         Ok(())
     }

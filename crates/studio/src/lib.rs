@@ -20,7 +20,9 @@
 mod evaluate;
 mod leaves;
 mod make;
+mod opening;
 mod report;
+mod template;
 
 pub use base::{
     Angle, CancelToken, Cancelled, Clock, Digest, Executor, NoClock, Report, Run, Seed, Serial, Unit, UpAxis,
@@ -32,9 +34,11 @@ pub use leaves::{
     leaf_blade, make_leaf, make_leaf_from_scan, make_leaf_of, make_shoot,
 };
 pub use make::{ClassOverrides, Made, MakeError, SketchOptions, make_from_sketch};
+pub use opening::{OpeningError, OpeningPlant};
 pub use report::{
     Counts, Fidelity, InputReport, ItemReport, REPORT_SCHEMA, RunReport, StrokeReport, TimingsMs,
 };
+pub use template::{LeafTemplate, TemplateError};
 
 pub use {bloom, document, formats, geom, glam, leaf, mesh, plant, render, sketch, skin};
 

@@ -11,6 +11,7 @@ use skin::SkinSpec;
 
 use crate::evaluate::Evaluator;
 use crate::report::ItemReport;
+use crate::template::LeafTemplate;
 
 /// Classes that the user set, by stroke index in the drawing.
 pub type ClassOverrides = BTreeMap<u32, StrokeClass>;
@@ -26,6 +27,8 @@ pub struct SketchOptions {
     pub classes: ClassOverrides,
     /// A photograph under the drawing, whose colours traced organs take.
     pub photo: Option<Photo>,
+    /// The leaf that the plant bears instead of the drawn or built-in ones.
+    pub leaf: Option<LeafTemplate>,
 }
 
 impl SketchOptions {
@@ -37,6 +40,7 @@ impl SketchOptions {
             skin: SkinSpec { seed: settings.seed, ..settings.skin.clone() },
             classes: document.classes(),
             photo: settings.photo.clone(),
+            leaf: None,
         }
     }
 }

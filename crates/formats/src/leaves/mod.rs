@@ -1,17 +1,19 @@
-//! Files of measured leaves: marks as CSV.
+//! Files of measured leaves: marks as CSV, vein graphs as JSON.
 
+mod graph;
 mod marks;
 
 use crate::error::{FileFault, Place};
 
+pub use graph::{ReadGraph, read_vein_graph};
 pub use marks::{MarksAxes, ReadMarks, marks_template, read_marks, write_marks};
 
-/// Largest file of leaf marks that is read: 16 MiB, far more than a person can measure.
+/// Largest file of a leaf that is read: 16 MiB, far more than a person can measure.
 pub const MAX_LEAF_BYTES: u64 = 16 << 20;
 
 /// A file of a leaf could not be read.
 #[derive(Debug, thiserror::Error)]
-#[error("leaf marks{place}: {fault}")]
+#[error("leaf file{place}: {fault}")]
 pub struct LeafFileError {
     /// Where.
     pub place: Place,

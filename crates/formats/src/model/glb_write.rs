@@ -58,7 +58,7 @@ pub struct Morph<'a> {
 
 /// [`write_glb`] with an animation that leads through the keys of `morph`, linear between them.
 ///
-/// Each key is a morph target (position and normal) of every part; viewers blend two at a time. Players that know
+/// Each key is a morph target (position, normal, and colour where vertex colours change) of every part; viewers blend two at a time. Players that know
 /// no morph targets show the model itself.
 ///
 /// # Errors
@@ -249,8 +249,8 @@ impl Writer {
         Ok(())
     }
 
-    /// What a key adds to positions and normals.
-    fn target(&mut self, mesh: &TriMesh, key: &TriMesh) -> Result<Attributes, WriteError> {
+    /// What a key adds to positions, normals and, if `colored`, to vertex colours.
+    fn target(&mut self, mesh: &TriMesh, key: &TriMesh, colored: bool) -> Result<Attributes, WriteError> {
         let minus = |a: [f32; 3], b: [f32; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
         let moved: Vec<[f32; 3]> =
             key.positions.iter().zip(&mesh.positions).map(|(&a, &b)| minus(a, b)).collect();
@@ -260,6 +260,11 @@ impl Writer {
             let pairs = key.normals.iter().zip(&mesh.normals);
             let turned: Vec<[f32; 3]> = pairs.map(|(&a, &b)| minus(unit(a), unit(b))).collect();
             target.normal = Some(self.column("VEC3", &turned, false)?);
+        }
+        if colored {
+            let pairs = key.colors.iter().zip(&mesh.colors);
+            let changed: Vec<[f32; 3]> = pairs.map(|(&a, &b)| minus(a.map(share), b.map(share))).collect();
+            target.color = Some(self.column("VEC3", &changed, false)?);
         }
         Ok(target)
     }
@@ -327,8 +332,12 @@ impl Writer {
             }
             let points = mesh.triangles.is_empty();
             let mut targets = Vec::with_capacity(morph.keys.len());
+            // All targets of a primitive have the same attributes.
+            let colored = !mesh.colors.is_empty()
+                && morph.keys.iter().all(|(_, k)| k.parts[index].mesh.colors.len() == mesh.colors.len())
+                && morph.keys.iter().any(|(_, k)| k.parts[index].mesh.colors != mesh.colors);
             for (_, key) in &morph.keys {
-                targets.push(self.target(mesh, &key.parts[index].mesh)?);
+                targets.push(self.target(mesh, &key.parts[index].mesh, colored)?);
             }
             let weights = vec![0.0; targets.len()];
             let primitive = Primitive {
@@ -384,7 +393,10 @@ mod tests {
 
     #[test]
     fn morph_targets_and_their_animation_are_written_and_read_back_as_the_first_shape() {
-        let (a, b, c) = (model(1.0), model(2.0), model(4.0));
+        let [mut a, mut b, mut c] = [1.0, 2.0, 4.0].map(model);
+        a.parts[0].mesh.colors = vec![[1.0; 3]; a.parts[0].mesh.positions.len()];
+        c.parts[0].mesh.colors = vec![[0.25; 3]; a.parts[0].mesh.positions.len()];
+        b.parts[0].mesh.colors.clone_from(&a.parts[0].mesh.colors);
         let morph = Morph { name: "opening", start: 0.0, keys: vec![(1.0, &b), (2.5, &c)] };
         let mut glb = Vec::new();
         write_glb_morph(&a, &morph, &mut glb).unwrap();
@@ -396,6 +408,8 @@ mod tests {
             |index: &serde_json::Value| &json["accessors"][usize::try_from(index.as_u64().unwrap()).unwrap()];
         let max = |t: usize| accessor(&targets[t]["POSITION"])["max"][1].as_f64();
         assert_eq!((max(0), max(1)), (Some(1.0), Some(3.0)), "what a key adds");
+        let colour = accessor(&targets[1]["COLOR_0"]);
+        assert_eq!((&colour["type"], &colour["count"]), (&"VEC3".into(), &json["accessors"][0]["count"]));
         let animation = &json["animations"][0];
         assert_eq!(animation["channels"][0]["target"]["path"], "weights");
         let input = accessor(&animation["samplers"][0]["input"]);

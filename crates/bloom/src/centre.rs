@@ -1,0 +1,213 @@
+//! Stamens, pistil, disc and stalk of a flower at one day.
+
+use base::{Draw, Seed, ops};
+use glam::{DQuat, DVec3};
+use mesh::TriMesh;
+
+use crate::flower::{FlowerFrame, FlowerSpec, finish, quads, rad};
+
+const GREEN: [f32; 3] = [0.16, 0.32, 0.07];
+
+impl FlowerSpec {
+    /// Stamens, pistil and disc: `g` is how far the flower has opened, `wilt` how far it has wilted, 0 to 1.
+    pub(crate) fn centre(&self, frame: &mut FlowerFrame, g: f64, wilt: f64, day: f64, seed: Seed) {
+        let (mut stamens, mut disc) = (TriMesh::default(), TriMesh::default());
+        let heights = || self.whorls.iter().map(|w| w.insertion[1]);
+        let (low, high) = (heights().fold(f64::INFINITY, f64::min), heights().fold(0.0, f64::max));
+        let base = if low.is_finite() { low } else { 0.0 };
+        for f in 0..self.umbel.max(1) {
+            let place = self.place(f, day);
+            for k in 0..self.stamens.0 {
+                let draws = seed.child(u64::from(f)).child(u64::from(k));
+                self.stamen(&mut stamens, k, [g, wilt, base], place, draws);
+            }
+            if self.pistil > 0.0 {
+                pistil(&mut stamens, self.pistil * ops::lerp(0.5, 1.0, g), self.pistil, base, place, wilt);
+            }
+            if self.disc > 0.0 {
+                florets(&mut disc, self.disc * ops::lerp(0.75, 1.0, g), high, place, [g, wilt]);
+            }
+        }
+        for (name, material, mesh) in [("stamens", 1, stamens), ("disc", 2, disc)] {
+            if !mesh.positions.is_empty() {
+                let none = vec![u32::MAX; mesh.triangles.len()];
+                finish(frame, name.into(), material, mesh, none);
+            }
+        }
+    }
+
+    /// A filament that bends outwards, and an anther across its end.
+    fn stamen(
+        &self,
+        mesh: &mut TriMesh,
+        k: u32,
+        [g, wilt, base]: [f64; 3],
+        place: (DVec3, DQuat),
+        seed: Seed,
+    ) {
+        let (count, length, spread) = self.stamens;
+        let ring = f64::from(k) / f64::from(count.max(1));
+        let tilt = rad(spread * ops::lerp(0.25, 1.0, g) * ops::lerp(0.6, 1.0, ring) + 18.0 * wilt);
+        let long =
+            length * ops::lerp(0.45, 1.0, g) * seed.stream(Draw::Size).range(0.9, 1.0) * (1.0 - 0.2 * wilt);
+        // A few stamens stand in a ring, many in Vogel's spiral.
+        let turn = if count <= 12 { ops::TAU * ring } else { f64::from(k) * rad(137.507_8) };
+        let (s, c) = ops::sin_cos(turn);
+        let out = DVec3::new(c, 0.0, s);
+        let foot = DVec3::new(0.0015 * c, base, 0.0015 * s);
+        let at = |t: f64| {
+            // Steeper at its foot, leaning out towards its end.
+            let (sin, cos) = ops::sin_cos(tilt * (0.5 + 0.7 * t));
+            foot + (out * sin + DVec3::Y * cos) * (long * t)
+        };
+        let thick = (0.010 * length).clamp(0.0002, 0.0010);
+        let line: Vec<DVec3> = (0..=6).map(|i| place.0 + place.1 * at(f64::from(i) / 6.0)).collect();
+        let radii: Vec<f64> = (0..=6).map(|i| thick * (1.0 - 0.5 * f64::from(i) / 6.0)).collect();
+        tube(mesh, &line, &radii, [0.72, 0.78, 0.48]);
+        let half = (0.085 * length).clamp(0.0009, 0.006) * ops::lerp(0.7, 1.0, g);
+        let across = (DVec3::Y.cross(out) + out * 0.25 + DVec3::Y * 0.2).try_normalize().unwrap_or(DVec3::X);
+        let tip = at(1.0);
+        let line: Vec<DVec3> = (0..=4)
+            .map(|i| place.0 + place.1 * (tip + across * (half * (f64::from(i) / 2.0 - 1.0))))
+            .collect();
+        let fat = 0.24 * half + 0.8 * thick;
+        // Open anthers are dusted with pollen; later they shrink and darken.
+        let [fresh, old] = [[0.74_f32, 0.32, 0.04], [0.22, 0.10, 0.03]];
+        #[expect(clippy::cast_possible_truncation, reason = "colours are f32")]
+        let w = wilt as f32;
+        let color = [0, 1, 2].map(|q| fresh[q] + (old[q] - fresh[q]) * w);
+        tube(mesh, &line, &[0.25, 0.85, 1.0, 0.85, 0.25].map(|r| r * fat * (1.0 - 0.35 * wilt)), color);
+    }
+
+    /// The stalk, bent towards where the head nods, and what joins it with the petals.
+    pub(crate) fn stalks(&self, frame: &mut FlowerFrame, day: f64) {
+        let mut mesh = TriMesh::default();
+        let thick = self.whorls.first().map_or(0.002, |w| 0.03 * w.length + 0.001).max(0.28 * self.disc);
+        let slim = thick.min(0.006);
+        if self.stalk > 0.0 {
+            let end = if self.umbel > 1 { DVec3::Y * self.stalk } else { self.place(0, day).0 };
+            // Straight up at the foot; at the end half as steep as the head nods.
+            let (s, c) = ops::sin_cos(rad(if self.umbel > 1 { 0.0 } else { 0.8 * self.nod }));
+            let foot = DVec3::Y * (0.55 * self.stalk);
+            let back = end - DVec3::new(0.0, c, s) * (0.22 * self.stalk);
+            let at = |t: f64| {
+                let (a, b, d) = (DVec3::ZERO.lerp(foot, t), foot.lerp(back, t), back.lerp(end, t));
+                a.lerp(b, t).lerp(b.lerp(d, t), t)
+            };
+            let line: Vec<DVec3> = (0..=12).map(|i| at(f64::from(i) / 12.0)).collect();
+            tube(&mut mesh, &line, &[slim; 13], GREEN);
+        }
+        for f in 0..self.umbel.max(1) {
+            let (place, turn) = self.place(f, day);
+            if self.umbel > 1 {
+                let foot = DVec3::Y * self.stalk;
+                let middle = foot.lerp(place, 0.5) + DVec3::Y * 0.004;
+                tube(&mut mesh, &[foot, middle, place], &[0.5 * slim; 3], GREEN);
+            }
+            // The receptacle joins stalk and petals.
+            let wide = self.whorls.iter().map(|w| w.insertion[0]).fold(0.0, f64::max).max(self.disc);
+            bowl(&mut mesh, place, turn, wide, -0.6 * wide - 0.002);
+        }
+        let none = vec![u32::MAX; mesh.triangles.len()];
+        finish(frame, "stalk".into(), 3, mesh, none);
+    }
+}
+
+fn pistil(mesh: &mut TriMesh, long: f64, full: f64, base: f64, place: (DVec3, DQuat), wilt: f64) {
+    let thick = (0.016 * full).clamp(0.0005, 0.0022);
+    // Ovary, style, stigma.
+    let parts =
+        [(0.0, 1.6), (0.1, 2.0), (0.22, 1.1), (0.6, 0.8), (0.93, 0.9), (0.96, 2.0), (0.99, 2.2), (1.0, 1.2)];
+    let line: Vec<DVec3> =
+        parts.iter().map(|p| place.0 + place.1 * DVec3::new(0.0, base + p.0 * long, 0.0)).collect();
+    let radii: Vec<f64> = parts.iter().map(|p| p.1 * thick).collect();
+    #[expect(clippy::cast_possible_truncation, reason = "colours are f32")]
+    let w = 0.5 * wilt as f32;
+    tube(mesh, &line, &radii, [0.50, 0.64, 0.22].map(|x: f32| x * (1.0 - w)));
+}
+
+/// A six-sided tube with a radius at each point, its ends closed. Nothing for fewer than two points.
+fn tube(mesh: &mut TriMesh, line: &[DVec3], radii: &[f64], color: [f32; 3]) {
+    let start = u32::try_from(mesh.positions.len()).unwrap_or(u32::MAX);
+    let frames = geom::rotation_minimising_frames(line, None);
+    let (Some(first), Some(last)) = (frames.first(), frames.last()) else { return };
+    for (f, r) in frames.iter().zip(radii) {
+        for k in 0..=6 {
+            let (s, c) = ops::sin_cos(ops::TAU * f64::from(k) / 6.0);
+            mesh.push(f.origin + (f.normal * c + f.binormal * s) * *r);
+            mesh.colors.push(color);
+            mesh.uvs.push([0.0, 0.0]);
+        }
+    }
+    let before = mesh.triangles.len();
+    let rows = u32::try_from(frames.len().min(radii.len()) - 1).unwrap_or(0);
+    quads(mesh, start, rows, 6);
+    mesh.triangles.iter_mut().skip(before).for_each(|t| t.swap(1, 2));
+    for (ring, origin, flip) in [(0, first.origin, true), (rows, last.origin, false)] {
+        let middle = mesh.push(origin);
+        mesh.colors.push(color);
+        mesh.uvs.push([0.0, 0.0]);
+        for k in 0..6 {
+            let (a, b) = (start + 7 * ring + k, start + 7 * ring + k + 1);
+            mesh.triangles.push(if flip { [middle, b, a] } else { [middle, a, b] });
+        }
+    }
+}
+
+fn bowl(mesh: &mut TriMesh, place: DVec3, turn: DQuat, wide: f64, low: f64) {
+    let start = u32::try_from(mesh.positions.len()).unwrap_or(u32::MAX);
+    let rings = [(0.08, low), (0.6, 0.45 * low), (1.0, -0.0005), (0.5, 0.0)];
+    for (r, y) in rings {
+        for k in 0..=12 {
+            let (s, c) = ops::sin_cos(ops::TAU * f64::from(k) / 12.0);
+            mesh.push(place + turn * DVec3::new(wide * r * c, y, wide * r * s));
+            mesh.colors.push(GREEN);
+            mesh.uvs.push([0.0, 0.0]);
+        }
+    }
+    quads(mesh, start, 3, 12);
+}
+
+/// A dome of florets in Vogel's spiral (phyllotaxis of 137.5 degrees): they open, with pollen, from the rim inwards.
+fn florets(mesh: &mut TriMesh, radius: f64, base: f64, place: (DVec3, DQuat), [g, wilt]: [f64; 2]) {
+    let height = |share: f64| base + 0.30 * radius * (1.0 - share) - 0.001;
+    let start = u32::try_from(mesh.positions.len()).unwrap_or(u32::MAX);
+    let floor = [0.05, 0.035, 0.012];
+    for i in 0..=6 {
+        let r = f64::from(i) / 6.0;
+        for k in 0..=24 {
+            let (s, c) = ops::sin_cos(ops::TAU * f64::from(k) / 24.0);
+            let y = if i == 6 { base - 0.25 * radius } else { height(r * r) };
+            let r = radius * if i == 6 { 0.9 } else { r };
+            mesh.push(place.0 + place.1 * DVec3::new(r * c, y, r * s));
+            mesh.colors.push(floor);
+            mesh.uvs.push([0.0, 0.0]);
+        }
+    }
+    let before = mesh.triangles.len();
+    quads(mesh, start, 6, 24);
+    mesh.triangles.iter_mut().skip(before).for_each(|t| t.swap(1, 2));
+    let count = 280;
+    for k in 0..count {
+        let share = (f64::from(k) + 0.5) / f64::from(count);
+        let r = radius * share.sqrt();
+        let (s, c) = ops::sin_cos(f64::from(k) * rad(137.507_8));
+        let foot = DVec3::new(r * c, height(share) - 0.001, r * s);
+        // Blooming: the ring between the rim and where the opening has come.
+        let front = 1.0 - 0.75 * g * g;
+        let bloom = ops::smoothstep(front, front + 0.15, share) * (1.0 - wilt);
+        let long = radius * (0.05 + 0.05 * bloom) + 0.0015;
+        let up = DVec3::new(0.5 * c * share, 1.0, 0.5 * s * share).normalize_or(DVec3::Y);
+        let [bud, pollen, dry] = [[0.115, 0.105, 0.022], [0.50, 0.235, 0.018], [0.055, 0.030, 0.012]];
+        let color = [0, 1, 2].map(|q| {
+            let young = ops::lerp(bud[q], [0.10, 0.045, 0.012][q], share);
+            #[expect(clippy::cast_possible_truncation, reason = "colours are f32")]
+            let x = ops::lerp(ops::lerp(young, pollen[q], 0.85 * bloom), dry[q], wilt) as f32;
+            x
+        });
+        let line: Vec<DVec3> =
+            [0.0, 0.6, 1.0].iter().map(|t| place.0 + place.1 * (foot + up * (t * long))).collect();
+        let fat = 0.047 * radius;
+        tube(mesh, &line, &[fat, fat, 0.45 * fat], color);
+    }
+}

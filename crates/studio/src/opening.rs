@@ -1,0 +1,236 @@
+//! A drawn plant whose flowers open: its own petals, from the bud to full bloom and on to wilting.
+//!
+//! drawing -> plant -> (plant without flowers, a [`bloom::FlowerSpec`] a flower) -> the model of any day
+
+use base::{Run, Seed};
+use bloom::{FlowerSpec, GrowthLaw, PetalForm, Whorl};
+use glam::{DQuat, DVec3};
+use mesh::{MaterialId, MaterialKind, Model};
+use plant::{Flower, Organ, OrganKind, Plant, Shape};
+use sketch::Drawing;
+
+use crate::make::{MakeError, SketchOptions, make_from_sketch};
+use crate::report::ItemReport;
+
+/// A plant of a drawing, its flowers at any day.
+#[derive(Clone, Debug)]
+pub struct OpeningPlant {
+    /// The drawing's name.
+    pub name: String,
+    /// Days from bud to full bloom, and from there to wilted.
+    pub days: [f64; 2],
+    /// The entry of the report for the plant as it was drawn.
+    pub item: ItemReport,
+    rest: Model,
+    flowers: Vec<Placed>,
+}
+
+/// A flower and where it sits.
+#[derive(Clone, Debug)]
+struct Placed {
+    spec: FlowerSpec,
+    centre: DVec3,
+    turn: DQuat,
+}
+
+/// Why no flower opens.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum OpeningError {
+    /// The drawing makes no plant.
+    #[error(transparent)]
+    Make(#[from] MakeError),
+    /// No petals were found.
+    #[error("no flower was found in drawing \"{0}\": draw petals whose roots meet, or set classes")]
+    NoFlowers(String),
+}
+
+impl From<base::Cancelled> for OpeningError {
+    fn from(cancelled: base::Cancelled) -> Self {
+        Self::Make(cancelled.into())
+    }
+}
+
+impl OpeningPlant {
+    /// Reads a drawing and prepares its flowers.
+    ///
+    /// A flower opens to the angle of the drawn one, with as many petals of the mean drawn form, in the drawn
+    /// colour; stem, leaves and all else stay as drawn. The drawn petals' own irregularities are evened out, so
+    /// that petals do not pass through one another on their way.
+    ///
+    /// # Errors
+    /// [`OpeningError`].
+    pub fn new(
+        drawing: &Drawing,
+        options: &SketchOptions,
+        seed: Seed,
+        run: &Run<'_>,
+    ) -> Result<Self, OpeningError> {
+        let made = make_from_sketch(drawing, options, seed, run)?;
+        let dye = petal_color(&made.model);
+        let mut rest = made.plant.clone();
+        let flower_organs =
+            |kind| matches!(kind, OrganKind::Petal | OrganKind::Disc | OrganKind::Stamen | OrganKind::Pistil);
+        let mut flowers = Vec::new();
+        for (k, flower) in made.plant.flowers.iter().enumerate() {
+            let own = |o: &&Organ| o.flower.is_some_and(|f| f.index() == k);
+            let organs: Vec<&Organ> = made.plant.organs.iter().filter(own).collect();
+            flowers.extend(placed(&made.plant, flower, &organs, dye));
+        }
+        if flowers.is_empty() {
+            return Err(OpeningError::NoFlowers(drawing.name.clone()));
+        }
+        rest.organs.retain(|o| !(flower_organs(o.kind) && o.flower.is_some()));
+        let rest = skin::skin(&rest, &options.skin, run)?;
+        let days = flowers[0].spec.days;
+        Ok(Self { name: drawing.name.clone(), days, item: made.item, rest, flowers })
+    }
+
+    /// Number of flowers, and of their petals.
+    pub fn counts(&self) -> (u64, u64) {
+        let petals = |p: &Placed| p.spec.whorls.iter().map(|w| u64::from(w.count)).sum::<u64>();
+        (self.flowers.len() as u64, self.flowers.iter().map(petals).sum())
+    }
+
+    /// The law of the first flower, for use without a fitted one.
+    pub fn law(&self) -> GrowthLaw {
+        let rate = self.flowers.first().map_or(0.95, |f| f.spec.rate);
+        GrowthLaw::logistic(&self.name, self.days[0], rate)
+    }
+
+    /// The plant at a day, and the greatest share of petal triangles of a flower that cross another petal.
+    ///
+    /// Guaranteed: the same vertices and triangles at every day.
+    pub fn at(&self, day: f64, law: &GrowthLaw, seed: Seed) -> (Model, f64) {
+        let mut model = self.rest.clone();
+        model.name.clone_from(&self.name);
+        let mut worst = 0.0_f64;
+        for (k, placed) in self.flowers.iter().enumerate() {
+            let frame = placed.spec.at(day, law, seed.child(k as u64));
+            worst = worst.max(frame.overlap());
+            let first = model.materials.len();
+            model.materials.extend(frame.model.materials);
+            for mut part in frame.model.parts {
+                if part.mesh.triangles.is_empty() {
+                    continue;
+                }
+                for (p, n) in part.mesh.positions.iter_mut().zip(&mut part.mesh.normals) {
+                    let at = placed.centre + placed.turn * DVec3::from_array(p.map(f64::from));
+                    let towards = placed.turn * DVec3::from_array(n.map(f64::from));
+                    #[expect(clippy::cast_possible_truncation, reason = "f64 in the model, f32 in the mesh")]
+                    {
+                        *p = at.to_array().map(|x| x as f32);
+                        *n = towards.to_array().map(|x| x as f32);
+                    }
+                }
+                part.name = format!("flower-{}-{}", k + 1, part.name);
+                part.material = MaterialId::new(first + part.material.index());
+                model.parts.push(part);
+            }
+        }
+        (model, worst)
+    }
+}
+
+/// The mean colour of the petals as they are seen: texture, base colour and tints together.
+fn petal_color(model: &Model) -> [f32; 3] {
+    let part = model.parts.iter().find(|p| model.material(p).kind == MaterialKind::Petal);
+    let Some(part) = part else { return [0.7, 0.3, 0.4] };
+    let material = model.material(part);
+    let mean = |colors: &mut dyn Iterator<Item = [f32; 3]>| {
+        let (mut sum, mut n) = ([0.0_f32; 3], 0.0_f32);
+        for c in colors {
+            sum = [0, 1, 2].map(|q| sum[q] + c[q]);
+            n += 1.0;
+        }
+        if n > 0.0 { sum.map(|s| s / n) } else { [1.0; 3] }
+    };
+    let tint = mean(&mut part.mesh.colors.iter().copied());
+    let texture = material.texture.as_ref().map_or([1.0; 3], |t| {
+        // A hundred pixels say it; bytes are sRGB.
+        let step = (t.pixels.len() / 400).max(1);
+        mean(&mut t.pixels.chunks_exact(4).step_by(step).map(|p| {
+            [0, 1, 2].map(|q| {
+                #[expect(clippy::cast_possible_truncation, reason = "a colour")]
+                let x = base::ops::powf(f64::from(p[q]) / 255.0, 2.2) as f32;
+                x
+            })
+        }))
+    });
+    [0, 1, 2].map(|q| (tint[q] * texture[q] * material.base_color[q]).clamp(0.0, 1.0))
+}
+
+/// The flower as data; none without petals.
+fn placed(plant: &Plant, flower: &Flower, organs: &[&Organ], dye: [f32; 3]) -> Option<Placed> {
+    let petals = organs.iter().filter(|o| o.kind == OrganKind::Petal);
+    let mut blades: Vec<(f64, PetalForm, f64)> = petals
+        .filter_map(|o| match plant.shapes.get(o.shape.index())? {
+            Shape::Blade(b) => {
+                let (form, aspect) = PetalForm::of_outline(&b.outline)?;
+                Some((b.length() * o.scale, form, aspect))
+            }
+            _ => None,
+        })
+        .collect();
+    let count = u32::try_from(blades.len()).ok().filter(|&n| n > 0)?;
+    // Long petals are the outer ones.
+    blades.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let rings = flower.whorls.clamp(1, count);
+    let each = count.div_ceil(rings) as usize;
+    let disc = organs.iter().filter(|o| o.kind == OrganKind::Disc).find_map(|o| {
+        match plant.shapes.get(o.shape.index())? {
+            Shape::Dome { radius_m, .. } => Some(radius_m * o.scale),
+            _ => None,
+        }
+    });
+    let stamens = organs.iter().filter(|o| o.kind == OrganKind::Stamen).count();
+    let longest = blades[0].0;
+    let disc = disc.unwrap_or(0.0).min(0.6 * longest);
+    // The cone's half angle, in degrees: at least as open as a cup, so that a drawn bud opens too.
+    let open = (flower.half_angle * 180.0 / base::ops::PI).clamp(35.0, 88.0);
+    let whorls: Vec<Whorl> = blades
+        .chunks(each)
+        .enumerate()
+        .filter_map(|(k, ring)| {
+            let n = ring.len() as f64;
+            let length = ring.iter().map(|b| b.0).sum::<f64>() / n;
+            let aspect = ring.iter().map(|b| b.2).sum::<f64>() / n;
+            let forms: Vec<PetalForm> = ring.iter().map(|b| b.1).collect();
+            let inner = k as f64 / f64::from(rings);
+            let shade = 1.0 - 0.12 * k as f32;
+            let color = dye.map(|c| c * shade);
+            Some(Whorl {
+                count: u32::try_from(ring.len()).ok()?,
+                length,
+                width: length * aspect,
+                insertion: [disc.max(0.05 * length) * (1.0 - 0.35 * inner), 0.02 * length * k as f64],
+                bud: [14.0 - 6.0 * inner, 2.0 - 2.0 * inner, -9.0],
+                open: [0.75, 1.0, 1.1].map(|x| x * open * (1.0 - 0.35 * inner)),
+                wilted: [0.9, 1.35, 1.75].map(|x| (x * open * (1.0 - 0.35 * inner)).min(165.0)),
+                delay: 0.1 * inner,
+                phase: 180.0 / n * k as f64 + 90.0,
+                lean: 0.008 * length,
+                colors: [color.map(|c| (1.15 * c + 0.05).min(1.0)), color],
+                form: PetalForm::mean(&forms),
+                ..Whorl::default()
+            })
+        })
+        .collect();
+    let spec = FlowerSpec {
+        name: plant.name.clone(),
+        whorls,
+        stamens: (u32::try_from(stamens).unwrap_or(0).min(40), 0.45 * longest, 18.0),
+        pistil: if stamens > 0 { 0.5 * longest } else { 0.0 },
+        disc,
+        stalk: 0.0,
+        nod: 0.0,
+        umbel: 1,
+        days: [6.0, 4.0],
+        rate: 0.95,
+        mesh: [16, 10],
+    };
+    let axis = flower.axis.try_normalize().unwrap_or(DVec3::Y);
+    // Off the end of the stem, which would show through the disc.
+    let centre = flower.centre + axis * (0.3 * disc);
+    Some(Placed { spec, centre, turn: DQuat::from_rotation_arc(DVec3::Y, axis) })
+}

@@ -1,0 +1,25 @@
+// node organs.mjs WASM_MODULE NATIVE_DIGESTS LEAF...: the WASM build must make every leaf and flower that the native
+// program made, bit for bit. NATIVE_DIGESTS is {"leaf1.csv": "...", "rose": "...", ...}.
+import { readFileSync } from 'node:fs';
+import { basename } from 'node:path';
+import { createRequire } from 'node:module';
+
+const [module, nativeDigests, frames, ...leaves] = process.argv.slice(2);
+const burgeon = createRequire(import.meta.url)(module);
+const native = JSON.parse(readFileSync(nativeDigests, 'utf8'));
+const paths = new Map(leaves.map((path) => [basename(path), path]));
+
+let different = 0;
+for (const [name, digest] of Object.entries(native)) {
+  const path = paths.get(name);
+  const wasm = path
+    ? JSON.parse(burgeon.leaf_report(name, readFileSync(path), 1n)).digest
+    : burgeon.flower_digest(name, Number(frames), 1n);
+  if (wasm !== digest) {
+    different += 1;
+    console.error(`${name}: native ${digest}, WASM ${wasm}`);
+  }
+}
+const count = Object.keys(native).length;
+console.log(`leaves and flowers, native against WASM: ${count - different} passed, ${different} failed`);
+process.exit(different || !count ? 1 : 0);
