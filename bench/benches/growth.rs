@@ -17,8 +17,8 @@ use burgeon::glam::DVec3;
 use burgeon::mesh::Model;
 use burgeon::skin::{SkinSpec, skin};
 use growth::{
-    ColonizeSpec, Colonized, CompetitionSpec, Envelope, Fate, Grown, Method, Obstacles, SelfOrganized,
-    SelfOrganizingSpec, TreeSpec, colonize, self_organize,
+    ColonizeSpec, Colonized, CompetitionSpec, Envelope, Fate, Grown, LeafSpec, Method, Obstacles,
+    SelfOrganized, SelfOrganizingSpec, TreeSpec, colonize, self_organize,
 };
 
 fn main() {
@@ -39,19 +39,16 @@ impl base::Clock for Watch {
     }
 }
 
-/// The least time of several runs, milliseconds, and what the last one made.
-fn best<T>(runs: usize, mut work: impl FnMut() -> T) -> (f64, T) {
+/// The mean time of several runs, milliseconds, and what the last one made. Not the least: the system counts time on
+/// the processor in ticks.
+fn mean<T>(runs: usize, mut work: impl FnMut() -> T) -> (f64, T) {
     let watch = Watch(Instant::now());
-    let mut timed = || {
-        let started = watch.now_ms();
-        let made = work();
-        (watch.now_ms() - started, made)
-    };
-    let first = timed();
-    (1..runs).fold(first, |(least, _), _| {
-        let (ms, made) = timed();
-        (least.min(ms), made)
-    })
+    let started = watch.now_ms();
+    let mut made = work();
+    for _ in 1..runs {
+        made = work();
+    }
+    ((watch.now_ms() - started) / runs.max(1) as f64, made)
 }
 
 /// The most memory that this process has had, MiB; 0 where the system does not tell.
@@ -93,8 +90,8 @@ fn scaling() {
     let mut logs = Vec::new();
     for n in [3_000, 10_000, 30_000, 100_000, 300_000, 1_000_000] {
         let points = ball(n);
-        let runs = (5_000_000 / (n * 10)).clamp(1, 20);
-        let (ms, grown) = best(runs, || grow(&points));
+        let runs = (3_000_000 / (n * 10)).clamp(1, 50);
+        let (ms, grown) = mean(runs, || grow(&points));
         let lost = grown.fates.iter().filter(|f| **f == Fate::Unreached).count();
         let (joints, rounds, peak) = (grown.skeleton.len(), grown.rounds, peak_mib());
         println!("{n:7} {ms:8.2} {joints:8} {rounds:7} {lost:9} {peak:9}");
@@ -118,22 +115,24 @@ fn self_organizing(years: u32) -> SelfOrganized {
 fn metamers() {
     println!("\nyears        ms  generated     shed     kept  generated/s");
     for years in [20, 40, 60] {
-        let (ms, tree) = best(3, || self_organizing(years));
+        let (ms, tree) = mean(3, || self_organizing(years));
         let (n, kept) = (tree.generated, tree.skeleton.len());
         println!("{years:5} {ms:9.1} {n:10} {:8} {kept:8} {:12.0}", tree.shed, n as f64 / ms * 1e3);
     }
 }
 
-/// The oak of the paper's Table 2, with a mesh of 120 thousand triangles as there.
+/// An oak in the envelope of the paper's Table 2, with about as many triangles (122,100 there): two life cycles, and a
+/// fifth of the leaves that would have room.
 fn oak() -> (Grown, Model, Report) {
     let spec = TreeSpec {
         name: "oak".into(),
-        method: Method::Competition(CompetitionSpec::oak()),
+        method: Method::Competition(CompetitionSpec { lifespan: 2, points: 1500, ..CompetitionSpec::oak() }),
+        leaves: Some(LeafSpec { leaf_keep: 0.2, ..LeafSpec::default() }),
         ..TreeSpec::default()
     };
     let (run, mut report) = (Run { clock: &Watch(Instant::now()), ..Run::plain() }, Report::default());
     let tree = growth::grow(&spec, None, Seed::new(1), &run, &mut report).unwrap();
-    let surface = SkinSpec { detail: 0.35, textures: false, ..SkinSpec::default() };
+    let surface = SkinSpec { detail: 0.25, textures: false, ..SkinSpec::default() };
     let model = report.stage("mesh", run.clock, |_| skin(&tree.plant, &surface, &run)).unwrap();
     (tree, model, report)
 }
@@ -149,8 +148,8 @@ fn oak_stages() {
     );
     for name in ["grow", "wood", "leaves", "mesh"] {
         let of = |r: &Report| r.stages.iter().filter(|s| s.name == name).map(|s| s.ms).sum::<f64>();
-        let best = (0..10).map(|_| of(&oak().2)).fold(f64::INFINITY, f64::min);
-        println!("  {name:7} {best:7.2} ms");
+        let ms = (0..20).map(|_| of(&oak().2)).sum::<f64>() / 20.0;
+        println!("  {name:7} {ms:7.2} ms");
     }
     println!();
 }
