@@ -38,6 +38,7 @@ async function fresh() {
     }).observe({ type: 'measure' });
   });
   const page = await context.newPage();
+  page.setDefaultTimeout(240_000);
   await page.goto(url);
   await page.waitForFunction(() => document.body.dataset.ready === 'true');
   return { context, page };
@@ -61,7 +62,8 @@ async function drop(page, name, text) {
   const [paints, usable] = [[], []];
   for (let i = 0; i < 5; i += 1) {
     const { context, page } = await fresh();
-    const [paint, ready] = await page.evaluate(() => [performance.getEntriesByName('first-contentful-paint')[0]?.startTime ?? NaN, Number(document.body.dataset.readyAt)]);
+    await page.waitForFunction(() => performance.getEntriesByType('paint').length > 0);
+    const [paint, ready] = await page.evaluate(() => [performance.getEntriesByType('paint')[0].startTime, Number(document.body.dataset.readyAt)]);
     paints.push(paint);
     usable.push(ready);
     await context.close();
@@ -114,11 +116,11 @@ for (const sketch of ['a', 'b', 'c', 'd', 'e', 'f', 'g', 'h']) {
   const { context, page } = await fresh();
   let seed = 1;
   const random = () => { seed = (seed * 16807) % 2147483647; return seed / 2147483647; };
-  const strokes = Array.from({ length: 60 }, (_, s) => ({
-    points: Array.from({ length: 5200 }, (_, i) => [10 * (s % 10) + random(), 10 * Math.floor(s / 10) + i / 600 + random(), 4 * i, random()]),
+  const strokes = Array.from({ length: 2000 }, (_, s) => ({
+    points: Array.from({ length: 150 }, (_, i) => [10 * (s % 50) + 0.05 * random(), 10 * Math.floor(s / 50) + i / 20 + 0.01 * random(), 4 * i + random(), random()]),
   }));
   await drop(page, 'large.json', JSON.stringify({ burgeon: 'drawing/1', name: 'large', y: 'up', strokes }));
-  await page.waitForFunction(() => Number(document.body.dataset.strokes) === 60);
+  await page.waitForFunction(() => Number(document.body.dataset.strokes) === 2000);
   const [download] = await Promise.all([page.waitForEvent('download'), page.click('#b-save')]);
   const bytes = readFileSync(await download.path());
   await page.evaluate((text) => { window.large = Uint8Array.from(atob(text), (c) => c.charCodeAt(0)); }, bytes.toString('base64'));
@@ -127,7 +129,7 @@ for (const sketch of ['a', 'b', 'c', 'd', 'e', 'f', 'g', 'h']) {
     window.measured.open.length = 0;
     for (let i = 1; i <= 3; i += 1) {
       document.querySelector('#b-fresh').click();
-      await pause(1500);
+      await pause(4000);
       const transfer = new DataTransfer();
       transfer.items.add(new File([window.large], 'large.burgeon'));
       document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true }));

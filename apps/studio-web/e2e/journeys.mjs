@@ -258,6 +258,23 @@ async function photo({ page, url, shot }) {
   assert.equal(await page.getByText('Traced parts take its colours').locator('xpath=..').locator('input').isChecked(), false);
 }
 
+/** A browser without WebGL 2 whose storage is shut, as in private mode: both are told, and the work goes on. */
+async function poor({ page, url, shot }) {
+  await page.addInitScript(() => {
+    const { getContext } = HTMLCanvasElement.prototype;
+    HTMLCanvasElement.prototype.getContext = function get(kind, ...rest) {
+      return kind.startsWith('webgl') ? null : getContext.call(this, kind, ...rest);
+    };
+    IDBFactory.prototype.open = () => { throw new DOMException('shut', 'QuotaExceededError'); };
+  });
+  await begin(page, url);
+  await page.locator('.note.bad', { hasText: 'WebGL 2' }).waitFor();
+  await page.locator('.note.bad', { hasText: 'Save your work as a file' }).waitFor();
+  await shot('poor');
+  await drawFlower(page);
+  assert.equal((await exported(page, 'glb')).bytes.subarray(0, 4).toString(), 'glTF');
+}
+
 async function symmetry({ page, url, shot }) {
   await begin(page, url);
   await draw(page, line(250, 530, 250, 150, 2));
@@ -461,6 +478,7 @@ export const journeys = [
   ['a link to a drawing', share],
   ['trace a photograph', photo],
   ['symmetry', symmetry],
+  ['no WebGL 2 and no storage', poor],
   ['a pen on a tablet, and a palm', pen, { viewport: { width: 820, height: 1180 }, hasTouch: true }],
   ['reload and recover', reload],
   ['Chinese', chinese, { locale: 'zh-CN' }],

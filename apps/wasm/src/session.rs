@@ -19,6 +19,8 @@ use crate::wire::{
     TextureView, View, WireCommand,
 };
 
+/// Share of the triangles while a stroke is drawn.
+const PREVIEW_DETAIL: f64 = 0.4;
 /// Drawings of a file that are offered for choice.
 const OFFERED: usize = 1000;
 
@@ -28,6 +30,9 @@ pub(crate) struct Session {
     editor: Editor,
     evaluator: Evaluator,
     draft: Option<Stroke>,
+    /// The plant while a stroke is drawn.
+    preview: Option<Evaluator>,
+    previewed: bool,
     /// A model file that is looked at instead of the plant.
     guest: Option<Model>,
     /// Another plant of the same drawing, looked at for a moment.
@@ -272,10 +277,18 @@ impl Session {
         let document = self.editor.document();
         let mut drawing = document.drawing();
         drawing.strokes.extend(self.draft.clone());
-        let options = SketchOptions::of_document(document);
+        let mut options = SketchOptions::of_document(document);
+        // Fast while the pen is down, fine when it is lifted.
+        self.previewed = self.draft.is_some();
+        let evaluator = if self.previewed {
+            options.skin.detail = (options.skin.detail * PREVIEW_DETAIL).max(0.1);
+            self.preview.get_or_insert_with(Evaluator::previewing)
+        } else {
+            &mut self.evaluator
+        };
         let mut item = None;
         if self.guest.is_none() {
-            match self.evaluator.update(&drawing, &options, document.settings().seed, &run) {
+            match evaluator.update(&drawing, &options, document.settings().seed, &run) {
                 Ok(made) => (item, self.bare) = (Some(made), false),
                 Err(MakeError::NoStrokes { .. }) => self.bare = true,
                 Err(e) => return Err(words(e)),
@@ -285,13 +298,18 @@ impl Session {
         serde_json::to_string(&view).map_err(words)
     }
 
+    /// What made the plant that is shown.
+    fn current(&self) -> &Evaluator {
+        self.preview.as_ref().filter(|_| self.previewed).unwrap_or(&self.evaluator)
+    }
+
     fn view(&mut self, item: Option<ItemReport>) -> View {
         let mut textures = std::mem::take(&mut self.textures);
-        let front = self.evaluator.front().filter(|_| item.is_some());
+        let front = self.current().front().filter(|_| item.is_some());
         let mut view = View {
             revision: self.editor.revision(),
             item,
-            stages: self.evaluator.stages_done().to_vec(),
+            stages: self.current().stages_done().to_vec(),
             front: front.map(|f| Front { metres_per_unit: f.metres_per_unit, x: f.origin.x, y: f.origin.y }),
             min: [0.0; 3],
             max: [0.0; 3],
@@ -331,10 +349,8 @@ impl Session {
 
     /// What is shown: the guest, else the plant.
     fn model(&self) -> Option<&Model> {
-        self.variant
-            .as_ref()
-            .or(self.guest.as_ref())
-            .or_else(|| self.evaluator.model().filter(|_| !self.bare))
+        let looked_at = self.variant.as_ref().or(self.guest.as_ref());
+        looked_at.or_else(|| self.current().model().filter(|_| !self.bare))
     }
 
     pub(crate) fn column(&self, part: usize, column: Column) -> Vec<f32> {
@@ -379,7 +395,7 @@ impl Session {
     /// Pairs of points of the plant's axes: x, y, z and order of each; then of its blades, from root to tip, with
     /// "order" 100 (leaves) or 101 (petals). Empty while a model file is looked at.
     pub(crate) fn skeleton(&self) -> Vec<f32> {
-        let plant = self.evaluator.plant().filter(|_| self.guest.is_none() && !self.bare);
+        let plant = self.current().plant().filter(|_| self.guest.is_none() && !self.bare);
         let Some(plant) = plant else { return Vec::new() };
         let mut out = Vec::new();
         for axis in &plant.axes {

@@ -28,7 +28,8 @@ mod template;
 pub use build::{Built, build};
 pub use classify::{
     Classified, ModelError, StrokeFeatures, StrokeFigures, StrokeModelTexts, StrokeRow, StrokeSource,
-    classify, cross_validate_strokes, features, read_stroke_table, train_strokes, write_stroke_table,
+    classify, classify_unknown, cross_validate_strokes, features, read_stroke_table, train_strokes,
+    write_stroke_table,
 };
 pub use clean::{Ink, InkMap, InkStroke, clean};
 pub use drawing::{Drawing, InkSample, Stroke, StrokeMode};

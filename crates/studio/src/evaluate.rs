@@ -2,6 +2,7 @@
 //!
 //! `drawing -> ink, classes | + corrections -> reading | + spec, seed -> plant | + skin -> model`
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use base::{Report, Run, Seed, Stage, Warning};
@@ -52,6 +53,8 @@ pub struct Evaluator {
     /// The photograph that was decoded last.
     picture: Option<Decoded>,
     done: Vec<&'static str>,
+    /// See [`Evaluator::previewing`].
+    preview: bool,
 }
 
 /// What a plant is made from, besides its reading: the name goes into the plant.
@@ -72,6 +75,12 @@ struct Kept<K, V> {
 }
 
 impl Evaluator {
+    /// An evaluator for a stroke that is still being drawn: faster, and no more than a look. Strokes keep the class that
+    /// they had, and the report has neither fidelity nor digest. The guarantee above does not hold for it.
+    pub fn previewing() -> Self {
+        Self { preview: true, ..Self::default() }
+    }
+
     /// Brings everything up to date and reports.
     ///
     /// # Errors
@@ -95,7 +104,9 @@ impl Evaluator {
             if ink.strokes.is_empty() {
                 return Err(MakeError::NoStrokes { name: drawing.name.clone(), strokes: count });
             }
-            let classes = report.stage("classify", run.clock, |_| sketch::classify(&ink, run));
+            let known = self.known(drawing, &ink);
+            let classes =
+                report.stage("classify", run.clock, |_| sketch::classify_unknown(&ink, &known, run));
             run.cancel.check()?;
             self.reading = None;
             self.strokes =
@@ -109,6 +120,21 @@ impl Evaluator {
         }
         self.mesh(&options.skin, photo, &mut stages, run)?;
         Ok(self.item(&drawing.name, stages))
+    }
+
+    /// For a preview: classes of strokes that are as they were.
+    fn known(&self, drawing: &Drawing, ink: &Ink) -> Vec<Option<Classified>> {
+        let Some(Kept { from, value: (old, classes), .. }) = self.strokes.as_ref().filter(|_| self.preview)
+        else {
+            return Vec::new();
+        };
+        let before: BTreeMap<u32, Classified> =
+            old.strokes.iter().map(|s| s.index).zip(classes.iter().copied()).collect();
+        let same = |row: u32| {
+            let row = row as usize;
+            from.strokes.get(row).is_some_and(|s| Some(s) == drawing.strokes.get(row))
+        };
+        ink.strokes.iter().map(|s| before.get(&s.index).copied().filter(|_| same(s.index))).collect()
     }
 
     fn keep<K, V>(
@@ -165,7 +191,9 @@ impl Evaluator {
         }
         let mut report = Report::default();
         let mut built = sketch::build(&reading.value, spec, seed, run, &mut report)?; // books `depth` itself
-        let fidelity = sketch::fidelity(&built, &reading.value, &strokes.value.0, run);
+        let wanted = !self.preview;
+        let fidelity =
+            wanted.then(|| sketch::fidelity(&built, &reading.value, &strokes.value.0, run)).flatten();
         let fidelity = fidelity.map_or_else(Fidelity::default, |f| Fidelity {
             reprojection_mean: f.reprojection_mean,
             reprojection_p95: f.reprojection_p95,
@@ -255,7 +283,7 @@ impl Evaluator {
             counts,
             timings_ms: TimingsMs::from_report(&report),
             fidelity: *fidelity,
-            digest: built.plant.digest_hex(),
+            digest: if self.preview { String::new() } else { built.plant.digest_hex() },
             warnings: report.warnings.iter().map(ToString::to_string).collect(),
             ..ItemReport::default()
         }
@@ -345,6 +373,27 @@ mod tests {
         d.strokes.pop();
         o.classes.clear();
         assert_eq!(step(&mut e, &d, &o, 2), all);
+    }
+
+    #[test]
+    fn a_preview_keeps_classes_and_ends_in_the_same_plant() {
+        let (mut d, o) = (drawing(), SketchOptions::default());
+        let mut look = Evaluator::previewing();
+        let run = Run::plain();
+        look.update(&d, &o, Seed::new(1), &run).unwrap();
+        d.strokes.push(d.strokes[1].clone());
+        for p in &mut d.strokes[2].samples {
+            p.at = DVec2::new(-p.at.x, p.at.y + 3.0);
+        }
+        let item = look.update(&d, &o, Seed::new(1), &run).unwrap();
+        assert_eq!((item.strokes.len(), item.digest.as_str()), (3, ""));
+        let mut full = Evaluator::default();
+        let whole = full.update(&d, &o, Seed::new(1), &run).unwrap();
+        assert_eq!(item.counts.leaves, whole.counts.leaves);
+        assert_eq!(look.front(), full.front());
+        // Another first stroke is unknown again.
+        d.strokes[0].samples.truncate(20);
+        assert!(look.update(&d, &o, Seed::new(1), &run).is_ok());
     }
 
     #[test]

@@ -58,10 +58,20 @@ fn trained() -> Option<&'static StrokeModels> {
 /// assert!((0.0..=1.0).contains(&classes[0].confidence));
 /// ```
 pub fn classify(ink: &Ink, run: &Run<'_>) -> Vec<Classified> {
+    classify_unknown(ink, &[], run)
+}
+
+/// As [`classify`], but strokes whose class is known keep it: `known[i]` stands for `ink.strokes[i]`, strokes beyond
+/// its end are unknown. For looks at a drawing that grows: a new stroke may change what the others are, and this does
+/// not look again.
+pub fn classify_unknown(ink: &Ink, known: &[Option<Classified>], run: &Run<'_>) -> Vec<Classified> {
     let rows = features(ink, run);
     // A test reads the models, so they are always there.
     let unknown = Classified { class: StrokeClass::Other, confidence: 0.0 };
     map_indexed(run.executor, rows.len(), |i| {
+        if let Some(&Some(class)) = known.get(i) {
+            return class;
+        }
         let model = trained().filter(|_| run.cancel.check().is_ok());
         model.map_or(unknown, |m| m.decide(&rows[i]))
     })
