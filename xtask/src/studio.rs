@@ -81,6 +81,10 @@ pub(crate) fn bench(tools: &Tools) -> Outcome {
     build(tools, true)?;
     let browser = browser().ok_or("Chromium is missing: install it or name it in BURGEON_CHROMIUM")?;
     cargo(&["build", "--package", "burgeon-cli"])?;
+    say("$ node e2e/evaluate.mjs");
+    let mut c = prepare("node", &["e2e/evaluate.mjs"]);
+    c.current_dir(folder());
+    finish(c)?;
     say(&format!("$ node e2e/bench.mjs ({})", browser.display()));
     let mut c = prepare("node", &["e2e/bench.mjs"]);
     c.current_dir(folder()).arg(browser).arg(burgeon("debug"));
