@@ -29,6 +29,9 @@ use base::{Run, map_indexed};
 use crate::{Ink, StrokeClass};
 use model::StrokeModels;
 
+/// End gap over length of a stroke that is nearly straight: a half circle has 0.64.
+const LONE_LINE: f64 = 0.7;
+
 /// The models in the repository.
 fn trained() -> Option<&'static StrokeModels> {
     static MODELS: OnceLock<Option<StrokeModels>> = OnceLock::new();
@@ -66,6 +69,12 @@ pub fn classify(ink: &Ink, run: &Run<'_>) -> Vec<Classified> {
 /// not look again.
 pub fn classify_unknown(ink: &Ink, known: &[Option<Classified>], run: &Run<'_>) -> Vec<Classified> {
     let rows = features(ink, run);
+    // Crowns and trunks are told by what stands around them: a line by itself, the first that anybody draws, is a stem.
+    if let ([row], None | Some(None)) = (rows.as_slice(), known.first())
+        && row.gap > LONE_LINE
+    {
+        return vec![Classified { class: StrokeClass::Axis, confidence: 1.0 }];
+    }
     // A test reads the models, so they are always there.
     let unknown = Classified { class: StrokeClass::Other, confidence: 0.0 };
     map_indexed(run.executor, rows.len(), |i| {

@@ -190,3 +190,15 @@ fn a_cancelled_run_judges_nothing() {
     cancel.cancel();
     assert_eq!(classify(&ink, &run), [Classified { class: StrokeClass::Other, confidence: 0.0 }; 2]);
 }
+
+#[test]
+fn the_first_line_that_anybody_draws_is_a_stem() {
+    for bow in [0.0, 2.0, 10.0, 40.0] {
+        let line: Vec<DVec2> = (0..=20)
+            .map(|i| f64::from(i) / 20.0)
+            .map(|t| DVec2::new(20.0 * t + 4.0 * bow * t * (1.0 - t), 460.0 * t))
+            .collect();
+        let ink = clean(&Drawing::from_polylines("line", &[line]), &mut Report::default());
+        assert_eq!(classify(&ink, &Run::plain())[0].class, crate::StrokeClass::Axis, "bow {bow}");
+    }
+}
