@@ -1,4 +1,4 @@
-//! Free-form deformation and growth laws. The peers (`NumPy`, scipy) are timed by `docs/bloom.md`'s script.
+//! Free-form deformation, growth laws, surfaces. `bench/peers_bloom.py` times `NumPy`, scipy, geomdl and splipy.
 //!
 //! `cargo bench -p burgeon-bench --bench bloom`
 #![expect(clippy::expect_used, reason = "a benchmark of sound input")]
@@ -70,4 +70,16 @@ fn overlap_of_a_tulip(bencher: Bencher<'_, '_>) {
     let law = burgeon::bloom::GrowthLaw::logistic("tulip", 5.0, 1.0);
     let frame = spec.at(2.0, &law, burgeon::Seed::new(1));
     bencher.bench_local(|| frame.overlap());
+}
+
+/// A blade of 10 rows of 7 marks: parameters, knots and controls of the bicubic surface through all of them.
+#[divan::bench]
+fn surface_through_10_by_7(bencher: Bencher<'_, '_>) {
+    let marks: Vec<DVec3> = (0..70)
+        .map(|k| {
+            let (u, v) = (f64::from(k % 7) / 3.0 - 1.0, f64::from(k / 7) / 9.0);
+            DVec3::new(0.1 * u * (1.2 - v), v, 0.05 * u * u + 0.1 * v * v)
+        })
+        .collect();
+    bencher.bench_local(|| burgeon::geom::SplineSurface::interpolate(black_box(&marks), 7));
 }
