@@ -199,6 +199,6 @@ fn the_first_line_that_anybody_draws_is_a_stem() {
             .map(|t| DVec2::new(20.0 * t + 4.0 * bow * t * (1.0 - t), 460.0 * t))
             .collect();
         let ink = clean(&Drawing::from_polylines("line", &[line]), &mut Report::default());
-        assert_eq!(classify(&ink, &Run::plain())[0].class, crate::StrokeClass::Axis, "bow {bow}");
+        assert_eq!(classify(&ink, &Run::plain())[0].class, StrokeClass::Axis, "bow {bow}");
     }
 }
