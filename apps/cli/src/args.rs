@@ -42,6 +42,18 @@ pub(crate) enum Command {
     /// Veins become solid balls along a spline, the blade a surface through the same points. Works from a CSV file
     /// of 7 marks along each pair of side veins.
     Leaf(Box<crate::leaf::LeafArgs>),
+    /// Grow a tree: a species that comes with the program, or a spec of your own
+    ///
+    /// Branches compete for space and light, around obstacles; leaves stay where light reaches. `burgeon presets`
+    /// lists the species.
+    Grow(Box<crate::grow::GrowArgs>),
+    /// List the species that `burgeon grow` knows; show one as TOML; write the JSON Schema of specs
+    Presets(crate::presets::PresetsArgs),
+    /// Grow the same oak by three methods and compare them
+    ///
+    /// L-system, space colonization and space competition, at one height: vertices, triangles, leaves, seconds,
+    /// bytes, and what the paper printed.
+    Compare(Box<crate::compare::CompareArgs>),
     /// Make a picture of a model
     ///
     /// The model fills the picture but for a margin and stands on the ground in the light of a soft sun.
@@ -538,7 +550,7 @@ fn background(text: &str) -> Result<Background, String> {
     }
 }
 
-fn seed(text: &str) -> Result<u64, String> {
+pub(crate) fn seed(text: &str) -> Result<u64, String> {
     text.parse().ok().ok_or_else(|| format!("give a whole number from 0 to {}", u64::MAX))
 }
 

@@ -3,15 +3,18 @@
 mod args;
 mod bloom;
 mod classes;
+mod compare;
 mod convert;
 mod failure;
 mod files;
+mod grow;
 mod info;
 mod leaf;
 mod machine;
 mod output;
 mod petals;
 mod picture;
+mod presets;
 mod report;
 mod say;
 mod sketch;
@@ -41,6 +44,9 @@ fn main() -> ExitCode {
     let outcome = std::panic::catch_unwind(|| match cli.command {
         Command::Sketch(args) => sketch::sketch(&args),
         Command::Leaf(args) => leaf::leaf(&args),
+        Command::Grow(args) => grow::grow(&args),
+        Command::Presets(args) => presets::presets(&args),
+        Command::Compare(args) => compare::compare(&args),
         Command::Render(args) => picture::render(&args),
         Command::Convert(args) => convert::convert(&args),
         Command::Info(args) => info::info(&args),

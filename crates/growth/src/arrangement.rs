@@ -1,6 +1,7 @@
 //! Phyllotaxis as it stands in a spec.
 
 use plant::{Divergence, Phyllotaxis};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::GrowthError;
@@ -14,13 +15,14 @@ use crate::error::within;
 /// assert_eq!(Arrangement::Decussate.phyllotaxis()?, Phyllotaxis::Decussate);
 /// # Ok::<(), growth::GrowthError>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 #[non_exhaustive]
 pub enum Arrangement {
     /// One a node, turned by the divergence from the one before.
     Spiral {
         /// Degrees; 137.5 in most plants.
+        #[schemars(range(min = -360.0, max = 360.0), extend("x-unit" = "deg"))]
         divergence_deg: f64,
     },
     /// One a node, in two rows.
@@ -32,6 +34,7 @@ pub enum Arrangement {
     /// Several a node, 2 to 12.
     Whorled {
         /// How many.
+        #[schemars(range(min = 2, max = 12))]
         count: u32,
     },
 }

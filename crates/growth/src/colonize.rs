@@ -4,6 +4,7 @@
 
 use base::{Report, Run};
 use glam::DVec3;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{GrowthError, usable, within};
@@ -11,25 +12,30 @@ use crate::field::{Change, Field, NOBODY};
 use crate::{JointId, Obstacles, Skeleton, Tropism};
 
 /// How branches grow towards attraction points.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct ColonizeSpec {
     /// Distance `d_i` within which a joint perceives a point, metres, above 0, default 1.
+    #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
     pub attraction_m: f64,
     /// Distance `d_k` at which a point is consumed, metres, above 0 and at most `attraction_m` (else that is raised
     /// to it, with a warning), default 0.4.
+    #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
     pub kill_m: f64,
     /// Length D of one step, metres; default half of `kill_m`. Above twice `kill_m`, points can be stepped over.
+    #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
     pub step_m: Option<f64>,
     /// What else pulls: light, gravity, wind. Default none.
     pub tropisms: Vec<Tropism>,
     /// Share of the last direction kept in each step, 0 to 10, default 0.
+    #[schemars(range(min = 0.0, max = 10.0))]
     pub inertia: f64,
     /// A point steers one step before it is consumed, as in paper 001, instead of being consumed as soon as a joint
     /// comes near (Runions). Needed where `kill_m` is near `attraction_m`: else hardly any point steers. Default
     /// false.
     pub steer_before_kill: bool,
     /// Growth stops, with a warning, at this many joints; 1 to 2^31, default 4 million.
+    #[schemars(range(min = 1, max = 2_147_483_648_u64))]
     pub max_joints: u32,
 }
 

@@ -4,6 +4,7 @@
 
 use base::{Draw, Report, Run, Seed};
 use glam::DVec3;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::colonize::plant_roots;
@@ -11,7 +12,7 @@ use crate::error::{GrowthError, within};
 use crate::{ColonizeSpec, Envelope, Fate, Obstacles, Skeleton, Tropism, colonize_from};
 
 /// Trees after paper 001. Lengths in metres; places relative to the root.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct CompetitionSpec {
     /// The space of the crown.
@@ -20,34 +21,48 @@ pub struct CompetitionSpec {
     /// later cycles grow the branches. Default none.
     pub first_envelope: Option<Envelope>,
     /// Share of the envelope left empty inside, 0 to 0.99, default 0.
+    #[schemars(range(min = 0.0, max = 0.99))]
     pub hollow: f64,
     /// Points of the first cycle for each tree, N; 1 to 10 million, default 1500.
+    #[schemars(range(min = 1, max = 10_000_000))]
     pub points: u32,
     /// Attraction distance `d_i`, default 0.9.
+    #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
     pub attraction_m: f64,
     /// Absorption distance `d_k`, default 0.4.
+    #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
     pub kill_m: f64,
     /// Step D, default half of `d_k` (the paper does not give it; Runions asks for `d_k` of 2 D or more).
+    #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
     pub step_m: Option<f64>,
     /// Life cycles, 1 to 20, default 2.
+    #[schemars(range(min = 1, max = 20))]
     pub lifespan: u32,
     /// Share of the joints around which each later cycle puts points (K), 0 to 1, default 0.15.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub joints_share: f64,
     /// Points around each of them (M), 1 to 10000, default 40.
+    #[schemars(range(min = 1, max = 10000))]
     pub points_per_joint: u32,
     /// Radius of the ball of those points; default `d_i`.
+    #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
     pub ball_m: Option<f64>,
     /// Height of that ball over its width, 0 to 4: small values make flat tiers. Default 1.
+    #[schemars(range(min = 0.0, max = 4.0))]
     pub ball_height: f64,
     /// Vertical distance between the tiers of branches that grow on what the first cycle made; default none: anywhere.
+    #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
     pub tier_m: Option<f64>,
     /// Factor on `d_i`, `d_k`, D and the ball from one cycle to the next, 0.1 to 1, default 1 (as in the paper).
+    #[schemars(range(min = 0.1, max = 1.0))]
     pub shrink: f64,
     /// What else pulls. Default none.
     pub tropisms: Vec<Tropism>,
     /// Share of the last direction kept in each step, 0 to 10, default 0.
+    #[schemars(range(min = 0.0, max = 10.0))]
     pub inertia: f64,
     /// Most joints of all trees together, default 4 million.
+    #[schemars(range(min = 1, max = 2_147_483_648_u64))]
     pub max_joints: u32,
 }
 

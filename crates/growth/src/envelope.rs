@@ -5,67 +5,84 @@
 use base::{Draw, Seed};
 use geom::{Grid3, contains};
 use glam::{DVec2, DVec3};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{FAR_M, GrowthError, usable, within};
 use crate::solid::Solid;
 
 /// The space that a crown may fill. Metres, +Y up.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "shape", rename_all = "kebab-case", deny_unknown_fields)]
 #[non_exhaustive]
 pub enum Envelope {
     /// A ball.
     Sphere {
         /// Its middle.
+        #[schemars(with = "[f64; 3]", extend("x-unit" = "m"))]
         centre: DVec3,
         /// Above 0.
+        #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
         radius_m: f64,
     },
     /// A ball stretched along the axes.
     Ellipsoid {
         /// Its middle.
+        #[schemars(with = "[f64; 3]", extend("x-unit" = "m"))]
         centre: DVec3,
         /// Half its extents, each above 0.
+        #[schemars(with = "[f64; 3]", extend("x-unit" = "m"))]
         radii_m: DVec3,
     },
     /// An upright cone, its point up.
     Cone {
         /// Middle of its base.
+        #[schemars(with = "[f64; 3]", extend("x-unit" = "m"))]
         base: DVec3,
         /// Radius of its base, above 0.
+        #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
         radius_m: f64,
         /// Above 0.
+        #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
         height_m: f64,
     },
     /// An upright cylinder.
     Cylinder {
         /// Middle of its base.
+        #[schemars(with = "[f64; 3]", extend("x-unit" = "m"))]
         base: DVec3,
         /// Above 0.
+        #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
         radius_m: f64,
         /// Above 0.
+        #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
         height_m: f64,
     },
     /// A surface of revolution about the vertical through `base`.
     Revolution {
         /// Where the heights of the profile start.
+        #[schemars(with = "[f64; 3]", extend("x-unit" = "m"))]
         base: DVec3,
         /// `(radius, height)`, at least 2 points, heights rising, radii 0 or more.
+        #[schemars(with = "Vec<[f64; 2]>", extend("x-unit" = "m"))]
         profile: Vec<DVec2>,
     },
     /// A closed outline drawn in the plane z = `centre_z`; across the plane each height is as deep as it is wide.
     Outline {
         /// At least 3 points.
+        #[schemars(with = "Vec<[f64; 2]>", extend("x-unit" = "m"))]
         polygon: Vec<DVec2>,
         /// The plane of the drawing.
+        #[schemars(range(min = -1000000.0, max = 1e6), extend("x-unit" = "m"))]
         centre_z_m: f64,
         /// Depth over width, above 0; 1 gives round sections.
+        #[schemars(range(min = 0.001, max = 1000.0))]
         depth: f64,
     },
     /// A closed mesh. Small holes and inverted faces are borne (winding number).
     Mesh {
         /// Vertices.
+        #[schemars(with = "Vec<[f64; 3]>", extend("x-unit" = "m"))]
         vertices: Vec<DVec3>,
         /// Corners of each triangle.
         triangles: Vec<[u32; 3]>,
@@ -73,8 +90,10 @@ pub enum Envelope {
     /// A cloud of points: the space within `reach_m` of any of them.
     Points {
         /// At least one usable point.
+        #[schemars(with = "Vec<[f64; 3]>", extend("x-unit" = "m"))]
         points: Vec<DVec3>,
         /// Above 0.
+        #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
         reach_m: f64,
     },
 }

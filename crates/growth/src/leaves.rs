@@ -6,6 +6,7 @@ use base::ops::{self, PI};
 use base::{Draw, Report, Run, Seed};
 use glam::{DVec2, DVec3};
 use plant::{AxisId, Blade, Frame, Lift, NodeId, Organ, OrganKind, Phyllotaxis, Plant, Relief, Shape};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::error::within;
@@ -13,36 +14,49 @@ use crate::self_organize::ShadowGrid;
 use crate::{Arrangement, GrowthError, LeafMark, Obstacles};
 
 /// What leaves a tree bears.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct LeafSpec {
     /// How they stand around the shoot, default a golden spiral.
     pub arrangement: Arrangement,
     /// Between two nodes of a shoot, metres, above 0, default 0.06.
+    #[schemars(range(min = 0.0001, max = 1000.0), extend("x-unit" = "m"))]
     pub spacing_m: f64,
     /// Length of a blade, metres, above 0, default 0.09.
+    #[schemars(range(min = 0.0001, max = 100.0), extend("x-unit" = "m"))]
     pub length_m: f64,
     /// Width over length of the blade that [`blade`](Self::blade) makes, 0.01 to 3, default 0.5.
+    #[schemars(range(min = 0.01, max = 3.0))]
     pub width: f64,
     /// Standard deviation of the length as a share of it, 0 to 0.5, default 0.1.
+    #[schemars(range(min = 0.0, max = 0.5))]
     pub size_variation: f64,
     /// Between shoot and blade, degrees, 0 to 180, default 55.
+    #[schemars(range(min = 0.0, max = 180.0), extend("x-unit" = "deg"))]
     pub angle_deg: f64,
     /// How far blades hang, -1 to 1 (all down), default 0.15.
+    #[schemars(range(min = -1.0, max = 1.0))]
     pub droop: f64,
     /// Shoots bear leaves where they are not thicker than this, metres; default 0.009: two of the usual tips.
+    #[schemars(range(min = 0.0, max = 100.0), extend("x-unit" = "m"))]
     pub max_radius_m: f64,
     /// Share of the leaves kept, the best lit ones, 0 to 1; default 1. Many, suitable and few in Fig 11 of paper 001.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub leaf_keep: f64,
     /// Leaves with less light fall in any case, 0 or more (full light is 1), default 0.
+    #[schemars(range(min = 0.0, max = 1e6))]
     pub min_light: f64,
     /// What a leaf adds to the shadow of its own voxel (k of Eq 5), above 0, default 0.03.
+    #[schemars(range(min = 1e-6, max = 100.0))]
     pub shade: f64,
     /// The fall of the shadow from layer to layer (b of Eq 5), above 1, default 1.8.
+    #[schemars(range(min = 1.0, max = 100.0))]
     pub shade_fall: f64,
     /// Layers below a leaf that it shades, 1 to 32, default 6.
+    #[schemars(range(min = 1, max = 32))]
     pub shade_layers: u32,
     /// Side of a voxel, metres; default two blade lengths.
+    #[schemars(range(min = 0.001, max = 1000.0), extend("x-unit" = "m"))]
     pub voxel_m: Option<f64>,
     /// Whether a leaf suffers from its own shadow, as in the paper (Palubicki adds it back). Default false.
     pub self_shadow: bool,

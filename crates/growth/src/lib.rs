@@ -6,6 +6,7 @@
 //! |---|---|
 //! | `envelope` | the space of a crown, attraction points scattered in it |
 //! | `obstacle` | boxes, balls, cylinders, planes and meshes that growth goes around |
+//! | `mesh_faults` | whether a mesh is closed, for warnings |
 //! | `colonize` | space colonisation (Runions 2007) |
 //! | `competition` | life cycles of attraction points (paper 001) |
 //! | `self_organize` | buds that compete for light, shedding, wood (Palubicki 2009) |
@@ -23,6 +24,7 @@ mod error;
 mod field;
 mod leaves;
 mod lsystem;
+mod mesh_faults;
 mod obstacle;
 mod self_organize;
 mod skeleton;
@@ -38,9 +40,10 @@ pub use envelope::{Envelope, Region};
 pub use error::{GrowthError, MeshFault};
 pub use leaves::{LeafCount, LeafSpec, add_leaves};
 pub use lsystem::{LeafMark, Lsystem, LsystemError, LsystemTree, OAK_RULES, grow_lsystem};
+pub use mesh_faults::{open_edges, signed_volume};
 pub use obstacle::{Obstacle, Obstacles};
 pub use self_organize::{Light, Resource, SelfOrganized, SelfOrganizingSpec, self_organize};
 pub use skeleton::{JointId, Skeleton, SkeletonFault};
-pub use tree::{Grown, Method, TreeSpec, grow};
+pub use tree::{Grown, Method, Tally, TreeSpec, grow};
 pub use tropism::Tropism;
 pub use wood::{Wood, WoodSpec, make_wood};

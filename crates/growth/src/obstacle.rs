@@ -3,49 +3,60 @@
 //! `Obstacle -> Obstacles -> steer, blocks, inside`
 
 use glam::DVec3;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{FAR_M, GrowthError, usable, within};
 use crate::solid::{Solid, segment_meets_box};
 
 /// A solid thing. Metres, +Y up.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "shape", rename_all = "kebab-case", deny_unknown_fields)]
 #[non_exhaustive]
 pub enum Obstacle {
     /// A box along the axes.
     Box {
         /// Lower corner.
+        #[schemars(with = "[f64; 3]", extend("x-unit" = "m"))]
         min: DVec3,
         /// Upper corner, above the lower one in each coordinate.
+        #[schemars(with = "[f64; 3]", extend("x-unit" = "m"))]
         max: DVec3,
     },
     /// A ball.
     Sphere {
         /// Its middle.
+        #[schemars(with = "[f64; 3]", extend("x-unit" = "m"))]
         centre: DVec3,
         /// Above 0.
+        #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
         radius_m: f64,
     },
     /// An upright cylinder.
     Cylinder {
         /// Middle of its base.
+        #[schemars(with = "[f64; 3]", extend("x-unit" = "m"))]
         base: DVec3,
         /// Above 0.
+        #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
         radius_m: f64,
         /// Above 0.
+        #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
         height_m: f64,
     },
     /// Everything behind a plane: a wall, a slope.
     Plane {
         /// Any point of the plane.
+        #[schemars(with = "[f64; 3]", extend("x-unit" = "m"))]
         point: DVec3,
         /// Away from the solid side; any length above 0.
+        #[schemars(with = "[f64; 3]")]
         normal: DVec3,
     },
     /// A mesh; small holes and inverted faces are borne (winding number).
     Mesh {
         /// Vertices.
+        #[schemars(with = "Vec<[f64; 3]>", extend("x-unit" = "m"))]
         vertices: Vec<DVec3>,
         /// Corners of each triangle.
         triangles: Vec<[u32; 3]>,

@@ -5,18 +5,19 @@
 use base::{Report, Run, Seed};
 use glam::DVec3;
 use plant::{Blade, NodeId, Plant};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::colonize::plant_roots;
 use crate::error::within;
 use crate::{
-    ColonizeSpec, CompetitionSpec, Envelope, GrowthError, LeafCount, LeafMark, LeafSpec, Lsystem, Obstacle,
-    Obstacles, SelfOrganizingSpec, Skeleton, WoodSpec, add_leaves, colonize_from, compete, grow_lsystem,
-    make_wood, self_organize,
+    ColonizeSpec, Colonized, CompetitionSpec, Cycle, Envelope, Fate, GrowthError, LeafCount, LeafMark,
+    LeafSpec, Lsystem, Obstacle, Obstacles, SelfOrganizingSpec, Skeleton, WoodSpec, add_leaves,
+    colonize_from, compete, grow_lsystem, make_wood, self_organize,
 };
 
 /// How a tree grows.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 #[non_exhaustive]
 pub enum Method {
@@ -25,10 +26,21 @@ pub enum Method {
         /// The space of the crown, relative to the root.
         envelope: Envelope,
         /// Attraction points for each tree, 1 to 10 million.
+        #[schemars(range(min = 1, max = 10_000_000))]
         points: u32,
         /// Share of the envelope left empty inside, 0 to 0.99.
         #[serde(default)]
+        #[schemars(range(min = 0.0, max = 0.99))]
         hollow: f64,
+        /// Distances and pulls.
+        #[serde(default)]
+        steps: ColonizeSpec,
+    },
+    /// Space colonisation of points that are given instead of scattered.
+    Points {
+        /// Attraction points, metres; not relative to a root.
+        #[schemars(with = "Vec<[f64; 3]>", extend("x-unit" = "m"))]
+        points: Vec<DVec3>,
         /// Distances and pulls.
         #[serde(default)]
         steps: ColonizeSpec,
@@ -42,6 +54,7 @@ pub enum Method {
         /// The text that [`Lsystem::parse`] reads.
         rules: String,
         /// Most modules of all trees, 1 to 100 million.
+        #[schemars(range(min = 1, max = 100_000_000))]
         most_modules: u32,
     },
 }
@@ -58,7 +71,8 @@ pub struct TreeSpec {
     pub obstacles: Vec<Obstacle>,
     /// Distance that joints keep from obstacles, metres, 0 or more, default 0.05.
     pub clearance_m: f64,
-    /// The trees as they were after so many steps or years of growth; default none: to the end.
+    /// The trees as they were after so many rounds, years (self-organising) or rewriting steps (L-systems) of growth;
+    /// default none: to the end.
     pub age: Option<u32>,
     /// How they grow.
     pub method: Method,
@@ -83,6 +97,21 @@ impl Default for TreeSpec {
     }
 }
 
+/// What growth itself counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Attraction points or markers, of all cycles; 0 for rules and light.
+    pub attractors: usize,
+    /// Of these, consumed.
+    pub consumed: usize,
+    /// Of these, neither consumed nor lying in obstacles: no joint came near them.
+    pub unreachable: usize,
+    /// Rounds, years or rewriting steps.
+    pub iterations: u32,
+    /// Life cycles of paper 001; 1 for methods without.
+    pub cycles: u32,
+}
+
 /// A grown plant and what it was made of.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grown {
@@ -90,6 +119,8 @@ pub struct Grown {
     pub plant: Plant,
     /// The skeleton under it: for pruning, ages and measures.
     pub skeleton: Skeleton,
+    /// What growth counted.
+    pub tally: Tally,
     /// Leaves placed, fallen and kept.
     pub leaves: LeafCount,
     /// Nodes in obstacles: 0 unless something is wrong.
@@ -121,22 +152,10 @@ pub fn grow(
     report: &mut Report,
 ) -> Result<Grown, GrowthError> {
     let obstacles = Obstacles::new(&spec.obstacles, spec.clearance_m)?;
-    let (mut skeleton, mut marks) = bones(spec, &obstacles, seed, run, report)?;
-    if let Some(age) = spec.age {
-        let (young, new_id) = {
-            let old = skeleton;
-            let (mut young, new_id) = old.keep_mapped(|j| old.birth[j] <= age);
-            if !matches!(spec.method, Method::Lsystem { .. }) {
-                young.radius_m.fill(0.0);
-            }
-            (young, new_id)
-        };
-        skeleton = young;
-        marks.retain_mut(|m| {
-            let now = new_id[m.joint.index()];
-            m.joint = now.unwrap_or(m.joint);
-            now.is_some()
-        });
+    let Bones { mut skeleton, marks, tally } = bones(spec, &obstacles, seed, run, report)?;
+    let by_birth = !matches!(spec.method, Method::Lsystem { .. } | Method::SelfOrganizing(_));
+    if let Some(age) = spec.age.filter(|_| by_birth) {
+        skeleton = skeleton.at_age(age);
     }
     let started = run.clock.now_ms();
     let mut wood_spec = spec.wood.clone();
@@ -159,20 +178,42 @@ pub fn grow(
     let nodes_in_obstacles = plant.nodes.position.iter().filter(|p| inside(**p)).count();
     let leaves_in_obstacles = plant.organs.iter().filter(|o| inside(o.frame.origin)).count();
     debug_assert_eq!(plant.validate().next(), None, "a grown plant is sound");
-    Ok(Grown { plant, skeleton, leaves, nodes_in_obstacles, leaves_in_obstacles })
+    Ok(Grown { plant, skeleton, tally, leaves, nodes_in_obstacles, leaves_in_obstacles })
 }
 
-/// The skeleton by whichever method, and the leaves that rules set.
+/// A skeleton, the leaves that rules set, and what was counted.
+struct Bones {
+    skeleton: Skeleton,
+    marks: Vec<LeafMark>,
+    tally: Tally,
+}
+
+impl Bones {
+    fn colonized(grown: Colonized) -> Self {
+        let count = |f: fn(&Fate) -> bool| grown.fates.iter().filter(|x| f(x)).count();
+        let tally = Tally {
+            attractors: grown.fates.len(),
+            consumed: count(|f| matches!(f, Fate::Reached(_))),
+            unreachable: count(|f| *f == Fate::Unreached),
+            iterations: grown.rounds,
+            cycles: 1,
+        };
+        Self { skeleton: grown.skeleton, marks: Vec::new(), tally }
+    }
+}
+
+/// The skeleton by whichever method.
 fn bones(
     spec: &TreeSpec,
     obstacles: &Obstacles,
     seed: Seed,
     run: &Run<'_>,
     report: &mut Report,
-) -> Result<(Skeleton, Vec<LeafMark>), GrowthError> {
-    let skeleton = match &spec.method {
+) -> Result<Bones, GrowthError> {
+    match &spec.method {
         Method::Colonization { envelope, points, hollow, steps } => {
             within("points", f64::from(*points), 1.0, 1e7, "1 to 10 million")?;
+            within("hollow", *hollow, 0.0, 0.99, "0 to 0.99")?;
             let roots = plant_roots(&spec.roots, obstacles)?;
             let region = envelope.prepare()?;
             let mut attractors = Vec::new();
@@ -181,16 +222,40 @@ fn bones(
                 let own = region.scatter(*points as usize, *hollow, seed.child(i), free)?;
                 attractors.extend(own.into_iter().map(|p| *root + p));
             }
-            colonize_from(roots, &attractors, obstacles, steps, run, report)?.skeleton
+            Ok(Bones::colonized(colonize_from(roots, &attractors, obstacles, steps, run, report)?))
         }
-        Method::Competition(s) => compete(&spec.roots, obstacles, s, seed, run, report)?.skeleton,
-        Method::SelfOrganizing(s) => self_organize(&spec.roots, obstacles, s, seed, run, report)?.skeleton,
+        Method::Points { points, steps } => {
+            let roots = plant_roots(&spec.roots, obstacles)?;
+            Ok(Bones::colonized(colonize_from(roots, points, obstacles, steps, run, report)?))
+        }
+        Method::Competition(s) => {
+            let grown = compete(&spec.roots, obstacles, s, seed, run, report)?;
+            let sum = |of: fn(&Cycle) -> usize| grown.cycles.iter().map(of).sum();
+            let tally = Tally {
+                attractors: sum(|c| c.points),
+                consumed: sum(|c| c.reached),
+                unreachable: sum(|c| c.points - c.reached),
+                iterations: grown.skeleton.age(),
+                cycles: s.lifespan,
+            };
+            Ok(Bones { skeleton: grown.skeleton, marks: Vec::new(), tally })
+        }
+        Method::SelfOrganizing(s) => {
+            // Younger trees still have the branches that older ones have shed.
+            let years = spec.age.map_or(s.years, |age| age.min(s.years));
+            let s = SelfOrganizingSpec { years, ..s.clone() };
+            let skeleton = self_organize(&spec.roots, obstacles, &s, seed, run, report)?.skeleton;
+            let tally = Tally { iterations: years, cycles: 1, ..Tally::default() };
+            Ok(Bones { skeleton, marks: Vec::new(), tally })
+        }
         Method::Lsystem { rules, most_modules } => {
             plant_roots(&spec.roots, obstacles)?;
-            let system = Lsystem::parse(rules)?;
+            let mut system = Lsystem::parse(rules)?;
+            system.steps = spec.age.map_or(system.steps, |age| age.min(system.steps));
+            let tally = Tally { iterations: system.steps, cycles: 1, ..Tally::default() };
             let tree = grow_lsystem(&spec.roots, &system, *most_modules, seed, run, report)?;
             if obstacles.is_empty() {
-                return Ok((tree.skeleton, tree.leaves));
+                return Ok(Bones { skeleton: tree.skeleton, marks: tree.leaves, tally });
             }
             let s = &tree.skeleton;
             let open = |j: usize| match s.parent[j] {
@@ -199,13 +264,12 @@ fn bones(
                     obstacles.free(s.position[j]) && !obstacles.blocks(s.position[p.index()], s.position[j])
                 }
             };
-            let (cut, new_id) = s.keep_mapped(open);
+            let (skeleton, new_id) = s.keep_mapped(open);
             let marks = tree.leaves.iter();
             let marks = marks.filter_map(|m| Some(LeafMark { joint: new_id[m.joint.index()]?, ..*m }));
-            return Ok((cut, marks.collect()));
+            Ok(Bones { skeleton, marks: marks.collect(), tally })
         }
-    };
-    Ok((skeleton, Vec::new()))
+    }
 }
 
 #[cfg(test)]
@@ -257,10 +321,10 @@ mod tests {
 
     #[test]
     fn a_younger_tree_is_smaller() {
-        for method in &methods()[..3] {
+        for method in &methods() {
             let spec = TreeSpec { method: method.clone(), ..TreeSpec::default() };
             let old = tree(&spec);
-            let young = tree(&TreeSpec { age: Some(old.skeleton.age() / 2), ..spec });
+            let young = tree(&TreeSpec { age: Some(old.tally.iterations / 2), ..spec });
             assert!(young.skeleton.len() < old.skeleton.len() && !young.plant.axes.is_empty());
             assert!(young.plant.nodes.radius_m[0] < old.plant.nodes.radius_m[0]);
         }

@@ -1,6 +1,7 @@
 //! Steady pulls on growing tips.
 
 use glam::DVec3;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{GrowthError, usable, within};
@@ -14,12 +15,14 @@ use crate::error::{GrowthError, usable, within};
 /// assert_eq!(bent, DVec3::new(0.5, 0.2, 0.0));
 /// # Ok::<(), growth::GrowthError>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Tropism {
     /// Where to; any length above 0.
+    #[schemars(with = "[f64; 3]")]
     pub direction: DVec3,
     /// Relative to the pull of free space (which is 1), -10 to 10.
+    #[schemars(range(min = -10.0, max = 10.0))]
     pub strength: f64,
 }
 

@@ -6,32 +6,39 @@ use base::ops;
 use base::{Cancelled, Run, Seed};
 use glam::DVec3;
 use plant::{AxisKind, NodeId, Plant};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::error::within;
 use crate::{GrowthError, JointId, Obstacles, Skeleton};
 
 /// How a skeleton becomes wood.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct WoodSpec {
     /// Exponent t of `r^t = sum of r_i^t` (paper 001, Eq 4), 1 to 4, default 2.4; trees are measured at 1.8 to 2.6.
+    #[schemars(range(min = 1.0, max = 4.0))]
     pub pipe_exponent: f64,
     /// Radius of a tip, metres, above 0, default 0.004.
+    #[schemars(range(min = 1e-6, max = 10.0), extend("x-unit" = "m"))]
     pub tip_radius_m: f64,
     /// What every internode adds to the pipes, as a share of a tip's, 0 to 1, default 0.05. It makes shoots taper
     /// between forks; 0 is Eq 4 to the letter.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub internode_share: f64,
     /// Radius at the foot of the thickest trunk, metres; what lies between it and the tips is stretched in
     /// proportion. Default none: as the pipe model has it.
+    #[schemars(range(min = 1e-6, max = 100.0), extend("x-unit" = "m"))]
     pub trunk_radius_m: Option<f64>,
     /// Smooths courses to quadratic Bezier pieces that join with one tangent (Eq 3, C1 variant). Default true.
     pub smooth: bool,
     /// How often every joint is moved half-way to the one it grew from (Runions 2007, step e), 0 to 10: angles at
     /// forks become acute and courses straighter; each time costs half an internode of size. Default 1.
+    #[schemars(range(min = 0, max = 10))]
     pub relax: u32,
     /// Joints that bear nothing are left out where this takes the course aside by less than this share of the radius,
     /// 0 to 10, default 0.25.
+    #[schemars(range(min = 0.0, max = 10.0))]
     pub thin_out: f64,
 }
 

@@ -20,9 +20,13 @@ const VEINS_FROM: f64 = 100.0;
 pub fn blade_mesh(blade: &Blade, triangles: f64) -> TriMesh {
     let area = geom::signed_area(&blade.outline).abs();
     let around = closed_length(&blade.outline);
-    let Some(edge) = edge_length(area, around, triangles.clamp(8.0, 20_000.0)) else {
+    let wanted = triangles.clamp(8.0, 20_000.0);
+    let Some(edge) = edge_length(area, around, wanted) else {
         return TriMesh::default();
     };
+    // The margin alone makes a triangle of each of its edges: a bundle of needles, which is all margin, would get
+    // many times what was wished for.
+    let edge = edge.max(around / wanted);
     let mut lines: Vec<&[DVec2]> = vec![&blade.midrib];
     if triangles >= VEINS_FROM {
         lines.extend(blade.veins.iter().map(Vec::as_slice));

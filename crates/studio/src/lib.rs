@@ -23,6 +23,7 @@ mod make;
 mod opening;
 mod report;
 mod template;
+mod trees;
 
 pub use base::{
     Angle, CancelToken, Cancelled, Clock, Digest, Executor, NoClock, Report, Run, Seed, Serial, Unit, UpAxis,
@@ -40,7 +41,13 @@ pub use report::{
 };
 pub use template::{LeafTemplate, TemplateError};
 
-pub use {bloom, document, formats, geom, glam, leaf, mesh, plant, render, sketch, skin};
+pub use trees::{
+    Bark, BladeForm, BladeSpec, Colour, GrowthReport, Look, MadeTree, NamedMesh, OAK_METHODS, PAPER_OAKS,
+    PRESETS, PaperOak, Preset, TreeError, TreeOptions, TreeSize, TreeSpec, coarser, make_tree, method_word,
+    read_tree_spec, scale_to_height, tree_schema, tree_size,
+};
+
+pub use {bloom, document, formats, geom, glam, growth, leaf, mesh, plant, render, sketch, skin};
 
 /// The version that is written into reports and files.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -83,6 +83,9 @@ pub struct ItemReport {
     /// Of `leaf`: veins, blade and how well they fit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub leaf: Option<crate::LeafReport>,
+    /// Of `grow`: what growth did.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub growth: Option<crate::GrowthReport>,
 }
 
 /// One stroke.

@@ -2,13 +2,14 @@
 
 use glam::DVec3;
 use plant::Phyllotaxis;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::error::within;
 use crate::{Arrangement, Envelope, GrowthError, Tropism};
 
 /// How buds learn how much light they have.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 #[non_exhaustive]
 pub enum Light {
@@ -16,14 +17,19 @@ pub enum Light {
     Shadow {
         /// Side of a voxel, metres; default two internodes.
         #[serde(default)]
+        #[schemars(extend("x-unit" = "m"))]
         voxel_m: Option<f64>,
         /// What a joint adds to its own voxel, above 0 and at most 100.
+        #[schemars(range(min = 1e-6, max = 100.0))]
         a: f64,
         /// The fall of the shadow from layer to layer, above 1 and at most 100.
+        #[schemars(range(min = 1.0, max = 100.0))]
         b: f64,
         /// Layers below that are shaded, 1 to 32.
+        #[schemars(range(min = 1, max = 32))]
         layers: u32,
         /// Full light C, above 0.
+        #[schemars(range(min = 1e-6, max = 1e6))]
         full: f64,
     },
     /// Space colonisation: Q = 1 for a bud that is nearest to a free marker in its cone, else 0.
@@ -31,12 +37,16 @@ pub enum Light {
         /// Where markers are, relative to the root.
         envelope: Envelope,
         /// How many for each tree, 1 to 10 million.
+        #[schemars(range(min = 1, max = 10_000_000))]
         markers: u32,
         /// Radius in which a joint removes markers, internodes; 2 in the paper.
+        #[schemars(range(min = 0.01, max = 100.0), extend("x-unit" = "internodes"))]
         occupancy: f64,
         /// Radius in which a bud sees markers, internodes; 4 to 6 in the paper.
+        #[schemars(range(min = 0.01, max = 100.0), extend("x-unit" = "internodes"))]
         perception: f64,
         /// Half opening angle of the cone of sight, degrees; 45.
+        #[schemars(range(min = 0.1, max = 180.0), extend("x-unit" = "deg"))]
         half_angle_deg: f64,
     },
 }
@@ -48,25 +58,30 @@ impl Default for Light {
 }
 
 /// How what was gathered is shared.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 #[non_exhaustive]
 pub enum Resource {
     /// The extended Borchert-Honda model.
     BorchertHonda {
         /// Bias for the main axis, 0 to 1; 0.46 makes a bush, 0.54 a leader.
+        #[schemars(range(min = 0.0, max = 1.0))]
         lambda: f64,
         /// The bias after `lambda_years`; default the same.
         #[serde(default)]
+        #[schemars(range(min = 0.0, max = 1.0))]
         lambda_late: Option<f64>,
     },
     /// The priority model: weights by rank along each axis.
     Priority {
         /// Weight of the tip, above 0.
+        #[schemars(range(min = 1e-6, max = 1e6))]
         w_max: f64,
         /// Weight from rank `kappa` on, 0 or more.
+        #[schemars(range(min = 0.0, max = 1e6))]
         w_min: f64,
         /// Rank, 1 or more.
+        #[schemars(range(min = 1, max = 1000000))]
         kappa: u32,
     },
 }
@@ -78,44 +93,57 @@ impl Default for Resource {
 }
 
 /// Self-organising growth. Metres, years, degrees.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct SelfOrganizingSpec {
     /// Years of growth, 0 to 1000, default 25.
+    #[schemars(range(min = 0, max = 1000), extend("x-unit" = "a"))]
     pub years: u32,
     /// Length of an internode at vigour 1, above 0, default 0.25.
+    #[schemars(range(min = 0.0001, max = 1000.0), extend("x-unit" = "m"))]
     pub internode_m: f64,
     /// How buds learn their light.
     pub light: Light,
     /// How it is shared.
     pub resource: Resource,
     /// Years until `lambda_late` holds, default 10.
+    #[schemars(extend("x-unit" = "a"))]
     pub lambda_years: u32,
     /// Vigour per unit of light, above 0 and at most 100, default 2.
+    #[schemars(range(min = 1e-6, max = 100.0))]
     pub alpha: f64,
     /// Weight xi of the best-lit direction, 0 to 10, default 0.25.
+    #[schemars(range(min = 0.0, max = 10.0))]
     pub light_weight: f64,
     /// Weight eta and direction of what else pulls, default 0.05 upwards.
     pub tropisms: Vec<Tropism>,
     /// How axillary buds stand, default a golden spiral.
     pub arrangement: Arrangement,
     /// Between a shoot and the buds at its side, 0 to 180 degrees, default 60.
+    #[schemars(range(min = 0.0, max = 180.0), extend("x-unit" = "deg"))]
     pub branch_angle_deg: f64,
     /// Standard deviation of that angle and of the azimuths, 0 to 60 degrees, default 4.
+    #[schemars(range(min = 0.0, max = 60.0), extend("x-unit" = "deg"))]
     pub jitter_deg: f64,
     /// A branch with less light per internode is shed, 0 or more, default 0.15.
+    #[schemars(range(min = 0.0, max = 1e6))]
     pub shed_below: f64,
     /// Years that a branch is spared, default 3.
+    #[schemars(extend("x-unit" = "a"))]
     pub shed_after_years: u32,
     /// Most internodes of one shoot a year, 1 to 100, default 6.
+    #[schemars(range(min = 1, max = 100))]
     pub most_per_shoot: u32,
     /// Exponent n of the pipe model, 1 to 4, default 2.4.
+    #[schemars(range(min = 1.0, max = 4.0))]
     pub pipe_exponent: f64,
     /// Radius of a fresh shoot, above 0, default 0.004.
+    #[schemars(range(min = 1e-6, max = 10.0), extend("x-unit" = "m"))]
     pub tip_radius_m: f64,
     /// Whether a bud suffers from the shadow of its own leaf (paper 001 has no correction), default false.
     pub self_shadow: bool,
     /// Most joints of all trees together, default 2 million.
+    #[schemars(range(min = 1, max = 2_147_483_648_u64))]
     pub max_joints: u32,
 }
 

@@ -1,0 +1,420 @@
+//! `burgeon grow`: a species or a spec to a tree.
+
+use std::path::{Path, PathBuf};
+
+use burgeon::formats::{CloudFormat, PngCache, read_cloud};
+use burgeon::glam::DVec3;
+use burgeon::growth::{
+    ColonizeSpec, CompetitionSpec, Envelope, Method, OAK_RULES, Obstacle, SelfOrganizingSpec,
+};
+use burgeon::mesh::Model;
+use burgeon::skin::SkinSpec;
+use burgeon::{
+    ItemReport, MadeTree, NamedMesh, Preset, Report, RunReport, Seed, TreeError, TreeOptions, TreeSpec,
+    make_tree, method_word, read_tree_spec,
+};
+use clap::{Args, ValueEnum};
+
+use crate::args::{AxesArgs, CommonArgs, PictureArgs, ranged, seed};
+use crate::failure::{Failure, Outcome};
+use crate::machine::Machine;
+use crate::{files, output, picture, report, say};
+
+#[derive(Args, Debug)]
+#[command(after_long_help = GROW_EXAMPLES)]
+pub(crate) struct GrowArgs {
+    /// A species of `burgeon presets`, or a spec (.toml) [default: a plain tree].
+    #[arg(value_name = "PRESET|SPEC.toml", required_unless_present_any = ["method", "attractors"])]
+    pub(crate) what: Option<PathBuf>,
+    /// The model: .glb, .obj, .ply or .stl.
+    #[arg(long, short, value_name = "OUT", required_unless_present_any = ["png", "report", "json"])]
+    pub(crate) output: Option<PathBuf>,
+    /// Also make a picture.
+    #[arg(long, value_name = "FILE.png")]
+    pub(crate) png: Option<PathBuf>,
+    /// Number that all chance follows from.
+    #[arg(long, value_name = "N", default_value_t = 1, allow_hyphen_values = true, value_parser = seed)]
+    pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) growth: GrowthArgs,
+    #[command(flatten)]
+    pub(crate) points: PointsArgs,
+    #[command(flatten)]
+    pub(crate) surface: TreeSurfaceArgs,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
+    #[command(flatten)]
+    pub(crate) axes: AxesArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+const GROW_EXAMPLES: &str = "Examples:
+  burgeon grow oak -o oak.glb --png oak.png
+  burgeon grow pine -o pine.glb --leaf-keep 0.4 --lods 3         pine.glb, pine-lod1.glb, ...
+  burgeon grow oak -o oak.glb --obstacle house.obj               around a house
+  burgeon grow birch -o young.glb --age 12
+  burgeon grow --attractors scan.xyz --root 0,0,0 --influence 1 --kill 0.4 -o tree.glb
+  burgeon presets --show oak > mine.toml; burgeon grow mine.toml -o mine.glb";
+
+/// What grows, and for how long.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Growth")]
+pub(crate) struct GrowthArgs {
+    /// Grow by this method: where PRESET or SPEC.toml uses another one, with that method's own defaults in the same
+    /// envelope [default: the preset's].
+    #[arg(long, value_enum)]
+    pub(crate) method: Option<MethodWord>,
+    /// A solid mesh (.glb, .gltf, .obj, .ply, .stl) to grow around; may be given several times.
+    #[arg(long, value_name = "MESH")]
+    pub(crate) obstacle: Vec<PathBuf>,
+    /// Share of the leaves kept, the best lit ones, 0 to 1 [default: the preset's, mostly 1].
+    #[arg(long, value_name = "F", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 0.0, 1.0))]
+    pub(crate) leaf_keep: Option<f64>,
+    /// The tree as it was after N rounds, years (self-organizing) or rewriting steps (lsystem) [default: full-grown].
+    #[arg(long, value_name = "N")]
+    pub(crate) age: Option<u32>,
+}
+
+/// Growth on given points.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Given points")]
+pub(crate) struct PointsArgs {
+    /// Attraction points (.xyz, .txt, .ply, .pcd, .las, .obj) instead of an envelope: space colonization of just these.
+    #[arg(long, value_name = "FILE", conflicts_with = "method")]
+    pub(crate) attractors: Option<PathBuf>,
+    /// Where the tree stands, metres; may be given several times [default: the preset's, mostly 0,0,0].
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = point)]
+    pub(crate) root: Vec<DVec3>,
+    /// Length D of a step, metres, above 0 [default: half of --kill].
+    #[arg(long, value_name = "D", allow_hyphen_values = true, value_parser = length)]
+    pub(crate) step: Option<f64>,
+    /// Distance within which a point attracts, metres, above 0 [default: 1].
+    #[arg(long, value_name = "D", allow_hyphen_values = true, value_parser = length)]
+    pub(crate) influence: Option<f64>,
+    /// Distance within which a point is consumed, metres, above 0 and at most --influence [default: 0.4].
+    #[arg(long, value_name = "D", allow_hyphen_values = true, value_parser = length)]
+    pub(crate) kill: Option<f64>,
+}
+
+/// How the tree is meshed.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Surface")]
+pub(crate) struct TreeSurfaceArgs {
+    /// Fineness of the meshes, 0.1 to 8; triangle counts grow in proportion.
+    #[arg(long, value_name = "X", default_value_t = 1.0, allow_hyphen_values = true,
+          value_parser = |s: &str| ranged(s, 0.1, 8.0))]
+    pub(crate) detail: f64,
+    /// Sides of an ordinary branch, 3 to 24; thick branches get more.
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(3..=24))]
+    pub(crate) sides: u32,
+    /// Coarser copies to write beside the model (OUT-lod1, OUT-lod2, ...), 0 to 6.
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=6))]
+    pub(crate) lods: u32,
+    /// Plain colours instead of textures.
+    #[arg(long)]
+    pub(crate) no_textures: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum MethodWord {
+    /// Life cycles of attraction points (the paper)
+    Competition,
+    /// Space colonization (Runions 2007)
+    Colonization,
+    /// Buds that compete for light (Palubicki 2009)
+    SelfOrganizing,
+    /// Rewriting rules: an oak, unless the spec has its own
+    Lsystem,
+}
+
+impl MethodWord {
+    const fn word(self) -> &'static str {
+        match self {
+            Self::Competition => "competition",
+            Self::Colonization => "colonization",
+            Self::SelfOrganizing => "self-organizing",
+            Self::Lsystem => "lsystem",
+        }
+    }
+}
+
+fn point(text: &str) -> Result<DVec3, String> {
+    let numbers: Vec<f64> = text.split(',').filter_map(|w| w.trim().parse().ok()).collect();
+    match numbers.as_slice() {
+        &[x, y, z] if text.split(',').count() == 3 && [x, y, z].iter().all(|c| c.abs() <= 1e6) => {
+            Ok(DVec3::new(x, y, z))
+        }
+        _ => Err("give three numbers within 1e6 such as 0,0,1.5".into()),
+    }
+}
+
+fn length(text: &str) -> Result<f64, String> {
+    ranged(text, 1e-6, 1e6)
+}
+
+pub(crate) fn grow(args: &GrowArgs) -> Outcome {
+    let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
+    let outputs = [
+        ("-o", args.output.as_ref()),
+        ("--png", args.png.as_ref()),
+        ("--report", args.common.report.as_ref()),
+    ];
+    let inputs = args.what.iter().chain(&args.growth.obstacle).chain(&args.points.attractors);
+    output::check_outputs(&outputs, &inputs.collect::<Vec<_>>())?;
+    let format = args.output.as_deref().map(files::writable).transpose()?;
+    if let Some(png) = &args.png {
+        picture::check_name(png)?;
+    }
+    let mut told = Report::default();
+    let (spec, read_ms) = machine.timed(|| asked(args, &mut told));
+    let spec = spec?;
+    let seed = Seed::new(args.seed);
+    let options = TreeOptions {
+        skin: SkinSpec {
+            detail: args.surface.detail,
+            sides: args.surface.sides,
+            textures: !args.surface.no_textures,
+            ..SkinSpec::default()
+        },
+        lods: if args.output.is_some() { args.surface.lods } else { 0 },
+        ..TreeOptions::default()
+    };
+    let made = machine.with_progress("grow", |_| make_tree(&spec, seed, &options, &machine.run()));
+    let MadeTree { model, lods, mut item, .. } = made.map_err(|e| failure(args, e))?;
+    machine.cancel.check()?;
+    item.warnings.splice(0..0, told.warnings.iter().map(ToString::to_string));
+    item.timings_ms.add_io(read_ms, 0.0);
+    let mut items = vec![item];
+    if let Some((path, format)) = args.output.as_deref().zip(format) {
+        let axes = files::axes(args.axes.up, args.axes.unit);
+        let mut cache = PngCache::new();
+        let all = std::iter::once((&model, path.to_path_buf()));
+        let all = all.chain(lods.iter().zip(1..).map(|(m, level)| (m, beside(path, level))));
+        for (level, (model, path)) in all.enumerate() {
+            machine.cancel.check()?;
+            let (written, write_ms) =
+                machine.timed(|| files::write_model(&path, model, format, &axes, &mut cache));
+            let written = written?;
+            if level > 0 {
+                items.push(lod_item(&items[0], model, level));
+            }
+            let item = &mut items[level];
+            item.output = path.display().to_string();
+            item.warnings.extend(written.iter().map(ToString::to_string));
+            item.timings_ms.add_io(0.0, write_ms);
+        }
+    }
+    if let Some(png) = &args.png {
+        let spec = args.picture.spec(args.seed);
+        let drawn =
+            machine.with_progress("picture", |_| burgeon::render::render(&model, &spec, &machine.run()))?;
+        picture::write(png, &drawn)?;
+    }
+    let mut run = RunReport::new("grow", args.seed);
+    run.input.path = named(args);
+    if !machine.quiet {
+        for item in &items {
+            item.warnings.iter().for_each(|w| say::warning(&format!("{}: {w}", item.name)));
+        }
+        say::line(&summary(&items[0], args.png.as_deref()));
+        items[1..].iter().for_each(|i| say::line(&report::summary(i, None)));
+    }
+    run.ok = 1;
+    run.items = items;
+    report::finish(&run, &args.common)
+}
+
+fn named(args: &GrowArgs) -> String {
+    let path = args.what.as_ref().or(args.points.attractors.as_ref());
+    path.map_or_else(|| "tree".into(), |p| p.display().to_string())
+}
+
+fn summary(item: &ItemReport, png: Option<&Path>) -> String {
+    let line = report::summary(item, png);
+    let Some(g) = &item.growth else { return line };
+    let points = if g.attractors > 0 {
+        format!(", {} of {} points consumed", say::grouped(g.consumed), say::grouped(g.attractors))
+    } else {
+        String::new()
+    };
+    line.replacen("; ", &format!(" by {}{points}; ", g.method), 1)
+}
+
+/// `tree.glb` -> `tree-lod1.glb`.
+fn beside(path: &Path, level: usize) -> PathBuf {
+    let extension = files::extension(path).unwrap_or_default();
+    path.with_file_name(format!("{}-lod{level}.{extension}", files::stem(path)))
+}
+
+fn lod_item(full: &ItemReport, model: &Model, level: usize) -> ItemReport {
+    let mut item = picture::model_item(model, Path::new(""), &[]);
+    item.name = format!("{} lod{level}", full.name);
+    item
+}
+
+pub(crate) fn failure(args: &GrowArgs, error: TreeError) -> Failure {
+    match error {
+        TreeError::Cancelled(_) => Failure::Cancelled,
+        other => Failure::at(Path::new(&named(args)), other),
+    }
+}
+
+/// The spec as the options make it.
+fn asked(args: &GrowArgs, told: &mut Report) -> Outcome<TreeSpec> {
+    let mut spec = match &args.what {
+        Some(what) => read_spec(what, told)?,
+        None => TreeSpec::default(),
+    };
+    if let Some(method) = args.growth.method
+        && method.word() != method_word(&spec.method)
+    {
+        let envelope = envelope_of(&spec.method).cloned();
+        spec.method = default_method(method, envelope);
+        spec.name = format!("{} by {}", spec.name, method.word());
+    }
+    if let Some(path) = &args.points.attractors {
+        let points = read_points(path, args, told)?;
+        if args.what.is_none() {
+            spec.name = files::stem(path);
+        }
+        spec.method = Method::Points { points, steps: steps_of(&spec.method) };
+    }
+    distances(&args.points, &mut spec.method)?;
+    if !args.points.root.is_empty() {
+        spec.roots.clone_from(&args.points.root);
+    }
+    for path in &args.growth.obstacle {
+        let axes = files::axes(args.axes.up, args.axes.unit);
+        let (model, _, warnings) = files::read_model(path, &axes)?;
+        told.warnings.extend(warnings);
+        let (vertices, triangles) = soup(&model);
+        spec.obstacles.push(Obstacle::Mesh { vertices, triangles });
+    }
+    if let Some(keep) = args.growth.leaf_keep {
+        spec.leaves.leaf_keep = keep;
+    }
+    spec.age = args.growth.age.or(spec.age);
+    Ok(spec)
+}
+
+/// A preset by its key, or a file.
+fn read_spec(what: &Path, told: &mut Report) -> Outcome<TreeSpec> {
+    let key = what.to_str().unwrap_or_default();
+    let preset = Preset::find(key).filter(|_| !what.is_file());
+    if let Some(preset) = preset {
+        return preset.spec().map_err(|e| Failure::Bug(format!("preset {key}: {e}")));
+    }
+    if files::extension(what).is_none() && !what.exists() {
+        return Err(Failure::Bad(format!(
+            "there is no preset `{key}`; `burgeon presets` lists them, and a spec's name ends with .toml"
+        )));
+    }
+    let text = files::read_text(what)?;
+    let warnings = std::cell::RefCell::new(Vec::new());
+    let open = |name: &str| named_mesh(what, name, &mut warnings.borrow_mut());
+    let mut spec = read_tree_spec(&text, &open).map_err(|e| Failure::at(what, e))?;
+    if spec.name == TreeSpec::default().name {
+        spec.name = files::stem(what);
+    }
+    told.warnings.extend(warnings.into_inner());
+    Ok(spec)
+}
+
+/// A mesh or cloud that a spec names, beside the spec or by its full path. In metres, +Y up.
+fn named_mesh(spec: &Path, name: &str, warnings: &mut Vec<burgeon::Warning>) -> Option<NamedMesh> {
+    let path = spec.parent().unwrap_or_else(|| Path::new("")).join(name);
+    let axes = burgeon::formats::ExportSpec::default();
+    if let Some(format @ (CloudFormat::Xyz | CloudFormat::Pcd | CloudFormat::Las)) =
+        files::extension(&path).and_then(CloudFormat::from_extension)
+    {
+        let mut report = Report::default();
+        let cloud = read_cloud(std::fs::File::open(&path).ok()?, format, &axes, &mut report).ok()?;
+        warnings.extend(report.warnings);
+        return Some((cloud.points, Vec::new()));
+    }
+    let (model, _, told) = files::read_model(&path, &axes).ok()?;
+    warnings.extend(told);
+    Some(soup(&model))
+}
+
+/// All triangles of a model.
+fn soup(model: &Model) -> NamedMesh {
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    for part in &model.parts {
+        let first = u32::try_from(vertices.len()).unwrap_or(u32::MAX);
+        vertices.extend(part.mesh.positions.iter().map(|p| DVec3::from_array(p.map(f64::from))));
+        triangles.extend(part.mesh.triangles.iter().map(|t| t.map(|i| i.saturating_add(first))));
+    }
+    (vertices, triangles)
+}
+
+fn read_points(path: &Path, args: &GrowArgs, told: &mut Report) -> Outcome<Vec<DVec3>> {
+    let format = files::extension(path).and_then(CloudFormat::from_extension);
+    let format = format.ok_or_else(|| {
+        Failure::at(path, "is not named as points; end the name with .xyz, .txt, .ply, .pcd, .las or .obj")
+    })?;
+    let axes = files::axes(args.axes.up, args.axes.unit);
+    let file = std::fs::File::open(path).map_err(|e| Failure::io(path, "read", &e))?;
+    let cloud = read_cloud(file, format, &axes, told).map_err(|e| Failure::at(path, e))?;
+    Ok(cloud.points)
+}
+
+fn envelope_of(method: &Method) -> Option<&Envelope> {
+    match method {
+        Method::Colonization { envelope, .. } => Some(envelope),
+        Method::Competition(s) => Some(&s.envelope),
+        _ => None,
+    }
+}
+
+fn steps_of(method: &Method) -> ColonizeSpec {
+    match method {
+        Method::Colonization { steps, .. } | Method::Points { steps, .. } => steps.clone(),
+        _ => ColonizeSpec::default(),
+    }
+}
+
+fn default_method(word: MethodWord, envelope: Option<Envelope>) -> Method {
+    let envelope = envelope.unwrap_or_default();
+    match word {
+        MethodWord::Competition => {
+            Method::Competition(CompetitionSpec { envelope, ..CompetitionSpec::default() })
+        }
+        MethodWord::Colonization => {
+            Method::Colonization { envelope, points: 1500, hollow: 0.0, steps: ColonizeSpec::default() }
+        }
+        MethodWord::SelfOrganizing => Method::SelfOrganizing(SelfOrganizingSpec::default()),
+        MethodWord::Lsystem => Method::Lsystem { rules: OAK_RULES.into(), most_modules: 5_000_000 },
+    }
+}
+
+/// --step, --influence and --kill for the methods that have them.
+fn distances(args: &PointsArgs, method: &mut Method) -> Outcome {
+    let given = [args.step, args.influence, args.kill];
+    if given.iter().all(Option::is_none) {
+        return Ok(());
+    }
+    let (attraction, kill, step) = match method {
+        Method::Colonization { steps, .. } | Method::Points { steps, .. } => {
+            (&mut steps.attraction_m, &mut steps.kill_m, &mut steps.step_m)
+        }
+        Method::Competition(s) => (&mut s.attraction_m, &mut s.kill_m, &mut s.step_m),
+        _ => {
+            return Err(Failure::Bad(
+                "--step, --influence and --kill are for --method competition and colonization, and for --attractors"
+                    .into(),
+            ));
+        }
+    };
+    *attraction = args.influence.unwrap_or(*attraction);
+    *kill = args.kill.unwrap_or(*kill);
+    *step = args.step.or(*step);
+    if args.kill.is_some() && args.influence.is_some() && *kill > *attraction {
+        return Err(Failure::Bad(format!(
+            "--kill {kill} is above --influence {attraction}: points would be consumed before they attract; make \
+             --kill at most {attraction}"
+        )));
+    }
+    Ok(())
+}

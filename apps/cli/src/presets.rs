@@ -1,0 +1,70 @@
+//! `burgeon presets`: the species that come with the program.
+
+use std::path::PathBuf;
+
+use burgeon::{PRESETS, Preset, TreeSpec, method_word, tree_schema};
+use clap::Args;
+use serde::Serialize;
+
+use crate::failure::{Failure, Outcome};
+use crate::{output, say};
+
+#[derive(Args, Debug)]
+#[command(after_long_help = "Examples:
+  burgeon presets
+  burgeon presets --show oak > mine.toml
+  burgeon presets --schema tree.schema.json")]
+pub(crate) struct PresetsArgs {
+    /// Print the TOML of one preset.
+    #[arg(long, value_name = "PRESET")]
+    pub(crate) show: Option<String>,
+    /// Write the JSON Schema of specs: every field with its meaning, unit (x-unit), range and default.
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) schema: Option<PathBuf>,
+    /// Print the list as JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// One row of the list.
+#[derive(Serialize)]
+struct Row {
+    preset: &'static str,
+    species: String,
+    method: &'static str,
+    about: String,
+}
+
+pub(crate) fn presets(args: &PresetsArgs) -> Outcome {
+    let out = |text: &str| {
+        say::data(text).map_err(|e| Failure::io(std::path::Path::new("standard output"), "written", &e))
+    };
+    if let Some(path) = &args.schema {
+        output::check_outputs(&[("--schema", Some(path))], &[])?;
+        let text = serde_json::to_string_pretty(&tree_schema())
+            .map_err(|e| Failure::Bug(format!("the schema cannot be written as JSON: {e}")))?;
+        output::write_whole(path, |file| Ok(writeln!(file, "{text}")?))?;
+    }
+    if let Some(key) = &args.show {
+        let preset = Preset::find(key).ok_or_else(|| {
+            Failure::Bad(format!("there is no preset `{key}`; `burgeon presets` lists them"))
+        })?;
+        return out(preset.toml.trim_end());
+    }
+    if args.schema.is_some() && !args.json {
+        return Ok(());
+    }
+    let row = |preset: &Preset| -> Outcome<Row> {
+        let spec: TreeSpec =
+            preset.spec().map_err(|e| Failure::Bug(format!("preset {}: {e}", preset.key)))?;
+        let method = method_word(&spec.method);
+        Ok(Row { preset: preset.key, species: spec.species, method, about: spec.about })
+    };
+    let rows = PRESETS.iter().map(row).collect::<Outcome<Vec<_>>>()?;
+    if args.json {
+        let text = serde_json::to_string_pretty(&rows).map_err(|e| Failure::Bug(e.to_string()))?;
+        return out(&text);
+    }
+    let line = |r: &Row| format!("{:<17}{:<16} {} ({})", r.preset, r.method, r.about, r.species);
+    out(&rows.iter().map(line).collect::<Vec<_>>().join("\n"))
+}

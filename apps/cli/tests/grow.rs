@@ -1,0 +1,367 @@
+//! `burgeon grow`, `presets` and `compare` as other programs call them, with good and bad input.
+#![expect(clippy::unwrap_used, reason = "tests")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn folder(test: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
+    let _ = fs::remove_dir_all(&path);
+    fs::create_dir_all(&path).unwrap();
+    path
+}
+
+fn burgeon(folder: &Path, args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_burgeon")).args(args).current_dir(folder).output().unwrap()
+}
+
+fn good(folder: &Path, args: &[&str]) -> (String, String) {
+    let out = burgeon(folder, args);
+    let told = String::from_utf8(out.stderr).unwrap();
+    assert_eq!(out.status.code(), Some(0), "{args:?}: {told}");
+    (String::from_utf8(out.stdout).unwrap(), told)
+}
+
+fn item(folder: &Path, args: &[&str]) -> Value {
+    let all = [&["grow"], args, &["--json"]].concat();
+    let report: Value = serde_json::from_str(&good(folder, &all).0).unwrap();
+    assert_eq!((report["command"].as_str(), report["ok"].as_u64()), (Some("grow"), Some(1)));
+    report["items"][0].clone()
+}
+
+fn bad(folder: &Path, args: &[&str]) -> String {
+    let out = burgeon(folder, args);
+    let text = String::from_utf8(out.stderr).unwrap();
+    assert_eq!(out.status.code(), Some(2), "{args:?}: {text}");
+    assert_eq!(text.lines().count(), 1, "one line, not {text:?}");
+    text
+}
+
+/// Points on a lattice of 0.25 m from 1 to 3 m above the ground.
+fn cloud(folder: &Path) -> usize {
+    let mut text = String::new();
+    let mut n = 0;
+    for i in 0..9 {
+        for j in 0..9 {
+            for k in 0..9 {
+                let at = |c: i32| 0.25 * f64::from(c - 4);
+                text += &format!("{} {} {}\n", at(i), 2.0 + at(j), at(k));
+                n += 1;
+            }
+        }
+    }
+    fs::write(folder.join("cloud.xyz"), text).unwrap();
+    n
+}
+
+fn spec(folder: &Path, name: &str, text: &str) {
+    fs::write(folder.join(name), text).unwrap();
+}
+
+const SMALL: &str = "name = \"bush\"\n[method]\nkind = \"competition\"\npoints = 200\nlifespan = 1\n";
+
+/// A box as OBJ, from (0.4, 0, -2) to (3, 5, 2); without its last two faces it is open.
+fn wall(folder: &Path, name: &str, faces: usize) {
+    let mut text = String::new();
+    for (x, y, z) in [
+        (0.4, 0, -2),
+        (3.0, 0, -2),
+        (3.0, 5, -2),
+        (0.4, 5, -2),
+        (0.4, 0, 2),
+        (3.0, 0, 2),
+        (3.0, 5, 2),
+        (0.4, 5, 2),
+    ] {
+        text += &format!("v {x} {y} {z}\n");
+    }
+    let quads = ["1 4 3 2", "5 6 7 8", "1 5 8 4", "2 3 7 6", "1 2 6 5", "4 8 7 3"];
+    quads[..faces].iter().for_each(|q| text += &format!("f {q}\n"));
+    fs::write(folder.join(name), text).unwrap();
+}
+
+#[test]
+fn one_preset_of_each_method_grows_and_is_drawn() {
+    let at = folder("grow-methods");
+    for (preset, method, age) in [
+        ("terminalia", "competition", "400"),
+        ("oak-colonization", "colonization", "30"),
+        ("lime", "self-organizing", "10"),
+        ("palm", "lsystem", "60"),
+    ] {
+        let (model, png) = (format!("{preset}.glb"), format!("{preset}.png"));
+        let args =
+            [preset, "-o", &model, "--png", &png, "--size", "120x120", "--supersample", "1", "--age", age];
+        let item = item(&at, &args);
+        let growth = &item["growth"];
+        assert_eq!(growth["method"], method);
+        for key in [
+            "attractors",
+            "consumed",
+            "unreachable",
+            "iterations",
+            "cycles",
+            "nodes",
+            "leaves_placed",
+            "leaves_kept",
+            "inside_obstacle",
+        ] {
+            assert!(growth[key].is_u64(), "{preset}: {key} in {growth}");
+        }
+        assert!(growth["nodes"].as_u64() > Some(20) && item["counts"]["triangles"].as_u64() > Some(300));
+        assert!(item["timings_ms"]["structure"].as_f64() > Some(0.0));
+        assert!(item["timings_ms"]["mesh"].as_f64() > Some(0.0));
+        assert!(fs::metadata(at.join(&model)).unwrap().len() > 10_000);
+        assert!(fs::metadata(at.join(&png)).unwrap().len() > 500);
+    }
+}
+
+#[test]
+fn given_points_are_consumed_or_reported() {
+    let at = folder("grow-points");
+    let n = cloud(&at);
+    let args = [
+        "--attractors",
+        "cloud.xyz",
+        "--root",
+        "0,0,0",
+        "--step",
+        "0.1",
+        "--influence",
+        "0.8",
+        "--kill",
+        "0.2",
+    ];
+    let growth = item(&at, &args)["growth"].clone();
+    assert_eq!(growth["attractors"], n as u64);
+    assert_eq!(growth["consumed"].as_u64().unwrap() + growth["unreachable"].as_u64().unwrap(), n as u64);
+    assert_eq!(growth["unreachable"], 0);
+    // 100 m away: nothing can reach it. It must end and say so.
+    let far = fs::read_to_string(at.join("cloud.xyz")).unwrap() + "100 2 0\n100 2.1 0\n";
+    fs::write(at.join("far.xyz"), far).unwrap();
+    let args = [&["--attractors", "far.xyz"], &args[2..]].concat();
+    let item = item(&at, &args);
+    assert_eq!(item["growth"]["unreachable"], 2);
+    assert!(item["warnings"][0].as_str().unwrap().contains("2 of 731"), "{item}");
+}
+
+#[test]
+fn points_that_are_no_numbers_are_left_out_and_told() {
+    let at = folder("grow-nan");
+    cloud(&at);
+    let text = fs::read_to_string(at.join("cloud.xyz")).unwrap() + "nan 2 0\n0 inf 0\n";
+    fs::write(at.join("nan.xyz"), text).unwrap();
+    let item = item(&at, &["--attractors", "nan.xyz", "--influence", "0.8", "--kill", "0.2"]);
+    let warnings = item["warnings"].to_string();
+    assert!(item["growth"]["consumed"].as_u64() > Some(700), "{item}");
+    assert!(warnings.contains('2') && warnings.len() > 10, "{warnings}");
+    fs::write(at.join("empty.xyz"), "").unwrap();
+    let told = bad(&at, &["grow", "--attractors", "empty.xyz", "--json"]);
+    assert!(told.contains("empty.xyz"), "{told}");
+}
+
+#[test]
+fn distances_must_make_sense() {
+    let at = folder("grow-distances");
+    cloud(&at);
+    let told =
+        bad(&at, &["grow", "--attractors", "cloud.xyz", "--influence", "0.2", "--kill", "0.5", "--json"]);
+    assert!(told.contains("--kill 0.5 is above --influence 0.2"), "{told}");
+    let told = bad(&at, &["grow", "oak", "--kill", "-1", "--json"]);
+    assert!(told.contains("--kill") && told.contains("0.000001"), "{told}");
+    let told = bad(&at, &["grow", "oak", "--root", "0,nan,0", "--json"]);
+    assert!(told.contains("--root"), "{told}");
+    // In a spec the attraction distance is raised, and that is said.
+    spec(&at, "kill.toml", &format!("{SMALL}kill_m = 2.0\nattraction_m = 1.0\n"));
+    let item = item(&at, &["kill.toml"]);
+    assert!(item["warnings"][0].as_str().unwrap().contains("below the kill distance"), "{item}");
+    let told = bad(&at, &["grow", "palm", "--kill", "1", "--json"]);
+    assert!(told.contains("colonization"), "{told}");
+}
+
+#[test]
+fn obstacles_are_grown_around() {
+    let at = folder("grow-obstacles");
+    spec(&at, "bush.toml", SMALL);
+    wall(&at, "wall.obj", 6);
+    let item = item(&at, &["bush.toml", "--obstacle", "wall.obj", "-o", "bush.glb"]);
+    assert_eq!(item["growth"]["inside_obstacle"], 0);
+    assert_eq!(item["warnings"].as_array().unwrap().len(), 0, "{item}");
+    assert!(item["counts"]["leaves"].as_u64() > Some(50));
+    let told = bad(&at, &["grow", "bush.toml", "--obstacle", "wall.obj", "--root", "1,1,0", "-o", "x.glb"]);
+    assert!(told.contains("root 0 stands inside obstacle 0"), "{told}");
+    assert!(!at.join("x.glb").exists());
+}
+
+#[test]
+fn open_meshes_are_warned_of_and_still_kept_out_of() {
+    let at = folder("grow-open");
+    spec(&at, "bush.toml", SMALL);
+    wall(&at, "open.obj", 5);
+    let item = item(&at, &["bush.toml", "--obstacle", "open.obj"]);
+    assert!(item["warnings"][0].as_str().unwrap().contains("open mesh (4 edges"), "{item}");
+    assert_eq!(item["growth"]["inside_obstacle"], 0);
+    let named = format!("[[obstacles]]\nshape = \"mesh\"\nfile = \"open.obj\"\n{SMALL}")
+        .replace("name = \"bush\"\n", "");
+    spec(&at, "named.toml", &named);
+    let same = item_of(&at, "named.toml");
+    assert_eq!(same["growth"], item["growth"]);
+    spec(&at, "missing.toml", &named.replace("open.obj", "none.obj"));
+    let told = bad(&at, &["grow", "missing.toml", "--json"]);
+    assert!(told.contains("none.obj"), "{told}");
+}
+
+fn item_of(folder: &Path, name: &str) -> Value {
+    item(folder, &[name])
+}
+
+#[test]
+fn slips_in_specs_are_named_with_field_value_and_line() {
+    let at = folder("grow-specs");
+    for (text, wants) in [
+        (format!("{SMALL}kil_m = 2\n"), vec!["line 6", "kil_m"]),
+        (format!("{SMALL}lifespan = 99\n").replace("lifespan = 1\n", ""), vec!["lifespan", "1 to 20", "99"]),
+        (format!("{SMALL}kill_m = nan\n"), vec!["kill_m", "NaN"]),
+        (format!("{SMALL}[leaves]\nleaf_keep = 1.5\n"), vec!["leaf_keep", "0 to 1", "1.5"]),
+        (format!("{SMALL}[blade]\nform = \"square\"\n"), vec!["line 7", "square"]),
+        (format!("{SMALL}[look]\nleaf_color = \"green\"\n"), vec!["line 7", "green"]),
+        ("name = \n".into(), vec!["line 1"]),
+        (format!("roots = []\n{SMALL}"), vec!["no roots"]),
+        (format!("{SMALL}[method.envelope]\nshape = \"sphere\"\ncentre = [0, 4, 0]\nradius_m = -1\n"), vec!["radius_m"]),
+        ("[method]\nkind = \"lsystem\"\nmost_modules = 1000\nrules = \"\"\"\naxiom = A\nsteps = 40\nA -> A A F\n\"\"\"\n".into(),
+         vec!["A -> A A F", "explode"]),
+    ] {
+        spec(&at, "slip.toml", &text);
+        let told = bad(&at, &["grow", "slip.toml", "-o", "slip.glb"]);
+        for want in wants {
+            assert!(told.contains(want), "{want}: {told}");
+        }
+        assert!(!at.join("slip.glb").exists());
+    }
+    let told = bad(&at, &["grow", "oka", "-o", "x.glb"]);
+    assert!(told.contains("no preset `oka`"), "{told}");
+    assert_eq!(fs::read_dir(&at).unwrap().count(), 1, "only the spec is left");
+}
+
+#[test]
+fn a_million_points_in_one_place_end() {
+    let at = folder("grow-heap");
+    spec(
+        &at,
+        "heap.toml",
+        "[method]\nkind = \"colonization\"\npoints = 200000\n\
+        envelope = { shape = \"sphere\", centre = [0, 2, 0], radius_m = 0.00001 }\n",
+    );
+    let growth = item(&at, &["heap.toml"])["growth"].clone();
+    assert_eq!((growth["attractors"].as_u64(), growth["unreachable"].as_u64()), (Some(200_000), Some(0)));
+}
+
+#[test]
+fn leaves_age_seed_and_threads_do_what_they_say() {
+    let at = folder("grow-options");
+    spec(&at, "bush.toml", SMALL);
+    let digest = |args: &[&str]| item(&at, &[&["bush.toml"], args].concat())["digest"].clone();
+    let leaves = |keep: &str| {
+        let g = item(&at, &["bush.toml", "--leaf-keep", keep])["growth"].clone();
+        (g["leaves_placed"].as_u64().unwrap(), g["leaves_kept"].as_u64().unwrap())
+    };
+    let (placed, all) = leaves("1");
+    assert_eq!((placed, leaves("0").1), (all, 0));
+    assert!(leaves("0.25").1.abs_diff(all / 4) <= 1);
+    assert_eq!(digest(&["--threads", "1"]), digest(&["--threads", "4"]));
+    assert_ne!(digest(&[]), digest(&["--seed", "2"]));
+    let nodes = |args: &[&str]| item(&at, &[&["bush.toml"], args].concat())["growth"]["nodes"].as_u64();
+    assert!(nodes(&["--age", "6"]) < nodes(&[]));
+    // Levels of detail stand beside the model, each smaller.
+    let args = ["grow", "bush.toml", "-o", "bush.glb", "--lods", "2", "--json"];
+    let report: Value = serde_json::from_str(&good(&at, &args).0).unwrap();
+    let triangles = |i: usize| report["items"][i]["counts"]["triangles"].as_u64().unwrap();
+    assert!(triangles(1) < triangles(0) && triangles(2) < triangles(1));
+    assert_eq!(report["items"][2]["output"], "bush-lod2.glb");
+    assert!(at.join("bush-lod1.glb").exists() && at.join("bush-lod2.glb").exists());
+    // Another method in the same envelope.
+    let other = item(&at, &["bush.toml", "--method", "colonization"]);
+    assert_eq!(other["growth"]["method"], "colonization");
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_leaves_nothing_behind() {
+    let at = folder("grow-cancel");
+    spec(
+        &at,
+        "huge.toml",
+        "[method]\nkind = \"colonization\"\npoints = 4000000\n\
+        envelope = { shape = \"sphere\", centre = [0, 30, 0], radius_m = 29 }\n",
+    );
+    let mut child = Command::new(env!("CARGO_BIN_EXE_burgeon"))
+        .args(["grow", "huge.toml", "-o", "huge.glb", "--png", "huge.png"])
+        .current_dir(&at)
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    std::thread::sleep(std::time::Duration::from_millis(1500));
+    let pid = child.id().to_string();
+    assert!(Command::new("kill").args(["-INT", &pid]).status().unwrap().success());
+    let started = std::time::Instant::now();
+    let status = child.wait().unwrap();
+    assert_eq!(status.code(), Some(130));
+    assert!(started.elapsed().as_secs() < 60, "{:?}", started.elapsed());
+    let left: Vec<_> = fs::read_dir(&at).unwrap().map(|e| e.unwrap().file_name()).collect();
+    assert_eq!(left, ["huge.toml"]);
+}
+
+#[test]
+fn presets_are_listed_shown_and_described() {
+    let at = folder("grow-presets");
+    let (list, _) = good(&at, &["presets"]);
+    for name in ["pine", "terminalia", "chinese-fir", "oak", "willow", "palm", "bamboo", "dead-oak"] {
+        assert!(list.lines().any(|l| l.starts_with(name)), "{name} in {list}");
+    }
+    let (toml, _) = good(&at, &["presets", "--show", "hazel"]);
+    spec(&at, "mine.toml", &toml.replace("lifespan = 3", "lifespan = 1"));
+    assert!(item(&at, &["mine.toml"])["counts"]["leaves"].as_u64() > Some(100));
+    good(&at, &["presets", "--schema", "tree.schema.json"]);
+    let schema: Value =
+        serde_json::from_str(&fs::read_to_string(at.join("tree.schema.json")).unwrap()).unwrap();
+    let clearance = &schema["properties"]["clearance_m"];
+    assert_eq!((clearance["x-unit"].as_str(), clearance["default"].as_f64()), (Some("m"), Some(0.05)));
+    assert_eq!((clearance["minimum"].as_f64(), clearance["maximum"].as_f64()), (Some(0.0), Some(1e6)));
+    assert!(clearance["description"].as_str().unwrap().contains("obstacles"));
+    assert!(bad(&at, &["presets", "--show", "rose"]).contains("rose"));
+}
+
+#[test]
+fn oaks_are_compared_at_one_height() {
+    let at = folder("grow-compare");
+    let args = [
+        "compare",
+        "oak",
+        "--json",
+        "--png",
+        "oaks.png",
+        "--size",
+        "100x120",
+        "--supersample",
+        "1",
+        "--detail",
+        "0.3",
+    ];
+    let report: Value = serde_json::from_str(&good(&at, &args).0).unwrap();
+    let rows = report["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 3);
+    for row in rows {
+        assert!((row["height_m"].as_f64().unwrap() - 10.0).abs() < 1e-6, "{row}");
+        assert!(row["leaves"].as_u64() > Some(1000) && row["bytes"].as_u64() > Some(100_000), "{row}");
+        assert!(row["paper"]["triangles_k"].as_f64() > Some(100.0));
+    }
+    let crowns: Vec<f64> = rows.iter().map(|r| r["crown_m"].as_f64().unwrap()).collect();
+    let (least, most) =
+        (crowns.iter().copied().fold(99.0, f64::min), crowns.iter().copied().fold(0.0, f64::max));
+    assert!(most < 1.25 * least, "like for like: {crowns:?}");
+    let png = fs::read(at.join("oaks.png")).unwrap();
+    assert_eq!(png[16..24], [0, 0, 1, 44, 0, 0, 0, 120], "three of 100 x 120");
+}

@@ -1,0 +1,237 @@
+//! Forms of tree leaves: those of the sketch maker's library, and some that only trees need.
+//!
+//! `BladeSpec -> Blade (length 1)`
+
+use base::ops::{self, PI};
+use glam::DVec2;
+use growth::GrowthError;
+use plant::{Blade, Lift, Relief};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use sketch::LeafForm;
+
+use super::spec::within;
+
+/// A botanical form.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum BladeForm {
+    /// Broadest below the middle, drawn-out tip: pear, birch, poplar.
+    #[default]
+    Ovate,
+    /// Broadest in the middle: beech.
+    Elliptic,
+    /// Broadest above the middle: Terminalia, magnolia.
+    Obovate,
+    /// Narrow: willow, olive, bamboo.
+    Lanceolate,
+    /// Heart-shaped: lime.
+    Cordate,
+    /// Nearly a triangle on a broad base: poplar, birch.
+    Deltoid,
+    /// Round lobes on both sides: oak.
+    Lobed,
+    /// Five pointed lobes from one place: maple, plane.
+    Palmate,
+    /// Leaflets in pairs along a midrib: ash, walnut, rowan.
+    Pinnate,
+    /// A long narrow leaflet: palm, grass.
+    Leaflet,
+    /// One needle.
+    Needle,
+    /// A bundle of needles that spread from one place: pine, larch.
+    Tuft,
+    /// A short shoot with needles on both sides: fir, spruce, yew.
+    Spray,
+}
+
+/// A leaf's form.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct BladeSpec {
+    /// The form, default ovate.
+    pub form: BladeForm,
+    /// Width relative to the form's usual, 0.1 to 4; default 1.
+    #[schemars(range(min = 0.1, max = 4.0))]
+    pub width: Option<f64>,
+    /// How far the tip bends down, as a share of the length, -1 to 1; default the form's.
+    #[schemars(range(min = -1.0, max = 1.0))]
+    pub bend: Option<f64>,
+    /// Slope of the halves along the midrib, -1 to 2; default the form's.
+    #[schemars(range(min = -1.0, max = 2.0))]
+    pub fold: Option<f64>,
+}
+
+impl BladeSpec {
+    pub(super) fn check(&self) -> Result<(), GrowthError> {
+        within("blade.width", self.width.unwrap_or(1.0), 0.1, 4.0, "0.1 to 4")?;
+        within("blade.bend", self.bend.unwrap_or(0.0), -1.0, 1.0, "-1 to 1")?;
+        within("blade.fold", self.fold.unwrap_or(0.0), -1.0, 2.0, "-1 to 2")
+    }
+
+    /// The blade, of length 1.
+    pub fn blade(&self) -> Blade {
+        let mut blade = self.form.blade();
+        let width = self.width.filter(|w| w.is_finite()).unwrap_or(1.0).clamp(0.1, 4.0);
+        blade.outline.iter_mut().for_each(|p| p.x *= width);
+        if let Some(bend) = self.bend {
+            (blade.relief.bend_a, blade.relief.bend_b) = (0.25 * bend, 0.75 * bend);
+            blade.relief.keep_length = true;
+        }
+        if let Some(fold) = self.fold {
+            blade.relief.fold = fold;
+        }
+        blade
+    }
+}
+
+impl BladeForm {
+    /// Every form.
+    pub const ALL: [Self; 13] = [
+        Self::Ovate,
+        Self::Elliptic,
+        Self::Obovate,
+        Self::Lanceolate,
+        Self::Cordate,
+        Self::Deltoid,
+        Self::Lobed,
+        Self::Palmate,
+        Self::Pinnate,
+        Self::Leaflet,
+        Self::Needle,
+        Self::Tuft,
+        Self::Spray,
+    ];
+
+    fn blade(self) -> Blade {
+        let own = |right: Vec<DVec2>, relief: Relief| mirrored(&right, relief);
+        let soft = Relief { bend_a: 0.05, bend_b: 0.12, fold: 0.2, ..Relief::default() };
+        match self {
+            Self::Ovate => LeafForm::Ovate.blade(),
+            Self::Elliptic => LeafForm::Elliptic.blade(),
+            Self::Lanceolate => LeafForm::Lanceolate.blade(),
+            Self::Cordate => LeafForm::Cordate.blade(),
+            Self::Lobed => LeafForm::Lobed.blade(),
+            Self::Leaflet => LeafForm::Leaflet.blade(),
+            Self::Spray => LeafForm::Spray.blade(),
+            Self::Obovate => {
+                let right = (1..=8).map(|i| {
+                    let v = f64::from(i) / 9.0;
+                    DVec2::new(0.3 * ops::powf(v, 1.1) * ops::powf(1.0 - v, 0.55) / 0.362, v)
+                });
+                own(right.collect(), soft)
+            }
+            Self::Deltoid => {
+                let right = [
+                    (0.16, -0.01),
+                    (0.3, 0.05),
+                    (0.385, 0.16),
+                    (0.36, 0.28),
+                    (0.28, 0.44),
+                    (0.18, 0.62),
+                    (0.08, 0.82),
+                ];
+                own(right.map(|(x, y)| DVec2::new(x, y)).to_vec(), soft)
+            }
+            Self::Palmate => own(palmate(), Relief { fold: 0.12, ..soft }),
+            Self::Pinnate => own(pinnate(), Relief { bend_b: 0.25, fold: 0.25, ..Relief::default() }),
+            Self::Needle => own(
+                vec![DVec2::new(0.02, 0.1), DVec2::new(0.024, 0.5), DVec2::new(0.015, 0.85)],
+                Relief { fold: 0.3, ..Relief::default() },
+            ),
+            Self::Tuft => own(tuft(), Relief { fold: 0.35, bend_b: 0.05, ..Relief::default() }),
+        }
+    }
+}
+
+/// A blade from its right margin, root and tip left out.
+fn mirrored(right: &[DVec2], relief: Relief) -> Blade {
+    let mut outline = vec![DVec2::ZERO];
+    outline.extend_from_slice(right);
+    outline.push(DVec2::Y);
+    outline.extend(right.iter().rev().map(|p| DVec2::new(-p.x, p.y)));
+    let midrib = (0..=4).map(|i| DVec2::new(0.0, f64::from(i) / 4.0)).collect();
+    Blade { outline, midrib, veins: Vec::new(), lift: Lift::Flat, relief }
+}
+
+/// Half of five lobes around the end of the stalk: two of each side, the middle one is the tip.
+fn palmate() -> Vec<DVec2> {
+    [
+        (0.1, -0.04),
+        (0.34, -0.1),
+        (0.27, 0.1),
+        (0.42, 0.17),
+        (0.6, 0.42),
+        (0.41, 0.45),
+        (0.39, 0.57),
+        (0.16, 0.46),
+        (0.2, 0.7),
+        (0.09, 0.83),
+    ]
+    .map(|(x, y)| DVec2::new(x, y))
+    .to_vec()
+}
+
+/// Five leaflets a side.
+fn pinnate() -> Vec<DVec2> {
+    let mut right = Vec::with_capacity(25);
+    for i in 0..5 {
+        let v = 0.1 + 0.165 * f64::from(i);
+        let reach = 0.3 - 0.03 * f64::from(i);
+        right.extend([
+            DVec2::new(0.008, v),
+            DVec2::new(0.55 * reach, v + 0.1 * reach),
+            DVec2::new(reach, v + 0.55 * reach),
+            DVec2::new(0.5 * reach, v + 0.55 * reach),
+            DVec2::new(0.008, v + 0.07),
+        ]);
+    }
+    right.extend([DVec2::new(0.06, 0.9), DVec2::new(0.05, 0.96)]);
+    right
+}
+
+/// Three needles a side and one in the middle, which is the tip.
+fn tuft() -> Vec<DVec2> {
+    let mut right = Vec::with_capacity(6);
+    for (degrees, reach) in [(62.0, 0.86), (40.0, 0.94), (19.0, 0.98)] {
+        let (s, c) = ops::sin_cos(degrees * (PI / 180.0));
+        right.push(DVec2::new(reach * s, reach * c));
+        let (s, c) = ops::sin_cos((degrees - 10.5) * (PI / 180.0));
+        right.push(DVec2::new(0.12 * s, 0.12 * c));
+    }
+    right
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_form_is_a_leaf_that_can_be_meshed() {
+        for form in BladeForm::ALL {
+            let blade = BladeSpec { form, ..BladeSpec::default() }.blade();
+            let area: f64 = geom::signed_area(&blade.outline);
+            assert!(area > 0.01 && area < 0.7, "{form:?}: {area}");
+            assert!((blade.length() - 1.0).abs() < 1e-12, "{form:?}");
+            for triangles in [14.0, 40.0, 400.0] {
+                let mesh = skin::blade_mesh(&blade, triangles);
+                assert_eq!(mesh.validate().next(), None, "{form:?}");
+                assert!(mesh.triangles.len() >= 4, "{form:?}: {}", mesh.triangles.len());
+                let wide = |of: fn(f32, f32) -> f32| mesh.positions.iter().map(|p| p[0]).fold(0.0, of);
+                assert!((wide(f32::max) + wide(f32::min)).abs() < 0.05, "{form:?} is symmetric");
+            }
+        }
+    }
+
+    #[test]
+    fn width_bend_and_fold_are_heard() {
+        let spec = BladeSpec { width: Some(2.0), bend: Some(0.4), fold: Some(0.0), ..BladeSpec::default() };
+        let (plain, wide) = (BladeSpec::default().blade(), spec.blade());
+        assert!((wide.outline[4].x - 2.0 * plain.outline[4].x).abs() < 1e-12);
+        assert!(wide.point(DVec2::Y).z < plain.point(DVec2::Y).z);
+        let bad = BladeSpec { width: Some(9.0), ..spec };
+        let want = GrowthError::Field { field: "blade.width", range: "0.1 to 4", value: 9.0 };
+        assert_eq!(bad.check(), Err(want));
+    }
+}

@@ -1,0 +1,305 @@
+//! Colours of leaves and bark.
+//!
+//! `Plant + Model + Look -> tinted leaves, repainted bark`
+
+use std::sync::Arc;
+
+use base::ops::{self, TAU};
+use base::{Draw, Seed};
+use growth::GrowthError;
+use mesh::{Material, MaterialKind, Model, Texture};
+use plant::{OrganKind, Plant};
+use schemars::JsonSchema;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use super::spec::within;
+
+/// An sRGB colour, written `#rrggbb`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, JsonSchema)]
+#[schemars(with = "String", extend("pattern" = "^#[0-9a-fA-F]{6}$", "x-unit" = "colour"))]
+pub struct Colour(pub [u8; 3]);
+
+impl Colour {
+    fn linear(self) -> [f64; 3] {
+        self.0.map(|b| {
+            let x = f64::from(b) / 255.0;
+            if x <= 0.04045 { x / 12.92 } else { ops::powf((x + 0.055) / 1.055, 2.4) }
+        })
+    }
+
+    fn srgb(self) -> [f64; 3] {
+        self.0.map(|b| f64::from(b) / 255.0)
+    }
+}
+
+impl Serialize for Colour {
+    fn serialize<S: Serializer>(&self, s: S) -> Result<S::Ok, S::Error> {
+        let [r, g, b] = self.0;
+        s.serialize_str(&format!("#{r:02x}{g:02x}{b:02x}"))
+    }
+}
+
+impl<'de> Deserialize<'de> for Colour {
+    fn deserialize<D: Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
+        let text = String::deserialize(d)?;
+        let hex = text.strip_prefix('#').filter(|h| h.len() == 6 && h.is_ascii());
+        let byte = |i: usize| hex.and_then(|h| u8::from_str_radix(h.get(i..i + 2)?, 16).ok());
+        match (byte(0), byte(2), byte(4)) {
+            (Some(r), Some(g), Some(b)) => Ok(Self([r, g, b])),
+            _ => Err(serde::de::Error::custom(format!("`{text}` is no colour such as \"#4a6b2c\""))),
+        }
+    }
+}
+
+/// What the bark is like.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Bark {
+    /// Ridges and furrows along the trunk: oak, poplar, willow.
+    #[default]
+    Furrowed,
+    /// Without plates: beech, young trees, shrubs.
+    Smooth,
+    /// Large flakes with dark cracks: pine, plane.
+    Plated,
+    /// White paper with dark stripes across: birch.
+    Birch,
+    /// Rings that fallen leaves have left: palm.
+    Ringed,
+    /// Smooth and jointed: bamboo.
+    Cane,
+}
+
+/// Colours and bark. All colours are sRGB.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Look {
+    /// What the bark is like.
+    pub bark: Bark,
+    /// Mean colour of the bark of trunk and branches.
+    pub bark_color: Colour,
+    /// Mean colour of the bark of twigs.
+    pub twig_color: Colour,
+    /// Colour of leaves.
+    pub leaf_color: Colour,
+    /// Colour towards which single leaves vary (autumn, young growth); default that of leaves.
+    pub leaf_color_to: Option<Colour>,
+    /// How far they vary, 0 to 1, default 0.5.
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub leaf_variation: f64,
+}
+
+impl Default for Look {
+    fn default() -> Self {
+        Self {
+            bark: Bark::default(),
+            bark_color: Colour([0x6e, 0x62, 0x54]),
+            twig_color: Colour([0x6a, 0x58, 0x44]),
+            leaf_color: Colour([0x56, 0x7d, 0x2f]),
+            leaf_color_to: None,
+            leaf_variation: 0.5,
+        }
+    }
+}
+
+impl Look {
+    pub(super) fn check(&self) -> Result<(), GrowthError> {
+        within("look.leaf_variation", self.leaf_variation, 0.0, 1.0, "0 to 1")
+    }
+
+    /// Gives each leaf its colour.
+    pub(super) fn tint(&self, plant: &mut Plant, seed: Seed) {
+        let (from, to) = (self.leaf_color.linear(), self.leaf_color_to.unwrap_or(self.leaf_color).linear());
+        for organ in plant.organs.iter_mut().filter(|o| o.kind == OrganKind::Leaf) {
+            let share = self.leaf_variation * seed.child(organ.key).stream(Draw::Tint).uniform();
+            #[expect(clippy::cast_possible_truncation, reason = "a colour")]
+            let mixed = [0, 1, 2].map(|i| ops::lerp(from[i], to[i], share) as f32);
+            organ.tint = mixed;
+        }
+    }
+
+    /// Repaints the bark of a model.
+    pub(super) fn paint(&self, model: &mut Model) {
+        // A slender tree has no part with old bark: then its stem is among the young ones.
+        let old = model.materials.iter().any(|m| m.name == "bark");
+        for material in model.materials.iter_mut().filter(|m| m.kind == MaterialKind::Bark) {
+            let twig = old && material.name == "bark-young";
+            let colour = if twig { self.twig_color } else { self.bark_color };
+            self.repaint(material, colour, twig);
+        }
+    }
+
+    fn repaint(&self, material: &mut Material, colour: Colour, twig: bool) {
+        let Some(old) = &material.texture else {
+            #[expect(clippy::cast_possible_truncation, reason = "a colour")]
+            let plain = colour.linear().map(|x| x as f32);
+            material.base_color = plain;
+            return;
+        };
+        let texture = match self.bark {
+            // Twigs have the same bark on every kind but one: a bamboo's are canes too.
+            Bark::Cane => painted(&|u, v| cane(colour, u, v)),
+            _ if twig => recoloured(old, colour, 0.7),
+            Bark::Furrowed => recoloured(old, colour, 1.0),
+            Bark::Smooth => recoloured(old, colour, 0.35),
+            Bark::Plated => painted(&|u, v| plated(colour, u, v)),
+            Bark::Birch => painted(&|u, v| birch(colour, u, v)),
+            Bark::Ringed => painted(&|u, v| ringed(colour, u, v)),
+        };
+        material.texture = Some(Arc::new(texture));
+    }
+}
+
+/// The pattern of a texture in another mean colour.
+fn recoloured(old: &Texture, colour: Colour, contrast: f64) -> Texture {
+    let light = |p: &[u8]| 0.3 * f64::from(p[0]) + 0.6 * f64::from(p[1]) + 0.1 * f64::from(p[2]);
+    let pixels = old.pixels.chunks_exact(4);
+    let count = (old.pixels.len() / 4).max(1) as f64;
+    let mean = (pixels.clone().map(light).sum::<f64>() / count).max(1.0);
+    let want = colour.srgb();
+    let new = pixels.flat_map(|p| {
+        let relative = 1.0 + contrast * (light(p) / mean - 1.0);
+        let [r, g, b] = want.map(|c| byte(c * relative));
+        [r, g, b, p[3]]
+    });
+    Texture { width: old.width, height: old.height, pixels: new.collect() }
+}
+
+const SIDE: u32 = 256;
+
+/// A square texture; `paint` gives sRGB at u and v, both 0 to 1, and repeats in both.
+fn painted(paint: &dyn Fn(f64, f64) -> [f64; 3]) -> Texture {
+    let at = |i: u32| (f64::from(i) + 0.5) / f64::from(SIDE);
+    let rows = (0..SIDE).flat_map(|j| (0..SIDE).map(move |i| (i, j)));
+    let pixels = rows.flat_map(|(i, j)| {
+        let [r, g, b] = paint(at(i), at(j)).map(byte);
+        [r, g, b, 255]
+    });
+    Texture { width: SIDE, height: SIDE, pixels: pixels.collect() }
+}
+
+fn byte(x: f64) -> u8 {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a byte's range")]
+    let b = (x.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
+    b
+}
+
+/// A fixed number from 0 to 1 for a cell of a pattern.
+fn cell(x: i64, y: i64, pattern: u64) -> f64 {
+    let key = (x.rem_euclid(4096) as u64) << 12 | (y.rem_euclid(4096) as u64);
+    Seed::new(pattern).child(key).stream(Draw::Texture).uniform()
+}
+
+/// Smooth noise that repeats after `nx` and `ny` cells, -1 to 1.
+fn noise(u: f64, v: f64, (nx, ny): (i64, i64), pattern: u64) -> f64 {
+    let (x, y) = (u * nx as f64, v * ny as f64);
+    let (x0, y0) = (x.floor(), y.floor());
+    let (fx, fy) = (ops::smoothstep(0.0, 1.0, x - x0), ops::smoothstep(0.0, 1.0, y - y0));
+    #[expect(clippy::cast_possible_truncation, reason = "cells of a small lattice")]
+    let at =
+        |dx: i64, dy: i64| cell((x0 as i64 + dx).rem_euclid(nx), (y0 as i64 + dy).rem_euclid(ny), pattern);
+    let low = ops::lerp(at(0, 0), at(1, 0), fx);
+    let high = ops::lerp(at(0, 1), at(1, 1), fx);
+    2.0 * ops::lerp(low, high, fy) - 1.0
+}
+
+fn shaded(colour: Colour, factor: f64) -> [f64; 3] {
+    colour.srgb().map(|c| c * factor)
+}
+
+fn mixed(a: [f64; 3], b: [f64; 3], share: f64) -> [f64; 3] {
+    [0, 1, 2].map(|i| ops::lerp(a[i], b[i], share.clamp(0.0, 1.0)))
+}
+
+/// White with short dark stripes across and black diamonds where branches have been.
+fn birch(colour: Colour, u: f64, v: f64) -> [f64; 3] {
+    const DARK: [f64; 3] = [0.16, 0.14, 0.13];
+    let base = shaded(colour, 1.0 + 0.05 * noise(u, v, (9, 5), 1) + 0.04 * noise(u, v, (24, 60), 2));
+    // Stripes: narrow along v, some cells across u wide.
+    let stripe = noise(u, v, (6, 34), 3) + 0.35 * noise(u, v, (18, 68), 4);
+    let scar = noise(u, v, (4, 4), 5) + 0.4 * noise(u, v, (12, 16), 6);
+    let dark = 0.75 * ops::smoothstep(0.62, 0.86, stripe) + ops::smoothstep(0.78, 0.98, scar);
+    mixed(base, DARK, dark)
+}
+
+/// Flakes of a cellular pattern, drawn out along the trunk, with dark cracks between.
+fn plated(colour: Colour, u: f64, v: f64) -> [f64; 3] {
+    const CRACK: [f64; 3] = [0.17, 0.12, 0.10];
+    let (nx, ny) = (6_i64, 4_i64);
+    let x = u * nx as f64 + 0.35 * noise(u, v, (12, 8), 11);
+    let y = v * ny as f64 + 0.3 * noise(u, v, (12, 8), 12);
+    let (mut near, mut next, mut tone) = (9.0_f64, 9.0_f64, 0.0);
+    for dy in -1..=1 {
+        for dx in -1..=1 {
+            #[expect(clippy::cast_possible_truncation, reason = "cells of a small lattice")]
+            let (i, j) = (x.floor() as i64 + dx, y.floor() as i64 + dy);
+            let (wi, wj) = (i.rem_euclid(nx), j.rem_euclid(ny));
+            let (cx, cy) = (i as f64 + cell(wi, wj, 13), j as f64 + cell(wi, wj, 14));
+            let d = ((cx - x) * (cx - x) + (cy - y) * (cy - y)).sqrt();
+            if d < near {
+                (next, near, tone) = (near, d, cell(wi, wj, 15));
+            } else {
+                next = next.min(d);
+            }
+        }
+    }
+    let flake = shaded(colour, 0.9 + 0.28 * tone + 0.10 * noise(u, v, (20, 50), 16));
+    mixed(CRACK, flake, ops::smoothstep(0.02, 0.16, next - near))
+}
+
+/// Narrow rings across the stem, uneven, with fibres between.
+fn ringed(colour: Colour, u: f64, v: f64) -> [f64; 3] {
+    let y = 7.0 * v + 0.16 * noise(u, v, (5, 7), 21);
+    let phase = y - y.floor();
+    let edge = 1.0 - ops::smoothstep(0.0, 0.22, phase.min(1.0 - phase));
+    let fibre = 0.08 * noise(u, v, (50, 8), 22) + 0.06 * noise(u, v, (9, 16), 23);
+    shaded(colour, 1.08 - 0.42 * edge + 0.12 * phase + fibre)
+}
+
+/// One joint for each turn of the texture: a pale ring of wax below a dark line.
+fn cane(colour: Colour, u: f64, v: f64) -> [f64; 3] {
+    let sheen = 1.0 + 0.05 * ops::cos(TAU * u) + 0.05 * noise(u, v, (30, 2), 31);
+    let base = shaded(colour, sheen);
+    let from = (v - 0.5).abs();
+    let pale = mixed(base, [0.86, 0.87, 0.75], 0.6 * (1.0 - ops::smoothstep(0.02, 0.07, from)));
+    mixed(pale, shaded(colour, 0.45), 1.0 - ops::smoothstep(0.006, 0.016, from))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn barks_have_their_mean_colour_and_repeat() {
+        let colour = Colour([0x80, 0x70, 0x60]);
+        let paints: [&dyn Fn(f64, f64) -> [f64; 3]; 4] = [
+            &|u, v| birch(colour, u, v),
+            &|u, v| plated(colour, u, v),
+            &|u, v| ringed(colour, u, v),
+            &|u, v| cane(colour, u, v),
+        ];
+        for (i, paint) in paints.into_iter().enumerate() {
+            let t = painted(paint);
+            let red = t.pixels.chunks_exact(4).map(|p| f64::from(p[0])).sum::<f64>();
+            let red = red / f64::from(SIDE * SIDE);
+            assert!((80.0..150.0).contains(&red), "{i}: {red}");
+            for k in 0..40 {
+                let v = f64::from(k) / 40.0;
+                let [a, b] = [paint(1e-9, v), paint(1.0 - 1e-9, v)];
+                assert!((a[0] - b[0]).abs() < 0.02, "{i}: no seam at {v}: {a:?} {b:?}");
+            }
+        }
+        let old = Texture { width: 2, height: 1, pixels: vec![100, 100, 100, 255, 50, 50, 50, 255] };
+        let new = recoloured(&old, colour, 1.0);
+        assert_eq!((new.pixels[0], new.pixels[4]), (171, 85), "a third lighter, a third darker");
+    }
+
+    #[test]
+    fn colours_are_read_and_written() {
+        let look: Look = toml::from_str("bark = \"birch\"\nleaf_color = \"#10AB05\"").expect("sound");
+        assert_eq!((look.bark, look.leaf_color), (Bark::Birch, Colour([0x10, 0xab, 0x05])));
+        let error = toml::from_str::<Look>("leaf_color = \"green\"").expect_err("no colour").to_string();
+        assert!(error.contains("`green` is no colour"), "{error}");
+    }
+}

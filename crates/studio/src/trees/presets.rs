@@ -1,0 +1,60 @@
+//! The species that come with the program.
+
+use super::{TreeError, TreeSpec, read_tree_spec};
+
+/// A species, as TOML.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Preset {
+    /// The word by which it is asked for.
+    pub key: &'static str,
+    /// Its file.
+    pub toml: &'static str,
+}
+
+macro_rules! presets {
+    ($($key:literal),* $(,)?) => {
+        /// Every preset, those of paper 001 first.
+        pub const PRESETS: &[Preset] = &[$(Preset {
+            key: $key,
+            toml: include_str!(concat!("../../presets/", $key, ".toml")),
+        }),*];
+    };
+}
+
+presets![
+    "pine",
+    "terminalia",
+    "chinese-fir",
+    "oak",
+    "oak-colonization",
+    "oak-lsystem",
+    "birch",
+    "lime",
+    "maple",
+    "spruce",
+    "willow",
+    "poplar",
+    "palm",
+    "bamboo",
+    "hazel",
+    "dead-oak",
+];
+
+impl Preset {
+    /// The preset of a key.
+    ///
+    /// ```
+    /// assert!(burgeon::Preset::find("oak").is_some() && burgeon::Preset::find("rose").is_none());
+    /// ```
+    pub fn find(key: &str) -> Option<&'static Self> {
+        PRESETS.iter().find(|p| p.key == key)
+    }
+
+    /// Its spec.
+    ///
+    /// # Errors
+    /// [`TreeError::Spec`] if the file is at fault: our bug.
+    pub fn spec(&self) -> Result<TreeSpec, TreeError> {
+        read_tree_spec(self.toml, &|_| None)
+    }
+}

@@ -1,0 +1,115 @@
+//! Trees end to end.
+
+use super::*;
+use glam::DVec3;
+
+fn plain(spec: &TreeSpec) -> MadeTree {
+    make_tree(spec, Seed::new(1), &TreeOptions::default(), &Run::plain()).expect("sound spec")
+}
+
+fn young(key: &str) -> TreeSpec {
+    let spec = Preset::find(key).expect("a preset").spec().expect("sound");
+    // A few rounds are enough for what is asked here, and quick.
+    let age = match &spec.method {
+        Method::SelfOrganizing(_) => Some(9),
+        _ => spec.age,
+    };
+    TreeSpec { age, ..spec }
+}
+
+#[test]
+fn every_preset_is_sound_and_has_its_words() {
+    let mut names = std::collections::BTreeSet::new();
+    for preset in PRESETS {
+        let spec = preset.spec().expect(preset.key);
+        assert!(!spec.about.is_empty() && !spec.species.is_empty(), "{}", preset.key);
+        assert!(names.insert(spec.name.clone()), "{} twice", spec.name);
+        assert_eq!(spec.growth().map(|g| g.name), Ok(spec.name.clone()));
+    }
+    assert!(PRESETS.len() >= 12);
+}
+
+#[test]
+fn presets_of_table_1_have_its_numbers() {
+    for (key, points, attraction, kill, cycles) in
+        [("pine", 2870, 0.9, 0.5, 2), ("terminalia", 525, 0.8, 0.8, 3), ("chinese-fir", 1543, 1.0, 0.4, 3)]
+    {
+        let spec = Preset::find(key).expect("a preset").spec().expect("sound");
+        let Method::Competition(c) = spec.method else { panic!("{key}") };
+        assert_eq!((c.points, c.attraction_m, c.kill_m, c.lifespan), (points, attraction, kill, cycles));
+    }
+}
+
+#[test]
+fn a_tree_has_its_model_its_report_and_its_colours() {
+    let made = plain(&young("birch"));
+    let growth = made.item.growth.as_ref().expect("the report's block");
+    assert_eq!(growth.method, "self-organizing");
+    assert_eq!(growth.leaves_kept, made.item.counts.leaves);
+    assert_eq!(growth.nodes, made.grown.skeleton.len() as u64);
+    assert_eq!(made.model.validate().next(), None);
+    assert_eq!(made.grown.plant.validate().next(), None);
+    assert!(made.item.counts.triangles > 1000 && growth.leaves_kept > 50, "{:?}", made.item);
+    let again = plain(&young("birch"));
+    assert_eq!(made.item.digest, again.item.digest);
+    let leaf = made.grown.plant.organs.first().expect("a leaf").tint;
+    assert!(leaf[1] > leaf[0] && leaf[1] > leaf[2], "green: {leaf:?}");
+    let bark = made.model.materials.iter().find(|m| m.name.starts_with("bark")).expect("bark");
+    let t = bark.texture.as_ref().expect("painted");
+    let mean = t.pixels.chunks_exact(4).map(|p| u64::from(p[0])).sum::<u64>() / (t.pixels.len() as u64 / 4);
+    assert!(mean > 170, "birch bark is white: {mean}");
+}
+
+#[test]
+fn levels_of_detail_become_coarser_and_stay_sound() {
+    let spec = young("hazel");
+    let options = TreeOptions { lods: 3, ..TreeOptions::default() };
+    let made = make_tree(&spec, Seed::new(1), &options, &Run::plain()).expect("sound");
+    let mut last = made.model.triangle_count();
+    assert_eq!(made.lods.len(), 3);
+    for (level, lod) in (1..).zip(&made.lods) {
+        assert_eq!(lod.validate().next(), None);
+        let n = lod.triangle_count();
+        assert!(n < last * 7 / 10 && n > 100, "level {level}: {n} after {last}");
+        last = n;
+        let (plant, _) = coarser(&made.grown.plant, &options.skin, level);
+        assert_eq!(plant.validate().next(), None);
+        let keys =
+            |p: &plant::Plant| p.organs.iter().map(|o| o.key).collect::<std::collections::BTreeSet<_>>();
+        assert!(keys(&plant).is_subset(&keys(&made.grown.plant)));
+    }
+}
+
+#[test]
+fn a_tree_is_scaled_to_a_height() {
+    let options = TreeOptions { height_m: Some(3.0), ..TreeOptions::default() };
+    let made = make_tree(&young("oak-lsystem"), Seed::new(1), &options, &Run::plain()).expect("sound");
+    assert!((tree_size(&made.grown).height_m - 3.0).abs() < 1e-9);
+    assert_eq!(made.grown.plant.validate().next(), None);
+}
+
+#[test]
+fn open_and_inverted_meshes_are_named() {
+    let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z].into_iter();
+    let vertices: Vec<DVec3> = corners.map(|p| p + DVec3::new(2.0, 0.0, 2.0)).collect();
+    let closed = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+    let warned = |triangles: Vec<[u32; 3]>| {
+        let obstacles = vec![Obstacle::Mesh { vertices: vertices.clone(), triangles }];
+        let spec = TreeSpec { obstacles, ..TreeSpec::default() };
+        plain(&spec).item.warnings.join("; ")
+    };
+    assert_eq!(warned(closed.clone()), "");
+    assert!(warned(closed[1..].to_vec()).contains("3 edges"));
+    assert!(warned(closed.iter().map(|&[a, b, c]| [a, c, b]).collect()).contains("look inwards"));
+}
+
+#[test]
+fn growth_stops_when_asked() {
+    let token = base::CancelToken::new();
+    token.cancel();
+    let run = Run { cancel: &token, ..Run::plain() };
+    for key in ["oak", "birch", "palm"] {
+        let got = make_tree(&young(key), Seed::new(1), &TreeOptions::default(), &run);
+        assert_eq!(got.map(|_| ()), Err(TreeError::Cancelled(Cancelled)), "{key}");
+    }
+}
