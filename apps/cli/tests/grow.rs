@@ -28,7 +28,7 @@ fn good(folder: &Path, args: &[&str]) -> (String, String) {
 fn item(folder: &Path, args: &[&str]) -> Value {
     let all = [&["grow"], args, &["--json"]].concat();
     let report: Value = serde_json::from_str(&good(folder, &all).0).unwrap();
-    assert_eq!((report["command"].as_str(), report["ok"].as_u64()), (Some("grow"), Some(1)));
+    assert_eq!((report["command"].as_str(), report["ok"].as_u64()), (Some("grow"), Some(1)), "{args:?}");
     report["items"][0].clone()
 }
 

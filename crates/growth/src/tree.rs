@@ -326,7 +326,9 @@ mod tests {
             let old = tree(&spec);
             let young = tree(&TreeSpec { age: Some(old.tally.iterations / 2), ..spec });
             assert!(young.skeleton.len() < old.skeleton.len() && !young.plant.axes.is_empty());
-            assert!(young.plant.nodes.radius_m[0] < old.plant.nodes.radius_m[0]);
+            // Rules may set the trunk's diameter for every age.
+            let thinner = young.plant.nodes.radius_m[0] < old.plant.nodes.radius_m[0];
+            assert!(thinner || matches!(method, Method::Lsystem { .. }));
         }
     }
 

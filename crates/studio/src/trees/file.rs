@@ -48,8 +48,8 @@ fn line_of(text: &str, at: usize, message: &str) -> usize {
         let inline = line.split(['{', ',']).any(|part| part.trim_start().strip_prefix(name).is_some_and(key));
         quoted || trimmed.trim_start_matches('[').strip_prefix(name).is_some_and(key) || inline
     };
-    let found = named.and_then(|_| text.lines().skip(start).position(|l| holds(l)).map(|k| start + k));
-    let found = found.or_else(|| named.and_then(|_| text.lines().position(holds)));
+    let found = named.and_then(|_| text.lines().skip(start).position(&holds).map(|k| start + k));
+    let found = found.or_else(|| named.and_then(|_| text.lines().position(&holds)));
     found.unwrap_or(start) + 1
 }
 

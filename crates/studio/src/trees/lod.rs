@@ -27,11 +27,13 @@ pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) 
     };
     // Where each node of the plant is in the copy: itself, or the node that bore its axis.
     let mut moved: Vec<Option<NodeId>> = vec![None; plant.nodes.position.len()];
-    for axis in &plant.axes {
+    let mut gone = vec![false; plant.axes.len()];
+    for (row, axis) in plant.axes.iter().enumerate() {
         let bearer = axis.bearer.and_then(|b| moved.get(b.index()).copied().flatten());
         let rows = axis.nodes.start as usize..axis.nodes.end as usize;
-        let borne_by_none = axis.bearer.is_some() && bearer.is_none();
-        if rows.len() < 2 || borne_by_none || (axis.order > 0 && length(axis) < least) {
+        let orphan = axis.bearer.is_some_and(|b| gone[plant.nodes.axis[b.index()].index()]);
+        if rows.len() < 2 || orphan || (axis.order > 0 && length(axis) < least) {
+            gone[row] = true;
             moved[rows].fill(bearer);
             continue;
         }
@@ -48,7 +50,7 @@ pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) 
     for organ in &plant.organs {
         let leaf = organ.kind == OrganKind::Leaf;
         // Mixed: of keys that differ little, too, one in two stays.
-        if leaf && base::Seed::new(organ.key).child(0).number() % u64::from(share) != 0 {
+        if leaf && !base::Seed::new(organ.key).child(0).number().is_multiple_of(u64::from(share)) {
             continue;
         }
         let bearer = organ.bearer.and_then(|b| moved.get(b.index()).copied().flatten());
