@@ -1,5 +1,10 @@
 //! MTG and QSM files read back by readers of the tests' own.
 #![expect(clippy::unwrap_used, clippy::panic, reason = "tests")]
+#![allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "row numbers of tables are small"
+)]
 
 mod mtg_reader;
 
@@ -65,7 +70,7 @@ fn wild(seed: u64, axes: usize) -> Plant {
             });
         }
     }
-    assert_eq!(p.validate().next(), None);
+    assert_eq!(p.validate().next(), None, "a sound plant");
     p
 }
 
@@ -95,23 +100,23 @@ fn same(p: &Plant, g: &Graph, up: UpAxis, per_metre: f64) {
         let turned = if up == UpAxis::Z { DVec3::new(p.x, -p.z, p.y) } else { p };
         turned.to_array().into_iter().zip(there).for_each(|(metres, a)| close(a, metres));
     };
-    assert_eq!(g.vertices[0].label, "P1");
+    assert_eq!(g.vertices[0].label, "P1", "the plant comes first");
     let axes: Vec<usize> = g.with_symbol("A").filter(|v| g.word(*v, "Kind") != Some("none")).collect();
-    assert_eq!(axes.len(), p.axes.len());
+    assert_eq!(axes.len(), p.axes.len(), "axes");
     // The vertex of each node that is a place of its own.
     let mut vertex = vec![None; p.nodes.position.len()];
     for &v in &axes {
         let axis = &p.axes[g.index(v) - 1];
         let skip = usize::from(axis.bearer.is_some());
         let nodes: Vec<usize> = g.components(v).filter(|c| g.vertices[*c].label.starts_with('N')).collect();
-        assert_eq!(nodes.len(), axis.nodes.len() - skip);
+        assert_eq!(nodes.len(), axis.nodes.len() - skip, "nodes of an axis");
         for (&n, id) in nodes.iter().zip(axis.node_ids().skip(skip)) {
             vertex[id.index()] = Some(n);
             at(n, p.nodes.position[id.index()]);
             close(g.number(n, "TopDia").unwrap(), 2.0 * p.nodes.radius_m[id.index()]);
         }
         for w in nodes.windows(2) {
-            assert_eq!(g.vertices[w[1]].parent, Some((w[0], Edge::Follows)));
+            assert_eq!(g.vertices[w[1]].parent, Some((w[0], Edge::Follows)), "nodes follow");
         }
         if axis.bearer.is_some() {
             close(g.number(nodes[0], "BotDia").unwrap(), 2.0 * p.nodes.radius_m[axis.nodes.start as usize]);
@@ -122,18 +127,18 @@ fn same(p: &Plant, g: &Graph, up: UpAxis, per_metre: f64) {
         let bearer = axis.bearer.map(|b| place_of(p, b));
         let first = g.components(v).next().unwrap();
         let expected = bearer.map(|b| (vertex[b.index()].unwrap(), Edge::Bears));
-        assert_eq!(g.vertices[first].parent, expected);
+        assert_eq!(g.vertices[first].parent, expected, "what bears an axis");
         // At the scale of axes, too.
         let bearing_axis = bearer.map(|b| p.nodes.axis[b.index()].index() + 1);
-        assert_eq!(g.vertices[v].parent.map(|(a, _)| g.index(a)), bearing_axis);
+        assert_eq!(g.vertices[v].parent.map(|(a, _)| g.index(a)), bearing_axis, "the bearing axis");
     }
     let organs: Vec<usize> = ["L", "U"].into_iter().flat_map(|s| g.with_symbol(s)).collect();
-    assert_eq!(organs.len(), p.organs.len());
+    assert_eq!(organs.len(), p.organs.len(), "organs");
     for v in organs {
         let organ = &p.organs[g.index(v) - 1];
         at(v, organ.frame.origin);
         let bearer = organ.bearer.map(|b| (vertex[place_of(p, b).index()].unwrap(), Edge::Bears));
-        assert_eq!(g.vertices[v].parent, bearer);
+        assert_eq!(g.vertices[v].parent, bearer, "what bears an organ");
         close(g.number(v, "Length").unwrap(), 0.4);
         // A rhombus of 0.1 by 0.2 m at twice the size.
         let area = g.number(v, "Area").unwrap() / per_metre / per_metre;
