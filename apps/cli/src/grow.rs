@@ -17,6 +17,7 @@ use clap::{Args, ValueEnum};
 
 use crate::args::{AxesArgs, CommonArgs, PictureArgs, ranged, seed};
 use crate::failure::{Failure, Outcome};
+use crate::files::PlantFormat;
 use crate::machine::Machine;
 use crate::{files, output, picture, report, say};
 
@@ -26,9 +27,12 @@ pub(crate) struct GrowArgs {
     /// A species of `burgeon presets`, or a spec (.toml) [default: a plain tree].
     #[arg(value_name = "PRESET|SPEC.toml", required_unless_present_any = ["method", "attractors"])]
     pub(crate) what: Option<PathBuf>,
-    /// The model: .glb, .obj, .ply or .stl.
-    #[arg(long, short, value_name = "OUT", required_unless_present_any = ["png", "report", "json"])]
+    /// The model (.glb, .obj, .ply or .stl), or the structure (.mtg).
+    #[arg(long, short, value_name = "OUT", required_unless_present_any = ["png", "qsm", "report", "json"])]
     pub(crate) output: Option<PathBuf>,
+    /// Also write the wood as cylinders: a quantitative structure model, one a row, with `TreeQSM`'s column names.
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) qsm: Option<PathBuf>,
     /// Also make a picture.
     #[arg(long, value_name = "FILE.png")]
     pub(crate) png: Option<PathBuf>,
@@ -54,6 +58,7 @@ const GROW_EXAMPLES: &str = "Examples:
   burgeon grow pine -o pine.glb --leaf-keep 0.4 --lods 3         pine.glb, pine-lod1.glb, ...
   burgeon grow oak -o oak.glb --obstacle house.obj               around a house
   burgeon grow birch -o young.glb --age 12
+  burgeon grow oak -o oak.mtg --qsm oak.csv --report oak.json    structure and measures for programs of the field
   burgeon grow --attractors scan.xyz --root 0,0,0 --influence 1 --kill 0.4 -o tree.glb
   burgeon presets --show oak > mine.toml; burgeon grow mine.toml -o mine.glb";
 
@@ -158,11 +163,12 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     let outputs = [
         ("-o", args.output.as_ref()),
         ("--png", args.png.as_ref()),
+        ("--qsm", args.qsm.as_ref()),
         ("--report", args.common.report.as_ref()),
     ];
     let inputs = args.what.iter().chain(&args.growth.obstacle).chain(&args.points.attractors);
     output::check_outputs(&outputs, &inputs.collect::<Vec<_>>())?;
-    let format = args.output.as_deref().map(files::writable).transpose()?;
+    let format = args.output.as_deref().map(files::plant_writable).transpose()?;
     if let Some(png) = &args.png {
         picture::check_name(png)?;
     }
@@ -177,24 +183,26 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
             textures: !args.surface.no_textures,
             ..SkinSpec::default()
         },
-        lods: if args.output.is_some() { args.surface.lods } else { 0 },
+        lods: if matches!(format, Some(PlantFormat::Model(_))) { args.surface.lods } else { 0 },
         ..TreeOptions::default()
     };
     let made = machine.with_progress("grow", |_| make_tree(&spec, seed, &options, &machine.run()));
-    let MadeTree { model, lods, mut item, .. } = made.map_err(|e| failure(args, e))?;
+    let MadeTree { grown, model, lods, mut item } = made.map_err(|e| failure(args, e))?;
     machine.cancel.check()?;
     item.warnings.splice(0..0, told.warnings.iter().map(ToString::to_string));
     item.timings_ms.add_io(read_ms, 0.0);
+    if args.common.report.is_some() || args.common.json {
+        item.plant = Some(grown.plant.measure());
+    }
     let mut items = vec![item];
     if let Some((path, format)) = args.output.as_deref().zip(format) {
-        let axes = files::axes(args.axes.up, args.axes.unit);
         let mut cache = PngCache::new();
         let all = std::iter::once((&model, path.to_path_buf()));
         let all = all.chain(lods.iter().zip(1..).map(|(m, level)| (m, beside(path, level))));
         for (level, (model, path)) in all.enumerate() {
             machine.cancel.check()?;
-            let (written, write_ms) =
-                machine.timed(|| files::write_model(&path, model, format, &axes, &mut cache));
+            let (written, write_ms) = machine
+                .timed(|| files::write_plant(&path, (&grown.plant, model), format, &args.axes, &mut cache));
             let written = written?;
             if level > 0 {
                 items.push(lod_item(&items[0], model, level));
@@ -204,6 +212,9 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
             item.warnings.extend(written.iter().map(ToString::to_string));
             item.timings_ms.add_io(0.0, write_ms);
         }
+    }
+    if let Some(path) = &args.qsm {
+        files::write_qsm(path, &grown.plant, &args.axes)?;
     }
     if let Some(png) = &args.png {
         let spec = args.picture.spec(args.seed);

@@ -365,3 +365,28 @@ fn oaks_are_compared_at_one_height() {
     let png = fs::read(at.join("oaks.png")).unwrap();
     assert_eq!(png[16..24], [0, 0, 1, 44, 0, 0, 0, 120], "three of 100 x 120");
 }
+
+#[test]
+fn structure_and_measures_are_written_for_programs_of_the_field() {
+    let dir = folder("structure");
+    let args = ["grow", "palm", "-o", "palm.mtg", "--qsm", "palm.csv", "--report", "palm.json"];
+    good(&dir, &args);
+    let mtg = fs::read_to_string(dir.join("palm.mtg")).unwrap();
+    assert!(mtg.contains("CODE:\tFORM-A") && mtg.contains("\n/P1\n"), "no MTG");
+    let table = fs::read_to_string(dir.join("palm.csv")).unwrap();
+    let report: Value = serde_json::from_str(&fs::read_to_string(dir.join("palm.json")).unwrap()).unwrap();
+    let plant = &report["items"][0]["plant"];
+    let height = plant["height_m"].as_f64().unwrap();
+    assert!((4.0..30.0).contains(&height), "a palm of {height} m");
+    assert_eq!(plant["stems"], 1);
+    let column = |name: &str| table.lines().next().unwrap().split(',').position(|c| c == name).unwrap();
+    let (radius, length) = (column("radius"), column("length"));
+    let volume: f64 = (table.lines().skip(1))
+        .map(|line| {
+            let numbers: Vec<f64> = line.split(',').map(|n| n.parse().unwrap()).collect();
+            std::f64::consts::PI * numbers[radius] * numbers[radius] * numbers[length]
+        })
+        .sum();
+    let told = plant["wood_volume_m3"].as_f64().unwrap();
+    assert!((volume / told - 1.0).abs() < 1e-3, "cylinders of {volume} and wood of {told} cubic metres");
+}
