@@ -7,6 +7,8 @@ import { chromium } from 'playwright-core';
 
 const [browserPath, burgeon] = process.argv.slice(2);
 const server = spawn(burgeon, ['studio', '--no-open', '--port', '0', '--folder', 'dist'], { stdio: ['ignore', 'pipe', 'inherit'] });
+// However this run ends, the server ends with it.
+process.on('exit', () => server.kill());
 const url = await new Promise((resolve, reject) => {
   let said = '';
   server.stdout.on('data', (d) => {
@@ -168,5 +170,4 @@ for (const sketch of ['a', 'b', 'c', 'd', 'e', 'f', 'g', 'h']) {
 }
 await browser.close();
 server.removeAllListeners('exit');
-server.kill();
 process.exit(0);

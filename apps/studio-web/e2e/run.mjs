@@ -13,6 +13,8 @@ mkdirSync(out, { recursive: true });
 const server = spawn(burgeon, ['studio', '--no-open', '--port', '0', '--folder', 'dist', '../../fixtures/sketches/gallery/tulip.svg'], {
   stdio: ['ignore', 'pipe', 'inherit'],
 });
+// However this run ends, the server ends with it.
+process.on('exit', () => server.kill());
 const url = await new Promise((resolve, reject) => {
   let said = '';
   server.stdout.on('data', (d) => {
@@ -58,6 +60,5 @@ for (const [name, journey, options] of journeys) {
 }
 await browser.close();
 server.removeAllListeners('exit');
-server.kill();
 console.log(`Studio journeys: ${failed} failed; pictures in ${out}`);
 process.exit(failed > 0 ? 1 : 0);
