@@ -20,10 +20,12 @@
 mod evaluate;
 mod leaves;
 mod make;
+mod motion;
 mod opening;
 mod report;
 mod template;
 mod trees;
+mod venation;
 
 pub use base::{
     Angle, CancelToken, Cancelled, Clock, Digest, Executor, NoClock, Report, Run, Seed, Serial, Unit, UpAxis,
@@ -35,6 +37,7 @@ pub use leaves::{
     leaf_blade, make_leaf, make_leaf_from_scan, make_leaf_of, make_shoot,
 };
 pub use make::{ClassOverrides, Made, MakeError, SketchOptions, make_from_sketch};
+pub use motion::motion_model;
 pub use opening::{OpeningError, OpeningPlant};
 pub use report::{
     Counts, Fidelity, InputReport, ItemReport, REPORT_SCHEMA, RunReport, StrokeReport, TimingsMs,
@@ -46,6 +49,7 @@ pub use trees::{
     PRESETS, PaperOak, Preset, TreeError, TreeOptions, TreeSize, TreeSpec, coarser, make_tree, method_word,
     read_tree_spec, scale_to_height, tree_schema, tree_size,
 };
+pub use venation::make_ray_leaf;
 
 pub use {bloom, document, formats, geom, glam, growth, leaf, mesh, plant, render, sketch, skin};
 
