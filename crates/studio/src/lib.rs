@@ -22,6 +22,7 @@ mod leaves;
 mod make;
 mod opening;
 mod report;
+mod shaping;
 mod template;
 mod trees;
 
@@ -39,6 +40,7 @@ pub use opening::{OpeningError, OpeningPlant};
 pub use report::{
     Counts, Fidelity, InputReport, ItemReport, REPORT_SCHEMA, RunReport, StrokeReport, TimingsMs,
 };
+pub use shaping::{BranchRow, EditReport, branch_rows, edits_schema, edits_template, shape_plant};
 pub use template::{LeafTemplate, TemplateError};
 
 pub use trees::{
@@ -47,7 +49,7 @@ pub use trees::{
     read_tree_spec, scale_to_height, tree_schema, tree_size,
 };
 
-pub use {bloom, document, formats, geom, glam, growth, leaf, mesh, plant, render, sketch, skin};
+pub use {bloom, document, formats, geom, glam, growth, leaf, mesh, plant, render, shape, sketch, skin};
 
 /// The version that is written into reports and files.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
