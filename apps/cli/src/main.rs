@@ -17,6 +17,7 @@ mod picture;
 mod presets;
 mod report;
 mod say;
+mod scene;
 mod sketch;
 mod stages;
 mod studio;

@@ -22,6 +22,7 @@ mod leaves;
 mod make;
 mod opening;
 mod report;
+mod scene;
 mod template;
 mod trees;
 
@@ -38,6 +39,10 @@ pub use make::{ClassOverrides, Made, MakeError, SketchOptions, make_from_sketch}
 pub use opening::{OpeningError, OpeningPlant};
 pub use report::{
     Counts, Fidelity, InputReport, ItemReport, REPORT_SCHEMA, RunReport, StrokeReport, TimingsMs,
+};
+pub use scene::{
+    SceneError, SceneEvaluator, ScenePlant, flower_schema, leaf_marks, leaf_schema, scene_model,
+    tree_settings, tree_spec,
 };
 pub use template::{LeafTemplate, TemplateError};
 

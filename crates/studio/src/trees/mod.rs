@@ -26,6 +26,7 @@ use serde::{Deserialize, Serialize};
 use skin::SkinSpec;
 
 use crate::report::{Counts, ItemReport, TimingsMs};
+use crate::template::LeafTemplate;
 
 pub use blade::{BladeForm, BladeSpec};
 pub use compare::{OAK_METHODS, PAPER_OAKS, PaperOak, TreeSize, scale_to_height, tree_size};
@@ -45,6 +46,8 @@ pub struct TreeOptions {
     pub height_m: Option<f64>,
     /// Coarser copies to make as well, 0 to 6: each has about a third of the triangles of the one before.
     pub lods: u32,
+    /// The leaf that the tree bears instead of its spec's own. Default none.
+    pub leaf: Option<LeafTemplate>,
 }
 
 /// A tree with its meshes and its entry of the report.
@@ -175,6 +178,9 @@ pub fn make_tree(
     let wanted = spec.growth()?;
     let mut grown = growth::grow(&wanted, Some(spec.blade.blade()), seed, run, &mut told)?;
     spec.look.tint(&mut grown.plant, seed);
+    if let Some(leaf) = &options.leaf {
+        leaf.apply(&mut grown.plant);
+    }
     if let Some(height) = options.height_m.filter(|_| spec.obstacles.is_empty()) {
         scale_to_height(&mut grown, height);
     }
@@ -186,6 +192,9 @@ pub fn make_tree(
     let mesh = |plant: &plant::Plant, skin_spec: &SkinSpec| {
         skin::skin(plant, skin_spec, run).map(|mut model| {
             spec.look.paint(&mut model);
+            if let Some(leaf) = &options.leaf {
+                leaf.dress(&mut model);
+            }
             model
         })
     };
