@@ -326,7 +326,7 @@ export class App {
       el('h1', {}, t('sheet.empty')), el('p', {}, t('sheet.empty.hint')),
       el('button', { type: 'button', class: 'link', onclick: () => this.files.samples() }, t('sheet.empty.sample'))));
     const left = el('section', { class: 'left' }, this.sheet.element, tools, empty, hold('legend', el('div', { class: 'legend', role: 'list', 'aria-label': t('legend.title') })), this.card.element,
-      hold('bloom', el('div', { class: 'bloom' })), hold('maker', this.panel.element), hold('noplant', el('div', { class: 'empty' }, el('h1', {}, t('scene.empty')), el('p', {}, t('scene.empty.hint')))));
+      hold('bloom', el('div', { class: 'bloom' })), hold('maker', this.panel.element), hold('noplant', el('div', { class: 'nothing' }, el('h1', {}, t('scene.empty')), el('p', {}, t('scene.empty.hint')))));
     p['tools'] = tools;
     const seeButtons = el('div', { class: 'tools right-tools', role: 'toolbar' },
       hold('front', button('front', t('view.front'), () => this.view?.setFront(!this.view.isFront), 'F')),

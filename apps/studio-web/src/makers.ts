@@ -21,11 +21,13 @@ export interface MakerEvents {
   open(file: File): void;
 }
 
+/** The species whose pictures lie in `public/presets`. */
+declare const PRESET_PICTURES: readonly string[];
+
 /** Pictures of species; the name alone where there is none. */
 function thumbnail(key: string, label: string): HTMLElement {
   const picture = el('span', { class: 'thumb' }, el('span', { class: 'thumb-none', 'aria-hidden': 'true' }, icon('tree')));
-  const image = el('img', { src: `./presets/${key}.png`, alt: '', loading: 'lazy', onerror: () => image.remove() });
-  picture.append(image);
+  if (PRESET_PICTURES.includes(key)) picture.append(el('img', { src: `./presets/${key}.png`, alt: '', loading: 'lazy' }));
   return el('span', { class: 'thumb-cell' }, picture, el('span', {}, label));
 }
 
@@ -48,6 +50,10 @@ export class MakerPanel {
   private plant: PlantState | undefined;
   private days: [number, number] | null = null;
   private head = el('div', { class: 'maker-head' });
+  private species: { key: string; element: HTMLElement } | undefined;
+  /** Rounds or years of each tree when it is full grown. */
+  private readonly grown = new Map<number, number>();
+  private tableOpen = false;
 
   constructor(private readonly catalogue: () => Catalogue | undefined, private readonly events: MakerEvents) {}
 
@@ -55,6 +61,7 @@ export class MakerPanel {
   reset(): void {
     this.shown = '';
     this.form = undefined;
+    this.species = undefined;
   }
 
   stop(): void {
@@ -70,6 +77,8 @@ export class MakerPanel {
   show(plant: PlantState | undefined, state: DocumentState, view: PlantView | undefined): void {
     this.plant = plant;
     if (view) this.days = view.days;
+    const rounds = view?.item?.growth?.iterations;
+    if (plant?.tree && plant.tree.spec['age'] === null && rounds) this.grown.set(plant.id, rounds);
     const catalogue = this.catalogue();
     if (!plant || plant.maker === 'sketch' || !catalogue) {
       this.shown = '';
@@ -94,6 +103,8 @@ export class MakerPanel {
       this.follow();
       return;
     }
+    // What is being typed stays.
+    if (document.activeElement instanceof HTMLTextAreaElement && this.head.contains(document.activeElement)) return;
     const focused = this.head.contains(document.activeElement) ? document.activeElement?.getAttribute('data-path') : null;
     if (plant.tree) this.head.replaceChildren(...this.tree(plant, plant.tree, state, catalogue));
     if (plant.leaf) this.head.replaceChildren(...this.leaf(plant.leaf));
@@ -142,10 +153,8 @@ export class MakerPanel {
 
   private tree(plant: PlantState, tree: NonNullable<PlantState['tree']>, state: DocumentState, catalogue: Catalogue): HTMLElement[] {
     const { spec } = tree;
-    const method = spec['method'] as Fields | undefined;
-    const steps = Number(method?.['lifespan'] ?? method?.['years'] ?? 40);
     const age = typeof spec['age'] === 'number' ? spec['age'] : null;
-    const most = Math.max(40, age ?? 0, steps);
+    const most = Math.max(2, age ?? 0, this.grown.get(plant.id) ?? 40);
     const keep = Number((spec['leaves'] as Fields | undefined)?.['leaf_keep'] ?? 1);
     const lenders = state.plants.filter((p) => p.lends && p.id !== plant.id);
     const leafOf = el('select', { 'data-path': 'leaf-of', onchange: () => this.events.run({ do: 'leaf-of', lender: leafOf.value === '' ? null : Number(leafOf.value) }) },
@@ -153,8 +162,13 @@ export class MakerPanel {
     leafOf.value = tree.leaf === null ? '' : String(tree.leaf);
     const ages = this.slider('age', t('tree.age'), 0, most, 1, age ?? most, (x) => ({ do: 'tree', path: '/age', value: x >= most ? null : x }));
     if (age === null) ages.querySelector('output')!.textContent = t('tree.age.full');
+    const shown = `${plant.id} ${tree.preset}`;
+    // Kept while it shows the same: it has a place to which it was scrolled.
+    if (this.species?.key !== shown) {
+      this.species = { key: shown, element: this.section(t('tree.species'), gallery(catalogue, tree.preset, (key) => this.events.run({ do: 'preset', key }))) };
+    }
     return [
-      this.section(t('tree.species'), gallery(catalogue, tree.preset, (key) => this.events.run({ do: 'preset', key }))),
+      this.species.element,
       this.section(t('tree.main'), ages,
         this.slider('keep', t('tree.keep'), 0, 1, 0.01, keep, (x) => ({ do: 'tree', path: '/leaves/leaf_keep', value: x })),
         el('label', { class: 'f-row', title: t('tree.leaf.hint') }, el('span', {}, t('tree.leaf')), leafOf)),
@@ -198,7 +212,8 @@ export class MakerPanel {
     const table = el('textarea', { class: 'field marks', rows: '7', spellcheck: 'false', 'data-path': 'marks', 'aria-label': t('leaf.table'), placeholder: 'row,mark,x,y,z,thickness,midrib' });
     table.value = leaf.text;
     const take = el('button', { type: 'button', class: 'chip', onclick: () => this.events.run({ do: 'marks', name: leaf.file || 'marks.csv', text: table.value }) }, t('leaf.table.take'));
-    const edit = el('details', { class: 'f-group' }, el('summary', {}, t('leaf.table')), table, el('div', { class: 'chips' }, take));
+    const edit = el('details', { class: 'f-group', ontoggle: () => { this.tableOpen = edit.open; } }, el('summary', {}, t('leaf.table')), table, el('div', { class: 'chips' }, take));
+    edit.open = this.tableOpen;
     return [this.section(t('leaf.data'), el('p', { class: 'muted' }, empty ? t('leaf.none') : leaf.file),
       el('div', { class: 'chips' }, el('button', { type: 'button', class: empty ? 'primary' : 'chip', id: 'b-marks', onclick: () => this.events.choose('.csv,.json', (f) => this.events.open(f)) }, t(empty ? 'leaf.choose' : 'leaf.other'))),
       edit)];

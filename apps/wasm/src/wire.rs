@@ -85,7 +85,7 @@ export interface Item {
   counts: { flowers: number; petals: number; leaves: number; branches: number; nodes: number; axes: number;
     vertices: number; triangles: number };
   timings_ms: { total: number } & Record<string, number>; fidelity: { reprojection_mean: number; reprojection_p95: number };
-  digest: string; warnings: string[];
+  digest: string; warnings: string[]; growth?: { iterations: number } & Record<string, number | string>;
 }
 export interface MaterialView {
   name: string; kind: string; color: [number, number, number]; roughness: number; translucency: number; masked: boolean;
