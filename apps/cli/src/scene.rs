@@ -4,7 +4,7 @@ use std::path::Path;
 
 use burgeon::document::{Document, DocumentPlant};
 use burgeon::formats::PngCache;
-use burgeon::{Report, RunReport, SceneEvaluator, scene_model};
+use burgeon::{RunReport, SceneEvaluator, scene_model};
 
 use crate::args::SketchArgs;
 use crate::failure::{Failure, Outcome};

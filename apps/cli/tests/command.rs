@@ -418,7 +418,10 @@ fn a_scene_is_made_whole() {
     let dir = folder("scene");
     let fixture = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/projects/version-3.burgeon");
     fs::copy(fixture, dir.join("garden.burgeon")).unwrap();
-    good(&dir, &["sketch", "garden.burgeon", "-o", "garden.glb", "--report", "r.json", "--png", "garden.png"]);
+    good(
+        &dir,
+        &["sketch", "garden.burgeon", "-o", "garden.glb", "--report", "r.json", "--png", "garden.png"],
+    );
     let report = json(&dir.join("r.json"));
     let items = report["items"].as_array().unwrap();
     let names: Vec<&str> = items.iter().filter_map(|i| i["name"].as_str()).collect();

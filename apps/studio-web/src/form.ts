@@ -106,7 +106,7 @@ export class Form {
     const [least, most] = [s.minimum ?? 0, s.maximum ?? Infinity];
     const at = value ?? (typeof s.default === 'number' ? s.default : Math.min(Math.max(1, least), most));
     const whole = s.type === 'integer';
-    const wide = most - least > WIDE;
+    const wide = most - least > WIDE || (least > 0 && most > WIDE * least);
     // Far apart: a slider of ratios around the value.
     const ratio = wide && at > 0;
     const [low, high] = ratio ? [Math.max(least, at / 8), Math.min(most, at * 8)] : [least, wide ? Math.min(most, Math.max(10, 4 * at)) : most];

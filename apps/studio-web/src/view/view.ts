@@ -244,9 +244,14 @@ export class PlantView {
   /** The box around all that is seen, metres. */
   private bounds(): THREE.Box3 {
     const box = new THREE.Box3();
-    const add = ({ place, view }: PlantMeshes): void => {
-      if (!view || !place.visible || (view.parts.length === 0 && view.obstacles.length === 0)) return;
+    const add = ({ place, obstacles, view }: PlantMeshes): void => {
+      if (!view || !place.visible) return;
       place.updateMatrix();
+      for (const mesh of obstacles.children as THREE.Mesh[]) {
+        mesh.updateMatrix();
+        mesh.geometry.computeBoundingBox();
+        if (mesh.geometry.boundingBox) box.union(mesh.geometry.boundingBox.clone().applyMatrix4(mesh.matrix).applyMatrix4(place.matrix));
+      }
       const own = new THREE.Box3(new THREE.Vector3(...view.min), new THREE.Vector3(...view.max));
       if (view.parts.length > 0) box.union(own.applyMatrix4(place.matrix));
     };
