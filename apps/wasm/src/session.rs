@@ -491,8 +491,10 @@ impl Session {
         for plant in self.editor.document().plants() {
             let id = plant.id();
             let previewed = self.previewed && self.current_id() == Some(id);
-            let revision = self.scene.get(id).map(|p| p.revision).filter(|_| !previewed);
             let model = self.model(id);
+            // None for what the page shows nothing of, or a look: whatever comes next is new to it.
+            let shown = !previewed && model.is_some();
+            let revision = self.scene.get(id).map(|p| p.revision).filter(|_| shown);
             let mut seen = model.map_or_else(|| PlantView::empty(id.0), |m| plant_view(id, m, &mut textures));
             seen.fresh = previewed || model.is_none() || self.meshes.get(&id) != Some(&revision);
             seen.item = self.item(id);
@@ -1081,5 +1083,11 @@ mod tests {
         s.undo();
         s.undo();
         assert_eq!(look(&mut s)["parts"], drawn["parts"]);
+        // What was taken off the page comes back with its meshes.
+        s.run(r#"{"do":"new"}"#).unwrap();
+        assert!(look(&mut s)["parts"].as_array().unwrap().is_empty());
+        s.undo();
+        let back = look(&mut s);
+        assert!(back["fresh"].as_bool().unwrap() && back["parts"] == drawn["parts"]);
     }
 }
