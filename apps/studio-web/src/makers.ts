@@ -41,6 +41,9 @@ export function gallery(catalogue: Catalogue, chosen: string | null, act: (key: 
   return grid;
 }
 
+/** A shape that did not come by then will not. */
+const PATIENCE_MS = 4000;
+
 export class MakerPanel {
   readonly element = el('div', { class: 'maker' });
   private form: Form | undefined;
@@ -99,10 +102,7 @@ export class MakerPanel {
       this.element.scrollTop = 0;
     }
     // What is dragged keeps its element.
-    if (this.dragging || this.playing !== 0) {
-      this.follow();
-      return;
-    }
+    if (this.dragging || this.playing !== 0) return;
     // What is being typed stays.
     if (document.activeElement instanceof HTMLTextAreaElement && this.head.contains(document.activeElement)) return;
     const focused = this.head.contains(document.activeElement) ? document.activeElement?.getAttribute('data-path') : null;
@@ -250,6 +250,7 @@ export class MakerPanel {
 
   private lastDay = -1;
   private answered = true;
+  private askedAt = 0;
 
   /** From the bud to wilting in eight seconds; as one step of undo. */
   private play(row: HTMLElement, end: number): void {
@@ -268,14 +269,16 @@ export class MakerPanel {
     this.answered = true;
     const frame = (now: number): void => {
       const day = Math.min(end, Math.round((from + ((now - start) / 8000) * end) * 100) / 100);
-      if (this.answered && day !== this.lastDay) {
+      // One shape at a time: asking for more only puts them off.
+      if ((this.answered || now - this.askedAt > PATIENCE_MS) && day !== this.lastDay) {
         this.lastDay = day;
+        this.askedAt = now;
         this.answered = false;
         input.value = String(day);
         output.textContent = String(day);
         this.events.stage(this.dayCommand(day));
       }
-      if (day >= end && this.answered) {
+      if (day >= end && (this.answered || now - this.askedAt > PATIENCE_MS)) {
         this.stop();
         label.textContent = t('flower.play');
         return;
