@@ -565,6 +565,7 @@ async function bloom({ page, url, shot }) {
   await page.waitForTimeout(4000);
   await shot('bloom');
   await page.waitForFunction(() => /Play/.test(document.querySelector('.play')?.textContent ?? ''));
+  assert.equal(await page.locator('.note.bad').count(), 0, 'nothing was refused');
   digest = await data(page, 'digest');
   await page.keyboard.press('Control+z');
   await changed(page, digest, 'the whole play is one step');

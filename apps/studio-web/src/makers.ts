@@ -268,7 +268,7 @@ export class MakerPanel {
     this.lastDay = -1;
     this.answered = true;
     const frame = (now: number): void => {
-      const day = Math.min(end, Math.round((from + ((now - start) / 8000) * end) * 100) / 100);
+      const day = Math.min(end, Math.round((from + (Math.max(0, now - start) / 8000) * end) * 100) / 100);
       // One shape at a time: asking for more only puts them off.
       if ((this.answered || now - this.askedAt > PATIENCE_MS) && day !== this.lastDay) {
         this.lastDay = day;
