@@ -19,7 +19,8 @@ const ASIDE = 0.5;
 export class SceneList {
   readonly element = el('aside', { class: 'scene' });
   private mode: Gizmo | undefined;
-  private folded = false;
+  /** As the person set it; by itself it is folded while there is one drawing. */
+  private folds: boolean | undefined;
 
   constructor(private readonly events: SceneEvents) {}
 
@@ -27,13 +28,15 @@ export class SceneList {
     const focused = this.element.contains(document.activeElement) ? document.activeElement?.getAttribute('data-key') : null;
     this.element.setAttribute('aria-label', t('scene.title'));
     const rows = state.plants.map((p) => this.row(p, state, view));
-    const fold = el('button', { type: 'button', class: 'fold', 'data-key': 'fold', 'aria-expanded': String(!this.folded), onclick: () => { this.folded = !this.folded; this.show(state, view); } },
+    const folded = this.folds ?? (state.plants.length === 1 && state.plants[0]!.maker === 'sketch');
+    this.element.classList.toggle('folded', folded);
+    const fold = el('button', { type: 'button', class: 'fold', 'data-key': 'fold', 'aria-expanded': String(!folded), onclick: () => { this.folds = !folded; this.show(state, view); } },
       icon('scene'), t('scene.title'), el('span', { class: 'muted' }, String(state.plants.length)));
     const add = button('plus', t('scene.add'), () => this.openAdd(add));
     add.id = 'b-add';
     add.setAttribute('data-key', 'add');
     const content: HTMLElement[] = [el('div', { class: 'scene-head' }, fold, add)];
-    if (!this.folded) {
+    if (!folded) {
       content.push(el('ul', { class: 'plants' }, ...rows));
       const current = state.plants.find((p) => p.id === state.current);
       if (current && (state.plants.length > 1 || current.maker !== 'sketch')) content.push(this.placing(current));
