@@ -1030,9 +1030,8 @@ mod tests {
         other.open("three.burgeon", &s.save().unwrap(), 0, true).unwrap();
         assert_eq!(scene(&mut other), scene(&mut s));
         // An obstacle is grown around; a spec that is none is refused.
-        let tree = made.len() as u32;
         let ids: Vec<u32> = s.document().plants().iter().map(|p| p.id().0).collect();
-        assert_eq!(ids.len() as u32, tree);
+        assert_eq!(ids.len(), made.len());
         s.select(ids[0]).unwrap();
         let before = scene(&mut s);
         s.run(r#"{"do":"obstacle","name":"ball","shape":{"shape":"sphere","centre":[0,3,0],"radius_m":1}}"#)
