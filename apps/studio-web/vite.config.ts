@@ -1,5 +1,10 @@
 import { createHash } from 'node:crypto';
+import { existsSync, readdirSync } from 'node:fs';
 import { defineConfig, type Plugin } from 'vite';
+
+/** Pictures of species that are there: the page shows the name alone where one is missing. */
+const folder = new URL('./public/presets', import.meta.url);
+const pictures = existsSync(folder) ? readdirSync(folder).filter((f) => f.endsWith('.png')).sort() : [];
 
 /** Writes `sw.js`: every built file by name, so that the Studio works offline after the first visit. */
 function offline(): Plugin {
@@ -9,10 +14,10 @@ function offline(): Plugin {
     enforce: 'post',
     generateBundle(_options, bundle) {
       const files = Object.keys(bundle).filter((name) => !name.endsWith('.map')).sort();
-      const version = createHash('sha256').update(files.join('\n')).digest('hex').slice(0, 12);
+      const version = createHash('sha256').update([...files, ...pictures].join('\n')).digest('hex').slice(0, 12);
       const source = `// Built files bear their content in their name: they never change, the page itself may.
 const CACHE = 'burgeon-${version}';
-const FILES = ${JSON.stringify(['./', './icon.svg', ...files.filter((f) => f !== 'index.html').map((f) => './' + f)])};
+const FILES = ${JSON.stringify(['./', './icon.svg', ...pictures.map((f) => './presets/' + f), ...files.filter((f) => f !== 'index.html').map((f) => './' + f)])};
 self.addEventListener('install', (e) => {
   e.waitUntil(caches.open(CACHE).then((c) => c.addAll(FILES)).then(() => self.skipWaiting()));
 });
@@ -25,7 +30,7 @@ self.addEventListener('fetch', (e) => {
   if (e.request.method !== 'GET' || url.origin !== location.origin) return;
   if (e.request.mode === 'navigate') {
     e.respondWith(fetch(e.request).catch(() => caches.match('./', { ignoreSearch: true })));
-  } else if (url.pathname.includes('/assets/')) {
+  } else if (/\\/(assets|presets)\\//.test(url.pathname)) {
     e.respondWith(caches.match(e.request).then((hit) => hit || fetch(e.request)));
   }
 });
@@ -38,6 +43,7 @@ self.addEventListener('fetch', (e) => {
 export default defineConfig({
   base: './',
   plugins: [offline()],
+  define: { PRESET_PICTURES: JSON.stringify(pictures.map((f) => f.slice(0, -4))) },
   worker: { format: 'es' },
   build: {
     target: 'es2022',

@@ -80,6 +80,17 @@ pub(crate) fn test(tools: &Tools) -> Outcome {
     let mut c = prepare("node", &["xtask/node/organs.mjs"]);
     c.arg(out.join("wasm/burgeon_wasm.js")).arg(&organs).arg(FRAMES).args(&leaves);
     finish(c)?;
+    let project = repository().join("fixtures/projects/version-3.burgeon");
+    let report = out.join("scene.json");
+    let mut c =
+        prepare(target_dir().join("debug").join(format!("burgeon{}", std::env::consts::EXE_SUFFIX)), &[]);
+    c.args(["sketch", "--quiet"]).arg(&project).arg("-o").arg(out.join("native/scene.glb"));
+    c.arg("--report").arg(&report);
+    finish(c)?;
+    say("$ node scene.mjs (a drawing, a tree and a flower in one project)");
+    let mut c = prepare("node", &["xtask/node/scene.mjs"]);
+    c.arg(out.join("wasm/burgeon_wasm.js")).arg(&project).arg(&report);
+    finish(c)?;
     say("$ node validate.mjs (Khronos validator)");
     let mut c = prepare("node", &["xtask/node/validate.mjs"]);
     c.arg(out.join("native"));

@@ -87,8 +87,10 @@ fn no_picture(args: &ConvertArgs) -> Outcome {
 
 fn project(args: &ConvertArgs, input: files::Input, machine: &Machine) -> Outcome<ItemReport> {
     no_picture(args)?;
-    let (read, read_ms) = machine
-        .timed(|| files::read_project(&args.input, input).and_then(|p| files::drawing_of(&args.input, &p)));
+    let (read, read_ms) = machine.timed(|| {
+        let document = files::read_project(&args.input, input)?;
+        files::drawing_of(&args.input, &document).map(|(read, _)| read)
+    });
     write(args, &read?, read_ms, machine)
 }
 

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{BufRead, BufReader, Cursor, Read};
 use std::path::{Component, Path};
 
-use burgeon::document::{self, Document, MAX_PROJECT_BYTES};
+use burgeon::document::{self, Document, DocumentPlant, MAX_PROJECT_BYTES};
 use burgeon::formats::{
     DrawingFormat, ExportSpec, ModelFormat, PngCache, ReadDrawing, obj_files, write_glb_with, write_mtg,
 };
@@ -107,12 +107,27 @@ pub(crate) fn read_project(path: &Path, input: Input) -> Outcome<Document> {
     document::read_project(&bytes).map_err(|e| Failure::at(path, e))
 }
 
-/// A document's drawing, as if it had been read from a file of strokes.
-pub(crate) fn drawing_of(path: &Path, document: &Document) -> Outcome<ReadDrawing> {
-    if document.strokes().is_empty() {
+/// The one drawing of a project, as if it had been read from a file of strokes, and its plant.
+pub(crate) fn drawing_of<'a>(
+    path: &Path,
+    document: &'a Document,
+) -> Outcome<(ReadDrawing, &'a DocumentPlant)> {
+    let [plant] = document.plants() else {
+        let line = format!(
+            "is a scene of {} plants, not one drawing; `burgeon sketch` makes all of them",
+            document.plants().len()
+        );
+        return Err(Failure::at(path, line));
+    };
+    if plant.settings().sketch().is_none() {
+        let line =
+            format!("holds a {}, not a drawing; `burgeon sketch` makes it", plant.settings().maker.word());
+        return Err(Failure::at(path, line));
+    }
+    if plant.strokes().is_empty() {
         return Err(Failure::at(path, "holds no stroke; open it in the Studio and draw"));
     }
-    Ok(ReadDrawing { drawing: document.drawing(), warnings: Vec::new() })
+    Ok((ReadDrawing { drawing: plant.drawing(), warnings: Vec::new() }, plant))
 }
 
 /// Axes of models: +Y up if nothing was asked for.

@@ -30,9 +30,17 @@ pub(crate) fn info(args: &InfoArgs) -> Outcome {
         Kind::Drawing(format) => (format.word(), Content::Drawings(drawings(&args.input, input, format)?)),
         Kind::Project => {
             let document = files::read_project(&args.input, input)?;
-            let read = files::drawing_of(&args.input, &document)?;
             let mut out = Drawings::default();
-            out.add(DrawingSummary::of(&read.drawing, &read.warnings));
+            for plant in document.plants().iter().filter(|p| p.settings().sketch().is_some()) {
+                out.add(DrawingSummary::of(&plant.drawing(), &[]));
+            }
+            let plants = document.plants().iter().map(|p| PlantInfo {
+                name: p.settings().name.clone(),
+                maker: p.settings().maker.word(),
+                seed: p.settings().seed.number(),
+                position_m: p.settings().placement.position.to_array(),
+            });
+            out.plants = plants.collect();
             ("project", Content::Drawings(out))
         }
     };
@@ -71,7 +79,19 @@ struct Drawings {
     points: usize,
     failed: usize,
     first: Vec<DrawingSummary>,
+    /// Of a project: who makes what.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    plants: Vec<PlantInfo>,
     warnings: Vec<String>,
+}
+
+/// One plant of a project.
+#[derive(Serialize)]
+struct PlantInfo {
+    name: String,
+    maker: &'static str,
+    seed: u64,
+    position_m: [f64; 3],
 }
 
 fn drawings(path: &Path, input: files::Input, format: DrawingFormat) -> Outcome<Drawings> {
@@ -114,6 +134,9 @@ impl Drawings {
 
     fn lines(&self, out: &mut Vec<String>) {
         let count = |n: usize, one, many| say::counted(n as u64, one, many);
+        if self.plants.len() > 1 || self.count == 0 {
+            out.extend(self.plants.iter().map(|p| format!("  {}: {}, seed {}", p.name, p.maker, p.seed)));
+        }
         if self.count > 1 || self.failed > 0 {
             let drawings = count(self.count, "drawing", "drawings");
             let strokes = count(self.strokes, "stroke", "strokes");

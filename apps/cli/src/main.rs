@@ -17,6 +17,7 @@ mod picture;
 mod presets;
 mod report;
 mod say;
+mod scene;
 mod shape;
 mod sketch;
 mod stages;

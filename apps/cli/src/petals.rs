@@ -28,7 +28,8 @@ pub(crate) fn drawing(path: &Path) -> Outcome<(Drawing, SketchOptions)> {
         }
         Kind::Project => {
             let document = files::read_project(path, input)?;
-            Ok((files::drawing_of(path, &document)?.drawing, SketchOptions::of_document(&document)))
+            let (read, plant) = files::drawing_of(path, &document)?;
+            Ok((read.drawing, SketchOptions::of_plant(plant)))
         }
         Kind::Model(_) => Err(Failure::at(path, "is a model, not a drawing")),
     }

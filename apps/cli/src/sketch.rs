@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use burgeon::document::Document;
+use burgeon::document::DocumentPlant;
 use burgeon::formats::{DrawingError, Drawings, PngCache, ReadDrawing, read_drawings};
 use burgeon::sketch::SketchSpec;
 use burgeon::skin::SkinSpec;
@@ -22,6 +22,11 @@ use crate::{output, picture, say};
 
 pub(crate) fn sketch(args: &SketchArgs) -> Outcome {
     let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
+    if let [input] = args.inputs.as_slice()
+        && let Some(scene) = crate::scene::of_file(input)?
+    {
+        return crate::scene::make(args, input, &scene, &machine);
+    }
     let job = Job::new(args, &machine)?;
     let report = if job.is_batch()? {
         job.batch(&machine)?
@@ -89,7 +94,7 @@ impl<'a> Job<'a> {
 
     /// What the project asks for, or the defaults; options of the command line win over both.
     fn options(&self, input: &Input) -> SketchOptions {
-        let mut options = input.project.as_deref().map(SketchOptions::of_document).unwrap_or_default();
+        let mut options = input.project.as_deref().map(SketchOptions::of_plant).unwrap_or_default();
         if let Some(spec) = &self.spec {
             options.spec.clone_from(spec);
         }
@@ -101,12 +106,12 @@ impl<'a> Job<'a> {
         options
     }
 
-    fn seed(&self, project: Option<&Document>) -> Seed {
+    fn seed(&self, project: Option<&DocumentPlant>) -> Seed {
         let own = || project.map_or_else(Seed::default, |p| p.settings().seed);
         self.args.seed.map_or_else(own, Seed::new)
     }
 
-    fn report(&self, project: Option<&Document>) -> RunReport {
+    fn report(&self, project: Option<&DocumentPlant>) -> RunReport {
         let mut report = RunReport::new("sketch", self.seed(project).number());
         let paths = self.args.inputs.iter().map(|p| p.display().to_string());
         report.input.path = paths.collect::<Vec<_>>().join(", ");
@@ -364,7 +369,7 @@ struct Next {
 /// A drawing, and the project that it lies in.
 struct Input {
     read: ReadDrawing,
-    project: Option<Box<Document>>,
+    project: Option<Box<DocumentPlant>>,
 }
 
 /// What a file gives: drawings one at a time, or the one of a project.
@@ -450,8 +455,9 @@ fn open(path: &Path) -> Outcome<Source> {
         }
         (file, Kind::Project) => {
             let document = files::read_project(path, file)?;
-            let read = files::drawing_of(path, &document)?;
-            Ok(Source::Project(Some(Box::new(Input { read, project: Some(Box::new(document)) }))))
+            let (read, plant) = files::drawing_of(path, &document)?;
+            let project = Some(Box::new(plant.clone()));
+            Ok(Source::Project(Some(Box::new(Input { read, project }))))
         }
         (_, Kind::Model(format)) => Err(Failure::at(
             path,

@@ -412,3 +412,27 @@ fn the_gallery_is_understood() {
         }
     }
 }
+
+#[test]
+fn a_scene_is_made_whole() {
+    let dir = folder("scene");
+    let fixture = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/projects/version-3.burgeon");
+    fs::copy(fixture, dir.join("garden.burgeon")).unwrap();
+    good(
+        &dir,
+        &["sketch", "garden.burgeon", "-o", "garden.glb", "--report", "r.json", "--png", "garden.png"],
+    );
+    let report = json(&dir.join("r.json"));
+    let items = report["items"].as_array().unwrap();
+    let names: Vec<&str> = items.iter().filter_map(|i| i["name"].as_str()).collect();
+    assert_eq!(names, ["drawn", "bush", "lily"], "the hidden leaf is left out");
+    assert!(items.iter().all(|i| i["digest"].as_str().is_some_and(|d| d.len() > 8)), "{items:?}");
+    assert!(items[1]["growth"]["nodes"].as_u64().unwrap() > 50);
+    let whole = good(&dir, &["info", "garden.glb"]);
+    assert!(whole.contains("3-lily-"), "{whole}");
+    let info = good(&dir, &["info", "garden.burgeon"]);
+    assert!(info.contains("bush: tree, seed 3") && info.contains("15 strokes"), "{info}");
+    assert!(bad(&dir, &["convert", "garden.burgeon", "-o", "x.json"]).contains("scene of 4 plants"));
+    assert!(bad(&dir, &["sketch", "garden.burgeon", "-o", "x.mtg"]).contains("several plants"));
+    assert!(bad(&dir, &["sketch", "garden.burgeon", "-o", "x.glb", "--seed", "2"]).contains("own seeds"));
+}

@@ -9,7 +9,7 @@ console.log('| sketch | look, least | look, median | whole plant after the pen i
 for (const name of 'abcdefgh') {
   const session = new StudioSession();
   session.open(`${name}.svg`, readFileSync(`../../fixtures/sketches/table1/${name}.svg`), 0, true);
-  const view = JSON.parse(session.evaluate());
+  const [view] = JSON.parse(session.evaluate()).plants;
   const { strokes } = view.item;
   let [low, high] = [[Infinity, Infinity], [-Infinity, -Infinity]];
   for (const { index } of strokes) {
@@ -23,8 +23,8 @@ for (const name of 'abcdefgh') {
   const at = (share, k) => low[k] + share * (high[k] - low[k]);
   const timed = () => {
     const start = performance.now();
-    const { parts } = JSON.parse(session.evaluate());
-    parts.forEach((_, p) => { for (const column of ['positions', 'normals', 'uvs', 'colors', 'indices']) session[column](p); });
+    const [{ id, parts }] = JSON.parse(session.evaluate()).plants;
+    parts.forEach((_, p) => { for (const column of ['positions', 'normals', 'uvs', 'colors', 'indices']) session[column](id, p); });
     return performance.now() - start;
   };
   const samples = [];

@@ -64,10 +64,11 @@ async function sample(page) {
   return 15;
 }
 
-async function exported(page, format, levels) {
+async function exported(page, format, levels, what) {
   await page.click('#b-export');
   await page.click(`[data-format=${format}]`);
-  if (levels) await page.selectOption('.export select', String(levels));
+  if (levels) await page.selectOption('#b-levels', String(levels));
+  if (what) await page.selectOption('.export .option:not([hidden]) select', what);
   const [download] = await Promise.all([page.waitForEvent('download'), page.click('#b-export-go')]);
   return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
 }
@@ -170,10 +171,12 @@ async function habits({ page, url, shot }) {
   await page.keyboard.press('k');
   await page.keyboard.press('i');
   await page.click('#b-lock');
+  await page.locator('#b-lock[aria-pressed=true]').waitFor();
   await page.keyboard.press('r');
   await page.locator('.note', { hasText: 'locked' }).waitFor();
   assert.equal(await page.locator('#b-grid').isDisabled(), true);
   await page.click('#b-lock');
+  await page.locator('#b-lock[aria-pressed=false]').waitFor();
   await page.keyboard.press('g');
   await page.locator('.variations[data-full=true]').waitFor();
   assert.equal(await page.locator('.variations canvas').count(), 9);
@@ -452,6 +455,184 @@ async function touch({ page, url, shot, context }) {
   await shot('tablet');
 }
 
+/** Adds a plant by the list of the scene. */
+async function add(page, maker, preset) {
+  await page.click('#b-add');
+  await page.click(`[data-add=${maker}]`);
+  if (preset) await page.click(`dialog [data-preset=${preset}]`);
+  await page.waitForFunction((m) => document.body.dataset.current === m, maker);
+}
+
+async function changed(page, before, what) {
+  await page.waitForFunction((d) => document.body.dataset.digest !== d && document.body.dataset.digest !== '', before)
+    .catch(() => { throw new Error(`${what}: nothing changed`); });
+  return data(page, 'digest');
+}
+
+/** Drags a slider to a share of its way: one step of undo. */
+async function slide(page, path, share) {
+  const slider = page.locator(`input[data-path="${path}"]`);
+  await slider.evaluate((e, to) => {
+    const [low, high] = [Number(e.min || 0), Number(e.max || 100)];
+    for (const part of [0.5, 1]) {
+      e.value = String(Number(e.value) + (low + to * (high - low) - Number(e.value)) * part);
+      e.dispatchEvent(new Event('input', { bubbles: true }));
+    }
+    e.dispatchEvent(new Event('change', { bubbles: true }));
+  }, share);
+}
+
+async function drop(page, name, text) {
+  await page.evaluate(([n, t]) => {
+    const transfer = new DataTransfer();
+    transfer.items.add(new File([t], n));
+    document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true }));
+  }, [name, text]);
+}
+
+const WALL = 'v 0.3 0 -3\nv 1 0 -3\nv 1 0 3\nv 0.3 0 3\nv 0.3 4 -3\nv 1 4 -3\nv 1 4 3\nv 0.3 4 3\n'
+  + 'f 1 2 3 4\nf 5 8 7 6\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n';
+
+async function tree({ page, url, shot }) {
+  await begin(page, url);
+  await page.click('#b-add');
+  await page.click('[data-add=tree]');
+  await page.locator('dialog [data-preset]').first().waitFor();
+  assert.ok(await page.locator('dialog [data-preset]').count() >= 10);
+  await shot('tree-species');
+  await page.click('dialog [data-preset=hazel]');
+  await until(page, 'triangles', ['above', 1000], 'a hazel has grown');
+  assert.equal(await count(page, 'plants'), 1, 'the blank sheet gave way');
+  let digest = await data(page, 'digest');
+  const plain = digest;
+  await page.click('[data-obstacle=ball]');
+  digest = await changed(page, digest, 'a ball in its way');
+  const chooser = page.waitForEvent('filechooser');
+  await page.click('[data-obstacle=file]');
+  await (await chooser).setFiles({ name: 'wall.obj', mimeType: 'model/obj', buffer: Buffer.from(WALL) });
+  digest = await changed(page, digest, 'a wall in its way');
+  assert.equal(await page.locator('.obstacles li').count(), 2);
+  await page.waitForTimeout(1200);
+  await shot('tree');
+  await slide(page, 'keep', 0.2);
+  digest = await changed(page, digest, 'fewer leaves');
+  await page.locator('#b-undo').click();
+  await changed(page, digest, 'one step takes the drag back');
+  await page.locator('.f-group > summary').first().click();
+  assert.ok(await page.locator('.form .f-row').count() > 3, 'a row for each field of the schema');
+  await page.locator('.maker').evaluate((e) => e.scrollTo(0, 500));
+  await shot('tree-panel');
+  for (const [format, start] of [['glb', 'glTF'], ['mtg', 'CODE'], ['qsm', 'radius']]) {
+    const file = await exported(page, format);
+    assert.ok(file.bytes.subarray(0, 200).toString('latin1').includes(start), `${format}: ${file.bytes.subarray(0, 20)}`);
+  }
+  await page.keyboard.press('Control+z');
+  await page.keyboard.press('Control+z');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
+}
+
+async function leaf({ page, url, shot }) {
+  await begin(page, url);
+  await drop(page, 'tobacco.csv', readFileSync('../../fixtures/leaves/leaf1.csv', 'utf8'));
+  await until(page, 'triangles', ['above', 500], 'a leaf from marks');
+  assert.equal(await data(page, 'current'), 'leaf');
+  let digest = await data(page, 'digest');
+  for (const surface of ['bezier', 'nurbs', 'approximate']) {
+    await page.selectOption('[data-path="/surface"]', surface);
+    digest = await changed(page, digest, surface);
+  }
+  await slide(page, '/curl#', 0.75);
+  digest = await changed(page, digest, 'curled');
+  await page.waitForTimeout(1200);
+  await shot('leaf');
+  await drop(page, 'broken.csv', 'row,mark,x\n1,1,zero');
+  await page.locator('.note.bad', { hasText: 'broken.csv' }).waitFor();
+  assert.equal(await data(page, 'digest'), digest, 'a bad table changes nothing');
+}
+
+async function bloom({ page, url, shot }) {
+  await begin(page, url);
+  await add(page, 'flower');
+  await until(page, 'triangles', ['above', 200], 'a lily');
+  let digest = await data(page, 'digest');
+  await page.click('[data-flower=rose]');
+  digest = await changed(page, digest, 'a rose');
+  await slide(page, 'day', 0);
+  digest = await changed(page, digest, 'a bud');
+  await shot('bud');
+  await page.click('.play');
+  await changed(page, digest, 'it opens');
+  await page.waitForTimeout(4000);
+  await shot('bloom');
+  await page.waitForFunction(() => /Play/.test(document.querySelector('.play')?.textContent ?? ''));
+  assert.equal(await page.locator('.note.bad').count(), 0, 'nothing was refused');
+  digest = await data(page, 'digest');
+  await page.keyboard.press('Control+z');
+  await changed(page, digest, 'the whole play is one step');
+}
+
+async function opens({ page, url, shot }) {
+  await begin(page, url);
+  await sample(page);
+  const before = await count(page, 'revision');
+  await page.click('#b-opens');
+  await page.locator('.bloom .play').waitFor();
+  await until(page, 'revision', ['above', before], 'the drawn flower at a day');
+  await slide(page, 'day', 0.15);
+  await page.waitForTimeout(1500);
+  await shot('sketch-opens');
+  await page.click('#b-opens');
+  await page.locator('.bloom .play').waitFor({ state: 'detached' });
+}
+
+async function garden({ page, url, shot }) {
+  await begin(page, url);
+  await sample(page);
+  await add(page, 'flower');
+  await until(page, 'triangles', ['above', 200], 'a flower beside the drawing');
+  await drop(page, 'tobacco.csv', readFileSync('../../fixtures/leaves/leaf1.csv', 'utf8'));
+  await until(page, 'plants', ['is', 3], 'three plants');
+  await page.waitForFunction(() => document.body.dataset.current === 'leaf');
+  await page.locator('[data-key=nx]').fill('0.5');
+  await page.locator('[data-key=nx]').press('Enter');
+  await page.click('[data-gizmo=translate]');
+  await page.waitForTimeout(1500);
+  await shot('scene');
+  await page.click('[data-plant=sketch]');
+  await until(page, 'strokes', ['is', 15], 'its sheet is back');
+  await page.click('[data-gizmo=translate]');
+  const glb = await exported(page, 'glb');
+  const one = await exported(page, 'glb', undefined, 'plant');
+  assert.ok(glb.bytes.length > one.bytes.length, 'the scene has more than the plant');
+  const [project] = await Promise.all([page.waitForEvent('download'), page.click('#b-save')]);
+  const path = await project.path();
+  const digest = await data(page, 'digest');
+  await page.click('#b-fresh');
+  await until(page, 'plants', ['is', 1], 'a new scene');
+  const chooser = page.waitForEvent('filechooser');
+  await page.click('#b-open');
+  await (await chooser).setFiles({ name: 'scene.burgeon', mimeType: 'application/zip', buffer: readFileSync(path) });
+  await until(page, 'plants', ['is', 3], 'the scene is open again');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, digest);
+  await page.locator('[data-plant=flower]').focus();
+  await page.keyboard.press('Delete');
+  await until(page, 'plants', ['is', 2], 'deleted by keyboard');
+  await page.keyboard.press('Control+z');
+  await until(page, 'plants', ['is', 3], 'and back');
+  await page.locator('li:has([data-plant=flower]) button').nth(1).click();
+  await page.locator('li.is-hidden').waitFor();
+  await page.keyboard.press('Control+z');
+  await page.locator('li.is-hidden').waitFor({ state: 'detached' });
+  await page.click('#b-language');
+  await page.click('[data-plant=leaf]');
+  const labels = await page.locator('.form .f-row > span:first-child').allTextContents();
+  assert.ok(labels.length > 8 && labels.every((l) => /[\u4e00-\u9fff]/.test(l)), labels.join());
+  await page.click('#b-theme');
+  await page.click('#b-theme');
+  await page.waitForTimeout(900);
+  await shot('scene-dark-chinese');
+}
+
 async function guarded({ page, url }) {
   const page_ = await page.goto(url);
   const headers = page_.headers();
@@ -487,5 +668,10 @@ export const journeys = [
   ['files that cannot be read', refuse],
   ['keyboard only', keyboard],
   ['a tablet with fingers', touch, { viewport: { width: 600, height: 800 }, hasTouch: true, isMobile: false }],
+  ['a tree with an obstacle', tree],
+  ['a leaf from marks', leaf],
+  ['a flower that opens: play', bloom],
+  ['a drawn flower that opens', opens],
+  ['three plants: saved, reopened, undone', garden],
   ['the server is guarded', guarded],
 ];

@@ -2,10 +2,12 @@
 import { Card, dot } from './correct';
 import { Engine } from './engine';
 import { Files } from './files';
+import { catalogueOf, gallery, MakerPanel, type Catalogue } from './makers';
+import { SceneList } from './scene';
 import { asPng, photoPanel, placed } from './photo';
 import { measured } from './measure';
 import { openPalette, type Action } from './palette';
-import type { Command, DocumentState, Request, StrokeMode, View } from './protocol';
+import type { Command, DocumentState, MakerWord, PlantState, PlantView as Seen, Request, SketchState, StrokeMode, View } from './protocol';
 import { Sheet, type Tool } from './sheet/sheet';
 import { settingsPanel } from './settings';
 import { statsTable } from './stats';
@@ -21,6 +23,8 @@ type Theme = 'auto' | 'light' | 'dark';
 type Look = 'solid' | 'wire' | 'skeleton';
 /** Size of a picture in the grid of variations. */
 const LOOK_SIZE = [200, 190] as const;
+/** The sheet of a plant that is not drawn. */
+const NO_DRAWING = { strokes: [], photo: null };
 /** A flash of work shorter than this only disturbs. */
 const MOMENT_MS = 200;
 
@@ -31,13 +35,16 @@ export class App {
   private readonly files: Files;
   private view: PlantView | undefined;
   private state: DocumentState | undefined;
-  private seen: View | undefined;
+  private scene: View | undefined;
+  private catalogue: Catalogue | undefined;
+  private readonly panel: MakerPanel;
+  private readonly list: SceneList;
+  private shownPlant: number | null | undefined;
   private draft: { mode: StrokeMode; samples: Float64Array } | undefined;
   private drafted = false;
   private tool: Tool = 'parts';
   private theme: Theme = 'auto';
   private look: Look = 'solid';
-  private locked = false;
   private statsOn = false;
   private steady = 1;
   private clip = '';
@@ -49,28 +56,35 @@ export class App {
   private parts: Record<string, HTMLElement> = {};
   /** When the draft that is grown now was sent. */
   private draftAt = 0;
-  private photoFrom: DocumentState['photo'] = null;
+  private photoFrom: SketchState['photo'] = null;
 
   constructor(private readonly host: HTMLElement) {
     this.engine = new Engine({
       ready: () => this.ready(),
       state: (state, fresh, photo) => {
         this.state = state;
-        this.sheet.setState(state, fresh);
+        const other = this.shownPlant !== undefined && state.current !== this.shownPlant;
+        this.shownPlant = state.current;
+        this.sheet.setState(this.drawn ?? NO_DRAWING, fresh);
+        if (other) this.sheet.setOrgans(this.organs());
+        this.view?.setPlaces(state.plants, state.current);
+        if (other && this.drawn) this.sheet.fit();
         if (photo) void createImageBitmap(new Blob([photo])).then((image) => this.sheet.setImage(image), () => undefined);
         if (this.selectLast > 0) {
           this.setTool('select');
-          this.sheet.select(state.strokes.slice(-this.selectLast).map((s) => s.id));
+          this.sheet.select((this.drawn?.strokes ?? []).slice(-this.selectLast).map((s) => s.id));
           this.selectLast = 0;
         }
         this.showState();
       },
-      view: (view, parts, textures) => {
-        this.seen = view;
-        this.view?.update(view, parts, textures);
+      view: (view, fresh) => {
+        this.scene = view;
+        this.view?.update(view, fresh);
         if (this.draftAt > 0) measured('pen', this.draftAt);
         this.draftAt = 0;
-        this.sheet.setOrgans(new Map((view.item?.strokes ?? []).map((s) => [s.index, s.organ])));
+        this.sheet.setOrgans(this.organs());
+        this.panel.follow();
+        for (const { id, error } of view.plants) this.tellOf(id, error);
         this.idle();
         this.showView();
         this.refreshSkeleton();
@@ -107,10 +121,10 @@ export class App {
       moveTo: (ids, x, y) => this.ask({ kind: 'stage', command: { do: 'move', ids, x, y } }),
       moveEnd: (keep) => this.ask(keep ? { kind: 'commit' } : { kind: 'abandon' }),
       selected: (ids, anchor) => {
-        if (ids.length > 0 && anchor && this.state) this.card.show(ids, anchor, this.state, this.seen, this.dark);
+        if (ids.length > 0 && anchor && this.drawn) this.card.show(ids, anchor, this.drawn, this.seen, this.dark);
         else this.card.hide();
       },
-      photoBegin: () => { this.photoFrom = this.state?.photo ?? null; this.ask({ kind: 'begin', name: 'photo' }); },
+      photoBegin: () => { this.photoFrom = this.drawn?.photo ?? null; this.ask({ kind: 'begin', name: 'photo' }); },
       photoMove: (dx, dy) => {
         const p = this.photoFrom;
         if (!p) return;
@@ -125,11 +139,22 @@ export class App {
       },
     }, t('sheet.label'));
     this.card = new Card((command) => this.run(command));
+    this.panel = new MakerPanel(() => this.catalogue, {
+      run: (c) => this.run(c), begin: (name) => this.ask({ kind: 'begin', name }), stage: (command) => this.ask({ kind: 'stage', command }),
+      commit: () => this.ask({ kind: 'commit' }), choose: (accept, act) => this.files.pickFile(accept, act),
+      obstacle: (file) => void this.addObstacle(file), open: (file) => void this.files.openFile(file),
+    });
+    this.list = new SceneList({
+      run: (c) => this.run(c), select: (plant) => this.ask({ kind: 'select', plant }), add: (maker) => void this.add(maker),
+      gizmo: (mode) => void this.view?.setGizmo(mode),
+    });
     this.files = new Files(this.engine, {
       opened: () => { this.sheet.fit(); this.view?.frameNow(); },
       picture: () => this.view?.picture(),
       name: () => this.state?.name ?? t('app.untitled'),
-      empty: () => !this.seen || this.seen.parts.length === 0,
+      empty: () => !this.scene || [this.scene.guest, ...this.scene.plants].every((p) => !p || p.parts.length === 0),
+      several: () => (this.state?.plants.length ?? 0) > 1,
+      kind: () => this.plant?.maker ?? 'sketch',
       looking: (name) => this.looking(name),
       photo: (file) => this.layPhoto(file),
     });
@@ -143,10 +168,40 @@ export class App {
     return this.theme === 'dark' || (this.theme === 'auto' && this.system.matches);
   }
 
+  /** The plant on the left side. */
+  private get plant(): PlantState | undefined {
+    return this.state?.plants.find((p) => p.id === this.state?.current);
+  }
+
+  /** What is drawn of it, if it is a sketch. */
+  private get drawn(): SketchState | null {
+    return this.plant?.sketch ?? null;
+  }
+
+  /** How it looks, or the model that is looked at. */
+  private get seen(): Seen | undefined {
+    return this.scene?.guest ?? this.scene?.plants.find((p) => p.id === this.state?.current);
+  }
+
+  private organs(): Map<number, string> {
+    return new Map((this.seen?.item?.strokes ?? []).map((s) => [s.index, s.organ]));
+  }
+
+  private told = new Map<number, string | null>();
+
+  /** A plant that cannot be made says why once. */
+  private tellOf(id: number, error: string | null): void {
+    if (error !== null && this.told.get(id) !== error) note(t('note.failed', { name: this.state?.plants.find((p) => p.id === id)?.name ?? '', why: error }), 'bad');
+    this.told.set(id, error);
+  }
+
   begin(): void {
     try {
       this.view = new PlantView(t('view.label'));
       this.view.onFrontChange = (on) => this.parts['front']?.setAttribute('aria-pressed', String(on));
+      this.view.onPlaceBegin = () => this.ask({ kind: 'begin', name: 'place' });
+      this.view.onPlace = (plant, position, yaw_deg, scale) => this.ask({ kind: 'stage', command: { do: 'place', plant, position, yaw_deg, scale } });
+      this.view.onPlaceEnd = () => this.ask({ kind: 'commit' });
       this.view.onContext = (lost) => { if (lost) note(t('note.context'), 'bad'); };
     } catch {
       note(t('note.nowebgl'), 'bad');
@@ -166,8 +221,35 @@ export class App {
     void this.files.restore().finally(() => {
       document.body.dataset['readyAt'] = String(performance.now());
       document.body.dataset['ready'] = 'true';
-      if ((this.state?.strokes.length ?? 0) === 0) firstRun();
+      if (this.state?.plants.length === 1 && this.drawn?.strokes.length === 0) firstRun();
+      void this.loadCatalogue();
     });
+  }
+
+  private async loadCatalogue(): Promise<void> {
+    if (this.catalogue) return;
+    this.catalogue = await catalogueOf(this.engine).catch(() => undefined);
+    this.showState();
+  }
+
+  /** A plant of a maker: trees ask for their species first. */
+  private async add(maker: MakerWord): Promise<void> {
+    await this.loadCatalogue();
+    if (maker !== 'tree' || !this.catalogue) {
+      this.run({ do: 'add', maker, name: t(`maker.${maker}` as TextKey), ...(maker === 'flower' ? { preset: 'lily' } : {}) });
+      return;
+    }
+    const d = dialog(t('tree.choose'), gallery(this.catalogue, null, (key) => { d.close(); this.run({ do: 'add', maker, name: tOf('word', key), preset: key }); }));
+    d.classList.add('wide-dialog');
+  }
+
+  private async addObstacle(file: File): Promise<void> {
+    try {
+      await this.engine.ask({ kind: 'obstacle', name: file.name, bytes: new Uint8Array(await file.arrayBuffer()) });
+      this.files.changed();
+    } catch (e) {
+      note(t('note.unreadable', { name: file.name, why: (e as Error).message }), 'bad');
+    }
   }
 
   // Asking -------------------------------------------------------------------------------------------------------
@@ -205,7 +287,7 @@ export class App {
       hold(name, el('button', { type: 'button', class: 'wide', title: shortcut ? `${t(key)}  (${shortcut})` : t(key), onclick: act }, icon(name), el('span', {}, t(key))));
     const title = hold('name', el('input', {
       class: 'name', spellcheck: 'false', maxlength: '200', 'aria-label': t('menu.name'), title: t('menu.name'),
-      onchange: () => { const name = (title as HTMLInputElement).value.trim(); if (name) this.run({ do: 'rename', name }); },
+      onchange: () => { const name = (title as HTMLInputElement).value.trim(); if (name) this.run({ do: 'rename-scene', name }); },
       onkeydown: (e) => { if ((e as KeyboardEvent).key === 'Enter') title.blur(); },
     }));
     const bar = el('header', { class: 'bar' },
@@ -243,7 +325,9 @@ export class App {
     const empty = hold('empty', el('div', { class: 'empty' },
       el('h1', {}, t('sheet.empty')), el('p', {}, t('sheet.empty.hint')),
       el('button', { type: 'button', class: 'link', onclick: () => this.files.samples() }, t('sheet.empty.sample'))));
-    const left = el('section', { class: 'left' }, this.sheet.element, tools, empty, hold('legend', el('div', { class: 'legend', role: 'list', 'aria-label': t('legend.title') })), this.card.element);
+    const left = el('section', { class: 'left' }, this.sheet.element, tools, empty, hold('legend', el('div', { class: 'legend', role: 'list', 'aria-label': t('legend.title') })), this.card.element,
+      hold('bloom', el('div', { class: 'bloom' })), hold('maker', this.panel.element), hold('noplant', el('div', { class: 'nothing' }, el('h1', {}, t('scene.empty')), el('p', {}, t('scene.empty.hint')))));
+    p['tools'] = tools;
     const seeButtons = el('div', { class: 'tools right-tools', role: 'toolbar' },
       hold('front', button('front', t('view.front'), () => this.view?.setFront(!this.view.isFront), 'F')),
       hold('frame', button('fit', t('view.frame'), () => this.view?.frameNow(), 'Shift+0')),
@@ -254,6 +338,7 @@ export class App {
     const right = el('section', { class: 'right' },
       ...(this.view ? [this.view.element, seeButtons] : [el('p', { class: 'nogl' }, t('note.nowebgl'))]),
       hold('statsbox', el('div', { class: 'statsbox' })),
+      this.list.element,
       hold('grows', el('p', { class: 'grows' }, t('view.empty'))), hold('looking', el('p', { class: 'looking' })));
     const split = el('div', { class: 'split', role: 'separator', 'aria-orientation': 'vertical', tabindex: '0' });
     const body = el('main', {}, left, split, right);
@@ -316,14 +401,13 @@ export class App {
   private toggleMirror(): void {
     // The main axis's root, where there is a plant; else the middle of the sheet.
     const seen = this.sheet.seen();
-    const root = this.state && this.state.strokes.length > 0 ? this.seen?.front?.x : undefined;
+    const root = this.drawn && this.drawn.strokes.length > 0 ? this.seen?.front?.x : undefined;
     this.sheet.setAxis(this.sheet.symmetric ? undefined : (root ?? (seen.left + seen.right) / 2));
     this.showSwitches();
   }
 
   private toggleLock(): void {
-    this.locked = !this.locked;
-    this.showSwitches();
+    if (this.plant) this.run({ do: 'lock', on: !this.plant.locked });
   }
 
   private showSwitches(): void {
@@ -332,22 +416,24 @@ export class App {
     press('skeleton', this.look === 'skeleton');
     press('stats', this.statsOn);
     press('mirror', this.sheet.symmetric);
-    press('lock', this.locked);
-    this.parts['lock']?.replaceChildren(icon(this.locked ? 'lock' : 'unlock'));
+    const locked = this.plant?.locked ?? false;
+    press('lock', locked);
+    this.parts['lock']?.replaceChildren(icon(locked ? 'lock' : 'unlock'));
     this.parts['statsbox']!.hidden = !this.statsOn;
-    for (const name of ['dice', 'grid']) (this.parts[name] as HTMLButtonElement).disabled = this.locked;
+    for (const name of ['dice', 'grid']) (this.parts[name] as HTMLButtonElement).disabled = locked || !this.plant;
   }
 
   private openVariations(): void {
-    if (this.locked || !this.state || this.state.strokes.length === 0) return;
-    openVariations(this.engine, this.state.seed, {
+    const { plant } = this;
+    if (!plant || plant.locked || this.drawn?.strokes.length === 0) return;
+    openVariations(this.engine, plant.seed, {
       snapshot: (sent) => this.view?.snapshot(sent, ...LOOK_SIZE),
       take: (seed) => this.run({ do: 'seed', seed }),
     });
   }
 
   private openPhoto(): void {
-    popover(this.parts['photo']!, photoPanel(() => this.state?.photo ?? null, this.sheet.placing, {
+    popover(this.parts['photo']!, photoPanel(() => this.drawn?.photo ?? null, this.sheet.placing, {
       run: (c) => { this.run(c); if (c.do === 'photo-off') closePopover(); },
       begin: (name) => this.ask({ kind: 'begin', name }),
       stage: (command) => this.ask({ kind: 'stage', command }),
@@ -360,6 +446,7 @@ export class App {
   private async layPhoto(file: File): Promise<void> {
     const { png, aspect } = await asPng(file);
     const { x, y, width } = placed(this.sheet.seen(), aspect);
+    if (!this.drawn) throw new Error(t('note.nosketch'));
     await this.engine.ask({ kind: 'photo', png, x, y, width });
     this.files.changed();
     note(t('note.photo'));
@@ -425,7 +512,8 @@ export class App {
   }
 
   private roll(): void {
-    if (this.locked) {
+    if (!this.plant) return;
+    if (this.plant.locked) {
       note(t('note.locked'));
       return;
     }
@@ -434,9 +522,11 @@ export class App {
   }
 
   private openSettings(): void {
-    if (!this.state) return;
-    const state = (): DocumentState => this.state!;
-    popover(this.parts['settings']!, settingsPanel(state, {
+    if (!this.drawn) return;
+    const state = (): SketchState => this.drawn ?? first;
+    const first = this.drawn;
+    const lenders = (this.state?.plants ?? []).filter((p) => p.lends && p.id !== this.plant?.id);
+    popover(this.parts['settings']!, settingsPanel(state, lenders, {
       run: (c) => this.run(c), begin: (name) => this.ask({ kind: 'begin', name }),
       stage: (command) => this.ask({ kind: 'stage', command }), commit: () => this.ask({ kind: 'commit' }),
       steady: this.steady, setSteady: (strength) => this.setSteady(strength),
@@ -462,6 +552,7 @@ export class App {
       a('all', 'act.all', () => this.selectAll(), 'Ctrl+A'), a('copy', 'act.copy', () => void this.copy(), 'Ctrl+C'),
       a('paste', 'act.paste', () => void this.pasteText(''), 'Ctrl+V'), a('duplicate', 'act.duplicate', () => this.duplicate(), 'Ctrl+D'),
       a('clear', 'act.clear', () => this.run({ do: 'clear' })),
+      ...(['sketch', 'tree', 'leaf', 'flower'] as const).map((maker) => a(`add-${maker}`, `scene.add.${maker}` as TextKey, () => void this.add(maker))),
       a('language', 'menu.language.hint', () => this.switchLanguage()), a('theme', 'menu.theme', () => this.switchTheme()),
       a('tour', 'tour.again', () => tour()), a('help', 'dialog.help', () => this.help(), '?'),
     ];
@@ -473,7 +564,7 @@ export class App {
 
   private selectAll(): void {
     this.setTool('select');
-    this.sheet.select(this.state?.strokes.map((s) => s.id) ?? []);
+    this.sheet.select(this.drawn?.strokes.map((s) => s.id) ?? []);
   }
 
   private switchLanguage(): void {
@@ -483,6 +574,7 @@ export class App {
     this.sheet.setLabel(t('sheet.label'));
     this.view?.setLabel(t('view.label'));
     this.sheet.select([]);
+    this.panel.reset();
     this.build();
   }
 
@@ -583,15 +675,26 @@ export class App {
       b.disabled = step === null;
       relabel(b, step === null ? t(key) : t(`${key}.step`, { step: tOf('step', step) }), shortcut);
     }
-    relabel(p['dice']!, `${t('dice')} · ${t('dice.seed', { seed: state.seed })}`, 'R');
-    document.body.dataset['strokes'] = String(state.strokes.length);
+    const { plant, drawn } = this;
+    relabel(p['dice']!, plant ? `${t('dice')} · ${t('dice.seed', { seed: plant.seed })}` : t('dice'), 'R');
+    document.body.dataset['strokes'] = String(drawn?.strokes.length ?? 0);
+    document.body.dataset['plants'] = String(state.plants.length);
+    document.body.dataset['current'] = plant?.maker ?? '';
+    p['tools']!.hidden = this.sheet.element.hidden = p['legend']!.hidden = !drawn;
+    p['maker']!.hidden = !plant || drawn !== null;
+    p['noplant']!.hidden = plant !== undefined;
+    (p['settings'] as HTMLButtonElement).disabled = !drawn;
+    this.panel.show(plant, state, this.seen);
+    this.list.show(state, this.scene);
+    this.showBloom();
+    this.showSwitches();
     document.title = `${state.name} · ${t('app.title')}`;
     this.looking(undefined);
     this.showEmpty();
   }
 
   private showEmpty(): void {
-    this.parts['empty']!.hidden = !this.sheet.isEmpty;
+    this.parts['empty']!.hidden = !this.sheet.isEmpty || !this.drawn;
   }
 
   private looking(name: string | undefined): void {
@@ -605,24 +708,41 @@ export class App {
     const counts: string[] = [];
     const c = seen?.item?.counts;
     const add = (key: TextKey, count: number): void => { if (count > 0) counts.push(t(key, { count: number(count) })); };
-    add('status.strokes', this.state?.strokes.length ?? 0);
+    add('status.strokes', this.drawn?.strokes.length ?? 0);
     if (c) {
       for (const kind of ['flowers', 'petals', 'leaves', 'branches', 'triangles'] as const) add(`status.${kind}`, c[kind]);
       counts.push(t('status.time', { ms: number(Math.round(seen.item!.timings_ms.total)) }));
     }
     p['counts']!.textContent = counts.join('  ·  ');
-    if (this.statsOn) p['statsbox']!.replaceChildren(statsTable(this.state, seen));
+    if (this.statsOn) p['statsbox']!.replaceChildren(statsTable(this.plant, seen));
     p['counts']!.title = (seen?.item?.warnings ?? []).join('\n');
-    p['grows']!.hidden = (seen?.parts.length ?? 0) > 0;
+    p['grows']!.hidden = [this.scene?.guest, ...(this.scene?.plants ?? [])].some((v) => (v?.parts.length ?? 0) > 0);
+    if (this.state) {
+      this.panel.show(this.plant, this.state, seen);
+      this.list.show(this.state, this.scene);
+      this.showBloom();
+    }
     const organs = [...new Set((seen?.item?.strokes ?? []).map((s) => s.organ))];
     p['legend']!.replaceChildren(...organs.map((o) => el('span', { role: 'listitem' }, dot(o, this.dark), tOf('organ', o))));
     document.body.dataset['triangles'] = String(c?.triangles ?? 0);
     document.body.dataset['flowers'] = String(c?.flowers ?? 0);
     document.body.dataset['parts'] = String(seen?.parts.length ?? 0);
     document.body.dataset['digest'] = seen?.item?.digest ?? '';
-    document.body.dataset['revision'] = String(seen?.revision ?? 0);
+    document.body.dataset['revision'] = String(this.scene?.revision ?? 0);
     const ids = this.sheet.selected;
     if (ids.length > 0) this.sheet.select(ids);
+  }
+
+  /** A drawn flower that opens: its day, and a button to play it. */
+  private showBloom(): void {
+    const box = this.parts['bloom']!;
+    const { drawn } = this;
+    const flowers = (this.seen?.item?.counts.flowers ?? 0) > 0;
+    box.hidden = !drawn || (!flowers && drawn.day === null);
+    if (box.hidden || !drawn || this.panel.isPlaying || (box.contains(document.activeElement) && document.activeElement instanceof HTMLInputElement)) return;
+    const opens = drawn.day !== null;
+    const toggle = el('button', { type: 'button', class: 'chip', id: 'b-opens', 'aria-pressed': String(opens), title: t('bloom.hint'), onclick: () => this.run({ do: 'day', day: opens ? null : 6 }) }, t('bloom.opens'));
+    box.replaceChildren(toggle, ...(opens ? [this.panel.dayRow(drawn.day!)] : []));
   }
 
   private busy(): void {

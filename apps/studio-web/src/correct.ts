@@ -1,10 +1,10 @@
 /** The card beside a selected stroke: what it was understood as, and one click to say what it is. */
 import { inkOf } from './colours';
-import type { Command, DocumentState, View } from './protocol';
+import type { Command, PlantView, SketchState } from './protocol';
 import { t, tOf } from './text';
 import { el } from './ui';
 
-type StrokeClass = NonNullable<DocumentState['strokes'][number]['class']>;
+type StrokeClass = NonNullable<SketchState['strokes'][number]['class']>;
 
 const CLASSES: readonly StrokeClass[] = [
   'axis', 'blade', 'corolla', 'disc', 'vein', 'fruit', 'trunk_outline', 'crown', 'pot', 'ground', 'scribble', 'other',
@@ -27,7 +27,7 @@ export class Card {
     this.element.hidden = true;
   }
 
-  show(ids: number[], anchor: { x: number; y: number }, state: DocumentState, view: View | undefined, dark: boolean): void {
+  show(ids: number[], anchor: { x: number; y: number }, state: SketchState, view: PlantView | undefined, dark: boolean): void {
     const chosen = state.strokes.filter((s) => ids.includes(s.id));
     if (chosen.length === 0) {
       this.hide();

@@ -3,12 +3,12 @@
  * too: when the worker dies, another one does the same again, and no stroke is lost.
  */
 import wasmUrl from './wasm/burgeon_wasm_bg.wasm?url';
-import type { DocumentState, FromWorker, PartArrays, Request, StrokePoints, TexturePixels, ToWorker, View } from './protocol';
+import type { DocumentState, FromWorker, Request, Sent, StrokePoints, ToWorker, View } from './protocol';
 
 export interface EngineEvents {
   ready(): void;
   state(state: DocumentState, fresh: StrokePoints[], photo: Uint8Array<ArrayBuffer> | null): void;
-  view(view: View, parts: PartArrays[], textures: TexturePixels[]): void;
+  view(view: View, fresh: Sent[]): void;
   busy(): void;
   /** No plant could be made; the last one stays. */
   failed(why: string): void;
@@ -19,7 +19,7 @@ export interface EngineEvents {
 }
 
 const CHANGES: ReadonlySet<Request['kind']> = new Set([
-  'open', 'close', 'stroke', 'paste', 'photo', 'command', 'begin', 'stage', 'commit', 'abandon', 'undo', 'redo',
+  'open', 'close', 'select', 'obstacle', 'stroke', 'paste', 'photo', 'command', 'begin', 'stage', 'commit', 'abandon', 'undo', 'redo',
 ]);
 
 export class Engine {
@@ -107,7 +107,7 @@ export class Engine {
       case 'view':
         this.growing = false;
         this.faults = 0;
-        this.events.view(message.view, message.parts, message.textures);
+        this.events.view(message.view, message.fresh);
         break;
       case 'busy':
         this.growing = true;

@@ -1,16 +1,17 @@
 /** The export dialogue: what for, which format, how fine. */
-import type { ExportFormat, ExportOptions } from './protocol';
+import type { ExportFormat, ExportOptions, MakerWord } from './protocol';
 import { t, type TextKey } from './text';
 import { dialog, el } from './ui';
 
 export type Target = ExportFormat | 'png';
-const FORMATS: readonly Target[] = ['glb', 'obj', 'ply', 'stl', 'png', 'json'];
+const FORMATS: readonly Target[] = ['glb', 'obj', 'ply', 'stl', 'mtg', 'qsm', 'png', 'json'];
 const LEVELS: ReadonlySet<Target> = new Set(['glb', 'obj', 'ply', 'stl']);
-const AXES: ReadonlySet<Target> = new Set(['obj', 'ply', 'stl']);
+const AXES: ReadonlySet<Target> = new Set(['obj', 'ply', 'stl', 'mtg', 'qsm']);
 
-let last: { format: Target; options: ExportOptions } = { format: 'glb', options: { levels: 1, up: 'y', unit: 'm' } };
+let last: { format: Target; options: ExportOptions } = { format: 'glb', options: { levels: 1, up: 'y', unit: 'm', whole: false } };
 
-export function openExport(act: (format: Target, options: ExportOptions) => void): void {
+/** `several`: there is a scene to choose; `kind`: the maker of the plant that is chosen. */
+export function openExport(several: boolean, kind: MakerWord, act: (format: Target, options: ExportOptions) => void): void {
   const choice = <T extends string>(text: TextKey, words: readonly (readonly [T, string])[], value: T, set: (v: T) => void): HTMLLabelElement => {
     const select = el('select', { onchange: () => set(select.value as T) });
     for (const [word, label] of words) select.append(el('option', { value: word }, label));
@@ -18,23 +19,28 @@ export function openExport(act: (format: Target, options: ExportOptions) => void
     return el('label', { class: 'option' }, el('span', {}, t(text)), select);
   };
   let { format, options } = last;
-  options = { ...options };
+  options = { ...options, whole: several };
+  const formats = FORMATS.filter((f) => f !== 'json' || kind === 'sketch');
+  if (!formats.includes(format)) format = 'glb';
+  const what = choice('export.what', [['scene', t('export.what.scene')], ['plant', t('export.what.plant')]], 'scene', (v) => { options.whole = v === 'scene'; });
+  what.hidden = !several;
   const levels = choice('export.levels', [['1', t('export.levels.one')], ['2', '2'], ['3', '3'], ['4', '4']], String(options.levels) as '1' | '2' | '3' | '4', (v) => { options.levels = Number(v); });
   const up = choice('export.up', [['y', '+Y'], ['z', '+Z']], options.up, (v) => { options.up = v; });
   const unit = choice('export.unit', [['m', 'm'], ['cm', 'cm'], ['mm', 'mm']], options.unit, (v) => { options.unit = v; });
+  levels.querySelector('select')!.id = 'b-levels';
   const show = (): void => {
     levels.hidden = !LEVELS.has(format);
     up.hidden = unit.hidden = !AXES.has(format);
   };
   const list = el('div', { class: 'formats', role: 'radiogroup', 'aria-label': t('menu.export') });
-  for (const f of FORMATS) {
+  for (const f of formats) {
     const radio = el('input', { type: 'radio', name: 'format', value: f, 'data-format': f, onchange: () => { format = f; show(); } });
     radio.checked = f === format;
-    list.append(el('label', { class: 'format' }, radio, el('b', {}, f.toUpperCase()), el('span', { class: 'muted' }, t(`export.${f}`))));
+    list.append(el('label', { class: 'format' }, radio, el('b', {}, f === 'qsm' ? 'CSV' : f.toUpperCase()), el('span', { class: 'muted' }, t(`export.${f}`))));
   }
   const go = el('button', { type: 'submit', class: 'primary', id: 'b-export-go' }, t('menu.export'));
   const form = el('form', { class: 'export', onsubmit: (e) => { e.preventDefault(); last = { format, options }; d.close(); act(format, { ...options }); } },
-    list, levels, up, unit, el('p', { class: 'muted' }, t('export.note')), el('div', { class: 'row' }, el('span', { class: 'space' }), go));
+    list, what, levels, up, unit, el('p', { class: 'muted' }, t('export.note')), el('div', { class: 'row' }, el('span', { class: 'space' }), go));
   const d = dialog(t('export.title'), form);
   show();
   list.querySelector<HTMLInputElement>('input:checked')?.focus();

@@ -1,6 +1,6 @@
 /** Opening, saving, exporting, keeping. */
 import type { Engine } from './engine';
-import type { ExportOptions, Opened, Request } from './protocol';
+import type { ExportOptions, MakerWord, Opened, Request } from './protocol';
 import { openExport, type Target } from './exporting';
 import { decode, isLink, link } from './share';
 import { isPhoto } from './photo';
@@ -10,11 +10,13 @@ import { keep, kept } from './store';
 import { t } from './text';
 import { dialog, download, el, note } from './ui';
 
+/** Formats with levels of detail. */
+const LEVELLED: ReadonlySet<Target> = new Set(['glb', 'obj', 'ply', 'stl']);
 /** Larger files are refused before they are read into memory. */
 const MAX_MB = 256;
-const ACCEPT = '.burgeon,.svg,.inkml,.ndjson,.json,.glb,.gltf,.obj,.ply,.stl,image/*';
+const ACCEPT = '.burgeon,.svg,.inkml,.ndjson,.json,.csv,.toml,.glb,.gltf,.obj,.ply,.stl,image/*';
 const TYPES: Record<string, string> = {
-  glb: 'model/gltf-binary', ply: 'application/octet-stream', stl: 'model/stl', json: 'application/json',
+  glb: 'model/gltf-binary', ply: 'application/octet-stream', stl: 'model/stl', json: 'application/json', mtg: 'text/plain', qsm: 'text/csv',
 };
 
 export interface FilesEvents {
@@ -23,6 +25,10 @@ export interface FilesEvents {
   name(): string;
   empty(): boolean;
   looking(name: string): void;
+  /** The scene has more than one plant. */
+  several(): boolean;
+  /** The maker of the plant that is chosen. */
+  kind(): MakerWord;
   /** A picture was given: it goes under the drawing. */
   photo(file: File): Promise<void>;
 }
@@ -52,8 +58,12 @@ export class Files {
   }
 
   choose(accept = ACCEPT): void {
+    this.pickFile(accept, (file) => void this.openFile(file));
+  }
+
+  pickFile(accept: string, act: (file: File) => void): void {
     const input = el('input', { type: 'file', accept });
-    input.addEventListener('change', () => { const file = input.files?.[0]; if (file) void this.openFile(file); });
+    input.addEventListener('change', () => { const file = input.files?.[0]; if (file) act(file); });
     input.click();
   }
 
@@ -150,11 +160,11 @@ export class Files {
 
   /** A picture of the view as it is. */
   async picture(): Promise<void> {
-    await this.exportAs('png', { levels: 1, up: 'y', unit: 'm' });
+    await this.exportAs('png', { levels: 1, up: 'y', unit: 'm', whole: true });
   }
 
   chooseExport(): void {
-    openExport((format, options) => void this.exportAs(format, options));
+    openExport(this.events.several(), this.events.kind(), (format, options) => void this.exportAs(format, options));
   }
 
   private async exportAs(format: Target, options: ExportOptions): Promise<void> {
@@ -163,8 +173,12 @@ export class Files {
       return;
     }
     try {
-      const zipped = format === 'obj' || (options.levels > 1 && format !== 'png' && format !== 'json');
-      const name = `${safe(this.events.name())}.${zipped ? `${format}.zip` : format}`;
+      const levelled = LEVELLED.has(format);
+      if (!levelled) options.levels = 1;
+      const structure = (format === 'mtg' || format === 'qsm') && options.whole && this.events.several();
+      let zipped = format === 'obj' || structure || (options.levels > 1 && levelled);
+      const extension = format === 'qsm' ? 'csv' : format;
+      const name = `${safe(this.events.name())}.${zipped ? `${format}.zip` : extension}`;
       if (format === 'png') {
         const picture = await this.events.picture();
         if (!picture) throw new Error(t('note.nowebgl'));
@@ -238,7 +252,7 @@ export class Files {
       const last = await kept();
       if (!last) return;
       await this.open('autosave.burgeon', last.bytes, 0, true, true);
-      if (Number(document.body.dataset['strokes']) > 0) note(t('note.restored'));
+      if (Number(document.body.dataset['strokes']) > 0 || Number(document.body.dataset['plants']) > 1) note(t('note.restored'));
     } catch {
       this.toldOfStorage = true;
       note(t('note.storage'), 'bad');

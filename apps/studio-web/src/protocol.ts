@@ -1,8 +1,12 @@
 /** What page and worker say to one another. Meshes and strokes travel as typed arrays, never as JSON. */
-import type { Command, DocumentState, ExportOptions, Opened, PhotoState, StrokeMode, View } from './wasm/burgeon_wasm';
+import type {
+  Command, DocumentState, ExportOptions, Json, MakerWord, ObstacleShape, Opened, PhotoState, PlantState, PlantView, SketchState, StrokeMode, View,
+} from './wasm/burgeon_wasm';
 
-export type { Command, DocumentState, ExportOptions, Opened, PhotoState, StrokeMode, View };
-export type ExportFormat = 'glb' | 'obj' | 'ply' | 'stl' | 'json';
+export type {
+  Command, DocumentState, ExportOptions, Json, MakerWord, ObstacleShape, Opened, PhotoState, PlantState, PlantView, SketchState, StrokeMode, View,
+};
+export type ExportFormat = 'glb' | 'obj' | 'ply' | 'stl' | 'mtg' | 'qsm' | 'json';
 
 /** What the page asks. Those that change the document are kept in the page's journal. */
 export type Request =
@@ -11,6 +15,12 @@ export type Request =
   | { kind: 'command'; command: Command }
   | { kind: 'begin'; name: string }
   | { kind: 'stage'; command: Command }
+  /** Chooses the plant that requests without a plant are for. */
+  | { kind: 'select'; plant: number }
+  /** A model file as an obstacle of the chosen tree. */
+  | { kind: 'obstacle'; name: string; bytes: Uint8Array }
+  /** What can be set of each maker. */
+  | { kind: 'schema' }
   | { kind: 'commit' }
   | { kind: 'abandon' }
   | { kind: 'undo' }
@@ -54,9 +64,11 @@ export interface StrokePoints {
 
 /** A plant as it travels. */
 export interface Sent {
-  view: View;
+  view: PlantView;
   parts: PartArrays[];
   textures: TexturePixels[];
+  /** Corners of obstacles that are meshes. */
+  obstacles: (Float32Array | null)[];
 }
 
 export type FromWorker =
@@ -64,7 +76,8 @@ export type FromWorker =
   | { kind: 'done'; seq: number; value: unknown }
   | { kind: 'refused'; seq: number; why: string }
   | { kind: 'state'; state: DocumentState; fresh: StrokePoints[]; photo: Uint8Array<ArrayBuffer> | null }
-  | ({ kind: 'view' } & Sent)
+  /** `fresh`: the plants whose meshes changed. */
+  | { kind: 'view'; view: View; fresh: Sent[] }
   | { kind: 'busy' }
   | { kind: 'failed'; why: string }
   | { kind: 'fault'; why: string };

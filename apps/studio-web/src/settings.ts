@@ -1,5 +1,5 @@
 /** The plant's settings: a row for each, made from one table. A drag of a slider is one step of undo. */
-import type { Command, DocumentState } from './protocol';
+import type { Command, PlantState, SketchState } from './protocol';
 import { t, tOf, type TextKey } from './text';
 import { el } from './ui';
 
@@ -13,21 +13,21 @@ export interface SettingsEvents {
   setSteady(strength: number): void;
 }
 
-type Sketch = DocumentState['sketch'];
-type Skin = DocumentState['skin'];
+type Sketch = SketchState['sketch'];
+type Skin = SketchState['skin'];
 
 interface Slider {
   text: TextKey;
   low: number;
   high: number;
   step: number;
-  get(s: DocumentState): number;
-  set(s: DocumentState, value: number): Command;
+  get(s: SketchState): number;
+  set(s: SketchState, value: number): Command;
 }
 
-const sketch = (s: DocumentState, change: Partial<Sketch>): Command => ({ do: 'sketch', spec: { ...s.sketch, ...change } });
-const skin = (s: DocumentState, change: Partial<Skin>): Command => ({ do: 'skin', skin: { ...s.skin, ...change } });
-const fill = (s: DocumentState, change: Partial<Sketch['fill']>): Command => sketch(s, { fill: { ...s.sketch.fill, ...change } });
+const sketch = (s: SketchState, change: Partial<Sketch>): Command => ({ do: 'sketch', spec: { ...s.sketch, ...change } });
+const skin = (s: SketchState, change: Partial<Skin>): Command => ({ do: 'skin', skin: { ...s.skin, ...change } });
+const fill = (s: SketchState, change: Partial<Sketch['fill']>): Command => sketch(s, { fill: { ...s.sketch.fill, ...change } });
 
 const SLIDERS: readonly Slider[] = [
   { text: 'set.density', low: 0.1, high: 4, step: 0.1, get: (s) => s.sketch.fill.density, set: (s, density) => fill(s, { density }) },
@@ -41,7 +41,7 @@ const SLIDERS: readonly Slider[] = [
 const PETALS = ['pink', 'white', 'yellow', 'violet', 'red', 'orange', 'blue', 'magenta'] as const;
 
 /** The panel for a document; `now` gives the latest state when something is changed. */
-export function settingsPanel(now: () => DocumentState, events: SettingsEvents): HTMLElement {
+export function settingsPanel(now: () => SketchState, lenders: PlantState[], events: SettingsEvents): HTMLElement {
   const panel = el('div', { class: 'settings' });
   for (const slider of SLIDERS) {
     const value = slider.get(now());
@@ -73,6 +73,12 @@ export function settingsPanel(now: () => DocumentState, events: SettingsEvents):
     choice('set.branch_depth', ['riesz', 'paper'], now().sketch.branch_depth, (word) =>
       events.run(sketch(now(), { branch_depth: word as Sketch['branch_depth'] })), 'set.branch_depth'),
   );
+  if (lenders.length > 0) {
+    const select = el('select', { onchange: () => events.run({ do: 'leaf-of', lender: select.value === '' ? null : Number(select.value) }) },
+      el('option', { value: '' }, t('tree.leaf.own')), ...lenders.map((p) => el('option', { value: String(p.id) }, p.name)));
+    select.value = String(now().leaf ?? '');
+    panel.append(el('label', {}, el('span', {}, t('tree.leaf')), select));
+  }
   panel.append(el('hr'), choice('set.steady', ['0', '1', '2', '3'], String(events.steady), (word) => events.setSteady(Number(word)), 'set.steady'));
   return panel;
 }

@@ -1,9 +1,9 @@
 /** Figures of the plant that is shown: every one was counted or measured. */
-import type { DocumentState, View } from './protocol';
+import type { PlantState, PlantView } from './protocol';
 import { number, t, type TextKey } from './text';
 import { el } from './ui';
 
-export function statsTable(state: DocumentState | undefined, view: View | undefined): HTMLElement {
+export function statsTable(state: PlantState | undefined, view: PlantView | undefined): HTMLElement {
   const table = el('dl', { class: 'stats' });
   const row = (key: TextKey, value: string): void => { table.append(el('dt', {}, t(key)), el('dd', {}, value)); };
   if (!view || view.parts.length === 0) {

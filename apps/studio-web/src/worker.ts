@@ -1,6 +1,6 @@
 /** The worker: owns the session, answers requests in order, and grows the plant when nothing else is to do. */
-import init, { StudioSession } from './wasm/burgeon_wasm.js';
-import type { FromWorker, PartArrays, Request, Sent, TexturePixels, ToWorker, View } from './protocol';
+import init, { studio_schema as studioSchema, StudioSession } from './wasm/burgeon_wasm.js';
+import type { FromWorker, PartArrays, PlantView, Request, Sent, TexturePixels, ToWorker, View } from './protocol';
 
 const page = self as unknown as DedicatedWorkerGlobalScope;
 let session: StudioSession | undefined;
@@ -28,6 +28,9 @@ function answer(s: StudioSession, request: Request): unknown {
   switch (request.kind) {
     case 'open': return JSON.parse(s.open(request.name, request.bytes, request.row, request.fresh));
     case 'stroke': return s.add_stroke(request.mode, request.samples);
+    case 'select': return s.select(request.plant);
+    case 'obstacle': return s.add_obstacle(request.name, request.bytes);
+    case 'schema': return studioSchema();
     case 'command': return s.run(JSON.stringify(request.command));
     case 'begin': return s.begin(request.name);
     case 'stage': return s.stage(JSON.stringify(request.command));
@@ -47,7 +50,7 @@ function answer(s: StudioSession, request: Request): unknown {
     case 'share': return s.share();
     case 'export': return s.export(request.format, JSON.stringify(request.options));
     case 'variant': {
-      const view: View = JSON.parse(s.variant(request.seed, request.detail));
+      const view: PlantView = JSON.parse(s.variant(request.seed, request.detail));
       try {
         return pack(s, view);
       } finally {
@@ -66,16 +69,15 @@ function tellState(s: StudioSession): void {
 }
 
 /** Requests that change nothing and are not followed by a new plant. */
-const QUIET: ReadonlySet<Request['kind']> = new Set(['save', 'export', 'begin', 'copy', 'variant', 'skeleton', 'share']);
+const QUIET: ReadonlySet<Request['kind']> = new Set(['save', 'export', 'begin', 'copy', 'variant', 'skeleton', 'share', 'schema']);
 
 /** The columns of what the session shows, and textures that the page does not have. */
-function pack(s: StudioSession, view: View): Sent {
-  const parts: PartArrays[] = view.parts.map((_, i) => {
-    const part = {
-      positions: s.positions(i), normals: s.normals(i), uvs: s.uvs(i), colors: s.colors(i), indices: s.indices(i),
-    };
-    return part;
-  });
+function pack(s: StudioSession, view: PlantView): Sent {
+  const { id } = view;
+  const parts: PartArrays[] = view.parts.map((_, i) => ({
+    positions: s.positions(id, i), normals: s.normals(id, i), uvs: s.uvs(id, i), colors: s.colors(id, i), indices: s.indices(id, i),
+  }));
+  const obstacles = view.obstacles.map(({ shape }, row) => (shape === 'mesh' ? s.obstacle(id, row) : null));
   const textures: TexturePixels[] = [];
   for (const { texture } of view.materials) {
     if (texture && !sent.has(texture.number)) {
@@ -84,11 +86,11 @@ function pack(s: StudioSession, view: View): Sent {
       textures.push({ ...texture, pixels });
     }
   }
-  return { view, parts, textures };
+  return { view, parts, textures, obstacles };
 }
 
-function buffers({ parts, textures }: Sent): Transferable[] {
-  return [...parts.flatMap((p) => Object.values(p).map((c: Float32Array | Uint32Array) => c.buffer)), ...textures.map((x) => x.pixels.buffer)];
+function buffers({ parts, textures, obstacles }: Sent): Transferable[] {
+  return [...obstacles.flatMap((o) => (o ? [o.buffer] : [])), ...parts.flatMap((p) => Object.values(p).map((c: Float32Array | Uint32Array) => c.buffer)), ...textures.map((x) => x.pixels.buffer)];
 }
 
 function evaluate(): void {
@@ -97,8 +99,10 @@ function evaluate(): void {
   stale = false;
   try {
     const view: View = JSON.parse(session.evaluate());
-    const sent = pack(session, view);
-    tell({ kind: 'view', ...sent }, buffers(sent));
+    const s = session;
+    const all = view.guest ? [view.guest, ...view.plants] : view.plants;
+    const fresh = all.filter((p) => p.fresh).map((p) => pack(s, p));
+    tell({ kind: 'view', view, fresh }, fresh.flatMap(buffers));
   } catch (e) {
     if (e instanceof WebAssembly.RuntimeError || e instanceof RangeError) fault(e);
     else {

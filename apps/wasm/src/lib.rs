@@ -4,8 +4,10 @@
 //! |---|---|
 //! | [`sketch_report`] | Node: a file of drawings to the report's items |
 //! | [`leaf_report`], [`flower_digest`], [`opening_digest`], [`motion_digest`] | Node: the same bits as natively for leaves and flowers |
+//! | [`scene_report`] | Node: the same for the plants of a project |
 //! | [`StudioSession`] | the Studio's worker: one document, its undo history, its plant |
 
+mod exports;
 mod host;
 mod session;
 mod wire;
@@ -13,7 +15,7 @@ mod wire;
 use burgeon::formats::{self, CloudFormat, DrawingFormat, ExportSpec};
 use burgeon::leaf::ScanSpec;
 use burgeon::{
-    Digest, ItemReport, LeafOptions, OpeningPlant, Report, Run, Seed, SketchOptions, Unit, bloom,
+    Digest, ItemReport, LeafOptions, OpeningPlant, Report, Run, SceneEvaluator, Seed, SketchOptions, Unit, bloom,
     make_from_sketch, make_leaf,
 };
 use wasm_bindgen::prelude::*;
@@ -146,6 +148,45 @@ pub fn motion_digest(first: &[u8], middle: &[u8], last: &[u8], frames: u32) -> R
     Ok(digest.hex())
 }
 
+/// Makes the plants of a `.burgeon` project and returns the report's items as a JSON array.
+///
+/// # Errors
+/// A message for people when the file cannot be read or a plant cannot be made.
+#[wasm_bindgen]
+pub fn scene_report(bytes: &[u8]) -> Result<String, JsError> {
+    let document = burgeon::document::read_project(bytes)?;
+    let mut scene = SceneEvaluator::default();
+    let mut items: Vec<ItemReport> = Vec::new();
+    for plant in document.plants() {
+        scene.update(plant.id(), &document, &Run::plain())?;
+        items.extend(scene.get(plant.id()).map(|p| p.item.clone()));
+    }
+    Ok(serde_json::to_string(&items)?)
+}
+
+/// What can be set of trees, leaves and flowers, as JSON Schemas with meaning, unit (`x-unit`), range and default; the
+/// species of trees and flowers.
+///
+/// # Errors
+/// Never, but for our own bugs.
+#[wasm_bindgen]
+pub fn studio_schema() -> Result<String, JsError> {
+    let presets: Vec<_> = burgeon::PRESETS
+        .iter()
+        .filter_map(|p| {
+            let spec = p.spec().ok()?;
+            Some(serde_json::json!({ "key": p.key, "species": spec.species, "about": spec.about }))
+        })
+        .collect();
+    Ok(serde_json::to_string(&serde_json::json!({
+        "tree": burgeon::tree_schema(),
+        "leaf": burgeon::leaf_schema(),
+        "flower": burgeon::flower_schema(),
+        "trees": presets,
+        "flowers": bloom::FlowerSpec::PRESETS,
+    }))?)
+}
+
 fn told<T>(outcome: Result<T, String>) -> Result<T, JsError> {
     outcome.map_err(|message| JsError::new(&message))
 }
@@ -175,6 +216,27 @@ impl StudioSession {
     /// What is wrong with the file and what to do.
     pub fn open(&mut self, file_name: &str, bytes: &[u8], row: u32, fresh: bool) -> Result<String, JsError> {
         told(self.0.open(file_name, bytes, row, fresh))
+    }
+
+    /// Chooses the plant that is on the sheet and in the panel: commands that name no plant are its.
+    ///
+    /// # Errors
+    /// When it is not there.
+    pub fn select(&mut self, plant: u32) -> Result<(), JsError> {
+        told(self.0.select(plant))
+    }
+
+    /// Puts a model file into the scene as an obstacle of the tree that is chosen.
+    ///
+    /// # Errors
+    /// What is wrong with the file, or that no tree is chosen.
+    pub fn add_obstacle(&mut self, file_name: &str, bytes: &[u8]) -> Result<(), JsError> {
+        told(self.0.add_obstacle(file_name, bytes))
+    }
+
+    /// Corners of an obstacle that is a mesh, three to a triangle.
+    pub fn obstacle(&self, plant: u32, row: usize) -> Vec<f32> {
+        self.0.obstacle(plant, row)
     }
 
     /// Starts empty and forgets everything, the history too.
@@ -236,7 +298,7 @@ impl StudioSession {
         self.0.fresh_photo()
     }
 
-    /// Shows the plant of another seed (`View` as JSON; the columns follow it) until `end_variant`.
+    /// Shows the plant of another seed (`PlantView` as JSON; the columns follow its number) until `end_variant`.
     ///
     /// # Errors
     /// `cancelled`, or why there is none.
@@ -325,28 +387,28 @@ impl StudioSession {
     }
 
     /// Three floats a vertex, metres.
-    pub fn positions(&self, part: usize) -> Vec<f32> {
-        self.0.column(part, Column::Positions)
+    pub fn positions(&self, plant: u32, part: usize) -> Vec<f32> {
+        self.0.column(plant, part, Column::Positions)
     }
 
     /// Three floats a vertex.
-    pub fn normals(&self, part: usize) -> Vec<f32> {
-        self.0.column(part, Column::Normals)
+    pub fn normals(&self, plant: u32, part: usize) -> Vec<f32> {
+        self.0.column(plant, part, Column::Normals)
     }
 
     /// Two floats a vertex, v down; may be empty.
-    pub fn uvs(&self, part: usize) -> Vec<f32> {
-        self.0.column(part, Column::Uvs)
+    pub fn uvs(&self, plant: u32, part: usize) -> Vec<f32> {
+        self.0.column(plant, part, Column::Uvs)
     }
 
     /// Three floats a vertex, linear; may be empty.
-    pub fn colors(&self, part: usize) -> Vec<f32> {
-        self.0.column(part, Column::Colors)
+    pub fn colors(&self, plant: u32, part: usize) -> Vec<f32> {
+        self.0.column(plant, part, Column::Colors)
     }
 
     /// Three indices a triangle.
-    pub fn indices(&self, part: usize) -> Vec<u32> {
-        self.0.indices(part)
+    pub fn indices(&self, plant: u32, part: usize) -> Vec<u32> {
+        self.0.indices(plant, part)
     }
 
     /// RGBA bytes of a texture by its number in `View`.
@@ -363,7 +425,7 @@ impl StudioSession {
     }
 
     /// What is shown as a file: `glb`, `obj` (a zip with its material file and textures), `ply`, `stl`, or the
-    /// drawing as `json`. `options`: `ExportOptions` as JSON; several levels of detail come as a zip.
+    /// drawing as `json`; also `mtg` and `qsm`. `options`: `ExportOptions` as JSON; several levels of detail come as a zip.
     ///
     /// # Errors
     /// When there is nothing to export.

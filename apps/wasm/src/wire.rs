@@ -1,12 +1,19 @@
 //! What travels between worker and session as JSON, and the same as TypeScript types.
 
-use burgeon::ItemReport;
-use burgeon::document::{Command, Photo};
-use burgeon::glam::DVec2;
+use std::sync::Arc;
+
+use burgeon::document::{
+    Command, Document, DocumentPlant, FlowerCommand, FlowerSettings, LeafCommand, LeafData, LeafSettings,
+    Maker, NamedObstacle, Photo, Placement, PlantCommand, PlantId, SceneCommand, SketchCommand, TreeCommand,
+};
+use burgeon::glam::{DVec2, DVec3};
+use burgeon::growth::Obstacle;
 use burgeon::sketch::{SketchSpec, StrokeClass, StrokeMode};
 use burgeon::skin::{PetalColor, SkinSpec};
+use burgeon::{ItemReport, Preset, bloom, leaf_marks, tree_settings, tree_spec};
 use burgeon::{Seed, Unit, UpAxis, document::StrokeId, formats::ExportSpec};
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen(typescript_custom_section)]
@@ -25,44 +32,75 @@ export interface SketchSpec {
   phototropism: number; gravity: number;
 }
 export interface Skin { detail: number; sides: number; textures: boolean; petals: PetalColor | null; variation: number }
+export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };
+export type Vec3 = [number, number, number];
+/** Commands that name no plant are for the one that is chosen. */
 export type Command =
   | { do: "remove"; ids: number[] } | { do: "move"; ids: number[]; x: number; y: number }
   | { do: "class"; ids: number[]; class: StrokeClass | null } | { do: "mode"; ids: number[]; mode: StrokeMode }
   | { do: "color"; ids: number[]; color: [number, number, number] | null } | { do: "clear" } | { do: "new" }
   | { do: "duplicate"; ids: number[]; x: number; y: number }
   | { do: "photo"; x: number; y: number; width: number; opacity: number; paint: boolean } | { do: "photo-off" }
-  | { do: "rename"; name: string } | { do: "seed"; seed: string } | { do: "sketch"; spec: SketchSpec }
-  | { do: "skin"; skin: Skin };
+  | { do: "sketch"; spec: SketchSpec } | { do: "skin"; skin: Skin } | { do: "day"; day: number | null }
+  | { do: "rename-scene"; name: string } | { do: "add"; maker: MakerWord; name: string; preset?: string }
+  | { do: "duplicate-plant"; plant: number; by: Vec3 } | { do: "remove-plant"; plant: number }
+  | { do: "rename"; plant: number; name: string } | { do: "seed"; seed: string } | { do: "lock"; on: boolean }
+  | { do: "hide"; plant: number; on: boolean }
+  | { do: "place"; plant: number; position: Vec3; yaw_deg: number; scale: number }
+  | { do: "preset"; key: string } | { do: "tree"; path: string; value: Json }
+  | { do: "obstacle"; name: string; shape: ObstacleShape; row?: number } | { do: "obstacle-off"; row: number }
+  | { do: "leaf-of"; lender: number | null }
+  | { do: "leaf"; settings: Json } | { do: "marks"; name: string; text: string }
+  | { do: "flower"; settings: Json } | { do: "law"; text: string | null };
+export type MakerWord = "sketch" | "tree" | "leaf" | "flower";
+/** A mesh is told by its size only. */
+export type ObstacleShape = { shape: string } & { [key: string]: Json };
 export interface StrokeState { id: number; mode: StrokeMode; class: StrokeClass | null; color: [number, number, number] | null }
+export interface SketchState {
+  sketch: SketchSpec; skin: Skin; strokes: StrokeState[]; photo: PhotoState | null; day: number | null; leaf: number | null;
+}
+export interface TreeState {
+  preset: string | null; spec: { [key: string]: Json }; skin: Skin; leaf: number | null;
+  obstacles: { name: string; shape: ObstacleShape }[];
+}
+export interface LeafState { file: string; text: string; settings: { [key: string]: Json } }
+export interface FlowerState { settings: { [key: string]: Json }; law: string | null }
+export interface PlantState {
+  id: number; maker: MakerWord; name: string; seed: string; locked: boolean; hidden: boolean; position: Vec3;
+  yaw_deg: number; scale: number; lends: boolean; sketch: SketchState | null; tree: TreeState | null;
+  leaf: LeafState | null; flower: FlowerState | null;
+}
 export interface DocumentState {
-  revision: number; undo: string | null; redo: string | null; steps: number; name: string; seed: string;
-  sketch: SketchSpec; skin: Skin; strokes: StrokeState[]; photo: PhotoState | null;
+  revision: number; undo: string | null; redo: string | null; steps: number; name: string; current: number | null;
+  plants: PlantState[];
 }
 export interface PhotoState {
   x: number; y: number; width: number; height: number; opacity: number; paint: boolean; pixels: [number, number];
 }
-export interface ExportOptions { levels: number; up: "y" | "z"; unit: "m" | "cm" | "mm" }
-export interface Opened { kind: "project" | "drawing" | "model"; name: string; names: string[]; warnings: string[] }
+export interface ExportOptions { levels: number; up: "y" | "z"; unit: "m" | "cm" | "mm"; whole: boolean }
+export interface Opened { kind: "project" | "drawing" | "model" | "leaf" | "tree" | "law"; name: string; names: string[]; warnings: string[] }
 export interface StrokeReport { index: number; class: StrokeClass; organ: string; confidence: number }
 export interface Item {
   name: string; strokes: StrokeReport[];
   counts: { flowers: number; petals: number; leaves: number; branches: number; nodes: number; axes: number;
     vertices: number; triangles: number };
   timings_ms: { total: number } & Record<string, number>; fidelity: { reprojection_mean: number; reprojection_p95: number };
-  digest: string; warnings: string[];
+  digest: string; warnings: string[]; growth?: { iterations: number } & Record<string, number | string>;
 }
 export interface MaterialView {
   name: string; kind: string; color: [number, number, number]; roughness: number; translucency: number; masked: boolean;
   two_sided: boolean; texture: { number: number; width: number; height: number } | null;
 }
-export interface View {
-  revision: number; item: Item | null; stages: string[]; front: { metres_per_unit: number; x: number; y: number } | null;
-  min: [number, number, number]; max: [number, number, number]; parts: { name: string; material: number }[];
-  materials: MaterialView[];
+/** A plant as it is seen; `fresh` ones come with their meshes. */
+export interface PlantView {
+  id: number; fresh: boolean; error: string | null; item: Item | null; stages: string[];
+  front: { metres_per_unit: number; x: number; y: number } | null; days: [number, number] | null; min: Vec3; max: Vec3;
+  parts: { name: string; material: number }[]; materials: MaterialView[]; obstacles: ObstacleShape[];
 }
+export interface View { revision: number; guest: PlantView | null; plants: PlantView[] }
 "#;
 
-/// A command as the page sends it.
+/// A command as the page sends it. Those that name no plant are for the one that is chosen.
 #[derive(Debug, Deserialize)]
 #[serde(tag = "do", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum WireCommand {
@@ -100,50 +138,204 @@ pub(crate) enum WireCommand {
         paint: bool,
     },
     PhotoOff,
-    /// An empty document in the place of this one.
-    New,
     Clear,
-    Rename {
-        name: String,
-    },
-    Seed {
-        seed: String,
-    },
     Sketch {
         spec: Box<SketchSpec>,
     },
     Skin {
         skin: Skin,
     },
+    Day {
+        day: Option<f64>,
+    },
+    /// An empty document in the place of this one.
+    New,
+    RenameScene {
+        name: String,
+    },
+    /// `preset`: a tree's, or a flower's species.
+    Add {
+        maker: String,
+        name: String,
+        #[serde(default)]
+        preset: Option<String>,
+    },
+    DuplicatePlant {
+        plant: u32,
+        by: [f64; 3],
+    },
+    RemovePlant {
+        plant: u32,
+    },
+    Rename {
+        plant: u32,
+        name: String,
+    },
+    Seed {
+        seed: String,
+    },
+    Lock {
+        on: bool,
+    },
+    Hide {
+        plant: u32,
+        on: bool,
+    },
+    Place {
+        plant: u32,
+        position: [f64; 3],
+        yaw_deg: f64,
+        scale: f64,
+    },
+    /// Another species for a tree.
+    Preset {
+        key: String,
+    },
+    /// One field of a tree's spec, by its JSON pointer.
+    Tree {
+        path: String,
+        value: Value,
+    },
+    /// A new obstacle, or another shape for that of a row.
+    Obstacle {
+        name: String,
+        shape: Obstacle,
+        #[serde(default)]
+        row: Option<usize>,
+    },
+    ObstacleOff {
+        row: usize,
+    },
+    LeafOf {
+        lender: Option<u32>,
+    },
+    Leaf {
+        settings: Box<LeafSettings>,
+    },
+    Marks {
+        name: String,
+        text: String,
+    },
+    Flower {
+        settings: Box<FlowerSettings>,
+    },
+    Law {
+        text: Option<String>,
+    },
 }
 
 impl WireCommand {
-    /// `photo`: the one that lies under the drawing now.
-    pub(crate) fn command(self, photo: Option<&Photo>) -> Result<Command, String> {
-        let ids = |ids: Vec<u32>| ids.into_iter().map(StrokeId).collect();
-        Ok(match self {
-            Self::Remove { ids: i } => Command::RemoveStrokes(ids(i)),
-            Self::Move { ids: i, x, y } => Command::MoveStrokes(ids(i), DVec2::new(x, y)),
-            Self::Class { ids: i, class } => Command::SetClass(ids(i), class),
-            Self::Mode { ids: i, mode } => Command::SetMode(ids(i), mode),
-            Self::Color { ids: i, color } => Command::SetColor(ids(i), color),
-            Self::Duplicate { ids: i, x, y } => Command::Duplicate(ids(i), DVec2::new(x, y)),
-            Self::Photo { x, y, width, opacity, paint } => {
-                let mut photo = photo.cloned().ok_or("there is no photograph under the drawing")?;
-                (photo.x, photo.y, photo.width) = (x, y, width);
-                (photo.opacity, photo.paint) = (opacity, paint);
-                Command::SetPhoto(Some(Box::new(photo)))
+    /// `current`: the plant that is chosen.
+    pub(crate) fn command(&self, current: Option<PlantId>, document: &Document) -> Result<Command, String> {
+        let here = || current.ok_or("there is no plant; add one first");
+        let scene = |c| Ok(Command::Scene(c));
+        match self {
+            Self::New => scene(SceneCommand::Open(Box::default())),
+            Self::RenameScene { name } => scene(SceneCommand::Rename(name.clone())),
+            Self::DuplicatePlant { plant, by } => {
+                scene(SceneCommand::Duplicate(PlantId(*plant), DVec3::from_array(*by)))
             }
-            Self::PhotoOff => Command::SetPhoto(None),
-            Self::New => Command::Open(Box::default()),
-            Self::Clear => Command::Clear,
-            Self::Rename { name } => Command::Rename(name),
+            Self::RemovePlant { plant } => scene(SceneCommand::Remove(vec![PlantId(*plant)])),
+            Self::Rename { plant, name } => Ok(PlantCommand::Rename(name.clone()).of(PlantId(*plant))),
+            Self::Hide { plant, on } => Ok(PlantCommand::Hide(*on).of(PlantId(*plant))),
+            Self::Place { plant, position, yaw_deg, scale } => {
+                let placement =
+                    Placement { position: DVec3::from_array(*position), yaw_deg: *yaw_deg, scale: *scale };
+                Ok(PlantCommand::Place(placement).of(PlantId(*plant)))
+            }
             Self::Seed { seed } => {
                 let number = seed.parse().ok().ok_or("the seed is a whole number from 0 to 2^64 - 1")?;
-                Command::SetSeed(Seed::new(number))
+                Ok(PlantCommand::SetSeed(Seed::new(number)).of(here()?))
             }
-            Self::Sketch { spec } => Command::SetSketch(spec),
-            Self::Skin { skin } => Command::SetSkin(skin.spec()?),
+            Self::Lock { on } => Ok(PlantCommand::Lock(*on).of(here()?)),
+            Self::LeafOf { lender } => {
+                let (id, lender) = (here()?, lender.map(PlantId));
+                let is_tree =
+                    document.plant(id).is_some_and(|p| matches!(p.settings().maker, Maker::Tree(_)));
+                Ok(if is_tree {
+                    TreeCommand::SetLeaf(lender).of(id)
+                } else {
+                    SketchCommand::SetLeaf(lender).of(id)
+                })
+            }
+            Self::Preset { .. } | Self::Tree { .. } | Self::Obstacle { .. } | Self::ObstacleOff { .. } => {
+                Ok(self.tree(document.plant(here()?))?.of(here()?))
+            }
+            Self::Leaf { settings } => Ok(LeafCommand::Set(settings.clone()).of(here()?)),
+            Self::Marks { name, text } => {
+                let data = LeafData { name: name.clone(), text: text.as_str().into() };
+                let (marks, _) = leaf_marks(&data, 0.1).map_err(|e| e.to_string())?;
+                if let Some(fault) = marks.validate().next() {
+                    return Err(fault.to_string());
+                }
+                Ok(LeafCommand::SetData(data).of(here()?))
+            }
+            Self::Flower { settings } => Ok(FlowerCommand::Set(settings.clone()).of(here()?)),
+            Self::Law { text } => {
+                let read =
+                    |t: &String| serde_json::from_str::<bloom::GrowthLaw>(t).map_err(|e| e.to_string());
+                Ok(FlowerCommand::SetLaw(text.as_ref().map(read).transpose()?.map(Arc::new)).of(here()?))
+            }
+            _ => Ok(self.sketch(document.plant(here()?))?.of(here()?)),
+        }
+    }
+
+    fn tree(&self, plant: Option<&DocumentPlant>) -> Result<TreeCommand, String> {
+        let Some(Maker::Tree(tree)) = plant.map(|p| &p.settings().maker) else {
+            return Err("the plant is no tree".into());
+        };
+        let command = match self {
+            Self::Preset { key } => {
+                let preset = Preset::find(key).ok_or_else(|| format!("there is no tree {key:?}"))?;
+                let settings = tree_settings(&preset.spec().map_err(|e| e.to_string())?, Some(key));
+                TreeCommand::SetSpec(settings.preset, settings.spec)
+            }
+            Self::Tree { path, value } => {
+                // A spec that is none is refused here, not when the tree grows.
+                let mut changed = (**tree).clone();
+                let mut spec = Value::clone(&tree.spec);
+                let (parent, key) = path.rsplit_once('/').unwrap_or(("", path));
+                let field = spec.pointer_mut(parent).and_then(Value::as_object_mut);
+                field.ok_or_else(|| format!("the spec has no {path}"))?.insert(key.into(), value.clone());
+                changed.spec = Arc::new(spec);
+                tree_spec(&changed).map_err(|e| e.to_string())?;
+                TreeCommand::SetField(path.clone(), value.clone())
+            }
+            Self::Obstacle { name, shape, row } => {
+                let new = NamedObstacle { name: name.clone(), shape: Arc::new(shape.clone()) };
+                row.map_or_else(
+                    || TreeCommand::AddObstacle(new.clone()),
+                    |row| TreeCommand::SetObstacle(row, new.clone()),
+                )
+            }
+            Self::ObstacleOff { row } => TreeCommand::RemoveObstacle(*row),
+            _ => return Err("internal: no command of a tree".into()),
+        };
+        Ok(command)
+    }
+
+    fn sketch(&self, plant: Option<&DocumentPlant>) -> Result<SketchCommand, String> {
+        let ids = |ids: &[u32]| ids.iter().copied().map(StrokeId).collect();
+        Ok(match self {
+            Self::Remove { ids: i } => SketchCommand::RemoveStrokes(ids(i)),
+            Self::Move { ids: i, x, y } => SketchCommand::MoveStrokes(ids(i), DVec2::new(*x, *y)),
+            Self::Class { ids: i, class } => SketchCommand::SetClass(ids(i), *class),
+            Self::Mode { ids: i, mode } => SketchCommand::SetMode(ids(i), *mode),
+            Self::Color { ids: i, color } => SketchCommand::SetColor(ids(i), *color),
+            Self::Duplicate { ids: i, x, y } => SketchCommand::Duplicate(ids(i), DVec2::new(*x, *y)),
+            Self::Photo { x, y, width, opacity, paint } => {
+                let photo = plant.and_then(|p| p.settings().photo());
+                let mut photo = photo.cloned().ok_or("there is no photograph under the drawing")?;
+                (photo.x, photo.y, photo.width) = (*x, *y, *width);
+                (photo.opacity, photo.paint) = (*opacity, *paint);
+                SketchCommand::SetPhoto(Some(Box::new(photo)))
+            }
+            Self::PhotoOff => SketchCommand::SetPhoto(None),
+            Self::Clear => SketchCommand::Clear,
+            Self::Sketch { spec } => SketchCommand::SetSketch(spec.clone()),
+            Self::Skin { skin } => SketchCommand::SetSkin(skin.spec()?),
+            Self::Day { day } => SketchCommand::SetDay(*day),
+            _ => return Err("internal: no command of a sketch".into()),
         })
     }
 }
@@ -170,14 +362,22 @@ impl Skin {
         }
     }
 
-    fn spec(self) -> Result<SkinSpec, String> {
+    fn spec(&self) -> Result<SkinSpec, String> {
         let Self { detail, sides, textures, petals, variation } = self;
-        let color = |word: String| {
-            let found = PetalColor::ALL.into_iter().find(|c| c.word() == word);
+        let color = |word: &String| {
+            let found = PetalColor::ALL.into_iter().find(|c| c.word() == *word);
             found.ok_or_else(|| format!("the petal colour {word:?} is unknown"))
         };
-        let petals = petals.map(color).transpose()?;
-        Ok(SkinSpec { detail, sides, textures, petals, variation, ..SkinSpec::default() })
+        let petals = petals.as_ref().map(color).transpose()?;
+        let (detail, sides) = (*detail, *sides);
+        Ok(SkinSpec {
+            detail,
+            sides,
+            textures: *textures,
+            petals,
+            variation: *variation,
+            ..SkinSpec::default()
+        })
     }
 }
 
@@ -196,12 +396,146 @@ pub(crate) struct DocumentState<'a> {
     pub(crate) redo: Option<&'a str>,
     pub(crate) steps: usize,
     pub(crate) name: &'a str,
+    pub(crate) current: Option<u32>,
+    pub(crate) plants: Vec<PlantState<'a>>,
+}
+
+#[derive(Debug, Serialize)]
+pub(crate) struct PlantState<'a> {
+    id: u32,
+    maker: &'static str,
+    name: &'a str,
     /// As text: JavaScript's numbers hold 53 bits.
-    pub(crate) seed: String,
-    pub(crate) sketch: &'a SketchSpec,
-    pub(crate) skin: Skin,
-    pub(crate) strokes: Vec<StrokeState>,
-    pub(crate) photo: Option<PhotoState>,
+    seed: String,
+    locked: bool,
+    hidden: bool,
+    position: [f64; 3],
+    yaw_deg: f64,
+    scale: f64,
+    /// Whether others may bear its leaf.
+    lends: bool,
+    sketch: Option<SketchState<'a>>,
+    tree: Option<TreeState<'a>>,
+    leaf: Option<LeafState<'a>>,
+    flower: Option<FlowerState<'a>>,
+}
+
+#[derive(Debug, Serialize)]
+struct SketchState<'a> {
+    sketch: &'a SketchSpec,
+    skin: Skin,
+    strokes: Vec<StrokeState>,
+    photo: Option<PhotoState>,
+    day: Option<f64>,
+    leaf: Option<u32>,
+}
+
+#[derive(Debug, Serialize)]
+struct TreeState<'a> {
+    preset: Option<&'a str>,
+    spec: &'a Value,
+    skin: Skin,
+    leaf: Option<u32>,
+    obstacles: Vec<NamedShape<'a>>,
+}
+
+#[derive(Debug, Serialize)]
+struct NamedShape<'a> {
+    name: &'a str,
+    shape: ObstacleView,
+}
+
+#[derive(Debug, Serialize)]
+struct LeafState<'a> {
+    file: &'a str,
+    text: &'a str,
+    settings: &'a LeafSettings,
+}
+
+#[derive(Debug, Serialize)]
+struct FlowerState<'a> {
+    settings: &'a FlowerSettings,
+    law: Option<&'a str>,
+}
+
+/// An obstacle for the page: a mesh is told by its size only, its corners are asked for.
+#[derive(Debug, Serialize)]
+#[serde(untagged)]
+pub(crate) enum ObstacleView {
+    Shape(Obstacle),
+    Mesh { shape: &'static str, triangles: usize },
+}
+
+impl ObstacleView {
+    pub(crate) fn of(shape: &Obstacle) -> Self {
+        match shape {
+            Obstacle::Mesh { triangles, .. } => Self::Mesh { shape: "mesh", triangles: triangles.len() },
+            other => Self::Shape(other.clone()),
+        }
+    }
+}
+
+impl<'a> PlantState<'a> {
+    pub(crate) fn of(plant: &'a DocumentPlant, document: &Document) -> Self {
+        let s = plant.settings();
+        let leaf = s.maker.leaf().map(|id| id.0);
+        let mut state = Self {
+            id: plant.id().0,
+            maker: s.maker.word(),
+            name: &s.name,
+            seed: s.seed.number().to_string(),
+            locked: s.locked,
+            hidden: s.hidden,
+            position: s.placement.position.to_array(),
+            yaw_deg: s.placement.yaw_deg,
+            scale: s.placement.scale,
+            lends: document.lends_leaf(plant.id()),
+            sketch: None,
+            tree: None,
+            leaf: None,
+            flower: None,
+        };
+        match &s.maker {
+            Maker::Sketch(k) => {
+                let strokes = plant.strokes().iter().map(|s| StrokeState {
+                    id: s.id.0,
+                    mode: s.stroke.mode,
+                    class: s.class,
+                    color: s.stroke.color,
+                });
+                state.sketch = Some(SketchState {
+                    sketch: &k.sketch,
+                    skin: Skin::of(&k.skin),
+                    strokes: strokes.collect(),
+                    photo: k.photo.as_ref().map(PhotoState::of),
+                    day: k.day,
+                    leaf,
+                });
+            }
+            Maker::Tree(t) => {
+                let obstacles = t.obstacles.iter();
+                let obstacles =
+                    obstacles.map(|o| NamedShape { name: &o.name, shape: ObstacleView::of(&o.shape) });
+                state.tree = Some(TreeState {
+                    preset: t.preset.as_deref(),
+                    spec: &t.spec,
+                    skin: Skin::of(&t.skin),
+                    leaf,
+                    obstacles: obstacles.collect(),
+                });
+            }
+            Maker::Leaf(l) => {
+                state.leaf =
+                    Some(LeafState { file: &l.data.name, text: &l.data.text, settings: &l.settings });
+            }
+            Maker::Flower(f) => {
+                state.flower =
+                    Some(FlowerState { settings: &f.settings, law: f.law.as_ref().map(|l| l.name.as_str()) });
+            }
+            _ => {}
+        }
+        state
+    }
 }
 
 #[derive(Debug, Serialize)]
@@ -230,11 +564,13 @@ pub(crate) struct ExportOptions {
     pub(crate) levels: u32,
     pub(crate) up: String,
     pub(crate) unit: String,
+    /// The whole scene, else the plant that is chosen.
+    pub(crate) whole: bool,
 }
 
 impl Default for ExportOptions {
     fn default() -> Self {
-        Self { levels: 1, up: "y".into(), unit: "m".into() }
+        Self { levels: 1, up: "y".into(), unit: "m".into(), whole: false }
     }
 }
 
@@ -299,11 +635,43 @@ pub(crate) struct Front {
 #[derive(Debug, Serialize)]
 pub(crate) struct View {
     pub(crate) revision: u64,
+    pub(crate) guest: Option<PlantView>,
+    pub(crate) plants: Vec<PlantView>,
+}
+
+#[derive(Debug, Serialize)]
+pub(crate) struct PlantView {
+    id: u32,
+    /// The page does not have these meshes.
+    pub(crate) fresh: bool,
+    pub(crate) error: Option<String>,
     pub(crate) item: Option<ItemReport>,
     pub(crate) stages: Vec<&'static str>,
     pub(crate) front: Option<Front>,
+    /// Bud to full bloom, and from there to wilted.
+    pub(crate) days: Option<[f64; 2]>,
     pub(crate) min: [f64; 3],
     pub(crate) max: [f64; 3],
     pub(crate) parts: Vec<PartView>,
     pub(crate) materials: Vec<MaterialView>,
+    pub(crate) obstacles: Vec<ObstacleView>,
+}
+
+impl PlantView {
+    pub(crate) fn empty(id: u32) -> Self {
+        Self {
+            id,
+            fresh: true,
+            error: None,
+            item: None,
+            stages: Vec::new(),
+            front: None,
+            days: None,
+            min: [0.0; 3],
+            max: [0.0; 3],
+            parts: Vec::new(),
+            materials: Vec::new(),
+            obstacles: Vec::new(),
+        }
+    }
 }

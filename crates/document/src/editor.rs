@@ -17,11 +17,11 @@ pub struct Step {
 /// `document().validate()` is empty after every call.
 ///
 /// ```
-/// use document::{Command, Editor};
+/// use document::{Editor, SceneCommand};
 /// let mut editor = Editor::default();
-/// editor.run(Command::Rename("rose".into()))?;
-/// assert_eq!(editor.undo(), Some("rename"));
-/// assert_eq!(editor.document().settings().name, "plant");
+/// editor.run(SceneCommand::Rename("roses".into()))?;
+/// assert_eq!(editor.undo(), Some("rename-scene"));
+/// assert_eq!(editor.document().name(), "plant");
 /// # Ok::<(), document::CommandError>(())
 /// ```
 #[derive(Clone, Debug, Default)]
@@ -63,15 +63,16 @@ impl Editor {
     ///
     /// # Errors
     /// [`CommandError`]; then nothing changed.
-    pub fn run(&mut self, command: Command) -> Result<(), CommandError> {
+    pub fn run(&mut self, command: impl Into<Command>) -> Result<(), CommandError> {
+        let command = command.into();
         let name = command.name();
-        let event = command.decide(&self.document)?;
-        event.apply(&mut self.document);
+        let events = command.decide(&self.document)?;
+        events.iter().for_each(|e| e.apply(&mut self.document));
         self.revision += 1;
         self.undone.clear();
         match &mut self.gesture {
-            Some(step) => step.events.push(event),
-            None => self.done.push(Step { name: name.into(), events: vec![event] }),
+            Some(step) => step.events.extend(events),
+            None => self.done.push(Step { name: name.into(), events }),
         }
         debug_assert!(self.document.validate().next().is_none(), "{:?}", self.document.validate().next());
         Ok(())
@@ -93,17 +94,17 @@ impl Editor {
     ///
     /// # Errors
     /// [`CommandError`]; then the gesture is as it was before the call.
-    pub fn stage(&mut self, command: Command) -> Result<(), CommandError> {
+    pub fn stage(&mut self, command: impl Into<Command>) -> Result<(), CommandError> {
         let Some(mut step) = self.gesture.take() else {
             return Err(CommandError::Gesture("no gesture is open"));
         };
         let mut document = self.document.clone(); // cheap: strokes are shared
         step.events.iter().rev().for_each(|e| e.revert(&mut document));
-        let outcome = match command.decide(&document) {
-            Ok(event) => {
-                event.apply(&mut document);
+        let outcome = match command.into().decide(&document) {
+            Ok(events) => {
+                events.iter().for_each(|e| e.apply(&mut document));
                 self.undone.clear();
-                step.events = vec![event];
+                step.events = events;
                 Ok(())
             }
             // Dragged back to where it began.

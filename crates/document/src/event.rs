@@ -1,34 +1,70 @@
 //! What happened to a document, with all that is needed to take it back.
 
 use crate::state::Settings;
-use crate::{Document, DocumentStroke};
+use crate::{Document, DocumentPlant, DocumentStroke, PlantId};
 
-/// One change, applied forwards and backwards. Rows are ascending.
+/// Strokes and the rows at which they lie, ascending.
+pub type StrokeRows = Vec<(usize, DocumentStroke)>;
+
+/// One change, applied forwards and backwards.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Event {
-    /// Strokes came in at these rows (of the document after).
+    /// Strokes came in at these rows (of the sketch after).
     Added {
+        /// Whose.
+        plant: PlantId,
         /// Row and stroke.
-        rows: Vec<(usize, DocumentStroke)>,
+        rows: StrokeRows,
         /// The next stroke number, before and after.
-        next_id: (u32, u32),
+        next_stroke: (u32, u32),
     },
-    /// Strokes at these rows (of the document before) went.
+    /// Strokes at these rows (of the sketch before) went.
     Removed {
+        /// Whose.
+        plant: PlantId,
         /// Row and stroke.
-        rows: Vec<(usize, DocumentStroke)>,
+        rows: StrokeRows,
     },
     /// Strokes were edited in place.
     Edited {
+        /// Whose.
+        plant: PlantId,
         /// Row, before, after.
         rows: Vec<(usize, DocumentStroke, DocumentStroke)>,
     },
-    /// Settings were set.
+    /// The settings of a plant were set.
     Set {
+        /// Whose.
+        plant: PlantId,
         /// As they were.
         before: Box<Settings>,
         /// As they are.
         after: Box<Settings>,
+    },
+    /// A plant came in.
+    PlantAdded {
+        /// Its row after.
+        row: usize,
+        /// The plant.
+        plant: Box<DocumentPlant>,
+        /// The next plant number, before and after.
+        next_plant: (u32, u32),
+        /// The next stroke number, before and after.
+        next_stroke: (u32, u32),
+    },
+    /// A plant went.
+    PlantRemoved {
+        /// Its row before.
+        row: usize,
+        /// The plant.
+        plant: Box<DocumentPlant>,
+    },
+    /// The scene got another name.
+    Renamed {
+        /// As it was.
+        before: String,
+        /// As it is.
+        after: String,
     },
     /// Another document took the place.
     Opened {
@@ -43,17 +79,21 @@ impl Event {
     /// Makes the change.
     pub(crate) fn apply(&self, document: &mut Document) {
         match self {
-            Self::Added { rows, next_id } => {
-                insert(rows, document);
-                document.next_id = next_id.1;
+            Self::Added { plant, rows, next_stroke } => {
+                strokes(document, *plant, |s| insert(rows, s));
+                document.next_stroke = next_stroke.1;
             }
-            Self::Removed { rows } => take_out(rows, document),
-            Self::Edited { rows } => {
-                for (row, _, after) in rows {
-                    put(*row, after, document);
-                }
+            Self::Removed { plant, rows } => strokes(document, *plant, |s| take_out(rows, s)),
+            Self::Edited { plant, rows } => strokes(document, *plant, |s| {
+                rows.iter().for_each(|(row, _, after)| put(*row, after, s));
+            }),
+            Self::Set { plant, after, .. } => set(document, *plant, after),
+            Self::PlantAdded { row, plant, next_plant, next_stroke } => {
+                document.plants.insert((*row).min(document.plants.len()), DocumentPlant::clone(plant));
+                (document.next_plant, document.next_stroke) = (next_plant.1, next_stroke.1);
             }
-            Self::Set { after, .. } => document.settings = Settings::clone(after),
+            Self::PlantRemoved { plant, .. } => document.plants.retain(|p| p.id != plant.id),
+            Self::Renamed { after, .. } => document.name.clone_from(after),
             Self::Opened { after, .. } => *document = Document::clone(after),
         }
     }
@@ -61,49 +101,67 @@ impl Event {
     /// Takes the change back; `document` must be as [`Event::apply`] left it.
     pub(crate) fn revert(&self, document: &mut Document) {
         match self {
-            Self::Added { rows, next_id } => {
-                take_out(rows, document);
-                document.next_id = next_id.0;
+            Self::Added { plant, rows, next_stroke } => {
+                strokes(document, *plant, |s| take_out(rows, s));
+                document.next_stroke = next_stroke.0;
             }
-            Self::Removed { rows } => insert(rows, document),
-            Self::Edited { rows } => {
-                for (row, before, _) in rows {
-                    put(*row, before, document);
-                }
+            Self::Removed { plant, rows } => strokes(document, *plant, |s| insert(rows, s)),
+            Self::Edited { plant, rows } => strokes(document, *plant, |s| {
+                rows.iter().for_each(|(row, before, _)| put(*row, before, s));
+            }),
+            Self::Set { plant, before, .. } => set(document, *plant, before),
+            Self::PlantAdded { plant, next_plant, next_stroke, .. } => {
+                document.plants.retain(|p| p.id != plant.id);
+                (document.next_plant, document.next_stroke) = (next_plant.0, next_stroke.0);
             }
-            Self::Set { before, .. } => document.settings = Settings::clone(before),
+            Self::PlantRemoved { row, plant } => {
+                document.plants.insert((*row).min(document.plants.len()), DocumentPlant::clone(plant));
+            }
+            Self::Renamed { before, .. } => document.name.clone_from(before),
             Self::Opened { before, .. } => *document = Document::clone(before),
         }
     }
 }
 
-fn put(row: usize, stroke: &DocumentStroke, document: &mut Document) {
-    if let Some(place) = document.strokes.get_mut(row) {
+fn strokes(document: &mut Document, plant: PlantId, change: impl FnOnce(&mut Vec<DocumentStroke>)) {
+    if let Some(plant) = document.plant_mut(plant) {
+        change(&mut plant.strokes);
+    }
+}
+
+fn set(document: &mut Document, plant: PlantId, settings: &Settings) {
+    if let Some(plant) = document.plant_mut(plant) {
+        plant.settings = settings.clone();
+    }
+}
+
+fn put(row: usize, stroke: &DocumentStroke, strokes: &mut [DocumentStroke]) {
+    if let Some(place) = strokes.get_mut(row) {
         *place = stroke.clone();
     }
 }
 
 // One pass, so that clearing a large drawing stays linear.
-fn insert(rows: &[(usize, DocumentStroke)], document: &mut Document) {
-    let mut old = std::mem::take(&mut document.strokes).into_iter();
+fn insert(rows: &[(usize, DocumentStroke)], strokes: &mut Vec<DocumentStroke>) {
+    let mut old = std::mem::take(strokes).into_iter();
     let mut new = rows.iter().peekable();
     loop {
-        let at = document.strokes.len();
+        let at = strokes.len();
         match new.next_if(|(row, _)| *row <= at) {
-            Some((_, stroke)) => document.strokes.push(stroke.clone()),
+            Some((_, stroke)) => strokes.push(stroke.clone()),
             None => match old.next() {
-                Some(stroke) => document.strokes.push(stroke),
+                Some(stroke) => strokes.push(stroke),
                 None => break,
             },
         }
     }
-    document.strokes.extend(new.map(|(_, stroke)| stroke.clone()));
+    strokes.extend(new.map(|(_, stroke)| stroke.clone()));
 }
 
-fn take_out(rows: &[(usize, DocumentStroke)], document: &mut Document) {
+fn take_out(rows: &[(usize, DocumentStroke)], strokes: &mut Vec<DocumentStroke>) {
     let mut gone = rows.iter().map(|(row, _)| *row).peekable();
     let mut row = 0;
-    document.strokes.retain(|_| {
+    strokes.retain(|_| {
         let keep = gone.next_if_eq(&row).is_none();
         row += 1;
         keep

@@ -6,19 +6,22 @@
 use std::sync::Arc;
 
 use base::Seed;
-use glam::DVec2;
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
-use sketch::{InkSample, SketchSpec, Stroke, StrokeClass, StrokeMode};
-use skin::{PetalColor, SkinSpec};
 
 use crate::archive::{ArchiveError, pack, unpack};
-use crate::state::{range_fault, shortened};
-use crate::{Document, DocumentStroke, Photo, PhotoError, Settings, StrokeId};
+use crate::forms::{
+    DocumentV1, DocumentV2, DocumentV3, FlowerV3, LeafV3, MakerV3, ObstacleV3, PhotoV2, PlantV3, SketchV3,
+    SkinV1, StrokeV1, TreeV3, from_file, to_file,
+};
+use crate::makers::{FlowerMaker, LeafData, LeafMaker, Maker, NamedObstacle, SketchSettings, TreeSettings};
+use crate::state::{MAX_PLANTS, Placement, range_fault, shortened};
+use crate::{Document, DocumentPlant, DocumentStroke, Photo, PhotoError, PlantId, Settings};
 
 /// The form that this version writes, as `manifest.json` names it.
-pub const PROJECT_SCHEMA: &str = "project/2";
+pub const PROJECT_SCHEMA: &str = "project/3";
 /// Earlier forms that are read.
-const EARLIER: [&str; 1] = ["project/1"];
+const EARLIER: [&str; 2] = ["project/1", "project/2"];
 /// Largest project file that is read, and largest entry in it: 64 MiB and 256 MiB.
 pub const MAX_PROJECT_BYTES: usize = 64 << 20;
 const MAX_ENTRY_BYTES: usize = 256 << 20;
@@ -29,6 +32,7 @@ const MAX_POINTS: usize = 4_000_000;
 
 const MANIFEST: &str = "manifest.json";
 const DOCUMENT: &str = "document.json";
+/// The photograph of forms 1 and 2; later ones have `photo-ROW.png`.
 const PHOTO: &str = "photo.png";
 
 /// Why a project could not be read or written.
@@ -40,7 +44,7 @@ pub enum ProjectError {
     Archive(#[from] ArchiveError),
     /// An entry is missing.
     #[error("project file: there is no \"{0}\" in it; it was not made by Burgeon or is damaged")]
-    Missing(&'static str),
+    Missing(String),
     /// Made by a version that this one does not know.
     #[error(
         "project file: its form is {found:?}, this version reads {PROJECT_SCHEMA:?}; take a newer Burgeon"
@@ -68,8 +72,11 @@ pub enum ProjectError {
     /// A setting is out of its range.
     #[error("project file: {0}")]
     Setting(String),
+    /// The scene does not hold together.
+    #[error("project file: {0}; it was not made by Burgeon or is damaged")]
+    Scene(crate::DocumentFault),
     /// The photograph cannot be used.
-    #[error("project file, photo.png: {0}")]
+    #[error("project file, photograph: {0}")]
     Photo(#[from] PhotoError),
     /// Beyond the bounds that keep hostile files harmless.
     #[error("project file: more than {limit} {what}; split the drawing")]
@@ -88,101 +95,6 @@ struct Manifest {
     made_by: String,
 }
 
-/// Form 2: as form 1, and a photograph.
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct DocumentV2 {
-    name: String,
-    seed: u64,
-    #[serde(default)]
-    sketch: SketchSpec,
-    #[serde(default)]
-    skin: SkinV1,
-    strokes: Vec<StrokeV1>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    photo: Option<PhotoV2>,
-}
-
-/// How `photo.png` lies under the drawing.
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct PhotoV2 {
-    x: f64,
-    y: f64,
-    width: f64,
-    opacity: f64,
-    paint: bool,
-}
-
-impl From<DocumentV1> for DocumentV2 {
-    fn from(v1: DocumentV1) -> Self {
-        let DocumentV1 { name, seed, sketch, skin, strokes } = v1;
-        Self { name, seed, sketch, skin, strokes, photo: None }
-    }
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct DocumentV1 {
-    name: String,
-    seed: u64,
-    #[serde(default)]
-    sketch: SketchSpec,
-    #[serde(default)]
-    skin: SkinV1,
-    strokes: Vec<StrokeV1>,
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-struct SkinV1 {
-    detail: f64,
-    sides: u32,
-    textures: bool,
-    petals: Option<String>,
-    variation: f64,
-}
-
-impl Default for SkinV1 {
-    fn default() -> Self {
-        Self::from(&SkinSpec::default())
-    }
-}
-
-impl From<&SkinSpec> for SkinV1 {
-    fn from(s: &SkinSpec) -> Self {
-        Self {
-            detail: s.detail,
-            sides: s.sides,
-            textures: s.textures,
-            petals: s.petals.map(|p| p.word().into()),
-            variation: s.variation,
-        }
-    }
-}
-
-/// Columns, because a stroke has hundreds of points.
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct StrokeV1 {
-    #[serde(default)]
-    mode: StrokeMode,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    class: Option<StrokeClass>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    color: Option<[u8; 3]>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    id: Option<String>,
-    x: Vec<f64>,
-    y: Vec<f64>,
-    /// Milliseconds; empty if unknown for all.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    t: Vec<Option<f64>>,
-    /// Pressure 0 to 1; empty if unknown for all.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    p: Vec<Option<f64>>,
-}
-
 /// Whether the first bytes of a file look like a project.
 pub fn is_project(start: &[u8]) -> bool {
     start.starts_with(b"PK\x03\x04")
@@ -190,8 +102,8 @@ pub fn is_project(start: &[u8]) -> bool {
 
 /// Writes a document as a `.burgeon` file.
 ///
-/// Guaranteed: [`read_project`] gives back the same strokes and settings, bit for bit. The undo history and the
-/// numbers of strokes are not kept.
+/// Guaranteed: [`read_project`] gives back the same plants, strokes and settings, bit for bit. The undo history and
+/// the numbers of plants and strokes are not kept.
 ///
 /// # Errors
 /// [`ProjectError`] if the bytes cannot be packed.
@@ -202,46 +114,81 @@ pub fn is_project(start: &[u8]) -> bool {
 /// # Ok::<(), document::ProjectError>(())
 /// ```
 pub fn write_project(document: &Document, version: &str) -> Result<Vec<u8>, ProjectError> {
-    let settings = document.settings();
-    let photo = settings.photo.as_ref();
-    let file = DocumentV2 {
-        name: settings.name.clone(),
-        seed: settings.seed.number(),
-        sketch: settings.sketch.clone(),
-        skin: SkinV1::from(&settings.skin),
-        strokes: document.strokes().iter().map(to_file).collect(),
-        photo: photo.map(|p| PhotoV2 { x: p.x, y: p.y, width: p.width, opacity: p.opacity, paint: p.paint }),
-    };
+    let row =
+        |id: PlantId| document.plants().iter().position(|p| p.id() == id).and_then(|r| u32::try_from(r).ok());
+    let plants = document.plants().iter().map(|p| plant_to_file(p, &row)).collect();
+    let file = DocumentV3 { name: document.name().into(), plants };
     let manifest = Manifest { burgeon: PROJECT_SCHEMA.into(), made_by: version.into() };
     let json = |entry, source| ProjectError::Json { entry, source };
     let mut files = vec![
         (MANIFEST.to_owned(), serde_json::to_vec(&manifest).map_err(|e| json(MANIFEST, e))?),
         (DOCUMENT.to_owned(), serde_json::to_vec(&file).map_err(|e| json(DOCUMENT, e))?),
     ];
-    files.extend(photo.map(|p| (PHOTO.to_owned(), p.png().to_vec())));
+    for (row, plant) in document.plants().iter().enumerate() {
+        files.extend(plant.settings().photo().map(|p| (photo_name(row), p.png().to_vec())));
+    }
     Ok(pack(&files)?)
 }
 
-fn to_file(s: &DocumentStroke) -> StrokeV1 {
-    let samples = &s.stroke.samples;
-    let column = |of: fn(&InkSample) -> Option<f64>| -> Vec<Option<f64>> {
-        if samples.iter().any(|p| of(p).is_some()) { samples.iter().map(of).collect() } else { Vec::new() }
+fn photo_name(row: usize) -> String {
+    format!("photo-{row}.png")
+}
+
+fn plant_to_file(plant: &DocumentPlant, row: &dyn Fn(PlantId) -> Option<u32>) -> PlantV3 {
+    let s = plant.settings();
+    let maker = match &s.maker {
+        Maker::Sketch(k) => MakerV3::Sketch(SketchV3 {
+            sketch: k.sketch.clone(),
+            skin: SkinV1::from(&k.skin),
+            strokes: plant.strokes().iter().map(to_file).collect(),
+            photo: k.photo.as_ref().map(|p| PhotoV2 {
+                x: p.x,
+                y: p.y,
+                width: p.width,
+                opacity: p.opacity,
+                paint: p.paint,
+            }),
+            day: k.day,
+            leaf: k.leaf.and_then(row),
+        }),
+        Maker::Tree(t) => MakerV3::Tree(TreeV3 {
+            preset: t.preset.clone(),
+            spec: (*t.spec).clone(),
+            obstacles: t
+                .obstacles
+                .iter()
+                .map(|o| ObstacleV3 { name: o.name.clone(), shape: (*o.shape).clone() })
+                .collect(),
+            skin: SkinV1::from(&t.skin),
+            leaf: t.leaf.and_then(row),
+        }),
+        Maker::Leaf(l) => MakerV3::Leaf(LeafV3 {
+            file: l.data.name.clone(),
+            data: (*l.data.text).into(),
+            settings: l.settings.clone(),
+        }),
+        Maker::Flower(f) => MakerV3::Flower(FlowerV3 {
+            settings: f.settings.clone(),
+            law: f.law.as_ref().map(|l| (**l).clone()),
+        }),
     };
-    StrokeV1 {
-        mode: s.stroke.mode,
-        class: s.class,
-        color: s.stroke.color,
-        id: s.stroke.id.clone(),
-        x: samples.iter().map(|p| p.at.x).collect(),
-        y: samples.iter().map(|p| p.at.y).collect(),
-        t: column(|p| p.time_ms),
-        p: column(|p| p.pressure),
+    let Placement { position, yaw_deg, scale } = s.placement;
+    PlantV3 {
+        name: s.name.clone(),
+        seed: s.seed.number(),
+        locked: s.locked,
+        hidden: s.hidden,
+        position: position.to_array(),
+        yaw_deg,
+        scale,
+        maker,
     }
 }
 
 /// Reads a `.burgeon` file. The bytes may be hostile: sizes are bounded and nothing is believed unseen.
 ///
-/// Guaranteed: a document whose `validate()` is empty. Its strokes are numbered from 0.
+/// Guaranteed: a document whose `validate()` is empty. Its plants and strokes are numbered from 0.
+/// Not guaranteed: that the spec of a tree or the marks of a leaf make one; whoever makes them says so.
 ///
 /// # Errors
 /// [`ProjectError`]: what is wrong, where, and what to do.
@@ -249,86 +196,118 @@ pub fn read_project(bytes: &[u8]) -> Result<Document, ProjectError> {
     if bytes.len() > MAX_PROJECT_BYTES {
         return Err(ProjectError::TooMuch { what: "bytes", limit: MAX_PROJECT_BYTES });
     }
-    let mut entries = unpack(bytes, &[MANIFEST, DOCUMENT, PHOTO], MAX_ENTRY_BYTES)?;
-    let manifest = entries.remove(MANIFEST).ok_or(ProjectError::Missing(MANIFEST))?;
+    let mut entries = unpack(bytes, &[MANIFEST, DOCUMENT], MAX_ENTRY_BYTES)?;
+    let missing = |name: &str| ProjectError::Missing(name.into());
+    let manifest = entries.remove(MANIFEST).ok_or_else(|| missing(MANIFEST))?;
     let manifest: Manifest =
         serde_json::from_slice(&manifest).map_err(|source| ProjectError::Json { entry: MANIFEST, source })?;
-    let earlier = EARLIER.contains(&manifest.burgeon.as_str());
-    if manifest.burgeon != PROJECT_SCHEMA && !earlier {
+    let form = manifest.burgeon.as_str();
+    if form != PROJECT_SCHEMA && !EARLIER.contains(&form) {
         return Err(ProjectError::Version { found: manifest.burgeon.chars().take(40).collect() });
     }
-    let document = entries.remove(DOCUMENT).ok_or(ProjectError::Missing(DOCUMENT))?;
+    let document = entries.remove(DOCUMENT).ok_or_else(|| missing(DOCUMENT))?;
     let json = |source| ProjectError::Json { entry: DOCUMENT, source };
     // Every form is read by its own structs and then brought forward; each has a file in fixtures/projects.
-    let mut file: DocumentV2 = if earlier {
-        serde_json::from_slice::<DocumentV1>(&document).map_err(json)?.into()
-    } else {
-        serde_json::from_slice(&document).map_err(json)?
+    let file: DocumentV3 = match form {
+        "project/1" => {
+            DocumentV2::from(serde_json::from_slice::<DocumentV1>(&document).map_err(json)?).into()
+        }
+        "project/2" => serde_json::from_slice::<DocumentV2>(&document).map_err(json)?.into(),
+        _ => serde_json::from_slice(&document).map_err(json)?,
     };
-    let photo = match file.photo.take() {
+    drop(document);
+    let earlier = form != PROJECT_SCHEMA;
+    checked(file, |row| {
+        let name = if earlier { PHOTO.to_owned() } else { photo_name(row) };
+        let png = unpack(bytes, &[&name], MAX_ENTRY_BYTES)?.remove(&name);
+        Ok(Photo::new(png.ok_or(ProjectError::Missing(name))?.into())?)
+    })
+}
+
+fn checked(
+    file: DocumentV3,
+    photo: impl Fn(usize) -> Result<Photo, ProjectError>,
+) -> Result<Document, ProjectError> {
+    if file.plants.len() > MAX_PLANTS {
+        return Err(ProjectError::TooMuch { what: "plants", limit: MAX_PLANTS });
+    }
+    let strokes = || {
+        file.plants.iter().flat_map(|p| if let MakerV3::Sketch(s) = &p.maker { &s.strokes[..] } else { &[] })
+    };
+    if strokes().count() > MAX_STROKES {
+        return Err(ProjectError::TooMuch { what: "strokes", limit: MAX_STROKES });
+    }
+    if strokes().map(|s| s.x.len()).sum::<usize>() > MAX_POINTS {
+        return Err(ProjectError::TooMuch { what: "points", limit: MAX_POINTS });
+    }
+    let mut document =
+        Document { name: shortened(&file.name), plants: Vec::new(), next_stroke: 0, next_plant: 0 };
+    for (row, plant) in file.plants.into_iter().enumerate() {
+        let PlantV3 { name, seed, locked, hidden, position, yaw_deg, scale, maker } = plant;
+        let (maker, strokes) = match maker {
+            MakerV3::Sketch(sketch) => from_sketch(sketch, row, &photo)?,
+            MakerV3::Tree(tree) => (from_tree(tree)?, Vec::new()),
+            MakerV3::Leaf(LeafV3 { file, data, settings }) => {
+                let data = LeafData { name: shortened(&file), text: data.into() };
+                (Maker::Leaf(Box::new(LeafMaker { data, settings })), Vec::new())
+            }
+            MakerV3::Flower(FlowerV3 { settings, law }) => {
+                (Maker::Flower(Box::new(FlowerMaker { settings, law: law.map(Arc::new) })), Vec::new())
+            }
+        };
+        let settings = Settings {
+            name: shortened(&name),
+            seed: Seed::new(seed),
+            locked,
+            hidden,
+            placement: Placement { position: DVec3::from_array(position), yaw_deg, scale },
+            maker,
+        };
+        if let Some(fault) = range_fault(&settings) {
+            return Err(ProjectError::Setting(fault));
+        }
+        let mut kept = Vec::with_capacity(strokes.len());
+        for (row, stroke) in strokes.into_iter().enumerate() {
+            let class = stroke.class;
+            let stroke = from_file(stroke).map_err(|what| ProjectError::Stroke { row, what })?;
+            kept.push(DocumentStroke { id: document.give_stroke(), stroke: Arc::new(stroke), class });
+        }
+        document.plants.push(DocumentPlant { id: PlantId(document.next_plant), settings, strokes: kept });
+        document.next_plant += 1;
+    }
+    // Points are sound by now: this looks at what refers to other plants.
+    let fault = document.validate().next();
+    fault.map_or(Ok(document), |fault| Err(ProjectError::Scene(fault)))
+}
+
+fn from_sketch(
+    sketch: SketchV3,
+    row: usize,
+    photo: &impl Fn(usize) -> Result<Photo, ProjectError>,
+) -> Result<(Maker, Vec<StrokeV1>), ProjectError> {
+    let SketchV3 { sketch, skin, strokes, photo: lies, day, leaf } = sketch;
+    let photo = match lies {
         Some(PhotoV2 { x, y, width, opacity, paint }) => {
-            let png = entries.remove(PHOTO).ok_or(ProjectError::Missing(PHOTO))?;
-            Some(Photo { x, y, width, opacity, paint, ..Photo::new(png.into())? })
+            Some(Photo { x, y, width, opacity, paint, ..photo(row)? })
         }
         None => None,
     };
-    checked(file, photo)
+    let skin = skin.spec().map_err(ProjectError::Setting)?;
+    let settings = SketchSettings { sketch, skin, photo, day, leaf: leaf.map(PlantId) };
+    Ok((Maker::Sketch(Box::new(settings)), strokes))
 }
 
-fn checked(file: DocumentV2, photo: Option<Photo>) -> Result<Document, ProjectError> {
-    if file.strokes.len() > MAX_STROKES {
-        return Err(ProjectError::TooMuch { what: "strokes", limit: MAX_STROKES });
-    }
-    if file.strokes.iter().map(|s| s.x.len()).sum::<usize>() > MAX_POINTS {
-        return Err(ProjectError::TooMuch { what: "points", limit: MAX_POINTS });
-    }
-    let petals = match file.skin.petals.as_deref() {
-        None => None,
-        Some(word) => Some(PetalColor::ALL.into_iter().find(|c| c.word() == word).ok_or_else(|| {
-            let known = PetalColor::ALL.map(PetalColor::word).join(", ");
-            ProjectError::Setting(format!("the petal colour {word:?} is unknown; use one of {known}"))
-        })?),
-    };
-    let SkinV1 { detail, sides, textures, variation, .. } = file.skin;
-    let skin = SkinSpec { detail, sides, textures, petals, variation, ..SkinSpec::default() };
-    let settings = Settings {
-        name: shortened(&file.name),
-        seed: Seed::new(file.seed),
-        sketch: file.sketch,
-        skin,
-        photo,
-    };
-    let mut document = Document { settings, ..Document::default() };
-    if let Some(fault) = range_fault(&document.settings) {
-        return Err(ProjectError::Setting(fault));
-    }
-    for (row, stroke) in file.strokes.into_iter().enumerate() {
-        let class = stroke.class;
-        let stroke = from_file(stroke).map_err(|what| ProjectError::Stroke { row, what })?;
-        let id: StrokeId = document.give_id();
-        document.strokes.push(DocumentStroke { id, stroke: Arc::new(stroke), class });
-    }
-    Ok(document)
-}
-
-fn from_file(s: StrokeV1) -> Result<Stroke, &'static str> {
-    let n = s.x.len();
-    if n == 0 {
-        return Err("it has no point; erase it");
-    }
-    if s.y.len() != n || ![0, n].contains(&s.t.len()) || ![0, n].contains(&s.p.len()) {
-        return Err("its columns x, y, t and p are not of one length; the file is damaged");
-    }
-    let cell = |column: &[Option<f64>], i: usize| column.get(i).copied().flatten();
-    let samples: Vec<InkSample> = (0..n)
-        .map(|i| InkSample {
-            at: DVec2::new(s.x[i], s.y[i]),
-            time_ms: cell(&s.t, i),
-            pressure: cell(&s.p, i),
-        })
+fn from_tree(tree: TreeV3) -> Result<Maker, ProjectError> {
+    let TreeV3 { preset, spec, obstacles, skin, leaf } = tree;
+    let obstacles = obstacles
+        .into_iter()
+        .map(|o| NamedObstacle { name: shortened(&o.name), shape: Arc::new(o.shape) })
         .collect();
-    if samples.iter().any(|p| !p.at.is_finite()) {
-        return Err("a point is not finite; the file is damaged");
-    }
-    Ok(Stroke { samples, mode: s.mode, color: s.color, id: s.id })
+    Ok(Maker::Tree(Box::new(TreeSettings {
+        preset: preset.map(|p| shortened(&p)),
+        spec: Arc::new(spec),
+        obstacles,
+        skin: skin.spec().map_err(ProjectError::Setting)?,
+        leaf: leaf.map(PlantId),
+    })))
 }

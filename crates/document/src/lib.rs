@@ -4,28 +4,42 @@
 //!
 //! | module | owns |
 //! |---|---|
-//! | `state` | [`Document`]: strokes with their corrections, settings, seed |
-//! | `command` | [`Command`]: what can be asked, checked against the document |
+//! | `state` | [`Document`]: plants with name, seed, place, strokes |
+//! | `makers` | [`Maker`]: what each maker is asked for |
+//! | `command` | [`Command`]: what can be asked, checked against the document; a small enum for each maker |
 //! | `event` | [`Event`]: what happened; applied forwards and backwards |
 //! | `editor` | [`Editor`]: named, unlimited undo; a gesture is one step |
 //! | `file` | [`read_project`], [`write_project`]: a zip of versioned JSON |
+//! | `forms` | the structs of each form of the file |
 //! | `photo` | [`Photo`]: what lies under the drawing |
 //! | `archive` | [`pack`] and the bounded reading of zip files |
 //!
-//! Coordinates are the drawing's own unit, y up, as in [`sketch::Drawing`].
+//! Coordinates of strokes are the drawing's own unit, y up, as in [`sketch::Drawing`].
 
 mod archive;
 mod command;
 mod editor;
 mod event;
 mod file;
+mod forms;
+mod makers;
 mod photo;
 mod state;
 
 pub use archive::{ArchiveError, pack};
-pub use command::{Command, CommandError, NewStroke};
+pub use command::{
+    Command, CommandError, FlowerCommand, LeafCommand, NewPlant, NewStroke, PlantCommand, SceneCommand,
+    SketchCommand, TreeCommand,
+};
 pub use editor::{Editor, Step};
-pub use event::Event;
+pub use event::{Event, StrokeRows};
 pub use file::{MAX_PROJECT_BYTES, PROJECT_SCHEMA, ProjectError, is_project, read_project, write_project};
+pub use makers::{
+    FlowerMaker, FlowerSettings, LeafData, LeafMaker, LeafPaint, LeafRings, LeafSettings, LeafSurface,
+    LeafThickness, Maker, NamedObstacle, SketchSettings, TreeSettings,
+};
 pub use photo::{MAX_PHOTO_BYTES, Photo, PhotoError};
-pub use state::{Document, DocumentFault, DocumentStroke, Settings, StrokeId, range_fault};
+pub use state::{
+    Document, DocumentFault, DocumentPlant, DocumentStroke, Placement, PlantId, Settings, StrokeId,
+    range_fault,
+};

@@ -1,23 +1,26 @@
-//! The document: strokes with their corrections, and settings.
+//! The document: a scene of plants, each with its maker's description.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use base::Seed;
-use glam::DVec2;
-use sketch::{Drawing, SketchSpec, Stroke, StrokeClass};
-use skin::SkinSpec;
+use glam::{DVec2, DVec3};
+use sketch::{Drawing, Stroke, StrokeClass};
 
-use crate::Photo;
+use crate::{Maker, Photo, SketchSettings};
 
 /// Names one stroke for as long as the document lives, whatever is drawn or erased around it. Never reused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct StrokeId(pub u32);
 
-/// One stroke of the document.
+/// Names one plant for as long as the document lives. Never reused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct PlantId(pub u32);
+
+/// One stroke of a sketch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DocumentStroke {
-    /// Its name.
+    /// Its name, unique in the whole document.
     pub id: StrokeId,
     /// What the pen left; finite points, shared with the undo history.
     pub stroke: Arc<Stroke>,
@@ -25,19 +28,46 @@ pub struct DocumentStroke {
     pub class: Option<StrokeClass>,
 }
 
-/// Everything but the strokes.
+/// Where a plant stands: scaled, turned about the vertical, then moved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placement {
+    /// Where its origin stands, metres; each coordinate up to 100 km.
+    pub position: DVec3,
+    /// Turn about +Y, degrees, counter-clockwise seen from above. Default 0.
+    pub yaw_deg: f64,
+    /// Size, 0.001 to 1,000. Default 1.
+    pub scale: f64,
+}
+
+impl Default for Placement {
+    fn default() -> Self {
+        Self { position: DVec3::ZERO, yaw_deg: 0.0, scale: 1.0 }
+    }
+}
+
+impl Placement {
+    fn fault(&self) -> Option<String> {
+        let near = self.position.abs().max_element() <= 1e5 && self.position.is_finite();
+        let sound = near && self.yaw_deg.abs() <= 1e6 && (1e-3..=1e3).contains(&self.scale);
+        (!sound).then(|| "a plant stands within 100 km, 0.001 to 1000 times its size".into())
+    }
+}
+
+/// Everything of a plant but its strokes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// Name of the plant, for files and reports. At most 200 characters.
     pub name: String,
     /// What all chance follows from. Default 1.
     pub seed: Seed,
-    /// How the drawing is understood and given depth.
-    pub sketch: SketchSpec,
-    /// How the plant is meshed and coloured. Its `seed` is not saved: it always follows [`Settings::seed`].
-    pub skin: SkinSpec,
-    /// What lies under the drawing.
-    pub photo: Option<Photo>,
+    /// Whether dice leave the seed alone. Default false.
+    pub locked: bool,
+    /// Whether it is left out of the view and of exports of the scene. Default false.
+    pub hidden: bool,
+    /// Where it stands.
+    pub placement: Placement,
+    /// Who makes it, and of what.
+    pub maker: Maker,
 }
 
 impl Default for Settings {
@@ -45,29 +75,117 @@ impl Default for Settings {
         Self {
             name: "plant".into(),
             seed: Seed::default(),
-            sketch: SketchSpec::default(),
-            skin: SkinSpec::default(),
-            photo: None,
+            locked: false,
+            hidden: false,
+            placement: Placement::default(),
+            maker: Maker::default(),
         }
     }
 }
 
-/// What a person made: strokes in the order in which they were drawn, and settings.
+impl Settings {
+    /// The settings of a sketch; `None` for other makers.
+    pub fn sketch(&self) -> Option<&SketchSettings> {
+        if let Maker::Sketch(s) = &self.maker { Some(s) } else { None }
+    }
+
+    /// The photograph under a sketch.
+    pub fn photo(&self) -> Option<&Photo> {
+        self.sketch()?.photo.as_ref()
+    }
+}
+
+/// One plant of the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DocumentPlant {
+    pub(crate) id: PlantId,
+    pub(crate) settings: Settings,
+    pub(crate) strokes: Vec<DocumentStroke>,
+}
+
+impl DocumentPlant {
+    /// Its name within the document.
+    pub fn id(&self) -> PlantId {
+        self.id
+    }
+
+    /// Everything but its strokes.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// The strokes of a sketch in the order in which they were drawn; empty for other makers.
+    pub fn strokes(&self) -> &[DocumentStroke] {
+        &self.strokes
+    }
+
+    /// The strokes as the sketch maker takes them; row `i` is `strokes()[i]`. Cost: a copy of every point.
+    pub fn drawing(&self) -> Drawing {
+        let strokes = self.strokes.iter().map(|s| Stroke::clone(&s.stroke)).collect();
+        Drawing { name: self.settings.name.clone(), strokes }
+    }
+
+    /// Classes that the person set, by row of [`DocumentPlant::drawing`].
+    pub fn classes(&self) -> BTreeMap<u32, StrokeClass> {
+        (0..).zip(&self.strokes).filter_map(|(row, s)| Some((row, s.class?))).collect()
+    }
+
+    /// The row of a stroke.
+    pub fn row(&self, id: StrokeId) -> Option<usize> {
+        self.strokes.iter().position(|s| s.id == id)
+    }
+
+    fn round(&mut self) {
+        let points = || self.strokes.iter().flat_map(|s| s.stroke.samples.iter().map(|p| p.at));
+        let (low, high) = points().fold((DVec2::MAX, DVec2::MIN), |(a, b), p| (a.min(p), b.max(p)));
+        let size = (high - low).length();
+        // A power of ten has few digits as text.
+        let mut step = 1.0;
+        while size > 0.0 && size.is_finite() && step * 10_000.0 > size && step > 1e-12 {
+            step *= 0.1;
+        }
+        let per_step = (1.0 / step).round();
+        let on_grid = |x: f64| (x * per_step).round() / per_step;
+        for s in &mut self.strokes {
+            let mut stroke = Stroke::clone(&s.stroke);
+            for p in &mut stroke.samples {
+                p.at = DVec2::new(on_grid(p.at.x), on_grid(p.at.y));
+                p.time_ms = None;
+                p.pressure = p.pressure.map(|x| (x * 100.0).round() / 100.0);
+            }
+            stroke.samples.dedup_by(|b, a| a.at == b.at);
+            s.stroke = Arc::new(stroke);
+        }
+    }
+}
+
+/// What a person made: a scene of plants.
 ///
 /// ```
-/// use document::{Command, Editor, NewStroke};
+/// use document::{Document, Editor, NewStroke, SketchCommand};
 /// use glam::DVec2;
 /// let mut editor = Editor::default();
-/// editor.run(Command::AddStrokes(vec![NewStroke::line(&[DVec2::ZERO, DVec2::Y])]))?;
-/// assert_eq!(editor.document().drawing().strokes.len(), 1);
+/// let plant = editor.document().plants()[0].id();
+/// editor.run(SketchCommand::AddStrokes(vec![NewStroke::line(&[DVec2::ZERO, DVec2::Y])]).of(plant))?;
+/// assert_eq!(editor.document().plants()[0].drawing().strokes.len(), 1);
 /// # Ok::<(), document::CommandError>(())
 /// ```
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Document {
-    pub(crate) strokes: Vec<DocumentStroke>,
-    pub(crate) settings: Settings,
+    pub(crate) name: String,
+    pub(crate) plants: Vec<DocumentPlant>,
     /// The number of the next stroke: above every id ever given in this document.
-    pub(crate) next_id: u32,
+    pub(crate) next_stroke: u32,
+    /// The number of the next plant.
+    pub(crate) next_plant: u32,
+}
+
+impl Default for Document {
+    /// One empty sketch.
+    fn default() -> Self {
+        let plant = DocumentPlant { id: PlantId(0), settings: Settings::default(), strokes: Vec::new() };
+        Self { name: "plant".into(), plants: vec![plant], next_stroke: 0, next_plant: 1 }
+    }
 }
 
 /// Something that is wrong with a document.
@@ -80,12 +198,24 @@ pub enum DocumentFault {
     /// A stroke's number was not given by this document yet.
     #[error("stroke {} has a number that is not given yet", .0.0)]
     FutureId(StrokeId),
+    /// Two plants have one name, or one that was not given yet.
+    #[error("plant {} has a number that is taken or not given yet", .0.0)]
+    PlantNumber(PlantId),
     /// A point is NaN or infinite, or there is no point.
     #[error("stroke {} has no point or one that is not finite", .0.0)]
     NotFinite(StrokeId),
+    /// Strokes where no sketch is.
+    #[error("plant {} has strokes but is no sketch", .0.0)]
+    Strokes(PlantId),
+    /// A plant bears the leaf of one that is not there, of itself, or of one that has none of its own.
+    #[error("plant {} bears the leaf of a plant that has none", .0.0)]
+    Leaf(PlantId),
     /// The name is too long.
     #[error("the name is longer than {NAME_LENGTH} characters")]
     Name,
+    /// There are too many plants.
+    #[error("there are more than {MAX_PLANTS} plants")]
+    Plants,
     /// A setting is out of its range.
     #[error("{0}")]
     Setting(String),
@@ -93,95 +223,116 @@ pub enum DocumentFault {
 
 /// Longest name of a plant, in characters.
 pub(crate) const NAME_LENGTH: usize = 200;
+/// Most plants of a scene.
+pub(crate) const MAX_PLANTS: usize = 200;
 
 impl Document {
     /// A document of a drawing as it was read: points that are not finite are left out, strokes without a point too.
     pub fn from_drawing(drawing: &Drawing) -> Self {
-        let mut document = Self::default();
-        document.settings.name = shortened(&drawing.name);
+        let mut document = Self { name: shortened(&drawing.name), ..Self::default() };
+        let mut strokes = Vec::new();
         for stroke in &drawing.strokes {
             if let Some(stroke) = sound(stroke.clone()) {
-                let id = document.give_id();
-                document.strokes.push(DocumentStroke { id, stroke: Arc::new(stroke), class: None });
+                let id = document.give_stroke();
+                strokes.push(DocumentStroke { id, stroke: Arc::new(stroke), class: None });
             }
+        }
+        if let Some(plant) = document.plants.first_mut() {
+            plant.settings.name = shortened(&drawing.name);
+            plant.strokes = strokes;
         }
         document
     }
 
-    /// The strokes in the order in which they were drawn.
-    pub fn strokes(&self) -> &[DocumentStroke] {
-        &self.strokes
+    /// Name of the scene, for its file. At most 200 characters.
+    pub fn name(&self) -> &str {
+        &self.name
     }
 
-    /// Everything but the strokes.
-    pub fn settings(&self) -> &Settings {
-        &self.settings
+    /// The plants in the order in which they came in.
+    pub fn plants(&self) -> &[DocumentPlant] {
+        &self.plants
     }
 
-    /// The strokes as the sketch maker takes them; row `i` is `strokes()[i]`. Cost: a copy of every point.
-    pub fn drawing(&self) -> Drawing {
-        let strokes = self.strokes.iter().map(|s| Stroke::clone(&s.stroke)).collect();
-        Drawing { name: self.settings.name.clone(), strokes }
+    /// A plant by its name.
+    pub fn plant(&self, id: PlantId) -> Option<&DocumentPlant> {
+        self.plants.iter().find(|p| p.id == id)
     }
 
-    /// Classes that the person set, by row of [`Document::drawing`].
-    pub fn classes(&self) -> BTreeMap<u32, StrokeClass> {
-        (0..).zip(&self.strokes).filter_map(|(row, s)| Some((row, s.class?))).collect()
+    pub(crate) fn plant_mut(&mut self, id: PlantId) -> Option<&mut DocumentPlant> {
+        self.plants.iter_mut().find(|p| p.id == id)
     }
 
-    /// The row of a stroke.
-    pub fn row(&self, id: StrokeId) -> Option<usize> {
-        self.strokes.iter().position(|s| s.id == id)
+    /// The one plant, if it is a sketch that stands where it was drawn: such a document is a drawing.
+    pub fn only_sketch(&self) -> Option<&DocumentPlant> {
+        let [plant] = self.plants.as_slice() else { return None };
+        let s = &plant.settings;
+        let plain =
+            s.sketch().is_some_and(|k| k.day.is_none()) && s.placement == Placement::default() && !s.hidden;
+        plain.then_some(plant)
+    }
+
+    /// Whether a plant has a leaf of its own that others may bear: a measured leaf, or a sketch with its own leaves.
+    pub fn lends_leaf(&self, id: PlantId) -> bool {
+        self.plant(id).is_some_and(|p| match &p.settings.maker {
+            Maker::Leaf(_) => true,
+            Maker::Sketch(s) => s.leaf.is_none(),
+            _ => false,
+        })
     }
 
     /// A smaller document that looks the same: points on a grid of at most 1/10,000 of the drawing's diagonal, without
-    /// their times; without the photograph. For links, not for files.
+    /// their times; without photographs. For links, not for files.
     pub fn compact(&self) -> Self {
         let mut document = self.clone();
-        document.settings.photo = None;
-        let points = || self.strokes.iter().flat_map(|s| s.stroke.samples.iter().map(|p| p.at));
-        let (low, high) = points().fold((DVec2::MAX, DVec2::MIN), |(a, b), p| (a.min(p), b.max(p)));
-        let size = (high - low).length();
-        // A power of ten has few digits as text.
-        let mut step = 1.0;
-        while size > 0.0 && size.is_finite() && step * 10_000.0 > size && step > 1e-12 {
-            step *= 0.1;
-        }
-        let per_step = (1.0 / step).round();
-        let on_grid = |x: f64| (x * per_step).round() / per_step;
-        for s in &mut document.strokes {
-            let mut stroke = Stroke::clone(&s.stroke);
-            for p in &mut stroke.samples {
-                p.at = DVec2::new(on_grid(p.at.x), on_grid(p.at.y));
-                p.time_ms = None;
-                p.pressure = p.pressure.map(|x| (x * 100.0).round() / 100.0);
+        for plant in &mut document.plants {
+            plant.round();
+            if let Maker::Sketch(s) = &mut plant.settings.maker {
+                s.photo = None;
             }
-            stroke.samples.dedup_by(|b, a| a.at == b.at);
-            s.stroke = Arc::new(stroke);
         }
         document
     }
 
-    pub(crate) fn give_id(&mut self) -> StrokeId {
-        let id = StrokeId(self.next_id);
-        self.next_id = self.next_id.saturating_add(1);
+    pub(crate) fn give_stroke(&mut self) -> StrokeId {
+        let id = StrokeId(self.next_stroke);
+        self.next_stroke = self.next_stroke.saturating_add(1);
         id
     }
 
     /// Everything that is wrong; nothing, after any sequence of commands. Cost: linear in points.
     pub fn validate(&self) -> impl Iterator<Item = DocumentFault> + '_ {
         let mut seen = BTreeSet::new();
-        let strokes = self.strokes.iter().flat_map(move |s| {
+        let strokes = self.plants.iter().flat_map(|p| &p.strokes).flat_map(move |s| {
             let same = (!seen.insert(s.id)).then_some(DocumentFault::SameId(s.id));
-            let future = (s.id.0 >= self.next_id).then_some(DocumentFault::FutureId(s.id));
+            let future = (s.id.0 >= self.next_stroke).then_some(DocumentFault::FutureId(s.id));
             let finite = !s.stroke.samples.is_empty() && s.stroke.samples.iter().all(|p| p.at.is_finite());
             let odd = (!finite).then_some(DocumentFault::NotFinite(s.id));
             [same, future, odd].into_iter().flatten()
         });
-        let name = (self.settings.name.chars().count() > NAME_LENGTH).then_some(DocumentFault::Name);
-        let setting = range_fault(&self.settings).map(DocumentFault::Setting);
-        strokes.chain(name).chain(setting)
+        let mut known = BTreeSet::new();
+        let plants = self.plants.iter().flat_map(move |p| {
+            let taken = !known.insert(p.id) || p.id.0 >= self.next_plant;
+            let strokes = !p.strokes.is_empty() && p.settings.sketch().is_none();
+            let leaf = p.settings.maker.leaf().is_some_and(|l| l == p.id || !self.lends_leaf(l));
+            [
+                taken.then_some(DocumentFault::PlantNumber(p.id)),
+                strokes.then_some(DocumentFault::Strokes(p.id)),
+                leaf.then_some(DocumentFault::Leaf(p.id)),
+                too_long(&p.settings.name).then_some(DocumentFault::Name),
+                range_fault(&p.settings).map(DocumentFault::Setting),
+            ]
+            .into_iter()
+            .flatten()
+        });
+        let name = too_long(&self.name).then_some(DocumentFault::Name);
+        let many = (self.plants.len() > MAX_PLANTS).then_some(DocumentFault::Plants);
+        strokes.chain(plants).chain(name).chain(many)
     }
+}
+
+fn too_long(name: &str) -> bool {
+    name.chars().count() > NAME_LENGTH
 }
 
 /// A name cut to its greatest length, without line breaks.
@@ -201,18 +352,5 @@ pub(crate) fn sound(mut stroke: Stroke) -> Option<Stroke> {
 
 /// The first setting that is out of its range, as a sentence with what to do; `None` if all are sound.
 pub fn range_fault(settings: &Settings) -> Option<String> {
-    let Settings { sketch, skin, .. } = settings;
-    if let Some(fault) = sketch.validate().next() {
-        return Some(fault.to_string());
-    }
-    let rows = [
-        ("detail", skin.detail, 0.1, 8.0),
-        ("sides", f64::from(skin.sides), 3.0, 24.0),
-        ("variation", skin.variation, 0.0, 1.0),
-    ];
-    if let Some(fault) = settings.photo.as_ref().and_then(Photo::fault) {
-        return Some(fault);
-    }
-    let odd = rows.into_iter().find(|&(_, value, low, high)| !(low..=high).contains(&value));
-    odd.map(|(name, value, low, high)| format!("{name} is {value}, but must be from {low} to {high}"))
+    settings.maker.fault().or_else(|| settings.placement.fault())
 }

@@ -1,7 +1,7 @@
 //! Project files that are hostile, damaged, newer or older.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
-use document::{Document, ProjectError, is_project, pack, read_project, write_project};
+use document::{Document, DocumentPlant, Maker, ProjectError, is_project, pack, read_project, write_project};
 use glam::DVec2;
 use proptest::prelude::*;
 use sketch::Drawing;
@@ -19,8 +19,21 @@ fn project(manifest: &str, document: &str) -> Vec<u8> {
 const V1: &str = r#"{"burgeon":"project/1"}"#;
 const V2: &str = r#"{"burgeon":"project/2"}"#;
 
+const V3: &str = r#"{"burgeon":"project/3"}"#;
+
+/// The one plant of a document of an earlier form.
+fn only(document: &Document) -> &DocumentPlant {
+    document.only_sketch().unwrap()
+}
+
 fn refusal(bytes: &[u8]) -> String {
     read_project(bytes).unwrap_err().to_string()
+}
+
+/// One plant of a maker.
+fn scene(maker: &str, more: &str) -> Vec<u8> {
+    let plant = format!(r#"{{"name":"a","seed":1,"maker":{maker}{more}}}"#);
+    project(V3, &format!(r#"{{"name":"a","plants":[{plant}]}}"#))
 }
 
 #[test]
@@ -32,7 +45,7 @@ fn refusals_say_what_and_what_to_do() {
         (sample()[..sample().len() / 2].to_vec(), "not a whole zip"),
         (pack(&[("x.txt".into(), vec![1])]).unwrap(), "no \"manifest.json\""),
         (pack(&[("manifest.json".into(), V1.into())]).unwrap(), "no \"document.json\""),
-        (project(r#"{"burgeon":"project/3"}"#, "{}"), "take a newer Burgeon"),
+        (project(r#"{"burgeon":"project/4"}"#, "{}"), "take a newer Burgeon"),
         (
             project(
                 V2,
@@ -53,6 +66,18 @@ fn refusals_say_what_and_what_to_do() {
             project(V1, r#"{"name":"a","seed":1,"strokes":[],"sketch":{"fill":{"density":1e300}}}"#),
             "fill.density is",
         ),
+        (
+            project(V3, r#"{"name":"a","plants":[{"name":"a","seed":1,"maker":{"shrub":{}}}]}"#),
+            "unknown variant",
+        ),
+        (scene(r#"{"flower":{"settings":{"species":"weed"}}}"#, ""), "\"weed\" is unknown"),
+        (scene(r#"{"flower":{"settings":{"day":1e300}}}"#, ""), "from 0 to 100"),
+        (scene(r#"{"leaf":{"file":"m","data":"","settings":{"sides":1}}}"#, ""), "sides is 1"),
+        (scene(r#"{"tree":{"spec":[]}}"#, ""), "JSON object"),
+        (scene(r#"{"tree":{"spec":{},"leaf":0}}"#, ""), "bears the leaf"),
+        (scene(r#"{"tree":{"spec":{},"leaf":7}}"#, ""), "bears the leaf"),
+        (scene(r#"{"flower":{}}"#, r#","scale":0"#), "100 km"),
+        (scene(r#"{"flower":{}}"#, r#","position":[1e9,0,0]"#), "100 km"),
     ] {
         let said = refusal(&bytes);
         assert!(said.starts_with("project file") && said.contains(words), "{said:?} has no {words:?}");
@@ -80,21 +105,67 @@ fn a_deep_document_is_refused() {
 fn files_of_version_1_stay_readable() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/projects/version-1.burgeon");
     let document = read_project(&std::fs::read(path).unwrap()).unwrap();
-    assert_eq!(document.settings().name, "sample");
-    assert_eq!((document.strokes().len(), document.settings().seed.number()), (15, 7));
-    assert_eq!(document.classes().len(), 1, "one correction");
-    assert_eq!(document.settings().skin.petals.map(skin::PetalColor::word), Some("violet"));
-    assert_eq!(document.strokes()[0].stroke.samples.len(), 141);
+    let plant = only(&document);
+    assert_eq!((document.name(), plant.settings().name.as_str()), ("sample", "sample"));
+    assert_eq!((plant.strokes().len(), plant.settings().seed.number()), (15, 7));
+    assert_eq!(plant.classes().len(), 1, "one correction");
+    let sketch = plant.settings().sketch().unwrap();
+    assert_eq!(sketch.skin.petals.map(skin::PetalColor::word), Some("violet"));
+    assert_eq!(plant.strokes()[0].stroke.samples.len(), 141);
 }
 
 #[test]
 fn files_of_version_2_stay_readable() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/projects/version-2.burgeon");
     let document = read_project(&std::fs::read(path).unwrap()).unwrap();
-    assert_eq!((document.strokes().len(), document.settings().seed.number()), (15, 7));
-    let photo = document.settings().photo.as_ref().unwrap();
+    let plant = only(&document);
+    assert_eq!((plant.strokes().len(), plant.settings().seed.number()), (15, 7));
+    let photo = plant.settings().photo().unwrap();
     assert_eq!((photo.size(), photo.x, photo.y, photo.width), ((8, 8), -10.0, -20.0, 900.0));
     assert_eq!((photo.opacity, photo.paint, photo.height()), (0.25, true, 900.0));
+    let again = read_project(&write_project(&document, "test").unwrap()).unwrap();
+    assert_eq!(again, document);
+}
+
+#[test]
+fn files_of_version_3_stay_readable() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/projects/version-3.burgeon");
+    let document = read_project(&std::fs::read(path).unwrap()).unwrap();
+    let [drawn, bush, leaf, lily] = document.plants() else { panic!("{document:?}") };
+    let sketch = drawn.settings().sketch().unwrap();
+    assert_eq!((drawn.strokes().len(), sketch.day, sketch.leaf), (15, Some(4.5), Some(leaf.id())));
+    assert_eq!(drawn.settings().photo().unwrap().size(), (8, 8));
+    let Maker::Tree(tree) = &bush.settings().maker else { panic!("{bush:?}") };
+    assert_eq!(
+        (tree.preset.as_deref(), tree.obstacles.len(), tree.leaf),
+        (Some("hazel"), 2, Some(leaf.id()))
+    );
+    assert!(leaf.settings().hidden && bush.settings().locked && lily.settings().placement.scale == 2.0);
+    let again = read_project(&write_project(&document, "test").unwrap()).unwrap();
+    assert_eq!(again, document);
+}
+
+#[test]
+fn a_tree_a_leaf_and_a_flower_come_back() {
+    let law = r#"{"schema":"burgeon.law/1","name":"x","first_day":0.0,"span_days":6.0,"regions":1,"laws":[{"organ":"any","region":0,"axis":"size","K":1.0,"p0":0.1,"r":0.9,"offset":0.0,"standard_errors":null,"r2":1.0,"r2_adjusted":null,"loo_rmse":null,"days":[],"values":[]}]}"#;
+    let text = format!(
+        r#"{{"name":"three","plants":[
+        {{"name":"leaf","seed":2,"maker":{{"leaf":{{"file":"m.csv","data":"row,mark\n","settings":{{"curl":0.1}}}}}}}},
+        {{"name":"tree","seed":3,"locked":true,"position":[1,0,-0.1],"yaw_deg":30.1,"scale":0.3,"maker":{{"tree":{{
+            "preset":"oak","spec":{{"age":3,"clearance_m":0.1}},"leaf":0,
+            "obstacles":[{{"name":"ball","shape":{{"shape":"sphere","centre":[0,1,0],"radius_m":0.5}}}}]}}}}}},
+        {{"name":"flower","seed":4,"hidden":true,"maker":{{"flower":{{"settings":{{"species":"rose","day":2.5}},"law":{law}}}}}}}
+        ]}}"#
+    );
+    let document = read_project(&project(V3, &text)).unwrap();
+    let [leaf, tree, flower] = document.plants() else { panic!("{document:?}") };
+    assert!(
+        matches!(&leaf.settings().maker, Maker::Leaf(l) if &*l.data.text == "row,mark\n" && l.settings.curl == 0.1)
+    );
+    let Maker::Tree(t) = &tree.settings().maker else { panic!("{tree:?}") };
+    assert_eq!((t.obstacles.len(), t.leaf, tree.settings().locked), (1, Some(leaf.id()), true));
+    let Maker::Flower(f) = &flower.settings().maker else { panic!("{flower:?}") };
+    assert!(f.law.is_some() && f.settings.species == "rose" && flower.settings().hidden);
     let again = read_project(&write_project(&document, "test").unwrap()).unwrap();
     assert_eq!(again, document);
 }
@@ -137,7 +208,7 @@ fn a_compact_document_is_small_and_looks_the_same() {
     assert_eq!(compact.validate().count(), 0);
     let size = |d: &Document| write_project(d, "test").unwrap().len();
     assert!(size(&compact) * 3 < size(&document) * 2, "{} {}", size(&compact), size(&document));
-    for (a, b) in compact.strokes()[0].stroke.samples.iter().zip(&line) {
+    for (a, b) in only(&compact).strokes()[0].stroke.samples.iter().zip(&line) {
         assert!((a.at - *b).length() < 365.0 / 10_000.0, "{} {b}", a.at);
     }
 }

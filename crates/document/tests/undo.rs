@@ -1,10 +1,15 @@
 //! Undo of every command is the identity, for any sequence of commands.
 
+use std::sync::Arc;
+
 use base::Seed;
 use document::{
-    Command, CommandError, Document, Editor, NewStroke, Photo, StrokeId, read_project, write_project,
+    Command, CommandError, Document, Editor, FlowerCommand, FlowerSettings, LeafCommand, LeafData,
+    LeafSettings, Maker, NamedObstacle, NewPlant, NewStroke, Photo, Placement, PlantCommand, PlantId,
+    SceneCommand, Settings, SketchCommand, StrokeId, TreeCommand, read_project, write_project,
 };
-use glam::DVec2;
+use glam::{DVec2, DVec3};
+use growth::Obstacle;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use sketch::{Drawing, InkSample, SketchSpec, Stroke, StrokeClass, StrokeMode};
@@ -29,37 +34,135 @@ fn stroke() -> impl Strategy<Value = NewStroke> {
     )
 }
 
-fn command() -> impl Strategy<Value = Command> {
+/// Most plants of a test have a number below this.
+const PLANTS: u32 = 6;
+
+fn sketch_command() -> impl Strategy<Value = SketchCommand> {
     let ids = || vec((0..12u32).prop_map(StrokeId), 0..4);
     let class = proptest::option::of((0..12usize).prop_map(|i| StrokeClass::ALL[i]));
     prop_oneof![
-        4 => vec(stroke(), 0..3).prop_map(Command::AddStrokes),
-        2 => ids().prop_map(Command::RemoveStrokes),
-        2 => (ids(), point()).prop_map(|(ids, by)| Command::MoveStrokes(ids, by)),
-        1 => (ids(), class).prop_map(|(ids, class)| Command::SetClass(ids, class)),
-        1 => ids().prop_map(|ids| Command::SetMode(ids, StrokeMode::LeafContour)),
-        1 => (ids(), any::<[u8; 3]>()).prop_map(|(ids, color)| Command::SetColor(ids, Some(color))),
-        2 => (ids(), point()).prop_map(|(ids, by)| Command::Duplicate(ids, by)),
+        4 => vec(stroke(), 0..3).prop_map(SketchCommand::AddStrokes),
+        2 => ids().prop_map(SketchCommand::RemoveStrokes),
+        2 => (ids(), point()).prop_map(|(ids, by)| SketchCommand::MoveStrokes(ids, by)),
+        1 => (ids(), class).prop_map(|(ids, class)| SketchCommand::SetClass(ids, class)),
+        1 => ids().prop_map(|ids| SketchCommand::SetMode(ids, StrokeMode::LeafContour)),
+        1 => (ids(), any::<[u8; 3]>()).prop_map(|(ids, color)| SketchCommand::SetColor(ids, Some(color))),
+        2 => (ids(), point()).prop_map(|(ids, by)| SketchCommand::Duplicate(ids, by)),
         1 => proptest::option::of((point(), -1.0..3.0f64, any::<bool>())).prop_map(|photo| {
-            Command::SetPhoto(photo.map(|(at, size, paint)| {
+            SketchCommand::SetPhoto(photo.map(|(at, size, paint)| {
                 let png = [&b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x02\0\0\0\x03"[..], &[1; 9]].concat();
                 let mut photo = Photo::new(png.into()).expect("a PNG header");
                 (photo.x, photo.y, photo.width, photo.opacity, photo.paint) = (at.x, at.y, size, size / 2.0, paint);
                 Box::new(photo)
             }))
         }),
-        1 => Just(Command::Clear),
-        1 => ".{0,300}".prop_map(Command::Rename),
-        1 => any::<u64>().prop_map(|n| Command::SetSeed(Seed::new(n))),
+        1 => Just(SketchCommand::Clear),
         1 => (-1.0..12.0f64).prop_map(|density| {
             let mut spec = SketchSpec::default();
             spec.fill.density = density;
-            Command::SetSketch(Box::new(spec))
+            SketchCommand::SetSketch(Box::new(spec))
         }),
-        1 => (0.0..9.0f64).prop_map(|detail| Command::SetSkin(SkinSpec { detail, ..SkinSpec::default() })),
+        1 => (0.0..9.0f64).prop_map(|detail| SketchCommand::SetSkin(SkinSpec { detail, ..SkinSpec::default() })),
+        1 => proptest::option::of(-1.0..110.0f64).prop_map(SketchCommand::SetDay),
+        1 => proptest::option::of(0..PLANTS).prop_map(|p| SketchCommand::SetLeaf(p.map(PlantId))),
+    ]
+}
+
+fn obstacle() -> impl Strategy<Value = NamedObstacle> {
+    (".{0,4}", point()).prop_map(|(name, at)| {
+        let shape = Obstacle::Sphere { centre: DVec3::new(at.x, 1.0, at.y), radius_m: 0.5 };
+        NamedObstacle { name, shape: Arc::new(shape) }
+    })
+}
+
+fn tree_command() -> impl Strategy<Value = TreeCommand> {
+    let spec = (0..9u32).prop_map(|age| Arc::new(serde_json::json!({ "age": age, "wood": { "tips": age } })));
+    let path = prop_oneof![Just("/age"), Just("/wood/tips"), Just("/no/such"), Just("age"), Just("")];
+    prop_oneof![
+        spec.prop_map(|s| TreeCommand::SetSpec(Some("oak".into()), s)),
+        (path, -1e3..1e3f64).prop_map(|(p, x)| TreeCommand::SetField(p.into(), serde_json::json!(x))),
+        obstacle().prop_map(TreeCommand::AddObstacle),
+        (0..4usize, obstacle()).prop_map(|(row, o)| TreeCommand::SetObstacle(row, o)),
+        (0..4usize).prop_map(TreeCommand::RemoveObstacle),
+        (0.0..9.0f64).prop_map(|detail| TreeCommand::SetSkin(SkinSpec { detail, ..SkinSpec::default() })),
+        proptest::option::of(0..PLANTS).prop_map(|p| TreeCommand::SetLeaf(p.map(PlantId))),
+    ]
+}
+
+fn leaf_command() -> impl Strategy<Value = LeafCommand> {
+    prop_oneof![
+        (".{0,300}", ".{0,30}")
+            .prop_map(|(name, text)| LeafCommand::SetData(LeafData { name, text: text.into() })),
+        (-2.0..2.0f64, 0..70u32).prop_map(|(curl, sides)| {
+            LeafCommand::Set(Box::new(LeafSettings { curl, sides, ..LeafSettings::default() }))
+        }),
+    ]
+}
+
+fn flower_command() -> impl Strategy<Value = FlowerCommand> {
+    let species = prop_oneof![Just("lily"), Just("rose"), Just("weed")];
+    prop_oneof![
+        (species, -1.0..110.0f64).prop_map(|(species, day)| {
+            FlowerCommand::Set(Box::new(FlowerSettings {
+                species: species.into(),
+                day,
+                ..FlowerSettings::default()
+            }))
+        }),
+        (-1.0..6.0f64).prop_map(|span| {
+            FlowerCommand::SetLaw(Some(Arc::new(bloom::GrowthLaw::logistic("a", span, 0.9))))
+        }),
+    ]
+}
+
+fn plant_command() -> impl Strategy<Value = PlantCommand> {
+    prop_oneof![
+        ".{0,300}".prop_map(PlantCommand::Rename),
+        any::<u64>().prop_map(|n| PlantCommand::SetSeed(Seed::new(n))),
+        any::<bool>().prop_map(PlantCommand::Lock),
+        any::<bool>().prop_map(PlantCommand::Hide),
+        (point(), -1e3..1e3f64, -1.0..3.0f64).prop_map(|(at, yaw_deg, scale)| {
+            PlantCommand::Place(Placement { position: DVec3::new(at.x, 0.0, at.y), yaw_deg, scale })
+        }),
+    ]
+}
+
+fn new_plant() -> impl Strategy<Value = NewPlant> {
+    let maker = prop_oneof![
+        Just(Maker::default()),
+        Just(Maker::Tree(Box::default())),
+        Just(Maker::Leaf(Box::default())),
+        Just(Maker::Flower(Box::default())),
+    ];
+    (maker, vec(stroke(), 0..3)).prop_map(|(maker, strokes)| NewPlant {
+        settings: Settings { maker, ..Settings::default() },
+        strokes,
+    })
+}
+
+fn scene_command() -> impl Strategy<Value = SceneCommand> {
+    let plant = || (0..PLANTS).prop_map(PlantId);
+    prop_oneof![
+        1 => ".{0,300}".prop_map(SceneCommand::Rename),
+        3 => new_plant().prop_map(|p| SceneCommand::Add(Box::new(p))),
+        1 => (plant(), point()).prop_map(|(id, by)| SceneCommand::Duplicate(id, by.extend(0.0))),
+        2 => vec(plant(), 0..3).prop_map(SceneCommand::Remove),
         1 => vec(vec(point(), 0..5), 0..4).prop_map(|lines| {
-            Command::Open(Box::new(Document::from_drawing(&Drawing::from_polylines("other", &lines))))
+            SceneCommand::Open(Box::new(Document::from_drawing(&Drawing::from_polylines("other", &lines))))
         }),
+    ]
+}
+
+fn command() -> impl Strategy<Value = Command> {
+    let plant = || (0..PLANTS).prop_map(PlantId);
+    prop_oneof![
+        6 => sketch_command().prop_map(|c| c.of(PlantId(0))),
+        1 => (plant(), sketch_command()).prop_map(|(p, c)| c.of(p)),
+        2 => (plant(), tree_command()).prop_map(|(p, c)| c.of(p)),
+        1 => (plant(), leaf_command()).prop_map(|(p, c)| c.of(p)),
+        1 => (plant(), flower_command()).prop_map(|(p, c)| c.of(p)),
+        2 => (plant(), plant_command()).prop_map(|(p, c)| c.of(p)),
+        4 => scene_command().prop_map(Command::from),
     ]
 }
 
@@ -142,23 +245,36 @@ proptest! {
     }
 
     #[test]
-    fn a_saved_document_comes_back_with_the_same_bits(commands in vec(command(), 0..12)) {
+    fn a_saved_document_comes_back_with_the_same_bits(commands in vec(command(), 0..16)) {
         let mut editor = Editor::default();
         for command in commands { let _ = editor.run(command); }
         let document = editor.document();
         let back = read_project(&write_project(document, "test").unwrap()).unwrap();
-        prop_assert_eq!(back.settings(), document.settings());
-        prop_assert_eq!(back.classes(), document.classes());
-        prop_assert_eq!(back.strokes().len(), document.strokes().len());
-        for (a, b) in back.strokes().iter().zip(document.strokes()) {
-            prop_assert_eq!(&a.stroke, &b.stroke);
-            for (p, q) in a.stroke.samples.iter().zip(&b.stroke.samples) {
-                prop_assert_eq!(p.at.x.to_bits(), q.at.x.to_bits());
-                prop_assert_eq!(p.at.y.to_bits(), q.at.y.to_bits());
+        prop_assert_eq!((back.name(), back.plants().len()), (document.name(), document.plants().len()));
+        for (new, old) in back.plants().iter().zip(document.plants()) {
+            // Plants are numbered anew: a leaf that is borne keeps its row.
+            let row = |d: &Document, id: Option<PlantId>| id.map(|id| d.plants().iter().position(|p| p.id() == id));
+            let (lent, was) = (new.settings().maker.leaf(), old.settings().maker.leaf());
+            prop_assert_eq!(row(&back, lent), row(document, was));
+            if lent == was {
+                prop_assert_eq!(new.settings(), old.settings());
+            }
+            prop_assert_eq!(new.classes(), old.classes());
+            prop_assert_eq!(new.strokes().len(), old.strokes().len());
+            for (a, b) in new.strokes().iter().zip(old.strokes()) {
+                prop_assert_eq!(&a.stroke, &b.stroke);
+                for (p, q) in a.stroke.samples.iter().zip(&b.stroke.samples) {
+                    prop_assert_eq!(p.at.x.to_bits(), q.at.x.to_bits());
+                    prop_assert_eq!(p.at.y.to_bits(), q.at.y.to_bits());
+                }
             }
         }
         prop_assert_eq!(back.validate().collect::<Vec<_>>(), vec![]);
     }
+}
+
+fn strokes(editor: &Editor) -> &[document::DocumentStroke] {
+    editor.document().plants()[0].strokes()
 }
 
 #[test]
@@ -166,14 +282,14 @@ fn a_hundred_steps_are_undone_by_name() {
     let mut editor = Editor::default();
     for k in 0..100 {
         let line = NewStroke::line(&[DVec2::ZERO, DVec2::new(f64::from(k), 1.0)]);
-        editor.run(Command::AddStrokes(vec![line])).unwrap();
+        editor.run(SketchCommand::AddStrokes(vec![line]).of(PlantId(0))).unwrap();
     }
-    editor.run(Command::Clear).unwrap();
-    assert_eq!(editor.document().strokes().len(), 0);
+    editor.run(SketchCommand::Clear.of(PlantId(0))).unwrap();
+    assert_eq!(strokes(&editor).len(), 0);
     assert_eq!(editor.undo(), Some("clear"));
     for left in (0..100).rev() {
         assert_eq!(editor.undo(), Some("draw"));
-        assert_eq!(editor.document().strokes().len(), left);
+        assert_eq!(strokes(&editor).len(), left);
     }
     assert_eq!(editor.undo(), None);
 }
@@ -181,33 +297,58 @@ fn a_hundred_steps_are_undone_by_name() {
 #[test]
 fn a_drag_is_one_step_and_a_drag_back_is_none() {
     let mut editor = Editor::default();
-    editor.run(Command::AddStrokes(vec![NewStroke::line(&[DVec2::ZERO, DVec2::Y])])).unwrap();
-    let id = editor.document().strokes()[0].id;
+    editor
+        .run(SketchCommand::AddStrokes(vec![NewStroke::line(&[DVec2::ZERO, DVec2::Y])]).of(PlantId(0)))
+        .unwrap();
+    let id = strokes(&editor)[0].id;
     editor.begin_gesture("move").unwrap();
     for k in 1..=5 {
-        editor.stage(Command::MoveStrokes(vec![id], DVec2::X * f64::from(k))).unwrap();
+        editor.stage(SketchCommand::MoveStrokes(vec![id], DVec2::X * f64::from(k)).of(PlantId(0))).unwrap();
     }
     assert!(editor.commit());
-    assert_eq!(editor.document().strokes()[0].stroke.samples[0].at, DVec2::X * 5.0);
+    assert_eq!(strokes(&editor)[0].stroke.samples[0].at, DVec2::X * 5.0);
     assert_eq!(editor.done().len(), 2);
     editor.begin_gesture("move").unwrap();
-    editor.stage(Command::MoveStrokes(vec![id], DVec2::X)).unwrap();
-    editor.stage(Command::MoveStrokes(vec![id], DVec2::ZERO)).unwrap();
+    editor.stage(SketchCommand::MoveStrokes(vec![id], DVec2::X).of(PlantId(0))).unwrap();
+    editor.stage(SketchCommand::MoveStrokes(vec![id], DVec2::ZERO).of(PlantId(0))).unwrap();
     assert!(!editor.commit());
-    assert_eq!(editor.document().strokes()[0].stroke.samples[0].at, DVec2::X * 5.0);
+    assert_eq!(strokes(&editor)[0].stroke.samples[0].at, DVec2::X * 5.0);
 }
 
 #[test]
 fn refusals_say_why() {
     let mut editor = Editor::default();
-    let refused = |e: &mut Editor, c| e.run(c).unwrap_err().to_string();
-    assert!(refused(&mut editor, Command::RemoveStrokes(vec![StrokeId(7)])).contains("no stroke 7"));
+    let refused = |e: &mut Editor, c: SketchCommand| e.run(c.of(PlantId(0))).unwrap_err().to_string();
+    assert!(refused(&mut editor, SketchCommand::RemoveStrokes(vec![StrokeId(7)])).contains("no stroke 7"));
     assert!(
-        refused(&mut editor, Command::SetSkin(SkinSpec { detail: 99.0, ..SkinSpec::default() }))
+        refused(&mut editor, SketchCommand::SetSkin(SkinSpec { detail: 99.0, ..SkinSpec::default() }))
             .contains("0.1 to 8")
     );
     let far = NewStroke::line(&[DVec2::splat(f64::MAX), DVec2::ZERO]);
-    editor.run(Command::AddStrokes(vec![far])).unwrap();
-    let too_far = editor.run(Command::MoveStrokes(vec![StrokeId(0)], DVec2::splat(f64::MAX)));
+    editor.run(SketchCommand::AddStrokes(vec![far]).of(PlantId(0))).unwrap();
+    let too_far =
+        editor.run(SketchCommand::MoveStrokes(vec![StrokeId(0)], DVec2::splat(f64::MAX)).of(PlantId(0)));
     assert_eq!(too_far, Err(CommandError::TooFar));
+}
+
+#[test]
+fn a_leaf_that_is_lent_goes_with_its_plant_and_comes_back() {
+    let mut editor = Editor::default();
+    for maker in [Maker::Leaf(Box::default()), Maker::Tree(Box::default())] {
+        let settings = Settings { maker, ..Settings::default() };
+        editor.run(SceneCommand::Add(Box::new(NewPlant { settings, strokes: vec![] }))).unwrap();
+    }
+    let (sketch, leaf, tree) = (PlantId(0), PlantId(1), PlantId(2));
+    editor.run(TreeCommand::SetLeaf(Some(leaf)).of(tree)).unwrap();
+    assert_eq!(editor.run(TreeCommand::SetLeaf(Some(tree)).of(tree)), Err(CommandError::NoLeaf));
+    editor.run(SketchCommand::SetLeaf(Some(leaf)).of(sketch)).unwrap();
+    let own = editor.run(TreeCommand::SetLeaf(Some(sketch)).of(tree));
+    assert_eq!(own, Err(CommandError::NoLeaf), "its leaf is borrowed itself");
+    let before = editor.document().clone();
+    editor.run(SceneCommand::Remove(vec![leaf])).unwrap();
+    assert_eq!(editor.document().plant(tree).unwrap().settings().maker.leaf(), None);
+    editor.undo();
+    assert_eq!(*editor.document(), before);
+    let other = editor.run(FlowerCommand::SetLaw(None).of(tree)).unwrap_err();
+    assert!(other.to_string().contains("is a tree, not a flower"), "{other}");
 }

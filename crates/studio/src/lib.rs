@@ -24,6 +24,7 @@ mod motion;
 mod opening;
 mod report;
 mod shaping;
+mod scene;
 mod template;
 mod trees;
 mod venation;
@@ -44,6 +45,10 @@ pub use report::{
     Counts, Fidelity, InputReport, ItemReport, REPORT_SCHEMA, RunReport, StrokeReport, TimingsMs,
 };
 pub use shaping::{BranchRow, EditReport, branch_rows, edits_schema, edits_template, shape_plant};
+pub use scene::{
+    SceneError, SceneEvaluator, ScenePlant, flower_schema, leaf_marks, leaf_schema, scene_model,
+    tree_settings, tree_spec,
+};
 pub use template::{LeafTemplate, TemplateError};
 
 pub use trees::{

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use base::{Cancelled, Run, Seed};
-use document::{Document, Photo};
+use document::{DocumentPlant, Photo};
 use mesh::Model;
 use plant::Plant;
 use shape::HandEdit;
@@ -35,14 +35,16 @@ pub struct SketchOptions {
 }
 
 impl SketchOptions {
-    /// What a document asks for; colours follow its seed as everything else does.
-    pub fn of_document(document: &Document) -> Self {
-        let settings = document.settings();
+    /// What a sketch of a document asks for; colours follow its seed as everything else does. The defaults for a
+    /// plant of another maker. A leaf that it bears is not among them: [`crate::SceneEvaluator`] finds it.
+    pub fn of_plant(plant: &DocumentPlant) -> Self {
+        let settings = plant.settings();
+        let Some(sketch) = settings.sketch() else { return Self::default() };
         Self {
-            spec: settings.sketch.clone(),
-            skin: SkinSpec { seed: settings.seed, ..settings.skin.clone() },
-            classes: document.classes(),
-            photo: settings.photo.clone(),
+            spec: sketch.sketch.clone(),
+            skin: SkinSpec { seed: settings.seed, ..sketch.skin.clone() },
+            classes: plant.classes(),
+            photo: sketch.photo.clone(),
             leaf: None,
             edits: Vec::new(),
         }

@@ -8,6 +8,7 @@ use glam::{DQuat, DVec3};
 use mesh::{MaterialId, MaterialKind, Model};
 use plant::{Flower, Organ, OrganKind, Plant, Shape};
 use sketch::Drawing;
+use skin::SkinSpec;
 
 use crate::make::{MakeError, SketchOptions, make_from_sketch};
 use crate::report::ItemReport;
@@ -67,23 +68,36 @@ impl OpeningPlant {
         run: &Run<'_>,
     ) -> Result<Self, OpeningError> {
         let made = make_from_sketch(drawing, options, seed, run)?;
-        let dye = petal_color(&made.model);
-        let mut rest = made.plant.clone();
+        Self::of_made(&drawing.name, (&made.plant, &made.model, &made.item), &options.skin, run)
+    }
+
+    /// As [`OpeningPlant::new`], of a plant that was made of a drawing already: plant, model, entry of the report.
+    ///
+    /// # Errors
+    /// [`OpeningError`].
+    pub fn of_made(
+        name: &str,
+        (plant, model, item): (&Plant, &Model, &ItemReport),
+        skin: &SkinSpec,
+        run: &Run<'_>,
+    ) -> Result<Self, OpeningError> {
+        let dye = petal_color(model);
+        let mut rest = plant.clone();
         let flower_organs =
             |kind| matches!(kind, OrganKind::Petal | OrganKind::Disc | OrganKind::Stamen | OrganKind::Pistil);
         let mut flowers = Vec::new();
-        for (k, flower) in made.plant.flowers.iter().enumerate() {
+        for (k, flower) in plant.flowers.iter().enumerate() {
             let own = |o: &&Organ| o.flower.is_some_and(|f| f.index() == k);
-            let organs: Vec<&Organ> = made.plant.organs.iter().filter(own).collect();
-            flowers.extend(placed(&made.plant, flower, &organs, dye));
+            let organs: Vec<&Organ> = plant.organs.iter().filter(own).collect();
+            flowers.extend(placed(plant, flower, &organs, dye));
         }
         if flowers.is_empty() {
-            return Err(OpeningError::NoFlowers(drawing.name.clone()));
+            return Err(OpeningError::NoFlowers(name.into()));
         }
         rest.organs.retain(|o| !(flower_organs(o.kind) && o.flower.is_some()));
-        let rest = skin::skin(&rest, &options.skin, run)?;
+        let rest = skin::skin(&rest, skin, run)?;
         let days = flowers[0].spec.days;
-        Ok(Self { name: drawing.name.clone(), days, item: made.item, rest, flowers })
+        Ok(Self { name: name.into(), days, item: item.clone(), rest, flowers })
     }
 
     /// Number of flowers, and of their petals.

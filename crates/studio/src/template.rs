@@ -118,6 +118,24 @@ impl LeafTemplate {
         Ok(Self { blade, texture })
     }
 
+    /// The largest leaf of a plant, without its picture; none if it has no leaf.
+    pub fn of_plant(plant: &Plant) -> Option<Self> {
+        let leaves = plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf);
+        let blades = leaves.filter_map(|o| match plant.shapes.get(o.shape.index())? {
+            Shape::Blade(b) => Some((b.length() * o.scale, b)),
+            _ => None,
+        });
+        // The first of the largest, so that the same plant gives the same leaf.
+        let largest = blades.fold(None, |best: Option<(f64, &Blade)>, new| match best {
+            Some(old) if old.0 >= new.0 => Some(old),
+            _ => Some(new),
+        });
+        let blade = largest.map(|(_, b)| b).filter(|b| b.length() > 0.0)?;
+        let mut blade = Self { blade: blade.clone(), texture: None }.scaled(1.0 / blade.length());
+        blade.outline = thinned(blade.outline);
+        Some(Self { blade, texture: None })
+    }
+
     /// Gives every leaf of a plant this blade, each as long as the one before it; returns how many leaves.
     ///
     /// Places, directions, sizes and tints of the leaves stay. Cost: linear in shapes and organs.

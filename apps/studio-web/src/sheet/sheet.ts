@@ -1,6 +1,6 @@
 /** The sheet: what was drawn, and the tools that change it. It knows nothing of plants. */
 import { inkOf } from '../colours';
-import type { DocumentState, PhotoState, StrokeMode, StrokePoints } from '../protocol';
+import type { SketchState, PhotoState, StrokeMode, StrokePoints } from '../protocol';
 import { boxOf, distance, fitted, toDrawing, toScreen, zoomed, type Box, type Viewport } from './geometry';
 import { Pen } from './pen';
 
@@ -96,7 +96,7 @@ export class Sheet {
 
   // What is shown -----------------------------------------------------------------------------------------------
 
-  setState(state: DocumentState, fresh: StrokePoints[]): void {
+  setState(state: Pick<SketchState, 'strokes' | 'photo'>, fresh: StrokePoints[]): void {
     this.photo = state.photo;
     if (!state.photo) this.placing = false;
     for (const { id, points } of fresh) this.points.set(id, points);

@@ -31,3 +31,17 @@ export function tOf(group: string, word: string): string {
 export function number(n: number): string {
   return new Intl.NumberFormat(language === 'zh' ? 'zh-CN' : 'en').format(n);
 }
+
+const human = (word: string): string => word.replace(/_(m|deg|years)$/, '').replaceAll(/[_-]/g, ' ');
+
+/** What a field of a schema is called. */
+export function fieldName(name: string): string {
+  const key = `field.${name}`;
+  return key in en ? t(key as TextKey) : human(name);
+}
+
+/** A species, a form, a kind: the word of the core, or ours for it. */
+export function wordOf(word: string): string {
+  const key = `word.${word}`;
+  return key in en ? t(key as TextKey) : human(word);
+}

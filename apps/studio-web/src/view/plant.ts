@@ -1,39 +1,14 @@
 /** The plant as three.js meshes, updated in place where only numbers changed. */
 import * as THREE from 'three';
-import type { PartArrays, Sent, TexturePixels, View } from '../protocol';
+import type { ObstacleShape, PartArrays, PlantView, Sent, TexturePixels } from '../protocol';
 
-type MaterialView = View['materials'][number];
+type MaterialView = PlantView['materials'][number];
 
-export class PlantMeshes {
-  readonly group = new THREE.Group();
+/** Textures and materials of all plants. */
+export class Looks {
   private textures = new Map<number, THREE.DataTexture>();
   private materials = new Map<string, THREE.MeshStandardMaterial>();
   private wire = false;
-
-  update(view: View, parts: PartArrays[], textures: TexturePixels[]): void {
-    for (const t of textures) this.addTexture(t);
-    const old = new Map(this.group.children.map((m) => [m.name, m as THREE.Mesh]));
-    view.parts.forEach(({ name, material }, i) => {
-      const columns = parts[i];
-      const look = view.materials[material];
-      if (!columns || !look) return;
-      let mesh = old.get(name);
-      old.delete(name);
-      if (!mesh) {
-        mesh = new THREE.Mesh(new THREE.BufferGeometry());
-        mesh.name = name;
-        mesh.castShadow = true;
-        mesh.receiveShadow = true;
-        this.group.add(mesh);
-      }
-      fill(mesh.geometry, columns);
-      mesh.material = this.material(look, columns.colors.length > 0);
-    });
-    for (const mesh of old.values()) {
-      mesh.geometry.dispose();
-      this.group.remove(mesh);
-    }
-  }
 
   /** A plant of its own that shares textures and materials; the caller disposes its geometries. */
   build({ view, parts, textures }: Sent): THREE.Group {
@@ -63,7 +38,7 @@ export class PlantMeshes {
     this.materials.clear();
   }
 
-  private addTexture({ number, width, height, pixels }: TexturePixels): void {
+  addTexture({ number, width, height, pixels }: TexturePixels): void {
     const texture = new THREE.DataTexture(new Uint8Array(pixels), width, height, THREE.RGBAFormat);
     texture.colorSpace = THREE.SRGBColorSpace;
     texture.wrapS = texture.wrapT = THREE.RepeatWrapping;
@@ -76,7 +51,7 @@ export class PlantMeshes {
     this.textures.set(number, texture);
   }
 
-  private material(look: MaterialView, tinted: boolean): THREE.MeshStandardMaterial {
+  material(look: MaterialView, tinted: boolean): THREE.MeshStandardMaterial {
     const map = look.texture ? (this.textures.get(look.texture.number) ?? null) : null;
     const key = JSON.stringify([look, tinted]);
     const known = this.materials.get(key);
@@ -101,6 +76,95 @@ export class PlantMeshes {
     this.materials.set(key, material);
     return material;
   }
+}
+
+/** One plant: its meshes within a group that stands where the plant stands. */
+export class PlantMeshes {
+  /** Where it stands. */
+  readonly place = new THREE.Group();
+  readonly group = new THREE.Group();
+  readonly obstacles = new THREE.Group();
+  view: PlantView | undefined;
+
+  constructor(private readonly looks: Looks) {
+    this.place.add(this.group, this.obstacles);
+  }
+
+  update(view: PlantView, parts: PartArrays[]): void {
+    const old = new Map(this.group.children.map((m) => [m.name, m as THREE.Mesh]));
+    view.parts.forEach(({ name, material }, i) => {
+      const columns = parts[i];
+      const look = view.materials[material];
+      if (!columns || !look) return;
+      let mesh = old.get(name);
+      old.delete(name);
+      if (!mesh) {
+        mesh = new THREE.Mesh(new THREE.BufferGeometry());
+        mesh.name = name;
+        mesh.castShadow = true;
+        mesh.receiveShadow = true;
+        this.group.add(mesh);
+      }
+      fill(mesh.geometry, columns);
+      mesh.material = this.looks.material(look, columns.colors.length > 0);
+    });
+    for (const mesh of old.values()) {
+      mesh.geometry.dispose();
+      this.group.remove(mesh);
+    }
+  }
+
+  /** What the plant grows around; `corners` has the triangles of those that are meshes. */
+  setObstacles(shapes: ObstacleShape[], corners: (Float32Array | null)[]): void {
+    for (const mesh of this.obstacles.children) (mesh as THREE.Mesh).geometry.dispose();
+    this.obstacles.clear();
+    shapes.forEach((shape, row) => {
+      const mesh = solid(shape, corners[row] ?? null);
+      if (!mesh) return;
+      mesh.castShadow = mesh.receiveShadow = true;
+      this.obstacles.add(mesh);
+    });
+  }
+
+  dispose(): void {
+    for (const mesh of [...this.group.children, ...this.obstacles.children]) (mesh as THREE.Mesh).geometry.dispose();
+    this.place.removeFromParent();
+  }
+}
+
+const STONE = new THREE.MeshStandardMaterial({ color: 0x9a9891, roughness: 0.95, side: THREE.DoubleSide });
+
+function solid(shape: ObstacleShape, corners: Float32Array | null): THREE.Mesh | undefined {
+  const vec = (key: string): THREE.Vector3 => new THREE.Vector3(...(shape[key] as [number, number, number]));
+  const num = (key: string): number => Number(shape[key]);
+  if (shape.shape === 'box') {
+    const [min, max] = [vec('min'), vec('max')];
+    const mesh = new THREE.Mesh(new THREE.BoxGeometry(max.x - min.x, max.y - min.y, max.z - min.z), STONE);
+    mesh.position.copy(min.add(max).multiplyScalar(0.5));
+    return mesh;
+  }
+  if (shape.shape === 'sphere') {
+    const mesh = new THREE.Mesh(new THREE.SphereGeometry(num('radius_m'), 40, 24), STONE);
+    mesh.position.copy(vec('centre'));
+    return mesh;
+  }
+  if (shape.shape === 'cylinder') {
+    const mesh = new THREE.Mesh(new THREE.CylinderGeometry(num('radius_m'), num('radius_m'), num('height_m'), 40), STONE);
+    mesh.position.copy(vec('base')).y += num('height_m') / 2;
+    return mesh;
+  }
+  if (shape.shape === 'plane') {
+    // Ten metres of it: a plane has no end.
+    const mesh = new THREE.Mesh(new THREE.PlaneGeometry(10, 10), STONE);
+    mesh.position.copy(vec('point'));
+    mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 0, 1), vec('normal').normalize());
+    return mesh;
+  }
+  if (!corners || corners.length === 0) return undefined;
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute('position', new THREE.BufferAttribute(corners, 3));
+  geometry.computeVertexNormals();
+  return new THREE.Mesh(geometry, STONE);
 }
 
 function fill(geometry: THREE.BufferGeometry, { positions, normals, uvs, colors, indices }: PartArrays): void {

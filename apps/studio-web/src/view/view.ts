@@ -1,9 +1,11 @@
 /** The right side: the plant in three dimensions, turned by hand, or from the front exactly as it was drawn. */
 import * as THREE from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
-import type { PartArrays, Sent, TexturePixels, View } from '../protocol';
+import type { PlantState, PlantView as Seen, Sent, View } from '../protocol';
+import type { Gizmo } from '../scene';
 import type { Box } from '../sheet/geometry';
-import { PlantMeshes } from './plant';
+import type { Handles } from './gizmo';
+import { Looks, PlantMeshes } from './plant';
 import { Stage } from './stage';
 
 /** Colours of axes by order: 0, 1, 2, 3 and more; each shows on light and dark sky. */
@@ -18,7 +20,12 @@ export class PlantView {
   readonly element = document.createElement('div');
   private readonly renderer: THREE.WebGLRenderer;
   private readonly stage: Stage;
-  private readonly plant = new PlantMeshes();
+  private readonly looks = new Looks();
+  private readonly plants = new Map<number, PlantMeshes>();
+  /** A model that is looked at instead of the scene. */
+  private guest: PlantMeshes | undefined;
+  private states: PlantState[] = [];
+  private current: number | null = null;
   /** Holds what is shown of the plant, at the size of the stage. */
   private readonly holder = new THREE.Group();
   private bones: THREE.LineSegments | undefined;
@@ -26,7 +33,10 @@ export class PlantView {
   private readonly far = new THREE.PerspectiveCamera(32, 1, 0.01, 200);
   private readonly flat = new THREE.OrthographicCamera(-1, 1, 1, -1, -50, 50);
   private readonly controls: OrbitControls;
-  private view: View | undefined;
+  private handles: Handles | undefined;
+  private gizmo: Gizmo | undefined;
+  private dragging = false;
+  private boned = false;
   private scale = 1;
   private front = false;
   private sheetSeen: Box | undefined;
@@ -38,6 +48,9 @@ export class PlantView {
   private wish: { target: THREE.Vector3; distance: number } | undefined;
   onFrontChange: (front: boolean) => void = () => {};
   onContext: (lost: boolean) => void = () => {};
+  onPlaceBegin: () => void = () => {};
+  onPlace: (plant: number, position: [number, number, number], yaw: number, scale: number) => void = () => {};
+  onPlaceEnd: () => void = () => {};
 
   /** Throws where the browser has no WebGL 2. */
   constructor(label: string) {
@@ -56,7 +69,6 @@ export class PlantView {
     canvas.setAttribute('role', 'img');
     this.setLabel(label);
     this.element.append(canvas);
-    this.holder.add(this.plant.group);
     this.stage.scene.add(this.holder);
     this.far.position.set(1.25, 0.95, 2.6);
     this.controls = new OrbitControls(this.far, canvas);
@@ -88,10 +100,10 @@ export class PlantView {
   setSkeleton(pairs: Float32Array | undefined): void {
     if (this.bones) {
       this.bones.geometry.dispose();
-      this.holder.remove(this.bones);
+      this.bones.removeFromParent();
       this.bones = undefined;
     }
-    this.plant.group.visible = pairs === undefined;
+    this.boned = pairs !== undefined;
     if (pairs) {
       const n = pairs.length / 4;
       const [positions, colors] = [new Float32Array(3 * n), new Float32Array(3 * n)];
@@ -105,15 +117,16 @@ export class PlantView {
       geometry.setAttribute('position', new THREE.BufferAttribute(positions, 3));
       geometry.setAttribute('color', new THREE.BufferAttribute(colors, 3));
       this.bones = new THREE.LineSegments(geometry, this.boneLook);
-      this.holder.add(this.bones);
+      (this.chosen?.place ?? this.holder).add(this.bones);
     }
+    this.stand();
     this.renderer.shadowMap.needsUpdate = true;
     this.redraw();
   }
 
   /** A small picture of another plant from where this one is seen. */
   snapshot(sent: Sent, width: number, height: number): HTMLCanvasElement {
-    const group = this.plant.build(sent);
+    const group = this.looks.build(sent);
     const [min, max] = [new THREE.Vector3(...sent.view.min), new THREE.Vector3(...sent.view.max)];
     const size = max.clone().sub(min);
     const scale = 1 / Math.max(size.x, size.y, size.z, 1e-9);
@@ -147,29 +160,166 @@ export class PlantView {
   }
 
   setWire(wire: boolean): void {
-    this.plant.setWire(wire);
+    this.looks.setWire(wire);
     this.redraw();
   }
 
   forget(): void {
-    this.plant.forget();
+    this.looks.forget();
   }
 
-  update(view: View, parts: PartArrays[], textures: TexturePixels[]): void {
-    this.view = view;
-    this.plant.update(view, parts, textures);
+  private get chosen(): PlantMeshes | undefined {
+    return this.guest ?? (this.current === null ? undefined : this.plants.get(this.current));
+  }
+
+  /** The plant whose front view is shown. */
+  private get seen(): Seen | undefined {
+    return this.chosen?.view;
+  }
+
+  update(view: View, fresh: Sent[]): void {
+    for (const { textures } of fresh) for (const texture of textures) this.looks.addTexture(texture);
+    const meshes = new Map(fresh.map((sent) => [sent.view.id, sent]));
+    const take = (known: PlantMeshes | undefined, seen: Seen): PlantMeshes => {
+      const plant = known ?? new PlantMeshes(this.looks);
+      if (!known) this.holder.add(plant.place);
+      plant.view = seen;
+      const sent = meshes.get(seen.id);
+      if (sent) {
+        plant.update(seen, sent.parts);
+        plant.setObstacles(seen.obstacles, sent.obstacles);
+      }
+      return plant;
+    };
+    if (view.guest) this.guest = take(this.guest, view.guest);
+    else if (this.guest) {
+      this.guest.dispose();
+      this.guest = undefined;
+    }
+    const there = new Set(view.plants.map((p) => p.id));
+    for (const [id, plant] of this.plants) {
+      if (there.has(id)) continue;
+      plant.dispose();
+      this.plants.delete(id);
+    }
+    for (const seen of view.plants) this.plants.set(seen.id, take(this.plants.get(seen.id), seen));
+    this.stand();
+    this.fitStage();
+    this.showHandles();
     this.renderer.shadowMap.needsUpdate = true;
-    const [min, max] = [new THREE.Vector3(...view.min), new THREE.Vector3(...view.max)];
+    this.lay();
+    this.redraw();
+  }
+
+  /** Where the plants stand, which are hidden, which is chosen. */
+  setPlaces(states: PlantState[], current: number | null): void {
+    this.states = states;
+    const other = current !== this.current;
+    this.current = current;
+    if (other && this.bones && this.chosen) this.chosen.place.add(this.bones);
+    this.stand();
+    this.fitStage();
+    this.showHandles();
+    this.renderer.shadowMap.needsUpdate = true;
+    this.lay();
+    this.redraw();
+  }
+
+  private stand(): void {
+    const alone = this.front || this.guest !== undefined;
+    for (const [id, plant] of this.plants) {
+      const state = this.states.find((s) => s.id === id);
+      const mine = id === this.current;
+      plant.place.visible = this.guest === undefined && (mine || !alone) && !(state?.hidden ?? false);
+      plant.group.visible = !(this.boned && mine);
+      if (!state || (this.dragging && mine)) continue;
+      // The front view is the drawing, wherever the plant stands.
+      const [x, y, z] = this.front ? [0, 0, 0] : state.position;
+      plant.place.position.set(x, y, z);
+      plant.place.rotation.set(0, this.front ? 0 : THREE.MathUtils.degToRad(state.yaw_deg), 0);
+      plant.place.scale.setScalar(this.front ? 1 : state.scale);
+    }
+  }
+
+  /** The box around all that is seen, metres. */
+  private bounds(): THREE.Box3 {
+    const box = new THREE.Box3();
+    const add = ({ place, obstacles, view }: PlantMeshes): void => {
+      if (!view || !place.visible) return;
+      place.updateMatrix();
+      for (const mesh of obstacles.children as THREE.Mesh[]) {
+        mesh.updateMatrix();
+        mesh.geometry.computeBoundingBox();
+        if (mesh.geometry.boundingBox) box.union(mesh.geometry.boundingBox.clone().applyMatrix4(mesh.matrix).applyMatrix4(place.matrix));
+      }
+      const own = new THREE.Box3(new THREE.Vector3(...view.min), new THREE.Vector3(...view.max));
+      if (view.parts.length > 0) box.union(own.applyMatrix4(place.matrix));
+    };
+    if (this.guest) add(this.guest);
+    else for (const plant of this.plants.values()) add(plant);
+    return box;
+  }
+
+  /** Brings all that is seen to the size of the stage. */
+  private fitStage(): void {
+    if (this.dragging) return;
+    const { min, max } = this.bounds();
     const size = max.clone().sub(min);
     const largest = Math.max(size.x, size.y, size.z);
-    if (largest > 0) {
-      this.scale = 1 / largest;
-      this.holder.scale.setScalar(this.scale);
-      // Roots below the ground are shown: the ground sinks no plant.
-      this.holder.position.y = Math.max(0, -min.y * this.scale);
-      if (this.follow) this.frameAll(min, max, parts.length > 0 && this.wish === undefined);
+    if (!(largest > 0)) return;
+    this.scale = 1 / largest;
+    this.holder.scale.setScalar(this.scale);
+    // One plant stands where it was drawn; several stand around the middle of the stage.
+    const several = this.plants.size > 1 && !this.front && !this.guest;
+    const [x, z] = several ? [(min.x + max.x) / 2, (min.z + max.z) / 2] : this.front || this.guest ? [0, 0] : this.only();
+    // Roots below the ground are shown: the ground sinks no plant.
+    this.holder.position.set(-x * this.scale, Math.max(0, -min.y * this.scale), -z * this.scale);
+    if (this.follow) this.frameAll(min, max, this.wish === undefined);
+  }
+
+  private only(): [number, number] {
+    const [x, , z] = this.states[0]?.position ?? [0, 0, 0];
+    return [x, z];
+  }
+
+  async setGizmo(mode: Gizmo | undefined): Promise<void> {
+    this.gizmo = mode;
+    if (mode && !this.handles) {
+      const { Handles } = await import('./gizmo');
+      this.handles ??= new Handles(this.far, this.renderer.domElement, this.stage.scene, {
+        begin: () => { this.dragging = true; this.controls.enabled = false; this.onPlaceBegin(); },
+        moved: () => this.moved(),
+        end: () => { this.dragging = false; this.controls.enabled = true; this.onPlaceEnd(); },
+        redraw: () => this.redraw(),
+      });
     }
-    this.lay();
+    if (mode) this.setFront(false);
+    this.showHandles();
+    this.redraw();
+  }
+
+  private showHandles(): void {
+    if (this.dragging) return;
+    const plant = this.front || this.guest ? undefined : this.chosen;
+    this.handles?.show(plant?.place.visible ? plant.place : undefined, this.gizmo);
+  }
+
+  private moved(): void {
+    const place = this.chosen?.place;
+    if (!place || this.current === null) return;
+    const scale = Math.min(1000, Math.max(0.001, this.gizmo === 'scale' ? Math.max(place.scale.x, place.scale.y, place.scale.z) : place.scale.x));
+    if (this.gizmo === 'scale') {
+      // Any handle sizes the whole.
+      const was = this.states.find((s) => s.id === this.current)?.scale ?? 1;
+      const parts = [place.scale.x, place.scale.y, place.scale.z];
+      const to = parts.reduce((a, b) => (Math.abs(b - was) > Math.abs(a - was) ? b : a));
+      place.scale.setScalar(Math.min(1000, Math.max(0.001, Math.abs(to))));
+    }
+    const yaw = new THREE.Euler().setFromQuaternion(place.quaternion, 'YXZ').y;
+    const round = (x: number): number => Math.round(x * 1000) / 1000;
+    this.onPlace(this.current, [round(place.position.x), round(place.position.y), round(place.position.z)],
+      Math.round(THREE.MathUtils.radToDeg(yaw) * 10) / 10, round(this.gizmo === 'scale' ? place.scale.x : scale));
+    this.renderer.shadowMap.needsUpdate = true;
     this.redraw();
   }
 
@@ -177,8 +327,13 @@ export class PlantView {
   frameNow(): void {
     this.follow = true;
     this.setFront(false);
-    if (this.view) this.frameAll(new THREE.Vector3(...this.view.min), new THREE.Vector3(...this.view.max), false);
+    this.frameNowBox();
     this.redraw();
+  }
+
+  private frameNowBox(): void {
+    const { min, max } = this.bounds();
+    if (!this.bounds().isEmpty()) this.frameAll(min, max, false);
   }
 
   /** The front view shows the same part of the plane as the sheet. */
@@ -186,6 +341,9 @@ export class PlantView {
     if (front === this.front) return;
     this.front = front;
     this.stage.setFlat(front);
+    this.stand();
+    this.fitStage();
+    this.showHandles();
     this.lay();
     this.redraw();
     this.onFrontChange(front);
@@ -215,8 +373,8 @@ export class PlantView {
   private frameAll(min: THREE.Vector3, max: THREE.Vector3, now: boolean): void {
     const s = this.scale;
     const up = this.holder.position.y;
-    const target = min.clone().add(max).multiplyScalar(s / 2);
-    target.y += up;
+    const target = min.clone().add(max).multiplyScalar(s / 2).add(this.holder.position);
+    target.y += up - this.holder.position.y;
     if (max.equals(min)) return;
     const radius = max.clone().sub(min).length() * s * 0.5;
     const angle = THREE.MathUtils.degToRad(this.far.fov / 2);
@@ -271,7 +429,7 @@ export class PlantView {
     const { clientWidth: w, clientHeight: h } = this.element;
     this.far.aspect = w / Math.max(1, h);
     this.far.updateProjectionMatrix();
-    const front = this.view?.front;
+    const front = this.seen?.front;
     if (!front || !this.sheetSeen) return;
     const k = front.metres_per_unit * this.scale;
     const seen = this.sheetSeen;
@@ -291,9 +449,7 @@ export class PlantView {
     this.renderer.setPixelRatio(this.slow ? 0.75 : Math.min(2, devicePixelRatio || 1));
     this.renderer.setSize(w, h, false);
     this.lay();
-    if (this.follow && this.view) {
-      this.frameAll(new THREE.Vector3(...this.view.min), new THREE.Vector3(...this.view.max), false);
-    }
+    if (this.follow) this.frameNowBox();
     this.redraw();
   }
 
@@ -319,7 +475,7 @@ export class PlantView {
   }
 
   private render(): void {
-    this.renderer.render(this.stage.scene, this.front && this.view?.front ? this.flat : this.far);
+    this.renderer.render(this.stage.scene, this.front && this.seen?.front ? this.flat : this.far);
   }
 }
 

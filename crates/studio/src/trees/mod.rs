@@ -28,6 +28,7 @@ use skin::SkinSpec;
 
 use crate::report::{Counts, ItemReport, TimingsMs};
 use crate::shaping::shape_plant;
+use crate::template::LeafTemplate;
 
 pub use blade::{BladeForm, BladeSpec};
 pub use compare::{OAK_METHODS, PAPER_OAKS, PaperOak, TreeSize, scale_to_height, tree_size};
@@ -49,6 +50,8 @@ pub struct TreeOptions {
     pub lods: u32,
     /// Edits by hand, done on the grown tree in this order.
     pub edits: Vec<HandEdit>,
+    /// The leaf that the tree bears instead of its spec's own. Default none.
+    pub leaf: Option<LeafTemplate>,
 }
 
 /// A tree with its meshes and its entry of the report.
@@ -180,6 +183,9 @@ pub fn make_tree(
     let wanted = spec.growth()?;
     let mut grown = growth::grow(&wanted, Some(spec.blade.blade()), seed, run, &mut told)?;
     spec.look.tint(&mut grown.plant, seed);
+    if let Some(leaf) = &options.leaf {
+        leaf.apply(&mut grown.plant);
+    }
     if let Some(height) = options.height_m.filter(|_| spec.obstacles.is_empty()) {
         scale_to_height(&mut grown, height);
     }
@@ -198,6 +204,9 @@ pub fn make_tree(
     let mesh = |plant: &plant::Plant, skin_spec: &SkinSpec| {
         skin::skin(plant, skin_spec, run).map(|mut model| {
             spec.look.paint(&mut model);
+            if let Some(leaf) = &options.leaf {
+                leaf.dress(&mut model);
+            }
             model
         })
     };

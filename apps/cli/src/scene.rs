@@ -1,0 +1,91 @@
+//! `burgeon sketch SCENE.burgeon`: every plant of a project that holds more than one drawing.
+
+use std::path::Path;
+
+use burgeon::document::{Document, DocumentPlant};
+use burgeon::formats::PngCache;
+use burgeon::{RunReport, SceneEvaluator, scene_model};
+
+use crate::args::SketchArgs;
+use crate::failure::{Failure, Outcome};
+use crate::files::{self, Kind, PlantFormat};
+use crate::machine::Machine;
+use crate::{output, picture, say};
+
+/// The document of a project that is more than one drawing; none for all else.
+pub(crate) fn of_file(path: &Path) -> Outcome<Option<Document>> {
+    // By its name only: standard input can be opened once.
+    if !files::extension(path).is_some_and(|e| e.eq_ignore_ascii_case("burgeon")) {
+        return Ok(None);
+    }
+    let (input, kind) = files::open(path)?;
+    if !matches!(kind, Kind::Project) {
+        return Ok(None);
+    }
+    let document = files::read_project(path, input)?;
+    Ok(document.only_sketch().is_none().then_some(document))
+}
+
+/// Makes every plant that is not hidden and writes the scene as one model, with an entry of the report each.
+pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine: &Machine) -> Outcome {
+    if args.seed.is_some() || args.reading.spec.is_some() || args.reading.classes.is_some() {
+        let line = "is a scene whose plants have their own seeds and settings; change them in the Studio";
+        return Err(Failure::at(path, line));
+    }
+    output::check_outputs(
+        &[
+            ("-o", args.output.as_ref()),
+            ("--png", args.png.as_ref()),
+            ("--qsm", args.qsm.as_ref()),
+            ("--report", args.common.report.as_ref()),
+        ],
+        &[&path.to_path_buf()],
+    )?;
+    let format = args.output.as_deref().map(files::plant_writable).transpose()?;
+    let mut scene = SceneEvaluator::default();
+    let mut report = RunReport::new("sketch", 1);
+    report.input.path = path.display().to_string();
+    report.input.drawings = document.plants().len() as u64;
+    report.input.strokes = document.plants().iter().map(|p| p.strokes().len() as u64).sum();
+    let seen: Vec<&DocumentPlant> = document.plants().iter().filter(|p| !p.settings().hidden).collect();
+    for plant in &seen {
+        let name = &plant.settings().name;
+        let made = machine.with_progress(name, |_| scene.update(plant.id(), document, &machine.run()));
+        made.map_err(|e| {
+            if e.is_cancelled() { Failure::Cancelled } else { Failure::at(path, format_args!("{name}: {e}")) }
+        })?;
+        report.items.extend(scene.get(plant.id()).map(|p| p.item.clone()));
+    }
+    let models = seen.iter().filter_map(|p| Some((p.settings().placement, scene.get(p.id())?.model)));
+    let model = scene_model(document.name(), models);
+    let structure = || {
+        let [only] = seen.as_slice() else {
+            return Err(Failure::at(path, "holds several plants; a structure (MTG, QSM) is of one"));
+        };
+        let plant = scene.get(only.id()).and_then(|p| p.plant);
+        plant.ok_or_else(|| Failure::at(path, "holds a single leaf or flower, which has no axes"))
+    };
+    if let Some(qsm) = &args.qsm {
+        files::write_qsm(qsm, structure()?, &args.axes)?;
+    }
+    if let Some((out, format)) = args.output.as_deref().zip(format) {
+        let nothing = burgeon::plant::Plant::default();
+        let plant = if matches!(format, PlantFormat::Mtg) { structure()? } else { &nothing };
+        files::write_plant(out, (plant, &model), format, &args.axes, &mut PngCache::new())?;
+        for item in &mut report.items {
+            item.output = out.display().to_string();
+        }
+    }
+    if let Some(png) = &args.png {
+        let drawn = burgeon::render::render(&model, &args.picture.spec(1), &machine.run())?;
+        picture::write(png, &drawn)?;
+    }
+    report.ok = report.items.len() as u64;
+    if !machine.quiet {
+        for item in &report.items {
+            item.warnings.iter().for_each(|w| say::warning(&format!("{}: {w}", item.name)));
+            say::line(&crate::report::summary(item, args.png.as_deref()));
+        }
+    }
+    crate::report::finish(&report, &args.common)
+}

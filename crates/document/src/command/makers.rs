@@ -1,0 +1,172 @@
+//! Commands of trees, leaves and flowers.
+
+use std::sync::Arc;
+
+use bloom::GrowthLaw;
+use serde_json::Value;
+use skin::SkinSpec;
+
+use super::{Command, CommandError, may_bear, set};
+use crate::event::Event;
+use crate::makers::{FlowerMaker, LeafData, LeafMaker, LeafSettings, Maker, NamedObstacle, TreeSettings};
+use crate::state::shortened;
+use crate::{Document, DocumentPlant, FlowerSettings, PlantId};
+
+/// What can be asked of a tree. Who sends a spec has checked that it is one.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum TreeCommand {
+    /// Takes another spec, such as that of a preset. Obstacles stay.
+    SetSpec(Option<String>, Arc<Value>),
+    /// Sets one field of the spec, named by a JSON pointer such as `/method/points`.
+    SetField(String, Value),
+    /// Adds an obstacle after the others.
+    AddObstacle(NamedObstacle),
+    /// Replaces the obstacle of a row.
+    SetObstacle(usize, NamedObstacle),
+    /// Takes the obstacle of a row away.
+    RemoveObstacle(usize),
+    /// Sets how it is meshed.
+    SetSkin(SkinSpec),
+    /// Bears the leaf of another plant, or its own again.
+    SetLeaf(Option<PlantId>),
+}
+
+impl TreeCommand {
+    /// The command for a plant.
+    pub fn of(self, plant: PlantId) -> Command {
+        Command::Tree(plant, self)
+    }
+
+    pub(super) fn name(&self) -> &'static str {
+        match self {
+            Self::SetSpec(..) => "species",
+            Self::SetField(..) => "tree",
+            Self::AddObstacle(_) | Self::SetObstacle(..) | Self::RemoveObstacle(_) => "obstacle",
+            Self::SetSkin(_) => "skin",
+            Self::SetLeaf(_) => "leaf-of",
+        }
+    }
+
+    pub(super) fn decide(self, plant: &DocumentPlant, document: &Document) -> Result<Event, CommandError> {
+        if let Self::SetLeaf(leaf) = &self {
+            may_bear(plant, *leaf, document)?;
+        }
+        set(plant, |s| {
+            let found = s.maker.word();
+            let Maker::Tree(tree) = &mut s.maker else {
+                return Err(CommandError::OtherMaker { wanted: "tree", found });
+            };
+            self.change(tree)
+        })
+    }
+
+    fn change(self, tree: &mut TreeSettings) -> Result<(), CommandError> {
+        let gone = CommandError::Nothing("the obstacle is not there any more");
+        match self {
+            Self::SetSpec(preset, spec) => (tree.preset, tree.spec) = (preset.map(|p| shortened(&p)), spec),
+            Self::SetField(path, value) => {
+                let mut spec = Value::clone(&tree.spec);
+                let (parent, key) = path.rsplit_once('/').unwrap_or(("", &path));
+                let field = spec.pointer_mut(parent).and_then(Value::as_object_mut);
+                let field =
+                    field.ok_or_else(|| CommandError::OutOfRange(format!("the spec has no {path}")))?;
+                field.insert(key.into(), value);
+                tree.spec = Arc::new(spec);
+            }
+            Self::AddObstacle(new) => tree.obstacles.push(named(new)),
+            Self::SetObstacle(row, new) => *tree.obstacles.get_mut(row).ok_or(gone)? = named(new),
+            Self::RemoveObstacle(row) => {
+                if row >= tree.obstacles.len() {
+                    return Err(gone);
+                }
+                tree.obstacles.remove(row);
+            }
+            Self::SetSkin(skin) => tree.skin = SkinSpec { seed: tree.skin.seed, ..skin },
+            Self::SetLeaf(leaf) => tree.leaf = leaf,
+        }
+        Ok(())
+    }
+}
+
+fn named(new: NamedObstacle) -> NamedObstacle {
+    NamedObstacle { name: shortened(&new.name), ..new }
+}
+
+/// What can be asked of a measured leaf.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum LeafCommand {
+    /// Takes other measurements. Who sends them has checked that they make a leaf.
+    SetData(LeafData),
+    /// Sets how the leaf is made.
+    Set(Box<LeafSettings>),
+}
+
+impl LeafCommand {
+    /// The command for a plant.
+    pub fn of(self, plant: PlantId) -> Command {
+        Command::Leaf(plant, self)
+    }
+
+    pub(super) fn name(&self) -> &'static str {
+        match self {
+            Self::SetData(_) => "marks",
+            Self::Set(_) => "leaf",
+        }
+    }
+
+    pub(super) fn decide(self, plant: &DocumentPlant) -> Result<Event, CommandError> {
+        set(plant, |s| {
+            let found = s.maker.word();
+            let Maker::Leaf(leaf) = &mut s.maker else {
+                return Err(CommandError::OtherMaker { wanted: "leaf", found });
+            };
+            let LeafMaker { data, settings } = &mut **leaf;
+            match self {
+                Self::SetData(new) => *data = LeafData { name: shortened(&new.name), ..new },
+                Self::Set(new) => *settings = *new,
+            }
+            Ok(())
+        })
+    }
+}
+
+/// What can be asked of a flower.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum FlowerCommand {
+    /// Sets species, day and form.
+    Set(Box<FlowerSettings>),
+    /// Takes a fitted law, or the species' own pace again.
+    SetLaw(Option<Arc<GrowthLaw>>),
+}
+
+impl FlowerCommand {
+    /// The command for a plant.
+    pub fn of(self, plant: PlantId) -> Command {
+        Command::Flower(plant, self)
+    }
+
+    pub(super) fn name(&self) -> &'static str {
+        match self {
+            Self::Set(_) => "flower",
+            Self::SetLaw(_) => "law",
+        }
+    }
+
+    pub(super) fn decide(self, plant: &DocumentPlant) -> Result<Event, CommandError> {
+        set(plant, |s| {
+            let found = s.maker.word();
+            let Maker::Flower(flower) = &mut s.maker else {
+                return Err(CommandError::OtherMaker { wanted: "flower", found });
+            };
+            let FlowerMaker { settings, law } = &mut **flower;
+            match self {
+                Self::Set(new) => *settings = *new,
+                Self::SetLaw(new) => *law = new,
+            }
+            Ok(())
+        })
+    }
+}

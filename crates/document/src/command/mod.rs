@@ -1,0 +1,128 @@
+//! What can be asked of a document. A command is checked and becomes events, or an error and nothing.
+
+mod makers;
+mod scene;
+mod sketch;
+
+use crate::event::Event;
+use crate::state::{Settings, range_fault};
+use crate::{Document, DocumentPlant, PlantId, StrokeId};
+
+pub use makers::{FlowerCommand, LeafCommand, TreeCommand};
+pub use scene::{NewPlant, PlantCommand, SceneCommand};
+pub use sketch::{NewStroke, SketchCommand};
+
+/// What can be asked of a document: of the scene, of any plant, or of a plant of one maker.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Command {
+    /// Plants come and go.
+    Scene(SceneCommand),
+    /// Name, seed, place of a plant.
+    Plant(PlantId, PlantCommand),
+    /// Strokes and settings of a sketch.
+    Sketch(PlantId, SketchCommand),
+    /// Spec and obstacles of a tree.
+    Tree(PlantId, TreeCommand),
+    /// Marks and surface of a leaf.
+    Leaf(PlantId, LeafCommand),
+    /// Species and day of a flower.
+    Flower(PlantId, FlowerCommand),
+}
+
+/// Why a command was refused; the document is as it was.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CommandError {
+    /// A stroke is named that is not there.
+    #[error("there is no stroke {}; it may have been erased", .0.0)]
+    NoSuchStroke(StrokeId),
+    /// A plant is named that is not there.
+    #[error("there is no plant {}; it may have been deleted", .0.0)]
+    NoSuchPlant(PlantId),
+    /// The plant is of another maker.
+    #[error("the plant is a {found}, not a {wanted}")]
+    OtherMaker {
+        /// The maker asked.
+        wanted: &'static str,
+        /// The plant's own.
+        found: &'static str,
+    },
+    /// The plant whose leaf is wanted has none to lend.
+    #[error("that plant has no leaf of its own to lend; choose a measured leaf or a sketch")]
+    NoLeaf,
+    /// Nothing would change.
+    #[error("nothing to do: {0}")]
+    Nothing(&'static str),
+    /// A setting is out of its range.
+    #[error("{0}")]
+    OutOfRange(String),
+    /// A point would leave the range of numbers.
+    #[error("a stroke cannot be moved that far")]
+    TooFar,
+    /// Strokes and plants are numbered with 32 bits; a scene holds 200 plants.
+    #[error("the document holds as many {0} as it can; start a new one")]
+    Full(&'static str),
+    /// A gesture is open and this needs it closed, or the other way round.
+    #[error("{0}")]
+    Gesture(&'static str),
+}
+
+impl Command {
+    /// The name of its undo step: a key that the user interface translates.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Scene(c) => c.name(),
+            Self::Plant(_, c) => c.name(),
+            Self::Sketch(_, c) => c.name(),
+            Self::Tree(_, c) => c.name(),
+            Self::Leaf(_, c) => c.name(),
+            Self::Flower(_, c) => c.name(),
+        }
+    }
+
+    /// Checks the command against a document and says what would happen.
+    pub(crate) fn decide(self, document: &Document) -> Result<Vec<Event>, CommandError> {
+        let one = |event| vec![event];
+        match self {
+            Self::Scene(c) => c.decide(document),
+            Self::Plant(id, c) => c.decide(plant(id, document)?).map(one),
+            Self::Sketch(id, c) => c.decide(plant(id, document)?, document).map(one),
+            Self::Tree(id, c) => c.decide(plant(id, document)?, document).map(one),
+            Self::Leaf(id, c) => c.decide(plant(id, document)?).map(one),
+            Self::Flower(id, c) => c.decide(plant(id, document)?).map(one),
+        }
+    }
+}
+
+fn plant(id: PlantId, document: &Document) -> Result<&DocumentPlant, CommandError> {
+    document.plant(id).ok_or(CommandError::NoSuchPlant(id))
+}
+
+/// The event of changed settings.
+fn set(
+    plant: &DocumentPlant,
+    change: impl FnOnce(&mut Settings) -> Result<(), CommandError>,
+) -> Result<Event, CommandError> {
+    let before = plant.settings.clone();
+    let mut after = before.clone();
+    change(&mut after)?;
+    if after == before {
+        return Err(CommandError::Nothing("the setting is like that already"));
+    }
+    match range_fault(&after) {
+        Some(fault) => Err(CommandError::OutOfRange(fault)),
+        None => Ok(Event::Set { plant: plant.id, before: Box::new(before), after: Box::new(after) }),
+    }
+}
+
+/// Whether a plant may bear the leaf of another.
+fn may_bear(plant: &DocumentPlant, leaf: Option<PlantId>, document: &Document) -> Result<(), CommandError> {
+    let Some(lender) = leaf else { return Ok(()) };
+    // Who lends a leaf bears its own: so no plant waits for itself.
+    let lent = document.plants.iter().any(|p| p.settings.maker.leaf() == Some(plant.id));
+    if lender == plant.id || lent || !document.lends_leaf(lender) {
+        return Err(CommandError::NoLeaf);
+    }
+    Ok(())
+}

@@ -1,0 +1,183 @@
+//! Commands of the scene, and those that every plant takes.
+
+use base::Seed;
+use glam::DVec3;
+
+use super::{Command, CommandError, NewStroke, plant, set};
+use crate::event::Event;
+use crate::state::{MAX_PLANTS, NAME_LENGTH, Placement, Settings, range_fault, shortened, sound};
+use crate::{Document, DocumentPlant, DocumentStroke, PlantId, StrokeId};
+
+/// A plant that is to come in.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct NewPlant {
+    /// Everything but its strokes.
+    pub settings: Settings,
+    /// Strokes of a sketch; left out for other makers.
+    pub strokes: Vec<NewStroke>,
+}
+
+/// What can be asked of the scene.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum SceneCommand {
+    /// Names the scene.
+    Rename(String),
+    /// Adds a plant after the others.
+    Add(Box<NewPlant>),
+    /// Adds a moved copy of a plant after the others, metres.
+    Duplicate(PlantId, DVec3),
+    /// Deletes plants; who bore their leaf bears its own again.
+    Remove(Vec<PlantId>),
+    /// Puts another document in the place of this one.
+    Open(Box<Document>),
+}
+
+impl SceneCommand {
+    pub(super) fn name(&self) -> &'static str {
+        match self {
+            Self::Rename(_) => "rename-scene",
+            Self::Add(_) => "add-plant",
+            Self::Duplicate(..) => "duplicate-plant",
+            Self::Remove(_) => "remove-plant",
+            Self::Open(_) => "open",
+        }
+    }
+
+    pub(super) fn decide(self, document: &Document) -> Result<Vec<Event>, CommandError> {
+        match self {
+            Self::Rename(name) => {
+                let (before, after) = (document.name.clone(), shortened(name.trim()));
+                if before == after {
+                    return Err(CommandError::Nothing("the scene has that name already"));
+                }
+                Ok(vec![Event::Renamed { before, after }])
+            }
+            Self::Add(new) => add(*new, document).map(|e| vec![e]),
+            Self::Duplicate(id, by) => {
+                let DocumentPlant { settings, strokes, .. } = plant(id, document)?.clone();
+                let mut new = NewPlant { settings, strokes: Vec::new() };
+                new.settings.placement.position += by;
+                let strokes = strokes.into_iter();
+                new.strokes =
+                    strokes.map(|s| NewStroke { stroke: (*s.stroke).clone(), class: s.class }).collect();
+                add(new, document).map(|e| vec![e])
+            }
+            Self::Remove(ids) => remove(&ids, document),
+            Self::Open(other) => Ok(vec![Event::Opened { before: Box::new(document.clone()), after: other }]),
+        }
+    }
+}
+
+impl From<SceneCommand> for Command {
+    fn from(command: SceneCommand) -> Self {
+        Self::Scene(command)
+    }
+}
+
+fn add(mut new: NewPlant, document: &Document) -> Result<Event, CommandError> {
+    if document.plants.len() >= MAX_PLANTS {
+        return Err(CommandError::Full("plants"));
+    }
+    let after = document.next_plant.checked_add(1).ok_or(CommandError::Full("plants"))?;
+    new.settings.name = shortened(new.settings.name.trim());
+    if let Some(fault) = range_fault(&new.settings) {
+        return Err(CommandError::OutOfRange(fault));
+    }
+    if new.settings.maker.leaf().is_some_and(|l| !document.lends_leaf(l)) {
+        return Err(CommandError::NoLeaf);
+    }
+    let mut next = document.next_stroke;
+    let mut strokes = Vec::new();
+    if new.settings.sketch().is_some() {
+        for s in new.strokes {
+            let Some(stroke) = sound(s.stroke) else { continue };
+            strokes.push(DocumentStroke { id: StrokeId(next), stroke: stroke.into(), class: s.class });
+            next = next.checked_add(1).ok_or(CommandError::Full("strokes"))?;
+        }
+    }
+    let plant = DocumentPlant { id: PlantId(document.next_plant), settings: new.settings, strokes };
+    Ok(Event::PlantAdded {
+        row: document.plants.len(),
+        plant: Box::new(plant),
+        next_plant: (document.next_plant, after),
+        next_stroke: (document.next_stroke, next),
+    })
+}
+
+fn remove(ids: &[PlantId], document: &Document) -> Result<Vec<Event>, CommandError> {
+    for &id in ids {
+        plant(id, document)?;
+    }
+    let (gone, kept): (Vec<_>, Vec<_>) =
+        document.plants.iter().enumerate().partition(|(_, p)| ids.contains(&p.id));
+    if gone.is_empty() {
+        return Err(CommandError::Nothing("there is no plant to delete"));
+    }
+    let mut events = Vec::new();
+    for (_, p) in kept {
+        if p.settings.maker.leaf().is_some_and(|l| ids.contains(&l)) {
+            let mut after = p.settings.clone();
+            after.maker.set_leaf(None);
+            events.push(Event::Set {
+                plant: p.id,
+                before: Box::new(p.settings.clone()),
+                after: Box::new(after),
+            });
+        }
+    }
+    // From the last to the first: each row is that of the scene before its own event.
+    events.extend(
+        gone.into_iter().rev().map(|(row, p)| Event::PlantRemoved { row, plant: Box::new(p.clone()) }),
+    );
+    Ok(events)
+}
+
+/// What can be asked of any plant.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum PlantCommand {
+    /// Names it.
+    Rename(String),
+    /// Sets its seed.
+    SetSeed(Seed),
+    /// Keeps its seed from dice, or no longer.
+    Lock(bool),
+    /// Takes it out of the view, or back.
+    Hide(bool),
+    /// Sets where it stands.
+    Place(Placement),
+}
+
+impl PlantCommand {
+    /// The command for a plant.
+    pub fn of(self, plant: PlantId) -> Command {
+        Command::Plant(plant, self)
+    }
+
+    pub(super) fn name(&self) -> &'static str {
+        match self {
+            Self::Rename(_) => "rename",
+            Self::SetSeed(_) => "seed",
+            Self::Lock(_) => "lock",
+            Self::Hide(_) => "hide",
+            Self::Place(_) => "place",
+        }
+    }
+
+    pub(super) fn decide(self, plant: &DocumentPlant) -> Result<Event, CommandError> {
+        set(plant, |s| {
+            match self {
+                Self::Rename(name) => {
+                    s.name = shortened(name.trim());
+                    debug_assert!(s.name.chars().count() <= NAME_LENGTH, "shortened");
+                }
+                Self::SetSeed(seed) => s.seed = seed,
+                Self::Lock(on) => s.locked = on,
+                Self::Hide(on) => s.hidden = on,
+                Self::Place(placement) => s.placement = placement,
+            }
+            Ok(())
+        })
+    }
+}

@@ -1,0 +1,283 @@
+//! The structs of each form of `document.json`, and how a form becomes the next.
+
+use bloom::GrowthLaw;
+use glam::DVec2;
+use growth::Obstacle;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use sketch::{InkSample, SketchSpec, Stroke, StrokeClass, StrokeMode};
+use skin::{PetalColor, SkinSpec};
+
+use crate::{DocumentStroke, FlowerSettings, LeafSettings};
+
+/// Form 3: a scene of plants.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct DocumentV3 {
+    pub(crate) name: String,
+    pub(crate) plants: Vec<PlantV3>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct PlantV3 {
+    pub(crate) name: String,
+    pub(crate) seed: u64,
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub(crate) locked: bool,
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub(crate) hidden: bool,
+    /// Metres.
+    #[serde(default)]
+    pub(crate) position: [f64; 3],
+    #[serde(default)]
+    pub(crate) yaw_deg: f64,
+    #[serde(default = "one")]
+    pub(crate) scale: f64,
+    pub(crate) maker: MakerV3,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde's signature")]
+fn is_false(b: &bool) -> bool {
+    !b
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+/// Tagged from outside: a tag inside would make the reader hold every point twice.
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum MakerV3 {
+    Sketch(SketchV3),
+    Tree(TreeV3),
+    Leaf(LeafV3),
+    Flower(FlowerV3),
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SketchV3 {
+    #[serde(default)]
+    pub(crate) sketch: SketchSpec,
+    #[serde(default)]
+    pub(crate) skin: SkinV1,
+    pub(crate) strokes: Vec<StrokeV1>,
+    /// How `photo-ROW.png` lies under the drawing, with ROW the plant's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) photo: Option<PhotoV2>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) day: Option<f64>,
+    /// Row of the plant whose leaf it bears.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) leaf: Option<u32>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct TreeV3 {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) preset: Option<String>,
+    pub(crate) spec: Value,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) obstacles: Vec<ObstacleV3>,
+    #[serde(default)]
+    pub(crate) skin: SkinV1,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) leaf: Option<u32>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ObstacleV3 {
+    pub(crate) name: String,
+    pub(crate) shape: Obstacle,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct LeafV3 {
+    /// Name and text of the file of marks or veins.
+    pub(crate) file: String,
+    pub(crate) data: String,
+    #[serde(default)]
+    pub(crate) settings: LeafSettings,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct FlowerV3 {
+    #[serde(default)]
+    pub(crate) settings: FlowerSettings,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) law: Option<GrowthLaw>,
+}
+
+impl From<DocumentV2> for DocumentV3 {
+    fn from(v2: DocumentV2) -> Self {
+        let DocumentV2 { name, seed, sketch, skin, strokes, photo } = v2;
+        let maker = MakerV3::Sketch(SketchV3 { sketch, skin, strokes, photo, day: None, leaf: None });
+        let plant = PlantV3 {
+            name: name.clone(),
+            seed,
+            locked: false,
+            hidden: false,
+            position: [0.0; 3],
+            yaw_deg: 0.0,
+            scale: 1.0,
+            maker,
+        };
+        Self { name, plants: vec![plant] }
+    }
+}
+
+/// Form 2: as form 1, and a photograph.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct DocumentV2 {
+    pub(crate) name: String,
+    pub(crate) seed: u64,
+    #[serde(default)]
+    pub(crate) sketch: SketchSpec,
+    #[serde(default)]
+    pub(crate) skin: SkinV1,
+    pub(crate) strokes: Vec<StrokeV1>,
+    #[serde(default)]
+    pub(crate) photo: Option<PhotoV2>,
+}
+
+/// How `photo.png` lies under the drawing.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct PhotoV2 {
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+    pub(crate) width: f64,
+    pub(crate) opacity: f64,
+    pub(crate) paint: bool,
+}
+
+impl From<DocumentV1> for DocumentV2 {
+    fn from(v1: DocumentV1) -> Self {
+        let DocumentV1 { name, seed, sketch, skin, strokes } = v1;
+        Self { name, seed, sketch, skin, strokes, photo: None }
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct DocumentV1 {
+    pub(crate) name: String,
+    pub(crate) seed: u64,
+    #[serde(default)]
+    pub(crate) sketch: SketchSpec,
+    #[serde(default)]
+    pub(crate) skin: SkinV1,
+    pub(crate) strokes: Vec<StrokeV1>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(crate) struct SkinV1 {
+    pub(crate) detail: f64,
+    pub(crate) sides: u32,
+    pub(crate) textures: bool,
+    pub(crate) petals: Option<String>,
+    pub(crate) variation: f64,
+}
+
+impl Default for SkinV1 {
+    fn default() -> Self {
+        Self::from(&SkinSpec::default())
+    }
+}
+
+impl From<&SkinSpec> for SkinV1 {
+    fn from(s: &SkinSpec) -> Self {
+        Self {
+            detail: s.detail,
+            sides: s.sides,
+            textures: s.textures,
+            petals: s.petals.map(|p| p.word().into()),
+            variation: s.variation,
+        }
+    }
+}
+
+/// Columns, because a stroke has hundreds of points.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct StrokeV1 {
+    #[serde(default)]
+    pub(crate) mode: StrokeMode,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) class: Option<StrokeClass>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) color: Option<[u8; 3]>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) id: Option<String>,
+    pub(crate) x: Vec<f64>,
+    pub(crate) y: Vec<f64>,
+    /// Milliseconds; empty if unknown for all.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) t: Vec<Option<f64>>,
+    /// Pressure 0 to 1; empty if unknown for all.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) p: Vec<Option<f64>>,
+}
+
+impl SkinV1 {
+    /// # Errors
+    /// A sentence about a colour that is not known.
+    pub(crate) fn spec(self) -> Result<SkinSpec, String> {
+        let petals = match self.petals.as_deref() {
+            None => None,
+            Some(word) => Some(PetalColor::ALL.into_iter().find(|c| c.word() == word).ok_or_else(|| {
+                let known = PetalColor::ALL.map(PetalColor::word).join(", ");
+                format!("the petal colour {word:?} is unknown; use one of {known}")
+            })?),
+        };
+        let Self { detail, sides, textures, variation, .. } = self;
+        Ok(SkinSpec { detail, sides, textures, petals, variation, ..SkinSpec::default() })
+    }
+}
+
+pub(crate) fn to_file(s: &DocumentStroke) -> StrokeV1 {
+    let samples = &s.stroke.samples;
+    let column = |of: fn(&InkSample) -> Option<f64>| -> Vec<Option<f64>> {
+        if samples.iter().any(|p| of(p).is_some()) { samples.iter().map(of).collect() } else { Vec::new() }
+    };
+    StrokeV1 {
+        mode: s.stroke.mode,
+        class: s.class,
+        color: s.stroke.color,
+        id: s.stroke.id.clone(),
+        x: samples.iter().map(|p| p.at.x).collect(),
+        y: samples.iter().map(|p| p.at.y).collect(),
+        t: column(|p| p.time_ms),
+        p: column(|p| p.pressure),
+    }
+}
+
+pub(crate) fn from_file(s: StrokeV1) -> Result<Stroke, &'static str> {
+    let n = s.x.len();
+    if n == 0 {
+        return Err("it has no point; erase it");
+    }
+    if s.y.len() != n || ![0, n].contains(&s.t.len()) || ![0, n].contains(&s.p.len()) {
+        return Err("its columns x, y, t and p are not of one length; the file is damaged");
+    }
+    let cell = |column: &[Option<f64>], i: usize| column.get(i).copied().flatten();
+    let samples: Vec<InkSample> = (0..n)
+        .map(|i| InkSample {
+            at: DVec2::new(s.x[i], s.y[i]),
+            time_ms: cell(&s.t, i),
+            pressure: cell(&s.p, i),
+        })
+        .collect();
+    if samples.iter().any(|p| !p.at.is_finite()) {
+        return Err("a point is not finite; the file is damaged");
+    }
+    Ok(Stroke { samples, mode: s.mode, color: s.color, id: s.id })
+}

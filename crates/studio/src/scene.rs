@@ -1,0 +1,526 @@
+//! A scene of plants -> a model each, made again only where something changed.
+//!
+//! `Document -> SceneEvaluator (an evaluator a plant) -> models, reports | scene_model -> one model`
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use base::{Cancelled, Digest, Report, Run, Seed};
+use document::{
+    Document, DocumentPlant, FlowerMaker, LeafData, LeafMaker, LeafPaint, LeafRings, LeafSettings,
+    LeafSurface, LeafThickness, Maker, Placement, PlantId, SketchSettings, TreeSettings,
+};
+use formats::{LeafFileError, MarksAxes, read_marks, read_vein_graph};
+use geom::RingRule;
+use glam::{DQuat, DVec3};
+use leaf::{FullMarks, MeshSpec, Pose, SurfaceKind, ThicknessRule, VeinParameters};
+use mesh::{MaterialId, Model};
+use plant::Plant;
+use sketch::Drawing;
+
+use crate::evaluate::{Evaluator, FrontView};
+use crate::leaves::{LeafError, LeafOptions, LeafTexture, make_leaf_of};
+use crate::make::{MakeError, SketchOptions};
+use crate::opening::{OpeningError, OpeningPlant};
+use crate::report::{Counts, ItemReport, TimingsMs};
+use crate::template::LeafTemplate;
+use crate::trees::{TreeError, TreeOptions, TreeSpec, make_tree};
+
+/// Why a plant of a scene could not be made.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SceneError {
+    /// The drawing makes no plant.
+    #[error(transparent)]
+    Sketch(#[from] MakeError),
+    /// Its flowers do not open.
+    #[error(transparent)]
+    Opening(#[from] OpeningError),
+    /// The tree does not grow.
+    #[error(transparent)]
+    Tree(TreeError),
+    /// The tree's spec is none.
+    #[error("the tree's spec: {0}")]
+    Spec(#[source] serde_json::Error),
+    /// The leaf's file cannot be read.
+    #[error(transparent)]
+    File(#[from] LeafFileError),
+    /// The leaf's veins make no marks.
+    #[error(transparent)]
+    Graph(#[from] leaf::GraphError),
+    /// The marks make no leaf.
+    #[error(transparent)]
+    Leaf(LeafError),
+    /// The leaf has no marks yet.
+    #[error(
+        "the leaf has no measurements yet: drop a table of marks (.csv) or a vein graph (.json) on the page"
+    )]
+    NoMarks,
+    /// No such flower.
+    #[error("the flower {0:?} is unknown")]
+    Species(String),
+    /// The plant whose leaf is borne has no leaf.
+    #[error("the plant \"{0}\", whose leaf this one bears, has no leaf yet")]
+    Lender(String),
+    /// The user asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+impl SceneError {
+    /// Whether it is no fault: the person asked to stop.
+    pub fn is_cancelled(&self) -> bool {
+        matches!(
+            self,
+            Self::Cancelled(_)
+                | Self::Sketch(MakeError::Cancelled(_))
+                | Self::Opening(OpeningError::Make(MakeError::Cancelled(_)))
+                | Self::Tree(TreeError::Cancelled(_))
+                | Self::Leaf(LeafError::Cancelled(_))
+        )
+    }
+
+    /// Whether there is nothing to be made yet: an empty sheet, a leaf without marks.
+    pub fn is_bare(&self) -> bool {
+        matches!(self, Self::NoMarks | Self::Sketch(MakeError::NoStrokes { .. }))
+    }
+}
+
+impl From<TreeError> for SceneError {
+    fn from(e: TreeError) -> Self {
+        if let TreeError::Cancelled(c) = e { Self::Cancelled(c) } else { Self::Tree(e) }
+    }
+}
+
+impl From<LeafError> for SceneError {
+    fn from(e: LeafError) -> Self {
+        if let LeafError::Cancelled(c) = e { Self::Cancelled(c) } else { Self::Leaf(e) }
+    }
+}
+
+/// What was made of one plant.
+#[derive(Clone, Copy, Debug)]
+pub struct ScenePlant<'a> {
+    /// The entry of the report.
+    pub item: &'a ItemReport,
+    /// The meshes, in the plant's own coordinates.
+    pub model: &'a Model,
+    /// The plant; none for a single leaf or flower.
+    pub plant: Option<&'a Plant>,
+    /// How a drawing lies in the front view.
+    pub front: Option<FrontView>,
+    /// Grows whenever the model changes.
+    pub revision: u64,
+    /// What the last update did again.
+    pub stages: &'a [&'static str],
+}
+
+/// Makes the plants of a document that changes; each keeps what its last change did not touch.
+///
+/// Guaranteed: the same result as from a fresh evaluator; after an error the last result of the plant stays. Where a
+/// plant stands, its name's place in lists and whether it is hidden do not make it anew.
+///
+/// ```
+/// use burgeon::document::{Editor, FlowerMaker, Maker, NewPlant, SceneCommand, Settings};
+/// use burgeon::{Run, SceneEvaluator};
+/// let mut editor = Editor::default();
+/// let settings = Settings { maker: Maker::Flower(Box::default()), ..Settings::default() };
+/// editor.run(SceneCommand::Add(Box::new(NewPlant { settings, strokes: vec![] })))?;
+/// let flower = editor.document().plants()[1].id();
+/// let mut scene = SceneEvaluator::default();
+/// scene.update(flower, editor.document(), &Run::plain()).expect("a lily");
+/// assert!(scene.get(flower).is_some_and(|p| p.model.triangle_count() > 100));
+/// # Ok::<(), burgeon::document::CommandError>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct SceneEvaluator {
+    plants: BTreeMap<PlantId, Made>,
+}
+
+/// The last result of a plant.
+#[derive(Clone, Debug, Default)]
+struct Made {
+    /// What the result was made from.
+    from: Option<(Maker, Seed, String, Option<LeafTemplate>)>,
+    sketch: Evaluator,
+    opening: Option<OpeningPlant>,
+    item: ItemReport,
+    /// Of makers other than sketches, and of sketches whose flowers open.
+    model: Option<Model>,
+    plant: Option<Plant>,
+    lent: Option<LeafTemplate>,
+    revision: u64,
+    done: Vec<&'static str>,
+}
+
+impl SceneEvaluator {
+    /// Brings one plant up to date; those whose leaf it bears too.
+    ///
+    /// # Errors
+    /// [`SceneError`]; a plant that is not in the document is left as it was.
+    pub fn update(&mut self, id: PlantId, document: &Document, run: &Run<'_>) -> Result<(), SceneError> {
+        let Some(plant) = document.plant(id) else { return Ok(()) };
+        self.update_drawn(plant, plant.drawing(), document, run)
+    }
+
+    /// As [`SceneEvaluator::update`], of a sketch with this drawing in the place of its own.
+    ///
+    /// # Errors
+    /// [`SceneError`].
+    pub fn update_drawn(
+        &mut self,
+        plant: &DocumentPlant,
+        drawing: Drawing,
+        document: &Document,
+        run: &Run<'_>,
+    ) -> Result<(), SceneError> {
+        let settings = plant.settings();
+        let leaf = match settings.maker.leaf() {
+            Some(lender) => self.template(lender, document, run)?,
+            None => None,
+        };
+        let made = self.plants.entry(plant.id()).or_default();
+        if let Maker::Sketch(s) = &settings.maker {
+            let options = SketchOptions { leaf, ..SketchOptions::of_plant(plant) };
+            return made.sketched(s, &drawing, &options, settings.seed, run);
+        }
+        let same = |k: &(Maker, Seed, String, Option<LeafTemplate>)| {
+            (&k.0, k.1, &k.2, &k.3) == (&settings.maker, settings.seed, &settings.name, &leaf)
+        };
+        made.done.clear();
+        if made.from.as_ref().is_some_and(same) {
+            return Ok(());
+        }
+        let (name, seed) = (settings.name.as_str(), settings.seed);
+        match &settings.maker {
+            Maker::Tree(t) => made.grown(name, t, leaf.as_ref(), seed, run)?,
+            Maker::Leaf(l) => made.measured(name, l, seed, run)?,
+            Maker::Flower(f) => made.flowered(name, f, seed, run)?,
+            _ => {}
+        }
+        made.done.push("mesh");
+        made.revision += 1;
+        made.from = Some((settings.maker.clone(), seed, settings.name.clone(), leaf));
+        Ok(())
+    }
+
+    /// The leaf that a plant lends.
+    fn template(
+        &mut self,
+        lender: PlantId,
+        document: &Document,
+        run: &Run<'_>,
+    ) -> Result<Option<LeafTemplate>, SceneError> {
+        let Some(plant) = document.plant(lender) else { return Ok(None) };
+        let none = || SceneError::Lender(plant.settings().name.clone());
+        // A lender bears its own leaf, so this goes one level down.
+        self.update(lender, document, run).map_err(|e| if e.is_bare() { none() } else { e })?;
+        let Some(made) = self.plants.get_mut(&lender) else { return Ok(None) };
+        let lent = match &plant.settings().maker {
+            Maker::Leaf(l) if made.lent.is_none() => {
+                let (marks, options) = leaf_input(l)?;
+                let lent = LeafTemplate::of_marks(&marks, &options, plant.settings().seed, run)?;
+                made.lent = Some(lent);
+                made.lent.clone()
+            }
+            Maker::Leaf(_) => made.lent.clone(),
+            _ => made.sketch.plant().and_then(LeafTemplate::of_plant),
+        };
+        lent.map(Some).ok_or_else(none)
+    }
+
+    /// Forgets plants that are not in the document.
+    pub fn retain(&mut self, document: &Document) {
+        self.plants.retain(|&id, _| document.plant(id).is_some());
+    }
+
+    /// The last result of a plant.
+    pub fn get(&self, id: PlantId) -> Option<ScenePlant<'_>> {
+        let made = self.plants.get(&id)?;
+        Some(ScenePlant {
+            item: &made.item,
+            model: made.model.as_ref().or_else(|| made.sketch.model())?,
+            plant: made.plant.as_ref().or_else(|| made.sketch.plant()),
+            front: made.sketch.front(),
+            revision: made.revision,
+            stages: &made.done,
+        })
+    }
+
+    /// The days of a plant whose flowers open: bud to full bloom, and from there to wilted.
+    pub fn days(&self, id: PlantId, document: &Document) -> Option<[f64; 2]> {
+        match &document.plant(id)?.settings().maker {
+            Maker::Sketch(_) => self.plants.get(&id)?.opening.as_ref().map(|o| o.days),
+            Maker::Flower(f) => Some(flower_spec(f)?.days),
+            _ => None,
+        }
+    }
+}
+
+impl Made {
+    fn sketched(
+        &mut self,
+        settings: &SketchSettings,
+        drawing: &Drawing,
+        options: &SketchOptions,
+        seed: Seed,
+        run: &Run<'_>,
+    ) -> Result<(), SceneError> {
+        let item = self.sketch.update(drawing, options, seed, run)?;
+        self.done = self.sketch.stages_done().to_vec();
+        let changed = !self.done.is_empty();
+        let before = self.from.take();
+        if changed {
+            self.opening = None;
+        }
+        // Times are those of the last change that touched the plant.
+        if changed || before.is_none() {
+            self.item = item;
+        }
+        let day_before = before.and_then(|b| if let Maker::Sketch(s) = b.0 { Some(s.day) } else { None });
+        let day_changed = day_before.is_none_or(|d| d != settings.day);
+        match (settings.day, self.sketch.plant(), self.sketch.model()) {
+            (Some(day), Some(plant), Some(model)) => {
+                if self.opening.is_none() {
+                    let made = (plant, model, &self.item);
+                    self.opening = Some(OpeningPlant::of_made(&drawing.name, made, &options.skin, run)?);
+                }
+                if let Some(opening) = self.opening.as_ref().filter(|_| changed || day_changed) {
+                    self.model = Some(opening.at(day, &opening.law(), seed).0);
+                }
+            }
+            _ => (self.model, self.opening) = (None, None),
+        }
+        if changed || day_changed {
+            self.revision += 1;
+        }
+        let kept = SketchSettings { day: settings.day, ..SketchSettings::default() };
+        self.from = Some((Maker::Sketch(Box::new(kept)), seed, String::new(), None));
+        Ok(())
+    }
+
+    fn grown(
+        &mut self,
+        name: &str,
+        tree: &TreeSettings,
+        leaf: Option<&LeafTemplate>,
+        seed: Seed,
+        run: &Run<'_>,
+    ) -> Result<(), SceneError> {
+        let spec = TreeSpec { name: name.into(), ..tree_spec(tree)? };
+        let options = TreeOptions { skin: tree.skin.clone(), leaf: leaf.cloned(), ..TreeOptions::default() };
+        let made = make_tree(&spec, seed, &options, run)?;
+        (self.item, self.model, self.plant) = (made.item, Some(made.model), Some(made.grown.plant));
+        Ok(())
+    }
+
+    fn measured(
+        &mut self,
+        name: &str,
+        leaf: &LeafMaker,
+        seed: Seed,
+        run: &Run<'_>,
+    ) -> Result<(), SceneError> {
+        let (marks, options) = leaf_input(leaf)?;
+        let made = make_leaf_of(name, &marks, &options, seed, run, Report::default())?;
+        (self.item, self.model, self.lent) = (made.item, Some(made.model), None);
+        Ok(())
+    }
+
+    fn flowered(
+        &mut self,
+        name: &str,
+        flower: &FlowerMaker,
+        seed: Seed,
+        run: &Run<'_>,
+    ) -> Result<(), SceneError> {
+        let spec = flower_spec(flower).ok_or_else(|| SceneError::Species(flower.settings.species.clone()))?;
+        let own = || bloom::GrowthLaw::logistic(&spec.name, spec.days[0], spec.rate);
+        let law = flower.law.as_ref().map_or_else(own, |l| (**l).clone());
+        let mut report = Report::default();
+        let frame = report.stage("mesh", run.clock, |_| spec.at(flower.settings.day, &law, seed));
+        run.cancel.check()?;
+        let mut model = frame.model;
+        name.clone_into(&mut model.name);
+        let mut digest = Digest::new();
+        digest.add(&model);
+        let petals: u64 = spec.whorls.iter().filter(|w| !w.sepal).map(|w| u64::from(w.count)).sum();
+        let flowers = u64::from(spec.umbel.max(1));
+        self.item = ItemReport {
+            name: name.into(),
+            counts: Counts {
+                flowers,
+                petals: petals * flowers,
+                vertices: model.vertex_count() as u64,
+                triangles: model.triangle_count() as u64,
+                ..Counts::default()
+            },
+            timings_ms: TimingsMs::from_report(&report),
+            digest: digest.hex(),
+            ..ItemReport::default()
+        };
+        self.model = Some(model);
+        Ok(())
+    }
+}
+
+/// The species with what was asked for in its place.
+fn flower_spec(flower: &FlowerMaker) -> Option<bloom::FlowerSpec> {
+    let s = &flower.settings;
+    let mut spec = bloom::preset(&s.species)?;
+    spec.days[0] = s.opening_days.unwrap_or(spec.days[0]);
+    spec.days[1] = s.wilting_days.unwrap_or(spec.days[1]);
+    spec.stalk = s.stalk_m.unwrap_or(spec.stalk);
+    spec.nod = s.nod_deg.unwrap_or(spec.nod);
+    Some(spec)
+}
+
+/// The spec of a tree of a document, with its obstacles.
+///
+/// # Errors
+/// [`SceneError::Spec`] for JSON that is no spec.
+pub fn tree_spec(tree: &TreeSettings) -> Result<TreeSpec, SceneError> {
+    let mut spec: TreeSpec = serde::Deserialize::deserialize(&*tree.spec).map_err(SceneError::Spec)?;
+    spec.obstacles = tree.obstacles.iter().map(|o| (*o.shape).clone()).collect();
+    Ok(spec)
+}
+
+/// What a tree of a document is, from a spec: its obstacles get names.
+pub fn tree_settings(spec: &TreeSpec, preset: Option<&str>) -> TreeSettings {
+    let obstacles = spec.obstacles.iter().enumerate().map(|(k, shape)| document::NamedObstacle {
+        name: format!("obstacle {}", k + 1),
+        shape: Arc::new(shape.clone()),
+    });
+    let obstacles = obstacles.collect();
+    let plain = TreeSpec { obstacles: Vec::new(), ..spec.clone() };
+    let mut value = serde_json::to_value(&plain).unwrap_or_default();
+    if let Some(fields) = value.as_object_mut() {
+        fields.remove("obstacles");
+    }
+    TreeSettings {
+        preset: preset.map(Into::into),
+        spec: Arc::new(value),
+        obstacles,
+        ..TreeSettings::default()
+    }
+}
+
+/// The JSON Schema of what can be set of a measured leaf.
+pub fn leaf_schema() -> serde_json::Value {
+    schemars::schema_for!(LeafSettings).to_value()
+}
+
+/// The JSON Schema of what can be set of a flower.
+///
+/// ```
+/// assert_eq!(burgeon::flower_schema()["properties"]["day"]["x-unit"], "d");
+/// ```
+pub fn flower_schema() -> serde_json::Value {
+    schemars::schema_for!(document::FlowerSettings).to_value()
+}
+
+/// The marks of a leaf of a document, and how it is made.
+fn leaf_input(leaf: &LeafMaker) -> Result<(FullMarks, LeafOptions), SceneError> {
+    let LeafMaker { data, settings } = leaf;
+    let (marks, in_file) = leaf_marks(data, settings.length_m)?;
+    let full = marks.complete(&mut Report::default()).map_err(LeafError::from)?;
+    Ok((full, leaf_options(settings, in_file)))
+}
+
+/// The marks in a file of a leaf, and what its thickness is if it says so. `length_m`: of a vein graph in pixels.
+///
+/// # Errors
+/// [`SceneError`]: what is wrong with it; [`SceneError::NoMarks`] for no text.
+pub fn leaf_marks(
+    data: &LeafData,
+    length_m: f64,
+) -> Result<(leaf::Marks, Option<ThicknessRule>), SceneError> {
+    let text = data.text.trim_start();
+    if text.is_empty() {
+        return Err(SceneError::NoMarks);
+    }
+    if text.starts_with('{') {
+        let read = read_vein_graph(data.text.as_bytes())?;
+        let marks = read.graph.marks(&mut Report::default())?;
+        let length = marks.length();
+        let in_pixels = read.unit.is_none() && length > 0.0;
+        return Ok((if in_pixels { marks.scaled(length_m / length) } else { marks }, None));
+    }
+    let read = read_marks(data.text.as_bytes(), &data.name, MarksAxes::default())?;
+    Ok((read.marks, read.thickness))
+}
+
+fn leaf_options(s: &LeafSettings, in_file: Option<ThicknessRule>) -> LeafOptions {
+    let asked = s.thickness.map(|t| match t {
+        LeafThickness::Diameter => ThicknessRule::Diameter,
+        LeafThickness::Radius => ThicknessRule::Radius,
+    });
+    LeafOptions {
+        spec: leaf::LeafSpec {
+            surface: match s.surface {
+                LeafSurface::Interpolate => SurfaceKind::Interpolate,
+                LeafSurface::Approximate => SurfaceKind::Approximate,
+                LeafSurface::Bezier => SurfaceKind::Bezier,
+                LeafSurface::Nurbs => SurfaceKind::Nurbs,
+            },
+            thickness: asked.or(in_file).unwrap_or_default(),
+            parameters: VeinParameters::default(),
+            vein_weight: s.vein_weight,
+        },
+        mesh: MeshSpec {
+            subdivisions: s.subdivisions as usize,
+            sides: s.sides as usize,
+            rings: match s.rings {
+                LeafRings::Plain => RingRule::Plain,
+                LeafRings::Envelope => RingRule::Envelope,
+            },
+            caps: s.caps,
+            margin: s.margin_vein,
+        },
+        pose: Pose { curl: s.curl, wilt: s.wilt, ..Pose::default() },
+        texture: match s.texture {
+            LeafPaint::Veins => LeafTexture::Veins,
+            LeafPaint::Plain => LeafTexture::Plain,
+        },
+    }
+}
+
+/// The models of a scene as one, each where it stands. Parts carry the name of their plant where there are several.
+///
+/// Guaranteed: the model itself, bit for bit, of one plant that stands at the origin.
+pub fn scene_model<'a>(name: &str, plants: impl IntoIterator<Item = (Placement, &'a Model)>) -> Model {
+    let plants: Vec<(Placement, &Model)> = plants.into_iter().collect();
+    if let [(placement, model)] = plants.as_slice()
+        && *placement == Placement::default()
+    {
+        return Model { name: name.into(), ..(*model).clone() };
+    }
+    let mut whole = Model { name: name.into(), ..Model::default() };
+    for (k, (placement, model)) in plants.iter().enumerate() {
+        let first = whole.materials.len();
+        let own = |what: &str| {
+            if plants.len() > 1 { format!("{}-{}-{what}", k + 1, model.name) } else { what.to_owned() }
+        };
+        whole.materials.extend(model.materials.iter().map(|m| {
+            let mut m = m.clone();
+            m.name = own(&m.name);
+            m
+        }));
+        let (s, c) = base::ops::sin_cos(0.5 * placement.yaw_deg * (base::ops::PI / 180.0));
+        let turn = DQuat::from_xyzw(0.0, s, 0.0, c);
+        for part in &model.parts {
+            let mut part = part.clone();
+            for p in &mut part.mesh.positions {
+                let at = turn * (DVec3::from_array(p.map(f64::from)) * placement.scale) + placement.position;
+                *p = at.as_vec3().to_array();
+            }
+            for n in &mut part.mesh.normals {
+                *n = (turn * DVec3::from_array(n.map(f64::from))).as_vec3().to_array();
+            }
+            part.name = own(&part.name);
+            part.material = MaterialId::new(first + part.material.index());
+            whole.parts.push(part);
+        }
+    }
+    whole
+}
