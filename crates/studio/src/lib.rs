@@ -42,9 +42,9 @@ pub use report::{
 pub use template::{LeafTemplate, TemplateError};
 
 pub use trees::{
-    Bark, BladeForm, BladeSpec, Colour, GrowthReport, Look, MadeTree, NamedMesh, OAK_METHODS, PAPER_OAKS,
-    PRESETS, PaperOak, Preset, TreeError, TreeOptions, TreeSize, TreeSpec, coarser, make_tree, method_word,
-    read_tree_spec, scale_to_height, tree_schema, tree_size,
+    Bark, BladeForm, BladeSpec, BlossomSpec, Colour, GrowthReport, Look, MadeTree, NamedMesh, OAK_METHODS,
+    PAPER_OAKS, PRESETS, PaperOak, Preset, TreeError, TreeOptions, TreeSize, TreeSpec, coarser, make_tree,
+    method_word, read_tree_spec, scale_to_height, tree_schema, tree_size,
 };
 
 pub use {bloom, document, formats, geom, glam, growth, leaf, mesh, plant, render, sketch, skin};
