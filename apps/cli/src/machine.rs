@@ -21,7 +21,10 @@ impl Threads {
     pub(crate) fn new(asked: Option<u16>) -> Self {
         let all = || std::thread::available_parallelism().map_or(1, usize::from);
         let count = asked.map_or_else(all, usize::from).max(1);
-        let pool = || rayon::ThreadPoolBuilder::new().num_threads(count).build().ok();
+        let builder = || rayon::ThreadPoolBuilder::new().num_threads(count);
+        // The calling thread is one of them: it starts at once instead of waking another and waiting for it, which
+        // counts where a drawing takes a few milliseconds. A thread can belong to one pool only.
+        let pool = || builder().use_current_thread().build().or_else(|_| builder().build()).ok();
         Self { count, pool: (count > 1).then(pool).flatten() }
     }
 }

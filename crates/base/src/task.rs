@@ -1,12 +1,27 @@
 //! How something is computed (never what): cancellation, threads, clocks.
 
 use core::fmt;
-use core::sync::atomic::{AtomicBool, Ordering};
+use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex};
 
-/// A flag that a shell sets and a computation polls.
+/// A flag that a shell sets and a computation polls; the other way goes how far the computation is.
+///
+/// ```
+/// let token = base::CancelToken::new();
+/// token.reached(0.25);
+/// assert_eq!((token.check(), token.share()), (Ok(()), Some(0.25)));
+/// token.cancel();
+/// assert!(token.clone().check().is_err());
+/// ```
 #[derive(Clone, Debug, Default)]
-pub struct CancelToken(Arc<AtomicBool>);
+pub struct CancelToken(Arc<Shared>);
+
+#[derive(Debug, Default)]
+struct Shared {
+    cancelled: AtomicBool,
+    /// 1 + the share that is done, in ten thousandths; 0 while nothing was told.
+    done: AtomicU32,
+}
 
 impl CancelToken {
     /// A token that nobody has cancelled.
@@ -16,7 +31,7 @@ impl CancelToken {
 
     /// Asks every computation that holds this token to stop.
     pub fn cancel(&self) {
-        self.0.store(true, Ordering::Relaxed);
+        self.0.cancelled.store(true, Ordering::Relaxed);
     }
 
     /// Fails once [`cancel`](Self::cancel) was called.
@@ -24,7 +39,27 @@ impl CancelToken {
     /// # Errors
     /// [`Cancelled`].
     pub fn check(&self) -> Result<(), Cancelled> {
-        if self.0.load(Ordering::Relaxed) { Err(Cancelled) } else { Ok(()) }
+        if self.0.cancelled.load(Ordering::Relaxed) { Err(Cancelled) } else { Ok(()) }
+    }
+
+    /// The computation tells which share of it is done, 0 to 1, for people who wait. It never goes back.
+    pub fn reached(&self, share: f64) {
+        if share >= 0.0 {
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 10,000")]
+            let done = 1 + (share.min(1.0) * 10_000.0) as u32;
+            self.0.done.fetch_max(done, Ordering::Relaxed);
+        }
+    }
+
+    /// The share that is done, 0 to 1; `None` where the computation does not tell.
+    pub fn share(&self) -> Option<f64> {
+        let done = self.0.done.load(Ordering::Relaxed).checked_sub(1)?;
+        Some(f64::from(done) / 10_000.0)
+    }
+
+    /// Forgets the share, before another computation.
+    pub fn forget(&self) {
+        self.0.done.store(0, Ordering::Relaxed);
     }
 }
 
@@ -137,5 +172,19 @@ mod tests {
         assert_eq!(copy.check(), Ok(()));
         token.cancel();
         assert_eq!(copy.check(), Err(Cancelled));
+    }
+
+    #[test]
+    fn the_share_that_is_done_only_grows_until_it_is_forgotten() {
+        let token = CancelToken::new();
+        assert_eq!(token.share(), None);
+        for told in [0.0, 0.5, 0.25, f64::NAN, -1.0] {
+            token.reached(told);
+        }
+        assert_eq!(token.share(), Some(0.5));
+        token.reached(7.0);
+        assert_eq!(token.clone().share(), Some(1.0));
+        token.forget();
+        assert_eq!(token.share(), None);
     }
 }

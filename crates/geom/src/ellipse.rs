@@ -1,5 +1,6 @@
 //! Petal tips -> the ellipse as which the rim of a flower is seen.
 
+use crate::pca::symmetric_2x2;
 use crate::vector::Vector;
 use base::ops;
 use glam::DVec2;
@@ -31,18 +32,6 @@ impl Ellipse {
     pub fn ratio(&self) -> f64 {
         self.minor / self.major
     }
-}
-
-/// Eigenvalues of a symmetric 2 x 2 matrix, greater first, with the unit eigenvector of the first.
-fn symmetric_2x2(xx: f64, xy: f64, yy: f64) -> ([f64; 2], DVec2) {
-    let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
-    let spread = (half * half + xy * xy).sqrt();
-    // Of the two rows of the eigenvector equation the one without cancellation.
-    let v = if half >= 0.0 { DVec2::new(half + spread, xy) } else { DVec2::new(xy, spread - half) };
-    // 1e-14: a difference of rounding size is no direction.
-    let v = if spread > 1e-14 * mean.abs() { v.direction().unwrap_or(DVec2::X) } else { DVec2::X };
-    let v = if v.x < 0.0 || (v.x <= 0.0 && v.y < 0.0) { -v } else { v };
-    ([mean + spread, mean - spread], v)
 }
 
 /// The mean of the usable points and the root mean square distance from it.

@@ -40,20 +40,26 @@ pub fn pca2(points: &[DVec2]) -> Option<Pca2> {
         xy += d.x * d.y / n;
         yy += d.y * d.y / n;
     }
-    let half = 0.5 * (xx - yy);
-    let spread = (half * half + xy * xy).sqrt();
-    let mean = 0.5 * (xx + yy);
-    // Of the two rows of the eigenvector equation the one without cancellation.
-    let major = if half >= 0.0 { DVec2::new(half + spread, xy) } else { DVec2::new(xy, spread - half) };
-    // 1e-12: an anisotropy of rounding size is no direction.
-    let major = if spread > mean * 1e-12 { major.direction().unwrap_or(DVec2::X) } else { DVec2::X };
-    let major = if major.x < 0.0 || (major.x <= 0.0 && major.y < 0.0) { -major } else { major };
+    let (lambda, major) = symmetric_2x2(xx, xy, yy);
     let minor = major.perp();
     let extent = [major, minor].map(|axis| {
         let along = || usable().map(|p| (p - centre).dot(axis));
         along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
     });
-    Some(Pca2 { centre, major, minor, lambda: [mean + spread, (mean - spread).max(0.0)], extent })
+    Some(Pca2 { centre, major, minor, lambda: lambda.map(|l| l.max(0.0)), extent })
+}
+
+/// Eigenvalues of a symmetric 2 x 2 matrix, greater first, with the unit eigenvector of the first: x > 0, or x = 0
+/// and y > 0; the x axis where there is no preferred direction.
+pub(crate) fn symmetric_2x2(xx: f64, xy: f64, yy: f64) -> ([f64; 2], DVec2) {
+    let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
+    let spread = (half * half + xy * xy).sqrt();
+    // Of the two rows of the eigenvector equation the one without cancellation.
+    let v = if half >= 0.0 { DVec2::new(half + spread, xy) } else { DVec2::new(xy, spread - half) };
+    // 1e-12: a difference of rounding size is no direction.
+    let v = if spread > 1e-12 * mean.abs() { v.direction().unwrap_or(DVec2::X) } else { DVec2::X };
+    let v = if v.x < 0.0 || (v.x <= 0.0 && v.y < 0.0) { -v } else { v };
+    ([mean + spread, mean - spread], v)
 }
 
 /// The mean of the usable points, their principal axes (unit, at right angles, greatest variance first, right

@@ -192,6 +192,19 @@ pub fn colonize_from(
     run: &Run<'_>,
     report: &mut Report,
 ) -> Result<Colonized, GrowthError> {
+    colonize_part(skeleton, attractors, obstacles, spec, (0.0, 1.0), run, report)
+}
+
+/// As [`colonize_from`], as the part of a computation between two shares of it.
+pub(crate) fn colonize_part(
+    skeleton: Skeleton,
+    attractors: &[DVec3],
+    obstacles: &Obstacles,
+    spec: &ColonizeSpec,
+    part: (f64, f64),
+    run: &Run<'_>,
+    report: &mut Report,
+) -> Result<Colonized, GrowthError> {
     let steps = spec.check(report)?;
     if skeleton.is_empty() {
         return Err(GrowthError::NoRoots);
@@ -220,7 +233,7 @@ pub fn colonize_from(
         doomed: vec![],
     };
     colony.settle(run)?;
-    colony.grow(run, report)?;
+    colony.grow(part, run, report)?;
     let rounds = colony.birth - birth;
     let Colony { skeleton, fates, .. } = colony;
     tell(&fates, report);
@@ -344,22 +357,22 @@ impl Load {
         self.first[parent] = joint;
     }
 
-    /// A point leaves a joint.
-    fn lose(&mut self, joint: u32, at: DVec3, place: DVec3) {
+    /// A point that pulled with this unit vector leaves a joint.
+    fn lose(&mut self, joint: u32, pulled: DVec3) {
         let pull = &mut self.pulls[joint as usize];
         pull.count -= 1;
         // Without points the sum is exactly zero, not the dust of many additions.
-        pull.sum = if pull.count == 0 { DVec3::ZERO } else { pull.sum - towards(at, place) };
+        pull.sum = if pull.count == 0 { DVec3::ZERO } else { pull.sum - pulled };
         if !core::mem::replace(&mut pull.queued, true) {
             self.queue.push(joint);
         }
     }
 
-    /// A point comes to a joint.
-    fn gain(&mut self, joint: u32, at: DVec3, place: DVec3) {
+    /// A point in that direction comes to a joint.
+    fn gain(&mut self, joint: u32, pulls: DVec3) {
         let pull = &mut self.pulls[joint as usize];
         pull.count += 1;
-        pull.sum += towards(at, place);
+        pull.sum += pulls;
         if !core::mem::replace(&mut pull.queued, true) {
             self.queue.push(joint);
         }
@@ -440,13 +453,15 @@ impl Colony<'_> {
         }
     }
 
-    fn grow(&mut self, run: &Run<'_>, report: &mut Report) -> Result<(), GrowthError> {
+    fn grow(&mut self, part: (f64, f64), run: &Run<'_>, report: &mut Report) -> Result<(), GrowthError> {
+        let all = self.field.alive().max(1) as f64;
         // Twice the rounds that the farthest perceived point takes: then growth goes in circles.
         let patience = 2.0 * self.steps.attraction / self.steps.step + 2.0;
         let mut quiet = 0.0;
         let mut queue = Vec::with_capacity(self.load.queue.capacity());
         while self.field.alive() > 0 {
             run.cancel.check()?;
+            run.cancel.reached(part.1 - (part.1 - part.0) * (self.field.alive() as f64 / all));
             if self.skeleton.len() >= self.steps.most {
                 let n = self.skeleton.len();
                 report.warn("growth-stopped", format!("growth stopped at {n} joints, the most allowed"));
@@ -515,9 +530,9 @@ impl Colony<'_> {
     fn consume_doomed(&mut self) {
         let mut doomed = core::mem::take(&mut self.doomed);
         for &id in &doomed {
-            if let Some((owner, place)) = self.field.give_up(id) {
+            if let Some((owner, pull)) = self.field.give_up(id) {
                 self.fates[id as usize] = Fate::Reached(JointId::new(owner as usize));
-                self.load.lose(owner, self.skeleton.position[owner as usize], place);
+                self.load.lose(owner, pull);
             }
         }
         doomed.clear();
@@ -551,17 +566,19 @@ impl Colony<'_> {
         let kill2 = steps.kill * steps.kill;
         field.settle(if steps.late { -1.0 } else { kill2 }, |change: Change| {
             if change.from != NOBODY {
-                load.lose(change.from, skeleton.position[change.from as usize], change.place);
+                load.lose(change.from, change.pull);
             }
-            let at = skeleton.position[change.to as usize];
             if change.killed {
                 fates[change.id as usize] = Fate::Reached(JointId::new(change.to as usize));
-            } else {
-                load.gain(change.to, at, change.place);
-                if steps.late && at.distance_squared(change.place) <= kill2 {
-                    doomed.push(change.id);
-                }
+                return DVec3::ZERO;
             }
+            let at = skeleton.position[change.to as usize];
+            let pull = towards(at, change.place);
+            load.gain(change.to, pull);
+            if steps.late && at.distance_squared(change.place) <= kill2 {
+                doomed.push(change.id);
+            }
+            pull
         });
     }
 
@@ -587,9 +604,9 @@ impl Colony<'_> {
         self.offer_fresh();
         for &(owner, before, id, _) in &goals {
             if self.field.distance2(id).is_some_and(|now| now >= before)
-                && let Some((_, place)) = self.field.give_up(id)
+                && let Some((_, pull)) = self.field.give_up(id)
             {
-                self.load.lose(owner, self.skeleton.position[owner as usize], place);
+                self.load.lose(owner, pull);
             }
         }
         !goals.is_empty()

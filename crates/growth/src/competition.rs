@@ -7,9 +7,10 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::colonize::plant_roots;
+use crate::colonize::{colonize_part, plant_roots};
 use crate::error::{GrowthError, within};
-use crate::{ColonizeSpec, Envelope, Fate, Obstacles, Skeleton, Tropism, colonize_from};
+use crate::tree::GROWN;
+use crate::{ColonizeSpec, Envelope, Fate, Obstacles, Skeleton, Tropism};
 
 /// Trees after paper 001. Lengths in metres; places relative to the root.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -287,7 +288,9 @@ pub fn compete(
             later_points(&skeleton, spec, cycle, stem_age, at, inside)
         };
         let mut told = Report::default();
-        let grown = colonize_from(skeleton, &points, obstacles, &spec.cycle(cycle), run, &mut told)?;
+        let share = |n: u32| GROWN * f64::from(n) / f64::from(spec.lifespan);
+        let part = (share(cycle), share(cycle + 1));
+        let grown = colonize_part(skeleton, &points, obstacles, &spec.cycle(cycle), part, run, &mut told)?;
         for w in told.warnings {
             // The last cycles' warnings about the numbers are the first one's.
             if !report.warnings.iter().any(|old| old.code == w.code && old.message == w.message) {

@@ -5,7 +5,7 @@
 //! Cells and points are sifted in f32, four at a time and with room for its errors; what is left is tested in f64. So
 //! the sieve's precision never shows in a result.
 
-use glam::{DVec3, Vec4};
+use glam::{DVec3, DVec4, Vec4};
 
 /// No joint.
 pub(crate) const NOBODY: u32 = u32::MAX;
@@ -34,6 +34,8 @@ pub(crate) struct Change {
     pub(crate) place: DVec3,
     /// Its index in the input.
     pub(crate) id: u32,
+    /// Unit vector from the joint that had it; zero if none.
+    pub(crate) pull: DVec3,
     /// It was near enough to be consumed, and is gone.
     pub(crate) killed: bool,
 }
@@ -57,6 +59,8 @@ struct Spot {
     place: DVec3,
     /// Squared distance to the nearest joint so far; the squared perception radius while there is none.
     best2: f64,
+    /// Unit vector to it from the joint that had it when the last round was settled.
+    pull: DVec3,
     owner: u32,
     /// The owner before this round, or [`STILL`].
     before: u32,
@@ -81,9 +85,11 @@ pub(crate) struct Field {
     reach2: Vec<[Vec4; ROWS]>,
     /// The same for each block.
     block_reach2: Vec<f32>,
+    /// Lower and upper ends of the cells of each block, by axis; the outermost reach to infinity.
+    edges: [Vec<[Vec4; 2]>; 3],
     /// Squared gaps between a joint and the cells, by axis: a workspace.
     gaps: [Vec<Vec4>; 3],
-    /// Largest coordinate in the sieve.
+    /// Largest coordinate in the sieve and of the cells.
     span: f64,
     far: f64,
     lo: DVec3,
@@ -112,8 +118,9 @@ impl Field {
             left: vec![0; cells],
             reach2: vec![[Vec4::ZERO; ROWS]; count],
             block_reach2: vec![0.0; count],
-            gaps: [0, 1, 2].map(|i| vec![Vec4::ZERO; blocks[i]]),
-            span: 0.0,
+            edges: blocks.map(|n| edges(cell, n)),
+            gaps: blocks.map(|n| vec![Vec4::ZERO; n]),
+            span: blocks.iter().map(|n| (n * SIDE) as f64 * cell).fold(0.0, f64::max),
             far: perception_m,
             lo,
             cell,
@@ -136,7 +143,7 @@ impl Field {
         }
         let slots = field.start[cells] as usize;
         let best2 = perception_m * perception_m;
-        let none = Spot { place: DVec3::ZERO, best2, owner: NOBODY, before: STILL, id: 0 };
+        let none = Spot { place: DVec3::ZERO, best2, pull: DVec3::ZERO, owner: NOBODY, before: STILL, id: 0 };
         field.spots = vec![none; slots];
         field.sieve = vec![EMPTY; slots / LANES];
         let mut next = field.start.clone();
@@ -169,13 +176,15 @@ impl Field {
     #[inline]
     pub(crate) fn offer(&mut self, p: DVec3, joint: u32, sees: impl Fn(DVec3) -> bool) {
         let (from, to) = (self.block_of(p - self.far), self.block_of(p + self.far));
+        let new = self.newcomer(p, joint);
         let mut gaps = core::mem::take(&mut self.gaps);
-        for (axis, gaps) in gaps.iter_mut().enumerate() {
-            for (block, gap) in (from[axis]..=to[axis]).zip(gaps[from[axis]..].iter_mut()) {
-                *gap = self.gaps_to(p[axis], axis, block);
+        for axis in 0..3 {
+            let blocks = from[axis]..=to[axis];
+            let edges = &self.edges[axis][blocks.clone()];
+            for (gap, [low, high]) in gaps[axis][blocks].iter_mut().zip(edges) {
+                *gap = new.gap(axis, *low, *high);
             }
         }
-        let new = self.newcomer(p, joint);
         for k in from[2]..=to[2] {
             let gz = gaps[2][k];
             let near_z = gz.min_element();
@@ -199,7 +208,9 @@ impl Field {
         // point at d that makes at most 2 sqrt(3) d e + 3 e^2.
         let e = (self.span + at.abs().max_element()) / 8_388_608.0;
         let slack = above(4.0 * self.far * e + 4.0 * e * e);
-        Newcomer { p, at: at.as_vec3().to_array().map(Vec4::splat), slack, joint }
+        // The ends of cells are products, off by a little more.
+        let blur = Vec4::splat(above(4.0 * e));
+        Newcomer { p, at: at.as_vec3().to_array().map(Vec4::splat), slack, blur, joint }
     }
 
     #[inline]
@@ -263,17 +274,18 @@ impl Field {
     }
 
     /// Ends a round of offers: tells of every point that changed hands, and removes those within the kill distance.
-    pub(crate) fn settle(&mut self, kill2: f64, mut changed: impl FnMut(Change)) {
+    /// `changed` answers with the unit vector from the new joint to the point.
+    pub(crate) fn settle(&mut self, kill2: f64, mut changed: impl FnMut(Change) -> DVec3) {
         let mut moved = core::mem::take(&mut self.moved);
         for &slot in &moved {
             let spot = &mut self.spots[slot as usize];
             let killed = spot.best2 <= kill2;
-            let Spot { place, before: from, owner: to, id, .. } = *spot;
+            let Spot { place, before: from, owner: to, id, pull, .. } = *spot;
             spot.before = STILL;
             if killed {
                 self.dead.push(id);
             }
-            changed(Change { from, to, place, id, killed });
+            spot.pull = changed(Change { from, to, place, id, pull, killed });
         }
         moved.clear();
         self.moved = moved;
@@ -305,15 +317,15 @@ impl Field {
         }
     }
 
-    /// Gives up the point with input index `id`; its joint if it had one, and its place.
+    /// Gives up the point with input index `id`; its joint, [`NOBODY`] if it had none, and the unit vector from there.
     pub(crate) fn give_up(&mut self, id: u32) -> Option<(u32, DVec3)> {
         let a = self.slot[id as usize];
         if a == GONE {
             return None;
         }
-        let Spot { owner, place, .. } = self.spots[a as usize];
+        let Spot { owner, pull, .. } = self.spots[a as usize];
         self.remove(a as usize);
-        Some((owner, place))
+        Some((owner, pull))
     }
 
     /// Narrows the search to what the worst-served point still needs. Call now and then.
@@ -337,23 +349,6 @@ impl Field {
         (a != GONE).then(|| self.spots[a as usize].best2)
     }
 
-    /// Squared distances, no more than they are, from a coordinate to the ranges of a block's cells; the outermost
-    /// cells of the grid reach to infinity.
-    #[inline]
-    fn gaps_to(&self, p: f64, axis: usize, block: usize) -> Vec4 {
-        let last = self.blocks[axis] * SIDE - 1;
-        let gap = |k: usize| {
-            let i = block * SIDE + k;
-            let low = self.lo[axis] + i as f64 * self.cell;
-            let below = if i == 0 { 0.0 } else { low - p };
-            let above = if i == last { 0.0 } else { p - (low + self.cell) };
-            let d = if below > above { below } else { above };
-            let d = if d > 0.0 { d } else { 0.0 };
-            beneath(d * d)
-        };
-        Vec4::new(gap(0), gap(1), gap(2), gap(3))
-    }
-
     fn cell_of(&self, p: DVec3) -> [usize; 3] {
         let q = (p - self.lo) / self.cell;
         [0, 1, 2].map(|i| clamp_to(q[i], self.blocks[i] * SIDE))
@@ -375,9 +370,36 @@ struct Newcomer {
     p: DVec3,
     /// As in the sieve.
     at: [Vec4; 3],
-    /// What a squared distance in the sieve may be too large by.
+    /// What a squared distance in the sieve may be too large by, and a distance from the end of a cell.
     slack: f32,
+    blur: Vec4,
     joint: u32,
+}
+
+impl Newcomer {
+    /// Squared distances along an axis, no more than they are, to cells between `low` and `high`.
+    #[inline]
+    fn gap(&self, axis: usize, low: Vec4, high: Vec4) -> Vec4 {
+        let at = self.at[axis];
+        let gap = ((low - at).max(at - high) - self.blur).max(Vec4::ZERO);
+        // A millionth less covers what the square rounds.
+        gap * gap * Vec4::splat(0.999_999)
+    }
+}
+
+/// Lower and upper ends of `blocks` blocks of cells from 0 on.
+fn edges(cell: f64, blocks: usize) -> Vec<[Vec4; 2]> {
+    let last = blocks * SIDE;
+    let at = |i: usize| DVec4::splat(cell) * (DVec4::new(0.0, 1.0, 2.0, 3.0) + i as f64);
+    let mut edges: Vec<[Vec4; 2]> =
+        (0..last).step_by(SIDE).map(|i| [at(i).as_vec4(), at(i + 1).as_vec4()]).collect();
+    if let [first, ..] = edges.as_mut_slice() {
+        first[0].x = f32::NEG_INFINITY;
+    }
+    if let [.., last] = edges.as_mut_slice() {
+        last[1].w = f32::INFINITY;
+    }
+    edges
 }
 
 /// At least `x`, which is 0 or more: a millionth covers what f32 rounds, in sums of three, too.
@@ -385,13 +407,6 @@ struct Newcomer {
 #[inline]
 fn above(x: f64) -> f32 {
     if x > 0.0 { (x as f32) * 1.000_001 + f32::MIN_POSITIVE } else { 0.0 }
-}
-
-/// At most `x`, which is 0 or more.
-#[expect(clippy::cast_possible_truncation, reason = "rounded down after")]
-#[inline]
-fn beneath(x: f64) -> f32 {
-    (x as f32) * 0.999_999
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "more than 2^32 attractors do not fit in memory")]
@@ -459,6 +474,7 @@ mod tests {
                     field.settle(kill * kill, |c| {
                         killed[c.id as usize] |= c.killed;
                         assert_ne!(c.from, c.to);
+                        DVec3::ZERO
                     });
                 }
                 if j % 10 == 0 {
@@ -495,9 +511,12 @@ mod tests {
     fn given_up_points_are_gone() {
         let mut field = Field::new(&[DVec3::ZERO, DVec3::X], &[true; 2], 2.0);
         field.offer(DVec3::Y, 7, |_| true);
-        field.settle(0.01, |c| assert_eq!((c.from, c.to, c.killed), (NOBODY, 7, false)));
+        field.settle(0.01, |c| {
+            assert_eq!((c.from, c.to, c.killed, c.pull), (NOBODY, 7, false, DVec3::ZERO));
+            DVec3::NEG_Y
+        });
         assert_eq!(field.distance2(1), Some(2.0));
-        assert_eq!(field.give_up(1), Some((7, DVec3::X)));
+        assert_eq!(field.give_up(1), Some((7, DVec3::NEG_Y)));
         assert_eq!((field.give_up(1), field.distance2(1), field.alive()), (None, None, 1));
     }
 }

@@ -142,9 +142,23 @@ pub struct LeafCount {
 /// A leaf that might be.
 struct Candidate {
     bearer: NodeId,
-    frame: Frame,
+    at: DVec3,
+    /// Unit vector from root to tip, before it is made a frame; where the upper side looks.
+    along: DVec3,
+    towards: DVec3,
     scale: f64,
     key: u64,
+}
+
+impl Candidate {
+    /// As [`Frame::looking`] has it: most candidates fall before they need the rest of the frame.
+    fn tip(&self, share: f64, length: f64) -> DVec3 {
+        self.at + self.along.try_normalize().unwrap_or(DVec3::Y) * (share * self.scale * length)
+    }
+
+    fn frame(&self) -> Frame {
+        Frame::looking(self.at, self.along, self.towards)
+    }
 }
 
 /// Sets leaves on the thin shoots of a plant, or at `marks` if there are any, and lets the shaded ones fall.
@@ -187,6 +201,7 @@ pub fn add_leaves(
     let length = blade.length();
     let scale = if length > 1e-9 && length.is_finite() { spec.length_m / length } else { spec.length_m };
     if marks.is_empty() {
+        all.reserve(room(plant, spec, phyllotaxis));
         for a in 0..plant.axes.len() {
             if a % 256 == 0 {
                 run.cancel.check()?;
@@ -196,10 +211,11 @@ pub fn add_leaves(
     } else {
         for (i, (node, mark)) in marks.iter().enumerate().take(spec.max_leaves as usize) {
             let key = seed.child(i as u64).number();
-            let frame = Frame::looking(plant.nodes.position[node.index()], mark.heading, mark.up);
+            let at = plant.nodes.position[node.index()];
             let size = if mark.scale.is_finite() { mark.scale.clamp(0.0, 1e3) } else { 1.0 };
             if size > 0.0 {
-                all.push(Candidate { bearer: *node, frame, scale: scale * size, key });
+                let (along, towards, scale) = (mark.heading, mark.up, scale * size);
+                all.push(Candidate { bearer: *node, at, along, towards, scale, key });
             }
         }
     }
@@ -210,16 +226,16 @@ pub fn add_leaves(
         );
     }
     let placed = all.len();
-    let tip = |c: &Candidate, share: f64| c.frame.origin + c.frame.along * (share * c.scale * length);
     if !obstacles.is_empty() {
-        all.retain(|c| [0.0, 0.5, 1.0].iter().all(|&s| obstacles.inside(tip(c, s)).is_none()));
+        all.retain(|c| [0.0, 0.5, 1.0].iter().all(|&s| obstacles.inside(c.tip(s, length)).is_none()));
     }
     let buried = placed - all.len();
     run.cancel.check()?;
-    let light = light_of(&all, |c| tip(c, 0.5), spec);
+    let light = light_of(&all, length, spec);
     let keeps = brightest(&all, &light, spec);
     let shape = (!all.is_empty()).then(|| plant.add_shape(Shape::Blade(blade)));
     let mut kept = 0;
+    plant.organs.reserve(keeps.iter().filter(|k| **k).count());
     for (c, _) in all.iter().zip(&keeps).filter(|(_, k)| **k) {
         let Some(shape) = shape else { break };
         kept += 1;
@@ -228,7 +244,7 @@ pub fn add_leaves(
             bearer: Some(c.bearer),
             flower: None,
             shape,
-            frame: c.frame,
+            frame: c.frame(),
             scale: c.scale,
             tint: [1.0; 3],
             key: c.key,
@@ -237,6 +253,23 @@ pub fn add_leaves(
     }
     report.book("leaves", run.clock.now_ms() - started);
     Ok(LeafCount { placed, buried, fallen: all.len() - kept, kept })
+}
+
+/// No less than the places on all axes, so that the list is made once.
+fn room(plant: &Plant, spec: &LeafSpec, phyllotaxis: Phyllotaxis) -> usize {
+    let thin = |a: AxisId| {
+        let (points, radii) = (plant.axis_points(a), plant.axis_radii(a));
+        let pieces = points.windows(2).zip(radii.windows(2));
+        pieces
+            .filter(|(_, r)| r[0].min(r[1]) <= spec.max_radius_m)
+            .map(|(p, _)| p[0].distance(p[1]))
+            .sum::<f64>()
+    };
+    let length: f64 = (0..plant.axes.len()).map(|a| thin(AxisId::new(a))).sum();
+    let nodes = length / spec.spacing_m + plant.axes.len() as f64;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, and is bounded")]
+    let room = (nodes * f64::from(phyllotaxis.per_node())) as usize;
+    room.min(spec.max_leaves as usize)
 }
 
 /// Places on the thin part of one axis, from its tip down, so that the tip always has its leaf.
@@ -301,18 +334,14 @@ fn leaf(
     let size = 1.0 + spec.size_variation * key.stream(Draw::Size).normal().clamp(-2.5, 2.5);
     // The upper side looks to the light; a blade that hangs straight down turns it outwards.
     let towards = DVec3::Y + out * 0.3;
-    Candidate {
-        bearer,
-        frame: Frame::looking(at, along, towards),
-        scale: scale * size.max(0.1),
-        key: key.number(),
-    }
+    Candidate { bearer, at, along, towards, scale: scale * size.max(0.1), key: key.number() }
 }
 
 /// Eq 6: Q = max(C - s, 0) with C = 1, and the leaf's own shadow added back unless the spec says otherwise.
-fn light_of(all: &[Candidate], middle: impl Fn(&Candidate) -> DVec3, spec: &LeafSpec) -> Vec<f64> {
-    let corners = all.iter().map(&middle);
-    let (lo, hi) = corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), p| (lo.min(p), hi.max(p)));
+fn light_of(all: &[Candidate], length: f64, spec: &LeafSpec) -> Vec<f64> {
+    let middles: Vec<DVec3> = all.iter().map(|c| c.tip(0.5, length)).collect();
+    let all_round = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let (lo, hi) = middles.iter().fold(all_round, |(lo, hi), &p| (lo.min(p), hi.max(p)));
     if all.is_empty() {
         return Vec::new();
     }
@@ -321,10 +350,12 @@ fn light_of(all: &[Candidate], middle: impl Fn(&Candidate) -> DVec3, spec: &Leaf
     let voxel = spec.voxel_m.unwrap_or(2.0 * spec.length_m).max(least);
     let mut grid = ShadowGrid::new(voxel, spec.shade, spec.shade_fall, spec.shade_layers);
     grid.cover(lo, hi);
-    all.iter().for_each(|c| grid.add(middle(c), 1));
+    let voxels: Vec<u32> = middles.iter().map(|&p| grid.voxel_of(p)).collect();
+    grid.add_all(voxels.iter().copied(), 1);
+    grid.spread();
     let own = if spec.self_shadow { 0.0 } else { grid.own() };
     // Not cut off at 0: in deep shade, too, one leaf has more light than another.
-    all.iter().map(|c| 1.0 - grid.sample(middle(c)).0 + own).collect()
+    voxels.iter().map(|&v| 1.0 - grid.shade(v) + own).collect()
 }
 
 /// Which leaves stay: enough light, and among the brightest; keys decide between equals.

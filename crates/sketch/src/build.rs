@@ -78,7 +78,8 @@ pub fn build(
     let mut plant = Plant::default();
     let ids = add_axes(&mut plant, &plans, map);
     let blades = reading.leaves.iter().chain(reading.flowers.iter().flat_map(|f| &f.petals));
-    let colors = blades.filter_map(|b| b.color).chain(reading.fruits.iter().filter_map(|f| f.color));
+    let filled = reading.regions.iter().map(|r| r.color).chain(reading.fruits.iter().map(|f| f.color));
+    let colors = blades.map(|b| b.color).chain(filled).flatten();
     let scene = Scene { spec, seed, map, plans: &plans, ids: &ids, coloured: coloured(colors) };
     let crowned = Crowned::new(reading);
     let leaves = leaf_shapes(&mut plant, &scene, reading);
@@ -99,8 +100,15 @@ pub fn build(
     report.book("depth", run.clock.now_ms() - started);
     run.cancel.check()?;
 
-    let ctx =
-        FillContext { spec, seed, map, axis_of_reading: &ids, templates: &templates, woody: reading.woody };
+    let ctx = FillContext {
+        spec,
+        seed,
+        map,
+        axis_of_reading: &ids,
+        templates: &templates,
+        woody: reading.woody,
+        coloured: scene.coloured,
+    };
     fill(&mut plant, reading, &ctx, run, report)?;
     run.cancel.check()?;
 

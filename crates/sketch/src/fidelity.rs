@@ -69,9 +69,7 @@ pub fn fidelity(built: &Built, reading: &Reading, ink: &Ink, run: &Run<'_>) -> O
         let stroke = &ink.strokes[i];
         let lines = lines.get(&stroke.index)?;
         let line = sampled(&stroke.points);
-        let distance = |l: &[DVec2], p: DVec2| closest_on_polyline(l, p).map(|c| c.distance);
-        let to_model = |p: &DVec2| lines.iter().filter_map(|l| distance(l, *p)).fold(f64::INFINITY, f64::min);
-        let own: Vec<f64> = line.iter().map(to_model).filter(|d| d.is_finite()).collect();
+        let own = Pieces::new(lines).distances(&line);
         let stroke_line = Pieces::new(core::slice::from_ref(&line));
         let beyond: Vec<f64> = lines.iter().flat_map(|l| stroke_line.distances(&sampled(l))).collect();
         (!own.is_empty()).then_some((stroke.index, own, beyond))

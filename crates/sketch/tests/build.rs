@@ -311,6 +311,25 @@ fn coloured_pens_colour_organs_and_one_pen_does_not() {
 }
 
 #[test]
+fn leaves_take_the_colour_of_their_crown() {
+    let mut reading = tree();
+    for (x, color) in [(0.15, [40, 160, 30]), (0.45, [230, 60, 20])] {
+        reading.regions.push(RegionReading {
+            outline: (0..40).map(|k| v(x, 0.7) + around(k, 40, 0.0) * 0.14).collect(),
+            kind: RegionKind::Crown,
+            bearers: vec![0],
+            source: Some(20),
+            color: Some(color),
+        });
+    }
+    let built = made(&reading, &SketchSpec::default());
+    let leaves = || built.plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf).map(|o| o.tint);
+    let (green, red) = (leaves().filter(|t| t[1] > 2.0 * t[0]), leaves().filter(|t| t[0] > 2.0 * t[1]));
+    let (green, red) = (green.count(), red.count());
+    assert!(green > 20 && red > 20 && green + red == leaves().count(), "{green} green, {red} red");
+}
+
+#[test]
 fn stalks_bridge_the_gap_to_the_bearer() {
     let built = made(&herb(), &SketchSpec::default());
     for o in built.plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf) {

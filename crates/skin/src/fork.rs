@@ -89,7 +89,7 @@ impl Collar {
             normals: vec![DVec3::ZERO; width * (steps as usize + 2)],
             width,
         };
-        for (j, &corner) in circle.0.iter().enumerate() {
+        for (j, &corner) in circle.0[..width - 1].iter().enumerate() {
             let ray = top.ray(corner);
             let q = top.centre + ray * top.radius;
             let knee = bearer.surface(hit(q, back, &axis), hint, 1.0);
@@ -104,6 +104,12 @@ impl Collar {
             collar.normals[j] = foot.1;
             collar.normals[width * (steps as usize + 1) + j] = top.normal(ray);
         }
+        // The last corner of each row is its first.
+        for row in
+            [&mut collar.corners, &mut collar.normals].into_iter().flat_map(|c| c.chunks_exact_mut(width))
+        {
+            row[width - 1] = row[0];
+        }
         collar.inner_normals(steps as usize);
         Some((collar, rings))
     }
@@ -111,14 +117,14 @@ impl Collar {
     fn inner_normals(&mut self, steps: usize) {
         let w = self.width;
         for k in 1..=steps {
-            for j in 0..w {
-                let (before, after) =
-                    (if j == 0 { w - 2 } else { j - 1 }, if j == w - 1 { 1 } else { j + 1 });
+            for j in 0..w - 1 {
+                let (before, after) = (if j == 0 { w - 2 } else { j - 1 }, j + 1);
                 let around = self.corners[k * w + after] - self.corners[k * w + before];
                 let along = self.corners[(k + 1) * w + j] - self.corners[(k - 1) * w + j];
                 let normal = around.cross(along).try_normalize();
                 self.normals[k * w + j] = normal.unwrap_or(self.normals[(steps + 1) * w + j]);
             }
+            self.normals[(k + 1) * w - 1] = self.normals[k * w];
         }
     }
 

@@ -53,7 +53,7 @@ impl Spine {
             p: Vec::with_capacity(samples + q.len() + 2),
             t: Vec::new(),
             r: Vec::with_capacity(samples + q.len() + 2),
-            s: Vec::new(),
+            s: Vec::with_capacity(samples + q.len() + 2),
             knots: Vec::with_capacity(q.len()),
         };
         for k in 0..q.len() - 1 {
@@ -241,16 +241,21 @@ fn ease_sharp_bends(p: &mut [DVec3], r: &[f64]) {
     for _ in 0..48 {
         let mut calm = true;
         let mut before = p[0];
+        let mut a = p[1] - before;
+        let mut length = a.length();
         for i in 1..n - 1 {
             let here = p[i];
-            let (a, b) = (here - before, p[i + 1] - here);
-            // |turn| / chord, by the small angle's chord: 2 sin(turn / 2).
-            let turn = (b.normalize_or_zero() - a.normalize_or_zero()).length();
-            if turn * r[i] > TIGHTEST * 0.5 * (a.length() + b.length()) {
+            let b = p[i + 1] - here;
+            let next = b.length();
+            let most = TIGHTEST * 0.5 * (length + next);
+            // |turn| / chord, by the small angle's chord: 2 sin(turn / 2). It is 2 at most: thin lines need no look.
+            if 2.000_001 * r[i] > most
+                && (b.normalize_or_zero() - a.normalize_or_zero()).length() * r[i] > most
+            {
                 calm = false;
                 p[i] = here.lerp((before + p[i + 1]) * 0.5, 0.5);
             }
-            before = here;
+            (before, a, length) = (here, b, next);
         }
         if calm {
             break;

@@ -106,6 +106,14 @@ impl<'a> Sleeve<'a> {
         i
     }
 
+    /// The last vertex of a row: its first again, at the other edge of the texture.
+    fn seam(&mut self, first: u32, u: f64, v: f64) {
+        let (p, n) = (self.mesh.positions[first as usize], self.mesh.normals[first as usize]);
+        self.mesh.positions.push(p);
+        self.mesh.normals.push(n);
+        self.mesh.uvs.push(narrow2(u, v));
+    }
+
     /// Moves the texture on by a step along a tube of this radius.
     fn advance(&mut self, centre: DVec3, radius: f64) {
         if let Some((_, before)) = self.last {
@@ -148,11 +156,12 @@ impl<'a> Sleeve<'a> {
             self.advance(ring.centre, ring.radius.max(floor));
             let first = self.next();
             let (v, mut u) = (self.v, 0.0);
-            for corner in &circle.0 {
+            for corner in &circle.0[..circle.sides()] {
                 let ray = ring.ray(*corner);
                 self.vertex(ring.centre + ray * ring.radius, ring.normal(ray), u, v);
                 u += du;
             }
+            self.seam(first, u, v);
             self.join(first, ring.centre);
         }
     }
@@ -202,11 +211,12 @@ impl<'a> Sleeve<'a> {
             self.advance(centre, end.radius);
             let first = self.next();
             let (v, mut u) = (self.v, 0.0);
-            for corner in &circle.0 {
+            for corner in &circle.0[..circle.sides()] {
                 let ray = end.ray(*corner);
                 self.vertex(centre + ray * (end.radius * cos), ray * cos + end.tangent * sin, u, v);
                 u += du;
             }
+            self.seam(first, u, v);
             self.join(first, centre);
         }
         let apex = end.centre + end.tangent * (0.9 * end.radius);

@@ -1,14 +1,18 @@
 //! The growing trees: joints with their buds.
 
+use core::ops::Range;
+
 use glam::DVec3;
 
 use crate::{JointId, Skeleton};
 
-/// No joint.
+/// No joint; of a bud: it grew into a branch that is gone, or never was.
 pub(super) const NONE: u32 = u32::MAX;
+/// Instead of the branch that a bud grew into: it still waits.
+pub(super) const WAITS: u32 = u32::MAX - 1;
 
-/// All trees of a run. Every joint ends an internode, may bear axillary buds, and carries the terminal bud if
-/// nothing continues its axis.
+/// All trees of a run, by columns. Every joint ends an internode, may bear axillary buds, and carries the terminal bud
+/// if nothing continues its axis.
 #[derive(Clone, Debug)]
 pub(super) struct Grove {
     pub(super) skeleton: Skeleton,
@@ -23,10 +27,57 @@ pub(super) struct Grove {
     pub(super) wood: Vec<f64>,
     /// Buds at a joint.
     pub(super) per_node: usize,
-    /// For each bud: the branch that it grew into, whether it still waits, and where it would grow.
+    /// For each bud the branch that it grew into, or [`WAITS`].
     pub(super) lateral: Vec<u32>,
-    pub(super) waits: Vec<bool>,
-    pub(super) bud_heading: Vec<DVec3>,
+    /// A workspace: wood above each joint.
+    above: Vec<f64>,
+}
+
+/// Which joints stay when some are shed: runs of rows, and the new row of every old one.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Kept {
+    runs: Vec<Range<usize>>,
+    new_row: Vec<u32>,
+}
+
+impl Kept {
+    /// By one flag for each joint.
+    pub(super) fn set(&mut self, stays: &[bool]) {
+        self.runs.clear();
+        self.new_row.clear();
+        let (mut row, mut next) = (0, 0);
+        for run in stays.chunk_by(|a, b| a == b) {
+            let old = row..row + run.len();
+            row = old.end;
+            if run[0] {
+                self.new_row.extend(old.clone().map(|j| JointId::new(j - old.start + next).raw()));
+                next += run.len();
+                self.runs.push(old);
+            } else {
+                self.new_row.resize(row, NONE);
+            }
+        }
+    }
+
+    /// Closes the gaps of a column with `each` values a joint.
+    pub(super) fn squeeze<T: Copy>(&self, column: &mut Vec<T>, each: usize) {
+        let mut to = 0;
+        for run in &self.runs {
+            if run.start * each > to {
+                column.copy_within(run.start * each..run.end * each, to);
+            }
+            to += run.len() * each;
+        }
+        column.truncate(to);
+    }
+
+    fn rename(&self, column: &mut [u32]) {
+        for old in column {
+            if *old < WAITS {
+                *old = self.new_row[*old as usize];
+            }
+        }
+    }
 }
 
 impl Grove {
@@ -41,8 +92,7 @@ impl Grove {
             wood: vec![0.0; n],
             per_node,
             lateral: vec![NONE; n * per_node],
-            waits: vec![false; n * per_node],
-            bud_heading: vec![DVec3::Y; n * per_node],
+            above: Vec::new(),
         }
     }
 
@@ -54,19 +104,19 @@ impl Grove {
         self.skeleton.parent[j].map(JointId::index)
     }
 
-    pub(super) fn bud_range(&self, j: usize) -> core::ops::Range<usize> {
+    pub(super) fn bud_range(&self, j: usize) -> Range<usize> {
         j * self.per_node..(j + 1) * self.per_node
     }
 
     pub(super) fn waiting_buds(&self, j: usize) -> u32 {
-        self.bud_range(j).map(|k| u32::from(self.waits[k])).sum()
+        self.lateral[self.bud_range(j)].iter().map(|l| u32::from(*l == WAITS)).sum()
     }
 
     pub(super) fn starts_axis(&self, j: usize) -> bool {
         self.parent(j).is_none_or(|p| self.main[p] as usize != j)
     }
 
-    /// Adds an internode; `bud` is the axillary bud it grows from, `None` for the terminal one.
+    /// Adds an internode with waiting buds; `bud` is the axillary bud it grows from, `None` for the terminal one.
     pub(super) fn grow(
         &mut self,
         parent: usize,
@@ -79,10 +129,7 @@ impl Grove {
         let id = self.skeleton.push(at, JointId::new(parent), birth);
         match bud {
             None => self.main[parent] = id.raw(),
-            Some(k) => {
-                self.lateral[k] = id.raw();
-                self.waits[k] = false;
-            }
+            Some(k) => self.lateral[k] = id.raw(),
         }
         let across = self.side[parent] - heading * self.side[parent].dot(heading);
         self.main.push(NONE);
@@ -94,43 +141,42 @@ impl Grove {
         });
         self.rank.push(if bud.is_none() { self.rank[parent] + 1 } else { 0 });
         self.wood.push(0.0);
-        for _ in 0..self.per_node {
-            self.lateral.push(NONE);
-            self.waits.push(false);
-            self.bud_heading.push(heading);
-        }
+        self.lateral.resize(self.lateral.len() + self.per_node, WAITS);
         id.index()
     }
 
-    /// Keeps the joints for which `stays` holds. The buds of branches that are gone do not sprout again.
-    pub(super) fn keep(&mut self, stays: &[bool]) {
-        let (skeleton, new_id) = self.skeleton.keep_mapped(|j| stays[j]);
-        let renamed = |old: u32| {
-            let id = if old == NONE { None } else { new_id[old as usize] };
-            id.map_or(NONE, JointId::raw)
-        };
-        let kept: Vec<usize> = (0..self.len()).filter(|&j| new_id[j].is_some()).collect();
-        let n = self.per_node;
-        let buds = || kept.iter().flat_map(move |&j| j * n..(j + 1) * n);
-        self.lateral = buds().map(|k| renamed(self.lateral[k])).collect();
-        self.waits = buds().map(|k| self.waits[k]).collect();
-        self.bud_heading = buds().map(|k| self.bud_heading[k]).collect();
-        self.main = kept.iter().map(|&j| renamed(self.main[j])).collect();
-        self.heading = kept.iter().map(|&j| self.heading[j]).collect();
-        self.side = kept.iter().map(|&j| self.side[j]).collect();
-        self.rank = kept.iter().map(|&j| self.rank[j]).collect();
-        self.wood = kept.iter().map(|&j| self.wood[j]).collect();
-        self.skeleton = skeleton;
+    /// Keeps some joints. The buds of branches that are gone do not sprout again.
+    pub(super) fn keep(&mut self, kept: &Kept) {
+        let s = &mut self.skeleton;
+        kept.squeeze(&mut s.position, 1);
+        kept.squeeze(&mut s.parent, 1);
+        kept.squeeze(&mut s.tree, 1);
+        kept.squeeze(&mut s.birth, 1);
+        kept.squeeze(&mut s.radius_m, 1);
+        kept.squeeze(&mut self.main, 1);
+        kept.squeeze(&mut self.heading, 1);
+        kept.squeeze(&mut self.side, 1);
+        kept.squeeze(&mut self.rank, 1);
+        kept.squeeze(&mut self.wood, 1);
+        kept.squeeze(&mut self.lateral, self.per_node);
+        kept.rename(&mut self.main);
+        kept.rename(&mut self.lateral);
+        for p in self.skeleton.parent.iter_mut().flatten() {
+            *p = JointId::new(kept.new_row[p.index()] as usize);
+        }
     }
 
     /// `d^n = d1^n + d2^n`, never less than before (Palubicki 2009, section 4.6).
     pub(super) fn thicken(&mut self, tip: f64) {
-        let mut above = vec![0.0; self.len()];
-        for j in (0..self.len()).rev() {
+        let n = self.len();
+        self.above.clear();
+        self.above.resize(n, 0.0);
+        let (above, wood) = (&mut self.above[..n], &mut self.wood[..n]);
+        for (j, parent) in self.skeleton.parent.iter().enumerate().rev() {
             let own: f64 = if above[j] > 0.0 { above[j] } else { tip };
-            self.wood[j] = self.wood[j].max(own);
-            if let Some(p) = self.parent(j) {
-                above[p] += self.wood[j];
+            wood[j] = wood[j].max(own);
+            if let Some(p) = parent {
+                above[p.index()] += wood[j];
             }
         }
     }

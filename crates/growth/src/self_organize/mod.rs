@@ -14,9 +14,10 @@ use glam::DVec3;
 use plant::Phyllotaxis;
 
 use crate::colonize::plant_roots;
+use crate::tree::GROWN;
 use crate::{GrowthError, Obstacles, Skeleton};
-use grove::{Grove, NONE};
-use resource::{Flow, Sharing};
+use grove::{Grove, Kept};
+use resource::{Fed, Flow, Sharing};
 use space::Space;
 
 pub use spec::{Light, Resource, SelfOrganizingSpec};
@@ -66,7 +67,8 @@ pub fn self_organize(
     let light = match &spec.light {
         Light::Shadow { voxel_m, a, b, layers, full } => {
             let voxel = voxel_m.unwrap_or(2.0 * spec.internode_m);
-            LightModel::Shadow(ShadowGrid::new(voxel, *a, *b, *layers), *full)
+            let grid = ShadowGrid::new(voxel, *a, *b, *layers);
+            LightModel::Shadow(Shade { grid, full: *full, voxel: Vec::new() })
         }
         Light::Space { envelope, markers, occupancy, perception, half_angle_deg } => {
             let reach = (occupancy * spec.internode_m, perception * spec.internode_m);
@@ -91,8 +93,9 @@ pub fn self_organize(
         light,
         flow: Flow::default(),
         bud_light: Vec::new(),
-        bud_pull: Vec::new(),
         mean_light: Vec::new(),
+        stays: Vec::new(),
+        kept: Kept::default(),
         generated: 0,
         shed: 0,
     };
@@ -108,6 +111,9 @@ pub fn self_organize(
             break;
         }
         forest.year(year);
+        // Later years have more to do.
+        let share = f64::from(year + 1) / f64::from(spec.years);
+        run.cancel.reached(GROWN * share * share);
     }
     let Forest { mut grove, generated, shed, .. } = forest;
     for (r, w) in grove.skeleton.radius_m.iter_mut().zip(&grove.wood) {
@@ -119,8 +125,17 @@ pub fn self_organize(
 }
 
 enum LightModel {
-    Shadow(ShadowGrid, f64),
+    Shadow(Shade),
     Space(Space),
+}
+
+/// The shadow model.
+struct Shade {
+    grid: ShadowGrid,
+    /// Light without any shadow.
+    full: f64,
+    /// The voxel of each joint.
+    voxel: Vec<u32>,
 }
 
 struct Forest<'a> {
@@ -132,12 +147,13 @@ struct Forest<'a> {
     grove: Grove,
     light: LightModel,
     flow: Flow,
-    /// Light Q and best direction V of the buds at each joint; terminal and axillary buds of a joint share them in
-    /// the shadow model, and are told apart in `bud_pull` in the space model.
+    /// Light Q of each bud at a joint.
     bud_light: Vec<f64>,
-    bud_pull: Vec<DVec3>,
     /// Light per internode of each branch over the last years, by its first joint.
     mean_light: Vec<f64>,
+    /// Workspaces of shedding.
+    stays: Vec<bool>,
+    kept: Kept,
     generated: usize,
     shed: usize,
 }
@@ -160,32 +176,20 @@ impl Forest<'_> {
         self.grove.thicken(tip);
     }
 
-    /// Light and direction of every bud.
+    /// Light of every bud.
     fn look(&mut self) {
         let n = self.grove.len();
         self.bud_light.clear();
-        self.bud_light.resize(n, 0.0);
-        self.bud_pull.clear();
-        self.bud_pull.resize(n, DVec3::ZERO);
         match &mut self.light {
-            LightModel::Shadow(grid, full) => {
-                for j in 0..n {
-                    if self.grove.main[j] != NONE && self.grove.waiting_buds(j) == 0 {
-                        continue;
-                    }
-                    let (s, slope) = grid.sample(self.grove.skeleton.position[j]);
-                    let own = if self.spec.self_shadow { 0.0 } else { grid.own() };
-                    self.bud_light[j] = (*full - s + own).max(0.0);
-                    self.bud_pull[j] = slope.normalize_or_zero();
-                }
+            LightModel::Shadow(Shade { grid, full, voxel }) => {
+                grid.spread();
+                let own = if self.spec.self_shadow { 0.0 } else { grid.own() };
+                let light = voxel.iter().map(|v| (*full - grid.shade(*v) + own).max(0.0));
+                self.bud_light.extend(light);
             }
             LightModel::Space(space) => {
                 space.look(&self.grove);
-                for j in 0..n {
-                    let (q, v) = space.of_joint(j);
-                    self.bud_light[j] = q;
-                    self.bud_pull[j] = v;
-                }
+                self.bud_light.extend((0..n).map(|j| space.light_at(j)));
             }
         }
     }
@@ -196,15 +200,17 @@ impl Forest<'_> {
         self.mean_light.resize(n, f64::NAN);
         // The space model knows lit and dark only: there the mean of about five years decides.
         let fresh = if matches!(self.light, LightModel::Space(_)) { 0.2 } else { 1.0 };
-        let mut stays = vec![true; n];
+        let mut stays = core::mem::take(&mut self.stays);
+        stays.clear();
+        stays.resize(n, true);
         let mut any = false;
         for j in 0..n {
-            let parent = self.grove.parent(j);
-            if parent.is_some_and(|p| !stays[p]) {
+            let Some(parent) = self.grove.parent(j) else { continue };
+            if !stays[parent] {
                 stays[j] = false;
                 continue;
             }
-            if parent.is_none() || !self.grove.starts_axis(j) {
+            if self.grove.main[parent] as usize == j {
                 continue;
             }
             let now = self.flow.light[j] / self.flow.size[j];
@@ -216,24 +222,27 @@ impl Forest<'_> {
                 any = true;
             }
         }
-        if !any {
-            return;
+        if any {
+            self.drop(&stays);
         }
-        // What is shed no longer casts shadow; its light no longer counts below.
-        if let LightModel::Shadow(grid, _) = &mut self.light {
-            (0..n).filter(|&j| !stays[j]).for_each(|j| grid.add(self.grove.skeleton.position[j], -1));
-        }
+        self.stays = stays;
+    }
+
+    fn drop(&mut self, stays: &[bool]) {
+        let kept = &mut self.kept;
+        kept.set(stays);
         self.shed += stays.iter().filter(|&&s| !s).count();
-        self.grove.keep(&stays);
-        let mut kept = stays.iter();
-        let keep = |_: &f64| kept.next().copied().unwrap_or(false);
-        self.mean_light.retain(keep);
-        let mut kept = stays.iter();
-        self.bud_light.retain(|_| kept.next().copied().unwrap_or(false));
-        let mut kept = stays.iter();
-        self.bud_pull.retain(|_| kept.next().copied().unwrap_or(false));
-        if let LightModel::Space(space) = &mut self.light {
-            space.keep(&stays);
+        self.grove.keep(kept);
+        kept.squeeze(&mut self.mean_light, 1);
+        kept.squeeze(&mut self.bud_light, 1);
+        match &mut self.light {
+            // What is shed no longer casts shadow; its light no longer counts below.
+            LightModel::Shadow(Shade { grid, voxel, .. }) => {
+                let gone = voxel.iter().zip(stays).filter(|(_, stays)| !**stays).map(|(v, _)| *v);
+                grid.add_all(gone, -1);
+                kept.squeeze(voxel, 1);
+            }
+            LightModel::Space(space) => space.keep(kept),
         }
         self.flow.gather(&self.grove, &self.bud_light);
     }
@@ -241,39 +250,41 @@ impl Forest<'_> {
     /// Buds with a vigour of 1 or more grow as many internodes.
     fn sprout(&mut self, birth: u32) {
         let n = self.grove.len();
-        for j in 0..n {
+        let fed = core::mem::take(&mut self.flow.fed);
+        for at_joint in fed.chunk_by(|a, b| a.joint == b.joint) {
             if self.grove.len() >= self.spec.max_joints as usize {
                 break;
             }
-            if self.grove.main[j] == NONE {
-                let v = self.flow.terminal[j];
-                self.shoot(j, None, self.grove.heading[j], v, birth);
-            }
-            for k in self.grove.bud_range(j) {
-                if self.grove.waits[k] {
-                    let v = self.flow.axillary[k];
-                    self.shoot(j, Some(k), self.grove.bud_heading[k], v, birth);
-                }
-            }
+            at_joint.iter().for_each(|fed| self.shoot(*fed, birth));
         }
+        self.flow.fed = fed;
         self.cast_from(n);
         self.generated += self.grove.len() - n;
     }
 
-    fn shoot(&mut self, joint: usize, bud: Option<usize>, heading: DVec3, vigour: f64, birth: u32) {
+    fn shoot(&mut self, Fed { joint, bud, vigour }: Fed, birth: u32) {
         // Never more than the spec allows: a seedling in full light would leap.
         let vigour = vigour.min(f64::from(self.spec.most_per_shoot) + 0.999);
-        let n = vigour.floor();
-        if n < 1.0 {
+        if vigour < 1.0 {
             return;
         }
+        let n = vigour.floor();
         let length = self.spec.internode_m * vigour / n;
-        let mut v = self.bud_pull[joint];
-        if let LightModel::Space(space) = &self.light {
-            v = space.of_bud(joint, bud);
-        }
+        let v = match &self.light {
+            LightModel::Shadow(Shade { grid, voxel, .. }) => grid.slope(voxel[joint]).normalize_or_zero(),
+            LightModel::Space(space) => space.of_bud(joint, bud),
+        };
+        let mut heading = match bud {
+            None => self.grove.heading[joint],
+            Some(k) => {
+                let place = k - joint * self.grove.per_node;
+                bud_headings(self.spec, self.phyllotaxis, self.seed, &self.grove, joint)
+                    .nth(place)
+                    .unwrap_or(self.grove.heading[joint])
+            }
+        };
         let lead = v * self.spec.light_weight + self.pull;
-        let (mut from, mut bud, mut heading, mut left) = (joint, bud, heading, n);
+        let (mut from, mut bud, mut left) = (joint, bud, n);
         while left >= 1.0 {
             let Some(wish) = (heading + lead).try_normalize() else { return };
             let open = self.obstacles.is_empty();
@@ -281,48 +292,57 @@ impl Forest<'_> {
             let Some(to) = (if open { Some(wish) } else { self.obstacles.steer(at, wish, length) }) else {
                 return;
             };
-            let next = self.grove.grow(from, bud.take(), to, length, birth);
-            self.set_buds(next);
-            (from, heading) = (next, to);
+            (from, heading) = (self.grove.grow(from, bud.take(), to, length, birth), to);
             left -= 1.0;
-        }
-    }
-
-    /// Axillary buds of a new joint, around it by phyllotaxis.
-    fn set_buds(&mut self, joint: usize) {
-        let grove = &mut self.grove;
-        let (heading, side) = (grove.heading[joint], grove.side[joint]);
-        let across = heading.cross(side);
-        let place = self.grove.skeleton.position[joint];
-        let key = (place.x.to_bits() ^ place.z.to_bits().rotate_left(21)) ^ place.y.to_bits().rotate_left(42);
-        let mut stream = self.seed.child(key).stream(Draw::Phyllotaxis);
-        let grove = &mut self.grove;
-        for (k, azimuth) in grove.bud_range(joint).zip(self.phyllotaxis.azimuths(grove.rank[joint])) {
-            let jitter = self.spec.jitter_deg * (PI / 180.0);
-            let turn = azimuth + jitter * stream.normal();
-            let tilt = self.spec.branch_angle_deg * (PI / 180.0) + jitter * stream.normal();
-            let ((st, ct), (sa, ca)) = (ops::sin_cos(tilt), ops::sin_cos(turn));
-            grove.bud_heading[k] = heading * ct + (side * ca + across * sa) * st;
-            grove.waits[k] = true;
         }
     }
 
     /// Lets the joints from `first` on cast shadow or take room.
     fn cast_from(&mut self, first: usize) {
-        let fresh = &self.grove.skeleton.position[first..];
+        let all = &self.grove.skeleton.position;
+        let fresh = &all[first..];
         match &mut self.light {
-            LightModel::Shadow(grid, _) => {
+            LightModel::Shadow(Shade { grid, voxel, .. }) => {
                 let corners = fresh.iter().fold(None, |c: Option<(DVec3, DVec3)>, &p| {
                     Some(c.map_or((p, p), |(lo, hi)| (lo.min(p), hi.max(p))))
                 });
-                if let Some((lo, hi)) = corners {
-                    grid.cover(lo, hi);
+                if corners.is_some_and(|(lo, hi)| grid.cover(lo, hi)) {
+                    voxel.clear();
                 }
-                fresh.iter().for_each(|&p| grid.add(p, 1));
+                voxel.extend(all[voxel.len()..].iter().map(|&p| grid.voxel_of(p)));
+                grid.add_all(voxel[first..].iter().copied(), 1);
             }
-            LightModel::Space(space) => space.take_room(fresh),
+            LightModel::Space(space) => {
+                space.take_room(fresh);
+                let (spec, grove) = (self.spec, &self.grove);
+                for j in first..grove.len() {
+                    space.set_buds(bud_headings(spec, self.phyllotaxis, self.seed, grove, j));
+                }
+            }
         }
     }
+}
+
+/// Where the axillary buds of a joint would grow: around it by phyllotaxis. The same whenever it is asked for.
+fn bud_headings(
+    spec: &SelfOrganizingSpec,
+    phyllotaxis: Phyllotaxis,
+    seed: Seed,
+    grove: &Grove,
+    joint: usize,
+) -> impl Iterator<Item = DVec3> {
+    let (heading, side) = (grove.heading[joint], grove.side[joint]);
+    let across = heading.cross(side);
+    let place = grove.skeleton.position[joint];
+    let key = (place.x.to_bits() ^ place.z.to_bits().rotate_left(21)) ^ place.y.to_bits().rotate_left(42);
+    let mut stream = seed.child(key).stream(Draw::Phyllotaxis);
+    let (jitter, angle) = (spec.jitter_deg * (PI / 180.0), spec.branch_angle_deg * (PI / 180.0));
+    phyllotaxis.azimuths(grove.rank[joint]).map(move |azimuth| {
+        let turn = azimuth + jitter * stream.normal();
+        let tilt = angle + jitter * stream.normal();
+        let ((st, ct), (sa, ca)) = (ops::sin_cos(tilt), ops::sin_cos(turn));
+        heading * ct + (side * ca + across * sa) * st
+    })
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 //!
 //! `light of each bud -> summed towards the base -> vigour shared towards the tips`
 
-use super::grove::{Grove, NONE};
+use super::grove::{Grove, NONE, WAITS};
 
 /// Which side of a fork gets how much.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,6 +11,18 @@ pub(super) enum Sharing {
     Fork { lambda: f64 },
     /// Weights by rank along each axis.
     Rank { w_max: f64, w_min: f64, kappa: u32 },
+}
+
+/// Less vigour than this is not shared any further: a bud needs 1, and rounding does not add a thousandth.
+const SCANT: f64 = 0.999;
+
+/// A bud that has been given vigour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Fed {
+    pub(super) joint: usize,
+    /// The axillary bud; `None` is the terminal one.
+    pub(super) bud: Option<usize>,
+    pub(super) vigour: f64,
 }
 
 /// Sums and shares of one cycle; kept between cycles so that nothing is allocated.
@@ -22,9 +34,8 @@ pub(super) struct Flow {
     pub(super) size: Vec<f64>,
     /// Vigour that enters each joint.
     vigour: Vec<f64>,
-    /// Vigour of each terminal bud (by joint) and axillary bud (by joint and place).
-    pub(super) terminal: Vec<f64>,
-    pub(super) axillary: Vec<f64>,
+    /// The buds that it comes to, in the order of their joints, where it is more than scant.
+    pub(super) fed: Vec<Fed>,
     items: Vec<Item>,
 }
 
@@ -37,7 +48,7 @@ struct Item {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Target {
     Tip(usize),
-    Bud(usize),
+    Bud(usize, usize),
     Branch(usize),
 }
 
@@ -49,17 +60,18 @@ impl Flow {
         self.light.resize(n, 0.0);
         self.size.clear();
         self.size.resize(n, 1.0);
-        for j in (0..n).rev() {
-            let mut light = self.light[j];
-            if grove.main[j] == NONE {
+        let (sums, sizes, bud_light) = (&mut self.light[..n], &mut self.size[..n], &bud_light[..n]);
+        for (j, (main, parent)) in grove.main.iter().zip(&grove.skeleton.parent).enumerate().rev() {
+            let mut light = sums[j];
+            if *main == NONE {
                 light += bud_light[j];
             }
             light += f64::from(grove.waiting_buds(j)) * bud_light[j];
             // Children come after their parents: theirs have been added already.
-            self.light[j] = light;
-            if let Some(p) = grove.parent(j) {
-                self.light[p] += light;
-                self.size[p] += self.size[j];
+            sums[j] = light;
+            if let Some(p) = parent {
+                sums[p.index()] += light;
+                sizes[p.index()] += sizes[j];
             }
         }
     }
@@ -69,13 +81,13 @@ impl Flow {
         let n = grove.len();
         self.vigour.clear();
         self.vigour.resize(n, 0.0);
-        self.terminal.clear();
-        self.terminal.resize(n, 0.0);
-        self.axillary.clear();
-        self.axillary.resize(n * grove.per_node, 0.0);
+        self.fed.clear();
         for j in 0..n {
-            if grove.parent(j).is_none() {
+            if grove.skeleton.parent[j].is_none() {
                 self.vigour[j] = alpha * self.light[j];
+            }
+            if self.vigour[j] < SCANT {
+                continue;
             }
             match sharing {
                 Sharing::Fork { lambda } => self.share_fork(grove, bud_light, j, lambda),
@@ -86,14 +98,20 @@ impl Flow {
                 }
             }
         }
+        if matches!(sharing, Sharing::Rank { .. }) {
+            self.fed.sort_unstable_by_key(|f| (f.joint, f.bud));
+        }
+    }
+
+    fn feed(&mut self, joint: usize, bud: Option<usize>, vigour: f64) {
+        if vigour >= SCANT {
+            self.fed.push(Fed { joint, bud, vigour });
+        }
     }
 
     /// `v_m = v lambda Q_m / (lambda Q_m + (1 - lambda) Q_l)`, and the rest to the laterals (section 4.2).
     fn share_fork(&mut self, grove: &Grove, bud_light: &[f64], j: usize, lambda: f64) {
         let v = self.vigour[j];
-        if v <= 0.0 {
-            return;
-        }
         let main = grove.main[j];
         let q_main = if main == NONE { bud_light[j] } else { self.light[main as usize] };
         let q_side = (self.light[j] - q_main).max(0.0);
@@ -101,20 +119,17 @@ impl Flow {
         // A fork in the dark shares by lambda alone.
         let share = if m + l > 0.0 { m / (m + l) } else { lambda };
         if main == NONE {
-            self.terminal[j] = v * share;
+            self.feed(j, None, v * share);
         } else {
             self.vigour[main as usize] = v * share;
         }
         let rest = v * (1.0 - share);
-        if q_side > 0.0 {
+        if q_side > 0.0 && rest > 0.0 {
             for k in grove.bud_range(j) {
-                let child = grove.lateral[k];
-                if child == NONE {
-                    if grove.waits[k] {
-                        self.axillary[k] = rest * bud_light[j] / q_side;
-                    }
-                } else {
-                    self.vigour[child as usize] = rest * self.light[child as usize] / q_side;
+                match grove.lateral[k] {
+                    NONE => {}
+                    WAITS => self.feed(j, Some(k), rest * bud_light[j] / q_side),
+                    child => self.vigour[child as usize] = rest * self.light[child as usize] / q_side,
                 }
             }
         }
@@ -130,12 +145,13 @@ impl Flow {
         let mut j = start;
         loop {
             for k in grove.bud_range(j) {
-                let child = grove.lateral[k];
-                if child != NONE {
-                    let c = child as usize;
-                    items.push(Item { light: self.light[c], target: Target::Branch(c) });
-                } else if grove.waits[k] {
-                    items.push(Item { light: bud_light[j], target: Target::Bud(k) });
+                match grove.lateral[k] {
+                    NONE => {}
+                    WAITS => items.push(Item { light: bud_light[j], target: Target::Bud(j, k) }),
+                    child => {
+                        let c = child as usize;
+                        items.push(Item { light: self.light[c], target: Target::Branch(c) });
+                    }
                 }
             }
             if grove.main[j] == NONE {
@@ -146,7 +162,7 @@ impl Flow {
         items.push(Item { light: bud_light[j], target: Target::Tip(j) });
         let mean = |i: &Item| match i.target {
             Target::Tip(_) => f64::INFINITY,
-            Target::Bud(_) => i.light,
+            Target::Bud(..) => i.light,
             Target::Branch(c) => i.light / self.size[c],
         };
         // Stable: equal light keeps the order along the axis, tip last before it is put first.
@@ -160,8 +176,8 @@ impl Flow {
             for (rank, item) in items.iter().enumerate() {
                 let part = v * item.light * weight(rank) / whole;
                 match item.target {
-                    Target::Tip(j) => self.terminal[j] = part,
-                    Target::Bud(k) => self.axillary[k] = part,
+                    Target::Tip(j) => self.feed(j, None, part),
+                    Target::Bud(j, k) => self.feed(j, Some(k), part),
                     Target::Branch(c) => self.vigour[c] = part,
                 }
             }

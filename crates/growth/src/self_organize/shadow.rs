@@ -1,16 +1,27 @@
 //! Shadow propagation: a voxel grid in which everything that grows darkens what is below it.
+//!
+//! `joints -> corners of squares -> summed over each layer -> shadows`
+//!
+//! The shadow of one joint is a square in each layer below it. A square is written as its four corners only; the
+//! running sums of a layer (Crow 1984), made once for all joints of a year, fill them in.
+
+use core::ops::Range;
 
 use glam::DVec3;
 
 /// Shadows are whole multiples of 2^-20: adding and taking away in any order gives the same bits.
 const UNIT: f64 = 1_048_576.0;
-/// More voxels than this (256 MiB) are not made; what grows beyond casts no shadow.
-const MOST_VOXELS: usize = 1 << 26;
+/// More voxels than this (two grids of 128 MiB) are not made; what grows beyond casts no shadow.
+const MOST_VOXELS: usize = 1 << 25;
+/// The voxel of a place without one.
+pub(crate) const OUTSIDE: u32 = u32::MAX;
 
 /// Shadow values over space; it grows with the trees. Palubicki et al. 2009, section 4.1.
 #[derive(Clone, Debug)]
 pub(crate) struct ShadowGrid {
-    /// Shadow of each voxel in units of 2^-20: layers of y, rows of z, x side by side.
+    /// Second differences of the shadow over each layer: layers of y, rows of z, x side by side.
+    corners: Vec<i32>,
+    /// Shadow of each voxel in units of 2^-20, as it was at the last [`spread`](Self::spread).
     shadow: Vec<i32>,
     /// What a joint adds q layers below itself: a b^-q.
     falling: Vec<i32>,
@@ -18,6 +29,9 @@ pub(crate) struct ShadowGrid {
     /// Place of voxel (0, 0, 0) in voxels.
     origin: [i64; 3],
     dims: [usize; 3],
+    /// Columns (x and z) that any shadow has ever reached, and layers whose corners have changed since `spread`.
+    used: [Range<usize>; 2],
+    stale: Range<usize>,
 }
 
 impl ShadowGrid {
@@ -29,75 +43,146 @@ impl ShadowGrid {
             falling.push(whole(s * UNIT));
             s /= b;
         }
-        Self { shadow: Vec::new(), falling, voxel_m, origin: [0; 3], dims: [0; 3] }
+        Self {
+            corners: Vec::new(),
+            shadow: Vec::new(),
+            falling,
+            voxel_m,
+            origin: [0; 3],
+            dims: [0; 3],
+            used: [NONE, NONE],
+            stale: NONE,
+        }
     }
 
-    /// Makes room for joints in a box, so that [`add`](Self::add) and [`sample`](Self::sample) find it.
-    pub(crate) fn cover(&mut self, lo: DVec3, hi: DVec3) {
+    /// Makes room for joints in a box. Whether voxels have new numbers.
+    pub(crate) fn cover(&mut self, lo: DVec3, hi: DVec3) -> bool {
         let margin = self.falling.len() as i64 + 1;
         let from = self.voxel(lo).map(|v| v - margin);
         let to = self.voxel(hi).map(|v| v + margin + 1);
         let fits =
             (0..3).all(|i| from[i] >= self.origin[i] && to[i] <= self.origin[i] + signed(self.dims[i]));
-        if fits && !self.shadow.is_empty() {
-            return;
+        if fits && !self.corners.is_empty() {
+            return false;
         }
-        // Half as much again on every side that must grow, so that it seldom does.
+        // The first time as large as it must be; later a quarter more on every side that must grow, so that it seldom does.
         let old = (self.origin, self.dims);
         let (mut origin, mut dims) = ([0; 3], [0; 3]);
         for i in 0..3 {
             let size = to[i] - from[i];
             let end = old.0[i] + signed(old.1[i]);
             let fresh = old.1[i] == 0;
-            let a = if fresh || from[i] < old.0[i] { from[i] - size / 2 } else { old.0[i] };
-            let b = if fresh || to[i] > end { to[i] + size / 2 } else { end };
+            let more = if fresh { 0 } else { size / 4 };
+            let a = if fresh || from[i] < old.0[i] { from[i] - more } else { old.0[i] };
+            let b = if fresh || to[i] > end { to[i] + more } else { end };
             origin[i] = a;
             dims[i] = usize::try_from(b - a).unwrap_or(0);
         }
         let most = dims[0].saturating_mul(dims[1]).saturating_mul(dims[2]);
         if most > MOST_VOXELS {
-            return;
+            return false;
         }
-        let mut shadow = vec![0; most];
+        let moved = [0, 1, 2].map(|i| usize::try_from(old.0[i] - origin[i]).unwrap_or(0));
+        let mut corners = vec![0; most];
         for y in 0..old.1[1] {
             for z in 0..old.1[2] {
                 let row = (y * old.1[2] + z) * old.1[0];
-                let at = |i: usize, k: usize| usize::try_from(old.0[i] - origin[i]).unwrap_or(0) + k;
-                let to = (at(1, y) * dims[2] + at(2, z)) * dims[0] + at(0, 0);
-                shadow[to..to + old.1[0]].copy_from_slice(&self.shadow[row..row + old.1[0]]);
+                let to = ((moved[1] + y) * dims[2] + moved[2] + z) * dims[0] + moved[0];
+                corners[to..to + old.1[0]].copy_from_slice(&self.corners[row..row + old.1[0]]);
             }
         }
-        (self.shadow, self.origin, self.dims) = (shadow, origin, dims);
+        (self.corners, self.origin, self.dims) = (corners, origin, dims);
+        self.shadow.clear();
+        self.shadow.resize(most, 0);
+        for (used, by) in self.used.iter_mut().zip([moved[0], moved[2]]) {
+            *used = if used.start >= used.end { NONE } else { used.start + by..used.end + by };
+        }
+        self.stale = 0..dims[1];
+        true
     }
 
-    /// Casts (`sign` 1) or takes back (`sign` -1) the shadow of a joint: `a b^-q` on the square of half width q in
-    /// the q-th layer below. The indices are (i +- p, j - q, k +- p), p from 0 to q.
-    pub(crate) fn add(&mut self, p: DVec3, sign: i32) {
-        let Some([x, y, z]) = self.inside(p) else { return };
+    /// As [`add`](Self::add), for many joints: those of one shoot, which share voxels, are added together.
+    pub(crate) fn add_all(&mut self, voxels: impl Iterator<Item = u32>, sign: i32) {
+        let (mut last, mut joints) = (OUTSIDE, 0);
+        for voxel in voxels {
+            if voxel != last {
+                self.add(last, joints);
+                (last, joints) = (voxel, 0);
+            }
+            joints += sign;
+        }
+        self.add(last, joints);
+    }
+
+    /// Casts the shadow of that many joints in a voxel, or takes it back (below 0): `a b^-q` for each on the square of
+    /// half width q in the q-th layer below. The indices are (i +- p, j - q, k +- p), p from 0 to q. Seen after
+    /// [`spread`](Self::spread). Nothing in [`OUTSIDE`].
+    pub(crate) fn add(&mut self, voxel: u32, joints: i32) {
+        if voxel == OUTSIDE {
+            return;
+        }
+        let (row, x) = (voxel as usize / self.dims[0], voxel as usize % self.dims[0]);
+        let (y, z) = (row / self.dims[2], row % self.dims[2]);
+        let width = self.dims[0];
         for (q, &s) in self.falling.iter().enumerate() {
             let Some(layer) = y.checked_sub(q) else { break };
-            for row in z - q..=z + q {
-                let start = (layer * self.dims[2] + row) * self.dims[0] + x;
-                for v in &mut self.shadow[start - q..=start + q] {
-                    *v = v.wrapping_add(s * sign);
+            let s = s.wrapping_mul(joints);
+            let near = (layer * self.dims[2] + z - q) * width + x - q;
+            let (wide, less) = (2 * q + 1, s.wrapping_neg());
+            let far = near + wide * width;
+            for (i, s) in [(near, s), (near + wide, less), (far, less), (far + wide, s)] {
+                self.corners[i] = self.corners[i].wrapping_add(s);
+            }
+        }
+        let layers = self.falling.len();
+        stretch(&mut self.stale, y.saturating_sub(layers), y + 1);
+        stretch(&mut self.used[0], x - layers, x + layers + 1);
+        stretch(&mut self.used[1], z - layers, z + layers + 1);
+    }
+
+    /// Lets [`shade`](Self::shade) and [`slope`](Self::slope) know of every shadow cast and taken back. Cost: linear in
+    /// the voxels of the layers that these reach.
+    pub(crate) fn spread(&mut self) {
+        let (width, [columns, rows]) = (self.dims[0], self.used.clone());
+        for layer in core::mem::replace(&mut self.stale, NONE) {
+            for z in rows.clone() {
+                let start = (layer * self.dims[2] + z) * width;
+                // The row before the first that is used has no shadow, as has the column before.
+                let (above, here) = self.shadow.split_at_mut(start);
+                let above = &above[start.saturating_sub(width)..];
+                let above = above[columns.start.min(above.len())..].iter().take(columns.len());
+                let corners = &self.corners[start..][columns.clone()];
+                let mut sum = 0_i32;
+                for ((shadow, above), corner) in here[columns.clone()].iter_mut().zip(above).zip(corners) {
+                    sum = sum.wrapping_add(*corner);
+                    *shadow = above.wrapping_add(sum);
                 }
             }
         }
     }
 
-    /// Shadow at a place, and the way in which it falls off fastest (not normalised).
-    pub(crate) fn sample(&self, p: DVec3) -> (f64, DVec3) {
-        let Some([x, y, z]) = self.inside(p) else { return (0.0, DVec3::ZERO) };
-        let i = (y * self.dims[2] + z) * self.dims[0] + x;
+    /// The number of the voxel of a place, [`OUTSIDE`] if it or what it shades sideways lies beyond the grid.
+    pub(crate) fn voxel_of(&self, p: DVec3) -> u32 {
+        let row = self.inside(p).map(|[x, y, z]| (y * self.dims[2] + z) * self.dims[0] + x);
+        row.and_then(|i| u32::try_from(i).ok()).unwrap_or(OUTSIDE)
+    }
+
+    /// Shadow in a voxel; none in [`OUTSIDE`].
+    #[inline]
+    pub(crate) fn shade(&self, voxel: u32) -> f64 {
+        f64::from(self.shadow.get(voxel as usize).copied().unwrap_or(0)) / UNIT
+    }
+
+    /// The way in which the shadow falls off fastest around a voxel (not normalised).
+    pub(crate) fn slope(&self, voxel: u32) -> DVec3 {
+        if voxel == OUTSIDE {
+            return DVec3::ZERO;
+        }
+        let i = voxel as usize;
         let layer = self.dims[2] * self.dims[0];
         let at = |i: usize| f64::from(self.shadow.get(i).copied().unwrap_or(0)) / UNIT;
         let below = i.checked_sub(layer).map_or(0.0, at);
-        let slope = DVec3::new(
-            at(i - 1) - at(i + 1),
-            below - at(i + layer),
-            at(i - self.dims[0]) - at(i + self.dims[0]),
-        );
-        (at(i), slope)
+        DVec3::new(at(i - 1) - at(i + 1), below - at(i + layer), at(i - self.dims[0]) - at(i + self.dims[0]))
     }
 
     /// What one joint adds to its own voxel: a.
@@ -106,10 +191,11 @@ impl ShadowGrid {
     }
 
     fn voxel(&self, p: DVec3) -> [i64; 3] {
-        (p / self.voxel_m).floor().to_array().map(|c| {
+        (p / self.voxel_m).to_array().map(|c| {
+            let c = c.clamp(-1e12, 1e12);
             #[expect(clippy::cast_possible_truncation, reason = "clamped before")]
-            let v = c.clamp(-1e12, 1e12) as i64;
-            v
+            let towards_zero = c as i64;
+            towards_zero - i64::from((towards_zero as f64) > c)
         })
     }
 
@@ -128,6 +214,13 @@ impl ShadowGrid {
     }
 }
 
+/// Nothing yet.
+const NONE: Range<usize> = Range { start: usize::MAX, end: 0 };
+
+fn stretch(range: &mut Range<usize>, from: usize, to: usize) {
+    (range.start, range.end) = (range.start.min(from), range.end.max(to));
+}
+
 #[expect(clippy::cast_possible_truncation, reason = "clamped before")]
 fn whole(x: f64) -> i32 {
     x.clamp(0.0, 1e9) as i32
@@ -141,41 +234,90 @@ fn signed(n: usize) -> i64 {
 mod tests {
     use super::*;
 
+    fn shade(grid: &ShadowGrid, p: DVec3) -> f64 {
+        grid.shade(grid.voxel_of(p))
+    }
+
     #[test]
     fn one_joint_darkens_a_pyramid_below_it() {
         let mut grid = ShadowGrid::new(1.0, 0.5, 2.0, 3);
         let at = DVec3::new(0.5, 10.5, 0.5);
-        grid.cover(at, at);
-        grid.add(at, 1);
+        grid.cover(at - DVec3::splat(6.0), at + DVec3::splat(6.0));
+        grid.add(grid.voxel_of(at), 1);
+        grid.spread();
         for q in -2..=5_i32 {
             for dx in -5..=5_i32 {
                 for dz in -5..=5_i32 {
                     let p = at + DVec3::new(f64::from(dx), f64::from(-q), f64::from(dz));
                     let lit = !(0..=3).contains(&q) || dx.abs() > q || dz.abs() > q;
                     let want = if lit { 0.0 } else { 0.5 / f64::from(1 << q) };
-                    assert!((grid.sample(p).0 - want).abs() < 1e-6, "{dx} {q} {dz}");
+                    assert!((shade(&grid, p) - want).abs() < 1e-6, "{dx} {q} {dz}");
                 }
             }
         }
-        let (_, slope) = grid.sample(at - DVec3::Y);
+        let slope = grid.slope(grid.voxel_of(at - DVec3::Y));
         assert!(slope.y.abs() > slope.x.abs(), "{slope}");
-        grid.add(at, -1);
-        assert!(grid.shadow.iter().all(|&s| s == 0), "exactly reversible");
+        grid.add(grid.voxel_of(at), -1);
+        grid.spread();
+        assert!(grid.shadow.iter().chain(&grid.corners).all(|&s| s == 0), "exactly reversible");
+    }
+
+    #[test]
+    fn many_joints_shade_as_each_would_alone() {
+        let mut s = base::Seed::new(3).stream(base::Draw::Test);
+        let mut grid = ShadowGrid::new(0.3, 0.1, 1.8, 5);
+        let joints: Vec<DVec3> =
+            (0..200).map(|_| DVec3::new(s.normal(), s.range(0.0, 4.0), s.normal())).collect();
+        // In four years, of which each covers more, and every third joint is shed again.
+        for year in joints.chunks(50) {
+            let (lo, hi) = year.iter().fold((year[0], year[0]), |(lo, hi), p| (lo.min(*p), hi.max(*p)));
+            grid.cover(lo, hi);
+            year.iter().for_each(|&p| grid.add(grid.voxel_of(p), 1));
+            grid.spread();
+            year.iter().step_by(3).for_each(|&p| grid.add(grid.voxel_of(p), -1));
+        }
+        grid.spread();
+        let left: Vec<[i64; 3]> = joints
+            .chunks(50)
+            .flat_map(|year| year.iter().enumerate().filter(|(i, _)| i % 3 > 0))
+            .map(|(_, p)| grid.voxel(*p))
+            .collect();
+        let mut dark = 0;
+        for _ in 0..500 {
+            let p = DVec3::new(s.normal(), s.range(-1.0, 4.0), s.normal());
+            let at = grid.voxel(p);
+            if grid.voxel_of(p) == OUTSIDE {
+                continue;
+            }
+            let want: i64 = left
+                .iter()
+                .filter_map(|j| {
+                    let q = usize::try_from(j[1] - at[1]).ok().filter(|q| *q <= 5)?;
+                    let aside = (j[0] - at[0]).abs().max((j[2] - at[2]).abs());
+                    (aside <= signed(q)).then(|| i64::from(grid.falling[q]))
+                })
+                .sum();
+            assert_eq!(shade(&grid, p), want as f64 / UNIT, "{p}");
+            dark += usize::from(want > 0);
+        }
+        assert!(dark > 200, "{dark}");
     }
 
     #[test]
     fn shadows_stay_where_they_are_when_the_grid_grows() {
         let mut grid = ShadowGrid::new(0.5, 0.1, 1.8, 4);
         let at = DVec3::new(0.1, 3.0, -0.2);
-        grid.cover(at, at);
-        grid.add(at, 1);
+        assert!(grid.cover(at, at) && !grid.cover(at, at));
+        grid.add(grid.voxel_of(at), 1);
+        grid.spread();
         let below = at - DVec3::new(0.4, 0.9, 0.3);
-        let before = grid.sample(below).0;
+        let before = shade(&grid, below);
         assert!(before > 0.0);
-        grid.cover(at - DVec3::splat(9.0), at + DVec3::splat(20.0));
-        assert_eq!(grid.sample(below).0, before);
-        grid.cover(DVec3::splat(-1e9), DVec3::splat(1e9));
-        assert_eq!(grid.sample(below).0, before, "too large a grid is not made");
-        grid.add(DVec3::splat(1e9), 1);
+        assert!(grid.cover(at - DVec3::splat(9.0), at + DVec3::splat(20.0)));
+        grid.spread();
+        assert_eq!(shade(&grid, below), before);
+        assert!(!grid.cover(DVec3::splat(-1e9), DVec3::splat(1e9)), "too large a grid is not made");
+        assert_eq!(shade(&grid, below), before);
+        grid.add(grid.voxel_of(DVec3::splat(1e9)), 1);
     }
 }

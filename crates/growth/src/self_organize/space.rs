@@ -3,7 +3,7 @@
 use geom::Grid3;
 use glam::DVec3;
 
-use super::grove::{Grove, NONE};
+use super::grove::{Grove, Kept, NONE, WAITS};
 
 /// Nobody's marker.
 const FREE: u32 = u32::MAX;
@@ -22,6 +22,8 @@ pub(super) struct Space {
     /// Sum of directions of each bud: `1 + per_node` rows a joint, the terminal bud first.
     sum: Vec<DVec3>,
     stride: usize,
+    /// Where each axillary bud would grow.
+    bud_heading: Vec<DVec3>,
     near: Vec<usize>,
 }
 
@@ -38,8 +40,14 @@ impl Space {
             cos_half: base::ops::cos(half_angle),
             sum: Vec::new(),
             stride: 1,
+            bud_heading: Vec::new(),
             near: Vec::new(),
         }
+    }
+
+    /// Takes note of where the buds of the next joint would grow.
+    pub(super) fn set_buds(&mut self, headings: impl Iterator<Item = DVec3>) {
+        self.bud_heading.extend(headings);
     }
 
     /// Markers within the occupancy radius of new joints are gone for ever.
@@ -64,9 +72,9 @@ impl Space {
                 self.claim(grove.skeleton.position[j], grove.heading[j], j * self.stride);
             }
             for (i, k) in grove.bud_range(j).enumerate() {
-                if grove.waits[k] {
+                if grove.lateral[k] == WAITS {
                     let row = j * self.stride + 1 + i;
-                    self.claim(grove.skeleton.position[j], grove.bud_heading[k], row);
+                    self.claim(grove.skeleton.position[j], self.bud_heading[k], row);
                 }
             }
         }
@@ -97,11 +105,10 @@ impl Space {
         self.near = near;
     }
 
-    /// Mean Q of the buds of a joint that found room (1) or did not (0), and the way of the first that did.
-    pub(super) fn of_joint(&self, j: usize) -> (f64, DVec3) {
+    /// Q of the buds of a joint: 1 if any found room, 0 if none did.
+    pub(super) fn light_at(&self, j: usize) -> f64 {
         let rows = &self.sum[j * self.stride..(j + 1) * self.stride];
-        let found = rows.iter().find(|s| **s != DVec3::ZERO);
-        found.map_or((0.0, DVec3::ZERO), |s| (1.0, s.normalize_or_zero()))
+        if rows.iter().any(|s| *s != DVec3::ZERO) { 1.0 } else { 0.0 }
     }
 
     /// The way V of one bud.
@@ -111,13 +118,9 @@ impl Space {
         self.sum[row].normalize_or_zero()
     }
 
-    /// Forgets what the buds of shed joints found.
-    pub(super) fn keep(&mut self, stays: &[bool]) {
-        let mut row = 0;
-        let stride = self.stride;
-        self.sum.retain(|_| {
-            row += 1;
-            stays[(row - 1) / stride]
-        });
+    /// Forgets the buds of shed joints and what they found.
+    pub(super) fn keep(&mut self, kept: &Kept) {
+        kept.squeeze(&mut self.sum, self.stride);
+        kept.squeeze(&mut self.bud_heading, self.stride - 1);
     }
 }

@@ -21,25 +21,32 @@ fn vigour_is_shared_without_loss() {
     let mut grove = Grove::new(root, 1);
     let a = grove.grow(0, None, DVec3::Y, 1.0, 1);
     let b = grove.grow(a, None, DVec3::Y, 1.0, 1);
-    grove.waits[a] = true;
-    let c = grove.grow(a, Some(a), DVec3::X, 1.0, 2);
-    grove.waits[b] = true;
-    grove.waits[c] = true;
+    grove.grow(a, Some(a), DVec3::X, 1.0, 2);
     let light = [0.0, 0.0, 0.8, 0.3];
     for sharing in [Sharing::Fork { lambda: 0.5 }, Sharing::Rank { w_max: 1.0, w_min: 0.1, kappa: 2 }] {
         let mut flow = Flow::default();
         flow.gather(&grove, &light);
         assert!((flow.light[0] - 2.2).abs() < 1e-12 && flow.size[0] == 4.0, "{flow:?}");
-        flow.share(&grove, &light, 2.0, sharing);
-        let all: f64 = flow.terminal.iter().chain(&flow.axillary).sum();
-        assert!((all - 4.4).abs() < 1e-12, "{sharing:?}: {all}");
+        // A hundredth of it all is enough for every bud.
+        flow.share(&grove, &light, 200.0, sharing);
+        let all: f64 = flow.fed.iter().map(|f| f.vigour).sum();
+        assert!((all - 440.0).abs() < 1e-9, "{sharing:?}: {all}");
+        assert!(flow.fed.is_sorted_by_key(|f| f.joint) && flow.fed.len() == 4, "{sharing:?}: {:?}", flow.fed);
+        // The light of two buds is enough for two at most.
+        flow.share(&grove, &light, 0.9, sharing);
+        assert!(
+            flow.fed.len() < 3 && flow.fed.iter().all(|f| f.vigour > 0.99),
+            "{sharing:?}: {:?}",
+            flow.fed
+        );
     }
     let mut flow = Flow::default();
     flow.gather(&grove, &light);
     flow.share(&grove, &light, 2.0, Sharing::Fork { lambda: 0.6 });
     // At a: Q_m 1.6, Q_l 0.6; the main side gets .96 / (.96 + .24) of 4.4, its tip .6 / (.6 + .4) of that.
     let main = 4.4 * 0.96 / 1.2;
-    assert!((flow.terminal[b] - main * 0.6).abs() < 1e-12, "{flow:?}");
+    let tip = flow.fed.iter().find(|f| f.joint == b && f.bud.is_none());
+    assert!(tip.is_some_and(|f| (f.vigour - main * 0.6).abs() < 1e-12), "{flow:?}");
 }
 
 #[test]

@@ -13,5 +13,5 @@ pub(crate) use axes::{Part, Plans};
 pub(crate) use branch::{bend_by_light_and_weight, branch_depths};
 pub(crate) use flower::place_flower;
 pub(crate) use leaf::{LocalBlade, blade_key, leaf_shape, place_leaf};
-pub(crate) use scene::{Bearing, Scene, coloured};
+pub(crate) use scene::{Bearing, Scene, coloured, drawn_light};
 pub(crate) use solid::{place_fruit, place_thorn};

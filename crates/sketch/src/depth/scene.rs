@@ -102,7 +102,7 @@ impl Scene<'_> {
     pub(crate) fn tint(&self, key: u64, color: Option<[u8; 3]>) -> [f32; 3] {
         let mut s = self.seed.child(key).stream(Draw::Tint);
         let (light, warm) = (s.range(0.88, 1.12), s.range(-0.05, 0.05));
-        let drawn = color.filter(|&c| self.coloured && is_coloured(c)).map_or([1.0; 3], |c| c.map(linear));
+        let drawn = color.filter(|_| self.coloured).and_then(drawn_light).unwrap_or([1.0; 3]);
         let varied = [light * (1.0 + warm), light, light * (1.0 - warm)];
         #[expect(clippy::cast_possible_truncation, reason = "a colour")]
         [0, 1, 2].map(|i| (drawn[i] * varied[i]) as f32)
@@ -115,6 +115,11 @@ pub(crate) fn coloured(mut colors: impl Iterator<Item = [u8; 3]> + Clone) -> boo
     let Some(first) = colors.next() else { return false };
     let other = colors.clone().any(|c| c.iter().zip(&first).any(|(a, b)| a.abs_diff(*b) > 24));
     other && (is_coloured(first) || colors.any(is_coloured))
+}
+
+/// The linear light of a colour that something was drawn in; `None` for ink: black, grey or white.
+pub(crate) fn drawn_light(color: [u8; 3]) -> Option<[f64; 3]> {
+    is_coloured(color).then(|| color.map(linear))
 }
 
 /// Not black, grey or white.

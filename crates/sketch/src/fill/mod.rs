@@ -25,6 +25,7 @@ use base::{Cancelled, Draw, Report, Run, Seed};
 use glam::{DVec2, DVec3};
 use plant::{AxisId, AxisKind, Phyllotaxis, Plant, Shape, ShapeId};
 
+use crate::depth::drawn_light;
 use crate::{FillSpec, LeafForm, PlantMap, Reading, RegionKind, RegionReading, SketchSpec};
 use crown::{Crown, Habit};
 use foliage::Foliage;
@@ -53,6 +54,8 @@ pub(crate) struct FillContext<'a> {
     pub(crate) templates: &'a [ShapeId],
     /// A tree rather than a herb.
     pub(crate) woody: bool,
+    /// Drawn with coloured pens: leaves take the colour of their contour.
+    pub(crate) coloured: bool,
 }
 
 /// Fills every region of the reading with twigs and leaves, borne by the plant's axes.
@@ -104,6 +107,7 @@ pub(crate) fn fill(
         let seed = ctx.seed.child(bearer).child(rank);
         lay(plant, &mut volume, &bearers, region.kind);
         let spec = tame(ctx.spec.fill);
+        let first = plant.organs.len();
         let mut look = Look { forms: &mut forms, drawn: &drawn, natural, share, seed, spec };
         let (axes, leaves) = match region.kind {
             RegionKind::Twigs => {
@@ -125,6 +129,13 @@ pub(crate) fn fill(
                     .grow(plant)
             }
         };
+        if let Some(light) = region.color.filter(|_| ctx.coloured).and_then(drawn_light) {
+            for organ in &mut plant.organs[first..] {
+                #[expect(clippy::cast_possible_truncation, reason = "colours are f32")]
+                let light = light.map(|x| x as f32);
+                organ.tint = [0, 1, 2].map(|i| organ.tint[i] * light[i]);
+            }
+        }
         if axes + leaves == 0 {
             report.warn("contour-empty", format!("nothing could grow in contour {}", row + 1));
         }

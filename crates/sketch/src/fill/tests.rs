@@ -92,8 +92,15 @@ pub(super) fn grown(outline: Vec<DVec2>, kind: RegionKind, lines: &[Vec<DVec2>],
     let metres: Vec<DVec2> = outline.iter().map(|&p| map.plant_from_ink(p)).collect();
     let bearers = (0..lines.len()).collect();
     reading.regions.push(RegionReading { outline, kind, bearers, source: None, color: None });
-    let ctx =
-        FillContext { spec, seed: Seed::new(1), map, axis_of_reading: &axes, templates: &[], woody: true };
+    let ctx = FillContext {
+        spec,
+        seed: Seed::new(1),
+        map,
+        axis_of_reading: &axes,
+        templates: &[],
+        woody: true,
+        coloured: false,
+    };
     let mut report = Report::default();
     fill(&mut plant, &reading, &ctx, &Run::plain(), &mut report).expect("nobody cancels");
     // Of a crown drawn in one line with its trunk: without what is below the neck, which is the way to it.

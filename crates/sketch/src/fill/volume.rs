@@ -424,17 +424,13 @@ impl Volume {
                 let mut best = self.nearest[i];
                 let mut best_d = best.distance_squared(c);
                 for dy in -1_isize..=1 {
-                    for dx in -1_isize..=1 {
-                        let (Some(jx), Some(jy)) = (ix.checked_add_signed(dx), iy.checked_add_signed(dy))
-                        else {
-                            continue;
-                        };
-                        if jx < self.nx && jy < self.ny {
-                            let q = self.nearest[jy * self.nx + jx];
-                            let d = q.distance_squared(c);
-                            if d < best_d {
-                                (best, best_d) = (q, d);
-                            }
+                    let Some(jy) = iy.checked_add_signed(dy).filter(|&jy| jy < self.ny) else { continue };
+                    let row = jy * self.nx;
+                    let near = row + ix.saturating_sub(1)..=row + (ix + 1).min(self.nx - 1);
+                    for &q in &self.nearest[near] {
+                        let d = q.distance_squared(c);
+                        if d < best_d {
+                            (best, best_d) = (q, d);
                         }
                     }
                 }

@@ -1,6 +1,9 @@
 //! One leaf or petal: outline, root, tip, midrib (methods 1.7).
 
-use geom::{closest_on_polyline, medial_axis_width, resample, simple_outline, simplify, smooth_gaussian};
+use geom::{
+    closest_on_polyline, contains, medial_axis_width, resample, signed_area, simple_outline, simplify,
+    smooth_gaussian,
+};
 use glam::DVec2;
 
 use super::near::bounds;
@@ -31,6 +34,8 @@ pub(super) struct Sheetlet {
     pub(super) leaf: bool,
     /// Stroke of the ink that it came from.
     pub(super) stroke: usize,
+    /// The midrib, where margin and midrib are one stroke.
+    pub(super) rib: Option<Vec<DVec2>>,
     /// Longest diameter.
     pub(super) size: f64,
     /// Mean of the outline's points.
@@ -44,7 +49,7 @@ impl Sheetlet {
         let (first, last) = (*line.first()?, *line.last()?);
         let (lo, hi) = bounds(&outline)?;
         let size = lo.distance(hi);
-        let area = geom::signed_area(&outline);
+        let area = signed_area(&outline);
         // Thinner than 1 in 60 is a line that was drawn there and back.
         if area <= size * size / 120.0 {
             return None;
@@ -60,10 +65,21 @@ impl Sheetlet {
             gap_width: first.distance(last),
             root: None,
             leaf: false,
+            rib: None,
             outline,
             stroke,
             size,
         })
+    }
+
+    /// From margin and midrib in one go; `None` where it is nothing of the kind.
+    pub(super) fn with_rib(line: &[DVec2], stroke: usize) -> Option<Self> {
+        let margin = first_round(line);
+        let blade = Self::new(margin, stroke).filter(|_| margin.len() < line.len())?;
+        let from_start = margin.as_ptr() == line.as_ptr();
+        let rest = if from_start { &line[margin.len()..] } else { &line[..line.len() - margin.len()] };
+        let inside = rest.iter().filter(|p| contains(&blade.outline, **p)).count();
+        (inside * 5 > rest.len() * 4).then(|| Self { rib: Some(rest.to_vec()), ..blade })
     }
 
     /// A lens round a line: a frond or grass blade that was drawn as one stroke of the pen. `None` for a line
@@ -112,6 +128,24 @@ pub(super) fn nearest_on_ring(outline: &[DVec2], p: DVec2) -> (DVec2, f64) {
 /// Fewer points where a line is straight: outlines are compared point by point.
 fn tidy(line: &[DVec2]) -> Vec<DVec2> {
     simplify(line, 0.0006)
+}
+
+/// The round of a line that comes back to where it began and goes on for a good way, or that begins a good way before
+/// where it ends; of the two the larger round. All of it where there is none.
+pub(super) fn first_round(points: &[DVec2]) -> &[DVec2] {
+    let n = points.len();
+    let size = bounds(points).map_or(0.0, |(lo, hi)| lo.distance(hi));
+    // Ink is sampled evenly: a share of the points is a share of the length. A midrib is at least a sixth of it.
+    let nearest = |from: DVec2, range: core::ops::Range<usize>| {
+        range
+            .map(|k| (k, points[k].distance(from)))
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .filter(|&(_, d)| d < 0.08 * size)
+    };
+    let ahead = nearest(points[0], n / 2..n * 5 / 6).map(|(k, _)| &points[..=k]);
+    let back = nearest(points[n - 1], n / 6..n / 2).map(|(k, _)| &points[k..]);
+    let area = |round: &&[DVec2]| signed_area(round).abs();
+    ahead.into_iter().chain(back).max_by(|a, b| area(a).total_cmp(&area(b))).unwrap_or(points)
 }
 
 /// Splits a blade's stroke into the closed part and loose ends that are stalks or stems (drawn in one go).

@@ -247,6 +247,11 @@ impl<'a> Draft<'a> {
         // Closed by itself, with or without a stalk; or so open that it may be one side of a leaf.
         let mut open = Vec::new();
         for k in strokes {
+            if let Some(blade) = Sheetlet::with_rib(&ink.strokes[k].points, k) {
+                self.organ[k] = OrganWord::Leaf;
+                self.blades.push(blade);
+                continue;
+            }
             let (line, stalks) = split_stalks(&ink.strokes[k].points, 0.35);
             if stalks.is_empty() && gap(k) > 0.1 {
                 open.push(k);

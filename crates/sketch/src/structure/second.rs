@@ -6,7 +6,7 @@
 use geom::{contains, convex_hull, pca2, signed_area, simple_outline};
 use glam::DVec2;
 
-use super::blade::split_stalks;
+use super::blade::{first_round, split_stalks};
 use super::corolla::{dips, winding};
 use super::near::bounds;
 use super::outlines::neck;
@@ -17,6 +17,7 @@ use crate::{InkStroke, StrokeClass};
 /// Corrects what the whole drawing contradicts.
 pub(super) fn thoughts(draft: &mut Draft<'_>) {
     lone_leaf(draft);
+    leaf_with_its_midrib(draft);
     halves_of_a_leaf(draft);
     tree_in_one_stroke(draft);
     palm_in_one_stroke(draft);
@@ -146,6 +147,35 @@ fn halves_of_a_leaf(draft: &mut Draft<'_>) {
         });
         if shut && full && inner {
             ring.parts.iter().for_each(|&r| draft.class[parts[r]] = Blade);
+        }
+    }
+}
+
+/// Margin and midrib in one go, the pen comes back to where it began and goes on, and side veins across: a leaf, not
+/// a body with thorns.
+fn leaf_with_its_midrib(draft: &mut Draft<'_>) {
+    use StrokeClass::{Axis, Blade, Corolla, Crown, Disc, Pot, TrunkOutline, Vein};
+    if any(draft, &[Crown, Corolla, Blade, Disc, Pot]) || draft.class.len() > 60 {
+        return;
+    }
+    let lines: Vec<usize> = (0..draft.class.len())
+        .filter(|&k| [Axis, Vein].contains(&draft.class[k]) && unsure(draft, k))
+        .collect();
+    for k in draft.of_class(TrunkOutline) {
+        let all = &draft.ink.strokes[k].points;
+        let margin = first_round(all);
+        let (Some(outline), Some((lo, hi))) = (simple_outline(margin), bounds(margin)) else { continue };
+        let full = signed_area(&outline) > 0.7 * signed_area(&convex_hull(margin));
+        let inside = |&v: &usize| {
+            let p = &draft.ink.strokes[v].points;
+            contains(&outline, p[p.len() / 2])
+        };
+        let veins: Vec<usize> = lines.iter().copied().filter(inside).collect();
+        let whole = margin.len() < all.len() && full && lo.distance(hi) > 0.5;
+        if unsure(draft, k) && whole && veins.len() >= 2 {
+            draft.class[k] = Blade;
+            veins.into_iter().for_each(|v| draft.class[v] = Vein);
+            return;
         }
     }
 }

@@ -352,6 +352,23 @@ fn a_leaf_taken_for_a_body_is_seen_by_its_midrib_unless_the_user_says_so() {
 }
 
 #[test]
+fn margin_and_midrib_in_one_go_with_side_veins_are_a_leaf() {
+    let (margin, midrib) = (leaf((5.0, 0.0), (5.0, 10.0), 4.0), line((5.0, 0.0), (5.0, 10.0)));
+    let mut on_from_the_tip = leaf((5.0, 10.0), (5.0, 0.0), 4.0);
+    on_from_the_tip.splice(0..0, midrib.clone());
+    for outline in [[margin, midrib].concat(), on_from_the_tip] {
+        let veins = [3.0, 5.0, 7.0].map(|y| line((4.2, y), (5.8, y + 0.4)));
+        let strokes: Vec<_> = [outline].into_iter().chain(veins).collect();
+        let ink = clean(&Drawing::from_polylines("leaf", &strokes), &mut Report::default());
+        let class = |k| if k == 0 { StrokeClass::TrunkOutline } else { StrokeClass::Axis };
+        let classes = [0, 1, 2, 3].map(|k| Classified { class: class(k), confidence: 0.6 });
+        let r = read(&ink, &classes, &mut Report::default());
+        assert_eq!((r.leaves.len(), r.thorns.len()), (1, 0), "{r:?}");
+        assert!(r.strokes[1..].iter().all(|s| s.class == StrokeClass::Vein), "{:?}", r.strokes);
+    }
+}
+
+#[test]
 fn grass_is_neither_trunks_nor_a_crown() {
     let stalks: Vec<_> = (0..6).map(|i| line((f64::from(i), 0.0), (f64::from(i) + 0.3, 3.0))).collect();
     let ink = clean(&Drawing::from_polylines("grass", &stalks), &mut Report::default());

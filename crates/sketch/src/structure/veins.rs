@@ -19,7 +19,7 @@ pub(super) type Veins = Vec<Vec<Vec<DVec2>>>;
 /// A vein that runs on beyond its blade is its stalk out there.
 pub(super) fn collect(draft: &mut Draft<'_>) -> Veins {
     let boxes = Boxes::new(draft.blades.iter().map(|b| b.outline.as_slice()));
-    let mut veins: Veins = vec![Vec::new(); draft.blades.len()];
+    let mut veins: Veins = draft.blades.iter_mut().map(|b| b.rib.take().into_iter().collect()).collect();
     for class in [StrokeClass::Vein, StrokeClass::Axis] {
         // A line called an axis must lie in the blade as a whole.
         let share = if class == StrokeClass::Vein { 0.25 } else { 0.9 };
