@@ -27,8 +27,8 @@ pub(crate) fn run() -> Outcome {
     let list = list.map_err(|e| format!("cannot run {}: {e}", burgeon.display()))?;
     let list: Value = serde_json::from_slice(&list.stdout).map_err(|e| e.to_string())?;
     let mut table = String::from(
-        "| picture | species | growth | branches | leaves | triangles | growth, ms | meshes, ms |\n\
-         |---|---|---|---|---|---|---|---|\n",
+        "| picture | species | growth | branches | leaves | triangles |\n\
+         |---|---|---|---|---|---|\n",
     );
     for row in list.as_array().into_iter().flatten() {
         let word = |key: &str| row[key].as_str().unwrap_or_default();
@@ -44,9 +44,8 @@ pub(crate) fn run() -> Outcome {
             &["--size", "256x256", "--background", "transparent", "--no-shadow"],
         )?;
         shrink(&thumbnail, FEW)?;
-        let (counts, growth, times) = (&item["counts"], &item["growth"], &item["timings_ms"]);
+        let (counts, growth) = (&item["counts"], &item["growth"]);
         let n = |v: &Value, key: &str| grouped(v[key].as_u64().unwrap_or_default());
-        let ms = |key: &str| times[key].as_f64().unwrap_or_default();
         let points = match growth["attractors"].as_u64().unwrap_or_default() {
             0 => String::new(),
             _ => format!(", {} of {} points", n(growth, "consumed"), n(growth, "attractors")),
@@ -58,15 +57,13 @@ pub(crate) fn run() -> Outcome {
         let _ = writeln!(
             table,
             "| <img src=\"pictures/trees/{key}.png\" width=\"200\"> | **`{key}`** *{}*: {} | {}{points} | {} | {}{flowers} \
-             | {} | {:.0} | {:.0} |",
+             | {} |",
             word("species"),
             word("about"),
             word("method"),
             n(counts, "branches"),
             n(counts, "leaves"),
             n(counts, "triangles"),
-            ms("structure"),
-            ms("depth") + ms("mesh"),
         );
     }
     let page = root.join("docs/trees.md");
