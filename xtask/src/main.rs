@@ -5,6 +5,7 @@ mod gallery;
 mod layers;
 mod made_strokes;
 mod shell;
+mod species;
 mod studio;
 mod toolchain;
 mod train_strokes;
@@ -23,6 +24,7 @@ cargo xtask COMMAND
   build-web      builds the Studio as a folder of static files, apps/studio-web/dist
   test           sets up what the tests need and runs them all: native, WASM in Node, Khronos validator, Studio
   gallery        makes every fixture drawing and writes docs/gallery.md and docs/table1.md
+  species        grows every preset for docs/trees.md and the Studio's small pictures
   layers         checks that each crate uses only what ARCHITECTURE.md allows
   clippy-wasm    lints the core for wasm32
   train-strokes  trains the stroke classifier from its table (see docs/strokes.md)
@@ -39,6 +41,7 @@ fn main() -> ExitCode {
         Some("run") => run(rest),
         Some("test") => test(),
         Some("gallery") => gallery::run(),
+        Some("species") => species::run(),
         Some("layers") => layers::check(),
         Some("clippy-wasm") => toolchain::clippy_wasm(),
         Some("train-strokes") => train_strokes::run(rest),

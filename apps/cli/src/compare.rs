@@ -5,7 +5,10 @@ use std::path::PathBuf;
 use burgeon::formats::{ExportSpec, ModelFormat};
 use burgeon::render::{Picture, View};
 use burgeon::skin::SkinSpec;
-use burgeon::{OAK_METHODS, PAPER_OAKS, PaperOak, Preset, Report, Seed, TreeOptions, make_tree, tree_size};
+use burgeon::{
+    MadeTree, OAK_METHODS, PAPER_OAKS, PaperOak, Preset, Report, Seed, TreeOptions, TreeSpec, make_tree,
+    tree_size,
+};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
@@ -59,6 +62,10 @@ struct Row {
     vertices: u64,
     triangles: u64,
     leaves: u64,
+    /// One side of all blades.
+    leaf_area_m2: f64,
+    /// Wood of trunk and branches as the pipe model has it.
+    wood_m3: f64,
     /// Growth, wood, leaves and meshes.
     seconds: f64,
     /// As binary glTF with textures.
@@ -92,8 +99,9 @@ struct Comparison {
     notes: &'static str,
 }
 
-const NOTES: &str = "All three stand at one height; crown is the mean width of the branches; leaves have one form and size. \
-                     Seconds are growth, wood, leaves and meshes on this machine; the paper's are on its own.";
+const NOTES: &str = "All three stand at one height with one number of leaves of one form and size (the best lit of each, as many \
+                     as the tree with fewest has), and with one thickness of trunks and twigs; crown is the mean width of \
+                     the branches. Seconds are growth, wood, leaves and meshes on this machine; the paper's are on its own.";
 
 pub(crate) fn compare(args: &CompareArgs) -> Outcome {
     let CompareWord::Oak = args.what;
@@ -104,11 +112,19 @@ pub(crate) fn compare(args: &CompareArgs) -> Outcome {
         picture::check_name(png)?;
     }
     let made = machine.with_progress("compare", |progress| {
-        progress.expect(OAK_METHODS.len());
+        progress.expect(2 * OAK_METHODS.len());
+        let mut oaks = Vec::new();
+        for &(method, key) in &OAK_METHODS {
+            oaks.push(Oak::new(args, &machine, method, key)?);
+            progress.reached(oaks.len());
+        }
+        // Leaves for leaves: each tree keeps as many of its best lit ones as the one with fewest has.
+        let fewest = oaks.iter().map(|o| o.leaves).min().unwrap_or(0);
         let mut made = Vec::new();
-        for (&(method, preset), paper) in OAK_METHODS.iter().zip(PAPER_OAKS) {
-            made.push(oak(args, &machine, method, preset, paper)?);
-            progress.reached(made.len());
+        for (mut oak, paper) in oaks.into_iter().zip(PAPER_OAKS) {
+            oak.keep(fewest);
+            made.push(oak.row(args, &machine, paper)?);
+            progress.reached(OAK_METHODS.len() + made.len());
         }
         Outcome::Ok(made)
     })?;
@@ -130,78 +146,101 @@ pub(crate) fn compare(args: &CompareArgs) -> Outcome {
     report::finish_any(&comparison, &args.common)
 }
 
-fn oak(
-    args: &CompareArgs,
-    machine: &Machine,
+/// One of the oaks, grown once: so textures are painted before a clock starts, and its leaves are counted.
+struct Oak {
     method: &'static str,
     key: &'static str,
-    paper: PaperOak,
-) -> Outcome<(Row, Option<Picture>)> {
-    let bug = |e: &dyn std::fmt::Display| Failure::Bug(format!("preset {key}: {e}"));
-    let preset = Preset::find(key).ok_or_else(|| bug(&"is missing"))?;
-    let spec = preset.spec().map_err(|e| bug(&e))?;
-    let options = TreeOptions {
-        skin: SkinSpec { detail: args.detail, ..SkinSpec::default() },
-        height_m: Some(args.height),
-        ..TreeOptions::default()
-    };
-    let make = || make_tree(&spec, Seed::new(args.seed), &options, &machine.run());
-    // Once before the clock starts: textures are painted on first use only.
-    make().map_err(|e| cancelled_or(e, &bug))?;
-    let (made, ms) = machine.timed(make);
-    let made = made.map_err(|e| cancelled_or(e, &bug))?;
-    let mut bytes = Vec::new();
-    let (axes, mut told) = (ExportSpec::default(), Report::default());
-    burgeon::formats::write_model(&made.model, ModelFormat::Glb, &axes, &mut bytes, &mut told)
-        .map_err(|e| bug(&e))?;
-    let picture = match &args.png {
-        Some(_) => {
-            let picture = burgeon::render::PictureSpec { view: View::Front, ..args.picture.spec(args.seed) };
-            Some(burgeon::render::render(&made.model, &picture, &machine.run())?)
-        }
-        None => None,
-    };
-    let size = tree_size(&made.grown);
-    let counts = made.item.counts;
-    let row = Row {
-        method,
-        preset: key,
-        height_m: size.height_m,
-        crown_m: size.crown_m,
-        nodes: counts.nodes,
-        branches: counts.branches,
-        vertices: counts.vertices,
-        triangles: counts.triangles,
-        leaves: counts.leaves,
-        seconds: ms / 1000.0,
-        bytes: bytes.len() as u64,
-        digest: made.item.digest,
-        paper: paper.into(),
-    };
-    Ok((row, picture))
+    spec: TreeSpec,
+    leaves: u64,
 }
 
-fn cancelled_or(error: burgeon::TreeError, bug: &dyn Fn(&dyn std::fmt::Display) -> Failure) -> Failure {
+impl Oak {
+    fn new(args: &CompareArgs, machine: &Machine, method: &'static str, key: &'static str) -> Outcome<Self> {
+        let preset = Preset::find(key).ok_or_else(|| Failure::Bug(format!("preset {key}: is missing")))?;
+        let spec = preset.spec().map_err(|e| cancelled_or(e, key))?;
+        let mut oak = Self { method, key, spec, leaves: 0 };
+        oak.leaves = oak.made(args, machine)?.item.counts.leaves;
+        Ok(oak)
+    }
+
+    fn made(&self, args: &CompareArgs, machine: &Machine) -> Outcome<MadeTree> {
+        let options = TreeOptions {
+            skin: SkinSpec { detail: args.detail, ..SkinSpec::default() },
+            height_m: Some(args.height),
+            ..TreeOptions::default()
+        };
+        let made = make_tree(&self.spec, Seed::new(args.seed), &options, &machine.run());
+        made.map_err(|e| cancelled_or(e, self.key))
+    }
+
+    /// Leaves so many leaves that `count` stay.
+    fn keep(&mut self, count: u64) {
+        let keep = &mut self.spec.leaves.leaf_keep;
+        *keep = (*keep * count as f64 / self.leaves.max(1) as f64).min(1.0);
+    }
+
+    fn row(&self, args: &CompareArgs, machine: &Machine, paper: PaperOak) -> Outcome<(Row, Option<Picture>)> {
+        let (made, ms) = machine.timed(|| self.made(args, machine));
+        let made = made?;
+        let mut bytes = Vec::new();
+        let (axes, mut told) = (ExportSpec::default(), Report::default());
+        burgeon::formats::write_model(&made.model, ModelFormat::Glb, &axes, &mut bytes, &mut told)
+            .map_err(|e| Failure::Bug(format!("preset {}: {e}", self.key)))?;
+        let picture = match &args.png {
+            Some(_) => {
+                let picture =
+                    burgeon::render::PictureSpec { view: View::Front, ..args.picture.spec(args.seed) };
+                Some(burgeon::render::render(&made.model, &picture, &machine.run())?)
+            }
+            None => None,
+        };
+        let size = tree_size(&made.grown);
+        let counts = made.item.counts;
+        let measures = made.grown.plant.measure();
+        let row = Row {
+            method: self.method,
+            preset: self.key,
+            height_m: size.height_m,
+            crown_m: size.crown_m,
+            nodes: counts.nodes,
+            branches: counts.branches,
+            vertices: counts.vertices,
+            triangles: counts.triangles,
+            leaves: counts.leaves,
+            leaf_area_m2: measures.leaf_area_m2,
+            wood_m3: measures.wood_volume_m3,
+            seconds: ms / 1000.0,
+            bytes: bytes.len() as u64,
+            digest: made.item.digest,
+            paper: paper.into(),
+        };
+        Ok((row, picture))
+    }
+}
+
+fn cancelled_or(error: burgeon::TreeError, key: &str) -> Failure {
     match error {
         burgeon::TreeError::Cancelled(_) => Failure::Cancelled,
-        other => bug(&other),
+        other => Failure::Bug(format!("preset {key}: {other}")),
     }
 }
 
 fn table(rows: &[Row]) {
     say::line(&format!(
-        "{:<20}{:>8}{:>8}{:>11}{:>11}{:>9}{:>10}{:>12}   paper: vertices, triangles, seconds",
-        "method", "height", "crown", "vertices", "triangles", "leaves", "seconds", "bytes"
+        "{:<20}{:>8}{:>8}{:>9}{:>8}{:>9}{:>10}{:>10}{:>9}{:>12}   paper: vertices, triangles, seconds",
+        "method", "height", "crown", "leaves", "area", "wood", "vertices", "triangles", "seconds", "bytes"
     ));
     for r in rows {
         say::line(&format!(
-            "{:<20}{:>6.1} m{:>6.1} m{:>11}{:>11}{:>9}{:>10.3}{:>12}   {:.1}k, {:.1}k, {:.0}",
+            "{:<20}{:>6.1} m{:>6.1} m{:>9}{:>5.0} m2{:>6.2} m3{:>10}{:>10}{:>9.3}{:>12}   {:.1}k, {:.1}k, {:.0}",
             r.method,
             r.height_m,
             r.crown_m,
+            say::grouped(r.leaves),
+            r.leaf_area_m2,
+            r.wood_m3,
             say::grouped(r.vertices),
             say::grouped(r.triangles),
-            say::grouped(r.leaves),
             r.seconds,
             say::grouped(r.bytes),
             r.paper.vertices_k,

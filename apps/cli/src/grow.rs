@@ -10,8 +10,8 @@ use burgeon::growth::{
 use burgeon::mesh::Model;
 use burgeon::skin::SkinSpec;
 use burgeon::{
-    ItemReport, MadeTree, NamedMesh, Preset, Report, RunReport, Seed, TreeError, TreeOptions, TreeSpec,
-    make_tree, method_word, read_tree_spec,
+    ItemReport, LeafTemplate, MadeTree, NamedMesh, Preset, Report, RunReport, Seed, TreeError, TreeOptions,
+    TreeSpec, make_tree, method_word, read_tree_spec,
 };
 use clap::{Args, ValueEnum};
 
@@ -57,7 +57,8 @@ const GROW_EXAMPLES: &str = "Examples:
   burgeon grow oak -o oak.glb --png oak.png
   burgeon grow pine -o pine.glb --leaf-keep 0.4 --lods 3         pine.glb, pine-lod1.glb, ...
   burgeon grow oak -o oak.glb --obstacle house.obj               around a house
-  burgeon grow birch -o young.glb --age 12
+  burgeon grow alder -o young.glb --age 12
+  burgeon grow oak -o oak.glb --leaf-template leaf.csv           with a leaf of your own (burgeon leaf --help)
   burgeon grow oak -o oak.mtg --qsm oak.csv --report oak.json    structure and measures for programs of the field
   burgeon grow --attractors scan.xyz --root 0,0,0 --influence 1 --kill 0.4 -o tree.glb
   burgeon presets --show oak > mine.toml; burgeon grow mine.toml -o mine.glb";
@@ -73,6 +74,10 @@ pub(crate) struct GrowthArgs {
     /// A solid mesh (.glb, .gltf, .obj, .ply, .stl) to grow around; may be given several times.
     #[arg(long, value_name = "MESH")]
     pub(crate) obstacle: Vec<PathBuf>,
+    /// A leaf that the tree bears instead of its own: marks (.csv), a vein graph (.json) or a model of one leaf (.glb,
+    /// .obj, .ply, .stl) with its root at the origin.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) leaf_template: Option<PathBuf>,
     /// Share of the leaves kept, the best lit ones, 0 to 1 [default: the preset's, mostly 1].
     #[arg(long, value_name = "F", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 0.0, 1.0))]
     pub(crate) leaf_keep: Option<f64>,
@@ -106,7 +111,7 @@ pub(crate) struct PointsArgs {
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Surface")]
 pub(crate) struct TreeSurfaceArgs {
-    /// Fineness of the meshes, 0.1 to 8; triangle counts grow in proportion.
+    /// Fineness of the meshes, 0.1 to 8; triangle counts grow in proportion. At 1 a crown's leaf has 6 to 24.
     #[arg(long, value_name = "X", default_value_t = 1.0, allow_hyphen_values = true,
           value_parser = |s: &str| ranged(s, 0.1, 8.0))]
     pub(crate) detail: f64,
@@ -170,6 +175,7 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
         ("--report", args.common.report.as_ref()),
     ];
     let inputs = args.what.iter().chain(&args.growth.obstacle).chain(&args.points.attractors);
+    let inputs = inputs.chain(&args.growth.leaf_template);
     output::check_outputs(&outputs, &inputs.collect::<Vec<_>>())?;
     let format = args.output.as_deref().map(files::plant_writable).transpose()?;
     if let Some(png) = &args.png {
@@ -177,7 +183,8 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     }
     let mut told = Report::default();
     let (spec, read_ms) = machine.timed(|| asked(args, &mut told));
-    let spec = spec?;
+    let mut spec = spec?;
+    let leaf = leaf_of(args, &mut spec, &machine)?;
     let seed = Seed::new(args.seed);
     let options = TreeOptions {
         skin: SkinSpec {
@@ -186,6 +193,7 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
             textures: !args.surface.no_textures,
             ..SkinSpec::default()
         },
+        leaf,
         lods: if matches!(format, Some(PlantFormat::Model(_))) { args.surface.lods } else { 0 },
         ..TreeOptions::default()
     };
@@ -310,6 +318,16 @@ fn asked(args: &GrowArgs, told: &mut Report) -> Outcome<TreeSpec> {
     }
     spec.age = args.growth.age.or(spec.age);
     Ok(spec)
+}
+
+/// The leaf of --leaf-template, or the one that the spec names, beside the spec or by its full path.
+fn leaf_of(args: &GrowArgs, spec: &mut TreeSpec, machine: &Machine) -> Outcome<Option<LeafTemplate>> {
+    let named = spec.blade.file.take().map(|file| {
+        let folder = args.what.as_deref().and_then(Path::parent).unwrap_or_else(|| Path::new(""));
+        folder.join(file)
+    });
+    let path = args.growth.leaf_template.clone().or(named);
+    path.map(|p| crate::leaf::template_of(&p, args.seed, machine)).transpose()
 }
 
 /// A preset by its key, or a file.

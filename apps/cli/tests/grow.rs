@@ -89,7 +89,7 @@ fn one_preset_of_each_method_grows_and_is_drawn() {
     for (preset, method, age) in [
         ("terminalia", "competition", "400"),
         ("oak-colonization", "colonization", "30"),
-        ("lime", "self-organizing", "10"),
+        ("alder", "self-organizing", "10"),
         ("palm", "lsystem", "60"),
     ] {
         let (model, png) = (format!("{preset}.glb"), format!("{preset}.png"));
@@ -331,7 +331,26 @@ fn presets_are_listed_shown_and_described() {
     assert_eq!((clearance["x-unit"].as_str(), clearance["default"].as_f64()), (Some("m"), Some(0.05)));
     assert_eq!((clearance["minimum"].as_f64(), clearance["maximum"].as_f64()), (Some(0.0), Some(1e6)));
     assert!(clearance["description"].as_str().unwrap().contains("obstacles"));
-    assert!(bad(&at, &["presets", "--show", "rose"]).contains("rose"));
+    assert!(bad(&at, &["presets", "--show", "fern"]).contains("fern"));
+}
+
+#[test]
+fn a_leaf_of_your_own_is_borne() {
+    let at = folder("grow-leaf");
+    let leaf = format!("{}/../../fixtures/leaves/leaf1.csv", env!("CARGO_MANIFEST_DIR"));
+    fs::copy(&leaf, at.join("leaf.csv")).unwrap();
+    let digest = |args: &[&str]| item(&at, args)["digest"].as_str().unwrap().to_owned();
+    let (own, given) =
+        (digest(&["hazel", "-o", "a.glb"]), digest(&["hazel", "-o", "b.glb", "--leaf-template", &leaf]));
+    assert_ne!(own, given);
+    let (toml, _) = good(&at, &["presets", "--show", "hazel"]);
+    spec(&at, "mine.toml", &toml.replace("[blade]", "[blade]\nfile = \"leaf.csv\""));
+    assert_eq!(digest(&["mine.toml", "-o", "c.glb"]), given, "a spec names its leaf beside itself");
+    spec(&at, "lost.toml", &toml.replace("[blade]", "[blade]\nfile = \"none.csv\""));
+    assert!(bad(&at, &["grow", "lost.toml", "-o", "d.glb"]).contains("none.csv"));
+    let error = bad(&at, &["grow", "hazel", "-o", "d.glb", "--leaf-template", "mine.toml"]);
+    assert!(error.contains("mine.toml"), "{error}");
+    assert!(!at.join("d.glb").exists());
 }
 
 #[test]
@@ -357,6 +376,13 @@ fn oaks_are_compared_at_one_height() {
         assert!((row["height_m"].as_f64().unwrap() - 10.0).abs() < 1e-6, "{row}");
         assert!(row["leaves"].as_u64() > Some(1000) && row["bytes"].as_u64() > Some(100_000), "{row}");
         assert!(row["paper"]["triangles_k"].as_f64() > Some(100.0));
+    }
+    for key in ["leaves", "leaf_area_m2", "wood_m3"] {
+        let all: Vec<f64> = rows.iter().map(|r| r[key].as_f64().unwrap()).collect();
+        let (least, most) =
+            (all.iter().copied().fold(f64::MAX, f64::min), all.iter().copied().fold(0.0, f64::max));
+        let (slack, even) = if key == "wood_m3" { (3.0, "like") } else { (1.03, "one") };
+        assert!(least > 0.0 && most < slack * least, "{even} {key}: {all:?}");
     }
     let crowns: Vec<f64> = rows.iter().map(|r| r["crown_m"].as_f64().unwrap()).collect();
     let (least, most) =

@@ -15,8 +15,8 @@ mod wire;
 use burgeon::formats::{self, CloudFormat, DrawingFormat, ExportSpec};
 use burgeon::leaf::ScanSpec;
 use burgeon::{
-    Digest, ItemReport, LeafOptions, OpeningPlant, Report, Run, SceneEvaluator, Seed, SketchOptions, Unit, bloom,
-    make_from_sketch, make_leaf,
+    Digest, ItemReport, LeafOptions, OpeningPlant, Report, Run, SceneEvaluator, Seed, SketchOptions, Unit,
+    bloom, make_from_sketch, make_leaf,
 };
 use wasm_bindgen::prelude::*;
 

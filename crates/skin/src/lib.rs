@@ -12,7 +12,7 @@
 //! | `spec` | [`SkinSpec`], [`PetalColor`]; how triangles are shared out |
 //! | `spine`, `rings`, `tube` | smooth centre lines, cross-sections, [`tube`] |
 //! | `fork`, `axes` | fillets at forks; which axes are one tube |
-//! | `blade`, `body`, `organs` | [`blade_mesh`], [`BladeChart`]; discs, fruits, strands; placed copies |
+//! | `blade`, `lean`, `body`, `organs` | [`blade_mesh`], [`BladeChart`]; leaves of a crowd; discs, fruits, strands; placed copies |
 //! | `traced` | [`Traced`]: organs in the colours of a photograph |
 //! | `texture`, `parts` | painted textures, materials, parts |
 
@@ -21,6 +21,7 @@ mod axes;
 mod blade;
 mod body;
 mod fork;
+mod lean;
 mod organs;
 mod parts;
 mod rings;

@@ -7,6 +7,7 @@ use plant::{Organ, OrganKind, Plant, Shape};
 
 use crate::blade::blade_mesh;
 use crate::body::{dome, revolution, strand};
+use crate::lean::lean_mesh;
 use crate::parts::Slot;
 use crate::spec::{Budget, PetalColor, SkinSpec};
 use crate::traced::Traced;
@@ -69,6 +70,15 @@ pub(crate) fn organs(
         Ok((members[0].0, mesh))
     });
     meshes.into_iter().collect()
+}
+
+// Triangles of a crown's leaf, as a share of what its margin would need to be seen from near by: 8 for a plain leaf,
+// 12 for an oak's, 22 for a bundle of needles.
+const LEAN: f64 = 0.55;
+
+/// A blade with few triangles; none where so many are wished for that corners alone cannot use them.
+fn lean(blade: &plant::Blade, wish: f64) -> Option<TriMesh> {
+    (wish <= 60.0).then(|| lean_mesh(blade, wish)).flatten()
 }
 
 fn sound(organ: &Organ) -> bool {
@@ -163,6 +173,10 @@ impl Ground {
                 // A toothed or lobed margin (perimeter^2 / area of 30 to 300, 12 for a plain leaf) needs edges.
                 let around = crate::blade::closed_length(&blade.outline);
                 let least = (4.0 * around / area.max(f64::MIN_POSITIVE).sqrt()).clamp(14.0, 40.0);
+                if budget.crown() {
+                    let wish = LEAN * least * budget.detail;
+                    return lean(blade, wish).unwrap_or_else(|| blade_mesh(blade, wish));
+                }
                 blade_mesh(blade, triangles(area).max(least * budget.detail.min(1.0)))
             }
             // A dome is smooth: two fifths of what a blade of its size has.

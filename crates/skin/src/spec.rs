@@ -103,7 +103,16 @@ const ALL_BLADES: f64 = 64_000.0;
 // Beyond this many blades each is one of a crowd and the sum falls too.
 const CROWD: f64 = 200.0;
 
+// From so many axes or blades on, a plant is a tree in leaf rather than a drawing: twigs and leaves are a crowd.
+const CROWN_AXES: f64 = 150.0;
+const CROWN_BLADES: f64 = 1500.0;
+
 impl Budget {
+    /// Whether blades are so many that each gets no more triangles than its form needs.
+    pub(crate) fn crown(&self) -> bool {
+        self.blades > CROWN_BLADES
+    }
+
     pub(crate) fn new(detail: f64, size: f64, axis_length: f64, axes: usize, blades: usize) -> Self {
         #[expect(clippy::cast_precision_loss, reason = "counts far below 2^52")]
         let count = |n: usize| (n as f64).max(1.0);
@@ -136,7 +145,12 @@ impl Budget {
     pub(crate) fn sides(&self, radius: f64, least: u32) -> u32 {
         let crowded = if self.axes > ALL_RINGS / RINGS { 2.0 } else { 0.0 };
         let floor = (f64::from(least.clamp(3, 24)) * self.detail.min(1.0) - crowded).max(3.0);
-        let floor = if least >= 5 { floor.max(5.0) } else { floor };
+        let floor = match least {
+            // Twigs of a crown are thinner than a pixel of its picture.
+            _ if self.axes > CROWN_AXES => (floor - 3.0).max(3.0),
+            5.. => floor.max(5.0),
+            _ => floor,
+        };
         let tolerance = 7e-4 * self.size / self.detail;
         let round = base::ops::PI / base::ops::acos_clamped(1.0 - (tolerance / radius.max(1e-12)).min(1.0));
         whole(round.clamp(floor, 24.0_f64.max(floor)).ceil())

@@ -207,7 +207,8 @@ fn crown_leaves_are_coarse_but_fold() {
     let p = scenes::leafy(3000);
     let model = skinned(&p);
     let each = part(&model, "leaves").triangles.len() / 3000;
-    assert!((16..=80).contains(&each), "{each}");
+    // A plain outline with a midrib that can bend; what more there is goes to lobes and needles.
+    assert!((6..=24).contains(&each), "{each}");
     let colors = &part(&model, "leaves").colors;
     assert_eq!(colors.len(), part(&model, "leaves").positions.len());
     assert!(colors.iter().flatten().all(|c| (0.5..=1.0).contains(c)));

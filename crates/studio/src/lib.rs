@@ -23,8 +23,8 @@ mod make;
 mod motion;
 mod opening;
 mod report;
-mod shaping;
 mod scene;
+mod shaping;
 mod template;
 mod trees;
 mod venation;
@@ -44,17 +44,17 @@ pub use opening::{OpeningError, OpeningPlant};
 pub use report::{
     Counts, Fidelity, InputReport, ItemReport, REPORT_SCHEMA, RunReport, StrokeReport, TimingsMs,
 };
-pub use shaping::{BranchRow, EditReport, branch_rows, edits_schema, edits_template, shape_plant};
 pub use scene::{
     SceneError, SceneEvaluator, ScenePlant, flower_schema, leaf_marks, leaf_schema, scene_model,
     tree_settings, tree_spec,
 };
+pub use shaping::{BranchRow, EditReport, branch_rows, edits_schema, edits_template, shape_plant};
 pub use template::{LeafTemplate, TemplateError};
 
 pub use trees::{
-    Bark, BladeForm, BladeSpec, Colour, GrowthReport, Look, MadeTree, NamedMesh, OAK_METHODS, PAPER_OAKS,
-    PRESETS, PaperOak, Preset, TreeError, TreeOptions, TreeSize, TreeSpec, coarser, make_tree, method_word,
-    read_tree_spec, scale_to_height, tree_schema, tree_size,
+    Bark, BladeForm, BladeSpec, BlossomSpec, Colour, GrowthReport, Look, MadeTree, NamedMesh, OAK_METHODS,
+    PAPER_OAKS, PRESETS, PaperOak, Preset, TreeError, TreeOptions, TreeSize, TreeSpec, coarser, make_tree,
+    method_word, read_tree_spec, scale_to_height, tree_schema, tree_size,
 };
 pub use venation::make_ray_leaf;
 

@@ -173,6 +173,11 @@ impl LeafTemplate {
         count
     }
 
+    /// Whether it has a picture of its own.
+    pub fn has_picture(&self) -> bool {
+        self.texture.is_some()
+    }
+
     /// Puts the template's picture on the leaves of a skinned plant, if it has one.
     pub fn dress(&self, model: &mut Model) {
         let Some(texture) = &self.texture else { return };

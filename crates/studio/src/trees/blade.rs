@@ -50,8 +50,11 @@ pub enum BladeForm {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct BladeSpec {
-    /// The form, default ovate.
+    /// The form, default ovate. A `file` goes before it.
     pub form: BladeForm,
+    /// A leaf of your own instead of the form: marks (.csv), a vein graph (.json) or a model of one leaf (.glb, .obj,
+    /// .ply, .stl), relative to the spec. Default none.
+    pub file: Option<String>,
     /// Width relative to the form's usual, 0.1 to 4; default 1.
     #[schemars(range(min = 0.1, max = 4.0))]
     pub width: Option<f64>,

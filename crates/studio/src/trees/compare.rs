@@ -57,4 +57,5 @@ pub fn scale_to_height(grown: &mut Grown, height_m: f64) {
     plant.nodes.position.iter_mut().for_each(|p| *p *= factor);
     plant.nodes.radius_m.iter_mut().for_each(|r| *r *= factor);
     plant.organs.iter_mut().for_each(|o| o.frame.origin *= factor);
+    plant.flowers.iter_mut().for_each(|f| f.centre *= factor);
 }

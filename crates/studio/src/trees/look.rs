@@ -20,7 +20,7 @@ use super::spec::within;
 pub struct Colour(pub [u8; 3]);
 
 impl Colour {
-    fn linear(self) -> [f64; 3] {
+    pub(super) fn linear(self) -> [f64; 3] {
         self.0.map(|b| {
             let x = f64::from(b) / 255.0;
             if x <= 0.04045 { x / 12.92 } else { ops::powf((x + 0.055) / 1.055, 2.4) }
@@ -79,6 +79,11 @@ pub struct Look {
     pub bark: Bark,
     /// Mean colour of the bark of trunk and branches.
     pub bark_color: Colour,
+    /// Colour of the bark at the foot of the trunk, old and rough, not lighter than `bark_color`; default the same.
+    pub foot_color: Option<Colour>,
+    /// Share of the tree's height up to which the foot's colour reaches, 0.01 to 1, default 0.2.
+    #[schemars(range(min = 0.01, max = 1.0))]
+    pub foot_height: f64,
     /// Mean colour of the bark of twigs.
     pub twig_color: Colour,
     /// Colour of leaves.
@@ -95,6 +100,8 @@ impl Default for Look {
         Self {
             bark: Bark::default(),
             bark_color: Colour([0x6e, 0x62, 0x54]),
+            foot_color: None,
+            foot_height: 0.2,
             twig_color: Colour([0x6a, 0x58, 0x44]),
             leaf_color: Colour([0x56, 0x7d, 0x2f]),
             leaf_color_to: None,
@@ -105,12 +112,17 @@ impl Default for Look {
 
 impl Look {
     pub(super) fn check(&self) -> Result<(), GrowthError> {
+        within("look.foot_height", self.foot_height, 0.01, 1.0, "0.01 to 1")?;
         within("look.leaf_variation", self.leaf_variation, 0.0, 1.0, "0 to 1")
     }
 
-    /// Gives each leaf its colour.
-    pub(super) fn tint(&self, plant: &mut Plant, seed: Seed) {
-        let (from, to) = (self.leaf_color.linear(), self.leaf_color_to.unwrap_or(self.leaf_color).linear());
+    /// Gives each leaf its colour. Leaves that have a picture only vary in brightness.
+    pub(super) fn tint(&self, plant: &mut Plant, pictured: bool, seed: Seed) {
+        let (mut from, mut to) =
+            (self.leaf_color.linear(), self.leaf_color_to.unwrap_or(self.leaf_color).linear());
+        if pictured {
+            (from, to) = ([1.0; 3], [0.8; 3]);
+        }
         for organ in plant.organs.iter_mut().filter(|o| o.kind == OrganKind::Leaf) {
             let share = self.leaf_variation * seed.child(organ.key).stream(Draw::Tint).uniform();
             #[expect(clippy::cast_possible_truncation, reason = "a colour")]
@@ -127,6 +139,35 @@ impl Look {
             let twig = old && material.name == "bark-young";
             let colour = if twig { self.twig_color } else { self.bark_color };
             self.repaint(material, colour, twig);
+        }
+        if let Some(foot) = self.foot_color {
+            let name = if old { "bark" } else { "bark-young" };
+            self.darken_foot(model, name, foot);
+        }
+    }
+
+    /// Vertex colours that turn the bark of one material into the foot's, from `foot_height` downwards.
+    fn darken_foot(&self, model: &mut Model, name: &str, foot: Colour) {
+        let bounds = model.bounds();
+        let height = (bounds.max.y * self.foot_height).max(f64::MIN_POSITIVE);
+        let (bark, foot) = (self.bark_color.linear(), foot.linear());
+        let ratio = [0, 1, 2].map(|i| (foot[i] / bark[i].max(1e-3)).clamp(0.0, 1.0));
+        let chosen: Vec<bool> = model.materials.iter().map(|m| m.name == name).collect();
+        for part in &mut model.parts {
+            if !chosen.get(part.material.index()).copied().unwrap_or(false) {
+                continue;
+            }
+            let mesh = &mut part.mesh;
+            mesh.colors.resize(mesh.positions.len(), [1.0; 3]);
+            for (p, color) in mesh.positions.iter().zip(&mut mesh.colors) {
+                let [x, y, z] = p.map(f64::from);
+                // Patches as large as the trunk is thick, so that the border is ragged.
+                let patch = noise(0.37 * x + 0.11 * z + 0.5, 0.31 * y + 0.17 * z + 0.5, (16, 16), 41);
+                let share = 1.0 - ops::smoothstep(0.25, 1.0, y / height + 0.22 * patch);
+                #[expect(clippy::cast_possible_truncation, reason = "a colour of the mesh")]
+                let shade = ratio.map(|r| ops::lerp(1.0, r, share) as f32);
+                *color = [0, 1, 2].map(|i| color[i] * shade[i]);
+            }
         }
     }
 

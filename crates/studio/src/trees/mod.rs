@@ -6,12 +6,13 @@
 //! |---|---|
 //! | `spec` | [`TreeSpec`]: everything that a user may ask of a tree |
 //! | `file` | TOML in, JSON Schema out |
-//! | `blade`, `look` | forms of leaves; colours and bark |
+//! | `blade`, `blossom`, `look` | forms of leaves; flowers in their place; colours and bark |
 //! | `presets` | the species that come with the program |
 //! | `lod` | coarser copies for far away |
 //! | `compare` | one oak by three methods |
 
 mod blade;
+mod blossom;
 mod compare;
 mod file;
 mod lod;
@@ -24,13 +25,14 @@ use growth::{Grown, GrowthError, Method, Obstacle};
 use mesh::Model;
 use serde::{Deserialize, Serialize};
 use shape::HandEdit;
-use skin::SkinSpec;
+use skin::{PetalColor, SkinSpec};
 
 use crate::report::{Counts, ItemReport, TimingsMs};
 use crate::shaping::shape_plant;
 use crate::template::LeafTemplate;
 
 pub use blade::{BladeForm, BladeSpec};
+pub use blossom::BlossomSpec;
 pub use compare::{OAK_METHODS, PAPER_OAKS, PaperOak, TreeSize, scale_to_height, tree_size};
 pub use file::{NamedMesh, read_tree_spec, tree_schema};
 pub use lod::coarser;
@@ -46,12 +48,12 @@ pub struct TreeOptions {
     /// Scale the grown wood to this height, metres, above 0; leaves keep their size. Ignored where there are
     /// obstacles, which it would meet. Default none.
     pub height_m: Option<f64>,
+    /// The leaf that the tree bears instead of its spec's form. Default none.
+    pub leaf: Option<LeafTemplate>,
     /// Coarser copies to make as well, 0 to 6: each has about a third of the triangles of the one before.
     pub lods: u32,
     /// Edits by hand, done on the grown tree in this order.
     pub edits: Vec<HandEdit>,
-    /// The leaf that the tree bears instead of its spec's own. Default none.
-    pub leaf: Option<LeafTemplate>,
 }
 
 /// A tree with its meshes and its entry of the report.
@@ -80,7 +82,7 @@ pub enum TreeError {
         message: String,
     },
     /// A file that a spec names could not be had.
-    #[error("the file \"{file}\" that it names cannot be read as a mesh or points")]
+    #[error("the file \"{file}\" that it names cannot be read as what it is named for")]
     File {
         /// As the spec names it.
         file: String,
@@ -159,7 +161,7 @@ pub fn method_word(method: &Method) -> &'static str {
 
 /// Grows a tree (or several that compete) and gives it its surface.
 ///
-/// The same spec, options and seed give the same bits on every platform and for any executor. Growth itself is
+/// A spec that names a leaf's file needs [`TreeOptions::leaf`]: the core opens no files. The same spec, options and seed give the same bits on every platform and for any executor. Growth itself is
 /// booked as `structure`, wood and leaves as `depth`, skinning as `mesh`.
 ///
 /// # Errors
@@ -181,11 +183,18 @@ pub fn make_tree(
     let mut told = Report::default();
     look_at_meshes(&spec.obstacles, &mut told);
     let wanted = spec.growth()?;
-    let mut grown = growth::grow(&wanted, Some(spec.blade.blade()), seed, run, &mut told)?;
-    spec.look.tint(&mut grown.plant, seed);
-    if let Some(leaf) = &options.leaf {
-        leaf.apply(&mut grown.plant);
+    let leaf = options.leaf.as_ref();
+    if let (Some(file), None) = (&spec.blade.file, leaf) {
+        return Err(TreeError::File { file: file.clone() });
     }
+    let blade = leaf.map_or_else(|| spec.blade.blade(), |l| l.scaled(1.0));
+    let mut grown = growth::grow(&wanted, Some(blade), seed, run, &mut told)?;
+    spec.look.tint(
+        &mut grown.plant,
+        options.skin.textures && leaf.is_some_and(LeafTemplate::has_picture),
+        seed,
+    );
+    spec.blossom.apply(&mut grown.plant, seed);
     if let Some(height) = options.height_m.filter(|_| spec.obstacles.is_empty()) {
         scale_to_height(&mut grown, height);
     }
@@ -196,7 +205,8 @@ pub fn make_tree(
         edits =
             told.stage("shape", run.clock, |_| shape_plant(&mut grown.plant, &options.edits, &context, run))?;
     }
-    let skin_spec = SkinSpec { seed, ..options.skin.clone() };
+    let petals = options.skin.petals.or((spec.blossom.share > 0.0).then_some(PetalColor::White));
+    let skin_spec = SkinSpec { seed, petals, ..options.skin.clone() };
     let mut report = Report::default();
     for stage in &told.stages {
         report.book(if stage.name == "grow" { "structure" } else { "depth" }, stage.ms);
@@ -204,7 +214,7 @@ pub fn make_tree(
     let mesh = |plant: &plant::Plant, skin_spec: &SkinSpec| {
         skin::skin(plant, skin_spec, run).map(|mut model| {
             spec.look.paint(&mut model);
-            if let Some(leaf) = &options.leaf {
+            if let Some(leaf) = leaf {
                 leaf.dress(&mut model);
             }
             model

@@ -38,13 +38,19 @@ presets![
     "bamboo",
     "hazel",
     "dead-oak",
+    "alder",
+    "umbrella-pine",
+    "cypress",
+    "cherry",
+    "rose",
+    "grass",
 ];
 
 impl Preset {
     /// The preset of a key.
     ///
     /// ```
-    /// assert!(burgeon::Preset::find("oak").is_some() && burgeon::Preset::find("rose").is_none());
+    /// assert!(burgeon::Preset::find("oak").is_some() && burgeon::Preset::find("fern").is_none());
     /// ```
     pub fn find(key: &str) -> Option<&'static Self> {
         PRESETS.iter().find(|p| p.key == key)

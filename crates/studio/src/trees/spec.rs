@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::blade::BladeSpec;
+use super::blossom::BlossomSpec;
 use super::look::Look;
 
 /// A kind of tree, where it stands and how it looks. Metres, degrees, +Y up; saved as TOML.
@@ -48,6 +49,8 @@ pub struct TreeSpec {
     pub bare: bool,
     /// The form of a leaf.
     pub blade: BladeSpec,
+    /// Flowers in the place of some leaves. Default none.
+    pub blossom: BlossomSpec,
     /// Colours and bark.
     pub look: Look,
 }
@@ -68,6 +71,7 @@ impl Default for TreeSpec {
             leaves: LeafSpec::default(),
             bare: false,
             blade: BladeSpec::default(),
+            blossom: BlossomSpec::default(),
             look: Look::default(),
         }
     }
@@ -80,6 +84,7 @@ impl TreeSpec {
     /// [`GrowthError::Field`] for numbers of blade and look that are out of range; growth checks its own.
     pub(super) fn growth(&self) -> Result<growth::TreeSpec, GrowthError> {
         self.blade.check()?;
+        self.blossom.check()?;
         self.look.check()?;
         Ok(growth::TreeSpec {
             name: self.name.clone(),

@@ -1,0 +1,184 @@
+//! Leaves of a crowd: few triangles, spent on the corners that make their form.
+//!
+//! `Blade -> corners that matter -> two halves along the midrib -> ears`
+
+use glam::DVec2;
+use mesh::TriMesh;
+use plant::Blade;
+
+use crate::blade::BladeChart;
+use crate::tube::{drop_flat, narrow2};
+
+/// A blade in at most about `triangles` triangles, 2 to 60, folded along its midrib.
+///
+/// Guaranteed: root and tip stay, and of the other corners those that enclose most area with their neighbours
+/// (Visvalingam and Whyatt 1993), so lobes and needles outlive smooth curves; texture as on finer blades. `None` where
+/// the outline crosses itself, or its tip cannot be told: then finer meshing has to find a way. Cost: quadratic in the
+/// corners of the outline.
+pub(crate) fn lean_mesh(blade: &Blade, triangles: f64) -> Option<TriMesh> {
+    let outline = &blade.outline;
+    if outline.len() < 4 || outline.len() > 400 || outline.iter().any(|p| !p.is_finite()) {
+        return None;
+    }
+    let end = *blade.midrib.last()?;
+    let tip = nearest(outline, end)?;
+    let pairs = (0.5 * triangles.clamp(2.0, 60.0)).round();
+    // With four triangles and more the midrib gets a point in its middle, so that the blade bends.
+    let bent = pairs >= 2.0;
+    let sides = crate::spec::whole(pairs - f64::from(u8::from(bent))).max(1) as usize;
+    let (kept, tip) = corners(outline, tip, 2 * sides + 2);
+    let mut points: Vec<DVec2> = kept.iter().map(|&i| outline[i]).collect();
+    if tip == 0 || geom::signed_area(&points) <= 0.0 || geom::self_crossings(&points) > 0 {
+        return None;
+    }
+    let n = points.len();
+    let (mut right, mut left): (Vec<usize>, Vec<usize>) = ((0..=tip).collect(), (tip..n).collect());
+    left.push(0);
+    if bent {
+        points.push(middle(&blade.midrib));
+        right.push(n);
+        left.push(n);
+    }
+    let mut mesh = TriMesh::default();
+    ears(&points, right, &mut mesh.triangles)?;
+    ears(&points, left, &mut mesh.triangles)?;
+    let chart = BladeChart::new(blade);
+    let surface = blade.surface();
+    for &p in &points {
+        let lifted = surface.point(p);
+        mesh.push(if lifted.is_finite() { lifted } else { p.extend(0.0) });
+        let uv = chart.uv(p);
+        mesh.uvs.push(narrow2(uv.x, uv.y));
+    }
+    drop_flat(&mut mesh);
+    mesh.compute_normals();
+    Some(mesh)
+}
+
+fn nearest(points: &[DVec2], to: DVec2) -> Option<usize> {
+    let far = |i: &usize| points[*i].distance_squared(to);
+    (0..points.len()).min_by(|a, b| far(a).total_cmp(&far(b)))
+}
+
+/// The corners that stay, as indices, and which of them is the tip; the root is the first.
+fn corners(outline: &[DVec2], tip: usize, wanted: usize) -> (Vec<usize>, usize) {
+    let mut kept: Vec<usize> = (0..outline.len()).collect();
+    while kept.len() > wanted.max(4) {
+        let n = kept.len();
+        let area = |k: usize| {
+            let [a, b, c] = [kept[k - 1], kept[k], kept[(k + 1) % n]].map(|i| outline[i]);
+            (b - a).perp_dot(c - a).abs()
+        };
+        let least = (1..n).filter(|&k| kept[k] != tip).min_by(|&a, &b| area(a).total_cmp(&area(b)));
+        let Some(k) = least else { break };
+        kept.remove(k);
+    }
+    let at = kept.iter().position(|&i| i == tip).unwrap_or(0);
+    (kept, at)
+}
+
+/// The point of a line halfway along it.
+fn middle(line: &[DVec2]) -> DVec2 {
+    let length: f64 = line.windows(2).map(|w| w[0].distance(w[1])).sum();
+    let mut left = 0.5 * length;
+    for w in line.windows(2) {
+        let d = w[0].distance(w[1]);
+        if d >= left && d > 0.0 {
+            return w[0].lerp(w[1], left / d);
+        }
+        left -= d;
+    }
+    line.first().copied().unwrap_or(DVec2::ZERO)
+}
+
+/// Cuts triangles off a polygon that is given counter-clockwise by the indices of its corners.
+fn ears(points: &[DVec2], mut polygon: Vec<usize>, out: &mut Vec<[u32; 3]>) -> Option<()> {
+    let twice = |a: usize, b: usize, c: usize| (points[b] - points[a]).perp_dot(points[c] - points[a]);
+    while polygon.len() > 2 {
+        let n = polygon.len();
+        let at = |k: usize| polygon[k % n];
+        // The fattest ear first: slivers stay for the end, and few of them.
+        let mut best: Option<(f64, usize)> = None;
+        for k in 0..n {
+            let (a, b, c) = (at(k), at(k + 1), at(k + 2));
+            let area = twice(a, b, c);
+            let holds = |&p: &usize| {
+                p != a
+                    && p != b
+                    && p != c
+                    && twice(a, b, p) >= 0.0
+                    && twice(b, c, p) >= 0.0
+                    && twice(c, a, p) >= 0.0
+            };
+            if area > 0.0 && !polygon.iter().any(holds) {
+                let around = [(a, b), (b, c), (c, a)].map(|(p, q)| points[p].distance_squared(points[q]));
+                let fat = area / around.into_iter().sum::<f64>().max(f64::MIN_POSITIVE);
+                if best.is_none_or(|(most, _)| fat > most) {
+                    best = Some((fat, (k + 1) % n));
+                }
+            }
+        }
+        let Some((_, k)) = best else {
+            // What is left has no area: on a straight margin, say.
+            let area: f64 = (0..n).map(|k| points[at(k)].perp_dot(points[at(k + 1)])).sum();
+            let around: f64 = (0..n).map(|k| points[at(k)].distance_squared(points[at(k + 1)])).sum();
+            return (area.abs() < 1e-9 * around).then_some(());
+        };
+        out.push([at(k + n - 1), at(k), at(k + 1)].map(crate::parts::index));
+        polygon.remove(k);
+    }
+    Some(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use plant::{Lift, Relief};
+
+    fn blade(right: &[(f64, f64)]) -> Blade {
+        let right: Vec<DVec2> = right.iter().map(|&(x, y)| DVec2::new(x, y)).collect();
+        let mut outline = vec![DVec2::ZERO];
+        outline.extend(&right);
+        outline.push(DVec2::Y);
+        outline.extend(right.iter().rev().map(|p| DVec2::new(-p.x, p.y)));
+        let midrib = vec![DVec2::ZERO, DVec2::Y];
+        Blade {
+            outline,
+            midrib,
+            veins: vec![],
+            lift: Lift::Flat,
+            relief: Relief { fold: 0.3, ..Relief::default() },
+        }
+    }
+
+    #[test]
+    fn lobes_outlive_curves_and_nothing_of_the_area_is_lost() {
+        let star = blade(&[(0.3, 0.05), (0.12, 0.25), (0.4, 0.4), (0.14, 0.55), (0.3, 0.8), (0.29, 0.81)]);
+        for (wish, at_most) in [(4.0, 4), (8.0, 8), (12.0, 12), (40.0, 14)] {
+            let mesh = lean_mesh(&star, wish).expect("a simple outline");
+            assert_eq!(mesh.validate().next(), None, "{wish}");
+            assert!(mesh.triangles.len() <= at_most && mesh.triangles.len() + 2 >= at_most, "{wish}");
+        }
+        let mesh = lean_mesh(&star, 12.0).expect("a simple outline");
+        let flat = |i: u32| {
+            DVec2::new(f64::from(mesh.positions[i as usize][0]), f64::from(mesh.positions[i as usize][1]))
+        };
+        let area: f64 = mesh
+            .triangles
+            .iter()
+            .map(|t| 0.5 * (flat(t[1]) - flat(t[0])).perp_dot(flat(t[2]) - flat(t[0])))
+            .sum();
+        let whole = geom::signed_area(&star.outline);
+        assert!((area / whole - 1.0).abs() < 0.05, "{area} of {whole}");
+    }
+
+    #[test]
+    fn the_smallest_blade_is_two_triangles() {
+        let mesh = lean_mesh(&blade(&[(0.2, 0.3), (0.3, 0.5), (0.1, 0.9)]), 2.0).expect("simple");
+        assert_eq!(mesh.triangles.len(), 2);
+        assert!(
+            lean_mesh(&blade(&[(0.2, 0.9), (-0.2, 0.5), (0.2, 0.1)]), 8.0).is_none(),
+            "it crosses itself"
+        );
+    }
+}

@@ -1,0 +1,202 @@
+//! Flowers in the place of leaves.
+//!
+//! `Plant with leaves + BlossomSpec -> the same plant, some of its leaves now flowers`
+
+use base::ops::{self, PI, TAU};
+use base::{Draw, Seed};
+use glam::{DVec2, DVec3};
+use growth::GrowthError;
+use plant::{Blade, Flower, FlowerId, Frame, Lift, Organ, OrganKind, Plant, Relief, Shape, ShapeId};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::look::Colour;
+use super::spec::within;
+
+/// What flowers a tree bears where leaves would stand.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct BlossomSpec {
+    /// Share of the leaves' places that bear a flower instead, 0 to 1, default 0: no flowers.
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub share: f64,
+    /// Petals of a flower's whorl, 3 to 12, default 5.
+    #[schemars(range(min = 3, max = 12))]
+    pub petals: u32,
+    /// Whorls of petals, one within the other, 1 to 6, default 1; 3 and more make a double flower such as a rose's.
+    #[schemars(range(min = 1, max = 6))]
+    pub whorls: u32,
+    /// Across an open flower, metres, default 0.035.
+    #[schemars(range(min = 0.001, max = 1.0), extend("x-unit" = "m"))]
+    pub diameter_m: f64,
+    /// Colour of petals, default a white.
+    pub color: Colour,
+    /// Colour towards which single flowers vary; default none.
+    pub color_to: Option<Colour>,
+}
+
+impl Default for BlossomSpec {
+    fn default() -> Self {
+        let color = Colour([0xf8, 0xf2, 0xf0]);
+        Self { share: 0.0, petals: 5, whorls: 1, diameter_m: 0.035, color, color_to: None }
+    }
+}
+
+// The whorls of a flower open this far from its axis: the outermost, and the innermost of six.
+const OPEN: f64 = 76.0 * PI / 180.0;
+const CLOSED: f64 = 20.0 * PI / 180.0;
+
+impl BlossomSpec {
+    pub(super) fn check(&self) -> Result<(), GrowthError> {
+        within("blossom.share", self.share, 0.0, 1.0, "0 to 1")?;
+        within("blossom.petals", f64::from(self.petals), 3.0, 12.0, "3 to 12")?;
+        within("blossom.whorls", f64::from(self.whorls), 1.0, 6.0, "1 to 6")?;
+        within("blossom.diameter_m", self.diameter_m, 0.001, 1.0, "0.001 to 1 m")
+    }
+
+    /// Turns leaves into flowers. Which ones follows from their keys, so that a larger share keeps those of a smaller.
+    pub(super) fn apply(&self, plant: &mut Plant, seed: Seed) {
+        let blooms = |o: &Organ| {
+            o.kind == OrganKind::Leaf && seed.child(o.key).stream(Draw::Template).uniform() < self.share
+        };
+        if self.share <= 0.0 || !plant.organs.iter().any(blooms) {
+            return;
+        }
+        let (places, kept): (Vec<Organ>, Vec<Organ>) =
+            std::mem::take(&mut plant.organs).into_iter().partition(blooms);
+        plant.organs = kept;
+        let petal = push(plant, Shape::Blade(petal(0.5 * self.diameter_m, self.petals)));
+        let disc = push(plant, Shape::Blade(disc(0.15 * self.diameter_m)));
+        for place in &places {
+            self.flower(plant, place, (petal, disc), seed);
+        }
+    }
+
+    fn flower(&self, plant: &mut Plant, place: &Organ, (petal, disc): (ShapeId, ShapeId), seed: Seed) {
+        let key = seed.child(place.key).child(Draw::Template as u64);
+        let mut draw = key.stream(Draw::Template);
+        // Flowers look outwards, to the light and a little where they please.
+        let stray = DVec3::new(draw.uniform() - 0.5, draw.uniform() - 0.3, draw.uniform() - 0.5);
+        let axis = (place.frame.along + 0.5 * place.frame.normal + 0.7 * stray).normalize_or(DVec3::Y);
+        let stalk = 0.7 * self.diameter_m * (0.7 + 0.6 * draw.uniform());
+        let centre = place.frame.origin + place.frame.along * stalk;
+        let scale = 0.85 + 0.3 * draw.uniform();
+        let share = draw.uniform();
+        let (from, to) = (self.color.linear(), self.color_to.unwrap_or(self.color).linear());
+        let id = FlowerId::new(plant.flowers.len());
+        let bearer = place.bearer;
+        plant.flowers.push(Flower { bearer, centre, axis, half_angle: OPEN, whorls: self.whorls });
+        let across = axis.any_orthonormal_vector();
+        let up = axis.cross(across);
+        let turn = TAU * draw.uniform();
+        let organ = |kind, shape, frame, scale, tint, key: Seed| Organ {
+            kind,
+            bearer,
+            flower: Some(id),
+            shape,
+            frame,
+            scale,
+            tint,
+            key: key.number(),
+            source: None,
+        };
+        for whorl in 0..self.whorls {
+            let inner = f64::from(whorl) / f64::from(self.whorls.max(2));
+            let open = ops::lerp(OPEN, CLOSED, inner) + 0.2 * (draw.uniform() - 0.5);
+            let (rise, out) = (ops::cos(open), ops::sin(open));
+            for k in 0..self.petals {
+                let step = f64::from(k) + 0.5 * f64::from(whorl % 2);
+                let (s, c) = ops::sin_cos(turn + TAU * step / f64::from(self.petals));
+                let along = (across * c + up * s) * out + axis * rise;
+                let frame = Frame::looking(centre, along, axis);
+                let shade = 1.0 - 0.1 * draw.uniform() - 0.15 * inner;
+                #[expect(clippy::cast_possible_truncation, reason = "a colour")]
+                let tint = [0, 1, 2].map(|i| (shade * ops::lerp(from[i], to[i], share)) as f32);
+                let key = key.child(u64::from(whorl * self.petals + k));
+                plant.organs.push(organ(
+                    OrganKind::Petal,
+                    petal,
+                    frame,
+                    scale * (1.0 - 0.45 * inner),
+                    tint,
+                    key,
+                ));
+            }
+        }
+        let frame = Frame {
+            origin: centre + axis * (0.06 * self.diameter_m),
+            right: across,
+            along: up,
+            normal: axis,
+        };
+        plant.organs.push(organ(OrganKind::Disc, disc, frame, scale, [1.0; 3], key.child(u64::MAX)));
+    }
+}
+
+fn push(plant: &mut Plant, shape: Shape) -> ShapeId {
+    plant.shapes.push(shape);
+    ShapeId::new(plant.shapes.len() - 1)
+}
+
+/// A round petal with a notch at its end, as wide as it must be for `count` to close the whorl.
+fn petal(length_m: f64, count: u32) -> Blade {
+    let half = (1.08 * ops::sin(PI / f64::from(count.max(3)))).min(0.62);
+    // Few corners: a tree in blossom has tens of thousands of these.
+    let right = [(0.95, 0.6), (0.62, 1.02)];
+    let right = right.map(|(x, y)| DVec2::new(x * half, y) * length_m);
+    let mut outline = vec![DVec2::ZERO];
+    outline.extend(right);
+    outline.push(DVec2::new(0.0, length_m));
+    outline.extend(right.iter().rev().map(|p| DVec2::new(-p.x, p.y)));
+    let midrib = vec![DVec2::ZERO, DVec2::new(0.0, 0.5 * length_m), DVec2::new(0.0, length_m)];
+    let relief = Relief { bend_b: -0.12, hollow: 0.08, ..Relief::default() };
+    Blade { outline, midrib, veins: Vec::new(), lift: Lift::Flat, relief }
+}
+
+/// The tuft of stamens in the middle, as a small bowl turned over.
+fn disc(radius_m: f64) -> Blade {
+    let corner = |k: u32| {
+        let (s, c) = ops::sin_cos(TAU * f64::from(k) / 6.0);
+        DVec2::new(s, -c) * radius_m
+    };
+    let outline: Vec<DVec2> = (0..6).map(corner).collect();
+    let midrib = vec![outline[0], DVec2::ZERO, outline[3]];
+    let relief = Relief { hollow: -0.3, ..Relief::default() };
+    Blade { outline, midrib, veins: Vec::new(), lift: Lift::Flat, relief }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::*;
+    use super::*;
+    use base::Run;
+
+    fn made(share: f64) -> MadeTree {
+        let mut spec = Preset::find("hazel").expect("a preset").spec().expect("sound");
+        spec.blossom = BlossomSpec { share, ..BlossomSpec::default() };
+        make_tree(&spec, Seed::new(1), &TreeOptions::default(), &Run::plain()).expect("sound")
+    }
+
+    #[test]
+    fn flowers_take_the_places_of_leaves() {
+        let (bare, some, all) = (made(0.0), made(0.3), made(1.0));
+        let (places, flowers) = (bare.item.counts.leaves, some.item.counts.flowers);
+        assert_eq!(some.item.counts.leaves + flowers, places);
+        assert!((0.25..0.35).contains(&(flowers as f64 / places as f64)), "{flowers} of {places}");
+        assert_eq!((all.item.counts.leaves, all.item.counts.flowers), (0, places));
+        for tree in [&some, &all] {
+            assert_eq!(tree.grown.plant.validate().next(), None);
+            assert_eq!(tree.model.validate().next(), None);
+            assert_eq!(tree.item.counts.petals, 5 * tree.item.counts.flowers);
+        }
+        let white = some.model.materials.iter().any(|m| m.name == "petal-white");
+        assert!(white, "{:?}", some.model.materials.iter().map(|m| &m.name).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn numbers_out_of_range_are_named() {
+        let bad = BlossomSpec { petals: 40, ..BlossomSpec::default() };
+        let want = GrowthError::Field { field: "blossom.petals", range: "3 to 12", value: 40.0 };
+        assert_eq!(bad.check(), Err(want));
+    }
+}
