@@ -6,6 +6,7 @@
 use burgeon::Run;
 use burgeon::bloom::{Lattice, Logistic, Obb, Offset, Weights, fit_law, fit_logistic, preset};
 use burgeon::glam::DVec3;
+use burgeon_bench::TwoThreads;
 use divan::{Bencher, black_box};
 
 fn main() {
@@ -22,8 +23,17 @@ fn points(n: usize) -> Vec<DVec3> {
         .collect()
 }
 
-#[divan::bench(args = [3, 4, 5, 6, 8])]
+#[divan::bench(args = [2, 3, 4, 5, 6, 8])]
 fn deform_200_000(bencher: Bencher<'_, '_>, count: usize) {
+    deform(bencher, count, &Run::plain());
+}
+
+#[divan::bench(args = [2, 3, 4, 5, 6, 8])]
+fn deform_200_000_on_two_threads(bencher: Bencher<'_, '_>, count: usize) {
+    deform(bencher, count, &Run { executor: &TwoThreads, ..Run::plain() });
+}
+
+fn deform(bencher: Bencher<'_, '_>, count: usize, run: &Run<'_>) {
     let points = points(200_000);
     let obb = Obb::fit(&points, 0.05).expect("there are points");
     let counts = [count; 3];
@@ -32,7 +42,7 @@ fn deform_200_000(bencher: Bencher<'_, '_>, count: usize) {
     lattice.points.iter_mut().enumerate().for_each(|(i, p)| *p += DVec3::Y * (i as f64 * 1e-5));
     let mut out = vec![DVec3::ZERO; points.len()];
     bencher.bench_local(|| {
-        weights.apply_with(black_box(&lattice), &mut out, &Run::plain()).expect("the lattice fits");
+        weights.apply_with(black_box(&lattice), &mut out, run).expect("the lattice fits");
         out[0]
     });
 }

@@ -3,11 +3,11 @@
 use base::{Run, map_indexed};
 use glam::DVec3;
 
-use crate::kernel::{self, LANES};
+use crate::kernel::{self, LANES, Stu};
 use crate::{BloomError, Obb};
 
 /// Fewest and most control points along an axis. Above 16 the power of the lattice exceeds any scan's detail.
-const COUNTS: core::ops::RangeInclusive<usize> = 2..=16;
+const COUNTS: core::ops::RangeInclusive<usize> = 2..=kernel::MOST;
 
 /// Control points of a lattice, in world coordinates.
 ///
@@ -61,14 +61,16 @@ impl Lattice {
     }
 }
 
-/// Bernstein weights of a set of points in a box, computed once and used for every frame.
+/// Places of a set of points in a box, worked out once and used for every frame.
+///
+/// The coordinates are kept, not the weights that follow from them: three numbers a point instead of one for each
+/// control point, and quicker, as memory is slower than the dozen operations of an axis.
 #[derive(Clone, Debug)]
 pub struct Weights {
     counts: [usize; 3],
     len: usize,
-    /// Blocks of `LANES` points; in each, for every axis and every weight but the first, `LANES` numbers. The
-    /// first weight is 1 minus the others and never stored.
-    blocks: Vec<f64>,
+    /// s, t and u of eight points each; the last block is filled up with zeros.
+    blocks: Vec<Stu>,
 }
 
 impl Weights {
@@ -80,21 +82,17 @@ impl Weights {
     /// [`BloomError::Lattice`] unless each count is 2 to 16.
     pub fn new(obb: &Obb, counts: [usize; 3], points: &[DVec3]) -> Result<Self, BloomError> {
         check_counts(counts)?;
-        let per_block = kernel::weights_per_point(counts) * LANES;
-        let mut blocks = vec![0.0; points.len().div_ceil(LANES) * per_block];
-        let mut basis = Vec::new();
-        for (block, chunk) in blocks.chunks_exact_mut(per_block).zip(points.chunks(LANES)) {
-            for (lane, &p) in chunk.iter().enumerate() {
-                let mut row = 0;
-                for (&count, x) in counts.iter().zip(obb.local(p).to_array()) {
-                    bernstein(count, x, &mut basis);
-                    for &w in &basis[1..] {
-                        block[row * LANES + lane] = w;
-                        row += 1;
-                    }
+        let blocks = points
+            .chunks(LANES)
+            .map(|chunk| {
+                let mut block: Stu = [[0.0; LANES]; 3];
+                for (lane, &p) in chunk.iter().enumerate() {
+                    let local = obb.local(p).to_array();
+                    block.iter_mut().zip(local).for_each(|(row, x)| row[lane] = x);
                 }
-            }
-        }
+                block
+            })
+            .collect();
         Ok(Self { counts, len: points.len(), blocks })
     }
 
@@ -108,8 +106,8 @@ impl Weights {
         self.len == 0
     }
 
-    /// Deformed positions of all points. Cost: points times control points; 200,000 points in a 4 x 4 x 4
-    /// lattice take about 2 ms on one core with AVX2.
+    /// Deformed positions of all points. Cost: points times control points, spread over the threads of `run`; see
+    /// `docs/bloom.md` for times.
     ///
     /// # Errors
     /// [`BloomError::Lattice`] if the lattice has other counts, [`BloomError::Cancelled`].
@@ -131,18 +129,17 @@ impl Weights {
         if out.len() != self.len {
             return Err(BloomError::Length { what: "the deformed points", is: out.len(), wanted: self.len });
         }
-        let per_block = kernel::weights_per_point(self.counts) * LANES;
-        // 1024 blocks: about half a megabyte of weights, a piece of a core's cache.
-        let (rows, weights) = (1024 * LANES, 1024 * per_block);
+        let steps = kernel::differences(self.counts, &lattice.points);
+        // 1024 blocks: 0.1 ms of work, and 400 kB to read and write, a piece of a core's cache.
         let pieces: Vec<_> = out
-            .chunks_mut(rows)
-            .zip(self.blocks.chunks(weights))
+            .chunks_mut(1024 * LANES)
+            .zip(self.blocks.chunks(1024))
             .map(|piece| std::sync::Mutex::new(Some(piece)))
             .collect();
         map_indexed(run.executor, pieces.len(), |i| {
             let piece = pieces[i].lock().ok().and_then(|mut p| p.take());
-            if let Some((out, weights)) = piece {
-                kernel::deform(self.counts, &lattice.points, weights, out);
+            if let Some((out, points)) = piece {
+                kernel::deform(self.counts, &steps, points, out);
             }
         });
         Ok(())
@@ -154,16 +151,15 @@ impl Weights {
         if point >= self.len {
             return;
         }
-        let per_block = kernel::weights_per_point(self.counts) * LANES;
-        let block = &self.blocks[point / LANES * per_block..][..per_block];
-        let lane = point % LANES;
-        let mut row = 0;
-        let mut axis = |count: usize| {
-            let rest: Vec<f64> = (row..row + count - 1).map(|r| block[r * LANES + lane]).collect();
-            row += count - 1;
-            core::iter::once(1.0 - rest.iter().sum::<f64>()).chain(rest).collect::<Vec<f64>>()
+        let (block, lane) = (&self.blocks[point / LANES], point % LANES);
+        let axis = |a: usize| {
+            let mut w = Vec::new();
+            bernstein(self.counts[a], block[a][lane], &mut w);
+            // As in the loop: the first is what the others leave.
+            w[0] = 1.0 - w[1..].iter().sum::<f64>();
+            w
         };
-        let [s, t, u] = self.counts.map(&mut axis);
+        let [s, t, u] = [0, 1, 2].map(axis);
         out.extend(
             s.iter().flat_map(|a| t.iter().map(move |b| a * b)).flat_map(|w| u.iter().map(move |c| w * c)),
         );

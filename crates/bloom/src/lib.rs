@@ -24,6 +24,7 @@ mod centre;
 mod clean;
 mod error;
 mod errors;
+mod exps;
 mod flower;
 mod kernel;
 mod lattice;
