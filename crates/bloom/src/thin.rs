@@ -2,24 +2,59 @@
 
 use glam::DVec3;
 
-/// Indices of points that are sorted into cubes of edge `cell`, with the cube of each: by z, y, x.
+/// Indices of points that are sorted into cubes of edge `cell`, with the cube of each: by z, y, x, then index.
 pub(crate) fn voxels(points: &[DVec3], cell: f64) -> Vec<([i32; 3], u32)> {
     let low = points.iter().filter(|p| p.is_finite()).fold(DVec3::INFINITY, |a, &p| a.min(p));
+    let mut most = [0_u64; 3];
     #[expect(
         clippy::cast_possible_truncation,
-        reason = "saturation is wanted; indices are below 2^32 points"
+        clippy::cast_sign_loss,
+        reason = "saturation is wanted, numbers are not negative; indices are below 2^32 points"
     )]
     let mut keyed: Vec<([i32; 3], u32)> = points
         .iter()
         .enumerate()
         .filter(|(_, p)| p.is_finite())
         .map(|(i, &p)| {
-            let c = ((p - low) / cell).floor();
-            ([c.z as i32, c.y as i32, c.x as i32], i as u32)
+            let c = (p - low) / cell;
+            let cube = [c.z as i32, c.y as i32, c.x as i32];
+            most.iter_mut().zip(cube).for_each(|(m, c)| *m = (*m).max(c as u64));
+            (cube, i as u32)
         })
         .collect();
-    keyed.sort_unstable();
+    let [_, wide, long] = most.map(|m| m + 1);
+    let whole = most.iter().try_fold(1_u64, |n, m| n.checked_mul(m + 1)).filter(|n| *n < 1 << 60);
+    match whole {
+        // Below this sorting by comparison is as quick.
+        Some(whole) if keyed.len() > 4096 => {
+            #[expect(clippy::cast_sign_loss, reason = "not negative")]
+            let number = |[z, y, x]: [i32; 3]| (z as u64 * wide + y as u64) * long + x as u64;
+            by_digits(&mut keyed, whole, number);
+        }
+        _ => keyed.sort_unstable(),
+    }
     keyed
+}
+
+/// Sorts by a number below `whole`, digit by digit from the lowest; equal numbers keep their order.
+fn by_digits(keyed: &mut Vec<([i32; 3], u32)>, whole: u64, number: impl Fn([i32; 3]) -> u64) {
+    const BITS: u32 = 11;
+    let digit = |cube, shift: u32| ((number(cube) >> shift) & ((1 << BITS) - 1)) as usize;
+    let mut other = vec![([0; 3], 0); keyed.len()];
+    for shift in (0..u64::BITS - whole.leading_zeros()).step_by(BITS as usize) {
+        let mut starts = vec![0_usize; 1 << BITS];
+        keyed.iter().for_each(|k| starts[digit(k.0, shift)] += 1);
+        let mut sum = 0;
+        for s in &mut starts {
+            sum += core::mem::replace(s, sum);
+        }
+        for k in &*keyed {
+            let place = &mut starts[digit(k.0, shift)];
+            other[*place] = *k;
+            *place += 1;
+        }
+        core::mem::swap(keyed, &mut other);
+    }
 }
 
 /// Occupied cubes of a cloud, sorted, each with its points.
@@ -33,6 +68,9 @@ pub(crate) struct Voxels {
     pub(crate) start: Vec<usize>,
     /// Indices of points, cube by cube.
     pub(crate) order: Vec<u32>,
+    /// First cube of each line of cubes along x, line (z, y) at `z * wide + y`.
+    lines: Vec<u32>,
+    wide: i32,
 }
 
 impl Voxels {
@@ -50,14 +88,45 @@ impl Voxels {
     }
 
     fn of(keyed: &[([i32; 3], u32)], cell: f64) -> Self {
-        let mut v = Self { cell, keys: vec![], start: vec![], order: Vec::with_capacity(keyed.len()) };
+        let mut v = Self {
+            cell,
+            keys: vec![],
+            start: vec![],
+            order: Vec::with_capacity(keyed.len()),
+            lines: vec![],
+            wide: keyed.iter().map(|k| k.0[1]).max().unwrap_or(0) + 1,
+        };
         for cube in keyed.chunk_by(|a, b| a.0 == b.0) {
-            v.keys.push(cube[0].0);
+            let key = cube[0].0;
+            let line = v.line(key[0], key[1]);
+            #[expect(
+                clippy::cast_possible_truncation,
+                reason = "no more cubes than points, whose indices are u32"
+            )]
+            let row = v.keys.len() as u32;
+            // At most 257 x 257 lines: cubes are no finer than 1/256 of the cloud.
+            v.lines.resize(v.lines.len().max(line + 1), row);
+            v.keys.push(key);
             v.start.push(v.order.len());
             v.order.extend(cube.iter().map(|&(_, i)| i));
         }
         v.start.push(v.order.len());
         v
+    }
+
+    #[expect(clippy::cast_sign_loss, reason = "z and y are not negative")]
+    fn line(&self, z: i32, y: i32) -> usize {
+        z as usize * self.wide as usize + y as usize
+    }
+
+    /// The cubes of a line along x.
+    fn cubes_of(&self, z: i32, y: i32) -> core::ops::Range<usize> {
+        if z < 0 || !(0..self.wide).contains(&y) {
+            return 0..0;
+        }
+        let line = self.line(z, y);
+        let Some(&first) = self.lines.get(line) else { return 0..0 };
+        first as usize..self.lines.get(line + 1).map_or(self.keys.len(), |&end| end as usize)
     }
 
     pub(crate) fn len(&self) -> usize {
@@ -74,14 +143,13 @@ impl Voxels {
         let [z, y, x] = self.keys[cube];
         for dz in -reach..=reach {
             for dy in -reach..=reach {
-                let low = [z.saturating_add(dz), y.saturating_add(dy), x.saturating_sub(reach)];
-                let mut at = self.keys.partition_point(|k| *k < low);
-                while let Some(k) = self.keys.get(at) {
-                    if k[0] != low[0] || k[1] != low[1] || k[2] > x.saturating_add(reach) {
+                let line = self.cubes_of(z + dz, y + dy);
+                let first = line.start + self.keys[line.clone()].partition_point(|k| k[2] < x - reach);
+                for at in first..line.end {
+                    if self.keys[at][2] > x + reach {
                         break;
                     }
                     f(at);
-                    at += 1;
                 }
             }
         }
@@ -111,10 +179,10 @@ pub(crate) fn extent(points: &[DVec3]) -> f64 {
 ///
 /// Of a cube the point nearest to the mean of the cube's points is kept. All finite points if they are few.
 pub(crate) fn thin(points: &[DVec3], wanted: usize) -> Vec<u32> {
-    let all = voxels(points, f64::MAX);
     let size = extent(points);
-    if all.len() <= wanted || size <= 0.0 {
-        return all.into_iter().map(|(_, i)| i).collect();
+    if size <= 0.0 || points.iter().filter(|p| p.is_finite()).count() <= wanted {
+        #[expect(clippy::cast_possible_truncation, reason = "indices are below 2^32 points")]
+        return (0..points.len()).filter(|&i| points[i].is_finite()).map(|i| i as u32).collect();
     }
     // The search needs counts only: on at most 50,000 points it is quick, and such a sample fills the cubes.
     let sample: Vec<DVec3> = points.iter().copied().step_by(points.len().div_ceil(50_000)).collect();
@@ -142,6 +210,33 @@ fn count(keyed: &[([i32; 3], u32)]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn sorting_by_digits_is_sorting() {
+        let mut s = base::Seed::new(4).stream(base::Draw::Test);
+        let points: Vec<DVec3> =
+            (0..9000).map(|_| DVec3::new(s.uniform(), 40.0 * s.uniform(), s.uniform() * 1e-3)).collect();
+        for cell in [0.3, 1e-3, 1e-9, 1e-300] {
+            let keyed = voxels(&points, cell);
+            assert!(keyed.is_sorted(), "cell {cell}");
+            assert_eq!(keyed.len(), points.len(), "cell {cell}");
+        }
+    }
+
+    #[test]
+    fn near_finds_what_is_near() {
+        let mut s = base::Seed::new(5).stream(base::Draw::Test);
+        let points: Vec<DVec3> =
+            (0..3000).map(|_| DVec3::new(s.uniform(), s.uniform(), 0.1 * s.uniform())).collect();
+        let v = Voxels::new(&points, 2.0);
+        for c in (0..v.len()).step_by(7) {
+            let mut got = vec![];
+            v.near(c, 2, |k| got.push(k));
+            let far = |k: usize| (0..3).map(|a| (v.keys[k][a] - v.keys[c][a]).abs()).max();
+            let want: Vec<usize> = (0..v.len()).filter(|&k| far(k) <= Some(2)).collect();
+            assert_eq!(got, want, "cube {c}");
+        }
+    }
 
     #[test]
     fn a_dense_half_weighs_no_more_than_a_sparse_one() {

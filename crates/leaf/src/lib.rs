@@ -10,6 +10,7 @@
 //! | `meshes` | [`LeafMesh`]: tubes and grid at any resolution, the counts of the paper's Table 1 |
 //! | `pose` | curl and wilt |
 //! | `growth` | a leaf between measured stages |
+//! | `rays` | [`Rays`], [`RayLeaf`]: palmate and parallel leaves, made or measured |
 //! | `scan` | a leaf found in a cloud of points |
 //! | `flat` | the leaf unrolled into a plane: template of a blade, texture coordinates |
 //! | `colour` | a texture coloured by the distance from the veins |
@@ -24,6 +25,7 @@ mod growth;
 mod marks;
 mod meshes;
 mod pose;
+mod rays;
 mod scan;
 
 pub use blade::{Leaf, LeafSpec, SurfaceKind, ThicknessRule, Vein, VeinParameters};
@@ -34,4 +36,5 @@ pub use growth::{GrowthError, LeafGrowth};
 pub use marks::{FullMarks, FullRow, MARKS_A_ROW, MarkRow, Marks, MarksError};
 pub use meshes::{LeafMesh, MeshSpec};
 pub use pose::Pose;
+pub use rays::{PalmateSpec, ParallelSpec, Ray, RayLeaf, Rays, RaysError};
 pub use scan::{ScanError, ScanLeaf, ScanSpec, fit_scan};

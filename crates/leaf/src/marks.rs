@@ -229,7 +229,7 @@ impl Marks {
 }
 
 /// Known values kept, others interpolated between the nearest known ones, beyond them constant.
-fn spread(places: &[f64], values: &[Option<f64>]) -> Option<Vec<f64>> {
+pub(crate) fn spread(places: &[f64], values: &[Option<f64>]) -> Option<Vec<f64>> {
     let known: Vec<(f64, f64)> = places.iter().zip(values).filter_map(|(&p, v)| Some((p, (*v)?))).collect();
     let (&first, &last) = (known.first()?, known.last()?);
     let at = |p: f64| {

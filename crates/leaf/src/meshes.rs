@@ -1,6 +1,6 @@
 //! Leaf -> triangles: tubes of the veins, grid of the blade, at any resolution.
 
-use geom::{EndCap, RingRule, TubeSpec};
+use geom::{BallBSpline, EndCap, RingRule, TubeSpec};
 use glam::DVec3;
 use mesh::TriMesh;
 
@@ -122,7 +122,11 @@ impl LeafMesh {
         let cap = if spec.caps { EndCap::Round(3) } else { EndCap::Open };
         let sides = spec.sides.clamp(3, 64);
         let tube = TubeSpec { rings: spec.rings, sides, cap, first_normal: None };
-        let tube = vein.curve.tube(&samples(&vein.marks, steps), &tube);
+        self.add_tube(&vein.curve, &samples(&vein.marks, steps), &tube);
+    }
+
+    pub(crate) fn add_tube(&mut self, curve: &BallBSpline, at: &[f64], spec: &TubeSpec) {
+        let tube = curve.tube(at, spec);
         let mut mesh = TriMesh::default();
         for (&p, &n) in tube.positions.iter().zip(&tube.normals) {
             mesh.push(p);
