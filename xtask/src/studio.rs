@@ -72,7 +72,11 @@ pub(crate) fn test(tools: &Tools) -> Outcome {
     cargo(&["build", "--package", "burgeon-cli"])?;
     say(&format!("$ node e2e/run.mjs ({})", browser.display()));
     let mut c = prepare("node", &["e2e/run.mjs"]);
-    c.current_dir(folder()).arg(browser).arg(burgeon("debug")).arg(target_dir().join("studio-test"));
+    c.current_dir(folder()).arg(&browser).arg(burgeon("debug")).arg(target_dir().join("studio-test"));
+    finish(c)?;
+    say("$ node e2e/morph.mjs");
+    let mut c = prepare("node", &["e2e/morph.mjs"]);
+    c.current_dir(folder()).arg(browser).arg(burgeon("debug")).arg(target_dir().join("morph-test"));
     finish(c)
 }
 

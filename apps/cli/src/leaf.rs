@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use burgeon::formats::{
-    CloudFormat, ExportSpec, MarksAxes, PngCache, ReadMarks, marks_template, read_cloud, read_marks,
-    read_picture, read_vein_graph, write_marks,
+    CloudFormat, ExportSpec, MarksAxes, PngCache, ReadMarks, is_rays, marks_template, read_cloud, read_marks,
+    read_picture, read_rays, read_vein_graph, write_marks, write_rays,
 };
 use burgeon::geom::RingRule;
 use burgeon::leaf::{
-    FullMarks, LeafGrowth, LeafSpec, Marks, MeshSpec, Pose, ScanSpec, SurfaceKind, ThicknessRule,
-    VeinParameters,
+    FullMarks, LeafGrowth, LeafSpec, Marks, MeshSpec, PalmateSpec, ParallelSpec, Pose, Rays, ScanSpec,
+    SurfaceKind, ThicknessRule, VeinParameters,
 };
 use burgeon::mesh::Model;
 use burgeon::{
@@ -26,7 +26,7 @@ use crate::{files, output, picture, report, say};
 #[derive(Args, Debug)]
 #[command(after_long_help = LEAF_EXAMPLES)]
 pub(crate) struct LeafArgs {
-    /// Marks of a leaf (.csv) or its vein graph (.json); several for --days and --plant. `-` reads marks from
+    /// Marks or chief veins of a leaf (.csv), or its vein graph (.json); several for --days and --plant. `-` reads marks from
     /// standard input.
     #[arg(value_name = "DATA")]
     pub(crate) inputs: Vec<PathBuf>,
@@ -42,9 +42,19 @@ pub(crate) struct LeafArgs {
     /// DATA is the scan of one leaf (.ply, .xyz, .txt, .pcd, .las, .obj): find midrib, outline, stalk and surface.
     #[arg(long, conflicts_with_all = ["template", "plant", "days"])]
     pub(crate) scan: bool,
-    /// Length of the midrib in metres, 0.002 to 10, for a vein graph in pixels [default: 0.1, with a warning].
+    /// Length of the midrib in metres, 0.002 to 10, for a vein graph in pixels [default: 0.1, with a warning] and for
+    /// --venation [default: 0.1 palmate, 0.3 parallel].
     #[arg(long, value_name = "METRES", value_parser = |s: &str| ranged(s, 0.002, 10.0))]
     pub(crate) length: Option<f64>,
+    /// A leaf of such veins from a few numbers, without DATA: --veins, --length, --depth.
+    #[arg(long, value_enum, conflicts_with_all = ["inputs", "template", "scan", "plant", "days"])]
+    pub(crate) venation: Option<VenationWord>,
+    /// Chief veins of --venation, an odd number: 3 to 11 palmate, 3 to 31 parallel [default: 5, 9].
+    #[arg(long, value_name = "N", requires = "venation", value_parser = clap::value_parser!(u32).range(3..=31))]
+    pub(crate) veins: Option<u32>,
+    /// How far the notches of a palmate leaf reach, 0 (none) to 0.9.
+    #[arg(long, value_name = "X", default_value_t = 0.5, value_parser = |s: &str| ranged(s, 0.0, 0.9))]
+    pub(crate) depth: f64,
     /// Also write the leaf as marks, such as those found in a scan or grown between stages.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) marks: Option<PathBuf>,
@@ -77,10 +87,15 @@ const LEAF_EXAMPLES: &str = "Examples:
   burgeon leaf d5.csv d9.csv d15.csv --days 5,9,15 --day 12 -o leaf.glb
   burgeon leaf low.csv middle.csv high.csv --plant -o tobacco.glb
   burgeon leaf --scan cloud.txt --unit mm -o leaf.glb --marks found.csv
+  burgeon leaf --venation palmate --veins 5 -o maple.glb --marks maple.csv
+  burgeon leaf --venation parallel --length 0.4 -o lily.glb
+  burgeon leaf maple.csv -o maple.glb                            chief veins that start together, digitised
   burgeon leaf veins.json --length 0.06 -o leaf.glb --marks found.csv
 
 Marks are a CSV file with the columns row,mark,x,y,z,thickness,midrib. Lines `# unit: mm`, `# up: z` and
 `# thickness: diameter` in the file win over --unit, --up and --thickness.
+Chief veins are a CSV file with the columns vein,mark,x,y,z,thickness: veins from the right margin to the left, marks
+from the base outwards, as many on each; one without thickness is a margin or a notch between lobes.
 A vein graph is {\"unit\": \"pixel\", \"nodes_xyr\": [[x, y, radius], ...], \"edges\": [[0, 1], ...]}.";
 
 /// How blade and veins are made.
@@ -182,6 +197,14 @@ impl From<SurfaceWord> for SurfaceKind {
     }
 }
 
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+pub(crate) enum VenationWord {
+    /// Chief veins spread from the base into lobes, as in a maple
+    Palmate,
+    /// Veins side by side from base to tip, as in a grass or lily
+    Parallel,
+}
+
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum RingsWord {
     /// Circles across the vein
@@ -218,7 +241,7 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
     if args.template {
         return template(args);
     }
-    if args.inputs.is_empty() {
+    if args.inputs.is_empty() && args.venation.is_none() {
         return Err(Failure::Bad(
             "burgeon leaf needs a file of marks; --template makes one to fill in (see --help)".into(),
         ));
@@ -242,7 +265,10 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
     machine.cancel.check()?;
     if let Some(path) = &args.marks {
         let marks = marks.ok_or_else(|| Failure::at(path, "a whole plant has no marks; drop --marks"))?;
-        output::write_whole(path, |out| write_marks(&marks, &item.name, out))?;
+        output::write_whole(path, |out| match &marks {
+            Measured::Rows(marks) => write_marks(marks, &item.name, out),
+            Measured::Rays(rays) => write_rays(rays, &item.name, out),
+        })?;
     }
     let (written, write_ms) = machine.timed(|| {
         let Some((path, format)) = args.output.as_deref().zip(format) else { return Ok(Vec::new()) };
@@ -350,7 +376,13 @@ fn options(args: &LeafArgs, in_file: Option<ThicknessRule>) -> Outcome<LeafOptio
 struct Product {
     model: Model,
     item: ItemReport,
-    marks: Option<Marks>,
+    marks: Option<Measured>,
+}
+
+/// What `--marks` writes.
+enum Measured {
+    Rows(Marks),
+    Rays(Rays),
 }
 
 /// A scan to a leaf.
@@ -384,10 +416,13 @@ fn scan(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
     let (model, mut item, found) = made.map_err(|e| failure(args, e))?;
     item.warnings.splice(0..0, report.warnings.iter().map(ToString::to_string));
     item.timings_ms.add_io(read_ms, 0.0);
-    Ok(Product { model, item, marks: Some(found.marks) })
+    Ok(Product { model, item, marks: Some(Measured::Rows(found.marks)) })
 }
 
 fn make(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
+    if let Some(product) = rays(args, machine)? {
+        return Ok(product);
+    }
     let several = args.plant.plant || !args.look.days.is_empty();
     if args.inputs.len() > 1 && !several {
         return Err(Failure::Bad(
@@ -424,10 +459,66 @@ fn make(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
         let marks = grown(args, full)?;
         let made = burgeon::make_leaf_of(&name, &marks, &options, seed, &machine.run(), report);
         let made = made.map_err(|e| failure(args, e))?;
-        (made.model, made.item, Some(made.marks.to_marks()))
+        (made.model, made.item, Some(Measured::Rows(made.marks.to_marks())))
     };
     item.timings_ms.add_io(read_ms, 0.0);
     Ok(Product { model, item, marks })
+}
+
+/// A leaf of chief veins, made from numbers or digitised; `None` if the input is something else.
+fn rays(args: &LeafArgs, machine: &Machine) -> Outcome<Option<Product>> {
+    let (name, rays, thickness, read_ms) = match (args.venation, args.inputs.as_slice()) {
+        (Some(VenationWord::Palmate), _) => {
+            let spec = PalmateSpec::default();
+            let veins = odd(args.veins.unwrap_or(spec.veins), 11)?;
+            let length_m = args.length.unwrap_or(spec.length_m);
+            (
+                "palmate".to_owned(),
+                Rays::palmate(&PalmateSpec { veins, length_m, depth: args.depth }),
+                None,
+                0.0,
+            )
+        }
+        (Some(VenationWord::Parallel), _) => {
+            let spec = ParallelSpec::default();
+            let veins = odd(args.veins.unwrap_or(spec.veins), 31)?;
+            let length_m = args.length.unwrap_or(spec.length_m);
+            ("parallel".to_owned(), Rays::parallel(&ParallelSpec { veins, length_m, ..spec }), None, 0.0)
+        }
+        (None, [path])
+            if files::extension(path).is_some_and(|e| e.eq_ignore_ascii_case("csv")) && path.is_file() =>
+        {
+            let (bytes, ms) =
+                machine.timed(|| std::fs::read(path).map_err(|e| Failure::io(path, "read", &e)));
+            let bytes = bytes?;
+            if !is_rays(&bytes) {
+                return Ok(None);
+            }
+            let axes =
+                MarksAxes { unit: args.axes.unit.into(), up: args.axes.up.unwrap_or(UpWord::Y).into() };
+            let read = read_rays(&bytes[..], &files::stem(path), axes).map_err(|e| Failure::at(path, e))?;
+            (read.name, read.rays, read.thickness, ms)
+        }
+        _ => return Ok(None),
+    };
+    if args.look.curl.abs() > 0.0 || args.look.wilt > 0.0 || args.plant.plant {
+        return Err(Failure::Bad(
+            "--curl, --wilt and --plant need a leaf of rows of marks, not of chief veins; leave them out"
+                .into(),
+        ));
+    }
+    let options = options(args, thickness)?;
+    let made = burgeon::make_ray_leaf(&name, &rays, &options, &machine.run());
+    let (model, mut item) = made.map_err(|e| failure(args, e))?;
+    item.timings_ms.add_io(read_ms, 0.0);
+    Ok(Some(Product { model, item, marks: Some(Measured::Rays(rays)) }))
+}
+
+fn odd(veins: u32, most: u32) -> Outcome<u32> {
+    if veins % 2 == 1 && (3..=most).contains(&veins) {
+        return Ok(veins);
+    }
+    Err(Failure::Bad(format!("--veins {veins}: give an odd number from 3 to {most}, one vein is the midrib")))
 }
 
 fn failure(args: &LeafArgs, error: LeafError) -> Failure {

@@ -231,11 +231,13 @@ impl Whorl {
         let share = ops::smoothstep(0.0, 0.6, v) as f32;
         let middle = (1.0 - 0.14 * (1.0 - u.abs()) * (1.0 - u.abs())) as f32;
         let dry = if self.sepal { [0.17, 0.15, 0.045] } else { [0.14, 0.08, 0.033] };
-        let withered = (wilt * ops::lerp(0.55, 0.95, (v * v).max(u * u))) as f32;
+        // The margin is brown at half of the wilting, the middle at its end.
+        let inner = 1.0 - (v * v).max(u * u);
+        let withered = ops::smoothstep(0.0, 1.0, (1.9 * wilt - 0.9 * inner).clamp(0.0, 1.0)) as f32;
         [0, 1, 2].map(|q| {
             let fresh = (self.colors[0][q] + (self.colors[1][q] - self.colors[0][q]) * share) * middle;
             // Some of the petal's own colour stays.
-            fresh + (0.8 * dry[q] + 0.2 * fresh - fresh) * withered
+            fresh + (0.88 * dry[q] + 0.12 * fresh - fresh) * withered
         })
     }
 }
@@ -335,9 +337,11 @@ impl FlowerSpec {
         let angle =
             |v: f64| a * (1.0 - v) * (1.0 - 2.0 * v) + 4.0 * b * v * (1.0 - v) + c * v * (2.0 * v - 1.0);
         let (mut radius, mut height) = (whorl.insertion[0], whorl.insertion[1]);
-        let step = profile.length / f64::from(fine);
+        // Rows are closer towards the tip, where the outline turns.
+        let row_at = |i: u32| 1.0 - ops::powf(1.0 - f64::from(i) / f64::from(fine), 1.6);
         for i in 0..=fine {
-            let v = f64::from(i) / f64::from(fine);
+            let v = row_at(i);
+            let step = profile.length * (row_at((i + 1).min(fine)) - v);
             let (s, c) = ops::sin_cos(angle(v));
             if i.is_multiple_of(8) {
                 let half = 0.5 * profile.width * whorl.outline(v);

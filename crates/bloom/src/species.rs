@@ -38,7 +38,7 @@ pub fn preset(name: &str) -> Option<FlowerSpec> {
         umbel: 1,
         days: [6.0, 4.0],
         rate: 0.95,
-        mesh: [14, 10],
+        mesh: [18, 14],
     };
     match name {
         "rose" => Some(rose(spec)),
@@ -97,7 +97,7 @@ fn rose(spec: FlowerSpec) -> FlowerSpec {
         pistil: 0.005,
         stalk: 0.09,
         nod: 34.0,
-        mesh: [18, 14],
+        mesh: [22, 18],
         ..spec
     }
 }

@@ -427,7 +427,7 @@ mod tests {
         };
         assert_eq!(with(&|r| r.rays.truncate(2)), RaysError::TooFew { rays: 2, marks: 13 });
         assert!(matches!(
-            with(&|r| drop(r.rays[1].points.pop())),
+            with(&|r| r.rays[1].points.truncate(12)),
             RaysError::Unequal { ray: 2, got: 12, .. }
         ));
         assert_eq!(with(&|r| r.rays[2].points[3].x = f64::NAN), RaysError::NotFinite { ray: 3, mark: 4 });

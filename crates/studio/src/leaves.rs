@@ -6,8 +6,8 @@ use base::{Cancelled, Digest, Draw, Report, Run, Seed, ops};
 use geom::{Ball, BallBSpline, EndCap, SplineError, TubeSpec};
 use glam::{DQuat, DVec3};
 use leaf::{
-    FlatLeaf, FullMarks, Leaf, LeafColours, LeafMesh, LeafSpec, Marks, MarksError, MeshSpec, Pose, ScanError,
-    ScanLeaf, ScanSpec,
+    FlatLeaf, FullMarks, Leaf, LeafColours, LeafMesh, LeafSpec, Marks, MarksError, MeshSpec, Pose, RaysError,
+    ScanError, ScanLeaf, ScanSpec,
 };
 use mesh::{Material, MaterialId, MaterialKind, Model, Part, Texture, TriMesh};
 use serde::{Deserialize, Serialize};
@@ -62,6 +62,9 @@ pub enum LeafError {
     /// The surface cannot be made.
     #[error(transparent)]
     Spline(#[from] SplineError),
+    /// The chief veins make no leaf.
+    #[error(transparent)]
+    Rays(#[from] RaysError),
     /// No leaf in a scan.
     #[error(transparent)]
     Scan(#[from] ScanError),
@@ -231,7 +234,7 @@ pub fn make_leaf_of(
     Ok(MadeLeaf { marks, leaf, model, item })
 }
 
-fn digest(model: &Model) -> String {
+pub(crate) fn digest(model: &Model) -> String {
     let mut d = Digest::new();
     d.add(model);
     d.hex()
@@ -250,7 +253,7 @@ fn leaf_texture(leaf: &Leaf, options: &LeafOptions, seed: Seed, run: &Run<'_>) -
 }
 
 /// The materials of a leaf: blade, veins.
-fn leaf_materials(texture: Option<Arc<Texture>>, wilt: f64) -> [Material; 2] {
+pub(crate) fn leaf_materials(texture: Option<Arc<Texture>>, wilt: f64) -> [Material; 2] {
     let colours = LeafColours::default().wilted(wilt);
     let linear = |c: [u8; 3]| c.map(linear_of);
     let plain = if texture.is_some() { [1.0; 3] } else { linear(colours.blade) };
@@ -264,7 +267,7 @@ fn leaf_materials(texture: Option<Arc<Texture>>, wilt: f64) -> [Material; 2] {
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "colours are f32 in materials")]
-fn linear_of(byte: u8) -> f32 {
+pub(crate) fn linear_of(byte: u8) -> f32 {
     // 2.2: close enough to sRGB's curve for a plain colour.
     ops::powf(f64::from(byte) / 255.0, 2.2) as f32
 }
@@ -296,7 +299,7 @@ fn leaf_report(marks: &FullMarks, leaf: &Leaf, meshes: &LeafMesh, options: &Leaf
 }
 
 /// The area of a mesh, square metres.
-fn area(mesh: &TriMesh) -> f64 {
+pub(crate) fn area(mesh: &TriMesh) -> f64 {
     let p = |i: u32| mesh.position(i);
     mesh.triangles.iter().map(|&[a, b, c]| 0.5 * (p(b) - p(a)).cross(p(c) - p(a)).length()).sum()
 }

@@ -24,6 +24,7 @@ mod opening;
 mod report;
 mod template;
 mod trees;
+mod venation;
 
 pub use base::{
     Angle, CancelToken, Cancelled, Clock, Digest, Executor, NoClock, Report, Run, Seed, Serial, Unit, UpAxis,
@@ -46,6 +47,7 @@ pub use trees::{
     PRESETS, PaperOak, Preset, TreeError, TreeOptions, TreeSize, TreeSpec, coarser, make_tree, method_word,
     read_tree_spec, scale_to_height, tree_schema, tree_size,
 };
+pub use venation::make_ray_leaf;
 
 pub use {bloom, document, formats, geom, glam, growth, leaf, mesh, plant, render, sketch, skin};
 

@@ -84,7 +84,8 @@ pub fn read_marks(input: impl Read, name: &str, axes: MarksAxes) -> Result<ReadM
     for (k, line) in text.lines().enumerate() {
         let line = line.trim_start_matches('\u{feff}').trim();
         if let Some(comment) = line.strip_prefix('#') {
-            setting(comment, &mut axes, &mut out).map_err(|e| LeafFileError::new(Place::line(k + 1), e))?;
+            setting(comment, &mut axes, &mut out.name, &mut out.thickness)
+                .map_err(|e| LeafFileError::new(Place::line(k + 1), e))?;
         } else if !line.is_empty() {
             let fields: Vec<&str> = line.split([',', ';', '\t']).map(str::trim).collect();
             let placed = |fault| LeafFileError::new(Place::line(k + 1), fault);
@@ -124,7 +125,12 @@ pub fn read_marks(input: impl Read, name: &str, axes: MarksAxes) -> Result<ReadM
 }
 
 /// `# key: value`; other comments are left alone.
-fn setting(comment: &str, axes: &mut MarksAxes, out: &mut ReadMarks) -> Result<(), FileFault> {
+pub(super) fn setting(
+    comment: &str,
+    axes: &mut MarksAxes,
+    name: &mut String,
+    rule: &mut Option<ThicknessRule>,
+) -> Result<(), FileFault> {
     let Some((key, value)) = comment.split_once(':') else { return Ok(()) };
     let (key, value) = (key.trim().to_ascii_lowercase(), value.trim());
     let word = value.to_ascii_lowercase();
@@ -137,10 +143,10 @@ fn setting(comment: &str, axes: &mut MarksAxes, out: &mut ReadMarks) -> Result<(
         ("up", "y") => axes.up = UpAxis::Y,
         ("up", "z") => axes.up = UpAxis::Z,
         ("up", _) => return unknown("the axis that points up is y or z"),
-        ("thickness", "diameter") => out.thickness = Some(ThicknessRule::Diameter),
-        ("thickness", "radius") => out.thickness = Some(ThicknessRule::Radius),
+        ("thickness", "diameter") => *rule = Some(ThicknessRule::Diameter),
+        ("thickness", "radius") => *rule = Some(ThicknessRule::Radius),
         ("thickness", _) => return unknown("a thickness is a diameter or a radius"),
-        ("name", _) if !value.is_empty() => out.name = value.chars().take(200).collect(),
+        ("name", _) if !value.is_empty() => *name = value.chars().take(200).collect(),
         _ => {}
     }
     Ok(())

@@ -1,0 +1,80 @@
+//! Chief veins that start together -> a model: palmate and parallel leaves.
+
+use base::{Report, Run, ops};
+use leaf::{LeafColours, RayLeaf, Rays};
+use mesh::{MaterialId, Model, Part};
+
+use crate::leaves::{FaceCounts, FitError, LeafError, LeafOptions, LeafReport, area, digest, leaf_materials};
+use crate::{Counts, ItemReport, TimingsMs};
+
+/// Makes a leaf whose chief veins start together: parts `blade` and `veins`.
+///
+/// The blade's colour is on its vertices, by the distance from the nearest vein. Of `options` thickness, resolution
+/// and rings are used.
+///
+/// # Errors
+/// [`LeafError::Rays`], [`LeafError::Cancelled`].
+pub fn make_ray_leaf(
+    name: &str,
+    rays: &Rays,
+    options: &LeafOptions,
+    run: &Run<'_>,
+) -> Result<(Model, ItemReport), LeafError> {
+    let mut report = Report::default();
+    let leaf = report.stage("structure", run.clock, |_| RayLeaf::new(rays, options.spec.thickness))?;
+    run.cancel.check()?;
+    let colours = LeafColours::default();
+    let [blade, vein] = [colours.blade, colours.vein].map(|c| c.map(crate::leaves::linear_of));
+    // A twentieth of the leaf: as far as the pale band beside a chief vein is seen.
+    let reach = 0.02 * rays.length();
+    let shade = |distance: f64| {
+        #[expect(clippy::cast_possible_truncation, reason = "colours are f32 in meshes")]
+        let share = ops::smoothstep((distance / reach).clamp(0.0, 1.0)) as f32;
+        core::array::from_fn(|k| vein[k] + (blade[k] - vein[k]) * (0.3 + 0.7 * share))
+    };
+    let meshes = report.stage("mesh", run.clock, |_| leaf.mesh(&options.mesh, shade));
+    let (us, vs) = (leaf.blade.columns_at(), leaf.blade.rows_at());
+    let mut distances = Vec::new();
+    for (ray, &u) in rays.rays.iter().rev().zip(us) {
+        distances.extend(ray.points.iter().zip(vs).map(|(p, &v)| p.distance(leaf.blade.point(u, v))));
+    }
+    let counts = |mesh: &mesh::TriMesh, faces: usize| FaceCounts {
+        vertices: mesh.positions.len() as u64,
+        faces: faces as u64,
+    };
+    let about = LeafReport {
+        surface: options.spec.surface.word().into(),
+        rows: rays.rays.len() as u64,
+        length_mm: 1e3 * rays.length(),
+        area_mm2: 1e6 * area(&meshes.blade),
+        veins: counts(&meshes.veins, meshes.vein_faces),
+        blade: counts(&meshes.blade, meshes.blade_faces),
+        fit_error: FitError::of(&distances),
+        vein_gap_mm: 1e3 * leaf.vein_gap(8),
+        swallowed_rings: meshes.swallowed as u64,
+        crossing_rings: meshes.crossing as u64,
+        scan: None,
+    };
+    let mut model = Model { name: name.into(), ..Model::default() };
+    let mut materials = leaf_materials(None, 0.0);
+    materials[0].base_color = [1.0; 3];
+    model.materials = materials.into();
+    let part =
+        |name: &str, material, mesh| Part { name: name.into(), material: MaterialId::new(material), mesh };
+    model.parts = vec![part("blade", 0, meshes.blade), part("veins", 1, meshes.veins)];
+    let counts = Counts {
+        leaves: 1,
+        vertices: model.vertex_count() as u64,
+        triangles: model.triangle_count() as u64,
+        ..Counts::default()
+    };
+    let item = ItemReport {
+        name: name.into(),
+        counts,
+        timings_ms: TimingsMs::from_report(&report),
+        digest: digest(&model),
+        leaf: Some(about),
+        ..ItemReport::default()
+    };
+    Ok((model, item))
+}
