@@ -1,39 +1,60 @@
-"""Times the peers of `cargo bench -p burgeon-bench --bench bloom`: a plain NumPy sum for the deformation, scipy for the
-fits, geomdl and splipy for the surface. `pip install numpy scipy geomdl splipy`; prints medians."""
+"""Times free-form deformation, logistic fits and surfaces beside NumPy, scipy, geomdl and splipy, in one run.
+
+    pip install numpy scipy geomdl splipy
+    python bench/peers_bloom.py            # builds and runs `cargo bench -p burgeon-bench --bench bloom`, too
+
+Prints a table: the least and the median time of each, and how many times as long as ours the peer takes (of the least
+times, which other work on the machine disturbs least)."""
+
+import re
+import subprocess
 import time
+from math import comb
+from pathlib import Path
 
 import numpy as np
 
 
-def median(job, runs):
-    times = []
+def times(job, runs):
+    out = []
     for _ in range(runs):
         start = time.perf_counter()
         job()
-        times.append(time.perf_counter() - start)
-    return sorted(times)[runs // 2]
+        out.append(time.perf_counter() - start)
+    return min(out) * 1e3, sorted(out)[runs // 2] * 1e3
 
 
-def deform():
-    from math import comb
-
+def deform_kept():
     count, points = 4, 200_000
     stu = np.random.default_rng(1).random((points, 3))
     lattice = np.random.default_rng(2).random((count, count, count, 3))
     degree = count - 1
     b = [np.stack([comb(degree, i) * (1 - x) ** (degree - i) * x**i for i in range(count)], 1) for x in stu.T]
-    # Weights are kept between shapes, as ours are.
+    # All 64 weights of a point are kept between shapes.
     weights = np.einsum("pi,pj,pk->pijk", *b)
-    return median(lambda: np.einsum("pijk,ijkc->pc", weights, lattice), 15)
+    return times(lambda: np.einsum("pijk,ijkc->pc", weights, lattice), 15)
+
+
+def deform_blas():
+    count, points = 4, 200_000
+    weights = np.random.default_rng(1).random((points, count**3))
+    lattice = np.random.default_rng(2).random((count**3, 3))
+    # The same sum as a product of matrices, which NumPy hands to its BLAS.
+    return times(lambda: weights @ lattice, 25)
 
 
 def logistic():
     from scipy.optimize import curve_fit
 
+    # The series of the benchmark.
     days = np.arange(25.0)
-    values = 60 / (1 + (60 / 6 - 1) * np.exp(-0.4 * days)) + 0.6 * np.sin(37.0 * days)
-    law = lambda x, k, p0, r: k / (1 + (k / p0 - 1) * np.exp(-r * x))
-    return median(lambda: curve_fit(law, days, values, p0=[62, 5, 0.3]), 41)
+    wobble = 0.6 * ((np.arange(25) * 37) % 11 / 5.0 - 1.0)
+    values = 60 / (1 + (60 / 6 - 1) * np.exp(-0.4 * days)) + wobble
+
+    def law(x, k, p0, r):
+        return k / (1 + (k / p0 - 1) * np.exp(-r * x))
+
+    return times(lambda: curve_fit(law, days, values, p0=[62, 5, 0.3]), 201)
 
 
 def marks():
@@ -45,7 +66,7 @@ def surface_geomdl():
     from geomdl import fitting
 
     points = [list(p) for p in marks().reshape(-1, 3)]
-    return median(lambda: fitting.interpolate_surface(points, 10, 7, 3, 3), 15)
+    return times(lambda: fitting.interpolate_surface(points, 10, 7, 3, 3), 51)
 
 
 def surface_splipy():
@@ -53,13 +74,48 @@ def surface_splipy():
 
     grid = marks()
     bases = [BSplineBasis(4, [0] * 4 + list(range(1, n - 3)) + [n - 3] * 4) for n in (10, 7)]
-    return median(lambda: surface_factory.interpolate(grid, bases), 41)
+    return times(lambda: surface_factory.interpolate(grid, bases), 201)
 
 
-for name, job in [
-    ("NumPy einsum, 4 x 4 x 4, 200,000 points", deform),
-    ("scipy curve_fit, 25 points", logistic),
-    ("geomdl interpolate_surface, 10 x 7", surface_geomdl),
-    ("splipy interpolate, 10 x 7", surface_splipy),
-]:
-    print(f"{name}: {job() * 1e3:.3f} ms")
+def ours():
+    """Least and median of each of our benchmarks, milliseconds, as divan prints them."""
+    command = ["cargo", "bench", "--quiet", "-p", "burgeon-bench", "--bench", "bloom"]
+    text = subprocess.run(command, cwd=Path(__file__).parent.parent, capture_output=True, text=True, check=True).stdout
+    unit = {"ns": 1e-6, "µs": 1e-3, "ms": 1.0, "s": 1e3}
+    found, group = {}, ""
+    for line in text.splitlines():
+        name = re.match(r"[│ ]*[├╰]─ (\S+)", line)
+        if not name:
+            continue
+        cells = re.findall(r"([\d.]+) (ns|µs|ms|s)\b", line)
+        if line[0] in "├╰":
+            group = name[1]
+        key = group if line[0] in "├╰" else f"{group} {name[1]}"
+        if len(cells) >= 3:
+            values = [float(x) * unit[u] for x, u in cells]
+            found[key] = (values[0], values[2])
+    return found
+
+
+def main():
+    own = ours()
+    rows = [
+        ("FFD, 4 x 4 x 4, 200,000 points, two threads", "deform_200_000_on_two_threads 4", None),
+        ("the same, one thread", "deform_200_000 4", None),
+        ("NumPy einsum of the same sum, weights kept", "deform_200_000 4", deform_kept),
+        ("NumPy matrix product, weights kept", "deform_200_000 4", deform_blas),
+        ("logistic fit of 25 points", "logistic_25", None),
+        ("scipy curve_fit, one start near the answer", "logistic_25", logistic),
+        ("surface through 10 x 7 marks", "surface_through_10_by_7", None),
+        ("splipy interpolate", "surface_through_10_by_7", surface_splipy),
+        ("geomdl interpolate_surface", "surface_through_10_by_7", surface_geomdl),
+    ]
+    print("| | least, ms | median, ms | times ours |\n|---|---|---|---|")
+    for name, key, peer in rows:
+        least, median = peer() if peer else own[key]
+        ratio = f"{least / own[key][0]:.1f}" if peer else ""
+        print(f"| {name} | {least:.4g} | {median:.4g} | {ratio} |")
+
+
+if __name__ == "__main__":
+    main()

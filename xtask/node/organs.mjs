@@ -1,5 +1,6 @@
 // node organs.mjs WASM_MODULE NATIVE_DIGESTS LEAF...: the WASM build must make every leaf and flower that the native
-// program made, bit for bit. NATIVE_DIGESTS is {"leaf1.csv": "...", "rose": "...", ...}.
+// program made, bit for bit. NATIVE_DIGESTS is {"leaf1.csv": "...", "rose": "...", ...}: a file that is named makes a leaf,
+// a drawing (.svg) an opening plant, `stages` the motion through the three scans stage1.xyz to stage3.xyz.
 import { readFileSync } from 'node:fs';
 import { basename } from 'node:path';
 import { createRequire } from 'node:module';
@@ -12,7 +13,12 @@ const paths = new Map(leaves.map((path) => [basename(path), path]));
 let different = 0;
 for (const [name, digest] of Object.entries(native)) {
   const path = paths.get(name);
-  const wasm = path
+  const scan = (k) => readFileSync(paths.get(`stage${k}.xyz`));
+  const wasm = name === 'stages'
+    ? burgeon.motion_digest(scan(1), scan(2), scan(3), Number(frames))
+    : name.endsWith('.svg')
+    ? burgeon.opening_digest(name.slice(0, -4), readFileSync(path), Number(frames), 1n)
+    : path
     ? JSON.parse(burgeon.leaf_report(name, readFileSync(path), 1n)).digest
     : burgeon.flower_digest(name, Number(frames), 1n);
   if (wasm !== digest) {

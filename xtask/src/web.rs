@@ -138,12 +138,79 @@ fn fixture_drawings() -> Outcome<Vec<PathBuf>> {
 /// Shapes of each flower in the comparison.
 const FRAMES: &str = "5";
 
-/// The digests of every leaf of the fixtures and of every flower, by the native program on one and on four threads;
-/// returns their file and the leaves' files.
+/// The points of a bent leaf of `length` mm, in millimetres.
+fn made_scan(length: f64) -> String {
+    let mut text = String::new();
+    for i in 0..60 {
+        for j in 0..21 {
+            let (v, u) = (f64::from(i) / 59.0, f64::from(j) / 10.0 - 1.0);
+            let half = 0.25 * length * (1.0 - (2.0 * v - 1.0) * (2.0 * v - 1.0)) + 0.3;
+            let bend = 0.002 * length * length * v * v * (1.0 - 0.2 * u * u);
+            text.push_str(&format!("{} {} {}\n", u * half, v * length, bend));
+        }
+    }
+    text
+}
+
+/// Files for every kind of leaf and organ: a pinnate net of veins, palmate and parallel veins, a scan, three stages.
+fn made_organs(out: &Path, burgeon: &Path) -> Outcome<Vec<PathBuf>> {
+    let mut nodes: Vec<[f64; 3]> =
+        (0..=40).map(|i| [200.0, 500.0 - 10.0 * f64::from(i), 8.0 - 0.15 * f64::from(i)]).collect();
+    let mut edges: Vec<[usize; 2]> = (0..40).map(|i| [i, i + 1]).collect();
+    for i in [4_usize, 11, 18, 25, 32] {
+        for side in [-1.0, 1.0] {
+            for k in 1..=6 {
+                let before = if k == 1 { i } else { nodes.len() - 1 };
+                let (step, [x, y, _]) = (f64::from(k), nodes[i]);
+                nodes.push([x + side * 16.0 * step, y - 9.0 * step, 3.0 - 0.3 * step]);
+                edges.push([before, nodes.len() - 1]);
+            }
+        }
+    }
+    let graph = serde_json::json!({ "unit": "pixel", "nodes_xyr": nodes, "edges": edges }).to_string();
+    let mut files = Vec::new();
+    let mut put = |name: &str, text: String| -> Outcome {
+        let path = out.join(name);
+        std::fs::write(&path, text).map_err(|e| format!("{}: {e}", shown(&path)))?;
+        files.push(path);
+        Ok(())
+    };
+    put("veins.json", graph)?;
+    put("scan.xyz", made_scan(70.0))?;
+    for (k, length) in [(1, 24.0), (2, 35.0), (3, 41.0)] {
+        put(&format!("stage{k}.xyz"), made_scan(length))?;
+    }
+    for word in ["palmate", "parallel"] {
+        let path = out.join(format!("{word}.csv"));
+        finish({
+            let mut c = prepare(burgeon, &["leaf", "--quiet", "--venation", word, "--marks"]);
+            c.arg(&path);
+            c
+        })?;
+        files.push(path);
+    }
+    let stages = |k| format!("[[stage]]\nfile = \"stage{k}.xyz\"\nday = {}\n", k - 1);
+    let stages = format!(
+        "unit = \"mm\"\nsplit = \"none\"\nclean = false\n{}",
+        (1..=3).map(stages).collect::<String>()
+    );
+    let path = out.join("stages.toml");
+    std::fs::write(&path, stages).map_err(|e| format!("{}: {e}", shown(&path)))?;
+    files.push(repository().join("fixtures/sketches/gallery/tulip.svg"));
+    Ok(files)
+}
+
+/// The digests of every kind of leaf and of every flower, by the native program on one and on four threads; returns
+/// their file and the files that they were made of.
 fn native_organs(out: &Path) -> Outcome<(PathBuf, Vec<PathBuf>)> {
     let burgeon = target_dir().join("debug").join(format!("burgeon{}", std::env::consts::EXE_SUFFIX));
-    let leaves: Vec<PathBuf> =
+    let mut files: Vec<PathBuf> =
         (1..=3).map(|k| repository().join(format!("fixtures/leaves/leaf{k}.csv"))).collect();
+    files.extend(made_organs(out, &burgeon)?);
+    let law = out.join("stages.law.json");
+    let mut c = prepare(&burgeon, &["bloom", "fit", "--quiet", "-o"]);
+    c.arg(&law).arg(out.join("stages.toml"));
+    finish(c)?;
     let mut all = Vec::new();
     for threads in ["1", "4"] {
         let mut digests = serde_json::Map::new();
@@ -161,14 +228,23 @@ fn native_organs(out: &Path) -> Outcome<(PathBuf, Vec<PathBuf>)> {
             digests.insert(name, digest);
             Ok(())
         };
-        for leaf in &leaves {
-            let name = leaf.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-            digest_of(name, prepare(&burgeon, &["leaf"]).arg(leaf))?;
+        let opening = ["bloom", "run", "--frames", FRAMES, "-o"];
+        let glb = out.join("flower.glb");
+        for path in &files {
+            let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+            let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
+            match extension {
+                "svg" => digest_of(name, prepare(&burgeon, &opening).arg(&glb).arg(path))?,
+                "xyz" if name.starts_with("stage") => {}
+                "xyz" => digest_of(name, prepare(&burgeon, &["leaf", "--scan", "--unit", "mm"]).arg(path))?,
+                _ => digest_of(name, prepare(&burgeon, &["leaf"]).arg(path))?,
+            }
         }
         for species in ["rose", "lily", "tulip", "sunflower", "clivia"] {
-            let mut c = prepare(&burgeon, &["bloom", "run", species, "--frames", FRAMES, "-o"]);
-            digest_of(species.into(), c.arg(out.join("flower.glb")))?;
+            digest_of(species.into(), prepare(&burgeon, &opening).arg(&glb).arg(species))?;
         }
+        let mut c = prepare(&burgeon, &opening);
+        digest_of("stages".into(), c.arg(&glb).arg(out.join("stages.toml")).arg("--law").arg(&law))?;
         all.push(digests);
     }
     if all[0] != all[1] {
@@ -178,7 +254,7 @@ fn native_organs(out: &Path) -> Outcome<(PathBuf, Vec<PathBuf>)> {
     let path = out.join("organs.json");
     let text = serde_json::Value::Object(all.swap_remove(0)).to_string();
     std::fs::write(&path, text).map_err(|e| format!("{}: {e}", shown(&path)))?;
-    Ok((path, leaves))
+    Ok((path, files))
 }
 
 /// Makes every drawing with the native program on one and on four threads; returns the report of the first.

@@ -421,7 +421,7 @@ fn run(args: &BloomRunArgs) -> Outcome {
         best: last_day,
         shape: Box::new(|day| {
             let points = motion.at(day - first_day, &compute).map_err(bad(start))?;
-            Ok((assemble(&loaded, &motion, &points), None))
+            Ok((burgeon::motion_model(&loaded.name, loaded.mesh.as_ref(), &motion, &points), None))
         }),
     };
     let (written, write_ms) = machine.timed(|| write_show(args, &show, &axes, &machine));
@@ -529,32 +529,6 @@ fn load_shapes(
         )));
     }
     stages::load_pair(start, first, end, last, options, axes, Seed::new(args.seed), machine)
-}
-
-/// Meshes keep their faces; points of scans become a part an organ.
-fn assemble(loaded: &Loaded, motion: &Motion, points: &[DVec3]) -> Model {
-    let mut model = Model { name: loaded.name.clone(), ..Model::default() };
-    for (name, rows) in &motion.organs {
-        let mut mesh = TriMesh::default();
-        for p in &points[rows.clone()] {
-            mesh.push(*p);
-        }
-        let leafy = name != "stem";
-        if let Some(first) = loaded.mesh.as_ref().filter(|m| m.positions.len() == mesh.positions.len()) {
-            mesh.triangles.clone_from(&first.triangles);
-            mesh.uvs.clone_from(&first.uvs);
-            mesh.colors.clone_from(&first.colors);
-            mesh.compute_normals();
-        }
-        let material = model.materials.len();
-        let kind = if leafy { MaterialKind::Leaf } else { MaterialKind::Stem };
-        let color = if leafy { [0.13, 0.33, 0.06] } else { [0.25, 0.38, 0.12] };
-        let mut look = Material::plain(format!("{}-{}", kind.word(), material + 1), kind, color);
-        look.double_sided = true;
-        model.materials.push(look);
-        model.parts.push(Part { name: name.clone(), material: MaterialId::new(material), mesh });
-    }
-    model
 }
 
 fn no_end(args: &BloomRunArgs, name: &str) -> Outcome {

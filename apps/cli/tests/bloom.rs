@@ -139,6 +139,82 @@ fn bad_input_is_one_clear_line() {
     assert!(!dir.join("law").exists() && !dir.join("x.glb").exists(), "nothing is half-written");
 }
 
+/// A stages file of three days, all the same scan as one organ.
+fn thrice(dir: &Path, scan: &str) -> String {
+    let stage = |d| format!("[[stage]]\nfile = \"{scan}\"\nday = {d}\norgan = \"x\"\n");
+    let name = format!("{scan}.toml");
+    fs::write(dir.join(&name), (1..=3).map(stage).collect::<String>()).unwrap();
+    name
+}
+
+fn las(offset: f64, scale: f64, at: u32, count: u32) -> Vec<u8> {
+    let mut file = vec![0; 227];
+    file[..4].copy_from_slice(b"LASF");
+    (file[24], file[25]) = (1, 2);
+    file[94..96].copy_from_slice(&227_u16.to_le_bytes());
+    file[96..100].copy_from_slice(&at.to_le_bytes());
+    file[105..107].copy_from_slice(&20_u16.to_le_bytes());
+    file[107..111].copy_from_slice(&count.to_le_bytes());
+    for k in 0..3 {
+        file[131 + 8 * k..139 + 8 * k].copy_from_slice(&scale.to_le_bytes());
+        file[155 + 8 * k..163 + 8 * k].copy_from_slice(&offset.to_le_bytes());
+    }
+    for i in 0..100_i32 {
+        [i * 7 % 31, i * 11 % 57, i].iter().for_each(|x| file.extend((x * 10).to_le_bytes()));
+        file.extend([0; 8]);
+    }
+    file
+}
+
+#[test]
+fn hostile_scans_are_told_in_one_line() {
+    let dir = folder("bloom_hostile");
+    let ply = |count: &str, points: i32| {
+        let mut file = format!(
+            "ply\nformat binary_little_endian 1.0\nelement vertex {count}\nproperty float x\nproperty float y\n\
+             property float z\nend_header\n"
+        )
+        .into_bytes();
+        for i in 0..points {
+            [i * 7 % 31, i * 11 % 57, i].iter().for_each(|&x| file.extend((x as f32).to_le_bytes()));
+        }
+        file
+    };
+    let endless = format!("ply\nformat ascii 1.0\n{}", "comment x\n".repeat(100_000));
+    for (name, bytes, want) in [
+        ("more.ply", ply("200", 100), "200 rows are announced, at most 100 are there"),
+        ("huge.ply", ply("18446744073709551615", 100), "at most 100 are there"),
+        ("negative.ply", ply("-5", 100), "the number of rows is broken"),
+        ("endless.ply", endless.into_bytes(), "the header does not end"),
+        ("far.las", las(1e300, 1e-3, 227, 100), "offset 1e300 of a coordinate is absurd"),
+        ("nan.las", las(f64::NAN, 1e-3, 227, 100), "offset NaN of a coordinate is absurd"),
+        ("flat.las", las(0.0, 0.0, 227, 100), "the scale 0 of a coordinate is no use"),
+        ("outside.las", las(0.0, 1e-3, 4_000_000_000, 100), "the points begin at byte 4000000000 of 2227"),
+        ("count.las", las(0.0, 1e-3, 227, u32::MAX), "4294967295 are announced, 100 are there"),
+    ] {
+        fs::write(dir.join(name), bytes).unwrap();
+        bad(&dir, &["bloom", "fit", &thrice(&dir, name), "-o", "law"], want);
+    }
+    assert!(!dir.join("law").exists(), "nothing is half-written");
+}
+
+#[test]
+fn odd_stages_are_taken_with_a_warning() {
+    let dir = folder("bloom_odd");
+    fs::write(dir.join("a.xyz"), leaf(20.0, 0.1)).unwrap();
+    fs::write(dir.join("b.xyz"), leaf(30.0, 0.1) + "nan nan nan\ninf 0 0\n").unwrap();
+    // In metres, the others in millimetres.
+    fs::write(dir.join("c.xyz"), leaf(0.04, 0.1)).unwrap();
+    let stage = |(d, file): (i32, &str)| format!("[[stage]]\nfile = \"{file}\"\nday = {d}\norgan = \"x\"\n");
+    let stages: String = [(1, "a.xyz"), (2, "b.xyz"), (3, "c.xyz")].map(stage).concat();
+    fs::write(dir.join("stages.toml"), format!("unit = \"mm\"\n{stages}")).unwrap();
+    let out = burgeon(&dir, &["bloom", "fit", "stages.toml", "-o", "law.json"]);
+    let text = String::from_utf8_lossy(&out.stderr);
+    assert!(out.status.success(), "{text}");
+    assert!(text.contains("2 points that are not finite numbers"), "{text}");
+    assert!(text.contains("are their units the same?"), "{text}");
+}
+
 #[test]
 fn drawn_flowers_open_and_own_petals_are_taken() {
     let dir = folder("bloom_drawn");

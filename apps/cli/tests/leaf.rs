@@ -208,3 +208,39 @@ fn wrong_marks_are_told_with_their_place() {
     assert!(bad(&at, &["leaf", "--scan", "few.xyz", "-o", "x.glb"]).contains("at least 100"));
     assert!(!at.join("x.glb").exists());
 }
+
+#[test]
+fn chief_veins_that_start_together_make_a_leaf() {
+    let at = folder("leaf-venation");
+    good(&at, &["leaf", "--venation", "palmate", "--veins", "7", "-o", "m.glb", "--marks", "m.csv"]);
+    good(&at, &["leaf", "--venation", "parallel", "--length", "0.4", "-o", "p.glb", "--marks", "p.csv"]);
+    for (file, length, veins) in [("m.csv", 100.0, 7), ("p.csv", 400.0, 9)] {
+        good(&at, &["leaf", file, "-o", "again.glb", "--report", "r.json", "--quiet"]);
+        let report: serde_json::Value =
+            serde_json::from_str(&fs::read_to_string(at.join("r.json")).unwrap()).unwrap();
+        let leaf = &report["items"][0]["leaf"];
+        assert!(leaf["vein_gap_mm"].as_f64().unwrap() < 1e-6, "{file}: {leaf}");
+        assert!(leaf["fit_error"]["max_mm"].as_f64().unwrap() < 1e-6, "{file}: {leaf}");
+        let long = leaf["length_mm"].as_f64().unwrap();
+        assert!((long / length - 1.0).abs() < 0.15, "{file} is {long} mm long");
+        // Veins of 10-sided rings, five parts a span.
+        let marks = if file == "m.csv" { 9 } else { 13 };
+        let rings = 5 * (marks - 1) + 1;
+        assert_eq!(leaf["veins"]["vertices"].as_u64(), Some(10 * rings * veins), "{file}");
+    }
+    let text = fs::read_to_string(at.join("p.csv")).unwrap();
+    let line = text.lines().find(|l| l.starts_with("3,5,")).unwrap();
+    for (name, text, want) in [
+        ("gap.csv", text.replace(&format!("{line}\n"), ""), "vein 3: mark 5 is missing"),
+        ("short.csv", text.replace("\n11,13,", "\n# 11,13,"), "vein 11 has 12 marks, vein 1 has 13"),
+        ("twice.csv", format!("{text}{line}\n"), "vein 3, mark 5 is given twice"),
+    ] {
+        fs::write(at.join(name), text).unwrap();
+        let error = bad(&at, &["leaf", name, "-o", "x.glb"]);
+        assert!(error.contains(name) && error.contains(want), "{error}");
+    }
+    assert!(
+        bad(&at, &["leaf", "--venation", "palmate", "--veins", "4", "-o", "x.glb"]).contains("odd number")
+    );
+    assert!(bad(&at, &["leaf", "p.csv", "--curl", "0.3", "-o", "x.glb"]).contains("rows of marks"));
+}

@@ -68,17 +68,21 @@ window.play = async (file, moments) => {
   const middle = box.getCenter(new THREE.Vector3());
   const size = box.getSize(new THREE.Vector3());
   const camera = new THREE.PerspectiveCamera(30, 240 / 320, 0.001, 10);
-  camera.position.copy(middle).add(new THREE.Vector3(0.35, 0.3, 1).multiplyScalar(2.3 * Math.max(size.y, size.x)));
+  camera.position.copy(middle).add(new THREE.Vector3(0.35, 0.3, 1).multiplyScalar(1.9 * Math.max(size.y, size.x)));
   camera.lookAt(middle);
+  // At its end the action stopped.
+  action.reset().play();
+  const drawn = new Set();
   for (const t of moments) {
     mixer.setTime(t);
     renderer.render(scene, camera);
     const picture = new Image();
     picture.src = renderer.domElement.toDataURL();
     await picture.decode();
+    drawn.add(picture.src);
     document.body.append(picture);
   }
-  return { told, meshes: meshes.length, vertices: meshes.reduce((n, m) => n + m.geometry.attributes.position.count, 0),
+  return { told, pictures: drawn.size, meshes: meshes.length, vertices: meshes.reduce((n, m) => n + m.geometry.attributes.position.count, 0),
     tracks: gltf.animations[0].tracks.length, seconds: gltf.animations[0].duration, size: size.toArray() };
 };
 document.body.dataset.ready = 'true';
@@ -116,6 +120,7 @@ try {
     assert.deepEqual(troubles, [], 'the page has no errors');
     assert.ok(Math.abs(got.seconds - SECONDS) < 1e-4, `the animation takes ${got.seconds} s`);
     assert.equal(got.tracks, got.meshes, 'each mesh has a track of weights');
+    assert.equal(got.pictures, moments.length, 'each moment is another picture');
     const height = Math.max(...got.size);
     for (const { t, far } of got.told) {
       assert.ok(far < 1e-5 * height, `at ${t} s a vertex is ${far} m from where the file says`);

@@ -3,16 +3,18 @@
 //! | part | for |
 //! |---|---|
 //! | [`sketch_report`] | Node: a file of drawings to the report's items |
-//! | [`leaf_report`], [`flower_digest`] | Node: the same bits as natively for leaves and flowers |
+//! | [`leaf_report`], [`flower_digest`], [`opening_digest`], [`motion_digest`] | Node: the same bits as natively for leaves and flowers |
 //! | [`StudioSession`] | the Studio's worker: one document, its undo history, its plant |
 
 mod host;
 mod session;
 mod wire;
 
-use burgeon::formats::{self, DrawingFormat};
+use burgeon::formats::{self, CloudFormat, DrawingFormat, ExportSpec};
+use burgeon::leaf::ScanSpec;
 use burgeon::{
-    Digest, ItemReport, LeafOptions, Run, Seed, SketchOptions, bloom, make_from_sketch, make_leaf,
+    Digest, ItemReport, LeafOptions, OpeningPlant, Report, Run, Seed, SketchOptions, Unit, bloom,
+    make_from_sketch, make_leaf,
 };
 use wasm_bindgen::prelude::*;
 
@@ -38,18 +40,41 @@ pub fn sketch_report(file_name: &str, bytes: &[u8], seed: u64) -> Result<String,
     Ok(serde_json::to_string(&items)?)
 }
 
-/// Makes a leaf from a file of marks, with default options, and returns the report's item as JSON.
+/// Makes a leaf with default options from marks or chief veins (.csv), a vein graph (.json) or a scan in millimetres
+/// (.xyz), and returns the report's item as JSON.
 ///
 /// # Errors
 /// A message for people when the file holds no leaf.
 #[wasm_bindgen]
 pub fn leaf_report(file_name: &str, bytes: &[u8], seed: u64) -> Result<String, JsError> {
-    let name = file_name.rsplit_once('.').map_or(file_name, |(stem, _)| stem);
-    let read = formats::read_marks(bytes, name, formats::MarksAxes::default())?;
+    let (name, extension) = file_name.rsplit_once('.').unwrap_or((file_name, ""));
+    let (seed, run) = (Seed::new(seed), Run::plain());
     let mut options = LeafOptions::default();
-    options.spec.thickness = read.thickness.unwrap_or_default();
-    let made = make_leaf(&read.name, &read.marks, &options, Seed::new(seed), &Run::plain())?;
-    Ok(serde_json::to_string(&made.item)?)
+    let mut report = Report::default();
+    let item = match extension {
+        "xyz" => {
+            let axes = ExportSpec { unit: Unit::Millimetre, ..ExportSpec::default() };
+            let cloud = formats::read_cloud(bytes, CloudFormat::Xyz, &axes, &mut report)?;
+            burgeon::make_leaf_from_scan(name, &cloud.points, &ScanSpec::default(), &run)?.1
+        }
+        "json" => {
+            let marks = formats::read_vein_graph(bytes)?.graph.marks(&mut report)?;
+            // As `burgeon leaf`: a graph in pixels becomes 0.1 m long.
+            let marks = marks.scaled(0.1 / marks.length());
+            make_leaf(name, &marks, &options, seed, &run)?.item
+        }
+        _ if formats::is_rays(bytes) => {
+            let read = formats::read_rays(bytes, name, formats::MarksAxes::default())?;
+            options.spec.thickness = read.thickness.unwrap_or_default();
+            burgeon::make_ray_leaf(&read.name, &read.rays, &options, &run)?.1
+        }
+        _ => {
+            let read = formats::read_marks(bytes, name, formats::MarksAxes::default())?;
+            options.spec.thickness = read.thickness.unwrap_or_default();
+            make_leaf(&read.name, &read.marks, &options, seed, &run)?.item
+        }
+    };
+    Ok(serde_json::to_string(&item)?)
 }
 
 /// The digest of a whole flower of its species at even days from bud to wilted, as `burgeon bloom run` reports it.
@@ -67,6 +92,56 @@ pub fn flower_digest(species: &str, frames: u32, seed: u64) -> Result<String, Js
     for k in 0..frames {
         let day = (spec.days[0] + spec.days[1]) * (f64::from(k) / f64::from(frames - 1));
         digest.add(&spec.at(day, &law, Seed::new(seed)).model);
+    }
+    Ok(digest.hex())
+}
+
+/// The digest of a drawn plant (SVG) whose flowers open, at even days from bud to wilted.
+///
+/// # Errors
+/// A message for people for a drawing without flowers, or fewer than 2 frames.
+#[wasm_bindgen]
+pub fn opening_digest(name: &str, bytes: &[u8], frames: u32, seed: u64) -> Result<String, JsError> {
+    let read = formats::read_drawings(bytes, DrawingFormat::Svg, name).next();
+    let drawing = read.ok_or_else(|| JsError::new("there is no drawing"))??.drawing;
+    let seed = Seed::new(seed);
+    let plant = OpeningPlant::new(&drawing, &SketchOptions::default(), seed, &Run::plain())?;
+    if frames < 2 {
+        return Err(JsError::new("a flower that opens has at least 2 frames"));
+    }
+    let law = plant.law();
+    let mut digest = Digest::new();
+    for k in 0..frames {
+        let day = (plant.days[0] + plant.days[1]) * (f64::from(k) / f64::from(frames - 1));
+        digest.add(&plant.at(day, &law, seed).0);
+    }
+    Ok(digest.hex())
+}
+
+/// The digest of one organ's motion from a first to a last scan (XYZ in millimetres) by the law that is fitted to three
+/// scans, the middle one half way: registration, lattice, law and all.
+///
+/// # Errors
+/// A message for people when the scans make no organ.
+#[wasm_bindgen]
+pub fn motion_digest(first: &[u8], middle: &[u8], last: &[u8], frames: u32) -> Result<String, JsError> {
+    let axes = ExportSpec { unit: Unit::Millimetre, ..ExportSpec::default() };
+    let mut stages = Vec::new();
+    for (day, bytes) in [(0.0, first), (1.0, middle), (2.0, last)] {
+        let cloud = formats::read_cloud(bytes, CloudFormat::Xyz, &axes, &mut Report::default())?;
+        let organ = bloom::single_organ(&cloud.points, "organ", &bloom::SegmentSpec::default())?;
+        stages.push(bloom::Stage { day, organs: vec![organ] });
+    }
+    let law = bloom::fit_stages("stages", &stages, &bloom::LawSpec::default())?;
+    // As the program reads it from a file.
+    let law = serde_json::from_str(&serde_json::to_string(&law)?)?;
+    let run = Run::plain();
+    let motion = bloom::Motion::new(&stages, law, bloom::MotionSpec::default(), &run)?;
+    let mut digest = Digest::new();
+    for k in 0..frames.max(2) {
+        let day = 2.0 * (f64::from(k) / f64::from(frames.max(2) - 1));
+        let points = motion.at(day, &run)?;
+        digest.add(&burgeon::motion_model("stages", None, &motion, &points));
     }
     Ok(digest.hex())
 }

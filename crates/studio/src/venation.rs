@@ -25,11 +25,11 @@ pub fn make_ray_leaf(
     run.cancel.check()?;
     let colours = LeafColours::default();
     let [blade, vein] = [colours.blade, colours.vein].map(|c| c.map(crate::leaves::linear_of));
-    // A twentieth of the leaf: as far as the pale band beside a chief vein is seen.
+    // A fiftieth of the leaf: as far as the pale band beside a chief vein is seen.
     let reach = 0.02 * rays.length();
     let shade = |distance: f64| {
         #[expect(clippy::cast_possible_truncation, reason = "colours are f32 in meshes")]
-        let share = ops::smoothstep((distance / reach).clamp(0.0, 1.0)) as f32;
+        let share = ops::smoothstep(0.0, reach, distance) as f32;
         core::array::from_fn(|k| vein[k] + (blade[k] - vein[k]) * (0.3 + 0.7 * share))
     };
     let meshes = report.stage("mesh", run.clock, |_| leaf.mesh(&options.mesh, shade));

@@ -86,7 +86,7 @@ pub(super) fn read(bytes: &[u8], sink: &mut Sink, report: &mut Report) -> Result
         }
         let sound = offset[k].abs() <= 1e12;
         if !sound {
-            return Err(fail(155 + 8 * k, format!("the offset {} of a coordinate is absurd", offset[k])));
+            return Err(fail(155 + 8 * k, format!("the offset {:e} of a coordinate is absurd", offset[k])));
         }
     }
     if data_at < 227.min(header_size) || data_at > bytes.len() {

@@ -30,6 +30,13 @@ pub(super) fn read(bytes: &[u8], sink: &mut Sink, report: &mut Report) -> Result
         }
     }
     left_out.retain(|l| !l.starts_with("0 "));
+    if left_out.is_empty() && input.rest() > 0 {
+        let (rest, rows) = (input.rest(), sink.cloud.points.len() as u64 + sink.dropped);
+        report.warn(
+            "ply-rest",
+            format!("{rest} bytes after the {rows} points that the header announces were not read: is its count right?"),
+        );
+    }
     if !left_out.is_empty() {
         report.warn("ply-left-out", format!("left out: {}", left_out.join(", ")));
     }

@@ -223,6 +223,11 @@ impl<'a> Input<'a> {
         Self { bytes, at, coding }
     }
 
+    /// Bytes that were not read yet, but for white space at the end.
+    pub(crate) fn rest(&self) -> usize {
+        self.bytes.get(self.at..).map_or(0, |rest| rest.trim_ascii_end().len())
+    }
+
     pub(crate) fn row(&mut self, element: &Element, index: usize, row: &mut Row) -> Result<(), ModelError> {
         row.values.clear();
         for (k, property) in element.properties.iter().enumerate() {

@@ -1,0 +1,34 @@
+//! An organ's motion -> the model of a day.
+
+use bloom::Motion;
+use glam::DVec3;
+use mesh::{Material, MaterialId, MaterialKind, Model, Part, TriMesh};
+
+/// The model of the `points` of a day: a part an organ.
+///
+/// With `faces` a mesh of as many vertices keeps its triangles, texture coordinates and colours; without, parts are
+/// clouds of points.
+pub fn motion_model(name: &str, faces: Option<&TriMesh>, motion: &Motion, points: &[DVec3]) -> Model {
+    let mut model = Model { name: name.to_owned(), ..Model::default() };
+    for (organ, rows) in &motion.organs {
+        let mut mesh = TriMesh::default();
+        for p in points.get(rows.clone()).unwrap_or_default() {
+            mesh.push(*p);
+        }
+        let leafy = organ != "stem";
+        if let Some(first) = faces.filter(|m| m.positions.len() == mesh.positions.len()) {
+            mesh.triangles.clone_from(&first.triangles);
+            mesh.uvs.clone_from(&first.uvs);
+            mesh.colors.clone_from(&first.colors);
+            mesh.compute_normals();
+        }
+        let material = model.materials.len();
+        let kind = if leafy { MaterialKind::Leaf } else { MaterialKind::Stem };
+        let color = if leafy { [0.13, 0.33, 0.06] } else { [0.25, 0.38, 0.12] };
+        let mut look = Material::plain(format!("{}-{}", kind.word(), material + 1), kind, color);
+        look.double_sided = true;
+        model.materials.push(look);
+        model.parts.push(Part { name: organ.clone(), material: MaterialId::new(material), mesh });
+    }
+    model
+}
