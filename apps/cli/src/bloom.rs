@@ -7,7 +7,7 @@ use burgeon::bloom::{
 };
 use burgeon::formats::{ExportSpec, ModelFormat, Morph, PngCache, write_cloud_ply, write_glb_morph};
 use burgeon::glam::DVec3;
-use burgeon::mesh::{Material, MaterialId, MaterialKind, Model, Part, PointCloud, TriMesh};
+use burgeon::mesh::{Model, PointCloud, TriMesh};
 use burgeon::{Digest, MakeError, OpeningError, OpeningPlant, RunReport, Seed};
 use clap::{Args, Subcommand};
 use serde::Serialize;

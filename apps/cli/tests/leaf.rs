@@ -216,8 +216,7 @@ fn chief_veins_that_start_together_make_a_leaf() {
     good(&at, &["leaf", "--venation", "parallel", "--length", "0.4", "-o", "p.glb", "--marks", "p.csv"]);
     for (file, length, veins) in [("m.csv", 100.0, 7), ("p.csv", 400.0, 9)] {
         good(&at, &["leaf", file, "-o", "again.glb", "--report", "r.json", "--quiet"]);
-        let report: serde_json::Value =
-            serde_json::from_str(&fs::read_to_string(at.join("r.json")).unwrap()).unwrap();
+        let report: Value = serde_json::from_str(&fs::read_to_string(at.join("r.json")).unwrap()).unwrap();
         let leaf = &report["items"][0]["leaf"];
         assert!(leaf["vein_gap_mm"].as_f64().unwrap() < 1e-6, "{file}: {leaf}");
         assert!(leaf["fit_error"]["max_mm"].as_f64().unwrap() < 1e-6, "{file}: {leaf}");
