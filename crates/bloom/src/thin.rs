@@ -39,7 +39,6 @@ pub(crate) fn voxels(points: &[DVec3], cell: f64) -> Vec<([i32; 3], u32)> {
 /// Sorts by a number below `whole`, digit by digit from the lowest; equal numbers keep their order.
 fn by_digits(keyed: &mut Vec<([i32; 3], u32)>, whole: u64, number: impl Fn([i32; 3]) -> u64) {
     const BITS: u32 = 11;
-    #[expect(clippy::cast_possible_truncation, reason = "11 bits")]
     let digit = |cube, shift: u32| ((number(cube) >> shift) & ((1 << BITS) - 1)) as usize;
     let mut other = vec![([0; 3], 0); keyed.len()];
     for shift in (0..u64::BITS - whole.leading_zeros()).step_by(BITS as usize) {

@@ -138,8 +138,16 @@ impl Rays {
             (out * fan, spec.length_m * (1.0 - (0.28 + 0.1 * half).min(0.58) * out * out))
         };
         // Along a gap between lobes: share of the angle, and of the way from notch to tip. Two teeth a side.
-        let side =
-            [(0.0, 1.0), (0.07, 0.82), (0.14, 0.62), (0.21, 0.64), (0.28, 0.42), (0.36, 0.28), (0.43, 0.1)];
+        let side = [
+            (0.0, 1.0),
+            (0.045, 0.87),
+            (0.095, 0.72),
+            (0.165, 0.75),
+            (0.21, 0.5),
+            (0.29, 0.38),
+            (0.36, 0.36),
+            (0.43, 0.12),
+        ];
         let mut out = Self::default();
         let mut ray = |angle: f64, length: f64, vein: bool| {
             let (sin, cos) = ops::sin_cos(angle);

@@ -25,8 +25,12 @@ pub fn make_ray_leaf(
     run.cancel.check()?;
     let colours = LeafColours::default();
     let [blade, vein] = [colours.blade, colours.vein].map(|c| c.map(crate::leaves::linear_of));
-    // A fiftieth of the leaf: as far as the pale band beside a chief vein is seen.
-    let reach = 0.02 * rays.length();
+    // A fiftieth of the leaf: as far as the pale band beside a chief vein is seen; less where veins stand close.
+    let apart = leaf.veins.windows(2).map(|w| {
+        let at = |v: &leaf::Vein| v.curve.ball(0.5).centre;
+        at(&w[0]).distance(at(&w[1]))
+    });
+    let reach = apart.fold(0.02 * rays.length(), |reach, d| reach.min(0.3 * d)).max(1e-9);
     let shade = |distance: f64| {
         #[expect(clippy::cast_possible_truncation, reason = "colours are f32 in meshes")]
         let share = ops::smoothstep(0.0, reach, distance) as f32;
