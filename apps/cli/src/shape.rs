@@ -196,7 +196,8 @@ fn make(
         }
         (file, Kind::Project) => {
             let document = files::read_project(what, file)?;
-            (files::drawing_of(what, &document)?, SketchOptions::of_document(&document))
+            let (read, plant) = files::drawing_of(what, &document)?;
+            (read, SketchOptions::of_plant(plant))
         }
         (_, Kind::Model(format)) => {
             let what_it_is = format_args!(
