@@ -76,9 +76,9 @@ pub(crate) fn test(tools: &Tools) -> Outcome {
     c.arg(out.join("wasm/burgeon_wasm.js")).arg(&native).args(&drawings);
     finish(c)?;
     let (organs, leaves) = native_organs(&out)?;
-    say("$ node organs.mjs (leaves and flowers)");
+    say("$ node organs.mjs (leaves, flowers and trees)");
     let mut c = prepare("node", &["xtask/node/organs.mjs"]);
-    c.arg(out.join("wasm/burgeon_wasm.js")).arg(&organs).arg(FRAMES).args(&leaves);
+    c.arg(out.join("wasm/burgeon_wasm.js")).arg(&organs).args([FRAMES, DETAIL]).args(&leaves);
     finish(c)?;
     let project = repository().join("fixtures/projects/version-3.burgeon");
     let report = out.join("scene.json");
@@ -211,8 +211,11 @@ fn made_organs(out: &Path, burgeon: &Path) -> Outcome<Vec<PathBuf>> {
     Ok(files)
 }
 
-/// The digests of every kind of leaf and of every flower, by the native program on one and on four threads; returns
-/// their file and the files that they were made of.
+/// Fineness of the trees' surfaces in the comparison.
+const DETAIL: &str = "0.1";
+
+/// The digests of every kind of leaf, every flower and the tree of every preset, by the native program on one and on
+/// four threads; returns their file and the files that they were made of.
 fn native_organs(out: &Path) -> Outcome<(PathBuf, Vec<PathBuf>)> {
     let burgeon = target_dir().join("debug").join(format!("burgeon{}", std::env::consts::EXE_SUFFIX));
     let mut files: Vec<PathBuf> =
@@ -222,6 +225,7 @@ fn native_organs(out: &Path) -> Outcome<(PathBuf, Vec<PathBuf>)> {
     let mut c = prepare(&burgeon, &["bloom", "fit", "--quiet", "-o"]);
     c.arg(&law).arg(out.join("stages.toml"));
     finish(c)?;
+    let presets = tree_presets()?;
     let mut all = Vec::new();
     for threads in ["1", "4"] {
         let mut digests = serde_json::Map::new();
@@ -232,11 +236,14 @@ fn native_organs(out: &Path) -> Outcome<(PathBuf, Vec<PathBuf>)> {
             let text = std::fs::read_to_string(&report).map_err(|e| format!("{}: {e}", shown(&report)))?;
             let json: serde_json::Value =
                 serde_json::from_str(&text).map_err(|e| format!("{}: {e}", shown(&report)))?;
-            let digest = json["items"][0]["digest"].clone();
-            if !status.success() || digest.as_str().is_none_or(str::is_empty) {
+            let item = &json["items"][0];
+            let digest = item["digest"].as_str().unwrap_or_default();
+            if !status.success() || digest.is_empty() {
                 return Err(format!("{name}: the native program made nothing"));
             }
-            digests.insert(name, digest);
+            let of_tree = format!("{digest} {} {}", item["counts"]["vertices"], item["counts"]["triangles"]);
+            let digest = if name.starts_with("tree ") { of_tree } else { digest.to_owned() };
+            digests.insert(name, digest.into());
             Ok(())
         };
         let opening = ["bloom", "run", "--frames", FRAMES, "-o"];
@@ -256,16 +263,32 @@ fn native_organs(out: &Path) -> Outcome<(PathBuf, Vec<PathBuf>)> {
         }
         let mut c = prepare(&burgeon, &opening);
         digest_of("stages".into(), c.arg(&glb).arg(out.join("stages.toml")).arg("--law").arg(&law))?;
+        for preset in &presets {
+            let mut c = prepare(&burgeon, &["grow", preset, "--no-textures", "--detail", DETAIL]);
+            digest_of(format!("tree {preset}"), &mut c)?;
+        }
         all.push(digests);
     }
     if all[0] != all[1] {
-        return Err("digests of leaves or flowers differ between 1 and 4 threads".into());
+        return Err("digests of leaves, flowers or trees differ between 1 and 4 threads".into());
     }
-    say(&format!("{} digests of leaves and flowers are the same on 1 and 4 threads", all[0].len()));
+    say(&format!("{} digests of leaves, flowers and trees are the same on 1 and 4 threads", all[0].len()));
     let path = out.join("organs.json");
     let text = serde_json::Value::Object(all.swap_remove(0)).to_string();
     std::fs::write(&path, text).map_err(|e| format!("{}: {e}", shown(&path)))?;
     Ok((path, files))
+}
+
+/// The keys of the presets of `burgeon grow`.
+fn tree_presets() -> Outcome<Vec<String>> {
+    let folder = repository().join("crates/studio/presets");
+    let entries = std::fs::read_dir(&folder).map_err(|e| format!("{}: {e}", shown(&folder)))?;
+    let files = entries.filter_map(Result::ok).map(|e| e.path());
+    let toml = files.filter(|p| p.extension().is_some_and(|e| e == "toml"));
+    let mut keys: Vec<String> =
+        toml.filter_map(|p| p.file_stem().map(|s| s.to_string_lossy().into_owned())).collect();
+    keys.sort();
+    if keys.is_empty() { Err(format!("{}: no presets", shown(&folder))) } else { Ok(keys) }
 }
 
 /// Makes every drawing with the native program on one and on four threads; returns the report of the first.

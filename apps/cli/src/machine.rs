@@ -108,15 +108,17 @@ impl Machine {
         (value, self.clock.now_ms() - start)
     }
 
-    /// Runs `work` with a progress line on a terminal once it has taken a second.
+    /// Runs `work` with a progress line on a terminal once it has taken a second: a bar where parts are counted or the
+    /// core tells how far it is.
     pub(crate) fn with_progress<T>(&self, what: &str, work: impl FnOnce(&Progress) -> T) -> T {
         let progress = Progress { done: AtomicUsize::new(0), total: AtomicUsize::new(0) };
         if self.quiet || !std::io::IsTerminal::is_terminal(&std::io::stderr()) {
             return work(&progress);
         }
+        self.cancel.forget();
         let over = (Mutex::new(false), Condvar::new());
         std::thread::scope(|scope| {
-            scope.spawn(|| show(what, &progress, &over));
+            scope.spawn(|| show(what, &progress, self.cancel, &over));
             let value = work(&progress);
             if let Ok(mut flag) = over.0.lock() {
                 *flag = true;
@@ -142,9 +144,19 @@ impl Progress {
     pub(crate) fn reached(&self, parts: usize) {
         self.done.store(parts, Ordering::Relaxed);
     }
+
+    /// Position and length of the bar: of the parts, or of a hundred by what the core told.
+    fn bar(&self, core: &CancelToken) -> Option<(u64, u64)> {
+        let total = self.total.load(Ordering::Relaxed) as u64;
+        if total > 0 {
+            return Some((self.done.load(Ordering::Relaxed) as u64, total));
+        }
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 100")]
+        core.share().map(|share| ((share * 100.0) as u64, 100))
+    }
 }
 
-fn show(what: &str, progress: &Progress, (over, bell): &(Mutex<bool>, Condvar)) {
+fn show(what: &str, progress: &Progress, core: &CancelToken, (over, bell): &(Mutex<bool>, Condvar)) {
     // Waits; true when the work is over.
     let wait = |time: u64| -> bool {
         let Ok(flag) = over.lock() else { return true };
@@ -154,16 +166,22 @@ fn show(what: &str, progress: &Progress, (over, bell): &(Mutex<bool>, Condvar)) 
         return;
     }
     let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
-    let known = progress.total.load(Ordering::Relaxed) > 0;
-    let template = if known { "{msg} [{bar:30}] {percent} % {elapsed}" } else { "{spinner} {msg} {elapsed}" };
-    if let Ok(style) = ProgressStyle::with_template(template) {
-        bar.set_style(style);
-    }
+    let look = |template: &str| {
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            bar.set_style(style);
+        }
+    };
+    look("{spinner} {msg} {elapsed}");
     bar.set_message(what.to_owned());
+    let mut known = false;
     loop {
-        if known {
-            bar.set_length(progress.total.load(Ordering::Relaxed) as u64);
-            bar.set_position(progress.done.load(Ordering::Relaxed) as u64);
+        if let Some((done, total)) = progress.bar(core) {
+            if !known {
+                look("{msg} [{bar:30}] {percent} % {elapsed}");
+                known = true;
+            }
+            bar.set_length(total);
+            bar.set_position(done);
         }
         bar.tick();
         if wait(100) {
@@ -176,6 +194,18 @@ fn show(what: &str, progress: &Progress, (over, bell): &(Mutex<bool>, Condvar)) 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_bar_shows_parts_or_what_the_core_tells() {
+        let progress = Progress { done: AtomicUsize::new(0), total: AtomicUsize::new(0) };
+        let core = CancelToken::new();
+        assert_eq!(progress.bar(&core), None);
+        core.reached(0.374);
+        assert_eq!(progress.bar(&core), Some((37, 100)));
+        progress.expect(8);
+        progress.reached(3);
+        assert_eq!(progress.bar(&core), Some((3, 8)));
+    }
 
     #[test]
     fn threads_do_every_job_once() {

@@ -3,7 +3,7 @@
 //! | part | for |
 //! |---|---|
 //! | [`sketch_report`] | Node: a file of drawings to the report's items |
-//! | [`leaf_report`], [`flower_digest`], [`opening_digest`], [`motion_digest`] | Node: the same bits as natively for leaves and flowers |
+//! | [`leaf_report`], [`flower_digest`], [`opening_digest`], [`motion_digest`], [`tree_digest`] | Node: the same bits as natively for leaves, flowers and trees |
 //! | [`scene_report`] | Node: the same for the plants of a project |
 //! | [`StudioSession`] | the Studio's worker: one document, its undo history, its plant |
 
@@ -15,8 +15,8 @@ mod wire;
 use burgeon::formats::{self, CloudFormat, DrawingFormat, ExportSpec};
 use burgeon::leaf::ScanSpec;
 use burgeon::{
-    Digest, ItemReport, LeafOptions, OpeningPlant, Report, Run, SceneEvaluator, Seed, SketchOptions, Unit,
-    bloom, make_from_sketch, make_leaf,
+    Digest, ItemReport, LeafOptions, OpeningPlant, Preset, Report, Run, SceneEvaluator, Seed, SketchOptions,
+    TreeOptions, Unit, bloom, make_from_sketch, make_leaf, make_tree,
 };
 use wasm_bindgen::prelude::*;
 
@@ -185,6 +185,21 @@ pub fn studio_schema() -> Result<String, JsError> {
         "trees": presets,
         "flowers": bloom::FlowerSpec::PRESETS,
     }))?)
+}
+
+/// The digest of the tree of a preset, as `burgeon grow` reports it, and the numbers of vertices and triangles of its
+/// plain surface at this detail: `digest vertices triangles`.
+///
+/// # Errors
+/// A message for people for a preset that is not known.
+#[wasm_bindgen]
+pub fn tree_digest(preset: &str, detail: f64, seed: u64) -> Result<String, JsError> {
+    let preset = Preset::find(preset).ok_or_else(|| JsError::new("there is no such preset"))?;
+    let mut options = TreeOptions::default();
+    (options.skin.detail, options.skin.textures) = (detail, false);
+    let made = make_tree(&preset.spec()?, Seed::new(seed), &options, &Run::plain())?;
+    let (digest, counts) = (&made.item.digest, &made.item.counts);
+    Ok(format!("{digest} {} {}", counts.vertices, counts.triangles))
 }
 
 fn told<T>(outcome: Result<T, String>) -> Result<T, JsError> {
