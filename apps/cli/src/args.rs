@@ -47,6 +47,11 @@ pub(crate) enum Command {
     /// Branches compete for space and light, around obstacles; leaves stay where light reaches. `burgeon presets`
     /// lists the species.
     Grow(Box<crate::grow::GrowArgs>),
+    /// Edit a plant by hand: prune, turn, move, regrow, sketch or brush branches, fill a silhouette, thin leaves
+    ///
+    /// Works on a species, a spec, a drawing or a project. The edits stand in a JSON file; the rest of the plant stays
+    /// as it is.
+    Shape(Box<crate::shape::ShapeArgs>),
     /// List the species that `burgeon grow` knows; show one as TOML; write the JSON Schema of specs
     Presets(crate::presets::PresetsArgs),
     /// Grow the same oak by three methods and compare them

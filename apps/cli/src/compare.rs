@@ -143,7 +143,7 @@ fn oak(
     let options = TreeOptions {
         skin: SkinSpec { detail: args.detail, ..SkinSpec::default() },
         height_m: Some(args.height),
-        lods: 0,
+        ..TreeOptions::default()
     };
     let make = || make_tree(&spec, Seed::new(args.seed), &options, &machine.run());
     // Once before the clock starts: textures are painted on first use only.

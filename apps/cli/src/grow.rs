@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use burgeon::formats::{CloudFormat, PngCache, read_cloud};
 use burgeon::glam::DVec3;
 use burgeon::growth::{
-    ColonizeSpec, CompetitionSpec, Envelope, Method, OAK_RULES, Obstacle, SelfOrganizingSpec,
+    ColonizeSpec, CompetitionSpec, Envelope, GuidedSpec, Method, OAK_RULES, Obstacle, SelfOrganizingSpec,
 };
 use burgeon::mesh::Model;
 use burgeon::skin::SkinSpec;
@@ -127,6 +127,8 @@ pub(crate) enum MethodWord {
     Competition,
     /// Space colonization (Runions 2007)
     Colonization,
+    /// Buds with markers of their own that keep away from one another
+    Guided,
     /// Buds that compete for light (Palubicki 2009)
     SelfOrganizing,
     /// Rewriting rules: an oak, unless the spec has its own
@@ -138,6 +140,7 @@ impl MethodWord {
         match self {
             Self::Competition => "competition",
             Self::Colonization => "colonization",
+            Self::Guided => "guided",
             Self::SelfOrganizing => "self-organizing",
             Self::Lsystem => "lsystem",
         }
@@ -253,7 +256,7 @@ fn summary(item: &ItemReport, png: Option<&Path>) -> String {
 }
 
 /// `tree.glb` -> `tree-lod1.glb`.
-fn beside(path: &Path, level: usize) -> PathBuf {
+pub(crate) fn beside(path: &Path, level: usize) -> PathBuf {
     let extension = files::extension(path).unwrap_or_default();
     path.with_file_name(format!("{}-lod{level}.{extension}", files::stem(path)))
 }
@@ -310,7 +313,7 @@ fn asked(args: &GrowArgs, told: &mut Report) -> Outcome<TreeSpec> {
 }
 
 /// A preset by its key, or a file.
-fn read_spec(what: &Path, told: &mut Report) -> Outcome<TreeSpec> {
+pub(crate) fn read_spec(what: &Path, told: &mut Report) -> Outcome<TreeSpec> {
     let key = what.to_str().unwrap_or_default();
     let preset = Preset::find(key).filter(|_| !what.is_file());
     if let Some(preset) = preset {
@@ -375,6 +378,7 @@ fn envelope_of(method: &Method) -> Option<&Envelope> {
     match method {
         Method::Colonization { envelope, .. } => Some(envelope),
         Method::Competition(s) => Some(&s.envelope),
+        Method::Guided(s) => s.envelope.as_ref(),
         _ => None,
     }
 }
@@ -387,6 +391,9 @@ fn steps_of(method: &Method) -> ColonizeSpec {
 }
 
 fn default_method(word: MethodWord, envelope: Option<Envelope>) -> Method {
+    if word == MethodWord::Guided {
+        return Method::Guided(GuidedSpec { envelope, ..GuidedSpec::default() });
+    }
     let envelope = envelope.unwrap_or_default();
     match word {
         MethodWord::Competition => {
@@ -395,6 +402,7 @@ fn default_method(word: MethodWord, envelope: Option<Envelope>) -> Method {
         MethodWord::Colonization => {
             Method::Colonization { envelope, points: 1500, hollow: 0.0, steps: ColonizeSpec::default() }
         }
+        MethodWord::Guided => Method::Guided(GuidedSpec::default()),
         MethodWord::SelfOrganizing => Method::SelfOrganizing(SelfOrganizingSpec::default()),
         MethodWord::Lsystem => Method::Lsystem { rules: OAK_RULES.into(), most_modules: 5_000_000 },
     }

@@ -17,6 +17,7 @@ mod picture;
 mod presets;
 mod report;
 mod say;
+mod shape;
 mod sketch;
 mod stages;
 mod studio;
@@ -45,6 +46,7 @@ fn main() -> ExitCode {
         Command::Sketch(args) => sketch::sketch(&args),
         Command::Leaf(args) => leaf::leaf(&args),
         Command::Grow(args) => grow::grow(&args),
+        Command::Shape(args) => shape::shape(&args),
         Command::Presets(args) => presets::presets(&args),
         Command::Compare(args) => compare::compare(&args),
         Command::Render(args) => picture::render(&args),

@@ -10,6 +10,7 @@
 //! | `colonize` | space colonisation (Runions 2007) |
 //! | `competition` | life cycles of attraction points (paper 001) |
 //! | `self_organize` | buds that compete for light, shedding, wood (Palubicki 2009) |
+//! | `guided` | buds with markers of their own, repulsion, strokes of a brush (paper 002) |
 //! | `lsystem` | rules read from text |
 //! | `skeleton` | what growers make: joints and the joints they grew from |
 //! | `wood` | axes, smooth courses, radii |
@@ -22,6 +23,7 @@ mod competition;
 mod envelope;
 mod error;
 mod field;
+mod guided;
 mod leaves;
 mod lsystem;
 mod mesh_faults;
@@ -38,6 +40,7 @@ pub use colonize::{ColonizeSpec, Colonized, Fate, colonize, colonize_from, regro
 pub use competition::{Competed, CompetitionSpec, Cycle, compete};
 pub use envelope::{Envelope, Region};
 pub use error::{GrowthError, MeshFault};
+pub use guided::{BrushStroke, Guided, GuidedSpec, StartBud, guide, guide_from};
 pub use leaves::{LeafCount, LeafSpec, add_leaves};
 pub use lsystem::{LeafMark, Lsystem, LsystemError, LsystemTree, OAK_RULES, grow_lsystem};
 pub use mesh_faults::{open_edges, signed_volume};

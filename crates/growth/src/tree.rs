@@ -11,9 +11,9 @@ use serde::{Deserialize, Serialize};
 use crate::colonize::{colonize_part, plant_roots};
 use crate::error::within;
 use crate::{
-    ColonizeSpec, Colonized, CompetitionSpec, Cycle, Envelope, Fate, GrowthError, LeafCount, LeafMark,
-    LeafSpec, Lsystem, Obstacle, Obstacles, SelfOrganizingSpec, Skeleton, WoodSpec, add_leaves, compete,
-    grow_lsystem, make_wood, self_organize,
+    ColonizeSpec, Colonized, CompetitionSpec, Cycle, Envelope, Fate, GrowthError, GuidedSpec, LeafCount,
+    LeafMark, LeafSpec, Lsystem, Obstacle, Obstacles, SelfOrganizingSpec, Skeleton, WoodSpec, add_leaves,
+    compete, grow_lsystem, guide, make_wood, self_organize,
 };
 
 /// The shares of the work that are done, for people who wait, when the skeleton stands, when it is wood, and when it
@@ -55,6 +55,8 @@ pub enum Method {
     Competition(CompetitionSpec),
     /// Buds that compete for light (Palubicki 2009).
     SelfOrganizing(SelfOrganizingSpec),
+    /// Buds with markers of their own that keep away from others' and follow strokes of a brush (paper 002).
+    Guided(GuidedSpec),
     /// Rules (Prusinkiewicz and Lindenmayer 1990). Obstacles cut off what grows into them.
     Lsystem {
         /// The text that [`Lsystem::parse`] reads.
@@ -259,6 +261,12 @@ fn bones(
             let tally = Tally { iterations: years, cycles: 1, ..Tally::default() };
             Ok(Bones { skeleton, marks: Vec::new(), tally })
         }
+        Method::Guided(s) => {
+            let grown = guide(&spec.roots, obstacles, s, seed, run, report)?;
+            let tally =
+                Tally { attractors: grown.markers, iterations: grown.rounds, cycles: 1, ..Tally::default() };
+            Ok(Bones { skeleton: grown.skeleton, marks: Vec::new(), tally })
+        }
         Method::Lsystem { rules, most_modules } => {
             plant_roots(&spec.roots, obstacles)?;
             let mut system = Lsystem::parse(rules)?;
@@ -298,6 +306,7 @@ mod tests {
             },
             Method::Competition(CompetitionSpec { points: 600, ..CompetitionSpec::default() }),
             Method::SelfOrganizing(SelfOrganizingSpec { years: 14, ..SelfOrganizingSpec::default() }),
+            Method::Guided(GuidedSpec { rounds: 9, ..GuidedSpec::default() }),
             Method::Lsystem { rules: OAK_RULES.into(), most_modules: 1_000_000 },
         ]
     }

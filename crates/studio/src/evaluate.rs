@@ -10,11 +10,13 @@ use document::Photo;
 use glam::DVec2;
 use mesh::{Model, Texture};
 use plant::Plant;
+use shape::HandEdit;
 use sketch::{Built, Classified, Drawing, Ink, Reading, SketchSpec};
 use skin::{SkinSpec, Traced};
 
 use crate::make::{ClassOverrides, MakeError, SketchOptions};
 use crate::report::{Counts, Fidelity, ItemReport, StrokeReport, TimingsMs};
+use crate::shaping::{EditReport, shape_plant};
 use crate::template::LeafTemplate;
 
 /// How a drawing lies in the front view of its model: `plant.xy = (drawing - origin) * metres_per_unit`, z towards
@@ -48,7 +50,7 @@ pub struct FrontView {
 pub struct Evaluator {
     strokes: Option<Kept<Drawing, (Ink, Vec<Classified>)>>,
     reading: Option<Kept<ClassOverrides, Reading>>,
-    plant: Option<Kept<PlantFrom, (Built, Fidelity)>>,
+    plant: Option<Kept<PlantFrom, (Built, Fidelity, Vec<EditReport>)>>,
     model: Option<Kept<ModelFrom, Model>>,
     /// The photograph that was decoded last.
     picture: Option<Decoded>,
@@ -58,7 +60,7 @@ pub struct Evaluator {
 }
 
 /// What a plant is made from, besides its reading: the name goes into the plant.
-type PlantFrom = (SketchSpec, Seed, String, Option<LeafTemplate>);
+type PlantFrom = (SketchSpec, Seed, String, Option<LeafTemplate>, Vec<HandEdit>);
 
 /// A photograph's file and its pixels, if it has any that decode.
 type Decoded = (Arc<[u8]>, Option<Arc<Texture>>);
@@ -184,8 +186,10 @@ impl Evaluator {
     ) -> Result<(), MakeError> {
         let (Some(strokes), Some(reading)) = (&self.strokes, &self.reading) else { return Ok(()) };
         let (spec, leaf) = (&options.spec, &options.leaf);
-        let same =
-            |k: &Kept<PlantFrom, _>| (&k.from.0, k.from.1, &*k.from.2, &k.from.3) == (spec, seed, name, leaf);
+        let same = |k: &Kept<PlantFrom, _>| {
+            (&k.from.0, k.from.1, &*k.from.2, &k.from.3) == (spec, seed, name, leaf)
+                && k.from.4 == options.edits
+        };
         if self.plant.as_ref().is_some_and(same) {
             return Ok(());
         }
@@ -207,9 +211,12 @@ impl Evaluator {
             }
         }
         name.clone_into(&mut built.plant.name);
+        // After the measure, too: what a hand changed is not what was drawn.
+        let context = shape::Context { pipe_exponent: spec.pipe_exponent, ..shape::Context::default() };
+        let edits = shape_plant(&mut built.plant, &options.edits, &context, run)?;
         self.model = None;
-        let from = (spec.clone(), seed, name.to_owned(), leaf.clone());
-        self.plant = Some(Self::keep(&mut self.done, stages, from, (built, fidelity), report));
+        let from = (spec.clone(), seed, name.to_owned(), leaf.clone(), options.edits.clone());
+        self.plant = Some(Self::keep(&mut self.done, stages, from, (built, fidelity, edits), report));
         Ok(())
     }
 
@@ -272,7 +279,7 @@ impl Evaluator {
         for warnings in [&strokes.warnings, &reading.warnings, &plant.warnings, &model.warnings] {
             report.warnings.extend_from_slice(warnings);
         }
-        let (built, fidelity) = &plant.value;
+        let (built, fidelity, edits) = &plant.value;
         let mut counts = Counts::of_plant(&built.plant);
         counts.vertices = model.value.vertex_count() as u64;
         counts.triangles = model.value.triangle_count() as u64;
@@ -285,6 +292,7 @@ impl Evaluator {
             fidelity: *fidelity,
             digest: if self.preview { String::new() } else { built.plant.digest_hex() },
             warnings: report.warnings.iter().map(ToString::to_string).collect(),
+            edits: edits.clone(),
             ..ItemReport::default()
         }
     }

@@ -23,6 +23,7 @@ mod make;
 mod motion;
 mod opening;
 mod report;
+mod shaping;
 mod template;
 mod trees;
 mod venation;
@@ -42,6 +43,7 @@ pub use opening::{OpeningError, OpeningPlant};
 pub use report::{
     Counts, Fidelity, InputReport, ItemReport, REPORT_SCHEMA, RunReport, StrokeReport, TimingsMs,
 };
+pub use shaping::{BranchRow, EditReport, branch_rows, edits_schema, edits_template, shape_plant};
 pub use template::{LeafTemplate, TemplateError};
 
 pub use trees::{
@@ -51,7 +53,7 @@ pub use trees::{
 };
 pub use venation::make_ray_leaf;
 
-pub use {bloom, document, formats, geom, glam, growth, leaf, mesh, plant, render, sketch, skin};
+pub use {bloom, document, formats, geom, glam, growth, leaf, mesh, plant, render, shape, sketch, skin};
 
 /// The version that is written into reports and files.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

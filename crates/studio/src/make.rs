@@ -6,6 +6,7 @@ use base::{Cancelled, Run, Seed};
 use document::{Document, Photo};
 use mesh::Model;
 use plant::Plant;
+use shape::HandEdit;
 use sketch::{Drawing, Reading, SketchSpec, StrokeClass};
 use skin::SkinSpec;
 
@@ -29,6 +30,8 @@ pub struct SketchOptions {
     pub photo: Option<Photo>,
     /// The leaf that the plant bears instead of the drawn or built-in ones.
     pub leaf: Option<LeafTemplate>,
+    /// Edits by hand, done on the plant in this order.
+    pub edits: Vec<HandEdit>,
 }
 
 impl SketchOptions {
@@ -41,6 +44,7 @@ impl SketchOptions {
             classes: document.classes(),
             photo: settings.photo.clone(),
             leaf: None,
+            edits: Vec::new(),
         }
     }
 }

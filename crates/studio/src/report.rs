@@ -86,6 +86,9 @@ pub struct ItemReport {
     /// Of `grow`: what growth did.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub growth: Option<crate::GrowthReport>,
+    /// Of a plant that was edited by hand: what became of each edit, in their order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub edits: Vec<crate::EditReport>,
 }
 
 /// One stroke.

@@ -23,9 +23,11 @@ use base::{Cancelled, Report, Run, Seed};
 use growth::{Grown, GrowthError, Method, Obstacle};
 use mesh::Model;
 use serde::{Deserialize, Serialize};
+use shape::HandEdit;
 use skin::SkinSpec;
 
 use crate::report::{Counts, ItemReport, TimingsMs};
+use crate::shaping::shape_plant;
 
 pub use blade::{BladeForm, BladeSpec};
 pub use compare::{OAK_METHODS, PAPER_OAKS, PaperOak, TreeSize, scale_to_height, tree_size};
@@ -45,6 +47,8 @@ pub struct TreeOptions {
     pub height_m: Option<f64>,
     /// Coarser copies to make as well, 0 to 6: each has about a third of the triangles of the one before.
     pub lods: u32,
+    /// Edits by hand, done on the grown tree in this order.
+    pub edits: Vec<HandEdit>,
 }
 
 /// A tree with its meshes and its entry of the report.
@@ -98,7 +102,7 @@ impl From<GrowthError> for TreeError {
 /// The part of a report about growth.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct GrowthReport {
-    /// `competition`, `colonization`, `self-organizing` or `lsystem`.
+    /// `competition`, `colonization`, `self-organizing`, `guided` or `lsystem`.
     pub method: String,
     /// Attraction points or markers of all cycles.
     pub attractors: u64,
@@ -144,6 +148,7 @@ pub fn method_word(method: &Method) -> &'static str {
         Method::Colonization { .. } | Method::Points { .. } => "colonization",
         Method::Competition(_) => "competition",
         Method::SelfOrganizing(_) => "self-organizing",
+        Method::Guided(_) => "guided",
         Method::Lsystem { .. } => "lsystem",
         _ => "other",
     }
@@ -178,6 +183,13 @@ pub fn make_tree(
     if let Some(height) = options.height_m.filter(|_| spec.obstacles.is_empty()) {
         scale_to_height(&mut grown, height);
     }
+    let mut edits = Vec::new();
+    if !options.edits.is_empty() {
+        let obstacles = growth::Obstacles::new(&wanted.obstacles, wanted.clearance_m)?;
+        let context = shape::Context { pipe_exponent: None, obstacles };
+        edits =
+            told.stage("shape", run.clock, |_| shape_plant(&mut grown.plant, &options.edits, &context, run))?;
+    }
     let skin_spec = SkinSpec { seed, ..options.skin.clone() };
     let mut report = Report::default();
     for stage in &told.stages {
@@ -211,6 +223,7 @@ pub fn make_tree(
         digest: grown.plant.digest_hex(),
         warnings: warnings.by_ref().map(ToString::to_string).collect(),
         growth: Some(growth),
+        edits,
         ..ItemReport::default()
     };
     Ok(MadeTree { grown, model, lods, item })

@@ -1,0 +1,254 @@
+//! `burgeon shape`: edits by hand on a plant of any maker.
+
+use std::path::{Path, PathBuf};
+
+use burgeon::formats::{PngCache, read_drawings};
+use burgeon::glam::DVec3;
+use burgeon::mesh::Model;
+use burgeon::plant::Plant;
+use burgeon::shape::{EDITS_SCHEMA, EditsFile, HandEdit};
+use burgeon::skin::SkinSpec;
+use burgeon::{
+    ItemReport, MadeTree, MakeError, Preset, Report, RunReport, Seed, SketchOptions, TreeError, TreeOptions,
+    branch_rows, edits_schema, edits_template, make_from_sketch, make_tree,
+};
+use clap::Args;
+
+use crate::args::{AxesArgs, CommonArgs, PictureArgs, seed};
+use crate::failure::{Failure, Outcome};
+use crate::files::Kind;
+use crate::grow::TreeSurfaceArgs;
+use crate::machine::Machine;
+use crate::{files, grow, output, picture, report, say};
+
+#[derive(Args, Debug)]
+#[command(after_long_help = SHAPE_EXAMPLES)]
+pub(crate) struct ShapeArgs {
+    /// A species of `burgeon presets`, a spec (.toml), a drawing, or a project (.burgeon).
+    #[arg(value_name = "PRESET|SPEC.toml|DRAWING", required_unless_present_any = ["template", "schema"])]
+    pub(crate) what: Option<PathBuf>,
+    /// The edits, a JSON file; --template prints one, docs/shaping.md explains it.
+    #[arg(long, value_name = "EDITS.json", required_unless_present_any = ["template", "schema", "list"])]
+    pub(crate) edits: Option<PathBuf>,
+    /// The model (.glb, .obj, .ply or .stl), or the structure (.mtg).
+    #[arg(long, short, value_name = "OUT", required_unless_present_any = ["png", "report", "json", "template", "schema", "list"])]
+    pub(crate) output: Option<PathBuf>,
+    /// Also make a picture.
+    #[arg(long, value_name = "FILE.png")]
+    pub(crate) png: Option<PathBuf>,
+    /// Number that all chance of the plant follows from; edits have their own.
+    #[arg(long, value_name = "N", default_value_t = 1, allow_hyphen_values = true, value_parser = seed)]
+    pub(crate) seed: u64,
+    /// Print the branches up to this order (0 is the trunk) with the paths that name them, after the edits if any.
+    #[arg(long, value_name = "ORDER", num_args = 0..=1, default_missing_value = "1")]
+    pub(crate) list: Option<u32>,
+    /// Print an edits file with an edit of each kind.
+    #[arg(long)]
+    pub(crate) template: bool,
+    /// Write the JSON Schema of edits files: every field with its meaning, unit, range and default.
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) schema: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) surface: TreeSurfaceArgs,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
+    #[command(flatten)]
+    pub(crate) axes: AxesArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+const SHAPE_EXAMPLES: &str = "Examples:
+  burgeon shape --template > edits.json
+  burgeon shape oak --list                                       which branch has which path?
+  burgeon shape oak --edits edits.json -o oak.glb --png oak.png
+  burgeon shape tree.svg --edits edits.json -o tree.glb --report tree.json
+
+Edits are done one after another; one that cannot be done says why and changes nothing.
+A branch is named by  {\"path\": [0, 2]}  (stem 0, its branch number 2 from the base up),
+by  {\"near\": [1.2, 3.4, 0]}  (metres), or by the mark that the Studio keeps.";
+
+/// A plant with its meshes, whoever made it.
+struct Shaped {
+    plant: Plant,
+    model: Model,
+    lods: Vec<Model>,
+    item: ItemReport,
+}
+
+pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
+    let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
+    let outputs = [
+        ("-o", args.output.as_ref()),
+        ("--png", args.png.as_ref()),
+        ("--schema", args.schema.as_ref()),
+        ("--report", args.common.report.as_ref()),
+    ];
+    let inputs = args.what.iter().chain(&args.edits);
+    output::check_outputs(&outputs, &inputs.collect::<Vec<_>>())?;
+    if let Some(path) = &args.schema {
+        let text = serde_json::to_string_pretty(&edits_schema())
+            .map_err(|e| Failure::Bug(format!("the schema cannot be written as JSON: {e}")))?;
+        output::write_whole(path, |file| Ok(writeln!(file, "{text}")?))?;
+    }
+    if args.template {
+        return out(edits_template().trim_end());
+    }
+    let Some(what) = &args.what else { return Ok(()) };
+    let format = args.output.as_deref().map(files::plant_writable).transpose()?;
+    if let Some(png) = &args.png {
+        picture::check_name(png)?;
+    }
+    let edits = args.edits.as_deref().map(read_edits).transpose()?.unwrap_or_default();
+    let mut told = Report::default();
+    let made = machine.with_progress("shape", |_| make(args, what, edits, &mut told, &machine))?;
+    machine.cancel.check()?;
+    let Shaped { plant, model, lods, mut item } = made;
+    item.warnings.splice(0..0, told.warnings.iter().map(ToString::to_string));
+    let undone = item.edits.iter().filter(|e| !e.done);
+    let undone: Vec<String> = undone.map(|e| format!("edit {}: {}", e.index, e.said)).collect();
+    item.warnings.extend(undone);
+    if args.common.report.is_some() || args.common.json {
+        item.plant = Some(plant.measure());
+    }
+    if let Some((path, format)) = args.output.as_deref().zip(format) {
+        let mut cache = PngCache::new();
+        let all = std::iter::once((&model, path.to_path_buf()));
+        let all = all.chain(lods.iter().zip(1..).map(|(m, level)| (m, grow::beside(path, level))));
+        for (model, path) in all {
+            machine.cancel.check()?;
+            let written = files::write_plant(&path, (&plant, model), format, &args.axes, &mut cache)?;
+            item.warnings.extend(written.iter().map(ToString::to_string));
+        }
+        item.output = path.display().to_string();
+    }
+    if let Some(png) = &args.png {
+        let spec = args.picture.spec(args.seed);
+        let drawn =
+            machine.with_progress("picture", |_| burgeon::render::render(&model, &spec, &machine.run()))?;
+        picture::write(png, &drawn)?;
+    }
+    let mut run = RunReport::new("shape", args.seed);
+    run.input.path = what.display().to_string();
+    run.ok = 1;
+    if !machine.quiet {
+        item.warnings.iter().for_each(|w| say::warning(&format!("{}: {w}", item.name)));
+        for edit in item.edits.iter().filter(|e| e.done) {
+            say::line(&format!("edit {}: {}", edit.index, edit.said));
+        }
+        say::line(&report::summary(&item, args.png.as_deref()));
+    }
+    run.items = vec![item];
+    report::finish(&run, &args.common)?;
+    match args.list {
+        Some(order) if !args.common.json => list(&plant, order),
+        _ => Ok(()),
+    }
+}
+
+fn out(text: &str) -> Outcome {
+    say::data(text).map_err(|e| Failure::io(Path::new("standard output"), "written", &e))
+}
+
+fn read_edits(path: &Path) -> Outcome<Vec<HandEdit>> {
+    let text = files::read_text(path)?;
+    let file: EditsFile = serde_json::from_str(&text).map_err(|e| {
+        Failure::at(path, format_args!("is not an edits file: {e}; `burgeon shape --template` prints one"))
+    })?;
+    if file.schema != EDITS_SCHEMA {
+        let what = format_args!("is of schema \"{}\"; this version reads \"{EDITS_SCHEMA}\"", file.schema);
+        return Err(Failure::at(path, what));
+    }
+    Ok(file.edits)
+}
+
+fn make(
+    args: &ShapeArgs,
+    what: &Path,
+    edits: Vec<HandEdit>,
+    told: &mut Report,
+    machine: &Machine,
+) -> Outcome<Shaped> {
+    let skin = SkinSpec {
+        detail: args.surface.detail,
+        sides: args.surface.sides,
+        textures: !args.surface.no_textures,
+        ..SkinSpec::default()
+    };
+    let seed = Seed::new(args.seed);
+    let is_preset = what.to_str().and_then(Preset::find).is_some() && !what.is_file();
+    let is_spec = files::extension(what).is_none_or(|e| e.eq_ignore_ascii_case("toml"));
+    if is_preset || (is_spec && !files::is_stdin(what)) {
+        let spec = grow::read_spec(what, told)?;
+        let options = TreeOptions { skin, lods: args.surface.lods, edits, ..TreeOptions::default() };
+        let made = make_tree(&spec, seed, &options, &machine.run()).map_err(|e| match e {
+            TreeError::Cancelled(_) => Failure::Cancelled,
+            other => Failure::at(what, other),
+        })?;
+        let MadeTree { grown, model, lods, item } = made;
+        return Ok(Shaped { plant: grown.plant, model, lods, item });
+    }
+    let (read, mut options) = match files::open(what)? {
+        (file, Kind::Drawing(format)) => {
+            let mut drawings = read_drawings(file, format, &files::stem(what));
+            let first = drawings.next().ok_or_else(|| Failure::at(what, "holds no drawing"))?;
+            (first.map_err(|e| Failure::at(what, e))?, SketchOptions::default())
+        }
+        (file, Kind::Project) => {
+            let document = files::read_project(what, file)?;
+            (files::drawing_of(what, &document)?, SketchOptions::of_document(&document))
+        }
+        (_, Kind::Model(format)) => {
+            let what_it_is = format_args!(
+                "is a model ({}), which has no branches to edit; give a preset, a spec or a drawing",
+                format.word()
+            );
+            return Err(Failure::at(what, what_it_is));
+        }
+    };
+    told.warnings.extend(read.warnings);
+    options.skin = SkinSpec { seed, ..skin };
+    options.edits = edits;
+    let made = make_from_sketch(&read.drawing, &options, seed, &machine.run()).map_err(|e| match e {
+        MakeError::Cancelled(_) => Failure::Cancelled,
+        other => Failure::at(what, other),
+    })?;
+    Ok(Shaped { plant: made.plant, model: made.model, lods: Vec::new(), item: made.item })
+}
+
+fn list(plant: &Plant, order: u32) -> Outcome {
+    let mut lines = vec![format!(
+        "{:<18}{:>6}{:>24}{:>9}{:>10}{:>9}{:>7}",
+        "path", "at", "base, m", "length", "direction", "radius", "bears"
+    )];
+    for row in branch_rows(plant, order) {
+        let path = row.path.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+        let b = row.base_m;
+        lines.push(format!(
+            "{:<18}{:>6.2}{:>24}{:>7.2} m{:>10}{:>6.1} cm{:>7}",
+            format!("[{path}]"),
+            row.at,
+            format!("{:.2}, {:.2}, {:.2}", b.x, b.y, b.z),
+            row.length_m,
+            heading(row.direction),
+            100.0 * row.radius_m,
+            row.bears
+        ));
+    }
+    out(&lines.join("\n"))
+}
+
+/// Where a branch points to, in words.
+fn heading(d: DVec3) -> String {
+    let mut words = Vec::new();
+    if d.y.abs() > 0.5 {
+        words.push(if d.y > 0.0 { "up" } else { "down" });
+    }
+    if d.x.abs() > 0.4 {
+        words.push(if d.x > 0.0 { "right" } else { "left" });
+    }
+    if d.z.abs() > 0.4 {
+        words.push(if d.z > 0.0 { "front" } else { "back" });
+    }
+    words.join(" ")
+}

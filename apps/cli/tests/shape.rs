@@ -1,0 +1,124 @@
+//! `burgeon shape` as other programs call it: every edit on a species, a drawing and an L-system, and bad input.
+#![expect(clippy::unwrap_used, reason = "tests")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn folder(test: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
+    let _ = fs::remove_dir_all(&path);
+    fs::create_dir_all(&path).unwrap();
+    path
+}
+
+fn burgeon(folder: &Path, args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_burgeon")).args(args).current_dir(folder).output().unwrap()
+}
+
+fn good(folder: &Path, args: &[&str]) -> String {
+    let out = burgeon(folder, args);
+    assert_eq!(out.status.code(), Some(0), "{args:?}: {}", String::from_utf8_lossy(&out.stderr));
+    String::from_utf8(out.stdout).unwrap()
+}
+
+fn bad(folder: &Path, args: &[&str]) -> String {
+    let out = burgeon(folder, args);
+    let text = String::from_utf8(out.stderr).unwrap();
+    assert_eq!(out.status.code(), Some(2), "{args:?}: {text}");
+    assert_eq!(text.lines().count(), 1, "one line, not {text:?}");
+    text
+}
+
+const EDITS: &str = r#"{"schema": "burgeon.edits/1", "edits": [
+  {"op": "rotate", "axis": {"path": [0, 1]}, "turn": {"about": [0, 1, 0], "degrees": 40}},
+  {"op": "move", "axis": {"path": [0, 1]}, "to": {"slide-m": 0.2}},
+  {"op": "prune", "axis": {"path": [0, 0]}},
+  {"op": "regrow", "axis": {"path": [0, 0]}, "seed": 7},
+  {"op": "sketch-branch", "bearer": {"path": [0]}, "at": 0.4, "points": [[0, 3, 0], [0.8, 3.4, 0.2], [1.8, 3.9, 0.5]]},
+  {"op": "brush", "bearer": {"path": [0]}, "points": [[0, 3, 0], [-0.8, 3.5, 0.3], [-1.8, 4.6, 0.5]], "radius_m": [0.4]},
+  {"op": "silhouette", "outline": [[-2, 2], [2, 2], [3, 5], [0, 9], [-3, 5]]},
+  {"op": "leaf-density", "region": "all", "keep": 0.7},
+  {"op": "prune", "axis": {"path": [0, 999]}}
+]}"#;
+
+#[test]
+fn every_edit_is_done_on_a_species_a_drawing_and_an_l_system() {
+    let f = folder("shape-all");
+    fs::write(f.join("edits.json"), EDITS).unwrap();
+    let tree = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/sketches/table1/h.svg");
+    fs::write(f.join("small.toml"), "[method]\nkind = \"competition\"\npoints = 300").unwrap();
+    fs::write(f.join("rules.toml"), lsystem()).unwrap();
+    for what in ["small.toml", "rules.toml", tree] {
+        let args = [
+            "shape",
+            what,
+            "--edits",
+            "edits.json",
+            "-o",
+            "out.glb",
+            "--no-textures",
+            "--detail",
+            "0.3",
+            "--json",
+        ];
+        let report: Value = serde_json::from_str(&good(&f, &args)).unwrap();
+        let item = &report["items"][0];
+        let edits = item["edits"].as_array().unwrap();
+        let undone: Vec<&Value> = edits.iter().filter(|e| e["done"] == false).collect();
+        assert_eq!((edits.len(), undone.len()), (9, 1), "{what}: {undone:?}");
+        assert_eq!(
+            (undone[0]["index"].as_u64(), undone[0]["code"].as_str()),
+            (Some(8), Some("no-such-number"))
+        );
+        assert!(item["warnings"].to_string().contains("there is no branch number 999"), "{what}");
+        let again: Value =
+            serde_json::from_str(&good(&f, &[&args[..], &["--threads", "1"]].concat())).unwrap();
+        assert_eq!(again["items"][0]["digest"], item["digest"], "{what}");
+        assert!(fs::metadata(f.join("out.glb")).unwrap().len() > 10_000);
+    }
+}
+
+fn lsystem() -> String {
+    let preset = fs::read_to_string(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../crates/studio/presets/oak-lsystem.toml"
+    ));
+    // Younger, for a quick test.
+    format!("age = 7\n{}", preset.unwrap())
+}
+
+#[test]
+fn branches_are_listed_and_the_template_is_an_edits_file() {
+    let f = folder("shape-list");
+    fs::write(f.join("small.toml"), "[method]\nkind = \"competition\"\npoints = 300").unwrap();
+    let list = good(&f, &["shape", "small.toml", "--list", "--quiet"]);
+    assert!(list.lines().count() > 6 && list.contains("[0, 3]") && !list.contains("[0, 3, 0]"), "{list}");
+    let template = good(&f, &["shape", "--template"]);
+    fs::write(f.join("t.json"), template).unwrap();
+    good(
+        &f,
+        &["shape", "small.toml", "--edits", "t.json", "-o", "t.glb", "--no-textures", "--detail", "0.3"],
+    );
+    good(&f, &["shape", "--schema", "schema.json"]);
+    let schema: Value = serde_json::from_str(&fs::read_to_string(f.join("schema.json")).unwrap()).unwrap();
+    assert!(schema.to_string().contains("silhouette"));
+}
+
+#[test]
+fn bad_input_says_what_and_where() {
+    let f = folder("shape-bad");
+    fs::write(f.join("small.toml"), "[method]\nkind = \"competition\"\npoints = 300").unwrap();
+    fs::write(f.join("old.json"), r#"{"schema": "burgeon.edits/9", "edits": []}"#).unwrap();
+    fs::write(f.join("odd.json"), r#"{"schema": "burgeon.edits/1", "edits": [{"op": "paint"}]}"#).unwrap();
+    let told = bad(&f, &["shape", "small.toml", "--edits", "old.json", "-o", "x.glb"]);
+    assert!(told.contains("old.json") && told.contains("burgeon.edits/9"), "{told}");
+    let told = bad(&f, &["shape", "small.toml", "--edits", "odd.json", "-o", "x.glb"]);
+    assert!(told.contains("unknown variant `paint`") && told.contains("--template"), "{told}");
+    let told = bad(&f, &["shape", "nothing-like-it", "--edits", "odd.json", "-o", "x.glb"]);
+    assert!(told.contains("odd.json") || told.contains("nothing-like-it"), "{told}");
+    bad(&f, &["shape", "small.toml", "-o", "x.glb"]);
+    assert!(!f.join("x.glb").exists());
+}

@@ -1,0 +1,506 @@
+//! Guided growth: buds that make markers of their own, keep away from others' and follow a brush.
+//!
+//! `buds -> (markers in their cones -> directions, free space -> vigour -> shoots) x rounds -> Skeleton` (paper 002)
+
+mod room;
+mod spec;
+
+use base::ops::{self, PI, TAU};
+use base::{Draw, Report, Run, Seed, map_indexed};
+use geom::Grid3;
+use glam::DVec3;
+
+use crate::colonize::plant_roots;
+use crate::{GrowthError, JointId, Obstacles, Skeleton};
+use room::Room;
+use spec::Numbers;
+
+pub use spec::{BrushStroke, GuidedSpec};
+
+/// A bud that growth starts from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StartBud {
+    /// The joint that bears it.
+    pub joint: JointId,
+    /// Where it would grow; any length above 0.
+    pub heading: DVec3,
+    /// The round, from 0, in which it wakes.
+    pub wakes: u32,
+}
+
+/// What guided growth made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Guided {
+    /// The joints, those given first.
+    pub skeleton: Skeleton,
+    /// Markers made in all rounds.
+    pub markers: usize,
+    /// Buds that died for want of room.
+    pub died: usize,
+    /// Rounds in which something grew.
+    pub rounds: u32,
+}
+
+/// Grows a tree from each root; they compete.
+///
+/// Direction of a bud A with its own markers i and other buds' markers j in its cone, `w` Gaussian in the distance to
+/// the markers' own bud (mean `(near + far) / 2`, deviation `(far - near) / 4`), in strokes by the distance to the
+/// stroke: `V = sum w_i v_i + sum w_i k_s t_i - k_r sum w_j u_j + k_g W g`. A bud dies when buds older than it have
+/// more markers in its cone than itself, or when V is shorter than a tenth of W. Vigour is shared as in Palubicki et
+/// al. 2009, section 4.2, free space standing for light. Guaranteed: it ends; a clean `validate()`; no joint in an
+/// obstacle; the same bits for any thread count. Cost: buds x markers x neighbours of each round.
+///
+/// # Errors
+/// [`GrowthError`]: numbers out of range, no roots, a root in an obstacle, cancelled.
+///
+/// ```
+/// use base::{Report, Run, Seed};
+/// use glam::DVec3;
+/// use growth::{GuidedSpec, Obstacles, guide};
+/// let (spec, run, none) = (GuidedSpec { rounds: 8, ..GuidedSpec::default() }, Run::plain(), Obstacles::none());
+/// let tree = guide(&[DVec3::ZERO], &none, &spec, Seed::new(1), &run, &mut Report::default())?;
+/// assert!(tree.skeleton.len() > 40 && tree.markers > 1000);
+/// # Ok::<(), growth::GrowthError>(())
+/// ```
+pub fn guide(
+    roots: &[DVec3],
+    obstacles: &Obstacles,
+    spec: &GuidedSpec,
+    seed: Seed,
+    run: &Run<'_>,
+    report: &mut Report,
+) -> Result<Guided, GrowthError> {
+    let mut skeleton = plant_roots(roots, obstacles)?;
+    let room = Room::new(spec, roots.to_vec(), obstacles)?;
+    spec.check()?;
+    let mut buds = Vec::new();
+    for root in 0..skeleton.len() {
+        // A bole up to where the crown may begin.
+        let mut top = JointId::new(root);
+        let mut left = room.foot(skeleton.position[root]);
+        while left > 0.0 {
+            let at = skeleton.position[top.index()];
+            let step = spec.internode_m.min(left.max(0.1 * spec.internode_m));
+            let open = obstacles.is_empty();
+            let Some(to) = (if open { Some(DVec3::Y) } else { obstacles.steer(at, DVec3::Y, step) }) else {
+                break;
+            };
+            top = skeleton.push(at + to * step, top, 0);
+            left -= step;
+        }
+        buds.push(StartBud { joint: top, heading: DVec3::Y, wakes: 0 });
+    }
+    grow(skeleton, &buds, &room, spec, seed, run, report)
+}
+
+/// As [`guide`], from wood that is there already: only `buds` grow, in the order given; earlier ones count as older.
+///
+/// An `envelope` is relative to the skeleton's roots. Buds of joints that are not there are left out.
+///
+/// # Errors
+/// As [`guide`].
+pub fn guide_from(
+    skeleton: Skeleton,
+    buds: &[StartBud],
+    obstacles: &Obstacles,
+    spec: &GuidedSpec,
+    seed: Seed,
+    run: &Run<'_>,
+    report: &mut Report,
+) -> Result<Guided, GrowthError> {
+    if skeleton.is_empty() {
+        return Err(GrowthError::NoRoots);
+    }
+    let roots = skeleton.position.iter().zip(&skeleton.parent).filter(|(_, p)| p.is_none());
+    let room = Room::new(spec, roots.map(|(p, _)| *p).collect(), obstacles)?;
+    grow(skeleton, buds, &room, spec, seed, run, report)
+}
+
+fn grow(
+    skeleton: Skeleton,
+    buds: &[StartBud],
+    room: &Room<'_>,
+    spec: &GuidedSpec,
+    seed: Seed,
+    run: &Run<'_>,
+    report: &mut Report,
+) -> Result<Guided, GrowthError> {
+    let numbers = spec.check()?;
+    let started = run.clock.now_ms();
+    let mut stand = Stand::new(skeleton, buds, room, spec, &numbers, seed);
+    let mut grew = 0;
+    for round in 0..spec.rounds {
+        run.cancel.check()?;
+        if stand.skeleton.len() >= spec.max_joints as usize {
+            let n = stand.skeleton.len();
+            report.warn(
+                "growth-stopped",
+                format!("growth stopped in round {round} at {n} joints, the most allowed"),
+            );
+            break;
+        }
+        if !stand.round(round, run)? {
+            break;
+        }
+        grew = round + 1;
+    }
+    stand.shed();
+    report.book("grow", run.clock.now_ms() - started);
+    debug_assert_eq!(stand.skeleton.validate().next(), None, "a grown skeleton is sound");
+    Ok(Guided { skeleton: stand.skeleton, markers: stand.markers_made, died: stand.died, rounds: grew })
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Life {
+    Alive,
+    Dead,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Bud {
+    joint: u32,
+    heading: DVec3,
+    side: DVec3,
+    /// Number of its joint along its axis, for phyllotaxis.
+    rank: u32,
+    /// Continues the axis that its joint ends.
+    terminal: bool,
+    wakes: u32,
+    key: Seed,
+    life: Life,
+}
+
+/// A marker: where it is, what it weighs, whose it is.
+#[derive(Clone, Copy, Debug)]
+struct Marker {
+    at: DVec3,
+    weight: f64,
+    along: DVec3,
+}
+
+/// What a bud saw in a round.
+#[derive(Clone, Copy, Debug, Default)]
+struct Look {
+    direction: DVec3,
+    free: f64,
+    dies: bool,
+}
+
+/// Buds of one job of a parallel map.
+const GROUP: usize = 32;
+
+struct Stand<'a> {
+    skeleton: Skeleton,
+    /// Whether each joint continues the axis of its parent.
+    is_main: Vec<bool>,
+    /// Joints that were there before.
+    given: usize,
+    buds: Vec<Bud>,
+    room: &'a Room<'a>,
+    spec: &'a GuidedSpec,
+    numbers: &'a Numbers,
+    seed: Seed,
+    markers_made: usize,
+    died: usize,
+}
+
+fn place_key(p: DVec3) -> u64 {
+    p.x.to_bits() ^ p.y.to_bits().rotate_left(21) ^ p.z.to_bits().rotate_left(42)
+}
+
+impl<'a> Stand<'a> {
+    fn new(
+        skeleton: Skeleton,
+        buds: &[StartBud],
+        room: &'a Room<'a>,
+        spec: &'a GuidedSpec,
+        numbers: &'a Numbers,
+        seed: Seed,
+    ) -> Self {
+        let given = skeleton.len();
+        let mut continued = vec![false; given];
+        let is_main = skeleton.parent.iter().map(|p| match p {
+            Some(p) => !core::mem::replace(&mut continued[p.index()], true),
+            None => true,
+        });
+        let is_main: Vec<bool> = is_main.collect();
+        let sound = buds.iter().filter(|b| b.joint.index() < given);
+        let buds = sound.zip(0_u64..).map(|(b, i)| {
+            let heading = b.heading.try_normalize().unwrap_or(DVec3::Y);
+            let place = skeleton.position[b.joint.index()];
+            Bud {
+                joint: b.joint.raw(),
+                heading,
+                side: heading.any_orthonormal_vector(),
+                rank: 0,
+                terminal: !continued[b.joint.index()],
+                wakes: b.wakes,
+                key: seed.child(place_key(place)).child(i),
+                life: Life::Alive,
+            }
+        });
+        let buds = buds.collect();
+        Self { is_main, given, buds, skeleton, room, spec, numbers, seed, markers_made: 0, died: 0 }
+    }
+
+    /// One round; whether any bud is left that may still grow.
+    fn round(&mut self, round: u32, run: &Run<'_>) -> Result<bool, GrowthError> {
+        let awake: Vec<u32> = (0_u32..)
+            .zip(&self.buds)
+            .filter(|(_, b)| b.life == Life::Alive && b.wakes <= round)
+            .map(|(i, _)| i)
+            .collect();
+        let waiting = self.buds.iter().any(|b| b.life == Life::Alive && b.wakes > round);
+        if awake.is_empty() {
+            return Ok(waiting);
+        }
+        let groups = awake.len().div_ceil(GROUP);
+        let of_group = |g: usize| &awake[g * GROUP..awake.len().min((g + 1) * GROUP)];
+        let made = map_indexed(run.executor, groups, |g| {
+            let mut near = Vec::new();
+            of_group(g).iter().map(|&b| self.markers_of(b as usize, round, &mut near)).collect::<Vec<_>>()
+        });
+        let (mut markers, mut owner) = (Vec::new(), Vec::new());
+        let mut rows = Vec::with_capacity(awake.len());
+        for (own, &bud) in made.into_iter().flatten().zip(&awake) {
+            rows.push(markers.len()..markers.len() + own.len());
+            owner.resize(owner.len() + own.len(), bud);
+            markers.extend(own);
+        }
+        self.markers_made += markers.len();
+        run.cancel.check()?;
+        let places: Vec<DVec3> = markers.iter().map(|m| m.at).collect();
+        let grid = Grid3::new(&places, self.spec.far * self.spec.internode_m);
+        let looks = map_indexed(run.executor, groups, |g| {
+            let mut near = Vec::new();
+            let of = of_group(g).iter().zip(g * GROUP..);
+            of.map(|(&b, k)| self.look(b, &markers, &owner, rows[k].clone(), &grid, &mut near))
+                .collect::<Vec<_>>()
+        });
+        run.cancel.check()?;
+        let looks: Vec<Look> = looks.into_iter().flatten().collect();
+        let vigour = self.share(&awake, &looks);
+        for ((&b, look), v) in awake.iter().zip(&looks).zip(vigour) {
+            if look.dies {
+                self.buds[b as usize].life = Life::Dead;
+                self.died += 1;
+            } else if self.skeleton.len() < self.spec.max_joints as usize {
+                self.shoot(b as usize, look.direction, v, round + 1);
+            }
+        }
+        Ok(waiting || self.buds.iter().any(|b| b.life == Life::Alive))
+    }
+
+    /// N markers in a bud's cone, but for those that find no room.
+    fn markers_of(&self, b: usize, round: u32, near: &mut Vec<usize>) -> Vec<Marker> {
+        let (bud, spec) = (&self.buds[b], self.spec);
+        let at = self.skeleton.position[bud.joint as usize];
+        let (lo, hi) = (spec.near * spec.internode_m, spec.far * spec.internode_m);
+        let (mean, sigma) = (0.5 * (lo + hi), 0.25 * (hi - lo).max(1e-12));
+        let cos_half = ops::cos(spec.half_angle_deg * (PI / 180.0));
+        let across = bud.heading.cross(bud.side);
+        let (lo3, hi3) = (lo * lo * lo, hi * hi * hi);
+        let mut stream = bud.key.child(u64::from(round)).stream(Draw::Attractors);
+        let mut own = Vec::with_capacity(spec.markers as usize);
+        for _ in 0..spec.markers {
+            let c = stream.range(cos_half, 1.0);
+            let (s, around) = ((1.0 - c * c).max(0.0).sqrt(), ops::sin_cos(TAU * stream.uniform()));
+            let d = ops::cbrt(ops::lerp(lo3, hi3, stream.uniform()));
+            let p = at + (bud.heading * c + (bud.side * around.1 + across * around.0) * s) * d;
+            let Some(guide) = self.room.at(p, near) else { continue };
+            let weight = if self.room.is_guided() {
+                guide.weight
+            } else {
+                let x = (d - mean) / sigma;
+                ops::exp(-0.5 * x * x)
+            };
+            own.push(Marker { at: p, weight, along: guide.along });
+        }
+        own
+    }
+
+    /// Direction and free space of a bud.
+    fn look(
+        &self,
+        b: u32,
+        markers: &[Marker],
+        owner: &[u32],
+        own: core::ops::Range<usize>,
+        grid: &Grid3,
+        near: &mut Vec<usize>,
+    ) -> Look {
+        let (bud, spec) = (&self.buds[b as usize], self.spec);
+        let at = self.skeleton.position[bud.joint as usize];
+        let n = own.len();
+        if n == 0 {
+            return Look { dies: true, ..Look::default() };
+        }
+        let (mut sum, mut whole) = (DVec3::ZERO, 0.0);
+        for m in &markers[own] {
+            let v = (m.at - at).normalize_or_zero();
+            sum += (v + m.along) * m.weight;
+            whole += m.weight;
+        }
+        let (lo, hi) = (spec.near * spec.internode_m, spec.far * spec.internode_m);
+        let cos_half = ops::cos(spec.half_angle_deg * (PI / 180.0));
+        grid.within(at, hi, near);
+        let (mut push, mut older) = (DVec3::ZERO, 0_usize);
+        for &j in near.iter().filter(|&&j| owner[j] != b) {
+            let d = markers[j].at - at;
+            let length = d.length();
+            if length < lo || d.dot(bud.heading) < cos_half * length {
+                continue;
+            }
+            push += d / length.max(1e-300) * markers[j].weight;
+            older += usize::from(owner[j] < b);
+        }
+        let v = sum - push * spec.repulsion + self.numbers.pull * whole;
+        // Half of the markers in a wall is half of the room.
+        let room = n as f64 / f64::from(spec.markers);
+        let crowd = older as f64 / n as f64;
+        // Guided, markers fill the tube only, however narrow: what counts is whom it is shared with.
+        let room = if self.room.is_guided() { room.sqrt() } else { room };
+        Look {
+            direction: v.normalize_or(bud.heading),
+            free: (1.0 - crowd).max(0.0) * room,
+            dies: crowd > 1.0 || v.length() < 0.1 * whole,
+        }
+    }
+
+    /// Vigour of the awake buds: `alpha` times the free space of each tree, shared at its forks (Palubicki 2009, 4.2).
+    fn share(&self, awake: &[u32], looks: &[Look]) -> Vec<f64> {
+        let n = self.skeleton.len();
+        let (mut gathered, mut main) = (vec![0.0; n], vec![0.0; n]);
+        for (&b, look) in awake.iter().zip(looks).filter(|(_, l)| !l.dies) {
+            let bud = &self.buds[b as usize];
+            gathered[bud.joint as usize] += look.free;
+            if bud.terminal {
+                main[bud.joint as usize] += look.free;
+            }
+        }
+        for j in (0..n).rev() {
+            if let Some(p) = self.skeleton.parent[j] {
+                gathered[p.index()] += gathered[j];
+                if self.is_main[j] {
+                    main[p.index()] += gathered[j];
+                }
+            }
+        }
+        // What reaches the main axis beyond each joint, and what each unit of free space at its side gets.
+        let lambda = self.spec.lambda;
+        let (mut ahead, mut beside) = (vec![0.0; n], vec![0.0; n]);
+        for j in 0..n {
+            let vigour = match self.skeleton.parent[j] {
+                None => self.spec.alpha * gathered[j],
+                Some(p) if self.is_main[j] => ahead[p.index()],
+                Some(p) => beside[p.index()] * gathered[j],
+            };
+            let side = (gathered[j] - main[j]).max(0.0);
+            let (m, l) = (lambda * main[j], (1.0 - lambda) * side);
+            if m + l > 0.0 {
+                ahead[j] = vigour * m / (m + l);
+                beside[j] = if side > 0.0 { vigour * (l / (m + l)) / side } else { 0.0 };
+            }
+        }
+        let of = |(&b, look): (&u32, &Look)| {
+            let bud = &self.buds[b as usize];
+            let j = bud.joint as usize;
+            if bud.terminal { ahead[j] } else { beside[j] * look.free }
+        };
+        awake.iter().zip(looks).map(of).collect()
+    }
+
+    fn shoot(&mut self, b: usize, direction: DVec3, vigour: f64, birth: u32) {
+        let vigour = vigour.min(f64::from(self.spec.most_per_shoot) + 0.999);
+        let n = vigour.floor();
+        if !(n >= 1.0) {
+            return;
+        }
+        let length = self.spec.internode_m * vigour / n;
+        let mut left = n;
+        let mut near = Vec::new();
+        while left >= 1.0 {
+            left -= 1.0;
+            let bud = self.buds[b];
+            let from = bud.joint as usize;
+            let at = self.skeleton.position[from];
+            let obstacles = self.room.obstacles();
+            let to =
+                if obstacles.is_empty() { Some(direction) } else { obstacles.steer(at, direction, length) };
+            let place = to.map(|to| at + to * length);
+            let Some((to, place)) = to.zip(place).filter(|(_, p)| self.room.at(*p, &mut near).is_some())
+            else {
+                self.buds[b].life = Life::Dead;
+                return;
+            };
+            let joint = self.skeleton.push(place, JointId::new(from), birth);
+            self.is_main.push(bud.terminal);
+            // The bud is at the tip of its shoot now, and the shoot goes on as its own axis.
+            let side = (bud.side - to * bud.side.dot(to)).try_normalize();
+            let tip = Bud {
+                joint: joint.raw(),
+                heading: to,
+                side: side.unwrap_or_else(|| to.any_orthonormal_vector()),
+                rank: if bud.terminal { bud.rank + 1 } else { 1 },
+                terminal: true,
+                ..bud
+            };
+            self.buds[b] = tip;
+            self.set_buds(tip, birth);
+        }
+    }
+
+    /// Axillary buds of a new joint, around it by phyllotaxis.
+    fn set_buds(&mut self, tip: Bud, birth: u32) {
+        let place = self.skeleton.position[tip.joint as usize];
+        let key = self.seed.child(place_key(place));
+        let mut stream = key.stream(Draw::Phyllotaxis);
+        let across = tip.heading.cross(tip.side);
+        let jitter = self.spec.jitter_deg * (PI / 180.0);
+        for (k, azimuth) in (0_u64..).zip(self.numbers.phyllotaxis.azimuths(tip.rank)) {
+            let turn = azimuth + jitter * stream.normal();
+            let tilt = self.spec.branch_angle_deg * (PI / 180.0) + jitter * stream.normal();
+            let ((st, ct), (sa, ca)) = (ops::sin_cos(tilt), ops::sin_cos(turn));
+            let heading = (tip.heading * ct + (tip.side * ca + across * sa) * st).normalize_or(tip.heading);
+            self.buds.push(Bud {
+                joint: tip.joint,
+                heading,
+                side: heading.any_orthonormal_vector(),
+                rank: 0,
+                terminal: false,
+                wakes: birth,
+                key: key.child(k),
+                life: Life::Alive,
+            });
+        }
+    }
+
+    /// Takes short twigs away that have stopped, and then what has become a short twig, until none is left.
+    fn shed(&mut self) {
+        let most = self.spec.shed_up_to as usize;
+        let n = self.skeleton.len();
+        if most == 0 || n == self.given {
+            return;
+        }
+        let (mut size, mut alive) = (vec![1_usize; n], vec![false; n]);
+        for b in self.buds.iter().filter(|b| b.life == Life::Alive && b.terminal) {
+            alive[b.joint as usize] = true;
+        }
+        let mut stays = vec![true; n];
+        for j in (self.given..n).rev() {
+            let Some(p) = self.skeleton.parent[j].map(JointId::index) else { continue };
+            let starts = !self.is_main[j];
+            if starts && size[j] <= most && !alive[j] {
+                stays[j] = false;
+            } else {
+                size[p] += size[j];
+                alive[p] |= alive[j];
+            }
+        }
+        self.skeleton = self.skeleton.keep(|j| stays[j]);
+    }
+}
+
+#[cfg(test)]
+#[path = "tests.rs"]
+mod tests;

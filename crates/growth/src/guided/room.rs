@@ -1,0 +1,149 @@
+//! Where buds may find room: an envelope, and the tubes of brush strokes.
+
+use base::ops;
+use geom::Grid3;
+use glam::DVec3;
+
+use super::spec::{BrushStroke, GuidedSpec};
+use crate::envelope::Region;
+use crate::{GrowthError, Obstacles};
+
+/// One place of a stroke.
+#[derive(Clone, Copy, Debug)]
+struct Piece {
+    from: DVec3,
+    to: DVec3,
+    radius: (f64, f64),
+    tangent: DVec3,
+    pull: f64,
+}
+
+/// Strokes cut into pieces no longer than their radius, found by a grid.
+#[derive(Debug)]
+struct Tubes {
+    pieces: Vec<Piece>,
+    grid: Grid3,
+    reach: f64,
+}
+
+/// The room of a run.
+#[derive(Debug)]
+pub(super) struct Room<'a> {
+    region: Option<(Region, Vec<DVec3>)>,
+    tubes: Option<Tubes>,
+    obstacles: &'a Obstacles,
+}
+
+/// What a stroke adds to a marker in it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Guide {
+    /// `w' = exp(-d'^2 / (2 sigma_b^2))`, with sigma_b half the radius.
+    pub(super) weight: f64,
+    /// The stroke's direction there, times its pull `k_s`.
+    pub(super) along: DVec3,
+}
+
+impl Tubes {
+    fn new(strokes: &[BrushStroke]) -> Option<Self> {
+        let mut pieces = Vec::new();
+        for stroke in strokes {
+            let radius =
+                |i: usize| stroke.radius_m.get(i).or(stroke.radius_m.first()).copied().unwrap_or(1.0);
+            for (i, w) in stroke.points.windows(2).enumerate() {
+                let (r, s) = (radius(i), radius(i + 1));
+                let Some(tangent) = (w[1] - w[0]).try_normalize() else { continue };
+                let wish = (w[0].distance(w[1]) / r.min(s)).ceil().clamp(1.0, 1000.0);
+                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 1000")]
+                let n = wish as u32;
+                let at = |k: u32| f64::from(k) / f64::from(n);
+                pieces.extend((0..n).map(|k| Piece {
+                    from: w[0].lerp(w[1], at(k)),
+                    to: w[0].lerp(w[1], at(k + 1)),
+                    radius: (ops::lerp(r, s, at(k)), ops::lerp(r, s, at(k + 1))),
+                    tangent,
+                    pull: stroke.pull,
+                }));
+            }
+        }
+        // Everything in a piece's tube is at most its radius and half of its length from its middle.
+        let reach = pieces
+            .iter()
+            .map(|p| p.radius.0.max(p.radius.1) + 0.5 * p.from.distance(p.to))
+            .fold(0.0, f64::max);
+        let middles: Vec<DVec3> = pieces.iter().map(|p| p.from.lerp(p.to, 0.5)).collect();
+        (!pieces.is_empty()).then(|| Self { grid: Grid3::new(&middles, reach), pieces, reach })
+    }
+
+    /// The strongest guide at a point; none outside every tube.
+    fn guide(&self, p: DVec3, near: &mut Vec<usize>) -> Option<Guide> {
+        self.grid.within(p, self.reach, near);
+        let mut best: Option<Guide> = None;
+        for piece in near.iter().map(|&i| &self.pieces[i]) {
+            let d = piece.to - piece.from;
+            let t = ((p - piece.from).dot(d) / d.length_squared().max(1e-300)).clamp(0.0, 1.0);
+            let (away, radius) =
+                (p.distance(piece.from + d * t), ops::lerp(piece.radius.0, piece.radius.1, t));
+            let sigma = 0.5 * radius;
+            let weight = ops::exp(-away * away / (2.0 * sigma * sigma));
+            if away <= radius && best.is_none_or(|b| weight > b.weight) {
+                best = Some(Guide { weight, along: piece.tangent * piece.pull });
+            }
+        }
+        best
+    }
+}
+
+impl<'a> Room<'a> {
+    pub(super) fn new(
+        spec: &GuidedSpec,
+        roots: Vec<DVec3>,
+        obstacles: &'a Obstacles,
+    ) -> Result<Self, GrowthError> {
+        let region = spec.envelope.as_ref().map(|e| e.prepare()).transpose()?.map(|r| (r, roots));
+        Ok(Self { region, tubes: Tubes::new(&spec.strokes), obstacles })
+    }
+
+    /// What guides a marker at a point; `None` where none may be. Without strokes, weight 1 and no direction.
+    pub(super) fn at(&self, p: DVec3, near: &mut Vec<usize>) -> Option<Guide> {
+        if let Some((region, roots)) = &self.region
+            && !roots.iter().any(|r| region.contains(p - *r))
+        {
+            return None;
+        }
+        if !self.obstacles.is_empty() && !self.obstacles.free(p) {
+            return None;
+        }
+        match &self.tubes {
+            Some(tubes) => tubes.guide(p, near),
+            None => Some(Guide { weight: 1.0, along: DVec3::ZERO }),
+        }
+    }
+
+    /// What growth goes around.
+    pub(super) const fn obstacles(&self) -> &'a Obstacles {
+        self.obstacles
+    }
+
+    /// Whether strokes guide.
+    pub(super) const fn is_guided(&self) -> bool {
+        self.tubes.is_some()
+    }
+
+    /// How high above a root the envelope starts; 0 without one.
+    pub(super) fn foot(&self, root: DVec3) -> f64 {
+        let Some((region, _)) = &self.region else { return 0.0 };
+        let (lo, hi) = region.bounds();
+        let mut y = 0.0;
+        let step = 0.01 * (hi.y - lo.y).max(1e-9);
+        if region.contains(DVec3::ZERO) || root.y > 1e6 {
+            return 0.0;
+        }
+        while y < hi.y && !region.contains(DVec3::Y * y) {
+            y += step;
+            if y < lo.y {
+                y = lo.y;
+            }
+        }
+        if y < hi.y { y } else { 0.0 }
+    }
+}

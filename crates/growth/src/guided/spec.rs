@@ -1,0 +1,154 @@
+//! What guided growth is asked.
+
+use glam::DVec3;
+use plant::Phyllotaxis;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::error::{usable, within};
+use crate::{Arrangement, Envelope, GrowthError, Tropism};
+
+/// A stroke of a brush in space: buds find room only inside it, and are drawn along it (paper 002).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BrushStroke {
+    /// Its course, metres, at least two points.
+    #[schemars(with = "Vec<[f64; 3]>", extend("x-unit" = "m"))]
+    pub points: Vec<DVec3>,
+    /// Radius, metres, above 0: one number, or one for each point.
+    #[schemars(extend("x-unit" = "m"))]
+    pub radius_m: Vec<f64>,
+    /// Pull along the stroke, `k_s`, 0 to 10; default 1.
+    #[serde(default = "one")]
+    #[schemars(range(min = 0.0, max = 10.0))]
+    pub pull: f64,
+}
+
+const fn one() -> f64 {
+    1.0
+}
+
+/// Guided growth: each bud makes its own markers, and others' markers push it away (paper 002). Metres, degrees.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct GuidedSpec {
+    /// Rounds of growth, 0 to 1000, default 14.
+    #[schemars(range(min = 0, max = 1000))]
+    pub rounds: u32,
+    /// Length of an internode at vigour 1, above 0, default 0.25.
+    #[schemars(range(min = 0.0001, max = 1000.0), extend("x-unit" = "m"))]
+    pub internode_m: f64,
+    /// The space of the crown, relative to the root; default none: growth ends with its rounds.
+    pub envelope: Option<Envelope>,
+    /// Strokes that guide it; with any, buds grow only inside them. Default none.
+    pub strokes: Vec<BrushStroke>,
+    /// Markers of one bud in one round, N, 4 to 10000, default 60. The paper speaks of about 1300: more markers only
+    /// make the course of a shoot straighter, by 34 degrees over the root of N.
+    #[schemars(range(min = 4, max = 10000))]
+    pub markers: u32,
+    /// Occupancy radius, in internodes, 0 to 100, default 2: nearer to a bud there are no markers.
+    #[schemars(range(min = 0.0, max = 100.0))]
+    pub near: f64,
+    /// Perception radius, in internodes, above `near` and at most 100, default 5.
+    #[schemars(range(min = 0.01, max = 100.0))]
+    pub far: f64,
+    /// Half the opening of the perception cone, 1 to 180 degrees, default 45.
+    #[schemars(range(min = 1.0, max = 180.0), extend("x-unit" = "deg"))]
+    pub half_angle_deg: f64,
+    /// How strongly others' markers push away, `k_r`, 0 to 10, default 1.
+    #[schemars(range(min = 0.0, max = 10.0))]
+    pub repulsion: f64,
+    /// Weight and light, `k_g g`; relative to the pull of free space. Default 0.12 upwards.
+    pub tropisms: Vec<Tropism>,
+    /// Vigour per unit of free space, above 0 and at most 100, default 2.
+    #[schemars(range(min = 1e-6, max = 100.0))]
+    pub alpha: f64,
+    /// Share of the main axis at a fork, 0 to 1, default 0.54.
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub lambda: f64,
+    /// How buds stand, default a golden spiral.
+    pub arrangement: Arrangement,
+    /// Between a shoot and the buds at its side, 0 to 180 degrees, default 55.
+    #[schemars(range(min = 0.0, max = 180.0), extend("x-unit" = "deg"))]
+    pub branch_angle_deg: f64,
+    /// Standard deviation of that angle and of the azimuths, 0 to 60 degrees, default 6.
+    #[schemars(range(min = 0.0, max = 60.0), extend("x-unit" = "deg"))]
+    pub jitter_deg: f64,
+    /// Most internodes of one shoot in one round, 1 to 100, default 3.
+    #[schemars(range(min = 1, max = 100))]
+    pub most_per_shoot: u32,
+    /// Twigs of at most so many internodes that stopped growing are shed at the end, 0 (none) to 1000; default 1.
+    #[schemars(range(min = 0, max = 1000))]
+    pub shed_up_to: u32,
+    /// Most joints, default 1 million.
+    #[schemars(range(min = 1, max = 2_147_483_648_u64))]
+    pub max_joints: u32,
+}
+
+impl Default for GuidedSpec {
+    fn default() -> Self {
+        Self {
+            rounds: 14,
+            internode_m: 0.25,
+            envelope: None,
+            strokes: Vec::new(),
+            markers: 60,
+            near: 2.0,
+            far: 5.0,
+            half_angle_deg: 45.0,
+            repulsion: 1.0,
+            tropisms: vec![Tropism { strength: 0.12, ..Tropism::UPWARDS }],
+            alpha: 2.0,
+            lambda: 0.54,
+            arrangement: Arrangement::default(),
+            branch_angle_deg: 55.0,
+            jitter_deg: 6.0,
+            most_per_shoot: 3,
+            shed_up_to: 1,
+            max_joints: 1_000_000,
+        }
+    }
+}
+
+/// What follows from checked numbers.
+pub(super) struct Numbers {
+    pub(super) phyllotaxis: Phyllotaxis,
+    pub(super) pull: DVec3,
+}
+
+impl GuidedSpec {
+    pub(super) fn check(&self) -> Result<Numbers, GrowthError> {
+        within("rounds", f64::from(self.rounds), 0.0, 1000.0, "0 to 1000")?;
+        within("internode_m", self.internode_m, 1e-4, 1e3, "0.0001 to 1000 m")?;
+        within("markers", f64::from(self.markers), 4.0, 1e4, "4 to 10000")?;
+        within("near", self.near, 0.0, 100.0, "0 to 100 internodes")?;
+        within("far", self.far, self.near.max(0.01), 100.0, "above `near` and at most 100 internodes")?;
+        within("half_angle_deg", self.half_angle_deg, 1.0, 180.0, "1 to 180")?;
+        within("repulsion", self.repulsion, 0.0, 10.0, "0 to 10")?;
+        within("alpha", self.alpha, 1e-6, 100.0, "above 0 and at most 100")?;
+        within("lambda", self.lambda, 0.0, 1.0, "0 to 1")?;
+        within("branch_angle_deg", self.branch_angle_deg, 0.0, 180.0, "0 to 180")?;
+        within("jitter_deg", self.jitter_deg, 0.0, 60.0, "0 to 60")?;
+        within("most_per_shoot", f64::from(self.most_per_shoot), 1.0, 100.0, "1 to 100")?;
+        within("shed_up_to", f64::from(self.shed_up_to), 0.0, 1000.0, "0 to 1000")?;
+        within("max_joints", f64::from(self.max_joints), 1.0, 2_147_483_648.0, "1 to 2^31")?;
+        for stroke in &self.strokes {
+            let points = stroke.points.len();
+            within("strokes.points", points as f64, 2.0, 1e6, "2 to 1 million points")?;
+            if let Some(bad) = stroke.points.iter().find(|p| !usable(**p)) {
+                let range = "finite points within 1e6 m";
+                return Err(GrowthError::Field { field: "strokes.points", range, value: bad.length() });
+            }
+            let radii = stroke.radius_m.len();
+            if radii != 1 && radii != points {
+                let range = "one number, or one for each point";
+                return Err(GrowthError::Field { field: "strokes.radius_m", range, value: radii as f64 });
+            }
+            for &r in &stroke.radius_m {
+                within("strokes.radius_m", r, 1e-6, 1e6, "above 0 and at most 1e6 m")?;
+            }
+            within("strokes.pull", stroke.pull, 0.0, 10.0, "0 to 10")?;
+        }
+        Ok(Numbers { phyllotaxis: self.arrangement.phyllotaxis()?, pull: Tropism::sum(&self.tropisms)? })
+    }
+}

@@ -1,0 +1,261 @@
+//! Edits -> another plant: pure, the same bits everywhere.
+//!
+//! `Plant + edits -> Draft -> each edit done or not, with the reason -> Plant`
+
+use base::{Cancelled, Report, Run, Seed};
+use glam::{DQuat, DVec3};
+use growth::{GrowthError, Obstacles};
+use plant::{OrganKind, Plant};
+
+use crate::draft::{At, Draft};
+use crate::edit::{Destination, HandEdit, Turn};
+use crate::habit::Habit;
+use crate::key::{AxisKey, nearest_on};
+use crate::outcome::{Changed, Outcome, Why};
+use crate::pipes::Pipes;
+use crate::{fill, leaves, sketch_branch};
+
+/// What edits need to know besides the plant. Not saved with them.
+#[derive(Clone, Debug, Default)]
+pub struct Context {
+    /// Exponent of the pipe model that made the plant, 1.5 to 4; without, it is learnt from the plant's forks.
+    pub pipe_exponent: Option<f64>,
+    /// What new branches grow around.
+    pub obstacles: Obstacles,
+}
+
+/// An edited plant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Applied {
+    /// The plant: `validate()` finds nothing wrong with it if it found nothing before.
+    pub plant: Plant,
+    /// What became of each edit, in their order.
+    pub outcomes: Vec<Outcome>,
+}
+
+/// A plant may have so many axes at most after an edit that lets something grow.
+pub(crate) const MOST_AXES: usize = 400_000;
+
+/// Why an edit stopped.
+pub(crate) enum Stop {
+    Why(Why),
+    Cancelled(Cancelled),
+}
+
+impl From<Why> for Stop {
+    fn from(why: Why) -> Self {
+        Self::Why(why)
+    }
+}
+
+impl From<Cancelled> for Stop {
+    fn from(c: Cancelled) -> Self {
+        Self::Cancelled(c)
+    }
+}
+
+impl From<GrowthError> for Stop {
+    fn from(error: GrowthError) -> Self {
+        match error {
+            GrowthError::Cancelled(c) => Self::Cancelled(c),
+            // All numbers are ours or checked: what is left is a place where nothing can grow.
+            _ => Self::Why(Why::NothingGrew),
+        }
+    }
+}
+
+/// What every edit is given.
+pub(crate) struct Bench<'a> {
+    pub(crate) obstacles: &'a Obstacles,
+    pub(crate) exponent: Option<f64>,
+    pub(crate) run: &'a Run<'a>,
+}
+
+impl Bench<'_> {
+    pub(crate) fn habit(&self, draft: &Draft) -> Habit {
+        Habit::of(draft, self.exponent)
+    }
+}
+
+/// Does edits one after another.
+///
+/// Guaranteed: the same plant for the same input on every platform and any thread count; an edit that cannot be done
+/// says why and changes nothing; what an edit does not concern stays bit for bit as it was, but for the radii of the
+/// branches below it, which follow the pipe model; new branches keep out of obstacles; a plant that was sound is
+/// sound. Not guaranteed: that branches do not pass through one another. Cost: linear in the plant for each edit,
+/// and what grows.
+///
+/// # Errors
+/// [`Cancelled`].
+///
+/// ```
+/// use base::Run;
+/// use glam::DVec3;
+/// use plant::{AxisKind, Plant};
+/// use shape::{AxisKey, Context, HandEdit, apply};
+/// let mut p = Plant::default();
+/// let trunk = p.add_axis(AxisKind::Branch, None, 1, &[DVec3::ZERO, DVec3::Y, DVec3::Y * 2.0], None);
+/// let fork = p.axis(trunk).node_ids().nth(1);
+/// p.add_axis(AxisKind::Branch, fork, 2, &[DVec3::Y, DVec3::new(1.0, 1.5, 0.0)], None);
+/// let cut = HandEdit::Prune { axis: AxisKey::Path(vec![0, 0]), at: 0.0 };
+/// let again = [cut.clone(), cut];
+/// let applied = apply(&p, &again, &Context::default(), &Run::plain())?;
+/// assert_eq!((applied.plant.axes.len(), applied.outcomes[0].is_done()), (1, true));
+/// assert_eq!(applied.outcomes[1].to_string(), "not done: there is no branch number 0 there: it has 0 (numbered from 0)");
+/// # Ok::<(), base::Cancelled>(())
+/// ```
+pub fn apply(
+    plant: &Plant,
+    edits: &[HandEdit],
+    context: &Context,
+    run: &Run<'_>,
+) -> Result<Applied, Cancelled> {
+    let mut outcomes = Vec::with_capacity(edits.len());
+    if edits.is_empty() {
+        return Ok(Applied { plant: plant.clone(), outcomes });
+    }
+    let bench = Bench { obstacles: &context.obstacles, exponent: context.pipe_exponent, run };
+    let mut draft = Draft::new(plant);
+    for edit in edits {
+        run.cancel.check()?;
+        let mut next = draft.clone();
+        let before = leaf_count(&next);
+        match one(&mut next, edit, &bench) {
+            Ok(mut changed) => {
+                let after = leaf_count(&next);
+                if changed.leaves_added == 0 {
+                    changed.leaves_removed = before.saturating_sub(after);
+                    changed.leaves_added = after.saturating_sub(before);
+                } else {
+                    changed.leaves_removed = (before + changed.leaves_added).saturating_sub(after);
+                }
+                next.branches.iter_mut().for_each(|b| b.fresh = false);
+                draft = next;
+                outcomes.push(Outcome::Done(changed));
+            }
+            Err(Stop::Why(why)) => outcomes.push(Outcome::NotDone(why)),
+            Err(Stop::Cancelled(c)) => return Err(c),
+        }
+    }
+    let plant = draft.into_plant();
+    Ok(Applied { plant, outcomes })
+}
+
+fn leaf_count(draft: &Draft) -> usize {
+    draft.organs.iter().filter(|o| o.alive && o.what.kind == OrganKind::Leaf).count()
+}
+
+fn one(draft: &mut Draft, edit: &HandEdit, bench: &Bench<'_>) -> Result<Changed, Stop> {
+    if !draft.branches.iter().any(|b| b.alive) {
+        return Err(Why::NoBranches.into());
+    }
+    match edit {
+        HandEdit::Rotate { axis, turn } => rotate(draft, axis, *turn),
+        HandEdit::Move { axis, to } => shift(draft, axis, to, bench),
+        HandEdit::Prune { axis, at } => prune(draft, axis, *at, bench),
+        HandEdit::Regrow { axis, seed } => fill::regrow(draft, axis, Seed::new(*seed), bench),
+        HandEdit::SketchBranch { bearer, at, points, twigs, seed } => {
+            let drawn = sketch_branch::Drawn { bearer, at: *at, points, twigs: *twigs };
+            sketch_branch::add(draft, &drawn, Seed::new(*seed), bench)
+        }
+        HandEdit::Brush { bearer, points, radius_m, density, seed } => {
+            let stroke = sketch_branch::Stroke { points, radius_m, density: *density };
+            sketch_branch::brush(draft, bearer.as_ref(), &stroke, Seed::new(*seed), bench)
+        }
+        HandEdit::Silhouette { plane, outline, density, trim, seed } => {
+            let wanted = fill::Outline { plane, outline, density: *density, trim: *trim };
+            fill::silhouette(draft, &wanted, Seed::new(*seed), bench)
+        }
+        HandEdit::LeafDensity { region, keep, seed } => {
+            leaves::density(draft, region, *keep, Seed::new(*seed), bench)
+        }
+    }
+}
+
+fn rotate(draft: &mut Draft, axis: &AxisKey, turn: Turn) -> Result<Changed, Stop> {
+    let (b, by_likeness) = axis.find_in(draft)?;
+    let quat = turn.quat()?;
+    let what = draft.subtree(b);
+    let base = draft.branches[b].points.first().copied().unwrap_or(DVec3::ZERO);
+    draft.carry(&what, base, base, quat);
+    Ok(Changed { moved: count(&what), by_likeness, ..Changed::default() })
+}
+
+fn count(what: &[bool]) -> usize {
+    what.iter().filter(|w| **w).count()
+}
+
+fn shift(draft: &mut Draft, axis: &AxisKey, to: &Destination, bench: &Bench<'_>) -> Result<Changed, Stop> {
+    let (b, by_likeness) = axis.find_in(draft)?;
+    let base = draft.branches[b].points.first().copied().unwrap_or(DVec3::ZERO);
+    let bearer = draft.branches[b].bearer;
+    let (host, share) = match to {
+        Destination::SlideM(by) => {
+            let at = bearer.ok_or(Why::NoBearer)?;
+            let whole = draft.branches[at.branch].length();
+            let by =
+                if by.is_finite() { *by } else { return Err(Why::BadNumber { field: "slide-m" }.into()) };
+            (at.branch, draft.share_of_bearer(b) + if whole > 0.0 { by / whole } else { 0.0 })
+        }
+        Destination::Place { axis, at } => {
+            let share = if at.is_finite() { *at } else { return Err(Why::BadNumber { field: "at" }.into()) };
+            (axis.find_in(draft)?.0, share)
+        }
+        Destination::ByM(by) => {
+            if !by.is_finite() || by.length() > 1e6 {
+                return Err(Why::BadNumber { field: "by-m" }.into());
+            }
+            let what = draft.subtree(b);
+            let Some(at) = bearer else {
+                draft.carry(&what, base, base + *by, DQuat::IDENTITY);
+                return Ok(Changed { moved: count(&what), by_likeness, ..Changed::default() });
+            };
+            (at.branch, nearest_on(&draft.branches[at.branch].points, base + *by).1)
+        }
+    };
+    let what = draft.subtree(b);
+    if what.get(host) == Some(&true) {
+        return Err(Why::OntoItself.into());
+    }
+    let exponent = bench.habit(draft).exponent;
+    let node = draft.node_at(host, share.clamp(0.0, 1.0));
+    // Read after the new node: it may have moved the old one on.
+    let old = draft.branches[b].bearer;
+    let before = old.map_or(DVec3::Y, |at| draft.branches[at.branch].tangent(at.node));
+    let new = At { branch: host, node };
+    let (target, after) = (draft.branches[host].points[node], draft.branches[host].tangent(node));
+    draft.carry(&what, base, target, DQuat::from_rotation_arc(before, after).normalize());
+    draft.branches[b].bearer = Some(new);
+    let radius = draft.branches[b].radii.first().copied().unwrap_or(0.0);
+    let mut pipes = Pipes::default();
+    pipes.book(old, radius, -1.0, exponent);
+    pipes.book(Some(new), radius, 1.0, exponent);
+    let tip = radius.min(draft.branches[host].radii.last().copied().unwrap_or(radius));
+    pipes.settle(draft, exponent, tip);
+    Ok(Changed { moved: count(&what), by_likeness, ..Changed::default() })
+}
+
+fn prune(draft: &mut Draft, axis: &AxisKey, at: f64, bench: &Bench<'_>) -> Result<Changed, Stop> {
+    if !at.is_finite() {
+        return Err(Why::BadNumber { field: "at" }.into());
+    }
+    let (b, by_likeness) = axis.find_in(draft)?;
+    let (bearer, radius) = (draft.branches[b].bearer, draft.branches[b].radii.first().copied());
+    let habit = bench.habit(draft);
+    let removed = draft.cut(b, at);
+    if !draft.branches.iter().any(|b| b.alive) {
+        return Err(Why::NothingLeft.into());
+    }
+    // A stump keeps its wood: what is cut off half-way changes nothing below.
+    if !draft.branches[b].alive {
+        let mut pipes = Pipes::default();
+        pipes.book(bearer, radius.unwrap_or(0.0), -1.0, habit.exponent);
+        pipes.settle(draft, habit.exponent, habit.tip_m);
+    }
+    Ok(Changed { removed, by_likeness, ..Changed::default() })
+}
+
+/// A report that nobody reads: what growth warns of is part of the outcome or of no interest to a hand.
+pub(crate) fn unread() -> Report {
+    Report::default()
+}

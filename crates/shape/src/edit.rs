@@ -1,0 +1,260 @@
+//! Hand edits as plain data: what is saved, sent and done again.
+
+use base::ops::PI;
+use glam::{DQuat, DVec2, DVec3};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::AxisKey;
+use crate::outcome::Why;
+
+/// One edit of a plant by hand. Metres, degrees, +Y up; saved as JSON.
+///
+/// ```
+/// use shape::HandEdit;
+/// let text = r#"{"op": "prune", "axis": {"path": [0, 2]}, "at": 0.5}"#;
+/// let edit: HandEdit = serde_json::from_str(text)?;
+/// assert!(matches!(edit, HandEdit::Prune { at, .. } if at == 0.5));
+/// # Ok::<(), serde_json::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "op", rename_all = "kebab-case", deny_unknown_fields)]
+#[non_exhaustive]
+pub enum HandEdit {
+    /// Turns a branch about its base, with all that it bears.
+    Rotate {
+        /// The branch.
+        axis: AxisKey,
+        /// How.
+        turn: Turn,
+    },
+    /// Moves a branch with all that it bears.
+    Move {
+        /// The branch.
+        axis: AxisKey,
+        /// Where to.
+        to: Destination,
+    },
+    /// Cuts a branch off, with all that it bears beyond the cut.
+    Prune {
+        /// The branch.
+        axis: AxisKey,
+        /// Where along it, as a share of its length; 0 (the default) takes all of it.
+        #[serde(default)]
+        #[schemars(range(min = 0.0, max = 1.0))]
+        at: f64,
+    },
+    /// Cuts a branch off and lets another one grow in the room that it had. All else stays.
+    Regrow {
+        /// The branch.
+        axis: AxisKey,
+        /// Another number, another branch.
+        #[serde(default)]
+        seed: u64,
+    },
+    /// Adds a branch that was drawn in space.
+    SketchBranch {
+        /// The branch that it grows from.
+        bearer: AxisKey,
+        /// Where along it, as a share of its length; without, where the line starts nearest to it.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        at: Option<f64>,
+        /// Its course, metres, at least two points; it is joined to its bearer.
+        #[schemars(with = "Vec<[f64; 3]>", extend("x-unit" = "m"))]
+        points: Vec<DVec3>,
+        /// How many twigs grow on it, relative to the plant's habit, 0 (none) to 4; default 1.
+        #[serde(default = "one")]
+        #[schemars(range(min = 0.0, max = 4.0))]
+        twigs: f64,
+        /// Another number, other twigs.
+        #[serde(default)]
+        seed: u64,
+    },
+    /// Lets branches grow along a stroke of a brush (paper 002).
+    Brush {
+        /// The branch that they grow from; without, the one nearest to the stroke's start.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        bearer: Option<AxisKey>,
+        /// The stroke, metres, at least two points.
+        #[schemars(with = "Vec<[f64; 3]>", extend("x-unit" = "m"))]
+        points: Vec<DVec3>,
+        /// Radius of the brush, metres, above 0: one number, or one for each point.
+        #[schemars(extend("x-unit" = "m"))]
+        radius_m: Vec<f64>,
+        /// How densely it fills, 0.1 to 10: more markers, more branches; default 1.
+        #[serde(default = "one")]
+        #[schemars(range(min = 0.1, max = 10.0))]
+        density: f64,
+        /// Another number, other branches.
+        #[serde(default)]
+        seed: u64,
+    },
+    /// Fills an outline that was drawn in a plane facing the viewer (paper 002).
+    Silhouette {
+        /// The plane.
+        #[serde(default)]
+        plane: ViewPlane,
+        /// The outline in the plane, metres, at least three points; the first is not repeated.
+        #[schemars(with = "Vec<[f64; 2]>", extend("x-unit" = "m"))]
+        outline: Vec<DVec2>,
+        /// How densely it is filled, 0.1 to 10; default 1.
+        #[serde(default = "one")]
+        #[schemars(range(min = 0.1, max = 10.0))]
+        density: f64,
+        /// Cuts off what leaves the outline. Default true.
+        #[serde(default = "yes")]
+        trim: bool,
+        /// Another number, other branches.
+        #[serde(default)]
+        seed: u64,
+    },
+    /// Takes leaves away, or adds some.
+    LeafDensity {
+        /// Where.
+        region: LeafRegion,
+        /// Share of the leaves that stay, 0 to 1; above 1, to 4: as many times more.
+        #[schemars(range(min = 0.0, max = 4.0))]
+        keep: f64,
+        /// Another number, other leaves.
+        #[serde(default)]
+        seed: u64,
+    },
+}
+
+const fn one() -> f64 {
+    1.0
+}
+
+const fn yes() -> bool {
+    true
+}
+
+/// A rotation about an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Turn {
+    /// The axis, of any length above 0; right-handed.
+    #[schemars(with = "[f64; 3]")]
+    pub about: DVec3,
+    /// How far.
+    #[schemars(extend("x-unit" = "deg"))]
+    pub degrees: f64,
+}
+
+impl Turn {
+    /// As a unit quaternion.
+    ///
+    /// # Errors
+    /// [`Why::BadNumber`] for an axis without length or numbers that are not finite.
+    pub fn quat(self) -> Result<DQuat, Why> {
+        let about = self.about.try_normalize().filter(|a| a.is_finite());
+        let about = about.ok_or(Why::BadNumber { field: "turn.about" })?;
+        if !self.degrees.is_finite() || self.degrees.abs() > 1e6 {
+            return Err(Why::BadNumber { field: "turn.degrees" });
+        }
+        let (s, c) = base::ops::sin_cos(0.5 * self.degrees * (PI / 180.0));
+        Ok(DQuat::from_xyzw(about.x * s, about.y * s, about.z * s, c).normalize())
+    }
+
+    /// The turn of a unit quaternion.
+    pub fn of(quat: DQuat) -> Self {
+        let v = DVec3::new(quat.x, quat.y, quat.z);
+        let angle = 2.0 * base::ops::atan2(v.length(), quat.w);
+        Self { about: v.try_normalize().unwrap_or(DVec3::Y), degrees: angle * (180.0 / PI) }
+    }
+}
+
+/// Where a branch is moved to.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+#[non_exhaustive]
+pub enum Destination {
+    /// Along its bearer by so many metres, towards the tip if positive; it keeps its angle to the bearer.
+    SlideM(f64),
+    /// Onto a place of another branch, or of its own bearer; it keeps its angle to what bears it.
+    Place {
+        /// What bears it then.
+        axis: AxisKey,
+        /// Where along it, as a share of its length.
+        at: f64,
+    },
+    /// By a vector, metres: what stands on the ground is set elsewhere, what is borne slides to the place of its bearer
+    /// that is nearest to the new base.
+    ByM(#[schemars(with = "[f64; 3]")] DVec3),
+}
+
+/// A plane in which an outline is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ViewPlane {
+    /// Where (0, 0) of the outline lies, metres.
+    #[schemars(with = "[f64; 3]", extend("x-unit" = "m"))]
+    pub origin: DVec3,
+    /// To the viewer's right.
+    #[schemars(with = "[f64; 3]")]
+    pub right: DVec3,
+    /// Upwards as the viewer sees it; made to stand at a right angle to `right`.
+    #[schemars(with = "[f64; 3]")]
+    pub up: DVec3,
+}
+
+impl Default for ViewPlane {
+    /// The drawing plane: seen from +Z.
+    fn default() -> Self {
+        Self { origin: DVec3::ZERO, right: DVec3::X, up: DVec3::Y }
+    }
+}
+
+impl ViewPlane {
+    /// `right`, `up` and the direction to the viewer, orthonormal.
+    ///
+    /// # Errors
+    /// [`Why::BadNumber`]: directions without length, parallel or not finite, or an origin that is not finite.
+    pub fn axes(&self) -> Result<[DVec3; 3], Why> {
+        let fault = Why::BadNumber { field: "plane" };
+        let usable = self.origin.is_finite() && self.right.is_finite() && self.up.is_finite();
+        let right = self.right.try_normalize().filter(|_| usable).ok_or(fault)?;
+        let towards = right.cross(self.up).try_normalize().ok_or(fault)?;
+        Ok([right, towards.cross(right), towards])
+    }
+}
+
+/// Which leaves are meant.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+#[non_exhaustive]
+pub enum LeafRegion {
+    /// All.
+    All,
+    /// Those of a branch and of all that it bears.
+    Branch(AxisKey),
+    /// Those within a stroke.
+    Stroke {
+        /// The stroke, metres, one point or more.
+        #[schemars(with = "Vec<[f64; 3]>", extend("x-unit" = "m"))]
+        points: Vec<DVec3>,
+        /// Its radius, metres, above 0.
+        #[schemars(extend("x-unit" = "m"))]
+        radius_m: f64,
+    },
+}
+
+/// An edits file: [`EDITS_SCHEMA`] and the edits in the order in which they are done.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct EditsFile {
+    /// Always [`EDITS_SCHEMA`].
+    pub schema: String,
+    /// The edits.
+    pub edits: Vec<HandEdit>,
+}
+
+/// The value of [`EditsFile::schema`].
+pub const EDITS_SCHEMA: &str = "burgeon.edits/1";
+
+impl EditsFile {
+    /// A file of edits.
+    pub fn new(edits: Vec<HandEdit>) -> Self {
+        Self { schema: EDITS_SCHEMA.into(), edits }
+    }
+}

@@ -1,0 +1,261 @@
+//! Edits that fill a given room: a silhouette, or the room of a branch that was cut off. By space colonisation.
+
+use base::{Draw, Seed};
+use glam::{DVec2, DVec3};
+use growth::{ColonizeSpec, JointId, colonize_from};
+
+use crate::apply::{Bench, Stop, unread};
+use crate::draft::{At, Draft};
+use crate::edit::ViewPlane;
+use crate::graft::{Hosts, graft_all};
+use crate::habit::Habit;
+use crate::key::AxisKey;
+use crate::leaves::dress;
+use crate::mask::Mask;
+use crate::outcome::{Changed, Why};
+use crate::pipes::Pipes;
+
+// Children of an edit's seed, by what they are for.
+const REGROW: u64 = 0x7265_6772;
+const FILL: u64 = 0x6669_6c6c;
+
+/// A silhouette that was asked for.
+pub(crate) struct Outline<'a> {
+    pub(crate) plane: &'a ViewPlane,
+    pub(crate) outline: &'a [DVec2],
+    pub(crate) density: f64,
+    pub(crate) trim: bool,
+}
+
+/// Most markers of an edit.
+const MOST_MARKERS: usize = 40_000;
+
+pub(crate) fn regrow(
+    draft: &mut Draft,
+    axis: &AxisKey,
+    seed: Seed,
+    bench: &Bench<'_>,
+) -> Result<Changed, Stop> {
+    let (b, by_likeness) = axis.find_in(draft)?;
+    let habit = bench.habit(draft);
+    let old = draft.branches[b].clone();
+    let at = old.bearer;
+    let inside = draft.subtree(b);
+    // A step suits the branch: a twig of three internodes must still be a twig.
+    let step = habit.internode_m.min(0.12 * old.length().max(1e-9));
+    let mut markers = Vec::new();
+    let own = seed.child(REGROW).child(old.key);
+    for (i, branch) in draft.branches.iter().enumerate() {
+        if !inside[i] || !branch.alive || !branch.is_shoot() || markers.len() > MOST_MARKERS {
+            continue;
+        }
+        let mut stream = own.child(branch.key).stream(Draw::Attractors);
+        let line = geom::resample3(&branch.points, 0.5 * step);
+        // The base of the branch itself is not scattered: it grows where the old one did.
+        for p in line.into_iter().skip(1) {
+            let d = loop_in_ball(&mut stream);
+            markers.push(p + d * (1.4 * step));
+        }
+    }
+    let start = old.points.first().copied().unwrap_or(DVec3::ZERO);
+    let heading = old.points.get(1).map_or(DVec3::Y, |p| (*p - start).normalize_or(DVec3::Y));
+    let first = start + heading * step;
+    markers.retain(|m| m.distance(start) > 1.5 * step);
+    if markers.is_empty() {
+        return Err(Why::TooSmall { what: "branch" }.into());
+    }
+    let radius = old.radii.first().copied().unwrap_or(0.0);
+    let spec = ColonizeSpec {
+        attraction_m: 8.0 * step,
+        kill_m: step,
+        step_m: Some(0.55 * step),
+        inertia: 0.4,
+        max_joints: 400_000,
+        ..ColonizeSpec::default()
+    };
+    let removed = draft.remove(&inside);
+    let mut pipes = Pipes::default();
+    pipes.book(at, radius, -1.0, habit.exponent);
+    pipes.settle(draft, habit.exponent, habit.tip_m);
+    let mut hosts = Hosts::default();
+    let root = hosts.skeleton.push_root(start, 0);
+    let Some(at) = at else {
+        let added = regrow_stem(draft, &old, first, (&markers, &spec), &habit, bench)?;
+        return Ok(Changed { removed, added, by_likeness, ..Changed::default() });
+    };
+    hosts.node.push(at);
+    let mut start_from = hosts.skeleton.clone();
+    start_from.push(first, root, 0);
+    let grown = colonize_from(start_from, &markers, bench.obstacles, &spec, bench.run, &mut unread())?;
+    let made = graft_all(draft, &hosts, &grown.skeleton, &habit, own, bench)?;
+    if let Some(&new) = made.first() {
+        // Key and number stay with the place: other edits may mean this branch.
+        draft.branches[new].key = old.key;
+        draft.exchange(new, b);
+    }
+    dress(draft, &habit, bench)?;
+    Ok(Changed { removed, added: made.len(), by_likeness, ..Changed::default() })
+}
+
+/// A whole stem: a new axis of one internode on the ground, on which the rest is grafted.
+fn regrow_stem(
+    draft: &mut Draft,
+    old: &crate::draft::Branch,
+    first: DVec3,
+    (markers, spec): (&[DVec3], &ColonizeSpec),
+    habit: &Habit,
+    bench: &Bench<'_>,
+) -> Result<usize, Stop> {
+    let start = old.points.first().copied().unwrap_or(DVec3::ZERO);
+    let b = draft.branches.len();
+    draft.branches.push(crate::draft::Branch {
+        points: vec![start, first],
+        radii: vec![habit.tip_m; 2],
+        alive: true,
+        fresh: true,
+        ..old.clone()
+    });
+    let hosts = Hosts::of(draft, |i| i == b);
+    let start = hosts.skeleton.clone();
+    let grown = colonize_from(start, markers, bench.obstacles, spec, bench.run, &mut unread())?;
+    let made = graft_all(draft, &hosts, &grown.skeleton, habit, Seed::new(old.key), bench)?;
+    dress(draft, habit, bench)?;
+    Ok(made.len() + 1)
+}
+
+/// Uniform in the unit ball.
+pub(crate) fn loop_in_ball(stream: &mut base::Stream) -> DVec3 {
+    for _ in 0..64 {
+        let d = DVec3::new(stream.range(-1.0, 1.0), stream.range(-1.0, 1.0), stream.range(-1.0, 1.0));
+        if d.length_squared() <= 1.0 {
+            return d;
+        }
+    }
+    DVec3::ZERO
+}
+
+pub(crate) fn silhouette(
+    draft: &mut Draft,
+    wanted: &Outline<'_>,
+    seed: Seed,
+    bench: &Bench<'_>,
+) -> Result<Changed, Stop> {
+    if !(0.1..=10.0).contains(&wanted.density) {
+        return Err(Why::BadNumber { field: "density" }.into());
+    }
+    let mask = Mask::new(wanted.plane, wanted.outline)?;
+    let habit = bench.habit(draft);
+    let removed = if wanted.trim { trim(draft, &mask, &habit)? } else { 0 };
+    let hosts = Hosts::of(draft, |_| true);
+    if hosts.node.is_empty() {
+        return Err(Why::NoBranches.into());
+    }
+    // The wood that is seen inside says how far from the plane the crown is; a lone trunk below it says so, too.
+    let depths: Vec<f64> =
+        hosts.skeleton.position.iter().filter(|p| mask.covers(**p)).map(|p| mask.depth_of(*p)).collect();
+    let depth = if depths.is_empty() {
+        hosts.skeleton.position.last().map_or(0.0, |p| mask.depth_of(*p))
+    } else {
+        depths.iter().sum::<f64>() / depths.len() as f64
+    };
+    let own = seed.child(FILL);
+    // As many markers to the room as suit the plant's internodes: the new part must not be thinner than the old.
+    let natural = mask.volume() / base::ops::powf(1.2 * habit.internode_m, 3.0);
+    let per_pixel = (natural / mask.pixels() as f64).clamp(1.0, 12.0) * wanted.density;
+    let most = MOST_MARKERS as f64 / mask.pixels() as f64;
+    let markers = mask.markers(per_pixel.min(most), depth, own);
+    let volume = mask.volume();
+    let spacing = base::ops::cbrt(volume / markers.len().max(1) as f64).max(1e-9);
+    let grid = geom::Grid3::new(&hosts.skeleton.position, 4.0 * spacing);
+    let gap = markers
+        .iter()
+        .filter_map(|m| {
+            Some(grid.nearest(*m, f64::INFINITY).map(|i| hosts.skeleton.position[i])?.distance(*m))
+        })
+        .fold(f64::INFINITY, f64::min);
+    if !(gap <= 0.5 * habit.size_m.max(mask.pixel * 48.0)) {
+        return Err(Why::NothingGrew.into());
+    }
+    let spec = ColonizeSpec {
+        attraction_m: (8.0 * spacing).max(1.05 * gap + spacing),
+        kill_m: 1.25 * spacing,
+        step_m: Some(0.6 * spacing),
+        inertia: 0.3,
+        max_joints: 400_000,
+        ..ColonizeSpec::default()
+    };
+    let start = hosts.skeleton.clone();
+    let grown = colonize_from(start, &markers, bench.obstacles, &spec, bench.run, &mut unread())?;
+    let old = hosts.node.len();
+    // A twig may pass the line by less than a step; what goes farther was on its way around.
+    let skeleton = grown.skeleton.keep(|j| j < old || mask.near(grown.skeleton.position[j], spacing));
+    let made = graft_all(draft, &hosts, &skeleton, &habit, own, bench)?;
+    dress(draft, &habit, bench)?;
+    let dropped = if wanted.trim { trim_leaves(draft, &mask, &habit) } else { 0 };
+    if made.is_empty() && removed + dropped == 0 {
+        return Err(Why::NothingGrew.into());
+    }
+    Ok(Changed { removed, added: made.len(), ..Changed::default() })
+}
+
+/// Cuts branches where they leave the outline; those of the trunk that never come into it go as well.
+fn trim(draft: &mut Draft, mask: &Mask, habit: &Habit) -> Result<usize, Stop> {
+    let mut removed = 0;
+    let mut pipes = Pipes::default();
+    // Highest order last: what hangs on a branch that is cut is gone with it.
+    for b in draft.order() {
+        let branch = &draft.branches[b];
+        if !branch.alive || !branch.is_shoot() || branch.points.len() < 2 {
+            continue;
+        }
+        let fine = geom::resample3(&branch.points, (0.5 * mask.pixel).max(branch.length() / 2000.0));
+        let inside: Vec<bool> = fine.iter().map(|p| mask.covers(*p)).collect();
+        let Some(first) = inside.iter().position(|i| *i) else {
+            // Its own branches may lie inside; a stem stands below the crown.
+            let bears = draft.subtree(b);
+            let reaches = draft
+                .branches
+                .iter()
+                .zip(&bears)
+                .any(|(c, s)| *s && c.alive && c.points.iter().any(|p| mask.covers(*p)));
+            if branch.bearer.is_some() && !reaches {
+                let (at, radius) = (branch.bearer, branch.radii[0]);
+                removed += draft.remove(&bears);
+                pipes.book(at, radius, -1.0, habit.exponent);
+            }
+            continue;
+        };
+        // The last time it leaves counts: a bend that comes back is part of the crown.
+        let last = inside.iter().rposition(|i| *i).unwrap_or(first);
+        if last + 1 < fine.len() {
+            removed += draft.cut(b, (last as f64 + 0.5) / (fine.len() - 1) as f64);
+            let Some(&radius) = draft.branches[b].radii.last().filter(|_| draft.branches[b].alive) else {
+                continue;
+            };
+            // No stumps: the crown is meant to have grown like this, so the cut end becomes a tip.
+            let at = At { branch: b, node: draft.branches[b].radii.len() - 1 };
+            pipes.book(Some(at), radius, -1.0, habit.exponent);
+            pipes.book(Some(at), habit.tip_m.min(radius), 1.0, habit.exponent);
+        }
+    }
+    pipes.settle(draft, habit.exponent, habit.tip_m);
+    Ok(removed)
+}
+
+/// Leaves whose root is outside go.
+fn trim_leaves(draft: &mut Draft, mask: &Mask, habit: &Habit) -> usize {
+    let reach = habit.leaves.as_ref().map_or(0.0, |l| 0.5 * l.spec.length_m);
+    let mut dropped = 0;
+    for o in draft.organs.iter_mut().filter(|o| o.alive && o.what.kind == plant::OrganKind::Leaf) {
+        if !mask.near(o.what.frame.origin, reach) {
+            o.alive = false;
+            dropped += 1;
+        }
+    }
+    dropped
+}
+
+/// The joint that a node became.
+pub(crate) fn joint_of(hosts: &Hosts, at: At) -> Option<JointId> {
+    hosts.node.iter().position(|n| *n == at).map(JointId::new)
+}

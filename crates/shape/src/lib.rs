@@ -1,0 +1,40 @@
+//! Hand edits on any plant: rotate, move, prune, regrow, sketch, brush, fill a silhouette, thin leaves (paper 002).
+//!
+//! `Plant + [HandEdit] -> Plant + [Outcome]`
+//!
+//! | module | owns |
+//! |---|---|
+//! | `edit` | the edits as plain data |
+//! | `key` | names of branches that survive a change |
+//! | `apply` | one edit after another; rotate, move, prune |
+//! | `draft` | the plant in pieces while it is edited |
+//! | `habit` | what new wood must be like: learnt from the plant |
+//! | `pipes` | radii below what changed |
+//! | `graft` | what growth made, onto the plant |
+//! | `sketch_branch`, `fill`, `leaves` | drawn and brushed branches; regrowth and silhouettes; leaves |
+//! | `mask` | an outline as markers in space |
+//! | `pick` | which branch a ray means |
+//! | `tool` | gestures of a hand as state machines |
+//! | `outcome` | done, or why not, in plain words |
+
+mod apply;
+mod draft;
+mod edit;
+mod fill;
+mod graft;
+mod habit;
+mod key;
+mod leaves;
+mod mask;
+mod outcome;
+mod pick;
+mod pipes;
+mod sketch_branch;
+mod tool;
+
+pub use apply::{Applied, Context, apply};
+pub use edit::{Destination, EDITS_SCHEMA, EditsFile, HandEdit, LeafRegion, Turn, ViewPlane};
+pub use key::{AxisKey, Found, KindWord, Mark};
+pub use outcome::{Changed, Outcome, Why};
+pub use pick::{Pick, Ray, Reach, pick};
+pub use tool::{Input, Pointer, Response, Tool, ToolKind};

@@ -1,0 +1,113 @@
+//! Which branch does a pointer mean?
+//!
+//! `ray + plant -> the nearest axis and the place on it`
+
+use glam::DVec3;
+use plant::{AxisId, AxisKind, Plant};
+
+/// A line of sight: from an eye through a pixel, or along a controller.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Where it starts, metres.
+    pub origin: DVec3,
+    /// Where it goes; any length above 0.
+    pub direction: DVec3,
+}
+
+impl Ray {
+    /// Where it meets a plane; `None` if it does not, or behind its start, or much too far away (a glancing ray).
+    pub fn meets(&self, through: DVec3, normal: DVec3) -> Option<DVec3> {
+        let d = self.direction.try_normalize()?;
+        let slope = d.dot(normal.try_normalize()?);
+        let t = (through - self.origin).dot(normal.normalize()) / slope;
+        // Seen under less than 3 degrees a plane is an edge: the hand's tremble would leap by metres.
+        (slope.abs() > 0.05 && t.is_finite() && t >= 0.0).then(|| self.origin + d * t)
+    }
+}
+
+/// How far beside a branch a pointer may be: `metres + per_metre * distance`, so that it is the same on the screen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reach {
+    /// At the ray's start, metres, 0 or more.
+    pub metres: f64,
+    /// More for every metre of distance, 0 or more; 0.02 is about 1 degree to either side.
+    pub per_metre: f64,
+}
+
+impl Default for Reach {
+    fn default() -> Self {
+        Self { metres: 0.005, per_metre: 0.02 }
+    }
+}
+
+/// A branch under a pointer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pick {
+    /// The axis.
+    pub axis: AxisId,
+    /// The place on it, as a share of its length.
+    pub at: f64,
+    /// That place, metres.
+    pub point: DVec3,
+    /// How far along the ray, metres.
+    pub distance_m: f64,
+}
+
+/// The shoot that a ray means: of those it hits the nearest, else the one that it passes at the smallest angle.
+///
+/// Stalks of leaves and roots are not picked. `None` if none is within `reach`. Cost: linear in nodes.
+///
+/// ```
+/// use glam::DVec3;
+/// use plant::{AxisKind, Plant};
+/// use shape::{Ray, Reach, pick};
+/// let mut p = Plant::default();
+/// let trunk = p.add_axis(AxisKind::Branch, None, 1, &[DVec3::ZERO, DVec3::Y * 2.0], None);
+/// let ray = Ray { origin: DVec3::new(0.01, 0.5, 5.0), direction: DVec3::NEG_Z };
+/// let got = pick(&p, &ray, Reach::default()).map(|k| (k.axis, k.at));
+/// assert_eq!(got, Some((trunk, 0.25)));
+/// ```
+pub fn pick(plant: &Plant, ray: &Ray, reach: Reach) -> Option<Pick> {
+    let d = ray.direction.try_normalize().filter(|_| ray.origin.is_finite())?;
+    let mut best: Option<(f64, Pick)> = None;
+    for (i, axis) in plant.axes.iter().enumerate() {
+        if matches!(axis.kind, AxisKind::Petiole | AxisKind::Root) {
+            continue;
+        }
+        let id = AxisId::new(i);
+        let (points, radii) = (plant.axis_points(id), plant.axis_radii(id));
+        let whole = geom::polyline_length3(points);
+        let mut sum = 0.0;
+        for (w, r) in points.windows(2).zip(radii) {
+            let length = w[0].distance(w[1]);
+            let (s, t) = nearest(ray.origin, d, w[0], w[1]);
+            let (on, distance_m) = (w[0].lerp(w[1], s), t);
+            let gap = (on.distance(ray.origin + d * t) - r).max(0.0);
+            let allowed = reach.metres.max(0.0) + reach.per_metre.max(0.0) * t;
+            let score = gap / allowed.max(1e-12);
+            let nearer = best
+                .as_ref()
+                .is_none_or(|(b, k)| score < b - 1e-12 || (score <= b + 1e-12 && distance_m < k.distance_m));
+            if score <= 1.0 && nearer {
+                let at = if whole > 0.0 { (sum + s * length) / whole } else { 0.0 };
+                best = Some((score, Pick { axis: id, at, point: on, distance_m }));
+            }
+            sum += length;
+        }
+    }
+    best.map(|(_, pick)| pick)
+}
+
+/// Where a segment and a ray are nearest: the share along the segment and the distance along the ray.
+pub(crate) fn nearest(origin: DVec3, d: DVec3, a: DVec3, b: DVec3) -> (f64, f64) {
+    let (u, w) = (b - a, a - origin);
+    let (uu, ud, uw, dw) = (u.length_squared(), u.dot(d), u.dot(w), d.dot(w));
+    let bottom = uu - ud * ud;
+    let mut s = if bottom > 1e-12 * uu.max(1e-300) { ((ud * dw - uw) / bottom).clamp(0.0, 1.0) } else { 0.0 };
+    let mut t = ud * s + dw;
+    if t < 0.0 {
+        t = 0.0;
+        s = if uu > 0.0 { (-uw / uu).clamp(0.0, 1.0) } else { 0.0 };
+    }
+    (s, t)
+}

@@ -1,0 +1,79 @@
+//! Radii after a cut or a graft: the pipe model, applied to what changed and to nothing else.
+//!
+//! `r^t = sum of r_i^t` (paper 000, Eq 6; paper 001, Eq 4)
+
+use base::ops;
+
+use crate::draft::{At, Draft};
+
+/// Pipes (`r^t`) that came to a node or went from it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Pipes {
+    changes: Vec<(At, f64)>,
+}
+
+impl Pipes {
+    /// A branch of this base radius came to (`sign` 1) or left (`sign` -1) a node.
+    pub(crate) fn book(&mut self, at: Option<At>, base_radius_m: f64, sign: f64, exponent: f64) {
+        if let Some(at) = at {
+            self.changes.push((at, sign * ops::powf(base_radius_m.max(0.0), exponent)));
+        }
+    }
+
+    /// Sets the radii from there down to the ground.
+    ///
+    /// Guaranteed: finite; nothing changes that lies elsewhere; radii that fell towards the tip still do; no node
+    /// becomes thinner than the thickest branch that it bears, nor than a tip, unless it was.
+    pub(crate) fn settle(self, draft: &mut Draft, exponent: f64, tip_m: f64) {
+        if self.changes.is_empty() {
+            return;
+        }
+        let mut delta: Vec<Vec<(usize, f64)>> = vec![Vec::new(); draft.branches.len()];
+        for (at, pipes) in self.changes {
+            if pipes.is_finite() && draft.branches[at.branch].alive {
+                delta[at.branch].push((at.node, pipes));
+            }
+        }
+        // The thickest branch at each node: no fork may be thinner than what it bears.
+        let children = draft.children();
+        for b in draft.order().into_iter().rev() {
+            let mut here = core::mem::take(&mut delta[b]);
+            if here.is_empty() {
+                continue;
+            }
+            here.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+            let mut thickest = vec![0.0_f64; draft.branches[b].radii.len()];
+            for &c in &children[b] {
+                let child = &draft.branches[c];
+                if let (Some(at), Some(&r)) = (child.bearer, child.radii.first())
+                    && let Some(slot) = thickest.get_mut(at.node)
+                {
+                    *slot = slot.max(r);
+                }
+            }
+            let branch = &mut draft.branches[b];
+            let (before, bearer) = (branch.radii[0], branch.bearer);
+            let mut sum = 0.0;
+            // Above the highest change not a bit may move: a power and its root are not the identity.
+            let highest = here.last().map_or(0, |(n, _)| *n).min(branch.radii.len().saturating_sub(1));
+            for node in (0..=highest).rev() {
+                while here.last().is_some_and(|(n, _)| *n >= node) {
+                    sum += here.pop().map_or(0.0, |(_, p)| p);
+                }
+                let old = branch.radii[node];
+                let wanted = ops::powf((ops::powf(old, exponent) + sum).max(0.0), 1.0 / exponent);
+                let floor = thickest[node].max(old.min(tip_m));
+                // What was a step in the radii on purpose (a swollen node) stays one.
+                let above = branch.radii.get(node + 1).copied().unwrap_or(0.0);
+                branch.radii[node] = wanted.max(floor).max(above.min(old.max(wanted)));
+            }
+            if branch.radii.iter().any(|r| !r.is_finite()) {
+                branch.radii.iter_mut().for_each(|r| *r = if r.is_finite() { *r } else { tip_m });
+            }
+            let change = ops::powf(branch.radii[0], exponent) - ops::powf(before, exponent);
+            if let Some(at) = bearer.filter(|_| change != 0.0 && change.is_finite()) {
+                delta[at.branch].push((at.node, change));
+            }
+        }
+    }
+}

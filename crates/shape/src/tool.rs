@@ -1,0 +1,469 @@
+//! Tools as state machines: what a hand does, as data, becomes edits. Mouse, pen and controllers are adapters.
+//!
+//! `Input (rays) -> Tool -> Response { preview, commit }`
+
+use base::ops::PI;
+use glam::{DVec2, DVec3};
+use plant::{AxisId, Plant};
+
+use crate::edit::{Destination, HandEdit, LeafRegion, Turn, ViewPlane};
+use crate::key::AxisKey;
+use crate::pick::{Pick, Ray, Reach, nearest, pick};
+
+/// What a tool does, with its settings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum ToolKind {
+    /// Drag a branch around its base, in the plane that faces the viewer.
+    Rotate,
+    /// Drag a branch along its bearer; what stands on the ground, over the ground.
+    Move,
+    /// Click a branch: it is cut where it was clicked, or all of it.
+    Prune {
+        /// All of it.
+        whole: bool,
+    },
+    /// Click a branch: another one grows in its place.
+    Regrow,
+    /// Draw a branch from another one.
+    Sketch {
+        /// Twigs on it, 0 to 4.
+        twigs: f64,
+        /// How far the drawing plane leans back from the viewer, radians; 0 faces the viewer.
+        tilt: f64,
+    },
+    /// Brush, and branches grow along the stroke.
+    Brush {
+        /// Radius at full pressure, metres, above 0.
+        radius_m: f64,
+        /// 0.1 to 10.
+        density: f64,
+    },
+    /// Draw an outline around what is to be filled.
+    Silhouette {
+        /// 0.1 to 10.
+        density: f64,
+        /// Cut off what leaves it.
+        trim: bool,
+    },
+    /// Brush over leaves.
+    Leaves {
+        /// Radius, metres, above 0.
+        radius_m: f64,
+        /// Share that stays, 0 to 4.
+        keep: f64,
+    },
+}
+
+/// A pointing device at one moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pointer {
+    /// Where it points.
+    pub ray: Ray,
+    /// Where the viewer looks.
+    pub forward: DVec3,
+    /// The viewer's upwards.
+    pub up: DVec3,
+    /// 0 to 1; 1 for a mouse.
+    pub pressure: f64,
+    /// The place of a tracked controller's tip: it draws there, not on a plane.
+    pub tip: Option<DVec3>,
+}
+
+/// What a hand did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Input {
+    /// A button, pen or trigger went down.
+    Down(Pointer),
+    /// The pointer moved.
+    Move(Pointer),
+    /// It was let go: the gesture is an edit.
+    Up(Pointer),
+    /// Escape, a second finger, the device was lost: no edit.
+    Cancel,
+    /// A thumbstick, touchpad or wheel turned by so many radians: an exact rotation of the branch that is held, or a
+    /// lean of the drawing plane about the pointer (away from the viewer if positive).
+    Twist(f64),
+    /// The brush changed while it is down: radius in metres, density.
+    Brush(f64, f64),
+}
+
+/// What a tool says to an input.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Response {
+    /// The edit that letting go would make: to be shown, not saved.
+    pub preview: Option<HandEdit>,
+    /// The edit of a finished gesture.
+    pub commit: Option<HandEdit>,
+    /// What is under the pointer or held.
+    pub picked: Option<Pick>,
+}
+
+/// A tool in a hand. One gesture, from down to up, makes one edit or none.
+///
+/// ```
+/// use glam::DVec3;
+/// use plant::{AxisKind, Plant};
+/// use shape::{HandEdit, Input, Pointer, Ray, Tool, ToolKind};
+/// let mut p = Plant::default();
+/// p.add_axis(AxisKind::Branch, None, 1, &[DVec3::ZERO, DVec3::Y * 2.0], None);
+/// let at = |y: f64| Pointer {
+///     ray: Ray { origin: DVec3::new(0.0, y, 5.0), direction: DVec3::NEG_Z },
+///     forward: DVec3::NEG_Z, up: DVec3::Y, pressure: 1.0, tip: None,
+/// };
+/// let mut shears = Tool::new(ToolKind::Prune { whole: false });
+/// shears.handle(&p, &Input::Down(at(1.5)));
+/// let cut = shears.handle(&p, &Input::Up(at(1.5))).commit;
+/// assert!(matches!(cut, Some(HandEdit::Prune { at, .. }) if (at - 0.75).abs() < 1e-9));
+/// ```
+#[derive(Clone, Debug)]
+pub struct Tool {
+    kind: ToolKind,
+    reach: Reach,
+    /// The seed of the next edit that lets something grow.
+    seed: u64,
+    state: State,
+}
+
+#[derive(Clone, Debug)]
+enum State {
+    Idle,
+    Turning {
+        pick: Pick,
+        key: AxisKey,
+        pivot: DVec3,
+        about: DVec3,
+        last: Option<DVec3>,
+        angle: f64,
+    },
+    Sliding {
+        pick: Pick,
+        key: AxisKey,
+        bearer: Option<(AxisKey, AxisId)>,
+        grabbed: f64,
+        start: DVec3,
+        to: Option<Destination>,
+    },
+    Clicking {
+        pick: Pick,
+        key: AxisKey,
+    },
+    Stroking(Box<Stroking>),
+}
+
+#[derive(Clone, Debug)]
+struct Stroking {
+    pick: Option<Pick>,
+    bearer: Option<AxisKey>,
+    through: DVec3,
+    right: DVec3,
+    normal: DVec3,
+    spacing: f64,
+    points: Vec<DVec3>,
+    radius_m: Vec<f64>,
+}
+
+/// A drag of less than this many degrees is a slip of the hand, not a rotation.
+const LEAST_TURN_DEG: f64 = 0.2;
+/// Nearer to the pivot than this share of the branch, a drag says nothing about an angle (paper 002's dead zone).
+const DEAD: f64 = 0.05;
+
+impl Tool {
+    /// A tool that holds nothing.
+    pub fn new(kind: ToolKind) -> Self {
+        Self { kind, reach: Reach::default(), seed: 1, state: State::Idle }
+    }
+
+    /// With another tolerance, and the seed of the next growth (each edit takes the next one).
+    #[must_use]
+    pub const fn with(mut self, reach: Reach, seed: u64) -> Self {
+        self.reach = reach;
+        self.seed = seed;
+        self
+    }
+
+    /// Its kind, with the settings as they are now.
+    pub const fn kind(&self) -> ToolKind {
+        self.kind
+    }
+
+    /// Whether a gesture is going on.
+    pub const fn is_busy(&self) -> bool {
+        !matches!(self.state, State::Idle)
+    }
+
+    /// Takes one input. `plant`: as it was when the gesture began, without its preview.
+    ///
+    /// Guaranteed: no input panics; a commit only on [`Input::Up`]; after `Up` and `Cancel` it holds nothing. Cost:
+    /// linear in the plant on `Down`, linear in the bearer or the stroke on `Move`.
+    pub fn handle(&mut self, plant: &Plant, input: &Input) -> Response {
+        match input {
+            Input::Down(p) => self.down(plant, p),
+            Input::Move(p) => self.moved(plant, p),
+            Input::Up(p) => {
+                let last = self.moved(plant, p);
+                let held = self.is_busy();
+                self.state = State::Idle;
+                let commit = last.preview.filter(|_| held);
+                self.seed = self.seed.wrapping_add(u64::from(commit.is_some()));
+                Response { commit, preview: None, picked: last.picked }
+            }
+            Input::Cancel => {
+                self.state = State::Idle;
+                Response::default()
+            }
+            Input::Twist(by) => self.twist(*by),
+            Input::Brush(radius, wanted) => {
+                if let ToolKind::Brush { radius_m, density } = &mut self.kind {
+                    *radius_m = if *radius > 0.0 && radius.is_finite() { *radius } else { *radius_m };
+                    *density = if wanted.is_finite() { wanted.clamp(0.1, 10.0) } else { *density };
+                }
+                self.preview()
+            }
+        }
+    }
+
+    fn down(&mut self, plant: &Plant, p: &Pointer) -> Response {
+        let ray = &p.ray;
+        let picked = pick(plant, ray, self.reach);
+        let named = picked.and_then(|k| Some((k, AxisKey::of(plant, k.axis)?)));
+        self.state = match (self.kind, named) {
+            (ToolKind::Rotate, Some((pick, key))) => {
+                let pivot = plant.axis_points(pick.axis)[0];
+                let about = -p.forward.normalize_or(DVec3::NEG_Z);
+                let last = hand(p, pivot, about);
+                State::Turning { pick, key, pivot, about, last, angle: 0.0 }
+            }
+            (ToolKind::Move, Some((pick, key))) => {
+                let on = plant.axis(pick.axis).bearer.map(|n| plant.nodes.axis[n.index()]);
+                let bearer = on.and_then(|axis| Some((AxisKey::of(plant, axis)?, axis)));
+                let start = plant.axis_points(pick.axis)[0];
+                let share = on.map_or(0.0, |axis| share_of(plant, axis, start));
+                let grabbed = on.map_or(0.0, |axis| share - share_under(plant, axis, p));
+                let start = if on.is_some() { start } else { on_ground(p, start).unwrap_or(start) };
+                State::Sliding { pick, key, bearer, grabbed, start, to: None }
+            }
+            (ToolKind::Prune { .. } | ToolKind::Regrow, Some((pick, key))) => State::Clicking { pick, key },
+            (ToolKind::Rotate | ToolKind::Move | ToolKind::Prune { .. } | ToolKind::Regrow, None) => {
+                State::Idle
+            }
+            (ToolKind::Sketch { .. }, None) => State::Idle,
+            (_, named) => match self.stroke(plant, p, named) {
+                Some(stroke) => State::Stroking(Box::new(stroke)),
+                None => State::Idle,
+            },
+        };
+        Response { picked, ..self.preview() }
+    }
+
+    /// The plane of a stroke: through what was picked, else through the plant's middle.
+    fn stroke(&self, plant: &Plant, p: &Pointer, named: Option<(Pick, AxisKey)>) -> Option<Stroking> {
+        let corners = plant.nodes.position.iter();
+        let (lo, hi) =
+            corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), q| (lo.min(*q), hi.max(*q)));
+        let size = (hi - lo).length();
+        if !size.is_finite() {
+            return None;
+        }
+        let normal = -p.forward.try_normalize()?;
+        let right = p.forward.cross(p.up).try_normalize().unwrap_or_else(|| normal.any_orthonormal_vector());
+        let tilt = if let ToolKind::Sketch { tilt, .. } = self.kind { tilt } else { 0.0 };
+        let lasso = matches!(self.kind, ToolKind::Silhouette { .. });
+        let through = named.as_ref().filter(|_| !lasso).map_or((lo + hi) * 0.5, |(k, _)| k.point);
+        let (pick, bearer) = named.unzip();
+        let mut stroke = Stroking {
+            pick,
+            bearer,
+            through,
+            right,
+            normal: leaned(normal, right, tilt),
+            spacing: 0.004 * size.max(1e-9),
+            points: Vec::new(),
+            radius_m: Vec::new(),
+        };
+        stroke.add(p, self.radius(p.pressure));
+        Some(stroke)
+    }
+
+    fn radius(&self, pressure: f64) -> f64 {
+        match self.kind {
+            ToolKind::Brush { radius_m, .. } | ToolKind::Leaves { radius_m, .. } => {
+                let pressure = if pressure.is_finite() { pressure.clamp(0.0, 1.0) } else { 1.0 };
+                radius_m * (0.4 + 0.6 * pressure)
+            }
+            _ => 0.0,
+        }
+    }
+
+    fn moved(&mut self, plant: &Plant, p: &Pointer) -> Response {
+        let radius = self.radius(p.pressure);
+        match &mut self.state {
+            State::Idle => {
+                return Response { picked: pick(plant, &p.ray, self.reach), ..Response::default() };
+            }
+            State::Turning { pick, pivot, about, last, angle, .. } => {
+                let length = geom::polyline_length3(plant.axis_points(pick.axis));
+                let now = hand(p, *pivot, *about).filter(|b| b.length() > DEAD * length);
+                if let (Some(a), Some(b)) = (*last, now) {
+                    // angle = atan2(a x b, a . b) about the view direction (paper 002, 3.5), added up.
+                    *angle += base::ops::atan2(a.cross(b).dot(*about), a.dot(b));
+                }
+                *last = now.or(*last);
+            }
+            State::Sliding { bearer, grabbed, start, to, .. } => {
+                *to = match bearer {
+                    Some((key, axis)) => {
+                        let at = (share_under(plant, *axis, p) + *grabbed).clamp(0.0, 1.0);
+                        Some(Destination::Place { axis: key.clone(), at })
+                    }
+                    None => on_ground(p, *start).map(|q| Destination::ByM((q - *start).with_y(0.0))),
+                };
+            }
+            State::Clicking { .. } => {}
+            State::Stroking(stroke) => stroke.add(p, radius),
+        }
+        self.preview()
+    }
+
+    fn twist(&mut self, by: f64) -> Response {
+        if !by.is_finite() {
+            return Response::default();
+        }
+        match &mut self.state {
+            State::Turning { angle, .. } => *angle += by,
+            State::Stroking(stroke) => {
+                // The plane turns about the stroke's last point: what is drawn already stays where it is.
+                if let Some(&last) = stroke.points.last() {
+                    stroke.through = last;
+                    stroke.normal = leaned(stroke.normal, stroke.right, by);
+                }
+            }
+            _ => {}
+        }
+        if let (State::Idle, ToolKind::Sketch { tilt, .. }) = (&self.state, &mut self.kind) {
+            *tilt = (*tilt + by).clamp(-1.4, 1.4);
+        }
+        self.edit().map_or_else(Response::default, |e| Response { preview: Some(e), ..Response::default() })
+    }
+
+    fn preview(&self) -> Response {
+        let picked = match &self.state {
+            State::Idle => None,
+            State::Turning { pick, .. } | State::Sliding { pick, .. } | State::Clicking { pick, .. } => {
+                Some(*pick)
+            }
+            State::Stroking(s) => s.pick,
+        };
+        Response { preview: self.edit(), commit: None, picked }
+    }
+
+    /// The edit that the gesture makes so far.
+    fn edit(&self) -> Option<HandEdit> {
+        let seed = self.seed;
+        match &self.state {
+            State::Idle => None,
+            State::Turning { key, about, angle, .. } => {
+                let turn = Turn { about: *about, degrees: angle * (180.0 / PI) };
+                (turn.degrees.abs() >= LEAST_TURN_DEG).then(|| HandEdit::Rotate { axis: key.clone(), turn })
+            }
+            State::Sliding { key, to, .. } => Some(HandEdit::Move { axis: key.clone(), to: to.clone()? }),
+            State::Clicking { pick, key } => Some(match self.kind {
+                ToolKind::Regrow => HandEdit::Regrow { axis: key.clone(), seed },
+                ToolKind::Prune { whole: false } => HandEdit::Prune { axis: key.clone(), at: pick.at },
+                _ => HandEdit::Prune { axis: key.clone(), at: 0.0 },
+            }),
+            State::Stroking(s) => self.stroke_edit(s),
+        }
+    }
+
+    fn stroke_edit(&self, s: &Stroking) -> Option<HandEdit> {
+        let (points, seed) = (s.points.clone(), self.seed);
+        let least = match self.kind {
+            ToolKind::Silhouette { .. } => 3,
+            ToolKind::Leaves { .. } => 1,
+            _ => 2,
+        };
+        if points.len() < least {
+            return None;
+        }
+        Some(match self.kind {
+            ToolKind::Sketch { twigs, .. } => HandEdit::SketchBranch {
+                bearer: s.bearer.clone()?,
+                at: s.pick.map(|k| k.at),
+                points,
+                twigs,
+                seed,
+            },
+            ToolKind::Brush { density, .. } => {
+                let (bearer, radius_m) = (s.bearer.clone(), s.radius_m.clone());
+                HandEdit::Brush { bearer, points, radius_m, density, seed }
+            }
+            ToolKind::Silhouette { density, trim } => {
+                let plane = ViewPlane { origin: s.through, right: s.right, up: s.normal.cross(s.right) };
+                let flat = |q: &DVec3| {
+                    DVec2::new((*q - plane.origin).dot(plane.right), (*q - plane.origin).dot(plane.up))
+                };
+                let outline = points.iter().map(flat).collect();
+                HandEdit::Silhouette { plane, outline, density, trim, seed }
+            }
+            ToolKind::Leaves { keep, .. } => {
+                let radius_m = s.radius_m.iter().copied().fold(0.0, f64::max);
+                HandEdit::LeafDensity { region: LeafRegion::Stroke { points, radius_m }, keep, seed }
+            }
+            _ => return None,
+        })
+    }
+}
+
+impl Stroking {
+    fn add(&mut self, p: &Pointer, radius_m: f64) {
+        let at = p.tip.filter(|t| t.is_finite()).or_else(|| p.ray.meets(self.through, self.normal));
+        let Some(at) = at.filter(|a| a.is_finite()) else { return };
+        if self.points.last().is_none_or(|last| last.distance(at) >= self.spacing) {
+            self.points.push(at);
+            self.radius_m.push(radius_m);
+        }
+    }
+}
+
+/// The pointer in the plane of a rotation, from its pivot.
+fn hand(p: &Pointer, pivot: DVec3, about: DVec3) -> Option<DVec3> {
+    let at = p.tip.or_else(|| p.ray.meets(pivot, about))?;
+    let flat = (at - pivot) - about * (at - pivot).dot(about);
+    (flat.is_finite() && flat.length() > 0.0).then_some(flat)
+}
+
+fn on_ground(p: &Pointer, start: DVec3) -> Option<DVec3> {
+    p.tip.or_else(|| p.ray.meets(start, DVec3::Y))
+}
+
+fn leaned(normal: DVec3, right: DVec3, by: f64) -> DVec3 {
+    let (s, c) = base::ops::sin_cos(by);
+    (normal * c - right.cross(normal) * s).normalize_or(normal)
+}
+
+/// The share of an axis at which a point of it lies.
+fn share_of(plant: &Plant, axis: AxisId, at: DVec3) -> f64 {
+    crate::key::nearest_on(plant.axis_points(axis), at).1
+}
+
+/// The share of an axis that is nearest to a pointer.
+fn share_under(plant: &Plant, axis: AxisId, p: &Pointer) -> f64 {
+    let points = plant.axis_points(axis);
+    if let Some(tip) = p.tip {
+        return share_of(plant, axis, tip);
+    }
+    let Some(d) = p.ray.direction.try_normalize() else { return 0.0 };
+    let (mut best, mut at, mut sum) = (f64::INFINITY, 0.0, 0.0);
+    for w in points.windows(2) {
+        let (s, t) = nearest(p.ray.origin, d, w[0], w[1]);
+        let gap = w[0].lerp(w[1], s).distance(p.ray.origin + d * t);
+        let length = w[0].distance(w[1]);
+        if gap < best {
+            (best, at) = (gap, sum + s * length);
+        }
+        sum += length;
+    }
+    if sum > 0.0 { at / sum } else { 0.0 }
+}

@@ -1,0 +1,377 @@
+//! Every edit on plants of every maker: sound, deterministic, honest.
+
+use base::{Executor, NoClock, Report, Run, Seed};
+use glam::{DVec2, DVec3};
+use growth::{CompetitionSpec, GuidedSpec, LeafSpec, Method, OAK_RULES, SelfOrganizingSpec, TreeSpec, grow};
+use plant::{AxisId, OrganKind, Plant};
+use proptest::prelude::*;
+use shape::{
+    Applied, AxisKey, Context, Destination, HandEdit, LeafRegion, Outcome, Turn, ViewPlane, Why, apply,
+};
+
+fn method(kind: usize) -> Method {
+    match kind {
+        0 => Method::Competition(CompetitionSpec { points: 260, ..CompetitionSpec::default() }),
+        1 => Method::SelfOrganizing(SelfOrganizingSpec { years: 11, ..SelfOrganizingSpec::default() }),
+        2 => Method::Guided(GuidedSpec { rounds: 7, ..GuidedSpec::default() }),
+        _ => Method::Lsystem { rules: OAK_RULES.into(), most_modules: 200_000 },
+    }
+}
+
+fn tree(kind: usize, seed: u64) -> Plant {
+    let leaves = Some(LeafSpec { spacing_m: 0.15, ..LeafSpec::default() });
+    let age = (kind == 3).then_some(6);
+    let spec = TreeSpec { method: method(kind), leaves, age, ..TreeSpec::default() };
+    grow(&spec, None, Seed::new(seed), &Run::plain(), &mut Report::default()).expect("sound").plant
+}
+
+/// A tree and a flower from pens.
+fn drawn(kind: usize, seed: u64) -> Plant {
+    let line = |points: &[(f64, f64)]| -> Vec<DVec2> {
+        let points: Vec<DVec2> = points.iter().map(|&(x, y)| DVec2::new(x, y)).collect();
+        geom::resample(&points, 2.0)
+    };
+    let strokes = if kind == 0 {
+        vec![
+            line(&[(0.0, 0.0), (2.0, 100.0), (-3.0, 200.0)]),
+            line(&[(1.0, 60.0), (50.0, 120.0), (70.0, 180.0)]),
+            line(&[(0.0, 90.0), (-50.0, 130.0), (-80.0, 190.0)]),
+            line(&[(50.0, 120.0), (90.0, 130.0)]),
+        ]
+    } else {
+        let ring = |k: f64| -> Vec<DVec2> {
+            let (s, c) = base::ops::sin_cos(k * base::ops::TAU / 6.0);
+            let (out, side) = (DVec2::new(c, s), DVec2::new(-s, c));
+            let centre = DVec2::new(0.0, 150.0);
+            let at = |u: f64, v: f64| centre + out * u + side * v;
+            geom::resample(&[at(2.0, 0.0), at(20.0, 10.0), at(40.0, 0.0), at(20.0, -10.0), at(2.0, 0.0)], 2.0)
+        };
+        let mut all: Vec<Vec<DVec2>> = (0..6).map(|k| ring(f64::from(k))).collect();
+        all.push(line(&[(0.0, 0.0), (3.0, 70.0), (0.0, 148.0)]));
+        all.push(line(&[(2.0, 60.0), (30.0, 90.0), (50.0, 95.0), (28.0, 75.0), (2.0, 60.0)]));
+        all
+    };
+    let drawing = sketch::Drawing::from_polylines("drawn", &strokes);
+    let mut report = Report::default();
+    let ink = sketch::clean(&drawing, &mut report);
+    let classes = sketch::classify_unknown(&ink, &[], &Run::plain());
+    let reading = sketch::read(&ink, &classes, &mut report);
+    let spec = sketch::SketchSpec::default();
+    sketch::build(&reading, &spec, Seed::new(seed), &Run::plain(), &mut report).expect("not cancelled").plant
+}
+
+fn plant_of(kind: usize, seed: u64) -> Plant {
+    if kind < 4 { tree(kind, seed) } else { drawn(kind - 4, seed) }
+}
+
+fn done(plant: &Plant, edits: &[HandEdit]) -> Applied {
+    let applied = apply(plant, edits, &Context::default(), &Run::plain()).expect("not cancelled");
+    assert_eq!(applied.outcomes.len(), edits.len());
+    assert_eq!(applied.plant.validate().next(), None, "{edits:?}");
+    applied
+}
+
+struct Backwards;
+impl Executor for Backwards {
+    fn for_each(&self, n: usize, job: &(dyn Fn(usize) + Sync)) {
+        std::thread::scope(|s| {
+            for k in 0..2 {
+                s.spawn(move || (0..n).rev().filter(|i| i % 2 == k).for_each(job));
+            }
+        });
+    }
+}
+
+fn key() -> impl Strategy<Value = AxisKey> {
+    prop_oneof![
+        prop::collection::vec(0_u32..5, 1..4).prop_map(AxisKey::Path),
+        point().prop_map(AxisKey::Near),
+        Just(AxisKey::Near(DVec3::new(0.0, 3.0, 0.0))),
+    ]
+}
+
+fn point() -> impl Strategy<Value = DVec3> {
+    prop_oneof![
+        12 => (-2.0..2.0, -0.5..7.0, -2.0..2.0).prop_map(|(x, y, z)| DVec3::new(x, y, z)),
+        1 => Just(DVec3::NAN),
+        1 => Just(DVec3::ZERO),
+    ]
+}
+
+fn line() -> impl Strategy<Value = Vec<DVec3>> {
+    prop::collection::vec(point(), 0..6)
+}
+
+fn edit() -> impl Strategy<Value = HandEdit> {
+    let number = prop_oneof![8 => -1.0..6.0, 1 => Just(f64::NAN), 1 => Just(0.0), 1 => Just(1.0)];
+    let turn = (point(), -400.0..400.0).prop_map(|(about, degrees)| Turn { about, degrees });
+    let to = prop_oneof![
+        (-3.0..3.0).prop_map(Destination::SlideM),
+        (key(), number.clone()).prop_map(|(axis, at)| Destination::Place { axis, at }),
+        point().prop_map(Destination::ByM),
+    ];
+    let region = prop_oneof![
+        Just(LeafRegion::All),
+        key().prop_map(LeafRegion::Branch),
+        (line(), number.clone()).prop_map(|(points, radius_m)| LeafRegion::Stroke { points, radius_m }),
+    ];
+    let outline = prop::collection::vec((-3.0..3.0, 0.0..8.0).prop_map(|(x, y)| DVec2::new(x, y)), 0..7);
+    prop_oneof![
+        (key(), turn).prop_map(|(axis, turn)| HandEdit::Rotate { axis, turn }),
+        (key(), to).prop_map(|(axis, to)| HandEdit::Move { axis, to }),
+        (key(), number.clone()).prop_map(|(axis, at)| HandEdit::Prune { axis, at }),
+        (key(), 0_u64..9).prop_map(|(axis, seed)| HandEdit::Regrow { axis, seed }),
+        (key(), line(), number.clone()).prop_map(|(bearer, points, twigs)| HandEdit::SketchBranch {
+            bearer,
+            at: None,
+            points,
+            twigs,
+            seed: 1
+        }),
+        (line(), 0.05..0.8).prop_map(|(points, r)| HandEdit::Brush {
+            bearer: None,
+            points,
+            radius_m: vec![r],
+            density: 1.0,
+            seed: 1
+        }),
+        (outline, any::<bool>()).prop_map(|(outline, trim)| HandEdit::Silhouette {
+            plane: ViewPlane::default(),
+            outline,
+            density: 0.5,
+            trim,
+            seed: 1
+        }),
+        (region, number).prop_map(|(region, keep)| HandEdit::LeafDensity { region, keep, seed: 1 }),
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 40, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn any_edits_of_any_plant_leave_it_sound(kind in 0_usize..6, seed in 0_u64..4, edits in prop::collection::vec(edit(), 1..5)) {
+        let plant = plant_of(kind, seed);
+        prop_assert_eq!(plant.validate().next(), None);
+        let one = done(&plant, &edits);
+        // One after another is the same as all at once, and threads do not matter.
+        let run = Run { executor: &Backwards, clock: &NoClock, ..Run::plain() };
+        let other = apply(&plant, &edits, &Context::default(), &run).expect("not cancelled");
+        prop_assert_eq!(one.plant.digest_hex(), other.plant.digest_hex());
+        let mut step = plant.clone();
+        for (edit, outcome) in edits.iter().zip(&one.outcomes) {
+            let before = step.digest_hex();
+            let single = done(&step, std::slice::from_ref(edit));
+            if let Outcome::NotDone(why) = outcome {
+                prop_assert!(single.plant.digest_hex() == before && !why.to_string().is_empty());
+            }
+            step = single.plant;
+        }
+        for axis in (0..plant.axes.len()).step_by(7).map(AxisId::new) {
+            let key = AxisKey::of(&plant, axis).expect("there");
+            prop_assert_eq!(key.find(&plant).map(|f| (plant.axis(f.axis).key, f.by_likeness)), Ok((plant.axis(axis).key, false)));
+        }
+    }
+}
+
+fn path(p: &[u32]) -> AxisKey {
+    AxisKey::Path(p.to_vec())
+}
+
+#[test]
+fn no_edit_is_the_identity_and_a_turn_back_undoes_a_turn() {
+    for kind in 0..6 {
+        let plant = plant_of(kind, 1);
+        assert_eq!(done(&plant, &[]).plant.digest_hex(), plant.digest_hex());
+        let keep = HandEdit::LeafDensity { region: LeafRegion::All, keep: 1.0, seed: 0 };
+        if plant.organs.iter().any(|o| o.kind == OrganKind::Leaf) {
+            assert_eq!(done(&plant, &[keep]).plant.digest_hex(), plant.digest_hex(), "{kind}");
+        }
+        let turn = |degrees| HandEdit::Rotate { axis: path(&[0]), turn: Turn { about: DVec3::Z, degrees } };
+        let there = done(&plant, &[turn(70.0)]).plant;
+        assert_ne!(there, plant);
+        let back = done(&plant, &[turn(70.0), turn(-70.0)]).plant;
+        let apart = |a: &Plant, b: &Plant| {
+            let pairs = a.nodes.position.iter().zip(&b.nodes.position);
+            pairs.map(|(p, q)| p.distance(*q)).fold(0.0, f64::max)
+        };
+        assert!(apart(&back, &plant) < 1e-9 && apart(&there, &plant) > 0.01, "{kind}");
+    }
+}
+
+#[test]
+fn pruning_thins_what_bore_the_branch_and_nothing_else() {
+    let plant = tree(0, 1);
+    let limb = path(&[0, 3]).find(&plant).expect("there").axis;
+    let bearer = plant.axis(limb).bearer.expect("borne").index();
+    let cut = done(&plant, &[HandEdit::Prune { axis: path(&[0, 3]), at: 0.0 }]);
+    let Outcome::Done(changed) = cut.outcomes[0] else { panic!("{}", cut.outcomes[0]) };
+    assert!(changed.removed >= 1 && changed.leaves_removed > 0, "{}", cut.outcomes[0]);
+    let trunk = plant.axis_radii(AxisId::new(0));
+    let after = cut.plant.axis_radii(AxisId::new(0));
+    assert_eq!(trunk.len(), after.len());
+    assert!(after[0] < trunk[0] && after[bearer + 1..] == trunk[bearer + 1..]);
+    assert!(after.windows(2).all(|w| w[1] <= w[0] + 1e-12), "falling");
+    let gone = cut.plant.axes.iter().filter(|a| plant.axes.iter().any(|b| b.key == a.key)).count();
+    assert_eq!(gone + changed.removed, plant.axes.len(), "no other branch is touched");
+    // A stump keeps its wood.
+    let half = done(&plant, &[HandEdit::Prune { axis: path(&[0, 3]), at: 0.5 }]);
+    assert_eq!(half.plant.axis_radii(AxisId::new(0)), trunk);
+    let whole = done(&plant, &[HandEdit::Prune { axis: path(&[0]), at: 0.0 }]);
+    assert_eq!(whole.outcomes[0], Outcome::NotDone(Why::NothingLeft));
+}
+
+#[test]
+fn a_moved_branch_takes_its_children_and_its_pipes_along() {
+    let plant = tree(0, 1);
+    let limb = path(&[0, 2]).find(&plant).expect("there").axis;
+    let key = plant.axis(limb).key;
+    let moved = done(&plant, &[HandEdit::Move { axis: path(&[0, 2]), to: Destination::SlideM(0.6) }]);
+    let now = moved.plant.axes.iter().position(|a| a.key == key).map(AxisId::new).expect("there");
+    let up = moved.plant.axis_points(now)[0].y - plant.axis_points(limb)[0].y;
+    assert!(up > 0.3 && up < 0.7, "{up}");
+    let length = |p: &Plant, a| geom::polyline_length3(p.axis_points(a));
+    assert!((length(&plant, limb) - length(&moved.plant, now)).abs() < 1e-9);
+    assert_eq!(plant.organs.len(), moved.plant.organs.len());
+    let own = HandEdit::Move { axis: path(&[0]), to: Destination::Place { axis: path(&[0, 2]), at: 0.5 } };
+    assert_eq!(done(&plant, &[own]).outcomes[0], Outcome::NotDone(Why::OntoItself));
+}
+
+#[test]
+fn regrowing_one_branch_leaves_the_rest() {
+    for kind in [0, 1, 3] {
+        let plant = tree(kind, 1);
+        let again = |seed| done(&plant, &[HandEdit::Regrow { axis: path(&[0, 2]), seed }]);
+        let (a, b) = (again(1), again(2));
+        let Outcome::Done(changed) = a.outcomes[0] else { panic!("{kind}: {}", a.outcomes[0]) };
+        assert!(changed.added > 0 && changed.removed > 0, "{kind}: {}", a.outcomes[0]);
+        assert_ne!(a.plant.digest_hex(), b.plant.digest_hex());
+        let limb = path(&[0, 2]).find(&plant).expect("there").axis;
+        let mut gone = vec![false; plant.axes.len()];
+        gone[limb.index()] = true;
+        for i in 0..plant.axes.len() {
+            let bearer = plant.axes[i].bearer.map(|n| plant.nodes.axis[n.index()].index());
+            gone[i] |= bearer.is_some_and(|b| gone[b]);
+        }
+        for (i, axis) in plant.axes.iter().enumerate().filter(|(i, _)| !gone[*i]) {
+            let same = a.plant.axes.iter().position(|b| b.key == axis.key).map(AxisId::new).expect("kept");
+            assert_eq!(a.plant.axis_points(same), plant.axis_points(AxisId::new(i)));
+        }
+        // The base is where it was, and the name is the same.
+        let now = path(&[0, 2]).find(&a.plant).expect("there").axis;
+        assert_eq!(a.plant.axis(now).key, plant.axis(limb).key);
+    }
+}
+
+#[test]
+fn sketched_and_brushed_branches_grow_with_twigs_and_leaves() {
+    let plant = tree(0, 1);
+    let line: Vec<DVec3> =
+        (0..12).map(|i| DVec3::new(0.2 * f64::from(i), 2.0 + 0.1 * f64::from(i), 0.0)).collect();
+    let draw =
+        |twigs| HandEdit::SketchBranch { bearer: path(&[0]), at: None, points: line.clone(), twigs, seed: 1 };
+    let (bare, twigged) = (done(&plant, &[draw(0.0)]), done(&plant, &[draw(1.0)]));
+    let added = |a: &Applied| match a.outcomes[0] {
+        Outcome::Done(c) => (c.added, c.leaves_added),
+        Outcome::NotDone(why) => panic!("{why}"),
+    };
+    assert_eq!(added(&bare).0, 1);
+    assert!(added(&twigged).0 > 6 && added(&twigged).1 > added(&bare).1, "{:?}", added(&twigged));
+    let foot = |a: &Applied| a.plant.nodes.radius_m[0];
+    assert!(foot(&twigged) > foot(&bare) && foot(&bare) > plant.nodes.radius_m[0]);
+    let brush = HandEdit::Brush { bearer: None, points: line, radius_m: vec![0.35], density: 1.0, seed: 1 };
+    let brushed = done(&plant, &[brush]);
+    assert!(added(&brushed).0 > 4 && added(&brushed).1 > 10, "{:?}", added(&brushed));
+    let reach =
+        brushed.plant.nodes.position[plant.nodes.position.len()..].iter().map(|p| p.x).fold(0.0, f64::max);
+    assert!(reach > 1.6, "{reach}");
+}
+
+#[test]
+fn a_silhouette_is_filled_and_what_leaves_it_is_cut() {
+    let outline: Vec<DVec2> =
+        [(-1.0, 2.0), (1.0, 2.0), (2.2, 4.0), (0.0, 6.5), (-2.2, 4.0)].map(DVec2::from).to_vec();
+    for kind in [0, 3, 4] {
+        let plant = plant_of(kind, 1);
+        let fill = HandEdit::Silhouette {
+            plane: ViewPlane::default(),
+            outline: outline.clone(),
+            density: 1.0,
+            trim: true,
+            seed: 3,
+        };
+        let filled = done(&plant, &[fill]);
+        assert!(filled.outcomes[0].is_done(), "{kind}: {}", filled.outcomes[0]);
+        let p = &filled.plant;
+        let mut grown = outline.clone();
+        grown.push(outline[0]);
+        let off = |q: DVec2| {
+            if geom::contains(&outline, q) {
+                0.0
+            } else {
+                geom::closest_on_polyline(&grown, q).map_or(9.0, |c| c.distance)
+            }
+        };
+        let crown = p.nodes.position.iter().filter(|q| q.y > 2.3).map(|q| off(q.truncate()));
+        assert!(crown.fold(0.0, f64::max) < 0.45, "{kind}: nothing stands out");
+        // Cells of the outline that wood passes.
+        let hit = |x: f64, y: f64| {
+            p.nodes.position.iter().any(|q| (q.x - x).abs() < 0.35 && (q.y - y).abs() < 0.35)
+        };
+        let cells: Vec<(f64, f64)> = (0..100)
+            .map(|i| (-2.2 + 0.44 * f64::from(i % 10), 2.0 + 0.45 * f64::from(i / 10)))
+            .filter(|c| geom::contains(&outline, DVec2::from(*c)))
+            .collect();
+        let full = cells.iter().filter(|c| hit(c.0, c.1)).count();
+        assert!(full * 10 >= cells.len() * 8, "{kind}: {full} of {}", cells.len());
+    }
+}
+
+#[test]
+fn fewer_leaves_are_a_part_of_more() {
+    let plant = tree(0, 1);
+    let count = |p: &Plant| p.organs.iter().filter(|o| o.kind == OrganKind::Leaf).count();
+    let with = |keep| done(&plant, &[HandEdit::LeafDensity { region: LeafRegion::All, keep, seed: 1 }]).plant;
+    let (all, half, few, twice) = (count(&plant), with(0.5), with(0.2), with(2.0));
+    let near = |n: usize, share: f64| (n as f64 / all as f64 - share).abs() < 0.06;
+    assert!(near(count(&half), 0.5) && near(count(&few), 0.2) && count(&twice) == 2 * all);
+    let keys: std::collections::BTreeSet<u64> = half.organs.iter().map(|o| o.key).collect();
+    assert!(few.organs.iter().all(|o| keys.contains(&o.key)));
+    let nowhere = LeafRegion::Stroke { points: vec![DVec3::splat(50.0)], radius_m: 1.0 };
+    let none = done(&plant, &[HandEdit::LeafDensity { region: nowhere, keep: 0.0, seed: 1 }]);
+    assert_eq!(none.outcomes[0], Outcome::NotDone(Why::NoLeaves));
+}
+
+#[test]
+fn marks_survive_other_edits_and_drawn_branches_a_change_of_seed() {
+    let plant = drawn(0, 1);
+    let other = drawn(0, 9);
+    for axis in (0..plant.axes.len()).map(AxisId::new).filter(|a| plant.axis(*a).source.is_some()) {
+        let key = AxisKey::of(&plant, axis).expect("there");
+        let found = key.find(&other).expect("a drawn branch is there for every seed");
+        assert_eq!(other.axis(found.axis).source, plant.axis(axis).source);
+    }
+    let tree = tree(0, 1);
+    let axis = path(&[0, 4]).find(&tree).expect("there").axis;
+    let key = AxisKey::of(&tree, axis).expect("there");
+    let cut = done(&tree, &[HandEdit::Prune { axis: path(&[0, 1]), at: 0.0 }]).plant;
+    assert_eq!(key.find(&cut).map(|f| cut.axis(f.axis).key), Ok(tree.axis(axis).key));
+    let gone = done(
+        &tree,
+        &[HandEdit::Prune { axis: key.clone(), at: 0.0 }, HandEdit::Prune { axis: key, at: 0.0 }],
+    );
+    // Either nothing is like it, or a branch that is: never a fault.
+    assert!(gone.outcomes[0].is_done());
+}
+
+#[test]
+fn edits_are_read_back_from_their_file_form() {
+    let text = include_str!("../../studio/src/edits-template.json");
+    let file: shape::EditsFile = serde_json::from_str(text).expect("the template is an edits file");
+    assert!(file.edits.len() == 10 && file.schema == shape::EDITS_SCHEMA);
+    let again = serde_json::to_string(&file).expect("plain data");
+    assert_eq!(serde_json::from_str::<shape::EditsFile>(&again).ok(), Some(file));
+    assert!(
+        serde_json::from_str::<HandEdit>(r#"{"op": "prune", "axis": {"path": [0]}, "sort": 1}"#).is_err()
+    );
+}

@@ -1,0 +1,297 @@
+//! Scripted gestures: what a hand does with each tool.
+
+use base::Run;
+use glam::DVec3;
+use plant::{AxisId, AxisKind, Plant};
+use shape::{
+    AxisKey, Context, Destination, HandEdit, Input, LeafRegion, Pointer, Ray, Reach, Response, Tool,
+    ToolKind, apply, pick,
+};
+
+/// A trunk of 4 m with a limb to the right at 2 m, which bears one of its own.
+fn tree() -> Plant {
+    let mut p = Plant::default();
+    let line =
+        |a: DVec3, b: DVec3| -> Vec<DVec3> { (0..=8).map(|i| a.lerp(b, f64::from(i) / 8.0)).collect() };
+    let trunk = p.add_axis(AxisKind::Branch, None, 1, &line(DVec3::ZERO, DVec3::Y * 4.0), None);
+    let fork = p.axis(trunk).node_ids().nth(4);
+    let limb = p.add_axis(AxisKind::Branch, fork, 2, &line(DVec3::Y * 2.0, DVec3::new(2.0, 2.0, 0.0)), None);
+    let fork = p.axis(limb).node_ids().nth(4);
+    p.add_axis(AxisKind::Branch, fork, 3, &line(DVec3::new(1.0, 2.0, 0.0), DVec3::new(1.0, 3.0, 0.0)), None);
+    p.nodes.radius_m.iter_mut().for_each(|r| *r = 0.02);
+    assert_eq!(p.validate().count(), 0);
+    p
+}
+
+/// A mouse at (x, y) of the plane z = 0, seen from a camera at z = 10.
+fn mouse(x: f64, y: f64) -> Pointer {
+    let eye = DVec3::new(0.0, 2.0, 10.0);
+    let ray = Ray { origin: eye, direction: DVec3::new(x, y, 0.0) - eye };
+    Pointer { ray, forward: DVec3::NEG_Z, up: DVec3::Y, pressure: 1.0, tip: None }
+}
+
+/// A controller that points anywhere, its tip at a place in space.
+fn controller(tip: DVec3) -> Pointer {
+    Pointer { tip: Some(tip), ..mouse(tip.x, tip.y) }
+}
+
+/// Down at the first, over the others, up at the last.
+fn drag(tool: &mut Tool, plant: &Plant, way: &[Pointer]) -> Response {
+    let mut previews = 0;
+    tool.handle(plant, &Input::Down(way[0]));
+    for p in &way[1..] {
+        let r = tool.handle(plant, &Input::Move(*p));
+        assert!(r.commit.is_none(), "nothing is done before the end");
+        previews += usize::from(r.preview.is_some());
+    }
+    let last = tool.handle(plant, &Input::Up(*way.last().expect("some")));
+    assert!(last.preview.is_none() && !tool.is_busy());
+    assert!(last.commit.is_none() || previews > 0 || way.len() == 1, "what is done was shown");
+    last
+}
+
+fn after(plant: &Plant, edit: HandEdit) -> Plant {
+    let applied = apply(plant, &[edit], &Context::default(), &Run::plain()).expect("not cancelled");
+    assert!(applied.outcomes[0].is_done(), "{}", applied.outcomes[0]);
+    assert_eq!(applied.plant.validate().count(), 0);
+    applied.plant
+}
+
+#[test]
+fn picking_takes_what_is_nearest_with_a_tolerance_that_grows() {
+    let plant = tree();
+    let at = |x, y| pick(&plant, &mouse(x, y).ray, Reach::default()).map(|k| k.axis.index());
+    assert_eq!((at(0.0, 1.0), at(1.6, 2.0), at(1.0, 2.6), at(-2.0, 1.0)), (Some(0), Some(1), Some(2), None));
+    // 0.15 m beside the trunk: within a degree at 10 m, not at 3.
+    let near = Ray { origin: DVec3::new(0.15, 1.0, 3.0), direction: DVec3::NEG_Z };
+    let far = Ray { origin: DVec3::new(0.15, 1.0, 10.0), direction: DVec3::NEG_Z };
+    let reach = Reach { metres: 0.0, per_metre: 0.02 };
+    assert!(pick(&plant, &near, reach).is_none() && pick(&plant, &far, reach).is_some());
+    let nothing = Ray { origin: DVec3::NAN, direction: DVec3::ZERO };
+    assert!(pick(&plant, &nothing, reach).is_none());
+}
+
+#[test]
+fn a_drag_around_the_base_rotates_by_its_angle() {
+    let plant = tree();
+    let way: Vec<Pointer> = (0..=9)
+        .map(|i| {
+            let (s, c) = base::ops::sin_cos(f64::from(i) * 10.0_f64.to_radians());
+            mouse(1.6 * c, 2.0 + 1.6 * s)
+        })
+        .collect();
+    let edit = drag(&mut Tool::new(ToolKind::Rotate), &plant, &way).commit.expect("rotated");
+    let HandEdit::Rotate { turn, .. } = &edit else { panic!("{edit:?}") };
+    assert!((turn.degrees - 90.0).abs() < 0.5 && turn.about == DVec3::Z, "{turn:?}");
+    let turned = after(&plant, edit);
+    let tip = *turned.axis_points(AxisId::new(1)).last().expect("some");
+    assert!(tip.distance(DVec3::new(0.0, 4.0, 0.0)) < 0.05, "{tip}");
+    // Two turns around the base add up instead of starting again.
+    let way: Vec<Pointer> = (0..=72)
+        .map(|i| {
+            let (s, c) = base::ops::sin_cos(f64::from(i) * 10.0_f64.to_radians());
+            mouse(1.6 * c, 2.0 + 1.6 * s)
+        })
+        .collect();
+    let edit = drag(&mut Tool::new(ToolKind::Rotate), &plant, &way).commit;
+    assert!(matches!(edit, Some(HandEdit::Rotate { turn, .. }) if (turn.degrees - 720.0).abs() < 1.0));
+}
+
+#[test]
+fn a_thumbstick_rotates_exactly_and_a_slip_does_nothing() {
+    let plant = tree();
+    let mut tool = Tool::new(ToolKind::Rotate);
+    tool.handle(&plant, &Input::Down(mouse(1.6, 2.0)));
+    tool.handle(&plant, &Input::Twist(0.25));
+    tool.handle(&plant, &Input::Twist(0.25));
+    let edit = tool.handle(&plant, &Input::Up(mouse(1.6, 2.0))).commit;
+    assert!(
+        matches!(edit, Some(HandEdit::Rotate { turn, .. }) if (turn.degrees - 0.5_f64.to_degrees()).abs() < 1e-9)
+    );
+    let way = [mouse(1.6, 2.0), mouse(1.6, 2.001)];
+    let mut tool = Tool::new(ToolKind::Rotate);
+    tool.handle(&plant, &Input::Down(way[0]));
+    assert_eq!(tool.handle(&plant, &Input::Up(way[1])).commit, None);
+}
+
+#[test]
+fn a_branch_slides_along_its_bearer_and_a_stem_over_the_ground() {
+    let plant = tree();
+    let way = [mouse(1.0, 2.0), mouse(0.9, 2.5), mouse(0.8, 3.0)];
+    let edit = drag(&mut Tool::new(ToolKind::Move), &plant, &way).commit.expect("moved");
+    let HandEdit::Move { to: Destination::Place { at, .. }, .. } = &edit else { panic!("{edit:?}") };
+    assert!((at - 0.75).abs() < 0.03, "{at}");
+    let base = after(&plant, edit).axis_points(AxisId::new(1))[0];
+    assert!((base.y - 3.0).abs() < 0.12 && base.x == 0.0, "{base}");
+    let from_above = |x: f64| Pointer {
+        ray: Ray { origin: DVec3::new(x, 10.0, 10.0), direction: DVec3::new(0.0, -1.0, -1.0) },
+        ..mouse(0.0, 0.0)
+    };
+    let way = [from_above(0.0), from_above(0.7), from_above(1.5)];
+    let edit = drag(&mut Tool::new(ToolKind::Move), &plant, &way).commit.expect("moved");
+    assert!(
+        matches!(edit, HandEdit::Move { to: Destination::ByM(by), .. } if by.distance(DVec3::X * 1.5) < 1e-9)
+    );
+}
+
+#[test]
+fn a_click_prunes_or_regrows_and_escape_does_neither() {
+    let plant = tree();
+    let click = |kind| {
+        let mut tool = Tool::new(kind);
+        tool.handle(&plant, &Input::Down(mouse(1.6, 2.0)));
+        tool.handle(&plant, &Input::Up(mouse(1.6, 2.0))).commit
+    };
+    let cut = click(ToolKind::Prune { whole: false }).expect("cut");
+    assert!(matches!(&cut, HandEdit::Prune { at, .. } if (at - 0.8).abs() < 0.01));
+    assert_eq!(after(&plant, cut).axes.len(), 3);
+    let all = click(ToolKind::Prune { whole: true }).expect("cut");
+    assert_eq!(after(&plant, all).axes.len(), 1);
+    assert!(matches!(click(ToolKind::Regrow), Some(HandEdit::Regrow { seed: 1, .. })));
+    for kind in
+        [ToolKind::Regrow, ToolKind::Rotate, ToolKind::Move, ToolKind::Sketch { twigs: 1.0, tilt: 0.0 }]
+    {
+        let mut tool = Tool::new(kind);
+        tool.handle(&plant, &Input::Down(mouse(1.6, 2.0)));
+        tool.handle(&plant, &Input::Move(mouse(1.6, 3.0)));
+        assert_eq!(tool.handle(&plant, &Input::Cancel), Response::default());
+        assert_eq!(tool.handle(&plant, &Input::Up(mouse(1.0, 1.0))).commit, None);
+    }
+    // Into the void: nothing.
+    let mut tool = Tool::new(ToolKind::Prune { whole: true });
+    tool.handle(&plant, &Input::Down(mouse(-3.0, 1.0)));
+    assert_eq!(tool.handle(&plant, &Input::Up(mouse(-3.0, 1.0))).commit, None);
+}
+
+#[test]
+fn a_branch_is_drawn_on_a_plane_that_faces_the_viewer_or_leans() {
+    let plant = tree();
+    let way: Vec<Pointer> =
+        (0..=10).map(|i| mouse(-0.15 * f64::from(i), 3.0 + 0.08 * f64::from(i))).collect();
+    let draw = |tilt: f64| {
+        let edit =
+            drag(&mut Tool::new(ToolKind::Sketch { twigs: 0.0, tilt }), &plant, &way).commit.expect("drawn");
+        let HandEdit::SketchBranch { points, at, bearer, .. } = edit.clone() else { panic!("{edit:?}") };
+        assert!(
+            (at.unwrap_or(0.0) - 0.75).abs() < 0.01 && bearer.find(&plant).map(|f| f.axis.index()) == Ok(0)
+        );
+        assert_eq!(after(&plant, edit).axes.len(), 4);
+        points
+    };
+    let flat = draw(0.0);
+    assert!(flat.len() > 8 && flat.iter().all(|p| p.z.abs() < 1e-9), "{flat:?}");
+    let leaning = draw(0.6);
+    let depth = leaning.last().map_or(0.0, |p| p.z);
+    assert!(depth < -0.3, "up on the screen goes away from the viewer: {depth}");
+    // Leaning the plane while drawing leaves what is drawn where it is.
+    let mut tool = Tool::new(ToolKind::Sketch { twigs: 0.0, tilt: 0.0 });
+    tool.handle(&plant, &Input::Down(way[0]));
+    way[1..6].iter().for_each(|p| drop(tool.handle(&plant, &Input::Move(*p))));
+    tool.handle(&plant, &Input::Twist(0.6));
+    way[6..].iter().for_each(|p| drop(tool.handle(&plant, &Input::Move(*p))));
+    let Some(HandEdit::SketchBranch { points, .. }) = tool.handle(&plant, &Input::Up(way[10])).commit else {
+        panic!()
+    };
+    assert!(points[..5].iter().all(|p| p.z.abs() < 1e-9) && points.last().is_some_and(|p| p.z < -0.1));
+}
+
+#[test]
+fn a_controller_draws_in_space_with_the_same_tool() {
+    let plant = tree();
+    let way: Vec<Pointer> =
+        (0..=10).map(|i| controller(DVec3::new(-0.1 * f64::from(i), 3.0, 0.12 * f64::from(i)))).collect();
+    let edit = drag(&mut Tool::new(ToolKind::Sketch { twigs: 0.0, tilt: 0.0 }), &plant, &way).commit;
+    let Some(HandEdit::SketchBranch { points, .. }) = edit else { panic!("{edit:?}") };
+    assert_eq!(points.last(), Some(&DVec3::new(-1.0, 3.0, 1.2)));
+}
+
+#[test]
+fn a_brush_follows_pressure_and_its_radius_can_change_on_the_way() {
+    let plant = tree();
+    let mut tool = Tool::new(ToolKind::Brush { radius_m: 0.4, density: 1.0 });
+    let press = |x: f64, pressure| Pointer { pressure, ..mouse(x, 3.2) };
+    tool.handle(&plant, &Input::Down(press(0.0, 1.0)));
+    (1..6).for_each(|i| drop(tool.handle(&plant, &Input::Move(press(-0.2 * f64::from(i), 0.5)))));
+    tool.handle(&plant, &Input::Brush(0.2, 2.0));
+    (6..10).for_each(|i| drop(tool.handle(&plant, &Input::Move(press(-0.2 * f64::from(i), 0.5)))));
+    let edit = tool.handle(&plant, &Input::Up(press(-1.8, 0.5))).commit.expect("brushed");
+    let HandEdit::Brush { radius_m, points, density, .. } = &edit else { panic!("{edit:?}") };
+    assert_eq!((radius_m.len(), *density), (points.len(), 2.0));
+    assert!(
+        (radius_m[0] - 0.4).abs() < 1e-12
+            && (radius_m[2] - 0.28).abs() < 1e-12
+            && (radius_m[8] - 0.14).abs() < 1e-12
+    );
+    assert!(after(&plant, edit).axes.len() > 5);
+}
+
+#[test]
+fn a_lasso_becomes_a_silhouette_in_the_viewers_plane() {
+    let plant = tree();
+    let ring: Vec<Pointer> = (0..24)
+        .map(|i| {
+            let (s, c) = base::ops::sin_cos(f64::from(i) * base::ops::TAU / 24.0);
+            mouse(1.8 * c, 3.5 + 1.4 * s)
+        })
+        .collect();
+    let edit = drag(&mut Tool::new(ToolKind::Silhouette { density: 0.5, trim: false }), &plant, &ring).commit;
+    let edit = edit.expect("drawn");
+    let HandEdit::Silhouette { plane, outline, .. } = &edit else { panic!("{edit:?}") };
+    assert!(plane.right == DVec3::X && plane.up == DVec3::Y && outline.len() > 20);
+    assert!(geom::signed_area(outline) > 5.0);
+    assert!(after(&plant, edit).axes.len() > 20);
+}
+
+#[test]
+fn leaves_are_brushed_and_hovering_picks() {
+    let plant = tree();
+    let way = [mouse(0.0, 3.0), mouse(0.2, 3.1), mouse(0.4, 3.2)];
+    let edit = drag(&mut Tool::new(ToolKind::Leaves { radius_m: 0.5, keep: 0.2 }), &plant, &way).commit;
+    let Some(HandEdit::LeafDensity { region: LeafRegion::Stroke { points, radius_m }, keep, .. }) = edit
+    else {
+        panic!("{edit:?}")
+    };
+    assert_eq!((points.len(), radius_m, keep), (3, 0.5, 0.2));
+    let mut tool = Tool::new(ToolKind::Rotate);
+    let over = tool.handle(&plant, &Input::Move(mouse(1.6, 2.0)));
+    assert_eq!((over.picked.map(|k| k.axis.index()), over.preview, tool.is_busy()), (Some(1), None, false));
+    assert!(matches!(AxisKey::of(&plant, AxisId::new(1)), Some(AxisKey::Mark(_))));
+}
+
+#[test]
+fn no_input_is_a_fault() {
+    let plant = tree();
+    let bad = Pointer {
+        ray: Ray { origin: DVec3::NAN, direction: DVec3::ZERO },
+        forward: DVec3::ZERO,
+        up: DVec3::NAN,
+        pressure: f64::NAN,
+        tip: Some(DVec3::NAN),
+    };
+    for kind in [
+        ToolKind::Rotate,
+        ToolKind::Move,
+        ToolKind::Prune { whole: true },
+        ToolKind::Regrow,
+        ToolKind::Sketch { twigs: f64::NAN, tilt: f64::NAN },
+        ToolKind::Brush { radius_m: -1.0, density: f64::NAN },
+        ToolKind::Silhouette { density: 0.0, trim: true },
+        ToolKind::Leaves { radius_m: f64::NAN, keep: -2.0 },
+    ] {
+        for plant in [&plant, &Plant::default()] {
+            let mut tool = Tool::new(kind);
+            for first in [mouse(1.6, 2.0), bad] {
+                tool.handle(plant, &Input::Down(first));
+                tool.handle(plant, &Input::Move(bad));
+                tool.handle(plant, &Input::Move(mouse(0.3, 3.0)));
+                tool.handle(plant, &Input::Twist(f64::INFINITY));
+                tool.handle(plant, &Input::Brush(f64::NAN, 2.0));
+                let edit = tool.handle(plant, &Input::Up(bad)).commit;
+                let edits: Vec<HandEdit> = edit.into_iter().collect();
+                let applied =
+                    apply(plant, &edits, &Context::default(), &Run::plain()).expect("not cancelled");
+                assert_eq!(applied.plant.validate().count(), 0);
+            }
+        }
+    }
+}
