@@ -263,8 +263,8 @@ fn bones(
         }
         Method::Guided(s) => {
             let grown = guide(&spec.roots, obstacles, s, seed, run, report)?;
-            let tally =
-                Tally { attractors: grown.markers, iterations: grown.rounds, cycles: 1, ..Tally::default() };
+            // Its markers live for one round: none is consumed or left.
+            let tally = Tally { iterations: grown.rounds, cycles: 1, ..Tally::default() };
             Ok(Bones { skeleton: grown.skeleton, marks: Vec::new(), tally })
         }
         Method::Lsystem { rules, most_modules } => {

@@ -173,7 +173,7 @@ pub(crate) fn silhouette(
             Some(grid.nearest(*m, f64::INFINITY).map(|i| hosts.skeleton.position[i])?.distance(*m))
         })
         .fold(f64::INFINITY, f64::min);
-    if !(gap <= 0.5 * habit.size_m.max(mask.pixel * 48.0)) {
+    if gap.is_nan() || gap > 0.5 * habit.size_m.max(mask.pixel * 48.0) {
         return Err(Why::NothingGrew.into());
     }
     let spec = ColonizeSpec {

@@ -33,16 +33,16 @@ impl Hosts {
             }
             let joint_at = |at: At| joints.get(at.branch)?.get(at.node).copied().flatten();
             let mut last = branch.bearer.and_then(joint_at);
-            for node in 0..branch.points.len() {
+            for (node, &place) in branch.points.iter().enumerate() {
                 // A borne axis starts on a joint that is there already.
                 if node == 0 && last.is_some() {
                     continue;
                 }
                 let id = match last {
-                    Some(parent) => hosts.skeleton.push(branch.points[node], parent, 0),
+                    Some(parent) => hosts.skeleton.push(place, parent, 0),
                     None => {
                         tree += 1;
-                        hosts.skeleton.push_root(branch.points[node], tree - 1)
+                        hosts.skeleton.push_root(place, tree - 1)
                     }
                 };
                 hosts.node.push(At { branch: b, node });

@@ -1,7 +1,7 @@
 //! Leaves: fewer or more of them where a person says, and leaves for new wood.
 
-use base::Seed;
 use base::ops::PI;
+use base::{Draw, Seed};
 use glam::{DQuat, DVec3};
 use growth::add_leaves;
 use plant::{AxisId, AxisKind, OrganKind, Plant, Shape};
@@ -37,7 +37,7 @@ fn chosen(draft: &Draft, region: &LeafRegion) -> Result<(Vec<usize>, bool), Why>
             if points.is_empty() || !points.iter().all(|p| p.is_finite()) {
                 return Err(Why::BadNumber { field: "points" });
             }
-            if !(*radius_m > 0.0 && radius_m.is_finite()) {
+            if !radius_m.is_finite() || *radius_m <= 0.0 {
                 return Err(Why::BadNumber { field: "radius_m" });
             }
             let line = if points.len() == 1 { vec![points[0]; 2] } else { points.clone() };
@@ -166,8 +166,7 @@ pub(crate) fn dress(draft: &mut Draft, habit: &Habit, bench: &Bench<'_>) -> Resu
         let axis = bare.nodes.axis[node.index()];
         let first = bare.axes[axis.index()].nodes.start as usize;
         let at = At { branch: fresh[AxisId::index(axis)], node: node.index() - first };
-        let tint =
-            leaves.tints.get(Seed::new(organ.key).child(3).number() as usize % leaves.tints.len().max(1));
+        let tint = leaves.tints.get(Seed::new(organ.key).stream(Draw::Tint).below(leaves.tints.len()));
         let what = plant::Organ { shape: leaves.shape, tint: tint.copied().unwrap_or([1.0; 3]), ..organ };
         draft.organs.push(Borne { what, at: Some(at), alive: true });
     }

@@ -38,7 +38,7 @@ impl Mask {
             .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), p| (lo.min(*p), hi.max(*p)));
         let size = hi - lo;
         let small = Why::TooSmall { what: "outline" };
-        if outline.len() < 3 || !(size.min_element() > 1e-9) {
+        if outline.len() < 3 || size.min_element() <= 1e-9 {
             return Err(small);
         }
         let pixel = size.max_element() / SIDE as f64;

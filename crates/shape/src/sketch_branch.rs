@@ -150,7 +150,7 @@ fn twigs(
     let bare = branch.kind == AxisKind::Root || (branch.kind == AxisKind::Stem && forks < 4);
     let length = branch.length();
     let internode = (0.8 * habit.internode_m).min(0.12 * length);
-    if density <= 0.0 || bare || !(internode > 0.0) {
+    if density <= 0.0 || bare || internode <= 0.0 {
         return Ok(0);
     }
     let wish = (density * 0.75 * length / internode).round().clamp(0.0, 80.0);

@@ -66,7 +66,7 @@ fn plant_of(kind: usize, seed: u64) -> Plant {
 
 fn done(plant: &Plant, edits: &[HandEdit]) -> Applied {
     let applied = apply(plant, edits, &Context::default(), &Run::plain()).expect("not cancelled");
-    assert_eq!(applied.outcomes.len(), edits.len());
+    assert_eq!(applied.outcomes.len(), edits.len(), "one outcome for each edit");
     assert_eq!(applied.plant.validate().next(), None, "{edits:?}");
     applied
 }

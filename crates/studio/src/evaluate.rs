@@ -50,7 +50,7 @@ pub struct FrontView {
 pub struct Evaluator {
     strokes: Option<Kept<Drawing, (Ink, Vec<Classified>)>>,
     reading: Option<Kept<ClassOverrides, Reading>>,
-    plant: Option<Kept<PlantFrom, (Built, Fidelity, Vec<EditReport>)>>,
+    plant: Option<Kept<PlantFrom, PlantMade>>,
     model: Option<Kept<ModelFrom, Model>>,
     /// The photograph that was decoded last.
     picture: Option<Decoded>,
@@ -58,6 +58,9 @@ pub struct Evaluator {
     /// See [`Evaluator::previewing`].
     preview: bool,
 }
+
+/// A plant, how near it is to the drawing, and what became of its edits.
+type PlantMade = (Built, Fidelity, Vec<EditReport>);
 
 /// What a plant is made from, besides its reading: the name goes into the plant.
 type PlantFrom = (SketchSpec, Seed, String, Option<LeafTemplate>, Vec<HandEdit>);

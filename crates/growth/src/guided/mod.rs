@@ -413,7 +413,7 @@ impl<'a> Stand<'a> {
     fn shoot(&mut self, b: usize, direction: DVec3, vigour: f64, birth: u32) {
         let vigour = vigour.min(f64::from(self.spec.most_per_shoot) + 0.999);
         let n = vigour.floor();
-        if !(n >= 1.0) {
+        if n.is_nan() || n < 1.0 {
             return;
         }
         let length = self.spec.internode_m * vigour / n;

@@ -37,7 +37,7 @@ pub(super) struct Room<'a> {
 /// What a stroke adds to a marker in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Guide {
-    /// `w' = exp(-d'^2 / (2 sigma_b^2))`, with sigma_b half the radius.
+    /// `w' = exp(-d'^2 / (2 sigma_b^2))`, `sigma_b` half the radius.
     pub(super) weight: f64,
     /// The stroke's direction there, times its pull `k_s`.
     pub(super) along: DVec3,
