@@ -19,7 +19,7 @@ fn tree() -> Plant {
     let fork = p.axis(limb).node_ids().nth(4);
     p.add_axis(AxisKind::Branch, fork, 3, &line(DVec3::new(1.0, 2.0, 0.0), DVec3::new(1.0, 3.0, 0.0)), None);
     p.nodes.radius_m.iter_mut().for_each(|r| *r = 0.02);
-    assert_eq!(p.validate().count(), 0);
+    assert_eq!(p.validate().count(), 0, "a sound plant");
     p
 }
 
@@ -45,7 +45,7 @@ fn drag(tool: &mut Tool, plant: &Plant, way: &[Pointer]) -> Response {
         previews += usize::from(r.preview.is_some());
     }
     let last = tool.handle(plant, &Input::Up(*way.last().expect("some")));
-    assert!(last.preview.is_none() && !tool.is_busy());
+    assert!(last.preview.is_none() && !tool.is_busy(), "let go");
     assert!(last.commit.is_none() || previews > 0 || way.len() == 1, "what is done was shown");
     last
 }
@@ -53,7 +53,7 @@ fn drag(tool: &mut Tool, plant: &Plant, way: &[Pointer]) -> Response {
 fn after(plant: &Plant, edit: HandEdit) -> Plant {
     let applied = apply(plant, &[edit], &Context::default(), &Run::plain()).expect("not cancelled");
     assert!(applied.outcomes[0].is_done(), "{}", applied.outcomes[0]);
-    assert_eq!(applied.plant.validate().count(), 0);
+    assert_eq!(applied.plant.validate().count(), 0, "a sound plant");
     applied.plant
 }
 
