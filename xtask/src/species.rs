@@ -104,7 +104,10 @@ fn grouped(n: u64) -> String {
 fn shrink(path: &Path, colours: usize) -> Outcome {
     let fault = |e: &dyn std::fmt::Display| format!("{}: {e}", path.display());
     let file = File::open(path).map_err(|e| fault(&e))?;
-    let mut reader = png::Decoder::new(BufReader::new(file)).read_info().map_err(|e| fault(&e))?;
+    let mut decoder = png::Decoder::new(BufReader::new(file));
+    // A picture with a sky comes without alpha.
+    decoder.set_transformations(png::Transformations::ALPHA);
+    let mut reader = decoder.read_info().map_err(|e| fault(&e))?;
     let mut pixels = vec![0; reader.output_buffer_size().ok_or_else(|| fault(&"is too large"))?];
     let info = reader.next_frame(&mut pixels).map_err(|e| fault(&e))?;
     if info.color_type != png::ColorType::Rgba || info.bit_depth != png::BitDepth::Eight {
