@@ -625,6 +625,8 @@ async function garden({ page, url, shot }) {
   await page.locator('li.is-hidden').waitFor({ state: 'detached' });
   await page.click('#b-language');
   await page.click('[data-plant=leaf]');
+  // The panel is drawn anew a moment after the click.
+  await page.locator('.form .f-row > span:first-child', { hasText: /[\u4e00-\u9fff]/ }).first().waitFor();
   const labels = await page.locator('.form .f-row > span:first-child').allTextContents();
   assert.ok(labels.length > 8 && labels.every((l) => /[\u4e00-\u9fff]/.test(l)), labels.join());
   await page.click('#b-theme');

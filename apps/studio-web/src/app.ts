@@ -221,7 +221,8 @@ export class App {
     void this.files.restore().finally(() => {
       document.body.dataset['readyAt'] = String(performance.now());
       document.body.dataset['ready'] = 'true';
-      if (this.state?.plants.length === 1 && this.drawn?.strokes.length === 0) firstRun();
+      // The state may come a moment later; a scene that was restored is there by now.
+      if (!this.state || (this.state.plants.length === 1 && this.drawn?.strokes.length === 0)) firstRun();
       void this.loadCatalogue();
     });
   }
