@@ -13,6 +13,7 @@
 //! | `ids` | [`define_id!`]: typed `u32` handles |
 
 mod digest;
+mod exps;
 mod ids;
 pub mod ops;
 mod report;

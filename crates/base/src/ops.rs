@@ -13,6 +13,8 @@
 /// The ratio of a circle's circumference to its diameter.
 pub use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
+pub use crate::exps::exps;
+
 macro_rules! forward {
     ($($(#[$doc:meta])* $name:ident($($arg:ident),+) = $to:path;)+) => {
         $($(#[$doc])* #[inline] pub fn $name($($arg: f64),+) -> f64 { $to($($arg),+) })+

@@ -24,7 +24,6 @@ mod centre;
 mod clean;
 mod error;
 mod errors;
-mod exps;
 mod flower;
 mod kernel;
 mod lattice;

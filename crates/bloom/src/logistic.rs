@@ -3,8 +3,6 @@
 use base::ops;
 use serde::{Deserialize, Serialize};
 
-use crate::exps::exps;
-
 /// Parameters of `f(x) = offset + K / (1 + (K / p0 - 1) exp(-r x))`: `f(0) = offset + p0`.
 ///
 /// `r > 0` tends to `offset + K`. Both decreasing and increasing series have this form: `p0 > K > 0` decays,
@@ -210,7 +208,7 @@ impl Scaled {
         if !((1e-4..=1e4).contains(&q) && (r * span).abs() <= 60.0) {
             return None;
         }
-        exps(-r, &self.x, &mut self.e);
+        ops::exps(-r, &self.x, &mut self.e);
         let pole_free = |e: f64| 1.0 + (q - 1.0) * e > 1e-12;
         if !(pole_free(self.e[0]) && pole_free(self.e[last])) {
             return None;
@@ -248,7 +246,7 @@ impl Scaled {
     /// of y over y squared. Also its sum of squares.
     fn start(&mut self, r: f64) -> Option<([f64; 3], f64)> {
         let (mut ww, mut we, mut wee, mut wy, mut wey) = (0.0, 0.0, 0.0, 0.0, 0.0);
-        exps(-r, &self.x, &mut self.e);
+        ops::exps(-r, &self.x, &mut self.e);
         for (&y, &e) in self.y.iter().zip(&self.e) {
             let inverse = y * y * y;
             let w = inverse * y;

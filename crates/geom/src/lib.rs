@@ -40,12 +40,13 @@ pub use ellipse::{Ellipse, fit_ellipse, fit_ellipse_harmonic};
 pub use frame::{Frame3, rotation_minimising_frames};
 pub use grid::{Grid2, Grid3};
 pub use hull3::{Hull3, convex_hull3};
-pub use outline::{self_crossings, simple_outline};
+pub use outline::{crossing_points, self_crossings, simple_outline};
 pub use pca::{Pca2, pca2, pca3};
 pub use polygon::{centroid, contains, convex_hull, farthest_pair, medial_axis_width, signed_area};
 pub use polyline::{
-    Closest, closest_on_polyline, point_at, point_at3, polyline_length, polyline_length3, resample,
-    resample3, simplify, smooth_gaussian, smooth_gaussian_closed, tangent_at, tangent_at3, turning_angles,
+    Closest, closest_on_polyline, distance_to_polyline, point_at, point_at3, polyline_length,
+    polyline_length3, resample, resample3, simplify, smooth_gaussian, smooth_gaussian_closed, tangent_at,
+    tangent_at3, turning_angles,
 };
 pub use spline::{
     Ball, BallBSpline, Basis, Blend, EndCap, HeightField, MAX_DEGREE, NaturalCubic, RingRule, SplineError,

@@ -110,24 +110,51 @@ pub fn self_crossings(points: &[DVec2]) -> usize {
     crossings_up_to(&distinct_closed(points), usize::MAX)
 }
 
+/// Where a closed line crosses or touches itself, at most `most` places; see [`self_crossings`] for what counts.
+///
+/// Of edges that overlap the start of the later one. In no particular order. Cost: as [`self_crossings`], less where
+/// `most` is reached.
+///
+/// ```
+/// use glam::DVec2;
+/// let bow = [DVec2::ZERO, DVec2::ONE, DVec2::X, DVec2::Y];
+/// assert_eq!(geom::crossing_points(&bow, 10), [DVec2::splat(0.5)]);
+/// ```
+pub fn crossing_points(points: &[DVec2], most: usize) -> Vec<DVec2> {
+    let mut found = Vec::new();
+    each_crossing(&distinct_closed(points), |p| {
+        found.push(p);
+        found.len() < most
+    });
+    found.truncate(most);
+    found
+}
+
 pub(crate) fn crossings_up_to(corners: &[DVec2], enough: usize) -> usize {
-    let n = corners.len();
-    if n < 3 {
-        return 0;
-    }
-    let segments = closed_segments(corners);
     let mut count = 0;
-    meeting_boxes(&segments, |i, j| {
-        let ((a, b), (c, d)) = (segments[i], segments[j]);
-        let neighbours = j == i + 1 || (i == 0 && j == n - 1);
-        count += usize::from(match meet(a, b, c, d) {
-            Meeting::Apart => false,
-            Meeting::At(_) => !neighbours,
-            Meeting::Overlap => true,
-        });
+    each_crossing(corners, |_| {
+        count += 1;
         count < enough
     });
     count
+}
+
+/// Calls `seen` with each crossing until it returns false.
+fn each_crossing(corners: &[DVec2], mut seen: impl FnMut(DVec2) -> bool) {
+    let n = corners.len();
+    if n < 3 {
+        return;
+    }
+    let segments = closed_segments(corners);
+    meeting_boxes(&segments, |i, j| {
+        let ((a, b), (c, d)) = (segments[i], segments[j]);
+        let neighbours = j == i + 1 || (i == 0 && j == n - 1);
+        match meet(a, b, c, d) {
+            Meeting::At(p) if !neighbours => seen(p),
+            Meeting::Overlap => seen(c),
+            Meeting::Apart | Meeting::At(_) => true,
+        }
+    });
 }
 
 /// The simple counter-clockwise polygon that a closed scribble means; `None` if it encloses no area.

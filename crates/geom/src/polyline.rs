@@ -203,6 +203,26 @@ pub struct Closest {
 /// `None` if the line has no usable point or `p` is not usable. A single point counts as a segment without
 /// length. Cost: linear.
 pub fn closest_on_polyline(points: &[DVec2], p: DVec2) -> Option<Closest> {
+    let (index, t, point) = nearest_of(points, p)?;
+    let at = length_of(points.get(..=index).unwrap_or_default());
+    let on = usable_pairs(points.get(index..).unwrap_or_default()).next();
+    let at = at + on.map_or(0.0, |(_, a, b)| t * Vector::distance(a, b));
+    Some(Closest { index, t, point, distance: Vector::distance(point, p), at })
+}
+
+/// The distance alone of [`closest_on_polyline`], for half its cost.
+///
+/// ```
+/// use glam::DVec2;
+/// let line = [DVec2::ZERO, DVec2::new(2.0, 0.0), DVec2::new(2.0, 2.0)];
+/// assert_eq!(geom::distance_to_polyline(&line, DVec2::new(3.0, 1.0)), Some(1.0));
+/// ```
+pub fn distance_to_polyline(points: &[DVec2], p: DVec2) -> Option<f64> {
+    nearest_of(points, p).map(|(_, _, point)| Vector::distance(point, p))
+}
+
+/// Segment, place on it and point nearest to `p`.
+fn nearest_of(points: &[DVec2], p: DVec2) -> Option<(usize, f64, DVec2)> {
     if !p.usable() {
         return None;
     }
@@ -222,10 +242,7 @@ pub fn closest_on_polyline(points: &[DVec2], p: DVec2) -> Option<Closest> {
             (index, t, point, nearest) = (k, s, q, squared);
         }
     }
-    let at = length_of(points.get(..=index).unwrap_or_default());
-    let on = usable_pairs(points.get(index..).unwrap_or_default()).next();
-    let at = at + on.map_or(0.0, |(_, a, b)| t * Vector::distance(a, b));
-    Some(Closest { index, t, point, distance: Vector::distance(point, p), at })
+    Some((index, t, point))
 }
 
 /// The segment at an arc length, with the share of it that lies before.

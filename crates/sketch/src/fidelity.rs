@@ -5,7 +5,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use base::{Run, map_indexed};
-use geom::{closest_on_polyline, resample};
+use geom::{distance_to_polyline, resample};
 use glam::{DVec2, DVec3};
 use plant::{AxisId, OrganKind, Shape};
 
@@ -171,8 +171,7 @@ impl<'a> Pieces<'a> {
         // The piece nearest to one point is tried first for the next: most others then are too far at once.
         let mut guess = 0;
         let distance = |p: &DVec2| {
-            let to_piece =
-                |k: usize| closest_on_polyline(self.0[k].2, *p).map_or(f64::INFINITY, |c| c.distance);
+            let to_piece = |k: usize| distance_to_polyline(self.0[k].2, *p).unwrap_or(f64::INFINITY);
             let mut best = if self.0.is_empty() { f64::INFINITY } else { to_piece(guess) };
             for (k, (low, high, _)) in self.0.iter().enumerate() {
                 let outside = (*low - *p).max(*p - *high).max(DVec2::ZERO);

@@ -104,7 +104,7 @@ pub(crate) fn tubes(
             Surface::Bark if spine.stout() < YOUNG * thickest.max(SLENDER * budget.size()) => {
                 Surface::YoungBark
             }
-            Surface::Stem if spine.stout() > FLESHY * budget.size() => Surface::Flesh,
+            Surface::Stem if spine.stoutest() > FLESHY * budget.size() => Surface::Flesh,
             surface => surface,
         };
         // Bark repeats three times around the thickest branch, so that its ridges are of like size on all.

@@ -182,7 +182,7 @@ mod tests {
             let (p, q) = (mesh.position(a), mesh.position(b));
             around += p.distance(q);
             for p in [p, q] {
-                let off = geom::closest_on_polyline(&closed, p.truncate()).map_or(9.0, |c| c.distance);
+                let off = geom::distance_to_polyline(&closed, p.truncate()).unwrap_or(9.0);
                 assert!(off < 1e-6, "{p} is {off} off the outline");
             }
         }

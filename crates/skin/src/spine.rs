@@ -116,6 +116,11 @@ impl Spine {
         self.r[self.r.len() / 8]
     }
 
+    /// The larger of [`Spine::stout`] and the radius half way up: a body may be drawn with a narrow foot.
+    pub(crate) fn stoutest(&self) -> f64 {
+        self.stout().max(self.r[self.r.len() / 2])
+    }
+
     pub(crate) fn length(&self) -> f64 {
         self.s.last().copied().unwrap_or(0.0)
     }

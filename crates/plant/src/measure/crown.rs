@@ -111,7 +111,8 @@ pub(super) fn leaf_area(plant: &Plant) -> f64 {
         plant.shapes.iter().zip(used).map(|(s, used)| used.then(|| s.one_side_m2())).collect()
     };
     let leaves = plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf);
-    leaves.map(|o| areas[o.shape.index()].unwrap_or(0.0) * o.scale * o.scale).sum()
+    // From 0, because the sum of no numbers is -0.
+    leaves.map(|o| areas[o.shape.index()].unwrap_or(0.0) * o.scale * o.scale).fold(0.0, |sum, a| sum + a)
 }
 
 impl Shape {

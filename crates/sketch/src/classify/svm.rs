@@ -159,9 +159,11 @@ impl Svm {
         row.resize(self.stride, 0.0);
         // |v - r|^2 = |v|^2 + |r|^2 - 2 v.r: one product an element instead of two operations more.
         let square = dot(&row, &row);
-        let kernel: Vec<f64> = (self.vectors.chunks_exact(self.stride.max(1)).zip(&self.squares))
-            .map(|(v, own)| ops::exp(-self.gamma * f64::from((own + square - 2.0 * dot(v, &row)).max(0.0))))
+        let distances: Vec<f64> = (self.vectors.chunks_exact(self.stride.max(1)).zip(&self.squares))
+            .map(|(v, own)| f64::from((own + square - 2.0 * dot(v, &row)).max(0.0)))
             .collect();
+        let mut kernel = vec![0.0; distances.len()];
+        ops::exps(-self.gamma, &distances, &mut kernel);
         let n = self.labels.len();
         // For each class the weighed kernels of its own vectors against each other class.
         let mut halves = vec![0.0; n * (n - 1)];

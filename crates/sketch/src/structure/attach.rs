@@ -85,7 +85,8 @@ pub(super) fn grass_blades(draft: &mut Draft<'_>) {
     };
     let level = |l: &Line| {
         let (a, b) = (l.points[0], l.points[l.points.len() - 1]);
-        (a.y - b.y).abs() < 0.15 * (a.x - b.x).abs()
+        let straight = a.distance(b) > 0.93 * polyline_length(&l.points);
+        straight && (a.y - b.y).abs() < 0.15 * (a.x - b.x).abs()
     };
     let branches = (0..draft.lines.len())
         .filter(|&i| {

@@ -7,7 +7,7 @@
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
 
-use geom::{closest_on_polyline, polyline_length, resample, smooth_gaussian};
+use geom::{distance_to_polyline, polyline_length, resample, smooth_gaussian};
 use glam::DVec2;
 
 use super::near::bounds;
@@ -93,13 +93,8 @@ fn finish(
     base: Option<DVec2>,
 ) -> Limb {
     let drawn = ring.drawn();
-    let clear = |p: DVec2| {
-        drawn
-            .iter()
-            .filter_map(|d| closest_on_polyline(d, p))
-            .map(|c| c.distance)
-            .fold(f64::INFINITY, f64::min)
-    };
+    let clear =
+        |p: DVec2| drawn.iter().filter_map(|d| distance_to_polyline(d, p)).fold(f64::INFINITY, f64::min);
     if let (Some(base), Some(first)) = (base, line.first_mut()) {
         *first = base;
     }

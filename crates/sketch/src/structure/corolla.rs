@@ -1,6 +1,6 @@
 //! Several petals, fronds or grass blades in one stroke: cut at the cusps (product A12).
 
-use geom::{closest_on_polyline, polyline_length};
+use geom::{closest_on_polyline, distance_to_polyline, polyline_length};
 use glam::DVec2;
 
 use super::blade::Sheetlet;
@@ -26,7 +26,7 @@ impl Core {
     fn distance(&self, p: DVec2) -> f64 {
         match self {
             Self::Point(c, _) => p.distance(*c),
-            Self::Line(line) => closest_on_polyline(line, p).map_or(0.0, |c| c.distance),
+            Self::Line(line) => distance_to_polyline(line, p).unwrap_or(0.0),
             Self::Ground(y) => p.y - y,
         }
     }

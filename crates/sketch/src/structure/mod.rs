@@ -147,6 +147,8 @@ struct Draft<'a> {
     sides: Vec<(usize, Vec<DVec2>)>,
     /// What is left of those strokes.
     loops: BTreeMap<usize, Vec<DVec2>>,
+    /// Lines that were drawn in one go, there and back: the pieces of each such stroke.
+    legs: BTreeMap<usize, Vec<Vec<DVec2>>>,
 }
 
 impl<'a> Draft<'a> {
@@ -169,6 +171,7 @@ impl<'a> Draft<'a> {
             soil: Vec::new(),
             sides: Vec::new(),
             loops: BTreeMap::new(),
+            legs: BTreeMap::new(),
         }
     }
 
@@ -179,11 +182,13 @@ impl<'a> Draft<'a> {
             .collect()
     }
 
-    /// Makes a stroke a line of the draft.
+    /// Makes a stroke a line of the draft, or several where the pen went there and back.
     fn line_of(&mut self, stroke: usize, organ: OrganWord) {
         let s = &self.ink.strokes[stroke];
         self.organ[stroke] = organ;
-        self.lines.push(Line { points: s.points.clone(), source: Some(s.index) });
+        let whole = || vec![s.points.clone()];
+        let pieces = self.legs.get(&stroke).cloned().unwrap_or_else(whole);
+        self.lines.extend(pieces.into_iter().map(|points| Line { points, source: Some(s.index) }));
     }
 
     fn set_organ(&mut self, source: Option<u32>, organ: OrganWord) {

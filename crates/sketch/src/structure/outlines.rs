@@ -2,7 +2,7 @@
 
 use base::Report;
 use geom::{
-    centroid, closest_on_polyline, contains, convex_hull, polyline_length, signed_area, simple_outline,
+    centroid, contains, convex_hull, distance_to_polyline, polyline_length, signed_area, simple_outline,
     simplify,
 };
 use glam::DVec2;
@@ -66,7 +66,11 @@ pub(super) fn bodies(draft: &mut Draft<'_>) {
         }
     };
     let mut found: Vec<(f64, Ring)> = Vec::new();
-    for ring in rings(&points) {
+    let alone = !draft.class.iter().any(|c| [StrokeClass::Blade, StrokeClass::Crown].contains(c));
+    for mut ring in rings(&points) {
+        if alone {
+            plumb(&mut ring);
+        }
         let area = signed_area(&ring.points).abs();
         let drawn: f64 = ring.drawn().iter().map(|d| polyline_length(d)).sum();
         if area > THIN * drawn * drawn && found.len() < MOST_BODIES {
@@ -92,6 +96,28 @@ pub(super) fn bodies(draft: &mut Draft<'_>) {
             draft.organ[strokes[part]] = OrganWord::Trunk;
         }
     }
+}
+
+/// An outline that was left off far above its foot goes straight down to it: half a body is no slanting one.
+fn plumb(ring: &mut Ring) {
+    let Some((lo, hi)) = bounds(&ring.points) else { return };
+    let wide = |&g: &usize| {
+        let (a, b) = ring.gap(ring.gaps[g]);
+        a.distance(b) > 0.1 * (hi.y - lo.y)
+    };
+    let [at] = (0..ring.gaps.len()).filter(wide).collect::<Vec<_>>()[..] else { return };
+    let gap = ring.gaps[at];
+    let (a, b) = ring.gap(gap);
+    let (top, foot) = if a.y > b.y { (a, b) } else { (b, a) };
+    let high = top.y - foot.y > 0.3 * (hi.y - lo.y) && foot.y < lo.y + 0.08 * (hi.y - lo.y);
+    let wide = (top.x - foot.x).abs() > 0.04 * (hi.y - lo.y) && (top.x - foot.x).abs() < top.y - foot.y;
+    if !(high && wide) {
+        return;
+    }
+    ring.points.insert(gap + 1, DVec2::new(top.x, foot.y));
+    // What stays open is the foot.
+    ring.gaps[at] += usize::from(a.y > b.y);
+    ring.gaps[at + 1..].iter_mut().for_each(|g| *g += 1);
 }
 
 /// Where an arm whose opening lies on a body stands: the bearer, and the middle of the opening.
@@ -405,9 +431,8 @@ pub(super) fn thorns(draft: &mut Draft<'_>) -> Vec<(Vec<DVec2>, Option<Attachmen
         if let (true, Some(bearer)) = (length < 0.3 * height, bearer) {
             let mut points = line.points;
             // Both ends on the body: the one farther from its middle line is the tip.
-            let from_middle = |p: DVec2| {
-                closest_on_polyline(&draft.forest.axes[bearer.axis].points, p).map_or(0.0, |c| c.distance)
-            };
+            let from_middle =
+                |p: DVec2| distance_to_polyline(&draft.forest.axes[bearer.axis].points, p).unwrap_or(0.0);
             if from_middle(a) > from_middle(b) {
                 points.reverse();
             }

@@ -3,7 +3,7 @@
 //! A stroke on its own cannot tell a leaf from a cactus or grass from a row of trunks; what lies inside it and
 //! what is missing around it can.
 
-use geom::{contains, convex_hull, pca2, signed_area, simple_outline};
+use geom::{contains, convex_hull, crossing_points, pca2, signed_area, simple_outline};
 use glam::DVec2;
 
 use super::blade::{first_round, split_stalks};
@@ -14,6 +14,9 @@ use super::rings::rings;
 use super::{Draft, StrokeMode, standing};
 use crate::{InkStroke, StrokeClass};
 
+/// A tangle is known by its first so many crossings.
+const MOST_CROSSINGS: usize = 500;
+
 /// Corrects what the whole drawing contradicts.
 pub(super) fn thoughts(draft: &mut Draft<'_>) {
     lone_leaf(draft);
@@ -22,7 +25,9 @@ pub(super) fn thoughts(draft: &mut Draft<'_>) {
     tree_in_one_stroke(draft);
     palm_in_one_stroke(draft);
     standing::thoughts(draft);
+    tangles(draft);
     zigzags(draft);
+    tufts(draft);
     grass(draft);
 }
 
@@ -259,6 +264,61 @@ fn zigzags(draft: &mut Draft<'_>) {
     let stands = (0..draft.class.len()).any(|k| draft.class[k] == TrunkOutline && !rows.contains(&k));
     if !stands {
         rows.into_iter().for_each(|k| draft.class[k] = StrokeClass::Corolla);
+    }
+}
+
+/// Blades of grass drawn in one go, down to the root and up again: a crown or fruit has no sharp point below from which
+/// two bare lines rise.
+fn tufts(draft: &mut Draft<'_>) {
+    use StrokeClass::{Axis, Blade, Corolla, Crown, Disc, Fruit, Other, Pot, TrunkOutline};
+    if draft.trunk || any(draft, &[Blade, Corolla, Disc, Pot]) || draft.class.len() > 60 {
+        return;
+    }
+    for k in 0..draft.class.len() {
+        if !unsure(draft, k) || ![Crown, Fruit, Other, TrunkOutline].contains(&draft.class[k]) {
+            continue;
+        }
+        if let Some(legs) = two_legs(&draft.ink.strokes[k].points) {
+            draft.class[k] = Axis;
+            draft.legs.insert(k, legs.into());
+        }
+    }
+}
+
+/// Both sides of a line with one sharp turn at its lowest point, each almost straight, apart above.
+fn two_legs(points: &[DVec2]) -> Option<[Vec<DVec2>; 2]> {
+    let (lo, hi) = bounds(points)?;
+    let low = (0..points.len()).min_by(|&a, &b| points[a].y.total_cmp(&points[b].y))?;
+    let (left, right) = (&points[..=low], &points[low..]);
+    let bare = |leg: &[DVec2]| {
+        let run = leg[0].distance(leg[leg.len() - 1]);
+        run > 0.85 * geom::polyline_length(leg) && run > 0.25 * lo.distance(hi)
+    };
+    let (a, b) = (points[0] - points[low], points[points.len() - 1] - points[low]);
+    // Sharp at the turn itself, too: a trough is no root.
+    let far = |p: &&DVec2| p.distance(points[low]) > 0.06 * lo.distance(hi);
+    let turn = left.iter().rev().find(far).zip(right.iter().find(far));
+    let turn = turn.map(|(u, v)| (*u - points[low], *v - points[low]));
+    let sharp = turn.is_some_and(|(u, v)| u.dot(v) > -0.4 * u.length() * v.length());
+    let apart = (a - b).length() > 0.15 * a.length().min(b.length());
+    (bare(left) && bare(right) && sharp && apart).then(|| [left.to_vec(), right.to_vec()])
+}
+
+/// A line that crosses itself again and again all over the place is a scribble, not petals: those cross in the middle.
+fn tangles(draft: &mut Draft<'_>) {
+    use StrokeClass::{Axis, Disc, Pot};
+    if any(draft, &[Axis, Disc, Pot]) {
+        return;
+    }
+    for k in draft.of_class(StrokeClass::Corolla) {
+        let points = &draft.ink.strokes[k].points;
+        let Some((lo, hi)) = bounds(points).filter(|_| unsure(draft, k)) else { continue };
+        let middle = lo.midpoint(hi);
+        let crossings = crossing_points(points, MOST_CROSSINGS);
+        let wide = crossings.iter().filter(|p| p.distance(middle) > 0.12 * lo.distance(hi)).count();
+        if crossings.len() > 8 && 2 * wide > crossings.len() {
+            draft.class[k] = StrokeClass::Scribble;
+        }
     }
 }
 

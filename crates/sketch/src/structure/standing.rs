@@ -28,6 +28,8 @@ pub(super) fn thoughts(draft: &mut Draft<'_>) {
     crown_with_a_side(draft);
     crown_on_trunk(draft);
     scribbled_crown(draft);
+    trunk_under_crown(draft);
+    outline_goes_on(draft);
     in_crowns(draft);
     pots(draft);
     loops_in_pots(draft);
@@ -209,7 +211,7 @@ fn loops_in_pots(draft: &mut Draft<'_>) {
 
 /// The largest closed outline of the drawing is a crown where the tops of a drawn trunk reach it from below.
 fn crown_on_trunk(draft: &mut Draft<'_>) {
-    use StrokeClass::{Blade, Crown, Disc, Fruit, Other, Pot, TrunkOutline, Vein};
+    use StrokeClass::{Axis, Blade, Crown, Disc, Fruit, Other, Pot, TrunkOutline, Vein};
     if draft.class.iter().any(|c| [Crown, Pot, Vein].contains(c)) {
         return;
     }
@@ -227,8 +229,17 @@ fn crown_on_trunk(draft: &mut Draft<'_>) {
     };
     let others = closed.iter().filter(|c| c.1 != *k).map(|c| c.0).fold(0.0, f64::max);
     let Some((lo, hi)) = bounds(outline) else { return };
-    let sides: Vec<(usize, DVec2, DVec2)> =
+    let mut sides: Vec<(usize, DVec2, DVec2)> =
         standing(draft, TrunkOutline).into_iter().filter(|s| s.0 != *k).collect();
+    // A side may have been taken for a branch: it begins below the crown and reaches it.
+    let outlined = sides.len();
+    if let [side] = sides[..] {
+        let other = draft.ink.strokes[side.0].length;
+        sides.extend(standing(draft, Axis).into_iter().filter(|s| {
+            let own = draft.ink.strokes[s.0].length;
+            unsure(draft, s.0) && s.2.y < lo.y && own.min(other) > 0.55 * own.max(other)
+        }));
+    }
     let carry = sides.len() >= 2
         && sides.iter().all(|(_, top, foot)| {
             outside(outline, *top) < REACH && foot.y < lo.y && top.y < lo.y + 0.6 * (hi.y - lo.y)
@@ -239,18 +250,82 @@ fn crown_on_trunk(draft: &mut Draft<'_>) {
     let lone = others < 0.25 * area && *area > 0.02;
     if carry && lone && over && wide < 0.7 * (hi.x - lo.x) {
         draft.class[*k] = Crown;
+        sides[outlined..].iter().for_each(|s| draft.class[s.0] = TrunkOutline);
+    }
+}
+
+/// A large open outline that reaches from below all others up to a crown is its trunk, where nothing else is.
+fn trunk_under_crown(draft: &mut Draft<'_>) {
+    use StrokeClass::{Axis, Blade, Crown, Disc, Fruit, Ground, Other, Pot, Scribble, TrunkOutline, Vein};
+    if draft.class.iter().any(|c| [TrunkOutline, Pot, Scribble, Vein].contains(c)) {
+        return;
+    }
+    let boxes: Vec<(DVec2, DVec2)> =
+        draft.ink.strokes.iter().map(|s| bounds(&s.points).unwrap_or_default()).collect();
+    let low = (0..boxes.len())
+        .filter(|&k| draft.class[k] != Ground)
+        .map(|k| boxes[k].0.y)
+        .fold(f64::INFINITY, f64::min);
+    for k in 0..boxes.len() {
+        if !unsure(draft, k) || ![Blade, Disc, Fruit, Other].contains(&draft.class[k]) {
+            continue;
+        }
+        let (lo, hi) = boxes[k];
+        let s = &draft.ink.strokes[k];
+        let deep = lo.y < low + 0.02 && hi.y - lo.y > 0.15;
+        let (a, b) = (s.points[0], s.points[s.points.len() - 1]);
+        let open_above = a.distance(b) > 0.1 * s.length && a.y.min(b.y) > lo.y + 0.3 * (hi.y - lo.y);
+        let under = draft.of_class(Crown).iter().any(|&c| {
+            let (l, h) = boxes[c];
+            hi.y > l.y - REACH && lo.y < l.y - 0.1 && h.y > hi.y + 0.1 && hi.x > l.x && lo.x < h.x
+        });
+        let carried = draft.of_class(Axis).iter().any(|&j| boxes[j].0.y < low + 0.1);
+        if deep && open_above && under && !carried {
+            draft.class[k] = TrunkOutline;
+            return;
+        }
+    }
+}
+
+/// A short line that begins where the only outline of a body ends goes on with it.
+fn outline_goes_on(draft: &mut Draft<'_>) {
+    use StrokeClass::{Axis, Crown, TrunkOutline};
+    let ink = draft.ink;
+    let [body] = draft.of_class(TrunkOutline)[..] else { return };
+    let body = &ink.strokes[body];
+    if draft.class.contains(&Crown) || openness(body) < 0.2 || draft.class.len() > 60 {
+        return;
+    }
+    let ends = [body.points[0], body.points[body.points.len() - 1]];
+    let found = draft.of_class(Axis).into_iter().find(|&k| {
+        let s = &ink.strokes[k].points;
+        let (a, b) = (s[0], s[s.len() - 1]);
+        let begins = |p: DVec2| ends.iter().any(|e| e.distance(p) < 0.02);
+        let leaves = |p: DVec2| body.points.iter().all(|q| q.distance(p) > 0.05);
+        unsure(draft, k) && ((begins(a) && leaves(b)) || (begins(b) && leaves(a)))
+    });
+    if let Some(k) = found {
+        draft.class[k] = TrunkOutline;
     }
 }
 
 /// A large scribble at the top of a trunk is its crown.
 fn scribbled_crown(draft: &mut Draft<'_>) {
     use StrokeClass::{Blade, Corolla, Crown, Scribble, TrunkOutline};
-    if draft.class.iter().any(|c| [Crown, Corolla, Blade].contains(c)) {
+    if draft.class.iter().any(|c| [Corolla, Blade].contains(c)) {
         return;
     }
     let sides = standing(draft, TrunkOutline);
+    let crown = draft
+        .of_class(Crown)
+        .iter()
+        .map(|&k| signed_area(&convex_hull(&draft.ink.strokes[k].points)))
+        .sum::<f64>();
     for k in draft.of_class(Scribble) {
         let hull = convex_hull(&draft.ink.strokes[k].points);
+        if signed_area(&hull) < 2.0 * crown {
+            continue;
+        }
         let Some((lo, hi)) = bounds(&hull).filter(|_| hull.len() > 2 && unsure(draft, k)) else { continue };
         let feet = sides.iter().filter(|s| s.2.y < lo.y && outside(&hull, s.1) < 2.0 * REACH);
         let reach =
@@ -274,7 +349,14 @@ fn in_crowns(draft: &mut Draft<'_>) {
             continue;
         }
         let s = &draft.ink.strokes[k];
-        let within = |c: &&Vec<DVec2>| s.points.iter().step_by(4).all(|&p| contains(c, p));
+        let within = |c: &&Vec<DVec2>| {
+            let (n, hits) = s
+                .points
+                .iter()
+                .step_by(4)
+                .fold((0_u32, 0_u32), |(n, h), &p| (n + 1, h + u32::from(contains(c, p))));
+            10 * hits >= 9 * n
+        };
         let Some(crown) = crowns.iter().find(within) else { continue };
         let hull = convex_hull(&s.points);
         let Some((lo, hi)) = bounds(&s.points).filter(|_| hull.len() > 2) else { continue };

@@ -395,6 +395,73 @@ fn grass_is_neither_trunks_nor_a_crown() {
     assert_eq!((r.leaves.len(), r.regions.len()), (4, 0));
 }
 
+fn guessed(strokes: &[(StrokeClass, Vec<DVec2>)]) -> Reading {
+    let lines: Vec<Vec<DVec2>> = strokes.iter().map(|s| s.1.clone()).collect();
+    let ink = clean(&Drawing::from_polylines("guessed", &lines), &mut Report::default());
+    let classes: Vec<Classified> = ink
+        .strokes
+        .iter()
+        .map(|s| Classified { class: strokes[s.index as usize].0, confidence: 0.5 })
+        .collect();
+    read(&ink, &classes, &mut Report::default())
+}
+
+#[test]
+fn a_tuft_of_grass_in_strokes_down_and_up_again_is_no_crown() {
+    let v = |x: f64| path(&[(x - 1.0, 4.0), (x, 0.0), (x + 1.2, 4.0)]);
+    let r = guessed(&[
+        (StrokeClass::Crown, v(0.0)),
+        (StrokeClass::Fruit, v(3.0)),
+        (StrokeClass::Axis, line((6.0, 0.0), (6.3, 3.0))),
+    ]);
+    assert_eq!((r.regions.len(), r.fruits.len(), r.leaves.len()), (0, 0, 5), "{:?}", r.strokes);
+    // A trough is no root: what is round below stays a crown.
+    let bowl: Vec<DVec2> = (0..=40)
+        .map(|i| ops::PI * f64::from(i) / 40.0)
+        .map(|a| DVec2::new(-ops::cos(a), 1.0 - ops::sin(a)))
+        .collect();
+    assert_eq!(guessed(&[(StrokeClass::Crown, bowl)]).regions.len(), 1);
+}
+
+#[test]
+fn a_line_that_crosses_itself_all_over_is_a_scribble_not_petals() {
+    let tangle: Vec<DVec2> = (0..600)
+        .map(|i| f64::from(i) * 0.1)
+        .map(|t| DVec2::new(1.5 * ops::sin(1.9 * t), ops::sin(3.1 * t)))
+        .collect();
+    let r = guessed(&[(StrokeClass::Corolla, tangle)]);
+    assert_eq!((r.flowers.len(), r.strokes[0].class), (0, StrokeClass::Scribble));
+    // Petals in one go cross in the middle only.
+    let rose: Vec<DVec2> = (0..=300)
+        .map(|i| ops::PI * f64::from(i) / 300.0 + 0.1)
+        .map(|t| DVec2::new(ops::cos(t), ops::sin(t)) * ops::cos(9.0 * t))
+        .collect();
+    assert_eq!(guessed(&[(StrokeClass::Corolla, rose)]).strokes[0].class, StrokeClass::Corolla);
+}
+
+#[test]
+fn half_a_cactus_stands_upright() {
+    // Up the left side, round an arm and the top, and left off half way down the right side.
+    let half = path(&[
+        (1.0, 0.0),
+        (1.0, 2.0),
+        (0.0, 2.0),
+        (0.0, 3.5),
+        (0.5, 3.5),
+        (0.5, 2.6),
+        (1.0, 2.6),
+        (1.0, 5.0),
+        (1.9, 5.0),
+        (1.9, 2.5),
+    ]);
+    let r = guessed(&[(StrokeClass::TrunkOutline, half)]);
+    let trunk = &r.axes[0];
+    let (foot, top) = (trunk.points[0], trunk.points[trunk.points.len() - 1]);
+    assert!((foot.x - top.x).abs() < 0.05, "leans from {foot} to {top}");
+    let wide = |tenths: usize| trunk.half_width[(trunk.half_width.len() - 1) * tenths / 10];
+    assert!(wide(1) > 0.7 * wide(7), "{} at the foot, {} above", wide(1), wide(7));
+}
+
 fn any_class() -> impl Strategy<Value = StrokeClass> {
     (0..StrokeClass::ALL.len()).prop_map(|k| StrokeClass::ALL[k])
 }
