@@ -18,7 +18,6 @@ const PER_CELL: f64 = 6.0;
 /// Cells along a side of a block, and in a block.
 const SIDE: usize = 4;
 const BLOCK: usize = SIDE * SIDE * SIDE;
-const ROWS: usize = SIDE * SIDE;
 
 /// Points that are sifted together: one line of memory.
 const LANES: usize = 4;
@@ -48,10 +47,18 @@ struct Sieve {
     x: Vec4,
     y: Vec4,
     z: Vec4,
-    best2: Vec4,
+    best2: [f32; LANES],
 }
 
-const EMPTY: Sieve = Sieve { x: Vec4::ZERO, y: Vec4::ZERO, z: Vec4::ZERO, best2: Vec4::NEG_INFINITY };
+const EMPTY: Sieve = Sieve { x: Vec4::ZERO, y: Vec4::ZERO, z: Vec4::ZERO, best2: [f32::NEG_INFINITY; LANES] };
+
+/// A group of the sieve in which the lanes of these bits may be nearer to a new joint.
+#[derive(Clone, Copy, Debug, Default)]
+struct Near {
+    group: u32,
+    lanes: u32,
+    cell: u32,
+}
 
 /// One point; side by side, because all of it is read together.
 #[derive(Clone, Copy, Debug)]
@@ -75,14 +82,19 @@ pub(crate) struct Field {
     sieve: Vec<Sieve>,
     /// Slot of each point by input index, or [`GONE`].
     slot: Vec<u32>,
-    /// Slots of the points that changed hands in this round, and input indices of those to be removed.
+    /// Slots of the points that changed hands in this round (`moves` of them, there is room for all and one more), and
+    /// input indices of those to be removed.
     moved: Vec<u32>,
+    moves: usize,
     dead: Vec<u32>,
+    /// Workspaces of an offer: as long as there are cells and groups, and one more.
+    near_cells: Vec<u32>,
+    near_groups: Vec<Near>,
     /// First slot of each cell and number of points left in it. The 64 cells of a block lie side by side.
     start: Vec<u32>,
     left: Vec<u32>,
     /// Upper bound of `best2` in each cell, by block; 0 where it is empty.
-    reach2: Vec<[Vec4; ROWS]>,
+    reach2: Vec<[f32; BLOCK]>,
     /// The same for each block.
     block_reach2: Vec<f32>,
     /// Lower and upper ends of the cells of each block, by axis; the outermost reach to infinity.
@@ -112,11 +124,14 @@ impl Field {
             spots: Vec::new(),
             sieve: Vec::new(),
             slot: vec![GONE; points.len()],
-            moved: Vec::with_capacity(n),
+            moved: vec![0; n + 1],
+            moves: 0,
             dead: Vec::new(),
+            near_cells: vec![0; cells + 1],
+            near_groups: Vec::new(),
             start: vec![0; cells + 1],
             left: vec![0; cells],
-            reach2: vec![[Vec4::ZERO; ROWS]; count],
+            reach2: vec![[0.0; BLOCK]; count],
             block_reach2: vec![0.0; count],
             edges: blocks.map(|n| edges(cell, n)),
             gaps: blocks.map(|n| vec![Vec4::ZERO; n]),
@@ -137,7 +152,7 @@ impl Field {
             let room = field.left[c].next_multiple_of(index(LANES));
             field.start[c + 1] = field.start[c] + room;
             if field.left[c] > 0 {
-                field.reach2[c / BLOCK][c % BLOCK / SIDE][c % SIDE] = far2;
+                field.reach2[c / BLOCK][c % BLOCK] = far2;
                 field.block_reach2[c / BLOCK] = far2;
             }
         }
@@ -146,6 +161,7 @@ impl Field {
         let none = Spot { place: DVec3::ZERO, best2, pull: DVec3::ZERO, owner: NOBODY, before: STILL, id: 0 };
         field.spots = vec![none; slots];
         field.sieve = vec![EMPTY; slots / LANES];
+        field.near_groups = vec![Near::default(); slots / LANES + 1];
         let mut next = field.start.clone();
         for (&i, &c) in good.iter().zip(&of) {
             let s = next[c as usize] as usize;
@@ -173,36 +189,122 @@ impl Field {
     }
 
     /// Lets every point within its present distance choose the new joint at `p`, where `sees` the point.
+    ///
+    /// One level after another, each in a loop of its own that stores always and keeps what counts: which points
+    /// change hands is chance, so branches on it would be guessed wrongly.
     #[inline]
     pub(crate) fn offer(&mut self, p: DVec3, joint: u32, sees: impl Fn(DVec3) -> bool) {
-        let (from, to) = (self.block_of(p - self.far), self.block_of(p + self.far));
-        let new = self.newcomer(p, joint);
-        let mut gaps = core::mem::take(&mut self.gaps);
+        let new = self.newcomer(p);
+        let cells = self.near_cells(&new);
+        if cells == 0 {
+            return;
+        }
+        let groups = self.near_groups(cells, &new);
+        for n in 0..groups {
+            let Near { group, mut lanes, .. } = self.near_groups[n];
+            let sieve = &mut self.sieve[group as usize];
+            while lanes != 0 {
+                let k = lanes.trailing_zeros() as usize % LANES;
+                lanes &= lanes - 1;
+                let slot = group as usize * LANES + k;
+                let spot = &mut self.spots[slot];
+                let d2 = spot.place.distance_squared(p);
+                if d2 < spot.best2 && sees(spot.place) {
+                    self.moved[self.moves] = index(slot);
+                    self.moves += usize::from(spot.before == STILL);
+                    spot.before = if spot.before == STILL { spot.owner } else { spot.before };
+                    spot.owner = joint;
+                    spot.best2 = d2;
+                    sieve.best2[k] = above(d2);
+                }
+            }
+        }
+        self.lower(groups);
+    }
+
+    /// Finds the cells in which the joint can be nearer to something, in their order; their number.
+    #[inline]
+    fn near_cells(&mut self, new: &Newcomer) -> usize {
+        let (from, to) = (self.block_of(new.p - self.far), self.block_of(new.p + self.far));
         for axis in 0..3 {
             let blocks = from[axis]..=to[axis];
             let edges = &self.edges[axis][blocks.clone()];
-            for (gap, [low, high]) in gaps[axis][blocks].iter_mut().zip(edges) {
+            for (gap, [low, high]) in self.gaps[axis][blocks].iter_mut().zip(edges) {
                 *gap = new.gap(axis, *low, *high);
             }
         }
+        let mut count = 0;
         for k in from[2]..=to[2] {
-            let gz = gaps[2][k];
+            let gz = self.gaps[2][k];
             let near_z = gz.min_element();
             for j in from[1]..=to[1] {
-                let gy = gaps[1][j];
+                let gy = self.gaps[1][j];
                 let near_yz = near_z + gy.min_element();
                 let row = (k * self.blocks[1] + j) * self.blocks[0];
-                for (i, &gx) in gaps[0].iter().enumerate().take(to[0] + 1).skip(from[0]) {
-                    if self.block_reach2[row + i] > near_yz + gx.min_element() {
-                        self.offer_block(row + i, [gx, gy, gz], &new, &sees);
+                for i in from[0]..=to[0] {
+                    let gx = self.gaps[0][i];
+                    let block = row + i;
+                    if self.block_reach2[block] > near_yz + gx.min_element() {
+                        let mut near = near_in(&self.reach2[block], gx, gy, gz);
+                        while near != 0 {
+                            self.near_cells[count] = index(block * BLOCK) + near.trailing_zeros();
+                            near &= near - 1;
+                            count += 1;
+                        }
                     }
                 }
             }
         }
-        self.gaps = gaps;
+        count
     }
 
-    fn newcomer(&self, p: DVec3, joint: u32) -> Newcomer {
+    /// Sifts the first `cells` cells found: groups with points that may be nearer to the joint; their number.
+    #[inline]
+    fn near_groups(&mut self, cells: usize, new: &Newcomer) -> usize {
+        let mut count = 0;
+        let least = Vec4::splat(-new.slack);
+        for &cell in &self.near_cells[..cells] {
+            let from = self.start[cell as usize] as usize / LANES;
+            let to = from + (self.left[cell as usize] as usize).div_ceil(LANES);
+            for (sieve, group) in self.sieve[from..to].iter().zip(index(from)..) {
+                let (dx, dy, dz) = (sieve.x - new.at[0], sieve.y - new.at[1], sieve.z - new.at[2]);
+                let room = Vec4::from(sieve.best2) - (dx * dx + dy * dy + dz * dz);
+                let lanes = room.cmpgt(least).bitmask();
+                self.near_groups[count] = Near { group, lanes, cell };
+                count += usize::from(lanes != 0);
+            }
+        }
+        count
+    }
+
+    /// Brings down the bounds of the cells and blocks of these groups.
+    #[inline]
+    fn lower(&mut self, groups: usize) {
+        let mut last = NOBODY;
+        for n in 0..groups {
+            let Near { cell, .. } = self.near_groups[n];
+            if cell == last {
+                continue;
+            }
+            last = cell;
+            let cell = cell as usize;
+            let from = self.start[cell] as usize / LANES;
+            let to = from + (self.left[cell] as usize).div_ceil(LANES);
+            let worst = self.sieve[from..to].iter().fold(Vec4::ZERO, |a, s| a.max(Vec4::from(s.best2)));
+            self.reach2[cell / BLOCK][cell % BLOCK] = worst.max_element();
+        }
+        let mut last = usize::MAX;
+        for n in 0..groups {
+            let block = self.near_groups[n].cell as usize / BLOCK;
+            if block != last {
+                last = block;
+                let most = rows(&self.reach2[block]).fold(Vec4::ZERO, Vec4::max);
+                self.block_reach2[block] = most.max_element();
+            }
+        }
+    }
+
+    fn newcomer(&self, p: DVec3) -> Newcomer {
         let at = p - self.lo;
         // Coordinates in f32 are off by 2^-24 of their size, their difference by as much again: e on each axis. Of a
         // point at d that makes at most 2 sqrt(3) d e + 3 e^2.
@@ -210,74 +312,14 @@ impl Field {
         let slack = above(4.0 * self.far * e + 4.0 * e * e);
         // The ends of cells are products, off by a little more.
         let blur = Vec4::splat(above(4.0 * e));
-        Newcomer { p, at: at.as_vec3().to_array().map(Vec4::splat), slack, blur, joint }
-    }
-
-    #[inline]
-    fn offer_block(
-        &mut self,
-        block: usize,
-        [gx, gy, gz]: [Vec4; 3],
-        new: &Newcomer,
-        sees: &impl Fn(DVec3) -> bool,
-    ) {
-        let mut near = 0_u64;
-        let gy = gy.to_array();
-        for (z, (rows, gz)) in self.reach2[block].chunks_exact(SIDE).zip(gz.to_array()).enumerate() {
-            for (y, (row, gy)) in rows.iter().zip(gy).enumerate() {
-                let bits = row.cmpgt(gx + Vec4::splat(gy + gz)).bitmask();
-                near |= u64::from(bits) << ((z * SIDE + y) * SIDE);
-            }
-        }
-        if near == 0 {
-            return;
-        }
-        while near != 0 {
-            let cell = near.trailing_zeros() as usize;
-            near &= near - 1;
-            let reach = self.offer_cell(block * BLOCK + cell, new, sees);
-            self.reach2[block][cell / SIDE][cell % SIDE] = reach;
-        }
-        let most = self.reach2[block].iter().fold(Vec4::ZERO, |a, b| a.max(*b));
-        self.block_reach2[block] = most.max_element();
-    }
-
-    /// The new upper bound of the cell.
-    #[inline]
-    fn offer_cell(&mut self, cell: usize, new: &Newcomer, sees: &impl Fn(DVec3) -> bool) -> f32 {
-        let from = self.start[cell] as usize / LANES;
-        let to = from + (self.left[cell] as usize).div_ceil(LANES);
-        let mut worst = Vec4::ZERO;
-        for (lane, group) in self.sieve[from..to].iter_mut().zip(from..) {
-            let (dx, dy, dz) = (lane.x - new.at[0], lane.y - new.at[1], lane.z - new.at[2]);
-            let room = lane.best2 - (dx * dx + dy * dy + dz * dz);
-            let mut near = room.cmpgt(Vec4::splat(-new.slack)).bitmask();
-            while near != 0 {
-                let k = near.trailing_zeros() as usize;
-                near &= near - 1;
-                let slot = group * LANES + k;
-                let spot = &mut self.spots[slot];
-                let d2 = spot.place.distance_squared(new.p);
-                if d2 < spot.best2 && sees(spot.place) {
-                    if spot.before == STILL {
-                        spot.before = spot.owner;
-                        self.moved.push(index(slot));
-                    }
-                    spot.owner = new.joint;
-                    spot.best2 = d2;
-                    lane.best2[k] = above(d2);
-                }
-            }
-            worst = worst.max(lane.best2);
-        }
-        worst.max_element()
+        Newcomer { p, at: at.as_vec3().to_array().map(Vec4::splat), slack, blur }
     }
 
     /// Ends a round of offers: tells of every point that changed hands, and removes those within the kill distance.
     /// `changed` answers with the unit vector from the new joint to the point.
     pub(crate) fn settle(&mut self, kill2: f64, mut changed: impl FnMut(Change) -> DVec3) {
-        let mut moved = core::mem::take(&mut self.moved);
-        for &slot in &moved {
+        let moves = core::mem::take(&mut self.moves);
+        for &slot in &self.moved[..moves] {
             let spot = &mut self.spots[slot as usize];
             let killed = spot.best2 <= kill2;
             let Spot { place, before: from, owner: to, id, pull, .. } = *spot;
@@ -287,8 +329,6 @@ impl Field {
             }
             spot.pull = changed(Change { from, to, place, id, pull, killed });
         }
-        moved.clear();
-        self.moved = moved;
         // Only now: removing one moves another to its slot.
         let mut dead = core::mem::take(&mut self.dead);
         for &id in &dead {
@@ -300,7 +340,7 @@ impl Field {
 
     /// Takes the point of slot `a` out of its cell; the cell's last one takes its slot.
     fn remove(&mut self, a: usize) {
-        debug_assert!(self.moved.is_empty(), "slots are fixed during a round");
+        debug_assert!(self.moves == 0, "slots are fixed during a round");
         let cell = self.cell_index(self.spots[a].place);
         let last = (self.start[cell] + self.left[cell]) as usize - 1;
         self.slot[self.spots[a].id as usize] = GONE;
@@ -313,7 +353,7 @@ impl Field {
         self.left[cell] -= 1;
         self.alive -= 1;
         if self.left[cell] == 0 {
-            self.reach2[cell / BLOCK][cell % BLOCK / SIDE][cell % SIDE] = 0.0;
+            self.reach2[cell / BLOCK][cell % BLOCK] = 0.0;
         }
     }
 
@@ -373,7 +413,6 @@ struct Newcomer {
     /// What a squared distance in the sieve may be too large by, and a distance from the end of a cell.
     slack: f32,
     blur: Vec4,
-    joint: u32,
 }
 
 impl Newcomer {
@@ -385,6 +424,24 @@ impl Newcomer {
         // A millionth less covers what the square rounds.
         gap * gap * Vec4::splat(0.999_999)
     }
+}
+
+/// The rows of a block.
+#[inline]
+fn rows(block: &[f32; BLOCK]) -> impl Iterator<Item = Vec4> + '_ {
+    block.as_chunks::<SIDE>().0.iter().map(|row| Vec4::from_array(*row))
+}
+
+/// A bit for each cell of a block that reaches farther than it is away.
+#[inline]
+fn near_in(reach2: &[f32; BLOCK], gx: Vec4, gy: Vec4, gz: Vec4) -> u64 {
+    let (gy, gz) = (gy.to_array(), gz.to_array());
+    let mut near = 0;
+    for (n, row) in rows(reach2).enumerate() {
+        let bits = row.cmpgt(gx + Vec4::splat(gy[n % SIDE] + gz[n / SIDE])).bitmask();
+        near |= u64::from(bits) << (n * SIDE);
+    }
+    near
 }
 
 /// Lower and upper ends of `blocks` blocks of cells from 0 on.

@@ -38,7 +38,9 @@ pub struct SelfOrganized {
 /// Grows trees year by year, one from each root; they shade one another.
 ///
 /// Guaranteed: it ends; a clean `validate()`; no joint in an obstacle; radii that never fell; the tree of year n does
-/// not depend on how many years follow. Cost: linear in the internodes of each year.
+/// not depend on how many years follow. Where there is too little shade trees multiply from year to year: growth then
+/// ends, with the warning `growth-stopped`, before the year that would exceed `max_joints`. Cost: linear in the
+/// internodes of each year.
 ///
 /// # Errors
 /// [`GrowthError`]: numbers out of range, no roots, a root in an obstacle, an envelope without room, cancelled.
@@ -102,15 +104,10 @@ pub fn self_organize(
     forest.cast_from(0);
     for year in 0..spec.years {
         run.cancel.check()?;
-        if forest.grove.len() >= spec.max_joints as usize {
-            let n = forest.grove.len();
-            report.warn(
-                "growth-stopped",
-                format!("growth stopped in year {year} at {n} joints, the most allowed"),
-            );
+        if let Some(next) = forest.year(year) {
+            report.warn("growth-stopped", too_much(spec, year, forest.grove.len(), next));
             break;
         }
-        forest.year(year);
         // Later years have more to do.
         let share = f64::from(year + 1) / f64::from(spec.years);
         run.cancel.reached(GROWN * share * share);
@@ -122,6 +119,22 @@ pub fn self_organize(
     report.book("grow", run.clock.now_ms() - started);
     debug_assert_eq!(grove.skeleton.validate().next(), None, "a grown skeleton is sound");
     Ok(SelfOrganized { skeleton: grove.skeleton, generated, shed })
+}
+
+/// Why growth stopped before its last year, and which numbers to change.
+fn too_much(spec: &SelfOrganizingSpec, year: u32, joints: usize, next: usize) -> String {
+    let (alpha, below, most, years) = (spec.alpha, spec.shed_below, spec.max_joints, spec.years);
+    let cause = match &spec.light {
+        Light::Shadow { a, full, .. } => format!(
+            "so little shade lets too much of it sprout, raise light.a ({a}) or shed_below ({below}), or lower \
+             light.full ({full}), alpha ({alpha}) or years"
+        ),
+        Light::Space { .. } => format!("raise shed_below ({below}), or lower alpha ({alpha}) or years"),
+    };
+    format!(
+        "growth stopped after year {year} of {years} with {joints} joints: the next year would make {next}, above \
+         max_joints ({most}); {cause}"
+    )
 }
 
 enum LightModel {
@@ -159,7 +172,8 @@ struct Forest<'a> {
 }
 
 impl Forest<'_> {
-    fn year(&mut self, year: u32) {
+    /// The joints that there would be after this year if that is more than allowed: then nothing has sprouted.
+    fn year(&mut self, year: u32) -> Option<usize> {
         self.look();
         self.flow.gather(&self.grove, &self.bud_light);
         self.drop_dark_branches(year);
@@ -171,9 +185,14 @@ impl Forest<'_> {
             Resource::Priority { w_max, w_min, kappa } => Sharing::Rank { w_max, w_min, kappa },
         };
         self.flow.share(&self.grove, &self.bud_light, self.spec.alpha, sharing);
+        let next = self.grove.len() + self.sprouting();
+        if next > self.spec.max_joints as usize {
+            return Some(next);
+        }
         self.sprout(year + 1);
         let tip = ops::powf(self.spec.tip_radius_m, self.spec.pipe_exponent);
         self.grove.thicken(tip);
+        None
     }
 
     /// Light of every bud.
@@ -247,14 +266,28 @@ impl Forest<'_> {
         self.flow.gather(&self.grove, &self.bud_light);
     }
 
+    /// Vigour that a shoot makes use of, never more than the spec allows: a seedling in full light would leap.
+    fn used(&self, vigour: f64) -> f64 {
+        vigour.min(f64::from(self.spec.most_per_shoot) + 0.999)
+    }
+
+    /// Internodes that this year's vigour is enough for.
+    fn sprouting(&self) -> usize {
+        let all: f64 = self.flow.fed.iter().map(|f| self.used(f.vigour).floor()).sum();
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a hundred a bud at most"
+        )]
+        let all = all as usize;
+        all
+    }
+
     /// Buds with a vigour of 1 or more grow as many internodes.
     fn sprout(&mut self, birth: u32) {
         let n = self.grove.len();
         let fed = core::mem::take(&mut self.flow.fed);
         for at_joint in fed.chunk_by(|a, b| a.joint == b.joint) {
-            if self.grove.len() >= self.spec.max_joints as usize {
-                break;
-            }
             at_joint.iter().for_each(|fed| self.shoot(*fed, birth));
         }
         self.flow.fed = fed;
@@ -263,8 +296,7 @@ impl Forest<'_> {
     }
 
     fn shoot(&mut self, Fed { joint, bud, vigour }: Fed, birth: u32) {
-        // Never more than the spec allows: a seedling in full light would leap.
-        let vigour = vigour.min(f64::from(self.spec.most_per_shoot) + 0.999);
+        let vigour = self.used(vigour);
         if vigour < 1.0 {
             return;
         }

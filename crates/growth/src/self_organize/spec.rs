@@ -142,7 +142,8 @@ pub struct SelfOrganizingSpec {
     pub tip_radius_m: f64,
     /// Whether a bud suffers from the shadow of its own leaf (paper 001 has no correction), default false.
     pub self_shadow: bool,
-    /// Most joints of all trees together, default 2 million.
+    /// Most joints of all trees together; growth stops, with a warning, before the year that would make more. Default
+    /// 200,000: some six million triangles.
     #[schemars(range(min = 1, max = 2_147_483_648_u64))]
     pub max_joints: u32,
 }
@@ -167,7 +168,7 @@ impl Default for SelfOrganizingSpec {
             pipe_exponent: 2.4,
             tip_radius_m: 0.004,
             self_shadow: false,
-            max_joints: 2_000_000,
+            max_joints: 200_000,
         }
     }
 }
