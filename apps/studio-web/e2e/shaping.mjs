@@ -17,7 +17,7 @@ async function bush(page, url, tool) {
 }
 
 /** A place of the view where the pointer means a branch that is not the trunk. */
-async function branch(page, from = 0) {
+async function branch(page, from = 4, trunk = false) {
   const box = await page.locator('.view').boundingBox();
   await page.keyboard.press('1');
   for (let k = from; k < 60; k += 1) {
@@ -26,10 +26,12 @@ async function branch(page, from = 0) {
     await page.mouse.move(x + 1, y);
     await page.waitForTimeout(120);
     const picked = await data(page, 'picked');
-    if (picked !== '' && picked !== '0') return { x: x + 1, y, k };
+    if (picked !== '' && (trunk || picked !== '0')) return { x: x + 1, y, k };
   }
   throw new Error('no branch under the pointer');
 }
+
+const WIDE = { viewport: { width: 1360, height: 760 } };
 
 const CENTRE = async (page) => {
   const box = await page.locator('.view').boundingBox();
@@ -49,7 +51,7 @@ async function prune({ page, url, shot }) {
   const pruned = await changed(page, plain, 'pruned');
   await page.waitForTimeout(900);
   await shot('shape-prune');
-  assert.match(await page.locator('.edits li').textContent(), /Pruned.*branches gone/);
+  assert.match(await page.locator('.edits li').textContent(), /Pruned−\d+ branches/);
   assert.match(await page.locator('#b-undo').getAttribute('title'), /prune/);
   // Left out, done again, removed; each is a step.
   await page.click('[data-key=eye0]');
@@ -127,7 +129,7 @@ async function draw({ page, url, shot }) {
   await changed(page, plain, 'it bears a new branch');
   await page.waitForTimeout(800);
   await shot('shape-sketch');
-  assert.match(await page.locator('.edits li').textContent(), /Drawn branch.*branches grown/);
+  assert.match(await page.locator('.edits li').textContent(), /Drawn branch\+\d+ branches/);
 }
 
 async function brush({ page, url, shot }) {
@@ -173,7 +175,7 @@ async function brush({ page, url, shot }) {
 
 async function seeds({ page, url, shot }) {
   const plain = await bush(page, url, 4);
-  const at = await branch(page, 6);
+  const at = await branch(page, 9);
   await page.keyboard.press('4');
   await page.click('#b-shape-whole');
   await page.mouse.click(at.x, at.y);
@@ -233,7 +235,7 @@ async function drawn({ page, url, shot }) {
   const plain = await data(page, 'digest');
   await page.keyboard.press('s');
   await page.locator('.strip').waitFor();
-  const at = await branch(page);
+  const at = await branch(page, 0, true);
   await page.keyboard.press('2');
   await page.mouse.move(at.x, at.y);
   await page.mouse.down();
@@ -284,12 +286,12 @@ async function fingers({ page, url, context, shot }) {
 }
 
 export const shaping = [
-  ['shape: prune a branch and undo', prune],
-  ['shape: turn a branch', rotate],
-  ['shape: draw a branch', draw],
-  ['shape: brush, leaves, outline', brush],
-  ['shape: another seed says what is gone', seeds],
-  ['shape: saved, reloaded, recovered', kept],
-  ['shape: a drawing, and a click on a plant', drawn],
+  ['shape: prune a branch and undo', prune, WIDE],
+  ['shape: turn a branch', rotate, WIDE],
+  ['shape: draw a branch', draw, WIDE],
+  ['shape: brush, leaves, outline', brush, WIDE],
+  ['shape: another seed says what is gone', seeds, WIDE],
+  ['shape: saved, reloaded, recovered', kept, WIDE],
+  ['shape: a drawing, and a click on a plant', drawn, WIDE],
   ['shape: fingers', fingers, { viewport: { width: 820, height: 1000 }, hasTouch: true }],
 ];

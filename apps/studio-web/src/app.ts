@@ -97,6 +97,7 @@ export class App {
         this.sendDraft();
       },
       busy: () => this.busy(),
+      progress: (share) => { this.parts['busytext']!.textContent = t('status.working.percent', { percent: Math.floor(100 * share) }); },
       failed: (why) => {
         this.idle();
         note(why === 'cancelled' ? t('status.stopped') : t('note.refused', { why }), why === 'cancelled' ? 'good' : 'bad');
@@ -219,10 +220,7 @@ export class App {
     }
     this.build();
     // The plant is shown beside the list, not behind it.
-    new ResizeObserver(() => {
-      const folded = this.list.isFolded && (this.shaping?.list.hidden ?? true);
-      this.view?.setInset(folded ? 0 : this.column.offsetWidth + 12);
-    }).observe(this.column);
+    new ResizeObserver(() => this.view?.setInset(this.list.isFolded ? 0 : this.list.element.offsetWidth + 12)).observe(this.list.element);
     this.files.listen(document.body);
     document.addEventListener('keydown', (e) => this.key(e));
     document.addEventListener('paste', (e) => this.paste(e));

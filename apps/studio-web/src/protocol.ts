@@ -85,5 +85,7 @@ export type FromWorker =
   /** `fresh`: the plants whose meshes changed. */
   | { kind: 'view'; view: View; fresh: Sent[] }
   | { kind: 'busy' }
+  /** The share of an evaluation that is done. */
+  | { kind: 'progress'; share: number }
   | { kind: 'failed'; why: string }
   | { kind: 'fault'; why: string };

@@ -26,6 +26,8 @@ const NEAR_TOUCH = 22;
 /** A step of the wheel, while a branch or a plane is held. */
 const TWIST_DEG = 5;
 const STILL = 5;
+/** A view of this width, pixels, has room for the list beside a plant. */
+const ROOMY = 600;
 
 /** The step of undo that an edit makes is called by the same word. */
 const EDIT_ICONS: Record<string, IconName> = {
@@ -54,6 +56,8 @@ export class Shaping {
   private near = NEAR;
   private moves: ShapePointer[] = [];
   private inFlight = false;
+  /** Whether the list of edits is folded, as the person set it. */
+  private folds: boolean | undefined;
 
   constructor(private readonly view: PlantView, private readonly events: ShapingEvents) {
     this.overlay = new Overlay((points) => view.project(points));
@@ -65,7 +69,7 @@ export class Shaping {
     canvas.addEventListener('pointerleave', () => { if (this.pointerId === undefined) { this.at = undefined; this.light(undefined); this.overlay.setRing(undefined); } });
     canvas.addEventListener('wheel', (e) => this.wheel(e), { capture: true, passive: false });
     canvas.addEventListener('contextmenu', (e) => { if (this.tool) e.preventDefault(); });
-    view.onDraw = () => { if (this.tool && this.lit !== undefined) this.overlay.draw(); };
+    view.onDraw = () => { if (this.tool) this.overlay.draw(); };
   }
 
   get isOn(): boolean {
@@ -347,7 +351,7 @@ export class Shaping {
     }
   }
 
-  private heard({ picked, busy }: ShapeAnswer): void {
+  private heard({ picked, busy, commit }: ShapeAnswer): void {
     if (picked) {
       const eye = this.at && this.view.element.getBoundingClientRect();
       const at = eye && this.at ? this.view.pointer(this.at[0] + eye.left, this.at[1] + eye.top, 1) : undefined;
@@ -356,7 +360,7 @@ export class Shaping {
     }
     document.body.dataset['picked'] = String(picked?.axis ?? '');
     // What moves under the hand is seen in the plant itself.
-    const moving = busy && this.tool !== 'sketch';
+    const moving = commit !== null || ((busy || this.isBusy) && this.tool !== 'sketch');
     this.light(moving || this.tool === 'silhouette' || this.brushes ? undefined : (picked?.axis ?? (this.tool === 'pick' ? this.chosen?.axis : undefined)));
   }
 
@@ -409,11 +413,17 @@ export class Shaping {
       eye.setAttribute('data-key', `eye${row}`);
       const gone = button('close', t('edit.remove', { name }), () => this.events.run({ do: 'shape-remove', rows: [row] }));
       gone.setAttribute('data-key', `gone${row}`);
-      return el('li', { class: `${off ? 'is-off' : ''} ${bad ? 'is-bad' : ''}`, 'data-edit': op, title: bad && report ? said(report) : '' }, icon(bad ? 'warning' : (EDIT_ICONS[op] ?? 'branch')), what, eye, gone);
+      return el('li', { class: `${off ? 'is-off' : ''} ${bad ? 'is-bad' : ''}`, 'data-edit': op, title: report && !off ? `${name}: ${said(report)}` : name }, icon(bad ? 'warning' : (EDIT_ICONS[op] ?? 'branch')), what, eye, gone);
     });
     const all = button('close', t('edit.remove.all'), () => this.events.run({ do: 'shape-remove', rows: edits.map((_, row) => row) }));
     all.setAttribute('data-key', 'all');
-    this.list.replaceChildren(el('div', { class: 'edits-head' }, el('b', {}, t('edit.title')), el('span', { class: 'muted' }, String(edits.length)), el('span', { class: 'space' }), all), el('ol', {}, ...rows));
+    // In a narrow view the list would lie over the plant.
+    const folded = this.folds ?? this.view.element.clientWidth < ROOMY;
+    const fold = el('button', { type: 'button', class: 'fold', 'data-key': 'fold', 'aria-expanded': String(!folded), onclick: () => { this.folds = !folded; this.showList(); } },
+      icon('shape'), t('edit.title'), el('span', { class: 'muted' }, String(edits.length)),
+      ...(undone > 0 ? [el('span', { class: 'bad', title: t('edit.undone.count', { count: undone }) }, icon('warning'), String(undone))] : []));
+    this.list.classList.toggle('folded', folded);
+    this.list.replaceChildren(el('div', { class: 'edits-head' }, fold, ...(folded ? [] : [all])), ...(folded ? [] : [el('ol', {}, ...rows)]));
     if (focused) this.list.querySelector<HTMLElement>(`[data-key="${CSS.escape(focused)}"]`)?.focus({ preventScroll: true });
   }
 }

@@ -9,8 +9,15 @@ let stale = false;
 let scheduled = false;
 const sent = new Set<number>();
 
-// Looked at by the evaluation between its steps.
-(globalThis as { burgeonStop?: () => boolean }).burgeonStop = () => stop !== null && Atomics.load(stop, 0) !== 0;
+let toldShare = 0;
+// Looked at by the evaluation between its steps; it says how far it is.
+(globalThis as { burgeonStop?: (share: number) => boolean }).burgeonStop = (share) => {
+  if (share > toldShare + 0.01) {
+    toldShare = share;
+    tell({ kind: 'progress', share });
+  }
+  return stop !== null && Atomics.load(stop, 0) !== 0;
+};
 
 function tell(message: FromWorker, transfer: Transferable[] = []): void {
   page.postMessage(message, transfer);
@@ -99,6 +106,7 @@ function evaluate(): void {
   scheduled = false;
   if (!session || !stale) return;
   stale = false;
+  toldShare = 0;
   try {
     const view: View = JSON.parse(session.evaluate());
     const s = session;

@@ -13,6 +13,8 @@ const ORDERS = [0x8a4b14, 0xc0600f, 0x1f8a55, 0x2079c0, 0x8a4fb5].map((c) => new
 /** Leaves and petals among the axes. */
 const BLADES = [0x3f9a3a, 0xd0407a].map((c) => new THREE.Color(c));
 
+/** Height of the strip of tools with its options, pixels. */
+const STRIP = 116;
 /** A pointer that moved no further than this, pixels, clicked. */
 const CLICK = 5;
 
@@ -54,6 +56,9 @@ export class PlantView {
   private hands = false;
   /** Pixels on the left that something else covers. */
   private inset = 0;
+  private wanted = 0;
+  /** Pixels at the foot that something else covers. */
+  private low = 0;
   private readonly caster = new THREE.Raycaster();
   private wish: { target: THREE.Vector3; distance: number } | undefined;
   /** A plant was clicked. */
@@ -429,10 +434,16 @@ export class PlantView {
 
   /** With a tool in the hand the second button or two fingers turn the view, and it keeps its size. */
   setHands(on: boolean): void {
+    if (on === this.hands) return;
     this.hands = on;
     this.controls.mouseButtons = on ? { LEFT: null, MIDDLE: THREE.MOUSE.PAN, RIGHT: THREE.MOUSE.ROTATE } : { LEFT: THREE.MOUSE.ROTATE, MIDDLE: THREE.MOUSE.DOLLY, RIGHT: THREE.MOUSE.PAN };
     this.controls.touches = on ? { ONE: null, TWO: THREE.TOUCH.DOLLY_ROTATE } : { ONE: THREE.TOUCH.ROTATE, TWO: THREE.TOUCH.DOLLY_PAN };
+    // The tools' strip lies over the foot of the view.
+    this.low = on ? STRIP : 0;
+    this.inset = this.wanted;
+    this.lay();
     if (!on && this.follow) this.fitStage();
+    else if (this.follow) this.frameNowBox();
     this.redraw();
   }
 
@@ -443,9 +454,10 @@ export class PlantView {
 
   /** Pixels on the left that a list covers: the plant is shown beside it. */
   setInset(pixels: number): void {
-    const inset = pixels > 0.5 * this.element.clientWidth ? 0 : pixels;
-    if (inset === this.inset) return;
-    this.inset = inset;
+    this.wanted = pixels > 0.5 * this.element.clientWidth ? 0 : pixels;
+    // Under a hand the view stands still.
+    if (this.hands || this.wanted === this.inset) return;
+    this.inset = this.wanted;
     this.lay();
     if (this.follow) this.frameNowBox();
     this.redraw();
@@ -509,7 +521,8 @@ export class PlantView {
     const radius = max.clone().sub(min).length() * s * 0.5;
     const angle = THREE.MathUtils.degToRad(this.far.fov / 2);
     const { clientWidth: w, clientHeight: h } = this.element;
-    const across = Math.min(1, (w - this.inset) / Math.max(1, h));
+    const free = Math.max(1, h - this.low);
+    const across = Math.min(1, (w - this.inset) / free) * (free / Math.max(1, h));
     const distance = (radius / Math.sin(angle) / across) * 0.98;
     this.wish = { target, distance };
     if (now) {
@@ -559,7 +572,7 @@ export class PlantView {
   private lay(): void {
     const { clientWidth: w, clientHeight: h } = this.element;
     this.far.aspect = w / Math.max(1, h);
-    if (this.inset > 0) this.far.setViewOffset(w, h, -this.inset / 2, 0, w, h);
+    if (this.inset > 0 || this.low > 0) this.far.setViewOffset(w, h, -this.inset / 2, this.low / 2, w, h);
     else this.far.clearViewOffset();
     this.far.updateProjectionMatrix();
     const front = this.seen?.front;

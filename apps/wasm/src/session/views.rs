@@ -29,6 +29,7 @@ impl Session {
             self.scene.retain(document);
             for plant in document.plants().iter().filter(|p| !p.settings().hidden) {
                 let id = plant.id();
+                cancel.forget();
                 let outcome = if drawn && Some(id) == current {
                     self.previewed = true;
                     let look = self.preview.get_or_insert_with(Evaluator::previewing);
