@@ -145,7 +145,7 @@ fn hand_edit() -> BoxedStrategy<HandEdit> {
         (axis(), axis(), number.clone())
             .prop_map(|(axis, on, at)| { HandEdit::Move { axis, to: Destination::Place { axis: on, at } } }),
         (axis(), number.clone()).prop_map(|(axis, at)| HandEdit::Prune { axis, at }),
-        (axis(), seed.clone()).prop_map(|(axis, seed)| HandEdit::Regrow { axis, seed }),
+        (axis(), seed).prop_map(|(axis, seed)| HandEdit::Regrow { axis, seed }),
         (axis(), points(), number.clone()).prop_map(|(bearer, points, twigs)| {
             HandEdit::SketchBranch { bearer, at: None, points, twigs, seed: 1 }
         }),
