@@ -494,6 +494,7 @@ fn leaf_options(s: &LeafSettings, in_file: Option<ThicknessRule>) -> LeafOptions
             LeafPaint::Veins => LeafTexture::Veins,
             LeafPaint::Plain => LeafTexture::Plain,
         },
+        side_veins: 0,
     }
 }
 
