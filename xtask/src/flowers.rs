@@ -5,7 +5,6 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use crate::shell::{Outcome, cargo, command, repository, say, target_dir};
-use crate::species::shrink;
 
 /// Species, days from bud to full bloom, and from there to wilted.
 const FLOWERS: [(&str, f64, f64); 5] = [
@@ -15,9 +14,6 @@ const FLOWERS: [(&str, f64, f64); 5] = [
     ("sunflower", 8.0, 6.0),
     ("clivia", 7.0, 5.0),
 ];
-
-/// Colours of a picture: enough for a sky without bands.
-const COLOURS: usize = 224;
 
 struct Maker {
     burgeon: PathBuf,
@@ -51,7 +47,7 @@ impl Maker {
         let png = self.folder.join(format!("{name}-{day:.2}-{}.png", more.len()));
         let (day, model) = (day.to_string(), self.path("flower.glb"));
         let shown = png.display().to_string();
-        let args = ["bloom", "run", name, "-o", &model, "--day", &day, "--png", &shown, "--size", "280x300"];
+        let args = ["bloom", "run", name, "-o", &model, "--day", &day, "--png", &shown, "--size", "224x240"];
         self.burgeon(&[&args, more].concat())?;
         Ok(png)
     }
@@ -111,7 +107,7 @@ fn picture(name: &str) -> PathBuf {
     repository().join("docs/pictures").join(name)
 }
 
-/// Pictures of one size side by side, rows below one another, with few colours.
+/// Pictures of one size side by side, rows below one another.
 fn tiled(rows: &[Vec<PathBuf>], to: &Path) -> Outcome {
     let mut pixels: Vec<u8> = Vec::new();
     let (mut width, mut height) = (0, 0);
@@ -121,18 +117,21 @@ fn tiled(rows: &[Vec<PathBuf>], to: &Path) -> Outcome {
         width = wide * read.len();
         height += high;
         for y in 0..high {
-            read.iter().for_each(|(p, w, _)| pixels.extend(&p[4 * w * y..4 * w * (y + 1)]));
+            for (p, w, _) in &read {
+                let row = p[4 * w * y..4 * w * (y + 1)].chunks_exact(4);
+                row.for_each(|c| pixels.extend(&c[..3]));
+            }
         }
     }
     let fault = |e: &dyn std::fmt::Display| format!("{}: {e}", to.display());
     let size = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
     let out = File::create(to).map_err(|e| fault(&e))?;
     let mut encoder = png::Encoder::new(std::io::BufWriter::new(out), size(width), size(height));
-    encoder.set_color(png::ColorType::Rgba);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_compression(png::Compression::High);
     let mut writer = encoder.write_header().map_err(|e| fault(&e))?;
     writer.write_image_data(&pixels).map_err(|e| fault(&e))?;
-    writer.finish().map_err(|e| fault(&e))?;
-    shrink(to, COLOURS)
+    writer.finish().map_err(|e| fault(&e))
 }
 
 /// The pixels of a picture as RGBA, its width and height.

@@ -101,7 +101,7 @@ fn grouped(n: u64) -> String {
 }
 
 /// Writes a picture again with 16 colours, 4 bits a pixel, or up to 256, 8 bits; one of them is transparent.
-pub(crate) fn shrink(path: &Path, colours: usize) -> Outcome {
+fn shrink(path: &Path, colours: usize) -> Outcome {
     let fault = |e: &dyn std::fmt::Display| format!("{}: {e}", path.display());
     let file = File::open(path).map_err(|e| fault(&e))?;
     let mut decoder = png::Decoder::new(BufReader::new(file));

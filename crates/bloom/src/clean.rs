@@ -142,7 +142,8 @@ fn lying(points: &[DVec3], spec: &CleanSpec, seed: Seed) -> Option<DVec3> {
     let few: Vec<DVec3> = thin(points, 3000).into_iter().map(|i| points[i as usize]).collect();
     let up = spec.up.try_normalize().unwrap_or(DVec3::Y);
     let axes = [DVec3::Z, DVec3::NEG_Z, DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y];
-    axes.into_iter().filter(|a| a.dot(up) < 0.9).find(|&axis| {
+    // Not upside down: a level leaf on a stalk looks like that.
+    axes.into_iter().filter(|a| a.dot(up).abs() < 0.9).find(|&axis| {
         let there = CleanSpec { up: axis, plane_share: 0.25, ..*spec };
         ground(&few, &there, seed).is_some_and(|(normal, level, width)| {
             let height = few.iter().map(|p| normal.dot(*p) - level).fold(0.0, f64::max);

@@ -2,6 +2,7 @@
 //!
 //! Seeded, so that a failure comes back; the fuzz targets in `fuzz/` go on from here without end.
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "test data are small numbers")]
+#![allow(clippy::print_stdout, reason = "how many mutants were read, for who asks with --nocapture")]
 
 use std::time::{Duration, Instant};
 
@@ -340,7 +341,13 @@ fn marks_of_leaves() {
     let mut rays = String::from("# unit: mm\nvein,mark,x,y,z,thickness\n");
     for row in 1..=3 {
         for mark in 1..=7 {
-            rows += &format!("{row},{mark},{},{},1,{},\n", 8 - 2 * mark, 40 - 9 * row, 0.1 * f64::from(mark));
+            rows += &format!(
+                "{row},{mark},{},{},1,{},{}\n",
+                8 - 2 * mark,
+                40 - 9 * row,
+                0.1 * f64::from(mark),
+                if mark == 4 { "0.5" } else { "" }
+            );
             rays += &format!("{row},{mark},{},{},0,0.{mark}\n", (2 - row) * mark, 5 * mark);
         }
     }
