@@ -1,13 +1,16 @@
 """Times free-form deformation, logistic fits and surfaces beside NumPy, scipy, geomdl and splipy, in one run.
 
     pip install numpy scipy geomdl splipy
-    python bench/peers_bloom.py            # builds and runs `cargo bench -p burgeon-bench --bench bloom`, too
+    python bench/peers_bloom.py            # builds `cargo bench -p burgeon-bench --bench bloom` first
+    python bench/peers_bloom.py FILE       # takes the built benchmark target/release/deps/bloom-...
 
-Prints a table: the least and the median time of each, and how many times as long as ours the peer takes (of the least
-times, which other work on the machine disturbs least)."""
+Without the build it ends in half a minute. Prints a table: the least and the median time of each, and how many times as
+long as ours the peer takes (of the least times, which other work on the machine disturbs least). Ours run before and
+after the peers, the lesser counts."""
 
 import re
 import subprocess
+import sys
 import time
 from math import comb
 from pathlib import Path
@@ -15,13 +18,15 @@ from pathlib import Path
 import numpy as np
 
 
-def times(job, runs):
+def times(job, runs, seconds=3.0):
+    """Least and median of at most so many runs, fewer if they would take longer; milliseconds."""
     out = []
-    for _ in range(runs):
+    end = time.perf_counter() + seconds
+    while len(out) < runs and (len(out) < 3 or time.perf_counter() < end):
         start = time.perf_counter()
         job()
         out.append(time.perf_counter() - start)
-    return min(out) * 1e3, sorted(out)[runs // 2] * 1e3
+    return min(out) * 1e3, sorted(out)[len(out) // 2] * 1e3
 
 
 def deform_kept():
@@ -77,10 +82,20 @@ def surface_splipy():
     return times(lambda: surface_factory.interpolate(grid, bases), 201)
 
 
-def ours():
+def built():
+    """The benchmark as cargo builds it."""
+    command = ["cargo", "bench", "--no-run", "-p", "burgeon-bench", "--bench", "bloom"]
+    root = Path(__file__).parent.parent
+    told = subprocess.run(command, cwd=root, capture_output=True, text=True, check=True).stderr
+    found = re.search(r"Executable .*\((.*)\)", told)
+    return str(root / found[1])
+
+
+def ours(bench):
     """Least and median of each of our benchmarks, milliseconds, as divan prints them."""
-    command = ["cargo", "bench", "--quiet", "-p", "burgeon-bench", "--bench", "bloom"]
-    text = subprocess.run(command, cwd=Path(__file__).parent.parent, capture_output=True, text=True, check=True).stdout
+    few = ["--bench", "--sample-count", "400", "--sample-size", "1", "--max-time", "1"]
+    command = [bench, *few, "deform_200_000", "logistic_25", "surface_through"]
+    text = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     unit = {"ns": 1e-6, "µs": 1e-3, "ms": 1.0, "s": 1e3}
     found, group = {}, ""
     for line in text.splitlines():
@@ -98,7 +113,9 @@ def ours():
 
 
 def main():
-    own = ours()
+    bench = sys.argv[1] if len(sys.argv) > 1 else built()
+    before = ours(bench)
+    theirs = {}
     rows = [
         ("FFD, 4 x 4 x 4, 200,000 points, two threads", "deform_200_000_on_two_threads 4", None),
         ("the same, one thread", "deform_200_000 4", None),
@@ -110,11 +127,16 @@ def main():
         ("splipy interpolate", "surface_through_10_by_7", surface_splipy),
         ("geomdl interpolate_surface", "surface_through_10_by_7", surface_geomdl),
     ]
+    for name, _, peer in rows:
+        if peer:
+            theirs[name] = peer()
+    after = ours(bench)
+    own = {key: min(before[key], after[key]) for key in before}
     print("| | least, ms | median, ms | times ours |\n|---|---|---|---|")
     for name, key, peer in rows:
-        least, median = peer() if peer else own[key]
-        ratio = f"{least / own[key][0]:.1f}" if peer else ""
-        print(f"| {name} | {least:.4g} | {median:.4g} | {ratio} |")
+        low, median = theirs[name] if peer else own[key]
+        ratio = f"{low / own[key][0]:.1f}" if peer else ""
+        print(f"| {name} | {low:.4g} | {median:.4g} | {ratio} |")
 
 
 if __name__ == "__main__":

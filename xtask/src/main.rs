@@ -1,6 +1,7 @@
 //! `cargo xtask`: set-up, checks and chores. Installs what is missing, so that a fresh machine with rustup and
 //! Node needs nothing else.
 
+mod flowers;
 mod gallery;
 mod layers;
 mod made_strokes;
@@ -25,6 +26,7 @@ cargo xtask COMMAND
   test           sets up what the tests need and runs them all: native, WASM in Node, Khronos validator, Studio
   gallery        makes every fixture drawing and writes docs/gallery.md and docs/table1.md
   species        grows every preset for docs/trees.md and the Studio's small pictures
+  flowers        makes the pictures of docs/bloom.md and of the venations in docs/leaves.md
   layers         checks that each crate uses only what ARCHITECTURE.md allows
   clippy-wasm    lints the core for wasm32
   train-strokes  trains the stroke classifier from its table (see docs/strokes.md)
@@ -42,6 +44,7 @@ fn main() -> ExitCode {
         Some("test") => test(),
         Some("gallery") => gallery::run(),
         Some("species") => species::run(),
+        Some("flowers") => flowers::run(),
         Some("layers") => layers::check(),
         Some("clippy-wasm") => toolchain::clippy_wasm(),
         Some("train-strokes") => train_strokes::run(rest),

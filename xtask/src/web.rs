@@ -80,14 +80,14 @@ pub(crate) fn test(tools: &Tools) -> Outcome {
     let mut c = prepare("node", &["xtask/node/organs.mjs"]);
     c.arg(out.join("wasm/burgeon_wasm.js")).arg(&organs).args([FRAMES, DETAIL]).args(&leaves);
     finish(c)?;
-    let project = repository().join("fixtures/projects/version-3.burgeon");
+    let project = repository().join("fixtures/projects/version-4.burgeon");
     let report = out.join("scene.json");
     let mut c =
         prepare(target_dir().join("debug").join(format!("burgeon{}", std::env::consts::EXE_SUFFIX)), &[]);
     c.args(["sketch", "--quiet"]).arg(&project).arg("-o").arg(out.join("native/scene.glb"));
     c.arg("--report").arg(&report);
     finish(c)?;
-    say("$ node scene.mjs (a drawing, a tree and a flower in one project)");
+    say("$ node scene.mjs (a drawing, a tree and a flower in one project, with edits by hand)");
     let mut c = prepare("node", &["xtask/node/scene.mjs"]);
     c.arg(out.join("wasm/burgeon_wasm.js")).arg(&project).arg(&report);
     finish(c)?;

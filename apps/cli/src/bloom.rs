@@ -117,7 +117,8 @@ pub(crate) struct BloomRunArgs {
     /// Day of END [default: the last of the law].
     #[arg(long, value_name = "D", allow_hyphen_values = true)]
     pub(crate) end_day: Option<f64>,
-    /// Measure the shape of --day against a scan.
+    /// Measure the shape of --day against a scan of that day, in the unit and with the up axis of the stages: mean over x,
+    /// y and z (the paper's error) and Euclidean distances both ways, in millimetres.
     #[arg(long, value_name = "SCAN", requires = "day")]
     pub(crate) compare: Option<PathBuf>,
     /// Do not split scans into organs: each is one organ. Models with faces are never split.
@@ -176,6 +177,8 @@ struct LawReport {
     r2: f64,
     r2_adjusted: Option<f64>,
     loo_rmse: Option<f64>,
+    /// On a bound of the search: the series determines no logistic.
+    on_bound: bool,
 }
 
 /// What `fit` adds to the report.
@@ -302,9 +305,10 @@ fn fit(args: &FitArgs) -> Outcome {
     }
     if !machine.quiet {
         loaded.warnings.iter().for_each(|w| say::warning(w));
+        loaded.told.iter().for_each(|t| say::line(&t.line()));
         for l in &law.laws {
             say::line(&format!(
-                "{} region {} {}: K {:.3} mm, p0 {:.3} mm, r {:.4} a day, R2 {:.3}{}",
+                "{} region {} {}: K {:.3} mm, p0 {:.3} mm, r {:.4} a day, R2 {:.3}{}{}",
                 l.organ,
                 l.region,
                 l.axis.word(),
@@ -312,7 +316,12 @@ fn fit(args: &FitArgs) -> Outcome {
                 l.law.p0 * 1e3,
                 l.law.r,
                 l.r2,
-                l.loo_rmse.map_or(String::new(), |e| format!(", leave-one-out {:.3} mm", e * 1e3))
+                l.loo_rmse.map_or(String::new(), |e| format!(", leave-one-out {:.3} mm", e * 1e3)),
+                if l.law.on_bound(law.span_days) {
+                    " (on a bound: these days determine no logistic)"
+                } else {
+                    ""
+                }
             ));
         }
         say::line(&format!("{}: {} laws", args.output.display(), law.laws.len()));
@@ -329,6 +338,7 @@ fn fit(args: &FitArgs) -> Outcome {
         r2: l.r2,
         r2_adjusted: l.r2_adjusted,
         loo_rmse: l.loo_rmse,
+        on_bound: l.law.on_bound(law.span_days),
     });
     let report = FitReport { run, laws: laws.collect(), stages: loaded.told };
     report::finish_any(&report, &args.common)
@@ -396,7 +406,7 @@ fn run(args: &BloomRunArgs) -> Outcome {
     let (loaded, read_ms) = machine.timed(|| {
         machine.with_progress("scans", |_| load_shapes(args, &axes, options, law.as_ref(), &machine))
     });
-    let loaded = loaded?;
+    let mut loaded = loaded?;
     let first_day = loaded.stages.first().map_or(0.0, |s| s.day);
     let last_day = loaded.stages.last().map_or(0.0, |s| s.day);
     let law = law.unwrap_or_else(|| straight_law(last_day - first_day));
@@ -411,9 +421,19 @@ fn run(args: &BloomRunArgs) -> Outcome {
     let motion = motion.map_err(bad(start))?;
     let mut error = None;
     if let (Some(scan), Some(day)) = (&args.compare, args.day) {
-        let measured = stages::read_points(scan, &axes, options.clean, Seed::new(args.seed), &machine)?;
+        // As the stages are: their file may say unit and up axis.
+        let (measured, warnings) =
+            stages::read_points(scan, &loaded.axes, options.clean, Seed::new(args.seed), &machine)?;
+        loaded.warnings.extend(warnings);
         let shape = motion.at(day - first_day, &compute).map_err(bad(scan))?;
-        error = Some(ErrorReport::from(bloom::compare(&measured.0, &shape, &compute).map_err(bad(scan))?));
+        let e = ErrorReport::from(bloom::compare(&measured, &shape, &compute).map_err(bad(scan))?);
+        if e.mean_mm.max(e.back_mean_mm) > 500.0 * extent(&shape) {
+            loaded.warnings.push(format!(
+                "{}: is half the plant's size away from it; is its unit that of the stages?",
+                scan.display()
+            ));
+        }
+        error = Some(e);
     }
     let show = Show {
         name: loaded.name.clone(),
@@ -461,12 +481,17 @@ fn tell(args: &BloomRunArgs, machine: &Machine, mut told: Told, written: Written
         item.warnings.iter().for_each(|w| say::warning(w));
         if let Some(e) = &told.error {
             say::line(&format!(
-                "error: {:.3} mm (mean over x, y, z), {:.3} mean, {:.3} rms, {:.3} max, {:.1} % within 2 mm",
+                "error: {:.3} mm (mean over x, y, z as the paper has it); Euclidean, scan to model: {:.3} mm mean, {:.3} \
+                 RMS, {:.3} 95 %, {:.3} max, {:.1} % within 2 mm; model to scan: {:.3} mean, {:.3} RMS, {:.3} max",
                 e.paper_mm,
                 e.mean_mm,
                 e.rms_mm,
+                e.p95_mm,
                 e.max_mm,
-                e.coverage * 100.0
+                e.coverage * 100.0,
+                e.back_mean_mm,
+                e.back_rms_mm,
+                e.back_max_mm
             ));
         }
         let frames = say::counted(u64::from(written.frames), "shape", "shapes");
@@ -488,6 +513,13 @@ fn tell(args: &BloomRunArgs, machine: &Machine, mut told: Told, written: Written
         stages: told.stages,
     };
     report::finish_any(&report, &args.common)
+}
+
+/// The largest side of the box round some points.
+fn extent(points: &[DVec3]) -> f64 {
+    let none = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+    let [low, high] = points.iter().fold(none, |[a, b], &p| [a.min(p), b.max(p)]);
+    (high - low).max_element()
 }
 
 fn straight_law(span: f64) -> GrowthLaw {
@@ -715,6 +747,8 @@ fn write_one(path: &Path, model: &Model, axes: &ExportSpec) -> Outcome {
             "a cloud of points has no triangles for STL; choose .ply, .obj or .glb",
         ));
     }
+    // --unit and --up were those of the scans: a GLB in metres with +Y up is no surprise.
+    let axes = if format == ModelFormat::Glb { &ExportSpec::default() } else { axes };
     files::write_model(path, model, format, axes, &mut PngCache::new()).map(drop)
 }
 

@@ -55,6 +55,13 @@ pub(crate) struct LeafArgs {
     /// How far the notches of a palmate leaf reach, 0 (none) to 0.9.
     #[arg(long, value_name = "X", default_value_t = 0.5, value_parser = |s: &str| ranged(s, 0.0, 0.9))]
     pub(crate) depth: f64,
+    /// Side veins on either side of each chief vein in its lobe, made by rule and not measured, 0 to 12 [default: 4
+    /// with --venation palmate, else 0].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=12))]
+    pub(crate) side_veins: Option<u32>,
+    /// How a vein graph is read.
+    #[arg(long, value_enum, value_name = "FORM", default_value_t = GraphWord::Auto)]
+    pub(crate) graph: GraphWord,
     /// Also write the leaf as marks, such as those found in a scan or grown between stages.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) marks: Option<PathBuf>,
@@ -90,7 +97,7 @@ const LEAF_EXAMPLES: &str = "Examples:
   burgeon leaf --venation palmate --veins 5 -o maple.glb --marks maple.csv
   burgeon leaf --venation parallel --length 0.4 -o lily.glb
   burgeon leaf maple.csv -o maple.glb                            chief veins that start together, digitised
-  burgeon leaf veins.json --length 0.06 -o leaf.glb --marks found.csv
+  burgeon leaf veins.json --length 0.06 -o leaf.glb --marks found.csv   a maple's graph too
 
 Marks are a CSV file with the columns row,mark,x,y,z,thickness,midrib. Lines `# unit: mm`, `# up: z` and
 `# thickness: diameter` in the file win over --unit, --up and --thickness.
@@ -205,6 +212,16 @@ pub(crate) enum VenationWord {
     Parallel,
 }
 
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+pub(crate) enum GraphWord {
+    /// Palmate where three or more thick veins leave one place, else one midrib
+    Auto,
+    /// One midrib with side veins
+    Midrib,
+    /// Chief veins that start together
+    Palmate,
+}
+
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum RingsWord {
     /// Circles across the vein
@@ -273,7 +290,9 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
     let (written, write_ms) = machine.timed(|| {
         let Some((path, format)) = args.output.as_deref().zip(format) else { return Ok(Vec::new()) };
         item.output = path.display().to_string();
-        let axes = files::axes(args.axes.up, args.axes.unit);
+        // --unit and --up were those of the input: a GLB in metres with +Y up is no surprise.
+        let read = !args.inputs.is_empty() && format == burgeon::formats::ModelFormat::Glb;
+        let axes = if read { ExportSpec::default() } else { files::axes(args.axes.up, args.axes.unit) };
         files::write_model(path, &model, format, &axes, &mut PngCache::new())
     });
     item.warnings.extend(written?.iter().map(ToString::to_string));
@@ -369,7 +388,9 @@ fn options(args: &LeafArgs, in_file: Option<ThicknessRule>) -> Outcome<LeafOptio
             LeafTexture::Picture(Arc::new(picture))
         }
     };
-    Ok(LeafOptions { spec, mesh, pose, texture })
+    let side_veins =
+        args.side_veins.unwrap_or(if args.venation == Some(VenationWord::Palmate) { 4 } else { 0 });
+    Ok(LeafOptions { spec, mesh, pose, texture, side_veins })
 }
 
 /// What comes out before it is written.
@@ -467,6 +488,7 @@ fn make(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
 
 /// A leaf of chief veins, made from numbers or digitised; `None` if the input is something else.
 fn rays(args: &LeafArgs, machine: &Machine) -> Outcome<Option<Product>> {
+    let mut warnings = Vec::new();
     let (name, rays, thickness, read_ms) = match (args.venation, args.inputs.as_slice()) {
         (Some(VenationWord::Palmate), _) => {
             let spec = PalmateSpec::default();
@@ -499,6 +521,13 @@ fn rays(args: &LeafArgs, machine: &Machine) -> Outcome<Option<Product>> {
             let read = read_rays(&bytes[..], &files::stem(path), axes).map_err(|e| Failure::at(path, e))?;
             (read.name, read.rays, read.thickness, ms)
         }
+        (None, [path]) if is_graph(path) && args.graph != GraphWord::Midrib => {
+            let (found, ms) = machine.timed(|| palmate_graph(path, args, &mut warnings));
+            match found? {
+                Some(rays) => (files::stem(path), rays, Some(ThicknessRule::Diameter), ms),
+                None => return Ok(None),
+            }
+        }
         _ => return Ok(None),
     };
     if args.look.curl.abs() > 0.0 || args.look.wilt > 0.0 || args.plant.plant {
@@ -510,8 +539,43 @@ fn rays(args: &LeafArgs, machine: &Machine) -> Outcome<Option<Product>> {
     let options = options(args, thickness)?;
     let made = burgeon::make_ray_leaf(&name, &rays, &options, &machine.run());
     let (model, mut item) = made.map_err(|e| failure(args, e))?;
+    item.warnings.splice(0..0, warnings);
     item.timings_ms.add_io(read_ms, 0.0);
     Ok(Some(Product { model, item, marks: Some(Measured::Rays(rays)) }))
+}
+
+fn is_graph(path: &Path) -> bool {
+    files::extension(path).is_some_and(|e| e.eq_ignore_ascii_case("json")) && path.is_file()
+}
+
+/// The chief veins of a vein graph, if it is that of a palmate leaf.
+fn palmate_graph(path: &Path, args: &LeafArgs, warnings: &mut Vec<String>) -> Outcome<Option<Rays>> {
+    let file = std::fs::File::open(path).map_err(|e| Failure::io(path, "read", &e))?;
+    let read = read_vein_graph(file).map_err(|e| Failure::at(path, e))?;
+    let mut report = Report { warnings: read.warnings, ..Report::default() };
+    let Some(mut rays) = read.graph.rays(&mut report).map_err(|e| Failure::at(path, e))? else {
+        if args.graph == GraphWord::Palmate {
+            return Err(Failure::at(
+                path,
+                "no place is found that three or more thick veins leave; --graph midrib reads it as a leaf of one",
+            ));
+        }
+        return Ok(None);
+    };
+    if read.unit.is_none() || args.length.is_some() {
+        if args.length.is_none() {
+            report
+                .warn("length-guessed", "the graph is in pixels: the leaf was made 0.1 m long; say --length");
+        }
+        let factor = args.length.unwrap_or(0.1) / rays.length();
+        rays = rays.scaled(factor);
+    }
+    let veins = rays.rays.iter().filter(|r| r.is_vein()).count();
+    let message =
+        format!("{veins} thick veins leave one place: read as palmate; --graph midrib reads one midrib");
+    report.warn("palmate", message);
+    warnings.extend(report.warnings.iter().map(ToString::to_string));
+    Ok(Some(rays))
 }
 
 fn odd(veins: u32, most: u32) -> Outcome<u32> {

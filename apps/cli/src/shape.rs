@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use burgeon::document::PlantEdit;
 use burgeon::formats::{PngCache, read_drawings};
 use burgeon::glam::DVec3;
 use burgeon::mesh::Model;
@@ -100,14 +101,12 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
         picture::check_name(png)?;
     }
     let edits = args.edits.as_deref().map(read_edits).transpose()?.unwrap_or_default();
+    let edits = edits.into_iter().map(PlantEdit::from).collect();
     let mut told = Report::default();
     let made = machine.with_progress("shape", |_| make(args, what, edits, &mut told, &machine))?;
     machine.cancel.check()?;
     let Shaped { plant, model, lods, mut item } = made;
     item.warnings.splice(0..0, told.warnings.iter().map(ToString::to_string));
-    let undone = item.edits.iter().filter(|e| !e.done);
-    let undone: Vec<String> = undone.map(|e| format!("edit {}: {}", e.index, e.said)).collect();
-    item.warnings.extend(undone);
     if args.common.report.is_some() || args.common.json {
         item.plant = Some(plant.measure());
     }
@@ -165,7 +164,7 @@ fn read_edits(path: &Path) -> Outcome<Vec<HandEdit>> {
 fn make(
     args: &ShapeArgs,
     what: &Path,
-    edits: Vec<HandEdit>,
+    edits: Vec<PlantEdit>,
     told: &mut Report,
     machine: &Machine,
 ) -> Outcome<Shaped> {
@@ -209,7 +208,8 @@ fn make(
     };
     told.warnings.extend(read.warnings);
     options.skin = SkinSpec { seed, ..skin };
-    options.edits = edits;
+    // A project's own edits first.
+    options.edits.extend(edits);
     let made = make_from_sketch(&read.drawing, &options, seed, &machine.run()).map_err(|e| match e {
         MakeError::Cancelled(_) => Failure::Cancelled,
         other => Failure::at(what, other),

@@ -79,7 +79,24 @@ pub(crate) struct Told {
     cropped: usize,
     ground: usize,
     outliers: usize,
+    /// Width, height and depth of what was kept.
+    size_mm: [f64; 3],
     organs: Vec<OrganTold>,
+}
+
+impl Told {
+    /// One line for people.
+    pub(crate) fn line(&self) -> String {
+        let organs: Vec<String> = self.organs.iter().map(|o| format!("{} {}", o.name, o.points)).collect();
+        let [w, h, d] = self.size_mm;
+        let gone = self.cropped + self.ground + self.outliers;
+        format!(
+            "day {}: {} points, {gone} left out; {h:.1} mm high, {w:.1} x {d:.1} mm wide: {}",
+            self.day,
+            self.points,
+            organs.join(", ")
+        )
+    }
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -97,6 +114,8 @@ pub(crate) struct Loaded {
     pub(crate) warnings: Vec<String>,
     /// Faces of the first shape, where it is a model.
     pub(crate) mesh: Option<TriMesh>,
+    /// Unit and up axis of the scans.
+    pub(crate) axes: ExportSpec,
 }
 
 /// How scans are treated.
@@ -195,8 +214,19 @@ fn prepare(
         cropped: 0,
         ground: 0,
         outliers: 0,
+        size_mm: [0.0; 3],
         organs: vec![],
     };
+    told.size_mm = (box_of(&points) * 1e3).to_array();
+    let size = box_of(&points).max_element();
+    // Between the smallest seedling and what anybody scans as a series.
+    if size > 20.0 || (size > 0.0 && size < 5e-4) {
+        warnings.push(format!(
+            "{}: is {size:.4} m in size in the unit that was taken; is it right? `unit = \"mm\"` in the stages file or \
+             --unit says another",
+            path.display()
+        ));
+    }
     let Some(spec) = spec.filter(|_| mesh.is_none()) else { return Ok((points, mesh, told)) };
     let cleaned = bloom::clean(&points, spec, seed, &machine.run())?;
     told.cropped = cleaned.cropped;
@@ -209,6 +239,19 @@ fn prepare(
             cleaned.ground
         ));
     }
+    if let Some(across) = cleaned.ground_across {
+        let advice = match (across.to_array(), axes.up) {
+            ([_, _, 1.0], UpAxis::Y) => "say `up = \"z\"` in the stages file, or --up z",
+            ([_, _, -1.0], UpAxis::Z) => "say `up = \"y\"` in the stages file, or --up y",
+            _ => "turn the scan so that y or z points up",
+        };
+        warnings.push(format!(
+            "{}: no ground lies across the axis that was taken for up ({}), but a plane of its size lies across \
+             another: the plant seems to lie down; {advice}",
+            path.display(),
+            if axes.up == UpAxis::Z { "z" } else { "y" }
+        ));
+    }
     if cleaned.outliers * 20 > points.len() {
         warnings.push(format!(
             "{}: {} of {} points were left out as stray; `clean = false` keeps them",
@@ -217,7 +260,16 @@ fn prepare(
             points.len()
         ));
     }
-    Ok((cleaned.kept.into_iter().map(|i| points[i]).collect(), mesh, told))
+    let kept: Vec<DVec3> = cleaned.kept.into_iter().map(|i| points[i]).collect();
+    told.size_mm = (box_of(&kept) * 1e3).to_array();
+    Ok((kept, mesh, told))
+}
+
+/// Width, height and depth.
+fn box_of(points: &[DVec3]) -> DVec3 {
+    let none = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+    let [low, high] = points.iter().fold(none, |[a, b], &p| [a.min(p), b.max(p)]);
+    (high - low).max(DVec3::ZERO)
 }
 
 fn bad(path: &Path) -> impl Fn(bloom::BloomError) -> Failure + '_ {
@@ -240,6 +292,7 @@ pub(crate) fn load(path: &Path, axes: &ExportSpec, seed: Seed, machine: &Machine
         told: vec![],
         warnings: vec![],
         mesh: None,
+        axes: *axes,
     };
     for entry in &file.stage {
         if !entry.day.is_finite() {
@@ -275,6 +328,9 @@ fn add_entry(
         None => axes.up,
     };
     let axes = ExportSpec { up, unit };
+    if out.stages.is_empty() {
+        out.axes = axes;
+    }
     let place = |p: [f64; 3]| {
         let p = if up == UpAxis::Z { DVec3::new(p[0], p[2], -p[1]) } else { DVec3::from_array(p) };
         p * unit.metres()
@@ -396,8 +452,14 @@ pub(crate) fn load_pair(
     seed: Seed,
     machine: &Machine,
 ) -> Outcome<Loaded> {
-    let mut out =
-        Loaded { name: files::stem(first), stages: vec![], told: vec![], warnings: vec![], mesh: None };
+    let mut out = Loaded {
+        name: files::stem(first),
+        stages: vec![],
+        told: vec![],
+        warnings: vec![],
+        mesh: None,
+        axes: *axes,
+    };
     let spec = SegmentSpec::default();
     let clean = CleanSpec { outliers: options.clean, plane: options.clean, ..CleanSpec::default() };
     let mut split = options.split;

@@ -2,11 +2,11 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 
-const data = (page, key) => page.evaluate((k) => document.body.dataset[k] ?? '', key);
-const count = async (page, key) => Number(await data(page, key));
+export const data = (page, key) => page.evaluate((k) => document.body.dataset[k] ?? '', key);
+export const count = async (page, key) => Number(await data(page, key));
 const TESTS = { is: (n, m) => n === m, above: (n, m) => n > m };
 // The page's policy allows no text to become code, so the tests are named.
-async function until(page, key, [test, value], what) {
+export async function until(page, key, [test, value], what) {
   const began = Date.now();
   while (Date.now() - began < 45_000) {
     if (TESTS[test](await count(page, key), value)) return;
@@ -15,7 +15,7 @@ async function until(page, key, [test, value], what) {
   throw new Error(`${what}: ${key} is ${await data(page, key)}, not ${test} ${value}`);
 }
 
-async function begin(page, url) {
+export async function begin(page, url) {
   await page.goto(url);
   await page.waitForFunction(() => document.body.dataset.ready === 'true');
 }
@@ -57,14 +57,14 @@ async function drawFlower(page) {
 }
 
 /** A sample, opened as a person does. */
-async function sample(page) {
+export async function sample(page) {
   await page.click('#b-samples');
   await page.click('[data-sample=sample]');
   await until(page, 'flowers', ['is', 1], 'the sample is open');
   return 15;
 }
 
-async function exported(page, format, levels, what) {
+export async function exported(page, format, levels, what) {
   await page.click('#b-export');
   await page.click(`[data-format=${format}]`);
   if (levels) await page.selectOption('#b-levels', String(levels));
@@ -456,14 +456,14 @@ async function touch({ page, url, shot, context }) {
 }
 
 /** Adds a plant by the list of the scene. */
-async function add(page, maker, preset) {
+export async function add(page, maker, preset) {
   await page.click('#b-add');
   await page.click(`[data-add=${maker}]`);
   if (preset) await page.click(`dialog [data-preset=${preset}]`);
   await page.waitForFunction((m) => document.body.dataset.current === m, maker);
 }
 
-async function changed(page, before, what) {
+export async function changed(page, before, what) {
   await page.waitForFunction((d) => document.body.dataset.digest !== d && document.body.dataset.digest !== '', before)
     .catch(() => { throw new Error(`${what}: nothing changed`); });
   return data(page, 'digest');
@@ -482,7 +482,7 @@ async function slide(page, path, share) {
   }, share);
 }
 
-async function drop(page, name, text) {
+export async function drop(page, name, text) {
   await page.evaluate(([n, t]) => {
     const transfer = new DataTransfer();
     transfer.items.add(new File([t], n));

@@ -5,6 +5,7 @@ import { mkdirSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 import { chromium } from 'playwright-core';
 import { journeys } from './journeys.mjs';
+import { shaping } from './shaping.mjs';
 
 const [browserPath, burgeon, out] = process.argv.slice(2);
 rmSync(out, { recursive: true, force: true });
@@ -34,7 +35,7 @@ const browser = await chromium.launch({
 
 let failed = 0;
 const only = process.env.ONLY;
-for (const [name, journey, options] of journeys) {
+for (const [name, journey, options] of [...journeys, ...shaping]) {
   if (only && !name.includes(only)) continue;
   const context = await browser.newContext({ viewport: { width: 1000, height: 640 }, locale: 'en-GB', acceptDownloads: true, ...options });
   if (!options?.fresh) await context.addInitScript(() => localStorage.setItem('burgeon.tour', 'done'));

@@ -10,6 +10,7 @@ import { openPalette, type Action } from './palette';
 import type { Command, DocumentState, MakerWord, PlantState, PlantView as Seen, Request, SketchState, StrokeMode, View } from './protocol';
 import { Sheet, type Tool } from './sheet/sheet';
 import { settingsPanel } from './settings';
+import { SHAPE_TOOLS, Shaping } from './shaping';
 import { statsTable } from './stats';
 import { setSetting, setting } from './store';
 import { currentLanguage, number, setLanguage, t, tOf, type TextKey } from './text';
@@ -34,6 +35,8 @@ export class App {
   private readonly card: Card;
   private readonly files: Files;
   private view: PlantView | undefined;
+  /** Tools in the view; none without WebGL 2. */
+  private shaping: Shaping | undefined;
   private state: DocumentState | undefined;
   private scene: View | undefined;
   private catalogue: Catalogue | undefined;
@@ -54,6 +57,8 @@ export class App {
   private busyTimer = 0;
   private readonly system = matchMedia('(prefers-color-scheme: dark)');
   private parts: Record<string, HTMLElement> = {};
+  /** The scene and the edits by hand, in the view's corner. */
+  private readonly column = el('div', { class: 'column' });
   /** When the draft that is grown now was sent. */
   private draftAt = 0;
   private photoFrom: SketchState['photo'] = null;
@@ -84,6 +89,7 @@ export class App {
         this.draftAt = 0;
         this.sheet.setOrgans(this.organs());
         this.panel.follow();
+        if (fresh.some((f) => f.view.id === this.state?.current)) this.shaping?.renewed();
         for (const { id, error } of view.plants) this.tellOf(id, error);
         this.idle();
         this.showView();
@@ -91,6 +97,7 @@ export class App {
         this.sendDraft();
       },
       busy: () => this.busy(),
+      progress: (share) => { this.parts['busytext']!.textContent = t('status.working.percent', { percent: Math.floor(100 * share) }); },
       failed: (why) => {
         this.idle();
         note(why === 'cancelled' ? t('status.stopped') : t('note.refused', { why }), why === 'cancelled' ? 'good' : 'bad');
@@ -202,11 +209,18 @@ export class App {
       this.view.onPlaceBegin = () => this.ask({ kind: 'begin', name: 'place' });
       this.view.onPlace = (plant, position, yaw_deg, scale) => this.ask({ kind: 'stage', command: { do: 'place', plant, position, yaw_deg, scale } });
       this.view.onPlaceEnd = () => this.ask({ kind: 'commit' });
+      this.view.onPick = (plant) => this.ask({ kind: 'select', plant });
+      this.shaping = new Shaping(this.view, {
+        run: (c) => this.run(c), ask: (request) => this.engine.ask(request), select: (plant) => this.ask({ kind: 'select', plant }),
+        refused: (why) => note(t('note.refused', { why }), 'bad'), changed: () => this.showShaping(),
+      });
       this.view.onContext = (lost) => { if (lost) note(t('note.context'), 'bad'); };
     } catch {
       note(t('note.nowebgl'), 'bad');
     }
     this.build();
+    // The plant is shown beside the list, not behind it.
+    new ResizeObserver(() => this.view?.setInset(this.list.isFolded ? 0 : this.list.element.offsetWidth + 12)).observe(this.list.element);
     this.files.listen(document.body);
     document.addEventListener('keydown', (e) => this.key(e));
     document.addEventListener('paste', (e) => this.paste(e));
@@ -330,6 +344,7 @@ export class App {
       hold('bloom', el('div', { class: 'bloom' })), hold('maker', this.panel.element), hold('noplant', el('div', { class: 'nothing' }, el('h1', {}, t('scene.empty')), el('p', {}, t('scene.empty.hint')))));
     p['tools'] = tools;
     const seeButtons = el('div', { class: 'tools right-tools', role: 'toolbar' },
+      hold('shape', button('shape', t('shape.title'), () => this.shaping?.toggle(), 'S')), el('hr'),
       hold('front', button('front', t('view.front'), () => this.view?.setFront(!this.view.isFront), 'F')),
       hold('frame', button('fit', t('view.frame'), () => this.view?.frameNow(), 'Shift+0')),
       hold('wire', button('wire', t('view.wire'), () => this.setLook(this.look === 'wire' ? 'solid' : 'wire'), 'W')),
@@ -337,13 +352,14 @@ export class App {
       hold('stats', button('stats', t('view.stats'), () => this.toggleStats(), 'I')),
       hold('picture', button('picture', t('export.png'), () => void this.files.picture())));
     const right = el('section', { class: 'right' },
-      ...(this.view ? [this.view.element, seeButtons] : [el('p', { class: 'nogl' }, t('note.nowebgl'))]),
+      ...(this.view && this.shaping ? [this.view.element, this.shaping.overlay.element, seeButtons, this.shaping.element] : [el('p', { class: 'nogl' }, t('note.nowebgl'))]),
       hold('statsbox', el('div', { class: 'statsbox' })),
-      this.list.element,
+      this.column,
       hold('grows', el('p', { class: 'grows' }, t('view.empty'))), hold('looking', el('p', { class: 'looking' })));
     const split = el('div', { class: 'split', role: 'separator', 'aria-orientation': 'vertical', tabindex: '0' });
     const body = el('main', {}, left, split, right);
     this.splitter(split, body);
+    this.column.replaceChildren(this.list.element, ...(this.shaping ? [this.shaping.list] : []));
     const foot = el('footer', { class: 'foot' }, hold('counts', el('span', { class: 'counts' })), el('span', { class: 'space' }),
       hold('busy', el('span', { class: 'busy' }, el('i'), hold('busytext', el('span', {}, t('status.loading'))),
         el('button', { type: 'button', class: 'link', onclick: () => this.engine.interrupt() }, t('status.cancel')))),
@@ -422,6 +438,15 @@ export class App {
     this.parts['lock']?.replaceChildren(icon(locked ? 'lock' : 'unlock'));
     this.parts['statsbox']!.hidden = !this.statsOn;
     for (const name of ['dice', 'grid']) (this.parts[name] as HTMLButtonElement).disabled = locked || !this.plant;
+  }
+
+  private showShaping(): void {
+    const { shaping } = this;
+    const b = this.parts['shape'] as HTMLButtonElement | undefined;
+    if (!b || !shaping) return;
+    b.setAttribute('aria-pressed', String(shaping.isOn));
+    b.disabled = !shaping.isPossible && !shaping.isOn;
+    document.body.dataset['shape'] = shaping.word ?? '';
   }
 
   private openVariations(): void {
@@ -549,6 +574,8 @@ export class App {
       a('front', 'view.front', () => this.view?.setFront(!this.view.isFront), 'F'), a('frame', 'view.frame', () => this.view?.frameNow(), 'Shift+0'),
       a('wire', 'view.wire', () => this.setLook(this.look === 'wire' ? 'solid' : 'wire'), 'W'),
       a('skeleton', 'view.skeleton', () => this.setLook(this.look === 'skeleton' ? 'solid' : 'skeleton'), 'K'),
+      a('shape', 'shape.title', () => this.shaping?.toggle(), 'S'),
+      ...SHAPE_TOOLS.map(([word, keys]) => a(`shape-${word}`, `shape.${word}` as TextKey, () => this.shaping?.take(word), this.shaping?.isOn ? keys : '')),
       a('stats', 'view.stats', () => this.toggleStats(), 'I'), a('picture', 'export.png', () => void this.files.picture()),
       a('all', 'act.all', () => this.selectAll(), 'Ctrl+A'), a('copy', 'act.copy', () => void this.copy(), 'Ctrl+C'),
       a('paste', 'act.paste', () => void this.pasteText(''), 'Ctrl+V'), a('duplicate', 'act.duplicate', () => this.duplicate(), 'Ctrl+D'),
@@ -574,6 +601,7 @@ export class App {
     setSetting('language', to);
     this.sheet.setLabel(t('sheet.label'));
     this.view?.setLabel(t('view.label'));
+    this.shaping?.take(this.shaping.word);
     this.sheet.select([]);
     this.panel.reset();
     this.build();
@@ -596,13 +624,13 @@ export class App {
   private help(): void {
     const rows: [string, TextKey][] = [
       ['P B L E V', 'key.tools'], ['Ctrl+Z · Ctrl+Shift+Z', 'key.undo'], ['Ctrl+O · Ctrl+S · Ctrl+E', 'key.files'],
-      ['Ctrl+C · Ctrl+X · Ctrl+V · Ctrl+D', 'key.copy'], ['Ctrl+A', 'act.all'], ['Del', 'key.delete'], ['[ ]', 'key.next'], ['← ↑ → ↓', 'key.nudge'],
+      ['Ctrl+C · Ctrl+X · Ctrl+V · Ctrl+D', 'key.copy'], ['Ctrl+A', 'act.all'], ['Del', 'key.delete'], ['← ↑ → ↓', 'key.nudge'],
       ['M', 'tool.mirror'], ['U', 'tool.photo'], ['R', 'key.dice'], ['G', 'variations.title'],
-      ['F', 'key.front'], ['W · K', 'key.looks'], ['I', 'view.stats'], ['Ctrl+K', 'palette.title'], ['?', 'key.help'],
+      ['F', 'key.front'], ['W · K', 'key.looks'], ['I', 'view.stats'], ['S', 'key.shape'], ['1 – 9', 'key.shape.tools'], ['[ ]', 'key.shape.size'], ['Ctrl+K', 'palette.title'], ['?', 'key.help'],
     ];
     const keys = el('dl', { class: 'keys' });
     for (const [key, text] of rows) keys.append(el('dt', {}, el('kbd', {}, key)), el('dd', {}, t(text)));
-    const texts = (['help.draw', 'help.pan', 'help.correct', 'help.drop'] as const).map((k) => el('li', {}, t(k)));
+    const texts = (['help.draw', 'help.pan', 'help.correct', 'help.shape', 'help.drop'] as const).map((k) => el('li', {}, t(k)));
     const again = el('button', { type: 'button', class: 'link', onclick: () => { d.close(); tour(); } }, t('tour.again'));
     const d = dialog(t('dialog.help'), el('ul', {}, ...texts), keys, again);
   }
@@ -634,7 +662,26 @@ export class App {
     }
   }
 
+  /** Keys of the tools in the view. */
+  private shapeKey(e: KeyboardEvent): (() => void) | undefined {
+    const { shaping } = this;
+    if (!shaping) return undefined;
+    if (e.key === 's' || e.key === 'S') return () => shaping.toggle();
+    if (!shaping.isOn) return undefined;
+    const tool = SHAPE_TOOLS.find(([, key]) => key === e.key);
+    if (tool) return () => shaping.take(tool[0]);
+    switch (e.key) {
+      case 'Escape': return () => { if (!shaping.cancel()) shaping.take(undefined); };
+      case 'Delete': case 'Backspace': return shaping.word === 'pick' ? () => shaping.remove() : undefined;
+      case '[': return shaping.word === 'brush' || shaping.word === 'leaves' ? () => shaping.resize(1 / 1.15) : undefined;
+      case ']': return shaping.word === 'brush' || shaping.word === 'leaves' ? () => shaping.resize(1.15) : undefined;
+      default: return undefined;
+    }
+  }
+
   private plainKey(e: KeyboardEvent): (() => void) | undefined {
+    const shape = this.shapeKey(e);
+    if (shape) return shape;
     const tool = TOOLS.find(([, key]) => key.toLowerCase() === e.key.toLowerCase());
     if (tool) return () => this.setTool(tool[0]);
     const ids = this.sheet.selected;
@@ -687,6 +734,8 @@ export class App {
     (p['settings'] as HTMLButtonElement).disabled = !drawn;
     this.panel.show(plant, state, this.seen);
     this.list.show(state, this.scene);
+    this.shaping?.show(plant, this.scene?.guest ? undefined : this.seen);
+    this.showShaping();
     this.showBloom();
     this.showSwitches();
     document.title = `${state.name} · ${t('app.title')}`;
@@ -721,6 +770,8 @@ export class App {
     if (this.state) {
       this.panel.show(this.plant, this.state, seen);
       this.list.show(this.state, this.scene);
+      this.shaping?.show(this.plant, this.scene?.guest ? undefined : seen);
+      this.showShaping();
       this.showBloom();
     }
     const organs = [...new Set((seen?.item?.strokes ?? []).map((s) => s.organ))];

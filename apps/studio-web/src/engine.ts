@@ -10,6 +10,8 @@ export interface EngineEvents {
   state(state: DocumentState, fresh: StrokePoints[], photo: Uint8Array<ArrayBuffer> | null): void;
   view(view: View, fresh: Sent[]): void;
   busy(): void;
+  /** The share that is done of what is grown, 0 to 1. */
+  progress(share: number): void;
   /** No plant could be made; the last one stays. */
   failed(why: string): void;
   /** The worker died and was replaced; with `hold` it does not grow this drawing again by itself. */
@@ -112,6 +114,9 @@ export class Engine {
       case 'busy':
         this.growing = true;
         this.events.busy();
+        break;
+      case 'progress':
+        this.events.progress(message.share);
         break;
       case 'failed': {
         // What gave way to a newer change is no news.

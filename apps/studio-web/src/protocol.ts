@@ -1,10 +1,12 @@
 /** What page and worker say to one another. Meshes and strokes travel as typed arrays, never as JSON. */
 import type {
-  Command, DocumentState, ExportOptions, Json, MakerWord, ObstacleShape, Opened, PhotoState, PlantState, PlantView, SketchState, StrokeMode, View,
+  Command, DocumentState, ExportOptions, Json, MakerWord, ObstacleShape, Opened, PhotoState, PlantState, PlantView, ShapeAnswer, ShapeInput, ShapePointer,
+  ShapeReach, ShapeTool, SketchState, StrokeMode, View, EditReport, HandEdit,
 } from './wasm/burgeon_wasm';
 
 export type {
-  Command, DocumentState, ExportOptions, Json, MakerWord, ObstacleShape, Opened, PhotoState, PlantState, PlantView, SketchState, StrokeMode, View,
+  Command, DocumentState, ExportOptions, Json, MakerWord, ObstacleShape, Opened, PhotoState, PlantState, PlantView, ShapeAnswer, ShapeInput, ShapePointer,
+  ShapeReach, ShapeTool, SketchState, StrokeMode, View, EditReport, HandEdit,
 };
 export type ExportFormat = 'glb' | 'obj' | 'ply' | 'stl' | 'mtg' | 'qsm' | 'json';
 
@@ -33,6 +35,10 @@ export type Request =
   | { kind: 'variant'; seed: string; detail: number }
   | { kind: 'skeleton' }
   | { kind: 'share' }
+  /** A tool that shapes the chosen plant: what it would do is shown, what it did comes back as an edit. */
+  | { kind: 'shape'; tool: ShapeTool; reach: ShapeReach; input: ShapeInput }
+  /** The branch of a pick with all that it bears. */
+  | { kind: 'branch'; axis: number }
   | { kind: 'draft'; mode: StrokeMode; samples: Float64Array }
   | { kind: 'save' }
   | { kind: 'export'; format: ExportFormat; options: ExportOptions };
@@ -79,5 +85,7 @@ export type FromWorker =
   /** `fresh`: the plants whose meshes changed. */
   | { kind: 'view'; view: View; fresh: Sent[] }
   | { kind: 'busy' }
+  /** The share of an evaluation that is done. */
+  | { kind: 'progress'; share: number }
   | { kind: 'failed'; why: string }
   | { kind: 'fault'; why: string };

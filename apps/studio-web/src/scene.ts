@@ -19,7 +19,7 @@ const ASIDE = 0.5;
 export class SceneList {
   readonly element = el('aside', { class: 'scene' });
   private mode: Gizmo | undefined;
-  /** As the person set it; by itself it is folded while there is one drawing. */
+  /** As the person set it; by itself it is folded while there is one plant. */
   private folds: boolean | undefined;
 
   constructor(private readonly events: SceneEvents) {}
@@ -28,7 +28,7 @@ export class SceneList {
     const focused = this.element.contains(document.activeElement) ? document.activeElement?.getAttribute('data-key') : null;
     this.element.setAttribute('aria-label', t('scene.title'));
     const rows = state.plants.map((p) => this.row(p, state, view));
-    const folded = this.folds ?? (state.plants.length === 1 && state.plants[0]!.maker === 'sketch');
+    const folded = this.folds ?? state.plants.length === 1;
     this.element.classList.toggle('folded', folded);
     const fold = el('button', { type: 'button', class: 'fold', 'data-key': 'fold', 'aria-expanded': String(!folded), onclick: () => { this.folds = !folded; this.show(state, view); } },
       icon('scene'), t('scene.title'), el('span', { class: 'muted' }, String(state.plants.length)));
@@ -43,6 +43,11 @@ export class SceneList {
     }
     this.element.replaceChildren(...content);
     if (focused) this.element.querySelector<HTMLElement>(`[data-key="${CSS.escape(focused)}"]`)?.focus({ preventScroll: true });
+  }
+
+  /** Only its head is shown. */
+  get isFolded(): boolean {
+    return this.element.classList.contains('folded');
   }
 
   get gizmo(): Gizmo | undefined {

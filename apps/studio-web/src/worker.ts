@@ -1,6 +1,6 @@
 /** The worker: owns the session, answers requests in order, and grows the plant when nothing else is to do. */
 import init, { studio_schema as studioSchema, StudioSession } from './wasm/burgeon_wasm.js';
-import type { FromWorker, PartArrays, PlantView, Request, Sent, TexturePixels, ToWorker, View } from './protocol';
+import type { FromWorker, PartArrays, PlantView, Request, Sent, ShapeAnswer, TexturePixels, ToWorker, View } from './protocol';
 
 const page = self as unknown as DedicatedWorkerGlobalScope;
 let session: StudioSession | undefined;
@@ -9,8 +9,15 @@ let stale = false;
 let scheduled = false;
 const sent = new Set<number>();
 
-// Looked at by the evaluation between its steps.
-(globalThis as { burgeonStop?: () => boolean }).burgeonStop = () => stop !== null && Atomics.load(stop, 0) !== 0;
+let toldShare = 0;
+// Looked at by the evaluation between its steps; it says how far it is.
+(globalThis as { burgeonStop?: (share: number) => boolean }).burgeonStop = (share) => {
+  if (share > toldShare + 0.01) {
+    toldShare = share;
+    tell({ kind: 'progress', share });
+  }
+  return stop !== null && Atomics.load(stop, 0) !== 0;
+};
 
 function tell(message: FromWorker, transfer: Transferable[] = []): void {
   page.postMessage(message, transfer);
@@ -47,6 +54,8 @@ function answer(s: StudioSession, request: Request): unknown {
     case 'photo': return s.place_photo(request.png, request.x, request.y, request.width);
     case 'copy': return s.copy(Uint32Array.from(request.ids));
     case 'skeleton': return s.skeleton();
+    case 'shape': return JSON.parse(s.shape(JSON.stringify(request.tool), JSON.stringify(request.reach), JSON.stringify(request.input)));
+    case 'branch': return s.branch(request.axis);
     case 'share': return s.share();
     case 'export': return s.export(request.format, JSON.stringify(request.options));
     case 'variant': {
@@ -69,7 +78,7 @@ function tellState(s: StudioSession): void {
 }
 
 /** Requests that change nothing and are not followed by a new plant. */
-const QUIET: ReadonlySet<Request['kind']> = new Set(['save', 'export', 'begin', 'copy', 'variant', 'skeleton', 'share', 'schema']);
+const QUIET: ReadonlySet<Request['kind']> = new Set(['save', 'export', 'begin', 'copy', 'variant', 'skeleton', 'share', 'schema', 'branch']);
 
 /** The columns of what the session shows, and textures that the page does not have. */
 function pack(s: StudioSession, view: PlantView): Sent {
@@ -97,6 +106,7 @@ function evaluate(): void {
   scheduled = false;
   if (!session || !stale) return;
   stale = false;
+  toldShare = 0;
   try {
     const view: View = JSON.parse(session.evaluate());
     const s = session;
@@ -153,9 +163,9 @@ page.onmessage = ({ data }: MessageEvent<ToWorker>) => {
   try {
     const value = answer(session, request);
     const bytes = ArrayBuffer.isView(value) ? [value.buffer] : request.kind === 'variant' ? buffers(value as Sent) : [];
-    const quiet = QUIET.has(request.kind);
+    const quiet = QUIET.has(request.kind) || (request.kind === 'shape' && !(value as ShapeAnswer).again);
     // The state first: who waits for the answer may look at it.
-    if (!quiet && request.kind !== 'draft') tellState(session);
+    if (!quiet && request.kind !== 'draft' && request.kind !== 'shape') tellState(session);
     tell({ kind: 'done', seq, value }, bytes);
     if (!quiet) schedule();
   } catch (e) {

@@ -11,9 +11,10 @@ extern "C" {
     fn now() -> f64;
     #[wasm_bindgen(js_namespace = console)]
     fn error(text: &str);
-    // Set by the worker; true when the page wants the evaluation to stop.
+    // Set by the worker: takes the share that is done (below 0: not known) and is true when the page wants the
+    // evaluation to stop.
     #[wasm_bindgen(js_namespace = globalThis, js_name = burgeonStop)]
-    fn burgeon_stop() -> bool;
+    fn burgeon_stop(share: f64) -> bool;
 }
 
 #[cfg(not(target_arch = "wasm32"))]
@@ -22,7 +23,7 @@ fn now() -> f64 {
 }
 
 #[cfg(not(target_arch = "wasm32"))]
-fn burgeon_stop() -> bool {
+fn burgeon_stop(_share: f64) -> bool {
     false
 }
 
@@ -41,14 +42,14 @@ impl Clock for Host {
     }
 }
 
-/// One job after another, with a look at the page's wish before each: the only thread there is cannot be
+/// One job after another, with a word to the page and a look at its wish before each: the only thread there is cannot be
 /// interrupted from outside.
 pub(crate) struct Attentive<'a>(pub(crate) &'a CancelToken);
 
 impl Executor for Attentive<'_> {
     fn for_each(&self, n: usize, job: &(dyn Fn(usize) + Sync)) {
         for i in 0..n {
-            if burgeon_stop() {
+            if burgeon_stop(self.0.share().unwrap_or(-1.0)) {
                 self.0.cancel();
             }
             job(i);

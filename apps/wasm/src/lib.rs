@@ -331,6 +331,20 @@ impl StudioSession {
         self.0.skeleton()
     }
 
+    /// Lets a tool shape the plant that is chosen: `ShapeTool`, `ShapeReach` and `ShapeInput` in, `ShapeAnswer` out,
+    /// all JSON. What a gesture would make is shown but is not in the document; what it made is the page's to ask for.
+    ///
+    /// # Errors
+    /// When there is no plant, or the words are not known.
+    pub fn shape(&mut self, tool: &str, reach: &str, input: &str) -> Result<String, JsError> {
+        told(self.0.shape(tool, reach, input))
+    }
+
+    /// A branch that was picked and all that it bears: pairs of points, x, y, z and radius of each.
+    pub fn branch(&self, axis: u32) -> Vec<f32> {
+        self.0.branch(axis)
+    }
+
     /// A small `.burgeon` file for a link: rounded, without times and photograph.
     ///
     /// # Errors

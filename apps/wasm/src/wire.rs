@@ -1,13 +1,15 @@
-//! What travels between worker and session as JSON, and the same as TypeScript types.
+//! What travels between worker and session as JSON; `types.ts` has the same as TypeScript types.
 
 use std::sync::Arc;
 
 use burgeon::document::{
     Command, Document, DocumentPlant, FlowerCommand, FlowerSettings, LeafCommand, LeafData, LeafSettings,
-    Maker, NamedObstacle, Photo, Placement, PlantCommand, PlantId, SceneCommand, SketchCommand, TreeCommand,
+    Maker, NamedObstacle, Photo, Placement, PlantCommand, PlantId, SceneCommand, ShapeCommand, SketchCommand,
+    TreeCommand,
 };
 use burgeon::glam::{DVec2, DVec3};
 use burgeon::growth::Obstacle;
+use burgeon::shape::HandEdit;
 use burgeon::sketch::{SketchSpec, StrokeClass, StrokeMode};
 use burgeon::skin::{PetalColor, SkinSpec};
 use burgeon::{ItemReport, Preset, bloom, leaf_marks, tree_settings, tree_spec};
@@ -17,88 +19,7 @@ use serde_json::Value;
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen(typescript_custom_section)]
-const TYPES: &str = r#"
-export type StrokeClass = "blade" | "corolla" | "axis" | "trunk_outline" | "crown" | "vein" | "disc" | "pot" | "ground"
-  | "fruit" | "scribble" | "other";
-export type StrokeMode = "parts" | "branch-contour" | "leaf-contour";
-export type PetalColor = "pink" | "white" | "yellow" | "violet" | "red" | "orange" | "blue" | "magenta";
-export interface SketchSpec {
-  height_m: number | null; branch_depth: "paper" | "riesz"; leaf_depth: "paper" | "signed" | "drawn";
-  flipped_flowers: number[]; pipe_exponent: number | null;
-  taper: { s: number; alpha: number; m: number };
-  fill: { contour_pull: number; bearer_pull: number; memory: number; density: number; tropism: number };
-  relief: { petal_bend_a: number; petal_bend_b: number; petal_hollow: number; leaf_bend_a: number; leaf_bend_b: number;
-    leaf_fold: number };
-  phototropism: number; gravity: number;
-}
-export interface Skin { detail: number; sides: number; textures: boolean; petals: PetalColor | null; variation: number }
-export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };
-export type Vec3 = [number, number, number];
-/** Commands that name no plant are for the one that is chosen. */
-export type Command =
-  | { do: "remove"; ids: number[] } | { do: "move"; ids: number[]; x: number; y: number }
-  | { do: "class"; ids: number[]; class: StrokeClass | null } | { do: "mode"; ids: number[]; mode: StrokeMode }
-  | { do: "color"; ids: number[]; color: [number, number, number] | null } | { do: "clear" } | { do: "new" }
-  | { do: "duplicate"; ids: number[]; x: number; y: number }
-  | { do: "photo"; x: number; y: number; width: number; opacity: number; paint: boolean } | { do: "photo-off" }
-  | { do: "sketch"; spec: SketchSpec } | { do: "skin"; skin: Skin } | { do: "day"; day: number | null }
-  | { do: "rename-scene"; name: string } | { do: "add"; maker: MakerWord; name: string; preset?: string }
-  | { do: "duplicate-plant"; plant: number; by: Vec3 } | { do: "remove-plant"; plant: number }
-  | { do: "rename"; plant: number; name: string } | { do: "seed"; seed: string } | { do: "lock"; on: boolean }
-  | { do: "hide"; plant: number; on: boolean }
-  | { do: "place"; plant: number; position: Vec3; yaw_deg: number; scale: number }
-  | { do: "preset"; key: string } | { do: "tree"; path: string; value: Json }
-  | { do: "obstacle"; name: string; shape: ObstacleShape; row?: number } | { do: "obstacle-off"; row: number }
-  | { do: "leaf-of"; lender: number | null }
-  | { do: "leaf"; settings: Json } | { do: "marks"; name: string; text: string }
-  | { do: "flower"; settings: Json } | { do: "law"; text: string | null };
-export type MakerWord = "sketch" | "tree" | "leaf" | "flower";
-/** A mesh is told by its size only. */
-export type ObstacleShape = { shape: string } & { [key: string]: Json };
-export interface StrokeState { id: number; mode: StrokeMode; class: StrokeClass | null; color: [number, number, number] | null }
-export interface SketchState {
-  sketch: SketchSpec; skin: Skin; strokes: StrokeState[]; photo: PhotoState | null; day: number | null; leaf: number | null;
-}
-export interface TreeState {
-  preset: string | null; spec: { [key: string]: Json }; skin: Skin; leaf: number | null;
-  obstacles: { name: string; shape: ObstacleShape }[];
-}
-export interface LeafState { file: string; text: string; settings: { [key: string]: Json } }
-export interface FlowerState { settings: { [key: string]: Json }; law: string | null }
-export interface PlantState {
-  id: number; maker: MakerWord; name: string; seed: string; locked: boolean; hidden: boolean; position: Vec3;
-  yaw_deg: number; scale: number; lends: boolean; sketch: SketchState | null; tree: TreeState | null;
-  leaf: LeafState | null; flower: FlowerState | null;
-}
-export interface DocumentState {
-  revision: number; undo: string | null; redo: string | null; steps: number; name: string; current: number | null;
-  plants: PlantState[];
-}
-export interface PhotoState {
-  x: number; y: number; width: number; height: number; opacity: number; paint: boolean; pixels: [number, number];
-}
-export interface ExportOptions { levels: number; up: "y" | "z"; unit: "m" | "cm" | "mm"; whole: boolean }
-export interface Opened { kind: "project" | "drawing" | "model" | "leaf" | "tree" | "law"; name: string; names: string[]; warnings: string[] }
-export interface StrokeReport { index: number; class: StrokeClass; organ: string; confidence: number }
-export interface Item {
-  name: string; strokes: StrokeReport[];
-  counts: { flowers: number; petals: number; leaves: number; branches: number; nodes: number; axes: number;
-    vertices: number; triangles: number };
-  timings_ms: { total: number } & Record<string, number>; fidelity: { reprojection_mean: number; reprojection_p95: number };
-  digest: string; warnings: string[]; growth?: { iterations: number } & Record<string, number | string>;
-}
-export interface MaterialView {
-  name: string; kind: string; color: [number, number, number]; roughness: number; translucency: number; masked: boolean;
-  two_sided: boolean; texture: { number: number; width: number; height: number } | null;
-}
-/** A plant as it is seen; `fresh` ones come with their meshes. */
-export interface PlantView {
-  id: number; fresh: boolean; error: string | null; item: Item | null; stages: string[];
-  front: { metres_per_unit: number; x: number; y: number } | null; days: [number, number] | null; min: Vec3; max: Vec3;
-  parts: { name: string; material: number }[]; materials: MaterialView[]; obstacles: ObstacleShape[];
-}
-export interface View { revision: number; guest: PlantView | null; plants: PlantView[] }
-"#;
+const TYPES: &str = include_str!("types.ts");
 
 /// A command as the page sends it. Those that name no plant are for the one that is chosen.
 #[derive(Debug, Deserialize)]
@@ -222,6 +143,19 @@ pub(crate) enum WireCommand {
     Law {
         text: Option<String>,
     },
+    /// One more edit by hand, or another in the place of that of a row.
+    Shape {
+        edit: Box<HandEdit>,
+        #[serde(default)]
+        row: Option<usize>,
+    },
+    ShapeLeave {
+        row: usize,
+        off: bool,
+    },
+    ShapeRemove {
+        rows: Vec<usize>,
+    },
 }
 
 impl WireCommand {
@@ -276,6 +210,16 @@ impl WireCommand {
                     |t: &String| serde_json::from_str::<bloom::GrowthLaw>(t).map_err(|e| e.to_string());
                 Ok(FlowerCommand::SetLaw(text.as_ref().map(read).transpose()?.map(Arc::new)).of(here()?))
             }
+            Self::Shape { edit, row } => {
+                let edit = Arc::new(HandEdit::clone(edit));
+                let command = match row {
+                    Some(row) => ShapeCommand::Replace(*row, edit),
+                    None => ShapeCommand::Add(edit),
+                };
+                Ok(command.of(here()?))
+            }
+            Self::ShapeLeave { row, off } => Ok(ShapeCommand::Leave(*row, *off).of(here()?)),
+            Self::ShapeRemove { rows } => Ok(ShapeCommand::Remove(rows.clone()).of(here()?)),
             _ => Ok(self.sketch(document.plant(here()?))?.of(here()?)),
         }
     }
@@ -414,10 +358,17 @@ pub(crate) struct PlantState<'a> {
     scale: f64,
     /// Whether others may bear its leaf.
     lends: bool,
+    edits: Vec<EditState>,
     sketch: Option<SketchState<'a>>,
     tree: Option<TreeState<'a>>,
     leaf: Option<LeafState<'a>>,
     flower: Option<FlowerState<'a>>,
+}
+
+#[derive(Debug, Serialize)]
+struct EditState {
+    op: &'static str,
+    off: bool,
 }
 
 #[derive(Debug, Serialize)]
@@ -490,6 +441,7 @@ impl<'a> PlantState<'a> {
             yaw_deg: s.placement.yaw_deg,
             scale: s.placement.scale,
             lends: document.lends_leaf(plant.id()),
+            edits: s.edits.iter().map(|e| EditState { op: e.edit.word(), off: e.off }).collect(),
             sketch: None,
             tree: None,
             leaf: None,

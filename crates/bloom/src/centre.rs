@@ -106,7 +106,8 @@ impl FlowerSpec {
             }
             // The receptacle joins stalk and petals.
             let wide = self.whorls.iter().map(|w| w.insertion[0]).fold(0.0, f64::max).max(self.disc);
-            bowl(&mut mesh, place, turn, wide, -0.6 * wide - 0.002);
+            let ends = self.whorls.iter().map(|w| w.insertion);
+            bowl(&mut mesh, (place, turn), wide, -0.6 * wide - 0.002, ends);
         }
         let none = vec![u32::MAX; mesh.triangles.len()];
         finish(frame, "stalk".into(), 3, mesh, none);
@@ -154,18 +155,28 @@ fn tube(mesh: &mut TriMesh, line: &[DVec3], radii: &[f64], color: [f32; 3]) {
     }
 }
 
-fn bowl(mesh: &mut TriMesh, place: DVec3, turn: DQuat, wide: f64, low: f64) {
+/// From the stalk up along the feet of sepals and petals, `ends` from the outermost on, and to the axis.
+fn bowl(
+    mesh: &mut TriMesh,
+    (place, turn): (DVec3, DQuat),
+    wide: f64,
+    low: f64,
+    ends: impl Iterator<Item = [f64; 2]>,
+) {
     let start = u32::try_from(mesh.positions.len()).unwrap_or(u32::MAX);
-    let rings = [(0.08, low), (0.6, 0.45 * low), (1.0, -0.0005), (0.5, 0.0)];
-    for (r, y) in rings {
+    let mut rings = vec![[0.08 * wide, low], [0.6 * wide, 0.45 * low]];
+    rings.extend(ends.map(|[r, y]| [1.01 * r, y]));
+    let top = rings.last().map_or(0.0, |r| r[1]);
+    rings.push([0.02 * wide, top + 0.0004]);
+    for [r, y] in &rings {
         for k in 0..=12 {
             let (s, c) = ops::sin_cos(ops::TAU * f64::from(k) / 12.0);
-            mesh.push(place + turn * DVec3::new(wide * r * c, y, wide * r * s));
+            mesh.push(place + turn * DVec3::new(r * c, *y, r * s));
             mesh.colors.push(GREEN);
             mesh.uvs.push([0.0, 0.0]);
         }
     }
-    quads(mesh, start, 3, 12);
+    quads(mesh, start, u32::try_from(rings.len() - 1).unwrap_or(0), 12);
 }
 
 /// A dome of florets in Vogel's spiral (phyllotaxis of 137.5 degrees): they open, with pollen, from the rim inwards.

@@ -38,6 +38,9 @@ pub struct Cleaned {
     pub ground: usize,
     /// Stray points and specks.
     pub outliers: usize,
+    /// No ground lies across `up`, but a plane like one lies across this axis, the plant on its side of it: the scan
+    /// may lie down.
+    pub ground_across: Option<DVec3>,
 }
 
 /// Takes stray points and the ground out of a scan.
@@ -63,6 +66,8 @@ pub fn clean(points: &[DVec3], spec: &CleanSpec, seed: Seed, run: &Run<'_>) -> R
         let here: Vec<DVec3> = kept.iter().map(|&i| points[i]).collect();
         if let Some((normal, level, width)) = ground(&here, spec, seed) {
             kept.retain(|&i| normal.dot(points[i]) - level > width);
+        } else {
+            out.ground_across = lying(&here, spec, seed);
         }
         out.ground = before - kept.len();
     }
@@ -130,6 +135,38 @@ fn ground(points: &[DVec3], spec: &CleanSpec, seed: Seed) -> Option<(DVec3, f64,
         && below as f64 <= 0.03 * others as f64
         && others > 16;
     is_ground.then_some((n, level, width))
+}
+
+/// The axis across which a ground lies, if it is not `up`: a quarter of the points, and a plant that stands out.
+fn lying(points: &[DVec3], spec: &CleanSpec, seed: Seed) -> Option<DVec3> {
+    let few: Vec<DVec3> = thin(points, 3000).into_iter().map(|i| points[i as usize]).collect();
+    let up = spec.up.try_normalize().unwrap_or(DVec3::Y);
+    let axes = [DVec3::Z, DVec3::NEG_Z, DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y];
+    // Not upside down: a level leaf on a stalk looks like that.
+    axes.into_iter().filter(|a| a.dot(up).abs() < 0.9).find(|&axis| {
+        let there = CleanSpec { up: axis, plane_share: 0.25, ..*spec };
+        ground(&few, &there, seed).is_some_and(|(normal, level, width)| {
+            let height = few.iter().map(|p| normal.dot(*p) - level).fold(0.0, f64::max);
+            height > 0.25 * extent(&few) && filled(&few, normal, level, width)
+        })
+    })
+}
+
+/// A ground fills its box, as a table or a turntable does and leaves do not: 60 of 100 cells of 10 x 10.
+fn filled(points: &[DVec3], normal: DVec3, level: f64, width: f64) -> bool {
+    let (u, v) = normal.any_orthonormal_pair();
+    let near = points.iter().filter(|p| (normal.dot(**p) - level).abs() <= width);
+    let flat: Vec<[f64; 2]> = near.map(|p| [u.dot(*p), v.dot(*p)]).collect();
+    let low = [0, 1].map(|i| flat.iter().map(|p| p[i]).fold(f64::INFINITY, f64::min));
+    let high = [0, 1].map(|i| flat.iter().map(|p| p[i]).fold(f64::NEG_INFINITY, f64::max));
+    let mut seen = [false; 100];
+    for p in &flat {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 9")]
+        let [i, j] = [0, 1]
+            .map(|k| (10.0 * (p[k] - low[k]) / (high[k] - low[k]).max(1e-300)).clamp(0.0, 9.0) as usize);
+        seen[10 * i + j] = true;
+    }
+    seen.iter().filter(|s| **s).count() >= 60
 }
 
 /// Which points lie in company.
@@ -208,6 +245,17 @@ mod tests {
     }
 
     #[test]
+    fn a_scene_that_lies_down_is_told() {
+        let (p, _, _) = scene();
+        // As a scanner with +Z up writes it.
+        let lying: Vec<DVec3> = p.iter().map(|p| DVec3::new(p.x, -p.z, p.y)).collect();
+        let c = clean(&lying, &CleanSpec::default(), Seed::new(1), &Run::plain()).unwrap();
+        assert_eq!((c.ground, c.ground_across), (0, Some(DVec3::Z)));
+        let c = clean(&p, &CleanSpec::default(), Seed::new(1), &Run::plain()).unwrap();
+        assert_eq!(c.ground_across, None);
+    }
+
+    #[test]
     fn a_leaf_is_no_ground() {
         let mut s = Seed::new(5).stream(Draw::Test);
         // A level leaf on a stalk: most of the points in one plane, but the stalk hangs below.
@@ -215,7 +263,7 @@ mod tests {
             (0..3000).map(|_| DVec3::new(s.range(0.0, 0.04), 0.05, s.range(0.0, 0.02))).collect();
         p.extend((0..600).map(|_| DVec3::new(0.0, s.range(0.0, 0.05), 0.01)));
         let c = clean(&p, &CleanSpec::default(), Seed::new(1), &Run::plain()).unwrap();
-        assert_eq!(c.ground, 0);
+        assert_eq!((c.ground, c.ground_across), (0, None));
         assert!(c.kept.len() > 3500, "{c:?}");
     }
 

@@ -42,6 +42,8 @@ pub struct Whorl {
     pub lean: f64,
     /// Linear colour at the base and at the tip.
     pub colors: [[f32; 3]; 2],
+    /// How green the bud still is, 0 to 1.
+    pub green: f64,
     /// Sepals or bracts: they keep their form when petals are replaced.
     pub sepal: bool,
     /// The petal's own outline, drawn or measured; without one it is made of the shares above.
@@ -196,11 +198,13 @@ impl Whorl {
         let size = at(0.5, Quantity::Size);
         let wilt = ops::smoothstep(0.0, 1.0, ((day - opening) / wilting).clamp(0.0, 1.0));
         let open = blend3(self.bud, self.open, g);
+        let young = if self.sepal { [0.82, 0.8] } else { [0.62, 0.55] };
         Profile {
             angle: blend3(open, self.wilted, [wilt; 3]).map(rad),
-            // Withered petals are about a quarter shorter and half as wide: they roll in and dry.
-            length: self.length * ops::lerp(0.62, 1.0, size) * (1.0 - 0.24 * wilt),
-            width: self.width * ops::lerp(0.55, 1.0, size) * (1.0 - 0.45 * wilt),
+            // Sepals and bracts are nearly grown in the bud. Withered petals are about a quarter shorter and half as
+            // wide: they roll in and dry.
+            length: self.length * ops::lerp(young[0], 1.0, size) * (1.0 - 0.24 * wilt),
+            width: self.width * ops::lerp(young[1], 1.0, size) * (1.0 - 0.45 * wilt),
             open: size.clamp(0.0, 1.0),
             wilt,
         }
@@ -223,19 +227,26 @@ impl Whorl {
     }
 }
 
+/// Of a closed bud, linear.
+const BUD: [f32; 3] = [0.27, 0.40, 0.09];
+
 impl Whorl {
     /// The colour at a place: from base to tip, a little deeper along the middle; withering browns it from the
     /// margin and the tip inwards.
     #[expect(clippy::cast_possible_truncation, reason = "colours are f32")]
-    fn color(&self, u: f64, v: f64, wilt: f64) -> [f32; 3] {
+    fn color(&self, u: f64, v: f64, profile: &Profile) -> [f32; 3] {
         let share = ops::smoothstep(0.0, 0.6, v) as f32;
         let middle = (1.0 - 0.14 * (1.0 - u.abs()) * (1.0 - u.abs())) as f32;
         let dry = if self.sepal { [0.17, 0.15, 0.045] } else { [0.14, 0.08, 0.033] };
         // The margin is brown at half of the wilting, the middle at its end.
         let inner = 1.0 - (v * v).max(u * u);
-        let withered = ops::smoothstep(0.0, 1.0, (1.9 * wilt - 0.9 * inner).clamp(0.0, 1.0)) as f32;
+        let withered = ops::smoothstep(0.0, 1.0, (1.9 * profile.wilt - 0.9 * inner).clamp(0.0, 1.0)) as f32;
+        // The bud greens from its base and along its middle, and the green goes as it opens.
+        let young = 1.0 - ops::smoothstep(0.0, 0.75, profile.open);
+        let green = (self.green * young * (1.0 - 0.5 * v * v) * (1.0 - 0.25 * u * u)) as f32;
         [0, 1, 2].map(|q| {
-            let fresh = (self.colors[0][q] + (self.colors[1][q] - self.colors[0][q]) * share) * middle;
+            let own = (self.colors[0][q] + (self.colors[1][q] - self.colors[0][q]) * share) * middle;
+            let fresh = own + (BUD[q] - own) * green;
             // Some of the petal's own colour stays.
             fresh + (0.88 * dry[q] + 0.12 * fresh - fresh) * withered
         })
@@ -358,7 +369,7 @@ impl FlowerSpec {
                     let (r, y) = (radius + lean * c, height - lean * s);
                     let p = place.0 + place.1 * DVec3::new(r.max(1e-5) * cos, y, r.max(1e-5) * sin);
                     mesh.push(p);
-                    mesh.colors.push(whorl.color(u, v, profile.wilt));
+                    mesh.colors.push(whorl.color(u, v, profile));
                     #[expect(clippy::cast_possible_truncation, reason = "texture coordinates are f32")]
                     mesh.uvs.push([(0.5 + 0.5 * u) as f32, 1.0 - v as f32]);
                 }

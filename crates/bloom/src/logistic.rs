@@ -37,6 +37,21 @@ impl Logistic {
     }
 }
 
+/// Largest K/p0, and 1 over the smallest, that a fit looks at.
+const MAX_RATIO: f64 = 1e4;
+/// Largest rate times the span of the days that a fit looks at.
+const MAX_TURN: f64 = 60.0;
+
+impl Logistic {
+    /// A fit over `span` days ended on a bound of K/p0 or of the rate: the series determines no logistic, and K, p0
+    /// and r say nothing by themselves.
+    pub fn on_bound(&self, span: f64) -> bool {
+        let q = (self.k / self.p0).abs();
+        // 0.99: the search ends before a bound that it would step over.
+        q >= 0.99 * MAX_RATIO || q <= 1.0 / (0.99 * MAX_RATIO) || (self.r * span).abs() >= 0.99 * MAX_TURN
+    }
+}
+
 /// How the constant under the curve is chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -205,7 +220,7 @@ impl Scaled {
         // determines no logistic, and its parameters would run away.
         let last = self.x.len() - 1;
         let span = self.x[last] - self.x[0];
-        if !((1e-4..=1e4).contains(&q) && (r * span).abs() <= 60.0) {
+        if !((1.0 / MAX_RATIO..=MAX_RATIO).contains(&q) && (r * span).abs() <= MAX_TURN) {
             return None;
         }
         ops::exps(-r, &self.x, &mut self.e);

@@ -17,6 +17,7 @@ pub(crate) const PLAIN: Whorl = Whorl {
     phase: 0.0,
     lean: 0.002,
     colors: [[0.8; 3]; 2],
+    green: 0.0,
     sepal: false,
     form: None,
 };
@@ -75,13 +76,13 @@ fn rose(spec: FlowerSpec) -> FlowerSpec {
     };
     let sepals = Whorl {
         count: 5,
-        length: 0.026,
-        width: 0.010,
+        length: 0.027,
+        width: 0.0125,
         widest: 0.3,
-        claw: 0.7,
+        claw: 0.75,
         point: 1.0,
-        insertion: [0.0108, -0.0012],
-        bud: [26.0, 8.0, 0.0],
+        insertion: [0.0104, -0.0010],
+        bud: [24.0, 5.0, -10.0],
         open: [95.0, 105.0, 125.0],
         wilted: [100.0, 125.0, 155.0],
         lean: 0.0003,
@@ -111,17 +112,18 @@ fn lily(spec: FlowerSpec) -> FlowerSpec {
         claw: 0.35,
         point: 0.9,
         insertion: [0.0065, 0.0],
-        bud: [9.0, 2.5, -5.5],
+        bud: [10.0, 1.5, -9.0],
         open: [20.0, 46.0, 128.0],
         wilted: [34.0, 92.0, 158.0],
         lean: 0.0007,
         colors: [[0.66, 0.76, 0.40], [0.92, 0.60, 0.71]],
+        green: 0.95,
         ..PLAIN
     };
     let inner = Whorl {
         width: 0.036,
         insertion: [0.0045, 0.0012],
-        bud: [7.0, 1.5, -5.0],
+        bud: [8.0, 0.5, -8.5],
         open: [17.0, 42.0, 120.0],
         wilted: [28.0, 82.0, 150.0],
         phase: 60.0,
@@ -146,7 +148,7 @@ fn tulip(spec: FlowerSpec) -> FlowerSpec {
         length: 0.062,
         width: 0.046,
         widest: 0.52,
-        claw: 0.5,
+        claw: 0.8,
         point: 0.6,
         insertion: [0.0085, 0.0],
         bud: [36.0, -2.0, -22.0],
@@ -195,27 +197,32 @@ fn sunflower(spec: FlowerSpec) -> FlowerSpec {
             phase: 27.7 / 4.0 * f64::from(k * 2 % 5) + 3.0 * t,
             lean: 0.0006,
             colors: [[0.78, 0.33, 0.006], [0.88, 0.55, 0.008]],
+            green: 0.35,
             ..PLAIN
         }
     };
-    let bracts = Whorl {
-        count: 13,
-        length: 0.05,
-        width: 0.022,
-        widest: 0.3,
-        claw: 0.9,
-        point: 1.0,
-        insertion: [0.05, -0.008],
-        bud: [34.0, 8.0, -4.0],
-        open: [96.0, 104.0, 118.0],
-        wilted: [104.0, 138.0, 166.0],
-        lean: 0.0006,
-        phase: 9.0,
-        colors: [[0.10, 0.26, 0.04], [0.13, 0.33, 0.06]],
-        sepal: true,
-        ..PLAIN
+    // Two rings of bracts hold the bud.
+    let bracts = |k: u32| {
+        let t = f64::from(k);
+        Whorl {
+            count: 13,
+            length: 0.058 - 0.004 * t,
+            width: 0.027,
+            widest: 0.35,
+            claw: 0.9,
+            point: 1.0,
+            insertion: [0.0485 - 0.0015 * t, -0.0035 + 0.0017 * t],
+            bud: [46.0 - 4.0 * t, -6.0 - 3.0 * t, -34.0 - 3.0 * t],
+            open: [95.0 - 3.0 * t, 104.0 - 4.0 * t, 122.0 - 5.0 * t],
+            wilted: [102.0 - 3.0 * t, 134.0 - 4.0 * t, 164.0 - 5.0 * t],
+            lean: 0.0006,
+            phase: 9.0 + 180.0 / 13.0 * t,
+            colors: [[0.10, 0.26, 0.04], [0.13, 0.33, 0.06]],
+            sepal: true,
+            ..PLAIN
+        }
     };
-    let whorls = core::iter::once(bracts).chain((0..4).map(ring)).collect();
+    let whorls = (0..2).map(bracts).chain((0..4).map(ring)).collect();
     FlowerSpec {
         whorls,
         disc: 0.042,
@@ -242,6 +249,7 @@ fn clivia(spec: FlowerSpec) -> FlowerSpec {
         wilted: [10.0, 6.0, -2.0],
         lean: 0.0004,
         colors: [[0.85, 0.50, 0.06], [0.82, 0.17, 0.02]],
+        green: 0.15,
         ..PLAIN
     };
     let inner = Whorl {

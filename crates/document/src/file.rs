@@ -8,20 +8,21 @@ use std::sync::Arc;
 use base::Seed;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
+use shape::HandEdit;
 
 use crate::archive::{ArchiveError, pack, unpack};
 use crate::forms::{
-    DocumentV1, DocumentV2, DocumentV3, FlowerV3, LeafV3, MakerV3, ObstacleV3, PhotoV2, PlantV3, SketchV3,
-    SkinV1, StrokeV1, TreeV3, from_file, to_file,
+    DocumentV1, DocumentV2, DocumentV3, DocumentV4, EditV4, FlowerV3, LeafV3, MakerV3, ObstacleV3, PhotoV2,
+    PlantV4, SketchV3, SkinV1, StrokeV1, TreeV3, from_file, to_file,
 };
 use crate::makers::{FlowerMaker, LeafData, LeafMaker, Maker, NamedObstacle, SketchSettings, TreeSettings};
-use crate::state::{MAX_PLANTS, Placement, range_fault, shortened};
+use crate::state::{MAX_PLANTS, Placement, PlantEdit, range_fault, shortened};
 use crate::{Document, DocumentPlant, DocumentStroke, Photo, PhotoError, PlantId, Settings};
 
 /// The form that this version writes, as `manifest.json` names it.
-pub const PROJECT_SCHEMA: &str = "project/3";
+pub const PROJECT_SCHEMA: &str = "project/4";
 /// Earlier forms that are read.
-const EARLIER: [&str; 2] = ["project/1", "project/2"];
+const EARLIER: [&str; 3] = ["project/1", "project/2", "project/3"];
 /// Largest project file that is read, and largest entry in it: 64 MiB and 256 MiB.
 pub const MAX_PROJECT_BYTES: usize = 64 << 20;
 const MAX_ENTRY_BYTES: usize = 256 << 20;
@@ -117,7 +118,7 @@ pub fn write_project(document: &Document, version: &str) -> Result<Vec<u8>, Proj
     let row =
         |id: PlantId| document.plants().iter().position(|p| p.id() == id).and_then(|r| u32::try_from(r).ok());
     let plants = document.plants().iter().map(|p| plant_to_file(p, &row)).collect();
-    let file = DocumentV3 { name: document.name().into(), plants };
+    let file = DocumentV4 { name: document.name().into(), plants };
     let manifest = Manifest { burgeon: PROJECT_SCHEMA.into(), made_by: version.into() };
     let json = |entry, source| ProjectError::Json { entry, source };
     let mut files = vec![
@@ -134,7 +135,7 @@ fn photo_name(row: usize) -> String {
     format!("photo-{row}.png")
 }
 
-fn plant_to_file(plant: &DocumentPlant, row: &dyn Fn(PlantId) -> Option<u32>) -> PlantV3 {
+fn plant_to_file(plant: &DocumentPlant, row: &dyn Fn(PlantId) -> Option<u32>) -> PlantV4 {
     let s = plant.settings();
     let maker = match &s.maker {
         Maker::Sketch(k) => MakerV3::Sketch(SketchV3 {
@@ -173,7 +174,8 @@ fn plant_to_file(plant: &DocumentPlant, row: &dyn Fn(PlantId) -> Option<u32>) ->
         }),
     };
     let Placement { position, yaw_deg, scale } = s.placement;
-    PlantV3 {
+    let edits = s.edits.iter().map(|e| EditV4 { edit: HandEdit::clone(&e.edit), off: e.off });
+    PlantV4 {
         name: s.name.clone(),
         seed: s.seed.number(),
         locked: s.locked,
@@ -182,6 +184,7 @@ fn plant_to_file(plant: &DocumentPlant, row: &dyn Fn(PlantId) -> Option<u32>) ->
         yaw_deg,
         scale,
         maker,
+        edits: edits.collect(),
     }
 }
 
@@ -208,15 +211,16 @@ pub fn read_project(bytes: &[u8]) -> Result<Document, ProjectError> {
     let document = entries.remove(DOCUMENT).ok_or_else(|| missing(DOCUMENT))?;
     let json = |source| ProjectError::Json { entry: DOCUMENT, source };
     // Every form is read by its own structs and then brought forward; each has a file in fixtures/projects.
-    let file: DocumentV3 = match form {
-        "project/1" => {
-            DocumentV2::from(serde_json::from_slice::<DocumentV1>(&document).map_err(json)?).into()
-        }
-        "project/2" => serde_json::from_slice::<DocumentV2>(&document).map_err(json)?.into(),
+    let second = |v1: DocumentV1| DocumentV2::from(v1);
+    let third = |v2: DocumentV2| DocumentV3::from(v2);
+    let file: DocumentV4 = match form {
+        "project/1" => third(second(serde_json::from_slice(&document).map_err(json)?)).into(),
+        "project/2" => third(serde_json::from_slice(&document).map_err(json)?).into(),
+        "project/3" => serde_json::from_slice::<DocumentV3>(&document).map_err(json)?.into(),
         _ => serde_json::from_slice(&document).map_err(json)?,
     };
     drop(document);
-    let earlier = form != PROJECT_SCHEMA;
+    let earlier = matches!(form, "project/1" | "project/2");
     checked(file, |row| {
         let name = if earlier { PHOTO.to_owned() } else { photo_name(row) };
         let png = unpack(bytes, &[&name], MAX_ENTRY_BYTES)?.remove(&name);
@@ -225,7 +229,7 @@ pub fn read_project(bytes: &[u8]) -> Result<Document, ProjectError> {
 }
 
 fn checked(
-    file: DocumentV3,
+    file: DocumentV4,
     photo: impl Fn(usize) -> Result<Photo, ProjectError>,
 ) -> Result<Document, ProjectError> {
     if file.plants.len() > MAX_PLANTS {
@@ -243,7 +247,7 @@ fn checked(
     let mut document =
         Document { name: shortened(&file.name), plants: Vec::new(), next_stroke: 0, next_plant: 0 };
     for (row, plant) in file.plants.into_iter().enumerate() {
-        let PlantV3 { name, seed, locked, hidden, position, yaw_deg, scale, maker } = plant;
+        let PlantV4 { name, seed, locked, hidden, position, yaw_deg, scale, maker, edits } = plant;
         let (maker, strokes) = match maker {
             MakerV3::Sketch(sketch) => from_sketch(sketch, row, &photo)?,
             MakerV3::Tree(tree) => (from_tree(tree)?, Vec::new()),
@@ -262,6 +266,7 @@ fn checked(
             hidden,
             placement: Placement { position: DVec3::from_array(position), yaw_deg, scale },
             maker,
+            edits: edits.into_iter().map(|e| PlantEdit { edit: Arc::new(e.edit), off: e.off }).collect(),
         };
         if let Some(fault) = range_fault(&settings) {
             return Err(ProjectError::Setting(fault));

@@ -5,22 +5,23 @@ use glam::DVec2;
 use growth::Obstacle;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
+use shape::HandEdit;
 use sketch::{InkSample, SketchSpec, Stroke, StrokeClass, StrokeMode};
 use skin::{PetalColor, SkinSpec};
 
 use crate::{DocumentStroke, FlowerSettings, LeafSettings};
 
-/// Form 3: a scene of plants.
+/// Form 4: as form 3, and edits by hand.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct DocumentV3 {
+pub(crate) struct DocumentV4 {
     pub(crate) name: String,
-    pub(crate) plants: Vec<PlantV3>,
+    pub(crate) plants: Vec<PlantV4>,
 }
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct PlantV3 {
+pub(crate) struct PlantV4 {
     pub(crate) name: String,
     pub(crate) seed: u64,
     #[serde(default, skip_serializing_if = "is_false")]
@@ -28,6 +29,53 @@ pub(crate) struct PlantV3 {
     #[serde(default, skip_serializing_if = "is_false")]
     pub(crate) hidden: bool,
     /// Metres.
+    #[serde(default)]
+    pub(crate) position: [f64; 3],
+    #[serde(default)]
+    pub(crate) yaw_deg: f64,
+    #[serde(default = "one")]
+    pub(crate) scale: f64,
+    pub(crate) maker: MakerV3,
+    /// In the order in which they are done.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) edits: Vec<EditV4>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct EditV4 {
+    pub(crate) edit: HandEdit,
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub(crate) off: bool,
+}
+
+impl From<DocumentV3> for DocumentV4 {
+    fn from(v3: DocumentV3) -> Self {
+        let plants = v3.plants.into_iter().map(|p| {
+            let PlantV3 { name, seed, locked, hidden, position, yaw_deg, scale, maker } = p;
+            PlantV4 { name, seed, locked, hidden, position, yaw_deg, scale, maker, edits: Vec::new() }
+        });
+        Self { name: v3.name, plants: plants.collect() }
+    }
+}
+
+/// Form 3: a scene of plants.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct DocumentV3 {
+    pub(crate) name: String,
+    pub(crate) plants: Vec<PlantV3>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct PlantV3 {
+    pub(crate) name: String,
+    pub(crate) seed: u64,
+    #[serde(default)]
+    pub(crate) locked: bool,
+    #[serde(default)]
+    pub(crate) hidden: bool,
     #[serde(default)]
     pub(crate) position: [f64; 3],
     #[serde(default)]

@@ -4,7 +4,7 @@
 //!
 //! | module | owns |
 //! |---|---|
-//! | `state` | [`Document`]: plants with name, seed, place, strokes |
+//! | `state` | [`Document`]: plants with name, seed, place, edits by hand, strokes |
 //! | `makers` | [`Maker`]: what each maker is asked for |
 //! | `command` | [`Command`]: what can be asked, checked against the document; a small enum for each maker |
 //! | `event` | [`Event`]: what happened; applied forwards and backwards |
@@ -29,7 +29,7 @@ mod state;
 pub use archive::{ArchiveError, pack};
 pub use command::{
     Command, CommandError, FlowerCommand, LeafCommand, NewPlant, NewStroke, PlantCommand, SceneCommand,
-    SketchCommand, TreeCommand,
+    ShapeCommand, SketchCommand, TreeCommand,
 };
 pub use editor::{Editor, Step};
 pub use event::{Event, StrokeRows};
@@ -40,6 +40,6 @@ pub use makers::{
 };
 pub use photo::{MAX_PHOTO_BYTES, Photo, PhotoError};
 pub use state::{
-    Document, DocumentFault, DocumentPlant, DocumentStroke, Placement, PlantId, Settings, StrokeId,
-    range_fault,
+    Document, DocumentFault, DocumentPlant, DocumentStroke, Placement, PlantEdit, PlantId, Settings,
+    StrokeId, range_fault,
 };

@@ -55,6 +55,11 @@ impl Maker {
         }
     }
 
+    /// Whether it makes plants with branches, which take edits by hand: a sketch or a tree.
+    pub const fn branches(&self) -> bool {
+        matches!(self, Self::Sketch(_) | Self::Tree(_))
+    }
+
     pub(crate) fn set_leaf(&mut self, leaf: Option<PlantId>) {
         match self {
             Self::Sketch(s) => s.leaf = leaf,

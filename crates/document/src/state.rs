@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use base::Seed;
 use glam::{DVec2, DVec3};
+use shape::HandEdit;
 use sketch::{Drawing, Stroke, StrokeClass};
 
 use crate::{Maker, Photo, SketchSettings};
@@ -68,6 +69,23 @@ pub struct Settings {
     pub placement: Placement,
     /// Who makes it, and of what.
     pub maker: Maker,
+    /// Edits by hand, in the order in which they are done; of sketches and trees only, at most 1,000.
+    pub edits: Vec<PlantEdit>,
+}
+
+/// An edit by hand that is kept with a plant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlantEdit {
+    /// What is done; shared with the undo history.
+    pub edit: Arc<HandEdit>,
+    /// Left out for now. Default false.
+    pub off: bool,
+}
+
+impl From<HandEdit> for PlantEdit {
+    fn from(edit: HandEdit) -> Self {
+        Self { edit: Arc::new(edit), off: false }
+    }
 }
 
 impl Default for Settings {
@@ -79,11 +97,24 @@ impl Default for Settings {
             hidden: false,
             placement: Placement::default(),
             maker: Maker::default(),
+            edits: Vec::new(),
         }
     }
 }
 
 impl Settings {
+    fn edits_fault(&self) -> Option<String> {
+        if !self.edits.is_empty() && !self.maker.branches() {
+            return Some(format!("a {} has no branches to edit by hand", self.maker.word()));
+        }
+        if self.edits.len() > MAX_EDITS {
+            return Some(format!("a plant has at most {MAX_EDITS} edits by hand; remove some"));
+        }
+        let fault = |(row, e): (usize, &PlantEdit)| Some((row, e.edit.check().err()?));
+        let (row, why) = self.edits.iter().enumerate().find_map(fault)?;
+        Some(format!("edit {row} by hand: {why}"))
+    }
+
     /// The settings of a sketch; `None` for other makers.
     pub fn sketch(&self) -> Option<&SketchSettings> {
         if let Maker::Sketch(s) = &self.maker { Some(s) } else { None }
@@ -223,6 +254,8 @@ pub enum DocumentFault {
 
 /// Longest name of a plant, in characters.
 pub(crate) const NAME_LENGTH: usize = 200;
+/// Most edits by hand of a plant.
+const MAX_EDITS: usize = 1000;
 /// Most plants of a scene.
 pub(crate) const MAX_PLANTS: usize = 200;
 
@@ -352,5 +385,5 @@ pub(crate) fn sound(mut stroke: Stroke) -> Option<Stroke> {
 
 /// The first setting that is out of its range, as a sentence with what to do; `None` if all are sound.
 pub fn range_fault(settings: &Settings) -> Option<String> {
-    settings.maker.fault().or_else(|| settings.placement.fault())
+    settings.maker.fault().or_else(|| settings.placement.fault()).or_else(|| settings.edits_fault())
 }

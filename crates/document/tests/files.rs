@@ -21,6 +21,8 @@ const V2: &str = r#"{"burgeon":"project/2"}"#;
 
 const V3: &str = r#"{"burgeon":"project/3"}"#;
 
+const V4: &str = r#"{"burgeon":"project/4"}"#;
+
 /// The one plant of a document of an earlier form.
 fn only(document: &Document) -> &DocumentPlant {
     document.only_sketch().unwrap()
@@ -36,6 +38,12 @@ fn scene(maker: &str, more: &str) -> Vec<u8> {
     project(V3, &format!(r#"{{"name":"a","plants":[{plant}]}}"#))
 }
 
+/// One plant with one edit by hand.
+fn edited(maker: &str, edit: &str) -> Vec<u8> {
+    let plant = format!(r#"{{"name":"a","seed":1,"maker":{maker},"edits":[{{"edit":{edit}}}]}}"#);
+    project(V4, &format!(r#"{{"name":"a","plants":[{plant}]}}"#))
+}
+
 #[test]
 fn refusals_say_what_and_what_to_do() {
     assert!(is_project(&sample()));
@@ -45,7 +53,7 @@ fn refusals_say_what_and_what_to_do() {
         (sample()[..sample().len() / 2].to_vec(), "not a whole zip"),
         (pack(&[("x.txt".into(), vec![1])]).unwrap(), "no \"manifest.json\""),
         (pack(&[("manifest.json".into(), V1.into())]).unwrap(), "no \"document.json\""),
-        (project(r#"{"burgeon":"project/4"}"#, "{}"), "take a newer Burgeon"),
+        (project(r#"{"burgeon":"project/5"}"#, "{}"), "take a newer Burgeon"),
         (
             project(
                 V2,
@@ -76,6 +84,16 @@ fn refusals_say_what_and_what_to_do() {
         (scene(r#"{"tree":{"spec":[]}}"#, ""), "JSON object"),
         (scene(r#"{"tree":{"spec":{},"leaf":0}}"#, ""), "bears the leaf"),
         (scene(r#"{"tree":{"spec":{},"leaf":7}}"#, ""), "bears the leaf"),
+        (scene(r#"{"tree":{"spec":{}}}"#, r#","edits":[]"#), "unknown field `edits`"),
+        (
+            edited(r#"{"sketch":{"strokes":[]}}"#, r#"{"op":"prune","axis":{"path":[0]},"at":2}"#),
+            "edit 0 by hand: at is not",
+        ),
+        (
+            edited(r#"{"tree":{"spec":{}}}"#, r#"{"op":"explode","axis":{"path":[0]}}"#),
+            "unknown variant `explode`",
+        ),
+        (edited(r#"{"flower":{}}"#, r#"{"op":"prune","axis":{"path":[0]}}"#), "a flower has no branches"),
         (scene(r#"{"flower":{}}"#, r#","scale":0"#), "100 km"),
         (scene(r#"{"flower":{}}"#, r#","position":[1e9,0,0]"#), "100 km"),
     ] {
@@ -141,6 +159,23 @@ fn files_of_version_3_stay_readable() {
         (Some("hazel"), 2, Some(leaf.id()))
     );
     assert!(leaf.settings().hidden && bush.settings().locked && lily.settings().placement.scale == 2.0);
+    let again = read_project(&write_project(&document, "test").unwrap()).unwrap();
+    assert_eq!(again, document);
+}
+
+#[test]
+fn files_of_version_4_stay_readable() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/projects/version-4.burgeon");
+    let document = read_project(&std::fs::read(path).unwrap()).unwrap();
+    let [drawn, bush, ..] = document.plants() else { panic!("{document:?}") };
+    let words: Vec<&str> = bush.settings().edits.iter().map(|e| e.edit.word()).collect();
+    assert_eq!(
+        words[..5],
+        ["rotate", "move", "prune", "regrow", "sketch-branch"],
+        "in the order in which they are done"
+    );
+    assert_eq!((words.len(), bush.settings().edits.iter().filter(|e| e.off).count()), (10, 1));
+    assert_eq!(drawn.settings().edits.len(), 1);
     let again = read_project(&write_project(&document, "test").unwrap()).unwrap();
     assert_eq!(again, document);
 }

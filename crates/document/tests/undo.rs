@@ -6,12 +6,13 @@ use base::Seed;
 use document::{
     Command, CommandError, Document, Editor, FlowerCommand, FlowerSettings, LeafCommand, LeafData,
     LeafSettings, Maker, NamedObstacle, NewPlant, NewStroke, Photo, Placement, PlantCommand, PlantId,
-    SceneCommand, Settings, SketchCommand, StrokeId, TreeCommand, read_project, write_project,
+    SceneCommand, Settings, ShapeCommand, SketchCommand, StrokeId, TreeCommand, read_project, write_project,
 };
 use glam::{DVec2, DVec3};
 use growth::Obstacle;
 use proptest::collection::vec;
 use proptest::prelude::*;
+use shape::{AxisKey, Destination, HandEdit, LeafRegion, Turn, ViewPlane};
 use sketch::{Drawing, InkSample, SketchSpec, Stroke, StrokeClass, StrokeMode};
 use skin::SkinSpec;
 
@@ -127,6 +128,51 @@ fn plant_command() -> impl Strategy<Value = PlantCommand> {
     ]
 }
 
+fn hand_edit() -> BoxedStrategy<HandEdit> {
+    let axis = || {
+        prop_oneof![
+            vec(0..4u32, 0..4).prop_map(AxisKey::Path),
+            point().prop_map(|p| AxisKey::Near(p.extend(0.5))),
+        ]
+    };
+    let points = || vec(point().prop_map(|p| p.extend(1.0)), 0..5);
+    let (number, seed) = (-1.0..5.0f64, any::<u64>());
+    prop_oneof![
+        (axis(), point(), -400.0..400.0f64).prop_map(|(axis, about, degrees)| {
+            HandEdit::Rotate { axis, turn: Turn { about: about.extend(1.0), degrees } }
+        }),
+        (axis(), number.clone()).prop_map(|(axis, by)| HandEdit::Move { axis, to: Destination::SlideM(by) }),
+        (axis(), axis(), number.clone())
+            .prop_map(|(axis, on, at)| { HandEdit::Move { axis, to: Destination::Place { axis: on, at } } }),
+        (axis(), number.clone()).prop_map(|(axis, at)| HandEdit::Prune { axis, at }),
+        (axis(), seed).prop_map(|(axis, seed)| HandEdit::Regrow { axis, seed }),
+        (axis(), points(), number.clone()).prop_map(|(bearer, points, twigs)| {
+            HandEdit::SketchBranch { bearer, at: None, points, twigs, seed: 1 }
+        }),
+        (points(), vec(number.clone(), 0..3), number.clone()).prop_map(|(points, radius_m, density)| {
+            HandEdit::Brush { bearer: None, points, radius_m, density, seed: 2 }
+        }),
+        (vec(point(), 0..5), number.clone(), seed).prop_map(|(outline, density, seed)| {
+            HandEdit::Silhouette { plane: ViewPlane::default(), outline, density, trim: true, seed }
+        }),
+        (points(), number).prop_map(|(points, keep)| {
+            HandEdit::LeafDensity { region: LeafRegion::Stroke { points, radius_m: 0.5 }, keep, seed: 3 }
+        }),
+    ]
+    .boxed()
+}
+
+fn shape_command() -> BoxedStrategy<ShapeCommand> {
+    let edit = || hand_edit().prop_map(Arc::new);
+    prop_oneof![
+        4 => edit().prop_map(ShapeCommand::Add),
+        1 => (0..4usize, edit()).prop_map(|(row, e)| ShapeCommand::Replace(row, e)),
+        1 => (0..4usize, any::<bool>()).prop_map(|(row, off)| ShapeCommand::Leave(row, off)),
+        1 => vec(0..4usize, 0..3).prop_map(ShapeCommand::Remove),
+    ]
+    .boxed()
+}
+
 fn new_plant() -> impl Strategy<Value = NewPlant> {
     let maker = prop_oneof![
         Just(Maker::default()),
@@ -153,7 +199,7 @@ fn scene_command() -> impl Strategy<Value = SceneCommand> {
     ]
 }
 
-fn command() -> impl Strategy<Value = Command> {
+fn command() -> BoxedStrategy<Command> {
     let plant = || (0..PLANTS).prop_map(PlantId);
     prop_oneof![
         6 => sketch_command().prop_map(|c| c.of(PlantId(0))),
@@ -162,8 +208,10 @@ fn command() -> impl Strategy<Value = Command> {
         1 => (plant(), leaf_command()).prop_map(|(p, c)| c.of(p)),
         1 => (plant(), flower_command()).prop_map(|(p, c)| c.of(p)),
         2 => (plant(), plant_command()).prop_map(|(p, c)| c.of(p)),
+        3 => (plant(), shape_command()).prop_map(|(p, c)| c.of(p)),
         4 => scene_command().prop_map(Command::from),
     ]
+    .boxed()
 }
 
 #[derive(Clone, Debug)]
@@ -329,6 +377,41 @@ fn refusals_say_why() {
     let too_far =
         editor.run(SketchCommand::MoveStrokes(vec![StrokeId(0)], DVec2::splat(f64::MAX)).of(PlantId(0)));
     assert_eq!(too_far, Err(CommandError::TooFar));
+}
+
+#[test]
+fn edits_by_hand_are_steps_with_names_and_are_checked_at_the_door() {
+    let (mut editor, id) = (Editor::default(), PlantId(0));
+    let cut = |at| Arc::new(HandEdit::Prune { axis: AxisKey::Path(vec![0, 1]), at });
+    editor.run(ShapeCommand::Add(cut(0.0)).of(id)).unwrap();
+    editor.run(ShapeCommand::Add(cut(0.5)).of(id)).unwrap();
+    editor.run(ShapeCommand::Leave(0, true).of(id)).unwrap();
+    editor.run(ShapeCommand::Replace(1, cut(0.25)).of(id)).unwrap();
+    for bad in [f64::NAN, -0.1, 1.1, f64::INFINITY] {
+        let refused = editor.run(ShapeCommand::Add(cut(bad)).of(id)).unwrap_err().to_string();
+        assert_eq!(refused, "edit 2 by hand: at is not a number that can be used");
+    }
+    let long = HandEdit::Brush {
+        bearer: None,
+        points: vec![DVec3::ZERO; 20_001],
+        radius_m: vec![1.0],
+        density: 1.0,
+        seed: 1,
+    };
+    assert!(editor.run(ShapeCommand::Add(Arc::new(long)).of(id)).is_err());
+    editor.run(ShapeCommand::Remove(vec![0]).of(id)).unwrap();
+    let edits = |e: &Editor| e.document().plants()[0].settings().edits.clone();
+    assert_eq!((edits(&editor).len(), &edits(&editor)[0].edit), (1, &cut(0.25)));
+    assert!(editor.run(ShapeCommand::Remove(vec![1]).of(id)).is_err());
+    for name in ["shape-remove", "shape-change", "shape-leave", "shape-prune", "shape-prune"] {
+        assert_eq!(editor.undo(), Some(name));
+    }
+    assert!(edits(&editor).is_empty());
+    // What has no branches takes none.
+    let settings = Settings { maker: Maker::Flower(Box::default()), ..Settings::default() };
+    editor.run(SceneCommand::Add(Box::new(NewPlant { settings, strokes: vec![] }))).unwrap();
+    let refused = editor.run(ShapeCommand::Add(cut(0.0)).of(PlantId(1)));
+    assert_eq!(refused, Err(CommandError::OtherMaker { wanted: "plant with branches", found: "flower" }));
 }
 
 #[test]

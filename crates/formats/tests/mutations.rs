@@ -2,17 +2,24 @@
 //!
 //! Seeded, so that a failure comes back; the fuzz targets in `fuzz/` go on from here without end.
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "test data are small numbers")]
+#![allow(clippy::print_stdout, reason = "how many mutants were read, for who asks with --nocapture")]
 
 use std::time::{Duration, Instant};
 
 use base::{Draw, Report, Seed, Stream};
 use formats::{
-    DrawingFormat, DrawingSummary, ExportSpec, ModelFormat, ModelSummary, no_files, obj_files, read_drawings,
-    read_model, write_drawing, write_glb, write_model,
+    CloudFormat, DrawingFormat, DrawingSummary, ExportSpec, MarksAxes, ModelFormat, ModelSummary, is_rays,
+    no_files, obj_files, read_cloud, read_drawings, read_marks, read_model, read_rays, read_vein_graph,
+    write_cloud_ply, write_drawing, write_glb, write_model,
 };
 use mesh::{Material, MaterialId, MaterialKind, Model, Part, TriMesh};
 
+/// Mutants of each file, unless `BURGEON_MUTANTS` says how many: a longer run without a nightly compiler.
 const MUTANTS: u64 = 6_000;
+
+fn mutants() -> u64 {
+    std::env::var("BURGEON_MUTANTS").ok().and_then(|n| n.parse().ok()).unwrap_or(MUTANTS)
+}
 
 const SVG: &[u8] = br##"<?xml version="1.0"?><!DOCTYPE svg [<!ENTITY c "red">]>
 <svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" viewBox="0 0 100 100">
@@ -131,7 +138,8 @@ fn mutate(seed: &[u8], rng: &mut Stream) -> Vec<u8> {
 
 fn each_mutant(name: u64, seed: &[u8], mut read: impl FnMut(&[u8]) -> bool) {
     let (mut good, mut worst) = (0_u64, Duration::ZERO);
-    for i in 0..MUTANTS {
+    let all = mutants();
+    for i in 0..all {
         let mut rng = Seed::new(name).child(i).stream(Draw::Test);
         let bytes = mutate(seed, &mut rng);
         let from = Instant::now();
@@ -140,7 +148,8 @@ fn each_mutant(name: u64, seed: &[u8], mut read: impl FnMut(&[u8]) -> bool) {
     }
     assert!(worst < Duration::from_secs(2), "one mutant took {worst:?}");
     // Both paths must have been gone: some still read, some are refused.
-    assert!(good > MUTANTS / 100 && good < MUTANTS, "{good} of {MUTANTS} were read");
+    assert!(good > all / 100 && good < all, "{good} of {all} were read");
+    println!("{all} mutants, {good} read, the slowest in {worst:?}");
 }
 
 fn drawings(format: DrawingFormat, bytes: &[u8]) -> bool {
@@ -215,7 +224,8 @@ fn obj_with_its_materials() {
     let obj = obj_files(&model(), "a", &ExportSpec::default()).expect("writes").obj;
     each_mutant(7, &obj, |b| models(ModelFormat::Obj, b));
     let mut report = Report::default();
-    for i in 0..MUTANTS {
+    let all = mutants();
+    for i in 0..all {
         let mtl = mutate(MTL, &mut Seed::new(8).child(i).stream(Draw::Test));
         let resolve = |name: &str| (name == "a.mtl").then(|| mtl.clone());
         read_model(OBJ, ModelFormat::Obj, "m", &ExportSpec::default(), &resolve, &mut report)
@@ -265,4 +275,105 @@ fn files_of_one_format_given_as_another() {
             }
         }
     }
+}
+
+fn clouds(format: CloudFormat, bytes: &[u8]) -> bool {
+    let mut report = Report::default();
+    match read_cloud(bytes, format, &ExportSpec::default(), &mut report) {
+        Ok(cloud) => {
+            assert!(cloud.is_sound() && !cloud.points.is_empty(), "what was read is sound");
+            write_cloud_ply(&cloud, &ExportSpec::default(), std::io::sink()).expect("writes what it read");
+            true
+        }
+        Err(e) => {
+            assert!(e.to_string().len() > 10, "the error says something");
+            false
+        }
+    }
+}
+
+/// A LAS 1.2 file of 40 points, format 0.
+fn las() -> Vec<u8> {
+    let mut b = vec![0_u8; 227];
+    b[..4].copy_from_slice(b"LASF");
+    (b[24], b[25], b[104]) = (1, 2, 0);
+    b[94..96].copy_from_slice(&227_u16.to_le_bytes());
+    b[96..100].copy_from_slice(&227_u32.to_le_bytes());
+    b[105..107].copy_from_slice(&20_u16.to_le_bytes());
+    b[107..111].copy_from_slice(&40_u32.to_le_bytes());
+    for k in 0..3 {
+        b[131 + 8 * k..139 + 8 * k].copy_from_slice(&0.001_f64.to_le_bytes());
+    }
+    for i in 0..40_i32 {
+        for x in [i * 37 % 11, i, i * 17 % 7] {
+            b.extend(x.to_le_bytes());
+        }
+        b.extend([0; 8]);
+    }
+    b
+}
+
+const PCD: &[u8] = b"# .PCD v0.7\nVERSION 0.7\nFIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 3\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 3\nDATA ascii\n0 0 0 4.2e6\n1 0 0 4.2e6\n1 1 nan 0\n";
+
+#[test]
+fn scans() {
+    each_mutant(21, PLY_TEXT, |b| clouds(CloudFormat::Ply, b));
+    each_mutant(22, &written(ModelFormat::Ply), |b| clouds(CloudFormat::Ply, b));
+    each_mutant(23, b"x;y;z;label\n1 2 3 4\n1.5,2.5e0;3\n// note\n4 5 6\n", |b| clouds(CloudFormat::Xyz, b));
+    each_mutant(24, PCD, |b| clouds(CloudFormat::Pcd, b));
+    each_mutant(25, OBJ, |b| clouds(CloudFormat::Obj, b));
+    each_mutant(26, &las(), |b| clouds(CloudFormat::Las, b));
+}
+
+/// Whatever marks are read are completed or refused.
+fn leaves(bytes: &[u8]) -> bool {
+    let axes = MarksAxes::default();
+    if is_rays(bytes) {
+        read_rays(bytes, "m", axes).is_ok_and(|r| r.rays.validate().next().is_none())
+    } else {
+        read_marks(bytes, "m", axes).is_ok_and(|r| r.marks.complete(&mut Report::default()).is_ok())
+    }
+}
+
+#[test]
+fn marks_of_leaves() {
+    let mut rows = String::from("# unit: mm\n# up: z\nrow,mark,x,y,z,thickness,midrib\ntip,,0,40,0,,0.5\n");
+    let mut rays = String::from("# unit: mm\nvein,mark,x,y,z,thickness\n");
+    for row in 1..=3 {
+        for mark in 1..=7 {
+            rows += &format!(
+                "{row},{mark},{},{},1,{},{}\n",
+                8 - 2 * mark,
+                40 - 9 * row,
+                0.1 * f64::from(mark),
+                if mark == 4 { "0.5" } else { "" }
+            );
+            rays += &format!("{row},{mark},{},{},0,0.{mark}\n", (2 - row) * mark, 5 * mark);
+        }
+    }
+    each_mutant(27, rows.as_bytes(), leaves);
+    each_mutant(28, rays.as_bytes(), leaves);
+}
+
+#[test]
+fn vein_graphs() {
+    let mut nodes = vec!["[0,0,3]".to_owned()];
+    let mut edges = Vec::new();
+    for k in 1..40 {
+        nodes.push(format!("[{},{},{}]", (k % 3 - 1) * (k / 3), k * 2, 3.0 - 0.05 * f64::from(k)));
+        edges.push(format!("[{},{k}]", (k - 3).max(0)));
+    }
+    let text =
+        format!("{{\"unit\":\"pixel\",\"nodes_xyr\":[{}],\"edges\":[{}]}}", nodes.join(","), edges.join(","));
+    each_mutant(29, text.as_bytes(), |b| {
+        let Ok(read) = read_vein_graph(b) else { return false };
+        let mut report = Report::default();
+        if let Ok(marks) = read.graph.marks(&mut report) {
+            drop(marks.complete(&mut report));
+        }
+        if let Ok(Some(rays)) = read.graph.rays(&mut report) {
+            drop(leaf::RayLeaf::new(&rays, leaf::ThicknessRule::Diameter));
+        }
+        true
+    });
 }

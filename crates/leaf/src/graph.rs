@@ -56,11 +56,11 @@ pub enum GraphError {
 }
 
 /// The network, prepared: neighbours of each node, and the leaf's own axis.
-struct Net<'a> {
+pub(crate) struct Net<'a> {
     graph: &'a VeinGraph,
-    near: Vec<Vec<u32>>,
+    pub(crate) near: Vec<Vec<u32>>,
     /// Nodes of the largest piece.
-    members: Vec<u32>,
+    pub(crate) members: Vec<u32>,
 }
 
 #[derive(PartialEq)]
@@ -82,7 +82,7 @@ impl PartialOrd for Open {
 }
 
 impl<'a> Net<'a> {
-    fn new(graph: &'a VeinGraph, report: &mut Report) -> Result<Self, GraphError> {
+    pub(crate) fn new(graph: &'a VeinGraph, report: &mut Report) -> Result<Self, GraphError> {
         let n = graph.nodes.len();
         if graph.radii.len() != n {
             return Err(GraphError::Radii { nodes: n, radii: graph.radii.len() });
@@ -143,18 +143,18 @@ impl<'a> Net<'a> {
         Ok(Self { graph, near, members: best })
     }
 
-    fn at(&self, k: u32) -> DVec2 {
+    pub(crate) fn at(&self, k: u32) -> DVec2 {
         self.graph.nodes[k as usize]
     }
 
-    fn radius(&self, k: u32) -> f64 {
+    pub(crate) fn radius(&self, k: u32) -> f64 {
         self.graph.radii[k as usize]
     }
 
     /// Cheapest ways from all of `from`: the cost of each node and the node before it. A vein of twice the
     /// radius is eight times as cheap (the conductance of a pipe is the fourth power; the cube is less at the
     /// mercy of one badly measured node).
-    fn ways(&self, from: &[u32]) -> (Vec<f64>, Vec<u32>) {
+    pub(crate) fn ways(&self, from: &[u32]) -> (Vec<f64>, Vec<u32>) {
         let n = self.graph.nodes.len();
         let (mut cost, mut before) = (vec![f64::INFINITY; n], vec![u32::MAX; n]);
         let mut open = BinaryHeap::new();
@@ -232,12 +232,12 @@ impl<'a> Net<'a> {
     }
 }
 
-fn index(k: usize) -> u32 {
+pub(crate) fn index(k: usize) -> u32 {
     u32::try_from(k).unwrap_or(u32::MAX)
 }
 
 /// The way back from `end` to where it started; `end` is last.
-fn trace(before: &[u32], end: u32) -> Vec<u32> {
+pub(crate) fn trace(before: &[u32], end: u32) -> Vec<u32> {
     let mut line = vec![end];
     let mut k = end;
     while let Some(&b) = before.get(k as usize).filter(|&&b| b != u32::MAX) {
@@ -589,7 +589,7 @@ impl Frame {
 }
 
 /// The point at `s` along a line, and the node before it.
-fn along(line: &[DVec2], s: f64) -> (DVec2, usize) {
+pub(crate) fn along(line: &[DVec2], s: f64) -> (DVec2, usize) {
     let mut left = s;
     for (k, w) in line.windows(2).enumerate() {
         let l = w[0].distance(w[1]);
@@ -601,7 +601,7 @@ fn along(line: &[DVec2], s: f64) -> (DVec2, usize) {
     (line.last().copied().unwrap_or_default(), line.len().saturating_sub(1))
 }
 
-fn median_near(radii: &[f64], k: usize) -> f64 {
+pub(crate) fn median_near(radii: &[f64], k: usize) -> f64 {
     let mut part: Vec<f64> = radii[k.saturating_sub(3)..(k + 4).min(radii.len())].to_vec();
     part.sort_unstable_by(f64::total_cmp);
     part.get(part.len() / 2).copied().unwrap_or(1e-5)
@@ -669,6 +669,13 @@ mod tests {
             assert!((row.thickness[1].unwrap_or(0.0) - 0.0004).abs() < 1e-9, "{turn}: {row:?}");
             assert!(row.midrib.is_some_and(|m| (m - 0.001).abs() < 0.000_05), "{turn}: {row:?}");
             assert!(marks.complete(&mut report).is_ok());
+        }
+    }
+
+    #[test]
+    fn a_leaf_with_a_midrib_is_not_palmate() {
+        for turn in [0.0, 0.7, 2.5] {
+            assert_eq!(made(8, turn).rays(&mut Report::default()), Ok(None), "{turn}");
         }
     }
 

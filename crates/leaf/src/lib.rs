@@ -6,11 +6,13 @@
 //! |---|---|
 //! | `marks` | [`Marks`]: what was measured, what is missing, the paper's rule for missing thickness |
 //! | `graph` | [`VeinGraph`]: a network of veins with radii -> marks |
+//! | `palmate` | a network whose chief veins start together -> rays |
 //! | `blade` | [`Leaf`]: the four surfaces, veins that lie on them |
 //! | `meshes` | [`LeafMesh`]: tubes and grid at any resolution, the counts of the paper's Table 1 |
 //! | `pose` | curl and wilt |
 //! | `growth` | a leaf between measured stages |
 //! | `rays` | [`Rays`], [`RayLeaf`]: palmate and parallel leaves, made or measured |
+//! | `lobes` | side veins of the lobes of palmate leaves |
 //! | `scan` | a leaf found in a cloud of points |
 //! | `flat` | the leaf unrolled into a plane: template of a blade, texture coordinates |
 //! | `colour` | a texture coloured by the distance from the veins |
@@ -22,8 +24,10 @@ mod colour;
 mod flat;
 mod graph;
 mod growth;
+mod lobes;
 mod marks;
 mod meshes;
+mod palmate;
 mod pose;
 mod rays;
 mod scan;

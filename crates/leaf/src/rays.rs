@@ -255,9 +255,21 @@ impl Rays {
         few.into_iter().chain(each).chain(none.then_some(RaysError::NoVein))
     }
 
-    /// The length of the middle ray by its chords.
+    /// The same leaf with all lengths times `factor`.
+    #[must_use]
+    pub fn scaled(mut self, factor: f64) -> Self {
+        for ray in &mut self.rays {
+            ray.points.iter_mut().for_each(|p| *p *= factor);
+            ray.thickness.iter_mut().flatten().for_each(|t| *t *= factor);
+        }
+        self
+    }
+
+    /// The length of the middle vein, or of the middle ray if there is none, by its chords.
     pub fn length(&self) -> f64 {
-        self.rays.get(self.rays.len() / 2).map_or(0.0, |r| geom::polyline_length3(&r.points))
+        let veins: Vec<&Ray> = self.rays.iter().filter(|r| r.is_vein()).collect();
+        let middle = veins.get(veins.len() / 2).copied().or_else(|| self.rays.get(self.rays.len() / 2));
+        middle.map_or(0.0, |r| geom::polyline_length3(&r.points))
     }
 }
 
@@ -296,6 +308,8 @@ pub struct RayLeaf {
     pub veins: Vec<Vein>,
     /// The parameter u of each vein.
     pub at: Vec<f64>,
+    /// Side veins of lobes, made by [`RayLeaf::add_side_veins`]; they lie on the blade at their marks.
+    pub sides: Vec<Vein>,
 }
 
 impl RayLeaf {
@@ -316,7 +330,7 @@ impl RayLeaf {
         let grid: Vec<DVec3> = (0..marks).flat_map(|m| from_left().map(move |r| r.points[m])).collect();
         let blade = SplineSurface::interpolate(&grid, rays.rays.len())?;
         let along = NaturalCubic::new(blade.rows_at())?;
-        let mut out = Self { veins: vec![], at: vec![], blade };
+        let mut out = Self { veins: vec![], at: vec![], sides: vec![], blade };
         for (ray, &u) in from_left().zip(out.blade.columns_at()) {
             if ray.is_vein() {
                 let radii: Vec<f64> = ray.full().into_iter().map(|t| t * radius).collect();
@@ -350,6 +364,10 @@ impl RayLeaf {
         let tube = TubeSpec { rings: spec.rings, sides: spec.sides.clamp(3, 64), cap, first_normal: None };
         for vein in &self.veins {
             out.add_tube(&vein.curve, &samples(&vein.marks, steps), &tube);
+        }
+        for vein in &self.sides {
+            // At its marks it lies on the blade.
+            out.add_tube(&vein.curve, &vein.marks, &tube);
         }
         let us = samples(self.blade.columns_at(), (steps / 2).max(1));
         let vs = samples(self.blade.rows_at(), steps);

@@ -110,15 +110,51 @@ pub fn apply(
     context: &Context,
     run: &Run<'_>,
 ) -> Result<Applied, Cancelled> {
-    let mut outcomes = Vec::with_capacity(edits.len());
     if edits.is_empty() {
-        return Ok(Applied { plant: plant.clone(), outcomes });
+        return Ok(Applied { plant: plant.clone(), outcomes: Vec::new() });
     }
-    let bench = Bench { obstacles: &context.obstacles, exponent: context.pipe_exponent, run };
-    let mut draft = Draft::new(plant);
-    for edit in edits {
+    let mut shaping = Shaping::new(plant);
+    let outcomes = edits.iter().map(|e| shaping.push(e, context, run)).collect::<Result<_, _>>()?;
+    Ok(Applied { plant: shaping.into_plant(), outcomes })
+}
+
+/// A plant while it is edited: edits may follow one another at any time.
+///
+/// Guaranteed: the same plant as from [`apply`] with all edits at once, bit for bit. So who keeps one with all edits but
+/// the last pays for the last only.
+///
+/// ```
+/// use base::Run;
+/// use glam::DVec3;
+/// use plant::{AxisKind, Plant};
+/// use shape::{AxisKey, Context, HandEdit, Shaping};
+/// let mut p = Plant::default();
+/// p.add_axis(AxisKind::Branch, None, 1, &[DVec3::ZERO, DVec3::Y, DVec3::Y * 2.0], None);
+/// let mut shaping = Shaping::new(&p);
+/// let cut = HandEdit::Prune { axis: AxisKey::Path(vec![0]), at: 0.5 };
+/// assert!(shaping.push(&cut, &Context::default(), &Run::plain())?.is_done());
+/// assert!(shaping.into_plant().nodes.position.iter().all(|p| p.y <= 1.0));
+/// # Ok::<(), base::Cancelled>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Shaping {
+    draft: Draft,
+}
+
+impl Shaping {
+    /// A plant that is to be edited. Cost: linear in the plant.
+    pub fn new(plant: &Plant) -> Self {
+        Self { draft: Draft::new(plant) }
+    }
+
+    /// Does one edit, or says why not and changes nothing. Cost: linear in the plant, and what grows.
+    ///
+    /// # Errors
+    /// [`Cancelled`]: nothing was changed.
+    pub fn push(&mut self, edit: &HandEdit, context: &Context, run: &Run<'_>) -> Result<Outcome, Cancelled> {
         run.cancel.check()?;
-        let mut next = draft.clone();
+        let bench = Bench { obstacles: &context.obstacles, exponent: context.pipe_exponent, run };
+        let mut next = self.draft.clone();
         let before = leaf_count(&next);
         match one(&mut next, edit, &bench) {
             Ok(mut changed) => {
@@ -130,15 +166,18 @@ pub fn apply(
                     changed.leaves_removed = (before + changed.leaves_added).saturating_sub(after);
                 }
                 next.branches.iter_mut().for_each(|b| b.fresh = false);
-                draft = next;
-                outcomes.push(Outcome::Done(changed));
+                self.draft = next;
+                Ok(Outcome::Done(changed))
             }
-            Err(Stop::Why(why)) => outcomes.push(Outcome::NotDone(why)),
-            Err(Stop::Cancelled(c)) => return Err(c),
+            Err(Stop::Why(why)) => Ok(Outcome::NotDone(why)),
+            Err(Stop::Cancelled(c)) => Err(c),
         }
     }
-    let plant = draft.into_plant();
-    Ok(Applied { plant, outcomes })
+
+    /// The plant as it is now.
+    pub fn into_plant(self) -> Plant {
+        self.draft.into_plant()
+    }
 }
 
 fn leaf_count(draft: &Draft) -> usize {

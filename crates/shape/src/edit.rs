@@ -121,6 +121,112 @@ pub enum HandEdit {
     },
 }
 
+/// Most points of a stroke or outline.
+pub const MOST_POINTS: usize = 20_000;
+
+/// Nothing that is edited is further away, metres.
+const FAR: f64 = 1e6;
+
+impl HandEdit {
+    /// The word of its kind, as files write it: `rotate`, `move`, `prune`, ...
+    pub const fn word(&self) -> &'static str {
+        match self {
+            Self::Rotate { .. } => "rotate",
+            Self::Move { .. } => "move",
+            Self::Prune { .. } => "prune",
+            Self::Regrow { .. } => "regrow",
+            Self::SketchBranch { .. } => "sketch-branch",
+            Self::Brush { .. } => "brush",
+            Self::Silhouette { .. } => "silhouette",
+            Self::LeafDensity { .. } => "leaf-density",
+        }
+    }
+
+    /// Whether all its numbers can be used and it is not too large: what is checked before it is kept.
+    ///
+    /// Not guaranteed: that it can be done; that depends on the plant.
+    ///
+    /// # Errors
+    /// [`Why::BadNumber`] and [`Why::TooLong`].
+    ///
+    /// ```
+    /// use shape::{AxisKey, HandEdit};
+    /// let cut = |at| HandEdit::Prune { axis: AxisKey::Path(vec![0]), at };
+    /// assert!(cut(0.5).check().is_ok() && cut(f64::NAN).check().is_err() && cut(1.5).check().is_err());
+    /// ```
+    pub fn check(&self) -> Result<(), Why> {
+        match self {
+            Self::Rotate { axis, turn } => {
+                axis.check()?;
+                turn.quat().map(|_| ())
+            }
+            Self::Move { axis, to } => {
+                axis.check()?;
+                match to {
+                    Destination::SlideM(by) => within("slide-m", *by, -FAR, FAR),
+                    Destination::Place { axis, at } => {
+                        axis.check()?;
+                        within("at", *at, 0.0, 1.0)
+                    }
+                    Destination::ByM(by) => near("by-m", &[*by]),
+                }
+            }
+            Self::Prune { axis, at } => {
+                axis.check()?;
+                within("at", *at, 0.0, 1.0)
+            }
+            Self::Regrow { axis, .. } => axis.check(),
+            Self::SketchBranch { bearer, at, points, twigs, .. } => {
+                bearer.check()?;
+                within("at", at.unwrap_or(0.0), 0.0, 1.0)?;
+                within("twigs", *twigs, 0.0, 4.0)?;
+                near("points", points)
+            }
+            Self::Brush { bearer, points, radius_m, density, .. } => {
+                bearer.as_ref().map_or(Ok(()), AxisKey::check)?;
+                within("density", *density, 0.1, 10.0)?;
+                short(radius_m.len())?;
+                radius_m.iter().try_for_each(|r| within("radius_m", *r, 0.0, FAR))?;
+                near("points", points)
+            }
+            Self::Silhouette { plane, outline, density, .. } => {
+                plane.axes()?;
+                near("plane", &[plane.origin])?;
+                within("density", *density, 0.1, 10.0)?;
+                short(outline.len())?;
+                let bad = outline.iter().any(|p| !p.is_finite() || p.abs().max_element() > FAR);
+                if bad { Err(Why::BadNumber { field: "outline" }) } else { Ok(()) }
+            }
+            Self::LeafDensity { region, keep, .. } => {
+                within("keep", *keep, 0.0, 4.0)?;
+                match region {
+                    LeafRegion::All => Ok(()),
+                    LeafRegion::Branch(axis) => axis.check(),
+                    LeafRegion::Stroke { points, radius_m } => {
+                        within("radius_m", *radius_m, 0.0, FAR)?;
+                        near("points", points)
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn within(field: &'static str, value: f64, low: f64, high: f64) -> Result<(), Why> {
+    if (low..=high).contains(&value) { Ok(()) } else { Err(Why::BadNumber { field }) }
+}
+
+fn short(count: usize) -> Result<(), Why> {
+    if count > MOST_POINTS { Err(Why::TooLong { most: MOST_POINTS }) } else { Ok(()) }
+}
+
+fn near(field: &'static str, points: &[DVec3]) -> Result<(), Why> {
+    short(points.len())?;
+    // NaN is no maximum of numbers: asked for apart.
+    let bad = points.iter().any(|p| !p.is_finite() || p.abs().max_element() > FAR);
+    if bad { Err(Why::BadNumber { field }) } else { Ok(()) }
+}
+
 const fn one() -> f64 {
     1.0
 }

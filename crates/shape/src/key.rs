@@ -150,6 +150,20 @@ impl AxisKey {
         Ok(Found { axis: AxisId::new(branch), by_likeness })
     }
 
+    /// Whether its numbers can be used.
+    pub(crate) fn check(&self) -> Result<(), Why> {
+        let (field, sound) = match self {
+            Self::Mark(m) => {
+                let finite = m.base.is_finite() && m.direction.is_finite() && m.length.is_finite();
+                ("mark", finite && m.id.len() <= 16)
+            }
+            // Longer than any plant is deep.
+            Self::Path(path) => ("path", path.len() <= 1000),
+            Self::Near(p) => ("near", p.is_finite()),
+        };
+        if sound { Ok(()) } else { Err(Why::BadNumber { field }) }
+    }
+
     pub(crate) fn find_in(&self, draft: &Draft) -> Result<(usize, bool), Why> {
         match self {
             Self::Mark(mark) => find_like(draft, mark),

@@ -32,8 +32,8 @@ mod pipes;
 mod sketch_branch;
 mod tool;
 
-pub use apply::{Applied, Context, apply};
-pub use edit::{Destination, EDITS_SCHEMA, EditsFile, HandEdit, LeafRegion, Turn, ViewPlane};
+pub use apply::{Applied, Context, Shaping, apply};
+pub use edit::{Destination, EDITS_SCHEMA, EditsFile, HandEdit, LeafRegion, MOST_POINTS, Turn, ViewPlane};
 pub use key::{AxisKey, Found, KindWord, Mark};
 pub use outcome::{Changed, Outcome, Why};
 pub use pick::{Pick, Ray, Reach, pick};

@@ -2,6 +2,8 @@
 
 use core::fmt;
 
+use serde::{Deserialize, Serialize};
+
 /// Why an edit could not be done. Its text is for people, [`code`](Self::code) for programs and translations.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -37,6 +39,12 @@ pub enum Why {
     TooSmall {
         /// The line or outline.
         what: &'static str,
+    },
+    /// A stroke or outline has too many points.
+    #[error("it has more than {most} points: draw it in parts")]
+    TooLong {
+        /// The most there may be.
+        most: usize,
     },
     /// Stands on the ground and cannot slide along a bearer.
     #[error("the branch stands on the ground: it can be moved by a vector, not along a bearer")]
@@ -74,6 +82,7 @@ impl Why {
             Self::NothingNear { .. } => "nothing-near",
             Self::BadNumber { .. } => "bad-number",
             Self::TooSmall { .. } => "too-small",
+            Self::TooLong { .. } => "too-long",
             Self::NoBearer => "no-bearer",
             Self::OntoItself => "onto-itself",
             Self::NothingGrew => "nothing-grew",
@@ -86,7 +95,8 @@ impl Why {
 }
 
 /// What an edit changed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Changed {
     /// Branches taken away.
     pub removed: usize,

@@ -6,17 +6,16 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use base::{Report, Run, Seed, Stage, Warning};
-use document::Photo;
+use document::{Photo, PlantEdit};
 use glam::DVec2;
 use mesh::{Model, Texture};
 use plant::Plant;
-use shape::HandEdit;
 use sketch::{Built, Classified, Drawing, Ink, Reading, SketchSpec};
 use skin::{SkinSpec, Traced};
 
 use crate::make::{ClassOverrides, MakeError, SketchOptions};
 use crate::report::{Counts, Fidelity, ItemReport, StrokeReport, TimingsMs};
-use crate::shaping::{EditReport, shape_plant};
+use crate::shaping::{EditReport, Shaper};
 use crate::template::LeafTemplate;
 
 /// How a drawing lies in the front view of its model: `plant.xy = (drawing - origin) * metres_per_unit`, z towards
@@ -50,7 +49,10 @@ pub struct FrontView {
 pub struct Evaluator {
     strokes: Option<Kept<Drawing, (Ink, Vec<Classified>)>>,
     reading: Option<Kept<ClassOverrides, Reading>>,
-    plant: Option<Kept<PlantFrom, PlantMade>>,
+    plant: Option<Kept<PlantFrom, (Built, Fidelity)>>,
+    shaper: Shaper,
+    /// The plant with its edits by hand; none where there are none.
+    shaped: Option<Shaped>,
     model: Option<Kept<ModelFrom, Model>>,
     /// The photograph that was decoded last.
     picture: Option<Decoded>,
@@ -59,11 +61,16 @@ pub struct Evaluator {
     preview: bool,
 }
 
-/// A plant, how near it is to the drawing, and what became of its edits.
-type PlantMade = (Built, Fidelity, Vec<EditReport>);
-
 /// What a plant is made from, besides its reading: the name goes into the plant.
-type PlantFrom = (SketchSpec, Seed, String, Option<LeafTemplate>, Vec<HandEdit>);
+type PlantFrom = (SketchSpec, Seed, String, Option<LeafTemplate>);
+
+/// An edited plant and the edits.
+#[derive(Clone, Debug)]
+struct Shaped {
+    edits: Vec<PlantEdit>,
+    plant: Plant,
+    told: Vec<EditReport>,
+}
 
 /// A photograph's file and its pixels, if it has any that decode.
 type Decoded = (Arc<[u8]>, Option<Arc<Texture>>);
@@ -119,6 +126,7 @@ impl Evaluator {
         }
         self.read(&options.classes, &mut stages, run)?;
         self.build(options, seed, &drawing.name, &mut stages, run)?;
+        self.shape(options, &mut stages, run)?;
         let mut photo = options.photo.clone().filter(|p| p.paint);
         if let Some(photo) = &mut photo {
             photo.opacity = 1.0;
@@ -189,10 +197,8 @@ impl Evaluator {
     ) -> Result<(), MakeError> {
         let (Some(strokes), Some(reading)) = (&self.strokes, &self.reading) else { return Ok(()) };
         let (spec, leaf) = (&options.spec, &options.leaf);
-        let same = |k: &Kept<PlantFrom, _>| {
-            (&k.from.0, k.from.1, &*k.from.2, &k.from.3) == (spec, seed, name, leaf)
-                && k.from.4 == options.edits
-        };
+        let same =
+            |k: &Kept<PlantFrom, _>| (&k.from.0, k.from.1, &*k.from.2, &k.from.3) == (spec, seed, name, leaf);
         if self.plant.as_ref().is_some_and(same) {
             return Ok(());
         }
@@ -214,12 +220,37 @@ impl Evaluator {
             }
         }
         name.clone_into(&mut built.plant.name);
-        // After the measure, too: what a hand changed is not what was drawn.
-        let context = shape::Context { pipe_exponent: spec.pipe_exponent, ..shape::Context::default() };
-        let edits = shape_plant(&mut built.plant, &options.edits, &context, run)?;
-        self.model = None;
-        let from = (spec.clone(), seed, name.to_owned(), leaf.clone(), options.edits.clone());
-        self.plant = Some(Self::keep(&mut self.done, stages, from, (built, fidelity, edits), report));
+        (self.model, self.shaped) = (None, None);
+        self.shaper.forget();
+        let from = (spec.clone(), seed, name.to_owned(), leaf.clone());
+        self.plant = Some(Self::keep(&mut self.done, stages, from, (built, fidelity), report));
+        Ok(())
+    }
+
+    /// Edits by hand, after the measure against the drawing: what a hand changed is not what was drawn.
+    fn shape(
+        &mut self,
+        options: &SketchOptions,
+        stages: &mut Vec<Stage>,
+        run: &Run<'_>,
+    ) -> Result<(), MakeError> {
+        let Some(plant) = &self.plant else { return Ok(()) };
+        if self.shaped.as_ref().map_or(&[][..], |s| &s.edits) == options.edits {
+            return Ok(());
+        }
+        let start = run.clock.now_ms();
+        let context =
+            shape::Context { pipe_exponent: options.spec.pipe_exponent, ..shape::Context::default() };
+        let shaped = if options.edits.is_empty() {
+            self.shaper.forget();
+            None
+        } else {
+            let (plant, told) = self.shaper.shape(&plant.value.0.plant, &options.edits, &context, run)?;
+            Some(Shaped { edits: options.edits.clone(), plant, told })
+        };
+        (self.model, self.shaped) = (None, shaped);
+        self.done.push("shape");
+        stages.push(Stage { name: "depth", ms: run.clock.now_ms() - start });
         Ok(())
     }
 
@@ -235,8 +266,8 @@ impl Evaluator {
         }
         let mut report = Report::default();
         let traced = photo.as_ref().and_then(|p| self.traced(p, &mut report));
-        let Some(plant) = &self.plant else { return Ok(()) };
-        let (plant, leaf) = (&plant.value.0.plant, &plant.from.3);
+        let (Some(plant), Some(made)) = (self.plant(), &self.plant) else { return Ok(()) };
+        let leaf = &made.from.3;
         let mut model =
             report.stage("mesh", run.clock, |_| skin::skin_traced(plant, skin, traced.as_ref(), run))?;
         model.name.clone_from(&plant.name);
@@ -273,17 +304,20 @@ impl Evaluator {
     }
 
     fn item(&self, name: &str, stages: Vec<Stage>) -> ItemReport {
-        let mut report = Report { stages, ..Report::default() };
-        let (Some(strokes), Some(reading), Some(plant), Some(model)) =
-            (&self.strokes, &self.reading, &self.plant, &self.model)
+        let mut report = Report::default();
+        stages.iter().for_each(|s| report.book(s.name, s.ms));
+        let (Some(strokes), Some(reading), Some(plant), Some(model), Some(shown)) =
+            (&self.strokes, &self.reading, &self.plant, &self.model, self.plant())
         else {
             return ItemReport::default(); // update fills all four before it comes here
         };
         for warnings in [&strokes.warnings, &reading.warnings, &plant.warnings, &model.warnings] {
             report.warnings.extend_from_slice(warnings);
         }
-        let (built, fidelity, edits) = &plant.value;
-        let mut counts = Counts::of_plant(&built.plant);
+        let (told, edits) = self.shaped.as_ref().map_or((&[][..], &[][..]), |s| (&s.told, &s.edits));
+        let mut warnings: Vec<String> = report.warnings.iter().map(ToString::to_string).collect();
+        warnings.extend(told.iter().filter_map(|t| t.warning(edits)));
+        let mut counts = Counts::of_plant(shown);
         counts.vertices = model.value.vertex_count() as u64;
         counts.triangles = model.value.triangle_count() as u64;
         ItemReport {
@@ -292,10 +326,10 @@ impl Evaluator {
             strokes: reading.value.strokes.iter().map(stroke_report).collect(),
             counts,
             timings_ms: TimingsMs::from_report(&report),
-            fidelity: *fidelity,
-            digest: if self.preview { String::new() } else { built.plant.digest_hex() },
-            warnings: report.warnings.iter().map(ToString::to_string).collect(),
-            edits: edits.clone(),
+            fidelity: plant.value.1,
+            digest: if self.preview { String::new() } else { shown.digest_hex() },
+            warnings,
+            edits: told.to_vec(),
             ..ItemReport::default()
         }
     }
@@ -310,8 +344,13 @@ impl Evaluator {
         Some(&self.model.as_ref()?.value)
     }
 
-    /// The plant of the last update that succeeded so far.
+    /// The plant of the last update that succeeded so far, with its edits by hand.
     pub fn plant(&self) -> Option<&Plant> {
+        self.shaped.as_ref().map(|s| &s.plant).or_else(|| self.drawn())
+    }
+
+    /// The plant as it was drawn, before any edit by hand.
+    pub(crate) fn drawn(&self) -> Option<&Plant> {
         Some(&self.plant.as_ref()?.value.0.plant)
     }
 
@@ -329,7 +368,8 @@ impl Evaluator {
     pub(crate) fn take(&mut self) -> Option<(Reading, Plant, Model)> {
         let (reading, plant, model) = (self.reading.take()?, self.plant.take()?, self.model.take()?);
         self.strokes = None;
-        Some((reading.value, plant.value.0.plant, model.value))
+        let shaped = self.shaped.take().map(|s| s.plant);
+        Some((reading.value, shaped.unwrap_or(plant.value.0.plant), model.value))
     }
 }
 
@@ -379,6 +419,16 @@ mod tests {
         assert_eq!(step(&mut e, &d, &o, 2), all[3..]);
         o.spec.fill.density = 2.0;
         assert_eq!(step(&mut e, &d, &o, 2), all[3..]);
+        // An edit by hand draws nothing anew.
+        let turn = shape::Turn { about: glam::DVec3::Z, degrees: 25.0 };
+        o.edits.push(shape::HandEdit::Rotate { axis: shape::AxisKey::Path(vec![0]), turn }.into());
+        assert_eq!(step(&mut e, &d, &o, 2), ["shape", "mesh"]);
+        assert!(e.plant() != e.drawn() && e.stages_done().len() == 2);
+        o.edits[0].off = true;
+        assert_eq!(step(&mut e, &d, &o, 2), ["shape", "mesh"]);
+        o.edits.clear();
+        assert_eq!(step(&mut e, &d, &o, 2), ["shape", "mesh"]);
+        assert_eq!(e.plant(), e.drawn());
         o.classes.insert(1, sketch::StrokeClass::Axis);
         assert_eq!(step(&mut e, &d, &o, 2), all[2..]);
         d.strokes.pop();

@@ -37,6 +37,8 @@ pub struct LeafOptions {
     pub pose: Pose,
     /// Colour.
     pub texture: LeafTexture,
+    /// Side veins on either side of a chief vein in each lobe of a palmate leaf, 0 to 12; made by rule.
+    pub side_veins: u32,
 }
 
 /// A leaf with its meshes and its entry of the report.

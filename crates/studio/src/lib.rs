@@ -48,13 +48,13 @@ pub use scene::{
     SceneError, SceneEvaluator, ScenePlant, flower_schema, leaf_marks, leaf_schema, scene_model,
     tree_settings, tree_spec,
 };
-pub use shaping::{BranchRow, EditReport, branch_rows, edits_schema, edits_template, shape_plant};
+pub use shaping::{BranchRow, EditReport, branch_rows, edits_schema, edits_template};
 pub use template::{LeafTemplate, TemplateError};
 
 pub use trees::{
     Bark, BladeForm, BladeSpec, BlossomSpec, Colour, GrowthReport, Look, MadeTree, NamedMesh, OAK_METHODS,
-    PAPER_OAKS, PRESETS, PaperOak, Preset, TreeError, TreeOptions, TreeSize, TreeSpec, coarser, make_tree,
-    method_word, read_tree_spec, scale_to_height, tree_schema, tree_size,
+    PAPER_OAKS, PRESETS, PaperOak, Preset, TreeError, TreeEvaluator, TreeOptions, TreeSize, TreeSpec,
+    coarser, make_tree, method_word, read_tree_spec, scale_to_height, tree_schema, tree_size,
 };
 pub use venation::make_ray_leaf;
 

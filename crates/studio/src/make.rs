@@ -3,10 +3,9 @@
 use std::collections::BTreeMap;
 
 use base::{Cancelled, Run, Seed};
-use document::{DocumentPlant, Photo};
+use document::{DocumentPlant, Photo, PlantEdit};
 use mesh::Model;
 use plant::Plant;
-use shape::HandEdit;
 use sketch::{Drawing, Reading, SketchSpec, StrokeClass};
 use skin::SkinSpec;
 
@@ -31,7 +30,7 @@ pub struct SketchOptions {
     /// The leaf that the plant bears instead of the drawn or built-in ones.
     pub leaf: Option<LeafTemplate>,
     /// Edits by hand, done on the plant in this order.
-    pub edits: Vec<HandEdit>,
+    pub edits: Vec<PlantEdit>,
 }
 
 impl SketchOptions {
@@ -46,7 +45,7 @@ impl SketchOptions {
             classes: plant.classes(),
             photo: sketch.photo.clone(),
             leaf: None,
-            edits: Vec::new(),
+            edits: settings.edits.clone(),
         }
     }
 }

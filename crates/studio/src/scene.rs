@@ -8,7 +8,7 @@ use std::sync::Arc;
 use base::{Cancelled, Digest, Report, Run, Seed};
 use document::{
     Document, DocumentPlant, FlowerMaker, LeafData, LeafMaker, LeafPaint, LeafRings, LeafSettings,
-    LeafSurface, LeafThickness, Maker, Placement, PlantId, SketchSettings, TreeSettings,
+    LeafSurface, LeafThickness, Maker, Placement, PlantEdit, PlantId, SketchSettings, TreeSettings,
 };
 use formats::{LeafFileError, MarksAxes, read_marks, read_vein_graph};
 use geom::RingRule;
@@ -24,7 +24,7 @@ use crate::make::{MakeError, SketchOptions};
 use crate::opening::{OpeningError, OpeningPlant};
 use crate::report::{Counts, ItemReport, TimingsMs};
 use crate::template::LeafTemplate;
-use crate::trees::{TreeError, TreeOptions, TreeSpec, make_tree};
+use crate::trees::{TreeError, TreeEvaluator, TreeOptions, TreeSpec};
 
 /// Why a plant of a scene could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -137,17 +137,20 @@ pub struct SceneEvaluator {
     plants: BTreeMap<PlantId, Made>,
 }
 
+/// What a result was made from.
+type MadeFrom = (Maker, Seed, String, Option<LeafTemplate>, Vec<PlantEdit>);
+
 /// The last result of a plant.
 #[derive(Clone, Debug, Default)]
 struct Made {
     /// What the result was made from.
-    from: Option<(Maker, Seed, String, Option<LeafTemplate>)>,
+    from: Option<MadeFrom>,
     sketch: Evaluator,
+    tree: TreeEvaluator,
     opening: Option<OpeningPlant>,
     item: ItemReport,
-    /// Of makers other than sketches, and of sketches whose flowers open.
+    /// Of leaves and flowers, and of sketches whose flowers open.
     model: Option<Model>,
-    plant: Option<Plant>,
     lent: Option<LeafTemplate>,
     revision: u64,
     done: Vec<&'static str>,
@@ -184,8 +187,9 @@ impl SceneEvaluator {
             let options = SketchOptions { leaf, ..SketchOptions::of_plant(plant) };
             return made.sketched(s, &drawing, &options, settings.seed, run);
         }
-        let same = |k: &(Maker, Seed, String, Option<LeafTemplate>)| {
-            (&k.0, k.1, &k.2, &k.3) == (&settings.maker, settings.seed, &settings.name, &leaf)
+        let same = |k: &MadeFrom| {
+            (&k.0, k.1, &k.2, &k.3, &k.4)
+                == (&settings.maker, settings.seed, &settings.name, &leaf, &settings.edits)
         };
         made.done.clear();
         if made.from.as_ref().is_some_and(same) {
@@ -193,14 +197,13 @@ impl SceneEvaluator {
         }
         let (name, seed) = (settings.name.as_str(), settings.seed);
         match &settings.maker {
-            Maker::Tree(t) => made.grown(name, t, leaf.as_ref(), seed, run)?,
+            Maker::Tree(t) => made.grown(name, t, leaf.as_ref(), &settings.edits, seed, run)?,
             Maker::Leaf(l) => made.measured(name, l, seed, run)?,
             Maker::Flower(f) => made.flowered(name, f, seed, run)?,
             _ => {}
         }
-        made.done.push("mesh");
         made.revision += 1;
-        made.from = Some((settings.maker.clone(), seed, settings.name.clone(), leaf));
+        made.from = Some((settings.maker.clone(), seed, settings.name.clone(), leaf, settings.edits.clone()));
         Ok(())
     }
 
@@ -224,7 +227,8 @@ impl SceneEvaluator {
                 made.lent.clone()
             }
             Maker::Leaf(_) => made.lent.clone(),
-            _ => made.sketch.plant().and_then(LeafTemplate::of_plant),
+            // As it was drawn: a hand may have taken all leaves away.
+            _ => made.sketch.drawn().and_then(LeafTemplate::of_plant),
         };
         lent.map(Some).ok_or_else(none)
     }
@@ -239,8 +243,8 @@ impl SceneEvaluator {
         let made = self.plants.get(&id)?;
         Some(ScenePlant {
             item: &made.item,
-            model: made.model.as_ref().or_else(|| made.sketch.model())?,
-            plant: made.plant.as_ref().or_else(|| made.sketch.plant()),
+            model: made.model.as_ref().or_else(|| made.sketch.model()).or_else(|| made.tree.model())?,
+            plant: made.sketch.plant().or_else(|| made.tree.plant()),
             front: made.sketch.front(),
             revision: made.revision,
             stages: &made.done,
@@ -295,7 +299,7 @@ impl Made {
             self.revision += 1;
         }
         let kept = SketchSettings { day: settings.day, ..SketchSettings::default() };
-        self.from = Some((Maker::Sketch(Box::new(kept)), seed, String::new(), None));
+        self.from = Some((Maker::Sketch(Box::new(kept)), seed, String::new(), None, Vec::new()));
         Ok(())
     }
 
@@ -304,13 +308,19 @@ impl Made {
         name: &str,
         tree: &TreeSettings,
         leaf: Option<&LeafTemplate>,
+        edits: &[PlantEdit],
         seed: Seed,
         run: &Run<'_>,
     ) -> Result<(), SceneError> {
         let spec = TreeSpec { name: name.into(), ..tree_spec(tree)? };
-        let options = TreeOptions { skin: tree.skin.clone(), leaf: leaf.cloned(), ..TreeOptions::default() };
-        let made = make_tree(&spec, seed, &options, run)?;
-        (self.item, self.model, self.plant) = (made.item, Some(made.model), Some(made.grown.plant));
+        let options = TreeOptions {
+            skin: tree.skin.clone(),
+            leaf: leaf.cloned(),
+            edits: edits.to_vec(),
+            ..TreeOptions::default()
+        };
+        self.item = self.tree.update(&spec, seed, &options, run)?;
+        self.done = self.tree.stages_done().to_vec();
         Ok(())
     }
 
@@ -324,6 +334,7 @@ impl Made {
         let (marks, options) = leaf_input(leaf)?;
         let made = make_leaf_of(name, &marks, &options, seed, run, Report::default())?;
         (self.item, self.model, self.lent) = (made.item, Some(made.model), None);
+        self.done.push("mesh");
         Ok(())
     }
 
@@ -360,6 +371,7 @@ impl Made {
             ..ItemReport::default()
         };
         self.model = Some(model);
+        self.done.push("mesh");
         Ok(())
     }
 }
@@ -482,6 +494,7 @@ fn leaf_options(s: &LeafSettings, in_file: Option<ThicknessRule>) -> LeafOptions
             LeafPaint::Veins => LeafTexture::Veins,
             LeafPaint::Plain => LeafTexture::Plain,
         },
+        side_veins: 0,
     }
 }
 

@@ -2,11 +2,14 @@
 //!
 //! `Plant + [HandEdit] -> Plant, [EditReport]`
 
+use std::sync::Arc;
+
 use base::{Cancelled, Run};
+use document::PlantEdit;
 use glam::DVec3;
 use plant::{AxisId, Plant};
 use serde::{Deserialize, Serialize};
-use shape::{AxisKey, Context, HandEdit, Outcome, apply};
+use shape::{AxisKey, Changed, Context, HandEdit, Outcome, Shaping};
 
 /// What became of one edit.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -19,33 +22,79 @@ pub struct EditReport {
     pub code: String,
     /// In plain words.
     pub said: String,
+    /// What it changed; all 0 if it was not done.
+    #[serde(default)]
+    pub changed: Changed,
 }
 
-/// Edits a plant in its place.
-///
-/// # Errors
-/// [`Cancelled`]: the plant is as it was.
-pub fn shape_plant(
-    plant: &mut Plant,
-    edits: &[HandEdit],
-    context: &Context,
-    run: &Run<'_>,
-) -> Result<Vec<EditReport>, Cancelled> {
-    if edits.is_empty() {
-        return Ok(Vec::new());
+impl EditReport {
+    fn of(index: usize, outcome: &Outcome) -> Self {
+        let (code, changed) = match outcome {
+            Outcome::Done(changed) => ("done", *changed),
+            Outcome::NotDone(why) => (why.code(), Changed::default()),
+        };
+        Self { index, done: outcome.is_done(), code: code.into(), said: outcome.to_string(), changed }
     }
-    let applied = apply(plant, edits, context, run)?;
-    *plant = applied.plant;
-    let report = |(index, outcome): (usize, &Outcome)| EditReport {
-        index,
-        done: outcome.is_done(),
-        code: match outcome {
-            Outcome::Done(_) => "done".into(),
-            Outcome::NotDone(why) => why.code().into(),
-        },
-        said: outcome.to_string(),
-    };
-    Ok(applied.outcomes.iter().enumerate().map(report).collect())
+
+    /// What a person is told of an edit that was not done.
+    pub(crate) fn warning(&self, edits: &[PlantEdit]) -> Option<String> {
+        let word = edits.get(self.index).map_or("edit", |e| e.edit.word());
+        (!self.done).then(|| format!("edit {} by hand ({word}): {}", self.index, self.said))
+    }
+}
+
+/// An edited plant with what became of its edits; changes of the last edits cost no more than these.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Shaper {
+    /// All edits but the last of the list that was done last, and the plant after them.
+    before: Option<Begun>,
+}
+
+#[derive(Clone, Debug)]
+struct Begun {
+    edits: Vec<Arc<HandEdit>>,
+    shaping: Shaping,
+    outcomes: Vec<Outcome>,
+}
+
+impl Begun {
+    fn push(&mut self, edit: &Arc<HandEdit>, context: &Context, run: &Run<'_>) -> Result<(), Cancelled> {
+        self.outcomes.push(self.shaping.push(edit, context, run)?);
+        self.edits.push(Arc::clone(edit));
+        Ok(())
+    }
+}
+
+impl Shaper {
+    /// Another plant is to be edited.
+    pub(crate) fn forget(&mut self) {
+        self.before = None;
+    }
+
+    /// The plant with those edits that are not left out. `plant`: the same as at the last call, unless it was forgotten.
+    pub(crate) fn shape(
+        &mut self,
+        plant: &Plant,
+        edits: &[PlantEdit],
+        context: &Context,
+        run: &Run<'_>,
+    ) -> Result<(Plant, Vec<EditReport>), Cancelled> {
+        let (rows, on): (Vec<usize>, Vec<&Arc<HandEdit>>) =
+            edits.iter().enumerate().filter(|(_, e)| !e.off).map(|(row, e)| (row, &e.edit)).unzip();
+        let serves = |b: &Begun| b.edits.len() <= on.len() && b.edits.iter().zip(&on).all(|(a, b)| a == *b);
+        let fresh = || Begun { edits: Vec::new(), shaping: Shaping::new(plant), outcomes: Vec::new() };
+        let mut begun = self.before.take().filter(serves).unwrap_or_else(fresh);
+        let upto = begun.edits.len().max(on.len().saturating_sub(1));
+        for edit in &on[begun.edits.len()..upto] {
+            begun.push(edit, context, run)?;
+        }
+        let mut whole = self.before.insert(begun).clone();
+        for edit in &on[upto..] {
+            whole.push(edit, context, run)?;
+        }
+        let reports = rows.iter().zip(&whole.outcomes).map(|(&row, o)| EditReport::of(row, o)).collect();
+        Ok((whole.shaping.into_plant(), reports))
+    }
 }
 
 /// One branch in a list of all.

@@ -9,8 +9,8 @@ use crate::{Counts, ItemReport, TimingsMs};
 
 /// Makes a leaf whose chief veins start together: parts `blade` and `veins`.
 ///
-/// The blade's colour is on its vertices, by the distance from the nearest vein. Of `options` thickness, resolution
-/// and rings are used.
+/// The blade's colour is on its vertices, by the distance from the nearest vein. Of `options` thickness, resolution,
+/// rings and `side_veins` are used.
 ///
 /// # Errors
 /// [`LeafError::Rays`], [`LeafError::Cancelled`].
@@ -21,7 +21,12 @@ pub fn make_ray_leaf(
     run: &Run<'_>,
 ) -> Result<(Model, ItemReport), LeafError> {
     let mut report = Report::default();
-    let leaf = report.stage("structure", run.clock, |_| RayLeaf::new(rays, options.spec.thickness))?;
+    let leaf = report.stage("structure", run.clock, |_| {
+        RayLeaf::new(rays, options.spec.thickness).map(|mut leaf| {
+            leaf.add_side_veins(rays, options.side_veins as usize);
+            leaf
+        })
+    })?;
     run.cancel.check()?;
     let colours = LeafColours::default();
     let [blade, vein] = [colours.blade, colours.vein].map(|c| c.map(crate::leaves::linear_of));

@@ -33,7 +33,7 @@ const LIGHT: Mood = {
   zenith: 0x8fbfe8, horizon: 0xf1f5ee, below: 0xe6e8da, ground: 0xdfe2cf, sun: 0xfff1d6, sunPower: 2.9, ambient: 0.75,
 };
 const DARK: Mood = {
-  zenith: 0x0b1420, horizon: 0x23343f, below: 0x1a2626, ground: 0x202d2a, sun: 0xffe6c0, sunPower: 2.6, ambient: 0.5,
+  zenith: 0x0b1420, horizon: 0x23343f, below: 0x1a2626, ground: 0x202d2a, sun: 0xffe6c0, sunPower: 3.2, ambient: 0.95,
 };
 
 export class Stage {

@@ -1,7 +1,7 @@
 /** The right side: the plant in three dimensions, turned by hand, or from the front exactly as it was drawn. */
 import * as THREE from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
-import type { PlantState, PlantView as Seen, Sent, View } from '../protocol';
+import type { PlantState, PlantView as Seen, Sent, ShapePointer, ShapeReach, View } from '../protocol';
 import type { Gizmo } from '../scene';
 import type { Box } from '../sheet/geometry';
 import type { Handles } from './gizmo';
@@ -12,6 +12,11 @@ import { Stage } from './stage';
 const ORDERS = [0x8a4b14, 0xc0600f, 0x1f8a55, 0x2079c0, 0x8a4fb5].map((c) => new THREE.Color(c));
 /** Leaves and petals among the axes. */
 const BLADES = [0x3f9a3a, 0xd0407a].map((c) => new THREE.Color(c));
+
+/** Height of the strip of tools with its options, pixels. */
+const STRIP = 116;
+/** A pointer that moved no further than this, pixels, clicked. */
+const CLICK = 5;
 
 /** Least time between pictures that the processor draws. */
 const SLOW_MS = 300;
@@ -38,6 +43,8 @@ export class PlantView {
   private dragging = false;
   private boned = false;
   private scale = 1;
+  /** The plant to which the stage was fitted. */
+  private fitted: number | null = null;
   private front = false;
   private sheetSeen: Box | undefined;
   private follow = true;
@@ -45,7 +52,19 @@ export class PlantView {
   private frame = 0;
   private last = 0;
   private rendered = 0;
+  /** A tool is in the hand: the first button is the tool's, the second turns the view. */
+  private hands = false;
+  /** Pixels on the left that something else covers. */
+  private inset = 0;
+  private wanted = 0;
+  /** Pixels at the foot that something else covers. */
+  private low = 0;
+  private readonly caster = new THREE.Raycaster();
   private wish: { target: THREE.Vector3; distance: number } | undefined;
+  /** A plant was clicked. */
+  onPick: (plant: number) => void = () => {};
+  /** A picture was drawn: what lies over it may have to move. */
+  onDraw: () => void = () => {};
   onFrontChange: (front: boolean) => void = () => {};
   onContext: (lost: boolean) => void = () => {};
   onPlaceBegin: () => void = () => {};
@@ -79,7 +98,11 @@ export class PlantView {
     this.controls.maxPolarAngle = Math.PI * 0.53;
     this.controls.target.set(0, 0.48, 0);
     this.controls.addEventListener('change', () => this.redraw());
-    canvas.addEventListener('pointerdown', (e) => this.taken(e.button === 0));
+    canvas.addEventListener('pointerdown', (e) => {
+      if (!this.hands) this.taken(e.button === 0);
+      else if (e.button !== 0) this.taken(e.button === 2);
+    });
+    this.listenForClicks(canvas);
     canvas.addEventListener('wheel', () => this.taken(false), { passive: true });
     canvas.addEventListener('keydown', (e) => this.key(e));
     canvas.addEventListener('webglcontextlost', (e) => { e.preventDefault(); this.onContext(true); });
@@ -262,11 +285,13 @@ export class PlantView {
 
   /** Brings all that is seen to the size of the stage. */
   private fitStage(): void {
-    if (this.dragging) return;
+    // Under a hand that works on it a plant keeps its size.
+    if (this.dragging || (this.hands && this.fitted === this.current)) return;
     const { min, max } = this.bounds();
     const size = max.clone().sub(min);
     const largest = Math.max(size.x, size.y, size.z);
     if (!(largest > 0)) return;
+    this.fitted = this.current;
     this.scale = 1 / largest;
     this.holder.scale.setScalar(this.scale);
     // One plant stands where it was drawn; several stand around the middle of the stage.
@@ -323,10 +348,127 @@ export class PlantView {
     this.redraw();
   }
 
+  /** A click on a plant chooses it. */
+  private listenForClicks(canvas: HTMLCanvasElement): void {
+    let from: [number, number] | undefined;
+    canvas.addEventListener('pointerdown', (e) => { from = e.button === 0 && e.isPrimary && !this.hands && !this.dragging ? [e.clientX, e.clientY] : undefined; });
+    canvas.addEventListener('pointerup', (e) => {
+      const still = from && Math.hypot(e.clientX - from[0], e.clientY - from[1]) <= CLICK;
+      from = undefined;
+      if (!still || this.dragging || this.guest) return;
+      const plant = this.plantAt(e.clientX, e.clientY);
+      if (plant !== undefined && plant !== this.current) this.onPick(plant);
+    });
+  }
+
+  /** The plant under a point of the screen. */
+  plantAt(x: number, y: number): number | undefined {
+    this.aim(x, y);
+    let best: { id: number; distance: number } | undefined;
+    for (const [id, plant] of this.plants) {
+      if (!plant.place.visible) continue;
+      plant.place.updateWorldMatrix(true, true);
+      const hit = this.caster.intersectObject(plant.group, true)[0];
+      if (hit && (!best || hit.distance < best.distance)) best = { id, distance: hit.distance };
+    }
+    return best?.id;
+  }
+
+  private get camera(): THREE.PerspectiveCamera | THREE.OrthographicCamera {
+    return this.front && this.seen?.front ? this.flat : this.far;
+  }
+
+  private aim(x: number, y: number): void {
+    const box = this.element.getBoundingClientRect();
+    const { camera } = this;
+    camera.updateMatrixWorld();
+    this.caster.setFromCamera(new THREE.Vector2(((x - box.left) / box.width) * 2 - 1, 1 - ((y - box.top) / box.height) * 2), camera);
+  }
+
+  /** A point of the screen as a ray in the coordinates of the chosen plant. */
+  pointer(x: number, y: number, pressure: number): ShapePointer | undefined {
+    const place = this.chosen?.place;
+    if (!place) return undefined;
+    this.aim(x, y);
+    place.updateWorldMatrix(true, false);
+    const plantFromWorld = place.matrixWorld.clone().invert();
+    const way = (v: THREE.Vector3): [number, number, number] => v.clone().transformDirection(plantFromWorld).toArray();
+    const { origin, direction } = this.caster.ray;
+    return {
+      origin: origin.clone().applyMatrix4(plantFromWorld).toArray(), direction: way(direction), forward: way(this.camera.getWorldDirection(new THREE.Vector3())),
+      up: way(new THREE.Vector3(0, 1, 0).applyQuaternion(this.camera.quaternion)), pressure,
+    };
+  }
+
+  /** So many pixels, in metres of the chosen plant. */
+  reach(pixels: number): ShapeReach {
+    const size = (this.chosen?.place.getWorldScale(new THREE.Vector3()).x ?? 1) || 1;
+    const share = pixels / Math.max(1, this.element.clientHeight);
+    const { camera } = this;
+    if (camera instanceof THREE.OrthographicCamera) return { metres: (share * (camera.top - camera.bottom)) / size, per_metre: 0 };
+    return { metres: 0, per_metre: 2 * Math.tan(THREE.MathUtils.degToRad(camera.fov / 2)) * share };
+  }
+
+  /** Points of the chosen plant (x, y, z, radius) on the screen: x, y and width, pixels; width 0 behind the eye. */
+  project(points: Float32Array): Float32Array {
+    const place = this.chosen?.place;
+    const out = new Float32Array((points.length / 4) * 3);
+    if (!place) return out;
+    const { camera } = this;
+    camera.updateMatrixWorld();
+    place.updateWorldMatrix(true, false);
+    const { clientWidth: w, clientHeight: h } = this.element;
+    const size = place.getWorldScale(new THREE.Vector3()).x;
+    const eye = camera.matrixWorldInverse;
+    const v = new THREE.Vector3();
+    for (let i = 0, o = 0; i < points.length; i += 4, o += 3) {
+      v.set(points[i]!, points[i + 1]!, points[i + 2]!).applyMatrix4(place.matrixWorld).applyMatrix4(eye);
+      const depth = -v.z;
+      v.applyMatrix4(camera.projectionMatrix);
+      const wide = camera instanceof THREE.OrthographicCamera ? (points[i + 3]! * size * h) / (camera.top - camera.bottom)
+        : (points[i + 3]! * size * h) / (2 * Math.tan(THREE.MathUtils.degToRad(camera.fov / 2)) * Math.max(1e-6, depth));
+      out.set([((v.x + 1) / 2) * w, ((1 - v.y) / 2) * h, depth > 0 ? 2 * wide : 0], o);
+    }
+    return out;
+  }
+
+  /** With a tool in the hand the second button or two fingers turn the view, and it keeps its size. */
+  setHands(on: boolean): void {
+    if (on === this.hands) return;
+    this.hands = on;
+    this.controls.mouseButtons = on ? { LEFT: null, MIDDLE: THREE.MOUSE.PAN, RIGHT: THREE.MOUSE.ROTATE } : { LEFT: THREE.MOUSE.ROTATE, MIDDLE: THREE.MOUSE.DOLLY, RIGHT: THREE.MOUSE.PAN };
+    this.controls.touches = on ? { ONE: null, TWO: THREE.TOUCH.DOLLY_ROTATE } : { ONE: THREE.TOUCH.ROTATE, TWO: THREE.TOUCH.DOLLY_PAN };
+    // The tools' strip lies over the foot of the view.
+    this.low = on ? STRIP : 0;
+    this.inset = this.wanted;
+    this.lay();
+    if (!on && this.follow) this.fitStage();
+    else if (this.follow) this.frameNowBox();
+    this.redraw();
+  }
+
+  /** The wheel is the tool's for now, or it zooms. */
+  setZoom(on: boolean): void {
+    this.controls.enableZoom = on;
+  }
+
+  /** Pixels on the left that a list covers: the plant is shown beside it. */
+  setInset(pixels: number): void {
+    this.wanted = pixels > 0.5 * this.element.clientWidth ? 0 : pixels;
+    // Under a hand the view stands still.
+    if (this.hands || this.wanted === this.inset) return;
+    this.inset = this.wanted;
+    this.lay();
+    if (this.follow) this.frameNowBox();
+    this.redraw();
+  }
+
   /** Shows the whole plant and follows it again. */
   frameNow(): void {
     this.follow = true;
+    this.fitted = null;
     this.setFront(false);
+    this.fitStage();
     this.frameNowBox();
     this.redraw();
   }
@@ -378,7 +520,9 @@ export class PlantView {
     if (max.equals(min)) return;
     const radius = max.clone().sub(min).length() * s * 0.5;
     const angle = THREE.MathUtils.degToRad(this.far.fov / 2);
-    const across = Math.min(1, this.far.aspect);
+    const { clientWidth: w, clientHeight: h } = this.element;
+    const free = Math.max(1, h - this.low);
+    const across = Math.min(1, (w - this.inset) / free) * (free / Math.max(1, h));
     const distance = (radius / Math.sin(angle) / across) * 0.98;
     this.wish = { target, distance };
     if (now) {
@@ -428,6 +572,8 @@ export class PlantView {
   private lay(): void {
     const { clientWidth: w, clientHeight: h } = this.element;
     this.far.aspect = w / Math.max(1, h);
+    if (this.inset > 0 || this.low > 0) this.far.setViewOffset(w, h, -this.inset / 2, this.low / 2, w, h);
+    else this.far.clearViewOffset();
     this.far.updateProjectionMatrix();
     const front = this.seen?.front;
     if (!front || !this.sheetSeen) return;
@@ -475,7 +621,8 @@ export class PlantView {
   }
 
   private render(): void {
-    this.renderer.render(this.stage.scene, this.front && this.seen?.front ? this.flat : this.far);
+    this.renderer.render(this.stage.scene, this.camera);
+    this.onDraw();
   }
 }
 

@@ -2,12 +2,14 @@
 
 mod makers;
 mod scene;
+mod shape;
 mod sketch;
 
 use crate::event::Event;
 use crate::state::{Settings, range_fault};
 use crate::{Document, DocumentPlant, PlantId, StrokeId};
 
+pub use self::shape::ShapeCommand;
 pub use makers::{FlowerCommand, LeafCommand, TreeCommand};
 pub use scene::{NewPlant, PlantCommand, SceneCommand};
 pub use sketch::{NewStroke, SketchCommand};
@@ -20,6 +22,8 @@ pub enum Command {
     Scene(SceneCommand),
     /// Name, seed, place of a plant.
     Plant(PlantId, PlantCommand),
+    /// Edits by hand of a plant with branches.
+    Shape(PlantId, ShapeCommand),
     /// Strokes and settings of a sketch.
     Sketch(PlantId, SketchCommand),
     /// Spec and obstacles of a tree.
@@ -74,6 +78,7 @@ impl Command {
         match self {
             Self::Scene(c) => c.name(),
             Self::Plant(_, c) => c.name(),
+            Self::Shape(_, c) => c.name(),
             Self::Sketch(_, c) => c.name(),
             Self::Tree(_, c) => c.name(),
             Self::Leaf(_, c) => c.name(),
@@ -87,6 +92,7 @@ impl Command {
         match self {
             Self::Scene(c) => c.decide(document),
             Self::Plant(id, c) => c.decide(plant(id, document)?).map(one),
+            Self::Shape(id, c) => c.decide(plant(id, document)?).map(one),
             Self::Sketch(id, c) => c.decide(plant(id, document)?, document).map(one),
             Self::Tree(id, c) => c.decide(plant(id, document)?, document).map(one),
             Self::Leaf(id, c) => c.decide(plant(id, document)?).map(one),

@@ -5,6 +5,7 @@
 //! | file | owns |
 //! |---|---|
 //! | `spec` | [`TreeSpec`]: everything that a user may ask of a tree |
+//! | `evaluate` | a tree that changes: only what a change touches is made again |
 //! | `file` | TOML in, JSON Schema out |
 //! | `blade`, `blossom`, `look` | forms of leaves; flowers in their place; colours and bark |
 //! | `presets` | the species that come with the program |
@@ -14,6 +15,7 @@
 mod blade;
 mod blossom;
 mod compare;
+mod evaluate;
 mod file;
 mod lod;
 mod look;
@@ -21,19 +23,19 @@ mod presets;
 mod spec;
 
 use base::{Cancelled, Report, Run, Seed};
+use document::PlantEdit;
 use growth::{Grown, GrowthError, Method, Obstacle};
 use mesh::Model;
 use serde::{Deserialize, Serialize};
-use shape::HandEdit;
-use skin::{PetalColor, SkinSpec};
+use skin::SkinSpec;
 
-use crate::report::{Counts, ItemReport, TimingsMs};
-use crate::shaping::shape_plant;
+use crate::report::ItemReport;
 use crate::template::LeafTemplate;
 
 pub use blade::{BladeForm, BladeSpec};
 pub use blossom::BlossomSpec;
 pub use compare::{OAK_METHODS, PAPER_OAKS, PaperOak, TreeSize, scale_to_height, tree_size};
+pub use evaluate::TreeEvaluator;
 pub use file::{NamedMesh, read_tree_spec, tree_schema};
 pub use lod::coarser;
 pub use look::{Bark, Colour, Look};
@@ -53,7 +55,7 @@ pub struct TreeOptions {
     /// Coarser copies to make as well, 0 to 6: each has about a third of the triangles of the one before.
     pub lods: u32,
     /// Edits by hand, done on the grown tree in this order.
-    pub edits: Vec<HandEdit>,
+    pub edits: Vec<PlantEdit>,
 }
 
 /// A tree with its meshes and its entry of the report.
@@ -180,71 +182,16 @@ pub fn make_tree(
     options: &TreeOptions,
     run: &Run<'_>,
 ) -> Result<MadeTree, TreeError> {
-    let mut told = Report::default();
-    look_at_meshes(&spec.obstacles, &mut told);
-    let wanted = spec.growth()?;
-    let leaf = options.leaf.as_ref();
-    if let (Some(file), None) = (&spec.blade.file, leaf) {
-        return Err(TreeError::File { file: file.clone() });
+    let mut evaluator = TreeEvaluator::default();
+    let mut item = evaluator.update(spec, seed, options, run)?;
+    let start = run.clock.now_ms();
+    let lods = evaluator.lods(spec, seed, options, run)?;
+    if !lods.is_empty() {
+        let ms = run.clock.now_ms() - start;
+        item.timings_ms.mesh += ms;
+        item.timings_ms.total += ms;
     }
-    let blade = leaf.map_or_else(|| spec.blade.blade(), |l| l.scaled(1.0));
-    let mut grown = growth::grow(&wanted, Some(blade), seed, run, &mut told)?;
-    spec.look.tint(
-        &mut grown.plant,
-        options.skin.textures && leaf.is_some_and(LeafTemplate::has_picture),
-        seed,
-    );
-    spec.blossom.apply(&mut grown.plant, seed);
-    if let Some(height) = options.height_m.filter(|_| spec.obstacles.is_empty()) {
-        scale_to_height(&mut grown, height);
-    }
-    let mut edits = Vec::new();
-    if !options.edits.is_empty() {
-        let obstacles = growth::Obstacles::new(&wanted.obstacles, wanted.clearance_m)?;
-        let context = shape::Context { pipe_exponent: None, obstacles };
-        edits =
-            told.stage("shape", run.clock, |_| shape_plant(&mut grown.plant, &options.edits, &context, run))?;
-    }
-    let petals = options.skin.petals.or((spec.blossom.share > 0.0).then_some(PetalColor::White));
-    let skin_spec = SkinSpec { seed, petals, ..options.skin.clone() };
-    let mut report = Report::default();
-    for stage in &told.stages {
-        report.book(if stage.name == "grow" { "structure" } else { "depth" }, stage.ms);
-    }
-    let mesh = |plant: &plant::Plant, skin_spec: &SkinSpec| {
-        skin::skin(plant, skin_spec, run).map(|mut model| {
-            spec.look.paint(&mut model);
-            if let Some(leaf) = leaf {
-                leaf.dress(&mut model);
-            }
-            model
-        })
-    };
-    let model = report.stage("mesh", run.clock, |_| mesh(&grown.plant, &skin_spec))?;
-    let lods = (1..=options.lods.min(6)).map(|level| {
-        let (plant, skin_spec) = coarser(&grown.plant, &skin_spec, level);
-        mesh(&plant, &skin_spec)
-    });
-    let lods = lods.collect::<Result<Vec<_>, _>>()?;
-    let growth = GrowthReport::of(spec, &grown);
-    // Some points are always out of reach where they are scattered; it is news only when they were given, or most.
-    let given = matches!(spec.method, Method::Points { .. });
-    let many = 2 * growth.unreachable > growth.attractors;
-    let mut warnings = told.warnings.iter().filter(|w| given || many || w.code != "attractors-unreached");
-    let item = ItemReport {
-        name: spec.name.clone(),
-        counts: Counts {
-            vertices: model.vertex_count() as u64,
-            triangles: model.triangle_count() as u64,
-            ..Counts::of_plant(&grown.plant)
-        },
-        timings_ms: TimingsMs::from_report(&report),
-        digest: grown.plant.digest_hex(),
-        warnings: warnings.by_ref().map(ToString::to_string).collect(),
-        growth: Some(growth),
-        edits,
-        ..ItemReport::default()
-    };
+    let (grown, model) = evaluator.take().ok_or(Cancelled)?; // update succeeded: both are there
     Ok(MadeTree { grown, model, lods, item })
 }
 

@@ -113,3 +113,52 @@ fn growth_stops_when_asked() {
         assert_eq!(got.map(|_| ()), Err(TreeError::Cancelled(Cancelled)), "{key}");
     }
 }
+
+#[test]
+fn only_what_a_change_touches_is_made_again() {
+    use shape::{AxisKey, HandEdit, Turn};
+    let bush = "name = \"bush\"\n[method]\nkind = \"competition\"\npoints = 200\nlifespan = 1\n";
+    let mut spec = read_tree_spec(bush, &|_| None).expect("sound");
+    let (mut options, run) = (TreeOptions::default(), Run::plain());
+    options.skin.detail = 0.3;
+    let mut kept = TreeEvaluator::default();
+    // What an update did again, after checking that a fresh one gives the same.
+    let mut step = |spec: &TreeSpec, seed: u64, options: &TreeOptions| {
+        let item = kept.update(spec, Seed::new(seed), options, &run).expect("sound");
+        let fresh = make_tree(spec, Seed::new(seed), options, &run).expect("sound");
+        assert_eq!(
+            (&item, kept.model(), kept.plant()),
+            (&fresh.item, Some(&fresh.model), Some(&fresh.grown.plant))
+        );
+        (kept.stages_done().join(" "), item)
+    };
+    assert_eq!(step(&spec, 1, &options).0, "structure depth mesh");
+    assert_eq!(step(&spec, 1, &options).0, "");
+    options.skin.detail = 0.4;
+    assert_eq!(step(&spec, 1, &options).0, "mesh");
+    let turn = |degrees| HandEdit::Rotate {
+        axis: AxisKey::Path(vec![0, 1]),
+        turn: Turn { about: DVec3::Z, degrees },
+    };
+    options.edits.push(HandEdit::Prune { axis: AxisKey::Path(vec![0, 0]), at: 0.5 }.into());
+    assert_eq!(step(&spec, 1, &options).0, "shape mesh");
+    for degrees in [10.0, 20.0, 30.0] {
+        options.edits.truncate(1);
+        options.edits.push(turn(degrees).into());
+        assert_eq!(step(&spec, 1, &options).0, "shape mesh");
+    }
+    options.edits.push(HandEdit::Prune { axis: AxisKey::Path(vec![0, 99]), at: 0.0 }.into());
+    let (_, item) = step(&spec, 1, &options);
+    assert_eq!(item.edits.iter().map(|e| e.done).collect::<Vec<_>>(), [true, true, false]);
+    assert!(item.warnings.iter().any(|w| w.starts_with("edit 2 by hand (prune): not done")), "{item:?}");
+    options.edits[0].off = true;
+    let (_, item) = step(&spec, 1, &options);
+    assert_eq!(item.edits.iter().map(|e| e.index).collect::<Vec<_>>(), [1, 2]);
+    options.edits.remove(1);
+    step(&spec, 1, &options);
+    spec.look.bark = Bark::Smooth;
+    assert_eq!(step(&spec, 1, &options).0, "shape mesh");
+    assert_eq!(step(&spec, 2, &options).0, "structure depth shape mesh");
+    options.edits.clear();
+    assert_eq!(step(&spec, 2, &options).0, "shape mesh");
+}

@@ -1,0 +1,297 @@
+// Hands on plants in the view: prune, turn, draw, brush; what survives and what says that it did not.
+import assert from 'node:assert/strict';
+import { add, begin, changed, count, data, drop, exported, sample, until } from './journeys.mjs';
+
+const BUSH = 'name = "bush"\n[method]\nkind = "competition"\npoints = 260\nlifespan = 2\n';
+
+/** A small tree, grown, with a tool in the hand. */
+async function bush(page, url, tool) {
+  await begin(page, url);
+  await drop(page, 'bush.toml', BUSH);
+  await until(page, 'triangles', ['above', 1000], 'a bush has grown');
+  await page.keyboard.press('s');
+  await page.locator('.strip').waitFor();
+  await page.keyboard.press(String(tool));
+  await page.waitForTimeout(900);
+  return data(page, 'digest');
+}
+
+/** A place of the view where the pointer means a branch that is not the trunk. */
+async function branch(page, from = 4, trunk = false) {
+  const box = await page.locator('.view').boundingBox();
+  await page.keyboard.press('1');
+  for (let k = from; k < 60; k += 1) {
+    const [x, y] = [box.x + box.width * (0.5 + 0.25 * Math.sin(k * 2.4)), box.y + box.height * (0.25 + 0.006 * k)];
+    await page.mouse.move(x, y);
+    await page.mouse.move(x + 1, y);
+    await page.waitForTimeout(120);
+    const picked = await data(page, 'picked');
+    if (picked !== '' && (trunk || picked !== '0')) return { x: x + 1, y, k };
+  }
+  throw new Error('no branch under the pointer');
+}
+
+const WIDE = { viewport: { width: 1360, height: 760 } };
+
+const CENTRE = async (page) => {
+  const box = await page.locator('.view').boundingBox();
+  return { x: box.x + box.width / 2, y: box.y + box.height / 2 };
+};
+
+async function prune({ page, url, shot }) {
+  const plain = await bush(page, url, 4);
+  const at = await branch(page);
+  await page.waitForTimeout(500);
+  await shot('shape-pick');
+  await page.keyboard.press('4');
+  await page.click('#b-shape-whole');
+  await page.mouse.click(at.x, at.y);
+  await until(page, 'edits', ['is', 1], 'one edit');
+  await until(page, 'done', ['is', 1], 'it was done');
+  const pruned = await changed(page, plain, 'pruned');
+  await page.waitForTimeout(900);
+  await shot('shape-prune');
+  assert.match(await page.locator('.edits li').textContent(), /Pruned−\d+ branches/);
+  assert.match(await page.locator('#b-undo').getAttribute('title'), /prune/);
+  // Left out, done again, removed; each is a step.
+  await page.click('[data-key=eye0]');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
+  await page.click('[data-key=eye0]');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, pruned);
+  await page.click('[data-key=gone0]');
+  await until(page, 'edits', ['is', 0], 'removed');
+  for (let i = 0; i < 4; i += 1) await page.keyboard.press('Control+z');
+  await until(page, 'edits', ['is', 0], 'undone');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
+  // By the pointing tool and Delete, too.
+  await page.keyboard.press('1');
+  await page.mouse.click(at.x, at.y);
+  await page.locator('#b-prune-chosen').waitFor();
+  await page.keyboard.press('Delete');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, pruned);
+  await page.keyboard.press('Escape');
+  await page.locator('.strip').waitFor({ state: 'hidden' });
+}
+
+async function rotate({ page, url, shot }) {
+  const plain = await bush(page, url, 2);
+  const at = await branch(page);
+  await page.keyboard.press('2');
+  await page.mouse.move(at.x, at.y);
+  await page.mouse.down();
+  for (let k = 1; k <= 8; k += 1) await page.mouse.move(at.x + 3 * k, at.y + 12 * k);
+  await changed(page, plain, 'the branch follows the hand');
+  assert.equal(await count(page, 'edits'), 0, 'nothing is kept before the hand lets go');
+  await page.waitForTimeout(500);
+  await shot('shape-rotate-held');
+  const held = await data(page, 'digest');
+  await page.mouse.wheel(0, -100);
+  await changed(page, held, 'the wheel turns it exactly');
+  await page.mouse.up();
+  await until(page, 'edits', ['is', 1], 'one drag is one edit');
+  await until(page, 'done', ['is', 1], 'done');
+  await page.waitForTimeout(700);
+  await shot('shape-rotate');
+  await page.keyboard.press('Control+z');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
+  // Escape while it is held leaves nothing.
+  await page.mouse.move(at.x, at.y);
+  await page.mouse.down();
+  await page.mouse.move(at.x + 40, at.y + 60, { steps: 4 });
+  await changed(page, plain, 'it turns');
+  await page.keyboard.press('Escape');
+  await page.mouse.up();
+  await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
+  assert.equal(await count(page, 'edits'), 0);
+  // The second button turns the view meanwhile.
+  const before = await page.screenshot();
+  await page.mouse.move(at.x, at.y);
+  await page.mouse.down({ button: 'right' });
+  await page.mouse.move(at.x + 150, at.y, { steps: 6 });
+  await page.mouse.up({ button: 'right' });
+  await page.waitForTimeout(900);
+  assert.notDeepEqual(await page.screenshot(), before);
+  assert.equal(await data(page, 'digest'), plain);
+}
+
+async function draw({ page, url, shot }) {
+  const plain = await bush(page, url, 6);
+  const at = await branch(page);
+  await page.keyboard.press('6');
+  await page.mouse.move(at.x, at.y);
+  await page.mouse.down();
+  for (let k = 1; k <= 14; k += 1) await page.mouse.move(at.x + 9 * k, at.y - 7 * k + 0.4 * k * k);
+  await page.waitForTimeout(600);
+  await shot('shape-sketch-held');
+  await page.mouse.up();
+  await until(page, 'edits', ['is', 1], 'a drawn branch');
+  await until(page, 'done', ['is', 1], 'done');
+  await changed(page, plain, 'it bears a new branch');
+  await page.waitForTimeout(800);
+  await shot('shape-sketch');
+  assert.match(await page.locator('.edits li').textContent(), /Drawn branch\+\d+ branches/);
+}
+
+async function brush({ page, url, shot }) {
+  let digest = await bush(page, url, 7);
+  const centre = await CENTRE(page);
+  await page.mouse.move(centre.x, centre.y);
+  await page.keyboard.press(']');
+  await page.waitForTimeout(300);
+  await page.mouse.down();
+  for (let k = 1; k <= 10; k += 1) await page.mouse.move(centre.x - 11 * k, centre.y - 9 * k);
+  await page.waitForTimeout(500);
+  await shot('shape-brush-held');
+  await page.mouse.up();
+  await until(page, 'edits', ['is', 1], 'a brush stroke');
+  await until(page, 'done', ['is', 1], 'branches grew along it');
+  digest = await changed(page, digest, 'brushed');
+  await page.waitForTimeout(800);
+  await shot('shape-brush');
+  // Leaves: fewer within the stroke.
+  await page.keyboard.press('9');
+  await page.mouse.move(centre.x, centre.y - 60);
+  await page.mouse.down();
+  await page.mouse.move(centre.x + 60, centre.y - 60, { steps: 6 });
+  await page.mouse.up();
+  await until(page, 'done', ['is', 2], 'leaves went');
+  digest = await changed(page, digest, 'fewer leaves');
+  // A silhouette around the crown.
+  await page.keyboard.press('8');
+  const n = 24;
+  for (let i = 0; i <= n; i += 1) {
+    const a = (i / n) * 2 * Math.PI;
+    await page.mouse.move(centre.x + 120 * Math.sin(a), centre.y - 40 - 110 * Math.cos(a));
+    if (i === 0) await page.mouse.down();
+  }
+  await page.waitForTimeout(500);
+  await shot('shape-silhouette-held');
+  await page.mouse.up();
+  await until(page, 'edits', ['is', 3], 'an outline');
+  await changed(page, digest, 'filled');
+  await page.waitForTimeout(900);
+  await shot('shape-silhouette');
+}
+
+async function seeds({ page, url, shot }) {
+  const plain = await bush(page, url, 4);
+  const at = await branch(page, 9);
+  await page.keyboard.press('4');
+  await page.click('#b-shape-whole');
+  await page.mouse.click(at.x, at.y);
+  await until(page, 'done', ['is', 1], 'pruned');
+  let digest = await changed(page, plain, 'pruned');
+  for (let tries = 0; tries < 24 && await count(page, 'undone') === 0; tries += 1) {
+    await page.keyboard.press('r');
+    digest = await changed(page, digest, 'another seed');
+  }
+  assert.equal(await count(page, 'undone'), 1, 'a seed without such a branch');
+  assert.match(await page.locator('.edits .is-bad').textContent(), /not done: the branch is gone/);
+  await page.waitForTimeout(700);
+  await shot('shape-gone');
+  await page.click('#b-language');
+  await page.locator('.edits .is-bad', { hasText: '枝条已不存在' }).waitFor();
+  await page.click('#b-theme');
+  await page.click('#b-theme');
+  await page.waitForTimeout(900);
+  await shot('shape-dark-chinese');
+}
+
+async function kept({ page, url, troubles }) {
+  await bush(page, url, 4);
+  const at = await branch(page);
+  await page.keyboard.press('4');
+  await page.click('#b-shape-whole');
+  await page.mouse.click(at.x, at.y);
+  await until(page, 'done', ['is', 1], 'pruned');
+  await page.waitForTimeout(500);
+  const digest = await data(page, 'digest');
+  const [project] = await Promise.all([page.waitForEvent('download'), page.click('#b-save')]);
+  const path = await project.path();
+  await page.waitForFunction(() => /Saved/.test(document.querySelector('#b-kept').textContent));
+  await page.waitForTimeout(900);
+  await page.reload();
+  await until(page, 'edits', ['is', 1], 'the edit is recovered');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, digest);
+  await page.click('#b-fresh');
+  await until(page, 'edits', ['is', 0], 'a new scene');
+  const chooser = page.waitForEvent('filechooser');
+  await page.click('#b-open');
+  await (await chooser).setFiles(path);
+  await until(page, 'edits', ['is', 1], 'the file has it');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, digest);
+  // When the worker falls, its edits are done again.
+  const [worker] = page.workers();
+  await worker.evaluate(() => { setTimeout(() => { throw new Error('made to fall by the test'); }); }).catch(() => {});
+  await page.locator('.note.bad', { hasText: 'started again' }).waitFor();
+  await until(page, 'done', ['is', 1], 'and still there');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, digest);
+  assert.deepEqual(troubles.splice(0).filter((what) => !what.includes('made to fall by the test')), []);
+}
+
+async function drawn({ page, url, shot }) {
+  await begin(page, url);
+  await sample(page);
+  const plain = await data(page, 'digest');
+  await page.keyboard.press('s');
+  await page.locator('.strip').waitFor();
+  const at = await branch(page, 0, true);
+  await page.keyboard.press('2');
+  await page.mouse.move(at.x, at.y);
+  await page.mouse.down();
+  await page.mouse.move(at.x + 70, at.y + 20, { steps: 6 });
+  await page.mouse.up();
+  await until(page, 'done', ['is', 1], 'a drawn stem is turned');
+  await changed(page, plain, 'turned');
+  await page.waitForTimeout(800);
+  await shot('shape-drawing');
+  assert.equal((await exported(page, 'glb')).bytes.subarray(0, 4).toString(), 'glTF');
+  // The sheet keeps its own tools and keys.
+  assert.equal(await count(page, 'strokes'), 15);
+  await page.keyboard.press('Escape');
+  // A click on a plant of the scene chooses it.
+  await add(page, 'flower');
+  await page.waitForTimeout(1500);
+  const box = await page.locator('.view').boundingBox();
+  search: for (let k = 0; k < 12; k += 1) {
+    for (let j = 0; j < 8; j += 1) {
+      await page.mouse.click(box.x + box.width * (0.45 + 0.045 * k), box.y + box.height * (0.25 + 0.08 * j));
+      await page.waitForTimeout(60);
+      if (await data(page, 'current') === 'sketch') break search;
+    }
+  }
+  assert.equal(await data(page, 'current'), 'sketch', 'clicked in the view');
+}
+
+/** Fingers: one shapes, a second one lets go and turns the view. */
+async function fingers({ page, url, context, shot }) {
+  const plain = await bush(page, url, 2);
+  const at = await branch(page);
+  await page.keyboard.press('2');
+  const cdp = await context.newCDPSession(page);
+  const send = (type, points) => cdp.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+  await send('touchStart', [[at.x, at.y]]);
+  for (let k = 1; k < 8; k += 1) await send('touchMove', [[at.x + 4 * k, at.y + 10 * k]]);
+  await changed(page, plain, 'a finger turns the branch');
+  await send('touchStart', [[at.x + 28, at.y + 70], [at.x + 90, at.y + 60]]);
+  await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
+  await send('touchEnd', []);
+  assert.equal(await count(page, 'edits'), 0, 'a second finger lets go');
+  await send('touchStart', [[at.x, at.y]]);
+  for (let k = 1; k < 8; k += 1) await send('touchMove', [[at.x + 4 * k, at.y + 10 * k]]);
+  await send('touchEnd', []);
+  await until(page, 'done', ['is', 1], 'one finger, one edit');
+  await page.waitForTimeout(700);
+  await shot('shape-tablet');
+}
+
+export const shaping = [
+  ['shape: prune a branch and undo', prune, WIDE],
+  ['shape: turn a branch', rotate, WIDE],
+  ['shape: draw a branch', draw, WIDE],
+  ['shape: brush, leaves, outline', brush, WIDE],
+  ['shape: another seed says what is gone', seeds, WIDE],
+  ['shape: saved, reloaded, recovered', kept, WIDE],
+  ['shape: a drawing, and a click on a plant', drawn, WIDE],
+  ['shape: fingers', fingers, { viewport: { width: 820, height: 1000 }, hasTouch: true }],
+];

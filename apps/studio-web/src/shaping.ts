@@ -1,0 +1,439 @@
+/** Hands on a plant in the view: tools, their settings, gestures, and the list of what was done. What a tool does is the core's. */
+import type { Command, EditReport, Json, PlantState, PlantView as Seen, Request, ShapeAnswer, ShapeInput, ShapePointer, ShapeTool } from './protocol';
+import { number, t, tOf, type TextKey } from './text';
+import { button, el, icon, type IconName } from './ui';
+import { Overlay } from './view/overlay';
+import type { PlantView } from './view/view';
+
+export interface ShapingEvents {
+  run(command: Command): void;
+  ask<T>(request: Request): Promise<T>;
+  refused(why: string): void;
+  select(plant: number): void;
+  /** The tool was taken up or laid down. */
+  changed(): void;
+}
+
+export type Word = ShapeTool['tool'];
+export const SHAPE_TOOLS: readonly [Word, string][] = [
+  ['pick', '1'], ['rotate', '2'], ['move', '3'], ['prune', '4'], ['regrow', '5'], ['sketch', '6'], ['brush', '7'], ['silhouette', '8'], ['leaves', '9'],
+];
+/** How the pointer of a tool leaves a trace. */
+const TRACES: Partial<Record<Word, 'line' | 'brush' | 'outline'>> = { sketch: 'line', brush: 'brush', silhouette: 'outline', leaves: 'brush' };
+/** So near to a branch, in pixels, a pointer means it; a finger is thicker. */
+const NEAR = 9;
+const NEAR_TOUCH = 22;
+/** A step of the wheel, while a branch or a plane is held. */
+const TWIST_DEG = 5;
+const STILL = 5;
+/** A view of this width, pixels, has room for the list beside a plant. */
+const ROOMY = 600;
+
+/** The step of undo that an edit makes is called by the same word. */
+const EDIT_ICONS: Record<string, IconName> = {
+  'rotate': 'rotate', 'move': 'slide', 'prune': 'prune', 'regrow': 'regrow', 'sketch-branch': 'branch', 'brush': 'brush', 'silhouette': 'silhouette', 'leaf-density': 'leaf',
+};
+export const TOOL_ICONS: Record<Word, IconName> = {
+  pick: 'select', rotate: 'rotate', move: 'slide', prune: 'prune', regrow: 'regrow', sketch: 'branch', brush: 'brush', silhouette: 'silhouette', leaves: 'leaf',
+};
+
+export class Shaping {
+  readonly element = el('div', { class: 'shaping' });
+  readonly list = el('section', { class: 'edits' });
+  readonly overlay: Overlay;
+  private tool: Word | undefined;
+  private last: Word = 'rotate';
+  private plant: PlantState | undefined;
+  private seen: Seen | undefined;
+  private settings = { whole: false, twigs: 1, tilt_deg: 0, share: 0.07, density: 1, trim: true, more: false };
+  /** The branch that was clicked with the pointing tool. */
+  private chosen: ShapeAnswer['picked'] = null;
+  private lit: number | undefined;
+  private pointerId: number | undefined;
+  private from: [number, number] = [0, 0];
+  private at: [number, number] | undefined;
+  private distance: number | undefined;
+  private near = NEAR;
+  private moves: ShapePointer[] = [];
+  private inFlight = false;
+  /** Whether the list of edits is folded, as the person set it. */
+  private folds: boolean | undefined;
+
+  constructor(private readonly view: PlantView, private readonly events: ShapingEvents) {
+    this.overlay = new Overlay((points) => view.project(points));
+    const canvas = view.element.querySelector('canvas')!;
+    canvas.addEventListener('pointerdown', (e) => this.down(e, canvas));
+    canvas.addEventListener('pointermove', (e) => this.moved(e));
+    canvas.addEventListener('pointerup', (e) => this.up(e));
+    canvas.addEventListener('pointercancel', () => this.cancel());
+    canvas.addEventListener('pointerleave', () => { if (this.pointerId === undefined) { this.at = undefined; this.light(undefined); this.overlay.setRing(undefined); } });
+    canvas.addEventListener('wheel', (e) => this.wheel(e), { capture: true, passive: false });
+    canvas.addEventListener('contextmenu', (e) => { if (this.tool) e.preventDefault(); });
+    view.onDraw = () => { if (this.tool) this.overlay.draw(); };
+  }
+
+  get isOn(): boolean {
+    return this.tool !== undefined;
+  }
+
+  get isBusy(): boolean {
+    return this.pointerId !== undefined;
+  }
+
+  /** The tool, if one is in the hand. */
+  get word(): Word | undefined {
+    return this.tool;
+  }
+
+  /** Trees and drawings have branches. */
+  get isPossible(): boolean {
+    return this.plant !== undefined && (this.plant.maker === 'tree' || this.plant.maker === 'sketch') && (this.seen?.parts.length ?? 0) > 0;
+  }
+
+  toggle(): void {
+    this.take(this.tool ? undefined : this.last);
+  }
+
+  /** Takes a tool up, or lays it down. */
+  take(tool: Word | undefined): void {
+    if (tool && !this.isPossible) return;
+    if (this.isBusy) this.cancel();
+    this.tool = tool;
+    if (tool) this.last = tool;
+    this.chosen = null;
+    this.light(undefined);
+    this.overlay.setRing(undefined);
+    this.view.setHands(tool !== undefined);
+    if (tool) this.view.element.dataset['shape'] = tool;
+    else delete this.view.element.dataset['shape'];
+    this.show(this.plant, this.seen);
+    this.events.changed();
+  }
+
+  /** The plant that is worked on, as it is now. */
+  show(plant: PlantState | undefined, seen: Seen | undefined): void {
+    if (plant?.id !== this.plant?.id) { this.chosen = null; this.light(undefined); }
+    this.plant = plant;
+    this.seen = seen;
+    if (this.tool && !this.isPossible) {
+      // A plant that is being made again is no reason to lay the tool down; another plant is.
+      if (plant && plant.maker !== 'tree' && plant.maker !== 'sketch') { this.take(undefined); return; }
+    }
+    this.showStrip();
+    this.showList();
+  }
+
+  /** New meshes are there: numbers of branches may have changed. */
+  renewed(): void {
+    if (this.isBusy) return;
+    this.chosen = null;
+    this.light(undefined);
+    this.showStrip();
+  }
+
+  // The strip ----------------------------------------------------------------------------------------------------
+
+  private showStrip(): void {
+    this.element.hidden = !this.tool;
+    if (!this.tool || this.element.contains(document.activeElement) && document.activeElement instanceof HTMLInputElement) return;
+    const focused = this.element.contains(document.activeElement) ? document.activeElement?.id : undefined;
+    const bar = el('div', { class: 'tools strip', role: 'toolbar', 'aria-label': t('shape.title') });
+    for (const [word, key] of SHAPE_TOOLS) {
+      const b = button(TOOL_ICONS[word], t(`shape.${word}` as TextKey), () => this.take(word), key);
+      b.id = `b-shape-${word}`;
+      b.setAttribute('aria-pressed', String(word === this.tool));
+      bar.append(b);
+    }
+    this.element.replaceChildren(el('div', { class: 'options' }, ...this.options()), bar);
+    if (focused) document.getElementById(focused)?.focus();
+  }
+
+  private options(): HTMLElement[] {
+    const { settings: s } = this;
+    const hint = (key: TextKey): HTMLElement => el('span', { class: 'muted' }, t(key));
+    const chips = (key: TextKey, words: readonly [string, TextKey][], now: string, act: (word: string) => void): HTMLElement =>
+      el('span', { class: 'chips', role: 'group', 'aria-label': t(key) }, ...words.map(([word, text]) => el('button', {
+        type: 'button', class: 'chip', id: `b-shape-${word}`, 'aria-pressed': String(word === now), onclick: () => { act(word); this.showStrip(); },
+      }, t(text))));
+    const slider = (key: TextKey, low: number, high: number, step: number, value: number, shown: (x: number) => string, act: (x: number) => void): HTMLElement => {
+      const output = el('output', {}, shown(value));
+      const input = el('input', { type: 'range', min: String(low), max: String(high), step: String(step), 'aria-label': t(key),
+        oninput: () => { act(input.valueAsNumber); output.textContent = shown(input.valueAsNumber); this.showRing(); }, onchange: () => input.blur() });
+      input.value = String(value);
+      return el('label', {}, el('span', {}, t(key)), input, output);
+    };
+    const plain = (x: number): string => String(Math.round(x * 100) / 100);
+    const radius = (): HTMLElement => slider('shape.radius', Math.log(0.01), Math.log(0.4), 0.01, Math.log(s.share), () => `${plain(this.radius)} m`, (x) => { s.share = Math.exp(x); this.tellBrush(); });
+    switch (this.tool) {
+      case 'pick': return this.chosen ? this.chosenBox(this.chosen) : [hint('shape.pick.hint')];
+      case 'rotate': return [hint('shape.rotate.hint')];
+      case 'move': return [hint('shape.move.hint')];
+      case 'prune': return [chips('shape.prune', [['part', 'shape.prune.part'], ['whole', 'shape.prune.whole']], s.whole ? 'whole' : 'part', (w) => { s.whole = w === 'whole'; })];
+      case 'regrow': return [hint('shape.regrow.hint')];
+      case 'sketch': return [slider('shape.twigs', 0, 4, 0.25, s.twigs, plain, (x) => { s.twigs = x; }),
+        slider('shape.tilt', -75, 75, 5, s.tilt_deg, (x) => `${plain(x)}°`, (x) => { s.tilt_deg = x; })];
+      case 'brush': return [radius(), slider('shape.density', 0.25, 4, 0.25, s.density, plain, (x) => { s.density = x; this.tellBrush(); })];
+      case 'silhouette': return [slider('shape.density', 0.25, 4, 0.25, s.density, plain, (x) => { s.density = x; }),
+        chips('shape.silhouette', [['trim', 'shape.trim']], s.trim ? 'trim' : '', () => { s.trim = !s.trim; })];
+      case 'leaves': return [chips('shape.leaves', [['fewer', 'shape.leaves.fewer'], ['more', 'shape.leaves.more']], s.more ? 'more' : 'fewer', (w) => { s.more = w === 'more'; }), radius()];
+      default: return [];
+    }
+  }
+
+  /** What is known of the branch that was pointed at, and what can be done with it. */
+  private chosenBox(p: NonNullable<ShapeAnswer['picked']>): HTMLElement[] {
+    const act = (text: TextKey, id: string, name: IconName, command: Command): HTMLElement => el('button', { type: 'button', class: 'chip', id, onclick: () => this.events.run(command) }, icon(name), t(text));
+    const axis = p.key as Json;
+    return [el('span', {}, t('shape.branch', { order: p.order, length: String(Math.round(p.length_m * 100) / 100), count: number(p.bears) })),
+      act('shape.prune', 'b-prune-chosen', 'prune', { do: 'shape', edit: { op: 'prune', axis, at: 0 } }),
+      act('shape.regrow', 'b-regrow-chosen', 'regrow', { do: 'shape', edit: { op: 'regrow', axis, seed: (this.plant?.edits.length ?? 0) + 1 } })];
+  }
+
+  /** Metres of the plant. */
+  private get size(): number {
+    const { min, max } = this.seen ?? { min: [0, 0, 0], max: [1, 1, 1] };
+    return Math.max(1e-3, ...max.map((x, i) => x - min[i]!));
+  }
+
+  private get radius(): number {
+    return this.settings.share * this.size;
+  }
+
+  private get brushes(): boolean {
+    return this.tool === 'brush' || this.tool === 'leaves';
+  }
+
+  /** `[` and `]`: the brush smaller or larger; false if the tool is no brush. */
+  resize(by: number): boolean {
+    if (!this.brushes) return false;
+    this.settings.share = Math.min(0.4, Math.max(0.01, this.settings.share * by));
+    this.tellBrush();
+    this.showStrip();
+    this.showRing();
+    return true;
+  }
+
+  private tellBrush(): void {
+    if (this.isBusy && this.tool === 'brush') void this.send({ on: 'brush', radius_m: this.radius, density: this.settings.density });
+  }
+
+  private wire(): ShapeTool {
+    const { settings: s, radius: radius_m } = this;
+    switch (this.tool) {
+      case 'prune': return { tool: 'prune', whole: s.whole };
+      case 'sketch': return { tool: 'sketch', twigs: s.twigs, tilt_deg: s.tilt_deg };
+      case 'brush': return { tool: 'brush', radius_m, density: s.density };
+      case 'silhouette': return { tool: 'silhouette', density: s.density, trim: s.trim };
+      case 'leaves': return { tool: 'leaves', radius_m, keep: s.more ? 2 : 0.25 };
+      default: return { tool: this.tool ?? 'pick' };
+    }
+  }
+
+  // Gestures -----------------------------------------------------------------------------------------------------
+
+  private place(e: { clientX: number; clientY: number }): [number, number] {
+    const box = this.view.element.getBoundingClientRect();
+    return [e.clientX - box.left, e.clientY - box.top];
+  }
+
+  private pointer(e: PointerEvent): ShapePointer | undefined {
+    return this.view.pointer(e.clientX, e.clientY, e.pointerType === 'pen' && e.pressure > 0 ? e.pressure : 1);
+  }
+
+  private down(e: PointerEvent, canvas: HTMLCanvasElement): void {
+    if (!this.tool) return;
+    if (this.isBusy) { this.cancel(); return; } // a second finger: the view is turned
+    const at = this.pointer(e);
+    if (e.button !== 0 || !e.isPrimary || !at) return;
+    this.pointerId = e.pointerId;
+    canvas.setPointerCapture?.(e.pointerId);
+    this.near = e.pointerType === 'touch' ? NEAR_TOUCH : NEAR;
+    this.from = [e.clientX, e.clientY];
+    this.view.setZoom(false);
+    const trace = TRACES[this.tool];
+    if (trace) {
+      this.overlay.begin(trace, 2 * this.pixels);
+      this.overlay.add(...this.place(e));
+      this.overlay.draw();
+    }
+    void this.send({ on: 'down', at });
+  }
+
+  private moved(e: PointerEvent): void {
+    if (!this.tool || (this.isBusy && e.pointerId !== this.pointerId) || (!this.isBusy && e.buttons !== 0)) return;
+    this.at = this.place(e);
+    const all = e.getCoalescedEvents?.() ?? [];
+    for (const c of this.isBusy && all.length > 0 ? all : [e]) {
+      const at = this.pointer(c);
+      if (!at) continue;
+      this.moves.push(at);
+      if (this.isBusy && TRACES[this.tool]) this.overlay.add(...this.place(c));
+    }
+    // Between gestures only the latest place is of interest.
+    if (!this.isBusy) { this.moves.splice(0, this.moves.length - 1); this.near = NEAR; }
+    else this.overlay.draw();
+    this.showRing();
+    void this.pump();
+  }
+
+  private async pump(): Promise<void> {
+    if (this.inFlight || this.moves.length === 0) return;
+    this.inFlight = true;
+    const at = this.moves.splice(0);
+    await this.send({ on: 'move', at });
+    this.inFlight = false;
+    void this.pump();
+  }
+
+  private up(e: PointerEvent): void {
+    if (!this.isBusy || e.pointerId !== this.pointerId) return;
+    const at = this.pointer(e);
+    const still = Math.hypot(e.clientX - this.from[0], e.clientY - this.from[1]) <= STILL;
+    if (this.moves.length > 0) void this.send({ on: 'move', at: this.moves.splice(0) });
+    this.release();
+    if (!at) return;
+    void this.send({ on: 'up', at }).then((answer) => {
+      this.overlay.end();
+      if (!answer) return;
+      if (answer.commit) this.events.run({ do: 'shape', edit: answer.commit });
+      if (this.tool === 'pick') { this.chosen = answer.picked; this.showStrip(); }
+      if (still && !answer.commit && !answer.picked) {
+        const plant = this.view.plantAt(e.clientX, e.clientY);
+        if (plant !== undefined && plant !== this.plant?.id) this.events.select(plant);
+      }
+    });
+  }
+
+  private release(): void {
+    this.pointerId = undefined;
+    this.view.setZoom(true);
+  }
+
+  /** Escape, a second finger, a lost pointer: nothing is done. False if nothing was held. */
+  cancel(): boolean {
+    if (!this.isBusy) return false;
+    this.moves = [];
+    this.release();
+    this.overlay.end();
+    void this.send({ on: 'cancel' });
+    return true;
+  }
+
+  /** Delete: the branch that was pointed at goes. */
+  remove(): boolean {
+    if (this.tool !== 'pick' || !this.chosen?.key) return false;
+    this.events.run({ do: 'shape', edit: { op: 'prune', axis: this.chosen.key, at: 0 } });
+    return true;
+  }
+
+  /** While something is held the wheel turns it; else a brush changes its size with Shift, and the view is zoomed. */
+  private wheel(e: WheelEvent): void {
+    if (!this.tool) return;
+    const up = e.deltaY < 0 || e.deltaX < 0;
+    const brush = this.brushes && (this.isBusy || e.shiftKey);
+    const twist = this.isBusy && (this.tool === 'rotate' || this.tool === 'sketch');
+    if (!brush && !twist) return;
+    e.preventDefault();
+    e.stopImmediatePropagation();
+    if (brush) this.resize(up ? 1.12 : 1 / 1.12);
+    else void this.send({ on: 'twist', degrees: up ? TWIST_DEG : -TWIST_DEG });
+  }
+
+  private async send(input: ShapeInput): Promise<ShapeAnswer | undefined> {
+    try {
+      const answer = await this.events.ask<ShapeAnswer>({ kind: 'shape', tool: this.wire(), reach: this.view.reach(this.near), input });
+      this.heard(answer);
+      return answer;
+    } catch (e) {
+      if (this.isBusy) { this.release(); this.overlay.end(); }
+      if ((e as Error).message !== 'restarted') this.events.refused((e as Error).message);
+      return undefined;
+    }
+  }
+
+  private heard({ picked, busy, commit }: ShapeAnswer): void {
+    if (picked) {
+      const eye = this.at && this.view.element.getBoundingClientRect();
+      const at = eye && this.at ? this.view.pointer(this.at[0] + eye.left, this.at[1] + eye.top, 1) : undefined;
+      if (at) this.distance = Math.hypot(...picked.point.map((x, i) => x - at.origin[i]!));
+      this.showRing();
+    }
+    document.body.dataset['picked'] = String(picked?.axis ?? '');
+    // What moves under the hand is seen in the plant itself.
+    const moving = commit !== null || ((busy || this.isBusy) && this.tool !== 'sketch');
+    this.light(moving || this.tool === 'silhouette' || this.brushes ? undefined : (picked?.axis ?? (this.tool === 'pick' ? this.chosen?.axis : undefined)));
+  }
+
+  /** Lights the branch that is meant, with all that it bears. */
+  private light(axis: number | undefined): void {
+    if (axis === this.lit) return;
+    this.lit = axis;
+    if (axis === undefined) { this.overlay.setBranch(undefined); return; }
+    this.events.ask<Float32Array>({ kind: 'branch', axis }).then((points) => { if (this.lit === axis) this.overlay.setBranch(points); }, () => undefined);
+  }
+
+  /** The brush's radius on the screen. */
+  private get pixels(): number {
+    const { metres, per_metre } = this.view.reach(1);
+    const far = this.distance ?? this.middle();
+    return this.radius / Math.max(1e-9, metres + per_metre * far);
+  }
+
+  /** How far the plant's middle is away, metres. */
+  private middle(): number {
+    const { min, max } = this.seen ?? { min: [0, 0, 0], max: [1, 1, 1] };
+    const box = this.view.element.getBoundingClientRect();
+    const at = this.view.pointer(box.left + box.width / 2, box.top + box.height / 2, 1);
+    return at ? Math.hypot(...min.map((x, i) => (x + max[i]!) / 2 - at.origin[i]!)) : this.size;
+  }
+
+  private showRing(): void {
+    this.overlay.setRing(this.brushes && this.at ? { x: this.at[0], y: this.at[1], r: this.pixels } : undefined);
+  }
+
+  // What was done ------------------------------------------------------------------------------------------------
+
+  private showList(): void {
+    const { plant } = this;
+    const edits = plant?.edits ?? [];
+    this.list.hidden = edits.length === 0;
+    const reports = new Map((this.seen?.item?.edits ?? []).map((r) => [r.index, r]));
+    const undone = edits.filter((e, row) => !e.off && reports.get(row)?.done === false).length;
+    document.body.dataset['edits'] = String(edits.length);
+    document.body.dataset['undone'] = String(undone);
+    document.body.dataset['done'] = String([...reports.values()].filter((r) => r.done).length);
+    if (this.list.hidden) { this.list.replaceChildren(); return; }
+    const focused = this.list.contains(document.activeElement) ? document.activeElement?.getAttribute('data-key') : null;
+    const rows = edits.map(({ op, off }, row) => {
+      const report = reports.get(row);
+      const bad = !off && report?.done === false;
+      const name = tOf('edit', op);
+      const what = el('span', { class: 'what' }, el('span', {}, name), el('span', { class: bad ? 'bad' : 'muted' }, off ? t('edit.off') : report ? said(report) : ''));
+      const eye = button(off ? 'hidden' : 'eye', t(off ? 'edit.show' : 'edit.hide', { name }), () => this.events.run({ do: 'shape-leave', row, off: !off }));
+      eye.setAttribute('data-key', `eye${row}`);
+      const gone = button('close', t('edit.remove', { name }), () => this.events.run({ do: 'shape-remove', rows: [row] }));
+      gone.setAttribute('data-key', `gone${row}`);
+      return el('li', { class: `${off ? 'is-off' : ''} ${bad ? 'is-bad' : ''}`, 'data-edit': op, title: report && !off ? `${name}: ${said(report)}` : name }, icon(bad ? 'warning' : (EDIT_ICONS[op] ?? 'branch')), what, eye, gone);
+    });
+    const all = button('close', t('edit.remove.all'), () => this.events.run({ do: 'shape-remove', rows: edits.map((_, row) => row) }));
+    all.setAttribute('data-key', 'all');
+    // In a narrow view the list would lie over the plant.
+    const folded = this.folds ?? this.view.element.clientWidth < ROOMY;
+    const fold = el('button', { type: 'button', class: 'fold', 'data-key': 'fold', 'aria-expanded': String(!folded), onclick: () => { this.folds = !folded; this.showList(); } },
+      icon('shape'), t('edit.title'), el('span', { class: 'muted' }, String(edits.length)),
+      ...(undone > 0 ? [el('span', { class: 'bad', title: t('edit.undone.count', { count: undone }) }, icon('warning'), String(undone))] : []));
+    this.list.classList.toggle('folded', folded);
+    this.list.replaceChildren(el('div', { class: 'edits-head' }, fold, ...(folded ? [] : [all])), ...(folded ? [] : [el('ol', {}, ...rows)]));
+    if (focused) this.list.querySelector<HTMLElement>(`[data-key="${CSS.escape(focused)}"]`)?.focus({ preventScroll: true });
+  }
+}
+
+/** What became of an edit, in the person's language. */
+function said(r: EditReport): string {
+  if (!r.done) return t('edit.undone', { why: tOf('why', r.code) });
+  const parts = (['moved', 'removed', 'added', 'leaves_removed', 'leaves_added'] as const)
+    .filter((k) => r.changed[k] > 0).map((k) => t(`edit.${k}`, { count: number(r.changed[k]) }));
+  if (parts.length === 0) parts.push(t('edit.nothing'));
+  if (r.changed.by_likeness) parts.push(t('edit.by_likeness'));
+  return parts.join(' · ');
+}

@@ -1,0 +1,424 @@
+//! The session as the page uses it.
+
+use burgeon::document::{Document, PlantId};
+use burgeon::{Run, SketchOptions, formats};
+use serde_json::Value;
+
+use super::{Column, Session};
+
+fn line(points: &[(f64, f64)]) -> Vec<f64> {
+    points.iter().flat_map(|&(x, y)| [x, y, f64::NAN, 0.5]).collect()
+}
+
+fn stem() -> Vec<f64> {
+    line(&(0..40).map(|k| (0.1 * f64::from(k % 7), 5.0 * f64::from(k))).collect::<Vec<_>>())
+}
+
+fn json(text: &str) -> Value {
+    serde_json::from_str(text).unwrap()
+}
+
+/// What is seen of the model that is looked at, or of the plant that is chosen.
+fn look(s: &mut Session) -> Value {
+    let view = json(&s.evaluate().unwrap());
+    let id = s.current_id().map(|id| id.0);
+    let plant = view["plants"].as_array().unwrap().iter().find(|p| p["id"].as_u64() == id.map(u64::from));
+    if view["guest"].is_null() { plant.cloned().unwrap_or_default() } else { view["guest"].clone() }
+}
+
+fn sample() -> Vec<u8> {
+    std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/sketches/sample.svg")).unwrap()
+}
+
+#[test]
+fn a_stroke_becomes_a_plant_and_undo_takes_it_back() {
+    let mut s = Session::default();
+    assert_eq!(look(&mut s)["item"], Value::Null);
+    let id = s.add_stroke("parts", &stem()).unwrap();
+    assert_eq!(s.fresh_strokes(), [id]);
+    assert_eq!(s.fresh_strokes(), [0; 0]);
+    assert_eq!(s.stroke_points(id).len(), 120);
+    let view = look(&mut s);
+    assert_eq!(view["item"]["counts"]["branches"], 1);
+    assert!(view["item"]["strokes"][0]["organ"].is_string());
+    assert!(s.column(0, 0, Column::Positions).len() > 300 && s.indices(0, 0).len() > 300);
+    let texture = &view["materials"][0]["texture"];
+    assert_eq!(
+        s.texture(0).len() as u64,
+        4 * texture["width"].as_u64().unwrap() * texture["height"].as_u64().unwrap()
+    );
+    assert_eq!(s.undo().as_deref(), Some("draw"));
+    let view = look(&mut s);
+    assert_eq!((&view["item"], view["parts"].as_array().unwrap().len()), (&Value::Null, 0));
+    assert_eq!(s.redo().as_deref(), Some("draw"));
+    assert_eq!(look(&mut s)["item"]["counts"]["branches"], 1);
+}
+
+#[test]
+fn the_project_is_the_same_plant_elsewhere() {
+    let mut s = Session::default();
+    s.open("sample.svg", &sample(), 0, false).unwrap();
+    s.run(r#"{"do":"seed","seed":"18446744073709551615"}"#).unwrap();
+    s.run(r#"{"do":"class","ids":[0],"class":"axis"}"#).unwrap();
+    let here = look(&mut s);
+    let mut other = Session::default();
+    let opened = json(&other.open("x.burgeon", &s.save().unwrap(), 0, true).unwrap());
+    assert_eq!(opened["kind"], "project");
+    let there = look(&mut other);
+    assert_eq!(here["item"]["digest"], there["item"]["digest"]);
+    assert_eq!(json(&other.state().unwrap())["plants"][0]["seed"], "18446744073709551615");
+    assert_eq!(other.undo(), None, "opened fresh");
+    let plant = &s.document().plants()[0];
+    let options = SketchOptions::of_plant(plant);
+    let made = burgeon::make_from_sketch(&plant.drawing(), &options, plant.settings().seed, &Run::plain());
+    assert_eq!(here["item"]["digest"], made.unwrap().item.digest.as_str());
+}
+
+#[test]
+fn every_format_opens_and_a_bad_file_changes_nothing() {
+    let mut s = Session::default();
+    s.open("sample.svg", &sample(), 0, false).unwrap();
+    let state = s.state().unwrap();
+    for (name, bytes) in [
+        ("x.svg", &b"<svg"[..]),
+        ("x.burgeon", b"PK\x03\x04"),
+        ("x.glb", b"glTF"),
+        ("x.exe", b"MZ"),
+        ("x.json", b"{}"),
+        ("x.ndjson", b"\n\n"),
+        ("", b""),
+    ] {
+        let said = s.open(name, bytes, 0, false).unwrap_err();
+        assert!(said.len() > 20, "{name}: {said}");
+        assert_eq!(s.state().unwrap(), state, "{name}");
+    }
+    for format in ["glb", "ply", "stl"] {
+        let file = s.export(format, "{}").unwrap();
+        let mut other = Session::default();
+        let opened = json(&other.open(&format!("plant.{format}"), &file, 0, false).unwrap());
+        assert_eq!(opened["kind"], "model");
+        let view = look(&mut other);
+        assert!(!view["parts"].as_array().unwrap().is_empty() && view["max"][1].as_f64().unwrap() > 0.1);
+        assert!(other.export("glb", "{}").unwrap().starts_with(b"glTF"));
+    }
+    assert!(s.export("obj", "{}").unwrap().starts_with(b"PK"));
+    assert!(s.export("exe", "{}").is_err());
+    let drawing = s.export("json", "{}").unwrap();
+    assert_eq!(json(&Session::default().open("d.json", &drawing, 0, false).unwrap())["kind"], "drawing");
+    let two = concat!(
+        r#"{"word":"a","drawing":[[[0,9],[0,90]]]}"#,
+        "\nbad\n",
+        r#"{"word":"b","drawing":[[[0,5],[0,70]]]}"#,
+        "\n"
+    );
+    let opened = json(&s.open("two.ndjson", two.as_bytes(), 1, false).unwrap());
+    assert_eq!((opened["names"].as_array().unwrap().len(), &opened["name"]), (2, &opened["names"][1]));
+}
+
+#[test]
+fn a_drag_is_staged_and_a_draft_leaves_no_trace() {
+    let mut s = Session::default();
+    let id = s.add_stroke("parts", &stem()).unwrap();
+    s.begin("move").unwrap();
+    s.stage(&format!(r#"{{"do":"move","ids":[{id}],"x":5,"y":1}}"#)).unwrap();
+    s.stage(&format!(r#"{{"do":"move","ids":[{id}],"x":50,"y":0}}"#)).unwrap();
+    s.commit();
+    assert_eq!(s.stroke_points(id)[0], 50.0);
+    assert_eq!(json(&s.state().unwrap())["steps"], 2);
+    let before = look(&mut s);
+    s.draft("leaf-contour", &line(&[(0.0, 0.0), (40.0, 0.0), (40.0, 40.0)])).unwrap();
+    assert_eq!(look(&mut s)["item"]["strokes"].as_array().unwrap().len(), 2);
+    s.draft("parts", &[]).unwrap();
+    let after = look(&mut s);
+    assert_eq!(before["item"]["digest"], after["item"]["digest"]);
+    assert!(s.draft("crayon", &[]).is_err() && s.run(r#"{"do":"explode"}"#).is_err());
+}
+
+fn photo() -> Vec<u8> {
+    let pixels: Vec<u8> = (0..64).flat_map(|k| [200, 3 * (k % 8), 3 * (k / 8), 255]).collect();
+    let mut png = Vec::new();
+    formats::write_png(8, 8, &pixels, &mut png).unwrap();
+    png
+}
+
+#[test]
+fn traced_organs_take_the_photograph_and_others_do_not() {
+    let mut s = Session::default();
+    s.open("sample.svg", &sample(), 0, true).unwrap();
+    let plain = look(&mut s);
+    let points = s.stroke_points(0);
+    let (x, y) = (points[0], points[1]);
+    assert!(s.place_photo(b"GIF", x, y, 1.0).is_err());
+    s.place_photo(&photo(), -1e4, -1e4, 2e4).unwrap();
+    assert_eq!((s.fresh_photo(), s.fresh_photo()), (photo(), Vec::new()));
+    let traced = look(&mut s);
+    assert_eq!(traced["item"]["digest"], plain["item"]["digest"], "the plant is the same");
+    assert_eq!(traced["stages"].as_array().unwrap().len(), 1, "only the surface is made again");
+    let names = |v: &Value| -> Vec<String> {
+        v["parts"].as_array().unwrap().iter().map(|p| p["name"].as_str().unwrap().to_owned()).collect()
+    };
+    assert!(names(&traced).contains(&"petals-traced".to_owned()), "{:?}", names(&traced));
+    let part = names(&traced).iter().position(|n| n == "petals-traced").unwrap();
+    let uvs = s.column(0, part, Column::Uvs);
+    assert_eq!(uvs.len() / 2, s.column(0, part, Column::Positions).len() / 3);
+    assert!(uvs.iter().all(|x| (0.0..=1.0).contains(x)));
+    // A small photograph far away traces nothing; one that does not paint neither.
+    s.run(r#"{"do":"photo","x":-9000,"y":-9000,"width":1,"opacity":0.5,"paint":true}"#).unwrap();
+    assert_eq!(names(&look(&mut s)), names(&plain));
+    s.run(r#"{"do":"photo","x":-1e4,"y":-1e4,"width":2e4,"opacity":0.2,"paint":false}"#).unwrap();
+    assert_eq!(names(&look(&mut s)), names(&plain));
+    let mut other = Session::default();
+    other.open("p.burgeon", &s.save().unwrap(), 0, true).unwrap();
+    assert_eq!(other.fresh_photo(), photo());
+    s.run(r#"{"do":"photo-off"}"#).unwrap();
+    assert!(s.run(r#"{"do":"photo","x":0,"y":0,"width":1,"opacity":0.2,"paint":true}"#).is_err());
+    assert_eq!(s.undo().as_deref(), Some("photo"));
+}
+
+#[test]
+fn copies_variants_levels_and_links() {
+    let mut s = Session::default();
+    s.open("sample.svg", &sample(), 0, true).unwrap();
+    let plant = look(&mut s);
+    let text = s.copy(&[0, 1]).unwrap();
+    assert!(s.copy(&[99]).is_err() && s.paste("no drawing", 0.0, 0.0).is_err());
+    assert_eq!(s.paste(&text, 5.0, 0.0).unwrap(), [15, 16]);
+    assert_eq!(s.stroke_points(15)[0], s.stroke_points(0)[0] + 5.0);
+    s.run(r#"{"do":"duplicate","ids":[0],"x":0,"y":1}"#).unwrap();
+    assert_eq!((s.undo().as_deref(), s.undo().as_deref()), (Some("duplicate"), Some("draw")));
+
+    let other = json(&s.variant("77", 0.4).unwrap());
+    let positions = s.column(u32::MAX, 0, Column::Positions);
+    s.end_variant();
+    assert!(other["item"].is_null() && !positions.is_empty());
+    let again = look(&mut s);
+    assert_eq!(again["item"]["digest"], plant["item"]["digest"], "a look at another seed changes nothing");
+    assert!(s.column(0, 0, Column::Positions).len() > positions.len());
+    assert_eq!(s.skeleton().len() % 8, 0);
+    assert!(!s.skeleton().is_empty());
+
+    let levels = s.export("glb", r#"{"levels":3}"#).unwrap();
+    assert!(
+        levels.starts_with(b"PK") && levels.windows(9).any(|w| w == b"LOD2.glb\0" || &w[..8] == b"LOD2.glb")
+    );
+    assert!(s.export("ply", r#"{"up":"x"}"#).is_err());
+
+    let link = s.share().unwrap();
+    assert!(link.len() < 16 << 10, "{} bytes", link.len());
+    let mut linked = Session::default();
+    linked.open("x.burgeon", &link, 0, true).unwrap();
+    let shared = look(&mut linked);
+    assert_eq!(shared["item"]["counts"]["flowers"], plant["item"]["counts"]["flowers"]);
+}
+
+const BUSH: &str = "name = \"bush\"\n[method]\nkind = \"competition\"\npoints = 200\nlifespan = 1\n";
+
+fn marks() -> Vec<u8> {
+    std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/leaves/leaf1.csv")).unwrap()
+}
+
+/// Name, digest and problem of every plant.
+fn scene(s: &mut Session) -> Vec<(String, String, Value)> {
+    let state = json(&s.state().unwrap());
+    let view = json(&s.evaluate().unwrap());
+    let both = state["plants"].as_array().unwrap().iter().zip(view["plants"].as_array().unwrap());
+    let word = |v: &Value| v.as_str().unwrap_or_default().to_owned();
+    both.map(|(p, v)| (word(&p["name"]), word(&v["item"]["digest"]), v["error"].clone())).collect()
+}
+
+#[test]
+fn a_tree_a_leaf_and_a_flower_in_one_scene() {
+    let mut s = Session::default();
+    let opened = json(&s.open("bush.toml", BUSH.as_bytes(), 0, false).unwrap());
+    assert_eq!(
+        (opened["kind"].as_str(), s.document().plants().len()),
+        (Some("tree"), 1),
+        "the blank sheet gave way"
+    );
+    s.evaluate().unwrap();
+    s.open("leaf1.csv", &marks(), 0, false).unwrap();
+    s.run(r#"{"do":"add","maker":"flower","name":"a rose","preset":"rose"}"#).unwrap();
+    let made = scene(&mut s);
+    assert_eq!(made.len(), 3);
+    assert!(made.iter().all(|(_, digest, error)| digest.len() > 8 && error.is_null()), "{made:?}");
+    // Nothing is grown or sent again for a change elsewhere.
+    s.run(r#"{"do":"flower","settings":{"species":"rose","day":1.5}}"#).unwrap();
+    let view = json(&s.evaluate().unwrap());
+    let fresh: Vec<bool> = (0..3).map(|k| view["plants"][k]["fresh"].as_bool().unwrap()).collect();
+    assert_eq!(fresh, [false, false, true]);
+    assert_eq!(view["plants"][2]["days"].as_array().unwrap().len(), 2);
+    let mut other = Session::default();
+    other.open("three.burgeon", &s.save().unwrap(), 0, true).unwrap();
+    assert_eq!(scene(&mut other), scene(&mut s));
+    // An obstacle is grown around; a spec that is none is refused.
+    let ids: Vec<u32> = s.document().plants().iter().map(|p| p.id().0).collect();
+    assert_eq!(ids.len(), made.len());
+    s.select(ids[0]).unwrap();
+    let before = scene(&mut s);
+    s.run(r#"{"do":"obstacle","name":"ball","shape":{"shape":"sphere","centre":[0,3,0],"radius_m":1}}"#)
+        .unwrap();
+    assert_ne!(scene(&mut s)[0].1, before[0].1);
+    assert!(s.run(r#"{"do":"tree","path":"/age","value":"old"}"#).is_err());
+    assert!(s.run(r#"{"do":"tree","path":"/no/such","value":1}"#).is_err());
+    s.run(r#"{"do":"tree","path":"/clearance_m","value":-1}"#).unwrap();
+    assert!(scene(&mut s)[0].2.as_str().unwrap().contains("clearance_m"), "{:?}", scene(&mut s)[0]);
+    s.undo();
+    let model = s.export("obj", "{}").unwrap();
+    assert!(model.starts_with(b"PK"));
+    let ball = s.export("ply", "{}").unwrap();
+    s.add_obstacle("itself.ply", &ball).unwrap();
+    assert!(!s.obstacle(ids[0], 1).is_empty() && s.obstacle(ids[0], 0).is_empty());
+    s.undo();
+    s.undo();
+    s.run(&format!(r#"{{"do":"leaf-of","lender":{}}}"#, ids[1])).unwrap();
+    let borne = scene(&mut s);
+    assert!(borne[0].2.is_null() && borne[0].1 != before[0].1);
+    // Hidden plants are not in an export of the scene.
+    let whole = s.export("glb", r#"{"whole":true}"#).unwrap();
+    s.run(&format!(r#"{{"do":"hide","plant":{},"on":true}}"#, ids[2])).unwrap();
+    assert!(s.export("glb", r#"{"whole":true}"#).unwrap().len() < whole.len());
+    assert!(s.export("mtg", "{}").unwrap().len() > 200);
+    s.run(&format!(r#"{{"do":"remove-plant","plant":{}}}"#, ids[1])).unwrap();
+    assert_eq!(scene(&mut s)[0].1, before[0].1, "its own leaf again");
+    while s.undo().is_some() {}
+    assert_eq!(s.document(), &Document::default());
+}
+
+#[test]
+fn a_drawn_flower_opens_and_closes() {
+    let mut s = Session::default();
+    s.open("sample.svg", &sample(), 0, true).unwrap();
+    let drawn = look(&mut s);
+    s.run(r#"{"do":"day","day":0}"#).unwrap();
+    let bud = look(&mut s);
+    assert!(bud["fresh"].as_bool().unwrap() && bud["error"].is_null(), "{}", bud["error"]);
+    let days = bud["days"].as_array().unwrap();
+    assert_eq!((days.len(), &bud["item"]["digest"]), (2, &drawn["item"]["digest"]));
+    let closed = s.column(0, 0, Column::Positions);
+    s.run(r#"{"do":"day","day":6}"#).unwrap();
+    s.evaluate().unwrap();
+    let last = s.model(PlantId(0)).unwrap().parts.len() - 1;
+    let open = s.column(0, last, Column::Positions);
+    assert!(!open.is_empty() && closed != open);
+    s.undo();
+    s.undo();
+    assert_eq!(look(&mut s)["parts"], drawn["parts"]);
+    // What was taken off the page comes back with its meshes.
+    s.run(r#"{"do":"new"}"#).unwrap();
+    assert!(look(&mut s)["parts"].as_array().unwrap().is_empty());
+    s.undo();
+    let back = look(&mut s);
+    assert!(back["fresh"].as_bool().unwrap() && back["parts"] == drawn["parts"]);
+}
+
+/// A pointer in front of the plant, looking along -Z at (x, y).
+fn at(x: f64, y: f64) -> String {
+    format!(r#"{{"origin":[{x},{y},9],"direction":[0,0,-1],"forward":[0,0,-1],"up":[0,1,0],"pressure":1}}"#)
+}
+
+const REACH: &str = r#"{"metres":0.05,"per_metre":0}"#;
+
+fn hand(s: &mut Session, tool: &str, input: &str) -> Value {
+    json(&s.shape(tool, REACH, input).unwrap())
+}
+
+/// A gesture from one place to another: what it would make, and the command for it.
+fn gesture(s: &mut Session, tool: &str, from: (f64, f64), to: (f64, f64)) -> Value {
+    hand(s, tool, &format!(r#"{{"on":"down","at":{}}}"#, at(from.0, from.1)));
+    hand(s, tool, &format!(r#"{{"on":"move","at":[{}]}}"#, at(to.0, to.1)));
+    hand(s, tool, &format!(r#"{{"on":"up","at":{}}}"#, at(to.0, to.1)))
+}
+
+/// A bush, and the middle of one of its branches as the viewer sees it.
+fn bush() -> (Session, (f64, f64)) {
+    let mut s = Session::default();
+    s.open("bush.toml", BUSH.as_bytes(), 0, false).unwrap();
+    s.evaluate().unwrap();
+    let plant = s.scene.get(PlantId(1)).unwrap().plant.unwrap();
+    let branch = plant.axes.iter().position(|a| a.order == 1).unwrap();
+    let points = plant.axis_points(burgeon::plant::AxisId::new(branch));
+    let middle = points[points.len() / 2];
+    (s, (middle.x, middle.y))
+}
+
+#[test]
+fn a_gesture_is_shown_and_is_one_step_when_it_is_asked_for() {
+    let (mut s, (x, y)) = bush();
+    let before = look(&mut s);
+    let looked = hand(&mut s, r#"{"tool":"pick"}"#, &format!(r#"{{"on":"down","at":{}}}"#, at(x, y)));
+    assert!(looked["picked"]["key"]["mark"].is_object(), "{looked}");
+    let axis = u32::try_from(looked["picked"]["axis"].as_u64().unwrap()).unwrap();
+    let lines = s.branch(axis);
+    assert!(!lines.is_empty() && lines.len() % 8 == 0 && s.branch(u32::MAX).is_empty());
+    // The trunk bears everything.
+    assert!(s.branch(0).len() >= lines.len());
+
+    let rotate = r#"{"tool":"rotate"}"#;
+    let down = hand(&mut s, rotate, &format!(r#"{{"on":"down","at":{}}}"#, at(x, y)));
+    assert_eq!((&down["busy"], &down["again"]), (&Value::Bool(true), &Value::Bool(false)));
+    let held = hand(&mut s, rotate, &format!(r#"{{"on":"move","at":[{}]}}"#, at(x, y + 0.4)));
+    assert_eq!((&held["busy"], &held["again"]), (&Value::Bool(true), &Value::Bool(true)), "{held}");
+    let shown = look(&mut s);
+    assert_ne!(shown["item"]["digest"], before["item"]["digest"], "a look at what would be");
+    assert_eq!(json(&s.state().unwrap())["plants"][0]["edits"], Value::Array(vec![]));
+    let up = hand(&mut s, rotate, &format!(r#"{{"on":"up","at":{}}}"#, at(x, y + 0.4)));
+    assert_eq!(look(&mut s)["item"]["digest"], shown["item"]["digest"], "shown until it is asked for");
+    s.run(&format!(r#"{{"do":"shape","edit":{}}}"#, up["commit"])).unwrap();
+    let after = look(&mut s);
+    assert_eq!(after["item"]["digest"], shown["item"]["digest"], "and the same then");
+    assert_eq!(after["item"]["edits"][0]["done"], true);
+    assert_eq!(s.undo().as_deref(), Some("shape-rotate"));
+    assert_eq!(look(&mut s)["item"]["digest"], before["item"]["digest"]);
+    // Escape leaves nothing behind.
+    gesture(&mut s, rotate, (50.0, 50.0), (51.0, 50.0));
+    hand(&mut s, rotate, &format!(r#"{{"on":"down","at":{}}}"#, at(x, y)));
+    hand(&mut s, rotate, &format!(r#"{{"on":"move","at":[{}]}}"#, at(x, y + 0.5)));
+    assert_eq!(hand(&mut s, rotate, r#"{"on":"cancel"}"#)["again"], true);
+    assert_eq!(look(&mut s)["item"]["digest"], before["item"]["digest"]);
+    assert!(s.shape(r#"{"tool":"axe"}"#, REACH, r#"{"on":"cancel"}"#).is_err());
+}
+
+#[test]
+fn edits_survive_a_file_and_say_when_their_branch_is_gone() {
+    let (mut s, (x, y)) = bush();
+    for tool in [
+        r#"{"tool":"prune","whole":false}"#,
+        r#"{"tool":"regrow"}"#,
+        r#"{"tool":"sketch","twigs":1,"tilt_deg":20}"#,
+        r#"{"tool":"brush","radius_m":0.4,"density":1}"#,
+        r#"{"tool":"leaves","radius_m":0.5,"keep":0.2}"#,
+        r#"{"tool":"move"}"#,
+    ] {
+        let made = gesture(&mut s, tool, (x, y), (x + 0.4, y + 0.5));
+        assert!(made["commit"].is_object(), "{tool}: {made}");
+        s.run(&format!(r#"{{"do":"shape","edit":{}}}"#, made["commit"])).unwrap();
+        look(&mut s);
+    }
+    let shaped = look(&mut s);
+    let told = shaped["item"]["edits"].as_array().unwrap();
+    assert_eq!(told.len(), 6);
+    assert!(told.iter().take(5).all(|e| e["done"] == true), "{told:?}");
+    let mut other = Session::default();
+    other.open("x.burgeon", &s.save().unwrap(), 0, true).unwrap();
+    assert_eq!(look(&mut other)["item"]["digest"], shaped["item"]["digest"]);
+    // One is left out, by its row; what stays keeps its number.
+    s.run(r#"{"do":"shape-leave","row":0,"off":true}"#).unwrap();
+    let left = look(&mut s);
+    assert_eq!(
+        (left["item"]["edits"][0]["index"].as_u64(), left["item"]["edits"].as_array().unwrap().len()),
+        (Some(1), 5)
+    );
+    s.run(r#"{"do":"shape-remove","rows":[0,1,2,3,4,5]}"#).unwrap();
+    s.run(r#"{"do":"shape","edit":{"op":"prune","axis":{"mark":{"id":"0","kind":"wood","order":9,"base":[0,9,0],"direction":[1,0,0],"length":9}}}}"#).unwrap();
+    let gone = look(&mut s);
+    assert_eq!(gone["item"]["edits"][0]["code"], "branch-gone");
+    assert!(
+        gone["item"]["warnings"][0].as_str().unwrap().contains("edit 0 by hand (prune): not done"),
+        "{gone}"
+    );
+    assert!(s.run(r#"{"do":"shape","edit":{"op":"prune","axis":{"path":[0]},"at":7}}"#).is_err());
+    // Nothing is grown again for an edit.
+    s.run(r#"{"do":"shape","edit":{"op":"prune","axis":{"path":[0,0]}}}"#).unwrap();
+    let pruned = look(&mut s);
+    assert_eq!(pruned["stages"], serde_json::json!(["shape", "mesh"]));
+}

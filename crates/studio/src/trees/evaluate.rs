@@ -1,0 +1,271 @@
+//! A tree that changes: growth, dress, edits by hand and meshes, each kept until what it depends on changes.
+//!
+//! `spec, seed -> grown | + look -> dressed | + edits -> shaped | + skin -> model`
+
+use base::{Cancelled, Report, Run, Seed, Warning};
+use document::PlantEdit;
+use growth::{Grown, Method};
+use mesh::Model;
+use plant::{Blade, Plant};
+use skin::{PetalColor, SkinSpec};
+
+use super::{
+    BlossomSpec, GrowthReport, Look, TreeError, TreeOptions, TreeSpec, coarser, look_at_meshes,
+    scale_to_height,
+};
+use crate::report::{Counts, ItemReport, TimingsMs};
+use crate::shaping::{EditReport, Shaper};
+use crate::template::LeafTemplate;
+
+/// Makes trees of a description that changes: an update does again only what a change touches.
+///
+/// An edit by hand, a colour or a finer mesh grows nothing. Guaranteed: the same result as from a fresh evaluator;
+/// after an error the last result stays.
+///
+/// ```
+/// use burgeon::shape::{AxisKey, HandEdit};
+/// use burgeon::{Run, Seed, TreeEvaluator, TreeOptions, TreeSpec};
+/// let (spec, mut options) = (TreeSpec::default(), TreeOptions::default());
+/// let mut evaluator = TreeEvaluator::default();
+/// evaluator.update(&spec, Seed::new(1), &options, &Run::plain())?;
+/// let cut = HandEdit::Prune { axis: AxisKey::Path(vec![0, 0]), at: 0.0 };
+/// options.edits.push(cut.into());
+/// evaluator.update(&spec, Seed::new(1), &options, &Run::plain())?;
+/// assert_eq!(evaluator.stages_done(), ["shape", "mesh"]);
+/// # Ok::<(), burgeon::TreeError>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct TreeEvaluator {
+    grown: Option<Raw>,
+    dressed: Option<Dressed>,
+    shaper: Shaper,
+    shaped: Option<Shaped>,
+    model: Option<(Skinned, Model)>,
+    done: Vec<&'static str>,
+}
+
+/// What growth made.
+#[derive(Clone, Debug)]
+struct Raw {
+    from: (growth::TreeSpec, Blade, Seed),
+    grown: Grown,
+    warnings: Vec<Warning>,
+}
+
+/// With colours and blossoms.
+#[derive(Clone, Debug)]
+struct Dressed {
+    from: (Look, BlossomSpec, bool, Option<f64>),
+    grown: Grown,
+}
+
+#[derive(Clone, Debug)]
+struct Shaped {
+    edits: Vec<PlantEdit>,
+    plant: Plant,
+    told: Vec<EditReport>,
+}
+
+/// What a model is made from, besides its plant.
+type Skinned = (SkinSpec, Look, Option<LeafTemplate>);
+
+impl TreeEvaluator {
+    /// Brings everything up to date and reports. [`TreeOptions::lods`] are left to [`super::make_tree`].
+    ///
+    /// # Errors
+    /// [`TreeError`]: whatever is wrong with the spec, or cancelled.
+    pub fn update(
+        &mut self,
+        spec: &TreeSpec,
+        seed: Seed,
+        options: &TreeOptions,
+        run: &Run<'_>,
+    ) -> Result<ItemReport, TreeError> {
+        self.done.clear();
+        let mut report = Report::default();
+        let obstacles = self.grow(spec, seed, options, &mut report, run)?;
+        self.dress(spec, seed, options);
+        let start = run.clock.now_ms();
+        self.shape(&obstacles, options, run)?;
+        report.book("depth", run.clock.now_ms() - start);
+        self.mesh(spec, seed, options, &mut report, run)?;
+        Ok(self.item(spec, &report))
+    }
+
+    fn grow(
+        &mut self,
+        spec: &TreeSpec,
+        seed: Seed,
+        options: &TreeOptions,
+        report: &mut Report,
+        run: &Run<'_>,
+    ) -> Result<growth::Obstacles, TreeError> {
+        let wanted = spec.growth()?;
+        let leaf = options.leaf.as_ref();
+        if let (Some(file), None) = (&spec.blade.file, leaf) {
+            return Err(TreeError::File { file: file.clone() });
+        }
+        let obstacles = growth::Obstacles::new(&wanted.obstacles, wanted.clearance_m)?;
+        let blade = leaf.map_or_else(|| spec.blade.blade(), |l| l.scaled(1.0));
+        let same = |k: &Raw| (&k.from.0, &k.from.1, k.from.2) == (&wanted, &blade, seed);
+        if self.grown.as_ref().is_some_and(same) {
+            return Ok(obstacles);
+        }
+        let mut told = Report::default();
+        look_at_meshes(&spec.obstacles, &mut told);
+        let grown = growth::grow(&wanted, Some(blade.clone()), seed, run, &mut told)?;
+        for stage in &told.stages {
+            report.book(if stage.name == "grow" { "structure" } else { "depth" }, stage.ms);
+        }
+        (self.dressed, self.shaped, self.model) = (None, None, None);
+        self.done.extend(["structure", "depth"]);
+        self.grown = Some(Raw { from: (wanted, blade, seed), grown, warnings: told.warnings });
+        Ok(obstacles)
+    }
+
+    fn dress(&mut self, spec: &TreeSpec, seed: Seed, options: &TreeOptions) {
+        let Some(raw) = &self.grown else { return };
+        let pictured = options.skin.textures && options.leaf.as_ref().is_some_and(LeafTemplate::has_picture);
+        let height = options.height_m.filter(|_| spec.obstacles.is_empty());
+        let from = (spec.look.clone(), spec.blossom.clone(), pictured, height);
+        if self.dressed.as_ref().is_some_and(|d| d.from == from) {
+            return;
+        }
+        let mut grown = raw.grown.clone();
+        spec.look.tint(&mut grown.plant, pictured, seed);
+        spec.blossom.apply(&mut grown.plant, seed);
+        if let Some(height) = height {
+            scale_to_height(&mut grown, height);
+        }
+        self.shaper.forget();
+        (self.shaped, self.model) = (None, None);
+        self.dressed = Some(Dressed { from, grown });
+    }
+
+    fn shape(
+        &mut self,
+        obstacles: &growth::Obstacles,
+        options: &TreeOptions,
+        run: &Run<'_>,
+    ) -> Result<(), TreeError> {
+        let Some(dressed) = &self.dressed else { return Ok(()) };
+        if self.shaped.as_ref().map_or(&[][..], |s| &s.edits) == options.edits {
+            return Ok(());
+        }
+        let shaped = if options.edits.is_empty() {
+            self.shaper.forget();
+            None
+        } else {
+            let context = shape::Context { pipe_exponent: None, obstacles: obstacles.clone() };
+            let (plant, told) = self.shaper.shape(&dressed.grown.plant, &options.edits, &context, run)?;
+            Some(Shaped { edits: options.edits.clone(), plant, told })
+        };
+        (self.shaped, self.model) = (shaped, None);
+        self.done.push("shape");
+        Ok(())
+    }
+
+    fn mesh(
+        &mut self,
+        spec: &TreeSpec,
+        seed: Seed,
+        options: &TreeOptions,
+        report: &mut Report,
+        run: &Run<'_>,
+    ) -> Result<(), TreeError> {
+        let from = (skin_spec(spec, seed, options), spec.look.clone(), options.leaf.clone());
+        if self.model.as_ref().is_some_and(|(f, _)| *f == from) {
+            return Ok(());
+        }
+        let Some(plant) = self.plant() else { return Ok(()) };
+        let model = report.stage("mesh", run.clock, |_| skinned(plant, &from, run))?;
+        self.model = Some((from, model));
+        self.done.push("mesh");
+        Ok(())
+    }
+
+    /// Coarser copies, finest first.
+    pub(super) fn lods(
+        &self,
+        spec: &TreeSpec,
+        seed: Seed,
+        options: &TreeOptions,
+        run: &Run<'_>,
+    ) -> Result<Vec<Model>, TreeError> {
+        let Some(plant) = self.plant() else { return Ok(Vec::new()) };
+        let fine = skin_spec(spec, seed, options);
+        let lods = (1..=options.lods.min(6)).map(|level| {
+            let (plant, skin) = coarser(plant, &fine, level);
+            Ok(skinned(&plant, &(skin, spec.look.clone(), options.leaf.clone()), run)?)
+        });
+        lods.collect()
+    }
+
+    fn item(&self, spec: &TreeSpec, report: &Report) -> ItemReport {
+        let (Some(raw), Some(plant), Some((_, model))) = (&self.grown, self.plant(), &self.model) else {
+            return ItemReport::default(); // update fills all of them before it comes here
+        };
+        let growth = GrowthReport::of(spec, &raw.grown);
+        // Some points are always out of reach where they are scattered; it is news only when they were given, or most.
+        let given = matches!(spec.method, Method::Points { .. });
+        let many = 2 * growth.unreachable > growth.attractors;
+        let told = raw.warnings.iter().filter(|w| given || many || w.code != "attractors-unreached");
+        let mut warnings: Vec<String> = told.map(ToString::to_string).collect();
+        let edits = self.shaped.as_ref();
+        warnings.extend(edits.into_iter().flat_map(|s| s.told.iter().filter_map(|t| t.warning(&s.edits))));
+        ItemReport {
+            name: spec.name.clone(),
+            counts: Counts {
+                vertices: model.vertex_count() as u64,
+                triangles: model.triangle_count() as u64,
+                ..Counts::of_plant(plant)
+            },
+            timings_ms: TimingsMs::from_report(report),
+            digest: plant.digest_hex(),
+            warnings,
+            growth: Some(growth),
+            edits: edits.map_or_else(Vec::new, |s| s.told.clone()),
+            ..ItemReport::default()
+        }
+    }
+
+    /// The stages that the last update did again: `structure`, `depth`, `shape`, `mesh`.
+    pub fn stages_done(&self) -> &[&'static str] {
+        &self.done
+    }
+
+    /// The plant of the last update that succeeded so far, with its edits by hand.
+    pub fn plant(&self) -> Option<&Plant> {
+        let grown = || self.dressed.as_ref().map(|d| &d.grown.plant);
+        self.shaped.as_ref().map(|s| &s.plant).or_else(grown)
+    }
+
+    /// The model of the last update that succeeded so far.
+    pub fn model(&self) -> Option<&Model> {
+        self.model.as_ref().map(|(_, m)| m)
+    }
+
+    /// What was grown, as the hand left it, and its model; the evaluator is empty then.
+    pub(super) fn take(&mut self) -> Option<(Grown, Model)> {
+        let Self { dressed, shaped, model, .. } = std::mem::take(self);
+        let mut grown = dressed?.grown;
+        if let Some(shaped) = shaped {
+            grown.plant = shaped.plant;
+        }
+        Some((grown, model?.1))
+    }
+}
+
+fn skin_spec(spec: &TreeSpec, seed: Seed, options: &TreeOptions) -> SkinSpec {
+    let petals = options.skin.petals.or((spec.blossom.share > 0.0).then_some(PetalColor::White));
+    SkinSpec { seed, petals, ..options.skin.clone() }
+}
+
+fn skinned(plant: &Plant, (skin, look, leaf): &Skinned, run: &Run<'_>) -> Result<Model, Cancelled> {
+    let mut model = skin::skin(plant, skin, run)?;
+    look.paint(&mut model);
+    if let Some(leaf) = leaf {
+        leaf.dress(&mut model);
+    }
+    Ok(model)
+}

@@ -1,0 +1,150 @@
+//! `cargo xtask flowers`: makes the pictures of docs/bloom.md and of the venations in docs/leaves.md anew.
+
+use std::fs::File;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+
+use crate::shell::{Outcome, cargo, command, repository, say, target_dir};
+
+/// Species, days from bud to full bloom, and from there to wilted.
+const FLOWERS: [(&str, f64, f64); 5] = [
+    ("rose", 6.0, 4.0),
+    ("lily", 6.0, 4.0),
+    ("tulip", 5.0, 4.0),
+    ("sunflower", 8.0, 6.0),
+    ("clivia", 7.0, 5.0),
+];
+
+struct Maker {
+    burgeon: PathBuf,
+    folder: PathBuf,
+}
+
+pub(crate) fn run() -> Outcome {
+    cargo(&["build", "--release", "--package", "burgeon-cli"])?;
+    let burgeon = target_dir().join("release").join(format!("burgeon{}", std::env::consts::EXE_SUFFIX));
+    let folder = std::env::temp_dir().join(format!("burgeon-flowers-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).map_err(|e| format!("cannot make {}: {e}", folder.display()))?;
+    let maker = Maker { burgeon, folder };
+    let made = maker.flowers().and_then(|()| maker.law()).and_then(|()| maker.venations());
+    let _ = std::fs::remove_dir_all(&maker.folder);
+    made?;
+    say("docs/pictures/bloom-flowers.png, bloom-law.png and leaves/venation.png are made anew");
+    Ok(())
+}
+
+impl Maker {
+    fn path(&self, name: &str) -> String {
+        self.folder.join(name).display().to_string()
+    }
+
+    fn burgeon(&self, args: &[&str]) -> Outcome {
+        command(&self.burgeon, &[args, &["--quiet"]].concat())
+    }
+
+    /// A picture of a flower at a day.
+    fn flower(&self, name: &str, day: f64, more: &[&str]) -> Result<PathBuf, String> {
+        let png = self.folder.join(format!("{name}-{day:.2}-{}.png", more.len()));
+        let (day, model) = (day.to_string(), self.path("flower.glb"));
+        let shown = png.display().to_string();
+        let args = ["bloom", "run", name, "-o", &model, "--day", &day, "--png", &shown, "--size", "224x240"];
+        self.burgeon(&[&args, more].concat())?;
+        Ok(png)
+    }
+
+    fn flowers(&self) -> Outcome {
+        let mut rows = Vec::new();
+        for (name, opening, wilting) in FLOWERS {
+            let days = [0.0, 0.4 * opening, opening, opening + 0.5 * wilting, opening + wilting];
+            rows.push(days.iter().map(|&d| self.flower(name, d, &[])).collect::<Result<Vec<_>, _>>()?);
+        }
+        tiled(&rows, &picture("bloom-flowers.png"))
+    }
+
+    /// The law of an opening sunflower, fitted to nine shapes of it, sets the pace of a lily.
+    fn law(&self) -> Outcome {
+        let shapes = self.path("sunflower");
+        self.burgeon(&["bloom", "run", "sunflower", "-o", &shapes, "--frames", "15", "--format", "obj"])?;
+        let mut stages =
+            String::from("unit = \"m\"\nname = \"sunflower\"\nsplit = \"none\"\nclean = false\n");
+        for day in 0..9 {
+            stages += &format!(
+                "[[stage]]\nfile = \"sunflower/sunflower-{day:03}.obj\"\nday = {day}\norgan = \"petal\"\n"
+            );
+        }
+        let (file, law) = (self.path("stages.toml"), self.path("sunflower.law.json"));
+        std::fs::write(&file, stages).map_err(|e| format!("cannot write {file}: {e}"))?;
+        self.burgeon(&["bloom", "fit", &file, "-o", &law])?;
+        let mut rows = Vec::new();
+        for more in [vec![], vec!["--law", &law]] {
+            let days = [0.0, 1.0, 1.7, 2.4, 3.2, 6.0];
+            rows.push(days.iter().map(|&d| self.flower("lily", d, &more)).collect::<Result<Vec<_>, _>>()?);
+        }
+        tiled(&rows, &picture("bloom-law.png"))
+    }
+
+    fn venations(&self) -> Outcome {
+        let marks = repository().join("fixtures/leaves/leaf2.csv").display().to_string();
+        let leaves: [&[&str]; 4] = [
+            &[&marks, "--margin-vein"],
+            &["--venation", "palmate"],
+            &["--venation", "palmate", "--veins", "7", "--depth", "0.7"],
+            &["--venation", "parallel", "--length", "0.12"],
+        ];
+        let mut row = Vec::new();
+        for (k, leaf) in leaves.iter().enumerate() {
+            let png = self.folder.join(format!("leaf-{k}.png"));
+            let shown = png.display().to_string();
+            let args = ["leaf", "--png", &shown, "--size", "400x420", "--no-shadow", "--view", "front"];
+            self.burgeon(&[&args[..1], leaf, &args[1..]].concat())?;
+            row.push(png);
+        }
+        tiled(&[row], &picture("leaves/venation.png"))
+    }
+}
+
+fn picture(name: &str) -> PathBuf {
+    repository().join("docs/pictures").join(name)
+}
+
+/// Pictures of one size side by side, rows below one another.
+fn tiled(rows: &[Vec<PathBuf>], to: &Path) -> Outcome {
+    let mut pixels: Vec<u8> = Vec::new();
+    let (mut width, mut height) = (0, 0);
+    for row in rows {
+        let read = row.iter().map(|p| rgba(p)).collect::<Result<Vec<_>, _>>()?;
+        let Some((wide, high)) = read.first().map(|r| (r.1, r.2)) else { continue };
+        width = wide * read.len();
+        height += high;
+        for y in 0..high {
+            for (p, w, _) in &read {
+                let row = p[4 * w * y..4 * w * (y + 1)].chunks_exact(4);
+                row.for_each(|c| pixels.extend(&c[..3]));
+            }
+        }
+    }
+    let fault = |e: &dyn std::fmt::Display| format!("{}: {e}", to.display());
+    let size = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+    let out = File::create(to).map_err(|e| fault(&e))?;
+    let mut encoder = png::Encoder::new(std::io::BufWriter::new(out), size(width), size(height));
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_compression(png::Compression::High);
+    let mut writer = encoder.write_header().map_err(|e| fault(&e))?;
+    writer.write_image_data(&pixels).map_err(|e| fault(&e))?;
+    writer.finish().map_err(|e| fault(&e))
+}
+
+/// The pixels of a picture as RGBA, its width and height.
+fn rgba(path: &Path) -> Result<(Vec<u8>, usize, usize), String> {
+    let fault = |e: &dyn std::fmt::Display| format!("{}: {e}", path.display());
+    let file = File::open(path).map_err(|e| fault(&e))?;
+    let mut decoder = png::Decoder::new(BufReader::new(file));
+    decoder.set_transformations(png::Transformations::ALPHA);
+    let mut reader = decoder.read_info().map_err(|e| fault(&e))?;
+    let mut pixels = vec![0; reader.output_buffer_size().ok_or_else(|| fault(&"is too large"))?];
+    let info = reader.next_frame(&mut pixels).map_err(|e| fault(&e))?;
+    if info.color_type != png::ColorType::Rgba || info.bit_depth != png::BitDepth::Eight {
+        return Err(fault(&"is not RGBA of 8 bits"));
+    }
+    Ok((pixels, info.width as usize, info.height as usize))
+}
