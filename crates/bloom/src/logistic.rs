@@ -89,7 +89,10 @@ pub struct Fit {
 #[non_exhaustive]
 pub enum FitError {
     /// Fewer values than parameters.
-    #[error("{got} stages cannot determine the 3 parameters of a growth law; give at least 3 days")]
+    #[error(
+        "{got} {} cannot determine the 3 parameters of a growth law; give at least 3 days",
+        if *got == 1 { "stage" } else { "stages" }
+    )]
     TooFew {
         /// Values given.
         got: usize,
