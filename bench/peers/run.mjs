@@ -32,7 +32,7 @@ function ours(args) {
 }
 
 // The oak of our own benchmark, and one with about as many triangles as the most used web peer's.
-peer('Burgeon, oak of the benchmark', () => ours(['0.2', '0.25', '20', '2', '1500']));
+peer('Burgeon, oak of the benchmark', () => ours(['0.58', '0.25', '20', '2', '1500']));
 peer('Burgeon, small oak', () => ours(['0.06', '0.2', '20', '1', '2500']));
 
 peer('ez-tree (npm), Oak Large', () => {

@@ -1,4 +1,4 @@
-//! `burgeon compare oak`: one oak by three methods, side by side.
+//! `burgeon compare oak|guided`: one oak by several methods, side by side.
 
 use std::path::PathBuf;
 
@@ -6,8 +6,8 @@ use burgeon::formats::{ExportSpec, ModelFormat};
 use burgeon::render::{Picture, View};
 use burgeon::skin::SkinSpec;
 use burgeon::{
-    MadeTree, OAK_METHODS, PAPER_OAKS, PaperOak, Preset, Report, Seed, TreeOptions, TreeSpec, make_tree,
-    tree_size,
+    GUIDED_METHODS, MadeTree, OAK_METHODS, PAPER_OAKS, PaperOak, Preset, Report, Seed, TreeOptions, TreeSpec,
+    guided_methods, make_tree, tree_size,
 };
 use clap::{Args, ValueEnum};
 use serde::Serialize;
@@ -21,12 +21,13 @@ use crate::{output, picture, report, say};
 #[command(after_long_help = "Examples:
   burgeon compare oak
   burgeon compare oak --png oaks.png --report oaks.json
-  burgeon compare oak --height 15 --detail 2")]
+  burgeon compare oak --height 15 --detail 2
+  burgeon compare guided --png two.png")]
 pub(crate) struct CompareArgs {
     /// What to compare.
     #[arg(value_enum)]
     pub(crate) what: CompareWord,
-    /// The three side by side, seen from the front, to one scale; --size is that of each.
+    /// All side by side, seen from the front, to one scale; --size is that of each.
     #[arg(long, value_name = "FILE.png")]
     pub(crate) png: Option<PathBuf>,
     /// Height that all are scaled to, metres, 0.1 to 1000.
@@ -48,6 +49,47 @@ pub(crate) struct CompareArgs {
 pub(crate) enum CompareWord {
     /// L-system, space colonization and space competition, as the paper's Table 2
     Oak,
+    /// Guided growth (buds with markers of their own) and its baseline, self-organisation by space (Palubicki 2009)
+    Guided,
+}
+
+impl CompareWord {
+    /// The trees, not grown yet.
+    fn trees(self) -> Outcome<Vec<Oak>> {
+        let preset = |key: &'static str| {
+            let preset =
+                Preset::find(key).ok_or_else(|| Failure::Bug(format!("preset {key}: is missing")))?;
+            preset.spec().map_err(|e| cancelled_or(e, key))
+        };
+        match self {
+            Self::Oak => {
+                let trees = OAK_METHODS.iter().zip(PAPER_OAKS);
+                trees
+                    .map(|(&(method, key), paper)| {
+                        Ok(Oak { method, key, spec: preset(key)?, paper: Some(paper), leaves: 0 })
+                    })
+                    .collect()
+            }
+            Self::Guided => {
+                let oak = preset("oak")?;
+                let methods = guided_methods(&oak.method)
+                    .ok_or_else(|| Failure::Bug("preset oak: has no envelope".to_owned()))?;
+                let trees = GUIDED_METHODS.into_iter().zip(methods);
+                let oak_by = |(name, method)| {
+                    let spec = TreeSpec { method, ..oak.clone() };
+                    Oak { method: name, key: "oak", spec, paper: None, leaves: 0 }
+                };
+                Ok(trees.map(oak_by).collect())
+            }
+        }
+    }
+
+    const fn notes(self) -> &'static str {
+        match self {
+            Self::Oak => NOTES,
+            Self::Guided => GUIDED_NOTES,
+        }
+    }
 }
 
 /// One method.
@@ -66,13 +108,16 @@ struct Row {
     leaf_area_m2: f64,
     /// Wood of trunk and branches as the pipe model has it.
     wood_m3: f64,
+    /// Growth alone.
+    growth_seconds: f64,
     /// Growth, wood, leaves and meshes.
     seconds: f64,
     /// As binary glTF with textures.
     bytes: u64,
     digest: String,
     /// What the paper printed for this method, thousands and seconds.
-    paper: PaperRow,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    paper: Option<PaperRow>,
 }
 
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -103,8 +148,13 @@ const NOTES: &str = "All three stand at one height with one number of leaves of 
                      as the tree with fewest has), and with one thickness of trunks and twigs; crown is the mean width of \
                      the branches. Seconds are growth, wood, leaves and meshes on this machine; the paper's are on its own.";
 
+const GUIDED_NOTES: &str = "Both grow in the oak's envelope with internodes of one length, one perception, occupancy, angle, phyllotaxis, \
+                            bias and number of rounds, stand at one height and keep one number of leaves. Guided growth makes \
+                            markers for each bud in each round, its baseline scatters as many to a volume once. The paper's \
+                            own times are lost.";
+
 pub(crate) fn compare(args: &CompareArgs) -> Outcome {
-    let CompareWord::Oak = args.what;
+    let trees = args.what.trees()?;
     let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
     let outputs = [("--png", args.png.as_ref()), ("--report", args.common.report.as_ref())];
     output::check_outputs(&outputs, &[])?;
@@ -112,19 +162,21 @@ pub(crate) fn compare(args: &CompareArgs) -> Outcome {
         picture::check_name(png)?;
     }
     let made = machine.with_progress("compare", |progress| {
-        progress.expect(2 * OAK_METHODS.len());
+        let count = trees.len();
+        progress.expect(2 * count);
         let mut oaks = Vec::new();
-        for &(method, key) in &OAK_METHODS {
-            oaks.push(Oak::new(args, &machine, method, key)?);
+        for mut oak in trees {
+            oak.leaves = oak.made(args, &machine)?.item.counts.leaves;
+            oaks.push(oak);
             progress.reached(oaks.len());
         }
         // Leaves for leaves: each tree keeps as many of its best lit ones as the one with fewest has.
         let fewest = oaks.iter().map(|o| o.leaves).min().unwrap_or(0);
         let mut made = Vec::new();
-        for (mut oak, paper) in oaks.into_iter().zip(PAPER_OAKS) {
+        for mut oak in oaks {
             oak.keep(fewest);
-            made.push(oak.row(args, &machine, paper)?);
-            progress.reached(OAK_METHODS.len() + made.len());
+            made.push(oak.row(args, &machine)?);
+            progress.reached(count + made.len());
         }
         Outcome::Ok(made)
     })?;
@@ -141,7 +193,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Outcome {
         version: burgeon::VERSION,
         seed: args.seed,
         rows,
-        notes: NOTES,
+        notes: args.what.notes(),
     };
     report::finish_any(&comparison, &args.common)
 }
@@ -151,18 +203,11 @@ struct Oak {
     method: &'static str,
     key: &'static str,
     spec: TreeSpec,
+    paper: Option<PaperOak>,
     leaves: u64,
 }
 
 impl Oak {
-    fn new(args: &CompareArgs, machine: &Machine, method: &'static str, key: &'static str) -> Outcome<Self> {
-        let preset = Preset::find(key).ok_or_else(|| Failure::Bug(format!("preset {key}: is missing")))?;
-        let spec = preset.spec().map_err(|e| cancelled_or(e, key))?;
-        let mut oak = Self { method, key, spec, leaves: 0 };
-        oak.leaves = oak.made(args, machine)?.item.counts.leaves;
-        Ok(oak)
-    }
-
     fn made(&self, args: &CompareArgs, machine: &Machine) -> Outcome<MadeTree> {
         let options = TreeOptions {
             skin: SkinSpec { detail: args.detail, ..SkinSpec::default() },
@@ -179,7 +224,7 @@ impl Oak {
         *keep = (*keep * count as f64 / self.leaves.max(1) as f64).min(1.0);
     }
 
-    fn row(&self, args: &CompareArgs, machine: &Machine, paper: PaperOak) -> Outcome<(Row, Option<Picture>)> {
+    fn row(&self, args: &CompareArgs, machine: &Machine) -> Outcome<(Row, Option<Picture>)> {
         let (made, ms) = machine.timed(|| self.made(args, machine));
         let made = made?;
         let mut bytes = Vec::new();
@@ -209,10 +254,11 @@ impl Oak {
             leaves: counts.leaves,
             leaf_area_m2: measures.leaf_area_m2,
             wood_m3: measures.wood_volume_m3,
+            growth_seconds: made.item.timings_ms.structure / 1000.0,
             seconds: ms / 1000.0,
             bytes: bytes.len() as u64,
             digest: made.item.digest,
-            paper: paper.into(),
+            paper: self.paper.map(PaperRow::from),
         };
         Ok((row, picture))
     }
@@ -226,26 +272,41 @@ fn cancelled_or(error: burgeon::TreeError, key: &str) -> Failure {
 }
 
 fn table(rows: &[Row]) {
+    let paper =
+        if rows.iter().any(|r| r.paper.is_some()) { "   paper: vertices, triangles, seconds" } else { "" };
     say::line(&format!(
-        "{:<20}{:>8}{:>8}{:>9}{:>8}{:>9}{:>10}{:>10}{:>9}{:>12}   paper: vertices, triangles, seconds",
-        "method", "height", "crown", "leaves", "area", "wood", "vertices", "triangles", "seconds", "bytes"
+        "{:<20}{:>8}{:>8}{:>8}{:>9}{:>8}{:>9}{:>10}{:>10}{:>9}{:>9}{:>12}{paper}",
+        "method",
+        "height",
+        "crown",
+        "nodes",
+        "leaves",
+        "area",
+        "wood",
+        "vertices",
+        "triangles",
+        "growth",
+        "seconds",
+        "bytes"
     ));
     for r in rows {
+        let paper = r.paper.map_or_else(String::new, |p| {
+            format!("   {:.1}k, {:.1}k, {:.0}", p.vertices_k, p.triangles_k, p.seconds)
+        });
         say::line(&format!(
-            "{:<20}{:>6.1} m{:>6.1} m{:>9}{:>5.0} m2{:>6.2} m3{:>10}{:>10}{:>9.3}{:>12}   {:.1}k, {:.1}k, {:.0}",
+            "{:<20}{:>6.1} m{:>6.1} m{:>8}{:>9}{:>5.0} m2{:>6.2} m3{:>10}{:>10}{:>9.3}{:>9.3}{:>12}{paper}",
             r.method,
             r.height_m,
             r.crown_m,
+            say::grouped(r.nodes),
             say::grouped(r.leaves),
             r.leaf_area_m2,
             r.wood_m3,
             say::grouped(r.vertices),
             say::grouped(r.triangles),
+            r.growth_seconds,
             r.seconds,
             say::grouped(r.bytes),
-            r.paper.vertices_k,
-            r.paper.triangles_k,
-            r.paper.seconds
         ));
     }
 }

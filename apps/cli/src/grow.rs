@@ -311,6 +311,10 @@ fn asked(args: &GrowArgs, told: &mut Report) -> Outcome<TreeSpec> {
         let (model, _, warnings) = files::read_model(path, &axes)?;
         told.warnings.extend(warnings);
         let (vertices, triangles) = soup(&model);
+        if triangles.is_empty() {
+            let why = "has no faces, so there is nothing to grow around; export the obstacle as a mesh";
+            return Err(Failure::at(path, why));
+        }
         spec.obstacles.push(Obstacle::Mesh { vertices, triangles });
     }
     if let Some(keep) = args.growth.leaf_keep {
@@ -409,9 +413,6 @@ fn steps_of(method: &Method) -> ColonizeSpec {
 }
 
 fn default_method(word: MethodWord, envelope: Option<Envelope>) -> Method {
-    if word == MethodWord::Guided {
-        return Method::Guided(GuidedSpec { envelope, ..GuidedSpec::default() });
-    }
     let envelope = envelope.unwrap_or_default();
     match word {
         MethodWord::Competition => {
@@ -420,7 +421,7 @@ fn default_method(word: MethodWord, envelope: Option<Envelope>) -> Method {
         MethodWord::Colonization => {
             Method::Colonization { envelope, points: 1500, hollow: 0.0, steps: ColonizeSpec::default() }
         }
-        MethodWord::Guided => Method::Guided(GuidedSpec::default()),
+        MethodWord::Guided => Method::Guided(GuidedSpec::of_crown(envelope)),
         MethodWord::SelfOrganizing => Method::SelfOrganizing(SelfOrganizingSpec::default()),
         MethodWord::Lsystem => Method::Lsystem { rules: OAK_RULES.into(), most_modules: 5_000_000 },
     }

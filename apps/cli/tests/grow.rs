@@ -260,6 +260,115 @@ fn a_million_points_in_one_place_end() {
 }
 
 #[test]
+fn a_million_given_points_in_one_place_end() {
+    let at = folder("grow-million");
+    fs::write(at.join("heap.xyz"), "0.5 3 0.25\n".repeat(1_000_000)).unwrap();
+    let growth =
+        item(&at, &["--attractors", "heap.xyz", "--influence", "1", "--kill", "0.3"])["growth"].clone();
+    assert_eq!((growth["consumed"].as_u64(), growth["unreachable"].as_u64()), (Some(1_000_000), Some(0)));
+    assert!((5..60).contains(&growth["nodes"].as_u64().unwrap()), "{growth}");
+}
+
+#[test]
+fn no_points_at_all_is_an_error_that_says_where() {
+    let at = folder("grow-nothing");
+    for (name, text, wants) in [
+        ("empty.xyz", "", "empty"),
+        ("comment.xyz", "# nothing\n", "no point"),
+        ("nan.xyz", "nan nan nan\nnan 0 1\n", "none of its points is finite"),
+    ] {
+        fs::write(at.join(name), text).unwrap();
+        let told = bad(&at, &["grow", "--attractors", name, "-o", "x.glb"]);
+        assert!(told.contains(name) && told.contains(wants), "{told}");
+    }
+    for kind in ["competition", "colonization"] {
+        let shape = "envelope = { shape = \"sphere\", centre = [0, 3, 0], radius_m = 1 }";
+        spec(&at, "zero.toml", &format!("[method]\nkind = \"{kind}\"\npoints = 0\n{shape}\n"));
+        let told = bad(&at, &["grow", "zero.toml", "-o", "x.glb"]);
+        assert!(told.contains("zero.toml: points must be 1 to 10 million, not 0"), "{told}");
+    }
+    assert!(!at.join("x.glb").exists());
+}
+
+#[test]
+fn inverted_and_empty_obstacles_are_named() {
+    let at = folder("grow-inverted");
+    spec(&at, "bush.toml", SMALL);
+    wall(&at, "wall.obj", 6);
+    let text = fs::read_to_string(at.join("wall.obj")).unwrap();
+    let inverted = text.lines().map(|l| match l.strip_prefix("f ") {
+        Some(face) => format!("f {}\n", face.split(' ').rev().collect::<Vec<_>>().join(" ")),
+        None => format!("{l}\n"),
+    });
+    fs::write(at.join("inverted.obj"), inverted.collect::<String>()).unwrap();
+    let around = |name: &str| item(&at, &["bush.toml", "--obstacle", name]);
+    let (right, wrong) = (around("wall.obj"), around("inverted.obj"));
+    assert!(wrong["warnings"][0].as_str().unwrap().contains("obstacle 0 look inwards"), "{wrong}");
+    assert_eq!((&wrong["growth"], &wrong["digest"]), (&right["growth"], &right["digest"]));
+    let told =
+        bad(&at, &["grow", "bush.toml", "--obstacle", "inverted.obj", "--root", "1,1,0", "-o", "x.glb"]);
+    assert!(told.contains("root 0 stands inside obstacle 0") && told.contains("move"), "{told}");
+    fs::write(at.join("points.obj"), "v 0 0 0\nv 1 0 0\n").unwrap();
+    let told = bad(&at, &["grow", "bush.toml", "--obstacle", "points.obj", "-o", "x.glb"]);
+    assert!(told.contains("points.obj") && told.contains("no faces"), "{told}");
+    fs::write(at.join("nan.obj"), text.replace("v 3 5 2", "v nan 5 2")).unwrap();
+    let told = bad(&at, &["grow", "bush.toml", "--obstacle", "nan.obj", "-o", "x.glb"]);
+    assert!(told.contains("nan.obj") && told.contains("line 7") && told.contains("not finite"), "{told}");
+    assert!(!at.join("x.glb").exists());
+}
+
+#[test]
+fn weak_shade_ends_with_a_warning_that_names_the_numbers() {
+    let at = folder("grow-shade");
+    spec(
+        &at,
+        "weak.toml",
+        "[method]\nkind = \"self-organizing\"\nyears = 40\narrangement = { kind = \"decussate\" }\n\
+         max_joints = 3000\nlight = { kind = \"shadow\", a = 0.04, b = 2.2, layers = 4, full = 2.0 }\n",
+    );
+    let item = item(&at, &["weak.toml", "--leaf-keep", "0.1"]);
+    let told = item["warnings"].to_string();
+    assert!(told.contains("light.a (0.04)") && told.contains("max_joints (3000)"), "{told}");
+    assert!((500..=3000).contains(&item["growth"]["nodes"].as_u64().unwrap()), "{item}");
+}
+
+#[test]
+fn guided_trees_are_full() {
+    let at = folder("grow-guided");
+    let bush = "envelope = { shape = \"sphere\", centre = [0, 1.4, 0], radius_m = 1 }\n";
+    spec(&at, "bush.toml", &format!("{SMALL}{bush}"));
+    let item = item(&at, &["bush.toml", "--method", "guided", "--leaf-keep", "0.2"]);
+    assert_eq!(item["growth"]["method"], "guided");
+    let (nodes, volume) =
+        (item["growth"]["nodes"].as_u64().unwrap(), item["plant"]["crown_volume_m3"].as_f64().unwrap());
+    assert!((4_000..60_000).contains(&nodes), "{item}");
+    // The ball has 4.2 cubic metres.
+    assert!((2.0..4.5).contains(&volume), "a crown of {volume} cubic metres");
+}
+
+#[test]
+fn guided_growth_is_compared_with_its_baseline() {
+    let at = folder("grow-compare-guided");
+    let args = ["compare", "guided", "--json", "--png", "two.png", "--size", "80x90", "--supersample", "1"];
+    let report: Value =
+        serde_json::from_str(&good(&at, &[&args[..], &["--detail", "0.2"]].concat()).0).unwrap();
+    let rows = report["rows"].as_array().unwrap();
+    assert_eq!(
+        rows.iter().map(|r| r["method"].as_str().unwrap()).collect::<Vec<_>>(),
+        ["guided growth", "self-organisation"]
+    );
+    for row in rows {
+        assert!((row["height_m"].as_f64().unwrap() - 10.0).abs() < 1e-6, "{row}");
+        assert!(row["nodes"].as_u64() > Some(3000) && row["growth_seconds"].as_f64() > Some(0.0), "{row}");
+        assert!(row.get("paper").is_none(), "its paper's times are lost");
+    }
+    assert_eq!(rows[0]["leaves"].as_u64().unwrap().abs_diff(rows[1]["leaves"].as_u64().unwrap()) / 50, 0);
+    let crowns: Vec<f64> = rows.iter().map(|r| r["crown_m"].as_f64().unwrap()).collect();
+    assert!((crowns[0] / crowns[1] - 1.0).abs() < 0.3, "like for like: {crowns:?}");
+    assert_eq!(fs::read(at.join("two.png")).unwrap()[16..24], [0, 0, 0, 160, 0, 0, 0, 90]);
+}
+
+#[test]
 fn leaves_age_seed_and_threads_do_what_they_say() {
     let at = folder("grow-options");
     spec(&at, "bush.toml", SMALL);

@@ -178,6 +178,29 @@ pub(crate) fn plant_roots(roots: &[DVec3], obstacles: &Obstacles) -> Result<Skel
     Ok(skeleton)
 }
 
+/// A bole from a root straight up, around obstacles, until it is so high; its top.
+pub(crate) fn grow_bole(
+    skeleton: &mut Skeleton,
+    root: JointId,
+    height_m: f64,
+    step_m: f64,
+    obstacles: &Obstacles,
+) -> JointId {
+    let (mut top, mut left) = (root, height_m);
+    while left > 0.0 {
+        let at = skeleton.position[top.index()];
+        let step = step_m.min(left.max(0.1 * step_m));
+        let Some(to) =
+            (if obstacles.is_empty() { Some(DVec3::Y) } else { obstacles.steer(at, DVec3::Y, step) })
+        else {
+            break;
+        };
+        top = skeleton.push(at + to * step, top, 0);
+        left -= step;
+    }
+    top
+}
+
 /// As [`colonize`], from a skeleton that is there already: its joints stay as they are, and all may grow on.
 ///
 /// This is how later life cycles, and branches after pruning, grow.

@@ -291,6 +291,20 @@ impl Region {
         (self.lo, self.hi)
     }
 
+    /// How high above the origin the envelope begins, metres; 0 where it holds the origin or nothing is above it.
+    pub(crate) fn foot(&self) -> f64 {
+        if self.contains(DVec3::ZERO) {
+            return 0.0;
+        }
+        // A hundredth of its height is fine enough for where a bole ends.
+        let step = 0.01 * (self.hi.y - self.lo.y).max(1e-9);
+        let mut y = self.lo.y.max(0.0);
+        while y < self.hi.y && !self.contains(DVec3::Y * y) {
+            y += step;
+        }
+        if y < self.hi.y { y } else { 0.0 }
+    }
+
     /// `count` points spread evenly at random in the envelope where `free` holds.
     ///
     /// `hollow`, 0 to 0.99: points whose place is still inside when moved away from the middle by `1 / hollow` are

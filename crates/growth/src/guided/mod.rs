@@ -10,7 +10,7 @@ use base::{Draw, Report, Run, Seed, map_indexed};
 use geom::Grid3;
 use glam::DVec3;
 
-use crate::colonize::plant_roots;
+use crate::colonize::{grow_bole, plant_roots};
 use crate::{GrowthError, JointId, Obstacles, Skeleton};
 use room::Room;
 use spec::Numbers;
@@ -75,19 +75,7 @@ pub fn guide(
     spec.check()?;
     let mut buds = Vec::new();
     for root in 0..skeleton.len() {
-        // A bole up to where the crown may begin.
-        let mut top = JointId::new(root);
-        let mut left = room.foot(skeleton.position[root]);
-        while left > 0.0 {
-            let at = skeleton.position[top.index()];
-            let step = spec.internode_m.min(left.max(0.1 * spec.internode_m));
-            let open = obstacles.is_empty();
-            let Some(to) = (if open { Some(DVec3::Y) } else { obstacles.steer(at, DVec3::Y, step) }) else {
-                break;
-            };
-            top = skeleton.push(at + to * step, top, 0);
-            left -= step;
-        }
+        let top = grow_bole(&mut skeleton, JointId::new(root), room.foot(), spec.internode_m, obstacles);
         buds.push(StartBud { joint: top, heading: DVec3::Y, wakes: 0 });
     }
     grow(skeleton, &buds, &room, spec, seed, run, report)

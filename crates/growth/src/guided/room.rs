@@ -130,20 +130,7 @@ impl<'a> Room<'a> {
     }
 
     /// How high above a root the envelope starts; 0 without one.
-    pub(super) fn foot(&self, root: DVec3) -> f64 {
-        let Some((region, _)) = &self.region else { return 0.0 };
-        let (lo, hi) = region.bounds();
-        let mut y = 0.0;
-        let step = 0.01 * (hi.y - lo.y).max(1e-9);
-        if region.contains(DVec3::ZERO) || root.y > 1e6 {
-            return 0.0;
-        }
-        while y < hi.y && !region.contains(DVec3::Y * y) {
-            y += step;
-            if y < lo.y {
-                y = lo.y;
-            }
-        }
-        if y < hi.y { y } else { 0.0 }
+    pub(super) fn foot(&self) -> f64 {
+        self.region.as_ref().map_or(0.0, |(region, _)| region.foot())
     }
 }

@@ -110,6 +110,39 @@ impl Default for GuidedSpec {
     }
 }
 
+impl GuidedSpec {
+    /// For a whole tree whose crown fills an envelope: some 10,000 internodes, whatever its size.
+    ///
+    /// The default is a young shoot's: its internodes are long and its rounds few, so that a hand can follow it. Here
+    /// internodes are a thirty-eighth of the envelope's mean extent (a ninetieth of its longest, if that is more),
+    /// rounds enough to reach its ends, and vigour, pull and markers such that a crown is full and its leader upright.
+    /// An envelope that is wrong keeps the default numbers; growth then says what is wrong with it.
+    pub fn of_crown(envelope: Envelope) -> Self {
+        let size = envelope.prepare().map_or(DVec3::ZERO, |region| {
+            let (lo, hi) = region.bounds();
+            hi - lo
+        });
+        let plain = Self { envelope: Some(envelope), ..Self::default() };
+        // Slender crowns have longer internodes for their volume: else a leader takes hundreds of rounds.
+        let internode_m = (base::ops::cbrt(size.x * size.y * size.z) / 38.0).max(size.max_element() / 90.0);
+        if !(1e-4..=1e3).contains(&internode_m) {
+            return plain;
+        }
+        // A leader makes about two internodes a round, one where it is crowded.
+        let rounds = (0.8 * size.max_element() / internode_m).clamp(36.0, 72.0);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "36 to 72")]
+        Self {
+            internode_m,
+            rounds: rounds as u32,
+            alpha: 4.0,
+            lambda: 0.56,
+            markers: 30,
+            tropisms: vec![Tropism { strength: 0.2, ..Tropism::UPWARDS }],
+            ..plain
+        }
+    }
+}
+
 /// What follows from checked numbers.
 pub(super) struct Numbers {
     pub(super) phyllotaxis: Phyllotaxis,

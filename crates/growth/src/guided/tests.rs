@@ -90,3 +90,27 @@ fn nonsense_is_refused() {
     assert!(try_it(GuidedSpec { strokes: stroke(line.clone(), vec![1.0, 2.0]), ..base() }).is_some());
     assert!(try_it(GuidedSpec { strokes: stroke(line, vec![-1.0]), ..base() }).is_some());
 }
+
+#[test]
+fn crowns_of_any_size_are_filled() {
+    let none = Obstacles::none();
+    for scale in [0.3, 5.0] {
+        let envelope = Envelope::Sphere { centre: DVec3::Y * 2.0 * scale, radius_m: scale };
+        let spec = GuidedSpec { markers: 12, ..GuidedSpec::of_crown(envelope.clone()) };
+        let run = Run::plain();
+        let tree =
+            guide(&[DVec3::ZERO], &none, &spec, Seed::new(1), &run, &mut Report::default()).expect("sound");
+        let region = envelope.prepare().expect("sound");
+        let places = region.scatter(300, 0.0, Seed::new(2), |_| true).expect("room");
+        let near =
+            |p: &&DVec3| tree.skeleton.position.iter().any(|q| q.distance(**p) < spec.far * spec.internode_m);
+        let filled = places.iter().filter(near).count();
+        assert!((4_000..40_000).contains(&tree.skeleton.len()), "{scale}: {}", tree.skeleton.len());
+        assert!(filled > 285, "{scale}: {filled} of 300 places have wood near");
+    }
+    let bad = Envelope::Sphere { centre: DVec3::ZERO, radius_m: -1.0 };
+    assert_eq!(
+        GuidedSpec::of_crown(bad.clone()),
+        GuidedSpec { envelope: Some(bad), ..GuidedSpec::default() }
+    );
+}

@@ -83,9 +83,16 @@ impl Kept {
 impl Grove {
     pub(super) fn new(roots: Skeleton, per_node: usize) -> Self {
         let n = roots.len();
+        // What is there already is bole: each joint continues its parent.
+        let mut main = vec![NONE; n];
+        for (j, parent) in roots.parent.iter().enumerate() {
+            if let Some(p) = parent {
+                main[p.index()] = JointId::new(j).raw();
+            }
+        }
         Self {
             skeleton: roots,
-            main: vec![NONE; n],
+            main,
             heading: vec![DVec3::Y; n],
             side: vec![DVec3::X; n],
             rank: vec![0; n],

@@ -13,9 +13,9 @@ use base::{Draw, Report, Run, Seed};
 use glam::DVec3;
 use plant::Phyllotaxis;
 
-use crate::colonize::plant_roots;
+use crate::colonize::{grow_bole, plant_roots};
 use crate::tree::GROWN;
-use crate::{GrowthError, Obstacles, Skeleton};
+use crate::{GrowthError, JointId, Obstacles, Skeleton};
 use grove::{Grove, Kept};
 use resource::{Fed, Flow, Sharing};
 use space::Space;
@@ -65,7 +65,7 @@ pub fn self_organize(
 ) -> Result<SelfOrganized, GrowthError> {
     let numbers = spec.check()?;
     let started = run.clock.now_ms();
-    let skeleton = plant_roots(roots, obstacles)?;
+    let mut skeleton = plant_roots(roots, obstacles)?;
     let light = match &spec.light {
         Light::Shadow { voxel_m, a, b, layers, full } => {
             let voxel = voxel_m.unwrap_or(2.0 * spec.internode_m);
@@ -80,6 +80,11 @@ pub fn self_organize(
                 let free = |p: DVec3| obstacles.free(*root + p);
                 let own = region.scatter(*markers as usize, 0.0, seed.child(i), free)?;
                 places.extend(own.into_iter().map(|p| *root + p));
+            }
+            // Markers begin where the crown does: without a bole no bud would see any.
+            for root in 0..roots.len() {
+                let foot = (region.foot() - reach.0).max(0.0);
+                grow_bole(&mut skeleton, JointId::new(root), foot, spec.internode_m, obstacles);
             }
             LightModel::Space(Space::new(&places, reach, half_angle_deg * (PI / 180.0)))
         }

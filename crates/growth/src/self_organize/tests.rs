@@ -200,3 +200,26 @@ fn weak_shade_does_not_run_away() {
     let (_, report) = grow(Light::default(), 16, 2.0);
     assert!(report.warnings.is_empty(), "{report:?}");
 }
+
+#[test]
+fn a_bole_carries_the_buds_to_markers_that_begin_high_up() {
+    let spec = SelfOrganizingSpec {
+        light: Light::Space {
+            envelope: Envelope::Sphere { centre: DVec3::new(0.0, 6.0, 0.0), radius_m: 2.0 },
+            markers: 8_000,
+            occupancy: 2.0,
+            perception: 5.0,
+            half_angle_deg: 45.0,
+        },
+        shed_below: 0.02,
+        ..SelfOrganizingSpec::default()
+    };
+    let tree = grow(&spec, &[DVec3::ZERO, DVec3::X * 5.0]).skeleton;
+    for root in 0..2 {
+        let own = tree.tree(root);
+        assert!(own.len() > 300 && height(&own) > 6.5, "{} joints, {} m", own.len(), height(&own));
+        let foot = own.position[0];
+        let low = own.position.iter().filter(|p| p.y < 3.0);
+        assert!(low.clone().count() > 10 && low.clone().all(|p| (*p - foot).with_y(0.0).length() < 1e-9));
+    }
+}

@@ -1,10 +1,61 @@
 //! One oak by three methods, as paper 001 compares them in its Table 2.
 
-use growth::Grown;
+use base::ops;
+use growth::{Grown, GuidedSpec, Light, Method, Resource, SelfOrganizingSpec};
 
 /// Method and preset of each oak, in the paper's order.
 pub const OAK_METHODS: [(&str, &str); 3] =
     [("L-system", "oak-lsystem"), ("space colonization", "oak-colonization"), ("space competition", "oak")];
+
+/// What [`guided_methods`] compares.
+pub const GUIDED_METHODS: [&str; 2] = ["guided growth", "self-organisation"];
+
+/// One crown by the improved growth of paper 002 and by its baseline, space colonisation by buds (Palubicki et al.
+/// 2009): in one envelope, with internodes of one length, one perception, angle, phyllotaxis, bias and number of rounds.
+///
+/// `None` where the method has no envelope. The baseline's markers are as dense as a bud's own in its perception cone.
+pub fn guided_methods(method: &Method) -> Option<[Method; 2]> {
+    let envelope = match method {
+        Method::Competition(s) => s.envelope.clone(),
+        Method::Colonization { envelope, .. } => envelope.clone(),
+        _ => return None,
+    };
+    let guided = GuidedSpec::of_crown(envelope.clone());
+    let (lo, hi) = envelope.prepare().ok()?.bounds();
+    // A cone of half opening a between two radii holds 2 pi / 3 (1 - cos a)(R^3 - r^3).
+    let reach = guided.internode_m * guided.far;
+    let near = guided.internode_m * guided.near;
+    let open = 1.0 - ops::cos(guided.half_angle_deg * (ops::PI / 180.0));
+    let cone = 2.0 * ops::PI / 3.0 * open * (reach * reach * reach - near * near * near);
+    let size = hi - lo;
+    // Half of a box is crown, roughly.
+    let markers = (0.5 * size.x * size.y * size.z * f64::from(guided.markers) / cone).clamp(1e3, 1e6);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a thousand to a million")]
+    let light = Light::Space {
+        envelope,
+        markers: markers as u32,
+        occupancy: guided.near,
+        perception: guided.far,
+        half_angle_deg: guided.half_angle_deg,
+    };
+    let baseline = SelfOrganizingSpec {
+        years: guided.rounds,
+        internode_m: guided.internode_m,
+        light,
+        resource: Resource::BorchertHonda { lambda: guided.lambda, lambda_late: None },
+        alpha: guided.alpha,
+        tropisms: guided.tropisms.clone(),
+        arrangement: guided.arrangement,
+        branch_angle_deg: guided.branch_angle_deg,
+        jitter_deg: guided.jitter_deg,
+        most_per_shoot: guided.most_per_shoot,
+        light_weight: 1.0,
+        // Without: a full crown has no free marker left, and would be shed whole.
+        shed_below: 0.0,
+        ..SelfOrganizingSpec::default()
+    };
+    Some([Method::Guided(guided), Method::SelfOrganizing(baseline)])
+}
 
 /// A row that the paper prints.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -34,7 +34,9 @@ use crate::template::LeafTemplate;
 
 pub use blade::{BladeForm, BladeSpec};
 pub use blossom::BlossomSpec;
-pub use compare::{OAK_METHODS, PAPER_OAKS, PaperOak, TreeSize, scale_to_height, tree_size};
+pub use compare::{
+    GUIDED_METHODS, OAK_METHODS, PAPER_OAKS, PaperOak, TreeSize, guided_methods, scale_to_height, tree_size,
+};
 pub use evaluate::TreeEvaluator;
 pub use file::{NamedMesh, read_tree_spec, tree_schema};
 pub use lod::coarser;
