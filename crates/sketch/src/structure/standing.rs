@@ -10,6 +10,7 @@ use super::Draft;
 use super::blade::{nearest_on_ring, split_stalks};
 use super::near::bounds;
 use super::outlines::width_at;
+use super::rings::rings;
 use super::second::{openness, unsure};
 use crate::StrokeClass;
 
@@ -28,7 +29,6 @@ pub(super) fn thoughts(draft: &mut Draft<'_>) {
     crown_with_a_side(draft);
     crown_on_trunk(draft);
     scribbled_crown(draft);
-    trunk_under_crown(draft);
     outline_goes_on(draft);
     in_crowns(draft);
     pots(draft);
@@ -211,34 +211,29 @@ fn loops_in_pots(draft: &mut Draft<'_>) {
 
 /// The largest closed outline of the drawing is a crown where the tops of a drawn trunk reach it from below.
 fn crown_on_trunk(draft: &mut Draft<'_>) {
-    use StrokeClass::{Axis, Blade, Crown, Disc, Fruit, Other, Pot, TrunkOutline, Vein};
+    use StrokeClass::{Axis, Crown, Pot, TrunkOutline, Vein};
     if draft.class.iter().any(|c| [Crown, Pot, Vein].contains(c)) {
         return;
     }
-    let closed: Vec<(f64, usize, Vec<DVec2>)> = (0..draft.class.len())
-        .filter(|&k| {
-            [Blade, Disc, Fruit, Other, TrunkOutline].contains(&draft.class[k])
-                && openness(&draft.ink.strokes[k]) < 0.2
-        })
-        .filter_map(|k| simple_outline(&draft.ink.strokes[k].points).map(|o| (signed_area(&o), k, o)))
-        .collect();
-    let Some((area, k, outline)) =
-        closed.iter().max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1))).filter(|c| unsure(draft, c.1))
-    else {
+    let closed = closed_outlines(draft);
+    let largest = closed.iter().max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
+    let Some((area, parts, outline)) = largest.filter(|c| c.1.iter().all(|&k| unsure(draft, k))) else {
         return;
     };
-    let others = closed.iter().filter(|c| c.1 != *k).map(|c| c.0).fold(0.0, f64::max);
+    let others = closed.iter().filter(|c| c.1 != *parts).map(|c| c.0).fold(0.0, f64::max);
     let Some((lo, hi)) = bounds(outline) else { return };
     let mut sides: Vec<(usize, DVec2, DVec2)> =
-        standing(draft, TrunkOutline).into_iter().filter(|s| s.0 != *k).collect();
-    // A side may have been taken for a branch: it begins below the crown and reaches it.
+        standing(draft, TrunkOutline).into_iter().filter(|s| !parts.contains(&s.0)).collect();
+    // Sides may have been taken for branches: they begin below the crown, reach it, and are about as long as one another.
     let outlined = sides.len();
-    if let [side] = sides[..] {
-        let other = draft.ink.strokes[side.0].length;
-        sides.extend(standing(draft, Axis).into_iter().filter(|s| {
-            let own = draft.ink.strokes[s.0].length;
-            unsure(draft, s.0) && s.2.y < lo.y && own.min(other) > 0.55 * own.max(other)
-        }));
+    if outlined < 2 {
+        let branches = standing(draft, Axis).into_iter().filter(|s| unsure(draft, s.0) && s.2.y < lo.y);
+        sides.extend(branches);
+        let length = |s: &(usize, DVec2, DVec2)| draft.ink.strokes[s.0].length;
+        let longest = sides.iter().map(length).fold(0.0, f64::max);
+        if sides.len() != 2 || sides.iter().map(length).any(|l| l < 0.55 * longest) {
+            return;
+        }
     }
     let carry = sides.len() >= 2
         && sides.iter().all(|(_, top, foot)| {
@@ -248,43 +243,39 @@ fn crown_on_trunk(draft: &mut Draft<'_>) {
     let wide = sides.iter().map(|s| s.1.x).fold(f64::NEG_INFINITY, f64::max)
         - sides.iter().map(|s| s.1.x).fold(f64::INFINITY, f64::min);
     let lone = others < 0.25 * area && *area > 0.02;
-    if carry && lone && over && wide < 0.7 * (hi.x - lo.x) {
-        draft.class[*k] = Crown;
+    // A leaf on a stalk that was drawn as two lines is no tree: trunks are thicker.
+    let trunk = outlined > 0 || wide > 0.1 * (hi.x - lo.x);
+    if carry && lone && over && trunk && wide < 0.7 * (hi.x - lo.x) {
+        parts.iter().for_each(|&k| draft.class[k] = Crown);
         sides[outlined..].iter().for_each(|s| draft.class[s.0] = TrunkOutline);
     }
 }
 
-/// A large open outline that reaches from below all others up to a crown is its trunk, where nothing else is.
-fn trunk_under_crown(draft: &mut Draft<'_>) {
-    use StrokeClass::{Axis, Blade, Crown, Disc, Fruit, Ground, Other, Pot, Scribble, TrunkOutline, Vein};
-    if draft.class.iter().any(|c| [TrunkOutline, Pot, Scribble, Vein].contains(c)) {
-        return;
-    }
-    let boxes: Vec<(DVec2, DVec2)> =
-        draft.ink.strokes.iter().map(|s| bounds(&s.points).unwrap_or_default()).collect();
-    let low = (0..boxes.len())
-        .filter(|&k| draft.class[k] != Ground)
-        .map(|k| boxes[k].0.y)
-        .fold(f64::INFINITY, f64::min);
-    for k in 0..boxes.len() {
-        if !unsure(draft, k) || ![Blade, Disc, Fruit, Other].contains(&draft.class[k]) {
-            continue;
-        }
-        let (lo, hi) = boxes[k];
-        let s = &draft.ink.strokes[k];
-        let deep = lo.y < low + 0.02 && hi.y - lo.y > 0.15;
-        let (a, b) = (s.points[0], s.points[s.points.len() - 1]);
-        let open_above = a.distance(b) > 0.1 * s.length && a.y.min(b.y) > lo.y + 0.3 * (hi.y - lo.y);
-        let under = draft.of_class(Crown).iter().any(|&c| {
-            let (l, h) = boxes[c];
-            hi.y > l.y - REACH && lo.y < l.y - 0.1 && h.y > hi.y + 0.1 && hi.x > l.x && lo.x < h.x
-        });
-        let carried = draft.of_class(Axis).iter().any(|&j| boxes[j].0.y < low + 0.1);
-        if deep && open_above && under && !carried {
-            draft.class[k] = TrunkOutline;
-            return;
+/// Outlines that may be a crown: area, strokes, polygon. Each closed by itself, or made of lines that do not stand and
+/// whose ends meet.
+fn closed_outlines(draft: &Draft<'_>) -> Vec<(f64, Vec<usize>, Vec<DVec2>)> {
+    use StrokeClass::{Blade, Disc, Fruit, Other, TrunkOutline};
+    let strokes = &draft.ink.strokes;
+    let (shut, open): (Vec<usize>, Vec<usize>) = (0..draft.class.len())
+        .filter(|&k| [Blade, Disc, Fruit, Other, TrunkOutline].contains(&draft.class[k]))
+        .partition(|&k| openness(&strokes[k]) < 0.2);
+    let mut found: Vec<(f64, Vec<usize>, Vec<DVec2>)> = shut
+        .into_iter()
+        .filter_map(|k| simple_outline(&strokes[k].points).map(|o| (signed_area(&o), vec![k], o)))
+        .collect();
+    let open: Vec<usize> = open.into_iter().filter(|&k| !upright(draft, k) && unsure(draft, k)).collect();
+    let lines: Vec<&[DVec2]> = open.iter().map(|&k| strokes[k].points.as_slice()).collect();
+    for ring in rings(&lines) {
+        let Some((lo, hi)) = bounds(&ring.points).filter(|_| ring.parts.len() > 1) else { continue };
+        let meets = |&g: &usize| {
+            let (a, b) = ring.gap(g);
+            a.distance(b) < 0.25 * lo.distance(hi)
+        };
+        if let Some(outline) = simple_outline(&ring.points).filter(|_| ring.gaps.iter().all(meets)) {
+            found.push((signed_area(&outline), ring.parts.iter().map(|&p| open[p]).collect(), outline));
         }
     }
+    found
 }
 
 /// A short line that begins where the only outline of a body ends goes on with it.
@@ -312,9 +303,6 @@ fn outline_goes_on(draft: &mut Draft<'_>) {
 /// A large scribble at the top of a trunk is its crown.
 fn scribbled_crown(draft: &mut Draft<'_>) {
     use StrokeClass::{Blade, Corolla, Crown, Scribble, TrunkOutline};
-    if draft.class.iter().any(|c| [Corolla, Blade].contains(c)) {
-        return;
-    }
     let sides = standing(draft, TrunkOutline);
     let crown = draft
         .of_class(Crown)
@@ -327,6 +315,13 @@ fn scribbled_crown(draft: &mut Draft<'_>) {
             continue;
         }
         let Some((lo, hi)) = bounds(&hull).filter(|_| hull.len() > 2 && unsure(draft, k)) else { continue };
+        // A leaf or petals elsewhere: no tree. Over the scribble they are pieces of it.
+        let elsewhere = [Blade, Corolla].into_iter().flat_map(|c| draft.of_class(c)).any(|j| {
+            bounds(&draft.ink.strokes[j].points).is_some_and(|(l, h)| outside(&hull, l.midpoint(h)) > REACH)
+        });
+        if elsewhere {
+            continue;
+        }
         let feet = sides.iter().filter(|s| s.2.y < lo.y && outside(&hull, s.1) < 2.0 * REACH);
         let reach =
             feet.clone().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, r), s| (l.min(s.1.x), r.max(s.1.x)));
