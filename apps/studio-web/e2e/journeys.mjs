@@ -152,7 +152,6 @@ async function habits({ page, url, shot }) {
   await until(page, 'strokes', ['is', n], 'the copies were selected, and go');
   await page.keyboard.press(']');
   await page.keyboard.press('Control+c');
-  await page.waitForTimeout(300);
   await page.keyboard.press('Control+v');
   await until(page, 'strokes', ['is', n + 1], 'one stroke pasted');
   await page.keyboard.press('Control+x');

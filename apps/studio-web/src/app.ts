@@ -51,6 +51,8 @@ export class App {
   private statsOn = false;
   private steady = 1;
   private clip = '';
+  /** A copy that the core has not answered yet. */
+  private copying: Promise<boolean> | undefined;
   /** How many strokes at the end of the document shall be selected when they are there. */
   private selectLast = 0;
   private started = false;
@@ -483,11 +485,11 @@ export class App {
   private async copy(): Promise<boolean> {
     const ids = this.sheet.selected;
     if (ids.length === 0) return false;
-    try {
-      this.clip = await this.engine.ask<string>({ kind: 'copy', ids });
-    } catch {
-      return false;
-    }
+    const asked = this.engine.ask<string>({ kind: 'copy', ids }).then((clip) => { this.clip = clip; return true; }, () => false);
+    this.copying = asked;
+    const done = await asked;
+    if (this.copying === asked) this.copying = undefined;
+    if (!done) return false;
     await navigator.clipboard.writeText(this.clip).catch(() => undefined); // our own copy serves this page
     return true;
   }
@@ -508,7 +510,9 @@ export class App {
   }
 
   private async pasteText(given: string): Promise<void> {
-    const text = /^\s*[{<]/.test(given) ? given : this.clip;
+    // While the core is busy a copy may still be on its way: it is newer than what the clipboard holds.
+    const newer = this.copying !== undefined && await this.copying;
+    const text = !newer && /^\s*[{<]/.test(given) ? given : this.clip;
     if (text === '') return;
     const step = 24 * this.sheet.unitsPerPixel;
     try {

@@ -126,7 +126,7 @@ export class Shaping {
   /** New meshes are there: numbers of branches may have changed. */
   renewed(): void {
     if (this.isBusy) return;
-    this.chosen = null;
+    // The branch that was chosen keeps its name, which is what commands go by.
     this.light(undefined);
     this.showStrip();
   }
@@ -182,11 +182,19 @@ export class Shaping {
 
   /** What is known of the branch that was pointed at, and what can be done with it. */
   private chosenBox(p: NonNullable<ShapeAnswer['picked']>): HTMLElement[] {
-    const act = (text: TextKey, id: string, name: IconName, command: Command): HTMLElement => el('button', { type: 'button', class: 'chip', id, onclick: () => this.events.run(command) }, icon(name), t(text));
+    const act = (text: TextKey, id: string, name: IconName, command: Command): HTMLElement => el('button', { type: 'button', class: 'chip', id, onclick: () => this.shapeChosen(command) }, icon(name), t(text));
     const axis = p.key as Json;
     return [el('span', {}, t('shape.branch', { order: p.order, length: String(Math.round(p.length_m * 100) / 100), count: number(p.bears) })),
       act('shape.prune', 'b-prune-chosen', 'prune', { do: 'shape', edit: { op: 'prune', axis, at: 0 } }),
       act('shape.regrow', 'b-regrow-chosen', 'regrow', { do: 'shape', edit: { op: 'regrow', axis, seed: (this.plant?.edits.length ?? 0) + 1 } })];
+  }
+
+  /** Changes the chosen branch, which is another one then. */
+  private shapeChosen(command: Command): void {
+    this.chosen = null;
+    this.light(undefined);
+    this.showStrip();
+    this.events.run(command);
   }
 
   /** Metres of the plant. */
@@ -322,7 +330,7 @@ export class Shaping {
   /** Delete: the branch that was pointed at goes. */
   remove(): boolean {
     if (this.tool !== 'pick' || !this.chosen?.key) return false;
-    this.events.run({ do: 'shape', edit: { op: 'prune', axis: this.chosen.key, at: 0 } });
+    this.shapeChosen({ do: 'shape', edit: { op: 'prune', axis: this.chosen.key, at: 0 } });
     return true;
   }
 
