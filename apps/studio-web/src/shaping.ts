@@ -56,6 +56,8 @@ export class Shaping {
   private near = NEAR;
   private moves: ShapePointer[] = [];
   private inFlight = false;
+  /** What the core is asked and what follows from its answers, in order. Never fails. */
+  private line: Promise<unknown> = Promise.resolve();
   /** Whether the list of edits is folded, as the person set it. */
   private folds: boolean | undefined;
 
@@ -300,8 +302,8 @@ export class Shaping {
     if (this.moves.length > 0) void this.send({ on: 'move', at: this.moves.splice(0) });
     this.release();
     if (!at) return;
-    void this.send({ on: 'up', at }).then((answer) => {
-      this.overlay.end();
+    this.line = this.send({ on: 'up', at }).then((answer) => {
+      if (!this.isBusy) this.overlay.end();
       if (!answer) return;
       if (answer.commit) this.events.run({ do: 'shape', edit: answer.commit });
       if (this.tool === 'pick') { this.chosen = answer.picked; this.showStrip(); }
@@ -309,7 +311,7 @@ export class Shaping {
         const plant = this.view.plantAt(e.clientX, e.clientY);
         if (plant !== undefined && plant !== this.plant?.id) this.events.select(plant);
       }
-    });
+    }).catch((e: unknown) => this.events.refused(String(e)));
   }
 
   private release(): void {
@@ -347,9 +349,17 @@ export class Shaping {
     else void this.send({ on: 'twist', degrees: up ? TWIST_DEG : -TWIST_DEG });
   }
 
-  private async send(input: ShapeInput): Promise<ShapeAnswer | undefined> {
+  /** One after another: the edit of a gesture is asked for before the next gesture begins, however long the core takes. */
+  private send(input: ShapeInput): Promise<ShapeAnswer | undefined> {
+    const request: Request = { kind: 'shape', tool: this.wire(), reach: this.view.reach(this.near), input };
+    const answered = this.line.then(() => this.ask(request));
+    this.line = answered;
+    return answered;
+  }
+
+  private async ask(request: Request): Promise<ShapeAnswer | undefined> {
     try {
-      const answer = await this.events.ask<ShapeAnswer>({ kind: 'shape', tool: this.wire(), reach: this.view.reach(this.near), input });
+      const answer = await this.events.ask<ShapeAnswer>(request);
       this.heard(answer);
       return answer;
     } catch (e) {
