@@ -195,6 +195,8 @@ impl SceneEvaluator {
         if made.from.as_ref().is_some_and(same) {
             return Ok(());
         }
+        // Until it has succeeded: an update that is stopped half-way is no result, not even of what was before.
+        made.from = None;
         let (name, seed) = (settings.name.as_str(), settings.seed);
         match &settings.maker {
             Maker::Tree(t) => made.grown(name, t, leaf.as_ref(), &settings.edits, seed, run)?,

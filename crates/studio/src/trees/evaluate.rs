@@ -20,7 +20,7 @@ use crate::template::LeafTemplate;
 /// Makes trees of a description that changes: an update does again only what a change touches.
 ///
 /// An edit by hand, a colour or a finer mesh grows nothing. Guaranteed: the same result as from a fresh evaluator;
-/// after an error the last result stays.
+/// after an error the last model stays.
 ///
 /// ```
 /// use burgeon::shape::{AxisKey, HandEdit};
@@ -41,6 +41,8 @@ pub struct TreeEvaluator {
     shaper: Shaper,
     shaped: Option<Shaped>,
     model: Option<(Skinned, Model)>,
+    /// The model is of a plant that is no more: shown until there is another, in case an update is stopped.
+    stale: bool,
     done: Vec<&'static str>,
 }
 
@@ -117,7 +119,7 @@ impl TreeEvaluator {
         for stage in &told.stages {
             report.book(if stage.name == "grow" { "structure" } else { "depth" }, stage.ms);
         }
-        (self.dressed, self.shaped, self.model) = (None, None, None);
+        (self.dressed, self.shaped, self.stale) = (None, None, true);
         self.done.extend(["structure", "depth"]);
         self.grown = Some(Raw { from: (wanted, blade, seed), grown, warnings: told.warnings });
         Ok(obstacles)
@@ -138,7 +140,7 @@ impl TreeEvaluator {
             scale_to_height(&mut grown, height);
         }
         self.shaper.forget();
-        (self.shaped, self.model) = (None, None);
+        (self.shaped, self.stale) = (None, true);
         self.dressed = Some(Dressed { from, grown });
     }
 
@@ -160,7 +162,7 @@ impl TreeEvaluator {
             let (plant, told) = self.shaper.shape(&dressed.grown.plant, &options.edits, &context, run)?;
             Some(Shaped { edits: options.edits.clone(), plant, told })
         };
-        (self.shaped, self.model) = (shaped, None);
+        (self.shaped, self.stale) = (shaped, true);
         self.done.push("shape");
         Ok(())
     }
@@ -174,12 +176,12 @@ impl TreeEvaluator {
         run: &Run<'_>,
     ) -> Result<(), TreeError> {
         let from = (skin_spec(spec, seed, options), spec.look.clone(), options.leaf.clone());
-        if self.model.as_ref().is_some_and(|(f, _)| *f == from) {
+        if !self.stale && self.model.as_ref().is_some_and(|(f, _)| *f == from) {
             return Ok(());
         }
         let Some(plant) = self.plant() else { return Ok(()) };
         let model = report.stage("mesh", run.clock, |_| skinned(plant, &from, run))?;
-        self.model = Some((from, model));
+        (self.model, self.stale) = (Some((from, model)), false);
         self.done.push("mesh");
         Ok(())
     }
@@ -240,7 +242,7 @@ impl TreeEvaluator {
         self.shaped.as_ref().map(|s| &s.plant).or_else(grown)
     }
 
-    /// The model of the last update that succeeded so far.
+    /// The model of the last update that succeeded.
     pub fn model(&self) -> Option<&Model> {
         self.model.as_ref().map(|(_, m)| m)
     }

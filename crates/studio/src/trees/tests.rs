@@ -1,6 +1,7 @@
 //! Trees end to end.
 
 use super::*;
+use base::{CancelToken, Executor};
 use glam::DVec3;
 
 fn plain(spec: &TreeSpec) -> MadeTree {
@@ -105,7 +106,7 @@ fn open_and_inverted_meshes_are_named() {
 
 #[test]
 fn growth_stops_when_asked() {
-    let token = base::CancelToken::new();
+    let token = CancelToken::new();
     token.cancel();
     let run = Run { cancel: &token, ..Run::plain() };
     for key in ["oak", "alder", "palm"] {
@@ -161,4 +162,50 @@ fn only_what_a_change_touches_is_made_again() {
     assert_eq!(step(&spec, 2, &options).0, "structure depth shape mesh");
     options.edits.clear();
     assert_eq!(step(&spec, 2, &options).0, "shape mesh");
+}
+
+/// Asks to stop when work is shared out for the n-th time.
+#[derive(Debug)]
+struct StopAt<'a>(std::sync::atomic::AtomicUsize, &'a CancelToken);
+
+impl Executor for StopAt<'_> {
+    fn for_each(&self, n: usize, job: &(dyn Fn(usize) + Sync)) {
+        if self.0.fetch_sub(1, std::sync::atomic::Ordering::Relaxed) == 1 {
+            self.1.cancel();
+        }
+        (0..n).for_each(job);
+    }
+}
+
+#[test]
+fn a_tree_that_was_left_half_edited_is_still_there() {
+    use document::{Editor, Maker, NewPlant, SceneCommand, Settings, ShapeCommand};
+    let bush = "name = \"bush\"\n[method]\nkind = \"competition\"\npoints = 100\nlifespan = 1\n";
+    let spec = read_tree_spec(bush, &|_| None).expect("sound");
+    let maker = Maker::Tree(Box::new(crate::tree_settings(&spec, None)));
+    let mut editor = Editor::default();
+    let settings = Settings { maker, ..Settings::default() };
+    editor.run(SceneCommand::Add(Box::new(NewPlant { settings, strokes: vec![] }))).expect("sound");
+    let tree = editor.document().plants()[1].id();
+    let mut scene = crate::SceneEvaluator::default();
+    scene.update(tree, editor.document(), &Run::plain()).expect("sound");
+    let whole = scene.get(tree).expect("made").model.clone();
+    let edit = shape::HandEdit::Prune { axis: shape::AxisKey::Path(vec![0, 0]), at: 0.0 };
+    let mut stopped = 0;
+    for n in 1..30 {
+        editor.run(ShapeCommand::Add(edit.clone().into()).of(tree)).expect("sound");
+        let cancel = CancelToken::new();
+        let executor = StopAt(n.into(), &cancel);
+        let run = Run { cancel: &cancel, executor: &executor, ..Run::plain() };
+        let done = scene.update(tree, editor.document(), &run);
+        stopped += usize::from(done.is_err());
+        assert!(scene.get(tree).is_some(), "gone after the {n}-th piece of work");
+        editor.undo();
+        scene.update(tree, editor.document(), &Run::plain()).expect("sound");
+        assert_eq!(scene.get(tree).map(|p| p.model), Some(&whole), "after the {n}-th piece of work");
+        if done.is_ok() {
+            break;
+        }
+    }
+    assert!(stopped > 0, "nothing was stopped");
 }
