@@ -1,10 +1,10 @@
 //! `cargo xtask flowers`: makes the pictures of docs/bloom.md and of the venations in docs/leaves.md anew.
 
 use std::fs::File;
-use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-use crate::shell::{Outcome, cargo, command, repository, say, target_dir};
+use crate::pixels::{Pixels, length, rgba};
+use crate::shell::{Outcome, built_burgeon, command, repository, say};
 
 /// Species, days from bud to full bloom, and from there to wilted.
 const FLOWERS: [(&str, f64, f64); 5] = [
@@ -21,8 +21,7 @@ struct Maker {
 }
 
 pub(crate) fn run() -> Outcome {
-    cargo(&["build", "--release", "--package", "burgeon-cli"])?;
-    let burgeon = target_dir().join("release").join(format!("burgeon{}", std::env::consts::EXE_SUFFIX));
+    let burgeon = built_burgeon()?;
     let folder = std::env::temp_dir().join(format!("burgeon-flowers-{}", std::process::id()));
     std::fs::create_dir_all(&folder).map_err(|e| format!("cannot make {}: {e}", folder.display()))?;
     let maker = Maker { burgeon, folder };
@@ -113,38 +112,21 @@ fn tiled(rows: &[Vec<PathBuf>], to: &Path) -> Outcome {
     let (mut width, mut height) = (0, 0);
     for row in rows {
         let read = row.iter().map(|p| rgba(p)).collect::<Result<Vec<_>, _>>()?;
-        let Some((wide, high)) = read.first().map(|r| (r.1, r.2)) else { continue };
+        let Some((wide, high)) = read.first().map(|r| (r.width, r.height)) else { continue };
         width = wide * read.len();
         height += high;
         for y in 0..high {
-            for (p, w, _) in &read {
-                let row = p[4 * w * y..4 * w * (y + 1)].chunks_exact(4);
-                row.for_each(|c| pixels.extend(&c[..3]));
+            for Pixels { rgba, width, .. } in &read {
+                rgba[width * y..width * (y + 1)].iter().for_each(|c| pixels.extend(&c[..3]));
             }
         }
     }
     let fault = |e: &dyn std::fmt::Display| format!("{}: {e}", to.display());
-    let size = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
     let out = File::create(to).map_err(|e| fault(&e))?;
-    let mut encoder = png::Encoder::new(std::io::BufWriter::new(out), size(width), size(height));
+    let mut encoder = png::Encoder::new(std::io::BufWriter::new(out), length(width), length(height));
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_compression(png::Compression::High);
     let mut writer = encoder.write_header().map_err(|e| fault(&e))?;
     writer.write_image_data(&pixels).map_err(|e| fault(&e))?;
     writer.finish().map_err(|e| fault(&e))
-}
-
-/// The pixels of a picture as RGBA, its width and height.
-fn rgba(path: &Path) -> Result<(Vec<u8>, usize, usize), String> {
-    let fault = |e: &dyn std::fmt::Display| format!("{}: {e}", path.display());
-    let file = File::open(path).map_err(|e| fault(&e))?;
-    let mut decoder = png::Decoder::new(BufReader::new(file));
-    decoder.set_transformations(png::Transformations::ALPHA);
-    let mut reader = decoder.read_info().map_err(|e| fault(&e))?;
-    let mut pixels = vec![0; reader.output_buffer_size().ok_or_else(|| fault(&"is too large"))?];
-    let info = reader.next_frame(&mut pixels).map_err(|e| fault(&e))?;
-    if info.color_type != png::ColorType::Rgba || info.bit_depth != png::BitDepth::Eight {
-        return Err(fault(&"is not RGBA of 8 bits"));
-    }
-    Ok((pixels, info.width as usize, info.height as usize))
 }

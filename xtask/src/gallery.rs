@@ -6,7 +6,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::shell::{Outcome, cargo, command, repository, say, target_dir};
+use crate::shell::{Outcome, built_burgeon, burgeon, command, repository, say, target_dir};
 
 /// Table 1 of paper 000: strokes, leaves or petals, branches, triangles, milliseconds.
 const PAPER: [(&str, [u32; 5]); 8] = [
@@ -22,7 +22,7 @@ const PAPER: [(&str, [u32; 5]); 8] = [
 
 /// Makes the pictures and writes both pages.
 pub(crate) fn run() -> Outcome {
-    cargo(&["build", "--release", "--package", "burgeon-cli"])?;
+    built_burgeon()?;
     let mut page = String::from(
         "# The eight sketches of the paper's Table 1\n\n\
          He and Cheng (2021) report eight drawings by users. Theirs are not published, so these are our own of the \
@@ -92,11 +92,10 @@ fn make(name: &str) -> Outcome<Value> {
     for folder in [picture.parent(), Some(scratch.as_path())].into_iter().flatten() {
         std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     }
-    let burgeon = target_dir().join("release").join(format!("burgeon{}", std::env::consts::EXE_SUFFIX));
     let report = scratch.join("report.json");
     let as_text = |p: &Path| p.to_string_lossy().into_owned();
     command(
-        &burgeon,
+        burgeon("release"),
         &[
             "sketch",
             &format!("fixtures/sketches/{name}.svg"),

@@ -5,6 +5,7 @@ mod flowers;
 mod gallery;
 mod layers;
 mod made_strokes;
+mod pixels;
 mod shell;
 mod species;
 mod studio;
@@ -74,10 +75,8 @@ fn main() -> ExitCode {
 /// The main job on the sample sketch, as a newcomer would do it.
 fn run(args: &[String]) -> Outcome {
     let root = repository();
-    cargo(&["build", "--release", "--package", "burgeon-cli"])?;
+    let burgeon = shell::built_burgeon()?;
     std::fs::create_dir_all(root.join("out")).map_err(|e| format!("cannot make the folder out: {e}"))?;
-    let burgeon =
-        shell::target_dir().join("release").join(format!("burgeon{}", std::env::consts::EXE_SUFFIX));
     say("\n$ burgeon sketch fixtures/sketches/sample.svg -o out/sample.glb --png out/sample.png");
     shell::command(
         &burgeon,

@@ -24,6 +24,17 @@ pub(crate) fn target_dir() -> PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| repository().join("target"), PathBuf::from)
 }
 
+/// The command line as a profile's folder of the build holds it.
+pub(crate) fn burgeon(profile: &str) -> PathBuf {
+    target_dir().join(profile).join(format!("burgeon{}", std::env::consts::EXE_SUFFIX))
+}
+
+/// Builds the command line for release and says where it is.
+pub(crate) fn built_burgeon() -> Outcome<PathBuf> {
+    cargo(&["build", "--release", "--package", "burgeon-cli"])?;
+    Ok(burgeon("release"))
+}
+
 /// Where tools that several checkouts share are kept.
 pub(crate) fn cache_dir() -> PathBuf {
     let base = std::env::var_os("XDG_CACHE_HOME")

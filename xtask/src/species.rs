@@ -3,12 +3,12 @@
 
 use std::fmt::Write as _;
 use std::fs::File;
-use std::io::BufReader;
 use std::path::Path;
 
 use serde_json::Value;
 
-use crate::shell::{Outcome, cargo, command, repository, say, target_dir};
+use crate::pixels::{Pixels, length, rgba};
+use crate::shell::{Outcome, built_burgeon, command, repository, say};
 
 const FROM: &str = "<!-- species: written by cargo xtask species -->\n";
 const TO: &str = "<!-- end of species -->\n";
@@ -18,8 +18,7 @@ const FEW: usize = 16;
 const MANY: usize = 96;
 
 pub(crate) fn run() -> Outcome {
-    cargo(&["build", "--release", "--package", "burgeon-cli"])?;
-    let burgeon = target_dir().join("release").join(format!("burgeon{}", std::env::consts::EXE_SUFFIX));
+    let burgeon = built_burgeon()?;
     let root = repository();
     let small = root.join("apps/studio-web/public/presets");
     std::fs::create_dir_all(&small).map_err(|e| format!("cannot make {}: {e}", small.display()))?;
@@ -103,17 +102,7 @@ fn grouped(n: u64) -> String {
 /// Writes a picture again with 16 colours, 4 bits a pixel, or up to 256, 8 bits; one of them is transparent.
 fn shrink(path: &Path, colours: usize) -> Outcome {
     let fault = |e: &dyn std::fmt::Display| format!("{}: {e}", path.display());
-    let file = File::open(path).map_err(|e| fault(&e))?;
-    let mut decoder = png::Decoder::new(BufReader::new(file));
-    // A picture with a sky comes without alpha.
-    decoder.set_transformations(png::Transformations::ALPHA);
-    let mut reader = decoder.read_info().map_err(|e| fault(&e))?;
-    let mut pixels = vec![0; reader.output_buffer_size().ok_or_else(|| fault(&"is too large"))?];
-    let info = reader.next_frame(&mut pixels).map_err(|e| fault(&e))?;
-    if info.color_type != png::ColorType::Rgba || info.bit_depth != png::BitDepth::Eight {
-        return Err(fault(&"is not RGBA of 8 bits"));
-    }
-    let pixels: Vec<[u8; 4]> = pixels.chunks_exact(4).map(|p| [p[0], p[1], p[2], p[3]]).collect();
+    let Pixels { rgba: pixels, width, height } = rgba(path)?;
     let seen: Vec<[u8; 3]> = pixels.iter().filter(|p| p[3] >= 128).map(|p| [p[0], p[1], p[2]]).collect();
     let palette = median_cut(seen, colours - 1);
     let nearest = |p: &[u8; 4]| -> u8 {
@@ -124,13 +113,13 @@ fn shrink(path: &Path, colours: usize) -> Outcome {
     let indices: Vec<u8> = pixels.iter().map(nearest).collect();
     let four = colours <= FEW;
     let packed: Vec<u8> = if four {
-        let rows = indices.chunks(info.width as usize);
+        let rows = indices.chunks(width);
         rows.flat_map(|row| row.chunks(2).map(|p| p[0] << 4 | p.get(1).copied().unwrap_or(0))).collect()
     } else {
         indices
     };
     let out = File::create(path).map_err(|e| fault(&e))?;
-    let mut encoder = png::Encoder::new(std::io::BufWriter::new(out), info.width, info.height);
+    let mut encoder = png::Encoder::new(std::io::BufWriter::new(out), length(width), length(height));
     encoder.set_color(png::ColorType::Indexed);
     encoder.set_depth(if four { png::BitDepth::Four } else { png::BitDepth::Eight });
     encoder.set_palette([&[0; 3][..], palette.as_flattened()].concat());

@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 use std::process::Command;
 
-use crate::shell::{Outcome, cargo, finish, output, prepare, repository, say, target_dir};
+use crate::shell::{
+    Outcome, built_burgeon, burgeon, cargo, finish, output, prepare, repository, say, target_dir,
+};
 use crate::toolchain::{apt_install, is_root_on_debian};
 use crate::web::{Tools, bindgen, build_wasm};
 
@@ -50,14 +52,9 @@ pub(crate) fn headless() -> bool {
 /// Builds the Studio and serves it until Ctrl-C; `args` go to `burgeon studio`.
 pub(crate) fn open(tools: &Tools, args: &[String]) -> Outcome {
     build(tools, true)?;
-    cargo(&["build", "--release", "--package", "burgeon-cli"])?;
-    let mut c = prepare(burgeon("release"), &["studio", "--folder"]);
+    let mut c = prepare(built_burgeon()?, &["studio", "--folder"]);
     c.arg(folder().join("dist")).args(args);
     finish(c)
-}
-
-fn burgeon(profile: &str) -> PathBuf {
-    target_dir().join(profile).join(format!("burgeon{}", std::env::consts::EXE_SUFFIX))
 }
 
 /// Types, texts and geometry in Node, then the main journeys in a browser.

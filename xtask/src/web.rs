@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::shell::{
-    Outcome, cache_dir, cargo_path, command, finish, output, prepare, repository, say, target_dir,
+    Outcome, burgeon, cache_dir, cargo_path, command, finish, output, prepare, repository, say, target_dir,
 };
 use crate::toolchain::{TARGET, WasmCargo, is_root_on_debian, shown, wasm_cargo};
 
@@ -82,8 +82,7 @@ pub(crate) fn test(tools: &Tools) -> Outcome {
     finish(c)?;
     let project = repository().join("fixtures/projects/version-4.burgeon");
     let report = out.join("scene.json");
-    let mut c =
-        prepare(target_dir().join("debug").join(format!("burgeon{}", std::env::consts::EXE_SUFFIX)), &[]);
+    let mut c = prepare(burgeon("debug"), &[]);
     c.args(["sketch", "--quiet"]).arg(&project).arg("-o").arg(out.join("native/scene.glb"));
     c.arg("--report").arg(&report);
     finish(c)?;
@@ -217,7 +216,7 @@ const DETAIL: &str = "0.1";
 /// The digests of every kind of leaf, every flower and the tree of every preset, by the native program on one and on
 /// four threads; returns their file and the files that they were made of.
 fn native_organs(out: &Path) -> Outcome<(PathBuf, Vec<PathBuf>)> {
-    let burgeon = target_dir().join("debug").join(format!("burgeon{}", std::env::consts::EXE_SUFFIX));
+    let burgeon = burgeon("debug");
     let mut files: Vec<PathBuf> =
         (1..=3).map(|k| repository().join(format!("fixtures/leaves/leaf{k}.csv"))).collect();
     files.extend(made_organs(out, &burgeon)?);
@@ -294,7 +293,7 @@ fn tree_presets() -> Outcome<Vec<String>> {
 /// Makes every drawing with the native program on one and on four threads; returns the report of the first.
 fn native_models(drawings: &[PathBuf], to: &Path) -> Outcome<PathBuf> {
     std::fs::create_dir_all(to).map_err(|e| format!("{}: {e}", shown(to)))?;
-    let burgeon = target_dir().join("debug").join(format!("burgeon{}", std::env::consts::EXE_SUFFIX));
+    let burgeon = burgeon("debug");
     crate::shell::cargo(&["build", "--package", "burgeon-cli"])?;
     let mut reports = Vec::new();
     for threads in ["1", "4"] {

@@ -1,0 +1,36 @@
+//! Pictures that the pages of docs are made of.
+
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+/// A picture in memory.
+#[derive(Debug)]
+pub(crate) struct Pixels {
+    /// Row by row from the top.
+    pub(crate) rgba: Vec<[u8; 4]>,
+    pub(crate) width: usize,
+    pub(crate) height: usize,
+}
+
+/// Reads a PNG of 8 bits a channel, with or without transparency.
+pub(crate) fn rgba(path: &Path) -> Result<Pixels, String> {
+    let fault = |e: &dyn std::fmt::Display| format!("{}: {e}", path.display());
+    let file = File::open(path).map_err(|e| fault(&e))?;
+    let mut decoder = png::Decoder::new(BufReader::new(file));
+    // A picture with a sky comes without alpha.
+    decoder.set_transformations(png::Transformations::ALPHA);
+    let mut reader = decoder.read_info().map_err(|e| fault(&e))?;
+    let mut bytes = vec![0; reader.output_buffer_size().ok_or_else(|| fault(&"is too large"))?];
+    let info = reader.next_frame(&mut bytes).map_err(|e| fault(&e))?;
+    if info.color_type != png::ColorType::Rgba || info.bit_depth != png::BitDepth::Eight {
+        return Err(fault(&"is not RGBA of 8 bits"));
+    }
+    let (rgba, _) = bytes.as_chunks::<4>();
+    Ok(Pixels { rgba: rgba.to_vec(), width: info.width as usize, height: info.height as usize })
+}
+
+/// A width or height as a PNG's header has it.
+pub(crate) fn length(pixels: usize) -> u32 {
+    u32::try_from(pixels).unwrap_or(u32::MAX)
+}
