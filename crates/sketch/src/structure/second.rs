@@ -40,6 +40,16 @@ pub(super) fn openness(s: &InkStroke) -> f64 {
     s.points[0].distance(s.points[s.points.len() - 1]) / s.length.max(1e-12)
 }
 
+/// The share of every `stride`th point that lies in a closed outline, 0 to 1; 0 of no points.
+pub(super) fn share_inside(points: &[DVec2], stride: usize, outline: &[DVec2]) -> f64 {
+    let (mut looked, mut hits) = (0_u32, 0_u32);
+    for &p in points.iter().step_by(stride) {
+        looked += 1;
+        hits += u32::from(contains(outline, p));
+    }
+    f64::from(hits) / f64::from(looked.max(1))
+}
+
 /// May be thought over: not set by the user.
 pub(super) fn unsure(draft: &Draft<'_>, k: usize) -> bool {
     draft.confidence[k] < 1.0 && draft.ink.strokes[k].mode == StrokeMode::Parts
@@ -75,12 +85,7 @@ fn lone_leaf(draft: &mut Draft<'_>) {
     let size = pca.extent[0].max(pca.extent[1]);
     let inside = |s: &InkStroke| {
         let stride = s.points.len().div_ceil(40);
-        let (n, hits) = s
-            .points
-            .iter()
-            .step_by(stride)
-            .fold((0_u32, 0_u32), |(n, h), &p| (n + 1, h + u32::from(contains(&outline, p))));
-        f64::from(hits) / f64::from(n.max(1))
+        share_inside(&s.points, stride, &outline)
     };
     let lines: Vec<usize> = (0..draft.class.len())
         .take(400)

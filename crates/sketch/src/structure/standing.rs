@@ -11,7 +11,7 @@ use super::blade::{nearest_on_ring, split_stalks};
 use super::near::bounds;
 use super::outlines::width_at;
 use super::rings::rings;
-use super::second::{openness, unsure};
+use super::second::{openness, share_inside, unsure};
 use crate::StrokeClass;
 
 /// More strokes than this are not thought over: nobody draws one plant with so many, and rules compare pairs.
@@ -344,15 +344,7 @@ fn in_crowns(draft: &mut Draft<'_>) {
             continue;
         }
         let s = &draft.ink.strokes[k];
-        let within = |c: &&Vec<DVec2>| {
-            let (n, hits) = s
-                .points
-                .iter()
-                .step_by(4)
-                .fold((0_u32, 0_u32), |(n, h), &p| (n + 1, h + u32::from(contains(c, p))));
-            10 * hits >= 9 * n
-        };
-        let Some(crown) = crowns.iter().find(within) else { continue };
+        let Some(crown) = crowns.iter().find(|c| share_inside(&s.points, 4, c) >= 0.9) else { continue };
         let hull = convex_hull(&s.points);
         let Some((lo, hi)) = bounds(&s.points).filter(|_| hull.len() > 2) else { continue };
         let area = signed_area(&hull);
