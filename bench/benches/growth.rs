@@ -14,11 +14,10 @@ use std::time::Instant;
 
 use base::{Clock as _, Report, Run, Seed};
 use burgeon::glam::DVec3;
-use burgeon::mesh::Model;
-use burgeon::skin::{SkinSpec, skin};
+use burgeon_bench::{Oak, Stopwatch, TwoThreads};
 use growth::{
-    ColonizeSpec, Colonized, CompetitionSpec, Envelope, Fate, Grown, LeafSpec, Method, Obstacles,
-    SelfOrganized, SelfOrganizingSpec, TreeSpec, colonize, self_organize,
+    ColonizeSpec, Colonized, Envelope, Fate, Obstacles, SelfOrganized, SelfOrganizingSpec, colonize,
+    self_organize,
 };
 
 fn main() {
@@ -121,43 +120,37 @@ fn metamers() {
     }
 }
 
-/// An oak in the envelope of the paper's Table 2, with about as many triangles (122,100 there): two life cycles, and
-/// so many of the leaves that have room (those of crowns have 10 to 12 triangles at this fineness).
-fn oak() -> (Grown, Model, Report) {
-    let spec = TreeSpec {
-        name: "oak".into(),
-        method: Method::Competition(CompetitionSpec { lifespan: 2, points: 1500, ..CompetitionSpec::oak() }),
-        leaves: Some(LeafSpec { leaf_keep: 0.58, ..LeafSpec::default() }),
-        ..TreeSpec::default()
-    };
-    let (run, mut report) = (Run { clock: &Watch(Instant::now()), ..Run::plain() }, Report::default());
-    let tree = growth::grow(&spec, None, Seed::new(1), &run, &mut report).unwrap();
-    let surface = SkinSpec { detail: 0.25, textures: false, ..SkinSpec::default() };
-    let model = report.stage("mesh", run.clock, |_| skin(&tree.plant, &surface, &run)).unwrap();
-    (tree, model, report)
-}
-
 fn oak_stages() {
-    let (tree, model, _) = oak();
+    let clock = Stopwatch::start();
+    let one = Run { clock: &clock, ..Run::plain() };
+    let two = Run { executor: &TwoThreads, ..one };
+    let (tree, model, _) = Oak::FULL.made(&one);
     println!(
-        "\noak: {} triangles, {} leaves, {} axes, {} nodes",
+        "\noak: {} triangles, {} leaves, {} axes, {} nodes (medians of 25, on one thread and on two)",
         model.triangle_count(),
         tree.leaves.kept,
         tree.plant.axes.len(),
         tree.plant.nodes.position.len()
     );
+    let runs = [one, two].map(|run| (0..25).map(|_| Oak::FULL.made(&run).2).collect::<Vec<_>>());
     for name in ["grow", "wood", "leaves", "mesh"] {
-        let of = |r: &Report| r.stages.iter().filter(|s| s.name == name).map(|s| s.ms).sum::<f64>();
-        let ms = (0..20).map(|_| of(&oak().2)).sum::<f64>() / 20.0;
-        println!("  {name:7} {ms:7.2} ms");
+        let [one, two] = runs.each_ref().map(|reports| {
+            let of = |r: &Report| r.stages.iter().filter(|s| s.name == name).map(|s| s.ms).sum::<f64>();
+            let mut ms: Vec<f64> = reports.iter().map(of).collect();
+            ms.sort_by(f64::total_cmp);
+            ms[ms.len() / 2]
+        });
+        println!("  {name:7} {one:7.2} ms {two:7.2} ms");
     }
     println!();
 }
 
 /// Target: 30 ms from spec to meshes.
-#[divan::bench]
-fn oak_to_meshes() -> usize {
-    oak().1.triangle_count()
+#[divan::bench(args = [1, 2])]
+fn oak_to_meshes(threads: usize) -> usize {
+    let one = Run::plain();
+    let run = if threads == 2 { Run { executor: &TwoThreads, ..one } } else { one };
+    Oak::FULL.made(&run).1.triangle_count()
 }
 
 /// Targets: 4 ms and 60 ms.

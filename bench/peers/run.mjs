@@ -32,8 +32,9 @@ function ours(args) {
 }
 
 // The oak of our own benchmark, and one with about as many triangles as the most used web peer's.
-peer('Burgeon, oak of the benchmark', () => ours(['0.58', '0.25', '20', '2', '1500']));
-peer('Burgeon, small oak', () => ours(['0.06', '0.2', '20', '1', '2500']));
+peer('Burgeon, oak of the benchmark', () => ours(['full', '1']));
+peer('Burgeon, the same on two threads', () => ours(['full', '2']));
+peer('Burgeon, small oak', () => ours(['small', '1']));
 
 peer('ez-tree (npm), Oak Large', () => {
   writeFileSync(join(away, 'package.json'), '{"type":"module"}');

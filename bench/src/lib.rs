@@ -1,11 +1,15 @@
-//! What the benchmarks share: the drawings of Table 1 and two threads.
+//! What the benchmarks share: the drawings of Table 1, an oak, and two threads.
 
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
+use base::{Report, Run, Seed};
 use burgeon::formats::{DrawingFormat, read_drawings};
+use burgeon::mesh::Model;
 use burgeon::sketch::Drawing;
+use burgeon::skin::{SkinSpec, skin};
 use burgeon::{Clock, Executor};
+use growth::{CompetitionSpec, Grown, LeafSpec, Method, TreeSpec, grow};
 use rayon::prelude::*;
 
 /// The eight drawings of the paper's Table 1.
@@ -23,6 +27,48 @@ pub fn table1(name: &str) -> Drawing {
         let bytes = std::fs::read(&path).expect("the fixture is in the repository");
         let mut drawings = read_drawings(bytes.as_slice(), DrawingFormat::Svg, name);
         drawings.next().expect("the fixture has a drawing").expect("the fixture can be read").drawing
+    }
+}
+
+/// An oak in the envelope of paper 001's Table 2, from its spec to meshes without textures.
+#[derive(Clone, Copy, Debug)]
+pub struct Oak {
+    lifespan: u32,
+    points: u32,
+    leaf_spacing_m: f64,
+    leaf_keep: f64,
+    detail: f64,
+}
+
+impl Oak {
+    /// About as many triangles as the paper's (122,100): two life cycles, leaves 5 cm apart, of 4 triangles each.
+    pub const FULL: Self =
+        Self { lifespan: 2, points: 1500, leaf_spacing_m: 0.05, leaf_keep: 1.0, detail: 0.45 };
+    /// About as many triangles as the large oak of the most used web peer.
+    pub const SMALL: Self =
+        Self { lifespan: 1, points: 2500, leaf_spacing_m: 0.06, leaf_keep: 0.06, detail: 0.2 };
+
+    /// Grows it and gives it its surface; the report has the times of the stages `grow`, `wood`, `leaves`, `mesh`.
+    ///
+    /// # Panics
+    /// When it cannot be grown: a benchmark without its input is worth nothing.
+    pub fn made(&self, run: &Run<'_>) -> (Grown, Model, Report) {
+        let (lifespan, points) = (self.lifespan, self.points);
+        let (spacing_m, leaf_keep) = (self.leaf_spacing_m, self.leaf_keep);
+        let spec = TreeSpec {
+            name: "oak".into(),
+            method: Method::Competition(CompetitionSpec { lifespan, points, ..CompetitionSpec::oak() }),
+            leaves: Some(LeafSpec { spacing_m, leaf_keep, ..LeafSpec::default() }),
+            ..TreeSpec::default()
+        };
+        let mut report = Report::default();
+        let surface = SkinSpec { detail: self.detail, textures: false, ..SkinSpec::default() };
+        #[expect(clippy::expect_used, reason = "a benchmark without its input is worth nothing")]
+        let tree = grow(&spec, None, Seed::new(1), run, &mut report).expect("the spec is sound");
+        let model = report.stage("mesh", run.clock, |_| skin(&tree.plant, &surface, run));
+        #[expect(clippy::expect_used, reason = "a benchmark without its input is worth nothing")]
+        let model = model.expect("nobody cancels");
+        (tree, model, report)
     }
 }
 

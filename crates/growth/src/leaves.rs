@@ -3,7 +3,7 @@
 //! `Plant + LeafSpec -> candidates by phyllotaxis -> shadows -> the brightest` (paper 001, section 3.3)
 
 use base::ops::{self, PI};
-use base::{Draw, Report, Run, Seed};
+use base::{Draw, Report, Run, Seed, map_indexed};
 use glam::{DVec2, DVec3};
 use plant::{AxisId, Blade, Frame, Lift, NodeId, Organ, OrganKind, Phyllotaxis, Plant, Relief, Shape};
 use schemars::JsonSchema;
@@ -12,6 +12,9 @@ use serde::{Deserialize, Serialize};
 use crate::error::within;
 use crate::self_organize::ShadowGrid;
 use crate::{Arrangement, GrowthError, LeafMark, Obstacles};
+
+/// Axes whose leaves are placed in one job.
+const GROUP: usize = 64;
 
 /// What leaves a tree bears.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -201,13 +204,7 @@ pub fn add_leaves(
     let length = blade.length();
     let scale = if length > 1e-9 && length.is_finite() { spec.length_m / length } else { spec.length_m };
     if marks.is_empty() {
-        all.reserve(room(plant, spec, phyllotaxis));
-        for a in 0..plant.axes.len() {
-            if a % 256 == 0 {
-                run.cancel.check()?;
-            }
-            on_axis(plant, AxisId::new(a), spec, phyllotaxis, scale, seed, &mut all);
-        }
+        all = on_shoots(plant, spec, phyllotaxis, scale, seed, run)?;
     } else {
         for (i, (node, mark)) in marks.iter().enumerate().take(spec.max_leaves as usize) {
             let key = seed.child(i as u64).number();
@@ -255,21 +252,55 @@ pub fn add_leaves(
     Ok(LeafCount { placed, buried, fallen: all.len() - kept, kept })
 }
 
-/// No less than the places on all axes, so that the list is made once.
-fn room(plant: &Plant, spec: &LeafSpec, phyllotaxis: Phyllotaxis) -> usize {
-    let thin = |a: AxisId| {
-        let (points, radii) = (plant.axis_points(a), plant.axis_radii(a));
-        let pieces = points.windows(2).zip(radii.windows(2));
-        pieces
-            .filter(|(_, r)| r[0].min(r[1]) <= spec.max_radius_m)
-            .map(|(p, _)| p[0].distance(p[1]))
-            .sum::<f64>()
-    };
-    let length: f64 = (0..plant.axes.len()).map(|a| thin(AxisId::new(a))).sum();
-    let nodes = length / spec.spacing_m + plant.axes.len() as f64;
+/// Places on all axes, in their order; those of several axes are found at a time.
+fn on_shoots(
+    plant: &Plant,
+    spec: &LeafSpec,
+    phyllotaxis: Phyllotaxis,
+    scale: f64,
+    seed: Seed,
+    run: &Run<'_>,
+) -> Result<Vec<Candidate>, GrowthError> {
+    let most = spec.max_leaves as usize;
+    let rooms: Vec<usize> =
+        (0..plant.axes.len()).map(|a| room(plant, AxisId::new(a), spec, phyllotaxis).min(most)).collect();
+    let mut all = Vec::with_capacity(rooms.iter().fold(0, |sum: usize, &n| most.min(sum + n)));
+    let mut from = 0;
+    // Seldom more than one round: each takes so many axes as have room for all leaves that may be.
+    while from < rooms.len() && all.len() < most {
+        let mut taken = 0;
+        let fit = rooms[from..].iter().take_while(|&&n| {
+            taken += n;
+            taken <= most
+        });
+        let to = from + fit.count().max(1);
+        let groups = map_indexed(run.executor, (to - from).div_ceil(GROUP), |g| {
+            run.cancel.check()?;
+            let axes = from + g * GROUP..to.min(from + (g + 1) * GROUP);
+            let mut places = Vec::with_capacity(rooms[axes.clone()].iter().sum());
+            for a in axes {
+                on_axis(plant, AxisId::new(a), spec, phyllotaxis, scale, seed, &mut places);
+            }
+            Ok::<_, GrowthError>(places)
+        });
+        for group in groups {
+            all.append(&mut group?);
+        }
+        from = to;
+    }
+    all.truncate(most);
+    Ok(all)
+}
+
+/// No less than the places on an axis.
+fn room(plant: &Plant, id: AxisId, spec: &LeafSpec, phyllotaxis: Phyllotaxis) -> usize {
+    let (points, radii) = (plant.axis_points(id), plant.axis_radii(id));
+    let pieces = points.windows(2).zip(radii.windows(2));
+    let thin = pieces.filter(|(_, r)| r[0].min(r[1]) <= spec.max_radius_m);
+    let length: f64 = thin.map(|(p, _)| p[0].distance(p[1])).sum();
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, and is bounded")]
-    let room = (nodes * f64::from(phyllotaxis.per_node())) as usize;
-    room.min(spec.max_leaves as usize)
+    let room = ((length / spec.spacing_m + 1.0) * f64::from(phyllotaxis.per_node())) as usize;
+    room
 }
 
 /// Places on the thin part of one axis, from its tip down, so that the tip always has its leaf.
@@ -280,7 +311,7 @@ fn on_axis(
     phyllotaxis: Phyllotaxis,
     scale: f64,
     seed: Seed,
-    all: &mut Vec<Candidate>,
+    places: &mut Vec<Candidate>,
 ) {
     let axis = plant.axis(id);
     let (points, radii) = (plant.axis_points(id), plant.axis_radii(id));
@@ -296,7 +327,7 @@ fn on_axis(
         while until_next <= length - bare {
             let t = if length > 0.0 { until_next / length } else { 0.0 };
             let radius = radii[i] + (radii[i - 1] - radii[i]) * t;
-            if radius > spec.max_radius_m || all.len() >= spec.max_leaves as usize {
+            if radius > spec.max_radius_m || places.len() >= spec.max_leaves as usize {
                 return;
             }
             let frame = &frames[i];
@@ -307,7 +338,7 @@ fn on_axis(
                 let out = frame.normal * c + frame.binormal * s;
                 let at = from + (to - from) * t + out * radius;
                 let node = axis.nodes.start as usize + if t > 0.5 { i - 1 } else { i };
-                all.push(leaf(spec, at, frame.tangent, out, scale, key, NodeId::new(node)));
+                places.push(leaf(spec, at, frame.tangent, out, scale, key, NodeId::new(node)));
             }
             number += 1;
             until_next += spec.spacing_m;
