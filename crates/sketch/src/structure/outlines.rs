@@ -25,6 +25,10 @@ const ARM: f64 = 0.03;
 
 /// Cuts sides of trunks off crown strokes: a loose end that runs straight down, or what hangs below the crown.
 pub(super) fn trunk_sides(draft: &mut Draft<'_>) {
+    // Where the trunk has two lines of its own, what hangs below is a second round of the crown.
+    if draft.trunk {
+        return;
+    }
     let ink = draft.ink;
     for k in draft.of_class(StrokeClass::Crown).into_iter().take(MOST_REGIONS) {
         let (crown, ends) = split_stalks(&ink.strokes[k].points, 0.75);

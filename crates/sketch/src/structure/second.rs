@@ -266,9 +266,16 @@ fn zigzags(draft: &mut Draft<'_>) {
         })
         .filter(|&k| zigzag(k))
         .collect();
-    let stands = (0..draft.class.len()).any(|k| draft.class[k] == TrunkOutline && !rows.contains(&k));
-    if !stands {
+    // A line that lies beside the row goes on with it; an outline that stands is a plant of another kind.
+    let (lying, standing): (Vec<usize>, Vec<usize>) =
+        draft.of_class(TrunkOutline).into_iter().filter(|k| !rows.contains(k)).partition(|&k| {
+            let s = &draft.ink.strokes[k];
+            let wide = bounds(&s.points).is_some_and(|(lo, hi)| hi.y - lo.y < 0.5 * (hi.x - lo.x));
+            wide && openness(s) > 0.5 && unsure(draft, k)
+        });
+    if standing.is_empty() && !rows.is_empty() {
         rows.into_iter().for_each(|k| draft.class[k] = StrokeClass::Corolla);
+        lying.into_iter().for_each(|k| draft.class[k] = StrokeClass::Ground);
     }
 }
 

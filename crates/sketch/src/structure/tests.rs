@@ -395,6 +395,24 @@ fn grass_is_neither_trunks_nor_a_crown() {
     assert_eq!((r.leaves.len(), r.regions.len()), (4, 0));
 }
 
+#[test]
+fn a_lawn_drawn_as_a_flat_line_and_a_zigzag_is_grass() {
+    let flat = path(&[(-0.2, 2.4), (-0.3, 0.3), (6.0, 0.0)]);
+    let zigzag = path(&[
+        (6.5, 0.0),
+        (7.5, 2.0),
+        (8.0, 0.6),
+        (9.5, 2.6),
+        (10.0, 0.8),
+        (11.0, 2.0),
+        (11.5, 0.8),
+        (12.5, 1.8),
+    ]);
+    let r = guessed(&[(StrokeClass::TrunkOutline, flat), (StrokeClass::TrunkOutline, zigzag)]);
+    assert_eq!((r.axes.len(), r.strokes[0].class), (0, StrokeClass::Ground), "{:?}", r.strokes);
+    assert!(r.leaves.len() >= 3, "{} blades", r.leaves.len());
+}
+
 fn guessed(strokes: &[(StrokeClass, Vec<DVec2>)]) -> Reading {
     let lines: Vec<Vec<DVec2>> = strokes.iter().map(|s| s.1.clone()).collect();
     let ink = clean(&Drawing::from_polylines("guessed", &lines), &mut Report::default());
