@@ -84,17 +84,18 @@ impl Maker {
 
     fn venations(&self) -> Outcome {
         let marks = repository().join("fixtures/leaves/leaf2.csv").display().to_string();
-        let leaves: [&[&str]; 4] = [
-            &[&marks, "--margin-vein"],
-            &["--venation", "palmate"],
-            &["--venation", "palmate", "--veins", "7", "--depth", "0.7"],
-            &["--venation", "parallel", "--length", "0.12"],
+        // The measured one hangs: from the front it would be seen along its midrib.
+        let leaves: [(&[&str], &str); 4] = [
+            (&[&marks, "--margin-vein"], "three-quarter"),
+            (&["--venation", "palmate"], "front"),
+            (&["--venation", "palmate", "--veins", "7", "--depth", "0.7"], "front"),
+            (&["--venation", "parallel", "--length", "0.12"], "front"),
         ];
         let mut row = Vec::new();
-        for (k, leaf) in leaves.iter().enumerate() {
+        for (k, (leaf, view)) in leaves.iter().enumerate() {
             let png = self.folder.join(format!("leaf-{k}.png"));
             let shown = png.display().to_string();
-            let args = ["leaf", "--png", &shown, "--size", "400x420", "--no-shadow", "--view", "front"];
+            let args = ["leaf", "--png", &shown, "--size", "400x420", "--no-shadow", "--view", view];
             self.burgeon(&[&args[..1], leaf, &args[1..]].concat())?;
             row.push(png);
         }

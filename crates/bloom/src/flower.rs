@@ -244,8 +244,10 @@ impl Whorl {
         // The bud greens from its base and along its middle, and the green goes as it opens.
         let young = 1.0 - ops::smoothstep(0.0, 0.75, profile.open);
         let green = (self.green * young * (1.0 - 0.5 * v * v) * (1.0 - 0.25 * u * u)) as f32;
+        // Pink over green is grey: the tip's own colour comes when most of the green has gone.
+        let late = (1.0 - green) * (1.0 - green);
         [0, 1, 2].map(|q| {
-            let own = (self.colors[0][q] + (self.colors[1][q] - self.colors[0][q]) * share) * middle;
+            let own = (self.colors[0][q] + (self.colors[1][q] - self.colors[0][q]) * share * late) * middle;
             let fresh = own + (BUD[q] - own) * green;
             // Some of the petal's own colour stays.
             fresh + (0.88 * dry[q] + 0.12 * fresh - fresh) * withered
