@@ -49,6 +49,7 @@ export const en = {
   'view.model': 'Looking at the model “{name}”. Draw or undo to return to your plant.',
   'export.glb': 'Blender, Unity, Godot, three.js',
   'export.obj': 'with materials (zip)',
+  'export.usda': 'Omniverse, Houdini, Blender (zip)',
   'export.ply': 'one mesh with colours',
   'export.stl': 'bare triangles',
   'export.png': 'Picture of this view',
