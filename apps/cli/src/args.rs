@@ -65,8 +65,8 @@ pub(crate) enum Command {
     Render(RenderArgs),
     /// Convert a model or a drawing to another format
     ///
-    /// Models: .glb, .gltf, .obj, .ply and .stl to .glb, .obj, .ply or .stl. Drawings: .svg, .inkml, .ndjson and
-    /// .json to .json. A drawing becomes a model with `burgeon sketch`.
+    /// Models: .glb, .gltf, .obj, .ply and .stl to .glb, .obj, .ply, .stl or .usda. Drawings: .svg, .inkml,
+    /// .ndjson and .json to .json. A drawing becomes a model with `burgeon sketch`.
     Convert(ConvertArgs),
     /// Say what is in a model or a drawing
     ///
@@ -163,10 +163,10 @@ pub(crate) enum ViewWord {
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Geometry")]
 pub(crate) struct AxesArgs {
-    /// Axis that points up in OBJ, PLY, STL, MTG and QSM files; glTF is always +Y [default: y; z for MTG and QSM].
+    /// Axis that points up in OBJ, PLY, STL, USD, MTG and QSM files; glTF is always +Y [default: y; z for MTG and QSM].
     #[arg(long, value_enum)]
     pub(crate) up: Option<UpWord>,
-    /// Unit of length in OBJ, PLY, STL, MTG and QSM files; glTF is always in metres.
+    /// Unit of length in OBJ, PLY, STL, USD, MTG and QSM files; glTF is always in metres.
     #[arg(long, value_enum, default_value_t = UnitWord::M)]
     pub(crate) unit: UnitWord,
 }
@@ -215,8 +215,8 @@ pub(crate) struct SketchArgs {
     /// - for standard input.
     #[arg(value_name = "IN", required = true)]
     pub(crate) inputs: Vec<PathBuf>,
-    /// The model: .glb, .obj, .ply or .stl; or the plant's structure: .mtg (multiscale tree graph). For several
-    /// drawings a folder, which is created and gets one file each.
+    /// The model: .glb, .obj, .ply, .stl or .usda; or the plant's structure: .mtg (multiscale tree graph). For
+    /// several drawings a folder, which is created and gets one file each.
     #[arg(long, short, value_name = "OUT", required_unless_present_any = ["png", "qsm", "report", "json"])]
     pub(crate) output: Option<PathBuf>,
     /// Format of the files in a folder.
@@ -401,6 +401,8 @@ pub(crate) enum FormatWord {
     Obj,
     /// PLY: one mesh with colours
     Ply,
+    /// Universal Scene Description as text, with textures beside it
+    Usda,
 }
 
 impl FormatWord {
@@ -409,6 +411,7 @@ impl FormatWord {
             Self::Glb => "glb",
             Self::Obj => "obj",
             Self::Ply => "ply",
+            Self::Usda => "usda",
         }
     }
 }
@@ -422,6 +425,8 @@ pub(crate) enum PlantFormatWord {
     Obj,
     /// PLY: one mesh with colours
     Ply,
+    /// Universal Scene Description as text, with textures beside it
+    Usda,
     /// Multiscale tree graph: axes, nodes and organs as text
     Mtg,
 }
@@ -432,6 +437,7 @@ impl PlantFormatWord {
             Self::Glb => PlantFormat::Model(ModelFormat::Glb),
             Self::Obj => PlantFormat::Model(ModelFormat::Obj),
             Self::Ply => PlantFormat::Model(ModelFormat::Ply),
+            Self::Usda => PlantFormat::Model(ModelFormat::Usda),
             Self::Mtg => PlantFormat::Mtg,
         }
     }
@@ -441,6 +447,7 @@ impl PlantFormatWord {
             Self::Glb => "glb",
             Self::Obj => "obj",
             Self::Ply => "ply",
+            Self::Usda => "usda",
             Self::Mtg => "mtg",
         }
     }

@@ -38,7 +38,7 @@ pub(crate) fn convert(args: &ConvertArgs) -> Outcome {
         (Kind::Model(_), true) => {
             return Err(Failure::at(
                 &args.output,
-                "a model converts to .glb, .obj, .ply or .stl, not to .json",
+                "a model converts to .glb, .obj, .ply, .stl or .usda, not to .json",
             ));
         }
     };

@@ -6,7 +6,8 @@ use std::path::{Component, Path};
 
 use burgeon::document::{self, Document, DocumentPlant, MAX_PROJECT_BYTES};
 use burgeon::formats::{
-    DrawingFormat, ExportSpec, ModelFormat, PngCache, ReadDrawing, obj_files, write_glb_with, write_mtg,
+    DrawingFormat, ExportSpec, ModelFormat, PngCache, ReadDrawing, obj_files, usd_files, warn_of_wind,
+    write_glb_with, write_mtg,
 };
 use burgeon::mesh::Model;
 use burgeon::plant::Plant;
@@ -200,7 +201,7 @@ pub(crate) fn writable(path: &Path) -> Outcome<ModelFormat> {
         Some(format) => Ok(format),
         None => Err(Failure::at(
             path,
-            "models are written as .glb, .obj, .ply or .stl; end the name with one of them",
+            "models are written as .glb, .obj, .ply, .stl or .usda; end the name with one of them",
         )),
     }
 }
@@ -230,7 +231,7 @@ pub(crate) fn plant_writable(path: &Path) -> Outcome<PlantFormat> {
         Some(PlantFormat::Model(_)) => writable(path).map(PlantFormat::Model),
         None => Err(Failure::at(
             path,
-            "plants are written as .glb, .obj, .ply, .stl or .mtg; end the name with one of them",
+            "plants are written as .glb, .obj, .ply, .stl, .usda or .mtg; end the name with one of them",
         )),
     }
 }
@@ -263,7 +264,7 @@ fn field_axes(args: &AxesArgs) -> ExportSpec {
     axes(args.up.unwrap_or(UpWord::Z), args.unit)
 }
 
-/// Writes a model whole: for an OBJ first its textures and its material file.
+/// Writes a model whole: for OBJ and USD first the files that they name.
 pub(crate) fn write_model(
     path: &Path,
     model: &Model,
@@ -272,19 +273,26 @@ pub(crate) fn write_model(
     cache: &mut PngCache,
 ) -> Outcome<Vec<Warning>> {
     let mut report = Report::default();
+    let bytes = |path: &Path, bytes: &[u8]| output::write_whole(path, |out| Ok(out.write_all(bytes)?));
     match format {
         ModelFormat::Glb if axes.is_default() => {
             output::write_whole(path, |out| write_glb_with(model, cache, out))?;
         }
         ModelFormat::Obj => {
             let files = obj_files(model, &stem(path), axes).map_err(|e| output::write_failed(path, e))?;
-            let bytes =
-                |path: &Path, bytes: &[u8]| output::write_whole(path, |out| Ok(out.write_all(bytes)?));
+            warn_of_wind(model, format, &mut report);
             for (name, png) in &files.textures {
                 bytes(&path.with_file_name(name), png)?;
             }
             bytes(&path.with_file_name(&files.mtl_name), &files.mtl)?;
             bytes(path, &files.obj)?;
+        }
+        ModelFormat::Usda => {
+            let files = usd_files(model, &stem(path), axes).map_err(|e| output::write_failed(path, e))?;
+            for (name, png) in &files.textures {
+                bytes(&path.with_file_name(name), png)?;
+            }
+            bytes(path, &files.usda)?;
         }
         _ => output::write_whole(path, |out| {
             burgeon::formats::write_model(model, format, axes, out, &mut report)

@@ -188,7 +188,7 @@ fn model_lines(m: &ModelSummary, out: &mut Vec<String>) {
     let [low, high] = [m.min, m.max].map(|p| p.map(short).join(", "));
     out.push(format!("  from ({low}) to ({high})"));
     for part in &m.parts {
-        let columns = [(part.uvs, "texture coordinates"), (part.colors, "colours")];
+        let columns = [(part.uvs, "texture coordinates"), (part.colors, "colours"), (part.wind, "wind")];
         let columns: Vec<&str> = columns.iter().filter(|c| c.0).map(|c| c.1).collect();
         let with = if columns.is_empty() { String::new() } else { format!(", {}", columns.join(", ")) };
         let triangles = count(part.triangles, "triangle", "triangles");

@@ -30,7 +30,7 @@ pub(crate) struct LeafArgs {
     /// standard input.
     #[arg(value_name = "DATA")]
     pub(crate) inputs: Vec<PathBuf>,
-    /// The model: .glb, .obj, .ply or .stl. With --template the file to fill in.
+    /// The model: .glb, .obj, .ply, .stl or .usda. With --template the file to fill in.
     #[arg(long, short, value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
     /// Write a file of marks to fill in, with instructions, to -o or to standard output.

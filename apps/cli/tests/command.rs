@@ -261,6 +261,23 @@ fn classes_can_be_corrected_in_the_report() {
 }
 
 #[test]
+fn usd_stands_with_its_textures_and_is_not_read() {
+    let dir = folder("usd");
+    fs::write(dir.join("rose.svg"), FLOWER).unwrap();
+    good(&dir, &["sketch", "rose.svg", "-o", "a rose.usda", "--up", "z", "--unit", "cm", "-q"]);
+    let text = fs::read_to_string(dir.join("a rose.usda")).unwrap();
+    assert!(text.contains("metersPerUnit = 0.01\n    upAxis = \"Z\""), "{}", &text[..400]);
+    let named: Vec<&str> = text.split("@./").skip(1).filter_map(|t| t.split('@').next()).collect();
+    let there = names(&dir);
+    assert!(!named.is_empty() && named.iter().all(|n| there.contains(&(*n).into())), "{named:?} {there:?}");
+    assert!(!there.iter().any(|n| n.contains(".part")), "{there:?}");
+    let told = bad(&dir, &["info", "a rose.usda"]);
+    assert!(told.contains("reading USD is not supported"), "{told}");
+    let told = bad(&dir, &["convert", "a rose.usda", "-o", "rose.glb"]);
+    assert!(told.contains("reading USD is not supported"), "{told}");
+}
+
+#[test]
 fn models_convert_render_and_explain_themselves() {
     let dir = folder("models");
     fs::write(dir.join("rose.svg"), FLOWER).unwrap();

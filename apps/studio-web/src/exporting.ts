@@ -4,9 +4,10 @@ import { t, type TextKey } from './text';
 import { dialog, el } from './ui';
 
 export type Target = ExportFormat | 'png';
-const FORMATS: readonly Target[] = ['glb', 'obj', 'ply', 'stl', 'mtg', 'qsm', 'png', 'json'];
-const LEVELS: ReadonlySet<Target> = new Set(['glb', 'obj', 'ply', 'stl']);
-const AXES: ReadonlySet<Target> = new Set(['obj', 'ply', 'stl', 'mtg', 'qsm']);
+const FORMATS: readonly Target[] = ['glb', 'usda', 'obj', 'ply', 'stl', 'mtg', 'qsm', 'png', 'json'];
+const LEVELS: ReadonlySet<Target> = new Set(['glb', 'usda', 'obj', 'ply', 'stl']);
+const AXES: ReadonlySet<Target> = new Set(['usda', 'obj', 'ply', 'stl', 'mtg', 'qsm']);
+const NAMES: Partial<Record<Target, string>> = { qsm: 'CSV', usda: 'USD' };
 
 let last: { format: Target; options: ExportOptions } = { format: 'glb', options: { levels: 1, up: 'y', unit: 'm', whole: false } };
 
@@ -36,7 +37,7 @@ export function openExport(several: boolean, kind: MakerWord, act: (format: Targ
   for (const f of formats) {
     const radio = el('input', { type: 'radio', name: 'format', value: f, 'data-format': f, onchange: () => { format = f; show(); } });
     radio.checked = f === format;
-    list.append(el('label', { class: 'format' }, radio, el('b', {}, f === 'qsm' ? 'CSV' : f.toUpperCase()), el('span', { class: 'muted' }, t(`export.${f}`))));
+    list.append(el('label', { class: 'format' }, radio, el('b', {}, NAMES[f] ?? f.toUpperCase()), el('span', { class: 'muted' }, t(`export.${f}`))));
   }
   const go = el('button', { type: 'submit', class: 'primary', id: 'b-export-go' }, t('menu.export'));
   const form = el('form', { class: 'export', onsubmit: (e) => { e.preventDefault(); last = { format, options }; d.close(); act(format, { ...options }); } },

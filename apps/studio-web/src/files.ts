@@ -11,7 +11,7 @@ import { t } from './text';
 import { dialog, download, el, note } from './ui';
 
 /** Formats with levels of detail. */
-const LEVELLED: ReadonlySet<Target> = new Set(['glb', 'obj', 'ply', 'stl']);
+const LEVELLED: ReadonlySet<Target> = new Set(['glb', 'usda', 'obj', 'ply', 'stl']);
 /** Larger files are refused before they are read into memory. */
 const MAX_MB = 256;
 const ACCEPT = '.burgeon,.svg,.inkml,.ndjson,.json,.csv,.toml,.glb,.gltf,.obj,.ply,.stl,image/*';
@@ -176,7 +176,7 @@ export class Files {
       const levelled = LEVELLED.has(format);
       if (!levelled) options.levels = 1;
       const structure = (format === 'mtg' || format === 'qsm') && options.whole && this.events.several();
-      let zipped = format === 'obj' || structure || (options.levels > 1 && levelled);
+      let zipped = format === 'obj' || format === 'usda' || structure || (options.levels > 1 && levelled);
       const extension = format === 'qsm' ? 'csv' : format;
       const name = `${safe(this.events.name())}.${zipped ? `${format}.zip` : extension}`;
       if (format === 'png') {

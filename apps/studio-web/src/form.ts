@@ -3,7 +3,7 @@
  * the core; nothing here knows what a field does.
  */
 import type { Json } from './protocol';
-import { currentLanguage, fieldName, t, wordOf } from './text';
+import { fieldName, helpOf, t, unitOf, wordOf } from './text';
 import { el } from './ui';
 
 export interface Schema {
@@ -21,7 +21,6 @@ export interface FormEvents {
   done(): void;
 }
 
-const UNITS: Record<string, string> = { m: 'm', deg: '°', d: 'd', a: 'a' };
 /** A range that no slider can show is shown around the value. */
 const WIDE = 300;
 const STEPS = 200;
@@ -56,12 +55,8 @@ function tagOf(s: Schema): string | undefined {
   return Object.keys(first).find((k) => first[k]?.const !== undefined);
 }
 
-/** The schema's own words, which are English; elsewhere the range alone. */
-function tip(s: Schema): string {
-  const range = s.minimum !== undefined && s.maximum !== undefined ? t('form.range', { low: s.minimum, high: s.maximum }) : '';
-  if (currentLanguage() === 'en') return (s.description ?? '').split('\n\n')[0]!.replaceAll('`', '');
-  return range;
-}
+/** The schema's own words, in the person's language. */
+const tip = (s: Schema): string => helpOf(s.description ?? '');
 
 const round = (x: number): number => Number(x.toPrecision(4));
 
@@ -97,7 +92,7 @@ export class Form {
   }
 
   private row(name: string, s: Schema, ...content: HTMLElement[]): HTMLElement {
-    const unit = UNITS[s['x-unit'] ?? ''];
+    const unit = unitOf(s['x-unit'] ?? '');
     const label = fieldName(name) + (unit ? ` (${unit})` : '');
     return el('label', { class: 'f-row', title: tip(s) }, el('span', {}, label), ...content);
   }
@@ -156,7 +151,8 @@ export class Form {
   private choice(name: string, s: Schema & { nullable?: boolean }, choices: string[], now: Json, path: string): HTMLElement {
     const select = el('select', { 'data-path': path, onchange: () => this.events.set(path, select.value === '' ? null : select.value) });
     if (s.nullable) select.append(el('option', { value: '' }, t('form.auto')));
-    for (const word of choices) select.append(el('option', { value: word }, wordOf(word)));
+    const meant = (word: string): string => helpOf(s.oneOf?.find((o) => o.const === word)?.description ?? '');
+    for (const word of choices) select.append(el('option', { value: word, title: meant(word) }, wordOf(word)));
     select.value = now === null ? '' : String(now);
     return this.row(name, s, select);
   }
@@ -206,7 +202,7 @@ export class Form {
       const fields = to && start(to);
       if (fields) this.events.set(path, fields);
     } });
-    for (const o of all) if (o === current || start(o)) select.append(el('option', { value: wordFor(o) }, wordOf(wordFor(o))));
+    for (const o of all) if (o === current || start(o)) select.append(el('option', { value: wordFor(o), title: tip(o) }, wordOf(wordFor(o))));
     select.value = wordFor(current);
     const kind = this.row(tag, { description: current.description ?? '' }, select);
     return this.group(name, { ...current, ...(s.description ? { description: s.description } : {}) }, now, path, [kind], tag);

@@ -2,7 +2,7 @@
 import type { Engine } from './engine';
 import { Form, type Fields, type Schema } from './form';
 import type { Command, DocumentState, Json, PlantState, PlantView } from './protocol';
-import { t, wordOf } from './text';
+import { helpOf, t, wordOf } from './text';
 import { button, el, icon } from './ui';
 
 export interface Catalogue {
@@ -35,7 +35,7 @@ function thumbnail(key: string, label: string): HTMLElement {
 export function gallery(catalogue: Catalogue, chosen: string | null, act: (key: string) => void): HTMLElement {
   const grid = el('div', { class: 'gallery' });
   for (const { key, species, about } of catalogue.trees) {
-    grid.append(el('button', { type: 'button', 'data-preset': key, 'aria-pressed': String(key === chosen), title: [species, about].filter((x) => x).join(' · '), onclick: () => act(key) },
+    grid.append(el('button', { type: 'button', 'data-preset': key, 'aria-pressed': String(key === chosen), title: [species, helpOf(about)].filter((x) => x).join(' · '), onclick: () => act(key) },
       thumbnail(key, wordOf(key))));
   }
   return grid;

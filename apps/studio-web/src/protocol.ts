@@ -8,7 +8,7 @@ export type {
   Command, DocumentState, ExportOptions, Json, MakerWord, ObstacleShape, Opened, PhotoState, PlantState, PlantView, ShapeAnswer, ShapeInput, ShapePointer,
   ShapeReach, ShapeTool, SketchState, StrokeMode, View, EditReport, HandEdit,
 };
-export type ExportFormat = 'glb' | 'obj' | 'ply' | 'stl' | 'mtg' | 'qsm' | 'json';
+export type ExportFormat = 'glb' | 'usda' | 'obj' | 'ply' | 'stl' | 'mtg' | 'qsm' | 'json';
 
 /** What the page asks. Those that change the document are kept in the page's journal. */
 export type Request =

@@ -1,7 +1,7 @@
 //! Exports: the scene or one plant, in every format that the command line writes.
 
 use burgeon::document::{self, Document, DocumentPlant, Maker, PlantId};
-use burgeon::formats::{self, ExportSpec, ModelFormat, obj_files};
+use burgeon::formats::{self, ExportSpec, ModelFormat, obj_files, usd_files};
 use burgeon::mesh::Model;
 use burgeon::{Report, Run, SceneEvaluator, coarser, scene_model};
 
@@ -45,6 +45,10 @@ pub(crate) fn export(
         let model = scene_model(document.name(), models.iter().map(|(at, m)| (*at, m)));
         let stem = if levels == 1 { "plant".into() } else { format!("plant_LOD{level}") };
         files.extend(written(&model, format, &stem, &spec)?);
+    }
+    if format == "usda" {
+        // With or without textures: the name of what is saved is known before they are.
+        return document::pack(&files).map_err(words);
     }
     packed(files)
 }
@@ -139,6 +143,12 @@ pub(crate) fn written(
     if format == ModelFormat::Obj {
         let files = obj_files(model, stem, spec).map_err(words)?;
         let mut all = vec![(format!("{stem}.obj"), files.obj), (format!("{stem}.mtl"), files.mtl)];
+        all.extend(files.textures);
+        return Ok(all);
+    }
+    if format == ModelFormat::Usda {
+        let files = usd_files(model, stem, spec).map_err(words)?;
+        let mut all = vec![(format!("{stem}.usda"), files.usda)];
         all.extend(files.textures);
         return Ok(all);
     }

@@ -52,6 +52,8 @@ pub struct PartSummary {
     pub uvs: bool,
     /// It has colours at its vertices.
     pub colors: bool,
+    /// It knows how wind moves its vertices.
+    pub wind: bool,
 }
 
 /// What a material is.
@@ -92,6 +94,7 @@ impl ModelSummary {
             triangles: p.mesh.triangles.len(),
             uvs: !p.mesh.uvs.is_empty(),
             colors: !p.mesh.colors.is_empty(),
+            wind: !p.mesh.wind.is_empty(),
         };
         let material = |m: &mesh::Material| MaterialSummary {
             name: m.name.clone(),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use base::{Report, Unit, UpAxis};
 use formats::{
-    ExportSpec, ModelFormat, ModelSummary, no_files, obj_files, read_model, write_glb, write_model,
+    ExportSpec, ModelFormat, ModelSummary, no_files, obj_files, read_model, usd_files, write_glb, write_model,
 };
 use mesh::{AlphaMode, Material, MaterialId, MaterialKind, Model, Part, Texture, TriMesh};
 
@@ -284,6 +284,127 @@ fn a_wish_for_other_units_of_gltf_is_answered() {
     write_model(&model(), ModelFormat::Glb, &spec, Vec::new(), &mut report).expect("writes");
     assert_eq!(report.warnings[0].code, "gltf-fixed-units");
     assert!(write_model(&model(), ModelFormat::Gltf, &spec, Vec::new(), &mut report).is_err());
+}
+
+#[test]
+fn wind_comes_back_and_is_missed_where_there_is_no_room() {
+    let mut m = model();
+    for part in &mut m.parts {
+        part.mesh.wind = part.mesh.positions.iter().map(|p| [p[0].min(1.0), p[1], 0.5, 0.25]).collect();
+        part.mesh.pivots = part.mesh.positions.iter().map(|p| [p[0], 0.0, p[2]]).collect();
+    }
+    let mut glb = Vec::new();
+    write_glb(&m, &mut glb).expect("writes");
+    assert_eq!(read(&glb, ModelFormat::Glb, &ExportSpec::default()), m);
+    assert!(ModelSummary::of(&m, &[]).parts.iter().all(|p| p.wind));
+    for format in [ModelFormat::Obj, ModelFormat::Ply, ModelFormat::Stl] {
+        let mut report = Report::default();
+        write_model(&m, format, &ExportSpec::default(), Vec::new(), &mut report).expect("writes");
+        assert_eq!(report.warnings[0].code, "wind-left-out", "{format:?}");
+    }
+    let mut report = Report::default();
+    write_model(&m, ModelFormat::Usda, &ExportSpec::default(), Vec::new(), &mut report).expect("writes");
+    assert_eq!(report.warnings, []);
+}
+
+#[test]
+fn wind_of_other_programs_is_left_out() {
+    let mut m = model();
+    m.parts.truncate(1);
+    let n = m.parts[0].mesh.positions.len();
+    m.parts[0].mesh.wind = vec![[0.25; 4]; n];
+    let mut glb = Vec::new();
+    write_glb(&m, &mut glb).expect("writes");
+    // What they keep there is beyond our 0 to 1.
+    let ours = [0.25_f32; 4].map(f32::to_le_bytes).concat();
+    let at = glb.windows(16).rposition(|w| w == ours).expect("wind");
+    glb[at..at + 4].copy_from_slice(&7.0_f32.to_le_bytes());
+    let mut report = Report::default();
+    let back = read_model(&glb[..], ModelFormat::Glb, "x", &ExportSpec::default(), &no_files, &mut report);
+    let back = back.expect("reads");
+    assert_eq!(report.warnings[0].code, "gltf-wind-left-out");
+    assert_eq!(back.parts[0].mesh, TriMesh { wind: Vec::new(), ..m.parts[0].mesh.clone() });
+}
+
+/// The numbers of an array of the text, by its name.
+fn usd_numbers(text: &str, from: usize, name: &str) -> Vec<f64> {
+    let start = text[from..].find(&format!("{name} = [")).unwrap_or_else(|| panic!("no {name}")) + from;
+    let array = &text[start + name.len() + 4..];
+    let array = &array[..array.find(']').expect("closed")];
+    array.split([',', '(', ')']).filter_map(|w| w.trim().parse().ok()).collect()
+}
+
+#[test]
+fn usd_says_what_the_model_says() {
+    let m = model();
+    let spec = ExportSpec { up: UpAxis::Z, unit: Unit::Centimetre };
+    let files = usd_files(&m, "my oak", &spec).expect("writes");
+    assert_eq!(files.textures.len(), 1, "a shared texture is written once");
+    assert_eq!(files.textures[0].0, "my-oak-leaf.png");
+    let text = String::from_utf8(files.usda).expect("UTF-8");
+    let head = text.split(")\n").next().expect("a head");
+    for line in ["defaultPrim = \"an_oak\"", "metersPerUnit = 0.01", "upAxis = \"Z\""] {
+        assert!(head.contains(line), "{line} in {head}");
+    }
+    assert_eq!(text.matches('{').count(), text.matches('}').count());
+    for (part, name) in m.parts.iter().zip(["leaves", "petals_2", "trunk"]) {
+        let from = text.find(&format!("def Mesh \"{name}\"")).expect("each part");
+        let points = usd_numbers(&text, from, "points");
+        let want: Vec<f64> = part.mesh.positions.iter().flat_map(|&p| spec.point(p)).map(f64::from).collect();
+        assert_eq!(points.len(), want.len());
+        assert!(points.iter().zip(&want).all(|(a, b)| (a - b).abs() < 1e-4), "{name}");
+        let corners = usd_numbers(&text, from, "faceVertexIndices");
+        assert_eq!(corners, part.mesh.triangles.iter().flatten().map(|&i| f64::from(i)).collect::<Vec<_>>());
+        assert_eq!(usd_numbers(&text, from, "faceVertexCounts"), vec![3.0; part.mesh.triangles.len()]);
+        assert_eq!(usd_numbers(&text, from, "normals").len(), points.len());
+    }
+    assert_eq!(text.matches("subdivisionScheme = \"none\"").count(), 3);
+    assert_eq!(text.matches("UsdPreviewSurface").count(), 3);
+    assert_eq!(text.matches("inputs:opacityThreshold = 0.5").count(), 1, "the leaf has holes");
+    assert_eq!(text.matches("uniform bool doubleSided = 1").count(), 1);
+    assert!(!text.contains("primvars:wind") && !text.contains("primvars:pivot"));
+    let trunk = text.find("def Mesh \"trunk\"").expect("trunk");
+    assert!(!text[trunk..].contains("primvars:st"), "no coordinates where there are none");
+    let v = usd_numbers(&text, 0, "primvars:st")[1];
+    assert!((v - (1.0 - f64::from(m.parts[0].mesh.uvs[0][1]))).abs() < 1e-6, "t points up");
+    let again = usd_files(&m, "my oak", &spec).expect("writes");
+    assert_eq!(text.as_bytes(), again.usda, "the same bytes");
+}
+
+#[test]
+fn usd_is_not_read_and_says_so() {
+    let files = usd_files(&model(), "x", &ExportSpec::default()).expect("writes");
+    assert_eq!(ModelFormat::sniff(&files.usda), Some(ModelFormat::Usda));
+    let read = read_model(
+        &files.usda[..],
+        ModelFormat::Usda,
+        "x",
+        &ExportSpec::default(),
+        &no_files,
+        &mut Report::default(),
+    );
+    let e = read.expect_err("is refused").to_string();
+    assert!(e.contains("reading USD is not supported") && e.contains(".glb"), "{e}");
+}
+
+/// Files for other readers: `USD_OUT=DIR cargo test -p burgeon-formats --test models`.
+#[test]
+fn samples_for_readers_of_usd() {
+    let Some(dir) = std::env::var_os("USD_OUT").map(std::path::PathBuf::from) else {
+        println!("USD_OUT is not set: no sample files were written");
+        return;
+    };
+    let mut m = model();
+    m.parts[1].mesh.wind = vec![[0.5; 4]; m.parts[1].mesh.positions.len()];
+    m.parts[1].mesh.pivots = m.parts[1].mesh.positions.clone();
+    m.parts[2].mesh.triangles.clear();
+    m.parts[1].name = "\u{82b1} \"x\"".into();
+    m.name = "a \"strange\" \\ name".into();
+    let files = usd_files(&m, "sample", &ExportSpec::default()).expect("writes");
+    std::fs::write(dir.join("sample.usda"), files.usda).expect("saves");
+    for (name, png) in files.textures {
+        std::fs::write(dir.join(name), png).expect("saves");
+    }
 }
 
 #[test]

@@ -27,6 +27,10 @@ pub struct TriMesh {
     pub uvs: Vec<[f32; 2]>,
     /// Linear RGB multiplied with the material's base colour (tint of single organs).
     pub colors: Vec<[f32; 3]>,
+    /// How wind moves the vertex, each 0 to 1: sway of the whole plant, sway of its branch, flutter, phase.
+    pub wind: Vec<[f32; 4]>,
+    /// Metres: the point about which the vertex's branch or organ turns in the wind.
+    pub pivots: Vec<[f32; 3]>,
     /// Corner indices.
     pub triangles: Vec<[u32; 3]>,
 }
@@ -107,6 +111,9 @@ pub enum Fault {
     /// A normal is not of unit length.
     #[error("normal {0} is not of unit length")]
     Normal(usize),
+    /// A weight or phase of the wind is not between 0 and 1.
+    #[error("the wind at vertex {0} is not between 0 and 1")]
+    Wind(usize),
     /// A part names a material that is not there.
     #[error("part {0} names a material that is not there")]
     Material(usize),
@@ -160,6 +167,8 @@ impl TriMesh {
         self.normals.extend_from_slice(&other.normals);
         self.uvs.extend_from_slice(&other.uvs);
         self.colors.extend_from_slice(&other.colors);
+        self.wind.extend_from_slice(&other.wind);
+        self.pivots.extend_from_slice(&other.pivots);
         self.triangles.extend(other.triangles.iter().map(|t| t.map(|i| i + base)));
     }
 
@@ -173,14 +182,23 @@ impl TriMesh {
     /// Everything that is wrong. Cost: linear.
     pub fn validate(&self) -> impl Iterator<Item = Fault> + '_ {
         let n = self.positions.len();
-        let ragged =
-            [("normals", self.normals.len()), ("uvs", self.uvs.len()), ("colors", self.colors.len())]
-                .into_iter()
-                .filter(move |&(_, len)| len != 0 && len != n)
-                .map(|(name, _)| Fault::Ragged(name));
-        let finite = self.positions.iter().enumerate();
-        let finite =
-            finite.filter(|(_, p)| !p.iter().all(|x| x.is_finite())).map(|(i, _)| Fault::NotFinite(i));
+        let ragged = [
+            ("normals", self.normals.len()),
+            ("uvs", self.uvs.len()),
+            ("colors", self.colors.len()),
+            ("wind", self.wind.len()),
+            ("pivots", self.pivots.len()),
+        ];
+        let ragged = ragged
+            .into_iter()
+            .filter(move |&(_, len)| len != 0 && len != n)
+            .map(|(name, _)| Fault::Ragged(name));
+        let finite = self.positions.iter().chain(&self.pivots).enumerate();
+        let finite = finite
+            .filter(|(_, p)| !p.iter().all(|x| x.is_finite()))
+            .map(move |(i, _)| Fault::NotFinite(if i < n { i } else { i - n }));
+        let share = |w: &[f32; 4]| w.iter().all(|x| (0.0..=1.0).contains(x));
+        let wind = self.wind.iter().enumerate().filter(move |(_, w)| !share(w)).map(|(i, _)| Fault::Wind(i));
         let normals = self.normals.iter().enumerate();
         let normals = normals
             .filter(|&(_, &v)| {
@@ -196,13 +214,17 @@ impl TriMesh {
                 None
             }
         });
-        ragged.chain(finite).chain(normals).chain(triangles)
+        ragged.chain(finite).chain(wind).chain(normals).chain(triangles)
     }
 }
 
 impl Digestible for TriMesh {
     fn digest(&self, d: &mut Digest) {
         d.add(&self.positions).add(&self.normals).add(&self.uvs).add(&self.colors).add(&self.triangles);
+        // Only where there is wind: digests of meshes without it stay what they were.
+        if !(self.wind.is_empty() && self.pivots.is_empty()) {
+            d.add(&self.wind).add(&self.pivots);
+        }
     }
 }
 
@@ -277,6 +299,27 @@ mod tests {
         m.triangles = vec![[0, 1, 2]];
         m.compute_normals();
         assert_eq!(m.validate().count(), 0, "{m:?}");
+    }
+
+    #[test]
+    fn wind_counts_only_where_it_is() {
+        let bare = TriMesh { positions: vec![[0.0; 3]; 3], ..TriMesh::default() };
+        let digest = |m: &TriMesh| {
+            let mut d = Digest::new();
+            d.add(m);
+            d.hex()
+        };
+        let mut before = Digest::new();
+        before.add(&bare.positions).add(&bare.normals).add(&bare.uvs).add(&bare.colors).add(&bare.triangles);
+        assert_eq!(digest(&bare), before.hex());
+        let mut blown = TriMesh { wind: vec![[0.0; 4]; 3], pivots: vec![[0.0; 3]; 3], ..bare.clone() };
+        assert_ne!(digest(&bare), digest(&blown));
+        assert_eq!(blown.validate().count(), 0);
+        blown.wind[2][1] = 1.5;
+        blown.pivots[1][0] = f32::NAN;
+        assert_eq!(blown.validate().collect::<Vec<_>>(), [Fault::NotFinite(1), Fault::Wind(2)]);
+        blown.wind.pop();
+        assert_eq!(blown.validate().next(), Some(Fault::Ragged("wind")));
     }
 
     #[test]

@@ -525,7 +525,7 @@ pub fn scene_model<'a>(name: &str, plants: impl IntoIterator<Item = (Placement, 
         let turn = DQuat::from_xyzw(0.0, s, 0.0, c);
         for part in &model.parts {
             let mut part = part.clone();
-            for p in &mut part.mesh.positions {
+            for p in part.mesh.positions.iter_mut().chain(&mut part.mesh.pivots) {
                 let at = turn * (DVec3::from_array(p.map(f64::from)) * placement.scale) + placement.position;
                 *p = at.as_vec3().to_array();
             }

@@ -1,5 +1,6 @@
 import { en, type TextKey } from './en';
 import { zh } from './zh';
+import { zhHelp } from './zh-help';
 
 export type { TextKey };
 export type Language = 'en' | 'zh';
@@ -44,4 +45,21 @@ export function fieldName(name: string): string {
 export function wordOf(word: string): string {
   const key = `word.${word}`;
   return key in en ? t(key as TextKey) : human(word);
+}
+
+/** A unit of a field. */
+export function unitOf(unit: string): string {
+  const key = `unit.${unit}`;
+  return key in en ? t(key as TextKey) : '';
+}
+
+/** The first paragraph of a text that the core's schemas hold, as plain text. */
+export function plainHelp(text: string): string {
+  return text.split('\n\n')[0]!.replaceAll('\n', ' ').replaceAll('`', '').replace(/\[([^\]]*)\](\([^)]*\))?/g, '$1');
+}
+
+/** What the core says of a field, a choice or a species, in the current language. */
+export function helpOf(text: string): string {
+  const plain = plainHelp(text);
+  return language === 'zh' ? (zhHelp[plain] ?? plain) : plain;
 }

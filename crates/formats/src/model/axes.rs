@@ -3,7 +3,7 @@
 use base::{Unit, UpAxis};
 use mesh::Model;
 
-/// Unit and up axis of a file whose format does not fix them (OBJ, PLY, STL).
+/// Unit and up axis of a file whose format does not fix them (OBJ, PLY, STL, USD).
 ///
 /// ```
 /// use base::{Unit, UpAxis};
@@ -64,6 +64,7 @@ impl ExportSpec {
         let metres = self.unit.metres() as f32;
         for part in &mut model.parts {
             part.mesh.positions.iter_mut().for_each(|p| *p = turn(*p).map(|x| x * metres));
+            part.mesh.pivots.iter_mut().for_each(|p| *p = turn(*p).map(|x| x * metres));
             part.mesh.normals.iter_mut().for_each(|n| *n = turn(*n));
         }
     }

@@ -210,6 +210,9 @@ impl Reader<'_> {
                 continue;
             };
             apply(&mut columns, world);
+            if columns.pivots.iter().flatten().any(|x| !x.is_finite()) {
+                columns.pivots.clear();
+            }
             if let Some(i) = columns.positions.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
                 return Err(broken(place, format!("vertex {i} is not finite")));
             }
@@ -275,6 +278,8 @@ impl Reader<'_> {
                 return Err(broken(place.clone(), format!("{name} has {length} rows for {count} vertices")));
             }
         }
+        self.wind(p, count, &mut mesh);
+        let bytes = &self.bytes;
         let indices = match p.indices {
             Some(i) => bytes.indices(root, i)?,
             None => (0..u32::try_from(count).unwrap_or(u32::MAX)).collect(),
@@ -295,6 +300,26 @@ impl Reader<'_> {
         };
         Ok(Some(mesh))
     }
+
+    /// How wind moves the mesh. Other programs may mean something else by these names: what is not ours is left out.
+    fn wind(&mut self, p: &Primitive, count: usize, mesh: &mut TriMesh) {
+        let (root, bytes) = (self.root, &self.bytes);
+        if let Some(i) = p.attributes.wind {
+            let sound =
+                |w: &Vec<[f32; 4]>| w.len() == count && w.iter().flatten().all(|x| (0.0..=1.0).contains(x));
+            mesh.wind = bytes.floats(root, i).ok().filter(sound).unwrap_or_default();
+        }
+        if let Some(i) = p.attributes.pivot {
+            let sound = |w: &Vec<[f32; 3]>| w.len() == count && w.iter().flatten().all(|x| x.is_finite());
+            mesh.pivots = bytes.floats(root, i).ok().filter(sound).unwrap_or_default();
+        }
+        let lost = (p.attributes.wind.is_some() && mesh.wind.is_empty())
+            || (p.attributes.pivot.is_some() && mesh.pivots.is_empty());
+        if lost && count > 0 {
+            let message = "attributes _WIND or _PIVOT are not as Burgeon writes them and were left out";
+            self.report.warn("gltf-wind-left-out", message);
+        }
+    }
 }
 
 /// Places a mesh in the world; a mirrored one is turned so that its triangles face outside again.
@@ -307,7 +332,8 @@ fn apply(mesh: &mut TriMesh, world: DMat4) {
     let narrow = |p: DVec3| p.to_array().map(|x| x as f32);
     let linear = DMat3::from_mat4(world);
     let determinant = linear.determinant();
-    mesh.positions.iter_mut().for_each(|p| *p = narrow(world.transform_point3(wide(*p))));
+    let points = mesh.positions.iter_mut().chain(&mut mesh.pivots);
+    points.for_each(|p| *p = narrow(world.transform_point3(wide(*p))));
     if determinant != 0.0 {
         // Cofactors: the inverse transpose without its division, so that tiny scales stay exact.
         let (x, y, z) = (linear.x_axis, linear.y_axis, linear.z_axis);

@@ -19,7 +19,8 @@ const LINEAR: u32 = 9_729;
 const LINEAR_MIPMAP_LINEAR: u32 = 9_987;
 
 /// Writes a model as a GLB: one root node named after the model, one node and mesh a part, materials with
-/// embedded PNG textures (each once), `alphaMode` MASK and `doubleSided` where the material says so.
+/// embedded PNG textures (each once), `alphaMode` MASK and `doubleSided` where the material says so. How wind moves
+/// the vertices is written as attributes `_WIND` (VEC4) and `_PIVOT` (VEC3, metres), where the model has it.
 ///
 /// Guaranteed: the same model gives the same bytes; the Khronos validator finds no error and no warning.
 /// A part without vertices is left out; one without triangles is written as points.
@@ -57,6 +58,8 @@ pub struct Morph<'a> {
 }
 
 /// [`write_glb`] with an animation that leads through the keys of `morph`, linear between them.
+///
+/// Wind, where the first shape has it, is that shape's: keys do not change it.
 ///
 /// Each key is a morph target (position, normal, and colour where vertex colours change) of every part; viewers blend two at a time. Players that know
 /// no morph targets show the model itself.
@@ -329,6 +332,12 @@ impl Writer {
             if !mesh.colors.is_empty() {
                 let colors: Vec<[f32; 3]> = mesh.colors.iter().map(|c| c.map(share)).collect();
                 attributes.color = Some(self.column("VEC3", &colors, false)?);
+            }
+            if !mesh.wind.is_empty() {
+                attributes.wind = Some(self.column("VEC4", &mesh.wind, false)?);
+            }
+            if !mesh.pivots.is_empty() {
+                attributes.pivot = Some(self.column("VEC3", &mesh.pivots, false)?);
             }
             let points = mesh.triangles.is_empty();
             let mut targets = Vec::with_capacity(morph.keys.len());

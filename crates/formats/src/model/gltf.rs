@@ -148,6 +148,11 @@ schema! {
         uv: Option<u32>,
         #[serde(rename = "COLOR_0", skip_serializing_if = "Option::is_none")]
         color: Option<u32>,
+        // Names of an application's own begin with an underscore.
+        #[serde(rename = "_WIND", skip_serializing_if = "Option::is_none")]
+        wind: Option<u32>,
+        #[serde(rename = "_PIVOT", skip_serializing_if = "Option::is_none")]
+        pivot: Option<u32>,
     }
     struct Material {
         #[serde(default, skip_serializing_if = "Option::is_none")]

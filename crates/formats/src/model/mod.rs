@@ -11,6 +11,7 @@ mod picture;
 pub(crate) mod ply_read;
 mod ply_write;
 mod stl;
+mod usd_write;
 
 use std::io::{Read, Write};
 
@@ -24,6 +25,7 @@ pub use obj_write::{ObjFiles, obj_files};
 pub use picture::{PngCache, read_picture, write_png};
 pub use ply_write::write_ply;
 pub use stl::write_stl;
+pub use usd_write::{UsdFiles, usd_files};
 
 use crate::error::{FileFault, ModelError, Place, WriteError};
 
@@ -45,11 +47,13 @@ pub enum ModelFormat {
     Ply,
     /// Stereolithography: bare triangles.
     Stl,
+    /// Universal Scene Description as text, with textures beside it; written only.
+    Usda,
 }
 
 impl ModelFormat {
     /// Every format.
-    pub const ALL: [Self; 5] = [Self::Glb, Self::Gltf, Self::Obj, Self::Ply, Self::Stl];
+    pub const ALL: [Self; 6] = [Self::Glb, Self::Gltf, Self::Obj, Self::Ply, Self::Stl, Self::Usda];
 
     /// The name for messages.
     pub const fn word(self) -> &'static str {
@@ -59,6 +63,7 @@ impl ModelFormat {
             Self::Obj => "OBJ",
             Self::Ply => "PLY",
             Self::Stl => "STL",
+            Self::Usda => "USD",
         }
     }
 
@@ -75,6 +80,7 @@ impl ModelFormat {
             "obj" => Some(Self::Obj),
             "ply" => Some(Self::Ply),
             "stl" => Some(Self::Stl),
+            "usda" => Some(Self::Usda),
             _ => None,
         }
     }
@@ -84,6 +90,8 @@ impl ModelFormat {
         let text = start.trim_ascii_start();
         if start.starts_with(b"glTF") {
             Some(Self::Glb)
+        } else if start.starts_with(b"#usda ") {
+            Some(Self::Usda)
         } else if start.starts_with(b"ply\n") || start.starts_with(b"ply\r") {
             Some(Self::Ply)
         } else if text.starts_with(b"solid ") {
@@ -100,6 +108,11 @@ impl ModelFormat {
     /// The axes and the unit are the format's own: metres, +Y up.
     pub const fn fixed_axes(self) -> bool {
         matches!(self, Self::Glb | Self::Gltf)
+    }
+
+    /// Files of this format have room for how wind moves each vertex.
+    pub const fn carries_wind(self) -> bool {
+        matches!(self, Self::Glb | Self::Gltf | Self::Usda)
     }
 }
 
@@ -154,6 +167,12 @@ pub fn read_model(
         ModelFormat::Obj => obj_read::read(&bytes, name, resolve, report)?,
         ModelFormat::Ply => ply_read::read(&bytes, name, report)?,
         ModelFormat::Stl => stl::read(&bytes, name, report)?,
+        ModelFormat::Usda => {
+            return Err(file(FileFault::unsupported(
+                "reading USD",
+                "USD is written only; open it in a program for scenes, or use the .glb of the same model",
+            )));
+        }
     };
     spec.import(&mut model);
     for part in &mut model.parts {
@@ -164,7 +183,8 @@ pub fn read_model(
     Ok(model)
 }
 
-/// Writes a model to one stream. An OBJ is written without its material file: see [`obj_files`].
+/// Writes a model to one stream. An OBJ is written without its material file, USD without its textures: see
+/// [`obj_files`] and [`usd_files`]. What the wind does is left out, with a warning, where the format has no room for it.
 ///
 /// # Errors
 /// [`WriteError`] of the sink or for a model that is not sound.
@@ -181,13 +201,31 @@ pub fn write_model(
             "glTF is always in metres with +Y up: the unit and up axis asked for were not used",
         );
     }
+    warn_of_wind(model, format, report);
     match format {
         ModelFormat::Glb => write_glb(model, out),
         ModelFormat::Gltf => Err(WriteError::ReadOnly { format: "glTF as JSON", instead: ".glb" }),
         ModelFormat::Obj => Ok(out.write_all(&obj_files(model, "model", spec)?.obj)?),
         ModelFormat::Ply => write_ply(model, spec, out),
         ModelFormat::Stl => write_stl(model, spec, out),
+        ModelFormat::Usda => Ok(out.write_all(&usd_files(model, "model", spec)?.usda)?),
     }
+}
+
+/// Says so where a model has wind and the format no room for it.
+pub fn warn_of_wind(model: &Model, format: ModelFormat, report: &mut Report) {
+    if !format.carries_wind() && model.parts.iter().any(|p| !p.mesh.wind.is_empty()) {
+        let message = format!("{} has no room for wind: it was left out; .glb and .usda have", format.word());
+        report.warn("wind-left-out", message);
+    }
+}
+
+/// A name that every file system takes.
+pub(crate) fn file_name(name: &str, otherwise: &str) -> String {
+    let keep = |c: char| if c.is_alphanumeric() || matches!(c, '-' | '_' | '.') { c } else { '-' };
+    let name: String = name.chars().map(keep).take(100).collect();
+    let name = name.trim_matches('.');
+    if name.is_empty() { otherwise.to_owned() } else { name.to_owned() }
 }
 
 /// Refuses models that no file should be made of. Degenerate triangles may pass.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use mesh::{AlphaMode, Model};
 
 use super::picture::{PngCache, srgb};
-use super::{ExportSpec, check, unit};
+use super::{ExportSpec, check, file_name, unit};
 use crate::error::WriteError;
 
 /// The files that make up an OBJ. The OBJ names its material file and that its textures: keep the names.
@@ -125,12 +125,4 @@ fn materials(model: &Model, stem: &str) -> Result<(Vec<u8>, Textures), WriteErro
 fn one_line(name: &str) -> String {
     let name: String = name.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     if name.trim().is_empty() { "unnamed".into() } else { name.trim().to_owned() }
-}
-
-/// A name that every file system takes.
-fn file_name(name: &str, otherwise: &str) -> String {
-    let keep = |c: char| if c.is_alphanumeric() || matches!(c, '-' | '_' | '.') { c } else { '-' };
-    let name: String = name.chars().map(keep).take(100).collect();
-    let name = name.trim_matches('.');
-    if name.is_empty() { otherwise.to_owned() } else { name.to_owned() }
 }

@@ -1,0 +1,71 @@
+import { readFileSync } from 'node:fs';
+import { beforeAll, describe, expect, it, vi } from 'vitest';
+import type { Schema } from '../form';
+import { initSync, studio_schema } from '../wasm/burgeon_wasm';
+import { en } from './en';
+import { fieldName, helpOf, plainHelp, setLanguage, unitOf, wordOf } from './index';
+import { zhHelp } from './zh-help';
+
+interface Species { key: string; about: string }
+
+/** Everything of the core's schemas that a panel can show. */
+const said = { fields: new Set<string>(), words: new Set<string>(), units: new Set<string>(), texts: new Set<string>() };
+
+function gather(s: Schema | Schema[] | unknown): void {
+  if (Array.isArray(s)) { s.forEach(gather); return; }
+  if (typeof s !== 'object' || s === null) return;
+  const schema = s as Schema;
+  if (typeof schema.description === 'string') said.texts.add(plainHelp(schema.description));
+  for (const word of [...(schema.enum ?? []), schema.const]) if (typeof word === 'string') said.words.add(word);
+  if (schema['x-unit'] !== undefined && schema['x-unit'] !== 'colour') said.units.add(schema['x-unit']);
+  for (const [name, field] of Object.entries(schema.properties ?? {})) { said.fields.add(name); gather(field); }
+  for (const [key, part] of Object.entries(schema)) if (key !== 'properties') gather(key === '$defs' ? Object.values(part as object) : part);
+}
+
+beforeAll(() => {
+  initSync({ module: readFileSync(new URL('../wasm/burgeon_wasm_bg.wasm', import.meta.url)) });
+  const { tree, leaf, flower, trees, flowers } = JSON.parse(studio_schema()) as { tree: Schema; leaf: Schema; flower: Schema; trees: Species[]; flowers: string[] };
+  gather([tree, leaf, flower]);
+  for (const { key, about } of trees) { said.words.add(key); said.texts.add(plainHelp(about)); }
+  for (const key of flowers) said.words.add(key);
+  expect(said.fields.size).toBeGreaterThan(100);
+  expect(said.texts.size).toBeGreaterThan(200);
+});
+
+describe('what the core says', () => {
+  it('has a name in both languages for each field, choice and unit', () => {
+    const keys = [...[...said.fields].map((f) => `field.${f}`), ...[...said.words].map((w) => `word.${w}`), ...[...said.units].map((u) => `unit.${u}`)];
+    expect(keys.filter((k) => !(k in en))).toEqual([]);
+  });
+
+  it('has no names for what is not there any more', () => {
+    const left = Object.keys(en).filter((key) => {
+      const [group, ...rest] = key.split('.');
+      const name = rest.join('.');
+      if (group === 'field') return !said.fields.has(name);
+      if (group === 'unit') return !said.units.has(name);
+      // Fields of obstacles are called by words.
+      return group === 'word' && !said.words.has(name) && !said.fields.has(name);
+    });
+    expect(left).toEqual([]);
+  });
+
+  it('is Chinese in the Chinese page, each text and no other', () => {
+    expect([...said.texts].filter((text) => !(text in zhHelp))).toEqual([]);
+    expect(Object.keys(zhHelp).filter((text) => !said.texts.has(text))).toEqual([]);
+    expect(Object.entries(zhHelp).filter(([, text]) => !/[\u4e00-\u9fff]/.test(text))).toEqual([]);
+  });
+
+  it('keeps its numbers in Chinese', () => {
+    const numbers = (text: string): string[] => text.replace(/\d+ million/g, '').match(/-?\d[\d,.]*\d|-?\d/g) ?? [];
+    for (const [text, chinese] of Object.entries(zhHelp)) for (const n of numbers(text)) expect(chinese, text).toContain(n);
+  });
+
+  it('is asked for in the current language', () => {
+    vi.stubGlobal('document', { documentElement: {} });
+    setLanguage('zh');
+    expect([fieldName('lambda'), wordOf('guided'), unitOf('m'), helpOf('Colours and\nbark.\n\nMore.')]).toEqual(['顶端优势', '引导生长', '米', '颜色与树皮。']);
+    setLanguage('en');
+    expect([helpOf('What [`Lsystem::parse`] and [`x`](Self::x) read.'), unitOf('colour')]).toEqual(['What Lsystem::parse and x read.', '']);
+  });
+});

@@ -1,0 +1,385 @@
+//! Model -> USD as text, and its textures.
+
+use std::collections::BTreeSet;
+use std::fmt;
+use std::io::Write as _;
+use std::sync::Arc;
+
+use base::{Unit, UpAxis};
+use mesh::{AlphaMode, Material, Model, Part, TriMesh};
+
+use super::picture::{PngCache, linear};
+use super::{ExportSpec, check, file_name, unit};
+use crate::error::WriteError;
+
+/// The files that make up a USD model. The text names its textures: keep the names.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UsdFiles {
+    /// `STEM.usda`.
+    pub usda: Vec<u8>,
+    /// Name and bytes of each texture, `STEM-MATERIAL.png`.
+    pub textures: Vec<(String, Vec<u8>)>,
+}
+
+/// Writes a model as a USD layer in text form (usda) and PNG files; `stem` is their common name without folder and
+/// extension.
+///
+/// Guaranteed: `metersPerUnit`, `upAxis` and `defaultPrim` are always there; names are identifiers, each once among
+/// its siblings; a part is one `Mesh` (`Points` without triangles) without subdivision, with normals, `primvars:st`,
+/// `primvars:displayColor` and, where the model has them, `primvars:wind` and `primvars:pivot`; a material is one
+/// `UsdPreviewSurface`, cut out at one half where its texture has holes; the same model gives the same bytes.
+/// Not guaranteed: that vertex colours tint textures, for which `UsdPreviewSurface` has no node: they are in
+/// `displayColor`, and colour materials without a texture. Kind and translucency are custom data of the material.
+///
+/// # Errors
+/// [`WriteError`] for a model that is not sound.
+///
+/// ```
+/// let files = formats::usd_files(&mesh::Model::default(), "oak", &formats::ExportSpec::default())?;
+/// assert!(files.usda.starts_with(b"#usda 1.0"));
+/// # Ok::<(), formats::WriteError>(())
+/// ```
+pub fn usd_files(model: &Model, stem: &str, spec: &ExportSpec) -> Result<UsdFiles, WriteError> {
+    check(model)?;
+    let stem = file_name(stem, "model");
+    let root = identifier(&model.name, "model");
+    let mut out = Vec::with_capacity(4096 + 160 * model.vertex_count() + 30 * model.triangle_count());
+    let up = match spec.up {
+        UpAxis::Y => "Y",
+        UpAxis::Z => "Z",
+    };
+    let metres = match spec.unit {
+        Unit::Metre => "1",
+        Unit::Centimetre => "0.01",
+        Unit::Millimetre => "0.001",
+    };
+    writeln!(out, "#usda 1.0\n(\n    defaultPrim = \"{root}\"")?;
+    writeln!(out, "    doc = \"Burgeon {}\"", env!("CARGO_PKG_VERSION"))?;
+    writeln!(out, "    metersPerUnit = {metres}\n    upAxis = \"{up}\"\n)\n")?;
+    writeln!(out, "def Xform \"{root}\" (")?;
+    writeln!(out, "    assetInfo = {{\n        string name = {}\n    }}", Quoted(&model.name))?;
+    writeln!(out, "    kind = \"component\"\n)\n{{")?;
+    let mut taken = Identifiers::default();
+    let scope = taken.fresh("materials", "materials");
+    let mut textures = Textures::default();
+    let mut among = Identifiers::default();
+    let looks: Vec<Look> = (model.materials.iter().enumerate())
+        .map(|(i, m)| {
+            // A part's tint colours a bare material; one that has no colours shows the base colour.
+            let users = || model.parts.iter().filter(|p| p.material.index() == i);
+            let tinted = m.texture.is_none() && users().any(|p| !p.mesh.colors.is_empty());
+            let file = m.texture.as_ref().map(|t| textures.name(t, &stem, &m.name)).transpose()?;
+            let path = format!("/{root}/{scope}/{}", among.fresh(&m.name, "material"));
+            Ok(Look { path, file, tinted, shown: shown(m) })
+        })
+        .collect::<Result<_, WriteError>>()?;
+    writeln!(out, "    def Scope \"{scope}\"\n    {{")?;
+    for (m, look) in model.materials.iter().zip(&looks) {
+        material(&mut out, m, look)?;
+    }
+    writeln!(out, "    }}")?;
+    for part in model.parts.iter().filter(|p| !p.mesh.positions.is_empty()) {
+        let name = taken.fresh(&part.name, "part");
+        let look = &looks[part.material.index()];
+        prim(&mut out, part, &name, look, model.material(part).double_sided, spec)?;
+    }
+    writeln!(out, "}}")?;
+    Ok(UsdFiles { usda: out, textures: textures.files })
+}
+
+/// How a material is written.
+struct Look {
+    path: String,
+    /// Its texture's file.
+    file: Option<String>,
+    /// Vertex colours are its colour.
+    tinted: bool,
+    /// Linear colour that stands for it where materials are not shown.
+    shown: [f32; 3],
+}
+
+fn material(out: &mut Vec<u8>, m: &Material, look: &Look) -> Result<(), WriteError> {
+    let (path, name) = (&look.path, look.path.rsplit('/').next().unwrap_or_default());
+    let [r, g, b] = m.base_color.map(share);
+    let cut = m.alpha == AlphaMode::Mask && look.file.is_some();
+    writeln!(out, "        def Material \"{name}\" (\n            customData = {{")?;
+    writeln!(out, "                string kind = \"{}\"", m.kind.word())?;
+    writeln!(out, "                float translucency = {}", share(m.translucency))?;
+    writeln!(out, "            }}\n        )\n        {{")?;
+    writeln!(out, "            token outputs:surface.connect = <{path}/surface.outputs:surface>\n")?;
+    writeln!(out, "            def Shader \"surface\"\n            {{")?;
+    writeln!(out, "                uniform token info:id = \"UsdPreviewSurface\"")?;
+    match (&look.file, look.tinted) {
+        (Some(_), _) => {
+            writeln!(
+                out,
+                "                color3f inputs:diffuseColor.connect = <{path}/texture.outputs:rgb>"
+            )?;
+        }
+        (None, true) => {
+            writeln!(
+                out,
+                "                color3f inputs:diffuseColor.connect = <{path}/tint.outputs:result>"
+            )?;
+        }
+        (None, false) => writeln!(out, "                color3f inputs:diffuseColor = ({r}, {g}, {b})")?,
+    }
+    writeln!(out, "                float inputs:metallic = 0")?;
+    if cut {
+        writeln!(out, "                float inputs:opacity.connect = <{path}/texture.outputs:a>")?;
+        writeln!(out, "                float inputs:opacityThreshold = 0.5")?;
+    }
+    writeln!(out, "                float inputs:roughness = {}", share(m.roughness))?;
+    writeln!(out, "                token outputs:surface\n            }}")?;
+    if let Some(file) = &look.file {
+        writeln!(out, "\n            def Shader \"texture\"\n            {{")?;
+        writeln!(out, "                uniform token info:id = \"UsdUVTexture\"")?;
+        writeln!(out, "                asset inputs:file = @./{file}@")?;
+        writeln!(out, "                float4 inputs:scale = ({r}, {g}, {b}, 1)")?;
+        writeln!(out, "                token inputs:sourceColorSpace = \"sRGB\"")?;
+        writeln!(out, "                float2 inputs:st.connect = <{path}/place.outputs:result>")?;
+        writeln!(out, "                token inputs:wrapS = \"repeat\"")?;
+        writeln!(out, "                token inputs:wrapT = \"repeat\"")?;
+        if cut {
+            writeln!(out, "                float outputs:a")?;
+        }
+        writeln!(out, "                float3 outputs:rgb\n            }}\n")?;
+        reader(out, "place", "float2", "st")?;
+    } else if look.tinted {
+        writeln!(out)?;
+        reader(out, "tint", "float3", "displayColor")?;
+    }
+    Ok(writeln!(out, "        }}\n")?)
+}
+
+/// A node that hands a column of the mesh on.
+fn reader(out: &mut Vec<u8>, name: &str, kind: &str, column: &str) -> Result<(), WriteError> {
+    writeln!(out, "            def Shader \"{name}\"\n            {{")?;
+    writeln!(out, "                uniform token info:id = \"UsdPrimvarReader_{kind}\"")?;
+    writeln!(out, "                string inputs:varname = \"{column}\"")?;
+    Ok(writeln!(out, "                {kind} outputs:result\n            }}")?)
+}
+
+fn prim(
+    out: &mut Vec<u8>,
+    part: &Part,
+    name: &str,
+    look: &Look,
+    double_sided: bool,
+    spec: &ExportSpec,
+) -> Result<(), WriteError> {
+    let mesh = &part.mesh;
+    let points: Vec<[f32; 3]> = mesh.positions.iter().map(|&p| spec.point(p)).collect();
+    let cloud = mesh.triangles.is_empty();
+    let kind = if cloud { "Points" } else { "Mesh" };
+    writeln!(
+        out,
+        "\n    def {kind} \"{name}\" (\n        prepend apiSchemas = [\"MaterialBindingAPI\"]\n    )\n    {{"
+    )?;
+    if double_sided {
+        writeln!(out, "        uniform bool doubleSided = 1")?;
+    }
+    let (low, high) = points.iter().fold(([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]), |(low, high), p| {
+        ([0, 1, 2].map(|k| low[k].min(p[k])), [0, 1, 2].map(|k| high[k].max(p[k])))
+    });
+    // A point has a width: a three-hundredth of the whole shows without hiding its neighbours.
+    let width = if cloud { (0..3).map(|k| high[k] - low[k]).fold(0.0, f32::max) / 300.0 } else { 0.0 };
+    write!(out, "        float3[] extent = [")?;
+    row(out, &low.map(|x| x - 0.5 * width))?;
+    write!(out, ", ")?;
+    row(out, &high.map(|x| x + 0.5 * width))?;
+    writeln!(out, "]")?;
+    if cloud {
+        writeln!(
+            out,
+            "        float[] widths = [{width}] (\n            interpolation = \"constant\"\n        )"
+        )?;
+    } else {
+        write!(out, "        int[] faceVertexCounts = [")?;
+        for i in 0..mesh.triangles.len() {
+            out.extend_from_slice(if i == 0 { b"3" } else { b", 3" });
+        }
+        write!(out, "]\n        int[] faceVertexIndices = [")?;
+        for (i, [a, b, c]) in mesh.triangles.iter().enumerate() {
+            let comma = if i == 0 { "" } else { ", " };
+            write!(out, "{comma}{a}, {b}, {c}")?;
+        }
+        writeln!(out, "]")?;
+    }
+    writeln!(out, "        rel material:binding = <{}>", look.path)?;
+    columns(out, mesh, &points, look, spec)?;
+    if !cloud {
+        // Without this every reader would smooth the triangles (Catmull and Clark).
+        writeln!(out, "        uniform token subdivisionScheme = \"none\"")?;
+    }
+    Ok(writeln!(out, "    }}")?)
+}
+
+fn columns(
+    out: &mut Vec<u8>,
+    mesh: &TriMesh,
+    points: &[[f32; 3]],
+    look: &Look,
+    spec: &ExportSpec,
+) -> Result<(), WriteError> {
+    let normals: Vec<[f32; 3]> = mesh.normals.iter().map(|&n| spec.direction(unit(n))).collect();
+    column(out, "normal3f[] normals", &normals)?;
+    column(out, "point3f[] points", points)?;
+    let product = |c: &[f32; 3]| [0, 1, 2].map(|k| share(c[k]) * look.shown[k]);
+    if mesh.colors.is_empty() {
+        write!(out, "        color3f[] primvars:displayColor = [")?;
+        row(out, &look.shown)?;
+        writeln!(out, "] (\n            interpolation = \"constant\"\n        )")?;
+    } else {
+        let colors: Vec<[f32; 3]> = mesh.colors.iter().map(product).collect();
+        column(out, "color3f[] primvars:displayColor", &colors)?;
+    }
+    let pivots: Vec<[f32; 3]> = mesh.pivots.iter().map(|&p| spec.point(p)).collect();
+    column(out, "point3f[] primvars:pivot", &pivots)?;
+    // USD's t points up.
+    let finite = |x: f32| if x.is_finite() { x } else { 0.0 };
+    let st: Vec<[f32; 2]> = mesh.uvs.iter().map(|uv| [finite(uv[0]), 1.0 - finite(uv[1])]).collect();
+    column(out, "texCoord2f[] primvars:st", &st)?;
+    column(out, "float4[] primvars:wind", &mesh.wind)
+}
+
+/// A value at each vertex; nothing where there is none.
+fn column<const N: usize>(out: &mut Vec<u8>, what: &str, rows: &[[f32; N]]) -> Result<(), WriteError> {
+    if rows.is_empty() {
+        return Ok(());
+    }
+    write!(out, "        {what} = [")?;
+    for (i, r) in rows.iter().enumerate() {
+        if i > 0 {
+            out.extend_from_slice(b", ");
+        }
+        row(out, r)?;
+    }
+    let vertex = " (\n            interpolation = \"vertex\"\n        )";
+    // Points are at vertices by their nature.
+    Ok(writeln!(out, "]{}", if what.ends_with("points") { "" } else { vertex })?)
+}
+
+fn row<const N: usize>(out: &mut Vec<u8>, values: &[f32; N]) -> Result<(), WriteError> {
+    for (k, x) in values.iter().enumerate() {
+        write!(out, "{}{x}", if k == 0 { "(" } else { ", " })?;
+    }
+    Ok(write!(out, ")")?)
+}
+
+/// 0 to 1; NaN is 0.
+fn share(x: f32) -> f32 {
+    if x.is_nan() { 0.0 } else { x.clamp(0.0, 1.0) }
+}
+
+/// The mean colour of a material, linear: what a viewer without materials should show.
+fn shown(m: &Material) -> [f32; 3] {
+    let base = m.base_color.map(share);
+    let Some(texture) = &m.texture else { return base };
+    // Some 4096 pixels tell as much as all of them.
+    let step = (texture.pixels.len() / 4 / 4096).max(1);
+    let (mut sum, mut weight) = ([0.0_f64; 3], 0.0_f64);
+    for p in texture.pixels.chunks_exact(4).step_by(step).filter(|p| p[3] > 127) {
+        for k in 0..3 {
+            sum[k] += f64::from(linear(f32::from(p[k]) / 255.0));
+        }
+        weight += 1.0;
+    }
+    #[expect(clippy::cast_possible_truncation, reason = "a colour")]
+    let mean = |k: usize| if weight > 0.0 { (sum[k] / weight) as f32 } else { 1.0 };
+    [0, 1, 2].map(|k| base[k] * mean(k))
+}
+
+/// Each texture once.
+#[derive(Default)]
+struct Textures {
+    files: Vec<(String, Vec<u8>)>,
+    written: Vec<(Arc<mesh::Texture>, String)>,
+    cache: PngCache,
+}
+
+impl Textures {
+    fn name(
+        &mut self,
+        texture: &Arc<mesh::Texture>,
+        stem: &str,
+        material: &str,
+    ) -> Result<String, WriteError> {
+        if let Some((_, name)) = self.written.iter().find(|(t, _)| Arc::ptr_eq(t, texture) || t == texture) {
+            return Ok(name.clone());
+        }
+        let mut name = format!("{stem}-{}.png", file_name(material, "texture"));
+        while self.files.iter().any(|(n, _)| *n == name) {
+            name.insert_str(name.len() - 4, "-2");
+        }
+        self.files.push((name.clone(), self.cache.png(texture)?.to_vec()));
+        self.written.push((Arc::clone(texture), name.clone()));
+        Ok(name)
+    }
+}
+
+/// Identifiers that are each used once.
+#[derive(Default)]
+struct Identifiers(BTreeSet<String>);
+
+impl Identifiers {
+    fn fresh(&mut self, wanted: &str, otherwise: &str) -> String {
+        let wanted = identifier(wanted, otherwise);
+        let numbered = (2_usize..).map(|n| format!("{wanted}_{n}"));
+        let name = core::iter::once(wanted.clone()).chain(numbered).find(|n| !self.0.contains(n));
+        let name = name.unwrap_or(wanted);
+        self.0.insert(name.clone());
+        name
+    }
+}
+
+/// A name of ASCII letters, digits and underscores that does not begin with a digit: what every reader of USD takes.
+fn identifier(name: &str, otherwise: &str) -> String {
+    let keep = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
+    let name: String = name.trim().chars().map(keep).take(100).collect();
+    if name.chars().all(|c| c == '_') {
+        otherwise.to_owned()
+    } else if name.starts_with(|c: char| c.is_ascii_digit()) {
+        format!("_{name}")
+    } else {
+        name
+    }
+}
+
+/// Text between quotes.
+struct Quoted<'a>(&'a str);
+
+impl fmt::Display for Quoted<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("\"")?;
+        for c in self.0.chars() {
+            match c {
+                '"' | '\\' => write!(f, "\\{c}")?,
+                c if c.is_control() => f.write_str(" ")?,
+                c => write!(f, "{c}")?,
+            }
+        }
+        f.write_str("\"")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_become_identifiers_that_differ() {
+        let mut names = Identifiers::default();
+        let got = ["leaf-2", "leaf 2", "2 leaves", "\u{82b1}", "", "leaf_2"].map(|n| names.fresh(n, "part"));
+        assert_eq!(got, ["leaf_2", "leaf_2_2", "_2_leaves", "part", "part_2", "leaf_2_3"]);
+        assert_eq!(Quoted("a \"b\" \\ c\nd").to_string(), "\"a \\\"b\\\" \\\\ c d\"");
+    }
+
+    #[test]
+    fn colour_without_materials_is_the_mean_of_what_is_seen() {
+        let pixels = [[255, 255, 255, 255], [0, 0, 0, 255], [9, 9, 9, 0], [9, 9, 9, 0]].concat();
+        let texture = Some(Arc::new(mesh::Texture { width: 2, height: 2, pixels }));
+        let m = Material { texture, ..Material::plain("leaf", mesh::MaterialKind::Leaf, [1.0, 0.5, 0.0]) };
+        assert_eq!(shown(&m), [0.5, 0.25, 0.0]);
+    }
+}
