@@ -15,6 +15,7 @@ mod output;
 mod petals;
 mod picture;
 mod presets;
+mod project;
 mod report;
 mod say;
 mod scene;

@@ -20,7 +20,7 @@ use crate::failure::{Failure, Outcome};
 use crate::files::Kind;
 use crate::grow::TreeSurfaceArgs;
 use crate::machine::Machine;
-use crate::{files, grow, output, picture, report, say};
+use crate::{files, grow, output, picture, project, report, say};
 
 #[derive(Args, Debug)]
 #[command(after_long_help = SHAPE_EXAMPLES)]
@@ -32,14 +32,20 @@ pub(crate) struct ShapeArgs {
     #[arg(long, value_name = "EDITS.json", required_unless_present_any = ["template", "schema", "list"])]
     pub(crate) edits: Option<PathBuf>,
     /// The model (.glb, .obj, .ply, .stl or .usda), or the structure (.mtg).
-    #[arg(long, short, value_name = "OUT", required_unless_present_any = ["png", "report", "json", "template", "schema", "list"])]
+    #[arg(long, short, value_name = "OUT", required_unless_present_any = ["png", "report", "json", "template", "schema", "list", "save"])]
     pub(crate) output: Option<PathBuf>,
+    /// Which plant of a project that holds several: its name, or its number from 1.
+    #[arg(long, value_name = "NAME|N")]
+    pub(crate) plant: Option<String>,
+    /// Also save the project with the edits after those that it has.
+    #[arg(long, value_name = "PROJECT.burgeon")]
+    pub(crate) save: Option<PathBuf>,
     /// Also make a picture.
     #[arg(long, value_name = "FILE.png")]
     pub(crate) png: Option<PathBuf>,
-    /// Number that all chance of the plant follows from; edits have their own.
-    #[arg(long, value_name = "N", default_value_t = 1, allow_hyphen_values = true, value_parser = seed)]
-    pub(crate) seed: u64,
+    /// Number that all chance of the plant follows from; edits have their own. Default 1, or the project's.
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = seed)]
+    pub(crate) seed: Option<u64>,
     /// Print the branches up to this order (0 is the trunk) with the paths that name them, after the edits if any.
     #[arg(long, value_name = "ORDER", num_args = 0..=1, default_missing_value = "1")]
     pub(crate) list: Option<u32>,
@@ -64,6 +70,7 @@ const SHAPE_EXAMPLES: &str = "Examples:
   burgeon shape oak --list                                       which branch has which path?
   burgeon shape oak --edits edits.json -o oak.glb --png oak.png
   burgeon shape tree.svg --edits edits.json -o tree.glb --report tree.json
+  burgeon shape garden.burgeon --plant bush --edits edits.json -o bush.glb --save garden2.burgeon
 
 Edits are done one after another; one that cannot be done says why and changes nothing.
 A branch is named by  {\"path\": [0, 2]}  (stem 0, its branch number 2 from the base up),
@@ -75,6 +82,7 @@ struct Shaped {
     model: Model,
     lods: Vec<Model>,
     item: ItemReport,
+    seed: Seed,
 }
 
 pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
@@ -83,6 +91,7 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
         ("-o", args.output.as_ref()),
         ("--png", args.png.as_ref()),
         ("--schema", args.schema.as_ref()),
+        ("--save", args.save.as_ref()),
         ("--report", args.common.report.as_ref()),
     ];
     let inputs = args.what.iter().chain(&args.edits);
@@ -105,7 +114,7 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
     let mut told = Report::default();
     let made = machine.with_progress("shape", |_| make(args, what, edits, &mut told, &machine))?;
     machine.cancel.check()?;
-    let Shaped { plant, model, lods, mut item } = made;
+    let Shaped { plant, model, lods, mut item, seed } = made;
     item.warnings.splice(0..0, told.warnings.iter().map(ToString::to_string));
     if args.common.report.is_some() || args.common.json {
         item.plant = Some(plant.measure());
@@ -122,12 +131,12 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
         item.output = path.display().to_string();
     }
     if let Some(png) = &args.png {
-        let spec = args.picture.spec(args.seed);
+        let spec = args.picture.spec(seed.number());
         let drawn =
             machine.with_progress("picture", |_| burgeon::render::render(&model, &spec, &machine.run()))?;
         picture::write(png, &drawn)?;
     }
-    let mut run = RunReport::new("shape", args.seed);
+    let mut run = RunReport::new("shape", seed.number());
     run.input.path = what.display().to_string();
     run.ok = 1;
     if !machine.quiet {
@@ -174,10 +183,11 @@ fn make(
         textures: !args.surface.no_textures,
         ..SkinSpec::default()
     };
-    let seed = Seed::new(args.seed);
+    let seed = Seed::new(args.seed.unwrap_or(1));
     let is_preset = what.to_str().and_then(Preset::find).is_some() && !what.is_file();
     let is_spec = files::extension(what).is_none_or(|e| e.eq_ignore_ascii_case("toml"));
     if is_preset || (is_spec && !files::is_stdin(what)) {
+        no_project(args, what)?;
         let spec = grow::read_spec(what, told)?;
         let options = TreeOptions { skin, lods: args.surface.lods, edits, ..TreeOptions::default() };
         let made = make_tree(&spec, seed, &options, &machine.run()).map_err(|e| match e {
@@ -185,18 +195,26 @@ fn make(
             other => Failure::at(what, other),
         })?;
         let MadeTree { grown, model, lods, item } = made;
-        return Ok(Shaped { plant: grown.plant, model, lods, item });
+        return Ok(Shaped { plant: grown.plant, model, lods, item, seed });
     }
-    let (read, mut options) = match files::open(what)? {
+    let read = match files::open(what)? {
         (file, Kind::Drawing(format)) => {
+            no_project(args, what)?;
             let mut drawings = read_drawings(file, format, &files::stem(what));
             let first = drawings.next().ok_or_else(|| Failure::at(what, "holds no drawing"))?;
-            (first.map_err(|e| Failure::at(what, e))?, SketchOptions::default())
+            first.map_err(|e| Failure::at(what, e))?
         }
         (file, Kind::Project) => {
             let document = files::read_project(what, file)?;
-            let (read, plant) = files::drawing_of(what, &document)?;
-            (read, SketchOptions::of_plant(plant))
+            let id = project::choose(what, &document, args.plant.as_deref())?;
+            let document = project::edited(what, document, id, edits)?;
+            let asked = project::asked(what, &document, id, args.seed, &args.surface)?;
+            let (plant, model, item) = project::make(what, &asked, id, machine)?;
+            if let Some(path) = &args.save {
+                project::save(path, &document)?;
+            }
+            let seed = asked.plant(id).map_or(seed, |p| p.settings().seed);
+            return Ok(Shaped { plant, model, lods: Vec::new(), item, seed });
         }
         (_, Kind::Model(format)) => {
             let what_it_is = format_args!(
@@ -207,14 +225,23 @@ fn make(
         }
     };
     told.warnings.extend(read.warnings);
-    options.skin = SkinSpec { seed, ..skin };
-    // A project's own edits first.
-    options.edits.extend(edits);
+    let options = SketchOptions { skin: SkinSpec { seed, ..skin }, edits, ..SketchOptions::default() };
     let made = make_from_sketch(&read.drawing, &options, seed, &machine.run()).map_err(|e| match e {
         MakeError::Cancelled(_) => Failure::Cancelled,
         other => Failure::at(what, other),
     })?;
-    Ok(Shaped { plant: made.plant, model: made.model, lods: Vec::new(), item: made.item })
+    Ok(Shaped { plant: made.plant, model: made.model, lods: Vec::new(), item: made.item, seed })
+}
+
+/// Options of projects are for nothing else.
+fn no_project(args: &ShapeArgs, what: &Path) -> Outcome {
+    let option = args.plant.as_ref().map(|_| "--plant").or(args.save.as_ref().map(|_| "--save"));
+    match option {
+        Some(option) => {
+            Err(Failure::at(what, format_args!("is no project (.burgeon), which {option} is for")))
+        }
+        None => Ok(()),
+    }
 }
 
 fn list(plant: &Plant, order: u32) -> Outcome {

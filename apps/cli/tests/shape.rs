@@ -122,3 +122,69 @@ fn bad_input_says_what_and_where() {
     bad(&f, &["shape", "small.toml", "-o", "x.glb"]);
     assert!(!f.join("x.glb").exists());
 }
+
+const GARDEN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/projects/version-3.burgeon");
+
+#[test]
+fn a_plant_of_a_project_is_chosen_shaped_and_saved() {
+    let f = folder("shape-project");
+    fs::copy(GARDEN, f.join("garden.burgeon")).unwrap();
+    let edits = r#"{"schema": "burgeon.edits/1", "edits": [{"op": "prune", "axis": {"path": [0, 0]}}, {"op": "prune", "axis": {"path": [0, 0]}}]}"#;
+    fs::write(f.join("edits.json"), edits).unwrap();
+    let json = |args: &[&str]| -> Value { serde_json::from_str(&good(&f, args)).unwrap() };
+    let shape = ["shape", "garden.burgeon", "--edits", "edits.json", "--json"];
+    let by_name =
+        json(&[&shape[..], &["--plant", "Bush", "-o", "bush.glb", "--save", "shaped.burgeon"]].concat());
+    let item = &by_name["items"][0];
+    assert_eq!(item["edits"].as_array().unwrap().len(), 2);
+    assert!(item["edits"].as_array().unwrap().iter().all(|e| e["done"] == true), "{item}");
+    assert!(fs::metadata(f.join("bush.glb")).unwrap().len() > 1000);
+    let by_number = json(&[&shape[..], &["--plant", "2", "--png", "bush.png"]].concat());
+    assert_eq!(by_number["items"][0]["digest"], item["digest"]);
+    // The project's own seed, unless another is asked for; the saved project makes the same plant of it.
+    assert_eq!(by_name["seed"], 3);
+    let again =
+        json(&["shape", "shaped.burgeon", "--plant", "bush", "--report", "again.json", "--json", "--list"]);
+    assert_eq!(again["items"][0]["digest"], item["digest"]);
+    let scene = json(&["sketch", "shaped.burgeon", "-o", "scene.glb", "--json"]);
+    let digests: Vec<&Value> = scene["items"].as_array().unwrap().iter().map(|i| &i["digest"]).collect();
+    assert!(digests.contains(&&item["digest"]), "the scene has the same plant");
+    let other = json(&[&shape[..], &["--plant", "bush", "--seed", "8", "--png", "x.png"]].concat());
+    assert_ne!(other["items"][0]["digest"], item["digest"]);
+    // One more edit comes after those that are there.
+    let more = json(&[
+        "shape",
+        "shaped.burgeon",
+        "--edits",
+        "edits.json",
+        "--plant",
+        "bush",
+        "--save",
+        "more.burgeon",
+        "--json",
+    ]);
+    assert_eq!(more["items"][0]["edits"].as_array().unwrap().len(), 4);
+}
+
+#[test]
+fn a_choice_among_plants_that_is_missing_or_wrong_names_them() {
+    let f = folder("shape-choice");
+    fs::copy(GARDEN, f.join("garden.burgeon")).unwrap();
+    fs::write(f.join("edits.json"), EDITS).unwrap();
+    fs::write(f.join("small.toml"), "[method]\nkind = \"competition\"\npoints = 300").unwrap();
+    let told =
+        |args: &[&str]| bad(&f, &[&["shape"], args, &["--edits", "edits.json", "-o", "x.glb"]].concat());
+    let none = told(&["garden.burgeon"]);
+    assert!(none.contains("--plant") && none.contains("1 \"drawn\" (sketch), 2 \"bush\" (tree)"), "{none}");
+    let unknown = told(&["garden.burgeon", "--plant", "elm"]);
+    assert!(unknown.contains("no plant \"elm\"") && unknown.contains("2 \"bush\" (tree)"), "{unknown}");
+    assert!(told(&["garden.burgeon", "--plant", "9"]).contains("no plant \"9\""));
+    assert!(told(&["garden.burgeon", "--plant", "tobacco"]).contains("is a leaf, which has no branches"));
+    assert!(told(&["garden.burgeon", "--plant", "bush", "--lods", "2"]).contains("--lods"));
+    assert!(told(&["small.toml", "--plant", "bush"]).contains("no project"));
+    assert!(told(&["small.toml", "--save", "y.burgeon"]).contains("--save"));
+    assert!(
+        told(&["garden.burgeon", "--plant", "bush", "--save", "garden.burgeon"]).contains("garden.burgeon")
+    );
+    assert!(!f.join("x.glb").exists() && !f.join("y.burgeon").exists());
+}

@@ -32,11 +32,14 @@ pub struct Reach {
     pub metres: f64,
     /// More for every metre of distance, 0 or more; 0.02 is about 1 degree to either side.
     pub per_metre: f64,
+    /// Not the branch itself is meant, but what bears it, so many branches towards the ground; default 0. In a dense
+    /// crown every pointer meets a twig, but boughs are meant, too.
+    pub bearers: u32,
 }
 
 impl Default for Reach {
     fn default() -> Self {
-        Self { metres: 0.005, per_metre: 0.02 }
+        Self { metres: 0.005, per_metre: 0.02, bearers: 0 }
     }
 }
 
@@ -55,6 +58,7 @@ pub struct Pick {
 
 /// The shoot that a ray means: of those it hits the nearest, else the one that it passes at the smallest angle.
 ///
+/// With [`Reach::bearers`], what bears it instead, at the place where it does; what bears all, if there are no more.
 /// Stalks of leaves and roots are not picked. `None` if none is within `reach`. Cost: linear in nodes.
 ///
 /// ```
@@ -95,7 +99,22 @@ pub fn pick(plant: &Plant, ray: &Ray, reach: Reach) -> Option<Pick> {
             sum += length;
         }
     }
-    best.map(|(_, pick)| pick)
+    best.map(|(_, mut pick)| {
+        // No further than there are axes: a sound plant has no circle.
+        for _ in plant.axes.iter().take(reach.bearers as usize) {
+            let Some(bearer) = bearer_of(plant, pick) else { break };
+            pick = bearer;
+        }
+        pick
+    })
+}
+
+/// What bears a branch, at the place where it does.
+fn bearer_of(plant: &Plant, pick: Pick) -> Option<Pick> {
+    let node = plant.axis(pick.axis).bearer?.index();
+    let (axis, point) = (*plant.nodes.axis.get(node)?, *plant.nodes.position.get(node)?);
+    let (_, at) = crate::key::nearest_on(plant.axis_points(axis), point);
+    Some(Pick { axis, at, point, ..pick })
 }
 
 /// Where a segment and a ray are nearest: the share along the segment and the distance along the ray.
