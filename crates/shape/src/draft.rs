@@ -5,6 +5,8 @@
 use glam::{DQuat, DVec3};
 use plant::{AxisKind, Flower, FlowerId, NodeId, Organ, Plant, Shape};
 
+use crate::key::nearest_on;
+
 /// A node of a branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct At {
@@ -276,6 +278,16 @@ impl Draft {
             o.alive &= !(above && o.at == Some(At { branch: b, node: last }));
         }
         count
+    }
+
+    /// How deep a point lies below the bark of a branch, metres; negative outside.
+    pub(crate) fn depth_in(&self, b: usize, p: DVec3) -> f64 {
+        let branch = &self.branches[b];
+        let (distance, share) = nearest_on(&branch.points, p);
+        let lengths = branch.lengths();
+        let at = share * lengths.last().copied().unwrap_or(0.0);
+        let i = lengths.partition_point(|l| *l < at).min(branch.radii.len().saturating_sub(1));
+        branch.radii.get(i).copied().unwrap_or(0.0) - distance
     }
 
     /// The node at a share of a branch's length, put in if there is none; one within a hundredth of the length is used.

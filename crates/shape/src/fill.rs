@@ -76,7 +76,6 @@ pub(crate) fn regrow(
     let removed = draft.remove(&inside);
     let mut pipes = Pipes::default();
     pipes.book(at, radius, -1.0, habit.exponent);
-    pipes.settle(draft, habit.exponent, habit.tip_m);
     let mut hosts = Hosts::default();
     let root = hosts.skeleton.push_root(start, 0);
     let Some(at) = at else {
@@ -87,7 +86,7 @@ pub(crate) fn regrow(
     let mut start_from = hosts.skeleton.clone();
     start_from.push(first, root, 0);
     let grown = colonize_from(start_from, &markers, bench.obstacles, &spec, bench.run, &mut unread())?;
-    let made = graft_all(draft, &hosts, &grown.skeleton, &habit, own, bench)?;
+    let made = graft_all(draft, &hosts, &grown.skeleton, &habit, pipes, own, bench)?;
     if let Some(&new) = made.first() {
         // Key and number stay with the place: other edits may mean this branch.
         draft.branches[new].key = old.key;
@@ -118,7 +117,7 @@ fn regrow_stem(
     let hosts = Hosts::of(draft, |i| i == b);
     let start = hosts.skeleton.clone();
     let grown = colonize_from(start, markers, bench.obstacles, spec, bench.run, &mut unread())?;
-    let made = graft_all(draft, &hosts, &grown.skeleton, habit, Seed::new(old.key), bench)?;
+    let made = graft_all(draft, &hosts, &grown.skeleton, habit, Pipes::default(), Seed::new(old.key), bench)?;
     dress(draft, habit, bench)?;
     Ok(made.len() + 1)
 }
@@ -145,7 +144,7 @@ pub(crate) fn silhouette(
     }
     let mask = Mask::new(wanted.plane, wanted.outline)?;
     let habit = bench.habit(draft);
-    let removed = if wanted.trim { trim(draft, &mask, &habit)? } else { 0 };
+    let (removed, pipes) = if wanted.trim { trim(draft, &mask, &habit) } else { (0, Pipes::default()) };
     let hosts = Hosts::of(draft, |_| true);
     if hosts.node.is_empty() {
         return Err(Why::NoBranches.into());
@@ -189,7 +188,7 @@ pub(crate) fn silhouette(
     let old = hosts.node.len();
     // A twig may pass the line by less than a step; what goes farther was on its way around.
     let skeleton = grown.skeleton.keep(|j| j < old || mask.near(grown.skeleton.position[j], spacing));
-    let made = graft_all(draft, &hosts, &skeleton, &habit, own, bench)?;
+    let made = graft_all(draft, &hosts, &skeleton, &habit, pipes, own, bench)?;
     dress(draft, &habit, bench)?;
     let dropped = if wanted.trim { trim_leaves(draft, &mask, &habit) } else { 0 };
     if made.is_empty() && removed + dropped == 0 {
@@ -198,8 +197,9 @@ pub(crate) fn silhouette(
     Ok(Changed { removed, added: made.len(), ..Changed::default() })
 }
 
-/// Cuts branches where they leave the outline; those of the trunk that never come into it go as well.
-fn trim(draft: &mut Draft, mask: &Mask, habit: &Habit) -> Result<usize, Stop> {
+/// Cuts branches where they leave the outline; those of the trunk that never come into it go as well. Returns how many
+/// went, and their pipes.
+fn trim(draft: &mut Draft, mask: &Mask, habit: &Habit) -> (usize, Pipes) {
     let mut removed = 0;
     let mut pipes = Pipes::default();
     // Highest order last: what hangs on a branch that is cut is gone with it.
@@ -238,8 +238,7 @@ fn trim(draft: &mut Draft, mask: &Mask, habit: &Habit) -> Result<usize, Stop> {
             pipes.book(Some(at), habit.tip_m.min(radius), 1.0, habit.exponent);
         }
     }
-    pipes.settle(draft, habit.exponent, habit.tip_m);
-    Ok(removed)
+    (removed, pipes)
 }
 
 /// Leaves whose root is outside go.

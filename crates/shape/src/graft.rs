@@ -10,7 +10,7 @@ use crate::apply::{Bench, MOST_AXES, Stop};
 use crate::draft::{At, Branch, Draft};
 use crate::habit::{Habit, kind_on};
 use crate::outcome::Why;
-use crate::pipes::Pipes;
+use crate::pipes::{Pipes, fit};
 
 /// The wood of a plant as a skeleton, and the node of each joint.
 #[derive(Clone, Debug, Default)]
@@ -56,12 +56,13 @@ impl Hosts {
 
 /// Grafts everything of `grown` beyond the joints of `hosts` onto the draft.
 ///
-/// `keep` says which of the new joints stay, by their place. Returns the new branches; radii below them are settled.
+/// `pipes`: what came and went before, as by a cut. Returns the new branches; radii below all of it are settled.
 pub(crate) fn graft_all(
     draft: &mut Draft,
     hosts: &Hosts,
     grown: &Skeleton,
     habit: &Habit,
+    mut pipes: Pipes,
     seed: Seed,
     bench: &Bench<'_>,
 ) -> Result<Vec<usize>, Stop> {
@@ -78,7 +79,6 @@ pub(crate) fn graft_all(
         }
     }
     let mut made = Vec::new();
-    let mut pipes = Pipes::default();
     let mut new_id: Vec<Option<JointId>> = vec![None; grown.len()];
     for (root, rows) in rows.iter().enumerate().filter(|(_, r)| !r.is_empty()) {
         let mut little = Skeleton::default();
@@ -94,6 +94,7 @@ pub(crate) fn graft_all(
         let added = graft(draft, hosts.node[root], &little, habit, place, bench)?;
         for &b in &added {
             if draft.branches[b].bearer == Some(hosts.node[root]) {
+                fit(draft, b, habit.tip_m);
                 pipes.book(draft.branches[b].bearer, draft.branches[b].radii[0], 1.0, habit.exponent);
             }
         }
@@ -102,6 +103,7 @@ pub(crate) fn graft_all(
             return Err(Why::TooMany { most: MOST_AXES }.into());
         }
     }
+    pipes.bounded = true;
     pipes.settle(draft, habit.exponent, habit.tip_m);
     Ok(made)
 }

@@ -6,9 +6,38 @@ use base::ops;
 
 use crate::draft::{At, Draft};
 
+/// The thickest that old wood becomes by what is grafted onto it: a tenth more, and one and a half tips.
+///
+/// A twig may become a branch, a trunk stays what it was for the eye: who fills an outline means the crown. It rises with
+/// the radius, so that nothing becomes thicker than what bears it.
+fn most(old_m: f64, tip_m: f64) -> f64 {
+    1.1 * old_m + 1.5 * tip_m
+}
+
+/// Makes a new branch on old wood, with all that it bears, so thin that its base suits its bearer; tips stay.
+pub(crate) fn fit(draft: &mut Draft, b: usize, tip_m: f64) {
+    let branch = &draft.branches[b];
+    let (Some(at), Some(&base)) = (branch.bearer, branch.radii.first()) else { return };
+    let bearer = &draft.branches[at.branch];
+    let Some(&on) = bearer.radii.get(at.node).filter(|_| branch.fresh && !bearer.fresh) else { return };
+    let limit = most(on, tip_m);
+    if base <= limit || base <= tip_m {
+        return;
+    }
+    let share = (limit - tip_m) / (base - tip_m);
+    let inside = draft.subtree(b);
+    for (branch, _) in draft.branches.iter_mut().zip(inside).filter(|(_, inside)| *inside) {
+        for r in branch.radii.iter_mut().filter(|r| **r > tip_m) {
+            *r = tip_m + (*r - tip_m) * share;
+        }
+    }
+}
+
 /// Pipes (`r^t`) that came to a node or went from it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pipes {
+    /// Old wood grows by a bounded amount only, as under what was grafted; what was moved has its own thickness.
+    pub(crate) bounded: bool,
     changes: Vec<(At, f64)>,
 }
 
@@ -53,7 +82,7 @@ impl Pipes {
             }
             let branch = &mut draft.branches[b];
             let (before, bearer) = (branch.radii[0], branch.bearer);
-            let mut sum = 0.0;
+            let (mut sum, mut old_above) = (0.0, 0.0);
             // Above the highest change not a bit may move: a power and its root are not the identity.
             let highest = here.last().map_or(0, |(n, _)| *n).min(branch.radii.len().saturating_sub(1));
             for node in (0..=highest).rev() {
@@ -61,16 +90,19 @@ impl Pipes {
                     sum += here.pop().map_or(0.0, |(_, p)| p);
                 }
                 let old = branch.radii[node];
-                let wanted = ops::powf((ops::powf(old, exponent) + sum).max(0.0), 1.0 / exponent);
+                let pipes = ops::powf((ops::powf(old, exponent) + sum).max(0.0), 1.0 / exponent);
+                let wanted = if branch.fresh || !self.bounded { pipes } else { pipes.min(most(old, tip_m)) };
                 let floor = thickest[node].max(old.min(tip_m));
                 // What was a step in the radii on purpose (a swollen node) stays one.
                 let above = branch.radii.get(node + 1).copied().unwrap_or(0.0);
-                branch.radii[node] = wanted.max(floor).max(above.min(old.max(wanted)));
+                let least = if old >= old_above { above } else { above.min(old.max(wanted)) };
+                (branch.radii[node], old_above) = (wanted.max(floor).max(least), old);
             }
             if branch.radii.iter().any(|r| !r.is_finite()) {
                 branch.radii.iter_mut().for_each(|r| *r = if r.is_finite() { *r } else { tip_m });
             }
-            let change = ops::powf(branch.radii[0], exponent) - ops::powf(before, exponent);
+            fit(draft, b, tip_m);
+            let change = ops::powf(draft.branches[b].radii[0], exponent) - ops::powf(before, exponent);
             if let Some(at) = bearer.filter(|_| change != 0.0 && change.is_finite()) {
                 delta[at.branch].push((at.node, change));
             }

@@ -89,6 +89,7 @@ pub(crate) fn add(
         fresh: true,
     });
     let mut pipes = Pipes::default();
+    pipes.bounded = true;
     pipes.book(Some(at), base, 1.0, habit.exponent);
     pipes.settle(draft, habit.exponent, habit.tip_m);
     let added = 1 + twigs(draft, b, drawn.twigs, &habit, own, bench)?;
@@ -190,7 +191,7 @@ fn twigs(
     };
     let start = hosts.skeleton.clone();
     let grown = guide_from(start, &buds, bench.obstacles, &spec, seed, bench.run, &mut unread())?;
-    Ok(graft_all(draft, &hosts, &grown.skeleton, habit, seed, bench)?.len())
+    Ok(graft_all(draft, &hosts, &grown.skeleton, habit, Pipes::default(), seed, bench)?.len())
 }
 
 pub(crate) fn brush(
@@ -219,6 +220,13 @@ pub(crate) fn brush(
         Some(key) => key.find_in(draft)?,
         None => (nearest_shoot(draft, points[0], 0.5 * habit.size_m)?, false),
     };
+    // What is drawn inside the bark of the bearer is not seen: the branch begins where the stroke comes out.
+    let hidden = points.iter().take_while(|p| draft.depth_in(host, **p) > 0.0).count();
+    if hidden == points.len() {
+        return Err(Why::NothingGrew.into());
+    }
+    points.drain(..hidden.saturating_sub(1));
+    radii.drain(..hidden.saturating_sub(1));
     let share = nearest_on(&draft.branches[host].points, points[0]).1;
     let node = draft.node_at(host, share);
     let (at, start) = (At { branch: host, node }, draft.branches[host].points[node]);
@@ -257,13 +265,17 @@ pub(crate) fn brush(
     let own = own_seed(draft, seed.child(BRUSH).child(draft.branches[host].key), start + heading);
     let mut hosts = Hosts { skeleton: Skeleton::default(), node: vec![at] };
     let joint = hosts.skeleton.push_root(start, 0);
-    let bud = StartBud { joint, heading, wakes: 0 };
-    let from = hosts.skeleton.clone();
+    // No bud inside the bearer: the first piece leads out through its bark. Along the bearer that would be far.
+    let (along, thick) = (draft.branches[host].tangent(node), draft.branches[host].radii[node]);
+    let steep = (heading - along * heading.dot(along)).length().max(0.35);
+    let mut from = hosts.skeleton.clone();
+    let out = from.push(start + heading * (thick / steep), joint, 0);
+    let bud = StartBud { joint: out, heading, wakes: 0 };
     let grown = guide_from(from, &[bud], bench.obstacles, &spec, own, bench.run, &mut unread())?;
-    if grown.skeleton.len() < 3 {
+    if grown.skeleton.len() < 4 {
         return Err(Why::NothingGrew.into());
     }
-    let made = graft_all(draft, &hosts, &grown.skeleton, &habit, own, bench)?;
+    let made = graft_all(draft, &hosts, &grown.skeleton, &habit, Pipes::default(), own, bench)?;
     dress(draft, &habit, bench)?;
     Ok(Changed { added: made.len(), by_likeness, ..Changed::default() })
 }

@@ -375,3 +375,71 @@ fn edits_are_read_back_from_their_file_form() {
         serde_json::from_str::<HandEdit>(r#"{"op": "prune", "axis": {"path": [0]}, "sort": 1}"#).is_err()
     );
 }
+
+#[test]
+fn what_is_filled_or_brushed_leaves_the_trunk_as_thick_as_it_was() {
+    // Many times as much wood as there was: by the pipe model alone the trunk would be twice as thick.
+    let wide = [(-3.0, 1.5), (3.0, 1.5), (4.0, 4.5), (0.0, 8.0), (-4.0, 4.5)].map(DVec2::from).to_vec();
+    for kind in [0, 3] {
+        let plant = tree(kind, 1);
+        for trim in [false, true] {
+            let fill = HandEdit::Silhouette {
+                plane: ViewPlane::default(),
+                outline: wide.clone(),
+                density: 3.0,
+                trim,
+                seed: 1,
+            };
+            let filled = done(&plant, &[fill]);
+            let Outcome::Done(changed) = filled.outcomes[0] else { panic!("{}", filled.outcomes[0]) };
+            assert!(changed.added > 30, "{kind}: {}", filled.outcomes[0]);
+            let (before, after) = (plant.nodes.radius_m[0], filled.plant.nodes.radius_m[0]);
+            let tip = plant.nodes.radius_m.iter().copied().fold(f64::INFINITY, f64::min);
+            assert!(after <= 1.1 * before + 4.0 * tip && after > 0.8 * before, "{kind}: {before} to {after}");
+            for (i, axis) in filled.plant.axes.iter().enumerate() {
+                let radii = filled.plant.axis_radii(AxisId::new(i));
+                let on = axis.bearer.map_or(f64::INFINITY, |n| filled.plant.nodes.radius_m[n.index()]);
+                assert!(radii[0] <= on + 1e-9, "{kind}: axis {i} of {} m on {on} m", radii[0]);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_brush_that_begins_in_the_bark_begins_at_the_surface() {
+    let mut plant = tree(0, 1);
+    // A trunk as thick as an old one's.
+    let trunk: Vec<usize> = plant.axes[0].nodes.clone().map(|n| n as usize).collect();
+    trunk.iter().for_each(|&n| plant.nodes.radius_m[n] = plant.nodes.radius_m[n].max(0.25));
+    let start = plant.nodes.position[trunk[trunk.len() / 3]];
+    // Up inside the trunk for a while, then out of it.
+    let inside = (0..6).map(|i| start + DVec3::new(0.02 * f64::from(i), 0.05 * f64::from(i), 0.0));
+    let outside =
+        (1..12).map(|i| start + DVec3::new(0.1 + 0.18 * f64::from(i), 0.25 + 0.1 * f64::from(i), 0.0));
+    let points: Vec<DVec3> = inside.chain(outside).collect();
+    let brush =
+        |points| HandEdit::Brush { bearer: None, points, radius_m: vec![0.35], density: 1.0, seed: 1 };
+    let brushed = done(&plant, &[brush(points.clone())]);
+    let old = plant.axes.len();
+    let [.., grown] = [&plant, &brushed.plant];
+    assert!(grown.axes.len() > old + 4, "{}", brushed.outcomes[0]);
+    let on_trunk = |axis: &plant::Axis| axis.bearer.is_some_and(|n| grown.nodes.axis[n.index()].index() == 0);
+    let axis_of_trunk = grown.axis_points(AxisId::new(0));
+    let depth = |p: DVec3| {
+        axis_of_trunk
+            .windows(2)
+            .map(|w| {
+                let d = w[1] - w[0];
+                p.distance(w[0] + d * ((p - w[0]).dot(d) / d.length_squared()).clamp(0.0, 1.0))
+            })
+            .fold(f64::INFINITY, f64::min)
+    };
+    // What the new branches bear starts outside of the trunk.
+    for axis in grown.axes.iter().filter(|a| !plant.axes.iter().any(|b| b.key == a.key) && !on_trunk(a)) {
+        let base = axis.bearer.map(|n| grown.nodes.position[n.index()]).expect("borne");
+        assert!(depth(base) > 0.2, "a branch starts {} m from the middle of a trunk of 0.25 m", depth(base));
+    }
+    // A stroke that never comes out grows nothing.
+    let hidden = brush(points[..6].to_vec());
+    assert_eq!(done(&plant, &[hidden]).outcomes[0], Outcome::NotDone(Why::NothingGrew));
+}

@@ -65,8 +65,14 @@ fn picking_takes_what_is_nearest_with_a_tolerance_that_grows() {
     // 0.15 m beside the trunk: within a degree at 10 m, not at 3.
     let near = Ray { origin: DVec3::new(0.15, 1.0, 3.0), direction: DVec3::NEG_Z };
     let far = Ray { origin: DVec3::new(0.15, 1.0, 10.0), direction: DVec3::NEG_Z };
-    let reach = Reach { metres: 0.0, per_metre: 0.02 };
+    let reach = Reach { metres: 0.0, per_metre: 0.02, bearers: 0 };
     assert!(pick(&plant, &near, reach).is_none() && pick(&plant, &far, reach).is_some());
+    // Or what bears it: at the place where it does, and no further than there is something.
+    let up = |bearers| {
+        let reach = Reach { bearers, ..Reach::default() };
+        pick(&plant, &mouse(1.0, 2.6).ray, reach).map(|k| (k.axis.index(), k.at))
+    };
+    assert_eq!((up(1), up(2), up(u32::MAX)), (Some((1, 0.5)), Some((0, 0.5)), Some((0, 0.5))));
     let nothing = Ray { origin: DVec3::NAN, direction: DVec3::ZERO };
     assert!(pick(&plant, &nothing, reach).is_none());
 }
