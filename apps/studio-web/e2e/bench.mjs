@@ -34,7 +34,7 @@ async function fresh() {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, locale: 'en-GB' });
   await context.addInitScript(() => {
     localStorage.setItem('burgeon.tour', 'done');
-    window.measured = { pen: [], undo: [], open: [] };
+    window.measured = { pen: [], undo: [], open: [], shape: [] };
     new PerformanceObserver((list) => {
       for (const e of list.getEntries()) if (e.name.startsWith('burgeon.')) window.measured[e.name.slice(8)]?.push(e.duration);
     }).observe({ type: 'measure' });
@@ -110,6 +110,55 @@ for (const sketch of ['a', 'b', 'c', 'd', 'e', 'f', 'g', 'h']) {
   undos.sort((a, b) => a - b);
   row(`${sketch}: pen point to meshes, median / p95 of ${pens.length} (${triangles} triangles)`, `${ms(at(pens, 0.5))} / ${ms(at(pens, 0.95))}`, 'gh'.includes(sketch) ? '<= 50 ms' : '<= 16 ms');
   row(`${sketch}: undo, largest of ${undos.length}`, ms(undos.at(-1) ?? NaN), '<= 16 ms');
+  await context.close();
+}
+
+// A tree: growing it, and a hand that turns one of its branches.
+for (const species of ['hazel', 'oak']) {
+  const { context, page } = await fresh();
+  await page.click('#b-add');
+  await page.click('[data-add=tree]');
+  const grown = await page.evaluate(async (key) => {
+    const start = performance.now();
+    document.querySelector(`dialog [data-preset=${key}]`).click();
+    while (!(document.body.dataset.current === 'tree' && Number(document.body.dataset.triangles) > 0)) await new Promise((r) => { setTimeout(r, 2); });
+    return performance.now() - start;
+  }, species);
+  const triangles = await page.evaluate(() => Number(document.body.dataset.triangles));
+  row(`${species}: from its picture to meshes (${triangles} triangles)`, ms(grown));
+  const box = await page.locator('.view').boundingBox();
+  await page.keyboard.press('s');
+  await page.keyboard.press('2');
+  await page.waitForTimeout(2000);
+  let place;
+  for (let k = 0; k < 80 && !place; k += 1) {
+    const [x, y] = [box.x + box.width * (0.5 + 0.2 * Math.sin(k * 2.4)), box.y + box.height * (0.3 + 0.004 * k)];
+    await page.mouse.move(x, y);
+    await page.waitForTimeout(250);
+    const picked = await page.evaluate(() => document.body.dataset.picked ?? '');
+    if (picked !== '' && picked !== '0') place = [x, y];
+  }
+  if (place) {
+    await page.mouse.down();
+    await page.evaluate(() => { window.measured.shape.length = 0; });
+    for (let k = 1; k <= 40; k += 1) {
+      await page.mouse.move(place[0] + 2 * k, place[1] + 4 * k);
+      await page.waitForTimeout(80);
+    }
+    const turns = await page.evaluate(() => [...window.measured.shape]);
+    turns.sort((a, b) => a - b);
+    const up = await page.evaluate(async () => {
+      const before = document.body.dataset.digest;
+      const start = performance.now();
+      document.querySelector('.view canvas').addEventListener('pointerup', () => { window.upAt = performance.now(); }, { once: true });
+      window.upDone = new Promise((done) => {
+        const look = () => { if (document.body.dataset.done === '1' && document.body.dataset.digest !== before) done(performance.now() - (window.upAt ?? start)); else setTimeout(look, 2); };
+        look();
+      });
+    }).then(() => page.mouse.up()).then(() => page.evaluate(() => window.upDone));
+    row(`${species}: a branch turned by hand, move to meshes, median / p95 of ${turns.length}`, `${ms(at(turns, 0.5))} / ${ms(at(turns, 0.95))}`);
+    row(`${species}: let go to the whole plant`, ms(up));
+  }
   await context.close();
 }
 

@@ -73,6 +73,50 @@ async function prune({ page, url, shot }) {
   await page.locator('.strip').waitFor({ state: 'hidden' });
 }
 
+/** Q takes what bears the twig under the pointer, for every tool that means a branch. */
+async function bearer({ page, url, shot }) {
+  const plain = await bush(page, url, 1);
+  const meant = () => page.evaluate(() => [document.body.dataset.picked, Number(document.body.dataset.bears)]);
+  const see = (what, of) => page.waitForFunction(([w, picked, bears]) => {
+    const now = document.body.dataset;
+    return w === 'same' ? now.picked === picked : now.picked !== '' && now.picked !== picked && Number(now.bears) > bears;
+  }, [what, ...of]);
+  const at = await branch(page);
+  const twig = await meant();
+  await page.keyboard.press('q');
+  await see('more', twig);
+  const bough = await meant();
+  await shot('shape-bearer');
+  await page.keyboard.press('Shift+Q');
+  await see('same', twig);
+  // Not beyond what stands on the ground, and as often back again.
+  let steps = 0;
+  for (let [now] = twig; now !== '0'; [now] = await meant()) {
+    await page.keyboard.press('q');
+    await page.waitForFunction((was) => document.body.dataset.picked !== was, now);
+    steps += 1;
+  }
+  await page.keyboard.press('q');
+  assert.match(await page.locator('#b-shape-up').textContent(), new RegExp(`\\+${steps}$`));
+  for (let k = 0; k < steps; k += 1) await page.click('#b-shape-down');
+  assert.equal(await page.locator('#b-shape-down').isDisabled(), true);
+  await page.mouse.move(at.x - 1, at.y);
+  await page.mouse.move(at.x, at.y);
+  await see('same', twig);
+  // A branch that was clicked gives its place to what bears it.
+  await page.mouse.click(at.x, at.y);
+  await page.locator('#b-prune-chosen').waitFor();
+  const said = await page.locator('.options').textContent();
+  await page.keyboard.press('q');
+  await page.waitForFunction((was) => document.querySelector('.options').textContent !== was && document.querySelector('#b-prune-chosen'), said);
+  await page.waitForFunction((bears) => document.body.dataset.bears === String(bears), bough[1]);
+  await page.keyboard.press('Delete');
+  await changed(page, plain, 'the bough is gone');
+  const removed = Number(/−(\d+)/.exec(await page.locator('.edits li').textContent())[1]);
+  assert.ok(removed >= bough[1], `${removed} branches are gone, it bore ${bough[1]}`);
+  await shot('shape-bearer-pruned');
+}
+
 async function rotate({ page, url, shot }) {
   const plain = await bush(page, url, 2);
   const at = await branch(page);
@@ -287,6 +331,7 @@ async function fingers({ page, url, context, shot }) {
 
 export const shaping = [
   ['shape: prune a branch and undo', prune, WIDE],
+  ['shape: what bears a twig', bearer, WIDE],
   ['shape: turn a branch', rotate, WIDE],
   ['shape: draw a branch', draw, WIDE],
   ['shape: brush, leaves, outline', brush, WIDE],

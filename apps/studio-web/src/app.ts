@@ -1,4 +1,6 @@
-/** Joins sheet, view and engine; owns the bars and the keys. No rule about plants is here. */
+/** Joins sheet, view and engine; owns the bars. No rule about plants is here. */
+import { Clipboard } from './clipboard';
+import { Commands, TOOLS } from './commands';
 import { Card, dot } from './correct';
 import { Engine } from './engine';
 import { Files } from './files';
@@ -6,20 +8,18 @@ import { catalogueOf, gallery, MakerPanel, type Catalogue } from './makers';
 import { SceneList } from './scene';
 import { asPng, photoPanel, placed } from './photo';
 import { measured } from './measure';
-import { openPalette, type Action } from './palette';
 import type { Command, DocumentState, MakerWord, PlantState, PlantView as Seen, Request, SketchState, StrokeMode, View } from './protocol';
 import { Sheet, type Tool } from './sheet/sheet';
 import { settingsPanel } from './settings';
-import { SHAPE_TOOLS, Shaping } from './shaping';
+import { Shaping } from './shaping';
 import { statsTable } from './stats';
 import { setSetting, setting } from './store';
 import { currentLanguage, number, setLanguage, t, tOf, type TextKey } from './text';
-import { endTour, firstRun, tour } from './tour';
+import { endTour, firstRun } from './tour';
 import { button, closePopover, dialog, el, icon, note, popover, relabel, type IconName } from './ui';
 import { openVariations } from './variations';
 import { PlantView } from './view/view';
 
-const TOOLS: readonly [Tool, string][] = [['parts', 'P'], ['branch-contour', 'B'], ['leaf-contour', 'L'], ['erase', 'E'], ['select', 'V']];
 type Theme = 'auto' | 'light' | 'dark';
 type Look = 'solid' | 'wire' | 'skeleton';
 /** Size of a picture in the grid of variations. */
@@ -31,15 +31,17 @@ const MOMENT_MS = 200;
 
 export class App {
   private readonly engine: Engine;
-  private readonly sheet: Sheet;
+  readonly sheet: Sheet;
   private readonly card: Card;
-  private readonly files: Files;
-  private view: PlantView | undefined;
+  readonly files: Files;
+  readonly clipboard: Clipboard;
+  view: PlantView | undefined;
   /** Tools in the view; none without WebGL 2. */
-  private shaping: Shaping | undefined;
+  shaping: Shaping | undefined;
   private state: DocumentState | undefined;
   private scene: View | undefined;
   private catalogue: Catalogue | undefined;
+  private readonly commands = new Commands(this);
   private readonly panel: MakerPanel;
   private readonly list: SceneList;
   private shownPlant: number | null | undefined;
@@ -47,14 +49,9 @@ export class App {
   private drafted = false;
   private tool: Tool = 'parts';
   private theme: Theme = 'auto';
-  private look: Look = 'solid';
+  look: Look = 'solid';
   private statsOn = false;
   private steady = 1;
-  private clip = '';
-  /** A copy that the core has not answered yet. */
-  private copying: Promise<boolean> | undefined;
-  /** How many strokes at the end of the document shall be selected when they are there. */
-  private selectLast = 0;
   private started = false;
   private busyTimer = 0;
   private readonly system = matchMedia('(prefers-color-scheme: dark)');
@@ -77,11 +74,7 @@ export class App {
         this.view?.setPlaces(state.plants, state.current);
         if (other && this.drawn) this.sheet.fit();
         if (photo) void createImageBitmap(new Blob([photo])).then((image) => this.sheet.setImage(image), () => undefined);
-        if (this.selectLast > 0) {
-          this.setTool('select');
-          this.sheet.select((this.drawn?.strokes ?? []).slice(-this.selectLast).map((s) => s.id));
-          this.selectLast = 0;
-        }
+        this.clipboard.select(this.drawn?.strokes ?? []);
         this.showState();
       },
       view: (view, fresh) => {
@@ -167,6 +160,9 @@ export class App {
       looking: (name) => this.looking(name),
       photo: (file) => this.layPhoto(file),
     });
+    this.clipboard = new Clipboard(this.engine, this.sheet, {
+      run: (c) => this.run(c), openFile: (file) => this.files.openFile(file), changed: () => this.files.changed(), choose: (ids) => this.choose(ids),
+    });
     const theme = setting('theme');
     this.theme = theme === 'light' || theme === 'dark' ? theme : 'auto';
     this.steady = Math.min(3, Math.max(0, Number(setting('steady') ?? 1) || 0));
@@ -224,8 +220,8 @@ export class App {
     // The plant is shown beside the list, not behind it.
     new ResizeObserver(() => this.view?.setInset(this.list.isFolded ? 0 : this.list.element.offsetWidth + 12)).observe(this.list.element);
     this.files.listen(document.body);
-    document.addEventListener('keydown', (e) => this.key(e));
-    document.addEventListener('paste', (e) => this.paste(e));
+    document.addEventListener('keydown', (e) => this.commands.key(e));
+    document.addEventListener('paste', (e) => this.clipboard.paste(e));
     this.system.addEventListener('change', () => this.applyTheme());
     document.addEventListener('visibilitychange', () => { if (document.hidden) void this.files.keepNow(); });
     this.engine.start();
@@ -250,7 +246,7 @@ export class App {
   }
 
   /** A plant of a maker: trees ask for their species first. */
-  private async add(maker: MakerWord): Promise<void> {
+  async add(maker: MakerWord): Promise<void> {
     await this.loadCatalogue();
     if (maker !== 'tree' || !this.catalogue) {
       this.run({ do: 'add', maker, name: t(`maker.${maker}` as TextKey), ...(maker === 'flower' ? { preset: 'lily' } : {}) });
@@ -271,7 +267,7 @@ export class App {
 
   // Asking -------------------------------------------------------------------------------------------------------
 
-  private ask(request: Request): void {
+  ask(request: Request): void {
     if (request.kind === 'stroke') endTour();
     const start = performance.now();
     this.engine.ask(request).then(() => { if (request.kind === 'undo') measured('undo', start); this.files.changed(request); }).catch((e: Error) => {
@@ -280,7 +276,7 @@ export class App {
     });
   }
 
-  private run(command: Command): void {
+  run(command: Command): void {
     this.ask({ kind: 'command', command });
   }
 
@@ -329,8 +325,8 @@ export class App {
       el('span', { class: 'group' },
         hold('language', el('button', { type: 'button', class: 'plain', title: t('menu.language.hint'), onclick: () => this.switchLanguage() }, t('menu.language'))),
         hold('theme', button('theme', t('menu.theme'), () => this.switchTheme())),
-        hold('commands', button('commands', t('palette.title'), () => this.openPalette(), 'Ctrl+K')),
-        hold('help', button('help', t('menu.help'), () => this.help(), '?'))));
+        hold('commands', button('commands', t('palette.title'), () => this.commands.openPalette(), 'Ctrl+K')),
+        hold('help', button('help', t('menu.help'), () => this.commands.help(), '?'))));
     const tools = el('div', { class: 'tools', role: 'toolbar', 'aria-orientation': 'vertical' });
     for (const [tool, key] of TOOLS) {
       tools.append(hold(tool, button(tool, t(`tool.${tool}` as TextKey), () => this.setTool(tool), key)));
@@ -392,13 +388,13 @@ export class App {
     });
   }
 
-  private setTool(tool: Tool): void {
+  setTool(tool: Tool): void {
     this.tool = tool;
     this.sheet.setTool(tool);
     for (const [name] of TOOLS) this.parts[name]?.setAttribute('aria-pressed', String(name === tool));
   }
 
-  private setLook(look: Look): void {
+  setLook(look: Look): void {
     this.look = look;
     this.view?.setWire(look === 'wire');
     if (look === 'skeleton') this.refreshSkeleton();
@@ -411,13 +407,13 @@ export class App {
     this.engine.ask<Float32Array>({ kind: 'skeleton' }).then((pairs) => { if (this.look === 'skeleton') this.view?.setSkeleton(pairs); }, () => undefined);
   }
 
-  private toggleStats(): void {
+  toggleStats(): void {
     this.statsOn = !this.statsOn;
     this.showSwitches();
     this.showView();
   }
 
-  private toggleMirror(): void {
+  toggleMirror(): void {
     // The main axis's root, where there is a plant; else the middle of the sheet.
     const seen = this.sheet.seen();
     const root = this.drawn && this.drawn.strokes.length > 0 ? this.seen?.front?.x : undefined;
@@ -425,7 +421,7 @@ export class App {
     this.showSwitches();
   }
 
-  private toggleLock(): void {
+  toggleLock(): void {
     if (this.plant) this.run({ do: 'lock', on: !this.plant.locked });
   }
 
@@ -451,7 +447,7 @@ export class App {
     document.body.dataset['shape'] = shaping.word ?? '';
   }
 
-  private openVariations(): void {
+  openVariations(): void {
     const { plant } = this;
     if (!plant || plant.locked || this.drawn?.strokes.length === 0) return;
     openVariations(this.engine, plant.seed, {
@@ -460,7 +456,7 @@ export class App {
     });
   }
 
-  private openPhoto(): void {
+  openPhoto(): void {
     popover(this.parts['photo']!, photoPanel(() => this.drawn?.photo ?? null, this.sheet.placing, {
       run: (c) => { this.run(c); if (c.do === 'photo-off') closePopover(); },
       begin: (name) => this.ask({ kind: 'begin', name }),
@@ -480,68 +476,13 @@ export class App {
     note(t('note.photo'));
   }
 
-  // Clipboard ----------------------------------------------------------------------------------------------------
-
-  private async copy(): Promise<boolean> {
-    const ids = this.sheet.selected;
-    if (ids.length === 0) return false;
-    const asked = this.engine.ask<string>({ kind: 'copy', ids }).then((clip) => { this.clip = clip; return true; }, () => false);
-    this.copying = asked;
-    const done = await asked;
-    if (this.copying === asked) this.copying = undefined;
-    if (!done) return false;
-    await navigator.clipboard.writeText(this.clip).catch(() => undefined); // our own copy serves this page
-    return true;
-  }
-
-  private async cut(): Promise<void> {
-    const ids = this.sheet.selected;
-    if (await this.copy()) this.run({ do: 'remove', ids });
-  }
-
-  private paste(e: ClipboardEvent): void {
-    if ((e.target as HTMLElement).matches('input, textarea') || document.querySelector('dialog[open]')) return;
-    const file = e.clipboardData?.files[0];
-    if (file) {
-      void this.files.openFile(file);
-      return;
-    }
-    void this.pasteText(e.clipboardData?.getData('text/plain') ?? '');
-  }
-
-  private async pasteText(given: string): Promise<void> {
-    // While the core is busy a copy may still be on its way: it is newer than what the clipboard holds.
-    const newer = this.copying !== undefined && await this.copying;
-    const text = !newer && /^\s*[{<]/.test(given) ? given : this.clip;
-    if (text === '') return;
-    const step = 24 * this.sheet.unitsPerPixel;
-    try {
-      // The state comes before the answer.
-      this.selectLast = 0;
-      const ids = await this.engine.ask<Uint32Array>({ kind: 'paste', text, x: step, y: -step });
-      this.files.changed();
-      this.setTool('select');
-      this.sheet.select([...ids]);
-    } catch (error) {
-      note(t('note.refused', { why: (error as Error).message }), 'bad');
-    }
-  }
-
-  private duplicate(): void {
-    const ids = this.sheet.selected;
-    if (ids.length === 0) return;
-    const step = 24 * this.sheet.unitsPerPixel;
-    this.selectLast = ids.length;
-    this.run({ do: 'duplicate', ids, x: step, y: -step });
-  }
-
   private setSteady(strength: number): void {
     this.steady = strength;
     this.sheet.steady = strength;
     setSetting('steady', String(strength));
   }
 
-  private roll(): void {
+  roll(): void {
     if (!this.plant) return;
     if (this.plant.locked) {
       note(t('note.locked'));
@@ -551,7 +492,7 @@ export class App {
     this.run({ do: 'seed', seed: String(1 + (n! % 999_999)) });
   }
 
-  private openSettings(): void {
+  openSettings(): void {
     if (!this.drawn) return;
     const state = (): SketchState => this.drawn ?? first;
     const first = this.drawn;
@@ -563,43 +504,16 @@ export class App {
     }), t('menu.settings'));
   }
 
-  /** Everything the page can do: for the palette. */
-  private actions(): Action[] {
-    const a = (id: string, key: TextKey, act: () => void, keys = ''): Action => ({ id, label: t(key), act, ...(keys ? { keys } : {}) });
-    return [
-      ...TOOLS.map(([tool, keys]) => a(tool, `tool.${tool}` as TextKey, () => this.setTool(tool), keys)),
-      a('undo', 'undo', () => this.ask({ kind: 'undo' }), 'Ctrl+Z'), a('redo', 'redo', () => this.ask({ kind: 'redo' }), 'Ctrl+Shift+Z'),
-      a('new', 'menu.new', () => this.files.fresh()), a('close', 'act.close', () => { this.view?.forget(); void this.files.close(); }), a('open', 'menu.open', () => this.files.choose(), 'Ctrl+O'),
-      a('samples', 'menu.samples', () => this.files.samples()), a('save', 'menu.save', () => void this.files.save(), 'Ctrl+S'),
-      a('export', 'menu.export', () => this.files.chooseExport(), 'Ctrl+E'), a('share', 'menu.share', () => void this.files.share()),
-      a('dice', 'dice', () => this.roll(), 'R'), a('lock', 'lock', () => this.toggleLock()), a('grid', 'variations.title', () => this.openVariations(), 'G'),
-      a('settings', 'menu.settings', () => this.openSettings()), a('mirror', 'tool.mirror', () => this.toggleMirror(), 'M'),
-      a('photo', 'tool.photo', () => this.openPhoto(), 'U'), a('fit', 'tool.fit', () => this.sheet.fit(), '0'),
-      a('front', 'view.front', () => this.view?.setFront(!this.view.isFront), 'F'), a('frame', 'view.frame', () => this.view?.frameNow(), 'Shift+0'),
-      a('wire', 'view.wire', () => this.setLook(this.look === 'wire' ? 'solid' : 'wire'), 'W'),
-      a('skeleton', 'view.skeleton', () => this.setLook(this.look === 'skeleton' ? 'solid' : 'skeleton'), 'K'),
-      a('shape', 'shape.title', () => this.shaping?.toggle(), 'S'),
-      ...SHAPE_TOOLS.map(([word, keys]) => a(`shape-${word}`, `shape.${word}` as TextKey, () => this.shaping?.take(word), this.shaping?.isOn ? keys : '')),
-      a('stats', 'view.stats', () => this.toggleStats(), 'I'), a('picture', 'export.png', () => void this.files.picture()),
-      a('all', 'act.all', () => this.selectAll(), 'Ctrl+A'), a('copy', 'act.copy', () => void this.copy(), 'Ctrl+C'),
-      a('paste', 'act.paste', () => void this.pasteText(''), 'Ctrl+V'), a('duplicate', 'act.duplicate', () => this.duplicate(), 'Ctrl+D'),
-      a('clear', 'act.clear', () => this.run({ do: 'clear' })),
-      ...(['sketch', 'tree', 'leaf', 'flower'] as const).map((maker) => a(`add-${maker}`, `scene.add.${maker}` as TextKey, () => void this.add(maker))),
-      a('language', 'menu.language.hint', () => this.switchLanguage()), a('theme', 'menu.theme', () => this.switchTheme()),
-      a('tour', 'tour.again', () => tour()), a('help', 'dialog.help', () => this.help(), '?'),
-    ];
+  selectAll(): void {
+    this.choose(this.drawn?.strokes.map((s) => s.id) ?? []);
   }
 
-  private openPalette(): void {
-    openPalette(this.actions());
-  }
-
-  private selectAll(): void {
+  private choose(ids: number[]): void {
     this.setTool('select');
-    this.sheet.select(this.drawn?.strokes.map((s) => s.id) ?? []);
+    this.sheet.select(ids);
   }
 
-  private switchLanguage(): void {
+  switchLanguage(): void {
     const to = currentLanguage() === 'en' ? 'zh' : 'en';
     setLanguage(to);
     setSetting('language', to);
@@ -611,7 +525,7 @@ export class App {
     this.build();
   }
 
-  private switchTheme(): void {
+  switchTheme(): void {
     const order: Theme[] = ['auto', 'light', 'dark'];
     this.theme = order[(order.indexOf(this.theme) + 1) % 3]!;
     setSetting('theme', this.theme);
@@ -623,95 +537,6 @@ export class App {
     this.sheet.setDark(this.dark);
     this.view?.setDark(this.dark);
     this.showView();
-  }
-
-  private help(): void {
-    const rows: [string, TextKey][] = [
-      ['P B L E V', 'key.tools'], ['Ctrl+Z · Ctrl+Shift+Z', 'key.undo'], ['Ctrl+O · Ctrl+S · Ctrl+E', 'key.files'],
-      ['Ctrl+C · Ctrl+X · Ctrl+V · Ctrl+D', 'key.copy'], ['Ctrl+A', 'act.all'], ['Del', 'key.delete'], ['← ↑ → ↓', 'key.nudge'],
-      ['M', 'tool.mirror'], ['U', 'tool.photo'], ['R', 'key.dice'], ['G', 'variations.title'],
-      ['F', 'key.front'], ['W · K', 'key.looks'], ['I', 'view.stats'], ['S', 'key.shape'], ['1 – 9', 'key.shape.tools'], ['[ ]', 'key.shape.size'], ['Ctrl+K', 'palette.title'], ['?', 'key.help'],
-    ];
-    const keys = el('dl', { class: 'keys' });
-    for (const [key, text] of rows) keys.append(el('dt', {}, el('kbd', {}, key)), el('dd', {}, t(text)));
-    const texts = (['help.draw', 'help.pan', 'help.correct', 'help.shape', 'help.drop'] as const).map((k) => el('li', {}, t(k)));
-    const again = el('button', { type: 'button', class: 'link', onclick: () => { d.close(); tour(); } }, t('tour.again'));
-    const d = dialog(t('dialog.help'), el('ul', {}, ...texts), keys, again);
-  }
-
-  private key(e: KeyboardEvent): void {
-    const target = e.target as HTMLElement;
-    if (target.matches('input, select, textarea') || document.querySelector('dialog[open]')) return;
-    const command = e.ctrlKey || e.metaKey;
-    const act = command ? this.commandKey(e) : this.plainKey(e);
-    if (act) {
-      e.preventDefault();
-      act();
-    }
-  }
-
-  private commandKey(e: KeyboardEvent): (() => void) | undefined {
-    switch (e.key.toLowerCase()) {
-      case 'z': return () => this.ask({ kind: e.shiftKey ? 'redo' : 'undo' });
-      case 'y': return () => this.ask({ kind: 'redo' });
-      case 's': return () => void this.files.save();
-      case 'o': return () => this.files.choose();
-      case 'e': return () => this.files.chooseExport();
-      case 'k': return () => this.openPalette();
-      case 'a': return () => this.selectAll();
-      case 'c': return this.sheet.selected.length > 0 && !getSelection()?.toString() ? () => void this.copy() : undefined;
-      case 'x': return this.sheet.selected.length > 0 ? () => void this.cut() : undefined;
-      case 'd': return () => this.duplicate();
-      default: return undefined;
-    }
-  }
-
-  /** Keys of the tools in the view. */
-  private shapeKey(e: KeyboardEvent): (() => void) | undefined {
-    const { shaping } = this;
-    if (!shaping) return undefined;
-    if (e.key === 's' || e.key === 'S') return () => shaping.toggle();
-    if (!shaping.isOn) return undefined;
-    const tool = SHAPE_TOOLS.find(([, key]) => key === e.key);
-    if (tool) return () => shaping.take(tool[0]);
-    switch (e.key) {
-      case 'Escape': return () => { if (!shaping.cancel()) shaping.take(undefined); };
-      case 'Delete': case 'Backspace': return shaping.word === 'pick' ? () => shaping.remove() : undefined;
-      case '[': return shaping.word === 'brush' || shaping.word === 'leaves' ? () => shaping.resize(1 / 1.15) : undefined;
-      case ']': return shaping.word === 'brush' || shaping.word === 'leaves' ? () => shaping.resize(1.15) : undefined;
-      default: return undefined;
-    }
-  }
-
-  private plainKey(e: KeyboardEvent): (() => void) | undefined {
-    const shape = this.shapeKey(e);
-    if (shape) return shape;
-    const tool = TOOLS.find(([, key]) => key.toLowerCase() === e.key.toLowerCase());
-    if (tool) return () => this.setTool(tool[0]);
-    const ids = this.sheet.selected;
-    const step = 5 * this.sheet.unitsPerPixel * (e.shiftKey ? 5 : 1);
-    const nudge = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[e.key];
-    if (nudge && ids.length > 0 && document.activeElement === this.sheet.element) {
-      return () => this.run({ do: 'move', ids, x: nudge[0]! * step, y: nudge[1]! * step });
-    }
-    switch (e.key) {
-      case 'r': case 'R': return () => this.roll();
-      case 'f': case 'F': return () => this.view?.setFront(!this.view.isFront);
-      case 'w': case 'W': return () => this.setLook(this.look === 'wire' ? 'solid' : 'wire');
-      case 'k': case 'K': return () => this.setLook(this.look === 'skeleton' ? 'solid' : 'skeleton');
-      case 'i': case 'I': return () => this.toggleStats();
-      case 'g': case 'G': return () => this.openVariations();
-      case 'm': case 'M': return () => this.toggleMirror();
-      case 'u': case 'U': return () => this.openPhoto();
-      case '0': return () => this.sheet.fit();
-      case ')': return () => this.view?.frameNow();
-      case '?': return () => this.help();
-      case '[': return () => { this.setTool('select'); this.sheet.selectNext(-1); };
-      case ']': return () => { this.setTool('select'); this.sheet.selectNext(1); };
-      case 'Escape': return () => this.sheet.select([]);
-      case 'Delete': case 'Backspace': return ids.length > 0 ? () => this.run({ do: 'remove', ids }) : undefined;
-      default: return undefined;
-    }
   }
 
   // What is shown ------------------------------------------------------------------------------------------------

@@ -1,4 +1,5 @@
 /** Hands on a plant in the view: tools, their settings, gestures, and the list of what was done. What a tool does is the core's. */
+import { measured } from './measure';
 import type { Command, EditReport, Json, PlantState, PlantView as Seen, Request, ShapeAnswer, ShapeInput, ShapePointer, ShapeTool } from './protocol';
 import { number, t, tOf, type TextKey } from './text';
 import { button, el, icon, type IconName } from './ui';
@@ -20,6 +21,8 @@ export const SHAPE_TOOLS: readonly [Word, string][] = [
 ];
 /** How the pointer of a tool leaves a trace. */
 const TRACES: Partial<Record<Word, 'line' | 'brush' | 'outline'>> = { sketch: 'line', brush: 'brush', silhouette: 'outline', leaves: 'brush' };
+/** Tools that mean a branch: in a dense crown, what bears the twig under the pointer. */
+const CLIMBS: ReadonlySet<Word | undefined> = new Set<Word>(['pick', 'rotate', 'move', 'prune', 'regrow']);
 /** So near to a branch, in pixels, a pointer means it; a finger is thicker. */
 const NEAR = 9;
 const NEAR_TOUCH = 22;
@@ -49,12 +52,21 @@ export class Shaping {
   /** The branch that was clicked with the pointing tool. */
   private chosen: ShapeAnswer['picked'] = null;
   private lit: number | undefined;
+  /** Not what the pointer meets is meant but what bears it, so many branches up. */
+  private bearers = 0;
+  /** Nothing bears what was meant last. */
+  private top = false;
+  /** Where the pointer was last between gestures, and where the branch was clicked that is chosen. */
+  private hover: ShapePointer | undefined;
+  private clicked: ShapePointer | undefined;
   private pointerId: number | undefined;
   private from: [number, number] = [0, 0];
   private at: [number, number] | undefined;
   private distance: number | undefined;
   private near = NEAR;
   private moves: ShapePointer[] = [];
+  /** When the first move was asked for that is not seen in the plant yet. */
+  private movedAt = 0;
   private inFlight = false;
   /** What the core is asked and what follows from its answers, in order. Never fails. */
   private line: Promise<unknown> = Promise.resolve();
@@ -102,6 +114,7 @@ export class Shaping {
     if (this.isBusy) this.cancel();
     this.tool = tool;
     if (tool) this.last = tool;
+    else this.bearers = 0;
     this.chosen = null;
     this.light(undefined);
     this.overlay.setRing(undefined);
@@ -114,7 +127,7 @@ export class Shaping {
 
   /** The plant that is worked on, as it is now. */
   show(plant: PlantState | undefined, seen: Seen | undefined): void {
-    if (plant?.id !== this.plant?.id) { this.chosen = null; this.light(undefined); }
+    if (plant?.id !== this.plant?.id) { this.chosen = null; this.bearers = 0; this.light(undefined); }
     this.plant = plant;
     this.seen = seen;
     if (this.tool && !this.isPossible) {
@@ -127,6 +140,8 @@ export class Shaping {
 
   /** New meshes are there: numbers of branches may have changed. */
   renewed(): void {
+    if (this.movedAt > 0) measured('shape', this.movedAt);
+    this.movedAt = 0;
     if (this.isBusy) return;
     // The branch that was chosen keeps its name, which is what commands go by.
     this.light(undefined);
@@ -167,11 +182,11 @@ export class Shaping {
     const plain = (x: number): string => String(Math.round(x * 100) / 100);
     const radius = (): HTMLElement => slider('shape.radius', Math.log(0.01), Math.log(0.4), 0.01, Math.log(s.share), () => `${plain(this.radius)} m`, (x) => { s.share = Math.exp(x); this.tellBrush(); });
     switch (this.tool) {
-      case 'pick': return this.chosen ? this.chosenBox(this.chosen) : [hint('shape.pick.hint')];
-      case 'rotate': return [hint('shape.rotate.hint')];
-      case 'move': return [hint('shape.move.hint')];
-      case 'prune': return [chips('shape.prune', [['part', 'shape.prune.part'], ['whole', 'shape.prune.whole']], s.whole ? 'whole' : 'part', (w) => { s.whole = w === 'whole'; })];
-      case 'regrow': return [hint('shape.regrow.hint')];
+      case 'pick': return [...(this.chosen ? this.chosenBox(this.chosen) : [hint('shape.pick.hint')]), this.climbBox()];
+      case 'rotate': return [hint('shape.rotate.hint'), this.climbBox()];
+      case 'move': return [hint('shape.move.hint'), this.climbBox()];
+      case 'prune': return [chips('shape.prune', [['part', 'shape.prune.part'], ['whole', 'shape.prune.whole']], s.whole ? 'whole' : 'part', (w) => { s.whole = w === 'whole'; }), this.climbBox()];
+      case 'regrow': return [hint('shape.regrow.hint'), this.climbBox()];
       case 'sketch': return [slider('shape.twigs', 0, 4, 0.25, s.twigs, plain, (x) => { s.twigs = x; }),
         slider('shape.tilt', -75, 75, 5, s.tilt_deg, (x) => `${plain(x)}°`, (x) => { s.tilt_deg = x; })];
       case 'brush': return [radius(), slider('shape.density', 0.25, 4, 0.25, s.density, plain, (x) => { s.density = x; this.tellBrush(); })];
@@ -189,6 +204,34 @@ export class Shaping {
     return [el('span', {}, t('shape.branch', { order: p.order, length: String(Math.round(p.length_m * 100) / 100), count: number(p.bears) })),
       act('shape.prune', 'b-prune-chosen', 'prune', { do: 'shape', edit: { op: 'prune', axis, at: 0 } }),
       act('shape.regrow', 'b-regrow-chosen', 'regrow', { do: 'shape', edit: { op: 'regrow', axis, seed: (this.plant?.edits.length ?? 0) + 1 } })];
+  }
+
+  /** From the twig to what bears it, and back. */
+  private climbBox(): HTMLElement {
+    const step = (id: string, key: TextKey, keys: string, by: 1 | -1, text: string): HTMLButtonElement => el('button', {
+      type: 'button', class: 'chip', id, title: `${t(`${key}.hint` as TextKey)}  (${keys})`, onclick: () => this.climb(by),
+    }, text);
+    const [up, down] = [step('b-shape-up', 'shape.up', 'Q', 1, `${t('shape.up')}${this.bearers > 0 ? ` +${this.bearers}` : ''}`), step('b-shape-down', 'shape.down', 'Shift+Q', -1, t('shape.down'))];
+    up.setAttribute('aria-pressed', String(this.bearers > 0));
+    down.disabled = this.bearers === 0;
+    return el('span', { class: 'chips', role: 'group', 'aria-label': t('shape.up.hint') }, up, down);
+  }
+
+  /** Means what bears the branch that was meant, or goes back towards the twig. */
+  climb(by: 1 | -1): void {
+    if (!CLIMBS.has(this.tool) || this.isBusy || (by > 0 ? this.top : this.bearers === 0)) return;
+    this.bearers += by;
+    const at = this.chosen ? this.clicked : this.hover;
+    // Not further before it is known whether there is more.
+    this.top = by > 0 && at !== undefined;
+    this.showStrip();
+    if (!at) return;
+    if (!this.chosen) { void this.send({ on: 'move', at: [at] }); return; }
+    this.line = this.send({ on: 'up', at }).then((answer) => {
+      if (!answer?.picked || this.tool !== 'pick') return;
+      this.chosen = answer.picked;
+      this.showStrip();
+    });
   }
 
   /** Changes the chosen branch, which is another one then. */
@@ -280,7 +323,7 @@ export class Shaping {
       if (this.isBusy && TRACES[this.tool]) this.overlay.add(...this.place(c));
     }
     // Between gestures only the latest place is of interest.
-    if (!this.isBusy) { this.moves.splice(0, this.moves.length - 1); this.near = NEAR; }
+    if (!this.isBusy) { this.moves.splice(0, this.moves.length - 1); this.hover = this.moves[0]; this.near = NEAR; }
     else this.overlay.draw();
     this.showRing();
     void this.pump();
@@ -290,6 +333,7 @@ export class Shaping {
     if (this.inFlight || this.moves.length === 0) return;
     this.inFlight = true;
     const at = this.moves.splice(0);
+    if (this.isBusy && this.movedAt === 0) this.movedAt = performance.now();
     await this.send({ on: 'move', at });
     this.inFlight = false;
     void this.pump();
@@ -306,7 +350,7 @@ export class Shaping {
       if (!this.isBusy) this.overlay.end();
       if (!answer) return;
       if (answer.commit) this.events.run({ do: 'shape', edit: answer.commit });
-      if (this.tool === 'pick') { this.chosen = answer.picked; this.showStrip(); }
+      if (this.tool === 'pick') { this.chosen = answer.picked; this.clicked = at; this.showStrip(); }
       if (still && !answer.commit && !answer.picked) {
         const plant = this.view.plantAt(e.clientX, e.clientY);
         if (plant !== undefined && plant !== this.plant?.id) this.events.select(plant);
@@ -316,6 +360,7 @@ export class Shaping {
 
   private release(): void {
     this.pointerId = undefined;
+    this.movedAt = 0;
     this.view.setZoom(true);
   }
 
@@ -351,7 +396,8 @@ export class Shaping {
 
   /** One after another: the edit of a gesture is asked for before the next gesture begins, however long the core takes. */
   private send(input: ShapeInput): Promise<ShapeAnswer | undefined> {
-    const request: Request = { kind: 'shape', tool: this.wire(), reach: this.view.reach(this.near), input };
+    const reach = { ...this.view.reach(this.near), bearers: CLIMBS.has(this.tool) ? this.bearers : 0 };
+    const request: Request = { kind: 'shape', tool: this.wire(), reach, input };
     const answered = this.line.then(() => this.ask(request));
     this.line = answered;
     return answered;
@@ -370,6 +416,7 @@ export class Shaping {
   }
 
   private heard({ picked, busy, commit }: ShapeAnswer): void {
+    this.top = picked?.stands ?? false;
     if (picked) {
       const eye = this.at && this.view.element.getBoundingClientRect();
       const at = eye && this.at ? this.view.pointer(this.at[0] + eye.left, this.at[1] + eye.top, 1) : undefined;
@@ -377,6 +424,7 @@ export class Shaping {
       this.showRing();
     }
     document.body.dataset['picked'] = String(picked?.axis ?? '');
+    document.body.dataset['bears'] = String(picked?.bears ?? '');
     // What moves under the hand is seen in the plant itself.
     const moving = commit !== null || ((busy || this.isBusy) && this.tool !== 'sketch');
     this.light(moving || this.tool === 'silhouette' || this.brushes ? undefined : (picked?.axis ?? (this.tool === 'pick' ? this.chosen?.axis : undefined)));

@@ -100,11 +100,11 @@ export interface ShapePointer { origin: Vec3; direction: Vec3; forward: Vec3; up
 export type ShapeInput =
   | { on: "down"; at: ShapePointer } | { on: "move"; at: ShapePointer[] } | { on: "up"; at: ShapePointer } | { on: "cancel" }
   | { on: "twist"; degrees: number } | { on: "brush"; radius_m: number; density: number };
-/** How far beside a branch it is still meant: `metres + per_metre * distance`. */
-export interface ShapeReach { metres: number; per_metre: number }
+/** How far beside a branch it is still meant: `metres + per_metre * distance`; `bearers`: or what bears it, so many up. */
+export interface ShapeReach { metres: number; per_metre: number; bearers?: number }
 export interface ShapeAnswer {
-  /** The branch that is meant, how many it bears in all, and a name for edits. */
-  picked: { axis: number; at: number; point: Vec3; order: number; length_m: number; bears: number; key: Json } | null;
+  /** The branch that is meant, how many it bears in all, whether nothing bears it, and a name for edits. */
+  picked: { axis: number; at: number; point: Vec3; order: number; length_m: number; bears: number; stands: boolean; key: Json } | null;
   /** The edit of a gesture that ended: to be asked for as a command. */
   commit: HandEdit | null;
   /** A gesture is going on. */

@@ -87,6 +87,8 @@ enum WireInput {
 struct WireReach {
     metres: f64,
     per_metre: f64,
+    #[serde(default)]
+    bearers: u32,
 }
 
 #[derive(Debug, Serialize)]
@@ -98,6 +100,8 @@ struct Picked {
     length_m: f64,
     /// Shoots that it bears, and that these bear.
     bears: usize,
+    /// Nothing bears it.
+    stands: bool,
     key: Option<AxisKey>,
 }
 
@@ -127,7 +131,8 @@ impl Session {
     pub(crate) fn shape(&mut self, tool: &str, reach: &str, input: &str) -> Told<String> {
         let settings: WireTool = serde_json::from_str(tool).map_err(words)?;
         let reach: WireReach = serde_json::from_str(reach).map_err(words)?;
-        let reach = Reach { metres: reach.metres, per_metre: reach.per_metre };
+        let WireReach { metres, per_metre, bearers } = reach;
+        let reach = Reach { metres, per_metre, bearers };
         let input: WireInput = serde_json::from_str(input).map_err(words)?;
         let id = self.must()?;
         let Some(kind) = settings.kind() else { return self.point(id, reach, &input) };
@@ -290,6 +295,7 @@ fn picked(plant: &Plant, pick: Pick, named: bool) -> Option<Picked> {
         order: plant.axis(pick.axis).order,
         length_m: geom::polyline_length3(plant.axis_points(pick.axis)),
         bears: shoots.count().saturating_sub(1),
+        stands: plant.axis(pick.axis).bearer.is_none(),
         key: if named { AxisKey::of(plant, pick.axis) } else { None },
     })
 }
