@@ -96,13 +96,33 @@ pub(crate) fn test(tools: &Tools) -> Outcome {
     finish(c)
 }
 
+/// Packages of the downloaded core that read, write and pass on, rather than compute: half of it would be their code,
+/// which is compiled for size there.
+const SMALL: &[&str] = &[
+    "burgeon",
+    "burgeon-wasm",
+    "image",
+    "moxcms",
+    "pxfm",
+    "roxmltree",
+    "schemars",
+    "toml",
+    "toml_parser",
+    "zune-jpeg",
+];
+
 /// Builds the core for the browser and returns the file.
 pub(crate) fn build_wasm(tools: &Tools, release: bool) -> Outcome<PathBuf> {
     let mut args = vec!["build", "--package", "burgeon-wasm", "--target", TARGET];
+    let small: Vec<String> =
+        SMALL.iter().map(|name| format!("--config=profile.release.package.{name}.opt-level=\"s\"")).collect();
     if release {
         args.push("--release");
     }
     say(&format!("$ cargo {}", args.join(" ")));
+    if release {
+        args.extend(small.iter().map(String::as_str));
+    }
     let mut c = tools.cargo.command(&args);
     if release {
         // The classifier's sums run four abreast. The same bits: Rust never reorders floating-point sums by itself.
