@@ -695,12 +695,17 @@ fn write_show(
                 written.take(&model, overlap);
                 models.push(model);
             }
-            if let Some((first, later)) = models.split_first() {
-                #[expect(clippy::cast_possible_truncation, reason = "seconds of an animation")]
-                let second = |k: usize| (args.seconds * (k + 1) as f64 / f64::from(args.frames - 1)) as f32;
-                let keys = later.iter().enumerate().map(|(k, m)| (second(k), m)).collect();
-                let morph = Morph { name: "growth", start: 0.0, keys };
-                output::write_whole(&args.output, |out| write_glb_morph(first, &morph, out))?;
+            // The frame nearest to full bloom is the model itself: what shows no animation, or no colours of one,
+            // shows the open flower.
+            let far = |k: u32| (at(k) - show.best).abs();
+            let best = (0..args.frames).min_by(|a, b| far(*a).total_cmp(&far(*b))).unwrap_or(0);
+            #[expect(clippy::cast_possible_truncation, reason = "seconds of an animation")]
+            let second = |k: u32| (args.seconds * f64::from(k) / f64::from(args.frames - 1)) as f32;
+            if let Some(model) = models.get(best as usize) {
+                let keys = (0..args.frames).zip(&models).filter(|(k, _)| *k != best);
+                let keys = keys.map(|(k, m)| (second(k), m)).collect();
+                let morph = Morph { name: "growth", at: second(best), keys };
+                output::write_whole(&args.output, |out| write_glb_morph(model, &morph, out))?;
             }
         }
         (Some(_), None) => one(show.best, &args.output, &mut written, &mut digest)?,

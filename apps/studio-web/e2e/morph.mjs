@@ -48,14 +48,15 @@ window.play = async (file, moments) => {
   const told = [];
   for (const t of moments) {
     mixer.setTime(t);
-    // What the file says at this moment: base and target of the nearest key.
+    // What the file says at this moment: base and target of the nearest key; at one key the base itself is seen.
+    const { times, values } = gltf.animations[0].tracks[0];
+    const wanted = Math.round((t / gltf.animations[0].duration) * (times.length - 1));
     let far = 0;
     const places = [];
     for (const mesh of meshes) {
       const { position } = mesh.geometry.attributes;
       const targets = mesh.geometry.morphAttributes.position ?? [];
-      const keys = [undefined, ...targets];
-      const target = keys[Math.round((t / gltf.animations[0].duration) * (keys.length - 1))];
+      const target = targets[values.slice(wanted * targets.length, (wanted + 1) * targets.length).indexOf(1)];
       rows(mesh, (v, i) => {
         box.expandByPoint(v);
         const at = (k) => position.getComponent(i, k) + (target ? target.getComponent(i, k) : 0);

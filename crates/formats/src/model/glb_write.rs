@@ -46,14 +46,14 @@ pub fn write_glb_with(model: &Model, cache: &mut PngCache, out: impl Write) -> R
     write(model, &Morph::default(), cache, out)
 }
 
-/// Later shapes of a model, for a morph animation: keys after the model itself, which is the shape at `start`.
+/// Other shapes of a model, for a morph animation.
 #[derive(Clone, Debug, Default)]
 pub struct Morph<'a> {
     /// Name of the animation.
     pub name: &'a str,
-    /// Second at which the model itself is seen.
-    pub start: f32,
-    /// Seconds, increasing, and the model at each: the same parts with as many vertices.
+    /// Second at which the model itself is seen; keys may lie before and after it.
+    pub at: f32,
+    /// Seconds, increasing, none of them `at`, and the model at each: the same parts with as many vertices.
     pub keys: Vec<(f32, &'a Model)>,
 }
 
@@ -61,13 +61,14 @@ pub struct Morph<'a> {
 ///
 /// Wind, where the first shape has it, is that shape's: keys do not change it.
 ///
-/// Each key is a morph target (position, normal, and colour where vertex colours change) of every part; viewers blend two at a time. Players that know
-/// no morph targets show the model itself.
+/// Each key is a morph target (position, normal, and colour where vertex colours change) of every part; viewers blend
+/// two at a time. Players that know no morph targets show the model itself, and those that know none of colours (such
+/// as Blender) keep its colours: let it be the shape that is best to look at.
 ///
 /// # Errors
-/// As [`write_glb`]; [`WriteError::Keys`] if a key has other parts or vertices, or times do not increase.
+/// As [`write_glb`]; [`WriteError::Keys`] if a key has other parts or vertices, or times do not increase or one is that of the model itself.
 pub fn write_glb_morph(model: &Model, morph: &Morph<'_>, out: impl Write) -> Result<(), WriteError> {
-    let mut before = morph.start;
+    let mut before = f32::NEG_INFINITY;
     for (index, (time, key)) in morph.keys.iter().enumerate() {
         let same = key.parts.len() == model.parts.len()
             && key.parts.iter().zip(&model.parts).all(|(a, b)| {
@@ -75,7 +76,7 @@ pub fn write_glb_morph(model: &Model, morph: &Morph<'_>, out: impl Write) -> Res
                     && a.mesh.normals.len() == b.mesh.normals.len()
                     && a.mesh.positions.iter().flatten().all(|x| x.is_finite())
             });
-        let later = *time > before && time.is_finite();
+        let later = *time > before && time.is_finite() && (*time < morph.at || *time > morph.at);
         if !same || !later {
             return Err(WriteError::Keys { key: index });
         }
@@ -272,16 +273,19 @@ impl Writer {
         Ok(target)
     }
 
-    /// One channel a part, all with the same keys: of all weights only that of the key is 1.
+    /// One channel a part, all with the same keys: of all weights only that of the key is 1, at the model itself none.
     fn animation(&mut self, model: &Model, morph: &Morph<'_>) -> Result<(), WriteError> {
         let n = morph.keys.len();
         if n == 0 || self.root.meshes.is_empty() {
             return Ok(());
         }
-        let times: Vec<f32> = core::iter::once(morph.start).chain(morph.keys.iter().map(|k| k.0)).collect();
+        let mut times: Vec<f32> = morph.keys.iter().map(|k| k.0).collect();
+        let base = times.partition_point(|t| *t < morph.at);
+        times.insert(base, morph.at);
         let input = self.scalars(&times, true)?;
-        let weights: Vec<f32> =
-            (0..=n).flat_map(|k| (1..=n).map(move |t| if t == k { 1.0 } else { 0.0 })).collect();
+        let weights: Vec<f32> = (0..=n)
+            .flat_map(|k| (0..=n).filter(|t| *t != base).map(move |t| if t == k { 1.0 } else { 0.0 }))
+            .collect();
         let output = self.scalars(&weights, false)?;
         let keys = Keys { input, interpolation: "LINEAR".into(), output };
         let moving = self.root.nodes.iter().enumerate().filter(|(_, node)| node.mesh.is_some());
@@ -406,7 +410,7 @@ mod tests {
         a.parts[0].mesh.colors = vec![[1.0; 3]; a.parts[0].mesh.positions.len()];
         c.parts[0].mesh.colors = vec![[0.25; 3]; a.parts[0].mesh.positions.len()];
         b.parts[0].mesh.colors.clone_from(&a.parts[0].mesh.colors);
-        let morph = Morph { name: "opening", start: 0.0, keys: vec![(1.0, &b), (2.5, &c)] };
+        let morph = Morph { name: "opening", at: 0.0, keys: vec![(1.0, &b), (2.5, &c)] };
         let mut glb = Vec::new();
         write_glb_morph(&a, &morph, &mut glb).unwrap();
         let length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
@@ -437,5 +441,32 @@ mod tests {
         assert_eq!(back.unwrap().parts[0].mesh.positions, a.parts[0].mesh.positions);
         let disorder = Morph { keys: vec![(2.0, &b), (2.0, &c)], ..morph };
         assert!(matches!(write_glb_morph(&a, &disorder, &mut Vec::new()), Err(WriteError::Keys { key: 1 })));
+        let twice = Morph { at: 2.0, ..morph };
+        let keys = vec![(1.0, &b), (2.0, &c)];
+        assert!(matches!(
+            write_glb_morph(&a, &Morph { keys, ..twice }, &mut Vec::new()),
+            Err(WriteError::Keys { key: 1 })
+        ));
+    }
+
+    #[test]
+    fn the_model_itself_may_lie_between_the_keys() {
+        let [bud, bloom, wilted] = [1.0, 2.0, 4.0].map(model);
+        let morph = Morph { name: "opening", at: 1.0, keys: vec![(0.0, &bud), (2.0, &wilted)] };
+        let mut glb = Vec::new();
+        write_glb_morph(&bloom, &morph, &mut glb).unwrap();
+        let length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
+        let json: serde_json::Value = serde_json::from_slice(&glb[20..20 + length]).unwrap();
+        let floats = |accessor: &serde_json::Value| -> Vec<f32> {
+            let of = |v: &serde_json::Value| usize::try_from(v.as_u64().unwrap_or(0)).unwrap();
+            let accessor = &json["accessors"][of(accessor)];
+            let view = &json["bufferViews"][of(&accessor["bufferView"])];
+            let from = 20 + length + 8 + of(&view["byteOffset"]);
+            let bytes = &glb[from..from + of(&view["byteLength"])];
+            bytes.as_chunks::<4>().0.iter().map(|b| f32::from_le_bytes(*b)).collect()
+        };
+        let sampler = &json["animations"][0]["samplers"][0];
+        assert_eq!(floats(&sampler["input"]), [0.0, 1.0, 2.0]);
+        assert_eq!(floats(&sampler["output"]), [1.0, 0.0, 0.0, 0.0, 0.0, 1.0], "none at the model itself");
     }
 }
