@@ -130,7 +130,7 @@ fn pieces(mesh: &TriMesh) -> Vec<Piece> {
     for t in &mesh.triangles {
         let root = find(&mut home, t[0] as usize);
         let k = *of[root].get_or_insert_with(|| {
-            all.push(Piece { vertices: usize::MAX..0, triangles: Vec::new() });
+            all.push(Piece { vertices: t[0] as usize..t[0] as usize + 1, triangles: Vec::new() });
             all.len() - 1
         });
         all[k].triangles.push(*t);

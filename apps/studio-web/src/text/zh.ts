@@ -51,7 +51,7 @@ export const zh: Record<TextKey, string> = {
   'view.model': '正在查看模型“{name}”。绘制或撤销即可回到你的植物。',
   'export.glb': 'Blender、Unity、Godot、three.js',
   'export.obj': '含材质（zip）',
-  'export.usda': 'Omniverse、Houdini、Blender（zip）',
+  'export.usda': '用于 Omniverse、Houdini、Blender（zip）',
   'export.ply': '带颜色的单一网格',
   'export.stl': '仅三角形',
   'export.png': '当前视图的图片',
