@@ -319,6 +319,10 @@ pub(crate) struct SurfaceArgs {
     /// Colour of petals that were drawn without one [default: by seed and name].
     #[arg(long, value_enum, value_name = "COLOUR")]
     pub(crate) petals: Option<PetalWord>,
+    /// Also write how wind moves each vertex, for shaders: attributes _WIND and _PIVOT of .glb, primvars of .usda
+    /// (docs/exports.md).
+    #[arg(long)]
+    pub(crate) wind: bool,
     /// Variation of colour from organ to organ, 0 (none) to 1 [default: 1].
     #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 0.0, 1.0))]
     pub(crate) variation: Option<f64>,

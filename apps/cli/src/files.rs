@@ -248,7 +248,13 @@ pub(crate) fn write_plant(
         PlantFormat::Model(format) => write_model(path, model, format, &axes(args.up, args.unit), cache),
         PlantFormat::Mtg => {
             let axes = field_axes(args);
-            output::write_whole(path, |out| write_mtg(plant, &axes, out)).map(|()| Vec::new())
+            output::write_whole(path, |out| write_mtg(plant, &axes, out))?;
+            let mut report = Report::default();
+            if model.parts.iter().any(|p| !p.mesh.wind.is_empty()) {
+                let message = "MTG has no room for wind: it was left out; .glb and .usda have";
+                report.warn("wind-left-out", message);
+            }
+            Ok(report.warnings)
         }
     }
 }

@@ -124,6 +124,10 @@ pub(crate) struct TreeSurfaceArgs {
     /// Plain colours instead of textures.
     #[arg(long)]
     pub(crate) no_textures: bool,
+    /// Also write how wind moves each vertex, for shaders: attributes _WIND and _PIVOT of .glb, primvars of .usda
+    /// (docs/exports.md).
+    #[arg(long)]
+    pub(crate) wind: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -191,6 +195,7 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
             detail: args.surface.detail,
             sides: args.surface.sides,
             textures: !args.surface.no_textures,
+            wind: args.surface.wind,
             ..SkinSpec::default()
         },
         leaf,

@@ -43,6 +43,7 @@ pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine:
     )?;
     let format = args.output.as_deref().map(files::plant_writable).transpose()?;
     let mut scene = SceneEvaluator::default();
+    scene.set_wind(args.surface.wind);
     let mut report = RunReport::new("sketch", 1);
     report.input.path = path.display().to_string();
     report.input.drawings = document.plants().len() as u64;

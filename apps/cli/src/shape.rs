@@ -181,6 +181,7 @@ fn make(
         detail: args.surface.detail,
         sides: args.surface.sides,
         textures: !args.surface.no_textures,
+        wind: args.surface.wind,
         ..SkinSpec::default()
     };
     let seed = Seed::new(args.seed.unwrap_or(1));

@@ -391,6 +391,21 @@ fn leaves_age_seed_and_threads_do_what_they_say() {
     assert!(triangles(1) < triangles(0) && triangles(2) < triangles(1));
     assert_eq!(report["items"][2]["output"], "bush-lod2.glb");
     assert!(at.join("bush-lod1.glb").exists() && at.join("bush-lod2.glb").exists());
+    // Wind goes where there is room for it, on every level; elsewhere it is told that it does not.
+    good(&at, &["grow", "bush.toml", "-o", "wind.glb", "--wind", "--lods", "1", "-q"]);
+    let blown = |file: &str| {
+        let info: Value = serde_json::from_str(&good(&at, &["info", file, "--json"]).0).unwrap();
+        info["model"]["parts"].as_array().unwrap().iter().all(|p| p["wind"] == true)
+    };
+    assert!(blown("wind.glb") && blown("wind-lod1.glb") && !blown("bush.glb"));
+    good(&at, &["convert", "wind.glb", "-o", "kept.glb"]);
+    assert_eq!(fs::read(at.join("kept.glb")).unwrap(), fs::read(at.join("wind.glb")).unwrap());
+    for out in ["wind.obj", "wind.mtg"] {
+        let told = good(&at, &["grow", "bush.toml", "-o", out, "--wind"]).1;
+        assert!(told.contains("no room for wind"), "{out}: {told}");
+    }
+    good(&at, &["grow", "bush.toml", "-o", "wind.usda", "--wind"]);
+    assert!(fs::read_to_string(at.join("wind.usda")).unwrap().contains("float4[] primvars:wind"));
     // Another method in the same envelope.
     let other = item(&at, &["bush.toml", "--method", "colonization"]);
     assert_eq!(other["growth"]["method"], "colonization");

@@ -7,9 +7,10 @@ export type Target = ExportFormat | 'png';
 const FORMATS: readonly Target[] = ['glb', 'usda', 'obj', 'ply', 'stl', 'mtg', 'qsm', 'png', 'json'];
 const LEVELS: ReadonlySet<Target> = new Set(['glb', 'usda', 'obj', 'ply', 'stl']);
 const AXES: ReadonlySet<Target> = new Set(['usda', 'obj', 'ply', 'stl', 'mtg', 'qsm']);
+const WIND: ReadonlySet<Target> = new Set(['glb', 'usda']);
 const NAMES: Partial<Record<Target, string>> = { qsm: 'CSV', usda: 'USD' };
 
-let last: { format: Target; options: ExportOptions } = { format: 'glb', options: { levels: 1, up: 'y', unit: 'm', whole: false } };
+let last: { format: Target; options: ExportOptions } = { format: 'glb', options: { levels: 1, up: 'y', unit: 'm', whole: false, wind: false } };
 
 /** `several`: there is a scene to choose; `kind`: the maker of the plant that is chosen. */
 export function openExport(several: boolean, kind: MakerWord, act: (format: Target, options: ExportOptions) => void): void {
@@ -29,9 +30,13 @@ export function openExport(several: boolean, kind: MakerWord, act: (format: Targ
   const up = choice('export.up', [['y', '+Y'], ['z', '+Z']], options.up, (v) => { options.up = v; });
   const unit = choice('export.unit', [['m', 'm'], ['cm', 'cm'], ['mm', 'mm']], options.unit, (v) => { options.unit = v; });
   levels.querySelector('select')!.id = 'b-levels';
+  const blown = el('input', { type: 'checkbox', id: 'b-wind', onchange: () => { options.wind = blown.checked; } });
+  blown.checked = options.wind ?? false;
+  const wind = el('label', { class: 'option', title: t('export.wind.help') }, el('span', {}, t('export.wind')), blown);
   const show = (): void => {
     levels.hidden = !LEVELS.has(format);
     up.hidden = unit.hidden = !AXES.has(format);
+    wind.hidden = !WIND.has(format);
   };
   const list = el('div', { class: 'formats', role: 'radiogroup', 'aria-label': t('menu.export') });
   for (const f of formats) {
@@ -41,7 +46,7 @@ export function openExport(several: boolean, kind: MakerWord, act: (format: Targ
   }
   const go = el('button', { type: 'submit', class: 'primary', id: 'b-export-go' }, t('menu.export'));
   const form = el('form', { class: 'export', onsubmit: (e) => { e.preventDefault(); last = { format, options }; d.close(); act(format, { ...options }); } },
-    list, what, levels, up, unit, el('p', { class: 'muted' }, t('export.note')), el('div', { class: 'row' }, el('span', { class: 'space' }), go));
+    list, what, levels, wind, up, unit, el('p', { class: 'muted' }, t('export.note')), el('div', { class: 'row' }, el('span', { class: 'space' }), go));
   const d = dialog(t('export.title'), form);
   show();
   list.querySelector<HTMLInputElement>('input:checked')?.focus();

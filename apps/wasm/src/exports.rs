@@ -17,6 +17,16 @@ pub(crate) fn export(
     options: &ExportOptions,
     run: &Run<'_>,
 ) -> Told<Vec<u8>> {
+    let wind = options.wind && ModelFormat::from_extension(format).is_some_and(ModelFormat::carries_wind);
+    let mut aside;
+    let scene = if wind {
+        // What is shown stays without: its meshes would be half as large again.
+        aside = scene.clone();
+        aside.set_wind(true);
+        &mut aside
+    } else {
+        scene
+    };
     let chosen = |p: &&DocumentPlant| only.map_or(!p.settings().hidden, |id| p.id() == id);
     let mut made = Vec::new();
     for plant in document.plants().iter().filter(chosen) {
@@ -40,7 +50,7 @@ pub(crate) fn export(
         for plant in &made {
             let placement =
                 if only.is_some() { document::Placement::default() } else { plant.settings().placement };
-            models.push((placement, at_level(scene, document, plant, level, run)?));
+            models.push((placement, at_level(scene, document, plant, (level, wind), run)?));
         }
         let model = scene_model(document.name(), models.iter().map(|(at, m)| (*at, m)));
         let stem = if levels == 1 { "plant".into() } else { format!("plant_LOD{level}") };
@@ -58,7 +68,7 @@ fn at_level(
     scene: &SceneEvaluator,
     document: &Document,
     plant: &DocumentPlant,
-    level: u32,
+    (level, wind): (u32, bool),
     run: &Run<'_>,
 ) -> Told<Model> {
     let shown = scene.get(plant.id()).ok_or("there is no plant yet")?;
@@ -68,7 +78,7 @@ fn at_level(
     match (&plant.settings().maker, shown.plant) {
         (Maker::Tree(tree), Some(grown)) => {
             let seed = plant.settings().seed;
-            let skin = burgeon::skin::SkinSpec { seed, ..tree.skin.clone() };
+            let skin = burgeon::skin::SkinSpec { seed, wind, ..tree.skin.clone() };
             let (copy, skin) = coarser(grown, &skin, level);
             let mut model = burgeon::skin::skin(&copy, &skin, run).map_err(words)?;
             // Colours and textures are those of the finest.

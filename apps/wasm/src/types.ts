@@ -63,7 +63,7 @@ export interface DocumentState {
 export interface PhotoState {
   x: number; y: number; width: number; height: number; opacity: number; paint: boolean; pixels: [number, number];
 }
-export interface ExportOptions { levels: number; up: "y" | "z"; unit: "m" | "cm" | "mm"; whole: boolean }
+export interface ExportOptions { levels: number; up: "y" | "z"; unit: "m" | "cm" | "mm"; whole: boolean; wind?: boolean }
 export interface Opened { kind: "project" | "drawing" | "model" | "leaf" | "tree" | "law"; name: string; names: string[]; warnings: string[] }
 export interface StrokeReport { index: number; class: StrokeClass; organ: string; confidence: number }
 /** What became of the edit of a row; `code` is `done` or a word for why not. */

@@ -518,11 +518,13 @@ pub(crate) struct ExportOptions {
     pub(crate) unit: String,
     /// The whole scene, else the plant that is chosen.
     pub(crate) whole: bool,
+    /// How wind moves drawings and trees, where the format has room for it.
+    pub(crate) wind: bool,
 }
 
 impl Default for ExportOptions {
     fn default() -> Self {
-        Self { levels: 1, up: "y".into(), unit: "m".into(), whole: false }
+        Self { levels: 1, up: "y".into(), unit: "m".into(), whole: false, wind: false }
     }
 }
 

@@ -38,6 +38,8 @@ pub enum Draw {
     Folds = 13,
     /// Anything that a test needs.
     Test = 14,
+    /// Phase of a branch or organ in the wind.
+    Wind = 15,
 }
 
 /// A 64-bit seed from which independent streams and child seeds are derived.

@@ -11,6 +11,7 @@ use crate::spec::{Budget, SkinSpec, whole};
 use crate::spine::Spine;
 use crate::traced::Traced;
 use crate::tube::{Circle, Sleeve, drop_flat};
+use crate::wind::{self, Wind, Wood};
 
 /// Which part of the model an axis belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -67,17 +68,17 @@ const SLENDER: f64 = 0.02;
 // Green axes thicker than this share of the plant's size are bodies, not stems.
 const FLESHY: f64 = 0.035;
 
-/// The tubes of every axis, in the order of the axes.
+/// The tubes of every axis, in the order of the axes; and the wind in them, if it is asked for.
 ///
 /// # Errors
 /// [`Cancelled`].
-pub(crate) fn tubes(
-    plant: &Plant,
+pub(crate) fn tubes<'p>(
+    plant: &'p Plant,
     spec: &SkinSpec,
     budget: &Budget,
     traced: Option<&Traced>,
     run: &Run<'_>,
-) -> Result<Vec<Tube>, Cancelled> {
+) -> Result<(Vec<Tube>, Option<Wind<'p>>), Cancelled> {
     let (chains, places) = chains(plant);
     let spines = grouped(run, chains.len(), |i| spine(plant, &chains[i], budget))?;
     let thickest = spines.iter().flatten().map(Spine::stout).fold(0.0, f64::max);
@@ -89,17 +90,28 @@ pub(crate) fn tubes(
         .collect();
     // Circles for every number of sides that can occur, 3 to 24.
     let circles: Vec<Circle> = (0..=24).map(Circle::new).collect();
+    let borne_by = |chain: &Chain| {
+        let node = chain.bearer?;
+        let axis = *plant.nodes.axis.get(node.index())?;
+        let &(host, offset) = places.get(axis.index())?;
+        let local = node.index().checked_sub(plant.axis(axis).nodes.start as usize)? + offset;
+        let host_spine = spines.get(host)?.as_ref()?;
+        let sample = wind::sample(host_spine, local);
+        Some((Bearer { spine: host_spine, sample, sides: sides[host] }, host))
+    };
+    let wind = spec.wind.then(|| {
+        let wood = |(chain, spine): (&Chain, _)| Wood {
+            bearer: borne_by(chain),
+            borne: chain.bearer.is_some() && chain.surface != Surface::Root,
+            key: chain.axes.first().map_or(0, |&a| plant.axis(a).key),
+            spine: Option::as_ref(spine),
+        };
+        let woods: Vec<Wood<'_>> = chains.iter().zip(&spines).map(wood).collect();
+        Wind::new(plant, spec.seed, &crate::bounds(plant), &woods, places.clone())
+    });
     grouped(run, chains.len(), |i| {
         let (chain, spine) = (&chains[i], spines[i].as_ref()?);
-        let bearer = chain.bearer.and_then(|node| {
-            let axis = *plant.nodes.axis.get(node.index())?;
-            let &(host, offset) = places.get(axis.index())?;
-            let local = node.index().checked_sub(plant.axis(axis).nodes.start as usize)? + offset;
-            let host_spine = spines.get(host)?.as_ref()?;
-            let at = host_spine.knots.partition_point(|&(_, input)| input < local);
-            let (sample, _) = *host_spine.knots.get(at).or(host_spine.knots.last())?;
-            Some(Bearer { spine: host_spine, sample, sides: sides[host] })
-        });
+        let bearer = borne_by(chain);
         let surface = match chain.surface {
             Surface::Bark if spine.stout() < YOUNG * thickest.max(SLENDER * budget.size()) => {
                 Surface::YoungBark
@@ -113,14 +125,21 @@ pub(crate) fn tubes(
             _ => 1,
         };
         let circle = circles.get(sides[i] as usize)?;
-        let mut mesh = sleeve(spine, bearer.as_ref(), circle, repeats, rows(budget, chain, spine.length()));
+        let borne = bearer.as_ref().map(|(b, _)| b);
+        let least = wind.as_ref().map_or(0.0, |w| w.rows(i, spine));
+        let rows = rows(budget, chain, spine.length()).max(least);
+        let (mut mesh, fillet) = sleeve(spine, borne, circle, repeats, rows);
+        if let Some(wind) = &wind {
+            let fillet = fillet.zip(bearer.as_ref()).map(|(rows, (b, host))| (rows, b, *host));
+            wind.tube(&mut mesh, i, spine, circle.sides(), fillet);
+        }
         let traced = traced.filter(|t| chain.axes.iter().all(|&a| t.has(plant.axis(a).source)));
         if let Some(traced) = traced {
             traced.tube(&mut mesh, spine);
         }
         Some(Tube { surface, traced: traced.is_some(), mesh })
     })
-    .map(|tubes| tubes.into_iter().flatten().collect())
+    .map(|tubes| (tubes.into_iter().flatten().collect(), wind))
 }
 
 /// [`map_indexed`] in groups, with a look at the cancel flag before each.
@@ -136,8 +155,14 @@ fn grouped<T: Send>(run: &Run<'_>, n: usize, f: impl Fn(usize) -> T + Sync) -> R
     Ok(out)
 }
 
-/// One tube: fillet or flat base, rings, round tip.
-fn sleeve(spine: &Spine, bearer: Option<&Bearer<'_>>, circle: &Circle, repeats: u32, rows: f64) -> TriMesh {
+/// One tube: fillet or flat base, rings, round tip. Also the number of the fillet's rows below the first ring.
+fn sleeve(
+    spine: &Spine,
+    bearer: Option<&Bearer<'_>>,
+    circle: &Circle,
+    repeats: u32,
+    rows: f64,
+) -> (TriMesh, Option<usize>) {
     let mut mesh = TriMesh::default();
     // Small twigs spend fewer rows on their ends, so that some are left for the middle.
     // A thick tube's tip is large enough to show its corners.
@@ -151,21 +176,23 @@ fn sleeve(spine: &Spine, bearer: Option<&Bearer<'_>>, circle: &Circle, repeats: 
     mesh.triangles.reserve(2 * capacity);
     let mut out = Sleeve::new(&mut mesh, circle, repeats);
     let rings = (rows - ends).max(3.0);
-    match bearer.and_then(|b| Collar::new(spine, b, circle, steps, rings)) {
+    let fillet = match bearer.and_then(|b| Collar::new(spine, b, circle, steps, rings)) {
         Some((collar, rings)) => {
             collar.write(&mut out, spine.p[0], rings[0].radius);
             out.rings(&rings);
             out.round_tip(&rings[rings.len() - 1], tip);
+            Some(steps as usize + 1)
         }
         None => {
             let rings = place(spine, 0.0, rings);
             out.flat_base(&rings[0]);
             out.rings(&rings);
             out.round_tip(&rings[rings.len() - 1], tip);
+            None
         }
-    }
+    };
     drop_flat(&mut mesh);
-    mesh
+    (mesh, fillet)
 }
 
 /// Rings of a chain; stalks make do with a third.

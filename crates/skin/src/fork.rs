@@ -37,19 +37,19 @@ pub(crate) struct Collar {
 // A branch that runs along its bearer leaves it only far out; from this sine on its fillet is cut short.
 const SHALLOWEST: f64 = 0.22;
 
-/// Where `branch` leaves its bearer; `None` where it never does (it ends inside).
-fn reach(branch: &Spine, bearer: &Bearer<'_>) -> Option<Reach> {
+/// Where the centre line of `branch` leaves its bearer: its arc length, the bearer's station there and its piece;
+/// `None` where it never does (it ends inside).
+pub(crate) fn exit(branch: &Spine, bearer: &Bearer<'_>) -> Option<(f64, Station, usize)> {
     let mut hint = bearer.sample;
-    let mut exit = None;
-    for (p, s) in branch.p.iter().zip(&branch.s) {
+    branch.p.iter().zip(&branch.s).find_map(|(p, s)| {
         let (station, near) = bearer.spine.nearest(*p, hint);
         hint = near;
-        if station.centre.distance(*p) > station.radius {
-            exit = Some((*s, station));
-            break;
-        }
-    }
-    let (exit, at) = exit?;
+        (station.centre.distance(*p) > station.radius).then_some((*s, station, near))
+    })
+}
+
+fn reach(branch: &Spine, bearer: &Bearer<'_>) -> Option<Reach> {
+    let (exit, at, _) = exit(branch, bearer)?;
     let own = branch.at(exit);
     let cos = own.tangent.dot(at.tangent);
     let sin = (1.0 - cos * cos).max(0.0).sqrt().max(SHALLOWEST);

@@ -12,6 +12,7 @@ use crate::parts::Slot;
 use crate::spec::{Budget, PetalColor, SkinSpec};
 use crate::traced::Traced;
 use crate::tube::narrow;
+use crate::wind::{Wind, flutter};
 
 // Organs are copied in groups of about this many vertices: one job each would cost more than the copy.
 const GROUP: usize = 6000;
@@ -25,6 +26,7 @@ pub(crate) fn organs(
     spec: &SkinSpec,
     budget: &Budget,
     traced: Option<&Traced>,
+    wind: Option<&Wind<'_>>,
     run: &Run<'_>,
 ) -> Result<Vec<(Slot, TriMesh)>, Cancelled> {
     let scales = scales(plant);
@@ -35,6 +37,10 @@ pub(crate) fn organs(
         Ok(scales[i].map_or_else(TriMesh::default, |scale| ground.shape(&plant.shapes[i], scale, budget)))
     });
     let shapes: Vec<TriMesh> = shapes.into_iter().collect::<Result<_, Cancelled>>()?;
+    let flutters: Vec<Vec<f32>> = match wind {
+        Some(_) => plant.shapes.iter().zip(&shapes).map(|(s, m)| flutter(s, m)).collect(),
+        None => Vec::new(),
+    };
     let mut order: Vec<(Slot, usize)> = plant
         .organs
         .iter()
@@ -57,6 +63,10 @@ pub(crate) fn organs(
         mesh.normals.reserve_exact(vertices);
         mesh.uvs.reserve_exact(vertices);
         mesh.colors.reserve_exact(vertices);
+        if wind.is_some() {
+            mesh.wind.reserve_exact(vertices);
+            mesh.pivots.reserve_exact(vertices);
+        }
         for &(slot, i) in members {
             let organ = &plant.organs[i];
             let first = mesh.positions.len();
@@ -65,6 +75,9 @@ pub(crate) fn organs(
             place(&mut mesh, &shapes[organ.shape.index()], organ, color);
             if let Some(photo) = photo {
                 photo.organ(&mut mesh, first);
+            }
+            if let Some(wind) = wind {
+                wind.organ(&mut mesh, first, organ, &flutters[organ.shape.index()]);
             }
         }
         Ok((members[0].0, mesh))

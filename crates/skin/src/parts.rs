@@ -201,6 +201,9 @@ fn joined(meshes: &[(Slot, TriMesh)]) -> TriMesh {
     let tinted = meshes.iter().any(|(_, m)| !m.colors.is_empty());
     all.colors.reserve_exact(if tinted { vertices } else { 0 });
     all.triangles.reserve_exact(triangles);
+    let blown = meshes.iter().any(|(_, m)| !m.wind.is_empty());
+    all.wind.reserve_exact(if blown { vertices } else { 0 });
+    all.pivots.reserve_exact(if blown { vertices } else { 0 });
     for (_, m) in meshes {
         all.append(m);
         if tinted {

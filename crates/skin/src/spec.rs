@@ -22,13 +22,24 @@ pub struct SkinSpec {
     pub petals: Option<PetalColor>,
     /// Variation of hue and brightness from organ to organ, 0 (none) to 1 (default).
     pub variation: f64,
-    /// What the variation and the choice of colours are drawn from.
+    /// Also fill the columns that say how wind moves each vertex ([`mesh::TriMesh::wind`], `pivots`). Chosen for an
+    /// export, not saved. Default false.
+    pub wind: bool,
+    /// What the variation and the choice of colours are drawn from, and the phases of the wind.
     pub seed: Seed,
 }
 
 impl Default for SkinSpec {
     fn default() -> Self {
-        Self { detail: 1.0, sides: 8, textures: true, petals: None, variation: 1.0, seed: Seed::default() }
+        Self {
+            detail: 1.0,
+            sides: 8,
+            textures: true,
+            petals: None,
+            variation: 1.0,
+            wind: false,
+            seed: Seed::default(),
+        }
     }
 }
 

@@ -316,7 +316,7 @@ proptest! {
                 *r = *radius;
             }
         }
-        let spec = SkinSpec { detail, ..SkinSpec::default() };
+        let spec = SkinSpec { detail, wind: true, ..SkinSpec::default() };
         let model = skin(&p, &spec, &Run::plain()).unwrap();
         prop_assert_eq!(model.validate().collect::<Vec<_>>(), []);
         for part in &model.parts {

@@ -134,6 +134,7 @@ pub struct ScenePlant<'a> {
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct SceneEvaluator {
+    wind: bool,
     plants: BTreeMap<PlantId, Made>,
 }
 
@@ -157,6 +158,15 @@ struct Made {
 }
 
 impl SceneEvaluator {
+    /// Whether models of drawings and trees say how wind moves them, from the next update on. Default: no.
+    pub fn set_wind(&mut self, wind: bool) {
+        if self.wind != wind {
+            self.wind = wind;
+            // Only the surface is made again: what is below it keeps its own account of what it was made from.
+            self.plants.values_mut().for_each(|made| made.from = None);
+        }
+    }
+
     /// Brings one plant up to date; those whose leaf it bears too.
     ///
     /// # Errors
@@ -182,9 +192,11 @@ impl SceneEvaluator {
             Some(lender) => self.template(lender, document, run)?,
             None => None,
         };
+        let wind = self.wind;
         let made = self.plants.entry(plant.id()).or_default();
         if let Maker::Sketch(s) = &settings.maker {
-            let options = SketchOptions { leaf, ..SketchOptions::of_plant(plant) };
+            let mut options = SketchOptions { leaf, ..SketchOptions::of_plant(plant) };
+            options.skin.wind = wind;
             return made.sketched(s, &drawing, &options, settings.seed, run);
         }
         let same = |k: &MadeFrom| {
@@ -199,7 +211,7 @@ impl SceneEvaluator {
         made.from = None;
         let (name, seed) = (settings.name.as_str(), settings.seed);
         match &settings.maker {
-            Maker::Tree(t) => made.grown(name, t, leaf.as_ref(), &settings.edits, seed, run)?,
+            Maker::Tree(t) => made.grown((name, wind), t, leaf.as_ref(), &settings.edits, seed, run)?,
             Maker::Leaf(l) => made.measured(name, l, seed, run)?,
             Maker::Flower(f) => made.flowered(name, f, seed, run)?,
             _ => {}
@@ -307,7 +319,7 @@ impl Made {
 
     fn grown(
         &mut self,
-        name: &str,
+        (name, wind): (&str, bool),
         tree: &TreeSettings,
         leaf: Option<&LeafTemplate>,
         edits: &[PlantEdit],
@@ -316,7 +328,7 @@ impl Made {
     ) -> Result<(), SceneError> {
         let spec = TreeSpec { name: name.into(), ..tree_spec(tree)? };
         let options = TreeOptions {
-            skin: tree.skin.clone(),
+            skin: skin::SkinSpec { wind, ..tree.skin.clone() },
             leaf: leaf.cloned(),
             edits: edits.to_vec(),
             ..TreeOptions::default()
