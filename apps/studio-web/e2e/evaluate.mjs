@@ -1,5 +1,6 @@
-// node e2e/evaluate.mjs : how long a look at each sketch of Table 1 takes while a stroke is drawn over it, in Node on
-// one thread, without a browser beside it. The least is nearest to what an idle machine does.
+// node e2e/evaluate.mjs : how long a look at each sketch of Table 1 takes while a stroke is drawn over it, a tree takes
+// to grow and to follow a hand that turns a branch, in Node on one thread, without a browser beside it. The least is
+// nearest to what an idle machine does.
 import { readFileSync } from 'node:fs';
 import { initSync, StudioSession } from '../src/wasm/burgeon_wasm.js';
 
@@ -45,4 +46,50 @@ for (const name of 'abcdefgh') {
   looks.sort((a, b) => a - b);
   console.log(`| ${name} | ${looks[0].toFixed(1)} ms | ${looks[looks.length >> 1].toFixed(1)} ms | ${Math.min(...wholes).toFixed(1)} ms |`);
   session.free();
+}
+
+console.log('\n| tree | triangles | grown, least of 3 | a branch turned: a move to meshes, least | median | let go to the whole plant, least of 3 |\n|---|---|---|---|---|---|');
+for (const preset of ['umbrella-pine', 'hazel', 'oak']) {
+  const [grown, moves, wholes] = [[], [], []];
+  let [triangles, box] = [0, undefined];
+  for (let round = 0; round < 3; round += 1) {
+    const session = new StudioSession();
+    const timed = () => {
+      const start = performance.now();
+      const { id, parts, item, min, max } = JSON.parse(session.evaluate()).plants.at(-1);
+      box = { min, max };
+      parts.forEach((_, p) => { for (const column of ['positions', 'normals', 'uvs', 'colors', 'indices']) session[column](id, p); });
+      triangles = item?.counts.triangles ?? triangles;
+      return performance.now() - start;
+    };
+    session.run(JSON.stringify({ do: 'add', maker: 'tree', name: preset, preset }));
+    grown.push(timed());
+    const whole = triangles;
+    // The first branch of the trunk that a line of sight meets in the middle of the crown.
+    const at = (x, y) => ({ origin: [x, y, 99], direction: [0, 0, -1], forward: [0, 0, -1], up: [0, 1, 0], pressure: 1 });
+    const hand = (tool, input) => JSON.parse(session.shape(JSON.stringify({ tool }), '{"metres":0.05,"per_metre":0}', JSON.stringify(input)));
+    let place;
+    for (let k = 0; k < 400 && !place; k += 1) {
+      const within = (i, share) => box.min[i] + share * (box.max[i] - box.min[i]);
+      const [x, y] = [within(0, 0.52 + 0.01 * (k % 20)), within(1, 0.4 + 0.02 * Math.floor(k / 20))];
+      const { picked } = hand('pick', { on: 'move', at: [at(x, y)] });
+      if (picked && picked.order > 0 && picked.length_m > 0.3) place = [x, y];
+    }
+    if (!place) throw new Error(`${preset}: no branch`);
+    hand('rotate', { on: 'down', at: at(...place) });
+    for (let k = 1; k <= 12; k += 1) {
+      const start = performance.now();
+      hand('rotate', { on: 'move', at: [at(place[0] + 0.03 * k, place[1] - 0.05 * k)] });
+      const asked = performance.now() - start;
+      moves.push(asked + timed());
+    }
+    const { commit } = hand('rotate', { on: 'up', at: at(place[0] + 0.4, place[1] - 0.6) });
+    session.run(JSON.stringify({ do: 'shape', edit: commit }));
+    wholes.push(timed());
+    triangles = whole;
+    session.free();
+  }
+  moves.sort((a, b) => a - b);
+  const least = (times) => `${Math.min(...times).toFixed(1)} ms`;
+  console.log(`| ${preset} | ${triangles} | ${least(grown)} | ${least(moves)} | ${moves[moves.length >> 1].toFixed(1)} ms | ${least(wholes)} |`);
 }

@@ -428,9 +428,9 @@ async function keyboard({ page, url }) {
   await until(page, 'strokes', ['is', 14], 'a stroke erased by keyboard');
   await page.waitForFunction((d) => document.body.dataset.digest !== d, before);
   await page.keyboard.press('?');
-  await page.locator('dialog').waitFor();
+  await page.locator('dialog[open]').waitFor();
   await page.keyboard.press('Escape');
-  await page.locator('dialog').waitFor({ state: 'detached' });
+  await page.locator('dialog[open]').waitFor({ state: 'detached' });
 }
 
 async function touch({ page, url, shot, context }) {

@@ -32,6 +32,7 @@ export function openExport(several: boolean, kind: MakerWord, act: (format: Targ
   levels.querySelector('select')!.id = 'b-levels';
   const blown = el('input', { type: 'checkbox', id: 'b-wind', onchange: () => { options.wind = blown.checked; } });
   blown.checked = options.wind ?? false;
+  blown.style.justifySelf = 'start';
   const wind = el('label', { class: 'option', title: t('export.wind.help') }, el('span', {}, t('export.wind')), blown);
   const show = (): void => {
     levels.hidden = !LEVELS.has(format);

@@ -52,6 +52,8 @@ fn model() -> Model {
         positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
         uvs: vec![[0.0; 2], [1.0, 0.0], [0.0, 1.0]],
         colors: vec![[1.0; 3]; 3],
+        wind: vec![[0.0, 0.25, 0.5, 1.0]; 3],
+        pivots: vec![[0.0; 3]; 3],
         triangles: vec![[0, 1, 2]],
         ..TriMesh::default()
     };

@@ -158,7 +158,8 @@ struct Made {
 }
 
 impl SceneEvaluator {
-    /// Whether models of drawings and trees say how wind moves them, from the next update on. Default: no.
+    /// Whether models of trees and of drawings whose flowers do not open say how wind moves them, from the next update
+    /// on. Default: no.
     pub fn set_wind(&mut self, wind: bool) {
         if self.wind != wind {
             self.wind = wind;
@@ -196,7 +197,8 @@ impl SceneEvaluator {
         let made = self.plants.entry(plant.id()).or_default();
         if let Maker::Sketch(s) = &settings.maker {
             let mut options = SketchOptions { leaf, ..SketchOptions::of_plant(plant) };
-            options.skin.wind = wind;
+            // Flowers that open have none: what bears them would sway away from them.
+            options.skin.wind = wind && s.day.is_none();
             return made.sketched(s, &drawing, &options, settings.seed, run);
         }
         let same = |k: &MadeFrom| {

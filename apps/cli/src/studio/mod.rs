@@ -1,6 +1,7 @@
 //! `burgeon studio`: serves the Studio to this machine's own browser, and to nobody else.
 
 mod http;
+mod request;
 mod site;
 
 use std::net::{Ipv4Addr, TcpListener};

@@ -1,7 +1,10 @@
-//! What is answered to a request: a pure function of its head, so that it can be tested and fuzzed without a network.
+//! What is answered to a request: the files of one folder, and the file that the Studio was opened with.
+//!
+//! `request -> the file, if it lies in the folder -> status, headers, bytes`
 
 use std::path::{Path, PathBuf};
 
+use super::request::{Asked, NO_FILE, Target, asked};
 use crate::failure::{Failure, Outcome};
 
 /// Nothing but the page's own files; WebAssembly may be compiled, data of the page may be shown as pictures.
@@ -50,84 +53,31 @@ impl Site {
 
     /// The answer to a request whose head (up to and without the empty line) is `head`.
     pub(crate) fn answer(&self, head: &[u8]) -> Answer {
-        match self.checked(head) {
-            Ok((path, body)) => self.file(&path, body),
+        match asked(head, &self.hosts) {
+            Ok(Asked { target, body }) => match self.path(&target) {
+                Some(path) => self.file(&path, body),
+                None => refusal(404, NO_FILE),
+            },
             Err((status, why)) => refusal(status, why),
         }
     }
 
-    // The path of a request that may be answered, and whether its body is wanted.
-    fn checked(&self, head: &[u8]) -> Result<(PathBuf, bool), (u16, &'static str)> {
-        let text = str::from_utf8(head).ok().filter(|t| !t.contains('\0'));
-        let mut lines = text.ok_or((400, "the request is no text"))?.split("\r\n");
-        let mut words = lines.next().unwrap_or_default().split(' ');
-        let (Some(method), Some(target), Some(version), None) =
-            (words.next(), words.next(), words.next(), words.next())
-        else {
-            return Err((400, "the request line is broken"));
-        };
-        if !matches!(version, "HTTP/1.0" | "HTTP/1.1") {
-            return Err((505, "only HTTP/1.1 is spoken here"));
-        }
-        let (mut host, mut origin, mut site, mut mode) = (None, None, None, None);
-        for line in lines {
-            let (name, value) = line.split_once(':').ok_or((400, "a header is broken"))?;
-            let value = value.trim();
-            let slot = match name.to_ascii_lowercase().as_str() {
-                "host" => &mut host,
-                "origin" => &mut origin,
-                "sec-fetch-site" => &mut site,
-                "sec-fetch-mode" => &mut mode,
-                "content-length" if value != "0" => return Err((413, "nothing is taken in here")),
-                "transfer-encoding" | "upgrade" => return Err((413, "nothing is taken in here")),
-                _ => continue,
-            };
-            if slot.replace(value).is_some() {
-                return Err((400, "a header is given twice"));
+    /// The file that is asked for; nothing outside the folder, whatever links lie in it.
+    fn path(&self, target: &Target) -> Option<PathBuf> {
+        let path = match target {
+            Target::Opened(name) => {
+                let opened = self.opened.as_ref()?;
+                return (opened.file_name()?.to_str()? == name).then(|| opened.clone());
             }
-        }
-        // Another name for this address would let a foreign page speak to us (DNS rebinding).
-        let ours = |h: &str| self.hosts.iter().any(|own| own == h);
-        if !host.is_some_and(ours) {
-            return Err((421, "this is the Studio of another address"));
-        }
-        let own_origin = |o: &str| o.strip_prefix("http://").is_some_and(ours);
-        let foreign =
-            site.is_some_and(|s| matches!(s, "cross-site" | "same-site")) && mode != Some("navigate");
-        if foreign || origin.is_some_and(|o| !own_origin(o)) {
-            return Err((403, "another page may not ask here"));
-        }
-        if !matches!(method, "GET" | "HEAD") {
-            return Err((405, "files are only read here"));
-        }
-        let path = self.path(target).ok_or((404, "there is no such file"))?;
-        Ok((path, method == "GET"))
-    }
-
-    /// The file that a target names; nothing outside the folder, whatever links lie in it.
-    fn path(&self, target: &str) -> Option<PathBuf> {
-        let path = target.split(['?', '#']).next()?.strip_prefix('/')?;
-        let path = unescaped(path)?;
-        if let Some(name) = path.strip_prefix("opened/") {
-            let opened = self.opened.as_ref()?;
-            return (opened.file_name()?.to_str()? == name).then(|| opened.clone());
-        }
-        let path = if path.is_empty() { "index.html" } else { &path };
-        let plain = |part: &str| {
-            !part.is_empty()
-                && !part.starts_with('.')
-                && part.bytes().all(|b| b.is_ascii_alphanumeric() || matches!(b, b'.' | b'-' | b'_'))
+            Target::File(path) => path,
         };
-        if !path.split('/').all(plain) {
-            return None;
-        }
         let file = self.root.join(path).canonicalize().ok()?;
         let known = file.extension().and_then(|e| e.to_str()).is_some_and(|e| TYPES.iter().any(|t| t.0 == e));
         (known && file.starts_with(&self.root) && file.is_file()).then_some(file)
     }
 
     fn file(&self, path: &Path, wanted: bool) -> Answer {
-        let Ok(bytes) = std::fs::read(path) else { return refusal(404, "there is no such file") };
+        let Ok(bytes) = std::fs::read(path) else { return refusal(404, NO_FILE) };
         let inside = path.strip_prefix(&self.root).ok();
         let extension = path.extension().and_then(|e| e.to_str()).filter(|_| inside.is_some());
         let kind = TYPES.iter().find(|t| Some(t.0) == extension).map_or("application/octet-stream", |t| t.1);
@@ -155,23 +105,6 @@ pub(crate) fn refusal(status: u16, why: &str) -> Answer {
     Answer { status, head, body }
 }
 
-/// Percent escapes to text; `None` for broken ones, for what is no UTF-8 and for control characters.
-fn unescaped(text: &str) -> Option<String> {
-    let mut bytes = Vec::with_capacity(text.len());
-    let mut rest = text.as_bytes();
-    while let Some((&first, after)) = rest.split_first() {
-        if first == b'%' {
-            let digit = |b: &u8| char::from(*b).to_digit(16).and_then(|d| u8::try_from(d).ok());
-            bytes.push(digit(after.first()?)? * 16 + digit(after.get(1)?)?);
-            rest = after.get(2..)?;
-        } else {
-            bytes.push(first);
-            rest = after;
-        }
-    }
-    String::from_utf8(bytes).ok().filter(|t| !t.chars().any(char::is_control))
-}
-
 /// Text as part of an address.
 pub(crate) fn escaped(text: &str) -> String {
     use std::fmt::Write as _;
@@ -187,6 +120,7 @@ pub(crate) fn escaped(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::request::unescaped;
     use super::*;
     use proptest::prelude::*;
     use std::fs;

@@ -1,0 +1,187 @@
+//! What a request asks for, and whether it may: a pure function of its head, tested and fuzzed without a network.
+//!
+//! `bytes of the head, our own addresses -> the file that is asked for | why it is refused`
+//!
+//! Uses nothing but the standard library: the fuzz target `request` takes this file as it is.
+
+/// Why a file is not given.
+pub(crate) const NO_FILE: &str = "there is no such file";
+
+/// What may be asked for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Target {
+    /// A file below the folder: parts of letters, digits, `.`, `-` and `_` between single slashes, none with a dot first.
+    File(String),
+    /// The file that the Studio was opened with, by its name.
+    Opened(String),
+}
+
+/// A request that may be answered.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Asked {
+    /// Of what.
+    pub(crate) target: Target,
+    /// Whether the bytes are wanted, not their headers only.
+    pub(crate) body: bool,
+}
+
+/// What a request with this head (up to and without the empty line) asks for. `hosts`: our own, with the port.
+///
+/// # Errors
+/// The status and the words of the refusal.
+pub(crate) fn asked(head: &[u8], hosts: &[String]) -> Result<Asked, (u16, &'static str)> {
+    let text = str::from_utf8(head).ok().filter(|t| !t.contains('\0'));
+    let mut lines = text.ok_or((400, "the request is no text"))?.split("\r\n");
+    let mut words = lines.next().unwrap_or_default().split(' ');
+    let (Some(method), Some(target), Some(version), None) =
+        (words.next(), words.next(), words.next(), words.next())
+    else {
+        return Err((400, "the request line is broken"));
+    };
+    if !matches!(version, "HTTP/1.0" | "HTTP/1.1") {
+        return Err((505, "only HTTP/1.1 is spoken here"));
+    }
+    let (mut host, mut origin, mut site, mut mode) = (None, None, None, None);
+    for line in lines {
+        let (name, value) = line.split_once(':').ok_or((400, "a header is broken"))?;
+        let value = value.trim();
+        let slot = match name.to_ascii_lowercase().as_str() {
+            "host" => &mut host,
+            "origin" => &mut origin,
+            "sec-fetch-site" => &mut site,
+            "sec-fetch-mode" => &mut mode,
+            "content-length" if value != "0" => return Err((413, "nothing is taken in here")),
+            "transfer-encoding" | "upgrade" => return Err((413, "nothing is taken in here")),
+            _ => continue,
+        };
+        if slot.replace(value).is_some() {
+            return Err((400, "a header is given twice"));
+        }
+    }
+    // Another name for this address would let a foreign page speak to us (DNS rebinding).
+    let ours = |h: &str| hosts.iter().any(|own| own == h);
+    if !host.is_some_and(ours) {
+        return Err((421, "this is the Studio of another address"));
+    }
+    let own_origin = |o: &str| o.strip_prefix("http://").is_some_and(ours);
+    let foreign = site.is_some_and(|s| matches!(s, "cross-site" | "same-site")) && mode != Some("navigate");
+    if foreign || origin.is_some_and(|o| !own_origin(o)) {
+        return Err((403, "another page may not ask here"));
+    }
+    if !matches!(method, "GET" | "HEAD") {
+        return Err((405, "files are only read here"));
+    }
+    let target = target_of(target).ok_or((404, NO_FILE))?;
+    Ok(Asked { target, body: method == "GET" })
+}
+
+/// What a target names.
+fn target_of(target: &str) -> Option<Target> {
+    let path = target.split(['?', '#']).next()?.strip_prefix('/')?;
+    let path = unescaped(path)?;
+    if let Some(name) = path.strip_prefix("opened/") {
+        return Some(Target::Opened(name.into()));
+    }
+    let path = if path.is_empty() { "index.html" } else { &path };
+    let plain = |part: &str| {
+        !part.is_empty()
+            && !part.starts_with('.')
+            && part.bytes().all(|b| b.is_ascii_alphanumeric() || matches!(b, b'.' | b'-' | b'_'))
+    };
+    path.split('/').all(plain).then(|| Target::File(path.into()))
+}
+
+/// Percent escapes to text; `None` for broken ones, for what is no UTF-8 and for control characters.
+pub(crate) fn unescaped(text: &str) -> Option<String> {
+    let mut bytes = Vec::with_capacity(text.len());
+    let mut rest = text.as_bytes();
+    while let Some((&first, after)) = rest.split_first() {
+        if first == b'%' {
+            let digit = |b: &u8| char::from(*b).to_digit(16).and_then(|d| u8::try_from(d).ok());
+            bytes.push(digit(after.first()?)? * 16 + digit(after.get(1)?)?);
+            rest = after.get(2..)?;
+        } else {
+            bytes.push(first);
+            rest = after;
+        }
+    }
+    String::from_utf8(bytes).ok().filter(|t| !t.chars().any(char::is_control))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn hosts() -> [String; 2] {
+        ["127.0.0.1:7734", "localhost:7734"].map(String::from)
+    }
+
+    /// What must hold of any head that is not refused, told by reading it in another way.
+    fn sound(head: &[u8]) {
+        let Ok(Asked { target, .. }) = asked(head, &hosts()) else { return };
+        let text = String::from_utf8(head.to_vec()).expect("text").to_lowercase();
+        let given = |name: &str| -> Vec<String> {
+            let of = text.split("\r\n").skip(1).filter_map(|l| l.strip_prefix(name)?.strip_prefix(':'));
+            of.map(|v| v.trim().to_owned()).collect()
+        };
+        assert!(text.starts_with("get /") || text.starts_with("head /"), "{text}");
+        assert!(matches!(given("host").as_slice(), [own] if hosts().contains(own)), "{text}");
+        for origin in given("origin") {
+            assert!(hosts().iter().any(|own| origin == format!("http://{own}")), "{text}");
+        }
+        assert!(given("transfer-encoding").is_empty() && given("content-length").iter().all(|l| l == "0"));
+        if let Target::File(path) = target {
+            assert!(
+                !path.contains(['\\', '%', ':', '\0'])
+                    && !path.split('/').any(|p| p.is_empty() || p.starts_with('.'))
+            );
+        }
+    }
+
+    /// Requests that are nearly right.
+    fn nearly() -> impl Strategy<Value = Vec<u8>> {
+        let method = prop_oneof![4 => Just("GET"), 1 => Just("HEAD"), 1 => Just("POST"), 1 => Just("get"), 1 => Just("")];
+        let target = "(/|\\.\\.|\\.|%2e|%2f|%5c|\\\\|%00|\\.js|assets|opened|index|[a-z%?#])*";
+        let host = prop_oneof![
+            3 => Just("127.0.0.1:7734"), 1 => Just("localhost:7734"), 1 => Just("evil.example"),
+            1 => Just("127.0.0.1:7734.evil.example"), 1 => Just("127.0.0.1"), 1 => Just(""),
+        ];
+        let origin = prop_oneof![
+            3 => Just(""), 1 => Just("http://127.0.0.1:7734"), 1 => Just("http://evil.example"), 1 => Just("null"),
+            1 => Just("https://127.0.0.1:7734"), 1 => Just("http://127.0.0.1:77340"),
+        ];
+        let more = prop_oneof![
+            4 => Just(""), 1 => Just("\r\nHOST: evil.example"), 1 => Just("\r\nOrigin: http://evil.example"),
+            1 => Just("\r\nSec-Fetch-Site: cross-site"), 1 => Just("\r\nContent-Length: 9"), 1 => Just("\nHost: x"),
+        ];
+        (method, target, host, origin, more, proptest::collection::vec(any::<u8>(), 0..4)).prop_map(
+            |(method, target, host, origin, more, junk)| {
+                let origin = if origin.is_empty() { String::new() } else { format!("\r\nOrigin: {origin}") };
+                let head = format!("{method} /{target} HTTP/1.1\r\nHost: {host}{origin}{more}");
+                [head.as_bytes(), &junk].concat()
+            },
+        )
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_not_refused_comes_from_our_own_page_and_names_a_plain_file(head in nearly()) {
+            sound(&head);
+        }
+
+        #[test]
+        fn any_bytes_are_refused_or_sound(head in proptest::collection::vec(any::<u8>(), 0..200)) {
+            sound(&head);
+        }
+    }
+
+    #[test]
+    fn a_plain_request_is_understood() {
+        let head =
+            b"GET /assets/a-1.js?v=2 HTTP/1.1\r\nHost: localhost:7734\r\nOrigin: http://localhost:7734";
+        sound(head);
+        let wanted = Asked { target: Target::File("assets/a-1.js".into()), body: true };
+        assert_eq!(asked(head, &hosts()), Ok(wanted));
+    }
+}
