@@ -76,7 +76,7 @@ pub fn write_glb_morph(model: &Model, morph: &Morph<'_>, out: impl Write) -> Res
                     && a.mesh.normals.len() == b.mesh.normals.len()
                     && a.mesh.positions.iter().flatten().all(|x| x.is_finite())
             });
-        let later = *time > before && time.is_finite() && (*time < morph.at || *time > morph.at);
+        let later = *time > before && time.is_finite() && (*time - morph.at).abs() > 0.0;
         if !same || !later {
             return Err(WriteError::Keys { key: index });
         }
