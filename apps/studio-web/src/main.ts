@@ -7,7 +7,12 @@ const chosen = setting('language');
 const own = navigator.language.toLowerCase().startsWith('zh') ? 'zh' : 'en';
 setLanguage(chosen === 'zh' || chosen === 'en' ? chosen : own);
 const host = document.getElementById('app');
-if (host) new App(host).begin();
+const begin = (): void => {
+  if (host) new App(host).begin();
+};
+// The program takes the thread for a while: what the page itself holds is painted before. A hidden page is never painted.
+if (document.hidden) begin();
+else requestAnimationFrame(() => setTimeout(begin));
 
 // Only a page of its own server may keep itself for later: not a file, not a page under development.
 if (import.meta.env.PROD && 'serviceWorker' in navigator && window.isSecureContext) {
