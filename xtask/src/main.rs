@@ -52,9 +52,9 @@ fn main() -> ExitCode {
         Some("studio") => web::setup().and_then(|tools| studio::open(&tools, rest)),
         Some("build-web") => web::setup().and_then(|tools| studio::build(&tools, true)),
         Some("test-web") => {
-            web::setup().and_then(|tools| web::test(&tools).and_then(|()| studio::test(&tools)))
+            web::setup().and_then(|tools| web::test(&tools, false).and_then(|()| studio::test(&tools, false)))
         }
-        Some("test-studio") => web::setup().and_then(|tools| studio::test(&tools)),
+        Some("test-studio") => web::setup().and_then(|tools| studio::test(&tools, false)),
         Some("bench-web") => web::setup().and_then(|tools| studio::bench(&tools)),
         Some("setup") => web::setup().map(|_| ()),
         Some("help" | "-h" | "--help") | None => {
@@ -112,6 +112,6 @@ Next: draw your own (docs/drawings.md) and give it to the same command.");
 fn test() -> Outcome {
     let tools = web::setup()?;
     cargo(&["test", "--workspace", "--no-fail-fast"])?;
-    web::test(&tools)?;
-    studio::test(&tools)
+    web::test(&tools, true)?;
+    studio::test(&tools, true)
 }

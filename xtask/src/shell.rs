@@ -29,6 +29,12 @@ pub(crate) fn burgeon(profile: &str) -> PathBuf {
     target_dir().join(profile).join(format!("burgeon{}", std::env::consts::EXE_SUFFIX))
 }
 
+/// Makes sure that there is a development build of the command line. The tests of the workspace leave one, if they have
+/// just run: built by itself, what it stands on would be compiled again with other features.
+pub(crate) fn debug_burgeon(tested: bool) -> Outcome {
+    if tested && burgeon("debug").exists() { Ok(()) } else { cargo(&["build", "--package", "burgeon-cli"]) }
+}
+
 /// Builds the command line for release and says where it is.
 pub(crate) fn built_burgeon() -> Outcome<PathBuf> {
     cargo(&["build", "--release", "--package", "burgeon-cli"])?;

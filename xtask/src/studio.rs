@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::Command;
 
 use crate::shell::{
-    Outcome, built_burgeon, burgeon, cargo, finish, output, prepare, repository, say, target_dir,
+    Outcome, built_burgeon, burgeon, debug_burgeon, finish, output, prepare, repository, say, target_dir,
 };
 use crate::toolchain::{apt_install, is_root_on_debian};
 use crate::web::{Tools, bindgen, build_wasm};
@@ -57,8 +57,9 @@ pub(crate) fn open(tools: &Tools, args: &[String]) -> Outcome {
     finish(c)
 }
 
-/// Types, texts and geometry in Node, then the main journeys in a browser.
-pub(crate) fn test(tools: &Tools) -> Outcome {
+/// Types, texts and geometry in Node, then the main journeys in a browser. `tested`: the tests of the workspace have
+/// just run.
+pub(crate) fn test(tools: &Tools, tested: bool) -> Outcome {
     build(tools, false)?;
     npm(&["run", "--silent", "check"])?;
     npm(&["run", "--silent", "test"])?;
@@ -66,7 +67,7 @@ pub(crate) fn test(tools: &Tools) -> Outcome {
         say("skipped: the Studio's journeys need Chromium; install it or name it in BURGEON_CHROMIUM");
         return Ok(());
     };
-    cargo(&["build", "--package", "burgeon-cli"])?;
+    debug_burgeon(tested)?;
     say(&format!("$ node e2e/run.mjs ({})", browser.display()));
     let mut c = prepare("node", &["e2e/run.mjs"]);
     c.current_dir(folder()).arg(&browser).arg(burgeon("debug")).arg(target_dir().join("studio-test"));
@@ -81,7 +82,7 @@ pub(crate) fn test(tools: &Tools) -> Outcome {
 pub(crate) fn bench(tools: &Tools) -> Outcome {
     build(tools, true)?;
     let browser = browser().ok_or("Chromium is missing: install it or name it in BURGEON_CHROMIUM")?;
-    cargo(&["build", "--package", "burgeon-cli"])?;
+    debug_burgeon(false)?;
     say("$ node e2e/evaluate.mjs");
     let mut c = prepare("node", &["e2e/evaluate.mjs"]);
     c.current_dir(folder());

@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use crate::shell::{
-    Outcome, burgeon, cache_dir, cargo_path, command, finish, output, prepare, repository, say, target_dir,
+    Outcome, burgeon, cache_dir, cargo_path, command, debug_burgeon, finish, output, prepare, repository,
+    say, target_dir,
 };
 use crate::toolchain::{TARGET, WasmCargo, is_root_on_debian, shown, wasm_cargo};
 
@@ -62,8 +63,10 @@ fn wasm_bindgen() -> Outcome<PathBuf> {
     Ok(program)
 }
 
-/// Builds the WASM package, runs it in Node beside the native program, and validates every GLB.
-pub(crate) fn test(tools: &Tools) -> Outcome {
+/// Builds the WASM package, runs it in Node beside the native program, and validates every GLB. `tested`: the tests of
+/// the workspace have just run.
+pub(crate) fn test(tools: &Tools, tested: bool) -> Outcome {
+    debug_burgeon(tested)?;
     let out = target_dir().join("xtask-test");
     let _ = std::fs::remove_dir_all(&out);
     std::fs::create_dir_all(&out).map_err(|e| format!("{}: {e}", shown(&out)))?;
@@ -314,7 +317,6 @@ fn tree_presets() -> Outcome<Vec<String>> {
 fn native_models(drawings: &[PathBuf], to: &Path) -> Outcome<PathBuf> {
     std::fs::create_dir_all(to).map_err(|e| format!("{}: {e}", shown(to)))?;
     let burgeon = burgeon("debug");
-    crate::shell::cargo(&["build", "--package", "burgeon-cli"])?;
     let mut reports = Vec::new();
     for threads in ["1", "4"] {
         let report = to.join(format!("threads-{threads}.json"));
