@@ -250,10 +250,7 @@ pub(crate) fn write_plant(
             let axes = field_axes(args);
             output::write_whole(path, |out| write_mtg(plant, &axes, out))?;
             let mut report = Report::default();
-            if model.parts.iter().any(|p| !p.mesh.wind.is_empty()) {
-                let message = "MTG has no room for wind: it was left out; .glb and .usda have";
-                report.warn("wind-left-out", message);
-            }
+            warn_of_wind(model, "MTG", &mut report);
             Ok(report.warnings)
         }
     }
@@ -286,7 +283,7 @@ pub(crate) fn write_model(
         }
         ModelFormat::Obj => {
             let files = obj_files(model, &stem(path), axes).map_err(|e| output::write_failed(path, e))?;
-            warn_of_wind(model, format, &mut report);
+            warn_of_wind(model, format.word(), &mut report);
             for (name, png) in &files.textures {
                 bytes(&path.with_file_name(name), png)?;
             }

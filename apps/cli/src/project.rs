@@ -128,14 +128,16 @@ pub(crate) fn asked(
     Ok(editor.document().clone())
 }
 
-/// Makes one plant of a project.
+/// Makes one plant of a project, with the columns of wind if they are wanted.
 pub(crate) fn make(
     path: &Path,
     document: &Document,
     id: PlantId,
+    wind: bool,
     machine: &Machine,
 ) -> Outcome<(Plant, Model, ItemReport)> {
     let mut scene = SceneEvaluator::default();
+    scene.set_wind(wind);
     scene
         .update(id, document, &machine.run())
         .map_err(|e| if e.is_cancelled() { Failure::Cancelled } else { Failure::at(path, e) })?;

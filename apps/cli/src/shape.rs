@@ -210,7 +210,7 @@ fn make(
             let id = project::choose(what, &document, args.plant.as_deref())?;
             let document = project::edited(what, document, id, edits)?;
             let asked = project::asked(what, &document, id, args.seed, &args.surface)?;
-            let (plant, model, item) = project::make(what, &asked, id, machine)?;
+            let (plant, model, item) = project::make(what, &asked, id, args.surface.wind, machine)?;
             if let Some(path) = &args.save {
                 project::save(path, &document)?;
             }

@@ -151,6 +151,13 @@ fn a_plant_of_a_project_is_chosen_shaped_and_saved() {
     assert!(digests.contains(&&item["digest"]), "the scene has the same plant");
     let other = json(&[&shape[..], &["--plant", "bush", "--seed", "8", "--png", "x.png"]].concat());
     assert_ne!(other["items"][0]["digest"], item["digest"]);
+    // Wind only where it is asked for.
+    let blown = |name: &str| -> bool {
+        let info = json(&["info", name, "--json"]);
+        info["model"]["parts"].as_array().unwrap().iter().all(|p| p["wind"] == true)
+    };
+    json(&[&shape[..], &["--plant", "bush", "--wind", "-o", "wind.glb"]].concat());
+    assert!(blown("wind.glb") && !blown("bush.glb"));
     // One more edit comes after those that are there.
     let more = json(&[
         "shape",

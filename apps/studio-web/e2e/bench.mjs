@@ -114,7 +114,8 @@ for (const sketch of ['a', 'b', 'c', 'd', 'e', 'f', 'g', 'h']) {
 }
 
 // A tree: growing it, and a hand that turns one of its branches.
-for (const species of ['umbrella-pine']) {
+{
+  const species = 'umbrella-pine';
   const { context, page } = await fresh();
   await page.click('#b-add');
   await page.click('[data-add=tree]');

@@ -5,7 +5,8 @@ import { dialog, el } from './ui';
 
 export type Target = ExportFormat | 'png';
 const FORMATS: readonly Target[] = ['glb', 'usda', 'obj', 'ply', 'stl', 'mtg', 'qsm', 'png', 'json'];
-const LEVELS: ReadonlySet<Target> = new Set(['glb', 'usda', 'obj', 'ply', 'stl']);
+/** Formats with levels of detail. */
+export const LEVELS: ReadonlySet<Target> = new Set(['glb', 'usda', 'obj', 'ply', 'stl']);
 const AXES: ReadonlySet<Target> = new Set(['usda', 'obj', 'ply', 'stl', 'mtg', 'qsm']);
 const WIND: ReadonlySet<Target> = new Set(['glb', 'usda']);
 const NAMES: Partial<Record<Target, string>> = { qsm: 'CSV', usda: 'USD' };

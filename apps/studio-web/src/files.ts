@@ -1,7 +1,7 @@
 /** Opening, saving, exporting, keeping. */
 import type { Engine } from './engine';
 import type { ExportOptions, MakerWord, Opened, Request } from './protocol';
-import { openExport, type Target } from './exporting';
+import { LEVELS, openExport, type Target } from './exporting';
 import { decode, isLink, link } from './share';
 import { isPhoto } from './photo';
 import { SAMPLES } from './samples';
@@ -10,8 +10,6 @@ import { keep, kept } from './store';
 import { t } from './text';
 import { dialog, download, el, note } from './ui';
 
-/** Formats with levels of detail. */
-const LEVELLED: ReadonlySet<Target> = new Set(['glb', 'usda', 'obj', 'ply', 'stl']);
 /** Larger files are refused before they are read into memory. */
 const MAX_MB = 256;
 const ACCEPT = '.burgeon,.svg,.inkml,.ndjson,.json,.csv,.toml,.glb,.gltf,.obj,.ply,.stl,image/*';
@@ -173,7 +171,7 @@ export class Files {
       return;
     }
     try {
-      const levelled = LEVELLED.has(format);
+      const levelled = LEVELS.has(format);
       if (!levelled) options.levels = 1;
       const structure = (format === 'mtg' || format === 'qsm') && options.whole && this.events.several();
       let zipped = format === 'obj' || format === 'usda' || structure || (options.levels > 1 && levelled);

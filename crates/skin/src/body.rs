@@ -6,7 +6,7 @@ use mesh::TriMesh;
 
 use crate::spec::whole;
 use crate::texture::{DISC_RADIUS, RECEPTACLE_AT, unevenness};
-use crate::tube::{Circle, TubeSpec, drop_flat, narrow, narrow2, tube};
+use crate::tube::{Circle, TubeSpec, drop_flat, narrow, narrow2, tube, wide};
 
 /// Columns that grow together.
 #[derive(Default)]
@@ -152,7 +152,6 @@ fn generating_line(profile: &[DVec2], triangles: f64) -> Vec<DVec2> {
 /// Smooth normals that agree along the seam and at the poles.
 fn smooth_seam(mesh: &mut TriMesh, rows: &[u32], sides: u32) {
     mesh.compute_normals();
-    let wide = |n: [f32; 3]| DVec3::new(f64::from(n[0]), f64::from(n[1]), f64::from(n[2]));
     for &row in rows {
         let (a, b) = (row as usize, (row + sides) as usize);
         let same = (1..sides as usize).all(|j| mesh.positions[a + j] == mesh.positions[a]);

@@ -1,7 +1,6 @@
 //! Organs -> meshes: each shape is triangulated once, its organs are moved and tinted copies.
 
 use base::{Cancelled, Draw, Run, Seed, map_indexed};
-use glam::DVec3;
 use mesh::TriMesh;
 use plant::{Organ, OrganKind, Plant, Shape};
 
@@ -11,7 +10,7 @@ use crate::lean::lean_mesh;
 use crate::parts::Slot;
 use crate::spec::{Budget, PetalColor, SkinSpec};
 use crate::traced::Traced;
-use crate::tube::narrow;
+use crate::tube::{narrow, wide};
 use crate::wind::{Wind, flutter};
 
 // Organs are copied in groups of about this many vertices: one job each would cost more than the copy.
@@ -269,9 +268,8 @@ fn tint(organ: &Organ, slot: Slot, spec: &SkinSpec) -> [f32; 3] {
 fn place(out: &mut TriMesh, local: &TriMesh, organ: &Organ, color: [f32; 3]) {
     let first = crate::parts::index(out.positions.len());
     let f = &organ.frame;
-    let wide = |p: &[f32; 3]| DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2]));
-    out.positions.extend(local.positions.iter().map(|p| narrow(f.place(wide(p), organ.scale))));
-    out.normals.extend(local.normals.iter().map(|n| narrow(f.rotate(wide(n)))));
+    out.positions.extend(local.positions.iter().map(|&p| narrow(f.place(wide(p), organ.scale))));
+    out.normals.extend(local.normals.iter().map(|&n| narrow(f.rotate(wide(n)))));
     out.uvs.extend_from_slice(&local.uvs);
     out.colors.resize(out.positions.len(), color);
     out.triangles.extend(local.triangles.iter().map(|t| t.map(|i| i + first)));

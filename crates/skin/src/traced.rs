@@ -8,7 +8,7 @@ use glam::DVec3;
 use mesh::{Texture, TriMesh};
 
 use crate::spine::Spine;
-use crate::tube::narrow2;
+use crate::tube::{narrow2, wide};
 
 // Hands trace a little outside an edge: organs take what lies this much nearer to their middle.
 const INSET: f64 = 0.95;
@@ -41,12 +41,11 @@ impl Traced {
 
     /// Texture coordinates of the vertices from `first` on: one organ.
     pub(crate) fn organ(&self, mesh: &mut TriMesh, first: usize) {
-        let wide = |p: &[f32; 3]| DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2]));
         let places = mesh.positions.get(first..).unwrap_or_default();
         #[expect(clippy::cast_precision_loss, reason = "counts far below 2^52")]
-        let middle = places.iter().map(wide).sum::<DVec3>() / places.len().max(1) as f64;
+        let middle = places.iter().copied().map(wide).sum::<DVec3>() / places.len().max(1) as f64;
         mesh.uvs.truncate(first);
-        mesh.uvs.extend(places.iter().map(|p| self.uv(middle + (wide(p) - middle) * INSET)));
+        mesh.uvs.extend(places.iter().map(|&p| self.uv(middle + (wide(p) - middle) * INSET)));
     }
 
     /// Texture coordinates of a tube around `spine`.

@@ -84,6 +84,10 @@ pub(crate) struct Sleeve<'a> {
     last: Option<(u32, DVec3)>,
 }
 
+pub(crate) fn wide(p: [f32; 3]) -> DVec3 {
+    DVec3::from(p.map(f64::from))
+}
+
 #[expect(clippy::cast_possible_truncation, reason = "f64 in the model, f32 in the mesh, by design")]
 pub(crate) fn narrow(p: DVec3) -> [f32; 3] {
     [p.x as f32, p.y as f32, p.z as f32]

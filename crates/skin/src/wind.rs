@@ -14,7 +14,7 @@ use plant::{AxisKind, NodeId, Organ, Plant, Shape};
 
 use crate::fork::Bearer;
 use crate::spine::{Spine, Station};
-use crate::tube::narrow;
+use crate::tube::{narrow, wide};
 
 /// What a chain of axes has to know.
 #[derive(Clone, Copy, Debug)]
@@ -298,10 +298,6 @@ fn along(spine: &Spine, p: DVec3, hint: usize) -> (f64, usize) {
 /// Arc length of a station of a piece.
 fn arc(spine: &Spine, station: &Station, piece: usize) -> f64 {
     spine.s[piece] + station.centre.distance(spine.p[piece])
-}
-
-fn wide(p: [f32; 3]) -> DVec3 {
-    DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2]))
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "f64 in the model, f32 in the mesh, by design")]

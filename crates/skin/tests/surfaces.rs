@@ -4,7 +4,7 @@ mod scenes;
 
 use std::collections::BTreeMap;
 
-use base::{CancelToken, Digest, Executor, NoClock, Run};
+use base::{CancelToken, Digest, NoClock, Run};
 use glam::DVec3;
 use mesh::{Model, TriMesh};
 use plant::{AxisKind, Plant};
@@ -254,21 +254,10 @@ fn pale_drawn_colours_are_told_from_variation() {
     assert_eq!(part(&model, "petals-drawn").triangles.len() * 2, part(&model, "petals").triangles.len());
 }
 
-struct Threads;
-impl Executor for Threads {
-    fn for_each(&self, n: usize, job: &(dyn Fn(usize) + Sync)) {
-        std::thread::scope(|s| {
-            for k in 0..3 {
-                s.spawn(move || (0..n).rev().filter(|i| i % 3 == k).for_each(job));
-            }
-        });
-    }
-}
-
 #[test]
 fn same_bits_for_any_executor() {
     let token = CancelToken::new();
-    let run = Run { cancel: &token, executor: &Threads, clock: &NoClock };
+    let run = Run { cancel: &token, executor: &scenes::Threads, clock: &NoClock };
     for p in [scenes::leafy(500), scenes::flower(9), scenes::fork()] {
         let hex = |m: &Model| {
             let mut d = Digest::new();

@@ -2,7 +2,7 @@
 
 mod scenes;
 
-use base::{CancelToken, Executor, NoClock, Run};
+use base::{CancelToken, NoClock, Run};
 use glam::DVec3;
 use mesh::{MaterialKind, Model, TriMesh};
 use plant::{AxisKind, Plant};
@@ -296,23 +296,10 @@ fn phases_differ_from_limb_to_limb_and_follow_the_seed() {
     assert_ne!(phases(1), phases(2));
 }
 
-#[derive(Debug)]
-struct Threads;
-
-impl Executor for Threads {
-    fn for_each(&self, n: usize, job: &(dyn Fn(usize) + Sync)) {
-        std::thread::scope(|s| {
-            for k in 0..3 {
-                s.spawn(move || (0..n).rev().filter(|i| i % 3 == k).for_each(job));
-            }
-        });
-    }
-}
-
 #[test]
 fn same_wind_for_any_executor() {
     let token = CancelToken::new();
-    let run = Run { cancel: &token, executor: &Threads, clock: &NoClock };
+    let run = Run { cancel: &token, executor: &scenes::Threads, clock: &NoClock };
     let spec = SkinSpec { wind: true, ..SkinSpec::default() };
     for p in scenes() {
         assert_eq!(skin(&p, &spec, &run).expect("nobody cancels"), blown(&p), "{}", p.name);

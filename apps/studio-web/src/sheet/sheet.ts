@@ -137,9 +137,13 @@ export class Sheet {
 
   /** What each row of the document was understood as; a row beyond the document is the stroke being drawn. */
   setOrgans(organs: Map<number, string>): void {
-    this.strokes.forEach((s, row) => { s.organ = organs.get(row); });
+    let changed = false;
+    this.strokes.forEach((s, row) => {
+      changed ||= s.organ !== organs.get(row);
+      s.organ = organs.get(row);
+    });
     this.draftOrgan = organs.get(this.strokes.length);
-    this.redraw(true);
+    this.redraw(changed);
   }
 
   setTool(tool: Tool): void {

@@ -10,7 +10,7 @@ use super::gltf::{
     Accessor, Animation, Asset, Attributes, Buffer, Channel, FLOAT, Image, Keys, Material, Mesh, Node,
     POINTS, Pbr, Primitive, Root, Sampler, Scene, Target, Texture, TextureInfo, U16, U32, View,
 };
-use super::{PngCache, check, unit};
+use super::{PngCache, check, share, unit};
 use crate::error::WriteError;
 
 const ARRAY_BUFFER: u32 = 34_962;
@@ -378,11 +378,6 @@ impl Writer {
         self.root.scene = Some(0);
         Ok(())
     }
-}
-
-/// 0 to 1, as glTF demands; NaN is 0.
-fn share(x: f32) -> f32 {
-    if x.is_nan() { 0.0 } else { x.clamp(0.0, 1.0) }
 }
 
 #[cfg(test)]

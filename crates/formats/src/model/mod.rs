@@ -14,6 +14,7 @@ mod stl;
 mod usd_write;
 
 use std::io::{Read, Write};
+use std::sync::Arc;
 
 use base::Report;
 use glam::DVec3;
@@ -201,7 +202,9 @@ pub fn write_model(
             "glTF is always in metres with +Y up: the unit and up axis asked for were not used",
         );
     }
-    warn_of_wind(model, format, report);
+    if !format.carries_wind() {
+        warn_of_wind(model, format.word(), report);
+    }
     match format {
         ModelFormat::Glb => write_glb(model, out),
         ModelFormat::Gltf => Err(WriteError::ReadOnly { format: "glTF as JSON", instead: ".glb" }),
@@ -212,10 +215,10 @@ pub fn write_model(
     }
 }
 
-/// Says so where a model has wind and the format no room for it.
-pub fn warn_of_wind(model: &Model, format: ModelFormat, report: &mut Report) {
-    if !format.carries_wind() && model.parts.iter().any(|p| !p.mesh.wind.is_empty()) {
-        let message = format!("{} has no room for wind: it was left out; .glb and .usda have", format.word());
+/// Says so where a model has wind and goes into a format that has no room for it.
+pub fn warn_of_wind(model: &Model, format: &str, report: &mut Report) {
+    if model.parts.iter().any(|p| !p.mesh.wind.is_empty()) {
+        let message = format!("{format} has no room for wind: it was left out; .glb and .usda have");
         report.warn("wind-left-out", message);
     }
 }
@@ -243,6 +246,50 @@ pub(crate) fn check(model: &Model) -> Result<(), WriteError> {
         }
     }
     Ok(())
+}
+
+/// 0 to 1, as materials demand; NaN is 0.
+pub(crate) fn share(x: f32) -> f32 {
+    if x.is_nan() { 0.0 } else { x.clamp(0.0, 1.0) }
+}
+
+/// The textures that lie beside a model, `STEM-MATERIAL.png`, each once.
+pub(crate) struct TextureFiles<'a> {
+    stem: &'a str,
+    /// Name and bytes.
+    files: Vec<(String, Vec<u8>)>,
+    /// The texture of each file.
+    written: Vec<Arc<mesh::Texture>>,
+    cache: PngCache,
+}
+
+impl<'a> TextureFiles<'a> {
+    pub(crate) fn new(stem: &'a str) -> Self {
+        Self { stem, files: Vec::new(), written: Vec::new(), cache: PngCache::new() }
+    }
+
+    /// The name of the file that holds a texture; `material` is the first that uses it.
+    pub(crate) fn name(
+        &mut self,
+        texture: &Arc<mesh::Texture>,
+        material: &str,
+    ) -> Result<String, WriteError> {
+        let known = self.written.iter().position(|t| Arc::ptr_eq(t, texture) || t == texture);
+        if let Some(known) = known {
+            return Ok(self.files[known].0.clone());
+        }
+        let mut name = format!("{}-{}.png", self.stem, file_name(material, "texture"));
+        while self.files.iter().any(|(n, _)| *n == name) {
+            name.insert_str(name.len() - 4, "-2");
+        }
+        self.files.push((name.clone(), self.cache.png(texture)?.to_vec()));
+        self.written.push(Arc::clone(texture));
+        Ok(name)
+    }
+
+    pub(crate) fn into_files(self) -> Vec<(String, Vec<u8>)> {
+        self.files
+    }
 }
 
 /// A unit normal in any case: glTF's validator and lighting demand it.

@@ -1,12 +1,11 @@
 //! Model -> Wavefront OBJ, its material file and its textures.
 
 use std::io::Write as _;
-use std::sync::Arc;
 
 use mesh::{AlphaMode, Model};
 
-use super::picture::{PngCache, srgb};
-use super::{ExportSpec, check, file_name, unit};
+use super::picture::srgb;
+use super::{ExportSpec, TextureFiles, check, file_name, unit};
 use crate::error::WriteError;
 
 /// The files that make up an OBJ. The OBJ names its material file and that its textures: keep the names.
@@ -79,17 +78,14 @@ pub fn obj_files(model: &Model, stem: &str, spec: &ExportSpec) -> Result<ObjFile
         vt += mesh.uvs.len();
         vn += mesh.normals.len();
     }
-    let (mtl, textures) = materials(model, &stem)?;
+    let mut textures = TextureFiles::new(&stem);
+    let mtl = materials(model, &mut textures)?;
+    let textures = textures.into_files();
     Ok(ObjFiles { obj, mtl, mtl_name: format!("{stem}.mtl"), textures })
 }
 
-type Textures = Vec<(String, Vec<u8>)>;
-
-fn materials(model: &Model, stem: &str) -> Result<(Vec<u8>, Textures), WriteError> {
+fn materials(model: &Model, textures: &mut TextureFiles<'_>) -> Result<Vec<u8>, WriteError> {
     let mut mtl = Vec::new();
-    let mut textures: Textures = Vec::new();
-    let mut written: Vec<(Arc<mesh::Texture>, String)> = Vec::new();
-    let mut cache = PngCache::new();
     for m in &model.materials {
         let [r, g, b] = m.base_color;
         let sides = if m.double_sided { " double-sided" } else { "" };
@@ -98,19 +94,7 @@ fn materials(model: &Model, stem: &str) -> Result<(Vec<u8>, Textures), WriteErro
         writeln!(mtl, "# burgeon kind={} translucency={}{sides}", m.kind.word(), m.translucency)?;
         writeln!(mtl, "Kd {r} {g} {b}\nKs 0 0 0\nPr {}\nPm 0\nd 1\nillum 1", m.roughness)?;
         if let Some(texture) = &m.texture {
-            let known = written.iter().find(|(t, _)| Arc::ptr_eq(t, texture) || t == texture);
-            let name = match known {
-                Some((_, name)) => name.clone(),
-                None => {
-                    let mut name = format!("{stem}-{}.png", file_name(&m.name, "texture"));
-                    while textures.iter().any(|(n, _)| *n == name) {
-                        name.insert_str(name.len() - 4, "-2");
-                    }
-                    textures.push((name.clone(), cache.png(texture)?.to_vec()));
-                    written.push((Arc::clone(texture), name.clone()));
-                    name
-                }
-            };
+            let name = textures.name(texture, &m.name)?;
             writeln!(mtl, "map_Kd {name}")?;
             if m.alpha == AlphaMode::Mask {
                 writeln!(mtl, "map_d {name}")?;
@@ -118,7 +102,7 @@ fn materials(model: &Model, stem: &str) -> Result<(Vec<u8>, Textures), WriteErro
         }
         mtl.push(b'\n');
     }
-    Ok((mtl, textures))
+    Ok(mtl)
 }
 
 /// A name that stays within its line.

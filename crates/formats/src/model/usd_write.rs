@@ -3,13 +3,12 @@
 use std::collections::BTreeSet;
 use std::fmt;
 use std::io::Write as _;
-use std::sync::Arc;
 
 use base::{Unit, UpAxis};
 use mesh::{AlphaMode, Material, Model, Part, TriMesh};
 
-use super::picture::{PngCache, linear};
-use super::{ExportSpec, check, file_name, unit};
+use super::picture::linear;
+use super::{ExportSpec, TextureFiles, check, file_name, share, unit};
 use crate::error::WriteError;
 
 /// The files that make up a USD model. The text names its textures: keep the names.
@@ -61,14 +60,14 @@ pub fn usd_files(model: &Model, stem: &str, spec: &ExportSpec) -> Result<UsdFile
     writeln!(out, "    kind = \"component\"\n)\n{{")?;
     let mut taken = Identifiers::default();
     let scope = taken.fresh("materials", "materials");
-    let mut textures = Textures::default();
+    let mut textures = TextureFiles::new(&stem);
     let mut among = Identifiers::default();
     let looks: Vec<Look> = (model.materials.iter().enumerate())
         .map(|(i, m)| {
             // A part's tint colours a bare material; one that has no colours shows the base colour.
             let users = || model.parts.iter().filter(|p| p.material.index() == i);
             let tinted = m.texture.is_none() && users().any(|p| !p.mesh.colors.is_empty());
-            let file = m.texture.as_ref().map(|t| textures.name(t, &stem, &m.name)).transpose()?;
+            let file = m.texture.as_ref().map(|t| textures.name(t, &m.name)).transpose()?;
             let path = format!("/{root}/{scope}/{}", among.fresh(&m.name, "material"));
             Ok(Look { path, file, tinted, shown: shown(m) })
         })
@@ -84,7 +83,7 @@ pub fn usd_files(model: &Model, stem: &str, spec: &ExportSpec) -> Result<UsdFile
         prim(&mut out, part, &name, look, model.material(part).double_sided, spec)?;
     }
     writeln!(out, "}}")?;
-    Ok(UsdFiles { usda: out, textures: textures.files })
+    Ok(UsdFiles { usda: out, textures: textures.into_files() })
 }
 
 /// How a material is written.
@@ -267,11 +266,6 @@ fn row<const N: usize>(out: &mut Vec<u8>, values: &[f32; N]) -> Result<(), Write
     Ok(write!(out, ")")?)
 }
 
-/// 0 to 1; NaN is 0.
-fn share(x: f32) -> f32 {
-    if x.is_nan() { 0.0 } else { x.clamp(0.0, 1.0) }
-}
-
 /// The mean colour of a material, linear: what a viewer without materials should show.
 fn shown(m: &Material) -> [f32; 3] {
     let base = m.base_color.map(share);
@@ -288,34 +282,6 @@ fn shown(m: &Material) -> [f32; 3] {
     #[expect(clippy::cast_possible_truncation, reason = "a colour")]
     let mean = |k: usize| if weight > 0.0 { (sum[k] / weight) as f32 } else { 1.0 };
     [0, 1, 2].map(|k| base[k] * mean(k))
-}
-
-/// Each texture once.
-#[derive(Default)]
-struct Textures {
-    files: Vec<(String, Vec<u8>)>,
-    written: Vec<(Arc<mesh::Texture>, String)>,
-    cache: PngCache,
-}
-
-impl Textures {
-    fn name(
-        &mut self,
-        texture: &Arc<mesh::Texture>,
-        stem: &str,
-        material: &str,
-    ) -> Result<String, WriteError> {
-        if let Some((_, name)) = self.written.iter().find(|(t, _)| Arc::ptr_eq(t, texture) || t == texture) {
-            return Ok(name.clone());
-        }
-        let mut name = format!("{stem}-{}.png", file_name(material, "texture"));
-        while self.files.iter().any(|(n, _)| *n == name) {
-            name.insert_str(name.len() - 4, "-2");
-        }
-        self.files.push((name.clone(), self.cache.png(texture)?.to_vec()));
-        self.written.push((Arc::clone(texture), name.clone()));
-        Ok(name)
-    }
 }
 
 /// Identifiers that are each used once.
@@ -365,6 +331,8 @@ impl fmt::Display for Quoted<'_> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
 
     #[test]

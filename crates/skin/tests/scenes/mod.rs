@@ -1,9 +1,23 @@
 //! Plants to look at and to count, made without any drawing.
 #![allow(dead_code, reason = "each test file uses its own scenes")]
 
-use base::{Draw, Seed, ops};
+use base::{Draw, Executor, Seed, ops};
 use glam::{DVec2, DVec3};
 use plant::{AxisKind, Blade, Frame, Lift, NodeId, Organ, OrganKind, Plant, Relief, Shape, ShapeId};
+
+/// Three threads, each from the last job to the first.
+#[derive(Debug)]
+pub(crate) struct Threads;
+
+impl Executor for Threads {
+    fn for_each(&self, n: usize, job: &(dyn Fn(usize) + Sync)) {
+        std::thread::scope(|s| {
+            for k in 0..3 {
+                s.spawn(move || (0..n).rev().filter(|i| i % 3 == k).for_each(job));
+            }
+        });
+    }
+}
 
 /// An egg-shaped outline from the origin along +y, `width` at its widest, which is at `belly` of its length.
 pub(crate) fn outline(length: f64, width: f64, belly: f64, tip: f64) -> Vec<DVec2> {
