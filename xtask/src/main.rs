@@ -29,7 +29,6 @@ cargo xtask COMMAND
   species        grows every preset for docs/trees.md and the Studio's small pictures
   flowers        makes the pictures of docs/bloom.md and of the venations in docs/leaves.md
   layers         checks that each crate uses only what ARCHITECTURE.md allows
-  clippy-wasm    lints the core for wasm32
   train-strokes  trains the stroke classifier from its table (see docs/strokes.md)
   test-web       the WASM, validator and Studio part of `test` alone
   test-studio    the Studio part of `test` alone
@@ -47,7 +46,6 @@ fn main() -> ExitCode {
         Some("species") => species::run(),
         Some("flowers") => flowers::run(),
         Some("layers") => layers::check(),
-        Some("clippy-wasm") => toolchain::clippy_wasm(),
         Some("train-strokes") => train_strokes::run(rest),
         Some("studio") => web::setup().and_then(|tools| studio::open(&tools, rest)),
         Some("build-web") => web::setup().and_then(|tools| studio::build(&tools, true)),

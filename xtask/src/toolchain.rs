@@ -9,9 +9,6 @@ use crate::shell::{Outcome, cache_dir, cargo_path, command, finish, output, prep
 pub(crate) const TARGET: &str = "wasm32-unknown-unknown";
 /// The name under which Debian's compiler is linked into rustup.
 const DEBIAN: &str = "burgeon-debian-wasm";
-/// The core as the browser gets it.
-const CORE: &[&str] = &["--package", "burgeon", "--package", "burgeon-wasm"];
-
 /// A cargo that builds for wasm32.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum WasmCargo {
@@ -65,23 +62,6 @@ fn sysroot_has_target() -> Outcome<bool> {
     let sysroot = output(prepare(rustc, &["--print", "sysroot"]))?;
     let lib = Path::new(sysroot.trim()).join("lib/rustlib").join(TARGET).join("lib");
     Ok(std::fs::read_dir(lib).is_ok_and(|mut d| d.next().is_some()))
-}
-
-/// Lints the core for wasm32. Debian's compiler comes without clippy: then its own lints must do.
-pub(crate) fn clippy_wasm() -> Outcome {
-    let toolchain = wasm_cargo()?;
-    let mut args = vec![if toolchain == WasmCargo::Own { "clippy" } else { "check" }, "--target", TARGET];
-    args.extend(CORE);
-    if toolchain == WasmCargo::Own {
-        args.extend(["--", "-D", "warnings"]);
-        say(&format!("$ cargo {}", args.join(" ")));
-        finish(toolchain.command(&args))
-    } else {
-        say(&format!("$ RUSTFLAGS=-Dwarnings cargo {} (this toolchain has no clippy)", args.join(" ")));
-        let mut c = toolchain.command(&args);
-        c.env("RUSTFLAGS", "-Dwarnings");
-        finish(c)
-    }
 }
 
 /// Whether packages can be installed here without asking anybody.

@@ -27,9 +27,10 @@ const url = await new Promise((resolve, reject) => {
   server.on('exit', (code) => reject(new Error(`burgeon studio ended with ${code}`)));
 });
 
+// As browsers are on machines without a graphics card: the page is drawn by the processor, WebGL by SwiftShader.
 const browser = await chromium.launch({
   executablePath: browserPath,
-  args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run',
+  args: ['--no-sandbox', '--disable-gpu', '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run',
     '--disable-background-networking', '--disable-component-update', '--disable-sync'],
 });
 
