@@ -7,8 +7,11 @@ type MaterialView = PlantView['materials'][number];
 /** Textures and materials of all plants. */
 export class Looks {
   private textures = new Map<number, THREE.DataTexture>();
-  private materials = new Map<string, THREE.MeshStandardMaterial>();
+  private materials = new Map<string, THREE.MeshStandardMaterial | THREE.MeshLambertMaterial>();
   private wire = false;
+
+  /** `matt`: without gloss, which costs a machine without a graphics card as much as all else. */
+  constructor(private readonly matt: boolean) {}
 
   /** A plant of its own that shares textures and materials; the caller disposes its geometries. */
   build({ view, parts, textures }: Sent): THREE.Group {
@@ -51,21 +54,20 @@ export class Looks {
     this.textures.set(number, texture);
   }
 
-  material(look: MaterialView, tinted: boolean): THREE.MeshStandardMaterial {
+  material(look: MaterialView, tinted: boolean): THREE.Material {
     const map = look.texture ? (this.textures.get(look.texture.number) ?? null) : null;
     const key = JSON.stringify([look, tinted]);
     const known = this.materials.get(key);
     if (known) return known;
-    const material = new THREE.MeshStandardMaterial({
+    const shown = {
       map,
       color: new THREE.Color().setRGB(...look.color, THREE.LinearSRGBColorSpace),
-      roughness: look.roughness,
-      metalness: 0,
       vertexColors: tinted,
       side: look.two_sided ? THREE.DoubleSide : THREE.FrontSide,
       alphaTest: look.masked ? 0.5 : 0,
       wireframe: this.wire,
-    });
+    };
+    const material = this.matt ? new THREE.MeshLambertMaterial(shown) : new THREE.MeshStandardMaterial({ ...shown, roughness: look.roughness, metalness: 0 });
     if (look.translucency > 0) {
       // Light through a thin blade: a little of its own colour shines from the shaded side.
       material.emissive.setRGB(1, 1, 1);

@@ -1,23 +1,42 @@
 /** Sky, ground and light around the plant. Everything is about one unit high: the plant is scaled, not the world. */
 import * as THREE from 'three';
 
-const SKY_VERTEX = `
-varying vec3 direction;
-void main() {
-  direction = normalize(position);
-  gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+/** The ground's, in heights of a plant. */
+const RADIUS = 6;
+/** As far as shadows fall. */
+const SHADED = 2.4;
+
+// Colours are mixed at the corners, in many rows: without a graphics card each pixel costs as much as a corner.
+const SRGB = `
+vec3 shown(vec3 c) {
+  return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(vec3(0.0031308), c));
 }`;
-const SKY_FRAGMENT = `
+const SKY_VERTEX = `
 uniform vec3 zenith;
 uniform vec3 horizon;
 uniform vec3 below;
-varying vec3 direction;
+varying vec3 color;
+${SRGB}
 void main() {
-  float h = normalize(direction).y;
-  vec3 c = h > 0.0 ? mix(horizon, zenith, pow(h, 0.55)) : mix(horizon, below, min(1.0, -h * 4.0));
-  gl_FragColor = vec4(c, 1.0);
-  #include <colorspace_fragment>
+  float h = normalize(position).y;
+  color = shown(h > 0.0 ? mix(horizon, zenith, pow(h, 0.55)) : mix(horizon, below, min(1.0, -h * 4.0)));
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
 }`;
+const SKY_FRAGMENT = `
+varying vec3 color;
+void main() { gl_FragColor = vec4(color, 1.0); }`;
+const GROUND_VERTEX = `
+uniform vec3 ground;
+varying vec4 color;
+${SRGB}
+void main() {
+  float r = length(position) / ${RADIUS.toFixed(1)};
+  color = vec4(shown(ground), r < 0.35 ? mix(1.0, 0.75, r / 0.35) : mix(0.75, 0.0, (r - 0.35) / 0.65));
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+}`;
+const GROUND_FRAGMENT = `
+varying vec4 color;
+void main() { gl_FragColor = color; }`;
 
 interface Mood {
   zenith: number;
@@ -39,7 +58,7 @@ const DARK: Mood = {
 export class Stage {
   readonly scene = new THREE.Scene();
   private readonly sky: THREE.Mesh<THREE.SphereGeometry, THREE.ShaderMaterial>;
-  private readonly ground: THREE.Mesh<THREE.CircleGeometry, THREE.MeshBasicMaterial>;
+  private readonly ground: THREE.Mesh<THREE.RingGeometry, THREE.ShaderMaterial>;
   private readonly shadow: THREE.Mesh<THREE.CircleGeometry, THREE.ShadowMaterial>;
   private readonly sun = new THREE.DirectionalLight();
   private readonly fill = new THREE.HemisphereLight();
@@ -52,17 +71,19 @@ export class Stage {
       zenith: { value: new THREE.Color() }, horizon: { value: new THREE.Color() }, below: { value: new THREE.Color() },
     };
     this.sky = new THREE.Mesh(
-      new THREE.SphereGeometry(60, 32, 16),
+      new THREE.SphereGeometry(60, 32, 96),
       new THREE.ShaderMaterial({
         uniforms, vertexShader: SKY_VERTEX, fragmentShader: SKY_FRAGMENT, side: THREE.BackSide, depthWrite: false,
       }),
     );
     // Fades into the sky's lower half, so that there is no edge of the world.
     this.ground = new THREE.Mesh(
-      new THREE.CircleGeometry(6, 64),
-      new THREE.MeshBasicMaterial({ transparent: true, depthWrite: false, alphaMap: fade(), toneMapped: false }),
+      new THREE.RingGeometry(0, RADIUS, 64, 20),
+      new THREE.ShaderMaterial({
+        uniforms: { ground: { value: new THREE.Color() } }, vertexShader: GROUND_VERTEX, fragmentShader: GROUND_FRAGMENT, transparent: true, depthWrite: false,
+      }),
     );
-    this.shadow = new THREE.Mesh(new THREE.CircleGeometry(6, 48), new THREE.ShadowMaterial({ opacity: 0.26 }));
+    this.shadow = new THREE.Mesh(new THREE.CircleGeometry(SHADED, 48), new THREE.ShadowMaterial({ opacity: 0.26 }));
     for (const [disc, y] of [[this.ground, -0.002], [this.shadow, 0]] as const) {
       disc.rotation.x = -Math.PI / 2;
       disc.position.y = y;
@@ -88,7 +109,7 @@ export class Stage {
     uniforms['horizon']!.value.set(mood.horizon);
     uniforms['below']!.value.set(mood.below);
     this.sheet.set(mood.horizon);
-    this.ground.material.color.set(mood.ground);
+    this.ground.material.uniforms['ground']!.value.set(mood.ground);
     this.shadow.material.opacity = dark ? 0.5 : 0.26;
     this.sun.color.set(mood.sun);
     this.sun.intensity = mood.sunPower;
@@ -104,20 +125,4 @@ export class Stage {
     this.shadow.visible = !flat;
     this.scene.background = flat ? this.sheet : null;
   }
-}
-
-function fade(): THREE.Texture {
-  const size = 256;
-  const canvas = document.createElement('canvas');
-  canvas.width = canvas.height = size;
-  const c = canvas.getContext('2d');
-  if (c) {
-    const g = c.createRadialGradient(size / 2, size / 2, 0, size / 2, size / 2, size / 2);
-    g.addColorStop(0, '#fff');
-    g.addColorStop(0.35, '#c0c0c0');
-    g.addColorStop(1, '#000');
-    c.fillStyle = g;
-    c.fillRect(0, 0, size, size);
-  }
-  return new THREE.CanvasTexture(canvas);
 }

@@ -20,12 +20,14 @@ const CLICK = 5;
 
 /** Least time between pictures that the processor draws. */
 const SLOW_MS = 300;
+/** Its pixels for each of the screen's: at rest, and while pictures follow one another. */
+const GRAIN = { rest: 0.75, moving: 0.45 } as const;
 
 export class PlantView {
   readonly element = document.createElement('div');
   private readonly renderer: THREE.WebGLRenderer;
   private readonly stage: Stage;
-  private readonly looks = new Looks();
+  private readonly looks: Looks;
   private readonly plants = new Map<number, PlantMeshes>();
   /** A model that is looked at instead of the scene. */
   private guest: PlantMeshes | undefined;
@@ -49,6 +51,10 @@ export class PlantView {
   private sheetSeen: Box | undefined;
   private follow = true;
   private readonly slow: boolean;
+  /** See `spare`. */
+  private grain: number = GRAIN.rest;
+  private drawn = -Infinity;
+  private rest = 0;
   private frame = 0;
   private last = 0;
   private rendered = 0;
@@ -74,6 +80,7 @@ export class PlantView {
   /** Throws where the browser has no WebGL 2. */
   constructor(label: string) {
     this.slow = drawnBySoftware();
+    this.looks = new Looks(this.slow);
     this.renderer = new THREE.WebGLRenderer({ antialias: !this.slow, powerPreference: 'high-performance' });
     this.renderer.shadowMap.enabled = true;
     // The light stands still: its shadows change with the plant only.
@@ -503,8 +510,9 @@ export class PlantView {
     }
   }
 
-  /** The picture as it is shown now. */
+  /** The picture as it is shown now, or would be at rest. */
   async picture(): Promise<Blob> {
+    if (this.slow) this.refine(GRAIN.rest);
     this.render();
     const canvas = this.renderer.domElement;
     return new Promise((resolve, reject) => {
@@ -592,7 +600,7 @@ export class PlantView {
   private resize(): void {
     const { clientWidth: w, clientHeight: h } = this.element;
     if (w === 0 || h === 0) return;
-    this.renderer.setPixelRatio(this.slow ? 0.75 : Math.min(2, devicePixelRatio || 1));
+    this.renderer.setPixelRatio(this.slow ? this.grain : Math.min(2, devicePixelRatio || 1));
     this.renderer.setSize(w, h, false);
     this.lay();
     if (this.follow) this.frameNowBox();
@@ -614,10 +622,26 @@ export class PlantView {
       const there = this.glide(1 - Math.exp(-Math.min(now - this.last, 400) / 120));
       this.last = now;
       this.controls.update();
+      if (this.slow) this.spare(now);
       this.render();
       this.rendered = performance.now();
       if (!there) this.redraw();
     });
+  }
+
+  /** Coarse pictures while they follow one another, a fine one when they have come to rest. */
+  private spare(now: number): void {
+    const moving = now - this.drawn < 3 * SLOW_MS;
+    this.drawn = now;
+    this.refine(moving ? GRAIN.moving : GRAIN.rest);
+    window.clearTimeout(this.rest);
+    if (moving) this.rest = window.setTimeout(() => { this.drawn = -Infinity; this.redraw(); }, 2 * SLOW_MS);
+  }
+
+  private refine(grain: number): void {
+    if (grain === this.grain) return;
+    this.grain = grain;
+    this.renderer.setPixelRatio(grain);
   }
 
   private render(): void {
