@@ -5,6 +5,7 @@
 //! | module | owns |
 //! |---|---|
 //! | [`ops`] | transcendental functions with the same bits on every platform |
+//! | [`turn`] | turns and directions, likewise |
 //! | `seed` | [`Seed`], [`Draw`], [`Stream`]: randomness as a value |
 //! | `task` | [`CancelToken`], [`Executor`], [`Run`]: how something is computed, never what |
 //! | `report` | [`Report`], [`Warning`]: what a computation wants to tell its user |
@@ -19,6 +20,7 @@ pub mod ops;
 mod report;
 mod seed;
 mod task;
+pub mod turn;
 mod units;
 
 pub use digest::{Digest, Digestible};

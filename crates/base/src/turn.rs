@@ -66,7 +66,8 @@ mod tests {
 
     #[test]
     fn a_turn_between_vectors_brings_one_onto_the_other() {
-        let vectors = [DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::new(0.6, 0.0, -0.8), DVec3::new(0.0, 0.28, 0.96)];
+        let vectors =
+            [DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::new(0.6, 0.0, -0.8), DVec3::new(0.0, 0.28, 0.96)];
         for a in vectors {
             for b in vectors.into_iter().chain([-a, a]) {
                 assert!((between(a, b) * a).distance(b) < 1e-14, "{a} {b}");

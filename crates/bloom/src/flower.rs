@@ -5,7 +5,7 @@
 //! leans: one edge lies inside its neighbour, the other outside, so petals may overlap but never meet; whorls are
 //! nested.
 
-use base::{Seed, ops};
+use base::{Seed, ops, turn};
 use glam::{DQuat, DVec2, DVec3};
 use mesh::{Material, MaterialId, MaterialKind, Model, Part, TriMesh};
 
@@ -325,7 +325,7 @@ impl FlowerSpec {
         let azimuth = f64::from(f) * rad(137.507_8);
         let (s, c) = ops::sin_cos(azimuth);
         let direction = DVec3::new(ops::sin(tilt) * c, ops::cos(tilt), ops::sin(tilt) * s);
-        (DVec3::Y * self.stalk + direction * self.pedicel(), DQuat::from_rotation_arc(DVec3::Y, direction))
+        (DVec3::Y * self.stalk + direction * self.pedicel(), turn::between(DVec3::Y, direction))
     }
 
     fn pedicel(&self) -> f64 {

@@ -148,7 +148,7 @@ mod tests {
 
     #[test]
     fn best_rotation_recovers_a_turn() {
-        let q = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, -1.0).normalize(), 2.3);
+        let q = base::turn::about(DVec3::new(1.0, 2.0, -1.0).normalize(), 2.3);
         let points = [DVec3::X, DVec3::Y * 2.0, DVec3::new(0.3, -1.0, 0.7)];
         let r = best_rotation(points.iter().map(|&p| (p, q * p)));
         assert!(points.iter().all(|&p| (r * p - q * p).length() < 1e-12), "{r:?}");

@@ -1,7 +1,7 @@
 //! Two or more shapes and a law -> the shape at any day.
 
 use base::Run;
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 
 use crate::{
     BloomError, GrowthLaw, Lattice, Organ, Quantity, RegisterSpec, Registration, Stage, Weights,
@@ -259,7 +259,7 @@ impl Segment {
         };
         let whole = pace(0.5).x;
         let mut points = Vec::with_capacity(first.len());
-        let turn = DQuat::IDENTITY.slerp(self.fit.turn, whole);
+        let turn = base::turn::part(self.fit.turn, whole);
         let back = self.fit.turn.inverse();
         let base = self.fit.first_base.lerp(self.fit.last_base, whole);
         for ((p, q), along) in first.iter().zip(last).zip(&self.along) {

@@ -111,7 +111,6 @@ fn towards_positive(v: DVec3) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DQuat;
     use proptest::prelude::*;
 
     proptest! {
@@ -120,7 +119,7 @@ mod tests {
             points in prop::collection::vec((-1.0..1.0_f64, -0.2..0.2_f64, -0.01..0.01_f64), 1..40),
             angle in 0.0..6.0_f64, far in -1e3..1e3_f64,
         ) {
-            let q = DQuat::from_axis_angle(DVec3::new(0.6, 0.0, 0.8), angle);
+            let q = base::turn::about(DVec3::new(0.6, 0.0, 0.8), angle);
             let points: Vec<DVec3> =
                 points.iter().map(|&(x, y, z)| q * DVec3::new(x, y, z) + DVec3::splat(far)).collect();
             let b = Obb::fit(&points, 0.05).unwrap();

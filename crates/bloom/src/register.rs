@@ -140,10 +140,10 @@ fn align(
     let (a, b) = (along(from, from_base), along(to, to_base));
     // The least turn of one direction onto the other, then rolls about it: a petal cannot say its upper side by
     // its direction alone.
-    let least = DQuat::from_rotation_arc(a, b);
+    let least = base::turn::between(a, b);
     let mut best: Option<(f64, Rigid)> = None;
     for k in 0..8 {
-        let roll = DQuat::from_axis_angle(b, base::ops::TAU * f64::from(k) / 8.0);
+        let roll = base::turn::about(b, base::ops::TAU * f64::from(k) / 8.0);
         let mut rigid = Rigid { from: from_base, to: to_base, turn: roll * least, scale };
         for _ in 0..12 {
             rigid = improved(&rigid, &small_from, &small_to, &grid);
@@ -369,7 +369,7 @@ mod tests {
     #[test]
     fn a_turned_copy_is_met_exactly_by_the_rigid_part() {
         let first = petal(3, 600);
-        let q = DQuat::from_axis_angle(DVec3::new(0.0, 0.6, 0.8), 0.5);
+        let q = base::turn::about(DVec3::new(0.0, 0.6, 0.8), 0.5);
         let last: Vec<DVec3> = first.iter().map(|p| q * *p * 1.3 + DVec3::X).collect();
         let r =
             register(&first, DVec3::ZERO, &last, DVec3::X, &RegisterSpec::default(), &Run::plain()).unwrap();

@@ -6,7 +6,7 @@
 use std::collections::BinaryHeap;
 
 use geom::Grid3;
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 
 use crate::BloomError;
 use crate::thin::Voxels;
@@ -400,7 +400,7 @@ pub fn match_organs(a: &[Organ], b: &[Organ], up: DVec3) -> Vec<(usize, usize)> 
 
 /// The pairs if all leaves turned by `angle`, and what they cost; an organ without partner costs 1.
 fn match_turned(a: &[Organ], b: &[Organ], up: DVec3, angle: f64) -> (f64, Vec<(usize, usize)>) {
-    let turn = DQuat::from_axis_angle(up, angle);
+    let turn = base::turn::about(up, angle);
     let direction = |o: &Organ| {
         let d = o.tip - o.base;
         let level = d - up * d.dot(up);
@@ -509,7 +509,7 @@ mod tests {
         let (points, _) = seedling([0.03, 0.025, 0.02]);
         let one = organ_at(&points, DVec3::new(0.025, 0.031, 0.0), &SegmentSpec::default()).unwrap();
         assert!(one.points.iter().filter(|p| p.x > 0.01).count() * 2 > one.points.len(), "{:?}", one.tip);
-        let q = DQuat::from_rotation_y(0.6);
+        let q = base::turn::about(DVec3::Y, 0.6);
         let turned: Vec<DVec3> = points.iter().map(|p| q * *p * 1.2).collect();
         let (a, b) = (
             organs(&points, &SegmentSpec::default()).unwrap(),

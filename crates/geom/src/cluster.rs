@@ -87,8 +87,9 @@ mod tests {
     #[test]
     fn three_clumps_are_three_clusters() {
         let centres = [DVec2::ZERO, DVec2::new(3.0, 0.0), DVec2::new(0.0, 4.0)];
-        let points: Vec<DVec2> =
-            (0..30_u32).map(|i| centres[i as usize % 3] + DVec2::from_angle(f64::from(i)) * 0.3).collect();
+        let points: Vec<DVec2> = (0..30_u32)
+            .map(|i| centres[i as usize % 3] + base::turn::direction(f64::from(i)) * 0.3)
+            .collect();
         let labels = mean_shift(&points, 1.0);
         assert!(labels.iter().enumerate().all(|(i, &l)| l == i % 3), "{labels:?}");
     }

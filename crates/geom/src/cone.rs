@@ -248,7 +248,7 @@ mod tests {
 
         fn direction(&mut self) -> DVec3 {
             let z = self.stream.range(-1.0, 1.0);
-            let flat = DVec2::from_angle(self.stream.range(0.0, ops::TAU)) * (1.0 - z * z).sqrt();
+            let flat = base::turn::direction(self.stream.range(0.0, ops::TAU)) * (1.0 - z * z).sqrt();
             flat.extend(z)
         }
 

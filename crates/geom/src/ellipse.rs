@@ -172,7 +172,7 @@ pub(crate) mod tests {
                 centre: DVec2::new(7.0, -2.0) * major,
                 major,
                 minor,
-                axis: DVec2::from_angle(angle),
+                axis: base::turn::direction(angle),
             })
             .collect()
     }

@@ -137,7 +137,7 @@ mod tests {
         let axis = a.tangent.cross(b.tangent);
         let angle = ops::atan2(axis.length(), a.tangent.dot(b.tangent));
         let carried = if axis.length() > 1e-14 {
-            glam::DQuat::from_axis_angle(axis.normalize(), angle) * a.normal
+            base::turn::about(axis.normalize(), angle) * a.normal
         } else {
             a.normal
         };
@@ -174,7 +174,7 @@ mod tests {
     #[test]
     fn a_plane_curve_keeps_its_plane_normal() {
         let circle: Vec<_> =
-            (0..50).map(|i| DVec3::from((glam::DVec2::from_angle(f64::from(i) * 0.1), 0.0))).collect();
+            (0..50).map(|i| DVec3::from((base::turn::direction(f64::from(i) * 0.1), 0.0))).collect();
         for f in rotation_minimising_frames(&circle, Some(DVec3::Z)) {
             assert!((f.normal - DVec3::Z).length() < 1e-12, "{f:?}");
         }

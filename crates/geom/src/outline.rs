@@ -406,7 +406,7 @@ mod tests {
         (0..n)
             .map(|i| {
                 let a = from + turns * ops::TAU * f64::from(i) / f64::from(n - 1);
-                DVec2::from_angle(a) * (1.0 + wobble * ops::sin(7.3 * a))
+                base::turn::direction(a) * (1.0 + wobble * ops::sin(7.3 * a))
             })
             .collect()
     }
@@ -451,7 +451,7 @@ mod tests {
         let n = 1200;
         let line: Vec<DVec2> = (0..n)
             .map(|i| ops::TAU * f64::from(i) / f64::from(n))
-            .map(|a| DVec2::from_angle(a) + DVec2::from_angle(-11.0 * a) * 0.12)
+            .map(|a| base::turn::direction(a) + base::turn::direction(-11.0 * a) * 0.12)
             .collect();
         let outline = simple_outline(&line).unwrap();
         assert_eq!(self_crossings(&outline), 0);

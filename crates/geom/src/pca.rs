@@ -107,7 +107,7 @@ mod tests {
 
     #[test]
     fn axes_of_a_turned_rectangle() {
-        let axis = DVec2::from_angle(2.2);
+        let axis = base::turn::direction(2.2);
         let at = |u: f64, v: f64| DVec2::new(100.0, -7.0) + axis * u + axis.perp() * v;
         let p = pca2(&[at(3.0, 1.0), at(-3.0, 1.0), at(-3.0, -1.0), at(3.0, -1.0)]).unwrap();
         assert!(p.major.perp_dot(axis).abs() < 1e-12 && p.major.x > 0.0, "{p:?}");

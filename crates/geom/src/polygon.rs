@@ -254,7 +254,7 @@ mod tests {
         let arc = |r: f64, back: bool| {
             (0..=60).map(move |i| {
                 let i = if back { 60 - i } else { i };
-                DVec2::from_angle(f64::from(i) * ops::FRAC_PI_2 / 60.0) * r
+                base::turn::direction(f64::from(i) * ops::FRAC_PI_2 / 60.0) * r
             })
         };
         let ring: Vec<DVec2> = arc(5.0, false).chain(arc(4.0, true)).collect();

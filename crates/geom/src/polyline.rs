@@ -359,7 +359,7 @@ mod tests {
     fn closed_smoothing_shrinks_a_circle_evenly() {
         let n = 64;
         let circle: Vec<_> =
-            (0..n).map(|i| DVec2::from_angle(ops::TAU * f64::from(i) / f64::from(n))).collect();
+            (0..n).map(|i| base::turn::direction(ops::TAU * f64::from(i) / f64::from(n))).collect();
         let radii: Vec<f64> = smooth_gaussian_closed(&circle, 5, 0.1).iter().map(|p| p.length()).collect();
         assert!(radii.iter().all(|r| (r - radii[0]).abs() < 1e-12 && *r < 1.0 && *r > 0.9), "{radii:?}");
     }

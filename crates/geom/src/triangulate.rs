@@ -573,7 +573,7 @@ mod tests {
         let arc = |r: f64, back: bool| {
             (0..=100)
                 .map(move |i| 0.3 + 5.6 * f64::from(if back { 100 - i } else { i }) / 100.0)
-                .map(move |a| DVec2::from_angle(a) * r)
+                .map(move |a| base::turn::direction(a) * r)
         };
         let ring: Vec<DVec2> = arc(1.0, false).chain(arc(0.7, true)).collect();
         let along: Vec<DVec2> = arc(0.85, false).collect();
@@ -673,9 +673,9 @@ mod tests {
             let outline: Vec<DVec2> = radii
                 .iter()
                 .enumerate()
-                .map(|(k, r)| DVec2::from_angle(ops::TAU * k as f64 / n) * *r)
+                .map(|(k, r)| base::turn::direction(ops::TAU * k as f64 / n) * *r)
                 .collect();
-            let vein = [DVec2::from_angle(turn) * 2.0, DVec2::from_angle(turn + 2.5) * 2.0];
+            let vein = [base::turn::direction(turn) * 2.0, base::turn::direction(turn + 2.5) * 2.0];
             check(&triangulate_blade(&outline, &[&vein, &[DVec2::ZERO, vein[0]]], edge).unwrap());
         }
     }

@@ -383,7 +383,7 @@ mod tests {
         let ball = 4.0 / 3.0 * base::ops::PI;
         let (vertices, triangles) = sphere(24, 32);
         let circle: Vec<DVec2> =
-            (0..64).map(|i| DVec2::from_angle(f64::from(i) * base::ops::TAU / 64.0)).collect();
+            (0..64).map(|i| base::turn::direction(f64::from(i) * base::ops::TAU / 64.0)).collect();
         let half_circle: Vec<DVec2> = (0..=32)
             .map(|i| {
                 let (s, c) = base::ops::sin_cos(base::ops::PI * f64::from(i) / 32.0);

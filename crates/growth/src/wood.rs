@@ -392,7 +392,8 @@ mod tests {
             let axes = (0..p.axes.len()).map(plant::AxisId::new);
             let turns = axes.flat_map(|a| {
                 let points = p.axis_points(a);
-                let turn = |w: &[DVec3]| (w[1] - w[0]).angle_between(w[2] - w[1]);
+                let turn =
+                    |w: &[DVec3]| ops::acos_clamped((w[1] - w[0]).normalize().dot((w[2] - w[1]).normalize()));
                 points.windows(3).map(turn).collect::<Vec<_>>()
             });
             let turns: Vec<f64> = turns.collect();

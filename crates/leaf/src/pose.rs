@@ -1,6 +1,7 @@
 //! Curl and wilt: a leaf's marks moved as a living leaf moves.
 
 use base::ops::{self, lerp, smoothstep};
+use base::turn;
 use glam::{DQuat, DVec3};
 
 use crate::marks::{FullMarks, FullRow, MARKS_A_ROW};
@@ -77,15 +78,10 @@ fn sag(direction: DVec3, down: DVec3, share: f64, wilt: f64) -> DQuat {
     let axis = from.cross(down);
     let angle = ops::atan2(axis.length(), from.dot(down));
     match axis.try_normalize() {
-        Some(axis) => turn(axis, angle * part),
+        Some(axis) => turn::about(axis, angle * part),
         // Straight up or down: nothing says to which side it falls.
         None => DQuat::IDENTITY,
     }
-}
-
-fn turn(axis: DVec3, angle: f64) -> DQuat {
-    let (s, c) = ops::sin_cos(0.5 * angle);
-    DQuat::from_xyzw(axis.x * s, axis.y * s, axis.z * s, c)
 }
 
 /// One row moved to `place`: each half turned about the midrib's direction `axis`, then with the midrib.
@@ -103,7 +99,7 @@ fn pose_row(row: &FullRow, axis: DVec3, limp: DQuat, place: DVec3, [curl, wilt]:
             let rolled = curl * FULL_CURL * (k as f64 + 0.5) / MIDDLE as f64;
             let angle = outwards * (wilt * FULL_FOLD - rolled);
             let shrink = lerp(1.0, 1.0 - SHRINK, wilt);
-            at += limp * (turn(axis, angle) * (step * shrink));
+            at += limp * (turn::about(axis, angle) * (step * shrink));
             points[j] = at;
         }
     }

@@ -263,7 +263,7 @@ fn shift(draft: &mut Draft, axis: &AxisKey, to: &Destination, bench: &Bench<'_>)
     let before = old.map_or(DVec3::Y, |at| draft.branches[at.branch].tangent(at.node));
     let new = At { branch: host, node };
     let (target, after) = (draft.branches[host].points[node], draft.branches[host].tangent(node));
-    draft.carry(&what, base, target, DQuat::from_rotation_arc(before, after).normalize());
+    draft.carry(&what, base, target, base::turn::between(before, after).normalize());
     draft.branches[b].bearer = Some(new);
     let radius = draft.branches[b].radii.first().copied().unwrap_or(0.0);
     let mut pipes = Pipes::default();

@@ -258,8 +258,7 @@ impl Turn {
         if !self.degrees.is_finite() || self.degrees.abs() > 1e6 {
             return Err(Why::BadNumber { field: "turn.degrees" });
         }
-        let (s, c) = base::ops::sin_cos(0.5 * self.degrees * (PI / 180.0));
-        Ok(DQuat::from_xyzw(about.x * s, about.y * s, about.z * s, c).normalize())
+        Ok(base::turn::about(about, self.degrees * (PI / 180.0)).normalize())
     }
 
     /// The turn of a unit quaternion.

@@ -107,10 +107,7 @@ pub(crate) fn density(
 /// A copy of a leaf, a little below it and around its shoot by the golden angle.
 fn add_beside(draft: &mut Draft, row: usize, down: f64, k: u32, key: Seed) -> bool {
     let Some(at) = draft.organs[row].at else { return false };
-    let turn = |along: DVec3| {
-        let (s, c) = base::ops::sin_cos(0.5 * f64::from(k) * 137.507_764 * (PI / 180.0));
-        DQuat::from_xyzw(along.x * s, along.y * s, along.z * s, c).normalize()
-    };
+    let turn = |along: DVec3| base::turn::about(along, f64::from(k) * 137.507_764 * (PI / 180.0)).normalize();
     let mut leaf = draft.organs[row].clone();
     leaf.what.key = key.child(u64::from(k)).number();
     let branch = &draft.branches[at.branch];

@@ -246,5 +246,5 @@ fn placed(plant: &Plant, flower: &Flower, organs: &[&Organ], dye: [f32; 3]) -> O
     let axis = flower.axis.try_normalize().unwrap_or(DVec3::Y);
     // Off the end of the stem, which would show through the disc.
     let centre = flower.centre + axis * (0.3 * disc);
-    Some(Placed { spec, centre, turn: DQuat::from_rotation_arc(DVec3::Y, axis) })
+    Some(Placed { spec, centre, turn: base::turn::between(DVec3::Y, axis) })
 }

@@ -7,7 +7,7 @@
 //! drawn. |phi| stays below 65 degrees, so left branches stay left.
 
 use base::{Draw, Seed, ops};
-use glam::{DQuat, DVec2, DVec3};
+use glam::{DVec2, DVec3};
 use plant::AxisKind;
 
 use super::Plans;
@@ -251,8 +251,7 @@ fn turn_towards(piece: DVec3, target: DVec3, pull: f64) -> DVec3 {
     let Some(axis) = d.cross(target).try_normalize() else { return piece };
     let apart = ops::acos_clamped(d.dot(target));
     let angle = (pull * ops::sin(apart) * (ops::PI / 3.0)).min(apart);
-    let (s, c) = ops::sin_cos(0.5 * angle);
-    DQuat::from_xyzw(axis.x * s, axis.y * s, axis.z * s, c) * piece
+    base::turn::about(axis, angle) * piece
 }
 
 #[cfg(test)]
