@@ -11,7 +11,7 @@ use crate::depth::{
     Bearing, LocalBlade, Part, Plans, Scene, bend_by_light_and_weight, blade_key, branch_depths, coloured,
     leaf_shape, place_flower, place_fruit, place_leaf, place_thorn,
 };
-use crate::fill::{FillContext, fill};
+use crate::fill::{FillContext, KeptBodies, fill};
 use crate::front::Front;
 use crate::{BladeReading, PlantMap, Reading, RegionKind, SketchSpec};
 
@@ -57,6 +57,22 @@ pub fn build(
     reading: &Reading,
     spec: &SketchSpec,
     seed: Seed,
+    run: &Run<'_>,
+    report: &mut Report,
+) -> Result<Built, Cancelled> {
+    build_again(reading, spec, seed, &mut KeptBodies::default(), run, report)
+}
+
+/// As [`build`], again for a reading that changed a little: what `kept` holds of the last time is not computed anew. The
+/// same plant comes out.
+///
+/// # Errors
+/// As [`build`].
+pub fn build_again(
+    reading: &Reading,
+    spec: &SketchSpec,
+    seed: Seed,
+    kept: &mut KeptBodies,
     run: &Run<'_>,
     report: &mut Report,
 ) -> Result<Built, Cancelled> {
@@ -109,7 +125,7 @@ pub fn build(
         woody: reading.woody,
         coloured: scene.coloured,
     };
-    fill(&mut plant, reading, &ctx, run, report)?;
+    fill(&mut plant, reading, &ctx, kept, run, report)?;
     run.cancel.check()?;
 
     let started = run.clock.now_ms();

@@ -25,7 +25,7 @@ mod spec;
 mod structure;
 mod template;
 
-pub use build::{Built, build};
+pub use build::{Built, build, build_again};
 pub use classify::{
     Classified, ModelError, StrokeFeatures, StrokeFigures, StrokeModelTexts, StrokeRow, StrokeSource,
     classify, classify_unknown, cross_validate_strokes, features, read_stroke_table, train_strokes,
@@ -34,6 +34,7 @@ pub use classify::{
 pub use clean::{Ink, InkMap, InkStroke, clean};
 pub use drawing::{Drawing, InkSample, Stroke, StrokeMode};
 pub use fidelity::{Fidelity, StrokeFidelity, fidelity};
+pub use fill::KeptBodies;
 pub use map::PlantMap;
 pub use reading::{
     Attachment, AxisReading, BladeReading, DiscReading, FlowerReading, FruitReading, OrganWord, Reading,

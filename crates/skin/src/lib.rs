@@ -34,6 +34,7 @@ mod tube;
 mod wind;
 
 pub use blade::{BladeChart, blade_mesh};
+pub use organs::KeptShapes;
 pub use spec::{PetalColor, SkinSpec};
 pub use traced::Traced;
 pub use tube::{TubeSpec, tube};
@@ -84,19 +85,21 @@ use crate::spec::Budget;
 /// # Ok::<(), base::Cancelled>(())
 /// ```
 pub fn skin(plant: &Plant, spec: &SkinSpec, run: &Run<'_>) -> Result<Model, Cancelled> {
-    skin_traced(plant, spec, None, run)
+    skin_again(plant, spec, None, None, run)
 }
 
-/// As [`skin()`]; organs and axes that were traced over a photograph take their texture from it.
+/// As [`skin()`], again for a plant that changed a little: shapes that stayed are not triangulated anew. Organs and axes
+/// that were traced over a photograph take their texture from it.
 ///
 /// Guaranteed: the same surface; traced parts come last, have the photograph as their texture and coordinates within it.
 ///
 /// # Errors
 /// [`Cancelled`] when the caller's token says so.
-pub fn skin_traced(
+pub fn skin_again(
     plant: &Plant,
     spec: &SkinSpec,
     traced: Option<&Traced>,
+    kept: Option<&mut KeptShapes>,
     run: &Run<'_>,
 ) -> Result<Model, Cancelled> {
     run.cancel.check()?;
@@ -111,7 +114,7 @@ pub fn skin_traced(
     let (tubes, wind) = axes::tubes(plant, spec, &budget, traced, run)?;
     let slot_of = |t: &axes::Tube| if t.traced { slot(t.surface).traced() } else { slot(t.surface) };
     let mut meshes: Vec<_> = tubes.into_iter().map(|t| (slot_of(&t), t.mesh)).collect();
-    meshes.extend(organs::organs(plant, spec, &budget, traced, wind.as_ref(), run)?);
+    meshes.extend(organs::organs(plant, spec, &budget, traced, wind.as_ref(), kept, run)?);
     run.cancel.check()?;
     Ok(parts::model(&plant.name, meshes, spec.textures.then_some(run.executor), traced.map(|t| &t.texture)))
 }

@@ -1,5 +1,7 @@
 //! Organs -> meshes: each shape is triangulated once, its organs are moved and tinted copies.
 
+use std::sync::Arc;
+
 use base::{Cancelled, Draw, Run, Seed, map_indexed};
 use mesh::TriMesh;
 use plant::{Organ, OrganKind, Plant, Shape};
@@ -26,16 +28,24 @@ pub(crate) fn organs(
     budget: &Budget,
     traced: Option<&Traced>,
     wind: Option<&Wind<'_>>,
+    kept: Option<&mut KeptShapes>,
     run: &Run<'_>,
 ) -> Result<Vec<(Slot, TriMesh)>, Cancelled> {
     let scales = scales(plant);
     let ground = Ground::new(plant, spec, budget);
     let of_photo = |o: &Organ| traced.filter(|t| t.has(o.source));
+    let known = kept.as_deref();
     let shapes = map_indexed(run.executor, plant.shapes.len(), |i| {
         run.cancel.check()?;
-        Ok(scales[i].map_or_else(TriMesh::default, |scale| ground.shape(&plant.shapes[i], scale, budget)))
+        let Some(scale) = scales[i] else { return Ok(Arc::default()) };
+        let (shape, wish) = (&plant.shapes[i], ground.wish(&plant.shapes[i], scale, budget));
+        let known = known.and_then(|k| k.find(shape, wish, i));
+        Ok(known.unwrap_or_else(|| Arc::new(wish.mesh(shape))))
     });
-    let shapes: Vec<TriMesh> = shapes.into_iter().collect::<Result<_, Cancelled>>()?;
+    let shapes: Vec<Arc<TriMesh>> = shapes.into_iter().collect::<Result<_, Cancelled>>()?;
+    if let Some(kept) = kept {
+        kept.replace(plant, &shapes, |i| Some(ground.wish(&plant.shapes[i], scales[i]?, budget)));
+    }
     let flutters: Vec<Vec<f32>> = match wind {
         Some(_) => plant.shapes.iter().zip(&shapes).map(|(s, m)| flutter(s, m)).collect(),
         None => Vec::new(),
@@ -127,6 +137,70 @@ fn groups(order: &[(Slot, usize)], vertices: impl Fn(usize) -> usize) -> Vec<cor
     out
 }
 
+/// How finely a shape is made: all that its mesh depends on besides the shape. Numbers of triangles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Wish {
+    Nothing,
+    /// A leaf of a crown.
+    Lean(f64),
+    Sheet(f64),
+    Dome(f64),
+    /// With at least so many sides.
+    Revolution(f64, u32),
+    Strand {
+        fine: bool,
+    },
+}
+
+impl Wish {
+    fn mesh(self, shape: &Shape) -> TriMesh {
+        match (self, shape) {
+            (Self::Lean(n), Shape::Blade(blade)) => lean(blade, n).unwrap_or_else(|| blade_mesh(blade, n)),
+            (Self::Sheet(n), Shape::Blade(blade)) => blade_mesh(blade, n),
+            (Self::Dome(n), Shape::Dome { radius_m, height_m }) => dome(*radius_m, *height_m, n),
+            (Self::Revolution(n, sides), Shape::Revolution { profile }) => revolution(profile, n, sides),
+            (Self::Strand { fine }, Shape::Strand { path, radius_m, knob_m }) => {
+                let knob = if knob_m.is_finite() { *knob_m } else { 0.0 };
+                strand(path, radius_m, knob, fine)
+            }
+            _ => TriMesh::default(),
+        }
+    }
+}
+
+/// The meshes of a plant's leaves, petals and other shapes, for the next surface of the same plant: those of shapes that
+/// did not change are taken over. What comes out is the same with and without.
+#[derive(Clone, Debug, Default)]
+pub struct KeptShapes(Vec<(Shape, Wish, Arc<TriMesh>)>);
+
+impl KeptShapes {
+    /// Rows that are looked at before and after a shape's own: a stroke brings few shapes.
+    const AROUND: usize = 16;
+    /// Of more shapes none are kept: they would take the memory of another plant.
+    const MOST: usize = 4096;
+
+    fn find(&self, shape: &Shape, wish: Wish, row: usize) -> Option<Arc<TriMesh>> {
+        let rows = row.saturating_sub(Self::AROUND)..self.0.len().min(row + Self::AROUND + 1);
+        let same = |(old, as_wished, _): &&(Shape, Wish, _)| *as_wished == wish && old == shape;
+        // Its own row first: most often it is there.
+        let own = self.0.get(row).filter(same);
+        own.or_else(|| self.0.get(rows)?.iter().find(same)).map(|(.., mesh)| Arc::clone(mesh))
+    }
+
+    fn replace(&mut self, plant: &Plant, shapes: &[Arc<TriMesh>], wish: impl Fn(usize) -> Option<Wish>) {
+        self.0.clear();
+        if shapes.len() > Self::MOST {
+            return;
+        }
+        let rows = plant.shapes.iter().zip(shapes).enumerate();
+        self.0.extend(
+            rows.map(|(i, (shape, mesh))| {
+                (shape.clone(), wish(i).unwrap_or(Wish::Nothing), Arc::clone(mesh))
+            }),
+        );
+    }
+}
+
 /// What the plant as a whole decides for its organs.
 struct Ground {
     petals: PetalColor,
@@ -177,7 +251,7 @@ impl Ground {
         (high - low) * scale > self.body_from
     }
 
-    fn shape(&self, shape: &Shape, scale: f64, budget: &Budget) -> TriMesh {
+    fn wish(&self, shape: &Shape, scale: f64, budget: &Budget) -> Wish {
         let triangles = |area: f64| budget.blade_triangles(area * scale * scale);
         match shape {
             Shape::Blade(blade) => {
@@ -186,29 +260,25 @@ impl Ground {
                 let around = crate::blade::closed_length(&blade.outline);
                 let least = (4.0 * around / area.max(f64::MIN_POSITIVE).sqrt()).clamp(14.0, 40.0);
                 if budget.crown() {
-                    let wish = LEAN * least * budget.detail;
-                    return lean(blade, wish).unwrap_or_else(|| blade_mesh(blade, wish));
+                    return Wish::Lean(LEAN * least * budget.detail);
                 }
-                blade_mesh(blade, triangles(area).max(least * budget.detail.min(1.0)))
+                Wish::Sheet(triangles(area).max(least * budget.detail.min(1.0)))
             }
             // A dome is smooth: two fifths of what a blade of its size has.
             Shape::Dome { radius_m, height_m } if radius_m.is_finite() && height_m.is_finite() => {
-                dome(*radius_m, *height_m, 0.4 * triangles(base::ops::PI * radius_m * radius_m))
+                Wish::Dome(0.4 * triangles(base::ops::PI * radius_m * radius_m))
             }
             Shape::Revolution { profile } => {
                 let area = |w: &[glam::DVec2]| (w[0].x + w[1].x) * w[0].distance(w[1]);
                 let area: f64 = profile.windows(2).map(area).filter(|a| a.is_finite()).sum();
                 if self.is_body(shape, scale) {
-                    revolution(profile, 4.0 * triangles(area), 16)
+                    Wish::Revolution(4.0 * triangles(area), 16)
                 } else {
-                    revolution(profile, triangles(area), 0)
+                    Wish::Revolution(triangles(area), 0)
                 }
             }
-            Shape::Strand { path, radius_m, knob_m } => {
-                let knob = if knob_m.is_finite() { *knob_m } else { 0.0 };
-                strand(path, radius_m, knob, self.fine_strands && budget.detail >= 0.5)
-            }
-            _ => TriMesh::default(),
+            Shape::Strand { .. } => Wish::Strand { fine: self.fine_strands && budget.detail >= 0.5 },
+            _ => Wish::Nothing,
         }
     }
 
@@ -273,4 +343,37 @@ fn place(out: &mut TriMesh, local: &TriMesh, organ: &Organ, color: [f32; 3]) {
     out.uvs.extend_from_slice(&local.uvs);
     out.colors.resize(out.positions.len(), color);
     out.triangles.extend(local.triangles.iter().map(|t| t.map(|i| i + first)));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec2;
+    use plant::{Blade, Lift, Relief};
+
+    fn leaf(length: f64) -> Shape {
+        let midrib = vec![DVec2::ZERO, DVec2::new(0.0, length)];
+        let outline =
+            [(0.0, 0.0), (0.3, 0.5), (0.0, 1.0), (-0.3, 0.5)].map(|(x, y)| DVec2::new(x, y) * length);
+        let (veins, lift, relief) = (Vec::new(), Lift::Flat, Relief::default());
+        Shape::Blade(Blade { outline: outline.to_vec(), midrib, veins, lift, relief })
+    }
+
+    #[test]
+    fn shapes_that_stay_are_taken_over_and_others_are_not() {
+        let mesh = |shape: &Shape| Arc::new(Wish::Sheet(60.0).mesh(shape));
+        let plant = Plant { shapes: vec![leaf(1.0), leaf(2.0), leaf(3.0)], ..Plant::default() };
+        let meshes: Vec<_> = plant.shapes.iter().map(mesh).collect();
+        let mut kept = KeptShapes::default();
+        kept.replace(&plant, &meshes, |_| Some(Wish::Sheet(60.0)));
+        let found = |length, wish, row| kept.find(&leaf(length), wish, row);
+        assert!(found(3.0, Wish::Sheet(60.0), 2).is_some_and(|m| Arc::ptr_eq(&m, &meshes[2])));
+        // A shape before it came or went.
+        assert!(found(3.0, Wish::Sheet(60.0), 1).is_some_and(|m| Arc::ptr_eq(&m, &meshes[2])));
+        assert!(found(1.0, Wish::Sheet(60.0), 9).is_some_and(|m| Arc::ptr_eq(&m, &meshes[0])));
+        assert!(found(1.0, Wish::Sheet(61.0), 0).is_none() && found(1.5, Wish::Sheet(60.0), 0).is_none());
+        let many = Plant { shapes: vec![leaf(1.0); KeptShapes::MOST + 1], ..Plant::default() };
+        kept.replace(&many, &vec![Arc::clone(&meshes[0]); many.shapes.len()], |_| None);
+        assert!(kept.0.is_empty());
+    }
 }

@@ -10,8 +10,8 @@ use document::{Photo, PlantEdit};
 use glam::DVec2;
 use mesh::{Model, Texture};
 use plant::Plant;
-use sketch::{Built, Classified, Drawing, Ink, Reading, SketchSpec};
-use skin::{SkinSpec, Traced};
+use sketch::{Built, Classified, Drawing, Ink, KeptBodies, Reading, SketchSpec};
+use skin::{KeptShapes, SkinSpec, Traced};
 
 use crate::make::{ClassOverrides, MakeError, SketchOptions};
 use crate::report::{Counts, Fidelity, ItemReport, StrokeReport, TimingsMs};
@@ -49,11 +49,15 @@ pub struct FrontView {
 pub struct Evaluator {
     strokes: Option<Kept<Drawing, (Ink, Vec<Classified>)>>,
     reading: Option<Kept<ClassOverrides, Reading>>,
+    /// Bodies of the contours of the last plant.
+    bodies: KeptBodies,
     plant: Option<Kept<PlantFrom, (Built, Fidelity)>>,
     shaper: Shaper,
     /// The plant with its edits by hand; none where there are none.
     shaped: Option<Shaped>,
     model: Option<Kept<ModelFrom, Model>>,
+    /// Leaves and petals of the last model.
+    shapes: KeptShapes,
     /// The photograph that was decoded last.
     picture: Option<Decoded>,
     done: Vec<&'static str>,
@@ -203,7 +207,8 @@ impl Evaluator {
             return Ok(());
         }
         let mut report = Report::default();
-        let mut built = sketch::build(&reading.value, spec, seed, run, &mut report)?; // books `depth` itself
+        let kept = &mut self.bodies;
+        let mut built = sketch::build_again(&reading.value, spec, seed, kept, run, &mut report)?; // books `depth` itself
         let wanted = !self.preview;
         let fidelity =
             wanted.then(|| sketch::fidelity(&built, &reading.value, &strokes.value.0, run)).flatten();
@@ -266,14 +271,17 @@ impl Evaluator {
         }
         let mut report = Report::default();
         let traced = photo.as_ref().and_then(|p| self.traced(p, &mut report));
+        let mut shapes = core::mem::take(&mut self.shapes);
         let (Some(plant), Some(made)) = (self.plant(), &self.plant) else { return Ok(()) };
         let leaf = &made.from.3;
-        let mut model =
-            report.stage("mesh", run.clock, |_| skin::skin_traced(plant, skin, traced.as_ref(), run))?;
+        let mut model = report.stage("mesh", run.clock, |_| {
+            skin::skin_again(plant, skin, traced.as_ref(), Some(&mut shapes), run)
+        })?;
         model.name.clone_from(&plant.name);
         if let Some(leaf) = leaf {
             leaf.dress(&mut model);
         }
+        self.shapes = shapes;
         self.model = Some(Self::keep(&mut self.done, stages, (skin.clone(), photo), model, report));
         Ok(())
     }

@@ -72,9 +72,11 @@ pub(crate) fn fill(
     plant: &mut Plant,
     reading: &Reading,
     ctx: &FillContext<'_>,
+    kept: &mut KeptBodies,
     run: &Run<'_>,
     report: &mut Report,
 ) -> Result<(), Cancelled> {
+    let mut bodies = KeptBodies::default();
     let mut forms: Vec<(LeafForm, ShapeId)> = Vec::new();
     let drawn = foliage::measured(plant, ctx.templates);
     let natural = foliage::median_length(&drawn);
@@ -94,7 +96,7 @@ pub(crate) fn fill(
             break;
         }
         let outline: Vec<DVec2> = region.outline.iter().map(|&p| ctx.map.plant_from_ink(p)).collect();
-        let Some((_, mut volume)) = body(outline, region.kind) else {
+        let Some(mut volume) = kept.take(outline, region.kind, &mut bodies) else {
             report.warn("contour-empty", format!("contour {} encloses nothing and was left empty", row + 1));
             continue;
         };
@@ -140,7 +142,31 @@ pub(crate) fn fill(
             report.warn("contour-empty", format!("nothing could grow in contour {}", row + 1));
         }
     }
+    *kept = bodies;
     Ok(())
+}
+
+/// The bodies of a drawing's contours, for the next time that the same drawing is built: those of contours that did not
+/// change are taken over. What comes out is the same with and without.
+#[derive(Clone, Debug, Default)]
+pub struct KeptBodies(Vec<(Vec<DVec2>, RegionKind, Option<Volume>)>);
+
+impl KeptBodies {
+    /// Of more contours none are kept: each is some hundred kilobytes.
+    const MOST: usize = 64;
+
+    /// The body of a contour, which goes into `next`; `None` where it encloses nothing.
+    fn take(&mut self, outline: Vec<DVec2>, kind: RegionKind, next: &mut Self) -> Option<Volume> {
+        let known = self.0.iter().position(|(o, k, _)| *k == kind && *o == outline);
+        let volume = match known {
+            Some(row) => self.0.swap_remove(row).2,
+            None => body(outline.clone(), kind).map(|(_, volume)| volume),
+        };
+        if next.0.len() < Self::MOST {
+            next.0.push((outline, kind, volume.clone()));
+        }
+        volume
+    }
 }
 
 /// The part of a contour that is filled, and its body; `None` where it encloses nothing.

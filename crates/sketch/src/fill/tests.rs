@@ -102,7 +102,8 @@ pub(super) fn grown(outline: Vec<DVec2>, kind: RegionKind, lines: &[Vec<DVec2>],
         coloured: false,
     };
     let mut report = Report::default();
-    fill(&mut plant, &reading, &ctx, &Run::plain(), &mut report).expect("nobody cancels");
+    fill(&mut plant, &reading, &ctx, &mut KeptBodies::default(), &Run::plain(), &mut report)
+        .expect("nobody cancels");
     // Of a crown drawn in one line with its trunk: without what is below the neck, which is the way to it.
     let metres = body(metres.clone(), kind).map_or(metres, |(outline, _)| outline);
     Made { plant, outlines: vec![metres], drawn, report }

@@ -65,17 +65,23 @@ impl Twigs<'_> {
         let margin = (0.1 * v.inradius).max(v.cell());
         let mut empty = scatter_rim(v, 3 * wanted, (margin, 0.4), &mut stream);
         empty.extend(scatter_front(v, 3 * wanted, (margin, 0.7), &mut stream));
+        // Squared distance of each place to the nearest site; gaps in depth are not seen in the drawing and count half.
+        let mut gaps = vec![f64::INFINITY; empty.len()];
+        let mut seen = 0;
         while plant.axes.len() - before < wanted {
-            // Always into the widest gap; gaps in depth are not seen in the drawing and count half.
-            let gap = |t: &DVec3| {
-                let near = sites.iter().map(|s| {
+            for s in &sites[seen..] {
+                for (gap, t) in gaps.iter_mut().zip(&empty) {
                     let d = s.at - *t;
-                    d.truncate().length_squared() + 0.25 * d.z * d.z
-                });
-                near.fold(f64::INFINITY, f64::min)
-            };
-            let widest = (0..empty.len()).max_by(|&a, &b| gap(&empty[a]).total_cmp(&gap(&empty[b])));
-            let Some(target) = widest.map(|k| empty.swap_remove(k)) else { break };
+                    let d2 = d.truncate().length_squared() + 0.25 * d.z * d.z;
+                    *gap = if d2 < *gap { d2 } else { *gap };
+                }
+            }
+            seen = sites.len();
+            // Always into the widest gap.
+            let widest = (0..empty.len()).max_by(|&a, &b| gaps[a].total_cmp(&gaps[b]));
+            let Some(k) = widest else { break };
+            let target = empty.swap_remove(k);
+            gaps.swap_remove(k);
             let Some(i) = attach(v, sites, target, 0) else { continue };
             let from = sites[i];
             if let Some(axis) = self.shoot(plant, &mut sites[i], target, &mut stream, &mut points) {
