@@ -37,15 +37,16 @@ pub(crate) fn organs(
     let known = kept.as_deref();
     let shapes = map_indexed(run.executor, plant.shapes.len(), |i| {
         run.cancel.check()?;
-        let Some(scale) = scales[i] else { return Ok(Arc::default()) };
-        let (shape, wish) = (&plant.shapes[i], ground.wish(&plant.shapes[i], scale, budget));
+        let shape = &plant.shapes[i];
+        let wish = scales[i].map_or(Wish::Nothing, |scale| ground.wish(shape, scale, budget));
         let known = known.and_then(|k| k.find(shape, wish, i));
-        Ok(known.unwrap_or_else(|| Arc::new(wish.mesh(shape))))
+        Ok(known.unwrap_or_else(|| (wish, Arc::new(wish.mesh(shape)))))
     });
-    let shapes: Vec<Arc<TriMesh>> = shapes.into_iter().collect::<Result<_, Cancelled>>()?;
+    let made: Vec<Made> = shapes.into_iter().collect::<Result<_, Cancelled>>()?;
     if let Some(kept) = kept {
-        kept.replace(plant, &shapes, |i| Some(ground.wish(&plant.shapes[i], scales[i]?, budget)));
+        kept.replace(&plant.shapes, &made);
     }
+    let shapes: Vec<Arc<TriMesh>> = made.into_iter().map(|(_, mesh)| mesh).collect();
     let flutters: Vec<Vec<f32>> = match wind {
         Some(_) => plant.shapes.iter().zip(&shapes).map(|(s, m)| flutter(s, m)).collect(),
         None => Vec::new(),
@@ -153,6 +154,18 @@ enum Wish {
 }
 
 impl Wish {
+    /// Whether it differs by less than a tenth.
+    fn nearly(self, other: Self) -> bool {
+        let near = |a: f64, b: f64| (a - b).abs() < 0.1 * a.max(b);
+        match (self, other) {
+            (Self::Lean(a), Self::Lean(b))
+            | (Self::Sheet(a), Self::Sheet(b))
+            | (Self::Dome(a), Self::Dome(b)) => near(a, b),
+            (Self::Revolution(a, m), Self::Revolution(b, n)) => m == n && near(a, b),
+            _ => self == other,
+        }
+    }
+
     fn mesh(self, shape: &Shape) -> TriMesh {
         match (self, shape) {
             (Self::Lean(n), Shape::Blade(blade)) => lean(blade, n).unwrap_or_else(|| blade_mesh(blade, n)),
@@ -169,9 +182,18 @@ impl Wish {
 }
 
 /// The meshes of a plant's leaves, petals and other shapes, for the next surface of the same plant: those of shapes that
-/// did not change are taken over. What comes out is the same with and without.
+/// did not change are taken over.
+///
+/// Guaranteed, but for [`loose`](Self::loose): what comes out is the same with and without.
 #[derive(Clone, Debug, Default)]
-pub struct KeptShapes(Vec<(Shape, Wish, Arc<TriMesh>)>);
+pub struct KeptShapes {
+    shapes: Vec<Shape>,
+    made: Vec<Made>,
+    loose: bool,
+}
+
+/// A shape's mesh and the wish that it was made by.
+type Made = (Wish, Arc<TriMesh>);
 
 impl KeptShapes {
     /// Rows that are looked at before and after a shape's own: a stroke brings few shapes.
@@ -179,25 +201,30 @@ impl KeptShapes {
     /// Of more shapes none are kept: they would take the memory of another plant.
     const MOST: usize = 4096;
 
-    fn find(&self, shape: &Shape, wish: Wish, row: usize) -> Option<Arc<TriMesh>> {
-        let rows = row.saturating_sub(Self::AROUND)..self.0.len().min(row + Self::AROUND + 1);
-        let same = |(old, as_wished, _): &&(Shape, Wish, _)| *as_wished == wish && old == shape;
-        // Its own row first: most often it is there.
-        let own = self.0.get(row).filter(same);
-        own.or_else(|| self.0.get(rows)?.iter().find(same)).map(|(.., mesh)| Arc::clone(mesh))
+    /// For looks at a plant that is still being drawn: also takes over meshes with up to a tenth more or less
+    /// triangles than a fresh one would have. A growing stroke changes the plant's size a little at every look.
+    #[must_use]
+    pub fn loose() -> Self {
+        Self { loose: true, ..Self::default() }
     }
 
-    fn replace(&mut self, plant: &Plant, shapes: &[Arc<TriMesh>], wish: impl Fn(usize) -> Option<Wish>) {
-        self.0.clear();
-        if shapes.len() > Self::MOST {
-            return;
-        }
-        let rows = plant.shapes.iter().zip(shapes).enumerate();
-        self.0.extend(
-            rows.map(|(i, (shape, mesh))| {
-                (shape.clone(), wish(i).unwrap_or(Wish::Nothing), Arc::clone(mesh))
-            }),
-        );
+    fn find(&self, shape: &Shape, wish: Wish, row: usize) -> Option<Made> {
+        let rows = row.saturating_sub(Self::AROUND)..self.made.len().min(row + Self::AROUND + 1);
+        let same = |&row: &usize| {
+            let (Some(old), Some((was, _))) = (self.shapes.get(row), self.made.get(row)) else {
+                return false;
+            };
+            (wish == *was || (self.loose && wish.nearly(*was))) && old == shape
+        };
+        // Its own row first: most often it is there.
+        let found = core::iter::once(row).chain(rows).find(same)?;
+        self.made.get(found).cloned()
+    }
+
+    fn replace(&mut self, shapes: &[Shape], made: &[Made]) {
+        let few = shapes.len() <= Self::MOST;
+        self.shapes = if few { shapes.to_vec() } else { Vec::new() };
+        self.made = if few { made.to_vec() } else { Vec::new() };
     }
 }
 
@@ -361,19 +388,23 @@ mod tests {
 
     #[test]
     fn shapes_that_stay_are_taken_over_and_others_are_not() {
-        let mesh = |shape: &Shape| Arc::new(Wish::Sheet(60.0).mesh(shape));
-        let plant = Plant { shapes: vec![leaf(1.0), leaf(2.0), leaf(3.0)], ..Plant::default() };
-        let meshes: Vec<_> = plant.shapes.iter().map(mesh).collect();
-        let mut kept = KeptShapes::default();
-        kept.replace(&plant, &meshes, |_| Some(Wish::Sheet(60.0)));
-        let found = |length, wish, row| kept.find(&leaf(length), wish, row);
-        assert!(found(3.0, Wish::Sheet(60.0), 2).is_some_and(|m| Arc::ptr_eq(&m, &meshes[2])));
-        // A shape before it came or went.
-        assert!(found(3.0, Wish::Sheet(60.0), 1).is_some_and(|m| Arc::ptr_eq(&m, &meshes[2])));
-        assert!(found(1.0, Wish::Sheet(60.0), 9).is_some_and(|m| Arc::ptr_eq(&m, &meshes[0])));
-        assert!(found(1.0, Wish::Sheet(61.0), 0).is_none() && found(1.5, Wish::Sheet(60.0), 0).is_none());
-        let many = Plant { shapes: vec![leaf(1.0); KeptShapes::MOST + 1], ..Plant::default() };
-        kept.replace(&many, &vec![Arc::clone(&meshes[0]); many.shapes.len()], |_| None);
-        assert!(kept.0.is_empty());
+        let wish = Wish::Sheet(60.0);
+        let shapes = [leaf(1.0), leaf(2.0), leaf(3.0)];
+        let made: Vec<Made> = shapes.iter().map(|s| (wish, Arc::new(wish.mesh(s)))).collect();
+        for mut kept in [KeptShapes::default(), KeptShapes::loose()] {
+            kept.replace(&shapes, &made);
+            let found = |length, wish, row| kept.find(&leaf(length), wish, row);
+            let is = |found: Option<Made>, row: usize| found.is_some_and(|m| Arc::ptr_eq(&m.1, &made[row].1));
+            assert!(is(found(3.0, wish, 2), 2));
+            // A shape before it came or went.
+            assert!(is(found(3.0, wish, 1), 2) && is(found(1.0, wish, 9), 0));
+            assert!(found(1.5, wish, 0).is_none() && found(1.0, Wish::Sheet(70.0), 0).is_none());
+            // As it was made, so that small steps do not add up.
+            let near = found(1.0, Wish::Sheet(61.0), 0);
+            assert_eq!(near.map(|m| m.0), kept.loose.then_some(wish));
+            let many = vec![leaf(1.0); KeptShapes::MOST + 1];
+            kept.replace(&many, &vec![made[0].clone(); many.len()]);
+            assert!(kept.find(&leaf(1.0), wish, 0).is_none());
+        }
     }
 }

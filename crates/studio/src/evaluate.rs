@@ -94,7 +94,7 @@ impl Evaluator {
     /// An evaluator for a stroke that is still being drawn: faster, and no more than a look. Strokes keep the class that
     /// they had, and the report has neither fidelity nor digest. The guarantee above does not hold for it.
     pub fn previewing() -> Self {
-        Self { preview: true, ..Self::default() }
+        Self { preview: true, shapes: KeptShapes::loose(), ..Self::default() }
     }
 
     /// Brings everything up to date and reports.
@@ -272,16 +272,18 @@ impl Evaluator {
         let mut report = Report::default();
         let traced = photo.as_ref().and_then(|p| self.traced(p, &mut report));
         let mut shapes = core::mem::take(&mut self.shapes);
-        let (Some(plant), Some(made)) = (self.plant(), &self.plant) else { return Ok(()) };
-        let leaf = &made.from.3;
-        let mut model = report.stage("mesh", run.clock, |_| {
-            skin::skin_again(plant, skin, traced.as_ref(), Some(&mut shapes), run)
-        })?;
-        model.name.clone_from(&plant.name);
-        if let Some(leaf) = leaf {
+        let meshed = self.plant().map(|plant| {
+            let model = report.stage("mesh", run.clock, |_| {
+                skin::skin_again(plant, skin, traced.as_ref(), Some(&mut shapes), run)
+            });
+            model.map(|model| Model { name: plant.name.clone(), ..model })
+        });
+        self.shapes = shapes;
+        let (Some(model), Some(made)) = (meshed, &self.plant) else { return Ok(()) };
+        let mut model = model?;
+        if let Some(leaf) = &made.from.3 {
             leaf.dress(&mut model);
         }
-        self.shapes = shapes;
         self.model = Some(Self::keep(&mut self.done, stages, (skin.clone(), photo), model, report));
         Ok(())
     }
