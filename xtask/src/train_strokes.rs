@@ -60,6 +60,8 @@ pub(crate) fn run(args: &[String]) -> Result<(), String> {
     let models = train_strokes(&rows).map_err(|e| e.to_string())?;
     write(&data.join("strokes.scale"), &models.scale)?;
     write(&data.join("strokes.model"), &models.classes)?;
+    let packed = models.packed_classes().map_err(|e| e.to_string())?;
+    fs::write(data.join("strokes.packed"), packed).map_err(|e| format!("strokes.packed: {e}"))?;
     update_docs(&root.join("docs/strokes.md"), &block)
 }
 

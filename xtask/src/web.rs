@@ -99,16 +99,32 @@ pub(crate) fn test(tools: &Tools, tested: bool) -> Outcome {
     finish(c)
 }
 
-/// Packages of the downloaded core that read, write and pass on, rather than compute: half of it would be their code,
-/// which is compiled for size there.
+/// Packages of the downloaded core that read, write and pass on, or compute little, rather than grow and draw: half
+/// of it would be their code, which is compiled for size there.
 const SMALL: &[&str] = &[
     "burgeon",
+    "burgeon-document",
+    "burgeon-formats",
+    "burgeon-leaf",
+    "burgeon-shape",
     "burgeon-wasm",
+    "fdeflate",
+    "flate2",
+    "hashbrown",
     "image",
+    "indexmap",
+    "miniz_oxide",
     "moxcms",
+    "png",
     "pxfm",
+    "rawzip",
+    "robust",
     "roxmltree",
     "schemars",
+    "serde",
+    "serde_core",
+    "serde_json",
+    "sha2",
     "toml",
     "toml_parser",
     "zune-jpeg",
@@ -125,6 +141,8 @@ pub(crate) fn build_wasm(tools: &Tools, release: bool) -> Outcome<PathBuf> {
     say(&format!("$ cargo {}", args.join(" ")));
     if release {
         args.extend(small.iter().map(String::as_str));
+        // In one unit, a package has each generic function once.
+        args.push("--config=profile.release.codegen-units=1");
     }
     let mut c = tools.cargo.command(&args);
     if release {

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use base::Seed;
 use glam::DVec3;
+use serde::de::Error as _;
 use serde::{Deserialize, Serialize};
 use shape::HandEdit;
 
@@ -203,7 +204,7 @@ pub fn read_project(bytes: &[u8]) -> Result<Document, ProjectError> {
     let missing = |name: &str| ProjectError::Missing(name.into());
     let manifest = entries.remove(MANIFEST).ok_or_else(|| missing(MANIFEST))?;
     let manifest: Manifest =
-        serde_json::from_slice(&manifest).map_err(|source| ProjectError::Json { entry: MANIFEST, source })?;
+        from_json(&manifest).map_err(|source| ProjectError::Json { entry: MANIFEST, source })?;
     let form = manifest.burgeon.as_str();
     if form != PROJECT_SCHEMA && !EARLIER.contains(&form) {
         return Err(ProjectError::Version { found: manifest.burgeon.chars().take(40).collect() });
@@ -214,10 +215,10 @@ pub fn read_project(bytes: &[u8]) -> Result<Document, ProjectError> {
     let second = |v1: DocumentV1| DocumentV2::from(v1);
     let third = |v2: DocumentV2| DocumentV3::from(v2);
     let file: DocumentV4 = match form {
-        "project/1" => third(second(serde_json::from_slice(&document).map_err(json)?)).into(),
-        "project/2" => third(serde_json::from_slice(&document).map_err(json)?).into(),
-        "project/3" => serde_json::from_slice::<DocumentV3>(&document).map_err(json)?.into(),
-        _ => serde_json::from_slice(&document).map_err(json)?,
+        "project/1" => third(second(from_json(&document).map_err(json)?)).into(),
+        "project/2" => third(from_json(&document).map_err(json)?).into(),
+        "project/3" => from_json::<DocumentV3>(&document).map_err(json)?.into(),
+        _ => from_json(&document).map_err(json)?,
     };
     drop(document);
     let earlier = matches!(form, "project/1" | "project/2");
@@ -226,6 +227,11 @@ pub fn read_project(bytes: &[u8]) -> Result<Document, ProjectError> {
         let png = unpack(bytes, &[&name], MAX_ENTRY_BYTES)?.remove(&name);
         Ok(Photo::new(png.ok_or(ProjectError::Missing(name))?.into())?)
     })
+}
+
+/// As text, because commands are read from text: reading from bytes would be all the same code once more.
+fn from_json<'a, T: Deserialize<'a>>(bytes: &'a [u8]) -> Result<T, serde_json::Error> {
+    serde_json::from_str(core::str::from_utf8(bytes).map_err(serde_json::Error::custom)?)
 }
 
 fn checked(

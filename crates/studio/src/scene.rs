@@ -24,7 +24,7 @@ use crate::make::{MakeError, SketchOptions};
 use crate::opening::{OpeningError, OpeningPlant};
 use crate::report::{Counts, ItemReport, TimingsMs};
 use crate::template::LeafTemplate;
-use crate::trees::{TreeError, TreeEvaluator, TreeOptions, TreeSpec};
+use crate::trees::{TreeError, TreeEvaluator, TreeOptions, TreeSpec, spec_from_json};
 
 /// Why a plant of a scene could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -408,7 +408,7 @@ fn flower_spec(flower: &FlowerMaker) -> Option<bloom::FlowerSpec> {
 /// # Errors
 /// [`SceneError::Spec`] for JSON that is no spec.
 pub fn tree_spec(tree: &TreeSettings) -> Result<TreeSpec, SceneError> {
-    let mut spec: TreeSpec = serde::Deserialize::deserialize(&*tree.spec).map_err(SceneError::Spec)?;
+    let mut spec = spec_from_json(&tree.spec).map_err(SceneError::Spec)?;
     spec.obstacles = tree.obstacles.iter().map(|o| (*o.shape).clone()).collect();
     Ok(spec)
 }

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | a stroke on its own | `features` |
 //! | a stroke among the others | `context`, `region` |
-//! | the support vector machine | `svm`, `model` |
+//! | the support vector machine | `svm`, `packed`, `model` |
 //! | the table it is trained from, and how good it is | `table`, `training` |
 
 use std::sync::OnceLock;
@@ -12,6 +12,7 @@ use std::sync::OnceLock;
 mod context;
 mod features;
 mod model;
+mod packed;
 mod region;
 mod svm;
 mod table;
@@ -37,11 +38,8 @@ fn trained() -> Option<&'static StrokeModels> {
     static MODELS: OnceLock<Option<StrokeModels>> = OnceLock::new();
     MODELS
         .get_or_init(|| {
-            StrokeModels::parse(&StrokeModelTexts {
-                scale: include_str!("../../data/strokes.scale").to_owned(),
-                classes: include_str!("../../data/strokes.model").to_owned(),
-            })
-            .ok()
+            let scale = include_str!("../../data/strokes.scale");
+            StrokeModels::unpack(scale, include_bytes!("../../data/strokes.packed")).ok()
         })
         .as_ref()
 }

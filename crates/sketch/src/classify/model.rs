@@ -1,6 +1,7 @@
 //! The trained model and what they say of one stroke.
 
 use super::features::StrokeFeatures;
+use super::packed::unpack;
 use super::svm::{ModelError, Scale, Svm};
 use super::training::StrokeModelTexts;
 use crate::StrokeClass;
@@ -30,6 +31,17 @@ impl StrokeModels {
         Ok(Self {
             scale: Scale::parse(&texts.scale, &StrokeFeatures::NAMES)?,
             classes: Svm::parse(&texts.classes, StrokeFeatures::NAMES.len())?,
+        })
+    }
+
+    /// Reads the models as programs carry them.
+    ///
+    /// # Errors
+    /// As [`parse`](Self::parse).
+    pub(super) fn unpack(scale: &str, classes: &[u8]) -> Result<Self, ModelError> {
+        Ok(Self {
+            scale: Scale::parse(scale, &StrokeFeatures::NAMES)?,
+            classes: unpack(classes, StrokeFeatures::NAMES.len())?,
         })
     }
 

@@ -64,18 +64,18 @@ impl Learner for RbfLearner {
 /// A trained machine.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Svm {
-    gamma: f64,
+    pub(super) gamma: f64,
     /// The classes' numbers, in the model's order.
     pub(super) labels: Vec<i32>,
-    rho: Vec<f64>,
+    pub(super) rho: Vec<f64>,
     /// First support vector of each class, and one past the last.
-    starts: Vec<usize>,
+    pub(super) starts: Vec<usize>,
     /// `coefficients[v * (classes - 1) + k]`.
-    coefficients: Vec<f64>,
+    pub(super) coefficients: Vec<f64>,
     /// `vectors[v * stride + k]`; single precision, for half the time: a distance is then right to 1e-5.
-    vectors: Vec<f32>,
+    pub(super) vectors: Vec<f32>,
     /// Columns, rounded up to whole [`LANES`] with zeros.
-    stride: usize,
+    pub(super) stride: usize,
     /// Squared lengths of the vectors.
     squares: Vec<f32>,
 }
@@ -84,6 +84,45 @@ pub(super) struct Svm {
 const LANES: usize = 8;
 
 impl Svm {
+    /// Of numbers as they are packed: coefficients and vectors column by column, `starts` with the end of the last.
+    pub(super) fn new(
+        gamma: f64,
+        labels: Vec<i32>,
+        rho: Vec<f64>,
+        starts: Vec<usize>,
+        coefficients: &[f64],
+        values: &[f32],
+    ) -> Self {
+        let count = starts.last().copied().unwrap_or(0).max(1);
+        let (others, stride) = (labels.len() - 1, (values.len() / count).next_multiple_of(LANES));
+        let mut svm = Self {
+            gamma,
+            labels,
+            rho,
+            starts,
+            coefficients: vec![0.0; coefficients.len()],
+            vectors: vec![0.0; count * stride],
+            stride,
+            squares: Vec::new(),
+        };
+        for (k, column) in coefficients.chunks_exact(count).enumerate() {
+            for (row, &c) in svm.coefficients.chunks_exact_mut(others).zip(column) {
+                row[k] = c;
+            }
+        }
+        for (k, column) in values.chunks_exact(count).enumerate() {
+            for (row, &v) in svm.vectors.chunks_exact_mut(stride).zip(column) {
+                row[k] = v;
+            }
+        }
+        svm.square();
+        svm
+    }
+
+    fn square(&mut self) {
+        self.squares = self.vectors.chunks_exact(self.stride.max(1)).map(|v| dot(v, v)).collect();
+    }
+
     /// Reads LIBSVM's text form of an RBF classifier for rows of `columns` numbers.
     ///
     /// # Errors
@@ -145,7 +184,7 @@ impl Svm {
         if end * svm.stride != svm.vectors.len() {
             return Err(fault(0, "nr_sv does not fit the number of vectors"));
         }
-        svm.squares = svm.vectors.chunks_exact(svm.stride.max(1)).map(|v| dot(v, v)).collect();
+        svm.square();
         Ok(svm)
     }
 

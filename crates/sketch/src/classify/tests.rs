@@ -33,6 +33,27 @@ fn committed_models_are_what_the_table_trains() {
 }
 
 #[test]
+fn the_packed_machine_is_that_of_the_text() {
+    let packed: &[u8] = include_bytes!("../../data/strokes.packed");
+    let columns = StrokeFeatures::NAMES.len();
+    assert!(
+        committed().packed_classes().is_ok_and(|bytes| bytes == packed),
+        "run `cargo xtask train-strokes`: strokes.packed is not strokes.model"
+    );
+    let machine = packed::unpack(packed, columns).expect("the packed machine can be read");
+    // Packed again, because -0 equals 0 but is another bit.
+    assert_eq!(packed::pack(&machine, columns).as_deref(), Ok(packed));
+    let read = StrokeModels::parse(&committed()).expect("the committed models can be read");
+    assert_eq!(StrokeModels::unpack(&committed().scale, packed), Ok(read), "lengths and squares too");
+    let short = (0..packed.len()).step_by(97).chain(packed.len() - 9..packed.len());
+    assert!(short.clone().all(|n| packed::unpack(&packed[..n], columns).is_err()), "cut off anywhere");
+    assert!(packed::unpack(packed, columns - 1).is_err(), "of other features");
+    let mut huge = packed.to_vec();
+    huge[4..8].fill(0xff);
+    assert!(packed::unpack(&huge, columns).is_err(), "hostile counts");
+}
+
+#[test]
 fn table_round_trips() {
     let rows = table();
     assert_eq!(write_stroke_table(&rows), include_str!("../../data/strokes.csv"), "written as it was read");

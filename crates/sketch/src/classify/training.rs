@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 
 use base::{Draw, Seed};
 
+use super::features::StrokeFeatures;
 use super::model::StrokeModels;
+use super::packed::pack;
 use super::svm::{Learner, ModelError, RbfLearner, Scale, Svm};
 use super::table::{StrokeRow, StrokeSource};
 use crate::StrokeClass;
@@ -25,6 +27,17 @@ pub struct StrokeModelTexts {
     pub scale: String,
     /// The classes, LIBSVM text; label numbers are places in [`StrokeClass::ALL`].
     pub classes: String,
+}
+
+impl StrokeModelTexts {
+    /// The classes as programs carry them: the same machine in a quarter of the bytes.
+    ///
+    /// # Errors
+    /// [`ModelError`] where the text is no model of today's features.
+    pub fn packed_classes(&self) -> Result<Vec<u8>, ModelError> {
+        let columns = StrokeFeatures::NAMES.len();
+        pack(&Svm::parse(&self.classes, columns)?, columns)
+    }
 }
 
 /// How well strokes of drawings that were not trained on were recognised.
@@ -74,7 +87,7 @@ fn train(rows: &[&StrokeRow]) -> Result<StrokeModelTexts, ModelError> {
     let scaled: Vec<Vec<f64>> = values.iter().map(|v| scale.apply(v)).collect();
     let labels: Vec<i32> = clear.iter().map(|r| number(r.label)).collect();
     Ok(StrokeModelTexts {
-        scale: scale.to_text(&super::features::StrokeFeatures::NAMES),
+        scale: scale.to_text(&StrokeFeatures::NAMES),
         classes: CLASSES.learn(&scaled, &labels)?,
     })
 }

@@ -1,8 +1,8 @@
 //! Specs as TOML, and their JSON Schema.
 
 use glam::DVec3;
-use toml::{Table, Value};
 
+use super::located::{Entry, Kind, Node};
 use super::{TreeError, TreeSpec};
 
 /// Vertices and triangles, or points alone, of a file that a spec names.
@@ -16,23 +16,23 @@ pub type NamedMesh = (Vec<DVec3>, Vec<[u32; 3]>);
 /// # Errors
 /// [`TreeError::Spec`] with the line of what is wrong; [`TreeError::File`] for a file that `open` did not give.
 pub fn read_tree_spec(text: &str, open: &dyn Fn(&str) -> Option<NamedMesh>) -> Result<TreeSpec, TreeError> {
-    let fault = |e: toml::de::Error| {
-        let message = first_line(e.message());
-        let at = e.span().map_or(0, |s| s.start.min(text.len()));
-        TreeError::Spec { line: line_of(text, at, &message), message }
+    let fault = |message: String, at: usize| {
+        let line = line_of(text, at.min(text.len()), &message);
+        TreeError::Spec { line, message }
     };
-    let mut table: Table = toml::from_str(text).map_err(fault)?;
-    if !text.contains("file") || !resolve(&mut table, open)? {
-        return toml::from_str(text).map_err(fault);
+    let mut tree = Node::from_toml(text).map_err(|f| fault(f.message, f.at))?;
+    if text.contains("file") {
+        resolve(&mut tree, open)?;
     }
-    Value::Table(table).try_into().map_err(|e: toml::de::Error| {
-        let message = first_line(e.message());
-        TreeError::Spec { line: line_of(text, 0, &message), message }
-    })
+    tree.read().map_err(|(e, at)| fault(e.to_string(), at))
 }
 
-fn first_line(message: &str) -> String {
-    message.lines().next().unwrap_or_default().trim().to_owned()
+/// Reads a spec that is kept as JSON.
+///
+/// # Errors
+/// What is wrong.
+pub(crate) fn spec_from_json(value: &serde_json::Value) -> Result<TreeSpec, serde_json::Error> {
+    Node::from_json(value).read().map_err(|(e, _)| e)
 }
 
 /// The line (from 1) of a fault. Inside tables with a `kind` or `shape` the parser only knows where the table starts:
@@ -53,36 +53,35 @@ fn line_of(text: &str, at: usize, message: &str) -> usize {
     found.unwrap_or(start) + 1
 }
 
-/// Puts meshes and points in the place of their files' names. Whether there were any.
-fn resolve(table: &mut Table, open: &dyn Fn(&str) -> Option<NamedMesh>) -> Result<bool, TreeError> {
-    let mut found = false;
-    let shape = table.get("shape").and_then(Value::as_str).map(str::to_owned);
-    let file = table.get("file").and_then(Value::as_str).map(str::to_owned);
-    if let (Some(shape), Some(file)) = (shape.filter(|s| s == "mesh" || s == "points"), file) {
-        let (vertices, triangles) = open(&file).ok_or(TreeError::File { file })?;
-        let points = vertices.iter().map(|p| Value::Array(p.to_array().map(Value::Float).to_vec()));
-        let points = Value::Array(points.collect());
-        table.remove("file");
-        if shape == "mesh" {
-            let corners = |t: &[u32; 3]| Value::Array(t.map(|i| Value::Integer(i64::from(i))).to_vec());
-            table.insert("vertices".into(), points);
-            table.insert("triangles".into(), Value::Array(triangles.iter().map(corners).collect()));
-        } else {
-            table.insert("points".into(), points);
-        }
-        return Ok(true);
+/// Puts meshes and points in the place of their files' names.
+fn resolve(tree: &mut Node, open: &dyn Fn(&str) -> Option<NamedMesh>) -> Result<(), TreeError> {
+    let at = tree.at;
+    let entries = match &mut tree.kind {
+        Kind::Table(entries) => entries,
+        Kind::List(all) => return all.iter_mut().try_for_each(|node| resolve(node, open)),
+        _ => return Ok(()),
+    };
+    let text = |name: &str| match entries.iter().find(|e| e.key == name).map(|e| &e.node.kind) {
+        Some(Kind::Text(text)) => Some(text.clone()),
+        _ => None,
+    };
+    let shape = text("shape").filter(|s| s == "mesh" || s == "points");
+    let Some((shape, file)) = shape.zip(text("file")) else {
+        return entries.iter_mut().try_for_each(|e| resolve(&mut e.node, open));
+    };
+    let (vertices, triangles) = open(&file).ok_or(TreeError::File { file })?;
+    let list = |all: Vec<Kind>| Kind::List(all.into_iter().map(|kind| Node { kind, at }).collect());
+    let points = list(vertices.iter().map(|p| list(p.to_array().map(Kind::Number).to_vec())).collect());
+    entries.retain(|e| e.key != "file");
+    let mut put = |key: &str, kind| entries.push(Entry { key: key.to_owned(), at, node: Node { kind, at } });
+    if shape == "mesh" {
+        let corners = |t: &[u32; 3]| list(t.map(|i| Kind::Whole(i64::from(i))).to_vec());
+        put("vertices", points);
+        put("triangles", list(triangles.iter().map(corners).collect()));
+    } else {
+        put("points", points);
     }
-    for (_, value) in table.iter_mut() {
-        let inner = match value {
-            Value::Table(inner) => std::slice::from_mut(inner).iter_mut().collect::<Vec<_>>(),
-            Value::Array(all) => all.iter_mut().filter_map(Value::as_table_mut).collect(),
-            _ => continue,
-        };
-        for t in inner {
-            found |= resolve(t, open)?;
-        }
-    }
-    Ok(found)
+    Ok(())
 }
 
 /// The JSON Schema of [`TreeSpec`], with units (`x-unit`), ranges and defaults.
@@ -121,6 +120,32 @@ mod tests {
         assert!((2..=3).contains(&at), "{at}");
         let (at, message) = line("age = -1\n");
         assert!(at == 1 && message.contains("-1"), "{at} {message}");
+        let (at, message) = line("[wood]\nrelax = 1\ntip_radius_m = \"thin\"\n");
+        assert!(at == 3 && message.contains("\"thin\""), "{at} {message}");
+        let (at, message) = line("[look]\nbark = \"birch\"\nleaf_color = \"green\"\n");
+        assert!(at == 3 && message.contains("`green`"), "{at} {message}");
+        let (at, message) = line("roots = [\n  [0, 0, 0],\n  [1, 0],\n]\n");
+        assert!(at == 3 && message.contains("2"), "{at} {message}");
+        let (at, message) = line("name = \"a\"\nspecies = 1979-05-27\n");
+        assert!(at == 2 && message.contains("date"), "{at} {message}");
+        let (at, message) = line("name = \"a\"\nage = 99999999999999999999\n");
+        assert!(at == 2 && message.contains("overflow"), "{at} {message}");
+    }
+
+    #[test]
+    fn a_spec_is_the_same_as_toml_and_as_json() {
+        for preset in crate::PRESETS {
+            let spec = preset.spec().expect("sound");
+            let value = serde_json::to_value(&spec).expect("plain data");
+            assert_eq!(spec_from_json(&value).ok().as_ref(), Some(&spec), "{}", preset.key);
+            // The reader that everybody knows says the same.
+            assert_eq!(serde_json::from_value::<TreeSpec>(value).ok(), Some(spec), "{}", preset.key);
+        }
+        let wrong = serde_json::json!({ "wood": { "relax": "much" } });
+        assert!(
+            spec_from_json(&wrong).is_err_and(|e| e.to_string().contains("much")),
+            "words are no numbers"
+        );
     }
 
     #[test]

@@ -6,7 +6,7 @@
 //! |---|---|
 //! | `spec` | [`TreeSpec`]: everything that a user may ask of a tree |
 //! | `evaluate` | a tree that changes: only what a change touches is made again |
-//! | `file` | TOML in, JSON Schema out |
+//! | `file`, `located` | TOML in, JSON Schema out; where in a text a fault is |
 //! | `blade`, `blossom`, `look` | forms of leaves; flowers in their place; colours and bark |
 //! | `presets` | the species that come with the program |
 //! | `lod` | coarser copies for far away |
@@ -17,6 +17,7 @@ mod blossom;
 mod compare;
 mod evaluate;
 mod file;
+mod located;
 mod lod;
 mod look;
 mod presets;
@@ -38,6 +39,7 @@ pub use compare::{
     GUIDED_METHODS, OAK_METHODS, PAPER_OAKS, PaperOak, TreeSize, guided_methods, scale_to_height, tree_size,
 };
 pub use evaluate::TreeEvaluator;
+pub(crate) use file::spec_from_json;
 pub use file::{NamedMesh, read_tree_spec, tree_schema};
 pub use lod::coarser;
 pub use look::{Bark, Colour, Look};
