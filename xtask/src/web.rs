@@ -118,7 +118,6 @@ const SMALL: &[&str] = &[
     "png",
     "pxfm",
     "rawzip",
-    "robust",
     "roxmltree",
     "schemars",
     "serde",

@@ -6,7 +6,9 @@
 use core::cell::Cell;
 
 use serde::de::value::{BorrowedStrDeserializer, MapAccessDeserializer};
-use serde::de::{DeserializeOwned, DeserializeSeed, Deserializer, Error as _, MapAccess, SeqAccess, Visitor};
+use serde::de::{
+    DeserializeOwned, DeserializeSeed, Deserializer, Error as _, MapAccess, SeqAccess, Unexpected, Visitor,
+};
 use serde_json::Error;
 use toml::de::{DeTable, DeValue};
 
@@ -127,6 +129,20 @@ impl Node {
 }
 
 impl Kind {
+    /// As messages name it.
+    fn found(&self) -> Unexpected<'_> {
+        match self {
+            Self::Nothing => Unexpected::Unit,
+            Self::Truth(truth) => Unexpected::Bool(*truth),
+            Self::Whole(whole) => Unexpected::Signed(*whole),
+            Self::Large(large) => Unexpected::Unsigned(*large),
+            Self::Number(number) => Unexpected::Float(*number),
+            Self::Text(text) => Unexpected::Str(text),
+            Self::List(_) => Unexpected::Seq,
+            Self::Table(_) => Unexpected::Map,
+        }
+    }
+
     fn of_table(table: &DeTable<'_>) -> Result<Self, Fault> {
         let entry = |(key, value): (&toml::Spanned<toml::de::DeString<'_>>, _)| {
             let (at, key) = (key.span().start, key.get_ref().to_string());
@@ -203,7 +219,7 @@ impl<'de> Deserializer<'de> for Reader<'de> {
                 let entries = Entries { rest: all, place: self.place };
                 visitor.visit_enum(MapAccessDeserializer::new(entries))
             }
-            _ => Err(Error::custom("invalid type: expected a word, or a table with one")),
+            other => Err(Error::invalid_type(other.found(), &"a word, or a table with one")),
         };
         self.placed(result)
     }
