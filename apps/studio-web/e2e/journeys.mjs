@@ -64,11 +64,12 @@ export async function sample(page) {
   return 15;
 }
 
-export async function exported(page, format, levels, what) {
+export async function exported(page, format, levels, what, wind) {
   await page.click('#b-export');
   await page.click(`[data-format=${format}]`);
   if (levels) await page.selectOption('#b-levels', String(levels));
   if (what) await page.selectOption('.export .option:not([hidden]) select', what);
+  if (wind !== undefined) await page.setChecked('#b-wind', wind);
   const [download] = await Promise.all([page.waitForEvent('download'), page.click('#b-export-go')]);
   return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
 }
@@ -90,6 +91,11 @@ async function flower({ page, url, shot }) {
     assert.equal(file.bytes.subarray(0, start.length).toString('latin1'), start, format);
     assert.ok(file.bytes.length > 2000, format);
   }
+  assert.ok(!glb.bytes.includes('_WIND'), 'no wind unless it is asked for');
+  const blown = await exported(page, 'glb', undefined, undefined, true);
+  assert.ok(blown.bytes.includes('_WIND') && blown.bytes.includes('_PIVOT'), 'wind for shaders');
+  const usd = await exported(page, 'usda', undefined, undefined, false);
+  assert.ok(usd.bytes.includes('plant.usda'), usd.name);
   const levels = await exported(page, 'glb', 3);
   assert.match(levels.name, /\.glb\.zip$/);
   assert.ok(levels.bytes.includes('plant_LOD2.glb'), 'three levels of detail');
