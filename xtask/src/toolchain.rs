@@ -9,6 +9,7 @@ use crate::shell::{Outcome, cache_dir, cargo_path, command, finish, output, prep
 pub(crate) const TARGET: &str = "wasm32-unknown-unknown";
 /// The name under which Debian's compiler is linked into rustup.
 const DEBIAN: &str = "burgeon-debian-wasm";
+
 /// A cargo that builds for wasm32.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum WasmCargo {

@@ -4,6 +4,7 @@ import { spawn } from 'node:child_process';
 import { mkdirSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 import { chromium } from 'playwright-core';
+import { flags } from './flags.mjs';
 import { journeys } from './journeys.mjs';
 import { shaping } from './shaping.mjs';
 
@@ -27,12 +28,7 @@ const url = await new Promise((resolve, reject) => {
   server.on('exit', (code) => reject(new Error(`burgeon studio ended with ${code}`)));
 });
 
-// As browsers are on machines without a graphics card: the page is drawn by the processor, WebGL by SwiftShader.
-const browser = await chromium.launch({
-  executablePath: browserPath,
-  args: ['--no-sandbox', '--disable-gpu', '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run',
-    '--disable-background-networking', '--disable-component-update', '--disable-sync'],
-});
+const browser = await chromium.launch({ executablePath: browserPath, args: flags() });
 
 let failed = 0;
 const only = process.env.ONLY;
