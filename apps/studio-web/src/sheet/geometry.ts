@@ -71,3 +71,92 @@ export function distance(points: Float64Array, step: number, x: number, y: numbe
   }
   return best;
 }
+
+/** What an outline is drawn with: a canvas' path, or a test that listens. */
+export type Outliner = Pick<Path2D, 'moveTo' | 'lineTo' | 'quadraticCurveTo' | 'arc' | 'closePath'>;
+
+/** Cosine of the turn from which on a line has a corner. */
+const CORNER = 0.5;
+
+/**
+ * The outline of a line whose width changes along it, to be filled by the nonzero rule: `rows` of x, y and half width,
+ * all in the path's unit. One closed loop for each stretch between corners, with a disc at its ends, all the same way
+ * round, so that none cuts a hole into another.
+ */
+export function outline(to: Outliner, rows: Float64Array): void {
+  // A point nearer than half the width adds nothing but folds.
+  const kept: number[] = [];
+  for (let i = 0; i + 2 < rows.length; i += 3) {
+    const [x, y, r] = [rows[i]!, rows[i + 1]!, rows[i + 2]!];
+    const n = kept.length;
+    if (n > 0 && Math.hypot(x - kept[n - 3]!, y - kept[n - 2]!) < 0.5 * r) continue;
+    kept.push(x, y, r);
+  }
+  const count = kept.length / 3;
+  const disc = (i: number): void => {
+    const [x, y, r] = [kept[3 * i]!, kept[3 * i + 1]!, kept[3 * i + 2]!];
+    to.moveTo(x + r, y);
+    to.arc(x, y, r, 0, 2 * Math.PI);
+    to.closePath();
+  };
+  /** Unit vector from a point to the next. */
+  const along = (i: number): [number, number] => {
+    const [dx, dy] = [kept[3 * i + 3]! - kept[3 * i]!, kept[3 * i + 4]! - kept[3 * i + 1]!];
+    const d = Math.hypot(dx, dy);
+    return [dx / d, dy / d];
+  };
+  if (count > 0) disc(0);
+  let first = 0;
+  while (first + 1 < count) {
+    const left: number[] = [];
+    const right: number[] = [];
+    const side = (i: number, dx: number, dy: number): void => {
+      const [x, y, r] = [kept[3 * i]!, kept[3 * i + 1]!, kept[3 * i + 2]!];
+      left.push(x - r * dy, y + r * dx);
+      right.push(x + r * dy, y - r * dx);
+    };
+    let [dx, dy] = along(first);
+    side(first, dx, dy);
+    let last = first + 1;
+    for (; last + 1 < count; last += 1) {
+      const [ex, ey] = along(last);
+      const turn = dx * ex + dy * ey;
+      if (turn < CORNER) break;
+      // Half way between the two directions, as long as keeps the width.
+      side(last, (dx + ex) / (1 + turn), (dy + ey) / (1 + turn));
+      [dx, dy] = [ex, ey];
+    }
+    side(last, dx, dy);
+    to.moveTo(right[0]!, right[1]!);
+    smooth(to, right);
+    smooth(to, backwards(left));
+    to.closePath();
+    disc(last);
+    first = last;
+  }
+}
+
+function backwards(line: number[]): number[] {
+  const back: number[] = [];
+  for (let i = line.length - 2; i >= 0; i -= 2) back.push(line[i]!, line[i + 1]!);
+  return back;
+}
+
+/** The line itself, to be stroked: `rows` as for an outline. */
+export function centreline(to: Outliner, rows: Float64Array): void {
+  const line: number[] = [];
+  for (let i = 0; i + 2 < rows.length; i += 3) line.push(rows[i]!, rows[i + 1]!);
+  if (line.length === 0) return;
+  to.moveTo(line[0]!, line[1]!);
+  smooth(to, line);
+}
+
+/** Goes on to a polyline's beginning and through the middles of its pieces to its end. */
+function smooth(to: Outliner, line: number[]): void {
+  to.lineTo(line[0]!, line[1]!);
+  for (let i = 0; i + 3 < line.length; i += 2) {
+    const [x, y] = [line[i]!, line[i + 1]!];
+    to.quadraticCurveTo(x, y, (x + line[i + 2]!) / 2, (y + line[i + 3]!) / 2);
+  }
+  to.lineTo(line.at(-2)!, line.at(-1)!);
+}

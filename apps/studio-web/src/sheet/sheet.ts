@@ -1,7 +1,7 @@
 /** The sheet: what was drawn, and the tools that change it. It knows nothing of plants. */
 import { inkOf } from '../colours';
 import type { SketchState, PhotoState, StrokeMode, StrokePoints } from '../protocol';
-import { boxOf, distance, fitted, toDrawing, toScreen, zoomed, type Box, type Viewport } from './geometry';
+import { boxOf, centreline, distance, fitted, outline, toDrawing, toScreen, zoomed, type Box, type Viewport } from './geometry';
 import { Pen } from './pen';
 
 export type Tool = StrokeMode | 'erase' | 'select';
@@ -23,13 +23,23 @@ export interface SheetEvents {
   photoEnd(keep: boolean): void;
 }
 
+/** A line in pixels from the drawing's origin: filled within its outline, or stroked along it. */
+interface Line {
+  path: Path2D;
+  filled: boolean;
+}
+
 interface Stroke {
   id: number;
   mode: StrokeMode;
   points: Float64Array;
   box: Box;
   organ: string | undefined;
+  line: (Line & { scale: number }) | undefined;
 }
+
+/** Width of a line, pixels, at half the pressure of a pen, or without any. */
+const INK = 2.6;
 
 /** How near a pointer must come to a stroke, in pixels: a fingertip is coarser. */
 const REACH = { mouse: 8, pen: 8, touch: 18 } as const;
@@ -42,6 +52,28 @@ type Act =
   | { kind: 'band'; from: [number, number]; to: [number, number]; add: boolean }
   | { kind: 'photo'; from: [number, number]; moved: boolean }
   | { kind: 'pan'; x: number; y: number };
+
+/**
+ * The line through rows of `step` numbers: x and y first, the pressure last. With `pressed` its width follows the
+ * pressure, where the device told one.
+ */
+function lineThrough(points: Float64Array, step: number, scale: number, pressed: boolean): Line {
+  const path = new Path2D();
+  const n = Math.floor(points.length / step);
+  const rows = new Float64Array(3 * n);
+  let told = false;
+  for (let i = 0; i < n; i += 1) {
+    const pressure = points[step * i + step - 1]!;
+    told ||= Number.isFinite(pressure);
+    rows[3 * i] = points[step * i]! * scale;
+    rows[3 * i + 1] = -points[step * i + 1]! * scale;
+    rows[3 * i + 2] = 0.5 * INK * (Number.isFinite(pressure) ? 0.4 + 1.3 * pressure : 1);
+  }
+  const filled = pressed && told;
+  if (filled) outline(path, rows);
+  else centreline(path, rows);
+  return { path, filled };
+}
 
 export class Sheet {
   readonly element = document.createElement('div');
@@ -100,13 +132,16 @@ export class Sheet {
     this.photo = state.photo;
     if (!state.photo) this.placing = false;
     for (const { id, points } of fresh) this.points.set(id, points);
-    const organs = new Map(this.strokes.map((s) => [s.id, s.organ]));
+    const before = new Map(this.strokes.map((s) => [s.id, s]));
     const there = new Set(state.strokes.map((s) => s.id));
     for (const id of [...this.points.keys()]) if (!there.has(id)) this.points.delete(id);
     this.strokes = state.strokes.flatMap(({ id, mode }) => {
       const points = this.points.get(id);
       const box = points && boxOf(points, 3);
-      return points && box ? [{ id, mode, points, box, organ: organs.get(id) }] : [];
+      if (!points || !box) return [];
+      const known = before.get(id);
+      const line = known?.points === points && known.mode === mode ? known.line : undefined;
+      return [{ id, mode, points, box, organ: known?.organ, line }];
     });
     this.pending = undefined;
     const left = [...this.selection].filter((id) => there.has(id));
@@ -485,7 +520,7 @@ export class Sheet {
     const gone = this.act?.kind === 'erase' ? this.act.ids : undefined;
     for (const s of this.strokes) {
       c.globalAlpha = gone?.has(s.id) ? 0.15 : 1;
-      this.ink(c, s.points.length / 3, (i) => [s.points[3 * i]!, s.points[3 * i + 1]!, s.points[3 * i + 2]!], s.mode, s.organ);
+      this.ink(c, this.lineOf(s), s.mode, s.organ);
     }
     c.globalAlpha = 1;
   }
@@ -499,16 +534,18 @@ export class Sheet {
     for (const s of this.strokes) {
       if (!this.selection.has(s.id)) continue;
       c.globalAlpha = 0.3;
-      this.line(c, s.points.length / 3, (i) => [s.points[3 * i]!, s.points[3 * i + 1]!, NaN], this.accent(), 11);
+      this.draw(c, lineThrough(s.points, 3, this.view.scale, false), this.accent(), 11);
       c.globalAlpha = 1;
-      this.ink(c, s.points.length / 3, (i) => [s.points[3 * i]!, s.points[3 * i + 1]!, s.points[3 * i + 2]!], s.mode, s.organ);
+      this.ink(c, this.lineOf(s), s.mode, s.organ);
     }
     if (live) {
-      this.ink(c, live.pen.length, (i) => live.pen.row(i), live.mode, this.draftOrgan);
+      const { pen, mode } = live;
+      const inked = (samples: Float64Array): void => this.ink(c, lineThrough(samples, 4, this.view.scale, mode === 'parts'), mode, this.draftOrgan);
+      inked(pen.samples);
       const { axis } = this;
-      if (axis !== undefined && live.pen.beside(axis)) {
+      if (axis !== undefined && pen.beside(axis)) {
         c.globalAlpha = 0.55;
-        this.ink(c, live.pen.length, (i) => { const [x, y, p] = live.pen.row(i); return [2 * axis - x, y, p]; }, live.mode, this.draftOrgan);
+        inked(pen.mirrored(axis));
         c.globalAlpha = 1;
       }
     }
@@ -563,38 +600,29 @@ export class Sheet {
     }
   }
 
-  private ink(c: CanvasRenderingContext2D, n: number, row: (i: number) => [number, number, number], mode: StrokeMode, organ?: string): void {
+  private ink(c: CanvasRenderingContext2D, line: Line, mode: StrokeMode, organ?: string): void {
     const fallback = mode === 'branch-contour' ? 'twig_contour' : mode === 'leaf-contour' ? 'leaf_contour' : undefined;
-    c.setLineDash(mode === 'parts' ? [] : [9, 7]);
-    this.line(c, n, row, inkOf(organ ?? fallback, this.dark), 2.6);
+    if (mode !== 'parts') c.setLineDash([9, 7]);
+    this.draw(c, line, inkOf(organ ?? fallback, this.dark), INK);
     c.setLineDash([]);
   }
 
-  private line(c: CanvasRenderingContext2D, n: number, row: (i: number) => [number, number, number], color: string, width: number): void {
-    c.strokeStyle = color;
-    c.lineWidth = width;
-    if (n === 0) return;
-    const pressed = Number.isFinite(row(0)[2]) || Number.isFinite(row(n - 1)[2]);
-    let [px, py] = toScreen(this.view, row(0)[0], row(0)[1]);
-    c.beginPath();
-    c.moveTo(px, py);
-    let [mx, my] = [px, py];
-    for (let i = 1; i < n; i += 1) {
-      const [x, y, p] = row(i);
-      const [sx, sy] = toScreen(this.view, x, y);
-      const [nx, ny] = [(px + sx) / 2, (py + sy) / 2];
-      if (pressed) {
-        // Each piece has its own width.
-        c.lineWidth = width * (Number.isFinite(p) ? 0.4 + 1.3 * p : 1);
-        c.beginPath();
-        c.moveTo(mx, my);
-      }
-      c.quadraticCurveTo(px, py, nx, ny);
-      if (pressed) c.stroke();
-      [px, py, mx, my] = [sx, sy, nx, ny];
+  private draw(c: CanvasRenderingContext2D, { path, filled }: Line, color: string, width: number): void {
+    c.translate(this.view.x, this.view.y);
+    if (filled) {
+      c.fillStyle = color;
+      c.fill(path);
+    } else {
+      c.strokeStyle = color;
+      c.lineWidth = width;
+      c.stroke(path);
     }
-    if (pressed) { c.beginPath(); c.moveTo(mx, my); }
-    c.lineTo(px, py);
-    c.stroke();
+    c.translate(-this.view.x, -this.view.y);
+  }
+
+  /** The line of a stroke at the sheet's scale; made again only when that changes. */
+  private lineOf(s: Stroke): Line {
+    if (s.line?.scale !== this.view.scale) s.line = { ...lineThrough(s.points, 3, this.view.scale, s.mode === 'parts'), scale: this.view.scale };
+    return s.line;
   }
 }
