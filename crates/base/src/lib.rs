@@ -10,6 +10,7 @@
 //! | `task` | [`CancelToken`], [`Executor`], [`Run`]: how something is computed, never what |
 //! | `report` | [`Report`], [`Warning`]: what a computation wants to tell its user |
 //! | `digest` | [`Digest`]: a fingerprint of a result that does not depend on the machine |
+//! | `sort` | [`sort_by`], [`sort_by_key`]: sorting that is compiled once |
 //! | `units` | [`Unit`], [`UpAxis`], [`Angle`]: conversions at the door |
 //! | `ids` | [`define_id!`]: typed `u32` handles |
 
@@ -19,6 +20,7 @@ mod ids;
 pub mod ops;
 mod report;
 mod seed;
+mod sort;
 mod task;
 pub mod turn;
 mod units;
@@ -26,5 +28,6 @@ mod units;
 pub use digest::{Digest, Digestible};
 pub use report::{Report, Stage, Warning};
 pub use seed::{Draw, Seed, Stream};
+pub use sort::{sort_by, sort_by_key};
 pub use task::{CancelToken, Cancelled, Clock, Executor, NoClock, Run, Serial, map_indexed};
 pub use units::{Angle, NotFinite, Tolerance, Unit, UpAxis};

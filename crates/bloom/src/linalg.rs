@@ -23,7 +23,7 @@ pub(crate) fn eigen<const N: usize>(mut a: [[f64; N]; N]) -> ([f64; N], [[f64; N
         }
     }
     let mut order: Vec<usize> = (0..N).collect();
-    order.sort_by(|&i, &j| a[j][j].total_cmp(&a[i][i]));
+    base::sort_by(&mut order, |&i, &j| a[j][j].total_cmp(&a[i][i]));
     let mut values = [0.0; N];
     let mut vectors = [[0.0; N]; N];
     for (to, &from) in order.iter().enumerate() {

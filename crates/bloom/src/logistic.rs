@@ -389,7 +389,7 @@ fn fit_core(days: &[f64], values: &[f64]) -> Fit {
     // along an S.
     let rates = [0.3, 1.5, 4.0, 10.0, 30.0, -0.7, -2.0, -5.0, -12.0].map(|r| r / span);
     let mut starts: Vec<_> = rates.iter().filter_map(|&r| scaled.start(r)).collect();
-    starts.sort_by(|a, b| a.1.total_cmp(&b.1));
+    base::sort_by(&mut starts, |a, b| a.1.total_cmp(&b.1));
     let flat = mean / scale_y;
     starts.push(([flat * 1.05, flat * 0.95, 1.0 / span], scaled.sst));
     // The best start, and the best of the other sign: growth and decay are valleys of their own.

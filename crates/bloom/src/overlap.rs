@@ -31,7 +31,7 @@ pub fn overlap_share(mesh: &TriMesh, groups: &[u32]) -> f64 {
     let low = |t: &[DVec3; 3]| t[0].min(t[1]).min(t[2]);
     let high = |t: &[DVec3; 3]| t[0].max(t[1]).max(t[2]);
     let mut order: Vec<usize> = (0..rows.len()).collect();
-    order.sort_by(|&a, &b| low(&rows[a].1).x.total_cmp(&low(&rows[b].1).x));
+    base::sort_by(&mut order, |&a, &b| low(&rows[a].1).x.total_cmp(&low(&rows[b].1).x));
     let mut crossed = vec![false; rows.len()];
     let mut open: Vec<usize> = Vec::new();
     for &i in &order {

@@ -86,7 +86,7 @@ pub fn organs(points: &[DVec3], spec: &SegmentSpec) -> Result<Vec<Organ>, BloomE
     let count = labels.iter().copied().max().unwrap_or(0) + 1;
     let mut out: Vec<Organ> = (0..count).map(|label| cut(points, &ways, |c| labels[c] == label)).collect();
     if out.len() > 1 {
-        out[1..].sort_by_key(|o| core::cmp::Reverse(o.points.len()));
+        base::sort_by_key(&mut out[1..], |o| core::cmp::Reverse(o.points.len()));
     }
     for (i, organ) in out.iter_mut().enumerate() {
         organ.name = if i == 0 { "stem".into() } else { format!("leaf-{i}") };
@@ -220,7 +220,7 @@ impl Tree {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 400 bands")]
         let band_of = |c: usize| (ways.way[c] / band) as usize;
         let mut order: Vec<usize> = (0..n).collect();
-        order.sort_by(|&a, &b| band_of(a).cmp(&band_of(b)).then(a.cmp(&b)));
+        base::sort_by(&mut order, |&a, &b| band_of(a).cmp(&band_of(b)).then(a.cmp(&b)));
         let mut tree = Self {
             piece: vec![NONE; n],
             below: vec![],
@@ -370,7 +370,7 @@ fn cut(points: &[DVec3], ways: &Ways, mine: impl Fn(usize) -> bool) -> Organ {
         .iter()
         .flat_map(|&c| ways.voxels.rows(c).iter().map(move |&i| (i as usize, (ways.way[c] - low) / span)))
         .collect();
-    rows.sort_unstable_by_key(|r| r.0);
+    base::sort_by_key(&mut rows, |r| r.0);
     for (i, way) in rows {
         organ.rows.push(i);
         organ.points.push(points[i]);
@@ -426,7 +426,7 @@ fn match_turned(a: &[Organ], b: &[Organ], up: DVec3, angle: f64) -> (f64, Vec<(u
             }
         }
     }
-    costs.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
+    base::sort_by(&mut costs, |x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
     let mut sum = 0.0;
     for (cost, i, j) in costs {
         if out.iter().all(|&(p, q)| p != i && q != j) {

@@ -32,7 +32,7 @@ pub fn mean_shift(points: &[DVec2], bandwidth: f64) -> Vec<usize> {
         .collect();
 
     let mut order: Vec<usize> = (0..points.len()).filter(|&i| rests[i].is_some()).collect();
-    order.sort_by_key(|&i| (core::cmp::Reverse(rests[i].map_or(0, |r| r.1)), i));
+    base::sort_by_key(&mut order, |&i| (core::cmp::Reverse(rests[i].map_or(0, |r| r.1)), i));
     let mut modes: Vec<DVec2> = Vec::new();
     let nearest = |modes: &[DVec2], rest: DVec2| {
         let distances = modes.iter().enumerate().map(|(k, &m)| (Vector::distance(m, rest), k));

@@ -108,7 +108,7 @@ impl Cone {
                 ops::atan2(along.perp_dot(q), along.dot(q))
             };
             let mut order: Vec<usize> = (0..tips.len()).filter(|&i| tips[i].usable()).collect();
-            order.sort_by(|&i, &j| angle(i).total_cmp(&angle(j)).then(i.cmp(&j)));
+            base::sort_by(&mut order, |&i, &j| angle(i).total_cmp(&angle(j)).then(i.cmp(&j)));
             for (k, i) in order.into_iter().enumerate() {
                 sheets[i] = if k % 2 == 0 { Sheet::Near } else { Sheet::Far };
             }

@@ -55,7 +55,7 @@ pub fn fit_ellipse(points: &[DVec2]) -> Option<Ellipse> {
     let (usable, centre, scale) = centre_and_scale(points)?;
     let mut distinct: Vec<DVec2> = usable.iter().map(|&p| (p - centre) / scale).collect();
     let data = distinct.clone();
-    distinct.sort_by(|p, q| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)));
+    base::sort_by(&mut distinct, |p, q| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)));
     distinct.dedup();
     if distinct.len() < 5 {
         return None;
@@ -135,7 +135,9 @@ pub fn fit_ellipse_harmonic(tips: &[DVec2]) -> Option<Ellipse> {
     }
     let mut offsets: Vec<(f64, DVec2)> =
         usable.iter().map(|&p| (p - centre) / scale).map(|d| (ops::atan2(d.y, d.x), d)).collect();
-    offsets.sort_by(|p, q| p.0.total_cmp(&q.0).then(p.1.length_squared().total_cmp(&q.1.length_squared())));
+    base::sort_by(&mut offsets, |p, q| {
+        p.0.total_cmp(&q.0).then(p.1.length_squared().total_cmp(&q.1.length_squared()))
+    });
     let (mut cosine, mut sine) = (DVec2::ZERO, DVec2::ZERO);
     for (k, (_, d)) in offsets.iter().enumerate() {
         let (s, c) = ops::sin_cos(ops::TAU * k as f64 / n as f64);

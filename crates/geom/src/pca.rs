@@ -78,7 +78,7 @@ pub fn pca3(points: &[DVec3]) -> Option<(DVec3, [DVec3; 3], [f64; 3])> {
     let scale = m.amax();
     let eigen = nalgebra::SymmetricEigen::new(if scale > 0.0 { m / scale } else { m });
     let mut order = [0, 1, 2];
-    order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
+    base::sort_by(&mut order, |&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
     let axis = |k: usize| {
         let v = eigen.eigenvectors.column(k);
         DVec3::new(v[0], v[1], v[2]).direction().unwrap_or(DVec3::X)

@@ -286,7 +286,7 @@ fn bend(a: DVec2, b: DVec2) -> f64 {
 
 /// Stops in order, at least `gap` apart (round the seam too), the higher ranks kept.
 fn spaced(mut stops: Vec<Stop>, total: f64, gap: f64) -> Vec<Stop> {
-    stops.sort_by(|a, b| a.at.total_cmp(&b.at).then(b.rank.total_cmp(&a.rank)));
+    base::sort_by(&mut stops, |a, b| a.at.total_cmp(&b.at).then(b.rank.total_cmp(&a.rank)));
     let mut kept: Vec<Stop> = Vec::with_capacity(stops.len());
     for stop in stops {
         match kept.last_mut() {

@@ -437,7 +437,7 @@ fn side_vein(net: &Net<'_>, before: &[u32], axis: &Axis, end: u32, to: f64) -> O
 
 /// The strongest veins that keep their order and their distance from one another.
 fn chosen(mut all: Vec<Side>, length: f64) -> Vec<Side> {
-    all.sort_by(|a, b| {
+    base::sort_by(&mut all, |a, b| {
         b.strength.total_cmp(&a.strength).then(a.from.total_cmp(&b.from)).then(a.to.total_cmp(&b.to))
     });
     let mut kept: Vec<Side> = Vec::new();
@@ -451,7 +451,7 @@ fn chosen(mut all: Vec<Side>, length: f64) -> Vec<Side> {
             kept.push(one);
         }
     }
-    kept.sort_by(|a, b| a.from.total_cmp(&b.from));
+    base::sort_by(&mut kept, |a, b| a.from.total_cmp(&b.from));
     kept
 }
 
@@ -466,7 +466,7 @@ fn paired(right: &[Side], left: &[Side], length: f64) -> Vec<(usize, usize)> {
             }
         }
     }
-    all.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+    base::sort_by(&mut all, |a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
     let mut pairs: Vec<(usize, usize)> = Vec::new();
     for (_, i, j) in all {
         if pairs.iter().all(|&(a, b)| (i > a && j > b) || (i < a && j < b)) {
@@ -508,7 +508,7 @@ fn rows([right, left]: [Vec<Side>; 2], axis: &Axis, margins: &[Vec<f64>; 2]) -> 
         out.push(if k == 0 { [vein, partner] } else { [partner, vein] });
         lone += 1;
     }
-    out.sort_by(|a, b| (a[0].from + a[1].from).total_cmp(&(b[0].from + b[1].from)));
+    base::sort_by(&mut out, |a, b| (a[0].from + a[1].from).total_cmp(&(b[0].from + b[1].from)));
     // The ends keep the order of the rows on both sides.
     let mut last = [f64::NEG_INFINITY; 2];
     out.retain(|[r, l]| {

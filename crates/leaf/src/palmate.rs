@@ -72,7 +72,7 @@ fn hub(net: &Net<'_>, centre: u32) -> Option<Hub> {
     let (cost, before) = net.ways(&[centre]);
     // Every node beyond the circle belongs to the first node outside it on its way; nearer nodes come first.
     let mut order = net.members.clone();
-    order.sort_by(|&a, &b| cost[a as usize].total_cmp(&cost[b as usize]).then(a.cmp(&b)));
+    base::sort_by(&mut order, |&a, &b| cost[a as usize].total_cmp(&cost[b as usize]).then(a.cmp(&b)));
     let mut gate = vec![u32::MAX; before.len()];
     let mut gates: Vec<u32> = Vec::new();
     let mut count = vec![0_usize; before.len()];
@@ -123,7 +123,7 @@ fn hub(net: &Net<'_>, centre: u32) -> Option<Hub> {
     if chiefs.len() < 3 || chiefs.len() > 15 {
         return None;
     }
-    chiefs.sort_by(|a, b| a.angle.total_cmp(&b.angle));
+    base::sort_by(&mut chiefs, |a, b| a.angle.total_cmp(&b.angle));
     // The widest gap is where the stalk comes in: the order begins after it.
     let n = chiefs.len();
     let gap = |i: usize| {

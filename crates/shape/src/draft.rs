@@ -379,7 +379,7 @@ impl Draft {
     pub(crate) fn shoots_on(&self, bearer: Option<usize>) -> Vec<usize> {
         let on = |b: &Branch| b.alive && b.is_shoot() && b.bearer.map(|at| at.branch) == bearer;
         let mut all: Vec<usize> = (0..self.branches.len()).filter(|&i| on(&self.branches[i])).collect();
-        all.sort_by_key(|&i| (self.branches[i].bearer.map(|at| at.node), i));
+        base::sort_by_key(&mut all, |&i| (self.branches[i].bearer.map(|at| at.node), i));
         all
     }
 }

@@ -125,7 +125,7 @@ impl AxisKey {
             }
         }
         for all in &mut siblings {
-            all.sort_by_key(|&i| (draft.branches[i].bearer.map(|at| at.node), i));
+            base::sort_by_key(all, |&i| (draft.branches[i].bearer.map(|at| at.node), i));
         }
         let mut paths: Vec<Option<Vec<u32>>> = vec![None; draft.branches.len()];
         for (number, &stem) in (0..).zip(&stems) {

@@ -70,7 +70,7 @@ impl Pipes {
             if here.is_empty() {
                 continue;
             }
-            here.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+            base::sort_by(&mut here, |a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
             let mut thickest = vec![0.0_f64; draft.branches[b].radii.len()];
             for &c in &children[b] {
                 let child = &draft.branches[c];

@@ -54,7 +54,7 @@ fn drawn(kind: usize, seed: u64) -> Plant {
     let drawing = sketch::Drawing::from_polylines("drawn", &strokes);
     let mut report = Report::default();
     let ink = sketch::clean(&drawing, &mut report);
-    let classes = sketch::classify_unknown(&ink, &[], &Run::plain());
+    let classes = sketch::classify(&ink, &Run::plain());
     let reading = sketch::read(&ink, &classes, &mut report);
     let spec = sketch::SketchSpec::default();
     sketch::build(&reading, &spec, Seed::new(seed), &Run::plain(), &mut report).expect("not cancelled").plant

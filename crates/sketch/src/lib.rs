@@ -27,9 +27,9 @@ mod template;
 
 pub use build::{Built, build, build_again};
 pub use classify::{
-    Classified, ModelError, StrokeFeatures, StrokeFigures, StrokeModelTexts, StrokeRow, StrokeSource,
-    classify, classify_unknown, cross_validate_strokes, features, read_stroke_table, train_strokes,
-    write_stroke_table,
+    Classified, KeptMeasures, ModelError, StrokeFeatures, StrokeFigures, StrokeModelTexts, StrokeRow,
+    StrokeSource, classify, classify_again, cross_validate_strokes, features, read_stroke_table,
+    train_strokes, write_stroke_table,
 };
 pub use clean::{Ink, InkMap, InkStroke, clean};
 pub use drawing::{Drawing, InkSample, Stroke, StrokeMode};

@@ -61,7 +61,7 @@ pub(crate) fn organs(
             (if of_photo(o).is_some() { slot.traced() } else { slot }, i)
         })
         .collect();
-    order.sort_by_key(|&(slot, _)| slot);
+    base::sort_by_key(&mut order, |&(slot, _)| slot);
     let groups = groups(&order, |i| shapes[plant.organs[i].shape.index()].positions.len());
     let meshes = map_indexed(run.executor, groups.len(), |g| {
         run.cancel.check()?;

@@ -173,7 +173,7 @@ pub(crate) fn model(
     let mut model = Model { name: name.to_owned(), ..Model::default() };
     meshes.retain(|(_, m)| !m.triangles.is_empty());
     // Stable: meshes of one slot keep their order.
-    meshes.sort_by_key(|(slot, _)| *slot);
+    base::sort_by_key(&mut meshes, |(slot, _)| *slot);
     let mut rest = meshes.as_slice();
     while let Some(&(slot, ref first)) = rest.first() {
         let n = rest.iter().take_while(|(s, _)| *s == slot).count();

@@ -10,7 +10,7 @@ use document::{Photo, PlantEdit};
 use glam::DVec2;
 use mesh::{Model, Texture};
 use plant::Plant;
-use sketch::{Built, Classified, Drawing, Ink, KeptBodies, Reading, SketchSpec};
+use sketch::{Built, Classified, Drawing, Ink, KeptBodies, KeptMeasures, Reading, SketchSpec};
 use skin::{KeptShapes, SkinSpec, Traced};
 
 use crate::make::{ClassOverrides, MakeError, SketchOptions};
@@ -47,6 +47,8 @@ pub struct FrontView {
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Evaluator {
+    /// Measures of the strokes of the last drawing.
+    measures: KeptMeasures,
     strokes: Option<Kept<Drawing, (Ink, Vec<Classified>)>>,
     reading: Option<Kept<ClassOverrides, Reading>>,
     /// Bodies of the contours of the last plant.
@@ -121,8 +123,9 @@ impl Evaluator {
                 return Err(MakeError::NoStrokes { name: drawing.name.clone(), strokes: count });
             }
             let known = self.known(drawing, &ink);
-            let classes =
-                report.stage("classify", run.clock, |_| sketch::classify_unknown(&ink, &known, run));
+            let classes = report.stage("classify", run.clock, |_| {
+                sketch::classify_again(&ink, &known, &mut self.measures, run)
+            });
             run.cancel.check()?;
             self.reading = None;
             self.strokes =

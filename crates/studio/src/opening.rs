@@ -188,7 +188,7 @@ fn placed(plant: &Plant, flower: &Flower, organs: &[&Organ], dye: [f32; 3]) -> O
         .collect();
     let count = u32::try_from(blades.len()).ok().filter(|&n| n > 0)?;
     // Long petals are the outer ones.
-    blades.sort_by(|a, b| b.0.total_cmp(&a.0));
+    base::sort_by(&mut blades, |a, b| b.0.total_cmp(&a.0));
     let rings = flower.whorls.clamp(1, count);
     let each = count.div_ceil(rings) as usize;
     let disc = organs.iter().filter(|o| o.kind == OrganKind::Disc).find_map(|o| {

@@ -123,7 +123,7 @@ pub fn branch_rows(plant: &Plant, most_order: u32) -> Vec<BranchRow> {
         .filter(|(axis, _)| plant.axis(*axis).order <= most_order)
         .map(|(axis, path)| row(plant, axis, path))
         .collect();
-    rows.sort_by(|a, b| a.path.cmp(&b.path));
+    base::sort_by(&mut rows, |a, b| a.path.cmp(&b.path));
     rows
 }
 

@@ -82,8 +82,8 @@ impl Borne {
         let organs = organs.filter_map(|(i, o)| Some((standing_on(plant, o.bearer?), i)));
         let (mut axes, mut organs): (Vec<_>, Vec<_>) = (axes.collect(), organs.collect());
         // Stable: in the order of the plant at each node.
-        axes.sort_by_key(|(node, _)| *node);
-        organs.sort_by_key(|(node, _)| *node);
+        base::sort_by_key(&mut axes, |(node, _)| *node);
+        base::sort_by_key(&mut organs, |(node, _)| *node);
         Self { axes, organs }
     }
 

@@ -104,7 +104,7 @@ pub(super) fn radius_exponent(plant: &Plant, shoot: &[bool]) -> Option<RadiusExp
         above.extend(internodes(axis).skip(skip).map(|(i, j)| (i, plant.nodes.radius_m[j])));
     }
     above.retain(|(_, r)| *r > 0.0);
-    above.sort_by_key(|(node, _)| *node);
+    base::sort_by_key(&mut above, |(node, _)| *node);
     let mut forks = Vec::new();
     let mut from = 0;
     for group in above.chunk_by(|a, b| a.0 == b.0) {

@@ -42,13 +42,50 @@ const TOUCH: f64 = 0.03;
 /// assert!((rows[0].gap - 1.0).abs() < 1e-9);
 /// ```
 pub fn features(ink: &Ink, run: &Run<'_>) -> Vec<StrokeFeatures> {
-    Scene::new(ink, run.executor).rows(run)
+    features_again(ink, |_| true, &mut KeptMeasures::default(), run)
+}
+
+/// As [`features`], for the `wanted` strokes: of the others only what these need to know of them.
+pub(super) fn features_again(
+    ink: &Ink,
+    wanted: impl Fn(usize) -> bool,
+    kept: &mut KeptMeasures,
+    run: &Run<'_>,
+) -> Vec<StrokeFeatures> {
+    let wanted: Vec<bool> = (0..ink.strokes.len()).map(wanted).collect();
+    let scene = Scene::new(ink, &wanted, kept, run.executor);
+    let rows = scene.rows(&wanted, run);
+    kept.keep(ink, scene);
+    rows
+}
+
+/// What the strokes of a drawing measure on their own, kept for the next look at it: a stroke that is drawn leaves the
+/// others as they are, unless it widens the drawing. Changes no result.
+#[derive(Clone, Debug, Default)]
+pub struct KeptMeasures(Vec<(Vec<DVec2>, Shape, StrokeFeatures)>);
+
+impl KeptMeasures {
+    /// The stroke in this place, if it was there before.
+    fn take(&mut self, i: usize, points: &[DVec2]) -> Option<(Shape, StrokeFeatures)> {
+        let (_, shape, row) = self.0.get_mut(i).filter(|k| k.0 == points)?;
+        Some((core::mem::take(shape), *row))
+    }
+
+    fn keep(&mut self, ink: &Ink, scene: Scene) {
+        self.0.clear();
+        // What is enclosed depends on the others where there are more.
+        if ink.strokes.len() <= MOST_REGIONS {
+            let points = ink.strokes.iter().map(|s| s.points.clone());
+            self.0.extend(points.zip(scene.shapes).zip(scene.rows).map(|((p, s), r)| (p, s, r)));
+        }
+    }
 }
 
 /// With how many others each stroke is compared.
 #[cfg(test)]
 pub(super) fn companion_counts(ink: &Ink) -> Vec<usize> {
-    Scene::new(ink, &base::Serial).companions.iter().map(Vec::len).collect()
+    let scene = Scene::new(ink, &vec![true; ink.strokes.len()], &mut KeptMeasures::default(), &base::Serial);
+    scene.companions.iter().map(Vec::len).collect()
 }
 
 struct Scene {
@@ -59,7 +96,8 @@ struct Scene {
     ink: f64,
     longest: f64,
     body: Body,
-    /// What the hull of all the other strokes encloses, a stroke each; in a drawing of very many that of all strokes.
+    /// What the hull of all the other strokes encloses, for each stroke that is wanted; in a drawing of very many that
+    /// of all strokes.
     amid: Vec<Region>,
 }
 
@@ -140,9 +178,19 @@ fn distance_to(s: &Shape, p: DVec2, reach: f64) -> (f64, usize) {
 }
 
 impl Scene {
-    fn new(ink: &Ink, executor: &dyn Executor) -> Self {
-        let measured = map_indexed(executor, ink.strokes.len(), |i| shape(&ink.strokes[i].points));
-        let (mut shapes, rows): (Vec<Shape>, Vec<StrokeFeatures>) = measured.into_iter().unzip();
+    fn new(ink: &Ink, wanted: &[bool], kept: &mut KeptMeasures, executor: &dyn Executor) -> Self {
+        let n = ink.strokes.len();
+        let mut known: Vec<Option<(Shape, StrokeFeatures)>> = Vec::new();
+        if n <= MOST_REGIONS {
+            known.extend(ink.strokes.iter().enumerate().map(|(i, s)| kept.take(i, &s.points)));
+        }
+        known.resize_with(n, || None);
+        let fresh: Vec<usize> = (0..n).filter(|&i| known[i].is_none()).collect();
+        let measured = map_indexed(executor, fresh.len(), |k| shape(&ink.strokes[fresh[k]].points));
+        for (i, (shape, row)) in fresh.into_iter().zip(measured) {
+            known[i] = Some((shape, row));
+        }
+        let (mut shapes, rows): (Vec<Shape>, Vec<StrokeFeatures>) = known.into_iter().flatten().unzip();
         enclose(&mut shapes);
         let low = shapes.iter().fold(DVec2::INFINITY, |a, s| a.min(s.min));
         let high = shapes.iter().fold(DVec2::NEG_INFINITY, |a, s| a.max(s.max));
@@ -151,36 +199,37 @@ impl Scene {
         let longest = shapes.iter().fold(0.0_f64, |a, s| a.max(s.length));
         let companions = companions(&shapes);
         let body = body(&shapes);
-        let amid = amid(&shapes);
+        let amid = amid(&shapes, wanted);
         Self { shapes, rows, companions, size, ink: total, longest, body, amid }
     }
 
-    fn rows(mut self, run: &Run<'_>) -> Vec<StrokeFeatures> {
-        let mut rows = core::mem::take(&mut self.rows);
+    fn rows(&self, wanted: &[bool], run: &Run<'_>) -> Vec<StrokeFeatures> {
         let ranks = ranks(&self.shapes);
-        let alone = map_indexed(run.executor, rows.len(), |i| {
-            let mut f = rows[i];
+        let alone = map_indexed(run.executor, wanted.len(), |i| {
+            let mut f = self.rows[i];
             if run.cancel.check().is_err() {
                 return (Told { corners: f.corners, gap: f.gap, pair: 0.0, held: 0.0 }, f);
             }
             self.place(i, ranks[i], &mut f);
-            self.alike(i, &mut f);
-            self.sides(i, &mut f);
-            let even = self.partner(i, &mut f);
-            let pair = if f.upright > 0.6 && f.length > 0.2 { even } else { 0.0 };
+            let upright = f.upright > 0.6 && f.length > 0.2;
+            let even = if upright || wanted[i] { self.partner(i, &mut f) } else { 0.0 };
+            let pair = if upright { even } else { 0.0 };
             (Told { corners: f.corners, gap: f.gap, pair, held: 0.0 }, f)
         });
-        let mut told: Vec<Told>;
-        (told, rows) = alone.into_iter().unzip();
+        let (mut told, mut rows): (Vec<Told>, Vec<StrokeFeatures>) = alone.into_iter().unzip();
         let among = map_indexed(run.executor, rows.len(), |i| {
             let mut f = rows[i];
             if run.cancel.check().is_err() {
                 return (0.0, f);
             }
-            self.around(i, &told, &mut f);
-            let held = self.holding(i, &told, &mut f);
-            self.meeting(i, &told, &mut f);
-            (held, f)
+            if wanted[i] {
+                self.alike(i, &mut f);
+                self.sides(i, &mut f);
+                self.around(i, &told, &mut f);
+                self.holding(i, &told, &mut f);
+                self.meeting(i, &told, &mut f);
+            }
+            (self.held(i), f)
         });
         for ((told, row), (held, f)) in told.iter_mut().zip(&mut rows).zip(among) {
             (told.held, *row) = (held, f);
@@ -254,10 +303,17 @@ impl Scene {
         }
     }
 
-    /// What holds it, and how many strokes it holds.
-    fn holding(&self, i: usize, told: &[Told], f: &mut StrokeFeatures) -> f64 {
+    /// How many strokes it holds.
+    fn held(&self, i: usize) -> f64 {
         let s = &self.shapes[i];
-        let mut held_here = 0.0;
+        let holds = |o: &Shape| o.length < s.length && part_inside(o, &s.region, s) > 0.7;
+        let held = self.companions[i].iter().filter(|&&j| s.round > 0.1 && holds(&self.shapes[j]));
+        to_f64(held.count())
+    }
+
+    /// What holds it.
+    fn holding(&self, i: usize, told: &[Told], f: &mut StrokeFeatures) {
+        let s = &self.shapes[i];
         for &j in &self.companions[i] {
             let o = &self.shapes[j];
             if o.hull_area > 0.02 * o.length * o.length && o.length > s.length {
@@ -274,14 +330,10 @@ impl Scene {
                     f.inside_corners = told[j].corners;
                 }
             }
-            if s.round > 0.1 && o.length < s.length && part_inside(o, &s.region, s) > 0.7 {
-                held_here += 1.0;
-            }
         }
         f.is_body = if self.body.members.contains(&i) { 1.0 } else { 0.0 };
         f.in_body = share_inside(s, &self.body.region);
         f.amid = self.amid.get(i).or(self.amid.first()).map_or(0.0, |region| share_inside(s, region));
-        held_here
     }
 
     /// How its ends meet other strokes, and theirs meet it.
@@ -446,26 +498,33 @@ impl Scene {
 }
 
 /// See [`Scene::amid`].
-fn amid(shapes: &[Shape]) -> Vec<Region> {
+fn amid(shapes: &[Shape], wanted: &[bool]) -> Vec<Region> {
     let both = |a: &[DVec2], b: &[DVec2]| {
         let mut corners = [a, b].concat();
-        corners.sort_by(left_to_right);
+        base::sort_by(&mut corners, left_to_right);
         hull_of_sorted(corners)
     };
     if shapes.len() > COMPANIONS + 1 {
         let all: Vec<DVec2> = shapes.iter().flat_map(|s| s.hull.iter().copied()).collect();
         return vec![Region::new(&convex_hull(&all))];
     }
+    let mut regions = vec![Region::default(); shapes.len()];
+    let is_wanted = |w: &bool| *w;
+    let Some((first, last)) = wanted.iter().position(is_wanted).zip(wanted.iter().rposition(is_wanted))
+    else {
+        return regions;
+    };
     // Hulls of the strokes after each, then of those before it.
     let mut after = vec![Vec::new(); shapes.len() + 1];
-    for (i, s) in shapes.iter().enumerate().rev() {
-        after[i] = both(&after[i + 1], &s.hull);
+    for i in (first + 1..shapes.len()).rev() {
+        after[i] = both(&after[i + 1], &shapes[i].hull);
     }
     let mut before = Vec::new();
-    let mut regions = Vec::with_capacity(shapes.len());
-    for (s, after) in shapes.iter().zip(after.iter().skip(1)) {
-        regions.push(Region::new(&both(&before, after)));
-        before = both(&before, &s.hull);
+    for i in 0..=last {
+        if wanted[i] {
+            regions[i] = Region::new(&both(&before, &after[i + 1]));
+        }
+        before = both(&before, &shapes[i].hull);
     }
     regions
 }
@@ -474,11 +533,8 @@ fn amid(shapes: &[Shape]) -> Vec<Region> {
 fn enclose(shapes: &mut [Shape]) {
     for &i in by_length(shapes).iter().take(MOST_REGIONS) {
         let Some(s) = shapes.get_mut(i) else { continue };
-        if s.round > 0.1 {
-            s.region = Region::new(&s.points.iter().copied().step_by(2).collect::<Vec<_>>());
-        }
-        if s.hull_area > 0.02 * s.length * s.length {
-            s.hull_region = Region::new(&s.hull);
+        if !core::mem::replace(&mut s.enclosed, true) {
+            s.enclose();
         }
     }
 }
@@ -486,7 +542,7 @@ fn enclose(shapes: &mut [Shape]) {
 /// Numbers of the strokes, longest first.
 fn by_length(shapes: &[Shape]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..shapes.len()).collect();
-    order.sort_by(|&a, &b| shapes[b].length.total_cmp(&shapes[a].length).then(a.cmp(&b)));
+    base::sort_by(&mut order, |&a, &b| shapes[b].length.total_cmp(&shapes[a].length).then(a.cmp(&b)));
     order
 }
 
@@ -595,7 +651,7 @@ fn companions(shapes: &[Shape]) -> Vec<Vec<usize>> {
             }
             near.sort_unstable();
             near.dedup();
-            near.sort_by(|&a, &b| {
+            base::sort_by(&mut near, |&a, &b| {
                 let far = |j: usize| shapes[j].middle.distance_squared(shapes[i].middle);
                 far(a).total_cmp(&far(b)).then(a.cmp(&b))
             });

@@ -214,9 +214,21 @@ pub(super) struct Shape {
     /// Area with the ends joined.
     pub(super) area: f64,
     pub(super) round: f64,
+    /// The regions are made.
+    pub(super) enclosed: bool,
 }
 
 impl Shape {
+    /// Makes its regions.
+    pub(super) fn enclose(&mut self) {
+        if self.round > 0.1 {
+            self.region = Region::new(&self.points.iter().copied().step_by(2).collect::<Vec<_>>());
+        }
+        if self.hull_area > 0.02 * self.length * self.length {
+            self.hull_region = Region::new(&self.hull);
+        }
+    }
+
     pub(super) fn size(&self) -> DVec2 {
         self.max - self.min
     }
@@ -459,7 +471,7 @@ fn perimeter(polygon: &[DVec2]) -> f64 {
 /// Andrew's monotone chain, counter-clockwise.
 pub(super) fn convex_hull(points: &[DVec2]) -> Vec<DVec2> {
     let mut sorted = points.to_vec();
-    sorted.sort_by(left_to_right);
+    base::sort_by(&mut sorted, left_to_right);
     hull_of_sorted(sorted)
 }
 

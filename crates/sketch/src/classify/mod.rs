@@ -18,7 +18,7 @@ mod svm;
 mod table;
 mod training;
 
-pub use context::features;
+pub use context::{KeptMeasures, features};
 pub use features::StrokeFeatures;
 pub use model::Classified;
 pub use svm::ModelError;
@@ -59,14 +59,23 @@ fn trained() -> Option<&'static StrokeModels> {
 /// assert!((0.0..=1.0).contains(&classes[0].confidence));
 /// ```
 pub fn classify(ink: &Ink, run: &Run<'_>) -> Vec<Classified> {
-    classify_unknown(ink, &[], run)
+    classify_again(ink, &[], &mut KeptMeasures::default(), run)
 }
 
-/// As [`classify`], but strokes whose class is known keep it: `known[i]` stands for `ink.strokes[i]`, strokes beyond
-/// its end are unknown. For looks at a drawing that grows: a new stroke may change what the others are, and this does
-/// not look again.
-pub fn classify_unknown(ink: &Ink, known: &[Option<Classified>], run: &Run<'_>) -> Vec<Classified> {
-    let rows = features(ink, run);
+/// As [`classify`], of a drawing that grows: strokes whose class is known keep it, and strokes that are as they were
+/// are not measured again.
+///
+/// `known[i]` stands for `ink.strokes[i]`, strokes beyond its end are unknown: a new stroke may change what the others
+/// are, and where their class is known this does not look again. `kept`: from the look before, or empty; it changes no
+/// answer.
+pub fn classify_again(
+    ink: &Ink,
+    known: &[Option<Classified>],
+    kept: &mut KeptMeasures,
+    run: &Run<'_>,
+) -> Vec<Classified> {
+    let unknown = |i: usize| known.get(i).is_none_or(Option::is_none);
+    let rows = context::features_again(ink, unknown, kept, run);
     // Crowns and trunks are told by what stands around them: a line by itself, the first that anybody draws, is a stem.
     if let ([row], None | Some(None)) = (rows.as_slice(), known.first())
         && row.gap > LONE_LINE

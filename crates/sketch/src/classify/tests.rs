@@ -202,6 +202,34 @@ fn petal_of_a_flower_is_closed_and_its_stem_a_line() {
 }
 
 #[test]
+fn a_second_look_measures_what_a_first_one_does() {
+    let mut stream = Seed::new(5).stream(Draw::Test);
+    let mut ink = Ink::default();
+    let mut kept = KeptMeasures::default();
+    let none = Run::plain();
+    // Across the number from which strokes are compared with some others only.
+    for n in 1..=56 {
+        let root = DVec2::new(stream.uniform(), stream.uniform());
+        let tip = root + DVec2::new(stream.range(-0.3, 0.3), stream.range(-0.3, 0.3));
+        let points = if n % 3 == 0 {
+            vec![root, (root + tip) * 0.51, tip]
+        } else {
+            petal(root, tip, 0.05, &mut stream)
+        };
+        ink.strokes.push(InkStroke { points, ..InkStroke::default() });
+        if n % 20 == 0 {
+            ink.strokes.remove(n / 4);
+        }
+        let wanted: Vec<bool> = ink.strokes.iter().map(|_| stream.uniform() < 0.4).collect();
+        let (again, fresh) =
+            (context::features_again(&ink, |i| wanted[i], &mut kept, &none), features(&ink, &none));
+        for (i, (a, b)) in again.iter().zip(&fresh).enumerate().filter(|(i, _)| wanted[*i]) {
+            assert_eq!(a.values().map(f64::to_bits), b.values().map(f64::to_bits), "stroke {i} of {n}");
+        }
+    }
+}
+
+#[test]
 fn a_cancelled_run_judges_nothing() {
     let line = |x: f64| (0..9).map(|i| DVec2::new(x, f64::from(i))).collect::<Vec<_>>();
     let ink = clean(&Drawing::from_polylines("stems", &[line(0.0), line(5.0)]), &mut Report::default());

@@ -79,7 +79,7 @@ pub(crate) fn branch_depths(plans: &mut Plans, mode: BranchDepth, seed: Seed) {
     for (row, borne) in children.iter_mut().enumerate() {
         let Some(parent) = plans.rows[row].clone().filter(|_| !borne.is_empty()) else { continue };
         // Neighbours along the bearer become neighbours in the list.
-        borne.sort_by_key(|&c| plans.rows[c].as_ref().map_or(0, |p| p.bearer.map_or(0, |b| b.1)));
+        base::sort_by_key(borne, |&c| plans.rows[c].as_ref().map_or(0, |p| p.bearer.map_or(0, |b| b.1)));
         let seen: Vec<(Child, DVec2, DVec2)> = borne
             .iter()
             .filter_map(|&c| {

@@ -187,7 +187,7 @@ impl Organs<'_, '_> {
                 (ops::atan2(middle.perp_dot(d), middle.dot(d)), i, p)
             })
             .collect();
-        petals.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        base::sort_by(&mut petals, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let front = petals
             .iter()
             .enumerate()

@@ -403,7 +403,7 @@ fn near_first(targets: &mut Vec<DVec3>, sites: &[Site]) {
         .iter()
         .map(|t| (sites.iter().map(|s| s.at.distance_squared(*t)).fold(f64::INFINITY, f64::min), *t))
         .collect();
-    keyed.sort_by(|a, b| a.0.total_cmp(&b.0));
+    base::sort_by(&mut keyed, |a, b| a.0.total_cmp(&b.0));
     targets.clear();
     targets.extend(keyed.into_iter().map(|(_, t)| t));
 }

@@ -48,7 +48,7 @@ impl Leaves<'_> {
         let mut stream = self.seed.stream(Draw::Attractors);
         let mut middles = scatter_front(v, self.leaves, (0.25 * length, 0.75), &mut stream);
         // From the bearer outwards, so that twigs grown for near leaves carry the far ones.
-        middles.sort_by(|a, b| {
+        base::sort_by(&mut middles, |a, b| {
             let near =
                 |t: &DVec3| sites.iter().map(|s| s.at.distance_squared(*t)).fold(f64::INFINITY, f64::min);
             near(a).total_cmp(&near(b))

@@ -191,7 +191,7 @@ fn bearers(plant: &mut Plant, region: &RegionReading, ctx: &FillContext<'_>, vol
     let mut axes: Vec<AxisId> = known.collect();
     axes.dedup();
     // The trunk first: of the lowest order, then the one with the lowest foot.
-    axes.sort_by(|&a, &b| {
+    base::sort_by(&mut axes, |&a, &b| {
         let foot = |x| plant.axis_points(x).first().map_or(0.0, |p: &DVec3| p.y);
         plant.axis(a).order.cmp(&plant.axis(b).order).then(foot(a).total_cmp(&foot(b)))
     });

@@ -215,7 +215,7 @@ pub(super) fn tip(outline: &[DVec2], root: DVec2) -> DVec2 {
         base::ops::atan2(a.perp_dot(b), a.dot(b)).abs()
     };
     let mut order: Vec<(f64, usize)> = (0..n).map(|i| (turn(i), i)).collect();
-    order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    base::sort_by(&mut order, |a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
     // Of a round petal's far side the middle counts, not a corner that is a little farther away.
     let out = (geom::centroid(outline) - root).normalize_or_zero();
     let reach = |p: DVec2| 0.5 * (p - root).dot(out) + 0.5 * p.distance(root);

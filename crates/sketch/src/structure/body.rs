@@ -222,7 +222,7 @@ impl Mask {
             }
         }
         for (row, list) in rows.iter_mut().enumerate() {
-            list.sort_by(|a, b| a.0.total_cmp(&b.0));
+            base::sort_by(list, |a, b| a.0.total_cmp(&b.0));
             let mut winding = 0;
             for w in list.windows(2) {
                 winding += w[0].1;

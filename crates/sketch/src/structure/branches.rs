@@ -186,7 +186,7 @@ impl Forest {
         lines.retain(|l| l.points.len() >= 2 && polyline_length(&l.points) > 1e-6);
         let length: Vec<f64> = lines.iter().map(|l| polyline_length(&l.points)).collect();
         let mut order: Vec<usize> = (0..lines.len()).collect();
-        order.sort_by(|&a, &b| length[b].total_cmp(&length[a]).then(a.cmp(&b)));
+        base::sort_by(&mut order, |&a, &b| length[b].total_cmp(&length[a]).then(a.cmp(&b)));
         // Dense drawings are drawn with finer gaps; this also bounds how many lines an end can touch.
         #[expect(clippy::cast_precision_loss, reason = "a count")]
         let touch = TOUCH.min(0.7 / (lines.len() as f64).sqrt());
@@ -435,9 +435,9 @@ fn contacts(lines: &[Line], order: &[usize], touch: f64) -> Vec<Vec<Contact>> {
                     hits.push((e.owner, d));
                 }
             });
-            hits.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+            base::sort_by(&mut hits, |a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
             hits.dedup_by_key(|h| h.0);
-            hits.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
+            base::sort_by(&mut hits, |a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
             for (i, _) in hits.into_iter().take(MOST_CONTACTS) {
                 if let Some(c) = closest_on_polyline(&lines[i].points, p).filter(|c| c.distance <= touch) {
                     found[i].push(Contact { line: j, last, distance: c.distance });
@@ -462,7 +462,7 @@ fn seed_order(lines: &[Line], length: &[f64], order: &[usize], hints: &Hints, fl
         })
         .collect();
     let mut seeds = order.to_vec();
-    seeds.sort_by(|&a, &b| score[b].total_cmp(&score[a]).then(a.cmp(&b)));
+    base::sort_by(&mut seeds, |&a, &b| score[b].total_cmp(&score[a]).then(a.cmp(&b)));
     seeds
 }
 

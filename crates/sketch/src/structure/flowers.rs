@@ -472,7 +472,7 @@ pub(super) fn whorls(draft: &Draft<'_>, flower: &FlowerDraft, roots: &[DVec2]) -
         })
         .collect();
     let mut order: Vec<usize> = (0..petals.len()).collect();
-    order.sort_by(|&a, &b| petals[b].0.total_cmp(&petals[a].0).then(a.cmp(&b)));
+    base::sort_by(&mut order, |&a, &b| petals[b].0.total_cmp(&petals[a].0).then(a.cmp(&b)));
     let mut whorl = vec![0_u32; petals.len()];
     if petals.len() > 300 {
         return whorl;

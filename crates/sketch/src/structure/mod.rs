@@ -456,7 +456,7 @@ impl<'a> Draft<'a> {
             })
             .chain(skipped)
             .collect();
-        strokes.sort_by_key(|s| s.index);
+        base::sort_by_key(&mut strokes, |s| s.index);
         Reading { strokes, axes: self.forest.axes, flowers, leaves, regions, fruits, thorns, woody }
     }
 

@@ -84,7 +84,7 @@ pub(super) fn bodies(draft: &mut Draft<'_>) {
         }
     }
     // The largest first: arms stand on it.
-    found.sort_by(|a, b| b.0.total_cmp(&a.0));
+    base::sort_by(&mut found, |a, b| b.0.total_cmp(&a.0));
     for (i, (_, ring)) in found.iter().enumerate() {
         let base = arm_base(&draft.forest, ring, i > 0);
         let source = ring.parts.first().map(|&p| draft.ink.strokes[strokes[p]].index);

@@ -72,7 +72,7 @@ fn match_ends(strokes: &[&[DVec2]]) -> Vec<usize> {
         .flat_map(|a| (a + 1..n).map(move |b| (a, b)))
         .map(|(a, b)| (end(a).distance(end(b)), a, b))
         .collect();
-    pairs.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
+    base::sort_by(&mut pairs, |x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
     let mut mate: Vec<Option<usize>> = vec![None; n];
     // The chain that each stroke belongs to, named by its lowest stroke.
     let mut chain: Vec<usize> = (0..strokes.len()).collect();

@@ -16,7 +16,7 @@ pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) 
         plant.nodes.position[rows].windows(2).map(|w| w[0].distance(w[1])).sum::<f64>()
     };
     let mut lengths: Vec<f64> = plant.axes.iter().map(length).collect();
-    lengths.sort_by(|a, b| b.total_cmp(a));
+    base::sort_by(&mut lengths, |a, b| b.total_cmp(a));
     let kept_axes = lengths.len() >> level.saturating_sub(1);
     let least = if level < 2 { 0.0 } else { lengths.get(kept_axes).copied().unwrap_or(0.0) };
     let mut copy = Plant {
