@@ -77,7 +77,7 @@ fn meeting_boxes(segments: &[(DVec2, DVec2)], mut f: impl FnMut(usize, usize) ->
     let boxes: Vec<(DVec2, DVec2)> =
         segments.iter().map(|&(a, b)| (flat(a.min(b)), flat(a.max(b)))).collect();
     let mut order: Vec<usize> = (0..segments.len()).collect();
-    base::sort_by(&mut order, |&i, &j| boxes[i].0.x.total_cmp(&boxes[j].0.x).then(i.cmp(&j)));
+    order.sort_by(|&i, &j| boxes[i].0.x.total_cmp(&boxes[j].0.x).then(i.cmp(&j)));
     let mut open: Vec<usize> = Vec::new();
     for i in order {
         let (lo, hi) = boxes[i];
@@ -282,7 +282,7 @@ fn tidy(segments: &mut Vec<(DVec2, DVec2)>) {
         }
     }
     segments.retain(|s| s.0 != s.1);
-    base::sort_by(segments, |s, t| order(s.0, t.0).then(order(s.1, t.1)));
+    segments.sort_by(|s, t| order(s.0, t.0).then(order(s.1, t.1)));
     segments.dedup();
 }
 
@@ -311,7 +311,7 @@ fn apply_cuts(segments: &[(DVec2, DVec2)], mut cuts: Vec<(usize, DVec2)>) -> Vec
 /// The largest simple polygon on the outer side of a connected net of segments that meet at their ends only.
 fn outer_polygon(net: Vec<(DVec2, DVec2)>) -> Vec<DVec2> {
     let mut knots: Vec<DVec2> = net.iter().flat_map(|&(a, b)| [a, b]).collect();
-    base::sort_by(&mut knots, |&p, &q| order(p, q));
+    knots.sort_by(|&p, &q| order(p, q));
     knots.dedup();
     let knot = |p: DVec2| knots.partition_point(|&q| order(q, p).is_lt());
     let mut neighbours: Vec<Vec<usize>> = vec![vec![]; knots.len()];

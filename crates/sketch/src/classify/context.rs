@@ -501,7 +501,7 @@ impl Scene {
 fn amid(shapes: &[Shape], wanted: &[bool]) -> Vec<Region> {
     let both = |a: &[DVec2], b: &[DVec2]| {
         let mut corners = [a, b].concat();
-        base::sort_by(&mut corners, left_to_right);
+        corners.sort_by(left_to_right);
         hull_of_sorted(corners)
     };
     if shapes.len() > COMPANIONS + 1 {

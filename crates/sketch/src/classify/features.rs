@@ -471,7 +471,7 @@ fn perimeter(polygon: &[DVec2]) -> f64 {
 /// Andrew's monotone chain, counter-clockwise.
 pub(super) fn convex_hull(points: &[DVec2]) -> Vec<DVec2> {
     let mut sorted = points.to_vec();
-    base::sort_by(&mut sorted, left_to_right);
+    sorted.sort_by(left_to_right);
     hull_of_sorted(sorted)
 }
 

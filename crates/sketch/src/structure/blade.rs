@@ -214,16 +214,15 @@ pub(super) fn tip(outline: &[DVec2], root: DVec2) -> DVec2 {
         let (a, b) = (at(i) - at(i + n - 3), at(i + 3) - at(i));
         base::ops::atan2(a.perp_dot(b), a.dot(b)).abs()
     };
-    let mut order: Vec<(f64, usize)> = (0..n).map(|i| (turn(i), i)).collect();
-    base::sort_by(&mut order, |a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    let mut sharpest: Vec<(f64, usize)> = (0..n).map(|i| (turn(i), i)).filter(|t| t.0 > POINTED).collect();
+    base::sort_by(&mut sharpest, |a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
     // Of a round petal's far side the middle counts, not a corner that is a little farther away.
     let out = (geom::centroid(outline) - root).normalize_or_zero();
     let reach = |p: DVec2| 0.5 * (p - root).dot(out) + 0.5 * p.distance(root);
     let farthest = even.iter().copied().max_by(|a, b| reach(*a).total_cmp(&reach(*b))).unwrap_or(farthest);
-    let sharp = order
+    let sharp = sharpest
         .iter()
         .take(SHARPEST)
-        .filter(|o| o.0 > POINTED)
         .map(|&(_, i)| even[i])
         .max_by(|a, b| reach(*a).total_cmp(&reach(*b)))
         .unwrap_or(farthest);
