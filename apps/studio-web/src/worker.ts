@@ -31,6 +31,12 @@ function fault(e: unknown): void {
   tell({ kind: 'fault', why: words(e) });
 }
 
+/** What is told apart by a tag, as the core reads it: its name and in it the rest. */
+function named<K extends string>(tag: K, told: Record<K, string>): string {
+  const { [tag]: name, ...rest } = told;
+  return JSON.stringify({ [name]: rest });
+}
+
 function answer(s: StudioSession, request: Request): unknown {
   switch (request.kind) {
     case 'open': return JSON.parse(s.open(request.name, request.bytes, request.row, request.fresh));
@@ -38,9 +44,9 @@ function answer(s: StudioSession, request: Request): unknown {
     case 'select': return s.select(request.plant);
     case 'obstacle': return s.add_obstacle(request.name, request.bytes);
     case 'schema': return studioSchema();
-    case 'command': return s.run(JSON.stringify(request.command));
+    case 'command': return s.run(named('do', request.command));
     case 'begin': return s.begin(request.name);
-    case 'stage': return s.stage(JSON.stringify(request.command));
+    case 'stage': return s.stage(named('do', request.command));
     case 'commit': return s.commit();
     case 'abandon': return s.abandon();
     case 'undo': return s.undo();
@@ -54,7 +60,7 @@ function answer(s: StudioSession, request: Request): unknown {
     case 'photo': return s.place_photo(request.png, request.x, request.y, request.width);
     case 'copy': return s.copy(Uint32Array.from(request.ids));
     case 'skeleton': return s.skeleton();
-    case 'shape': return JSON.parse(s.shape(JSON.stringify(request.tool), JSON.stringify(request.reach), JSON.stringify(request.input)));
+    case 'shape': return JSON.parse(s.shape(named('tool', request.tool), JSON.stringify(request.reach), named('on', request.input)));
     case 'branch': return s.branch(request.axis);
     case 'share': return s.share();
     case 'export': return s.export(request.format, JSON.stringify(request.options));

@@ -21,9 +21,10 @@ use wasm_bindgen::prelude::*;
 #[wasm_bindgen(typescript_custom_section)]
 const TYPES: &str = include_str!("types.ts");
 
-/// A command as the page sends it. Those that name no plant are for the one that is chosen.
+/// A command as the page sends it: its name and in it its fields, braces also where there are none. Those that name no
+/// plant are for the one that is chosen.
 #[derive(Debug, Deserialize)]
-#[serde(tag = "do", rename_all = "kebab-case", deny_unknown_fields)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum WireCommand {
     Remove {
         ids: Vec<u32>,
@@ -58,8 +59,8 @@ pub(crate) enum WireCommand {
         opacity: f64,
         paint: bool,
     },
-    PhotoOff,
-    Clear,
+    PhotoOff {},
+    Clear {},
     Sketch {
         spec: Box<SketchSpec>,
     },
@@ -70,7 +71,7 @@ pub(crate) enum WireCommand {
         day: Option<f64>,
     },
     /// An empty document in the place of this one.
-    New,
+    New {},
     RenameScene {
         name: String,
     },
@@ -164,7 +165,7 @@ impl WireCommand {
         let here = || current.ok_or("there is no plant; add one first");
         let scene = |c| Ok(Command::Scene(c));
         match self {
-            Self::New => scene(SceneCommand::Open(Box::default())),
+            Self::New {} => scene(SceneCommand::Open(Box::default())),
             Self::RenameScene { name } => scene(SceneCommand::Rename(name.clone())),
             Self::DuplicatePlant { plant, by } => {
                 scene(SceneCommand::Duplicate(PlantId(*plant), DVec3::from_array(*by)))
@@ -274,8 +275,8 @@ impl WireCommand {
                 (photo.opacity, photo.paint) = (*opacity, *paint);
                 SketchCommand::SetPhoto(Some(Box::new(photo)))
             }
-            Self::PhotoOff => SketchCommand::SetPhoto(None),
-            Self::Clear => SketchCommand::Clear,
+            Self::PhotoOff {} => SketchCommand::SetPhoto(None),
+            Self::Clear {} => SketchCommand::Clear,
             Self::Sketch { spec } => SketchCommand::SetSketch(spec.clone()),
             Self::Skin { skin } => SketchCommand::SetSkin(skin.spec()?),
             Self::Day { day } => SketchCommand::SetDay(*day),

@@ -21,15 +21,15 @@ const COARSE_ABOVE: u64 = 40_000;
 /// Radians of a degree.
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
-/// A tool as the page names it.
+/// A tool as the page names it, its settings within.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(tag = "tool", rename_all = "kebab-case", deny_unknown_fields)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
 enum WireTool {
-    Pick,
-    Rotate,
-    Move,
+    Pick {},
+    Rotate {},
+    Move {},
     Prune { whole: bool },
-    Regrow,
+    Regrow {},
     Sketch { twigs: f64, tilt_deg: f64 },
     Brush { radius_m: f64, density: f64 },
     Silhouette { density: f64, trim: bool },
@@ -40,11 +40,11 @@ impl WireTool {
     /// None for the tool that only points.
     fn kind(self) -> Option<ToolKind> {
         Some(match self {
-            Self::Pick => return None,
-            Self::Rotate => ToolKind::Rotate,
-            Self::Move => ToolKind::Move,
+            Self::Pick {} => return None,
+            Self::Rotate {} => ToolKind::Rotate,
+            Self::Move {} => ToolKind::Move,
             Self::Prune { whole } => ToolKind::Prune { whole },
-            Self::Regrow => ToolKind::Regrow,
+            Self::Regrow {} => ToolKind::Regrow,
             Self::Sketch { twigs, tilt_deg } => ToolKind::Sketch { twigs, tilt: tilt_deg * DEGREE },
             Self::Brush { radius_m, density } => ToolKind::Brush { radius_m, density },
             Self::Silhouette { density, trim } => ToolKind::Silhouette { density, trim },
@@ -72,12 +72,12 @@ impl From<WirePointer> for Pointer {
 }
 
 #[derive(Debug, Deserialize)]
-#[serde(tag = "on", rename_all = "kebab-case", deny_unknown_fields)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
 enum WireInput {
     Down { at: WirePointer },
     Move { at: Vec<WirePointer> },
     Up { at: WirePointer },
-    Cancel,
+    Cancel {},
     Twist { degrees: f64 },
     Brush { radius_m: f64, density: f64 },
 }
@@ -154,7 +154,7 @@ impl Session {
         let said = match input {
             WireInput::Down { at } => tool.handle(plant, &Input::Down(at.into())),
             WireInput::Up { at } => tool.handle(plant, &Input::Up(at.into())),
-            WireInput::Cancel => tool.handle(plant, &Input::Cancel),
+            WireInput::Cancel {} => tool.handle(plant, &Input::Cancel),
             WireInput::Twist { degrees } => tool.handle(plant, &Input::Twist(degrees * DEGREE)),
             WireInput::Brush { radius_m, density } => tool.handle(plant, &Input::Brush(radius_m, density)),
             WireInput::Move { at } => {
@@ -180,7 +180,7 @@ impl Session {
             WireInput::Move { at } => (at.last().copied(), false),
             _ => (None, false),
         };
-        let again = matches!(input, WireInput::Cancel) && self.held.take().is_some();
+        let again = matches!(input, WireInput::Cancel {}) && self.held.take().is_some();
         let plant = self.shown_plant(id);
         let found = at.zip(plant).and_then(|(at, plant)| {
             let pick = shape::pick(plant, &Pointer::from(at).ray, reach)?;

@@ -58,8 +58,8 @@ fn a_stroke_becomes_a_plant_and_undo_takes_it_back() {
 fn the_project_is_the_same_plant_elsewhere() {
     let mut s = Session::default();
     s.open("sample.svg", &sample(), 0, false).unwrap();
-    s.run(r#"{"do":"seed","seed":"18446744073709551615"}"#).unwrap();
-    s.run(r#"{"do":"class","ids":[0],"class":"axis"}"#).unwrap();
+    s.run(r#"{"seed":{"seed":"18446744073709551615"}}"#).unwrap();
+    s.run(r#"{"class":{"ids":[0],"class":"axis"}}"#).unwrap();
     let here = look(&mut s);
     let mut other = Session::default();
     let opened = json(&other.open("x.burgeon", &s.save().unwrap(), 0, true).unwrap());
@@ -120,8 +120,8 @@ fn a_drag_is_staged_and_a_draft_leaves_no_trace() {
     let mut s = Session::default();
     let id = s.add_stroke("parts", &stem()).unwrap();
     s.begin("move").unwrap();
-    s.stage(&format!(r#"{{"do":"move","ids":[{id}],"x":5,"y":1}}"#)).unwrap();
-    s.stage(&format!(r#"{{"do":"move","ids":[{id}],"x":50,"y":0}}"#)).unwrap();
+    s.stage(&format!(r#"{{"move":{{"ids":[{id}],"x":5,"y":1}}}}"#)).unwrap();
+    s.stage(&format!(r#"{{"move":{{"ids":[{id}],"x":50,"y":0}}}}"#)).unwrap();
     s.commit();
     assert_eq!(s.stroke_points(id)[0], 50.0);
     assert_eq!(json(&s.state().unwrap())["steps"], 2);
@@ -131,7 +131,7 @@ fn a_drag_is_staged_and_a_draft_leaves_no_trace() {
     s.draft("parts", &[]).unwrap();
     let after = look(&mut s);
     assert_eq!(before["item"]["digest"], after["item"]["digest"]);
-    assert!(s.draft("crayon", &[]).is_err() && s.run(r#"{"do":"explode"}"#).is_err());
+    assert!(s.draft("crayon", &[]).is_err() && s.run(r#"{"explode":{}}"#).is_err());
 }
 
 fn photo() -> Vec<u8> {
@@ -163,15 +163,15 @@ fn traced_organs_take_the_photograph_and_others_do_not() {
     assert_eq!(uvs.len() / 2, s.column(0, part, Column::Positions).len() / 3);
     assert!(uvs.iter().all(|x| (0.0..=1.0).contains(x)));
     // A small photograph far away traces nothing; one that does not paint neither.
-    s.run(r#"{"do":"photo","x":-9000,"y":-9000,"width":1,"opacity":0.5,"paint":true}"#).unwrap();
+    s.run(r#"{"photo":{"x":-9000,"y":-9000,"width":1,"opacity":0.5,"paint":true}}"#).unwrap();
     assert_eq!(names(&look(&mut s)), names(&plain));
-    s.run(r#"{"do":"photo","x":-1e4,"y":-1e4,"width":2e4,"opacity":0.2,"paint":false}"#).unwrap();
+    s.run(r#"{"photo":{"x":-1e4,"y":-1e4,"width":2e4,"opacity":0.2,"paint":false}}"#).unwrap();
     assert_eq!(names(&look(&mut s)), names(&plain));
     let mut other = Session::default();
     other.open("p.burgeon", &s.save().unwrap(), 0, true).unwrap();
     assert_eq!(other.fresh_photo(), photo());
-    s.run(r#"{"do":"photo-off"}"#).unwrap();
-    assert!(s.run(r#"{"do":"photo","x":0,"y":0,"width":1,"opacity":0.2,"paint":true}"#).is_err());
+    s.run(r#"{"photo-off":{}}"#).unwrap();
+    assert!(s.run(r#"{"photo":{"x":0,"y":0,"width":1,"opacity":0.2,"paint":true}}"#).is_err());
     assert_eq!(s.undo().as_deref(), Some("photo"));
 }
 
@@ -184,7 +184,7 @@ fn copies_variants_levels_and_links() {
     assert!(s.copy(&[99]).is_err() && s.paste("no drawing", 0.0, 0.0).is_err());
     assert_eq!(s.paste(&text, 5.0, 0.0).unwrap(), [15, 16]);
     assert_eq!(s.stroke_points(15)[0], s.stroke_points(0)[0] + 5.0);
-    s.run(r#"{"do":"duplicate","ids":[0],"x":0,"y":1}"#).unwrap();
+    s.run(r#"{"duplicate":{"ids":[0],"x":0,"y":1}}"#).unwrap();
     assert_eq!((s.undo().as_deref(), s.undo().as_deref()), (Some("duplicate"), Some("draw")));
 
     let other = json(&s.variant("77", 0.4).unwrap());
@@ -237,12 +237,12 @@ fn a_tree_a_leaf_and_a_flower_in_one_scene() {
     );
     s.evaluate().unwrap();
     s.open("leaf1.csv", &marks(), 0, false).unwrap();
-    s.run(r#"{"do":"add","maker":"flower","name":"a rose","preset":"rose"}"#).unwrap();
+    s.run(r#"{"add":{"maker":"flower","name":"a rose","preset":"rose"}}"#).unwrap();
     let made = scene(&mut s);
     assert_eq!(made.len(), 3);
     assert!(made.iter().all(|(_, digest, error)| digest.len() > 8 && error.is_null()), "{made:?}");
     // Nothing is grown or sent again for a change elsewhere.
-    s.run(r#"{"do":"flower","settings":{"species":"rose","day":1.5}}"#).unwrap();
+    s.run(r#"{"flower":{"settings":{"species":"rose","day":1.5}}}"#).unwrap();
     let view = json(&s.evaluate().unwrap());
     let fresh: Vec<bool> = (0..3).map(|k| view["plants"][k]["fresh"].as_bool().unwrap()).collect();
     assert_eq!(fresh, [false, false, true]);
@@ -255,12 +255,12 @@ fn a_tree_a_leaf_and_a_flower_in_one_scene() {
     assert_eq!(ids.len(), made.len());
     s.select(ids[0]).unwrap();
     let before = scene(&mut s);
-    s.run(r#"{"do":"obstacle","name":"ball","shape":{"shape":"sphere","centre":[0,3,0],"radius_m":1}}"#)
+    s.run(r#"{"obstacle":{"name":"ball","shape":{"shape":"sphere","centre":[0,3,0],"radius_m":1}}}"#)
         .unwrap();
     assert_ne!(scene(&mut s)[0].1, before[0].1);
-    assert!(s.run(r#"{"do":"tree","path":"/age","value":"old"}"#).is_err());
-    assert!(s.run(r#"{"do":"tree","path":"/no/such","value":1}"#).is_err());
-    s.run(r#"{"do":"tree","path":"/clearance_m","value":-1}"#).unwrap();
+    assert!(s.run(r#"{"tree":{"path":"/age","value":"old"}}"#).is_err());
+    assert!(s.run(r#"{"tree":{"path":"/no/such","value":1}}"#).is_err());
+    s.run(r#"{"tree":{"path":"/clearance_m","value":-1}}"#).unwrap();
     assert!(scene(&mut s)[0].2.as_str().unwrap().contains("clearance_m"), "{:?}", scene(&mut s)[0]);
     s.undo();
     let model = s.export("obj", "{}").unwrap();
@@ -270,15 +270,15 @@ fn a_tree_a_leaf_and_a_flower_in_one_scene() {
     assert!(!s.obstacle(ids[0], 1).is_empty() && s.obstacle(ids[0], 0).is_empty());
     s.undo();
     s.undo();
-    s.run(&format!(r#"{{"do":"leaf-of","lender":{}}}"#, ids[1])).unwrap();
+    s.run(&format!(r#"{{"leaf-of":{{"lender":{}}}}}"#, ids[1])).unwrap();
     let borne = scene(&mut s);
     assert!(borne[0].2.is_null() && borne[0].1 != before[0].1);
     // Hidden plants are not in an export of the scene.
     let whole = s.export("glb", r#"{"whole":true}"#).unwrap();
-    s.run(&format!(r#"{{"do":"hide","plant":{},"on":true}}"#, ids[2])).unwrap();
+    s.run(&format!(r#"{{"hide":{{"plant":{},"on":true}}}}"#, ids[2])).unwrap();
     assert!(s.export("glb", r#"{"whole":true}"#).unwrap().len() < whole.len());
     assert!(s.export("mtg", "{}").unwrap().len() > 200);
-    s.run(&format!(r#"{{"do":"remove-plant","plant":{}}}"#, ids[1])).unwrap();
+    s.run(&format!(r#"{{"remove-plant":{{"plant":{}}}}}"#, ids[1])).unwrap();
     assert_eq!(scene(&mut s)[0].1, before[0].1, "its own leaf again");
     while s.undo().is_some() {}
     assert_eq!(s.document(), &Document::default());
@@ -289,13 +289,13 @@ fn a_drawn_flower_opens_and_closes() {
     let mut s = Session::default();
     s.open("sample.svg", &sample(), 0, true).unwrap();
     let drawn = look(&mut s);
-    s.run(r#"{"do":"day","day":0}"#).unwrap();
+    s.run(r#"{"day":{"day":0}}"#).unwrap();
     let bud = look(&mut s);
     assert!(bud["fresh"].as_bool().unwrap() && bud["error"].is_null(), "{}", bud["error"]);
     let days = bud["days"].as_array().unwrap();
     assert_eq!((days.len(), &bud["item"]["digest"]), (2, &drawn["item"]["digest"]));
     let closed = s.column(0, 0, Column::Positions);
-    s.run(r#"{"do":"day","day":6}"#).unwrap();
+    s.run(r#"{"day":{"day":6}}"#).unwrap();
     s.evaluate().unwrap();
     let last = s.model(PlantId(0)).unwrap().parts.len() - 1;
     let open = s.column(0, last, Column::Positions);
@@ -304,7 +304,7 @@ fn a_drawn_flower_opens_and_closes() {
     s.undo();
     assert_eq!(look(&mut s)["parts"], drawn["parts"]);
     // What was taken off the page comes back with its meshes.
-    s.run(r#"{"do":"new"}"#).unwrap();
+    s.run(r#"{"new":{}}"#).unwrap();
     assert!(look(&mut s)["parts"].as_array().unwrap().is_empty());
     s.undo();
     let back = look(&mut s);
@@ -324,9 +324,9 @@ fn hand(s: &mut Session, tool: &str, input: &str) -> Value {
 
 /// A gesture from one place to another: what it would make, and the command for it.
 fn gesture(s: &mut Session, tool: &str, from: (f64, f64), to: (f64, f64)) -> Value {
-    hand(s, tool, &format!(r#"{{"on":"down","at":{}}}"#, at(from.0, from.1)));
-    hand(s, tool, &format!(r#"{{"on":"move","at":[{}]}}"#, at(to.0, to.1)));
-    hand(s, tool, &format!(r#"{{"on":"up","at":{}}}"#, at(to.0, to.1)))
+    hand(s, tool, &format!(r#"{{"down":{{"at":{}}}}}"#, at(from.0, from.1)));
+    hand(s, tool, &format!(r#"{{"move":{{"at":[{}]}}}}"#, at(to.0, to.1)));
+    hand(s, tool, &format!(r#"{{"up":{{"at":{}}}}}"#, at(to.0, to.1)))
 }
 
 /// A bush, and the middle of one of its branches as the viewer sees it.
@@ -345,7 +345,7 @@ fn bush() -> (Session, (f64, f64)) {
 fn a_gesture_is_shown_and_is_one_step_when_it_is_asked_for() {
     let (mut s, (x, y)) = bush();
     let before = look(&mut s);
-    let looked = hand(&mut s, r#"{"tool":"pick"}"#, &format!(r#"{{"on":"down","at":{}}}"#, at(x, y)));
+    let looked = hand(&mut s, r#"{"pick":{}}"#, &format!(r#"{{"down":{{"at":{}}}}}"#, at(x, y)));
     assert!(looked["picked"]["key"]["mark"].is_object(), "{looked}");
     let axis = u32::try_from(looked["picked"]["axis"].as_u64().unwrap()).unwrap();
     let lines = s.branch(axis);
@@ -353,17 +353,17 @@ fn a_gesture_is_shown_and_is_one_step_when_it_is_asked_for() {
     // The trunk bears everything.
     assert!(s.branch(0).len() >= lines.len());
 
-    let rotate = r#"{"tool":"rotate"}"#;
-    let down = hand(&mut s, rotate, &format!(r#"{{"on":"down","at":{}}}"#, at(x, y)));
+    let rotate = r#"{"rotate":{}}"#;
+    let down = hand(&mut s, rotate, &format!(r#"{{"down":{{"at":{}}}}}"#, at(x, y)));
     assert_eq!((&down["busy"], &down["again"]), (&Value::Bool(true), &Value::Bool(false)));
-    let held = hand(&mut s, rotate, &format!(r#"{{"on":"move","at":[{}]}}"#, at(x, y + 0.4)));
+    let held = hand(&mut s, rotate, &format!(r#"{{"move":{{"at":[{}]}}}}"#, at(x, y + 0.4)));
     assert_eq!((&held["busy"], &held["again"]), (&Value::Bool(true), &Value::Bool(true)), "{held}");
     let shown = look(&mut s);
     assert_ne!(shown["item"]["digest"], before["item"]["digest"], "a look at what would be");
     assert_eq!(json(&s.state().unwrap())["plants"][0]["edits"], Value::Array(vec![]));
-    let up = hand(&mut s, rotate, &format!(r#"{{"on":"up","at":{}}}"#, at(x, y + 0.4)));
+    let up = hand(&mut s, rotate, &format!(r#"{{"up":{{"at":{}}}}}"#, at(x, y + 0.4)));
     assert_eq!(look(&mut s)["item"]["digest"], shown["item"]["digest"], "shown until it is asked for");
-    s.run(&format!(r#"{{"do":"shape","edit":{}}}"#, up["commit"])).unwrap();
+    s.run(&format!(r#"{{"shape":{{"edit":{}}}}}"#, up["commit"])).unwrap();
     let after = look(&mut s);
     assert_eq!(after["item"]["digest"], shown["item"]["digest"], "and the same then");
     assert_eq!(after["item"]["edits"][0]["done"], true);
@@ -371,27 +371,27 @@ fn a_gesture_is_shown_and_is_one_step_when_it_is_asked_for() {
     assert_eq!(look(&mut s)["item"]["digest"], before["item"]["digest"]);
     // Escape leaves nothing behind.
     gesture(&mut s, rotate, (50.0, 50.0), (51.0, 50.0));
-    hand(&mut s, rotate, &format!(r#"{{"on":"down","at":{}}}"#, at(x, y)));
-    hand(&mut s, rotate, &format!(r#"{{"on":"move","at":[{}]}}"#, at(x, y + 0.5)));
-    assert_eq!(hand(&mut s, rotate, r#"{"on":"cancel"}"#)["again"], true);
+    hand(&mut s, rotate, &format!(r#"{{"down":{{"at":{}}}}}"#, at(x, y)));
+    hand(&mut s, rotate, &format!(r#"{{"move":{{"at":[{}]}}}}"#, at(x, y + 0.5)));
+    assert_eq!(hand(&mut s, rotate, r#"{"cancel":{}}"#)["again"], true);
     assert_eq!(look(&mut s)["item"]["digest"], before["item"]["digest"]);
-    assert!(s.shape(r#"{"tool":"axe"}"#, REACH, r#"{"on":"cancel"}"#).is_err());
+    assert!(s.shape(r#"{"axe":{}}"#, REACH, r#"{"cancel":{}}"#).is_err());
 }
 
 #[test]
 fn edits_survive_a_file_and_say_when_their_branch_is_gone() {
     let (mut s, (x, y)) = bush();
     for tool in [
-        r#"{"tool":"prune","whole":false}"#,
-        r#"{"tool":"regrow"}"#,
-        r#"{"tool":"sketch","twigs":1,"tilt_deg":20}"#,
-        r#"{"tool":"brush","radius_m":0.4,"density":1}"#,
-        r#"{"tool":"leaves","radius_m":0.5,"keep":0.2}"#,
-        r#"{"tool":"move"}"#,
+        r#"{"prune":{"whole":false}}"#,
+        r#"{"regrow":{}}"#,
+        r#"{"sketch":{"twigs":1,"tilt_deg":20}}"#,
+        r#"{"brush":{"radius_m":0.4,"density":1}}"#,
+        r#"{"leaves":{"radius_m":0.5,"keep":0.2}}"#,
+        r#"{"move":{}}"#,
     ] {
         let made = gesture(&mut s, tool, (x, y), (x + 0.4, y + 0.5));
         assert!(made["commit"].is_object(), "{tool}: {made}");
-        s.run(&format!(r#"{{"do":"shape","edit":{}}}"#, made["commit"])).unwrap();
+        s.run(&format!(r#"{{"shape":{{"edit":{}}}}}"#, made["commit"])).unwrap();
         look(&mut s);
     }
     let shaped = look(&mut s);
@@ -402,23 +402,23 @@ fn edits_survive_a_file_and_say_when_their_branch_is_gone() {
     other.open("x.burgeon", &s.save().unwrap(), 0, true).unwrap();
     assert_eq!(look(&mut other)["item"]["digest"], shaped["item"]["digest"]);
     // One is left out, by its row; what stays keeps its number.
-    s.run(r#"{"do":"shape-leave","row":0,"off":true}"#).unwrap();
+    s.run(r#"{"shape-leave":{"row":0,"off":true}}"#).unwrap();
     let left = look(&mut s);
     assert_eq!(
         (left["item"]["edits"][0]["index"].as_u64(), left["item"]["edits"].as_array().unwrap().len()),
         (Some(1), 5)
     );
-    s.run(r#"{"do":"shape-remove","rows":[0,1,2,3,4,5]}"#).unwrap();
-    s.run(r#"{"do":"shape","edit":{"op":"prune","axis":{"mark":{"id":"0","kind":"wood","order":9,"base":[0,9,0],"direction":[1,0,0],"length":9}}}}"#).unwrap();
+    s.run(r#"{"shape-remove":{"rows":[0,1,2,3,4,5]}}"#).unwrap();
+    s.run(r#"{"shape":{"edit":{"op":"prune","axis":{"mark":{"id":"0","kind":"wood","order":9,"base":[0,9,0],"direction":[1,0,0],"length":9}}}}}"#).unwrap();
     let gone = look(&mut s);
     assert_eq!(gone["item"]["edits"][0]["code"], "branch-gone");
     assert!(
         gone["item"]["warnings"][0].as_str().unwrap().contains("edit 0 by hand (prune): not done"),
         "{gone}"
     );
-    assert!(s.run(r#"{"do":"shape","edit":{"op":"prune","axis":{"path":[0]},"at":7}}"#).is_err());
+    assert!(s.run(r#"{"shape":{"edit":{"op":"prune","axis":{"path":[0]},"at":7}}}"#).is_err());
     // Nothing is grown again for an edit.
-    s.run(r#"{"do":"shape","edit":{"op":"prune","axis":{"path":[0,0]}}}"#).unwrap();
+    s.run(r#"{"shape":{"edit":{"op":"prune","axis":{"path":[0,0]}}}}"#).unwrap();
     let pruned = look(&mut s);
     assert_eq!(pruned["stages"], serde_json::json!(["shape", "mesh"]));
 }
