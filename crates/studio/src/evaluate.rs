@@ -65,6 +65,8 @@ pub struct Evaluator {
     done: Vec<&'static str>,
     /// See [`Evaluator::previewing`].
     preview: bool,
+    /// See [`crate::SceneEvaluator::set_looking`].
+    pub(crate) looking: bool,
 }
 
 /// What a plant is made from, besides its reading: the name goes into the plant.
@@ -340,7 +342,7 @@ impl Evaluator {
             counts,
             timings_ms: TimingsMs::from_report(&report),
             fidelity: plant.value.1,
-            digest: if self.preview { String::new() } else { shown.digest_hex() },
+            digest: if self.preview || self.looking { String::new() } else { shown.digest_hex() },
             warnings,
             edits: told.to_vec(),
             ..ItemReport::default()

@@ -135,6 +135,7 @@ pub struct ScenePlant<'a> {
 #[derive(Clone, Debug, Default)]
 pub struct SceneEvaluator {
     wind: bool,
+    looking: bool,
     plants: BTreeMap<PlantId, Made>,
 }
 
@@ -168,6 +169,12 @@ impl SceneEvaluator {
         }
     }
 
+    /// Whether updates are looks while a hand is at work: reports of trees and drawings then have no digest, which is a
+    /// third of what a large tree's meshes take. Default: no.
+    pub fn set_looking(&mut self, looking: bool) {
+        self.looking = looking;
+    }
+
     /// Brings one plant up to date; those whose leaf it bears too.
     ///
     /// # Errors
@@ -193,8 +200,9 @@ impl SceneEvaluator {
             Some(lender) => self.template(lender, document, run)?,
             None => None,
         };
-        let wind = self.wind;
+        let (wind, looking) = (self.wind, self.looking);
         let made = self.plants.entry(plant.id()).or_default();
+        (made.sketch.looking, made.tree.looking) = (looking, looking);
         if let Maker::Sketch(s) = &settings.maker {
             let mut options = SketchOptions { leaf, ..SketchOptions::of_plant(plant) };
             // Flowers that open have none: what bears them would sway away from them.
@@ -206,7 +214,7 @@ impl SceneEvaluator {
                 == (&settings.maker, settings.seed, &settings.name, &leaf, &settings.edits)
         };
         made.done.clear();
-        if made.from.as_ref().is_some_and(same) {
+        if made.from.as_ref().is_some_and(same) && (looking || !made.item.digest.is_empty()) {
             return Ok(());
         }
         // Until it has succeeded: an update that is stopped half-way is no result, not even of what was before.
@@ -294,7 +302,7 @@ impl Made {
             self.opening = None;
         }
         // Times are those of the last change that touched the plant.
-        if changed || before.is_none() {
+        if changed || before.is_none() || self.item.digest.is_empty() {
             self.item = item;
         }
         let day_before = before.and_then(|b| if let Maker::Sketch(s) = b.0 { Some(s.day) } else { None });

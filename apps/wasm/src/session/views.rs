@@ -38,7 +38,10 @@ impl Session {
                 } else if drawn && self.outcomes.contains_key(&id) {
                     continue; // the pen goes first
                 } else if let Some((_, shaped)) = gesture.as_ref().filter(|(held, _)| *held == id) {
-                    self.scene.update(id, shaped, &run)
+                    self.scene.set_looking(true);
+                    let looked = self.scene.update(id, shaped, &run);
+                    self.scene.set_looking(false);
+                    looked
                 } else {
                     self.scene.update(id, document, &run)
                 };

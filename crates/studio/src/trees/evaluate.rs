@@ -9,6 +9,7 @@ use mesh::Model;
 use plant::{Blade, Plant};
 use skin::{PetalColor, SkinSpec};
 
+use super::look::KeptBarks;
 use super::{
     BlossomSpec, GrowthReport, Look, TreeError, TreeOptions, TreeSpec, coarser, look_at_meshes,
     scale_to_height,
@@ -43,7 +44,11 @@ pub struct TreeEvaluator {
     model: Option<(Skinned, Model)>,
     /// The model is of a plant that is no more: shown until there is another, in case an update is stopped.
     stale: bool,
+    /// Bark of the last model.
+    barks: KeptBarks,
     done: Vec<&'static str>,
+    /// See [`crate::SceneEvaluator::set_looking`].
+    pub(crate) looking: bool,
 }
 
 /// What growth made.
@@ -179,8 +184,11 @@ impl TreeEvaluator {
         if !self.stale && self.model.as_ref().is_some_and(|(f, _)| *f == from) {
             return Ok(());
         }
+        let mut barks = core::mem::take(&mut self.barks);
         let Some(plant) = self.plant() else { return Ok(()) };
-        let model = report.stage("mesh", run.clock, |_| skinned(plant, &from, run))?;
+        let model = report.stage("mesh", run.clock, |_| skinned(plant, &from, &mut barks, run));
+        self.barks = barks;
+        let model = model?;
         (self.model, self.stale) = (Some((from, model)), false);
         self.done.push("mesh");
         Ok(())
@@ -196,9 +204,10 @@ impl TreeEvaluator {
     ) -> Result<Vec<Model>, TreeError> {
         let Some(plant) = self.plant() else { return Ok(Vec::new()) };
         let fine = skin_spec(spec, seed, options);
+        let mut barks = self.barks.clone();
         let lods = (1..=options.lods.min(6)).map(|level| {
             let (plant, skin) = coarser(plant, &fine, level);
-            Ok(skinned(&plant, &(skin, spec.look.clone(), options.leaf.clone()), run)?)
+            Ok(skinned(&plant, &(skin, spec.look.clone(), options.leaf.clone()), &mut barks, run)?)
         });
         lods.collect()
     }
@@ -223,7 +232,7 @@ impl TreeEvaluator {
                 ..Counts::of_plant(plant)
             },
             timings_ms: TimingsMs::from_report(report),
-            digest: plant.digest_hex(),
+            digest: if self.looking { String::new() } else { plant.digest_hex() },
             warnings,
             growth: Some(growth),
             edits: edits.map_or_else(Vec::new, |s| s.told.clone()),
@@ -263,9 +272,14 @@ fn skin_spec(spec: &TreeSpec, seed: Seed, options: &TreeOptions) -> SkinSpec {
     SkinSpec { seed, petals, ..options.skin.clone() }
 }
 
-fn skinned(plant: &Plant, (skin, look, leaf): &Skinned, run: &Run<'_>) -> Result<Model, Cancelled> {
+fn skinned(
+    plant: &Plant,
+    (skin, look, leaf): &Skinned,
+    barks: &mut KeptBarks,
+    run: &Run<'_>,
+) -> Result<Model, Cancelled> {
     let mut model = skin::skin(plant, skin, run)?;
-    look.paint(&mut model);
+    look.paint(&mut model, barks);
     if let Some(leaf) = leaf {
         leaf.dress(&mut model);
     }

@@ -131,14 +131,15 @@ impl Look {
         }
     }
 
-    /// Repaints the bark of a model.
-    pub(super) fn paint(&self, model: &mut Model) {
+    /// Repaints the bark of a model, with what is kept where it is the same.
+    pub(super) fn paint(&self, model: &mut Model, kept: &mut KeptBarks) {
+        let known = core::mem::take(kept);
         // A slender tree has no part with old bark: then its stem is among the young ones.
         let old = model.materials.iter().any(|m| m.name == "bark");
         for material in model.materials.iter_mut().filter(|m| m.kind == MaterialKind::Bark) {
             let twig = old && material.name == "bark-young";
             let colour = if twig { self.twig_color } else { self.bark_color };
-            self.repaint(material, colour, twig);
+            self.repaint(material, colour, twig, &known, kept);
         }
         if let Some(foot) = self.foot_color {
             let name = if old { "bark" } else { "bark-young" };
@@ -150,6 +151,7 @@ impl Look {
     fn darken_foot(&self, model: &mut Model, name: &str, foot: Colour) {
         let bounds = model.bounds();
         let height = (bounds.max.y * self.foot_height).max(f64::MIN_POSITIVE);
+        let patches = Lattice::new((16, 16), 41);
         let (bark, foot) = (self.bark_color.linear(), foot.linear());
         let ratio = [0, 1, 2].map(|i| (foot[i] / bark[i].max(1e-3)).clamp(0.0, 1.0));
         let chosen: Vec<bool> = model.materials.iter().map(|m| m.name == name).collect();
@@ -162,7 +164,7 @@ impl Look {
             for (p, color) in mesh.positions.iter().zip(&mut mesh.colors) {
                 let [x, y, z] = p.map(f64::from);
                 // Patches as large as the trunk is thick, so that the border is ragged.
-                let patch = noise(0.37 * x + 0.11 * z + 0.5, 0.31 * y + 0.17 * z + 0.5, (16, 16), 41);
+                let patch = patches.noise(0.37 * x + 0.11 * z + 0.5, 0.31 * y + 0.17 * z + 0.5);
                 let share = 1.0 - ops::smoothstep(0.25, 1.0, y / height + 0.22 * patch);
                 #[expect(clippy::cast_possible_truncation, reason = "a colour of the mesh")]
                 let shade = ratio.map(|r| ops::lerp(1.0, r, share) as f32);
@@ -171,24 +173,62 @@ impl Look {
         }
     }
 
-    fn repaint(&self, material: &mut Material, colour: Colour, twig: bool) {
+    fn repaint(
+        &self,
+        material: &mut Material,
+        colour: Colour,
+        twig: bool,
+        known: &KeptBarks,
+        kept: &mut KeptBarks,
+    ) {
         let Some(old) = &material.texture else {
             #[expect(clippy::cast_possible_truncation, reason = "a colour")]
             let plain = colour.linear().map(|x| x as f32);
             material.base_color = plain;
             return;
         };
-        let texture = match self.bark {
+        let from = Painted { bark: self.bark, colour, twig, old: Arc::clone(old) };
+        let texture = match known.0.iter().find(|(k, _)| k.same(&from)) {
+            Some((_, texture)) => Arc::clone(texture),
+            None => Arc::new(from.paint()),
+        };
+        kept.0.push((from, Arc::clone(&texture)));
+        material.texture = Some(texture);
+    }
+}
+
+/// The bark of the last model: painting it takes longer than the meshes of a small tree. Changes no result.
+#[derive(Clone, Debug, Default)]
+pub(super) struct KeptBarks(Vec<(Painted, Arc<Texture>)>);
+
+/// What bark is painted from.
+#[derive(Clone, Debug)]
+struct Painted {
+    bark: Bark,
+    colour: Colour,
+    twig: bool,
+    /// The surface's own, without its colour.
+    old: Arc<Texture>,
+}
+
+impl Painted {
+    fn same(&self, other: &Self) -> bool {
+        let form = |p: &Self| (p.bark, p.colour, p.twig);
+        form(self) == form(other) && Arc::ptr_eq(&self.old, &other.old)
+    }
+
+    fn paint(&self) -> Texture {
+        let (old, colour) = (&self.old, self.colour);
+        match self.bark {
             // Twigs have the same bark on every kind but one: a bamboo's are canes too.
-            Bark::Cane => painted(&|u, v| cane(colour, u, v)),
-            _ if twig => recoloured(old, colour, 0.7),
+            Bark::Cane => painted(cane(colour)),
+            _ if self.twig => recoloured(old, colour, 0.7),
             Bark::Furrowed => recoloured(old, colour, 1.0),
             Bark::Smooth => recoloured(old, colour, 0.35),
-            Bark::Plated => painted(&|u, v| plated(colour, u, v)),
-            Bark::Birch => painted(&|u, v| birch(colour, u, v)),
-            Bark::Ringed => painted(&|u, v| ringed(colour, u, v)),
-        };
-        material.texture = Some(Arc::new(texture));
+            Bark::Plated => painted(plated(colour)),
+            Bark::Birch => painted(birch(colour)),
+            Bark::Ringed => painted(ringed(colour)),
+        }
     }
 }
 
@@ -210,7 +250,7 @@ fn recoloured(old: &Texture, colour: Colour, contrast: f64) -> Texture {
 const SIDE: u32 = 256;
 
 /// A square texture; `paint` gives sRGB at u and v, both 0 to 1, and repeats in both.
-fn painted(paint: &dyn Fn(f64, f64) -> [f64; 3]) -> Texture {
+fn painted(paint: impl Fn(f64, f64) -> [f64; 3]) -> Texture {
     let at = |i: u32| (f64::from(i) + 0.5) / f64::from(SIDE);
     let rows = (0..SIDE).flat_map(|j| (0..SIDE).map(move |i| (i, j)));
     let pixels = rows.flat_map(|(i, j)| {
@@ -226,23 +266,41 @@ fn byte(x: f64) -> u8 {
     b
 }
 
-/// A fixed number from 0 to 1 for a cell of a pattern.
-fn cell(x: i64, y: i64, pattern: u64) -> f64 {
-    let key = (x.rem_euclid(4096) as u64) << 12 | (y.rem_euclid(4096) as u64);
-    Seed::new(pattern).child(key).stream(Draw::Texture).uniform()
+/// Fixed numbers from 0 to 1 in the cells of a pattern that repeats.
+struct Lattice {
+    size: (i64, i64),
+    cells: Vec<f64>,
 }
 
-/// Smooth noise that repeats after `nx` and `ny` cells, -1 to 1.
-fn noise(u: f64, v: f64, (nx, ny): (i64, i64), pattern: u64) -> f64 {
-    let (x, y) = (u * nx as f64, v * ny as f64);
-    let (x0, y0) = (x.floor(), y.floor());
-    let (fx, fy) = (ops::smoothstep(0.0, 1.0, x - x0), ops::smoothstep(0.0, 1.0, y - y0));
-    #[expect(clippy::cast_possible_truncation, reason = "cells of a small lattice")]
-    let at =
-        |dx: i64, dy: i64| cell((x0 as i64 + dx).rem_euclid(nx), (y0 as i64 + dy).rem_euclid(ny), pattern);
-    let low = ops::lerp(at(0, 0), at(1, 0), fx);
-    let high = ops::lerp(at(0, 1), at(1, 1), fx);
-    2.0 * ops::lerp(low, high, fy) - 1.0
+impl Lattice {
+    fn new(size: (i64, i64), pattern: u64) -> Self {
+        let cell = |x: i64, y: i64| {
+            #[expect(clippy::cast_sign_loss, reason = "rows and columns")]
+            let key = (x as u64) << 12 | y as u64;
+            Seed::new(pattern).child(key).stream(Draw::Texture).uniform()
+        };
+        let cells = (0..size.1).flat_map(|y| (0..size.0).map(move |x| (x, y)));
+        Self { size, cells: cells.map(|(x, y)| cell(x, y)).collect() }
+    }
+
+    fn at(&self, x: i64, y: i64) -> f64 {
+        let (nx, ny) = self.size;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the lattice")]
+        let cell = (y.rem_euclid(ny) * nx + x.rem_euclid(nx)) as usize;
+        self.cells[cell]
+    }
+
+    /// Smooth noise between the cells, -1 to 1; u and v from 0 to 1 are one repetition.
+    fn noise(&self, u: f64, v: f64) -> f64 {
+        let (x, y) = (u * self.size.0 as f64, v * self.size.1 as f64);
+        let (x0, y0) = (x.floor(), y.floor());
+        let (fx, fy) = (ops::smoothstep(0.0, 1.0, x - x0), ops::smoothstep(0.0, 1.0, y - y0));
+        #[expect(clippy::cast_possible_truncation, reason = "cells of a small lattice")]
+        let (i, j) = (x0 as i64, y0 as i64);
+        let low = ops::lerp(self.at(i, j), self.at(i + 1, j), fx);
+        let high = ops::lerp(self.at(i, j + 1), self.at(i + 1, j + 1), fx);
+        2.0 * ops::lerp(low, high, fy) - 1.0
+    }
 }
 
 fn shaded(colour: Colour, factor: f64) -> [f64; 3] {
@@ -254,57 +312,73 @@ fn mixed(a: [f64; 3], b: [f64; 3], share: f64) -> [f64; 3] {
 }
 
 /// White with short dark stripes across and black diamonds where branches have been.
-fn birch(colour: Colour, u: f64, v: f64) -> [f64; 3] {
+fn birch(colour: Colour) -> impl Fn(f64, f64) -> [f64; 3] {
     const DARK: [f64; 3] = [0.16, 0.14, 0.13];
-    let base = shaded(colour, 1.0 + 0.05 * noise(u, v, (9, 5), 1) + 0.04 * noise(u, v, (24, 60), 2));
-    // Stripes: narrow along v, some cells across u wide.
-    let stripe = noise(u, v, (6, 34), 3) + 0.35 * noise(u, v, (18, 68), 4);
-    let scar = noise(u, v, (4, 4), 5) + 0.4 * noise(u, v, (12, 16), 6);
-    let dark = 0.75 * ops::smoothstep(0.62, 0.86, stripe) + ops::smoothstep(0.78, 0.98, scar);
-    mixed(base, DARK, dark)
+    let tones = [Lattice::new((9, 5), 1), Lattice::new((24, 60), 2)];
+    let stripes = [Lattice::new((6, 34), 3), Lattice::new((18, 68), 4)];
+    let scars = [Lattice::new((4, 4), 5), Lattice::new((12, 16), 6)];
+    move |u, v| {
+        let base = shaded(colour, 1.0 + 0.05 * tones[0].noise(u, v) + 0.04 * tones[1].noise(u, v));
+        // Stripes: narrow along v, some cells across u wide.
+        let stripe = stripes[0].noise(u, v) + 0.35 * stripes[1].noise(u, v);
+        let scar = scars[0].noise(u, v) + 0.4 * scars[1].noise(u, v);
+        let dark = 0.75 * ops::smoothstep(0.62, 0.86, stripe) + ops::smoothstep(0.78, 0.98, scar);
+        mixed(base, DARK, dark)
+    }
 }
 
 /// Flakes of a cellular pattern, drawn out along the trunk, with dark cracks between.
-fn plated(colour: Colour, u: f64, v: f64) -> [f64; 3] {
+fn plated(colour: Colour) -> impl Fn(f64, f64) -> [f64; 3] {
     const CRACK: [f64; 3] = [0.17, 0.12, 0.10];
     let (nx, ny) = (6_i64, 4_i64);
-    let x = u * nx as f64 + 0.35 * noise(u, v, (12, 8), 11);
-    let y = v * ny as f64 + 0.3 * noise(u, v, (12, 8), 12);
-    let (mut near, mut next, mut tone) = (9.0_f64, 9.0_f64, 0.0);
-    for dy in -1..=1 {
-        for dx in -1..=1 {
-            #[expect(clippy::cast_possible_truncation, reason = "cells of a small lattice")]
-            let (i, j) = (x.floor() as i64 + dx, y.floor() as i64 + dy);
-            let (wi, wj) = (i.rem_euclid(nx), j.rem_euclid(ny));
-            let (cx, cy) = (i as f64 + cell(wi, wj, 13), j as f64 + cell(wi, wj, 14));
-            let d = ((cx - x) * (cx - x) + (cy - y) * (cy - y)).sqrt();
-            if d < near {
-                (next, near, tone) = (near, d, cell(wi, wj, 15));
-            } else {
-                next = next.min(d);
+    let bent = [Lattice::new((12, 8), 11), Lattice::new((12, 8), 12)];
+    let [across, along, tones] = [13, 14, 15].map(|pattern| Lattice::new((nx, ny), pattern));
+    let grain = Lattice::new((20, 50), 16);
+    move |u, v| {
+        let x = u * nx as f64 + 0.35 * bent[0].noise(u, v);
+        let y = v * ny as f64 + 0.3 * bent[1].noise(u, v);
+        let (mut near, mut next, mut tone) = (9.0_f64, 9.0_f64, 0.0);
+        for dy in -1..=1 {
+            for dx in -1..=1 {
+                #[expect(clippy::cast_possible_truncation, reason = "cells of a small lattice")]
+                let (i, j) = (x.floor() as i64 + dx, y.floor() as i64 + dy);
+                let (cx, cy) = (i as f64 + across.at(i, j), j as f64 + along.at(i, j));
+                let d = ((cx - x) * (cx - x) + (cy - y) * (cy - y)).sqrt();
+                if d < near {
+                    (next, near, tone) = (near, d, tones.at(i, j));
+                } else {
+                    next = next.min(d);
+                }
             }
         }
+        let flake = shaded(colour, 0.9 + 0.28 * tone + 0.10 * grain.noise(u, v));
+        mixed(CRACK, flake, ops::smoothstep(0.02, 0.16, next - near))
     }
-    let flake = shaded(colour, 0.9 + 0.28 * tone + 0.10 * noise(u, v, (20, 50), 16));
-    mixed(CRACK, flake, ops::smoothstep(0.02, 0.16, next - near))
 }
 
 /// Narrow rings across the stem, uneven, with fibres between.
-fn ringed(colour: Colour, u: f64, v: f64) -> [f64; 3] {
-    let y = 7.0 * v + 0.16 * noise(u, v, (5, 7), 21);
-    let phase = y - y.floor();
-    let edge = 1.0 - ops::smoothstep(0.0, 0.22, phase.min(1.0 - phase));
-    let fibre = 0.08 * noise(u, v, (50, 8), 22) + 0.06 * noise(u, v, (9, 16), 23);
-    shaded(colour, 1.08 - 0.42 * edge + 0.12 * phase + fibre)
+fn ringed(colour: Colour) -> impl Fn(f64, f64) -> [f64; 3] {
+    let uneven = Lattice::new((5, 7), 21);
+    let fibres = [Lattice::new((50, 8), 22), Lattice::new((9, 16), 23)];
+    move |u, v| {
+        let y = 7.0 * v + 0.16 * uneven.noise(u, v);
+        let phase = y - y.floor();
+        let edge = 1.0 - ops::smoothstep(0.0, 0.22, phase.min(1.0 - phase));
+        let fibre = 0.08 * fibres[0].noise(u, v) + 0.06 * fibres[1].noise(u, v);
+        shaded(colour, 1.08 - 0.42 * edge + 0.12 * phase + fibre)
+    }
 }
 
 /// One joint for each turn of the texture: a pale ring of wax below a dark line.
-fn cane(colour: Colour, u: f64, v: f64) -> [f64; 3] {
-    let sheen = 1.0 + 0.05 * ops::cos(TAU * u) + 0.05 * noise(u, v, (30, 2), 31);
-    let base = shaded(colour, sheen);
-    let from = (v - 0.5).abs();
-    let pale = mixed(base, [0.86, 0.87, 0.75], 0.6 * (1.0 - ops::smoothstep(0.02, 0.07, from)));
-    mixed(pale, shaded(colour, 0.45), 1.0 - ops::smoothstep(0.006, 0.016, from))
+fn cane(colour: Colour) -> impl Fn(f64, f64) -> [f64; 3] {
+    let gloss = Lattice::new((30, 2), 31);
+    move |u, v| {
+        let sheen = 1.0 + 0.05 * ops::cos(TAU * u) + 0.05 * gloss.noise(u, v);
+        let base = shaded(colour, sheen);
+        let from = (v - 0.5).abs();
+        let pale = mixed(base, [0.86, 0.87, 0.75], 0.6 * (1.0 - ops::smoothstep(0.02, 0.07, from)));
+        mixed(pale, shaded(colour, 0.45), 1.0 - ops::smoothstep(0.006, 0.016, from))
+    }
 }
 
 #[cfg(test)]
@@ -314,12 +388,8 @@ mod tests {
     #[test]
     fn barks_have_their_mean_colour_and_repeat() {
         let colour = Colour([0x80, 0x70, 0x60]);
-        let paints: [&dyn Fn(f64, f64) -> [f64; 3]; 4] = [
-            &|u, v| birch(colour, u, v),
-            &|u, v| plated(colour, u, v),
-            &|u, v| ringed(colour, u, v),
-            &|u, v| cane(colour, u, v),
-        ];
+        let paints: [&dyn Fn(f64, f64) -> [f64; 3]; 4] =
+            [&birch(colour), &plated(colour), &ringed(colour), &cane(colour)];
         for (i, paint) in paints.into_iter().enumerate() {
             let t = painted(paint);
             let red = t.pixels.chunks_exact(4).map(|p| f64::from(p[0])).sum::<f64>();
