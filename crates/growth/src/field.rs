@@ -27,6 +27,8 @@ pub(crate) struct Change {
     pub(crate) to: u32,
     /// The point.
     pub(crate) place: DVec3,
+    /// The square of its distance to the joint that has it now.
+    pub(crate) d2: f64,
     /// Its index in the input.
     pub(crate) id: u32,
     /// Unit vector from the joint that had it; zero if none.
@@ -284,13 +286,13 @@ impl Field {
         let moves = core::mem::take(&mut self.moves);
         for &slot in &self.moved[..moves] {
             let spot = &mut self.spots[slot as usize];
-            let killed = spot.best2 <= kill2;
-            let Spot { place, before: from, owner: to, id, pull, .. } = *spot;
+            let Spot { place, best2: d2, before: from, owner: to, id, pull } = *spot;
+            let killed = d2 <= kill2;
             spot.before = STILL;
             if killed {
                 self.dead.push(id);
             }
-            spot.pull = changed(Change { from, to, place, id, pull, killed });
+            spot.pull = changed(Change { from, to, place, d2, id, pull, killed });
         }
         // Only now: removing one moves another to its slot.
         let mut dead = core::mem::take(&mut self.dead);
