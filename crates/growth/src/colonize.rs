@@ -595,10 +595,10 @@ impl Colony<'_> {
                 fates[change.id as usize] = Fate::Reached(JointId::new(change.to as usize));
                 return DVec3::ZERO;
             }
-            let at = skeleton.position[change.to as usize];
-            let pull = towards(at, change.place);
+            let way = change.place - skeleton.position[change.to as usize];
+            let pull = if change.d2 > 0.0 { way * change.d2.sqrt().recip() } else { DVec3::ZERO };
             load.gain(change.to, pull);
-            if steps.late && at.distance_squared(change.place) <= kill2 {
+            if steps.late && change.d2 <= kill2 {
                 doomed.push(change.id);
             }
             pull

@@ -2,10 +2,12 @@
 //!
 //! Flat arrays sorted by cell. Every cell knows how far the nearest joint of its worst-served point is, so a new
 //! joint visits only cells in which it can be nearer to something: that, not the perception radius, sets the cost.
-//! Cells and points are sifted in f32, four at a time and with room for its errors; what is left is tested in f64. So
+//! Cells and points are sifted in f32, eight at a time and with room for its errors; what is left is tested in f64. So
 //! the sieve's precision never shows in a result.
 
 use glam::{DVec3, DVec4, Vec4};
+
+use crate::sieve::{BLOCK, Cells, EMPTY, LANES, Near, Probe, SIDE, Sieve, near_groups, near_in};
 
 /// No joint.
 pub(crate) const NOBODY: u32 = u32::MAX;
@@ -15,12 +17,6 @@ const GONE: u32 = u32::MAX;
 const STILL: u32 = u32::MAX - 1;
 /// Points per cell aimed at: fewer cost more cells to visit, more cost more points to test.
 const PER_CELL: f64 = 6.0;
-/// Cells along a side of a block, and in a block.
-const SIDE: usize = 4;
-const BLOCK: usize = SIDE * SIDE * SIDE;
-
-/// Points that are sifted together: one line of memory.
-const LANES: usize = 4;
 
 /// What a round of offers did to one point.
 #[derive(Clone, Copy, Debug)]
@@ -31,33 +27,14 @@ pub(crate) struct Change {
     pub(crate) to: u32,
     /// The point.
     pub(crate) place: DVec3,
+    /// The square of its distance to the joint that has it now.
+    pub(crate) d2: f64,
     /// Its index in the input.
     pub(crate) id: u32,
     /// Unit vector from the joint that had it; zero if none.
     pub(crate) pull: DVec3,
     /// It was near enough to be consumed, and is gone.
     pub(crate) killed: bool,
-}
-
-/// Four points, measured from the grid's corner, and no less than their squared distances to their joints. Where there
-/// is no point, that is minus infinity.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(64))]
-struct Sieve {
-    x: Vec4,
-    y: Vec4,
-    z: Vec4,
-    best2: [f32; LANES],
-}
-
-const EMPTY: Sieve = Sieve { x: Vec4::ZERO, y: Vec4::ZERO, z: Vec4::ZERO, best2: [f32::NEG_INFINITY; LANES] };
-
-/// A group of the sieve in which the lanes of these bits may be nearer to a new joint.
-#[derive(Clone, Copy, Debug, Default)]
-struct Near {
-    group: u32,
-    lanes: u32,
-    cell: u32,
 }
 
 /// One point; side by side, because all of it is read together.
@@ -178,7 +155,8 @@ impl Field {
     /// Copies a slot into the sieve.
     fn sift(&mut self, slot: usize) {
         let spot = &self.spots[slot];
-        let (at, lane, k) = ((spot.place - self.lo).as_vec3(), &mut self.sieve[slot / LANES], slot % LANES);
+        let (at, k) = ((spot.place - self.lo).as_vec3(), slot % LANES);
+        let lane = &mut self.sieve[slot / LANES];
         (lane.x[k], lane.y[k], lane.z[k]) = (at.x, at.y, at.z);
         lane.best2[k] = above(spot.best2);
     }
@@ -199,7 +177,13 @@ impl Field {
         if cells == 0 {
             return;
         }
-        let groups = self.near_groups(cells, &new);
+        let cells = Cells {
+            near: &self.near_cells[..cells],
+            start: &self.start,
+            left: &self.left,
+            sieve: &self.sieve,
+        };
+        let groups = near_groups(cells, &new.probe, &mut self.near_groups);
         for n in 0..groups {
             let Near { group, mut lanes, .. } = self.near_groups[n];
             let sieve = &mut self.sieve[group as usize];
@@ -245,7 +229,7 @@ impl Field {
                     let gx = self.gaps[0][i];
                     let block = row + i;
                     if self.block_reach2[block] > near_yz + gx.min_element() {
-                        let mut near = near_in(&self.reach2[block], gx, gy, gz);
+                        let mut near = near_in(&self.reach2[block], &[gx, gy, gz].map(|g| g.to_array()));
                         while near != 0 {
                             self.near_cells[count] = index(block * BLOCK) + near.trailing_zeros();
                             near &= near - 1;
@@ -253,25 +237,6 @@ impl Field {
                         }
                     }
                 }
-            }
-        }
-        count
-    }
-
-    /// Sifts the first `cells` cells found: groups with points that may be nearer to the joint; their number.
-    #[inline]
-    fn near_groups(&mut self, cells: usize, new: &Newcomer) -> usize {
-        let mut count = 0;
-        let least = Vec4::splat(-new.slack);
-        for &cell in &self.near_cells[..cells] {
-            let from = self.start[cell as usize] as usize / LANES;
-            let to = from + (self.left[cell as usize] as usize).div_ceil(LANES);
-            for (sieve, group) in self.sieve[from..to].iter().zip(index(from)..) {
-                let (dx, dy, dz) = (sieve.x - new.at[0], sieve.y - new.at[1], sieve.z - new.at[2]);
-                let room = Vec4::from(sieve.best2) - (dx * dx + dy * dy + dz * dz);
-                let lanes = room.cmpgt(least).bitmask();
-                self.near_groups[count] = Near { group, lanes, cell };
-                count += usize::from(lanes != 0);
             }
         }
         count
@@ -290,7 +255,7 @@ impl Field {
             let cell = cell as usize;
             let from = self.start[cell] as usize / LANES;
             let to = from + (self.left[cell] as usize).div_ceil(LANES);
-            let worst = self.sieve[from..to].iter().fold(Vec4::ZERO, |a, s| a.max(Vec4::from(s.best2)));
+            let worst = self.sieve[from..to].iter().flat_map(|s| rows(&s.best2)).fold(Vec4::ZERO, Vec4::max);
             self.reach2[cell / BLOCK][cell % BLOCK] = worst.max_element();
         }
         let mut last = usize::MAX;
@@ -312,7 +277,7 @@ impl Field {
         let slack = above(4.0 * self.far * e + 4.0 * e * e);
         // The ends of cells are products, off by a little more.
         let blur = Vec4::splat(above(4.0 * e));
-        Newcomer { p, at: at.as_vec3().to_array().map(Vec4::splat), slack, blur }
+        Newcomer { p, probe: Probe { at: at.as_vec3().to_array(), slack }, blur }
     }
 
     /// Ends a round of offers: tells of every point that changed hands, and removes those within the kill distance.
@@ -321,13 +286,13 @@ impl Field {
         let moves = core::mem::take(&mut self.moves);
         for &slot in &self.moved[..moves] {
             let spot = &mut self.spots[slot as usize];
-            let killed = spot.best2 <= kill2;
-            let Spot { place, before: from, owner: to, id, pull, .. } = *spot;
+            let Spot { place, best2: d2, before: from, owner: to, id, pull } = *spot;
+            let killed = d2 <= kill2;
             spot.before = STILL;
             if killed {
                 self.dead.push(id);
             }
-            spot.pull = changed(Change { from, to, place, id, pull, killed });
+            spot.pull = changed(Change { from, to, place, d2, id, pull, killed });
         }
         // Only now: removing one moves another to its slot.
         let mut dead = core::mem::take(&mut self.dead);
@@ -390,8 +355,8 @@ impl Field {
     }
 
     fn cell_of(&self, p: DVec3) -> [usize; 3] {
-        let q = (p - self.lo) / self.cell;
-        [0, 1, 2].map(|i| clamp_to(q[i], self.blocks[i] * SIDE))
+        let (q, [x, y, z]) = ((p - self.lo) / self.cell, self.blocks);
+        [clamp_to(q.x, x * SIDE), clamp_to(q.y, y * SIDE), clamp_to(q.z, z * SIDE)]
     }
 
     fn block_of(&self, p: DVec3) -> [usize; 3] {
@@ -408,10 +373,8 @@ impl Field {
 /// A new joint.
 struct Newcomer {
     p: DVec3,
-    /// As in the sieve.
-    at: [Vec4; 3],
-    /// What a squared distance in the sieve may be too large by, and a distance from the end of a cell.
-    slack: f32,
+    probe: Probe,
+    /// What a distance from the end of a cell may be too large by.
     blur: Vec4,
 }
 
@@ -419,29 +382,17 @@ impl Newcomer {
     /// Squared distances along an axis, no more than they are, to cells between `low` and `high`.
     #[inline]
     fn gap(&self, axis: usize, low: Vec4, high: Vec4) -> Vec4 {
-        let at = self.at[axis];
+        let at = Vec4::splat(self.probe.at[axis]);
         let gap = ((low - at).max(at - high) - self.blur).max(Vec4::ZERO);
         // A millionth less covers what the square rounds.
         gap * gap * Vec4::splat(0.999_999)
     }
 }
 
-/// The rows of a block.
+/// A block by its rows.
 #[inline]
-fn rows(block: &[f32; BLOCK]) -> impl Iterator<Item = Vec4> + '_ {
+fn rows(block: &[f32]) -> impl Iterator<Item = Vec4> + '_ {
     block.as_chunks::<SIDE>().0.iter().map(|row| Vec4::from_array(*row))
-}
-
-/// A bit for each cell of a block that reaches farther than it is away.
-#[inline]
-fn near_in(reach2: &[f32; BLOCK], gx: Vec4, gy: Vec4, gz: Vec4) -> u64 {
-    let (gy, gz) = (gy.to_array(), gz.to_array());
-    let mut near = 0;
-    for (n, row) in rows(reach2).enumerate() {
-        let bits = row.cmpgt(gx + Vec4::splat(gy[n % SIDE] + gz[n / SIDE])).bitmask();
-        near |= u64::from(bits) << (n * SIDE);
-    }
-    near
 }
 
 /// Lower and upper ends of `blocks` blocks of cells from 0 on.

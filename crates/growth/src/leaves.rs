@@ -380,7 +380,7 @@ fn light_of(all: &[Candidate], length: f64, spec: &LeafSpec) -> Vec<f64> {
     let least = (hi - lo).max_element() / 200.0;
     let voxel = spec.voxel_m.unwrap_or(2.0 * spec.length_m).max(least);
     let mut grid = ShadowGrid::new(voxel, spec.shade, spec.shade_fall, spec.shade_layers);
-    grid.cover(lo, hi);
+    grid.cover(lo, hi, &mut []);
     let voxels: Vec<u32> = middles.iter().map(|&p| grid.voxel_of(p)).collect();
     grid.add_all(voxels.iter().copied(), 1);
     grid.spread();

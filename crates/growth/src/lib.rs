@@ -29,6 +29,7 @@ mod lsystem;
 mod mesh_faults;
 mod obstacle;
 mod self_organize;
+mod sieve;
 mod skeleton;
 mod solid;
 mod tree;

@@ -15,6 +15,7 @@ pub(super) const WAITS: u32 = u32::MAX - 1;
 /// if nothing continues its axis.
 #[derive(Clone, Debug)]
 pub(super) struct Grove {
+    /// While it grows, its radii stand for wood: the radius to the power of the pipe exponent, which never falls.
     pub(super) skeleton: Skeleton,
     /// What continues the axis.
     pub(super) main: Vec<u32>,
@@ -23,8 +24,6 @@ pub(super) struct Grove {
     pub(super) side: Vec<DVec3>,
     /// Number of the joint along its axis.
     pub(super) rank: Vec<u32>,
-    /// Radius to the power of the pipe exponent; never falls.
-    pub(super) wood: Vec<f64>,
     /// Buds at a joint.
     pub(super) per_node: usize,
     /// For each bud the branch that it grew into, or [`WAITS`].
@@ -96,7 +95,6 @@ impl Grove {
             heading: vec![DVec3::Y; n],
             side: vec![DVec3::X; n],
             rank: vec![0; n],
-            wood: vec![0.0; n],
             per_node,
             lateral: vec![NONE; n * per_node],
             above: Vec::new(),
@@ -147,7 +145,6 @@ impl Grove {
             heading.any_orthonormal_vector()
         });
         self.rank.push(if bud.is_none() { self.rank[parent] + 1 } else { 0 });
-        self.wood.push(0.0);
         self.lateral.resize(self.lateral.len() + self.per_node, WAITS);
         id.index()
     }
@@ -164,7 +161,6 @@ impl Grove {
         kept.squeeze(&mut self.heading, 1);
         kept.squeeze(&mut self.side, 1);
         kept.squeeze(&mut self.rank, 1);
-        kept.squeeze(&mut self.wood, 1);
         kept.squeeze(&mut self.lateral, self.per_node);
         kept.rename(&mut self.main);
         kept.rename(&mut self.lateral);
@@ -178,7 +174,7 @@ impl Grove {
         let n = self.len();
         self.above.clear();
         self.above.resize(n, 0.0);
-        let (above, wood) = (&mut self.above[..n], &mut self.wood[..n]);
+        let (above, wood) = (&mut self.above[..n], &mut self.skeleton.radius_m[..n]);
         for (j, parent) in self.skeleton.parent.iter().enumerate().rev() {
             let own: f64 = if above[j] > 0.0 { above[j] } else { tip };
             wood[j] = wood[j].max(own);

@@ -18,6 +18,7 @@ use crate::tree::GROWN;
 use crate::{GrowthError, JointId, Obstacles, Skeleton};
 use grove::{Grove, Kept};
 use resource::{Fed, Flow, Sharing};
+use shadow::OUTSIDE;
 use space::Space;
 
 pub use spec::{Light, Resource, SelfOrganizingSpec};
@@ -118,8 +119,13 @@ pub fn self_organize(
         run.cancel.reached(GROWN * share * share);
     }
     let Forest { mut grove, generated, shed, .. } = forest;
-    for (r, w) in grove.skeleton.radius_m.iter_mut().zip(&grove.wood) {
-        *r = ops::powf(*w, 1.0 / spec.pipe_exponent);
+    // Joints of one shoot are often alike.
+    let (mut wood, mut radius) = (0.0, 0.0);
+    for r in &mut grove.skeleton.radius_m {
+        if *r != wood {
+            (wood, radius) = (*r, ops::powf(*r, 1.0 / spec.pipe_exponent));
+        }
+        *r = radius;
     }
     report.book("grow", run.clock.now_ms() - started);
     debug_assert_eq!(grove.skeleton.validate().next(), None, "a grown skeleton is sound");
@@ -278,14 +284,7 @@ impl Forest<'_> {
 
     /// Internodes that this year's vigour is enough for.
     fn sprouting(&self) -> usize {
-        let all: f64 = self.flow.fed.iter().map(|f| self.used(f.vigour).floor()).sum();
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a hundred a bud at most"
-        )]
-        let all = all as usize;
-        all
+        self.flow.fed.iter().map(|f| internodes(self.used(f.vigour)) as usize).sum()
     }
 
     /// Buds with a vigour of 1 or more grow as many internodes.
@@ -305,8 +304,8 @@ impl Forest<'_> {
         if vigour < 1.0 {
             return;
         }
-        let n = vigour.floor();
-        let length = self.spec.internode_m * vigour / n;
+        let n = internodes(vigour);
+        let length = self.spec.internode_m * vigour / f64::from(n);
         let v = match &self.light {
             LightModel::Shadow(Shade { grid, voxel, .. }) => grid.slope(voxel[joint]).normalize_or_zero(),
             LightModel::Space(space) => space.of_bud(joint, bud),
@@ -321,8 +320,8 @@ impl Forest<'_> {
             }
         };
         let lead = v * self.spec.light_weight + self.pull;
-        let (mut from, mut bud, mut left) = (joint, bud, n);
-        while left >= 1.0 {
+        let (mut from, mut bud) = (joint, bud);
+        for _ in 0..n {
             let Some(wish) = (heading + lead).try_normalize() else { return };
             let open = self.obstacles.is_empty();
             let at = self.grove.skeleton.position[from];
@@ -330,7 +329,6 @@ impl Forest<'_> {
                 return;
             };
             (from, heading) = (self.grove.grow(from, bud.take(), to, length, birth), to);
-            left -= 1.0;
         }
     }
 
@@ -343,10 +341,13 @@ impl Forest<'_> {
                 let corners = fresh.iter().fold(None, |c: Option<(DVec3, DVec3)>, &p| {
                     Some(c.map_or((p, p), |(lo, hi)| (lo.min(p), hi.max(p))))
                 });
-                if corners.is_some_and(|(lo, hi)| grid.cover(lo, hi)) {
-                    voxel.clear();
+                if let Some((lo, hi)) = corners {
+                    grid.cover(lo, hi, voxel);
                 }
-                voxel.extend(all[voxel.len()..].iter().map(|&p| grid.voxel_of(p)));
+                voxel.resize(all.len(), OUTSIDE);
+                for (voxel, &p) in voxel.iter_mut().zip(all).filter(|(voxel, _)| **voxel == OUTSIDE) {
+                    *voxel = grid.voxel_of(p);
+                }
                 grid.add_all(voxel[first..].iter().copied(), 1);
             }
             LightModel::Space(space) => {
@@ -358,6 +359,12 @@ impl Forest<'_> {
             }
         }
     }
+}
+
+/// Whole internodes of a vigour.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to a hundred")]
+const fn internodes(vigour: f64) -> u32 {
+    vigour as u32
 }
 
 /// Where the axillary buds of a joint would grow: around it by phyllotaxis. The same whenever it is asked for.

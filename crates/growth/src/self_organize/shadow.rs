@@ -25,6 +25,8 @@ pub(crate) struct ShadowGrid {
     shadow: Vec<i32>,
     /// What a joint adds q layers below itself: a b^-q.
     falling: Vec<i32>,
+    /// How far the numbers of the corners of that square are from the joint's own voxel; what is below 0 wraps.
+    squares: Vec<[usize; 4]>,
     voxel_m: f64,
     /// Place of voxel (0, 0, 0) in voxels.
     origin: [i64; 3],
@@ -47,6 +49,7 @@ impl ShadowGrid {
             corners: Vec::new(),
             shadow: Vec::new(),
             falling,
+            squares: Vec::new(),
             voxel_m,
             origin: [0; 3],
             dims: [0; 3],
@@ -55,8 +58,8 @@ impl ShadowGrid {
         }
     }
 
-    /// Makes room for joints in a box. Whether voxels have new numbers.
-    pub(crate) fn cover(&mut self, lo: DVec3, hi: DVec3) -> bool {
+    /// Makes room for joints in a box; `voxels` get the numbers that they have then. Whether the grid has grown.
+    pub(crate) fn cover(&mut self, lo: DVec3, hi: DVec3, voxels: &mut [u32]) -> bool {
         let margin = self.falling.len() as i64 + 1;
         let from = self.voxel(lo).map(|v| v - margin);
         let to = self.voxel(hi).map(|v| v + margin + 1);
@@ -83,17 +86,30 @@ impl ShadowGrid {
             return false;
         }
         let moved = [0, 1, 2].map(|i| usize::try_from(old.0[i] - origin[i]).unwrap_or(0));
-        let mut corners = vec![0; most];
+        let number =
+            |x: usize, y: usize, z: usize| ((moved[1] + y) * dims[2] + moved[2] + z) * dims[0] + moved[0] + x;
+        for voxel in voxels.iter_mut().filter(|v| **v != OUTSIDE) {
+            let [x, y, z] = self.coordinates(*voxel);
+            *voxel = index(number(x, y, z));
+        }
+        // Shadows are summed anew anyhow: the corners move to their memory, and they to that of the corners.
+        core::mem::swap(&mut self.corners, &mut self.shadow);
+        clear(&mut self.corners, most);
+        let columns = self.used[0].clone();
         for y in 0..old.1[1] {
-            for z in 0..old.1[2] {
+            for z in self.used[1].clone() {
                 let row = (y * old.1[2] + z) * old.1[0];
-                let to = ((moved[1] + y) * dims[2] + moved[2] + z) * dims[0] + moved[0];
-                corners[to..to + old.1[0]].copy_from_slice(&self.corners[row..row + old.1[0]]);
+                let to = number(columns.start, y, z);
+                self.corners[to..to + columns.len()].copy_from_slice(&self.shadow[row..][columns.clone()]);
             }
         }
-        (self.corners, self.origin, self.dims) = (corners, origin, dims);
-        self.shadow.clear();
-        self.shadow.resize(most, 0);
+        clear(&mut self.shadow, most);
+        (self.origin, self.dims) = (origin, dims);
+        let square = |q: usize| {
+            let (near, wide) = (0_usize.wrapping_sub(q * (dims[2] * dims[0] + dims[0] + 1)), 2 * q + 1);
+            [0, wide, wide * dims[0], wide * dims[0] + wide].map(|far| near.wrapping_add(far))
+        };
+        self.squares = (0..self.falling.len()).map(square).collect();
         for (used, by) in self.used.iter_mut().zip([moved[0], moved[2]]) {
             *used = if used.start >= used.end { NONE } else { used.start + by..used.end + by };
         }
@@ -121,17 +137,13 @@ impl ShadowGrid {
         if voxel == OUTSIDE {
             return;
         }
-        let (row, x) = (voxel as usize / self.dims[0], voxel as usize % self.dims[0]);
-        let (y, z) = (row / self.dims[2], row % self.dims[2]);
-        let width = self.dims[0];
-        for (q, &s) in self.falling.iter().enumerate() {
-            let Some(layer) = y.checked_sub(q) else { break };
+        let [x, y, z] = self.coordinates(voxel);
+        let reached = self.falling.len().min(y + 1);
+        for (square, s) in self.squares.iter().zip(&self.falling[..reached]) {
             let s = s.wrapping_mul(joints);
-            let near = (layer * self.dims[2] + z - q) * width + x - q;
-            let (wide, less) = (2 * q + 1, s.wrapping_neg());
-            let far = near + wide * width;
-            for (i, s) in [(near, s), (near + wide, less), (far, less), (far + wide, s)] {
-                self.corners[i] = self.corners[i].wrapping_add(s);
+            for (by, s) in square.iter().zip([s, s.wrapping_neg(), s.wrapping_neg(), s]) {
+                let corner = &mut self.corners[(voxel as usize).wrapping_add(*by)];
+                *corner = corner.wrapping_add(s);
             }
         }
         let layers = self.falling.len();
@@ -145,15 +157,13 @@ impl ShadowGrid {
     pub(crate) fn spread(&mut self) {
         let (width, [columns, rows]) = (self.dims[0], self.used.clone());
         for layer in core::mem::replace(&mut self.stale, NONE) {
-            for z in rows.clone() {
-                let start = (layer * self.dims[2] + z) * width;
-                // The row before the first that is used has no shadow, as has the column before.
-                let (above, here) = self.shadow.split_at_mut(start);
-                let above = &above[start.saturating_sub(width)..];
-                let above = above[columns.start.min(above.len())..].iter().take(columns.len());
-                let corners = &self.corners[start..][columns.clone()];
+            // The first row that is used has no shadow yet, nor has the column before the first.
+            for z in rows.clone().skip(1) {
+                let start = (layer * self.dims[2] + z) * width + columns.start;
+                let (before, here) = self.shadow.split_at_mut(start);
+                let corners = &self.corners[start..start + columns.len()];
                 let mut sum = 0_i32;
-                for ((shadow, above), corner) in here[columns.clone()].iter_mut().zip(above).zip(corners) {
+                for ((shadow, above), corner) in here.iter_mut().zip(&before[start - width..]).zip(corners) {
                     sum = sum.wrapping_add(*corner);
                     *shadow = above.wrapping_add(sum);
                 }
@@ -163,8 +173,13 @@ impl ShadowGrid {
 
     /// The number of the voxel of a place, [`OUTSIDE`] if it or what it shades sideways lies beyond the grid.
     pub(crate) fn voxel_of(&self, p: DVec3) -> u32 {
-        let row = self.inside(p).map(|[x, y, z]| (y * self.dims[2] + z) * self.dims[0] + x);
-        row.and_then(|i| u32::try_from(i).ok()).unwrap_or(OUTSIDE)
+        self.inside(p).map_or(OUTSIDE, |[x, y, z]| index((y * self.dims[2] + z) * self.dims[0] + x))
+    }
+
+    /// Of the voxel with this number.
+    fn coordinates(&self, voxel: u32) -> [usize; 3] {
+        let (row, x) = (voxel as usize / self.dims[0], voxel as usize % self.dims[0]);
+        [x, row / self.dims[2], row % self.dims[2]]
     }
 
     /// Shadow in a voxel; none in [`OUTSIDE`].
@@ -217,6 +232,17 @@ impl ShadowGrid {
 /// Nothing yet.
 const NONE: Range<usize> = Range { start: usize::MAX, end: 0 };
 
+/// Makes a column of so many zeros.
+fn clear(column: &mut Vec<i32>, len: usize) {
+    column.clear();
+    if column.capacity() < len {
+        // Given back first: `resize` alone would copy what nobody needs.
+        *column = Vec::new();
+        column.reserve(2 * len);
+    }
+    column.resize(len, 0);
+}
+
 fn stretch(range: &mut Range<usize>, from: usize, to: usize) {
     (range.start, range.end) = (range.start.min(from), range.end.max(to));
 }
@@ -224,6 +250,11 @@ fn stretch(range: &mut Range<usize>, from: usize, to: usize) {
 #[expect(clippy::cast_possible_truncation, reason = "clamped before")]
 fn whole(x: f64) -> i32 {
     x.clamp(0.0, 1e9) as i32
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "at most MOST_VOXELS")]
+const fn index(voxel: usize) -> u32 {
+    voxel as u32
 }
 
 fn signed(n: usize) -> i64 {
@@ -242,7 +273,7 @@ mod tests {
     fn one_joint_darkens_a_pyramid_below_it() {
         let mut grid = ShadowGrid::new(1.0, 0.5, 2.0, 3);
         let at = DVec3::new(0.5, 10.5, 0.5);
-        grid.cover(at - DVec3::splat(6.0), at + DVec3::splat(6.0));
+        grid.cover(at - DVec3::splat(6.0), at + DVec3::splat(6.0), &mut []);
         grid.add(grid.voxel_of(at), 1);
         grid.spread();
         for q in -2..=5_i32 {
@@ -271,7 +302,7 @@ mod tests {
         // In four years, of which each covers more, and every third joint is shed again.
         for year in joints.chunks(50) {
             let (lo, hi) = year.iter().fold((year[0], year[0]), |(lo, hi), p| (lo.min(*p), hi.max(*p)));
-            grid.cover(lo, hi);
+            grid.cover(lo, hi, &mut []);
             year.iter().for_each(|&p| grid.add(grid.voxel_of(p), 1));
             grid.spread();
             year.iter().step_by(3).for_each(|&p| grid.add(grid.voxel_of(p), -1));
@@ -307,16 +338,18 @@ mod tests {
     fn shadows_stay_where_they_are_when_the_grid_grows() {
         let mut grid = ShadowGrid::new(0.5, 0.1, 1.8, 4);
         let at = DVec3::new(0.1, 3.0, -0.2);
-        assert!(grid.cover(at, at) && !grid.cover(at, at));
+        assert!(grid.cover(at, at, &mut []) && !grid.cover(at, at, &mut []));
         grid.add(grid.voxel_of(at), 1);
         grid.spread();
         let below = at - DVec3::new(0.4, 0.9, 0.3);
         let before = shade(&grid, below);
         assert!(before > 0.0);
-        assert!(grid.cover(at - DVec3::splat(9.0), at + DVec3::splat(20.0)));
+        let mut voxels = [grid.voxel_of(at), OUTSIDE, grid.voxel_of(below)];
+        assert!(grid.cover(at - DVec3::splat(9.0), at + DVec3::splat(20.0), &mut voxels));
+        assert_eq!(voxels, [grid.voxel_of(at), OUTSIDE, grid.voxel_of(below)]);
         grid.spread();
         assert_eq!(shade(&grid, below), before);
-        assert!(!grid.cover(DVec3::splat(-1e9), DVec3::splat(1e9)), "too large a grid is not made");
+        assert!(!grid.cover(DVec3::splat(-1e9), DVec3::splat(1e9), &mut []), "too large a grid is not made");
         assert_eq!(shade(&grid, below), before);
         grid.add(grid.voxel_of(DVec3::splat(1e9)), 1);
     }
