@@ -615,7 +615,7 @@ impl Colony<'_> {
             .filter(|&(_, _, owner, _)| owner != NOBODY)
             .map(|(id, place, owner, d2)| (owner, d2, id, place))
             .collect();
-        goals.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
+        base::sort_by(&mut goals, |a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
         goals.dedup_by_key(|g| g.0);
         for &(owner, d2, _, place) in &goals {
             let at = self.skeleton.position[owner as usize];

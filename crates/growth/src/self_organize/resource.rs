@@ -166,7 +166,7 @@ impl Flow {
             Target::Branch(c) => i.light / self.size[c],
         };
         // Stable: equal light keeps the order along the axis, tip last before it is put first.
-        items.sort_by(|a, b| mean(b).total_cmp(&mean(a)));
+        base::sort_by(&mut items, |a, b| mean(b).total_cmp(&mean(a)));
         let weight = |rank: usize| {
             let t = (rank as f64 / f64::from(kappa.max(1))).min(1.0);
             w_max + (w_min - w_max) * t
