@@ -82,10 +82,10 @@ mod tests {
                 let rows: Vec<(u64, usize)> =
                     (0..n).map(|i| ((stream.uniform() * kinds).to_bits() >> 50, i)).collect();
                 let (mut ours, mut theirs) = (rows.clone(), rows.clone());
-                sort_by(&mut ours, |a, b| b.0.cmp(&a.0));
-                theirs.sort_by(|a, b| b.0.cmp(&a.0));
+                sort_by_key(&mut ours, |r| core::cmp::Reverse(r.0));
+                theirs.sort_by_key(|r| core::cmp::Reverse(r.0));
                 assert_eq!(ours, theirs, "{n} rows");
-                sort_by_key(&mut ours, |r| r.1);
+                sort_by(&mut ours, |a, b| a.1.cmp(&b.1));
                 assert_eq!(ours, rows, "{n} rows by key");
             }
         }
