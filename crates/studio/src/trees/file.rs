@@ -21,9 +21,7 @@ pub fn read_tree_spec(text: &str, open: &dyn Fn(&str) -> Option<NamedMesh>) -> R
         TreeError::Spec { line, message }
     };
     let mut tree = Node::from_toml(text).map_err(|f| fault(f.message, f.at))?;
-    if text.contains("file") {
-        resolve(&mut tree, open)?;
-    }
+    resolve(&mut tree, open)?;
     tree.read().map_err(|(e, at)| fault(e.to_string(), at))
 }
 
