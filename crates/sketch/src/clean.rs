@@ -168,7 +168,8 @@ fn usable_samples(drawing: &Drawing, notes: &mut Notes) -> Vec<Vec<usize>> {
         return kept;
     }
     let middle = DVec2::new(quantile(&mut xs, 0.5), quantile(&mut ys, 0.5));
-    let far = |p: DVec2| ops::hypot(p.x * 0.25 - middle.x * 0.25, p.y * 0.25 - middle.y * 0.25);
+    // The larger of both coordinates: squares could overflow, and a stray is one by far.
+    let far = |p: DVec2| (p - middle).abs().max_element();
     let mut distances: Vec<f64> = places().map(far).collect();
     let limit = quantile(&mut distances, 0.9) * STRAY;
     if limit > 0.0 {

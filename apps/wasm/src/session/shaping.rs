@@ -120,8 +120,8 @@ pub(super) struct Held {
     plant: PlantId,
     /// The plant as it was when the gesture began.
     before: Plant,
-    /// It has so many triangles that a gesture shows it coarser.
-    large: bool,
+    /// It has so many triangles that a gesture shows it coarser and without a digest.
+    pub(super) large: bool,
     /// What letting go would make, or made: shown until the command comes.
     preview: Option<Arc<HandEdit>>,
 }

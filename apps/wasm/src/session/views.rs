@@ -38,7 +38,7 @@ impl Session {
                 } else if drawn && self.outcomes.contains_key(&id) {
                     continue; // the pen goes first
                 } else if let Some((_, shaped)) = gesture.as_ref().filter(|(held, _)| *held == id) {
-                    self.scene.set_looking(true);
+                    self.scene.set_looking(self.held.as_ref().is_some_and(|h| h.large));
                     let looked = self.scene.update(id, shaped, &run);
                     self.scene.set_looking(false);
                     looked

@@ -2,7 +2,7 @@
 
 use super::*;
 use base::{CancelToken, Executor};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 fn plain(spec: &TreeSpec) -> MadeTree {
     make_tree(spec, Seed::new(1), &TreeOptions::default(), &Run::plain()).expect("sound spec")
@@ -208,4 +208,36 @@ fn a_tree_that_was_left_half_edited_is_still_there() {
         }
     }
     assert!(stopped > 0, "nothing was stopped");
+}
+
+#[test]
+fn a_look_has_no_digest_and_what_follows_it_has() {
+    use document::{Editor, Maker, NewPlant, SceneCommand, Settings, ShapeCommand};
+
+    let mut editor = Editor::default();
+    let line: Vec<DVec2> = (0..9).map(|i| DVec2::new(0.0, f64::from(i))).collect();
+    let stem = document::NewStroke::line(&line);
+    for (maker, strokes) in
+        [(Maker::Tree(Box::default()), vec![]), (Maker::Sketch(Box::default()), vec![stem])]
+    {
+        let settings = Settings { maker, ..Settings::default() };
+        editor.run(SceneCommand::Add(Box::new(NewPlant { settings, strokes }))).expect("sound");
+    }
+    let edit = shape::HandEdit::Prune { axis: shape::AxisKey::Path(vec![0]), at: 0.5 };
+    for plant in editor.document().plants()[1..].iter().map(document::DocumentPlant::id).collect::<Vec<_>>() {
+        let mut scene = crate::SceneEvaluator::default();
+        let mut digest = |editor: &Editor, looking: bool| {
+            scene.set_looking(looking);
+            scene.update(plant, editor.document(), &Run::plain()).expect("sound");
+            scene.get(plant).expect("made").item.digest.clone()
+        };
+        let whole = digest(&editor, false);
+        editor.run(ShapeCommand::Add(edit.clone().into()).of(plant)).expect("sound");
+        assert_eq!(digest(&editor, true), "");
+        let cut = digest(&editor, false);
+        assert!(!cut.is_empty() && cut != whole, "of the same document as the look");
+        editor.undo();
+        assert_eq!(digest(&editor, true), "");
+        assert_eq!(digest(&editor, false), whole);
+    }
 }
