@@ -101,6 +101,17 @@ impl Evaluator {
         Self { preview: true, shapes: KeptShapes::loose(), ..Self::default() }
     }
 
+    /// Takes over what another evaluator found in this drawing, if that is what it made last: strokes have the class there
+    /// that a look keeps. Whether it did.
+    pub fn follow(&mut self, other: &Self, drawing: &Drawing) -> bool {
+        let same = other.strokes.as_ref().is_some_and(|k| k.from.strokes == drawing.strokes);
+        if same {
+            (self.strokes, self.reading) = (other.strokes.clone(), None);
+            (self.measures, self.bodies) = (other.measures.clone(), other.bodies.clone());
+        }
+        same
+    }
+
     /// Brings everything up to date and reports.
     ///
     /// # Errors

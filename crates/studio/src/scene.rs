@@ -262,6 +262,11 @@ impl SceneEvaluator {
         self.plants.retain(|&id, _| document.plant(id).is_some());
     }
 
+    /// What makes the plant, of a sketch.
+    pub fn evaluator(&self, id: PlantId) -> Option<&Evaluator> {
+        self.plants.get(&id).map(|made| &made.sketch)
+    }
+
     /// The last result of a plant.
     pub fn get(&self, id: PlantId) -> Option<ScenePlant<'_>> {
         let made = self.plants.get(&id)?;

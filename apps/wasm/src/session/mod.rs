@@ -49,6 +49,8 @@ pub(crate) struct Session {
     draft: Option<Stroke>,
     /// The current plant while a stroke is drawn.
     preview: Option<Evaluator>,
+    /// The plant and the revision whose classes the looks at a draft began with.
+    followed: Option<(PlantId, u64)>,
     preview_item: Option<ItemReport>,
     previewed: bool,
     /// A model file that is looked at instead of the scene.

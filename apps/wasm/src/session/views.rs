@@ -7,7 +7,7 @@ use burgeon::document::{self, DocumentPlant, Editor, Maker, PlantId};
 use burgeon::growth::Obstacle;
 use burgeon::mesh::{AlphaMode, Model, Texture};
 use burgeon::plant::{OrganKind, Shape};
-use burgeon::sketch::Stroke;
+use burgeon::sketch::Drawing;
 use burgeon::{CancelToken, Evaluator, ItemReport, MakeError, Run, SceneError, Seed, SketchOptions};
 
 use super::shaping::coarser;
@@ -33,7 +33,16 @@ impl Session {
                 let outcome = if drawn && Some(id) == current {
                     self.previewed = true;
                     let look = self.preview.get_or_insert_with(Evaluator::previewing);
-                    let looked = preview(look, plant, self.draft.as_ref(), &run);
+                    let mut drawing = plant.drawing();
+                    // With each stroke anew: what came before may be understood otherwise by now.
+                    let now = Some((id, self.editor.revision()));
+                    if self.followed != now
+                        && self.scene.evaluator(id).is_some_and(|whole| look.follow(whole, &drawing))
+                    {
+                        self.followed = now;
+                    }
+                    drawing.strokes.extend(self.draft.clone());
+                    let looked = preview(look, plant, &drawing, &run);
                     looked.map(|item| self.preview_item = Some(item)).map_err(SceneError::from)
                 } else if drawn && self.outcomes.contains_key(&id) {
                     continue; // the pen goes first
@@ -225,15 +234,13 @@ impl Session {
 fn preview(
     look: &mut Evaluator,
     plant: &DocumentPlant,
-    draft: Option<&Stroke>,
+    drawing: &Drawing,
     run: &Run<'_>,
 ) -> Result<ItemReport, MakeError> {
-    let mut drawing = plant.drawing();
-    drawing.strokes.extend(draft.cloned());
     let mut options = SketchOptions::of_plant(plant);
     // Fast while the pen is down, fine when it is lifted.
     options.skin.detail = (options.skin.detail * PREVIEW_DETAIL).max(0.1);
-    look.update(&drawing, &options, plant.settings().seed, run)
+    look.update(drawing, &options, plant.settings().seed, run)
 }
 
 fn plant_view(id: PlantId, model: &Model, textures: &mut Vec<Arc<Texture>>) -> PlantView {
