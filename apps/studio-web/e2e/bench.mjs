@@ -4,7 +4,7 @@ import { readdirSync, readFileSync } from 'node:fs';
 import { extname } from 'node:path';
 import { gzipSync } from 'node:zlib';
 import { chromium } from 'playwright-core';
-import { flags } from './flags.mjs';
+import { FLAGS } from './flags.mjs';
 
 const [browserPath, burgeon] = process.argv.slice(2);
 const server = spawn(burgeon, ['studio', '--no-open', '--port', '0', '--folder', 'dist'], { stdio: ['ignore', 'pipe', 'inherit'] });
@@ -21,7 +21,7 @@ const url = await new Promise((resolve, reject) => {
 });
 const browser = await chromium.launch({
   executablePath: browserPath,
-  args: [...flags('--use-angle=swiftshader'), '--enable-blink-features=ForceEagerMeasureMemory'],
+  args: [...FLAGS, '--enable-blink-features=ForceEagerMeasureMemory'],
 });
 
 const at = (sorted, share) => sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))] ?? NaN;

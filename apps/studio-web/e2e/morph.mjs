@@ -7,7 +7,7 @@ import { existsSync, mkdirSync, readFileSync, rmSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { extname, join, normalize } from 'node:path';
 import { chromium } from 'playwright-core';
-import { flags } from './flags.mjs';
+import { FLAGS } from './flags.mjs';
 
 const [browserPath, burgeon, out] = process.argv.slice(2);
 rmSync(out, { recursive: true, force: true });
@@ -103,7 +103,7 @@ const url = `http://127.0.0.1:${server.address().port}/`;
 let failed = 0;
 let browser;
 try {
-  browser = await chromium.launch({ executablePath: browserPath, args: flags() });
+  browser = await chromium.launch({ executablePath: browserPath, args: FLAGS });
   for (const flower of ['tulip', 'lily']) {
     const page = await browser.newPage({ viewport: { width: 1200, height: 330 } });
     const troubles = [];

@@ -4,7 +4,7 @@ import { spawn } from 'node:child_process';
 import { mkdirSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 import { chromium } from 'playwright-core';
-import { flags } from './flags.mjs';
+import { FLAGS } from './flags.mjs';
 import { journeys } from './journeys.mjs';
 import { shaping } from './shaping.mjs';
 
@@ -28,7 +28,7 @@ const url = await new Promise((resolve, reject) => {
   server.on('exit', (code) => reject(new Error(`burgeon studio ended with ${code}`)));
 });
 
-const browser = await chromium.launch({ executablePath: browserPath, args: flags() });
+const browser = await chromium.launch({ executablePath: browserPath, args: FLAGS });
 
 let failed = 0;
 const only = process.env.ONLY;
