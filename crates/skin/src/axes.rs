@@ -5,8 +5,8 @@ use glam::DVec3;
 use mesh::TriMesh;
 use plant::{AxisId, AxisKind, NodeId, Plant};
 
-use crate::fork::{Bearer, Collar};
-use crate::rings::place;
+use crate::fork::{Bearer, Collar, Reach, reach};
+use crate::rings::{drawn, rings};
 use crate::spec::{Budget, SkinSpec, whole};
 use crate::spine::Spine;
 use crate::traced::Traced;
@@ -54,6 +54,9 @@ pub(crate) struct Tube {
     pub mesh: TriMesh,
 }
 
+/// What bears a chain: a chain, and the sample of its spine.
+type Host = (usize, usize);
+
 /// Where an axis lies: its chain, and the number of its first node among the chain's points.
 type Place = (usize, usize);
 
@@ -95,23 +98,50 @@ pub(crate) fn tubes<'p>(
         let axis = *plant.nodes.axis.get(node.index())?;
         let &(host, offset) = places.get(axis.index())?;
         let local = node.index().checked_sub(plant.axis(axis).nodes.start as usize)? + offset;
-        let host_spine = spines.get(host)?.as_ref()?;
-        let sample = wind::sample(host_spine, local);
-        Some((Bearer { spine: host_spine, sample, sides: sides[host] }, host))
+        Some((host, wind::sample(spines.get(host)?.as_ref()?, local)))
     };
+    let mut hosts: Vec<Option<Host>> = chains.iter().map(borne_by).collect();
+    let smooth = |borne: Option<Host>| {
+        let (host, sample) = borne?;
+        Some(Bearer { spine: spines[host].as_ref()?, sample, sides: sides[host], top: 0.0 })
+    };
+    let leaves = |i: usize, borne| reach(spines[i].as_ref()?, &smooth(borne)?);
+    let mut reaches = grouped(run, chains.len(), |i| leaves(i, hosts[i]))?;
+    for i in 0..chains.len() {
+        let outer = outermost(i, &spines, &reaches, &hosts);
+        if outer != hosts[i] {
+            (hosts[i], reaches[i]) = (outer, leaves(i, outer));
+        }
+    }
     let wind = spec.wind.then(|| {
-        let wood = |(chain, spine): (&Chain, _)| Wood {
-            bearer: borne_by(chain),
-            borne: chain.bearer.is_some() && chain.surface != Surface::Root,
-            key: chain.axes.first().map_or(0, |&a| plant.axis(a).key),
-            spine: Option::as_ref(spine),
+        let wood = |i: usize| Wood {
+            bearer: smooth(hosts[i]).zip(hosts[i]).map(|(bearer, (host, _))| (bearer, host)),
+            borne: chains[i].bearer.is_some() && chains[i].surface != Surface::Root,
+            key: chains[i].axes.first().map_or(0, |&a| plant.axis(a).key),
+            spine: spines[i].as_ref(),
         };
-        let woods: Vec<Wood<'_>> = chains.iter().zip(&spines).map(wood).collect();
+        let woods: Vec<Wood<'_>> = (0..chains.len()).map(wood).collect();
         Wind::new(plant, spec.seed, &crate::bounds(plant), &woods, places.clone())
     });
+    let lines = grouped(run, chains.len(), |i| {
+        let spine = spines[i].as_ref()?;
+        let least = wind.as_ref().map_or(0.0, |w| w.rows(i, spine));
+        let ends = Ends::of(rows(budget, &chains[i], spine.length()).max(least), sides[i]);
+        let reach = reaches[i];
+        let (line, first) = drawn(spine, reach.as_ref(), ends.rings, |radius| budget.tolerance(radius));
+        Some(Line { line, first, reach, ends })
+    })?;
     grouped(run, chains.len(), |i| {
-        let (chain, spine) = (&chains[i], spines[i].as_ref()?);
-        let bearer = borne_by(chain);
+        let (chain, spine, line) = (&chains[i], spines[i].as_ref()?, lines[i].as_ref()?);
+        let bearer = hosts[i].and_then(|(host, sample)| {
+            let (smooth, drawn) = (spines[host].as_ref()?, lines[host].as_ref()?);
+            Some(Bearer {
+                spine: &drawn.line,
+                sample: drawn.line.piece(smooth.s[sample]),
+                sides: sides[host],
+                top: drawn.reach.map_or(0.0, |r| r.top),
+            })
+        });
         let surface = match chain.surface {
             Surface::Bark if spine.stout() < YOUNG * thickest.max(SLENDER * budget.size()) => {
                 Surface::YoungBark
@@ -125,12 +155,10 @@ pub(crate) fn tubes<'p>(
             _ => 1,
         };
         let circle = circles.get(sides[i] as usize)?;
-        let borne = bearer.as_ref().map(|(b, _)| b);
-        let least = wind.as_ref().map_or(0.0, |w| w.rows(i, spine));
-        let rows = rows(budget, chain, spine.length()).max(least);
-        let (mut mesh, fillet) = sleeve(spine, borne, circle, repeats, rows);
+        let (mut mesh, fillet) = sleeve(line, bearer.as_ref(), circle, repeats);
         if let Some(wind) = &wind {
-            let fillet = fillet.zip(bearer.as_ref()).map(|(rows, (b, host))| (rows, b, *host));
+            let fillet =
+                fillet.zip(bearer.as_ref()).zip(hosts[i]).map(|((rows, b), (host, _))| (rows, b, host));
             wind.tube(&mut mesh, i, spine, circle.sides(), fillet);
         }
         let traced = traced.filter(|t| chain.axes.iter().all(|&a| t.has(plant.axis(a).source)));
@@ -140,6 +168,26 @@ pub(crate) fn tubes<'p>(
         Some(Tube { surface, traced: traced.is_some(), mesh })
     })
     .map(|tubes| (tubes.into_iter().flatten().collect(), wind))
+}
+
+/// What chain `i` grows out of: where it begins while its bearer is still inside the next thicker one, that.
+fn outermost(
+    i: usize,
+    spines: &[Option<Spine>],
+    reaches: &[Option<Reach>],
+    hosts: &[Option<Host>],
+) -> Option<Host> {
+    let start = spines[i].as_ref()?.p[0];
+    let mut found = hosts[i]?;
+    while let (host, sample) = found
+        && let (Some(inside), Some((next, hint))) = (&reaches[host], hosts[host])
+        && let (Some(spine), Some(wood)) = (&spines[host], &spines[next])
+        && spine.s[sample] < inside.exit.s
+        && next < host
+    {
+        found = (next, wood.nearest(start, hint).1);
+    }
+    Some(found)
 }
 
 /// [`map_indexed`] in groups, with a look at the cancel flag before each.
@@ -155,42 +203,65 @@ fn grouped<T: Send>(run: &Run<'_>, n: usize, f: impl Fn(usize) -> T + Sync) -> R
     Ok(out)
 }
 
+/// Rows of a tube: of its fillet, between its ends, of its tip.
+#[derive(Clone, Copy, Debug)]
+struct Ends {
+    steps: u32,
+    rings: f64,
+    tip: u32,
+}
+
+impl Ends {
+    /// Shares out the rows of a tube with so many sides.
+    fn of(rows: f64, sides: u32) -> Self {
+        // Small twigs spend fewer rows on their ends, so that some are left for the middle.
+        // A thick tube's tip is large enough to show its corners.
+        let round = if sides > 12 { 4 } else { 2 };
+        let (steps, tip) = if rows < 9.0 { (1, 1) } else { (3, round) };
+        Self { steps, rings: (rows - f64::from(steps + tip)).max(3.0), tip }
+    }
+}
+
+/// A chain as it is drawn: what bears others, straight between rings.
+#[derive(Debug)]
+struct Line {
+    line: Spine,
+    /// The number of its first ring.
+    first: usize,
+    reach: Option<Reach>,
+    ends: Ends,
+}
+
 /// One tube: fillet or flat base, rings, round tip. Also the number of the fillet's rows below the first ring.
 fn sleeve(
-    spine: &Spine,
+    line: &Line,
     bearer: Option<&Bearer<'_>>,
     circle: &Circle,
     repeats: u32,
-    rows: f64,
 ) -> (TriMesh, Option<usize>) {
+    let Ends { steps, tip, .. } = line.ends;
+    let mut rings = rings(&line.line, line.first);
     let mut mesh = TriMesh::default();
-    // Small twigs spend fewer rows on their ends, so that some are left for the middle.
-    // A thick tube's tip is large enough to show its corners.
-    let round = if circle.sides() > 12 { 4 } else { 2 };
-    let (steps, tip) = if rows < 9.0 { (1, 1) } else { (3, round) };
-    let ends = f64::from(steps + tip);
-    let capacity = (circle.sides() + 1) * (whole(rows) as usize + 4);
+    let capacity = (circle.sides() + 1) * (rings.len() + (steps + tip) as usize + 2);
     mesh.positions.reserve(capacity);
     mesh.normals.reserve(capacity);
     mesh.uvs.reserve(capacity);
     mesh.triangles.reserve(2 * capacity);
     let mut out = Sleeve::new(&mut mesh, circle, repeats);
-    let rings = (rows - ends).max(3.0);
-    let fillet = match bearer.and_then(|b| Collar::new(spine, b, circle, steps, rings)) {
-        Some((collar, rings)) => {
-            collar.write(&mut out, spine.p[0], rings[0].radius);
-            out.rings(&rings);
-            out.round_tip(&rings[rings.len() - 1], tip);
-            Some(steps as usize + 1)
+    let fillet = line.reach.as_ref().zip(bearer).map(|(reach, bearer)| {
+        let collar = Collar::new(reach, &rings[0], bearer, circle, steps);
+        collar.write(&mut out, rings[0].radius);
+        steps as usize + 1
+    });
+    if fillet.is_none() {
+        // It ends inside the bearer: so it starts where that is drawn.
+        if let Some(bearer) = bearer {
+            rings[0].centre = bearer.spine.nearest(rings[0].centre, bearer.sample).0.centre;
         }
-        None => {
-            let rings = place(spine, 0.0, rings);
-            out.flat_base(&rings[0]);
-            out.rings(&rings);
-            out.round_tip(&rings[rings.len() - 1], tip);
-            None
-        }
-    };
+        out.flat_base(&rings[0]);
+    }
+    out.rings(&rings);
+    out.round_tip(&rings[rings.len() - 1], tip);
     drop_flat(&mut mesh);
     (mesh, fillet)
 }

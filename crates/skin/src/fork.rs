@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::rings::{Ring, place};
+use crate::rings::Ring;
 use crate::spine::{Spine, Station};
 use crate::tube::{Circle, Sleeve};
 
@@ -10,19 +10,21 @@ use crate::tube::{Circle, Sleeve};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bearer<'a> {
     pub spine: &'a Spine,
-    /// The sample at which the branch starts.
+    /// The sample at which the branch starts, or the last one before it.
     pub sample: usize,
     /// Sides of the bearer's tube: its flat faces lie deeper than its radius.
     pub sides: u32,
+    /// The arc length up to which the bearer is a fillet itself.
+    pub top: f64,
 }
 
-/// Where the fillet lies along a branch, as arc lengths of its spine.
+/// Where the fillet lies along a branch.
 #[derive(Clone, Copy, Debug)]
-struct Reach {
+pub(crate) struct Reach {
     /// Where the centre line leaves the bearer.
-    exit: f64,
-    /// Where the fillet ends and the branch's own tube starts.
-    top: f64,
+    pub exit: Station,
+    /// The arc length at which the fillet ends and the branch's own tube starts.
+    pub top: f64,
 }
 
 /// The rows of a fillet: `rows` x (sides + 1) corners and normals, from foot to top; the top row is the tube's
@@ -32,51 +34,71 @@ pub(crate) struct Collar {
     pub corners: Vec<DVec3>,
     pub normals: Vec<DVec3>,
     pub width: usize,
+    /// A point inside the bearer.
+    inside: DVec3,
 }
+
+// A fillet's rows may lie this much deeper than the line's radius says.
+const HOLLOW: f64 = 0.6;
 
 // A branch that runs along its bearer leaves it only far out; from this sine on its fillet is cut short.
 const SHALLOWEST: f64 = 0.22;
 
-/// Where the centre line of `branch` leaves its bearer: its arc length, the bearer's station there and its piece;
-/// `None` where it never does (it ends inside).
-pub(crate) fn exit(branch: &Spine, bearer: &Bearer<'_>) -> Option<(f64, Station, usize)> {
+/// Where the centre line of `branch` leaves its bearer, the bearer's station there and its piece; `None` where it never
+/// does (it ends inside).
+pub(crate) fn exit(branch: &Spine, bearer: &Bearer<'_>) -> Option<(Station, Station, usize)> {
     let mut hint = bearer.sample;
-    branch.p.iter().zip(&branch.s).find_map(|(p, s)| {
-        let (station, near) = bearer.spine.nearest(*p, hint);
+    let mut depth = |p: DVec3| {
+        let (station, near) = bearer.spine.nearest(p, hint);
         hint = near;
-        (station.centre.distance(*p) > station.radius).then_some((*s, station, near))
-    })
+        (station.centre.distance(p) - station.radius, station, near)
+    };
+    let mut inside = None;
+    let (k, mut outside) = branch.p.iter().enumerate().find_map(|(k, &p)| {
+        let here = depth(p);
+        let found = here.0 > 0.0;
+        if !found {
+            inside = Some(here.0);
+        }
+        found.then_some((k, here))
+    })?;
+    let Some(mut inside) = inside else { return Some((branch.at(0.0), outside.1, outside.2)) };
+    // Samples are coarser than bearers are thick: false position (Illinois) narrows down where the surface lies.
+    let (mut a, mut b) = (branch.s[k - 1], branch.s[k]);
+    for _ in 0..4 {
+        let s = b - (b - a) * (outside.0 / (outside.0 - inside)).clamp(0.0, 1.0);
+        let here = depth(branch.station(k - 1, s).centre);
+        if here.0 > 0.0 {
+            (b, outside) = (s, here);
+            inside *= 0.5;
+        } else {
+            (a, inside) = (s, here.0);
+        }
+    }
+    Some((branch.station(k - 1, b), outside.1, outside.2))
 }
 
-fn reach(branch: &Spine, bearer: &Bearer<'_>) -> Option<Reach> {
+/// Where the fillet of `branch` on its bearer lies; `None` where the branch ends inside.
+pub(crate) fn reach(branch: &Spine, bearer: &Bearer<'_>) -> Option<Reach> {
     let (exit, at, _) = exit(branch, bearer)?;
-    let own = branch.at(exit);
-    let cos = own.tangent.dot(at.tangent);
+    let cos = exit.tangent.dot(at.tangent);
     let sin = (1.0 - cos * cos).max(0.0).sqrt().max(SHALLOWEST);
     // On a thick bearer the fillet is as long as the branch is thick; on one of like thickness it may take 1.2
     // of the bearer's radius.
-    let length = 1.2 * at.radius.min(2.2 * own.radius);
-    let top = exit + own.radius * cos.abs() / sin + length;
-    let room = branch.length() - exit;
-    Some(Reach { exit, top: top.min(exit + 0.6 * room) })
+    let length = 1.2 * at.radius.min(2.2 * exit.radius);
+    let top = exit.s + exit.radius * cos.abs() / sin + length;
+    let room = branch.length() - exit.s;
+    Some(Reach { exit, top: top.min(exit.s + 0.6 * room) })
 }
 
 impl Collar {
-    /// The fillet of `branch` on its bearer with `steps` rows between foot and top, and the tube's rings.
+    /// The fillet of a branch on its bearer, with `steps` rows between its foot and the branch's first ring, `top`.
     ///
     /// Its foot lies on the bearer's surface, sunk just below the flat faces, with the bearer's normals: light
-    /// passes from one to the other without an edge. `None` where the branch ends inside its bearer.
-    pub(crate) fn new(
-        branch: &Spine,
-        bearer: &Bearer<'_>,
-        circle: &Circle,
-        steps: u32,
-        rings: f64,
-    ) -> Option<(Self, Vec<Ring>)> {
-        let reach = reach(branch, bearer)?;
-        let rings = place(branch, reach.top, rings);
-        let top = rings.first()?;
-        let at = branch.at(reach.exit);
+    /// passes from one to the other without an edge. Where the bearer is given as it is drawn, the foot reaches it
+    /// even if the smooth line runs elsewhere.
+    pub(crate) fn new(reach: &Reach, top: &Ring, bearer: &Bearer<'_>, circle: &Circle, steps: u32) -> Self {
+        let at = &reach.exit;
         let (axis, hint) = bearer.spine.nearest(at.centre, bearer.sample);
         // Seen from the top ring, the branch comes from where it left the bearer.
         let back = (at.centre - top.centre).try_normalize().unwrap_or(-top.tangent);
@@ -88,6 +110,7 @@ impl Collar {
             corners: vec![DVec3::ZERO; width * (steps as usize + 2)],
             normals: vec![DVec3::ZERO; width * (steps as usize + 2)],
             width,
+            inside: axis.centre,
         };
         for (j, &corner) in circle.0[..width - 1].iter().enumerate() {
             let ray = top.ray(corner);
@@ -111,7 +134,7 @@ impl Collar {
             row[width - 1] = row[0];
         }
         collar.inner_normals(steps as usize);
-        Some((collar, rings))
+        collar
     }
 
     fn inner_normals(&mut self, steps: usize) {
@@ -129,7 +152,7 @@ impl Collar {
     }
 
     /// Writes the closed base and every row but the last, which is the tube's first ring.
-    pub(crate) fn write(&self, out: &mut Sleeve<'_>, start: DVec3, radius: f64) {
+    pub(crate) fn write(&self, out: &mut Sleeve<'_>, radius: f64) {
         let rows = self.corners.len() / self.width - 1;
         for k in 0..rows {
             let row = k * self.width..(k + 1) * self.width;
@@ -138,7 +161,7 @@ impl Collar {
             let centre = corners[1..].iter().sum::<DVec3>() / (self.width - 1) as f64;
             out.row(centre, radius, corners, &self.normals[row]);
             if k == 0 {
-                out.hidden_base(start, (start - centre).try_normalize().unwrap_or(DVec3::NEG_Y));
+                out.hidden_base(self.inside, (self.inside - centre).try_normalize().unwrap_or(DVec3::NEG_Y));
             }
         }
     }
@@ -151,6 +174,7 @@ impl Bearer<'_> {
         let d = p - at.centre;
         let out = d - at.tangent * d.dot(at.tangent);
         let ray = out.try_normalize().unwrap_or_else(|| at.tangent.any_orthonormal_vector());
+        let share = if share < 1.0 && at.s < self.top { share * HOLLOW } else { share };
         (at.centre + ray * (at.radius * share), (ray - at.tangent * at.slope).normalize())
     }
 }
@@ -173,6 +197,7 @@ fn hit(q: DVec3, d: DVec3, cylinder: &Station) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rings::{drawn, rings};
 
     #[test]
     fn foot_lies_inside_the_bearer_and_top_outside() {
@@ -182,9 +207,12 @@ mod tests {
             let dir = DVec3::new(sin, cos, 0.0);
             let branch =
                 Spine::new(&[DVec3::Y, DVec3::Y + dir * 1.5], &[thick, thick * 0.6], 100, None).unwrap();
-            let bearer = Bearer { spine: &trunk, sample: 50, sides: 8 };
+            let bearer = Bearer { spine: &trunk, sample: 50, sides: 8, top: 0.0 };
             let circle = Circle::new(8);
-            let (collar, rings) = Collar::new(&branch, &bearer, &circle, 3, 20.0).unwrap();
+            let reach = reach(&branch, &bearer).unwrap();
+            let (line, first) = drawn(&branch, Some(&reach), 20.0, |_| f64::INFINITY);
+            let rings = rings(&line, first);
+            let collar = Collar::new(&reach, &rings[0], &bearer, &circle, 3);
             for foot in &collar.corners[..collar.width] {
                 let r = (foot.x * foot.x + foot.z * foot.z).sqrt();
                 // Inside even the flat faces of the eight-sided bearer.
@@ -200,7 +228,7 @@ mod tests {
     fn branch_that_ends_inside_has_no_collar() {
         let trunk = Spine::new(&[DVec3::ZERO, DVec3::Y * 2.0], &[0.5, 0.5], 100, None).unwrap();
         let twig = Spine::new(&[DVec3::Y, DVec3::new(0.2, 1.0, 0.0)], &[0.01, 0.01], 10, None).unwrap();
-        let bearer = Bearer { spine: &trunk, sample: 50, sides: 8 };
-        assert!(Collar::new(&twig, &bearer, &Circle::new(6), 2, 8.0).is_none());
+        let bearer = Bearer { spine: &trunk, sample: 50, sides: 8, top: 0.0 };
+        assert!(reach(&twig, &bearer).is_none());
     }
 }

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::fork::Reach;
 use crate::spine::{Spine, Station};
 
 /// A cross-section: a station with two unit vectors across, `across` x `up` = `tangent`.
@@ -30,24 +31,56 @@ impl Ring {
 // Neighbouring ring planes may meet no nearer than this many radii from the centre line: they never fold over.
 const CLEARANCE: f64 = 1.15;
 
-/// About `count` rings from arc length `from` to the end: denser where the line turns or swells, planes
-/// bisecting its bends, twist minimal (double reflection, Wang et al. 2008).
-pub(crate) fn place(spine: &Spine, from: f64, count: f64) -> Vec<Ring> {
-    let stations = stations(spine, from, count);
-    let tangents = eased_tangents(&stations);
-    let mut rings: Vec<Ring> = Vec::with_capacity(stations.len());
-    for (&station, tangent) in stations.iter().zip(tangents) {
+/// `spine` as it is drawn, and the number of its first ring: about `count` rings from arc length `from` to the end,
+/// denser where the line turns or swells, and more where the line would depart from the straight pieces between them by
+/// more than `tolerance` says for its radius there. What bears other axes is this, not the smooth line.
+///
+/// On a bearer the line has two more samples without rings: where it leaves it, from where the fillet runs straight to
+/// the first ring, and as far back on that straight line as its start.
+pub(crate) fn drawn(
+    spine: &Spine,
+    reach: Option<&Reach>,
+    count: f64,
+    tolerance: impl Fn(f64) -> f64,
+) -> (Spine, usize) {
+    let stations = stations(spine, reach.map_or(0.0, |r| r.top), count);
+    let stations = refined(spine, &stations, tolerance);
+    let foot = reach.map_or_else(Vec::new, |r| {
+        let along = (stations[0].centre - r.exit.centre).try_normalize().unwrap_or(r.exit.tangent);
+        vec![Station { centre: r.exit.centre - along * r.exit.s, tangent: along, ..spine.at(0.0) }, r.exit]
+    });
+    let all = || foot.iter().chain(&stations);
+    let line = Spine {
+        p: all().map(|s| s.centre).collect(),
+        t: all().map(|s| s.tangent).collect(),
+        r: all().map(|s| s.radius).collect(),
+        s: all().map(|s| s.s).collect(),
+        knots: Vec::new(),
+    };
+    (line, foot.len())
+}
+
+/// The rings at the samples of a drawn line from number `first` on: planes bisecting its bends, twist minimal (double
+/// reflection, Wang et al. 2008).
+pub(crate) fn rings(line: &Spine, first: usize) -> Vec<Ring> {
+    let n = line.p.len();
+    let tangents = eased_tangents(line, first);
+    let mut rings: Vec<Ring> = Vec::with_capacity(n - first);
+    for (k, tangent) in (first..n).zip(tangents) {
         let across = match rings.last() {
             None => tangent.any_orthonormal_vector(),
-            Some(before) => transport(before, station.centre, tangent),
+            Some(before) => transport(before, line.p[k], tangent),
         };
+        let (a, b) = (k.saturating_sub(1).max(first), (k + 1).min(n - 1));
+        let h = line.s[b] - line.s[a];
+        let slope = if h > 0.0 { (line.r[b] - line.r[a]) / h } else { 0.0 };
         rings.push(Ring {
-            centre: station.centre,
+            centre: line.p[k],
             tangent,
             across,
             up: tangent.cross(across),
-            radius: station.radius,
-            slope: station.slope,
+            radius: line.r[k],
+            slope: slope.clamp(-1.0, 1.0),
         });
     }
     rings
@@ -57,7 +90,7 @@ pub(crate) fn place(spine: &Spine, from: f64, count: f64) -> Vec<Ring> {
 fn stations(spine: &Spine, from: f64, count: f64) -> Vec<Station> {
     let length = spine.length();
     let from = from.clamp(0.0, length * 0.98);
-    let start = spine.s.partition_point(|&s| s <= from).clamp(1, spine.s.len() - 1) - 1;
+    let start = spine.piece(from);
     let mut weight: Vec<f64> = Vec::with_capacity(spine.s.len() - start);
     weight.push(0.0);
     let (mut turning, mut swelling, mut radius) = (0.0, 0.0, 0.0);
@@ -103,21 +136,66 @@ fn stations(spine: &Spine, from: f64, count: f64) -> Vec<Station> {
     out
 }
 
+/// Between each two stations the samples of `spine` that it takes to stay within the tolerance (Douglas and Peucker
+/// 1973). Cost: n log n in samples.
+fn refined(spine: &Spine, stations: &[Station], tolerance: impl Fn(f64) -> f64) -> Vec<Station> {
+    let mut out = Vec::with_capacity(2 * stations.len());
+    out.extend(stations.first());
+    let mut ahead: Vec<Station> = Vec::new();
+    for pair in stations.windows(2) {
+        let mut from = pair[0];
+        ahead.push(pair[1]);
+        while let Some(to) = ahead.last() {
+            if let Some(k) = farthest(spine, &from, to, &tolerance) {
+                ahead.push(spine.station(k, spine.s[k]));
+            } else {
+                from = *to;
+                out.push(from);
+                ahead.pop();
+            }
+        }
+    }
+    out
+}
+
+/// The sample between two stations that departs most, in its tolerances, from the cone between them: if by more than
+/// one.
+fn farthest(spine: &Spine, from: &Station, to: &Station, tolerance: impl Fn(f64) -> f64) -> Option<usize> {
+    let a = spine.s.partition_point(|&s| s <= from.s);
+    let b = spine.s.partition_point(|&s| s < to.s).min(spine.s.len() - 1).max(a);
+    let along = to.centre - from.centre;
+    let (square, length) = (along.length_squared().max(f64::MIN_POSITIVE), to.s - from.s);
+    let mut worst: Option<(f64, usize)> = None;
+    for k in a..b {
+        let p = spine.p[k] - from.centre;
+        let off = (p - along * (p.dot(along) / square).clamp(0.0, 1.0)).length();
+        let radius = base::ops::lerp(from.radius, to.radius, (spine.s[k] - from.s) / length);
+        let off = (off + (spine.r[k] - radius).abs()) / tolerance(spine.r[k]).max(f64::MIN_POSITIVE);
+        if off > worst.map_or(1.0, |w| w.0) {
+            worst = Some((off, k));
+        }
+    }
+    // Of many samples the middle half is parted, so that each look is at fewer than before.
+    let edge = if b - a > 64 { (b - a) / 4 } else { 0 };
+    worst.map(|(_, k)| k.clamp(a + edge, b - 1 - edge))
+}
+
 /// Ring plane normals whose turn from ring to ring keeps the planes apart within the tube.
-fn eased_tangents(stations: &[Station]) -> Vec<DVec3> {
-    let n = stations.len();
+fn eased_tangents(line: &Spine, first: usize) -> Vec<DVec3> {
+    let (p, t, r) = (&line.p[first..], &line.t[first..], &line.r[first..]);
+    let n = p.len();
     let limit = |i: usize| {
-        let chord = stations[i].centre.distance(stations[i - 1].centre);
-        let reach = CLEARANCE * stations[i].radius.max(stations[i - 1].radius);
+        let chord = p[i].distance(p[i - 1]);
+        let reach = CLEARANCE * r[i].max(r[i - 1]);
         // Planes that turn by a meet at chord / (2 tan(a / 2)) from the line; held as the cosine of a.
         let half = chord / (2.0 * reach.max(f64::MIN_POSITIVE));
         (1.0 - half * half) / (1.0 + half * half)
     };
-    let tight = (1..n).any(|i| stations[i].tangent.dot(stations[i - 1].tangent) < limit(i));
+    let tight = (1..n).any(|i| t[i].dot(t[i - 1]) < limit(i));
     if !tight {
-        return stations.iter().map(|s| s.tangent).collect();
+        return t.to_vec();
     }
-    let mut forward: Vec<DVec3> = stations.iter().map(|s| s.tangent).collect();
+    let mut forward: Vec<DVec3> = t.to_vec();
     let mut backward = forward.clone();
     for i in 1..n {
         forward[i] = within(forward[i - 1], forward[i], limit(i));
@@ -154,4 +232,48 @@ fn transport(before: &Ring, centre: DVec3, tangent: DVec3) -> DVec3 {
     let across = reflect(across, tangent - reflect(before.tangent, step));
     let square = across - tangent * across.dot(tangent);
     square.try_normalize().unwrap_or_else(|| tangent.any_orthonormal_vector())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A line that zigzags by 40 degrees.
+    fn zigzag() -> Spine {
+        let points: Vec<DVec3> = (0..12)
+            .map(|i| DVec3::new(if i % 2 == 0 { 0.0 } else { 0.2 }, 0.5 * f64::from(i), 0.0))
+            .collect();
+        let radii: Vec<f64> = (0..12).map(|i| 0.05 - 0.004 * f64::from(i)).collect();
+        Spine::new(&points, &radii, 40, None).unwrap()
+    }
+
+    #[test]
+    fn few_rings_still_follow_the_line() {
+        let spine = zigzag();
+        let loose = drawn(&spine, None, 3.0, |_| f64::INFINITY).0;
+        assert_eq!(loose.p.len(), 3);
+        for share in [1.0, 0.3] {
+            let (line, first) = drawn(&spine, None, 3.0, |r| share * r);
+            assert_eq!((first, rings(&line, first).len()), (0, line.p.len()));
+            let mut hint = 0;
+            for (p, r) in spine.p.iter().zip(&spine.r) {
+                let (at, piece) = line.nearest(*p, hint);
+                hint = piece;
+                assert!(at.centre.distance(*p) <= share * r * 1.000_001, "{share}: {p} is off");
+            }
+            // Fewer than the samples: only what it takes.
+            assert!(line.p.len() < spine.p.len() && line.p.len() >= 13, "{} rings", line.p.len());
+        }
+    }
+
+    #[test]
+    fn what_lies_below_the_first_ring_is_straight() {
+        let spine = zigzag();
+        let exit = spine.at(0.3);
+        let (line, first) = drawn(&spine, Some(&Reach { exit, top: 0.8 }), 6.0, |r| r);
+        assert_eq!((first, line.s[1], line.s[2]), (2, 0.3, spine.at(0.8).s));
+        let (a, b) = (line.p[1] - line.p[0], line.p[2] - line.p[1]);
+        assert!(a.normalize().dot(b.normalize()) > 1.0 - 1e-12);
+        assert!((a.length() - 0.3).abs() < 1e-12);
+    }
 }

@@ -11,7 +11,8 @@ use base::Seed;
 #[derive(Clone, Debug, PartialEq)]
 pub struct SkinSpec {
     /// Fineness: 1 gives about 500 triangles for a branch of average length and 250 to 800 for a drawn blade;
-    /// counts grow in proportion. 0.1 to 8, default 1.
+    /// counts grow in proportion. In a crown of hundreds of branches each gets what its bends take. 0.1 to 8,
+    /// default 1.
     pub detail: f64,
     /// Sides of an ordinary branch at `detail` 1 or more; thick ones get up to 24. 3 to 24, default 8 (the
     /// paper's octagons).
@@ -114,6 +115,9 @@ const ALL_BLADES: f64 = 64_000.0;
 // Beyond this many blades each is one of a crowd and the sum falls too.
 const CROWD: f64 = 200.0;
 
+// Share of the plant's size that is too small to be seen.
+const TOLERANCE: f64 = 7e-4;
+
 // From so many axes or blades on, a plant is a tree in leaf rather than a drawing: twigs and leaves are a crowd.
 const CROWN_AXES: f64 = 150.0;
 const CROWN_BLADES: f64 = 1500.0;
@@ -151,6 +155,12 @@ impl Budget {
         (share * relative * self.detail).clamp(4.0, 600.0)
     }
 
+    /// How far wood as it is drawn may depart from the plant's where its radius is `radius`, metres: 0.07 % of the
+    /// plant's size, and no farther than what hangs on a thin twig would hang free of it.
+    pub(crate) fn tolerance(&self, radius: f64) -> f64 {
+        (TOLERANCE * self.size).min(radius) / self.detail
+    }
+
     /// Sides of an axis of this radius: enough that its polygon departs from the circle by less than 0.07 %
     /// of the plant's size, even, `least` to 24.
     pub(crate) fn sides(&self, radius: f64, least: u32) -> u32 {
@@ -162,7 +172,7 @@ impl Budget {
             5.. => floor.max(5.0),
             _ => floor,
         };
-        let tolerance = 7e-4 * self.size / self.detail;
+        let tolerance = TOLERANCE * self.size / self.detail;
         let round = base::ops::PI / base::ops::acos_clamped(1.0 - (tolerance / radius.max(1e-12)).min(1.0));
         whole(round.clamp(floor, 24.0_f64.max(floor)).ceil())
     }

@@ -1,8 +1,10 @@
-//! Nodes of an axis -> a smooth, densely sampled centre line with radii.
+//! Nodes of an axis -> a smooth, densely sampled centre line with radii; that line as it is drawn.
 
 use glam::DVec3;
 
-/// A centre line: dense samples of position, unit tangent, radius and arc length. At least 2 samples, length > 0.
+/// A centre line: samples of position, unit tangent, radius and arc length, straight between them. At least 2 samples,
+/// length > 0. Dense as it comes from [`Spine::new`]; as it is drawn one sample for each ring, with the arc lengths of
+/// the dense line.
 #[derive(Clone, Debug)]
 pub(crate) struct Spine {
     pub p: Vec<DVec3>,
@@ -16,6 +18,8 @@ pub(crate) struct Spine {
 /// A point on a [`Spine`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Station {
+    /// Its arc length.
+    pub s: f64,
     pub centre: DVec3,
     pub tangent: DVec3,
     pub radius: f64,
@@ -127,8 +131,12 @@ impl Spine {
 
     /// The station at arc length `s`, clamped to the ends.
     pub(crate) fn at(&self, s: f64) -> Station {
-        let i = self.s.partition_point(|&x| x <= s).clamp(1, self.s.len() - 1) - 1;
-        self.station(i, s)
+        self.station(self.piece(s), s)
+    }
+
+    /// The piece in which arc length `s` lies.
+    pub(crate) fn piece(&self, s: f64) -> usize {
+        self.s.partition_point(|&x| x <= s).clamp(1, self.s.len() - 1) - 1
     }
 
     /// The station at arc length `s` of piece `i`.
@@ -137,6 +145,7 @@ impl Spine {
         let u = if h > 0.0 { ((s - self.s[i]) / h).clamp(0.0, 1.0) } else { 0.0 };
         let slope = if h > 0.0 { (self.r[i + 1] - self.r[i]) / h } else { 0.0 };
         Station {
+            s: base::ops::lerp(self.s[i], self.s[i + 1], u),
             centre: self.p[i].lerp(self.p[i + 1], u),
             tangent: self.t[i].lerp(self.t[i + 1], u).try_normalize().unwrap_or(self.t[i]),
             radius: base::ops::lerp(self.r[i], self.r[i + 1], u),
@@ -144,31 +153,32 @@ impl Spine {
         }
     }
 
-    /// The station nearest to `p`, found downhill from sample `hint`; also its piece, as the next hint.
+    /// The station nearest to `p`, found downhill from piece `hint`; also its piece, as the next hint.
     pub(crate) fn nearest(&self, p: DVec3, hint: usize) -> (Station, usize) {
-        let last = self.p.len() - 1;
-        let mut i = hint.min(last);
-        let mut best = self.p[i].distance_squared(p);
-        // Downhill in both directions; the first step decides.
-        let up = i < last && self.p[i + 1].distance_squared(p) < best;
-        loop {
-            let next = if up { i + 1 } else { i.wrapping_sub(1) };
-            let Some(d) = self.p.get(next).map(|q| q.distance_squared(p)).filter(|d| *d < best) else {
-                break;
-            };
-            best = d;
-            i = next;
-        }
-        let piece = |k: usize| {
+        let last = self.p.len() - 2;
+        let foot = |k: usize| {
             let (a, b) = (self.p[k], self.p[k + 1]);
             let d = b - a;
             let u = ((p - a).dot(d) / d.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-            (a.lerp(b, u).distance_squared(p), self.s[k] + u * (self.s[k + 1] - self.s[k]), k)
+            (a.lerp(b, u).distance_squared(p), u)
         };
-        let low = piece(i.saturating_sub(1).min(last - 1));
-        let high = piece(i.min(last - 1));
-        let (_, s, k) = if low.0 < high.0 { low } else { high };
-        (self.station(k, s), k)
+        let mut k = hint.min(last);
+        let (mut best, mut at) = foot(k);
+        // Downhill in both directions; the first step decides. Pieces share their ends: a foot there may belong to
+        // the next piece as well, so that equal distances go on.
+        let up = at >= 1.0 && k < last;
+        while at <= 0.0 || at >= 1.0 {
+            let next = if up { k + 1 } else { k.wrapping_sub(1) };
+            if next > last {
+                break;
+            }
+            let (d, u) = foot(next);
+            if d > best {
+                break;
+            }
+            (best, at, k) = (d, u, next);
+        }
+        (self.station(k, base::ops::lerp(self.s[k], self.s[k + 1], at)), k)
     }
 }
 

@@ -4,7 +4,7 @@ use base::ops;
 use glam::DVec3;
 use mesh::TriMesh;
 
-use crate::rings::{Ring, place};
+use crate::rings::{Ring, drawn, rings};
 use crate::spine::Spine;
 
 /// How a [`tube`] is made.
@@ -39,12 +39,13 @@ impl Default for TubeSpec {
 /// assert_eq!(mesh.validate().count(), 0);
 /// ```
 pub fn tube(points: &[DVec3], radii: &[f64], spec: &TubeSpec) -> TriMesh {
-    let rings = f64::from(spec.rings.max(2));
+    let count = f64::from(spec.rings.max(2));
     let Some(spine) = Spine::new(points, radii, 4 * spec.rings.max(2) as usize, None) else {
         return TriMesh::default();
     };
     let circle = Circle::new(spec.sides);
-    let rings = place(&spine, 0.0, rings);
+    let (line, first) = drawn(&spine, None, count, |_| f64::INFINITY);
+    let rings = rings(&line, first);
     let mut mesh = TriMesh::default();
     let mut out = Sleeve::new(&mut mesh, &circle, spec.repeats);
     out.flat_base(&rings[0]);

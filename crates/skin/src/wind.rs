@@ -13,7 +13,7 @@ use mesh::{Bounds, TriMesh};
 use plant::{AxisKind, NodeId, Organ, Plant, Shape};
 
 use crate::fork::Bearer;
-use crate::spine::{Spine, Station};
+use crate::spine::Spine;
 use crate::tube::{narrow, wide};
 
 /// What a chain of axes has to know.
@@ -110,13 +110,13 @@ impl<'a> Wind<'a> {
         let limb = Member { from: Some(0.0), ..own };
         let (Some(spine), Some((bearer, host))) = (wood.spine, &wood.bearer) else { return limb };
         let exit = crate::fork::exit(spine, bearer);
-        let limb = Member { exit: exit.map_or(0.0, |e| e.0), ..limb };
+        let limb = Member { exit: exit.map_or(0.0, |e| e.0.s), ..limb };
         // A bearer comes before what it bears; where it does not, the branch is a limb of its own.
         let Some(host) = self.members.get(*host).filter(|_| *host < chain) else { return limb };
         let Some(start) = host.from else { return limb };
         let s = exit.map_or_else(
             || bearer.spine.s.get(bearer.sample).copied().unwrap_or(0.0),
-            |(_, station, piece)| arc(bearer.spine, &station, piece),
+            |(_, station, _)| station.s,
         );
         Member { from: Some(start + (s - host.exit).max(0.0)), exit: limb.exit, ..*host }
     }
@@ -292,12 +292,7 @@ pub(crate) fn sample(spine: &Spine, input: usize) -> usize {
 /// Arc length of the point of a spine nearest to `p`, and the hint for the next.
 fn along(spine: &Spine, p: DVec3, hint: usize) -> (f64, usize) {
     let (station, piece) = spine.nearest(p, hint);
-    (arc(spine, &station, piece), piece)
-}
-
-/// Arc length of a station of a piece.
-fn arc(spine: &Spine, station: &Station, piece: usize) -> f64 {
-    spine.s[piece] + station.centre.distance(spine.p[piece])
+    (station.s, piece)
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "f64 in the model, f32 in the mesh, by design")]
