@@ -36,6 +36,8 @@ pub enum OrganKind {
     Pistil,
     /// Thorn or spine.
     Thorn,
+    /// Stalk of a flower.
+    Pedicel,
 }
 
 /// A local right-handed frame in the plant: `right` x `along` = `normal`, unit vectors at right angles.
@@ -103,7 +105,7 @@ pub enum Shape {
         /// The generating line; radii 0 or more.
         profile: Vec<DVec2>,
     },
-    /// A round strand (filament, style, thorn) along local points with a radius at each, its end closed.
+    /// A round strand (filament, style, thorn, stalk) along local points with a radius at each, its end closed.
     Strand {
         /// Local points, root first.
         path: Vec<DVec3>,

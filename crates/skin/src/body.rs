@@ -186,6 +186,32 @@ pub(crate) fn strand(path: &[DVec3], radii: &[f64], knob: f64, fine: bool) -> Tr
     mesh
 }
 
+/// The fewest triangles that show a strand: a closed prism of eight, from its first point to its last.
+pub(crate) fn prism(path: &[DVec3], radii: &[f64]) -> TriMesh {
+    let mut out = Columns::default();
+    let (Some(&root), Some(&end)) = (path.first(), path.last()) else { return out.0 };
+    let sound = |r: Option<&f64>| r.copied().filter(|r| r.is_finite() && *r > 0.0);
+    let (Some(first), Some(last)) = (sound(radii.first()), sound(radii.last())) else { return out.0 };
+    let Some(axis) = (end - root).try_normalize() else { return out.0 };
+    let across = axis.any_orthonormal_vector();
+    let up = axis.cross(across);
+    let mut normals = Vec::with_capacity(6);
+    for (centre, radius, v) in [(root, first, 1.0), (end, last, 0.0)] {
+        for (&(cos, sin), u) in Circle::new(3).0[..3].iter().zip([0.0, 1.0 / 3.0, 2.0 / 3.0]) {
+            let ray = across * cos + up * sin;
+            out.vertex(centre + ray * radius, (u, v));
+            normals.push(narrow(ray));
+        }
+    }
+    for (j, k) in [(0, 1), (1, 2), (2, 0)] {
+        out.0.triangles.extend([[j, k, j + 3], [k, k + 3, j + 3]]);
+    }
+    out.0.triangles.extend([[2, 1, 0], [3, 4, 5]]);
+    out.0.normals = normals;
+    drop_flat(&mut out.0);
+    out.0
+}
+
 /// A ball, a little longer along its axis, for anthers and stigmas.
 fn ball(centre: DVec3, axis: DVec3, radius: f64, sides: u32) -> TriMesh {
     let circle = Circle::new(sides);
@@ -217,4 +243,26 @@ fn ball(centre: DVec3, axis: DVec3, radius: f64, sides: u32) -> TriMesh {
     mesh.normals = normals;
     drop_flat(&mut mesh);
     mesh
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_prism_is_closed_and_encloses_its_strand() {
+        let path = [DVec3::ZERO, DVec3::new(0.1, 0.9, 0.3)];
+        let mesh = prism(&path, &[0.01, 0.03]);
+        assert_eq!((mesh.positions.len(), mesh.triangles.len(), mesh.validate().count()), (6, 8, 0));
+        let six: f64 = mesh
+            .triangles
+            .iter()
+            .map(|&[a, b, c]| mesh.position(a).dot(mesh.position(b).cross(mesh.position(c))))
+            .sum();
+        // Between a third and all of the cone's volume: flat sides, and those of unlike ends are not quite flat.
+        let cone = path[1].length() / 3.0 * ops::PI * (0.01 * 0.01 + 0.01 * 0.03 + 0.03 * 0.03);
+        assert!((0.33..1.0).contains(&(six / 6.0 / cone)), "{} of {cone}", six / 6.0);
+        assert!(prism(&path, &[0.01, f64::NAN]).triangles.is_empty() && prism(&[], &[]).triangles.is_empty());
+        assert!(prism(&[DVec3::ZERO; 2], &[0.1; 2]).triangles.is_empty());
+    }
 }

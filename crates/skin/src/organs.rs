@@ -7,7 +7,7 @@ use mesh::TriMesh;
 use plant::{Organ, OrganKind, Plant, Shape};
 
 use crate::blade::blade_mesh;
-use crate::body::{dome, revolution, strand};
+use crate::body::{dome, prism, revolution, strand};
 use crate::lean::lean_mesh;
 use crate::parts::Slot;
 use crate::spec::{Budget, PetalColor, SkinSpec};
@@ -151,6 +151,8 @@ enum Wish {
     Strand {
         fine: bool,
     },
+    /// A strand of a crown.
+    Prism,
 }
 
 impl Wish {
@@ -176,6 +178,7 @@ impl Wish {
                 let knob = if knob_m.is_finite() { *knob_m } else { 0.0 };
                 strand(path, radius_m, knob, fine)
             }
+            (Self::Prism, Shape::Strand { path, radius_m, .. }) => prism(path, radius_m),
             _ => TriMesh::default(),
         }
     }
@@ -304,6 +307,7 @@ impl Ground {
                     Wish::Revolution(triangles(area), 0)
                 }
             }
+            Shape::Strand { knob_m: 0.0, .. } if budget.crown() => Wish::Prism,
             Shape::Strand { .. } => Wish::Strand { fine: self.fine_strands && budget.detail >= 0.5 },
             _ => Wish::Nothing,
         }
@@ -321,6 +325,7 @@ impl Ground {
             OrganKind::Fruit => Slot::Fruit,
             OrganKind::Stamen | OrganKind::Pistil => Slot::Stamen,
             OrganKind::Thorn => Slot::Thorn,
+            OrganKind::Pedicel => Slot::Stem,
             _ if drawn => Slot::DrawnLeaf,
             _ => Slot::Leaf,
         }

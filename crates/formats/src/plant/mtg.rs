@@ -28,7 +28,7 @@ const FEATURES: [(&str, &str); 15] = [
 ];
 
 /// Writes a sound plant as MTG text (FORM-A): the plant `P`, its axes `A`, their nodes `N` and organs (`L` leaf, `K`
-/// petal, `D` disc, `U` fruit, `S` stamen, `C` pistil, `T` thorn).
+/// petal, `D` disc, `U` fruit, `S` stamen, `C` pistil, `T` thorn, `Q` pedicel).
 ///
 /// A node has its position (`XX`, `YY`, `ZZ`) and the diameter there (`TopDia`); the first node of a borne axis has
 /// the diameter at the axis's base, too (`BotDia`), and is the axis's second point: the first lies at the bearer.
@@ -252,6 +252,7 @@ impl<W: Write> Writer<'_, W> {
             OrganKind::Stamen => ('S', "stamen"),
             OrganKind::Pistil => ('C', "pistil"),
             OrganKind::Thorn => ('T', "thorn"),
+            OrganKind::Pedicel => ('Q', "pedicel"),
             _ => ('L', "leaf"),
         };
         let shape = &self.plant.shapes[organ.shape.index()];

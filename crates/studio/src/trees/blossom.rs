@@ -45,6 +45,15 @@ impl Default for BlossomSpec {
 // The whorls of a flower open this far from its axis: the outermost, and the innermost of six.
 const OPEN: f64 = 76.0 * PI / 180.0;
 const CLOSED: f64 = 20.0 * PI / 180.0;
+// Mean length of a flower's stalk, in its diameters.
+const STALK: f64 = 0.7;
+
+/// The shapes that the flowers of a tree share.
+struct Shapes {
+    petal: ShapeId,
+    disc: ShapeId,
+    stalk: ShapeId,
+}
 
 impl BlossomSpec {
     pub(super) fn check(&self) -> Result<(), GrowthError> {
@@ -65,21 +74,24 @@ impl BlossomSpec {
         let (places, kept): (Vec<Organ>, Vec<Organ>) =
             std::mem::take(&mut plant.organs).into_iter().partition(blooms);
         plant.organs = kept;
-        let petal = push(plant, Shape::Blade(petal(0.5 * self.diameter_m, self.petals)));
-        let disc = push(plant, Shape::Blade(disc(0.15 * self.diameter_m)));
+        let shapes = Shapes {
+            petal: push(plant, Shape::Blade(petal(0.5 * self.diameter_m, self.petals))),
+            disc: push(plant, Shape::Blade(disc(0.15 * self.diameter_m))),
+            stalk: push(plant, stalk(STALK * self.diameter_m)),
+        };
         for place in &places {
-            self.flower(plant, place, (petal, disc), seed);
+            self.flower(plant, place, &shapes, seed);
         }
     }
 
-    fn flower(&self, plant: &mut Plant, place: &Organ, (petal, disc): (ShapeId, ShapeId), seed: Seed) {
+    fn flower(&self, plant: &mut Plant, place: &Organ, shapes: &Shapes, seed: Seed) {
         let key = seed.child(place.key).child(Draw::Template as u64);
         let mut draw = key.stream(Draw::Template);
         // Flowers look outwards, to the light and a little where they please.
         let stray = DVec3::new(draw.uniform() - 0.5, draw.uniform() - 0.3, draw.uniform() - 0.5);
         let axis = (place.frame.along + 0.5 * place.frame.normal + 0.7 * stray).normalize_or(DVec3::Y);
-        let stalk = 0.7 * self.diameter_m * (0.7 + 0.6 * draw.uniform());
-        let centre = place.frame.origin + place.frame.along * stalk;
+        let longer = 0.7 + 0.6 * draw.uniform();
+        let centre = place.frame.origin + place.frame.along * (STALK * self.diameter_m * longer);
         let scale = 0.85 + 0.3 * draw.uniform();
         let share = draw.uniform();
         let (from, to) = (self.color.linear(), self.color_to.unwrap_or(self.color).linear());
@@ -115,7 +127,7 @@ impl BlossomSpec {
                 let key = key.child(u64::from(whorl * self.petals + k));
                 plant.organs.push(organ(
                     OrganKind::Petal,
-                    petal,
+                    shapes.petal,
                     frame,
                     scale * (1.0 - 0.45 * inner),
                     tint,
@@ -129,7 +141,9 @@ impl BlossomSpec {
             along: up,
             normal: axis,
         };
-        plant.organs.push(organ(OrganKind::Disc, disc, frame, scale, [1.0; 3], key.child(u64::MAX)));
+        plant.organs.push(organ(OrganKind::Disc, shapes.disc, frame, scale, [1.0; 3], key.child(u64::MAX)));
+        let key = key.child(u64::MAX - 1);
+        plant.organs.push(organ(OrganKind::Pedicel, shapes.stalk, place.frame, longer, [1.0; 3], key));
     }
 }
 
@@ -151,6 +165,12 @@ fn petal(length_m: f64, count: u32) -> Blade {
     let midrib = vec![DVec2::ZERO, DVec2::new(0.0, 0.5 * length_m), DVec2::new(0.0, length_m)];
     let relief = Relief { bend_b: -0.12, hollow: 0.08, ..Relief::default() };
     Blade { outline, midrib, veins: Vec::new(), lift: Lift::Flat, relief }
+}
+
+/// A stalk that widens towards the flower.
+fn stalk(length_m: f64) -> Shape {
+    let path = vec![DVec3::ZERO, DVec3::Y * length_m];
+    Shape::Strand { path, radius_m: vec![0.022 * length_m, 0.035 * length_m], knob_m: 0.0 }
 }
 
 /// The tuft of stamens in the middle, as a small bowl turned over.
@@ -188,6 +208,15 @@ mod tests {
             assert_eq!(tree.grown.plant.validate().next(), None);
             assert_eq!(tree.model.validate().next(), None);
             assert_eq!(tree.item.counts.petals, 5 * tree.item.counts.flowers);
+            let stalk = |o: &&Organ| o.kind == OrganKind::Pedicel;
+            let ends = tree.grown.plant.organs.iter().filter(stalk).map(|o| {
+                let flower = &tree.grown.plant.flowers[o.flower.expect("a flower's").index()];
+                let length = STALK * 0.035 * o.scale;
+                o.frame.place(DVec3::Y * STALK * 0.035, o.scale).distance(flower.centre) / length
+            });
+            let ends: Vec<f64> = ends.collect();
+            assert_eq!(ends.len() as u64, tree.item.counts.flowers);
+            assert!(ends.iter().all(|off| *off < 1e-9));
         }
         let white = some.model.materials.iter().any(|m| m.name == "petal-white");
         assert!(white, "{:?}", some.model.materials.iter().map(|m| &m.name).collect::<Vec<_>>());
