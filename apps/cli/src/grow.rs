@@ -233,9 +233,11 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
         files::write_qsm(path, &grown.plant, &args.axes)?;
     }
     if let Some(png) = &args.png {
-        let spec = args.picture.spec(args.seed);
+        let view = args.picture.spec(args.seed);
+        let mut shown = model;
+        burgeon::show_obstacles(&mut shown, &spec.obstacles);
         let drawn =
-            machine.with_progress("picture", |_| burgeon::render::render(&model, &spec, &machine.run()))?;
+            machine.with_progress("picture", |_| burgeon::render::render(&shown, &view, &machine.run()))?;
         picture::write(png, &drawn)?;
     }
     let mut run = RunReport::new("grow", args.seed);

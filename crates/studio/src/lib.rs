@@ -54,8 +54,8 @@ pub use template::{LeafTemplate, TemplateError};
 pub use trees::{
     Bark, BladeForm, BladeSpec, BlossomSpec, Colour, GUIDED_METHODS, GrowthReport, Look, MadeTree, NamedMesh,
     OAK_METHODS, PAPER_OAKS, PRESETS, PaperOak, Preset, TreeError, TreeEvaluator, TreeOptions, TreeSize,
-    TreeSpec, coarser, guided_methods, make_tree, method_word, read_tree_spec, scale_to_height, tree_schema,
-    tree_size,
+    TreeSpec, coarser, guided_methods, make_tree, method_word, read_tree_spec, scale_to_height,
+    show_obstacles, tree_schema, tree_size,
 };
 pub use venation::make_ray_leaf;
 

@@ -9,6 +9,7 @@
 //! | `file`, `located` | TOML in, JSON Schema out; where in a text a fault is |
 //! | `blade`, `blossom`, `look` | forms of leaves; flowers in their place; colours and bark |
 //! | `presets` | the species that come with the program |
+//! | `scenery` | obstacles in a picture |
 //! | `lod` | coarser copies for far away |
 //! | `compare` | one oak by three methods |
 
@@ -21,6 +22,7 @@ mod located;
 mod lod;
 mod look;
 mod presets;
+mod scenery;
 mod spec;
 
 use base::{Cancelled, Report, Run, Seed};
@@ -44,6 +46,7 @@ pub use file::{NamedMesh, read_tree_spec, tree_schema};
 pub use lod::coarser;
 pub use look::{Bark, Colour, Look};
 pub use presets::{PRESETS, Preset};
+pub use scenery::show_obstacles;
 pub use spec::TreeSpec;
 
 /// How a tree is meshed. Not saved with it.
