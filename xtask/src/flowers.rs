@@ -1,9 +1,8 @@
 //! `cargo xtask flowers`: makes the pictures of docs/bloom.md and of the venations in docs/leaves.md anew.
 
-use std::fs::File;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use crate::pixels::{Pixels, length, rgba};
+use crate::pixels::tiled;
 use crate::shell::{Outcome, built_burgeon, command, repository, say};
 
 /// Species, days from bud to full bloom, and from there to wilted.
@@ -105,29 +104,4 @@ impl Maker {
 
 fn picture(name: &str) -> PathBuf {
     repository().join("docs/pictures").join(name)
-}
-
-/// Pictures of one size side by side, rows below one another.
-fn tiled(rows: &[Vec<PathBuf>], to: &Path) -> Outcome {
-    let mut pixels: Vec<u8> = Vec::new();
-    let (mut width, mut height) = (0, 0);
-    for row in rows {
-        let read = row.iter().map(|p| rgba(p)).collect::<Result<Vec<_>, _>>()?;
-        let Some((wide, high)) = read.first().map(|r| (r.width, r.height)) else { continue };
-        width = wide * read.len();
-        height += high;
-        for y in 0..high {
-            for Pixels { rgba, width, .. } in &read {
-                rgba[width * y..width * (y + 1)].iter().for_each(|c| pixels.extend(&c[..3]));
-            }
-        }
-    }
-    let fault = |e: &dyn std::fmt::Display| format!("{}: {e}", to.display());
-    let out = File::create(to).map_err(|e| fault(&e))?;
-    let mut encoder = png::Encoder::new(std::io::BufWriter::new(out), length(width), length(height));
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_compression(png::Compression::High);
-    let mut writer = encoder.write_header().map_err(|e| fault(&e))?;
-    writer.write_image_data(&pixels).map_err(|e| fault(&e))?;
-    writer.finish().map_err(|e| fault(&e))
 }

@@ -6,6 +6,7 @@ mod gallery;
 mod layers;
 mod made_strokes;
 mod pixels;
+mod scenes;
 mod shell;
 mod species;
 mod studio;

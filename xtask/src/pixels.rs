@@ -2,7 +2,9 @@
 
 use std::fs::File;
 use std::io::BufReader;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+use crate::shell::Outcome;
 
 /// A picture in memory.
 #[derive(Debug)]
@@ -33,4 +35,29 @@ pub(crate) fn rgba(path: &Path) -> Result<Pixels, String> {
 /// A width or height as a PNG's header has it.
 pub(crate) fn length(pixels: usize) -> u32 {
     u32::try_from(pixels).unwrap_or(u32::MAX)
+}
+
+/// Pictures of one size side by side, rows below one another.
+pub(crate) fn tiled(rows: &[Vec<PathBuf>], to: &Path) -> Outcome {
+    let mut pixels: Vec<u8> = Vec::new();
+    let (mut width, mut height) = (0, 0);
+    for row in rows {
+        let read = row.iter().map(|p| rgba(p)).collect::<Result<Vec<_>, _>>()?;
+        let Some((wide, high)) = read.first().map(|r| (r.width, r.height)) else { continue };
+        width = wide * read.len();
+        height += high;
+        for y in 0..high {
+            for Pixels { rgba, width, .. } in &read {
+                rgba[width * y..width * (y + 1)].iter().for_each(|c| pixels.extend(&c[..3]));
+            }
+        }
+    }
+    let fault = |e: &dyn std::fmt::Display| format!("{}: {e}", to.display());
+    let out = File::create(to).map_err(|e| fault(&e))?;
+    let mut encoder = png::Encoder::new(std::io::BufWriter::new(out), length(width), length(height));
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_compression(png::Compression::High);
+    let mut writer = encoder.write_header().map_err(|e| fault(&e))?;
+    writer.write_image_data(&pixels).map_err(|e| fault(&e))?;
+    writer.finish().map_err(|e| fault(&e))
 }

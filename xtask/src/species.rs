@@ -1,5 +1,5 @@
-//! `cargo xtask species`: grows every preset and writes the table of docs/trees.md, the pictures beside it and the
-//! small ones that the Studio shows.
+//! `cargo xtask species`: grows every preset and writes the table of docs/trees.md, the pictures of that page and of
+//! docs/shaping.md, and the small ones that the Studio shows.
 
 use std::fmt::Write as _;
 use std::fs::File;
@@ -71,7 +71,8 @@ pub(crate) fn run() -> Outcome {
     let (_, after) = rest.split_once(TO).ok_or("docs/trees.md has lost the mark after its table")?;
     std::fs::write(&page, format!("{before}{FROM}{table}{TO}{after}"))
         .map_err(|e| format!("cannot write {}: {e}", page.display()))?;
-    say("docs/trees.md, its pictures and those of the Studio are made anew");
+    crate::scenes::make(&burgeon)?;
+    say("docs/trees.md, its pictures, those of docs/shaping.md and those of the Studio are made anew");
     Ok(())
 }
 

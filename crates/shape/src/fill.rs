@@ -197,8 +197,11 @@ pub(crate) fn silhouette(
     Ok(Changed { removed, added: made.len(), ..Changed::default() })
 }
 
-/// Cuts branches where they leave the outline; those of the trunk that never come into it go as well. Returns how many
-/// went, and their pipes.
+// How far a bend may leave the outline and still be part of the crown, in pixels of the mask: a twentieth of it.
+const BEND: f64 = 2.4;
+
+/// Cuts branches where they leave the outline, but for small bends; those that never come into it go as well, or what of
+/// them bears no branch that does. Returns how many went, and their pipes.
 fn trim(draft: &mut Draft, mask: &Mask, habit: &Habit) -> (usize, Pipes) {
     let mut removed = 0;
     let mut pipes = Pipes::default();
@@ -208,37 +211,75 @@ fn trim(draft: &mut Draft, mask: &Mask, habit: &Habit) -> (usize, Pipes) {
         if !branch.alive || !branch.is_shoot() || branch.points.len() < 2 {
             continue;
         }
+        // A stem stands below the crown: it is cut only where it has been inside.
+        let stem = branch.bearer.is_none();
         let fine = geom::resample3(&branch.points, (0.5 * mask.pixel).max(branch.length() / 2000.0));
-        let inside: Vec<bool> = fine.iter().map(|p| mask.covers(*p)).collect();
-        let Some(first) = inside.iter().position(|i| *i) else {
-            // Its own branches may lie inside; a stem stands below the crown.
-            let bears = draft.subtree(b);
-            let reaches = draft
-                .branches
-                .iter()
-                .zip(&bears)
-                .any(|(c, s)| *s && c.alive && c.points.iter().any(|p| mask.covers(*p)));
-            if branch.bearer.is_some() && !reaches {
-                let (at, radius) = (branch.bearer, branch.radii[0]);
-                removed += draft.remove(&bears);
-                pipes.book(at, radius, -1.0, habit.exponent);
+        let Some(last) = last_inside(&fine, mask, stem) else {
+            if stem {
+                continue;
             }
+            let at = highest_needed(draft, b, mask);
+            removed += cut(draft, b, at, &mut pipes, habit);
             continue;
         };
-        // The last time it leaves counts: a bend that comes back is part of the crown.
-        let last = inside.iter().rposition(|i| *i).unwrap_or(first);
         if last + 1 < fine.len() {
-            removed += draft.cut(b, (last as f64 + 0.5) / (fine.len() - 1) as f64);
-            let Some(&radius) = draft.branches[b].radii.last().filter(|_| draft.branches[b].alive) else {
-                continue;
-            };
-            // No stumps: the crown is meant to have grown like this, so the cut end becomes a tip.
-            let at = At { branch: b, node: draft.branches[b].radii.len() - 1 };
-            pipes.book(Some(at), radius, -1.0, habit.exponent);
-            pipes.book(Some(at), habit.tip_m.min(radius), 1.0, habit.exponent);
+            let share = if last == 0 { 0.0 } else { (last as f64 + 0.5) / (fine.len() - 1) as f64 };
+            removed += cut(draft, b, share, &mut pipes, habit);
         }
     }
     (removed, pipes)
+}
+
+/// The last sample of a line before it leaves the outline for good, or for more than a bend; `None` where it never
+/// comes in. What starts beside the outline is in from the start.
+fn last_inside(line: &[DVec3], mask: &Mask, stem: bool) -> Option<usize> {
+    let slack = BEND * mask.pixel;
+    let mut last = line.first().filter(|p| !stem && mask.near(**p, slack)).map(|_| 0);
+    for (k, p) in line.iter().enumerate() {
+        if mask.covers(*p) {
+            last = Some(k);
+        } else if last.is_some() && !mask.near(*p, slack) {
+            break;
+        }
+    }
+    last
+}
+
+/// The share of a branch's length up to the last node on which something hangs that comes into the outline; 0 for none.
+fn highest_needed(draft: &Draft, b: usize, mask: &Mask) -> f64 {
+    let reaches = |child: usize| {
+        let bears = draft.subtree(child);
+        let of = draft.branches.iter().zip(&bears);
+        of.filter(|(c, s)| **s && c.alive).any(|(c, _)| c.points.iter().any(|p| mask.covers(*p)))
+    };
+    let children = draft.branches.iter().enumerate().filter(|(_, c)| c.alive);
+    let nodes = children.filter_map(|(i, c)| Some((i, c.bearer.filter(|p| p.branch == b)?.node)));
+    let Some(node) = nodes.filter(|&(i, _)| reaches(i)).map(|(_, node)| node).max() else { return 0.0 };
+    let points = &draft.branches[b].points;
+    let below = geom::polyline_length3(&points[..(node + 1).min(points.len())]);
+    // A little above the node, which must stay.
+    let whole = draft.branches[b].length();
+    if whole > 0.0 { (below / whole + 1e-3).min(1.0) } else { 0.0 }
+}
+
+/// Cuts a branch at a share of its length. No stumps: the crown is meant to have grown like this, so the cut end
+/// becomes a tip.
+fn cut(draft: &mut Draft, b: usize, share: f64, pipes: &mut Pipes, habit: &Habit) -> usize {
+    let (bearer, base) = (draft.branches[b].bearer, draft.branches[b].radii[0]);
+    let nodes = draft.branches[b].points.len();
+    let removed = draft.cut(b, share);
+    let branch = &draft.branches[b];
+    match branch.radii.last() {
+        Some(&radius) if branch.alive => {
+            if branch.points.len() < nodes {
+                let at = At { branch: b, node: branch.radii.len() - 1 };
+                pipes.book(Some(at), radius, -1.0, habit.exponent);
+                pipes.book(Some(at), habit.tip_m.min(radius), 1.0, habit.exponent);
+            }
+        }
+        _ => pipes.book(bearer, base, -1.0, habit.exponent),
+    }
+    removed
 }
 
 /// Leaves whose root is outside go.

@@ -3,7 +3,7 @@
 use base::{Executor, NoClock, Report, Run, Seed};
 use glam::{DVec2, DVec3};
 use growth::{CompetitionSpec, GuidedSpec, LeafSpec, Method, OAK_RULES, SelfOrganizingSpec, TreeSpec, grow};
-use plant::{AxisId, OrganKind, Plant};
+use plant::{AxisId, AxisKind, NodeId, OrganKind, Plant};
 use proptest::prelude::*;
 use shape::{
     Applied, AxisKey, Context, Destination, HandEdit, LeafRegion, Outcome, Turn, ViewPlane, Why, apply,
@@ -285,6 +285,37 @@ fn sketched_and_brushed_branches_grow_with_twigs_and_leaves() {
     let reach =
         brushed.plant.nodes.position[plant.nodes.position.len()..].iter().map(|p| p.x).fold(0.0, f64::max);
     assert!(reach > 1.6, "{reach}");
+}
+
+#[test]
+fn a_branch_that_leaves_a_silhouette_and_comes_back_is_cut_where_it_leaves() {
+    let mut plant = Plant::default();
+    let line = |points: &[(f64, f64)]| points.iter().map(|p| DVec3::new(p.0, p.1, 0.0)).collect::<Vec<_>>();
+    let branch = AxisKind::Branch;
+    let trunk = plant.add_axis(
+        branch,
+        None,
+        1,
+        &line(&[(0.0, 0.0), (0.0, 1.0), (0.0, 3.0), (0.0, 5.0), (0.0, 6.0)]),
+        None,
+    );
+    let at = |plant: &Plant, node: u32| Some(NodeId::new((plant.axis(trunk).nodes.start + node) as usize));
+    // Out to the right and back; one that starts below and rises into it.
+    let bearer = at(&plant, 2);
+    let back = line(&[(0.0, 3.0), (1.5, 3.4), (4.0, 3.8), (4.2, 4.6), (1.2, 5.0), (0.5, 5.2)]);
+    plant.add_axis(branch, bearer, 2, &back, None);
+    let bearer = at(&plant, 1);
+    plant.add_axis(branch, bearer, 3, &line(&[(0.0, 1.0), (-1.0, 1.4), (-1.4, 2.6), (-1.4, 4.0)]), None);
+    plant.nodes.radius_m = plant.nodes.axis.iter().map(|a| if *a == trunk { 0.1 } else { 0.03 }).collect();
+    let outline = [(-2.0, 2.0), (2.0, 2.0), (2.0, 6.5), (-2.0, 6.5)].map(DVec2::from).to_vec();
+    let plane = ViewPlane::default();
+    let fill = HandEdit::Silhouette { plane, outline, density: 1.0, trim: true, seed: 3 };
+    let filled = done(&plant, &[fill]);
+    assert!(filled.outcomes[0].is_done(), "{}", filled.outcomes[0]);
+    let nodes = &filled.plant.nodes.position;
+    let far = nodes.iter().map(|p| p.x.abs()).fold(0.0, f64::max);
+    assert!(far < 2.3, "wood {far} m from the middle");
+    assert!(nodes.iter().any(|p| p.distance(DVec3::new(-1.0, 1.4, 0.0)) < 1e-9), "what rises into it stays");
 }
 
 #[test]

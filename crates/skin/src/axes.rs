@@ -214,11 +214,13 @@ struct Ends {
 impl Ends {
     /// Shares out the rows of a tube with so many sides.
     fn of(rows: f64, sides: u32) -> Self {
-        // Small twigs spend fewer rows on their ends, so that some are left for the middle; limbs show them.
         // A thick tube's tip is large enough to show its corners.
         let round = if sides > 12 { 4 } else { 2 };
-        let (steps, tip) = if rows < 9.0 && sides < 7 { (1, 1) } else { (3, round) };
-        Self { steps, rings: (rows - f64::from(steps + tip)).max(3.0), tip }
+        // Small twigs spend fewer rows on their ends, so that some are left for the middle; limbs get more of them.
+        let short = rows < 9.0;
+        let (steps, tip) = if short && sides < 7 { (1, 1) } else { (3, round) };
+        let spent = if short { 2 } else { steps + tip };
+        Self { steps, rings: (rows - f64::from(spent)).max(3.0), tip }
     }
 }
 

@@ -1,0 +1,209 @@
+//! The pictures of docs/trees.md and docs/shaping.md that are not of a species alone: part of `cargo xtask species`.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use base::ops::{self, TAU};
+
+use crate::pixels::tiled;
+use crate::shell::{Outcome, command, repository};
+
+pub(crate) struct Scenes {
+    burgeon: PathBuf,
+    folder: PathBuf,
+}
+
+/// Makes them all in a folder of its own.
+pub(crate) fn make(burgeon: &Path) -> Outcome {
+    let folder = std::env::temp_dir().join(format!("burgeon-scenes-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).map_err(|e| format!("cannot make {}: {e}", folder.display()))?;
+    let scenes = Scenes { burgeon: burgeon.into(), folder };
+    let made = scenes.compared().and_then(|()| scenes.leaves()).and_then(|()| scenes.room());
+    let made = made.and_then(|()| scenes.edits());
+    let _ = std::fs::remove_dir_all(&scenes.folder);
+    made
+}
+
+fn picture(name: &str) -> PathBuf {
+    repository().join("docs/pictures").join(name)
+}
+
+impl Scenes {
+    fn burgeon(&self, args: &[&str]) -> Outcome {
+        command(&self.burgeon, &[args, &["--quiet"]].concat())
+    }
+
+    /// Runs `burgeon ARGS --png` and tells where the picture is.
+    fn drawn(&self, name: &str, size: &str, args: &[&str]) -> Result<PathBuf, String> {
+        let png = self.folder.join(format!("{name}.png"));
+        self.burgeon(&[args, &["--png", &png.display().to_string(), "--size", size]].concat())?;
+        Ok(png)
+    }
+
+    fn file(&self, name: &str, text: &str) -> Result<String, String> {
+        let path = self.folder.join(name).display().to_string();
+        std::fs::write(&path, text).map_err(|e| format!("cannot write {path}: {e}"))?;
+        Ok(path)
+    }
+
+    fn compared(&self) -> Outcome {
+        for (what, size, to) in
+            [("oak", "430x430", "trees/oaks.png"), ("guided", "500x487", "trees/guided.png")]
+        {
+            tiled(&[vec![self.drawn(what, size, &["compare", what])?]], &picture(to))?;
+        }
+        Ok(())
+    }
+
+    fn leaves(&self) -> Outcome {
+        let kept = |share| self.drawn(share, "360x360", &["grow", "oak", "--leaf-keep", share]);
+        let row = ["1", "0.45", "0.15"].map(kept).into_iter().collect::<Result<Vec<_>, _>>()?;
+        tiled(&[row], &picture("trees/leaf-keep.png"))?;
+        let leaf = repository().join("fixtures/leaves/leaf1.csv").display().to_string();
+        let own = self.drawn("own", "480x480", &["grow", "oak", "--leaf-template", &leaf])?;
+        tiled(&[vec![own]], &picture("trees/own-leaf.png"))
+    }
+
+    /// Envelopes, obstacles, neighbours.
+    fn room(&self) -> Outcome {
+        self.file("ring.obj", &ring())?;
+        let spec = self.file("ring.toml", RING)?;
+        tiled(&[vec![self.drawn("ring", "420x420", &["grow", &spec])?]], &picture("trees/ring.png"))?;
+        let house = self.file("house.obj", HOUSE)?;
+        let house = self.drawn("house", "600x480", &["grow", "oak", "--obstacle", &house])?;
+        tiled(&[vec![house]], &picture("trees/house.png"))?;
+        let mut grove = vec!["grow", "oak"];
+        for root in ["0,0,0", "4.2,0,-1.2", "-3.6,0,-1.8", "1.2,0,-4.4", "-1.4,0,3.4"] {
+            grove.extend(["--root", root]);
+        }
+        tiled(&[vec![self.drawn("grove", "640x448", &grove)?]], &picture("trees/grove.png"))?;
+        self.file("topiary.xyz", &topiary())?;
+        let spec = self.file("topiary.toml", TOPIARY)?;
+        tiled(&[vec![self.drawn("topiary", "300x460", &["grow", &spec])?]], &picture("trees/topiary.png"))
+    }
+
+    /// An oak before and after each edit of docs/shaping.md.
+    fn edits(&self) -> Outcome {
+        let heart: Vec<String> = (0..40)
+            .map(|k| {
+                let t = TAU * f64::from(k) / 40.0;
+                let (sin, cos) = (ops::sin(t), |n: f64| ops::cos(n * t));
+                let across = 0.21 * 16.0 * sin * sin * sin;
+                let up = 13.0 * cos(1.0) - 5.0 * cos(2.0) - 2.0 * cos(3.0) - cos(4.0);
+                format!("[{across:.2}, {:.2}]", 5.6 + 0.21 * up)
+            })
+            .collect();
+        let edits = [
+            ("rotate", r#""axis": {"path": [0, 3]}, "turn": {"about": [0, 0, 1], "degrees": 50}"#.to_owned()),
+            ("move", r#""axis": {"path": [0, 3]}, "to": {"slide-m": 5}"#.to_owned()),
+            ("prune", r#""axis": {"path": [0, 3]}"#.to_owned()),
+            ("regrow", r#""axis": {"path": [0, 3]}, "seed": 7"#.to_owned()),
+            (
+                "sketch-branch",
+                r#""bearer": {"path": [0]}, "at": 0.3, "points": [[0, 2, 0], [2, 2.1, 0.3], [4.4, 2.5, 0.5], [6.4, 3.3, 0.4]], "twigs": 1"#
+                    .to_owned(),
+            ),
+            ("silhouette", format!(r#""outline": [{}], "trim": true"#, heart.join(", "))),
+        ];
+        for (op, what) in edits {
+            let edit = self.file(
+                "edit.json",
+                &format!("{{\"schema\": \"burgeon.edits/1\", \"edits\": [{{\"op\": \"{op}\", {what}}}]}}"),
+            )?;
+            let view = ["--view", "front"];
+            let before = self.drawn("before", "240x240", &[&["grow", "oak"], &view[..]].concat())?;
+            let args = [&["shape", "oak", "--edits", &edit], &view[..]].concat();
+            let after = self.drawn("after", "240x240", &args)?;
+            let name = op.strip_suffix("-branch").unwrap_or(op);
+            tiled(&[vec![before, after]], &picture(&format!("shaping/oak-{name}.png")))?;
+        }
+        Ok(())
+    }
+}
+
+const RING: &str = r##"name = "Ring"
+[method]
+kind = "competition"
+points = 6000
+attraction_m = 0.8
+kill_m = 0.2
+lifespan = 3
+joints_share = 0.2
+points_per_joint = 12
+envelope = { shape = "mesh", file = "ring.obj" }
+[wood]
+trunk_radius_m = 0.09
+[leaves]
+length_m = 0.12
+spacing_m = 0.045
+max_radius_m = 0.012
+[look]
+bark = "smooth"
+leaf_color = "#4f7a3a"
+"##;
+
+const TOPIARY: &str = r##"name = "Topiary"
+[method]
+kind = "competition"
+points = 6000
+attraction_m = 0.4
+kill_m = 0.1
+lifespan = 3
+joints_share = 0.2
+points_per_joint = 12
+envelope = { shape = "points", file = "topiary.xyz", reach_m = 0.06 }
+[wood]
+trunk_radius_m = 0.05
+tip_radius_m = 0.002
+[leaves]
+length_m = 0.06
+spacing_m = 0.025
+max_radius_m = 0.006
+[look]
+bark = "smooth"
+leaf_color = "#4a7540"
+"##;
+
+/// A house with a saddle roof to the left of the tree, metres.
+const HOUSE: &str = "v -5.2 0 -3\nv -1.4 0 -3\nv -1.4 0 3\nv -5.2 0 3\nv -5.2 3.2 -3\nv -1.4 3.2 -3\nv -1.4 3.2 3\n\
+v -5.2 3.2 3\nv -3.3 5.2 -3\nv -3.3 5.2 3\nf 1 2 3 4\nf 1 5 9\nf 1 9 6\nf 1 6 2\nf 4 3 7\nf 4 7 10\nf 4 10 8\nf 2 6 7 3\n\
+f 1 4 8 5\nf 6 9 10 7\nf 5 8 10 9\n";
+
+/// An upright torus that stands on the ground.
+fn ring() -> String {
+    let (around, across) = (48_u32, 16_u32);
+    let mut obj = String::new();
+    let angle = |k: u32, n: u32| TAU * f64::from(k) / f64::from(n);
+    for i in 0..around {
+        for j in 0..across {
+            let (sin, cos) = ops::sin_cos(angle(i, around));
+            let (out, back) = ops::sin_cos(angle(j, across));
+            let r = 2.2 + 0.62 * back;
+            let _ = writeln!(obj, "v {:.4} {:.4} {:.4}", r * sin, 3.3 - r * cos, 0.62 * out);
+        }
+    }
+    let at = |i: u32, j: u32| 1 + (i % around) * across + j % across;
+    for i in 0..around {
+        for j in 0..across {
+            let _ = writeln!(obj, "f {} {} {} {}", at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j));
+        }
+    }
+    obj
+}
+
+/// Three balls on one another, as a scanner sees a clipped tree: points on a lattice within them.
+fn topiary() -> String {
+    let balls = [(1.35, 0.8), (2.55, 0.62), (3.45, 0.46)];
+    let mut points = String::new();
+    let step = |k: i32| 0.06 * f64::from(k);
+    for (x, y, z) in (-14..=14).flat_map(|x| (0..=70).flat_map(move |y| (-14..=14).map(move |z| (x, y, z)))) {
+        let p = (step(x), step(y), step(z));
+        let inside = |&(height, radius): &(f64, f64)| {
+            p.0 * p.0 + (p.1 - height) * (p.1 - height) + p.2 * p.2 <= radius * radius
+        };
+        if balls.iter().any(inside) {
+            let _ = writeln!(points, "{:.3} {:.3} {:.3}", p.0, p.1, p.2);
+        }
+    }
+    points
+}
