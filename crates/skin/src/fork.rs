@@ -49,9 +49,9 @@ const SHALLOWEST: f64 = 0.22;
 pub(crate) fn exit(branch: &Spine, bearer: &Bearer<'_>) -> Option<(Station, Station, usize)> {
     let mut hint = bearer.sample;
     let mut depth = |p: DVec3| {
-        let (station, near) = bearer.spine.nearest(p, hint);
-        hint = near;
-        (station.centre.distance(p) - station.radius, station, near)
+        let found = bearer.spine.outside(p, hint);
+        hint = found.2;
+        found
     };
     let mut inside = None;
     let (k, mut outside) = branch.p.iter().enumerate().find_map(|(k, &p)| {
@@ -62,12 +62,17 @@ pub(crate) fn exit(branch: &Spine, bearer: &Bearer<'_>) -> Option<(Station, Stat
         }
         found.then_some((k, here))
     })?;
-    let Some(mut inside) = inside else { return Some((branch.at(0.0), outside.1, outside.2)) };
+    let station = |(_, s, piece): (f64, f64, usize)| (bearer.spine.station(piece, s), piece);
+    let Some(mut inside) = inside else {
+        let (at, piece) = station(outside);
+        return Some((branch.at(0.0), at, piece));
+    };
     // Samples are coarser than bearers are thick: false position (Illinois) narrows down where the surface lies.
     let (mut a, mut b) = (branch.s[k - 1], branch.s[k]);
     for _ in 0..4 {
         let s = b - (b - a) * (outside.0 / (outside.0 - inside)).clamp(0.0, 1.0);
-        let here = depth(branch.station(k - 1, s).centre);
+        let u = if b > a { (s - branch.s[k - 1]) / (branch.s[k] - branch.s[k - 1]) } else { 0.0 };
+        let here = depth(branch.p[k - 1].lerp(branch.p[k], u));
         if here.0 > 0.0 {
             (b, outside) = (s, here);
             inside *= 0.5;
@@ -75,7 +80,8 @@ pub(crate) fn exit(branch: &Spine, bearer: &Bearer<'_>) -> Option<(Station, Stat
             (a, inside) = (s, here.0);
         }
     }
-    Some((branch.station(k - 1, b), outside.1, outside.2))
+    let (at, piece) = station(outside);
+    Some((branch.station(k - 1, b), at, piece))
 }
 
 /// Where the fillet of `branch` on its bearer lies; `None` where the branch ends inside.

@@ -67,8 +67,8 @@ use crate::spec::Budget;
 /// Weights do not jump where a branch leaves its bearer or an organ its twig: they differ by less than 0.01 of what the
 /// bearer's mesh has there. For that long axes get up to a dozen rings more; nothing else of the mesh changes.
 /// Not guaranteed: that organs do not pass through one another, or that tubes at a fork share vertices. A side branch's
-/// foot lies inside its bearer, but for about one branch in ten thousand: hair-thin twigs that run along their bearer may
-/// miss it by a millimetre.
+/// foot lies inside its bearer, but for one or two branches in ten thousand: thin twigs that run along their bearer, or
+/// start on its fillet, may miss it by some millimetres.
 /// Cost: linear in axes and organs; about 70 ns a triangle. The first use of a kind of surface also paints its
 /// texture (up to about 30 ms). A shape's triangulation costs 0.6 us a triangle, once for all its organs.
 ///

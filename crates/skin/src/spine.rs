@@ -155,6 +155,20 @@ impl Spine {
 
     /// The station nearest to `p`, found downhill from piece `hint`; also its piece, as the next hint.
     pub(crate) fn nearest(&self, p: DVec3, hint: usize) -> (Station, usize) {
+        let (_, s, k) = self.foot(p, hint);
+        (self.station(k, s), k)
+    }
+
+    /// How far `p` lies outside the line's surface, the arc length of the foot and its piece.
+    pub(crate) fn outside(&self, p: DVec3, hint: usize) -> (f64, f64, usize) {
+        let (square, s, k) = self.foot(p, hint);
+        let h = self.s[k + 1] - self.s[k];
+        let u = if h > 0.0 { (s - self.s[k]) / h } else { 0.0 };
+        (square.sqrt() - base::ops::lerp(self.r[k], self.r[k + 1], u), s, k)
+    }
+
+    /// The squared distance of the nearest point, its arc length and piece.
+    fn foot(&self, p: DVec3, hint: usize) -> (f64, f64, usize) {
         let last = self.p.len() - 2;
         let foot = |k: usize| {
             let (a, b) = (self.p[k], self.p[k + 1]);
@@ -178,7 +192,7 @@ impl Spine {
             }
             (best, at, k) = (d, u, next);
         }
-        (self.station(k, base::ops::lerp(self.s[k], self.s[k + 1], at)), k)
+        (best, base::ops::lerp(self.s[k], self.s[k + 1], at), k)
     }
 }
 

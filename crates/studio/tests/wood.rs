@@ -95,7 +95,7 @@ fn gap(pieces: &[Piece], own: usize, p: DVec3, most: f64) -> f64 {
 
 #[test]
 fn every_branch_grows_out_of_the_wood_that_bears_it() {
-    let (mut branches, mut free) = (0, 0);
+    let (mut branches, mut free, mut partly) = (0, 0, 0);
     for preset in PRESETS {
         let spec = preset.spec().expect("sound");
         let made = make_tree(&spec, Seed::new(1), &TreeOptions::default(), &Run::plain()).expect("a tree");
@@ -113,12 +113,18 @@ fn every_branch_grows_out_of_the_wood_that_bears_it() {
             }
             let gaps = piece.foot.map(|p| gap(&pieces, i, p, height));
             branches += 1;
-            free += usize::from(gaps.iter().all(|g| *g > 0.0));
             let worst = gaps.iter().fold(0.0_f64, |a, b| a.max(*b));
+            if gaps.iter().all(|g| *g > 0.0) {
+                free += 1;
+                println!("{}: a foot up to {:.1} mm outside all other wood", preset.key, 1e3 * worst);
+            } else if worst > 0.001 {
+                partly += 1;
+            }
             assert!(worst < 0.003 * height, "{}: a foot {worst} m from all other wood", preset.key);
         }
     }
-    // A few hair-thin twigs that run along their bearer miss it by a millimetre or two.
+    println!("of {branches} feet {free} lie outside, {partly} by more than a millimetre in part");
+    // A few thin twigs that run along their bearer, or start on its fillet, miss it.
     assert!(
         branches > 40_000 && 5000 * free < branches,
         "{free} of {branches} feet lie outside all other wood"
