@@ -56,7 +56,17 @@ fn wild(seed: u64, axes: usize) -> Plant {
             let along = DVec3::new(s.normal(), s.normal(), s.normal());
             let frame = Frame::looking(line[line.len() - 1], along, DVec3::Y);
             let (key, flower, source) = (p.organs.len() as u64, None, None);
-            let kind = if s.chance(0.8) { OrganKind::Leaf } else { OrganKind::Fruit };
+            let kinds = [
+                OrganKind::Leaf,
+                OrganKind::Petal,
+                OrganKind::Disc,
+                OrganKind::Fruit,
+                OrganKind::Stamen,
+                OrganKind::Pistil,
+                OrganKind::Thorn,
+                OrganKind::Pedicel,
+            ];
+            let kind = kinds[s.below(kinds.len())];
             p.organs.push(Organ {
                 kind,
                 bearer,
@@ -132,7 +142,8 @@ fn same(p: &Plant, g: &Graph, up: UpAxis, per_metre: f64) {
         let bearing_axis = bearer.map(|b| p.nodes.axis[b.index()].index() + 1);
         assert_eq!(g.vertices[v].parent.map(|(a, _)| g.index(a)), bearing_axis, "the bearing axis");
     }
-    let organs: Vec<usize> = ["L", "U"].into_iter().flat_map(|s| g.with_symbol(s)).collect();
+    let organs: Vec<usize> =
+        ["L", "K", "D", "U", "S", "C", "T", "Q"].into_iter().flat_map(|s| g.with_symbol(s)).collect();
     assert_eq!(organs.len(), p.organs.len(), "organs");
     for v in organs {
         let organ = &p.organs[g.index(v) - 1];

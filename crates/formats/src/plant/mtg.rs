@@ -9,6 +9,9 @@ use super::{decimal, length, micrometres, numbered, place, standing_on, turn};
 use crate::{ExportSpec, WriteError};
 
 /// Columns of numbers and words after the code.
+/// Symbols of what nodes bear: nodes and the kinds of organs.
+const BORNE: [char; 9] = ['N', 'L', 'K', 'D', 'U', 'S', 'C', 'T', 'Q'];
+
 const FEATURES: [(&str, &str); 15] = [
     ("Kind", "ALPHA"),
     ("XX", "REAL"),
@@ -146,11 +149,12 @@ impl<W: Write> Writer<'_, W> {
         )?;
         writeln!(out, "CODE:\tFORM-A\n\nCLASSES:\nSYMBOL\tSCALE\tDECOMPOSITION\tINDEXATION\tDEFINITION")?;
         writeln!(out, "$\t0\tFREE\tFREE\tIMPLICIT\nP\t1\tFREE\tFREE\tEXPLICIT\nA\t2\tFREE\tFREE\tEXPLICIT")?;
-        for symbol in ["N", "L", "K", "D", "U", "S", "C", "T"] {
+        for symbol in BORNE {
             writeln!(out, "{symbol}\t3\tFREE\tFREE\tEXPLICIT")?;
         }
         writeln!(out, "\nDESCRIPTION:\nLEFT\tRIGHT\tRELTYPE\tMAX\nA\tA\t+\t?")?;
-        writeln!(out, "N\tN\t<\t1\nN\tN,L,K,D,U,S,C,T\t+\t?\n\nFEATURES:\nNAME\tTYPE")?;
+        let borne = BORNE.map(String::from).join(",");
+        writeln!(out, "N\tN\t<\t1\nN\t{borne}\t+\t?\n\nFEATURES:\nNAME\tTYPE")?;
         for (name, kind) in FEATURES {
             writeln!(out, "{name}\t{kind}")?;
         }
