@@ -27,7 +27,7 @@ cargo xtask COMMAND
   build-web      builds the Studio as a folder of static files, apps/studio-web/dist
   test           sets up what the tests need and runs them all: native, WASM in Node, Khronos validator, Studio
   gallery        makes every fixture drawing and writes docs/gallery.md and docs/table1.md
-  species        grows every preset for docs/trees.md and the Studio's small pictures
+  species        grows every preset and scene of docs/trees.md and docs/shaping.md, and the Studio's small pictures
   flowers        makes the pictures of docs/bloom.md and of the venations in docs/leaves.md
   layers         checks that each crate uses only what ARCHITECTURE.md allows
   train-strokes  trains the stroke classifier from its table (see docs/strokes.md)
