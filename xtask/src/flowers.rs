@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use crate::pixels::tiled;
-use crate::shell::{Outcome, built_burgeon, command, repository, say};
+use crate::shell::{Outcome, repository, say};
+use crate::workshop::{Workshop, picture};
 
 /// Species, days from bud to full bloom, and from there to wilted.
 const FLOWERS: [(&str, f64, f64); 5] = [
@@ -14,39 +15,25 @@ const FLOWERS: [(&str, f64, f64); 5] = [
     ("clivia", 7.0, 5.0),
 ];
 
-struct Maker {
-    burgeon: PathBuf,
-    folder: PathBuf,
-}
+struct Maker<'a>(&'a Workshop);
 
 pub(crate) fn run() -> Outcome {
-    let burgeon = built_burgeon()?;
-    let folder = std::env::temp_dir().join(format!("burgeon-flowers-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).map_err(|e| format!("cannot make {}: {e}", folder.display()))?;
-    let maker = Maker { burgeon, folder };
-    let made = maker.flowers().and_then(|()| maker.law()).and_then(|()| maker.venations());
-    let _ = std::fs::remove_dir_all(&maker.folder);
-    made?;
+    Workshop::with(|shop| {
+        let maker = Maker(shop);
+        maker.flowers().and_then(|()| maker.law()).and_then(|()| maker.venations())
+    })?;
     say("docs/pictures/bloom-flowers.png, bloom-law.png and leaves/venation.png are made anew");
     Ok(())
 }
 
-impl Maker {
-    fn path(&self, name: &str) -> String {
-        self.folder.join(name).display().to_string()
-    }
-
-    fn burgeon(&self, args: &[&str]) -> Outcome {
-        command(&self.burgeon, &[args, &["--quiet"]].concat())
-    }
-
+impl Maker<'_> {
     /// A picture of a flower at a day.
     fn flower(&self, name: &str, day: f64, more: &[&str]) -> Result<PathBuf, String> {
-        let png = self.folder.join(format!("{name}-{day:.2}-{}.png", more.len()));
-        let (day, model) = (day.to_string(), self.path("flower.glb"));
+        let png = self.0.folder.join(format!("{name}-{day:.2}-{}.png", more.len()));
+        let (day, model) = (day.to_string(), self.0.path("flower.glb"));
         let shown = png.display().to_string();
         let args = ["bloom", "run", name, "-o", &model, "--day", &day, "--png", &shown, "--size", "224x240"];
-        self.burgeon(&[&args, more].concat())?;
+        self.0.burgeon(&[&args, more].concat())?;
         Ok(png)
     }
 
@@ -61,8 +48,8 @@ impl Maker {
 
     /// The law of an opening sunflower, fitted to nine shapes of it, sets the pace of a lily.
     fn law(&self) -> Outcome {
-        let shapes = self.path("sunflower");
-        self.burgeon(&["bloom", "run", "sunflower", "-o", &shapes, "--frames", "15", "--format", "obj"])?;
+        let shapes = self.0.path("sunflower");
+        self.0.burgeon(&["bloom", "run", "sunflower", "-o", &shapes, "--frames", "15", "--format", "obj"])?;
         let mut stages =
             String::from("unit = \"m\"\nname = \"sunflower\"\nsplit = \"none\"\nclean = false\n");
         for day in 0..9 {
@@ -70,9 +57,8 @@ impl Maker {
                 "[[stage]]\nfile = \"sunflower/sunflower-{day:03}.obj\"\nday = {day}\norgan = \"petal\"\n"
             );
         }
-        let (file, law) = (self.path("stages.toml"), self.path("sunflower.law.json"));
-        std::fs::write(&file, stages).map_err(|e| format!("cannot write {file}: {e}"))?;
-        self.burgeon(&["bloom", "fit", &file, "-o", &law])?;
+        let (file, law) = (self.0.file("stages.toml", &stages)?, self.0.path("sunflower.law.json"));
+        self.0.burgeon(&["bloom", "fit", &file, "-o", &law])?;
         let mut rows = Vec::new();
         for more in [vec![], vec!["--law", &law]] {
             let days = [0.0, 1.0, 1.7, 2.4, 3.2, 6.0];
@@ -92,16 +78,12 @@ impl Maker {
         ];
         let mut row = Vec::new();
         for (k, (leaf, view)) in leaves.iter().enumerate() {
-            let png = self.folder.join(format!("leaf-{k}.png"));
+            let png = self.0.folder.join(format!("leaf-{k}.png"));
             let shown = png.display().to_string();
             let args = ["leaf", "--png", &shown, "--size", "400x420", "--no-shadow", "--view", view];
-            self.burgeon(&[&args[..1], leaf, &args[1..]].concat())?;
+            self.0.burgeon(&[&args[..1], leaf, &args[1..]].concat())?;
             row.push(png);
         }
         tiled(&[row], &picture("leaves/venation.png"))
     }
-}
-
-fn picture(name: &str) -> PathBuf {
-    repository().join("docs/pictures").join(name)
 }

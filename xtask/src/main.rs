@@ -13,6 +13,7 @@ mod studio;
 mod toolchain;
 mod train_strokes;
 mod web;
+mod workshop;
 
 use std::process::ExitCode;
 

@@ -1,49 +1,33 @@
 //! The pictures of docs/trees.md and docs/shaping.md that are not of a species alone: part of `cargo xtask species`.
 
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use base::ops::{self, TAU};
 
 use crate::pixels::tiled;
-use crate::shell::{Outcome, command, repository};
+use crate::shell::{Outcome, repository};
+use crate::workshop::{Workshop, picture};
 
-pub(crate) struct Scenes {
-    burgeon: PathBuf,
-    folder: PathBuf,
+struct Scenes<'a>(&'a Workshop);
+
+/// Makes them all.
+pub(crate) fn make() -> Outcome {
+    Workshop::with(|shop| {
+        let scenes = Scenes(shop);
+        scenes.compared()?;
+        scenes.leaves()?;
+        scenes.room()?;
+        scenes.edits()
+    })
 }
 
-/// Makes them all in a folder of its own.
-pub(crate) fn make(burgeon: &Path) -> Outcome {
-    let folder = std::env::temp_dir().join(format!("burgeon-scenes-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).map_err(|e| format!("cannot make {}: {e}", folder.display()))?;
-    let scenes = Scenes { burgeon: burgeon.into(), folder };
-    let made = scenes.compared().and_then(|()| scenes.leaves()).and_then(|()| scenes.room());
-    let made = made.and_then(|()| scenes.edits());
-    let _ = std::fs::remove_dir_all(&scenes.folder);
-    made
-}
-
-fn picture(name: &str) -> PathBuf {
-    repository().join("docs/pictures").join(name)
-}
-
-impl Scenes {
-    fn burgeon(&self, args: &[&str]) -> Outcome {
-        command(&self.burgeon, &[args, &["--quiet"]].concat())
-    }
-
+impl Scenes<'_> {
     /// Runs `burgeon ARGS --png` and tells where the picture is.
     fn drawn(&self, name: &str, size: &str, args: &[&str]) -> Result<PathBuf, String> {
-        let png = self.folder.join(format!("{name}.png"));
-        self.burgeon(&[args, &["--png", &png.display().to_string(), "--size", size]].concat())?;
+        let png = self.0.folder.join(format!("{name}.png"));
+        self.0.burgeon(&[args, &["--png", &png.display().to_string(), "--size", size]].concat())?;
         Ok(png)
-    }
-
-    fn file(&self, name: &str, text: &str) -> Result<String, String> {
-        let path = self.folder.join(name).display().to_string();
-        std::fs::write(&path, text).map_err(|e| format!("cannot write {path}: {e}"))?;
-        Ok(path)
     }
 
     fn compared(&self) -> Outcome {
@@ -66,10 +50,10 @@ impl Scenes {
 
     /// Envelopes, obstacles, neighbours.
     fn room(&self) -> Outcome {
-        self.file("ring.obj", &ring())?;
-        let spec = self.file("ring.toml", RING)?;
+        self.0.file("ring.obj", &ring())?;
+        let spec = self.0.file("ring.toml", &format!("{CLIPPED}{RING}"))?;
         tiled(&[vec![self.drawn("ring", "420x420", &["grow", &spec])?]], &picture("trees/ring.png"))?;
-        let house = self.file("house.obj", HOUSE)?;
+        let house = self.0.file("house.obj", HOUSE)?;
         let house = self.drawn("house", "600x480", &["grow", "oak", "--obstacle", &house])?;
         tiled(&[vec![house]], &picture("trees/house.png"))?;
         let mut grove = vec!["grow", "oak"];
@@ -77,8 +61,8 @@ impl Scenes {
             grove.extend(["--root", root]);
         }
         tiled(&[vec![self.drawn("grove", "640x448", &grove)?]], &picture("trees/grove.png"))?;
-        self.file("topiary.xyz", &topiary())?;
-        let spec = self.file("topiary.toml", TOPIARY)?;
+        self.0.file("topiary.xyz", &topiary())?;
+        let spec = self.0.file("topiary.toml", &format!("{CLIPPED}{TOPIARY}"))?;
         tiled(&[vec![self.drawn("topiary", "300x460", &["grow", &spec])?]], &picture("trees/topiary.png"))
     }
 
@@ -105,31 +89,35 @@ impl Scenes {
             ),
             ("silhouette", format!(r#""outline": [{}], "trim": true"#, heart.join(", "))),
         ];
+        let before = self.drawn("before", "240x240", &["grow", "oak", "--view", "front"])?;
         for (op, what) in edits {
-            let edit = self.file(
+            let edit = self.0.file(
                 "edit.json",
                 &format!("{{\"schema\": \"burgeon.edits/1\", \"edits\": [{{\"op\": \"{op}\", {what}}}]}}"),
             )?;
-            let view = ["--view", "front"];
-            let before = self.drawn("before", "240x240", &[&["grow", "oak"], &view[..]].concat())?;
-            let args = [&["shape", "oak", "--edits", &edit], &view[..]].concat();
+            let args = ["shape", "oak", "--edits", &edit, "--view", "front"];
             let after = self.drawn("after", "240x240", &args)?;
             let name = op.strip_suffix("-branch").unwrap_or(op);
-            tiled(&[vec![before, after]], &picture(&format!("shaping/oak-{name}.png")))?;
+            tiled(&[vec![before.clone(), after]], &picture(&format!("shaping/oak-{name}.png")))?;
         }
         Ok(())
     }
 }
 
-const RING: &str = r##"name = "Ring"
+/// How a tree fills the form that it is clipped to: the start of its spec.
+const CLIPPED: &str = r##"[look]
+bark = "smooth"
+leaf_color = "#4c7840"
 [method]
 kind = "competition"
 points = 6000
-attraction_m = 0.8
-kill_m = 0.2
 lifespan = 3
 joints_share = 0.2
 points_per_joint = 12
+"##;
+
+const RING: &str = r#"attraction_m = 0.8
+kill_m = 0.2
 envelope = { shape = "mesh", file = "ring.obj" }
 [wood]
 trunk_radius_m = 0.09
@@ -137,20 +125,10 @@ trunk_radius_m = 0.09
 length_m = 0.12
 spacing_m = 0.045
 max_radius_m = 0.012
-[look]
-bark = "smooth"
-leaf_color = "#4f7a3a"
-"##;
+"#;
 
-const TOPIARY: &str = r##"name = "Topiary"
-[method]
-kind = "competition"
-points = 6000
-attraction_m = 0.4
+const TOPIARY: &str = r#"attraction_m = 0.4
 kill_m = 0.1
-lifespan = 3
-joints_share = 0.2
-points_per_joint = 12
 envelope = { shape = "points", file = "topiary.xyz", reach_m = 0.06 }
 [wood]
 trunk_radius_m = 0.05
@@ -159,10 +137,7 @@ tip_radius_m = 0.002
 length_m = 0.06
 spacing_m = 0.025
 max_radius_m = 0.006
-[look]
-bark = "smooth"
-leaf_color = "#4a7540"
-"##;
+"#;
 
 /// A house with a saddle roof to the left of the tree, metres.
 const HOUSE: &str = "v -5.2 0 -3\nv -1.4 0 -3\nv -1.4 0 3\nv -5.2 0 3\nv -5.2 3.2 -3\nv -1.4 3.2 -3\nv -1.4 3.2 3\n\

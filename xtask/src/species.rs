@@ -71,7 +71,7 @@ pub(crate) fn run() -> Outcome {
     let (_, after) = rest.split_once(TO).ok_or("docs/trees.md has lost the mark after its table")?;
     std::fs::write(&page, format!("{before}{FROM}{table}{TO}{after}"))
         .map_err(|e| format!("cannot write {}: {e}", page.display()))?;
-    crate::scenes::make(&burgeon)?;
+    crate::scenes::make()?;
     say("docs/trees.md, its pictures, those of docs/shaping.md and those of the Studio are made anew");
     Ok(())
 }

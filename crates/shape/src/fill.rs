@@ -205,8 +205,10 @@ const BEND: f64 = 2.4;
 fn trim(draft: &mut Draft, mask: &Mask, habit: &Habit) -> (usize, Pipes) {
     let mut removed = 0;
     let mut pipes = Pipes::default();
+    let order = draft.order();
+    let reaches = reaching(draft, &order, mask);
     // Highest order last: what hangs on a branch that is cut is gone with it.
-    for b in draft.order() {
+    for b in order {
         let branch = &draft.branches[b];
         if !branch.alive || !branch.is_shoot() || branch.points.len() < 2 {
             continue;
@@ -218,7 +220,7 @@ fn trim(draft: &mut Draft, mask: &Mask, habit: &Habit) -> (usize, Pipes) {
             if stem {
                 continue;
             }
-            let at = highest_needed(draft, b, mask);
+            let at = highest_needed(draft, b, &reaches);
             removed += cut(draft, b, at, &mut pipes, habit);
             continue;
         };
@@ -245,16 +247,24 @@ fn last_inside(line: &[DVec3], mask: &Mask, stem: bool) -> Option<usize> {
     last
 }
 
+/// Which branches come into the outline, or bear one that does.
+fn reaching(draft: &Draft, order: &[usize], mask: &Mask) -> Vec<bool> {
+    let mut reaches: Vec<bool> =
+        draft.branches.iter().map(|b| b.alive && b.points.iter().any(|p| mask.covers(*p))).collect();
+    // Bearers come first in the order.
+    for &b in order.iter().rev() {
+        if let Some(at) = draft.branches[b].bearer {
+            reaches[at.branch] |= reaches[b];
+        }
+    }
+    reaches
+}
+
 /// The share of a branch's length up to the last node on which something hangs that comes into the outline; 0 for none.
-fn highest_needed(draft: &Draft, b: usize, mask: &Mask) -> f64 {
-    let reaches = |child: usize| {
-        let bears = draft.subtree(child);
-        let of = draft.branches.iter().zip(&bears);
-        of.filter(|(c, s)| **s && c.alive).any(|(c, _)| c.points.iter().any(|p| mask.covers(*p)))
-    };
-    let children = draft.branches.iter().enumerate().filter(|(_, c)| c.alive);
-    let nodes = children.filter_map(|(i, c)| Some((i, c.bearer.filter(|p| p.branch == b)?.node)));
-    let Some(node) = nodes.filter(|&(i, _)| reaches(i)).map(|(_, node)| node).max() else { return 0.0 };
+fn highest_needed(draft: &Draft, b: usize, reaches: &[bool]) -> f64 {
+    let borne = draft.branches.iter().zip(reaches).filter(|(c, reaches)| c.alive && **reaches);
+    let nodes = borne.filter_map(|(c, _)| Some(c.bearer.filter(|p| p.branch == b)?.node));
+    let Some(node) = nodes.max() else { return 0.0 };
     let points = &draft.branches[b].points;
     let below = geom::polyline_length3(&points[..(node + 1).min(points.len())]);
     // A little above the node, which must stay.

@@ -17,6 +17,8 @@ const FALL: f64 = 0.4;
 #[derive(Clone, Debug)]
 pub(crate) struct Mask {
     outline: Vec<DVec2>,
+    /// The outline with its first point again at the end.
+    closed: Vec<DVec2>,
     axes: [DVec3; 3],
     origin: DVec3,
     lo: DVec2,
@@ -51,7 +53,18 @@ impl Mask {
         if inside.iter().filter(|i| **i).count() < 4 {
             return Err(small);
         }
-        Ok(Self { outline: outline.to_vec(), axes, origin: plane.origin, lo, pixel, columns, rows, inside })
+        let closed = [outline, &outline[..1]].concat();
+        Ok(Self {
+            outline: outline.to_vec(),
+            closed,
+            axes,
+            origin: plane.origin,
+            lo,
+            pixel,
+            columns,
+            rows,
+            inside,
+        })
     }
 
     /// Where a point appears in the plane.
@@ -70,11 +83,8 @@ impl Mask {
         if self.covers(p) {
             return true;
         }
-        let Some(&first) = self.outline.first() else { return false };
-        let mut closed = self.outline.clone();
-        closed.push(first);
         let seen = self.seen(p);
-        geom::closest_on_polyline(&closed, seen).is_some_and(|c| c.point.distance(seen) <= slack)
+        geom::closest_on_polyline(&self.closed, seen).is_some_and(|c| c.point.distance(seen) <= slack)
     }
 
     /// A marker for every masked pixel, `density` of them in the mean, each uniform in a ball around the pixel's middle

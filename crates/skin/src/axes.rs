@@ -116,6 +116,7 @@ pub(crate) fn tubes<'p>(
     let wind = spec.wind.then(|| {
         let wood = |i: usize| Wood {
             bearer: smooth(hosts[i]).zip(hosts[i]).map(|(bearer, (host, _))| (bearer, host)),
+            reach: reaches[i],
             borne: chains[i].bearer.is_some() && chains[i].surface != Surface::Root,
             key: chains[i].axes.first().map_or(0, |&a| plant.axis(a).key),
             spine: spines[i].as_ref(),

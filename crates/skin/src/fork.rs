@@ -23,6 +23,8 @@ pub(crate) struct Bearer<'a> {
 pub(crate) struct Reach {
     /// Where the centre line leaves the bearer.
     pub exit: Station,
+    /// The bearer's arc length there.
+    pub on: f64,
     /// The arc length at which the fillet ends and the branch's own tube starts.
     pub top: f64,
 }
@@ -44,9 +46,9 @@ const HOLLOW: f64 = 0.6;
 // A branch that runs along its bearer leaves it only far out; from this sine on its fillet is cut short.
 const SHALLOWEST: f64 = 0.22;
 
-/// Where the centre line of `branch` leaves its bearer, the bearer's station there and its piece; `None` where it never
-/// does (it ends inside).
-pub(crate) fn exit(branch: &Spine, bearer: &Bearer<'_>) -> Option<(Station, Station, usize)> {
+/// Where the centre line of `branch` leaves its bearer, and the bearer's station there; `None` where it never does (it
+/// ends inside).
+fn exit(branch: &Spine, bearer: &Bearer<'_>) -> Option<(Station, Station)> {
     let mut hint = bearer.sample;
     let mut depth = |p: DVec3| {
         let found = bearer.spine.outside(p, hint);
@@ -62,11 +64,8 @@ pub(crate) fn exit(branch: &Spine, bearer: &Bearer<'_>) -> Option<(Station, Stat
         }
         found.then_some((k, here))
     })?;
-    let station = |(_, s, piece): (f64, f64, usize)| (bearer.spine.station(piece, s), piece);
-    let Some(mut inside) = inside else {
-        let (at, piece) = station(outside);
-        return Some((branch.at(0.0), at, piece));
-    };
+    let station = |(_, s, piece): (f64, f64, usize)| bearer.spine.station(piece, s);
+    let Some(mut inside) = inside else { return Some((branch.at(0.0), station(outside))) };
     // Samples are coarser than bearers are thick: false position (Illinois) narrows down where the surface lies.
     let (mut a, mut b) = (branch.s[k - 1], branch.s[k]);
     for _ in 0..4 {
@@ -80,13 +79,12 @@ pub(crate) fn exit(branch: &Spine, bearer: &Bearer<'_>) -> Option<(Station, Stat
             (a, inside) = (s, here.0);
         }
     }
-    let (at, piece) = station(outside);
-    Some((branch.station(k - 1, b), at, piece))
+    Some((branch.station(k - 1, b), station(outside)))
 }
 
 /// Where the fillet of `branch` on its bearer lies; `None` where the branch ends inside.
 pub(crate) fn reach(branch: &Spine, bearer: &Bearer<'_>) -> Option<Reach> {
-    let (exit, at, _) = exit(branch, bearer)?;
+    let (exit, at) = exit(branch, bearer)?;
     let cos = exit.tangent.dot(at.tangent);
     let sin = (1.0 - cos * cos).max(0.0).sqrt().max(SHALLOWEST);
     // On a thick bearer the fillet is as long as the branch is thick; on one of like thickness it may take 1.2
@@ -94,7 +92,7 @@ pub(crate) fn reach(branch: &Spine, bearer: &Bearer<'_>) -> Option<Reach> {
     let length = 1.2 * at.radius.min(2.2 * exit.radius);
     let top = exit.s + exit.radius * cos.abs() / sin + length;
     let room = branch.length() - exit.s;
-    Some(Reach { exit, top: top.min(exit.s + 0.6 * room) })
+    Some(Reach { exit, on: at.s, top: top.min(exit.s + 0.6 * room) })
 }
 
 impl Collar {
@@ -111,7 +109,6 @@ impl Collar {
         // How far the foot spreads along the bearer's surface, beyond where the bare tube would meet it.
         let spread = 0.8 * top.radius.min(axis.radius);
         let width = circle.sides() + 1;
-        let sunk = base::ops::cos(base::ops::PI / f64::from(bearer.sides.max(3))) * 0.97;
         let mut collar = Self {
             corners: vec![DVec3::ZERO; width * (steps as usize + 2)],
             normals: vec![DVec3::ZERO; width * (steps as usize + 2)],
@@ -121,9 +118,9 @@ impl Collar {
         for (j, &corner) in circle.0[..width - 1].iter().enumerate() {
             let ray = top.ray(corner);
             let q = top.centre + ray * top.radius;
-            let knee = bearer.surface(hit(q, back, &axis), hint, 1.0);
+            let knee = bearer.surface(hit(q, back, &axis), hint);
             let out = (ray - knee.1 * ray.dot(knee.1)).normalize_or_zero();
-            let foot = bearer.surface(knee.0 + out * spread, hint, sunk);
+            let foot = bearer.below(knee.0 + out * spread, hint);
             for k in 0..=steps + 1 {
                 // Even steps of the parameter crowd a little at the knee, where the fillet turns.
                 let u = f64::from(k) / f64::from(steps + 1);
@@ -174,14 +171,24 @@ impl Collar {
 }
 
 impl Bearer<'_> {
-    /// The point of the bearer's surface (times `share` of its radius) nearest to `p`, and the normal there.
-    fn surface(&self, p: DVec3, hint: usize, share: f64) -> (DVec3, DVec3) {
+    /// The point of the bearer's surface nearest to `p`, and the normal there.
+    fn surface(&self, p: DVec3, hint: usize) -> (DVec3, DVec3) {
+        self.shrunk(p, hint, |_| 1.0)
+    }
+
+    /// The same point sunk just below the flat faces, or below the rows of the bearer's own fillet.
+    fn below(&self, p: DVec3, hint: usize) -> (DVec3, DVec3) {
+        let faces = base::ops::cos(base::ops::PI / f64::from(self.sides.max(3))) * 0.97;
+        self.shrunk(p, hint, |s| if s < self.top { faces * HOLLOW } else { faces })
+    }
+
+    /// The nearest point of the surface whose radius is a share, by arc length, of the bearer's.
+    fn shrunk(&self, p: DVec3, hint: usize, share: impl Fn(f64) -> f64) -> (DVec3, DVec3) {
         let (at, _) = self.spine.nearest(p, hint);
         let d = p - at.centre;
         let out = d - at.tangent * d.dot(at.tangent);
         let ray = out.try_normalize().unwrap_or_else(|| at.tangent.any_orthonormal_vector());
-        let share = if share < 1.0 && at.s < self.top { share * HOLLOW } else { share };
-        (at.centre + ray * (at.radius * share), (ray - at.tangent * at.slope).normalize())
+        (at.centre + ray * (at.radius * share(at.s)), (ray - at.tangent * at.slope).normalize())
     }
 }
 

@@ -3,9 +3,9 @@
 //! `Plant -> spines -> tubes with fillets | shapes -> placed copies -> Model`
 //!
 //! Axes become closed tubes: rings on rotation-minimising frames, as many as it takes to follow the axis; axes that
-//! continue one another as one tube; side branches with a fillet on their bearers as these are drawn. Leaves and petals become constrained Delaunay sheets, one per
-//! shape, copied and tinted for each organ. Every kind of surface is one part with one material and a
-//! procedural texture.
+//! continue one another as one tube; side branches with a fillet on their bearers as these are drawn. Leaves and
+//! petals become constrained Delaunay sheets, one per shape, copied and tinted for each organ. Every kind of surface is
+//! one part with one material and a procedural texture.
 //!
 //! | module | owns |
 //! |---|---|
@@ -51,9 +51,8 @@ use crate::spec::Budget;
 /// Gives a plant its surface: meshes with normals, texture coordinates and materials.
 ///
 /// Guaranteed, for any plant: finite coordinates, unit normals, no triangle that uses a vertex twice
-/// ([`Model::validate`] is clean); every tube closed; wood is drawn where the plant has it: to
-/// 0.07 % of the plant's size (over [`SkinSpec::detail`]), and within a radius where it is thinner than that; the same bits
-/// for any executor. One part per kind of surface, in the order bark, stems, roots, leaves, petals, discs, fruits,
+/// ([`Model::validate`] is clean); every tube closed; wood is drawn where the plant has it, to 0.07 % of the plant's
+/// size and within its own radius (both over [`SkinSpec::detail`]); the same bits for any executor. One part per kind of surface, in the order bark, stems, roots, leaves, petals, discs, fruits,
 /// stamens, thorns; kinds that do not occur leave no part. Organs have vertex colours: their tint, varied by
 /// seed and key. A tint with a channel below 0.55, or whose channels differ by more than
 /// 3 to 10, is taken for the colour in which the organ was drawn, and a

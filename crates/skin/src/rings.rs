@@ -270,7 +270,7 @@ mod tests {
     fn what_lies_below_the_first_ring_is_straight() {
         let spine = zigzag();
         let exit = spine.at(0.3);
-        let (line, first) = drawn(&spine, Some(&Reach { exit, top: 0.8 }), 6.0, |r| r);
+        let (line, first) = drawn(&spine, Some(&Reach { exit, on: 1.0, top: 0.8 }), 6.0, |r| r);
         assert_eq!((first, line.s[1], line.s[2]), (2, 0.3, spine.at(0.8).s));
         let (a, b) = (line.p[1] - line.p[0], line.p[2] - line.p[1]);
         assert!(a.normalize().dot(b.normalize()) > 1.0 - 1e-12);

@@ -12,7 +12,7 @@ use glam::DVec3;
 use mesh::{Bounds, TriMesh};
 use plant::{AxisKind, NodeId, Organ, Plant, Shape};
 
-use crate::fork::Bearer;
+use crate::fork::{Bearer, Reach};
 use crate::spine::Spine;
 use crate::tube::{narrow, wide};
 
@@ -32,6 +32,8 @@ struct Member {
 pub(crate) struct Wood<'a> {
     /// What bears it, and the chain that that is.
     pub bearer: Option<(Bearer<'a>, usize)>,
+    /// Where it leaves that.
+    pub reach: Option<Reach>,
     pub borne: bool,
     /// Key of its first axis.
     pub key: u64,
@@ -108,16 +110,13 @@ impl<'a> Wind<'a> {
             return own;
         }
         let limb = Member { from: Some(0.0), ..own };
-        let (Some(spine), Some((bearer, host))) = (wood.spine, &wood.bearer) else { return limb };
-        let exit = crate::fork::exit(spine, bearer);
-        let limb = Member { exit: exit.map_or(0.0, |e| e.0.s), ..limb };
+        let Some((bearer, host)) = &wood.bearer else { return limb };
+        let limb = Member { exit: wood.reach.map_or(0.0, |r| r.exit.s), ..limb };
         // A bearer comes before what it bears; where it does not, the branch is a limb of its own.
         let Some(host) = self.members.get(*host).filter(|_| *host < chain) else { return limb };
         let Some(start) = host.from else { return limb };
-        let s = exit.map_or_else(
-            || bearer.spine.s.get(bearer.sample).copied().unwrap_or(0.0),
-            |(_, station, _)| station.s,
-        );
+        let inside = || bearer.spine.s.get(bearer.sample).copied().unwrap_or(0.0);
+        let s = wood.reach.map_or_else(inside, |r| r.on);
         Member { from: Some(start + (s - host.exit).max(0.0)), exit: limb.exit, ..*host }
     }
 

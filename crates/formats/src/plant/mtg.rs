@@ -8,10 +8,10 @@ use plant::{AxisId, AxisKind, NodeId, Organ, OrganKind, Plant, Shape};
 use super::{decimal, length, micrometres, numbered, place, standing_on, turn};
 use crate::{ExportSpec, WriteError};
 
-/// Columns of numbers and words after the code.
 /// Symbols of what nodes bear: nodes and the kinds of organs.
 const BORNE: [char; 9] = ['N', 'L', 'K', 'D', 'U', 'S', 'C', 'T', 'Q'];
 
+/// Columns of numbers and words after the code.
 const FEATURES: [(&str, &str); 15] = [
     ("Kind", "ALPHA"),
     ("XX", "REAL"),

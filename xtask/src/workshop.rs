@@ -1,0 +1,44 @@
+//! A folder for the files that pictures of the docs are made from, and the program that draws them.
+
+use std::path::{Path, PathBuf};
+
+use crate::shell::{Outcome, built_burgeon, command, repository};
+
+pub(crate) struct Workshop {
+    burgeon: PathBuf,
+    pub(crate) folder: PathBuf,
+}
+
+impl Workshop {
+    /// Lets `work` have one for as long as it lasts.
+    pub(crate) fn with(work: impl FnOnce(&Self) -> Outcome) -> Outcome {
+        let burgeon = built_burgeon()?;
+        let folder = std::env::temp_dir().join(format!("burgeon-pictures-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).map_err(|e| format!("cannot make {}: {e}", folder.display()))?;
+        let shop = Self { burgeon, folder };
+        let made = work(&shop);
+        let _ = std::fs::remove_dir_all(&shop.folder);
+        made
+    }
+
+    /// Where a file of this name lies.
+    pub(crate) fn path(&self, name: &str) -> String {
+        self.folder.join(name).display().to_string()
+    }
+
+    /// Writes a file and tells where it lies.
+    pub(crate) fn file(&self, name: &str, text: &str) -> Result<String, String> {
+        let path = self.path(name);
+        std::fs::write(Path::new(&path), text).map_err(|e| format!("cannot write {path}: {e}"))?;
+        Ok(path)
+    }
+
+    pub(crate) fn burgeon(&self, args: &[&str]) -> Outcome {
+        command(&self.burgeon, &[args, &["--quiet"]].concat())
+    }
+}
+
+/// A picture of the docs.
+pub(crate) fn picture(name: &str) -> PathBuf {
+    repository().join("docs/pictures").join(name)
+}
