@@ -10,6 +10,7 @@ use burgeon::{Seed, Unit, UpAxis};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::files::PlantFormat;
+use crate::given::Given;
 
 /// Three-dimensional plants out of what people can draw.
 ///
@@ -98,6 +99,13 @@ pub(crate) struct CommonArgs {
     /// Print the report as JSON on stdout instead of the summary.
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+impl CommonArgs {
+    /// Somebody reads the report.
+    pub(crate) fn reports(&self) -> bool {
+        self.report.is_some() || self.json
+    }
 }
 
 /// How pictures are taken.
@@ -211,6 +219,9 @@ impl From<UnitWord> for Unit {
 #[derive(Args, Debug)]
 #[command(after_long_help = SKETCH_EXAMPLES)]
 pub(crate) struct SketchArgs {
+    /// First: clap takes the values of the others away as it reads them.
+    #[command(flatten)]
+    pub(crate) given: Given,
     /// Drawings: .svg, .inkml, .ndjson (one drawing a line) or .json; projects: .burgeon, with their settings;
     /// - for standard input.
     #[arg(value_name = "IN", required = true)]
@@ -410,6 +421,15 @@ pub(crate) enum FormatWord {
 }
 
 impl FormatWord {
+    pub(crate) const fn format(self) -> ModelFormat {
+        match self {
+            Self::Glb => ModelFormat::Glb,
+            Self::Obj => ModelFormat::Obj,
+            Self::Ply => ModelFormat::Ply,
+            Self::Usda => ModelFormat::Usda,
+        }
+    }
+
     pub(crate) const fn extension(self) -> &'static str {
         match self {
             Self::Glb => "glb",
@@ -463,6 +483,9 @@ impl PlantFormatWord {
   burgeon render tree.obj -o tree.png --view turntable --size 1600x900
   burgeon render tree.glb -o tree.png --background transparent --no-shadow")]
 pub(crate) struct RenderArgs {
+    /// First: clap takes the values of the others away as it reads them.
+    #[command(flatten)]
+    pub(crate) given: Given,
     /// The model: .glb, .gltf, .obj, .ply or .stl.
     #[arg(value_name = "MODEL")]
     pub(crate) input: PathBuf,
@@ -486,6 +509,9 @@ pub(crate) struct RenderArgs {
   burgeon convert scan.ply -o scan.glb --up z --unit mm
   burgeon convert scan.ply -o scan.obj --in-unit mm --unit m")]
 pub(crate) struct ConvertArgs {
+    /// First: clap takes the values of the others away as it reads them.
+    #[command(flatten)]
+    pub(crate) given: Given,
     /// The file to read.
     #[arg(value_name = "IN")]
     pub(crate) input: PathBuf,
@@ -514,6 +540,9 @@ pub(crate) struct ConvertArgs {
 
 #[derive(Args, Debug)]
 pub(crate) struct InfoArgs {
+    /// First: clap takes the values of the others away as it reads them.
+    #[command(flatten)]
+    pub(crate) given: Given,
     /// The file: a model (.glb, .gltf, .obj, .ply, .stl), a drawing (.svg, .inkml, .ndjson, .json) or a project
     /// (.burgeon).
     #[arg(value_name = "FILE")]

@@ -14,6 +14,7 @@ use serde::Serialize;
 
 use crate::args::{AxesArgs, CommonArgs, PictureArgs, ViewWord};
 use crate::failure::{Failure, Outcome};
+use crate::given::Given;
 use crate::machine::Machine;
 use crate::petals::{drawing, is_drawing, petal_form};
 use crate::stages::{self, Loaded};
@@ -85,6 +86,9 @@ pub(crate) struct FitArgs {
   burgeon bloom run flower.svg -o flower.glb                     a drawn flower opens and wilts
   burgeon bloom run rose --law lily.law.json -o rose-as-lily/ --frames 16 --format obj")]
 pub(crate) struct BloomRunArgs {
+    /// First: clap takes the values of the others away as it reads them.
+    #[command(flatten)]
+    pub(crate) given: Given,
     /// First shape: a scan or a model; or a stages file (.toml); or rose, lily, tulip, sunflower, clivia; or a drawing.
     #[arg(value_name = "START")]
     pub(crate) start: String,
@@ -388,16 +392,12 @@ fn run(args: &BloomRunArgs) -> Outcome {
         return Err(Failure::Bad("--day must be a finite number".into()));
     }
     let start = Path::new(&args.start);
+    check_used(args)?;
     if let Some(spec) = bloom::preset(&args.start).filter(|_| !start.exists()) {
         return flower(args, spec, law, &machine);
     }
-    if args.petal.is_some() {
-        return Err(Failure::Bad(format!(
-            "--petal is for whole flowers ({}); {} is none",
-            FlowerSpec::PRESETS.join(", "),
-            args.start
-        )));
-    }
+    let flowers = format!("whole flowers ({})", FlowerSpec::PRESETS.join(", "));
+    args.given.refuse(&["petal"], &flowers, &format!("{} is none", args.start))?;
     if is_drawing(start) {
         return drawn_flower(args, start, law, &machine);
     }
@@ -538,6 +538,9 @@ fn load_shapes(
 ) -> Outcome<Loaded> {
     let start = Path::new(&args.start);
     if files::extension(start).is_some_and(|e| e.eq_ignore_ascii_case("toml")) {
+        let options = ["end", "start_day", "end_day", "whole", "no_clean"];
+        let this = "a stages file says so itself (file, day, split, clean)";
+        args.given.refuse(&options, "a START and an END", this)?;
         return stages::load(start, axes, Seed::new(args.seed), machine);
     }
     if !start.exists() {
@@ -563,16 +566,38 @@ fn load_shapes(
     stages::load_pair(start, first, end, last, options, axes, Seed::new(args.seed), machine)
 }
 
-fn no_end(args: &BloomRunArgs, name: &str) -> Outcome {
-    if args.end.is_some() || args.compare.is_some() {
-        return Err(Failure::Bad(format!("{name} is a whole flower: it takes no --end and no --compare")));
-    }
-    Ok(())
+/// Fails on options that this kind of output does not use.
+fn check_used(args: &BloomRunArgs) -> Outcome {
+    let given = &args.given;
+    let picture = ["size", "view"];
+    given.only_if(args.png.is_some(), &picture, "pictures", "--png FILE.png, which makes one, is missing")?;
+    let extension = files::extension(&args.output);
+    let several = args.day.is_none() && extension.is_none_or(|e| e.eq_ignore_ascii_case("glb"));
+    let one = "one shape is written";
+    given.only_if(several, &["frames"], "animations (.glb without --day) and folders", one)?;
+    let film = several && extension.is_some();
+    given.only_if(film, &["seconds"], "animations (.glb without --day)", "none is written")?;
+    given.only_if(
+        extension.is_none(),
+        &["format"],
+        "folders",
+        "-o names a file, whose extension says its format",
+    )
+}
+
+/// Fails on options of scans.
+fn no_scans(args: &BloomRunArgs, name: &str) -> Outcome {
+    let given = &args.given;
+    let options = ["end", "compare", "lattice", "straight", "whole", "no_clean", "start_day", "end_day"];
+    given.refuse(&options, "scans and models", &format!("{name} is a whole flower"))?;
+    let folder = files::extension(&args.output).is_none();
+    let written = if folder { args.format.format() } else { files::writable(&args.output)? };
+    given.check_axes(!written.fixed_axes())
 }
 
 /// A drawing whose flowers open.
 fn drawn_flower(args: &BloomRunArgs, path: &Path, law: Option<GrowthLaw>, machine: &Machine) -> Outcome {
-    no_end(args, &args.start)?;
+    no_scans(args, &args.start)?;
     let ((drawing, options), read_ms) = {
         let (read, ms) = machine.timed(|| drawing(path));
         (read?, ms)
@@ -605,7 +630,7 @@ fn drawn_flower(args: &BloomRunArgs, path: &Path, law: Option<GrowthLaw>, machin
 }
 
 fn flower(args: &BloomRunArgs, spec: FlowerSpec, law: Option<GrowthLaw>, machine: &Machine) -> Outcome {
-    no_end(args, &spec.name)?;
+    no_scans(args, &spec.name)?;
     let spec = match &args.petal {
         Some(path) => {
             let (form, aspect) = petal_form(path, args.seed, machine)?;

@@ -14,6 +14,7 @@ use serde::Serialize;
 
 use crate::args::{CommonArgs, PictureArgs, ranged, seed};
 use crate::failure::{Failure, Outcome};
+use crate::given::Given;
 use crate::machine::Machine;
 use crate::{output, picture, report, say};
 
@@ -24,6 +25,9 @@ use crate::{output, picture, report, say};
   burgeon compare oak --height 15 --detail 2
   burgeon compare guided --png two.png")]
 pub(crate) struct CompareArgs {
+    /// First: clap takes the values of the others away as it reads them.
+    #[command(flatten)]
+    pub(crate) given: Given,
     /// What to compare.
     #[arg(value_enum)]
     pub(crate) what: CompareWord,
@@ -158,6 +162,9 @@ pub(crate) fn compare(args: &CompareArgs) -> Outcome {
     let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
     let outputs = [("--png", args.png.as_ref()), ("--report", args.common.report.as_ref())];
     output::check_outputs(&outputs, &[])?;
+    let given = &args.given;
+    given.check_picture(args.png.is_some(), &args.picture)?;
+    given.refuse(&["view"], "other commands' pictures", "trees are compared from the front")?;
     if let Some(png) = &args.png {
         picture::check_name(png)?;
     }

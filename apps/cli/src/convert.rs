@@ -18,6 +18,7 @@ pub(crate) fn convert(args: &ConvertArgs) -> Outcome {
         picture::check_name(png)?;
     }
     let (input, kind) = files::open(&args.input)?;
+    check_used(args, kind)?;
     let to_drawing = files::extension(&args.output).is_some_and(|e| e.eq_ignore_ascii_case("json"));
     let item = match (kind, to_drawing) {
         (Kind::Drawing(format), true) => drawing(args, input, format, &machine)?,
@@ -80,13 +81,42 @@ fn model(args: &ConvertArgs, input: files::Input, kind: Kind, machine: &Machine)
     Ok(item)
 }
 
-fn no_picture(args: &ConvertArgs) -> Outcome {
-    let why = "is a drawing; `burgeon sketch --png` makes a picture of its plant";
-    if args.png.is_some() { Err(Failure::at(&args.input, why)) } else { Ok(()) }
+/// Fails on options that nothing uses.
+fn check_used(args: &ConvertArgs, kind: Kind) -> Outcome {
+    let given = &args.given;
+    let Kind::Model(read) = kind else {
+        let png = ["png"];
+        given.refuse(
+            &png,
+            "models",
+            "a drawing has no picture; `burgeon sketch --png` makes one of its plant",
+        )?;
+        let others = [
+            "size",
+            "view",
+            "frames",
+            "background",
+            "no_shadow",
+            "supersample",
+            "up",
+            "unit",
+            "in_up",
+            "in_unit",
+        ];
+        return given.refuse(&others, "models", "a drawing is converted");
+    };
+    given.check_picture(args.png.is_some(), &args.picture)?;
+    let written = files::writable(&args.output).is_ok_and(|f| !f.fixed_axes());
+    given.only_if(
+        !read.fixed_axes(),
+        &["in_up", "in_unit"],
+        "models that do not fix their axes and unit",
+        "glTF is in metres, +Y up",
+    )?;
+    given.check_axes(written || !read.fixed_axes())
 }
 
 fn project(args: &ConvertArgs, input: files::Input, machine: &Machine) -> Outcome<ItemReport> {
-    no_picture(args)?;
     let (read, read_ms) = machine.timed(|| {
         let document = files::read_project(&args.input, input)?;
         files::drawing_of(&args.input, &document).map(|(read, _)| read)
@@ -100,7 +130,6 @@ fn drawing(
     format: DrawingFormat,
     machine: &Machine,
 ) -> Outcome<ItemReport> {
-    no_picture(args)?;
     let mut drawings = read_drawings(input, format, &files::stem(&args.input));
     let (first, read_ms) = machine.timed(|| drawings.next());
     let first = first.ok_or_else(|| Failure::at(&args.input, "holds no drawing"))?;

@@ -216,6 +216,11 @@ pub(crate) enum PlantFormat {
 }
 
 impl PlantFormat {
+    /// The axes and the unit are the format's own.
+    pub(crate) const fn fixed_axes(self) -> bool {
+        matches!(self, Self::Model(format) if format.fixed_axes())
+    }
+
     pub(crate) fn from_extension(extension: &str) -> Option<Self> {
         if extension.eq_ignore_ascii_case("mtg") {
             return Some(Self::Mtg);

@@ -18,12 +18,16 @@ use clap::{Args, ValueEnum};
 use crate::args::{AxesArgs, CommonArgs, PictureArgs, ranged, seed};
 use crate::failure::{Failure, Outcome};
 use crate::files::PlantFormat;
+use crate::given::{Given, Seen};
 use crate::machine::Machine;
 use crate::{files, output, picture, report, say};
 
 #[derive(Args, Debug)]
 #[command(after_long_help = GROW_EXAMPLES)]
 pub(crate) struct GrowArgs {
+    /// First: clap takes the values of the others away as it reads them.
+    #[command(flatten)]
+    pub(crate) given: Given,
     /// A species of `burgeon presets`, or a spec (.toml) [default: a plain tree].
     #[arg(value_name = "PRESET|SPEC.toml", required_unless_present_any = ["method", "attractors"])]
     pub(crate) what: Option<PathBuf>,
@@ -185,9 +189,12 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     if let Some(png) = &args.png {
         picture::check_name(png)?;
     }
+    check_used(args, format)?;
     let mut told = Report::default();
     let (spec, read_ms) = machine.timed(|| asked(args, &mut told));
     let mut spec = spec?;
+    let leaves = ["leaf_keep", "leaf_template"];
+    args.given.only_if(!spec.bare, &leaves, "trees with leaves", "this one is bare")?;
     let leaf = leaf_of(args, &mut spec, &machine)?;
     let seed = Seed::new(args.seed);
     let options = TreeOptions {
@@ -252,6 +259,16 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     run.ok = 1;
     run.items = items;
     report::finish(&run, &args.common)
+}
+
+/// Fails on options that nothing uses.
+fn check_used(args: &GrowArgs, format: Option<PlantFormat>) -> Outcome {
+    let given = &args.given;
+    given.check_picture(args.png.is_some(), &args.picture)?;
+    given.check_surface(Seen::new(format, args.png.as_ref(), &args.common))?;
+    let written = args.qsm.is_some() || format.is_some_and(|f| !f.fixed_axes());
+    let read = !args.growth.obstacle.is_empty() || args.points.attractors.is_some();
+    given.check_axes(written || read || !args.points.root.is_empty())
 }
 
 fn named(args: &GrowArgs) -> String {

@@ -19,6 +19,7 @@ const WARNINGS: usize = 50;
 pub(crate) fn info(args: &InfoArgs) -> Outcome {
     let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
     let (input, kind) = files::open(&args.input)?;
+    args.given.check_axes(matches!(kind, Kind::Model(format) if !format.fixed_axes()))?;
     // A pipe has no size.
     let bytes = std::fs::metadata(&args.input).ok().filter(std::fs::Metadata::is_file).map(|m| m.len());
     let (format, content) = match kind {

@@ -20,12 +20,16 @@ use clap::{Args, ValueEnum};
 
 use crate::args::{AxesArgs, CommonArgs, PictureArgs, UnitWord, UpWord, ranged};
 use crate::failure::{Failure, Outcome};
+use crate::given::Given;
 use crate::machine::Machine;
 use crate::{files, output, picture, report, say};
 
 #[derive(Args, Debug)]
 #[command(after_long_help = LEAF_EXAMPLES)]
 pub(crate) struct LeafArgs {
+    /// First: clap takes the values of the others away as it reads them.
+    #[command(flatten)]
+    pub(crate) given: Given,
     /// Marks or chief veins of a leaf (.csv), or its vein graph (.json); several for --days and --plant. `-` reads marks from
     /// standard input.
     #[arg(value_name = "DATA")]
@@ -109,6 +113,9 @@ A vein graph is {\"unit\": \"pixel\", \"nodes_xyr\": [[x, y, radius], ...], \"ed
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Leaf")]
 pub(crate) struct ShapeArgs {
+    /// First: clap takes the values of the others away as it reads them.
+    #[command(flatten)]
+    pub(crate) given: Given,
     /// Surface of the blade.
     #[arg(long, value_enum, default_value_t = SurfaceWord::Interpolate)]
     pub(crate) surface: SurfaceWord,
@@ -255,6 +262,7 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
         ("--report", args.common.report.as_ref()),
     ];
     output::check_outputs(&outputs, &args.inputs.iter().collect::<Vec<_>>())?;
+    check_used(args)?;
     if args.template {
         return template(args);
     }
@@ -277,12 +285,15 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
     if let Some(png) = &args.png {
         picture::check_name(png)?;
     }
+    if let Some(format) = format {
+        // What is read may be in any unit; what is made from numbers alone has none but the file's.
+        args.given.check_axes(!args.inputs.is_empty() || !format.fixed_axes())?;
+    }
     let Product { model, mut item, marks } =
         if args.scan { scan(args, &machine)? } else { make(args, &machine)? };
     machine.cancel.check()?;
-    if let Some(path) = &args.marks {
-        let marks = marks.ok_or_else(|| Failure::at(path, "a whole plant has no marks; drop --marks"))?;
-        output::write_whole(path, |out| match &marks {
+    if let (Some(path), Some(marks)) = (&args.marks, &marks) {
+        output::write_whole(path, |out| match marks {
             Measured::Rows(marks) => write_marks(marks, &item.name, out),
             Measured::Rays(rays) => write_rays(rays, &item.name, out),
         })?;
@@ -313,6 +324,58 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
     run.ok = 1;
     report::finish(&run, &args.common)
 }
+
+/// Fails on options that this kind of leaf does not use, as far as the command line tells the kind.
+fn check_used(args: &LeafArgs) -> Outcome {
+    let given = &args.given;
+    given.only_if(args.template, &["rows"], "--template", "no template is written")?;
+    if args.template {
+        for options in [&MESH[..], &SURFACE, &LOOK, &PLANT, &MADE] {
+            given.refuse(options, "leaves that are made", "--template writes a file to fill in")?;
+        }
+    }
+    given.check_picture(args.png.is_some(), &args.picture)?;
+    given.only_if(args.plant.plant, &PLANT[1..], "--plant", "a single leaf is made")?;
+    if args.plant.plant {
+        given.refuse(&["marks"], "single leaves", "a whole plant has no marks")?;
+    }
+    let growth = !args.look.days.is_empty();
+    given.only_if(growth, &["day"], "--days", "no stages are named")?;
+    let nurbs = matches!(args.shape.surface, SurfaceWord::Nurbs);
+    given.only_if(nurbs, &["vein_weight"], "--surface nurbs", "this blade is of another kind")?;
+    let palmate = args.venation == Some(VenationWord::Palmate);
+    given.only_if(palmate, &["depth"], "--venation palmate", "this leaf is none")?;
+    given.only_if(
+        args.venation.is_some(),
+        &["veins"],
+        "--venation",
+        "this leaf has the veins of its data",
+    )?;
+    if args.venation.is_some() {
+        given.refuse(&["thickness"], "measured leaves", "--venation makes one from numbers")?;
+    }
+    if args.venation == Some(VenationWord::Parallel) {
+        given.refuse(&["side_veins"], "lobed leaves", "parallel veins have none between them")?;
+    }
+    if args.scan {
+        for options in [&MESH[..], &SURFACE, &LOOK, &["thickness", "side_veins", "graph", "length"]] {
+            given.refuse(options, "leaves of marks and veins", "--scan makes the surface that it finds")?;
+        }
+    }
+    Ok(())
+}
+
+/// How blade and veins are meshed.
+const MESH: [&str; 5] = ["subdivisions", "sides", "rings", "caps", "margin_vein"];
+/// What surface the blade is.
+const SURFACE: [&str; 3] = ["surface", "parameters", "vein_weight"];
+/// How the leaf is bent and painted.
+const LOOK: [&str; 3] = ["curl", "wilt", "texture"];
+/// A whole plant, and what only that has.
+const PLANT: [&str; 4] = ["plant", "leaves", "height", "azimuth"];
+/// What else only a leaf has that is made.
+const MADE: [&str; 11] =
+    ["length", "thickness", "side_veins", "graph", "png", "marks", "inputs", "up", "unit", "report", "json"];
 
 fn template(args: &LeafArgs) -> Outcome {
     let text = marks_template(args.rows as usize);
@@ -451,6 +514,7 @@ fn make(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
                 .into(),
         ));
     }
+    args.given.refuse(&["side_veins"], "leaves of chief veins", "this is one of rows of marks")?;
     let (read, read_ms) =
         machine.timed(|| args.inputs.iter().map(|p| read(p, args)).collect::<Outcome<Vec<_>>>());
     let read = read?;
@@ -530,11 +594,9 @@ fn rays(args: &LeafArgs, machine: &Machine) -> Outcome<Option<Product>> {
         }
         _ => return Ok(None),
     };
-    if args.look.curl.abs() > 0.0 || args.look.wilt > 0.0 || args.plant.plant {
-        return Err(Failure::Bad(
-            "--curl, --wilt and --plant need a leaf of rows of marks, not of chief veins; leave them out"
-                .into(),
-        ));
+    for options in [&SURFACE[..], &LOOK, &["margin_vein", "plant", "days"]] {
+        let this = "this is one of chief veins";
+        args.given.refuse(options, "leaves of rows of marks", this)?;
     }
     let options = options(args, thickness)?;
     let made = burgeon::make_ray_leaf(&name, &rays, &options, &machine.run());

@@ -7,6 +7,7 @@ mod compare;
 mod convert;
 mod failure;
 mod files;
+mod given;
 mod grow;
 mod info;
 mod leaf;

@@ -16,8 +16,10 @@ pub(crate) fn render(args: &RenderArgs) -> Outcome {
     let outputs = [("-o", Some(&args.output)), ("--report", args.common.report.as_ref())];
     output::check_outputs(&outputs, &[&args.input])?;
     let axes = files::axes(args.axes.up, args.axes.unit);
+    args.given.check_picture(true, &args.picture)?;
     let (read, read_ms) = machine.timed(|| files::read_model(&args.input, &axes));
-    let (model, _, warnings) = read?;
+    let (model, format, warnings) = read?;
+    args.given.check_axes(!format.fixed_axes())?;
     let spec = args.picture.spec(args.seed);
     let (picture, draw_ms) = machine.timed(|| {
         machine.with_progress("picture", |_| burgeon::render::render(&model, &spec, &machine.run()))

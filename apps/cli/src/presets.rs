@@ -22,7 +22,7 @@ pub(crate) struct PresetsArgs {
     #[arg(long, value_name = "FILE.json")]
     pub(crate) schema: Option<PathBuf>,
     /// Print the list as JSON.
-    #[arg(long)]
+    #[arg(long, conflicts_with = "show")]
     pub(crate) json: bool,
 }
 

@@ -9,6 +9,7 @@ use burgeon::{RunReport, SceneEvaluator, scene_model};
 use crate::args::SketchArgs;
 use crate::failure::{Failure, Outcome};
 use crate::files::{self, Kind, PlantFormat};
+use crate::given::Seen;
 use crate::machine::Machine;
 use crate::{output, picture, say};
 
@@ -26,12 +27,34 @@ pub(crate) fn of_file(path: &Path) -> Outcome<Option<Document>> {
     Ok(document.only_sketch().is_none().then_some(document))
 }
 
+/// Options that a scene's plants have settings for.
+const OF_ONE_DRAWING: [&str; 18] = [
+    "seed",
+    "spec",
+    "classes",
+    "height",
+    "branch_depth",
+    "leaf_depth",
+    "flip_flowers",
+    "density",
+    "tropism",
+    "pipe_exponent",
+    "phototropism",
+    "gravity",
+    "leaf_template",
+    "detail",
+    "sides",
+    "no_textures",
+    "petals",
+    "variation",
+];
+
 /// Makes every plant that is not hidden and writes the scene as one model, with an entry of the report each.
 pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine: &Machine) -> Outcome {
-    if args.seed.is_some() || args.reading.spec.is_some() || args.reading.classes.is_some() {
-        let line = "is a scene whose plants have their own seeds and settings; change them in the Studio";
-        return Err(Failure::at(path, line));
-    }
+    let given = &args.given;
+    let line = "this is a scene, whose plants have their own settings; change them in the Studio";
+    given.refuse(&OF_ONE_DRAWING, "drawings", line)?;
+    given.refuse(&["format"], "folders of models", "a scene is one model")?;
     output::check_outputs(
         &[
             ("-o", args.output.as_ref()),
@@ -42,6 +65,9 @@ pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine:
         &[&path.to_path_buf()],
     )?;
     let format = args.output.as_deref().map(files::plant_writable).transpose()?;
+    given.check_picture(args.png.is_some(), &args.picture)?;
+    given.check_surface(Seen::new(format, args.png.as_ref(), &args.common))?;
+    given.check_axes(args.qsm.is_some() || format.is_some_and(|f| !f.fixed_axes()))?;
     let mut scene = SceneEvaluator::default();
     scene.set_wind(args.surface.wind);
     let mut report = RunReport::new("sketch", 1);

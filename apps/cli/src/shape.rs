@@ -17,7 +17,8 @@ use clap::Args;
 
 use crate::args::{AxesArgs, CommonArgs, PictureArgs, seed};
 use crate::failure::{Failure, Outcome};
-use crate::files::Kind;
+use crate::files::{Kind, PlantFormat};
+use crate::given::{Given, Seen};
 use crate::grow::TreeSurfaceArgs;
 use crate::machine::Machine;
 use crate::{files, grow, output, picture, project, report, say};
@@ -25,6 +26,9 @@ use crate::{files, grow, output, picture, project, report, say};
 #[derive(Args, Debug)]
 #[command(after_long_help = SHAPE_EXAMPLES)]
 pub(crate) struct ShapeArgs {
+    /// First: clap takes the values of the others away as it reads them.
+    #[command(flatten)]
+    pub(crate) given: Given,
     /// A species of `burgeon presets`, a spec (.toml), a drawing, or a project (.burgeon).
     #[arg(value_name = "PRESET|SPEC.toml|DRAWING", required_unless_present_any = ["template", "schema"])]
     pub(crate) what: Option<PathBuf>,
@@ -101,11 +105,12 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
             .map_err(|e| Failure::Bug(format!("the schema cannot be written as JSON: {e}")))?;
         output::write_whole(path, |file| Ok(writeln!(file, "{text}")?))?;
     }
+    let format = args.output.as_deref().map(files::plant_writable).transpose()?;
+    check_used(args, format)?;
     if args.template {
         return out(edits_template().trim_end());
     }
     let Some(what) = &args.what else { return Ok(()) };
-    let format = args.output.as_deref().map(files::plant_writable).transpose()?;
     if let Some(png) = &args.png {
         picture::check_name(png)?;
     }
@@ -152,6 +157,25 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
         Some(order) if !args.common.json => list(&plant, order),
         _ => Ok(()),
     }
+}
+
+/// Fails on options that nothing uses.
+fn check_used(args: &ShapeArgs, format: Option<PlantFormat>) -> Outcome {
+    let given = &args.given;
+    let plants = ["what", "edits", "output", "plant", "save", "png", "seed", "list", "report", "json"];
+    let users = "plants that are shaped";
+    if args.template {
+        given.refuse(&plants, users, "--template prints an example of edits")?;
+    }
+    if args.what.is_none() {
+        given.refuse(&plants, users, "none is named")?;
+    }
+    if args.common.json {
+        given.refuse(&["list"], "standard output", "--json prints there too; --report FILE.json does not")?;
+    }
+    given.check_picture(args.png.is_some(), &args.picture)?;
+    given.check_surface(Seen::new(format, args.png.as_ref(), &args.common))?;
+    given.check_axes(format.is_some_and(|f| !f.fixed_axes()))
 }
 
 fn out(text: &str) -> Outcome {
@@ -225,6 +249,8 @@ fn make(
             return Err(Failure::at(what, what_it_is));
         }
     };
+    let given = &args.given;
+    given.refuse(&["lods"], "presets and specs", "a drawing's plant has no levels of detail")?;
     told.warnings.extend(read.warnings);
     let options = SketchOptions { skin: SkinSpec { seed, ..skin }, edits, ..SketchOptions::default() };
     let made = make_from_sketch(&read.drawing, &options, seed, &machine.run()).map_err(|e| match e {

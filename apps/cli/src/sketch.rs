@@ -17,6 +17,7 @@ use crate::args::{ReadingArgs, SketchArgs, SurfaceArgs};
 use crate::classes::Classes;
 use crate::failure::{Failure, Outcome};
 use crate::files::{self, Kind, PlantFormat};
+use crate::given::Seen;
 use crate::machine::{Machine, Progress};
 use crate::{output, picture, say};
 
@@ -28,13 +29,30 @@ pub(crate) fn sketch(args: &SketchArgs) -> Outcome {
         return crate::scene::make(args, input, &scene, &machine);
     }
     let job = Job::new(args, &machine)?;
-    let report = if job.is_batch()? {
+    let batch = job.is_batch()?;
+    check_used(args, batch)?;
+    let report = if batch {
         job.batch(&machine)?
     } else {
         machine.with_progress("drawing to plant", |_| job.one(&machine))?
     };
     crate::report::finish(&report, &args.common)?;
     if report.failed > 0 { Err(Failure::Told) } else { Ok(()) }
+}
+
+/// Fails on options that nothing uses.
+fn check_used(args: &SketchArgs, batch: bool) -> Outcome {
+    let given = &args.given;
+    let folder = batch && args.output.is_some();
+    given.only_if(folder, &["format"], "folders of models", "-o names none")?;
+    let format = match &args.output {
+        Some(_) if batch => Some(args.format.format()),
+        Some(path) => Some(files::plant_writable(path)?),
+        None => None,
+    };
+    given.check_picture(args.png.is_some(), &args.picture)?;
+    given.check_surface(Seen::new(format, args.png.as_ref(), &args.common))?;
+    given.check_axes(args.qsm.is_some() || format.is_some_and(|f| !f.fixed_axes()))
 }
 
 /// Everything that is asked, read and checked before the first drawing.
