@@ -49,20 +49,14 @@ pub(crate) fn stem(path: &Path) -> String {
 /// Opens a file and finds out what it holds. Read once and never sought in: pipes are as good as files.
 pub(crate) fn open(path: &Path) -> Outcome<(Input, Kind)> {
     let failed = |e: &std::io::Error| Failure::io(path, "read", e);
-    let mut input: Box<dyn Read + Send> = if is_stdin(path) {
-        Box::new(std::io::stdin())
-    } else if path.is_dir() {
-        return Err(Failure::at(path, "is a folder; name the files in it"));
-    } else {
-        Box::new(File::open(path).map_err(|e| failed(&e))?)
-    };
+    let mut input = open_bytes(path)?;
     let known = extension(path).and_then(|e| {
         let drawing = DrawingFormat::from_extension(e).map(Kind::Drawing);
         let project = e.eq_ignore_ascii_case("burgeon").then_some(Kind::Project);
         drawing.or_else(|| ModelFormat::from_extension(e).map(Kind::Model)).or(project)
     });
     if let Some(kind) = known {
-        return Ok((Box::new(BufReader::new(input)), kind));
+        return Ok((input, kind));
     }
     let mut start = Vec::new();
     input.by_ref().take(4096).read_to_end(&mut start).map_err(|e| failed(&e))?;
@@ -81,13 +75,24 @@ pub(crate) fn open(path: &Path) -> Outcome<(Input, Kind)> {
     Ok((Box::new(BufReader::new(Cursor::new(start).chain(input))), kind))
 }
 
+/// Bytes of a file, a pipe or standard input, whatever they are.
+pub(crate) fn open_bytes(path: &Path) -> Outcome<Input> {
+    if is_stdin(path) {
+        return Ok(Box::new(BufReader::new(std::io::stdin())));
+    }
+    if path.is_dir() {
+        return Err(Failure::at(path, "is a folder; name a file in it"));
+    }
+    let file = File::open(path).map_err(|e| Failure::io(path, "read", &e))?;
+    Ok(Box::new(BufReader::new(file)))
+}
+
 /// The text of a small file, such as settings: at most 16 MiB.
 pub(crate) fn read_text(path: &Path) -> Outcome<String> {
     const MAX_BYTES: u64 = 16 << 20;
     let failed = |e: &std::io::Error| Failure::io(path, "read", e);
     let mut bytes = Vec::new();
-    let file = File::open(path).map_err(|e| failed(&e))?;
-    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(|e| failed(&e))?;
+    open_bytes(path)?.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(|e| failed(&e))?;
     if bytes.len() as u64 > MAX_BYTES {
         return Err(Failure::at(
             path,

@@ -16,6 +16,11 @@ use crate::files::PlantFormat;
 pub(crate) struct Given(BTreeSet<String>);
 
 impl Given {
+    /// This option was given.
+    pub(crate) fn has(&self, option: &str) -> bool {
+        self.0.contains(option)
+    }
+
     /// Fails if one of `options` was given, which `users` use and `this` does not.
     ///
     /// ```text

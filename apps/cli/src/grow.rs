@@ -355,7 +355,7 @@ fn leaf_of(args: &GrowArgs, spec: &mut TreeSpec, machine: &Machine) -> Outcome<O
         folder.join(file)
     });
     let path = args.growth.leaf_template.clone().or(named);
-    path.map(|p| crate::leaf::template_of(&p, args.seed, machine)).transpose()
+    path.map(|p| crate::leaf_data::template_of(&p, args.seed, machine)).transpose()
 }
 
 /// A preset by its key, or a file.
@@ -365,7 +365,7 @@ pub(crate) fn read_spec(what: &Path, told: &mut Report) -> Outcome<TreeSpec> {
     if let Some(preset) = preset {
         return preset.spec().map_err(|e| Failure::Bug(format!("preset {key}: {e}")));
     }
-    if files::extension(what).is_none() && !what.exists() {
+    if files::extension(what).is_none() && !what.exists() && !files::is_stdin(what) {
         return Err(Failure::Bad(format!(
             "there is no preset `{key}`; `burgeon presets` lists them, and a spec's name ends with .toml"
         )));

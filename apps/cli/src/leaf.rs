@@ -4,8 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use burgeon::formats::{
-    CloudFormat, ExportSpec, MarksAxes, PngCache, ReadMarks, is_rays, marks_template, read_cloud, read_marks,
-    read_picture, read_rays, read_vein_graph, write_marks, write_rays,
+    CloudFormat, ExportSpec, PngCache, marks_template, read_cloud, read_picture, write_marks, write_rays,
 };
 use burgeon::geom::RingRule;
 use burgeon::leaf::{
@@ -13,14 +12,13 @@ use burgeon::leaf::{
     SurfaceKind, ThicknessRule, VeinParameters,
 };
 use burgeon::mesh::Model;
-use burgeon::{
-    ItemReport, LeafError, LeafOptions, LeafTemplate, LeafTexture, Report, RunReport, Seed, ShootSpec,
-};
+use burgeon::{ItemReport, LeafError, LeafOptions, LeafTexture, Report, RunReport, Seed, ShootSpec};
 use clap::{Args, ValueEnum};
 
-use crate::args::{AxesArgs, CommonArgs, PictureArgs, UnitWord, UpWord, ranged};
+use crate::args::{AxesArgs, CommonArgs, PictureArgs, UnitWord, ranged};
 use crate::failure::{Failure, Outcome};
 use crate::given::Given;
+use crate::leaf_data::{self, Form, ReadLeaf};
 use crate::machine::Machine;
 use crate::{files, output, picture, report, say};
 
@@ -30,8 +28,8 @@ pub(crate) struct LeafArgs {
     /// First: clap takes the values of the others away as it reads them.
     #[command(flatten)]
     pub(crate) given: Given,
-    /// Marks or chief veins of a leaf (.csv), or its vein graph (.json); several for --days and --plant. `-` reads marks from
-    /// standard input.
+    /// Marks or chief veins of a leaf (.csv), its vein graph or its profile (.json); several for --days and --plant. `-`
+    /// reads any of them from standard input.
     #[arg(value_name = "DATA")]
     pub(crate) inputs: Vec<PathBuf>,
     /// The model: .glb, .obj, .ply, .stl or .usda. With --template the file to fill in.
@@ -63,6 +61,9 @@ pub(crate) struct LeafArgs {
     /// with --venation palmate, else 0].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=12))]
     pub(crate) side_veins: Option<u32>,
+    /// Which leaf of a file that holds several (profiles), from 1 [default: the first, with a warning].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) number: Option<u32>,
     /// How a vein graph is read.
     #[arg(long, value_enum, value_name = "FORM", default_value_t = GraphWord::Auto)]
     pub(crate) graph: GraphWord,
@@ -107,6 +108,8 @@ Marks are a CSV file with the columns row,mark,x,y,z,thickness,midrib. Lines `# 
 `# thickness: diameter` in the file win over --unit, --up and --thickness.
 Chief veins are a CSV file with the columns vein,mark,x,y,z,thickness: veins from the right margin to the left, marks
 from the base outwards, as many on each; one without thickness is a margin or a notch between lobes.
+A profile is {\"x\": [...], \"y\": [...], \"s\": [...], \"r\": [...]}: the midrib from base to tip seen from the side (y
+upwards), and the whole width r at the length s from the base; several stand in a list (--number).
 A vein graph is {\"unit\": \"pixel\", \"nodes_xyr\": [[x, y, radius], ...], \"edges\": [[0, 1], ...]}.";
 
 /// How blade and veins are made.
@@ -352,13 +355,15 @@ fn check_used(args: &LeafArgs) -> Outcome {
         "this leaf has the veins of its data",
     )?;
     if args.venation.is_some() {
-        given.refuse(&["thickness"], "measured leaves", "--venation makes one from numbers")?;
+        let measured = ["thickness", "graph", "number"];
+        given.refuse(&measured, "measured leaves", "--venation makes one from numbers")?;
     }
     if args.venation == Some(VenationWord::Parallel) {
         given.refuse(&["side_veins"], "lobed leaves", "parallel veins have none between them")?;
     }
     if args.scan {
-        for options in [&MESH[..], &SURFACE, &LOOK, &["thickness", "side_veins", "graph", "length"]] {
+        let others = ["thickness", "side_veins", "graph", "length", "number"];
+        for options in [&MESH[..], &SURFACE, &LOOK, &others] {
             given.refuse(options, "leaves of marks and veins", "--scan makes the surface that it finds")?;
         }
     }
@@ -374,8 +379,20 @@ const LOOK: [&str; 3] = ["curl", "wilt", "texture"];
 /// A whole plant, and what only that has.
 const PLANT: [&str; 4] = ["plant", "leaves", "height", "azimuth"];
 /// What else only a leaf has that is made.
-const MADE: [&str; 11] =
-    ["length", "thickness", "side_veins", "graph", "png", "marks", "inputs", "up", "unit", "report", "json"];
+const MADE: [&str; 12] = [
+    "number",
+    "length",
+    "thickness",
+    "side_veins",
+    "graph",
+    "png",
+    "marks",
+    "inputs",
+    "up",
+    "unit",
+    "report",
+    "json",
+];
 
 fn template(args: &LeafArgs) -> Outcome {
     let text = marks_template(args.rows as usize);
@@ -504,8 +521,15 @@ fn scan(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
 }
 
 fn make(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
-    if let Some(product) = rays(args, machine)? {
-        return Ok(product);
+    if let Some(word) = args.venation {
+        let (name, veins) = veins_of(args, word)?;
+        let leaf = ReadLeaf {
+            name: name.into(),
+            form: Form::Rays(Rays::default()),
+            thickness: None,
+            warnings: vec![],
+        };
+        return rays(args, leaf, veins, machine);
     }
     let several = args.plant.plant || !args.look.days.is_empty();
     if args.inputs.len() > 1 && !several {
@@ -514,18 +538,29 @@ fn make(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
                 .into(),
         ));
     }
-    args.given.refuse(&["side_veins"], "leaves of chief veins", "this is one of rows of marks")?;
     let (read, read_ms) =
-        machine.timed(|| args.inputs.iter().map(|p| read(p, args)).collect::<Outcome<Vec<_>>>());
-    let read = read?;
+        machine.timed(|| args.inputs.iter().map(|p| leaf_data::read(p, args)).collect::<Outcome<Vec<_>>>());
+    let mut read = read?;
+    if let [ReadLeaf { form: Form::Rays(veins), .. }] = read.as_mut_slice() {
+        let veins = std::mem::take(veins);
+        let leaf = read.remove(0);
+        let mut product = rays(args, leaf, veins, machine)?;
+        product.item.timings_ms.add_io(read_ms, 0.0);
+        return Ok(product);
+    }
+    args.given.refuse(&["side_veins"], "leaves of chief veins", "this is one of rows of marks")?;
     let name = read.first().map_or_else(|| "leaf".into(), |r| r.name.clone());
     let options = options(args, read.iter().find_map(|r| r.thickness))?;
     let seed = Seed::new(args.seed);
     let mut report = Report::default();
     let mut full = Vec::with_capacity(read.len());
     for (one, path) in read.iter().zip(&args.inputs) {
-        one.warnings.iter().for_each(|w| report.warnings.push(w.clone()));
-        full.push(one.marks.complete(&mut report).map_err(|e| Failure::at(path, e))?);
+        let Form::Rows(marks) = &one.form else {
+            let why = "is a leaf of chief veins; --plant and --days are for leaves of rows of marks";
+            return Err(Failure::at(path, why));
+        };
+        report.warnings.extend(one.warnings.iter().cloned());
+        full.push(marks.complete(&mut report).map_err(|e| Failure::at(path, e))?);
     }
     let (model, mut item, marks) = if args.plant.plant {
         let spec = ShootSpec {
@@ -550,94 +585,34 @@ fn make(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
     Ok(Product { model, item, marks })
 }
 
-/// A leaf of chief veins, made from numbers or digitised; `None` if the input is something else.
-fn rays(args: &LeafArgs, machine: &Machine) -> Outcome<Option<Product>> {
-    let mut warnings = Vec::new();
-    let (name, rays, thickness, read_ms) = match (args.venation, args.inputs.as_slice()) {
-        (Some(VenationWord::Palmate), _) => {
+/// A leaf of chief veins, made from numbers or digitised.
+fn rays(args: &LeafArgs, leaf: ReadLeaf, rays: Rays, machine: &Machine) -> Outcome<Product> {
+    for options in [&SURFACE[..], &LOOK, &["margin_vein", "plant", "days"]] {
+        args.given.refuse(options, "leaves of rows of marks", "this is one of chief veins")?;
+    }
+    let options = options(args, leaf.thickness)?;
+    let made = burgeon::make_ray_leaf(&leaf.name, &rays, &options, &machine.run());
+    let (model, mut item) = made.map_err(|e| failure(args, e))?;
+    item.warnings.splice(0..0, leaf.warnings.iter().map(ToString::to_string));
+    Ok(Product { model, item, marks: Some(Measured::Rays(rays)) })
+}
+
+/// The chief veins of --venation.
+fn veins_of(args: &LeafArgs, word: VenationWord) -> Outcome<(&'static str, Rays)> {
+    Ok(match word {
+        VenationWord::Palmate => {
             let spec = PalmateSpec::default();
             let veins = odd(args.veins.unwrap_or(spec.veins), 11)?;
             let length_m = args.length.unwrap_or(spec.length_m);
-            (
-                "palmate".to_owned(),
-                Rays::palmate(&PalmateSpec { veins, length_m, depth: args.depth }),
-                None,
-                0.0,
-            )
+            ("palmate", Rays::palmate(&PalmateSpec { veins, length_m, depth: args.depth }))
         }
-        (Some(VenationWord::Parallel), _) => {
+        VenationWord::Parallel => {
             let spec = ParallelSpec::default();
             let veins = odd(args.veins.unwrap_or(spec.veins), 31)?;
             let length_m = args.length.unwrap_or(spec.length_m);
-            ("parallel".to_owned(), Rays::parallel(&ParallelSpec { veins, length_m, ..spec }), None, 0.0)
+            ("parallel", Rays::parallel(&ParallelSpec { veins, length_m, ..spec }))
         }
-        (None, [path])
-            if files::extension(path).is_some_and(|e| e.eq_ignore_ascii_case("csv")) && path.is_file() =>
-        {
-            let (bytes, ms) =
-                machine.timed(|| std::fs::read(path).map_err(|e| Failure::io(path, "read", &e)));
-            let bytes = bytes?;
-            if !is_rays(&bytes) {
-                return Ok(None);
-            }
-            let axes =
-                MarksAxes { unit: args.axes.unit.into(), up: args.axes.up.unwrap_or(UpWord::Y).into() };
-            let read = read_rays(&bytes[..], &files::stem(path), axes).map_err(|e| Failure::at(path, e))?;
-            (read.name, read.rays, read.thickness, ms)
-        }
-        (None, [path]) if is_graph(path) && args.graph != GraphWord::Midrib => {
-            let (found, ms) = machine.timed(|| palmate_graph(path, args, &mut warnings));
-            match found? {
-                Some(rays) => (files::stem(path), rays, Some(ThicknessRule::Diameter), ms),
-                None => return Ok(None),
-            }
-        }
-        _ => return Ok(None),
-    };
-    for options in [&SURFACE[..], &LOOK, &["margin_vein", "plant", "days"]] {
-        let this = "this is one of chief veins";
-        args.given.refuse(options, "leaves of rows of marks", this)?;
-    }
-    let options = options(args, thickness)?;
-    let made = burgeon::make_ray_leaf(&name, &rays, &options, &machine.run());
-    let (model, mut item) = made.map_err(|e| failure(args, e))?;
-    item.warnings.splice(0..0, warnings);
-    item.timings_ms.add_io(read_ms, 0.0);
-    Ok(Some(Product { model, item, marks: Some(Measured::Rays(rays)) }))
-}
-
-fn is_graph(path: &Path) -> bool {
-    files::extension(path).is_some_and(|e| e.eq_ignore_ascii_case("json")) && path.is_file()
-}
-
-/// The chief veins of a vein graph, if it is that of a palmate leaf.
-fn palmate_graph(path: &Path, args: &LeafArgs, warnings: &mut Vec<String>) -> Outcome<Option<Rays>> {
-    let file = std::fs::File::open(path).map_err(|e| Failure::io(path, "read", &e))?;
-    let read = read_vein_graph(file).map_err(|e| Failure::at(path, e))?;
-    let mut report = Report { warnings: read.warnings, ..Report::default() };
-    let Some(mut rays) = read.graph.rays(&mut report).map_err(|e| Failure::at(path, e))? else {
-        if args.graph == GraphWord::Palmate {
-            return Err(Failure::at(
-                path,
-                "no place is found that three or more thick veins leave; --graph midrib reads it as a leaf of one",
-            ));
-        }
-        return Ok(None);
-    };
-    if read.unit.is_none() || args.length.is_some() {
-        if args.length.is_none() {
-            report
-                .warn("length-guessed", "the graph is in pixels: the leaf was made 0.1 m long; say --length");
-        }
-        let factor = args.length.unwrap_or(0.1) / rays.length();
-        rays = rays.scaled(factor);
-    }
-    let veins = rays.rays.iter().filter(|r| r.is_vein()).count();
-    let message =
-        format!("{veins} thick veins leave one place: read as palmate; --graph midrib reads one midrib");
-    report.warn("palmate", message);
-    warnings.extend(report.warnings.iter().map(ToString::to_string));
-    Ok(Some(rays))
+    })
 }
 
 fn odd(veins: u32, most: u32) -> Outcome<u32> {
@@ -668,54 +643,4 @@ fn grown(args: &LeafArgs, mut full: Vec<FullMarks>) -> Outcome<FullMarks> {
     }
     let stages = args.look.days.iter().copied().zip(full).collect();
     LeafGrowth::new(stages).and_then(|g| g.at(day)).map_err(|e| Failure::Bad(e.to_string()))
-}
-
-fn read(path: &Path, args: &LeafArgs) -> Outcome<ReadMarks> {
-    let axes = MarksAxes { unit: args.axes.unit.into(), up: args.axes.up.unwrap_or(UpWord::Y).into() };
-    read_leaf(path, axes, args.length)
-}
-
-/// Marks from a file of marks or of a vein graph.
-fn read_leaf(path: &Path, axes: MarksAxes, length_m: Option<f64>) -> Outcome<ReadMarks> {
-    let name = files::stem(path);
-    if files::is_stdin(path) {
-        return read_marks(std::io::stdin().lock(), &name, axes).map_err(|e| Failure::at(path, e));
-    }
-    if path.is_dir() {
-        return Err(Failure::at(path, "is a folder; name a file of marks in it"));
-    }
-    let file = std::fs::File::open(path).map_err(|e| Failure::io(path, "read", &e))?;
-    if !files::extension(path).is_some_and(|e| e.eq_ignore_ascii_case("json")) {
-        return read_marks(file, &name, axes).map_err(|e| Failure::at(path, e));
-    }
-    let read = read_vein_graph(file).map_err(|e| Failure::at(path, e))?;
-    let mut report = Report { warnings: read.warnings, ..Report::default() };
-    let mut marks = read.graph.marks(&mut report).map_err(|e| Failure::at(path, e))?;
-    if read.unit.is_none() || length_m.is_some() {
-        if length_m.is_none() {
-            report
-                .warn("length-guessed", "the graph is in pixels: the leaf was made 0.1 m long; say --length");
-        }
-        marks = marks.scaled(length_m.unwrap_or(0.1) / marks.length());
-    }
-    // A radius is no calliper's reading, but its double is.
-    Ok(ReadMarks { name, marks, thickness: Some(ThicknessRule::Diameter), warnings: report.warnings })
-}
-
-/// A leaf for other makers' plants, from marks (.csv), a vein graph (.json) or a model of a leaf.
-pub(crate) fn template_of(path: &Path, seed: u64, machine: &Machine) -> Outcome<LeafTemplate> {
-    let marks =
-        files::extension(path).is_some_and(|e| ["csv", "json"].iter().any(|k| e.eq_ignore_ascii_case(k)));
-    if !marks {
-        let (model, _, _) = files::read_model(path, &ExportSpec::default())?;
-        return LeafTemplate::of_model(&model).map_err(|e| Failure::at(path, e));
-    }
-    let read = read_leaf(path, MarksAxes::default(), None)?;
-    let full = read.marks.complete(&mut Report::default()).map_err(|e| Failure::at(path, e))?;
-    LeafTemplate::of_marks(&full, &LeafOptions::default(), Seed::new(seed), &machine.run()).map_err(|e| {
-        match e {
-            LeafError::Cancelled(_) => Failure::Cancelled,
-            other => Failure::at(path, other),
-        }
-    })
 }

@@ -11,6 +11,7 @@ mod given;
 mod grow;
 mod info;
 mod leaf;
+mod leaf_data;
 mod machine;
 mod output;
 mod petals;

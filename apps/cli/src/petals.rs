@@ -57,7 +57,7 @@ pub(crate) fn petal_form(path: &Path, seed: u64, machine: &Machine) -> Outcome<(
                 )
             })?
         } else {
-            crate::leaf::template_of(path, seed, machine)?.scaled(1.0).outline
+            crate::leaf_data::template_of(path, seed, machine)?.scaled(1.0).outline
         };
     PetalForm::of_outline(&outline)
         .ok_or_else(|| Failure::at(path, "has no form of a petal: it has no width"))

@@ -70,8 +70,9 @@ impl<'a> Job<'a> {
         let spec = args.reading.spec.as_deref().map(read_spec).transpose()?;
         let classes = args.reading.classes.as_deref().map(Classes::read).transpose()?.unwrap_or_default();
         let template = args.reading.leaf_template.as_deref();
-        let leaf =
-            template.map(|p| crate::leaf::template_of(p, args.seed.unwrap_or(1), machine)).transpose()?;
+        let leaf = template
+            .map(|p| crate::leaf_data::template_of(p, args.seed.unwrap_or(1), machine))
+            .transpose()?;
         Ok(Self { args, spec, classes, leaf })
     }
 

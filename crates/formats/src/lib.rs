@@ -20,8 +20,9 @@ pub use cloud::{CloudFormat, MAX_CLOUD_BYTES, read_cloud, write_cloud_ply};
 pub use drawing::{DrawingFormat, Drawings, MAX_DRAWING_BYTES, ReadDrawing, read_drawings, write_drawing};
 pub use error::{CloudError, DrawingError, FileFault, ModelError, Place, WriteError};
 pub use leaves::{
-    LeafFileError, MAX_LEAF_BYTES, MarksAxes, ReadGraph, ReadMarks, ReadRays, is_rays, marks_template,
-    read_marks, read_rays, read_vein_graph, write_marks, write_rays,
+    LeafFile, LeafFileError, MAX_LEAF_BYTES, MarksAxes, ReadGraph, ReadMarks, ReadProfile, ReadProfiles,
+    ReadRays, is_rays, marks_template, read_leaf_file, read_marks, read_profiles, read_rays, read_vein_graph,
+    write_marks, write_rays,
 };
 pub use model::{
     ExportSpec, MAX_MODEL_BYTES, ModelFormat, Morph, ObjFiles, PngCache, Resolver, UsdFiles, no_files,

@@ -10,6 +10,7 @@
 //! | `blade` | [`Leaf`]: the four surfaces, veins that lie on them |
 //! | `meshes` | [`LeafMesh`]: tubes and grid at any resolution, the counts of the paper's Table 1 |
 //! | `pose` | curl and wilt |
+//! | `profile` | [`LeafProfile`]: a midrib from the side and the width along it -> marks |
 //! | `growth` | a leaf between measured stages |
 //! | `rays` | [`Rays`], [`RayLeaf`]: palmate and parallel leaves, made or measured |
 //! | `lobes` | side veins of the lobes of palmate leaves |
@@ -29,6 +30,7 @@ mod marks;
 mod meshes;
 mod palmate;
 mod pose;
+mod profile;
 mod rays;
 mod scan;
 
@@ -40,5 +42,6 @@ pub use growth::{GrowthError, LeafGrowth};
 pub use marks::{FullMarks, FullRow, MARKS_A_ROW, MarkRow, Marks, MarksError};
 pub use meshes::{LeafMesh, MeshSpec};
 pub use pose::Pose;
+pub use profile::{LeafProfile, ProfileError};
 pub use rays::{PalmateSpec, ParallelSpec, Ray, RayLeaf, Rays, RaysError};
 pub use scan::{ScanError, ScanLeaf, ScanSpec, fit_scan};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use base::{Run, Seed};
 use glam::{DMat3, DVec2, DVec3};
-use leaf::{FlatLeaf, FullMarks, Leaf, LeafColours};
+use leaf::{FlatLeaf, FullMarks, Leaf, LeafColours, Rays};
 use mesh::{MaterialKind, Model, Texture, TriMesh};
 use plant::{Blade, Lift, OrganKind, Plant, Relief, Shape};
 
@@ -66,6 +66,26 @@ impl LeafTemplate {
         let scale = flat.midrib().last().map_or(1.0, |tip| tip.length()).max(f64::MIN_POSITIVE);
         let texture = picture.map(|p| Arc::new(charted(&p, &blade, |at| flat_uv(&flat, at * scale))));
         Ok(Self { blade, texture })
+    }
+
+    /// From a leaf of chief veins: its outline laid flat, as of a model.
+    ///
+    /// # Errors
+    /// [`LeafError`] for veins that make no leaf; [`TemplateError`] inside for a blade without an outline.
+    pub fn of_rays(
+        rays: &Rays,
+        options: &LeafOptions,
+        run: &Run<'_>,
+    ) -> Result<Result<Self, TemplateError>, LeafError> {
+        let (mut model, _) = crate::make_ray_leaf("leaf", rays, options, run)?;
+        // The root is where the veins start together; it may lie anywhere.
+        let root = rays.rays.iter().find_map(|r| r.points.first()).copied().unwrap_or_default();
+        for p in model.parts.iter_mut().flat_map(|p| &mut p.mesh.positions) {
+            #[expect(clippy::cast_possible_truncation, reason = "positions are f32 in meshes")]
+            let moved = (DVec3::from_array(p.map(f64::from)) - root).to_array().map(|x| x as f32);
+            *p = moved;
+        }
+        Ok(Self::of_model(&model))
     }
 
     /// From a model of one leaf: the open edge of its largest surface, laid flat.

@@ -7,8 +7,7 @@ use glam::DVec2;
 use leaf::VeinGraph;
 use serde::Deserialize;
 
-use super::{LeafFileError, MAX_LEAF_BYTES};
-use crate::drawing::text_of;
+use super::LeafFileError;
 use crate::error::{FileFault, Place};
 
 // Ten times the network of a leaf traced at 1200 dots per inch.
@@ -43,16 +42,7 @@ struct GraphFile {
 /// [`LeafFileError`] for text that is no such JSON, an unknown unit, and more than 100,000 nodes.
 pub fn read_vein_graph(input: impl Read) -> Result<ReadGraph, LeafFileError> {
     let file = |fault| LeafFileError::new(Place::File, fault);
-    let mut bytes = Vec::new();
-    input.take(MAX_LEAF_BYTES + 1).read_to_end(&mut bytes).map_err(|e| file(FileFault::Io(e)))?;
-    if bytes.len() as u64 > MAX_LEAF_BYTES {
-        return Err(file(FileFault::TooMuch {
-            what: "the size in bytes",
-            limit: MAX_LEAF_BYTES,
-            advice: "a file holds the veins of one leaf",
-        }));
-    }
-    let text = text_of(bytes).map_err(file)?;
+    let text = super::text(input)?;
     if text.trim().is_empty() {
         return Err(file(FileFault::Empty));
     }

@@ -7,8 +7,8 @@ use base::{Unit, UpAxis, Warning};
 use glam::DVec3;
 use leaf::{MARKS_A_ROW, MarkRow, Marks, ThicknessRule};
 
-use super::{LeafFileError, MAX_LEAF_BYTES};
-use crate::drawing::text_of;
+use super::LeafFileError;
+use super::fields::Fields;
 use crate::error::{FileFault, Place, WriteError};
 
 // More side veins than any leaf has; keeps a slip such as row 1000000 from filling memory.
@@ -32,6 +32,8 @@ pub struct ReadMarks {
     pub marks: Marks,
     /// What thickness means, where the file says so.
     pub thickness: Option<ThicknessRule>,
+    /// Unit and up axis that were taken: the file's, or those given to the reader.
+    pub axes: MarksAxes,
     /// What was odd and what was done about it.
     pub warnings: Vec<Warning>,
 }
@@ -58,7 +60,8 @@ struct Entry {
 ///
 /// Rows count from 1 at the tip, marks from 1 (right margin) to 7 (left margin); the tip is a line whose row is
 /// `tip`, or a row 0, or a first row of seven equal points. `thickness` is the side vein's, `midrib` the
-/// midrib's at mark 4 and at the tip; both may be empty. Fields are separated by commas, semicolons or tabs.
+/// midrib's at mark 4 and at the tip; both may be empty. Fields are separated as those of the first line: by commas,
+/// semicolons or tabs; by the latter two, numbers may have decimal commas.
 /// Lines `# unit: mm`, `# up: z`, `# thickness: radius` and `# name: ...` say how to read it and win over
 /// `axes`.
 ///
@@ -67,19 +70,11 @@ struct Entry {
 /// are none, and thickness that is not above 0.
 pub fn read_marks(input: impl Read, name: &str, axes: MarksAxes) -> Result<ReadMarks, LeafFileError> {
     let file = |fault| LeafFileError::new(Place::File, fault);
-    let mut bytes = Vec::new();
-    input.take(MAX_LEAF_BYTES + 1).read_to_end(&mut bytes).map_err(|e| file(FileFault::Io(e)))?;
-    if bytes.len() as u64 > MAX_LEAF_BYTES {
-        return Err(file(FileFault::TooMuch {
-            what: "the size in bytes",
-            limit: MAX_LEAF_BYTES,
-            advice: "a file holds the marks of one leaf",
-        }));
-    }
-    let text = text_of(bytes).map_err(file)?;
-    let mut out = ReadMarks { name: name.into(), marks: Marks::default(), thickness: None, warnings: vec![] };
+    let text = super::text(input)?;
+    let mut out =
+        ReadMarks { name: name.into(), marks: Marks::default(), thickness: None, axes, warnings: vec![] };
     let mut axes = axes;
-    let mut columns: Option<Columns> = None;
+    let mut columns: Option<(Fields, Columns)> = None;
     let mut entries: BTreeMap<(usize, usize), Entry> = BTreeMap::new();
     for (k, line) in text.lines().enumerate() {
         let line = line.trim_start_matches('\u{feff}').trim();
@@ -87,12 +82,14 @@ pub fn read_marks(input: impl Read, name: &str, axes: MarksAxes) -> Result<ReadM
             setting(comment, &mut axes, &mut out.name, &mut out.thickness)
                 .map_err(|e| LeafFileError::new(Place::line(k + 1), e))?;
         } else if !line.is_empty() {
-            let fields: Vec<&str> = line.split([',', ';', '\t']).map(str::trim).collect();
             let placed = |fault| LeafFileError::new(Place::line(k + 1), fault);
             match &columns {
-                None => columns = Some(header(&fields).map_err(placed)?),
-                Some(columns) => {
-                    let (key, entry) = mark(columns, &fields, k + 1).map_err(placed)?;
+                None => {
+                    let fields = Fields::of_header(line);
+                    columns = Some((fields, header(&fields.split(line)).map_err(placed)?));
+                }
+                Some((fields, columns)) => {
+                    let (key, entry) = mark(columns, fields, line, k + 1).map_err(placed)?;
                     if let Some(first) = entries.insert(key, entry) {
                         let what = match key {
                             (0, _) => format!("the tip is given twice, first on line {}", first.line),
@@ -110,7 +107,17 @@ pub fn read_marks(input: impl Read, name: &str, axes: MarksAxes) -> Result<ReadM
         return Err(file(FileFault::Empty));
     }
     gather(&entries, &mut out)?;
+    out.axes = axes;
     orient(&mut out.marks, axes);
+    for (row, mark, times) in out.marks.strays() {
+        out.warnings.push(Warning {
+            code: "mark-stray",
+            message: format!(
+                "row {row}, mark {mark} lies {times:.0} times as far from its neighbours as marks do here: was it entered \
+                 wrongly?"
+            ),
+        });
+    }
     let length = out.marks.length();
     // 2 mm to 10 m: from the smallest leaf that callipers can measure to a palm's.
     if !(0.002..=10.0).contains(&length) {
@@ -187,7 +194,13 @@ fn header(fields: &[&str]) -> Result<Columns, FileFault> {
 }
 
 /// Where a line belongs and what it says. The tip is (0, 1).
-fn mark(columns: &Columns, fields: &[&str], line: usize) -> Result<((usize, usize), Entry), FileFault> {
+fn mark(
+    columns: &Columns,
+    format: &Fields,
+    text: &str,
+    line: usize,
+) -> Result<((usize, usize), Entry), FileFault> {
+    let fields = format.row(text)?;
     let field = |column: Option<usize>| column.and_then(|k| fields.get(k)).copied().unwrap_or_default();
     let row = field(columns.row);
     let tip = row.eq_ignore_ascii_case("tip") || row == "0";
@@ -215,11 +228,11 @@ fn mark(columns: &Columns, fields: &[&str], line: usize) -> Result<((usize, usiz
         if text.is_empty() {
             return Ok(None);
         }
-        match text.parse::<f64>() {
-            Ok(x) if x.abs() < 1e9 => Ok(Some(x)),
-            _ => Err(FileFault::malformed(
+        match format.number(text) {
+            Some(x) => Ok(Some(x)),
+            None => Err(FileFault::malformed(
                 format!("{what} `{text}` is no finite number"),
-                "write numbers like 12.5, or leave a thickness empty",
+                "write numbers like 12.5 (12,5 where semicolons separate the fields), or leave a thickness empty",
             )),
         }
     };

@@ -1,13 +1,19 @@
-//! Files of measured leaves: marks and chief veins as CSV, vein graphs as JSON.
+//! Files of measured leaves: marks and chief veins as CSV, vein graphs and profiles as JSON.
 
+mod fields;
 mod graph;
 mod marks;
+mod profiles;
 mod rays;
 
+use std::io::Read;
+
+use crate::drawing::text_of;
 use crate::error::{FileFault, Place};
 
 pub use graph::{ReadGraph, read_vein_graph};
 pub use marks::{MarksAxes, ReadMarks, marks_template, read_marks, write_marks};
+pub use profiles::{ReadProfile, ReadProfiles, read_profiles};
 pub use rays::{ReadRays, is_rays, read_rays, write_rays};
 
 /// Largest file of a leaf that is read: 16 MiB, far more than a person can measure.
@@ -27,4 +33,55 @@ impl LeafFileError {
     pub(crate) fn new(place: Place, fault: FileFault) -> Self {
         Self { place, fault }
     }
+}
+
+/// What a file of a leaf holds.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum LeafFile {
+    /// Rows of marks along side veins: CSV with the columns `row,mark`.
+    Marks(ReadMarks),
+    /// Chief veins: CSV with the columns `vein,mark`.
+    Rays(ReadRays),
+    /// A network of veins: JSON with `nodes_xyr`.
+    Graph(ReadGraph),
+    /// Midribs from the side with widths: JSON with `x`, `y`, `s`, `r`.
+    Profiles(ReadProfiles),
+}
+
+/// Reads a file of a leaf, of whatever kind it is by what stands in it.
+///
+/// # Errors
+/// [`LeafFileError`], as the reader of that kind.
+pub fn read_leaf_file(input: impl Read, name: &str, axes: MarksAxes) -> Result<LeafFile, LeafFileError> {
+    let text = text(input)?;
+    let start = text.trim_start_matches('\u{feff}').trim_start();
+    if !start.starts_with(['{', '[']) {
+        let bytes = text.as_bytes();
+        return Ok(match is_rays(bytes) {
+            true => LeafFile::Rays(read_rays(bytes, name, axes)?),
+            false => LeafFile::Marks(read_marks(bytes, name, axes)?),
+        });
+    }
+    // Lists are of profiles; so is an object that has them, or is one.
+    let graph = start.starts_with('{') && !(text.contains("\"leaves\"") || text.contains("\"s\""));
+    Ok(match graph {
+        true => LeafFile::Graph(read_vein_graph(text.as_bytes())?),
+        false => LeafFile::Profiles(read_profiles(text.as_bytes(), name, axes)?),
+    })
+}
+
+/// All of a file of a leaf.
+fn text(input: impl Read) -> Result<String, LeafFileError> {
+    let file = |fault| LeafFileError::new(Place::File, fault);
+    let mut bytes = Vec::new();
+    input.take(MAX_LEAF_BYTES + 1).read_to_end(&mut bytes).map_err(|e| file(FileFault::Io(e)))?;
+    if bytes.len() as u64 > MAX_LEAF_BYTES {
+        return Err(file(FileFault::TooMuch {
+            what: "the size in bytes",
+            limit: MAX_LEAF_BYTES,
+            advice: "a file holds what was measured on a leaf",
+        }));
+    }
+    text_of(bytes).map_err(file)
 }

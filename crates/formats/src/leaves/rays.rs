@@ -7,8 +7,8 @@ use base::{Unit, UpAxis};
 use glam::DVec3;
 use leaf::{Ray, Rays, ThicknessRule};
 
-use super::{LeafFileError, MAX_LEAF_BYTES, MarksAxes};
-use crate::drawing::text_of;
+use super::fields::Fields;
+use super::{LeafFileError, MarksAxes};
 use crate::error::{FileFault, Place, WriteError};
 
 /// More lines of marks, and more marks on one, than anybody digitises.
@@ -23,6 +23,8 @@ pub struct ReadRays {
     pub rays: Rays,
     /// What thickness means, where the file says so.
     pub thickness: Option<ThicknessRule>,
+    /// Unit and up axis that were taken: the file's, or those given to the reader.
+    pub axes: MarksAxes,
 }
 
 /// The text of a leaf starts with the column `vein`: it is for [`read_rays`], not for
@@ -44,19 +46,10 @@ pub fn is_rays(start: &[u8]) -> bool {
 /// numbers that are none, and thickness that is not above 0.
 pub fn read_rays(input: impl Read, name: &str, axes: MarksAxes) -> Result<ReadRays, LeafFileError> {
     let file = |fault| LeafFileError::new(Place::File, fault);
-    let mut bytes = Vec::new();
-    input.take(MAX_LEAF_BYTES + 1).read_to_end(&mut bytes).map_err(|e| file(FileFault::Io(e)))?;
-    if bytes.len() as u64 > MAX_LEAF_BYTES {
-        return Err(file(FileFault::TooMuch {
-            what: "the size in bytes",
-            limit: MAX_LEAF_BYTES,
-            advice: "a file holds the marks of one leaf",
-        }));
-    }
-    let text = text_of(bytes).map_err(file)?;
-    let mut out = ReadRays { name: name.into(), rays: Rays::default(), thickness: None };
+    let text = super::text(input)?;
+    let mut out = ReadRays { name: name.into(), rays: Rays::default(), thickness: None, axes };
     let mut axes = axes;
-    let mut columns: Option<[Option<usize>; 6]> = None;
+    let mut columns: Option<(Fields, [Option<usize>; 6])> = None;
     let mut marks: BTreeMap<(usize, usize), (DVec3, Option<f64>, usize)> = BTreeMap::new();
     for (k, line) in text.lines().enumerate() {
         let line = line.trim_start_matches('\u{feff}').trim();
@@ -68,12 +61,12 @@ pub fn read_rays(input: impl Read, name: &str, axes: MarksAxes) -> Result<ReadRa
         if line.is_empty() {
             continue;
         }
-        let fields: Vec<&str> = line.split([',', ';', '\t']).map(str::trim).collect();
-        let Some(columns) = &columns else {
-            columns = Some(header(&fields).map_err(placed)?);
+        let Some((fields, columns)) = &columns else {
+            let fields = Fields::of_header(line);
+            columns = Some((fields, header(&fields.split(line)).map_err(placed)?));
             continue;
         };
-        let (key, point, thickness) = mark(columns, &fields).map_err(placed)?;
+        let (key, point, thickness) = mark(columns, fields, line).map_err(placed)?;
         if let Some((_, _, first)) = marks.insert(key, (point, thickness, k + 1)) {
             let what = format!("vein {}, mark {} is given twice, first on line {first}", key.0, key.1);
             return Err(placed(FileFault::malformed(what, "remove one of the two")));
@@ -82,6 +75,7 @@ pub fn read_rays(input: impl Read, name: &str, axes: MarksAxes) -> Result<ReadRa
     if columns.is_none() || marks.is_empty() {
         return Err(file(FileFault::Empty));
     }
+    out.axes = axes;
     let unit = axes.unit.metres();
     let turned = |p: DVec3| if axes.up == UpAxis::Z { DVec3::new(p.x, p.z, -p.y) * unit } else { p * unit };
     for (&(vein, mark), &(point, thickness, _)) in &marks {
@@ -119,7 +113,8 @@ fn header(fields: &[&str]) -> Result<[Option<usize>; 6], FileFault> {
 
 type Mark = ((usize, usize), DVec3, Option<f64>);
 
-fn mark(columns: &[Option<usize>; 6], fields: &[&str]) -> Result<Mark, FileFault> {
+fn mark(columns: &[Option<usize>; 6], format: &Fields, text: &str) -> Result<Mark, FileFault> {
+    let fields = format.row(text)?;
     let field = |k: usize| columns[k].and_then(|c| fields.get(c)).copied().unwrap_or_default();
     let count = |k: usize, what: &str| match field(k).parse::<usize>() {
         Ok(n) if (1..=MOST).contains(&n) => Ok(n),
@@ -128,9 +123,9 @@ fn mark(columns: &[Option<usize>; 6], fields: &[&str]) -> Result<Mark, FileFault
             "veins count from 1 at the right margin, marks from 1 at the base",
         )),
     };
-    let number = |k: usize, what: &str| match field(k).parse::<f64>() {
-        Ok(x) if x.abs() < 1e9 => Ok(x),
-        _ => Err(FileFault::malformed(
+    let number = |k: usize, what: &str| match format.number(field(k)) {
+        Some(x) => Ok(x),
+        None => Err(FileFault::malformed(
             format!("{what} `{}` is no finite number", field(k)),
             "write numbers like 12.5; a mark needs x, y and z",
         )),

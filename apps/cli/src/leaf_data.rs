@@ -1,0 +1,257 @@
+//! Files of leaves for `burgeon leaf` and --leaf-template: marks, chief veins, vein graphs and profiles.
+
+use std::path::Path;
+
+use burgeon::formats::{LeafFile, MarksAxes, ReadGraph, ReadMarks, ReadProfiles, ReadRays, read_leaf_file};
+use burgeon::leaf::{Marks, Rays, ThicknessRule};
+use burgeon::{LeafError, LeafOptions, LeafTemplate, Report, Seed, Unit, UpAxis, Warning};
+
+use crate::args::{AxesArgs, UpWord};
+use crate::failure::{Failure, Outcome};
+use crate::files;
+use crate::given::Given;
+use crate::leaf::{GraphWord, LeafArgs, ThicknessWord};
+use crate::machine::Machine;
+
+/// Rows of marks that a profile becomes: as many as its curve needs, a span of 5 % of the leaf between two.
+const PROFILE_ROWS: usize = 20;
+
+/// One leaf as it was read.
+pub(crate) struct ReadLeaf {
+    pub(crate) name: String,
+    pub(crate) form: Form,
+    /// What thickness means, where the file says so.
+    pub(crate) thickness: Option<ThicknessRule>,
+    pub(crate) warnings: Vec<Warning>,
+}
+
+/// What the veins of a leaf are like.
+pub(crate) enum Form {
+    /// Side veins along one midrib.
+    Rows(Marks),
+    /// Chief veins that start together.
+    Rays(Rays),
+}
+
+/// What is asked for about how files are read.
+struct Asked<'a> {
+    axes: MarksAxes,
+    length_m: Option<f64>,
+    graph: GraphWord,
+    /// Which leaf of several, from 1.
+    number: Option<u32>,
+    thickness: Option<ThicknessWord>,
+    /// The axes of the input are also those of the output.
+    axes_written: bool,
+    given: &'a Given,
+}
+
+/// Reads the leaf of one file as `args` ask for.
+pub(crate) fn read(path: &Path, args: &LeafArgs) -> Outcome<ReadLeaf> {
+    let asked = Asked {
+        axes: axes_of(&args.axes),
+        length_m: args.length,
+        graph: args.graph,
+        number: args.number,
+        thickness: args.shape.thickness,
+        axes_written: args
+            .output
+            .as_deref()
+            .is_some_and(|p| files::writable(p).is_ok_and(|f| !f.fixed_axes())),
+        given: &args.given,
+    };
+    asked.read(path)
+}
+
+fn axes_of(args: &AxesArgs) -> MarksAxes {
+    MarksAxes { unit: args.unit.into(), up: args.up.unwrap_or(UpWord::Y).into() }
+}
+
+impl Asked<'_> {
+    fn read(&self, path: &Path) -> Outcome<ReadLeaf> {
+        let name = files::stem(path);
+        let read = read_leaf_file(files::open_bytes(path)?, &name, self.axes);
+        let read = read.map_err(|e| Failure::at(path, e))?;
+        if !matches!(read, LeafFile::Graph(_)) {
+            self.given.refuse(&["graph", "length"], "vein graphs", "this leaf has measured lengths")?;
+        }
+        if !matches!(read, LeafFile::Profiles(_)) {
+            self.given.refuse(&["number"], "files of several leaves (profiles)", "this file holds one")?;
+        }
+        match read {
+            LeafFile::Marks(read) => self.marks(path, read),
+            LeafFile::Rays(read) => self.rays(path, read),
+            LeafFile::Graph(read) => self.graph(path, name, read),
+            LeafFile::Profiles(read) => self.profile(path, read),
+            _ => Err(Failure::Bug("a file of a leaf is of a new kind".into())),
+        }
+    }
+
+    fn marks(&self, path: &Path, read: ReadMarks) -> Outcome<ReadLeaf> {
+        self.agree(path, read.axes, read.thickness)?;
+        let ReadMarks { name, marks, thickness, warnings, .. } = read;
+        Ok(ReadLeaf { name, form: Form::Rows(marks), thickness, warnings })
+    }
+
+    fn rays(&self, path: &Path, read: ReadRays) -> Outcome<ReadLeaf> {
+        self.agree(path, read.axes, read.thickness)?;
+        let ReadRays { name, rays, thickness, .. } = read;
+        Ok(ReadLeaf { name, form: Form::Rays(rays), thickness, warnings: Vec::new() })
+    }
+
+    /// What a file says of itself wins over what it is assumed to be; it must not contradict what was asked for.
+    fn agree(&self, path: &Path, axes: MarksAxes, thickness: Option<ThicknessRule>) -> Outcome {
+        let unit = |unit: Unit| match unit {
+            Unit::Metre => "m",
+            Unit::Centimetre => "cm",
+            Unit::Millimetre => "mm",
+        };
+        let up = |up: UpAxis| if up == UpAxis::Z { "z" } else { "y" };
+        let rule = |rule: ThicknessRule| if rule == ThicknessRule::Radius { "radius" } else { "diameter" };
+        let asked_rule = self.thickness.map(ThicknessRule::from);
+        let differs = [
+            ("unit", axes.unit != self.axes.unit, unit(axes.unit), unit(self.axes.unit)),
+            ("up", axes.up != self.axes.up, up(axes.up), up(self.axes.up)),
+            (
+                "thickness",
+                thickness.is_some() && asked_rule.is_some() && thickness != asked_rule,
+                thickness.map_or("", rule),
+                asked_rule.map_or("", rule),
+            ),
+        ];
+        for (option, differs, file, asked) in differs {
+            if differs && self.given.has(option) {
+                let what = format_args!(
+                    "says `# {option}: {file}`, --{option} says {asked}: correct the file or leave the option out"
+                );
+                return Err(Failure::at(path, what));
+            }
+        }
+        Ok(())
+    }
+
+    /// A vein graph: as palmate where it is one, else by its midrib.
+    fn graph(&self, path: &Path, name: String, read: ReadGraph) -> Outcome<ReadLeaf> {
+        let given = self.given;
+        given.refuse(&["thickness"], "marks and chief veins", "a vein graph has radii")?;
+        given.only_if(self.axes_written, &["up", "unit"], "other files", "a vein graph says them itself")?;
+        let mut report = Report { warnings: read.warnings, ..Report::default() };
+        let failed = |e| Failure::at(path, e);
+        let rays = match self.graph {
+            GraphWord::Midrib => None,
+            GraphWord::Auto | GraphWord::Palmate => read.graph.rays(&mut report).map_err(failed)?,
+        };
+        if rays.is_none() && self.graph == GraphWord::Palmate {
+            let what = "no place is found that three or more thick veins leave; --graph midrib reads it as a leaf of one";
+            return Err(Failure::at(path, what));
+        }
+        if let Some(rays) = &rays {
+            let veins = rays.rays.iter().filter(|r| r.is_vein()).count();
+            let message = format!(
+                "{veins} thick veins leave one place: read as palmate; --graph midrib reads one midrib"
+            );
+            report.warn("palmate", message);
+        }
+        let form = match rays {
+            Some(rays) => Form::Rays(rays),
+            None => Form::Rows(read.graph.marks(&mut report).map_err(failed)?),
+        };
+        let sized = read.unit.is_none() || self.length_m.is_some();
+        if sized && self.length_m.is_none() {
+            let message = "the graph is in pixels: the leaf was made 0.1 m long; say --length";
+            report.warn("length-guessed", message);
+        }
+        let length = self.length_m.unwrap_or(0.1);
+        let form = match form {
+            Form::Rays(rays) if sized => {
+                let factor = length / rays.length();
+                Form::Rays(rays.scaled(factor))
+            }
+            Form::Rows(marks) if sized => Form::Rows(marks.scaled(length / marks.length())),
+            other => other,
+        };
+        // A radius is no calliper's reading, but its double is.
+        Ok(ReadLeaf { name, form, thickness: Some(ThicknessRule::Diameter), warnings: report.warnings })
+    }
+
+    /// The leaf of a file of profiles that is asked for.
+    fn profile(&self, path: &Path, read: ReadProfiles) -> Outcome<ReadLeaf> {
+        let users = "files that do not say it themselves";
+        self.given.only_if(self.axes_written, &["up"], users, "profiles have y upwards")?;
+        self.given.refuse(&["thickness"], "marks and chief veins", "a profile has none")?;
+        if read.axes.unit != self.axes.unit && self.given.has("unit") {
+            return Err(Failure::at(path, "says its unit itself: leave --unit out or correct the file"));
+        }
+        let count = read.leaves.len();
+        let mut report = Report::default();
+        if count > 1 && self.number.is_none() {
+            let message = format!(
+                "the file holds {count} leaves: the first was made; --number 1 to {count} chooses one"
+            );
+            report.warn("first-leaf", message);
+        }
+        let number = self.number.unwrap_or(1);
+        let Some(leaf) = read.leaves.into_iter().nth(number as usize - 1) else {
+            return Err(Failure::at(
+                path,
+                format_args!("holds {count} leaves; --number {number} is none of them"),
+            ));
+        };
+        let mut marks = leaf.profile.marks(PROFILE_ROWS).map_err(|e| Failure::at(path, e))?;
+        // 10 m: no leaf is longer, and tables of maize are in centimetres.
+        if marks.length() > 10.0 && !self.given.has("unit") && read.axes.unit == Unit::Metre {
+            marks = marks.scaled(0.01);
+            report.warn(
+                "unit-guessed",
+                "the leaf is more than 10 m long: it was taken for centimetres; say --unit cm",
+            );
+        }
+        Ok(ReadLeaf { name: leaf.name, form: Form::Rows(marks), thickness: None, warnings: report.warnings })
+    }
+}
+
+/// A leaf for other makers' plants, from marks, chief veins or a profile (.csv, .json) or a model of a leaf.
+pub(crate) fn template_of(path: &Path, seed: u64, machine: &Machine) -> Outcome<LeafTemplate> {
+    let measured =
+        files::extension(path).is_some_and(|e| ["csv", "json"].iter().any(|k| e.eq_ignore_ascii_case(k)));
+    if !measured {
+        let (model, _, _) = files::read_model(path, &burgeon::formats::ExportSpec::default())?;
+        return LeafTemplate::of_model(&model).map_err(|e| Failure::at(path, e));
+    }
+    let given = Given::default();
+    let asked = Asked {
+        axes: MarksAxes::default(),
+        length_m: None,
+        graph: GraphWord::Auto,
+        number: None,
+        thickness: None,
+        axes_written: false,
+        given: &given,
+    };
+    let failed = |e| match e {
+        LeafError::Cancelled(_) => Failure::Cancelled,
+        other => Failure::at(path, other),
+    };
+    let read = asked.read(path)?;
+    let mut options = LeafOptions::default();
+    options.spec.thickness = read.thickness.unwrap_or_default();
+    match read.form {
+        Form::Rows(marks) => {
+            let full = marks.complete(&mut Report::default()).map_err(|e| Failure::at(path, e))?;
+            LeafTemplate::of_marks(&full, &options, Seed::new(seed), &machine.run()).map_err(failed)
+        }
+        Form::Rays(rays) => {
+            let made = LeafTemplate::of_rays(&rays, &options, &machine.run()).map_err(failed)?;
+            made.map_err(|e| Failure::at(path, e))
+        }
+    }
+}
+
+impl From<ThicknessWord> for ThicknessRule {
+    fn from(word: ThicknessWord) -> Self {
+        match word {
+            ThicknessWord::Diameter => Self::Diameter,
+            ThicknessWord::Radius => Self::Radius,
+        }
+    }
+}

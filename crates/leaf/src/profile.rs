@@ -1,0 +1,146 @@
+//! A leaf of parallel veins measured from the side: its midrib and its width along it -> marks.
+
+use glam::{DVec2, DVec3};
+
+use crate::marks::{MARKS_A_ROW, MarkRow, Marks};
+
+/// A midrib as it is seen from the side, and the width of the blade along it, as leaves of grasses are digitised
+/// (Prevot, Aries and Monestiez 1991).
+///
+/// ```
+/// use glam::DVec2;
+/// use leaf::LeafProfile;
+/// let midrib = vec![DVec2::ZERO, DVec2::new(0.1, 0.3), DVec2::new(0.3, 0.4)];
+/// let leaf = LeafProfile { midrib, width: vec![(0.0, 0.02), (0.3, 0.05), (0.55, 0.0)] };
+/// let marks = leaf.marks(10).expect("a midrib and a width");
+/// assert_eq!((marks.rows.len(), marks.tip), (10, glam::DVec3::new(0.3, 0.4, 0.0)));
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LeafProfile {
+    /// Points of the midrib from base to tip, metres: x away from the stem, y upwards.
+    pub midrib: Vec<DVec2>,
+    /// Widths of the blade from margin to margin by length along the midrib from the base, metres, in rising order.
+    pub width: Vec<(f64, f64)>,
+}
+
+/// Why a profile makes no leaf.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ProfileError {
+    /// Too few points, or all in one place.
+    #[error("the midrib has {0} points that differ; at least 2 are needed")]
+    Midrib(usize),
+    /// Too few widths, or none above 0.
+    #[error("the blade has {0} widths above 0; at least 1 is needed, and 2 places along the midrib")]
+    Width(usize),
+    /// Places along the midrib that do not rise, a negative width, or no number.
+    #[error(
+        "width {0}: places along the midrib must rise and be finite, and widths be 0 or more; measure it again"
+    )]
+    Order(usize),
+}
+
+/// No narrower than this share of the widest place: a row of marks is no point.
+const LEAST_WIDTH: f64 = 0.01;
+
+impl LeafProfile {
+    /// Marks of a flat blade across the midrib: `rows` (2 or more) from the tip down, at even lengths.
+    ///
+    /// The midrib lies in the plane z = 0; seen on its upper side with the tip up the right margin is at +z. Places of
+    /// widths are taken in proportion where their whole is not the midrib's length (widths are measured on the leaf laid
+    /// flat, midribs on a picture). Thickness is unknown. What a profile does not hold is not made up: the blade has no
+    /// fold, and its margins do not wave.
+    ///
+    /// # Errors
+    /// [`ProfileError`].
+    pub fn marks(&self, rows: usize) -> Result<Marks, ProfileError> {
+        let line: Vec<DVec3> = self.midrib.iter().map(|p| p.extend(0.0)).collect();
+        let length = geom::polyline_length3(&line);
+        let usable = line.iter().all(|p| p.is_finite());
+        if line.len() < 2 || !usable || length <= 0.0 {
+            let differ = self.midrib.windows(2).filter(|w| w[0] != w[1]).count();
+            return Err(ProfileError::Midrib(differ + usize::from(!line.is_empty())));
+        }
+        let ordered = |k: usize| k == 0 || self.width[k - 1].0 < self.width[k].0;
+        let sound = |&k: &usize| {
+            let (s, w) = self.width[k];
+            s.is_finite() && w.is_finite() && w >= 0.0 && ordered(k)
+        };
+        if let Some(k) = (0..self.width.len()).find(|k| !sound(k)) {
+            return Err(ProfileError::Order(k + 1));
+        }
+        let widest = self.width.iter().map(|w| w.1).fold(0.0, f64::max);
+        if self.width.len() < 2 || widest <= 0.0 {
+            return Err(ProfileError::Width(self.width.iter().filter(|w| w.1 > 0.0).count()));
+        }
+        let (from, to) = (self.width[0].0, self.width[self.width.len() - 1].0);
+        let row = |i: usize| {
+            // The tip itself is no row.
+            let share = 1.0 - (i + 1) as f64 / rows as f64;
+            let place = self.at(share * length);
+            let half = 0.5 * self.width_at(from + share * (to - from)).max(LEAST_WIDTH * widest);
+            let across = |j: usize| ((MARKS_A_ROW / 2) as f64 - j as f64) / (MARKS_A_ROW / 2) as f64;
+            let points = core::array::from_fn(|j| place.extend(across(j) * half));
+            MarkRow { points, ..MarkRow::default() }
+        };
+        let tip = line[line.len() - 1];
+        Ok(Marks { rows: (0..rows.max(2)).map(row).collect(), tip, tip_thickness: None })
+    }
+
+    /// The point of the midrib at `s` from its base.
+    fn at(&self, s: f64) -> DVec2 {
+        crate::graph::along(&self.midrib, s).0
+    }
+
+    fn width_at(&self, s: f64) -> f64 {
+        let after = self.width.partition_point(|w| w.0 <= s).clamp(1, self.width.len() - 1);
+        let ((a, x), (b, y)) = (self.width[after - 1], self.width[after]);
+        base::ops::lerp(x, y, ((s - a) / (b - a)).clamp(0.0, 1.0))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use base::Report;
+
+    use super::*;
+
+    fn blade() -> LeafProfile {
+        LeafProfile {
+            midrib: vec![DVec2::ZERO, DVec2::new(0.0, 0.3), DVec2::new(0.4, 0.3)],
+            width: vec![(0.0, 0.02), (0.35, 0.06), (0.7, 0.0)],
+        }
+    }
+
+    #[test]
+    fn marks_lie_across_the_midrib_as_wide_as_measured() {
+        let marks = blade().marks(7).unwrap();
+        assert_eq!(marks.validate().next(), None);
+        assert!((marks.length() - 0.7).abs() < 1e-12);
+        // The third row from the tip is 0.4 along the midrib, in the bend's second leg.
+        let row = &marks.rows[2];
+        assert!((row.points[3] - DVec3::new(0.1, 0.3, 0.0)).length() < 1e-12, "{row:?}");
+        let want = 0.06 * (0.7 - 0.4) / 0.35;
+        assert!((row.points[0].distance(row.points[6]) - want).abs() < 1e-12, "{row:?}");
+        assert!(row.points[0].z > 0.0, "the right margin is at +z");
+        let mut report = Report::default();
+        assert!(marks.complete(&mut report).is_ok(), "a leaf without any thickness can be made");
+        assert!(report.warnings.iter().any(|w| w.code == "thickness-guessed"));
+    }
+
+    #[test]
+    fn profiles_that_make_no_leaf_say_why() {
+        let fault = |change: fn(&mut LeafProfile)| {
+            let mut leaf = blade();
+            change(&mut leaf);
+            leaf.marks(9).unwrap_err()
+        };
+        assert_eq!(fault(|l| l.midrib.truncate(1)), ProfileError::Midrib(1));
+        assert_eq!(fault(|l| l.midrib = vec![DVec2::ONE; 4]), ProfileError::Midrib(1));
+        assert_eq!(fault(|l| l.midrib[1].x = f64::NAN), ProfileError::Midrib(3));
+        assert_eq!(fault(|l| l.width[1].0 = 0.0), ProfileError::Order(2));
+        assert_eq!(fault(|l| l.width[2].1 = -1.0), ProfileError::Order(3));
+        assert_eq!(fault(|l| l.width.truncate(1)), ProfileError::Width(1));
+        assert_eq!(fault(|l| l.width.iter_mut().for_each(|w| w.1 = 0.0)), ProfileError::Width(0));
+    }
+}
