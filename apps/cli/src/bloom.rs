@@ -243,7 +243,8 @@ struct MotionReport {
     run: RunReport,
     frames: u32,
     day: Option<f64>,
-    lattice: [usize; 3],
+    /// Control points round each organ; none for flowers, which have no lattice.
+    lattice: Option<[usize; 3]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<ErrorReport>,
     /// What the registration of each organ left.
@@ -455,8 +456,14 @@ fn run(args: &BloomRunArgs) -> Outcome {
         error: ErrorReport::from(*e),
     });
     let residuals = residuals.collect();
-    let told =
-        Told { head, residuals, error, stages: loaded.told.clone(), times: [read_ms, fit_ms, write_ms] };
+    let told = Told {
+        head,
+        residuals,
+        error,
+        stages: loaded.told.clone(),
+        lattice: Some(args.lattice),
+        times: [read_ms, fit_ms, write_ms],
+    };
     tell(args, &machine, told, written)
 }
 
@@ -466,6 +473,7 @@ struct Told {
     residuals: Vec<ResidualReport>,
     error: Option<ErrorReport>,
     stages: Vec<stages::Told>,
+    lattice: Option<[usize; 3]>,
     times: [f64; 3],
 }
 
@@ -506,7 +514,7 @@ fn tell(args: &BloomRunArgs, machine: &Machine, mut told: Told, written: Written
         run: told.head,
         frames: written.frames,
         day: args.day,
-        lattice: args.lattice,
+        lattice: told.lattice,
         error: told.error,
         residuals: told.residuals,
         overlap: written.overlap,
@@ -623,10 +631,16 @@ fn drawn_flower(args: &BloomRunArgs, path: &Path, law: Option<GrowthLaw>, machin
     let written = written?;
     let mut head = head("bloom run", args.seed, &args.start, &plant.name, &args.output);
     head.items[0].counts = plant.item.counts;
-    (head.items[0].counts.flowers, head.items[0].counts.petals) = plant.counts();
+    let (flowers, petals) = plant.counts();
+    (head.items[0].counts.flowers, head.items[0].counts.petals) = (Some(flowers), Some(petals));
     head.items[0].warnings.clone_from(&plant.item.warnings);
     let times = [read_ms, made_ms, write_ms];
-    tell(args, machine, Told { head, residuals: vec![], error: None, stages: vec![], times }, written)
+    tell(
+        args,
+        machine,
+        Told { head, residuals: vec![], error: None, stages: vec![], lattice: None, times },
+        written,
+    )
 }
 
 fn flower(args: &BloomRunArgs, spec: FlowerSpec, law: Option<GrowthLaw>, machine: &Machine) -> Outcome {
@@ -654,9 +668,10 @@ fn flower(args: &BloomRunArgs, spec: FlowerSpec, law: Option<GrowthLaw>, machine
     let written = written?;
     let mut head = head("bloom run", args.seed, &args.start, &spec.name, &args.output);
     let petals: u32 = spec.whorls.iter().map(|w| w.count).sum();
-    head.items[0].counts.flowers = u64::from(spec.umbel);
-    head.items[0].counts.petals = u64::from(petals) * u64::from(spec.umbel);
-    let told = Told { head, residuals: vec![], error: None, stages: vec![], times: [0.0, 0.0, write_ms] };
+    head.items[0].counts.flowers = Some(u64::from(spec.umbel));
+    head.items[0].counts.petals = Some(u64::from(petals) * u64::from(spec.umbel));
+    let times = [0.0, 0.0, write_ms];
+    let told = Told { head, residuals: vec![], error: None, stages: vec![], lattice: None, times };
     tell(args, machine, told, written)
 }
 

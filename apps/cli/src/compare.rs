@@ -173,7 +173,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Outcome {
         progress.expect(2 * count);
         let mut oaks = Vec::new();
         for mut oak in trees {
-            oak.leaves = oak.made(args, &machine)?.item.counts.leaves;
+            oak.leaves = oak.made(args, &machine)?.item.counts.leaves.unwrap_or_default();
             oaks.push(oak);
             progress.reached(oaks.len());
         }
@@ -254,11 +254,11 @@ impl Oak {
             preset: self.key,
             height_m: size.height_m,
             crown_m: size.crown_m,
-            nodes: counts.nodes,
-            branches: counts.branches,
+            nodes: counts.nodes.unwrap_or_default(),
+            branches: counts.branches.unwrap_or_default(),
             vertices: counts.vertices,
             triangles: counts.triangles,
-            leaves: counts.leaves,
+            leaves: counts.leaves.unwrap_or_default(),
             leaf_area_m2: measures.leaf_area_m2,
             wood_m3: measures.wood_volume_m3,
             growth_seconds: made.item.timings_ms.structure / 1000.0,

@@ -38,9 +38,10 @@ pub(crate) fn summary(item: &ItemReport, png: Option<&Path>) -> String {
         (c.petals, "petal", "petals"),
         (c.leaves, "leaf", "leaves"),
         (c.branches, "branch", "branches"),
-        (c.triangles, "triangle", "triangles"),
+        (Some(c.triangles), "triangle", "triangles"),
     ];
-    let parts = parts.into_iter().filter(|p| p.0 > 0).map(|(n, one, many)| say::counted(n, one, many));
+    let parts =
+        parts.into_iter().filter_map(|(n, one, many)| Some(say::counted(n.filter(|&n| n > 0)?, one, many)));
     let made = [Some(item.output.clone()), png.map(|p| p.display().to_string())];
     let made: Vec<String> = made.into_iter().flatten().filter(|s| !s.is_empty()).collect();
     let made = if made.is_empty() { item.name.clone() } else { made.join(", ") };

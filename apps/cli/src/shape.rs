@@ -10,8 +10,8 @@ use burgeon::plant::Plant;
 use burgeon::shape::{EDITS_SCHEMA, EditsFile, HandEdit};
 use burgeon::skin::SkinSpec;
 use burgeon::{
-    ItemReport, MadeTree, MakeError, Preset, Report, RunReport, Seed, SketchOptions, TreeError, TreeOptions,
-    branch_rows, edits_schema, edits_template, make_from_sketch, make_tree,
+    BranchRow, ItemReport, MadeTree, MakeError, Preset, Report, RunReport, Seed, SketchOptions, TreeError,
+    TreeOptions, branch_rows, edits_schema, edits_template, make_from_sketch, make_tree,
 };
 use clap::Args;
 
@@ -151,10 +151,14 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
         }
         say::line(&report::summary(&item, args.png.as_deref()));
     }
+    if let Some(order) = args.list {
+        item.branches = branch_rows(&plant, order);
+    }
     run.items = vec![item];
     report::finish(&run, &args.common)?;
     match args.list {
-        Some(order) if !args.common.json => list(&plant, order),
+        // With --json standard output is the report, which has them.
+        Some(_) if !args.common.json => list(&run.items[0].branches),
         _ => Ok(()),
     }
 }
@@ -169,9 +173,6 @@ fn check_used(args: &ShapeArgs, format: Option<PlantFormat>) -> Outcome {
     }
     if args.what.is_none() {
         given.refuse(&plants, users, "none is named")?;
-    }
-    if args.common.json {
-        given.refuse(&["list"], "standard output", "--json prints there too; --report FILE.json does not")?;
     }
     given.check_picture(args.png.is_some(), &args.picture)?;
     given.check_surface(Seen::new(format, args.png.as_ref(), &args.common))?;
@@ -271,12 +272,12 @@ fn no_project(args: &ShapeArgs, what: &Path) -> Outcome {
     }
 }
 
-fn list(plant: &Plant, order: u32) -> Outcome {
+fn list(branches: &[BranchRow]) -> Outcome {
     let mut lines = vec![format!(
         "{:<18}{:>6}{:>24}{:>9}{:>10}{:>9}{:>7}",
         "path", "at", "base, m", "length", "direction", "radius", "bears"
     )];
-    for row in branch_rows(plant, order) {
+    for row in branches {
         let path = row.path.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
         let b = row.base_m;
         lines.push(format!(

@@ -451,5 +451,7 @@ fn a_scene_is_made_whole() {
     assert!(info.contains("bush: tree, seed 3") && info.contains("15 strokes"), "{info}");
     assert!(bad(&dir, &["convert", "garden.burgeon", "-o", "x.json"]).contains("scene of 4 plants"));
     assert!(bad(&dir, &["sketch", "garden.burgeon", "-o", "x.mtg"]).contains("several plants"));
-    assert!(bad(&dir, &["sketch", "garden.burgeon", "-o", "x.glb", "--seed", "2"]).contains("own seeds"));
+    assert!(
+        bad(&dir, &["sketch", "garden.burgeon", "-o", "x.glb", "--seed", "2"]).contains("their own settings")
+    );
 }

@@ -586,7 +586,7 @@ export class App {
     const { seen, parts: p } = this;
     const counts: string[] = [];
     const c = seen?.item?.counts;
-    const add = (key: TextKey, count: number): void => { if (count > 0) counts.push(t(key, { count: number(count) })); };
+    const add = (key: TextKey, count: number | null): void => { if (count) counts.push(t(key, { count: number(count) })); };
     add('status.strokes', this.drawn?.strokes.length ?? 0);
     if (c) {
       for (const kind of ['flowers', 'petals', 'leaves', 'branches', 'triangles'] as const) add(`status.${kind}`, c[kind]);

@@ -15,13 +15,16 @@ export function statsTable(state: PlantState | undefined, view: PlantView | unde
   row('stats.width', metres(Math.max(view.max[0] - view.min[0], view.max[2] - view.min[2])));
   const { item } = view;
   if (item) {
+    // What was not counted has no row.
+    const counted = (key: TextKey, count: number | null): void => { if (count !== null) row(key, number(count)); };
     const c = item.counts;
-    for (const kind of ['flowers', 'petals', 'leaves', 'branches'] as const) row(`stats.${kind}`, number(c[kind]));
-    row('stats.nodes', number(c.nodes));
+    for (const kind of ['flowers', 'petals', 'leaves', 'branches'] as const) counted(`stats.${kind}`, c[kind]);
+    counted('stats.nodes', c.nodes);
     row('stats.vertices', number(c.vertices));
     row('stats.triangles', number(c.triangles));
     row('stats.parts', number(view.parts.length));
-    row('stats.error', `${(item.fidelity.reprojection_mean * 100).toFixed(2)} %`);
+    const error = item.fidelity.reprojection_mean;
+    if (error !== null) row('stats.error', `${(error * 100).toFixed(2)} %`);
     row('stats.time', `${item.timings_ms.total.toFixed(1)} ms`);
     row('stats.seed', state?.seed ?? '');
     row('stats.digest', item.digest.slice(0, 8));

@@ -73,9 +73,9 @@ export interface EditReport {
 }
 export interface Item {
   name: string; strokes: StrokeReport[];
-  counts: { flowers: number; petals: number; leaves: number; branches: number; nodes: number; axes: number;
+  counts: { flowers: number | null; petals: number | null; leaves: number | null; branches: number | null; nodes: number | null; axes: number | null;
     vertices: number; triangles: number };
-  timings_ms: { total: number } & Record<string, number>; fidelity: { reprojection_mean: number; reprojection_p95: number };
+  timings_ms: { total: number } & Record<string, number>; fidelity: { reprojection_mean: number | null; reprojection_p95: number | null };
   digest: string; warnings: string[]; edits?: EditReport[]; growth?: { iterations: number } & Record<string, number | string>;
 }
 export interface MaterialView {

@@ -229,8 +229,8 @@ impl Evaluator {
         let fidelity =
             wanted.then(|| sketch::fidelity(&built, &reading.value, &strokes.value.0, run)).flatten();
         let fidelity = fidelity.map_or_else(Fidelity::default, |f| Fidelity {
-            reprojection_mean: f.reprojection_mean,
-            reprojection_p95: f.reprojection_p95,
+            reprojection_mean: Some(f.reprojection_mean),
+            reprojection_p95: Some(f.reprojection_p95),
         });
         run.cancel.check()?;
         // After the measure against the drawing: the user's leaf is not what was drawn.

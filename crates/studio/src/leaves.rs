@@ -96,11 +96,11 @@ pub struct LeafReport {
     /// Distances of what was measured from the blade.
     pub fit_error: FitError,
     /// The farthest that a vein's centre line is from the blade, millimetres.
-    pub vein_gap_mm: f64,
-    /// Rings whose ball is inside its neighbours (envelope only).
-    pub swallowed_rings: u64,
+    pub vein_gap_mm: Option<f64>,
+    /// Rings whose ball is inside its neighbours; none for plain rings.
+    pub swallowed_rings: Option<u64>,
     /// Rings at which a vein is thicker than it bends.
-    pub crossing_rings: u64,
+    pub crossing_rings: Option<u64>,
     /// Of a scan: what was found in it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scan: Option<ScanReport>,
@@ -115,8 +115,8 @@ pub struct ScanReport {
     pub outliers: u64,
     /// Share of the blade that has a point within 2 mm; the rest are holes that were bridged.
     pub covered: f64,
-    /// Length of the stalk, millimetres; 0 if there is none.
-    pub stalk_mm: f64,
+    /// Length of the stalk, millimetres; none if there is no stalk.
+    pub stalk_mm: Option<f64>,
     /// Length of the outline, millimetres.
     pub outline_mm: f64,
     /// Greatest width across the midrib, millimetres.
@@ -219,7 +219,7 @@ pub fn make_leaf_of(
         |name: &str, material, mesh| Part { name: name.into(), material: MaterialId::new(material), mesh };
     model.parts = vec![part("blade", 0, meshes.blade), part("veins", 1, meshes.veins)];
     let counts = Counts {
-        leaves: 1,
+        leaves: Some(1),
         vertices: model.vertex_count() as u64,
         triangles: model.triangle_count() as u64,
         ..Counts::default()
@@ -293,11 +293,16 @@ fn leaf_report(marks: &FullMarks, leaf: &Leaf, meshes: &LeafMesh, options: &Leaf
         veins: counts(&meshes.veins, meshes.vein_faces),
         blade: counts(&meshes.blade, meshes.blade_faces),
         fit_error: FitError::of(&distances),
-        vein_gap_mm: 1e3 * leaf.vein_gap(8),
-        swallowed_rings: meshes.swallowed as u64,
-        crossing_rings: meshes.crossing as u64,
+        vein_gap_mm: Some(1e3 * leaf.vein_gap(8)),
+        swallowed_rings: swallowed(options, meshes),
+        crossing_rings: Some(meshes.crossing as u64),
         scan: None,
     }
+}
+
+/// Rings that the exact surface of the veins swallows; plain rings are not asked.
+pub(crate) fn swallowed(options: &LeafOptions, meshes: &LeafMesh) -> Option<u64> {
+    (options.mesh.rings == geom::RingRule::Envelope).then_some(meshes.swallowed as u64)
 }
 
 /// The area of a mesh, square metres.
@@ -358,7 +363,7 @@ pub fn make_leaf_from_scan(
             points: (found.used + found.outliers) as u64,
             outliers: found.outliers as u64,
             covered: found.covered,
-            stalk_mm: found.stalk.as_ref().map_or(0.0, |s| 1e3 * s.length(200)),
+            stalk_mm: found.stalk.as_ref().map(|s| 1e3 * s.length(200)),
             outline_mm: 1e3 * geom::polyline_length3(&outline),
             width_mm: 1e3 * width,
         }),
@@ -370,7 +375,7 @@ pub fn make_leaf_from_scan(
         |name: &str, material, mesh| Part { name: name.into(), material: MaterialId::new(material), mesh };
     model.parts = vec![part("blade", 0, blade), part("veins", 1, veins)];
     let counts = Counts {
-        leaves: 1,
+        leaves: Some(1),
         vertices: model.vertex_count() as u64,
         triangles: model.triangle_count() as u64,
         ..Counts::default()
@@ -487,9 +492,9 @@ pub fn make_shoot(
     }
     model.materials.extend(materials);
     let counts = Counts {
-        leaves: u64::from(count),
-        branches: 1,
-        axes: 1,
+        leaves: Some(u64::from(count)),
+        branches: Some(1),
+        axes: Some(1),
         vertices: model.vertex_count() as u64,
         triangles: model.triangle_count() as u64,
         ..Counts::default()
@@ -698,10 +703,10 @@ mod tests {
                 let about = made.item.leaf.unwrap();
                 assert_eq!(about.veins, FaceCounts { vertices: veins, faces: quads }, "{k} {surface:?}");
                 assert_eq!(about.blade, FaceCounts { vertices: blade, faces: cells }, "{k} {surface:?}");
-                assert!(about.vein_gap_mm < 1e-6, "{k} {surface:?}: {}", about.vein_gap_mm);
+                assert!(about.vein_gap_mm.unwrap() < 1e-6, "{k} {surface:?}: {:?}", about.vein_gap_mm);
                 let exact = surface == leaf::SurfaceKind::Interpolate;
                 assert_eq!(about.fit_error.max_mm < 1e-9, exact, "{k} {surface:?}: {:?}", about.fit_error);
-                assert_eq!(about.crossing_rings, 0, "{k} {surface:?}");
+                assert_eq!(about.crossing_rings, Some(0), "{k} {surface:?}");
                 assert_eq!(made.model.validate().next(), None);
             }
         }
@@ -727,7 +732,7 @@ mod tests {
         let (_, ib) = make_shoot("t", &forms, &spec, &options, Seed::new(2), &back).unwrap();
         assert_eq!(ia.digest, ib.digest);
         assert_eq!(a.validate().next(), None);
-        assert_eq!(ia.counts.leaves, 7);
+        assert_eq!(ia.counts.leaves, Some(7));
         let (_, other) = make_shoot("t", &forms, &spec, &options, Seed::new(3), &run).unwrap();
         assert_ne!(ia.digest, other.digest);
     }

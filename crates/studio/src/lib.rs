@@ -12,7 +12,7 @@
 //! let line: Vec<DVec2> = (0..40).map(|i| DVec2::new(0.02 * f64::from(i % 7), f64::from(i))).collect();
 //! let drawing = Drawing::from_polylines("a stem", &[line]);
 //! let made = make_from_sketch(&drawing, &SketchOptions::default(), Seed::new(1), &Run::plain())?;
-//! assert_eq!(made.item.counts.branches, 1);
+//! assert_eq!(made.item.counts.branches, Some(1));
 //! assert!(made.model.triangle_count() > 100);
 //! # Ok::<(), burgeon::MakeError>(())
 //! ```

@@ -89,6 +89,9 @@ pub struct ItemReport {
     /// Of a plant that was edited by hand: what became of each edit, in their order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub edits: Vec<crate::EditReport>,
+    /// Of `shape --list`: the branches that were asked for.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub branches: Vec<crate::BranchRow>,
 }
 
 /// One stroke.
@@ -104,21 +107,21 @@ pub struct StrokeReport {
     pub confidence: f64,
 }
 
-/// Numbers of things in a plant and its meshes.
+/// Numbers of things in a plant and its meshes; none of what was not counted, such as the leaves of a model that was read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counts {
     /// Flowers.
-    pub flowers: u64,
+    pub flowers: Option<u64>,
     /// Petals.
-    pub petals: u64,
+    pub petals: Option<u64>,
     /// Leaves.
-    pub leaves: u64,
+    pub leaves: Option<u64>,
     /// Trunks, branches, twigs and stems (not petioles, not roots).
-    pub branches: u64,
+    pub branches: Option<u64>,
     /// Nodes of all axes.
-    pub nodes: u64,
+    pub nodes: Option<u64>,
     /// Axes of every kind.
-    pub axes: u64,
+    pub axes: Option<u64>,
     /// Mesh vertices.
     pub vertices: u64,
     /// Mesh triangles.
@@ -128,15 +131,15 @@ pub struct Counts {
 impl Counts {
     /// Counts a plant; mesh numbers stay 0.
     pub fn of_plant(plant: &Plant) -> Self {
-        let organs = |kind| plant.organs.iter().filter(|o| o.kind == kind).count() as u64;
+        let organs = |kind| Some(plant.organs.iter().filter(|o| o.kind == kind).count() as u64);
         let is_branch = |kind| matches!(kind, AxisKind::Branch | AxisKind::Twig | AxisKind::Stem);
         Self {
-            flowers: plant.flowers.len() as u64,
+            flowers: Some(plant.flowers.len() as u64),
             petals: organs(OrganKind::Petal),
             leaves: organs(OrganKind::Leaf),
-            branches: plant.axes.iter().filter(|a| is_branch(a.kind)).count() as u64,
-            nodes: plant.nodes.position.len() as u64,
-            axes: plant.axes.len() as u64,
+            branches: Some(plant.axes.iter().filter(|a| is_branch(a.kind)).count() as u64),
+            nodes: Some(plant.nodes.position.len() as u64),
+            axes: Some(plant.axes.len() as u64),
             vertices: 0,
             triangles: 0,
         }
@@ -188,11 +191,12 @@ impl TimingsMs {
     }
 }
 
-/// Reprojection error of axes, petals and `drawn` leaves against the drawing, as shares of its diagonal.
+/// Reprojection error of axes, petals and `drawn` leaves against the drawing, as shares of its diagonal; none where no stroke
+/// was compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Fidelity {
     /// Mean distance.
-    pub reprojection_mean: f64,
+    pub reprojection_mean: Option<f64>,
     /// 95th percentile.
-    pub reprojection_p95: f64,
+    pub reprojection_p95: Option<f64>,
 }

@@ -389,8 +389,8 @@ impl Made {
         self.item = ItemReport {
             name: name.into(),
             counts: Counts {
-                flowers,
-                petals: petals * flowers,
+                flowers: Some(flowers),
+                petals: Some(petals * flowers),
                 vertices: model.vertex_count() as u64,
                 triangles: model.triangle_count() as u64,
                 ..Counts::default()

@@ -98,7 +98,7 @@ impl Shaper {
 }
 
 /// One branch in a list of all.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BranchRow {
     /// What names it in an edits file: `{"path": [...]}`.
     pub path: Vec<u32>,

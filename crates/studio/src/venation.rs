@@ -59,9 +59,9 @@ pub fn make_ray_leaf(
         veins: counts(&meshes.veins, meshes.vein_faces),
         blade: counts(&meshes.blade, meshes.blade_faces),
         fit_error: FitError::of(&distances),
-        vein_gap_mm: 1e3 * leaf.vein_gap(8),
-        swallowed_rings: meshes.swallowed as u64,
-        crossing_rings: meshes.crossing as u64,
+        vein_gap_mm: Some(1e3 * leaf.vein_gap(8)),
+        swallowed_rings: crate::leaves::swallowed(options, &meshes),
+        crossing_rings: Some(meshes.crossing as u64),
         scan: None,
     };
     let mut model = Model { name: name.into(), ..Model::default() };
@@ -72,7 +72,7 @@ pub fn make_ray_leaf(
         |name: &str, material, mesh| Part { name: name.into(), material: MaterialId::new(material), mesh };
     model.parts = vec![part("blade", 0, meshes.blade), part("veins", 1, meshes.veins)];
     let counts = Counts {
-        leaves: 1,
+        leaves: Some(1),
         vertices: model.vertex_count() as u64,
         triangles: model.triangle_count() as u64,
         ..Counts::default()

@@ -46,7 +46,7 @@ fn a_tree_has_its_model_its_report_and_its_colours() {
     let made = plain(&young("alder"));
     let growth = made.item.growth.as_ref().expect("the report's block");
     assert_eq!(growth.method, "self-organizing");
-    assert_eq!(growth.leaves_kept, made.item.counts.leaves);
+    assert_eq!(Some(growth.leaves_kept), made.item.counts.leaves);
     assert_eq!(growth.nodes, made.grown.skeleton.len() as u64);
     assert_eq!(made.model.validate().next(), None);
     assert_eq!(made.grown.plant.validate().next(), None);
