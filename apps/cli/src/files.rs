@@ -1,13 +1,12 @@
 //! Files by their extension or, failing that, by their first bytes.
 
-use std::fs::File;
 use std::io::{BufRead, BufReader, Cursor, Read};
-use std::path::{Component, Path};
+use std::path::{Component, Path, PathBuf};
 
 use burgeon::document::{self, Document, DocumentPlant, MAX_PROJECT_BYTES};
 use burgeon::formats::{
-    DrawingFormat, ExportSpec, ModelFormat, PngCache, ReadDrawing, obj_files, usd_files, warn_of_wind,
-    write_glb_with, write_mtg,
+    DrawingFormat, ExportSpec, FileStems, ModelFormat, PngCache, ReadDrawing, obj_files, usd_files,
+    warn_of_wind, write_glb_with, write_mtg,
 };
 use burgeon::mesh::Model;
 use burgeon::plant::Plant;
@@ -15,7 +14,8 @@ use burgeon::{Report, Warning};
 
 use crate::args::{AxesArgs, UnitWord, UpWord};
 use crate::failure::{Failure, Outcome};
-use crate::output;
+use crate::inputs;
+use crate::output::{self, Outputs};
 
 /// What a file holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,7 +54,7 @@ pub(crate) fn open(path: &Path) -> Outcome<(Input, Kind)> {
     } else if path.is_dir() {
         return Err(Failure::at(path, "is a folder; name the files in it"));
     } else {
-        Box::new(File::open(path).map_err(|e| failed(&e))?)
+        Box::new(inputs::open(path).map_err(|e| failed(&e))?)
     };
     let known = extension(path).and_then(|e| {
         let drawing = DrawingFormat::from_extension(e).map(Kind::Drawing);
@@ -86,7 +86,7 @@ pub(crate) fn read_text(path: &Path) -> Outcome<String> {
     const MAX_BYTES: u64 = 16 << 20;
     let failed = |e: &std::io::Error| Failure::io(path, "read", e);
     let mut bytes = Vec::new();
-    let file = File::open(path).map_err(|e| failed(&e))?;
+    let file = inputs::open(path).map_err(|e| failed(&e))?;
     file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(|e| failed(&e))?;
     if bytes.len() as u64 > MAX_BYTES {
         return Err(Failure::at(
@@ -186,7 +186,7 @@ fn resolve(model: &Path, name: &str) -> Option<Vec<u8>> {
     if !std::fs::metadata(&path).is_ok_and(|m| m.is_file() && m.len() <= MAX_SIDE_FILE) {
         return None;
     }
-    let file = File::open(path).ok()?;
+    let file = inputs::open(&path).ok()?;
     let mut bytes = Vec::new();
     file.take(MAX_SIDE_FILE).read_to_end(&mut bytes).ok()?;
     Some(bytes)
@@ -236,19 +236,88 @@ pub(crate) fn plant_writable(path: &Path) -> Outcome<PlantFormat> {
     }
 }
 
-/// Writes a plant whole: its model, or its structure with +Z up unless `up` says otherwise.
+/// Where a model or plant goes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Goal<'a> {
+    /// The option that asks for it.
+    pub(crate) by: &'a str,
+    pub(crate) path: &'a Path,
+    /// One of a batch, by a name of [`crate::names`]: its textures are `NAME--MATERIAL.png`, which no other's file can be.
+    pub(crate) of_many: bool,
+}
+
+impl<'a> Goal<'a> {
+    pub(crate) const fn new(by: &'a str, path: &'a Path) -> Self {
+        Self { by, path, of_many: false }
+    }
+
+    fn beside(&self, name: &str) -> PathBuf {
+        self.path.with_file_name(name)
+    }
+
+    /// In words, who asks for a file that the model's own names.
+    fn materials(&self) -> String {
+        format!("the materials of {}", self.by)
+    }
+
+    fn texture(&self) -> String {
+        format!("a texture of {}", self.by)
+    }
+}
+
+/// The format of a model's file, planned as -o; what is known to lie beside it is planned.
+pub(crate) fn plan_model(outputs: &mut Outputs, path: &Path) -> Outcome<ModelFormat> {
+    let format = writable(path)?;
+    plan_beside(outputs, Goal::new("-o", path), format)?;
+    Ok(format)
+}
+
+/// [`plan_model`] of a plant and its coarser copies.
+pub(crate) fn plan_plant(outputs: &mut Outputs, path: &Path, lods: u32) -> Outcome<PlantFormat> {
+    let format = plant_writable(path)?;
+    let PlantFormat::Model(model) = format else { return Ok(format) };
+    plan_beside(outputs, Goal::new("-o", path), model)?;
+    for level in 1..=lods as usize {
+        let path = lod(path, level);
+        outputs.plan("--lods", &path)?;
+        plan_beside(outputs, Goal::new("--lods", &path), model)?;
+    }
+    Ok(format)
+}
+
+// Textures are known when the plant is.
+fn plan_beside(outputs: &mut Outputs, goal: Goal<'_>, format: ModelFormat) -> Outcome {
+    if format != ModelFormat::Obj {
+        return Ok(());
+    }
+    let stem = stem(goal.path);
+    let empty = obj_files(&Model::default(), stem.as_str(), &ExportSpec::default());
+    let name = empty.map_err(|e| output::write_failed(goal.path, e))?.mtl_name;
+    outputs.plan(&goal.materials(), &goal.beside(&name))
+}
+
+/// `tree.glb` -> `tree-lod1.glb`.
+pub(crate) fn lod(path: &Path, level: usize) -> PathBuf {
+    let extension = extension(path).unwrap_or_default();
+    path.with_file_name(format!("{}-lod{level}.{extension}", stem(path)))
+}
+
+/// Writes a plant: its model, or its structure with +Z up unless `up` says otherwise.
 pub(crate) fn write_plant(
-    path: &Path,
+    outputs: &mut Outputs,
+    goal: Goal<'_>,
     (plant, model): (&Plant, &Model),
     format: PlantFormat,
     args: &AxesArgs,
     cache: &mut PngCache,
 ) -> Outcome<Vec<Warning>> {
     match format {
-        PlantFormat::Model(format) => write_model(path, model, format, &axes(args.up, args.unit), cache),
+        PlantFormat::Model(format) => {
+            write_model(outputs, goal, model, format, &axes(args.up, args.unit), cache)
+        }
         PlantFormat::Mtg => {
             let axes = field_axes(args);
-            output::write_whole(path, |out| write_mtg(plant, &axes, out))?;
+            outputs.write(goal.by, goal.path, |out| write_mtg(plant, &axes, out))?;
             let mut report = Report::default();
             warn_of_wind(model, "MTG", &mut report);
             Ok(report.warnings)
@@ -256,10 +325,10 @@ pub(crate) fn write_plant(
     }
 }
 
-/// Writes a plant's cylinders whole, with +Z up unless `args` say otherwise.
-pub(crate) fn write_qsm(path: &Path, plant: &Plant, args: &AxesArgs) -> Outcome {
+/// Writes a plant's cylinders, with +Z up unless `args` say otherwise.
+pub(crate) fn write_qsm(outputs: &mut Outputs, path: &Path, plant: &Plant, args: &AxesArgs) -> Outcome {
     let axes = field_axes(args);
-    output::write_whole(path, |out| burgeon::formats::write_qsm(plant, &axes, out))
+    outputs.write("--qsm", path, |out| burgeon::formats::write_qsm(plant, &axes, out))
 }
 
 // The programs that read MTG and QSM files have Z upwards.
@@ -267,39 +336,44 @@ fn field_axes(args: &AxesArgs) -> ExportSpec {
     axes(args.up.unwrap_or(UpWord::Z), args.unit)
 }
 
-/// Writes a model whole: for OBJ and USD first the files that they name.
+/// Writes a model, for OBJ and USD with the files that they name.
 pub(crate) fn write_model(
-    path: &Path,
+    outputs: &mut Outputs,
+    goal: Goal<'_>,
     model: &Model,
     format: ModelFormat,
     axes: &ExportSpec,
     cache: &mut PngCache,
 ) -> Outcome<Vec<Warning>> {
+    let Goal { by, path, .. } = goal;
     let mut report = Report::default();
-    let bytes = |path: &Path, bytes: &[u8]| output::write_whole(path, |out| Ok(out.write_all(bytes)?));
+    let mut bytes =
+        |by: &str, path: &Path, bytes: &[u8]| outputs.write(by, path, |out| Ok(out.write_all(bytes)?));
+    let name = stem(path);
+    let textures = if goal.of_many { format!("{name}-") } else { name.clone() };
     match format {
         ModelFormat::Glb if axes.is_default() => {
-            output::write_whole(path, |out| write_glb_with(model, cache, out))?;
+            outputs.write(by, path, |out| write_glb_with(model, cache, out))?;
         }
         ModelFormat::Obj => {
-            let files = obj_files(model, &stem(path), axes).map_err(|e| output::write_failed(path, e))?;
+            let stems = FileStems { model: &name, textures: &textures };
+            let files = obj_files(model, stems, axes).map_err(|e| output::write_failed(path, e))?;
             warn_of_wind(model, format.word(), &mut report);
             for (name, png) in &files.textures {
-                bytes(&path.with_file_name(name), png)?;
+                bytes(&goal.texture(), &goal.beside(name), png)?;
             }
-            bytes(&path.with_file_name(&files.mtl_name), &files.mtl)?;
-            bytes(path, &files.obj)?;
+            bytes(&goal.materials(), &goal.beside(&files.mtl_name), &files.mtl)?;
+            bytes(by, path, &files.obj)?;
         }
         ModelFormat::Usda => {
-            let files = usd_files(model, &stem(path), axes).map_err(|e| output::write_failed(path, e))?;
+            let files = usd_files(model, &textures, axes).map_err(|e| output::write_failed(path, e))?;
             for (name, png) in &files.textures {
-                bytes(&path.with_file_name(name), png)?;
+                bytes(&goal.texture(), &goal.beside(name), png)?;
             }
-            bytes(path, &files.usda)?;
+            bytes(by, path, &files.usda)?;
         }
-        _ => output::write_whole(path, |out| {
-            burgeon::formats::write_model(model, format, axes, out, &mut report)
-        })?,
+        _ => outputs
+            .write(by, path, |out| burgeon::formats::write_model(model, format, axes, out, &mut report))?,
     }
     Ok(report.warnings)
 }

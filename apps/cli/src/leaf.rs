@@ -20,8 +20,10 @@ use clap::{Args, ValueEnum};
 
 use crate::args::{AxesArgs, CommonArgs, PictureArgs, UnitWord, UpWord, ranged};
 use crate::failure::{Failure, Outcome};
+use crate::files::Goal;
 use crate::machine::Machine;
-use crate::{files, output, picture, report, say};
+use crate::output::Outputs;
+use crate::{files, inputs, picture, report, say};
 
 #[derive(Args, Debug)]
 #[command(after_long_help = LEAF_EXAMPLES)]
@@ -254,9 +256,11 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
         ("--marks", args.marks.as_ref()),
         ("--report", args.common.report.as_ref()),
     ];
-    output::check_outputs(&outputs, &args.inputs.iter().collect::<Vec<_>>())?;
+    let picture =
+        Some(&args.look.texture).filter(|t| !["veins", "plain"].iter().any(|word| t.as_os_str() == *word));
+    let mut outputs = Outputs::new(&outputs, &args.inputs.iter().chain(picture).collect::<Vec<_>>())?;
     if args.template {
-        return template(args);
+        return template(args, outputs);
     }
     if args.inputs.is_empty() && args.venation.is_none() {
         return Err(Failure::Bad(
@@ -273,7 +277,7 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
             "say what to make of it: -o OUT, --png FILE.png, --report FILE.json or --json".into(),
         ));
     }
-    let format = args.output.as_deref().map(files::writable).transpose()?;
+    let format = args.output.as_deref().map(|p| files::plan_model(&mut outputs, p)).transpose()?;
     if let Some(png) = &args.png {
         picture::check_name(png)?;
     }
@@ -282,7 +286,7 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
     machine.cancel.check()?;
     if let Some(path) = &args.marks {
         let marks = marks.ok_or_else(|| Failure::at(path, "a whole plant has no marks; drop --marks"))?;
-        output::write_whole(path, |out| match &marks {
+        outputs.write("--marks", path, |out| match &marks {
             Measured::Rows(marks) => write_marks(marks, &item.name, out),
             Measured::Rays(rays) => write_rays(rays, &item.name, out),
         })?;
@@ -293,7 +297,8 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
         // --unit and --up were those of the input: a GLB in metres with +Y up is no surprise.
         let read = !args.inputs.is_empty() && format == burgeon::formats::ModelFormat::Glb;
         let axes = if read { ExportSpec::default() } else { files::axes(args.axes.up, args.axes.unit) };
-        files::write_model(path, &model, format, &axes, &mut PngCache::new())
+        let goal = Goal::new("-o", path);
+        files::write_model(&mut outputs, goal, &model, format, &axes, &mut PngCache::new())
     });
     item.warnings.extend(written?.iter().map(ToString::to_string));
     item.timings_ms.add_io(0.0, write_ms);
@@ -301,23 +306,28 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
         let spec = args.picture.spec(args.seed);
         let drawn =
             machine.with_progress("picture", |_| burgeon::render::render(&model, &spec, &machine.run()))?;
-        picture::write(png, &drawn)?;
+        picture::write(&mut outputs, "--png", png, &drawn)?;
     }
     let mut run = RunReport::new("leaf", args.seed);
     run.input.path = args.inputs.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(", ");
-    if !machine.quiet {
-        item.warnings.iter().for_each(|w| say::warning(&format!("{}: {w}", run.input.path)));
-        say::line(&summary(&item, args.png.as_deref()));
-    }
     run.items.push(item);
     run.ok = 1;
-    report::finish(&run, &args.common)
+    report::finish(&run, &args.common, outputs)?;
+    if !machine.quiet {
+        let item = &run.items[0];
+        item.warnings.iter().for_each(|w| say::warning(&format!("{}: {w}", run.input.path)));
+        say::line(&summary(item, args.png.as_deref()));
+    }
+    Ok(())
 }
 
-fn template(args: &LeafArgs) -> Outcome {
+fn template(args: &LeafArgs, mut outputs: Outputs) -> Outcome {
     let text = marks_template(args.rows as usize);
     match &args.output {
-        Some(path) => output::write_whole(path, |out| Ok(out.write_all(text.as_bytes())?)),
+        Some(path) => {
+            outputs.write("-o", path, |out| Ok(out.write_all(text.as_bytes())?))?;
+            outputs.place()
+        }
         None => {
             say::data(text.trim_end()).map_err(|e| Failure::io(Path::new("standard output"), "written", &e))
         }
@@ -381,7 +391,7 @@ fn options(args: &LeafArgs, in_file: Option<ThicknessRule>) -> Outcome<LeafOptio
         Some("plain") => LeafTexture::Plain,
         _ => {
             let path = &args.look.texture;
-            let bytes = std::fs::read(path).map_err(|e| Failure::io(path, "read", &e))?;
+            let bytes = inputs::bytes(path).map_err(|e| Failure::io(path, "read", &e))?;
             let picture = read_picture(&bytes);
             let picture =
                 picture.ok_or_else(|| Failure::at(path, "is no PNG or JPEG picture that can be read"))?;
@@ -417,7 +427,7 @@ fn scan(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
     })?;
     let mut report = Report::default();
     let axes = files::axes(args.axes.up, args.axes.unit);
-    let file = std::fs::File::open(path).map_err(|e| Failure::io(path, "read", &e))?;
+    let file = inputs::open(path).map_err(|e| Failure::io(path, "read", &e))?;
     let (cloud, read_ms) = machine.timed(|| read_cloud(file, format, &axes, &mut report));
     let mut points = cloud.map_err(|e| Failure::at(path, e))?.points;
     let first = points.first().copied().unwrap_or_default();
@@ -511,7 +521,7 @@ fn rays(args: &LeafArgs, machine: &Machine) -> Outcome<Option<Product>> {
             if files::extension(path).is_some_and(|e| e.eq_ignore_ascii_case("csv")) && path.is_file() =>
         {
             let (bytes, ms) =
-                machine.timed(|| std::fs::read(path).map_err(|e| Failure::io(path, "read", &e)));
+                machine.timed(|| inputs::bytes(path).map_err(|e| Failure::io(path, "read", &e)));
             let bytes = bytes?;
             if !is_rays(&bytes) {
                 return Ok(None);
@@ -550,7 +560,7 @@ fn is_graph(path: &Path) -> bool {
 
 /// The chief veins of a vein graph, if it is that of a palmate leaf.
 fn palmate_graph(path: &Path, args: &LeafArgs, warnings: &mut Vec<String>) -> Outcome<Option<Rays>> {
-    let file = std::fs::File::open(path).map_err(|e| Failure::io(path, "read", &e))?;
+    let file = inputs::open(path).map_err(|e| Failure::io(path, "read", &e))?;
     let read = read_vein_graph(file).map_err(|e| Failure::at(path, e))?;
     let mut report = Report { warnings: read.warnings, ..Report::default() };
     let Some(mut rays) = read.graph.rays(&mut report).map_err(|e| Failure::at(path, e))? else {
@@ -622,7 +632,7 @@ fn read_leaf(path: &Path, axes: MarksAxes, length_m: Option<f64>) -> Outcome<Rea
     if path.is_dir() {
         return Err(Failure::at(path, "is a folder; name a file of marks in it"));
     }
-    let file = std::fs::File::open(path).map_err(|e| Failure::io(path, "read", &e))?;
+    let file = inputs::open(path).map_err(|e| Failure::io(path, "read", &e))?;
     if !files::extension(path).is_some_and(|e| e.eq_ignore_ascii_case("json")) {
         return read_marks(file, &name, axes).map_err(|e| Failure::at(path, e));
     }

@@ -8,9 +8,10 @@ use burgeon::{RunReport, SceneEvaluator, scene_model};
 
 use crate::args::SketchArgs;
 use crate::failure::{Failure, Outcome};
-use crate::files::{self, Kind, PlantFormat};
+use crate::files::{self, Goal, Kind, PlantFormat};
 use crate::machine::Machine;
-use crate::{output, picture, say};
+use crate::output::Outputs;
+use crate::{picture, say};
 
 /// The document of a project that is more than one drawing; none for all else.
 pub(crate) fn of_file(path: &Path) -> Outcome<Option<Document>> {
@@ -32,7 +33,7 @@ pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine:
         let line = "is a scene whose plants have their own seeds and settings; change them in the Studio";
         return Err(Failure::at(path, line));
     }
-    output::check_outputs(
+    let mut outputs = Outputs::new(
         &[
             ("-o", args.output.as_ref()),
             ("--png", args.png.as_ref()),
@@ -41,7 +42,7 @@ pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine:
         ],
         &[&path.to_path_buf()],
     )?;
-    let format = args.output.as_deref().map(files::plant_writable).transpose()?;
+    let format = args.output.as_deref().map(|p| files::plan_plant(&mut outputs, p, 0)).transpose()?;
     let mut scene = SceneEvaluator::default();
     scene.set_wind(args.surface.wind);
     let mut report = RunReport::new("sketch", 1);
@@ -67,26 +68,28 @@ pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine:
         plant.ok_or_else(|| Failure::at(path, "holds a single leaf or flower, which has no axes"))
     };
     if let Some(qsm) = &args.qsm {
-        files::write_qsm(qsm, structure()?, &args.axes)?;
+        files::write_qsm(&mut outputs, qsm, structure()?, &args.axes)?;
     }
     if let Some((out, format)) = args.output.as_deref().zip(format) {
         let nothing = burgeon::plant::Plant::default();
         let plant = if matches!(format, PlantFormat::Mtg) { structure()? } else { &nothing };
-        files::write_plant(out, (plant, &model), format, &args.axes, &mut PngCache::new())?;
+        let goal = Goal::new("-o", out);
+        files::write_plant(&mut outputs, goal, (plant, &model), format, &args.axes, &mut PngCache::new())?;
         for item in &mut report.items {
             item.output = out.display().to_string();
         }
     }
     if let Some(png) = &args.png {
         let drawn = burgeon::render::render(&model, &args.picture.spec(1), &machine.run())?;
-        picture::write(png, &drawn)?;
+        picture::write(&mut outputs, "--png", png, &drawn)?;
     }
     report.ok = report.items.len() as u64;
+    crate::report::finish(&report, &args.common, outputs)?;
     if !machine.quiet {
         for item in &report.items {
             item.warnings.iter().for_each(|w| say::warning(&format!("{}: {w}", item.name)));
             say::line(&crate::report::summary(item, args.png.as_deref()));
         }
     }
-    crate::report::finish(&report, &args.common)
+    Ok(())
 }
