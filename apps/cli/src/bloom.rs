@@ -427,7 +427,7 @@ fn run(args: &BloomRunArgs) -> Outcome {
         return Err(Failure::Bad("--day must be a finite number".into()));
     }
     let start = Path::new(&args.start);
-    if let Some(spec) = bloom::preset(&args.start).filter(|_| !start.exists()) {
+    if let Some(spec) = bloom::preset(&args.start).filter(|_| !start.exists() || start.is_dir()) {
         return flower(args, spec, law, outputs, &machine);
     }
     if args.petal.is_some() {

@@ -5,7 +5,7 @@ use std::fs::{self, File};
 use std::hash::{BuildHasher as _, Hasher as _, RandomState};
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, SystemTime};
 
 /// Drafts of this process, for a program that is ended in the middle.
@@ -44,7 +44,7 @@ impl Draft {
         for _ in 0..64 {
             let path = folder.join(format!("{START}{:016x}{END}", random()));
             // Under the lock: what is made is known, so that it is removed when the program is ended.
-            let mut drafts = DRAFTS.lock().map_err(|_| io::Error::other("a thread died"))?;
+            let mut drafts = DRAFTS.lock().unwrap_or_else(PoisonError::into_inner);
             match make(&path) {
                 Ok(made) => {
                     drafts.insert(path.clone());
@@ -60,9 +60,7 @@ impl Draft {
     /// Gives the file its name; what had that name is replaced.
     pub(crate) fn put(&mut self, place: &Path) -> io::Result<()> {
         fs::rename(&self.path, place)?;
-        if let Ok(mut drafts) = DRAFTS.lock() {
-            drafts.remove(&self.path);
-        }
+        DRAFTS.lock().unwrap_or_else(PoisonError::into_inner).remove(&self.path);
         self.path = PathBuf::new();
         Ok(())
     }
@@ -70,9 +68,7 @@ impl Draft {
 
 impl Drop for Draft {
     fn drop(&mut self) {
-        if let Ok(mut drafts) = DRAFTS.lock()
-            && drafts.remove(&self.path)
-        {
+        if DRAFTS.lock().unwrap_or_else(PoisonError::into_inner).remove(&self.path) {
             let _ = fs::remove_file(&self.path);
         }
     }
@@ -80,10 +76,9 @@ impl Drop for Draft {
 
 /// Removes what is half-written; for the end of the program.
 pub(crate) fn remove_all() {
-    if let Ok(mut drafts) = DRAFTS.lock() {
-        drafts.iter().for_each(|path| drop(fs::remove_file(path)));
-        drafts.clear();
-    }
+    let mut drafts = DRAFTS.lock().unwrap_or_else(PoisonError::into_inner);
+    drafts.iter().for_each(|path| drop(fs::remove_file(path)));
+    drafts.clear();
 }
 
 // Keys of hash maps are random numbers of the system, which is all that is wanted here: other processes, and others in

@@ -5,12 +5,13 @@ use std::path::{Component, Path, PathBuf};
 
 use burgeon::document::{self, Document, DocumentPlant, MAX_PROJECT_BYTES};
 use burgeon::formats::{
-    DrawingFormat, ExportSpec, FileStems, ModelFormat, PngCache, ReadDrawing, obj_files, usd_files,
-    warn_of_wind, write_glb_with, write_mtg,
+    DrawingFormat, ExportSpec, FileStems, MAX_MODEL_BYTES, ModelFormat, PngCache, ReadDrawing, obj_files,
+    usd_files, warn_of_wind, write_glb_with, write_mtg,
 };
 use burgeon::mesh::Model;
 use burgeon::plant::Plant;
 use burgeon::{Report, Warning};
+use serde::Deserialize;
 
 use crate::args::{AxesArgs, UnitWord, UpWord};
 use crate::failure::{Failure, Outcome};
@@ -165,6 +166,7 @@ pub(crate) fn read_opened_model(
         }
     };
     let mut report = Report::default();
+    let input = if format.fixed_axes() { announce_gltf(path, input)? } else { input };
     let beside = |name: &str| resolve(path, name);
     let model = burgeon::formats::read_model(input, format, &stem(path), axes, &beside, &mut report);
     Ok((model.map_err(|e| Failure::at(path, e))?, format, report.warnings))
@@ -173,15 +175,67 @@ pub(crate) fn read_opened_model(
 /// Largest file that a model may refer to: 256 MiB.
 const MAX_SIDE_FILE: u64 = 256 << 20;
 
+/// What a glTF names, read or not: only some of its pictures are.
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct GltfFiles {
+    buffers: Vec<GltfFile>,
+    images: Vec<GltfFile>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct GltfFile {
+    uri: Option<String>,
+}
+
+/// Keeps the files that a glTF names from being written over. The input starts anew.
+fn announce_gltf(model: &Path, mut input: Input) -> Outcome<Input> {
+    let failed = |e: &std::io::Error| Failure::io(model, "read", e);
+    let mut start = Vec::new();
+    input.by_ref().take(20).read_to_end(&mut start).map_err(|e| failed(&e))?;
+    // A binary one has its JSON first, after 20 bytes: the mark, version and length, and the JSON's own length and mark.
+    let (from, length) = match start.as_slice() {
+        &[b'g', b'l', b'T', b'F', _, _, _, _, _, _, _, _, a, b, c, d, ..] => {
+            (20, u64::from(u32::from_le_bytes([a, b, c, d])))
+        }
+        _ => (0, MAX_MODEL_BYTES),
+    };
+    input.by_ref().take(length).read_to_end(&mut start).map_err(|e| failed(&e))?;
+    // What is wrong with it the reader of models says.
+    let files: GltfFiles =
+        start.get(from..).and_then(|json| serde_json::from_slice(json).ok()).unwrap_or_default();
+    let names = files.buffers.iter().chain(&files.images).filter_map(|f| f.uri.as_deref());
+    names.filter(|n| !n.starts_with("data:")).for_each(|n| inputs::announce(&beside(model, n)));
+    Ok(Box::new(BufReader::new(Cursor::new(start).chain(input))))
+}
+
+/// Keeps the textures that a material file names from being written over.
+fn announce_textures(model: &Path, text: &[u8]) {
+    for line in String::from_utf8_lossy(text).lines() {
+        let (key, rest) = line.trim().split_once(char::is_whitespace).unwrap_or_default();
+        if key.starts_with("map_") || ["bump", "disp", "decal", "refl", "norm"].contains(&key) {
+            let rest = rest.trim();
+            let name = if rest.starts_with('-') { rest.rsplit(' ').next().unwrap_or(rest) } else { rest };
+            inputs::announce(&beside(model, name));
+        }
+    }
+}
+
+/// The path of a file that a model names.
+fn beside(model: &Path, name: &str) -> PathBuf {
+    model.parent().unwrap_or_else(|| Path::new("")).join(name.replace('\\', "/"))
+}
+
 // A material file or texture in the model's folder or below it: a file from elsewhere must not make us read
 // other places.
 fn resolve(model: &Path, name: &str) -> Option<Vec<u8>> {
+    let path = beside(model, name);
+    inputs::announce(&path);
     let name = name.replace('\\', "/");
-    let relative = Path::new(&name);
-    if !relative.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir)) {
+    if !Path::new(&name).components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir)) {
         return None;
     }
-    let path = model.parent().unwrap_or_else(|| Path::new("")).join(relative);
     // Asked before it is opened: opening a pipe waits for its writer.
     if !std::fs::metadata(&path).is_ok_and(|m| m.is_file() && m.len() <= MAX_SIDE_FILE) {
         return None;
@@ -189,6 +243,9 @@ fn resolve(model: &Path, name: &str) -> Option<Vec<u8>> {
     let file = inputs::open(&path).ok()?;
     let mut bytes = Vec::new();
     file.take(MAX_SIDE_FILE).read_to_end(&mut bytes).ok()?;
+    if extension(&path).is_some_and(|e| e.eq_ignore_ascii_case("mtl")) {
+        announce_textures(model, &bytes);
+    }
     Some(bytes)
 }
 

@@ -323,3 +323,45 @@ pub(crate) fn check_target(target: &Path) -> Outcome {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two files, of which the second cannot be put in place: the first one's old bytes, if any, come back.
+    #[test]
+    fn a_file_that_cannot_be_put_in_place_takes_the_others_back() {
+        let folder = std::env::temp_dir().join(format!("burgeon-outputs-{}", std::process::id()));
+        for earlier in [Some("earlier"), None] {
+            fs::create_dir_all(folder.join("made")).expect("a folder");
+            let [a, b] = ["made/a", "b"].map(|n| folder.join(n));
+            earlier.map(|text| fs::write(&a, text)).transpose().expect("writes");
+            let mut outputs = Outputs::default();
+            for path in [&a, &b] {
+                outputs.write("-o", path, |out| Ok(out.write_all(b"new")?)).expect("a draft");
+            }
+            // Somebody takes the second draft away.
+            let draft = fs::read_dir(&folder).expect("a folder").flatten().find(|e| e.path().is_file());
+            fs::remove_file(draft.expect("the draft").path()).expect("removed");
+            let failure = outputs.place().expect_err("one is missing");
+            assert!(matches!(failure, Failure::Bad(line) if line.contains("cannot be written")));
+            assert_eq!(fs::read_to_string(&a).ok().as_deref(), earlier);
+            assert_eq!(
+                fs::read_dir(folder.join("made")).expect("a folder").count(),
+                usize::from(earlier.is_some())
+            );
+            assert_eq!(fs::read_dir(&folder).expect("a folder").count(), 1);
+            fs::remove_dir_all(&folder).expect("removed");
+        }
+    }
+
+    #[test]
+    fn folders_that_stay_empty_go() {
+        let folder = std::env::temp_dir().join(format!("burgeon-folders-{}", std::process::id()));
+        let mut outputs = Outputs::default();
+        outputs.folder(&folder.join("a/b")).expect("made");
+        assert!(folder.join("a/b").is_dir());
+        drop(outputs);
+        assert!(!folder.exists());
+    }
+}
