@@ -73,7 +73,8 @@ const SHAPE_EXAMPLES: &str = "Examples:
   burgeon shape tree.svg --edits edits.json -o tree.glb --report tree.json
   burgeon shape garden.burgeon --plant bush --edits edits.json -o bush.glb --save garden2.burgeon
 
-Edits are done one after another; one that cannot be done says why and changes nothing.
+Edits are done one after another; one that cannot be done says why and changes nothing. If none can be done
+that is an error, and so is a number out of its range, such as an \"at\" outside of 0 to 1.
 A branch is named by  {\"path\": [0, 2]}  (stem 0, its branch number 2 from the base up),
 by  {\"near\": [1.2, 3.4, 0]}  (metres), or by the mark that the Studio keeps.";
 

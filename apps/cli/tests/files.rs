@@ -299,6 +299,11 @@ fn names_of_other_languages_are_kept() {
     let models: Vec<String> = names(&dir.join("out")).into_iter().filter(|n| n.ends_with(".obj")).collect();
     let cut = format!("{}.obj", "花".repeat(66));
     assert_eq!(models, ["Grüße-🌹.obj", "हिन्दी.obj", "花.obj", cut.as_str()]);
+    // As long as names can be: those beside it are shorter.
+    let model = format!("{}.obj", "花".repeat(83));
+    good(&dir, &["sketch", "花.svg", "-o", &model]);
+    let info: serde_json::Value = serde_json::from_str(&good(&dir, &["info", &model, "--json"])).unwrap();
+    assert_eq!(info["model"]["warnings"], serde_json::json!([]));
 }
 
 #[test]
