@@ -394,27 +394,27 @@ struct Show<'a> {
 
 /// The outputs of `run`: -o is a file, or a folder for the shapes of all days.
 fn planned(args: &BloomRunArgs) -> Outcome<Outputs> {
-    let file = files::extension(&args.output).is_some();
-    let named = [
-        ("-o", Some(&args.output).filter(|_| file)),
-        ("--png", args.png.as_ref()),
-        ("--report", args.common.report.as_ref()),
-    ];
     let start = PathBuf::from(&args.start);
     let inputs =
         [Some(&start), args.end.as_ref(), args.petal.as_ref(), args.law.as_ref(), args.compare.as_ref()];
-    let mut outputs = Outputs::new(&named, &inputs.into_iter().flatten().collect::<Vec<_>>())?;
-    if let Some(png) = &args.png {
-        picture::check_name(png)?;
-    }
-    match args.day {
-        _ if file => {
+    let mut outputs = Outputs::new(&[], &inputs.into_iter().flatten().collect::<Vec<_>>())?;
+    match (files::extension(&args.output), args.day) {
+        (Some(_), _) => {
+            outputs.plan("-o", &args.output)?;
             files::plan_model(&mut outputs, &args.output)?;
         }
-        Some(_) => {
+        (None, Some(_)) => {
             return Err(Failure::at(&args.output, "has no extension; end it with .glb, .ply, .obj or .stl"));
         }
-        None => outputs.folder(&args.output)?,
+        // First: a report may lie in it.
+        (None, None) => outputs.folder(&args.output)?,
+    }
+    if let Some(png) = &args.png {
+        picture::check_name(png)?;
+        outputs.plan("--png", png)?;
+    }
+    if let Some(report) = &args.common.report {
+        outputs.plan("--report", report)?;
     }
     Ok(outputs)
 }

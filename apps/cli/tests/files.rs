@@ -214,10 +214,19 @@ fn laws_scans_and_edits_are_kept() {
     refused(&dir, &own, &["petal.obj: -o", INPUT]);
     // A folder that was made for frames goes with them.
     let frames = ["bloom", "run", "lily", "--frames", "2", "-o", "a/b", "--report", "a/b/lily-001.glb"];
-    refused(&dir, &frames, &["the folder a/b does not exist"]);
+    refused(&dir, &frames, &["lily-001.glb: --report and -o", SAME]);
     fs::create_dir_all(dir.join("a/b")).unwrap();
     refused(&dir, &frames, &["lily-001.glb: --report and -o", SAME]);
     refused(&dir, &["bloom", "run", "day3.ply", "-o", "new/frames"], &["--end is missing"]);
+    good(
+        &dir,
+        &["bloom", "run", "lily", "--frames", "2", "-o", "lily", "--report", "lily/report.json", "-q"],
+    );
+    good(
+        &dir,
+        &["bloom", "run", "lily", "--frames", "2", "-o", "lily", "--report", "lily/report.json", "-q"],
+    );
+    assert_eq!(names(&dir.join("lily")), ["lily-000.glb", "lily-001.glb", "report.json"]);
 
     fs::write(dir.join("small.toml"), SMALL).unwrap();
     let cut = r#"{"schema": "burgeon.edits/1", "edits": [{"op": "prune", "axis": {"path": [0, 0]}}]}"#;
