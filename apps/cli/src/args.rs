@@ -15,8 +15,9 @@ use crate::given::Given;
 /// Three-dimensional plants out of what people can draw.
 ///
 /// Exit status: 0 on success, 2 for bad usage or bad input (one line on stderr says what, where and what to do),
-/// 1 for a bug of burgeon, 130 after Ctrl-C or another request to end (what was finished by then stays). Files
-/// are written whole or not at all. An input named - is standard input.
+/// 1 for a bug of burgeon, 130 after Ctrl-C or another request to end (drawings of a batch that were finished by then
+/// stay). The files of a command are written all or none, and never over a file that it reads; other files of
+/// the same name are replaced, links are followed (docs/exports.md). An input named - is standard input.
 #[derive(Debug, Parser)]
 #[command(
     name = "burgeon",

@@ -14,11 +14,13 @@ use serde::Serialize;
 
 use crate::args::{AxesArgs, CommonArgs, PictureArgs, ViewWord};
 use crate::failure::{Failure, Outcome};
+use crate::files::Goal;
 use crate::given::Given;
 use crate::machine::Machine;
+use crate::output::Outputs;
 use crate::petals::{drawing, is_drawing, petal_form};
 use crate::stages::{self, Loaded};
-use crate::{files, output, picture, report, say};
+use crate::{files, names, picture, report, say};
 
 /// The two commands.
 #[derive(Debug, Subcommand)]
@@ -271,15 +273,18 @@ fn bad(path: &Path) -> impl Fn(bloom::BloomError) -> Failure + '_ {
 
 fn fit(args: &FitArgs) -> Outcome {
     let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
-    output::check_target(&args.output)?;
-    if let Some(plot) = &args.plot {
-        output::check_target(plot)?;
-    }
+    let outputs = [
+        ("-o", Some(&args.output)),
+        ("--plot", args.plot.as_ref()),
+        ("--report", args.common.report.as_ref()),
+    ];
+    let mut outputs = Outputs::new(&outputs, &[&args.input])?;
     let axes = files::axes(args.axes.up, args.axes.unit);
     let (loaded, read_ms) = machine.timed(|| {
         machine.with_progress("scans", |_| stages::load(&args.input, &axes, Seed::new(args.seed), &machine))
     });
     let loaded = loaded?;
+    outputs.check()?;
     let spec = LawSpec { regions: args.regions as usize, ..LawSpec::default() };
     let (law, fit_ms) = machine.timed(|| bloom::fit_stages(&loaded.name, &loaded.stages, &spec));
     let law = law.map_err(bad(&args.input))?;
@@ -292,10 +297,11 @@ fn fit(args: &FitArgs) -> Outcome {
     let text = serde_json::to_string_pretty(&law)
         .map_err(|e| Failure::Bug(format!("the law cannot be written as JSON: {e}")))?;
     let (written, write_ms) = machine.timed(|| {
-        output::write_whole(&args.output, |out| Ok(writeln!(out, "{text}")?))?;
+        outputs.write("-o", &args.output, |out| Ok(writeln!(out, "{text}")?))?;
         match &args.plot {
             Some(plot) => {
-                output::write_whole(plot, |out| Ok(out.write_all(bloom::plot_svg(&law).as_bytes())?))
+                let svg = bloom::plot_svg(&law);
+                outputs.write("--plot", plot, |out| Ok(out.write_all(svg.as_bytes())?))
             }
             None => Ok(()),
         }
@@ -307,29 +313,6 @@ fn fit(args: &FitArgs) -> Outcome {
         item.timings_ms.total = fit_ms;
         item.timings_ms.add_io(read_ms, write_ms);
         item.warnings.clone_from(&loaded.warnings);
-    }
-    if !machine.quiet {
-        loaded.warnings.iter().for_each(|w| say::warning(w));
-        loaded.told.iter().for_each(|t| say::line(&t.line()));
-        for l in &law.laws {
-            say::line(&format!(
-                "{} region {} {}: K {:.3} mm, p0 {:.3} mm, r {:.4} a day, R2 {:.3}{}{}",
-                l.organ,
-                l.region,
-                l.axis.word(),
-                l.law.k * 1e3,
-                l.law.p0 * 1e3,
-                l.law.r,
-                l.r2,
-                l.loo_rmse.map_or(String::new(), |e| format!(", leave-one-out {:.3} mm", e * 1e3)),
-                if l.law.on_bound(law.span_days) {
-                    " (on a bound: these days determine no logistic)"
-                } else {
-                    ""
-                }
-            ));
-        }
-        say::line(&format!("{}: {} laws", args.output.display(), law.laws.len()));
     }
     let laws = law.laws.iter().map(|l| LawReport {
         organ: l.organ.clone(),
@@ -346,7 +329,35 @@ fn fit(args: &FitArgs) -> Outcome {
         on_bound: l.law.on_bound(law.span_days),
     });
     let report = FitReport { run, laws: laws.collect(), stages: loaded.told };
-    report::finish_any(&report, &args.common)
+    report::finish(&report, &args.common, outputs)?;
+    if !machine.quiet {
+        loaded.warnings.iter().for_each(|w| say::warning(w));
+        report.stages.iter().for_each(|t| say::line(&t.line()));
+        tell_laws(&law);
+        say::line(&format!("{}: {} laws", args.output.display(), law.laws.len()));
+    }
+    Ok(())
+}
+
+fn tell_laws(law: &GrowthLaw) {
+    for l in &law.laws {
+        say::line(&format!(
+            "{} region {} {}: K {:.3} mm, p0 {:.3} mm, r {:.4} a day, R2 {:.3}{}{}",
+            l.organ,
+            l.region,
+            l.axis.word(),
+            l.law.k * 1e3,
+            l.law.p0 * 1e3,
+            l.law.r,
+            l.r2,
+            l.loo_rmse.map_or(String::new(), |e| format!(", leave-one-out {:.3} mm", e * 1e3)),
+            if l.law.on_bound(law.span_days) {
+                " (on a bound: these days determine no logistic)"
+            } else {
+                ""
+            }
+        ));
+    }
 }
 
 fn head(command: &str, seed: u64, input: &str, name: &str, output: &Path) -> RunReport {
@@ -386,21 +397,49 @@ struct Show<'a> {
     shape: Shape<'a>,
 }
 
+/// The outputs of `run`: -o is a file, or a folder for the shapes of all days.
+fn planned(args: &BloomRunArgs) -> Outcome<Outputs> {
+    let start = PathBuf::from(&args.start);
+    let inputs =
+        [Some(&start), args.end.as_ref(), args.petal.as_ref(), args.law.as_ref(), args.compare.as_ref()];
+    let mut outputs = Outputs::new(&[], &inputs.into_iter().flatten().collect::<Vec<_>>())?;
+    match (files::extension(&args.output), args.day) {
+        (Some(_), _) => {
+            outputs.plan("-o", &args.output)?;
+            files::plan_model(&mut outputs, &args.output)?;
+        }
+        (None, Some(_)) => {
+            return Err(Failure::at(&args.output, "has no extension; end it with .glb, .ply, .obj or .stl"));
+        }
+        // First: a report may lie in it.
+        (None, None) => outputs.folder(&args.output)?,
+    }
+    if let Some(png) = &args.png {
+        picture::check_name(png)?;
+        outputs.plan("--png", png)?;
+    }
+    if let Some(report) = &args.common.report {
+        outputs.plan("--report", report)?;
+    }
+    Ok(outputs)
+}
+
 fn run(args: &BloomRunArgs) -> Outcome {
     let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
+    let mut outputs = planned(args)?;
     let law = args.law.as_deref().map(read_law).transpose()?;
     if args.day.is_some_and(|d| !d.is_finite()) {
         return Err(Failure::Bad("--day must be a finite number".into()));
     }
     let start = Path::new(&args.start);
     check_used(args)?;
-    if let Some(spec) = bloom::preset(&args.start).filter(|_| !start.exists()) {
-        return flower(args, spec, law, &machine);
+    if let Some(spec) = bloom::preset(&args.start).filter(|_| !start.exists() || start.is_dir()) {
+        return flower(args, spec, law, outputs, &machine);
     }
     let flowers = format!("whole flowers ({})", FlowerSpec::PRESETS.join(", "));
     args.given.refuse(&["petal"], &flowers, &format!("{} is none", args.start))?;
     if is_drawing(start) {
-        return drawn_flower(args, start, law, &machine);
+        return drawn_flower(args, start, law, outputs, &machine);
     }
     let axes = files::axes(args.axes.up, args.axes.unit);
     let options = stages::Options { clean: !args.no_clean, split: !args.whole };
@@ -408,6 +447,7 @@ fn run(args: &BloomRunArgs) -> Outcome {
         machine.with_progress("scans", |_| load_shapes(args, &axes, options, law.as_ref(), &machine))
     });
     let mut loaded = loaded?;
+    outputs.check()?;
     let first_day = loaded.stages.first().map_or(0.0, |s| s.day);
     let last_day = loaded.stages.last().map_or(0.0, |s| s.day);
     let law = law.unwrap_or_else(|| straight_law(last_day - first_day));
@@ -445,7 +485,7 @@ fn run(args: &BloomRunArgs) -> Outcome {
             Ok((burgeon::motion_model(&loaded.name, loaded.mesh.as_ref(), &motion, &points), None))
         }),
     };
-    let (written, write_ms) = machine.timed(|| write_show(args, &show, &axes, &machine));
+    let (written, write_ms) = machine.timed(|| write_show(args, &show, &axes, &mut outputs, &machine));
     let written = written?;
     let mut head = head("bloom run", args.seed, &args.start, &loaded.name, &args.output);
     head.items[0].warnings.clone_from(&loaded.warnings);
@@ -464,7 +504,7 @@ fn run(args: &BloomRunArgs) -> Outcome {
         lattice: Some(args.lattice),
         times: [read_ms, fit_ms, write_ms],
     };
-    tell(args, &machine, told, written)
+    tell(args, &machine, told, written, outputs)
 }
 
 /// Everything that the report of `run` is made of, beside what was written.
@@ -477,7 +517,13 @@ struct Told {
     times: [f64; 3],
 }
 
-fn tell(args: &BloomRunArgs, machine: &Machine, mut told: Told, written: Written) -> Outcome {
+fn tell(
+    args: &BloomRunArgs,
+    machine: &Machine,
+    mut told: Told,
+    written: Written,
+    outputs: Outputs,
+) -> Outcome {
     let item = &mut told.head.items[0];
     item.counts.vertices = written.vertices;
     item.counts.triangles = written.triangles;
@@ -485,9 +531,21 @@ fn tell(args: &BloomRunArgs, machine: &Machine, mut told: Told, written: Written
     item.timings_ms.structure = told.times[1];
     item.timings_ms.total = told.times[1];
     item.timings_ms.add_io(told.times[0], told.times[2]);
+    let report = MotionReport {
+        run: told.head,
+        frames: written.frames,
+        day: args.day,
+        lattice: told.lattice,
+        error: told.error,
+        residuals: told.residuals,
+        overlap: written.overlap,
+        stages: told.stages,
+    };
+    report::finish(&report, &args.common, outputs)?;
     if !machine.quiet {
+        let item = &report.run.items[0];
         item.warnings.iter().for_each(|w| say::warning(w));
-        if let Some(e) = &told.error {
+        if let Some(e) = &report.error {
             say::line(&format!(
                 "error: {:.3} mm (mean over x, y, z as the paper has it); Euclidean, scan to model: {:.3} mm mean, {:.3} \
                  RMS, {:.3} 95 %, {:.3} max, {:.1} % within 2 mm; model to scan: {:.3} mean, {:.3} RMS, {:.3} max",
@@ -502,25 +560,15 @@ fn tell(args: &BloomRunArgs, machine: &Machine, mut told: Told, written: Written
                 e.back_max_mm
             ));
         }
-        let frames = say::counted(u64::from(written.frames), "shape", "shapes");
-        let points = say::counted(written.vertices, "point", "points");
+        let frames = say::counted(u64::from(report.frames), "shape", "shapes");
+        let points = say::counted(item.counts.vertices, "point", "points");
         say::line(&format!(
             "{}: {frames} of {points}; {:.0} ms",
             args.output.display(),
             item.timings_ms.total
         ));
     }
-    let report = MotionReport {
-        run: told.head,
-        frames: written.frames,
-        day: args.day,
-        lattice: told.lattice,
-        error: told.error,
-        residuals: told.residuals,
-        overlap: written.overlap,
-        stages: told.stages,
-    };
-    report::finish_any(&report, &args.common)
+    Ok(())
 }
 
 /// The largest side of the box round some points.
@@ -604,7 +652,13 @@ fn no_scans(args: &BloomRunArgs, name: &str) -> Outcome {
 }
 
 /// A drawing whose flowers open.
-fn drawn_flower(args: &BloomRunArgs, path: &Path, law: Option<GrowthLaw>, machine: &Machine) -> Outcome {
+fn drawn_flower(
+    args: &BloomRunArgs,
+    path: &Path,
+    law: Option<GrowthLaw>,
+    mut outputs: Outputs,
+    machine: &Machine,
+) -> Outcome {
     no_scans(args, &args.start)?;
     let ((drawing, options), read_ms) = {
         let (read, ms) = machine.timed(|| drawing(path));
@@ -627,7 +681,7 @@ fn drawn_flower(args: &BloomRunArgs, path: &Path, law: Option<GrowthLaw>, machin
             Ok((model, Some(overlap)))
         }),
     };
-    let (written, write_ms) = machine.timed(|| write_show(args, &show, &axes, machine));
+    let (written, write_ms) = machine.timed(|| write_show(args, &show, &axes, &mut outputs, machine));
     let written = written?;
     let mut head = head("bloom run", args.seed, &args.start, &plant.name, &args.output);
     head.items[0].counts = plant.item.counts;
@@ -635,15 +689,17 @@ fn drawn_flower(args: &BloomRunArgs, path: &Path, law: Option<GrowthLaw>, machin
     (head.items[0].counts.flowers, head.items[0].counts.petals) = (Some(flowers), Some(petals));
     head.items[0].warnings.clone_from(&plant.item.warnings);
     let times = [read_ms, made_ms, write_ms];
-    tell(
-        args,
-        machine,
-        Told { head, residuals: vec![], error: None, stages: vec![], lattice: None, times },
-        written,
-    )
+    let told = Told { head, residuals: vec![], error: None, stages: vec![], lattice: None, times };
+    tell(args, machine, told, written, outputs)
 }
 
-fn flower(args: &BloomRunArgs, spec: FlowerSpec, law: Option<GrowthLaw>, machine: &Machine) -> Outcome {
+fn flower(
+    args: &BloomRunArgs,
+    spec: FlowerSpec,
+    law: Option<GrowthLaw>,
+    mut outputs: Outputs,
+    machine: &Machine,
+) -> Outcome {
     no_scans(args, &spec.name)?;
     let spec = match &args.petal {
         Some(path) => {
@@ -664,7 +720,7 @@ fn flower(args: &BloomRunArgs, spec: FlowerSpec, law: Option<GrowthLaw>, machine
             Ok((frame.model, Some(overlap)))
         }),
     };
-    let (written, write_ms) = machine.timed(|| write_show(args, &show, &axes, machine));
+    let (written, write_ms) = machine.timed(|| write_show(args, &show, &axes, &mut outputs, machine));
     let written = written?;
     let mut head = head("bloom run", args.seed, &args.start, &spec.name, &args.output);
     let petals: u32 = spec.whorls.iter().map(|w| w.count).sum();
@@ -672,7 +728,7 @@ fn flower(args: &BloomRunArgs, spec: FlowerSpec, law: Option<GrowthLaw>, machine
     head.items[0].counts.petals = Some(u64::from(petals) * u64::from(spec.umbel));
     let times = [0.0, 0.0, write_ms];
     let told = Told { head, residuals: vec![], error: None, stages: vec![], lattice: None, times };
-    tell(args, machine, told, written)
+    tell(args, machine, told, written, outputs)
 }
 
 /// What was written.
@@ -698,6 +754,7 @@ fn write_show(
     args: &BloomRunArgs,
     show: &Show<'_>,
     axes: &ExportSpec,
+    outputs: &mut Outputs,
     machine: &Machine,
 ) -> Outcome<Written> {
     let mut written = Written::default();
@@ -707,23 +764,20 @@ fn write_show(
         let share = f64::from(k) / f64::from(args.frames - 1);
         show.days[0] + (show.days[1] - show.days[0]) * share
     };
-    let one = |day: f64, path: &Path, written: &mut Written, digest: &mut Digest| -> Outcome {
+    let mut one = |day: f64, path: &Path, written: &mut Written, digest: &mut Digest| -> Outcome {
         machine.cancel.check()?;
         let (model, overlap) = (show.shape)(day)?;
         digest.add(&model);
         written.take(&model, overlap);
-        write_one(path, &model, axes)
+        write_one(outputs, path, &model, axes)
     };
     match (extension.as_deref(), args.day) {
-        (None, None) => {
-            output::make_folder(&args.output)?;
+        (None, _) => {
+            let name = names::safe(&show.name);
             for k in 0..args.frames {
-                let name = format!("{}-{k:03}.{}", show.name, args.format.extension());
+                let name = format!("{name}-{k:03}.{}", args.format.extension());
                 one(at(k), &args.output.join(name), &mut written, &mut digest)?;
             }
-        }
-        (None, Some(_)) => {
-            return Err(Failure::at(&args.output, "has no extension; end it with .glb, .ply, .obj or .stl"));
         }
         (Some(_), Some(day)) => one(day, &args.output, &mut written, &mut digest)?,
         (Some("glb"), None) => {
@@ -745,7 +799,7 @@ fn write_show(
                 let keys = (0..args.frames).zip(&models).filter(|(k, _)| *k != best);
                 let keys = keys.map(|(k, m)| (second(k), m)).collect();
                 let morph = Morph { name: "growth", at: second(best), keys };
-                output::write_whole(&args.output, |out| write_glb_morph(model, &morph, out))?;
+                outputs.write("-o", &args.output, |out| write_glb_morph(model, &morph, out))?;
             }
         }
         (Some(_), None) => one(show.best, &args.output, &mut written, &mut digest)?,
@@ -764,14 +818,14 @@ fn write_show(
         let model = with_dots(model);
         let drawn =
             machine.with_progress("picture", |_| burgeon::render::render(&model, &spec, &machine.run()))?;
-        picture::write(png, &drawn)?;
+        picture::write(outputs, "--png", png, &drawn)?;
     }
     written.digest = digest.hex();
     Ok(written)
 }
 
 /// Clouds as PLY in double precision, everything else by the writers of models.
-fn write_one(path: &Path, model: &Model, axes: &ExportSpec) -> Outcome {
+fn write_one(outputs: &mut Outputs, path: &Path, model: &Model, axes: &ExportSpec) -> Outcome {
     let bare = model.parts.iter().all(|p| p.mesh.triangles.is_empty());
     let format: ModelFormat = files::writable(path)?;
     if bare && format == ModelFormat::Ply {
@@ -784,7 +838,7 @@ fn write_one(path: &Path, model: &Model, axes: &ExportSpec) -> Outcome {
                 cloud.colors.push(color.map(|c| (c.clamp(0.0, 1.0).sqrt() * 255.0) as u8));
             }
         }
-        return output::write_whole(path, |out| write_cloud_ply(&cloud, axes, out));
+        return outputs.write("-o", path, |out| write_cloud_ply(&cloud, axes, out));
     }
     if bare && matches!(format, ModelFormat::Stl) {
         return Err(Failure::at(
@@ -794,7 +848,7 @@ fn write_one(path: &Path, model: &Model, axes: &ExportSpec) -> Outcome {
     }
     // --unit and --up were those of the scans: a GLB in metres with +Y up is no surprise.
     let axes = if format == ModelFormat::Glb { &ExportSpec::default() } else { axes };
-    files::write_model(path, model, format, axes, &mut PngCache::new()).map(drop)
+    files::write_model(outputs, Goal::new("-o", path), model, format, axes, &mut PngCache::new()).map(drop)
 }
 
 /// Points are drawn as small tetrahedra.

@@ -16,7 +16,8 @@ use crate::args::{CommonArgs, PictureArgs, ranged, seed};
 use crate::failure::{Failure, Outcome};
 use crate::given::Given;
 use crate::machine::Machine;
-use crate::{output, picture, report, say};
+use crate::output::Outputs;
+use crate::{picture, report, say};
 
 #[derive(Args, Debug)]
 #[command(after_long_help = "Examples:
@@ -161,7 +162,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Outcome {
     let trees = args.what.trees()?;
     let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
     let outputs = [("--png", args.png.as_ref()), ("--report", args.common.report.as_ref())];
-    output::check_outputs(&outputs, &[])?;
+    let mut outputs = Outputs::new(&outputs, &[])?;
     let given = &args.given;
     given.check_picture(args.png.is_some(), &args.picture)?;
     given.refuse(&["view"], "other commands' pictures", "trees are compared from the front")?;
@@ -189,10 +190,8 @@ pub(crate) fn compare(args: &CompareArgs) -> Outcome {
     })?;
     let (rows, pictures): (Vec<_>, Vec<_>) = made.into_iter().unzip();
     if let Some(png) = &args.png {
-        picture::write(png, &side_by_side(&pictures.into_iter().flatten().collect::<Vec<_>>()))?;
-    }
-    if !machine.quiet {
-        table(&rows);
+        let drawn = side_by_side(&pictures.into_iter().flatten().collect::<Vec<_>>());
+        picture::write(&mut outputs, "--png", png, &drawn)?;
     }
     let comparison = Comparison {
         schema: "burgeon.comparison/1",
@@ -202,7 +201,11 @@ pub(crate) fn compare(args: &CompareArgs) -> Outcome {
         rows,
         notes: args.what.notes(),
     };
-    report::finish_any(&comparison, &args.common)
+    report::finish(&comparison, &args.common, outputs)?;
+    if !machine.quiet {
+        table(&comparison.rows);
+    }
+    Ok(())
 }
 
 /// One of the oaks, grown once: so textures are painted before a clock starts, and its leaves are counted.

@@ -1,19 +1,20 @@
 //! `burgeon convert`: models to models, drawings to drawings.
 
-use burgeon::formats::{DrawingFormat, ModelFormat, PngCache, ReadDrawing, read_drawings, write_drawing};
+use burgeon::formats::{DrawingFormat, PngCache, ReadDrawing, read_drawings, write_drawing};
 use burgeon::{ItemReport, RunReport};
 
 use crate::args::ConvertArgs;
 use crate::failure::{Failure, Outcome};
-use crate::files::{self, Kind};
+use crate::files::{self, Goal, Kind};
 use crate::machine::Machine;
-use crate::{output, picture, report, say};
+use crate::output::Outputs;
+use crate::{picture, report, say};
 
 pub(crate) fn convert(args: &ConvertArgs) -> Outcome {
     let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
     let outputs =
         [("-o", Some(&args.output)), ("--png", args.png.as_ref()), ("--report", args.common.report.as_ref())];
-    output::check_outputs(&outputs, &[&args.input])?;
+    let mut outputs = Outputs::new(&outputs, &[&args.input])?;
     if let Some(png) = &args.png {
         picture::check_name(png)?;
     }
@@ -21,9 +22,9 @@ pub(crate) fn convert(args: &ConvertArgs) -> Outcome {
     check_used(args, kind)?;
     let to_drawing = files::extension(&args.output).is_some_and(|e| e.eq_ignore_ascii_case("json"));
     let item = match (kind, to_drawing) {
-        (Kind::Drawing(format), true) => drawing(args, input, format, &machine)?,
-        (Kind::Project, true) => project(args, input, &machine)?,
-        (Kind::Model(_), false) => model(args, input, kind, &machine)?,
+        (Kind::Drawing(format), true) => drawing(args, input, format, &mut outputs, &machine)?,
+        (Kind::Project, true) => project(args, input, &mut outputs, &machine)?,
+        (Kind::Model(_), false) => model(args, input, kind, &mut outputs, &machine)?,
         (Kind::Drawing(_), false) => {
             return Err(Failure::at(
                 &args.input,
@@ -43,7 +44,14 @@ pub(crate) fn convert(args: &ConvertArgs) -> Outcome {
             ));
         }
     };
+    let mut run = RunReport::new("convert", args.seed);
+    run.input.path = args.input.display().to_string();
+    run.input.drawings = u64::from(to_drawing);
+    run.items.push(item);
+    run.ok = 1;
+    report::finish(&run, &args.common, outputs)?;
     if !machine.quiet {
+        let item = &run.items[0];
         item.warnings.iter().for_each(|w| say::warning(&format!("{}: {w}", args.input.display())));
         let what = match kind {
             Kind::Model(_) => say::counted(item.counts.triangles, "triangle", "triangles"),
@@ -51,30 +59,33 @@ pub(crate) fn convert(args: &ConvertArgs) -> Outcome {
         };
         say::line(&format!("{}: {what}; {:.0} ms", item.output, item.timings_ms.total));
     }
-    let mut run = RunReport::new("convert", args.seed);
-    run.input.path = args.input.display().to_string();
-    run.input.drawings = u64::from(to_drawing);
-    run.items.push(item);
-    run.ok = 1;
-    report::finish(&run, &args.common)
+    Ok(())
 }
 
-fn model(args: &ConvertArgs, input: files::Input, kind: Kind, machine: &Machine) -> Outcome<ItemReport> {
-    let format: ModelFormat = files::writable(&args.output)?;
+fn model(
+    args: &ConvertArgs,
+    input: files::Input,
+    kind: Kind,
+    outputs: &mut Outputs,
+    machine: &Machine,
+) -> Outcome<ItemReport> {
+    let format = files::plan_model(outputs, &args.output)?;
     let read_axes = files::axes(args.in_up.or(args.axes.up), args.in_unit.unwrap_or(args.axes.unit));
     let (read, read_ms) = machine.timed(|| files::read_opened_model(&args.input, input, kind, &read_axes));
     let (model, _, mut warnings) = read?;
+    outputs.check()?;
     machine.cancel.check()?;
     let (written, write_ms) = machine.timed(|| {
         let axes = files::axes(args.axes.up, args.axes.unit);
-        files::write_model(&args.output, &model, format, &axes, &mut PngCache::new())
+        let goal = Goal::new("-o", &args.output);
+        files::write_model(outputs, goal, &model, format, &axes, &mut PngCache::new())
     });
     warnings.extend(written?);
     if let Some(png) = &args.png {
         let spec = args.picture.spec(args.seed);
         let drawn =
             machine.with_progress("picture", |_| burgeon::render::render(&model, &spec, &machine.run()))?;
-        picture::write(png, &drawn)?;
+        picture::write(outputs, "--png", png, &drawn)?;
     }
     let mut item = picture::model_item(&model, &args.output, &warnings);
     item.timings_ms.add_io(read_ms, write_ms);
@@ -116,18 +127,24 @@ fn check_used(args: &ConvertArgs, kind: Kind) -> Outcome {
     given.check_axes(written || !read.fixed_axes())
 }
 
-fn project(args: &ConvertArgs, input: files::Input, machine: &Machine) -> Outcome<ItemReport> {
+fn project(
+    args: &ConvertArgs,
+    input: files::Input,
+    outputs: &mut Outputs,
+    machine: &Machine,
+) -> Outcome<ItemReport> {
     let (read, read_ms) = machine.timed(|| {
         let document = files::read_project(&args.input, input)?;
         files::drawing_of(&args.input, &document).map(|(read, _)| read)
     });
-    write(args, &read?, read_ms, machine)
+    write(args, &read?, read_ms, outputs, machine)
 }
 
 fn drawing(
     args: &ConvertArgs,
     input: files::Input,
     format: DrawingFormat,
+    outputs: &mut Outputs,
     machine: &Machine,
 ) -> Outcome<ItemReport> {
     let mut drawings = read_drawings(input, format, &files::stem(&args.input));
@@ -140,12 +157,18 @@ fn drawing(
             "holds several drawings, a .json file holds one; split the file by lines",
         ));
     }
-    write(args, &first, read_ms, machine)
+    write(args, &first, read_ms, outputs, machine)
 }
 
-fn write(args: &ConvertArgs, first: &ReadDrawing, read_ms: f64, machine: &Machine) -> Outcome<ItemReport> {
+fn write(
+    args: &ConvertArgs,
+    first: &ReadDrawing,
+    read_ms: f64,
+    outputs: &mut Outputs,
+    machine: &Machine,
+) -> Outcome<ItemReport> {
     let (written, write_ms) =
-        machine.timed(|| output::write_whole(&args.output, |out| write_drawing(&first.drawing, out)));
+        machine.timed(|| outputs.write("-o", &args.output, |out| write_drawing(&first.drawing, out)));
     written?;
     let mut item = ItemReport {
         name: first.drawing.name.clone(),

@@ -39,6 +39,10 @@ impl Failure {
             std::io::ErrorKind::StorageFull | std::io::ErrorKind::QuotaExceeded => {
                 "the disk is full; make room or choose another place".to_owned()
             }
+            std::io::ErrorKind::FileTooLarge => {
+                "it is larger than the disk or a limit of this account allows; choose another place"
+                    .to_owned()
+            }
             std::io::ErrorKind::InvalidFilename => "the name is too long; choose a shorter one".to_owned(),
             _ => error.to_string(),
         };

@@ -1,21 +1,22 @@
 //! Files by their extension or, failing that, by their first bytes.
 
-use std::fs::File;
 use std::io::{BufRead, BufReader, Cursor, Read};
-use std::path::{Component, Path};
+use std::path::{Component, Path, PathBuf};
 
 use burgeon::document::{self, Document, DocumentPlant, MAX_PROJECT_BYTES};
 use burgeon::formats::{
-    DrawingFormat, ExportSpec, ModelFormat, PngCache, ReadDrawing, obj_files, usd_files, warn_of_wind,
-    write_glb_with, write_mtg,
+    DrawingFormat, ExportSpec, FileStems, MAX_MODEL_BYTES, ModelFormat, PngCache, ReadDrawing, obj_files,
+    usd_files, warn_of_wind, write_glb_with, write_mtg,
 };
 use burgeon::mesh::Model;
 use burgeon::plant::Plant;
 use burgeon::{Report, Warning};
+use serde::Deserialize;
 
 use crate::args::{AxesArgs, UnitWord, UpWord};
 use crate::failure::{Failure, Outcome};
-use crate::output;
+use crate::inputs;
+use crate::output::{self, Outputs};
 
 /// What a file holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,7 +84,7 @@ pub(crate) fn open_bytes(path: &Path) -> Outcome<Input> {
     if path.is_dir() {
         return Err(Failure::at(path, "is a folder; name a file in it"));
     }
-    let file = File::open(path).map_err(|e| Failure::io(path, "read", &e))?;
+    let file = inputs::open(path).map_err(|e| Failure::io(path, "read", &e))?;
     Ok(Box::new(BufReader::new(file)))
 }
 
@@ -170,6 +171,7 @@ pub(crate) fn read_opened_model(
         }
     };
     let mut report = Report::default();
+    let input = if format.fixed_axes() { announce_gltf(path, input)? } else { input };
     let beside = |name: &str| resolve(path, name);
     let model = burgeon::formats::read_model(input, format, &stem(path), axes, &beside, &mut report);
     Ok((model.map_err(|e| Failure::at(path, e))?, format, report.warnings))
@@ -178,22 +180,77 @@ pub(crate) fn read_opened_model(
 /// Largest file that a model may refer to: 256 MiB.
 const MAX_SIDE_FILE: u64 = 256 << 20;
 
+/// What a glTF names, read or not: only some of its pictures are.
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct GltfFiles {
+    buffers: Vec<GltfFile>,
+    images: Vec<GltfFile>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct GltfFile {
+    uri: Option<String>,
+}
+
+/// Keeps the files that a glTF names from being written over. The input starts anew.
+fn announce_gltf(model: &Path, mut input: Input) -> Outcome<Input> {
+    let failed = |e: &std::io::Error| Failure::io(model, "read", e);
+    let mut start = Vec::new();
+    input.by_ref().take(20).read_to_end(&mut start).map_err(|e| failed(&e))?;
+    // A binary one has its JSON first, after 20 bytes: the mark, version and length, and the JSON's own length and mark.
+    let (from, length) = match start.as_slice() {
+        &[b'g', b'l', b'T', b'F', _, _, _, _, _, _, _, _, a, b, c, d, ..] => {
+            (20, u64::from(u32::from_le_bytes([a, b, c, d])))
+        }
+        _ => (0, MAX_MODEL_BYTES),
+    };
+    input.by_ref().take(length).read_to_end(&mut start).map_err(|e| failed(&e))?;
+    // What is wrong with it the reader of models says.
+    let files: GltfFiles =
+        start.get(from..).and_then(|json| serde_json::from_slice(json).ok()).unwrap_or_default();
+    let names = files.buffers.iter().chain(&files.images).filter_map(|f| f.uri.as_deref());
+    names.filter(|n| !n.starts_with("data:")).for_each(|n| inputs::announce(&beside(model, n)));
+    Ok(Box::new(BufReader::new(Cursor::new(start).chain(input))))
+}
+
+/// Keeps the textures that a material file names from being written over.
+fn announce_textures(model: &Path, text: &[u8]) {
+    for line in String::from_utf8_lossy(text).lines() {
+        let (key, rest) = line.trim().split_once(char::is_whitespace).unwrap_or_default();
+        if key.starts_with("map_") || ["bump", "disp", "decal", "refl", "norm"].contains(&key) {
+            let rest = rest.trim();
+            let name = if rest.starts_with('-') { rest.rsplit(' ').next().unwrap_or(rest) } else { rest };
+            inputs::announce(&beside(model, name));
+        }
+    }
+}
+
+/// The path of a file that a model names.
+fn beside(model: &Path, name: &str) -> PathBuf {
+    model.parent().unwrap_or_else(|| Path::new("")).join(name.replace('\\', "/"))
+}
+
 // A material file or texture in the model's folder or below it: a file from elsewhere must not make us read
 // other places.
 fn resolve(model: &Path, name: &str) -> Option<Vec<u8>> {
+    let path = beside(model, name);
+    inputs::announce(&path);
     let name = name.replace('\\', "/");
-    let relative = Path::new(&name);
-    if !relative.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir)) {
+    if !Path::new(&name).components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir)) {
         return None;
     }
-    let path = model.parent().unwrap_or_else(|| Path::new("")).join(relative);
     // Asked before it is opened: opening a pipe waits for its writer.
     if !std::fs::metadata(&path).is_ok_and(|m| m.is_file() && m.len() <= MAX_SIDE_FILE) {
         return None;
     }
-    let file = File::open(path).ok()?;
+    let file = inputs::open(&path).ok()?;
     let mut bytes = Vec::new();
     file.take(MAX_SIDE_FILE).read_to_end(&mut bytes).ok()?;
+    if extension(&path).is_some_and(|e| e.eq_ignore_ascii_case("mtl")) {
+        announce_textures(model, &bytes);
+    }
     Some(bytes)
 }
 
@@ -246,19 +303,88 @@ pub(crate) fn plant_writable(path: &Path) -> Outcome<PlantFormat> {
     }
 }
 
-/// Writes a plant whole: its model, or its structure with +Z up unless `up` says otherwise.
+/// Where a model or plant goes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Goal<'a> {
+    /// The option that asks for it.
+    pub(crate) by: &'a str,
+    pub(crate) path: &'a Path,
+    /// One of a batch, by a name of [`crate::names`]: its textures are `NAME--MATERIAL.png`, which no other's file can be.
+    pub(crate) of_many: bool,
+}
+
+impl<'a> Goal<'a> {
+    pub(crate) const fn new(by: &'a str, path: &'a Path) -> Self {
+        Self { by, path, of_many: false }
+    }
+
+    fn beside(&self, name: &str) -> PathBuf {
+        self.path.with_file_name(name)
+    }
+
+    /// In words, who asks for a file that the model's own names.
+    fn materials(&self) -> String {
+        format!("the materials of {}", self.by)
+    }
+
+    fn texture(&self) -> String {
+        format!("a texture of {}", self.by)
+    }
+}
+
+/// The format of a model's file, planned as -o; what is known to lie beside it is planned.
+pub(crate) fn plan_model(outputs: &mut Outputs, path: &Path) -> Outcome<ModelFormat> {
+    let format = writable(path)?;
+    plan_beside(outputs, Goal::new("-o", path), format)?;
+    Ok(format)
+}
+
+/// [`plan_model`] of a plant and its coarser copies.
+pub(crate) fn plan_plant(outputs: &mut Outputs, path: &Path, lods: u32) -> Outcome<PlantFormat> {
+    let format = plant_writable(path)?;
+    let PlantFormat::Model(model) = format else { return Ok(format) };
+    plan_beside(outputs, Goal::new("-o", path), model)?;
+    for level in 1..=lods as usize {
+        let path = lod(path, level);
+        outputs.plan("--lods", &path)?;
+        plan_beside(outputs, Goal::new("--lods", &path), model)?;
+    }
+    Ok(format)
+}
+
+// Textures are known when the plant is.
+fn plan_beside(outputs: &mut Outputs, goal: Goal<'_>, format: ModelFormat) -> Outcome {
+    if format != ModelFormat::Obj {
+        return Ok(());
+    }
+    let stem = stem(goal.path);
+    let empty = obj_files(&Model::default(), stem.as_str(), &ExportSpec::default());
+    let name = empty.map_err(|e| output::write_failed(goal.path, e))?.mtl_name;
+    outputs.plan(&goal.materials(), &goal.beside(&name))
+}
+
+/// `tree.glb` -> `tree-lod1.glb`.
+pub(crate) fn lod(path: &Path, level: usize) -> PathBuf {
+    let extension = extension(path).unwrap_or_default();
+    path.with_file_name(format!("{}-lod{level}.{extension}", stem(path)))
+}
+
+/// Writes a plant: its model, or its structure with +Z up unless `up` says otherwise.
 pub(crate) fn write_plant(
-    path: &Path,
+    outputs: &mut Outputs,
+    goal: Goal<'_>,
     (plant, model): (&Plant, &Model),
     format: PlantFormat,
     args: &AxesArgs,
     cache: &mut PngCache,
 ) -> Outcome<Vec<Warning>> {
     match format {
-        PlantFormat::Model(format) => write_model(path, model, format, &axes(args.up, args.unit), cache),
+        PlantFormat::Model(format) => {
+            write_model(outputs, goal, model, format, &axes(args.up, args.unit), cache)
+        }
         PlantFormat::Mtg => {
             let axes = field_axes(args);
-            output::write_whole(path, |out| write_mtg(plant, &axes, out))?;
+            outputs.write(goal.by, goal.path, |out| write_mtg(plant, &axes, out))?;
             let mut report = Report::default();
             warn_of_wind(model, "MTG", &mut report);
             Ok(report.warnings)
@@ -266,10 +392,10 @@ pub(crate) fn write_plant(
     }
 }
 
-/// Writes a plant's cylinders whole, with +Z up unless `args` say otherwise.
-pub(crate) fn write_qsm(path: &Path, plant: &Plant, args: &AxesArgs) -> Outcome {
+/// Writes a plant's cylinders, with +Z up unless `args` say otherwise.
+pub(crate) fn write_qsm(outputs: &mut Outputs, path: &Path, plant: &Plant, args: &AxesArgs) -> Outcome {
     let axes = field_axes(args);
-    output::write_whole(path, |out| burgeon::formats::write_qsm(plant, &axes, out))
+    outputs.write("--qsm", path, |out| burgeon::formats::write_qsm(plant, &axes, out))
 }
 
 // The programs that read MTG and QSM files have Z upwards.
@@ -277,39 +403,44 @@ fn field_axes(args: &AxesArgs) -> ExportSpec {
     axes(args.up.unwrap_or(UpWord::Z), args.unit)
 }
 
-/// Writes a model whole: for OBJ and USD first the files that they name.
+/// Writes a model, for OBJ and USD with the files that they name.
 pub(crate) fn write_model(
-    path: &Path,
+    outputs: &mut Outputs,
+    goal: Goal<'_>,
     model: &Model,
     format: ModelFormat,
     axes: &ExportSpec,
     cache: &mut PngCache,
 ) -> Outcome<Vec<Warning>> {
+    let Goal { by, path, .. } = goal;
     let mut report = Report::default();
-    let bytes = |path: &Path, bytes: &[u8]| output::write_whole(path, |out| Ok(out.write_all(bytes)?));
+    let mut bytes =
+        |by: &str, path: &Path, bytes: &[u8]| outputs.write(by, path, |out| Ok(out.write_all(bytes)?));
+    let name = stem(path);
+    let textures = if goal.of_many { format!("{name}-") } else { name.clone() };
     match format {
         ModelFormat::Glb if axes.is_default() => {
-            output::write_whole(path, |out| write_glb_with(model, cache, out))?;
+            outputs.write(by, path, |out| write_glb_with(model, cache, out))?;
         }
         ModelFormat::Obj => {
-            let files = obj_files(model, &stem(path), axes).map_err(|e| output::write_failed(path, e))?;
+            let stems = FileStems { model: &name, textures: &textures };
+            let files = obj_files(model, stems, axes).map_err(|e| output::write_failed(path, e))?;
             warn_of_wind(model, format.word(), &mut report);
             for (name, png) in &files.textures {
-                bytes(&path.with_file_name(name), png)?;
+                bytes(&goal.texture(), &goal.beside(name), png)?;
             }
-            bytes(&path.with_file_name(&files.mtl_name), &files.mtl)?;
-            bytes(path, &files.obj)?;
+            bytes(&goal.materials(), &goal.beside(&files.mtl_name), &files.mtl)?;
+            bytes(by, path, &files.obj)?;
         }
         ModelFormat::Usda => {
-            let files = usd_files(model, &stem(path), axes).map_err(|e| output::write_failed(path, e))?;
+            let files = usd_files(model, &textures, axes).map_err(|e| output::write_failed(path, e))?;
             for (name, png) in &files.textures {
-                bytes(&path.with_file_name(name), png)?;
+                bytes(&goal.texture(), &goal.beside(name), png)?;
             }
-            bytes(path, &files.usda)?;
+            bytes(by, path, &files.usda)?;
         }
-        _ => output::write_whole(path, |out| {
-            burgeon::formats::write_model(model, format, axes, out, &mut report)
-        })?,
+        _ => outputs
+            .write(by, path, |out| burgeon::formats::write_model(model, format, axes, out, &mut report))?,
     }
     Ok(report.warnings)
 }

@@ -17,10 +17,11 @@ use clap::{Args, ValueEnum};
 
 use crate::args::{AxesArgs, CommonArgs, PictureArgs, ranged, seed};
 use crate::failure::{Failure, Outcome};
-use crate::files::PlantFormat;
+use crate::files::{Goal, PlantFormat};
 use crate::given::{Given, Seen};
 use crate::machine::Machine;
-use crate::{files, output, picture, report, say};
+use crate::output::Outputs;
+use crate::{files, inputs, picture, report, say};
 
 #[derive(Args, Debug)]
 #[command(after_long_help = GROW_EXAMPLES)]
@@ -184,8 +185,9 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     ];
     let inputs = args.what.iter().chain(&args.growth.obstacle).chain(&args.points.attractors);
     let inputs = inputs.chain(&args.growth.leaf_template);
-    output::check_outputs(&outputs, &inputs.collect::<Vec<_>>())?;
-    let format = args.output.as_deref().map(files::plant_writable).transpose()?;
+    let mut outputs = Outputs::new(&outputs, &inputs.collect::<Vec<_>>())?;
+    let plan = |path| files::plan_plant(&mut outputs, path, args.surface.lods);
+    let format = args.output.as_deref().map(plan).transpose()?;
     if let Some(png) = &args.png {
         picture::check_name(png)?;
     }
@@ -196,6 +198,7 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     let leaves = ["leaf_keep", "leaf_template"];
     args.given.only_if(!spec.bare, &leaves, "trees with leaves", "this one is bare")?;
     let leaf = leaf_of(args, &mut spec, &machine)?;
+    outputs.check()?;
     let seed = Seed::new(args.seed);
     let options = TreeOptions {
         skin: SkinSpec {
@@ -220,12 +223,15 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     let mut items = vec![item];
     if let Some((path, format)) = args.output.as_deref().zip(format) {
         let mut cache = PngCache::new();
-        let all = std::iter::once((&model, path.to_path_buf()));
-        let all = all.chain(lods.iter().zip(1..).map(|(m, level)| (m, beside(path, level))));
-        for (level, (model, path)) in all.enumerate() {
+        let all = std::iter::once((&model, "-o", path.to_path_buf()));
+        let all = all.chain(lods.iter().zip(1..).map(|(m, level)| (m, "--lods", files::lod(path, level))));
+        for (level, (model, by, path)) in all.enumerate() {
             machine.cancel.check()?;
-            let (written, write_ms) = machine
-                .timed(|| files::write_plant(&path, (&grown.plant, model), format, &args.axes, &mut cache));
+            let goal = Goal::new(by, &path);
+            let (written, write_ms) = machine.timed(|| {
+                let plant = (&grown.plant, model);
+                files::write_plant(&mut outputs, goal, plant, format, &args.axes, &mut cache)
+            });
             let written = written?;
             if level > 0 {
                 items.push(lod_item(&items[0], model, level));
@@ -237,7 +243,7 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
         }
     }
     if let Some(path) = &args.qsm {
-        files::write_qsm(path, &grown.plant, &args.axes)?;
+        files::write_qsm(&mut outputs, path, &grown.plant, &args.axes)?;
     }
     if let Some(png) = &args.png {
         let view = args.picture.spec(args.seed);
@@ -245,20 +251,21 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
         burgeon::show_obstacles(&mut shown, &spec.obstacles);
         let drawn =
             machine.with_progress("picture", |_| burgeon::render::render(&shown, &view, &machine.run()))?;
-        picture::write(png, &drawn)?;
+        picture::write(&mut outputs, "--png", png, &drawn)?;
     }
     let mut run = RunReport::new("grow", args.seed);
     run.input.path = named(args);
-    if !machine.quiet {
-        for item in &items {
-            item.warnings.iter().for_each(|w| say::warning(&format!("{}: {w}", item.name)));
-        }
-        say::line(&summary(&items[0], args.png.as_deref()));
-        items[1..].iter().for_each(|i| say::line(&report::summary(i, None)));
-    }
     run.ok = 1;
     run.items = items;
-    report::finish(&run, &args.common)
+    report::finish(&run, &args.common, outputs)?;
+    if !machine.quiet {
+        for item in &run.items {
+            item.warnings.iter().for_each(|w| say::warning(&format!("{}: {w}", item.name)));
+        }
+        say::line(&summary(&run.items[0], args.png.as_deref()));
+        run.items[1..].iter().for_each(|i| say::line(&report::summary(i, None)));
+    }
+    Ok(())
 }
 
 /// Fails on options that nothing uses.
@@ -285,12 +292,6 @@ fn summary(item: &ItemReport, png: Option<&Path>) -> String {
         String::new()
     };
     line.replacen("; ", &format!(" by {}{points}; ", g.method), 1)
-}
-
-/// `tree.glb` -> `tree-lod1.glb`.
-pub(crate) fn beside(path: &Path, level: usize) -> PathBuf {
-    let extension = files::extension(path).unwrap_or_default();
-    path.with_file_name(format!("{}-lod{level}.{extension}", files::stem(path)))
 }
 
 fn lod_item(full: &ItemReport, model: &Model, level: usize) -> ItemReport {
@@ -389,7 +390,7 @@ fn named_mesh(spec: &Path, name: &str, warnings: &mut Vec<burgeon::Warning>) -> 
         files::extension(&path).and_then(CloudFormat::from_extension)
     {
         let mut report = Report::default();
-        let cloud = read_cloud(std::fs::File::open(&path).ok()?, format, &axes, &mut report).ok()?;
+        let cloud = read_cloud(inputs::open(&path).ok()?, format, &axes, &mut report).ok()?;
         warnings.extend(report.warnings);
         return Some((cloud.points, Vec::new()));
     }
@@ -415,7 +416,7 @@ fn read_points(path: &Path, args: &GrowArgs, told: &mut Report) -> Outcome<Vec<D
         Failure::at(path, "is not named as points; end the name with .xyz, .txt, .ply, .pcd, .las or .obj")
     })?;
     let axes = files::axes(args.axes.up, args.axes.unit);
-    let file = std::fs::File::open(path).map_err(|e| Failure::io(path, "read", &e))?;
+    let file = inputs::open(path).map_err(|e| Failure::io(path, "read", &e))?;
     let cloud = read_cloud(file, format, &axes, told).map_err(|e| Failure::at(path, e))?;
     Ok(cloud.points)
 }

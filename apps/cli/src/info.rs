@@ -9,6 +9,7 @@ use crate::args::InfoArgs;
 use crate::failure::{Failure, Outcome};
 use crate::files::{self, Kind};
 use crate::machine::Machine;
+use crate::output::Outputs;
 use crate::{report, say};
 
 /// Drawings of a file that are listed one by one.
@@ -18,6 +19,7 @@ const WARNINGS: usize = 50;
 
 pub(crate) fn info(args: &InfoArgs) -> Outcome {
     let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
+    let outputs = Outputs::new(&[("--report", args.common.report.as_ref())], &[&args.input])?;
     let (input, kind) = files::open(&args.input)?;
     args.given.check_axes(matches!(kind, Kind::Model(format) if !format.fixed_axes()))?;
     // A pipe has no size.
@@ -47,10 +49,11 @@ pub(crate) fn info(args: &InfoArgs) -> Outcome {
     };
     let path = args.input.display().to_string();
     let info = Info { schema: "burgeon.info/1", version: burgeon::VERSION, path, bytes, format, content };
+    report::finish(&info, &args.common, outputs)?;
     if !machine.quiet {
         info.lines().iter().for_each(|l| say::line(l));
     }
-    report::finish_any(&info, &args.common)
+    Ok(())
 }
 
 #[derive(Serialize)]

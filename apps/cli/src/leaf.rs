@@ -17,10 +17,12 @@ use clap::{Args, ValueEnum};
 
 use crate::args::{AxesArgs, CommonArgs, PictureArgs, UnitWord, ranged};
 use crate::failure::{Failure, Outcome};
+use crate::files::Goal;
 use crate::given::Given;
 use crate::leaf_data::{self, Form, ReadLeaf};
 use crate::machine::Machine;
-use crate::{files, output, picture, report, say};
+use crate::output::Outputs;
+use crate::{files, inputs, picture, report, say};
 
 #[derive(Args, Debug)]
 #[command(after_long_help = LEAF_EXAMPLES)]
@@ -264,10 +266,12 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
         ("--marks", args.marks.as_ref()),
         ("--report", args.common.report.as_ref()),
     ];
-    output::check_outputs(&outputs, &args.inputs.iter().collect::<Vec<_>>())?;
     check_used(args)?;
+    let picture =
+        Some(&args.look.texture).filter(|t| !["veins", "plain"].iter().any(|word| t.as_os_str() == *word));
+    let mut outputs = Outputs::new(&outputs, &args.inputs.iter().chain(picture).collect::<Vec<_>>())?;
     if args.template {
-        return template(args);
+        return template(args, outputs);
     }
     if args.inputs.is_empty() && args.venation.is_none() {
         return Err(Failure::Bad(
@@ -284,7 +288,7 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
             "say what to make of it: -o OUT, --png FILE.png, --report FILE.json or --json".into(),
         ));
     }
-    let format = args.output.as_deref().map(files::writable).transpose()?;
+    let format = args.output.as_deref().map(|p| files::plan_model(&mut outputs, p)).transpose()?;
     if let Some(png) = &args.png {
         picture::check_name(png)?;
     }
@@ -296,7 +300,7 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
         if args.scan { scan(args, &machine)? } else { make(args, &machine)? };
     machine.cancel.check()?;
     if let (Some(path), Some(marks)) = (&args.marks, &marks) {
-        output::write_whole(path, |out| match marks {
+        outputs.write("--marks", path, |out| match marks {
             Measured::Rows(marks) => write_marks(marks, &item.name, out),
             Measured::Rays(rays) => write_rays(rays, &item.name, out),
         })?;
@@ -307,7 +311,8 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
         // --unit and --up were those of the input: a GLB in metres with +Y up is no surprise.
         let read = !args.inputs.is_empty() && format == burgeon::formats::ModelFormat::Glb;
         let axes = if read { ExportSpec::default() } else { files::axes(args.axes.up, args.axes.unit) };
-        files::write_model(path, &model, format, &axes, &mut PngCache::new())
+        let goal = Goal::new("-o", path);
+        files::write_model(&mut outputs, goal, &model, format, &axes, &mut PngCache::new())
     });
     item.warnings.extend(written?.iter().map(ToString::to_string));
     item.timings_ms.add_io(0.0, write_ms);
@@ -315,17 +320,19 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
         let spec = args.picture.spec(args.seed);
         let drawn =
             machine.with_progress("picture", |_| burgeon::render::render(&model, &spec, &machine.run()))?;
-        picture::write(png, &drawn)?;
+        picture::write(&mut outputs, "--png", png, &drawn)?;
     }
     let mut run = RunReport::new("leaf", args.seed);
     run.input.path = args.inputs.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(", ");
-    if !machine.quiet {
-        item.warnings.iter().for_each(|w| say::warning(&format!("{}: {w}", run.input.path)));
-        say::line(&summary(&item, args.png.as_deref()));
-    }
     run.items.push(item);
     run.ok = 1;
-    report::finish(&run, &args.common)
+    report::finish(&run, &args.common, outputs)?;
+    if !machine.quiet {
+        let item = &run.items[0];
+        item.warnings.iter().for_each(|w| say::warning(&format!("{}: {w}", run.input.path)));
+        say::line(&summary(item, args.png.as_deref()));
+    }
+    Ok(())
 }
 
 /// Fails on options that this kind of leaf does not use, as far as the command line tells the kind.
@@ -394,10 +401,13 @@ const MADE: [&str; 12] = [
     "json",
 ];
 
-fn template(args: &LeafArgs) -> Outcome {
+fn template(args: &LeafArgs, mut outputs: Outputs) -> Outcome {
     let text = marks_template(args.rows as usize);
     match &args.output {
-        Some(path) => output::write_whole(path, |out| Ok(out.write_all(text.as_bytes())?)),
+        Some(path) => {
+            outputs.write("-o", path, |out| Ok(out.write_all(text.as_bytes())?))?;
+            outputs.place()
+        }
         None => {
             say::data(text.trim_end()).map_err(|e| Failure::io(Path::new("standard output"), "written", &e))
         }
@@ -461,7 +471,7 @@ fn options(args: &LeafArgs, in_file: Option<ThicknessRule>) -> Outcome<LeafOptio
         Some("plain") => LeafTexture::Plain,
         _ => {
             let path = &args.look.texture;
-            let bytes = std::fs::read(path).map_err(|e| Failure::io(path, "read", &e))?;
+            let bytes = inputs::bytes(path).map_err(|e| Failure::io(path, "read", &e))?;
             let picture = read_picture(&bytes);
             let picture =
                 picture.ok_or_else(|| Failure::at(path, "is no PNG or JPEG picture that can be read"))?;
@@ -497,7 +507,7 @@ fn scan(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
     })?;
     let mut report = Report::default();
     let axes = files::axes(args.axes.up, args.axes.unit);
-    let file = std::fs::File::open(path).map_err(|e| Failure::io(path, "read", &e))?;
+    let file = inputs::open(path).map_err(|e| Failure::io(path, "read", &e))?;
     let (cloud, read_ms) = machine.timed(|| read_cloud(file, format, &axes, &mut report));
     let mut points = cloud.map_err(|e| Failure::at(path, e))?.points;
     let first = points.first().copied().unwrap_or_default();

@@ -1,88 +1,298 @@
-//! Files appear whole or not at all.
+//! What a command writes: known before any of it is in place, compared with all that was read, whole or not at all.
 
-use std::collections::BTreeSet;
-use std::fs::{self, File};
+use std::fs::{self, File, Metadata};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicU32, Ordering};
 
 use burgeon::formats::WriteError;
 
+use crate::draft::{self, Draft};
 use crate::failure::{Failure, Outcome};
-
-/// Drafts that are being written, for a program that is ended in the middle.
-static DRAFTS: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
-
-/// A temporary file beside its target; removed unless renamed.
-struct Draft {
-    path: PathBuf,
-}
-
-impl Draft {
-    fn beside(target: &Path) -> Self {
-        let path = draft_path(target);
-        if let Ok(mut drafts) = DRAFTS.lock() {
-            drafts.insert(path.clone());
-        }
-        Self { path }
-    }
-
-    fn create(&self) -> io::Result<File> {
-        File::options().write(true).create_new(true).open(&self.path)
-    }
-}
-
-impl Drop for Draft {
-    fn drop(&mut self) {
-        // Gone already after the rename.
-        let _ = fs::remove_file(&self.path);
-        if let Ok(mut drafts) = DRAFTS.lock() {
-            drafts.remove(&self.path);
-        }
-    }
-}
+use crate::inputs::{self, FileId};
+use crate::names::folded;
 
 /// Removes what is half-written; for the end of the program.
 pub(crate) fn remove_drafts() {
-    if let Ok(mut drafts) = DRAFTS.lock() {
-        drafts.iter().for_each(|path| drop(fs::remove_file(path)));
-        drafts.clear();
+    draft::remove_all();
+}
+
+/// The outputs of a command, or of one drawing of many.
+///
+/// Everything is written to drafts and compared with what was read and with one another; [`place`](Self::place) then
+/// renames all of them. What is dropped before leaves nothing behind.
+#[derive(Debug, Default)]
+pub(crate) struct Outputs {
+    /// Every file that is known to be written, the reserved ones of the whole batch first.
+    planned: Vec<Planned>,
+    /// How many of them are others' to write.
+    reserved: usize,
+    ready: Vec<Ready>,
+    /// Folders that were made for the outputs, the outermost first.
+    made: Vec<PathBuf>,
+}
+
+#[derive(Clone, Debug)]
+struct Planned {
+    /// The option that asks for it, in words.
+    by: String,
+    /// As it was named.
+    target: PathBuf,
+    place: Place,
+}
+
+/// Where a file is to be, behind links.
+#[derive(Clone, Debug)]
+struct Place {
+    path: PathBuf,
+    /// Of the file that is there already.
+    file: Option<FileId>,
+    folder: Option<FileId>,
+    /// Its name, [`folded`]: whether a disk tells case apart is not asked, so that a command is the same on all.
+    name: String,
+    /// To be written as it is: a renamed file in the place of /dev/null would break the machine.
+    device: bool,
+}
+
+impl Place {
+    /// Fails early and clearly when nothing can be written there.
+    fn of(target: &Path) -> Outcome<Self> {
+        check_target(target)?;
+        let there = fs::metadata(target).ok();
+        let device = is_device(target, there.as_ref());
+        if there.is_none() && fs::symlink_metadata(target).is_ok() {
+            let what = "is a link that leads to no file; make the file that it names, or remove the link";
+            return Err(Failure::at(target, what));
+        }
+        if !device && there.as_ref().is_some_and(|m| m.permissions().readonly()) {
+            return Err(Failure::at(target, "is write-protected; give another name or lift the protection"));
+        }
+        let path = fs::canonicalize(target).unwrap_or_else(|_| {
+            let folder = folder_of(target);
+            let folder = fs::canonicalize(folder).unwrap_or_else(|_| folder.to_path_buf());
+            folder.join(target.file_name().unwrap_or_default())
+        });
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let file = there.filter(Metadata::is_file).and_then(|_| FileId::of(target));
+        Ok(Self { name: folded(&name), file, folder: FileId::of(folder_of(&path)), path, device })
+    }
+
+    fn is(&self, other: &Self) -> bool {
+        match (&self.file, &other.file) {
+            _ if self.device || other.device => false,
+            (Some(a), Some(b)) => a == b,
+            _ => self.name == other.name && self.folder == other.folder,
+        }
     }
 }
 
-/// Writes a file through a temporary one beside it, which is renamed once it is complete.
-///
-/// A link is followed: what it points to is replaced. A device or a pipe (`/dev/stdout`) is written as it is.
-pub(crate) fn write_whole(
+/// What is written and not yet in place.
+#[derive(Debug)]
+struct Ready {
+    target: PathBuf,
+    place: PathBuf,
+    what: Written,
+}
+
+#[derive(Debug)]
+enum Written {
+    File(Draft),
+    /// For a device.
+    Bytes(Vec<u8>),
+}
+
+/// What stood in the place of a file that was renamed into it.
+enum Before {
+    Nothing,
+    Kept(Draft),
+    /// On a disk without hard links.
+    Lost,
+}
+
+impl Outputs {
+    /// Outputs by the option that names each, before anything is computed. `inputs` are those that options name; what
+    /// these name in turn is known when it is read.
+    pub(crate) fn new(named: &[(&str, Option<&PathBuf>)], inputs: &[&PathBuf]) -> Outcome<Self> {
+        inputs.iter().for_each(|path| inputs::announce(path));
+        let mut outputs = Self::default();
+        for (by, path) in named.iter().filter_map(|&(by, path)| Some((by, path?))) {
+            outputs.plan(by, path)?;
+        }
+        Ok(outputs)
+    }
+
+    /// Those of one drawing of a batch: the batch's own are others.
+    pub(crate) fn of_one(&self) -> Self {
+        let (planned, reserved) = (self.planned.clone(), self.planned.len());
+        Self { planned, reserved, ready: Vec::new(), made: Vec::new() }
+    }
+
+    /// One more file, before anything is computed: refused if it is an input or another output, or cannot be written.
+    pub(crate) fn plan(&mut self, by: &str, target: &Path) -> Outcome {
+        self.add(by, target)?;
+        let Some(Planned { place, .. }) = self.planned.last().filter(|p| !p.place.device) else {
+            return Ok(());
+        };
+        // An empty draft tells what the rights say, before the work rather than after it.
+        Draft::create(folder_of(&place.path)).map(drop).map_err(|e| Failure::io(target, "written", &e))
+    }
+
+    fn add(&mut self, by: &str, target: &Path) -> Outcome {
+        let place = Place::of(target)?;
+        if let Some(other) = self.planned.iter().find(|p| p.place.is(&place)) {
+            return Err(Failure::at(target, format_args!("{} and {by} name the same file", other.by)));
+        }
+        let planned = Planned { by: by.to_owned(), target: target.to_path_buf(), place };
+        planned.is_no_input()?;
+        self.planned.push(planned);
+        Ok(())
+    }
+
+    /// Makes a folder for many files, with those above it. They go again if nothing comes to lie in them.
+    pub(crate) fn folder(&mut self, folder: &Path) -> Outcome {
+        if folder.exists() && !folder.is_dir() {
+            return Err(Failure::at(folder, "is a file, but several files need a folder; name one"));
+        }
+        let missing = folder.ancestors().take_while(|f| !f.as_os_str().is_empty() && !f.exists());
+        let missing: Vec<PathBuf> = missing.map(Path::to_path_buf).collect();
+        self.made.extend(missing.into_iter().rev());
+        fs::create_dir_all(folder).map_err(|e| Failure::io(folder, "created", &e))?;
+        Draft::create(folder).map(drop).map_err(|e| Failure::io(folder, "written", &e))
+    }
+
+    /// Writes a file, which is not yet in place.
+    ///
+    /// A link is followed: what it points to is replaced. A device or a pipe (`/dev/stdout`) is written as it is, at the
+    /// end.
+    pub(crate) fn write(
+        &mut self,
+        by: &str,
+        target: &Path,
+        write: impl FnOnce(&mut dyn Write) -> Result<(), WriteError>,
+    ) -> Outcome {
+        let own = |p: &&Planned| p.by == by && p.target == target;
+        if !self.planned.iter().skip(self.reserved).any(|p| own(&p)) {
+            self.add(by, target)?;
+        }
+        let Some(planned) = self.planned.iter().skip(self.reserved).find(own) else { return Ok(()) };
+        let what = if planned.place.device {
+            let mut bytes = Vec::new();
+            write(&mut bytes).map_err(|e| write_failed(target, e))?;
+            Written::Bytes(bytes)
+        } else {
+            Written::File(draft_of(&planned.place.path, target, write)?)
+        };
+        self.ready.push(Ready { target: target.to_path_buf(), place: planned.place.path.clone(), what });
+        Ok(())
+    }
+
+    /// Whether nothing that is to be written was read: what is read names more files than the options do.
+    pub(crate) fn check(&self) -> Outcome {
+        self.planned.iter().skip(self.reserved).try_for_each(|p| {
+            let place = Place::of(&p.target)?;
+            Planned { place, ..p.clone() }.is_no_input()
+        })
+    }
+
+    /// Puts everything in place, or nothing.
+    pub(crate) fn place(mut self) -> Outcome {
+        self.check()?;
+        let (files, devices): (Vec<Ready>, Vec<Ready>) =
+            std::mem::take(&mut self.ready).into_iter().partition(|r| matches!(r.what, Written::File(_)));
+        // Devices first: what they refuse leaves no file.
+        for Ready { target, what, .. } in &devices {
+            let Written::Bytes(bytes) = what else { continue };
+            let write = || File::options().write(true).open(target)?.write_all(bytes);
+            write().map_err(|e| Failure::io(target, "written", &e))?;
+        }
+        let several = files.len() > 1;
+        let mut done: Vec<(PathBuf, Before)> = Vec::with_capacity(files.len());
+        for Ready { target, place, what } in files {
+            let Written::File(mut draft) = what else { continue };
+            let before = match several && fs::symlink_metadata(&place).is_ok() {
+                true => Draft::keeping(&place).map_or(Before::Lost, Before::Kept),
+                false => Before::Nothing,
+            };
+            if let Err(e) = draft.put(&place) {
+                done.into_iter().rev().for_each(|(place, before)| before.restore(&place));
+                return Err(Failure::io(&target, "written", &e));
+            }
+            done.push((place, before));
+        }
+        Ok(())
+    }
+}
+
+impl Drop for Outputs {
+    fn drop(&mut self) {
+        // Only those that are empty go.
+        self.ready.clear();
+        self.made.iter().rev().for_each(|folder| drop(fs::remove_dir(folder)));
+    }
+}
+
+impl Before {
+    fn restore(self, place: &Path) {
+        // Nobody is left to be told of an error but the one that led here.
+        let _ = match self {
+            Self::Nothing => fs::remove_file(place),
+            Self::Kept(mut draft) => draft.put(place),
+            Self::Lost => Ok(()),
+        };
+    }
+}
+
+impl Planned {
+    fn is_no_input(&self) -> Outcome {
+        match self.place.file.as_ref().and_then(inputs::read_as) {
+            Some(input) => {
+                let (by, input) = (&self.by, input.display());
+                let what = format_args!("{by} would replace the input {input}; give another name");
+                Err(Failure::at(&self.target, what))
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+/// Writes one file.
+pub(crate) fn write_one(
+    by: &str,
     target: &Path,
     write: impl FnOnce(&mut dyn Write) -> Result<(), WriteError>,
 ) -> Outcome {
-    check_target(target)?;
+    let mut outputs = Outputs::default();
+    outputs.write(by, target, write)?;
+    outputs.place()
+}
+
+/// A complete draft of a file, with the rights of the file that it is to replace.
+fn draft_of(
+    place: &Path,
+    target: &Path,
+    write: impl FnOnce(&mut dyn Write) -> Result<(), WriteError>,
+) -> Outcome<Draft> {
     let failed = |e: &io::Error| Failure::io(target, "written", e);
-    if is_device(target) {
-        let mut out = BufWriter::new(File::options().write(true).open(target).map_err(|e| failed(&e))?);
-        write(&mut out).map_err(|e| write_failed(target, e))?;
-        return out.flush().map_err(|e| failed(&e));
+    let (draft, file) = Draft::create(folder_of(place)).map_err(|e| failed(&e))?;
+    if let (Ok(old), Ok(new)) = (fs::metadata(place), file.metadata())
+        && old.permissions() != new.permissions()
+    {
+        file.set_permissions(old.permissions()).map_err(|e| failed(&e))?;
     }
-    let place = fs::canonicalize(target).unwrap_or_else(|_| target.to_path_buf());
-    if fs::metadata(&place).is_ok_and(|m| m.permissions().readonly()) {
-        return Err(Failure::at(target, "is write-protected; give another name or lift the protection"));
-    }
-    let draft = Draft::beside(&place);
-    let mut out = BufWriter::new(draft.create().map_err(|e| failed(&e))?);
+    let mut out = BufWriter::new(file);
     write(&mut out).map_err(|e| write_failed(target, e))?;
     let file = out.into_inner().map_err(|e| failed(e.error()))?;
     // So that a crash of the machine does not leave an empty file under the target's name.
     file.sync_data().map_err(|e| failed(&e))?;
-    drop(file);
-    fs::rename(&draft.path, &place).map_err(|e| failed(&e))
+    Ok(draft)
 }
 
-// Not to be replaced by a file: a renamed file in the place of /dev/null would break the machine.
-fn is_device(target: &Path) -> bool {
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+fn is_device(target: &Path, there: Option<&Metadata>) -> bool {
     ["/dev/stdout", "/dev/stderr", "/dev/fd", "/proc/self/fd"].iter().any(|p| target.starts_with(p))
-        || fs::metadata(target).is_ok_and(|m| !m.is_file() && !m.is_dir())
+        || there.is_some_and(|m| !m.is_file() && !m.is_dir())
 }
 
 /// Whose fault it is that something could not be written.
@@ -94,7 +304,7 @@ pub(crate) fn write_failed(target: &Path, error: WriteError) -> Failure {
     }
 }
 
-/// Fails early and clearly when nothing can be written there.
+/// Whether a name can be a file's.
 pub(crate) fn check_target(target: &Path) -> Outcome {
     if target.as_os_str() == "-" {
         return Err(Failure::at(
@@ -105,8 +315,8 @@ pub(crate) fn check_target(target: &Path) -> Outcome {
     if target.file_name().is_none() || target.is_dir() {
         return Err(Failure::at(target, "is a folder; name a file in it"));
     }
-    let folder = target.parent().filter(|p| !p.as_os_str().is_empty());
-    if let Some(folder) = folder.filter(|p| !p.is_dir()) {
+    let folder = folder_of(target);
+    if !folder.is_dir() {
         let what =
             if folder.exists() { "is a file, not a folder" } else { "does not exist; create it first" };
         return Err(Failure::at(target, format_args!("the folder {} {what}", folder.display())));
@@ -114,57 +324,44 @@ pub(crate) fn check_target(target: &Path) -> Outcome {
     Ok(())
 }
 
-/// [`check_target`] for each output, by the option that names it, before anything is computed: outputs that
-/// are one file and outputs that would replace an input are refused as well.
-pub(crate) fn check_outputs(outputs: &[(&str, Option<&PathBuf>)], inputs: &[&PathBuf]) -> Outcome {
-    let place = |path: &Path| match fs::canonicalize(path) {
-        Ok(place) => place,
-        Err(_) => {
-            let parent = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-            let parent = fs::canonicalize(parent).unwrap_or_else(|_| parent.to_path_buf());
-            parent.join(path.file_name().unwrap_or_default())
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two files, of which the second cannot be put in place: the first one's old bytes, if any, come back.
+    #[test]
+    fn a_file_that_cannot_be_put_in_place_takes_the_others_back() {
+        let folder = std::env::temp_dir().join(format!("burgeon-outputs-{}", std::process::id()));
+        for earlier in [Some("earlier"), None] {
+            fs::create_dir_all(folder.join("made")).expect("a folder");
+            let [a, b] = ["made/a", "b"].map(|n| folder.join(n));
+            earlier.map(|text| fs::write(&a, text)).transpose().expect("writes");
+            let mut outputs = Outputs::default();
+            for path in [&a, &b] {
+                outputs.write("-o", path, |out| Ok(out.write_all(b"new")?)).expect("a draft");
+            }
+            // Somebody takes the second draft away.
+            let draft = fs::read_dir(&folder).expect("a folder").flatten().find(|e| e.path().is_file());
+            fs::remove_file(draft.expect("the draft").path()).expect("removed");
+            let failure = outputs.place().expect_err("one is missing");
+            assert!(matches!(failure, Failure::Bad(line) if line.contains("cannot be written")));
+            assert_eq!(fs::read_to_string(&a).ok().as_deref(), earlier);
+            assert_eq!(
+                fs::read_dir(folder.join("made")).expect("a folder").count(),
+                usize::from(earlier.is_some())
+            );
+            assert_eq!(fs::read_dir(&folder).expect("a folder").count(), 1);
+            fs::remove_dir_all(&folder).expect("removed");
         }
-    };
-    let mut taken: Vec<(&str, PathBuf)> = Vec::new();
-    for &(option, path) in outputs {
-        let Some(path) = path else { continue };
-        check_target(path)?;
-        if is_device(path) {
-            continue;
-        }
-        let place = place(path);
-        if let Some((other, _)) = taken.iter().find(|(_, p)| *p == place) {
-            return Err(Failure::at(path, format_args!("{other} and {option} name the same file")));
-        }
-        if inputs.iter().any(|input| fs::canonicalize(input).is_ok_and(|input| input == place)) {
-            let what = format_args!("{option} would replace the input; give another name");
-            return Err(Failure::at(path, what));
-        }
-        try_folder(path, &place)?;
-        taken.push((option, place));
     }
-    Ok(())
-}
 
-// An empty draft tells what the rights say, before the work rather than after it.
-fn try_folder(target: &Path, place: &Path) -> Outcome {
-    let draft = Draft::beside(place);
-    draft.create().map(drop).map_err(|e| Failure::io(target, "written", &e))
-}
-
-/// Makes a folder for a batch, with those above it.
-pub(crate) fn make_folder(folder: &Path) -> Outcome {
-    if folder.exists() && !folder.is_dir() {
-        return Err(Failure::at(folder, "is a file, but several drawings need a folder; name one"));
+    #[test]
+    fn folders_that_stay_empty_go() {
+        let folder = std::env::temp_dir().join(format!("burgeon-folders-{}", std::process::id()));
+        let mut outputs = Outputs::default();
+        outputs.folder(&folder.join("a/b")).expect("made");
+        assert!(folder.join("a/b").is_dir());
+        drop(outputs);
+        assert!(!folder.exists());
     }
-    fs::create_dir_all(folder).map_err(|e| Failure::io(folder, "created", &e))?;
-    try_folder(folder, &folder.join("any"))
-}
-
-// Beside the target, hidden, unique in this process and among others.
-fn draft_path(target: &Path) -> PathBuf {
-    static COUNT: AtomicU32 = AtomicU32::new(0);
-    // Not made of the target's name, which may be as long as names can be.
-    let count = COUNT.fetch_add(1, Ordering::Relaxed);
-    target.with_file_name(format!(".burgeon-{}-{count}.part", std::process::id()))
 }

@@ -8,24 +8,26 @@ use burgeon::{Counts, Digest, ItemReport, RunReport, Warning};
 use crate::args::RenderArgs;
 use crate::failure::{Failure, Outcome};
 use crate::machine::Machine;
-use crate::{files, output, report, say};
+use crate::output::Outputs;
+use crate::{files, report, say};
 
 pub(crate) fn render(args: &RenderArgs) -> Outcome {
     let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
     check_name(&args.output)?;
     let outputs = [("-o", Some(&args.output)), ("--report", args.common.report.as_ref())];
-    output::check_outputs(&outputs, &[&args.input])?;
+    let mut outputs = Outputs::new(&outputs, &[&args.input])?;
     let axes = files::axes(args.axes.up, args.axes.unit);
     args.given.check_picture(true, &args.picture)?;
     let (read, read_ms) = machine.timed(|| files::read_model(&args.input, &axes));
     let (model, format, warnings) = read?;
     args.given.check_axes(!format.fixed_axes())?;
+    outputs.check()?;
     let spec = args.picture.spec(args.seed);
     let (picture, draw_ms) = machine.timed(|| {
         machine.with_progress("picture", |_| burgeon::render::render(&model, &spec, &machine.run()))
     });
     let picture = picture?;
-    let (written, write_ms) = machine.timed(|| write(&args.output, &picture));
+    let (written, write_ms) = machine.timed(|| write(&mut outputs, "-o", &args.output, &picture));
     written?;
     let mut run = RunReport::new("render", args.seed);
     run.input.path = args.input.display().to_string();
@@ -33,7 +35,11 @@ pub(crate) fn render(args: &RenderArgs) -> Outcome {
     item.timings_ms.mesh = draw_ms;
     item.timings_ms.total = draw_ms;
     item.timings_ms.add_io(read_ms, write_ms);
+    run.items.push(item);
+    run.ok = 1;
+    report::finish(&run, &args.common, outputs)?;
     if !machine.quiet {
+        let item = &run.items[0];
         item.warnings.iter().for_each(|w| say::warning(&format!("{}: {w}", args.input.display())));
         let triangles = say::counted(item.counts.triangles, "triangle", "triangles");
         let size = format!("{}x{}", picture.width, picture.height);
@@ -43,9 +49,7 @@ pub(crate) fn render(args: &RenderArgs) -> Outcome {
             item.timings_ms.total
         ));
     }
-    run.items.push(item);
-    run.ok = 1;
-    report::finish(&run, &args.common)
+    Ok(())
 }
 
 /// Pictures are PNG, whatever the name says: so the name must say it.
@@ -77,8 +81,8 @@ pub(crate) fn model_item(model: &burgeon::mesh::Model, output: &Path, warnings: 
 }
 
 /// Writes a picture as PNG.
-pub(crate) fn write(path: &Path, picture: &Picture) -> Outcome {
-    output::write_whole(path, |out| {
+pub(crate) fn write(outputs: &mut Outputs, by: &str, path: &Path, picture: &Picture) -> Outcome {
+    outputs.write(by, path, |out| {
         burgeon::formats::write_png(picture.width, picture.height, &picture.pixels, out)
     })
 }

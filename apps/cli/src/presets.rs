@@ -39,16 +39,17 @@ pub(crate) fn presets(args: &PresetsArgs) -> Outcome {
     let out = |text: &str| {
         say::data(text).map_err(|e| Failure::io(std::path::Path::new("standard output"), "written", &e))
     };
+    let shown = args.show.as_deref().map(|key| {
+        Preset::find(key)
+            .ok_or_else(|| Failure::Bad(format!("there is no preset `{key}`; `burgeon presets` lists them")))
+    });
+    let shown = shown.transpose()?;
     if let Some(path) = &args.schema {
-        output::check_outputs(&[("--schema", Some(path))], &[])?;
         let text = serde_json::to_string_pretty(&tree_schema())
             .map_err(|e| Failure::Bug(format!("the schema cannot be written as JSON: {e}")))?;
-        output::write_whole(path, |file| Ok(writeln!(file, "{text}")?))?;
+        output::write_one("--schema", path, |file| Ok(writeln!(file, "{text}")?))?;
     }
-    if let Some(key) = &args.show {
-        let preset = Preset::find(key).ok_or_else(|| {
-            Failure::Bad(format!("there is no preset `{key}`; `burgeon presets` lists them"))
-        })?;
+    if let Some(preset) = shown {
         return out(preset.toml.trim_end());
     }
     if args.schema.is_some() && !args.json {

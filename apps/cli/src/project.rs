@@ -14,7 +14,7 @@ use burgeon::{ItemReport, SceneEvaluator, Seed};
 use crate::failure::{Failure, Outcome};
 use crate::grow::TreeSurfaceArgs;
 use crate::machine::Machine;
-use crate::output;
+use crate::output::Outputs;
 
 /// Whether a plant has branches that hands can shape.
 fn branches(plant: &DocumentPlant) -> bool {
@@ -149,8 +149,8 @@ pub(crate) fn make(
 }
 
 /// Writes a project.
-pub(crate) fn save(path: &Path, document: &Document) -> Outcome {
+pub(crate) fn save(outputs: &mut Outputs, path: &Path, document: &Document) -> Outcome {
     let bytes = document::write_project(document, burgeon::VERSION)
         .map_err(|e| Failure::Bug(format!("the project cannot be written: {e}")))?;
-    output::write_whole(path, |file| Ok(file.write_all(&bytes)?))
+    outputs.write("--save", path, |file| Ok(file.write_all(&bytes)?))
 }

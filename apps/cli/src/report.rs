@@ -2,32 +2,29 @@
 
 use std::path::Path;
 
-use burgeon::{ItemReport, RunReport};
+use burgeon::ItemReport;
 use serde::Serialize;
 
 use crate::args::CommonArgs;
 use crate::failure::{Failure, Outcome};
-use crate::{output, say};
+use crate::output::Outputs;
+use crate::say;
 
-/// Writes the report where it was asked for.
-pub(crate) fn finish(report: &RunReport, args: &CommonArgs) -> Outcome {
-    finish_any(report, args)
-}
-
-/// [`finish`] for reports of other shapes.
-pub(crate) fn finish_any(report: &impl Serialize, args: &CommonArgs) -> Outcome {
-    if args.report.is_none() && !args.json {
-        return Ok(());
+/// Writes the report where it was asked for and puts it in place with all other outputs of the command.
+pub(crate) fn finish(report: &impl Serialize, args: &CommonArgs, mut outputs: Outputs) -> Outcome {
+    if args.report.is_some() || args.json {
+        let text = serde_json::to_string_pretty(report)
+            .map_err(|e| Failure::Bug(format!("the report cannot be written as JSON: {e}")))?;
+        if let Some(path) = &args.report {
+            outputs.write("--report", path, |out| Ok(writeln!(out, "{text}")?))?;
+        }
+        if args.json {
+            // Told before files are in place: what standard output refuses leaves none.
+            outputs.check()?;
+            say::data(&text).map_err(|e| Failure::io(Path::new("standard output"), "written", &e))?;
+        }
     }
-    let text = serde_json::to_string_pretty(report)
-        .map_err(|e| Failure::Bug(format!("the report cannot be written as JSON: {e}")))?;
-    if let Some(path) = &args.report {
-        output::write_whole(path, |out| Ok(writeln!(out, "{text}")?))?;
-    }
-    if args.json {
-        say::data(&text).map_err(|e| Failure::io(Path::new("standard output"), "written", &e))?;
-    }
-    Ok(())
+    outputs.place()
 }
 
 /// One line about a plant: where it is and what it has.

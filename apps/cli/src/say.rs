@@ -1,5 +1,6 @@
 //! Lines for people. A closed pipe is no error.
 
+use std::ffi::OsStr;
 use std::io::{self, IsTerminal, Write, stderr, stdout};
 
 /// A line on stdout for people; what stands in names of files and drawings cannot steer the terminal.
@@ -38,12 +39,17 @@ pub(crate) fn warning(text: &str) {
 fn tagged(tag: &str, color: &str, text: &str) {
     let text = printable(&text.split_whitespace().collect::<Vec<_>>().join(" "));
     let mut out = stderr().lock();
-    let plain = !out.is_terminal() || std::env::var_os("NO_COLOR").is_some();
-    let _ = if plain {
+    let [no_color, term] = ["NO_COLOR", "TERM"].map(std::env::var_os);
+    let _ = if !out.is_terminal() || plain(no_color.as_deref(), term.as_deref()) {
         writeln!(out, "{tag}: {text}")
     } else {
         writeln!(out, "\x1b[{color}m{tag}:\x1b[0m {text}")
     };
+}
+
+/// Whether a terminal is to get no colours: by <https://no-color.org>, or because it knows none.
+fn plain(no_color: Option<&OsStr>, term: Option<&OsStr>) -> bool {
+    no_color.is_some() || term.is_some_and(|t| t == "dumb")
 }
 
 /// 1234567 as `1,234,567`.
@@ -69,6 +75,16 @@ mod tests {
     #[test]
     fn names_cannot_steer_the_terminal() {
         assert_eq!(super::printable("a\x1b[31mb\u{202e}c\u{7f}é🌹"), "a\u{fffd}[31mb\u{fffd}c\u{fffd}é🌹");
+    }
+
+    #[test]
+    fn dumb_terminals_get_no_colours() {
+        use std::ffi::OsStr;
+        let plain = |no_color: Option<&str>, term: Option<&str>| {
+            super::plain(no_color.map(OsStr::new), term.map(OsStr::new))
+        };
+        assert!(plain(None, Some("dumb")) && plain(Some("1"), Some("xterm")));
+        assert!(!plain(None, Some("xterm-256color")) && !plain(None, None));
     }
 
     #[test]

@@ -8,10 +8,11 @@ use burgeon::{RunReport, SceneEvaluator, scene_model};
 
 use crate::args::SketchArgs;
 use crate::failure::{Failure, Outcome};
-use crate::files::{self, Kind, PlantFormat};
+use crate::files::{self, Goal, Kind, PlantFormat};
 use crate::given::Seen;
 use crate::machine::Machine;
-use crate::{output, picture, say};
+use crate::output::Outputs;
+use crate::{picture, say};
 
 /// The document of a project that is more than one drawing; none for all else.
 pub(crate) fn of_file(path: &Path) -> Outcome<Option<Document>> {
@@ -55,7 +56,7 @@ pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine:
     let line = "this is a scene, whose plants have their own settings; change them in the Studio";
     given.refuse(&OF_ONE_DRAWING, "drawings", line)?;
     given.refuse(&["format"], "folders of models", "a scene is one model")?;
-    output::check_outputs(
+    let mut outputs = Outputs::new(
         &[
             ("-o", args.output.as_ref()),
             ("--png", args.png.as_ref()),
@@ -64,7 +65,7 @@ pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine:
         ],
         &[&path.to_path_buf()],
     )?;
-    let format = args.output.as_deref().map(files::plant_writable).transpose()?;
+    let format = args.output.as_deref().map(|p| files::plan_plant(&mut outputs, p, 0)).transpose()?;
     given.check_picture(args.png.is_some(), &args.picture)?;
     given.check_surface(Seen::new(format, args.png.as_ref(), &args.common))?;
     given.check_axes(args.qsm.is_some() || format.is_some_and(|f| !f.fixed_axes()))?;
@@ -93,26 +94,28 @@ pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine:
         plant.ok_or_else(|| Failure::at(path, "holds a single leaf or flower, which has no axes"))
     };
     if let Some(qsm) = &args.qsm {
-        files::write_qsm(qsm, structure()?, &args.axes)?;
+        files::write_qsm(&mut outputs, qsm, structure()?, &args.axes)?;
     }
     if let Some((out, format)) = args.output.as_deref().zip(format) {
         let nothing = burgeon::plant::Plant::default();
         let plant = if matches!(format, PlantFormat::Mtg) { structure()? } else { &nothing };
-        files::write_plant(out, (plant, &model), format, &args.axes, &mut PngCache::new())?;
+        let goal = Goal::new("-o", out);
+        files::write_plant(&mut outputs, goal, (plant, &model), format, &args.axes, &mut PngCache::new())?;
         for item in &mut report.items {
             item.output = out.display().to_string();
         }
     }
     if let Some(png) = &args.png {
         let drawn = burgeon::render::render(&model, &args.picture.spec(1), &machine.run())?;
-        picture::write(png, &drawn)?;
+        picture::write(&mut outputs, "--png", png, &drawn)?;
     }
     report.ok = report.items.len() as u64;
+    crate::report::finish(&report, &args.common, outputs)?;
     if !machine.quiet {
         for item in &report.items {
             item.warnings.iter().for_each(|w| say::warning(&format!("{}: {w}", item.name)));
             say::line(&crate::report::summary(item, args.png.as_deref()));
         }
     }
-    crate::report::finish(&report, &args.common)
+    Ok(())
 }

@@ -2,26 +2,27 @@
 
 use std::path::{Path, PathBuf};
 
-use burgeon::document::PlantEdit;
+use burgeon::document::{Document, PlantEdit};
 use burgeon::formats::{PngCache, read_drawings};
 use burgeon::glam::DVec3;
 use burgeon::mesh::Model;
 use burgeon::plant::Plant;
-use burgeon::shape::{EDITS_SCHEMA, EditsFile, HandEdit};
+use burgeon::shape::{Destination, EDITS_SCHEMA, EditsFile, HandEdit};
 use burgeon::skin::SkinSpec;
 use burgeon::{
-    BranchRow, ItemReport, MadeTree, MakeError, Preset, Report, RunReport, Seed, SketchOptions, TreeError,
-    TreeOptions, branch_rows, edits_schema, edits_template, make_from_sketch, make_tree,
+    BranchRow, ItemReport, Made, MadeTree, MakeError, Preset, Report, RunReport, Seed, SketchOptions,
+    TreeError, TreeOptions, branch_rows, edits_schema, edits_template, make_from_sketch, make_tree,
 };
 use clap::Args;
 
 use crate::args::{AxesArgs, CommonArgs, PictureArgs, seed};
 use crate::failure::{Failure, Outcome};
-use crate::files::{Kind, PlantFormat};
+use crate::files::{Goal, Kind, PlantFormat};
 use crate::given::{Given, Seen};
 use crate::grow::TreeSurfaceArgs;
 use crate::machine::Machine;
-use crate::{files, grow, output, picture, project, report, say};
+use crate::output::Outputs;
+use crate::{files, grow, picture, project, report, say};
 
 #[derive(Args, Debug)]
 #[command(after_long_help = SHAPE_EXAMPLES)]
@@ -76,7 +77,8 @@ const SHAPE_EXAMPLES: &str = "Examples:
   burgeon shape tree.svg --edits edits.json -o tree.glb --report tree.json
   burgeon shape garden.burgeon --plant bush --edits edits.json -o bush.glb --save garden2.burgeon
 
-Edits are done one after another; one that cannot be done says why and changes nothing.
+Edits are done one after another; one that cannot be done says why and changes nothing. If none can be done
+that is an error, and so is a number out of its range, such as an \"at\" outside of 0 to 1.
 A branch is named by  {\"path\": [0, 2]}  (stem 0, its branch number 2 from the base up),
 by  {\"near\": [1.2, 3.4, 0]}  (metres), or by the mark that the Studio keeps.";
 
@@ -87,6 +89,8 @@ struct Shaped {
     lods: Vec<Model>,
     item: ItemReport,
     seed: Seed,
+    /// The project with the edits.
+    edited: Option<Document>,
 }
 
 pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
@@ -99,38 +103,47 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
         ("--report", args.common.report.as_ref()),
     ];
     let inputs = args.what.iter().chain(&args.edits);
-    output::check_outputs(&outputs, &inputs.collect::<Vec<_>>())?;
+    let mut outputs = Outputs::new(&outputs, &inputs.collect::<Vec<_>>())?;
     if let Some(path) = &args.schema {
         let text = serde_json::to_string_pretty(&edits_schema())
             .map_err(|e| Failure::Bug(format!("the schema cannot be written as JSON: {e}")))?;
-        output::write_whole(path, |file| Ok(writeln!(file, "{text}")?))?;
+        outputs.write("--schema", path, |file| Ok(writeln!(file, "{text}")?))?;
     }
-    let format = args.output.as_deref().map(files::plant_writable).transpose()?;
+    let plan = |path| files::plan_plant(&mut outputs, path, args.surface.lods);
+    let format = args.output.as_deref().map(plan).transpose()?;
     check_used(args, format)?;
     if args.template {
-        return out(edits_template().trim_end());
+        out(edits_template().trim_end())?;
+        return outputs.place();
     }
-    let Some(what) = &args.what else { return Ok(()) };
+    let Some(what) = &args.what else { return outputs.place() };
     if let Some(png) = &args.png {
         picture::check_name(png)?;
     }
     let edits = args.edits.as_deref().map(read_edits).transpose()?.unwrap_or_default();
+    let asked = edits.len();
     let edits = edits.into_iter().map(PlantEdit::from).collect();
     let mut told = Report::default();
     let made = machine.with_progress("shape", |_| make(args, what, edits, &mut told, &machine))?;
+    outputs.check()?;
     machine.cancel.check()?;
-    let Shaped { plant, model, lods, mut item, seed } = made;
+    let Shaped { plant, model, lods, mut item, seed, edited } = made;
+    some_done(args, &item, asked)?;
+    if let Some((path, document)) = args.save.as_ref().zip(edited) {
+        project::save(&mut outputs, path, &document)?;
+    }
     item.warnings.splice(0..0, told.warnings.iter().map(ToString::to_string));
     if args.common.report.is_some() || args.common.json {
         item.plant = Some(plant.measure());
     }
     if let Some((path, format)) = args.output.as_deref().zip(format) {
         let mut cache = PngCache::new();
-        let all = std::iter::once((&model, path.to_path_buf()));
-        let all = all.chain(lods.iter().zip(1..).map(|(m, level)| (m, grow::beside(path, level))));
-        for (model, path) in all {
+        let all = std::iter::once((&model, "-o", path.to_path_buf()));
+        let all = all.chain(lods.iter().zip(1..).map(|(m, level)| (m, "--lods", files::lod(path, level))));
+        for (model, by, path) in all {
             machine.cancel.check()?;
-            let written = files::write_plant(&path, (&plant, model), format, &args.axes, &mut cache)?;
+            let (goal, plant) = (Goal::new(by, &path), (&plant, model));
+            let written = files::write_plant(&mut outputs, goal, plant, format, &args.axes, &mut cache)?;
             item.warnings.extend(written.iter().map(ToString::to_string));
         }
         item.output = path.display().to_string();
@@ -139,23 +152,24 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
         let spec = args.picture.spec(seed.number());
         let drawn =
             machine.with_progress("picture", |_| burgeon::render::render(&model, &spec, &machine.run()))?;
-        picture::write(png, &drawn)?;
+        picture::write(&mut outputs, "--png", png, &drawn)?;
     }
     let mut run = RunReport::new("shape", seed.number());
     run.input.path = what.display().to_string();
     run.ok = 1;
-    if !machine.quiet {
-        item.warnings.iter().for_each(|w| say::warning(&format!("{}: {w}", item.name)));
-        for edit in item.edits.iter().filter(|e| e.done) {
-            say::line(&format!("edit {}: {}", edit.index, edit.said));
-        }
-        say::line(&report::summary(&item, args.png.as_deref()));
-    }
     if let Some(order) = args.list {
         item.branches = branch_rows(&plant, order);
     }
     run.items = vec![item];
-    report::finish(&run, &args.common)?;
+    report::finish(&run, &args.common, outputs)?;
+    if !machine.quiet {
+        let item = &run.items[0];
+        item.warnings.iter().for_each(|w| say::warning(&format!("{}: {w}", item.name)));
+        for edit in item.edits.iter().filter(|e| e.done) {
+            say::line(&format!("edit {}: {}", edit.index, edit.said));
+        }
+        say::line(&report::summary(item, args.png.as_deref()));
+    }
     match args.list {
         // With --json standard output is the report, which has them.
         Some(_) if !args.common.json => list(&run.items[0].branches),
@@ -192,7 +206,44 @@ fn read_edits(path: &Path) -> Outcome<Vec<HandEdit>> {
         let what = format_args!("is of schema \"{}\"; this version reads \"{EDITS_SCHEMA}\"", file.schema);
         return Err(Failure::at(path, what));
     }
+    for (k, edit) in file.edits.iter().enumerate() {
+        edit.check().map_err(|why| {
+            let word = edit.word();
+            match along(edit).filter(|at| !(0.0..=1.0).contains(at)) {
+                Some(at) => {
+                    let line = "is a share of the branch's length; give a number from 0 to 1";
+                    Failure::at(path, format_args!("edit {k} ({word}): at {at} {line}"))
+                }
+                None => Failure::at(path, format_args!("edit {k} ({word}): {why}")),
+            }
+        })?;
+    }
     Ok(file.edits)
+}
+
+/// The place along a branch that an edit names.
+fn along(edit: &HandEdit) -> Option<f64> {
+    match edit {
+        HandEdit::Prune { at, .. } | HandEdit::Move { to: Destination::Place { at, .. }, .. } => Some(*at),
+        HandEdit::SketchBranch { at, .. } => *at,
+        _ => None,
+    }
+}
+
+/// A plant whose new edits all failed is not what was asked for. A project's own edits, which come first, do not count.
+fn some_done(args: &ShapeArgs, item: &ItemReport, asked: usize) -> Outcome {
+    let new = &item.edits[item.edits.len().saturating_sub(asked)..];
+    let (Some(path), Some(first)) = (&args.edits, new.first()) else { return Ok(()) };
+    if new.iter().any(|e| e.done) {
+        return Ok(());
+    }
+    let why = first.said.trim_start_matches("not done: ");
+    let line = match new.len() {
+        1 => format!("its edit could not be done: {why}"),
+        n => format!("none of its {n} edits could be done; the first: {why}"),
+    };
+    let line = format_args!("{line}; `burgeon shape --list` names the branches");
+    Err(Failure::at(path, line))
 }
 
 fn make(
@@ -221,7 +272,7 @@ fn make(
             other => Failure::at(what, other),
         })?;
         let MadeTree { grown, model, lods, item } = made;
-        return Ok(Shaped { plant: grown.plant, model, lods, item, seed });
+        return Ok(Shaped { plant: grown.plant, model, lods, item, seed, edited: None });
     }
     let read = match files::open(what)? {
         (file, Kind::Drawing(format)) => {
@@ -236,11 +287,8 @@ fn make(
             let document = project::edited(what, document, id, edits)?;
             let asked = project::asked(what, &document, id, args.seed, &args.surface)?;
             let (plant, model, item) = project::make(what, &asked, id, args.surface.wind, machine)?;
-            if let Some(path) = &args.save {
-                project::save(path, &document)?;
-            }
             let seed = asked.plant(id).map_or(seed, |p| p.settings().seed);
-            return Ok(Shaped { plant, model, lods: Vec::new(), item, seed });
+            return Ok(Shaped { plant, model, lods: Vec::new(), item, seed, edited: Some(document) });
         }
         (_, Kind::Model(format)) => {
             let what_it_is = format_args!(
@@ -258,7 +306,8 @@ fn make(
         MakeError::Cancelled(_) => Failure::Cancelled,
         other => Failure::at(what, other),
     })?;
-    Ok(Shaped { plant: made.plant, model: made.model, lods: Vec::new(), item: made.item, seed })
+    let Made { plant, model, item, .. } = made;
+    Ok(Shaped { plant, model, lods: Vec::new(), item, seed, edited: None })
 }
 
 /// Options of projects are for nothing else.

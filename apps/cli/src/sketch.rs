@@ -16,10 +16,11 @@ use burgeon::{
 use crate::args::{ReadingArgs, SketchArgs, SurfaceArgs};
 use crate::classes::Classes;
 use crate::failure::{Failure, Outcome};
-use crate::files::{self, Kind, PlantFormat};
+use crate::files::{self, Goal, Kind, PlantFormat};
 use crate::given::Seen;
 use crate::machine::{Machine, Progress};
-use crate::{output, picture, say};
+use crate::output::Outputs;
+use crate::{names, output, picture, say};
 
 pub(crate) fn sketch(args: &SketchArgs) -> Outcome {
     let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
@@ -36,7 +37,6 @@ pub(crate) fn sketch(args: &SketchArgs) -> Outcome {
     } else {
         machine.with_progress("drawing to plant", |_| job.one(&machine))?
     };
-    crate::report::finish(&report, &args.common)?;
     if report.failed > 0 { Err(Failure::Told) } else { Ok(()) }
 }
 
@@ -140,14 +140,17 @@ impl<'a> Job<'a> {
     /// The one drawing of the one input.
     fn one(&self, machine: &Machine) -> Outcome<RunReport> {
         let input = &self.args.inputs[0];
-        let format = self.args.output.as_deref().map(files::plant_writable).transpose()?;
+        // What cannot be written is told before what is in the way.
+        self.args.output.as_deref().map(files::plant_writable).transpose()?;
         let outputs = [
             ("-o", self.args.output.as_ref()),
             ("--png", self.args.png.as_ref()),
             ("--qsm", self.args.qsm.as_ref()),
             ("--report", self.args.common.report.as_ref()),
         ];
-        output::check_outputs(&outputs, &[input])?;
+        let mut outputs = Outputs::new(&outputs, &self.inputs())?;
+        let plan = |path| files::plan_plant(&mut outputs, path, 0);
+        let format = self.args.output.as_deref().map(plan).transpose()?;
         let (first, read_ms) = machine.timed(|| -> Outcome<(Input, Source)> {
             let mut drawings = open(input)?;
             let first = drawings.next().ok_or_else(|| Failure::at(input, "holds no drawing"))?;
@@ -167,22 +170,25 @@ impl<'a> Job<'a> {
             plant: self.args.output.clone().zip(format),
             png: self.args.png.clone(),
             qsm: self.args.qsm.clone(),
+            of_many: false,
         };
-        let mut cache = PngCache::new();
-        let item = self.make(&read, &target, read_ms, &mut cache, machine, &machine.run());
-        let item = item.map_err(|failure| match failure {
-            Failure::Bad(line) if !line.starts_with(&input.display().to_string()) => Failure::at(input, line),
+        let clocked = (machine, read_ms, &machine.run());
+        let made = self.made(&read, &machine.run()).map_err(|failure| match failure {
+            Failure::Bad(line) => Failure::at(input, line),
             other => other,
         })?;
+        let item = self.write(made, &read, &target, clocked, &mut PngCache::new(), &mut outputs)?;
         report.ok = 1;
         self.warn_of_unused(&mut report);
+        report.items.push(item);
+        crate::report::finish(&report, &self.args.common, outputs)?;
         if !machine.quiet {
+            let item = &report.items[0];
             for warning in item.warnings.iter().chain(&report.warnings) {
                 say::warning(&format!("{}: {warning}", input.display()));
             }
-            say::line(&crate::report::summary(&item, self.args.png.as_deref()));
+            say::line(&crate::report::summary(item, self.args.png.as_deref()));
         }
-        report.items.push(item);
         Ok(report)
     }
 
@@ -194,34 +200,47 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// Makes one plant and writes its files.
-    fn make(
+    /// Every file that options name.
+    fn inputs(&self) -> Vec<&PathBuf> {
+        let reading = &self.args.reading;
+        let settings = [&reading.spec, &reading.classes, &reading.leaf_template];
+        self.args.inputs.iter().chain(settings.into_iter().flatten()).collect()
+    }
+
+    /// Makes one plant.
+    fn made(&self, input: &Input, run: &Run<'_>) -> Outcome<Made> {
+        let seed = self.seed(input.project.as_deref());
+        make_from_sketch(&input.read.drawing, &self.options(input), seed, run).map_err(|e| match e {
+            MakeError::Cancelled(_) => Failure::Cancelled,
+            other => Failure::Bad(other.to_string()),
+        })
+    }
+
+    /// Writes a plant's files, which are not yet in place.
+    fn write(
         &self,
+        made: Made,
         input: &Input,
         target: &Target,
-        read_ms: f64,
+        (machine, read_ms, run): (&Machine, f64, &Run<'_>),
         cache: &mut PngCache,
-        machine: &Machine,
-        run: &Run<'_>,
+        outputs: &mut Outputs,
     ) -> Outcome<ItemReport> {
         let Input { read, project } = input;
         let seed = self.seed(project.as_deref());
-        let made = make_from_sketch(&read.drawing, &self.options(input), seed, run);
-        let Made { plant, model, mut item, .. } = made.map_err(|e| match e {
-            MakeError::Cancelled(_) => Failure::Cancelled,
-            other => Failure::Bad(other.to_string()),
-        })?;
+        let Made { plant, model, mut item, .. } = made;
         let mut warnings: Vec<String> = read.warnings.iter().map(ToString::to_string).collect();
         warnings.append(&mut item.warnings);
         item.warnings = warnings;
         run.cancel.check()?;
         let (written, write_ms) = machine.timed(|| {
             if let Some(path) = &target.qsm {
-                files::write_qsm(path, &plant, &self.args.axes)?;
+                files::write_qsm(outputs, path, &plant, &self.args.axes)?;
             }
             let Some((path, format)) = &target.plant else { return Ok(Vec::new()) };
             item.output = path.display().to_string();
-            files::write_plant(path, (&plant, &model), *format, &self.args.axes, cache)
+            let goal = Goal { by: "-o", path, of_many: target.of_many };
+            files::write_plant(outputs, goal, (&plant, &model), *format, &self.args.axes, cache)
         });
         item.warnings.extend(written?.iter().map(ToString::to_string));
         item.timings_ms.add_io(read_ms, write_ms);
@@ -230,7 +249,7 @@ impl<'a> Job<'a> {
         }
         if let Some(png) = &target.png {
             let drawn = burgeon::render::render(&model, &self.args.picture.spec(seed.number()), run)?;
-            picture::write(png, &drawn)?;
+            picture::write(outputs, "--png", png, &drawn)?;
         }
         Ok(item)
     }
@@ -238,11 +257,13 @@ impl<'a> Job<'a> {
     /// Every drawing of every input, spread over threads; memory holds one drawing a thread.
     fn batch(&self, machine: &Machine) -> Outcome<RunReport> {
         self.classes.fits_batch(self.args.reading.classes.as_deref())?;
+        let mut outputs = Outputs::new(&[], &self.inputs())?;
         for folder in [&self.args.output, &self.args.png, &self.args.qsm].into_iter().flatten() {
-            output::make_folder(folder)?;
+            outputs.folder(folder)?;
         }
-        let inputs: Vec<&PathBuf> = self.args.inputs.iter().collect();
-        output::check_outputs(&[("--report", self.args.common.report.as_ref())], &inputs)?;
+        if let Some(path) = &self.args.common.report {
+            outputs.plan("--report", path)?;
+        }
         let queue = Mutex::new(Queue::new(&self.args.inputs));
         let done = Mutex::new(Done::default());
         let strokes = AtomicU64::new(0);
@@ -254,8 +275,12 @@ impl<'a> Job<'a> {
                     let Some(next) = pull(&queue, machine, progress) else { break };
                     let outcome = next.read.and_then(|read| {
                         strokes.fetch_add(read.read.drawing.strokes.len() as u64, Ordering::Relaxed);
-                        let target = self.target(&next.name);
-                        self.make(&read, &target, next.read_ms, &mut cache, machine, &machine.single())
+                        let run = machine.single();
+                        let (target, clocked) = (self.target(&next.name), (machine, next.read_ms, &run));
+                        let made = self.made(&read, &run)?;
+                        let mut own = outputs.of_one();
+                        let item = self.write(made, &read, &target, clocked, &mut cache, &mut own)?;
+                        own.place().map(|()| item)
                     });
                     if let Ok(mut done) = done.lock() {
                         done.add(next.index, &next.place, outcome, keep_items);
@@ -270,10 +295,16 @@ impl<'a> Job<'a> {
         let mut report = self.report(None);
         report.input.drawings = queue.count;
         report.input.strokes = strokes.into_inner();
-        self.close(report, done, machine)
+        self.close(report, done, outputs, machine)
     }
 
-    fn close(&self, mut report: RunReport, mut done: Done, machine: &Machine) -> Outcome<RunReport> {
+    fn close(
+        &self,
+        mut report: RunReport,
+        mut done: Done,
+        outputs: Outputs,
+        machine: &Machine,
+    ) -> Outcome<RunReport> {
         if let Some(bug) = done.bug {
             return Err(Failure::Bug(bug));
         }
@@ -295,6 +326,7 @@ impl<'a> Job<'a> {
         }
         let failures = report.warnings.len();
         self.warn_of_unused(&mut report);
+        crate::report::finish(&report, &self.args.common, outputs)?;
         if !machine.quiet {
             report.warnings[failures..].iter().for_each(|w| say::warning(w));
             if done.warnings > 0 {
@@ -324,6 +356,7 @@ impl<'a> Job<'a> {
             plant: self.args.output.as_ref().map(|f| (file(f, extension), self.args.format.format())),
             png: self.args.png.as_ref().map(|f| file(f, "png")),
             qsm: self.args.qsm.as_ref().map(|f| file(f, "csv")),
+            of_many: true,
         }
     }
 }
@@ -333,6 +366,8 @@ struct Target {
     plant: Option<(PathBuf, PlantFormat)>,
     png: Option<PathBuf>,
     qsm: Option<PathBuf>,
+    /// One of a batch.
+    of_many: bool,
 }
 
 /// Failures of a batch that are told on stderr.
@@ -461,7 +496,7 @@ fn pull(queue: &Mutex<Queue<'_>>, machine: &Machine, progress: &Progress) -> Opt
     progress.reached(queue.files.saturating_sub(1));
     let mut name = String::new();
     if let Ok(read) = &read {
-        name = unique(&mut queue.names, &safe(&read.read.drawing.name));
+        name = names::unique(&mut queue.names, &names::safe(&read.read.drawing.name));
         place = format!("{place}, drawing \"{}\"", read.read.drawing.name);
     }
     Some(Next { index, place, name, read, read_ms })
@@ -514,49 +549,6 @@ fn names_folder(
     }
 }
 
-/// A file name from a drawing's name: letters, digits, `-`, `_` and inner dots of ASCII, at most 80.
-fn safe(name: &str) -> String {
-    let mut out = String::new();
-    for c in name.chars().take(200) {
-        let c = if c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.') { c } else { '-' };
-        if !(c == '-' && out.ends_with('-')) {
-            out.push(c);
-        }
-    }
-    out.truncate(80);
-    let out = out.trim_matches(['-', '.']);
-    // Names that Windows keeps for devices.
-    let device = |s: &str| {
-        let s = s.split('.').next().unwrap_or(s).to_ascii_lowercase();
-        matches!(s.as_str(), "con" | "prn" | "aux" | "nul")
-            || (s.len() == 4
-                && (s.starts_with("com") || s.starts_with("lpt"))
-                && s.ends_with(|c: char| c.is_ascii_digit()))
-    };
-    match out {
-        "" => "drawing".into(),
-        name if device(name) => format!("{name}-drawing"),
-        name => name.into(),
-    }
-}
-
-/// `name`, or `name-2`, `name-3`, ...: no two alike on a disk that does not tell case apart. `taken` holds every
-/// name given and the next number to try for it.
-fn unique(taken: &mut BTreeMap<String, u64>, name: &str) -> String {
-    let key = name.to_ascii_lowercase();
-    let Some(&first) = taken.get(&key) else {
-        taken.insert(key, 2);
-        return name.to_owned();
-    };
-    let mut k = first;
-    while taken.contains_key(&format!("{key}-{k}")) {
-        k += 1;
-    }
-    taken.insert(format!("{key}-{k}"), 2);
-    taken.insert(key, k + 1);
-    format!("{name}-{k}")
-}
-
 fn read_spec(path: &Path) -> Outcome<SketchSpec> {
     let text = files::read_text(path)?;
     let spec: SketchSpec = serde_json::from_str(&text)
@@ -588,22 +580,4 @@ fn set_skin(skin: &mut SkinSpec, args: &SurfaceArgs) {
     skin.wind = args.wind;
     skin.petals = args.petals.map(Into::into).or(skin.petals);
     skin.variation = args.variation.unwrap_or(skin.variation);
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_are_safe_and_unique() {
-        let safe_names = ["flower 3/../x", "..", "", "NUL", "com1.x", "Grüne Rose", "a.b"].map(safe);
-        assert_eq!(
-            safe_names,
-            ["flower-3-..-x", "drawing", "drawing", "NUL-drawing", "com1.x-drawing", "Gr-ne-Rose", "a.b"]
-        );
-        assert!(safe(&"x".repeat(500)).len() == 80);
-        let mut taken = BTreeMap::new();
-        let names = ["rose", "Rose", "rose-2", "rose"].map(|n| unique(&mut taken, n));
-        assert_eq!(names, ["rose", "Rose-2", "rose-2-2", "rose-3"]);
-    }
 }

@@ -1,6 +1,5 @@
 //! Stages files and scans: read, cleaned, split into organs that carry the same names on every day.
 
-use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
@@ -12,8 +11,8 @@ use burgeon::{Report, Seed, Unit, UpAxis};
 use serde::{Deserialize, Serialize};
 
 use crate::failure::{Failure, Outcome};
-use crate::files;
 use crate::machine::Machine;
+use crate::{files, inputs};
 
 /// A stages file.
 #[derive(Debug, Deserialize)]
@@ -149,7 +148,7 @@ fn read_any(path: &Path, axes: &ExportSpec, report: &mut Report) -> Outcome<(Vec
         return Ok((points, (!mesh.triangles.is_empty()).then_some(mesh)));
     }
     let format = cloud.unwrap_or(CloudFormat::Xyz);
-    let file = File::open(path).map_err(|e| Failure::io(path, "read", &e))?;
+    let file = inputs::open(path).map_err(|e| Failure::io(path, "read", &e))?;
     let cloud = read_cloud(BufReader::new(file), format, axes, report).map_err(|e| Failure::at(path, e))?;
     Ok((cloud.points, None))
 }
@@ -157,7 +156,7 @@ fn read_any(path: &Path, axes: &ExportSpec, report: &mut Report) -> Outcome<(Vec
 /// A PLY whose header announces faces, or an OBJ with an `f` line.
 fn has_faces(path: &Path) -> bool {
     use std::io::Read as _;
-    let Ok(mut file) = File::open(path) else { return false };
+    let Ok(mut file) = inputs::open(path) else { return false };
     let extension = files::extension(path).unwrap_or_default().to_ascii_lowercase();
     let mut start = Vec::new();
     let limit = if extension == "obj" { 64 << 20 } else { 8192 };

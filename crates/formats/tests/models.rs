@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use base::{Report, Unit, UpAxis};
 use formats::{
-    ExportSpec, ModelFormat, ModelSummary, no_files, obj_files, read_model, usd_files, write_glb, write_model,
+    ExportSpec, FileStems, ModelFormat, ModelSummary, file_name, no_files, obj_files, read_model, usd_files,
+    write_glb, write_model,
 };
 use mesh::{AlphaMode, Material, MaterialId, MaterialKind, Model, Part, Texture, TriMesh};
 
@@ -111,6 +112,38 @@ fn obj_comes_back_with_its_materials() {
         assert!(worst(&a.mesh.uvs, &b.mesh.uvs) < 1e-6);
         assert!(worst(&a.mesh.colors, &b.mesh.colors) < 1e-5);
     }
+}
+
+#[test]
+fn names_beside_a_model_are_of_any_script_and_differ() {
+    for (name, want) in [
+        ("two words", "two-words"),
+        ("花", "花"),
+        ("हिन्दी 🌹", "हिन्दी-🌹"),
+        ("a\u{202e}b\u{200d}c", "abc"),
+        ("..", "model"),
+        ("a/b\\c:d\0e\u{fffd}f\u{2028}g", "a-b-c-d-e-f-g"),
+    ] {
+        assert_eq!(file_name(name, "model"), want, "{name:?}");
+    }
+    assert_eq!((file_name(&"花".repeat(99), "").len(), file_name(&"x".repeat(999), "").len()), (207, 100));
+
+    let mut m = model();
+    let texture = m.materials.iter().find_map(|m| m.texture.clone()).expect("one has a texture");
+    for (material, name) in m.materials.iter_mut().zip(["Leaf", "leaf"]) {
+        material.name = name.into();
+        let mut own = (*texture).clone();
+        own.pixels[0] = own.pixels[0].wrapping_add(u8::from(name == "leaf"));
+        material.texture = Some(own.into());
+    }
+    let stems = FileStems { model: "a", textures: "a-" };
+    let files = obj_files(&m, stems, &ExportSpec::default()).expect("writes");
+    assert_eq!(files.mtl_name, "a.mtl");
+    // A disk that does not tell case apart keeps both.
+    let names: Vec<&str> = files.textures.iter().map(|t| t.0.as_str()).collect();
+    assert_eq!(names, ["a--Leaf.png", "a--leaf-2.png"]);
+    let mtl = String::from_utf8(files.mtl).expect("text");
+    assert!(names.iter().all(|n| mtl.contains(&format!("map_Kd {n}\n"))), "{mtl}");
 }
 
 #[test]

@@ -22,7 +22,7 @@ use mesh::{MaterialKind, Model};
 
 pub use axes::ExportSpec;
 pub use glb_write::{Morph, write_glb, write_glb_morph, write_glb_with};
-pub use obj_write::{ObjFiles, obj_files};
+pub use obj_write::{FileStems, ObjFiles, obj_files};
 pub use picture::{PngCache, read_picture, write_png};
 pub use ply_write::write_ply;
 pub use stl::write_stl;
@@ -223,12 +223,45 @@ pub fn warn_of_wind(model: &Model, format: &str, report: &mut Report) {
     }
 }
 
-/// A name that every file system takes.
-pub(crate) fn file_name(name: &str, otherwise: &str) -> String {
-    let keep = |c: char| if c.is_alphanumeric() || matches!(c, '-' | '_' | '.') { c } else { '-' };
-    let name: String = name.chars().map(keep).take(100).collect();
-    let name = name.trim_matches('.');
+/// Bytes of a name that leave room for a material's name and an extension in the 255 that file systems take.
+const MOST_STEM_BYTES: usize = 208;
+
+/// A name that every file system takes, and that stands in a file without quotes: letters, digits, signs and marks of
+/// any language with `-`, `_` and `.`; all else becomes `-`, and what is drawn as nothing or turns the direction of
+/// writing is left out. At most 100 characters and 208 bytes; `otherwise` if nothing is left.
+///
+/// Not guaranteed: Unicode's normal form, and that no system keeps the name for a device.
+///
+/// ```
+/// assert_eq!(formats::file_name("a rose/../花 🌹", "model"), "a-rose-..-花-🌹");
+/// ```
+pub fn file_name(name: &str, otherwise: &str) -> String {
+    let keep = |c: char| if usual(c) { c } else { '-' };
+    let mut out = String::new();
+    for c in name.chars().filter(|&c| !unseen(c)).map(keep).take(100) {
+        if out.len() + c.len_utf8() > MOST_STEM_BYTES {
+            break;
+        }
+        out.push(c);
+    }
+    let name = out.trim_matches('.');
     if name.is_empty() { otherwise.to_owned() } else { name.to_owned() }
+}
+
+fn usual(c: char) -> bool {
+    if c.is_ascii() {
+        return c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
+    }
+    // Neither the mark of what could not be read nor what is no character.
+    !c.is_control() && !c.is_whitespace() && c != char::REPLACEMENT_CHARACTER && (c as u32 & 0xfffe) != 0xfffe
+}
+
+/// Unicode's `Default_Ignorable_Code_Point`: signs of direction, joiners, variation selectors. Some disks do not see them.
+fn unseen(c: char) -> bool {
+    matches!(c, '\u{ad}' | '\u{34f}' | '\u{61c}' | '\u{115f}'..='\u{1160}' | '\u{17b4}'..='\u{17b5}'
+        | '\u{180b}'..='\u{180f}' | '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{206f}'
+        | '\u{3164}' | '\u{fe00}'..='\u{fe0f}' | '\u{feff}' | '\u{ffa0}' | '\u{fff0}'..='\u{fff8}'
+        | '\u{1bca0}'..='\u{1bca3}' | '\u{1d173}'..='\u{1d17a}' | '\u{e0000}'..='\u{e0fff}')
 }
 
 /// Refuses models that no file should be made of. Degenerate triangles may pass.
@@ -279,7 +312,8 @@ impl<'a> TextureFiles<'a> {
             return Ok(self.files[known].0.clone());
         }
         let mut name = format!("{}-{}.png", self.stem, file_name(material, "texture"));
-        while self.files.iter().any(|(n, _)| *n == name) {
+        // Two names that differ by case only are one file on some disks.
+        while self.files.iter().any(|(n, _)| n.to_lowercase() == name.to_lowercase()) {
             name.insert_str(name.len() - 4, "-2");
         }
         self.files.push((name.clone(), self.cache.png(texture)?.to_vec()));

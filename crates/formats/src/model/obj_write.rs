@@ -21,7 +21,22 @@ pub struct ObjFiles {
     pub textures: Vec<(String, Vec<u8>)>,
 }
 
-/// Writes a model as OBJ, MTL and PNG files; `stem` is their common name without folder and extension.
+/// How the files of one model are called, without folder and extension. Of a `&str`: all by that name.
+#[derive(Clone, Copy, Debug)]
+pub struct FileStems<'a> {
+    /// The OBJ and its material file.
+    pub model: &'a str,
+    /// What textures start with, before `-MATERIAL.png`.
+    pub textures: &'a str,
+}
+
+impl<'a> From<&'a str> for FileStems<'a> {
+    fn from(stem: &'a str) -> Self {
+        Self { model: stem, textures: stem }
+    }
+}
+
+/// Writes a model as OBJ, MTL and PNG files of these names.
 ///
 /// Guaranteed: names, positions, normals, texture coordinates, materials and colours come back when read here;
 /// other programs do not see kind, translucency and sidedness, which OBJ has no words for.
@@ -34,9 +49,14 @@ pub struct ObjFiles {
 /// assert!(files.obj.starts_with(b"# Burgeon"));
 /// # Ok::<(), formats::WriteError>(())
 /// ```
-pub fn obj_files(model: &Model, stem: &str, spec: &ExportSpec) -> Result<ObjFiles, WriteError> {
+pub fn obj_files<'a>(
+    model: &Model,
+    stems: impl Into<FileStems<'a>>,
+    spec: &ExportSpec,
+) -> Result<ObjFiles, WriteError> {
     check(model)?;
-    let stem = file_name(stem, "model");
+    let stems = stems.into();
+    let [stem, textures] = [stems.model, stems.textures].map(|s| file_name(s, "model"));
     let mut obj = Vec::with_capacity(64 + 100 * model.vertex_count() + 40 * model.triangle_count());
     writeln!(obj, "# Burgeon {}; {}, +{:?} up", env!("CARGO_PKG_VERSION"), spec.unit_word(), spec.up)?;
     writeln!(obj, "# model {}\nmtllib {stem}.mtl", one_line(&model.name))?;
@@ -78,7 +98,7 @@ pub fn obj_files(model: &Model, stem: &str, spec: &ExportSpec) -> Result<ObjFile
         vt += mesh.uvs.len();
         vn += mesh.normals.len();
     }
-    let mut textures = TextureFiles::new(&stem);
+    let mut textures = TextureFiles::new(&textures);
     let mtl = materials(model, &mut textures)?;
     let textures = textures.into_files();
     Ok(ObjFiles { obj, mtl, mtl_name: format!("{stem}.mtl"), textures })
