@@ -3,6 +3,7 @@
 //! `Obstacle -> Obstacles -> steer, blocks, inside`
 
 use glam::DVec3;
+use plant::Frame;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -172,8 +173,33 @@ impl Obstacles {
         open.reduce(|a, b| if b.dot(wish) > a.dot(wish) { b } else { a })
     }
 
+    /// The distance that everything keeps from surfaces where there is room, metres.
+    pub(crate) const fn clearance_m(&self) -> f64 {
+        self.clearance_m
+    }
+
+    /// How deep a point lies in an obstacle, metres; 0 outside of all.
+    pub fn depth(&self, p: DVec3) -> f64 {
+        let deep = |b: &Body| if b.inside(p) { -b.distance(p).0 } else { 0.0 };
+        self.bodies.iter().map(deep).fold(0.0, f64::max)
+    }
+
+    /// Whether an organ keeps out of every obstacle: its frame, scale and the corners of its shape
+    /// ([`plant::Shape::corners`]).
+    ///
+    /// Guaranteed: no corner lies in an obstacle, and none stands between its root and a corner.
+    pub fn admit(&self, frame: &Frame, scale: f64, corners: &[DVec3]) -> bool {
+        let Some((distance, _)) = self.nearest(frame.origin) else { return true };
+        let reach = corners.iter().map(|c| c.length()).fold(0.0, f64::max) * scale;
+        // Most of them are far from everything.
+        distance > reach
+            || corners.iter().map(|c| frame.place(*c, scale)).all(|p| {
+                self.inside(p).is_none() && (distance < 0.0 || !self.blocks(frame.origin, p))
+            })
+    }
+
     /// Distance to the nearest surface (negative inside) and the way out of it.
-    fn nearest(&self, p: DVec3) -> Option<(f64, DVec3)> {
+    pub(crate) fn nearest(&self, p: DVec3) -> Option<(f64, DVec3)> {
         let all = self.bodies.iter().map(|b| b.distance(p));
         all.reduce(|a, b| if b.0 < a.0 { b } else { a })
     }

@@ -77,7 +77,7 @@ pub struct TreeSpec {
     pub roots: Vec<DVec3>,
     /// What they grow around. Default nothing.
     pub obstacles: Vec<Obstacle>,
-    /// Distance that joints keep from obstacles, metres, 0 or more, default 0.05.
+    /// Distance that bark keeps from obstacles where there is room, metres, 0 or more, default 0.05.
     pub clearance_m: f64,
     /// The trees as they were after so many rounds, years (self-organising) or rewriting steps (L-systems) of growth;
     /// default none: to the end.
@@ -131,10 +131,6 @@ pub struct Grown {
     pub tally: Tally,
     /// Leaves placed, fallen and kept.
     pub leaves: LeafCount,
-    /// Nodes in obstacles: 0 unless something is wrong.
-    pub nodes_in_obstacles: usize,
-    /// Leaves whose root, middle or tip lies in an obstacle: 0 unless something is wrong.
-    pub leaves_in_obstacles: usize,
 }
 
 /// Grows trees of any method and dresses them with leaves of the given blade ([`LeafSpec::blade`] if none).
@@ -185,11 +181,8 @@ pub fn grow(
         leaves = add_leaves(&mut plant, leaf, blade, &places, &obstacles, seed, run, report)?;
     }
     run.cancel.reached(LEAFY);
-    let inside = |p: DVec3| obstacles.inside(p).is_some();
-    let nodes_in_obstacles = plant.nodes.position.iter().filter(|p| inside(**p)).count();
-    let leaves_in_obstacles = plant.organs.iter().filter(|o| inside(o.frame.origin)).count();
     debug_assert_eq!(plant.validate().next(), None, "a grown plant is sound");
-    Ok(Grown { plant, skeleton, tally, leaves, nodes_in_obstacles, leaves_in_obstacles })
+    Ok(Grown { plant, skeleton, tally, leaves })
 }
 
 /// A skeleton, the leaves that rules set, and what was counted.
@@ -334,7 +327,17 @@ mod tests {
             let obstacles = vec![house.clone()];
             let spec = TreeSpec { name: format!("{method:?}"), method, obstacles, ..TreeSpec::default() };
             let got = tree(&spec);
-            assert_eq!((got.nodes_in_obstacles, got.leaves_in_obstacles), (0, 0), "{}", spec.name);
+            let all = Obstacles::new(&spec.obstacles, spec.clearance_m).expect("sound");
+            let nodes = &got.plant.nodes;
+            for (p, r) in nodes.position.iter().zip(&nodes.radius_m) {
+                let free = all.nearest(*p).is_none_or(|(d, _)| d > 0.0);
+                assert!(free && all.depth(*p + DVec3::X * *r * 0.9) <= 0.0, "{}: {p} {r}", spec.name);
+            }
+            for o in &got.plant.organs {
+                let corners = got.plant.shapes[o.shape.index()].corners();
+                let deepest = corners.iter().map(|c| all.depth(o.frame.place(*c, o.scale))).fold(0.0, f64::max);
+                assert!(deepest <= 0.0, "{}: {deepest}", spec.name);
+            }
             assert!(got.plant.axes.len() > 20, "{}", spec.name);
         }
     }
