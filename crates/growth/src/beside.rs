@@ -13,6 +13,9 @@ const DRAWN: f64 = 0.0012;
 const BARK: f64 = 1.08;
 /// A foot is this much wider than the trunk on it, over two radii.
 const FLARE: f64 = 0.25;
+/// A trunk that stands on an obstacle rises straight from it for so many of its radii, and is bent upwards at so many.
+const STRAIGHT: f64 = 1.2;
+const BENT: f64 = 4.0;
 /// How fast wood may become thinner towards a place without room: radius over length.
 const TAPER: f64 = 0.25;
 /// Rounds of pushing; in all but the last ones neighbours follow half of the way, so that bends are wide.
@@ -31,6 +34,10 @@ pub(crate) struct Course {
     pub(crate) aside: Vec<f64>,
     /// The most that wood may measure from each point on, because it was squeezed below.
     pub(crate) cap: Vec<f64>,
+    /// The way from its start on which it stands on an obstacle or runs inside its bearer: there it stays as it is.
+    hidden: f64,
+    /// Distance of its start from the nearest obstacle.
+    start: f64,
 }
 
 /// What a course starts from.
@@ -40,6 +47,8 @@ pub(crate) struct Foot {
     pub(crate) moved: DVec3,
     /// The most that its wood may measure.
     pub(crate) cap: f64,
+    /// How far it runs inside its bearer.
+    pub(crate) within: f64,
 }
 
 /// What wood keeps from obstacles.
@@ -77,15 +86,20 @@ impl<'a> Room<'a> {
             }
         }
         let near = self.refine(course);
+        course.hidden = foot.within;
+        let ground = if near && course.rooted { self.ground(course) } else { None };
+        if let Some(out) = ground {
+            course.stand(out);
+        }
         course.cap = vec![foot.cap; course.points.len()];
         if !near {
             course.radii.iter_mut().for_each(|r| *r = r.min(foot.cap));
             return;
         }
-        let on_ground = course.rooted && self.stands_on(course);
-        let first = usize::from(!course.rooted || on_ground);
-        self.push(course, first, on_ground);
-        self.squeeze(course, first, on_ground, foot.cap);
+        course.start = self.distance(course.points[0]).max(0.0);
+        let first = usize::from(!course.rooted || ground.is_some());
+        self.push(course, first);
+        self.squeeze(course, first, foot.cap);
     }
 
     /// Adds points where an obstacle is near, so that straight pieces cut no corner. Whether one is.
@@ -120,14 +134,14 @@ impl<'a> Room<'a> {
         any
     }
 
-    /// Whether a trunk stands on an obstacle, as on a slope: then its foot stays where it is.
-    fn stands_on(&self, course: &Course) -> bool {
-        let Some((distance, out)) = self.obstacles.nearest(course.points[0]) else { return false };
-        distance < (1.0 + FLARE) * course.radii[0] && out.y > 0.5
+    /// The way up from the obstacle that a trunk stands on, if it does.
+    fn ground(&self, course: &Course) -> Option<DVec3> {
+        let (distance, out) = self.obstacles.nearest(course.points[0])?;
+        (distance < (1.0 + FLARE) * course.radii[0] && out.y > 0.5).then_some(out)
     }
 
     /// Pushes points out until bark is clear; the points beside them follow.
-    fn push(&self, course: &mut Course, first: usize, on_ground: bool) {
+    fn push(&self, course: &mut Course, first: usize) {
         let n = course.points.len();
         let start = course.points.clone();
         let along = lengths(&start);
@@ -135,8 +149,10 @@ impl<'a> Room<'a> {
         for round in 0..ROUNDS {
             let mut moved = false;
             for i in first..n {
-                let Some((distance, out)) = self.wall(course, i, &along, on_ground) else { continue };
-                let needed = self.wish + self.bark(course, i, &along, out) * course.radii[i];
+                let Some((distance, out)) = self.wall(course, i, &along) else { continue };
+                // Near its start there is no more room than that has.
+                let wish = self.wish.min(course.start + 0.5 * along[i]).max(self.least.min(along[i]));
+                let needed = wish + self.bark(course, i, &along, out) * course.radii[i];
                 if distance < needed - 1e-6 {
                     // The foot stays on its ground.
                     let out = if i == 0 { DVec3::new(out.x, 0.0, out.z) } else { out };
@@ -161,13 +177,13 @@ impl<'a> Room<'a> {
     }
 
     /// Thins what has no room, and ends it where there is none at all or an obstacle stands in the way.
-    fn squeeze(&self, course: &mut Course, first: usize, on_ground: bool, cap: f64) {
+    fn squeeze(&self, course: &mut Course, first: usize, cap: f64) {
         let n = course.points.len();
         let along = lengths(&course.points);
         let (mut cap, mut end) = (cap, n);
         let mut squeezed = vec![false; n];
         for i in 0..n {
-            let wall = if i < first { None } else { self.wall(course, i, &along, on_ground) };
+            let wall = if i < first { None } else { self.wall(course, i, &along) };
             if let Some((distance, out)) = wall {
                 let fits = (distance - self.least) / self.bark(course, i, &along, out).max(1e-3);
                 let crossed = i > 0 && self.obstacles.blocks(course.points[i - 1], course.points[i]);
@@ -191,10 +207,9 @@ impl<'a> Room<'a> {
         course.truncate(end);
     }
 
-    /// Distance of a point of a course from the nearest obstacle and the way out; none at a foot that stands on one.
-    fn wall(&self, course: &Course, i: usize, along: &[f64], on_ground: bool) -> Option<(f64, DVec3)> {
-        let standing = on_ground && along[i] < 3.0 * course.radii[0];
-        if standing { None } else { self.obstacles.nearest(course.points[i]) }
+    /// Distance of a point of a course from the nearest obstacle and the way out; none where it is hidden.
+    fn wall(&self, course: &Course, i: usize, along: &[f64]) -> Option<(f64, DVec3)> {
+        if along[i] < course.hidden { None } else { self.obstacles.nearest(course.points[i]) }
     }
 
     /// How far bark reaches towards an obstacle from the course, in radii: a slice of wood is a disc, and a tip is
@@ -228,6 +243,25 @@ impl Course {
         self.aside.push(aside);
     }
 
+    /// Lets a trunk rise at right angles to what it stands on, so that its foot lies flat on that, and bend upwards over
+    /// four times its radius.
+    fn stand(&mut self, out: DVec3) {
+        let (foot, r, along) = (self.points[0], self.radii[0], lengths(&self.points));
+        for (p, way) in self.points.iter_mut().zip(&along) {
+            let u = ((way / r - STRAIGHT) / (BENT - STRAIGHT)).clamp(0.0, 1.0);
+            *p = (foot + out * *way).lerp(*p, u * u * (3.0 - 2.0 * u));
+        }
+        self.hidden = BENT * r;
+        // Three points in a row: else the line that is drawn would lean from the start.
+        let step = along[1].min(STRAIGHT * r) / 3.0;
+        for k in [2.0, 1.0] {
+            self.points.insert(1, foot + out * (k * step));
+            self.radii.insert(1, r);
+            self.joint.insert(1, None);
+            self.aside.insert(1, 0.0);
+        }
+    }
+
     fn truncate(&mut self, n: usize) {
         self.points.truncate(n);
         self.radii.truncate(n);
@@ -245,4 +279,74 @@ fn lengths(points: &[DVec3]) -> Vec<f64> {
         sum
     });
     ways.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use base::Run;
+
+    use super::*;
+    use crate::{Obstacle, Skeleton, Wood, WoodSpec, make_wood};
+
+    /// A pole of 4 m whose foot is `x` from the middle, 10 cm thick all along.
+    fn pole(obstacles: &[Obstacle]) -> Wood {
+        let mut s = Skeleton::default();
+        let mut top = s.push_root(DVec3::ZERO, 0);
+        for i in 1..=20 {
+            top = s.push(DVec3::Y * (0.2 * f64::from(i)), top, 1);
+        }
+        s.radius_m.fill(0.1);
+        let all = Obstacles::new(obstacles, 0.05).expect("sound");
+        make_wood(&s, &WoodSpec { relax: 0, ..WoodSpec::default() }, &all, &Run::plain()).expect("sound")
+    }
+
+    fn wall(x: f64) -> Obstacle {
+        let sign = if x > 0.0 { 1.0 } else { -1.0 };
+        let (a, b) = (DVec3::new(x, 1.0, -2.0), DVec3::new(x + sign, 2.5, 2.0));
+        Obstacle::Box { min: a.min(b), max: a.max(b) }
+    }
+
+    #[test]
+    fn a_pole_bends_round_a_wall_by_what_it_is_thick() {
+        let plain = pole(&[]).plant;
+        let far = pole(&[wall(3.0)]).plant;
+        assert_eq!(plain.digest_hex(), far.digest_hex(), "what is far changes nothing");
+        let bent = pole(&[wall(0.07)]).plant;
+        for (p, r) in bent.nodes.position.iter().zip(&bent.nodes.radius_m) {
+            assert!((*r - 0.1).abs() < 1e-9, "there is room on the other side");
+            let beside = (1.0..2.5).contains(&p.y);
+            assert!(!beside || p.x <= 0.07 - 0.05 - 0.1 + 1e-6, "{p}");
+        }
+        let (foot, tip) = (bent.nodes.position[0], bent.nodes.position[bent.nodes.position.len() - 1]);
+        assert!(foot.length() < 1e-9 && tip.x.abs() < 0.02, "{foot} {tip}");
+    }
+
+    #[test]
+    fn between_two_walls_wood_is_thinner_and_stays_so_above() {
+        let thin = pole(&[wall(0.08), wall(-0.08)]).plant;
+        let radius = |low: f64, high: f64| {
+            let nodes = thin.nodes.position.iter().zip(&thin.nodes.radius_m);
+            nodes.filter(|(p, _)| (low..high).contains(&p.y)).map(|(_, r)| *r).fold(0.0, f64::max)
+        };
+        assert!(radius(0.0, 0.5) > 0.099 && radius(1.0, 2.5) < 0.08, "{}", radius(1.0, 2.5));
+        assert!(radius(2.5, 4.1) <= radius(1.0, 2.5) + 1e-9);
+        // No twig fits through a slit: it ends below, and thin.
+        let cut = pole(&[wall(0.004), wall(-0.004)]).plant;
+        let top = cut.nodes.position.iter().map(|p| p.y).fold(0.0, f64::max);
+        let end = cut.nodes.radius_m[cut.nodes.radius_m.len() - 1];
+        assert!((0.4..1.0).contains(&top) && end < 0.01, "{top} {end}");
+    }
+
+    #[test]
+    fn a_foot_lies_flat_on_its_slope_and_beside_its_wall() {
+        let normal = DVec3::new(-0.5, 0.75_f64.sqrt(), 0.0);
+        let slope = pole(&[Obstacle::Plane { point: DVec3::ZERO, normal }]).plant;
+        let p = &slope.nodes.position;
+        assert!(p[0].length() < 1e-9 && (p[1] - p[0]).normalize().dot(normal) > 1.0 - 1e-9);
+        assert!((p[p.len() - 1] - p[p.len() - 2]).normalize().y > 0.99);
+        let house = Obstacle::Box { min: DVec3::new(0.06, -1.0, -2.0), max: DVec3::new(2.0, 6.0, 2.0) };
+        let beside = pole(&[house]).plant;
+        let foot = beside.nodes.position[0];
+        assert!(foot.y.abs() < 1e-12 && (-0.15..-0.09).contains(&foot.x), "{foot}");
+    }
 }

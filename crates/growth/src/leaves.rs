@@ -497,7 +497,9 @@ mod tests {
         let (plant, count) = dressed(&LeafSpec::default(), &obstacles);
         assert!(count.buried > 50, "{count:?}");
         for o in &plant.organs {
-            assert!(obstacles.inside(o.frame.place(DVec3::Y, o.scale)).is_none());
+            for corner in plant.shapes[o.shape.index()].corners() {
+                assert!(obstacles.inside(o.frame.place(corner, o.scale)).is_none());
+            }
         }
     }
 

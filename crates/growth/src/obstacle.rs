@@ -91,6 +91,19 @@ enum Body {
     Mesh(Solid),
 }
 
+impl Obstacle {
+    /// The word of its shape, as specs have it.
+    pub const fn shape(&self) -> &'static str {
+        match self {
+            Self::Box { .. } => "box",
+            Self::Sphere { .. } => "sphere",
+            Self::Cylinder { .. } => "cylinder",
+            Self::Plane { .. } => "plane",
+            Self::Mesh { .. } => "mesh",
+        }
+    }
+}
+
 impl Obstacles {
     /// Nothing in the way.
     pub fn none() -> Self {
@@ -100,10 +113,15 @@ impl Obstacles {
     /// Checks the numbers. `clearance_m`, 0 or more: nodes keep this distance from every surface.
     ///
     /// # Errors
-    /// [`GrowthError::Field`] for numbers out of range, [`GrowthError::Mesh`] for a mesh without area.
+    /// [`GrowthError::Field`] for the clearance; [`GrowthError::Obstacle`] for numbers out of range or a mesh without
+    /// area, with the number of the obstacle.
     pub fn new(obstacles: &[Obstacle], clearance_m: f64) -> Result<Self, GrowthError> {
         within("obstacles.clearance_m", clearance_m, 0.0, FAR_M, "0 to 1e6 m")?;
-        let bodies = obstacles.iter().map(Body::new).collect::<Result<_, _>>()?;
+        let body = |(obstacle, o): (usize, &Obstacle)| {
+            let name = format!("a {}", o.shape());
+            Body::new(o).map_err(|fault| GrowthError::Obstacle { obstacle, name, fault: Box::new(fault) })
+        };
+        let bodies = obstacles.iter().enumerate().map(body).collect::<Result<_, _>>()?;
         Ok(Self { bodies, clearance_m })
     }
 
@@ -193,9 +211,10 @@ impl Obstacles {
         let reach = corners.iter().map(|c| c.length()).fold(0.0, f64::max) * scale;
         // Most of them are far from everything.
         distance > reach
-            || corners.iter().map(|c| frame.place(*c, scale)).all(|p| {
-                self.inside(p).is_none() && (distance < 0.0 || !self.blocks(frame.origin, p))
-            })
+            || corners
+                .iter()
+                .map(|c| frame.place(*c, scale))
+                .all(|p| self.inside(p).is_none() && (distance < 0.0 || !self.blocks(frame.origin, p)))
     }
 
     /// Distance to the nearest surface (negative inside) and the way out of it.
@@ -207,29 +226,32 @@ impl Obstacles {
 
 impl Body {
     fn new(o: &Obstacle) -> Result<Self, GrowthError> {
-        let length = |x| within("obstacle size", x, 1e-6, FAR_M, "above 0 and at most 1e6 m");
-        let place = |p: DVec3| {
+        let length = |field, x| within(field, x, 1e-6, FAR_M, "above 0 and at most 1e6 m");
+        let place = |field, p: DVec3| {
             let value = p.to_array().into_iter().find(|c| c.abs() > FAR_M || !c.is_finite());
             let range = "a finite point within 1e6 m";
-            value.map_or(Ok(p), |value| Err(GrowthError::Field { field: "obstacle place", range, value }))
+            value.map_or(Ok(p), |value| Err(GrowthError::Field { field, range, value }))
         };
         Ok(match o {
             Obstacle::Box { min, max } => {
-                let size = place(*max)? - place(*min)?;
+                let size = place("max", *max)? - place("min", *min)?;
                 for x in size.to_array() {
-                    length(x)?;
+                    within("max - min", x, 1e-6, FAR_M, "above 0 and at most 1e6 m in each coordinate")?;
                 }
                 Self::Box(*min, *max)
             }
-            Obstacle::Sphere { centre, radius_m } => Self::Sphere(place(*centre)?, length(*radius_m)?),
+            Obstacle::Sphere { centre, radius_m } => {
+                Self::Sphere(place("centre", *centre)?, length("radius_m", *radius_m)?)
+            }
             Obstacle::Cylinder { base, radius_m, height_m } => {
-                Self::Cylinder(place(*base)?, length(*radius_m)?, length(*height_m)?)
+                let radius = length("radius_m", *radius_m)?;
+                Self::Cylinder(place("base", *base)?, radius, length("height_m", *height_m)?)
             }
             Obstacle::Plane { point, normal } => {
                 let unit = if usable(*normal) { normal.try_normalize() } else { None };
                 let range = "a direction with a length";
-                let fault = GrowthError::Field { field: "obstacle normal", range, value: normal.length() };
-                Self::Plane(place(*point)?, unit.ok_or(fault)?)
+                let fault = GrowthError::Field { field: "normal", range, value: normal.length() };
+                Self::Plane(place("point", *point)?, unit.ok_or(fault)?)
             }
             Obstacle::Mesh { vertices, triangles } => Self::Mesh(Solid::new(vertices, triangles)?),
         })
@@ -404,7 +426,8 @@ mod tests {
             Obstacle::Cylinder { base: DVec3::ZERO, radius_m: -1.0, height_m: 2.0 },
         ];
         for o in bad {
-            assert!(matches!(Obstacles::new(&[o], 0.0), Err(GrowthError::Field { .. })));
+            let text = Obstacles::new(&[all()[0].clone(), o.clone()], 0.0).expect_err("refused").to_string();
+            assert!(text.starts_with(&format!("obstacle 1 (a {}): ", o.shape())), "{text}");
         }
         assert!(Obstacles::new(&[], f64::NAN).is_err());
     }

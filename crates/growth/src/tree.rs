@@ -12,8 +12,8 @@ use crate::colonize::{colonize_part, plant_roots};
 use crate::error::within;
 use crate::{
     ColonizeSpec, Colonized, CompetitionSpec, Cycle, Envelope, Fate, GrowthError, GuidedSpec, LeafCount,
-    LeafMark, LeafSpec, Lsystem, Obstacle, Obstacles, SelfOrganizingSpec, Skeleton, WoodSpec, add_leaves,
-    compete, grow_lsystem, guide, make_wood, self_organize,
+    LeafMark, LeafSpec, Lsystem, Obstacle, Obstacles, SelfOrganizingSpec, Skeleton, Wood, WoodSpec,
+    add_leaves, compete, grow_lsystem, guide, make_wood, self_organize,
 };
 
 /// The shares of the work that are done, for people who wait, when the skeleton stands, when it is wood, and when it
@@ -169,9 +169,13 @@ pub fn grow(
         (wood_spec.pipe_exponent, wood_spec.tip_radius_m) = (s.pipe_exponent, s.tip_radius_m);
     }
     let wood = make_wood(&skeleton, &wood_spec, &obstacles, run)?;
+    tell_moved_feet(&skeleton, &wood, report);
     report.book("wood", run.clock.now_ms() - started);
     run.cancel.reached(WOODY);
     let mut plant = wood.plant;
+    if plant.axes.is_empty() {
+        return Err(GrowthError::Nothing { why: why_nothing(spec, &tally) });
+    }
     plant.name.clone_from(&spec.name);
     let mut leaves = LeafCount::default();
     if let Some(leaf) = &spec.leaves {
@@ -183,6 +187,81 @@ pub fn grow(
     run.cancel.reached(LEAFY);
     debug_assert_eq!(plant.validate().next(), None, "a grown plant is sound");
     Ok(Grown { plant, skeleton, tally, leaves })
+}
+
+/// Warns of trunks that stand beside their roots, because an obstacle has no room for them there.
+fn tell_moved_feet(skeleton: &Skeleton, wood: &Wood, report: &mut Report) {
+    let roots = skeleton.parent.iter().zip(&wood.node_of_joint).enumerate();
+    for (j, node) in
+        roots.filter(|(_, (parent, _))| parent.is_none()).filter_map(|(j, (_, n))| Some((j, (*n)?)))
+    {
+        let aside = wood.plant.nodes.position[node.index()].distance(skeleton.position[j]);
+        if aside > 1e-6 {
+            let root = skeleton.tree[j];
+            report.warn(
+                "foot-moved",
+                format!(
+                    "an obstacle leaves the trunk on root {root} no room: its foot stands {aside:.2} m aside, as far \
+                     as the trunk is thick"
+                ),
+            );
+        }
+    }
+}
+
+/// Why a tree came out without wood.
+fn why_nothing(spec: &TreeSpec, tally: &Tally) -> String {
+    match &spec.method {
+        _ if spec.age == Some(0) => "the tree is asked for at the age of 0; ask for 1 or more".into(),
+        Method::SelfOrganizing(s) if s.years == 0 => "years is 0; make it 1 or more".into(),
+        Method::Guided(s) if s.rounds == 0 => "rounds is 0; make it 1 or more".into(),
+        Method::Lsystem { .. } if tally.iterations == 0 => {
+            "the axiom draws no step `F`, and steps is 0; make it 1 or more".into()
+        }
+        Method::Lsystem { .. } if spec.obstacles.is_empty() => {
+            "neither the axiom nor what is made of it draws a step `F` of any length".into()
+        }
+        Method::Guided(s) => format!(
+            "no bud found room: its markers lie `near` ({}) to `far` ({}) internodes from it, inside the envelope and \
+             the strokes; make these larger or alpha ({}) higher",
+            s.near, s.far, s.alpha
+        ),
+        _ if !spec.obstacles.is_empty() => {
+            "obstacles leave no room at the roots for a twig; move them or the roots".into()
+        }
+        _ if tally.consumed > 0 => {
+            "every attraction point lies within the kill distance (--kill, kill_m) of a root; make it smaller"
+                .into()
+        }
+        _ => "no root came near an attraction point".into(),
+    }
+}
+
+/// Fails where points were given and none is used, with the distance that there is.
+fn reached_some(
+    roots: &[DVec3],
+    points: &[DVec3],
+    steps: &ColonizeSpec,
+    obstacles: &Obstacles,
+    grown: &Colonized,
+) -> Result<(), GrowthError> {
+    if grown.fates.iter().any(|f| matches!(f, Fate::Reached(_))) {
+        return Ok(());
+    }
+    let usable = points.iter().filter(|p| crate::error::usable(**p));
+    let open = usable.filter(|p| obstacles.is_empty() || obstacles.free(**p));
+    let away = open.flat_map(|p| roots.iter().map(|r| r.distance(*p))).fold(f64::INFINITY, f64::min);
+    let why = if away.is_finite() {
+        format!(
+            "none of {} attraction points was reached: the nearest is {away:.4} m from a root; with an attraction \
+             distance (--influence, attraction_m) of {away:.4} m or more instead of {} the root perceives it",
+            points.len(),
+            steps.attraction_m
+        )
+    } else {
+        format!("none of {} attraction points is a finite point outside obstacles", points.len())
+    };
+    Err(GrowthError::Nothing { why })
 }
 
 /// A skeleton, the leaves that rules set, and what was counted.
@@ -232,7 +311,9 @@ fn bones(
         Method::Points { points, steps } => {
             let roots = plant_roots(&spec.roots, obstacles)?;
             let part = (0.0, GROWN);
-            Ok(Bones::colonized(colonize_part(roots, points, obstacles, steps, part, run, report)?))
+            let grown = colonize_part(roots, points, obstacles, steps, part, run, report)?;
+            reached_some(&spec.roots, points, steps, obstacles, &grown)?;
+            Ok(Bones::colonized(grown))
         }
         Method::Competition(s) => {
             let grown = compete(&spec.roots, obstacles, s, seed, run, report)?;
@@ -335,7 +416,8 @@ mod tests {
             }
             for o in &got.plant.organs {
                 let corners = got.plant.shapes[o.shape.index()].corners();
-                let deepest = corners.iter().map(|c| all.depth(o.frame.place(*c, o.scale))).fold(0.0, f64::max);
+                let deepest =
+                    corners.iter().map(|c| all.depth(o.frame.place(*c, o.scale))).fold(0.0, f64::max);
                 assert!(deepest <= 0.0, "{}: {deepest}", spec.name);
             }
             assert!(got.plant.axes.len() > 20, "{}", spec.name);

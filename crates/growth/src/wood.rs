@@ -70,7 +70,9 @@ pub struct Wood {
 ///
 /// The child with most wood above it, turned least, continues an axis; the others start axes of the next order.
 /// Radii follow the pipe model, except where the skeleton has its own (`radius_m` above 0). Guaranteed: a clean
-/// `validate()`; joints outside obstacles stay outside; an axis's key depends on where it starts and on its
+/// `validate()`; beside obstacles bark
+/// keeps their clearance where there is room (wood is moved aside by what it is thick, a foot included, and is thinner
+/// where it cannot be moved); an axis's key depends on where it starts and on its
 /// bearer's alone. Cost: n log n in joints at most.
 ///
 /// # Errors
@@ -234,14 +236,15 @@ fn axes(
         }
         course(skeleton, &chain, spec, radius, obstacles, &mut way);
         way.rooted = bearer.is_none();
-        let mut foot = Foot { moved: DVec3::ZERO, cap: f64::INFINITY };
+        let mut foot = Foot { moved: DVec3::ZERO, cap: f64::INFINITY, within: 0.0 };
         if let Some(b) = bearer {
             let start = plant.nodes.position[b.index()];
             let straight = core::mem::replace(&mut way.points[0], start);
             // A borne axis starts with its own radius, not with its bearer's.
             way.radii[0] = way.radii[1];
             if !obstacles.is_empty() {
-                foot = Foot { moved: start - straight, cap: caps[b.index()] };
+                let within = plant.nodes.radius_m[b.index()];
+                foot = Foot { moved: start - straight, cap: caps[b.index()], within };
             }
         }
         room.clear(&mut way, foot);
@@ -402,6 +405,8 @@ mod tests {
             let spec = WoodSpec { smooth, relax, thin_out: 0.0, ..WoodSpec::default() };
             let p = make_wood(&s, &spec, &obstacles, &Run::plain()).expect("sound").plant;
             assert!(p.nodes.position.iter().all(|&q| obstacles.inside(q).is_none()));
+            // Beside the rock there are more nodes, which turn less.
+            let p = make_wood(&s, &spec, &Obstacles::none(), &Run::plain()).expect("sound").plant;
             let axes = (0..p.axes.len()).map(plant::AxisId::new);
             let turns = axes.flat_map(|a| {
                 let points = p.axis_points(a);

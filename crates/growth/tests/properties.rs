@@ -222,7 +222,8 @@ proptest! {
             Err(
                 GrowthError::RootInObstacle { .. }
                 | GrowthError::NoRoom { .. }
-                | GrowthError::Field { field: "obstacle normal", .. },
+                | GrowthError::Nothing { .. }
+                | GrowthError::Obstacle { .. },
             ) => return Ok(()),
             Err(other) => return Err(TestCaseError::fail(other.to_string())),
         };

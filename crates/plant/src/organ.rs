@@ -133,11 +133,13 @@ impl Shape {
                     blade.outline.iter().chain(&blade.midrib).chain(veins).copied().collect();
                 blade.surface().points(&plane)
             }
-            Self::Dome { radius_m, height_m } => {
-                around(DVec3::ZERO, 1.0).map(|c| DVec3::new(c.x * radius_m, c.y * radius_m, c.z.max(0.0) * height_m)).collect()
-            }
+            Self::Dome { radius_m, height_m } => around(DVec3::ZERO, 1.0)
+                .map(|c| DVec3::new(c.x * radius_m, c.y * radius_m, c.z.max(0.0) * height_m))
+                .collect(),
             Self::Revolution { profile } => {
-                let ring = |p: &DVec2| around(DVec3::ZERO, p.x).map(|c| DVec3::new(c.x, p.y, c.z)).collect::<Vec<_>>();
+                let ring = |p: &DVec2| {
+                    around(DVec3::ZERO, p.x).map(|c| DVec3::new(c.x, p.y, c.z)).collect::<Vec<_>>()
+                };
                 profile.iter().flat_map(ring).collect()
             }
             Self::Strand { path, radius_m, knob_m } => {
