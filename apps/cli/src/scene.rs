@@ -32,6 +32,9 @@ pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine:
         let line = "is a scene whose plants have their own seeds and settings; change them in the Studio";
         return Err(Failure::at(path, line));
     }
+    if document.plants().is_empty() {
+        return Err(Failure::at(path, files::EMPTY));
+    }
     output::check_outputs(
         &[
             ("-o", args.output.as_ref()),
@@ -42,6 +45,9 @@ pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine:
         &[&path.to_path_buf()],
     )?;
     let format = args.output.as_deref().map(files::plant_writable).transpose()?;
+    if document.plants().iter().all(|p| p.settings().hidden) {
+        return Err(Failure::at(path, "shows nothing: all of its plants are hidden; show one in the Studio"));
+    }
     let mut scene = SceneEvaluator::default();
     scene.set_wind(args.surface.wind);
     let mut report = RunReport::new("sketch", 1);

@@ -68,6 +68,20 @@ pub enum LsystemError {
     },
 }
 
+impl LsystemError {
+    /// The same error where the rules start in line `first` of a longer text: its lines count from the start of that.
+    #[must_use]
+    pub fn from_line(mut self, first: usize) -> Self {
+        if let Self::Syntax { line, .. } | Self::TooLarge { line, .. } | Self::NotFinite { line, .. } =
+            &mut self
+            && *line > 0
+        {
+            *line += first - first.min(1);
+        }
+        self
+    }
+}
+
 /// A leaf that the turtle set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeafMark {
