@@ -172,10 +172,12 @@ pub(crate) enum ViewWord {
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Geometry")]
 pub(crate) struct AxesArgs {
-    /// Axis that points up in OBJ, PLY, STL, USD, MTG and QSM files; glTF is always +Y [default: y; z for MTG and QSM].
+    /// Axis that points up in OBJ, PLY, STL, USD, MTG and QSM files, clouds, and coordinates given as options; glTF is
+    /// always +Y [default: y; z for MTG and QSM].
     #[arg(long, value_enum)]
     pub(crate) up: Option<UpWord>,
-    /// Unit of length in OBJ, PLY, STL, USD, MTG and QSM files; glTF is always in metres.
+    /// Unit of length in OBJ, PLY, STL, USD, MTG and QSM files, clouds, and lengths said to be in --unit; glTF is always
+    /// in metres.
     #[arg(long, value_enum, default_value_t = UnitWord::M)]
     pub(crate) unit: UnitWord,
 }

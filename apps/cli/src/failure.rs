@@ -22,7 +22,7 @@ pub(crate) type Outcome<T = ()> = Result<T, Failure>;
 impl Failure {
     /// Bad input in a file.
     pub(crate) fn at(path: &Path, what: impl fmt::Display) -> Self {
-        Self::Bad(format!("{}: {what}", path.display()))
+        Self::Bad(format!("{}: {}", path.display(), burgeon::brief(&what.to_string())))
     }
 
     /// The operating system refused.
@@ -53,7 +53,7 @@ impl Failure {
     pub(crate) fn tell(&self) -> ExitCode {
         match self {
             Self::Bad(line) => {
-                crate::say::error(line);
+                crate::say::error(&burgeon::brief(line));
                 ExitCode::from(2)
             }
             Self::Told => ExitCode::from(2),

@@ -114,11 +114,17 @@ pub(crate) fn read_project(path: &Path, input: Input) -> Outcome<Document> {
     document::read_project(&bytes).map_err(|e| Failure::at(path, e))
 }
 
+/// What is said of a project without plants.
+pub(crate) const EMPTY: &str = "is an empty project: it has no plant; add one in the Studio";
+
 /// The one drawing of a project, as if it had been read from a file of strokes, and its plant.
 pub(crate) fn drawing_of<'a>(
     path: &Path,
     document: &'a Document,
 ) -> Outcome<(ReadDrawing, &'a DocumentPlant)> {
+    if document.plants().is_empty() {
+        return Err(Failure::at(path, EMPTY));
+    }
     let [plant] = document.plants() else {
         let line = format!(
             "is a scene of {} plants, not one drawing; `burgeon sketch` makes all of them",

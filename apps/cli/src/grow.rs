@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use burgeon::formats::{CloudFormat, PngCache, read_cloud};
 use burgeon::glam::DVec3;
 use burgeon::growth::{
-    ColonizeSpec, CompetitionSpec, Envelope, GuidedSpec, Method, OAK_RULES, Obstacle, SelfOrganizingSpec,
+    ColonizeSpec, CompetitionSpec, Envelope, GrowthError, GuidedSpec, Method, OAK_RULES, Obstacle,
+    SelfOrganizingSpec,
 };
 use burgeon::mesh::Model;
 use burgeon::skin::SkinSpec;
@@ -76,7 +77,8 @@ pub(crate) struct GrowthArgs {
     /// envelope [default: the preset's].
     #[arg(long, value_enum)]
     pub(crate) method: Option<MethodWord>,
-    /// A solid mesh (.glb, .gltf, .obj, .ply, .stl) to grow around; may be given several times.
+    /// A solid mesh (.glb, .gltf, .obj, .ply, .stl) to grow around, in the axes of --up and the --unit (glTF: metres, +Y
+    /// up); may be given several times.
     #[arg(long, value_name = "MESH")]
     pub(crate) obstacle: Vec<PathBuf>,
     /// A leaf that the tree bears instead of its own: marks (.csv), a vein graph (.json) or a model of one leaf (.glb,
@@ -98,16 +100,17 @@ pub(crate) struct PointsArgs {
     /// Attraction points (.xyz, .txt, .ply, .pcd, .las, .obj) instead of an envelope: space colonization of just these.
     #[arg(long, value_name = "FILE", conflicts_with = "method")]
     pub(crate) attractors: Option<PathBuf>,
-    /// Where the tree stands, metres; may be given several times [default: the preset's, mostly 0,0,0].
+    /// Where the tree stands, in the axes of --up and the --unit, as the points have it; may be given several times
+    /// [default: the preset's, mostly 0,0,0].
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = point)]
     pub(crate) root: Vec<DVec3>,
-    /// Length D of a step, metres, above 0 [default: half of --kill].
+    /// Length D of a step, in --unit, above 0 [default: half of --kill].
     #[arg(long, value_name = "D", allow_hyphen_values = true, value_parser = length)]
     pub(crate) step: Option<f64>,
-    /// Distance within which a point attracts, metres, above 0 [default: 1].
+    /// Distance within which a point attracts, in --unit, above 0 [default: 1 m].
     #[arg(long, value_name = "D", allow_hyphen_values = true, value_parser = length)]
     pub(crate) influence: Option<f64>,
-    /// Distance within which a point is consumed, metres, above 0 and at most --influence [default: 0.4].
+    /// Distance within which a point is consumed, in --unit, above 0 and at most --influence [default: 0.4 m].
     #[arg(long, value_name = "D", allow_hyphen_values = true, value_parser = length)]
     pub(crate) kill: Option<f64>,
 }
@@ -213,7 +216,7 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
         ..TreeOptions::default()
     };
     let made = machine.with_progress("grow", |_| make_tree(&spec, seed, &options, &machine.run()));
-    let MadeTree { grown, model, lods, mut item } = made.map_err(|e| failure(args, e))?;
+    let MadeTree { grown, model, lods, mut item } = made.map_err(|e| failure(args, &spec, e))?;
     machine.cancel.check()?;
     item.warnings.splice(0..0, told.warnings.iter().map(ToString::to_string));
     item.timings_ms.add_io(read_ms, 0.0);
@@ -300,10 +303,23 @@ fn lod_item(full: &ItemReport, model: &Model, level: usize) -> ItemReport {
     item
 }
 
-pub(crate) fn failure(args: &GrowArgs, error: TreeError) -> Failure {
+fn failure(args: &GrowArgs, spec: &TreeSpec, error: TreeError) -> Failure {
+    if matches!(error, TreeError::Cancelled(_)) {
+        return Failure::Cancelled;
+    }
+    // Meshes of --obstacle come after those of the spec.
+    let own = spec.obstacles.len() - args.growth.obstacle.len();
+    let at = |error: &dyn std::fmt::Display| Failure::at(Path::new(&named(args)), error);
     match error {
-        TreeError::Cancelled(_) => Failure::Cancelled,
-        other => Failure::at(Path::new(&named(args)), other),
+        TreeError::Growth(GrowthError::Obstacle { obstacle, fault, .. }) if obstacle >= own => {
+            let path = &args.growth.obstacle[obstacle - own];
+            let name = path.display().to_string();
+            at(&GrowthError::Obstacle { obstacle, name, fault })
+        }
+        other => match args.what.as_deref().filter(|what| what.is_file()).map(files::read_text) {
+            Some(Ok(text)) => at(&other.in_text(&text)),
+            _ => at(&other),
+        },
     }
 }
 
@@ -327,12 +343,12 @@ fn asked(args: &GrowArgs, told: &mut Report) -> Outcome<TreeSpec> {
         }
         spec.method = Method::Points { points, steps: steps_of(&spec.method) };
     }
-    distances(&args.points, &mut spec.method)?;
+    let axes = files::axes(args.axes.up, args.axes.unit);
+    distances(&args.points, axes.unit.metres(), &mut spec.method)?;
     if !args.points.root.is_empty() {
-        spec.roots.clone_from(&args.points.root);
+        spec.roots = args.points.root.iter().map(|p| axes.inward(*p)).collect();
     }
     for path in &args.growth.obstacle {
-        let axes = files::axes(args.axes.up, args.axes.unit);
         let (model, _, warnings) = files::read_model(path, &axes)?;
         told.warnings.extend(warnings);
         let (vertices, triangles) = soup(&model);
@@ -453,10 +469,18 @@ fn default_method(word: MethodWord, envelope: Option<Envelope>) -> Method {
 }
 
 /// --step, --influence and --kill for the methods that have them.
-fn distances(args: &PointsArgs, method: &mut Method) -> Outcome {
-    let given = [args.step, args.influence, args.kill];
-    if given.iter().all(Option::is_none) {
+fn distances(args: &PointsArgs, metres: f64, method: &mut Method) -> Outcome {
+    let [step_m, influence_m, kill_m] = [args.step, args.influence, args.kill].map(|x| Some(x? * metres));
+    if [step_m, influence_m, kill_m].iter().all(Option::is_none) {
         return Ok(());
+    }
+    if let (Some(kill), Some(influence)) = (args.kill, args.influence)
+        && kill > influence
+    {
+        return Err(Failure::Bad(format!(
+            "--kill {kill} is above --influence {influence}: points would be consumed before they attract; make \
+             --kill at most {influence}"
+        )));
     }
     let (attraction, kill, step) = match method {
         Method::Colonization { steps, .. } | Method::Points { steps, .. } => {
@@ -470,14 +494,8 @@ fn distances(args: &PointsArgs, method: &mut Method) -> Outcome {
             ));
         }
     };
-    *attraction = args.influence.unwrap_or(*attraction);
-    *kill = args.kill.unwrap_or(*kill);
-    *step = args.step.or(*step);
-    if args.kill.is_some() && args.influence.is_some() && *kill > *attraction {
-        return Err(Failure::Bad(format!(
-            "--kill {kill} is above --influence {attraction}: points would be consumed before they attract; make \
-             --kill at most {attraction}"
-        )));
-    }
+    *attraction = influence_m.unwrap_or(*attraction);
+    *kill = kill_m.unwrap_or(*kill);
+    *step = step_m.or(*step);
     Ok(())
 }

@@ -44,6 +44,9 @@ pub(crate) fn info(args: &InfoArgs) -> Outcome {
                 position_m: p.settings().placement.position.to_array(),
             });
             out.plants = plants.collect();
+            if out.plants.is_empty() {
+                out.warnings.push("the project is empty: it has no plant".into());
+            }
             ("project", Content::Drawings(out))
         }
     };

@@ -32,7 +32,7 @@ mod studio;
 use std::process::ExitCode;
 
 use clap::Parser as _;
-use clap::error::ErrorKind;
+use clap::error::{ContextValue, ErrorKind};
 
 use args::{Cli, Command};
 
@@ -80,7 +80,12 @@ fn usage(e: &clap::Error) -> ExitCode {
         let _ = e.print();
         return ExitCode::from(if e.use_stderr() { 2 } else { 0 });
     }
-    let text = e.to_string();
+    let mut text = e.to_string();
+    for (_, value) in e.context() {
+        if let ContextValue::String(value) = value {
+            text = text.replace(value.as_str(), &burgeon::quoted(value));
+        }
+    }
     let lines = text.lines().map(str::trim);
     let lines = lines.take_while(|l| !l.starts_with("Usage:") && !l.starts_with("For more information"));
     let line = lines.filter(|l| !l.is_empty()).collect::<Vec<_>>().join(" ");

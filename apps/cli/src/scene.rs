@@ -56,6 +56,12 @@ pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine:
     let line = "this is a scene, whose plants have their own settings; change them in the Studio";
     given.refuse(&OF_ONE_DRAWING, "drawings", line)?;
     given.refuse(&["format"], "folders of models", "a scene is one model")?;
+    if document.plants().is_empty() {
+        return Err(Failure::at(path, files::EMPTY));
+    }
+    if document.plants().iter().all(|p| p.settings().hidden) {
+        return Err(Failure::at(path, "shows nothing: all of its plants are hidden; show one in the Studio"));
+    }
     let mut outputs = Outputs::new(
         &[
             ("-o", args.output.as_ref()),

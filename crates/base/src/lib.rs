@@ -8,6 +8,7 @@
 //! | [`turn`] | turns and directions, likewise |
 //! | `seed` | [`Seed`], [`Draw`], [`Stream`]: randomness as a value |
 //! | `task` | [`CancelToken`], [`Executor`], [`Run`]: how something is computed, never what |
+//! | `quote` | [`brief`], [`quoted`]: how much of somebody's words a message repeats |
 //! | `report` | [`Report`], [`Warning`]: what a computation wants to tell its user |
 //! | `digest` | [`Digest`]: a fingerprint of a result that does not depend on the machine |
 //! | `sort` | [`sort_by`], [`sort_by_key`]: sorting that is compiled once |
@@ -18,6 +19,7 @@ mod digest;
 mod exps;
 mod ids;
 pub mod ops;
+mod quote;
 mod report;
 mod seed;
 mod sort;
@@ -26,6 +28,7 @@ pub mod turn;
 mod units;
 
 pub use digest::{Digest, Digestible};
+pub use quote::{brief, quoted};
 pub use report::{Report, Stage, Warning};
 pub use seed::{Draw, Seed, Stream};
 pub use sort::{sort_by, sort_by_key};

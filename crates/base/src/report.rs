@@ -47,7 +47,7 @@ pub struct Report {
 impl Report {
     /// Adds a warning.
     pub fn warn(&mut self, code: &'static str, message: impl Into<String>) {
-        self.warnings.push(Warning { code, message: message.into() });
+        self.warnings.push(Warning { code, message: crate::brief(&message.into()) });
     }
 
     /// Runs `f` and books its time under `name`.

@@ -56,7 +56,7 @@ pub enum ProjectError {
         found: String,
     },
     /// An entry is no JSON, or not of the form.
-    #[error("project file, {entry}: {source}")]
+    #[error("project file, {entry}: {}", base::brief(&source.to_string()))]
     Json {
         /// Which entry.
         entry: &'static str,
@@ -207,7 +207,7 @@ pub fn read_project(bytes: &[u8]) -> Result<Document, ProjectError> {
         from_json(&manifest).map_err(|source| ProjectError::Json { entry: MANIFEST, source })?;
     let form = manifest.burgeon.as_str();
     if form != PROJECT_SCHEMA && !EARLIER.contains(&form) {
-        return Err(ProjectError::Version { found: manifest.burgeon.chars().take(40).collect() });
+        return Err(ProjectError::Version { found: base::quoted(&manifest.burgeon) });
     }
     let document = entries.remove(DOCUMENT).ok_or_else(|| missing(DOCUMENT))?;
     let json = |source| ProjectError::Json { entry: DOCUMENT, source };

@@ -346,7 +346,7 @@ impl Default for FlowerSettings {
 impl FlowerSettings {
     fn fault(&self) -> Option<String> {
         if bloom::preset(&self.species).is_none() {
-            let short: String = self.species.chars().take(40).collect();
+            let short = base::quoted(&self.species);
             let known = bloom::FlowerSpec::PRESETS.join(", ");
             return Some(format!("the flower {short:?} is unknown; use one of {known}"));
         }

@@ -46,9 +46,9 @@ impl fmt::Display for Place {
             Self::File => Ok(()),
             Self::Line { line, column: None } => write!(f, ", line {line}"),
             Self::Line { line, column: Some(column) } => write!(f, ", line {line}, column {column}"),
-            Self::Element { name, line } => write!(f, ", line {line}, {name}"),
+            Self::Element { name, line } => write!(f, ", line {line}, {}", base::brief(name)),
             Self::Byte(at) => write!(f, ", byte {at}"),
-            Self::Item(item) => write!(f, ", {item}"),
+            Self::Item(item) => write!(f, ", {}", base::brief(item)),
         }
     }
 }
@@ -69,7 +69,7 @@ pub enum FileFault {
         advice: &'static str,
     },
     /// The file ends in the middle of something.
-    #[error("the file ends inside {inside}; it is cut off: save or copy it again")]
+    #[error("the file ends inside {}; it is cut off: save or copy it again", base::brief(inside))]
     Truncated {
         /// What was not finished.
         inside: String,
@@ -118,11 +118,11 @@ impl FileFault {
     }
 
     pub(crate) fn malformed(what: impl Into<String>, advice: &'static str) -> Self {
-        Self::Malformed { what: what.into(), advice }
+        Self::Malformed { what: base::brief(&what.into()), advice }
     }
 
     pub(crate) fn unsupported(what: impl Into<String>, advice: &'static str) -> Self {
-        Self::Unsupported { what: what.into(), advice }
+        Self::Unsupported { what: base::brief(&what.into()), advice }
     }
 }
 

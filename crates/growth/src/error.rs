@@ -38,6 +38,22 @@ pub enum GrowthError {
         /// Index of the obstacle.
         obstacle: usize,
     },
+    /// Something is wrong with an obstacle.
+    #[error("obstacle {obstacle} ({name}): {fault}")]
+    Obstacle {
+        /// Its index.
+        obstacle: usize,
+        /// The word of its shape, or its file.
+        name: String,
+        /// What is wrong.
+        fault: Box<Self>,
+    },
+    /// Nothing grew.
+    #[error("nothing grew: {why}")]
+    Nothing {
+        /// The cause, and what to change.
+        why: String,
+    },
     /// A mesh cannot bound anything.
     #[error("mesh: {0}")]
     Mesh(#[from] MeshFault),

@@ -166,8 +166,8 @@ impl Candidate {
 
 /// Sets leaves on the thin shoots of a plant, or at `marks` if there are any, and lets the shaded ones fall.
 ///
-/// `blade`: any blade; it is scaled to the length asked for. Guaranteed: a clean `validate()`; no leaf's root, middle
-/// or tip in an obstacle; of the same tree, a smaller `leaf_keep` keeps a part of what a larger one keeps. Cost:
+/// `blade`: any blade; it is scaled to the length asked for. Guaranteed: a clean `validate()`; no corner of a
+/// leaf in an obstacle; of the same tree, a smaller `leaf_keep` keeps a part of what a larger one keeps. Cost:
 /// linear in places for leaves, times the square of `shade_layers`.
 ///
 /// # Errors
@@ -224,7 +224,9 @@ pub fn add_leaves(
     }
     let placed = all.len();
     if !obstacles.is_empty() {
-        all.retain(|c| [0.0, 0.5, 1.0].iter().all(|&s| obstacles.inside(c.tip(s, length)).is_none()));
+        let shape = Shape::Blade(blade.clone());
+        let corners = shape.corners();
+        all.retain(|c| obstacles.admit(&c.frame(), c.scale, &corners));
     }
     let buried = placed - all.len();
     run.cancel.check()?;
@@ -495,7 +497,9 @@ mod tests {
         let (plant, count) = dressed(&LeafSpec::default(), &obstacles);
         assert!(count.buried > 50, "{count:?}");
         for o in &plant.organs {
-            assert!(obstacles.inside(o.frame.place(DVec3::Y, o.scale)).is_none());
+            for corner in plant.shapes[o.shape.index()].corners() {
+                assert!(obstacles.inside(o.frame.place(corner, o.scale)).is_none());
+            }
         }
     }
 

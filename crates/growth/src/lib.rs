@@ -6,6 +6,7 @@
 //! |---|---|
 //! | `envelope` | the space of a crown, attraction points scattered in it |
 //! | `obstacle` | boxes, balls, cylinders, planes and meshes that growth goes around |
+//! | `beside` | courses of wood beside obstacles: room for bark |
 //! | `mesh_faults` | whether a mesh is closed, for warnings |
 //! | `colonize` | space colonisation (Runions 2007) |
 //! | `competition` | life cycles of attraction points (paper 001) |
@@ -18,6 +19,7 @@
 //! | `tree` | the whole way: [`grow`] |
 
 mod arrangement;
+mod beside;
 mod colonize;
 mod competition;
 mod envelope;

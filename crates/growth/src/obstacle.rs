@@ -3,6 +3,7 @@
 //! `Obstacle -> Obstacles -> steer, blocks, inside`
 
 use glam::DVec3;
+use plant::Frame;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -90,6 +91,19 @@ enum Body {
     Mesh(Solid),
 }
 
+impl Obstacle {
+    /// The word of its shape, as specs have it.
+    pub const fn shape(&self) -> &'static str {
+        match self {
+            Self::Box { .. } => "box",
+            Self::Sphere { .. } => "sphere",
+            Self::Cylinder { .. } => "cylinder",
+            Self::Plane { .. } => "plane",
+            Self::Mesh { .. } => "mesh",
+        }
+    }
+}
+
 impl Obstacles {
     /// Nothing in the way.
     pub fn none() -> Self {
@@ -99,10 +113,15 @@ impl Obstacles {
     /// Checks the numbers. `clearance_m`, 0 or more: nodes keep this distance from every surface.
     ///
     /// # Errors
-    /// [`GrowthError::Field`] for numbers out of range, [`GrowthError::Mesh`] for a mesh without area.
+    /// [`GrowthError::Field`] for the clearance; [`GrowthError::Obstacle`] for numbers out of range or a mesh without
+    /// area, with the number of the obstacle.
     pub fn new(obstacles: &[Obstacle], clearance_m: f64) -> Result<Self, GrowthError> {
         within("obstacles.clearance_m", clearance_m, 0.0, FAR_M, "0 to 1e6 m")?;
-        let bodies = obstacles.iter().map(Body::new).collect::<Result<_, _>>()?;
+        let body = |(obstacle, o): (usize, &Obstacle)| {
+            let name = format!("a {}", o.shape());
+            Body::new(o).map_err(|fault| GrowthError::Obstacle { obstacle, name, fault: Box::new(fault) })
+        };
+        let bodies = obstacles.iter().enumerate().map(body).collect::<Result<_, _>>()?;
         Ok(Self { bodies, clearance_m })
     }
 
@@ -172,8 +191,34 @@ impl Obstacles {
         open.reduce(|a, b| if b.dot(wish) > a.dot(wish) { b } else { a })
     }
 
+    /// The distance that everything keeps from surfaces where there is room, metres.
+    pub(crate) const fn clearance_m(&self) -> f64 {
+        self.clearance_m
+    }
+
+    /// How deep a point lies in an obstacle, metres; 0 outside of all.
+    pub fn depth(&self, p: DVec3) -> f64 {
+        let deep = |b: &Body| if b.inside(p) { -b.distance(p).0 } else { 0.0 };
+        self.bodies.iter().map(deep).fold(0.0, f64::max)
+    }
+
+    /// Whether an organ keeps out of every obstacle: its frame, scale and the corners of its shape
+    /// ([`plant::Shape::corners`]).
+    ///
+    /// Guaranteed: no corner lies in an obstacle, and none stands between its root and a corner.
+    pub fn admit(&self, frame: &Frame, scale: f64, corners: &[DVec3]) -> bool {
+        let Some((distance, _)) = self.nearest(frame.origin) else { return true };
+        let reach = corners.iter().map(|c| c.length()).fold(0.0, f64::max) * scale;
+        // Most of them are far from everything.
+        distance > reach
+            || corners
+                .iter()
+                .map(|c| frame.place(*c, scale))
+                .all(|p| self.inside(p).is_none() && (distance < 0.0 || !self.blocks(frame.origin, p)))
+    }
+
     /// Distance to the nearest surface (negative inside) and the way out of it.
-    fn nearest(&self, p: DVec3) -> Option<(f64, DVec3)> {
+    pub(crate) fn nearest(&self, p: DVec3) -> Option<(f64, DVec3)> {
         let all = self.bodies.iter().map(|b| b.distance(p));
         all.reduce(|a, b| if b.0 < a.0 { b } else { a })
     }
@@ -181,29 +226,32 @@ impl Obstacles {
 
 impl Body {
     fn new(o: &Obstacle) -> Result<Self, GrowthError> {
-        let length = |x| within("obstacle size", x, 1e-6, FAR_M, "above 0 and at most 1e6 m");
-        let place = |p: DVec3| {
+        let length = |field, x| within(field, x, 1e-6, FAR_M, "above 0 and at most 1e6 m");
+        let place = |field, p: DVec3| {
             let value = p.to_array().into_iter().find(|c| c.abs() > FAR_M || !c.is_finite());
             let range = "a finite point within 1e6 m";
-            value.map_or(Ok(p), |value| Err(GrowthError::Field { field: "obstacle place", range, value }))
+            value.map_or(Ok(p), |value| Err(GrowthError::Field { field, range, value }))
         };
         Ok(match o {
             Obstacle::Box { min, max } => {
-                let size = place(*max)? - place(*min)?;
+                let size = place("max", *max)? - place("min", *min)?;
                 for x in size.to_array() {
-                    length(x)?;
+                    within("max - min", x, 1e-6, FAR_M, "above 0 and at most 1e6 m in each coordinate")?;
                 }
                 Self::Box(*min, *max)
             }
-            Obstacle::Sphere { centre, radius_m } => Self::Sphere(place(*centre)?, length(*radius_m)?),
+            Obstacle::Sphere { centre, radius_m } => {
+                Self::Sphere(place("centre", *centre)?, length("radius_m", *radius_m)?)
+            }
             Obstacle::Cylinder { base, radius_m, height_m } => {
-                Self::Cylinder(place(*base)?, length(*radius_m)?, length(*height_m)?)
+                let radius = length("radius_m", *radius_m)?;
+                Self::Cylinder(place("base", *base)?, radius, length("height_m", *height_m)?)
             }
             Obstacle::Plane { point, normal } => {
                 let unit = if usable(*normal) { normal.try_normalize() } else { None };
                 let range = "a direction with a length";
-                let fault = GrowthError::Field { field: "obstacle normal", range, value: normal.length() };
-                Self::Plane(place(*point)?, unit.ok_or(fault)?)
+                let fault = GrowthError::Field { field: "normal", range, value: normal.length() };
+                Self::Plane(place("point", *point)?, unit.ok_or(fault)?)
             }
             Obstacle::Mesh { vertices, triangles } => Self::Mesh(Solid::new(vertices, triangles)?),
         })
@@ -378,7 +426,8 @@ mod tests {
             Obstacle::Cylinder { base: DVec3::ZERO, radius_m: -1.0, height_m: 2.0 },
         ];
         for o in bad {
-            assert!(matches!(Obstacles::new(&[o], 0.0), Err(GrowthError::Field { .. })));
+            let text = Obstacles::new(&[all()[0].clone(), o.clone()], 0.0).expect_err("refused").to_string();
+            assert!(text.starts_with(&format!("obstacle 1 (a {}): ", o.shape())), "{text}");
         }
         assert!(Obstacles::new(&[], f64::NAN).is_err());
     }

@@ -92,6 +92,13 @@ impl Skeleton {
         (self.position[joint.index()] - from).normalize_or(DVec3::Y)
     }
 
+    /// The diagonal of the box around all joints, metres.
+    pub(crate) fn size(&self) -> f64 {
+        let all = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let (lo, hi) = self.position.iter().fold(all, |(lo, hi), p| (lo.min(*p), hi.max(*p)));
+        if self.is_empty() { 0.0 } else { lo.distance(hi) }
+    }
+
     /// The last step of growth.
     pub fn age(&self) -> u32 {
         self.birth.iter().copied().max().unwrap_or(0)

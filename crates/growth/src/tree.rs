@@ -12,8 +12,8 @@ use crate::colonize::{colonize_part, plant_roots};
 use crate::error::within;
 use crate::{
     ColonizeSpec, Colonized, CompetitionSpec, Cycle, Envelope, Fate, GrowthError, GuidedSpec, LeafCount,
-    LeafMark, LeafSpec, Lsystem, Obstacle, Obstacles, SelfOrganizingSpec, Skeleton, WoodSpec, add_leaves,
-    compete, grow_lsystem, guide, make_wood, self_organize,
+    LeafMark, LeafSpec, Lsystem, Obstacle, Obstacles, SelfOrganizingSpec, Skeleton, Wood, WoodSpec,
+    add_leaves, compete, grow_lsystem, guide, make_wood, self_organize,
 };
 
 /// The shares of the work that are done, for people who wait, when the skeleton stands, when it is wood, and when it
@@ -77,7 +77,7 @@ pub struct TreeSpec {
     pub roots: Vec<DVec3>,
     /// What they grow around. Default nothing.
     pub obstacles: Vec<Obstacle>,
-    /// Distance that joints keep from obstacles, metres, 0 or more, default 0.05.
+    /// Distance that bark keeps from obstacles where there is room, metres, 0 or more, default 0.05.
     pub clearance_m: f64,
     /// The trees as they were after so many rounds, years (self-organising) or rewriting steps (L-systems) of growth;
     /// default none: to the end.
@@ -131,10 +131,6 @@ pub struct Grown {
     pub tally: Tally,
     /// Leaves placed, fallen and kept.
     pub leaves: LeafCount,
-    /// Nodes in obstacles: 0 unless something is wrong.
-    pub nodes_in_obstacles: usize,
-    /// Leaves whose root, middle or tip lies in an obstacle: 0 unless something is wrong.
-    pub leaves_in_obstacles: usize,
 }
 
 /// Grows trees of any method and dresses them with leaves of the given blade ([`LeafSpec::blade`] if none).
@@ -173,9 +169,13 @@ pub fn grow(
         (wood_spec.pipe_exponent, wood_spec.tip_radius_m) = (s.pipe_exponent, s.tip_radius_m);
     }
     let wood = make_wood(&skeleton, &wood_spec, &obstacles, run)?;
+    tell_moved_feet(&skeleton, &wood, report);
     report.book("wood", run.clock.now_ms() - started);
     run.cancel.reached(WOODY);
     let mut plant = wood.plant;
+    if plant.axes.is_empty() {
+        return Err(GrowthError::Nothing { why: why_nothing(spec, &tally) });
+    }
     plant.name.clone_from(&spec.name);
     let mut leaves = LeafCount::default();
     if let Some(leaf) = &spec.leaves {
@@ -185,11 +185,83 @@ pub fn grow(
         leaves = add_leaves(&mut plant, leaf, blade, &places, &obstacles, seed, run, report)?;
     }
     run.cancel.reached(LEAFY);
-    let inside = |p: DVec3| obstacles.inside(p).is_some();
-    let nodes_in_obstacles = plant.nodes.position.iter().filter(|p| inside(**p)).count();
-    let leaves_in_obstacles = plant.organs.iter().filter(|o| inside(o.frame.origin)).count();
     debug_assert_eq!(plant.validate().next(), None, "a grown plant is sound");
-    Ok(Grown { plant, skeleton, tally, leaves, nodes_in_obstacles, leaves_in_obstacles })
+    Ok(Grown { plant, skeleton, tally, leaves })
+}
+
+/// Warns of trunks that stand beside their roots, because an obstacle has no room for them there.
+fn tell_moved_feet(skeleton: &Skeleton, wood: &Wood, report: &mut Report) {
+    let roots = skeleton.parent.iter().zip(&wood.node_of_joint).enumerate();
+    for (j, node) in
+        roots.filter(|(_, (parent, _))| parent.is_none()).filter_map(|(j, (_, n))| Some((j, (*n)?)))
+    {
+        let aside = wood.plant.nodes.position[node.index()].distance(skeleton.position[j]);
+        if aside > 1e-6 {
+            let root = skeleton.tree[j];
+            report.warn(
+                "foot-moved",
+                format!(
+                    "an obstacle leaves the trunk on root {root} no room: its foot stands {aside:.2} m aside, as far \
+                     as the trunk is thick"
+                ),
+            );
+        }
+    }
+}
+
+/// Why a tree came out without wood.
+fn why_nothing(spec: &TreeSpec, tally: &Tally) -> String {
+    match &spec.method {
+        _ if spec.age == Some(0) => "the tree is asked for at the age of 0; ask for 1 or more".into(),
+        Method::SelfOrganizing(s) if s.years == 0 => "years is 0; make it 1 or more".into(),
+        Method::Guided(s) if s.rounds == 0 => "rounds is 0; make it 1 or more".into(),
+        Method::Lsystem { .. } if tally.iterations == 0 => {
+            "the axiom draws no step `F`, and steps is 0; make it 1 or more".into()
+        }
+        Method::Lsystem { .. } if spec.obstacles.is_empty() => {
+            "neither the axiom nor what is made of it draws a step `F` of any length".into()
+        }
+        Method::Guided(s) => format!(
+            "no bud found room: its markers lie `near` ({}) to `far` ({}) internodes from it, inside the envelope and \
+             the strokes; make these larger or alpha ({}) higher",
+            s.near, s.far, s.alpha
+        ),
+        _ if !spec.obstacles.is_empty() => {
+            "obstacles leave no room at the roots for a twig; move them or the roots".into()
+        }
+        _ if tally.consumed > 0 => {
+            "every attraction point lies within the kill distance (--kill, kill_m) of a root; make it smaller"
+                .into()
+        }
+        _ => "no root came near an attraction point".into(),
+    }
+}
+
+/// Fails where points were given and none is used, with the distance that there is.
+fn reached_some(
+    roots: &[DVec3],
+    points: &[DVec3],
+    steps: &ColonizeSpec,
+    obstacles: &Obstacles,
+    grown: &Colonized,
+) -> Result<(), GrowthError> {
+    if grown.fates.iter().any(|f| matches!(f, Fate::Reached(_))) {
+        return Ok(());
+    }
+    let usable = points.iter().filter(|p| crate::error::usable(**p));
+    let open = usable.filter(|p| obstacles.is_empty() || obstacles.free(**p));
+    let away = open.flat_map(|p| roots.iter().map(|r| r.distance(*p))).fold(f64::INFINITY, f64::min);
+    let why = if away.is_finite() {
+        format!(
+            "none of {} attraction points was reached: the nearest is {away:.4} m from a root; with an attraction \
+             distance (--influence, attraction_m) of {away:.4} m or more instead of {} the root perceives it",
+            points.len(),
+            steps.attraction_m
+        )
+    } else {
+        format!("none of {} attraction points is a finite point outside obstacles", points.len())
+    };
+    Err(GrowthError::Nothing { why })
 }
 
 /// A skeleton, the leaves that rules set, and what was counted.
@@ -239,7 +311,9 @@ fn bones(
         Method::Points { points, steps } => {
             let roots = plant_roots(&spec.roots, obstacles)?;
             let part = (0.0, GROWN);
-            Ok(Bones::colonized(colonize_part(roots, points, obstacles, steps, part, run, report)?))
+            let grown = colonize_part(roots, points, obstacles, steps, part, run, report)?;
+            reached_some(&spec.roots, points, steps, obstacles, &grown)?;
+            Ok(Bones::colonized(grown))
         }
         Method::Competition(s) => {
             let grown = compete(&spec.roots, obstacles, s, seed, run, report)?;
@@ -334,7 +408,18 @@ mod tests {
             let obstacles = vec![house.clone()];
             let spec = TreeSpec { name: format!("{method:?}"), method, obstacles, ..TreeSpec::default() };
             let got = tree(&spec);
-            assert_eq!((got.nodes_in_obstacles, got.leaves_in_obstacles), (0, 0), "{}", spec.name);
+            let all = Obstacles::new(&spec.obstacles, spec.clearance_m).expect("sound");
+            let nodes = &got.plant.nodes;
+            for (p, r) in nodes.position.iter().zip(&nodes.radius_m) {
+                let free = all.nearest(*p).is_none_or(|(d, _)| d > 0.0);
+                assert!(free && all.depth(*p + DVec3::X * *r * 0.9) <= 0.0, "{}: {p} {r}", spec.name);
+            }
+            for o in &got.plant.organs {
+                let corners = got.plant.shapes[o.shape.index()].corners();
+                let deepest =
+                    corners.iter().map(|c| all.depth(o.frame.place(*c, o.scale))).fold(0.0, f64::max);
+                assert!(deepest <= 0.0, "{}: {deepest}", spec.name);
+            }
             assert!(got.plant.axes.len() > 20, "{}", spec.name);
         }
     }

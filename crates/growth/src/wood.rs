@@ -9,6 +9,7 @@ use plant::{AxisKind, NodeId, Plant};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::beside::{Course, Foot, Room};
 use crate::error::within;
 use crate::{GrowthError, JointId, Obstacles, Skeleton};
 
@@ -69,7 +70,9 @@ pub struct Wood {
 ///
 /// The child with most wood above it, turned least, continues an axis; the others start axes of the next order.
 /// Radii follow the pipe model, except where the skeleton has its own (`radius_m` above 0). Guaranteed: a clean
-/// `validate()`; joints outside obstacles stay outside; an axis's key depends on where it starts and on its
+/// `validate()`; beside obstacles bark
+/// keeps their clearance where there is room (wood is moved aside by what it is thick, a foot included, and is thinner
+/// where it cannot be moved); an axis's key depends on where it starts and on its
 /// bearer's alone. Cost: n log n in joints at most.
 ///
 /// # Errors
@@ -206,7 +209,10 @@ fn axes(
             Some(_) => {}
         }
     }
-    let (mut chain, mut points, mut kept) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut chain, mut way, mut kept) = (Vec::new(), Course::default(), Vec::new());
+    let room = Room::new(obstacles, skeleton.size(), spec.tip_radius_m);
+    // The most that wood on each node may measure: less where it was squeezed.
+    let mut caps: Vec<f64> = Vec::new();
     let mut next = 0;
     while next < starts.len() {
         if next % 256 == 0 {
@@ -228,20 +234,34 @@ fn axes(
         if skeleton.parent[joint].is_some() && bearer.is_none() {
             continue;
         }
-        course(skeleton, &chain, spec.smooth, obstacles, &mut points);
+        course(skeleton, &chain, spec, radius, obstacles, &mut way);
+        way.rooted = bearer.is_none();
+        let mut foot = Foot { moved: DVec3::ZERO, cap: f64::INFINITY, within: 0.0 };
         if let Some(b) = bearer {
-            points[0] = plant.nodes.position[b.index()];
+            let start = plant.nodes.position[b.index()];
+            let straight = core::mem::replace(&mut way.points[0], start);
+            // A borne axis starts with its own radius, not with its bearer's.
+            way.radii[0] = way.radii[1];
+            if !obstacles.is_empty() {
+                let within = plant.nodes.radius_m[b.index()];
+                foot = Foot { moved: start - straight, cap: caps[b.index()], within };
+            }
         }
-        let bears = |i: usize| !side[chain[i]].is_empty();
-        thin_out(&chain, &points, radius, spec.thin_out, bears, &mut kept);
-        let line: Vec<DVec3> = kept.iter().map(|&i| points[i]).collect();
+        room.clear(&mut way, foot);
+        if way.points.len() < 2 {
+            continue;
+        }
+        let bears = |i: usize| way.joint[i].is_some_and(|k| !side[chain[k]].is_empty());
+        thin_out(&way, bears, &mut kept);
+        let line: Vec<DVec3> = kept.iter().map(|&i| way.points[i]).collect();
         let id = plant.add_axis(AxisKind::Branch, bearer, key, &line, None);
         for (node, &i) in plant.axis(id).node_ids().zip(&kept) {
-            // A borne axis starts with its own radius, not with its bearer's.
-            let own = if i == 0 && bearer.is_some() { chain[1] } else { chain[i] };
-            plant.nodes.radius_m[node.index()] = radius[own];
-            if i > 0 || bearer.is_none() {
-                node_of_joint[chain[i]] = Some(node);
+            plant.nodes.radius_m[node.index()] = way.radii[i];
+            if !obstacles.is_empty() {
+                caps.push(way.cap[i]);
+            }
+            if let Some(k) = way.joint[i].filter(|&k| k > 0 || bearer.is_none()) {
+                node_of_joint[chain[k]] = Some(node);
             }
         }
         for &j in &chain[usize::from(bearer.is_some())..] {
@@ -260,31 +280,27 @@ fn axes(
 fn course(
     skeleton: &Skeleton,
     chain: &[usize],
-    smooth: bool,
+    spec: &WoodSpec,
+    radius: &[f64],
     obstacles: &Obstacles,
-    points: &mut Vec<DVec3>,
+    way: &mut Course,
 ) {
     let at = |i: usize| skeleton.position[chain[i]];
-    points.clear();
-    for i in 0..chain.len() {
+    way.clear();
+    for (i, &joint) in chain.iter().enumerate() {
         let here = at(i);
-        let inner = smooth && i > 0 && i + 1 < chain.len();
+        let inner = spec.smooth && i > 0 && i + 1 < chain.len();
         let middle = if inner { (at(i - 1) + here * 6.0 + at(i + 1)) / 8.0 } else { here };
         // What was steered around a corner must not be smoothed into it.
         let open = obstacles.is_empty() || obstacles.free(middle);
-        points.push(if open { middle } else { here });
+        let point = if open { middle } else { here };
+        way.add(point, radius[joint], Some(i), spec.thin_out * radius[joint]);
     }
 }
 
 /// Leaves out joints that bear nothing and hardly bend the course.
-fn thin_out(
-    chain: &[usize],
-    points: &[DVec3],
-    radius: &[f64],
-    share: f64,
-    bears: impl Fn(usize) -> bool,
-    kept: &mut Vec<usize>,
-) {
+fn thin_out(way: &Course, bears: impl Fn(usize) -> bool, kept: &mut Vec<usize>) {
+    let points = &way.points;
     kept.clear();
     kept.push(0);
     let mut last = 0;
@@ -294,8 +310,8 @@ fn thin_out(
         let d = (b - a).normalize_or_zero();
         let aside = |p: DVec3| (p - a - d * (p - a).dot(d)).length();
         // Eight at a time: a long straight trunk still gets a node now and then.
-        let straight = i - last < 8 && (last + 1..=i).all(|k| aside(points[k]) < share * radius[chain[k]]);
-        let thins = (radius[chain[i + 1]] / radius[chain[last.max(1)]]) < 0.7;
+        let straight = i - last < 8 && (last + 1..=i).all(|k| aside(points[k]) < way.aside[k]);
+        let thins = (way.radii[i + 1] / way.radii[last.max(1)]) < 0.7;
         if bears(i) || !straight || thins {
             kept.push(i);
             last = i;
@@ -389,6 +405,8 @@ mod tests {
             let spec = WoodSpec { smooth, relax, thin_out: 0.0, ..WoodSpec::default() };
             let p = make_wood(&s, &spec, &obstacles, &Run::plain()).expect("sound").plant;
             assert!(p.nodes.position.iter().all(|&q| obstacles.inside(q).is_none()));
+            // Beside the rock there are more nodes, which turn less.
+            let p = make_wood(&s, &spec, &Obstacles::none(), &Run::plain()).expect("sound").plant;
             let axes = (0..p.axes.len()).map(plant::AxisId::new);
             let turns = axes.flat_map(|a| {
                 let points = p.axis_points(a);

@@ -222,13 +222,16 @@ proptest! {
             Err(
                 GrowthError::RootInObstacle { .. }
                 | GrowthError::NoRoom { .. }
-                | GrowthError::Field { field: "obstacle normal", .. },
+                | GrowthError::Nothing { .. }
+                | GrowthError::Obstacle { .. },
             ) => return Ok(()),
             Err(other) => return Err(TestCaseError::fail(other.to_string())),
         };
         prop_assert_eq!(grown.skeleton.validate().next(), None);
         prop_assert_eq!(grown.plant.validate().next(), None);
-        prop_assert_eq!((grown.nodes_in_obstacles, grown.leaves_in_obstacles), (0, 0));
+        let all = Obstacles::new(&spec.obstacles, spec.clearance_m).expect("as before");
+        prop_assert!(grown.plant.nodes.position.iter().all(|p| all.depth(*p) <= 0.0));
+        prop_assert!(grown.plant.organs.iter().all(|o| all.depth(o.frame.origin) <= 0.0));
         prop_assert_eq!(grown.tally.consumed + grown.tally.unreachable, grown.tally.attractors);
         let leaves = grown.leaves;
         prop_assert_eq!(leaves.placed, leaves.buried + leaves.fallen + leaves.kept);

@@ -116,6 +116,42 @@ pub enum Shape {
     },
 }
 
+impl Shape {
+    /// Points that its surface lies between, in its own frame at scale 1: a blade's margin, midrib and veins as they are
+    /// bent; of a body the corners of the boxes around its parts.
+    pub fn corners(&self) -> Vec<DVec3> {
+        let around = |p: DVec3, r: f64| {
+            (0..8).map(move |i: u32| {
+                let side = |bit: u32| if i & bit == 0 { -r } else { r };
+                p + DVec3::new(side(1), side(2), side(4))
+            })
+        };
+        match self {
+            Self::Blade(blade) => {
+                let veins = blade.veins.iter().flatten();
+                let plane: Vec<DVec2> =
+                    blade.outline.iter().chain(&blade.midrib).chain(veins).copied().collect();
+                blade.surface().points(&plane)
+            }
+            Self::Dome { radius_m, height_m } => around(DVec3::ZERO, 1.0)
+                .map(|c| DVec3::new(c.x * radius_m, c.y * radius_m, c.z.max(0.0) * height_m))
+                .collect(),
+            Self::Revolution { profile } => {
+                let ring = |p: &DVec2| {
+                    around(DVec3::ZERO, p.x).map(|c| DVec3::new(c.x, p.y, c.z)).collect::<Vec<_>>()
+                };
+                profile.iter().flat_map(ring).collect()
+            }
+            Self::Strand { path, radius_m, knob_m } => {
+                let radius = |i: usize| radius_m.get(i).or(radius_m.last()).copied().unwrap_or(0.0);
+                let end = path.last().map(|p| (*p, *knob_m));
+                let all = path.iter().enumerate().map(|(i, p)| (*p, radius(i))).chain(end);
+                all.flat_map(|(p, r)| around(p, r)).collect()
+            }
+        }
+    }
+}
+
 /// One organ: a shape placed in the plant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Organ {

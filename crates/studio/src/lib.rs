@@ -31,7 +31,7 @@ mod venation;
 
 pub use base::{
     Angle, CancelToken, Cancelled, Clock, Digest, Executor, NoClock, Report, Run, Seed, Serial, Unit, UpAxis,
-    Warning, map_indexed,
+    Warning, brief, map_indexed, quoted,
 };
 pub use evaluate::{Evaluator, FrontView};
 pub use leaves::{

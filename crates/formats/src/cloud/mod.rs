@@ -7,7 +7,7 @@ mod text;
 
 use std::io::{Read, Write};
 
-use base::{Report, Unit, UpAxis};
+use base::{Report, UpAxis};
 use glam::DVec3;
 use mesh::PointCloud;
 
@@ -111,12 +111,8 @@ pub fn read_cloud(
     if dropped > 0 {
         report.warn("points-not-finite", format!("left out: {dropped} points that are not finite numbers"));
     }
-    let metres = spec.unit.metres();
-    if spec.up == UpAxis::Z {
-        cloud.points.iter_mut().for_each(|p| *p = DVec3::new(p.x, p.z, -p.y));
-    }
-    if spec.unit != Unit::Metre {
-        cloud.points.iter_mut().for_each(|p| *p *= metres);
+    if !spec.is_default() {
+        cloud.points.iter_mut().for_each(|p| *p = spec.inward(*p));
     }
     Ok(cloud)
 }

@@ -55,7 +55,7 @@ pub(super) fn read(bytes: &[u8], sink: &mut Sink, report: &mut Report) -> Result
             continue;
         }
         if let Some(word) = broken {
-            let word = String::from_utf8_lossy(&word[..word.len().min(20)]).into_owned();
+            let word = base::quoted(&String::from_utf8_lossy(word));
             return Err(fail(index + 1, format!("{word:?} is no number")));
         }
         if count < 3 {

@@ -408,10 +408,7 @@ fn value<'t>(text: &'t str, track: &mut Track) -> Result<(bool, &'t str), String
     } else {
         let end = super::number_end(text);
         let n = text[..end].parse::<f64>();
-        (
-            n.map_err(|e| format!("{:?} is no number ({e})", text.chars().take(12).collect::<String>()))?,
-            &text[end..],
-        )
+        (n.map_err(|e| format!("{:?} is no number ({e})", base::quoted(text)))?, &text[end..])
     };
     match track.coding {
         Coding::Explicit => {

@@ -52,10 +52,10 @@ pub(super) fn parse(text: &str, format: DrawingFormat) -> Result<Document<'_>, D
 pub(super) fn place(node: Node<'_, '_>) -> Place {
     let position = node.document().text_pos_at(node.range().start);
     let tag = node.tag_name().name();
-    let name = node.attributes().find(|a| a.name() == "id").map_or_else(
-        || format!("<{tag}>"),
-        |id| format!("<{tag}> `{}`", id.value().chars().take(80).collect::<String>()),
-    );
+    let name = node
+        .attributes()
+        .find(|a| a.name() == "id")
+        .map_or_else(|| format!("<{tag}>"), |id| format!("<{tag}> `{}`", base::quoted(id.value())));
     Place::Element { name, line: u64::from(position.row) }
 }
 

@@ -1,6 +1,7 @@
 //! Units and up axes at the border: inside everything is metres, +Y up.
 
 use base::{Unit, UpAxis};
+use glam::DVec3;
 use mesh::Model;
 
 /// Unit and up axis of a file whose format does not fix them (OBJ, PLY, STL, USD).
@@ -49,6 +50,19 @@ impl ExportSpec {
             UpAxis::Y => n,
             UpAxis::Z => [n[0], -n[2], n[1]],
         }
+    }
+
+    /// A point as the file has it in metres, +Y up.
+    ///
+    /// ```
+    /// use base::{Unit, UpAxis};
+    /// let spec = formats::ExportSpec { up: UpAxis::Z, unit: Unit::Centimetre };
+    /// assert_eq!(spec.inward(glam::DVec3::new(0.0, 0.0, 300.0)), glam::DVec3::new(0.0, 3.0, 0.0));
+    /// ```
+    pub fn inward(&self, p: DVec3) -> DVec3 {
+        let turned = if self.up == UpAxis::Z { DVec3::new(p.x, p.z, -p.y) } else { p };
+        // Not times 1: a sign of zero would change.
+        if self.unit == Unit::Metre { turned } else { turned * self.unit.metres() }
     }
 
     /// Turns what was read into metres, +Y up.

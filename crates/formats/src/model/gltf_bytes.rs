@@ -225,13 +225,9 @@ pub(super) fn load_uri(uri: &str, resolve: Resolver<'_>, place: &Place) -> Resul
         return data.and_then(base64).ok_or_else(|| broken(place.clone(), "its data URI is not base64"));
     }
     resolve(uri).ok_or_else(|| {
-        let what = format!("the file {:?} that it refers to was not found", shown(uri));
+        let what = format!("the file {:?} that it refers to was not found", base::quoted(uri));
         (place.clone(), FileFault::malformed(what, "put it beside the model, or save everything in one .glb"))
     })
-}
-
-fn shown(uri: &str) -> String {
-    uri.chars().take(100).collect()
 }
 
 fn base64(text: &str) -> Option<Vec<u8>> {

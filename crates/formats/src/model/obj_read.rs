@@ -132,7 +132,7 @@ impl Reader {
             {
                 let Some(text) = parts.next().filter(|t| !t.is_empty()) else { continue };
                 *slot = index(text, length).ok_or_else(|| {
-                    let text: String = text.chars().take(20).collect();
+                    let text = base::quoted(text);
                     fail(
                         number,
                         format!("there is no {what} {text:?} above this face"),
@@ -328,10 +328,7 @@ fn floats<const N: usize>(text: &str, least: usize, line: usize) -> Result<[f32;
             // A fourth number may be a weight, a colour or a comment.
             Some(Err(_)) if i >= least => break,
             _ => {
-                let what = format!(
-                    "{least} numbers were expected in {:?}",
-                    text.chars().take(60).collect::<String>()
-                );
+                let what = format!("{least} numbers were expected in {:?}", base::quoted(text));
                 return Err(fail(line, what, "export the model again"));
             }
         }

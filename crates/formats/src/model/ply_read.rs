@@ -277,7 +277,7 @@ impl<'a> Input<'a> {
             self.at = at + word.len();
             let number = core::str::from_utf8(word).ok().and_then(|w| w.parse().ok());
             return number.ok_or_else(|| {
-                let word = String::from_utf8_lossy(&word[..word.len().min(20)]).into_owned();
+                let word = base::quoted(&String::from_utf8_lossy(word));
                 Some(fail(Place::Byte(at as u64), format!("{word:?} is no number")))
             });
         }

@@ -67,6 +67,7 @@ pub(super) fn derive(
         by_symbol[usize::from(rule.symbol)].push(r);
     }
     let mut made = vec![0_usize; system.rules.len()];
+    let mut matched = system.steps == 0 || system.rules.is_empty();
     for step in 1..=system.steps {
         next.clear();
         made.fill(0);
@@ -76,7 +77,9 @@ pub(super) fn derive(
             }
             let (symbol, numbers, own) = (now.symbol[i], now.of(i), now.seed[i]);
             let rules = by_symbol[usize::from(symbol)].iter().map(|&r| (r, &system.rules[r]));
-            let Some((r, rule)) = choose(rules, numbers, own, &mut stack) else {
+            let (fits, chosen) = choose(rules, numbers, own, &mut stack);
+            matched |= fits;
+            let Some((r, rule)) = chosen else {
                 next.numbers.extend_from_slice(numbers);
                 // A module that waits draws anew in the next step.
                 next.push(symbol, own.child(u64::MAX));
@@ -96,7 +99,33 @@ pub(super) fn derive(
         }
         core::mem::swap(&mut now, &mut next);
     }
-    Ok(now)
+    if matched { Ok(now) } else { Err(no_match(system, &now).into()) }
+}
+
+fn no_match(system: &Lsystem, modules: &Modules) -> LsystemError {
+    let with = |symbol: u8, n: usize| {
+        let numbers = match n {
+            0 => "no number".to_owned(),
+            1 => "1 number".to_owned(),
+            _ => format!("{n} numbers"),
+        };
+        format!("{} with {numbers}", char::from(symbol))
+    };
+    let list = |kinds: &mut dyn Iterator<Item = (u8, usize)>| {
+        let mut told: Vec<String> = Vec::new();
+        for (symbol, n) in kinds {
+            let text = with(symbol, n);
+            // Brackets are never rewritten; of many kinds the first ones say enough.
+            if !b"[]".contains(&symbol) && told.len() < 6 && !told.contains(&text) {
+                told.push(text);
+            }
+        }
+        told.join(", ")
+    };
+    LsystemError::NoMatch {
+        there: list(&mut modules.iter().map(|(symbol, numbers)| (symbol, numbers.len()))),
+        rules: list(&mut system.rules.iter().map(|rule| (rule.symbol, rule.arity))),
+    }
 }
 
 fn too_large(system: &Lsystem, made: &[usize], step: u32, most: usize) -> LsystemError {
@@ -113,13 +142,13 @@ fn write(w: &Written, given: &[f64], seed: Seed, draws: Seed, to: &mut Modules, 
     to.push(w.symbol, seed);
 }
 
-/// The rule for a module: among those that fit, by their chances.
+/// Whether a rule fits a module, and the one for it: among those that fit, by their chances.
 fn choose<'a>(
     rules: impl Iterator<Item = (usize, &'a Rule)> + Clone,
     numbers: &[f64],
     seed: Seed,
     stack: &mut Vec<f64>,
-) -> Option<(usize, &'a Rule)> {
+) -> (bool, Option<(usize, &'a Rule)>) {
     let mut fits = |rule: &Rule| {
         rule.arity == numbers.len()
             && rule.condition.as_ref().is_none_or(|c| {
@@ -138,7 +167,7 @@ fn choose<'a>(
         }
     }
     if count == 0 || (count == 1 && whole >= 1.0) {
-        return only;
+        return (count > 0, only);
     }
     // Chances below 1 in all leave the module as it is for the rest.
     let mut at = seed.stream(Draw::Template).uniform() * f64::max(whole, 1.0);
@@ -146,9 +175,9 @@ fn choose<'a>(
         if fits(rule) {
             at -= rule.chance;
             if at < 0.0 {
-                return Some((r, rule));
+                return (true, Some((r, rule)));
             }
         }
     }
-    None
+    (true, None)
 }

@@ -229,8 +229,15 @@ impl<'a> Reader<'a> {
         self.skip_space();
         let rest = &self.text[self.at..];
         let word = |ok: fn(&u8) -> bool| rest.iter().take_while(|c| ok(c)).count();
-        let number = word(|c| c.is_ascii_digit() || *c == b'.');
+        let mut number = word(|c| c.is_ascii_digit() || *c == b'.');
         if number > 0 {
+            // An exponent belongs to the number if digits follow it.
+            let power = rest[number..].strip_prefix(b"e").or_else(|| rest[number..].strip_prefix(b"E"));
+            if let Some(power) = power {
+                let sign = usize::from(power.first().is_some_and(|c| b"+-".contains(c)));
+                let digits = power[sign..].iter().take_while(|c| c.is_ascii_digit()).count();
+                number += if digits > 0 { 1 + sign + digits } else { 0 };
+            }
             let text = core::str::from_utf8(&rest[..number]).unwrap_or_default();
             let value = text.parse().map_err(|e: core::num::ParseFloatError| format!("`{text}`: {e}"))?;
             self.code.push(Op::Number(value));
@@ -304,6 +311,8 @@ mod tests {
             ("x > 2 && !(k < 5) || 0", 1.0),
             ("x == 3", 1.0),
             ("0.1 + 0.2 != 0.3", 0.0),
+            ("1e-1 + 2.5E+3 - 1e2", 2400.1),
+            ("2e0 - 1.e1", -8.0),
             ("min(x, k) - max(1, 2)", 1.0),
             ("sqrt(16) + abs(0 - 2) + floor(2.9)", 8.0),
         ] {
@@ -324,6 +333,8 @@ mod tests {
             ("max(1)", "needs 2"),
             ("(1", ") is missing"),
             ("1..2", "1..2"),
+            ("2e", "rest: e"),
+            ("2e+x", "rest: e+x"),
         ] {
             assert!(value(text).is_err_and(|e| e.contains(part)), "{text}: {:?}", value(text));
         }

@@ -83,7 +83,7 @@ impl Lsystem {
             if line.is_empty() {
                 continue;
             }
-            let fault = |why: String| LsystemError::Syntax { line: number + 1, why };
+            let fault = |why: String| LsystemError::Syntax { line: number + 1, why: base::brief(&why) };
             if let Some((left, right)) = line.split_once("->") {
                 let rule =
                     read_rule(left.trim(), right.trim(), line, number + 1, &constants).map_err(fault)?;
@@ -201,7 +201,7 @@ fn read_rule(
         return Err(format!("prob must be 0 or more, not {chance}"));
     }
     let successor = read_modules(right, &parameters, constants)?;
-    Ok(Rule { text: text.to_owned(), line, symbol, arity: parameters.len(), condition, chance, successor })
+    Ok(Rule { text: base::quoted(text), line, symbol, arity: parameters.len(), condition, chance, successor })
 }
 
 fn read_modules(

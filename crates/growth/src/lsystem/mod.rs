@@ -47,6 +47,17 @@ pub enum LsystemError {
         /// The limit.
         most: usize,
     },
+    /// No rule ever had a module to rewrite.
+    #[error(
+        "nothing grew: no rule matches a module in any step. There is {there}; the rules are for {rules}. A rule \
+         matches a module of its name with as many numbers as it has parameters, where its `if` holds"
+    )]
+    NoMatch {
+        /// The modules that were left, with their counts of numbers.
+        there: String,
+        /// What the rules are for.
+        rules: String,
+    },
     /// A number of a module is not finite.
     #[error("the rule `{rule}` in line {line} gives a number that is not finite")]
     NotFinite {
@@ -55,6 +66,20 @@ pub enum LsystemError {
         /// Its line, from 1; 0 for the axiom.
         line: usize,
     },
+}
+
+impl LsystemError {
+    /// The same error where the rules start in line `first` of a longer text: its lines count from the start of that.
+    #[must_use]
+    pub fn from_line(mut self, first: usize) -> Self {
+        if let Self::Syntax { line, .. } | Self::TooLarge { line, .. } | Self::NotFinite { line, .. } =
+            &mut self
+            && *line > 0
+        {
+            *line += first - first.min(1);
+        }
+        self
+    }
 }
 
 /// A leaf that the turtle set.
@@ -216,6 +241,35 @@ mod tests {
             let got = Lsystem::parse(text).map(|_| ()).map_err(|e| e.to_string());
             assert!(got.as_ref().is_err_and(|e| e.starts_with(want)), "{text:?}: {got:?}");
         }
+    }
+
+    #[test]
+    fn rules_that_never_match_are_told_with_names_and_numbers() {
+        for (text, there, rules) in [
+            ("axiom = F(1)\nF -> F F", "F with 1 number", "F with no number"),
+            ("axiom = A(1,2) [ B ]\nA(x) -> F(x)", "A with 2 numbers, B with no number", "A with 1 number"),
+            ("axiom = A(1)\nA(x) if x > 2 -> F(x)", "A with 1 number", "A with 1 number"),
+        ] {
+            let want = LsystemError::NoMatch { there: there.into(), rules: rules.into() };
+            assert_eq!(grow(text, 1), Err(want.into()), "{text}");
+        }
+        // A rule that waits for its chance, and an axiom alone, are no slips.
+        assert!(grow("axiom = A F\nsteps = 1\nA prob 0.001 -> F", 1).is_ok());
+        assert!(grow("axiom = F(1)\nsteps = 0\nF -> F F", 1).is_ok() && grow("axiom = F(1)", 1).is_ok());
+    }
+
+    #[test]
+    fn numbers_have_exponents() {
+        let tree = grow("axiom = F(1e-1) F(2.5E+1)\nsteps = 0", 1).expect("sound");
+        assert!((tree.skeleton.position[2].y - 25.1).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_message_quotes_a_line_and_no_more() {
+        let got = Lsystem::parse(&format!("axiom = F\n{} -> F", "\u{e4}".repeat(1_000_000)));
+        assert!(got.is_err_and(|e| e.to_string().chars().count() < 200));
+        let got = grow(&format!("axiom = A\nsteps = 90\nA -> {}", "A ".repeat(100_000)), 1);
+        assert!(got.is_err_and(|e| e.to_string().len() < 400));
     }
 
     #[test]

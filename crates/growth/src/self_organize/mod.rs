@@ -118,6 +118,10 @@ pub fn self_organize(
         let share = f64::from(year + 1) / f64::from(spec.years);
         run.cancel.reached(GROWN * share * share);
     }
+    let bare = forest.grove.skeleton.parent.iter().all(Option::is_none);
+    if spec.years > 0 && (bare || forest.generated == 0) {
+        return Err(GrowthError::Nothing { why: forest.why_nothing() });
+    }
     let Forest { mut grove, generated, shed, .. } = forest;
     // Joints of one shoot are often alike.
     let (mut wood, mut radius) = (0.0, 0.0);
@@ -183,6 +187,36 @@ struct Forest<'a> {
 }
 
 impl Forest<'_> {
+    /// Which number keeps every bud of a forest of bare roots asleep.
+    fn why_nothing(&mut self) -> String {
+        let (alpha, years, below) = (self.spec.alpha, self.spec.years, self.spec.shed_below);
+        if self.generated > 0 {
+            return format!(
+                "all that grew in {years} years was shed: shed_below ({below}) is more than the light per internode \
+                 of any branch; lower it, or raise alpha ({alpha})"
+            );
+        }
+        self.look();
+        let light = self.bud_light.iter().copied().fold(0.0, f64::max);
+        match &self.spec.light {
+            _ if light > 0.0 && light * alpha >= 1.0 => {
+                "obstacles stand around every root; move them, or lower internode_m".into()
+            }
+            Light::Shadow { full, a, .. } => format!(
+                "no bud has the vigour of 1 that a shoot takes: light.full ({full}) with the shadow of light.a ({a}) \
+                 leaves {light} of light, times alpha ({alpha}) {:.3}; raise light.full or alpha",
+                light * alpha
+            ),
+            Light::Space { perception, .. } if light <= 0.0 => format!(
+                "no bud sees a marker within light.perception ({perception} internodes); raise it, \
+                 light.half_angle_deg or light.markers, or lower light.occupancy"
+            ),
+            Light::Space { .. } => {
+                format!("no bud has the vigour of 1 that a shoot takes: it is alpha ({alpha}); raise it")
+            }
+        }
+    }
+
     /// The joints that there would be after this year if that is more than allowed: then nothing has sprouted.
     fn year(&mut self, year: u32) -> Option<usize> {
         self.look();

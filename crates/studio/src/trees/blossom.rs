@@ -5,7 +5,7 @@
 use base::ops::{self, PI, TAU};
 use base::{Draw, Seed};
 use glam::{DVec2, DVec3};
-use growth::GrowthError;
+use growth::{GrowthError, Obstacles};
 use plant::{Blade, Flower, FlowerId, Frame, Lift, Organ, OrganKind, Plant, Relief, Shape, ShapeId};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -64,7 +64,8 @@ impl BlossomSpec {
     }
 
     /// Turns leaves into flowers. Which ones follows from their keys, so that a larger share keeps those of a smaller.
-    pub(super) fn apply(&self, plant: &mut Plant, seed: Seed) {
+    /// A flower that would enter an obstacle stays a leaf.
+    pub(super) fn apply(&self, plant: &mut Plant, obstacles: &Obstacles, seed: Seed) {
         let blooms = |o: &Organ| {
             o.kind == OrganKind::Leaf && seed.child(o.key).stream(Draw::Template).uniform() < self.share
         };
@@ -79,8 +80,16 @@ impl BlossomSpec {
             disc: push(plant, Shape::Blade(disc(0.15 * self.diameter_m))),
             stalk: push(plant, stalk(STALK * self.diameter_m)),
         };
+        let corners: Vec<Vec<DVec3>> = plant.shapes.iter().map(Shape::corners).collect();
         for place in &places {
+            let (organs, flowers) = (plant.organs.len(), plant.flowers.len());
             self.flower(plant, place, &shapes, seed);
+            let free = |o: &Organ| obstacles.admit(&o.frame, o.scale, &corners[o.shape.index()]);
+            if !obstacles.is_empty() && !plant.organs[organs..].iter().all(free) {
+                plant.organs.truncate(organs);
+                plant.flowers.truncate(flowers);
+                plant.organs.push(place.clone());
+            }
         }
     }
 

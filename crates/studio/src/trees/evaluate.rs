@@ -11,7 +11,7 @@ use skin::{PetalColor, SkinSpec};
 
 use super::look::KeptBarks;
 use super::{
-    BlossomSpec, GrowthReport, Look, TreeError, TreeOptions, TreeSpec, coarser, look_at_meshes,
+    BlossomSpec, GrowthReport, Inside, Look, TreeError, TreeOptions, TreeSpec, coarser, look_at_meshes,
     scale_to_height,
 };
 use crate::report::{Counts, ItemReport, TimingsMs};
@@ -42,6 +42,8 @@ pub struct TreeEvaluator {
     shaper: Shaper,
     shaped: Option<Shaped>,
     model: Option<(Skinned, Model)>,
+    /// What of the model lies in obstacles.
+    inside: Option<Inside>,
     /// The model is of a plant that is no more: shown until there is another, in case an update is stopped.
     stale: bool,
     /// Bark of the last model.
@@ -91,11 +93,14 @@ impl TreeEvaluator {
         self.done.clear();
         let mut report = Report::default();
         let obstacles = self.grow(spec, seed, options, &mut report, run)?;
-        self.dress(spec, seed, options);
+        self.dress(spec, &obstacles, seed, options);
         let start = run.clock.now_ms();
         self.shape(&obstacles, options, run)?;
         report.book("depth", run.clock.now_ms() - start);
-        self.mesh(spec, seed, options, &mut report, run)?;
+        if self.mesh(spec, seed, options, &mut report, run)? {
+            let model = self.model().filter(|_| !self.looking);
+            self.inside = model.and_then(|m| Inside::of(m, &obstacles));
+        }
         Ok(self.item(spec, &report))
     }
 
@@ -130,7 +135,7 @@ impl TreeEvaluator {
         Ok(obstacles)
     }
 
-    fn dress(&mut self, spec: &TreeSpec, seed: Seed, options: &TreeOptions) {
+    fn dress(&mut self, spec: &TreeSpec, obstacles: &growth::Obstacles, seed: Seed, options: &TreeOptions) {
         let Some(raw) = &self.grown else { return };
         let pictured = options.skin.textures && options.leaf.as_ref().is_some_and(LeafTemplate::has_picture);
         let height = options.height_m.filter(|_| spec.obstacles.is_empty());
@@ -140,7 +145,7 @@ impl TreeEvaluator {
         }
         let mut grown = raw.grown.clone();
         spec.look.tint(&mut grown.plant, pictured, seed);
-        spec.blossom.apply(&mut grown.plant, seed);
+        spec.blossom.apply(&mut grown.plant, obstacles, seed);
         if let Some(height) = height {
             scale_to_height(&mut grown, height);
         }
@@ -172,6 +177,7 @@ impl TreeEvaluator {
         Ok(())
     }
 
+    /// Whether there is another model now.
     fn mesh(
         &mut self,
         spec: &TreeSpec,
@@ -179,19 +185,19 @@ impl TreeEvaluator {
         options: &TreeOptions,
         report: &mut Report,
         run: &Run<'_>,
-    ) -> Result<(), TreeError> {
+    ) -> Result<bool, TreeError> {
         let from = (skin_spec(spec, seed, options), spec.look.clone(), options.leaf.clone());
         if !self.stale && self.model.as_ref().is_some_and(|(f, _)| *f == from) {
-            return Ok(());
+            return Ok(false);
         }
         let mut barks = core::mem::take(&mut self.barks);
-        let Some(plant) = self.plant() else { return Ok(()) };
+        let Some(plant) = self.plant() else { return Ok(false) };
         let model = report.stage("mesh", run.clock, |_| skinned(plant, &from, &mut barks, run));
         self.barks = barks;
         let model = model?;
         (self.model, self.stale) = (Some((from, model)), false);
         self.done.push("mesh");
-        Ok(())
+        Ok(true)
     }
 
     /// Coarser copies, finest first.
@@ -216,7 +222,7 @@ impl TreeEvaluator {
         let (Some(raw), Some(plant), Some((_, model))) = (&self.grown, self.plant(), &self.model) else {
             return ItemReport::default(); // update fills all of them before it comes here
         };
-        let growth = GrowthReport::of(spec, &raw.grown);
+        let growth = GrowthReport::of(spec, &raw.grown, self.inside);
         // Some points are always out of reach where they are scattered; it is news only when they were given, or most.
         let given = matches!(spec.method, Method::Points { .. });
         let many = 2 * growth.unreachable > growth.attractors;

@@ -1,8 +1,10 @@
 //! Specs as TOML, and their JSON Schema.
 
 use glam::DVec3;
+use growth::GrowthError;
+use serde::de::Error as _;
 
-use super::located::{Entry, Kind, Node};
+use super::located::{Entry, Fault, Kind, Node};
 use super::{TreeError, TreeSpec};
 
 /// Vertices and triangles, or points alone, of a file that a spec names.
@@ -11,44 +13,100 @@ pub type NamedMesh = (Vec<DVec3>, Vec<[u32; 3]>);
 /// Reads a spec.
 ///
 /// `open` gives what is in a file named by `file = "..."` in an obstacle or envelope of shape `mesh` (vertices and
-/// triangles) or `points`; `None` for a file that is not there. The core opens no files itself.
+/// triangles) or `points`, in metres, +Y up; `None` for a file that is not there. The core opens no files itself.
 ///
 /// # Errors
 /// [`TreeError::Spec`] with the line of what is wrong; [`TreeError::File`] for a file that `open` did not give.
 pub fn read_tree_spec(text: &str, open: &dyn Fn(&str) -> Option<NamedMesh>) -> Result<TreeSpec, TreeError> {
-    let fault = |message: String, at: usize| {
-        let line = line_of(text, at.min(text.len()), &message);
-        TreeError::Spec { line, message }
-    };
-    let mut tree = Node::from_toml(text).map_err(|f| fault(f.message, f.at))?;
+    let fault = |f: Fault| TreeError::Spec { line: line_at(text, f.at), message: f.message };
+    let mut tree = Node::from_toml(text).map_err(fault)?;
     resolve(&mut tree, open)?;
-    tree.read().map_err(|(e, at)| fault(e.to_string(), at))
+    tree.read().map_err(fault)
 }
 
 /// Reads a spec that is kept as JSON.
 ///
 /// # Errors
-/// What is wrong.
+/// What is wrong, with the names of the fields that lead to it.
 pub(crate) fn spec_from_json(value: &serde_json::Value) -> Result<TreeSpec, serde_json::Error> {
-    Node::from_json(value).read().map_err(|(e, _)| e)
+    Node::from_json(value).read().map_err(|f| serde_json::Error::custom(f.message))
 }
 
-/// The line (from 1) of a fault. Inside tables with a `kind` or `shape` the parser only knows where the table starts:
-/// then the line is that of the field which the message names.
-fn line_of(text: &str, at: usize, message: &str) -> usize {
-    let start = text.get(..at).map_or(0, |t| t.matches('\n').count());
-    let named = message.split('`').nth(1).filter(|_| message.starts_with("unknown "));
-    let holds = |line: &str| {
-        let name = named.unwrap_or_default();
-        let trimmed = line.trim_start();
-        let quoted = line.contains(&format!("\"{name}\""));
-        let key = |rest: &str| rest.trim_start().starts_with(['=', '.', ']']);
-        let inline = line.split(['{', ',']).any(|part| part.trim_start().strip_prefix(name).is_some_and(key));
-        quoted || trimmed.trim_start_matches('[').strip_prefix(name).is_some_and(key) || inline
-    };
-    let found = named.and_then(|_| text.lines().skip(start).position(&holds).map(|k| start + k));
-    let found = found.or_else(|| named.and_then(|_| text.lines().position(&holds)));
-    found.unwrap_or(start) + 1
+/// The line (from 1) of a byte.
+fn line_at(text: &str, at: usize) -> usize {
+    text.as_bytes()[..at.min(text.len())].iter().filter(|b| **b == b'\n').count() + 1
+}
+
+impl TreeError {
+    /// The same error as the reader of a spec's file would like to have it: `text` is what [`read_tree_spec`] read.
+    ///
+    /// A number out of range and an obstacle at fault get their line where the text has them, an obstacle the name of
+    /// its file; lines of an L-system's rules count from the start of the file instead of the rules.
+    #[must_use]
+    pub fn in_text(self, text: &str) -> Self {
+        let Ok(tree) = Node::from_toml(text) else { return self };
+        match self {
+            Self::Growth(GrowthError::Lsystem(e)) => {
+                let rules = tree.field("method").and_then(|m| m.field("rules"));
+                let first = rules.and_then(|rules| first_line(text, rules.at));
+                Self::Growth(GrowthError::Lsystem(first.map_or(e.clone(), |first| e.from_line(first))))
+            }
+            Self::Growth(GrowthError::Obstacle { obstacle, mut name, fault }) => {
+                let Some(Kind::List(all)) = tree.field("obstacles").map(|o| &o.kind) else {
+                    return Self::Growth(GrowthError::Obstacle { obstacle, name, fault });
+                };
+                if let Some(Kind::Text(file)) =
+                    all.get(obstacle).and_then(|o| o.field("file")).map(|f| &f.kind)
+                {
+                    name = base::quoted(file);
+                }
+                let place = all.get(obstacle).map(|o| match &*fault {
+                    GrowthError::Field { field, .. } => o.field(field).map_or(o.at, |f| f.at),
+                    _ => o.at,
+                });
+                let error = GrowthError::Obstacle { obstacle, name, fault };
+                place.map_or_else(|| Self::Growth(error.clone()), |at| at_line(text, at, &error))
+            }
+            Self::Growth(ref error @ GrowthError::Field { field, value, .. }) => {
+                let mut found = Vec::new();
+                let name = field.rsplit('.').next().unwrap_or(field);
+                places(&tree, name, value, &mut found);
+                // Of several it is not known which one was meant.
+                if let [at] = found[..] { at_line(text, at, error) } else { self }
+            }
+            other => other,
+        }
+    }
+}
+
+fn at_line(text: &str, at: usize, error: &GrowthError) -> TreeError {
+    TreeError::Spec { line: line_at(text, at), message: error.to_string() }
+}
+
+/// The line on which the content of a string of several lines starts; `None` of one on a single line.
+fn first_line(text: &str, at: usize) -> Option<usize> {
+    let rest = text.get(at..)?;
+    let inside = rest.strip_prefix("\"\"\"").or_else(|| rest.strip_prefix("'''"))?;
+    Some(line_at(text, at) + usize::from(inside.starts_with('\n') || inside.starts_with("\r\n")))
+}
+
+/// Where fields of this name have this value.
+fn places(node: &Node, name: &str, value: f64, found: &mut Vec<usize>) {
+    for entry in node.entries() {
+        let number = match entry.node.kind {
+            Kind::Number(x) => Some(x),
+            #[expect(clippy::cast_precision_loss, reason = "to be compared with a number of a message")]
+            Kind::Whole(n) => Some(n as f64),
+            _ => None,
+        };
+        if entry.key == name && number.is_some_and(|x| x.to_bits() == value.to_bits()) {
+            found.push(entry.node.at);
+        }
+        places(&entry.node, name, value, found);
+    }
+    if let Kind::List(all) = &node.kind {
+        all.iter().for_each(|n| places(n, name, value, found));
+    }
 }
 
 /// Puts meshes and points in the place of their files' names.
@@ -128,6 +186,70 @@ mod tests {
         assert!(at == 2 && message.contains("date"), "{at} {message}");
         let (at, message) = line("name = \"a\"\nage = 99999999999999999999\n");
         assert!(at == 2 && message.contains("overflow"), "{at} {message}");
+    }
+
+    #[test]
+    fn faults_inside_tagged_tables_are_named_with_field_and_line() {
+        for (text, at, path) in [
+            (
+                "name = \"a\"\n\n[method]\nkind = \"competition\"\npoints = 300\nkill_m = \"two\"\n",
+                6,
+                "method.kill_m: ",
+            ),
+            ("[method]\nkind = \"competition\"\n# kill\nlifespan = -1\n", 4, "method.lifespan: "),
+            (
+                "[method]\nkind = \"competition\"\n[method.envelope]\nshape = \"sphere\"\ncentre = [0, 1]\nradius_m = 1\n",
+                5,
+                "method.envelope.centre",
+            ),
+            (
+                "[method]\nkind = \"competition\"\n[method.envelope]\nshape = \"ball\"\n",
+                4,
+                "method.envelope.shape: unknown variant",
+            ),
+            (
+                "[method]\nkind = \"competition\"\n[[method.tropisms]]\ndirection = [0, 1, 0]\nstrength = 1\n[[method.tropisms]]\ndirection = [0, 1, 0]\nstrength = true\n",
+                8,
+                "method.tropisms[1].strength: ",
+            ),
+            (
+                "[[obstacles]]\nshape = \"plane\"\npoint = [0, 0, 0]\nnormal = [1, 0, 0]\n[[obstacles]]\nshape = \"box\"\nmin = [0, 0, 0]\n",
+                5,
+                "obstacles[1]: missing field `max`",
+            ),
+            ("[method]\nkind = \"lsystem\"\nmost_modules = 10\n", 1, "method: missing field `rules`"),
+        ] {
+            let (line, message) = line(text);
+            assert!(line == at && message.starts_with(path), "{text}: line {line}: {message}");
+        }
+        let (_, message) = line(&format!("[method]\nkind = \"{}\"\n", "x".repeat(3_000_000)));
+        assert!(message.len() < 300, "{} bytes", message.len());
+    }
+
+    #[test]
+    fn errors_of_growth_get_their_lines_in_the_file() {
+        let told = |text: &str| {
+            let spec =
+                read_tree_spec(text, &|_| Some((vec![DVec3::ZERO; 3], vec![[0, 1, 2]]))).expect("sound");
+            let options = super::super::TreeOptions::default();
+            let made = super::super::make_tree(&spec, base::Seed::new(1), &options, &base::Run::plain());
+            made.map(|_| ()).expect_err("not sound").in_text(text).to_string()
+        };
+        let rules =
+            |rules: &str| format!("name = \"a\"\n\n[method]\nkind = \"lsystem\"\nmost_modules = 99\n{rules}");
+        for (text, want) in [
+            (rules("rules = '''\naxiom = A\nA -> F(\n'''\n"), "line 8: a number"),
+            (rules("rules = \"\"\"axiom = A\nA -> F(\"\"\"\n"), "line 7: a number"),
+            (rules("rules = \"\"\"\n\naxiom = A\nsteps = 9\nA -> A A A\n\"\"\"\n"), "`A -> A A A` in line 10 lets"),
+            ("[wood]\nrelax = 99\n".into(), "line 2: relax must be 0 to 10, not 99"),
+            ("[method]\nkind = \"competition\"\nkill_m = nan\n".into(), "line 3: kill_m must"),
+            ("[[obstacles]]\nshape = \"sphere\"\ncentre = [9, 0, 0]\nradius_m = 1\n[[obstacles]]\nshape = \"sphere\"\ncentre = [9, 0, 0]\nradius_m = 0\n".into(),
+             "line 8: obstacle 1 (a sphere): radius_m must be above 0"),
+            ("[[obstacles]]\nshape = \"mesh\"\nfile = \"rock.obj\"\n".into(), "line 1: obstacle 0 (rock.obj): mesh: it has no triangle"),
+        ] {
+            let told = told(&text);
+            assert!(told.contains(want), "{text}: {told}");
+        }
     }
 
     #[test]

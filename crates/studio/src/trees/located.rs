@@ -3,8 +3,6 @@
 //! Both forms are read through this one reader: every further one would be a copy of the code that reads specs, which
 //! is a good part of what a browser downloads.
 
-use core::cell::Cell;
-
 use serde::de::value::{BorrowedStrDeserializer, MapAccessDeserializer};
 use serde::de::{
     DeserializeOwned, DeserializeSeed, Deserializer, Error as _, MapAccess, SeqAccess, Unexpected, Visitor,
@@ -120,11 +118,145 @@ impl Node {
     /// Reads what the tree describes.
     ///
     /// # Errors
-    /// What is wrong, and the byte of the innermost node that is known to hold it. Inside of tables that say by a tag
-    /// what they are, that is the table.
-    pub(super) fn read<T: DeserializeOwned>(&self) -> Result<T, (Error, usize)> {
-        let place = Cell::new(None);
-        T::deserialize(Reader { node: self, place: &place }).map_err(|e| (e, place.get().unwrap_or(0)))
+    /// [`Fault`] with the names of the fields that lead to it. Serde's own readers forget where they are inside of
+    /// tables that say by a tag what they are, so the place is searched for: by reading again without parts of the tree.
+    pub(super) fn read<T: DeserializeOwned>(&self) -> Result<T, Fault> {
+        T::deserialize(Reader { node: self }).map_err(|e| {
+            let message = e.to_string();
+            let same =
+                |tree: &Self| T::deserialize(Reader { node: tree }).is_err_and(|e| e.to_string() == message);
+            let (path, at) = self.culprit(&message, &same);
+            let message = base::brief(&if path.is_empty() { message } else { format!("{path}: {message}") });
+            Fault { message, at }
+        })
+    }
+
+    /// The names and the place of the innermost node that is at fault: `same` says whether a tree has the same fault.
+    fn culprit(&self, message: &str, same: &dyn Fn(&Self) -> bool) -> (String, usize) {
+        if let Some(name) = message.strip_prefix("missing field `").and_then(|m| m.split('`').next()) {
+            return self.lacks(name, same);
+        }
+        let mut tree = self.clone();
+        let (mut route, mut path, mut at) = (Vec::new(), String::new(), self.at);
+        loop {
+            let Some(whole) = tree.on(&route).cloned() else { return (path, at) };
+            let mut with = |m: usize| {
+                tree.on(&route).into_iter().for_each(|node| *node = whole.first(m));
+                let same = same(&tree);
+                tree.on(&route).into_iter().for_each(|node| node.clone_from(&whole));
+                same
+            };
+            let all = whole.parts();
+            if all == 0 || with(0) {
+                // A tag is kept all the way: is it the one?
+                let tag = whole.entries().iter().find(|e| e.is_tag());
+                return match tag.filter(|_| all > 0 && message.starts_with("unknown variant")) {
+                    Some(tag) => (joined(&path, &tag.key), tag.at),
+                    None => (path, at),
+                };
+            }
+            // The fewest parts that still have it: the last of them is it.
+            let (mut without, mut enough) = (0, all);
+            while enough - without > 1 {
+                let middle = usize::midpoint(without, enough);
+                if with(middle) { enough = middle } else { without = middle }
+            }
+            match &whole.kind {
+                Kind::Table(entries) => {
+                    let entry = &entries[without];
+                    if message.starts_with("unknown field") {
+                        return (path, entry.at);
+                    }
+                    (path, at) = (joined(&path, &entry.key), entry.node.at);
+                }
+                Kind::List(nodes) => {
+                    path += &format!("[{without}]");
+                    at = nodes[without].at;
+                }
+                _ => return (path, at),
+            }
+            route.push(without);
+        }
+    }
+
+    /// The table in which a field is missing.
+    fn lacks(&self, name: &str, same: &dyn Fn(&Self) -> bool) -> (String, usize) {
+        let mut tree = self.clone();
+        let mut waiting: Vec<(Vec<usize>, String)> = vec![(Vec::new(), String::new())];
+        while let Some((route, path)) = waiting.pop() {
+            let Some(node) = tree.on(&route) else { continue };
+            let at = node.at;
+            if let Kind::Table(entries) = &mut node.kind {
+                entries.push(Entry { key: name.to_owned(), at, node: Self { kind: Kind::Nothing, at } });
+                if !same(&tree) {
+                    return (path, at);
+                }
+                if let Some(Self { kind: Kind::Table(entries), .. }) = tree.on(&route) {
+                    entries.pop();
+                }
+            }
+            let Some(node) = tree.on(&route) else { continue };
+            // Of lists only those of tables: a mesh has millions of numbers.
+            let tables = match &node.kind {
+                Kind::List(all) => all.first().is_some_and(|n| matches!(n.kind, Kind::Table(_))),
+                _ => true,
+            };
+            for k in (0..if tables { node.parts() } else { 0 }).rev() {
+                let path = match &node.kind {
+                    Kind::Table(entries) => joined(&path, &entries[k].key),
+                    _ => format!("{path}[{k}]"),
+                };
+                waiting.push(([&route[..], &[k]].concat(), path));
+            }
+        }
+        (String::new(), self.at)
+    }
+
+    /// The node that numbers of parts lead to.
+    fn on(&mut self, route: &[usize]) -> Option<&mut Self> {
+        route.iter().try_fold(self, |node, &k| match &mut node.kind {
+            Kind::Table(entries) => entries.get_mut(k).map(|e| &mut e.node),
+            Kind::List(nodes) => nodes.get_mut(k),
+            _ => None,
+        })
+    }
+
+    fn parts(&self) -> usize {
+        if let Kind::List(nodes) = &self.kind { nodes.len() } else { self.entries().len() }
+    }
+
+    /// The rows of a table; none of anything else.
+    pub(super) fn entries(&self) -> &[Entry] {
+        if let Kind::Table(entries) = &self.kind { entries } else { &[] }
+    }
+
+    /// The value of a field of a table.
+    pub(super) fn field(&self, name: &str) -> Option<&Self> {
+        self.entries().iter().find(|e| e.key == name).map(|e| &e.node)
+    }
+
+    /// With the first `m` parts only, and with tags.
+    fn first(&self, m: usize) -> Self {
+        let kind = match &self.kind {
+            Kind::Table(all) => {
+                let kept = all.iter().enumerate().filter(|(k, e)| *k < m || e.is_tag());
+                Kind::Table(kept.map(|(_, e)| e.clone()).collect())
+            }
+            Kind::List(all) => Kind::List(all[..m].to_vec()),
+            other => other.clone(),
+        };
+        Self { kind, at: self.at }
+    }
+}
+
+fn joined(path: &str, key: &str) -> String {
+    if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
+}
+
+impl Entry {
+    /// Whether it says what its table is.
+    fn is_tag(&self) -> bool {
+        matches!(self.key.as_str(), "kind" | "shape")
     }
 }
 
@@ -152,28 +284,17 @@ impl Kind {
     }
 }
 
-/// Serde's view of a node; `place` is that of the first fault.
+/// Serde's view of a node.
 #[derive(Clone, Copy)]
 struct Reader<'a> {
     node: &'a Node,
-    place: &'a Cell<Option<usize>>,
-}
-
-impl Reader<'_> {
-    /// Keeps where it went wrong, unless something further in did.
-    fn placed<T>(self, result: Result<T, Error>) -> Result<T, Error> {
-        if result.is_err() {
-            self.place.set(self.place.get().or(Some(self.node.at)));
-        }
-        result
-    }
 }
 
 impl<'de> Deserializer<'de> for Reader<'de> {
     type Error = Error;
 
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
-        let result = match &self.node.kind {
+        match &self.node.kind {
             Kind::Nothing => visitor.visit_unit(),
             Kind::Truth(truth) => visitor.visit_bool(*truth),
             Kind::Whole(whole) => visitor.visit_i64(*whole),
@@ -181,22 +302,19 @@ impl<'de> Deserializer<'de> for Reader<'de> {
             Kind::Number(number) => visitor.visit_f64(*number),
             Kind::Text(text) => visitor.visit_borrowed_str(text),
             Kind::List(all) => {
-                let mut rest = Items { rest: all, place: self.place };
+                let mut rest = Items { rest: all };
                 visitor.visit_seq(&mut rest).and_then(|value| {
                     let all_read = rest.rest.is_empty();
                     let too_long = || Error::invalid_length(all.len(), &"fewer elements in array");
                     if all_read { Ok(value) } else { Err(too_long()) }
                 })
             }
-            Kind::Table(all) => visitor.visit_map(Entries { rest: all, place: self.place }),
-        };
-        self.placed(result)
+            Kind::Table(all) => visitor.visit_map(Entries { rest: all }),
+        }
     }
 
     fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
-        let result =
-            if self.node.kind == Kind::Nothing { visitor.visit_none() } else { visitor.visit_some(self) };
-        self.placed(result)
+        if self.node.kind == Kind::Nothing { visitor.visit_none() } else { visitor.visit_some(self) }
     }
 
     fn deserialize_newtype_struct<V: Visitor<'de>>(
@@ -204,7 +322,7 @@ impl<'de> Deserializer<'de> for Reader<'de> {
         _name: &'static str,
         visitor: V,
     ) -> Result<V::Value, Error> {
-        self.placed(visitor.visit_newtype_struct(self))
+        visitor.visit_newtype_struct(self)
     }
 
     fn deserialize_enum<V: Visitor<'de>>(
@@ -213,15 +331,14 @@ impl<'de> Deserializer<'de> for Reader<'de> {
         _variants: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Error> {
-        let result = match &self.node.kind {
+        match &self.node.kind {
             Kind::Text(text) => visitor.visit_enum(BorrowedStrDeserializer::new(text)),
             Kind::Table(all) => {
-                let entries = Entries { rest: all, place: self.place };
+                let entries = Entries { rest: all };
                 visitor.visit_enum(MapAccessDeserializer::new(entries))
             }
             other => Err(Error::invalid_type(other.found(), &"a word, or a table with one")),
-        };
-        self.placed(result)
+        }
     }
 
     serde::forward_to_deserialize_any! {
@@ -232,7 +349,6 @@ impl<'de> Deserializer<'de> for Reader<'de> {
 
 struct Items<'a> {
     rest: &'a [Node],
-    place: &'a Cell<Option<usize>>,
 }
 
 impl<'de> SeqAccess<'de> for &mut Items<'de> {
@@ -241,8 +357,7 @@ impl<'de> SeqAccess<'de> for &mut Items<'de> {
     fn next_element_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<Option<T::Value>, Error> {
         let Some((node, rest)) = self.rest.split_first() else { return Ok(None) };
         self.rest = rest;
-        let reader = Reader { node, place: self.place };
-        reader.placed(seed.deserialize(reader)).map(Some)
+        seed.deserialize(Reader { node }).map(Some)
     }
 
     fn size_hint(&self) -> Option<usize> {
@@ -252,7 +367,6 @@ impl<'de> SeqAccess<'de> for &mut Items<'de> {
 
 struct Entries<'a> {
     rest: &'a [Entry],
-    place: &'a Cell<Option<usize>>,
 }
 
 impl<'de> MapAccess<'de> for Entries<'de> {
@@ -260,11 +374,7 @@ impl<'de> MapAccess<'de> for Entries<'de> {
 
     fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, Error> {
         let Some(entry) = self.rest.first() else { return Ok(None) };
-        let key = seed.deserialize(BorrowedStrDeserializer::new(&entry.key));
-        if key.is_err() {
-            self.place.set(self.place.get().or(Some(entry.at)));
-        }
-        key.map(Some)
+        seed.deserialize(BorrowedStrDeserializer::new(&entry.key)).map(Some)
     }
 
     fn next_value_seed<V: DeserializeSeed<'de>>(&mut self, seed: V) -> Result<V::Value, Error> {
@@ -272,8 +382,6 @@ impl<'de> MapAccess<'de> for Entries<'de> {
             return Err(Error::custom("a value without a key"));
         };
         self.rest = rest;
-        // Some look at a value after it was read: what they say is of this place too.
-        let reader = Reader { node: &entry.node, place: self.place };
-        reader.placed(seed.deserialize(reader))
+        seed.deserialize(Reader { node: &entry.node })
     }
 }

@@ -27,7 +27,8 @@ mod spec;
 
 use base::{Cancelled, Report, Run, Seed};
 use document::PlantEdit;
-use growth::{Grown, GrowthError, Method, Obstacle};
+use glam::DVec3;
+use growth::{Grown, GrowthError, Method, Obstacle, Obstacles};
 use mesh::Model;
 use serde::{Deserialize, Serialize};
 use skin::SkinSpec;
@@ -114,7 +115,7 @@ impl From<GrowthError> for TreeError {
 }
 
 /// The part of a report about growth.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GrowthReport {
     /// `competition`, `colonization`, `self-organizing`, `guided` or `lsystem`.
     pub method: String,
@@ -134,12 +135,16 @@ pub struct GrowthReport {
     pub leaves_placed: u64,
     /// Leaves on the tree.
     pub leaves_kept: u64,
-    /// Branch nodes and leaves in obstacles: 0 unless something is wrong.
-    pub inside_obstacle: u64,
+    /// Vertices of the meshes, wood and leaves alike, that lie more than a millimetre inside an obstacle; none where
+    /// there is no obstacle, or nothing was measured.
+    pub inside_obstacle: Option<u64>,
+    /// How deep the deepest vertex lies inside an obstacle, metres; 0 where none does; none as above.
+    #[serde(default)]
+    pub inside_obstacle_depth_m: Option<f64>,
 }
 
 impl GrowthReport {
-    fn of(spec: &TreeSpec, grown: &Grown) -> Self {
+    fn of(spec: &TreeSpec, grown: &Grown, inside: Option<Inside>) -> Self {
         let t = &grown.tally;
         Self {
             method: method_word(&spec.method).to_owned(),
@@ -151,8 +156,36 @@ impl GrowthReport {
             nodes: grown.skeleton.len() as u64,
             leaves_placed: grown.leaves.placed as u64,
             leaves_kept: grown.leaves.kept as u64,
-            inside_obstacle: (grown.nodes_in_obstacles + grown.leaves_in_obstacles) as u64,
+            inside_obstacle: inside.map(|i| i.vertices),
+            inside_obstacle_depth_m: inside.map(|i| i.depth_m),
         }
+    }
+}
+
+/// What of a model lies inside obstacles.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Inside {
+    /// Deeper than [`TOUCHING_M`].
+    vertices: u64,
+    depth_m: f64,
+}
+
+/// Vertices may lie so deep in what they touch.
+const TOUCHING_M: f64 = 0.001;
+
+impl Inside {
+    /// Looks at every vertex of a model. None without obstacles.
+    fn of(model: &Model, obstacles: &Obstacles) -> Option<Self> {
+        if obstacles.is_empty() {
+            return None;
+        }
+        let mut found = Self::default();
+        for p in model.parts.iter().flat_map(|part| &part.mesh.positions) {
+            let depth = obstacles.depth(DVec3::from_array(p.map(f64::from)));
+            found.vertices += u64::from(depth > TOUCHING_M);
+            found.depth_m = found.depth_m.max(depth);
+        }
+        Some(found)
     }
 }
 
@@ -180,7 +213,7 @@ pub fn method_word(method: &Method) -> &'static str {
 /// use burgeon::{Run, Seed, TreeOptions, TreeSpec, make_tree};
 /// let made = make_tree(&TreeSpec::default(), Seed::new(1), &TreeOptions::default(), &Run::plain())?;
 /// let growth = made.item.growth.ok_or(burgeon::Cancelled)?;
-/// assert_eq!((growth.method.as_str(), growth.cycles, growth.inside_obstacle), ("competition", 2, 0));
+/// assert_eq!((growth.method.as_str(), growth.cycles, growth.inside_obstacle), ("competition", 2, None));
 /// # Ok::<(), burgeon::TreeError>(())
 /// ```
 pub fn make_tree(

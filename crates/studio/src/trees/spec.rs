@@ -33,7 +33,7 @@ pub struct TreeSpec {
     pub roots: Vec<DVec3>,
     /// What they grow around; meshes may be named by `file`. Default nothing.
     pub obstacles: Vec<Obstacle>,
-    /// Distance that joints keep from obstacles, metres, 0 to 1e6, default 0.05.
+    /// Distance that bark keeps from obstacles where there is room, metres, 0 to 1e6, default 0.05; leaves may touch.
     #[schemars(range(min = 0.0, max = 1e6), extend("x-unit" = "m"))]
     pub clearance_m: f64,
     /// The trees as they were after so many rounds, years (self-organising) or rewriting steps (L-systems); default

@@ -1,0 +1,75 @@
+//! What messages say of other people's words: never more than a line's worth.
+
+/// Most characters of a quoted value, and of a whole message.
+const QUOTED: usize = 80;
+const WHOLE: usize = 1500;
+
+/// A value as messages quote it: at most 80 characters, and its end cut off with `...` where it is longer.
+///
+/// ```
+/// assert_eq!(base::quoted("oak"), "oak");
+/// assert_eq!(base::quoted(&"x".repeat(3_000_000)).len(), 80);
+/// ```
+pub fn quoted(text: &str) -> String {
+    cut(text, QUOTED)
+}
+
+/// A message, which may be somebody else's, with everything that it quotes in backticks or double quotes cut as
+/// [`quoted`] does, and itself at most 1,500 characters long. Cost: linear.
+///
+/// ```
+/// let long = format!("unknown field `{}`, expected `age`", "x".repeat(1000));
+/// assert_eq!(base::brief(&long).len(), "unknown field ``, expected `age`".len() + 80);
+/// ```
+pub fn brief(message: &str) -> String {
+    let mut out = String::with_capacity(message.len().min(2 * WHOLE));
+    let mut rest = message;
+    while let Some(start) = rest.find(['`', '"']) {
+        let (before, from) = rest.split_at(start);
+        out.push_str(before);
+        let mark = if from.starts_with('`') { '`' } else { '"' };
+        // Within double quotes a backslash keeps the next character from ending them.
+        let mut escaped = false;
+        let end = from[1..].char_indices().find(|&(_, c)| {
+            let ends = c == mark && !escaped;
+            escaped = mark == '"' && c == '\\' && !escaped;
+            ends
+        });
+        let Some((end, _)) = end else {
+            rest = from;
+            break;
+        };
+        out.push(mark);
+        out.push_str(&quoted(&from[1..=end]));
+        out.push(mark);
+        rest = &from[end + 2..];
+    }
+    out.push_str(rest);
+    cut(&out, WHOLE)
+}
+
+fn cut(text: &str, most: usize) -> String {
+    if text.char_indices().nth(most).is_none() {
+        return text.to_owned();
+    }
+    let end = text.char_indices().nth(most - 3).map_or(text.len(), |(at, _)| at);
+    format!("{}...", &text[..end])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_quotes_are_cut_and_short_ones_stay() {
+        for same in ["", "a `b` c", "\"\"", "it's `a`, not \"b\"", "one ` alone", "\u{e4}`\u{1f339}`"] {
+            assert_eq!(brief(same), same);
+        }
+        let long = "\u{1f339}".repeat(200);
+        let cut = brief(&format!("x `{long}` y \"a\\\"{long}\" z"));
+        assert_eq!(cut.chars().count(), "x `` y \"\" z".len() + 160);
+        assert!(cut.ends_with("...\" z") && cut.contains("...` y"), "{cut}");
+        assert_eq!(brief(&format!("an open `{}", "x".repeat(1 << 20))).len(), WHOLE);
+        assert_eq!(brief(&"`".repeat(1 << 20)).len(), WHOLE);
+    }
+}
