@@ -9,7 +9,8 @@
 use base::{Draw, Run, Seed, ops};
 use burgeon::Clock as _;
 use burgeon::glam::DVec3;
-use burgeon::{ScanSpec, make_leaf_from_scan};
+use burgeon::leaf::ScanSpec;
+use burgeon::make_leaf_from_scan;
 use burgeon_bench::{Stopwatch, TwoThreads};
 
 /// A blade of 60 mm x 36 mm with a stalk of 40 mm: 93 of 100 points on the blade, 6 on the stalk, 1 anywhere.

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use burgeon::formats::{CloudFormat, PngCache, read_cloud};
+use burgeon::formats::{CloudFormat, ExportSpec, PngCache};
 use burgeon::glam::DVec3;
 use burgeon::growth::{
     ColonizeSpec, CompetitionSpec, Envelope, GuidedSpec, Method, OAK_RULES, Obstacle, SelfOrganizingSpec,
@@ -11,7 +11,7 @@ use burgeon::mesh::Model;
 use burgeon::skin::SkinSpec;
 use burgeon::{
     ItemReport, LeafTemplate, MadeTree, NamedMesh, Preset, Report, RunReport, Seed, TreeError, TreeOptions,
-    TreeSpec, make_tree, method_word, read_tree_spec,
+    TreeSpec, Unit, make_tree, method_word, read_tree_spec,
 };
 use clap::{Args, ValueEnum};
 
@@ -19,6 +19,7 @@ use crate::args::{AxesArgs, CommonArgs, PictureArgs, ranged, seed};
 use crate::failure::{Failure, Outcome};
 use crate::files::PlantFormat;
 use crate::machine::Machine;
+use crate::origin::Origin;
 use crate::{files, output, picture, report, say};
 
 #[derive(Args, Debug)]
@@ -93,7 +94,8 @@ pub(crate) struct PointsArgs {
     /// Attraction points (.xyz, .txt, .ply, .pcd, .las, .obj) instead of an envelope: space colonization of just these.
     #[arg(long, value_name = "FILE", conflicts_with = "method")]
     pub(crate) attractors: Option<PathBuf>,
-    /// Where the tree stands, metres; may be given several times [default: the preset's, mostly 0,0,0].
+    /// Where the tree stands, metres; may be given several times; with --attractors far from the origin (UTM) in their
+    /// coordinates [default: the preset's, mostly 0,0,0].
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = point)]
     pub(crate) root: Vec<DVec3>,
     /// Length D of a step, metres, above 0 [default: half of --kill].
@@ -159,10 +161,10 @@ impl MethodWord {
 fn point(text: &str) -> Result<DVec3, String> {
     let numbers: Vec<f64> = text.split(',').filter_map(|w| w.trim().parse().ok()).collect();
     match numbers.as_slice() {
-        &[x, y, z] if text.split(',').count() == 3 && [x, y, z].iter().all(|c| c.abs() <= 1e6) => {
+        &[x, y, z] if text.split(',').count() == 3 && [x, y, z].iter().all(|c| c.abs() <= 1e8) => {
             Ok(DVec3::new(x, y, z))
         }
-        _ => Err("give three numbers within 1e6 such as 0,0,1.5".into()),
+        _ => Err("give three numbers within 1e8 such as 0,0,1.5".into()),
     }
 }
 
@@ -186,7 +188,8 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
         picture::check_name(png)?;
     }
     let mut told = Report::default();
-    let (spec, read_ms) = machine.timed(|| asked(args, &mut told));
+    let mut origin = Origin::default();
+    let (spec, read_ms) = machine.timed(|| asked(args, &mut origin, &mut told));
     let mut spec = spec?;
     let leaf = leaf_of(args, &mut spec, &machine)?;
     let seed = Seed::new(args.seed);
@@ -203,7 +206,8 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
         ..TreeOptions::default()
     };
     let made = machine.with_progress("grow", |_| make_tree(&spec, seed, &options, &machine.run()));
-    let MadeTree { grown, model, lods, mut item } = made.map_err(|e| failure(args, e))?;
+    let MadeTree { grown, mut model, mut lods, mut item } = made.map_err(|e| failure(args, e))?;
+    lods.iter_mut().chain([&mut model]).for_each(|m| m.offset_m = origin.offset_m);
     machine.cancel.check()?;
     item.warnings.splice(0..0, told.warnings.iter().map(ToString::to_string));
     item.timings_ms.add_io(read_ms, 0.0);
@@ -242,6 +246,7 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     }
     let mut run = RunReport::new("grow", args.seed);
     run.input.path = named(args);
+    run.input.offset_m = origin.told(&files::axes(args.axes.up, args.axes.unit));
     if !machine.quiet {
         for item in &items {
             item.warnings.iter().for_each(|w| say::warning(&format!("{}: {w}", item.name)));
@@ -290,7 +295,7 @@ pub(crate) fn failure(args: &GrowArgs, error: TreeError) -> Failure {
 }
 
 /// The spec as the options make it.
-fn asked(args: &GrowArgs, told: &mut Report) -> Outcome<TreeSpec> {
+fn asked(args: &GrowArgs, origin: &mut Origin, told: &mut Report) -> Outcome<TreeSpec> {
     let mut spec = match &args.what {
         Some(what) => read_spec(what, told)?,
         None => TreeSpec::default(),
@@ -303,7 +308,7 @@ fn asked(args: &GrowArgs, told: &mut Report) -> Outcome<TreeSpec> {
         spec.name = format!("{} by {}", spec.name, method.word());
     }
     if let Some(path) = &args.points.attractors {
-        let points = read_points(path, args, told)?;
+        let points = read_points(path, args, origin, told)?;
         if args.what.is_none() {
             spec.name = files::stem(path);
         }
@@ -312,6 +317,16 @@ fn asked(args: &GrowArgs, told: &mut Report) -> Outcome<TreeSpec> {
     distances(&args.points, &mut spec.method)?;
     if !args.points.root.is_empty() {
         spec.roots.clone_from(&args.points.root);
+    }
+    if origin.offset_m.is_some() {
+        if args.points.root.is_empty() {
+            return Err(Failure::Bad(
+                "the points lie far from the origin: say with --root X,Y,Z, in their coordinates, where the tree stands"
+                    .into(),
+            ));
+        }
+        let metres = ExportSpec { unit: Unit::Metre, ..files::axes(args.axes.up, args.axes.unit) };
+        spec.roots.iter_mut().for_each(|r| *r = origin.place(metres.from_file(*r)));
     }
     for path in &args.growth.obstacle {
         let axes = files::axes(args.axes.up, args.axes.unit);
@@ -367,12 +382,12 @@ pub(crate) fn read_spec(what: &Path, told: &mut Report) -> Outcome<TreeSpec> {
 /// A mesh or cloud that a spec names, beside the spec or by its full path. In metres, +Y up.
 fn named_mesh(spec: &Path, name: &str, warnings: &mut Vec<burgeon::Warning>) -> Option<NamedMesh> {
     let path = spec.parent().unwrap_or_else(|| Path::new("")).join(name);
-    let axes = burgeon::formats::ExportSpec::default();
+    let axes = ExportSpec::default();
     if let Some(format @ (CloudFormat::Xyz | CloudFormat::Pcd | CloudFormat::Las)) =
         files::extension(&path).and_then(CloudFormat::from_extension)
     {
         let mut report = Report::default();
-        let cloud = read_cloud(std::fs::File::open(&path).ok()?, format, &axes, &mut report).ok()?;
+        let cloud = files::read_cloud(&path, format, &axes, &mut report).ok()?;
         warnings.extend(report.warnings);
         return Some((cloud.points, Vec::new()));
     }
@@ -392,15 +407,15 @@ fn soup(model: &Model) -> NamedMesh {
     (vertices, triangles)
 }
 
-fn read_points(path: &Path, args: &GrowArgs, told: &mut Report) -> Outcome<Vec<DVec3>> {
+fn read_points(path: &Path, args: &GrowArgs, origin: &mut Origin, told: &mut Report) -> Outcome<Vec<DVec3>> {
     let format = files::extension(path).and_then(CloudFormat::from_extension);
     let format = format.ok_or_else(|| {
         Failure::at(path, "is not named as points; end the name with .xyz, .txt, .ply, .pcd, .las or .obj")
     })?;
     let axes = files::axes(args.axes.up, args.axes.unit);
-    let file = std::fs::File::open(path).map_err(|e| Failure::io(path, "read", &e))?;
-    let cloud = read_cloud(file, format, &axes, told).map_err(|e| Failure::at(path, e))?;
-    Ok(cloud.points)
+    let mut points = files::read_cloud(path, format, &axes, told)?.points;
+    origin.bring(&mut points, &axes, told);
+    Ok(points)
 }
 
 fn envelope_of(method: &Method) -> Option<&Envelope> {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use burgeon::formats::{
-    CloudFormat, ExportSpec, MarksAxes, PngCache, ReadMarks, is_rays, marks_template, read_cloud, read_marks,
+    CloudFormat, ExportSpec, MarksAxes, PngCache, ReadMarks, is_rays, marks_template, read_marks,
     read_picture, read_rays, read_vein_graph, write_marks, write_rays,
 };
 use burgeon::geom::RingRule;
@@ -21,6 +21,7 @@ use clap::{Args, ValueEnum};
 use crate::args::{AxesArgs, CommonArgs, PictureArgs, UnitWord, UpWord, ranged};
 use crate::failure::{Failure, Outcome};
 use crate::machine::Machine;
+use crate::origin::Origin;
 use crate::{files, output, picture, report, say};
 
 #[derive(Args, Debug)]
@@ -277,7 +278,7 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
     if let Some(png) = &args.png {
         picture::check_name(png)?;
     }
-    let Product { model, mut item, marks } =
+    let Product { model, mut item, marks, offset_m } =
         if args.scan { scan(args, &machine)? } else { make(args, &machine)? };
     machine.cancel.check()?;
     if let Some(path) = &args.marks {
@@ -304,6 +305,7 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
         picture::write(png, &drawn)?;
     }
     let mut run = RunReport::new("leaf", args.seed);
+    run.input.offset_m = offset_m;
     run.input.path = args.inputs.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(", ");
     if !machine.quiet {
         item.warnings.iter().for_each(|w| say::warning(&format!("{}: {w}", run.input.path)));
@@ -398,6 +400,8 @@ struct Product {
     model: Model,
     item: ItemReport,
     marks: Option<Measured>,
+    /// What was taken off a scan's coordinates.
+    offset_m: Option<[f64; 3]>,
 }
 
 /// What `--marks` writes.
@@ -417,9 +421,8 @@ fn scan(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
     })?;
     let mut report = Report::default();
     let axes = files::axes(args.axes.up, args.axes.unit);
-    let file = std::fs::File::open(path).map_err(|e| Failure::io(path, "read", &e))?;
-    let (cloud, read_ms) = machine.timed(|| read_cloud(file, format, &axes, &mut report));
-    let mut points = cloud.map_err(|e| Failure::at(path, e))?.points;
+    let (cloud, read_ms) = machine.timed(|| files::read_cloud(path, format, &axes, &mut report));
+    let mut points = cloud?.points;
     let first = points.first().copied().unwrap_or_default();
     let size = points.iter().fold([first; 2], |[a, b], &p| [a.min(p), b.max(p)]);
     // 10 m: no leaf is longer, and scanners of leaves write millimetres.
@@ -430,14 +433,18 @@ fn scan(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
             "the cloud is more than 10 m wide: it was taken for millimetres; say --unit mm",
         );
     }
+    let mut origin = Origin::default();
+    origin.bring(&mut points, &axes, &mut report);
     let made = machine.with_progress("scan", |_| {
         let (name, spec) = (files::stem(path), ScanSpec::default());
         burgeon::make_leaf_from_scan(&name, &points, &spec, &machine.run())
     });
-    let (model, mut item, found) = made.map_err(|e| failure(args, e))?;
+    let (mut model, mut item, found) = made.map_err(|e| failure(args, e))?;
+    model.offset_m = origin.offset_m;
     item.warnings.splice(0..0, report.warnings.iter().map(ToString::to_string));
     item.timings_ms.add_io(read_ms, 0.0);
-    Ok(Product { model, item, marks: Some(Measured::Rows(found.marks)) })
+    let offset_m = origin.told(&axes);
+    Ok(Product { model, item, marks: Some(Measured::Rows(found.marks)), offset_m })
 }
 
 fn make(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
@@ -483,7 +490,7 @@ fn make(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
         (made.model, made.item, Some(Measured::Rows(made.marks.to_marks())))
     };
     item.timings_ms.add_io(read_ms, 0.0);
-    Ok(Product { model, item, marks })
+    Ok(Product { model, item, marks, offset_m: None })
 }
 
 /// A leaf of chief veins, made from numbers or digitised; `None` if the input is something else.
@@ -541,7 +548,7 @@ fn rays(args: &LeafArgs, machine: &Machine) -> Outcome<Option<Product>> {
     let (model, mut item) = made.map_err(|e| failure(args, e))?;
     item.warnings.splice(0..0, warnings);
     item.timings_ms.add_io(read_ms, 0.0);
-    Ok(Some(Product { model, item, marks: Some(Measured::Rays(rays)) }))
+    Ok(Some(Product { model, item, marks: Some(Measured::Rays(rays)), offset_m: None }))
 }
 
 fn is_graph(path: &Path) -> bool {

@@ -1,6 +1,7 @@
 //! Units and up axes at the border: inside everything is metres, +Y up.
 
 use base::{Unit, UpAxis};
+use glam::DVec3;
 use mesh::Model;
 
 /// Unit and up axis of a file whose format does not fix them (OBJ, PLY, STL, USD).
@@ -49,6 +50,26 @@ impl ExportSpec {
             UpAxis::Y => n,
             UpAxis::Z => [n[0], -n[2], n[1]],
         }
+    }
+
+    /// A place or offset in metres, +Y up, as the file has it.
+    pub fn place(&self, p: DVec3) -> [f64; 3] {
+        let p = if self.up == UpAxis::Z { DVec3::new(p.x, -p.z, p.y) } else { p };
+        (p * (1.0 / self.unit.metres())).to_array()
+    }
+
+    /// [`ExportSpec::place`] backwards: what the file has, in metres, +Y up.
+    pub fn from_file(&self, p: DVec3) -> DVec3 {
+        let p = if self.up == UpAxis::Z { DVec3::new(p.x, p.z, -p.y) } else { p };
+        if self.unit == Unit::Metre { p } else { p * self.unit.metres() }
+    }
+
+    /// A line on what was taken off all positions, in the unit and axes of the file; empty where nothing was.
+    pub(crate) fn offset_line(&self, offset_m: Option<DVec3>, mark: &str) -> String {
+        offset_m.map_or(String::new(), |o| {
+            let [x, y, z] = self.place(o);
+            format!("{mark} offset {x} {y} {z}\n")
+        })
     }
 
     /// Turns what was read into metres, +Y up.
