@@ -5,7 +5,7 @@ run.
     python bench/peers_bloom.py            # builds `cargo bench -p burgeon-bench --bench bloom` first
     python bench/peers_bloom.py FILE       # takes the built benchmark target/release/deps/bloom-...
 
-    python bench/peers_bloom.py --compare  # nearest points only
+    python bench/peers_bloom.py --compare  # nearest points only; takes a built example peer_compare, too
 
 Without the build it ends in two minutes. Prints tables: the least and the median time of each, and how many times as
 long as ours the peer takes (of the least times, which other work on the machine disturbs least). Ours run before and
@@ -124,19 +124,21 @@ def sheet(points, seed):
     return np.stack([x, 0.005 * np.sin(60 * x) + 0.0002 * rng.normal(size=points), y], 1)
 
 
-def compare():
+def example(name):
+    """An example of ours as cargo builds it."""
+    root = Path(__file__).parent.parent
+    build = ["cargo", "build", "--release", "-q", "-p", "burgeon-bench", "--example", name]
+    subprocess.run(build, cwd=root, check=True)
+    told = ["cargo", "metadata", "--no-deps", "--format-version", "1"]
+    target = json.loads(subprocess.run(told, cwd=root, capture_output=True, check=True).stdout)["target_directory"]
+    return Path(target) / "release" / "examples" / name
+
+
+def compare(program=None):
     """Distances of two clouds, both ways: ours with its trees, scipy's queries alone and with its trees."""
     from scipy.spatial import cKDTree
 
-    command = ["cargo", "build", "--release", "-q", "-p", "burgeon-bench", "--example", "peer_compare"]
-    root = Path(__file__).parent.parent
-    subprocess.run(command, cwd=root, check=True)
-    target = json.loads(
-        subprocess.run(
-            ["cargo", "metadata", "--no-deps", "--format-version", "1"], cwd=root, capture_output=True, check=True
-        ).stdout
-    )["target_directory"]
-    program = Path(target) / "release/examples/peer_compare"
+    program = program or example("peer_compare")
     print("| points, both ways | ours, 2 threads, ms | ours, 1 thread | cKDTree.query, 1 thread | with its trees |")
     print("|---|---|---|---|---|")
     for points in (200_000, 1_000_000):
@@ -162,8 +164,8 @@ def compare():
 
 
 def main():
-    if sys.argv[1:] == ["--compare"]:
-        return compare()
+    if sys.argv[1:2] == ["--compare"]:
+        return compare(*sys.argv[2:3])
     bench = sys.argv[1] if len(sys.argv) > 1 else built()
     before = ours(bench)
     theirs = {}

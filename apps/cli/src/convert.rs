@@ -28,7 +28,7 @@ pub(crate) fn convert(args: &ConvertArgs) -> Outcome {
     }
     let (input, kind) = files::open(&args.input)?;
     let to_drawing = files::extension(&args.output).is_some_and(|e| e.eq_ignore_ascii_case("json"));
-    let item = match (kind, to_drawing) {
+    let mut item = match (kind, to_drawing) {
         (Kind::Drawing(format), true) => drawing(args, input, format, &machine)?,
         (Kind::Project, true) => project(args, input, &machine)?,
         (Kind::Model(_), false) => model(args, input, kind, &machine)?,
@@ -51,6 +51,7 @@ pub(crate) fn convert(args: &ConvertArgs) -> Outcome {
             ));
         }
     };
+    item.timings_ms.total = machine.whole_ms();
     if !machine.quiet {
         item.warnings.iter().for_each(|w| say::warning(&format!("{}: {w}", args.input.display())));
         let what = match kind {
@@ -145,6 +146,7 @@ fn points(args: &ConvertArgs, read: Read, machine: &Machine) -> Outcome {
         picture::write(png, &drawn)?;
     }
     item.timings_ms.add_io(read.ms, write_ms);
+    item.timings_ms.total = machine.whole_ms();
     item.warnings = warnings;
     if !machine.quiet {
         item.warnings.iter().for_each(|w| say::warning(&format!("{}: {w}", args.input.display())));

@@ -244,6 +244,7 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
             machine.with_progress("picture", |_| burgeon::render::render(&shown, &view, &machine.run()))?;
         picture::write(png, &drawn)?;
     }
+    items[0].timings_ms.total = machine.whole_ms();
     let mut run = RunReport::new("grow", args.seed);
     run.input.path = named(args);
     run.input.offset_m = origin.told(&files::axes(args.axes.up, args.axes.unit));

@@ -304,6 +304,7 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
             machine.with_progress("picture", |_| burgeon::render::render(&model, &spec, &machine.run()))?;
         picture::write(png, &drawn)?;
     }
+    item.timings_ms.total = machine.whole_ms();
     let mut run = RunReport::new("leaf", args.seed);
     run.input.offset_m = offset_m;
     run.input.path = args.inputs.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(", ");

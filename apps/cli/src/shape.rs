@@ -125,8 +125,10 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
         let all = all.chain(lods.iter().zip(1..).map(|(m, level)| (m, grow::beside(path, level))));
         for (model, path) in all {
             machine.cancel.check()?;
-            let written = files::write_plant(&path, (&plant, model), format, &args.axes, &mut cache)?;
-            item.warnings.extend(written.iter().map(ToString::to_string));
+            let (written, write_ms) =
+                machine.timed(|| files::write_plant(&path, (&plant, model), format, &args.axes, &mut cache));
+            item.warnings.extend(written?.iter().map(ToString::to_string));
+            item.timings_ms.add_io(0.0, write_ms);
         }
         item.output = path.display().to_string();
     }
@@ -136,6 +138,7 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
             machine.with_progress("picture", |_| burgeon::render::render(&model, &spec, &machine.run()))?;
         picture::write(png, &drawn)?;
     }
+    item.timings_ms.total = machine.whole_ms();
     let mut run = RunReport::new("shape", seed.number());
     run.input.path = what.display().to_string();
     run.ok = 1;

@@ -151,10 +151,11 @@ impl<'a> Job<'a> {
         };
         let mut cache = PngCache::new();
         let item = self.make(&read, &target, read_ms, &mut cache, machine, &machine.run());
-        let item = item.map_err(|failure| match failure {
+        let mut item = item.map_err(|failure| match failure {
             Failure::Bad(line) if !line.starts_with(&input.display().to_string()) => Failure::at(input, line),
             other => other,
         })?;
+        item.timings_ms.total = machine.whole_ms();
         report.ok = 1;
         self.warn_of_unused(&mut report);
         if !machine.quiet {
@@ -185,6 +186,7 @@ impl<'a> Job<'a> {
         machine: &Machine,
         run: &Run<'_>,
     ) -> Outcome<ItemReport> {
+        let start = machine.whole_ms();
         let Input { read, project } = input;
         let seed = self.seed(project.as_deref());
         let made = make_from_sketch(&read.drawing, &self.options(input), seed, run);
@@ -213,6 +215,7 @@ impl<'a> Job<'a> {
             let drawn = burgeon::render::render(&model, &self.args.picture.spec(seed.number()), run)?;
             picture::write(png, &drawn)?;
         }
+        item.timings_ms.total = read_ms + machine.whole_ms() - start;
         Ok(item)
     }
 

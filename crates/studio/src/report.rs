@@ -163,7 +163,8 @@ pub struct TimingsMs {
     pub mesh: f64,
     /// Writing the model.
     pub write: f64,
-    /// Sum of the above, without process start.
+    /// From the command's start to its last file but the report: reading, computing, pictures and writing. Of a batch:
+    /// from the drawing's reading to its last file.
     pub total: f64,
 }
 
