@@ -1,16 +1,21 @@
-"""Times free-form deformation, logistic fits and surfaces beside NumPy, scipy, geomdl and splipy, in one run.
+"""Times free-form deformation, logistic fits, surfaces and nearest points beside NumPy, scipy, geomdl and splipy, in one
+run.
 
     pip install numpy scipy geomdl splipy
     python bench/peers_bloom.py            # builds `cargo bench -p burgeon-bench --bench bloom` first
     python bench/peers_bloom.py FILE       # takes the built benchmark target/release/deps/bloom-...
 
-Without the build it ends in half a minute. Prints a table: the least and the median time of each, and how many times as
+    python bench/peers_bloom.py --compare  # nearest points only; takes a built example peer_compare, too
+
+Without the build it ends in two minutes. Prints tables: the least and the median time of each, and how many times as
 long as ours the peer takes (of the least times, which other work on the machine disturbs least). Ours run before and
 after the peers, the lesser counts."""
 
+import json
 import re
 import subprocess
 import sys
+import tempfile
 import time
 from math import comb
 from pathlib import Path
@@ -112,7 +117,55 @@ def ours(bench):
     return found
 
 
+def sheet(points, seed):
+    """A wavy sheet of 10 cm with noise, as a scan of a leaf is."""
+    rng = np.random.default_rng(seed)
+    x, y = rng.random((2, points)) * 0.1
+    return np.stack([x, 0.005 * np.sin(60 * x) + 0.0002 * rng.normal(size=points), y], 1)
+
+
+def example(name):
+    """An example of ours as cargo builds it."""
+    root = Path(__file__).parent.parent
+    build = ["cargo", "build", "--release", "-q", "-p", "burgeon-bench", "--example", name]
+    subprocess.run(build, cwd=root, check=True)
+    told = ["cargo", "metadata", "--no-deps", "--format-version", "1"]
+    target = json.loads(subprocess.run(told, cwd=root, capture_output=True, check=True).stdout)["target_directory"]
+    return Path(target) / "release" / "examples" / name
+
+
+def compare(program=None):
+    """Distances of two clouds, both ways: ours with its trees, scipy's queries alone and with its trees."""
+    from scipy.spatial import cKDTree
+
+    program = program or example("peer_compare")
+    print("| points, both ways | ours, 2 threads, ms | ours, 1 thread | cKDTree.query, 1 thread | with its trees |")
+    print("|---|---|---|---|---|")
+    for points in (200_000, 1_000_000):
+        for name, scale, shift in (("one on the other", 1, 0), ("2 m apart", 1, 2), ("a hundredth as large, 2 m apart", 0.01, 2)):
+            a, b = sheet(points, 1), sheet(points, 2) * scale + [shift, 0, 0]
+            with tempfile.TemporaryDirectory() as folder:
+                files = [Path(folder) / n for n in "ab"]
+                for file, cloud in zip(files, (a, b)):
+                    file.write_bytes(cloud.astype("<f8").tobytes())
+                told = subprocess.run([program, *files], capture_output=True, text=True, check=True).stdout
+            mine = json.loads(told)
+            start = time.perf_counter()
+            trees = cKDTree(a), cKDTree(b)
+            built = time.perf_counter()
+            there, back = trees[1].query(a)[0], trees[0].query(b)[0]
+            end = time.perf_counter()
+            for own, peer in ((mine["mean"], there.mean()), (mine["back_mean"], back.mean())):
+                assert abs(own - peer) <= 1e-9 * peer, (own, peer)
+            print(
+                f"| {points:,}, {name} | {mine['two_threads_ms']:.0f} | {mine['one_thread_ms']:.0f} "
+                f"| {(end - built) * 1e3:.0f} | {(end - start) * 1e3:.0f} |"
+            )
+
+
 def main():
+    if sys.argv[1:2] == ["--compare"]:
+        return compare(*sys.argv[2:3])
     bench = sys.argv[1] if len(sys.argv) > 1 else built()
     before = ours(bench)
     theirs = {}
@@ -137,6 +190,8 @@ def main():
         low, median = theirs[name] if peer else own[key]
         ratio = f"{low / own[key][0]:.1f}" if peer else ""
         print(f"| {name} | {low:.4g} | {median:.4g} | {ratio} |")
+    print()
+    compare()
 
 
 if __name__ == "__main__":

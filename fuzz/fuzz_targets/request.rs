@@ -4,7 +4,7 @@
 #[path = "../../apps/cli/src/studio/request.rs"]
 mod request;
 
-use request::{Asked, Target, asked};
+use request::{Target, asked};
 
 libfuzzer_sys::fuzz_target!(|head: &[u8]| {
     let hosts = ["127.0.0.1:7734", "localhost:7734"].map(String::from);
@@ -12,7 +12,7 @@ libfuzzer_sys::fuzz_target!(|head: &[u8]| {
     let begun = [b"GET /index.html HTTP/1.1\r\nHost: 127.0.0.1:7734\r\n", head].concat();
     let target = [b"GET /", head, b" HTTP/1.1\r\nHost: 127.0.0.1:7734"].concat();
     for head in [head, &begun, &target] {
-        let Ok(Asked { target, .. }) = asked(head, &hosts) else { continue };
+        let Ok(target) = asked(head, &hosts) else { continue };
         let text = String::from_utf8(head.to_vec()).expect("text").to_ascii_lowercase();
         let given = |name: &str| -> Vec<String> {
             let of = text.split("\r\n").skip(1).filter_map(|l| l.strip_prefix(name)?.strip_prefix(':'));

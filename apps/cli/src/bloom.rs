@@ -308,10 +308,11 @@ fn fit(args: &FitArgs) -> Outcome {
     });
     written?;
     let mut run = head("bloom fit", args.seed, &args.input.display().to_string(), &law.name, &args.output);
+    run.input.offset_m = loaded.origin.told(&loaded.axes);
     if let Some(item) = run.items.first_mut() {
         item.timings_ms.structure = fit_ms;
-        item.timings_ms.total = fit_ms;
         item.timings_ms.add_io(read_ms, write_ms);
+        item.timings_ms.total = machine.whole_ms();
         item.warnings.clone_from(&loaded.warnings);
     }
     let laws = law.laws.iter().map(|l| LawReport {
@@ -463,9 +464,7 @@ fn run(args: &BloomRunArgs) -> Outcome {
     let mut error = None;
     if let (Some(scan), Some(day)) = (&args.compare, args.day) {
         // As the stages are: their file may say unit and up axis.
-        let (measured, warnings) =
-            stages::read_points(scan, &loaded.axes, options.clean, Seed::new(args.seed), &machine)?;
-        loaded.warnings.extend(warnings);
+        let measured = stages::read_points(scan, &mut loaded, options.clean, Seed::new(args.seed), &machine)?;
         let shape = motion.at(day - first_day, &compute).map_err(bad(scan))?;
         let e = ErrorReport::from(bloom::compare(&measured, &shape, &compute).map_err(bad(scan))?);
         if e.mean_mm.max(e.back_mean_mm) > 500.0 * extent(&shape) {
@@ -482,12 +481,14 @@ fn run(args: &BloomRunArgs) -> Outcome {
         best: last_day,
         shape: Box::new(|day| {
             let points = motion.at(day - first_day, &compute).map_err(bad(start))?;
-            Ok((burgeon::motion_model(&loaded.name, loaded.mesh.as_ref(), &motion, &points), None))
+            let model = burgeon::motion_model(&loaded.name, loaded.mesh.as_ref(), &motion, &points);
+            Ok((Model { offset_m: loaded.origin.offset_m, ..model }, None))
         }),
     };
     let (written, write_ms) = machine.timed(|| write_show(args, &show, &axes, &mut outputs, &machine));
     let written = written?;
     let mut head = head("bloom run", args.seed, &args.start, &loaded.name, &args.output);
+    head.input.offset_m = loaded.origin.told(&loaded.axes);
     head.items[0].warnings.clone_from(&loaded.warnings);
     let residuals = motion.residuals.iter().map(|(organ, from, to, e)| ResidualReport {
         organ: organ.clone(),
@@ -529,8 +530,8 @@ fn tell(
     item.counts.triangles = written.triangles;
     item.digest = written.digest;
     item.timings_ms.structure = told.times[1];
-    item.timings_ms.total = told.times[1];
     item.timings_ms.add_io(told.times[0], told.times[2]);
+    item.timings_ms.total = machine.whole_ms();
     let report = MotionReport {
         run: told.head,
         frames: written.frames,
@@ -829,7 +830,7 @@ fn write_one(outputs: &mut Outputs, path: &Path, model: &Model, axes: &ExportSpe
     let bare = model.parts.iter().all(|p| p.mesh.triangles.is_empty());
     let format: ModelFormat = files::writable(path)?;
     if bare && format == ModelFormat::Ply {
-        let mut cloud = PointCloud::default();
+        let mut cloud = PointCloud { offset_m: model.offset_m, ..PointCloud::default() };
         for part in &model.parts {
             let color = model.material(part).base_color;
             for p in &part.mesh.positions {
@@ -840,19 +841,13 @@ fn write_one(outputs: &mut Outputs, path: &Path, model: &Model, axes: &ExportSpe
         }
         return outputs.write("-o", path, |out| write_cloud_ply(&cloud, axes, out));
     }
-    if bare && matches!(format, ModelFormat::Stl) {
-        return Err(Failure::at(
-            path,
-            "a cloud of points has no triangles for STL; choose .ply, .obj or .glb",
-        ));
-    }
     // --unit and --up were those of the scans: a GLB in metres with +Y up is no surprise.
     let axes = if format == ModelFormat::Glb { &ExportSpec::default() } else { axes };
     files::write_model(outputs, Goal::new("-o", path), model, format, axes, &mut PngCache::new()).map(drop)
 }
 
 /// Points are drawn as small tetrahedra.
-fn with_dots(mut model: Model) -> Model {
+pub(crate) fn with_dots(mut model: Model) -> Model {
     let size = model.bounds().size().max_element() * 0.0022;
     for part in model.parts.iter_mut().filter(|p| p.mesh.triangles.is_empty()) {
         // More than 40,000 dots show nothing more.

@@ -1,12 +1,18 @@
 //! `burgeon convert`: models to models, drawings to drawings.
 
-use burgeon::formats::{DrawingFormat, PngCache, ReadDrawing, read_drawings, write_drawing};
-use burgeon::{ItemReport, RunReport};
+use burgeon::formats::{
+    CloudFormat, DrawingFormat, ExportSpec, ModelFormat, PngCache, ReadDrawing, read_drawings,
+    write_cloud_ply, write_drawing,
+};
+use burgeon::mesh::PointCloud;
+use burgeon::{ItemReport, Report, RunReport};
 
 use crate::args::ConvertArgs;
+use crate::bloom::with_dots;
 use crate::failure::{Failure, Outcome};
 use crate::files::{self, Goal, Kind};
 use crate::machine::Machine;
+use crate::origin::Origin;
 use crate::output::Outputs;
 use crate::{picture, report, say};
 
@@ -18,10 +24,13 @@ pub(crate) fn convert(args: &ConvertArgs) -> Outcome {
     if let Some(png) = &args.png {
         picture::check_name(png)?;
     }
+    if let Some(cloud) = far_or_bare(args, &machine)? {
+        return points(args, cloud, outputs, &machine);
+    }
     let (input, kind) = files::open(&args.input)?;
     check_used(args, kind)?;
     let to_drawing = files::extension(&args.output).is_some_and(|e| e.eq_ignore_ascii_case("json"));
-    let item = match (kind, to_drawing) {
+    let mut item = match (kind, to_drawing) {
         (Kind::Drawing(format), true) => drawing(args, input, format, &mut outputs, &machine)?,
         (Kind::Project, true) => project(args, input, &mut outputs, &machine)?,
         (Kind::Model(_), false) => model(args, input, kind, &mut outputs, &machine)?,
@@ -44,6 +53,7 @@ pub(crate) fn convert(args: &ConvertArgs) -> Outcome {
             ));
         }
     };
+    item.timings_ms.total = machine.whole_ms();
     let mut run = RunReport::new("convert", args.seed);
     run.input.path = args.input.display().to_string();
     run.input.drawings = u64::from(to_drawing);
@@ -125,6 +135,82 @@ fn check_used(args: &ConvertArgs, kind: Kind) -> Outcome {
         "glTF is in metres, +Y up",
     )?;
     given.check_axes(written || !read.fixed_axes())
+}
+
+/// A cloud, with what its reader says, where its origin is and how long reading took.
+struct Read {
+    cloud: PointCloud,
+    warnings: Vec<String>,
+    origin: Origin,
+    axes: ExportSpec,
+    ms: f64,
+}
+
+/// The points of a file that is read as a scan: of a format that holds nothing else, or so far from their origin that
+/// they need double precision.
+fn far_or_bare(args: &ConvertArgs, machine: &Machine) -> Outcome<Option<Read>> {
+    let path = &args.input;
+    let Some(format) = files::extension(path).and_then(CloudFormat::from_extension) else { return Ok(None) };
+    let only = !matches!(format, CloudFormat::Ply | CloudFormat::Obj);
+    if !path.is_file() || (!only && files::has_faces(path)) {
+        return Ok(None);
+    }
+    let axes = files::axes(args.in_up.or(args.axes.up), args.in_unit.unwrap_or(args.axes.unit));
+    let mut report = Report::default();
+    let (cloud, ms) = machine.timed(|| files::read_cloud(path, format, &axes, &mut report));
+    let mut cloud = match cloud {
+        Ok(cloud) => cloud,
+        Err(e) if only => return Err(e),
+        // The reader of models says what is wrong.
+        Err(_) => return Ok(None),
+    };
+    let mut origin = Origin::default();
+    origin.bring(&mut cloud.points, &axes, &mut report);
+    cloud.offset_m = origin.offset_m;
+    let warnings = report.warnings.iter().map(ToString::to_string).collect();
+    Ok((only || origin.offset_m.is_some()).then_some(Read { cloud, warnings, origin, axes, ms }))
+}
+
+/// Converts a cloud: to PLY in double precision.
+fn points(args: &ConvertArgs, read: Read, mut outputs: Outputs, machine: &Machine) -> Outcome {
+    let format = files::writable(&args.output)?;
+    let axes = files::axes(args.axes.up, args.axes.unit);
+    let model = burgeon::cloud_model(&files::stem(&args.input), &read.cloud);
+    let mut warnings = read.warnings;
+    let (written, write_ms) = machine.timed(|| match format {
+        ModelFormat::Ply => {
+            outputs.write("-o", &args.output, |out| write_cloud_ply(&read.cloud, &axes, out)).map(|()| vec![])
+        }
+        _ => {
+            let goal = Goal::new("-o", &args.output);
+            files::write_model(&mut outputs, goal, &model, format, &axes, &mut PngCache::new())
+        }
+    });
+    warnings.extend(written?.iter().map(ToString::to_string));
+    let mut item = picture::model_item(&model, &args.output, &[]);
+    if let Some(png) = &args.png {
+        let spec = args.picture.spec(args.seed);
+        let model = with_dots(model);
+        let drawn =
+            machine.with_progress("picture", |_| burgeon::render::render(&model, &spec, &machine.run()))?;
+        picture::write(&mut outputs, "--png", png, &drawn)?;
+    }
+    item.timings_ms.add_io(read.ms, write_ms);
+    item.timings_ms.total = machine.whole_ms();
+    item.warnings = warnings;
+    let mut run = RunReport::new("convert", args.seed);
+    run.input.path = args.input.display().to_string();
+    run.input.offset_m = read.origin.told(&read.axes);
+    run.items.push(item);
+    run.ok = 1;
+    report::finish(&run, &args.common, outputs)?;
+    if !machine.quiet {
+        let item = &run.items[0];
+        item.warnings.iter().for_each(|w| say::warning(&format!("{}: {w}", args.input.display())));
+        let count = say::counted(item.counts.vertices, "point", "points");
+        say::line(&format!("{}: {count}; {:.0} ms", item.output, item.timings_ms.total));
+    }
+    Ok(())
 }
 
 fn project(

@@ -5,10 +5,10 @@ use std::path::{Component, Path, PathBuf};
 
 use burgeon::document::{self, Document, DocumentPlant, MAX_PROJECT_BYTES};
 use burgeon::formats::{
-    DrawingFormat, ExportSpec, FileStems, MAX_MODEL_BYTES, ModelFormat, PngCache, ReadDrawing, obj_files,
-    usd_files, warn_of_wind, write_glb_with, write_mtg,
+    CloudFormat, DrawingFormat, ExportSpec, FileStems, MAX_MODEL_BYTES, ModelFormat, PngCache, ReadDrawing,
+    obj_files, usd_files, warn_of_wind, write_glb_with, write_mtg,
 };
-use burgeon::mesh::Model;
+use burgeon::mesh::{Model, PointCloud};
 use burgeon::plant::Plant;
 use burgeon::{Report, Warning};
 use serde::Deserialize;
@@ -86,6 +86,37 @@ pub(crate) fn open_bytes(path: &Path) -> Outcome<Input> {
     }
     let file = inputs::open(path).map_err(|e| Failure::io(path, "read", &e))?;
     Ok(Box::new(BufReader::new(file)))
+}
+
+/// A PLY whose header announces faces, or an OBJ with an `f` line.
+pub(crate) fn has_faces(path: &Path) -> bool {
+    let Ok(mut file) = inputs::open(path) else { return false };
+    let extension = extension(path).unwrap_or_default().to_ascii_lowercase();
+    let mut start = Vec::new();
+    let limit = if extension == "obj" { 64 << 20 } else { 8192 };
+    if file.by_ref().take(limit).read_to_end(&mut start).is_err() {
+        return false;
+    }
+    match extension.as_str() {
+        "ply" => {
+            let head = String::from_utf8_lossy(&start);
+            let head = head.split("end_header").next().unwrap_or_default();
+            head.lines().any(|l| l.starts_with("element face") && !l.trim_end().ends_with(" 0"))
+        }
+        "obj" => start.windows(3).any(|w| w == b"\nf "),
+        _ => false,
+    }
+}
+
+/// Reads a scan.
+pub(crate) fn read_cloud(
+    path: &Path,
+    format: CloudFormat,
+    axes: &ExportSpec,
+    report: &mut Report,
+) -> Outcome<PointCloud> {
+    let file = inputs::open(path).map_err(|e| Failure::io(path, "read", &e))?;
+    burgeon::formats::read_cloud(file, format, axes, report).map_err(|e| Failure::at(path, e))
 }
 
 /// The text of a small file, such as settings: at most 16 MiB.

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use burgeon::formats::{CloudFormat, PngCache, read_cloud};
+use burgeon::formats::{CloudFormat, ExportSpec, PngCache};
 use burgeon::glam::DVec3;
 use burgeon::growth::{
     ColonizeSpec, CompetitionSpec, Envelope, GrowthError, GuidedSpec, Method, OAK_RULES, Obstacle,
@@ -21,8 +21,9 @@ use crate::failure::{Failure, Outcome};
 use crate::files::{Goal, PlantFormat};
 use crate::given::{Given, Seen};
 use crate::machine::Machine;
+use crate::origin::Origin;
 use crate::output::Outputs;
-use crate::{files, inputs, picture, report, say};
+use crate::{files, picture, report, say};
 
 #[derive(Args, Debug)]
 #[command(after_long_help = GROW_EXAMPLES)]
@@ -100,8 +101,8 @@ pub(crate) struct PointsArgs {
     /// Attraction points (.xyz, .txt, .ply, .pcd, .las, .obj) instead of an envelope: space colonization of just these.
     #[arg(long, value_name = "FILE", conflicts_with = "method")]
     pub(crate) attractors: Option<PathBuf>,
-    /// Where the tree stands, in the axes of --up and the --unit, as the points have it; may be given several times
-    /// [default: the preset's, mostly 0,0,0].
+    /// Where the tree stands, in the axes of --up and the --unit, as the points have it, also where these lie far from
+    /// the origin (UTM); may be given several times [default: the preset's, mostly 0,0,0].
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = point)]
     pub(crate) root: Vec<DVec3>,
     /// Length D of a step, in --unit, above 0 [default: half of --kill].
@@ -167,10 +168,10 @@ impl MethodWord {
 fn point(text: &str) -> Result<DVec3, String> {
     let numbers: Vec<f64> = text.split(',').filter_map(|w| w.trim().parse().ok()).collect();
     match numbers.as_slice() {
-        &[x, y, z] if text.split(',').count() == 3 && [x, y, z].iter().all(|c| c.abs() <= 1e6) => {
+        &[x, y, z] if text.split(',').count() == 3 && [x, y, z].iter().all(|c| c.abs() <= 1e8) => {
             Ok(DVec3::new(x, y, z))
         }
-        _ => Err("give three numbers within 1e6 such as 0,0,1.5".into()),
+        _ => Err("give three numbers within 1e8 such as 0,0,1.5".into()),
     }
 }
 
@@ -196,7 +197,8 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     }
     check_used(args, format)?;
     let mut told = Report::default();
-    let (spec, read_ms) = machine.timed(|| asked(args, &mut told));
+    let mut origin = Origin::default();
+    let (spec, read_ms) = machine.timed(|| asked(args, &mut origin, &mut told));
     let mut spec = spec?;
     let leaves = ["leaf_keep", "leaf_template"];
     args.given.only_if(!spec.bare, &leaves, "trees with leaves", "this one is bare")?;
@@ -216,7 +218,8 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
         ..TreeOptions::default()
     };
     let made = machine.with_progress("grow", |_| make_tree(&spec, seed, &options, &machine.run()));
-    let MadeTree { grown, model, lods, mut item } = made.map_err(|e| failure(args, &spec, e))?;
+    let MadeTree { grown, mut model, mut lods, mut item } = made.map_err(|e| failure(args, &spec, e))?;
+    lods.iter_mut().chain([&mut model]).for_each(|m| m.offset_m = origin.offset_m);
     machine.cancel.check()?;
     item.warnings.splice(0..0, told.warnings.iter().map(ToString::to_string));
     item.timings_ms.add_io(read_ms, 0.0);
@@ -256,8 +259,10 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
             machine.with_progress("picture", |_| burgeon::render::render(&shown, &view, &machine.run()))?;
         picture::write(&mut outputs, "--png", png, &drawn)?;
     }
+    items[0].timings_ms.total = machine.whole_ms();
     let mut run = RunReport::new("grow", args.seed);
     run.input.path = named(args);
+    run.input.offset_m = origin.told(&files::axes(args.axes.up, args.axes.unit));
     run.ok = 1;
     run.items = items;
     report::finish(&run, &args.common, outputs)?;
@@ -324,7 +329,7 @@ fn failure(args: &GrowArgs, spec: &TreeSpec, error: TreeError) -> Failure {
 }
 
 /// The spec as the options make it.
-fn asked(args: &GrowArgs, told: &mut Report) -> Outcome<TreeSpec> {
+fn asked(args: &GrowArgs, origin: &mut Origin, told: &mut Report) -> Outcome<TreeSpec> {
     let mut spec = match &args.what {
         Some(what) => read_spec(what, told)?,
         None => TreeSpec::default(),
@@ -337,7 +342,7 @@ fn asked(args: &GrowArgs, told: &mut Report) -> Outcome<TreeSpec> {
         spec.name = format!("{} by {}", spec.name, method.word());
     }
     if let Some(path) = &args.points.attractors {
-        let points = read_points(path, args, told)?;
+        let points = read_points(path, args, origin, told)?;
         if args.what.is_none() {
             spec.name = files::stem(path);
         }
@@ -347,6 +352,15 @@ fn asked(args: &GrowArgs, told: &mut Report) -> Outcome<TreeSpec> {
     distances(&args.points, axes.unit.metres(), &mut spec.method)?;
     if !args.points.root.is_empty() {
         spec.roots = args.points.root.iter().map(|p| axes.inward(*p)).collect();
+    }
+    if origin.offset_m.is_some() {
+        if args.points.root.is_empty() {
+            return Err(Failure::Bad(
+                "the points lie far from the origin: say with --root X,Y,Z, in their coordinates, where the tree stands"
+                    .into(),
+            ));
+        }
+        spec.roots.iter_mut().for_each(|r| *r = origin.place(*r));
     }
     for path in &args.growth.obstacle {
         let (model, _, warnings) = files::read_model(path, &axes)?;
@@ -401,12 +415,12 @@ pub(crate) fn read_spec(what: &Path, told: &mut Report) -> Outcome<TreeSpec> {
 /// A mesh or cloud that a spec names, beside the spec or by its full path. In metres, +Y up.
 fn named_mesh(spec: &Path, name: &str, warnings: &mut Vec<burgeon::Warning>) -> Option<NamedMesh> {
     let path = spec.parent().unwrap_or_else(|| Path::new("")).join(name);
-    let axes = burgeon::formats::ExportSpec::default();
+    let axes = ExportSpec::default();
     if let Some(format @ (CloudFormat::Xyz | CloudFormat::Pcd | CloudFormat::Las)) =
         files::extension(&path).and_then(CloudFormat::from_extension)
     {
         let mut report = Report::default();
-        let cloud = read_cloud(inputs::open(&path).ok()?, format, &axes, &mut report).ok()?;
+        let cloud = files::read_cloud(&path, format, &axes, &mut report).ok()?;
         warnings.extend(report.warnings);
         return Some((cloud.points, Vec::new()));
     }
@@ -426,15 +440,15 @@ fn soup(model: &Model) -> NamedMesh {
     (vertices, triangles)
 }
 
-fn read_points(path: &Path, args: &GrowArgs, told: &mut Report) -> Outcome<Vec<DVec3>> {
+fn read_points(path: &Path, args: &GrowArgs, origin: &mut Origin, told: &mut Report) -> Outcome<Vec<DVec3>> {
     let format = files::extension(path).and_then(CloudFormat::from_extension);
     let format = format.ok_or_else(|| {
         Failure::at(path, "is not named as points; end the name with .xyz, .txt, .ply, .pcd, .las or .obj")
     })?;
     let axes = files::axes(args.axes.up, args.axes.unit);
-    let file = inputs::open(path).map_err(|e| Failure::io(path, "read", &e))?;
-    let cloud = read_cloud(file, format, &axes, told).map_err(|e| Failure::at(path, e))?;
-    Ok(cloud.points)
+    let mut points = files::read_cloud(path, format, &axes, told)?.points;
+    origin.bring(&mut points, &axes, told);
+    Ok(points)
 }
 
 fn envelope_of(method: &Method) -> Option<&Envelope> {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use burgeon::formats::{
-    CloudFormat, ExportSpec, PngCache, marks_template, read_cloud, read_picture, write_marks, write_rays,
+    CloudFormat, ExportSpec, PngCache, marks_template, read_picture, write_marks, write_rays,
 };
 use burgeon::geom::RingRule;
 use burgeon::leaf::{
@@ -21,6 +21,7 @@ use crate::files::Goal;
 use crate::given::Given;
 use crate::leaf_data::{self, Form, ReadLeaf};
 use crate::machine::Machine;
+use crate::origin::Origin;
 use crate::output::Outputs;
 use crate::{files, inputs, picture, report, say};
 
@@ -296,7 +297,7 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
         // What is read may be in any unit; what is made from numbers alone has none but the file's.
         args.given.check_axes(!args.inputs.is_empty() || !format.fixed_axes())?;
     }
-    let Product { model, mut item, marks } =
+    let Product { model, mut item, marks, offset_m } =
         if args.scan { scan(args, &machine)? } else { make(args, &machine)? };
     machine.cancel.check()?;
     if let (Some(path), Some(marks)) = (&args.marks, &marks) {
@@ -322,7 +323,9 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
             machine.with_progress("picture", |_| burgeon::render::render(&model, &spec, &machine.run()))?;
         picture::write(&mut outputs, "--png", png, &drawn)?;
     }
+    item.timings_ms.total = machine.whole_ms();
     let mut run = RunReport::new("leaf", args.seed);
+    run.input.offset_m = offset_m;
     run.input.path = args.inputs.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(", ");
     run.items.push(item);
     run.ok = 1;
@@ -488,6 +491,8 @@ struct Product {
     model: Model,
     item: ItemReport,
     marks: Option<Measured>,
+    /// What was taken off a scan's coordinates.
+    offset_m: Option<[f64; 3]>,
 }
 
 /// What `--marks` writes.
@@ -507,9 +512,8 @@ fn scan(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
     })?;
     let mut report = Report::default();
     let axes = files::axes(args.axes.up, args.axes.unit);
-    let file = inputs::open(path).map_err(|e| Failure::io(path, "read", &e))?;
-    let (cloud, read_ms) = machine.timed(|| read_cloud(file, format, &axes, &mut report));
-    let mut points = cloud.map_err(|e| Failure::at(path, e))?.points;
+    let (cloud, read_ms) = machine.timed(|| files::read_cloud(path, format, &axes, &mut report));
+    let mut points = cloud?.points;
     let first = points.first().copied().unwrap_or_default();
     let size = points.iter().fold([first; 2], |[a, b], &p| [a.min(p), b.max(p)]);
     // 10 m: no leaf is longer, and scanners of leaves write millimetres.
@@ -520,14 +524,18 @@ fn scan(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
             "the cloud is more than 10 m wide: it was taken for millimetres; say --unit mm",
         );
     }
+    let mut origin = Origin::default();
+    origin.bring(&mut points, &axes, &mut report);
     let made = machine.with_progress("scan", |_| {
         let (name, spec) = (files::stem(path), ScanSpec::default());
         burgeon::make_leaf_from_scan(&name, &points, &spec, &machine.run())
     });
-    let (model, mut item, found) = made.map_err(|e| failure(args, e))?;
+    let (mut model, mut item, found) = made.map_err(|e| failure(args, e))?;
+    model.offset_m = origin.offset_m;
     item.warnings.splice(0..0, report.warnings.iter().map(ToString::to_string));
     item.timings_ms.add_io(read_ms, 0.0);
-    Ok(Product { model, item, marks: Some(Measured::Rows(found.marks)) })
+    let offset_m = origin.told(&axes);
+    Ok(Product { model, item, marks: Some(Measured::Rows(found.marks)), offset_m })
 }
 
 fn make(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
@@ -592,7 +600,7 @@ fn make(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
         (made.model, made.item, Some(Measured::Rows(made.marks.to_marks())))
     };
     item.timings_ms.add_io(read_ms, 0.0);
-    Ok(Product { model, item, marks })
+    Ok(Product { model, item, marks, offset_m: None })
 }
 
 /// A leaf of chief veins, made from numbers or digitised.
@@ -604,7 +612,7 @@ fn rays(args: &LeafArgs, leaf: ReadLeaf, rays: Rays, machine: &Machine) -> Outco
     let made = burgeon::make_ray_leaf(&leaf.name, &rays, &options, &machine.run());
     let (model, mut item) = made.map_err(|e| failure(args, e))?;
     item.warnings.splice(0..0, leaf.warnings.iter().map(ToString::to_string));
-    Ok(Product { model, item, marks: Some(Measured::Rays(rays)) })
+    Ok(Product { model, item, marks: Some(Measured::Rays(rays)), offset_m: None })
 }
 
 /// The chief veins of --venation.

@@ -101,6 +101,11 @@ impl Machine {
         Run { cancel: self.cancel, executor: &burgeon::Serial, clock: &self.clock }
     }
 
+    /// Milliseconds since the command began: what everything so far took, reading, computing, pictures and writing.
+    pub(crate) fn whole_ms(&self) -> f64 {
+        self.clock.now_ms()
+    }
+
     /// Runs `work` and its clock.
     pub(crate) fn timed<T>(&self, work: impl FnOnce() -> T) -> (T, f64) {
         let start = self.clock.now_ms();

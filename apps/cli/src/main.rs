@@ -16,6 +16,7 @@ mod leaf;
 mod leaf_data;
 mod machine;
 mod names;
+mod origin;
 mod output;
 mod petals;
 mod picture;

@@ -33,8 +33,8 @@ pub(crate) fn render(args: &RenderArgs) -> Outcome {
     run.input.path = args.input.display().to_string();
     let mut item = model_item(&model, &args.output, &warnings);
     item.timings_ms.mesh = draw_ms;
-    item.timings_ms.total = draw_ms;
     item.timings_ms.add_io(read_ms, write_ms);
+    item.timings_ms.total = machine.whole_ms();
     run.items.push(item);
     run.ok = 1;
     report::finish(&run, &args.common, outputs)?;

@@ -143,8 +143,10 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
         for (model, by, path) in all {
             machine.cancel.check()?;
             let (goal, plant) = (Goal::new(by, &path), (&plant, model));
-            let written = files::write_plant(&mut outputs, goal, plant, format, &args.axes, &mut cache)?;
-            item.warnings.extend(written.iter().map(ToString::to_string));
+            let (written, write_ms) = machine
+                .timed(|| files::write_plant(&mut outputs, goal, plant, format, &args.axes, &mut cache));
+            item.warnings.extend(written?.iter().map(ToString::to_string));
+            item.timings_ms.add_io(0.0, write_ms);
         }
         item.output = path.display().to_string();
     }
@@ -154,6 +156,7 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
             machine.with_progress("picture", |_| burgeon::render::render(&model, &spec, &machine.run()))?;
         picture::write(&mut outputs, "--png", png, &drawn)?;
     }
+    item.timings_ms.total = machine.whole_ms();
     let mut run = RunReport::new("shape", seed.number());
     run.input.path = what.display().to_string();
     run.ok = 1;

@@ -172,12 +172,13 @@ impl<'a> Job<'a> {
             qsm: self.args.qsm.clone(),
             of_many: false,
         };
-        let clocked = (machine, read_ms, &machine.run());
+        let clocked = (machine, [read_ms, machine.whole_ms()], &machine.run());
         let made = self.made(&read, &machine.run()).map_err(|failure| match failure {
             Failure::Bad(line) => Failure::at(input, line),
             other => other,
         })?;
-        let item = self.write(made, &read, &target, clocked, &mut PngCache::new(), &mut outputs)?;
+        let mut item = self.write(made, &read, &target, clocked, &mut PngCache::new(), &mut outputs)?;
+        item.timings_ms.total = machine.whole_ms();
         report.ok = 1;
         self.warn_of_unused(&mut report);
         report.items.push(item);
@@ -222,7 +223,7 @@ impl<'a> Job<'a> {
         made: Made,
         input: &Input,
         target: &Target,
-        (machine, read_ms, run): (&Machine, f64, &Run<'_>),
+        (machine, [read_ms, begun], run): (&Machine, [f64; 2], &Run<'_>),
         cache: &mut PngCache,
         outputs: &mut Outputs,
     ) -> Outcome<ItemReport> {
@@ -251,6 +252,7 @@ impl<'a> Job<'a> {
             let drawn = burgeon::render::render(&model, &self.args.picture.spec(seed.number()), run)?;
             picture::write(outputs, "--png", png, &drawn)?;
         }
+        item.timings_ms.total = read_ms + machine.whole_ms() - begun;
         Ok(item)
     }
 
@@ -276,7 +278,8 @@ impl<'a> Job<'a> {
                     let outcome = next.read.and_then(|read| {
                         strokes.fetch_add(read.read.drawing.strokes.len() as u64, Ordering::Relaxed);
                         let run = machine.single();
-                        let (target, clocked) = (self.target(&next.name), (machine, next.read_ms, &run));
+                        let (target, clocked) =
+                            (self.target(&next.name), (machine, [next.read_ms, machine.whole_ms()], &run));
                         let made = self.made(&read, &run)?;
                         let mut own = outputs.of_one();
                         let item = self.write(made, &read, &target, clocked, &mut cache, &mut own)?;

@@ -1,18 +1,18 @@
 //! Stages files and scans: read, cleaned, split into organs that carry the same names on every day.
 
-use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use burgeon::bloom::{self, CleanSpec, Organ, SegmentSpec, Stage};
-use burgeon::formats::{CloudFormat, ExportSpec, read_cloud};
+use burgeon::formats::{CloudFormat, ExportSpec};
 use burgeon::glam::DVec3;
 use burgeon::mesh::TriMesh;
 use burgeon::{Report, Seed, Unit, UpAxis};
 use serde::{Deserialize, Serialize};
 
 use crate::failure::{Failure, Outcome};
+use crate::files;
 use crate::machine::Machine;
-use crate::{files, inputs};
+use crate::origin::Origin;
 
 /// A stages file.
 #[derive(Debug, Deserialize)]
@@ -115,6 +115,8 @@ pub(crate) struct Loaded {
     pub(crate) mesh: Option<TriMesh>,
     /// Unit and up axis of the scans.
     pub(crate) axes: ExportSpec,
+    /// What was taken off all scans.
+    pub(crate) origin: Origin,
 }
 
 /// How scans are treated.
@@ -125,14 +127,22 @@ pub(crate) struct Options {
 }
 
 /// Points of a scan or of a model, in metres, +Y up, and the model's faces.
-fn read_any(path: &Path, axes: &ExportSpec, report: &mut Report) -> Outcome<(Vec<DVec3>, Option<TriMesh>)> {
+fn read_any(
+    path: &Path,
+    axes: &ExportSpec,
+    origin: &mut Origin,
+    warnings: &mut Vec<String>,
+) -> Outcome<(Vec<DVec3>, Option<TriMesh>)> {
+    let mut tell = |told: Vec<burgeon::Warning>| {
+        warnings.extend(told.iter().map(|w| format!("{}: {w}", path.display())));
+    };
     let cloud = files::extension(path).and_then(CloudFormat::from_extension);
     if path.is_dir() {
         return Err(Failure::at(path, "is a folder; name a file in it"));
     }
-    if cloud.is_none() || has_faces(path) {
-        let (model, _, warnings) = files::read_model(path, axes)?;
-        report.warnings.extend(warnings);
+    if cloud.is_none() || files::has_faces(path) {
+        let (model, _, told) = files::read_model(path, axes)?;
+        tell(told);
         let mut mesh = TriMesh::default();
         for part in &model.parts {
             // Only positions and faces: parts may differ in their other columns.
@@ -148,48 +158,27 @@ fn read_any(path: &Path, axes: &ExportSpec, report: &mut Report) -> Outcome<(Vec
         return Ok((points, (!mesh.triangles.is_empty()).then_some(mesh)));
     }
     let format = cloud.unwrap_or(CloudFormat::Xyz);
-    let file = inputs::open(path).map_err(|e| Failure::io(path, "read", &e))?;
-    let cloud = read_cloud(BufReader::new(file), format, axes, report).map_err(|e| Failure::at(path, e))?;
-    Ok((cloud.points, None))
+    let mut report = Report::default();
+    let mut points = files::read_cloud(path, format, axes, &mut report)?.points;
+    origin.bring(&mut points, axes, &mut report);
+    tell(report.warnings);
+    Ok((points, None))
 }
 
-/// A PLY whose header announces faces, or an OBJ with an `f` line.
-fn has_faces(path: &Path) -> bool {
-    use std::io::Read as _;
-    let Ok(mut file) = inputs::open(path) else { return false };
-    let extension = files::extension(path).unwrap_or_default().to_ascii_lowercase();
-    let mut start = Vec::new();
-    let limit = if extension == "obj" { 64 << 20 } else { 8192 };
-    if file.by_ref().take(limit).read_to_end(&mut start).is_err() {
-        return false;
-    }
-    match extension.as_str() {
-        "ply" => {
-            let head = String::from_utf8_lossy(&start);
-            let head = head.split("end_header").next().unwrap_or_default();
-            head.lines().any(|l| l.starts_with("element face") && !l.trim_end().ends_with(" 0"))
-        }
-        "obj" => start.windows(3).any(|w| w == b"\nf "),
-        _ => false,
-    }
-}
-
-/// A scan for comparison: its points, cleaned.
+/// A scan for comparison with what was loaded: its points, cleaned.
 pub(crate) fn read_points(
     path: &Path,
-    axes: &ExportSpec,
+    loaded: &mut Loaded,
     clean: bool,
     seed: Seed,
     machine: &Machine,
-) -> Outcome<(Vec<DVec3>, Vec<String>)> {
-    let mut report = Report::default();
-    let (points, mesh) = read_any(path, axes, &mut report)?;
-    let warnings = report.warnings.iter().map(|w| format!("{}: {w}", path.display())).collect();
+) -> Outcome<Vec<DVec3>> {
+    let (points, mesh) = read_any(path, &loaded.axes, &mut loaded.origin, &mut loaded.warnings)?;
     if !clean || mesh.is_some() {
-        return Ok((points, warnings));
+        return Ok(points);
     }
     let kept = bloom::clean(&points, &CleanSpec::default(), seed, &machine.run())?.kept;
-    Ok((kept.into_iter().map(|i| points[i]).collect(), warnings))
+    Ok(kept.into_iter().map(|i| points[i]).collect())
 }
 
 /// Reads and cleans one scan; tells what went.
@@ -200,12 +189,13 @@ fn prepare(
     spec: Option<&CleanSpec>,
     seed: Seed,
     machine: &Machine,
-    warnings: &mut Vec<String>,
+    out: &mut Loaded,
 ) -> Outcome<(Vec<DVec3>, Option<TriMesh>, Told)> {
     machine.cancel.check()?;
-    let mut report = Report::default();
-    let (points, mesh) = read_any(path, axes, &mut report)?;
-    warnings.extend(report.warnings.iter().map(|w| format!("{}: {w}", path.display())));
+    let Loaded { warnings, origin, .. } = out;
+    let (points, mesh) = read_any(path, axes, origin, warnings)?;
+    // The box to keep is given in the coordinates of the file.
+    let spec = spec.map(|s| CleanSpec { crop: s.crop.map(|c| c.map(|p| origin.place(p))), ..*s });
     let mut told = Told {
         file: path.display().to_string(),
         day,
@@ -227,7 +217,7 @@ fn prepare(
         ));
     }
     let Some(spec) = spec.filter(|_| mesh.is_none()) else { return Ok((points, mesh, told)) };
-    let cleaned = bloom::clean(&points, spec, seed, &machine.run())?;
+    let cleaned = bloom::clean(&points, &spec, seed, &machine.run())?;
     told.cropped = cleaned.cropped;
     told.ground = cleaned.ground;
     told.outliers = cleaned.outliers;
@@ -292,6 +282,7 @@ pub(crate) fn load(path: &Path, axes: &ExportSpec, seed: Seed, machine: &Machine
         warnings: vec![],
         mesh: None,
         axes: *axes,
+        origin: Origin::default(),
     };
     for entry in &file.stage {
         if !entry.day.is_finite() {
@@ -330,10 +321,7 @@ fn add_entry(
     if out.stages.is_empty() {
         out.axes = axes;
     }
-    let place = |p: [f64; 3]| {
-        let p = if up == UpAxis::Z { DVec3::new(p[0], p[2], -p[1]) } else { DVec3::from_array(p) };
-        p * unit.metres()
-    };
+    let place = |p: [f64; 3]| axes.inward(DVec3::from_array(p));
     let scan = path.parent().unwrap_or_else(|| Path::new("")).join(&entry.file);
     let clean = CleanSpec {
         outliers: file.clean,
@@ -341,23 +329,24 @@ fn add_entry(
         crop: entry.crop.map(|c| c.map(place)),
         ..CleanSpec::default()
     };
-    let (points, mesh, mut told) =
-        prepare(&scan, entry.day, &axes, Some(&clean), seed, machine, &mut out.warnings)?;
-    let spec = SegmentSpec { foot: entry.base.map(place), ..SegmentSpec::default() };
+    let (points, mesh, mut told) = prepare(&scan, entry.day, &axes, Some(&clean), seed, machine, out)?;
+    let origin = out.origin;
+    let near = |p: [f64; 3]| origin.place(place(p));
+    let spec = SegmentSpec { foot: entry.base.map(near), ..SegmentSpec::default() };
     let mut found = match (&entry.organ, entry.seed) {
         (Some(name), Some(at)) => {
-            let mut one = bloom::organ_at(&points, place(at), &spec).map_err(bad(&scan))?;
+            let mut one = bloom::organ_at(&points, near(at), &spec).map_err(bad(&scan))?;
             one.name.clone_from(name);
             vec![one]
         }
-        (None, Some(at)) => vec![bloom::organ_at(&points, place(at), &spec).map_err(bad(&scan))?],
+        (None, Some(at)) => vec![bloom::organ_at(&points, near(at), &spec).map_err(bad(&scan))?],
         (Some(name), None) => vec![bloom::single_organ(&points, name, &spec).map_err(bad(&scan))?],
         (None, None) if file.split == Split::None || mesh.is_some() => {
             vec![bloom::single_organ(&points, "organ", &spec).map_err(bad(&scan))?]
         }
         (None, None) => bloom::organs(&points, &spec).map_err(bad(&scan))?,
     };
-    if let (Some(base), [one]) = (entry.base.map(place), &mut found[..]) {
+    if let (Some(base), [one]) = (entry.base.map(near), &mut found[..]) {
         one.base = base;
     }
     told.organs = found.iter().map(|o| OrganTold { name: o.name.clone(), points: o.points.len() }).collect();
@@ -458,13 +447,13 @@ pub(crate) fn load_pair(
         warnings: vec![],
         mesh: None,
         axes: *axes,
+        origin: Origin::default(),
     };
     let spec = SegmentSpec::default();
     let clean = CleanSpec { outliers: options.clean, plane: options.clean, ..CleanSpec::default() };
     let mut split = options.split;
     for (path, day) in [(first, first_day), (last, last_day)] {
-        let (points, mesh, mut told) =
-            prepare(path, day, axes, Some(&clean), seed, machine, &mut out.warnings)?;
+        let (points, mesh, mut told) = prepare(path, day, axes, Some(&clean), seed, machine, &mut out)?;
         // A model with faces is one organ, and then so is its partner.
         split &= mesh.is_none();
         let organs = if split {

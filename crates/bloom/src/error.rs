@@ -1,7 +1,7 @@
 //! Two shapes without shared vertices -> how far they are apart.
 
 use base::{Run, map_indexed};
-use geom::Grid3;
+use geom::KdTree;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -44,7 +44,7 @@ impl ShapeError {
 /// Compares a measured with a reconstructed shape, point to nearest point.
 ///
 /// Points that are not finite are left out. The distances include the spacing of the points: a shape sampled
-/// anew is not at 0 from itself. Cost: n log n.
+/// anew is not at 0 from itself. Cost: n log n, wherever the two shapes lie.
 ///
 /// # Errors
 /// [`BloomError::TooFew`] if a shape has no finite point, [`BloomError::Cancelled`].
@@ -59,20 +59,34 @@ impl ShapeError {
 /// # Ok::<(), bloom::BloomError>(())
 /// ```
 pub fn compare(measured: &[DVec3], model: &[DVec3], run: &Run<'_>) -> Result<ShapeError, BloomError> {
-    let (to_model, coverage) = one_way(measured, model, "the model", run)?;
-    let (to_scan, _) = one_way(model, measured, "the scan", run)?;
+    run.cancel.check()?;
+    let sides = [measured, model];
+    let trees = map_indexed(run.executor, 2, |k| KdTree::new(sides[k]));
+    let (to_model, coverage) = one_way((measured, &trees[0]), (model, &trees[1]), "the model", run)?;
+    let (to_scan, _) = one_way((model, &trees[1]), (measured, &trees[0]), "the scan", run)?;
     Ok(ShapeError { to_model, to_scan, coverage })
 }
 
-fn one_way(from: &[DVec3], to: &[DVec3], what: &str, run: &Run<'_>) -> Result<(Distances, f64), BloomError> {
+type Side<'a> = (&'a [DVec3], &'a KdTree);
+
+fn one_way(
+    (from, places): Side<'_>,
+    (to, tree): Side<'_>,
+    what: &str,
+    run: &Run<'_>,
+) -> Result<(Distances, f64), BloomError> {
     run.cancel.check()?;
-    let grid = Grid3::new(to, 0.0);
-    let pieces: Vec<&[DVec3]> = from.chunks(4096).collect();
-    let rows = map_indexed(run.executor, pieces.len(), |i| {
-        let near = |p: &DVec3| grid.nearest(*p, f64::INFINITY).map(|k| (to[k] - *p).abs());
-        pieces[i].iter().filter(|p| p.is_finite()).filter_map(near).collect::<Vec<DVec3>>()
+    // Neighbours one after the other find their way through the same part of the tree.
+    let order: Vec<usize> = places.order().collect();
+    let pieces: Vec<&[usize]> = order.chunks(4096).collect();
+    let rows = map_indexed(run.executor, pieces.len(), |k| {
+        let near = |&i: &usize| tree.nearest(from[i], f64::INFINITY).map(|k| (to[k] - from[i]).abs());
+        pieces[k].iter().map(near).collect::<Vec<Option<DVec3>>>()
     });
-    let gaps: Vec<DVec3> = rows.into_iter().flatten().collect();
+    run.cancel.check()?;
+    let mut found = vec![None; from.len()];
+    order.iter().zip(rows.into_iter().flatten()).for_each(|(&i, gap)| found[i] = gap);
+    let gaps: Vec<DVec3> = found.into_iter().flatten().collect();
     if gaps.is_empty() {
         return Err(BloomError::TooFew { what: what.to_owned(), is: 0, wanted: 1 });
     }
@@ -98,6 +112,22 @@ fn one_way(from: &[DVec3], to: &[DVec3], what: &str, run: &Run<'_>) -> Result<(D
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn shapes_far_apart_and_of_different_size_take_no_longer() {
+        // A look at ever larger boxes between them took minutes.
+        let mut s = base::Seed::new(2).stream(base::Draw::Test);
+        let small: Vec<DVec3> =
+            (0..60_000).map(|_| DVec3::new(s.uniform(), s.uniform(), s.uniform())).collect();
+        let large: Vec<DVec3> = small.iter().map(|p| *p * 1000.0 + DVec3::X * 5e4).collect();
+        let start = std::time::Instant::now();
+        let e = compare(&small, &large, &Run::plain()).unwrap();
+        assert!(start.elapsed().as_secs() < 10, "{:?}", start.elapsed());
+        assert!(e.to_model.mean > 49_900.0 && e.to_scan.max < 52_000.0, "{e:?}");
+        let brute = large.iter().map(|q| q.distance(small[7])).fold(f64::INFINITY, f64::min);
+        let alone = compare(&small[7..8], &large, &Run::plain()).unwrap();
+        assert!((alone.to_model.max - brute).abs() <= 1e-9 * brute);
+    }
 
     #[test]
     fn figures_of_a_known_shift_and_a_part_that_is_missing() {

@@ -265,7 +265,7 @@ impl FlowerSpec {
     /// pace by its size and region laws, whatever species it was fitted to (paper 003, figure 13).
     pub fn at(&self, day: f64, law: &GrowthLaw, seed: Seed) -> FlowerFrame {
         let mut frame = FlowerFrame {
-            model: Model { name: self.name.clone(), parts: vec![], materials: materials() },
+            model: Model { name: self.name.clone(), parts: vec![], materials: materials(), offset_m: None },
             petals: vec![],
         };
         let flowers = self.umbel.max(1);

@@ -1,7 +1,7 @@
 //! First and last shape of an organ -> the lattice that carries one into the other.
 
 use base::Run;
-use geom::Grid3;
+use geom::KdTree;
 use glam::{DQuat, DVec3};
 
 use crate::linalg::{best_rotation, solve_spd};
@@ -133,7 +133,7 @@ fn align(
         thin(points, 400).into_iter().map(|i| points[i as usize]).collect()
     };
     let (small_from, small_to) = (few(from), few(to));
-    let grid = Grid3::new(&small_to, 0.0);
+    let grid = KdTree::new(&small_to);
     let along = |points: &[DVec3], base: DVec3| {
         points.iter().map(|&p| p - base).sum::<DVec3>().try_normalize().unwrap_or(DVec3::Y)
     };
@@ -159,14 +159,14 @@ fn align(
     }
     let start = Rigid { from: from_base, to: to_base, turn: least, scale };
     let mut rigid = best.map_or(start, |(_, r)| r);
-    let grid = Grid3::new(to, 0.0);
+    let grid = KdTree::new(to);
     for _ in 0..10 {
         rigid = improved(&rigid, from, to, &grid);
     }
     Ok(rigid)
 }
 
-fn improved(rigid: &Rigid, from: &[DVec3], to: &[DVec3], grid: &Grid3) -> Rigid {
+fn improved(rigid: &Rigid, from: &[DVec3], to: &[DVec3], grid: &KdTree) -> Rigid {
     let moved: Vec<DVec3> = from.iter().map(|&p| rigid.apply(p)).collect();
     let mut pairs: Vec<(DVec3, DVec3)> = Vec::with_capacity(from.len() + to.len());
     for (p, m) in from.iter().zip(&moved) {
@@ -174,7 +174,7 @@ fn improved(rigid: &Rigid, from: &[DVec3], to: &[DVec3], grid: &Grid3) -> Rigid 
             pairs.push((*p - rigid.from, to[k] - rigid.to));
         }
     }
-    let back = Grid3::new(&moved, 0.0);
+    let back = KdTree::new(&moved);
     for q in to {
         if let Some(k) = back.nearest(*q, f64::INFINITY) {
             pairs.push((from[k] - rigid.from, *q - rigid.to));
@@ -188,9 +188,9 @@ fn improved(rigid: &Rigid, from: &[DVec3], to: &[DVec3], grid: &Grid3) -> Rigid 
     Rigid { turn, scale, ..*rigid }
 }
 
-fn mismatch(rigid: &Rigid, from: &[DVec3], to: &[DVec3], grid: &Grid3) -> f64 {
+fn mismatch(rigid: &Rigid, from: &[DVec3], to: &[DVec3], grid: &KdTree) -> f64 {
     let moved: Vec<DVec3> = from.iter().map(|&p| rigid.apply(p)).collect();
-    let back = Grid3::new(&moved, 0.0);
+    let back = KdTree::new(&moved);
     let there = moved.iter().filter_map(|m| Some(to[grid.nearest(*m, f64::INFINITY)?].distance(*m)));
     let here = to.iter().filter_map(|q| Some(moved[back.nearest(*q, f64::INFINITY)?].distance(*q)));
     there.sum::<f64>() / from.len() as f64 + here.sum::<f64>() / to.len() as f64
@@ -213,7 +213,7 @@ fn fit_lattice(
     }
     let n = start.points.len();
     let stiffness = stiffness(spec.counts);
-    let grid = Grid3::new(to, 0.0);
+    let grid = KdTree::new(to);
     let rounds = spec.rounds.clamp(1, 200);
     let mut lattice = start.clone();
     for round in 0..rounds {
@@ -263,8 +263,8 @@ fn start_at(row: &[f64], start: &Lattice) -> DVec3 {
 /// Nearest points both ways: row of the first shape, place in the last one, weight. Far pairs weigh less: they
 /// are holes of a scan (Geman and Mc Clure's weight). Its width falls from 30 times the median to 4 times: at first
 /// a far pair is growth that is still to be followed.
-fn pairs(moved: &[DVec3], to: &[DVec3], grid: &Grid3, share: f64) -> Vec<(usize, DVec3, f64)> {
-    let back = Grid3::new(moved, 0.0);
+fn pairs(moved: &[DVec3], to: &[DVec3], grid: &KdTree, share: f64) -> Vec<(usize, DVec3, f64)> {
+    let back = KdTree::new(moved);
     let there = moved.iter().enumerate().filter_map(|(i, m)| Some((i, to[grid.nearest(*m, f64::INFINITY)?])));
     let here = to.iter().filter_map(|q| Some((back.nearest(*q, f64::INFINITY)?, *q)));
     let mut out: Vec<(usize, DVec3, f64)> =

@@ -5,7 +5,7 @@
 
 use std::collections::BinaryHeap;
 
-use geom::Grid3;
+use geom::KdTree;
 use glam::DVec3;
 
 use crate::BloomError;
@@ -140,7 +140,7 @@ fn ways(points: &[DVec3], spec: &SegmentSpec) -> Result<Ways, BloomError> {
         let (reached, lost): (Vec<usize>, Vec<usize>) =
             (0..ways.way.len()).partition(|&c| ways.way[c].is_finite());
         let places: Vec<DVec3> = reached.iter().map(|&c| ways.means[c]).collect();
-        let grid = Grid3::new(&places, 0.0);
+        let grid = KdTree::new(&places);
         let gap = |c: usize| {
             let k = grid.nearest(ways.means[c], f64::INFINITY)?;
             Some((ways.means[c].distance(places[k]), c, reached[k]))

@@ -219,6 +219,9 @@ pub enum WriteError {
         /// Its index from 0.
         key: usize,
     },
+    /// Points without triangles in a format of triangles.
+    #[error("a cloud of points has no triangles for STL; choose .ply, .obj or .glb")]
+    NoTriangles,
     /// The format is only read.
     #[error("{format} is read but not written; choose {instead}")]
     ReadOnly {

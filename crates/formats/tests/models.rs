@@ -57,6 +57,7 @@ fn model() -> Model {
             part("trunk", 2, bare),
         ],
         materials: vec![leaf, petal, bark],
+        offset_m: None,
     }
 }
 

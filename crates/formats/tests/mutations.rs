@@ -64,7 +64,7 @@ fn model() -> Model {
         ..Material::plain("leaf", MaterialKind::Leaf, [0.1, 0.5, 0.1])
     };
     let part = Part { name: "leaves".into(), material: MaterialId::new(0), mesh };
-    Model { name: "m".into(), parts: vec![part], materials: vec![material] }
+    Model { name: "m".into(), parts: vec![part], materials: vec![material], ..Model::default() }
 }
 
 /// Words that break readers: numbers beyond everything, openings without closings, prefixes of other things.

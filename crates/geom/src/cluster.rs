@@ -1,6 +1,6 @@
 //! Points -> clusters, without their number being known.
 
-use crate::grid::Grid2;
+use crate::kd::KdTree2;
 use crate::vector::Vector;
 use glam::DVec2;
 
@@ -24,7 +24,7 @@ const MAX_STEPS: usize = 100;
 /// ```
 pub fn mean_shift(points: &[DVec2], bandwidth: f64) -> Vec<usize> {
     let reach = if bandwidth > 0.0 { bandwidth } else { 0.0 };
-    let grid = Grid2::new(points, reach);
+    let grid = KdTree2::new(points);
     let mut near = Vec::new();
     let rests: Vec<Option<(DVec2, usize)>> = points
         .iter()
@@ -61,7 +61,13 @@ pub fn mean_shift(points: &[DVec2], bandwidth: f64) -> Vec<usize> {
 }
 
 /// Where the walk from `start` comes to rest, and how many points are within reach there.
-fn settle(points: &[DVec2], grid: &Grid2, start: DVec2, reach: f64, near: &mut Vec<usize>) -> (DVec2, usize) {
+fn settle(
+    points: &[DVec2],
+    grid: &KdTree2,
+    start: DVec2,
+    reach: f64,
+    near: &mut Vec<usize>,
+) -> (DVec2, usize) {
     let mut here = start;
     let mut crowd = 1;
     for _ in 0..MAX_STEPS {

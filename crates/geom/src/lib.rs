@@ -14,17 +14,18 @@
 //! | `cluster` | mean shift |
 //! | `curve`, `frame` | smooth curves through points, frames along them |
 //! | `triangulate` | constrained Delaunay triangulation of a blade |
-//! | `grid` | neighbours |
+//! | `kd`, `cubes` | neighbours; few points for many |
 //! | `hull3` | convex hulls in space |
 //! | `spline` | ball B-spline curves and their tubes, tensor-product surfaces (paper 004) |
 
 mod cluster;
 mod cone;
+mod cubes;
 mod curve;
 mod ellipse;
 mod frame;
-mod grid;
 mod hull3;
+mod kd;
 mod outline;
 mod pca;
 mod polygon;
@@ -35,11 +36,12 @@ mod vector;
 
 pub use cluster::mean_shift;
 pub use cone::{Cone, FlowerCone, Sheet, flower_cone};
+pub use cubes::{cubes, one_a_cube};
 pub use curve::{bezier_quadratic_c1, catmull_rom};
 pub use ellipse::{Ellipse, fit_ellipse, fit_ellipse_harmonic};
 pub use frame::{Frame3, rotation_minimising_frames};
-pub use grid::{Grid2, Grid3};
 pub use hull3::{Hull3, convex_hull3};
+pub use kd::{KdTree, KdTree2};
 pub use outline::{crossing_points, self_crossings, simple_outline};
 pub use pca::{Pca2, pca2, pca3};
 pub use polygon::{centroid, contains, convex_hull, farthest_pair, medial_axis_width, signed_area};

@@ -1,6 +1,6 @@
 //! Whatever a pen or a file can give: no function panics, and each keeps its promise.
 
-use geom::{Cone, Grid2, Sheet};
+use geom::{Cone, KdTree2, Sheet};
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 
@@ -192,7 +192,7 @@ proptest! {
 
     #[test]
     fn grids_in_the_plane_agree_with_looking(points in points2(25), p in points2(2), r in coordinate()) {
-        let grid = Grid2::new(&points, r);
+        let grid = KdTree2::new(&points);
         let mut found = vec![];
         for &p in &p {
             grid.within(p, r, &mut found);

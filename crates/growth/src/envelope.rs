@@ -3,7 +3,7 @@
 //! `Envelope -> Region -> attractors`
 
 use base::{Draw, Seed};
-use geom::{Grid3, contains};
+use geom::{KdTree, contains};
 use glam::{DVec2, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -129,7 +129,7 @@ enum Form {
     Revolution(DVec3, Vec<DVec2>),
     Outline(Vec<DVec2>, f64, f64),
     Mesh(Solid),
-    Points(Grid3, f64),
+    Points(KdTree, f64),
 }
 
 impl Envelope {
@@ -205,7 +205,7 @@ impl Envelope {
                         value: 0.0,
                     });
                 }
-                Form::Points(Grid3::new(&good, reach), reach)
+                Form::Points(KdTree::new(&good), reach)
             }
         };
         let (lo, hi) = self.bounds(&form);

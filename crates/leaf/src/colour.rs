@@ -1,7 +1,7 @@
 //! Flat leaf -> a texture coloured by the distance from the veins.
 
 use base::{Draw, Executor, Seed, map_indexed, ops::smoothstep};
-use geom::Grid2;
+use geom::KdTree2;
 use glam::{DVec2, DVec3};
 use mesh::Texture;
 
@@ -41,7 +41,7 @@ impl LeafColours {
 
 /// The veins of a flat leaf as places with a reach: how far their colour spreads.
 struct Veins {
-    grid: Grid2,
+    grid: KdTree2,
     places: Vec<DVec2>,
     reach: Vec<f64>,
     widest: f64,
@@ -73,7 +73,7 @@ pub fn vein_texture(
     let length = size.y.max(f64::MIN_POSITIVE);
     let veins = veins(flat, length);
     let margin_line = dense(&flat.outline(), true, 0.004 * length);
-    let edge = Grid2::new(&margin_line, 0.03 * length);
+    let edge = KdTree2::new(&margin_line);
     // 90 cells along a leaf: as coarse as the third order of veins on a tobacco leaf.
     let net = Net::new(seed, size / length, 90.0);
     let pixel = size / DVec2::new(f64::from(width), f64::from(height));
@@ -114,7 +114,7 @@ fn veins(flat: &FlatLeaf, length: f64) -> Veins {
         put(&vein, 0.009, 0.003);
     }
     let widest = 0.016 * length;
-    Veins { grid: Grid2::new(&places, widest), places, reach, widest }
+    Veins { grid: KdTree2::new(&places), places, reach, widest }
 }
 
 impl Veins {

@@ -1,10 +1,10 @@
 //! A scanned leaf -> midrib, outline, stalk and a surface, with its distances from the cloud.
 //!
-//! points -> neighbours (outliers) -> stalk (where the cloud is a line) -> plane of the blade -> height field ->
-//! margins, midrib -> grid
+//! points -> an even sample without outliers -> stalk (where the cloud is a line) -> plane of the blade -> height
+//! field -> margins, midrib -> grid -> distances of all points
 
-use base::{Report, Run, map_indexed};
-use geom::{Ball, BallBSpline, Grid3, HeightField, SplineError};
+use base::{Draw, Report, Run, Seed, map_indexed};
+use geom::{Ball, BallBSpline, HeightField, KdTree, SplineError, one_a_cube};
 use glam::DVec3;
 
 use crate::marks::{MARKS_A_ROW, MarkRow, Marks};
@@ -72,7 +72,13 @@ pub enum ScanError {
     Cancelled(#[from] base::Cancelled),
 }
 
-const MOST_POINTS: usize = 2_000_000;
+/// As many as a scan's reader takes.
+const MOST_POINTS: usize = 32 << 20;
+/// Points from which the leaf is made; all are measured against it. A hand's leaf is covered every quarter of a
+/// millimetre, which is finer than its grid.
+const SAMPLE: usize = 100_000;
+/// Points whose surroundings are looked at for a stalk.
+const STALK_SAMPLE: usize = 4096;
 
 /// The plane in which the blade is seen: x across, y from base to tip, z the upper side.
 #[derive(Clone, Copy)]
@@ -98,7 +104,8 @@ impl Plane {
 ///
 /// The blade must be a height over its own plane (folded back on itself it is not). Which end is the base is
 /// known from the stalk; without one it is the broader end, and `report` says so. Which side is the upper one
-/// follows +Y. Cost: linear in the points, times their neighbours.
+/// follows +Y. Repeated points and uneven density do no harm: the leaf is made from an even sample. Cost: n log n;
+/// 5 million points take some seconds.
 ///
 /// # Errors
 /// [`ScanError`].
@@ -115,40 +122,55 @@ pub fn fit_scan(
     if all.len() > MOST_POINTS {
         return Err(ScanError::TooMany(all.len(), MOST_POINTS));
     }
-    let (used, spacing) = without_outliers(&all, run);
-    let outliers = all.len() - used.len();
-    if used.len() < 100 || spacing <= 0.0 {
-        return Err(ScanError::TooFew(used.len()));
-    }
-    if outliers > 0 {
-        report.warn("outliers", format!("{outliers} points far from their neighbours were left out"));
+    let Some(sample) = Sample::of(&all, run) else { return Err(ScanError::TooFew(all.len())) };
+    let Sample { points: kept, spacing, .. } = &sample;
+    if kept.len() < 100 || *spacing <= 0.0 {
+        return Err(ScanError::TooFew(kept.len()));
     }
     run.cancel.check()?;
-    let thin = stalk_points(&used, spacing, run);
-    let blade: Vec<DVec3> = used.iter().zip(&thin).filter(|(_, t)| !**t).map(|(p, _)| *p).collect();
-    let stem: Vec<DVec3> = used.iter().zip(&thin).filter(|(_, t)| **t).map(|(p, _)| *p).collect();
+    let thin = stalk_points(kept, *spacing, run);
+    let blade: Vec<DVec3> = kept.iter().zip(&thin).filter(|(_, t)| !**t).map(|(p, _)| *p).collect();
+    let stem: Vec<DVec3> = kept.iter().zip(&thin).filter(|(_, t)| **t).map(|(p, _)| *p).collect();
     if blade.len() < 100 {
         return Err(ScanError::TooFew(blade.len()));
     }
     run.cancel.check()?;
     let plane = plane_of(&blade, &stem, report).ok_or(ScanError::TooFew(blade.len()))?;
     let flat: Vec<DVec3> = blade.iter().map(|&p| plane.local(p)).collect();
-    let field = surface_of(&flat, spacing, spec.smoothing)?;
+    let field = surface_of(&flat, *spacing, spec.smoothing)?;
     run.cancel.check()?;
-    let lines = Lines::of(&flat, &field, spec.rows.clamp(8, 400), spacing);
+    let lines = Lines::of(&flat, &field, spec.rows.clamp(8, 400), *spacing);
     let columns = spec.columns.clamp(8, 400) | 1;
     let grid: Vec<DVec3> = lines.grid(columns, &field).into_iter().map(|p| plane.world(p)).collect();
     let stalk = stalk_curve(&stem, grid[columns / 2]);
+    run.cancel.check()?;
     let model = Near::new(&grid, columns, stalk.as_ref());
-    let distance = |points: &[DVec3]| map_indexed(run.executor, points.len(), |k| model.distance(points[k]));
-    let distances = distance(&used);
-    let explained =
-        distance(&all).iter().filter(|&&d| d <= spec.explained_m).count() as f64 / all.len() as f64;
-    let cloud = Grid3::new(&used, spec.explained_m);
+    let pieces: Vec<&[DVec3]> = all.chunks(4096).collect();
+    let measured = map_indexed(run.executor, pieces.len(), |k| {
+        pieces[k].iter().map(|&p| (model.distance(p), sample.is_stray(p))).collect::<Vec<_>>()
+    });
+    let near = measured.iter().flatten().filter(|(d, _)| *d <= spec.explained_m).count();
+    let explained = near as f64 / all.len() as f64;
+    let distances: Vec<f64> = measured.iter().flatten().filter(|(_, stray)| !stray).map(|m| m.0).collect();
+    let outliers = all.len() - distances.len();
+    if outliers > 0 {
+        report.warn("outliers", format!("{outliers} points far from their neighbours were left out"));
+    }
+    let cloud = KdTree::new(kept);
     let covered = grid.iter().filter(|&&p| cloud.nearest(p, spec.explained_m).is_some()).count();
     let covered = covered as f64 / grid.len() as f64;
     let marks = marks_of(&grid, columns, stalk.as_ref());
-    Ok(ScanLeaf { grid, columns, stalk, used: used.len(), outliers, distances, explained, covered, marks })
+    Ok(ScanLeaf {
+        grid,
+        columns,
+        stalk,
+        used: distances.len(),
+        outliers,
+        distances,
+        explained,
+        covered,
+        marks,
+    })
 }
 
 impl ScanLeaf {
@@ -166,26 +188,91 @@ impl ScanLeaf {
     }
 }
 
-/// The points whose neighbours are as near as those of others, and the median distance to the sixth.
-fn without_outliers(all: &[DVec3], run: &Run<'_>) -> (Vec<DVec3>, f64) {
-    let Some((_, _, variances)) = geom::pca3(all) else { return (vec![], 0.0) };
-    let wide = variances[0].sqrt();
-    // About 20 points a ball if the points cover a disc.
-    let reach = 4.0 * wide * (20.0 / all.len() as f64).sqrt();
-    let grid = Grid3::new(all, reach);
-    let sixth = map_indexed(run.executor, all.len(), |k| {
-        let mut near = Vec::new();
-        grid.within(all[k], reach, &mut near);
-        let mut d: Vec<f64> = near.iter().map(|&i| all[i].distance(all[k])).collect();
-        d.sort_unstable_by(f64::total_cmp);
-        d.get(6).copied().unwrap_or(f64::INFINITY)
-    });
-    let mut sorted: Vec<f64> = sixth.clone();
-    sorted.sort_unstable_by(f64::total_cmp);
-    let median = sorted[sorted.len() / 2];
-    // Four times: stalks are thinner covered than blades, and their points must stay.
-    let kept = all.iter().zip(&sixth).filter(|(_, d)| **d <= 4.0 * median).map(|(p, _)| *p).collect();
-    (kept, if median.is_finite() { median } else { 0.0 })
+/// The finite points of a cloud, few and even enough to work with.
+struct Sample {
+    /// Points with company.
+    points: Vec<DVec3>,
+    /// How far it is from a point to its sixth neighbour, mostly.
+    spacing: f64,
+    /// Those with company and those without, and which are without.
+    all: KdTree,
+    stray: Vec<bool>,
+    /// Beyond this box nothing belongs to the leaf.
+    bounds: [DVec3; 2],
+}
+
+impl Sample {
+    fn of(cloud: &[DVec3], run: &Run<'_>) -> Option<Self> {
+        let [lo, hi] = usual_box(&some(cloud, SAMPLE))?;
+        let size = (hi - lo).max_element();
+        if size <= 0.0 {
+            return None;
+        }
+        // A leaf may be three times as long as the box that all but a few of its points fill.
+        let bounds = [lo - DVec3::splat(3.0 * size), hi + DVec3::splat(3.0 * size)];
+        let inside: Vec<DVec3> = cloud.iter().copied().filter(|&p| within(p, bounds)).collect();
+        // Points in one place are one point, and no more is seen of a leaf than its size in 16,384 parts.
+        let one_each: Vec<DVec3> =
+            one_a_cube(&inside, size / 16_384.0).into_iter().map(|i| inside[i as usize]).collect();
+        let points = some(&one_each, SAMPLE);
+        let tree = KdTree::new(&points);
+        let sixth = map_indexed(run.executor, points.len(), |k| {
+            // The nearest is the point itself.
+            let mut near = [0.0; 7];
+            tree.nearest_distances(points[k], &mut near);
+            near[6]
+        });
+        let mut sorted = sixth.clone();
+        sorted.sort_unstable_by(f64::total_cmp);
+        let (median, tenth) = (sorted[sorted.len() / 2], sorted[sorted.len() * 9 / 10]);
+        // Four times: stalks are thinner covered than blades, and their points must stay. So many as a tenth are no
+        // outliers: most points crowd in a part of the leaf then, and the others tell how wide the spacing is. On an
+        // even sheet the tenth is at 4/3 of the median.
+        let spacing = if tenth > 4.0 * median { 0.75 * tenth } else { median };
+        let stray: Vec<bool> = sixth.iter().map(|&d| d > 4.0 * spacing).collect();
+        let good: Vec<DVec3> = points.iter().zip(&stray).filter(|(_, s)| !**s).map(|(p, _)| *p).collect();
+        let evenly = if spacing > 0.0 && spacing.is_finite() { 0.25 * spacing } else { return None };
+        let kept = one_a_cube(&good, evenly).into_iter().map(|i| good[i as usize]).collect();
+        Some(Self { points: kept, spacing, all: tree, stray, bounds })
+    }
+
+    /// True for a point of the cloud far from its neighbours: the next one of the sample tells.
+    fn is_stray(&self, p: DVec3) -> bool {
+        !within(p, self.bounds) || self.all.nearest(p, 4.0 * self.spacing).is_none_or(|k| self.stray[k])
+    }
+}
+
+fn within(p: DVec3, [lo, hi]: [DVec3; 2]) -> bool {
+    p.cmpge(lo).all() && p.cmple(hi).all()
+}
+
+/// At most so many points, spread over the list but not at even steps, which a scanner's lines may have too.
+fn some(points: &[DVec3], most: usize) -> Vec<DVec3> {
+    if points.len() <= most {
+        return points.to_vec();
+    }
+    let mut stream = Seed::new(1).stream(Draw::Sampling);
+    let at = |k: usize| k * points.len() / most;
+    (0..most).map(|k| points[at(k) + stream.below(at(k + 1) - at(k))]).collect()
+}
+
+/// The box of the points but for 1 in 200 at either end of each axis; each place counts once.
+fn usual_box(points: &[DVec3]) -> Option<[DVec3; 2]> {
+    let mut places = points.to_vec();
+    let order =
+        |a: &DVec3, b: &DVec3| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(a.z.total_cmp(&b.z));
+    places.sort_unstable_by(order);
+    places.dedup();
+    let ends = |axis: fn(&DVec3) -> f64| {
+        let mut x: Vec<f64> = places.iter().map(axis).collect();
+        x.sort_unstable_by(f64::total_cmp);
+        (x[x.len() / 200], x[x.len() - 1 - x.len() / 200])
+    };
+    if points.is_empty() {
+        return None;
+    }
+    let [x, y, z] = [ends(|p| p.x), ends(|p| p.y), ends(|p| p.z)];
+    Some([DVec3::new(x.0, y.0, z.0), DVec3::new(x.1, y.1, z.1)])
 }
 
 /// True for points of the stalk: around them the cloud is a line, and together they are a long piece.
@@ -193,18 +280,21 @@ fn stalk_points(points: &[DVec3], spacing: f64, run: &Run<'_>) -> Vec<bool> {
     let Some((_, _, variances)) = geom::pca3(points) else { return vec![false; points.len()] };
     // Wider than a stalk is thick, narrower than a blade.
     let reach = (0.45 * variances[0].sqrt()).max(3.0 * spacing);
-    let grid = Grid3::new(points, reach);
-    let line = map_indexed(run.executor, points.len(), |k| {
+    let few = some(points, STALK_SAMPLE);
+    let tree = KdTree::new(&few);
+    let line = map_indexed(run.executor, few.len(), |k| {
         let mut near = Vec::new();
-        grid.within(points[k], reach, &mut near);
+        tree.within(few[k], reach, &mut near);
         // At most 64 neighbours, evenly taken: enough for a direction.
         let step = near.len().div_ceil(64).max(1);
-        let near: Vec<DVec3> = near.iter().step_by(step).map(|&i| points[i]).collect();
+        let near: Vec<DVec3> = near.iter().step_by(step).map(|&i| few[i]).collect();
         // 0.06: a strip four times as long as wide; the margin of a blade has 0.25 and more.
         geom::pca3(&near).is_some_and(|(_, _, v)| near.len() >= 5 && v[1] < 0.06 * v[0])
     });
+    let next = map_indexed(run.executor, points.len(), |k| tree.nearest(points[k], f64::INFINITY));
+    let line: Vec<bool> = next.into_iter().map(|k| k.is_some_and(|k| line[k])).collect();
     let link = 4.0 * spacing;
-    let linked = Grid3::new(points, link);
+    let linked = KdTree::new(points);
     let (group, groups) = pieces(points, &linked, link, |i| line[i]);
     let extent = |members: &[usize]| {
         let first = points[members[0]];
@@ -226,12 +316,12 @@ fn stalk_points(points: &[DVec3], spacing: f64, run: &Run<'_>) -> Vec<bool> {
     };
     let blade_points = of(&|i| rest[i].is_some() && rest[i] == blade);
     let stalk_points = of(&|i| thin[i]);
-    let (near_blade, near_stalk) = (Grid3::new(&blade_points, link), Grid3::new(&stalk_points, link));
+    let (near_blade, near_stalk) = (KdTree::new(&blade_points), KdTree::new(&stalk_points));
     for (_, members) in rests.iter().enumerate().filter(|(k, _)| Some(*k) != blade) {
-        let nearest = |grid: &Grid3, of: &[DVec3]| {
+        let nearest = |tree: &KdTree, of: &[DVec3]| {
             let each = members
                 .iter()
-                .filter_map(|&i| Some(of[grid.nearest(points[i], f64::INFINITY)?].distance(points[i])));
+                .filter_map(|&i| Some(of[tree.nearest(points[i], f64::INFINITY)?].distance(points[i])));
             each.fold(f64::INFINITY, f64::min)
         };
         if nearest(&near_stalk, &stalk_points) < nearest(&near_blade, &blade_points) {
@@ -244,7 +334,7 @@ fn stalk_points(points: &[DVec3], spacing: f64, run: &Run<'_>) -> Vec<bool> {
 /// The points that `wanted` names, in pieces linked by steps of at most `link`: each point's piece, and pieces.
 fn pieces(
     points: &[DVec3],
-    grid: &Grid3,
+    grid: &KdTree,
     link: f64,
     wanted: impl Fn(usize) -> bool,
 ) -> (Vec<Option<usize>>, Vec<Vec<usize>>) {
@@ -280,8 +370,9 @@ fn plane_of(blade: &[DVec3], stem: &[DVec3], report: &mut Report) -> Option<Plan
         return None;
     }
     let z = if axes[2].y < 0.0 { -axes[2] } else { axes[2] };
-    let nearest = |p: DVec3| blade.iter().map(|q| q.distance_squared(p)).fold(f64::INFINITY, f64::min);
-    let join = stem.iter().map(|&p| (nearest(p), p)).min_by(|a, b| a.0.total_cmp(&b.0));
+    let tree = KdTree::new(blade);
+    let gap = |p: DVec3| Some(blade[tree.nearest(p, f64::INFINITY)?].distance_squared(p));
+    let join = stem.iter().filter_map(|&p| Some((gap(p)?, p))).min_by(|a, b| a.0.total_cmp(&b.0));
     let y = match join {
         // From where the stalk joins across the middle of the blade.
         Some((_, join)) => centre - join,
@@ -514,30 +605,52 @@ fn segment_distance(p: DVec3, a: DVec3, b: DVec3) -> f64 {
 struct Near<'a> {
     grid: &'a [DVec3],
     columns: usize,
-    index: Grid3,
+    points: KdTree,
+    /// The box round each cell of the grid, by its first corner.
+    boxes: Vec<[DVec3; 2]>,
     stalk: Vec<Ball>,
+    centres: KdTree,
 }
 
 impl<'a> Near<'a> {
     fn new(grid: &'a [DVec3], columns: usize, stalk: Option<&BallBSpline>) -> Self {
-        let stalk =
+        let stalk: Vec<Ball> =
             stalk.map_or_else(Vec::new, |s| (0..=200).map(|k| s.ball(f64::from(k) / 200.0)).collect());
-        Self { grid, columns, index: Grid3::new(grid, 0.0), stalk }
+        let centres: Vec<DVec3> = stalk.iter().map(|b| b.centre).collect();
+        let corner = |k: usize| grid[k.min(grid.len() - 1)];
+        let boxes = (0..grid.len()).map(|k| {
+            let [a, b, c, d] = [0, 1, columns, columns + 1].map(|step| corner(k + step));
+            [a.min(b).min(c).min(d), a.max(b).max(c).max(d)]
+        });
+        Self {
+            grid,
+            columns,
+            points: KdTree::new(grid),
+            boxes: boxes.collect(),
+            stalk,
+            centres: KdTree::new(&centres),
+        }
     }
 
     fn distance(&self, p: DVec3) -> f64 {
-        let tube = self.stalk.windows(2).map(|w| {
-            let d = segment_distance(p, w[0].centre, w[1].centre);
-            (d - w[0].radius).abs()
-        });
-        let tube = tube.fold(f64::INFINITY, f64::min);
-        let Some(near) = self.index.nearest(p, f64::INFINITY) else { return tube };
+        let from_tube = |k: usize| {
+            // A piece to each side: 200 pieces bend little from one to the next.
+            let pieces = self.stalk[k.saturating_sub(1)..self.stalk.len().min(k + 2)].windows(2);
+            let each = pieces.map(|w| (segment_distance(p, w[0].centre, w[1].centre) - w[0].radius).abs());
+            each.fold(f64::INFINITY, f64::min)
+        };
+        let mut best = self.centres.nearest(p, f64::INFINITY).map_or(f64::INFINITY, from_tube);
+        let Some(near) = self.points.nearest(p, f64::INFINITY) else { return best };
+        best = best.min(p.distance(self.grid[near]));
         let (n, rows) = (self.columns, self.grid.len() / self.columns);
         let (i, j) = (near / n, near % n);
-        let mut best = tube;
         // Two cells to each side: the nearest point of a stretched grid need not be on the nearest triangle.
         for y in i.saturating_sub(2)..(i + 2).min(rows - 1) {
             for x in j.saturating_sub(2)..(j + 2).min(n - 1) {
+                let [lo, hi] = self.boxes[y * n + x];
+                if p.distance_squared(p.clamp(lo, hi)) >= best * best {
+                    continue;
+                }
                 let at = |dy: usize, dx: usize| self.grid[(y + dy) * n + x + dx];
                 let (a, b, c, d) = (at(0, 0), at(0, 1), at(1, 1), at(1, 0));
                 best = best.min(triangle_distance(p, a, b, c)).min(triangle_distance(p, a, c, d));
@@ -593,10 +706,15 @@ mod tests {
 
     /// A leaf of 60 mm with a stalk of 40 mm, bent and folded, noise 0.2 mm, a hole and strays.
     fn cloud() -> Vec<DVec3> {
+        leaf_of(4000)
+    }
+
+    /// With so many points of the blade, and a sixteenth of it of the stalk.
+    fn leaf_of(count: usize) -> Vec<DVec3> {
         let mut s = Seed::new(11).stream(Draw::Test);
         let mut out = Vec::new();
         let shape = |x: f64, y: f64| DVec3::new(x, 0.25 * x.abs() - 6.0 * (y - 0.01) * (y - 0.01), -y);
-        while out.len() < 4000 {
+        while out.len() < count {
             let (x, y) = (s.range(-0.02, 0.02), s.range(0.0, 0.06));
             let half = 0.018 * ops::sin(ops::PI * (y / 0.06));
             let hole = DVec2::new(x - 0.008, y - 0.03).length() < 0.004;
@@ -604,7 +722,7 @@ mod tests {
                 out.push(shape(x, y) + DVec3::Y * (0.0002 * s.normal()));
             }
         }
-        for _ in 0..250 {
+        for _ in 0..count / 16 {
             let (t, a) = (s.range(0.0, 0.04), s.range(0.0, ops::PI));
             out.push(DVec3::new(0.001 * ops::cos(a), 0.3 * t + 0.001 * ops::sin(a), t));
         }
@@ -633,6 +751,50 @@ mod tests {
         assert!(length > 0.048 && length < 0.068, "{length}");
     }
 
+    fn found(cloud: &[DVec3]) -> ScanLeaf {
+        fit_scan(cloud, &ScanSpec::default(), &Run::plain(), &mut Report::default()).unwrap()
+    }
+
+    fn length(leaf: &ScanLeaf) -> f64 {
+        geom::polyline_length3(&leaf.midrib())
+    }
+
+    #[test]
+    fn a_dense_cloud_is_no_other_leaf_than_a_half_and_a_quarter_of_it() {
+        let all = leaf_of(24_000);
+        let whole = found(&all);
+        assert!(whole.explained > 0.98 && whole.covered > 0.95, "{} {}", whole.explained, whole.covered);
+        for step in [2, 4] {
+            let few: Vec<DVec3> = all.iter().copied().step_by(step).collect();
+            let part = found(&few);
+            assert!((length(&part) - length(&whole)).abs() < 0.002, "{} {}", length(&part), length(&whole));
+            assert!((part.explained - whole.explained).abs() < 0.01, "{}", part.explained);
+        }
+    }
+
+    #[test]
+    fn repeated_points_a_crowd_and_far_strays_change_no_leaf() {
+        let plain = found(&cloud());
+        let with = |more: &mut dyn Iterator<Item = DVec3>| {
+            let mut all = cloud();
+            all.extend(more);
+            found(&all)
+        };
+        let here = cloud()[10];
+        let repeated = with(&mut (0..150_000).map(|_| here));
+        let mut s = Seed::new(3).stream(Draw::Test);
+        // Seven of eight points on a hundredth of the blade.
+        let (u, v) = (DVec3::new(1.0, 0.25, 0.0), DVec3::new(0.0, -0.24, -1.0));
+        let middle = DVec3::new(0.004, 0.001 - 0.0024, -0.03);
+        let crowd =
+            with(&mut (0..30_000).map(|_| middle + u * s.range(-0.002, 0.002) + v * s.range(-0.002, 0.002)));
+        let strays = with(&mut (1..4).map(|k| DVec3::splat(-9e4 * f64::from(k))));
+        for (what, leaf) in [("repeated", repeated), ("crowd", crowd), ("strays", strays)] {
+            assert!((length(&leaf) - length(&plain)).abs() < 0.004, "{what}: {}", length(&leaf));
+            assert!(leaf.covered > 0.93 && leaf.outliers < 100, "{what}: {} {}", leaf.covered, leaf.outliers);
+        }
+    }
+
     #[test]
     fn clouds_that_are_no_leaf_are_refused() {
         let fit = |p: &[DVec3]| fit_scan(p, &ScanSpec::default(), &Run::plain(), &mut Report::default());
@@ -641,5 +803,6 @@ mod tests {
         assert!(fit(&[DVec3::ONE; 500]).is_err());
         let line: Vec<DVec3> = (0..500).map(|k| DVec3::X * (0.001 * f64::from(k))).collect();
         assert!(fit(&line).is_err());
+        assert!(fit(&vec![DVec3::ONE; 200_000]).is_err());
     }
 }

@@ -9,7 +9,7 @@ use crate::Bounds;
 ///
 /// ```
 /// use glam::DVec3;
-/// let c = mesh::PointCloud { points: vec![DVec3::ZERO, DVec3::Y], colors: vec![] };
+/// let c = mesh::PointCloud { points: vec![DVec3::ZERO, DVec3::Y], colors: vec![], offset_m: None };
 /// assert_eq!(c.bounds().size(), DVec3::Y);
 /// assert!(c.is_sound());
 /// ```
@@ -19,6 +19,8 @@ pub struct PointCloud {
     pub points: Vec<DVec3>,
     /// sRGB bytes; empty or one a point.
     pub colors: Vec<[u8; 3]>,
+    /// What was taken off all points, metres.
+    pub offset_m: Option<DVec3>,
 }
 
 impl PointCloud {
@@ -35,12 +37,27 @@ impl PointCloud {
         b
     }
 
+    /// What to take off the points of a cloud that lies a kilometre or more from its origin, such as one in UTM
+    /// coordinates, where the single precision of meshes is a tenth of a millimetre and worse: its middle in whole
+    /// metres. `None` for a cloud near its origin.
+    pub fn far_offset(points: &[DVec3]) -> Option<DVec3> {
+        let middle = |axis: fn(&DVec3) -> f64| {
+            let mut x: Vec<f64> = points.iter().map(axis).collect();
+            let half = x.len() / 2;
+            // The median: stray points and zeros for missing ones do not move it.
+            if x.is_empty() { 0.0 } else { x.select_nth_unstable_by(half, f64::total_cmp).1.round() }
+        };
+        let middle = DVec3::new(middle(|p| p.x), middle(|p| p.y), middle(|p| p.z));
+        (middle.abs().max_element() >= 1000.0 && middle.is_finite()).then_some(middle)
+    }
+
     /// The points of the given rows, in that order, with their colours. Rows beyond the end are left out.
     #[must_use]
     pub fn select(&self, rows: &[usize]) -> Self {
         Self {
             points: rows.iter().filter_map(|&i| self.points.get(i).copied()).collect(),
             colors: rows.iter().filter_map(|&i| self.colors.get(i).copied()).collect(),
+            offset_m: self.offset_m,
         }
     }
 }

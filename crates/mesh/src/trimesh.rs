@@ -55,6 +55,8 @@ pub struct Model {
     pub parts: Vec<Part>,
     /// Materials that the parts refer to.
     pub materials: Vec<Material>,
+    /// What was taken off all positions so that they fit in single precision; metres, +Y up. Files keep it as a note.
+    pub offset_m: Option<DVec3>,
 }
 
 /// An axis-aligned box in metres; empty when `min > max`.

@@ -153,7 +153,7 @@ fn bodies() -> Model {
         part("wood", 1, wood),
         part("leaves", 2, leaves),
     ];
-    Model { name: "bodies".into(), parts, materials }
+    Model { name: "bodies".into(), parts, materials, offset_m: None }
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

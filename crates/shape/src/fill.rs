@@ -165,7 +165,7 @@ pub(crate) fn silhouette(
     let markers = mask.markers(per_pixel.min(most), depth, own);
     let volume = mask.volume();
     let spacing = base::ops::cbrt(volume / markers.len().max(1) as f64).max(1e-9);
-    let grid = geom::Grid3::new(&hosts.skeleton.position, 4.0 * spacing);
+    let grid = geom::KdTree::new(&hosts.skeleton.position);
     let gap = markers
         .iter()
         .filter_map(|m| {

@@ -39,7 +39,7 @@ pub use leaves::{
     leaf_blade, make_leaf, make_leaf_from_scan, make_leaf_of, make_shoot,
 };
 pub use make::{ClassOverrides, Made, MakeError, SketchOptions, make_from_sketch};
-pub use motion::motion_model;
+pub use motion::{cloud_model, motion_model};
 pub use opening::{OpeningError, OpeningPlant};
 pub use report::{
     Counts, Fidelity, InputReport, ItemReport, REPORT_SCHEMA, RunReport, StrokeReport, TimingsMs,

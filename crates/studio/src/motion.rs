@@ -1,8 +1,8 @@
-//! An organ's motion -> the model of a day.
+//! Points -> models: an organ's motion at a day, a scan.
 
 use bloom::Motion;
 use glam::DVec3;
-use mesh::{Material, MaterialId, MaterialKind, Model, Part, TriMesh};
+use mesh::{Material, MaterialId, MaterialKind, Model, Part, PointCloud, TriMesh};
 
 /// The model of the `points` of a day: a part an organ.
 ///
@@ -31,4 +31,21 @@ pub fn motion_model(name: &str, faces: Option<&TriMesh>, motion: &Motion, points
         model.parts.push(Part { name: organ.clone(), material: MaterialId::new(material), mesh });
     }
     model
+}
+
+/// A scan as a model of points without triangles, with their colours.
+pub fn cloud_model(name: &str, cloud: &PointCloud) -> Model {
+    let mut mesh = TriMesh::default();
+    for p in &cloud.points {
+        mesh.push(*p);
+    }
+    mesh.colors = cloud.colors.iter().map(|c| c.map(crate::leaves::linear_of)).collect();
+    let look =
+        Material::plain("points", MaterialKind::Other, [if cloud.colors.is_empty() { 0.5 } else { 1.0 }; 3]);
+    Model {
+        name: name.to_owned(),
+        parts: vec![Part { name: "points".into(), material: MaterialId::new(0), mesh }],
+        materials: vec![look],
+        offset_m: cloud.offset_m,
+    }
 }

@@ -48,7 +48,7 @@ impl RunReport {
 }
 
 /// What was read.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct InputReport {
     /// The file, or several joined by `, `.
     pub path: String,
@@ -56,6 +56,9 @@ pub struct InputReport {
     pub drawings: u64,
     /// Strokes in all drawings.
     pub strokes: u64,
+    /// What was taken off the coordinates of clouds far from their origin, in the file's axes, metres: null if nothing.
+    #[serde(default)]
+    pub offset_m: Option<[f64; 3]>,
 }
 
 /// One plant.
@@ -163,7 +166,8 @@ pub struct TimingsMs {
     pub mesh: f64,
     /// Writing the model.
     pub write: f64,
-    /// Sum of the above, without process start.
+    /// From the command's start to its last file but the report: reading, computing, pictures and writing. Of a batch:
+    /// from the drawing's reading to its last file.
     pub total: f64,
 }
 

@@ -40,7 +40,7 @@ pub(crate) fn studio(args: &StudioArgs) -> Outcome {
     if !args.no_open && !open_browser(&url) {
         say::line("No browser could be opened: open the address yourself.");
     }
-    http::serve(&listener, &site);
+    http::serve(&listener, &site, http::Limits::USUAL);
     Ok(())
 }
 

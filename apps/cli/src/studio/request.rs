@@ -16,20 +16,11 @@ pub(crate) enum Target {
     Opened(String),
 }
 
-/// A request that may be answered.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Asked {
-    /// Of what.
-    pub(crate) target: Target,
-    /// Whether the bytes are wanted, not their headers only.
-    pub(crate) body: bool,
-}
-
 /// What a request with this head (up to and without the empty line) asks for. `hosts`: our own, with the port.
 ///
 /// # Errors
 /// The status and the words of the refusal.
-pub(crate) fn asked(head: &[u8], hosts: &[String]) -> Result<Asked, (u16, &'static str)> {
+pub(crate) fn asked(head: &[u8], hosts: &[String]) -> Result<Target, (u16, &'static str)> {
     let text = str::from_utf8(head).ok().filter(|t| !t.contains('\0'));
     let mut lines = text.ok_or((400, "the request is no text"))?.split("\r\n");
     let mut words = lines.next().unwrap_or_default().split(' ');
@@ -71,8 +62,7 @@ pub(crate) fn asked(head: &[u8], hosts: &[String]) -> Result<Asked, (u16, &'stat
     if !matches!(method, "GET" | "HEAD") {
         return Err((405, "files are only read here"));
     }
-    let target = target_of(target).ok_or((404, NO_FILE))?;
-    Ok(Asked { target, body: method == "GET" })
+    target_of(target).ok_or((404, NO_FILE))
 }
 
 /// What a target names.
@@ -119,7 +109,7 @@ mod tests {
 
     /// What must hold of any head that is not refused, told by reading it in another way.
     fn sound(head: &[u8]) {
-        let Ok(Asked { target, .. }) = asked(head, &hosts()) else { return };
+        let Ok(target) = asked(head, &hosts()) else { return };
         let text = String::from_utf8(head.to_vec()).expect("text").to_lowercase();
         let given = |name: &str| -> Vec<String> {
             let of = text.split("\r\n").skip(1).filter_map(|l| l.strip_prefix(name)?.strip_prefix(':'));
@@ -181,7 +171,6 @@ mod tests {
         let head =
             b"GET /assets/a-1.js?v=2 HTTP/1.1\r\nHost: localhost:7734\r\nOrigin: http://localhost:7734";
         sound(head);
-        let wanted = Asked { target: Target::File("assets/a-1.js".into()), body: true };
-        assert_eq!(asked(head, &hosts()), Ok(wanted));
+        assert_eq!(asked(head, &hosts()), Ok(Target::File("assets/a-1.js".into())));
     }
 }

@@ -4,7 +4,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::request::{Asked, NO_FILE, Target, asked};
+use super::request::{NO_FILE, Target, asked};
 use crate::failure::{Failure, Outcome};
 
 /// Nothing but the page's own files; WebAssembly may be compiled, data of the page may be shown as pictures.
@@ -37,12 +37,20 @@ pub(crate) struct Site {
     opened: Option<PathBuf>,
 }
 
-/// Status line, headers with the empty line, and the body's file (none for HEAD).
+/// Status line, headers with the empty line, and the body (none for HEAD).
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Answer {
     pub(crate) status: u16,
     pub(crate) head: String,
     pub(crate) body: Vec<u8>,
+}
+
+impl Answer {
+    /// The answer to a request with this head: to HEAD the headers only, refusals included.
+    pub(crate) fn to(self, head: &[u8]) -> Self {
+        let body = if head.starts_with(b"HEAD ") { Vec::new() } else { self.body };
+        Self { body, ..self }
+    }
 }
 
 impl Site {
@@ -53,13 +61,11 @@ impl Site {
 
     /// The answer to a request whose head (up to and without the empty line) is `head`.
     pub(crate) fn answer(&self, head: &[u8]) -> Answer {
-        match asked(head, &self.hosts) {
-            Ok(Asked { target, body }) => match self.path(&target) {
-                Some(path) => self.file(&path, body),
-                None => refusal(404, NO_FILE),
-            },
+        let answer = match asked(head, &self.hosts) {
+            Ok(target) => self.path(&target).map_or_else(|| refusal(404, NO_FILE), |path| self.file(&path)),
             Err((status, why)) => refusal(status, why),
-        }
+        };
+        answer.to(head)
     }
 
     /// The file that is asked for; nothing outside the folder, whatever links lie in it.
@@ -76,7 +82,7 @@ impl Site {
         (known && file.starts_with(&self.root) && file.is_file()).then_some(file)
     }
 
-    fn file(&self, path: &Path, wanted: bool) -> Answer {
+    fn file(&self, path: &Path) -> Answer {
         let Ok(bytes) = std::fs::read(path) else { return refusal(404, NO_FILE) };
         let inside = path.strip_prefix(&self.root).ok();
         let extension = path.extension().and_then(|e| e.to_str()).filter(|_| inside.is_some());
@@ -89,7 +95,7 @@ impl Site {
              Content-Security-Policy: {POLICY}\r\n{ALWAYS}\r\n",
             bytes.len()
         );
-        Answer { status: 200, head, body: if wanted { bytes } else { Vec::new() } }
+        Answer { status: 200, head, body: bytes }
     }
 }
 
@@ -164,6 +170,15 @@ mod tests {
         );
         let head = get(&site, "HEAD / HTTP/1.1", "");
         assert!(head.status == 200 && head.body.is_empty() && head.head.contains("Content-Length: 19"));
+        for (line, headers, status) in [
+            ("HEAD /none.js HTTP/1.1", "", 404),
+            ("HEAD / HTTP/1.1", "\r\nOrigin: http://evil.example", 403),
+            ("HEAD / HTTP/1.1", "\r\nContent-Length: 5", 413),
+            ("HEAD / HTTP/2.0", "", 505),
+        ] {
+            let answer = get(&site, line, headers);
+            assert!(answer.status == status && answer.body.is_empty(), "{line}{headers}: {answer:?}");
+        }
         let opened = get(&site, "GET /opened/my%20rose.svg HTTP/1.1", "");
         assert!(opened.status == 200 && opened.head.contains("application/octet-stream"), "{}", opened.head);
         fs::remove_dir_all(base).unwrap();

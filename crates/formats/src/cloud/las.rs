@@ -1,7 +1,5 @@
 //! LAS 1.0 to 1.4, point formats 0 to 10.
 
-use base::Report;
-
 use super::{CloudFormat, MAX_POINTS, Sink, too_many};
 use crate::error::{CloudError, FileFault, Place};
 
@@ -36,7 +34,7 @@ impl Bytes<'_> {
     }
 }
 
-pub(super) fn read(bytes: &[u8], sink: &mut Sink, report: &mut Report) -> Result<(), CloudError> {
+pub(super) fn read(bytes: &[u8], sink: &mut Sink) -> Result<(), CloudError> {
     let b = Bytes(bytes);
     if b.get::<4>(0)? != *b"LASF" {
         return Err(fail(0, "it does not begin with `LASF`"));
@@ -100,13 +98,6 @@ pub(super) fn read(bytes: &[u8], sink: &mut Sink, report: &mut Report) -> Result
     }
     if count > MAX_POINTS {
         return Err(too_many(CloudFormat::Las));
-    }
-    // Far from 0 a scale of 1e-3 still leaves ten digits, but pictures and meshes are f32.
-    if offset.iter().any(|o| o.abs() > 1e5) {
-        report.warn(
-            "las-far",
-            "the points lie more than 100 km from their origin; move them near it for meshes",
-        );
     }
     for row in bytes[data_at..].chunks_exact(record).take(count) {
         let at = |k: usize| {

@@ -7,7 +7,7 @@ mod text;
 
 use std::io::{Read, Write};
 
-use base::{Report, UpAxis};
+use base::Report;
 use glam::DVec3;
 use mesh::PointCloud;
 
@@ -100,7 +100,7 @@ pub fn read_cloud(
         CloudFormat::Ply => ply::read(&bytes, &mut sink, report)?,
         CloudFormat::Xyz => text::read(&bytes, &mut sink, report)?,
         CloudFormat::Pcd => pcd::read(&bytes, &mut sink)?,
-        CloudFormat::Las => las::read(&bytes, &mut sink, report)?,
+        CloudFormat::Las => las::read(&bytes, &mut sink)?,
         CloudFormat::Obj => text::read_obj(&bytes, &mut sink)?,
     }
     let Sink { mut cloud, dropped } = sink;
@@ -125,19 +125,18 @@ pub fn write_cloud_ply(cloud: &PointCloud, spec: &ExportSpec, mut out: impl Writ
     let colors = cloud.colors.len() == cloud.points.len() && !cloud.colors.is_empty();
     write!(
         out,
-        "ply\nformat binary_little_endian 1.0\ncomment unit {}\nelement vertex {}\nproperty double x\n\
+        "ply\nformat binary_little_endian 1.0\ncomment unit {}\n{}element vertex {}\nproperty double x\n\
          property double y\nproperty double z\n",
         spec.unit_word(),
+        spec.offset_line(cloud.offset_m, "comment"),
         cloud.points.len()
     )?;
     if colors {
         out.write_all(b"property uchar red\nproperty uchar green\nproperty uchar blue\n")?;
     }
     out.write_all(b"end_header\n")?;
-    let per_metre = 1.0 / spec.unit.metres();
     for (i, p) in cloud.points.iter().enumerate() {
-        let p = if spec.up == UpAxis::Z { DVec3::new(p.x, -p.z, p.y) } else { *p };
-        for x in (p * per_metre).to_array() {
+        for x in spec.place(*p) {
             out.write_all(&x.to_le_bytes())?;
         }
         if colors {

@@ -65,6 +65,20 @@ impl ExportSpec {
         if self.unit == Unit::Metre { turned } else { turned * self.unit.metres() }
     }
 
+    /// A place or offset in metres, +Y up, as the file has it.
+    pub fn place(&self, p: DVec3) -> [f64; 3] {
+        let p = if self.up == UpAxis::Z { DVec3::new(p.x, -p.z, p.y) } else { p };
+        (p * (1.0 / self.unit.metres())).to_array()
+    }
+
+    /// A line on what was taken off all positions, in the unit and axes of the file; empty where nothing was.
+    pub(crate) fn offset_line(&self, offset_m: Option<DVec3>, mark: &str) -> String {
+        offset_m.map_or(String::new(), |o| {
+            let [x, y, z] = self.place(o);
+            format!("{mark} offset {x} {y} {z}\n")
+        })
+    }
+
     /// Turns what was read into metres, +Y up.
     pub(crate) fn import(&self, model: &mut Model) {
         if self.is_default() {

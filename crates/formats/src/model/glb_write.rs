@@ -98,6 +98,9 @@ fn write(
         generator: Some(concat!("Burgeon ", env!("CARGO_PKG_VERSION")).into()),
         extras: Some(json!({ "unit": "metre", "up": "+Y" })),
     };
+    if let (Some(extras), Some(offset)) = (&mut w.root.asset.extras, model.offset_m) {
+        extras["offset_m"] = json!(offset.to_array());
+    }
     w.materials(model, cache)?;
     w.nodes(model, morph)?;
     w.animation(model, morph)?;
@@ -396,6 +399,7 @@ mod tests {
             name: "petal".into(),
             parts: vec![Part { name: "petals".into(), material: MaterialId::new(0), mesh }],
             materials: vec![mesh::Material::plain("petal", mesh::MaterialKind::Petal, [1.0; 3])],
+            offset_m: None,
         }
     }
 

@@ -246,7 +246,7 @@ impl Reader {
     fn model(self, name: &str) -> Model {
         let mut names = Names::default();
         let title = self.title.clone().filter(|t| !t.is_empty()).unwrap_or_else(|| name.to_owned());
-        let mut model = Model { name: title, parts: Vec::new(), materials: Vec::new() };
+        let mut model = Model { name: title, ..Model::default() };
         for (wanted, material, faces) in &self.faces {
             let part = Part {
                 name: names.fresh(wanted, if name.is_empty() { "part" } else { name }),

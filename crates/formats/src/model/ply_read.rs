@@ -118,6 +118,7 @@ pub(super) fn read(bytes: &[u8], name: &str, report: &mut Report) -> Result<Mode
         name: name.to_owned(),
         parts: vec![Part { name: part.to_owned(), material: MaterialId::new(0), mesh }],
         materials: vec![Material::plain("default", MaterialKind::Other, [1.0; 3])],
+        offset_m: None,
     })
 }
 

@@ -31,10 +31,11 @@ pub fn write_ply(model: &Model, spec: &ExportSpec, mut out: impl Write) -> Resul
     }
     write!(
         out,
-        "ply\nformat binary_little_endian 1.0\ncomment Burgeon {}; {}, +{:?} up\nelement vertex {vertices}\n",
+        "ply\nformat binary_little_endian 1.0\ncomment Burgeon {}; {}, +{:?} up\n{}element vertex {vertices}\n",
         env!("CARGO_PKG_VERSION"),
         spec.unit_word(),
-        spec.up
+        spec.up,
+        spec.offset_line(model.offset_m, "comment")
     )?;
     for name in ["x", "y", "z", "nx", "ny", "nz", "s", "t"] {
         writeln!(out, "property float {name}")?;

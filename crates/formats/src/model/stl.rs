@@ -27,6 +27,9 @@ const FACET: usize = 50;
 /// ```
 pub fn write_stl(model: &Model, spec: &ExportSpec, mut out: impl Write) -> Result<(), WriteError> {
     check(model)?;
+    if model.triangle_count() == 0 && model.vertex_count() > 0 {
+        return Err(WriteError::NoTriangles);
+    }
     // Must not begin with `solid`: that marks the text form.
     let text = format!("Burgeon {}; {}, +{:?} up", env!("CARGO_PKG_VERSION"), spec.unit_word(), spec.up);
     let mut header = [b' '; HEADER];
@@ -69,6 +72,7 @@ pub(super) fn read(bytes: &[u8], name: &str, report: &mut Report) -> Result<Mode
         name: name.to_owned(),
         parts: vec![Part { name: part_name.to_owned(), material: MaterialId::new(0), mesh }],
         materials: vec![material],
+        offset_m: None,
     })
 }
 

@@ -54,6 +54,10 @@ pub fn usd_files(model: &Model, stem: &str, spec: &ExportSpec) -> Result<UsdFile
     };
     writeln!(out, "#usda 1.0\n(\n    defaultPrim = \"{root}\"")?;
     writeln!(out, "    doc = \"Burgeon {}\"", env!("CARGO_PKG_VERSION"))?;
+    if let Some(offset) = model.offset_m {
+        let [x, y, z] = spec.place(offset);
+        writeln!(out, "    customLayerData = {{\n        double3 offset = ({x}, {y}, {z})\n    }}")?;
+    }
     writeln!(out, "    metersPerUnit = {metres}\n    upAxis = \"{up}\"\n)\n")?;
     writeln!(out, "def Xform \"{root}\" (")?;
     writeln!(out, "    assetInfo = {{\n        string name = {}\n    }}", Quoted(&model.name))?;

@@ -30,7 +30,7 @@ fn turn(spec: &ExportSpec, v: DVec3) -> DVec3 {
 }
 
 fn place(spec: &ExportSpec, p: DVec3) -> DVec3 {
-    turn(spec, p.map(|x| length(spec, x)))
+    DVec3::from_array(spec.place(p))
 }
 
 /// A plain decimal with `digits` digits after the point at most: readers of MTG split at the `+` of `1e+5`.

@@ -10,7 +10,9 @@ use crate::{ExportSpec, WriteError};
 /// Writes the shoot of a sound plant as a table of cylinders (CSV with a head), in the words of `TreeQSM` (Raumonen et
 /// al. 2013): `radius`, `length`, `start_x` to `start_z`, `axis_x` to `axis_z` (unit vector), `parent` (row from 1; 0
 /// for what stands on the ground), `extension` (the row that goes on with the branch; 0 at its end), `branch` (from
-/// 1), `BranchOrder` (0 for the trunk), `PositionInBranch` (from 1).
+/// 1), `BranchOrder` (0 for the trunk), `PositionInBranch` (from 1). After these, which stay where they are, come the
+/// names under which R has the same numbers and without which rTwig refuses a table: `UnmodRadius` (the radius before
+/// a correction), `start.x` to `axis.z`, and `added` (1 for a cylinder that closes a gap: none does).
 ///
 /// One cylinder for each internode with a length, base first, bearers before what they bear; its radius gives it the
 /// internode's volume. Lengths are in `spec`'s unit. Not written: roots, leaf stalks, organs. Cost: linear.
@@ -25,14 +27,14 @@ use crate::{ExportSpec, WriteError};
 /// p.nodes.radius_m = vec![0.1, 0.1];
 /// let mut out = Vec::new();
 /// formats::write_qsm(&p, &formats::ExportSpec::default(), &mut out)?;
-/// assert!(String::from_utf8(out)?.ends_with("\n0.1,2,0,0,0,0,1,0,0,0,1,0,1\n"));
+/// assert!(String::from_utf8(out)?.ends_with("\n0.1,2,0,0,0,0,1,0,0,0,1,0,1,0.1,0,0,0,0,1,0,0\n"));
 /// # Ok::<(), Box<dyn core::error::Error>>(())
 /// ```
 pub fn write_qsm(plant: &Plant, spec: &ExportSpec, mut out: impl Write) -> Result<(), WriteError> {
     writeln!(
         out,
         "radius,length,start_x,start_y,start_z,axis_x,axis_y,axis_z,parent,extension,branch,BranchOrder,\
-         PositionInBranch"
+         PositionInBranch,UnmodRadius,start.x,start.y,start.z,axis.x,axis.y,axis.z,added"
     )?;
     let shoot = plant.shoot();
     // The cylinder that ends at each node, from 1.
@@ -64,14 +66,12 @@ pub fn write_qsm(plant: &Plant, spec: &ExportSpec, mut out: impl Write) -> Resul
             let extension = if Some(k) == last { 0 } else { row + 1 };
             let long = length(spec, w[0].distance(w[1]));
             // A radius to 10 nanometres: twigs are thin.
-            write!(out, "{},{}", decimal(radius, 8), micrometres(spec, long))?;
-            for x in start.to_array() {
-                write!(out, ",{}", micrometres(spec, x))?;
-            }
-            for x in axis_of.to_array() {
-                write!(out, ",{}", decimal(x, 8))?;
-            }
-            writeln!(out, ",{parent},{extension},{branch},{},{position}", axis.order)?;
+            let radius = decimal(radius, 8);
+            let [x, y, z] = start.to_array().map(|x| micrometres(spec, x));
+            let [u, v, w] = axis_of.to_array().map(|x| decimal(x, 8));
+            let (line, order) = (format!("{x},{y},{z},{u},{v},{w}"), axis.order);
+            write!(out, "{radius},{},{line},{parent},{extension},", micrometres(spec, long))?;
+            writeln!(out, "{branch},{order},{position},{radius},{line},0")?;
             ends_at[node.index()] = row;
             parent = row;
         }

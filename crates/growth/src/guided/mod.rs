@@ -7,7 +7,7 @@ mod spec;
 
 use base::ops::{self, PI, TAU};
 use base::{Draw, Report, Run, Seed, map_indexed};
-use geom::Grid3;
+use geom::KdTree;
 use glam::DVec3;
 
 use crate::colonize::{grow_bole, plant_roots};
@@ -258,7 +258,7 @@ impl<'a> Stand<'a> {
         self.markers_made += markers.len();
         run.cancel.check()?;
         let places: Vec<DVec3> = markers.iter().map(|m| m.at).collect();
-        let grid = Grid3::new(&places, self.spec.far * self.spec.internode_m);
+        let grid = KdTree::new(&places);
         let looks = map_indexed(run.executor, groups, |g| {
             let mut near = Vec::new();
             let of = of_group(g).iter().zip(g * GROUP..);
@@ -314,7 +314,7 @@ impl<'a> Stand<'a> {
         markers: &[Marker],
         owner: &[u32],
         own: core::ops::Range<usize>,
-        grid: &Grid3,
+        grid: &KdTree,
         near: &mut Vec<usize>,
     ) -> Look {
         let (bud, spec) = (&self.buds[b as usize], self.spec);

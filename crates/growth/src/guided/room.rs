@@ -1,7 +1,7 @@
 //! Where buds may find room: an envelope, and the tubes of brush strokes.
 
 use base::ops;
-use geom::Grid3;
+use geom::KdTree;
 use glam::DVec3;
 
 use super::spec::{BrushStroke, GuidedSpec};
@@ -22,7 +22,7 @@ struct Piece {
 #[derive(Debug)]
 struct Tubes {
     pieces: Vec<Piece>,
-    grid: Grid3,
+    grid: KdTree,
     reach: f64,
 }
 
@@ -71,7 +71,7 @@ impl Tubes {
             .map(|p| p.radius.0.max(p.radius.1) + 0.5 * p.from.distance(p.to))
             .fold(0.0, f64::max);
         let middles: Vec<DVec3> = pieces.iter().map(|p| p.from.lerp(p.to, 0.5)).collect();
-        (!pieces.is_empty()).then(|| Self { grid: Grid3::new(&middles, reach), pieces, reach })
+        (!pieces.is_empty()).then(|| Self { grid: KdTree::new(&middles), pieces, reach })
     }
 
     /// The strongest guide at a point; none outside every tube.

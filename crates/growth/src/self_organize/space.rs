@@ -1,6 +1,6 @@
 //! Free space as markers: a bud has light if any free marker is nearest to it and in its cone.
 
-use geom::Grid3;
+use geom::KdTree;
 use glam::DVec3;
 
 use super::grove::{Grove, Kept, NONE, WAITS};
@@ -12,7 +12,7 @@ const FREE: u32 = u32::MAX;
 #[derive(Clone, Debug)]
 pub(super) struct Space {
     markers: Vec<DVec3>,
-    grid: Grid3,
+    grid: KdTree,
     gone: Vec<bool>,
     occupancy: f64,
     perception: f64,
@@ -31,7 +31,7 @@ impl Space {
     /// `reach`: occupancy and perception radius, metres; `half_angle` of the cone, radians.
     pub(super) fn new(markers: &[DVec3], reach: (f64, f64), half_angle: f64) -> Self {
         Self {
-            grid: Grid3::new(markers, reach.1),
+            grid: KdTree::new(markers),
             gone: vec![false; markers.len()],
             best: vec![(f64::INFINITY, FREE); markers.len()],
             markers: markers.to_vec(),
