@@ -265,7 +265,7 @@ fn bad(path: &Path) -> impl Fn(bloom::BloomError) -> Failure + '_ {
 }
 
 fn fit(args: &FitArgs) -> Outcome {
-    let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
+    let machine = Machine::new(&args.common);
     output::check_target(&args.output)?;
     if let Some(plot) = &args.plot {
         output::check_target(plot)?;
@@ -382,7 +382,7 @@ struct Show<'a> {
 }
 
 fn run(args: &BloomRunArgs) -> Outcome {
-    let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
+    let machine = Machine::new(&args.common);
     let law = args.law.as_deref().map(read_law).transpose()?;
     if args.day.is_some_and(|d| !d.is_finite()) {
         return Err(Failure::Bad("--day must be a finite number".into()));

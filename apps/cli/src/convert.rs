@@ -10,7 +10,7 @@ use crate::machine::Machine;
 use crate::{output, picture, report, say};
 
 pub(crate) fn convert(args: &ConvertArgs) -> Outcome {
-    let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
+    let machine = Machine::new(&args.common);
     let outputs =
         [("-o", Some(&args.output)), ("--png", args.png.as_ref()), ("--report", args.common.report.as_ref())];
     output::check_outputs(&outputs, &[&args.input])?;

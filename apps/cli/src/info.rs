@@ -17,7 +17,7 @@ const LISTED: usize = 20;
 const WARNINGS: usize = 50;
 
 pub(crate) fn info(args: &InfoArgs) -> Outcome {
-    let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
+    let machine = Machine::new(&args.common);
     let (input, kind) = files::open(&args.input)?;
     // A pipe has no size.
     let bytes = std::fs::metadata(&args.input).ok().filter(std::fs::Metadata::is_file).map(|m| m.len());

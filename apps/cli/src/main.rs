@@ -11,6 +11,7 @@ mod grow;
 mod info;
 mod leaf;
 mod machine;
+mod memory;
 mod output;
 mod petals;
 mod picture;

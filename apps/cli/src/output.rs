@@ -51,6 +51,13 @@ pub(crate) fn remove_drafts() {
     }
 }
 
+/// [`remove_drafts`] where nothing may be waited for: the caller may hold what it takes.
+pub(crate) fn abandon_drafts() {
+    if let Ok(drafts) = DRAFTS.try_lock() {
+        drafts.iter().for_each(|path| drop(fs::remove_file(path)));
+    }
+}
+
 /// Writes a file through a temporary one beside it, which is renamed once it is complete.
 ///
 /// A link is followed: what it points to is replaced. A device or a pipe (`/dev/stdout`) is written as it is.

@@ -11,7 +11,7 @@ use crate::machine::Machine;
 use crate::{files, output, report, say};
 
 pub(crate) fn render(args: &RenderArgs) -> Outcome {
-    let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
+    let machine = Machine::new(&args.common);
     check_name(&args.output)?;
     let outputs = [("-o", Some(&args.output)), ("--report", args.common.report.as_ref())];
     output::check_outputs(&outputs, &[&args.input])?;

@@ -7,6 +7,7 @@
 //! | [`ops`] | transcendental functions with the same bits on every platform |
 //! | [`turn`] | turns and directions, likewise |
 //! | `seed` | [`Seed`], [`Draw`], [`Stream`]: randomness as a value |
+//! | `budget` | [`Budget`], [`OverBudget`]: how much may be made |
 //! | `task` | [`CancelToken`], [`Executor`], [`Run`]: how something is computed, never what |
 //! | `report` | [`Report`], [`Warning`]: what a computation wants to tell its user |
 //! | `digest` | [`Digest`]: a fingerprint of a result that does not depend on the machine |
@@ -14,6 +15,7 @@
 //! | `units` | [`Unit`], [`UpAxis`], [`Angle`]: conversions at the door |
 //! | `ids` | [`define_id!`]: typed `u32` handles |
 
+mod budget;
 mod digest;
 mod exps;
 mod ids;
@@ -25,6 +27,7 @@ mod task;
 pub mod turn;
 mod units;
 
+pub use budget::{Budget, Counted, OverBudget, Stopped};
 pub use digest::{Digest, Digestible};
 pub use report::{Report, Stage, Warning};
 pub use seed::{Draw, Seed, Stream};
