@@ -73,12 +73,14 @@ impl Counted {
         match self {
             Self::Roots => 1_000,
             Self::Points => 2_000_000,
-            Self::Joints | Self::Leaves | Self::Obstacles => 1_000_000,
+            Self::Joints => 2_000_000,
+            Self::Leaves | Self::Obstacles => 1_000_000,
             Self::Course => 100_000,
             Self::JointYears => 20_000_000,
             Self::Triangles => 16_000_000,
             Self::Samples => 2_000_000_000,
-            Self::Strokes | Self::Edits => 1_000,
+            Self::Strokes => 20_000,
+            Self::Edits => 1_000,
             Self::Cloud => 20_000_000,
         }
     }

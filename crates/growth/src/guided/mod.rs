@@ -6,7 +6,7 @@ mod room;
 mod spec;
 
 use base::ops::{self, PI, TAU};
-use base::{Draw, Report, Run, Seed, map_indexed};
+use base::{Counted, Draw, Report, Run, Seed, map_indexed};
 use geom::Grid3;
 use glam::DVec3;
 
@@ -70,12 +70,13 @@ pub fn guide(
     run: &Run<'_>,
     report: &mut Report,
 ) -> Result<Guided, GrowthError> {
-    let mut skeleton = plant_roots(roots, obstacles)?;
-    let room = Room::new(spec, roots.to_vec(), obstacles)?;
+    let mut skeleton = plant_roots(roots, obstacles, run)?;
+    let room = Room::new(spec, roots.to_vec(), obstacles, &run.budget)?;
     spec.check()?;
     let mut buds = Vec::new();
     for root in 0..skeleton.len() {
-        let top = grow_bole(&mut skeleton, JointId::new(root), room.foot(), spec.internode_m, obstacles);
+        let top =
+            grow_bole(&mut skeleton, JointId::new(root), room.foot(), spec.internode_m, obstacles, run)?;
         buds.push(StartBud { joint: top, heading: DVec3::Y, wakes: 0 });
     }
     grow(skeleton, &buds, &room, spec, seed, run, report)
@@ -100,7 +101,7 @@ pub fn guide_from(
         return Err(GrowthError::NoRoots);
     }
     let roots = skeleton.position.iter().zip(&skeleton.parent).filter(|(_, p)| p.is_none());
-    let room = Room::new(spec, roots.map(|(p, _)| *p).collect(), obstacles)?;
+    let room = Room::new(spec, roots.map(|(p, _)| *p).collect(), obstacles, &run.budget)?;
     grow(skeleton, buds, &room, spec, seed, run, report)
 }
 
@@ -127,6 +128,11 @@ fn grow(
             );
             break;
         }
+        run.budget.check(
+            Counted::Joints,
+            stand.skeleton.len() as u64,
+            "lower rounds, alpha or max_joints, or make internode_m longer",
+        )?;
         if !stand.round(round, run)? {
             break;
         }
@@ -242,6 +248,8 @@ impl<'a> Stand<'a> {
         if awake.is_empty() {
             return Ok(waiting);
         }
+        let all = u64::from(self.spec.markers) * awake.len() as u64;
+        run.budget.check(Counted::Points, all, "lower markers, rounds or alpha, or give fewer roots")?;
         let groups = awake.len().div_ceil(GROUP);
         let of_group = |g: usize| &awake[g * GROUP..awake.len().min((g + 1) * GROUP)];
         let made = map_indexed(run.executor, groups, |g| {

@@ -9,7 +9,7 @@ mod space;
 mod spec;
 
 use base::ops::{self, PI};
-use base::{Draw, Report, Run, Seed};
+use base::{Counted, Draw, Report, Run, Seed};
 use glam::DVec3;
 use plant::Phyllotaxis;
 
@@ -66,7 +66,7 @@ pub fn self_organize(
 ) -> Result<SelfOrganized, GrowthError> {
     let numbers = spec.check()?;
     let started = run.clock.now_ms();
-    let mut skeleton = plant_roots(roots, obstacles)?;
+    let mut skeleton = plant_roots(roots, obstacles, run)?;
     let light = match &spec.light {
         Light::Shadow { voxel_m, a, b, layers, full } => {
             let voxel = voxel_m.unwrap_or(2.0 * spec.internode_m);
@@ -75,6 +75,8 @@ pub fn self_organize(
         }
         Light::Space { envelope, markers, occupancy, perception, half_angle_deg } => {
             let reach = (occupancy * spec.internode_m, perception * spec.internode_m);
+            let all = u64::from(*markers) * roots.len() as u64;
+            run.budget.check(Counted::Points, all, "lower light.markers or give fewer roots")?;
             let region = envelope.prepare()?;
             let mut places = Vec::new();
             for (root, i) in roots.iter().zip(0_u64..) {
@@ -85,7 +87,7 @@ pub fn self_organize(
             // Markers begin where the crown does: without a bole no bud would see any.
             for root in 0..roots.len() {
                 let foot = (region.foot() - reach.0).max(0.0);
-                grow_bole(&mut skeleton, JointId::new(root), foot, spec.internode_m, obstacles);
+                grow_bole(&mut skeleton, JointId::new(root), foot, spec.internode_m, obstacles, run)?;
             }
             LightModel::Space(Space::new(&places, reach, half_angle_deg * (PI / 180.0)))
         }
@@ -106,11 +108,12 @@ pub fn self_organize(
         kept: Kept::default(),
         generated: 0,
         shed: 0,
+        work: 0,
     };
     forest.cast_from(0);
     for year in 0..spec.years {
         run.cancel.check()?;
-        if let Some(next) = forest.year(year) {
+        if let Some(next) = forest.year(year, run)? {
             report.warn("growth-stopped", too_much(spec, year, forest.grove.len(), next));
             break;
         }
@@ -180,11 +183,15 @@ struct Forest<'a> {
     kept: Kept,
     generated: usize,
     shed: usize,
+    /// Joints of all years so far.
+    work: u64,
 }
 
 impl Forest<'_> {
     /// The joints that there would be after this year if that is more than allowed: then nothing has sprouted.
-    fn year(&mut self, year: u32) -> Option<usize> {
+    fn year(&mut self, year: u32, run: &Run<'_>) -> Result<Option<usize>, GrowthError> {
+        self.work += self.grove.len() as u64;
+        run.budget.check(Counted::JointYears, self.work, "lower years or max_joints")?;
         self.look();
         self.flow.gather(&self.grove, &self.bud_light);
         self.drop_dark_branches(year);
@@ -198,12 +205,13 @@ impl Forest<'_> {
         self.flow.share(&self.grove, &self.bud_light, self.spec.alpha, sharing);
         let next = self.grove.len() + self.sprouting();
         if next > self.spec.max_joints as usize {
-            return Some(next);
+            return Ok(Some(next));
         }
+        run.budget.check(Counted::Joints, next as u64, "lower years, alpha or max_joints")?;
         self.sprout(year + 1);
         let tip = ops::powf(self.spec.tip_radius_m, self.spec.pipe_exponent);
         self.grove.thicken(tip);
-        None
+        Ok(None)
     }
 
     /// Light of every bud.
