@@ -20,21 +20,17 @@ pub enum Counted {
     Leaves,
     /// Triangles of meshes.
     Triangles,
-    /// Samples of pictures.
-    Samples,
     /// Triangles of all obstacles and envelopes.
     Obstacles,
     /// Strokes of a drawing.
     Strokes,
     /// Edits by hand of one plant.
     Edits,
-    /// Points of scans.
-    Cloud,
 }
 
 impl Counted {
     /// All of them, in the order of `docs/limits.md`.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 10] = [
         Self::Roots,
         Self::Points,
         Self::Joints,
@@ -42,11 +38,9 @@ impl Counted {
         Self::JointYears,
         Self::Leaves,
         Self::Triangles,
-        Self::Samples,
         Self::Obstacles,
         Self::Strokes,
         Self::Edits,
-        Self::Cloud,
     ];
 
     /// In messages.
@@ -59,11 +53,9 @@ impl Counted {
             Self::JointYears => "joints times years",
             Self::Leaves => "places for leaves",
             Self::Triangles => "triangles",
-            Self::Samples => "samples of pictures",
             Self::Obstacles => "triangles of obstacles and envelopes",
             Self::Strokes => "strokes",
             Self::Edits => "edits",
-            Self::Cloud => "points of scans",
         }
     }
 
@@ -78,10 +70,8 @@ impl Counted {
             Self::Course => 100_000,
             Self::JointYears => 20_000_000,
             Self::Triangles => 16_000_000,
-            Self::Samples => 2_000_000_000,
             Self::Strokes => 20_000,
             Self::Edits => 1_000,
-            Self::Cloud => 20_000_000,
         }
     }
 }
