@@ -336,6 +336,10 @@ fn specs_at_the_ends_of_all_ranges_make_a_plant_or_one_line() {
     let count = std::env::var("BURGEON_EXTREMES").ok().and_then(|n| n.parse().ok()).unwrap_or(240);
     let (next, made) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let one = |i: usize, dir: &Path| {
+        let only = std::env::var("BURGEON_ONLY").ok().and_then(|n| n.parse().ok());
+        if only.is_some_and(|n: usize| n != i) {
+            return;
+        }
         let mut extremes = Extremes { defs, dice: Dice(i as u64) };
         // Each method in turn; of all else now and then a field.
         let methods = defs["Method"]["oneOf"].as_array().unwrap();
@@ -353,7 +357,7 @@ fn specs_at_the_ends_of_all_ranges_make_a_plant_or_one_line() {
             _ => panic!("{status:?} after {time:?}: {said}\n{text}"),
         }
         if std::env::var_os("BURGEON_TELL").is_some() && time > Duration::from_secs(1) {
-            println!("{i}: {time:?} {status:?} {said}");
+            println!("{i}: {time:?} {status:?} {said}\n{text}");
         }
     };
     std::thread::scope(|scope| {

@@ -14,6 +14,8 @@ pub enum Counted {
     Joints,
     /// Steps, and places for leaves, along one shoot.
     Course,
+    /// Points that buds look at, each time that one does: what growth by markers takes time for.
+    Looks,
     /// Joints times the years that they live through: what self-organising growth takes time for.
     JointYears,
     /// Places for leaves.
@@ -30,11 +32,12 @@ pub enum Counted {
 
 impl Counted {
     /// All of them, in the order of `docs/limits.md`.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Roots,
         Self::Points,
         Self::Joints,
         Self::Course,
+        Self::Looks,
         Self::JointYears,
         Self::Leaves,
         Self::Triangles,
@@ -50,6 +53,7 @@ impl Counted {
             Self::Points => "attraction points",
             Self::Joints => "joints",
             Self::Course => "steps or leaves along one shoot",
+            Self::Looks => "looks of buds at markers",
             Self::JointYears => "joints times years",
             Self::Leaves => "places for leaves",
             Self::Triangles => "triangles",
@@ -68,6 +72,7 @@ impl Counted {
             Self::Joints => 2_000_000,
             Self::Leaves | Self::Obstacles => 1_000_000,
             Self::Course => 100_000,
+            Self::Looks => 100_000_000,
             Self::JointYears => 20_000_000,
             Self::Triangles => 16_000_000,
             Self::Strokes => 20_000,

@@ -5,8 +5,10 @@
 mod room;
 mod spec;
 
+use core::sync::atomic::{AtomicU64, Ordering};
+
 use base::ops::{self, PI, TAU};
-use base::{Counted, Draw, Report, Run, Seed, map_indexed};
+use base::{Counted, Draw, OverBudget, Report, Run, Seed, map_indexed};
 use geom::Grid3;
 use glam::DVec3;
 
@@ -196,7 +198,13 @@ struct Stand<'a> {
     seed: Seed,
     markers_made: usize,
     died: usize,
+    /// Markers that buds have looked at.
+    looks: AtomicU64,
 }
+
+/// What to do where buds look at too many markers.
+const TOO_CROWDED: &str =
+    "lower far, markers or rounds, or raise half_angle_deg or repulsion so that more buds die";
 
 fn place_key(p: DVec3) -> u64 {
     p.x.to_bits() ^ p.y.to_bits().rotate_left(21) ^ p.z.to_bits().rotate_left(42)
@@ -234,7 +242,19 @@ impl<'a> Stand<'a> {
             }
         });
         let buds = buds.collect();
-        Self { is_main, given, buds, skeleton, room, spec, numbers, seed, markers_made: 0, died: 0 }
+        Self {
+            is_main,
+            given,
+            buds,
+            skeleton,
+            room,
+            spec,
+            numbers,
+            seed,
+            markers_made: 0,
+            died: 0,
+            looks: AtomicU64::new(0),
+        }
     }
 
     /// One round; whether any bud is left that may still grow.
@@ -270,10 +290,18 @@ impl<'a> Stand<'a> {
         let looks = map_indexed(run.executor, groups, |g| {
             let mut near = Vec::new();
             let of = of_group(g).iter().zip(g * GROUP..);
-            of.map(|(&b, k)| self.look(b, &markers, &owner, rows[k].clone(), &grid, &mut near))
-                .collect::<Vec<_>>()
+            of.map(|(&b, k)| {
+                let look = self.look(b, &markers, &owner, rows[k].clone(), &grid, &mut near);
+                // Told to the others at once: one round of many buds in one place could take minutes.
+                let all = self.looks.fetch_add(near.len() as u64, Ordering::Relaxed) + near.len() as u64;
+                let most = run.budget.limit(Counted::Looks);
+                run.budget.check(Counted::Looks, all.min(most.saturating_add(1)), TOO_CROWDED)?;
+                Ok(look)
+            })
+            .collect::<Result<Vec<_>, OverBudget>>()
         });
         run.cancel.check()?;
+        let looks: Vec<Vec<Look>> = looks.into_iter().collect::<Result<_, OverBudget>>()?;
         let looks: Vec<Look> = looks.into_iter().flatten().collect();
         let vigour = self.share(&awake, &looks);
         for ((&b, look), v) in awake.iter().zip(&looks).zip(vigour) {

@@ -9,7 +9,7 @@ mod space;
 mod spec;
 
 use base::ops::{self, PI};
-use base::{Counted, Draw, Report, Run, Seed};
+use base::{Budget, Counted, Draw, OverBudget, Report, Run, Seed};
 use glam::DVec3;
 use plant::Phyllotaxis;
 
@@ -192,7 +192,7 @@ impl Forest<'_> {
     fn year(&mut self, year: u32, run: &Run<'_>) -> Result<Option<usize>, GrowthError> {
         self.work += self.grove.len() as u64;
         run.budget.check(Counted::JointYears, self.work, "lower years or max_joints")?;
-        self.look();
+        self.look(&run.budget)?;
         self.flow.gather(&self.grove, &self.bud_light);
         self.drop_dark_branches(year);
         let share = (f64::from(year) / f64::from(self.spec.lambda_years.max(1))).min(1.0);
@@ -215,7 +215,7 @@ impl Forest<'_> {
     }
 
     /// Light of every bud.
-    fn look(&mut self) {
+    fn look(&mut self, budget: &Budget) -> Result<(), OverBudget> {
         let n = self.grove.len();
         self.bud_light.clear();
         match &mut self.light {
@@ -226,10 +226,11 @@ impl Forest<'_> {
                 self.bud_light.extend(light);
             }
             LightModel::Space(space) => {
-                space.look(&self.grove);
+                space.look(&self.grove, budget)?;
                 self.bud_light.extend((0..n).map(|j| space.light_at(j)));
             }
         }
+        Ok(())
     }
 
     /// Sheds branches that gather too little light for their size (Takenaka 1994).
