@@ -18,7 +18,7 @@ fn main() {
 
 fn make(drawing: &Drawing) -> Made {
     let (cancel, clock) = (CancelToken::new(), Stopwatch::start());
-    let run = Run { cancel: &cancel, executor: &TwoThreads, clock: &clock };
+    let run = Run { cancel: &cancel, executor: &TwoThreads, clock: &clock, ..Run::plain() };
     make_from_sketch(drawing, &SketchOptions::default(), Seed::new(1), &run).unwrap()
 }
 

@@ -91,6 +91,11 @@ pub(crate) struct CommonArgs {
     /// Number of threads, 1 to 256 [default: all of the machine]. The result does not depend on it.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
     pub(crate) threads: Option<u16>,
+    /// How many times the usual limits of docs/limits.md may be exceeded, 1 to 1000: memory, points, joints, leaves,
+    /// triangles and the like. What is more is refused.
+    #[arg(long, value_name = "X", default_value_t = 1.0, allow_hyphen_values = true,
+          value_parser = |s: &str| ranged(s, 1.0, 1000.0))]
+    pub(crate) budget: f64,
     /// Print nothing but errors; show no progress.
     #[arg(long, short)]
     pub(crate) quiet: bool,

@@ -272,7 +272,7 @@ fn bad(path: &Path) -> impl Fn(bloom::BloomError) -> Failure + '_ {
 }
 
 fn fit(args: &FitArgs) -> Outcome {
-    let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
+    let machine = Machine::new(&args.common);
     let outputs = [
         ("-o", Some(&args.output)),
         ("--plot", args.plot.as_ref()),
@@ -426,7 +426,7 @@ fn planned(args: &BloomRunArgs) -> Outcome<Outputs> {
 }
 
 fn run(args: &BloomRunArgs) -> Outcome {
-    let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
+    let machine = Machine::new(&args.common);
     let mut outputs = planned(args)?;
     let law = args.law.as_deref().map(read_law).transpose()?;
     if args.day.is_some_and(|d| !d.is_finite()) {

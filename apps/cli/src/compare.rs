@@ -160,7 +160,7 @@ const GUIDED_NOTES: &str = "Both grow in the oak's envelope with internodes of o
 
 pub(crate) fn compare(args: &CompareArgs) -> Outcome {
     let trees = args.what.trees()?;
-    let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
+    let machine = Machine::new(&args.common);
     let outputs = [("--png", args.png.as_ref()), ("--report", args.common.report.as_ref())];
     let mut outputs = Outputs::new(&outputs, &[])?;
     let given = &args.given;

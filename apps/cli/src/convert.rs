@@ -17,7 +17,7 @@ use crate::output::Outputs;
 use crate::{picture, report, say};
 
 pub(crate) fn convert(args: &ConvertArgs) -> Outcome {
-    let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
+    let machine = Machine::new(&args.common);
     let outputs =
         [("-o", Some(&args.output)), ("--png", args.png.as_ref()), ("--report", args.common.report.as_ref())];
     let mut outputs = Outputs::new(&outputs, &[&args.input])?;

@@ -81,6 +81,13 @@ pub(crate) fn remove_all() {
     drafts.clear();
 }
 
+/// [`remove_all`] where nothing may be waited for: the caller may hold what it takes.
+pub(crate) fn abandon_all() {
+    if let Ok(drafts) = DRAFTS.try_lock() {
+        drafts.iter().for_each(|path| drop(fs::remove_file(path)));
+    }
+}
+
 // Keys of hash maps are random numbers of the system, which is all that is wanted here: other processes, and others in
 // containers where each has the same number, take other names.
 fn random() -> u64 {

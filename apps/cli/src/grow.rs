@@ -180,7 +180,7 @@ fn length(text: &str) -> Result<f64, String> {
 }
 
 pub(crate) fn grow(args: &GrowArgs) -> Outcome {
-    let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
+    let machine = Machine::new(&args.common);
     let outputs = [
         ("-o", args.output.as_ref()),
         ("--png", args.png.as_ref()),

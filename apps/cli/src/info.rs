@@ -18,7 +18,7 @@ const LISTED: usize = 20;
 const WARNINGS: usize = 50;
 
 pub(crate) fn info(args: &InfoArgs) -> Outcome {
-    let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
+    let machine = Machine::new(&args.common);
     let outputs = Outputs::new(&[("--report", args.common.report.as_ref())], &[&args.input])?;
     let (input, kind) = files::open(&args.input)?;
     args.given.check_axes(matches!(kind, Kind::Model(format) if !format.fixed_axes()))?;

@@ -260,7 +260,7 @@ pub(crate) enum ParametersWord {
 }
 
 pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
-    let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
+    let machine = Machine::new(&args.common);
     let outputs = [
         ("-o", args.output.as_ref()),
         ("--png", args.png.as_ref()),

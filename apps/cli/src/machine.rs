@@ -4,9 +4,11 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Condvar, Mutex, OnceLock};
 use std::time::{Duration, Instant};
 
-use burgeon::{CancelToken, Clock, Executor, Run};
+use burgeon::{Budget, CancelToken, Clock, Executor, Run};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use rayon::prelude::*;
+
+use crate::args::CommonArgs;
 
 /// Independent jobs on a number of threads.
 #[derive(Debug)]
@@ -81,24 +83,30 @@ pub(crate) struct Machine {
     pub(crate) threads: Threads,
     pub(crate) clock: WallClock,
     pub(crate) cancel: &'static CancelToken,
+    /// How much may be made.
+    pub(crate) budget: Budget,
     /// Print nothing but errors, and show no progress.
     pub(crate) quiet: bool,
 }
 
 impl Machine {
-    pub(crate) fn new(threads: Option<u16>, quiet: bool) -> Self {
+    /// As the options say; from now on memory is limited.
+    pub(crate) fn new(args: &CommonArgs) -> Self {
         let clock = WallClock::start();
-        Self { threads: Threads::new(threads), clock, cancel: cancel_on_ctrl_c(), quiet }
+        let budget = Budget { times: args.budget, raise: Some("--budget") };
+        crate::memory::limit(&budget);
+        let quiet = args.quiet || args.json;
+        Self { threads: Threads::new(args.threads), clock, cancel: cancel_on_ctrl_c(), budget, quiet }
     }
 
     /// A run on all threads.
     pub(crate) fn run(&self) -> Run<'_> {
-        Run { cancel: self.cancel, executor: &self.threads, clock: &self.clock }
+        Run { cancel: self.cancel, executor: &self.threads, clock: &self.clock, budget: self.budget }
     }
 
     /// A run on the calling thread, for batches whose drawings are spread over threads already.
     pub(crate) fn single(&self) -> Run<'_> {
-        Run { cancel: self.cancel, executor: &burgeon::Serial, clock: &self.clock }
+        Run { cancel: self.cancel, executor: &burgeon::Serial, clock: &self.clock, budget: self.budget }
     }
 
     /// Milliseconds since the command began: what everything so far took, reading, computing, pictures and writing.

@@ -15,6 +15,7 @@ mod inputs;
 mod leaf;
 mod leaf_data;
 mod machine;
+mod memory;
 mod names;
 mod origin;
 mod output;

@@ -16,6 +16,11 @@ pub(crate) fn remove_drafts() {
     draft::remove_all();
 }
 
+/// [`remove_drafts`] where nothing may be waited for: the caller may hold what it takes.
+pub(crate) fn abandon_drafts() {
+    draft::abandon_all();
+}
+
 /// The outputs of a command, or of one drawing of many.
 ///
 /// Everything is written to drafts and compared with what was read and with one another; [`place`](Self::place) then

@@ -12,7 +12,7 @@ use crate::output::Outputs;
 use crate::{files, report, say};
 
 pub(crate) fn render(args: &RenderArgs) -> Outcome {
-    let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
+    let machine = Machine::new(&args.common);
     check_name(&args.output)?;
     let outputs = [("-o", Some(&args.output)), ("--report", args.common.report.as_ref())];
     let mut outputs = Outputs::new(&outputs, &[&args.input])?;

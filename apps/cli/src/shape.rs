@@ -94,7 +94,7 @@ struct Shaped {
 }
 
 pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
-    let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
+    let machine = Machine::new(&args.common);
     let outputs = [
         ("-o", args.output.as_ref()),
         ("--png", args.png.as_ref()),

@@ -23,7 +23,7 @@ use crate::output::Outputs;
 use crate::{names, output, picture, say};
 
 pub(crate) fn sketch(args: &SketchArgs) -> Outcome {
-    let machine = Machine::new(args.common.threads, args.common.quiet || args.common.json);
+    let machine = Machine::new(&args.common);
     if let [input] = args.inputs.as_slice()
         && let Some(scene) = crate::scene::of_file(input)?
     {

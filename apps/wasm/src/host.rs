@@ -1,6 +1,6 @@
 //! What the browser gives: time, a sign to stop, a place for complaints.
 
-use burgeon::{CancelToken, Clock, Executor};
+use burgeon::{Budget, CancelToken, Clock, Executor};
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen::prelude::*;
 
@@ -26,6 +26,10 @@ fn now() -> f64 {
 fn burgeon_stop(_share: f64) -> bool {
     false
 }
+
+/// How much a page may ask for: a tab has 4 GiB of addresses and mostly 1 to 2 GiB of memory, and one that runs out of it
+/// dies with its plant. So a quarter of the usual, 1 GiB, which is said instead.
+pub(crate) const BUDGET: Budget = Budget { times: 0.25, raise: None };
 
 /// Lets a panic say where it came from before the worker dies.
 pub(crate) fn tell_of_panics() {

@@ -7,6 +7,7 @@
 //! | [`ops`] | transcendental functions with the same bits on every platform |
 //! | [`turn`] | turns and directions, likewise |
 //! | `seed` | [`Seed`], [`Draw`], [`Stream`]: randomness as a value |
+//! | `budget` | [`Budget`], [`OverBudget`]: how much may be made |
 //! | `task` | [`CancelToken`], [`Executor`], [`Run`]: how something is computed, never what |
 //! | `quote` | [`brief`], [`quoted`]: how much of somebody's words a message repeats |
 //! | `report` | [`Report`], [`Warning`]: what a computation wants to tell its user |
@@ -15,6 +16,7 @@
 //! | `units` | [`Unit`], [`UpAxis`], [`Angle`]: conversions at the door |
 //! | `ids` | [`define_id!`]: typed `u32` handles |
 
+mod budget;
 mod digest;
 mod exps;
 mod ids;
@@ -27,6 +29,7 @@ mod task;
 pub mod turn;
 mod units;
 
+pub use budget::{Budget, Counted, OverBudget, Stopped};
 pub use digest::{Digest, Digestible};
 pub use quote::{brief, quoted};
 pub use report::{Report, Stage, Warning};

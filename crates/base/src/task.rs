@@ -1,8 +1,10 @@
-//! How something is computed (never what): cancellation, threads, clocks.
+//! How something is computed (never what): cancellation, threads, clocks, budgets.
 
 use core::fmt;
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex};
+
+use crate::Budget;
 
 /// A flag that a shell sets and a computation polls; the other way goes how far the computation is.
 ///
@@ -127,11 +129,16 @@ pub struct Run<'a> {
     pub executor: &'a dyn Executor,
     /// Read for the stage times of the report only.
     pub clock: &'a dyn Clock,
+    /// How much may be made. What is more is refused, never made smaller.
+    pub budget: Budget,
 }
 
 impl fmt::Debug for Run<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Run").field("cancel", self.cancel).finish_non_exhaustive()
+        f.debug_struct("Run")
+            .field("cancel", self.cancel)
+            .field("budget", &self.budget)
+            .finish_non_exhaustive()
     }
 }
 
@@ -139,7 +146,12 @@ impl Run<'static> {
     /// One thread, no clock, never cancelled: what tests and doctests want.
     pub fn plain() -> Self {
         static NEVER: std::sync::OnceLock<CancelToken> = std::sync::OnceLock::new();
-        Self { cancel: NEVER.get_or_init(CancelToken::new), executor: &Serial, clock: &NoClock }
+        Self {
+            cancel: NEVER.get_or_init(CancelToken::new),
+            executor: &Serial,
+            clock: &NoClock,
+            budget: Budget::default(),
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! `roots + attractors -> Skeleton` (Runions, Lane and Prusinkiewicz 2007; paper 001, Eq 1 and 2)
 
-use base::{Report, Run};
+use base::{Counted, Report, Run};
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -138,7 +138,7 @@ impl ColonizeSpec {
 /// [`GrowthError`]: numbers out of range, no roots, a root in an obstacle, cancelled.
 ///
 /// ```
-/// use base::{Report, Run};
+/// use base::{Counted, Report, Run};
 /// use glam::DVec3;
 /// use growth::{ColonizeSpec, Fate, Obstacles, colonize};
 /// let attractors = [DVec3::new(1.0, 2.0, 0.0), DVec3::new(-1.0, 2.0, 0.0)];
@@ -156,11 +156,16 @@ pub fn colonize(
     run: &Run<'_>,
     report: &mut Report,
 ) -> Result<Colonized, GrowthError> {
-    colonize_from(plant_roots(roots, obstacles)?, attractors, obstacles, spec, run, report)
+    colonize_from(plant_roots(roots, obstacles, run)?, attractors, obstacles, spec, run, report)
 }
 
 /// The skeleton of roots alone.
-pub(crate) fn plant_roots(roots: &[DVec3], obstacles: &Obstacles) -> Result<Skeleton, GrowthError> {
+pub(crate) fn plant_roots(
+    roots: &[DVec3],
+    obstacles: &Obstacles,
+    run: &Run<'_>,
+) -> Result<Skeleton, GrowthError> {
+    run.budget.check(Counted::Roots, roots.len() as u64, "give fewer roots")?;
     if roots.is_empty() {
         return Err(GrowthError::NoRoots);
     }
@@ -179,13 +184,25 @@ pub(crate) fn plant_roots(roots: &[DVec3], obstacles: &Obstacles) -> Result<Skel
 }
 
 /// A bole from a root straight up, around obstacles, until it is so high; its top.
+///
+/// # Errors
+/// [`GrowthError::OverBudget`].
 pub(crate) fn grow_bole(
     skeleton: &mut Skeleton,
     root: JointId,
     height_m: f64,
     step_m: f64,
     obstacles: &Obstacles,
-) -> JointId {
+    run: &Run<'_>,
+) -> Result<JointId, GrowthError> {
+    let steps = height_m / step_m;
+    run.budget.check_estimate(
+        Counted::Course,
+        steps,
+        "make internode_m longer or put the envelope nearer to the root",
+    )?;
+    let all = skeleton.len() as f64 + steps;
+    run.budget.check_estimate(Counted::Joints, all, "make internode_m longer or give fewer roots")?;
     let (mut top, mut left) = (root, height_m);
     while left > 0.0 {
         let at = skeleton.position[top.index()];
@@ -198,7 +215,7 @@ pub(crate) fn grow_bole(
         top = skeleton.push(at + to * step, top, 0);
         left -= step;
     }
-    top
+    Ok(top)
 }
 
 /// As [`colonize`], from a skeleton that is there already: its joints stay as they are, and all may grow on.
@@ -233,6 +250,7 @@ pub(crate) fn colonize_part(
         return Err(GrowthError::NoRoots);
     }
     let started = run.clock.now_ms();
+    run.budget.check(Counted::Points, attractors.len() as u64, "give fewer attraction points")?;
     let mut fates = vec![Fate::Unreached; attractors.len()];
     for (fate, &p) in fates.iter_mut().zip(attractors) {
         if !usable(p) {
@@ -241,6 +259,7 @@ pub(crate) fn colonize_part(
             *fate = Fate::Buried(obstacles.inside(p));
         }
     }
+    sane_step(&skeleton, attractors, &fates, steps.step)?;
     let free: Vec<bool> = fates.iter().map(|f| *f == Fate::Unreached).collect();
     let field = Field::new(attractors, &free, steps.attraction);
     let birth = skeleton.age();
@@ -274,7 +293,7 @@ pub(crate) fn colonize_part(
 /// As [`colonize`].
 ///
 /// ```
-/// use base::{Report, Run};
+/// use base::{Counted, Report, Run};
 /// use glam::DVec3;
 /// use growth::{ColonizeSpec, JointId, Obstacles, colonize, regrow};
 /// let points = [DVec3::new(1.0, 1.0, 0.0), DVec3::new(-1.0, 1.0, 0.0)];
@@ -311,6 +330,17 @@ pub fn regrow(
         fates[i] = fate;
     }
     Ok(Colonized { fates, ..again })
+}
+
+/// Steps that leap far over everything make no tree.
+fn sane_step(skeleton: &Skeleton, points: &[DVec3], fates: &[Fate], step_m: f64) -> Result<(), GrowthError> {
+    let free = points.iter().zip(fates).filter(|(_, f)| **f == Fate::Unreached).map(|(p, _)| p);
+    let all = skeleton.position.iter().chain(free);
+    let (lo, hi) = all.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
+    let space_m = (lo.distance(hi) * 1000.0).round() / 1000.0;
+    // Ten times: a tree of a single step that overshoots is odd, but harmless.
+    let sane = step_m <= 10.0 * space_m || space_m <= 0.0;
+    if sane { Ok(()) } else { Err(GrowthError::StepTooLong { step_m, space_m }) }
 }
 
 fn tell(fates: &[Fate], report: &mut Report) {
@@ -438,7 +468,7 @@ impl Colony<'_> {
         for root in roots {
             run.cancel.check()?;
             self.birth = started;
-            self.grow_trunk(JointId::new(root).raw());
+            self.grow_trunk(JointId::new(root).raw(), run)?;
             last = last.max(self.birth);
         }
         self.birth = last;
@@ -446,16 +476,22 @@ impl Colony<'_> {
     }
 
     /// Up to the height of the nearest point, then towards it, until the tip perceives something.
-    fn grow_trunk(&mut self, root: u32) {
+    fn grow_trunk(&mut self, root: u32, run: &Run<'_>) -> Result<(), GrowthError> {
         let from = self.skeleton.position[root as usize];
         let nearest = |p: DVec3| {
             let all = self.field.iter().map(|(_, q, ..)| q);
             all.reduce(|a, b| if b.distance_squared(p) < a.distance_squared(p) { b } else { a })
         };
         if self.load.pulls[root as usize].count > 0 {
-            return;
+            return Ok(());
         }
-        let Some(goal) = nearest(from) else { return };
+        let Some(goal) = nearest(from) else { return Ok(()) };
+        let straight = (from.distance(goal) - self.steps.attraction) / self.steps.step;
+        run.budget.check_estimate(
+            Counted::Course,
+            straight,
+            "make step_m (or kill_m, of which it is half) longer or put the attraction points nearer to the root",
+        )?;
         // Three times the straight way leaves room to go up first and around things.
         let budget = 3.0 * from.distance(goal) / self.steps.step + 8.0;
         let (mut tip, mut heading, mut steps) = (root, DVec3::Y, 0.0);
@@ -467,13 +503,14 @@ impl Colony<'_> {
             let below = at.y + 0.5 * self.steps.attraction < goal.y;
             let aim = if below { DVec3::Y } else { (heading + towards(at, goal)).normalize_or(DVec3::Y) };
             self.birth += 1;
-            let Some(next) = self.push(tip, aim, self.steps.step) else { return };
-            let Some(&p) = self.skeleton.position.get(next as usize) else { return };
+            let Some(next) = self.push(tip, aim, self.steps.step) else { break };
+            let Some(&p) = self.skeleton.position.get(next as usize) else { break };
             heading = towards(at, p);
             tip = next;
             steps += 1.0;
             self.offer_fresh();
         }
+        Ok(())
     }
 
     fn grow(&mut self, part: (f64, f64), run: &Run<'_>, report: &mut Report) -> Result<(), GrowthError> {
@@ -490,6 +527,11 @@ impl Colony<'_> {
                 report.warn("growth-stopped", format!("growth stopped at {n} joints, the most allowed"));
                 break;
             }
+            run.budget.check(
+                Counted::Joints,
+                self.skeleton.len() as u64,
+                "make step_m or kill_m longer, give fewer points, or lower max_joints",
+            )?;
             self.birth += 1;
             let before = self.field.alive();
             core::mem::swap(&mut queue, &mut self.load.queue);

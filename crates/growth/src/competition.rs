@@ -2,7 +2,7 @@
 //!
 //! `envelope -> N points -> skeleton -> K joints x M points -> finer skeleton -> ...` (paper 001, section 3.1)
 
-use base::{Draw, Report, Run, Seed};
+use base::{Counted, Draw, Report, Run, Seed};
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -264,9 +264,11 @@ pub fn compete(
     report: &mut Report,
 ) -> Result<Competed, GrowthError> {
     spec.check()?;
+    let all = u64::from(spec.points) * roots.len() as u64;
+    run.budget.check(Counted::Points, all, "lower points or give fewer roots")?;
     let crown = spec.envelope.prepare()?;
     let first = spec.first_envelope.as_ref().map(Envelope::prepare).transpose()?;
-    let mut skeleton = plant_roots(roots, obstacles)?;
+    let mut skeleton = plant_roots(roots, obstacles, run)?;
     let mut cycles = Vec::new();
     let mut stem_age = 0;
     for cycle in 0..spec.lifespan {
@@ -285,7 +287,10 @@ pub fn compete(
         } else {
             // A point may lie in the crown of any tree: neighbours compete for what both can reach.
             let inside = |p: DVec3| roots.iter().any(|r| crown.contains(p - *r)) && obstacles.free(p);
-            later_points(&skeleton, spec, cycle, stem_age, at, inside)
+            let chosen = choose(&skeleton, spec, stem_age, at);
+            let all = u64::from(spec.points_per_joint) * chosen.len() as u64;
+            run.budget.check(Counted::Points, all, "lower points_per_joint, joints_share or points")?;
+            later_points(&skeleton, &chosen, spec, cycle, at, inside)
         };
         let mut told = Report::default();
         let share = |n: u32| GROWN * f64::from(n) / f64::from(spec.lifespan);
@@ -313,18 +318,17 @@ pub fn compete(
 /// M points in a ball around each of K joints.
 fn later_points(
     skeleton: &Skeleton,
+    chosen: &[usize],
     spec: &CompetitionSpec,
     cycle: u32,
-    stem_age: u32,
     seed: Seed,
     inside: impl Fn(DVec3) -> bool,
 ) -> Vec<DVec3> {
     let scale = (1..cycle).fold(1.0, |s, _| s * spec.shrink);
     let radius = spec.ball_m.unwrap_or(spec.attraction_m) * scale;
     let size = DVec3::new(radius, radius * spec.ball_height, radius);
-    let chosen = choose(skeleton, spec, stem_age, seed);
     let mut points = Vec::with_capacity(chosen.len() * spec.points_per_joint as usize);
-    for joint in chosen {
+    for &joint in chosen {
         let centre = skeleton.position[joint];
         let mut stream = seed.child(joint as u64).stream(Draw::Attractors);
         let mut left = spec.points_per_joint;

@@ -184,6 +184,8 @@ impl Envelope {
                 for p in polygon {
                     place("envelope.polygon", p.extend(0.0))?;
                 }
+                // Each point scattered looks at each point of the outline.
+                within("points of envelope.polygon", polygon.len() as f64, 3.0, 1e4, "3 to 10,000")?;
                 if polygon.len() < 3 || geom::signed_area(polygon).abs() < 1e-9 {
                     let value = geom::signed_area(polygon);
                     return Err(GrowthError::Field {
@@ -326,9 +328,14 @@ impl Region {
         let mut stream = seed.stream(Draw::Attractors);
         let tries = count.saturating_mul(200).saturating_add(2000);
         let mut points = Vec::with_capacity(count.min(1 << 24));
-        for _ in 0..tries {
+        for tried in 0..tries {
             if points.len() >= count {
                 break;
+            }
+            // At half the rate that would do, and eleven times chance's own spread away from it, the rest of the
+            // tries is wasted.
+            if tried == 100_000 && points.len() < 250 {
+                return Err(GrowthError::NoRoom { found: points.len(), wanted: count, tries: tried });
             }
             let u = DVec3::new(stream.uniform(), stream.uniform(), stream.uniform());
             let p = self.lo + (self.hi - self.lo) * u;

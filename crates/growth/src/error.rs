@@ -9,6 +9,20 @@ pub enum GrowthError {
     /// The caller asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    /// It would have been too much.
+    #[error(transparent)]
+    OverBudget(#[from] base::OverBudget),
+    /// A step is much longer than all that is to be grown.
+    #[error(
+        "steps of {step_m} m (step_m, or half of kill_m) are far longer than roots and attraction points are apart, \
+         {space_m} m; make steps or kill_m shorter, or the envelope larger"
+    )]
+    StepTooLong {
+        /// The step, metres.
+        step_m: f64,
+        /// Diagonal of the box around roots and points, metres, to a millimetre.
+        space_m: f64,
+    },
     /// A number of the spec is out of range or not finite.
     #[error("{field} must be {range}, not {value}")]
     Field {

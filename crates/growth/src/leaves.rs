@@ -3,7 +3,7 @@
 //! `Plant + LeafSpec -> candidates by phyllotaxis -> shadows -> the brightest` (paper 001, section 3.3)
 
 use base::ops::{self, PI};
-use base::{Draw, Report, Run, Seed, map_indexed};
+use base::{Counted, Draw, Report, Run, Seed, map_indexed};
 use glam::{DVec2, DVec3};
 use plant::{AxisId, Blade, Frame, Lift, NodeId, Organ, OrganKind, Phyllotaxis, Plant, Relief, Shape};
 use schemars::JsonSchema;
@@ -206,6 +206,8 @@ pub fn add_leaves(
     if marks.is_empty() {
         all = on_shoots(plant, spec, phyllotaxis, scale, seed, run)?;
     } else {
+        let set = (marks.len() as u64).min(u64::from(spec.max_leaves));
+        run.budget.check(Counted::Leaves, set, "lower leaves.max_leaves or let the rules set fewer")?;
         for (i, (node, mark)) in marks.iter().enumerate().take(spec.max_leaves as usize) {
             let key = seed.child(i as u64).number();
             let at = plant.nodes.position[node.index()];
@@ -266,7 +268,19 @@ fn on_shoots(
     let most = spec.max_leaves as usize;
     let rooms: Vec<usize> =
         (0..plant.axes.len()).map(|a| room(plant, AxisId::new(a), spec, phyllotaxis).min(most)).collect();
-    let mut all = Vec::with_capacity(rooms.iter().fold(0, |sum: usize, &n| most.min(sum + n)));
+    let longest = rooms.iter().copied().max().unwrap_or(0) as u64;
+    run.budget.check(
+        Counted::Course,
+        longest,
+        "make leaves.spacing_m longer or shoots shorter (or bare = true for no leaves)",
+    )?;
+    let places = rooms.iter().fold(0, |sum: usize, &n| most.min(sum.saturating_add(n)));
+    run.budget.check(
+        Counted::Leaves,
+        places as u64,
+        "make leaves.spacing_m longer, or lower leaves.max_radius_m or leaves.max_leaves",
+    )?;
+    let mut all = Vec::with_capacity(places);
     let mut from = 0;
     // Seldom more than one round: each takes so many axes as have room for all leaves that may be.
     while from < rooms.len() && all.len() < most {

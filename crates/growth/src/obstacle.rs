@@ -137,7 +137,7 @@ impl Obstacles {
 
     /// Whether a point keeps the clearance from all obstacles.
     pub fn free(&self, p: DVec3) -> bool {
-        self.bodies.iter().all(|b| b.distance(p).0 >= self.clearance_m * (1.0 - 1e-9))
+        self.bodies.iter().all(|b| b.clear(p, self.clearance_m * (1.0 - 1e-9)))
     }
 
     /// Whether an obstacle stands between two points, or one of them lies in it.
@@ -261,6 +261,17 @@ impl Body {
         match self {
             Self::Mesh(solid) => solid.inside(p),
             _ => self.distance(p).0 < 0.0,
+        }
+    }
+
+    /// Whether a point is at least so far outside; 0 or more.
+    fn clear(&self, p: DVec3, distance: f64) -> bool {
+        match self {
+            // A little farther, so that rounding does not decide whether it is looked at.
+            Self::Mesh(solid) if solid.nearest_within(p, 1e-9 + 1.001 * distance).is_none() => {
+                !solid.inside(p)
+            }
+            _ => self.distance(p).0 >= distance,
         }
     }
 

@@ -2,7 +2,7 @@
 //!
 //! `TreeSpec -> Skeleton (any method) -> wood -> leaves -> Plant`
 
-use base::{Report, Run, Seed};
+use base::{Budget, Counted, Report, Run, Seed};
 use glam::DVec3;
 use plant::{Blade, NodeId, Plant};
 use schemars::JsonSchema;
@@ -12,7 +12,7 @@ use crate::colonize::{colonize_part, plant_roots};
 use crate::error::within;
 use crate::{
     ColonizeSpec, Colonized, CompetitionSpec, Cycle, Envelope, Fate, GrowthError, GuidedSpec, LeafCount,
-    LeafMark, LeafSpec, Lsystem, Obstacle, Obstacles, SelfOrganizingSpec, Skeleton, Wood, WoodSpec,
+    LeafMark, LeafSpec, Light, Lsystem, Obstacle, Obstacles, SelfOrganizingSpec, Skeleton, Wood, WoodSpec,
     add_leaves, compete, grow_lsystem, guide, make_wood, self_organize,
 };
 
@@ -105,6 +105,45 @@ impl Default for TreeSpec {
     }
 }
 
+impl TreeSpec {
+    /// Fails if its meshes, point clouds and roots are more than the budget allows. [`grow`] asks first; ask yourself
+    /// before you prepare parts of it.
+    ///
+    /// # Errors
+    /// [`GrowthError::OverBudget`].
+    pub fn check(&self, budget: &Budget) -> Result<(), GrowthError> {
+        budget.check(Counted::Roots, self.roots.len() as u64, "give fewer roots")?;
+        let of_obstacles = self.obstacles.iter().map(|o| match o {
+            Obstacle::Mesh { triangles, .. } => triangles.len(),
+            _ => 0,
+        });
+        let envelopes = match &self.method {
+            Method::Colonization { envelope, .. } => [Some(envelope), None],
+            Method::Competition(s) => [Some(&s.envelope), s.first_envelope.as_ref()],
+            Method::Guided(s) => [s.envelope.as_ref(), None],
+            Method::SelfOrganizing(SelfOrganizingSpec { light: Light::Space { envelope, .. }, .. }) => {
+                [Some(envelope), None]
+            }
+            _ => [None, None],
+        };
+        let (mut triangles, mut points) = (of_obstacles.sum::<usize>(), 0);
+        for envelope in envelopes.into_iter().flatten() {
+            match envelope {
+                Envelope::Mesh { triangles: own, .. } => triangles += own.len(),
+                Envelope::Points { points: own, .. } => points += own.len(),
+                _ => {}
+            }
+        }
+        budget.check(
+            Counted::Obstacles,
+            triangles as u64,
+            "simplify the meshes of obstacles and envelopes",
+        )?;
+        budget.check(Counted::Points, points as u64, "thin out envelope.points")?;
+        Ok(())
+    }
+}
+
 /// What growth itself counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
@@ -155,6 +194,7 @@ pub fn grow(
     run: &Run<'_>,
     report: &mut Report,
 ) -> Result<Grown, GrowthError> {
+    spec.check(&run.budget)?;
     let obstacles = Obstacles::new(&spec.obstacles, spec.clearance_m)?;
     let Bones { mut skeleton, marks, tally } = bones(spec, &obstacles, seed, run, report)?;
     run.cancel.reached(GROWN);
@@ -297,7 +337,9 @@ fn bones(
         Method::Colonization { envelope, points, hollow, steps } => {
             within("points", f64::from(*points), 1.0, 1e7, "1 to 10 million")?;
             within("hollow", *hollow, 0.0, 0.99, "0 to 0.99")?;
-            let roots = plant_roots(&spec.roots, obstacles)?;
+            let all = u64::from(*points) * spec.roots.len() as u64;
+            run.budget.check(Counted::Points, all, "lower points or give fewer roots")?;
+            let roots = plant_roots(&spec.roots, obstacles, run)?;
             let region = envelope.prepare()?;
             let mut attractors = Vec::new();
             for (root, i) in spec.roots.iter().zip(0_u64..) {
@@ -309,7 +351,7 @@ fn bones(
             Ok(Bones::colonized(colonize_part(roots, &attractors, obstacles, steps, part, run, report)?))
         }
         Method::Points { points, steps } => {
-            let roots = plant_roots(&spec.roots, obstacles)?;
+            let roots = plant_roots(&spec.roots, obstacles, run)?;
             let part = (0.0, GROWN);
             let grown = colonize_part(roots, points, obstacles, steps, part, run, report)?;
             reached_some(&spec.roots, points, steps, obstacles, &grown)?;
@@ -342,7 +384,7 @@ fn bones(
             Ok(Bones { skeleton: grown.skeleton, marks: Vec::new(), tally })
         }
         Method::Lsystem { rules, most_modules } => {
-            plant_roots(&spec.roots, obstacles)?;
+            plant_roots(&spec.roots, obstacles, run)?;
             let mut system = Lsystem::parse(rules)?;
             system.steps = spec.age.map_or(system.steps, |age| age.min(system.steps));
             let tally = Tally { iterations: system.steps, cycles: 1, ..Tally::default() };

@@ -28,6 +28,17 @@ impl Default for MeshSpec {
     }
 }
 
+impl MeshSpec {
+    /// About how many triangles a leaf with so many rows of marks has, from the numbers of Table 1.
+    pub fn triangles(&self, rows: usize) -> u64 {
+        let [rows, steps, sides] =
+            [rows, self.subdivisions.clamp(1, 64), self.sides.clamp(3, 64)].map(|n| n as u64);
+        // Of 7 spans of veins (9 with the margin) and 6 columns of the blade a row, two a quad.
+        let spans = if self.margin { 9 } else { 7 };
+        2 * rows * (spans * steps * sides + 6 * steps * steps)
+    }
+}
+
 /// The triangles of a leaf.
 ///
 /// With the default [`MeshSpec`] and N rows of marks: the veins have `10 (36 N + 1)` vertices and `350 N` quads,
@@ -168,6 +179,8 @@ mod tests {
                 let mesh = leaf.mesh(&MeshSpec::default());
                 assert_eq!((mesh.veins.positions.len(), mesh.vein_faces), veins, "{n} {surface:?}");
                 assert_eq!((mesh.blade.positions.len(), mesh.blade_faces), blade, "{n} {surface:?}");
+                let foreseen = MeshSpec::default().triangles(n);
+                assert_eq!(foreseen, 2 * (veins.1 + blade.1) as u64);
                 assert_eq!(mesh.blade.triangles.len(), 2 * blade.1 - 30, "one triangle a quad at the tip");
                 assert_eq!(mesh.veins.validate().chain(mesh.blade.validate()).next(), None);
             }

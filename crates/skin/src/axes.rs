@@ -1,6 +1,6 @@
 //! Axes -> tubes: axes that continue one another become one tube, the others grow out of their bearers.
 
-use base::{Cancelled, Run, map_indexed};
+use base::{Cancelled, Counted, Run, Stopped, map_indexed};
 use glam::DVec3;
 use mesh::TriMesh;
 use plant::{AxisId, AxisKind, NodeId, Plant};
@@ -74,15 +74,17 @@ const FLESHY: f64 = 0.035;
 /// The tubes of every axis, in the order of the axes; and the wind in them, if it is asked for.
 ///
 /// # Errors
-/// [`Cancelled`].
+/// [`Stopped`].
 pub(crate) fn tubes<'p>(
     plant: &'p Plant,
     spec: &SkinSpec,
     budget: &Budget,
     traced: Option<&Traced>,
     run: &Run<'_>,
-) -> Result<(Vec<Tube>, Option<Wind<'p>>), Cancelled> {
+) -> Result<(Vec<Tube>, Option<Wind<'p>>), Stopped> {
     let (chains, places) = chains(plant);
+    // A tube has at least four rows of three sides.
+    run.budget.check(Counted::Triangles, 24 * chains.len() as u64, crate::FEWER)?;
     let spines = grouped(run, chains.len(), |i| spine(plant, &chains[i], budget))?;
     let thickest = spines.iter().flatten().map(Spine::stout).fold(0.0, f64::max);
     let least = |i: usize| if chains[i].stalk { spec.sides.min(5) } else { spec.sides };
@@ -132,7 +134,13 @@ pub(crate) fn tubes<'p>(
         let (line, first) = drawn(spine, reach.as_ref(), ends.rings, |radius| budget.tolerance(radius));
         Some(Line { line, first, reach, ends })
     })?;
-    grouped(run, chains.len(), |i| {
+    let sleeves = lines.iter().zip(&sides).map(|(line, sides)| {
+        let Some(Line { line, first, ends, .. }) = line else { return 0 };
+        let rows = (line.p.len() - first) as u64 + u64::from(ends.steps + ends.tip);
+        2 * u64::from(*sides) * rows
+    });
+    run.budget.check(Counted::Triangles, sleeves.sum(), crate::FEWER)?;
+    let tubes = grouped(run, chains.len(), |i| {
         let (chain, spine, line) = (&chains[i], spines[i].as_ref()?, lines[i].as_ref()?);
         let bearer = hosts[i].and_then(|(host, sample)| {
             let (smooth, drawn) = (spines[host].as_ref()?, lines[host].as_ref()?);
@@ -167,8 +175,8 @@ pub(crate) fn tubes<'p>(
             traced.tube(&mut mesh, spine);
         }
         Some(Tube { surface, traced: traced.is_some(), mesh })
-    })
-    .map(|tubes| (tubes.into_iter().flatten().collect(), wind))
+    })?;
+    Ok((tubes.into_iter().flatten().collect(), wind))
 }
 
 /// What chain `i` grows out of: where it begins while its bearer is still inside the next thicker one, that.

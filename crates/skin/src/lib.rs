@@ -39,7 +39,7 @@ pub use spec::{PetalColor, SkinSpec};
 pub use traced::Traced;
 pub use tube::{TubeSpec, tube};
 
-use base::{Cancelled, Run};
+use base::{Run, Stopped};
 use glam::DVec3;
 use mesh::Model;
 use plant::{AxisKind, Plant};
@@ -72,7 +72,7 @@ use crate::spec::Budget;
 /// texture (up to about 30 ms). A shape's triangulation costs 0.6 us a triangle, once for all its organs.
 ///
 /// # Errors
-/// [`Cancelled`] when the caller's token says so.
+/// [`Stopped`] when the caller's token says so, or when there would be more triangles than the budget allows.
 ///
 /// Paper 000, sections 5.3 and 6.
 ///
@@ -84,9 +84,9 @@ use crate::spec::Budget;
 /// p.nodes.radius_m = vec![0.05, 0.04, 0.02];
 /// let model = skin::skin(&p, &skin::SkinSpec::default(), &base::Run::plain())?;
 /// assert_eq!((model.parts[0].name.as_str(), model.validate().count()), ("branches", 0));
-/// # Ok::<(), base::Cancelled>(())
+/// # Ok::<(), base::Stopped>(())
 /// ```
-pub fn skin(plant: &Plant, spec: &SkinSpec, run: &Run<'_>) -> Result<Model, Cancelled> {
+pub fn skin(plant: &Plant, spec: &SkinSpec, run: &Run<'_>) -> Result<Model, Stopped> {
     skin_again(plant, spec, None, None, run)
 }
 
@@ -96,14 +96,14 @@ pub fn skin(plant: &Plant, spec: &SkinSpec, run: &Run<'_>) -> Result<Model, Canc
 /// Guaranteed: the same surface; traced parts come last, have the photograph as their texture and coordinates within it.
 ///
 /// # Errors
-/// [`Cancelled`] when the caller's token says so.
+/// [`Stopped`] when the caller's token says so, or when there would be more triangles than the budget allows.
 pub fn skin_again(
     plant: &Plant,
     spec: &SkinSpec,
     traced: Option<&Traced>,
     kept: Option<&mut KeptShapes>,
     run: &Run<'_>,
-) -> Result<Model, Cancelled> {
+) -> Result<Model, Stopped> {
     run.cancel.check()?;
     let budget = budget(plant, spec);
     let slot = |surface| match surface {
@@ -116,10 +116,14 @@ pub fn skin_again(
     let (tubes, wind) = axes::tubes(plant, spec, &budget, traced, run)?;
     let slot_of = |t: &axes::Tube| if t.traced { slot(t.surface).traced() } else { slot(t.surface) };
     let mut meshes: Vec<_> = tubes.into_iter().map(|t| (slot_of(&t), t.mesh)).collect();
-    meshes.extend(organs::organs(plant, spec, &budget, traced, wind.as_ref(), kept, run)?);
+    let wood = meshes.iter().map(|(_, m): &(Slot, mesh::TriMesh)| m.triangles.len()).sum();
+    meshes.extend(organs::organs(plant, spec, &budget, (traced, wood), wind.as_ref(), kept, run)?);
     run.cancel.check()?;
     Ok(parts::model(&plant.name, meshes, spec.textures.then_some(run.executor), traced.map(|t| &t.texture)))
 }
+
+/// What to do where there would be too many triangles.
+pub(crate) const FEWER: &str = "lower the detail (or sides), or make fewer branches or leaves";
 
 fn budget(plant: &Plant, spec: &SkinSpec) -> Budget {
     let bounds = bounds(plant);

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use base::{Cancelled, Draw, Run, Seed, map_indexed};
+use base::{Cancelled, Counted, Draw, Run, Seed, Stopped, map_indexed};
 use mesh::TriMesh;
 use plant::{Organ, OrganKind, Plant, Shape};
 
@@ -18,19 +18,19 @@ use crate::wind::{Wind, flutter};
 // Organs are copied in groups of about this many vertices: one job each would cost more than the copy.
 const GROUP: usize = 6000;
 
-/// The organs' meshes, gathered by slot in the order of the organs.
+/// The organs' meshes, gathered by slot in the order of the organs. `wood`: triangles that there are already.
 ///
 /// # Errors
-/// [`Cancelled`].
+/// [`Stopped`].
 pub(crate) fn organs(
     plant: &Plant,
     spec: &SkinSpec,
     budget: &Budget,
-    traced: Option<&Traced>,
+    (traced, wood): (Option<&Traced>, usize),
     wind: Option<&Wind<'_>>,
     kept: Option<&mut KeptShapes>,
     run: &Run<'_>,
-) -> Result<Vec<(Slot, TriMesh)>, Cancelled> {
+) -> Result<Vec<(Slot, TriMesh)>, Stopped> {
     let scales = scales(plant);
     let ground = Ground::new(plant, spec, budget);
     let of_photo = |o: &Organ| traced.filter(|t| t.has(o.source));
@@ -61,6 +61,8 @@ pub(crate) fn organs(
             (if of_photo(o).is_some() { slot.traced() } else { slot }, i)
         })
         .collect();
+    let blades = order.iter().map(|&(_, i)| shapes[plant.organs[i].shape.index()].triangles.len());
+    run.budget.check(Counted::Triangles, (wood + blades.sum::<usize>()) as u64, crate::FEWER)?;
     base::sort_by_key(&mut order, |&(slot, _)| slot);
     let groups = groups(&order, |i| shapes[plant.organs[i].shape.index()].positions.len());
     let meshes = map_indexed(run.executor, groups.len(), |g| {
@@ -92,7 +94,7 @@ pub(crate) fn organs(
         }
         Ok((members[0].0, mesh))
     });
-    meshes.into_iter().collect()
+    Ok(meshes.into_iter().collect::<Result<_, Cancelled>>()?)
 }
 
 // Triangles of a crown's leaf, as a share of what its margin would need to be seen from near by: 8 for a plain leaf,

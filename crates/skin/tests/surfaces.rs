@@ -257,7 +257,7 @@ fn pale_drawn_colours_are_told_from_variation() {
 #[test]
 fn same_bits_for_any_executor() {
     let token = CancelToken::new();
-    let run = Run { cancel: &token, executor: &scenes::Threads, clock: &NoClock };
+    let run = Run { cancel: &token, executor: &scenes::Threads, clock: &NoClock, ..Run::plain() };
     for p in [scenes::leafy(500), scenes::flower(9), scenes::fork()] {
         let hex = |m: &Model| {
             let mut d = Digest::new();

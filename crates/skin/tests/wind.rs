@@ -299,7 +299,7 @@ fn phases_differ_from_limb_to_limb_and_follow_the_seed() {
 #[test]
 fn same_wind_for_any_executor() {
     let token = CancelToken::new();
-    let run = Run { cancel: &token, executor: &scenes::Threads, clock: &NoClock };
+    let run = Run { cancel: &token, executor: &scenes::Threads, clock: &NoClock, ..Run::plain() };
     let spec = SkinSpec { wind: true, ..SkinSpec::default() };
     for p in scenes() {
         assert_eq!(skin(&p, &spec, &run).expect("nobody cancels"), blown(&p), "{}", p.name);

@@ -5,7 +5,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use base::{Report, Run, Seed, Stage, Warning};
+use base::{Counted, Report, Run, Seed, Stage, Warning};
 use document::{Photo, PlantEdit};
 use glam::DVec2;
 use mesh::{Model, Texture};
@@ -125,6 +125,7 @@ impl Evaluator {
     ) -> Result<ItemReport, MakeError> {
         self.done.clear();
         let count = drawing.strokes.len();
+        run.budget.check(Counted::Strokes, count as u64, "draw with fewer strokes or in several drawings")?;
         if let Some((&index, _)) = options.classes.range(u32::try_from(count).unwrap_or(u32::MAX)..).next() {
             return Err(MakeError::NoSuchStroke { name: drawing.name.clone(), index, strokes: count });
         }

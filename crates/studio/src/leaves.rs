@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use base::{Cancelled, Digest, Draw, Report, Run, Seed, ops};
+use base::{Cancelled, Counted, Digest, Draw, OverBudget, Report, Run, Seed, ops};
 use geom::{Ball, BallBSpline, EndCap, SplineError, TubeSpec};
 use glam::{DQuat, DVec3};
 use leaf::{
@@ -76,6 +76,9 @@ pub enum LeafError {
     /// The user asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    /// It would have been too much.
+    #[error(transparent)]
+    OverBudget(#[from] OverBudget),
 }
 
 /// The part of a report about a leaf.
@@ -160,6 +163,9 @@ impl FitError {
     }
 }
 
+/// What to do where a leaf would have too many triangles.
+const COARSER: &str = "lower subdivisions or sides, or make fewer leaves";
+
 /// Makes a leaf and its meshes from marks (paper 004).
 ///
 /// # Errors
@@ -188,6 +194,7 @@ pub fn make_leaf_of(
     run: &Run<'_>,
     mut report: Report,
 ) -> Result<MadeLeaf, LeafError> {
+    run.budget.check(Counted::Triangles, options.mesh.triangles(marks.rows.len()), COARSER)?;
     let marks = options.pose.apply(marks);
     let leaf = report.stage("structure", run.clock, |_| Leaf::new(&marks, &options.spec))?;
     run.cancel.check()?;
@@ -445,6 +452,8 @@ pub fn make_shoot(
     }
     let mut report = Report::default();
     let count = spec.leaves.clamp(1, 200);
+    let each = forms.iter().map(|form| options.mesh.triangles(form.rows.len())).max().unwrap_or(0);
+    run.budget.check(Counted::Triangles, each * u64::from(count), COARSER)?;
     let stem = stem(spec, seed)?;
     let mut textures = Vec::with_capacity(forms.len());
     for form in forms {

@@ -30,8 +30,8 @@ mod trees;
 mod venation;
 
 pub use base::{
-    Angle, CancelToken, Cancelled, Clock, Digest, Executor, NoClock, Report, Run, Seed, Serial, Unit, UpAxis,
-    Warning, brief, map_indexed, quoted,
+    Angle, Budget, CancelToken, Cancelled, Clock, Counted, Digest, Executor, NoClock, OverBudget, Report,
+    Run, Seed, Serial, Stopped, Unit, UpAxis, Warning, brief, map_indexed, quoted,
 };
 pub use evaluate::{Evaluator, FrontView};
 pub use leaves::{

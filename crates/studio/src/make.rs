@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use base::{Cancelled, Run, Seed};
+use base::{Cancelled, OverBudget, Run, Seed, Stopped};
 use document::{DocumentPlant, Photo, PlantEdit};
 use mesh::Model;
 use plant::Plant;
@@ -79,6 +79,18 @@ pub enum MakeError {
     /// The user asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    /// It would have been too much.
+    #[error(transparent)]
+    OverBudget(#[from] OverBudget),
+}
+
+impl From<Stopped> for MakeError {
+    fn from(stopped: Stopped) -> Self {
+        match stopped {
+            Stopped::Cancelled(c) => Self::Cancelled(c),
+            Stopped::OverBudget(o) => Self::OverBudget(o),
+        }
+    }
 }
 
 /// Everything made from one drawing.

@@ -46,9 +46,9 @@ pub enum OpeningError {
     NoFlowers(String),
 }
 
-impl From<base::Cancelled> for OpeningError {
-    fn from(cancelled: base::Cancelled) -> Self {
-        Self::Make(cancelled.into())
+impl From<base::Stopped> for OpeningError {
+    fn from(stopped: base::Stopped) -> Self {
+        Self::Make(stopped.into())
     }
 }
 

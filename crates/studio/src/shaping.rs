@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use base::{Cancelled, Run};
+use base::{Cancelled, Counted, Run, Stopped};
 use document::PlantEdit;
 use glam::DVec3;
 use plant::{AxisId, Plant};
@@ -78,7 +78,8 @@ impl Shaper {
         edits: &[PlantEdit],
         context: &Context,
         run: &Run<'_>,
-    ) -> Result<(Plant, Vec<EditReport>), Cancelled> {
+    ) -> Result<(Plant, Vec<EditReport>), Stopped> {
+        run.budget.check(Counted::Edits, edits.len() as u64, "take fewer edits, or some in a second pass")?;
         let (rows, on): (Vec<usize>, Vec<&Arc<HandEdit>>) =
             edits.iter().enumerate().filter(|(_, e)| !e.off).map(|(row, e)| (row, &e.edit)).unzip();
         let serves = |b: &Begun| b.edits.len() <= on.len() && b.edits.iter().zip(&on).all(|(a, b)| a == *b);

@@ -1,6 +1,6 @@
 //! Chief veins that start together -> a model: palmate and parallel leaves.
 
-use base::{Report, Run, ops};
+use base::{Counted, Report, Run, ops};
 use leaf::{LeafColours, RayLeaf, Rays};
 use mesh::{MaterialId, Model, Part};
 
@@ -41,6 +41,11 @@ pub fn make_ray_leaf(
         let share = ops::smoothstep(0.0, reach, distance) as f32;
         core::array::from_fn(|k| vein[k] + (blade[k] - vein[k]) * (0.3 + 0.7 * share))
     };
+    let spans = leaf.veins.iter().chain(&leaf.sides).map(|v| v.marks.len().saturating_sub(1)).sum::<usize>();
+    let (steps, sides) = (options.mesh.subdivisions as u64, options.mesh.sides as u64);
+    let squares = (leaf.blade.columns_at().len() * leaf.blade.rows_at().len()) as u64;
+    let triangles = 2 * (spans as u64 * steps * sides + squares * steps * steps);
+    run.budget.check(Counted::Triangles, triangles, "lower subdivisions, sides or side-veins")?;
     let meshes = report.stage("mesh", run.clock, |_| leaf.mesh(&options.mesh, shade));
     let (us, vs) = (leaf.blade.columns_at(), leaf.blade.rows_at());
     let mut distances = Vec::new();

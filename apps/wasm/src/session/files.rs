@@ -13,7 +13,7 @@ use burgeon::{CancelToken, Report, Run, leaf_marks, read_tree_spec, tree_setting
 
 use super::{Session, Told, words};
 use crate::exports;
-use crate::host::{Attentive, Host};
+use crate::host::{Attentive, BUDGET, Host};
 use crate::wire::{Opened, WireCommand};
 
 /// Drawings of a file that are offered for choice.
@@ -154,7 +154,7 @@ impl Session {
         self.draft = None;
         let only = if options.whole { None } else { Some(self.must()?) };
         let cancel = CancelToken::new();
-        let run = Run { cancel: &cancel, executor: &Attentive(&cancel), clock: &Host };
+        let run = Run { cancel: &cancel, executor: &Attentive(&cancel), clock: &Host, budget: BUDGET };
         exports::export(&mut self.scene, self.editor.document(), only, format, &options, &run)
     }
 }

@@ -12,14 +12,14 @@ use burgeon::{CancelToken, Evaluator, ItemReport, MakeError, Run, SceneError, Se
 
 use super::shaping::coarser;
 use super::{Column, GUEST, Outcome, PREVIEW_DETAIL, Session, Told, words};
-use crate::host::{Attentive, Host};
+use crate::host::{Attentive, BUDGET, Host};
 use crate::wire::{Front, MaterialView, ObstacleView, PartView, PlantView, TextureView, View};
 
 impl Session {
     pub(crate) fn evaluate(&mut self) -> Told<String> {
         let cancel = CancelToken::new();
         let executor = Attentive(&cancel);
-        let run = Run { cancel: &cancel, executor: &executor, clock: &Host };
+        let run = Run { cancel: &cancel, executor: &executor, clock: &Host, budget: BUDGET };
         self.previewed = false;
         let current = self.current_id();
         let drawn = self.draft.is_some();
@@ -188,7 +188,7 @@ impl Session {
         coarse.map_or(Ok(()), change)?;
         let mut aside = self.scene.clone();
         let cancel = CancelToken::new();
-        let run = Run { cancel: &cancel, executor: &Attentive(&cancel), clock: &Host };
+        let run = Run { cancel: &cancel, executor: &Attentive(&cancel), clock: &Host, budget: BUDGET };
         aside.update(id, document.document(), &run).map_err(words)?;
         let model = aside.get(id).map(|p| p.model.clone()).ok_or("there is no plant yet")?;
         let seen = plant_view(GUEST, &model, &mut self.textures);

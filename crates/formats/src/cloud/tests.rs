@@ -1,5 +1,4 @@
 use super::*;
-use base::Unit;
 use proptest::prelude::*;
 
 fn read(bytes: &[u8], format: CloudFormat) -> Result<PointCloud, String> {

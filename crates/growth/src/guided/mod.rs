@@ -5,8 +5,10 @@
 mod room;
 mod spec;
 
+use core::sync::atomic::{AtomicU64, Ordering};
+
 use base::ops::{self, PI, TAU};
-use base::{Draw, Report, Run, Seed, map_indexed};
+use base::{Counted, Draw, OverBudget, Report, Run, Seed, map_indexed};
 use geom::KdTree;
 use glam::DVec3;
 
@@ -70,12 +72,13 @@ pub fn guide(
     run: &Run<'_>,
     report: &mut Report,
 ) -> Result<Guided, GrowthError> {
-    let mut skeleton = plant_roots(roots, obstacles)?;
-    let room = Room::new(spec, roots.to_vec(), obstacles)?;
+    let mut skeleton = plant_roots(roots, obstacles, run)?;
+    let room = Room::new(spec, roots.to_vec(), obstacles, &run.budget)?;
     spec.check()?;
     let mut buds = Vec::new();
     for root in 0..skeleton.len() {
-        let top = grow_bole(&mut skeleton, JointId::new(root), room.foot(), spec.internode_m, obstacles);
+        let top =
+            grow_bole(&mut skeleton, JointId::new(root), room.foot(), spec.internode_m, obstacles, run)?;
         buds.push(StartBud { joint: top, heading: DVec3::Y, wakes: 0 });
     }
     grow(skeleton, &buds, &room, spec, seed, run, report)
@@ -100,7 +103,7 @@ pub fn guide_from(
         return Err(GrowthError::NoRoots);
     }
     let roots = skeleton.position.iter().zip(&skeleton.parent).filter(|(_, p)| p.is_none());
-    let room = Room::new(spec, roots.map(|(p, _)| *p).collect(), obstacles)?;
+    let room = Room::new(spec, roots.map(|(p, _)| *p).collect(), obstacles, &run.budget)?;
     grow(skeleton, buds, &room, spec, seed, run, report)
 }
 
@@ -127,6 +130,11 @@ fn grow(
             );
             break;
         }
+        run.budget.check(
+            Counted::Joints,
+            stand.skeleton.len() as u64,
+            "lower rounds, alpha or max_joints, or make internode_m longer",
+        )?;
         if !stand.round(round, run)? {
             break;
         }
@@ -190,7 +198,13 @@ struct Stand<'a> {
     seed: Seed,
     markers_made: usize,
     died: usize,
+    /// Markers that buds have looked at.
+    looks: AtomicU64,
 }
+
+/// What to do where buds look at too many markers.
+const TOO_CROWDED: &str =
+    "lower far, markers or rounds, or raise half_angle_deg or repulsion so that more buds die";
 
 fn place_key(p: DVec3) -> u64 {
     p.x.to_bits() ^ p.y.to_bits().rotate_left(21) ^ p.z.to_bits().rotate_left(42)
@@ -228,7 +242,19 @@ impl<'a> Stand<'a> {
             }
         });
         let buds = buds.collect();
-        Self { is_main, given, buds, skeleton, room, spec, numbers, seed, markers_made: 0, died: 0 }
+        Self {
+            is_main,
+            given,
+            buds,
+            skeleton,
+            room,
+            spec,
+            numbers,
+            seed,
+            markers_made: 0,
+            died: 0,
+            looks: AtomicU64::new(0),
+        }
     }
 
     /// One round; whether any bud is left that may still grow.
@@ -242,6 +268,8 @@ impl<'a> Stand<'a> {
         if awake.is_empty() {
             return Ok(waiting);
         }
+        let all = u64::from(self.spec.markers) * awake.len() as u64;
+        run.budget.check(Counted::Points, all, "lower markers, rounds or alpha, or give fewer roots")?;
         let groups = awake.len().div_ceil(GROUP);
         let of_group = |g: usize| &awake[g * GROUP..awake.len().min((g + 1) * GROUP)];
         let made = map_indexed(run.executor, groups, |g| {
@@ -262,10 +290,18 @@ impl<'a> Stand<'a> {
         let looks = map_indexed(run.executor, groups, |g| {
             let mut near = Vec::new();
             let of = of_group(g).iter().zip(g * GROUP..);
-            of.map(|(&b, k)| self.look(b, &markers, &owner, rows[k].clone(), &grid, &mut near))
-                .collect::<Vec<_>>()
+            of.map(|(&b, k)| {
+                let look = self.look(b, &markers, &owner, rows[k].clone(), &grid, &mut near);
+                // Told to the others at once: one round of many buds in one place could take minutes.
+                let all = self.looks.fetch_add(near.len() as u64, Ordering::Relaxed) + near.len() as u64;
+                let most = run.budget.limit(Counted::Looks);
+                run.budget.check(Counted::Looks, all.min(most.saturating_add(1)), TOO_CROWDED)?;
+                Ok(look)
+            })
+            .collect::<Result<Vec<_>, OverBudget>>()
         });
         run.cancel.check()?;
+        let looks: Vec<Vec<Look>> = looks.into_iter().collect::<Result<_, OverBudget>>()?;
         let looks: Vec<Look> = looks.into_iter().flatten().collect();
         let vigour = self.share(&awake, &looks);
         for ((&b, look), v) in awake.iter().zip(&looks).zip(vigour) {

@@ -1,6 +1,6 @@
 //! Where buds may find room: an envelope, and the tubes of brush strokes.
 
-use base::ops;
+use base::{Budget, Counted, ops};
 use geom::KdTree;
 use glam::DVec3;
 
@@ -44,7 +44,7 @@ pub(super) struct Guide {
 }
 
 impl Tubes {
-    fn new(strokes: &[BrushStroke]) -> Option<Self> {
+    fn new(strokes: &[BrushStroke], budget: &Budget) -> Result<Option<Self>, GrowthError> {
         let mut pieces = Vec::new();
         for stroke in strokes {
             let radius =
@@ -53,6 +53,12 @@ impl Tubes {
                 let (r, s) = (radius(i), radius(i + 1));
                 let Some(tangent) = (w[1] - w[0]).try_normalize() else { continue };
                 let wish = (w[0].distance(w[1]) / r.min(s)).ceil().clamp(1.0, 1000.0);
+                let all = pieces.len() as f64 + wish;
+                budget.check_estimate(
+                    Counted::Points,
+                    all,
+                    "make strokes.radius_m larger or strokes shorter",
+                )?;
                 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 1000")]
                 let n = wish as u32;
                 let at = |k: u32| f64::from(k) / f64::from(n);
@@ -71,7 +77,7 @@ impl Tubes {
             .map(|p| p.radius.0.max(p.radius.1) + 0.5 * p.from.distance(p.to))
             .fold(0.0, f64::max);
         let middles: Vec<DVec3> = pieces.iter().map(|p| p.from.lerp(p.to, 0.5)).collect();
-        (!pieces.is_empty()).then(|| Self { grid: KdTree::new(&middles), pieces, reach })
+        Ok((!pieces.is_empty()).then(|| Self { grid: KdTree::new(&middles), pieces, reach }))
     }
 
     /// The strongest guide at a point; none outside every tube.
@@ -98,9 +104,10 @@ impl<'a> Room<'a> {
         spec: &GuidedSpec,
         roots: Vec<DVec3>,
         obstacles: &'a Obstacles,
+        budget: &Budget,
     ) -> Result<Self, GrowthError> {
         let region = spec.envelope.as_ref().map(|e| e.prepare()).transpose()?.map(|r| (r, roots));
-        Ok(Self { region, tubes: Tubes::new(&spec.strokes), obstacles })
+        Ok(Self { region, tubes: Tubes::new(&spec.strokes, budget)?, obstacles })
     }
 
     /// What guides a marker at a point; `None` where none may be. Without strokes, weight 1 and no direction.

@@ -1,6 +1,6 @@
 //! Rewriting: axiom -> modules, step by step, within bounds.
 
-use base::{Draw, Run, Seed};
+use base::{Counted, Draw, Run, Seed};
 
 use super::LsystemError;
 use super::grammar::{Lsystem, Rule, Written};
@@ -88,6 +88,11 @@ pub(super) fn derive(
             made[r] += rule.successor.len();
             if next.len() + rule.successor.len() > most {
                 return Err(too_large(system, &made, step, most).into());
+            }
+            // Looked at now and then: one rule writes few modules.
+            if i % 1024 == 0 {
+                let all = next.len() as u64;
+                run.budget.check(Counted::Joints, all, "take fewer steps or lower most_modules")?;
             }
             let from = next.numbers.len();
             for (w, k) in rule.successor.iter().zip(0..) {

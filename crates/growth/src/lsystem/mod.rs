@@ -7,7 +7,7 @@ mod expr;
 mod grammar;
 mod turtle;
 
-use base::{Report, Run, Seed};
+use base::{Counted, Report, Run, Seed};
 use glam::DVec3;
 
 use crate::error::usable;
@@ -119,7 +119,7 @@ pub const OAK_RULES: &str = include_str!("oak.lsys");
 /// [`GrowthError::NoRoots`], [`GrowthError::Root`]; cancelled.
 ///
 /// ```
-/// use base::{Report, Run, Seed};
+/// use base::{Counted, Report, Run, Seed};
 /// use glam::DVec3;
 /// use growth::{Lsystem, grow_lsystem};
 /// let system = Lsystem::parse("axiom = A\nsteps = 4\nA -> F(1) [ +(40) A ] [ -(40) A ]")?;
@@ -139,6 +139,7 @@ pub fn grow_lsystem(
     if roots.is_empty() {
         return Err(GrowthError::NoRoots);
     }
+    run.budget.check(Counted::Roots, roots.len() as u64, "give fewer roots")?;
     let started = run.clock.now_ms();
     let most = most_modules.clamp(1, 100_000_000) as usize;
     let mut tree = LsystemTree { skeleton: Skeleton::default(), leaves: Vec::new(), modules: 0 };

@@ -9,7 +9,7 @@ mod space;
 mod spec;
 
 use base::ops::{self, PI};
-use base::{Draw, Report, Run, Seed};
+use base::{Budget, Counted, Draw, OverBudget, Report, Run, Seed};
 use glam::DVec3;
 use plant::Phyllotaxis;
 
@@ -66,7 +66,7 @@ pub fn self_organize(
 ) -> Result<SelfOrganized, GrowthError> {
     let numbers = spec.check()?;
     let started = run.clock.now_ms();
-    let mut skeleton = plant_roots(roots, obstacles)?;
+    let mut skeleton = plant_roots(roots, obstacles, run)?;
     let light = match &spec.light {
         Light::Shadow { voxel_m, a, b, layers, full } => {
             let voxel = voxel_m.unwrap_or(2.0 * spec.internode_m);
@@ -75,6 +75,8 @@ pub fn self_organize(
         }
         Light::Space { envelope, markers, occupancy, perception, half_angle_deg } => {
             let reach = (occupancy * spec.internode_m, perception * spec.internode_m);
+            let all = u64::from(*markers) * roots.len() as u64;
+            run.budget.check(Counted::Points, all, "lower light.markers or give fewer roots")?;
             let region = envelope.prepare()?;
             let mut places = Vec::new();
             for (root, i) in roots.iter().zip(0_u64..) {
@@ -85,7 +87,7 @@ pub fn self_organize(
             // Markers begin where the crown does: without a bole no bud would see any.
             for root in 0..roots.len() {
                 let foot = (region.foot() - reach.0).max(0.0);
-                grow_bole(&mut skeleton, JointId::new(root), foot, spec.internode_m, obstacles);
+                grow_bole(&mut skeleton, JointId::new(root), foot, spec.internode_m, obstacles, run)?;
             }
             LightModel::Space(Space::new(&places, reach, half_angle_deg * (PI / 180.0)))
         }
@@ -106,11 +108,12 @@ pub fn self_organize(
         kept: Kept::default(),
         generated: 0,
         shed: 0,
+        work: 0,
     };
     forest.cast_from(0);
     for year in 0..spec.years {
         run.cancel.check()?;
-        if let Some(next) = forest.year(year) {
+        if let Some(next) = forest.year(year, run)? {
             report.warn("growth-stopped", too_much(spec, year, forest.grove.len(), next));
             break;
         }
@@ -120,7 +123,7 @@ pub fn self_organize(
     }
     let bare = forest.grove.skeleton.parent.iter().all(Option::is_none);
     if spec.years > 0 && (bare || forest.generated == 0) {
-        return Err(GrowthError::Nothing { why: forest.why_nothing() });
+        return Err(GrowthError::Nothing { why: forest.why_nothing(&run.budget)? });
     }
     let Forest { mut grove, generated, shed, .. } = forest;
     // Joints of one shoot are often alike.
@@ -184,21 +187,23 @@ struct Forest<'a> {
     kept: Kept,
     generated: usize,
     shed: usize,
+    /// Joints of all years so far.
+    work: u64,
 }
 
 impl Forest<'_> {
     /// Which number keeps every bud of a forest of bare roots asleep.
-    fn why_nothing(&mut self) -> String {
+    fn why_nothing(&mut self, budget: &Budget) -> Result<String, OverBudget> {
         let (alpha, years, below) = (self.spec.alpha, self.spec.years, self.spec.shed_below);
         if self.generated > 0 {
-            return format!(
+            return Ok(format!(
                 "all that grew in {years} years was shed: shed_below ({below}) is more than the light per internode \
                  of any branch; lower it, or raise alpha ({alpha})"
-            );
+            ));
         }
-        self.look();
+        self.look(budget)?;
         let light = self.bud_light.iter().copied().fold(0.0, f64::max);
-        match &self.spec.light {
+        Ok(match &self.spec.light {
             _ if light > 0.0 && light * alpha >= 1.0 => {
                 "obstacles stand around every root; move them, or lower internode_m".into()
             }
@@ -214,12 +219,14 @@ impl Forest<'_> {
             Light::Space { .. } => {
                 format!("no bud has the vigour of 1 that a shoot takes: it is alpha ({alpha}); raise it")
             }
-        }
+        })
     }
 
     /// The joints that there would be after this year if that is more than allowed: then nothing has sprouted.
-    fn year(&mut self, year: u32) -> Option<usize> {
-        self.look();
+    fn year(&mut self, year: u32, run: &Run<'_>) -> Result<Option<usize>, GrowthError> {
+        self.work += self.grove.len() as u64;
+        run.budget.check(Counted::JointYears, self.work, "lower years or max_joints")?;
+        self.look(&run.budget)?;
         self.flow.gather(&self.grove, &self.bud_light);
         self.drop_dark_branches(year);
         let share = (f64::from(year) / f64::from(self.spec.lambda_years.max(1))).min(1.0);
@@ -232,16 +239,17 @@ impl Forest<'_> {
         self.flow.share(&self.grove, &self.bud_light, self.spec.alpha, sharing);
         let next = self.grove.len() + self.sprouting();
         if next > self.spec.max_joints as usize {
-            return Some(next);
+            return Ok(Some(next));
         }
+        run.budget.check(Counted::Joints, next as u64, "lower years, alpha or max_joints")?;
         self.sprout(year + 1);
         let tip = ops::powf(self.spec.tip_radius_m, self.spec.pipe_exponent);
         self.grove.thicken(tip);
-        None
+        Ok(None)
     }
 
     /// Light of every bud.
-    fn look(&mut self) {
+    fn look(&mut self, budget: &Budget) -> Result<(), OverBudget> {
         let n = self.grove.len();
         self.bud_light.clear();
         match &mut self.light {
@@ -252,10 +260,11 @@ impl Forest<'_> {
                 self.bud_light.extend(light);
             }
             LightModel::Space(space) => {
-                space.look(&self.grove);
+                space.look(&self.grove, budget)?;
                 self.bud_light.extend((0..n).map(|j| space.light_at(j)));
             }
         }
+        Ok(())
     }
 
     /// Sheds branches that gather too little light for their size (Takenaka 1994).

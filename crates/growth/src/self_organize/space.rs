@@ -1,5 +1,6 @@
 //! Free space as markers: a bud has light if any free marker is nearest to it and in its cone.
 
+use base::{Budget, Counted, OverBudget};
 use geom::KdTree;
 use glam::DVec3;
 
@@ -25,6 +26,8 @@ pub(super) struct Space {
     /// Where each axillary bud would grow.
     bud_heading: Vec<DVec3>,
     near: Vec<usize>,
+    /// Markers that buds have looked at.
+    looks: u64,
 }
 
 impl Space {
@@ -42,6 +45,7 @@ impl Space {
             stride: 1,
             bud_heading: Vec::new(),
             near: Vec::new(),
+            looks: 0,
         }
     }
 
@@ -56,18 +60,23 @@ impl Space {
         for &p in joints {
             near.clear();
             self.grid.within(p, self.occupancy, &mut near);
+            self.looks += near.len() as u64;
             near.iter().for_each(|&m| self.gone[m] = true);
         }
         self.near = near;
     }
 
     /// Gives every free marker to the nearest bud in whose cone it lies.
-    pub(super) fn look(&mut self, grove: &Grove) {
+    ///
+    /// # Errors
+    /// [`OverBudget`].
+    pub(super) fn look(&mut self, grove: &Grove, budget: &Budget) -> Result<(), OverBudget> {
         self.stride = 1 + grove.per_node;
         self.best.fill((f64::INFINITY, FREE));
         self.sum.clear();
         self.sum.resize(grove.len() * self.stride, DVec3::ZERO);
         for j in 0..grove.len() {
+            budget.check(Counted::Looks, self.looks, "lower light.perception, light.markers or years")?;
             if grove.main[j] == NONE {
                 self.claim(grove.skeleton.position[j], grove.heading[j], j * self.stride);
             }
@@ -84,12 +93,14 @@ impl Space {
                 self.sum[row as usize] += (self.markers[m] - grove.skeleton.position[j]).normalize_or_zero();
             }
         }
+        Ok(())
     }
 
     fn claim(&mut self, at: DVec3, heading: DVec3, row: usize) {
         let mut near = core::mem::take(&mut self.near);
         near.clear();
         self.grid.within(at, self.perception, &mut near);
+        self.looks += near.len() as u64;
         for &m in near.iter().filter(|&&m| !self.gone[m]) {
             let to = self.markers[m] - at;
             let d2 = to.length_squared();

@@ -2,7 +2,7 @@
 //!
 //! `spec, seed -> grown | + look -> dressed | + edits -> shaped | + skin -> model`
 
-use base::{Cancelled, Report, Run, Seed, Warning};
+use base::{Report, Run, Seed, Stopped, Warning};
 use document::PlantEdit;
 use growth::{Grown, Method};
 use mesh::Model;
@@ -117,6 +117,7 @@ impl TreeEvaluator {
         if let (Some(file), None) = (&spec.blade.file, leaf) {
             return Err(TreeError::File { file: file.clone() });
         }
+        wanted.check(&run.budget)?;
         let obstacles = growth::Obstacles::new(&wanted.obstacles, wanted.clearance_m)?;
         let blade = leaf.map_or_else(|| spec.blade.blade(), |l| l.scaled(1.0));
         let same = |k: &Raw| (&k.from.0, &k.from.1, k.from.2) == (&wanted, &blade, seed);
@@ -283,7 +284,7 @@ fn skinned(
     (skin, look, leaf): &Skinned,
     barks: &mut KeptBarks,
     run: &Run<'_>,
-) -> Result<Model, Cancelled> {
+) -> Result<Model, Stopped> {
     let mut model = skin::skin(plant, skin, run)?;
     look.paint(&mut model, barks);
     if let Some(leaf) = leaf {

@@ -25,7 +25,7 @@ mod presets;
 mod scenery;
 mod spec;
 
-use base::{Cancelled, Report, Run, Seed};
+use base::{Cancelled, OverBudget, Report, Run, Seed, Stopped};
 use document::PlantEdit;
 use glam::DVec3;
 use growth::{Grown, GrowthError, Method, Obstacle, Obstacles};
@@ -103,12 +103,25 @@ pub enum TreeError {
     /// The user asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    /// It would have been too much.
+    #[error(transparent)]
+    OverBudget(#[from] OverBudget),
+}
+
+impl From<Stopped> for TreeError {
+    fn from(stopped: Stopped) -> Self {
+        match stopped {
+            Stopped::Cancelled(c) => Self::Cancelled(c),
+            Stopped::OverBudget(o) => Self::OverBudget(o),
+        }
+    }
 }
 
 impl From<GrowthError> for TreeError {
     fn from(error: GrowthError) -> Self {
         match error {
             GrowthError::Cancelled(c) => Self::Cancelled(c),
+            GrowthError::OverBudget(o) => Self::OverBudget(o),
             other => Self::Growth(other),
         }
     }

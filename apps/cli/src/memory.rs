@@ -1,0 +1,165 @@
+//! The memory that the program may take: counted, so that too much of it ends in one line instead of an abort.
+//!
+//! Every allocation passes here. A thread adds what it takes and gives back to a number of its own and tells all others
+//! of it in steps of [`STEP`], so that counting costs next to nothing. What the core can foresee it refuses itself, with
+//! the field to change (`base::Budget`); this is the net below it.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::io::Write;
+use std::sync::atomic::{AtomicBool, AtomicIsize, Ordering};
+
+use burgeon::Budget;
+
+/// How far a thread's own count may be off before it tells the others: 256 KiB.
+const STEP: isize = 256 << 10;
+
+/// Bytes in use, but for what threads have not told yet.
+static LIVE: AtomicIsize = AtomicIsize::new(0);
+/// Bytes that may be in use.
+static LIMIT: AtomicIsize = AtomicIsize::new(isize::MAX);
+/// Whether the limit is what the machine has rather than what the budget allows.
+static OF_MACHINE: AtomicBool = AtomicBool::new(false);
+/// The program is ending for want of memory.
+static ENDING: AtomicBool = AtomicBool::new(false);
+
+thread_local! {
+    /// What this thread has taken, less what it gave back, since it last told.
+    static UNTOLD: Cell<isize> = const { Cell::new(0) };
+}
+
+/// Counts what the system's allocator gives.
+struct Counting;
+
+#[global_allocator]
+static MEMORY: Counting = Counting;
+
+/// Sets the limit: that of the budget, or what the machine has free if that is less.
+pub(crate) fn limit(budget: &Budget) {
+    let allowed = isize::try_from(budget.bytes()).unwrap_or(isize::MAX);
+    let free = free_bytes().and_then(|b| isize::try_from(b).ok()).unwrap_or(isize::MAX);
+    OF_MACHINE.store(free < allowed, Ordering::Relaxed);
+    LIMIT.store(free.min(allowed), Ordering::Relaxed);
+}
+
+/// What Linux could give without ending other programs; `None` where it does not tell.
+fn free_bytes() -> Option<u64> {
+    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let kib = |name: &str| {
+        let rest = text.lines().find_map(|l| l.strip_prefix(name)?.strip_prefix(':'))?;
+        rest.split_whitespace().next()?.parse::<u64>().ok()
+    };
+    let machine = (kib("MemAvailable")? + kib("SwapFree").unwrap_or(0)).saturating_mul(1024);
+    // A container may have less than the machine.
+    let own = std::fs::read_to_string("/sys/fs/cgroup/memory.max").ok();
+    Some(own.and_then(|t| t.trim().parse().ok()).map_or(machine, |own: u64| own.min(machine)))
+}
+
+/// Adds to what is in use, or takes away (below 0).
+#[inline]
+fn count(bytes: isize) {
+    // A thread that is ending has no number of its own any more.
+    let told = UNTOLD.try_with(|untold| {
+        let sum = untold.get().wrapping_add(bytes);
+        let tells = sum.unsigned_abs() >= STEP.unsigned_abs();
+        untold.set(if tells { 0 } else { sum });
+        if tells { sum } else { 0 }
+    });
+    let told = told.unwrap_or(bytes);
+    if told != 0 {
+        tell(told);
+    }
+}
+
+#[cold]
+fn tell(bytes: isize) {
+    let live = LIVE.fetch_add(bytes, Ordering::Relaxed).wrapping_add(bytes);
+    if bytes > 0 && live > LIMIT.load(Ordering::Relaxed) {
+        end(!OF_MACHINE.load(Ordering::Relaxed));
+    }
+}
+
+/// Ends the program with one line and status 2; drafts of files are removed.
+#[cold]
+fn end(by_budget: bool) {
+    // What is needed to end is a little memory, too: it is not counted, and where even that is not to be had (or another
+    // thread is ending already) the caller goes on with what it got.
+    if ENDING.swap(true, Ordering::Relaxed) {
+        return;
+    }
+    LIMIT.store(isize::MAX, Ordering::Relaxed);
+    let in_use = LIVE.load(Ordering::Relaxed) >> 20;
+    let mut to = std::io::stderr();
+    let _ = if by_budget {
+        writeln!(
+            to,
+            "error: more memory would be needed than the limit of {in_use} MiB: make it smaller or coarser, or allow \
+             more with --budget (docs/limits.md)"
+        )
+    } else {
+        writeln!(
+            to,
+            "error: the machine has no more memory ({in_use} MiB are in use): make it smaller or coarser, or close other \
+             programs"
+        )
+    };
+    crate::output::abandon_drafts();
+    std::process::exit(2);
+}
+
+#[expect(unsafe_code, reason = "an allocator has no safe form; every call goes to the system's as it came")]
+// SAFETY: memory comes from and goes back to `System` with the caller's own arguments; counting touches none of it.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count(signed(layout.size()));
+        // SAFETY: the caller's contract is that of `System`.
+        checked(unsafe { System.alloc(layout) }, layout.size())
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        count(signed(layout.size()));
+        // SAFETY: the caller's contract is that of `System`.
+        checked(unsafe { System.alloc_zeroed(layout) }, layout.size())
+    }
+
+    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
+        count(-signed(layout.size()));
+        // SAFETY: the caller's contract is that of `System`, from which `memory` came.
+        unsafe { System.dealloc(memory, layout) };
+    }
+
+    unsafe fn realloc(&self, memory: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        count(signed(size).wrapping_sub(signed(layout.size())));
+        // SAFETY: the caller's contract is that of `System`, from which `memory` came.
+        checked(unsafe { System.realloc(memory, layout, size) }, size)
+    }
+}
+
+/// Layouts are at most `isize::MAX` large.
+const fn signed(bytes: usize) -> isize {
+    bytes.cast_signed()
+}
+
+#[inline]
+fn checked(memory: *mut u8, bytes: usize) -> *mut u8 {
+    if memory.is_null() && bytes > 0 {
+        end(false);
+    }
+    memory
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_taken_and_given_back_is_counted() {
+        let live = || LIVE.load(Ordering::Relaxed);
+        let before = live();
+        // Other tests allocate as well: a size that none of them has.
+        let large = vec![1_u8; 64 << 20];
+        assert!(live() - before > 48 << 20, "{}", live() - before);
+        drop(large);
+        assert!(live() - before < 16 << 20, "{}", live() - before);
+    }
+}

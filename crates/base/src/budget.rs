@@ -1,0 +1,262 @@
+//! How much a computation may make: counted before the work, refused in one line.
+
+use core::fmt;
+
+/// What is counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Counted {
+    /// Roots: trees that grow side by side.
+    Roots,
+    /// Attraction points and markers of one tree or stand.
+    Points,
+    /// Joints of skeletons: internodes, metamers, modules of a string.
+    Joints,
+    /// Steps, and places for leaves, along one shoot.
+    Course,
+    /// Points that buds look at, each time that one does: what growth by markers takes time for.
+    Looks,
+    /// Joints times the years that they live through: what self-organising growth takes time for.
+    JointYears,
+    /// Places for leaves.
+    Leaves,
+    /// Triangles of meshes.
+    Triangles,
+    /// Triangles of all obstacles and envelopes.
+    Obstacles,
+    /// Strokes of a drawing.
+    Strokes,
+    /// Edits by hand of one plant.
+    Edits,
+}
+
+impl Counted {
+    /// All of them, in the order of `docs/limits.md`.
+    pub const ALL: [Self; 11] = [
+        Self::Roots,
+        Self::Points,
+        Self::Joints,
+        Self::Course,
+        Self::Looks,
+        Self::JointYears,
+        Self::Leaves,
+        Self::Triangles,
+        Self::Obstacles,
+        Self::Strokes,
+        Self::Edits,
+    ];
+
+    /// In messages.
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Roots => "roots",
+            Self::Points => "attraction points",
+            Self::Joints => "joints",
+            Self::Course => "steps or leaves along one shoot",
+            Self::Looks => "looks of buds at markers",
+            Self::JointYears => "joints times years",
+            Self::Leaves => "places for leaves",
+            Self::Triangles => "triangles",
+            Self::Obstacles => "triangles of obstacles and envelopes",
+            Self::Strokes => "strokes",
+            Self::Edits => "edits",
+        }
+    }
+
+    /// The usual limit. Each is well above what plants that are looked at need, and such that a computation that
+    /// stays within all of them stays within [`Budget::bytes`].
+    pub const fn limit(self) -> u64 {
+        match self {
+            Self::Roots => 1_000,
+            Self::Points => 2_000_000,
+            Self::Joints => 2_000_000,
+            Self::Leaves | Self::Obstacles => 1_000_000,
+            Self::Course => 100_000,
+            Self::Looks => 100_000_000,
+            Self::JointYears => 20_000_000,
+            Self::Triangles => 16_000_000,
+            Self::Strokes => 20_000,
+            Self::Edits => 1_000,
+        }
+    }
+}
+
+/// How many times the usual limits a computation may take. Plain data; it never changes a result: what is too much is
+/// an error, not another plant.
+///
+/// ```
+/// use base::{Budget, Counted};
+/// let budget = Budget { raise: Some("--budget"), ..Budget::default() };
+/// assert!(budget.check(Counted::Points, 1_500, "lower points").is_ok());
+/// let refused = budget.check(Counted::Points, 10_000_000, "lower points").unwrap_err();
+/// assert_eq!(
+///     refused.to_string(),
+///     "10,000,000 attraction points are more than the limit of 2,000,000: lower points, or allow more with --budget 5"
+/// );
+/// assert!(Budget { times: 5.0, ..budget }.check(Counted::Points, 10_000_000, "lower points").is_ok());
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Budget {
+    /// Factor on the usual limits, above 0; 1 unless somebody asks for more. Infinity: no limits, only on purpose.
+    pub times: f64,
+    /// The option that raises it, for messages; none where there is none.
+    pub raise: Option<&'static str>,
+}
+
+impl Default for Budget {
+    fn default() -> Self {
+        Self { times: 1.0, raise: None }
+    }
+}
+
+/// Live memory at the usual limits, bytes: 4 GiB.
+const BYTES: u64 = 4 << 30;
+/// The most that a factor may be.
+const MOST: f64 = 1000.0;
+
+impl Budget {
+    /// The limit of what is counted.
+    pub fn limit(&self, what: Counted) -> u64 {
+        self.scaled(what.limit())
+    }
+
+    /// Memory in use at one time, bytes. Who owns the memory sees to it: the core cannot.
+    pub fn bytes(&self) -> u64 {
+        self.scaled(BYTES)
+    }
+
+    fn scaled(&self, usual: u64) -> u64 {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            clippy::cast_precision_loss,
+            reason = "limits are small integers; a product that is too large saturates"
+        )]
+        let limit = (usual as f64 * self.times) as u64;
+        limit
+    }
+
+    /// Fails if `number` is above the limit. `remedy` tells which field or option to change, such as `lower points`.
+    ///
+    /// # Errors
+    /// [`OverBudget`].
+    pub fn check(&self, what: Counted, number: u64, remedy: &'static str) -> Result<(), OverBudget> {
+        let limit = self.limit(what);
+        if number <= limit {
+            return Ok(());
+        }
+        #[expect(clippy::cast_precision_loss, reason = "a factor, rounded up")]
+        let times = (number as f64 / what.limit() as f64).ceil();
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 1000")]
+        let raise = self.raise.filter(|_| times <= MOST).map(|option| (option, times as u32));
+        Err(OverBudget { what, number, limit, remedy, raise })
+    }
+
+    /// [`check`](Self::check) of a number that was computed from lengths: what is not finite is too many.
+    ///
+    /// # Errors
+    /// [`OverBudget`].
+    pub fn check_estimate(&self, what: Counted, number: f64, remedy: &'static str) -> Result<(), OverBudget> {
+        if self.times.is_infinite() {
+            return Ok(());
+        }
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
+        let whole = if number.is_nan() { u64::MAX } else { number.ceil() as u64 };
+        self.check(what, whole, remedy)
+    }
+}
+
+/// More than the budget allows; nothing was made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OverBudget {
+    /// What was counted.
+    pub what: Counted,
+    /// How many there would be, at least.
+    pub number: u64,
+    /// How many there may be.
+    pub limit: u64,
+    /// What to change.
+    pub remedy: &'static str,
+    /// The option that allows more, and what it must be.
+    pub raise: Option<(&'static str, u32)>,
+}
+
+impl core::error::Error for OverBudget {}
+
+impl fmt::Display for OverBudget {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { what, number, limit, remedy, raise } = self;
+        let (number, limit, what) = (Grouped(*number), Grouped(*limit), what.words());
+        write!(f, "{number} {what} are more than the limit of {limit}: {remedy}")?;
+        raise.map_or(Ok(()), |(option, times)| write!(f, ", or allow more with {option} {times}"))
+    }
+}
+
+/// Digits in groups of three.
+struct Grouped(u64);
+
+impl fmt::Display for Grouped {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let digits = self.0.to_string();
+        for (i, digit) in digits.chars().enumerate() {
+            if i > 0 && (digits.len() - i).is_multiple_of(3) {
+                f.write_str(",")?;
+            }
+            write!(f, "{digit}")?;
+        }
+        Ok(())
+    }
+}
+
+/// Why a computation ended before its result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Stopped {
+    /// The user asked for it.
+    #[error(transparent)]
+    Cancelled(#[from] crate::Cancelled),
+    /// It would have been too much.
+    #[error(transparent)]
+    OverBudget(#[from] OverBudget),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_at_the_limit_passes_and_one_more_does_not() {
+        for times in [0.25, 1.0, 1000.0] {
+            let budget = Budget { times, ..Budget::default() };
+            for what in Counted::ALL {
+                let limit = budget.limit(what);
+                assert_eq!(budget.check(what, limit, "lower it"), Ok(()));
+                let refused = budget.check(what, limit + 1, "lower it").map_err(|e| (e.number, e.limit));
+                assert_eq!(refused, Err((limit + 1, limit)));
+            }
+        }
+    }
+
+    #[test]
+    fn estimates_that_are_no_numbers_are_too_many_but_for_those_who_asked_for_no_limits() {
+        let budget = Budget::default();
+        for bad in [f64::NAN, f64::INFINITY, 1e300] {
+            assert!(budget.check_estimate(Counted::Leaves, bad, "lower it").is_err());
+            let unlimited = Budget { times: f64::INFINITY, ..budget };
+            assert_eq!(unlimited.check_estimate(Counted::Leaves, bad, "lower it"), Ok(()));
+        }
+        assert_eq!(budget.check_estimate(Counted::Leaves, -1.0, "lower it"), Ok(()));
+    }
+
+    #[test]
+    fn only_what_can_be_raised_says_how() {
+        let budget = Budget { raise: Some("--budget"), ..Budget::default() };
+        let line = |n| budget.check(Counted::Roots, n, "give fewer roots").unwrap_err().to_string();
+        assert_eq!(
+            line(1001),
+            "1,001 roots are more than the limit of 1,000: give fewer roots, or allow more with --budget 2"
+        );
+        assert!(line(1_000_001).ends_with("give fewer roots"), "{}", line(1_000_001));
+        let plain = Budget::default().check(Counted::Roots, 1001, "give fewer roots").unwrap_err();
+        assert!(plain.to_string().ends_with("give fewer roots"));
+    }
+}
