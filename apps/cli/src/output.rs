@@ -139,7 +139,8 @@ impl Outputs {
     fn add(&mut self, by: &str, target: &Path) -> Outcome {
         let place = Place::of(target)?;
         if let Some(other) = self.planned.iter().find(|p| p.place.is(&place)) {
-            return Err(Failure::at(target, format_args!("{} and {by} name the same file", other.by)));
+            let what = format_args!("{} and {by} name the same file; give one another name", other.by);
+            return Err(Failure::at(target, what));
         }
         let planned = Planned { by: by.to_owned(), target: target.to_path_buf(), place };
         planned.is_no_input()?;
