@@ -104,7 +104,7 @@ enum Written {
 enum Before {
     Nothing,
     Kept(Draft),
-    /// On a disk without hard links.
+    /// On a disk without hard links, or another's.
     Lost,
 }
 
@@ -210,7 +210,7 @@ impl Outputs {
         for Ready { target, place, what } in files {
             let Written::File(mut draft) = what else { continue };
             let before = match several && fs::symlink_metadata(&place).is_ok() {
-                true => Draft::keeping(&place).map_or(Before::Lost, Before::Kept),
+                true => draft.keeping(&place).map_or(Before::Lost, Before::Kept),
                 false => Before::Nothing,
             };
             if let Err(e) = draft.put(&place) {
