@@ -7,7 +7,7 @@ use burgeon::bloom::{
 };
 use burgeon::formats::{ExportSpec, ModelFormat, Morph, PngCache, write_cloud_ply, write_glb_morph};
 use burgeon::glam::DVec3;
-use burgeon::mesh::{Model, PointCloud, TriMesh};
+use burgeon::mesh::{Model, PointCloud};
 use burgeon::{Digest, MakeError, OpeningError, OpeningPlant, RunReport, Seed};
 use clap::{Args, Subcommand};
 use serde::Serialize;
@@ -816,7 +816,7 @@ fn write_show(
             supersample: 4,
         };
         let spec = look.spec(args.seed);
-        let model = with_dots(model);
+        let model = picture::with_dots(model);
         let drawn =
             machine.with_progress("picture", |_| burgeon::render::render(&model, &spec, &machine.run()))?;
         picture::write(outputs, "--png", png, &drawn)?;
@@ -844,28 +844,4 @@ fn write_one(outputs: &mut Outputs, path: &Path, model: &Model, axes: &ExportSpe
     // --unit and --up were those of the scans: a GLB in metres with +Y up is no surprise.
     let axes = if format == ModelFormat::Glb { &ExportSpec::default() } else { axes };
     files::write_model(outputs, Goal::new("-o", path), model, format, axes, &mut PngCache::new()).map(drop)
-}
-
-/// Points are drawn as small tetrahedra.
-pub(crate) fn with_dots(mut model: Model) -> Model {
-    let size = model.bounds().size().max_element() * 0.0022;
-    for part in model.parts.iter_mut().filter(|p| p.mesh.triangles.is_empty()) {
-        // More than 40,000 dots show nothing more.
-        let step = part.mesh.positions.len().div_ceil(40_000).max(1);
-        let mut dots = TriMesh::default();
-        for p in part.mesh.positions.iter().step_by(step) {
-            let p = DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2]));
-            let corners = [
-                DVec3::new(1.0, 1.0, 1.0),
-                DVec3::new(-1.0, -1.0, 1.0),
-                DVec3::new(-1.0, 1.0, -1.0),
-                DVec3::new(1.0, -1.0, -1.0),
-            ];
-            let [a, b, c, d] = corners.map(|q| dots.push(p + q * size));
-            dots.triangles.extend([[a, b, c], [a, d, b], [a, c, d], [b, d, c]]);
-        }
-        dots.compute_normals();
-        part.mesh = dots;
-    }
-    model
 }

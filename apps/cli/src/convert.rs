@@ -8,7 +8,6 @@ use burgeon::mesh::PointCloud;
 use burgeon::{ItemReport, Report, RunReport};
 
 use crate::args::ConvertArgs;
-use crate::bloom::with_dots;
 use crate::failure::{Failure, Outcome};
 use crate::files::{self, Goal, Kind};
 use crate::machine::Machine;
@@ -190,7 +189,7 @@ fn points(args: &ConvertArgs, read: Read, mut outputs: Outputs, machine: &Machin
     let mut item = picture::model_item(&model, &args.output, &[]);
     if let Some(png) = &args.png {
         let spec = args.picture.spec(args.seed);
-        let model = with_dots(model);
+        let model = picture::with_dots(model);
         let drawn =
             machine.with_progress("picture", |_| burgeon::render::render(&model, &spec, &machine.run()))?;
         picture::write(&mut outputs, "--png", png, &drawn)?;

@@ -32,8 +32,16 @@ impl Draft {
         Self::fresh(folder, create)
     }
 
-    /// A second name of a file, by which it can be put back. Not on every file system.
-    pub(crate) fn keeping(file: &Path) -> io::Result<Self> {
+    /// A second name of a file that this draft is to replace, by which it can be put back. Not on every file system, and
+    /// only of files of the same owner: in a folder such as /tmp another's name could not be removed again.
+    pub(crate) fn keeping(&self, file: &Path) -> io::Result<Self> {
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::MetadataExt as _;
+            if fs::symlink_metadata(file)?.uid() != fs::symlink_metadata(&self.path)?.uid() {
+                return Err(io::ErrorKind::PermissionDenied.into());
+            }
+        }
         let folder = file.parent().unwrap_or(Path::new("."));
         Self::fresh(folder, |path| fs::hard_link(file, path)).map(|(draft, ())| draft)
     }

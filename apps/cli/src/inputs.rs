@@ -39,21 +39,24 @@ impl FileId {
 /// What was read, or is named to be read, by this command: a process does one.
 static READ: Mutex<BTreeMap<FileId, PathBuf>> = Mutex::new(BTreeMap::new());
 
-fn note(path: &Path, metadata: &Metadata) {
+fn note(path: &Path, source: &Path, metadata: &Metadata) {
     // Pipes and devices are not replaced anyway.
     if !metadata.is_file() {
         return;
     }
-    if let (Some(id), Ok(mut read)) = (FileId::new(path, metadata), READ.lock()) {
+    if let (Some(id), Ok(mut read)) = (FileId::new(source, metadata), READ.lock()) {
         read.entry(id).or_insert_with(|| path.to_path_buf());
     }
 }
 
 /// A file that an option names, before anything is computed. `-` is the file behind standard input, if it is one.
 pub(crate) fn announce(path: &Path) {
-    let path = if path.as_os_str() == "-" { Path::new("/dev/stdin") } else { path };
-    if let Ok(metadata) = fs::metadata(path) {
-        note(path, &metadata);
+    let (path, source) = match path.as_os_str() == "-" {
+        true => (Path::new("standard input"), Path::new("/dev/stdin")),
+        false => (path, path),
+    };
+    if let Ok(metadata) = fs::metadata(source) {
+        note(path, source, &metadata);
     }
 }
 
@@ -61,7 +64,7 @@ pub(crate) fn announce(path: &Path) {
 pub(crate) fn open(path: &Path) -> io::Result<File> {
     let file = File::open(path)?;
     if let Ok(metadata) = file.metadata() {
-        note(path, &metadata);
+        note(path, path, &metadata);
     }
     Ok(file)
 }

@@ -109,7 +109,7 @@ enum Written {
 enum Before {
     Nothing,
     Kept(Draft),
-    /// On a disk without hard links.
+    /// On a disk without hard links, or another's.
     Lost,
 }
 
@@ -144,7 +144,8 @@ impl Outputs {
     fn add(&mut self, by: &str, target: &Path) -> Outcome {
         let place = Place::of(target)?;
         if let Some(other) = self.planned.iter().find(|p| p.place.is(&place)) {
-            return Err(Failure::at(target, format_args!("{} and {by} name the same file", other.by)));
+            let what = format_args!("{} and {by} name the same file; give one another name", other.by);
+            return Err(Failure::at(target, what));
         }
         let planned = Planned { by: by.to_owned(), target: target.to_path_buf(), place };
         planned.is_no_input()?;
@@ -214,7 +215,7 @@ impl Outputs {
         for Ready { target, place, what } in files {
             let Written::File(mut draft) = what else { continue };
             let before = match several && fs::symlink_metadata(&place).is_ok() {
-                true => Draft::keeping(&place).map_or(Before::Lost, Before::Kept),
+                true => draft.keeping(&place).map_or(Before::Lost, Before::Kept),
                 false => Before::Nothing,
             };
             if let Err(e) = draft.put(&place) {

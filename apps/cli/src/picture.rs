@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use burgeon::glam::DVec3;
+use burgeon::mesh::{Model, TriMesh};
 use burgeon::render::Picture;
 use burgeon::{Counts, Digest, ItemReport, RunReport, Warning};
 
@@ -62,7 +64,7 @@ pub(crate) fn check_name(path: &Path) -> Outcome {
 }
 
 /// A report's item about a model.
-pub(crate) fn model_item(model: &burgeon::mesh::Model, output: &Path, warnings: &[Warning]) -> ItemReport {
+pub(crate) fn model_item(model: &Model, output: &Path, warnings: &[Warning]) -> ItemReport {
     let counts = Counts {
         vertices: model.vertex_count() as u64,
         triangles: model.triangle_count() as u64,
@@ -85,4 +87,28 @@ pub(crate) fn write(outputs: &mut Outputs, by: &str, path: &Path, picture: &Pict
     outputs.write(by, path, |out| {
         burgeon::formats::write_png(picture.width, picture.height, &picture.pixels, out)
     })
+}
+
+/// Points are drawn as small tetrahedra.
+pub(crate) fn with_dots(mut model: Model) -> Model {
+    let size = model.bounds().size().max_element() * 0.0022;
+    for part in model.parts.iter_mut().filter(|p| p.mesh.triangles.is_empty()) {
+        // More than 40,000 dots show nothing more.
+        let step = part.mesh.positions.len().div_ceil(40_000).max(1);
+        let mut dots = TriMesh::default();
+        for p in part.mesh.positions.iter().step_by(step) {
+            let p = DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2]));
+            let corners = [
+                DVec3::new(1.0, 1.0, 1.0),
+                DVec3::new(-1.0, -1.0, 1.0),
+                DVec3::new(-1.0, 1.0, -1.0),
+                DVec3::new(1.0, -1.0, -1.0),
+            ];
+            let [a, b, c, d] = corners.map(|q| dots.push(p + q * size));
+            dots.triangles.extend([[a, b, c], [a, d, b], [a, c, d], [b, d, c]]);
+        }
+        dots.compute_normals();
+        part.mesh = dots;
+    }
+    model
 }

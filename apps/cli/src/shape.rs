@@ -214,8 +214,8 @@ fn read_edits(path: &Path) -> Outcome<Vec<HandEdit>> {
             let word = edit.word();
             match along(edit).filter(|at| !(0.0..=1.0).contains(at)) {
                 Some(at) => {
-                    let line = "is a share of the branch's length; give a number from 0 to 1";
-                    Failure::at(path, format_args!("edit {k} ({word}): at {at} {line}"))
+                    let line = "but it is a share of the branch's length; give a number from 0 to 1";
+                    Failure::at(path, format_args!("edit {k} ({word}): at is {at}, {line}"))
                 }
                 None => Failure::at(path, format_args!("edit {k} ({word}): {why}")),
             }

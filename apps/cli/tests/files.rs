@@ -39,7 +39,7 @@ fn refused(folder: &Path, args: &[&str], parts: &[&str]) {
 }
 
 const INPUT: &str = "would replace the input";
-const SAME: &str = "name the same file";
+const SAME: &str = "name the same file; give one another name";
 
 const BOX: &str = "v 3 0 3\nv 4 0 3\nv 3 1 3\nv 3 0 4\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 4 3\n";
 const SMALL: &str = "[method]\nkind = \"competition\"\npoints = 60\n";
@@ -349,17 +349,17 @@ fn edits_that_all_fail_make_no_plant() {
             vec![prune("[0, 999]", "0"), prune("[0, 998]", "0")],
             ["none of its 2 edits could be done", "no branch number 999"],
         ),
-        ("far.json", vec![prune("[0, 0]", "0"), prune("[0, 1]", "1.5")], ["edit 1 (prune)", "at 1.5"]),
-        ("below.json", vec![prune("[0, 0]", "-0.25")], ["edit 0 (prune)", "at -0.25"]),
+        ("far.json", vec![prune("[0, 0]", "0"), prune("[0, 1]", "1.5")], ["edit 1 (prune)", "at is 1.5"]),
+        ("below.json", vec![prune("[0, 0]", "-0.25")], ["edit 0 (prune)", "at is -0.25"]),
         (
             "place.json",
             vec![r#"{"op": "move", "axis": {"path": [0, 1]}, "to": {"place": {"axis": {"path": [0]}, "at": 7}}}"#.into()],
-            ["edit 0 (move)", "at 7 "],
+            ["edit 0 (move)", "at is 7, "],
         ),
         (
             "drawn.json",
             vec![r#"{"op": "sketch-branch", "bearer": {"path": [0]}, "at": 1.01, "points": [[0, 3, 0], [1, 4, 0]]}"#.into()],
-            ["edit 0 (sketch-branch)", "at 1.01 "],
+            ["edit 0 (sketch-branch)", "at is 1.01, "],
         ),
     ] {
         let text = format!(r#"{{"schema": "burgeon.edits/1", "edits": [{}]}}"#, edits.join(", "));
