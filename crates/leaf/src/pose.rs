@@ -9,7 +9,7 @@ use crate::marks::{FullMarks, FullRow, MARKS_A_ROW};
 /// How a leaf is bent from the shape in which it was measured.
 ///
 /// Guaranteed: distances between neighbouring marks along the midrib and along the side veins stay (but for
-/// the shrinking of a wilted blade), and (0, 0) changes nothing.
+/// the shrinking of a wilted blade), and (0, 0) changes nothing. Not kept: the area of the blade (docs/leaves.md).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     /// Roll of the blade about its midrib: 0 as measured, 1 margins meet above the upper side, -1 below.
