@@ -160,7 +160,7 @@ export class MakerPanel {
     const leafOf = el('select', { 'data-path': 'leaf-of', onchange: () => this.events.run({ do: 'leaf-of', lender: leafOf.value === '' ? null : Number(leafOf.value) }) },
       el('option', { value: '' }, t('tree.leaf.own')), ...lenders.map((p) => el('option', { value: String(p.id) }, p.name)));
     leafOf.value = tree.leaf === null ? '' : String(tree.leaf);
-    const ages = this.slider('age', t('tree.age'), 0, most, 1, age ?? most, (x) => ({ do: 'tree', path: '/age', value: x >= most ? null : x }));
+    const ages = this.slider('age', t('tree.age'), 1, most, 1, age ?? most, (x) => ({ do: 'tree', path: '/age', value: x >= most ? null : x }));
     if (age === null) ages.querySelector('output')!.textContent = t('tree.age.full');
     const shown = `${plant.id} ${tree.preset}`;
     // Kept while it shows the same: it has a place to which it was scrolled.

@@ -81,8 +81,8 @@ impl<'a> Room<'a> {
         if whole > 1e-9 {
             // What grows on wood that was pushed aside goes with it, less and less over four times the way.
             let along = lengths(&course.points);
-            for i in 1..n {
-                course.points[i] += foot.moved * (1.0 - along[i] / (4.0 * whole)).max(0.0);
+            for (p, way) in course.points.iter_mut().zip(&along).skip(1) {
+                *p += foot.moved * (1.0 - way / (4.0 * whole)).max(0.0);
             }
         }
         let near = self.refine(course);
@@ -182,17 +182,17 @@ impl<'a> Room<'a> {
         let along = lengths(&course.points);
         let (mut cap, mut end) = (cap, n);
         let mut squeezed = vec![false; n];
-        for i in 0..n {
+        for (i, squeezed) in squeezed.iter_mut().enumerate() {
             let wall = if i < first { None } else { self.wall(course, i, &along) };
             if let Some((distance, out)) = wall {
                 let fits = (distance - self.least) / self.bark(course, i, &along, out).max(1e-3);
                 let crossed = i > 0 && self.obstacles.blocks(course.points[i - 1], course.points[i]);
-                squeezed[i] = fits < course.radii[i];
-                if crossed || squeezed[i] && fits < self.tip / 3.0 {
+                *squeezed = fits < course.radii[i];
+                if crossed || *squeezed && fits < self.tip / 3.0 {
                     end = i;
                     break;
                 }
-                cap = if squeezed[i] { cap.min(fits) } else { cap };
+                cap = if *squeezed { cap.min(fits) } else { cap };
             }
             course.radii[i] = course.radii[i].min(cap);
             course.cap[i] = cap;

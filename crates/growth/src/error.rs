@@ -43,9 +43,7 @@ pub enum GrowthError {
         root: usize,
     },
     /// A root stands in an obstacle.
-    #[error(
-        "root {root} stands inside obstacle {obstacle} or nearer to it than the clearance; move one of them"
-    )]
+    #[error("root {root} stands inside obstacle {obstacle}; move one of them")]
     RootInObstacle {
         /// Index of the root.
         root: usize,

@@ -54,7 +54,7 @@ pub enum Obstacle {
         #[schemars(with = "[f64; 3]")]
         normal: DVec3,
     },
-    /// A mesh; small holes and inverted faces are borne (winding number).
+    /// A mesh, in metres, +Y up; small holes and inverted faces are borne (winding number).
     Mesh {
         /// Vertices.
         #[schemars(with = "Vec<[f64; 3]>", extend("x-unit" = "m"))]

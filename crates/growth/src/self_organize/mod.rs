@@ -208,8 +208,8 @@ impl Forest<'_> {
                 "obstacles stand around every root; move them, or lower internode_m".into()
             }
             Light::Shadow { full, a, .. } => format!(
-                "no bud has the vigour of 1 that a shoot takes: light.full ({full}) with the shadow of light.a ({a}) \
-                 leaves {light} of light, times alpha ({alpha}) {:.3}; raise light.full or alpha",
+                "no bud has the vigour of 1 that a shoot takes: light.full ({full}) less the shadow of light.a ({a}), \
+                 times alpha ({alpha}), is {:.4}; raise light.full or alpha",
                 light * alpha
             ),
             Light::Space { perception, .. } if light <= 0.0 => format!(

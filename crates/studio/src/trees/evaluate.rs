@@ -11,8 +11,8 @@ use skin::{PetalColor, SkinSpec};
 
 use super::look::KeptBarks;
 use super::{
-    BlossomSpec, GrowthReport, Inside, Look, TreeError, TreeOptions, TreeSpec, coarser, look_at_meshes,
-    scale_to_height,
+    BlossomSpec, GrowthReport, Inside, Look, TreeError, TreeOptions, TreeSpec, coarser, keep_out,
+    look_at_meshes, scale_to_height,
 };
 use crate::report::{Counts, ItemReport, TimingsMs};
 use crate::shaping::{EditReport, Shaper};
@@ -212,8 +212,10 @@ impl TreeEvaluator {
         let Some(plant) = self.plant() else { return Ok(Vec::new()) };
         let fine = skin_spec(spec, seed, options);
         let mut barks = self.barks.clone();
+        let obstacles = growth::Obstacles::new(&spec.obstacles, spec.clearance_m)?;
         let lods = (1..=options.lods.min(6)).map(|level| {
-            let (plant, skin) = coarser(plant, &fine, level);
+            let (mut plant, skin) = coarser(plant, &fine, level);
+            keep_out(&mut plant, level, &obstacles);
             Ok(skinned(&plant, &(skin, spec.look.clone(), options.leaf.clone()), &mut barks, run)?)
         });
         lods.collect()

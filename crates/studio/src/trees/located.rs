@@ -123,19 +123,21 @@ impl Node {
     pub(super) fn read<T: DeserializeOwned>(&self) -> Result<T, Fault> {
         T::deserialize(Reader { node: self }).map_err(|e| {
             let message = e.to_string();
-            let same =
-                |tree: &Self| T::deserialize(Reader { node: tree }).is_err_and(|e| e.to_string() == message);
-            let (path, at) = self.culprit(&message, &same);
+            let says = |tree: &Self| T::deserialize(Reader { node: tree }).err().map(|e| e.to_string());
+            let (path, at) = self.culprit(&message, &says);
             let message = base::brief(&if path.is_empty() { message } else { format!("{path}: {message}") });
             Fault { message, at }
         })
     }
 
-    /// The names and the place of the innermost node that is at fault: `same` says whether a tree has the same fault.
-    fn culprit(&self, message: &str, same: &dyn Fn(&Self) -> bool) -> (String, usize) {
-        if let Some(name) = message.strip_prefix("missing field `").and_then(|m| m.split('`').next()) {
-            return self.lacks(name, same);
+    /// The names and the place of the innermost node that is at fault: `says` is what the reader says of a tree.
+    fn culprit(&self, message: &str, says: &dyn Fn(&Self) -> Option<String>) -> (String, usize) {
+        let named = |what: &str| message.strip_prefix(what)?.strip_prefix(" field `")?.split('`').next();
+        if let Some(name) = named("missing") {
+            return self.lacks(name, message, says);
         }
+        let unknown = named("unknown");
+        let same = |tree: &Self| says(tree).as_deref() == Some(message);
         let mut tree = self.clone();
         let (mut route, mut path, mut at) = (Vec::new(), String::new(), self.at);
         loop {
@@ -164,7 +166,7 @@ impl Node {
             match &whole.kind {
                 Kind::Table(entries) => {
                     let entry = &entries[without];
-                    if message.starts_with("unknown field") {
+                    if unknown == Some(&entry.key) {
                         return (path, entry.at);
                     }
                     (path, at) = (joined(&path, &entry.key), entry.node.at);
@@ -180,7 +182,7 @@ impl Node {
     }
 
     /// The table in which a field is missing.
-    fn lacks(&self, name: &str, same: &dyn Fn(&Self) -> bool) -> (String, usize) {
+    fn lacks(&self, name: &str, message: &str, says: &dyn Fn(&Self) -> Option<String>) -> (String, usize) {
         let mut tree = self.clone();
         let mut waiting: Vec<(Vec<usize>, String)> = vec![(Vec::new(), String::new())];
         while let Some((route, path)) = waiting.pop() {
@@ -188,7 +190,9 @@ impl Node {
             let at = node.at;
             if let Kind::Table(entries) = &mut node.kind {
                 entries.push(Entry { key: name.to_owned(), at, node: Self { kind: Kind::Nothing, at } });
-                if !same(&tree) {
+                // Put where it is missing, it is only of another kind; elsewhere it is not known.
+                let unknown = format!("unknown field `{name}`");
+                if says(&tree).is_none_or(|now| now != message && !now.starts_with(&unknown)) {
                     return (path, at);
                 }
                 if let Some(Self { kind: Kind::Table(entries), .. }) = tree.on(&route) {

@@ -1,7 +1,26 @@
 //! Coarser copies of a tree, for far away.
 
+use growth::Obstacles;
 use plant::{NodeId, OrganKind, Plant};
 use skin::SkinSpec;
+
+/// How much larger leaves are: the square root of the share that is gone keeps the area that they cover.
+fn larger(level: u32) -> f64 {
+    f64::from(1_u32 << level.min(6)).sqrt()
+}
+
+/// Gives leaves of a coarser copy that would enter an obstacle their own size again, in which they grew beside it.
+pub(super) fn keep_out(copy: &mut Plant, level: u32, obstacles: &Obstacles) {
+    if obstacles.is_empty() {
+        return;
+    }
+    let corners: Vec<_> = copy.shapes.iter().map(plant::Shape::corners).collect();
+    for organ in copy.organs.iter_mut().filter(|o| o.kind == OrganKind::Leaf) {
+        if !obstacles.admit(&organ.frame, organ.scale, &corners[organ.shape.index()]) {
+            organ.scale /= larger(level);
+        }
+    }
+}
 
 /// A copy of `plant` for level `level` (1 to 6; 0 is the plant itself), and how to skin it.
 ///
@@ -45,8 +64,7 @@ pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) 
         }
     }
     let share = 1_u32 << level;
-    // The square root of the share keeps the area that the leaves cover.
-    let larger = f64::from(share).sqrt();
+    let larger = larger(level);
     for organ in &plant.organs {
         let leaf = organ.kind == OrganKind::Leaf;
         // Mixed: of keys that differ little, too, one in two stays.

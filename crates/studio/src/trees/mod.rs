@@ -45,6 +45,7 @@ pub use evaluate::TreeEvaluator;
 pub(crate) use file::spec_from_json;
 pub use file::{NamedMesh, read_tree_spec, tree_schema};
 pub use lod::coarser;
+use lod::keep_out;
 pub use look::{Bark, Colour, Look};
 pub use presets::{PRESETS, Preset};
 pub use scenery::show_obstacles;

@@ -31,7 +31,7 @@ pub struct TreeSpec {
     /// Where trees of this kind stand, metres; they compete. Default one at the origin.
     #[schemars(with = "Vec<[f64; 3]>", extend("x-unit" = "m"))]
     pub roots: Vec<DVec3>,
-    /// What they grow around; meshes may be named by `file`. Default nothing.
+    /// What they grow around; meshes may be named by `file`, in metres, +Y up. Default nothing.
     pub obstacles: Vec<Obstacle>,
     /// Distance that bark keeps from obstacles where there is room, metres, 0 to 1e6, default 0.05; leaves may touch.
     #[schemars(range(min = 0.0, max = 1e6), extend("x-unit" = "m"))]

@@ -241,3 +241,22 @@ fn a_look_has_no_digest_and_what_follows_it_has() {
         assert_eq!(digest(&editor, false), whole);
     }
 }
+
+#[test]
+fn vertices_inside_obstacles_are_counted_with_the_deepest() {
+    let mut mesh = mesh::TriMesh::default();
+    for x in [0.0, 0.9995, 1.0015, 1.5, 2.25] {
+        mesh.push(DVec3::new(x, 0.5, 0.5));
+    }
+    let material = mesh::MaterialId::new(0);
+    let parts = vec![
+        mesh::Part { name: "a".into(), material, mesh: mesh.clone() },
+        mesh::Part { name: "b".into(), material, mesh },
+    ];
+    let model = Model { parts, ..Model::default() };
+    let block = Obstacle::Box { min: DVec3::new(1.0, -9.0, -9.0), max: DVec3::new(2.0, 9.0, 9.0) };
+    let inside = Inside::of(&model, &Obstacles::new(&[block], 0.0).expect("sound")).expect("there is one");
+    assert_eq!(inside.vertices, 4, "two of each part, and what is 0.5 mm away from it is not");
+    assert!((inside.depth_m - 0.5).abs() < 1e-6, "{}", inside.depth_m);
+    assert_eq!(Inside::of(&model, &Obstacles::none()), None);
+}
