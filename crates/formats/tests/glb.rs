@@ -51,6 +51,7 @@ fn model(n: u32) -> Model {
         name: "oak".into(),
         parts: vec![part("leaves", 0, grid(n)), part("petals", 1, grid(3)), part("trunk", 2, bare)],
         materials: vec![leaf, petal, bark],
+        offset_m: None,
     }
 }
 
