@@ -1,5 +1,4 @@
 //! The time that a command tells is the time that it takes.
-#![expect(clippy::unwrap_used, reason = "tests")]
 
 use std::fs;
 use std::path::Path;

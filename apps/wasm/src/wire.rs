@@ -513,7 +513,7 @@ impl PhotoState {
 #[derive(Debug, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(crate) struct ExportOptions {
-    /// Levels of detail, 1 to 4: each has about a third of the triangles of the one before.
+    /// Levels of detail, 1 to 4: each has about half of the triangles of the one before.
     pub(crate) levels: u32,
     pub(crate) up: String,
     pub(crate) unit: String,

@@ -115,7 +115,7 @@ pub fn fit_scan(
     run: &Run<'_>,
     report: &mut Report,
 ) -> Result<ScanLeaf, ScanError> {
-    let all: Vec<DVec3> = points.iter().copied().filter(|p| p.abs().max_element() < 1e6).collect();
+    let all: Vec<DVec3> = points.iter().copied().filter(|p| p.abs().max_element() <= 1e9).collect();
     if all.len() < 100 {
         return Err(ScanError::TooFew(all.len()));
     }
@@ -459,8 +459,12 @@ impl Lines {
             .collect();
         let ends = bridged(&ends);
         let (left, right): (Vec<f64>, Vec<f64>) = ends.into_iter().unzip();
-        let (left, right) = (smooth(&left, 1), smooth(&right, 1));
-        let middle = crease(&y, &left, &right, field);
+        let (mut left, mut right) = (smooth(&left, 1), smooth(&right, 1));
+        let mut middle = crease(&y, &left, &right, field);
+        steady(&mut middle, (hi - lo) / (rows - 1) as f64);
+        for (i, &x) in middle.iter().enumerate() {
+            (left[i], right[i]) = (left[i].min(x), right[i].max(x));
+        }
         Self { y, left, middle, right }
     }
 
@@ -507,6 +511,18 @@ fn smooth(line: &[f64], passes: usize) -> Vec<f64> {
         }
     }
     line
+}
+
+/// No step aside is longer than a step along the blade: a corner of a blunt base, which may be all of the first
+/// station, does not bend the midrib to it.
+fn steady(line: &mut [f64], step: f64) {
+    let half = line.len() / 2;
+    for i in half + 1..line.len() {
+        line[i] = line[i].clamp(line[i - 1] - step, line[i - 1] + step);
+    }
+    for i in (0..half).rev() {
+        line[i] = line[i].clamp(line[i + 1] - step, line[i + 1] + step);
+    }
 }
 
 /// The midrib: the line near the middle along which the blade is folded most, as a valley or as a ridge.
@@ -770,6 +786,22 @@ mod tests {
             assert!((length(&part) - length(&whole)).abs() < 0.002, "{} {}", length(&part), length(&whole));
             assert!((part.explained - whole.explained).abs() < 0.01, "{}", part.explained);
         }
+    }
+
+    #[test]
+    fn a_midrib_does_not_run_into_a_corner_of_the_base() {
+        let mut line = vec![9.0, 4.0, 0.5, 0.0, 0.0, 0.25, -7.0];
+        steady(&mut line, 0.5);
+        assert_eq!(line, [1.5, 1.0, 0.5, 0.0, 0.0, 0.25, -0.25]);
+        // A blade as wide as long whose base is a slanting edge: the lowest station is its corner.
+        let blade: Vec<DVec3> = (0..6400)
+            .map(|k| (f64::from(k % 80) / 80.0 - 0.5, f64::from(k / 80) / 80.0))
+            .filter(|(x, y)| *y > 0.1 * (x + 0.5) && *y < 1.0 - 2.0 * x * x)
+            .map(|(x, y)| DVec3::new(0.03 * x, 0.0, -0.06 * y))
+            .collect();
+        let leaf = found(&blade);
+        assert!(length(&leaf) < 1.12 * leaf.midrib()[0].distance(leaf.midrib()[63]), "{}", length(&leaf));
+        assert!((length(&leaf) - 0.06).abs() < 0.006, "{}", length(&leaf));
     }
 
     #[test]

@@ -194,7 +194,7 @@ export const en = {
   'export.unit': 'Unit',
   'export.wind': 'Wind for shaders',
   'export.wind.help': 'Trees and drawings: weights and pivots at each vertex, as _WIND and _PIVOT (docs/exports.md)',
-  'export.note': 'Each level has about a third of the triangles of the one before; several come as a zip.',
+  'export.note': 'Each level has about half of the triangles of the one before; several come as a zip.',
   'share.title': 'Link to this drawing',
   'share.hint': 'The whole drawing is in the link ({size},000 characters): no server keeps it. Points are rounded, a photograph stays behind.',
   'stats.height': 'Height',

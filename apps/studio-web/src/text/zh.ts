@@ -196,7 +196,7 @@ export const zh: Record<TextKey, string> = {
   'export.unit': '单位',
   'export.wind': '供着色器使用的风',
   'export.wind.help': '树与画稿：每个顶点的权重与支点，写为 _WIND 和 _PIVOT（docs/exports.md）',
-  'export.note': '每一级的三角形约为上一级的三分之一；多级导出为 zip。',
+  'export.note': '每一级的三角形约为上一级的一半；多级导出为 zip。',
   'share.title': '此画的链接',
   'share.hint': '整幅画都在链接里（约 {size} 千字符），不经任何服务器。点会取整，照片不包含在内。',
   'stats.height': '高',

@@ -1,4 +1,5 @@
 use super::*;
+use base::{Unit, UpAxis};
 use proptest::prelude::*;
 
 fn read(bytes: &[u8], format: CloudFormat) -> Result<PointCloud, String> {
@@ -93,7 +94,7 @@ fn lzf_copies_repeat() {
 #[test]
 fn units_axes_and_colours() {
     let mut report = Report::default();
-    let spec = ExportSpec { up: base::UpAxis::Z, unit: base::Unit::Millimetre };
+    let spec = ExportSpec { up: UpAxis::Z, unit: Unit::Millimetre };
     let c = read_cloud(&b"1000 2000 3000 255 0 7\n0 0 0 1 2 3\n"[..], CloudFormat::Xyz, &spec, &mut report)
         .unwrap();
     assert!((c.points[0] - DVec3::new(1.0, 3.0, -2.0)).length() < 1e-12, "{:?}", c.points);

@@ -61,7 +61,7 @@ pub struct TreeOptions {
     pub height_m: Option<f64>,
     /// The leaf that the tree bears instead of its spec's form. Default none.
     pub leaf: Option<LeafTemplate>,
-    /// Coarser copies to make as well, 0 to 6: each has about a third of the triangles of the one before.
+    /// Coarser copies to make as well, 0 to 6: each has about half of the triangles of the one before.
     pub lods: u32,
     /// Edits by hand, done on the grown tree in this order.
     pub edits: Vec<PlantEdit>,
