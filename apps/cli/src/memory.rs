@@ -6,8 +6,9 @@
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
-use std::io::Write;
+use std::io::{IsTerminal, Write};
 use std::sync::atomic::{AtomicBool, AtomicIsize, Ordering};
+use std::time::Duration;
 
 use burgeon::Budget;
 
@@ -26,6 +27,8 @@ static ENDING: AtomicBool = AtomicBool::new(false);
 thread_local! {
     /// What this thread has taken, less what it gave back, since it last told.
     static UNTOLD: Cell<isize> = const { Cell::new(0) };
+    /// It is this thread that ends the program.
+    static ENDS: Cell<bool> = const { Cell::new(false) };
 }
 
 /// Counts what the system's allocator gives.
@@ -82,14 +85,22 @@ fn tell(bytes: isize) {
 /// Ends the program with one line and status 2; drafts of files are removed.
 #[cold]
 fn end(by_budget: bool) {
-    // What is needed to end is a little memory, too: it is not counted, and where even that is not to be had (or another
-    // thread is ending already) the caller goes on with what it got.
     if ENDING.swap(true, Ordering::Relaxed) {
+        // To end takes a little memory, too: where even that is not to be had, this thread goes on with what it got.
+        // Another one waits for the end instead of running into the lack.
+        while !ENDS.try_with(Cell::get).unwrap_or(true) {
+            std::thread::sleep(Duration::from_secs(1));
+        }
         return;
     }
+    let _ = ENDS.try_with(|ends| ends.set(true));
     LIMIT.store(isize::MAX, Ordering::Relaxed);
     let in_use = LIVE.load(Ordering::Relaxed) >> 20;
     let mut to = std::io::stderr();
+    if to.is_terminal() {
+        // In the place of the progress line.
+        let _ = write!(to, "\r\x1b[2K");
+    }
     let _ = if by_budget {
         writeln!(
             to,

@@ -240,6 +240,10 @@ impl Extremes<'_> {
             kind => kind.as_str(),
         };
         match kind? {
+            // Branches that there are.
+            "array" if name == "path" => {
+                Some(if self.dice.one_in(2) { json!([0]) } else { json!([0, self.dice.next(9)]) })
+            }
             "integer" | "number" => Some(self.number(schema, kind? == "integer")),
             "boolean" => Some(Value::Bool(self.dice.one_in(2))),
             "string" if name == "rules" => {
@@ -369,6 +373,32 @@ fn specs_at_the_ends_of_all_ranges_make_a_plant_or_one_line() {
     });
     let made = made.into_inner();
     assert!(made * 8 > count, "{made} of {count} made a plant: the generator tries nonsense only");
+}
+
+#[test]
+fn edits_at_the_ends_of_all_ranges_are_done_or_said() {
+    let dir = folder("extreme-edits");
+    good(&dir, &["shape", "--schema", "schema.json"]);
+    let schema = tools::json(&dir.join("schema.json"));
+    let defs = schema["$defs"].as_object().unwrap();
+    let edits = &schema["properties"]["edits"];
+    let mut done = 0;
+    for i in 0..60 {
+        let mut extremes = Extremes { defs, dice: Dice(1000 + i) };
+        let all = extremes.value("edits", edits).unwrap();
+        fs::write(dir.join("edits.json"), json!({ "schema": "burgeon.edits/1", "edits": all }).to_string())
+            .unwrap();
+        let (status, said, time) =
+            patiently(&dir, &["shape", "dead-oak", "--edits", "edits.json", "--json", "--threads", "1"]);
+        let errors = said.lines().filter(|l| l.starts_with("error: ")).count();
+        match status {
+            Some(0) => done += 1,
+            Some(2) => assert!(errors == 1 && !said.contains("memory"), "{said}\n{all}"),
+            _ => panic!("{status:?} after {time:?}: {said}\n{all}"),
+        }
+        assert!(time < PATIENCE / 3, "{time:?}: {all}");
+    }
+    assert!(done > 6, "{done} were done: the generator tries nonsense only");
 }
 
 #[test]
