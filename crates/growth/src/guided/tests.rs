@@ -123,5 +123,5 @@ fn buds_that_all_look_at_one_another_are_refused() {
     let run = Run { budget, ..Run::plain() };
     let got = guide(&[DVec3::ZERO], &Obstacles::none(), &spec, Seed::new(1), &run, &mut Report::default());
     let Err(GrowthError::OverBudget(over)) = got else { panic!("refused") };
-    assert!(matches!(over.what, base::Counted::Looks | base::Counted::Points), "{over}");
+    assert!(matches!(over.what, Counted::Looks | Counted::Points), "{over}");
 }
