@@ -29,8 +29,12 @@ impl Given {
     pub(crate) fn refuse(&self, options: &[&str], users: &str, this: &str) -> Outcome {
         match options.iter().find(|o| self.0.contains(**o)) {
             Some(option) => {
-                let option = option.replace('_', "-");
-                Err(Failure::Bad(format!("--{option} is for {users}; {this}: leave it out")))
+                let option = match *option {
+                    "inputs" => "DATA".to_owned(),
+                    "what" => "a plant".to_owned(),
+                    option => format!("--{}", option.replace('_', "-")),
+                };
+                Err(Failure::Bad(format!("{option} is for {users}; {this}: leave it out")))
             }
             None => Ok(()),
         }

@@ -267,10 +267,10 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
         ("--marks", args.marks.as_ref()),
         ("--report", args.common.report.as_ref()),
     ];
-    check_used(args)?;
     let picture =
         Some(&args.look.texture).filter(|t| !["veins", "plain"].iter().any(|word| t.as_os_str() == *word));
     let mut outputs = Outputs::new(&outputs, &args.inputs.iter().chain(picture).collect::<Vec<_>>())?;
+    check_used(args)?;
     if args.template {
         return template(args, outputs);
     }

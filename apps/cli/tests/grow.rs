@@ -422,7 +422,7 @@ fn ctrl_c_leaves_nothing_behind() {
         envelope = { shape = \"sphere\", centre = [0, 30, 0], radius_m = 29 }\n",
     );
     let mut child = Command::new(env!("CARGO_BIN_EXE_burgeon"))
-        .args(["grow", "huge.toml", "-o", "huge.glb", "--png", "huge.png"])
+        .args(["grow", "huge.toml", "-o", "huge.glb", "--png", "huge.png", "--budget", "4"])
         .current_dir(&at)
         .stderr(std::process::Stdio::piped())
         .spawn()

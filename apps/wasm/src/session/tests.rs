@@ -368,6 +368,21 @@ fn bush() -> (Session, (f64, f64)) {
 }
 
 #[test]
+fn an_impossible_tree_is_an_error_on_the_page_and_the_last_one_stays() {
+    let (mut s, _) = bush();
+    let before = scene(&mut s);
+    assert!(before[0].2.is_null() && !s.scene.get(PlantId(1)).unwrap().model.parts.is_empty());
+    // Within the limits of the command line, beyond the quarter of them that a page has.
+    s.run(r#"{"tree":{"path":"/method","value":{"kind":"competition","points":600000}}}"#).unwrap();
+    let said = scene(&mut s)[0].2.as_str().unwrap().to_owned();
+    assert!(said.contains("600,000 attraction points") && said.contains("500,000"), "{said}");
+    assert!(!said.contains("--budget"), "a page has no options: {said}");
+    assert!(!s.scene.get(PlantId(1)).unwrap().model.parts.is_empty());
+    s.undo();
+    assert_eq!(scene(&mut s), before);
+}
+
+#[test]
 fn a_gesture_is_shown_and_is_one_step_when_it_is_asked_for() {
     let (mut s, (x, y)) = bush();
     let before = look(&mut s);

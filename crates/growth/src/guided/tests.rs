@@ -114,3 +114,14 @@ fn crowns_of_any_size_are_filled() {
         GuidedSpec { envelope: Some(bad), ..GuidedSpec::default() }
     );
 }
+
+#[test]
+fn buds_that_all_look_at_one_another_are_refused() {
+    // In so narrow a cone no bud is in another one's way, and all of them stand together.
+    let spec = GuidedSpec { half_angle_deg: 1.0, ..GuidedSpec::default() };
+    let budget = base::Budget { times: 0.002, ..base::Budget::default() };
+    let run = Run { budget, ..Run::plain() };
+    let got = guide(&[DVec3::ZERO], &Obstacles::none(), &spec, Seed::new(1), &run, &mut Report::default());
+    let Err(GrowthError::OverBudget(over)) = got else { panic!("refused") };
+    assert!(matches!(over.what, Counted::Looks | Counted::Points), "{over}");
+}

@@ -187,7 +187,7 @@ struct Forest<'a> {
     kept: Kept,
     generated: usize,
     shed: usize,
-    /// Joints of all years so far.
+    /// Joints, and a share of the voxels, of all years so far.
     work: u64,
 }
 
@@ -224,8 +224,14 @@ impl Forest<'_> {
 
     /// The joints that there would be after this year if that is more than allowed: then nothing has sprouted.
     fn year(&mut self, year: u32, run: &Run<'_>) -> Result<Option<usize>, GrowthError> {
-        self.work += self.grove.len() as u64;
-        run.budget.check(Counted::JointYears, self.work, "lower years or max_joints")?;
+        // A voxel of the light takes about a 64th of the time of a joint.
+        let voxels = if let LightModel::Shadow(shade) = &self.light { shade.grid.voxels() } else { 0 };
+        self.work += (self.grove.len() + voxels / 64) as u64;
+        run.budget.check(
+            Counted::JointYears,
+            self.work,
+            "lower years or max_joints (or make light.voxel_m larger)",
+        )?;
         self.look(&run.budget)?;
         self.flow.gather(&self.grove, &self.bud_light);
         self.drop_dark_branches(year);

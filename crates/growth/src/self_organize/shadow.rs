@@ -58,6 +58,11 @@ impl ShadowGrid {
         }
     }
 
+    /// How many there are.
+    pub(crate) const fn voxels(&self) -> usize {
+        self.corners.len()
+    }
+
     /// Makes room for joints in a box; `voxels` get the numbers that they have then. Whether the grid has grown.
     pub(crate) fn cover(&mut self, lo: DVec3, hi: DVec3, voxels: &mut [u32]) -> bool {
         let margin = self.falling.len() as i64 + 1;

@@ -223,3 +223,27 @@ fn a_bole_carries_the_buds_to_markers_that_begin_high_up() {
         assert!(low.clone().count() > 10 && low.clone().all(|p| (*p - foot).with_y(0.0).length() < 1e-9));
     }
 }
+
+#[test]
+fn a_budget_refuses_and_never_makes_another_tree() {
+    let spec = SelfOrganizingSpec { years: 18, ..SelfOrganizingSpec::default() };
+    let with = |times: f64, spec: &SelfOrganizingSpec| {
+        let run = Run { budget: Budget { times, ..Budget::default() }, ..Run::plain() };
+        let none = Obstacles::none();
+        self_organize(&[DVec3::ZERO], &none, spec, Seed::new(1), &run, &mut Report::default())
+    };
+    let whole = with(f64::INFINITY, &spec).expect("sound");
+    for times in [1000.0, 1.0, 0.01, 0.001, 0.0001] {
+        match with(times, &spec) {
+            Ok(tree) => assert_eq!(tree, whole, "{times}"),
+            Err(e) => assert!(times < 1.0 && matches!(e, GrowthError::OverBudget(_)), "{times}: {e}"),
+        }
+    }
+    assert!(with(0.0001, &spec).is_err());
+    // Few joints that live long.
+    let old = SelfOrganizingSpec { years: 1000, shed_below: 1e6, shed_after_years: 0, ..spec };
+    let Err(GrowthError::OverBudget(over)) = with(0.001, &old) else {
+        panic!("1000 years pass a thousandth")
+    };
+    assert_eq!(over.what, Counted::JointYears);
+}
