@@ -243,3 +243,79 @@ fn chief_veins_that_start_together_make_a_leaf() {
     );
     assert!(bad(&at, &["leaf", "p.csv", "--curl", "0.3", "-o", "x.glb"]).contains("rows of marks"));
 }
+
+#[test]
+fn profiles_of_maize_become_leaves_of_their_length() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/leaves/maize_leaves.json");
+    let Ok(text) = fs::read_to_string(&file) else {
+        eprintln!("skipped: ../shared/data/leaves is not here");
+        return;
+    };
+    let dir = folder("leaf-profiles");
+    let leaves: Vec<Value> = serde_json::from_str(&text).unwrap();
+    let numbers = |v: &Value| -> Vec<f64> { v.as_array().unwrap().iter().filter_map(Value::as_f64).collect() };
+    fs::write(dir.join("maize.json"), &text).unwrap();
+    // Every eighth, by the command line; all have the same reader.
+    for (k, leaf) in leaves.iter().enumerate().step_by(8) {
+        let (x, y) = (numbers(&leaf["x"]), numbers(&leaf["y"]));
+        let steps = x.windows(2).zip(y.windows(2)).map(|(x, y)| (x[1] - x[0]).hypot(y[1] - y[0]));
+        let want = 10.0 * steps.sum::<f64>();
+        let number = (k + 1).to_string();
+        let args = ["leaf", "maize.json", "--unit", "cm", "--number", &number, "--json", "--texture", "plain"];
+        let report: Value = serde_json::from_str(&good(&dir, &args)).unwrap();
+        let got = report["items"][0]["leaf"]["length_mm"].as_f64().unwrap();
+        // 20 chords of the midrib are a little shorter than its own.
+        assert!(got <= want * (1.0 + 1e-9) && got > 0.98 * want, "leaf {number}: {got} {want}");
+    }
+    let told = bad(&dir, &["leaf", "maize.json", "--number", "80", "-o", "x.glb"]);
+    assert!(told.contains("holds 79 leaves"), "{told}");
+    // Without a unit 42 m is no leaf.
+    let out = burgeon(&dir, &["leaf", "maize.json", "-o", "x.glb"]);
+    let warned = String::from_utf8_lossy(&out.stderr).into_owned();
+    assert!(warned.contains("taken for centimetres") && warned.contains("79 leaves"), "{warned}");
+}
+
+#[test]
+fn our_own_files_are_read_where_they_are_offered() {
+    let dir = folder("leaf-own-files");
+    good(&dir, &["leaf", "--venation", "palmate", "-o", "x.glb", "--marks", "rays.csv"]);
+    good(&dir, &["leaf", &fixture("leaf1.csv"), "-o", "x.glb", "--marks", "rows.csv"]);
+    fs::write(dir.join("small.toml"), "[method]\nkind = \"colonization\"\npoints = 60\n").unwrap();
+    let digest = |template: &[&str]| {
+        let args = [&["grow", "small.toml", "--json", "--no-textures", "--png", "x.png", "--size", "20x20"], template].concat();
+        let report: Value = serde_json::from_str(&good(&dir, &args)).unwrap();
+        report["items"][0]["digest"].as_str().unwrap().to_owned()
+    };
+    let own = digest(&[]);
+    for file in ["rays.csv", "rows.csv"] {
+        assert_ne!(digest(&["--leaf-template", file]), own, "{file} changes the leaves");
+        assert_eq!(status(&burgeon(&dir, &["leaf", file, "-o", "y.glb"])), 0, "{file}");
+    }
+}
+
+#[test]
+fn numbers_with_decimal_commas_are_read_or_refused_by_name() {
+    let dir = folder("leaf-commas");
+    let text = fs::read_to_string(fixture("leaf1.csv")).unwrap();
+    let digest = |name: &str| {
+        let report: Value =
+            serde_json::from_str(&good(&dir, &["leaf", name, "--json", "--texture", "plain"])).unwrap();
+        report["items"][0]["digest"].as_str().unwrap().to_owned()
+    };
+    fs::write(dir.join("points.csv"), &text).unwrap();
+    // As a spreadsheet of a country with decimal commas writes it.
+    let table = |line: &str| if line.starts_with('#') { line.to_owned() } else { line.replace(',', ";").replace('.', ",") };
+    let semicolons = text.lines().map(table).collect::<Vec<_>>().join("\n");
+    fs::write(dir.join("semicolons.csv"), semicolons).unwrap();
+    assert_eq!(digest("points.csv"), digest("semicolons.csv"));
+    fs::write(dir.join("mixed.csv"), text.replace("26.5,414.8", "26,5,414,8")).unwrap();
+    let told = bad(&dir, &["leaf", "mixed.csv", "-o", "x.glb"]);
+    assert!(told.contains("line 7") && told.contains("semicolons"), "{told}");
+    // One mark times a hundred is told.
+    fs::write(dir.join("stray.csv"), text.replace("26.5,414.8", "2650,41480")).unwrap();
+    let out = burgeon(&dir, &["leaf", "stray.csv", "-o", "x.glb"]);
+    assert!(String::from_utf8_lossy(&out.stderr).contains("row 1, mark 1 lies"), "{out:?}");
+    // What the file says of itself is not contradicted in silence.
+    let told = bad(&dir, &["leaf", "points.csv", "--unit", "cm", "-o", "x.glb"]);
+    assert!(told.contains("# unit: mm") && told.contains("--unit"), "{told}");
+}
