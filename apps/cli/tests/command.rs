@@ -37,7 +37,10 @@ fn sketch_writes_model_picture_and_report() {
     assert_eq!(report["schema"], "burgeon.report/1");
     assert_eq!((&report["command"], &report["seed"]), (&"sketch".into(), &1.into()));
     assert!(report["version"].is_string());
-    assert_eq!(report["input"], serde_json::json!({"path": "rose.svg", "drawings": 1, "strokes": 8, "offset_m": null}));
+    assert_eq!(
+        report["input"],
+        serde_json::json!({"path": "rose.svg", "drawings": 1, "strokes": 8, "offset_m": null})
+    );
     assert_eq!((&report["ok"], &report["failed"]), (&1.into(), &0.into()));
     let item = &report["items"][0];
     assert_eq!(item["output"], "rose.glb");
