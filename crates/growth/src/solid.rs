@@ -121,7 +121,7 @@ impl Solid {
         self.nearest_within(p, f64::INFINITY).unwrap_or((p, DVec3::Y))
     }
 
-    /// [`nearest`](Self::nearest), if it is nearer than `reach`; much faster where nothing is.
+    /// [`nearest`](Self::nearest), if it is at most `reach` away; much faster where nothing is.
     ///
     /// The nearer child first, so that the other one is seldom looked at; of triangles at one distance the first.
     pub(crate) fn nearest_within(&self, p: DVec3, reach: f64) -> Option<(DVec3, DVec3)> {
@@ -136,7 +136,8 @@ impl Solid {
         while waiting > 0 {
             waiting -= 1;
             let (at, gap) = stack[waiting];
-            if gap > best.0 {
+            // With room for rounding: an earlier triangle at the same distance counts.
+            if gap > best.0 * (1.0 + 1e-9) {
                 continue;
             }
             let node = &self.nodes[at as usize];
@@ -382,5 +383,27 @@ pub(crate) mod tests {
         assert_eq!(Solid::new(&v, &[[0, 99, 1]]).err(), Some(missing));
         v[3] = DVec3::NAN;
         assert_eq!(Solid::new(&v, &t).err(), Some(MeshFault::Vertex { vertex: 3 }));
+    }
+
+    #[test]
+    fn the_nearest_is_the_first_of_the_nearest_of_all_and_only_within_reach() {
+        let mut s = base::Seed::new(8).stream(base::Draw::Test);
+        for (vertices, indices) in [cube(), sphere(9, 14)] {
+            let solid = Solid::new(&vertices, &indices).expect("sound");
+            for round in 0..400 {
+                // Now and then in the middle, where many triangles are equally near.
+                let wide = if round % 5 == 0 { 0.0 } else { 2.0 };
+                let p = DVec3::new(s.range(-wide, wide), s.range(-wide, wide), s.range(-wide, wide));
+                let all = solid.triangles.iter().map(|t| (closest_on_triangle(t, p), area(t).normalize()));
+                let first =
+                    all.reduce(|a, b| if b.0.distance_squared(p) < a.0.distance_squared(p) { b } else { a });
+                let (q, normal) = first.expect("there are triangles");
+                assert_eq!(solid.nearest(p), (q, normal), "{p}");
+                let d = q.distance(p);
+                assert_eq!(solid.nearest_within(p, 1.001 * d + 1e-9), Some((q, normal)));
+                let short = solid.nearest_within(p, 0.999 * d);
+                assert!(short.is_none() || d <= 0.0, "{p}");
+            }
+        }
     }
 }
