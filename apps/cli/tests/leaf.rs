@@ -253,7 +253,8 @@ fn profiles_of_maize_become_leaves_of_their_length() {
     };
     let dir = folder("leaf-profiles");
     let leaves: Vec<Value> = serde_json::from_str(&text).unwrap();
-    let numbers = |v: &Value| -> Vec<f64> { v.as_array().unwrap().iter().filter_map(Value::as_f64).collect() };
+    let numbers =
+        |v: &Value| -> Vec<f64> { v.as_array().unwrap().iter().filter_map(Value::as_f64).collect() };
     fs::write(dir.join("maize.json"), &text).unwrap();
     // Every eighth, by the command line; all have the same reader.
     for (k, leaf) in leaves.iter().enumerate().step_by(8) {
@@ -261,7 +262,8 @@ fn profiles_of_maize_become_leaves_of_their_length() {
         let steps = x.windows(2).zip(y.windows(2)).map(|(x, y)| (x[1] - x[0]).hypot(y[1] - y[0]));
         let want = 10.0 * steps.sum::<f64>();
         let number = (k + 1).to_string();
-        let args = ["leaf", "maize.json", "--unit", "cm", "--number", &number, "--json", "--texture", "plain"];
+        let args =
+            ["leaf", "maize.json", "--unit", "cm", "--number", &number, "--json", "--texture", "plain"];
         let report: Value = serde_json::from_str(&good(&dir, &args)).unwrap();
         let got = report["items"][0]["leaf"]["length_mm"].as_f64().unwrap();
         // 20 chords of the midrib are a little shorter than its own.
@@ -282,14 +284,18 @@ fn our_own_files_are_read_where_they_are_offered() {
     good(&dir, &["leaf", &fixture("leaf1.csv"), "-o", "x.glb", "--marks", "rows.csv"]);
     fs::write(dir.join("small.toml"), "[method]\nkind = \"colonization\"\npoints = 60\n").unwrap();
     let digest = |template: &[&str]| {
-        let args = [&["grow", "small.toml", "--json", "--no-textures", "--png", "x.png", "--size", "20x20"], template].concat();
+        let args = [
+            &["grow", "small.toml", "--json", "--no-textures", "--png", "x.png", "--size", "20x20"],
+            template,
+        ]
+        .concat();
         let report: Value = serde_json::from_str(&good(&dir, &args)).unwrap();
         report["items"][0]["digest"].as_str().unwrap().to_owned()
     };
     let own = digest(&[]);
     for file in ["rays.csv", "rows.csv"] {
         assert_ne!(digest(&["--leaf-template", file]), own, "{file} changes the leaves");
-        assert_eq!(status(&burgeon(&dir, &["leaf", file, "-o", "y.glb"])), 0, "{file}");
+        assert_eq!(burgeon(&dir, &["leaf", file, "-o", "y.glb"]).status.code(), Some(0), "{file}");
     }
 }
 
@@ -304,7 +310,9 @@ fn numbers_with_decimal_commas_are_read_or_refused_by_name() {
     };
     fs::write(dir.join("points.csv"), &text).unwrap();
     // As a spreadsheet of a country with decimal commas writes it.
-    let table = |line: &str| if line.starts_with('#') { line.to_owned() } else { line.replace(',', ";").replace('.', ",") };
+    let table = |line: &str| {
+        if line.starts_with('#') { line.to_owned() } else { line.replace(',', ";").replace('.', ",") }
+    };
     let semicolons = text.lines().map(table).collect::<Vec<_>>().join("\n");
     fs::write(dir.join("semicolons.csv"), semicolons).unwrap();
     assert_eq!(digest("points.csv"), digest("semicolons.csv"));
