@@ -17,6 +17,9 @@ const STACK: usize = 80;
 pub(crate) struct Solid {
     triangles: Vec<[DVec3; 3]>,
     nodes: Vec<Node>,
+    /// Of a surface without holes whose faces all look outwards, or all inwards: the axis along which a ray meets fewest
+    /// boxes.
+    ray: Option<usize>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -48,14 +51,16 @@ impl Solid {
                     vertices: vertices.len(),
                 })?;
             }
-            if area(&t).length_squared() > 0.0 {
-                triangles.push(t);
-            }
+            triangles.push(t);
         }
+        // Before those without area go: they may join others.
+        let whole = sealed(&triangles);
+        triangles.retain(|t| area(t).length_squared() > 0.0);
         if triangles.is_empty() || triangles.len() > u32::MAX as usize {
             return Err(MeshFault::Empty);
         }
-        let mut solid = Self { nodes: Vec::with_capacity(2 * triangles.len() / LEAF + 1), triangles };
+        let ray = whole.then(|| emptiest_axis(&triangles));
+        let mut solid = Self { nodes: Vec::with_capacity(2 * triangles.len() / LEAF + 1), triangles, ray };
         solid.split(0, solid.triangles.len());
         Ok(solid)
     }
@@ -94,7 +99,38 @@ impl Solid {
         if p.cmplt(lo).any() || p.cmpgt(hi).any() {
             return false;
         }
-        self.winding(p).abs() > 0.5
+        match self.ray {
+            Some(axis) => self.crossings(p, axis) != 0,
+            None => self.winding(p).abs() > 0.5,
+        }
+    }
+
+    /// The winding number of a sealed surface by what a ray along an axis leaves, less what it enters.
+    ///
+    /// Exact but on the surface itself: an edge tells the same of a ray to both of its triangles. Where [`winding`] has to
+    /// look at every sliver of a tall tower, a level ray meets two.
+    ///
+    /// [`winding`]: Self::winding
+    fn crossings(&self, p: DVec3, axis: usize) -> i32 {
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        let mut sum = 0;
+        self.walk(|node, triangles| {
+            let (lo, hi) = (node.lo, node.hi);
+            if hi[axis] < p[axis] || p[u] < lo[u] || p[u] > hi[u] || p[v] < lo[v] || p[v] > hi[v] {
+                return false;
+            }
+            if node.right == 0 {
+                for t in triangles {
+                    let around = turns(t, p, u, v);
+                    let normal = area(t);
+                    if around != 0 && normal.dot(t[0] - p) * normal[axis] > 0.0 {
+                        sum += around;
+                    }
+                }
+            }
+            true
+        });
+        sum
     }
 
     fn winding(&self, p: DVec3) -> f64 {
@@ -192,6 +228,52 @@ impl Solid {
             }
         }
     }
+}
+
+/// Whether each edge is gone along as often one way as the other: no hole, and no face that looks the other way.
+fn sealed(triangles: &[[DVec3; 3]]) -> bool {
+    // Adding 0 turns -0 into 0, which is the same place.
+    let place = |p: DVec3| p.to_array().map(|c| (c + 0.0).to_bits());
+    let mut edges = Vec::with_capacity(3 * triangles.len());
+    for t in triangles {
+        for i in 0..3 {
+            let (a, b) = (place(t[i]), place(t[(i + 1) % 3]));
+            if a != b {
+                edges.push(if a < b { (a, b, 1) } else { (b, a, -1) });
+            }
+        }
+    }
+    edges.sort_unstable();
+    edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).all(|same| same.iter().map(|e| e.2).sum::<i32>() == 0)
+}
+
+/// The axis along which triangles hide least of one another, by their boxes.
+fn emptiest_axis(triangles: &[[DVec3; 3]]) -> usize {
+    let mut hidden = DVec3::ZERO;
+    for t in triangles {
+        let size = t[0].max(t[1]).max(t[2]) - t[0].min(t[1]).min(t[2]);
+        hidden += DVec3::new(size.y * size.z, size.z * size.x, size.x * size.y);
+    }
+    (0..3).min_by(|&a, &b| hidden[a].total_cmp(&hidden[b])).unwrap_or(0)
+}
+
+/// How often a triangle goes around a point, both seen along an axis: -1, 0 or 1.
+fn turns(t: &[DVec3; 3], p: DVec3, u: usize, v: usize) -> i32 {
+    let mut sum = 0;
+    for i in 0..3 {
+        let (a, b) = (t[i], t[(i + 1) % 3]);
+        let up = a[v] <= p[v] && p[v] < b[v];
+        let down = b[v] <= p[v] && p[v] < a[v];
+        if up || down {
+            // From the lower end, whichever triangle asks: both get the same number.
+            let (low, high) = if up { (a, b) } else { (b, a) };
+            let left = (high[u] - low[u]) * (p[v] - low[v]) - (p[u] - low[u]) * (high[v] - low[v]);
+            if left > 0.0 {
+                sum += if up { 1 } else { -1 };
+            }
+        }
+    }
+    sum
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "fewer than 2^32 triangles, checked in `new`")]
@@ -334,6 +416,52 @@ pub(crate) mod tests {
             }
         }
         (v, t)
+    }
+
+    /// A cylinder of radius 1 and height 4 of slivers, as tall as it is, with fans at both ends.
+    fn tower(sides: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        let mut v = vec![DVec3::ZERO, DVec3::Y * 4.0];
+        let mut t = vec![];
+        for j in 0..sides {
+            let (s, c) = ops::sin_cos(ops::TAU * f64::from(j) / f64::from(sides));
+            v.extend([DVec3::new(c, 0.0, s), DVec3::new(c, 4.0, s)]);
+            let (a, b) = (2 + 2 * j, 2 + 2 * ((j + 1) % sides));
+            t.extend([[a, a + 1, b], [b, a + 1, b + 1], [0, a, b], [1, b + 1, a + 1]]);
+        }
+        (v, t)
+    }
+
+    #[test]
+    fn a_ray_tells_what_the_winding_number_tells() {
+        let (mut two, mut faces) = cube();
+        // A cube in a cube: twice around.
+        faces.extend(cube().1.iter().map(|t| t.map(|i| i + 8)));
+        two.extend(cube().0.iter().map(|v| *v * 0.5 + 0.25));
+        // The ring at the lower end is a point but for rounding, which is a hole.
+        let (mut ball, sectors) = sphere(12, 16);
+        ball.iter_mut().filter(|p| p.y < -1.0 + 1e-12).for_each(|p| *p = DVec3::NEG_Y);
+        let mut s = base::Seed::new(5).stream(base::Draw::Test);
+        for (v, t) in [cube(), (ball, sectors), tower(300), (two, faces)] {
+            let inverted: Vec<_> = t.iter().map(|&[a, b, c]| [a, c, b]).collect();
+            for t in [t, inverted] {
+                let solid = Solid::new(&v, &t).expect("sound");
+                assert!(solid.ray.is_some(), "it is sealed");
+                for k in 0..600 {
+                    let mut p = DVec3::new(s.uniform(), s.uniform(), s.uniform()) * 4.4 - 1.2;
+                    if k % 3 == 0 {
+                        // Many at one height, and on no face.
+                        p = (p * 4.0).round() / 4.0 + DVec3::new(0.03, 0.01, 0.02);
+                    }
+                    for axis in 0..3 {
+                        let got = solid.crossings(p, axis) != 0;
+                        assert_eq!(got, solid.winding(p).abs() > 0.5, "{p} along {axis}");
+                    }
+                }
+            }
+        }
+        let (v, t) = tower(300);
+        assert!(Solid::new(&v, &t).expect("sound").ray != Some(1), "level, where slivers stand");
+        assert!(Solid::new(&v, &t[1..]).expect("sound").ray.is_none(), "a hole is no sealed surface");
     }
 
     #[test]
