@@ -170,7 +170,11 @@ fn ground() -> Ground {
         add("x.csv", &fixture(&format!("leaves/{name}.csv")), &[LEAF]);
     }
     add("x.csv", &read("marks.csv"), &[LEAF]);
-    add("x.csv", &fixture("leaves/leaf1.csv"), &["sketch flower.svg --leaf-template IN --no-textures -o out.glb"]);
+    add(
+        "x.csv",
+        &fixture("leaves/leaf1.csv"),
+        &["sketch flower.svg --leaf-template IN --no-textures -o out.glb"],
+    );
     add("x.csv", CLASSES.as_bytes(), &["sketch flower.svg --classes IN --no-textures -o out.glb"]);
     add("x.json", SETTINGS.as_bytes(), &["sketch flower.svg --spec IN --no-textures -o out.glb"]);
     add("x.json", EDITS.as_bytes(), &["shape flower.svg --edits IN --no-textures -o out.glb"]);
@@ -194,11 +198,27 @@ fn ground() -> Ground {
 }
 
 const NUMBERS: [&str; 16] = [
-    "NaN", "inf", "-inf", "1e308", "-1e308", "-1", "0", "-0", "1e-320", "4294967295", "99999999999999999999", "1e999",
-    "1,5", "0x10", "1e9", "",
+    "NaN",
+    "inf",
+    "-inf",
+    "1e308",
+    "-1e308",
+    "-1",
+    "0",
+    "-0",
+    "1e-320",
+    "4294967295",
+    "99999999999999999999",
+    "1e999",
+    "1,5",
+    "0x10",
+    "1e9",
+    "",
 ];
-const ENDINGS: [&str; 14] =
-    ["svg", "inkml", "ndjson", "json", "glb", "gltf", "obj", "ply", "stl", "burgeon", "csv", "toml", "xyz", "las"];
+const ENDINGS: [&str; 14] = [
+    "svg", "inkml", "ndjson", "json", "glb", "gltf", "obj", "ply", "stl", "burgeon", "csv", "toml", "xyz",
+    "las",
+];
 
 /// The numbers of a text, by their places.
 fn numbers(bytes: &[u8]) -> Vec<(usize, usize)> {
@@ -230,7 +250,9 @@ fn break_once(bytes: &mut Vec<u8>, dice: &mut Dice) -> &'static str {
             "a bit flipped"
         }
         2..=4 => {
-            if let Some(&(a, b)) = Some(numbers(bytes)).filter(|n| !n.is_empty()).as_ref().map(|n| dice.one(n)) {
+            if let Some(&(a, b)) =
+                Some(numbers(bytes)).filter(|n| !n.is_empty()).as_ref().map(|n| dice.one(n))
+            {
                 bytes.splice(a..b, dice.one(&NUMBERS).bytes());
             }
             "a number replaced"
@@ -360,25 +382,78 @@ const LINES: [(&str, &[&str]); 6] = [
     (
         "sketch flower.svg --no-textures --png out.png --unit cm -o out.ply",
         &[
-            "--seed", "--height", "--branch-depth", "--leaf-depth", "--classes", "--flip-flowers", "--density",
-            "--tropism", "--pipe-exponent", "--phototropism", "--gravity", "--spec", "--detail", "--sides", "--petals",
-            "--variation", "--size", "--view", "--frames", "--background", "--supersample", "--up", "--threads",
-            "--budget", "--format", "--leaf-template", "--qsm", "--nonsense",
+            "--seed",
+            "--height",
+            "--branch-depth",
+            "--leaf-depth",
+            "--classes",
+            "--flip-flowers",
+            "--density",
+            "--tropism",
+            "--pipe-exponent",
+            "--phototropism",
+            "--gravity",
+            "--spec",
+            "--detail",
+            "--sides",
+            "--petals",
+            "--variation",
+            "--size",
+            "--view",
+            "--frames",
+            "--background",
+            "--supersample",
+            "--up",
+            "--threads",
+            "--budget",
+            "--format",
+            "--leaf-template",
+            "--qsm",
+            "--nonsense",
         ],
     ),
     (
         "leaf --venation palmate --texture plain -o out.glb",
         &[
-            "--veins", "--depth", "--side-veins", "--number", "--graph", "--rows", "--length", "--surface", "--rings",
-            "--thickness", "--parameters", "--vein-weight", "--subdivisions", "--sides", "--curl", "--wilt",
-            "--texture", "--days", "--day", "--leaves", "--height", "--azimuth", "--seed",
+            "--veins",
+            "--depth",
+            "--side-veins",
+            "--number",
+            "--graph",
+            "--rows",
+            "--length",
+            "--surface",
+            "--rings",
+            "--thickness",
+            "--parameters",
+            "--vein-weight",
+            "--subdivisions",
+            "--sides",
+            "--curl",
+            "--wilt",
+            "--texture",
+            "--days",
+            "--day",
+            "--leaves",
+            "--height",
+            "--azimuth",
+            "--seed",
         ],
     ),
     (
         "grow --attractors s0.xyz --unit mm --no-textures --detail 0.1 -o out.ply",
         &[
-            "--root", "--step", "--influence", "--kill", "--age", "--leaf-keep", "--lods", "--method", "--obstacle",
-            "--seed", "--sides",
+            "--root",
+            "--step",
+            "--influence",
+            "--kill",
+            "--age",
+            "--leaf-keep",
+            "--lods",
+            "--method",
+            "--obstacle",
+            "--seed",
+            "--sides",
         ],
     ),
     ("bloom fit stages.toml -o out.json", &["--regions", "--seed", "--plot", "--budget", "--up"]),
@@ -386,7 +461,10 @@ const LINES: [(&str, &[&str]); 6] = [
         "bloom run s0.xyz --end s3.xyz --whole --unit mm -o out.ply",
         &["--day", "--frames", "--lattice", "--law", "--compare", "--seed", "--format", "--organs"],
     ),
-    ("shape flower.svg --no-textures -o out.glb", &["--list", "--edits", "--plant", "--lods", "--seed", "--detail"]),
+    (
+        "shape flower.svg --no-textures -o out.glb",
+        &["--list", "--edits", "--plant", "--lods", "--seed", "--detail"],
+    ),
 ];
 
 fn hostile_line(dice: &mut Dice) -> Vec<OsString> {
