@@ -258,10 +258,7 @@ fn break_once(bytes: &mut Vec<u8>, dice: &mut Dice) -> &'static str {
             "a number replaced"
         }
         5 => {
-            let commas: Vec<u8> = numbers(bytes).iter().map(|&(a, _)| a as u8).collect();
-            if !commas.is_empty() {
-                bytes.iter_mut().filter(|b| **b == b'.').for_each(|b| *b = b',');
-            }
+            bytes.iter_mut().filter(|b| **b == b'.').for_each(|b| *b = b',');
             "decimal commas"
         }
         6 | 7 => {

@@ -74,6 +74,33 @@ fn decimal_commas_are_read_where_something_else_separates() {
 }
 
 #[test]
+fn first_bytes_tell_the_format() {
+    use CloudFormat::{Las, Obj, Pcd, Ply, Xyz};
+    for (start, want) in [
+        (&b"1 2 3\n"[..], Some(Xyz)),
+        (b"# c\n//h\nx;y;z\n1,5;2,3;4,4\n", Some(Xyz)),
+        (b"2\n1,2,3\n", Some(Xyz)),
+        (b"# .PCD v0.7\nVERSION 0.7\n", Some(Pcd)),
+        (b"# made\no leaf\nv 1 2 3\n", Some(Obj)),
+        (b"ply\nformat ascii 1.0\n", Some(Ply)),
+        (b"LASF\0\0", Some(Las)),
+        (b"glTF\x02\0\0\0", None),
+        (b"<svg>1 2 3</svg>", None),
+        (b"1 2 3\n\0", None),
+        (b"1 2\n3 4\n", None),
+        (b"", None),
+    ] {
+        assert_eq!(CloudFormat::sniff(start), want, "{:?}", String::from_utf8_lossy(start));
+    }
+}
+
+#[test]
+fn points_beyond_single_precision_are_left_out() {
+    let text = b"1 2 3\n0 1e90 0\n-1e39 0 0\n1e14 0 0\n";
+    assert_eq!(points(text, CloudFormat::Xyz), [[1.0, 2.0, 3.0], [1e14, 0.0, 0.0]]);
+}
+
+#[test]
 fn every_format_gives_the_same_two_points() {
     use CloudFormat::{Las, Obj, Pcd, Ply, Xyz};
     assert_eq!(points(b"1 2 3\n-0.5 0.25 1e3\n", Xyz), TWO);

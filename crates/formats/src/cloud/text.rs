@@ -80,6 +80,17 @@ fn row<'a>(words: impl Iterator<Item = &'a [u8]>, number: fn(&[u8]) -> Option<f6
     row
 }
 
+/// A row of three numbers is among the first lines, of which five may be a header.
+pub(super) fn starts(start: &[u8]) -> bool {
+    let lines = start.split(|&b| b == b'\n').map(<[u8]>::trim_ascii);
+    let lines = lines.filter(|l| !l.is_empty() && !l.starts_with(b"#") && !l.starts_with(b"//"));
+    let numbers = |l: &[u8]| {
+        let Row { count, broken, .. } = row(words(l), number);
+        count >= 3 && broken.is_none()
+    };
+    !start.contains(&0) && lines.take(6).any(numbers)
+}
+
 /// Three or more columns: x y z, then what the first row shows: normals (unit length) or colours (whole numbers
 /// to 255). Anything else is left out. Where semicolons, tabs or blanks separate, a comma is a decimal comma.
 pub(super) fn read(bytes: &[u8], sink: &mut Sink, report: &mut Report) -> Result<(), CloudError> {
