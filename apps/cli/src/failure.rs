@@ -53,7 +53,7 @@ impl Failure {
     pub(crate) fn tell(&self) -> ExitCode {
         match self {
             Self::Bad(line) => {
-                crate::say::error(&burgeon::brief(line));
+                crate::say::error(&burgeon::brief(&crate::say::short(line)));
                 ExitCode::from(2)
             }
             Self::Told => ExitCode::from(2),

@@ -49,7 +49,7 @@ fn tagged(tag: &str, color: &str, text: &str) {
 
 /// A text as one line. Where it is longer than 400 characters, its longest words, such as names of files, keep their
 /// two ends only: what is said of them is not lost.
-fn short(text: &str) -> String {
+pub(crate) fn short(text: &str) -> String {
     const MOST: usize = 80;
     let words: Vec<&str> = text.split_whitespace().collect();
     let line = words.join(" ");

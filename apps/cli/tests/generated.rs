@@ -144,8 +144,8 @@ fn ground() -> Ground {
     const INFO: &str = "info IN";
     const CLOUD: [&str; 4] = [
         "convert IN -o out.ply",
-        "leaf --scan IN -o out.glb --unit mm --texture plain",
-        "grow --attractors IN -o out.ply --no-textures --detail 0.1 --unit mm",
+        "leaf --scan IN -o out.glb --unit mm",
+        "grow --attractors IN -o out.ply --no-textures --detail 0.1",
         "bloom run IN --end s3.xyz --unit mm --whole --day 0.5 -o out.ply",
     ];
     const MODEL: [&str; 4] = [
@@ -438,7 +438,7 @@ const LINES: [(&str, &[&str]); 6] = [
         ],
     ),
     (
-        "grow --attractors s0.xyz --unit mm --no-textures --detail 0.1 -o out.ply",
+        "grow --attractors s0.xyz --no-textures --detail 0.1 -o out.ply",
         &[
             "--root",
             "--step",

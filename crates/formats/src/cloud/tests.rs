@@ -92,6 +92,8 @@ fn first_bytes_tell_the_format() {
     ] {
         assert_eq!(CloudFormat::sniff(start), want, "{:?}", String::from_utf8_lossy(start));
     }
+    let signed = b"# burgeon 1\n# metres\n\nmtllib a.mtl\nv 0 0 0\n";
+    assert_eq!(crate::ModelFormat::sniff(signed), Some(crate::ModelFormat::Obj));
 }
 
 #[test]
