@@ -481,6 +481,12 @@ fn run(args: &BloomRunArgs) -> Outcome {
         best: last_day,
         shape: Box::new(|day| {
             let points = motion.at(day - first_day, &compute).map_err(bad(start))?;
+            // What single precision holds, squares included.
+            if !points.iter().all(|p| p.abs().max_element() <= 1e15) {
+                let line =
+                    format!("on day {day} the shape has no finite size; choose a day nearer to the stages");
+                return Err(Failure::at(start, line));
+            }
             let model = burgeon::motion_model(&loaded.name, loaded.mesh.as_ref(), &motion, &points);
             Ok((Model { offset_m: loaded.origin.offset_m, ..model }, None))
         }),
@@ -594,13 +600,16 @@ fn load_shapes(
     machine: &Machine,
 ) -> Outcome<Loaded> {
     let start = Path::new(&args.start);
-    if files::extension(start).is_some_and(|e| e.eq_ignore_ascii_case("toml")) {
+    let stdin = files::is_stdin(start);
+    if files::extension(start).is_some_and(|e| e.eq_ignore_ascii_case("toml"))
+        || (stdin && args.end.is_none())
+    {
         let options = ["end", "start_day", "end_day", "whole", "no_clean"];
         let this = "a stages file says so itself (file, day, split, clean)";
         args.given.refuse(&options, "a START and an END", this)?;
         return stages::load(start, axes, Seed::new(args.seed), machine);
     }
-    if !start.exists() {
+    if !start.exists() && !stdin {
         let names = FlowerSpec::PRESETS.join(", ");
         return Err(Failure::Bad(format!(
             "{}: there is no such file, and no such flower ({names}); check the spelling",

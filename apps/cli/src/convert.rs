@@ -23,10 +23,10 @@ pub(crate) fn convert(args: &ConvertArgs) -> Outcome {
     if let Some(png) = &args.png {
         picture::check_name(png)?;
     }
-    if let Some(cloud) = far_or_bare(args, &machine)? {
-        return points(args, cloud, outputs, &machine);
-    }
-    let (input, kind) = files::open(&args.input)?;
+    let (input, kind) = match far_or_bare(args, &machine)? {
+        Opened::Points(cloud) => return points(args, cloud, outputs, &machine),
+        Opened::Other(input, kind) => (input, kind),
+    };
     check_used(args, kind)?;
     let to_drawing = files::extension(&args.output).is_some_and(|e| e.eq_ignore_ascii_case("json"));
     let mut item = match (kind, to_drawing) {
@@ -145,29 +145,50 @@ struct Read {
     ms: f64,
 }
 
+/// What the input turned out to be.
+enum Opened {
+    Points(Read),
+    Other(files::Input, Kind),
+}
+
 /// The points of a file that is read as a scan: of a format that holds nothing else, or so far from their origin that
 /// they need double precision.
-fn far_or_bare(args: &ConvertArgs, machine: &Machine) -> Outcome<Option<Read>> {
+fn far_or_bare(args: &ConvertArgs, machine: &Machine) -> Outcome<Opened> {
     let path = &args.input;
-    let Some(format) = files::extension(path).and_then(CloudFormat::from_extension) else { return Ok(None) };
-    let only = !matches!(format, CloudFormat::Ply | CloudFormat::Obj);
-    if !path.is_file() || (!only && files::has_faces(path)) {
-        return Ok(None);
-    }
+    let other = || files::open(path).map(|(input, kind)| Opened::Other(input, kind));
+    let (input, format, only) = if files::is_stdin(path) {
+        let (input, start) = files::peek(path)?;
+        match files::sniff_points(&start) {
+            Some(format) => (input, format, true),
+            None => return files::kind_of(path, &start).map(|kind| Opened::Other(input, kind)),
+        }
+    } else {
+        let Some(format) = files::extension(path).and_then(CloudFormat::from_extension) else {
+            return other();
+        };
+        let only = !matches!(format, CloudFormat::Ply | CloudFormat::Obj);
+        if !path.is_file() || (!only && files::has_faces(path)) {
+            return other();
+        }
+        (files::open_bytes(path)?, format, only)
+    };
     let axes = files::axes(args.in_up.or(args.axes.up), args.in_unit.unwrap_or(args.axes.unit));
     let mut report = Report::default();
-    let (cloud, ms) = machine.timed(|| files::read_cloud(path, format, &axes, &mut report));
+    let (cloud, ms) = machine.timed(|| files::read_cloud(path, (input, format), &axes, &mut report));
     let mut cloud = match cloud {
         Ok(cloud) => cloud,
         Err(e) if only => return Err(e),
         // The reader of models says what is wrong.
-        Err(_) => return Ok(None),
+        Err(_) => return other(),
     };
     let mut origin = Origin::default();
     origin.bring(&mut cloud.points, &axes, &mut report);
     cloud.offset_m = origin.offset_m;
     let warnings = report.warnings.iter().map(ToString::to_string).collect();
-    Ok((only || origin.offset_m.is_some()).then_some(Read { cloud, warnings, origin, axes, ms }))
+    if only || origin.offset_m.is_some() {
+        return Ok(Opened::Points(Read { cloud, warnings, origin, axes, ms }));
+    }
+    other()
 }
 
 /// Converts a cloud: to PLY in double precision.

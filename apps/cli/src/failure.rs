@@ -22,7 +22,7 @@ pub(crate) type Outcome<T = ()> = Result<T, Failure>;
 impl Failure {
     /// Bad input in a file.
     pub(crate) fn at(path: &Path, what: impl fmt::Display) -> Self {
-        Self::Bad(format!("{}: {}", path.display(), burgeon::brief(&what.to_string())))
+        Self::Bad(format!("{}: {}", shown(path), burgeon::brief(&what.to_string())))
     }
 
     /// The operating system refused.
@@ -46,14 +46,14 @@ impl Failure {
             std::io::ErrorKind::InvalidFilename => "the name is too long; choose a shorter one".to_owned(),
             _ => error.to_string(),
         };
-        Self::Bad(format!("{}: cannot be {doing}: {reason}", path.display()))
+        Self::Bad(format!("{}: cannot be {doing}: {reason}", shown(path)))
     }
 
     /// Tells the user on stderr, in one line.
     pub(crate) fn tell(&self) -> ExitCode {
         match self {
             Self::Bad(line) => {
-                crate::say::error(&burgeon::brief(line));
+                crate::say::error(&burgeon::brief(&crate::say::short(line)));
                 ExitCode::from(2)
             }
             Self::Told => ExitCode::from(2),
@@ -69,6 +69,11 @@ impl Failure {
             }
         }
     }
+}
+
+/// A path as messages say it.
+fn shown(path: &Path) -> impl fmt::Display {
+    if crate::files::is_stdin(path) { Path::new("standard input") } else { path }.display()
 }
 
 impl From<burgeon::Cancelled> for Failure {

@@ -2,6 +2,7 @@
 
 use std::io::{BufRead, BufReader, Cursor, Read};
 use std::path::{Component, Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use burgeon::document::{self, Document, DocumentPlant, MAX_PROJECT_BYTES};
 use burgeon::formats::{
@@ -49,36 +50,68 @@ pub(crate) fn stem(path: &Path) -> String {
 
 /// Opens a file and finds out what it holds. Read once and never sought in: pipes are as good as files.
 pub(crate) fn open(path: &Path) -> Outcome<(Input, Kind)> {
-    let failed = |e: &std::io::Error| Failure::io(path, "read", e);
-    let mut input = open_bytes(path)?;
     let known = extension(path).and_then(|e| {
         let drawing = DrawingFormat::from_extension(e).map(Kind::Drawing);
         let project = e.eq_ignore_ascii_case("burgeon").then_some(Kind::Project);
         drawing.or_else(|| ModelFormat::from_extension(e).map(Kind::Model)).or(project)
     });
     if let Some(kind) = known {
-        return Ok((input, kind));
+        return Ok((open_bytes(path)?, kind));
     }
-    let mut start = Vec::new();
-    input.by_ref().take(4096).read_to_end(&mut start).map_err(|e| failed(&e))?;
-    if start.is_empty() {
-        return Err(Failure::at(path, "is empty; was it saved completely?"));
-    }
-    let drawing = DrawingFormat::sniff(&start).map(Kind::Drawing);
-    let project = document::is_project(&start).then_some(Kind::Project);
-    let kind = drawing.or_else(|| ModelFormat::sniff(&start).map(Kind::Model)).or(project).ok_or_else(|| {
+    let (input, start) = peek(path)?;
+    let kind = kind_of(path, &start)?;
+    Ok((input, kind))
+}
+
+/// What a file is whose name does not say it, or what it may be instead.
+pub(crate) fn kind_of(path: &Path, start: &[u8]) -> Outcome<Kind> {
+    sniff(start).ok_or_else(|| {
         Failure::at(
             path,
             "is neither a drawing (.svg, .inkml, .ndjson, .json), nor a project (.burgeon), nor a model (.glb, .gltf, \
              .obj, .ply, .stl); give the file the extension of its format",
         )
-    })?;
-    Ok((Box::new(BufReader::new(Cursor::new(start).chain(input))), kind))
+    })
+}
+
+/// What the first bytes say, if anything.
+pub(crate) fn sniff(start: &[u8]) -> Option<Kind> {
+    let drawing = DrawingFormat::sniff(start).map(Kind::Drawing);
+    let project = document::is_project(start).then_some(Kind::Project);
+    drawing.or_else(|| ModelFormat::sniff(start).map(Kind::Model)).or(project)
+}
+
+/// The format of standard input that is points alone. An OBJ may have its faces anywhere: it is taken for a model.
+pub(crate) fn sniff_points(start: &[u8]) -> Option<CloudFormat> {
+    let format = CloudFormat::sniff(start)?;
+    let points = match format {
+        CloudFormat::Ply => !ply_has_faces(start),
+        CloudFormat::Obj => false,
+        _ => sniff(start).is_none(),
+    };
+    points.then_some(format)
+}
+
+/// Opens what is there, with its first bytes, which are still to be read.
+pub(crate) fn peek(path: &Path) -> Outcome<(Input, Vec<u8>)> {
+    let mut input = open_bytes(path)?;
+    let mut start = Vec::new();
+    let read = input.by_ref().take(4096).read_to_end(&mut start);
+    read.map_err(|e| Failure::io(path, "read", &e))?;
+    if start.is_empty() {
+        return Err(Failure::at(path, "is empty; was it saved completely?"));
+    }
+    Ok((Box::new(BufReader::new(Cursor::new(start.clone()).chain(input))), start))
 }
 
 /// Bytes of a file, a pipe or standard input, whatever they are.
 pub(crate) fn open_bytes(path: &Path) -> Outcome<Input> {
+    static TAKEN: AtomicBool = AtomicBool::new(false);
     if is_stdin(path) {
+        if TAKEN.swap(true, Ordering::Relaxed) {
+            let line = "is asked for twice, but can be read only once; give one of the two as a file";
+            return Err(Failure::at(path, line));
+        }
         return Ok(Box::new(BufReader::new(std::io::stdin())));
     }
     if path.is_dir() {
@@ -98,33 +131,52 @@ pub(crate) fn has_faces(path: &Path) -> bool {
         return false;
     }
     match extension.as_str() {
-        "ply" => {
-            let head = String::from_utf8_lossy(&start);
-            let head = head.split("end_header").next().unwrap_or_default();
-            head.lines().any(|l| l.starts_with("element face") && !l.trim_end().ends_with(" 0"))
-        }
+        "ply" => ply_has_faces(&start),
         "obj" => start.windows(3).any(|w| w == b"\nf "),
         _ => false,
     }
 }
 
+fn ply_has_faces(start: &[u8]) -> bool {
+    let head = String::from_utf8_lossy(start);
+    let head = head.split("end_header").next().unwrap_or_default();
+    head.lines().any(|l| l.starts_with("element face") && !l.trim_end().ends_with(" 0"))
+}
+
+/// Opens a scan: its format by its extension or, failing that, by its first bytes.
+pub(crate) fn open_cloud(path: &Path) -> Outcome<(Input, CloudFormat)> {
+    if let Some(format) = extension(path).and_then(CloudFormat::from_extension) {
+        return Ok((open_bytes(path)?, format));
+    }
+    let (input, start) = peek(path)?;
+    let format = CloudFormat::sniff(&start).ok_or_else(|| {
+        let line = "is no scan that is read; end the name with .ply, .xyz, .txt, .pcd, .las or .obj";
+        Failure::at(path, line)
+    })?;
+    Ok((input, format))
+}
+
 /// Reads a scan.
 pub(crate) fn read_cloud(
     path: &Path,
-    format: CloudFormat,
+    (input, format): (Input, CloudFormat),
     axes: &ExportSpec,
     report: &mut Report,
 ) -> Outcome<PointCloud> {
-    let file = inputs::open(path).map_err(|e| Failure::io(path, "read", &e))?;
-    burgeon::formats::read_cloud(file, format, axes, report).map_err(|e| Failure::at(path, e))
+    burgeon::formats::read_cloud(input, format, axes, report).map_err(|e| Failure::at(path, e))
 }
 
 /// The text of a small file, such as settings: at most 16 MiB.
 pub(crate) fn read_text(path: &Path) -> Outcome<String> {
+    text_of(path, open_bytes(path)?)
+}
+
+/// [`read_text`] of a file that is open already.
+pub(crate) fn text_of(path: &Path, input: Input) -> Outcome<String> {
     const MAX_BYTES: u64 = 16 << 20;
     let failed = |e: &std::io::Error| Failure::io(path, "read", e);
     let mut bytes = Vec::new();
-    open_bytes(path)?.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(|e| failed(&e))?;
+    input.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(|e| failed(&e))?;
     if bytes.len() as u64 > MAX_BYTES {
         return Err(Failure::at(
             path,

@@ -401,10 +401,14 @@ pub(crate) fn read_spec(what: &Path, told: &mut Report) -> Outcome<TreeSpec> {
             "there is no preset `{key}`; `burgeon presets` lists them, and a spec's name ends with .toml"
         )));
     }
-    let text = files::read_text(what)?;
+    spec_of(what, &files::read_text(what)?, told)
+}
+
+/// The spec of a text that was read from `what`.
+pub(crate) fn spec_of(what: &Path, text: &str, told: &mut Report) -> Outcome<TreeSpec> {
     let warnings = std::cell::RefCell::new(Vec::new());
     let open = |name: &str| named_mesh(what, name, &mut warnings.borrow_mut());
-    let mut spec = read_tree_spec(&text, &open).map_err(|e| Failure::at(what, e))?;
+    let mut spec = read_tree_spec(text, &open).map_err(|e| Failure::at(what, e))?;
     if spec.name == TreeSpec::default().name {
         spec.name = files::stem(what);
     }
@@ -420,7 +424,8 @@ fn named_mesh(spec: &Path, name: &str, warnings: &mut Vec<burgeon::Warning>) -> 
         files::extension(&path).and_then(CloudFormat::from_extension)
     {
         let mut report = Report::default();
-        let cloud = files::read_cloud(&path, format, &axes, &mut report).ok()?;
+        let cloud =
+            files::read_cloud(&path, (files::open_bytes(&path).ok()?, format), &axes, &mut report).ok()?;
         warnings.extend(report.warnings);
         return Some((cloud.points, Vec::new()));
     }
@@ -441,12 +446,8 @@ fn soup(model: &Model) -> NamedMesh {
 }
 
 fn read_points(path: &Path, args: &GrowArgs, origin: &mut Origin, told: &mut Report) -> Outcome<Vec<DVec3>> {
-    let format = files::extension(path).and_then(CloudFormat::from_extension);
-    let format = format.ok_or_else(|| {
-        Failure::at(path, "is not named as points; end the name with .xyz, .txt, .ply, .pcd, .las or .obj")
-    })?;
     let axes = files::axes(args.axes.up, args.axes.unit);
-    let mut points = files::read_cloud(path, format, &axes, told)?.points;
+    let mut points = files::read_cloud(path, files::open_cloud(path)?, &axes, told)?.points;
     origin.bring(&mut points, &axes, told);
     Ok(points)
 }

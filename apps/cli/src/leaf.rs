@@ -3,9 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use burgeon::formats::{
-    CloudFormat, ExportSpec, PngCache, marks_template, read_picture, write_marks, write_rays,
-};
+use burgeon::formats::{ExportSpec, PngCache, marks_template, read_picture, write_marks, write_rays};
 use burgeon::geom::RingRule;
 use burgeon::leaf::{
     FullMarks, LeafGrowth, LeafSpec, Marks, MeshSpec, PalmateSpec, ParallelSpec, Pose, Rays, ScanSpec,
@@ -506,13 +504,10 @@ fn scan(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
     let [path] = args.inputs.as_slice() else {
         return Err(Failure::Bad("--scan takes one cloud, of one leaf; give one file".into()));
     };
-    let format = files::extension(path).and_then(CloudFormat::from_extension);
-    let format = format.ok_or_else(|| {
-        Failure::at(path, "is not named as a scan; end the name with .ply, .xyz, .txt, .pcd, .las or .obj")
-    })?;
     let mut report = Report::default();
     let axes = files::axes(args.axes.up, args.axes.unit);
-    let (cloud, read_ms) = machine.timed(|| files::read_cloud(path, format, &axes, &mut report));
+    let opened = files::open_cloud(path)?;
+    let (cloud, read_ms) = machine.timed(|| files::read_cloud(path, opened, &axes, &mut report));
     let mut points = cloud?.points;
     let first = points.first().copied().unwrap_or_default();
     let size = points.iter().fold([first; 2], |[a, b], &p| [a.min(p), b.max(p)]);

@@ -60,7 +60,7 @@ pub(crate) fn read(path: &Path, args: &LeafArgs) -> Outcome<ReadLeaf> {
             .is_some_and(|p| files::writable(p).is_ok_and(|f| !f.fixed_axes())),
         given: &args.given,
     };
-    asked.read(path)
+    asked.read(path, files::open_bytes(path)?)
 }
 
 fn axes_of(args: &AxesArgs) -> MarksAxes {
@@ -68,9 +68,9 @@ fn axes_of(args: &AxesArgs) -> MarksAxes {
 }
 
 impl Asked<'_> {
-    fn read(&self, path: &Path) -> Outcome<ReadLeaf> {
+    fn read(&self, path: &Path, input: files::Input) -> Outcome<ReadLeaf> {
         let name = files::stem(path);
-        let read = read_leaf_file(files::open_bytes(path)?, &name, self.axes);
+        let read = read_leaf_file(input, &name, self.axes);
         let read = read.map_err(|e| Failure::at(path, e))?;
         if !matches!(read, LeafFile::Graph(_)) {
             self.given.refuse(&["graph", "length"], "vein graphs", "this leaf has measured lengths")?;
@@ -214,8 +214,19 @@ impl Asked<'_> {
 pub(crate) fn template_of(path: &Path, seed: u64, machine: &Machine) -> Outcome<LeafTemplate> {
     let measured =
         files::extension(path).is_some_and(|e| ["csv", "json"].iter().any(|k| e.eq_ignore_ascii_case(k)));
-    if !measured {
-        let (model, _, _) = files::read_model(path, &burgeon::formats::ExportSpec::default())?;
+    let axes = burgeon::formats::ExportSpec::default();
+    let (input, model) = if files::is_stdin(path) {
+        let (input, start) = files::peek(path)?;
+        let kind = files::sniff(&start).filter(|kind| matches!(kind, files::Kind::Model(_)));
+        (input, kind)
+    } else if measured {
+        (files::open_bytes(path)?, None)
+    } else {
+        let (input, kind) = files::open(path)?;
+        (input, Some(kind))
+    };
+    if let Some(kind) = model {
+        let (model, _, _) = files::read_opened_model(path, input, kind, &axes)?;
         return LeafTemplate::of_model(&model).map_err(|e| Failure::at(path, e));
     }
     let given = Given::default();
@@ -232,7 +243,7 @@ pub(crate) fn template_of(path: &Path, seed: u64, machine: &Machine) -> Outcome<
         LeafError::Cancelled(_) => Failure::Cancelled,
         other => Failure::at(path, other),
     };
-    let read = asked.read(path)?;
+    let read = asked.read(path, input)?;
     let mut options = LeafOptions::default();
     options.spec.thickness = read.thickness.unwrap_or_default();
     match read.form {

@@ -37,7 +37,7 @@ pub(crate) fn warning(text: &str) {
 }
 
 fn tagged(tag: &str, color: &str, text: &str) {
-    let text = printable(&text.split_whitespace().collect::<Vec<_>>().join(" "));
+    let text = printable(&short(text));
     let mut out = stderr().lock();
     let [no_color, term] = ["NO_COLOR", "TERM"].map(std::env::var_os);
     let _ = if !out.is_terminal() || plain(no_color.as_deref(), term.as_deref()) {
@@ -45,6 +45,34 @@ fn tagged(tag: &str, color: &str, text: &str) {
     } else {
         writeln!(out, "\x1b[{color}m{tag}:\x1b[0m {text}")
     };
+}
+
+/// A text as one line. Where it is longer than 400 characters, its longest words, such as names of files, keep their
+/// two ends only: what is said of them is not lost.
+pub(crate) fn short(text: &str) -> String {
+    const MOST: usize = 80;
+    let words: Vec<&str> = text.split_whitespace().collect();
+    let line = words.join(" ");
+    if line.chars().nth(400).is_none() {
+        return line;
+    }
+    let ends = |word: &&str| {
+        let count = word.chars().count();
+        if count <= MOST {
+            return (*word).to_owned();
+        }
+        let (start, end) =
+            word.chars().enumerate().fold((String::new(), String::new()), |mut all, (i, c)| {
+                match i {
+                    i if i < MOST / 2 => all.0.push(c),
+                    i if i >= count - MOST / 2 => all.1.push(c),
+                    _ => {}
+                }
+                all
+            });
+        format!("{start}...{end}")
+    };
+    words.iter().map(ends).collect::<Vec<_>>().join(" ")
 }
 
 /// Whether a terminal is to get no colours: by <https://no-color.org>, or because it knows none.
@@ -75,6 +103,17 @@ mod tests {
     #[test]
     fn names_cannot_steer_the_terminal() {
         assert_eq!(super::printable("a\x1b[31mb\u{202e}c\u{7f}é🌹"), "a\u{fffd}[31mb\u{fffd}c\u{fffd}é🌹");
+    }
+
+    #[test]
+    fn long_words_keep_their_ends() {
+        let short = super::short(&format!("ab{}yz: cannot be read", "x".repeat(5000)));
+        assert!(
+            short.starts_with("abx") && short.ends_with("xyz: cannot be read") && short.len() < 120,
+            "{short}"
+        );
+        let path = format!("{}.svg:\n is empty", "x".repeat(300));
+        assert_eq!(super::short(&path), path.replace('\n', ""));
     }
 
     #[test]

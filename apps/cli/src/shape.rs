@@ -266,9 +266,15 @@ fn make(
     let seed = Seed::new(args.seed.unwrap_or(1));
     let is_preset = what.to_str().and_then(Preset::find).is_some() && !what.is_file();
     let is_spec = files::extension(what).is_none_or(|e| e.eq_ignore_ascii_case("toml"));
-    if is_preset || (is_spec && !files::is_stdin(what)) {
+    let stdin = files::is_stdin(what).then(|| files::peek(what)).transpose()?;
+    // A preset or a spec: of standard input, what is nothing else.
+    let piped = stdin.as_ref().map(|(_, start)| files::sniff(start));
+    if is_preset || piped.map_or(is_spec, |kind| kind.is_none()) {
         no_project(args, what)?;
-        let spec = grow::read_spec(what, told)?;
+        let spec = match stdin {
+            Some((input, _)) => grow::spec_of(what, &files::text_of(what, input)?, told)?,
+            None => grow::read_spec(what, told)?,
+        };
         let options = TreeOptions { skin, lods: args.surface.lods, edits, ..TreeOptions::default() };
         let made = make_tree(&spec, seed, &options, &machine.run()).map_err(|e| match e {
             TreeError::Cancelled(_) => Failure::Cancelled,
@@ -277,7 +283,11 @@ fn make(
         let MadeTree { grown, model, lods, item } = made;
         return Ok(Shaped { plant: grown.plant, model, lods, item, seed, edited: None });
     }
-    let read = match files::open(what)? {
+    let opened = match stdin {
+        Some((input, start)) => (input, files::kind_of(what, &start)?),
+        None => files::open(what)?,
+    };
+    let read = match opened {
         (file, Kind::Drawing(format)) => {
             no_project(args, what)?;
             let mut drawings = read_drawings(file, format, &files::stem(what));

@@ -136,12 +136,21 @@ fn read_any(
     let mut tell = |told: Vec<burgeon::Warning>| {
         warnings.extend(told.iter().map(|w| format!("{}: {w}", path.display())));
     };
-    let cloud = files::extension(path).and_then(CloudFormat::from_extension);
+    let stdin = files::is_stdin(path).then(|| files::peek(path)).transpose()?;
+    let cloud = match &stdin {
+        Some((_, start)) => files::sniff_points(start),
+        None => files::extension(path).and_then(CloudFormat::from_extension),
+    };
     if path.is_dir() {
         return Err(Failure::at(path, "is a folder; name a file in it"));
     }
-    if cloud.is_none() || files::has_faces(path) {
-        let (model, _, told) = files::read_model(path, axes)?;
+    let Some(format) = cloud.filter(|_| stdin.is_some() || !files::has_faces(path)) else {
+        let (model, _, told) = match stdin {
+            Some((input, start)) => {
+                files::read_opened_model(path, input, files::kind_of(path, &start)?, axes)?
+            }
+            None => files::read_model(path, axes)?,
+        };
         tell(told);
         let mut mesh = TriMesh::default();
         for part in &model.parts {
@@ -156,10 +165,13 @@ fn read_any(
             mesh.positions.iter().map(|p| DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2])));
         let points = points.collect();
         return Ok((points, (!mesh.triangles.is_empty()).then_some(mesh)));
-    }
-    let format = cloud.unwrap_or(CloudFormat::Xyz);
+    };
+    let opened = match stdin {
+        Some((input, _)) => input,
+        None => files::open_bytes(path)?,
+    };
     let mut report = Report::default();
-    let mut points = files::read_cloud(path, format, axes, &mut report)?.points;
+    let mut points = files::read_cloud(path, (opened, format), axes, &mut report)?.points;
     origin.bring(&mut points, axes, &mut report);
     tell(report.warnings);
     Ok((points, None))

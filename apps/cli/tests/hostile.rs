@@ -43,6 +43,109 @@ fn standard_input_is_read_from_a_pipe() {
     assert!(String::from_utf8_lossy(&out.stderr).contains("is empty"), "{out:?}");
 }
 
+/// A blade of 60 mm in points, +Z up.
+fn blade() -> String {
+    let mut text = String::new();
+    for i in 0..75 {
+        for j in -22..=22 {
+            let (x, y) = (f64::from(j) * 0.8, f64::from(i) * 0.8);
+            let t = y / 60.0;
+            if x.abs() < 72.0 * t * (1.0 - t) {
+                text += &format!("{x:.3} {y:.3} {:.3}\n", 0.25 * x.abs() - 0.006 * (y - 20.0) * (y - 20.0));
+            }
+        }
+    }
+    text
+}
+
+#[test]
+fn an_input_named_dash_is_what_the_file_would_be() {
+    let dir = folder("dash");
+    let put = |name: &str, text: &str| fs::write(dir.join(name), text).unwrap();
+    put("a.xyz", &blade());
+    put("b.xyz", &blade());
+    put("rose.svg", FLOWER);
+    put("small.toml", "[method]\nkind = \"competition\"\npoints = 200\n");
+    put("classes.csv", "0,axis\n");
+    let edits = r#"{"schema": "burgeon.edits/1", "edits": [{"op": "rotate", "axis": {"path": [0]}, "turn": {"about": [0, 1, 0], "degrees": 40}}]}"#;
+    put("edits.json", edits);
+    let mut stages = String::from("unit = \"mm\"\nsplit = \"none\"\n");
+    for (file, day) in [("a.xyz", 0), ("b.xyz", 1), ("a.xyz", 2), ("b.xyz", 3)] {
+        stages += &format!("[[stage]]\nfile = \"{file}\"\nday = {day}\nbase = [0, 0, 0]\n");
+    }
+    put("stages.toml", &stages);
+    fs::copy(concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/leaves/leaf1.csv"), dir.join("leaf.csv"))
+        .unwrap();
+    for (line, file) in [
+        ("leaf --scan IN --unit mm --up z -o out.obj", "a.xyz"),
+        ("leaf IN --texture plain -o out.obj", "leaf.csv"),
+        ("grow --attractors IN --no-textures -o out.ply", "a.xyz"),
+        ("grow IN --no-textures -o out.ply", "small.toml"),
+        ("shape IN --edits edits.json --no-textures -o out.ply", "rose.svg"),
+        ("shape IN --edits edits.json --no-textures -o out.ply", "small.toml"),
+        ("shape rose.svg --edits IN --no-textures -o out.ply", "edits.json"),
+        ("sketch rose.svg --classes IN --no-textures -o out.ply", "classes.csv"),
+        ("sketch rose.svg --leaf-template IN --no-textures -o out.ply", "leaf.csv"),
+        ("bloom run IN --day 1 -o out.ply", "stages.toml"),
+        ("bloom run IN --end b.xyz --unit mm --whole --day 0.5 -o out.ply", "a.xyz"),
+        ("convert IN --unit mm -o out.ply", "a.xyz"),
+    ] {
+        let run = |name: &str, input: &[u8]| {
+            let args: Vec<&str> = line.split(' ').map(|a| if a == "IN" { name } else { a }).collect();
+            let out = piped(&dir, &[&args[..], &["-q"]].concat(), input);
+            let out_file = args[args.len() - 1];
+            assert_eq!(status(&out), 0, "{args:?}: {}", String::from_utf8_lossy(&out.stderr));
+            let bytes = fs::read(dir.join(out_file)).unwrap();
+            fs::remove_file(dir.join(out_file)).unwrap();
+            bytes
+        };
+        let (named, dash) = (run(file, b""), run("-", &fs::read(dir.join(file)).unwrap()));
+        // Names in an OBJ follow the input's.
+        let bare = |b: Vec<u8>| -> Vec<String> {
+            let text = String::from_utf8_lossy(&b).into_owned();
+            text.lines().filter(|l| !l.starts_with(['#', 'o', 'g', 'm', 'u'])).map(str::to_owned).collect()
+        };
+        assert!(bare(named) == bare(dash), "{line} differs");
+    }
+    let before = names(&dir);
+    let out = piped(&dir, &["sketch", "-", "--classes", "-", "-o", "x.glb"], b"0,axis\n");
+    let line = String::from_utf8(out.stderr.clone()).unwrap();
+    assert!(status(&out) == 2 && line.contains("only once"), "{line}");
+    for (args, parts) in [
+        (&["shape", "-", "--edits", "-", "-o", "x.glb"][..], ["standard input", "only once"]),
+        (&["leaf", "--scan", "-", "-o", "x.glb"], ["standard input", "no scan"]),
+        (&["grow", "--attractors", "-", "-o", "x.glb"], ["standard input", "no scan"]),
+    ] {
+        let out = piped(&dir, args, edits.as_bytes());
+        let line = String::from_utf8(out.stderr.clone()).unwrap();
+        let one = status(&out) == 2 && line.lines().count() == 1;
+        assert!(one && parts.iter().all(|p| line.contains(p)), "{args:?}: {line}");
+        assert_eq!(names(&dir), before);
+    }
+}
+
+#[test]
+fn days_and_points_beyond_single_precision_make_no_broken_file() {
+    let dir = folder("beyond");
+    fs::write(dir.join("a.xyz"), blade()).unwrap();
+    fs::write(dir.join("far.xyz"), "0 0 1e90\n".repeat(40) + "0 0 0\n1 1 1\n").unwrap();
+    let pair = ["bloom", "run", "a.xyz", "--end", "a.xyz", "--whole", "--unit", "mm", "-o", "out.ply"];
+    let line = bad(&dir, &[&pair[..], &["--day", "-1e308"]].concat());
+    assert!(line.contains("no finite size") && line.contains("nearer"), "{line}");
+    assert_eq!(names(&dir), ["a.xyz", "far.xyz"]);
+    good(&dir, &["convert", "far.xyz", "-o", "far.ply"]);
+    assert!(good(&dir, &["info", "far.ply", "--json"]).contains("\"vertices\": 2"));
+}
+
+#[test]
+fn lines_about_names_as_long_as_a_disk_takes_are_short() {
+    let dir = folder("long-lines");
+    for name in ["x".repeat(4000), format!("{}/y.json", "x/".repeat(1000))] {
+        let line = bad(&dir, &["shape", "oak", "--edits", &name, "-o", "out.glb"]);
+        assert!(line.chars().count() <= 400 && line.contains("cannot be read"), "{line}");
+    }
+}
+
 #[test]
 fn files_of_settings_are_checked() {
     let dir = folder("settings");

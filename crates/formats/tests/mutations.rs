@@ -321,7 +321,9 @@ const PCD: &[u8] = b"# .PCD v0.7\nVERSION 0.7\nFIELDS x y z rgb\nSIZE 4 4 4 4\nT
 fn scans() {
     each_mutant(21, PLY_TEXT, |b| clouds(CloudFormat::Ply, b));
     each_mutant(22, &written(ModelFormat::Ply), |b| clouds(CloudFormat::Ply, b));
-    each_mutant(23, b"x;y;z;label\n1 2 3 4\n1.5,2.5e0;3\n// note\n4 5 6\n", |b| clouds(CloudFormat::Xyz, b));
+    each_mutant(23, b"x;y;z;label\n1 2 3 4\n1,5;2,5e0;3;4\n// note\n4 5 6 7\n", |b| {
+        clouds(CloudFormat::Xyz, b)
+    });
     each_mutant(24, PCD, |b| clouds(CloudFormat::Pcd, b));
     each_mutant(25, OBJ, |b| clouds(CloudFormat::Obj, b));
     each_mutant(26, &las(), |b| clouds(CloudFormat::Las, b));

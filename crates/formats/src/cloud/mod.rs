@@ -65,12 +65,41 @@ impl CloudFormat {
             _ => None,
         }
     }
+
+    /// The format of a file that starts with these bytes (4,096 of them are plenty), if they can be a scan.
+    ///
+    /// ```
+    /// use formats::CloudFormat;
+    /// assert_eq!(CloudFormat::sniff(b"x;y;z\n1,5;2;3\n"), Some(CloudFormat::Xyz));
+    /// assert_eq!(CloudFormat::sniff(b"VERSION 0.7\nFIELDS x y z\n"), Some(CloudFormat::Pcd));
+    /// ```
+    pub fn sniff(start: &[u8]) -> Option<Self> {
+        if start.starts_with(b"LASF") {
+            return Some(Self::Las);
+        }
+        if start.starts_with(b"ply\n") || start.starts_with(b"ply\r") {
+            return Some(Self::Ply);
+        }
+        let lines = start.split(|&b| b == b'\n').map(<[u8]>::trim_ascii);
+        let first = lines
+            .filter(|l| !l.is_empty() && !l.starts_with(b"#"))
+            .find_map(|l| l.split(|&b| b == b' ').next());
+        match first {
+            Some(b"VERSION" | b"FIELDS") => Some(Self::Pcd),
+            Some(b"v" | b"vn" | b"mtllib" | b"o" | b"g") => Some(Self::Obj),
+            _ => text::starts(start).then_some(Self::Xyz),
+        }
+    }
 }
+
+/// Farthest that a point may lie from the origin, in units of its file: whatever is measured on Earth, in any unit.
+/// Single precision and squares hold it.
+const FARTHEST: f64 = 1e15;
 
 /// Reads a scan.
 ///
 /// `spec` says which unit and up axis the file has; the cloud comes back in metres, +Y up. Points that are not
-/// finite are left out and told in `report`, as is everything else that was not read. Guaranteed:
+/// finite, or beyond 1e15 units, are left out and told in `report`, as is everything else that was not read. Guaranteed:
 /// [`PointCloud::is_sound`], at least one point. Cost: linear; 5 million points of a binary PLY take well under a
 /// second, of a text a few.
 ///
@@ -105,11 +134,18 @@ pub fn read_cloud(
     }
     let Sink { mut cloud, dropped } = sink;
     if cloud.points.is_empty() {
-        let what = if dropped > 0 { "none of its points is finite" } else { "there is no point in it" };
+        let what = if dropped > 0 {
+            "none of its points is finite and of a sensible size"
+        } else {
+            "there is no point in it"
+        };
         return Err(file(FileFault::malformed(what, "export the scan again")));
     }
     if dropped > 0 {
-        report.warn("points-not-finite", format!("left out: {dropped} points that are not finite numbers"));
+        report.warn(
+            "points-not-finite",
+            format!("left out: {dropped} points that are not finite numbers or absurdly far away"),
+        );
     }
     if !spec.is_default() {
         cloud.points.iter_mut().for_each(|p| *p = spec.inward(*p));
@@ -155,8 +191,7 @@ struct Sink {
 impl Sink {
     /// Takes a point in; `false` when there are too many.
     fn push(&mut self, p: [f64; 3], color: Option<[u8; 3]>) -> bool {
-        // 1e100: as everywhere in the core, so that squares stay finite.
-        if !p.iter().all(|x| x.abs() <= 1e100) {
+        if !p.iter().all(|x| x.abs() <= FARTHEST) {
             self.dropped += 1;
             return true;
         }

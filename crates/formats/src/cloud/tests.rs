@@ -39,6 +39,71 @@ fn las(minor: u8, scale: f64, offset: f64, count: u32, rows: &[[i32; 3]]) -> Vec
 }
 
 #[test]
+fn decimal_commas_are_read_where_something_else_separates() {
+    use CloudFormat::Xyz;
+    let want = [[1.5, 2.3, 4.4], [-0.25, 1e3, 3.0]];
+    for text in [
+        "1,5 2,3 4,4\n-0,25 1000 3\n",
+        "x;y;z\n1,5;2,3;4,4\n-0,25;1e3;3\n",
+        "1,5\t2,3\t4,4\n-0,25\t1000,0\t3,0\n",
+        "1,5; 2,3; 4,4\r\n-0,25; 1,0e3; 3\r\n",
+        "1.5, 2.3, 4.4\n-0.25, 1000, 3\n",
+        "1.5 , 2.3,4.4,big tree\n-0.25,1000,3,old tree\n",
+        "2\n1.5;2.3;4.4\n-0.25;1000;3\n",
+    ] {
+        assert_eq!(points(text.as_bytes(), Xyz), want, "{text:?}");
+    }
+    let colored = read(b"1,5 2 3 255 0 9\n2,5 2 3 255 0 9\n", Xyz).unwrap();
+    assert_eq!((colored.points[0].x, colored.colors[0]), (1.5, [255, 0, 9]));
+    for text in [
+        "1,2 3,4\n",
+        "1,2 3\n",
+        "1,2,3 4,5,6\n",
+        "1.5,2.5;3\n",
+        "432,100.25 5,612,300.10 312.0\n",
+        "1 2 3\n1,5,2 3\n",
+        "1,5 2 3\n1,2,3\n",
+        "1,2,3\n1,5 2 3\n",
+    ] {
+        let error = read(text.as_bytes(), Xyz).unwrap_err();
+        assert!(error.contains("decimal commas") && error.contains("line"), "{text:?}: {error}");
+    }
+    let mut report = Report::default();
+    let whole = b"1,5,2,3,4,4\n2,5,2,3,4,4\n";
+    read_cloud(&whole[..], Xyz, &ExportSpec::default(), &mut report).unwrap();
+    assert!(report.warnings.iter().any(|w| w.to_string().contains("decimal commas")), "{report:?}");
+}
+
+#[test]
+fn first_bytes_tell_the_format() {
+    use CloudFormat::{Las, Obj, Pcd, Ply, Xyz};
+    for (start, want) in [
+        (&b"1 2 3\n"[..], Some(Xyz)),
+        (b"# c\n//h\nx;y;z\n1,5;2,3;4,4\n", Some(Xyz)),
+        (b"2\n1,2,3\n", Some(Xyz)),
+        (b"# .PCD v0.7\nVERSION 0.7\n", Some(Pcd)),
+        (b"# made\no leaf\nv 1 2 3\n", Some(Obj)),
+        (b"ply\nformat ascii 1.0\n", Some(Ply)),
+        (b"LASF\0\0", Some(Las)),
+        (b"glTF\x02\0\0\0", None),
+        (b"<svg>1 2 3</svg>", None),
+        (b"1 2 3\n\0", None),
+        (b"1 2\n3 4\n", None),
+        (b"", None),
+    ] {
+        assert_eq!(CloudFormat::sniff(start), want, "{:?}", String::from_utf8_lossy(start));
+    }
+    let signed = b"# burgeon 1\n# metres\n\nmtllib a.mtl\nv 0 0 0\n";
+    assert_eq!(crate::ModelFormat::sniff(signed), Some(crate::ModelFormat::Obj));
+}
+
+#[test]
+fn points_beyond_single_precision_are_left_out() {
+    let text = b"1 2 3\n0 1e90 0\n-1e39 0 0\n1e14 0 0\n";
+    assert_eq!(points(text, CloudFormat::Xyz), [[1.0, 2.0, 3.0], [1e14, 0.0, 0.0]]);
+}
+
+#[test]
 fn every_format_gives_the_same_two_points() {
     use CloudFormat::{Las, Obj, Pcd, Ply, Xyz};
     assert_eq!(points(b"1 2 3\n-0.5 0.25 1e3\n", Xyz), TWO);

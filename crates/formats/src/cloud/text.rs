@@ -17,11 +17,86 @@ fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     line.split(|&b| is_separator(b)).filter(|w| !w.is_empty())
 }
 
+/// What the commas of a row do.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Commas {
+    /// `1.5,2,3` or `1.5, 2, 3`.
+    Separate,
+    /// `1,5;2;3` or `1,5 2 3`.
+    Decimal,
+}
+
+/// What the commas of a row can only mean: its first three columns are numbers that way and not the other. `None` where
+/// both ways or none lead to numbers.
+fn commas(line: &[u8]) -> Option<Commas> {
+    let starts = |mut words: &mut dyn Iterator<Item = Option<f64>>| {
+        let first = (&mut words).take(3);
+        first.flatten().count() == 3
+    };
+    let separate = starts(&mut line.split(|&b| b == b',').map(|w| number(w.trim_ascii())));
+    let decimal = starts(&mut columns(line).map(decimal));
+    match (separate, decimal) {
+        (true, false) => Some(Commas::Separate),
+        (false, true) => Some(Commas::Decimal),
+        _ => None,
+    }
+}
+
+/// The words between semicolons, tabs and blanks.
+fn columns(line: &[u8]) -> impl Iterator<Item = &[u8]> {
+    line.split(|&b| b == b';' || b.is_ascii_whitespace()).filter(|w| !w.is_empty())
+}
+
+/// A number with a decimal comma or none.
+fn decimal(word: &[u8]) -> Option<f64> {
+    let Some(comma) = word.iter().position(|&b| b == b',') else { return number(word) };
+    let digit = |b: Option<&u8>| b.is_some_and(u8::is_ascii_digit);
+    if word.contains(&b'.') || !digit(word.get(comma + 1)) {
+        return None;
+    }
+    let mut word = word.to_vec();
+    word[comma] = b'.';
+    number(&word)
+}
+
+/// The first six numbers of a row.
+struct Row<'a> {
+    numbers: [f64; 6],
+    count: usize,
+    /// The first of the first three words that is no number.
+    broken: Option<&'a [u8]>,
+}
+
+fn row<'a>(words: impl Iterator<Item = &'a [u8]>, number: fn(&[u8]) -> Option<f64>) -> Row<'a> {
+    let mut row = Row { numbers: [0.0; 6], count: 0, broken: None };
+    for (k, word) in words.enumerate() {
+        row.count = k + 1;
+        match number(word) {
+            Some(x) if k < 6 => row.numbers[k] = x,
+            None if k < 3 => row.broken = row.broken.or(Some(word)),
+            _ => {}
+        }
+    }
+    row
+}
+
+/// A row of three numbers is among the first lines, of which five may be a header.
+pub(super) fn starts(start: &[u8]) -> bool {
+    let lines = start.split(|&b| b == b'\n').map(<[u8]>::trim_ascii);
+    let lines = lines.filter(|l| !l.is_empty() && !l.starts_with(b"#") && !l.starts_with(b"//"));
+    let numbers = |l: &[u8]| {
+        let Row { count, broken, .. } = row(words(l), number);
+        count >= 3 && broken.is_none()
+    };
+    !start.contains(&0) && lines.take(6).any(numbers)
+}
+
 /// Three or more columns: x y z, then what the first row shows: normals (unit length) or colours (whole numbers
-/// to 255). Anything else is left out.
+/// to 255). Anything else is left out. Where semicolons, tabs or blanks separate, a comma is a decimal comma.
 pub(super) fn read(bytes: &[u8], sink: &mut Sink, report: &mut Report) -> Result<(), CloudError> {
     let fail = |number: usize, what: String| {
-        let advice = "give one point a line: x y z, separated by spaces or commas";
+        let advice =
+            "give one point a line: x y z, separated by spaces, semicolons or, with decimal points, commas";
         CloudError::new(CloudFormat::Xyz, Place::line(number), FileFault::malformed(what, advice))
     };
     if bytes.iter().take(4096).any(|&b| b == 0) {
@@ -29,23 +104,28 @@ pub(super) fn read(bytes: &[u8], sink: &mut Sink, report: &mut Report) -> Result
     }
     let mut columns: Option<usize> = None;
     let mut colors = false;
+    let (mut style, mut points) = (None, false);
     for (index, line) in bytes.split(|&b| b == b'\n').enumerate() {
         let line = line.trim_ascii();
         if line.is_empty() || line.starts_with(b"#") || line.starts_with(b"//") {
             continue;
         }
-        let mut row = [0.0; 6];
-        let mut count = 0;
-        let mut broken = None;
-        for (k, word) in words(line).enumerate() {
-            count = k + 1;
-            match number(word) {
-                Some(x) if k < 6 => row[k] = x,
-                Some(_) => {}
-                None if k < 3 => broken = broken.or(Some(word)),
-                None => {}
-            }
+        let own = line.contains(&b',').then(|| commas(line)).flatten();
+        let Row { numbers: row, count, broken } = match own {
+            Some(Commas::Decimal) => row(self::columns(line), decimal),
+            _ => row(words(line), number),
+        };
+        // Numbers whichever way, but not the same ones.
+        if line.contains(&b',')
+            && count >= 3
+            && broken.is_none()
+            && (own.is_none() || style.is_some_and(|s| own != Some(s)))
+        {
+            let what = "it is not clear which commas are decimal commas and which separate numbers";
+            return Err(fail(index + 1, what.into()));
         }
+        style = style.or(own.filter(|_| broken.is_none()));
+        points |= line.contains(&b'.');
         if columns.is_none() && broken.is_some() && index < 5 {
             report.warn("scan-header", format!("line {} is taken for a header", index + 1));
             continue;
@@ -80,6 +160,11 @@ pub(super) fn read(bytes: &[u8], sink: &mut Sink, report: &mut Report) -> Result
         if !sink.push([row[0], row[1], row[2]], color) {
             return Err(too_many(CloudFormat::Xyz));
         }
+    }
+    if columns == Some(6) && style == Some(Commas::Separate) && !points {
+        let message = "no number has a decimal point: commas were taken for separators; if they are decimal commas, separate \
+                       the columns by semicolons";
+        report.warn("scan-commas", message);
     }
     Ok(())
 }

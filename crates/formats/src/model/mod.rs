@@ -89,6 +89,9 @@ impl ModelFormat {
     /// The format that the first bytes of a file look like. A binary STL has no mark and is not recognised.
     pub fn sniff(start: &[u8]) -> Option<Self> {
         let text = start.trim_ascii_start();
+        // Exporters of OBJ sign in comments.
+        let mut lines = start.split(|&b| b == b'\n').map(<[u8]>::trim_ascii_start);
+        let first = lines.find(|l| !l.is_empty() && !l.starts_with(b"#")).unwrap_or_default();
         if start.starts_with(b"glTF") {
             Some(Self::Glb)
         } else if start.starts_with(b"#usda ") {
@@ -99,7 +102,7 @@ impl ModelFormat {
             Some(Self::Stl)
         } else if text.starts_with(b"{") && start.windows(7).any(|w| w == b"\"asset\"") {
             Some(Self::Gltf)
-        } else if [&b"v "[..], b"vn ", b"mtllib ", b"o ", b"g "].iter().any(|w| text.starts_with(w)) {
+        } else if [&b"v "[..], b"vn ", b"mtllib ", b"o ", b"g "].iter().any(|w| first.starts_with(w)) {
             Some(Self::Obj)
         } else {
             None
