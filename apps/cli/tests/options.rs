@@ -13,7 +13,8 @@ use serde_json::Value;
 use tools::{FLOWER, folder, good, status};
 
 /// Steer how a command runs or talks, whatever it makes; -o is in each use.
-const RUNNING: [&str; 8] = ["help", "version", "threads", "quiet", "seed", "report", "json", "output"];
+const RUNNING: [&str; 9] =
+    ["help", "version", "threads", "quiet", "seed", "report", "json", "output", "budget"];
 
 /// A value that is not the default, for each option that takes one.
 const VALUES: &[(&str, &str)] = &[
@@ -158,20 +159,19 @@ fn inputs(dir: &Path) {
     write("box.obj", BOX);
     let points: Vec<String> = (0..200)
         .map(|i| {
-            let t = f64::from(i) * 0.618;
-            format!("{} {} {}", 0.4 * t.sin(), 0.3 + f64::from(i % 40) * 0.02, 0.4 * t.cos())
+            // Even steps of a number that is no fraction fill a square.
+            let [x, z] = [0.618, 0.414].map(|step: f64| (f64::from(i) * step).fract() - 0.5);
+            format!("{x} {} {z}", 0.3 + f64::from(i % 40) * 0.02)
         })
         .collect();
     write("points.xyz", &points.join("\n"));
     // Two sheets, the second longer and bent: a blade of 0.1 m.
-    for (name, length, bend) in
-        [("start.xyz", 0.1, 0.0_f64), ("end.xyz", 0.14, 0.03), ("blade.xyz", 0.1, 0.01)]
-    {
+    for (name, length, bend) in [("start.xyz", 0.1, 0.0), ("end.xyz", 0.14, 0.03), ("blade.xyz", 0.1, 0.01)] {
         let sheet = (0..1200).map(|i| {
             let (u, v) = (f64::from(i % 60) / 59.0, f64::from(i / 60) / 19.0 - 0.5);
-            let half = 0.03 * (std::f64::consts::PI * u).sin() + 0.002;
+            let half = 0.12 * u * (1.0 - u) + 0.002;
             // The longer one leans over: control points that turn with it take another way.
-            let (s, c) = (20.0 * bend).sin_cos();
+            let (s, c) = if bend > 0.02 { (0.6, 0.8) } else { (0.0, 1.0) };
             let (y, z) = (length * u, bend * u * u);
             format!("{:.5} {:.5} {:.5}", 2.0 * v * half, c * y - s * z, s * y + c * z)
         });

@@ -104,20 +104,27 @@ impl<'a> Room<'a> {
 
     /// Adds points where an obstacle is near, so that straight pieces cut no corner. Whether one is.
     fn refine(&self, course: &mut Course) -> bool {
-        let far: Vec<f64> = course.points.iter().map(|p| self.distance(*p)).collect();
         let old = core::mem::take(course);
+        let ways: Vec<f64> = old.points.windows(2).map(|w| w[0].distance(w[1])).collect();
+        let bound = |k: usize| 2.0 * self.wish + (1.0 + FLARE) * BARK * old.radii[k];
+        let way = |k: Option<usize>| k.and_then(|k| ways.get(k)).copied().unwrap_or(0.0);
+        // Farther than is asked for below it is infinite.
+        let far: Vec<f64> = (0..old.points.len())
+            .map(|k| {
+                let reach = bound(k) + way(Some(k)).max(way(k.checked_sub(1)));
+                self.obstacles.distance_within(old.points[k], reach)
+            })
+            .collect();
         course.rooted = old.rooted;
         let mut any = false;
         for i in 0..old.points.len() {
-            let near = |k: usize, beyond: f64| {
-                far[k] < 2.0 * self.wish + (1.0 + FLARE) * BARK * old.radii[k] + beyond
-            };
+            let near = |k: usize, beyond: f64| far[k] < bound(k) + beyond;
             let aside = if near(i, 0.0) { old.aside[i].min(0.25 * self.wish) } else { old.aside[i] };
             any |= near(i, 0.0);
             let joint = old.joint[i];
             course.add(old.points[i], old.radii[i], joint, aside);
             let Some((&to, &from)) = old.points.get(i + 1).zip(old.points.get(i)) else { break };
-            let way = from.distance(to);
+            let way = way(Some(i));
             if !(near(i, way) || near(i + 1, way)) {
                 continue;
             }

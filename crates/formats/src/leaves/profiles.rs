@@ -78,7 +78,7 @@ pub fn read_profiles(input: impl Read, name: &str, axes: MarksAxes) -> Result<Re
         let place = Place::Line { line: e.line() as u64, column: Some(e.column() as u64) };
         LeafFileError::new(place, FileFault::malformed(e.to_string(), ADVICE))
     })?;
-    let read: File = serde_json::from_value(value).map_err(|_| {
+    let read: File = serde_json::from_value(value).map_err(|_of_three_forms| {
         file(FileFault::malformed("a leaf lacks x, y, s or r, or one of them holds no numbers", ADVICE))
     })?;
     let (unit, leaves) = match read {
