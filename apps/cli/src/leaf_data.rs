@@ -13,8 +13,8 @@ use crate::given::Given;
 use crate::leaf::{GraphWord, LeafArgs, ThicknessWord};
 use crate::machine::Machine;
 
-/// Rows of marks that a profile becomes: as many as its curve needs, a span of 5 % of the leaf between two.
-const PROFILE_ROWS: usize = 20;
+/// Places on each vein of a profile: a span of 5 % of the leaf between two.
+const PROFILE_MARKS: usize = 21;
 
 /// One leaf as it was read.
 pub(crate) struct ReadLeaf {
@@ -197,16 +197,25 @@ impl Asked<'_> {
                 format_args!("holds {count} leaves; --number {number} is none of them"),
             ));
         };
-        let mut marks = leaf.profile.marks(PROFILE_ROWS).map_err(|e| Failure::at(path, e))?;
+        let mut rays = leaf.profile.rays(PROFILE_MARKS).map_err(|e| Failure::at(path, e))?;
+        report.warn(
+            "veins-guessed",
+            "a profile holds no veins: nine parallel ones were made, as thick as a lily's",
+        );
         // 10 m: no leaf is longer, and tables of maize are in centimetres.
-        if marks.length() > 10.0 && !self.given.has("unit") && read.axes.unit == Unit::Metre {
-            marks = marks.scaled(0.01);
+        if rays.length() > 10.0 && !self.given.has("unit") && read.axes.unit == Unit::Metre {
+            rays = rays.scaled(0.01);
             report.warn(
                 "unit-guessed",
                 "the leaf is more than 10 m long: it was taken for centimetres; say --unit cm",
             );
         }
-        Ok(ReadLeaf { name: leaf.name, form: Form::Rows(marks), thickness: None, warnings: report.warnings })
+        Ok(ReadLeaf {
+            name: leaf.name,
+            form: Form::Rays(rays),
+            thickness: Some(ThicknessRule::Diameter),
+            warnings: report.warnings,
+        })
     }
 }
 

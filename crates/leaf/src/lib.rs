@@ -10,7 +10,7 @@
 //! | `blade` | [`Leaf`]: the four surfaces, veins that lie on them |
 //! | `meshes` | [`LeafMesh`]: tubes and grid at any resolution, the counts of the paper's Table 1 |
 //! | `pose` | curl and wilt |
-//! | `profile` | [`LeafProfile`]: a midrib from the side and the width along it -> marks |
+//! | `profile` | [`LeafProfile`]: a midrib from the side and the width along it -> rays |
 //! | `growth` | a leaf between measured stages |
 //! | `rays` | [`Rays`], [`RayLeaf`]: palmate and parallel leaves, made or measured |
 //! | `lobes` | side veins of the lobes of palmate leaves |

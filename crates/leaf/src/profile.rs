@@ -1,8 +1,8 @@
-//! A leaf of parallel veins measured from the side: its midrib and its width along it -> marks.
+//! A leaf of parallel veins measured from the side: its midrib and its width along it -> chief veins.
 
 use glam::{DVec2, DVec3};
 
-use crate::marks::{MARKS_A_ROW, MarkRow, Marks};
+use crate::rays::Rays;
 
 /// A midrib as it is seen from the side, and the width of the blade along it, as leaves of grasses are digitised
 /// (Prevot, Aries and Monestiez 1991).
@@ -12,8 +12,8 @@ use crate::marks::{MARKS_A_ROW, MarkRow, Marks};
 /// use leaf::LeafProfile;
 /// let midrib = vec![DVec2::ZERO, DVec2::new(0.1, 0.3), DVec2::new(0.3, 0.4)];
 /// let leaf = LeafProfile { midrib, width: vec![(0.0, 0.02), (0.3, 0.05), (0.55, 0.0)] };
-/// let marks = leaf.marks(10).expect("a midrib and a width");
-/// assert_eq!((marks.rows.len(), marks.tip), (10, glam::DVec3::new(0.3, 0.4, 0.0)));
+/// let rays = leaf.rays(10).expect("a midrib and a width").rays;
+/// assert_eq!((rays.len(), rays[5].points[9]), (11, glam::DVec3::new(0.3, 0.4, 0.0)));
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LeafProfile {
@@ -40,20 +40,22 @@ pub enum ProfileError {
     Order(usize),
 }
 
-/// No narrower than this share of the widest place: a row of marks is no point.
+/// No narrower than this share of the widest place: veins do not meet in a point.
 const LEAST_WIDTH: f64 = 0.01;
+/// As many as [`crate::ParallelSpec`] has.
+const VEINS: u32 = 9;
 
 impl LeafProfile {
-    /// Marks of a flat blade across the midrib: `rows` (2 or more) from the tip down, at even lengths.
+    /// A flat blade across the midrib with parallel veins, nine and the margins, through `marks` (3 or more) even lengths.
     ///
     /// The midrib lies in the plane z = 0; seen on its upper side with the tip up the right margin is at +z. Places of
     /// widths are taken in proportion where their whole is not the midrib's length (widths are measured on the leaf laid
-    /// flat, midribs on a picture). Thickness is unknown. What a profile does not hold is not made up: the blade has no
-    /// fold, and its margins do not wave.
+    /// flat, midribs on a picture). Number and thickness of the veins are those of [`Rays::parallel`], not measured. What a
+    /// profile does not hold is not made up: the blade has no keel, and its margins do not wave.
     ///
     /// # Errors
     /// [`ProfileError`].
-    pub fn marks(&self, rows: usize) -> Result<Marks, ProfileError> {
+    pub fn rays(&self, marks: usize) -> Result<Rays, ProfileError> {
         let line: Vec<DVec3> = self.midrib.iter().map(|p| p.extend(0.0)).collect();
         let length = geom::polyline_length3(&line);
         let usable = line.iter().all(|p| p.is_finite());
@@ -74,17 +76,12 @@ impl LeafProfile {
             return Err(ProfileError::Width(self.width.iter().filter(|w| w.1 > 0.0).count()));
         }
         let (from, to) = (self.width[0].0, self.width[self.width.len() - 1].0);
-        let row = |i: usize| {
-            // The tip itself is no row.
-            let share = 1.0 - (i + 1) as f64 / rows as f64;
-            let place = self.at(share * length);
+        let marks = marks.max(3);
+        let place = |share: f64, across: f64| {
             let half = 0.5 * self.width_at(from + share * (to - from)).max(LEAST_WIDTH * widest);
-            let across = |j: usize| ((MARKS_A_ROW / 2) as f64 - j as f64) / (MARKS_A_ROW / 2) as f64;
-            let points = core::array::from_fn(|j| place.extend(across(j) * half));
-            MarkRow { points, ..MarkRow::default() }
+            self.at(share * length).extend(across * half)
         };
-        let tip = line[line.len() - 1];
-        Ok(Marks { rows: (0..rows.max(2)).map(row).collect(), tip, tip_thickness: None })
+        Ok(Rays::side_by_side(VEINS, marks, 0.5 * widest, place))
     }
 
     /// The point of the midrib at `s` from its base.
@@ -101,8 +98,6 @@ impl LeafProfile {
 
 #[cfg(test)]
 mod tests {
-    use base::Report;
-
     use super::*;
 
     fn blade() -> LeafProfile {
@@ -113,19 +108,18 @@ mod tests {
     }
 
     #[test]
-    fn marks_lie_across_the_midrib_as_wide_as_measured() {
-        let marks = blade().marks(7).unwrap();
-        assert_eq!(marks.validate().next(), None);
-        assert!((marks.length() - 0.7).abs() < 1e-12);
-        // The third row from the tip is 0.4 along the midrib, in the bend's second leg.
-        let row = &marks.rows[2];
-        assert!((row.points[3] - DVec3::new(0.1, 0.3, 0.0)).length() < 1e-12, "{row:?}");
+    fn veins_lie_across_the_midrib_as_wide_as_measured() {
+        let rays = blade().rays(8).unwrap();
+        assert_eq!(rays.validate().next(), None);
+        assert_eq!((rays.rays.len(), rays.rays.iter().filter(|r| r.is_vein()).count()), (11, 9));
+        assert!((rays.length() - 0.7).abs() < 1e-12);
+        // The fifth place of eight is 0.4 along the midrib, in the bend's second leg.
+        let across: Vec<DVec3> = rays.rays.iter().map(|r| r.points[4]).collect();
+        assert!((across[5] - DVec3::new(0.1, 0.3, 0.0)).length() < 1e-12, "{across:?}");
         let want = 0.06 * (0.7 - 0.4) / 0.35;
-        assert!((row.points[0].distance(row.points[6]) - want).abs() < 1e-12, "{row:?}");
-        assert!(row.points[0].z > 0.0, "the right margin is at +z");
-        let mut report = Report::default();
-        assert!(marks.complete(&mut report).is_ok(), "a leaf without any thickness can be made");
-        assert!(report.warnings.iter().any(|w| w.code == "thickness-guessed"));
+        assert!((across[0].distance(across[10]) - want).abs() < 1e-12, "{across:?}");
+        assert!(across[0].z > 0.0, "the right margin is at +z");
+        assert!(crate::RayLeaf::new(&rays, crate::ThicknessRule::Diameter).is_ok());
     }
 
     #[test]
@@ -133,7 +127,7 @@ mod tests {
         let fault = |change: fn(&mut LeafProfile)| {
             let mut leaf = blade();
             change(&mut leaf);
-            leaf.marks(9).unwrap_err()
+            leaf.rays(9).unwrap_err()
         };
         assert_eq!(fault(|l| l.midrib.truncate(1)), ProfileError::Midrib(1));
         assert_eq!(fault(|l| l.midrib = vec![DVec2::ONE; 4]), ProfileError::Midrib(1));

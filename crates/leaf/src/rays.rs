@@ -207,22 +207,26 @@ impl Rays {
             let fall = if t > 0.4 { 1.0 - ops::powf((t - 0.4) / 0.6, 2.2) } else { 1.0 };
             wide * rise * fall
         };
-        let marks = MADE_MARKS + 4;
-        // The veins and the two margins, from right (+x) to left.
+        Self::side_by_side(k, MADE_MARKS + 4, wide, |t, s| {
+            let x = s * profile(t);
+            // Arching over, with a keel.
+            let arch = -0.28 * spec.length_m * t * t;
+            DVec3::new(x, spec.length_m * t * (1.0 - 0.08 * t * t), arch + 0.35 * x.abs())
+        })
+    }
+
+    /// `k` (odd) parallel veins and the two margins from right to left, through `marks` places each: `place` of the share
+    /// of the length from the base and of the half width (1 right margin, -1 left). `wide`: half of the greatest width,
+    /// from which thickness follows, that of the midrib a good twice as much.
+    pub(crate) fn side_by_side(k: u32, marks: usize, wide: f64, place: impl Fn(f64, f64) -> DVec3) -> Self {
         let ray = |j: u32| {
             let s = 1.0 - 2.0 * f64::from(j) / f64::from(k + 1);
             let middle = (s.abs() < 1e-9, (1..=k).contains(&j));
-            let points = (0..marks).map(|m| {
-                let t = m as f64 / (marks - 1) as f64;
-                let x = s * profile(t);
-                // Arching over, with a keel.
-                let arch = -0.28 * spec.length_m * t * t;
-                DVec3::new(x, spec.length_m * t * (1.0 - 0.08 * t * t), arch + 0.35 * x.abs())
-            });
+            let share = |m: usize| m as f64 / (marks - 1) as f64;
+            let points = (0..marks).map(|m| place(share(m), s));
             let thickness = (0..marks).map(|m| {
-                let t = m as f64 / (marks - 1) as f64;
                 let base = if middle.0 { 0.11 } else { 0.05 };
-                middle.1.then_some(wide * base * (1.0 - 0.8 * t))
+                middle.1.then_some(wide * base * (1.0 - 0.8 * share(m)))
             });
             Ray { points: points.collect(), thickness: thickness.collect() }
         };
