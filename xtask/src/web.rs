@@ -306,7 +306,7 @@ fn native_organs(out: &Path) -> Outcome<(PathBuf, Vec<PathBuf>)> {
         let mut c = prepare(&burgeon, &opening);
         digest_of("stages".into(), c.arg(&glb).arg(out.join("stages.toml")).arg("--law").arg(&law))?;
         for preset in &presets {
-            let mut c = prepare(&burgeon, &["grow", preset, "--no-textures", "--detail", DETAIL]);
+            let mut c = prepare(&burgeon, &["grow", preset, "--detail", DETAIL]);
             digest_of(format!("tree {preset}"), &mut c)?;
         }
         all.push(digests);

@@ -106,13 +106,13 @@ impl<'a> Room<'a> {
     fn refine(&self, course: &mut Course) -> bool {
         let old = core::mem::take(course);
         let ways: Vec<f64> = old.points.windows(2).map(|w| w[0].distance(w[1])).collect();
-        let bound = |k: usize| 2.0 * self.wish + (1.0 + FLARE) * BARK * old.radii[k];
+        let bound = |k: usize| self.bound(old.radii[k]);
         let way = |k: Option<usize>| k.and_then(|k| ways.get(k)).copied().unwrap_or(0.0);
         // Farther than is asked for below it is infinite.
         let far: Vec<f64> = (0..old.points.len())
             .map(|k| {
                 let reach = bound(k) + way(Some(k)).max(way(k.checked_sub(1)));
-                self.obstacles.distance_within(old.points[k], reach)
+                self.obstacles.nearest_within(old.points[k], reach).map_or(f64::INFINITY, |w| w.0)
             })
             .collect();
         course.rooted = old.rooted;
@@ -214,9 +214,16 @@ impl<'a> Room<'a> {
         course.truncate(end);
     }
 
-    /// Distance of a point of a course from the nearest obstacle and the way out; none where it is hidden.
+    /// Distance of a point of a course from the nearest obstacle and the way out; none where it is hidden, or so far that
+    /// nothing is done.
     fn wall(&self, course: &Course, i: usize, along: &[f64]) -> Option<(f64, DVec3)> {
-        if along[i] < course.hidden { None } else { self.obstacles.nearest(course.points[i]) }
+        let reach = 2.0 * self.bound(course.radii[i]);
+        if along[i] < course.hidden { None } else { self.obstacles.nearest_within(course.points[i], reach) }
+    }
+
+    /// Farther than this an obstacle is nothing to wood of a radius, metres.
+    fn bound(&self, radius: f64) -> f64 {
+        2.0 * self.wish + (1.0 + FLARE) * BARK * radius
     }
 
     /// How far bark reaches towards an obstacle from the course, in radii: a slice of wood is a disc, and a tip is

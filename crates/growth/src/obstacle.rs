@@ -217,11 +217,10 @@ impl Obstacles {
         places.all(|p| self.inside(p).is_none() && (within || !self.blocks(frame.origin, p)))
     }
 
-    /// Distance to the nearest surface (negative inside) where it is less than `reach`, else infinity: much faster than
-    /// [`nearest`](Self::nearest) far from meshes of slivers.
-    pub(crate) fn distance_within(&self, p: DVec3, reach: f64) -> f64 {
-        let near = self.bodies.iter().filter(|b| !b.clear(p, reach));
-        near.map(|b| b.distance(p).0).fold(f64::INFINITY, f64::min)
+    /// [`nearest`](Self::nearest) where that is less than `reach` away or inside: much faster far from meshes of slivers.
+    pub(crate) fn nearest_within(&self, p: DVec3, reach: f64) -> Option<(f64, DVec3)> {
+        let near = self.bodies.iter().filter(|b| !b.clear(p, reach)).map(|b| b.distance(p));
+        near.reduce(|a, b| if b.0 < a.0 { b } else { a })
     }
 
     /// Distance to the nearest surface (negative inside) and the way out of it.
