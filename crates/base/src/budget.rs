@@ -24,6 +24,9 @@ pub enum Counted {
     Triangles,
     /// Triangles of all obstacles and envelopes.
     Obstacles,
+    /// Boxes of triangles at a place of an obstacle's surface, in the mean: what it takes to find the nearest of them. Two or
+    /// three in a mesh of even triangles, many in a fan of slivers.
+    Slivers,
     /// Strokes of a drawing.
     Strokes,
     /// Edits by hand of one plant.
@@ -32,7 +35,7 @@ pub enum Counted {
 
 impl Counted {
     /// All of them, in the order of `docs/limits.md`.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Roots,
         Self::Points,
         Self::Joints,
@@ -42,6 +45,7 @@ impl Counted {
         Self::Leaves,
         Self::Triangles,
         Self::Obstacles,
+        Self::Slivers,
         Self::Strokes,
         Self::Edits,
     ];
@@ -58,6 +62,7 @@ impl Counted {
             Self::Leaves => "places for leaves",
             Self::Triangles => "triangles",
             Self::Obstacles => "triangles of obstacles and envelopes",
+            Self::Slivers => "slivers side by side at a place of an obstacle, in the mean,",
             Self::Strokes => "strokes",
             Self::Edits => "edits",
         }
@@ -67,7 +72,7 @@ impl Counted {
     /// stays within all of them stays within [`Budget::bytes`].
     pub const fn limit(self) -> u64 {
         match self {
-            Self::Roots => 1_000,
+            Self::Roots | Self::Slivers => 1_000,
             Self::Points => 2_000_000,
             Self::Joints => 2_000_000,
             Self::Leaves | Self::Obstacles => 1_000_000,

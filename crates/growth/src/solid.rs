@@ -247,6 +247,20 @@ fn sealed(triangles: &[[DVec3; 3]]) -> bool {
     edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).all(|same| same.iter().map(|e| e.2).sum::<i32>() == 0)
 }
 
+/// How many boxes of triangles lie at a place of the surface, in the mean: their larger sides over the surface. Two or
+/// three for even triangles; what it takes to find the nearest of them grows with it. Bad corners count nothing.
+pub(crate) fn slivers(vertices: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
+    let (mut boxes, mut surface) = (0.0, 0.0);
+    for corners in triangles {
+        let at = |k: usize| vertices.get(corners[k] as usize).copied().filter(|v| usable(*v));
+        let (Some(a), Some(b), Some(c)) = (at(0), at(1), at(2)) else { continue };
+        let size = a.max(b).max(c) - a.min(b).min(c);
+        boxes += (size.x * size.y).max(size.y * size.z).max(size.z * size.x);
+        surface += area(&[a, b, c]).length();
+    }
+    if surface > 0.0 { boxes / surface } else { 0.0 }
+}
+
 /// The axis along which triangles hide least of one another, by their boxes.
 fn emptiest_axis(triangles: &[[DVec3; 3]]) -> usize {
     let mut hidden = DVec3::ZERO;
@@ -459,6 +473,8 @@ pub(crate) mod tests {
                 }
             }
         }
+        assert!(slivers(&cube().0, &cube().1) <= 2.0 && slivers(&sphere(60, 60).0, &sphere(60, 60).1) < 4.0);
+        assert!(slivers(&tower(40_000).0, &tower(40_000).1) > 500.0);
         let (v, t) = tower(300);
         assert!(Solid::new(&v, &t).expect("sound").ray != Some(1), "level, where slivers stand");
         assert!(Solid::new(&v, &t[1..]).expect("sound").ray.is_none(), "a hole is no sealed surface");

@@ -139,6 +139,16 @@ impl TreeSpec {
             triangles as u64,
             "simplify the meshes of obstacles and envelopes",
         )?;
+        for obstacle in &self.obstacles {
+            if let Obstacle::Mesh { vertices, triangles } = obstacle {
+                let slivers = crate::solid::slivers(vertices, triangles);
+                budget.check_estimate(
+                    Counted::Slivers,
+                    slivers,
+                    "remesh the obstacle into even triangles",
+                )?;
+            }
+        }
         budget.check(Counted::Points, points as u64, "thin out envelope.points")?;
         Ok(())
     }
