@@ -3,6 +3,7 @@
 
 mod flowers;
 mod gallery;
+mod golden;
 mod layers;
 mod made_strokes;
 mod pixels;
@@ -27,6 +28,7 @@ cargo xtask COMMAND
   studio [FILE]  builds the Studio and opens it; options of `burgeon studio` may follow
   build-web      builds the Studio as a folder of static files, apps/studio-web/dist
   test           sets up what the tests need and runs them all: native, WASM in Node, Khronos validator, Studio
+  bless WHY      writes fixtures/digests.json anew where plants are meant to change, and the reason into CHANGELOG.md
   gallery        makes every fixture drawing and writes docs/gallery.md and docs/table1.md
   species        grows every preset and scene of docs/trees.md and docs/shaping.md, and the Studio's small pictures
   flowers        makes the pictures of docs/bloom.md and of the venations in docs/leaves.md
@@ -44,6 +46,7 @@ fn main() -> ExitCode {
     let outcome = match args.first().map(String::as_str) {
         Some("run") => run(rest),
         Some("test") => test(),
+        Some("bless") => golden::bless(rest),
         Some("gallery") => gallery::run(),
         Some("species") => species::run(),
         Some("flowers") => flowers::run(),

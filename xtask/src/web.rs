@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::golden;
 use crate::shell::{
     Outcome, burgeon, cache_dir, cargo_path, command, debug_burgeon, finish, output, prepare, repository,
     say, target_dir,
@@ -74,11 +75,12 @@ pub(crate) fn test(tools: &Tools, tested: bool) -> Outcome {
     bindgen(tools, &wasm, "nodejs", &out.join("wasm"))?;
     let drawings = fixture_drawings()?;
     let native = native_models(&drawings, &out.join("native"))?;
+    let (organs, leaves) = native_organs(&out)?;
+    golden::check(&native, &organs, &out)?;
     say(&format!("$ node digests.mjs ({} drawings)", drawings.len()));
     let mut c = prepare("node", &["xtask/node/digests.mjs"]);
     c.arg(out.join("wasm/burgeon_wasm.js")).arg(&native).args(&drawings);
     finish(c)?;
-    let (organs, leaves) = native_organs(&out)?;
     say("$ node organs.mjs (leaves, flowers and trees)");
     let mut c = prepare("node", &["xtask/node/organs.mjs"]);
     c.arg(out.join("wasm/burgeon_wasm.js")).arg(&organs).args([FRAMES, DETAIL]).args(&leaves);
@@ -97,6 +99,12 @@ pub(crate) fn test(tools: &Tools, tested: bool) -> Outcome {
     let mut c = prepare("node", &["xtask/node/validate.mjs"]);
     c.arg(out.join("native"));
     finish(c)
+}
+
+/// The report of all drawings and the digests of leaves, flowers and trees, by the native program alone.
+pub(crate) fn native(out: &Path) -> Outcome<(PathBuf, PathBuf)> {
+    let drawings = native_models(&fixture_drawings()?, &out.join("native"))?;
+    Ok((drawings, native_organs(out)?.0))
 }
 
 /// Packages of the downloaded core that read, write and pass on, or compute little, rather than grow and draw: half

@@ -31,7 +31,11 @@ fn scan(folder: &Path, day: &str) -> Vec<DVec3> {
 fn stages() -> Option<Vec<Stage>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/scans/tomato_series");
     if !folder.is_dir() {
-        println!("skipped: no tomato series beside the repository");
+        // Past the capture of the tests that pass: people see it.
+        let _ = std::io::Write::write_fmt(
+            &mut std::io::stderr(),
+            format_args!("skipped: no tomato series beside the repository\n"),
+        );
         return None;
     }
     let run = Run::plain();
