@@ -193,6 +193,8 @@ fn far_or_bare(args: &ConvertArgs, machine: &Machine) -> Outcome<Opened> {
 
 /// Converts a cloud: to PLY in double precision.
 fn points(args: &ConvertArgs, read: Read, mut outputs: Outputs, machine: &Machine) -> Outcome {
+    // Axes and unit are always of use: no cloud fixes them.
+    args.given.check_picture(args.png.is_some(), &args.picture)?;
     let format = files::writable(&args.output)?;
     let axes = files::axes(args.axes.up, args.axes.unit);
     let model = burgeon::cloud_model(&files::stem(&args.input), &read.cloud);

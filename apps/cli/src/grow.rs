@@ -223,7 +223,7 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     machine.cancel.check()?;
     item.warnings.splice(0..0, told.warnings.iter().map(ToString::to_string));
     item.timings_ms.add_io(read_ms, 0.0);
-    if args.common.report.is_some() || args.common.json {
+    if args.common.reports() {
         item.plant = Some(grown.plant.measure());
     }
     let mut items = vec![item];

@@ -442,11 +442,7 @@ fn summary(item: &ItemReport, png: Option<&Path>) -> String {
 
 /// What the options ask for.
 fn options(args: &LeafArgs, in_file: Option<ThicknessRule>) -> Outcome<LeafOptions> {
-    let thickness = match args.shape.thickness {
-        _ if in_file.is_some() => in_file.unwrap_or_default(),
-        Some(ThicknessWord::Radius) => ThicknessRule::Radius,
-        Some(ThicknessWord::Diameter) | None => ThicknessRule::Diameter,
-    };
+    let thickness = in_file.or(args.shape.thickness.map(Into::into)).unwrap_or_default();
     let spec = LeafSpec {
         surface: args.shape.surface.into(),
         thickness,

@@ -133,7 +133,7 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
         project::save(&mut outputs, path, &document)?;
     }
     item.warnings.splice(0..0, told.warnings.iter().map(ToString::to_string));
-    if args.common.report.is_some() || args.common.json {
+    if args.common.reports() {
         item.plant = Some(plant.measure());
     }
     if let Some((path, format)) = args.output.as_deref().zip(format) {

@@ -245,7 +245,7 @@ impl<'a> Job<'a> {
         });
         item.warnings.extend(written?.iter().map(ToString::to_string));
         item.timings_ms.add_io(read_ms, write_ms);
-        if self.args.common.report.is_some() || self.args.common.json {
+        if self.args.common.reports() {
             item.plant = Some(plant.measure());
         }
         if let Some(png) = &target.png {
@@ -269,7 +269,7 @@ impl<'a> Job<'a> {
         let queue = Mutex::new(Queue::new(&self.args.inputs));
         let done = Mutex::new(Done::default());
         let strokes = AtomicU64::new(0);
-        let keep_items = self.args.common.report.is_some() || self.args.common.json;
+        let keep_items = self.args.common.reports();
         machine.with_progress("drawings to plants", |progress| {
             burgeon::map_indexed(&machine.threads, machine.threads.count, |_| {
                 let mut cache = PngCache::new();

@@ -123,6 +123,8 @@ const USES: &[&[&str]] = &[
     &["shape", "one.burgeon", "--edits", "edits.json", "-o", "o.glb"],
     &["shape", "--template"],
     &["convert", "rose.svg", "-o", "o.json"],
+    &["convert", "points.xyz", "-o", "o.ply"],
+    &["convert", "box.obj", "-o", "o.glb"],
     &["render", "box.obj", "-o", "o.png", "--size", "40x30", "--view", "turntable"],
 ];
 
