@@ -4,7 +4,11 @@ import { defineConfig, type Plugin } from 'vite';
 
 /** Pictures of species that are there: the page shows the name alone where one is missing. */
 const folder = new URL('./public/presets', import.meta.url);
-const pictures = existsSync(folder) ? readdirSync(folder).filter((f) => f.endsWith('.png')).sort() : [];
+const pictures = existsSync(folder)
+  ? readdirSync(folder)
+      .filter((f) => f.endsWith('.png'))
+      .sort()
+  : [];
 
 /** Writes `sw.js`: every built file by name, so that the Studio works offline after the first visit. */
 function offline(): Plugin {
@@ -13,11 +17,16 @@ function offline(): Plugin {
     apply: 'build',
     enforce: 'post',
     generateBundle(_options, bundle) {
-      const files = Object.keys(bundle).filter((name) => !name.endsWith('.map')).sort();
-      const version = createHash('sha256').update([...files, ...pictures].join('\n')).digest('hex').slice(0, 12);
+      const files = Object.keys(bundle)
+        .filter((name) => !name.endsWith('.map'))
+        .sort();
+      const version = createHash('sha256')
+        .update([...files, ...pictures].join('\n'))
+        .digest('hex')
+        .slice(0, 12);
       const source = `// Built files bear their content in their name: they never change, the page itself may.
 const CACHE = 'burgeon-${version}';
-const FILES = ${JSON.stringify(['./', './icon.svg', ...pictures.map((f) => './presets/' + f), ...files.filter((f) => f !== 'index.html').map((f) => './' + f)])};
+const FILES = ${JSON.stringify(['./', './icon.svg', ...pictures.map((f) => `./presets/${f}`), ...files.filter((f) => f !== 'index.html').map((f) => `./${f}`)])};
 self.addEventListener('install', (e) => {
   e.waitUntil(caches.open(CACHE).then((c) => c.addAll(FILES)).then(() => self.skipWaiting()));
 });

@@ -7,7 +7,9 @@ import { chromium } from 'playwright-core';
 import { FLAGS } from './flags.mjs';
 
 const [browserPath, burgeon] = process.argv.slice(2);
-const server = spawn(burgeon, ['studio', '--no-open', '--port', '0', '--folder', 'dist'], { stdio: ['ignore', 'pipe', 'inherit'] });
+const server = spawn(burgeon, ['studio', '--no-open', '--port', '0', '--folder', 'dist'], {
+  stdio: ['ignore', 'pipe', 'inherit'],
+});
 // However this run ends, the server ends with it.
 process.on('exit', () => server.kill());
 const url = await new Promise((resolve, reject) => {
@@ -36,7 +38,8 @@ async function fresh() {
     localStorage.setItem('burgeon.tour', 'done');
     window.measured = { pen: [], undo: [], open: [], shape: [] };
     new PerformanceObserver((list) => {
-      for (const e of list.getEntries()) if (e.name.startsWith('burgeon.')) window.measured[e.name.slice(8)]?.push(e.duration);
+      for (const e of list.getEntries())
+        if (e.name.startsWith('burgeon.')) window.measured[e.name.slice(8)]?.push(e.duration);
     }).observe({ type: 'measure' });
   });
   const page = await context.newPage();
@@ -47,31 +50,56 @@ async function fresh() {
 }
 
 async function drop(page, name, text) {
-  await page.evaluate(([n, t]) => {
-    const transfer = new DataTransfer();
-    transfer.items.add(new File([t], n));
-    document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true }));
-  }, [name, text]);
+  await page.evaluate(
+    ([n, t]) => {
+      const transfer = new DataTransfer();
+      transfer.items.add(new File([t], n));
+      document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true }));
+    },
+    [name, text],
+  );
 }
 
 // Transfer and first paint.
 {
   let bytes = 0;
   for (const file of ['index.html', ...readdirSync('dist/assets').map((f) => `assets/${f}`)]) {
-    if (['.html', '.js', '.css', '.wasm'].includes(extname(file))) bytes += gzipSync(readFileSync(`dist/${file}`), { level: 9 }).length;
+    if (['.html', '.js', '.css', '.wasm'].includes(extname(file)))
+      bytes += gzipSync(readFileSync(`dist/${file}`), { level: 9 }).length;
   }
   row('transfer without samples, gzip', `${(bytes / 1e6).toFixed(2)} MB`, '< 2 MB');
   const [paints, usable] = [[], []];
   for (let i = 0; i < 5; i += 1) {
     const { context, page } = await fresh();
     await page.waitForFunction(() => performance.getEntriesByType('paint').length > 0);
-    const [paint, ready] = await page.evaluate(() => [performance.getEntriesByType('paint')[0].startTime, Number(document.body.dataset.readyAt)]);
+    const [paint, ready] = await page.evaluate(() => [
+      performance.getEntriesByType('paint')[0].startTime,
+      Number(document.body.dataset.readyAt),
+    ]);
     paints.push(paint);
     usable.push(ready);
     await context.close();
   }
-  row('first paint, median of 5', ms(at(paints.sort((a, b) => a - b), 0.5)), '< 1000 ms');
-  row('usable, median of 5', ms(at(usable.sort((a, b) => a - b), 0.5)), '< 2000 ms');
+  row(
+    'first paint, median of 5',
+    ms(
+      at(
+        paints.sort((a, b) => a - b),
+        0.5,
+      ),
+    ),
+    '< 1000 ms',
+  );
+  row(
+    'usable, median of 5',
+    ms(
+      at(
+        usable.sort((a, b) => a - b),
+        0.5,
+      ),
+    ),
+    '< 2000 ms',
+  );
 }
 
 // The pen.
@@ -85,8 +113,23 @@ for (const sketch of ['a', 'b', 'c', 'd', 'e', 'f', 'g', 'h']) {
     const sheet = document.querySelector('.sheet');
     sheet.setPointerCapture = () => {};
     const box = sheet.getBoundingClientRect();
-    const send = (type, x, y) => sheet.dispatchEvent(new PointerEvent(type, { pointerType: 'pen', pointerId: 1, pressure: 0.5, clientX: x, clientY: y, buttons: 1, bubbles: true, isPrimary: true }));
-    const pause = (t) => new Promise((r) => { setTimeout(r, t); });
+    const send = (type, x, y) =>
+      sheet.dispatchEvent(
+        new PointerEvent(type, {
+          pointerType: 'pen',
+          pointerId: 1,
+          pressure: 0.5,
+          clientX: x,
+          clientY: y,
+          buttons: 1,
+          bubbles: true,
+          isPrimary: true,
+        }),
+      );
+    const pause = (t) =>
+      new Promise((r) => {
+        setTimeout(r, t);
+      });
     window.measured.pen.length = 0;
     for (let stroke = 0; stroke < 4; stroke += 1) {
       const [x, y] = [box.left + box.width * (0.45 + 0.03 * stroke), box.top + box.height * 0.5];
@@ -108,7 +151,11 @@ for (const sketch of ['a', 'b', 'c', 'd', 'e', 'f', 'g', 'h']) {
   });
   pens.sort((a, b) => a - b);
   undos.sort((a, b) => a - b);
-  row(`${sketch}: pen point to meshes, median / p95 of ${pens.length} (${triangles} triangles)`, `${ms(at(pens, 0.5))} / ${ms(at(pens, 0.95))}`, 'gh'.includes(sketch) ? '<= 50 ms' : '<= 16 ms');
+  row(
+    `${sketch}: pen point to meshes, median / p95 of ${pens.length} (${triangles} triangles)`,
+    `${ms(at(pens, 0.5))} / ${ms(at(pens, 0.95))}`,
+    'gh'.includes(sketch) ? '<= 50 ms' : '<= 16 ms',
+  );
   row(`${sketch}: undo, largest of ${undos.length}`, ms(undos.at(-1) ?? NaN), '<= 16 ms');
   await context.close();
 }
@@ -122,7 +169,10 @@ for (const sketch of ['a', 'b', 'c', 'd', 'e', 'f', 'g', 'h']) {
   const grown = await page.evaluate(async (key) => {
     const start = performance.now();
     document.querySelector(`dialog [data-preset=${key}]`).click();
-    while (!(document.body.dataset.current === 'tree' && Number(document.body.dataset.triangles) > 0)) await new Promise((r) => { setTimeout(r, 2); });
+    while (!(document.body.dataset.current === 'tree' && Number(document.body.dataset.triangles) > 0))
+      await new Promise((r) => {
+        setTimeout(r, 2);
+      });
     return performance.now() - start;
   }, species);
   const triangles = await page.evaluate(() => Number(document.body.dataset.triangles));
@@ -133,7 +183,10 @@ for (const sketch of ['a', 'b', 'c', 'd', 'e', 'f', 'g', 'h']) {
   await page.waitForTimeout(2000);
   let place;
   for (let k = 0; k < 80 && !place; k += 1) {
-    const [x, y] = [box.x + box.width * (0.5 + 0.2 * Math.sin(k * 2.4)), box.y + box.height * (0.3 + 0.004 * k)];
+    const [x, y] = [
+      box.x + box.width * (0.5 + 0.2 * Math.sin(k * 2.4)),
+      box.y + box.height * (0.3 + 0.004 * k),
+    ];
     await page.mouse.move(x, y);
     await page.waitForTimeout(250);
     const picked = await page.evaluate(() => document.body.dataset.picked ?? '');
@@ -141,28 +194,43 @@ for (const sketch of ['a', 'b', 'c', 'd', 'e', 'f', 'g', 'h']) {
   }
   if (place) {
     await page.mouse.down();
-    await page.evaluate(() => { window.measured.shape.length = 0; });
+    await page.evaluate(() => {
+      window.measured.shape.length = 0;
+    });
     for (let k = 1; k <= 40; k += 1) {
       await page.mouse.move(place[0] + 2 * k, place[1] + 4 * k);
       await page.waitForTimeout(80);
     }
     const turns = await page.evaluate(() => [...window.measured.shape]);
     turns.sort((a, b) => a - b);
-    const up = await page.evaluate(async () => {
-      const before = document.body.dataset.digest;
-      const start = performance.now();
-      document.querySelector('.view canvas').addEventListener('pointerup', () => { window.upAt = performance.now(); }, { once: true });
-      window.upDone = new Promise((done) => {
-        const look = () => {
-          const now = performance.now();
-          if (now - start > 60_000) done(NaN);
-          else if (document.body.dataset.done === '1' && document.body.dataset.digest !== before) done(now - (window.upAt ?? start));
-          else setTimeout(look, 2);
-        };
-        look();
-      });
-    }).then(() => page.mouse.up()).then(() => page.evaluate(() => window.upDone));
-    row(`${species}: a branch turned by hand, move to meshes, median / p95 of ${turns.length}`, `${ms(at(turns, 0.5))} / ${ms(at(turns, 0.95))}`);
+    const up = await page
+      .evaluate(async () => {
+        const before = document.body.dataset.digest;
+        const start = performance.now();
+        document.querySelector('.view canvas').addEventListener(
+          'pointerup',
+          () => {
+            window.upAt = performance.now();
+          },
+          { once: true },
+        );
+        window.upDone = new Promise((done) => {
+          const look = () => {
+            const now = performance.now();
+            if (now - start > 60_000) done(NaN);
+            else if (document.body.dataset.done === '1' && document.body.dataset.digest !== before)
+              done(now - (window.upAt ?? start));
+            else setTimeout(look, 2);
+          };
+          look();
+        });
+      })
+      .then(() => page.mouse.up())
+      .then(() => page.evaluate(() => window.upDone));
+    row(
+      `${species}: a branch turned by hand, move to meshes, median / p95 of ${turns.length}`,
+      `${ms(at(turns, 0.5))} / ${ms(at(turns, 0.95))}`,
+    );
     row(`${species}: let go to the whole plant`, ms(up));
   }
   await context.close();
@@ -172,17 +240,30 @@ for (const sketch of ['a', 'b', 'c', 'd', 'e', 'f', 'g', 'h']) {
 {
   const { context, page } = await fresh();
   let seed = 1;
-  const random = () => { seed = (seed * 16807) % 2147483647; return seed / 2147483647; };
+  const random = () => {
+    seed = (seed * 16807) % 2147483647;
+    return seed / 2147483647;
+  };
   const strokes = Array.from({ length: 2000 }, (_, s) => ({
-    points: Array.from({ length: 150 }, (_, i) => [10 * (s % 50) + 0.05 * random(), 10 * Math.floor(s / 50) + i / 20 + 0.01 * random(), 4 * i + random(), random()]),
+    points: Array.from({ length: 150 }, (_, i) => [
+      10 * (s % 50) + 0.05 * random(),
+      10 * Math.floor(s / 50) + i / 20 + 0.01 * random(),
+      4 * i + random(),
+      random(),
+    ]),
   }));
   await drop(page, 'large.json', JSON.stringify({ burgeon: 'drawing/1', name: 'large', y: 'up', strokes }));
   await page.waitForFunction(() => Number(document.body.dataset.strokes) === 2000);
   const [download] = await Promise.all([page.waitForEvent('download'), page.click('#b-save')]);
   const bytes = readFileSync(await download.path());
-  await page.evaluate((text) => { window.large = Uint8Array.from(atob(text), (c) => c.charCodeAt(0)); }, bytes.toString('base64'));
+  await page.evaluate((text) => {
+    window.large = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+  }, bytes.toString('base64'));
   const times = await page.evaluate(async () => {
-    const pause = (t) => new Promise((r) => { setTimeout(r, t); });
+    const pause = (t) =>
+      new Promise((r) => {
+        setTimeout(r, t);
+      });
     window.measured.open.length = 0;
     for (let i = 1; i <= 3; i += 1) {
       document.querySelector('#b-fresh').click();
@@ -195,7 +276,16 @@ for (const sketch of ['a', 'b', 'c', 'd', 'e', 'f', 'g', 'h']) {
     }
     return window.measured.open;
   });
-  row(`opening a project of ${(bytes.length / 1e6).toFixed(1)} MB, median of ${times.length}`, ms(at(times.sort((a, b) => a - b), 0.5)), '<= 1000 ms');
+  row(
+    `opening a project of ${(bytes.length / 1e6).toFixed(1)} MB, median of ${times.length}`,
+    ms(
+      at(
+        times.sort((a, b) => a - b),
+        0.5,
+      ),
+    ),
+    '<= 1000 ms',
+  );
   await context.close();
 }
 
@@ -204,23 +294,38 @@ for (const sketch of ['a', 'b', 'c', 'd', 'e', 'f', 'g', 'h']) {
   const { context, page } = await fresh();
   const text = readFileSync('../../fixtures/sketches/table1/b.svg', 'utf8');
   const memory = () => page.evaluate(async () => (await performance.measureUserAgentSpecificMemory()).bytes);
-  const turn = (n) => page.evaluate(async ([svg, times]) => {
-    const until = async (test) => { while (!test()) await new Promise((r) => { setTimeout(r, 5); }); };
-    for (let i = 0; i < times; i += 1) {
-      const transfer = new DataTransfer();
-      transfer.items.add(new File([svg], 'b.svg'));
-      document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true }));
-      await until(() => Number(document.body.dataset.triangles) > 0);
-      document.querySelector('#b-commands').click();
-      document.querySelector('#p-close').click();
-      await until(() => Number(document.body.dataset.parts) === 0 && Number(document.body.dataset.strokes) === 0);
-    }
-  }, [text, n]);
+  const turn = (n) =>
+    page.evaluate(
+      async ([svg, times]) => {
+        const until = async (test) => {
+          while (!test())
+            await new Promise((r) => {
+              setTimeout(r, 5);
+            });
+        };
+        for (let i = 0; i < times; i += 1) {
+          const transfer = new DataTransfer();
+          transfer.items.add(new File([svg], 'b.svg'));
+          document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true }));
+          await until(() => Number(document.body.dataset.triangles) > 0);
+          document.querySelector('#b-commands').click();
+          document.querySelector('#p-close').click();
+          await until(
+            () => Number(document.body.dataset.parts) === 0 && Number(document.body.dataset.strokes) === 0,
+          );
+        }
+      },
+      [text, n],
+    );
   await turn(10);
   const before = await memory();
   await turn(100);
   const after = await memory();
-  row('memory after 10 and after 110 documents opened and closed', `${(before / 1e6).toFixed(1)} MB, ${(after / 1e6).toFixed(1)} MB`, 'the same');
+  row(
+    'memory after 10 and after 110 documents opened and closed',
+    `${(before / 1e6).toFixed(1)} MB, ${(after / 1e6).toFixed(1)} MB`,
+    'the same',
+  );
   await context.close();
 }
 await browser.close();

@@ -6,13 +6,18 @@ import { initSync, StudioSession } from '../src/wasm/burgeon_wasm.js';
 
 globalThis.burgeonStop = () => false;
 initSync({ module: readFileSync(new URL('../src/wasm/burgeon_wasm_bg.wasm', import.meta.url)) });
-console.log('| sketch | look, least | look, median | whole plant after the pen is lifted, least |\n|---|---|---|---|');
+console.log(
+  '| sketch | look, least | look, median | whole plant after the pen is lifted, least |\n|---|---|---|---|',
+);
 for (const name of 'abcdefgh') {
   const session = new StudioSession();
   session.open(`${name}.svg`, readFileSync(`../../fixtures/sketches/table1/${name}.svg`), 0, true);
   const [view] = JSON.parse(session.evaluate()).plants;
   const { strokes } = view.item;
-  let [low, high] = [[Infinity, Infinity], [-Infinity, -Infinity]];
+  const [low, high] = [
+    [Infinity, Infinity],
+    [-Infinity, -Infinity],
+  ];
   for (const { index } of strokes) {
     const points = session.stroke_points(index);
     for (let i = 0; i < points.length; i += 1) {
@@ -25,7 +30,9 @@ for (const name of 'abcdefgh') {
   const timed = () => {
     const start = performance.now();
     const [{ id, parts }] = JSON.parse(session.evaluate()).plants;
-    parts.forEach((_, p) => { for (const column of ['positions', 'normals', 'uvs', 'colors', 'indices']) session[column](id, p); });
+    parts.forEach((_, p) => {
+      for (const column of ['positions', 'normals', 'uvs', 'colors', 'indices']) session[column](id, p);
+    });
     return performance.now() - start;
   };
   const samples = [];
@@ -44,11 +51,15 @@ for (const name of 'abcdefgh') {
     session.evaluate();
   }
   looks.sort((a, b) => a - b);
-  console.log(`| ${name} | ${looks[0].toFixed(1)} ms | ${looks[looks.length >> 1].toFixed(1)} ms | ${Math.min(...wholes).toFixed(1)} ms |`);
+  console.log(
+    `| ${name} | ${looks[0].toFixed(1)} ms | ${looks[looks.length >> 1].toFixed(1)} ms | ${Math.min(...wholes).toFixed(1)} ms |`,
+  );
   session.free();
 }
 
-console.log('\n| tree | triangles | grown, least of 3 | a branch turned: a move to meshes, least | median | let go to the whole plant, least of 3 |\n|---|---|---|---|---|---|');
+console.log(
+  '\n| tree | triangles | grown, least of 3 | a branch turned: a move to meshes, least | median | let go to the whole plant, least of 3 |\n|---|---|---|---|---|---|',
+);
 for (const preset of ['umbrella-pine', 'hazel', 'oak']) {
   const [grown, moves, wholes] = [[], [], []];
   let [triangles, box] = [0, undefined];
@@ -58,7 +69,9 @@ for (const preset of ['umbrella-pine', 'hazel', 'oak']) {
       const start = performance.now();
       const { id, parts, item, min, max } = JSON.parse(session.evaluate()).plants.at(-1);
       box = { min, max };
-      parts.forEach((_, p) => { for (const column of ['positions', 'normals', 'uvs', 'colors', 'indices']) session[column](id, p); });
+      parts.forEach((_, p) => {
+        for (const column of ['positions', 'normals', 'uvs', 'colors', 'indices']) session[column](id, p);
+      });
       triangles = item?.counts.triangles ?? triangles;
       return performance.now() - start;
     };
@@ -66,8 +79,17 @@ for (const preset of ['umbrella-pine', 'hazel', 'oak']) {
     grown.push(timed());
     const whole = triangles;
     // The first branch of the trunk that a line of sight meets in the middle of the crown.
-    const at = (x, y) => ({ origin: [x, y, 99], direction: [0, 0, -1], forward: [0, 0, -1], up: [0, 1, 0], pressure: 1 });
-    const hand = (tool, input) => JSON.parse(session.shape(JSON.stringify({ [tool]: {} }), '{"metres":0.05,"per_metre":0}', JSON.stringify(input)));
+    const at = (x, y) => ({
+      origin: [x, y, 99],
+      direction: [0, 0, -1],
+      forward: [0, 0, -1],
+      up: [0, 1, 0],
+      pressure: 1,
+    });
+    const hand = (tool, input) =>
+      JSON.parse(
+        session.shape(JSON.stringify({ [tool]: {} }), '{"metres":0.05,"per_metre":0}', JSON.stringify(input)),
+      );
     let place;
     for (let k = 0; k < 400 && !place; k += 1) {
       const within = (i, share) => box.min[i] + share * (box.max[i] - box.min[i]);
@@ -91,5 +113,7 @@ for (const preset of ['umbrella-pine', 'hazel', 'oak']) {
   }
   moves.sort((a, b) => a - b);
   const least = (times) => `${Math.min(...times).toFixed(1)} ms`;
-  console.log(`| ${preset} | ${triangles} | ${least(grown)} | ${least(moves)} | ${moves[moves.length >> 1].toFixed(1)} ms | ${least(wholes)} |`);
+  console.log(
+    `| ${preset} | ${triangles} | ${least(grown)} | ${least(moves)} | ${moves[moves.length >> 1].toFixed(1)} ms | ${least(wholes)} |`,
+  );
 }

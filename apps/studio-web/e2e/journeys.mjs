@@ -30,24 +30,29 @@ async function draw(page, points) {
   await page.mouse.up();
 }
 
-const line = (x0, y0, x1, y1, bow = 0, n = 7) => Array.from({ length: n + 1 }, (_, i) => {
-  const t = i / n;
-  return [x0 + (x1 - x0) * t + bow * 4 * t * (1 - t), y0 + (y1 - y0) * t];
-});
+const line = (x0, y0, x1, y1, bow = 0, n = 7) =>
+  Array.from({ length: n + 1 }, (_, i) => {
+    const t = i / n;
+    return [x0 + (x1 - x0) * t + bow * 4 * t * (1 - t), y0 + (y1 - y0) * t];
+  });
 
 /** A petal or leaf as a nearly closed outline from its root. */
 function blade(x, y, angle, length, half) {
   const [c, s] = [Math.cos(angle), Math.sin(angle)];
   return Array.from({ length: 13 }, (_, i) => {
     const a = (i / 12) * Math.PI * 2;
-    const [along, across] = [length * (1 - Math.cos(a)) / 2, half * Math.sin(a)];
+    const [along, across] = [(length * (1 - Math.cos(a))) / 2, half * Math.sin(a)];
     return [x + along * c - across * s, y + along * s + across * c];
   });
 }
 
 async function drawFlower(page) {
-  const strokes = [line(250, 540, 250, 245, 8), ...[0, 1, 2, 3, 4].map((k) => blade(250, 210, -Math.PI / 2 + (k * 2 * Math.PI) / 5, 95, 28)),
-    blade(255, 430, -0.6, 110, 25), blade(253, 480, Math.PI + 0.5, 100, 23)];
+  const strokes = [
+    line(250, 540, 250, 245, 8),
+    ...[0, 1, 2, 3, 4].map((k) => blade(250, 210, -Math.PI / 2 + (k * 2 * Math.PI) / 5, 95, 28)),
+    blade(255, 430, -0.6, 110, 25),
+    blade(253, 480, Math.PI + 0.5, 100, 23),
+  ];
   for (const [i, stroke] of strokes.entries()) {
     await draw(page, stroke);
     await until(page, 'strokes', ['is', i + 1], 'a stroke was drawn');
@@ -80,13 +85,17 @@ async function flower({ page, url, shot }) {
   await shot('empty');
   await drawFlower(page);
   assert.equal(await page.locator('.empty').isVisible(), false);
-  assert.ok(await count(page, 'triangles') > 500);
+  assert.ok((await count(page, 'triangles')) > 500);
   await page.waitForTimeout(1500);
   await shot('flower');
   const glb = await exported(page, 'glb');
   assert.match(glb.name, /\.glb$/);
   assert.equal(glb.bytes.subarray(0, 4).toString(), 'glTF');
-  for (const [format, start] of [['obj', 'PK'], ['ply', 'ply'], ['png', '\x89PNG']]) {
+  for (const [format, start] of [
+    ['obj', 'PK'],
+    ['ply', 'ply'],
+    ['png', '\x89PNG'],
+  ]) {
     const file = await exported(page, format);
     assert.equal(file.bytes.subarray(0, start.length).toString('latin1'), start, format);
     assert.ok(file.bytes.length > 2000, format);
@@ -127,9 +136,18 @@ async function undo({ page, url }) {
     const box = sheet.getBoundingClientRect();
     for (let i = 0; i < count; i += 1) {
       const [x, y] = [box.left + 120 + 28 * (i % 10), box.top + 530 - 45 * Math.floor(i / 10)];
-      const send = (type, k) => sheet.dispatchEvent(new PointerEvent(type, {
-        pointerType: 'mouse', pointerId: 1, clientX: x + 2 * k, clientY: y - 8 * k, buttons: 1, bubbles: true, isPrimary: true,
-      }));
+      const send = (type, k) =>
+        sheet.dispatchEvent(
+          new PointerEvent(type, {
+            pointerType: 'mouse',
+            pointerId: 1,
+            clientX: x + 2 * k,
+            clientY: y - 8 * k,
+            buttons: 1,
+            bubbles: true,
+            isPrimary: true,
+          }),
+        );
       send('pointerdown', 0);
       for (let k = 1; k < 4; k += 1) send('pointermove', k);
       send('pointerup', 4);
@@ -168,7 +186,9 @@ async function habits({ page, url, shot }) {
   await page.locator('.palette input').fill('skel');
   await shot('palette');
   await page.keyboard.press('Enter');
-  await page.waitForFunction(() => document.querySelector('#b-skeleton').getAttribute('aria-pressed') === 'true');
+  await page.waitForFunction(
+    () => document.querySelector('#b-skeleton').getAttribute('aria-pressed') === 'true',
+  );
   await page.keyboard.press('i');
   assert.match(await page.locator('.statsbox').textContent(), /Height/);
   await page.waitForTimeout(900);
@@ -205,7 +225,10 @@ async function share({ page, url, shot, context }) {
   await other.goto('about:blank');
   await other.goto(link);
   await until(other, 'flowers', ['is', 1], 'the link opens');
-  assert.equal((await other.locator('#b-counts').textContent()).split('Triangles')[0], petals.split('Triangles')[0]);
+  assert.equal(
+    (await other.locator('#b-counts').textContent()).split('Triangles')[0],
+    petals.split('Triangles')[0],
+  );
   assert.equal(await other.evaluate(() => location.hash), '', 'the link is taken out of the address');
   for (const hash of ['#d=AAAA', '#d=%3Cscript%3E', `#d=${'A'.repeat(40_000)}`]) {
     const before = await data(other, 'digest');
@@ -226,12 +249,23 @@ async function photo({ page, url, shot }) {
     const canvas = document.createElement('canvas');
     [canvas.width, canvas.height] = [600, 800];
     const c = canvas.getContext('2d');
-    c.fillStyle = '#c8d8b0'; c.fillRect(0, 0, 600, 800);
-    c.fillStyle = '#3f7d2a'; c.fillRect(290, 300, 20, 500);
+    c.fillStyle = '#c8d8b0';
+    c.fillRect(0, 0, 600, 800);
+    c.fillStyle = '#3f7d2a';
+    c.fillRect(290, 300, 20, 500);
     for (let k = 0; k < 5; k += 1) {
-      c.save(); c.translate(300, 280); c.rotate((k * 2 * Math.PI) / 5);
-      const g = c.createLinearGradient(0, 0, 0, -200); g.addColorStop(0, '#f7d14a'); g.addColorStop(0.4, '#e2502a'); g.addColorStop(1, '#7a0f3a');
-      c.fillStyle = g; c.beginPath(); c.ellipse(0, -110, 50, 100, 0, 0, 7); c.fill(); c.restore();
+      c.save();
+      c.translate(300, 280);
+      c.rotate((k * 2 * Math.PI) / 5);
+      const g = c.createLinearGradient(0, 0, 0, -200);
+      g.addColorStop(0, '#f7d14a');
+      g.addColorStop(0.4, '#e2502a');
+      g.addColorStop(1, '#7a0f3a');
+      c.fillStyle = g;
+      c.beginPath();
+      c.ellipse(0, -110, 50, 100, 0, 0, 7);
+      c.fill();
+      c.restore();
     }
     const blob = await new Promise((r) => canvas.toBlob(r, 'image/jpeg', 0.9));
     const transfer = new DataTransfer();
@@ -245,7 +279,11 @@ async function photo({ page, url, shot }) {
   const [ox, oy] = [box.width / 2 - 300 * k, box.height * 0.07];
   const at = (points) => points.map(([x, y]) => [ox + x * k, oy + y * k]);
   let n = 0;
-  const trace = async (points) => { await draw(page, at(points)); n += 1; await until(page, 'strokes', ['is', n], 'traced'); };
+  const trace = async (points) => {
+    await draw(page, at(points));
+    n += 1;
+    await until(page, 'strokes', ['is', n], 'traced');
+  };
   await trace(line(300, 790, 300, 300, 4));
   for (let i = 0; i < 5; i += 1) await trace(blade(300, 275, -Math.PI / 2 + (i * 2 * Math.PI) / 5, 195, 48));
   await until(page, 'flowers', ['is', 1], 'a traced flower');
@@ -263,7 +301,10 @@ async function photo({ page, url, shot }) {
   await page.reload();
   await until(page, 'strokes', ['is', n], 'drawing and photograph are recovered');
   await page.click('#b-photo');
-  assert.equal(await page.getByText('Traced parts take its colours').locator('xpath=..').locator('input').isChecked(), false);
+  assert.equal(
+    await page.getByText('Traced parts take its colours').locator('xpath=..').locator('input').isChecked(),
+    false,
+  );
 }
 
 /** A browser without WebGL 2 whose storage is shut, as in private mode: both are told, and the work goes on. */
@@ -273,7 +314,9 @@ async function poor({ page, url, shot }) {
     HTMLCanvasElement.prototype.getContext = function get(kind, ...rest) {
       return kind.startsWith('webgl') ? null : getContext.call(this, kind, ...rest);
     };
-    IDBFactory.prototype.open = () => { throw new DOMException('shut', 'QuotaExceededError'); };
+    IDBFactory.prototype.open = () => {
+      throw new DOMException('shut', 'QuotaExceededError');
+    };
   });
   await begin(page, url);
   await page.locator('.note.bad', { hasText: 'WebGL 2' }).waitFor();
@@ -314,7 +357,7 @@ async function firstRun({ page, url, shot }) {
 }
 
 /** A pen with pressure; a palm that rests on the glass meanwhile draws nothing. */
-async function pen({ page, url, shot, context }) {
+async function pen({ page, url, shot }) {
   await begin(page, url);
   const box = await page.locator('.sheet').boundingBox();
   await page.evaluate(() => {
@@ -322,7 +365,18 @@ async function pen({ page, url, shot, context }) {
     sheet.setPointerCapture = () => {};
     window.pointer = (type, kind, id, x, y, pressure) => {
       const box = sheet.getBoundingClientRect();
-      sheet.dispatchEvent(new PointerEvent(type, { pointerType: kind, pointerId: id, clientX: box.left + x, clientY: box.top + y, pressure, buttons: type === 'pointerup' ? 0 : 1, bubbles: true, isPrimary: true }));
+      sheet.dispatchEvent(
+        new PointerEvent(type, {
+          pointerType: kind,
+          pointerId: id,
+          clientX: box.left + x,
+          clientY: box.top + y,
+          pressure,
+          buttons: type === 'pointerup' ? 0 : 1,
+          bubbles: true,
+          isPrimary: true,
+        }),
+      );
     };
   });
   const send = (...a) => page.evaluate((args) => window.pointer(...args), a);
@@ -344,7 +398,7 @@ async function pen({ page, url, shot, context }) {
 
 async function reload({ page, url }) {
   await begin(page, url);
-  const n = await sample(page) + 1;
+  const n = (await sample(page)) + 1;
   await draw(page, line(100, 400, 120, 250, 6));
   await until(page, 'strokes', ['is', n], 'a stroke was drawn');
   await page.keyboard.press('r');
@@ -353,8 +407,11 @@ async function reload({ page, url }) {
   const digest = await data(page, 'digest');
   await page.reload();
   await until(page, 'strokes', ['is', n], 'the drawing is recovered');
-  await page.waitForFunction((d) => document.body.dataset.digest === d, digest)
-    .catch(async () => { throw new Error(`another plant after reload: ${await data(page, 'digest')} instead of ${digest}`); });
+  await page
+    .waitForFunction((d) => document.body.dataset.digest === d, digest)
+    .catch(async () => {
+      throw new Error(`another plant after reload: ${await data(page, 'digest')} instead of ${digest}`);
+    });
 }
 
 async function chinese({ page, url, shot }) {
@@ -393,7 +450,13 @@ async function fault({ page, url, troubles }) {
   const n = await sample(page);
   const digest = await data(page, 'digest');
   const [worker] = page.workers();
-  await worker.evaluate(() => { setTimeout(() => { throw new Error('made to fall by the test'); }); }).catch(() => {});
+  await worker
+    .evaluate(() => {
+      setTimeout(() => {
+        throw new Error('made to fall by the test');
+      });
+    })
+    .catch(() => {});
   await page.locator('.note.bad', { hasText: 'started again' }).waitFor();
   await draw(page, line(150, 300, 150, 100, 8));
   await until(page, 'strokes', ['is', n + 1], 'the stroke after the fault');
@@ -407,12 +470,20 @@ async function refuse({ page, url }) {
   await begin(page, url);
   await sample(page);
   const digest = await data(page, 'digest');
-  for (const [name, text] of [['broken.svg', '<svg'], ['broken.burgeon', 'PK\x03\x04'], ['word.docx', 'no'], ['x.glb', 'glTF']]) {
-    await page.evaluate(([n, t]) => {
-      const transfer = new DataTransfer();
-      transfer.items.add(new File([t], n));
-      document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true }));
-    }, [name, text]);
+  for (const [name, text] of [
+    ['broken.svg', '<svg'],
+    ['broken.burgeon', 'PK\x03\x04'],
+    ['word.docx', 'no'],
+    ['x.glb', 'glTF'],
+  ]) {
+    await page.evaluate(
+      ([n, t]) => {
+        const transfer = new DataTransfer();
+        transfer.items.add(new File([t], n));
+        document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true }));
+      },
+      [name, text],
+    );
     await page.locator('.note.bad', { hasText: name }).waitFor();
   }
   assert.equal(await data(page, 'digest'), digest);
@@ -443,17 +514,25 @@ async function touch({ page, url, shot, context }) {
   await begin(page, url);
   const cdp = await context.newCDPSession(page);
   const box = await page.locator('.sheet').boundingBox();
-  const send = (type, points) => cdp.send('Input.dispatchTouchEvent', {
-    type, touchPoints: points.map(([x, y], id) => ({ x: box.x + x, y: box.y + y, id })),
-  });
+  const send = (type, points) =>
+    cdp.send('Input.dispatchTouchEvent', {
+      type,
+      touchPoints: points.map(([x, y], id) => ({ x: box.x + x, y: box.y + y, id })),
+    });
   const path = line(box.width / 2, box.height - 40, box.width / 2, 60, 12);
   await send('touchStart', [path[0]]);
   for (const p of path.slice(1)) await send('touchMove', [p]);
   await send('touchEnd', []);
   await until(page, 'strokes', ['is', 1], 'a finger draws');
   await send('touchStart', [[100, 200]]);
-  await send('touchStart', [[100, 200], [200, 200]]);
-  await send('touchMove', [[60, 200], [260, 220]]);
+  await send('touchStart', [
+    [100, 200],
+    [200, 200],
+  ]);
+  await send('touchMove', [
+    [60, 200],
+    [260, 220],
+  ]);
   await send('touchEnd', []);
   await page.waitForTimeout(500);
   assert.equal(await count(page, 'strokes'), 1, 'two fingers do not draw');
@@ -469,8 +548,11 @@ export async function add(page, maker, preset) {
 }
 
 export async function changed(page, before, what) {
-  await page.waitForFunction((d) => document.body.dataset.digest !== d && document.body.dataset.digest !== '', before)
-    .catch(() => { throw new Error(`${what}: nothing changed`); });
+  await page
+    .waitForFunction((d) => document.body.dataset.digest !== d && document.body.dataset.digest !== '', before)
+    .catch(() => {
+      throw new Error(`${what}: nothing changed`);
+    });
   return data(page, 'digest');
 }
 
@@ -488,22 +570,26 @@ async function slide(page, path, share) {
 }
 
 export async function drop(page, name, text) {
-  await page.evaluate(([n, t]) => {
-    const transfer = new DataTransfer();
-    transfer.items.add(new File([t], n));
-    document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true }));
-  }, [name, text]);
+  await page.evaluate(
+    ([n, t]) => {
+      const transfer = new DataTransfer();
+      transfer.items.add(new File([t], n));
+      document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true }));
+    },
+    [name, text],
+  );
 }
 
-const WALL = 'v 0.3 0 -3\nv 1 0 -3\nv 1 0 3\nv 0.3 0 3\nv 0.3 4 -3\nv 1 4 -3\nv 1 4 3\nv 0.3 4 3\n'
-  + 'f 1 2 3 4\nf 5 8 7 6\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n';
+const WALL =
+  'v 0.3 0 -3\nv 1 0 -3\nv 1 0 3\nv 0.3 0 3\nv 0.3 4 -3\nv 1 4 -3\nv 1 4 3\nv 0.3 4 3\n' +
+  'f 1 2 3 4\nf 5 8 7 6\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n';
 
 async function tree({ page, url, shot }) {
   await begin(page, url);
   await page.click('#b-add');
   await page.click('[data-add=tree]');
   await page.locator('dialog [data-preset]').first().waitFor();
-  assert.ok(await page.locator('dialog [data-preset]').count() >= 10);
+  assert.ok((await page.locator('dialog [data-preset]').count()) >= 10);
   await shot('tree-species');
   await page.click('dialog [data-preset=hazel]');
   await until(page, 'triangles', ['above', 1000], 'a hazel has grown');
@@ -524,12 +610,19 @@ async function tree({ page, url, shot }) {
   await page.locator('#b-undo').click();
   await changed(page, digest, 'one step takes the drag back');
   await page.locator('.f-group > summary').first().click();
-  assert.ok(await page.locator('.form .f-row').count() > 3, 'a row for each field of the schema');
+  assert.ok((await page.locator('.form .f-row').count()) > 3, 'a row for each field of the schema');
   await page.locator('.maker').evaluate((e) => e.scrollTo(0, 500));
   await shot('tree-panel');
-  for (const [format, start] of [['glb', 'glTF'], ['mtg', 'CODE'], ['qsm', 'radius']]) {
+  for (const [format, start] of [
+    ['glb', 'glTF'],
+    ['mtg', 'CODE'],
+    ['qsm', 'radius'],
+  ]) {
     const file = await exported(page, format);
-    assert.ok(file.bytes.subarray(0, 200).toString('latin1').includes(start), `${format}: ${file.bytes.subarray(0, 20)}`);
+    assert.ok(
+      file.bytes.subarray(0, 200).toString('latin1').includes(start),
+      `${format}: ${file.bytes.subarray(0, 20)}`,
+    );
   }
   await page.keyboard.press('Control+z');
   await page.keyboard.press('Control+z');
@@ -616,7 +709,11 @@ async function garden({ page, url, shot }) {
   await until(page, 'plants', ['is', 1], 'a new scene');
   const chooser = page.waitForEvent('filechooser');
   await page.click('#b-open');
-  await (await chooser).setFiles({ name: 'scene.burgeon', mimeType: 'application/zip', buffer: readFileSync(path) });
+  await (await chooser).setFiles({
+    name: 'scene.burgeon',
+    mimeType: 'application/zip',
+    buffer: readFileSync(path),
+  });
   await until(page, 'plants', ['is', 3], 'the scene is open again');
   await page.waitForFunction((d) => document.body.dataset.digest === d, digest);
   await page.locator('[data-plant=flower]').focus();
@@ -631,7 +728,10 @@ async function garden({ page, url, shot }) {
   await page.click('#b-language');
   await page.click('[data-plant=leaf]');
   // The panel is drawn anew a moment after the click.
-  await page.locator('.form .f-row > span:first-child', { hasText: /[\u4e00-\u9fff]/ }).first().waitFor();
+  await page
+    .locator('.form .f-row > span:first-child', { hasText: /[\u4e00-\u9fff]/ })
+    .first()
+    .waitFor();
   const labels = await page.locator('.form .f-row > span:first-child').allTextContents();
   assert.ok(labels.length > 8 && labels.every((l) => /[\u4e00-\u9fff]/.test(l)), labels.join());
   await page.click('#b-theme');
@@ -674,7 +774,11 @@ export const journeys = [
   ['the worker dies', fault],
   ['files that cannot be read', refuse],
   ['keyboard only', keyboard],
-  ['a tablet with fingers', touch, { viewport: { width: 600, height: 800 }, hasTouch: true, isMobile: false }],
+  [
+    'a tablet with fingers',
+    touch,
+    { viewport: { width: 600, height: 800 }, hasTouch: true, isMobile: false },
+  ],
   ['a tree with an obstacle', tree],
   ['a leaf from marks', leaf],
   ['a flower that opens: play', bloom],

@@ -15,8 +15,18 @@ mkdirSync(out, { recursive: true });
 const FRAMES = 9;
 const SECONDS = 4;
 for (const flower of ['tulip', 'lily']) {
-  execFileSync(burgeon, ['bloom', 'run', flower, '-o', join(out, `${flower}.glb`), '--frames', String(FRAMES),
-    '--seconds', String(SECONDS), '--quiet']);
+  execFileSync(burgeon, [
+    'bloom',
+    'run',
+    flower,
+    '-o',
+    join(out, `${flower}.glb`),
+    '--frames',
+    String(FRAMES),
+    '--seconds',
+    String(SECONDS),
+    '--quiet',
+  ]);
 }
 
 /** Farthest that a vertex is from where the file's last key says, and the positions of a few at some moments. */
@@ -96,9 +106,13 @@ const server = createServer((request, response) => {
   const file = path.startsWith('/three/') ? join('node_modules', path) : join(out, path);
   if (path === '/') return response.writeHead(200, { 'content-type': 'text/html' }).end(PAGE);
   if (!existsSync(file)) return response.writeHead(404).end();
-  return response.writeHead(200, { 'content-type': TYPES[extname(file)] ?? 'text/plain' }).end(readFileSync(file));
+  return response
+    .writeHead(200, { 'content-type': TYPES[extname(file)] ?? 'text/plain' })
+    .end(readFileSync(file));
 });
-await new Promise((resolve) => { server.listen(0, '127.0.0.1', resolve); });
+await new Promise((resolve) => {
+  server.listen(0, '127.0.0.1', resolve);
+});
 const url = `http://127.0.0.1:${server.address().port}/`;
 let failed = 0;
 let browser;
@@ -108,7 +122,9 @@ try {
     const page = await browser.newPage({ viewport: { width: 1200, height: 330 } });
     const troubles = [];
     page.on('pageerror', (e) => troubles.push(e.message));
-    page.on('console', (m) => { if (m.type() === 'error') troubles.push(m.text()); });
+    page.on('console', (m) => {
+      if (m.type() === 'error') troubles.push(m.text());
+    });
     await page.goto(url);
     await page.waitForFunction(() => document.body.dataset.ready === 'true', null, { timeout: 60_000 });
     const step = SECONDS / (FRAMES - 1);
@@ -123,12 +139,17 @@ try {
     for (const { t, far } of got.told) {
       assert.ok(far < 1e-5 * height, `at ${t} s a vertex is ${far} m from where the file says`);
     }
-    const moves = got.told.slice(1).map(({ places }, k) =>
-      Math.max(...places.map((p, i) => Math.hypot(...p.map((x, a) => x - got.told[k].places[i][a])))));
+    const moves = got.told
+      .slice(1)
+      .map(({ places }, k) =>
+        Math.max(...places.map((p, i) => Math.hypot(...p.map((x, a) => x - got.told[k].places[i][a])))),
+      );
     for (const [k, move] of moves.entries()) {
       assert.ok(move > 0.01 * height, `from ${moments[k]} to ${moments[k + 1]} s nothing moves (${move} m)`);
     }
-    console.log(`ok      ${flower}: ${got.vertices} vertices of ${got.meshes} meshes, moves of ${moves.map((m) => `${(m * 1e3).toFixed(1)} mm`).join(', ')} in three.js`);
+    console.log(
+      `ok      ${flower}: ${got.vertices} vertices of ${got.meshes} meshes, moves of ${moves.map((m) => `${(m * 1e3).toFixed(1)} mm`).join(', ')} in three.js`,
+    );
     await page.close();
   }
 } catch (e) {

@@ -12,9 +12,13 @@ const [browserPath, burgeon, out] = process.argv.slice(2);
 rmSync(out, { recursive: true, force: true });
 mkdirSync(out, { recursive: true });
 
-const server = spawn(burgeon, ['studio', '--no-open', '--port', '0', '--folder', 'dist', '../../fixtures/sketches/gallery/tulip.svg'], {
-  stdio: ['ignore', 'pipe', 'inherit'],
-});
+const server = spawn(
+  burgeon,
+  ['studio', '--no-open', '--port', '0', '--folder', 'dist', '../../fixtures/sketches/gallery/tulip.svg'],
+  {
+    stdio: ['ignore', 'pipe', 'inherit'],
+  },
+);
 // However this run ends, the server ends with it.
 process.on('exit', () => server.kill());
 const url = await new Promise((resolve, reject) => {
@@ -34,24 +38,42 @@ let failed = 0;
 const only = process.env.ONLY;
 for (const [name, journey, options] of [...journeys, ...shaping]) {
   if (only && !name.includes(only)) continue;
-  const context = await browser.newContext({ viewport: { width: 1000, height: 640 }, locale: 'en-GB', acceptDownloads: true, ...options });
+  const context = await browser.newContext({
+    viewport: { width: 1000, height: 640 },
+    locale: 'en-GB',
+    acceptDownloads: true,
+    ...options,
+  });
   if (!options?.fresh) await context.addInitScript(() => localStorage.setItem('burgeon.tour', 'done'));
   const page = await context.newPage();
   const troubles = [];
   const foreign = [];
   page.on('pageerror', (e) => troubles.push(`error in the page: ${e.message}`));
-  page.on('console', (m) => { if (m.type() === 'error') troubles.push(`console: ${m.text()}`); });
-  page.on('request', (r) => { if (!/^(blob|data):/.test(r.url()) && !r.url().startsWith(url)) foreign.push(r.url()); });
+  page.on('console', (m) => {
+    if (m.type() === 'error') troubles.push(`console: ${m.text()}`);
+  });
+  page.on('request', (r) => {
+    if (!/^(blob|data):/.test(r.url()) && !r.url().startsWith(url)) foreign.push(r.url());
+  });
   page.setDefaultTimeout(60_000);
   const began = Date.now();
   try {
-    await journey({ page, context, url, out, shot: (file) => page.screenshot({ path: join(out, `${file}.png`) }), troubles });
+    await journey({
+      page,
+      context,
+      url,
+      out,
+      shot: (file) => page.screenshot({ path: join(out, `${file}.png`) }),
+      troubles,
+    });
     if (foreign.length > 0) throw new Error(`asked other hosts: ${foreign.join(', ')}`);
     if (troubles.length > 0) throw new Error(troubles.join('\n'));
     console.log(`ok      ${name} (${((Date.now() - began) / 1000).toFixed(1)} s)`);
   } catch (e) {
     failed += 1;
-    console.log(`FAILED  ${name}: ${e.message}${troubles.length > 0 ? `\n        ${troubles.join('\n        ')}` : ''}`);
+    console.log(
+      `FAILED  ${name}: ${e.message}${troubles.length > 0 ? `\n        ${troubles.join('\n        ')}` : ''}`,
+    );
     await page.screenshot({ path: join(out, `failed-${name.replace(/\W+/g, '-')}.png`) }).catch(() => {});
   }
   await context.close();

@@ -21,7 +21,10 @@ async function branch(page, from = 4, trunk = false) {
   const box = await page.locator('.view').boundingBox();
   await page.keyboard.press('1');
   for (let k = from; k < 60; k += 1) {
-    const [x, y] = [box.x + box.width * (0.5 + 0.25 * Math.sin(k * 2.4)), box.y + box.height * (0.25 + 0.006 * k)];
+    const [x, y] = [
+      box.x + box.width * (0.5 + 0.25 * Math.sin(k * 2.4)),
+      box.y + box.height * (0.25 + 0.006 * k),
+    ];
     await page.mouse.move(x, y);
     await page.mouse.move(x + 1, y);
     await page.waitForTimeout(120);
@@ -76,11 +79,18 @@ async function prune({ page, url, shot }) {
 /** Q takes what bears the twig under the pointer, for every tool that means a branch. */
 async function bearer({ page, url, shot }) {
   const plain = await bush(page, url, 1);
-  const meant = () => page.evaluate(() => [document.body.dataset.picked, Number(document.body.dataset.bears)]);
-  const see = (what, of) => page.waitForFunction(([w, picked, bears]) => {
-    const now = document.body.dataset;
-    return w === 'same' ? now.picked === picked : now.picked !== '' && now.picked !== picked && Number(now.bears) > bears;
-  }, [what, ...of]);
+  const meant = () =>
+    page.evaluate(() => [document.body.dataset.picked, Number(document.body.dataset.bears)]);
+  const see = (what, of) =>
+    page.waitForFunction(
+      ([w, picked, bears]) => {
+        const now = document.body.dataset;
+        return w === 'same'
+          ? now.picked === picked
+          : now.picked !== '' && now.picked !== picked && Number(now.bears) > bears;
+      },
+      [what, ...of],
+    );
   const at = await branch(page);
   const twig = await meant();
   await page.keyboard.press('q');
@@ -108,7 +118,11 @@ async function bearer({ page, url, shot }) {
   await page.locator('#b-prune-chosen').waitFor();
   const said = await page.locator('.options').textContent();
   await page.keyboard.press('q');
-  await page.waitForFunction((was) => document.querySelector('.options').textContent !== was && document.querySelector('#b-prune-chosen'), said);
+  await page.waitForFunction(
+    (was) =>
+      document.querySelector('.options').textContent !== was && document.querySelector('#b-prune-chosen'),
+    said,
+  );
   await page.waitForFunction((bears) => document.body.dataset.bears === String(bears), bough[1]);
   await page.keyboard.press('Delete');
   await changed(page, plain, 'the bough is gone');
@@ -225,7 +239,7 @@ async function seeds({ page, url, shot }) {
   await page.mouse.click(at.x, at.y);
   await until(page, 'done', ['is', 1], 'pruned');
   let digest = await changed(page, plain, 'pruned');
-  for (let tries = 0; tries < 24 && await count(page, 'undone') === 0; tries += 1) {
+  for (let tries = 0; tries < 24 && (await count(page, 'undone')) === 0; tries += 1) {
     await page.keyboard.press('r');
     digest = await changed(page, digest, 'another seed');
   }
@@ -266,11 +280,20 @@ async function kept({ page, url, troubles }) {
   await page.waitForFunction((d) => document.body.dataset.digest === d, digest);
   // When the worker falls, its edits are done again.
   const [worker] = page.workers();
-  await worker.evaluate(() => { setTimeout(() => { throw new Error('made to fall by the test'); }); }).catch(() => {});
+  await worker
+    .evaluate(() => {
+      setTimeout(() => {
+        throw new Error('made to fall by the test');
+      });
+    })
+    .catch(() => {});
   await page.locator('.note.bad', { hasText: 'started again' }).waitFor();
   await until(page, 'done', ['is', 1], 'and still there');
   await page.waitForFunction((d) => document.body.dataset.digest === d, digest);
-  assert.deepEqual(troubles.splice(0).filter((what) => !what.includes('made to fall by the test')), []);
+  assert.deepEqual(
+    troubles.splice(0).filter((what) => !what.includes('made to fall by the test')),
+    [],
+  );
 }
 
 async function drawn({ page, url, shot }) {
@@ -301,7 +324,7 @@ async function drawn({ page, url, shot }) {
     for (let j = 0; j < 8; j += 1) {
       await page.mouse.click(box.x + box.width * (0.45 + 0.045 * k), box.y + box.height * (0.25 + 0.08 * j));
       await page.waitForTimeout(60);
-      if (await data(page, 'current') === 'sketch') break search;
+      if ((await data(page, 'current')) === 'sketch') break search;
     }
   }
   assert.equal(await data(page, 'current'), 'sketch', 'clicked in the view');
@@ -313,11 +336,15 @@ async function fingers({ page, url, context, shot }) {
   const at = await branch(page);
   await page.keyboard.press('2');
   const cdp = await context.newCDPSession(page);
-  const send = (type, points) => cdp.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+  const send = (type, points) =>
+    cdp.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
   await send('touchStart', [[at.x, at.y]]);
   for (let k = 1; k < 8; k += 1) await send('touchMove', [[at.x + 4 * k, at.y + 10 * k]]);
   await changed(page, plain, 'a finger turns the branch');
-  await send('touchStart', [[at.x + 28, at.y + 70], [at.x + 90, at.y + 60]]);
+  await send('touchStart', [
+    [at.x + 28, at.y + 70],
+    [at.x + 90, at.y + 60],
+  ]);
   await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
   await send('touchEnd', []);
   assert.equal(await count(page, 'edits'), 0, 'a second finger lets go');

@@ -8,7 +8,17 @@ import { catalogueOf, gallery, MakerPanel, type Catalogue } from './makers';
 import { SceneList } from './scene';
 import { asPng, photoPanel, placed } from './photo';
 import { measured } from './measure';
-import type { Command, DocumentState, MakerWord, PlantState, PlantView as Seen, Request, SketchState, StrokeMode, View } from './protocol';
+import type {
+  Command,
+  DocumentState,
+  MakerWord,
+  PlantState,
+  PlantView as Seen,
+  Request,
+  SketchState,
+  StrokeMode,
+  View,
+} from './protocol';
 import { Sheet, type Tool } from './sheet/sheet';
 import { settingsPanel } from './settings';
 import { Shaping } from './shaping';
@@ -73,7 +83,11 @@ export class App {
         if (other) this.sheet.setOrgans(this.organs());
         this.view?.setPlaces(state.plants, state.current);
         if (other && this.drawn) this.sheet.fit();
-        if (photo) void createImageBitmap(new Blob([photo])).then((image) => this.sheet.setImage(image), () => undefined);
+        if (photo)
+          void createImageBitmap(new Blob([photo])).then(
+            (image) => this.sheet.setImage(image),
+            () => undefined,
+          );
         this.clipboard.select(this.drawn?.strokes ?? []);
         this.showState();
       },
@@ -92,76 +106,117 @@ export class App {
         this.sendDraft();
       },
       busy: () => this.busy(),
-      progress: (share) => { this.parts['busytext']!.textContent = t('status.working.percent', { percent: Math.floor(100 * share) }); },
+      progress: (share) => {
+        this.parts['busytext']!.textContent = t('status.working.percent', {
+          percent: Math.floor(100 * share),
+        });
+      },
       failed: (why) => {
         this.idle();
-        note(why === 'cancelled' ? t('status.stopped') : t('note.refused', { why }), why === 'cancelled' ? 'good' : 'bad');
+        note(
+          why === 'cancelled' ? t('status.stopped') : t('note.refused', { why }),
+          why === 'cancelled' ? 'good' : 'bad',
+        );
       },
-      fault: (hold) => { this.idle(); this.view?.forget(); note(t(hold ? 'note.fault.hold' : 'note.fault'), 'bad'); },
-      dead: () => { this.idle(); note(t('note.noworker'), 'bad'); },
+      fault: (hold) => {
+        this.idle();
+        this.view?.forget();
+        note(t(hold ? 'note.fault.hold' : 'note.fault'), 'bad');
+      },
+      dead: () => {
+        this.idle();
+        note(t('note.noworker'), 'bad');
+      },
     });
-    this.sheet = new Sheet({
-      stroke: (mode, samples, mirror) => {
-        this.draft = undefined;
-        this.drafted = false;
-        if (mirror) this.ask({ kind: 'begin', name: 'draw' });
-        this.ask({ kind: 'stroke', mode, samples });
-        if (mirror) {
-          this.ask({ kind: 'stroke', mode, samples: mirror });
-          this.ask({ kind: 'commit' });
-        }
+    this.sheet = new Sheet(
+      {
+        stroke: (mode, samples, mirror) => {
+          this.draft = undefined;
+          this.drafted = false;
+          if (mirror) this.ask({ kind: 'begin', name: 'draw' });
+          this.ask({ kind: 'stroke', mode, samples });
+          if (mirror) {
+            this.ask({ kind: 'stroke', mode, samples: mirror });
+            this.ask({ kind: 'commit' });
+          }
+        },
+        draft: (mode, samples) => {
+          this.draft = { mode, samples };
+          this.showEmpty();
+          if (!this.engine.growing) this.sendDraft();
+        },
+        undraft: () => {
+          this.draft = undefined;
+          if (this.drafted) this.ask({ kind: 'draft', mode: 'parts', samples: new Float64Array() });
+          this.drafted = false;
+          this.showEmpty();
+        },
+        erase: (ids) => this.run({ do: 'remove', ids }),
+        moveBegin: () => this.ask({ kind: 'begin', name: 'move' }),
+        moveTo: (ids, x, y) => this.ask({ kind: 'stage', command: { do: 'move', ids, x, y } }),
+        moveEnd: (keep) => this.ask(keep ? { kind: 'commit' } : { kind: 'abandon' }),
+        selected: (ids, anchor) => {
+          if (ids.length > 0 && anchor && this.drawn)
+            this.card.show(ids, anchor, this.drawn, this.seen, this.dark);
+          else this.card.hide();
+        },
+        photoBegin: () => {
+          this.photoFrom = this.drawn?.photo ?? null;
+          this.ask({ kind: 'begin', name: 'photo' });
+        },
+        photoMove: (dx, dy) => {
+          const p = this.photoFrom;
+          if (!p) return;
+          const { width, opacity, paint } = p;
+          this.ask({
+            kind: 'stage',
+            command: { do: 'photo', x: p.x + dx, y: p.y + dy, width, opacity, paint },
+          });
+        },
+        photoEnd: (keep) => this.ask(keep ? { kind: 'commit' } : { kind: 'abandon' }),
+        viewport: () => {
+          this.view?.setSheetSeen(this.sheet.seen());
+          const ids = this.sheet.selected;
+          if (ids.length > 0) this.sheet.select(ids);
+        },
       },
-      draft: (mode, samples) => { this.draft = { mode, samples }; this.showEmpty(); if (!this.engine.growing) this.sendDraft(); },
-      undraft: () => {
-        this.draft = undefined;
-        if (this.drafted) this.ask({ kind: 'draft', mode: 'parts', samples: new Float64Array() });
-        this.drafted = false;
-        this.showEmpty();
-      },
-      erase: (ids) => this.run({ do: 'remove', ids }),
-      moveBegin: () => this.ask({ kind: 'begin', name: 'move' }),
-      moveTo: (ids, x, y) => this.ask({ kind: 'stage', command: { do: 'move', ids, x, y } }),
-      moveEnd: (keep) => this.ask(keep ? { kind: 'commit' } : { kind: 'abandon' }),
-      selected: (ids, anchor) => {
-        if (ids.length > 0 && anchor && this.drawn) this.card.show(ids, anchor, this.drawn, this.seen, this.dark);
-        else this.card.hide();
-      },
-      photoBegin: () => { this.photoFrom = this.drawn?.photo ?? null; this.ask({ kind: 'begin', name: 'photo' }); },
-      photoMove: (dx, dy) => {
-        const p = this.photoFrom;
-        if (!p) return;
-        const { width, opacity, paint } = p;
-        this.ask({ kind: 'stage', command: { do: 'photo', x: p.x + dx, y: p.y + dy, width, opacity, paint } });
-      },
-      photoEnd: (keep) => this.ask(keep ? { kind: 'commit' } : { kind: 'abandon' }),
-      viewport: () => {
-        this.view?.setSheetSeen(this.sheet.seen());
-        const ids = this.sheet.selected;
-        if (ids.length > 0) this.sheet.select(ids);
-      },
-    }, t('sheet.label'));
+      t('sheet.label'),
+    );
     this.card = new Card((command) => this.run(command));
     this.panel = new MakerPanel(() => this.catalogue, {
-      run: (c) => this.run(c), begin: (name) => this.ask({ kind: 'begin', name }), stage: (command) => this.ask({ kind: 'stage', command }),
-      commit: () => this.ask({ kind: 'commit' }), choose: (accept, act) => this.files.pickFile(accept, act),
-      obstacle: (file) => void this.addObstacle(file), open: (file) => void this.files.openFile(file),
+      run: (c) => this.run(c),
+      begin: (name) => this.ask({ kind: 'begin', name }),
+      stage: (command) => this.ask({ kind: 'stage', command }),
+      commit: () => this.ask({ kind: 'commit' }),
+      choose: (accept, act) => this.files.pickFile(accept, act),
+      obstacle: (file) => void this.addObstacle(file),
+      open: (file) => void this.files.openFile(file),
     });
     this.list = new SceneList({
-      run: (c) => this.run(c), select: (plant) => this.ask({ kind: 'select', plant }), add: (maker) => void this.add(maker),
+      run: (c) => this.run(c),
+      select: (plant) => this.ask({ kind: 'select', plant }),
+      add: (maker) => void this.add(maker),
       gizmo: (mode) => void this.view?.setGizmo(mode),
     });
     this.files = new Files(this.engine, {
-      opened: () => { this.sheet.fit(); this.view?.frameNow(); },
+      opened: () => {
+        this.sheet.fit();
+        this.view?.frameNow();
+      },
       picture: () => this.view?.picture(),
       name: () => this.state?.name ?? t('app.untitled'),
-      empty: () => !this.scene || [this.scene.guest, ...this.scene.plants].every((p) => !p || p.parts.length === 0),
+      empty: () =>
+        !this.scene || [this.scene.guest, ...this.scene.plants].every((p) => !p || p.parts.length === 0),
       several: () => (this.state?.plants.length ?? 0) > 1,
       kind: () => this.plant?.maker ?? 'sketch',
       looking: (name) => this.looking(name),
       photo: (file) => this.layPhoto(file),
     });
     this.clipboard = new Clipboard(this.engine, this.sheet, {
-      run: (c) => this.run(c), openFile: (file) => this.files.openFile(file), changed: () => this.files.changed(), choose: (ids) => this.choose(ids),
+      run: (c) => this.run(c),
+      openFile: (file) => this.files.openFile(file),
+      changed: () => this.files.changed(),
+      choose: (ids) => this.choose(ids),
     });
     const theme = setting('theme');
     this.theme = theme === 'light' || theme === 'dark' ? theme : 'auto';
@@ -196,7 +251,11 @@ export class App {
 
   /** A plant that cannot be made says why once. */
   private tellOf(id: number, error: string | null): void {
-    if (error !== null && this.told.get(id) !== error) note(t('note.failed', { name: this.state?.plants.find((p) => p.id === id)?.name ?? '', why: error }), 'bad');
+    if (error !== null && this.told.get(id) !== error)
+      note(
+        t('note.failed', { name: this.state?.plants.find((p) => p.id === id)?.name ?? '', why: error }),
+        'bad',
+      );
     this.told.set(id, error);
   }
 
@@ -205,25 +264,35 @@ export class App {
       this.view = new PlantView(t('view.label'));
       this.view.onFrontChange = (on) => this.parts['front']?.setAttribute('aria-pressed', String(on));
       this.view.onPlaceBegin = () => this.ask({ kind: 'begin', name: 'place' });
-      this.view.onPlace = (plant, position, yaw_deg, scale) => this.ask({ kind: 'stage', command: { do: 'place', plant, position, yaw_deg, scale } });
+      this.view.onPlace = (plant, position, yaw_deg, scale) =>
+        this.ask({ kind: 'stage', command: { do: 'place', plant, position, yaw_deg, scale } });
       this.view.onPlaceEnd = () => this.ask({ kind: 'commit' });
       this.view.onPick = (plant) => this.ask({ kind: 'select', plant });
       this.shaping = new Shaping(this.view, {
-        run: (c) => this.run(c), ask: (request) => this.engine.ask(request), select: (plant) => this.ask({ kind: 'select', plant }),
-        refused: (why) => note(t('note.refused', { why }), 'bad'), changed: () => this.showShaping(),
+        run: (c) => this.run(c),
+        ask: (request) => this.engine.ask(request),
+        select: (plant) => this.ask({ kind: 'select', plant }),
+        refused: (why) => note(t('note.refused', { why }), 'bad'),
+        changed: () => this.showShaping(),
       });
-      this.view.onContext = (lost) => { if (lost) note(t('note.context'), 'bad'); };
+      this.view.onContext = (lost) => {
+        if (lost) note(t('note.context'), 'bad');
+      };
     } catch {
       note(t('note.nowebgl'), 'bad');
     }
     this.build();
     // The plant is shown beside the list, not behind it.
-    new ResizeObserver(() => this.view?.setInset(this.list.isFolded ? 0 : this.list.element.offsetWidth + 12)).observe(this.list.element);
+    new ResizeObserver(() =>
+      this.view?.setInset(this.list.isFolded ? 0 : this.list.element.offsetWidth + 12),
+    ).observe(this.list.element);
     this.files.listen(document.body);
     document.addEventListener('keydown', (e) => this.commands.key(e));
     document.addEventListener('paste', (e) => this.clipboard.paste(e));
     this.system.addEventListener('change', () => this.applyTheme());
-    document.addEventListener('visibilitychange', () => { if (document.hidden) void this.files.keepNow(); });
+    document.addEventListener('visibilitychange', () => {
+      if (document.hidden) void this.files.keepNow();
+    });
     this.engine.start();
   }
 
@@ -249,16 +318,31 @@ export class App {
   async add(maker: MakerWord): Promise<void> {
     await this.loadCatalogue();
     if (maker !== 'tree' || !this.catalogue) {
-      this.run({ do: 'add', maker, name: t(`maker.${maker}` as TextKey), ...(maker === 'flower' ? { preset: 'lily' } : {}) });
+      this.run({
+        do: 'add',
+        maker,
+        name: t(`maker.${maker}` as TextKey),
+        ...(maker === 'flower' ? { preset: 'lily' } : {}),
+      });
       return;
     }
-    const d = dialog(t('tree.choose'), gallery(this.catalogue, null, (key) => { d.close(); this.run({ do: 'add', maker, name: tOf('word', key), preset: key }); }));
+    const d = dialog(
+      t('tree.choose'),
+      gallery(this.catalogue, null, (key) => {
+        d.close();
+        this.run({ do: 'add', maker, name: tOf('word', key), preset: key });
+      }),
+    );
     d.classList.add('wide-dialog');
   }
 
   private async addObstacle(file: File): Promise<void> {
     try {
-      await this.engine.ask({ kind: 'obstacle', name: file.name, bytes: new Uint8Array(await file.arrayBuffer()) });
+      await this.engine.ask({
+        kind: 'obstacle',
+        name: file.name,
+        bytes: new Uint8Array(await file.arrayBuffer()),
+      });
       this.files.changed();
     } catch (e) {
       note(t('note.unreadable', { name: file.name, why: (e as Error).message }), 'bad');
@@ -270,10 +354,16 @@ export class App {
   ask(request: Request): void {
     if (request.kind === 'stroke') endTour();
     const start = performance.now();
-    this.engine.ask(request).then(() => { if (request.kind === 'undo') measured('undo', start); this.files.changed(request); }).catch((e: Error) => {
-      if (request.kind === 'stroke') this.sheet.dropPending();
-      if (e.message !== 'restarted') note(t('note.refused', { why: e.message }), 'bad');
-    });
+    this.engine
+      .ask(request)
+      .then(() => {
+        if (request.kind === 'undo') measured('undo', start);
+        this.files.changed(request);
+      })
+      .catch((e: Error) => {
+        if (request.kind === 'stroke') this.sheet.dropPending();
+        if (e.message !== 'restarted') note(t('note.refused', { why: e.message }), 'bad');
+      });
   }
 
   run(command: Command): void {
@@ -288,84 +378,274 @@ export class App {
     this.drafted = true;
     this.engine.growing = true;
     this.draftAt = performance.now();
-    this.engine.ask({ kind: 'draft', ...draft }).catch(() => { this.engine.growing = false; });
+    this.engine.ask({ kind: 'draft', ...draft }).catch(() => {
+      this.engine.growing = false;
+    });
   }
 
   // The page -----------------------------------------------------------------------------------------------------
 
   private build(): void {
     const p = this.parts;
-    const hold = <T extends HTMLElement>(name: string, e: T): T => { p[name] = e; e.id = `b-${name}`; return e; };
+    const hold = <T extends HTMLElement>(name: string, e: T): T => {
+      p[name] = e;
+      e.id = `b-${name}`;
+      return e;
+    };
     const main = (name: IconName, key: TextKey, act: () => void, shortcut = ''): HTMLElement =>
-      hold(name, el('button', { type: 'button', class: 'wide', title: shortcut ? `${t(key)}  (${shortcut})` : t(key), onclick: act }, icon(name), el('span', {}, t(key))));
-    const title = hold('name', el('input', {
-      class: 'name', spellcheck: 'false', maxlength: '200', 'aria-label': t('menu.name'), title: t('menu.name'),
-      onchange: () => { const name = (title as HTMLInputElement).value.trim(); if (name) this.run({ do: 'rename-scene', name }); },
-      onkeydown: (e) => { if ((e as KeyboardEvent).key === 'Enter') title.blur(); },
-    }));
-    const bar = el('header', { class: 'bar' },
-      el('span', { class: 'logo' }, el('img', { src: './icon.svg', alt: '', width: '26', height: '26' }), el('b', {}, 'Burgeon')),
+      hold(
+        name,
+        el(
+          'button',
+          {
+            type: 'button',
+            class: 'wide',
+            title: shortcut ? `${t(key)}  (${shortcut})` : t(key),
+            onclick: act,
+          },
+          icon(name),
+          el('span', {}, t(key)),
+        ),
+      );
+    const title = hold(
+      'name',
+      el('input', {
+        class: 'name',
+        spellcheck: 'false',
+        maxlength: '200',
+        'aria-label': t('menu.name'),
+        title: t('menu.name'),
+        onchange: () => {
+          const name = (title as HTMLInputElement).value.trim();
+          if (name) this.run({ do: 'rename-scene', name });
+        },
+        onkeydown: (e) => {
+          if ((e as KeyboardEvent).key === 'Enter') title.blur();
+        },
+      }),
+    );
+    const bar = el(
+      'header',
+      { class: 'bar' },
+      el(
+        'span',
+        { class: 'logo' },
+        el('img', { src: './icon.svg', alt: '', width: '26', height: '26' }),
+        el('b', {}, 'Burgeon'),
+      ),
       title,
-      el('span', { class: 'group' },
-        hold('undo', button('undo', t('undo'), () => this.ask({ kind: 'undo' }), 'Ctrl+Z')),
-        hold('redo', button('redo', t('redo'), () => this.ask({ kind: 'redo' }), 'Ctrl+Shift+Z'))),
-      el('span', { class: 'group' },
-        hold('dice', button('dice', t('dice'), () => this.roll(), 'R')),
-        hold('lock', button('unlock', t('lock'), () => this.toggleLock())),
-        hold('grid', button('grid', t('variations.title'), () => this.openVariations(), 'G')),
-        hold('settings', button('settings', t('menu.settings'), () => this.openSettings()))),
+      el(
+        'span',
+        { class: 'group' },
+        hold(
+          'undo',
+          button('undo', t('undo'), () => this.ask({ kind: 'undo' }), 'Ctrl+Z'),
+        ),
+        hold(
+          'redo',
+          button('redo', t('redo'), () => this.ask({ kind: 'redo' }), 'Ctrl+Shift+Z'),
+        ),
+      ),
+      el(
+        'span',
+        { class: 'group' },
+        hold(
+          'dice',
+          button('dice', t('dice'), () => this.roll(), 'R'),
+        ),
+        hold(
+          'lock',
+          button('unlock', t('lock'), () => this.toggleLock()),
+        ),
+        hold(
+          'grid',
+          button('grid', t('variations.title'), () => this.openVariations(), 'G'),
+        ),
+        hold(
+          'settings',
+          button('settings', t('menu.settings'), () => this.openSettings()),
+        ),
+      ),
       el('span', { class: 'space' }),
-      el('span', { class: 'group' },
+      el(
+        'span',
+        { class: 'group' },
         main('fresh', 'menu.new', () => this.files.fresh()),
         main('samples', 'menu.samples', () => this.files.samples()),
         main('open', 'menu.open', () => this.files.choose(), 'Ctrl+O'),
         main('save', 'menu.save', () => void this.files.save(), 'Ctrl+S'),
         main('share', 'menu.share', () => void this.files.share()),
-        main('export', 'menu.export', () => this.files.chooseExport(), 'Ctrl+E')),
-      el('span', { class: 'group' },
-        hold('language', el('button', { type: 'button', class: 'plain', title: t('menu.language.hint'), onclick: () => this.switchLanguage() }, t('menu.language'))),
-        hold('theme', button('theme', t('menu.theme'), () => this.switchTheme())),
-        hold('commands', button('commands', t('palette.title'), () => this.commands.openPalette(), 'Ctrl+K')),
-        hold('help', button('help', t('menu.help'), () => this.commands.help(), '?'))));
+        main('export', 'menu.export', () => this.files.chooseExport(), 'Ctrl+E'),
+      ),
+      el(
+        'span',
+        { class: 'group' },
+        hold(
+          'language',
+          el(
+            'button',
+            {
+              type: 'button',
+              class: 'plain',
+              title: t('menu.language.hint'),
+              onclick: () => this.switchLanguage(),
+            },
+            t('menu.language'),
+          ),
+        ),
+        hold(
+          'theme',
+          button('theme', t('menu.theme'), () => this.switchTheme()),
+        ),
+        hold(
+          'commands',
+          button('commands', t('palette.title'), () => this.commands.openPalette(), 'Ctrl+K'),
+        ),
+        hold(
+          'help',
+          button('help', t('menu.help'), () => this.commands.help(), '?'),
+        ),
+      ),
+    );
     const tools = el('div', { class: 'tools', role: 'toolbar', 'aria-orientation': 'vertical' });
     for (const [tool, key] of TOOLS) {
-      tools.append(hold(tool, button(tool, t(`tool.${tool}` as TextKey), () => this.setTool(tool), key)));
+      tools.append(
+        hold(
+          tool,
+          button(tool, t(`tool.${tool}` as TextKey), () => this.setTool(tool), key),
+        ),
+      );
     }
-    tools.append(el('hr'),
-      hold('mirror', button('mirror', t('tool.mirror'), () => this.toggleMirror(), 'M')),
-      hold('photo', button('photo', t('tool.photo'), () => this.openPhoto(), 'U')),
-      hold('fit', button('fit', t('tool.fit'), () => this.sheet.fit(), '0')));
-    const empty = hold('empty', el('div', { class: 'empty' },
-      el('h1', {}, t('sheet.empty')), el('p', {}, t('sheet.empty.hint')),
-      el('button', { type: 'button', class: 'link', onclick: () => this.files.samples() }, t('sheet.empty.sample'))));
-    const left = el('section', { class: 'left' }, this.sheet.element, tools, empty, hold('legend', el('div', { class: 'legend', role: 'list', 'aria-label': t('legend.title') })), this.card.element,
-      hold('bloom', el('div', { class: 'bloom' })), hold('maker', this.panel.element), hold('noplant', el('div', { class: 'nothing' }, el('h1', {}, t('scene.empty')), el('p', {}, t('scene.empty.hint')))));
+    tools.append(
+      el('hr'),
+      hold(
+        'mirror',
+        button('mirror', t('tool.mirror'), () => this.toggleMirror(), 'M'),
+      ),
+      hold(
+        'photo',
+        button('photo', t('tool.photo'), () => this.openPhoto(), 'U'),
+      ),
+      hold(
+        'fit',
+        button('fit', t('tool.fit'), () => this.sheet.fit(), '0'),
+      ),
+    );
+    const empty = hold(
+      'empty',
+      el(
+        'div',
+        { class: 'empty' },
+        el('h1', {}, t('sheet.empty')),
+        el('p', {}, t('sheet.empty.hint')),
+        el(
+          'button',
+          { type: 'button', class: 'link', onclick: () => this.files.samples() },
+          t('sheet.empty.sample'),
+        ),
+      ),
+    );
+    const left = el(
+      'section',
+      { class: 'left' },
+      this.sheet.element,
+      tools,
+      empty,
+      hold('legend', el('div', { class: 'legend', role: 'list', 'aria-label': t('legend.title') })),
+      this.card.element,
+      hold('bloom', el('div', { class: 'bloom' })),
+      hold('maker', this.panel.element),
+      hold(
+        'noplant',
+        el('div', { class: 'nothing' }, el('h1', {}, t('scene.empty')), el('p', {}, t('scene.empty.hint'))),
+      ),
+    );
     p['tools'] = tools;
-    const seeButtons = el('div', { class: 'tools right-tools', role: 'toolbar' },
-      hold('shape', button('shape', t('shape.title'), () => this.shaping?.toggle(), 'S')), el('hr'),
-      hold('front', button('front', t('view.front'), () => this.view?.setFront(!this.view.isFront), 'F')),
-      hold('frame', button('fit', t('view.frame'), () => this.view?.frameNow(), 'Shift+0')),
-      hold('wire', button('wire', t('view.wire'), () => this.setLook(this.look === 'wire' ? 'solid' : 'wire'), 'W')),
-      hold('skeleton', button('skeleton', t('view.skeleton'), () => this.setLook(this.look === 'skeleton' ? 'solid' : 'skeleton'), 'K')),
-      hold('stats', button('stats', t('view.stats'), () => this.toggleStats(), 'I')),
-      hold('picture', button('picture', t('export.png'), () => void this.files.picture())));
-    const right = el('section', { class: 'right' },
-      ...(this.view && this.shaping ? [this.view.element, this.shaping.overlay.element, seeButtons, this.shaping.element] : [el('p', { class: 'nogl' }, t('note.nowebgl'))]),
+    const seeButtons = el(
+      'div',
+      { class: 'tools right-tools', role: 'toolbar' },
+      hold(
+        'shape',
+        button('shape', t('shape.title'), () => this.shaping?.toggle(), 'S'),
+      ),
+      el('hr'),
+      hold(
+        'front',
+        button('front', t('view.front'), () => this.view?.setFront(!this.view.isFront), 'F'),
+      ),
+      hold(
+        'frame',
+        button('fit', t('view.frame'), () => this.view?.frameNow(), 'Shift+0'),
+      ),
+      hold(
+        'wire',
+        button('wire', t('view.wire'), () => this.setLook(this.look === 'wire' ? 'solid' : 'wire'), 'W'),
+      ),
+      hold(
+        'skeleton',
+        button(
+          'skeleton',
+          t('view.skeleton'),
+          () => this.setLook(this.look === 'skeleton' ? 'solid' : 'skeleton'),
+          'K',
+        ),
+      ),
+      hold(
+        'stats',
+        button('stats', t('view.stats'), () => this.toggleStats(), 'I'),
+      ),
+      hold(
+        'picture',
+        button('picture', t('export.png'), () => void this.files.picture()),
+      ),
+    );
+    const right = el(
+      'section',
+      { class: 'right' },
+      ...(this.view && this.shaping
+        ? [this.view.element, this.shaping.overlay.element, seeButtons, this.shaping.element]
+        : [el('p', { class: 'nogl' }, t('note.nowebgl'))]),
       hold('statsbox', el('div', { class: 'statsbox' })),
       this.column,
-      hold('grows', el('p', { class: 'grows' }, t('view.empty'))), hold('looking', el('p', { class: 'looking' })));
-    const split = el('div', { class: 'split', role: 'separator', 'aria-orientation': 'vertical', tabindex: '0' });
+      hold('grows', el('p', { class: 'grows' }, t('view.empty'))),
+      hold('looking', el('p', { class: 'looking' })),
+    );
+    const split = el('div', {
+      class: 'split',
+      role: 'separator',
+      'aria-orientation': 'vertical',
+      tabindex: '0',
+    });
     const body = el('main', {}, left, split, right);
     this.splitter(split, body);
     this.column.replaceChildren(this.list.element, ...(this.shaping ? [this.shaping.list] : []));
-    const foot = el('footer', { class: 'foot' }, hold('counts', el('span', { class: 'counts' })), el('span', { class: 'space' }),
-      hold('busy', el('span', { class: 'busy' }, el('i'), hold('busytext', el('span', {}, t('status.loading'))),
-        el('button', { type: 'button', class: 'link', onclick: () => this.engine.interrupt() }, t('status.cancel')))),
-      hold('kept', el('span', { class: 'muted' })));
+    const foot = el(
+      'footer',
+      { class: 'foot' },
+      hold('counts', el('span', { class: 'counts' })),
+      el('span', { class: 'space' }),
+      hold(
+        'busy',
+        el(
+          'span',
+          { class: 'busy' },
+          el('i'),
+          hold('busytext', el('span', {}, t('status.loading'))),
+          el(
+            'button',
+            { type: 'button', class: 'link', onclick: () => this.engine.interrupt() },
+            t('status.cancel'),
+          ),
+        ),
+      ),
+      hold('kept', el('span', { class: 'muted' })),
+    );
     this.host.replaceChildren(bar, body, foot);
     p['looking']!.hidden = true;
     if (this.started) p['busy']!.hidden = true;
-    this.files.onKept = () => { p['kept']!.textContent = t('status.saved'); };
+    this.files.onKept = () => {
+      p['kept']!.textContent = t('status.saved');
+    };
     this.setTool(this.tool);
     this.showSwitches();
     this.applyTheme();
@@ -374,7 +654,8 @@ export class App {
   }
 
   private splitter(split: HTMLElement, body: HTMLElement): void {
-    const to = (share: number): void => body.style.setProperty('--left', `${Math.min(80, Math.max(20, share))}%`);
+    const to = (share: number): void =>
+      body.style.setProperty('--left', `${Math.min(80, Math.max(20, share))}%`);
     split.addEventListener('pointerdown', (e) => split.setPointerCapture(e.pointerId));
     split.addEventListener('pointermove', (e) => {
       if (!split.hasPointerCapture(e.pointerId)) return;
@@ -404,7 +685,12 @@ export class App {
 
   private refreshSkeleton(): void {
     if (this.look !== 'skeleton') return;
-    this.engine.ask<Float32Array>({ kind: 'skeleton' }).then((pairs) => { if (this.look === 'skeleton') this.view?.setSkeleton(pairs); }, () => undefined);
+    this.engine.ask<Float32Array>({ kind: 'skeleton' }).then(
+      (pairs) => {
+        if (this.look === 'skeleton') this.view?.setSkeleton(pairs);
+      },
+      () => undefined,
+    );
   }
 
   toggleStats(): void {
@@ -426,7 +712,8 @@ export class App {
   }
 
   private showSwitches(): void {
-    const press = (name: string, on: boolean): void => this.parts[name]?.setAttribute('aria-pressed', String(on));
+    const press = (name: string, on: boolean): void =>
+      this.parts[name]?.setAttribute('aria-pressed', String(on));
     press('wire', this.look === 'wire');
     press('skeleton', this.look === 'skeleton');
     press('stats', this.statsOn);
@@ -435,7 +722,8 @@ export class App {
     press('lock', locked);
     this.parts['lock']?.replaceChildren(icon(locked ? 'lock' : 'unlock'));
     this.parts['statsbox']!.hidden = !this.statsOn;
-    for (const name of ['dice', 'grid']) (this.parts[name] as HTMLButtonElement).disabled = locked || !this.plant;
+    for (const name of ['dice', 'grid'])
+      (this.parts[name] as HTMLButtonElement).disabled = locked || !this.plant;
   }
 
   private showShaping(): void {
@@ -457,14 +745,26 @@ export class App {
   }
 
   openPhoto(): void {
-    popover(this.parts['photo']!, photoPanel(() => this.drawn?.photo ?? null, this.sheet.placing, {
-      run: (c) => { this.run(c); if (c.do === 'photo-off') closePopover(); },
-      begin: (name) => this.ask({ kind: 'begin', name }),
-      stage: (command) => this.ask({ kind: 'stage', command }),
-      commit: () => this.ask({ kind: 'commit' }),
-      choose: () => { closePopover(); this.files.choose('image/*'); },
-      placing: (on) => { this.sheet.placing = on; },
-    }), t('tool.photo'));
+    popover(
+      this.parts['photo']!,
+      photoPanel(() => this.drawn?.photo ?? null, this.sheet.placing, {
+        run: (c) => {
+          this.run(c);
+          if (c.do === 'photo-off') closePopover();
+        },
+        begin: (name) => this.ask({ kind: 'begin', name }),
+        stage: (command) => this.ask({ kind: 'stage', command }),
+        commit: () => this.ask({ kind: 'commit' }),
+        choose: () => {
+          closePopover();
+          this.files.choose('image/*');
+        },
+        placing: (on) => {
+          this.sheet.placing = on;
+        },
+      }),
+      t('tool.photo'),
+    );
   }
 
   private async layPhoto(file: File): Promise<void> {
@@ -497,11 +797,18 @@ export class App {
     const state = (): SketchState => this.drawn ?? first;
     const first = this.drawn;
     const lenders = (this.state?.plants ?? []).filter((p) => p.lends && p.id !== this.plant?.id);
-    popover(this.parts['settings']!, settingsPanel(state, lenders, {
-      run: (c) => this.run(c), begin: (name) => this.ask({ kind: 'begin', name }),
-      stage: (command) => this.ask({ kind: 'stage', command }), commit: () => this.ask({ kind: 'commit' }),
-      steady: this.steady, setSteady: (strength) => this.setSteady(strength),
-    }), t('menu.settings'));
+    popover(
+      this.parts['settings']!,
+      settingsPanel(state, lenders, {
+        run: (c) => this.run(c),
+        begin: (name) => this.ask({ kind: 'begin', name }),
+        stage: (command) => this.ask({ kind: 'stage', command }),
+        commit: () => this.ask({ kind: 'commit' }),
+        steady: this.steady,
+        setSteady: (strength) => this.setSteady(strength),
+      }),
+      t('menu.settings'),
+    );
   }
 
   selectAll(): void {
@@ -546,7 +853,10 @@ export class App {
     if (!state) return;
     const name = p['name'] as HTMLInputElement;
     if (document.activeElement !== name) name.value = state.name;
-    for (const [which, key, shortcut] of [['undo', 'undo', 'Ctrl+Z'], ['redo', 'redo', 'Ctrl+Shift+Z']] as const) {
+    for (const [which, key, shortcut] of [
+      ['undo', 'undo', 'Ctrl+Z'],
+      ['redo', 'redo', 'Ctrl+Shift+Z'],
+    ] as const) {
       const step = state[which];
       const b = p[which] as HTMLButtonElement;
       b.disabled = step === null;
@@ -586,16 +896,21 @@ export class App {
     const { seen, parts: p } = this;
     const counts: string[] = [];
     const c = seen?.item?.counts;
-    const add = (key: TextKey, count: number | null): void => { if (count) counts.push(t(key, { count: number(count) })); };
+    const add = (key: TextKey, count: number | null): void => {
+      if (count) counts.push(t(key, { count: number(count) }));
+    };
     add('status.strokes', this.drawn?.strokes.length ?? 0);
     if (c) {
-      for (const kind of ['flowers', 'petals', 'leaves', 'branches', 'triangles'] as const) add(`status.${kind}`, c[kind]);
+      for (const kind of ['flowers', 'petals', 'leaves', 'branches', 'triangles'] as const)
+        add(`status.${kind}`, c[kind]);
       counts.push(t('status.time', { ms: number(Math.round(seen.item!.timings_ms.total)) }));
     }
     p['counts']!.textContent = counts.join('  ·  ');
     if (this.statsOn) p['statsbox']!.replaceChildren(statsTable(this.plant, seen));
     p['counts']!.title = (seen?.item?.warnings ?? []).join('\n');
-    p['grows']!.hidden = [this.scene?.guest, ...(this.scene?.plants ?? [])].some((v) => (v?.parts.length ?? 0) > 0);
+    p['grows']!.hidden = [this.scene?.guest, ...(this.scene?.plants ?? [])].some(
+      (v) => (v?.parts.length ?? 0) > 0,
+    );
     if (this.state) {
       this.panel.show(this.plant, this.state, seen);
       this.list.show(this.state, this.scene);
@@ -604,7 +919,9 @@ export class App {
       this.showBloom();
     }
     const organs = [...new Set((seen?.item?.strokes ?? []).map((s) => s.organ))];
-    p['legend']!.replaceChildren(...organs.map((o) => el('span', { role: 'listitem' }, dot(o, this.dark), tOf('organ', o))));
+    p['legend']!.replaceChildren(
+      ...organs.map((o) => el('span', { role: 'listitem' }, dot(o, this.dark), tOf('organ', o))),
+    );
     document.body.dataset['triangles'] = String(c?.triangles ?? 0);
     document.body.dataset['flowers'] = String(c?.flowers ?? 0);
     document.body.dataset['parts'] = String(seen?.parts.length ?? 0);
@@ -620,9 +937,26 @@ export class App {
     const { drawn } = this;
     const flowers = (this.seen?.item?.counts.flowers ?? 0) > 0;
     box.hidden = !drawn || (!flowers && drawn.day === null);
-    if (box.hidden || !drawn || this.panel.isPlaying || (box.contains(document.activeElement) && document.activeElement instanceof HTMLInputElement)) return;
+    if (
+      box.hidden ||
+      !drawn ||
+      this.panel.isPlaying ||
+      (box.contains(document.activeElement) && document.activeElement instanceof HTMLInputElement)
+    )
+      return;
     const opens = drawn.day !== null;
-    const toggle = el('button', { type: 'button', class: 'chip', id: 'b-opens', 'aria-pressed': String(opens), title: t('bloom.hint'), onclick: () => this.run({ do: 'day', day: opens ? null : 6 }) }, t('bloom.opens'));
+    const toggle = el(
+      'button',
+      {
+        type: 'button',
+        class: 'chip',
+        id: 'b-opens',
+        'aria-pressed': String(opens),
+        title: t('bloom.hint'),
+        onclick: () => this.run({ do: 'day', day: opens ? null : 6 }),
+      },
+      t('bloom.opens'),
+    );
     box.replaceChildren(toggle, ...(opens ? [this.panel.dayRow(drawn.day!)] : []));
   }
 

@@ -21,7 +21,11 @@ export class Clipboard {
   /** How many strokes at the end of the document shall be selected when they are there. */
   private fresh = 0;
 
-  constructor(private readonly engine: Engine, private readonly sheet: Sheet, private readonly page: ClipboardEvents) {}
+  constructor(
+    private readonly engine: Engine,
+    private readonly sheet: Sheet,
+    private readonly page: ClipboardEvents,
+  ) {}
 
   /** Selects what was duplicated, once it is among these strokes. */
   select(strokes: readonly { id: number }[]): void {
@@ -33,7 +37,13 @@ export class Clipboard {
   async copy(): Promise<boolean> {
     const ids = this.sheet.selected;
     if (ids.length === 0) return false;
-    const asked = this.engine.ask<string>({ kind: 'copy', ids }).then((clip) => { this.clip = clip; return true; }, () => false);
+    const asked = this.engine.ask<string>({ kind: 'copy', ids }).then(
+      (clip) => {
+        this.clip = clip;
+        return true;
+      },
+      () => false,
+    );
     this.copying = asked;
     const done = await asked;
     if (this.copying === asked) this.copying = undefined;
@@ -48,7 +58,8 @@ export class Clipboard {
   }
 
   paste(e: ClipboardEvent): void {
-    if ((e.target as HTMLElement).matches('input, textarea') || document.querySelector('dialog[open]')) return;
+    if ((e.target as HTMLElement).matches('input, textarea') || document.querySelector('dialog[open]'))
+      return;
     const file = e.clipboardData?.files[0];
     if (file) {
       void this.page.openFile(file);
@@ -59,7 +70,7 @@ export class Clipboard {
 
   async pasteText(given: string): Promise<void> {
     // While the core is busy a copy may still be on its way: it is newer than what the clipboard holds.
-    const newer = this.copying !== undefined && await this.copying;
+    const newer = this.copying !== undefined && (await this.copying);
     const text = !newer && /^\s*[{<]/.test(given) ? given : this.clip;
     if (text === '') return;
     const step = 24 * this.sheet.unitsPerPixel;

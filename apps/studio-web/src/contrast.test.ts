@@ -4,7 +4,9 @@ import css from './style.css?raw';
 
 /** Relative luminance and contrast as WCAG 2.2 defines them. */
 function luminance(hex: string): number {
-  const [r, g, b] = [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16) / 255).map((c) => (c <= 0.040_45 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4));
+  const [r, g, b] = [1, 3, 5]
+    .map((i) => parseInt(hex.slice(i, i + 2), 16) / 255)
+    .map((c) => (c <= 0.040_45 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4));
   return 0.2126 * r! + 0.7152 * g! + 0.0722 * b!;
 }
 function contrast(a: string, b: string): number {
@@ -31,9 +33,13 @@ describe('contrast (WCAG AA)', () => {
     });
 
     it(`of focus and of strokes is 3 or more, ${name}`, () => {
-      for (const ground of ['bar', 'paper', 'raised']) expect(contrast(c['focus']!, c[ground]!), ground).toBeGreaterThanOrEqual(3);
+      for (const ground of ['bar', 'paper', 'raised'])
+        expect(contrast(c['focus']!, c[ground]!), ground).toBeGreaterThanOrEqual(3);
       for (const organ of [undefined, ...ORGANS]) {
-        expect(contrast(inkOf(organ, name === 'dark'), c['paper']!), organ ?? 'unread').toBeGreaterThanOrEqual(3);
+        expect(
+          contrast(inkOf(organ, name === 'dark'), c['paper']!),
+          organ ?? 'unread',
+        ).toBeGreaterThanOrEqual(3);
       }
     });
   }

@@ -7,12 +7,33 @@ import { el } from './ui';
 type StrokeClass = NonNullable<SketchState['strokes'][number]['class']>;
 
 const CLASSES: readonly StrokeClass[] = [
-  'axis', 'blade', 'corolla', 'disc', 'vein', 'fruit', 'trunk_outline', 'crown', 'pot', 'ground', 'scribble', 'other',
+  'axis',
+  'blade',
+  'corolla',
+  'disc',
+  'vein',
+  'fruit',
+  'trunk_outline',
+  'crown',
+  'pot',
+  'ground',
+  'scribble',
+  'other',
 ];
 /** The organ whose colour stands for a class. */
 const LOOKS: Record<StrokeClass, string> = {
-  axis: 'branch', blade: 'leaf', corolla: 'petal', disc: 'disc', vein: 'vein', fruit: 'fruit', trunk_outline: 'trunk',
-  crown: 'leaf_contour', pot: 'ignored', ground: 'ignored', scribble: 'ignored', other: 'ignored',
+  axis: 'branch',
+  blade: 'leaf',
+  corolla: 'petal',
+  disc: 'disc',
+  vein: 'vein',
+  fruit: 'fruit',
+  trunk_outline: 'trunk',
+  crown: 'leaf_contour',
+  pot: 'ignored',
+  ground: 'ignored',
+  scribble: 'ignored',
+  other: 'ignored',
 };
 const MODES = ['parts', 'branch-contour', 'leaf-contour'] as const;
 
@@ -27,7 +48,13 @@ export class Card {
     this.element.hidden = true;
   }
 
-  show(ids: number[], anchor: { x: number; y: number }, state: SketchState, view: PlantView | undefined, dark: boolean): void {
+  show(
+    ids: number[],
+    anchor: { x: number; y: number },
+    state: SketchState,
+    view: PlantView | undefined,
+    dark: boolean,
+  ): void {
     const chosen = state.strokes.filter((s) => ids.includes(s.id));
     if (chosen.length === 0) {
       this.hide();
@@ -43,15 +70,26 @@ export class Card {
     const report = chosen.length === 1 ? reports.get(chosen[0]!.id) : undefined;
     const was = report
       ? set === null || set === undefined
-        ? t('correct.was', { organ: tOf('organ', report.organ), percent: Math.round(report.confidence * 100) })
+        ? t('correct.was', {
+            organ: tOf('organ', report.organ),
+            percent: Math.round(report.confidence * 100),
+          })
         : t('correct.set')
       : '';
     const chip = (label: string, organ: string | undefined, on: boolean, command: Command): HTMLElement => {
-      const b = el('button', { type: 'button', class: 'chip', 'aria-pressed': String(on), onclick: () => this.run(command) }, label);
+      const b = el(
+        'button',
+        { type: 'button', class: 'chip', 'aria-pressed': String(on), onclick: () => this.run(command) },
+        label,
+      );
       if (organ) b.prepend(dot(organ, dark));
       return b;
     };
-    const chips = el('div', { class: 'chips' }, chip(t('correct.auto'), undefined, set === null, { do: 'class', ids, class: null }));
+    const chips = el(
+      'div',
+      { class: 'chips' },
+      chip(t('correct.auto'), undefined, set === null, { do: 'class', ids, class: null }),
+    );
     for (const c of CLASSES) {
       const believed = set === null && report?.class === c;
       const b = chip(tOf('class', c), LOOKS[c], set === c, { do: 'class', ids, class: c });
@@ -59,9 +97,14 @@ export class Card {
       chips.append(b);
     }
     const modes = el('div', { class: 'chips' }, el('span', { class: 'muted' }, t('correct.mode')));
-    for (const m of MODES) modes.append(chip(tOf('correct.mode', m), undefined, mode === m, { do: 'mode', ids, mode: m }));
+    for (const m of MODES)
+      modes.append(chip(tOf('correct.mode', m), undefined, mode === m, { do: 'mode', ids, mode: m }));
     const title = chosen.length === 1 ? t('correct.title') : t('correct.many', { count: chosen.length });
-    const erase = el('button', { type: 'button', class: 'chip danger', onclick: () => this.run({ do: 'remove', ids }) }, t('correct.erase'));
+    const erase = el(
+      'button',
+      { type: 'button', class: 'chip danger', onclick: () => this.run({ do: 'remove', ids }) },
+      t('correct.erase'),
+    );
     this.element.setAttribute('aria-label', title);
     const content: HTMLElement[] = [el('strong', {}, title)];
     if (was) content.push(el('span', { class: 'muted' }, was));

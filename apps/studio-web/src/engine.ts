@@ -21,13 +21,29 @@ export interface EngineEvents {
 }
 
 const CHANGES: ReadonlySet<Request['kind']> = new Set([
-  'open', 'close', 'select', 'obstacle', 'stroke', 'paste', 'photo', 'command', 'begin', 'stage', 'commit', 'abandon', 'undo', 'redo',
+  'open',
+  'close',
+  'select',
+  'obstacle',
+  'stroke',
+  'paste',
+  'photo',
+  'command',
+  'begin',
+  'stage',
+  'commit',
+  'abandon',
+  'undo',
+  'redo',
 ]);
 
 export class Engine {
   private worker: Worker | undefined;
   private seq = 0;
-  private waiting = new Map<number, { resolve: (v: unknown) => void; reject: (e: Error) => void; request: Request }>();
+  private waiting = new Map<
+    number,
+    { resolve: (v: unknown) => void; reject: (e: Error) => void; request: Request }
+  >();
   private journal: Request[] = [];
   private faults = 0;
   private wasReady = false;

@@ -11,11 +11,23 @@ const AXES: ReadonlySet<Target> = new Set(['usda', 'obj', 'ply', 'stl', 'mtg', '
 const WIND: ReadonlySet<Target> = new Set(['glb', 'usda']);
 const NAMES: Partial<Record<Target, string>> = { qsm: 'CSV', usda: 'USD' };
 
-let last: { format: Target; options: ExportOptions } = { format: 'glb', options: { levels: 1, up: 'y', unit: 'm', whole: false, wind: false } };
+let last: { format: Target; options: ExportOptions } = {
+  format: 'glb',
+  options: { levels: 1, up: 'y', unit: 'm', whole: false, wind: false },
+};
 
 /** `several`: there is a scene to choose; `kind`: the maker of the plant that is chosen. */
-export function openExport(several: boolean, kind: MakerWord, act: (format: Target, options: ExportOptions) => void): void {
-  const choice = <T extends string>(text: TextKey, words: readonly (readonly [T, string])[], value: T, set: (v: T) => void): HTMLLabelElement => {
+export function openExport(
+  several: boolean,
+  kind: MakerWord,
+  act: (format: Target, options: ExportOptions) => void,
+): void {
+  const choice = <T extends string>(
+    text: TextKey,
+    words: readonly (readonly [T, string])[],
+    value: T,
+    set: (v: T) => void,
+  ): HTMLLabelElement => {
     const select = el('select', { onchange: () => set(select.value as T) });
     for (const [word, label] of words) select.append(el('option', { value: word }, label));
     select.value = value;
@@ -25,16 +37,70 @@ export function openExport(several: boolean, kind: MakerWord, act: (format: Targ
   options = { ...options, whole: several };
   const formats = FORMATS.filter((f) => f !== 'json' || kind === 'sketch');
   if (!formats.includes(format)) format = 'glb';
-  const what = choice('export.what', [['scene', t('export.what.scene')], ['plant', t('export.what.plant')]], 'scene', (v) => { options.whole = v === 'scene'; });
+  const what = choice(
+    'export.what',
+    [
+      ['scene', t('export.what.scene')],
+      ['plant', t('export.what.plant')],
+    ],
+    'scene',
+    (v) => {
+      options.whole = v === 'scene';
+    },
+  );
   what.hidden = !several;
-  const levels = choice('export.levels', [['1', t('export.levels.one')], ['2', '2'], ['3', '3'], ['4', '4']], String(options.levels) as '1' | '2' | '3' | '4', (v) => { options.levels = Number(v); });
-  const up = choice('export.up', [['y', '+Y'], ['z', '+Z']], options.up, (v) => { options.up = v; });
-  const unit = choice('export.unit', [['m', 'm'], ['cm', 'cm'], ['mm', 'mm']], options.unit, (v) => { options.unit = v; });
+  const levels = choice(
+    'export.levels',
+    [
+      ['1', t('export.levels.one')],
+      ['2', '2'],
+      ['3', '3'],
+      ['4', '4'],
+    ],
+    String(options.levels) as '1' | '2' | '3' | '4',
+    (v) => {
+      options.levels = Number(v);
+    },
+  );
+  const up = choice(
+    'export.up',
+    [
+      ['y', '+Y'],
+      ['z', '+Z'],
+    ],
+    options.up,
+    (v) => {
+      options.up = v;
+    },
+  );
+  const unit = choice(
+    'export.unit',
+    [
+      ['m', 'm'],
+      ['cm', 'cm'],
+      ['mm', 'mm'],
+    ],
+    options.unit,
+    (v) => {
+      options.unit = v;
+    },
+  );
   levels.querySelector('select')!.id = 'b-levels';
-  const blown = el('input', { type: 'checkbox', id: 'b-wind', onchange: () => { options.wind = blown.checked; } });
+  const blown = el('input', {
+    type: 'checkbox',
+    id: 'b-wind',
+    onchange: () => {
+      options.wind = blown.checked;
+    },
+  });
   blown.checked = options.wind ?? false;
   blown.style.justifySelf = 'start';
-  const wind = el('label', { class: 'option', title: t('export.wind.help') }, el('span', {}, t('export.wind')), blown);
+  const wind = el(
+    'label',
+    { class: 'option', title: t('export.wind.help') },
+    el('span', {}, t('export.wind')),
+    blown,
+  );
   const show = (): void => {
     levels.hidden = !LEVELS.has(format);
     up.hidden = unit.hidden = !AXES.has(format);
@@ -42,13 +108,48 @@ export function openExport(several: boolean, kind: MakerWord, act: (format: Targ
   };
   const list = el('div', { class: 'formats', role: 'radiogroup', 'aria-label': t('menu.export') });
   for (const f of formats) {
-    const radio = el('input', { type: 'radio', name: 'format', value: f, 'data-format': f, onchange: () => { format = f; show(); } });
+    const radio = el('input', {
+      type: 'radio',
+      name: 'format',
+      value: f,
+      'data-format': f,
+      onchange: () => {
+        format = f;
+        show();
+      },
+    });
     radio.checked = f === format;
-    list.append(el('label', { class: 'format' }, radio, el('b', {}, NAMES[f] ?? f.toUpperCase()), el('span', { class: 'muted' }, t(`export.${f}`))));
+    list.append(
+      el(
+        'label',
+        { class: 'format' },
+        radio,
+        el('b', {}, NAMES[f] ?? f.toUpperCase()),
+        el('span', { class: 'muted' }, t(`export.${f}`)),
+      ),
+    );
   }
   const go = el('button', { type: 'submit', class: 'primary', id: 'b-export-go' }, t('menu.export'));
-  const form = el('form', { class: 'export', onsubmit: (e) => { e.preventDefault(); last = { format, options }; d.close(); act(format, { ...options }); } },
-    list, what, levels, wind, up, unit, el('p', { class: 'muted' }, t('export.note')), el('div', { class: 'row' }, el('span', { class: 'space' }), go));
+  const form = el(
+    'form',
+    {
+      class: 'export',
+      onsubmit: (e) => {
+        e.preventDefault();
+        last = { format, options };
+        d.close();
+        act(format, { ...options });
+      },
+    },
+    list,
+    what,
+    levels,
+    wind,
+    up,
+    unit,
+    el('p', { class: 'muted' }, t('export.note')),
+    el('div', { class: 'row' }, el('span', { class: 'space' }), go),
+  );
   const d = dialog(t('export.title'), form);
   show();
   list.querySelector<HTMLInputElement>('input:checked')?.focus();

@@ -14,7 +14,12 @@ import { dialog, download, el, note } from './ui';
 const MAX_MB = 256;
 const ACCEPT = '.burgeon,.svg,.inkml,.ndjson,.json,.csv,.toml,.glb,.gltf,.obj,.ply,.stl,image/*';
 const TYPES: Record<string, string> = {
-  glb: 'model/gltf-binary', ply: 'application/octet-stream', stl: 'model/stl', json: 'application/json', mtg: 'text/plain', qsm: 'text/csv',
+  glb: 'model/gltf-binary',
+  ply: 'application/octet-stream',
+  stl: 'model/stl',
+  json: 'application/json',
+  mtg: 'text/plain',
+  qsm: 'text/csv',
 };
 
 export interface FilesEvents {
@@ -37,17 +42,24 @@ export class Files {
   private stale = false;
   private toldOfStorage = false;
 
-  constructor(private readonly engine: Engine, private readonly events: FilesEvents) {}
+  constructor(
+    private readonly engine: Engine,
+    private readonly events: FilesEvents,
+  ) {}
 
   /** Files may be dropped anywhere, and pasted. */
   listen(host: HTMLElement): void {
-    const over = (on: boolean) => (e: DragEvent): void => {
-      e.preventDefault();
-      host.classList.toggle('dropping', on && (e.dataTransfer?.types.includes('Files') ?? false));
-      host.dataset['drop'] = t('note.dropped');
-    };
+    const over =
+      (on: boolean) =>
+      (e: DragEvent): void => {
+        e.preventDefault();
+        host.classList.toggle('dropping', on && (e.dataTransfer?.types.includes('Files') ?? false));
+        host.dataset['drop'] = t('note.dropped');
+      };
     host.addEventListener('dragover', over(true));
-    host.addEventListener('dragleave', (e) => { if (!e.relatedTarget) over(false)(e); });
+    host.addEventListener('dragleave', (e) => {
+      if (!e.relatedTarget) over(false)(e);
+    });
     host.addEventListener('drop', (e) => {
       over(false)(e);
       const file = e.dataTransfer?.files[0];
@@ -61,7 +73,10 @@ export class Files {
 
   pickFile(accept: string, act: (file: File) => void): void {
     const input = el('input', { type: 'file', accept });
-    input.addEventListener('change', () => { const file = input.files?.[0]; if (file) act(file); });
+    input.addEventListener('change', () => {
+      const file = input.files?.[0];
+      if (file) act(file);
+    });
     input.click();
   }
 
@@ -95,17 +110,46 @@ export class Files {
 
   private pick(name: string, bytes: Uint8Array, names: string[]): void {
     const list = el('div', { class: 'menu' });
-    names.forEach((each, row) => list.append(el('button', {
-      type: 'button', onclick: () => { d.close(); if (row > 0) this.open(name, bytes, row).catch((e: Error) => note(e.message, 'bad')); },
-    }, `${row + 1}. ${each}`)));
-    const d = dialog(t('dialog.pick'), el('p', { class: 'muted' }, t('dialog.pick.hint', { count: names.length })), list);
+    names.forEach((each, row) =>
+      list.append(
+        el(
+          'button',
+          {
+            type: 'button',
+            onclick: () => {
+              d.close();
+              if (row > 0) this.open(name, bytes, row).catch((e: Error) => note(e.message, 'bad'));
+            },
+          },
+          `${row + 1}. ${each}`,
+        ),
+      ),
+    );
+    const d = dialog(
+      t('dialog.pick'),
+      el('p', { class: 'muted' }, t('dialog.pick.hint', { count: names.length })),
+      list,
+    );
   }
 
   samples(): void {
     const list = el('div', { class: 'samples' });
     for (const { name, url } of SAMPLES) {
-      list.append(el('button', { type: 'button', 'data-sample': name, onclick: () => { d.close(); void this.openUrl(`${name}.svg`, url); } },
-        el('img', { src: url, alt: '', loading: 'lazy' }), el('span', {}, name.replaceAll('-', ' '))));
+      list.append(
+        el(
+          'button',
+          {
+            type: 'button',
+            'data-sample': name,
+            onclick: () => {
+              d.close();
+              void this.openUrl(`${name}.svg`, url);
+            },
+          },
+          el('img', { src: url, alt: '', loading: 'lazy' }),
+          el('span', {}, name.replaceAll('-', ' ')),
+        ),
+      );
     }
     const d = dialog(t('dialog.samples'), list);
   }
@@ -121,7 +165,13 @@ export class Files {
   }
 
   fresh(): void {
-    this.engine.ask({ kind: 'command', command: { do: 'new' } }).then(() => { this.events.opened(); this.changed(); }).catch(() => undefined);
+    this.engine
+      .ask({ kind: 'command', command: { do: 'new' } })
+      .then(() => {
+        this.events.opened();
+        this.changed();
+      })
+      .catch(() => undefined);
   }
 
   /** Forgets the document and its history. */
@@ -146,11 +196,23 @@ export class Files {
         note(t('note.link.long'), 'bad');
         return;
       }
-      const field = el('textarea', { class: 'field', readonly: '', rows: '4', 'aria-label': t('share.title') });
+      const field = el('textarea', {
+        class: 'field',
+        readonly: '',
+        rows: '4',
+        'aria-label': t('share.title'),
+      });
       field.value = to;
-      dialog(t('share.title'), el('p', { class: 'muted' }, t('share.hint', { size: Math.ceil(to.length / 1000) })), field);
+      dialog(
+        t('share.title'),
+        el('p', { class: 'muted' }, t('share.hint', { size: Math.ceil(to.length / 1000) })),
+        field,
+      );
       field.select();
-      await navigator.clipboard.writeText(to).then(() => note(t('note.link.copied')), () => undefined);
+      await navigator.clipboard.writeText(to).then(
+        () => note(t('note.link.copied')),
+        () => undefined,
+      );
     } catch (e) {
       note(t('note.refused', { why: (e as Error).message }), 'bad');
     }
@@ -162,7 +224,11 @@ export class Files {
   }
 
   chooseExport(): void {
-    openExport(this.events.several(), this.events.kind(), (format, options) => void this.exportAs(format, options));
+    openExport(
+      this.events.several(),
+      this.events.kind(),
+      (format, options) => void this.exportAs(format, options),
+    );
   }
 
   private async exportAs(format: Target, options: ExportOptions): Promise<void> {
@@ -174,7 +240,7 @@ export class Files {
       const levelled = LEVELS.has(format);
       if (!levelled) options.levels = 1;
       const structure = (format === 'mtg' || format === 'qsm') && options.whole && this.events.several();
-      let zipped = format === 'obj' || format === 'usda' || structure || (options.levels > 1 && levelled);
+      const zipped = format === 'obj' || format === 'usda' || structure || (options.levels > 1 && levelled);
       const extension = format === 'qsm' ? 'csv' : format;
       const name = `${safe(this.events.name())}.${zipped ? `${format}.zip` : extension}`;
       if (format === 'png') {
@@ -182,7 +248,11 @@ export class Files {
         if (!picture) throw new Error(t('note.nowebgl'));
         download(name, picture, 'image/png');
       } else {
-        download(name, await this.engine.ask<Uint8Array<ArrayBuffer>>({ kind: 'export', format, options }), zipped ? 'application/zip' : (TYPES[format] ?? ''));
+        download(
+          name,
+          await this.engine.ask<Uint8Array<ArrayBuffer>>({ kind: 'export', format, options }),
+          zipped ? 'application/zip' : (TYPES[format] ?? ''),
+        );
       }
       note(t('note.exported', { name }));
     } catch (e) {
@@ -250,7 +320,8 @@ export class Files {
       const last = await kept();
       if (!last) return;
       await this.open('autosave.burgeon', last.bytes, 0, true, true);
-      if (Number(document.body.dataset['strokes']) > 0 || Number(document.body.dataset['plants']) > 1) note(t('note.restored'));
+      if (Number(document.body.dataset['strokes']) > 0 || Number(document.body.dataset['plants']) > 1)
+        note(t('note.restored'));
     } catch {
       this.toldOfStorage = true;
       note(t('note.storage'), 'bad');
@@ -260,5 +331,10 @@ export class Files {
 
 /** A file name of the plant's name. */
 function safe(name: string): string {
-  return name.replace(/[\\/:*?"<>|\u0000-\u001f]+/g, '-').replace(/^[.\s-]+|[.\s-]+$/g, '').slice(0, 80) || 'plant';
+  return (
+    name
+      .replace(/[\\/:*?"<>|\u0000-\u001f]+/g, '-')
+      .replace(/^[.\s-]+|[.\s-]+$/g, '')
+      .slice(0, 80) || 'plant'
+  );
 }

@@ -7,9 +7,21 @@ import { fieldName, helpOf, t, unitOf, wordOf } from './text';
 import { el } from './ui';
 
 export interface Schema {
-  $ref?: string; $defs?: Record<string, Schema>; type?: string | string[]; description?: string; default?: Json;
-  minimum?: number; maximum?: number; 'x-unit'?: string; enum?: Json[]; const?: Json; oneOf?: Schema[]; anyOf?: Schema[];
-  properties?: Record<string, Schema>; required?: string[]; items?: Schema | boolean;
+  $ref?: string;
+  $defs?: Record<string, Schema>;
+  type?: string | string[];
+  description?: string;
+  default?: Json;
+  minimum?: number;
+  maximum?: number;
+  'x-unit'?: string;
+  enum?: Json[];
+  const?: Json;
+  oneOf?: Schema[];
+  anyOf?: Schema[];
+  properties?: Record<string, Schema>;
+  required?: string[];
+  items?: Schema | boolean;
 }
 export type Fields = { [key: string]: Json };
 
@@ -46,8 +58,11 @@ function plain(schema: Schema, root: Schema): Schema & { nullable?: boolean } {
   return s;
 }
 
-const isFields = (value: Json | undefined): value is Fields => typeof value === 'object' && value !== null && !Array.isArray(value);
-const words = (s: Schema): string[] => s.enum?.map(String) ?? (s.oneOf?.every((o) => o.const !== undefined) ? s.oneOf.map((o) => String(o.const)) : []);
+const isFields = (value: Json | undefined): value is Fields =>
+  typeof value === 'object' && value !== null && !Array.isArray(value);
+const words = (s: Schema): string[] =>
+  s.enum?.map(String) ??
+  (s.oneOf?.every((o) => o.const !== undefined) ? s.oneOf.map((o) => String(o.const)) : []);
 
 /** The tag that tells variants apart, if the schema has variants. */
 function tagOf(s: Schema): string | undefined {
@@ -64,16 +79,30 @@ export class Form {
   readonly element = el('div', { class: 'form' });
   private open = new Set<string>();
 
-  constructor(private readonly root: Schema, private readonly events: FormEvents, private readonly hidden: ReadonlySet<string> = new Set()) {}
+  constructor(
+    private readonly root: Schema,
+    private readonly events: FormEvents,
+    private readonly hidden: ReadonlySet<string> = new Set(),
+  ) {}
 
   /** Shows these values; what has the focus keeps it. */
   show(values: Fields, first: readonly string[] = []): void {
-    const focused = (this.element.contains(document.activeElement) ? document.activeElement?.getAttribute('data-path') : null) ?? null;
+    const focused =
+      (this.element.contains(document.activeElement)
+        ? document.activeElement?.getAttribute('data-path')
+        : null) ?? null;
     const properties = this.root.properties ?? {};
     const names = [...first, ...Object.keys(properties).filter((k) => !first.includes(k))];
-    const rows = names.flatMap((name) => (this.hidden.has(name) || !properties[name] ? [] : this.field(name, properties[name], values[name], `/${name}`)));
+    const rows = names.flatMap((name) =>
+      this.hidden.has(name) || !properties[name]
+        ? []
+        : this.field(name, properties[name], values[name], `/${name}`),
+    );
     this.element.replaceChildren(...rows);
-    if (focused !== null) this.element.querySelector<HTMLElement>(`[data-path="${CSS.escape(focused)}"]`)?.focus({ preventScroll: true });
+    if (focused !== null)
+      this.element
+        .querySelector<HTMLElement>(`[data-path="${CSS.escape(focused)}"]`)
+        ?.focus({ preventScroll: true });
   }
 
   private field(name: string, schema: Schema, value: Json | undefined, path: string): HTMLElement[] {
@@ -84,9 +113,16 @@ export class Form {
     const tag = tagOf(s);
     if (tag !== undefined) return isFields(now) ? [this.variants(name, s, tag, now, path)] : [];
     if (s.type === 'boolean') return [this.check(name, s, now === true, path)];
-    if (s.type === 'number' || s.type === 'integer') return [this.number(name, s, typeof now === 'number' ? now : null, path)];
+    if (s.type === 'number' || s.type === 'integer')
+      return [this.number(name, s, typeof now === 'number' ? now : null, path)];
     if (s['x-unit'] === 'colour') return [this.colour(name, s, typeof now === 'string' ? now : null, path)];
-    if (s.type === 'array' && Array.isArray(now) && now.length === 3 && now.every((x) => typeof x === 'number')) return [this.triple(name, s, now as number[], path)];
+    if (
+      s.type === 'array' &&
+      Array.isArray(now) &&
+      now.length === 3 &&
+      now.every((x) => typeof x === 'number')
+    )
+      return [this.triple(name, s, now as number[], path)];
     if (s.type === 'object' && isFields(now)) return [this.group(name, s, now, path)];
     return [];
   }
@@ -97,30 +133,50 @@ export class Form {
     return el('label', { class: 'f-row', title: tip(s) }, el('span', {}, label), ...content);
   }
 
-  private number(name: string, s: Schema & { nullable?: boolean }, value: number | null, path: string): HTMLElement {
+  private number(
+    name: string,
+    s: Schema & { nullable?: boolean },
+    value: number | null,
+    path: string,
+  ): HTMLElement {
     const [least, most] = [s.minimum ?? 0, s.maximum ?? Infinity];
     const at = value ?? (typeof s.default === 'number' ? s.default : Math.min(Math.max(1, least), most));
     const whole = s.type === 'integer';
     const wide = most - least > WIDE || (least > 0 && most > WIDE * least);
     // Far apart: a slider of ratios around the value.
     const ratio = wide && at > 0;
-    const [low, high] = ratio ? [Math.max(least, at / 8), Math.min(most, at * 8)] : [least, wide ? Math.min(most, Math.max(10, 4 * at)) : most];
+    const [low, high] = ratio
+      ? [Math.max(least, at / 8), Math.min(most, at * 8)]
+      : [least, wide ? Math.min(most, Math.max(10, 4 * at)) : most];
     const from = (share: number): number => {
       const x = ratio ? low * (high / low) ** share : low + share * (high - low);
       return whole ? Math.round(x) : round(x);
     };
-    const to = (x: number): number => (high <= low ? 0 : ratio ? Math.log(x / low) / Math.log(high / low) : (x - low) / (high - low));
+    const to = (x: number): number =>
+      high <= low ? 0 : ratio ? Math.log(x / low) / Math.log(high / low) : (x - low) / (high - low);
     const box = el('input', {
-      type: 'number', class: 'f-number', min: String(least), ...(most < Infinity ? { max: String(most) } : {}), step: whole ? '1' : 'any', 'data-path': path, 'aria-label': fieldName(name),
+      type: 'number',
+      class: 'f-number',
+      min: String(least),
+      ...(most < Infinity ? { max: String(most) } : {}),
+      step: whole ? '1' : 'any',
+      'data-path': path,
+      'aria-label': fieldName(name),
       onchange: () => {
         if (box.value === '' && s.nullable) this.events.set(path, null);
-        else if (Number.isFinite(box.valueAsNumber)) this.events.set(path, whole ? Math.round(box.valueAsNumber) : box.valueAsNumber);
+        else if (Number.isFinite(box.valueAsNumber))
+          this.events.set(path, whole ? Math.round(box.valueAsNumber) : box.valueAsNumber);
       },
     });
     box.value = value === null ? '' : String(round(value));
     if (s.nullable) box.placeholder = t('form.auto');
     const slider = el('input', {
-      type: 'range', min: '0', max: String(whole && !ratio ? Math.max(1, Math.min(STEPS, high - low)) : STEPS), step: '1', 'data-path': `${path}#`, 'aria-label': fieldName(name),
+      type: 'range',
+      min: '0',
+      max: String(whole && !ratio ? Math.max(1, Math.min(STEPS, high - low)) : STEPS),
+      step: '1',
+      'data-path': `${path}#`,
+      'aria-label': fieldName(name),
       oninput: () => {
         const x = from(Number(slider.value) / Number(slider.max));
         box.value = String(x);
@@ -133,26 +189,53 @@ export class Form {
   }
 
   private check(name: string, s: Schema, on: boolean, path: string): HTMLElement {
-    const box = el('input', { type: 'checkbox', 'data-path': path, onchange: () => this.events.set(path, box.checked) });
+    const box = el('input', {
+      type: 'checkbox',
+      'data-path': path,
+      onchange: () => this.events.set(path, box.checked),
+    });
     box.checked = on;
     return this.row(name, s, box);
   }
 
-  private colour(name: string, s: Schema & { nullable?: boolean }, value: string | null, path: string): HTMLElement {
-    const box = el('input', { type: 'color', 'data-path': path, onchange: () => this.events.set(path, box.value) });
+  private colour(
+    name: string,
+    s: Schema & { nullable?: boolean },
+    value: string | null,
+    path: string,
+  ): HTMLElement {
+    const box = el('input', {
+      type: 'color',
+      'data-path': path,
+      onchange: () => this.events.set(path, box.value),
+    });
     box.value = value ?? '#808080';
     if (!s.nullable) return this.row(name, s, box);
-    const use = el('input', { type: 'checkbox', 'aria-label': fieldName(name), onchange: () => this.events.set(path, use.checked ? box.value : null) });
+    const use = el('input', {
+      type: 'checkbox',
+      'aria-label': fieldName(name),
+      onchange: () => this.events.set(path, use.checked ? box.value : null),
+    });
     use.checked = value !== null;
     box.disabled = value === null;
     return this.row(name, s, el('span', { class: 'f-pair' }, use, box));
   }
 
-  private choice(name: string, s: Schema & { nullable?: boolean }, choices: string[], now: Json, path: string): HTMLElement {
-    const select = el('select', { 'data-path': path, onchange: () => this.events.set(path, select.value === '' ? null : select.value) });
+  private choice(
+    name: string,
+    s: Schema & { nullable?: boolean },
+    choices: string[],
+    now: Json,
+    path: string,
+  ): HTMLElement {
+    const select = el('select', {
+      'data-path': path,
+      onchange: () => this.events.set(path, select.value === '' ? null : select.value),
+    });
     if (s.nullable) select.append(el('option', { value: '' }, t('form.auto')));
     const meant = (word: string): string => helpOf(s.oneOf?.find((o) => o.const === word)?.description ?? '');
-    for (const word of choices) select.append(el('option', { value: word, title: meant(word) }, wordOf(word)));
+    for (const word of choices)
+      select.append(el('option', { value: word, title: meant(word) }, wordOf(word)));
     select.value = now === null ? '' : String(now);
     return this.row(name, s, select);
   }
@@ -160,8 +243,18 @@ export class Form {
   private triple(name: string, s: Schema, now: number[], path: string): HTMLElement {
     const boxes = now.map((x, i) => {
       const box = el('input', {
-        type: 'number', step: 'any', class: 'f-number', 'data-path': `${path}/${i}`, 'aria-label': `${fieldName(name)} ${'xyz'[i]}`,
-        onchange: () => { if (Number.isFinite(box.valueAsNumber)) this.events.set(path, now.map((y, k) => (k === i ? box.valueAsNumber : y))); },
+        type: 'number',
+        step: 'any',
+        class: 'f-number',
+        'data-path': `${path}/${i}`,
+        'aria-label': `${fieldName(name)} ${'xyz'[i]}`,
+        onchange: () => {
+          if (Number.isFinite(box.valueAsNumber))
+            this.events.set(
+              path,
+              now.map((y, k) => (k === i ? box.valueAsNumber : y)),
+            );
+        },
       });
       box.value = String(round(x));
       return box;
@@ -169,11 +262,31 @@ export class Form {
     return this.row(name, s, el('span', { class: 'f-triple' }, ...boxes));
   }
 
-  private group(name: string, s: Schema, now: Fields, path: string, extra: HTMLElement[] = [], skip = ''): HTMLElement {
+  private group(
+    name: string,
+    s: Schema,
+    now: Fields,
+    path: string,
+    extra: HTMLElement[] = [],
+    skip = '',
+  ): HTMLElement {
     const properties = s.properties ?? {};
-    const rows = Object.keys(properties).flatMap((key) => (key === skip ? [] : this.field(key, properties[key]!, now[key], `${path}/${key}`)));
-    const details = el('details', { class: 'f-group', ontoggle: () => { if (details.open) this.open.add(path); else this.open.delete(path); } },
-      el('summary', { title: tip(s), 'data-path': path }, fieldName(name)), ...extra, ...rows);
+    const rows = Object.keys(properties).flatMap((key) =>
+      key === skip ? [] : this.field(key, properties[key]!, now[key], `${path}/${key}`),
+    );
+    const details = el(
+      'details',
+      {
+        class: 'f-group',
+        ontoggle: () => {
+          if (details.open) this.open.add(path);
+          else this.open.delete(path);
+        },
+      },
+      el('summary', { title: tip(s), 'data-path': path }, fieldName(name)),
+      ...extra,
+      ...rows,
+    );
     details.open = this.open.has(path);
     return details;
   }
@@ -192,19 +305,32 @@ export class Form {
         const same = now[key];
         if (same !== undefined) fields[key] = same;
         else if (f.default !== undefined) fields[key] = f.default;
-        else if (f.type === 'number' || f.type === 'integer') fields[key] = Math.min(Math.max(1, f.minimum ?? 0), f.maximum ?? 1);
+        else if (f.type === 'number' || f.type === 'integer')
+          fields[key] = Math.min(Math.max(1, f.minimum ?? 0), f.maximum ?? 1);
         else return undefined;
       }
       return fields;
     };
-    const select = el('select', { 'data-path': `${path}/${tag}`, onchange: () => {
-      const to = all.find((o) => wordFor(o) === select.value);
-      const fields = to && start(to);
-      if (fields) this.events.set(path, fields);
-    } });
-    for (const o of all) if (o === current || start(o)) select.append(el('option', { value: wordFor(o), title: tip(o) }, wordOf(wordFor(o))));
+    const select = el('select', {
+      'data-path': `${path}/${tag}`,
+      onchange: () => {
+        const to = all.find((o) => wordFor(o) === select.value);
+        const fields = to && start(to);
+        if (fields) this.events.set(path, fields);
+      },
+    });
+    for (const o of all)
+      if (o === current || start(o))
+        select.append(el('option', { value: wordFor(o), title: tip(o) }, wordOf(wordFor(o))));
     select.value = wordFor(current);
     const kind = this.row(tag, { description: current.description ?? '' }, select);
-    return this.group(name, { ...current, ...(s.description ? { description: s.description } : {}) }, now, path, [kind], tag);
+    return this.group(
+      name,
+      { ...current, ...(s.description ? { description: s.description } : {}) },
+      now,
+      path,
+      [kind],
+      tag,
+    );
   }
 }

@@ -6,7 +6,9 @@ import { helpOf, t, wordOf } from './text';
 import { button, el, icon } from './ui';
 
 export interface Catalogue {
-  tree: Schema; leaf: Schema; flower: Schema;
+  tree: Schema;
+  leaf: Schema;
+  flower: Schema;
   trees: { key: string; species: string; about: string }[];
   flowers: string[];
 }
@@ -26,17 +28,37 @@ declare const PRESET_PICTURES: readonly string[];
 
 /** Pictures of species; the name alone where there is none. */
 function thumbnail(key: string, label: string): HTMLElement {
-  const picture = el('span', { class: 'thumb' }, el('span', { class: 'thumb-none', 'aria-hidden': 'true' }, icon('tree')));
-  if (PRESET_PICTURES.includes(key)) picture.append(el('img', { src: `./presets/${key}.png`, alt: '', loading: 'lazy' }));
+  const picture = el(
+    'span',
+    { class: 'thumb' },
+    el('span', { class: 'thumb-none', 'aria-hidden': 'true' }, icon('tree')),
+  );
+  if (PRESET_PICTURES.includes(key))
+    picture.append(el('img', { src: `./presets/${key}.png`, alt: '', loading: 'lazy' }));
   return el('span', { class: 'thumb-cell' }, picture, el('span', {}, label));
 }
 
 /** A picture to choose each species by. */
-export function gallery(catalogue: Catalogue, chosen: string | null, act: (key: string) => void): HTMLElement {
+export function gallery(
+  catalogue: Catalogue,
+  chosen: string | null,
+  act: (key: string) => void,
+): HTMLElement {
   const grid = el('div', { class: 'gallery' });
   for (const { key, species, about } of catalogue.trees) {
-    grid.append(el('button', { type: 'button', 'data-preset': key, 'aria-pressed': String(key === chosen), title: [species, helpOf(about)].filter((x) => x).join(' · '), onclick: () => act(key) },
-      thumbnail(key, wordOf(key))));
+    grid.append(
+      el(
+        'button',
+        {
+          type: 'button',
+          'data-preset': key,
+          'aria-pressed': String(key === chosen),
+          title: [species, helpOf(about)].filter((x) => x).join(' · '),
+          onclick: () => act(key),
+        },
+        thumbnail(key, wordOf(key)),
+      ),
+    );
   }
   return grid;
 }
@@ -58,7 +80,10 @@ export class MakerPanel {
   private readonly grown = new Map<number, number>();
   private tableOpen = false;
 
-  constructor(private readonly catalogue: () => Catalogue | undefined, private readonly events: MakerEvents) {}
+  constructor(
+    private readonly catalogue: () => Catalogue | undefined,
+    private readonly events: MakerEvents,
+  ) {}
 
   /** Everything anew: another language. */
   reset(): void {
@@ -92,26 +117,43 @@ export class MakerPanel {
       this.stop();
       this.shown = key;
       const { maker } = plant;
-      const hidden = { tree: ['name', 'species', 'about', 'obstacles', 'roots'], leaf: [], flower: ['species', 'day'] }[maker];
-      this.form = new Form(catalogue[maker], {
-        set: (path, value) => this.events.run(this.command(path, value)),
-        stage: (path, value) => this.stage(this.command(path, value)),
-        done: () => this.done(),
-      }, new Set(hidden));
+      const hidden = {
+        tree: ['name', 'species', 'about', 'obstacles', 'roots'],
+        leaf: [],
+        flower: ['species', 'day'],
+      }[maker];
+      this.form = new Form(
+        catalogue[maker],
+        {
+          set: (path, value) => this.events.run(this.command(path, value)),
+          stage: (path, value) => this.stage(this.command(path, value)),
+          done: () => this.done(),
+        },
+        new Set(hidden),
+      );
       this.element.replaceChildren(this.head, this.form.element);
       this.element.scrollTop = 0;
     }
     // What is dragged keeps its element.
     if (this.dragging || this.playing !== 0) return;
     // What is being typed stays.
-    if (document.activeElement instanceof HTMLTextAreaElement && this.head.contains(document.activeElement)) return;
-    const focused = this.head.contains(document.activeElement) ? document.activeElement?.getAttribute('data-path') : null;
+    if (document.activeElement instanceof HTMLTextAreaElement && this.head.contains(document.activeElement))
+      return;
+    const focused = this.head.contains(document.activeElement)
+      ? document.activeElement?.getAttribute('data-path')
+      : null;
     if (plant.tree) this.head.replaceChildren(...this.tree(plant, plant.tree, state, catalogue));
     if (plant.leaf) this.head.replaceChildren(...this.leaf(plant.leaf));
     if (plant.flower) this.head.replaceChildren(...this.flower(plant.flower, catalogue));
-    if (focused) this.head.querySelector<HTMLElement>(`[data-path="${CSS.escape(focused)}"]`)?.focus({ preventScroll: true });
+    if (focused)
+      this.head
+        .querySelector<HTMLElement>(`[data-path="${CSS.escape(focused)}"]`)
+        ?.focus({ preventScroll: true });
     const values = plant.tree?.spec ?? plant.leaf?.settings ?? plant.flower?.settings ?? {};
-    this.form?.show(values, plant.maker === 'tree' ? ['bare', 'leaves', 'blade', 'look', 'method', 'wood', 'clearance_m'] : []);
+    this.form?.show(
+      values,
+      plant.maker === 'tree' ? ['bare', 'leaves', 'blade', 'look', 'method', 'wood', 'clearance_m'] : [],
+    );
   }
 
   private command(path: string, value: Json): Command {
@@ -134,11 +176,27 @@ export class MakerPanel {
     this.dragging = false;
   }
 
-  private slider(key: string, label: string, low: number, high: number, step: number, value: number, act: (x: number) => Command): HTMLElement {
+  private slider(
+    key: string,
+    label: string,
+    low: number,
+    high: number,
+    step: number,
+    value: number,
+    act: (x: number) => Command,
+  ): HTMLElement {
     const shown = el('output', {}, String(value));
     const input = el('input', {
-      type: 'range', min: String(low), max: String(high), step: String(step), 'data-path': key, 'aria-label': label,
-      oninput: () => { shown.textContent = input.value; this.stage(act(Number(input.value))); },
+      type: 'range',
+      min: String(low),
+      max: String(high),
+      step: String(step),
+      'data-path': key,
+      'aria-label': label,
+      oninput: () => {
+        shown.textContent = input.value;
+        this.stage(act(Number(input.value)));
+      },
       onchange: () => this.done(),
     });
     input.value = String(value);
@@ -151,27 +209,57 @@ export class MakerPanel {
 
   // Trees --------------------------------------------------------------------------------------------------------
 
-  private tree(plant: PlantState, tree: NonNullable<PlantState['tree']>, state: DocumentState, catalogue: Catalogue): HTMLElement[] {
+  private tree(
+    plant: PlantState,
+    tree: NonNullable<PlantState['tree']>,
+    state: DocumentState,
+    catalogue: Catalogue,
+  ): HTMLElement[] {
     const { spec } = tree;
     const age = typeof spec['age'] === 'number' ? spec['age'] : null;
     const most = Math.max(2, age ?? 0, this.grown.get(plant.id) ?? 40);
     const keep = Number((spec['leaves'] as Fields | undefined)?.['leaf_keep'] ?? 1);
     const lenders = state.plants.filter((p) => p.lends && p.id !== plant.id);
-    const leafOf = el('select', { 'data-path': 'leaf-of', onchange: () => this.events.run({ do: 'leaf-of', lender: leafOf.value === '' ? null : Number(leafOf.value) }) },
-      el('option', { value: '' }, t('tree.leaf.own')), ...lenders.map((p) => el('option', { value: String(p.id) }, p.name)));
+    const leafOf = el(
+      'select',
+      {
+        'data-path': 'leaf-of',
+        onchange: () =>
+          this.events.run({ do: 'leaf-of', lender: leafOf.value === '' ? null : Number(leafOf.value) }),
+      },
+      el('option', { value: '' }, t('tree.leaf.own')),
+      ...lenders.map((p) => el('option', { value: String(p.id) }, p.name)),
+    );
     leafOf.value = tree.leaf === null ? '' : String(tree.leaf);
-    const ages = this.slider('age', t('tree.age'), 1, most, 1, age ?? most, (x) => ({ do: 'tree', path: '/age', value: x >= most ? null : x }));
+    const ages = this.slider('age', t('tree.age'), 1, most, 1, age ?? most, (x) => ({
+      do: 'tree',
+      path: '/age',
+      value: x >= most ? null : x,
+    }));
     if (age === null) ages.querySelector('output')!.textContent = t('tree.age.full');
     const shown = `${plant.id} ${tree.preset}`;
     // Kept while it shows the same: it has a place to which it was scrolled.
     if (this.species?.key !== shown) {
-      this.species = { key: shown, element: this.section(t('tree.species'), gallery(catalogue, tree.preset, (key) => this.events.run({ do: 'preset', key }))) };
+      this.species = {
+        key: shown,
+        element: this.section(
+          t('tree.species'),
+          gallery(catalogue, tree.preset, (key) => this.events.run({ do: 'preset', key })),
+        ),
+      };
     }
     return [
       this.species.element,
-      this.section(t('tree.main'), ages,
-        this.slider('keep', t('tree.keep'), 0, 1, 0.01, keep, (x) => ({ do: 'tree', path: '/leaves/leaf_keep', value: x })),
-        el('label', { class: 'f-row', title: t('tree.leaf.hint') }, el('span', {}, t('tree.leaf')), leafOf)),
+      this.section(
+        t('tree.main'),
+        ages,
+        this.slider('keep', t('tree.keep'), 0, 1, 0.01, keep, (x) => ({
+          do: 'tree',
+          path: '/leaves/leaf_keep',
+          value: x,
+        })),
+        el('label', { class: 'f-row', title: t('tree.leaf.hint') }, el('span', {}, t('tree.leaf')), leafOf),
+      ),
       this.obstacles(tree),
     ];
   }
@@ -179,44 +267,148 @@ export class MakerPanel {
   private obstacles(tree: NonNullable<PlantState['tree']>): HTMLElement {
     const list = el('ul', { class: 'obstacles' });
     tree.obstacles.forEach(({ name, shape }, row) => {
-      const numbers = Object.entries(shape).filter(([, v]) => typeof v === 'number' || (Array.isArray(v) && v.length === 3));
-      const fields = shape.shape === 'mesh' ? [] : numbers.map(([key, value]) => {
-        const values = (Array.isArray(value) ? value : [value]) as number[];
-        const boxes = values.map((x, i) => {
-          const box = el('input', { type: 'number', step: '0.1', class: 'f-number', 'data-path': `o${row}${key}${i}`, 'aria-label': `${wordOf(key)} ${Array.isArray(value) ? 'xyz'[i] : ''}`,
-            onchange: () => {
-              if (!Number.isFinite(box.valueAsNumber)) return;
-              const next = values.map((y, k) => (k === i ? box.valueAsNumber : y));
-              this.events.run({ do: 'obstacle', name, row, shape: { ...shape, [key]: Array.isArray(value) ? next : next[0]! } });
-            } });
-          box.value = String(Number(x.toPrecision(4)));
-          return box;
-        });
-        return el('label', { class: 'f-row' }, el('span', {}, wordOf(key)), el('span', { class: 'f-triple' }, ...boxes));
-      });
-      list.append(el('li', {}, el('div', { class: 'f-pair' }, el('b', {}, name), el('span', { class: 'space' }),
-        button('close', t('tree.obstacle.off', { name }), () => this.events.run({ do: 'obstacle-off', row }))), ...fields));
+      const numbers = Object.entries(shape).filter(
+        ([, v]) => typeof v === 'number' || (Array.isArray(v) && v.length === 3),
+      );
+      const fields =
+        shape.shape === 'mesh'
+          ? []
+          : numbers.map(([key, value]) => {
+              const values = (Array.isArray(value) ? value : [value]) as number[];
+              const boxes = values.map((x, i) => {
+                const box = el('input', {
+                  type: 'number',
+                  step: '0.1',
+                  class: 'f-number',
+                  'data-path': `o${row}${key}${i}`,
+                  'aria-label': `${wordOf(key)} ${Array.isArray(value) ? 'xyz'[i] : ''}`,
+                  onchange: () => {
+                    if (!Number.isFinite(box.valueAsNumber)) return;
+                    const next = values.map((y, k) => (k === i ? box.valueAsNumber : y));
+                    this.events.run({
+                      do: 'obstacle',
+                      name,
+                      row,
+                      shape: { ...shape, [key]: Array.isArray(value) ? next : next[0]! },
+                    });
+                  },
+                });
+                box.value = String(Number(x.toPrecision(4)));
+                return box;
+              });
+              return el(
+                'label',
+                { class: 'f-row' },
+                el('span', {}, wordOf(key)),
+                el('span', { class: 'f-triple' }, ...boxes),
+              );
+            });
+      list.append(
+        el(
+          'li',
+          {},
+          el(
+            'div',
+            { class: 'f-pair' },
+            el('b', {}, name),
+            el('span', { class: 'space' }),
+            button('close', t('tree.obstacle.off', { name }), () =>
+              this.events.run({ do: 'obstacle-off', row }),
+            ),
+          ),
+          ...fields,
+        ),
+      );
     });
     const add = (name: string, shape: { shape: string } & Fields, key: 'box' | 'ball'): HTMLElement =>
-      el('button', { type: 'button', class: 'chip', 'data-obstacle': key, onclick: () => this.events.run({ do: 'obstacle', name, shape }) }, name);
-    return this.section(t('tree.obstacles'), list, el('div', { class: 'chips' },
-      add(t('tree.obstacle.box'), { shape: 'box', min: [0.5, 0, -1], max: [1.5, 3, 1] }, 'box'),
-      add(t('tree.obstacle.ball'), { shape: 'sphere', centre: [0, 4, 0], radius_m: 1.2 }, 'ball'),
-      el('button', { type: 'button', class: 'chip', 'data-obstacle': 'file', onclick: () => this.events.choose('.glb,.gltf,.obj,.ply,.stl', (f) => this.events.obstacle(f)) }, t('tree.obstacle.file'))));
+      el(
+        'button',
+        {
+          type: 'button',
+          class: 'chip',
+          'data-obstacle': key,
+          onclick: () => this.events.run({ do: 'obstacle', name, shape }),
+        },
+        name,
+      );
+    return this.section(
+      t('tree.obstacles'),
+      list,
+      el(
+        'div',
+        { class: 'chips' },
+        add(t('tree.obstacle.box'), { shape: 'box', min: [0.5, 0, -1], max: [1.5, 3, 1] }, 'box'),
+        add(t('tree.obstacle.ball'), { shape: 'sphere', centre: [0, 4, 0], radius_m: 1.2 }, 'ball'),
+        el(
+          'button',
+          {
+            type: 'button',
+            class: 'chip',
+            'data-obstacle': 'file',
+            onclick: () => this.events.choose('.glb,.gltf,.obj,.ply,.stl', (f) => this.events.obstacle(f)),
+          },
+          t('tree.obstacle.file'),
+        ),
+      ),
+    );
   }
 
   // Leaves -------------------------------------------------------------------------------------------------------
 
   private leaf(leaf: NonNullable<PlantState['leaf']>): HTMLElement[] {
     const empty = leaf.text === '';
-    const table = el('textarea', { class: 'field marks', rows: '7', spellcheck: 'false', 'data-path': 'marks', 'aria-label': t('leaf.table'), placeholder: 'row,mark,x,y,z,thickness,midrib' });
+    const table = el('textarea', {
+      class: 'field marks',
+      rows: '7',
+      spellcheck: 'false',
+      'data-path': 'marks',
+      'aria-label': t('leaf.table'),
+      placeholder: 'row,mark,x,y,z,thickness,midrib',
+    });
     table.value = leaf.text;
-    const take = el('button', { type: 'button', class: 'chip', onclick: () => this.events.run({ do: 'marks', name: leaf.file || 'marks.csv', text: table.value }) }, t('leaf.table.take'));
-    const edit = el('details', { class: 'f-group', ontoggle: () => { this.tableOpen = edit.open; } }, el('summary', {}, t('leaf.table')), table, el('div', { class: 'chips' }, take));
+    const take = el(
+      'button',
+      {
+        type: 'button',
+        class: 'chip',
+        onclick: () => this.events.run({ do: 'marks', name: leaf.file || 'marks.csv', text: table.value }),
+      },
+      t('leaf.table.take'),
+    );
+    const edit = el(
+      'details',
+      {
+        class: 'f-group',
+        ontoggle: () => {
+          this.tableOpen = edit.open;
+        },
+      },
+      el('summary', {}, t('leaf.table')),
+      table,
+      el('div', { class: 'chips' }, take),
+    );
     edit.open = this.tableOpen;
-    return [this.section(t('leaf.data'), el('p', { class: 'muted' }, empty ? t('leaf.none') : leaf.file),
-      el('div', { class: 'chips' }, el('button', { type: 'button', class: empty ? 'primary' : 'chip', id: 'b-marks', onclick: () => this.events.choose('.csv,.json', (f) => this.events.open(f)) }, t(empty ? 'leaf.choose' : 'leaf.other'))),
-      edit)];
+    return [
+      this.section(
+        t('leaf.data'),
+        el('p', { class: 'muted' }, empty ? t('leaf.none') : leaf.file),
+        el(
+          'div',
+          { class: 'chips' },
+          el(
+            'button',
+            {
+              type: 'button',
+              class: empty ? 'primary' : 'chip',
+              id: 'b-marks',
+              onclick: () => this.events.choose('.csv,.json', (f) => this.events.open(f)),
+            },
+            t(empty ? 'leaf.choose' : 'leaf.other'),
+          ),
+        ),
+        edit,
+      ),
+    ];
   }
 
   // Flowers ------------------------------------------------------------------------------------------------------
@@ -225,21 +417,66 @@ export class MakerPanel {
     const { settings } = flower;
     const chips = el('div', { class: 'chips', role: 'group', 'aria-label': t('flower.species') });
     for (const word of catalogue.flowers) {
-      chips.append(el('button', { type: 'button', class: 'chip', 'data-flower': word, 'aria-pressed': String(settings['species'] === word),
-        onclick: () => this.events.run({ do: 'flower', settings: { ...settings, species: word } }) }, wordOf(word)));
+      chips.append(
+        el(
+          'button',
+          {
+            type: 'button',
+            class: 'chip',
+            'data-flower': word,
+            'aria-pressed': String(settings['species'] === word),
+            onclick: () => this.events.run({ do: 'flower', settings: { ...settings, species: word } }),
+          },
+          wordOf(word),
+        ),
+      );
     }
-    const law = el('div', { class: 'chips' }, el('span', { class: 'muted' }, flower.law === null ? t('flower.law.own') : t('flower.law.is', { name: flower.law })),
-      el('button', { type: 'button', class: 'chip', onclick: () => this.events.choose('.json', (f) => this.events.open(f)) }, t('flower.law.choose')));
-    if (flower.law !== null) law.append(el('button', { type: 'button', class: 'chip', onclick: () => this.events.run({ do: 'law', text: null }) }, t('flower.law.off')));
-    return [this.section(t('flower.species'), chips), this.section(t('flower.day'), this.dayRow(Number(settings['day']))), this.section(t('flower.law'), law)];
+    const law = el(
+      'div',
+      { class: 'chips' },
+      el(
+        'span',
+        { class: 'muted' },
+        flower.law === null ? t('flower.law.own') : t('flower.law.is', { name: flower.law }),
+      ),
+      el(
+        'button',
+        {
+          type: 'button',
+          class: 'chip',
+          onclick: () => this.events.choose('.json', (f) => this.events.open(f)),
+        },
+        t('flower.law.choose'),
+      ),
+    );
+    if (flower.law !== null)
+      law.append(
+        el(
+          'button',
+          { type: 'button', class: 'chip', onclick: () => this.events.run({ do: 'law', text: null }) },
+          t('flower.law.off'),
+        ),
+      );
+    return [
+      this.section(t('flower.species'), chips),
+      this.section(t('flower.day'), this.dayRow(Number(settings['day']))),
+      this.section(t('flower.law'), law),
+    ];
   }
 
   /** The day with a button that plays it; also for drawn flowers. */
   dayRow(day: number): HTMLElement {
     const days = this.days ?? [6, 4];
     const end = Math.round((days[0] + days[1]) * 100) / 100;
-    const slider = this.slider('day', t('flower.day'), 0, end, 0.05, Math.min(day, end), (x) => this.dayCommand(x));
-    const play = el('button', { type: 'button', class: 'chip play', 'data-path': 'play', onclick: () => this.play(slider, end) }, icon('play'), t('flower.play'));
+    const slider = this.slider('day', t('flower.day'), 0, end, 0.05, Math.min(day, end), (x) =>
+      this.dayCommand(x),
+    );
+    const play = el(
+      'button',
+      { type: 'button', class: 'chip play', 'data-path': 'play', onclick: () => this.play(slider, end) },
+      icon('play'),
+      t('flower.play'),
+    );
     return el('div', { class: 'day' }, slider, play);
   }
 

@@ -11,7 +11,12 @@ export interface Action {
 }
 
 export function openPalette(actions: readonly Action[]): void {
-  const list = el('div', { class: 'menu', role: 'listbox', id: 'palette-list', 'aria-label': t('palette.title') });
+  const list = el('div', {
+    class: 'menu',
+    role: 'listbox',
+    id: 'palette-list',
+    'aria-label': t('palette.title'),
+  });
   let shown: Action[] = [];
   let chosen = 0;
   const mark = (): void => {
@@ -19,25 +24,50 @@ export function openPalette(actions: readonly Action[]): void {
     input.setAttribute('aria-activedescendant', list.children[chosen]?.id ?? '');
     list.children[chosen]?.scrollIntoView({ block: 'nearest' });
   };
-  const run = (a: Action | undefined): void => { if (a) { d.close(); a.act(); } };
+  const run = (a: Action | undefined): void => {
+    if (a) {
+      d.close();
+      a.act();
+    }
+  };
   const fill = (): void => {
-    const found = actions.flatMap((a) => { const n = nearness(a.label, input.value); return n === undefined ? [] : [{ a, n }]; });
+    const found = actions.flatMap((a) => {
+      const n = nearness(a.label, input.value);
+      return n === undefined ? [] : [{ a, n }];
+    });
     shown = found.sort((x, y) => x.n - y.n).map(({ a }) => a);
     chosen = 0;
-    list.replaceChildren(...shown.map((a) => el('button', { type: 'button', role: 'option', id: `p-${a.id}`, tabindex: '-1', onclick: () => run(a) },
-      el('span', {}, a.label), ...(a.keys ? [el('kbd', {}, a.keys)] : []))));
+    list.replaceChildren(
+      ...shown.map((a) =>
+        el(
+          'button',
+          { type: 'button', role: 'option', id: `p-${a.id}`, tabindex: '-1', onclick: () => run(a) },
+          el('span', {}, a.label),
+          ...(a.keys ? [el('kbd', {}, a.keys)] : []),
+        ),
+      ),
+    );
     if (shown.length === 0) list.append(el('p', { class: 'muted' }, t('palette.none')));
     mark();
   };
   const input = el('input', {
-    type: 'search', class: 'field', placeholder: t('palette.hint'), 'aria-label': t('palette.hint'), role: 'combobox',
-    'aria-expanded': 'true', 'aria-controls': 'palette-list', autocomplete: 'off', spellcheck: 'false',
+    type: 'search',
+    class: 'field',
+    placeholder: t('palette.hint'),
+    'aria-label': t('palette.hint'),
+    role: 'combobox',
+    'aria-expanded': 'true',
+    'aria-controls': 'palette-list',
+    autocomplete: 'off',
+    spellcheck: 'false',
     oninput: fill,
     onkeydown: (e) => {
       const { key } = e as KeyboardEvent;
       const step = { ArrowDown: 1, ArrowUp: -1 }[key];
-      if (step) { chosen = (chosen + step + shown.length) % Math.max(1, shown.length); mark(); }
-      else if (key === 'Enter') run(shown[chosen]);
+      if (step) {
+        chosen = (chosen + step + shown.length) % Math.max(1, shown.length);
+        mark();
+      } else if (key === 'Enter') run(shown[chosen]);
       else return;
       e.preventDefault();
     },

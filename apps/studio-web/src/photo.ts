@@ -52,14 +52,27 @@ export function photoPanel(now: () => PhotoState | null, placing: boolean, event
   const panel = el('div', { class: 'settings' });
   const first = now();
   if (!first) {
-    panel.append(el('p', { class: 'muted' }, t('photo.hint')), el('button', { type: 'button', class: 'primary', onclick: () => events.choose() }, t('photo.choose')));
+    panel.append(
+      el('p', { class: 'muted' }, t('photo.hint')),
+      el('button', { type: 'button', class: 'primary', onclick: () => events.choose() }, t('photo.choose')),
+    );
     return panel;
   }
-  const slider = (text: TextKey, low: number, high: number, value: number, shown: (v: number) => string, set: (p: PhotoState, v: number) => Command): void => {
+  const slider = (
+    text: TextKey,
+    low: number,
+    high: number,
+    value: number,
+    shown: (v: number) => string,
+    set: (p: PhotoState, v: number) => Command,
+  ): void => {
     const output = el('output', {}, shown(value));
     let dragging = false;
     const input = el('input', {
-      type: 'range', min: String(low), max: String(high), step: '0.01',
+      type: 'range',
+      min: String(low),
+      max: String(high),
+      step: '0.01',
       oninput: () => {
         const photo = now();
         if (!photo) return;
@@ -68,7 +81,10 @@ export function photoPanel(now: () => PhotoState | null, placing: boolean, event
         dragging = true;
         events.stage(set(photo, Number(input.value)));
       },
-      onchange: () => { if (dragging) events.commit(); dragging = false; },
+      onchange: () => {
+        if (dragging) events.commit();
+        dragging = false;
+      },
     });
     input.value = String(value);
     panel.append(el('label', {}, el('span', {}, t(text)), input, output));
@@ -76,19 +92,43 @@ export function photoPanel(now: () => PhotoState | null, placing: boolean, event
   const percent = (v: number): string => `${Math.round(v * 100)} %`;
   slider('photo.opacity', 0.05, 1, first.opacity, percent, (p, opacity) => command(p, { opacity }));
   // The size is a ratio to what it was when the panel opened; the middle stays.
-  slider('photo.size', -2, 2, 0, (v) => `${(2 ** v).toFixed(2)} ×`, (p, v) => {
-    const width = first.width * 2 ** v;
-    return command(p, { width, x: p.x + (p.width - width) / 2, y: p.y + (p.height - (width * p.height) / p.width) / 2 });
-  });
+  slider(
+    'photo.size',
+    -2,
+    2,
+    0,
+    (v) => `${(2 ** v).toFixed(2)} ×`,
+    (p, v) => {
+      const width = first.width * 2 ** v;
+      return command(p, {
+        width,
+        x: p.x + (p.width - width) / 2,
+        y: p.y + (p.height - (width * p.height) / p.width) / 2,
+      });
+    },
+  );
   const check = (text: TextKey, on: boolean, act: (on: boolean) => void): void => {
     const box = el('input', { type: 'checkbox', onchange: () => act(box.checked) });
     box.checked = on;
     panel.append(el('label', { class: 'check' }, box, el('span', {}, t(text))));
   };
-  check('photo.paint', first.paint, (paint) => { const p = now(); if (p) events.run(command(p, { paint })); });
+  check('photo.paint', first.paint, (paint) => {
+    const p = now();
+    if (p) events.run(command(p, { paint }));
+  });
   check('photo.move', placing, (on) => events.placing(on));
-  panel.append(el('div', { class: 'row' },
-    el('button', { type: 'button', class: 'chip', onclick: () => events.choose() }, t('photo.other')), el('span', { class: 'space' }),
-    el('button', { type: 'button', class: 'chip danger', onclick: () => events.run({ do: 'photo-off' }) }, t('photo.off'))));
+  panel.append(
+    el(
+      'div',
+      { class: 'row' },
+      el('button', { type: 'button', class: 'chip', onclick: () => events.choose() }, t('photo.other')),
+      el('span', { class: 'space' }),
+      el(
+        'button',
+        { type: 'button', class: 'chip danger', onclick: () => events.run({ do: 'photo-off' }) },
+        t('photo.off'),
+      ),
+    ),
+  );
   return panel;
 }

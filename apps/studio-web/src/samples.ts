@@ -1,7 +1,20 @@
 /** Drawings of this repository that a person can start from. */
-const FILES = import.meta.glob('../../../fixtures/sketches/**/*.svg', { query: '?url', import: 'default', eager: true }) as Record<string, string>;
+const FILES = import.meta.glob('../../../fixtures/sketches/**/*.svg', {
+  query: '?url',
+  import: 'default',
+  eager: true,
+}) as Record<string, string>;
 
-const WANTED = ['sample', 'gallery/sunflower', 'gallery/tulip', 'gallery/lily', 'gallery/house-plant', 'gallery/apple-tree', 'gallery/oak', 'gallery/palm'];
+const WANTED = [
+  'sample',
+  'gallery/sunflower',
+  'gallery/tulip',
+  'gallery/lily',
+  'gallery/house-plant',
+  'gallery/apple-tree',
+  'gallery/oak',
+  'gallery/palm',
+];
 
 export interface Sample {
   name: string;

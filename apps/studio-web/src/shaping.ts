@@ -1,6 +1,17 @@
 /** Hands on a plant in the view: tools, their settings, gestures, and the list of what was done. What a tool does is the core's. */
 import { measured } from './measure';
-import type { Command, EditReport, Json, PlantState, PlantView as Seen, Request, ShapeAnswer, ShapeInput, ShapePointer, ShapeTool } from './protocol';
+import type {
+  Command,
+  EditReport,
+  Json,
+  PlantState,
+  PlantView as Seen,
+  Request,
+  ShapeAnswer,
+  ShapeInput,
+  ShapePointer,
+  ShapeTool,
+} from './protocol';
 import { number, t, tOf, type TextKey } from './text';
 import { button, el, icon, type IconName } from './ui';
 import { Overlay } from './view/overlay';
@@ -17,10 +28,23 @@ export interface ShapingEvents {
 
 export type Word = ShapeTool['tool'];
 export const SHAPE_TOOLS: readonly [Word, string][] = [
-  ['pick', '1'], ['rotate', '2'], ['move', '3'], ['prune', '4'], ['regrow', '5'], ['sketch', '6'], ['brush', '7'], ['silhouette', '8'], ['leaves', '9'],
+  ['pick', '1'],
+  ['rotate', '2'],
+  ['move', '3'],
+  ['prune', '4'],
+  ['regrow', '5'],
+  ['sketch', '6'],
+  ['brush', '7'],
+  ['silhouette', '8'],
+  ['leaves', '9'],
 ];
 /** How the pointer of a tool leaves a trace. */
-const TRACES: Partial<Record<Word, 'line' | 'brush' | 'outline'>> = { sketch: 'line', brush: 'brush', silhouette: 'outline', leaves: 'brush' };
+const TRACES: Partial<Record<Word, 'line' | 'brush' | 'outline'>> = {
+  sketch: 'line',
+  brush: 'brush',
+  silhouette: 'outline',
+  leaves: 'brush',
+};
 /** Tools that mean a branch: in a dense crown, what bears the twig under the pointer. */
 const CLIMBS: ReadonlySet<Word | undefined> = new Set<Word>(['pick', 'rotate', 'move', 'prune', 'regrow']);
 /** So near to a branch, in pixels, a pointer means it; a finger is thicker. */
@@ -34,10 +58,25 @@ const ROOMY = 600;
 
 /** The step of undo that an edit makes is called by the same word. */
 const EDIT_ICONS: Record<string, IconName> = {
-  'rotate': 'rotate', 'move': 'slide', 'prune': 'prune', 'regrow': 'regrow', 'sketch-branch': 'branch', 'brush': 'brush', 'silhouette': 'silhouette', 'leaf-density': 'leaf',
+  rotate: 'rotate',
+  move: 'slide',
+  prune: 'prune',
+  regrow: 'regrow',
+  'sketch-branch': 'branch',
+  brush: 'brush',
+  silhouette: 'silhouette',
+  'leaf-density': 'leaf',
 };
 export const TOOL_ICONS: Record<Word, IconName> = {
-  pick: 'select', rotate: 'rotate', move: 'slide', prune: 'prune', regrow: 'regrow', sketch: 'branch', brush: 'brush', silhouette: 'silhouette', leaves: 'leaf',
+  pick: 'select',
+  rotate: 'rotate',
+  move: 'slide',
+  prune: 'prune',
+  regrow: 'regrow',
+  sketch: 'branch',
+  brush: 'brush',
+  silhouette: 'silhouette',
+  leaves: 'leaf',
 };
 
 export class Shaping {
@@ -48,7 +87,15 @@ export class Shaping {
   private last: Word = 'rotate';
   private plant: PlantState | undefined;
   private seen: Seen | undefined;
-  private settings = { whole: false, twigs: 1, tilt_deg: 0, share: 0.07, density: 1, trim: true, more: false };
+  private settings = {
+    whole: false,
+    twigs: 1,
+    tilt_deg: 0,
+    share: 0.07,
+    density: 1,
+    trim: true,
+    more: false,
+  };
   /** The branch that was clicked with the pointing tool. */
   private chosen: ShapeAnswer['picked'] = null;
   private lit: number | undefined;
@@ -73,17 +120,30 @@ export class Shaping {
   /** Whether the list of edits is folded, as the person set it. */
   private folds: boolean | undefined;
 
-  constructor(private readonly view: PlantView, private readonly events: ShapingEvents) {
+  constructor(
+    private readonly view: PlantView,
+    private readonly events: ShapingEvents,
+  ) {
     this.overlay = new Overlay((points) => view.project(points));
     const canvas = view.element.querySelector('canvas')!;
     canvas.addEventListener('pointerdown', (e) => this.down(e, canvas));
     canvas.addEventListener('pointermove', (e) => this.moved(e));
     canvas.addEventListener('pointerup', (e) => this.up(e));
     canvas.addEventListener('pointercancel', () => this.cancel());
-    canvas.addEventListener('pointerleave', () => { if (this.pointerId === undefined) { this.at = undefined; this.light(undefined); this.overlay.setRing(undefined); } });
+    canvas.addEventListener('pointerleave', () => {
+      if (this.pointerId === undefined) {
+        this.at = undefined;
+        this.light(undefined);
+        this.overlay.setRing(undefined);
+      }
+    });
     canvas.addEventListener('wheel', (e) => this.wheel(e), { capture: true, passive: false });
-    canvas.addEventListener('contextmenu', (e) => { if (this.tool) e.preventDefault(); });
-    view.onDraw = () => { if (this.tool) this.overlay.draw(); };
+    canvas.addEventListener('contextmenu', (e) => {
+      if (this.tool) e.preventDefault();
+    });
+    view.onDraw = () => {
+      if (this.tool) this.overlay.draw();
+    };
   }
 
   get isOn(): boolean {
@@ -101,7 +161,11 @@ export class Shaping {
 
   /** Trees and drawings have branches. */
   get isPossible(): boolean {
-    return this.plant !== undefined && (this.plant.maker === 'tree' || this.plant.maker === 'sketch') && (this.seen?.parts.length ?? 0) > 0;
+    return (
+      this.plant !== undefined &&
+      (this.plant.maker === 'tree' || this.plant.maker === 'sketch') &&
+      (this.seen?.parts.length ?? 0) > 0
+    );
   }
 
   toggle(): void {
@@ -127,12 +191,19 @@ export class Shaping {
 
   /** The plant that is worked on, as it is now. */
   show(plant: PlantState | undefined, seen: Seen | undefined): void {
-    if (plant?.id !== this.plant?.id) { this.chosen = null; this.bearers = 0; this.light(undefined); }
+    if (plant?.id !== this.plant?.id) {
+      this.chosen = null;
+      this.bearers = 0;
+      this.light(undefined);
+    }
     this.plant = plant;
     this.seen = seen;
     if (this.tool && !this.isPossible) {
       // A plant that is being made again is no reason to lay the tool down; another plant is.
-      if (plant && plant.maker !== 'tree' && plant.maker !== 'sketch') { this.take(undefined); return; }
+      if (plant && plant.maker !== 'tree' && plant.maker !== 'sketch') {
+        this.take(undefined);
+        return;
+      }
     }
     this.showStrip();
     this.showList();
@@ -152,7 +223,11 @@ export class Shaping {
 
   private showStrip(): void {
     this.element.hidden = !this.tool;
-    if (!this.tool || this.element.contains(document.activeElement) && document.activeElement instanceof HTMLInputElement) return;
+    if (
+      !this.tool ||
+      (this.element.contains(document.activeElement) && document.activeElement instanceof HTMLInputElement)
+    )
+      return;
     const focused = this.element.contains(document.activeElement) ? document.activeElement?.id : undefined;
     const bar = el('div', { class: 'tools strip', role: 'toolbar', 'aria-label': t('shape.title') });
     for (const [word, key] of SHAPE_TOOLS) {
@@ -168,50 +243,202 @@ export class Shaping {
   private options(): HTMLElement[] {
     const { settings: s } = this;
     const hint = (key: TextKey): HTMLElement => el('span', { class: 'muted' }, t(key));
-    const chips = (key: TextKey, words: readonly [string, TextKey][], now: string, act: (word: string) => void): HTMLElement =>
-      el('span', { class: 'chips', role: 'group', 'aria-label': t(key) }, ...words.map(([word, text]) => el('button', {
-        type: 'button', class: 'chip', id: `b-shape-${word}`, 'aria-pressed': String(word === now), onclick: () => { act(word); this.showStrip(); },
-      }, t(text))));
-    const slider = (key: TextKey, low: number, high: number, step: number, value: number, shown: (x: number) => string, act: (x: number) => void): HTMLElement => {
+    const chips = (
+      key: TextKey,
+      words: readonly [string, TextKey][],
+      now: string,
+      act: (word: string) => void,
+    ): HTMLElement =>
+      el(
+        'span',
+        { class: 'chips', role: 'group', 'aria-label': t(key) },
+        ...words.map(([word, text]) =>
+          el(
+            'button',
+            {
+              type: 'button',
+              class: 'chip',
+              id: `b-shape-${word}`,
+              'aria-pressed': String(word === now),
+              onclick: () => {
+                act(word);
+                this.showStrip();
+              },
+            },
+            t(text),
+          ),
+        ),
+      );
+    const slider = (
+      key: TextKey,
+      low: number,
+      high: number,
+      step: number,
+      value: number,
+      shown: (x: number) => string,
+      act: (x: number) => void,
+    ): HTMLElement => {
       const output = el('output', {}, shown(value));
-      const input = el('input', { type: 'range', min: String(low), max: String(high), step: String(step), 'aria-label': t(key),
-        oninput: () => { act(input.valueAsNumber); output.textContent = shown(input.valueAsNumber); this.showRing(); }, onchange: () => input.blur() });
+      const input = el('input', {
+        type: 'range',
+        min: String(low),
+        max: String(high),
+        step: String(step),
+        'aria-label': t(key),
+        oninput: () => {
+          act(input.valueAsNumber);
+          output.textContent = shown(input.valueAsNumber);
+          this.showRing();
+        },
+        onchange: () => input.blur(),
+      });
       input.value = String(value);
       return el('label', {}, el('span', {}, t(key)), input, output);
     };
     const plain = (x: number): string => String(Math.round(x * 100) / 100);
-    const radius = (): HTMLElement => slider('shape.radius', Math.log(0.01), Math.log(0.4), 0.01, Math.log(s.share), () => `${plain(this.radius)} m`, (x) => { s.share = Math.exp(x); this.tellBrush(); });
+    const radius = (): HTMLElement =>
+      slider(
+        'shape.radius',
+        Math.log(0.01),
+        Math.log(0.4),
+        0.01,
+        Math.log(s.share),
+        () => `${plain(this.radius)} m`,
+        (x) => {
+          s.share = Math.exp(x);
+          this.tellBrush();
+        },
+      );
     switch (this.tool) {
-      case 'pick': return [...(this.chosen ? this.chosenBox(this.chosen) : [hint('shape.pick.hint')]), this.climbBox()];
-      case 'rotate': return [hint('shape.rotate.hint'), this.climbBox()];
-      case 'move': return [hint('shape.move.hint'), this.climbBox()];
-      case 'prune': return [chips('shape.prune', [['part', 'shape.prune.part'], ['whole', 'shape.prune.whole']], s.whole ? 'whole' : 'part', (w) => { s.whole = w === 'whole'; }), this.climbBox()];
-      case 'regrow': return [hint('shape.regrow.hint'), this.climbBox()];
-      case 'sketch': return [slider('shape.twigs', 0, 4, 0.25, s.twigs, plain, (x) => { s.twigs = x; }),
-        slider('shape.tilt', -75, 75, 5, s.tilt_deg, (x) => `${plain(x)}°`, (x) => { s.tilt_deg = x; })];
-      case 'brush': return [radius(), slider('shape.density', 0.25, 4, 0.25, s.density, plain, (x) => { s.density = x; this.tellBrush(); })];
-      case 'silhouette': return [slider('shape.density', 0.25, 4, 0.25, s.density, plain, (x) => { s.density = x; }),
-        chips('shape.silhouette', [['trim', 'shape.trim']], s.trim ? 'trim' : '', () => { s.trim = !s.trim; })];
-      case 'leaves': return [chips('shape.leaves', [['fewer', 'shape.leaves.fewer'], ['more', 'shape.leaves.more']], s.more ? 'more' : 'fewer', (w) => { s.more = w === 'more'; }), radius()];
-      default: return [];
+      case 'pick':
+        return [...(this.chosen ? this.chosenBox(this.chosen) : [hint('shape.pick.hint')]), this.climbBox()];
+      case 'rotate':
+        return [hint('shape.rotate.hint'), this.climbBox()];
+      case 'move':
+        return [hint('shape.move.hint'), this.climbBox()];
+      case 'prune':
+        return [
+          chips(
+            'shape.prune',
+            [
+              ['part', 'shape.prune.part'],
+              ['whole', 'shape.prune.whole'],
+            ],
+            s.whole ? 'whole' : 'part',
+            (w) => {
+              s.whole = w === 'whole';
+            },
+          ),
+          this.climbBox(),
+        ];
+      case 'regrow':
+        return [hint('shape.regrow.hint'), this.climbBox()];
+      case 'sketch':
+        return [
+          slider('shape.twigs', 0, 4, 0.25, s.twigs, plain, (x) => {
+            s.twigs = x;
+          }),
+          slider(
+            'shape.tilt',
+            -75,
+            75,
+            5,
+            s.tilt_deg,
+            (x) => `${plain(x)}°`,
+            (x) => {
+              s.tilt_deg = x;
+            },
+          ),
+        ];
+      case 'brush':
+        return [
+          radius(),
+          slider('shape.density', 0.25, 4, 0.25, s.density, plain, (x) => {
+            s.density = x;
+            this.tellBrush();
+          }),
+        ];
+      case 'silhouette':
+        return [
+          slider('shape.density', 0.25, 4, 0.25, s.density, plain, (x) => {
+            s.density = x;
+          }),
+          chips('shape.silhouette', [['trim', 'shape.trim']], s.trim ? 'trim' : '', () => {
+            s.trim = !s.trim;
+          }),
+        ];
+      case 'leaves':
+        return [
+          chips(
+            'shape.leaves',
+            [
+              ['fewer', 'shape.leaves.fewer'],
+              ['more', 'shape.leaves.more'],
+            ],
+            s.more ? 'more' : 'fewer',
+            (w) => {
+              s.more = w === 'more';
+            },
+          ),
+          radius(),
+        ];
+      default:
+        return [];
     }
   }
 
   /** What is known of the branch that was pointed at, and what can be done with it. */
   private chosenBox(p: NonNullable<ShapeAnswer['picked']>): HTMLElement[] {
-    const act = (text: TextKey, id: string, name: IconName, command: Command): HTMLElement => el('button', { type: 'button', class: 'chip', id, onclick: () => this.shapeChosen(command) }, icon(name), t(text));
+    const act = (text: TextKey, id: string, name: IconName, command: Command): HTMLElement =>
+      el(
+        'button',
+        { type: 'button', class: 'chip', id, onclick: () => this.shapeChosen(command) },
+        icon(name),
+        t(text),
+      );
     const axis = p.key as Json;
-    return [el('span', {}, t('shape.branch', { order: p.order, length: String(Math.round(p.length_m * 100) / 100), count: number(p.bears) })),
+    return [
+      el(
+        'span',
+        {},
+        t('shape.branch', {
+          order: p.order,
+          length: String(Math.round(p.length_m * 100) / 100),
+          count: number(p.bears),
+        }),
+      ),
       act('shape.prune', 'b-prune-chosen', 'prune', { do: 'shape', edit: { op: 'prune', axis, at: 0 } }),
-      act('shape.regrow', 'b-regrow-chosen', 'regrow', { do: 'shape', edit: { op: 'regrow', axis, seed: (this.plant?.edits.length ?? 0) + 1 } })];
+      act('shape.regrow', 'b-regrow-chosen', 'regrow', {
+        do: 'shape',
+        edit: { op: 'regrow', axis, seed: (this.plant?.edits.length ?? 0) + 1 },
+      }),
+    ];
   }
 
   /** From the twig to what bears it, and back. */
   private climbBox(): HTMLElement {
-    const step = (id: string, key: TextKey, keys: string, by: 1 | -1, text: string): HTMLButtonElement => el('button', {
-      type: 'button', class: 'chip', id, title: `${t(`${key}.hint` as TextKey)}  (${keys})`, onclick: () => this.climb(by),
-    }, text);
-    const [up, down] = [step('b-shape-up', 'shape.up', 'Q', 1, `${t('shape.up')}${this.bearers > 0 ? ` +${this.bearers}` : ''}`), step('b-shape-down', 'shape.down', 'Shift+Q', -1, t('shape.down'))];
+    const step = (id: string, key: TextKey, keys: string, by: 1 | -1, text: string): HTMLButtonElement =>
+      el(
+        'button',
+        {
+          type: 'button',
+          class: 'chip',
+          id,
+          title: `${t(`${key}.hint` as TextKey)}  (${keys})`,
+          onclick: () => this.climb(by),
+        },
+        text,
+      );
+    const [up, down] = [
+      step(
+        'b-shape-up',
+        'shape.up',
+        'Q',
+        1,
+        `${t('shape.up')}${this.bearers > 0 ? ` +${this.bearers}` : ''}`,
+      ),
+      step('b-shape-down', 'shape.down', 'Shift+Q', -1, t('shape.down')),
+    ];
     up.setAttribute('aria-pressed', String(this.bearers > 0));
     down.disabled = this.bearers === 0;
     return el('span', { class: 'chips', role: 'group', 'aria-label': t('shape.up.hint') }, up, down);
@@ -226,7 +453,10 @@ export class Shaping {
     this.top = by > 0 && at !== undefined;
     this.showStrip();
     if (!at) return;
-    if (!this.chosen) { void this.send({ on: 'move', at: [at] }); return; }
+    if (!this.chosen) {
+      void this.send({ on: 'move', at: [at] });
+      return;
+    }
     this.line = this.send({ on: 'up', at }).then((answer) => {
       if (!answer?.picked || this.tool !== 'pick') return;
       this.chosen = answer.picked;
@@ -267,18 +497,25 @@ export class Shaping {
   }
 
   private tellBrush(): void {
-    if (this.isBusy && this.tool === 'brush') void this.send({ on: 'brush', radius_m: this.radius, density: this.settings.density });
+    if (this.isBusy && this.tool === 'brush')
+      void this.send({ on: 'brush', radius_m: this.radius, density: this.settings.density });
   }
 
   private wire(): ShapeTool {
     const { settings: s, radius: radius_m } = this;
     switch (this.tool) {
-      case 'prune': return { tool: 'prune', whole: s.whole };
-      case 'sketch': return { tool: 'sketch', twigs: s.twigs, tilt_deg: s.tilt_deg };
-      case 'brush': return { tool: 'brush', radius_m, density: s.density };
-      case 'silhouette': return { tool: 'silhouette', density: s.density, trim: s.trim };
-      case 'leaves': return { tool: 'leaves', radius_m, keep: s.more ? 2 : 0.25 };
-      default: return { tool: this.tool ?? 'pick' };
+      case 'prune':
+        return { tool: 'prune', whole: s.whole };
+      case 'sketch':
+        return { tool: 'sketch', twigs: s.twigs, tilt_deg: s.tilt_deg };
+      case 'brush':
+        return { tool: 'brush', radius_m, density: s.density };
+      case 'silhouette':
+        return { tool: 'silhouette', density: s.density, trim: s.trim };
+      case 'leaves':
+        return { tool: 'leaves', radius_m, keep: s.more ? 2 : 0.25 };
+      default:
+        return { tool: this.tool ?? 'pick' };
     }
   }
 
@@ -290,12 +527,19 @@ export class Shaping {
   }
 
   private pointer(e: PointerEvent): ShapePointer | undefined {
-    return this.view.pointer(e.clientX, e.clientY, e.pointerType === 'pen' && e.pressure > 0 ? e.pressure : 1);
+    return this.view.pointer(
+      e.clientX,
+      e.clientY,
+      e.pointerType === 'pen' && e.pressure > 0 ? e.pressure : 1,
+    );
   }
 
   private down(e: PointerEvent, canvas: HTMLCanvasElement): void {
     if (!this.tool) return;
-    if (this.isBusy) { this.cancel(); return; } // a second finger: the view is turned
+    if (this.isBusy) {
+      this.cancel();
+      return;
+    } // a second finger: the view is turned
     const at = this.pointer(e);
     if (e.button !== 0 || !e.isPrimary || !at) return;
     this.pointerId = e.pointerId;
@@ -313,7 +557,8 @@ export class Shaping {
   }
 
   private moved(e: PointerEvent): void {
-    if (!this.tool || (this.isBusy && e.pointerId !== this.pointerId) || (!this.isBusy && e.buttons !== 0)) return;
+    if (!this.tool || (this.isBusy && e.pointerId !== this.pointerId) || (!this.isBusy && e.buttons !== 0))
+      return;
     this.at = this.place(e);
     const all = e.getCoalescedEvents?.() ?? [];
     for (const c of this.isBusy && all.length > 0 ? all : [e]) {
@@ -323,8 +568,11 @@ export class Shaping {
       if (this.isBusy && TRACES[this.tool]) this.overlay.add(...this.place(c));
     }
     // Between gestures only the latest place is of interest.
-    if (!this.isBusy) { this.moves.splice(0, this.moves.length - 1); this.hover = this.moves[0]; this.near = NEAR; }
-    else this.overlay.draw();
+    if (!this.isBusy) {
+      this.moves.splice(0, this.moves.length - 1);
+      this.hover = this.moves[0];
+      this.near = NEAR;
+    } else this.overlay.draw();
     this.showRing();
     void this.pump();
   }
@@ -346,16 +594,22 @@ export class Shaping {
     if (this.moves.length > 0) void this.send({ on: 'move', at: this.moves.splice(0) });
     this.release();
     if (!at) return;
-    this.line = this.send({ on: 'up', at }).then((answer) => {
-      if (!this.isBusy) this.overlay.end();
-      if (!answer) return;
-      if (answer.commit) this.events.run({ do: 'shape', edit: answer.commit });
-      if (this.tool === 'pick') { this.chosen = answer.picked; this.clicked = at; this.showStrip(); }
-      if (still && !answer.commit && !answer.picked) {
-        const plant = this.view.plantAt(e.clientX, e.clientY);
-        if (plant !== undefined && plant !== this.plant?.id) this.events.select(plant);
-      }
-    }).catch((e: unknown) => this.events.refused(String(e)));
+    this.line = this.send({ on: 'up', at })
+      .then((answer) => {
+        if (!this.isBusy) this.overlay.end();
+        if (!answer) return;
+        if (answer.commit) this.events.run({ do: 'shape', edit: answer.commit });
+        if (this.tool === 'pick') {
+          this.chosen = answer.picked;
+          this.clicked = at;
+          this.showStrip();
+        }
+        if (still && !answer.commit && !answer.picked) {
+          const plant = this.view.plantAt(e.clientX, e.clientY);
+          if (plant !== undefined && plant !== this.plant?.id) this.events.select(plant);
+        }
+      })
+      .catch((e: unknown) => this.events.refused(String(e)));
   }
 
   private release(): void {
@@ -409,7 +663,10 @@ export class Shaping {
       this.heard(answer);
       return answer;
     } catch (e) {
-      if (this.isBusy) { this.release(); this.overlay.end(); }
+      if (this.isBusy) {
+        this.release();
+        this.overlay.end();
+      }
       if ((e as Error).message !== 'restarted') this.events.refused((e as Error).message);
       return undefined;
     }
@@ -419,7 +676,8 @@ export class Shaping {
     this.top = picked?.stands ?? false;
     if (picked) {
       const eye = this.at && this.view.element.getBoundingClientRect();
-      const at = eye && this.at ? this.view.pointer(this.at[0] + eye.left, this.at[1] + eye.top, 1) : undefined;
+      const at =
+        eye && this.at ? this.view.pointer(this.at[0] + eye.left, this.at[1] + eye.top, 1) : undefined;
       if (at) this.distance = Math.hypot(...picked.point.map((x, i) => x - at.origin[i]!));
       this.showRing();
     }
@@ -427,15 +685,27 @@ export class Shaping {
     document.body.dataset['bears'] = String(picked?.bears ?? '');
     // What moves under the hand is seen in the plant itself.
     const moving = commit !== null || ((busy || this.isBusy) && this.tool !== 'sketch');
-    this.light(moving || this.tool === 'silhouette' || this.brushes ? undefined : (picked?.axis ?? (this.tool === 'pick' ? this.chosen?.axis : undefined)));
+    this.light(
+      moving || this.tool === 'silhouette' || this.brushes
+        ? undefined
+        : (picked?.axis ?? (this.tool === 'pick' ? this.chosen?.axis : undefined)),
+    );
   }
 
   /** Lights the branch that is meant, with all that it bears. */
   private light(axis: number | undefined): void {
     if (axis === this.lit) return;
     this.lit = axis;
-    if (axis === undefined) { this.overlay.setBranch(undefined); return; }
-    this.events.ask<Float32Array>({ kind: 'branch', axis }).then((points) => { if (this.lit === axis) this.overlay.setBranch(points); }, () => undefined);
+    if (axis === undefined) {
+      this.overlay.setBranch(undefined);
+      return;
+    }
+    this.events.ask<Float32Array>({ kind: 'branch', axis }).then(
+      (points) => {
+        if (this.lit === axis) this.overlay.setBranch(points);
+      },
+      () => undefined,
+    );
   }
 
   /** The brush's radius on the screen. */
@@ -454,7 +724,9 @@ export class Shaping {
   }
 
   private showRing(): void {
-    this.overlay.setRing(this.brushes && this.at ? { x: this.at[0], y: this.at[1], r: this.pixels } : undefined);
+    this.overlay.setRing(
+      this.brushes && this.at ? { x: this.at[0], y: this.at[1], r: this.pixels } : undefined,
+    );
   }
 
   // What was done ------------------------------------------------------------------------------------------------
@@ -468,29 +740,85 @@ export class Shaping {
     document.body.dataset['edits'] = String(edits.length);
     document.body.dataset['undone'] = String(undone);
     document.body.dataset['done'] = String([...reports.values()].filter((r) => r.done).length);
-    if (this.list.hidden) { this.list.replaceChildren(); return; }
-    const focused = this.list.contains(document.activeElement) ? document.activeElement?.getAttribute('data-key') : null;
+    if (this.list.hidden) {
+      this.list.replaceChildren();
+      return;
+    }
+    const focused = this.list.contains(document.activeElement)
+      ? document.activeElement?.getAttribute('data-key')
+      : null;
     const rows = edits.map(({ op, off }, row) => {
       const report = reports.get(row);
       const bad = !off && report?.done === false;
       const name = tOf('edit', op);
-      const what = el('span', { class: 'what' }, el('span', {}, name), el('span', { class: bad ? 'bad' : 'muted' }, off ? t('edit.off') : report ? said(report) : ''));
-      const eye = button(off ? 'hidden' : 'eye', t(off ? 'edit.show' : 'edit.hide', { name }), () => this.events.run({ do: 'shape-leave', row, off: !off }));
+      const what = el(
+        'span',
+        { class: 'what' },
+        el('span', {}, name),
+        el('span', { class: bad ? 'bad' : 'muted' }, off ? t('edit.off') : report ? said(report) : ''),
+      );
+      const eye = button(off ? 'hidden' : 'eye', t(off ? 'edit.show' : 'edit.hide', { name }), () =>
+        this.events.run({ do: 'shape-leave', row, off: !off }),
+      );
       eye.setAttribute('data-key', `eye${row}`);
-      const gone = button('close', t('edit.remove', { name }), () => this.events.run({ do: 'shape-remove', rows: [row] }));
+      const gone = button('close', t('edit.remove', { name }), () =>
+        this.events.run({ do: 'shape-remove', rows: [row] }),
+      );
       gone.setAttribute('data-key', `gone${row}`);
-      return el('li', { class: `${off ? 'is-off' : ''} ${bad ? 'is-bad' : ''}`, 'data-edit': op, title: report && !off ? `${name}: ${said(report)}` : name }, icon(bad ? 'warning' : (EDIT_ICONS[op] ?? 'branch')), what, eye, gone);
+      return el(
+        'li',
+        {
+          class: `${off ? 'is-off' : ''} ${bad ? 'is-bad' : ''}`,
+          'data-edit': op,
+          title: report && !off ? `${name}: ${said(report)}` : name,
+        },
+        icon(bad ? 'warning' : (EDIT_ICONS[op] ?? 'branch')),
+        what,
+        eye,
+        gone,
+      );
     });
-    const all = button('close', t('edit.remove.all'), () => this.events.run({ do: 'shape-remove', rows: edits.map((_, row) => row) }));
+    const all = button('close', t('edit.remove.all'), () =>
+      this.events.run({ do: 'shape-remove', rows: edits.map((_, row) => row) }),
+    );
     all.setAttribute('data-key', 'all');
     // In a narrow view the list would lie over the plant.
     const folded = this.folds ?? this.view.element.clientWidth < ROOMY;
-    const fold = el('button', { type: 'button', class: 'fold', 'data-key': 'fold', 'aria-expanded': String(!folded), onclick: () => { this.folds = !folded; this.showList(); } },
-      icon('shape'), t('edit.title'), el('span', { class: 'muted' }, String(edits.length)),
-      ...(undone > 0 ? [el('span', { class: 'bad', title: t('edit.undone.count', { count: undone }) }, icon('warning'), String(undone))] : []));
+    const fold = el(
+      'button',
+      {
+        type: 'button',
+        class: 'fold',
+        'data-key': 'fold',
+        'aria-expanded': String(!folded),
+        onclick: () => {
+          this.folds = !folded;
+          this.showList();
+        },
+      },
+      icon('shape'),
+      t('edit.title'),
+      el('span', { class: 'muted' }, String(edits.length)),
+      ...(undone > 0
+        ? [
+            el(
+              'span',
+              { class: 'bad', title: t('edit.undone.count', { count: undone }) },
+              icon('warning'),
+              String(undone),
+            ),
+          ]
+        : []),
+    );
     this.list.classList.toggle('folded', folded);
-    this.list.replaceChildren(el('div', { class: 'edits-head' }, fold, ...(folded ? [] : [all])), ...(folded ? [] : [el('ol', {}, ...rows)]));
-    if (focused) this.list.querySelector<HTMLElement>(`[data-key="${CSS.escape(focused)}"]`)?.focus({ preventScroll: true });
+    this.list.replaceChildren(
+      el('div', { class: 'edits-head' }, fold, ...(folded ? [] : [all])),
+      ...(folded ? [] : [el('ol', {}, ...rows)]),
+    );
+    if (focused)
+      this.list
+        .querySelector<HTMLElement>(`[data-key="${CSS.escape(focused)}"]`)
+        ?.focus({ preventScroll: true });
   }
 }
 
@@ -498,7 +826,8 @@ export class Shaping {
 function said(r: EditReport): string {
   if (!r.done) return t('edit.undone', { why: tOf('why', r.code) });
   const parts = (['moved', 'removed', 'added', 'leaves_removed', 'leaves_added'] as const)
-    .filter((k) => r.changed[k] > 0).map((k) => t(`edit.${k}`, { count: number(r.changed[k]) }));
+    .filter((k) => r.changed[k] > 0)
+    .map((k) => t(`edit.${k}`, { count: number(r.changed[k]) }));
   if (parts.length === 0) parts.push(t('edit.nothing'));
   if (r.changed.by_likeness) parts.push(t('edit.by_likeness'));
   return parts.join(' · ');

@@ -10,7 +10,17 @@ describe('links', () => {
   });
 
   it('are refused when they cannot be ours', () => {
-    for (const hash of ['', '#', '#d=', '#d=a b', '#d=%00', '#d=<script>', '#x=abcd', `#d=${'A'.repeat(MAX_LINK + 1)}`, '#d=A']) {
+    for (const hash of [
+      '',
+      '#',
+      '#d=',
+      '#d=a b',
+      '#d=%00',
+      '#d=<script>',
+      '#x=abcd',
+      `#d=${'A'.repeat(MAX_LINK + 1)}`,
+      '#d=A',
+    ]) {
       expect(decode(hash), hash.slice(0, 20)).toBeUndefined();
     }
   });

@@ -5,7 +5,9 @@ import { el } from './ui';
 
 export function statsTable(state: PlantState | undefined, view: PlantView | undefined): HTMLElement {
   const table = el('dl', { class: 'stats' });
-  const row = (key: TextKey, value: string): void => { table.append(el('dt', {}, t(key)), el('dd', {}, value)); };
+  const row = (key: TextKey, value: string): void => {
+    table.append(el('dt', {}, t(key)), el('dd', {}, value));
+  };
   if (!view || view.parts.length === 0) {
     table.append(el('dt', {}, t('view.empty')));
     return table;
@@ -16,9 +18,12 @@ export function statsTable(state: PlantState | undefined, view: PlantView | unde
   const { item } = view;
   if (item) {
     // What was not counted has no row.
-    const counted = (key: TextKey, count: number | null): void => { if (count !== null) row(key, number(count)); };
+    const counted = (key: TextKey, count: number | null): void => {
+      if (count !== null) row(key, number(count));
+    };
     const c = item.counts;
-    for (const kind of ['flowers', 'petals', 'leaves', 'branches'] as const) counted(`stats.${kind}`, c[kind]);
+    for (const kind of ['flowers', 'petals', 'leaves', 'branches'] as const)
+      counted(`stats.${kind}`, c[kind]);
     counted('stats.nodes', c.nodes);
     row('stats.vertices', number(c.vertices));
     row('stats.triangles', number(c.triangles));

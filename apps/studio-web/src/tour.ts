@@ -41,12 +41,27 @@ function show(i: number): void {
     return;
   }
   const last = i === STEPS.length - 1;
-  const next = el('button', { type: 'button', class: 'primary', onclick: () => show(i + 1) }, t(last ? 'tour.done' : 'tour.next'));
-  const skip = el('button', { type: 'button', class: 'link', onclick: () => show(STEPS.length) }, t('tour.skip'));
-  card = el('div', { class: 'tour', role: 'dialog', 'aria-label': t(step.title) },
-    el('span', { class: 'muted' }, `${i + 1} / ${STEPS.length}`), el('strong', {}, t(step.title)), el('p', {}, t(step.text)),
-    el('div', { class: 'row' }, ...(last ? [] : [skip]), el('span', { class: 'space' }), next));
-  card.addEventListener('keydown', (e) => { if (e.key === 'Escape') show(STEPS.length); });
+  const next = el(
+    'button',
+    { type: 'button', class: 'primary', onclick: () => show(i + 1) },
+    t(last ? 'tour.done' : 'tour.next'),
+  );
+  const skip = el(
+    'button',
+    { type: 'button', class: 'link', onclick: () => show(STEPS.length) },
+    t('tour.skip'),
+  );
+  card = el(
+    'div',
+    { class: 'tour', role: 'dialog', 'aria-label': t(step.title) },
+    el('span', { class: 'muted' }, `${i + 1} / ${STEPS.length}`),
+    el('strong', {}, t(step.title)),
+    el('p', {}, t(step.text)),
+    el('div', { class: 'row' }, ...(last ? [] : [skip]), el('span', { class: 'space' }), next),
+  );
+  card.addEventListener('keydown', (e) => {
+    if (e.key === 'Escape') show(STEPS.length);
+  });
   document.body.append(card);
   anchor.classList.add('toured');
   place(card, anchor.getBoundingClientRect());
@@ -55,7 +70,11 @@ function show(i: number): void {
 function place(c: HTMLElement, box: DOMRect): void {
   const { offsetWidth: w, offsetHeight: h } = c;
   const small = box.width < 200;
-  const x = small ? (box.left > innerWidth / 2 ? box.right - w : box.right + 14) : box.left + (box.width - w) / 2;
+  const x = small
+    ? box.left > innerWidth / 2
+      ? box.right - w
+      : box.right + 14
+    : box.left + (box.width - w) / 2;
   const y = small ? (box.top < 60 ? box.bottom + 12 : box.top - 10) : box.bottom - h - 16;
   c.style.left = `${Math.min(innerWidth - w - 10, Math.max(10, x))}px`;
   c.style.top = `${Math.min(innerHeight - h - 10, Math.max(10, y))}px`;

@@ -20,10 +20,12 @@ export function el<K extends keyof HTMLElementTagNameMap>(
 
 /** Line icons on a grid of 24. */
 const PATHS = {
-  parts: 'M4 20l1.2-4.4L16.500 4.300a1.900 1.900 0 0 1 2.700 0l.5.5a1.900 1.900 0 0 1 0 2.700L8.400 18.800zM14.500 6.300l3.200 3.200',
+  parts:
+    'M4 20l1.2-4.4L16.500 4.300a1.900 1.900 0 0 1 2.700 0l.5.5a1.900 1.900 0 0 1 0 2.700L8.400 18.800zM14.500 6.300l3.200 3.200',
   'branch-contour': 'M12 21v-6m0 0l-4-4m4 4l4.500-5M8 11V8m0 3H5.500M16.500 10l.3-3m-.3 3l2.700-.4',
   'leaf-contour': 'M6 19c-2-8 3-14 13-14c1 10-5 15-11 13M5 21c2-5 5-8 9-10',
-  erase: 'M9 19l-5-5a1.500 1.500 0 0 1 0-2l7.500-7.500a1.500 1.500 0 0 1 2 0l5.500 5.500a1.500 1.500 0 0 1 0 2L12 19zM7.500 8.500l7.500 7.500M9 19h11',
+  erase:
+    'M9 19l-5-5a1.500 1.500 0 0 1 0-2l7.500-7.500a1.500 1.500 0 0 1 2 0l5.500 5.500a1.500 1.500 0 0 1 0 2L12 19zM7.500 8.500l7.500 7.500M9 19h11',
   select: 'M6 4l12 7-5.2 1.700L9.500 18z',
   fit: 'M4 9V5a1 1 0 0 1 1-1h4M15 4h4a1 1 0 0 1 1 1v4M20 15v4a1 1 0 0 1-1 1h-4M9 20H5a1 1 0 0 1-1-1v-4',
   undo: 'M9 7L4.500 11.500L9 16M5 11.500h9a5 5 0 0 1 0 10h-2',
@@ -33,15 +35,18 @@ const PATHS = {
   save: 'M5 4h11l4 4v11a1 1 0 0 1-1 1H5a1 1 0 0 1-1-1V5a1 1 0 0 1 1-1zM8 4v5h7V4M7.500 20v-6.500h9V20',
   export: 'M12 15V4m0 0L8 8m4-4l4 4M5 14v5a1 1 0 0 0 1 1h12a1 1 0 0 0 1-1v-5',
   samples: 'M4 5h7v7H4zM13 5h7v7h-7zM4 14h7v6H4zM13 14h7v6h-7z',
-  settings: 'M4 7h9m5 0h2M4 17h3m5 0h8M15.500 4.800a2.200 2.200 0 1 1 0 4.400a2.200 2.200 0 0 1 0-4.400zM9.500 14.800a2.200 2.200 0 1 1 0 4.400a2.200 2.200 0 0 1 0-4.400z',
+  settings:
+    'M4 7h9m5 0h2M4 17h3m5 0h8M15.500 4.800a2.200 2.200 0 1 1 0 4.400a2.200 2.200 0 0 1 0-4.400zM9.500 14.800a2.200 2.200 0 1 1 0 4.400a2.200 2.200 0 0 1 0-4.400z',
   theme: 'M12 4a8 8 0 1 0 0 16zM12 4a8 8 0 0 1 0 16',
   help: 'M12 3.500a8.500 8.500 0 1 1 0 17a8.500 8.500 0 0 1 0-17zM9.500 9.500a2.500 2.500 0 1 1 3.600 2.300c-.8.400-1.100.9-1.100 1.900M12 16.800h.01',
-  front: 'M5 4h14v16H5zM12 16v-5m0 0c-2.500 0-3.500-1.500-3.500-3.500c2.300 0 3.500 1.300 3.500 3.500zm0 2c2.200 0 3.300-1.300 3.300-3c-2 0-3.300 1-3.300 3z',
+  front:
+    'M5 4h14v16H5zM12 16v-5m0 0c-2.500 0-3.500-1.500-3.500-3.500c2.300 0 3.500 1.300 3.500 3.500zm0 2c2.200 0 3.300-1.300 3.300-3c-2 0-3.300 1-3.300 3z',
   wire: 'M12 3.500l7.500 4.300v8.400L12 20.500l-7.500-4.300V7.800zM4.500 7.800L12 12l7.500-4.200M12 12v8.500',
   fresh: 'M6 3.500h8l4.500 4.500v12.500H6zM14 3.500V8h4.500M12 11v6m-3-3h6',
   close: 'M6 6l12 12M18 6L6 18',
   lock: 'M7 11h10a1 1 0 0 1 1 1v7a1 1 0 0 1-1 1H7a1 1 0 0 1-1-1v-7a1 1 0 0 1 1-1zM8.500 11V8a3.500 3.500 0 0 1 7 0v3',
-  unlock: 'M7 11h10a1 1 0 0 1 1 1v7a1 1 0 0 1-1 1H7a1 1 0 0 1-1-1v-7a1 1 0 0 1 1-1zM8.500 11V7.500a3.500 3.500 0 0 1 6.800-1.200',
+  unlock:
+    'M7 11h10a1 1 0 0 1 1 1v7a1 1 0 0 1-1 1H7a1 1 0 0 1-1-1v-7a1 1 0 0 1 1-1zM8.500 11V7.500a3.500 3.500 0 0 1 6.800-1.200',
   grid: 'M4 4h4.500v4.500H4zM9.800 4h4.500v4.500H9.800zM15.500 4H20v4.500h-4.500zM4 9.800h4.500v4.500H4zM9.800 9.800h4.500v4.500H9.800zM15.500 9.800H20v4.500h-4.500zM4 15.500h4.500V20H4zM9.800 15.500h4.500V20H9.800zM15.500 15.500H20V20h-4.500z',
   photo: 'M4 5.500h16v13H4zM4 15.500l4.500-4.500l4 4l2.500-2.500l5 5M15.500 9.500h.01',
   mirror: 'M12 3v18M9 7L4 17h5zM15 7l5 10h-5z',
@@ -53,23 +58,31 @@ const PATHS = {
   scene: 'M4 18h16M7 18v-5m0 0a3 3 0 1 1 0-6a3 3 0 0 1 0 6zM16.5 18v-8m0 0l-2.500-2.500m2.500 2.500l2.500-3',
   plus: 'M12 5v14M5 12h14',
   eye: 'M3 12c3-5 6-7 9-7s6 2 9 7c-3 5-6 7-9 7s-6-2-9-7zM12 9.500a2.500 2.500 0 1 1 0 5a2.500 2.500 0 0 1 0-5z',
-  hidden: 'M4 4l16 16M6.500 8C5.2 9 4 10.500 3 12c3 5 6 7 9 7c1.500 0 3-.5 4.500-1.500M10 5.2A8 8 0 0 1 12 5c3 0 6 2 9 7a17 17 0 0 1-2 2.700',
+  hidden:
+    'M4 4l16 16M6.500 8C5.2 9 4 10.500 3 12c3 5 6 7 9 7c1.500 0 3-.5 4.500-1.500M10 5.2A8 8 0 0 1 12 5c3 0 6 2 9 7a17 17 0 0 1-2 2.700',
   more: 'M5.500 12h.01M12 12h.01M18.500 12h.01',
-  sketch: 'M4 20l1.200-4.400L16.500 4.300a1.900 1.900 0 0 1 2.700 0l.5.5a1.900 1.900 0 0 1 0 2.700L8.400 18.800z',
+  sketch:
+    'M4 20l1.200-4.400L16.500 4.300a1.900 1.900 0 0 1 2.700 0l.5.5a1.900 1.900 0 0 1 0 2.700L8.400 18.800z',
   tree: 'M12 21v-8M12 17l-3-2.500M12 15.500l2.500-2M12 3a5 5 0 0 1 4.700 6.700A3.600 3.600 0 0 1 15 16H9a3.600 3.600 0 0 1-1.700-6.300A5 5 0 0 1 12 3z',
   leaf: 'M5 19c-1-9 4-14 14-14c1 10-4 15-14 14zM5 19L14 10M9.500 14.500V11M12 12h3.500',
-  flower: 'M12 9.500a2.500 2.500 0 1 1 0 5a2.500 2.500 0 0 1 0-5zM12 9.500c-2.500-2-2.500-6 0-6.500c2.500.5 2.500 4.500 0 6.500zM14.400 11.300c1.100-3 4.900-4.200 6.200-2c.3 2.500-3.400 4-6.2 2zM13.500 14c3.200 0 5.500 3.200 3.800 5.2c-2.400.7-4.800-2.400-3.800-5.2zM10.500 14c-3.200 0-5.500 3.200-3.800 5.2c2.400.7 4.800-2.400 3.800-5.2zM9.600 11.300c-1.100-3-4.900-4.200-6.200-2c-.3 2.500 3.400 4 6.2 2z',
+  flower:
+    'M12 9.500a2.500 2.500 0 1 1 0 5a2.500 2.500 0 0 1 0-5zM12 9.500c-2.500-2-2.500-6 0-6.500c2.500.5 2.500 4.500 0 6.500zM14.400 11.300c1.100-3 4.900-4.200 6.200-2c.3 2.500-3.400 4-6.2 2zM13.500 14c3.200 0 5.500 3.200 3.800 5.2c-2.400.7-4.800-2.400-3.800-5.2zM10.500 14c-3.200 0-5.500 3.200-3.800 5.2c2.400.7 4.800-2.400 3.800-5.2zM9.600 11.300c-1.100-3-4.900-4.200-6.200-2c-.3 2.500 3.400 4 6.2 2z',
   play: 'M8 5.500l10 6.500l-10 6.500z',
   warning: 'M12 4l9 16H3zM12 10v4.500M12 17.300h.01',
-  translate: 'M12 3v18M3 12h18M12 3l-2.500 2.500M12 3l2.500 2.500M12 21l-2.500-2.500M12 21l2.500-2.500M3 12l2.500-2.500M3 12l2.500 2.500M21 12l-2.500-2.500M21 12l-2.500 2.500',
+  translate:
+    'M12 3v18M3 12h18M12 3l-2.500 2.500M12 3l2.500 2.500M12 21l-2.500-2.500M12 21l2.500-2.500M3 12l2.500-2.500M3 12l2.500 2.500M21 12l-2.500-2.500M21 12l-2.500 2.500',
   rotate: 'M19.500 12a7.500 7.500 0 1 1-2.200-5.300M18 3v4h-4',
-  shape: 'M6.2 16.2a2.6 2.6 0 1 1 0 5.2a2.6 2.6 0 0 1 0-5.2zM17.8 16.2a2.6 2.6 0 1 1 0 5.2a2.6 2.6 0 0 1 0-5.2zM7.6 16.6L15.500 3M16.4 16.6L8.500 3',
-  prune: 'M6.2 16.2a2.6 2.6 0 1 1 0 5.2a2.6 2.6 0 0 1 0-5.2zM17.8 16.2a2.6 2.6 0 1 1 0 5.2a2.6 2.6 0 0 1 0-5.2zM7.6 16.6L15.500 3M16.4 16.6L8.500 3',
+  shape:
+    'M6.2 16.2a2.6 2.6 0 1 1 0 5.2a2.6 2.6 0 0 1 0-5.2zM17.8 16.2a2.6 2.6 0 1 1 0 5.2a2.6 2.6 0 0 1 0-5.2zM7.6 16.6L15.500 3M16.4 16.6L8.500 3',
+  prune:
+    'M6.2 16.2a2.6 2.6 0 1 1 0 5.2a2.6 2.6 0 0 1 0-5.2zM17.8 16.2a2.6 2.6 0 1 1 0 5.2a2.6 2.6 0 0 1 0-5.2zM7.6 16.6L15.500 3M16.4 16.6L8.500 3',
   slide: 'M7 21V3M7 13l8-5M19 5v10M16.500 7.500L19 5l2.500 2.500M16.500 12.500L19 15l2.500-2.500',
   regrow: 'M12 21v-8M12 17l-4-3M5.500 9.500a7 7 0 1 1 3 5M5.500 9.500L4 6M5.500 9.500L9 8.500',
   branch: 'M4 20c6-1 7-6 9-9s4-5 7-6M12 12.500l-1-5M9.500 16.2l5.500.8',
-  brush: 'M20 4c-5 2-9 6-10.500 9M20 4c-1.500 5-5 9-8 11M9.500 13c-3 0-3 3-5.500 6.500c3.500.5 7.500 0 8-4.500z',
-  silhouette: 'M12 3c4 0 7 3 6.500 7c2 2 1 6-2 6h-9c-3 0-4-4-2-6C5 6 8 3 12 3zM12 21v-9M12 15l-2.500-2M12 13.500l2.500-2',
+  brush:
+    'M20 4c-5 2-9 6-10.500 9M20 4c-1.500 5-5 9-8 11M9.500 13c-3 0-3 3-5.500 6.500c3.500.5 7.500 0 8-4.500z',
+  silhouette:
+    'M12 3c4 0 7 3 6.500 7c2 2 1 6-2 6h-9c-3 0-4-4-2-6C5 6 8 3 12 3zM12 21v-9M12 15l-2.500-2M12 13.500l2.500-2',
   scale: 'M4 20h7v-7H4zM14 10l6-6M15.500 4H20v4.500',
 } as const;
 
@@ -100,13 +113,30 @@ export function relabel(b: HTMLElement, label: string, key = ''): void {
 const notes = el('div', { class: 'notes', role: 'status', 'aria-live': 'polite' });
 
 /** A line at the foot of the page; bad news stay longer and are told at once. */
-export function note(text: string, tone: 'good' | 'bad' = 'good', action?: { label: string; act: () => void }): void {
+export function note(
+  text: string,
+  tone: 'good' | 'bad' = 'good',
+  action?: { label: string; act: () => void },
+): void {
   if (!notes.isConnected) document.body.append(notes);
   for (const other of notes.children) if (other.getAttribute('data-text') === text) other.remove();
   const line = el('div', { class: `note ${tone}`, 'data-text': text }, el('span', {}, text));
   if (tone === 'bad') line.setAttribute('role', 'alert');
   const gone = (): void => line.remove();
-  if (action) line.append(el('button', { type: 'button', onclick: () => { gone(); action.act(); } }, action.label));
+  if (action)
+    line.append(
+      el(
+        'button',
+        {
+          type: 'button',
+          onclick: () => {
+            gone();
+            action.act();
+          },
+        },
+        action.label,
+      ),
+    );
   const close = button('close', t('dialog.close'), gone);
   line.append(close);
   notes.append(line);
@@ -120,7 +150,9 @@ export function dialog(title: string, ...content: Child[]): HTMLDialogElement {
   const close = button('close', t('dialog.close'), () => d.close());
   d.append(el('header', {}, el('h2', {}, title), close), ...content);
   d.addEventListener('close', () => d.remove());
-  d.addEventListener('click', (e) => { if (e.target === d) d.close(); });
+  d.addEventListener('click', (e) => {
+    if (e.target === d) d.close();
+  });
   document.body.append(d);
   d.showModal();
   return d;
@@ -132,7 +164,11 @@ export function popover(anchor: HTMLElement, content: HTMLElement, label: string
   const mine = open?.getAttribute('data-for') === anchor.id && anchor.id !== '';
   closePopover();
   if (mine) return;
-  const p = el('div', { class: 'popover', role: 'dialog', 'aria-label': label, 'data-for': anchor.id }, content);
+  const p = el(
+    'div',
+    { class: 'popover', role: 'dialog', 'aria-label': label, 'data-for': anchor.id },
+    content,
+  );
   document.body.append(p);
   const box = anchor.getBoundingClientRect();
   p.style.top = `${box.bottom + 6}px`;
@@ -140,7 +176,11 @@ export function popover(anchor: HTMLElement, content: HTMLElement, label: string
   anchor.setAttribute('aria-expanded', 'true');
   p.querySelector<HTMLElement>('button, input, select')?.focus();
   const away = (e: Event): void => {
-    if (e instanceof KeyboardEvent ? e.key === 'Escape' : !p.contains(e.target as Node) && !anchor.contains(e.target as Node)) {
+    if (
+      e instanceof KeyboardEvent
+        ? e.key === 'Escape'
+        : !p.contains(e.target as Node) && !anchor.contains(e.target as Node)
+    ) {
       closePopover();
       if (e instanceof KeyboardEvent) anchor.focus();
     }

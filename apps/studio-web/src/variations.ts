@@ -19,16 +19,39 @@ export function openVariations(engine: Engine, now: string, events: VariationsEv
   let open = true;
   const grid = el('div', { class: 'variations' });
   const roll = (): string => String(1 + (crypto.getRandomValues(new Uint32Array(1))[0]! % 999_999));
-  const again = el('button', { type: 'button', class: 'wide', onclick: () => void fill() }, t('variations.again'));
-  const d = dialog(t('variations.title'), el('p', { class: 'muted' }, t('variations.hint')), grid, el('div', { class: 'row' }, el('span', { class: 'space' }), again));
-  d.addEventListener('close', () => { open = false; });
+  const again = el(
+    'button',
+    { type: 'button', class: 'wide', onclick: () => void fill() },
+    t('variations.again'),
+  );
+  const d = dialog(
+    t('variations.title'),
+    el('p', { class: 'muted' }, t('variations.hint')),
+    grid,
+    el('div', { class: 'row' }, el('span', { class: 'space' }), again),
+  );
+  d.addEventListener('close', () => {
+    open = false;
+  });
   let round = 0;
   async function fill(): Promise<void> {
     const mine = ++round;
     const seeds = [now, ...Array.from({ length: COUNT - 1 }, roll)];
     const cells = seeds.map((seed, i) => {
-      const cell = el('button', { type: 'button', 'data-seed': seed, disabled: '', onclick: () => { d.close(); if (seed !== now) events.take(seed); } },
-        el('span', { class: 'blank' }), el('span', {}, i === 0 ? t('variations.now') : seed));
+      const cell = el(
+        'button',
+        {
+          type: 'button',
+          'data-seed': seed,
+          disabled: '',
+          onclick: () => {
+            d.close();
+            if (seed !== now) events.take(seed);
+          },
+        },
+        el('span', { class: 'blank' }),
+        el('span', {}, i === 0 ? t('variations.now') : seed),
+      );
       return { seed, cell };
     });
     grid.replaceChildren(...cells.map(({ cell }) => cell));

@@ -1,6 +1,16 @@
 /** The worker: owns the session, answers requests in order, and grows the plant when nothing else is to do. */
 import init, { studio_schema as studioSchema, StudioSession } from './wasm/burgeon_wasm.js';
-import type { FromWorker, PartArrays, PlantView, Request, Sent, ShapeAnswer, TexturePixels, ToWorker, View } from './protocol';
+import type {
+  FromWorker,
+  PartArrays,
+  PlantView,
+  Request,
+  Sent,
+  ShapeAnswer,
+  TexturePixels,
+  ToWorker,
+  View,
+} from './protocol';
 
 const page = self as unknown as DedicatedWorkerGlobalScope;
 let session: StudioSession | undefined;
@@ -39,31 +49,55 @@ function named<K extends string>(tag: K, told: Record<K, string>): string {
 
 function answer(s: StudioSession, request: Request): unknown {
   switch (request.kind) {
-    case 'open': return JSON.parse(s.open(request.name, request.bytes, request.row, request.fresh));
-    case 'stroke': return s.add_stroke(request.mode, request.samples);
-    case 'select': return s.select(request.plant);
-    case 'obstacle': return s.add_obstacle(request.name, request.bytes);
-    case 'schema': return studioSchema();
-    case 'command': return s.run(named('do', request.command));
-    case 'begin': return s.begin(request.name);
-    case 'stage': return s.stage(named('do', request.command));
-    case 'commit': return s.commit();
-    case 'abandon': return s.abandon();
-    case 'undo': return s.undo();
-    case 'redo': return s.redo();
-    case 'draft': return s.draft(request.mode, request.samples);
-    case 'save': return s.save();
+    case 'open':
+      return JSON.parse(s.open(request.name, request.bytes, request.row, request.fresh));
+    case 'stroke':
+      return s.add_stroke(request.mode, request.samples);
+    case 'select':
+      return s.select(request.plant);
+    case 'obstacle':
+      return s.add_obstacle(request.name, request.bytes);
+    case 'schema':
+      return studioSchema();
+    case 'command':
+      return s.run(named('do', request.command));
+    case 'begin':
+      return s.begin(request.name);
+    case 'stage':
+      return s.stage(named('do', request.command));
+    case 'commit':
+      return s.commit();
+    case 'abandon':
+      return s.abandon();
+    case 'undo':
+      return s.undo();
+    case 'redo':
+      return s.redo();
+    case 'draft':
+      return s.draft(request.mode, request.samples);
+    case 'save':
+      return s.save();
     case 'close':
       sent.clear();
       return s.close();
-    case 'paste': return s.paste(request.text, request.x, request.y);
-    case 'photo': return s.place_photo(request.png, request.x, request.y, request.width);
-    case 'copy': return s.copy(Uint32Array.from(request.ids));
-    case 'skeleton': return s.skeleton();
-    case 'shape': return JSON.parse(s.shape(named('tool', request.tool), JSON.stringify(request.reach), named('on', request.input)));
-    case 'branch': return s.branch(request.axis);
-    case 'share': return s.share();
-    case 'export': return s.export(request.format, JSON.stringify(request.options));
+    case 'paste':
+      return s.paste(request.text, request.x, request.y);
+    case 'photo':
+      return s.place_photo(request.png, request.x, request.y, request.width);
+    case 'copy':
+      return s.copy(Uint32Array.from(request.ids));
+    case 'skeleton':
+      return s.skeleton();
+    case 'shape':
+      return JSON.parse(
+        s.shape(named('tool', request.tool), JSON.stringify(request.reach), named('on', request.input)),
+      );
+    case 'branch':
+      return s.branch(request.axis);
+    case 'share':
+      return s.share();
+    case 'export':
+      return s.export(request.format, JSON.stringify(request.options));
     case 'variant': {
       const view: PlantView = JSON.parse(s.variant(request.seed, request.detail));
       try {
@@ -80,17 +114,34 @@ function tellState(s: StudioSession): void {
   const fresh = [...s.fresh_strokes()].map((id) => ({ id, points: s.stroke_points(id) }));
   const png = s.fresh_photo() as Uint8Array<ArrayBuffer>;
   const photo = png.length > 0 ? png : null;
-  tell({ kind: 'state', state, fresh, photo }, [...fresh.map((f) => f.points.buffer), ...(photo ? [photo.buffer] : [])]);
+  tell({ kind: 'state', state, fresh, photo }, [
+    ...fresh.map((f) => f.points.buffer),
+    ...(photo ? [photo.buffer] : []),
+  ]);
 }
 
 /** Requests that change nothing and are not followed by a new plant. */
-const QUIET: ReadonlySet<Request['kind']> = new Set(['save', 'export', 'begin', 'copy', 'variant', 'skeleton', 'share', 'schema', 'branch']);
+const QUIET: ReadonlySet<Request['kind']> = new Set([
+  'save',
+  'export',
+  'begin',
+  'copy',
+  'variant',
+  'skeleton',
+  'share',
+  'schema',
+  'branch',
+]);
 
 /** The columns of what the session shows, and textures that the page does not have. */
 function pack(s: StudioSession, view: PlantView): Sent {
   const { id } = view;
   const parts: PartArrays[] = view.parts.map((_, i) => ({
-    positions: s.positions(id, i), normals: s.normals(id, i), uvs: s.uvs(id, i), colors: s.colors(id, i), indices: s.indices(id, i),
+    positions: s.positions(id, i),
+    normals: s.normals(id, i),
+    uvs: s.uvs(id, i),
+    colors: s.colors(id, i),
+    indices: s.indices(id, i),
   }));
   const obstacles = view.obstacles.map(({ shape }, row) => (shape === 'mesh' ? s.obstacle(id, row) : null));
   const textures: TexturePixels[] = [];
@@ -105,7 +156,11 @@ function pack(s: StudioSession, view: PlantView): Sent {
 }
 
 function buffers({ parts, textures, obstacles }: Sent): Transferable[] {
-  return [...obstacles.flatMap((o) => (o ? [o.buffer] : [])), ...parts.flatMap((p) => Object.values(p).map((c: Float32Array | Uint32Array) => c.buffer)), ...textures.map((x) => x.pixels.buffer)];
+  return [
+    ...obstacles.flatMap((o) => (o ? [o.buffer] : [])),
+    ...parts.flatMap((p) => Object.values(p).map((c: Float32Array | Uint32Array) => c.buffer)),
+    ...textures.map((x) => x.pixels.buffer),
+  ];
 }
 
 function evaluate(): void {
@@ -168,7 +223,11 @@ page.onmessage = ({ data }: MessageEvent<ToWorker>) => {
   }
   try {
     const value = answer(session, request);
-    const bytes = ArrayBuffer.isView(value) ? [value.buffer] : request.kind === 'variant' ? buffers(value as Sent) : [];
+    const bytes = ArrayBuffer.isView(value)
+      ? [value.buffer]
+      : request.kind === 'variant'
+        ? buffers(value as Sent)
+        : [];
     const quiet = QUIET.has(request.kind) || (request.kind === 'shape' && !(value as ShapeAnswer).again);
     // The state first: who waits for the answer may look at it.
     if (!quiet && request.kind !== 'draft' && request.kind !== 'shape') tellState(session);

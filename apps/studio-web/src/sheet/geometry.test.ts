@@ -42,13 +42,22 @@ function winding(rows: number[], px: number, py: number): number {
     [x, y] = [nx, ny];
   };
   const to: Outliner = {
-    moveTo: (nx, ny) => { [x, y, x0, y0] = [nx, ny, nx, ny]; },
+    moveTo: (nx, ny) => {
+      [x, y, x0, y0] = [nx, ny, nx, ny];
+    },
     lineTo: line,
     quadraticCurveTo: (cx, cy, nx, ny) => {
       const [ax, ay] = [x, y];
-      for (let t = 0.125; t <= 1; t += 0.125) line((1 - t) ** 2 * ax + 2 * t * (1 - t) * cx + t * t * nx, (1 - t) ** 2 * ay + 2 * t * (1 - t) * cy + t * t * ny);
+      for (let t = 0.125; t <= 1; t += 0.125)
+        line(
+          (1 - t) ** 2 * ax + 2 * t * (1 - t) * cx + t * t * nx,
+          (1 - t) ** 2 * ay + 2 * t * (1 - t) * cy + t * t * ny,
+        );
     },
-    arc: (cx, cy, r) => { for (let k = 1; k <= 32; k += 1) line(cx + r * Math.cos((Math.PI * k) / 16), cy + r * Math.sin((Math.PI * k) / 16)); },
+    arc: (cx, cy, r) => {
+      for (let k = 1; k <= 32; k += 1)
+        line(cx + r * Math.cos((Math.PI * k) / 16), cy + r * Math.sin((Math.PI * k) / 16));
+    },
     closePath: () => line(x0, y0),
   };
   outline(to, Float64Array.from(rows));
@@ -69,7 +78,10 @@ describe('the outline of a pressed line', () => {
 
   it('has no hole along any line: sharp corners, loops, trembling, one place twice', () => {
     let seed = 7;
-    const random = (): number => { seed = (seed * 16807) % 2147483647; return seed / 2147483647; };
+    const random = (): number => {
+      seed = (seed * 16807) % 2147483647;
+      return seed / 2147483647;
+    };
     for (let n = 0; n < 200; n += 1) {
       const step = n % 2 ? 12 : 1.5;
       const rows: number[] = [];
@@ -84,7 +96,8 @@ describe('the outline of a pressed line', () => {
       for (let i = 0; i + 3 < rows.length; i += 3) {
         const [px, py, qx, qy] = [rows[i]!, rows[i + 1]!, rows[i + 3]!, rows[i + 4]!];
         if (step === 1.5) expect(winding(rows, px, py), `line ${n}, point ${i / 3}`).not.toBe(0);
-        if (px !== qx || py !== qy) expect(winding(rows, (px + qx) / 2, (py + qy) / 2), `line ${n}, after point ${i / 3}`).not.toBe(0);
+        if (px !== qx || py !== qy)
+          expect(winding(rows, (px + qx) / 2, (py + qy) / 2), `line ${n}, after point ${i / 3}`).not.toBe(0);
       }
     }
   });

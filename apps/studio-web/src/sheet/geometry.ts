@@ -50,7 +50,10 @@ export function boxOf(points: Float64Array, step: number, box?: Box): Box | unde
     if (!b) b = { left: x, right: x, bottom: y, top: y };
     else {
       b = {
-        left: Math.min(b.left, x), right: Math.max(b.right, x), bottom: Math.min(b.bottom, y), top: Math.max(b.top, y),
+        left: Math.min(b.left, x),
+        right: Math.max(b.right, x),
+        bottom: Math.min(b.bottom, y),
+        top: Math.max(b.top, y),
       };
     }
   }

@@ -35,7 +35,12 @@ export class Pen {
     let [low, high, bottom, top] = [Infinity, -Infinity, Infinity, -Infinity];
     for (let i = 0; i < this.length; i += 1) {
       const [x, y] = this.row(i);
-      [low, high, bottom, top] = [Math.min(low, x - axis), Math.max(high, x - axis), Math.min(bottom, y), Math.max(top, y)];
+      [low, high, bottom, top] = [
+        Math.min(low, x - axis),
+        Math.max(high, x - axis),
+        Math.min(bottom, y),
+        Math.max(top, y),
+      ];
     }
     const far = Math.max(Math.abs(low), Math.abs(high));
     // What begins on the line (a leaf on its stem) still lies beside it.
@@ -54,7 +59,10 @@ export class Pen {
     this.at = next;
     // A 32nd of a pixel is below what a hand can mean, and makes files and links small.
     const grid = 2 ** Math.round(Math.log2(32 * view.scale));
-    const [dx, dy] = toDrawing(view, next[0], next[1]).map((c) => Math.round(c * grid) / grid) as [number, number];
+    const [dx, dy] = toDrawing(view, next[0], next[1]).map((c) => Math.round(c * grid) / grid) as [
+      number,
+      number,
+    ];
     // A mouse says 0.5 while a button is down: that is no pressure.
     const pressure = e.pointerType === 'pen' ? Math.round(e.pressure * 1024) / 1024 : NaN;
     this.rows.push(dx, dy, Math.round(Math.max(0, e.timeStamp - this.started)), pressure);

@@ -1,7 +1,18 @@
 /** The sheet: what was drawn, and the tools that change it. It knows nothing of plants. */
 import { inkOf } from '../colours';
 import type { SketchState, PhotoState, StrokeMode, StrokePoints } from '../protocol';
-import { boxOf, centreline, distance, fitted, outline, toDrawing, toScreen, zoomed, type Box, type Viewport } from './geometry';
+import {
+  boxOf,
+  centreline,
+  distance,
+  fitted,
+  outline,
+  toDrawing,
+  toScreen,
+  zoomed,
+  type Box,
+  type Viewport,
+} from './geometry';
 import { Pen } from './pen';
 
 export type Tool = StrokeMode | 'erase' | 'select';
@@ -107,7 +118,10 @@ export class Sheet {
   private frame = 0;
   private placed = false;
 
-  constructor(private readonly events: SheetEvents, label: string) {
+  constructor(
+    private readonly events: SheetEvents,
+    label: string,
+  ) {
     this.element.className = 'sheet';
     this.element.tabIndex = 0;
     this.element.setAttribute('role', 'application');
@@ -120,9 +134,18 @@ export class Sheet {
     on('pointercancel', (e) => this.up(e, false));
     on('wheel', (e) => this.wheel(e), { passive: false });
     on('contextmenu', (e) => e.preventDefault());
-    on('keydown', (e) => { if (e.code === 'Space') { this.space = true; e.preventDefault(); } });
-    on('keyup', (e) => { if (e.code === 'Space') this.space = false; });
-    on('blur', () => { this.space = false; });
+    on('keydown', (e) => {
+      if (e.code === 'Space') {
+        this.space = true;
+        e.preventDefault();
+      }
+    });
+    on('keyup', (e) => {
+      if (e.code === 'Space') this.space = false;
+    });
+    on('blur', () => {
+      this.space = false;
+    });
     new ResizeObserver(() => this.resize()).observe(this.element);
   }
 
@@ -233,7 +256,9 @@ export class Sheet {
 
   fit(): void {
     const p = this.photo;
-    const under: Box | undefined = p ? { left: p.x, bottom: p.y, right: p.x + p.width, top: p.y + p.height } : undefined;
+    const under: Box | undefined = p
+      ? { left: p.x, bottom: p.y, right: p.x + p.width, top: p.y + p.height }
+      : undefined;
     const box = this.strokes.reduce<Box | undefined>((b, s) => boxOf(s.points, 3, b), under);
     const { clientWidth: w, clientHeight: h } = this.element;
     this.view = box ? fitted(box, w, h) : { scale: 1, x: w / 2, y: h * 0.85 };
@@ -323,7 +348,11 @@ export class Sheet {
     if (this.pinch && e.pointerType === 'touch' && this.pointers.size >= 2) {
       const now = this.pinchNow();
       this.view = zoomed(this.view, now.distance / this.pinch.distance, this.pinch.x, this.pinch.y);
-      this.view = { ...this.view, x: this.view.x + now.x - this.pinch.x, y: this.view.y + now.y - this.pinch.y };
+      this.view = {
+        ...this.view,
+        x: this.view.x + now.x - this.pinch.x,
+        y: this.view.y + now.y - this.pinch.y,
+      };
       this.pinch = now;
       this.moved();
       return;
@@ -352,7 +381,10 @@ export class Sheet {
       case 'photo':
         if (!act.moved) this.events.photoBegin();
         act.moved = true;
-        this.events.photoMove((at[0] - act.from[0]) / this.view.scale, (act.from[1] - at[1]) / this.view.scale);
+        this.events.photoMove(
+          (at[0] - act.from[0]) / this.view.scale,
+          (act.from[1] - at[1]) / this.view.scale,
+        );
         break;
       case 'pan':
         this.view = { ...this.view, x: this.view.x + at[0] - act.x, y: this.view.y + at[1] - act.y };
@@ -418,7 +450,9 @@ export class Sheet {
   private band(from: [number, number], to: [number, number], add: boolean): void {
     const [x0, y0] = toDrawing(this.view, Math.min(from[0], to[0]), Math.max(from[1], to[1]));
     const [x1, y1] = toDrawing(this.view, Math.max(from[0], to[0]), Math.min(from[1], to[1]));
-    const inside = this.strokes.filter((s) => s.box.left >= x0 && s.box.right <= x1 && s.box.bottom >= y0 && s.box.top <= y1);
+    const inside = this.strokes.filter(
+      (s) => s.box.left >= x0 && s.box.right <= x1 && s.box.bottom >= y0 && s.box.top <= y1,
+    );
     this.select([...(add ? this.selection : []), ...inside.map((s) => s.id)]);
   }
 
@@ -426,7 +460,11 @@ export class Sheet {
     const [a, b] = [...this.pointers.values()];
     const p: [number, number] = a ?? [0, 0];
     const q: [number, number] = b ?? p;
-    return { distance: Math.max(1, Math.hypot(p[0] - q[0], p[1] - q[1])), x: (p[0] + q[0]) / 2, y: (p[1] + q[1]) / 2 };
+    return {
+      distance: Math.max(1, Math.hypot(p[0] - q[0], p[1] - q[1])),
+      x: (p[0] + q[0]) / 2,
+      y: (p[1] + q[1]) / 2,
+    };
   }
 
   private wheel(e: WheelEvent): void {
@@ -530,7 +568,8 @@ export class Sheet {
     if (!c) return;
     const live = this.act?.kind === 'draw' ? this.act : this.pending;
     // A layer that was only cleared may be shown with its old picture by browsers that draw without a graphics card.
-    this.top.style.visibility = live || this.selection.size > 0 || this.act?.kind === 'band' ? 'visible' : 'hidden';
+    this.top.style.visibility =
+      live || this.selection.size > 0 || this.act?.kind === 'band' ? 'visible' : 'hidden';
     for (const s of this.strokes) {
       if (!this.selection.has(s.id)) continue;
       c.globalAlpha = 0.3;
@@ -540,7 +579,8 @@ export class Sheet {
     }
     if (live) {
       const { pen, mode } = live;
-      const inked = (samples: Float64Array): void => this.ink(c, lineThrough(samples, 4, this.view.scale, mode === 'parts'), mode, this.draftOrgan);
+      const inked = (samples: Float64Array): void =>
+        this.ink(c, lineThrough(samples, 4, this.view.scale, mode === 'parts'), mode, this.draftOrgan);
       inked(pen.samples);
       const { axis } = this;
       if (axis !== undefined && pen.beside(axis)) {
@@ -553,7 +593,12 @@ export class Sheet {
       const { from, to } = this.act;
       c.strokeStyle = this.accent();
       c.setLineDash([5, 4]);
-      c.strokeRect(Math.min(from[0], to[0]), Math.min(from[1], to[1]), Math.abs(to[0] - from[0]), Math.abs(to[1] - from[1]));
+      c.strokeRect(
+        Math.min(from[0], to[0]),
+        Math.min(from[1], to[1]),
+        Math.abs(to[0] - from[0]),
+        Math.abs(to[1] - from[1]),
+      );
       c.setLineDash([]);
     }
   }
@@ -588,7 +633,11 @@ export class Sheet {
   /** Dots at a step of the drawing that is 24 to 60 pixels wide. */
   private grid(c: CanvasRenderingContext2D): void {
     let step = 10 ** Math.floor(Math.log10(60 / this.view.scale));
-    for (const f of [5, 2]) if (step * f * this.view.scale <= 60) { step *= f; break; }
+    for (const f of [5, 2])
+      if (step * f * this.view.scale <= 60) {
+        step *= f;
+        break;
+      }
     const { left, right, top, bottom } = this.seen();
     c.fillStyle = this.dark ? 'rgba(255,255,255,0.10)' : 'rgba(60,50,30,0.13)';
     if (((right - left) / step) * ((top - bottom) / step) > 12_000) return;
@@ -601,7 +650,8 @@ export class Sheet {
   }
 
   private ink(c: CanvasRenderingContext2D, line: Line, mode: StrokeMode, organ?: string): void {
-    const fallback = mode === 'branch-contour' ? 'twig_contour' : mode === 'leaf-contour' ? 'leaf_contour' : undefined;
+    const fallback =
+      mode === 'branch-contour' ? 'twig_contour' : mode === 'leaf-contour' ? 'leaf_contour' : undefined;
     if (mode !== 'parts') c.setLineDash([9, 7]);
     this.draw(c, line, inkOf(organ ?? fallback, this.dark), INK);
     c.setLineDash([]);
@@ -622,7 +672,8 @@ export class Sheet {
 
   /** The line of a stroke at the sheet's scale; made again only when that changes. */
   private lineOf(s: Stroke): Line {
-    if (s.line?.scale !== this.view.scale) s.line = { ...lineThrough(s.points, 3, this.view.scale, s.mode === 'parts'), scale: this.view.scale };
+    if (s.line?.scale !== this.view.scale)
+      s.line = { ...lineThrough(s.points, 3, this.view.scale, s.mode === 'parts'), scale: this.view.scale };
     return s.line;
   }
 }

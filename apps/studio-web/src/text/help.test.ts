@@ -6,27 +6,52 @@ import { en } from './en';
 import { fieldName, helpOf, plainHelp, setLanguage, unitOf, wordOf } from './index';
 import { zhHelp } from './zh-help';
 
-interface Species { key: string; about: string }
+interface Species {
+  key: string;
+  about: string;
+}
 
 /** Everything of the core's schemas that a panel can show. */
-const said = { fields: new Set<string>(), words: new Set<string>(), units: new Set<string>(), texts: new Set<string>() };
+const said = {
+  fields: new Set<string>(),
+  words: new Set<string>(),
+  units: new Set<string>(),
+  texts: new Set<string>(),
+};
 
 function gather(s: Schema | Schema[] | unknown): void {
-  if (Array.isArray(s)) { s.forEach(gather); return; }
+  if (Array.isArray(s)) {
+    s.forEach(gather);
+    return;
+  }
   if (typeof s !== 'object' || s === null) return;
   const schema = s as Schema;
   if (typeof schema.description === 'string') said.texts.add(plainHelp(schema.description));
-  for (const word of [...(schema.enum ?? []), schema.const]) if (typeof word === 'string') said.words.add(word);
+  for (const word of [...(schema.enum ?? []), schema.const])
+    if (typeof word === 'string') said.words.add(word);
   if (schema['x-unit'] !== undefined && schema['x-unit'] !== 'colour') said.units.add(schema['x-unit']);
-  for (const [name, field] of Object.entries(schema.properties ?? {})) { said.fields.add(name); gather(field); }
-  for (const [key, part] of Object.entries(schema)) if (key !== 'properties') gather(key === '$defs' ? Object.values(part as object) : part);
+  for (const [name, field] of Object.entries(schema.properties ?? {})) {
+    said.fields.add(name);
+    gather(field);
+  }
+  for (const [key, part] of Object.entries(schema))
+    if (key !== 'properties') gather(key === '$defs' ? Object.values(part as object) : part);
 }
 
 beforeAll(() => {
   initSync({ module: readFileSync(new URL('../wasm/burgeon_wasm_bg.wasm', import.meta.url)) });
-  const { tree, leaf, flower, trees, flowers } = JSON.parse(studio_schema()) as { tree: Schema; leaf: Schema; flower: Schema; trees: Species[]; flowers: string[] };
+  const { tree, leaf, flower, trees, flowers } = JSON.parse(studio_schema()) as {
+    tree: Schema;
+    leaf: Schema;
+    flower: Schema;
+    trees: Species[];
+    flowers: string[];
+  };
   gather([tree, leaf, flower]);
-  for (const { key, about } of trees) { said.words.add(key); said.texts.add(plainHelp(about)); }
+  for (const { key, about } of trees) {
+    said.words.add(key);
+    said.texts.add(plainHelp(about));
+  }
   for (const key of flowers) said.words.add(key);
   expect(said.fields.size).toBeGreaterThan(100);
   expect(said.texts.size).toBeGreaterThan(200);
@@ -34,7 +59,11 @@ beforeAll(() => {
 
 describe('what the core says', () => {
   it('has a name in both languages for each field, choice and unit', () => {
-    const keys = [...[...said.fields].map((f) => `field.${f}`), ...[...said.words].map((w) => `word.${w}`), ...[...said.units].map((u) => `unit.${u}`)];
+    const keys = [
+      ...[...said.fields].map((f) => `field.${f}`),
+      ...[...said.words].map((w) => `word.${w}`),
+      ...[...said.units].map((u) => `unit.${u}`),
+    ];
     expect(keys.filter((k) => !(k in en))).toEqual([]);
   });
 
@@ -57,15 +86,25 @@ describe('what the core says', () => {
   });
 
   it('keeps its numbers in Chinese', () => {
-    const numbers = (text: string): string[] => text.replace(/\d+ million/g, '').match(/-?\d[\d,.]*\d|-?\d/g) ?? [];
-    for (const [text, chinese] of Object.entries(zhHelp)) for (const n of numbers(text)) expect(chinese, text).toContain(n);
+    const numbers = (text: string): string[] =>
+      text.replace(/\d+ million/g, '').match(/-?\d[\d,.]*\d|-?\d/g) ?? [];
+    for (const [text, chinese] of Object.entries(zhHelp))
+      for (const n of numbers(text)) expect(chinese, text).toContain(n);
   });
 
   it('is asked for in the current language', () => {
     vi.stubGlobal('document', { documentElement: {} });
     setLanguage('zh');
-    expect([fieldName('lambda'), wordOf('guided'), unitOf('m'), helpOf('Colours and\nbark.\n\nMore.')]).toEqual(['顶端优势', '引导生长', '米', '颜色与树皮。']);
+    expect([
+      fieldName('lambda'),
+      wordOf('guided'),
+      unitOf('m'),
+      helpOf('Colours and\nbark.\n\nMore.'),
+    ]).toEqual(['顶端优势', '引导生长', '米', '颜色与树皮。']);
     setLanguage('en');
-    expect([helpOf('What [`Lsystem::parse`] and [`x`](Self::x) read.'), unitOf('colour')]).toEqual(['What Lsystem::parse and x read.', '']);
+    expect([helpOf('What [`Lsystem::parse`] and [`x`](Self::x) read.'), unitOf('colour')]).toEqual([
+      'What Lsystem::parse and x read.',
+      '',
+    ]);
   });
 });

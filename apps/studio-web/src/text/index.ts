@@ -55,7 +55,11 @@ export function unitOf(unit: string): string {
 
 /** The first paragraph of a text that the core's schemas hold, as plain text. */
 export function plainHelp(text: string): string {
-  return text.split('\n\n')[0]!.replaceAll('\n', ' ').replaceAll('`', '').replace(/\[([^\]]*)\](\([^)]*\))?/g, '$1');
+  return text
+    .split('\n\n')[0]!
+    .replaceAll('\n', ' ')
+    .replaceAll('`', '')
+    .replace(/\[([^\]]*)\](\([^)]*\))?/g, '$1');
 }
 
 /** What the core says of a field, a choice or a species, in the current language. */

@@ -12,7 +12,12 @@ export interface GizmoEvents {
 export class Handles {
   private readonly controls: TransformControls;
 
-  constructor(camera: Camera, canvas: HTMLElement, private readonly scene: Scene, events: GizmoEvents) {
+  constructor(
+    camera: Camera,
+    canvas: HTMLElement,
+    private readonly scene: Scene,
+    events: GizmoEvents,
+  ) {
     this.controls = new TransformControls(camera, canvas);
     this.controls.setSpace('local');
     this.controls.setSize(0.8);

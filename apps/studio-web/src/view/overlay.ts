@@ -51,7 +51,8 @@ export class Overlay {
   draw(): void {
     const { element } = this;
     const [w, h, ratio] = [element.clientWidth, element.clientHeight, Math.min(2, devicePixelRatio || 1)];
-    if (element.width !== Math.round(w * ratio) || element.height !== Math.round(h * ratio)) [element.width, element.height] = [Math.round(w * ratio), Math.round(h * ratio)];
+    if (element.width !== Math.round(w * ratio) || element.height !== Math.round(h * ratio))
+      [element.width, element.height] = [Math.round(w * ratio), Math.round(h * ratio)];
     const c = element.getContext('2d');
     if (!c) return;
     c.setTransform(ratio, 0, 0, ratio, 0, 0);
@@ -61,7 +62,10 @@ export class Overlay {
     if (this.path.length > 0) this.drawPath(c);
     if (this.ring) {
       const { x, y, r } = this.ring;
-      for (const [style, wide] of [[EDGE, 3.5], [CORE, 1.5]] as const) {
+      for (const [style, wide] of [
+        [EDGE, 3.5],
+        [CORE, 1.5],
+      ] as const) {
         c.strokeStyle = style;
         c.lineWidth = wide;
         c.beginPath();
@@ -73,7 +77,10 @@ export class Overlay {
 
   /** Dark around light: it shows on every sky and in every crown. */
   private drawBranch(c: CanvasRenderingContext2D, line: Line): void {
-    for (const [style, more] of [[EDGE, 3.5], [CORE, 1.5]] as const) {
+    for (const [style, more] of [
+      [EDGE, 3.5],
+      [CORE, 1.5],
+    ] as const) {
       c.strokeStyle = style;
       // Few widths, so that a crown of thousands of twigs is a few paths.
       const paths = new Map<number, Path2D>();
@@ -81,7 +88,10 @@ export class Overlay {
         if (line[i + 2] === 0 || line[i + 5] === 0) continue;
         const wide = Math.min(16, Math.round(line[i + 2]!));
         let path = paths.get(wide);
-        if (!path) paths.set(wide, (path = new Path2D()));
+        if (!path) {
+          path = new Path2D();
+          paths.set(wide, path);
+        }
         path.moveTo(line[i]!, line[i + 1]!);
         path.lineTo(line[i + 3]!, line[i + 4]!);
       }
@@ -106,7 +116,10 @@ export class Overlay {
       c.lineWidth = Math.max(3, this.width);
       c.stroke();
     }
-    for (const [style, wide] of [[EDGE, 4.5], [CORE, 2.2]] as const) {
+    for (const [style, wide] of [
+      [EDGE, 4.5],
+      [CORE, 2.2],
+    ] as const) {
       c.strokeStyle = style;
       c.lineWidth = wide;
       c.stroke();

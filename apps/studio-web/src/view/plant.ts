@@ -67,7 +67,9 @@ export class Looks {
       alphaTest: look.masked ? 0.5 : 0,
       wireframe: this.wire,
     };
-    const material = this.matt ? new THREE.MeshLambertMaterial(shown) : new THREE.MeshStandardMaterial({ ...shown, roughness: look.roughness, metalness: 0 });
+    const material = this.matt
+      ? new THREE.MeshLambertMaterial(shown)
+      : new THREE.MeshStandardMaterial({ ...shown, roughness: look.roughness, metalness: 0 });
     if (look.translucency > 0) {
       // Light through a thin blade: a little of its own colour shines from the shaded side.
       material.emissive.setRGB(1, 1, 1);
@@ -129,7 +131,8 @@ export class PlantMeshes {
   }
 
   dispose(): void {
-    for (const mesh of [...this.group.children, ...this.obstacles.children]) (mesh as THREE.Mesh).geometry.dispose();
+    for (const mesh of [...this.group.children, ...this.obstacles.children])
+      (mesh as THREE.Mesh).geometry.dispose();
     this.place.removeFromParent();
   }
 }
@@ -151,7 +154,10 @@ function solid(shape: ObstacleShape, corners: Float32Array | null): THREE.Mesh |
     return mesh;
   }
   if (shape.shape === 'cylinder') {
-    const mesh = new THREE.Mesh(new THREE.CylinderGeometry(num('radius_m'), num('radius_m'), num('height_m'), 40), STONE);
+    const mesh = new THREE.Mesh(
+      new THREE.CylinderGeometry(num('radius_m'), num('radius_m'), num('height_m'), 40),
+      STONE,
+    );
     mesh.position.copy(vec('base')).y += num('height_m') / 2;
     return mesh;
   }
@@ -169,7 +175,10 @@ function solid(shape: ObstacleShape, corners: Float32Array | null): THREE.Mesh |
   return new THREE.Mesh(geometry, STONE);
 }
 
-function fill(geometry: THREE.BufferGeometry, { positions, normals, uvs, colors, indices }: PartArrays): void {
+function fill(
+  geometry: THREE.BufferGeometry,
+  { positions, normals, uvs, colors, indices }: PartArrays,
+): void {
   const set = (name: string, array: Float32Array, size: number): void => {
     const now = geometry.getAttribute(name) as THREE.BufferAttribute | undefined;
     if (array.length === 0) {

@@ -49,10 +49,22 @@ interface Mood {
 }
 
 const LIGHT: Mood = {
-  zenith: 0x8fbfe8, horizon: 0xf1f5ee, below: 0xe6e8da, ground: 0xdfe2cf, sun: 0xfff1d6, sunPower: 2.9, ambient: 0.75,
+  zenith: 0x8fbfe8,
+  horizon: 0xf1f5ee,
+  below: 0xe6e8da,
+  ground: 0xdfe2cf,
+  sun: 0xfff1d6,
+  sunPower: 2.9,
+  ambient: 0.75,
 };
 const DARK: Mood = {
-  zenith: 0x0b1420, horizon: 0x23343f, below: 0x1a2626, ground: 0x202d2a, sun: 0xffe6c0, sunPower: 3.2, ambient: 0.95,
+  zenith: 0x0b1420,
+  horizon: 0x23343f,
+  below: 0x1a2626,
+  ground: 0x202d2a,
+  sun: 0xffe6c0,
+  sunPower: 3.2,
+  ambient: 0.95,
 };
 
 export class Stage {
@@ -68,23 +80,39 @@ export class Stage {
   /** `shadowSize`: pixels along an edge of the shadow map. */
   constructor(shadowSize: number) {
     const uniforms = {
-      zenith: { value: new THREE.Color() }, horizon: { value: new THREE.Color() }, below: { value: new THREE.Color() },
+      zenith: { value: new THREE.Color() },
+      horizon: { value: new THREE.Color() },
+      below: { value: new THREE.Color() },
     };
     this.sky = new THREE.Mesh(
       new THREE.SphereGeometry(60, 32, 96),
       new THREE.ShaderMaterial({
-        uniforms, vertexShader: SKY_VERTEX, fragmentShader: SKY_FRAGMENT, side: THREE.BackSide, depthWrite: false,
+        uniforms,
+        vertexShader: SKY_VERTEX,
+        fragmentShader: SKY_FRAGMENT,
+        side: THREE.BackSide,
+        depthWrite: false,
       }),
     );
     // Fades into the sky's lower half, so that there is no edge of the world.
     this.ground = new THREE.Mesh(
       new THREE.RingGeometry(0, RADIUS, 64, 20),
       new THREE.ShaderMaterial({
-        uniforms: { ground: { value: new THREE.Color() } }, vertexShader: GROUND_VERTEX, fragmentShader: GROUND_FRAGMENT, transparent: true, depthWrite: false,
+        uniforms: { ground: { value: new THREE.Color() } },
+        vertexShader: GROUND_VERTEX,
+        fragmentShader: GROUND_FRAGMENT,
+        transparent: true,
+        depthWrite: false,
       }),
     );
-    this.shadow = new THREE.Mesh(new THREE.CircleGeometry(SHADED, 48), new THREE.ShadowMaterial({ opacity: 0.26 }));
-    for (const [disc, y] of [[this.ground, -0.002], [this.shadow, 0]] as const) {
+    this.shadow = new THREE.Mesh(
+      new THREE.CircleGeometry(SHADED, 48),
+      new THREE.ShadowMaterial({ opacity: 0.26 }),
+    );
+    for (const [disc, y] of [
+      [this.ground, -0.002],
+      [this.shadow, 0],
+    ] as const) {
       disc.rotation.x = -Math.PI / 2;
       disc.position.y = y;
     }

@@ -112,8 +112,14 @@ export class PlantView {
     this.listenForClicks(canvas);
     canvas.addEventListener('wheel', () => this.taken(false), { passive: true });
     canvas.addEventListener('keydown', (e) => this.key(e));
-    canvas.addEventListener('webglcontextlost', (e) => { e.preventDefault(); this.onContext(true); });
-    canvas.addEventListener('webglcontextrestored', () => { this.onContext(false); this.redraw(); });
+    canvas.addEventListener('webglcontextlost', (e) => {
+      e.preventDefault();
+      this.onContext(true);
+    });
+    canvas.addEventListener('webglcontextrestored', () => {
+      this.onContext(false);
+      this.redraw();
+    });
     new ResizeObserver(() => this.resize()).observe(this.element);
   }
 
@@ -163,9 +169,15 @@ export class PlantView {
     group.scale.setScalar(scale);
     group.position.y = Math.max(0, -min.y * scale);
     const camera = new THREE.PerspectiveCamera(this.far.fov, width / height, 0.01, 200);
-    const target = min.clone().add(max).multiplyScalar(scale / 2);
+    const target = min
+      .clone()
+      .add(max)
+      .multiplyScalar(scale / 2);
     target.y += group.position.y;
-    const distance = (size.length() * scale * 0.48) / Math.sin(THREE.MathUtils.degToRad(camera.fov / 2)) / Math.min(1, width / height);
+    const distance =
+      (size.length() * scale * 0.48) /
+      Math.sin(THREE.MathUtils.degToRad(camera.fov / 2)) /
+      Math.min(1, width / height);
     camera.position.copy(this.far.position).sub(this.controls.target).setLength(distance).add(target);
     camera.lookAt(target);
     const { scene } = this.stage;
@@ -280,7 +292,8 @@ export class PlantView {
       for (const mesh of obstacles.children as THREE.Mesh[]) {
         mesh.updateMatrix();
         mesh.geometry.computeBoundingBox();
-        if (mesh.geometry.boundingBox) box.union(mesh.geometry.boundingBox.clone().applyMatrix4(mesh.matrix).applyMatrix4(place.matrix));
+        if (mesh.geometry.boundingBox)
+          box.union(mesh.geometry.boundingBox.clone().applyMatrix4(mesh.matrix).applyMatrix4(place.matrix));
       }
       const own = new THREE.Box3(new THREE.Vector3(...view.min), new THREE.Vector3(...view.max));
       if (view.parts.length > 0) box.union(own.applyMatrix4(place.matrix));
@@ -303,7 +316,11 @@ export class PlantView {
     this.holder.scale.setScalar(this.scale);
     // One plant stands where it was drawn; several stand around the middle of the stage.
     const several = this.plants.size > 1 && !this.front && !this.guest;
-    const [x, z] = several ? [(min.x + max.x) / 2, (min.z + max.z) / 2] : this.front || this.guest ? [0, 0] : this.only();
+    const [x, z] = several
+      ? [(min.x + max.x) / 2, (min.z + max.z) / 2]
+      : this.front || this.guest
+        ? [0, 0]
+        : this.only();
     // Roots below the ground are shown: the ground sinks no plant.
     this.holder.position.set(-x * this.scale, Math.max(0, -min.y * this.scale), -z * this.scale);
     if (this.follow) this.frameAll(min, max, this.wish === undefined);
@@ -319,9 +336,17 @@ export class PlantView {
     if (mode && !this.handles) {
       const { Handles } = await import('./gizmo');
       this.handles ??= new Handles(this.far, this.renderer.domElement, this.stage.scene, {
-        begin: () => { this.dragging = true; this.controls.enabled = false; this.onPlaceBegin(); },
+        begin: () => {
+          this.dragging = true;
+          this.controls.enabled = false;
+          this.onPlaceBegin();
+        },
         moved: () => this.moved(),
-        end: () => { this.dragging = false; this.controls.enabled = true; this.onPlaceEnd(); },
+        end: () => {
+          this.dragging = false;
+          this.controls.enabled = true;
+          this.onPlaceEnd();
+        },
         redraw: () => this.redraw(),
       });
     }
@@ -339,7 +364,13 @@ export class PlantView {
   private moved(): void {
     const place = this.chosen?.place;
     if (!place || this.current === null) return;
-    const scale = Math.min(1000, Math.max(0.001, this.gizmo === 'scale' ? Math.max(place.scale.x, place.scale.y, place.scale.z) : place.scale.x));
+    const scale = Math.min(
+      1000,
+      Math.max(
+        0.001,
+        this.gizmo === 'scale' ? Math.max(place.scale.x, place.scale.y, place.scale.z) : place.scale.x,
+      ),
+    );
     if (this.gizmo === 'scale') {
       // Any handle sizes the whole.
       const was = this.states.find((s) => s.id === this.current)?.scale ?? 1;
@@ -349,8 +380,12 @@ export class PlantView {
     }
     const yaw = new THREE.Euler().setFromQuaternion(place.quaternion, 'YXZ').y;
     const round = (x: number): number => Math.round(x * 1000) / 1000;
-    this.onPlace(this.current, [round(place.position.x), round(place.position.y), round(place.position.z)],
-      Math.round(THREE.MathUtils.radToDeg(yaw) * 10) / 10, round(this.gizmo === 'scale' ? place.scale.x : scale));
+    this.onPlace(
+      this.current,
+      [round(place.position.x), round(place.position.y), round(place.position.z)],
+      Math.round(THREE.MathUtils.radToDeg(yaw) * 10) / 10,
+      round(this.gizmo === 'scale' ? place.scale.x : scale),
+    );
     this.renderer.shadowMap.needsUpdate = true;
     this.redraw();
   }
@@ -358,7 +393,10 @@ export class PlantView {
   /** A click on a plant chooses it. */
   private listenForClicks(canvas: HTMLCanvasElement): void {
     let from: [number, number] | undefined;
-    canvas.addEventListener('pointerdown', (e) => { from = e.button === 0 && e.isPrimary && !this.hands && !this.dragging ? [e.clientX, e.clientY] : undefined; });
+    canvas.addEventListener('pointerdown', (e) => {
+      from =
+        e.button === 0 && e.isPrimary && !this.hands && !this.dragging ? [e.clientX, e.clientY] : undefined;
+    });
     canvas.addEventListener('pointerup', (e) => {
       const still = from && Math.hypot(e.clientX - from[0], e.clientY - from[1]) <= CLICK;
       from = undefined;
@@ -389,7 +427,10 @@ export class PlantView {
     const box = this.element.getBoundingClientRect();
     const { camera } = this;
     camera.updateMatrixWorld();
-    this.caster.setFromCamera(new THREE.Vector2(((x - box.left) / box.width) * 2 - 1, 1 - ((y - box.top) / box.height) * 2), camera);
+    this.caster.setFromCamera(
+      new THREE.Vector2(((x - box.left) / box.width) * 2 - 1, 1 - ((y - box.top) / box.height) * 2),
+      camera,
+    );
   }
 
   /** A point of the screen as a ray in the coordinates of the chosen plant. */
@@ -399,11 +440,15 @@ export class PlantView {
     this.aim(x, y);
     place.updateWorldMatrix(true, false);
     const plantFromWorld = place.matrixWorld.clone().invert();
-    const way = (v: THREE.Vector3): [number, number, number] => v.clone().transformDirection(plantFromWorld).toArray();
+    const way = (v: THREE.Vector3): [number, number, number] =>
+      v.clone().transformDirection(plantFromWorld).toArray();
     const { origin, direction } = this.caster.ray;
     return {
-      origin: origin.clone().applyMatrix4(plantFromWorld).toArray(), direction: way(direction), forward: way(this.camera.getWorldDirection(new THREE.Vector3())),
-      up: way(new THREE.Vector3(0, 1, 0).applyQuaternion(this.camera.quaternion)), pressure,
+      origin: origin.clone().applyMatrix4(plantFromWorld).toArray(),
+      direction: way(direction),
+      forward: way(this.camera.getWorldDirection(new THREE.Vector3())),
+      up: way(new THREE.Vector3(0, 1, 0).applyQuaternion(this.camera.quaternion)),
+      pressure,
     };
   }
 
@@ -412,7 +457,8 @@ export class PlantView {
     const size = (this.chosen?.place.getWorldScale(new THREE.Vector3()).x ?? 1) || 1;
     const share = pixels / Math.max(1, this.element.clientHeight);
     const { camera } = this;
-    if (camera instanceof THREE.OrthographicCamera) return { metres: (share * (camera.top - camera.bottom)) / size, per_metre: 0 };
+    if (camera instanceof THREE.OrthographicCamera)
+      return { metres: (share * (camera.top - camera.bottom)) / size, per_metre: 0 };
     return { metres: 0, per_metre: 2 * Math.tan(THREE.MathUtils.degToRad(camera.fov / 2)) * share };
   }
 
@@ -429,11 +475,16 @@ export class PlantView {
     const eye = camera.matrixWorldInverse;
     const v = new THREE.Vector3();
     for (let i = 0, o = 0; i < points.length; i += 4, o += 3) {
-      v.set(points[i]!, points[i + 1]!, points[i + 2]!).applyMatrix4(place.matrixWorld).applyMatrix4(eye);
+      v.set(points[i]!, points[i + 1]!, points[i + 2]!)
+        .applyMatrix4(place.matrixWorld)
+        .applyMatrix4(eye);
       const depth = -v.z;
       v.applyMatrix4(camera.projectionMatrix);
-      const wide = camera instanceof THREE.OrthographicCamera ? (points[i + 3]! * size * h) / (camera.top - camera.bottom)
-        : (points[i + 3]! * size * h) / (2 * Math.tan(THREE.MathUtils.degToRad(camera.fov / 2)) * Math.max(1e-6, depth));
+      const wide =
+        camera instanceof THREE.OrthographicCamera
+          ? (points[i + 3]! * size * h) / (camera.top - camera.bottom)
+          : (points[i + 3]! * size * h) /
+            (2 * Math.tan(THREE.MathUtils.degToRad(camera.fov / 2)) * Math.max(1e-6, depth));
       out.set([((v.x + 1) / 2) * w, ((1 - v.y) / 2) * h, depth > 0 ? 2 * wide : 0], o);
     }
     return out;
@@ -443,8 +494,12 @@ export class PlantView {
   setHands(on: boolean): void {
     if (on === this.hands) return;
     this.hands = on;
-    this.controls.mouseButtons = on ? { LEFT: null, MIDDLE: THREE.MOUSE.PAN, RIGHT: THREE.MOUSE.ROTATE } : { LEFT: THREE.MOUSE.ROTATE, MIDDLE: THREE.MOUSE.DOLLY, RIGHT: THREE.MOUSE.PAN };
-    this.controls.touches = on ? { ONE: null, TWO: THREE.TOUCH.DOLLY_ROTATE } : { ONE: THREE.TOUCH.ROTATE, TWO: THREE.TOUCH.DOLLY_PAN };
+    this.controls.mouseButtons = on
+      ? { LEFT: null, MIDDLE: THREE.MOUSE.PAN, RIGHT: THREE.MOUSE.ROTATE }
+      : { LEFT: THREE.MOUSE.ROTATE, MIDDLE: THREE.MOUSE.DOLLY, RIGHT: THREE.MOUSE.PAN };
+    this.controls.touches = on
+      ? { ONE: null, TWO: THREE.TOUCH.DOLLY_ROTATE }
+      : { ONE: THREE.TOUCH.ROTATE, TWO: THREE.TOUCH.DOLLY_PAN };
     // The tools' strip lies over the foot of the view.
     this.low = on ? STRIP : 0;
     this.inset = this.wanted;
@@ -523,7 +578,11 @@ export class PlantView {
   private frameAll(min: THREE.Vector3, max: THREE.Vector3, now: boolean): void {
     const s = this.scale;
     const up = this.holder.position.y;
-    const target = min.clone().add(max).multiplyScalar(s / 2).add(this.holder.position);
+    const target = min
+      .clone()
+      .add(max)
+      .multiplyScalar(s / 2)
+      .add(this.holder.position);
     target.y += up - this.holder.position.y;
     if (max.equals(min)) return;
     const radius = max.clone().sub(min).length() * s * 0.5;
@@ -558,7 +617,10 @@ export class PlantView {
 
   private key(e: KeyboardEvent): void {
     const turn: Record<string, [number, number]> = {
-      ArrowLeft: [-0.12, 0], ArrowRight: [0.12, 0], ArrowUp: [0, -0.1], ArrowDown: [0, 0.1],
+      ArrowLeft: [-0.12, 0],
+      ArrowRight: [0.12, 0],
+      ArrowUp: [0, -0.1],
+      ArrowDown: [0, 0.1],
     };
     const by = turn[e.key];
     const zoom = e.key === '+' || e.key === '=' ? 0.88 : e.key === '-' ? 1.14 : 0;
@@ -589,10 +651,18 @@ export class PlantView {
     const seen = this.sheetSeen;
     const up = this.holder.position.y;
     // The sheet's height decides; its middle is the picture's middle, whatever the widths are.
-    const [cx, cy] = [((seen.left + seen.right) / 2 - front.x) * k, ((seen.bottom + seen.top) / 2 - front.y) * k + up];
+    const [cx, cy] = [
+      ((seen.left + seen.right) / 2 - front.x) * k,
+      ((seen.bottom + seen.top) / 2 - front.y) * k + up,
+    ];
     const half = ((seen.top - seen.bottom) / 2) * k;
     const wide = half * this.far.aspect;
-    [this.flat.left, this.flat.right, this.flat.bottom, this.flat.top] = [cx - wide, cx + wide, cy - half, cy + half];
+    [this.flat.left, this.flat.right, this.flat.bottom, this.flat.top] = [
+      cx - wide,
+      cx + wide,
+      cy - half,
+      cy + half,
+    ];
     this.flat.position.set(0, 0, 10);
     this.flat.updateProjectionMatrix();
   }
@@ -613,7 +683,11 @@ export class PlantView {
     // Drawing without a graphics card takes the whole processor: the pen goes before the picture.
     const wait = this.slow ? SLOW_MS - (performance.now() - this.rendered) : 0;
     if (wait > 0) {
-      this.frame = window.setTimeout(() => { this.frame = 0; this.rendered = 0; this.redraw(); }, wait);
+      this.frame = window.setTimeout(() => {
+        this.frame = 0;
+        this.rendered = 0;
+        this.redraw();
+      }, wait);
       return;
     }
     this.frame = requestAnimationFrame(() => {
@@ -635,7 +709,11 @@ export class PlantView {
     this.drawn = now;
     this.refine(moving ? GRAIN.moving : GRAIN.rest);
     window.clearTimeout(this.rest);
-    if (moving) this.rest = window.setTimeout(() => { this.drawn = -Infinity; this.redraw(); }, 2 * SLOW_MS);
+    if (moving)
+      this.rest = window.setTimeout(() => {
+        this.drawn = -Infinity;
+        this.redraw();
+      }, 2 * SLOW_MS);
   }
 
   private refine(grain: number): void {
