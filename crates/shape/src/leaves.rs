@@ -162,8 +162,8 @@ pub(crate) fn dress(draft: &mut Draft, habit: &Habit, bench: &Bench<'_>) -> Resu
         let axis = bare.nodes.axis[node.index()];
         let first = bare.axes[axis.index()].nodes.start as usize;
         let at = At { branch: fresh[AxisId::index(axis)], node: node.index() - first };
-        let tint = leaves.tints.get(Seed::new(organ.key).stream(Draw::Tint).below(leaves.tints.len()));
-        let what = plant::Organ { shape: leaves.shape, tint: tint.copied().unwrap_or([1.0; 3]), ..organ };
+        let paint = leaves.paints.get(Seed::new(organ.key).stream(Draw::Tint).below(leaves.paints.len()));
+        let what = plant::Organ { shape: leaves.shape, paint: paint.copied().unwrap_or_default(), ..organ };
         draft.organs.push(Borne { what, at: Some(at), alive: true });
     }
     Ok(())
