@@ -8,6 +8,7 @@ mod golden;
 mod habits;
 mod layers;
 mod made_strokes;
+mod native;
 mod pixels;
 mod scenes;
 mod shell;
