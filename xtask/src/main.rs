@@ -4,6 +4,7 @@
 mod flowers;
 mod gallery;
 mod golden;
+mod habits;
 mod layers;
 mod made_strokes;
 mod pixels;
@@ -32,6 +33,7 @@ cargo xtask COMMAND
   gallery        makes every fixture drawing and writes docs/gallery.md and docs/table1.md
   species        grows every preset and scene of docs/trees.md and docs/shaping.md, and the Studio's small pictures
   flowers        makes the pictures of docs/bloom.md and of the venations in docs/leaves.md
+  habits         checks licences and versions of dependencies, spelling, and that the crates could be published
   layers         checks that each crate uses only what ARCHITECTURE.md allows
   train-strokes  trains the stroke classifier from its table (see docs/strokes.md)
   test-web       the WASM, validator and Studio part of `test` alone
@@ -50,6 +52,7 @@ fn main() -> ExitCode {
         Some("gallery") => gallery::run(),
         Some("species") => species::run(),
         Some("flowers") => flowers::run(),
+        Some("habits") => habits::check(),
         Some("layers") => layers::check(),
         Some("train-strokes") => train_strokes::run(rest),
         Some("studio") => web::setup().and_then(|tools| studio::open(&tools, rest)),

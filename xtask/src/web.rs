@@ -107,50 +107,13 @@ pub(crate) fn native(out: &Path) -> Outcome<(PathBuf, PathBuf)> {
     Ok((drawings, native_organs(out)?.0))
 }
 
-/// Packages of the downloaded core that read, write and pass on, or compute little, rather than grow and draw: half
-/// of it would be their code, which is compiled for size there.
-const SMALL: &[&str] = &[
-    "burgeon",
-    "burgeon-document",
-    "burgeon-formats",
-    "burgeon-leaf",
-    "burgeon-shape",
-    "burgeon-wasm",
-    "fdeflate",
-    "flate2",
-    "hashbrown",
-    "image",
-    "indexmap",
-    "miniz_oxide",
-    "moxcms",
-    "png",
-    "pxfm",
-    "rawzip",
-    "roxmltree",
-    "schemars",
-    "serde",
-    "serde_core",
-    "serde_json",
-    "sha2",
-    "toml",
-    "toml_parser",
-    "zune-jpeg",
-];
-
 /// Builds the core for the browser and returns the file.
 pub(crate) fn build_wasm(tools: &Tools, release: bool) -> Outcome<PathBuf> {
     let mut args = vec!["build", "--package", "burgeon-wasm", "--target", TARGET];
-    let small: Vec<String> =
-        SMALL.iter().map(|name| format!("--config=profile.release.package.{name}.opt-level=\"s\"")).collect();
     if release {
-        args.push("--release");
+        args.push("--profile=web");
     }
     say(&format!("$ cargo {}", args.join(" ")));
-    if release {
-        args.extend(small.iter().map(String::as_str));
-        // In one unit, a package has each generic function once.
-        args.push("--config=profile.release.codegen-units=1");
-    }
     let mut c = tools.cargo.command(&args);
     if release {
         // The classifier's sums run four abreast. The same bits: Rust never reorders floating-point sums by itself.
@@ -164,7 +127,7 @@ pub(crate) fn build_wasm(tools: &Tools, release: bool) -> Outcome<PathBuf> {
         WasmCargo::Own => target_dir(),
         WasmCargo::Debian => target_dir().join("debian"),
     };
-    let profile = if release { "release" } else { "debug" };
+    let profile = if release { "web" } else { "debug" };
     Ok(built.join(TARGET).join(profile).join("burgeon_wasm.wasm"))
 }
 
