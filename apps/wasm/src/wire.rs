@@ -9,8 +9,9 @@ use burgeon::document::{
 };
 use burgeon::glam::{DVec2, DVec3};
 use burgeon::growth::Obstacle;
+use burgeon::ink::{StrokeClass, StrokeMode};
 use burgeon::shape::HandEdit;
-use burgeon::sketch::{SketchSpec, StrokeClass, StrokeMode};
+use burgeon::sketch::SketchSpec;
 use burgeon::skin::{PetalColor, SkinSpec};
 use burgeon::{ItemReport, Preset, bloom, leaf_marks, tree_settings, tree_spec};
 use burgeon::{Seed, Unit, UpAxis, document::StrokeId, formats::ExportSpec};

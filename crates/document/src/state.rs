@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use base::Seed;
 use glam::{DVec2, DVec3};
+use ink::{Drawing, Stroke, StrokeClass};
 use shape::HandEdit;
-use sketch::{Drawing, Stroke, StrokeClass};
 
 use crate::{Maker, Photo, SketchSettings};
 

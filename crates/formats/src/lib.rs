@@ -1,6 +1,6 @@
 //! Readers of strokes, readers and writers of models, on byte streams: no paths, no file system.
 //!
-//! bytes -> [`read_drawings`] -> [`sketch::Drawing`]; bytes -> [`read_model`] -> [`mesh::Model`] ->
+//! bytes -> [`read_drawings`] -> [`ink::Drawing`]; bytes -> [`read_model`] -> [`mesh::Model`] ->
 //! [`write_model`] -> bytes; bytes -> [`read_cloud`] -> [`mesh::PointCloud`]; `plant::Plant` -> [`write_mtg`],
 //! [`write_qsm`] -> bytes.
 //!

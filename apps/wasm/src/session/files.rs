@@ -8,7 +8,7 @@ use burgeon::document::{
 use burgeon::formats::{self, DrawingFormat, ExportSpec, ModelFormat, no_files, read_drawings, read_model};
 use burgeon::glam::DVec3;
 use burgeon::growth::Obstacle;
-use burgeon::sketch::Drawing;
+use burgeon::ink::Drawing;
 use burgeon::{CancelToken, Report, Run, leaf_marks, read_tree_spec, tree_settings};
 
 use super::{Session, Told, words};

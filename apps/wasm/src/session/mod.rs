@@ -25,8 +25,8 @@ use burgeon::document::{
 };
 use burgeon::formats::{self, DrawingFormat, read_drawings};
 use burgeon::glam::DVec2;
+use burgeon::ink::{Drawing, InkSample, Stroke, StrokeMode};
 use burgeon::mesh::{Model, Texture};
-use burgeon::sketch::{Drawing, InkSample, Stroke, StrokeMode};
 use burgeon::{Evaluator, ItemReport, Preset, SceneEvaluator, tree_settings};
 
 use crate::wire::{DocumentState, PlantState, WireCommand};

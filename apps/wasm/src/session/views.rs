@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use burgeon::document::{self, DocumentPlant, Editor, Maker, PlantId};
 use burgeon::growth::Obstacle;
+use burgeon::ink::Drawing;
 use burgeon::mesh::{AlphaMode, Model, Texture};
 use burgeon::plant::{OrganKind, Shape};
-use burgeon::sketch::Drawing;
 use burgeon::{CancelToken, Evaluator, ItemReport, MakeError, Run, SceneError, Seed, SketchOptions};
 
 use super::shaping::coarser;

@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use glam::DVec2;
-use sketch::{InkSample, SketchSpec, Stroke, StrokeClass, StrokeMode};
+use ink::{InkSample, Stroke, StrokeClass, StrokeMode};
+use sketch::SketchSpec;
 use skin::SkinSpec;
 
 use super::{Command, CommandError, may_bear, set};

@@ -1,4 +1,4 @@
-//! bytes -> [`sketch::Drawing`]s, y up, in whatever unit the file has.
+//! bytes -> [`ink::Drawing`]s, y up, in whatever unit the file has.
 
 mod inkml;
 mod json;
@@ -10,7 +10,7 @@ mod xml;
 use std::io::{BufRead, Read};
 
 use base::Warning;
-use sketch::Drawing;
+use ink::Drawing;
 
 use crate::error::{DrawingError, FileFault, Place};
 use crate::kind::DrawingFormat;
