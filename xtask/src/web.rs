@@ -116,6 +116,7 @@ const SMALL: &[&str] = &[
     "burgeon-leaf",
     "burgeon-shape",
     "burgeon-wasm",
+    "burgeon-workspace",
     "fdeflate",
     "flate2",
     "hashbrown",
