@@ -1,11 +1,14 @@
 //! `cargo xtask`: set-up, checks and chores. Installs what is missing, so that a fresh machine with rustup and
 //! Node needs nothing else.
 
+mod circles;
 mod flowers;
 mod gallery;
 mod golden;
+mod habits;
 mod layers;
 mod made_strokes;
+mod native;
 mod pixels;
 mod scenes;
 mod shell;
@@ -33,7 +36,8 @@ cargo xtask COMMAND
   species        grows every preset and scene of docs/trees.md and docs/shaping.md, and the Studio's small pictures
   flowers        makes the pictures of docs/bloom.md and of the venations in docs/leaves.md
   types          writes the TypeScript types of what travels between the page and the core
-  layers         checks that each crate uses only what ARCHITECTURE.md allows
+  habits         checks licences and versions of dependencies, spelling, and that the crates could be published
+  layers         checks that each crate uses only what ARCHITECTURE.md allows, and no modules in a circle
   train-strokes  trains the stroke classifier from its table (see docs/strokes.md)
   test-web       the WASM, validator and Studio part of `test` alone
   test-studio    the Studio part of `test` alone
@@ -52,7 +56,8 @@ fn main() -> ExitCode {
         Some("species") => species::run(),
         Some("flowers") => flowers::run(),
         Some("types") => types(),
-        Some("layers") => layers::check(),
+        Some("habits") => habits::check(),
+        Some("layers") => layers::check().and_then(|()| circles::check()),
         Some("train-strokes") => train_strokes::run(rest),
         Some("studio") => web::setup().and_then(|tools| studio::open(&tools, rest)),
         Some("build-web") => web::setup().and_then(|tools| studio::build(&tools, true)),

@@ -11,8 +11,8 @@ use burgeon::plant::Plant;
 use burgeon::skin::SkinSpec;
 use burgeon::{ItemReport, SceneEvaluator, Seed};
 
+use crate::args::TreeSurfaceArgs;
 use crate::failure::{Failure, Outcome};
-use crate::grow::TreeSurfaceArgs;
 use crate::machine::Machine;
 use crate::output::Outputs;
 

@@ -6,10 +6,9 @@ use burgeon::document::{Document, DocumentPlant};
 use burgeon::formats::PngCache;
 use burgeon::{RunReport, SceneEvaluator, scene_model};
 
-use crate::args::SketchArgs;
+use crate::args::{PlantFormat, Seen, SketchArgs};
 use crate::failure::{Failure, Outcome};
-use crate::files::{self, Goal, Kind, PlantFormat};
-use crate::given::Seen;
+use crate::files::{self, Goal, Kind};
 use crate::machine::Machine;
 use crate::output::Outputs;
 use crate::{picture, say};

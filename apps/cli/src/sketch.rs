@@ -13,11 +13,10 @@ use burgeon::{
     ItemReport, LeafTemplate, Made, MakeError, Run, RunReport, Seed, SketchOptions, make_from_sketch,
 };
 
-use crate::args::{ReadingArgs, SketchArgs, SurfaceArgs};
+use crate::args::{PlantFormat, ReadingArgs, Seen, SketchArgs, SurfaceArgs};
 use crate::classes::Classes;
 use crate::failure::{Failure, Outcome};
-use crate::files::{self, Goal, Kind, PlantFormat};
-use crate::given::Seen;
+use crate::files::{self, Goal, Kind};
 use crate::machine::{Machine, Progress};
 use crate::output::Outputs;
 use crate::{names, output, picture, say};

@@ -19,7 +19,7 @@ use wasm_bindgen::prelude::*;
 
 use burgeon::document::{PlantId, StrokeId};
 use burgeon::glam::DVec2;
-use burgeon::sketch::{InkSample, Stroke, StrokeMode};
+use burgeon::ink::{InkSample, Stroke, StrokeMode};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use workspace::{Column, ExportRequest, Workspace, packed};

@@ -3,10 +3,11 @@
 use bloom::GrowthLaw;
 use glam::DVec2;
 use growth::Obstacle;
+use ink::{InkSample, Stroke, StrokeClass, StrokeMode};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use shape::HandEdit;
-use sketch::{InkSample, SketchSpec, Stroke, StrokeClass, StrokeMode};
+use sketch::SketchSpec;
 use skin::{PetalColor, SkinSpec};
 
 use crate::{DocumentStroke, FlowerSettings, LeafSettings, PhotoPlace};

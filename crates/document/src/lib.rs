@@ -14,7 +14,7 @@
 //! | `photo` | [`Photo`]: what lies under the drawing |
 //! | `archive` | [`pack`] and the bounded reading of zip files |
 //!
-//! Coordinates of strokes are the drawing's own unit, y up, as in [`sketch::Drawing`].
+//! Coordinates of strokes are the drawing's own unit, y up, as in [`ink::Drawing`].
 
 mod archive;
 mod command;

@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use base::Seed;
 use glam::{DVec2, DVec3};
+use ink::{Drawing, Stroke, StrokeClass};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use shape::HandEdit;
-use sketch::{Drawing, Stroke, StrokeClass};
 
 use crate::{Maker, Photo, SketchSettings};
 

@@ -3,8 +3,8 @@
 
 use document::{Document, DocumentPlant, Maker, ProjectError, is_project, pack, read_project, write_project};
 use glam::DVec2;
+use ink::Drawing;
 use proptest::prelude::*;
-use sketch::Drawing;
 
 fn sample() -> Vec<u8> {
     let lines = [vec![DVec2::ZERO, DVec2::new(0.1, 0.7), DVec2::new(0.2, 1.4)], vec![DVec2::ONE, DVec2::X]];

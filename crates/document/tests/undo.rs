@@ -11,10 +11,11 @@ use document::{
 };
 use glam::{DVec2, DVec3};
 use growth::Obstacle;
+use ink::{Drawing, InkSample, Stroke, StrokeClass, StrokeMode};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use shape::{AxisKey, Destination, HandEdit, LeafRegion, Turn, ViewPlane};
-use sketch::{Drawing, InkSample, SketchSpec, Stroke, StrokeClass, StrokeMode};
+use sketch::SketchSpec;
 use skin::SkinSpec;
 
 fn point() -> impl Strategy<Value = DVec2> {

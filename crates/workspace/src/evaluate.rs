@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use burgeon::document::{self, DocumentPlant, Editor, Maker, PlantId};
 use burgeon::growth::Obstacle;
+use burgeon::ink::Drawing;
 use burgeon::mesh::Model;
 use burgeon::plant::{OrganKind, Shape};
-use burgeon::sketch::Drawing;
 use burgeon::{Evaluator, ItemReport, MakeError, Run, SceneError, Seed, SketchOptions};
 
 use crate::shaping::coarser;

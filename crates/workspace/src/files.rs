@@ -9,7 +9,7 @@ use burgeon::document::{
 use burgeon::formats::{DrawingFormat, ExportSpec, ModelFormat, no_files, read_drawings, read_model};
 use burgeon::glam::DVec3;
 use burgeon::growth::Obstacle;
-use burgeon::sketch::Drawing;
+use burgeon::ink::Drawing;
 use burgeon::{LeafError, Report, SceneError, leaf_marks, read_tree_spec, tree_settings, tree_spec};
 use schemars::JsonSchema;
 use serde::Serialize;

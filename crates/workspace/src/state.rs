@@ -4,7 +4,8 @@ use burgeon::document::{
     Document, DocumentPlant, Editor, FlowerSettings, LeafSettings, Maker, PhotoPlace, PlantId, StrokeId,
 };
 use burgeon::growth::Obstacle;
-use burgeon::sketch::{SketchSpec, StrokeClass, StrokeMode};
+use burgeon::ink::{StrokeClass, StrokeMode};
+use burgeon::sketch::SketchSpec;
 use burgeon::skin::SkinSpec;
 use schemars::JsonSchema;
 use serde::Serialize;

@@ -2,7 +2,7 @@
 
 use burgeon::document::{Command, Document, PlantId, SketchCommand, StrokeId};
 use burgeon::glam::DVec2;
-use burgeon::sketch::{InkSample, Stroke, StrokeMode};
+use burgeon::ink::{InkSample, Stroke, StrokeMode};
 use burgeon::{Budget, Run, Seed, SketchOptions, formats};
 use serde::Serialize;
 use serde_json::Value;

@@ -9,8 +9,8 @@ use burgeon::document::{
 };
 use burgeon::formats::{self, DrawingFormat, read_drawings};
 use burgeon::glam::DVec2;
+use burgeon::ink::{Drawing, Stroke};
 use burgeon::mesh::Model;
-use burgeon::sketch::{Drawing, Stroke};
 use burgeon::{Evaluator, ItemReport, Preset, SceneEvaluator, tree_settings};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

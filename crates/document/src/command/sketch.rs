@@ -4,9 +4,10 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use glam::DVec2;
+use ink::{InkSample, Stroke, StrokeClass, StrokeMode};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use sketch::{InkSample, SketchSpec, Stroke, StrokeClass, StrokeMode};
+use sketch::SketchSpec;
 use skin::SkinSpec;
 
 use super::{Command, CommandError, may_bear, set};
