@@ -6,6 +6,21 @@ use glam::DVec3;
 
 use super::{Basis, SplineError};
 
+/// The parameters that split each span between `marks` into `steps` equal parts (at least 1).
+///
+/// ```
+/// assert_eq!(geom::subdivided(&[0.0, 1.0, 3.0], 2), [0.0, 0.5, 1.0, 2.0, 3.0]);
+/// ```
+pub fn subdivided(marks: &[f64], steps: usize) -> Vec<f64> {
+    let steps = steps.max(1);
+    let mut out = Vec::with_capacity(marks.len() * steps);
+    for w in marks.windows(2) {
+        out.extend((0..steps).map(|k| base::ops::lerp(w[0], w[1], k as f64 / steps as f64)));
+    }
+    out.extend(marks.last());
+    out
+}
+
 /// What can be interpolated: numbers, points, balls.
 pub trait Blend: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self> {}
 impl<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f64, Output = T>> Blend for T {}
