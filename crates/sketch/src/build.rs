@@ -6,6 +6,7 @@ use base::{Cancelled, Report, Run, Seed};
 use geom::contains;
 use glam::{DVec2, DVec3};
 use plant::{AxisId, AxisKind, NodeId, OrganKind, PipeModel, Plant, Shape, ShapeId, Taper, pipe_radii};
+use reading::{BladeReading, Reading, RegionKind};
 
 use crate::depth::{
     Bearing, LocalBlade, Part, Plans, Scene, bend_by_light_and_weight, blade_key, branch_depths, coloured,
@@ -13,7 +14,7 @@ use crate::depth::{
 };
 use crate::fill::{FillContext, KeptBodies, fill};
 use crate::front::Front;
-use crate::{BladeReading, PlantMap, Reading, RegionKind, SketchSpec};
+use crate::{PlantMap, SketchSpec};
 
 /// A plant and how it lies in the drawing.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,7 +40,8 @@ pub struct Built {
 /// use base::{Report, Run, Seed};
 /// use glam::DVec2;
 /// use plant::AxisKind;
-/// use sketch::{AxisReading, Reading, SketchSpec, build};
+/// use reading::{AxisReading, Reading};
+/// use sketch::{SketchSpec, build};
 /// let stem = AxisReading {
 ///     points: vec![DVec2::new(0.2, 0.0), DVec2::new(0.2, 0.5)],
 ///     kind: AxisKind::Stem,
@@ -155,9 +157,9 @@ fn name_bodies(plant: &mut Plant) {
 /// Scale and origin: the main axis stands at x = 0 on the ground, and the plant has the height asked for.
 fn plant_map(reading: &Reading, spec: &SketchSpec) -> PlantMap {
     let sound = |p: &DVec2| p.is_finite() && p.abs().max_element() < 1e6;
-    let standing = |a: &&crate::AxisReading| a.bearer.is_none() && a.kind != AxisKind::Root;
-    let foot = |a: &crate::AxisReading| a.points.iter().copied().find(|p| sound(p));
-    let length = |a: &crate::AxisReading| geom::polyline_length(&a.points);
+    let standing = |a: &&reading::AxisReading| a.bearer.is_none() && a.kind != AxisKind::Root;
+    let foot = |a: &reading::AxisReading| a.points.iter().copied().find(|p| sound(p));
+    let length = |a: &reading::AxisReading| geom::polyline_length(&a.points);
     let main = reading
         .axes
         .iter()

@@ -4,10 +4,11 @@ use base::{CancelToken, Report, Run, Seed, ops};
 use glam::{DVec2, DVec3};
 use plant::{AxisId, AxisKind, Lift, OrganKind, Paint, Plant, Shape};
 use proptest::prelude::*;
-use sketch::{
-    Attachment, AxisReading, BladeReading, BranchDepth, Built, DiscReading, FlowerReading, FruitReading,
-    LeafDepth, Reading, RegionKind, RegionReading, SketchSpec, build,
+use reading::{
+    Attachment, AxisReading, BladeReading, DiscReading, FlowerReading, FruitReading, Reading, RegionKind,
+    RegionReading,
 };
+use sketch::{BranchDepth, Built, LeafDepth, SketchSpec, build};
 
 fn v(x: f64, y: f64) -> DVec2 {
     DVec2::new(x, y)

@@ -8,6 +8,7 @@ use geom::SplineError;
 use leaf::{FullMarks, Leaf, LeafSpec, Marks, MarksError, Pose, RaysError, ScanError};
 use mesh::{Model, Texture, TriMesh};
 use plant::{Frame, NodeId, Organ, OrganKind, Paint, Plant, Shape, ShapeId, SplineBlade};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use skin::{KeptShapes, LeafColours, ShapeMesh, SkinSpec};
 
@@ -81,7 +82,7 @@ impl From<Stopped> for LeafError {
 }
 
 /// The part of a report about a leaf.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LeafReport {
     /// `interpolate`, `approximate`, `bezier` or `nurbs`.
     pub surface: String,
@@ -109,7 +110,7 @@ pub struct LeafReport {
 }
 
 /// What was found in a scan.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ScanReport {
     /// Points read, without those that are no numbers.
     pub points: u64,
@@ -126,7 +127,7 @@ pub struct ScanReport {
 }
 
 /// Vertices and faces of a mesh.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct FaceCounts {
     /// Vertices.
     pub vertices: u64,
@@ -135,7 +136,7 @@ pub struct FaceCounts {
 }
 
 /// How far measured points are from the blade, millimetres.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FitError {
     /// Root of the mean square.
     pub rms_mm: f64,

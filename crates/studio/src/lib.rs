@@ -6,7 +6,7 @@
 //!
 //! ```
 //! use burgeon::{Run, Seed, SketchOptions, make_from_sketch};
-//! use burgeon::sketch::Drawing;
+//! use burgeon::ink::Drawing;
 //! use burgeon::glam::DVec2;
 //!
 //! let line: Vec<DVec2> = (0..40).map(|i| DVec2::new(0.02 * f64::from(i % 7), f64::from(i))).collect();
@@ -65,7 +65,10 @@ pub use trees::{
 };
 pub use venation::make_ray_leaf;
 
-pub use {bloom, document, formats, geom, glam, growth, leaf, mesh, plant, render, shape, sketch, skin};
+pub use {
+    bloom, document, formats, geom, glam, growth, ink, leaf, mesh, plant, reading, render, shape, sketch,
+    skin,
+};
 
 /// The version that is written into reports and files.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -13,10 +13,10 @@ use document::{
 use formats::{LeafFileError, MarksAxes, read_marks, read_vein_graph};
 use geom::RingRule;
 use glam::{DQuat, DVec3};
+use ink::Drawing;
 use leaf::{FullMarks, Pose, SurfaceKind, ThicknessRule, VeinParameters};
 use mesh::{MaterialId, Model};
 use plant::Plant;
-use sketch::Drawing;
 use skin::{LeafMeshSpec, SkinSpec};
 
 use crate::evaluate::{Evaluator, FrontView};

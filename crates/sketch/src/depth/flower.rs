@@ -6,11 +6,11 @@ use base::{Draw, ops};
 use geom::{Cone, FlowerCone, Sheet, flower_cone};
 use glam::{DVec2, DVec3};
 use plant::{AxisKind, Blade, Flower, FlowerId, Frame, Lift, NodeId, Organ, OrganKind, Plant, Relief, Shape};
+use reading::{BladeReading, FlowerReading};
 
 use super::axes::{Part, key_of};
 use super::leaf::LocalBlade;
 use super::scene::{Bearing, Scene, around_one, sane, usable};
-use crate::{BladeReading, FlowerReading};
 
 /// Half opening of a flower whose drawing does not tell (60 degrees).
 const OPEN: f64 = ops::PI / 3.0;

@@ -3,9 +3,10 @@
 use base::{Draw, Seed, ops};
 use glam::{DVec2, DVec3};
 use plant::{AxisId, AxisKind, NodeId, Paint, Plant};
+use reading::Attachment;
 
 use super::Plans;
-use crate::{Attachment, PlantMap, SketchSpec};
+use crate::{PlantMap, SketchSpec};
 
 /// Roots farther from their bearer than this get a stalk, ink units: nearer ones read as touching.
 const TOUCHING: f64 = 0.012;

@@ -4,10 +4,10 @@ use base::{Draw, ops};
 use geom::{Pca2, pca2};
 use glam::{DVec2, DVec3};
 use plant::{AxisKind, Frame, Organ, OrganKind, Paint, Plant, Shape};
+use reading::{Attachment, FruitReading};
 
 use super::axes::{Part, key_of};
 use super::scene::{Bearing, Scene, usable};
-use crate::{Attachment, FruitReading};
 
 /// Rings of a fruit from pole to pole.
 const RINGS: usize = 13;

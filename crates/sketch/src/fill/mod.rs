@@ -26,10 +26,11 @@ use glam::{DVec2, DVec3};
 use plant::{AxisId, AxisKind, Paint, Phyllotaxis, Plant, Shape, ShapeId};
 
 use crate::depth::drawn_light;
-use crate::{FillSpec, LeafForm, PlantMap, Reading, RegionKind, RegionReading, SketchSpec};
+use crate::{FillSpec, LeafForm, PlantMap, SketchSpec};
 use crown::{Crown, Habit};
 use foliage::Foliage;
 use leaves::Leaves;
+use reading::{Reading, RegionKind, RegionReading};
 use twigs::Twigs;
 use volume::{Inflation, Volume, above};
 
