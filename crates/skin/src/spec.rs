@@ -22,7 +22,7 @@ pub struct SkinSpec {
     /// Sides of an ordinary branch at `detail` 1 or more; thick ones get up to 24. 3 to 24, default 8 (the
     /// paper's octagons).
     pub sides: u32,
-    /// How leaves of measured veins are meshed at `detail` 1. Follows from what is asked of the leaf, not saved here.
+    /// How leaves of measured veins are meshed at `detail` 1. What a leaf is asked for, not saved here.
     #[serde(skip)]
     pub leaf: LeafMeshSpec,
     /// Give materials procedural textures; without, they have plain colours. Default true.
