@@ -120,7 +120,7 @@ pub(crate) fn sheet_mesh(sheet: &Sheet, spec: &LeafMeshSpec, detail: f64) -> Sha
     out.blade_faces = across.len().saturating_sub(1) * along.len().saturating_sub(1);
     mesh.triangles.extend(thin.triangles().map(|t| t.map(crate::parts::index)));
     mesh.colors = thin.colors;
-    crate::sleeve::drop_flat(mesh);
+    // Cells without area stay: a bud has the triangles of the bloom.
     mesh.compute_normals();
     out
 }

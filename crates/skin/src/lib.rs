@@ -138,8 +138,9 @@ fn budget(plant: &Plant, spec: &SkinSpec) -> Budget {
             counted += 1;
         }
     }
+    let size = spec.steady_m.unwrap_or_else(|| bounds.size().length());
     let mean = if counted > 0 { length / f64::from(counted) } else { 1.0 };
-    Budget::new(spec.detail, bounds.size().length(), mean, counted as usize, plant.organs.len())
+    Budget::new(spec.detail, size, mean, counted as usize, plant.organs.len())
 }
 
 /// The box around nodes and organs.

@@ -34,6 +34,9 @@ pub struct SkinSpec {
     /// export, not saved. Default false.
     #[serde(skip)]
     pub wind: bool,
+    /// Of a plant that changes from day to day its size in full bloom, metres: fineness is relative to that and not
+    /// to the day's, so that triangles are the same at every day. Default none.
+    pub steady_m: Option<f64>,
     /// What the variation and the choice of colours are drawn from, and the phases of the wind.
     #[serde(skip)]
     pub seed: Seed,
@@ -49,6 +52,7 @@ impl Default for SkinSpec {
             petals: None,
             variation: 1.0,
             wind: false,
+            steady_m: None,
             seed: Seed::default(),
         }
     }
