@@ -1,6 +1,7 @@
 //! `cargo xtask`: set-up, checks and chores. Installs what is missing, so that a fresh machine with rustup and
 //! Node needs nothing else.
 
+mod ablation;
 mod flowers;
 mod gallery;
 mod golden;
@@ -35,7 +36,7 @@ cargo xtask COMMAND
   flowers        makes the pictures of docs/bloom.md and of the venations in docs/leaves.md
   habits         checks licences and versions of dependencies, spelling, and that the crates could be published
   layers         checks that each crate uses only what ARCHITECTURE.md allows
-  train-strokes  trains the stroke classifier from its table (see docs/strokes.md)
+  train-strokes  trains the stroke classifier from its table, and says what it and each rule are worth (docs/strokes.md)
   test-web       the WASM, validator and Studio part of `test` alone
   test-studio    the Studio part of `test` alone
   bench-web      measures the Studio in a browser: pen, undo, opening, memory, first paint, transfer

@@ -65,7 +65,7 @@ export interface PhotoState {
 }
 export interface ExportOptions { levels: number; up: "y" | "z"; unit: "m" | "cm" | "mm"; whole: boolean; wind?: boolean }
 export interface Opened { kind: "project" | "drawing" | "model" | "leaf" | "tree" | "law"; name: string; names: string[]; warnings: string[] }
-export interface StrokeReport { index: number; class: StrokeClass; organ: string; confidence: number }
+export interface StrokeReport { index: number; class: StrokeClass; organ: string; confidence: number; source?: string }
 /** What became of the edit of a row; `code` is `done` or a word for why not. */
 export interface EditReport {
   index: number; done: boolean; code: string; said: string;

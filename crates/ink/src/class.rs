@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// What one stroke is. The words of the command line's contract.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StrokeClass {
     /// One petal or leaf as a nearly closed outline.
@@ -29,6 +29,7 @@ pub enum StrokeClass {
     /// Shading, bark lines.
     Scribble,
     /// Nothing of the plant.
+    #[default]
     Other,
 }
 
@@ -48,6 +49,11 @@ impl StrokeClass {
         Self::Scribble,
         Self::Other,
     ];
+
+    /// Its place in [`ALL`](Self::ALL): the trained model's label number.
+    pub const fn place(self) -> usize {
+        self as usize
+    }
 
     /// The word in reports, label files and class overrides.
     pub const fn word(self) -> &'static str {
