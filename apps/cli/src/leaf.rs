@@ -6,256 +6,22 @@ use std::sync::Arc;
 use burgeon::formats::{ExportSpec, PngCache, marks_template, read_picture, write_marks, write_rays};
 use burgeon::geom::RingRule;
 use burgeon::leaf::{
-    FullMarks, LeafGrowth, LeafSpec, Marks, MeshSpec, PalmateSpec, ParallelSpec, Pose, Rays, ScanSpec,
-    SurfaceKind, ThicknessRule, VeinParameters,
+    FullMarks, LeafGrowth, LeafSpec, Marks, PalmateSpec, ParallelSpec, Pose, Rays, ScanSpec, ThicknessRule,
+    VeinParameters,
 };
-use burgeon::mesh::Model;
-use burgeon::{ItemReport, LeafError, LeafOptions, LeafTexture, Report, RunReport, Seed, ShootSpec};
-use clap::{Args, ValueEnum};
+use burgeon::skin::{LeafMeshSpec, SkinSpec};
+use burgeon::{
+    ItemReport, LeafError, LeafOptions, LeafTexture, MadePlant, Report, RunReport, Seed, ShootSpec,
+};
 
-use crate::args::{AxesArgs, CommonArgs, PictureArgs, UnitWord, ranged};
+use crate::args::{LeafArgs, ParametersWord, RingsWord, SurfaceWord, UnitWord, VenationWord};
 use crate::failure::{Failure, Outcome};
 use crate::files::Goal;
-use crate::given::Given;
 use crate::leaf_data::{self, Form, ReadLeaf};
 use crate::machine::Machine;
 use crate::origin::Origin;
 use crate::output::Outputs;
 use crate::{files, inputs, picture, report, say};
-
-#[derive(Args, Debug)]
-#[command(after_long_help = LEAF_EXAMPLES)]
-pub(crate) struct LeafArgs {
-    /// First: clap takes the values of the others away as it reads them.
-    #[command(flatten)]
-    pub(crate) given: Given,
-    /// Marks or chief veins of a leaf (.csv), its vein graph or its profile (.json); several for --days and --plant. `-`
-    /// reads any of them from standard input.
-    #[arg(value_name = "DATA")]
-    pub(crate) inputs: Vec<PathBuf>,
-    /// The model: .glb, .obj, .ply, .stl or .usda. With --template the file to fill in.
-    #[arg(long, short, value_name = "OUT")]
-    pub(crate) output: Option<PathBuf>,
-    /// Write a file of marks to fill in, with instructions, to -o or to standard output.
-    #[arg(long)]
-    pub(crate) template: bool,
-    /// Rows of the template, 2 to 1000.
-    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(2..=1000))]
-    pub(crate) rows: u32,
-    /// DATA is the scan of one leaf (.ply, .xyz, .txt, .pcd, .las, .obj): find midrib, outline, stalk and surface.
-    #[arg(long, conflicts_with_all = ["template", "plant", "days"])]
-    pub(crate) scan: bool,
-    /// Length of the midrib in metres, 0.002 to 10, for a vein graph in pixels [default: 0.1, with a warning] and for
-    /// --venation [default: 0.1 palmate, 0.3 parallel].
-    #[arg(long, value_name = "METRES", value_parser = |s: &str| ranged(s, 0.002, 10.0))]
-    pub(crate) length: Option<f64>,
-    /// A leaf of such veins from a few numbers, without DATA: --veins, --length, --depth.
-    #[arg(long, value_enum, conflicts_with_all = ["inputs", "template", "scan", "plant", "days"])]
-    pub(crate) venation: Option<VenationWord>,
-    /// Chief veins of --venation, an odd number: 3 to 11 palmate, 3 to 31 parallel [default: 5, 9].
-    #[arg(long, value_name = "N", requires = "venation", value_parser = clap::value_parser!(u32).range(3..=31))]
-    pub(crate) veins: Option<u32>,
-    /// How far the notches of a palmate leaf reach, 0 (none) to 0.9.
-    #[arg(long, value_name = "X", default_value_t = 0.5, value_parser = |s: &str| ranged(s, 0.0, 0.9))]
-    pub(crate) depth: f64,
-    /// Side veins on either side of each chief vein in its lobe, made by rule and not measured, 0 to 12 [default: 4
-    /// with --venation palmate, else 0].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=12))]
-    pub(crate) side_veins: Option<u32>,
-    /// Which leaf of a file that holds several (profiles), from 1 [default: the first, with a warning].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
-    pub(crate) number: Option<u32>,
-    /// How a vein graph is read.
-    #[arg(long, value_enum, value_name = "FORM", default_value_t = GraphWord::Auto)]
-    pub(crate) graph: GraphWord,
-    /// Also write the leaf as marks, such as those found in a scan or grown between stages.
-    #[arg(long, value_name = "FILE.csv")]
-    pub(crate) marks: Option<PathBuf>,
-    /// Also make a picture.
-    #[arg(long, value_name = "FILE.png")]
-    pub(crate) png: Option<PathBuf>,
-    /// Number that all chance follows from.
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    pub(crate) seed: u64,
-    #[command(flatten)]
-    pub(crate) shape: ShapeArgs,
-    #[command(flatten)]
-    pub(crate) look: LookArgs,
-    #[command(flatten)]
-    pub(crate) plant: PlantArgs,
-    #[command(flatten)]
-    pub(crate) picture: PictureArgs,
-    #[command(flatten)]
-    pub(crate) axes: AxesArgs,
-    #[command(flatten)]
-    pub(crate) common: CommonArgs,
-}
-
-const LEAF_EXAMPLES: &str = "Examples:
-  burgeon leaf --template -o marks.csv                           a file to fill in
-  burgeon leaf marks.csv -o leaf.glb --png leaf.png
-  burgeon leaf marks.csv -o leaf.glb --surface bezier            bezier, approximate, interpolate or nurbs
-  burgeon leaf marks.csv -o leaf.glb --rings envelope --caps     the exact surface of the veins
-  burgeon leaf marks.csv -o leaf.glb --curl 0.3 --wilt 0.6
-  burgeon leaf d5.csv d9.csv d15.csv --days 5,9,15 --day 12 -o leaf.glb
-  burgeon leaf low.csv middle.csv high.csv --plant -o tobacco.glb
-  burgeon leaf --scan cloud.txt --unit mm -o leaf.glb --marks found.csv
-  burgeon leaf --venation palmate --veins 5 -o maple.glb --marks maple.csv
-  burgeon leaf --venation parallel --length 0.4 -o lily.glb
-  burgeon leaf maple.csv -o maple.glb                            chief veins that start together, digitised
-  burgeon leaf veins.json --length 0.06 -o leaf.glb --marks found.csv   a maple's graph too
-
-Marks are a CSV file with the columns row,mark,x,y,z,thickness,midrib. Lines `# unit: mm`, `# up: z` and
-`# thickness: diameter` in the file win over --unit, --up and --thickness.
-Chief veins are a CSV file with the columns vein,mark,x,y,z,thickness: veins from the right margin to the left, marks
-from the base outwards, as many on each; one without thickness is a margin or a notch between lobes.
-A profile is {\"x\": [...], \"y\": [...], \"s\": [...], \"r\": [...]}: the midrib from base to tip seen from the side (y
-upwards), and the whole width r at the length s from the base; several stand in a list (--number).
-A vein graph is {\"unit\": \"pixel\", \"nodes_xyr\": [[x, y, radius], ...], \"edges\": [[0, 1], ...]}.";
-
-/// How blade and veins are made.
-#[derive(Args, Debug)]
-#[command(next_help_heading = "Leaf")]
-pub(crate) struct ShapeArgs {
-    /// First: clap takes the values of the others away as it reads them.
-    #[command(flatten)]
-    pub(crate) given: Given,
-    /// Surface of the blade.
-    #[arg(long, value_enum, default_value_t = SurfaceWord::Interpolate)]
-    pub(crate) surface: SurfaceWord,
-    /// Rings of the veins: circles across the vein as published, or the exact surface of its balls.
-    #[arg(long, value_enum, default_value_t = RingsWord::Plain)]
-    pub(crate) rings: RingsWord,
-    /// What a measured thickness is [default: what the file says, else diameter].
-    #[arg(long, value_enum)]
-    pub(crate) thickness: Option<ThicknessWord>,
-    /// Parameters of side veins: those of the blade, on which they then lie, or their own chord lengths as
-    /// published (they meet the blade at the marks only).
-    #[arg(long, value_enum, default_value_t = ParametersWord::Shared)]
-    pub(crate) parameters: ParametersWord,
-    /// Pull of the thickest vein on a NURBS blade, 1 (none) to 100.
-    #[arg(long, value_name = "X", default_value_t = 4.0, value_parser = |s: &str| ranged(s, 1.0, 100.0))]
-    pub(crate) vein_weight: f64,
-    /// Parts of each span between marks, 1 to 64.
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=64))]
-    pub(crate) subdivisions: u32,
-    /// Points around a vein, 3 to 64.
-    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(3..=64))]
-    pub(crate) sides: u32,
-    /// Round ends on the veins.
-    #[arg(long)]
-    pub(crate) caps: bool,
-    /// A vein along the margin too.
-    #[arg(long)]
-    pub(crate) margin_vein: bool,
-}
-
-/// How the leaf is bent and coloured.
-#[derive(Args, Debug)]
-#[command(next_help_heading = "Look")]
-pub(crate) struct LookArgs {
-    /// Roll about the midrib, -1 (below) to 1 (margins meet above); 0 as measured.
-    #[arg(long, value_name = "X", default_value_t = 0.0, allow_hyphen_values = true,
-          value_parser = |s: &str| ranged(s, -1.0, 1.0))]
-    pub(crate) curl: f64,
-    /// Loss of stiffness, 0 (as measured) to 1 (hanging limp).
-    #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = |s: &str| ranged(s, 0.0, 1.0))]
-    pub(crate) wilt: f64,
-    /// Colour of the blade: veins (painted by the distance from them), plain, or a picture of the pressed leaf
-    /// (.png or .jpg), cropped to its box with the tip at the top.
-    #[arg(long, value_name = "veins|plain|FILE", default_value = "veins")]
-    pub(crate) texture: PathBuf,
-    /// Days on which the leaf was measured, one a file, in order.
-    #[arg(long, value_name = "D,D,...", value_delimiter = ',', requires = "day")]
-    pub(crate) days: Vec<f64>,
-    /// The day to show, between the first and the last of --days.
-    #[arg(long, value_name = "D", requires = "days")]
-    pub(crate) day: Option<f64>,
-}
-
-/// A whole plant of the leaves.
-#[derive(Args, Debug)]
-#[command(next_help_heading = "Plant")]
-pub(crate) struct PlantArgs {
-    /// A plant with the leaves on one stem: the first file is the form of the lowest leaves.
-    #[arg(long, conflicts_with = "days")]
-    pub(crate) plant: bool,
-    /// Number of leaves of the plant, 1 to 200.
-    #[arg(long, value_name = "N", default_value_t = 22, value_parser = clap::value_parser!(u32).range(1..=200))]
-    pub(crate) leaves: u32,
-    /// Height of the plant's stem in metres, 0.01 to 1000.
-    #[arg(long, value_name = "METRES", default_value_t = 1.0, value_parser = |s: &str| ranged(s, 0.01, 1000.0))]
-    pub(crate) height: f64,
-    /// Angle between successive leaves in degrees, -360 to 360; 8 degrees of chance come to it.
-    #[arg(long, value_name = "DEGREES", default_value_t = 137.0, allow_hyphen_values = true,
-          value_parser = |s: &str| ranged(s, -360.0, 360.0))]
-    pub(crate) azimuth: f64,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum SurfaceWord {
-    /// Through all marks, with the folds of the blade
-    Interpolate,
-    /// A B-spline near the marks
-    Approximate,
-    /// One smooth polynomial
-    Bezier,
-    /// As approximate, drawn towards thick veins
-    Nurbs,
-}
-
-impl From<SurfaceWord> for SurfaceKind {
-    fn from(word: SurfaceWord) -> Self {
-        match word {
-            SurfaceWord::Interpolate => Self::Interpolate,
-            SurfaceWord::Approximate => Self::Approximate,
-            SurfaceWord::Bezier => Self::Bezier,
-            SurfaceWord::Nurbs => Self::Nurbs,
-        }
-    }
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
-pub(crate) enum VenationWord {
-    /// Chief veins spread from the base into lobes, as in a maple
-    Palmate,
-    /// Veins side by side from base to tip, as in a grass or lily
-    Parallel,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
-pub(crate) enum GraphWord {
-    /// Palmate where three or more thick veins leave one place, else one midrib
-    Auto,
-    /// One midrib with side veins
-    Midrib,
-    /// Chief veins that start together
-    Palmate,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum RingsWord {
-    /// Circles across the vein
-    Plain,
-    /// Where each ball touches the surface of all
-    Envelope,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum ThicknessWord {
-    /// As callipers measure
-    Diameter,
-    /// As the formulas take it
-    Radius,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum ParametersWord {
-    /// Those of the blade
-    Shared,
-    /// Chord lengths of the vein's own marks
-    Own,
-}
 
 pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
     let machine = Machine::new(&args.common);
@@ -295,7 +61,7 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
         // What is read may be in any unit; what is made from numbers alone has none but the file's.
         args.given.check_axes(!args.inputs.is_empty() || !format.fixed_axes())?;
     }
-    let Product { model, mut item, marks, offset_m } =
+    let Product { made: MadePlant { model, mut item, .. }, marks, offset_m } =
         if args.scan { scan(args, &machine)? } else { make(args, &machine)? };
     machine.cancel.check()?;
     if let (Some(path), Some(marks)) = (&args.marks, &marks) {
@@ -452,7 +218,7 @@ fn options(args: &LeafArgs, in_file: Option<ThicknessRule>) -> Outcome<LeafOptio
         },
         vein_weight: args.shape.vein_weight,
     };
-    let mesh = MeshSpec {
+    let mesh = LeafMeshSpec {
         subdivisions: args.shape.subdivisions as usize,
         sides: args.shape.sides as usize,
         rings: match args.shape.rings {
@@ -477,13 +243,13 @@ fn options(args: &LeafArgs, in_file: Option<ThicknessRule>) -> Outcome<LeafOptio
     };
     let side_veins =
         args.side_veins.unwrap_or(if args.venation == Some(VenationWord::Palmate) { 4 } else { 0 });
-    Ok(LeafOptions { spec, mesh, pose, texture, side_veins })
+    let skin = SkinSpec { leaf: mesh, ..SkinSpec::default() };
+    Ok(LeafOptions { spec, skin, pose, texture, side_veins, ..LeafOptions::default() })
 }
 
 /// What comes out before it is written.
 struct Product {
-    model: Model,
-    item: ItemReport,
+    made: MadePlant,
     marks: Option<Measured>,
     /// What was taken off a scan's coordinates.
     offset_m: Option<[f64; 3]>,
@@ -521,12 +287,13 @@ fn scan(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
         let (name, spec) = (files::stem(path), ScanSpec::default());
         burgeon::make_leaf_from_scan(&name, &points, &spec, &machine.run())
     });
-    let (mut model, mut item, found) = made.map_err(|e| failure(args, e))?;
-    model.offset_m = origin.offset_m;
+    let (mut made, found) = made.map_err(|e| failure(args, e))?;
+    made.model.offset_m = origin.offset_m;
+    let item = &mut made.item;
     item.warnings.splice(0..0, report.warnings.iter().map(ToString::to_string));
     item.timings_ms.add_io(read_ms, 0.0);
     let offset_m = origin.told(&axes);
-    Ok(Product { model, item, marks: Some(Measured::Rows(found.marks)), offset_m })
+    Ok(Product { made, marks: Some(Measured::Rows(found.marks)), offset_m })
 }
 
 fn make(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
@@ -554,7 +321,7 @@ fn make(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
         let veins = std::mem::take(veins);
         let leaf = read.remove(0);
         let mut product = rays(args, leaf, veins, machine)?;
-        product.item.timings_ms.add_io(read_ms, 0.0);
+        product.made.item.timings_ms.add_io(read_ms, 0.0);
         return Ok(product);
     }
     args.given.refuse(&["side_veins"], "leaves of chief veins", "this is one of rows of marks")?;
@@ -571,7 +338,7 @@ fn make(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
         report.warnings.extend(one.warnings.iter().cloned());
         full.push(marks.complete(&mut report).map_err(|e| Failure::at(path, e))?);
     }
-    let (model, mut item, marks) = if args.plant.plant {
+    let (mut made, marks) = if args.plant.plant {
         let spec = ShootSpec {
             leaves: args.plant.leaves,
             height_m: args.plant.height,
@@ -581,17 +348,17 @@ fn make(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
         let made = machine.with_progress("plant", |_| {
             burgeon::make_shoot("plant", &full, &spec, &options, seed, &machine.run())
         });
-        let (model, mut item) = made.map_err(|e| failure(args, e))?;
-        item.warnings.splice(0..0, report.warnings.iter().map(ToString::to_string));
-        (model, item, None)
+        let mut made = made.map_err(|e| failure(args, e))?;
+        made.item.warnings.splice(0..0, report.warnings.iter().map(ToString::to_string));
+        (made, None)
     } else {
         let marks = grown(args, full)?;
         let made = burgeon::make_leaf_of(&name, &marks, &options, seed, &machine.run(), report);
         let made = made.map_err(|e| failure(args, e))?;
-        (made.model, made.item, Some(Measured::Rows(made.marks.to_marks())))
+        (made, Some(Measured::Rows(options.pose.apply(&marks).to_marks())))
     };
-    item.timings_ms.add_io(read_ms, 0.0);
-    Ok(Product { model, item, marks, offset_m: None })
+    made.item.timings_ms.add_io(read_ms, 0.0);
+    Ok(Product { made, marks, offset_m: None })
 }
 
 /// A leaf of chief veins, made from numbers or digitised.
@@ -601,9 +368,9 @@ fn rays(args: &LeafArgs, leaf: ReadLeaf, rays: Rays, machine: &Machine) -> Outco
     }
     let options = options(args, leaf.thickness)?;
     let made = burgeon::make_ray_leaf(&leaf.name, &rays, &options, &machine.run());
-    let (model, mut item) = made.map_err(|e| failure(args, e))?;
-    item.warnings.splice(0..0, leaf.warnings.iter().map(ToString::to_string));
-    Ok(Product { model, item, marks: Some(Measured::Rays(rays)), offset_m: None })
+    let mut made = made.map_err(|e| failure(args, e))?;
+    made.item.warnings.splice(0..0, leaf.warnings.iter().map(ToString::to_string));
+    Ok(Product { made, marks: Some(Measured::Rays(rays)), offset_m: None })
 }
 
 /// The chief veins of --venation.

@@ -38,7 +38,7 @@ pub use makers::{
     FlowerMaker, FlowerSettings, LeafData, LeafMaker, LeafPaint, LeafRings, LeafSettings, LeafSurface,
     LeafThickness, Maker, NamedObstacle, SketchSettings, TreeSettings,
 };
-pub use photo::{MAX_PHOTO_BYTES, Photo, PhotoError};
+pub use photo::{MAX_PHOTO_BYTES, Photo, PhotoError, PhotoPlace};
 pub use state::{
     Document, DocumentFault, DocumentPlant, DocumentStroke, Placement, PlantEdit, PlantId, Settings,
     StrokeId, range_fault,

@@ -139,8 +139,11 @@ fn files_of_version_2_stay_readable() {
     let plant = only(&document);
     assert_eq!((plant.strokes().len(), plant.settings().seed.number()), (15, 7));
     let photo = plant.settings().photo().unwrap();
-    assert_eq!((photo.size(), photo.x, photo.y, photo.width), ((8, 8), -10.0, -20.0, 900.0));
-    assert_eq!((photo.opacity, photo.paint, photo.height()), (0.25, true, 900.0));
+    assert_eq!(
+        (photo.size(), photo.place.x, photo.place.y, photo.place.width),
+        ((8, 8), -10.0, -20.0, 900.0)
+    );
+    assert_eq!((photo.place.opacity, photo.place.paint, photo.height()), (0.25, true, 900.0));
     let again = read_project(&write_project(&document, "test").unwrap()).unwrap();
     assert_eq!(again, document);
 }

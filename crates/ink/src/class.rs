@@ -1,9 +1,12 @@
 //! The words for what a stroke can be.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// What one stroke is. The words of the command line's contract.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema,
+)]
 #[serde(rename_all = "snake_case")]
 pub enum StrokeClass {
     /// One petal or leaf as a nearly closed outline.

@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use base::{Cancelled, Counted, Draw, Run, Seed, Stopped, map_indexed};
 use mesh::TriMesh;
-use plant::{Organ, OrganKind, Plant, Shape};
+use plant::{Organ, OrganKind, Plant, Shape, ShapeId};
 
 use crate::blade::blade_mesh;
 use crate::body::{dome, prism, revolution, strand};
+use crate::leaf::{LeafMeshSpec, ShapeMesh, sheet_mesh, spline_mesh};
 use crate::lean::lean_mesh;
-use crate::parts::Slot;
+use crate::parts::{Coat, Slot};
 use crate::spec::{Budget, PetalColor, SkinSpec};
 use crate::traced::Traced;
 use crate::tube::{narrow, wide};
@@ -31,14 +32,14 @@ pub(crate) fn organs(
     kept: Option<&mut KeptShapes>,
     run: &Run<'_>,
 ) -> Result<Vec<(Slot, TriMesh)>, Stopped> {
-    let scales = scales(plant);
-    let ground = Ground::new(plant, spec, budget);
+    let uses = uses(plant);
+    let ground = Ground::new(plant, spec);
     let of_photo = |o: &Organ| traced.filter(|t| t.has(o.source));
     let known = kept.as_deref();
     let shapes = map_indexed(run.executor, plant.shapes.len(), |i| {
         run.cancel.check()?;
         let shape = &plant.shapes[i];
-        let wish = scales[i].map_or(Wish::Nothing, |scale| ground.wish(shape, scale, budget));
+        let wish = uses[i].map_or(Wish::Nothing, |used| ground.wish(shape, used, budget));
         let known = known.and_then(|k| k.find(shape, wish, i));
         Ok(known.unwrap_or_else(|| (wish, Arc::new(wish.mesh(shape)))))
     });
@@ -46,31 +47,39 @@ pub(crate) fn organs(
     if let Some(kept) = kept {
         kept.replace(&plant.shapes, &made);
     }
-    let shapes: Vec<Arc<TriMesh>> = made.into_iter().map(|(_, mesh)| mesh).collect();
-    let flutters: Vec<Vec<f32>> = match wind {
-        Some(_) => plant.shapes.iter().zip(&shapes).map(|(s, m)| flutter(s, m)).collect(),
+    let shapes: Vec<Arc<ShapeMesh>> = made.into_iter().map(|(_, mesh)| mesh).collect();
+    let flutters: Vec<[Vec<f32>; 2]> = match wind {
+        Some(_) => {
+            let both = |(s, m): (&Shape, &Arc<ShapeMesh>)| [&m.surface, &m.veins].map(|m| flutter(s, m));
+            plant.shapes.iter().zip(&shapes).map(both).collect()
+        }
         None => Vec::new(),
     };
-    let mut order: Vec<(Slot, usize)> = plant
-        .organs
-        .iter()
-        .enumerate()
-        .filter(|(_, o)| shapes.get(o.shape.index()).is_some_and(|m| !m.triangles.is_empty()) && sound(o))
-        .map(|(i, o)| {
-            let slot = ground.slot(o, &plant.shapes[o.shape.index()]);
-            (if of_photo(o).is_some() { slot.traced() } else { slot }, i)
-        })
-        .collect();
-    let blades = order.iter().map(|&(_, i)| shapes[plant.organs[i].shape.index()].triangles.len());
+    let mesh_of = |&(_, i, layer): &Copied| match layer {
+        Layer::Surface => &shapes[plant.organs[i].shape.index()].surface,
+        Layer::Veins => &shapes[plant.organs[i].shape.index()].veins,
+    };
+    let placed = |(i, o): (usize, &Organ)| {
+        let slot = match plant.shapes[o.shape.index()] {
+            Shape::Spline(ref blade) => Slot::Form(blade.form, Coat::of(o.paint)),
+            _ => ground.slot(o),
+        };
+        let slot = if of_photo(o).is_some() { slot.traced() } else { slot };
+        [(slot, i, Layer::Surface), (Slot::Veins, i, Layer::Veins)]
+    };
+    let organs = plant.organs.iter().enumerate();
+    let organs = organs.filter(|(_, o)| o.shape.index() < shapes.len() && sound(o));
+    let mut order: Vec<Copied> =
+        organs.flat_map(placed).filter(|c| !mesh_of(c).triangles.is_empty()).collect();
+    let blades = order.iter().map(|c| mesh_of(c).triangles.len());
     run.budget.check(Counted::Triangles, (wood + blades.sum::<usize>()) as u64, crate::FEWER)?;
-    base::sort_by_key(&mut order, |&(slot, _)| slot);
-    let groups = groups(&order, |i| shapes[plant.organs[i].shape.index()].positions.len());
+    base::sort_by_key(&mut order, |&(slot, ..)| slot);
+    let groups = groups(&order, |c| mesh_of(c).positions.len());
     let meshes = map_indexed(run.executor, groups.len(), |g| {
         run.cancel.check()?;
         let members = &order[groups[g].clone()];
         let mut mesh = TriMesh::default();
-        let vertices: usize =
-            members.iter().map(|&(_, i)| shapes[plant.organs[i].shape.index()].positions.len()).sum();
+        let vertices: usize = members.iter().map(|c| mesh_of(c).positions.len()).sum();
         mesh.positions.reserve_exact(vertices);
         mesh.normals.reserve_exact(vertices);
         mesh.uvs.reserve_exact(vertices);
@@ -79,17 +88,19 @@ pub(crate) fn organs(
             mesh.wind.reserve_exact(vertices);
             mesh.pivots.reserve_exact(vertices);
         }
-        for &(slot, i) in members {
+        for copied in members {
+            let &(slot, i, layer) = copied;
             let organ = &plant.organs[i];
             let first = mesh.positions.len();
             let photo = of_photo(organ);
-            let color = if photo.is_some() { [1.0; 3] } else { tint(organ, slot, spec) };
-            place(&mut mesh, &shapes[organ.shape.index()], organ, color);
+            let color =
+                if photo.is_some() || slot == Slot::Veins { [1.0; 3] } else { tint(organ, slot, spec) };
+            place(&mut mesh, mesh_of(copied), organ, color);
             if let Some(photo) = photo {
                 photo.organ(&mut mesh, first);
             }
             if let Some(wind) = wind {
-                wind.organ(&mut mesh, first, organ, &flutters[organ.shape.index()]);
+                wind.organ(&mut mesh, first, organ, &flutters[organ.shape.index()][layer as usize]);
             }
         }
         Ok((members[0].0, mesh))
@@ -112,27 +123,47 @@ fn sound(organ: &Organ) -> bool {
     axes && f.origin.is_finite() && organ.scale.is_finite() && organ.scale > 0.0
 }
 
-/// The largest scale at which each shape is used; `None` for a shape that nobody uses.
-fn scales(plant: &Plant) -> Vec<Option<f64>> {
-    let mut scales = vec![None; plant.shapes.len()];
-    for organ in plant.organs.iter().filter(|o| sound(o)) {
-        if let Some(s) = scales.get_mut(organ.shape.index()) {
-            *s = Some(organ.scale.max(s.unwrap_or(0.0)));
-        }
-    }
-    scales
+/// What a shape is used for.
+#[derive(Clone, Copy, Debug, Default)]
+struct Use {
+    /// The largest scale.
+    scale: f64,
+    /// Of a body.
+    body: bool,
 }
 
+/// The use of each shape; `None` for one that nobody uses.
+fn uses(plant: &Plant) -> Vec<Option<Use>> {
+    let mut uses = vec![None; plant.shapes.len()];
+    for organ in plant.organs.iter().filter(|o| sound(o)) {
+        if let Some(used) = uses.get_mut(organ.shape.index()) {
+            let Use { scale, body } = used.unwrap_or_default();
+            *used = Some(Use { scale: organ.scale.max(scale), body: body || organ.kind == OrganKind::Body });
+        }
+    }
+    uses
+}
+
+/// The surface of an organ's shape, or its veins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Layer {
+    Surface,
+    Veins,
+}
+
+/// One mesh of a shape for one organ.
+type Copied = (Slot, usize, Layer);
+
 /// Runs of one slot with about [`GROUP`] vertices each.
-fn groups(order: &[(Slot, usize)], vertices: impl Fn(usize) -> usize) -> Vec<core::ops::Range<usize>> {
+fn groups(order: &[Copied], vertices: impl Fn(&Copied) -> usize) -> Vec<core::ops::Range<usize>> {
     let mut out = Vec::new();
     let (mut start, mut held) = (0, 0);
-    for (k, &(slot, i)) in order.iter().enumerate() {
-        if k > start && (held > GROUP || slot != order[start].0) {
+    for (k, copied) in order.iter().enumerate() {
+        if k > start && (held > GROUP || copied.0 != order[start].0) {
             out.push(start..k);
             (start, held) = (k, 0);
         }
-        held += vertices(i);
+        held += vertices(copied);
     }
     if start < order.len() {
         out.push(start..order.len());
@@ -155,6 +186,9 @@ enum Wish {
     },
     /// A strand of a crown.
     Prism,
+    Spline(LeafMeshSpec),
+    /// With this detail.
+    Grid(LeafMeshSpec, f64),
 }
 
 impl Wish {
@@ -170,8 +204,10 @@ impl Wish {
         }
     }
 
-    fn mesh(self, shape: &Shape) -> TriMesh {
+    fn mesh(self, shape: &Shape) -> ShapeMesh {
         match (self, shape) {
+            (Self::Spline(spec), Shape::Spline(blade)) => return spline_mesh(blade, &spec),
+            (Self::Grid(spec, detail), Shape::Sheet(sheet)) => return sheet_mesh(sheet, &spec, detail),
             (Self::Lean(n), Shape::Blade(blade)) => lean(blade, n).unwrap_or_else(|| blade_mesh(blade, n)),
             (Self::Sheet(n), Shape::Blade(blade)) => blade_mesh(blade, n),
             (Self::Dome(n), Shape::Dome { radius_m, height_m }) => dome(*radius_m, *height_m, n),
@@ -183,6 +219,7 @@ impl Wish {
             (Self::Prism, Shape::Strand { path, radius_m, .. }) => prism(path, radius_m),
             _ => TriMesh::default(),
         }
+        .into()
     }
 }
 
@@ -198,7 +235,7 @@ pub struct KeptShapes {
 }
 
 /// A shape's mesh and the wish that it was made by.
-type Made = (Wish, Arc<TriMesh>);
+type Made = (Wish, Arc<ShapeMesh>);
 
 impl KeptShapes {
     /// Rows that are looked at before and after a shape's own: a stroke brings few shapes.
@@ -211,6 +248,11 @@ impl KeptShapes {
     #[must_use]
     pub fn loose() -> Self {
         Self { loose: true, ..Self::default() }
+    }
+
+    /// The mesh of a shape of the plant that was meshed last, in the shape's own frame.
+    pub fn get(&self, shape: ShapeId) -> Option<&ShapeMesh> {
+        self.made.get(shape.index()).map(|(_, mesh)| &**mesh)
     }
 
     fn find(&self, shape: &Shape, wish: Wish, row: usize) -> Option<Made> {
@@ -236,20 +278,18 @@ impl KeptShapes {
 /// What the plant as a whole decides for its organs.
 struct Ground {
     petals: PetalColor,
-    /// Fruits taller than this are the plant's body.
-    body_from: f64,
     /// Few enough stamens and thorns to give each more than three rings.
     fine_strands: bool,
+    leaf: LeafMeshSpec,
 }
 
 impl Ground {
-    fn new(plant: &Plant, spec: &SkinSpec, budget: &Budget) -> Self {
+    fn new(plant: &Plant, spec: &SkinSpec) -> Self {
         let strands = plant
             .organs
             .iter()
             .filter(|o| matches!(o.kind, OrganKind::Stamen | OrganKind::Pistil | OrganKind::Thorn))
             .count();
-        let thorny = plant.organs.iter().any(|o| o.kind == OrganKind::Thorn);
         let mut key: Seed = spec.seed;
         for b in plant.name.bytes() {
             key = key.child(u64::from(b));
@@ -266,24 +306,11 @@ impl Ground {
         } else {
             PetalColor::ALL[tint.below(PetalColor::ALL.len())]
         };
-        Self {
-            petals: spec.petals.unwrap_or(chosen),
-            // A cactus pad is a good part of its plant; an apple is not.
-            body_from: budget.size() * if thorny { 0.12 } else { 0.4 },
-            fine_strands: strands <= 40,
-        }
+        Self { petals: spec.petals.unwrap_or(chosen), fine_strands: strands <= 40, leaf: spec.leaf }
     }
 
-    fn is_body(&self, shape: &Shape, scale: f64) -> bool {
-        let Shape::Revolution { profile } = shape else { return false };
-        let (low, high) = profile
-            .iter()
-            .filter(|p| p.is_finite())
-            .fold((0.0_f64, 0.0_f64), |(a, b), p| (a.min(p.y), b.max(p.y)));
-        (high - low) * scale > self.body_from
-    }
-
-    fn wish(&self, shape: &Shape, scale: f64, budget: &Budget) -> Wish {
+    fn wish(&self, shape: &Shape, used: Use, budget: &Budget) -> Wish {
+        let scale = used.scale;
         let triangles = |area: f64| budget.blade_triangles(area * scale * scale);
         match shape {
             Shape::Blade(blade) => {
@@ -303,7 +330,7 @@ impl Ground {
             Shape::Revolution { profile } => {
                 let area = |w: &[glam::DVec2]| (w[0].x + w[1].x) * w[0].distance(w[1]);
                 let area: f64 = profile.windows(2).map(area).filter(|a| a.is_finite()).sum();
-                if self.is_body(shape, scale) {
+                if used.body {
                     Wish::Revolution(4.0 * triangles(area), 16)
                 } else {
                     Wish::Revolution(triangles(area), 0)
@@ -311,45 +338,35 @@ impl Ground {
             }
             Shape::Strand { knob_m: 0.0, .. } if budget.crown() => Wish::Prism,
             Shape::Strand { .. } => Wish::Strand { fine: self.fine_strands && budget.detail >= 0.5 },
+            Shape::Spline(_) => Wish::Spline(self.leaf.at(budget.detail)),
+            Shape::Sheet(_) => Wish::Grid(self.leaf.at(budget.detail), budget.detail),
             _ => Wish::Nothing,
         }
     }
 
-    fn slot(&self, organ: &Organ, shape: &Shape) -> Slot {
-        let drawn = drawn_color(organ.tint).is_some();
+    fn slot(&self, organ: &Organ) -> Slot {
+        let coat = Coat::of(organ.paint);
         match organ.kind {
-            OrganKind::Petal if drawn => Slot::DrawnPetal,
-            OrganKind::Petal => Slot::Petal(self.petals),
-            OrganKind::Disc if drawn => Slot::DrawnDisc,
-            OrganKind::Disc => Slot::Disc,
-            OrganKind::Fruit if drawn => Slot::DrawnFruit,
-            OrganKind::Fruit if self.is_body(shape, organ.scale) => Slot::Body,
-            OrganKind::Fruit => Slot::Fruit,
+            OrganKind::Petal => Slot::Petal(coat, self.petals),
+            OrganKind::Disc => Slot::Disc(coat),
+            OrganKind::Body if coat == Coat::Natural => Slot::Body,
+            OrganKind::Fruit | OrganKind::Body => Slot::Fruit(coat),
             OrganKind::Stamen | OrganKind::Pistil => Slot::Stamen,
             OrganKind::Thorn => Slot::Thorn,
             OrganKind::Pedicel => Slot::Stem,
-            _ if drawn => Slot::DrawnLeaf,
-            _ => Slot::Leaf,
+            _ => Slot::Leaf(coat),
         }
     }
 }
 
-/// The colour in which an organ was drawn. A tint near white (makers vary it by a tenth) only varies the material; black is the colour of
-/// ink, not of a plant.
-fn drawn_color(tint: [f32; 3]) -> Option<[f32; 3]> {
-    let low = tint.into_iter().fold(f32::MAX, f32::min);
-    let high = tint.into_iter().fold(0.0, f32::max);
-    (tint.iter().all(|x| x.is_finite()) && (low < 0.55 || high > 1.3 * low) && high > 0.04).then_some(tint)
-}
-
-/// The vertex colour of an organ: its tint, varied a little in brightness and hue.
+/// The vertex colour of an organ: its paint, varied a little in brightness and hue.
 fn tint(organ: &Organ, slot: Slot, spec: &SkinSpec) -> [f32; 3] {
     let mut draw = spec.seed.child(organ.key).stream(Draw::Tint);
     let (light, warm) = (draw.uniform(), draw.uniform());
     let strength = spec.variation.clamp(0.0, 1.0);
     // Leaves of one plant differ more than its petals do.
     let (light, warm) = match slot {
-        Slot::Leaf | Slot::DrawnLeaf => (0.26 * light, 0.24 * (warm - 0.5)),
+        Slot::Leaf(_) => (0.26 * light, 0.24 * (warm - 0.5)),
         _ => (0.12 * light, 0.08 * (warm - 0.5)),
     };
     let [light, warm] = [light, warm].map(|x| x * strength);
@@ -358,10 +375,10 @@ fn tint(organ: &Organ, slot: Slot, spec: &SkinSpec) -> [f32; 3] {
         OrganKind::Pistil => [0.62, 0.86, 0.42],
         _ => [1.0; 3],
     };
-    let ink = organ.tint.iter().all(|x| *x < 0.04);
+    let paint = organ.paint.rgb();
     let hue = [1.0 + warm.min(0.0), 1.0, 1.0 - 0.9 * warm.abs()];
     [0, 1, 2].map(|i| {
-        let given = if ink || !organ.tint[i].is_finite() { 1.0 } else { f64::from(organ.tint[i]) };
+        let given = if paint[i].is_finite() { f64::from(paint[i]) } else { 1.0 };
         #[expect(clippy::cast_possible_truncation, reason = "a colour of the mesh")]
         let x = (given * own[i] * hue[i] * (1.0 - light)).clamp(0.0, 1.0) as f32;
         x
@@ -375,6 +392,9 @@ fn place(out: &mut TriMesh, local: &TriMesh, organ: &Organ, color: [f32; 3]) {
     out.positions.extend(local.positions.iter().map(|&p| narrow(f.place(wide(p), organ.scale))));
     out.normals.extend(local.normals.iter().map(|&n| narrow(f.rotate(wide(n)))));
     out.uvs.extend_from_slice(&local.uvs);
+    out.uvs.resize(out.positions.len(), [0.0; 2]);
+    let times = |c: &[f32; 3]| [0, 1, 2].map(|i| c[i] * color[i]);
+    out.colors.extend(local.colors.iter().map(times));
     out.colors.resize(out.positions.len(), color);
     out.triangles.extend(local.triangles.iter().map(|t| t.map(|i| i + first)));
 }

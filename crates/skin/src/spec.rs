@@ -1,6 +1,10 @@
 //! What the caller may choose, and how triangles are shared out.
 
 use base::Seed;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::LeafMeshSpec;
 
 /// How a plant is given its surface. Saved with the document.
 ///
@@ -8,7 +12,8 @@ use base::Seed;
 /// let coarse = skin::SkinSpec { detail: 0.5, ..skin::SkinSpec::default() };
 /// assert_eq!((coarse.sides, coarse.textures), (8, true));
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
 pub struct SkinSpec {
     /// Fineness: 1 gives about 500 triangles for a branch of average length and 250 to 800 for a drawn blade;
     /// counts grow in proportion. In a crown of hundreds of branches each gets what its bends take. 0.1 to 8,
@@ -17,6 +22,9 @@ pub struct SkinSpec {
     /// Sides of an ordinary branch at `detail` 1 or more; thick ones get up to 24. 3 to 24, default 8 (the
     /// paper's octagons).
     pub sides: u32,
+    /// How leaves of measured veins are meshed at `detail` 1. What a leaf is asked for, not saved here.
+    #[serde(skip)]
+    pub leaf: LeafMeshSpec,
     /// Give materials procedural textures; without, they have plain colours. Default true.
     pub textures: bool,
     /// Colour of petals whose organs have no colour of their own; `None` picks one by seed and plant name.
@@ -25,8 +33,10 @@ pub struct SkinSpec {
     pub variation: f64,
     /// Also fill the columns that say how wind moves each vertex ([`mesh::TriMesh::wind`], `pivots`). Chosen for an
     /// export, not saved. Default false.
+    #[serde(skip)]
     pub wind: bool,
     /// What the variation and the choice of colours are drawn from, and the phases of the wind.
+    #[serde(skip)]
     pub seed: Seed,
 }
 
@@ -35,6 +45,7 @@ impl Default for SkinSpec {
         Self {
             detail: 1.0,
             sides: 8,
+            leaf: LeafMeshSpec::default(),
             textures: true,
             petals: None,
             variation: 1.0,
@@ -45,7 +56,8 @@ impl Default for SkinSpec {
 }
 
 /// Natural petal colours.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum PetalColor {
     /// Rose pink with a pale base.

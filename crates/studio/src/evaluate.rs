@@ -149,9 +149,9 @@ impl Evaluator {
         self.read(&options.classes, &mut stages, run)?;
         self.build(options, seed, &drawing.name, &mut stages, run)?;
         self.shape(options, &mut stages, run)?;
-        let mut photo = options.photo.clone().filter(|p| p.paint);
+        let mut photo = options.photo.clone().filter(|p| p.place.paint);
         if let Some(photo) = &mut photo {
-            photo.opacity = 1.0;
+            photo.place.opacity = 1.0;
         }
         self.mesh(&options.skin, photo, &mut stages, run)?;
         Ok(self.item(&drawing.name, stages))
@@ -323,11 +323,11 @@ impl Evaluator {
         let front = self.front()?;
         let drawing = &self.strokes.as_ref()?.from;
         let place = |x: f64, y: f64| (DVec2::new(x, y) - front.origin) * front.metres_per_unit;
-        let corner = place(photo.x, photo.y + photo.height());
+        let corner = place(photo.place.x, photo.place.y + photo.height());
         // A stroke that leaves the picture was not traced over it.
         let inside = |s: &ink::Stroke| s.samples.iter().all(|p| photo.covers(p.at.x, p.at.y));
         let strokes = (0..).zip(&drawing.strokes).filter(|(_, s)| inside(s)).map(|(i, _)| i).collect();
-        let size_m = (photo.width * front.metres_per_unit, photo.height() * front.metres_per_unit);
+        let size_m = (photo.place.width * front.metres_per_unit, photo.height() * front.metres_per_unit);
         Some(Traced { texture, strokes, corner_m: (corner.x, corner.y), size_m })
     }
 

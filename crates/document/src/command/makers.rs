@@ -3,6 +3,8 @@
 use std::sync::Arc;
 
 use bloom::GrowthLaw;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use skin::SkinSpec;
 
@@ -13,7 +15,8 @@ use crate::state::shortened;
 use crate::{Document, DocumentPlant, FlowerSettings, PlantId};
 
 /// What can be asked of a tree. Who sends a spec has checked that it is one.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum TreeCommand {
     /// Takes another spec, such as that of a preset. Obstacles stay.
@@ -94,7 +97,8 @@ fn named(new: NamedObstacle) -> NamedObstacle {
 }
 
 /// What can be asked of a measured leaf.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum LeafCommand {
     /// Takes other measurements. Who sends them has checked that they make a leaf.
@@ -133,13 +137,14 @@ impl LeafCommand {
 }
 
 /// What can be asked of a flower.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum FlowerCommand {
     /// Sets species, day and form.
     Set(Box<FlowerSettings>),
     /// Takes a fitted law, or the species' own pace again.
-    SetLaw(Option<Arc<GrowthLaw>>),
+    SetLaw(#[schemars(with = "Option<Value>")] Option<Arc<GrowthLaw>>),
 }
 
 impl FlowerCommand {

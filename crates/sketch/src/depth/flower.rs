@@ -158,7 +158,7 @@ impl Organs<'_, '_> {
     fn push(&mut self, kind: OrganKind, shape: Shape, frame: Frame, key: u64, source: Option<u32>) {
         let shape = self.plant.add_shape(shape);
         let petal = kind == OrganKind::Petal;
-        let tint = self.scene.tint(if petal { key } else { self.key }, self.color.filter(|_| petal));
+        let paint = self.scene.paint(if petal { key } else { self.key }, self.color.filter(|_| petal));
         self.plant.organs.push(Organ {
             kind,
             bearer: self.bearer,
@@ -166,7 +166,7 @@ impl Organs<'_, '_> {
             shape,
             frame,
             scale: 1.0,
-            tint,
+            paint,
             key,
             source,
         });

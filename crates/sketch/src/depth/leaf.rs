@@ -148,7 +148,7 @@ pub(crate) fn place_leaf(
         shape,
         frame,
         scale: 1.0,
-        tint: scene.tint(key, leaf.color),
+        paint: scene.paint(key, leaf.color),
         key,
         source: leaf.source,
     });

@@ -8,7 +8,7 @@ use base::ops::{self, TAU};
 use base::{Draw, Seed};
 use growth::GrowthError;
 use mesh::{Material, MaterialKind, Model, Texture};
-use plant::{OrganKind, Plant};
+use plant::{OrganKind, Paint, Plant};
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -127,7 +127,7 @@ impl Look {
             let share = self.leaf_variation * seed.child(organ.key).stream(Draw::Tint).uniform();
             #[expect(clippy::cast_possible_truncation, reason = "a colour")]
             let mixed = [0, 1, 2].map(|i| ops::lerp(from[i], to[i], share) as f32);
-            organ.tint = mixed;
+            organ.paint = if pictured { Paint::Natural(mixed) } else { Paint::Tinted(mixed) };
         }
     }
 

@@ -7,9 +7,8 @@ use burgeon::formats::ModelFormat;
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Command, FromArgMatches};
 
-use crate::args::{CommonArgs, PictureArgs, ViewWord};
+use super::shared::{CommonArgs, PictureArgs, PlantFormat, ViewWord};
 use crate::failure::{Failure, Outcome};
-use crate::files::PlantFormat;
 
 /// The options that stand on the command line, rather than those that have a default, by the names of their fields.
 #[derive(Debug, Default)]

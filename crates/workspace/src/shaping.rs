@@ -1,6 +1,6 @@
 //! Hands on a plant: a tool of `shape`, what it holds, and what letting go would make.
 //!
-//! `tool + pointers (JSON) -> shape::Tool -> a preview that is never in the document | the edit, to be asked for`
+//! `tool + pointers -> shape::Tool -> a preview that is never in the document | the edit, to be asked for`
 
 use std::sync::Arc;
 
@@ -12,39 +12,73 @@ use burgeon::glam::DVec3;
 use burgeon::plant::{AxisId, AxisKind, Plant};
 use burgeon::shape::{self, AxisKey, HandEdit, Input, Pick, Pointer, Ray, Reach, Tool, ToolKind};
 use burgeon::skin::SkinSpec;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{PREVIEW_DETAIL, Session, Told, words};
+use crate::evaluate::PREVIEW_DETAIL;
+use crate::{Workspace, WorkspaceError};
 
 /// A plant of more triangles is shown coarser while a gesture is going on.
 const COARSE_ABOVE: u64 = 40_000;
 /// Radians of a degree.
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
-/// A tool as the page names it, its settings within.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+/// A tool in the hand, with its settings. Lengths in metres of the plant.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
-enum WireTool {
-    Pick {},
-    Rotate {},
-    Move {},
-    Prune { whole: bool },
-    Regrow {},
-    Sketch { twigs: f64, tilt_deg: f64 },
-    Brush { radius_m: f64, density: f64 },
-    Silhouette { density: f64, trim: bool },
-    Leaves { radius_m: f64, keep: f64 },
+pub enum HeldTool {
+    /// Points only.
+    Pick,
+    /// See [`ToolKind::Rotate`].
+    Rotate,
+    /// See [`ToolKind::Move`].
+    Move,
+    /// See [`ToolKind::Prune`].
+    Prune {
+        /// The whole branch, not from the place that was picked.
+        whole: bool,
+    },
+    /// See [`ToolKind::Regrow`].
+    Regrow,
+    /// See [`ToolKind::Sketch`].
+    Sketch {
+        /// How many twigs it bears.
+        twigs: f64,
+        /// Out of the plane of view, degrees.
+        tilt_deg: f64,
+    },
+    /// See [`ToolKind::Brush`].
+    Brush {
+        /// How thick it is.
+        radius_m: f64,
+        /// How many branches it makes.
+        density: f64,
+    },
+    /// See [`ToolKind::Silhouette`].
+    Silhouette {
+        /// How many branches it makes.
+        density: f64,
+        /// Cut what is outside.
+        trim: bool,
+    },
+    /// See [`ToolKind::Leaves`].
+    Leaves {
+        /// How thick it is.
+        radius_m: f64,
+        /// Share of the leaves that stay.
+        keep: f64,
+    },
 }
 
-impl WireTool {
+impl HeldTool {
     /// None for the tool that only points.
     fn kind(self) -> Option<ToolKind> {
         Some(match self {
-            Self::Pick {} => return None,
-            Self::Rotate {} => ToolKind::Rotate,
-            Self::Move {} => ToolKind::Move,
+            Self::Pick => return None,
+            Self::Rotate => ToolKind::Rotate,
+            Self::Move => ToolKind::Move,
             Self::Prune { whole } => ToolKind::Prune { whole },
-            Self::Regrow {} => ToolKind::Regrow,
+            Self::Regrow => ToolKind::Regrow,
             Self::Sketch { twigs, tilt_deg } => ToolKind::Sketch { twigs, tilt: tilt_deg * DEGREE },
             Self::Brush { radius_m, density } => ToolKind::Brush { radius_m, density },
             Self::Silhouette { density, trim } => ToolKind::Silhouette { density, trim },
@@ -53,112 +87,151 @@ impl WireTool {
     }
 }
 
-#[derive(Clone, Copy, Debug, Deserialize)]
+/// A pointer in the plant's own coordinates, metres; unit vectors.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct WirePointer {
-    origin: [f64; 3],
-    direction: [f64; 3],
-    forward: [f64; 3],
-    up: [f64; 3],
-    pressure: f64,
+pub struct ShapePointer {
+    /// Where its ray starts.
+    pub origin: [f64; 3],
+    /// Along its ray.
+    pub direction: [f64; 3],
+    /// Into the view.
+    pub forward: [f64; 3],
+    /// Upwards in the view.
+    pub up: [f64; 3],
+    /// 0 to 1.
+    pub pressure: f64,
 }
 
-impl From<WirePointer> for Pointer {
-    fn from(p: WirePointer) -> Self {
+impl From<ShapePointer> for Pointer {
+    fn from(p: ShapePointer) -> Self {
         let v = DVec3::from_array;
         let ray = Ray { origin: v(p.origin), direction: v(p.direction) };
         Self { ray, forward: v(p.forward), up: v(p.up), pressure: p.pressure, tip: None }
     }
 }
 
-#[derive(Debug, Deserialize)]
+/// What the hand did.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
-enum WireInput {
-    Down { at: WirePointer },
-    Move { at: Vec<WirePointer> },
-    Up { at: WirePointer },
-    Cancel {},
-    Twist { degrees: f64 },
-    Brush { radius_m: f64, density: f64 },
+pub enum ShapeInput {
+    /// It went down.
+    Down(ShapePointer),
+    /// It moved; several moves at once, so that no point of a stroke is lost.
+    Move(Vec<ShapePointer>),
+    /// It was lifted.
+    Up(ShapePointer),
+    /// It takes everything back.
+    Cancel,
+    /// It turned what it holds, degrees.
+    Twist(f64),
+    /// It changed its brush.
+    Brush {
+        /// How thick it is, metres.
+        radius_m: f64,
+        /// How many branches it makes.
+        density: f64,
+    },
 }
 
-#[derive(Clone, Copy, Debug, Default, Deserialize)]
+/// How far beside a branch it is still meant: `metres + per_metre * distance`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct WireReach {
-    metres: f64,
-    per_metre: f64,
-    #[serde(default)]
-    bearers: u32,
+pub struct ShapeReach {
+    /// Close by.
+    pub metres: f64,
+    /// More with each metre of distance.
+    pub per_metre: f64,
+    /// Not the branch but what bears it, so many up.
+    pub bearers: u32,
 }
 
-#[derive(Debug, Serialize)]
-struct Picked {
-    axis: u32,
-    at: f64,
-    point: [f64; 3],
-    order: u32,
-    length_m: f64,
+/// The branch that is meant.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct Picked {
+    /// Its row.
+    pub axis: u32,
+    /// Where along it, a share of its length.
+    pub at: f64,
+    /// Where, metres.
+    pub point: [f64; 3],
+    /// 0 for the main axis.
+    pub order: u32,
+    /// Along its course.
+    pub length_m: f64,
     /// Shoots that it bears, and that these bear.
-    bears: usize,
+    pub bears: usize,
     /// Nothing bears it.
-    stands: bool,
-    key: Option<AxisKey>,
+    pub stands: bool,
+    /// A name for edits, where the pointer went down or up.
+    pub key: Option<AxisKey>,
 }
 
-#[derive(Debug, Default, Serialize)]
-struct Answer<'a> {
-    picked: Option<Picked>,
-    commit: Option<&'a HandEdit>,
-    busy: bool,
-    again: bool,
+/// What came of an input.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
+pub struct ShapeAnswer {
+    /// The branch that is meant.
+    pub picked: Option<Picked>,
+    /// The edit of a gesture that ended: to be asked for as a command.
+    pub commit: Option<HandEdit>,
+    /// A gesture is going on.
+    pub busy: bool,
+    /// What is shown of the plant is out of date.
+    pub again: bool,
 }
 
-/// A tool in the hand.
+/// A gesture that is going on, or was and waits for its command.
 #[derive(Clone, Debug)]
-pub(super) struct Held {
+pub(crate) struct Held {
     tool: Tool,
     plant: PlantId,
     /// The plant as it was when the gesture began.
     before: Plant,
     /// It has so many triangles that a gesture shows it coarser and without a digest.
-    pub(super) large: bool,
+    pub(crate) large: bool,
     /// What letting go would make, or made: shown until the command comes.
     preview: Option<Arc<HandEdit>>,
 }
 
-impl Session {
-    /// Lets a tool do something: `ShapeTool`, `ShapeReach`, `ShapeInput` in, `ShapeAnswer` out, all JSON.
-    pub(crate) fn shape(&mut self, tool: &str, reach: &str, input: &str) -> Told<String> {
-        let settings: WireTool = serde_json::from_str(tool).map_err(words)?;
-        let reach: WireReach = serde_json::from_str(reach).map_err(words)?;
-        let WireReach { metres, per_metre, bearers } = reach;
+impl Workspace {
+    /// Lets a tool shape the current plant. What a gesture would make is shown but is not in the document; what it made
+    /// is the caller's to ask for by a [`ShapeCommand`].
+    ///
+    /// # Errors
+    /// [`WorkspaceError`]: when there is no plant.
+    pub fn shape(
+        &mut self,
+        tool: HeldTool,
+        reach: ShapeReach,
+        input: ShapeInput,
+    ) -> Result<ShapeAnswer, WorkspaceError> {
+        let ShapeReach { metres, per_metre, bearers } = reach;
         let reach = Reach { metres, per_metre, bearers };
-        let input: WireInput = serde_json::from_str(input).map_err(words)?;
         let id = self.must()?;
-        let Some(kind) = settings.kind() else { return self.point(id, reach, &input) };
+        let Some(kind) = tool.kind() else { return Ok(self.point(id, reach, &input)) };
         let had = self.preview_edit(id).cloned();
         let going = self.held.as_ref().is_some_and(|h| h.tool.is_busy() && h.plant == id);
         if !going {
             // Between gestures only a pointer that goes down begins something; all else looks around.
-            if !matches!(input, WireInput::Down { .. }) {
-                return self.point(id, reach, &input);
+            if !matches!(input, ShapeInput::Down(_)) {
+                return Ok(self.point(id, reach, &input));
             }
-            let plant = self.shown_plant(id).ok_or("there is no plant to shape yet")?.clone();
+            let plant = self.shown_plant(id).ok_or(WorkspaceError::NothingToShape)?.clone();
             let edits = self.editor.document().plant(id).map_or(0, |p| p.settings().edits.len());
             let tool = Tool::new(kind).with(reach, edits as u64 + 1);
             let large = self.scene.get(id).is_some_and(|p| p.item.counts.triangles > COARSE_ABOVE);
             self.held = Some(Held { tool, plant: id, before: plant, large, preview: None });
         }
-        let Some(held) = &mut self.held else { return Err("internal: no tool".into()) };
+        let Some(held) = &mut self.held else { return Err(WorkspaceError::Internal("no tool")) };
         let (tool, plant) = (&mut held.tool, &held.before);
         let said = match input {
-            WireInput::Down { at } => tool.handle(plant, &Input::Down(at.into())),
-            WireInput::Up { at } => tool.handle(plant, &Input::Up(at.into())),
-            WireInput::Cancel {} => tool.handle(plant, &Input::Cancel),
-            WireInput::Twist { degrees } => tool.handle(plant, &Input::Twist(degrees * DEGREE)),
-            WireInput::Brush { radius_m, density } => tool.handle(plant, &Input::Brush(radius_m, density)),
-            WireInput::Move { at } => {
-                let moves = at.into_iter().map(|p| tool.handle(plant, &Input::Move(p.into())));
+            ShapeInput::Down(at) => tool.handle(plant, &Input::Down(at.into())),
+            ShapeInput::Up(at) => tool.handle(plant, &Input::Up(at.into())),
+            ShapeInput::Cancel => tool.handle(plant, &Input::Cancel),
+            ShapeInput::Twist(degrees) => tool.handle(plant, &Input::Twist(degrees * DEGREE)),
+            ShapeInput::Brush { radius_m, density } => tool.handle(plant, &Input::Brush(radius_m, density)),
+            ShapeInput::Move(moves) => {
+                let moves = moves.into_iter().map(|p| tool.handle(plant, &Input::Move(p.into())));
                 moves.last().unwrap_or_default()
             }
         };
@@ -169,24 +242,23 @@ impl Session {
         if !busy && now.is_none() {
             self.held = None;
         }
-        let answer = Answer { picked, commit: said.commit.as_ref(), busy, again: now != had };
-        serde_json::to_string(&answer).map_err(words)
+        Ok(ShapeAnswer { picked, commit: said.commit, busy, again: now != had })
     }
 
     /// Only looks what is under the pointer.
-    fn point(&mut self, id: PlantId, reach: Reach, input: &WireInput) -> Told<String> {
+    fn point(&mut self, id: PlantId, reach: Reach, input: &ShapeInput) -> ShapeAnswer {
         let (at, named) = match input {
-            WireInput::Down { at } | WireInput::Up { at } => (Some(*at), true),
-            WireInput::Move { at } => (at.last().copied(), false),
+            ShapeInput::Down(at) | ShapeInput::Up(at) => (Some(*at), true),
+            ShapeInput::Move(moves) => (moves.last().copied(), false),
             _ => (None, false),
         };
-        let again = matches!(input, WireInput::Cancel {}) && self.held.take().is_some();
+        let again = matches!(input, ShapeInput::Cancel) && self.held.take().is_some();
         let plant = self.shown_plant(id);
         let found = at.zip(plant).and_then(|(at, plant)| {
             let pick = shape::pick(plant, &Pointer::from(at).ray, reach)?;
             picked(plant, pick, named)
         });
-        serde_json::to_string(&Answer { picked: found, again, ..Answer::default() }).map_err(words)
+        ShapeAnswer { picked: found, again, ..ShapeAnswer::default() }
     }
 
     /// The plant that is seen, without the preview of a gesture.
@@ -198,9 +270,9 @@ impl Session {
         self.scene.get(id)?.plant
     }
 
-    /// A branch and all that it bears as pairs of points: x, y, z and radius of each.
-    pub(crate) fn branch(&self, axis: u32) -> Vec<f32> {
-        let plant = self.current_id().and_then(|id| self.shown_plant(id));
+    /// A branch of the current plant that was picked, and all that it bears, as pairs of points: x, y, z and radius of each.
+    pub fn branch(&self, axis: u32) -> Vec<f32> {
+        let plant = self.current().and_then(|id| self.shown_plant(id));
         let Some(plant) = plant.filter(|p| (axis as usize) < p.axes.len()) else { return Vec::new() };
         let mut out = Vec::new();
         for (i, _) in borne(plant, axis as usize).into_iter().enumerate().filter(|(_, is)| *is) {
@@ -223,8 +295,8 @@ impl Session {
     }
 
     /// The document with the edit of the gesture in it, coarser where that is faster; none where nothing is held.
-    pub(super) fn with_gesture(&self) -> Option<(PlantId, Document)> {
-        let id = self.current_id()?;
+    pub(crate) fn with_gesture(&self) -> Option<(PlantId, Document)> {
+        let id = self.current()?;
         let edit = self.preview_edit(id)?;
         let mut aside = Editor::new(self.editor.document().clone());
         aside.run(ShapeCommand::Add(Arc::clone(edit)).of(id)).ok()?;
@@ -239,15 +311,10 @@ impl Session {
         }
         Some((id, aside.document().clone()))
     }
-
-    /// The document changed, or another plant is looked at: what was held is let go.
-    pub(super) fn let_go(&mut self) {
-        self.held = None;
-    }
 }
 
 /// The command that makes a plant's mesh coarser by a factor.
-pub(super) fn coarser(document: &Document, id: PlantId, factor: f64) -> Option<Command> {
+pub(crate) fn coarser(document: &Document, id: PlantId, factor: f64) -> Option<Command> {
     let coarse = |skin: &SkinSpec| {
         let detail = (skin.detail * factor).clamp(0.1, 8.0);
         SkinSpec { detail, ..skin.clone() }
@@ -280,7 +347,7 @@ fn borne(plant: &Plant, top: usize) -> Vec<bool> {
     known.into_iter().map(|k| k == Some(true)).collect()
 }
 
-/// What the page is told of a branch; `named`: with a name for edits.
+/// What is told of a branch; `named`: with a name for edits.
 fn picked(plant: &Plant, pick: Pick, named: bool) -> Option<Picked> {
     let axis = u32::try_from(pick.axis.index()).ok()?;
     let shoots = borne(plant, pick.axis.index());

@@ -1,27 +1,56 @@
-//! The session as the page uses it.
+//! The workspace as a page uses it: commands and answers as JSON.
 
-use burgeon::document::{Document, PlantId};
-use burgeon::{Run, SketchOptions, formats};
+use burgeon::document::{Command, Document, PlantId, SketchCommand, StrokeId};
+use burgeon::glam::DVec2;
+use burgeon::ink::{InkSample, Stroke, StrokeMode};
+use burgeon::{Budget, Run, Seed, SketchOptions, formats};
+use serde::Serialize;
 use serde_json::Value;
 
-use super::{Column, Session};
+use crate::{Action, Column, ExportFormat, ExportRequest, GUEST, Workspace, WorkspaceError, packed};
 
-fn line(points: &[(f64, f64)]) -> Vec<f64> {
-    points.iter().flat_map(|&(x, y)| [x, y, f64::NAN, 0.5]).collect()
+fn line(points: &[(f64, f64)]) -> Stroke {
+    let samples =
+        points.iter().map(|&(x, y)| InkSample { at: DVec2::new(x, y), time_ms: None, pressure: Some(0.5) });
+    Stroke { samples: samples.collect(), ..Stroke::default() }
 }
 
-fn stem() -> Vec<f64> {
+fn stem() -> Stroke {
     line(&(0..40).map(|k| (0.1 * f64::from(k % 7), 5.0 * f64::from(k))).collect::<Vec<_>>())
 }
 
-fn json(text: &str) -> Value {
-    serde_json::from_str(text).unwrap()
+fn json(answer: &impl Serialize) -> Value {
+    serde_json::to_value(answer).unwrap()
+}
+
+/// What a page may ask for in a moment.
+fn run() -> Run<'static> {
+    Run { budget: Budget { times: 0.25, raise: None }, ..Run::plain() }
+}
+
+impl Workspace {
+    fn ask(&mut self, command: &str) -> Result<(), WorkspaceError> {
+        self.run(serde_json::from_str::<Command>(command).unwrap())
+    }
+
+    fn stroke_points(&self, id: StrokeId) -> Vec<(f64, f64)> {
+        let samples = self.stroke(id).map_or(&[][..], |s| &s.samples);
+        samples.iter().map(|p| (p.at.x, p.at.y)).collect()
+    }
+
+    fn file(&mut self, format: ExportFormat) -> Vec<u8> {
+        self.exported(&ExportRequest { format, ..ExportRequest::default() })
+    }
+
+    fn exported(&mut self, request: &ExportRequest) -> Vec<u8> {
+        packed(request.format, self.export(request, &run()).unwrap()).unwrap()
+    }
 }
 
 /// What is seen of the model that is looked at, or of the plant that is chosen.
-fn look(s: &mut Session) -> Value {
-    let view = json(&s.evaluate().unwrap());
-    let id = s.current_id().map(|id| id.0);
+fn look(s: &mut Workspace) -> Value {
+    let view = json(&s.evaluate(&run()).unwrap());
+    let id = s.current().map(|id| id.0);
     let plant = view["plants"].as_array().unwrap().iter().find(|p| p["id"].as_u64() == id.map(u64::from));
     if view["guest"].is_null() { plant.cloned().unwrap_or_default() } else { view["guest"].clone() }
 }
@@ -32,41 +61,41 @@ fn sample() -> Vec<u8> {
 
 #[test]
 fn a_stroke_becomes_a_plant_and_undo_takes_it_back() {
-    let mut s = Session::default();
+    let mut s = Workspace::default();
     assert_eq!(look(&mut s)["item"], Value::Null);
-    let id = s.add_stroke("parts", &stem()).unwrap();
+    let id = s.add_stroke(stem()).unwrap();
     assert_eq!(s.fresh_strokes(), [id]);
-    assert_eq!(s.fresh_strokes(), [0; 0]);
-    assert_eq!(s.stroke_points(id).len(), 120);
+    assert!(s.fresh_strokes().is_empty());
+    assert_eq!(s.stroke_points(id).len(), 40);
     let view = look(&mut s);
     assert_eq!(view["item"]["counts"]["branches"], 1);
     assert!(view["item"]["strokes"][0]["organ"].is_string());
-    assert!(s.column(0, 0, Column::Positions).len() > 300 && s.indices(0, 0).len() > 300);
+    assert!(s.column(PlantId(0), 0, Column::Positions).len() > 300 && s.indices(PlantId(0), 0).len() > 300);
     let texture = &view["materials"][0]["texture"];
     assert_eq!(
         s.texture(0).len() as u64,
         4 * texture["width"].as_u64().unwrap() * texture["height"].as_u64().unwrap()
     );
-    assert_eq!(s.undo().as_deref(), Some("draw"));
+    assert_eq!(s.undo(), Some("draw"));
     let view = look(&mut s);
     assert_eq!((&view["item"], view["parts"].as_array().unwrap().len()), (&Value::Null, 0));
-    assert_eq!(s.redo().as_deref(), Some("draw"));
+    assert_eq!(s.redo(), Some("draw"));
     assert_eq!(look(&mut s)["item"]["counts"]["branches"], 1);
 }
 
 #[test]
 fn the_project_is_the_same_plant_elsewhere() {
-    let mut s = Session::default();
+    let mut s = Workspace::default();
     s.open("sample.svg", &sample(), 0, false).unwrap();
-    s.run(r#"{"seed":{"seed":"18446744073709551615"}}"#).unwrap();
-    s.run(r#"{"class":{"ids":[0],"class":"axis"}}"#).unwrap();
+    s.ask(r#"{"plant":[0,{"set-seed":"18446744073709551615"}]}"#).unwrap();
+    s.ask(r#"{"sketch":[0,{"set-class":[[0],"axis"]}]}"#).unwrap();
     let here = look(&mut s);
-    let mut other = Session::default();
+    let mut other = Workspace::default();
     let opened = json(&other.open("x.burgeon", &s.save().unwrap(), 0, true).unwrap());
     assert_eq!(opened["kind"], "project");
     let there = look(&mut other);
     assert_eq!(here["item"]["digest"], there["item"]["digest"]);
-    assert_eq!(json(&other.state().unwrap())["plants"][0]["seed"], "18446744073709551615");
+    assert_eq!(json(&other.state())["plants"][0]["seed"], "18446744073709551615");
     assert_eq!(other.undo(), None, "opened fresh");
     let plant = &s.document().plants()[0];
     let options = SketchOptions::of_plant(plant);
@@ -76,9 +105,9 @@ fn the_project_is_the_same_plant_elsewhere() {
 
 #[test]
 fn every_format_opens_and_a_bad_file_changes_nothing() {
-    let mut s = Session::default();
+    let mut s = Workspace::default();
     s.open("sample.svg", &sample(), 0, false).unwrap();
-    let state = s.state().unwrap();
+    let state = json(&s.state());
     for (name, bytes) in [
         ("x.svg", &b"<svg"[..]),
         ("x.burgeon", b"PK\x03\x04"),
@@ -88,23 +117,25 @@ fn every_format_opens_and_a_bad_file_changes_nothing() {
         ("x.ndjson", b"\n\n"),
         ("", b""),
     ] {
-        let said = s.open(name, bytes, 0, false).unwrap_err();
+        let said = s.open(name, bytes, 0, false).unwrap_err().to_string();
         assert!(said.len() > 20, "{name}: {said}");
-        assert_eq!(s.state().unwrap(), state, "{name}");
+        assert_eq!(json(&s.state()), state, "{name}");
     }
-    for format in ["glb", "ply", "stl"] {
-        let file = s.export(format, "{}").unwrap();
-        let mut other = Session::default();
-        let opened = json(&other.open(&format!("plant.{format}"), &file, 0, false).unwrap());
+    for (format, word) in [(ExportFormat::Glb, "glb"), (ExportFormat::Ply, "ply"), (ExportFormat::Stl, "stl")]
+    {
+        let file = s.file(format);
+        let mut other = Workspace::default();
+        let opened = json(&other.open(&format!("plant.{word}"), &file, 0, false).unwrap());
         assert_eq!(opened["kind"], "model");
         let view = look(&mut other);
         assert!(!view["parts"].as_array().unwrap().is_empty() && view["max"][1].as_f64().unwrap() > 0.1);
-        assert!(other.export("glb", "{}").unwrap().starts_with(b"glTF"));
+        assert!(other.file(ExportFormat::Glb).starts_with(b"glTF"));
+        let structure = ExportRequest { format: ExportFormat::Mtg, ..ExportRequest::default() };
+        assert!(matches!(other.export(&structure, &run()), Err(WorkspaceError::Format("mtg"))));
     }
-    assert!(s.export("obj", "{}").unwrap().starts_with(b"PK"));
-    assert!(s.export("exe", "{}").is_err());
-    let drawing = s.export("json", "{}").unwrap();
-    assert_eq!(json(&Session::default().open("d.json", &drawing, 0, false).unwrap())["kind"], "drawing");
+    assert!(s.file(ExportFormat::Obj).starts_with(b"PK"));
+    let drawing = s.file(ExportFormat::Json);
+    assert_eq!(json(&Workspace::default().open("d.json", &drawing, 0, false).unwrap())["kind"], "drawing");
     let two = concat!(
         r#"{"word":"a","drawing":[[[0,9],[0,90]]]}"#,
         "\nbad\n",
@@ -117,23 +148,23 @@ fn every_format_opens_and_a_bad_file_changes_nothing() {
 
 #[test]
 fn looks_at_a_draft_keep_what_the_whole_drawing_was_understood_as() {
-    let mut whole = Session::default();
+    let mut whole = Workspace::default();
     whole.open("sample.svg", &sample(), 0, false).unwrap();
     let said = |view: &Value| -> Vec<(Value, Value)> {
         let rows = view["item"]["strokes"].as_array().unwrap();
         rows.iter().map(|r| (r["class"].clone(), r["confidence"].clone())).collect()
     };
-    let mut s = Session::default();
+    let mut s = Workspace::default();
     let mut changes = 0;
     let mut before = Vec::new();
     for id in whole.fresh_strokes() {
-        let rows: Vec<(f64, f64)> = whole.stroke_points(id).chunks(3).map(|p| (p[0], p[1])).collect();
+        let rows = whole.stroke_points(id);
         for part in [rows.len() / 2, rows.len()] {
-            s.draft("parts", &line(&rows[..part])).unwrap();
+            s.draft(line(&rows[..part]));
             let now = said(&look(&mut s));
-            assert_eq!(now[..before.len()], before, "stroke {id}");
+            assert_eq!(now[..before.len()], before, "{id:?}");
         }
-        s.add_stroke("parts", &line(&rows)).unwrap();
+        s.add_stroke(line(&rows)).unwrap();
         let now = said(&look(&mut s));
         changes += usize::from(now[..before.len()] != before[..]);
         before = now;
@@ -143,21 +174,22 @@ fn looks_at_a_draft_keep_what_the_whole_drawing_was_understood_as() {
 
 #[test]
 fn a_drag_is_staged_and_a_draft_leaves_no_trace() {
-    let mut s = Session::default();
-    let id = s.add_stroke("parts", &stem()).unwrap();
+    let mut s = Workspace::default();
+    let id = s.add_stroke(stem()).unwrap();
     s.begin("move").unwrap();
-    s.stage(&format!(r#"{{"move":{{"ids":[{id}],"x":5,"y":1}}}}"#)).unwrap();
-    s.stage(&format!(r#"{{"move":{{"ids":[{id}],"x":50,"y":0}}}}"#)).unwrap();
+    s.stage(SketchCommand::MoveStrokes(vec![id], DVec2::new(5.0, 1.0)).of(PlantId(0))).unwrap();
+    s.stage(SketchCommand::MoveStrokes(vec![id], DVec2::new(50.0, 0.0)).of(PlantId(0))).unwrap();
     s.commit();
-    assert_eq!(s.stroke_points(id)[0], 50.0);
-    assert_eq!(json(&s.state().unwrap())["steps"], 2);
+    assert_eq!(s.stroke_points(id)[0].0, 50.0);
+    assert_eq!(json(&s.state())["steps"], 2);
     let before = look(&mut s);
-    s.draft("leaf-contour", &line(&[(0.0, 0.0), (40.0, 0.0), (40.0, 40.0)])).unwrap();
+    let contour = line(&[(0.0, 0.0), (40.0, 0.0), (40.0, 40.0)]);
+    s.draft(Stroke { mode: StrokeMode::LeafContour, ..contour });
     assert_eq!(look(&mut s)["item"]["strokes"].as_array().unwrap().len(), 2);
-    s.draft("parts", &[]).unwrap();
+    s.draft(line(&[]));
     let after = look(&mut s);
     assert_eq!(before["item"]["digest"], after["item"]["digest"]);
-    assert!(s.draft("crayon", &[]).is_err() && s.run(r#"{"explode":{}}"#).is_err());
+    assert!(serde_json::from_str::<Command>(r#"{"sketch":[0,{"explode":1}]}"#).is_err());
 }
 
 fn photo() -> Vec<u8> {
@@ -169,14 +201,12 @@ fn photo() -> Vec<u8> {
 
 #[test]
 fn traced_organs_take_the_photograph_and_others_do_not() {
-    let mut s = Session::default();
+    let mut s = Workspace::default();
     s.open("sample.svg", &sample(), 0, true).unwrap();
     let plain = look(&mut s);
-    let points = s.stroke_points(0);
-    let (x, y) = (points[0], points[1]);
-    assert!(s.place_photo(b"GIF", x, y, 1.0).is_err());
-    s.place_photo(&photo(), -1e4, -1e4, 2e4).unwrap();
-    assert_eq!((s.fresh_photo(), s.fresh_photo()), (photo(), Vec::new()));
+    assert!(s.place_photo(b"GIF", DVec2::ZERO, 1.0).is_err());
+    s.place_photo(&photo(), DVec2::splat(-1e4), 2e4).unwrap();
+    assert_eq!((s.fresh_photo().as_deref(), s.fresh_photo()), (Some(&photo()[..]), None));
     let traced = look(&mut s);
     assert_eq!(traced["item"]["digest"], plain["item"]["digest"], "the plant is the same");
     assert_eq!(traced["stages"].as_array().unwrap().len(), 1, "only the surface is made again");
@@ -185,53 +215,58 @@ fn traced_organs_take_the_photograph_and_others_do_not() {
     };
     assert!(names(&traced).contains(&"petals-traced".to_owned()), "{:?}", names(&traced));
     let part = names(&traced).iter().position(|n| n == "petals-traced").unwrap();
-    let uvs = s.column(0, part, Column::Uvs);
-    assert_eq!(uvs.len() / 2, s.column(0, part, Column::Positions).len() / 3);
+    let uvs = s.column(PlantId(0), part, Column::Uvs);
+    assert_eq!(uvs.len() / 2, s.column(PlantId(0), part, Column::Positions).len() / 3);
     assert!(uvs.iter().all(|x| (0.0..=1.0).contains(x)));
     // A small photograph far away traces nothing; one that does not paint neither.
-    s.run(r#"{"photo":{"x":-9000,"y":-9000,"width":1,"opacity":0.5,"paint":true}}"#).unwrap();
+    s.ask(r#"{"sketch":[0,{"place-photo":{"x":-9000,"y":-9000,"width":1,"opacity":0.5,"paint":true}}]}"#)
+        .unwrap();
     assert_eq!(names(&look(&mut s)), names(&plain));
-    s.run(r#"{"photo":{"x":-1e4,"y":-1e4,"width":2e4,"opacity":0.2,"paint":false}}"#).unwrap();
+    s.ask(r#"{"sketch":[0,{"place-photo":{"x":-1e4,"y":-1e4,"width":2e4,"opacity":0.2,"paint":false}}]}"#)
+        .unwrap();
     assert_eq!(names(&look(&mut s)), names(&plain));
-    let mut other = Session::default();
+    let mut other = Workspace::default();
     other.open("p.burgeon", &s.save().unwrap(), 0, true).unwrap();
-    assert_eq!(other.fresh_photo(), photo());
-    s.run(r#"{"photo-off":{}}"#).unwrap();
-    assert!(s.run(r#"{"photo":{"x":0,"y":0,"width":1,"opacity":0.2,"paint":true}}"#).is_err());
-    assert_eq!(s.undo().as_deref(), Some("photo"));
+    assert_eq!(other.fresh_photo().as_deref(), Some(&photo()[..]));
+    s.ask(r#"{"sketch":[0,"remove-photo"]}"#).unwrap();
+    assert!(
+        s.ask(r#"{"sketch":[0,{"place-photo":{"x":0,"y":0,"width":1,"opacity":0.2,"paint":true}}]}"#)
+            .is_err()
+    );
+    assert_eq!(s.undo(), Some("photo"));
 }
 
 #[test]
 fn copies_variants_levels_and_links() {
-    let mut s = Session::default();
+    let mut s = Workspace::default();
     s.open("sample.svg", &sample(), 0, true).unwrap();
     let plant = look(&mut s);
-    let text = s.copy(&[0, 1]).unwrap();
-    assert!(s.copy(&[99]).is_err() && s.paste("no drawing", 0.0, 0.0).is_err());
-    assert_eq!(s.paste(&text, 5.0, 0.0).unwrap(), [15, 16]);
-    assert_eq!(s.stroke_points(15)[0], s.stroke_points(0)[0] + 5.0);
-    s.run(r#"{"duplicate":{"ids":[0],"x":0,"y":1}}"#).unwrap();
-    assert_eq!((s.undo().as_deref(), s.undo().as_deref()), (Some("duplicate"), Some("draw")));
+    let text = String::from_utf8(s.copy(&[StrokeId(0), StrokeId(1)]).unwrap()).unwrap();
+    assert!(s.copy(&[StrokeId(99)]).is_err() && s.paste("no drawing", DVec2::ZERO).is_err());
+    assert_eq!(s.paste(&text, DVec2::new(5.0, 0.0)).unwrap(), [StrokeId(15), StrokeId(16)]);
+    assert_eq!(s.stroke_points(StrokeId(15))[0].0, s.stroke_points(StrokeId(0))[0].0 + 5.0);
+    s.ask(r#"{"sketch":[0,{"duplicate":[[0],[0,1]]}]}"#).unwrap();
+    assert_eq!(s.undo(), Some("duplicate"));
+    assert_eq!(s.undo(), Some("draw"));
 
-    let other = json(&s.variant("77", 0.4).unwrap());
-    let positions = s.column(u32::MAX, 0, Column::Positions);
+    let other = json(&s.variant(Seed::new(77), 0.4, &run()).unwrap());
+    let positions = s.column(GUEST, 0, Column::Positions).len();
     s.end_variant();
-    assert!(other["item"].is_null() && !positions.is_empty());
+    assert!(other["item"].is_null() && positions > 0);
     let again = look(&mut s);
     assert_eq!(again["item"]["digest"], plant["item"]["digest"], "a look at another seed changes nothing");
-    assert!(s.column(0, 0, Column::Positions).len() > positions.len());
+    assert!(s.column(PlantId(0), 0, Column::Positions).len() > positions);
     assert_eq!(s.skeleton().len() % 8, 0);
     assert!(!s.skeleton().is_empty());
 
-    let levels = s.export("glb", r#"{"levels":3}"#).unwrap();
+    let levels = s.exported(&ExportRequest { levels: 3, ..ExportRequest::default() });
     assert!(
         levels.starts_with(b"PK") && levels.windows(9).any(|w| w == b"LOD2.glb\0" || &w[..8] == b"LOD2.glb")
     );
-    assert!(s.export("ply", r#"{"up":"x"}"#).is_err());
 
     let link = s.share().unwrap();
     assert!(link.len() < 16 << 10, "{} bytes", link.len());
-    let mut linked = Session::default();
+    let mut linked = Workspace::default();
     linked.open("x.burgeon", &link, 0, true).unwrap();
     let shared = look(&mut linked);
     assert_eq!(shared["item"]["counts"]["flowers"], plant["item"]["counts"]["flowers"]);
@@ -244,9 +279,9 @@ fn marks() -> Vec<u8> {
 }
 
 /// Name, digest and problem of every plant.
-fn scene(s: &mut Session) -> Vec<(String, String, Value)> {
-    let state = json(&s.state().unwrap());
-    let view = json(&s.evaluate().unwrap());
+fn scene(s: &mut Workspace) -> Vec<(String, String, Value)> {
+    let state = json(&s.state());
+    let view = json(&s.evaluate(&run()).unwrap());
     let both = state["plants"].as_array().unwrap().iter().zip(view["plants"].as_array().unwrap());
     let word = |v: &Value| v.as_str().unwrap_or_default().to_owned();
     both.map(|(p, v)| (word(&p["name"]), word(&v["item"]["digest"]), v["error"].clone())).collect()
@@ -254,57 +289,59 @@ fn scene(s: &mut Session) -> Vec<(String, String, Value)> {
 
 #[test]
 fn a_tree_a_leaf_and_a_flower_in_one_scene() {
-    let mut s = Session::default();
+    let mut s = Workspace::default();
     let opened = json(&s.open("bush.toml", BUSH.as_bytes(), 0, false).unwrap());
     assert_eq!(
         (opened["kind"].as_str(), s.document().plants().len()),
         (Some("tree"), 1),
         "the blank sheet gave way"
     );
-    s.evaluate().unwrap();
+    s.evaluate(&run()).unwrap();
     s.open("leaf1.csv", &marks(), 0, false).unwrap();
-    s.run(r#"{"add":{"maker":"flower","name":"a rose","preset":"rose"}}"#).unwrap();
+    s.act(&serde_json::from_str::<Action>(r#"{"add":{"name":"a rose","maker":{"flower":"rose"}}}"#).unwrap())
+        .unwrap();
     let made = scene(&mut s);
     assert_eq!(made.len(), 3);
     assert!(made.iter().all(|(_, digest, error)| digest.len() > 8 && error.is_null()), "{made:?}");
     // Nothing is grown or sent again for a change elsewhere.
-    s.run(r#"{"flower":{"settings":{"species":"rose","day":1.5}}}"#).unwrap();
-    let view = json(&s.evaluate().unwrap());
+    s.ask(r#"{"flower":[3,{"set":{"species":"rose","day":1.5}}]}"#).unwrap();
+    let view = json(&s.evaluate(&run()).unwrap());
     let fresh: Vec<bool> = (0..3).map(|k| view["plants"][k]["fresh"].as_bool().unwrap()).collect();
     assert_eq!(fresh, [false, false, true]);
     assert_eq!(view["plants"][2]["days"].as_array().unwrap().len(), 2);
-    let mut other = Session::default();
+    let mut other = Workspace::default();
     other.open("three.burgeon", &s.save().unwrap(), 0, true).unwrap();
     assert_eq!(scene(&mut other), scene(&mut s));
     // An obstacle is grown around; a spec that is none is refused.
-    let ids: Vec<u32> = s.document().plants().iter().map(|p| p.id().0).collect();
+    let ids: Vec<PlantId> = s.document().plants().iter().map(|p| p.id()).collect();
     assert_eq!(ids.len(), made.len());
     s.select(ids[0]).unwrap();
     let before = scene(&mut s);
-    s.run(r#"{"obstacle":{"name":"ball","shape":{"shape":"sphere","centre":[0,3,0],"radius_m":1}}}"#)
+    s.ask(r#"{"tree":[1,{"add-obstacle":{"name":"ball","shape":{"shape":"sphere","centre":[0,3,0],"radius_m":1}}}]}"#)
         .unwrap();
     assert_ne!(scene(&mut s)[0].1, before[0].1);
-    assert!(s.run(r#"{"tree":{"path":"/age","value":"old"}}"#).is_err());
-    assert!(s.run(r#"{"tree":{"path":"/no/such","value":1}}"#).is_err());
-    s.run(r#"{"tree":{"path":"/clearance_m","value":-1}}"#).unwrap();
+    assert!(s.ask(r#"{"tree":[1,{"set-field":["/age","old"]}]}"#).is_err());
+    assert!(s.ask(r#"{"tree":[1,{"set-field":["/no/such",1]}]}"#).is_err());
+    s.ask(r#"{"tree":[1,{"set-field":["/clearance_m",-1]}]}"#).unwrap();
     assert!(scene(&mut s)[0].2.as_str().unwrap().contains("clearance_m"), "{:?}", scene(&mut s)[0]);
     s.undo();
-    let model = s.export("obj", "{}").unwrap();
+    let model = s.file(ExportFormat::Obj);
     assert!(model.starts_with(b"PK"));
-    let ball = s.export("ply", "{}").unwrap();
+    let ball = s.file(ExportFormat::Ply);
     s.add_obstacle("itself.ply", &ball).unwrap();
     assert!(!s.obstacle(ids[0], 1).is_empty() && s.obstacle(ids[0], 0).is_empty());
     s.undo();
     s.undo();
-    s.run(&format!(r#"{{"leaf-of":{{"lender":{}}}}}"#, ids[1])).unwrap();
+    s.ask(r#"{"tree":[1,{"set-leaf":2}]}"#).unwrap();
     let borne = scene(&mut s);
     assert!(borne[0].2.is_null() && borne[0].1 != before[0].1);
     // Hidden plants are not in an export of the scene.
-    let whole = s.export("glb", r#"{"whole":true}"#).unwrap();
-    s.run(&format!(r#"{{"hide":{{"plant":{},"on":true}}}}"#, ids[2])).unwrap();
-    assert!(s.export("glb", r#"{"whole":true}"#).unwrap().len() < whole.len());
-    assert!(s.export("mtg", "{}").unwrap().len() > 200);
-    s.run(&format!(r#"{{"remove-plant":{{"plant":{}}}}}"#, ids[1])).unwrap();
+    let all = ExportRequest { whole: true, ..ExportRequest::default() };
+    let whole = s.exported(&all).len();
+    s.ask(r#"{"plant":[3,{"hide":true}]}"#).unwrap();
+    assert!(s.exported(&all).len() < whole);
+    assert!(s.file(ExportFormat::Mtg).len() > 200);
+    s.ask(r#"{"scene":{"remove":[2]}}"#).unwrap();
     assert_eq!(scene(&mut s)[0].1, before[0].1, "its own leaf again");
     while s.undo().is_some() {}
     assert_eq!(s.document(), &Document::default());
@@ -312,25 +349,25 @@ fn a_tree_a_leaf_and_a_flower_in_one_scene() {
 
 #[test]
 fn a_drawn_flower_opens_and_closes() {
-    let mut s = Session::default();
+    let mut s = Workspace::default();
     s.open("sample.svg", &sample(), 0, true).unwrap();
     let drawn = look(&mut s);
-    s.run(r#"{"day":{"day":0}}"#).unwrap();
+    s.ask(r#"{"sketch":[0,{"set-day":0}]}"#).unwrap();
     let bud = look(&mut s);
     assert!(bud["fresh"].as_bool().unwrap() && bud["error"].is_null(), "{}", bud["error"]);
     let days = bud["days"].as_array().unwrap();
     assert_eq!((days.len(), &bud["item"]["digest"]), (2, &drawn["item"]["digest"]));
-    let closed = s.column(0, 0, Column::Positions);
-    s.run(r#"{"day":{"day":6}}"#).unwrap();
-    s.evaluate().unwrap();
+    let closed = s.column(PlantId(0), 0, Column::Positions).to_vec();
+    s.ask(r#"{"sketch":[0,{"set-day":6}]}"#).unwrap();
+    s.evaluate(&run()).unwrap();
     let last = s.model(PlantId(0)).unwrap().parts.len() - 1;
-    let open = s.column(0, last, Column::Positions);
-    assert!(!open.is_empty() && closed != open);
+    let open = s.column(PlantId(0), last, Column::Positions);
+    assert!(!open.is_empty() && closed != *open);
     s.undo();
     s.undo();
     assert_eq!(look(&mut s)["parts"], drawn["parts"]);
     // What was taken off the page comes back with its meshes.
-    s.run(r#"{"new":{}}"#).unwrap();
+    s.act(&Action::New).unwrap();
     assert!(look(&mut s)["parts"].as_array().unwrap().is_empty());
     s.undo();
     let back = look(&mut s);
@@ -342,24 +379,28 @@ fn at(x: f64, y: f64) -> String {
     format!(r#"{{"origin":[{x},{y},9],"direction":[0,0,-1],"forward":[0,0,-1],"up":[0,1,0],"pressure":1}}"#)
 }
 
-const REACH: &str = r#"{"metres":0.05,"per_metre":0}"#;
+const REACH: &str = r#"{"metres":0.05,"per_metre":0,"bearers":0}"#;
 
-fn hand(s: &mut Session, tool: &str, input: &str) -> Value {
-    json(&s.shape(tool, REACH, input).unwrap())
+fn hand(s: &mut Workspace, tool: &str, input: &str) -> Value {
+    let read = |text| serde_json::from_str(text).unwrap();
+    json(
+        &s.shape(read(tool), serde_json::from_str(REACH).unwrap(), serde_json::from_str(input).unwrap())
+            .unwrap(),
+    )
 }
 
 /// A gesture from one place to another: what it would make, and the command for it.
-fn gesture(s: &mut Session, tool: &str, from: (f64, f64), to: (f64, f64)) -> Value {
-    hand(s, tool, &format!(r#"{{"down":{{"at":{}}}}}"#, at(from.0, from.1)));
-    hand(s, tool, &format!(r#"{{"move":{{"at":[{}]}}}}"#, at(to.0, to.1)));
-    hand(s, tool, &format!(r#"{{"up":{{"at":{}}}}}"#, at(to.0, to.1)))
+fn gesture(s: &mut Workspace, tool: &str, from: (f64, f64), to: (f64, f64)) -> Value {
+    hand(s, tool, &format!(r#"{{"down":{}}}"#, at(from.0, from.1)));
+    hand(s, tool, &format!(r#"{{"move":[{}]}}"#, at(to.0, to.1)));
+    hand(s, tool, &format!(r#"{{"up":{}}}"#, at(to.0, to.1)))
 }
 
 /// A bush, and the middle of one of its branches as the viewer sees it.
-fn bush() -> (Session, (f64, f64)) {
-    let mut s = Session::default();
+fn bush() -> (Workspace, (f64, f64)) {
+    let mut s = Workspace::default();
     s.open("bush.toml", BUSH.as_bytes(), 0, false).unwrap();
-    s.evaluate().unwrap();
+    s.evaluate(&run()).unwrap();
     let plant = s.scene.get(PlantId(1)).unwrap().plant.unwrap();
     let branch = plant.axes.iter().position(|a| a.order == 1).unwrap();
     let points = plant.axis_points(burgeon::plant::AxisId::new(branch));
@@ -373,7 +414,7 @@ fn an_impossible_tree_is_an_error_on_the_page_and_the_last_one_stays() {
     let before = scene(&mut s);
     assert!(before[0].2.is_null() && !s.scene.get(PlantId(1)).unwrap().model.parts.is_empty());
     // Within the limits of the command line, beyond the quarter of them that a page has.
-    s.run(r#"{"tree":{"path":"/method","value":{"kind":"competition","points":600000}}}"#).unwrap();
+    s.ask(r#"{"tree":[1,{"set-field":["/method",{"kind":"competition","points":600000}]}]}"#).unwrap();
     let said = scene(&mut s)[0].2.as_str().unwrap().to_owned();
     assert!(said.contains("600,000 attraction points") && said.contains("500,000"), "{said}");
     assert!(!said.contains("--budget"), "a page has no options: {said}");
@@ -387,7 +428,7 @@ fn a_gesture_is_shown_and_is_one_step_when_it_is_asked_for() {
     let (mut s, (x, y)) = bush();
     let before = look(&mut s);
     let still = s.skeleton();
-    let looked = hand(&mut s, r#"{"pick":{}}"#, &format!(r#"{{"down":{{"at":{}}}}}"#, at(x, y)));
+    let looked = hand(&mut s, r#""pick""#, &format!(r#"{{"down":{}}}"#, at(x, y)));
     assert!(looked["picked"]["key"]["mark"].is_object(), "{looked}");
     let axis = u32::try_from(looked["picked"]["axis"].as_u64().unwrap()).unwrap();
     let lines = s.branch(axis);
@@ -395,33 +436,32 @@ fn a_gesture_is_shown_and_is_one_step_when_it_is_asked_for() {
     // The trunk bears everything.
     assert!(s.branch(0).len() >= lines.len());
 
-    let rotate = r#"{"rotate":{}}"#;
-    let down = hand(&mut s, rotate, &format!(r#"{{"down":{{"at":{}}}}}"#, at(x, y)));
+    let rotate = r#""rotate""#;
+    let down = hand(&mut s, rotate, &format!(r#"{{"down":{}}}"#, at(x, y)));
     assert_eq!((&down["busy"], &down["again"]), (&Value::Bool(true), &Value::Bool(false)));
-    let held = hand(&mut s, rotate, &format!(r#"{{"move":{{"at":[{}]}}}}"#, at(x, y + 0.4)));
+    let held = hand(&mut s, rotate, &format!(r#"{{"move":[{}]}}"#, at(x, y + 0.4)));
     assert_eq!((&held["busy"], &held["again"]), (&Value::Bool(true), &Value::Bool(true)), "{held}");
     // A large plant has no digest while it is in the hand.
     assert_eq!(look(&mut s)["item"]["digest"], "");
     let shown = s.skeleton();
     assert_ne!(shown, still, "a look at what would be");
-    assert_eq!(json(&s.state().unwrap())["plants"][0]["edits"], Value::Array(vec![]));
-    let up = hand(&mut s, rotate, &format!(r#"{{"up":{{"at":{}}}}}"#, at(x, y + 0.4)));
+    assert_eq!(json(&s.state())["plants"][0]["edits"], Value::Array(vec![]));
+    let up = hand(&mut s, rotate, &format!(r#"{{"up":{}}}"#, at(x, y + 0.4)));
     look(&mut s);
     assert_eq!(s.skeleton(), shown, "shown until it is asked for");
-    s.run(&format!(r#"{{"shape":{{"edit":{}}}}}"#, up["commit"])).unwrap();
+    s.ask(&format!(r#"{{"shape":[1,{{"add":{}}}]}}"#, up["commit"])).unwrap();
     let after = look(&mut s);
     assert_eq!(s.skeleton(), shown, "and the same then");
     assert!(after["item"]["digest"].as_str().is_some_and(|d| d.len() == 32));
     assert_eq!(after["item"]["edits"][0]["done"], true);
-    assert_eq!(s.undo().as_deref(), Some("shape-rotate"));
+    assert_eq!(s.undo(), Some("shape-rotate"));
     assert_eq!(look(&mut s)["item"]["digest"], before["item"]["digest"]);
     // Escape leaves nothing behind.
     gesture(&mut s, rotate, (50.0, 50.0), (51.0, 50.0));
-    hand(&mut s, rotate, &format!(r#"{{"down":{{"at":{}}}}}"#, at(x, y)));
-    hand(&mut s, rotate, &format!(r#"{{"move":{{"at":[{}]}}}}"#, at(x, y + 0.5)));
-    assert_eq!(hand(&mut s, rotate, r#"{"cancel":{}}"#)["again"], true);
+    hand(&mut s, rotate, &format!(r#"{{"down":{}}}"#, at(x, y)));
+    hand(&mut s, rotate, &format!(r#"{{"move":[{}]}}"#, at(x, y + 0.5)));
+    assert_eq!(hand(&mut s, rotate, r#""cancel""#)["again"], true);
     assert_eq!(look(&mut s)["item"]["digest"], before["item"]["digest"]);
-    assert!(s.shape(r#"{"axe":{}}"#, REACH, r#"{"cancel":{}}"#).is_err());
 }
 
 #[test]
@@ -429,42 +469,42 @@ fn edits_survive_a_file_and_say_when_their_branch_is_gone() {
     let (mut s, (x, y)) = bush();
     for tool in [
         r#"{"prune":{"whole":false}}"#,
-        r#"{"regrow":{}}"#,
+        r#""regrow""#,
         r#"{"sketch":{"twigs":1,"tilt_deg":20}}"#,
         r#"{"brush":{"radius_m":0.4,"density":1}}"#,
         r#"{"leaves":{"radius_m":0.5,"keep":0.2}}"#,
-        r#"{"move":{}}"#,
+        r#""move""#,
     ] {
         let made = gesture(&mut s, tool, (x, y), (x + 0.4, y + 0.5));
         assert!(made["commit"].is_object(), "{tool}: {made}");
-        s.run(&format!(r#"{{"shape":{{"edit":{}}}}}"#, made["commit"])).unwrap();
+        s.ask(&format!(r#"{{"shape":[1,{{"add":{}}}]}}"#, made["commit"])).unwrap();
         look(&mut s);
     }
     let shaped = look(&mut s);
     let told = shaped["item"]["edits"].as_array().unwrap();
     assert_eq!(told.len(), 6);
     assert!(told.iter().take(5).all(|e| e["done"] == true), "{told:?}");
-    let mut other = Session::default();
+    let mut other = Workspace::default();
     other.open("x.burgeon", &s.save().unwrap(), 0, true).unwrap();
     assert_eq!(look(&mut other)["item"]["digest"], shaped["item"]["digest"]);
     // One is left out, by its row; what stays keeps its number.
-    s.run(r#"{"shape-leave":{"row":0,"off":true}}"#).unwrap();
+    s.ask(r#"{"shape":[1,{"leave":[0,true]}]}"#).unwrap();
     let left = look(&mut s);
     assert_eq!(
         (left["item"]["edits"][0]["index"].as_u64(), left["item"]["edits"].as_array().unwrap().len()),
         (Some(1), 5)
     );
-    s.run(r#"{"shape-remove":{"rows":[0,1,2,3,4,5]}}"#).unwrap();
-    s.run(r#"{"shape":{"edit":{"op":"prune","axis":{"mark":{"id":"0","kind":"wood","order":9,"base":[0,9,0],"direction":[1,0,0],"length":9}}}}}"#).unwrap();
+    s.ask(r#"{"shape":[1,{"remove":[0,1,2,3,4,5]}]}"#).unwrap();
+    s.ask(r#"{"shape":[1,{"add":{"op":"prune","axis":{"mark":{"id":"0","kind":"wood","order":9,"base":[0,9,0],"direction":[1,0,0],"length":9}}}}]}"#).unwrap();
     let gone = look(&mut s);
     assert_eq!(gone["item"]["edits"][0]["code"], "branch-gone");
     assert!(
         gone["item"]["warnings"][0].as_str().unwrap().contains("edit 0 by hand (prune): not done"),
         "{gone}"
     );
-    assert!(s.run(r#"{"shape":{"edit":{"op":"prune","axis":{"path":[0]},"at":7}}}"#).is_err());
+    assert!(s.ask(r#"{"shape":[1,{"add":{"op":"prune","axis":{"path":[0]},"at":7}}]}"#).is_err());
     // Nothing is grown again for an edit.
-    s.run(r#"{"shape":{"edit":{"op":"prune","axis":{"path":[0,0]}}}}"#).unwrap();
+    s.ask(r#"{"shape":[1,{"add":{"op":"prune","axis":{"path":[0,0]}}}]}"#).unwrap();
     let pruned = look(&mut s);
     assert_eq!(pruned["stages"], serde_json::json!(["shape", "mesh"]));
 }
