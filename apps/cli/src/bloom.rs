@@ -86,12 +86,14 @@ pub(crate) struct FitArgs {
   burgeon bloom run rose -o rose.glb --frames 16 --png rose.png
   burgeon bloom run rose --petal petal.csv -o own-rose.glb       petals from marks, a model or a drawing
   burgeon bloom run flower.svg -o flower.glb                     a drawn flower opens and wilts
+  burgeon bloom run my-flower.toml -o flower.glb                 a flower of your own (docs/bloom.md)
   burgeon bloom run rose --law lily.law.json -o rose-as-lily/ --frames 16 --format obj")]
 pub(crate) struct BloomRunArgs {
     /// First: clap takes the values of the others away as it reads them.
     #[command(flatten)]
     pub(crate) given: Given,
-    /// First shape: a scan or a model; or a stages file (.toml); or rose, lily, tulip, sunflower, clivia; or a drawing.
+    /// First shape: a scan or a model; or a stages file (.toml); or rose, lily, tulip, sunflower, clivia, or a flower of
+    /// your own (.toml); or a drawing.
     #[arg(value_name = "START")]
     pub(crate) start: String,
     /// The result: .glb (animation, or one shape with --day), .ply, .obj or .stl (one shape), or a folder (a file a
@@ -434,7 +436,7 @@ fn run(args: &BloomRunArgs) -> Outcome {
     }
     let start = Path::new(&args.start);
     check_used(args)?;
-    if let Some(spec) = bloom::preset(&args.start).filter(|_| !start.exists() || start.is_dir()) {
+    if let Some(spec) = species(start, &args.start)? {
         return flower(args, spec, law, outputs, &machine);
     }
     let flowers = format!("whole flowers ({})", FlowerSpec::PRESETS.join(", "));
@@ -703,6 +705,18 @@ fn drawn_flower(
     tell(args, machine, told, written, outputs)
 }
 
+/// A flower by its name, or of a file of its own; none for scans and drawings.
+fn species(start: &Path, name: &str) -> Outcome<Option<FlowerSpec>> {
+    let preset = bloom::preset(name).filter(|_| !start.exists() || start.is_dir());
+    if preset.is_some() || !files::extension(start).is_some_and(|e| e.eq_ignore_ascii_case("toml")) || !start.exists() {
+        return Ok(preset);
+    }
+    let text = files::read_text(start)?;
+    // A file of stages has none.
+    let whorls = burgeon::spec::Node::from_toml(&text).is_ok_and(|tree| tree.field("whorls").is_some());
+    whorls.then(|| burgeon::spec::from_toml(&text).map_err(|e| Failure::at(start, e))).transpose()
+}
+
 fn flower(
     args: &BloomRunArgs,
     spec: FlowerSpec,
@@ -711,6 +725,7 @@ fn flower(
     machine: &Machine,
 ) -> Outcome {
     no_scans(args, &spec.name)?;
+    spec.check(&machine.run().budget).map_err(|e| Failure::at(Path::new(&args.start), e))?;
     let spec = match &args.petal {
         Some(path) => {
             let (form, aspect) = petal_form(path, args.seed, machine)?;
@@ -718,12 +733,12 @@ fn flower(
         }
         None => spec,
     };
-    let law = law.unwrap_or_else(|| GrowthLaw::logistic(&spec.name, spec.days[0], spec.rate));
+    let law = law.unwrap_or_else(|| spec.own_law());
     let axes = files::axes(args.axes.up, args.axes.unit);
     let show = Show {
         name: spec.name.clone(),
-        days: [0.0, spec.days[0] + spec.days[1]],
-        best: spec.days[0],
+        days: [0.0, spec.opening_days + spec.wilting_days],
+        best: spec.opening_days,
         shape: Box::new(|day| {
             let frame = spec.at(day, &law, Seed::new(args.seed));
             let overlap = frame.overlap();

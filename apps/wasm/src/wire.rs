@@ -12,7 +12,7 @@ use burgeon::growth::Obstacle;
 use burgeon::shape::HandEdit;
 use burgeon::sketch::{SketchSpec, StrokeClass, StrokeMode};
 use burgeon::skin::{PetalColor, SkinSpec};
-use burgeon::{ItemReport, Preset, bloom, leaf_marks, tree_settings, tree_spec};
+use burgeon::{ItemReport, Preset, bloom, leaf_marks, tree_settings};
 use burgeon::{Seed, Unit, UpAxis, document::StrokeId, formats::ExportSpec};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -226,26 +226,16 @@ impl WireCommand {
     }
 
     fn tree(&self, plant: Option<&DocumentPlant>) -> Result<TreeCommand, String> {
-        let Some(Maker::Tree(tree)) = plant.map(|p| &p.settings().maker) else {
+        if !matches!(plant.map(|p| &p.settings().maker), Some(Maker::Tree(_))) {
             return Err("the plant is no tree".into());
-        };
+        }
         let command = match self {
             Self::Preset { key } => {
                 let preset = Preset::find(key).ok_or_else(|| format!("there is no tree {key:?}"))?;
                 let settings = tree_settings(&preset.spec().map_err(|e| e.to_string())?, Some(key));
                 TreeCommand::SetSpec(settings.preset, settings.spec)
             }
-            Self::Tree { path, value } => {
-                // A spec that is none is refused here, not when the tree grows.
-                let mut changed = (**tree).clone();
-                let mut spec = Value::clone(&tree.spec);
-                let (parent, key) = path.rsplit_once('/').unwrap_or(("", path));
-                let field = spec.pointer_mut(parent).and_then(Value::as_object_mut);
-                field.ok_or_else(|| format!("the spec has no {path}"))?.insert(key.into(), value.clone());
-                changed.spec = Arc::new(spec);
-                tree_spec(&changed).map_err(|e| e.to_string())?;
-                TreeCommand::SetField(path.clone(), value.clone())
-            }
+            Self::Tree { path, value } => TreeCommand::SetField(path.clone(), value.clone()),
             Self::Obstacle { name, shape, row } => {
                 let new = NamedObstacle { name: name.clone(), shape: Arc::new(shape.clone()) };
                 row.map_or_else(
@@ -385,7 +375,7 @@ struct SketchState<'a> {
 #[derive(Debug, Serialize)]
 struct TreeState<'a> {
     preset: Option<&'a str>,
-    spec: &'a Value,
+    spec: &'a burgeon::TreeSpec,
     skin: Skin,
     leaf: Option<u32>,
     obstacles: Vec<NamedShape<'a>>,

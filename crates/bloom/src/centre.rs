@@ -4,7 +4,7 @@ use base::{Draw, Seed, ops};
 use glam::{DQuat, DVec3};
 use mesh::TriMesh;
 
-use crate::flower::{FlowerFrame, FlowerSpec, finish, quads, rad};
+use crate::flower::{FlowerFrame, FlowerSpec, Stamens, finish, quads, rad};
 
 const GREEN: [f32; 3] = [0.16, 0.32, 0.07];
 
@@ -12,20 +12,27 @@ impl FlowerSpec {
     /// Stamens, pistil and disc: `g` is how far the flower has opened, `wilt` how far it has wilted, 0 to 1.
     pub(crate) fn centre(&self, frame: &mut FlowerFrame, g: f64, wilt: f64, day: f64, seed: Seed) {
         let (mut stamens, mut disc) = (TriMesh::default(), TriMesh::default());
-        let heights = || self.whorls.iter().map(|w| w.insertion[1]);
+        let heights = || self.whorls.iter().map(|w| w.insertion.height_m);
         let (low, high) = (heights().fold(f64::INFINITY, f64::min), heights().fold(0.0, f64::max));
         let base = if low.is_finite() { low } else { 0.0 };
         for f in 0..self.umbel.max(1) {
             let place = self.place(f, day);
-            for k in 0..self.stamens.0 {
+            for k in 0..self.stamens.count {
                 let draws = seed.child(u64::from(f)).child(u64::from(k));
                 self.stamen(&mut stamens, k, [g, wilt, base], place, draws);
             }
-            if self.pistil > 0.0 {
-                pistil(&mut stamens, self.pistil * ops::lerp(0.5, 1.0, g), self.pistil, base, place, wilt);
+            if self.pistil_m > 0.0 {
+                pistil(
+                    &mut stamens,
+                    self.pistil_m * ops::lerp(0.5, 1.0, g),
+                    self.pistil_m,
+                    base,
+                    place,
+                    wilt,
+                );
             }
-            if self.disc > 0.0 {
-                florets(&mut disc, self.disc * ops::lerp(0.75, 1.0, g), high, place, [g, wilt]);
+            if self.disc_m > 0.0 {
+                florets(&mut disc, self.disc_m * ops::lerp(0.75, 1.0, g), high, place, [g, wilt]);
             }
         }
         for (name, material, mesh) in [("stamens", 1, stamens), ("disc", 2, disc)] {
@@ -45,7 +52,7 @@ impl FlowerSpec {
         place: (DVec3, DQuat),
         seed: Seed,
     ) {
-        let (count, length, spread) = self.stamens;
+        let Stamens { count, length_m: length, spread_deg: spread } = self.stamens;
         let ring = f64::from(k) / f64::from(count.max(1));
         let tilt = rad(spread * ops::lerp(0.25, 1.0, g) * ops::lerp(0.6, 1.0, ring) + 18.0 * wilt);
         let long =
@@ -82,14 +89,14 @@ impl FlowerSpec {
     /// The stalk, bent towards where the head nods, and what joins it with the petals.
     pub(crate) fn stalks(&self, frame: &mut FlowerFrame, day: f64) {
         let mut mesh = TriMesh::default();
-        let thick = self.whorls.first().map_or(0.002, |w| 0.03 * w.length + 0.001).max(0.28 * self.disc);
+        let thick = self.whorls.first().map_or(0.002, |w| 0.03 * w.length_m + 0.001).max(0.28 * self.disc_m);
         let slim = thick.min(0.006);
-        if self.stalk > 0.0 {
-            let end = if self.umbel > 1 { DVec3::Y * self.stalk } else { self.place(0, day).0 };
+        if self.stalk_m > 0.0 {
+            let end = if self.umbel > 1 { DVec3::Y * self.stalk_m } else { self.place(0, day).0 };
             // Straight up at the foot; at the end half as steep as the head nods.
-            let (s, c) = ops::sin_cos(rad(if self.umbel > 1 { 0.0 } else { 0.8 * self.nod }));
-            let foot = DVec3::Y * (0.55 * self.stalk);
-            let back = end - DVec3::new(0.0, c, s) * (0.22 * self.stalk);
+            let (s, c) = ops::sin_cos(rad(if self.umbel > 1 { 0.0 } else { 0.8 * self.nod_deg }));
+            let foot = DVec3::Y * (0.55 * self.stalk_m);
+            let back = end - DVec3::new(0.0, c, s) * (0.22 * self.stalk_m);
             let at = |t: f64| {
                 let (a, b, d) = (DVec3::ZERO.lerp(foot, t), foot.lerp(back, t), back.lerp(end, t));
                 a.lerp(b, t).lerp(b.lerp(d, t), t)
@@ -100,13 +107,13 @@ impl FlowerSpec {
         for f in 0..self.umbel.max(1) {
             let (place, turn) = self.place(f, day);
             if self.umbel > 1 {
-                let foot = DVec3::Y * self.stalk;
+                let foot = DVec3::Y * self.stalk_m;
                 let middle = foot.lerp(place, 0.5) + DVec3::Y * 0.004;
                 tube(&mut mesh, &[foot, middle, place], &[0.5 * slim; 3], GREEN);
             }
             // The receptacle joins stalk and petals.
-            let wide = self.whorls.iter().map(|w| w.insertion[0]).fold(0.0, f64::max).max(self.disc);
-            let ends = self.whorls.iter().map(|w| w.insertion);
+            let wide = self.whorls.iter().map(|w| w.insertion.radius_m).fold(0.0, f64::max).max(self.disc_m);
+            let ends = self.whorls.iter().map(|w| [w.insertion.radius_m, w.insertion.height_m]);
             bowl(&mut mesh, (place, turn), wide, -0.6 * wide - 0.002, ends);
         }
         let none = vec![u32::MAX; mesh.triangles.len()];

@@ -64,6 +64,8 @@ pub enum Obstacle {
     },
 }
 
+spec::schemas!(Obstacle);
+
 /// Obstacles made ready to be asked.
 ///
 /// ```
@@ -232,7 +234,7 @@ impl Obstacles {
 
 impl Body {
     fn new(o: &Obstacle) -> Result<Self, GrowthError> {
-        let length = |field, x| within(field, x, 1e-6, FAR_M, "above 0 and at most 1e6 m");
+        spec::check(o)?;
         let place = |field, p: DVec3| {
             let value = p.to_array().into_iter().find(|c| c.abs() > FAR_M || !c.is_finite());
             let range = "a finite point within 1e6 m";
@@ -246,12 +248,9 @@ impl Body {
                 }
                 Self::Box(*min, *max)
             }
-            Obstacle::Sphere { centre, radius_m } => {
-                Self::Sphere(place("centre", *centre)?, length("radius_m", *radius_m)?)
-            }
+            Obstacle::Sphere { centre, radius_m } => Self::Sphere(place("centre", *centre)?, *radius_m),
             Obstacle::Cylinder { base, radius_m, height_m } => {
-                let radius = length("radius_m", *radius_m)?;
-                Self::Cylinder(place("base", *base)?, radius, length("height_m", *height_m)?)
+                Self::Cylinder(place("base", *base)?, *radius_m, *height_m)
             }
             Obstacle::Plane { point, normal } => {
                 let unit = if usable(*normal) { normal.try_normalize() } else { None };
