@@ -708,7 +708,10 @@ fn drawn_flower(
 /// A flower by its name, or of a file of its own; none for scans and drawings.
 fn species(start: &Path, name: &str) -> Outcome<Option<FlowerSpec>> {
     let preset = bloom::preset(name).filter(|_| !start.exists() || start.is_dir());
-    if preset.is_some() || !files::extension(start).is_some_and(|e| e.eq_ignore_ascii_case("toml")) || !start.exists() {
+    if preset.is_some()
+        || !files::extension(start).is_some_and(|e| e.eq_ignore_ascii_case("toml"))
+        || !start.exists()
+    {
         return Ok(preset);
     }
     let text = files::read_text(start)?;

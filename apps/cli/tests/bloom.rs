@@ -106,7 +106,10 @@ fn a_flower_of_your_own_is_a_file() {
     fs::write(dir.join("star.toml"), star).unwrap();
     good(&dir, &["bloom", "run", "star.toml", "-o", "star.glb", "--day", "6", "--report", "star.json"]);
     let report = json(&dir.join("star.json"));
-    assert_eq!((&report["items"][0]["name"], &report["items"][0]["counts"]["petals"]), (&"star".into(), &5.into()));
+    assert_eq!(
+        (&report["items"][0]["name"], &report["items"][0]["counts"]["petals"]),
+        (&"star".into(), &5.into())
+    );
     // A preset's file is the preset.
     let lily = include_str!("../../../crates/bloom/presets/lily.toml");
     fs::write(dir.join("mine.toml"), lily).unwrap();
@@ -115,7 +118,10 @@ fn a_flower_of_your_own_is_a_file() {
     }
     assert_eq!(fs::read(dir.join("mine.ply")).unwrap(), fs::read(dir.join("own.ply")).unwrap());
     for (text, want) in [
-        (star.replace("count = 5\nlength", "petals = 5\nlength"), "line 5: whorls[0]: unknown field `petals`"),
+        (
+            star.replace("count = 5\nlength", "petals = 5\nlength"),
+            "line 5: whorls[0]: unknown field `petals`",
+        ),
         (star.replace("0.12", "9"), "line 2: stalk_m must be 0 to 5 m, not 9"),
         (format!("umbel = 200\nmesh = {{ rows = 100, columns = 100 }}\n{star}"), "triangles"),
     ] {

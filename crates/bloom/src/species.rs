@@ -30,7 +30,7 @@ pub fn preset(name: &str) -> Option<FlowerSpec> {
     spec.ok()
 }
 
-/// Which flower, on which day, and what of it differs from its species.
+/// How a flower looks, and on which day.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct FlowerSettings {

@@ -125,6 +125,9 @@ impl TreeSettings {
                 "a tree has at most {MAX_OBSTACLES} obstacles; join some of them into one mesh"
             ));
         }
+        if self.obstacles.iter().any(|o| !o.shape.is_finite()) {
+            return Some("every number of an obstacle must be finite".into());
+        }
         skin_fault(&self.skin)
     }
 }

@@ -94,6 +94,19 @@ enum Body {
 }
 
 impl Obstacle {
+    /// Whether every number of it is finite: only such a one can be saved.
+    pub fn is_finite(&self) -> bool {
+        match self {
+            Self::Box { min, max } => min.is_finite() && max.is_finite(),
+            Self::Sphere { centre, radius_m } => centre.is_finite() && radius_m.is_finite(),
+            Self::Cylinder { base, radius_m, height_m } => {
+                base.is_finite() && radius_m.is_finite() && height_m.is_finite()
+            }
+            Self::Plane { point, normal } => point.is_finite() && normal.is_finite(),
+            Self::Mesh { vertices, .. } => vertices.iter().all(|v| v.is_finite()),
+        }
+    }
+
     /// The word of its shape, as specs have it.
     pub const fn shape(&self) -> &'static str {
         match self {

@@ -132,6 +132,23 @@ fn found<T>(
     })
 }
 
+/// Whether a schema has a range anywhere; what is nested deeper than `depth` counts as having one.
+fn ranged(root: &'static Value, at: &'static Value, depth: u32) -> bool {
+    const LIMITS: [&str; 3] = ["minimum", "maximum", "exclusiveMinimum"];
+    match at {
+        _ if depth == 0 => true,
+        Value::Array(parts) => parts.iter().any(|part| ranged(root, part, depth)),
+        Value::Object(fields) => {
+            // What has no sign needs no least of 0.
+            let unsigned = at["minimum"] == 0 && at["format"].as_str().is_some_and(|f| f.starts_with("uint"));
+            LIMITS[usize::from(unsigned)..].iter().any(|limit| fields.contains_key(*limit))
+                || fields.values().any(|part| ranged(root, part, depth - 1))
+                || target(root, at).is_some_and(|to| ranged(root, to, depth - 1))
+        }
+        _ => false,
+    }
+}
+
 impl<'a> Look<'a> {
     fn number(self, value: f64) -> Result<Variant, Stop> {
         let Some(at) = self.at else { return Ok(None) };
@@ -159,7 +176,10 @@ impl<'a> Look<'a> {
     }
 
     fn rows(self) -> Rows<'a> {
-        Rows { look: self, row: 0 }
+        let part = |name| self.at.and_then(|at| found(self.root, at, &|s| s.get(name)));
+        // A mesh has millions of numbers without a range: they are not looked at one by one.
+        let all = part("items").filter(|s| ranged(self.root, s, 8));
+        Rows { look: self, row: 0, own: part("prefixItems"), all }
     }
 
     fn fields(self) -> Fields<'a> {
@@ -317,17 +337,18 @@ impl<'a> Serializer for Look<'a> {
 struct Rows<'a> {
     look: Look<'a>,
     row: usize,
+    /// The schemas of single rows.
+    own: Option<&'static Value>,
+    /// The schema of all others, where it has a range.
+    all: Option<&'static Value>,
 }
 
 impl Rows<'_> {
     fn next<T: Serialize + ?Sized>(&mut self, value: &T) -> Result<(), Stop> {
-        let Look { root, at, trail, .. } = self.look;
         let row = self.row;
-        let of =
-            |s: &'static Value| s.get("prefixItems").and_then(|all| all.get(row)).or_else(|| s.get("items"));
-        let at = at.and_then(|at| found(root, at, &of));
         self.row += 1;
-        value.serialize(self.look.within(&Trail::Row(trail, row), at)).map(|_| ())
+        let at = self.own.and_then(|own| own.get(row)).or(self.all);
+        value.serialize(self.look.within(&Trail::Row(self.look.trail, row), at)).map(|_| ())
     }
 }
 
