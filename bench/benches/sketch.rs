@@ -7,7 +7,7 @@
 )]
 
 use burgeon::glam::DVec2;
-use burgeon::sketch::Drawing;
+use burgeon::ink::Drawing;
 use burgeon::{CancelToken, Made, Run, Seed, SketchOptions, make_from_sketch};
 use burgeon_bench::{Stopwatch, TABLE1, TwoThreads, table1};
 

@@ -5,8 +5,8 @@ use std::sync::OnceLock;
 
 use base::{Report, Run, Seed};
 use burgeon::formats::{DrawingFormat, read_drawings};
+use burgeon::ink::Drawing;
 use burgeon::mesh::Model;
-use burgeon::sketch::Drawing;
 use burgeon::skin::{SkinSpec, skin};
 use burgeon::{Clock, Executor};
 use growth::{CompetitionSpec, Grown, LeafSpec, Method, TreeSpec, grow};

@@ -9,8 +9,8 @@ use std::process::Command;
 
 use serde_json::Value;
 
+use crate::native;
 use crate::shell::{Outcome, burgeon, debug_burgeon, finish, output, prepare, repository, say, target_dir};
-use crate::web;
 
 /// Digest (and for trees the size of their meshes) by what was made.
 type Digests = BTreeMap<String, String>;
@@ -124,7 +124,7 @@ pub(crate) fn bless(why: &[String]) -> Outcome {
     let out = target_dir().join("xtask-bless");
     let _ = std::fs::remove_dir_all(&out);
     std::fs::create_dir_all(&out).map_err(|e| format!("{}: {e}", out.display()))?;
-    let (drawings, organs) = web::native(&out)?;
+    let (drawings, organs) = native::all(&out)?;
     let now = measured(&drawings, &organs, &out)?;
     let changed = changes(&expected()?, &now);
     if changed.is_empty() {

@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 
 use base::{Draw, Seed, Stream, ops};
 use glam::DVec2;
-use sketch::StrokeClass;
+use ink::StrokeClass;
 
 /// How many of each kind.
 const EACH: u64 = 8;

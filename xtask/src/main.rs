@@ -1,11 +1,14 @@
 //! `cargo xtask`: set-up, checks and chores. Installs what is missing, so that a fresh machine with rustup and
 //! Node needs nothing else.
 
+mod circles;
 mod flowers;
 mod gallery;
 mod golden;
+mod habits;
 mod layers;
 mod made_strokes;
+mod native;
 mod pixels;
 mod scenes;
 mod shell;
@@ -32,7 +35,9 @@ cargo xtask COMMAND
   gallery        makes every fixture drawing and writes docs/gallery.md and docs/table1.md
   species        grows every preset and scene of docs/trees.md and docs/shaping.md, and the Studio's small pictures
   flowers        makes the pictures of docs/bloom.md and of the venations in docs/leaves.md
-  layers         checks that each crate uses only what ARCHITECTURE.md allows
+  types          writes the TypeScript types of what travels between the page and the core
+  habits         checks licences and versions of dependencies, spelling, and that the crates could be published
+  layers         checks that each crate uses only what ARCHITECTURE.md allows, and no modules in a circle
   train-strokes  trains the stroke classifier from its table (see docs/strokes.md)
   test-web       the WASM, validator and Studio part of `test` alone
   test-studio    the Studio part of `test` alone
@@ -50,7 +55,9 @@ fn main() -> ExitCode {
         Some("gallery") => gallery::run(),
         Some("species") => species::run(),
         Some("flowers") => flowers::run(),
-        Some("layers") => layers::check(),
+        Some("types") => types(),
+        Some("habits") => habits::check(),
+        Some("layers") => layers::check().and_then(|()| circles::check()),
         Some("train-strokes") => train_strokes::run(rest),
         Some("studio") => web::setup().and_then(|tools| studio::open(&tools, rest)),
         Some("build-web") => web::setup().and_then(|tools| studio::build(&tools, true)),
@@ -109,6 +116,14 @@ Next: draw your own (docs/drawings.md) and give it to the same command.");
     say("\nNow the Studio: draw on the left, see it grow on the right.");
     let sample = root.join("fixtures/sketches/sample.svg").to_string_lossy().into_owned();
     studio::open(&web::setup()?, &[sample])
+}
+
+/// The test that compares the TypeScript types writes them, too.
+fn types() -> Outcome {
+    let mut c =
+        shell::prepare(shell::cargo_path(), &["test", "--package", "burgeon-workspace", "--test", "wire"]);
+    c.env("BURGEON_WRITE_TYPES", "1");
+    shell::finish(c)
 }
 
 /// Everything that must be green.

@@ -57,11 +57,12 @@ pub(crate) fn open(tools: &Tools, args: &[String]) -> Outcome {
     finish(c)
 }
 
-/// Types, texts and geometry in Node, then the main journeys in a browser. `tested`: the tests of the workspace have
+/// Types, style, texts and geometry in Node, then the main journeys in a browser. `tested`: the tests of the workspace have
 /// just run.
 pub(crate) fn test(tools: &Tools, tested: bool) -> Outcome {
     build(tools, false)?;
     npm(&["run", "--silent", "check"])?;
+    npm(&["run", "--silent", "lint"])?;
     npm(&["run", "--silent", "test"])?;
     let Some(browser) = browser() else {
         say("skipped: the Studio's journeys need Chromium; install it or name it in BURGEON_CHROMIUM");

@@ -8,11 +8,11 @@ use std::{
 };
 
 use glam::DVec2;
-use serde_json::Value;
-use sketch::{
+use ink::{
     Drawing, InkSample, Stroke, StrokeClass, StrokeFigures, StrokeRow, StrokeSource, cross_validate_strokes,
     read_stroke_table, train_strokes, write_stroke_table,
 };
+use serde_json::Value;
 
 use crate::made_strokes::made_sketches;
 
@@ -39,7 +39,7 @@ const PER_PART: usize = 3;
 #[expect(clippy::print_stdout, reason = "the figures are what the command is for")]
 pub(crate) fn run(args: &[String]) -> Result<(), String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().ok_or("xtask has no parent folder")?.to_owned();
-    let data = root.join("crates/sketch/data");
+    let data = root.join("crates/ink/data");
     let table = data.join("strokes.csv");
     match args {
         [] => {}
@@ -270,8 +270,8 @@ fn measure_ink(
     drawing: &Drawing,
     labels: &[Label],
 ) {
-    let ink = sketch::clean(drawing, &mut base::Report::default());
-    for (stroke, features) in ink.strokes.iter().zip(sketch::features(&ink, &base::Run::plain())) {
+    let ink = ink::clean(drawing, &mut base::Report::default());
+    for (stroke, features) in ink.strokes.iter().zip(ink::features(&ink, &base::Run::plain())) {
         if let Some(label) = labels.iter().find(|l| l.stroke == stroke.index) {
             rows.push(StrokeRow {
                 source,

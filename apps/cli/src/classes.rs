@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Mutex;
 
 use burgeon::ClassOverrides;
-use burgeon::sketch::StrokeClass;
+use burgeon::ink::StrokeClass;
 use serde_json::Value;
 
 use crate::failure::{Failure, Outcome};

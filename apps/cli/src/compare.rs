@@ -1,7 +1,5 @@
 //! `burgeon compare oak|guided`: one oak by several methods, side by side.
 
-use std::path::PathBuf;
-
 use burgeon::formats::{ExportSpec, ModelFormat};
 use burgeon::render::{Picture, View};
 use burgeon::skin::SkinSpec;
@@ -9,54 +7,13 @@ use burgeon::{
     GUIDED_METHODS, MadeTree, OAK_METHODS, PAPER_OAKS, PaperOak, Preset, Report, Seed, TreeOptions, TreeSpec,
     guided_methods, make_tree, tree_size,
 };
-use clap::{Args, ValueEnum};
 use serde::Serialize;
 
-use crate::args::{CommonArgs, PictureArgs, ranged, seed};
+use crate::args::{CompareArgs, CompareWord};
 use crate::failure::{Failure, Outcome};
-use crate::given::Given;
 use crate::machine::Machine;
 use crate::output::Outputs;
 use crate::{picture, report, say};
-
-#[derive(Args, Debug)]
-#[command(after_long_help = "Examples:
-  burgeon compare oak
-  burgeon compare oak --png oaks.png --report oaks.json
-  burgeon compare oak --height 15 --detail 2
-  burgeon compare guided --png two.png")]
-pub(crate) struct CompareArgs {
-    /// First: clap takes the values of the others away as it reads them.
-    #[command(flatten)]
-    pub(crate) given: Given,
-    /// What to compare.
-    #[arg(value_enum)]
-    pub(crate) what: CompareWord,
-    /// All side by side, seen from the front, to one scale; --size is that of each.
-    #[arg(long, value_name = "FILE.png")]
-    pub(crate) png: Option<PathBuf>,
-    /// Height that all are scaled to, metres, 0.1 to 1000.
-    #[arg(long, value_name = "METRES", default_value_t = 10.0, value_parser = |s: &str| ranged(s, 0.1, 1000.0))]
-    pub(crate) height: f64,
-    /// Fineness of the meshes, 0.1 to 8.
-    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = |s: &str| ranged(s, 0.1, 8.0))]
-    pub(crate) detail: f64,
-    /// Number that all chance follows from.
-    #[arg(long, value_name = "N", default_value_t = 1, allow_hyphen_values = true, value_parser = seed)]
-    pub(crate) seed: u64,
-    #[command(flatten)]
-    pub(crate) picture: PictureArgs,
-    #[command(flatten)]
-    pub(crate) common: CommonArgs,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum CompareWord {
-    /// L-system, space colonization and space competition, as the paper's Table 2
-    Oak,
-    /// Guided growth (buds with markers of their own) and its baseline, self-organisation by space (Palubicki 2009)
-    Guided,
-}
 
 impl CompareWord {
     /// The trees, not grown yet.

@@ -13,7 +13,7 @@ use crate::files::{self, Goal, Kind};
 use crate::machine::Machine;
 use crate::origin::Origin;
 use crate::output::Outputs;
-use crate::{picture, report, say};
+use crate::{inputs, picture, report, say};
 
 pub(crate) fn convert(args: &ConvertArgs) -> Outcome {
     let machine = Machine::new(&args.common);
@@ -156,7 +156,7 @@ enum Opened {
 fn far_or_bare(args: &ConvertArgs, machine: &Machine) -> Outcome<Opened> {
     let path = &args.input;
     let other = || files::open(path).map(|(input, kind)| Opened::Other(input, kind));
-    let (input, format, only) = if files::is_stdin(path) {
+    let (input, format, only) = if inputs::is_stdin(path) {
         let (input, start) = files::peek(path)?;
         match files::sniff_points(&start) {
             Some(format) => (input, format, true),

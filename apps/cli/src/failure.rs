@@ -73,7 +73,7 @@ impl Failure {
 
 /// A path as messages say it.
 fn shown(path: &Path) -> impl fmt::Display {
-    if crate::files::is_stdin(path) { Path::new("standard input") } else { path }.display()
+    if crate::inputs::is_stdin(path) { Path::new("standard input") } else { path }.display()
 }
 
 impl From<burgeon::Cancelled> for Failure {

@@ -14,7 +14,7 @@ use burgeon::plant::Plant;
 use burgeon::{Report, Warning};
 use serde::Deserialize;
 
-use crate::args::{AxesArgs, UnitWord, UpWord};
+use crate::args::{AxesArgs, PlantFormat, UnitWord, UpWord};
 use crate::failure::{Failure, Outcome};
 use crate::inputs;
 use crate::output::{self, Outputs};
@@ -35,14 +35,9 @@ pub(crate) fn extension(path: &Path) -> Option<&str> {
 /// Bytes of a file, a pipe or standard input.
 pub(crate) type Input = Box<dyn BufRead + Send>;
 
-/// `-` stands for standard input.
-pub(crate) fn is_stdin(path: &Path) -> bool {
-    path.as_os_str() == "-"
-}
-
 /// The file's name without extension, for names of drawings and models.
 pub(crate) fn stem(path: &Path) -> String {
-    if is_stdin(path) {
+    if inputs::is_stdin(path) {
         return "drawing".into();
     }
     path.file_stem().map_or_else(|| "drawing".into(), |s| s.to_string_lossy().into_owned())
@@ -107,7 +102,7 @@ pub(crate) fn peek(path: &Path) -> Outcome<(Input, Vec<u8>)> {
 /// Bytes of a file, a pipe or standard input, whatever they are.
 pub(crate) fn open_bytes(path: &Path) -> Outcome<Input> {
     static TAKEN: AtomicBool = AtomicBool::new(false);
-    if is_stdin(path) {
+    if inputs::is_stdin(path) {
         if TAKEN.swap(true, Ordering::Relaxed) {
             let line = "is asked for twice, but can be read only once; give one of the two as a file";
             return Err(Failure::at(path, line));
@@ -354,29 +349,6 @@ pub(crate) fn writable(path: &Path) -> Outcome<ModelFormat> {
             path,
             "models are written as .glb, .obj, .ply, .stl or .usda; end the name with one of them",
         )),
-    }
-}
-
-/// What a plant is written as.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum PlantFormat {
-    /// Its meshes.
-    Model(ModelFormat),
-    /// Its structure, as a multiscale tree graph.
-    Mtg,
-}
-
-impl PlantFormat {
-    /// The axes and the unit are the format's own.
-    pub(crate) const fn fixed_axes(self) -> bool {
-        matches!(self, Self::Model(format) if format.fixed_axes())
-    }
-
-    pub(crate) fn from_extension(extension: &str) -> Option<Self> {
-        if extension.eq_ignore_ascii_case("mtg") {
-            return Some(Self::Mtg);
-        }
-        ModelFormat::from_extension(extension).map(Self::Model)
     }
 }
 

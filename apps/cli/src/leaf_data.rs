@@ -6,11 +6,12 @@ use burgeon::formats::{LeafFile, MarksAxes, ReadGraph, ReadMarks, ReadProfiles, 
 use burgeon::leaf::{Marks, Rays, ThicknessRule};
 use burgeon::{LeafError, LeafOptions, LeafTemplate, Report, Seed, Unit, UpAxis, Warning};
 
+use crate::args::Given;
 use crate::args::{AxesArgs, UpWord};
+use crate::args::{GraphWord, LeafArgs, ThicknessWord};
 use crate::failure::{Failure, Outcome};
 use crate::files;
-use crate::given::Given;
-use crate::leaf::{GraphWord, LeafArgs, ThicknessWord};
+use crate::inputs;
 use crate::machine::Machine;
 
 /// Places on each vein of a profile: a span of 5 % of the leaf between two.
@@ -224,7 +225,7 @@ pub(crate) fn template_of(path: &Path, seed: u64, machine: &Machine) -> Outcome<
     let measured =
         files::extension(path).is_some_and(|e| ["csv", "json"].iter().any(|k| e.eq_ignore_ascii_case(k)));
     let axes = burgeon::formats::ExportSpec::default();
-    let (input, model) = if files::is_stdin(path) {
+    let (input, model) = if inputs::is_stdin(path) {
         let (input, start) = files::peek(path)?;
         let kind = files::sniff(&start).filter(|kind| matches!(kind, files::Kind::Model(_)));
         (input, kind)

@@ -8,7 +8,6 @@ mod convert;
 mod draft;
 mod failure;
 mod files;
-mod given;
 mod grow;
 mod info;
 mod inputs;

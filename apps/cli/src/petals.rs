@@ -4,8 +4,8 @@ use std::path::Path;
 
 use burgeon::bloom::PetalForm;
 use burgeon::formats::{DrawingFormat, read_drawings};
+use burgeon::ink::Drawing;
 use burgeon::plant::{OrganKind, Shape};
-use burgeon::sketch::Drawing;
 use burgeon::{Seed, SketchOptions};
 
 use crate::failure::{Failure, Outcome};

@@ -1,30 +1,11 @@
 //! `burgeon presets`: the species that come with the program.
 
-use std::path::PathBuf;
-
 use burgeon::{PRESETS, Preset, TreeSpec, method_word, tree_schema};
-use clap::Args;
 use serde::Serialize;
 
+use crate::args::PresetsArgs;
 use crate::failure::{Failure, Outcome};
 use crate::{output, say};
-
-#[derive(Args, Debug)]
-#[command(after_long_help = "Examples:
-  burgeon presets
-  burgeon presets --show oak > mine.toml
-  burgeon presets --schema tree.schema.json")]
-pub(crate) struct PresetsArgs {
-    /// Print the TOML of one preset.
-    #[arg(long, value_name = "PRESET")]
-    pub(crate) show: Option<String>,
-    /// Write the JSON Schema of specs: every field with its meaning, unit (x-unit), range and default.
-    #[arg(long, value_name = "FILE.json")]
-    pub(crate) schema: Option<PathBuf>,
-    /// Print the list as JSON.
-    #[arg(long, conflicts_with = "show")]
-    pub(crate) json: bool,
-}
 
 /// One row of the list.
 #[derive(Serialize)]

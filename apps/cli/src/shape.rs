@@ -1,6 +1,6 @@
 //! `burgeon shape`: edits by hand on a plant of any maker.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use burgeon::document::{Document, PlantEdit};
 use burgeon::formats::{PngCache, read_drawings};
@@ -13,74 +13,13 @@ use burgeon::{
     BranchRow, ItemReport, Made, MadeTree, MakeError, Preset, Report, RunReport, Seed, SketchOptions,
     TreeError, TreeOptions, branch_rows, edits_schema, edits_template, make_from_sketch, make_tree,
 };
-use clap::Args;
 
-use crate::args::{AxesArgs, CommonArgs, PictureArgs, seed};
+use crate::args::{PlantFormat, Seen, ShapeArgs};
 use crate::failure::{Failure, Outcome};
-use crate::files::{Goal, Kind, PlantFormat};
-use crate::given::{Given, Seen};
-use crate::grow::TreeSurfaceArgs;
+use crate::files::{Goal, Kind};
 use crate::machine::Machine;
 use crate::output::Outputs;
-use crate::{files, grow, picture, project, report, say};
-
-#[derive(Args, Debug)]
-#[command(after_long_help = SHAPE_EXAMPLES)]
-pub(crate) struct ShapeArgs {
-    /// First: clap takes the values of the others away as it reads them.
-    #[command(flatten)]
-    pub(crate) given: Given,
-    /// A species of `burgeon presets`, a spec (.toml), a drawing, or a project (.burgeon).
-    #[arg(value_name = "PRESET|SPEC.toml|DRAWING", required_unless_present_any = ["template", "schema"])]
-    pub(crate) what: Option<PathBuf>,
-    /// The edits, a JSON file; --template prints one, docs/shaping.md explains it.
-    #[arg(long, value_name = "EDITS.json", required_unless_present_any = ["template", "schema", "list"])]
-    pub(crate) edits: Option<PathBuf>,
-    /// The model (.glb, .obj, .ply, .stl or .usda), or the structure (.mtg).
-    #[arg(long, short, value_name = "OUT", required_unless_present_any = ["png", "report", "json", "template", "schema", "list", "save"])]
-    pub(crate) output: Option<PathBuf>,
-    /// Which plant of a project that holds several: its name, or its number from 1.
-    #[arg(long, value_name = "NAME|N")]
-    pub(crate) plant: Option<String>,
-    /// Also save the project with the edits after those that it has.
-    #[arg(long, value_name = "PROJECT.burgeon")]
-    pub(crate) save: Option<PathBuf>,
-    /// Also make a picture.
-    #[arg(long, value_name = "FILE.png")]
-    pub(crate) png: Option<PathBuf>,
-    /// Number that all chance of the plant follows from; edits have their own. Default 1, or the project's.
-    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = seed)]
-    pub(crate) seed: Option<u64>,
-    /// Print the branches up to this order (0 is the trunk) with the paths that name them, after the edits if any.
-    #[arg(long, value_name = "ORDER", num_args = 0..=1, default_missing_value = "1")]
-    pub(crate) list: Option<u32>,
-    /// Print an edits file with an edit of each kind.
-    #[arg(long)]
-    pub(crate) template: bool,
-    /// Write the JSON Schema of edits files: every field with its meaning, unit, range and default.
-    #[arg(long, value_name = "FILE.json")]
-    pub(crate) schema: Option<PathBuf>,
-    #[command(flatten)]
-    pub(crate) surface: TreeSurfaceArgs,
-    #[command(flatten)]
-    pub(crate) picture: PictureArgs,
-    #[command(flatten)]
-    pub(crate) axes: AxesArgs,
-    #[command(flatten)]
-    pub(crate) common: CommonArgs,
-}
-
-const SHAPE_EXAMPLES: &str = "Examples:
-  burgeon shape --template > edits.json
-  burgeon shape oak --list                                       which branch has which path?
-  burgeon shape oak --edits edits.json -o oak.glb --png oak.png
-  burgeon shape tree.svg --edits edits.json -o tree.glb --report tree.json
-  burgeon shape garden.burgeon --plant bush --edits edits.json -o bush.glb --save garden2.burgeon
-
-Edits are done one after another; one that cannot be done says why and changes nothing. If none can be done
-that is an error, and so is a number out of its range, such as an \"at\" outside of 0 to 1.
-A branch is named by  {\"path\": [0, 2]}  (stem 0, its branch number 2 from the base up),
-by  {\"near\": [1.2, 3.4, 0]}  (metres), or by the mark that the Studio keeps.";
+use crate::{files, grow, inputs, picture, project, report, say};
 
 /// A plant with its meshes, whoever made it.
 struct Shaped {
@@ -256,17 +195,11 @@ fn make(
     told: &mut Report,
     machine: &Machine,
 ) -> Outcome<Shaped> {
-    let skin = SkinSpec {
-        detail: args.surface.detail,
-        sides: args.surface.sides,
-        textures: !args.surface.no_textures,
-        wind: args.surface.wind,
-        ..SkinSpec::default()
-    };
+    let skin = args.surface.skin.spec();
     let seed = Seed::new(args.seed.unwrap_or(1));
     let is_preset = what.to_str().and_then(Preset::find).is_some() && !what.is_file();
     let is_spec = files::extension(what).is_none_or(|e| e.eq_ignore_ascii_case("toml"));
-    let stdin = files::is_stdin(what).then(|| files::peek(what)).transpose()?;
+    let stdin = inputs::is_stdin(what).then(|| files::peek(what)).transpose()?;
     // A preset or a spec: of standard input, what is nothing else.
     let piped = stdin.as_ref().map(|(_, start)| files::sniff(start));
     if is_preset || piped.map_or(is_spec, |kind| kind.is_none()) {
@@ -299,7 +232,7 @@ fn make(
             let id = project::choose(what, &document, args.plant.as_deref())?;
             let document = project::edited(what, document, id, edits)?;
             let asked = project::asked(what, &document, id, args.seed, &args.surface)?;
-            let (plant, model, item) = project::make(what, &asked, id, args.surface.wind, machine)?;
+            let (plant, model, item) = project::make(what, &asked, id, args.surface.skin.wind, machine)?;
             let seed = asked.plant(id).map_or(seed, |p| p.settings().seed);
             return Ok(Shaped { plant, model, lods: Vec::new(), item, seed, edited: Some(document) });
         }

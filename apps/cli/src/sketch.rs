@@ -13,11 +13,10 @@ use burgeon::{
     ItemReport, LeafTemplate, Made, MakeError, Run, RunReport, Seed, SketchOptions, make_from_sketch,
 };
 
-use crate::args::{ReadingArgs, SketchArgs, SurfaceArgs};
+use crate::args::{PlantFormat, ReadingArgs, Seen, SketchArgs, SurfaceArgs};
 use crate::classes::Classes;
 use crate::failure::{Failure, Outcome};
-use crate::files::{self, Goal, Kind, PlantFormat};
-use crate::given::Seen;
+use crate::files::{self, Goal, Kind};
 use crate::machine::{Machine, Progress};
 use crate::output::Outputs;
 use crate::{names, output, picture, say};
@@ -577,10 +576,7 @@ fn set_sketch(spec: &mut SketchSpec, args: &ReadingArgs) {
 }
 
 fn set_skin(skin: &mut SkinSpec, args: &SurfaceArgs) {
-    skin.detail = args.detail.unwrap_or(skin.detail);
-    skin.sides = args.sides.unwrap_or(skin.sides);
-    skin.textures &= !args.no_textures;
-    skin.wind = args.wind;
+    args.skin.set(skin);
     skin.petals = args.petals.map(Into::into).or(skin.petals);
     skin.variation = args.variation.unwrap_or(skin.variation);
 }

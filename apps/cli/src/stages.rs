@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::failure::{Failure, Outcome};
 use crate::files;
+use crate::inputs;
 use crate::machine::Machine;
 use crate::origin::Origin;
 
@@ -136,7 +137,7 @@ fn read_any(
     let mut tell = |told: Vec<burgeon::Warning>| {
         warnings.extend(told.iter().map(|w| format!("{}: {w}", path.display())));
     };
-    let stdin = files::is_stdin(path).then(|| files::peek(path)).transpose()?;
+    let stdin = inputs::is_stdin(path).then(|| files::peek(path)).transpose()?;
     let cloud = match &stdin {
         Some((_, start)) => files::sniff_points(start),
         None => files::extension(path).and_then(CloudFormat::from_extension),

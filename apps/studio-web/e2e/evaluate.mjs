@@ -75,7 +75,7 @@ for (const preset of ['umbrella-pine', 'hazel', 'oak']) {
       triangles = item?.counts.triangles ?? triangles;
       return performance.now() - start;
     };
-    session.run(JSON.stringify({ add: { maker: 'tree', name: preset, preset } }));
+    session.act(JSON.stringify({ add: { name: preset, maker: { tree: preset } } }));
     grown.push(timed());
     const whole = triangles;
     // The first branch of the trunk that a line of sight meets in the middle of the crown.
@@ -88,25 +88,29 @@ for (const preset of ['umbrella-pine', 'hazel', 'oak']) {
     });
     const hand = (tool, input) =>
       JSON.parse(
-        session.shape(JSON.stringify({ [tool]: {} }), '{"metres":0.05,"per_metre":0}', JSON.stringify(input)),
+        session.shape(
+          JSON.stringify(tool),
+          '{"metres":0.05,"per_metre":0,"bearers":0}',
+          JSON.stringify(input),
+        ),
       );
     let place;
     for (let k = 0; k < 400 && !place; k += 1) {
       const within = (i, share) => box.min[i] + share * (box.max[i] - box.min[i]);
       const [x, y] = [within(0, 0.52 + 0.01 * (k % 20)), within(1, 0.4 + 0.02 * Math.floor(k / 20))];
-      const { picked } = hand('pick', { move: { at: [at(x, y)] } });
+      const { picked } = hand('pick', { move: [at(x, y)] });
       if (picked && picked.order > 0 && picked.length_m > 0.3) place = [x, y];
     }
     if (!place) throw new Error(`${preset}: no branch`);
-    hand('rotate', { down: { at: at(...place) } });
+    hand('rotate', { down: at(...place) });
     for (let k = 1; k <= 12; k += 1) {
       const start = performance.now();
-      hand('rotate', { move: { at: [at(place[0] + 0.03 * k, place[1] - 0.05 * k)] } });
+      hand('rotate', { move: [at(place[0] + 0.03 * k, place[1] - 0.05 * k)] });
       const asked = performance.now() - start;
       moves.push(asked + timed());
     }
-    const { commit } = hand('rotate', { up: { at: at(place[0] + 0.4, place[1] - 0.6) } });
-    session.run(JSON.stringify({ shape: { edit: commit } }));
+    const { commit } = hand('rotate', { up: at(place[0] + 0.4, place[1] - 0.6) });
+    session.run(JSON.stringify({ shape: [id, { add: commit }] }));
     wholes.push(timed());
     triangles = whole;
     session.free();

@@ -8,17 +8,20 @@ import { catalogueOf, gallery, MakerPanel, type Catalogue } from './makers';
 import { SceneList } from './scene';
 import { asPng, photoPanel, placed } from './photo';
 import { measured } from './measure';
+import type { Request } from './protocol';
 import type {
+  Action,
   Command,
   DocumentState,
   MakerWord,
+  NewMaker,
   PlantState,
   PlantView as Seen,
-  Request,
+  SceneView,
+  SketchCommand,
   SketchState,
   StrokeMode,
-  View,
-} from './protocol';
+} from './wire';
 import { Sheet, type Tool } from './sheet/sheet';
 import { settingsPanel } from './settings';
 import { Shaping } from './shaping';
@@ -49,7 +52,7 @@ export class App {
   /** Tools in the view; none without WebGL 2. */
   shaping: Shaping | undefined;
   private state: DocumentState | undefined;
-  private scene: View | undefined;
+  private scene: SceneView | undefined;
   private catalogue: Catalogue | undefined;
   private readonly commands = new Commands(this);
   private readonly panel: MakerPanel;
@@ -151,9 +154,9 @@ export class App {
           this.drafted = false;
           this.showEmpty();
         },
-        erase: (ids) => this.run({ do: 'remove', ids }),
+        erase: (ids) => this.draw({ 'remove-strokes': ids }),
         moveBegin: () => this.ask({ kind: 'begin', name: 'move' }),
-        moveTo: (ids, x, y) => this.ask({ kind: 'stage', command: { do: 'move', ids, x, y } }),
+        moveTo: (ids, x, y) => this.stageDrawn({ 'move-strokes': [ids, [x, y]] }),
         moveEnd: (keep) => this.ask(keep ? { kind: 'commit' } : { kind: 'abandon' }),
         selected: (ids, anchor) => {
           if (ids.length > 0 && anchor && this.drawn)
@@ -167,11 +170,8 @@ export class App {
         photoMove: (dx, dy) => {
           const p = this.photoFrom;
           if (!p) return;
-          const { width, opacity, paint } = p;
-          this.ask({
-            kind: 'stage',
-            command: { do: 'photo', x: p.x + dx, y: p.y + dy, width, opacity, paint },
-          });
+          const { x, y } = p.place;
+          this.stageDrawn({ 'place-photo': { ...p.place, x: x + dx, y: y + dy } });
         },
         photoEnd: (keep) => this.ask(keep ? { kind: 'commit' } : { kind: 'abandon' }),
         viewport: () => {
@@ -182,9 +182,10 @@ export class App {
       },
       t('sheet.label'),
     );
-    this.card = new Card((command) => this.run(command));
+    this.card = new Card((command) => this.draw(command));
     this.panel = new MakerPanel(() => this.catalogue, {
       run: (c) => this.run(c),
+      act: (action) => this.act(action),
       begin: (name) => this.ask({ kind: 'begin', name }),
       stage: (command) => this.ask({ kind: 'stage', command }),
       commit: () => this.ask({ kind: 'commit' }),
@@ -213,7 +214,7 @@ export class App {
       photo: (file) => this.layPhoto(file),
     });
     this.clipboard = new Clipboard(this.engine, this.sheet, {
-      run: (c) => this.run(c),
+      run: (c) => this.draw(c),
       openFile: (file) => this.files.openFile(file),
       changed: () => this.files.changed(),
       choose: (ids) => this.choose(ids),
@@ -265,7 +266,10 @@ export class App {
       this.view.onFrontChange = (on) => this.parts['front']?.setAttribute('aria-pressed', String(on));
       this.view.onPlaceBegin = () => this.ask({ kind: 'begin', name: 'place' });
       this.view.onPlace = (plant, position, yaw_deg, scale) =>
-        this.ask({ kind: 'stage', command: { do: 'place', plant, position, yaw_deg, scale } });
+        this.ask({
+          kind: 'stage',
+          command: { plant: [plant, { place: { position, yaw_deg, scale } }] },
+        });
       this.view.onPlaceEnd = () => this.ask({ kind: 'commit' });
       this.view.onPick = (plant) => this.ask({ kind: 'select', plant });
       this.shaping = new Shaping(this.view, {
@@ -318,19 +322,17 @@ export class App {
   async add(maker: MakerWord): Promise<void> {
     await this.loadCatalogue();
     if (maker !== 'tree' || !this.catalogue) {
-      this.run({
-        do: 'add',
-        maker,
-        name: t(`maker.${maker}` as TextKey),
-        ...(maker === 'flower' ? { preset: 'lily' } : {}),
-      });
+      const name = t(`maker.${maker}` as TextKey);
+      const made: NewMaker =
+        maker === 'flower' ? { flower: 'lily' } : maker === 'tree' ? { tree: 'oak' } : maker;
+      this.act({ add: { name, maker: made } });
       return;
     }
     const d = dialog(
       t('tree.choose'),
       gallery(this.catalogue, null, (key) => {
         d.close();
-        this.run({ do: 'add', maker, name: tOf('word', key), preset: key });
+        this.act({ add: { name: tOf('word', key), maker: { tree: key } } });
       }),
     );
     d.classList.add('wide-dialog');
@@ -368,6 +370,19 @@ export class App {
 
   run(command: Command): void {
     this.ask({ kind: 'command', command });
+  }
+
+  act(action: Action): void {
+    this.ask({ kind: 'action', action });
+  }
+
+  /** Asks the drawing on the sheet. */
+  draw(command: SketchCommand): void {
+    if (this.plant) this.run({ sketch: [this.plant.id, command] });
+  }
+
+  private stageDrawn(command: SketchCommand): void {
+    if (this.plant) this.ask({ kind: 'stage', command: { sketch: [this.plant.id, command] } });
   }
 
   /** The stroke under the pen, as it is now: at most one at a time is on its way. */
@@ -417,7 +432,7 @@ export class App {
         title: t('menu.name'),
         onchange: () => {
           const name = (title as HTMLInputElement).value.trim();
-          if (name) this.run({ do: 'rename-scene', name });
+          if (name) this.run({ scene: { rename: name } });
         },
         onkeydown: (e) => {
           if ((e as KeyboardEvent).key === 'Enter') title.blur();
@@ -708,7 +723,8 @@ export class App {
   }
 
   toggleLock(): void {
-    if (this.plant) this.run({ do: 'lock', on: !this.plant.locked });
+    const { plant } = this;
+    if (plant) this.run({ plant: [plant.id, { lock: !plant.locked }] });
   }
 
   private showSwitches(): void {
@@ -740,7 +756,7 @@ export class App {
     if (!plant || plant.locked || this.drawn?.strokes.length === 0) return;
     openVariations(this.engine, plant.seed, {
       snapshot: (sent) => this.view?.snapshot(sent, ...LOOK_SIZE),
-      take: (seed) => this.run({ do: 'seed', seed }),
+      take: (seed) => this.run({ plant: [plant.id, { 'set-seed': seed }] }),
     });
   }
 
@@ -749,11 +765,11 @@ export class App {
       this.parts['photo']!,
       photoPanel(() => this.drawn?.photo ?? null, this.sheet.placing, {
         run: (c) => {
-          this.run(c);
-          if (c.do === 'photo-off') closePopover();
+          this.draw(c);
+          if (c === 'remove-photo') closePopover();
         },
         begin: (name) => this.ask({ kind: 'begin', name }),
-        stage: (command) => this.ask({ kind: 'stage', command }),
+        stage: (c) => this.stageDrawn(c),
         commit: () => this.ask({ kind: 'commit' }),
         choose: () => {
           closePopover();
@@ -789,7 +805,7 @@ export class App {
       return;
     }
     const [n] = crypto.getRandomValues(new Uint32Array(1));
-    this.run({ do: 'seed', seed: String(1 + (n! % 999_999)) });
+    this.run({ plant: [this.plant.id, { 'set-seed': String(1 + (n! % 999_999)) }] });
   }
 
   openSettings(): void {
@@ -800,9 +816,9 @@ export class App {
     popover(
       this.parts['settings']!,
       settingsPanel(state, lenders, {
-        run: (c) => this.run(c),
+        run: (c) => this.draw(c),
         begin: (name) => this.ask({ kind: 'begin', name }),
-        stage: (command) => this.ask({ kind: 'stage', command }),
+        stage: (c) => this.stageDrawn(c),
         commit: () => this.ask({ kind: 'commit' }),
         steady: this.steady,
         setSteady: (strength) => this.setSteady(strength),
@@ -953,7 +969,7 @@ export class App {
         id: 'b-opens',
         'aria-pressed': String(opens),
         title: t('bloom.hint'),
-        onclick: () => this.run({ do: 'day', day: opens ? null : 6 }),
+        onclick: () => this.draw({ 'set-day': opens ? null : 6 }),
       },
       t('bloom.opens'),
     );

@@ -1,12 +1,13 @@
 /** Strokes on the clipboard: copy, cut, paste, duplicate. What is copied is our JSON as text. */
 import type { Engine } from './engine';
-import type { Command } from './protocol';
+import type { SketchCommand } from './wire';
 import type { Sheet } from './sheet/sheet';
 import { t } from './text';
 import { note } from './ui';
 
 export interface ClipboardEvents {
-  run(command: Command): void;
+  /** Asked of the drawing. */
+  run(command: SketchCommand): void;
   openFile(file: File): Promise<void>;
   /** The core pasted something. */
   changed(): void;
@@ -54,7 +55,7 @@ export class Clipboard {
 
   async cut(): Promise<void> {
     const ids = this.sheet.selected;
-    if (await this.copy()) this.page.run({ do: 'remove', ids });
+    if (await this.copy()) this.page.run({ 'remove-strokes': ids });
   }
 
   paste(e: ClipboardEvent): void {
@@ -90,6 +91,6 @@ export class Clipboard {
     if (ids.length === 0) return;
     const step = 24 * this.sheet.unitsPerPixel;
     this.fresh = ids.length;
-    this.page.run({ do: 'duplicate', ids, x: step, y: -step });
+    this.page.run({ duplicate: [ids, [step, -step]] });
   }
 }

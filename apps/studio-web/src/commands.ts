@@ -74,7 +74,7 @@ export class Commands {
       a('copy', 'act.copy', () => void app.clipboard.copy(), 'Ctrl+C'),
       a('paste', 'act.paste', () => void app.clipboard.pasteText(''), 'Ctrl+V'),
       a('duplicate', 'act.duplicate', () => app.clipboard.duplicate(), 'Ctrl+D'),
-      a('clear', 'act.clear', () => app.run({ do: 'clear' })),
+      a('clear', 'act.clear', () => app.draw('clear')),
       ...(['sketch', 'tree', 'leaf', 'flower'] as const).map((maker) =>
         a(`add-${maker}`, `scene.add.${maker}` as TextKey, () => void app.add(maker)),
       ),
@@ -209,7 +209,7 @@ export class Commands {
     const step = 5 * app.sheet.unitsPerPixel * (e.shiftKey ? 5 : 1);
     const nudge = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[e.key];
     if (nudge && ids.length > 0 && document.activeElement === app.sheet.element) {
-      return () => app.run({ do: 'move', ids, x: nudge[0]! * step, y: nudge[1]! * step });
+      return () => app.draw({ 'move-strokes': [ids, [nudge[0]! * step, nudge[1]! * step]] });
     }
     switch (e.key) {
       case 'r':
@@ -256,7 +256,7 @@ export class Commands {
         return () => app.sheet.select([]);
       case 'Delete':
       case 'Backspace':
-        return ids.length > 0 ? () => app.run({ do: 'remove', ids }) : undefined;
+        return ids.length > 0 ? () => app.draw({ 'remove-strokes': ids }) : undefined;
       default:
         return undefined;
     }

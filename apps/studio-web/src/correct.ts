@@ -1,10 +1,8 @@
 /** The card beside a selected stroke: what it was understood as, and one click to say what it is. */
 import { inkOf } from './colours';
-import type { Command, PlantView, SketchState } from './protocol';
+import type { PlantView, SketchCommand, SketchState, StrokeClass } from './wire';
 import { t, tOf } from './text';
 import { el } from './ui';
-
-type StrokeClass = NonNullable<SketchState['strokes'][number]['class']>;
 
 const CLASSES: readonly StrokeClass[] = [
   'axis',
@@ -40,7 +38,7 @@ const MODES = ['parts', 'branch-contour', 'leaf-contour'] as const;
 export class Card {
   readonly element = el('div', { class: 'card', role: 'group' });
 
-  constructor(private readonly run: (command: Command) => void) {
+  constructor(private readonly run: (command: SketchCommand) => void) {
     this.hide();
   }
 
@@ -76,7 +74,12 @@ export class Card {
           })
         : t('correct.set')
       : '';
-    const chip = (label: string, organ: string | undefined, on: boolean, command: Command): HTMLElement => {
+    const chip = (
+      label: string,
+      organ: string | undefined,
+      on: boolean,
+      command: SketchCommand,
+    ): HTMLElement => {
       const b = el(
         'button',
         { type: 'button', class: 'chip', 'aria-pressed': String(on), onclick: () => this.run(command) },
@@ -88,21 +91,21 @@ export class Card {
     const chips = el(
       'div',
       { class: 'chips' },
-      chip(t('correct.auto'), undefined, set === null, { do: 'class', ids, class: null }),
+      chip(t('correct.auto'), undefined, set === null, { 'set-class': [ids, null] }),
     );
     for (const c of CLASSES) {
       const believed = set === null && report?.class === c;
-      const b = chip(tOf('class', c), LOOKS[c], set === c, { do: 'class', ids, class: c });
+      const b = chip(tOf('class', c), LOOKS[c], set === c, { 'set-class': [ids, c] });
       if (believed) b.classList.add('believed');
       chips.append(b);
     }
     const modes = el('div', { class: 'chips' }, el('span', { class: 'muted' }, t('correct.mode')));
     for (const m of MODES)
-      modes.append(chip(tOf('correct.mode', m), undefined, mode === m, { do: 'mode', ids, mode: m }));
+      modes.append(chip(tOf('correct.mode', m), undefined, mode === m, { 'set-mode': [ids, m] }));
     const title = chosen.length === 1 ? t('correct.title') : t('correct.many', { count: chosen.length });
     const erase = el(
       'button',
-      { type: 'button', class: 'chip danger', onclick: () => this.run({ do: 'remove', ids }) },
+      { type: 'button', class: 'chip danger', onclick: () => this.run({ 'remove-strokes': ids }) },
       t('correct.erase'),
     );
     this.element.setAttribute('aria-label', title);

@@ -3,12 +3,13 @@
  * too: when the worker dies, another one does the same again, and no stroke is lost.
  */
 import wasmUrl from './wasm/burgeon_wasm_bg.wasm?url';
-import type { DocumentState, FromWorker, Request, Sent, StrokePoints, ToWorker, View } from './protocol';
+import type { FromWorker, Request, Sent, StrokePoints, ToWorker } from './protocol';
+import type { DocumentState, SceneView } from './wire';
 
 export interface EngineEvents {
   ready(): void;
   state(state: DocumentState, fresh: StrokePoints[], photo: Uint8Array<ArrayBuffer> | null): void;
-  view(view: View, fresh: Sent[]): void;
+  view(view: SceneView, fresh: Sent[]): void;
   busy(): void;
   /** The share that is done of what is grown, 0 to 1. */
   progress(share: number): void;
@@ -29,6 +30,7 @@ const CHANGES: ReadonlySet<Request['kind']> = new Set([
   'paste',
   'photo',
   'command',
+  'action',
   'begin',
   'stage',
   'commit',

@@ -1,9 +1,10 @@
 /** The export dialogue: what for, which format, how fine. */
-import type { ExportFormat, ExportOptions, MakerWord } from './protocol';
+import type { ExportFormat, ExportRequest, MakerWord } from './wire';
 import { t, type TextKey } from './text';
 import { dialog, el } from './ui';
 
 export type Target = ExportFormat | 'png';
+export type ExportOptions = Omit<ExportRequest, 'format'>;
 const FORMATS: readonly Target[] = ['glb', 'usda', 'obj', 'ply', 'stl', 'mtg', 'qsm', 'png', 'json'];
 /** Formats with levels of detail. */
 export const LEVELS: ReadonlySet<Target> = new Set(['glb', 'usda', 'obj', 'ply', 'stl']);
@@ -93,7 +94,7 @@ export function openExport(
       options.wind = blown.checked;
     },
   });
-  blown.checked = options.wind ?? false;
+  blown.checked = options.wind;
   blown.style.justifySelf = 'start';
   const wind = el(
     'label',

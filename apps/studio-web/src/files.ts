@@ -1,7 +1,8 @@
 /** Opening, saving, exporting, keeping. */
 import type { Engine } from './engine';
-import type { ExportOptions, MakerWord, Opened, Request } from './protocol';
-import { LEVELS, openExport, type Target } from './exporting';
+import type { Request } from './protocol';
+import type { MakerWord, Opened } from './wire';
+import { LEVELS, openExport, type Target, type ExportOptions } from './exporting';
 import { decode, isLink, link } from './share';
 import { isPhoto } from './photo';
 import { SAMPLES } from './samples';
@@ -166,7 +167,7 @@ export class Files {
 
   fresh(): void {
     this.engine
-      .ask({ kind: 'command', command: { do: 'new' } })
+      .ask({ kind: 'action', action: 'new' })
       .then(() => {
         this.events.opened();
         this.changed();
@@ -220,7 +221,7 @@ export class Files {
 
   /** A picture of the view as it is. */
   async picture(): Promise<void> {
-    await this.exportAs('png', { levels: 1, up: 'y', unit: 'm', whole: true });
+    await this.exportAs('png', { levels: 1, up: 'y', unit: 'm', whole: true, wind: false });
   }
 
   chooseExport(): void {
@@ -250,7 +251,7 @@ export class Files {
       } else {
         download(
           name,
-          await this.engine.ask<Uint8Array<ArrayBuffer>>({ kind: 'export', format, options }),
+          await this.engine.ask<Uint8Array<ArrayBuffer>>({ kind: 'export', request: { format, ...options } }),
           zipped ? 'application/zip' : (TYPES[format] ?? ''),
         );
       }

@@ -2,7 +2,7 @@
  * Forms made of JSON Schemas: a row for each field, with slider, number, choice, colour or switch. The schemas come from
  * the core; nothing here knows what a field does.
  */
-import type { Json } from './protocol';
+import type { Json } from './wire';
 import type { Schema } from './schema';
 import { fieldName, helpOf, t, unitOf, wordOf } from './text';
 import { el } from './ui';

@@ -1,7 +1,16 @@
 /** The left side of plants that are not drawn: species, age, obstacles; marks and surface; species and day. */
 import type { Engine } from './engine';
 import { Form, type Fields } from './form';
-import type { Command, DocumentState, Json, PlantState, PlantView } from './protocol';
+import type {
+  Action,
+  Command,
+  DocumentState,
+  Json,
+  Obstacle,
+  PlantState,
+  PlantView,
+  TreeCommand,
+} from './wire';
 import { named, type Schema } from './schema';
 import { helpOf, t, wordOf } from './text';
 import { button, el, icon } from './ui';
@@ -16,6 +25,7 @@ export interface Catalogue {
 
 export interface MakerEvents {
   run(command: Command): void;
+  act(action: Action): void;
   begin(name: string): void;
   stage(command: Command): void;
   commit(): void;
@@ -126,8 +136,8 @@ export class MakerPanel {
       this.form = new Form(
         catalogue[maker],
         {
-          set: (path, value) => this.events.run(this.command(path, value)),
-          stage: (path, value) => this.stage(this.command(path, value)),
+          set: (path, value) => this.change(path, value, (c) => this.events.run(c)),
+          stage: (path, value) => this.change(path, value, (c) => this.stage(c)),
           done: () => this.done(),
         },
         new Set(hidden),
@@ -144,8 +154,8 @@ export class MakerPanel {
       ? document.activeElement?.getAttribute('data-path')
       : null;
     if (plant.tree) this.head.replaceChildren(...this.tree(plant, plant.tree, state, catalogue));
-    if (plant.leaf) this.head.replaceChildren(...this.leaf(plant.leaf));
-    if (plant.flower) this.head.replaceChildren(...this.flower(plant.flower, catalogue));
+    if (plant.leaf) this.head.replaceChildren(...this.leaf(plant.id, plant.leaf));
+    if (plant.flower) this.head.replaceChildren(...this.flower(plant.id, plant.flower, catalogue));
     if (focused)
       this.head
         .querySelector<HTMLElement>(`[data-path="${CSS.escape(focused)}"]`)
@@ -157,17 +167,20 @@ export class MakerPanel {
     );
   }
 
-  private command(path: string, value: Json): Command {
-    const { plant } = this;
-    if (plant?.leaf || plant?.flower) {
-      const settings: Fields = { ...(plant.leaf ?? plant.flower)!.settings, [path.slice(1)]: value };
-      return plant.leaf ? { do: 'leaf', settings } : { do: 'flower', settings };
-    }
-    return { do: 'tree', path, value };
+  /** One field of what the maker is asked for. */
+  private change(path: string, value: Json, ask: (command: Command) => void): void {
+    if (this.plant) ask(this.command(this.plant, path, value));
+  }
+
+  private command(plant: PlantState, path: string, value: Json): Command {
+    const set = <T>(settings: T): T => ({ ...settings, [path.slice(1)]: value });
+    if (plant.leaf) return { leaf: [plant.id, { set: set(plant.leaf.settings) }] };
+    if (plant.flower) return { flower: [plant.id, { set: set(plant.flower.settings) }] };
+    return { tree: [plant.id, { 'set-field': [path, value] }] };
   }
 
   private stage(command: Command): void {
-    if (!this.dragging) this.events.begin(command.do === 'tree' ? 'tree' : command.do);
+    if (!this.dragging) this.events.begin(Object.keys(command)[0]!);
     this.dragging = true;
     this.events.stage(command);
   }
@@ -225,17 +238,14 @@ export class MakerPanel {
       'select',
       {
         'data-path': 'leaf-of',
-        onchange: () =>
-          this.events.run({ do: 'leaf-of', lender: leafOf.value === '' ? null : Number(leafOf.value) }),
+        onchange: () => this.treeRun({ 'set-leaf': leafOf.value === '' ? null : Number(leafOf.value) }),
       },
       el('option', { value: '' }, t('tree.leaf.own')),
       ...lenders.map((p) => el('option', { value: String(p.id) }, p.name)),
     );
     leafOf.value = tree.leaf === null ? '' : String(tree.leaf);
     const ages = this.slider('age', t('tree.age'), 1, most, 1, age ?? most, (x) => ({
-      do: 'tree',
-      path: '/age',
-      value: x >= most ? null : x,
+      tree: [plant.id, { 'set-field': ['/age', x >= most ? null : x] }],
     }));
     if (age === null) ages.querySelector('output')!.textContent = t('tree.age.full');
     const shown = `${plant.id} ${tree.preset}`;
@@ -245,7 +255,7 @@ export class MakerPanel {
         key: shown,
         element: this.section(
           t('tree.species'),
-          gallery(catalogue, tree.preset, (key) => this.events.run({ do: 'preset', key })),
+          gallery(catalogue, tree.preset, (key) => this.events.act({ preset: { plant: plant.id, key } })),
         ),
       };
     }
@@ -255,14 +265,16 @@ export class MakerPanel {
         t('tree.main'),
         ages,
         this.slider('keep', t('tree.keep'), 0, 1, 0.01, keep, (x) => ({
-          do: 'tree',
-          path: '/leaves/leaf_keep',
-          value: x,
+          tree: [plant.id, { 'set-field': ['/leaves/leaf_keep', x] }],
         })),
         el('label', { class: 'f-row', title: t('tree.leaf.hint') }, el('span', {}, t('tree.leaf')), leafOf),
       ),
       this.obstacles(tree),
     ];
+  }
+
+  private treeRun(command: TreeCommand): void {
+    if (this.plant) this.events.run({ tree: [this.plant.id, command] });
   }
 
   private obstacles(tree: NonNullable<PlantState['tree']>): HTMLElement {
@@ -286,12 +298,8 @@ export class MakerPanel {
                   onchange: () => {
                     if (!Number.isFinite(box.valueAsNumber)) return;
                     const next = values.map((y, k) => (k === i ? box.valueAsNumber : y));
-                    this.events.run({
-                      do: 'obstacle',
-                      name,
-                      row,
-                      shape: { ...shape, [key]: Array.isArray(value) ? next : next[0]! },
-                    });
+                    const changed = { ...shape, [key]: Array.isArray(value) ? next : next[0]! } as Obstacle;
+                    this.treeRun({ 'set-obstacle': [row, { name, shape: changed }] });
                   },
                 });
                 box.value = String(Number(x.toPrecision(4)));
@@ -313,22 +321,20 @@ export class MakerPanel {
             { class: 'f-pair' },
             el('b', {}, name),
             el('span', { class: 'space' }),
-            button('close', t('tree.obstacle.off', { name }), () =>
-              this.events.run({ do: 'obstacle-off', row }),
-            ),
+            button('close', t('tree.obstacle.off', { name }), () => this.treeRun({ 'remove-obstacle': row })),
           ),
           ...fields,
         ),
       );
     });
-    const add = (name: string, shape: { shape: string } & Fields, key: 'box' | 'ball'): HTMLElement =>
+    const add = (name: string, shape: Obstacle, key: 'box' | 'ball'): HTMLElement =>
       el(
         'button',
         {
           type: 'button',
           class: 'chip',
           'data-obstacle': key,
-          onclick: () => this.events.run({ do: 'obstacle', name, shape }),
+          onclick: () => this.treeRun({ 'add-obstacle': { name, shape } }),
         },
         name,
       );
@@ -356,7 +362,7 @@ export class MakerPanel {
 
   // Leaves -------------------------------------------------------------------------------------------------------
 
-  private leaf(leaf: NonNullable<PlantState['leaf']>): HTMLElement[] {
+  private leaf(id: number, leaf: NonNullable<PlantState['leaf']>): HTMLElement[] {
     const empty = leaf.text === '';
     const table = el('textarea', {
       class: 'field marks',
@@ -372,7 +378,10 @@ export class MakerPanel {
       {
         type: 'button',
         class: 'chip',
-        onclick: () => this.events.run({ do: 'marks', name: leaf.file || 'marks.csv', text: table.value }),
+        onclick: () =>
+          this.events.run({
+            leaf: [id, { 'set-data': { name: leaf.file || 'marks.csv', text: table.value } }],
+          }),
       },
       t('leaf.table.take'),
     );
@@ -414,7 +423,7 @@ export class MakerPanel {
 
   // Flowers ------------------------------------------------------------------------------------------------------
 
-  private flower(flower: NonNullable<PlantState['flower']>, catalogue: Catalogue): HTMLElement[] {
+  private flower(id: number, flower: NonNullable<PlantState['flower']>, catalogue: Catalogue): HTMLElement[] {
     const { settings } = flower;
     const chips = el('div', { class: 'chips', role: 'group', 'aria-label': t('flower.species') });
     for (const word of catalogue.flowers) {
@@ -426,7 +435,7 @@ export class MakerPanel {
             class: 'chip',
             'data-flower': word,
             'aria-pressed': String(settings['species'] === word),
-            onclick: () => this.events.run({ do: 'flower', settings: { ...settings, species: word } }),
+            onclick: () => this.events.run({ flower: [id, { set: { ...settings, species: word } }] }),
           },
           wordOf(word),
         ),
@@ -454,7 +463,11 @@ export class MakerPanel {
       law.append(
         el(
           'button',
-          { type: 'button', class: 'chip', onclick: () => this.events.run({ do: 'law', text: null }) },
+          {
+            type: 'button',
+            class: 'chip',
+            onclick: () => this.events.run({ flower: [id, { 'set-law': null }] }),
+          },
           t('flower.law.off'),
         ),
       );
@@ -482,8 +495,10 @@ export class MakerPanel {
   }
 
   private dayCommand(day: number): Command {
-    const settings = this.plant?.flower?.settings;
-    return settings ? { do: 'flower', settings: { ...settings, day } } : { do: 'day', day };
+    const { id, flower } = this.plant!;
+    return flower
+      ? { flower: [id, { set: { ...flower.settings, day } }] }
+      : { sketch: [id, { 'set-day': day }] };
   }
 
   private lastDay = -1;

@@ -1,5 +1,5 @@
 /** A photograph under the drawing: brought to a size, placed, shown more or less, used for colours or not. */
-import type { Command, PhotoState } from './protocol';
+import type { PhotoPlace, PhotoState, SketchCommand } from './wire';
 import type { Box } from './sheet/geometry';
 import { t, type TextKey } from './text';
 import { el } from './ui';
@@ -34,18 +34,18 @@ export function placed(seen: Box, aspect: number): { x: number; y: number; width
 }
 
 export interface PhotoEvents {
-  run(command: Command): void;
+  /** Asked of the drawing. */
+  run(command: SketchCommand): void;
   begin(name: string): void;
-  stage(command: Command): void;
+  stage(command: SketchCommand): void;
   commit(): void;
   choose(): void;
   placing(on: boolean): void;
 }
 
-const command = (p: PhotoState, change: Partial<PhotoState>): Command => {
-  const { x, y, width, opacity, paint } = { ...p, ...change };
-  return { do: 'photo', x, y, width, opacity, paint };
-};
+const laid = (p: PhotoState, change: Partial<PhotoPlace>): SketchCommand => ({
+  'place-photo': { ...p.place, ...change },
+});
 
 /** The panel: `now` gives the photograph as it lies at the moment. */
 export function photoPanel(now: () => PhotoState | null, placing: boolean, events: PhotoEvents): HTMLElement {
@@ -64,7 +64,7 @@ export function photoPanel(now: () => PhotoState | null, placing: boolean, event
     high: number,
     value: number,
     shown: (v: number) => string,
-    set: (p: PhotoState, v: number) => Command,
+    set: (p: PhotoState, v: number) => SketchCommand,
   ): void => {
     const output = el('output', {}, shown(value));
     let dragging = false;
@@ -90,7 +90,7 @@ export function photoPanel(now: () => PhotoState | null, placing: boolean, event
     panel.append(el('label', {}, el('span', {}, t(text)), input, output));
   };
   const percent = (v: number): string => `${Math.round(v * 100)} %`;
-  slider('photo.opacity', 0.05, 1, first.opacity, percent, (p, opacity) => command(p, { opacity }));
+  slider('photo.opacity', 0.05, 1, first.place.opacity, percent, (p, opacity) => laid(p, { opacity }));
   // The size is a ratio to what it was when the panel opened; the middle stays.
   slider(
     'photo.size',
@@ -99,11 +99,12 @@ export function photoPanel(now: () => PhotoState | null, placing: boolean, event
     0,
     (v) => `${(2 ** v).toFixed(2)} ×`,
     (p, v) => {
-      const width = first.width * 2 ** v;
-      return command(p, {
+      const width = first.place.width * 2 ** v;
+      const was = p.place;
+      return laid(p, {
         width,
-        x: p.x + (p.width - width) / 2,
-        y: p.y + (p.height - (width * p.height) / p.width) / 2,
+        x: was.x + (was.width - width) / 2,
+        y: was.y + (p.height - (width * p.height) / was.width) / 2,
       });
     },
   );
@@ -112,9 +113,9 @@ export function photoPanel(now: () => PhotoState | null, placing: boolean, event
     box.checked = on;
     panel.append(el('label', { class: 'check' }, box, el('span', {}, t(text))));
   };
-  check('photo.paint', first.paint, (paint) => {
+  check('photo.paint', first.place.paint, (paint) => {
     const p = now();
-    if (p) events.run(command(p, { paint }));
+    if (p) events.run(laid(p, { paint }));
   });
   check('photo.move', placing, (on) => events.placing(on));
   panel.append(
@@ -125,7 +126,7 @@ export function photoPanel(now: () => PhotoState | null, placing: boolean, event
       el('span', { class: 'space' }),
       el(
         'button',
-        { type: 'button', class: 'chip danger', onclick: () => events.run({ do: 'photo-off' }) },
+        { type: 'button', class: 'chip danger', onclick: () => events.run('remove-photo') },
         t('photo.off'),
       ),
     ),

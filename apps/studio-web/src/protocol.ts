@@ -1,56 +1,24 @@
 /** What page and worker say to one another. Meshes and strokes travel as typed arrays, never as JSON. */
 import type {
+  Action,
   Command,
   DocumentState,
-  ExportOptions,
-  Json,
-  MakerWord,
-  ObstacleShape,
-  Opened,
-  PhotoState,
-  PlantState,
+  ExportRequest,
+  HeldTool,
   PlantView,
-  ShapeAnswer,
+  SceneView,
   ShapeInput,
-  ShapePointer,
   ShapeReach,
-  ShapeTool,
-  SketchState,
   StrokeMode,
-  View,
-  EditReport,
-  HandEdit,
-} from './wasm/burgeon_wasm';
-
-export type {
-  Command,
-  DocumentState,
-  ExportOptions,
-  Json,
-  MakerWord,
-  ObstacleShape,
-  Opened,
-  PhotoState,
-  PlantState,
-  PlantView,
-  ShapeAnswer,
-  ShapeInput,
-  ShapePointer,
-  ShapeReach,
-  ShapeTool,
-  SketchState,
-  StrokeMode,
-  View,
-  EditReport,
-  HandEdit,
-};
-export type ExportFormat = 'glb' | 'usda' | 'obj' | 'ply' | 'stl' | 'mtg' | 'qsm' | 'json';
+} from './wire';
 
 /** What the page asks. Those that change the document are kept in the page's journal. */
 export type Request =
   | { kind: 'open'; name: string; bytes: Uint8Array; row: number; fresh: boolean }
   | { kind: 'stroke'; mode: StrokeMode; samples: Float64Array }
   | { kind: 'command'; command: Command }
+  /** What is more than one command. */
+  | { kind: 'action'; action: Action }
   | { kind: 'begin'; name: string }
   | { kind: 'stage'; command: Command }
   /** Chooses the plant that requests without a plant are for. */
@@ -72,12 +40,12 @@ export type Request =
   | { kind: 'skeleton' }
   | { kind: 'share' }
   /** A tool that shapes the chosen plant: what it would do is shown, what it did comes back as an edit. */
-  | { kind: 'shape'; tool: ShapeTool; reach: ShapeReach; input: ShapeInput }
+  | { kind: 'shape'; tool: HeldTool; reach: ShapeReach; input: ShapeInput }
   /** The branch of a pick with all that it bears. */
   | { kind: 'branch'; axis: number }
   | { kind: 'draft'; mode: StrokeMode; samples: Float64Array }
   | { kind: 'save' }
-  | { kind: 'export'; format: ExportFormat; options: ExportOptions };
+  | { kind: 'export'; request: ExportRequest };
 
 export type ToWorker =
   | { kind: 'start'; wasm: string; stop: Int32Array | null; journal: Request[]; hold: boolean }
@@ -119,7 +87,7 @@ export type FromWorker =
   | { kind: 'refused'; seq: number; why: string }
   | { kind: 'state'; state: DocumentState; fresh: StrokePoints[]; photo: Uint8Array<ArrayBuffer> | null }
   /** `fresh`: the plants whose meshes changed. */
-  | { kind: 'view'; view: View; fresh: Sent[] }
+  | { kind: 'view'; view: SceneView; fresh: Sent[] }
   | { kind: 'busy' }
   /** The share of an evaluation that is done. */
   | { kind: 'progress'; share: number }

@@ -1,5 +1,5 @@
 /** The list of the scene's plants: choose, name, hide, copy, delete, place; and the way to add another. */
-import type { Command, DocumentState, MakerWord, PlantState, View } from './protocol';
+import type { Command, DocumentState, MakerWord, PlantState, SceneView } from './wire';
 import { t, type TextKey } from './text';
 import { button, closePopover, dialog, el, icon, popover } from './ui';
 
@@ -24,7 +24,7 @@ export class SceneList {
 
   constructor(private readonly events: SceneEvents) {}
 
-  show(state: DocumentState, view: View | undefined): void {
+  show(state: DocumentState, view: SceneView | undefined): void {
     const focused = this.element.contains(document.activeElement)
       ? document.activeElement?.getAttribute('data-key')
       : null;
@@ -74,7 +74,7 @@ export class SceneList {
     return this.mode;
   }
 
-  private row(p: PlantState, state: DocumentState, view: View | undefined): HTMLElement {
+  private row(p: PlantState, state: DocumentState, view: SceneView | undefined): HTMLElement {
     const error = view?.plants.find((v) => v.id === p.id)?.error ?? null;
     const name = el(
       'button',
@@ -95,7 +95,7 @@ export class SceneList {
     const eye = button(
       p.hidden ? 'hidden' : 'eye',
       t(p.hidden ? 'scene.show' : 'scene.hide', { name: p.name }),
-      () => this.events.run({ do: 'hide', plant: p.id, on: !p.hidden }),
+      () => this.events.run({ plant: [p.id, { hide: !p.hidden }] }),
     );
     eye.setAttribute('data-key', `e${p.id}`);
     const more = button('more', t('scene.more', { name: p.name }), () => this.openMore(more, p));
@@ -112,7 +112,7 @@ export class SceneList {
       : e.key === 'F2'
         ? () => this.rename(p)
         : e.key === 'Delete'
-          ? () => this.events.run({ do: 'remove-plant', plant: p.id })
+          ? () => this.events.run({ scene: { remove: [p.id] } })
           : undefined;
     if (!act) return;
     e.preventDefault();
@@ -130,7 +130,7 @@ export class SceneList {
           e.preventDefault();
           d.close();
           const name = field.value.trim();
-          if (name) this.events.run({ do: 'rename', plant: p.id, name });
+          if (name) this.events.run({ plant: [p.id, { rename: name }] });
         },
       },
       field,
@@ -192,10 +192,8 @@ export class SceneList {
         'div',
         { class: 'menu' },
         item('scene.rename', () => this.rename(p)),
-        item('scene.duplicate', () =>
-          this.events.run({ do: 'duplicate-plant', plant: p.id, by: [ASIDE, 0, 0] }),
-        ),
-        item('scene.delete', () => this.events.run({ do: 'remove-plant', plant: p.id }), 'danger'),
+        item('scene.duplicate', () => this.events.run({ scene: { duplicate: [p.id, [ASIDE, 0, 0]] } })),
+        item('scene.delete', () => this.events.run({ scene: { remove: [p.id] } }), 'danger'),
       ),
       p.name,
     );
@@ -217,7 +215,7 @@ export class SceneList {
     };
     const place = (change: Partial<Pick<PlantState, 'position' | 'yaw_deg' | 'scale'>>): void => {
       const { position, yaw_deg, scale } = { ...p, ...change };
-      this.events.run({ do: 'place', plant: p.id, position, yaw_deg, scale });
+      this.events.run({ plant: [p.id, { place: { position, yaw_deg, scale } }] });
     };
     const box = (label: string, key: string, value: number, act: (x: number) => void): HTMLElement => {
       const input = el('input', {

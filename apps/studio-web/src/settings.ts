@@ -1,20 +1,18 @@
 /** The plant's settings: a row for each, made from one table. A drag of a slider is one step of undo. */
-import type { Command, PlantState, SketchState } from './protocol';
+import type { PlantState, SketchCommand, SketchSpec, SketchState, SkinSpec } from './wire';
 import { t, tOf, type TextKey } from './text';
 import { el } from './ui';
 
 export interface SettingsEvents {
-  run(command: Command): void;
+  /** Asked of the drawing. */
+  run(command: SketchCommand): void;
   begin(name: string): void;
-  stage(command: Command): void;
+  stage(command: SketchCommand): void;
   commit(): void;
   /** Strength of the stabiliser of the pen, 0 to 3. */
   steady: number;
   setSteady(strength: number): void;
 }
-
-type Sketch = SketchState['sketch'];
-type Skin = SketchState['skin'];
 
 interface Slider {
   text: TextKey;
@@ -22,18 +20,16 @@ interface Slider {
   high: number;
   step: number;
   get(s: SketchState): number;
-  set(s: SketchState, value: number): Command;
+  set(s: SketchState, value: number): SketchCommand;
 }
 
-const sketch = (s: SketchState, change: Partial<Sketch>): Command => ({
-  do: 'sketch',
-  spec: { ...s.sketch, ...change },
+const sketch = (s: SketchState, change: Partial<SketchSpec>): SketchCommand => ({
+  'set-sketch': { ...s.sketch, ...change },
 });
-const skin = (s: SketchState, change: Partial<Skin>): Command => ({
-  do: 'skin',
-  skin: { ...s.skin, ...change },
+const skin = (s: SketchState, change: Partial<SkinSpec>): SketchCommand => ({
+  'set-skin': { ...s.skin, ...change },
 });
-const fill = (s: SketchState, change: Partial<Sketch['fill']>): Command =>
+const fill = (s: SketchState, change: Partial<SketchSpec['fill']>): SketchCommand =>
   sketch(s, { fill: { ...s.sketch.fill, ...change } });
 
 const SLIDERS: readonly Slider[] = [
@@ -109,7 +105,7 @@ export function settingsPanel(
         const value = Number(input.value);
         shown.textContent = String(value);
         const command = slider.set(now(), value);
-        if (!dragging) events.begin(command.do);
+        if (!dragging) events.begin('set-sketch' in (command as object) ? 'sketch' : 'skin');
         dragging = true;
         events.stage(command);
       },
@@ -126,21 +122,21 @@ export function settingsPanel(
       'set.petals',
       ['auto', ...PETALS],
       now().skin.petals ?? 'auto',
-      (word) => events.run(skin(now(), { petals: word === 'auto' ? null : (word as Skin['petals']) })),
+      (word) => events.run(skin(now(), { petals: word === 'auto' ? null : (word as SkinSpec['petals']) })),
       'petal',
     ),
     choice(
       'set.leaf_depth',
       ['drawn', 'signed', 'paper'],
       now().sketch.leaf_depth,
-      (word) => events.run(sketch(now(), { leaf_depth: word as Sketch['leaf_depth'] })),
+      (word) => events.run(sketch(now(), { leaf_depth: word as SketchSpec['leaf_depth'] })),
       'set.leaf_depth',
     ),
     choice(
       'set.branch_depth',
       ['riesz', 'paper'],
       now().sketch.branch_depth,
-      (word) => events.run(sketch(now(), { branch_depth: word as Sketch['branch_depth'] })),
+      (word) => events.run(sketch(now(), { branch_depth: word as SketchSpec['branch_depth'] })),
       'set.branch_depth',
     ),
   );
@@ -148,8 +144,7 @@ export function settingsPanel(
     const select = el(
       'select',
       {
-        onchange: () =>
-          events.run({ do: 'leaf-of', lender: select.value === '' ? null : Number(select.value) }),
+        onchange: () => events.run({ 'set-leaf': select.value === '' ? null : Number(select.value) }),
       },
       el('option', { value: '' }, t('tree.leaf.own')),
       ...lenders.map((p) => el('option', { value: String(p.id) }, p.name)),

@@ -1,17 +1,17 @@
 /** Hands on a plant in the view: tools, their settings, gestures, and the list of what was done. What a tool does is the core's. */
 import { measured } from './measure';
+import type { Request } from './protocol';
 import type {
   Command,
   EditReport,
-  Json,
+  HeldTool,
   PlantState,
   PlantView as Seen,
-  Request,
   ShapeAnswer,
+  ShapeCommand,
   ShapeInput,
   ShapePointer,
-  ShapeTool,
-} from './protocol';
+} from './wire';
 import { number, t, tOf, type TextKey } from './text';
 import { button, el, icon, type IconName } from './ui';
 import { Overlay } from './view/overlay';
@@ -26,7 +26,8 @@ export interface ShapingEvents {
   changed(): void;
 }
 
-export type Word = ShapeTool['tool'];
+type WordOf<T> = T extends string ? T : keyof T & string;
+export type Word = WordOf<HeldTool>;
 export const SHAPE_TOOLS: readonly [Word, string][] = [
   ['pick', '1'],
   ['rotate', '2'],
@@ -389,14 +390,14 @@ export class Shaping {
 
   /** What is known of the branch that was pointed at, and what can be done with it. */
   private chosenBox(p: NonNullable<ShapeAnswer['picked']>): HTMLElement[] {
-    const act = (text: TextKey, id: string, name: IconName, command: Command): HTMLElement =>
+    const act = (text: TextKey, id: string, name: IconName, command: ShapeCommand): HTMLElement =>
       el(
         'button',
         { type: 'button', class: 'chip', id, onclick: () => this.shapeChosen(command) },
         icon(name),
         t(text),
       );
-    const axis = p.key as Json;
+    const axis = p.key;
     return [
       el(
         'span',
@@ -407,11 +408,14 @@ export class Shaping {
           count: number(p.bears),
         }),
       ),
-      act('shape.prune', 'b-prune-chosen', 'prune', { do: 'shape', edit: { op: 'prune', axis, at: 0 } }),
-      act('shape.regrow', 'b-regrow-chosen', 'regrow', {
-        do: 'shape',
-        edit: { op: 'regrow', axis, seed: (this.plant?.edits.length ?? 0) + 1 },
-      }),
+      ...(axis
+        ? [
+            act('shape.prune', 'b-prune-chosen', 'prune', { add: { op: 'prune', axis, at: 0 } }),
+            act('shape.regrow', 'b-regrow-chosen', 'regrow', {
+              add: { op: 'regrow', axis, seed: (this.plant?.edits.length ?? 0) + 1 },
+            }),
+          ]
+        : []),
     ];
   }
 
@@ -454,10 +458,10 @@ export class Shaping {
     this.showStrip();
     if (!at) return;
     if (!this.chosen) {
-      void this.send({ on: 'move', at: [at] });
+      void this.send({ move: [at] });
       return;
     }
-    this.line = this.send({ on: 'up', at }).then((answer) => {
+    this.line = this.send({ up: at }).then((answer) => {
       if (!answer?.picked || this.tool !== 'pick') return;
       this.chosen = answer.picked;
       this.showStrip();
@@ -465,11 +469,16 @@ export class Shaping {
   }
 
   /** Changes the chosen branch, which is another one then. */
-  private shapeChosen(command: Command): void {
+  private shapeChosen(command: ShapeCommand): void {
     this.chosen = null;
     this.light(undefined);
     this.showStrip();
-    this.events.run(command);
+    this.edit(command);
+  }
+
+  /** An edit of the plant that is shaped. */
+  private edit(command: ShapeCommand): void {
+    if (this.plant) this.events.run({ shape: [this.plant.id, command] });
   }
 
   /** Metres of the plant. */
@@ -498,24 +507,26 @@ export class Shaping {
 
   private tellBrush(): void {
     if (this.isBusy && this.tool === 'brush')
-      void this.send({ on: 'brush', radius_m: this.radius, density: this.settings.density });
+      void this.send({ brush: { radius_m: this.radius, density: this.settings.density } });
   }
 
-  private wire(): ShapeTool {
+  private wire(): HeldTool {
     const { settings: s, radius: radius_m } = this;
     switch (this.tool) {
+      case undefined:
+        return 'pick';
       case 'prune':
-        return { tool: 'prune', whole: s.whole };
+        return { prune: { whole: s.whole } };
       case 'sketch':
-        return { tool: 'sketch', twigs: s.twigs, tilt_deg: s.tilt_deg };
+        return { sketch: { twigs: s.twigs, tilt_deg: s.tilt_deg } };
       case 'brush':
-        return { tool: 'brush', radius_m, density: s.density };
+        return { brush: { radius_m, density: s.density } };
       case 'silhouette':
-        return { tool: 'silhouette', density: s.density, trim: s.trim };
+        return { silhouette: { density: s.density, trim: s.trim } };
       case 'leaves':
-        return { tool: 'leaves', radius_m, keep: s.more ? 2 : 0.25 };
+        return { leaves: { radius_m, keep: s.more ? 2 : 0.25 } };
       default:
-        return { tool: this.tool ?? 'pick' };
+        return this.tool;
     }
   }
 
@@ -553,7 +564,7 @@ export class Shaping {
       this.overlay.add(...this.place(e));
       this.overlay.draw();
     }
-    void this.send({ on: 'down', at });
+    void this.send({ down: at });
   }
 
   private moved(e: PointerEvent): void {
@@ -582,7 +593,7 @@ export class Shaping {
     this.inFlight = true;
     const at = this.moves.splice(0);
     if (this.isBusy && this.movedAt === 0) this.movedAt = performance.now();
-    await this.send({ on: 'move', at });
+    await this.send({ move: at });
     this.inFlight = false;
     void this.pump();
   }
@@ -591,14 +602,14 @@ export class Shaping {
     if (!this.isBusy || e.pointerId !== this.pointerId) return;
     const at = this.pointer(e);
     const still = Math.hypot(e.clientX - this.from[0], e.clientY - this.from[1]) <= STILL;
-    if (this.moves.length > 0) void this.send({ on: 'move', at: this.moves.splice(0) });
+    if (this.moves.length > 0) void this.send({ move: this.moves.splice(0) });
     this.release();
     if (!at) return;
-    this.line = this.send({ on: 'up', at })
+    this.line = this.send({ up: at })
       .then((answer) => {
         if (!this.isBusy) this.overlay.end();
         if (!answer) return;
-        if (answer.commit) this.events.run({ do: 'shape', edit: answer.commit });
+        if (answer.commit) this.edit({ add: answer.commit });
         if (this.tool === 'pick') {
           this.chosen = answer.picked;
           this.clicked = at;
@@ -624,14 +635,14 @@ export class Shaping {
     this.moves = [];
     this.release();
     this.overlay.end();
-    void this.send({ on: 'cancel' });
+    void this.send('cancel');
     return true;
   }
 
   /** Delete: the branch that was pointed at goes. */
   remove(): boolean {
     if (this.tool !== 'pick' || !this.chosen?.key) return false;
-    this.shapeChosen({ do: 'shape', edit: { op: 'prune', axis: this.chosen.key, at: 0 } });
+    this.shapeChosen({ add: { op: 'prune', axis: this.chosen.key, at: 0 } });
     return true;
   }
 
@@ -645,7 +656,7 @@ export class Shaping {
     e.preventDefault();
     e.stopImmediatePropagation();
     if (brush) this.resize(up ? 1.12 : 1 / 1.12);
-    else void this.send({ on: 'twist', degrees: up ? TWIST_DEG : -TWIST_DEG });
+    else void this.send({ twist: up ? TWIST_DEG : -TWIST_DEG });
   }
 
   /** One after another: the edit of a gesture is asked for before the next gesture begins, however long the core takes. */
@@ -758,12 +769,10 @@ export class Shaping {
         el('span', { class: bad ? 'bad' : 'muted' }, off ? t('edit.off') : report ? said(report) : ''),
       );
       const eye = button(off ? 'hidden' : 'eye', t(off ? 'edit.show' : 'edit.hide', { name }), () =>
-        this.events.run({ do: 'shape-leave', row, off: !off }),
+        this.edit({ leave: [row, !off] }),
       );
       eye.setAttribute('data-key', `eye${row}`);
-      const gone = button('close', t('edit.remove', { name }), () =>
-        this.events.run({ do: 'shape-remove', rows: [row] }),
-      );
+      const gone = button('close', t('edit.remove', { name }), () => this.edit({ remove: [row] }));
       gone.setAttribute('data-key', `gone${row}`);
       return el(
         'li',
@@ -779,7 +788,7 @@ export class Shaping {
       );
     });
     const all = button('close', t('edit.remove.all'), () =>
-      this.events.run({ do: 'shape-remove', rows: edits.map((_, row) => row) }),
+      this.edit({ remove: edits.map((_, row) => row) }),
     );
     all.setAttribute('data-key', 'all');
     // In a narrow view the list would lie over the plant.

@@ -1,5 +1,5 @@
 /** Figures of the plant that is shown: every one was counted or measured. */
-import type { PlantState, PlantView } from './protocol';
+import type { PlantState, PlantView } from './wire';
 import { number, t, type TextKey } from './text';
 import { el } from './ui';
 

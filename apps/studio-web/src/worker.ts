@@ -1,16 +1,7 @@
 /** The worker: owns the session, answers requests in order, and grows the plant when nothing else is to do. */
 import init, { studio_schema as studioSchema, StudioSession } from './wasm/burgeon_wasm.js';
-import type {
-  FromWorker,
-  PartArrays,
-  PlantView,
-  Request,
-  Sent,
-  ShapeAnswer,
-  TexturePixels,
-  ToWorker,
-  View,
-} from './protocol';
+import type { FromWorker, PartArrays, Request, Sent, TexturePixels, ToWorker } from './protocol';
+import type { PlantView, SceneView, ShapeAnswer } from './wire';
 
 const page = self as unknown as DedicatedWorkerGlobalScope;
 let session: StudioSession | undefined;
@@ -41,12 +32,6 @@ function fault(e: unknown): void {
   tell({ kind: 'fault', why: words(e) });
 }
 
-/** What is told apart by a tag, as the core reads it: its name and in it the rest. */
-function named<K extends string>(tag: K, told: Record<K, string>): string {
-  const { [tag]: name, ...rest } = told;
-  return JSON.stringify({ [name]: rest });
-}
-
 function answer(s: StudioSession, request: Request): unknown {
   switch (request.kind) {
     case 'open':
@@ -60,11 +45,13 @@ function answer(s: StudioSession, request: Request): unknown {
     case 'schema':
       return studioSchema();
     case 'command':
-      return s.run(named('do', request.command));
+      return s.run(JSON.stringify(request.command));
+    case 'action':
+      return s.act(JSON.stringify(request.action));
     case 'begin':
       return s.begin(request.name);
     case 'stage':
-      return s.stage(named('do', request.command));
+      return s.stage(JSON.stringify(request.command));
     case 'commit':
       return s.commit();
     case 'abandon':
@@ -90,14 +77,14 @@ function answer(s: StudioSession, request: Request): unknown {
       return s.skeleton();
     case 'shape':
       return JSON.parse(
-        s.shape(named('tool', request.tool), JSON.stringify(request.reach), named('on', request.input)),
+        s.shape(JSON.stringify(request.tool), JSON.stringify(request.reach), JSON.stringify(request.input)),
       );
     case 'branch':
       return s.branch(request.axis);
     case 'share':
       return s.share();
     case 'export':
-      return s.export(request.format, JSON.stringify(request.options));
+      return s.export(JSON.stringify(request.request));
     case 'variant': {
       const view: PlantView = JSON.parse(s.variant(request.seed, request.detail));
       try {
@@ -169,7 +156,7 @@ function evaluate(): void {
   stale = false;
   toldShare = 0;
   try {
-    const view: View = JSON.parse(session.evaluate());
+    const view: SceneView = JSON.parse(session.evaluate());
     const s = session;
     const all = view.guest ? [view.guest, ...view.plants] : view.plants;
     const fresh = all.filter((p) => p.fresh).map((p) => pack(s, p));

@@ -1,6 +1,6 @@
 //! What the browser gives: time, a sign to stop, a place for complaints.
 
-use burgeon::{Budget, CancelToken, Clock, Executor};
+use burgeon::{Budget, CancelToken, Clock, Executor, Run};
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen::prelude::*;
 
@@ -29,7 +29,7 @@ fn burgeon_stop(_share: f64) -> bool {
 
 /// How much a page may ask for: a tab has 4 GiB of addresses and mostly 1 to 2 GiB of memory, and one that runs out of it
 /// dies with its plant. So a quarter of the usual, 1 GiB, which is said instead.
-pub(crate) const BUDGET: Budget = Budget { times: 0.25, raise: None };
+const BUDGET: Budget = Budget { times: 0.25, raise: None };
 
 /// Lets a panic say where it came from before the worker dies.
 pub(crate) fn tell_of_panics() {
@@ -37,8 +37,14 @@ pub(crate) fn tell_of_panics() {
     std::panic::set_hook(Box::new(|info| error(&info.to_string())));
 }
 
+/// Computes with the browser's clock, within its budget, until the page wants something else.
+pub(crate) fn page_run<T>(compute: impl FnOnce(&Run<'_>) -> T) -> T {
+    let cancel = CancelToken::new();
+    compute(&Run { cancel: &cancel, executor: &Attentive(&cancel), clock: &Host, budget: BUDGET })
+}
+
 /// The browser's clock.
-pub(crate) struct Host;
+struct Host;
 
 impl Clock for Host {
     fn now_ms(&self) -> f64 {
@@ -48,7 +54,7 @@ impl Clock for Host {
 
 /// One job after another, with a word to the page and a look at its wish before each: the only thread there is cannot be
 /// interrupted from outside.
-pub(crate) struct Attentive<'a>(pub(crate) &'a CancelToken);
+struct Attentive<'a>(&'a CancelToken);
 
 impl Executor for Attentive<'_> {
     fn for_each(&self, n: usize, job: &(dyn Fn(usize) + Sync)) {

@@ -5,12 +5,9 @@
 //! | [`sketch_report`] | Node: a file of drawings to the report's items |
 //! | [`leaf_report`], [`flower_digest`], [`opening_digest`], [`motion_digest`], [`tree_digest`] | Node: the same bits as natively for leaves, flowers and trees |
 //! | [`scene_report`] | Node: the same for the plants of a project |
-//! | [`StudioSession`] | the Studio's worker: one document, its undo history, its plant |
+//! | [`StudioSession`] | the Studio's worker: a [`workspace::Workspace`] |
 
-mod exports;
 mod host;
-mod session;
-mod wire;
 
 use burgeon::formats::{self, CloudFormat, DrawingFormat, ExportSpec};
 use burgeon::leaf::ScanSpec;
@@ -20,7 +17,14 @@ use burgeon::{
 };
 use wasm_bindgen::prelude::*;
 
-use crate::session::{Column, Session};
+use burgeon::document::{PlantId, StrokeId};
+use burgeon::glam::DVec2;
+use burgeon::ink::{InkSample, Stroke, StrokeMode};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use workspace::{Column, ExportRequest, Workspace, packed};
+
+use crate::host::page_run;
 
 /// Makes a plant from every drawing of a file (SVG, InkML, QuickDraw ndjson or our JSON, told by its name)
 /// and returns the report's items as a JSON array.
@@ -202,17 +206,37 @@ pub fn tree_digest(preset: &str, detail: f64, seed: u64) -> Result<String, JsErr
     Ok(format!("{digest} {} {}", counts.vertices, counts.triangles))
 }
 
-fn told<T>(outcome: Result<T, String>) -> Result<T, JsError> {
-    outcome.map_err(|message| JsError::new(&message))
+fn to_json(value: &impl Serialize) -> Result<String, JsError> {
+    Ok(serde_json::to_string(value)?)
 }
 
-/// The document of the Studio with its history and its plant. Lives in a worker; nothing here waits for the page.
+fn from_json<T: DeserializeOwned>(text: &str) -> Result<T, JsError> {
+    Ok(serde_json::from_str(text)?)
+}
+
+/// `samples`: x, y (up), milliseconds, pressure of each point; NaN where not known.
+fn stroke(mode: &str, samples: &[f64]) -> Result<Stroke, JsError> {
+    let mode: StrokeMode = from_json(&to_json(&mode)?)?;
+    let known = |x: f64| x.is_finite().then_some(x);
+    let samples = samples.chunks_exact(4).filter(|p| p[0].is_finite() && p[1].is_finite());
+    let samples = samples.map(|p| InkSample {
+        at: DVec2::new(p[0], p[1]),
+        time_ms: known(p[2]),
+        pressure: known(p[3]),
+    });
+    Ok(Stroke { samples: samples.collect(), mode, ..Stroke::default() })
+}
+
+fn numbers(ids: Vec<StrokeId>) -> Vec<u32> {
+    ids.into_iter().map(|id| id.0).collect()
+}
+
+/// The document of the Studio with its history and its plants. Lives in a worker; nothing here waits for the page.
 ///
-/// JSON in and out is typed for the page in `wire.rs`. Errors are messages for people; after an error nothing
-/// has changed.
+/// JSON in and out is typed for the page in `apps/studio-web/src/wire.ts`. After an error nothing has changed.
 #[wasm_bindgen]
 #[derive(Debug)]
-pub struct StudioSession(Session);
+pub struct StudioSession(Workspace);
 
 #[wasm_bindgen]
 impl StudioSession {
@@ -221,37 +245,36 @@ impl StudioSession {
     #[expect(clippy::new_without_default, reason = "called from JavaScript only")]
     pub fn new() -> Self {
         host::tell_of_panics();
-        Self(Session::default())
+        Self(Workspace::default())
     }
 
-    /// Opens any file that is read: `Opened` as JSON. A project or drawing takes the document's place (one step of
-    /// undo, or none with `fresh`), a model is only looked at. `row` picks a drawing of an ndjson file.
+    /// See [`Workspace::open`]: `Opened` as JSON.
     ///
     /// # Errors
     /// What is wrong with the file and what to do.
     pub fn open(&mut self, file_name: &str, bytes: &[u8], row: u32, fresh: bool) -> Result<String, JsError> {
-        told(self.0.open(file_name, bytes, row, fresh))
+        to_json(&self.0.open(file_name, bytes, row as usize, fresh)?)
     }
 
-    /// Chooses the plant that is on the sheet and in the panel: commands that name no plant are its.
+    /// See [`Workspace::select`].
     ///
     /// # Errors
     /// When it is not there.
     pub fn select(&mut self, plant: u32) -> Result<(), JsError> {
-        told(self.0.select(plant))
+        Ok(self.0.select(PlantId(plant))?)
     }
 
-    /// Puts a model file into the scene as an obstacle of the tree that is chosen.
+    /// See [`Workspace::add_obstacle`].
     ///
     /// # Errors
     /// What is wrong with the file, or that no tree is chosen.
     pub fn add_obstacle(&mut self, file_name: &str, bytes: &[u8]) -> Result<(), JsError> {
-        told(self.0.add_obstacle(file_name, bytes))
+        Ok(self.0.add_obstacle(file_name, bytes)?)
     }
 
     /// Corners of an obstacle that is a mesh, three to a triangle.
     pub fn obstacle(&self, plant: u32, row: usize) -> Vec<f32> {
-        self.0.obstacle(plant, row)
+        self.0.obstacle(PlantId(plant), row)
     }
 
     /// Starts empty and forgets everything, the history too.
@@ -265,7 +288,7 @@ impl StudioSession {
     /// # Errors
     /// When no point is finite, or the mode is unknown.
     pub fn add_stroke(&mut self, mode: &str, samples: &[f64]) -> Result<u32, JsError> {
-        told(self.0.add_stroke(mode, samples))
+        Ok(self.0.add_stroke(stroke(mode, samples)?)?.0)
     }
 
     /// Shows a stroke that is still being drawn; an empty one takes it away.
@@ -273,7 +296,8 @@ impl StudioSession {
     /// # Errors
     /// When the mode is unknown.
     pub fn draft(&mut self, mode: &str, samples: &[f64]) -> Result<(), JsError> {
-        told(self.0.draft(mode, samples))
+        self.0.draft(stroke(mode, samples)?);
+        Ok(())
     }
 
     /// Does a `Command` (JSON).
@@ -281,7 +305,15 @@ impl StudioSession {
     /// # Errors
     /// Why it was refused.
     pub fn run(&mut self, command: &str) -> Result<(), JsError> {
-        told(self.0.run(command))
+        Ok(self.0.run(from_json::<burgeon::document::Command>(command)?)?)
+    }
+
+    /// Does an `Action` (JSON).
+    ///
+    /// # Errors
+    /// Why it was refused.
+    pub fn act(&mut self, action: &str) -> Result<(), JsError> {
+        Ok(self.0.act(&from_json(action)?)?)
     }
 
     /// Strokes as a drawing in our JSON.
@@ -289,7 +321,8 @@ impl StudioSession {
     /// # Errors
     /// When none of them is there.
     pub fn copy(&self, ids: &[u32]) -> Result<String, JsError> {
-        told(self.0.copy(ids))
+        let ids: Vec<StrokeId> = ids.iter().copied().map(StrokeId).collect();
+        Ok(String::from_utf8(self.0.copy(&ids)?)?)
     }
 
     /// Adds the strokes of a drawing given as text (our JSON, SVG, InkML), moved; returns their numbers.
@@ -297,7 +330,7 @@ impl StudioSession {
     /// # Errors
     /// What is wrong with it.
     pub fn paste(&mut self, text: &str, x: f64, y: f64) -> Result<Vec<u32>, JsError> {
-        told(self.0.paste(text, x, y))
+        Ok(numbers(self.0.paste(text, DVec2::new(x, y))?))
     }
 
     /// Puts a photograph (PNG) under the drawing: left lower corner and width in the drawing's unit.
@@ -305,12 +338,12 @@ impl StudioSession {
     /// # Errors
     /// When it is no PNG or too large.
     pub fn place_photo(&mut self, png: &[u8], x: f64, y: f64, width: f64) -> Result<(), JsError> {
-        told(self.0.place_photo(png, x, y, width))
+        Ok(self.0.place_photo(png, DVec2::new(x, y), width)?)
     }
 
     /// The photograph's file if the page has another one, else empty.
     pub fn fresh_photo(&mut self) -> Vec<u8> {
-        self.0.fresh_photo()
+        self.0.fresh_photo().map_or_else(Vec::new, |png| png.to_vec())
     }
 
     /// Shows the plant of another seed (`PlantView` as JSON; the columns follow its number) until `end_variant`.
@@ -318,7 +351,8 @@ impl StudioSession {
     /// # Errors
     /// `cancelled`, or why there is none.
     pub fn variant(&mut self, seed: &str, detail: f64) -> Result<String, JsError> {
-        told(self.0.variant(seed, detail))
+        let seed = Seed::new(seed.parse()?);
+        to_json(&page_run(|run| self.0.variant(seed, detail, run))?)
     }
 
     /// Goes back to the plant itself.
@@ -331,13 +365,12 @@ impl StudioSession {
         self.0.skeleton()
     }
 
-    /// Lets a tool shape the plant that is chosen: `ShapeTool`, `ShapeReach` and `ShapeInput` in, `ShapeAnswer` out,
-    /// all JSON. What a gesture would make is shown but is not in the document; what it made is the page's to ask for.
+    /// See [`Workspace::shape`]: `HeldTool`, `ShapeReach` and `ShapeInput` in, `ShapeAnswer` out, all JSON.
     ///
     /// # Errors
     /// When there is no plant, or the words are not known.
     pub fn shape(&mut self, tool: &str, reach: &str, input: &str) -> Result<String, JsError> {
-        told(self.0.shape(tool, reach, input))
+        to_json(&self.0.shape(from_json(tool)?, from_json(reach)?, from_json(input)?)?)
     }
 
     /// A branch that was picked and all that it bears: pairs of points, x, y, z and radius of each.
@@ -350,7 +383,7 @@ impl StudioSession {
     /// # Errors
     /// Never, but for our own bugs.
     pub fn share(&self) -> Result<Vec<u8>, JsError> {
-        told(self.0.share())
+        Ok(self.0.share()?)
     }
 
     /// Opens a gesture: what is staged up to `commit` is one step of this name.
@@ -358,7 +391,7 @@ impl StudioSession {
     /// # Errors
     /// While another is open.
     pub fn begin(&mut self, name: &str) -> Result<(), JsError> {
-        told(self.0.begin(name))
+        Ok(self.0.begin(name)?)
     }
 
     /// Replaces what the open gesture did by one `Command` (JSON).
@@ -366,7 +399,7 @@ impl StudioSession {
     /// # Errors
     /// Why it was refused.
     pub fn stage(&mut self, command: &str) -> Result<(), JsError> {
-        told(self.0.stage(command))
+        Ok(self.0.stage(from_json::<burgeon::document::Command>(command)?)?)
     }
 
     /// Closes the gesture.
@@ -381,12 +414,12 @@ impl StudioSession {
 
     /// Takes the last step back and returns its name.
     pub fn undo(&mut self) -> Option<String> {
-        self.0.undo()
+        self.0.undo().map(str::to_owned)
     }
 
     /// Does the last step that was taken back again and returns its name.
     pub fn redo(&mut self) -> Option<String> {
-        self.0.redo()
+        self.0.redo().map(str::to_owned)
     }
 
     /// The document as `DocumentState` (JSON), without points.
@@ -394,55 +427,56 @@ impl StudioSession {
     /// # Errors
     /// Never, but for our own bugs.
     pub fn state(&self) -> Result<String, JsError> {
-        told(self.0.state())
+        to_json(&self.0.state())
     }
 
     /// Numbers of strokes whose points the page does not have yet; they count as had from now on.
     pub fn fresh_strokes(&mut self) -> Vec<u32> {
-        self.0.fresh_strokes()
+        numbers(self.0.fresh_strokes())
     }
 
     /// x, y (up) and pressure (NaN where not known) of each point of a stroke.
     pub fn stroke_points(&self, id: u32) -> Vec<f64> {
-        self.0.stroke_points(id)
+        let samples = self.0.stroke(StrokeId(id)).map_or(&[][..], |s| &s.samples);
+        samples.iter().flat_map(|p| [p.at.x, p.at.y, p.pressure.unwrap_or(f64::NAN)]).collect()
     }
 
-    /// Brings the plant up to date: `View` as JSON.
+    /// Brings the plants up to date: `SceneView` as JSON.
     ///
     /// # Errors
-    /// `cancelled`, or why no plant could be made.
+    /// `cancelled`.
     pub fn evaluate(&mut self) -> Result<String, JsError> {
-        told(self.0.evaluate())
+        to_json(&page_run(|run| self.0.evaluate(run))?)
     }
 
     /// Three floats a vertex, metres.
     pub fn positions(&self, plant: u32, part: usize) -> Vec<f32> {
-        self.0.column(plant, part, Column::Positions)
+        self.0.column(PlantId(plant), part, Column::Positions).to_vec()
     }
 
     /// Three floats a vertex.
     pub fn normals(&self, plant: u32, part: usize) -> Vec<f32> {
-        self.0.column(plant, part, Column::Normals)
+        self.0.column(PlantId(plant), part, Column::Normals).to_vec()
     }
 
     /// Two floats a vertex, v down; may be empty.
     pub fn uvs(&self, plant: u32, part: usize) -> Vec<f32> {
-        self.0.column(plant, part, Column::Uvs)
+        self.0.column(PlantId(plant), part, Column::Uvs).to_vec()
     }
 
     /// Three floats a vertex, linear; may be empty.
     pub fn colors(&self, plant: u32, part: usize) -> Vec<f32> {
-        self.0.column(plant, part, Column::Colors)
+        self.0.column(PlantId(plant), part, Column::Colors).to_vec()
     }
 
     /// Three indices a triangle.
     pub fn indices(&self, plant: u32, part: usize) -> Vec<u32> {
-        self.0.indices(plant, part)
+        self.0.indices(PlantId(plant), part).to_vec()
     }
 
-    /// RGBA bytes of a texture by its number in `View`.
-    pub fn texture(&self, number: usize) -> Vec<u8> {
-        self.0.texture(number)
+    /// RGBA bytes of a texture by its number in the last view.
+    pub fn texture(&self, number: u32) -> Vec<u8> {
+        self.0.texture(number).to_vec()
     }
 
     /// The document as a `.burgeon` file.
@@ -450,15 +484,15 @@ impl StudioSession {
     /// # Errors
     /// Never, but for our own bugs.
     pub fn save(&self) -> Result<Vec<u8>, JsError> {
-        told(self.0.save())
+        Ok(self.0.save()?)
     }
 
-    /// What is shown as a file: `glb`, `obj` (a zip with its material file and textures), `ply`, `stl`, or the
-    /// drawing as `json`; also `mtg` and `qsm`. `options`: `ExportOptions` as JSON; several levels of detail come as a zip.
+    /// What is shown as a file, or a zip of several: `ExportRequest` as JSON.
     ///
     /// # Errors
     /// When there is nothing to export.
-    pub fn export(&mut self, format: &str, options: &str) -> Result<Vec<u8>, JsError> {
-        told(self.0.export(format, options))
+    pub fn export(&mut self, request: &str) -> Result<Vec<u8>, JsError> {
+        let request: ExportRequest = from_json(request)?;
+        Ok(packed(request.format, page_run(|run| self.0.export(&request, run))?)?)
     }
 }

@@ -213,17 +213,6 @@ impl fmt::Display for Grouped {
     }
 }
 
-/// Why a computation ended before its result.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Stopped {
-    /// The user asked for it.
-    #[error(transparent)]
-    Cancelled(#[from] crate::Cancelled),
-    /// It would have been too much.
-    #[error(transparent)]
-    OverBudget(#[from] OverBudget),
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -29,11 +29,11 @@ mod task;
 pub mod turn;
 mod units;
 
-pub use budget::{Budget, Counted, OverBudget, Stopped};
+pub use budget::{Budget, Counted, OverBudget};
 pub use digest::{Digest, Digestible};
 pub use quote::{brief, quoted};
 pub use report::{Report, Stage, Warning};
 pub use seed::{Draw, Seed, Stream};
 pub use sort::{sort_by, sort_by_key};
-pub use task::{CancelToken, Cancelled, Clock, Executor, NoClock, Run, Serial, map_indexed};
+pub use task::{CancelToken, Cancelled, Clock, Executor, NoClock, Run, Serial, Stopped, map_indexed};
 pub use units::{Angle, NotFinite, Tolerance, Unit, UpAxis};

@@ -4,7 +4,7 @@ use core::fmt;
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex};
 
-use crate::Budget;
+use crate::{Budget, OverBudget};
 
 /// A flag that a shell sets and a computation polls; the other way goes how far the computation is.
 ///
@@ -69,6 +69,17 @@ impl CancelToken {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("cancelled")]
 pub struct Cancelled;
+
+/// Why a computation ended before its result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Stopped {
+    /// The user asked for it.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// It would have been too much.
+    #[error(transparent)]
+    OverBudget(#[from] OverBudget),
+}
 
 /// Runs independent jobs, on as many threads as the shell allows. The core never makes threads itself.
 pub trait Executor: Sync {

@@ -3,7 +3,6 @@
 use base::{Cancelled, Draw, Run, Seed};
 use glam::DVec3;
 
-use crate::linalg::eigen;
 use crate::thin::{Voxels, extent, thin};
 
 /// What is taken out of a scan.
@@ -114,17 +113,7 @@ fn ground(points: &[DVec3], spec: &CleanSpec, seed: Seed) -> Option<(DVec3, f64,
     let (_, n, level) = best?;
     // Least squares through what lies near it.
     let near: Vec<DVec3> = few.iter().copied().filter(|p| (n.dot(*p) - level).abs() <= width).collect();
-    let centre = near.iter().sum::<DVec3>() / near.len() as f64;
-    let mut m = [[0.0; 3]; 3];
-    for d in near.iter().map(|p| (*p - centre).to_array()) {
-        for i in 0..3 {
-            for j in 0..3 {
-                m[i][j] += d[i] * d[j];
-            }
-        }
-    }
-    let (_, vectors) = eigen(m);
-    let refined = DVec3::from_array(vectors[2]);
+    let (centre, [_, _, refined], _) = geom::pca3(&near)?;
     let refined = if refined.dot(up) < 0.0 { -refined } else { refined };
     let n = if refined.dot(up) > 0.906 { refined } else { n };
     let level = n.dot(centre);

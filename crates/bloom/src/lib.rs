@@ -28,7 +28,6 @@ mod flower;
 mod kernel;
 mod lattice;
 mod law;
-mod linalg;
 mod logistic;
 mod motion;
 mod obb;

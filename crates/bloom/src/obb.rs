@@ -2,8 +2,6 @@
 
 use glam::DVec3;
 
-use crate::linalg::eigen;
-
 /// An oriented bounding box: `corner + s * edge0 + t * edge1 + u * edge2` with s, t, u in \[0, 1\].
 ///
 /// ```
@@ -29,22 +27,8 @@ impl Obb {
     /// third coordinate. The paper gives none; 0.05 suits petals. Each edge is padded by 1e-6 of itself so
     /// that s, t and u stay inside \[0, 1\]. `None` without a finite point. Cost: linear.
     pub fn fit(points: &[DVec3], floor: f64) -> Option<Self> {
-        let usable = || points.iter().copied().filter(|p| p.is_finite());
-        let n = usable().count() as f64;
-        let first = usable().next()?;
-        // Relative to the first point: scans lie hundreds of metres from their origin.
-        let centre = first + usable().map(|p| p - first).sum::<DVec3>() / n;
-        let mut c = [[0.0; 3]; 3];
-        for d in usable().map(|p| (p - centre).to_array()) {
-            for i in 0..3 {
-                for j in 0..3 {
-                    c[i][j] += d[i] * d[j] / n;
-                }
-            }
-        }
-        let (_, v) = eigen(c);
-        let major = towards_positive(DVec3::from_array(v[0]));
-        let middle = towards_positive(DVec3::from_array(v[1]));
+        let (_, [major, middle, _], _) = geom::pca3(points)?;
+        let (major, middle) = (towards_positive(major), towards_positive(middle));
         Some(Self::along(points, [major, middle, major.cross(middle)], floor))
     }
 

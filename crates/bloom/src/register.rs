@@ -1,10 +1,9 @@
 //! First and last shape of an organ -> the lattice that carries one into the other.
 
 use base::Run;
-use geom::KdTree;
+use geom::{KdTree, best_rotation, solve_positive};
 use glam::{DQuat, DVec3};
 
-use crate::linalg::{best_rotation, solve_spd};
 use crate::thin::thin;
 use crate::{BloomError, Lattice, Obb, ShapeError, Weights, compare};
 
@@ -246,7 +245,7 @@ fn fit_lattice(
         for j in 0..n {
             a[j * n + j] += 1e-6 * total / n as f64;
         }
-        if solve_spd(&mut a, n, &mut b).is_none() {
+        if solve_positive(&mut a, &mut b).is_none() {
             break;
         }
         for ((p, s), d) in lattice.points.iter_mut().zip(&start.points).zip(&b) {

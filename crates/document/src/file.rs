@@ -16,8 +16,8 @@ use spec::SpecFault;
 
 use crate::archive::{ArchiveError, pack, unpack};
 use crate::forms::{
-    DocumentV1, DocumentV2, DocumentV3, DocumentV4, EditV4, FlowerV3, LeafV3, MakerV3, ObstacleV3, PhotoV2,
-    PlantV4, SketchV3, SkinV1, StrokeV1, TreeV3, from_file, to_file,
+    DocumentV1, DocumentV2, DocumentV3, DocumentV4, EditV4, FlowerV3, LeafV3, MakerV3, ObstacleV3, PlantV4,
+    SketchV3, SkinV1, StrokeV1, TreeV3, from_file, to_file,
 };
 use crate::makers::{FlowerMaker, LeafData, LeafMaker, Maker, NamedObstacle, SketchSettings, TreeSettings};
 use crate::state::{MAX_PLANTS, Placement, PlantEdit, range_fault, shortened};
@@ -149,13 +149,7 @@ fn plant_to_file(plant: &DocumentPlant, row: &dyn Fn(PlantId) -> Option<u32>) ->
             sketch: k.sketch.clone(),
             skin: SkinV1::from(&k.skin),
             strokes: plant.strokes().iter().map(to_file).collect(),
-            photo: k.photo.as_ref().map(|p| PhotoV2 {
-                x: p.x,
-                y: p.y,
-                width: p.width,
-                opacity: p.opacity,
-                paint: p.paint,
-            }),
+            photo: k.photo.as_ref().map(|p| p.place),
             day: k.day,
             leaf: k.leaf.and_then(row),
         }),
@@ -304,9 +298,7 @@ fn from_sketch(
 ) -> Result<(Maker, Vec<StrokeV1>), ProjectError> {
     let SketchV3 { sketch, skin, strokes, photo: lies, day, leaf } = sketch;
     let photo = match lies {
-        Some(PhotoV2 { x, y, width, opacity, paint }) => {
-            Some(Photo { x, y, width, opacity, paint, ..photo(row)? })
-        }
+        Some(place) => Some(Photo { place, ..photo(row)? }),
         None => None,
     };
     let skin = skin.spec().map_err(ProjectError::Setting)?;

@@ -3,13 +3,14 @@
 use bloom::GrowthLaw;
 use glam::DVec2;
 use growth::Obstacle;
+use ink::{InkSample, Stroke, StrokeClass, StrokeMode};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use shape::HandEdit;
-use sketch::{InkSample, SketchSpec, Stroke, StrokeClass, StrokeMode};
+use sketch::SketchSpec;
 use skin::{PetalColor, SkinSpec};
 
-use crate::{DocumentStroke, FlowerSettings, LeafSettings};
+use crate::{DocumentStroke, FlowerSettings, LeafSettings, PhotoPlace};
 
 /// Form 4: as form 3, and edits by hand.
 #[derive(Serialize, Deserialize)]
@@ -114,7 +115,7 @@ pub(crate) struct SketchV3 {
     pub(crate) strokes: Vec<StrokeV1>,
     /// How `photo-ROW.png` lies under the drawing, with ROW the plant's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) photo: Option<PhotoV2>,
+    pub(crate) photo: Option<PhotoPlace>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) day: Option<f64>,
     /// Row of the plant whose leaf it bears.
@@ -192,18 +193,7 @@ pub(crate) struct DocumentV2 {
     pub(crate) skin: SkinV1,
     pub(crate) strokes: Vec<StrokeV1>,
     #[serde(default)]
-    pub(crate) photo: Option<PhotoV2>,
-}
-
-/// How `photo.png` lies under the drawing.
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct PhotoV2 {
-    pub(crate) x: f64,
-    pub(crate) y: f64,
-    pub(crate) width: f64,
-    pub(crate) opacity: f64,
-    pub(crate) paint: bool,
+    pub(crate) photo: Option<PhotoPlace>,
 }
 
 impl From<DocumentV1> for DocumentV2 {

@@ -14,7 +14,7 @@
 //! | `photo` | [`Photo`]: what lies under the drawing |
 //! | `archive` | [`pack`] and the bounded reading of zip files |
 //!
-//! Coordinates of strokes are the drawing's own unit, y up, as in [`sketch::Drawing`].
+//! Coordinates of strokes are the drawing's own unit, y up, as in [`ink::Drawing`].
 
 mod archive;
 mod command;
@@ -39,7 +39,7 @@ pub use makers::{
     FlowerMaker, LeafData, LeafMaker, LeafPaint, LeafRings, LeafSettings, LeafSurface, LeafThickness, Maker,
     NamedObstacle, SketchSettings, TreeSettings,
 };
-pub use photo::{MAX_PHOTO_BYTES, Photo, PhotoError};
+pub use photo::{MAX_PHOTO_BYTES, Photo, PhotoError, PhotoPlace};
 pub use state::{
     Document, DocumentFault, DocumentPlant, DocumentStroke, Placement, PlantEdit, PlantId, Settings,
     StrokeId, range_fault,

@@ -133,7 +133,8 @@ impl TreeSettings {
 }
 
 /// An obstacle with the name under which a person knows it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct NamedObstacle {
     /// For lists; at most 200 characters.
     pub name: String,
@@ -151,7 +152,8 @@ pub struct LeafMaker {
 }
 
 /// The file of a measured leaf: marks as CSV, or a vein graph as JSON.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct LeafData {
     /// Name of the file.
     pub name: String,

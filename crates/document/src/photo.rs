@@ -2,6 +2,9 @@
 
 use std::sync::Arc;
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
 /// Most bytes and longest side of a photograph that a document holds: 24 MiB, 4,096 pixels.
 pub const MAX_PHOTO_BYTES: usize = 24 << 20;
 const MAX_SIDE: u32 = 4096;
@@ -13,22 +16,36 @@ const MAX_SIDE: u32 = 4096;
 pub struct Photo {
     pub(crate) png: Arc<[u8]>,
     pub(crate) size: (u32, u32),
-    /// Left edge, in the drawing's unit.
+    /// How it lies under the drawing.
+    pub place: PhotoPlace,
+}
+
+/// How a photograph lies under the drawing.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PhotoPlace {
+    /// Left edge, in the drawing's unit. Default 0.
     pub x: f64,
-    /// Lower edge, in the drawing's unit, y up.
+    /// Lower edge, in the drawing's unit, y up. Default 0.
     pub y: f64,
-    /// Width, in the drawing's unit, above 0; the height follows from the picture.
+    /// Width, in the drawing's unit, above 0; the height follows from the picture. Default 1.
     pub width: f64,
-    /// How strongly it shows under the drawing, 0 to 1. No matter for the plant.
+    /// How strongly it shows under the drawing, 0 to 1, default 0.5. No matter for the plant.
     pub opacity: f64,
-    /// Whether organs that were traced over it take its colours.
+    /// Whether organs that were traced over it take its colours. Default true.
     pub paint: bool,
+}
+
+impl Default for PhotoPlace {
+    fn default() -> Self {
+        Self { x: 0.0, y: 0.0, width: 1.0, opacity: 0.5, paint: true }
+    }
 }
 
 impl std::fmt::Debug for Photo {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { png, size, x, y, width, opacity, paint } = self;
-        write!(f, "Photo {{ {} bytes, {size:?}, at {x} {y}, {width} wide, {opacity}, {paint} }}", png.len())
+        let Self { png, size, place } = self;
+        write!(f, "Photo {{ {} bytes, {size:?}, {place:?} }}", png.len())
     }
 }
 
@@ -67,7 +84,7 @@ impl Photo {
         if size.0.max(size.1) > MAX_SIDE || png.len() > MAX_PHOTO_BYTES {
             return Err(PhotoError::TooLarge);
         }
-        Ok(Self { png, size, x: 0.0, y: 0.0, width: 1.0, opacity: 0.5, paint: true })
+        Ok(Self { png, size, place: PhotoPlace::default() })
     }
 
     /// The picture's bytes.
@@ -82,21 +99,22 @@ impl Photo {
 
     /// Height in the drawing's unit.
     pub fn height(&self) -> f64 {
-        self.width * f64::from(self.size.1) / f64::from(self.size.0)
+        self.place.width * f64::from(self.size.1) / f64::from(self.size.0)
     }
 
     /// Whether a point of the drawing lies on the picture.
     pub fn covers(&self, x: f64, y: f64) -> bool {
-        (self.x..=self.x + self.width).contains(&x) && (self.y..=self.y + self.height()).contains(&y)
+        let at = self.place;
+        (at.x..=at.x + at.width).contains(&x) && (at.y..=at.y + self.height()).contains(&y)
     }
 
     /// What is out of its range, as a sentence.
     pub(crate) fn fault(&self) -> Option<String> {
         let near = |v: f64| v.abs() <= 1e9;
-        if !(near(self.x) && near(self.y) && self.width > 1e-9 && self.width <= 1e9) {
+        let PhotoPlace { x, y, width, opacity, .. } = self.place;
+        if !(near(x) && near(y) && width > 1e-9 && width <= 1e9) {
             return Some("the photograph lies out of reach; put it nearer and make it larger".into());
         }
-        (!(0.0..=1.0).contains(&self.opacity))
-            .then(|| format!("opacity is {}, but must be from 0 to 1", self.opacity))
+        (!(0.0..=1.0).contains(&opacity)).then(|| format!("opacity is {opacity}, but must be from 0 to 1"))
     }
 }

@@ -5,17 +5,19 @@ use std::sync::Arc;
 
 use base::Seed;
 use glam::{DVec2, DVec3};
+use ink::{Drawing, Stroke, StrokeClass};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use shape::HandEdit;
-use sketch::{Drawing, Stroke, StrokeClass};
 
 use crate::{Maker, Photo, SketchSettings};
 
 /// Names one stroke for as long as the document lives, whatever is drawn or erased around it. Never reused.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 pub struct StrokeId(pub u32);
 
 /// Names one plant for as long as the document lives. Never reused.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 pub struct PlantId(pub u32);
 
 /// One stroke of a sketch.
@@ -30,9 +32,11 @@ pub struct DocumentStroke {
 }
 
 /// Where a plant stands: scaled, turned about the vertical, then moved.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct Placement {
     /// Where its origin stands, metres; each coordinate up to 100 km.
+    #[schemars(with = "[f64; 3]")]
     pub position: DVec3,
     /// Turn about +Y, degrees, counter-clockwise seen from above. Default 0.
     pub yaw_deg: f64,

@@ -3,8 +3,8 @@
 
 use document::{Document, DocumentPlant, Maker, ProjectError, is_project, pack, read_project, write_project};
 use glam::DVec2;
+use ink::Drawing;
 use proptest::prelude::*;
-use sketch::Drawing;
 
 fn sample() -> Vec<u8> {
     let lines = [vec![DVec2::ZERO, DVec2::new(0.1, 0.7), DVec2::new(0.2, 1.4)], vec![DVec2::ONE, DVec2::X]];
@@ -139,8 +139,11 @@ fn files_of_version_2_stay_readable() {
     let plant = only(&document);
     assert_eq!((plant.strokes().len(), plant.settings().seed.number()), (15, 7));
     let photo = plant.settings().photo().unwrap();
-    assert_eq!((photo.size(), photo.x, photo.y, photo.width), ((8, 8), -10.0, -20.0, 900.0));
-    assert_eq!((photo.opacity, photo.paint, photo.height()), (0.25, true, 900.0));
+    assert_eq!(
+        (photo.size(), photo.place.x, photo.place.y, photo.place.width),
+        ((8, 8), -10.0, -20.0, 900.0)
+    );
+    assert_eq!((photo.place.opacity, photo.place.paint, photo.height()), (0.25, true, 900.0));
     let again = read_project(&write_project(&document, "test").unwrap()).unwrap();
     assert_eq!(again, document);
 }

@@ -5,15 +5,17 @@ use std::sync::Arc;
 use base::Seed;
 use document::{
     Command, CommandError, Document, Editor, FlowerCommand, FlowerSettings, LeafCommand, LeafData,
-    LeafSettings, Maker, NamedObstacle, NewPlant, NewStroke, Photo, Placement, PlantCommand, PlantId,
-    SceneCommand, Settings, ShapeCommand, SketchCommand, StrokeId, TreeCommand, read_project, write_project,
+    LeafSettings, Maker, NamedObstacle, NewPlant, NewStroke, Photo, PhotoPlace, Placement, PlantCommand,
+    PlantId, SceneCommand, Settings, ShapeCommand, SketchCommand, StrokeId, TreeCommand, read_project,
+    write_project,
 };
 use glam::{DVec2, DVec3};
 use growth::{Obstacle, TreeSpec};
+use ink::{Drawing, InkSample, Stroke, StrokeClass, StrokeMode};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use shape::{AxisKey, Destination, HandEdit, LeafRegion, Turn, ViewPlane};
-use sketch::{Drawing, InkSample, SketchSpec, Stroke, StrokeClass, StrokeMode};
+use sketch::SketchSpec;
 use skin::SkinSpec;
 
 fn point() -> impl Strategy<Value = DVec2> {
@@ -50,12 +52,12 @@ fn sketch_command() -> impl Strategy<Value = SketchCommand> {
         1 => (ids(), any::<[u8; 3]>()).prop_map(|(ids, color)| SketchCommand::SetColor(ids, Some(color))),
         2 => (ids(), point()).prop_map(|(ids, by)| SketchCommand::Duplicate(ids, by)),
         1 => proptest::option::of((point(), -1.0..3.0f64, any::<bool>())).prop_map(|photo| {
-            SketchCommand::SetPhoto(photo.map(|(at, size, paint)| {
+            photo.map_or(SketchCommand::RemovePhoto, |(at, size, paint)| {
                 let png = [&b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x02\0\0\0\x03"[..], &[1; 9]].concat();
                 let mut photo = Photo::new(png.into()).expect("a PNG header");
-                (photo.x, photo.y, photo.width, photo.opacity, photo.paint) = (at.x, at.y, size, size / 2.0, paint);
-                Box::new(photo)
-            }))
+                photo.place = PhotoPlace { x: at.x, y: at.y, width: size, opacity: size / 2.0, paint };
+                SketchCommand::SetPhoto(Box::new(photo))
+            })
         }),
         1 => Just(SketchCommand::Clear),
         1 => (-1.0..12.0f64).prop_map(|density| {

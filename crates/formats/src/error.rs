@@ -5,7 +5,7 @@ use std::io;
 
 use base::Report;
 
-use crate::{CloudFormat, DrawingFormat, ModelFormat};
+use crate::kind::{CloudFormat, DrawingFormat, ModelFormat};
 
 /// Where in a file something is.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

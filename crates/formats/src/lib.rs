@@ -1,6 +1,6 @@
 //! Readers of strokes, readers and writers of models, on byte streams: no paths, no file system.
 //!
-//! bytes -> [`read_drawings`] -> [`sketch::Drawing`]; bytes -> [`read_model`] -> [`mesh::Model`] ->
+//! bytes -> [`read_drawings`] -> [`ink::Drawing`]; bytes -> [`read_model`] -> [`mesh::Model`] ->
 //! [`write_model`] -> bytes; bytes -> [`read_cloud`] -> [`mesh::PointCloud`]; `plant::Plant` -> [`write_mtg`],
 //! [`write_qsm`] -> bytes.
 //!
@@ -11,23 +11,25 @@
 mod cloud;
 mod drawing;
 mod error;
+mod kind;
 mod leaves;
 mod model;
 mod plant;
 mod summary;
 
-pub use cloud::{CloudFormat, MAX_CLOUD_BYTES, read_cloud, write_cloud_ply};
-pub use drawing::{DrawingFormat, Drawings, MAX_DRAWING_BYTES, ReadDrawing, read_drawings, write_drawing};
+pub use cloud::{MAX_CLOUD_BYTES, read_cloud, write_cloud_ply};
+pub use drawing::{Drawings, MAX_DRAWING_BYTES, ReadDrawing, read_drawings, write_drawing};
 pub use error::{CloudError, DrawingError, FileFault, ModelError, Place, WriteError};
+pub use kind::{CloudFormat, DrawingFormat, ModelFormat};
 pub use leaves::{
     LeafFile, LeafFileError, MAX_LEAF_BYTES, MarksAxes, ReadGraph, ReadMarks, ReadProfile, ReadProfiles,
     ReadRays, is_rays, marks_template, read_leaf_file, read_marks, read_profiles, read_rays, read_vein_graph,
     write_marks, write_rays,
 };
 pub use model::{
-    ExportSpec, FileStems, MAX_MODEL_BYTES, ModelFormat, Morph, ObjFiles, PngCache, Resolver, UsdFiles,
-    file_name, no_files, obj_files, read_model, read_picture, usd_files, warn_of_wind, write_glb,
-    write_glb_morph, write_glb_with, write_model, write_ply, write_png, write_stl,
+    ExportSpec, FileStems, MAX_MODEL_BYTES, Morph, ObjFiles, PngCache, Resolver, UsdFiles, file_name,
+    no_files, obj_files, read_model, read_picture, usd_files, warn_of_wind, write_glb, write_glb_morph,
+    write_glb_with, write_model, write_ply, write_png, write_stl,
 };
 pub use plant::{write_mtg, write_qsm};
 pub use summary::{DrawingSummary, MaterialSummary, ModelSummary, PartSummary};

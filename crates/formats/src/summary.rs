@@ -1,9 +1,9 @@
 //! What is in a file, for people.
 
 use base::Warning;
+use ink::{Drawing, StrokeMode};
 use mesh::Model;
 use serde::Serialize;
-use sketch::{Drawing, StrokeMode};
 
 /// What a model holds; lengths in metres.
 ///
@@ -121,7 +121,7 @@ impl ModelSummary {
 /// What a drawing holds; lengths in the file's unit, y up.
 ///
 /// ```
-/// let d = sketch::Drawing::from_polylines("a", &[vec![glam::DVec2::ZERO, glam::DVec2::new(3.0, 4.0)]]);
+/// let d = ink::Drawing::from_polylines("a", &[vec![glam::DVec2::ZERO, glam::DVec2::new(3.0, 4.0)]]);
 /// let info = formats::DrawingSummary::of(&d, &[]);
 /// assert_eq!((info.strokes, info.points, info.max), (1, 2, [3.0, 4.0]));
 /// ```

@@ -2,7 +2,7 @@
 
 use formats::{DrawingError, DrawingFormat, DrawingSummary, ReadDrawing, read_drawings, write_drawing};
 use glam::DVec2;
-use sketch::{Drawing, InkSample, Stroke, StrokeMode};
+use ink::{Drawing, InkSample, Stroke, StrokeMode};
 
 fn all(bytes: &[u8], format: DrawingFormat) -> Vec<Result<ReadDrawing, DrawingError>> {
     read_drawings(bytes, format, "file").collect()

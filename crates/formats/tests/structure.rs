@@ -15,7 +15,7 @@ use base::{Draw, Seed, Unit, UpAxis};
 use formats::{ExportSpec, write_mtg, write_qsm};
 use glam::{DVec2, DVec3};
 use mtg_reader::{Edge, Graph, read};
-use plant::{AxisKind, Blade, Frame, Lift, NodeId, Organ, OrganKind, Plant, Relief, Shape};
+use plant::{AxisKind, Blade, Frame, Lift, NodeId, Organ, OrganKind, Paint, Plant, Relief, Shape};
 use proptest::prelude::*;
 
 fn blade() -> Shape {
@@ -65,6 +65,7 @@ fn wild(seed: u64, axes: usize) -> Plant {
                 OrganKind::Pistil,
                 OrganKind::Thorn,
                 OrganKind::Pedicel,
+                OrganKind::Body,
             ];
             let kind = kinds[s.below(kinds.len())];
             p.organs.push(Organ {
@@ -74,7 +75,7 @@ fn wild(seed: u64, axes: usize) -> Plant {
                 shape,
                 frame,
                 scale: 2.0,
-                tint: [1.0; 3],
+                paint: Paint::default(),
                 key,
                 source,
             });
@@ -143,7 +144,7 @@ fn same(p: &Plant, g: &Graph, up: UpAxis, per_metre: f64) {
         assert_eq!(g.vertices[v].parent.map(|(a, _)| g.index(a)), bearing_axis, "the bearing axis");
     }
     let organs: Vec<usize> =
-        ["L", "K", "D", "U", "S", "C", "T", "Q"].into_iter().flat_map(|s| g.with_symbol(s)).collect();
+        ["L", "K", "D", "U", "B", "S", "C", "T", "Q"].into_iter().flat_map(|s| g.with_symbol(s)).collect();
     assert_eq!(organs.len(), p.organs.len(), "organs");
     for v in organs {
         let organ = &p.organs[g.index(v) - 1];

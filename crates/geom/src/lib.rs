@@ -26,6 +26,7 @@ mod ellipse;
 mod frame;
 mod hull3;
 mod kd;
+mod linear;
 mod outline;
 mod pca;
 mod polygon;
@@ -42,16 +43,17 @@ pub use ellipse::{Ellipse, fit_ellipse, fit_ellipse_harmonic};
 pub use frame::{Frame3, rotation_minimising_frames};
 pub use hull3::{Hull3, convex_hull3};
 pub use kd::{KdTree, KdTree2};
+pub use linear::{Blend, best_rotation, solve_positive};
 pub use outline::{crossing_points, self_crossings, simple_outline};
 pub use pca::{Pca2, pca2, pca3};
 pub use polygon::{centroid, contains, convex_hull, farthest_pair, medial_axis_width, signed_area};
 pub use polyline::{
-    Closest, closest_on_polyline, distance_to_polyline, point_at, point_at3, polyline_length,
-    polyline_length3, resample, resample3, simplify, smooth_gaussian, smooth_gaussian_closed, tangent_at,
-    tangent_at3, turning_angles,
+    Closest, closest_on_polyline, distance_to_polyline, nearest_on_polyline3, point_at, point_at3,
+    polyline_length, polyline_length3, resample, resample3, simplify, smooth_gaussian,
+    smooth_gaussian_closed, tangent_at, tangent_at3, turning_angles,
 };
 pub use spline::{
-    Ball, BallBSpline, Basis, Blend, EndCap, HeightField, MAX_DEGREE, NaturalCubic, RingRule, SplineError,
+    Ball, BallBSpline, Basis, EndCap, HeightField, MAX_DEGREE, NaturalCubic, RingRule, SplineError,
     SplineSurface, SurfacePoint, Tube, TubeSpec, Weights, chord_parameters,
 };
 pub use triangulate::{TriangulateError, Triangulation, triangulate_blade};

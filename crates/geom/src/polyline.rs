@@ -312,6 +312,28 @@ pub fn turning_angles(points: &[DVec2]) -> Vec<f64> {
         .collect()
 }
 
+/// Distance of a point from a line in space, and the share of the line's length at the nearest place, 0 to 1; infinity
+/// and 0 for fewer than two points. Cost: linear.
+///
+/// ```
+/// use glam::DVec3;
+/// assert_eq!(geom::nearest_on_polyline3(&[DVec3::ZERO, DVec3::X, DVec3::X * 4.0], DVec3::new(1.0, 2.0, 0.0)), (2.0, 0.25));
+/// ```
+pub fn nearest_on_polyline3(line: &[DVec3], p: DVec3) -> (f64, f64) {
+    let (mut best, mut at, mut sum) = (f64::INFINITY, 0.0, 0.0);
+    for w in line.windows(2) {
+        let d = w[1] - w[0];
+        let length = d.length();
+        let t = if length > 0.0 { ((p - w[0]).dot(d) / (length * length)).clamp(0.0, 1.0) } else { 0.0 };
+        let distance = p.distance(w[0] + d * t);
+        if distance < best {
+            (best, at) = (distance, sum + t * length);
+        }
+        sum += length;
+    }
+    (best, if sum > 0.0 { at / sum } else { 0.0 })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -9,7 +9,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::colonize::{colonize_part, plant_roots};
 use crate::error::GrowthError;
-use crate::tree::GROWN;
 use crate::{ColonizeSpec, Envelope, Fate, Obstacles, Skeleton, Tropism};
 
 /// Trees after paper 001. Lengths in metres; places relative to the root.
@@ -278,7 +277,7 @@ pub fn compete(
             later_points(&skeleton, &chosen, spec, cycle, at, inside)
         };
         let mut told = Report::default();
-        let share = |n: u32| GROWN * f64::from(n) / f64::from(spec.lifespan);
+        let share = |n: u32| crate::GROWN * f64::from(n) / f64::from(spec.lifespan);
         let part = (share(cycle), share(cycle + 1));
         let grown = colonize_part(skeleton, &points, obstacles, &spec.cycle(cycle), part, run, &mut told)?;
         for w in told.warnings {

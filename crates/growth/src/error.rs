@@ -74,7 +74,7 @@ pub enum GrowthError {
     Mesh(#[from] MeshFault),
     /// The rules of an L-system are at fault.
     #[error(transparent)]
-    Lsystem(#[from] crate::LsystemError),
+    Lsystem(#[from] LsystemError),
     /// The envelope has hardly any room for attractors.
     #[error(
         "the envelope is empty or almost so: {found} of {wanted} points found a place in {tries} tries; \
@@ -127,6 +127,73 @@ pub(crate) fn within(
     range: &'static str,
 ) -> Result<f64, GrowthError> {
     if (lo..=hi).contains(&value) { Ok(value) } else { Err(GrowthError::Field { field, range, value }) }
+}
+
+/// What is wrong with an L-system.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum LsystemError {
+    /// A line cannot be read.
+    #[error("line {line}: {why}")]
+    Syntax {
+        /// From 1.
+        line: usize,
+        /// What was expected.
+        why: String,
+    },
+    /// There is no axiom.
+    #[error("there is no axiom: a line `axiom = ...` is needed")]
+    NoAxiom,
+    /// The string explodes.
+    #[error(
+        "the rule `{rule}` in line {line} lets the string explode: in step {step} it had written {made} modules when \
+         the limit of {most} was passed; take fewer steps or a condition that ends it"
+    )]
+    TooLarge {
+        /// The rule that wrote most.
+        rule: String,
+        /// Its line, from 1.
+        line: usize,
+        /// The step of rewriting.
+        step: u32,
+        /// Modules that it wrote in this step.
+        made: usize,
+        /// The limit.
+        most: usize,
+    },
+    /// No rule ever had a module to rewrite.
+    #[error(
+        "nothing grew: no rule matches a module in any step. There is {there}; the rules are for {rules}. A rule \
+         matches a module of its name with as many numbers as it has parameters, where its `if` holds"
+    )]
+    NoMatch {
+        /// The modules that were left, with their counts of numbers.
+        there: String,
+        /// What the rules are for.
+        rules: String,
+    },
+    /// A number of a module is not finite.
+    #[error("the rule `{rule}` in line {line} gives a number that is not finite")]
+    NotFinite {
+        /// The rule.
+        rule: String,
+        /// Its line, from 1; 0 for the axiom.
+        line: usize,
+    },
+}
+
+impl LsystemError {
+    /// The same error where the rules start in line `first` of a longer text: its lines count from the start of that.
+    #[must_use]
+    pub fn from_line(mut self, first: usize) -> Self {
+        if let Self::Syntax { line, .. } | Self::TooLarge { line, .. } | Self::NotFinite { line, .. } =
+            &mut self
+            && *line > 0
+        {
+            *line += first - first.min(1);
+        }
+        self
+    }
 }
 
 /// Finite and not absurdly far away.

@@ -5,7 +5,7 @@
 use base::ops::{self, PI};
 use base::{Counted, Draw, Report, Run, Seed, map_indexed};
 use glam::{DVec2, DVec3};
-use plant::{AxisId, Blade, Frame, Lift, NodeId, Organ, OrganKind, Phyllotaxis, Plant, Relief, Shape};
+use plant::{AxisId, Blade, Frame, Lift, NodeId, Organ, OrganKind, Paint, Phyllotaxis, Plant, Relief, Shape};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -234,7 +234,7 @@ pub fn add_leaves(
             shape,
             frame: c.frame(),
             scale: c.scale,
-            tint: [1.0; 3],
+            paint: Paint::default(),
             key: c.key,
             source: None,
         });

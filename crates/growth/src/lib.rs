@@ -46,11 +46,11 @@ pub use arrangement::Arrangement;
 pub use colonize::{ColonizeSpec, Colonized, Fate, colonize, colonize_from, regrow};
 pub use competition::{Competed, CompetitionSpec, Cycle, compete};
 pub use envelope::{Envelope, Region};
-pub use error::{GrowthError, MeshFault};
+pub use error::{GrowthError, LsystemError, MeshFault};
 pub use guided::{BrushStroke, Guided, GuidedSpec, StartBud, guide, guide_from};
 pub use leaves::{LeafCount, LeafSpec, add_leaves};
 pub use look::{Bark, BladeForm, BladeSpec, BlossomSpec, Look};
-pub use lsystem::{LeafMark, Lsystem, LsystemError, LsystemTree, OAK_RULES, grow_lsystem};
+pub use lsystem::{LeafMark, Lsystem, LsystemTree, OAK_RULES, grow_lsystem};
 pub use mesh_faults::{open_edges, signed_volume};
 pub use obstacle::{Obstacle, Obstacles};
 pub use self_organize::{Light, Resource, SelfOrganized, SelfOrganizingSpec, self_organize};
@@ -58,3 +58,7 @@ pub use skeleton::{JointId, Skeleton, SkeletonFault};
 pub use tree::{Grown, Tally, grow};
 pub use tropism::Tropism;
 pub use wood::{Wood, WoodSpec, make_wood};
+
+/// The share of the work that is done, for people who wait, when the skeleton stands; the rest is wood, leaves and
+/// meshes. As of an oak.
+pub(crate) const GROWN: f64 = 0.4;

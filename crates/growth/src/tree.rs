@@ -13,9 +13,8 @@ use crate::{
     self_organize,
 };
 
-/// The shares of the work that are done, for people who wait, when the skeleton stands, when it is wood, and when it
-/// has leaves; meshes are the rest. As of an oak.
-pub(crate) const GROWN: f64 = 0.4;
+/// The shares of the work that are done, for people who wait, when it is wood, and when it has leaves; meshes are the
+/// rest. As of an oak.
 const WOODY: f64 = 0.45;
 const LEAFY: f64 = 0.6;
 
@@ -72,7 +71,7 @@ pub fn grow(
     spec.check(&run.budget)?;
     let obstacles = Obstacles::new(&spec.obstacles, spec.clearance_m)?;
     let Bones { mut skeleton, marks, tally } = bones(spec, &obstacles, seed, run, report)?;
-    run.cancel.reached(GROWN);
+    run.cancel.reached(crate::GROWN);
     let by_birth = !matches!(spec.method, Method::Lsystem { .. } | Method::SelfOrganizing(_));
     if let Some(age) = spec.age.filter(|_| by_birth) {
         skeleton = skeleton.at_age(age);
@@ -221,12 +220,12 @@ fn bones(
                 let own = region.scatter(*points as usize, *hollow, seed.child(i), free)?;
                 attractors.extend(own.into_iter().map(|p| *root + p));
             }
-            let part = (0.0, GROWN);
+            let part = (0.0, crate::GROWN);
             Ok(Bones::colonized(colonize_part(roots, &attractors, obstacles, steps, part, run, report)?))
         }
         Method::Points { points, steps } => {
             let roots = plant_roots(&spec.roots, obstacles, run)?;
-            let part = (0.0, GROWN);
+            let part = (0.0, crate::GROWN);
             let grown = colonize_part(roots, points, obstacles, steps, part, run, report)?;
             reached_some(&spec.roots, points, steps, obstacles, &grown)?;
             Ok(Bones::colonized(grown))

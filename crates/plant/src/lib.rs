@@ -17,7 +17,7 @@ mod validate;
 
 pub use blade::{Blade, Lift, Relief};
 pub use measure::{Measures, OrderMeasures, RadiusExponent, Strahler};
-pub use organ::{Flower, FlowerId, Frame, Organ, OrganId, OrganKind, Shape, ShapeId};
+pub use organ::{Flower, FlowerId, Frame, Organ, OrganId, OrganKind, Paint, Shape, ShapeId};
 pub use phyllotaxis::{Divergence, Phyllotaxis};
 pub use pipe::{PipeModel, Taper, pipe_radii};
 pub use relief::BladeSurface;

@@ -28,7 +28,7 @@ pub enum OrganKind {
     Petal,
     /// The centre of a flower.
     Disc,
-    /// Fruit, or a body such as a cactus's.
+    /// Fruit.
     Fruit,
     /// Stamen: filament and anther.
     Stamen,
@@ -38,6 +38,35 @@ pub enum OrganKind {
     Thorn,
     /// Stalk of a flower.
     Pedicel,
+    /// A green body, such as a cactus's: what stands for stem and leaves in one.
+    Body,
+}
+
+/// What the colour of an organ is, as its maker knows it. Linear RGB.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Paint {
+    /// The colour that organs of its kind have, multiplied by this: makers vary it by a tenth.
+    Natural([f32; 3]),
+    /// A colour of its own, such as a species' in autumn.
+    Tinted([f32; 3]),
+    /// The colour of the pen that it was drawn with.
+    Drawn([f32; 3]),
+}
+
+impl Default for Paint {
+    /// As organs of its kind are.
+    fn default() -> Self {
+        Self::Natural([1.0; 3])
+    }
+}
+
+impl Paint {
+    /// The colour, or the factor of a natural one.
+    pub const fn rgb(self) -> [f32; 3] {
+        match self {
+            Self::Natural(c) | Self::Tinted(c) | Self::Drawn(c) => c,
+        }
+    }
 }
 
 /// A local right-handed frame in the plant: `right` x `along` = `normal`, unit vectors at right angles.
@@ -117,6 +146,16 @@ pub enum Shape {
 }
 
 impl Shape {
+    /// How far it reaches from its root, metres at scale 1.
+    pub fn reach(&self) -> f64 {
+        match self {
+            Self::Blade(b) => b.length(),
+            Self::Dome { radius_m, .. } => *radius_m,
+            Self::Revolution { profile } => profile.iter().map(|p| p.y.abs()).fold(0.0, f64::max),
+            Self::Strand { path, .. } => path.last().map_or(0.0, |p| p.length()),
+        }
+    }
+
     /// Points that its surface lies between, in its own frame at scale 1: a blade's margin, midrib and veins as they are
     /// bent; of a body the corners of the boxes around its parts.
     pub fn corners(&self) -> Vec<DVec3> {
@@ -167,8 +206,8 @@ pub struct Organ {
     pub frame: Frame,
     /// Size relative to the shape, above 0.
     pub scale: f64,
-    /// Linear RGB that multiplies the material's colour; `[1, 1, 1]` leaves it as it is.
-    pub tint: [f32; 3],
+    /// Its colour.
+    pub paint: Paint,
     /// A key that is stable under edits of other parts.
     pub key: u64,
     /// The stroke it was read from; `None` for what the program placed.
@@ -196,13 +235,28 @@ impl Digestible for Frame {
     }
 }
 
+impl Digestible for Paint {
+    fn digest(&self, d: &mut Digest) {
+        d.add(&self.rgb());
+        match self {
+            Self::Natural(_) => {}
+            Self::Tinted(_) => {
+                d.add(&1_u8);
+            }
+            Self::Drawn(_) => {
+                d.add(&2_u8);
+            }
+        }
+    }
+}
+
 impl Digestible for Organ {
     fn digest(&self, d: &mut Digest) {
         d.add(&(self.kind as u8)).add(&self.bearer.map(NodeId::raw)).add(&self.flower.map(FlowerId::raw));
         d.add(&self.shape.raw())
             .add(&self.frame)
             .add(&self.scale)
-            .add(&self.tint)
+            .add(&self.paint)
             .add(&self.key)
             .add(&self.source);
     }

@@ -136,6 +136,20 @@ impl Plant {
         &self.nodes.radius_m[r.start as usize..r.end as usize]
     }
 
+    /// Lowest and highest corner of the box around nodes and organs, roughly: of an organ its root and how far it
+    /// reaches. What is not finite or absurdly far is left out; `None` for nothing at all.
+    pub fn extent(&self) -> Option<(DVec3, DVec3)> {
+        let organs = self.organs.iter().flat_map(|o| {
+            let reach = self.shapes.get(o.shape.index()).map_or(0.0, Shape::reach) * o.scale;
+            [o.frame.origin, o.frame.origin + o.frame.along * reach]
+        });
+        let points = self.nodes.position.iter().copied().chain(organs);
+        points
+            .filter(|p| p.is_finite() && p.abs().max_element() < 1e12)
+            .map(|p| (p, p))
+            .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+    }
+
     /// Adds a shape and returns its handle.
     pub fn add_shape(&mut self, shape: Shape) -> crate::ShapeId {
         self.shapes.push(shape);

@@ -2,15 +2,15 @@
 //!
 //! `Plant + edits -> Draft -> each edit done or not, with the reason -> Plant`
 
-use base::{Cancelled, Report, Run, Seed};
+use base::{Cancelled, Run, Seed};
 use glam::{DQuat, DVec3};
-use growth::{GrowthError, Obstacles};
+use growth::Obstacles;
 use plant::{OrganKind, Plant};
 
+use crate::bench::{Bench, Stop};
 use crate::draft::{At, Draft};
 use crate::edit::{Destination, HandEdit, Turn};
-use crate::habit::Habit;
-use crate::key::{AxisKey, nearest_on};
+use crate::key::AxisKey;
 use crate::outcome::{Changed, Outcome, Why};
 use crate::pipes::Pipes;
 use crate::{fill, leaves, sketch_branch};
@@ -31,50 +31,6 @@ pub struct Applied {
     pub plant: Plant,
     /// What became of each edit, in their order.
     pub outcomes: Vec<Outcome>,
-}
-
-/// A plant may have so many axes at most after an edit that lets something grow.
-pub(crate) const MOST_AXES: usize = 400_000;
-
-/// Why an edit stopped.
-pub(crate) enum Stop {
-    Why(Why),
-    Cancelled(Cancelled),
-}
-
-impl From<Why> for Stop {
-    fn from(why: Why) -> Self {
-        Self::Why(why)
-    }
-}
-
-impl From<Cancelled> for Stop {
-    fn from(c: Cancelled) -> Self {
-        Self::Cancelled(c)
-    }
-}
-
-impl From<GrowthError> for Stop {
-    fn from(error: GrowthError) -> Self {
-        match error {
-            GrowthError::Cancelled(c) => Self::Cancelled(c),
-            // All numbers are ours or checked: what is left is a place where nothing can grow.
-            _ => Self::Why(Why::NothingGrew),
-        }
-    }
-}
-
-/// What every edit is given.
-pub(crate) struct Bench<'a> {
-    pub(crate) obstacles: &'a Obstacles,
-    pub(crate) exponent: Option<f64>,
-    pub(crate) run: &'a Run<'a>,
-}
-
-impl Bench<'_> {
-    pub(crate) fn habit(&self, draft: &Draft) -> Habit {
-        Habit::of(draft, self.exponent)
-    }
 }
 
 /// Does edits one after another.
@@ -249,7 +205,7 @@ fn shift(draft: &mut Draft, axis: &AxisKey, to: &Destination, bench: &Bench<'_>)
                 draft.carry(&what, base, base + *by, DQuat::IDENTITY);
                 return Ok(Changed { moved: count(&what), by_likeness, ..Changed::default() });
             };
-            (at.branch, nearest_on(&draft.branches[at.branch].points, base + *by).1)
+            (at.branch, geom::nearest_on_polyline3(&draft.branches[at.branch].points, base + *by).1)
         }
     };
     let what = draft.subtree(b);
@@ -292,9 +248,4 @@ fn prune(draft: &mut Draft, axis: &AxisKey, at: f64, bench: &Bench<'_>) -> Resul
         pipes.settle(draft, habit.exponent, habit.tip_m);
     }
     Ok(Changed { removed, by_likeness, ..Changed::default() })
-}
-
-/// A report that nobody reads: what growth warns of is part of the outcome or of no interest to a hand.
-pub(crate) fn unread() -> Report {
-    Report::default()
 }

@@ -5,8 +5,6 @@
 use glam::{DQuat, DVec3};
 use plant::{AxisKind, Flower, FlowerId, NodeId, Organ, Plant, Shape};
 
-use crate::key::nearest_on;
-
 /// A node of a branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct At {
@@ -283,7 +281,7 @@ impl Draft {
     /// How deep a point lies below the bark of a branch, metres; negative outside.
     pub(crate) fn depth_in(&self, b: usize, p: DVec3) -> f64 {
         let branch = &self.branches[b];
-        let (distance, share) = nearest_on(&branch.points, p);
+        let (distance, share) = geom::nearest_on_polyline3(&branch.points, p);
         let lengths = branch.lengths();
         let at = share * lengths.last().copied().unwrap_or(0.0);
         let i = lengths.partition_point(|l| *l < at).min(branch.radii.len().saturating_sub(1));

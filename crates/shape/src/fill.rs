@@ -4,7 +4,7 @@ use base::{Draw, Seed};
 use glam::{DVec2, DVec3};
 use growth::{ColonizeSpec, JointId, colonize_from};
 
-use crate::apply::{Bench, Stop, unread};
+use crate::bench::{Bench, Stop, unread};
 use crate::draft::{At, Draft};
 use crate::edit::ViewPlane;
 use crate::graft::{Hosts, graft_all};

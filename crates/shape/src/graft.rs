@@ -6,7 +6,7 @@ use base::Seed;
 use glam::DVec3;
 use growth::{JointId, Skeleton, WoodSpec, make_wood};
 
-use crate::apply::{Bench, MOST_AXES, Stop};
+use crate::bench::{Bench, MOST_AXES, Stop};
 use crate::draft::{At, Branch, Draft};
 use crate::habit::{Habit, kind_on};
 use crate::outcome::Why;

@@ -5,7 +5,7 @@
 use base::ops;
 use glam::DVec3;
 use growth::LeafSpec;
-use plant::{AxisKind, Blade, OrganKind, Shape, ShapeId};
+use plant::{AxisKind, Blade, OrganKind, Paint, Shape, ShapeId};
 
 use crate::draft::Draft;
 
@@ -35,7 +35,7 @@ pub(crate) struct LeafHabit {
     pub(crate) blade: Blade,
     pub(crate) shape: ShapeId,
     /// Colours that occur.
-    pub(crate) tints: Vec<[f32; 3]>,
+    pub(crate) paints: Vec<Paint>,
 }
 
 /// The middle one; `or` where there is none.
@@ -148,8 +148,8 @@ fn leaf_habit(draft: &Draft) -> Option<LeafHabit> {
         max_leaves: 200_000,
         ..LeafSpec::default()
     };
-    let tints = of_shape().map(|o| o.what.tint).collect();
-    (length_m > 0.0).then(|| LeafHabit { spec, blade: blade.clone(), shape: id, tints })
+    let paints = of_shape().map(|o| o.what.paint).collect();
+    (length_m > 0.0).then(|| LeafHabit { spec, blade: blade.clone(), shape: id, paints })
 }
 
 /// The kind of axis that grows on one of this kind.

@@ -241,26 +241,10 @@ fn find_near(draft: &Draft, p: DVec3) -> Result<usize, Why> {
     let limit = 0.1 * draft.size();
     let mut best = (limit, None);
     for (i, b) in draft.branches.iter().enumerate().filter(|(_, b)| b.alive && b.is_shoot()) {
-        let (distance, _) = nearest_on(&b.points, p);
+        let (distance, _) = geom::nearest_on_polyline3(&b.points, p);
         if distance < best.0 {
             best = (distance, Some(i));
         }
     }
     best.1.ok_or(Why::NothingNear { within_m: limit })
-}
-
-/// Distance of a point from a line, and the share of the line's length at the nearest place.
-pub(crate) fn nearest_on(line: &[DVec3], p: DVec3) -> (f64, f64) {
-    let (mut best, mut at, mut sum) = (f64::INFINITY, 0.0, 0.0);
-    for w in line.windows(2) {
-        let d = w[1] - w[0];
-        let length = d.length();
-        let t = if length > 0.0 { ((p - w[0]).dot(d) / (length * length)).clamp(0.0, 1.0) } else { 0.0 };
-        let distance = p.distance(w[0] + d * t);
-        if distance < best {
-            (best, at) = (distance, sum + t * length);
-        }
-        sum += length;
-    }
-    (best, if sum > 0.0 { at / sum } else { 0.0 })
 }

@@ -6,11 +6,10 @@ use glam::{DQuat, DVec3};
 use growth::add_leaves;
 use plant::{AxisId, AxisKind, OrganKind, Plant, Shape};
 
-use crate::apply::{Bench, Stop, unread};
+use crate::bench::{Bench, Stop, unread};
 use crate::draft::{At, Borne, Draft};
 use crate::edit::LeafRegion;
 use crate::habit::Habit;
-use crate::key::nearest_on;
 use crate::outcome::{Changed, Why};
 
 /// Most leaves of a plant after an edit.
@@ -48,7 +47,7 @@ fn chosen(draft: &Draft, region: &LeafRegion) -> Result<(Vec<usize>, bool), Why>
                 };
                 o.frame.place(DVec3::Y * (0.5 * length), o.scale)
             };
-            let near = |o: &plant::Organ| nearest_on(&line, middle(o)).0 <= *radius_m;
+            let near = |o: &plant::Organ| geom::nearest_on_polyline3(&line, middle(o)).0 <= *radius_m;
             (leaves.filter(|(_, o)| near(&o.what)).map(|(i, _)| i).collect(), false)
         }
     };
@@ -124,7 +123,7 @@ fn add_beside(draft: &mut Draft, row: usize, down: f64, k: u32, key: Seed) -> bo
         place(&mut leaf, centre, centre, quat);
     } else {
         let along = branch.tangent(at.node);
-        let (_, share) = nearest_on(&branch.points, leaf.what.frame.origin);
+        let (_, share) = geom::nearest_on_polyline3(&branch.points, leaf.what.frame.origin);
         let whole = branch.length();
         let on = |s: f64| geom::point_at3(&branch.points, s.clamp(0.0, whole));
         let (Some(from), Some(to)) = (on(share * whole), on(share * whole - down)) else { return false };
@@ -163,8 +162,8 @@ pub(crate) fn dress(draft: &mut Draft, habit: &Habit, bench: &Bench<'_>) -> Resu
         let axis = bare.nodes.axis[node.index()];
         let first = bare.axes[axis.index()].nodes.start as usize;
         let at = At { branch: fresh[AxisId::index(axis)], node: node.index() - first };
-        let tint = leaves.tints.get(Seed::new(organ.key).stream(Draw::Tint).below(leaves.tints.len()));
-        let what = plant::Organ { shape: leaves.shape, tint: tint.copied().unwrap_or([1.0; 3]), ..organ };
+        let paint = leaves.paints.get(Seed::new(organ.key).stream(Draw::Tint).below(leaves.paints.len()));
+        let what = plant::Organ { shape: leaves.shape, paint: paint.copied().unwrap_or_default(), ..organ };
         draft.organs.push(Borne { what, at: Some(at), alive: true });
     }
     Ok(())

@@ -7,6 +7,7 @@
 //! | `edit` | the edits as plain data |
 //! | `key` | names of branches that survive a change |
 //! | `apply` | one edit after another; rotate, move, prune |
+//! | `bench` | what every edit is given, and why one stops |
 //! | `draft` | the plant in pieces while it is edited |
 //! | `habit` | what new wood must be like: learnt from the plant |
 //! | `pipes` | radii below what changed |
@@ -18,6 +19,7 @@
 //! | `outcome` | done, or why not, in plain words |
 
 mod apply;
+mod bench;
 mod draft;
 mod edit;
 mod fill;

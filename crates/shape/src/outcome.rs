@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Why an edit could not be done. Its text is for people, [`code`](Self::code) for programs and translations.
@@ -95,7 +96,7 @@ impl Why {
 }
 
 /// What an edit changed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Changed {
     /// Branches taken away.

@@ -113,7 +113,7 @@ pub fn pick(plant: &Plant, ray: &Ray, reach: Reach) -> Option<Pick> {
 fn bearer_of(plant: &Plant, pick: Pick) -> Option<Pick> {
     let node = plant.axis(pick.axis).bearer?.index();
     let (axis, point) = (*plant.nodes.axis.get(node)?, *plant.nodes.position.get(node)?);
-    let (_, at) = crate::key::nearest_on(plant.axis_points(axis), point);
+    let (_, at) = geom::nearest_on_polyline3(plant.axis_points(axis), point);
     Some(Pick { axis, at, point, ..pick })
 }
 

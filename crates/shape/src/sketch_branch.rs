@@ -6,12 +6,12 @@ use glam::DVec3;
 use growth::{BrushStroke, GuidedSpec, Skeleton, StartBud, Tropism, guide_from};
 use plant::AxisKind;
 
-use crate::apply::{Bench, Stop, unread};
+use crate::bench::{Bench, Stop, unread};
 use crate::draft::{At, Branch, Draft};
 use crate::fill::joint_of;
 use crate::graft::{Hosts, graft_all};
 use crate::habit::{Habit, kind_on, softened};
-use crate::key::{AxisKey, nearest_on};
+use crate::key::AxisKey;
 use crate::leaves::dress;
 use crate::outcome::{Changed, Why};
 use crate::pipes::Pipes;
@@ -62,7 +62,7 @@ pub(crate) fn add(
     let share = match drawn.at {
         Some(at) if at.is_finite() => at.clamp(0.0, 1.0),
         Some(_) => return Err(Why::BadNumber { field: "at" }.into()),
-        None => nearest_on(&draft.branches[host].points, line[0]).1,
+        None => geom::nearest_on_polyline3(&draft.branches[host].points, line[0]).1,
     };
     let node = draft.node_at(host, share);
     let at = At { branch: host, node };
@@ -227,7 +227,7 @@ pub(crate) fn brush(
     }
     points.drain(..hidden.saturating_sub(1));
     radii.drain(..hidden.saturating_sub(1));
-    let share = nearest_on(&draft.branches[host].points, points[0]).1;
+    let share = geom::nearest_on_polyline3(&draft.branches[host].points, points[0]).1;
     let node = draft.node_at(host, share);
     let (at, start) = (At { branch: host, node }, draft.branches[host].points[node]);
     // A hand starts near the bearer, hardly ever on it: a short first piece would lead anywhere.
@@ -284,7 +284,7 @@ pub(crate) fn brush(
 fn nearest_shoot(draft: &Draft, p: DVec3, within_m: f64) -> Result<usize, Why> {
     let shoots = draft.branches.iter().enumerate().filter(|(_, b)| b.alive && b.is_shoot());
     let best = shoots
-        .map(|(i, b)| (nearest_on(&b.points, p).0, i))
+        .map(|(i, b)| (geom::nearest_on_polyline3(&b.points, p).0, i))
         .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     best.filter(|(d, _)| *d <= within_m).map(|(_, i)| i).ok_or(Why::NothingNear { within_m })
 }

@@ -445,7 +445,7 @@ fn leaned(normal: DVec3, right: DVec3, by: f64) -> DVec3 {
 
 /// The share of an axis at which a point of it lies.
 fn share_of(plant: &Plant, axis: AxisId, at: DVec3) -> f64 {
-    crate::key::nearest_on(plant.axis_points(axis), at).1
+    geom::nearest_on_polyline3(plant.axis_points(axis), at).1
 }
 
 /// The share of an axis that is nearest to a pointer.

@@ -51,11 +51,11 @@ fn drawn(kind: usize, seed: u64) -> Plant {
         all.push(line(&[(2.0, 60.0), (30.0, 90.0), (50.0, 95.0), (28.0, 75.0), (2.0, 60.0)]));
         all
     };
-    let drawing = sketch::Drawing::from_polylines("drawn", &strokes);
+    let drawing = ink::Drawing::from_polylines("drawn", &strokes);
     let mut report = Report::default();
-    let ink = sketch::clean(&drawing, &mut report);
-    let classes = sketch::classify(&ink, &Run::plain());
-    let reading = sketch::read(&ink, &classes, &mut report);
+    let ink = ink::clean(&drawing, &mut report);
+    let classes = ink::classify(&ink, &Run::plain());
+    let reading = reading::read(&ink, &classes, &mut report);
     let spec = sketch::SketchSpec::default();
     sketch::build(&reading, &spec, Seed::new(seed), &Run::plain(), &mut report).expect("not cancelled").plant
 }

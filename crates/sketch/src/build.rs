@@ -5,7 +5,8 @@
 use base::{Cancelled, Report, Run, Seed};
 use geom::contains;
 use glam::{DVec2, DVec3};
-use plant::{AxisId, AxisKind, NodeId, PipeModel, Plant, ShapeId, Taper, pipe_radii};
+use plant::{AxisId, AxisKind, NodeId, OrganKind, PipeModel, Plant, Shape, ShapeId, Taper, pipe_radii};
+use reading::{BladeReading, Reading, RegionKind};
 
 use crate::depth::{
     Bearing, LocalBlade, Part, Plans, Scene, bend_by_light_and_weight, blade_key, branch_depths, coloured,
@@ -13,7 +14,7 @@ use crate::depth::{
 };
 use crate::fill::{FillContext, KeptBodies, fill};
 use crate::front::Front;
-use crate::{BladeReading, PlantMap, Reading, RegionKind, SketchSpec};
+use crate::{PlantMap, SketchSpec};
 
 /// A plant and how it lies in the drawing.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,7 +40,8 @@ pub struct Built {
 /// use base::{Report, Run, Seed};
 /// use glam::DVec2;
 /// use plant::AxisKind;
-/// use sketch::{AxisReading, Reading, SketchSpec, build};
+/// use reading::{AxisReading, Reading};
+/// use sketch::{SketchSpec, build};
 /// let stem = AxisReading {
 ///     points: vec![DVec2::new(0.2, 0.0), DVec2::new(0.2, 0.5)],
 ///     kind: AxisKind::Stem,
@@ -132,17 +134,32 @@ pub fn build_again(
     hang_in_crowns(&mut plant, &scene, reading, &crowned, &leaves);
     let model = pipes(&plant, &plans, &ids, reading, spec, map);
     pipe_radii(&mut plant, &model);
+    name_bodies(&mut plant);
     report.book("depth", run.clock.now_ms() - started);
     debug_assert_eq!(plant.validate().next(), None, "a built plant is sound");
     Ok(Built { plant, map })
 }
 
+/// What was read as a fruit and is a good part of its plant is a body: a cactus pad is, an apple is not.
+fn name_bodies(plant: &mut Plant) {
+    let Some((low, high)) = plant.extent() else { return };
+    let thorny = plant.organs.iter().any(|o| o.kind == OrganKind::Thorn);
+    let tall = low.distance(high) * if thorny { 0.12 } else { 0.4 };
+    for organ in plant.organs.iter_mut().filter(|o| o.kind == OrganKind::Fruit) {
+        let Some(Shape::Revolution { profile }) = plant.shapes.get(organ.shape.index()) else { continue };
+        let (low, high) = profile.iter().fold((0.0_f64, 0.0_f64), |(a, b), p| (a.min(p.y), b.max(p.y)));
+        if (high - low) * organ.scale > tall {
+            organ.kind = OrganKind::Body;
+        }
+    }
+}
+
 /// Scale and origin: the main axis stands at x = 0 on the ground, and the plant has the height asked for.
 fn plant_map(reading: &Reading, spec: &SketchSpec) -> PlantMap {
     let sound = |p: &DVec2| p.is_finite() && p.abs().max_element() < 1e6;
-    let standing = |a: &&crate::AxisReading| a.bearer.is_none() && a.kind != AxisKind::Root;
-    let foot = |a: &crate::AxisReading| a.points.iter().copied().find(|p| sound(p));
-    let length = |a: &crate::AxisReading| geom::polyline_length(&a.points);
+    let standing = |a: &&reading::AxisReading| a.bearer.is_none() && a.kind != AxisKind::Root;
+    let foot = |a: &reading::AxisReading| a.points.iter().copied().find(|p| sound(p));
+    let length = |a: &reading::AxisReading| geom::polyline_length(&a.points);
     let main = reading
         .axes
         .iter()

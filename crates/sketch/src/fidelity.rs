@@ -7,9 +7,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use base::{Run, map_indexed};
 use geom::{distance_to_polyline, resample};
 use glam::{DVec2, DVec3};
+use ink::Ink;
 use plant::{AxisId, OrganKind, Shape};
+use reading::Reading;
 
-use crate::{Built, Ink, Reading};
+use crate::Built;
 
 /// Most points at which one line is compared: felt-pen strokes hold no more detail.
 const SAMPLES: f64 = 64.0;
@@ -53,7 +55,9 @@ pub struct StrokeFidelity {
 /// use base::{Report, Run, Seed};
 /// use glam::DVec2;
 /// use plant::AxisKind;
-/// use sketch::{AxisReading, Drawing, Reading, SketchSpec, build, clean, fidelity};
+/// use ink::{Drawing, clean};
+/// use reading::{AxisReading, Reading};
+/// use sketch::{SketchSpec, build, fidelity};
 /// let ink = clean(&Drawing::from_polylines("stem", &[vec![DVec2::ZERO, DVec2::Y]]), &mut Report::default());
 /// let points = ink.strokes[0].points.clone();
 /// let stem =
@@ -209,7 +213,9 @@ mod tests {
     use plant::AxisKind;
 
     use super::*;
-    use crate::{AxisReading, BladeReading, Drawing, LeafDepth, SketchSpec, build, clean};
+    use crate::{LeafDepth, SketchSpec, build};
+    use ink::{Drawing, clean};
+    use reading::{AxisReading, BladeReading};
 
     fn stem_and_leaf(shift: f64) -> (Reading, Ink) {
         let p = DVec2::new;

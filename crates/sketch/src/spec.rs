@@ -1,9 +1,10 @@
 //! What can be asked of the sketch maker.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// How the depth of branches is found (paper 000, section 5.2).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum BranchDepth {
     /// Eq 4 as printed: the sum of the angles between siblings.
@@ -14,7 +15,7 @@ pub enum BranchDepth {
 }
 
 /// How the depth of leaves is found (paper 000, section 5.3).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum LeafDepth {
     /// The light prior as printed: every leaf turns to the same side.
@@ -27,7 +28,7 @@ pub enum LeafDepth {
 }
 
 /// Eq 2: growth of twigs and midribs inside a contour.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct FillSpec {
     /// Attraction by the contour, `k_p`. 0 to 1, default 0.55 (Fig 2b of the paper).
@@ -49,7 +50,7 @@ impl Default for FillSpec {
 }
 
 /// Eq 7: how an axis thins from base to tip: r(x) = (s^(-alpha x) + m) / (1 + m).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct TaperSpec {
     /// s, above 1, default 100.
@@ -67,7 +68,7 @@ impl Default for TaperSpec {
 }
 
 /// Eq 5 and section 6.2: how blades bend and hollow, as shares of their length.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct ReliefSpec {
     /// A of Eq 5 for petals, -0.2 to 0.2, default 0.08.
@@ -98,7 +99,7 @@ impl Default for ReliefSpec {
 }
 
 /// Everything that can be asked of the sketch maker; saved with the document.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct SketchSpec {
     /// Height of the plant in metres, above 0. `None`: 8 m for a tree, 0.5 m for a herb.

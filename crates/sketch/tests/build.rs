@@ -2,12 +2,13 @@
 
 use base::{CancelToken, Report, Run, Seed, ops};
 use glam::{DVec2, DVec3};
-use plant::{AxisId, AxisKind, Lift, OrganKind, Plant, Shape};
+use plant::{AxisId, AxisKind, Lift, OrganKind, Paint, Plant, Shape};
 use proptest::prelude::*;
-use sketch::{
-    Attachment, AxisReading, BladeReading, BranchDepth, Built, DiscReading, FlowerReading, FruitReading,
-    LeafDepth, Reading, RegionKind, RegionReading, SketchSpec, build,
+use reading::{
+    Attachment, AxisReading, BladeReading, DiscReading, FlowerReading, FruitReading, Reading, RegionKind,
+    RegionReading,
 };
+use sketch::{BranchDepth, Built, LeafDepth, SketchSpec, build};
 
 fn v(x: f64, y: f64) -> DVec2 {
     DVec2::new(x, y)
@@ -242,7 +243,7 @@ fn a_new_leaf_leaves_the_other_organs_as_they_were() {
     let (a, b) = (made(&reading, &SketchSpec::default()), made(&more, &SketchSpec::default()));
     for o in a.plant.organs.iter().filter(|o| o.source.is_some()) {
         let p = b.plant.organs.iter().find(|p| p.source == o.source && p.kind == o.kind).expect("there");
-        assert_eq!((o.key, o.frame, o.tint), (p.key, p.frame, p.tint));
+        assert_eq!((o.key, o.frame, o.paint), (p.key, p.frame, p.paint));
         assert_eq!(a.plant.shapes[o.shape.index()], b.plant.shapes[p.shape.index()]);
     }
 }
@@ -299,13 +300,17 @@ fn coloured_pens_colour_organs_and_one_pen_does_not() {
         reading.leaves.iter_mut().for_each(|b| b.color = Some(leaf));
         reading.flowers[0].petals.iter_mut().for_each(|b| b.color = Some(petal));
         let built = made(&reading, &SketchSpec::default());
-        let of = |kind| built.plant.organs.iter().find(|o| o.kind == kind).expect("there").tint;
+        let of = |kind| built.plant.organs.iter().find(|o| o.kind == kind).expect("there").paint;
         (of(OrganKind::Leaf), of(OrganKind::Petal))
     };
     let (leaf, petal) = tints([40, 160, 30], [230, 40, 90]);
+    let (Paint::Drawn(leaf), Paint::Drawn(petal)) = (leaf, petal) else { panic!("{leaf:?} {petal:?}") };
     assert!(leaf[1] > 3.0 * leaf[0] && petal[0] > 3.0 * petal[1], "{leaf:?} {petal:?}");
     for one in [[0, 0, 0], [20, 20, 230]] {
         let (leaf, petal) = tints(one, one);
+        let (Paint::Natural(leaf), Paint::Natural(petal)) = (leaf, petal) else {
+            panic!("{leaf:?} {petal:?}")
+        };
         assert!(leaf.iter().chain(&petal).all(|c| (0.8..1.2).contains(c)), "a pen's colour: {leaf:?}");
     }
 }
@@ -323,7 +328,7 @@ fn leaves_take_the_colour_of_their_crown() {
         });
     }
     let built = made(&reading, &SketchSpec::default());
-    let leaves = || built.plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf).map(|o| o.tint);
+    let leaves = || built.plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf).map(|o| o.paint.rgb());
     let (green, red) = (leaves().filter(|t| t[1] > 2.0 * t[0]), leaves().filter(|t| t[0] > 2.0 * t[1]));
     let (green, red) = (green.count(), red.count());
     assert!(green > 20 && red > 20 && green + red == leaves().count(), "{green} green, {red} red");

@@ -40,7 +40,6 @@ pub use traced::Traced;
 pub use tube::{TubeSpec, tube};
 
 use base::{Run, Stopped};
-use glam::DVec3;
 use mesh::Model;
 use plant::{AxisKind, Plant};
 
@@ -53,10 +52,8 @@ use crate::spec::Budget;
 /// Guaranteed, for any plant: finite coordinates, unit normals, no triangle that uses a vertex twice
 /// ([`Model::validate`] is clean); every tube closed; wood is drawn where the plant has it, to 0.07 % of the plant's
 /// size and within its own radius (both over [`SkinSpec::detail`]); the same bits for any executor. One part per kind of surface, in the order bark, stems, roots, leaves, petals, discs, fruits,
-/// stamens, thorns; kinds that do not occur leave no part. Organs have vertex colours: their tint, varied by
-/// seed and key. A tint with a channel below 0.55, or whose channels differ by more than
-/// 3 to 10, is taken for the colour in which the organ was drawn, and a
-/// texture without a hue of its own is used.
+/// stamens, thorns; kinds that do not occur leave no part. Organs have vertex colours: their paint, varied by
+/// seed and key. On one that is tinted or drawn a texture without a hue of its own is used.
 /// With [`SkinSpec::wind`] every vertex also has four numbers, each 0 to 1, and a pivot: sway of the whole plant (0 on
 /// the ground, 1 at the top, by the square of the height); sway of its limb, a branch of a main axis with all that
 /// hangs on it (0 at the limb's foot, growing with the square of the way along the wood over
@@ -140,30 +137,7 @@ fn budget(plant: &Plant, spec: &SkinSpec) -> Budget {
     Budget::new(spec.detail, bounds.size().length(), mean, counted as usize, plant.organs.len())
 }
 
-/// The box around nodes and organs; what is not finite or absurdly far is left out.
+/// The box around nodes and organs.
 fn bounds(plant: &Plant) -> mesh::Bounds {
-    let mut bounds = mesh::Bounds::EMPTY;
-    let mut include = |p: DVec3| {
-        if p.is_finite() && p.abs().max_element() < 1e12 {
-            bounds.include(p);
-        }
-    };
-    plant.nodes.position.iter().copied().for_each(&mut include);
-    for organ in &plant.organs {
-        let reach = plant.shapes.get(organ.shape.index()).map_or(0.0, reach) * organ.scale;
-        include(organ.frame.origin);
-        include(organ.frame.origin + organ.frame.along * reach);
-    }
-    bounds
-}
-
-/// How far a shape reaches from its root, metres at scale 1.
-fn reach(shape: &plant::Shape) -> f64 {
-    match shape {
-        plant::Shape::Blade(b) => b.length(),
-        plant::Shape::Dome { radius_m, .. } => *radius_m,
-        plant::Shape::Revolution { profile } => profile.iter().map(|p| p.y.abs()).fold(0.0, f64::max),
-        plant::Shape::Strand { path, .. } => path.last().map_or(0.0, |p| p.length()),
-        _ => 0.0,
-    }
+    plant.extent().map_or(mesh::Bounds::EMPTY, |(min, max)| mesh::Bounds { min, max })
 }

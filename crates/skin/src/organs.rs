@@ -9,7 +9,7 @@ use plant::{Organ, OrganKind, Plant, Shape};
 use crate::blade::blade_mesh;
 use crate::body::{dome, prism, revolution, strand};
 use crate::lean::lean_mesh;
-use crate::parts::Slot;
+use crate::parts::{Coat, Slot};
 use crate::spec::{Budget, PetalColor, SkinSpec};
 use crate::traced::Traced;
 use crate::tube::{narrow, wide};
@@ -31,14 +31,14 @@ pub(crate) fn organs(
     kept: Option<&mut KeptShapes>,
     run: &Run<'_>,
 ) -> Result<Vec<(Slot, TriMesh)>, Stopped> {
-    let scales = scales(plant);
-    let ground = Ground::new(plant, spec, budget);
+    let uses = uses(plant);
+    let ground = Ground::new(plant, spec);
     let of_photo = |o: &Organ| traced.filter(|t| t.has(o.source));
     let known = kept.as_deref();
     let shapes = map_indexed(run.executor, plant.shapes.len(), |i| {
         run.cancel.check()?;
         let shape = &plant.shapes[i];
-        let wish = scales[i].map_or(Wish::Nothing, |scale| ground.wish(shape, scale, budget));
+        let wish = uses[i].map_or(Wish::Nothing, |used| ground.wish(shape, used, budget));
         let known = known.and_then(|k| k.find(shape, wish, i));
         Ok(known.unwrap_or_else(|| (wish, Arc::new(wish.mesh(shape)))))
     });
@@ -57,7 +57,7 @@ pub(crate) fn organs(
         .enumerate()
         .filter(|(_, o)| shapes.get(o.shape.index()).is_some_and(|m| !m.triangles.is_empty()) && sound(o))
         .map(|(i, o)| {
-            let slot = ground.slot(o, &plant.shapes[o.shape.index()]);
+            let slot = ground.slot(o);
             (if of_photo(o).is_some() { slot.traced() } else { slot }, i)
         })
         .collect();
@@ -112,15 +112,25 @@ fn sound(organ: &Organ) -> bool {
     axes && f.origin.is_finite() && organ.scale.is_finite() && organ.scale > 0.0
 }
 
-/// The largest scale at which each shape is used; `None` for a shape that nobody uses.
-fn scales(plant: &Plant) -> Vec<Option<f64>> {
-    let mut scales = vec![None; plant.shapes.len()];
+/// What a shape is used for.
+#[derive(Clone, Copy, Debug, Default)]
+struct Use {
+    /// The largest scale.
+    scale: f64,
+    /// Of a body.
+    body: bool,
+}
+
+/// The use of each shape; `None` for one that nobody uses.
+fn uses(plant: &Plant) -> Vec<Option<Use>> {
+    let mut uses = vec![None; plant.shapes.len()];
     for organ in plant.organs.iter().filter(|o| sound(o)) {
-        if let Some(s) = scales.get_mut(organ.shape.index()) {
-            *s = Some(organ.scale.max(s.unwrap_or(0.0)));
+        if let Some(used) = uses.get_mut(organ.shape.index()) {
+            let Use { scale, body } = used.unwrap_or_default();
+            *used = Some(Use { scale: organ.scale.max(scale), body: body || organ.kind == OrganKind::Body });
         }
     }
-    scales
+    uses
 }
 
 /// Runs of one slot with about [`GROUP`] vertices each.
@@ -236,20 +246,17 @@ impl KeptShapes {
 /// What the plant as a whole decides for its organs.
 struct Ground {
     petals: PetalColor,
-    /// Fruits taller than this are the plant's body.
-    body_from: f64,
     /// Few enough stamens and thorns to give each more than three rings.
     fine_strands: bool,
 }
 
 impl Ground {
-    fn new(plant: &Plant, spec: &SkinSpec, budget: &Budget) -> Self {
+    fn new(plant: &Plant, spec: &SkinSpec) -> Self {
         let strands = plant
             .organs
             .iter()
             .filter(|o| matches!(o.kind, OrganKind::Stamen | OrganKind::Pistil | OrganKind::Thorn))
             .count();
-        let thorny = plant.organs.iter().any(|o| o.kind == OrganKind::Thorn);
         let mut key: Seed = spec.seed;
         for b in plant.name.bytes() {
             key = key.child(u64::from(b));
@@ -266,24 +273,11 @@ impl Ground {
         } else {
             PetalColor::ALL[tint.below(PetalColor::ALL.len())]
         };
-        Self {
-            petals: spec.petals.unwrap_or(chosen),
-            // A cactus pad is a good part of its plant; an apple is not.
-            body_from: budget.size() * if thorny { 0.12 } else { 0.4 },
-            fine_strands: strands <= 40,
-        }
+        Self { petals: spec.petals.unwrap_or(chosen), fine_strands: strands <= 40 }
     }
 
-    fn is_body(&self, shape: &Shape, scale: f64) -> bool {
-        let Shape::Revolution { profile } = shape else { return false };
-        let (low, high) = profile
-            .iter()
-            .filter(|p| p.is_finite())
-            .fold((0.0_f64, 0.0_f64), |(a, b), p| (a.min(p.y), b.max(p.y)));
-        (high - low) * scale > self.body_from
-    }
-
-    fn wish(&self, shape: &Shape, scale: f64, budget: &Budget) -> Wish {
+    fn wish(&self, shape: &Shape, used: Use, budget: &Budget) -> Wish {
+        let scale = used.scale;
         let triangles = |area: f64| budget.blade_triangles(area * scale * scale);
         match shape {
             Shape::Blade(blade) => {
@@ -303,7 +297,7 @@ impl Ground {
             Shape::Revolution { profile } => {
                 let area = |w: &[glam::DVec2]| (w[0].x + w[1].x) * w[0].distance(w[1]);
                 let area: f64 = profile.windows(2).map(area).filter(|a| a.is_finite()).sum();
-                if self.is_body(shape, scale) {
+                if used.body {
                     Wish::Revolution(4.0 * triangles(area), 16)
                 } else {
                     Wish::Revolution(triangles(area), 0)
@@ -315,41 +309,29 @@ impl Ground {
         }
     }
 
-    fn slot(&self, organ: &Organ, shape: &Shape) -> Slot {
-        let drawn = drawn_color(organ.tint).is_some();
+    fn slot(&self, organ: &Organ) -> Slot {
+        let coat = Coat::of(organ.paint);
         match organ.kind {
-            OrganKind::Petal if drawn => Slot::DrawnPetal,
-            OrganKind::Petal => Slot::Petal(self.petals),
-            OrganKind::Disc if drawn => Slot::DrawnDisc,
-            OrganKind::Disc => Slot::Disc,
-            OrganKind::Fruit if drawn => Slot::DrawnFruit,
-            OrganKind::Fruit if self.is_body(shape, organ.scale) => Slot::Body,
-            OrganKind::Fruit => Slot::Fruit,
+            OrganKind::Petal => Slot::Petal(coat, self.petals),
+            OrganKind::Disc => Slot::Disc(coat),
+            OrganKind::Body if coat == Coat::Natural => Slot::Body,
+            OrganKind::Fruit | OrganKind::Body => Slot::Fruit(coat),
             OrganKind::Stamen | OrganKind::Pistil => Slot::Stamen,
             OrganKind::Thorn => Slot::Thorn,
             OrganKind::Pedicel => Slot::Stem,
-            _ if drawn => Slot::DrawnLeaf,
-            _ => Slot::Leaf,
+            _ => Slot::Leaf(coat),
         }
     }
 }
 
-/// The colour in which an organ was drawn. A tint near white (makers vary it by a tenth) only varies the material; black is the colour of
-/// ink, not of a plant.
-fn drawn_color(tint: [f32; 3]) -> Option<[f32; 3]> {
-    let low = tint.into_iter().fold(f32::MAX, f32::min);
-    let high = tint.into_iter().fold(0.0, f32::max);
-    (tint.iter().all(|x| x.is_finite()) && (low < 0.55 || high > 1.3 * low) && high > 0.04).then_some(tint)
-}
-
-/// The vertex colour of an organ: its tint, varied a little in brightness and hue.
+/// The vertex colour of an organ: its paint, varied a little in brightness and hue.
 fn tint(organ: &Organ, slot: Slot, spec: &SkinSpec) -> [f32; 3] {
     let mut draw = spec.seed.child(organ.key).stream(Draw::Tint);
     let (light, warm) = (draw.uniform(), draw.uniform());
     let strength = spec.variation.clamp(0.0, 1.0);
     // Leaves of one plant differ more than its petals do.
     let (light, warm) = match slot {
-        Slot::Leaf | Slot::DrawnLeaf => (0.26 * light, 0.24 * (warm - 0.5)),
+        Slot::Leaf(_) => (0.26 * light, 0.24 * (warm - 0.5)),
         _ => (0.12 * light, 0.08 * (warm - 0.5)),
     };
     let [light, warm] = [light, warm].map(|x| x * strength);
@@ -358,10 +340,10 @@ fn tint(organ: &Organ, slot: Slot, spec: &SkinSpec) -> [f32; 3] {
         OrganKind::Pistil => [0.62, 0.86, 0.42],
         _ => [1.0; 3],
     };
-    let ink = organ.tint.iter().all(|x| *x < 0.04);
+    let paint = organ.paint.rgb();
     let hue = [1.0 + warm.min(0.0), 1.0, 1.0 - 0.9 * warm.abs()];
     [0, 1, 2].map(|i| {
-        let given = if ink || !organ.tint[i].is_finite() { 1.0 } else { f64::from(organ.tint[i]) };
+        let given = if paint[i].is_finite() { f64::from(paint[i]) } else { 1.0 };
         #[expect(clippy::cast_possible_truncation, reason = "a colour of the mesh")]
         let x = (given * own[i] * hue[i] * (1.0 - light)).clamp(0.0, 1.0) as f32;
         x

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use base::Executor;
 use mesh::{Material, MaterialId, MaterialKind, Model, Part, Texture, TriMesh};
+use plant::Paint;
 
 use crate::PetalColor;
 use crate::texture::Motif;
@@ -21,20 +22,36 @@ pub(crate) enum Slot {
     YoungBark,
     Stem,
     Root,
-    Leaf,
-    /// Leaves in the colour in which they were drawn.
-    DrawnLeaf,
-    Petal(PetalColor),
-    DrawnPetal,
-    Disc,
-    DrawnDisc,
-    Fruit,
-    DrawnFruit,
+    Leaf(Coat),
+    /// With the colour of those that have a natural one.
+    Petal(Coat, PetalColor),
+    Disc(Coat),
+    Fruit(Coat),
     Body,
     Stamen,
     Thorn,
     /// In the colours of the photograph that it was traced over.
     Traced(MaterialKind),
+}
+
+/// Where the colour of a surface comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Coat {
+    Natural,
+    /// Vertex colours over a texture without a hue.
+    Tinted,
+    /// So is what was drawn in colour; it has a part of its own.
+    Drawn,
+}
+
+impl Coat {
+    pub(crate) fn of(paint: Paint) -> Self {
+        match paint {
+            Paint::Natural(_) => Self::Natural,
+            Paint::Tinted(_) => Self::Tinted,
+            Paint::Drawn(_) => Self::Drawn,
+        }
+    }
 }
 
 impl Slot {
@@ -49,10 +66,10 @@ impl Slot {
             Self::Bark | Self::YoungBark => MaterialKind::Bark,
             Self::Stem | Self::Body | Self::Thorn => MaterialKind::Stem,
             Self::Root => MaterialKind::Root,
-            Self::Leaf | Self::DrawnLeaf => MaterialKind::Leaf,
-            Self::Petal(_) | Self::DrawnPetal => MaterialKind::Petal,
-            Self::Disc | Self::DrawnDisc => MaterialKind::Disc,
-            Self::Fruit | Self::DrawnFruit => MaterialKind::Fruit,
+            Self::Leaf(_) => MaterialKind::Leaf,
+            Self::Petal(..) => MaterialKind::Petal,
+            Self::Disc(_) => MaterialKind::Disc,
+            Self::Fruit(_) => MaterialKind::Fruit,
             Self::Stamen => MaterialKind::Stamen,
         }
     }
@@ -64,14 +81,15 @@ impl Slot {
             Self::YoungBark => ("twigs", "bark-young".into()),
             Self::Stem => ("stems", "stem".into()),
             Self::Root => ("roots", "root".into()),
-            Self::Leaf => ("leaves", "leaf".into()),
-            Self::DrawnLeaf => ("leaves-drawn", "leaf-drawn".into()),
-            Self::Petal(color) => ("petals", format!("petal-{}", color.word())),
-            Self::DrawnPetal => ("petals-drawn", "petal-drawn".into()),
-            Self::Disc => ("discs", "disc".into()),
-            Self::DrawnDisc => ("discs-drawn", "disc-drawn".into()),
-            Self::Fruit => ("fruits", "fruit".into()),
-            Self::DrawnFruit => ("fruits-drawn", "fruit-drawn".into()),
+            Self::Leaf(Coat::Drawn) => ("leaves-drawn", "leaf-drawn".into()),
+            Self::Leaf(_) => ("leaves", "leaf".into()),
+            Self::Petal(Coat::Natural, color) => ("petals", format!("petal-{}", color.word())),
+            Self::Petal(Coat::Tinted, _) => ("petals", "petal".into()),
+            Self::Petal(Coat::Drawn, _) => ("petals-drawn", "petal-drawn".into()),
+            Self::Disc(Coat::Drawn) => ("discs-drawn", "disc-drawn".into()),
+            Self::Disc(_) => ("discs", "disc".into()),
+            Self::Fruit(Coat::Drawn) => ("fruits-drawn", "fruit-drawn".into()),
+            Self::Fruit(_) => ("fruits", "fruit".into()),
             Self::Body => ("bodies", "body".into()),
             Self::Stamen => ("stamens", "stamen".into()),
             Self::Thorn => ("thorns", "thorn".into()),
@@ -98,15 +116,15 @@ impl Slot {
             Self::YoungBark => Motif::YoungBark,
             Self::Stem => Motif::Stem,
             Self::Root => Motif::Root,
-            Self::Leaf => Motif::Leaf,
+            Self::Leaf(Coat::Natural) => Motif::Leaf,
             // A photograph takes the place of this one.
-            Self::DrawnLeaf | Self::Traced(_) => Motif::PaleLeaf,
-            Self::Petal(color) => Motif::Petal(color),
-            Self::DrawnPetal => Motif::PalePetal,
-            Self::Disc => Motif::Disc,
-            Self::DrawnDisc => Motif::PaleDisc,
-            Self::Fruit => Motif::Fruit,
-            Self::DrawnFruit => Motif::PaleFruit,
+            Self::Leaf(_) | Self::Traced(_) => Motif::PaleLeaf,
+            Self::Petal(Coat::Natural, color) => Motif::Petal(color),
+            Self::Petal(..) => Motif::PalePetal,
+            Self::Disc(Coat::Natural) => Motif::Disc,
+            Self::Disc(_) => Motif::PaleDisc,
+            Self::Fruit(Coat::Natural) => Motif::Fruit,
+            Self::Fruit(_) => Motif::PaleFruit,
             Self::Body => Motif::Body,
             Self::Stamen => Motif::Stamen,
             Self::Thorn => Motif::Thorn,
@@ -120,8 +138,8 @@ impl Slot {
             Self::YoungBark => [0.13, 0.095, 0.055],
             Self::Stem => [0.111, 0.223, 0.034],
             Self::Root => [0.27, 0.168, 0.092],
-            Self::Leaf => [0.051, 0.149, 0.018],
-            Self::Petal(color) => match color {
+            Self::Leaf(Coat::Natural) => [0.051, 0.149, 0.018],
+            Self::Petal(Coat::Natural, color) => match color {
                 PetalColor::Pink => [0.80, 0.33, 0.42],
                 PetalColor::White => [0.90, 0.91, 0.80],
                 PetalColor::Yellow => [0.93, 0.60, 0.03],
@@ -131,14 +149,12 @@ impl Slot {
                 PetalColor::Blue => [0.20, 0.29, 0.73],
                 PetalColor::Magenta => [0.55, 0.06, 0.23],
             },
-            Self::Disc => [0.55, 0.25, 0.02],
-            Self::Fruit => [0.56, 0.06, 0.02],
+            Self::Disc(Coat::Natural) => [0.55, 0.25, 0.02],
+            Self::Fruit(Coat::Natural) => [0.56, 0.06, 0.02],
             Self::Body => [0.06, 0.16, 0.05],
             Self::Stamen => [0.72, 0.55, 0.15],
             Self::Thorn => [0.28, 0.16, 0.08],
-            Self::DrawnLeaf | Self::DrawnPetal | Self::DrawnDisc | Self::DrawnFruit | Self::Traced(_) => {
-                [1.0; 3]
-            }
+            Self::Leaf(_) | Self::Petal(..) | Self::Disc(_) | Self::Fruit(_) | Self::Traced(_) => [1.0; 3],
         }
     }
 

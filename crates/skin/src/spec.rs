@@ -1,6 +1,8 @@
 //! What the caller may choose, and how triangles are shared out.
 
 use base::Seed;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// How a plant is given its surface. Saved with the document.
 ///
@@ -8,7 +10,8 @@ use base::Seed;
 /// let coarse = skin::SkinSpec { detail: 0.5, ..skin::SkinSpec::default() };
 /// assert_eq!((coarse.sides, coarse.textures), (8, true));
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
 pub struct SkinSpec {
     /// Fineness: 1 gives about 500 triangles for a branch of average length and 250 to 800 for a drawn blade;
     /// counts grow in proportion. In a crown of hundreds of branches each gets what its bends take. 0.1 to 8,
@@ -25,8 +28,10 @@ pub struct SkinSpec {
     pub variation: f64,
     /// Also fill the columns that say how wind moves each vertex ([`mesh::TriMesh::wind`], `pivots`). Chosen for an
     /// export, not saved. Default false.
+    #[serde(skip)]
     pub wind: bool,
     /// What the variation and the choice of colours are drawn from, and the phases of the wind.
+    #[serde(skip)]
     pub seed: Seed,
 }
 
@@ -45,7 +50,8 @@ impl Default for SkinSpec {
 }
 
 /// Natural petal colours.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum PetalColor {
     /// Rose pink with a pale base.

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use base::{CancelToken, Digest, NoClock, Run};
 use glam::DVec3;
 use mesh::{Model, TriMesh};
-use plant::{AxisKind, Plant};
+use plant::{AxisKind, Paint, Plant};
 use proptest::prelude::*;
 use skin::{SkinSpec, TubeSpec, skin, tube};
 
@@ -244,14 +244,24 @@ fn thick_green_axis_is_a_body_beside_tinted_ones() {
 }
 
 #[test]
-fn pale_drawn_colours_are_told_from_variation() {
-    let mut p = scenes::flower(3);
-    let pink = [0.95, 0.62, 0.68];
-    for (k, o) in p.organs.iter_mut().filter(|o| o.kind == plant::OrganKind::Petal).enumerate() {
-        o.tint = if k == 0 { pink } else { [0.9, 0.82, 0.78] };
+fn paint_is_what_the_maker_says() {
+    let petals = |paint: fn([f32; 3]) -> Paint, rgb: [f32; 3]| {
+        let mut p = scenes::flower(3);
+        p.organs.iter_mut().filter(|o| o.kind == plant::OrganKind::Petal).for_each(|o| o.paint = paint(rgb));
+        let model = skinned(&p);
+        let part = model.parts.iter().find(|p| model.material(p).kind == mesh::MaterialKind::Petal).unwrap();
+        (part.name.clone(), model.material(part).name.clone(), part.mesh.colors[0])
+    };
+    let natural = petals(Paint::Natural, [0.9; 3]);
+    // Pale or dark: a colour is taken for what its maker says it is.
+    for rgb in [[0.9; 3], [0.95, 0.62, 0.68], [0.01, 0.02, 0.01]] {
+        let (part, material, color) = petals(Paint::Tinted, rgb);
+        assert_eq!((part.as_str(), material.as_str()), ("petals", "petal"));
+        assert!(color.iter().zip(rgb).all(|(c, x)| (0.8 * x..=x).contains(c)), "{color:?} {rgb:?}");
+        let (part, material, drawn) = petals(Paint::Drawn, rgb);
+        assert_eq!((part.as_str(), material.as_str(), drawn), ("petals-drawn", "petal-drawn", color));
     }
-    let model = skinned(&p);
-    assert_eq!(part(&model, "petals-drawn").triangles.len() * 2, part(&model, "petals").triangles.len());
+    assert!(natural.0 == "petals" && natural.1.starts_with("petal-"), "{natural:?}");
 }
 
 #[test]

@@ -11,6 +11,7 @@
 //! | `schema` | the schema of a type, made once |
 //! | `range` | the check of ranges |
 //! | `read` | reading, and setting a single field |
+//! | `through_json` | a spec inside of something else |
 //! | `colour` | a colour as `#rrggbb` |
 
 mod colour;
@@ -18,6 +19,7 @@ mod located;
 mod range;
 mod read;
 mod schema;
+pub mod through_json;
 
 pub use colour::Colour;
 pub use located::{Entry, Kind, Node, TextFault};

@@ -8,9 +8,11 @@ use std::sync::Arc;
 use base::{Counted, Report, Run, Seed, Stage, Warning};
 use document::{Photo, PlantEdit};
 use glam::DVec2;
+use ink::{Classified, Drawing, Ink, KeptMeasures};
 use mesh::{Model, Texture};
 use plant::Plant;
-use sketch::{Built, Classified, Drawing, Ink, KeptBodies, KeptMeasures, Reading, SketchSpec};
+use reading::Reading;
+use sketch::{Built, KeptBodies, SketchSpec};
 use skin::{KeptShapes, SkinSpec, Traced};
 
 use crate::make::{ClassOverrides, MakeError, SketchOptions};
@@ -36,7 +38,7 @@ pub struct FrontView {
 /// ```
 /// use burgeon::{Evaluator, Run, Seed, SketchOptions};
 /// use burgeon::glam::DVec2;
-/// use burgeon::sketch::Drawing;
+/// use burgeon::ink::Drawing;
 /// let line: Vec<DVec2> = (0..40).map(|i| DVec2::new(0.02 * f64::from(i % 7), f64::from(i))).collect();
 /// let drawing = Drawing::from_polylines("a stem", &[line]);
 /// let mut evaluator = Evaluator::default();
@@ -132,14 +134,13 @@ impl Evaluator {
         let mut stages = Vec::new();
         if self.strokes.as_ref().is_none_or(|k| k.from.strokes != drawing.strokes) {
             let mut report = Report::default();
-            let ink = report.stage("preprocess", run.clock, |r| sketch::clean(drawing, r));
+            let ink = report.stage("preprocess", run.clock, |r| ink::clean(drawing, r));
             if ink.strokes.is_empty() {
                 return Err(MakeError::NoStrokes { name: drawing.name.clone(), strokes: count });
             }
             let known = self.known(drawing, &ink);
-            let classes = report.stage("classify", run.clock, |_| {
-                sketch::classify_again(&ink, &known, &mut self.measures, run)
-            });
+            let classes = report
+                .stage("classify", run.clock, |_| ink::classify_again(&ink, &known, &mut self.measures, run));
             run.cancel.check()?;
             self.reading = None;
             self.strokes =
@@ -148,9 +149,9 @@ impl Evaluator {
         self.read(&options.classes, &mut stages, run)?;
         self.build(options, seed, &drawing.name, &mut stages, run)?;
         self.shape(options, &mut stages, run)?;
-        let mut photo = options.photo.clone().filter(|p| p.paint);
+        let mut photo = options.photo.clone().filter(|p| p.place.paint);
         if let Some(photo) = &mut photo {
-            photo.opacity = 1.0;
+            photo.place.opacity = 1.0;
         }
         self.mesh(&options.skin, photo, &mut stages, run)?;
         Ok(self.item(&drawing.name, stages))
@@ -201,7 +202,7 @@ impl Evaluator {
             }
         }
         let mut report = Report::default();
-        let reading = report.stage("structure", run.clock, |r| sketch::read(ink, &classes, r));
+        let reading = report.stage("structure", run.clock, |r| reading::read(ink, &classes, r));
         run.cancel.check()?;
         self.plant = None;
         self.reading = Some(Self::keep(&mut self.done, stages, wanted.clone(), reading, report));
@@ -322,11 +323,11 @@ impl Evaluator {
         let front = self.front()?;
         let drawing = &self.strokes.as_ref()?.from;
         let place = |x: f64, y: f64| (DVec2::new(x, y) - front.origin) * front.metres_per_unit;
-        let corner = place(photo.x, photo.y + photo.height());
+        let corner = place(photo.place.x, photo.place.y + photo.height());
         // A stroke that leaves the picture was not traced over it.
-        let inside = |s: &sketch::Stroke| s.samples.iter().all(|p| photo.covers(p.at.x, p.at.y));
+        let inside = |s: &ink::Stroke| s.samples.iter().all(|p| photo.covers(p.at.x, p.at.y));
         let strokes = (0..).zip(&drawing.strokes).filter(|(_, s)| inside(s)).map(|(i, _)| i).collect();
-        let size_m = (photo.width * front.metres_per_unit, photo.height() * front.metres_per_unit);
+        let size_m = (photo.place.width * front.metres_per_unit, photo.height() * front.metres_per_unit);
         Some(Traced { texture, strokes, corner_m: (corner.x, corner.y), size_m })
     }
 
@@ -400,7 +401,7 @@ impl Evaluator {
     }
 }
 
-fn stroke_report(s: &sketch::StrokeReading) -> StrokeReport {
+fn stroke_report(s: &reading::StrokeReading) -> StrokeReport {
     StrokeReport {
         index: s.index,
         class: s.class.word().into(),
@@ -456,7 +457,7 @@ mod tests {
         o.edits.clear();
         assert_eq!(step(&mut e, &d, &o, 2), ["shape", "mesh"]);
         assert_eq!(e.plant(), e.drawn());
-        o.classes.insert(1, sketch::StrokeClass::Axis);
+        o.classes.insert(1, ink::StrokeClass::Axis);
         assert_eq!(step(&mut e, &d, &o, 2), all[2..]);
         d.strokes.pop();
         o.classes.clear();

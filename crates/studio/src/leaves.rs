@@ -10,6 +10,7 @@ use leaf::{
     ScanError, ScanLeaf, ScanSpec,
 };
 use mesh::{Material, MaterialId, MaterialKind, Model, Part, Texture, TriMesh};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::{Counts, ItemReport, TimingsMs};
@@ -82,7 +83,7 @@ pub enum LeafError {
 }
 
 /// The part of a report about a leaf.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LeafReport {
     /// `interpolate`, `approximate`, `bezier` or `nurbs`.
     pub surface: String,
@@ -110,7 +111,7 @@ pub struct LeafReport {
 }
 
 /// What was found in a scan.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ScanReport {
     /// Points read, without those that are no numbers.
     pub points: u64,
@@ -127,7 +128,7 @@ pub struct ScanReport {
 }
 
 /// Vertices and faces of a mesh.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct FaceCounts {
     /// Vertices.
     pub vertices: u64,
@@ -136,7 +137,7 @@ pub struct FaceCounts {
 }
 
 /// How far measured points are from the blade, millimetres.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FitError {
     /// Root of the mean square.
     pub rms_mm: f64,

@@ -6,7 +6,7 @@
 //!
 //! ```
 //! use burgeon::{Run, Seed, SketchOptions, make_from_sketch};
-//! use burgeon::sketch::Drawing;
+//! use burgeon::ink::Drawing;
 //! use burgeon::glam::DVec2;
 //!
 //! let line: Vec<DVec2> = (0..40).map(|i| DVec2::new(0.02 * f64::from(i % 7), f64::from(i))).collect();
@@ -62,7 +62,8 @@ pub use growth::{Bark, BladeForm, BladeSpec, BlossomSpec, Look, TreeSpec};
 pub use spec::{Colour, Spec, SpecFault};
 
 pub use {
-    bloom, document, formats, geom, glam, growth, leaf, mesh, plant, render, shape, sketch, skin, spec,
+    bloom, document, formats, geom, glam, growth, ink, leaf, mesh, plant, reading, render, shape, sketch,
+    skin, spec,
 };
 
 /// The version that is written into reports and files.

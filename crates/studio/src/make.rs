@@ -4,9 +4,11 @@ use std::collections::BTreeMap;
 
 use base::{Cancelled, OverBudget, Run, Seed, Stopped};
 use document::{DocumentPlant, Photo, PlantEdit};
+use ink::{Drawing, StrokeClass};
 use mesh::Model;
 use plant::Plant;
-use sketch::{Drawing, Reading, SketchSpec, StrokeClass};
+use reading::Reading;
+use sketch::SketchSpec;
 use skin::SkinSpec;
 
 use crate::evaluate::Evaluator;

@@ -5,9 +5,9 @@
 use base::{Run, Seed};
 use bloom::{FlowerSpec, GrowthLaw, Insertion, PetalForm, PetalMesh, Stamens, Whorl};
 use glam::{DQuat, DVec3};
+use ink::Drawing;
 use mesh::{MaterialId, MaterialKind, Model};
 use plant::{Flower, Organ, OrganKind, Plant, Shape};
-use sketch::Drawing;
 use skin::SkinSpec;
 
 use crate::make::{MakeError, SketchOptions, make_from_sketch};

@@ -2,6 +2,7 @@
 
 use base::Report;
 use plant::{AxisKind, OrganKind, Plant};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The value of [`RunReport::schema`].
@@ -62,7 +63,7 @@ pub struct InputReport {
 }
 
 /// One plant.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ItemReport {
     /// Name of the drawing.
     pub name: String,
@@ -82,6 +83,7 @@ pub struct ItemReport {
     pub warnings: Vec<String>,
     /// Of a plant with axes: what a botanist would measure on it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<serde_json::Value>")]
     pub plant: Option<plant::Measures>,
     /// Of `leaf`: veins, blade and how well they fit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -94,11 +96,12 @@ pub struct ItemReport {
     pub edits: Vec<crate::EditReport>,
     /// Of `shape --list`: the branches that were asked for.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(with = "Vec<serde_json::Value>")]
     pub branches: Vec<crate::BranchRow>,
 }
 
 /// One stroke.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct StrokeReport {
     /// Its index in the drawing, from 0.
     pub index: u32,
@@ -111,7 +114,7 @@ pub struct StrokeReport {
 }
 
 /// Numbers of things in a plant and its meshes; none of what was not counted, such as the leaves of a model that was read.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Counts {
     /// Flowers.
     pub flowers: Option<u64>,
@@ -150,7 +153,7 @@ impl Counts {
 }
 
 /// Milliseconds of each stage.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TimingsMs {
     /// Reading the file.
     pub read: f64,
@@ -197,7 +200,7 @@ impl TimingsMs {
 
 /// Reprojection error of axes, petals and `drawn` leaves against the drawing, as shares of its diagonal; none where no stroke
 /// was compared.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Fidelity {
     /// Mean distance.
     pub reprojection_mean: Option<f64>,

@@ -15,10 +15,10 @@ use formats::{LeafFileError, MarksAxes, read_marks, read_vein_graph};
 use geom::RingRule;
 use glam::{DQuat, DVec3};
 use growth::TreeSpec;
+use ink::Drawing;
 use leaf::{FullMarks, MeshSpec, Pose, SurfaceKind, ThicknessRule, VeinParameters};
 use mesh::{MaterialId, Model};
 use plant::Plant;
-use sketch::Drawing;
 use spec::Spec;
 
 use crate::evaluate::{Evaluator, FrontView};

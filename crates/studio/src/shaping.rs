@@ -8,11 +8,12 @@ use base::{Cancelled, Counted, Run, Stopped};
 use document::PlantEdit;
 use glam::DVec3;
 use plant::{AxisId, Plant};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use shape::{AxisKey, Changed, Context, HandEdit, Outcome, Shaping};
 
 /// What became of one edit.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct EditReport {
     /// Its place in the list, from 0.
     pub index: usize,

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use burgeon::formats::{DrawingFormat, read_drawings};
-use burgeon::sketch::Drawing;
+use burgeon::ink::Drawing;
 use burgeon::{Evaluator, Run, Seed, SketchOptions};
 
 fn drawing(name: &str) -> Drawing {

@@ -1,6 +1,7 @@
 /** The sheet: what was drawn, and the tools that change it. It knows nothing of plants. */
 import { inkOf } from '../colours';
-import type { SketchState, PhotoState, StrokeMode, StrokePoints } from '../protocol';
+import type { StrokePoints } from '../protocol';
+import type { SketchState, PhotoState, StrokeMode } from '../wire';
 import {
   boxOf,
   centreline,
@@ -257,7 +258,12 @@ export class Sheet {
   fit(): void {
     const p = this.photo;
     const under: Box | undefined = p
-      ? { left: p.x, bottom: p.y, right: p.x + p.width, top: p.y + p.height }
+      ? {
+          left: p.place.x,
+          bottom: p.place.y,
+          right: p.place.x + p.place.width,
+          top: p.place.y + p.height,
+        }
       : undefined;
     const box = this.strokes.reduce<Box | undefined>((b, s) => boxOf(s.points, 3, b), under);
     const { clientWidth: w, clientHeight: h } = this.element;
@@ -611,10 +617,11 @@ export class Sheet {
   private under(c: CanvasRenderingContext2D): void {
     const p = this.photo;
     if (p && this.image) {
-      const [x, y] = toScreen(this.view, p.x, p.y + p.height);
-      c.globalAlpha = p.opacity;
+      const { opacity, width } = p.place;
+      const [x, y] = toScreen(this.view, p.place.x, p.place.y + p.height);
+      c.globalAlpha = opacity;
       c.imageSmoothingQuality = 'high';
-      c.drawImage(this.image, x, y, p.width * this.view.scale, p.height * this.view.scale);
+      c.drawImage(this.image, x, y, width * this.view.scale, p.height * this.view.scale);
       c.globalAlpha = 1;
     }
     if (this.axis !== undefined) {

@@ -1,8 +1,7 @@
 /** The plant as three.js meshes, updated in place where only numbers changed. */
 import * as THREE from 'three';
-import type { ObstacleShape, PartArrays, PlantView, Sent, TexturePixels } from '../protocol';
-
-type MaterialView = PlantView['materials'][number];
+import type { PartArrays, Sent, TexturePixels } from '../protocol';
+import type { MaterialView, ObstacleView, PlantView } from '../wire';
 
 /** Textures and materials of all plants. */
 export class Looks {
@@ -119,7 +118,7 @@ export class PlantMeshes {
   }
 
   /** What the plant grows around; `corners` has the triangles of those that are meshes. */
-  setObstacles(shapes: ObstacleShape[], corners: (Float32Array | null)[]): void {
+  setObstacles(shapes: ObstacleView[], corners: (Float32Array | null)[]): void {
     for (const mesh of this.obstacles.children) (mesh as THREE.Mesh).geometry.dispose();
     this.obstacles.clear();
     shapes.forEach((shape, row) => {
@@ -139,9 +138,10 @@ export class PlantMeshes {
 
 const STONE = new THREE.MeshStandardMaterial({ color: 0x9a9891, roughness: 0.95, side: THREE.DoubleSide });
 
-function solid(shape: ObstacleShape, corners: Float32Array | null): THREE.Mesh | undefined {
-  const vec = (key: string): THREE.Vector3 => new THREE.Vector3(...(shape[key] as [number, number, number]));
-  const num = (key: string): number => Number(shape[key]);
+function solid(shape: ObstacleView, corners: Float32Array | null): THREE.Mesh | undefined {
+  const fields = shape as Record<string, unknown>;
+  const vec = (key: string): THREE.Vector3 => new THREE.Vector3(...(fields[key] as [number, number, number]));
+  const num = (key: string): number => Number(fields[key]);
   if (shape.shape === 'box') {
     const [min, max] = [vec('min'), vec('max')];
     const mesh = new THREE.Mesh(new THREE.BoxGeometry(max.x - min.x, max.y - min.y, max.z - min.z), STONE);

@@ -1,7 +1,8 @@
 /** The right side: the plant in three dimensions, turned by hand, or from the front exactly as it was drawn. */
 import * as THREE from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
-import type { PlantState, PlantView as Seen, Sent, ShapePointer, ShapeReach, View } from '../protocol';
+import type { Sent } from '../protocol';
+import type { PlantState, PlantView as Seen, SceneView, ShapePointer, ShapeReach } from '../wire';
 import type { Gizmo } from '../scene';
 import type { Box } from '../sheet/geometry';
 import type { Handles } from './gizmo';
@@ -219,7 +220,7 @@ export class PlantView {
     return this.chosen?.view;
   }
 
-  update(view: View, fresh: Sent[]): void {
+  update(view: SceneView, fresh: Sent[]): void {
     for (const { textures } of fresh) for (const texture of textures) this.looks.addTexture(texture);
     const meshes = new Map(fresh.map((sent) => [sent.view.id, sent]));
     const take = (known: PlantMeshes | undefined, seen: Seen): PlantMeshes => {
@@ -453,7 +454,7 @@ export class PlantView {
   }
 
   /** So many pixels, in metres of the chosen plant. */
-  reach(pixels: number): ShapeReach {
+  reach(pixels: number): Omit<ShapeReach, 'bearers'> {
     const size = (this.chosen?.place.getWorldScale(new THREE.Vector3()).x ?? 1) || 1;
     const share = pixels / Math.max(1, this.element.clientHeight);
     const { camera } = this;

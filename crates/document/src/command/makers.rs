@@ -4,6 +4,8 @@ use std::sync::Arc;
 
 use bloom::GrowthLaw;
 use growth::TreeSpec;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use skin::SkinSpec;
 
@@ -14,11 +16,17 @@ use crate::state::shortened;
 use crate::{Document, DocumentPlant, FlowerSettings, PlantId};
 
 /// What can be asked of a tree.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum TreeCommand {
     /// Takes another spec, such as that of a preset. Obstacles stay.
-    SetSpec(Option<String>, Arc<TreeSpec>),
+    SetSpec(
+        Option<String>,
+        #[serde(with = "spec::through_json")]
+        #[schemars(with = "Value")]
+        Arc<TreeSpec>,
+    ),
     /// Sets one field of the spec, named by a JSON pointer such as `/method/points`.
     SetField(String, Value),
     /// Adds an obstacle after the others.
@@ -65,7 +73,10 @@ impl TreeCommand {
     fn change(self, tree: &mut TreeSettings) -> Result<(), CommandError> {
         let gone = CommandError::Nothing("the obstacle is not there any more");
         match self {
-            Self::SetSpec(preset, spec) => (tree.preset, tree.spec) = (preset.map(|p| shortened(&p)), spec),
+            Self::SetSpec(preset, spec) => {
+                spec::check(&*spec).map_err(spec::SpecFault::from)?;
+                (tree.preset, tree.spec) = (preset.map(|p| shortened(&p)), spec);
+            }
             Self::SetField(path, value) => {
                 tree.spec = Arc::new(spec::set(&*tree.spec, &path, value)?);
             }
@@ -89,7 +100,8 @@ fn named(new: NamedObstacle) -> NamedObstacle {
 }
 
 /// What can be asked of a measured leaf.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum LeafCommand {
     /// Takes other measurements. Who sends them has checked that they make a leaf.
@@ -128,13 +140,14 @@ impl LeafCommand {
 }
 
 /// What can be asked of a flower.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum FlowerCommand {
     /// Sets species, day and form.
     Set(Box<FlowerSettings>),
     /// Takes a fitted law, or the species' own pace again.
-    SetLaw(Option<Arc<GrowthLaw>>),
+    SetLaw(#[schemars(with = "Option<Value>")] Option<Arc<GrowthLaw>>),
 }
 
 impl FlowerCommand {

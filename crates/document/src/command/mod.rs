@@ -5,6 +5,9 @@ mod scene;
 mod shape;
 mod sketch;
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
 use crate::event::Event;
 use crate::state::{Settings, range_fault};
 use crate::{Document, DocumentPlant, PlantId, StrokeId};
@@ -15,7 +18,18 @@ pub use scene::{NewPlant, PlantCommand, SceneCommand};
 pub use sketch::{NewStroke, SketchCommand};
 
 /// What can be asked of a document: of the scene, of any plant, or of a plant of one maker.
-#[derive(Clone, Debug, PartialEq)]
+///
+/// As JSON, nested by maker: `{"sketch": [0, {"move-strokes": [[3, 4], [0.5, 0]]}]}`. What carries strokes, pictures or
+/// whole documents has no JSON: it travels as bytes.
+///
+/// ```
+/// use document::{Command, PlantCommand, PlantId};
+/// let command: Command = serde_json::from_str(r#"{"plant":[0,{"set-seed":"18446744073709551615"}]}"#)?;
+/// assert_eq!(command, PlantCommand::SetSeed(base::Seed::new(u64::MAX)).of(PlantId(0)));
+/// # Ok::<(), serde_json::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Command {
     /// Plants come and go.
@@ -55,6 +69,9 @@ pub enum CommandError {
     /// The plant whose leaf is wanted has none to lend.
     #[error("that plant has no leaf of its own to lend; choose a measured leaf or a sketch")]
     NoLeaf,
+    /// A photograph is to be moved and there is none.
+    #[error("there is no photograph under the drawing")]
+    NoPhoto,
     /// Nothing would change.
     #[error("nothing to do: {0}")]
     Nothing(&'static str),

@@ -2,6 +2,8 @@
 
 use base::Seed;
 use glam::DVec3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::{Command, CommandError, NewStroke, plant, set};
 use crate::event::Event;
@@ -18,18 +20,21 @@ pub struct NewPlant {
 }
 
 /// What can be asked of the scene.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum SceneCommand {
     /// Names the scene.
     Rename(String),
     /// Adds a plant after the others.
+    #[serde(skip)]
     Add(Box<NewPlant>),
     /// Adds a moved copy of a plant after the others, metres.
-    Duplicate(PlantId, DVec3),
+    Duplicate(PlantId, #[schemars(with = "[f64; 3]")] DVec3),
     /// Deletes plants; who bore their leaf bears its own again.
     Remove(Vec<PlantId>),
     /// Puts another document in the place of this one.
+    #[serde(skip)]
     Open(Box<Document>),
 }
 
@@ -134,13 +139,18 @@ fn remove(ids: &[PlantId], document: &Document) -> Result<Vec<Event>, CommandErr
 }
 
 /// What can be asked of any plant.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum PlantCommand {
     /// Names it.
     Rename(String),
-    /// Sets its seed.
-    SetSeed(Seed),
+    /// Sets its seed; text as JSON, because JavaScript's numbers hold 53 bits.
+    SetSeed(
+        #[serde(with = "as_text")]
+        #[schemars(with = "String")]
+        Seed,
+    ),
     /// Keeps its seed from dice, or no longer.
     Lock(bool),
     /// Takes it out of the view, or back.
@@ -179,5 +189,23 @@ impl PlantCommand {
             }
             Ok(())
         })
+    }
+}
+
+/// A seed as text.
+mod as_text {
+    use base::Seed;
+    use serde::de::{Deserialize, Deserializer, Error};
+    use serde::ser::Serializer;
+
+    pub(super) fn serialize<S: Serializer>(seed: &Seed, to: S) -> Result<S::Ok, S::Error> {
+        to.collect_str(&seed.number())
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Seed, D::Error> {
+        let text = String::deserialize(from)?;
+        text.parse()
+            .map(Seed::new)
+            .map_err(|_| Error::custom("the seed is a whole number from 0 to 2^64 - 1"))
     }
 }

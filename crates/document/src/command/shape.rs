@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use shape::HandEdit;
 
 use super::{Command, CommandError, set};
@@ -10,7 +12,8 @@ use crate::state::PlantEdit;
 use crate::{DocumentPlant, PlantId};
 
 /// What can be asked of the edits by hand of a plant. They are named by their rows, from 0.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum ShapeCommand {
     /// Does one more, after the others.

@@ -4,14 +4,17 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use glam::DVec2;
-use sketch::{InkSample, SketchSpec, Stroke, StrokeClass, StrokeMode};
+use ink::{InkSample, Stroke, StrokeClass, StrokeMode};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use sketch::SketchSpec;
 use skin::SkinSpec;
 
 use super::{Command, CommandError, may_bear, set};
 use crate::event::Event;
 use crate::makers::{Maker, SketchSettings};
 use crate::state::sound;
-use crate::{Document, DocumentPlant, DocumentStroke, Photo, PlantId, StrokeId};
+use crate::{Document, DocumentPlant, DocumentStroke, Photo, PhotoPlace, PlantId, StrokeId};
 
 /// A stroke that is to be added.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -31,17 +34,19 @@ impl NewStroke {
 }
 
 /// What can be asked of a sketch.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum SketchCommand {
     /// Adds strokes after the others. Points that are not finite are left out.
+    #[serde(skip)]
     AddStrokes(Vec<NewStroke>),
     /// Adds moved copies of strokes after the others, with what was said of them.
-    Duplicate(Vec<StrokeId>, DVec2),
+    Duplicate(Vec<StrokeId>, #[schemars(with = "[f64; 2]")] DVec2),
     /// Erases strokes.
     RemoveStrokes(Vec<StrokeId>),
     /// Moves strokes, in the drawing's unit, y up.
-    MoveStrokes(Vec<StrokeId>, DVec2),
+    MoveStrokes(Vec<StrokeId>, #[schemars(with = "[f64; 2]")] DVec2),
     /// Sets the class of strokes, or leaves it to the classifier again.
     SetClass(Vec<StrokeId>, Option<StrokeClass>),
     /// Sets the mode of strokes.
@@ -54,8 +59,13 @@ pub enum SketchCommand {
     SetSketch(Box<SketchSpec>),
     /// Sets how the plant is meshed and coloured.
     SetSkin(SkinSpec),
-    /// Puts a photograph under the drawing, changes how it lies there, or takes it away.
-    SetPhoto(Option<Box<Photo>>),
+    /// Puts a photograph under the drawing.
+    #[serde(skip)]
+    SetPhoto(Box<Photo>),
+    /// Changes how the photograph lies under the drawing.
+    PlacePhoto(PhotoPlace),
+    /// Takes the photograph away.
+    RemovePhoto,
     /// Shows its flowers at a day, or as they are drawn.
     SetDay(Option<f64>),
     /// Bears the leaf of another plant, or its own again.
@@ -80,7 +90,7 @@ impl SketchCommand {
             Self::Clear => "clear",
             Self::SetSketch(_) => "sketch",
             Self::SetSkin(_) => "skin",
-            Self::SetPhoto(_) => "photo",
+            Self::SetPhoto(_) | Self::PlacePhoto(_) | Self::RemovePhoto => "photo",
             Self::SetDay(_) => "day",
             Self::SetLeaf(_) => "leaf-of",
         }
@@ -114,7 +124,14 @@ impl SketchCommand {
             }),
             Self::SetSketch(sketch) => settings(plant, |s| s.sketch = *sketch),
             Self::SetSkin(skin) => settings(plant, |s| s.skin = SkinSpec { seed: s.skin.seed, ..skin }),
-            Self::SetPhoto(photo) => settings(plant, |s| s.photo = photo.map(|p| *p)),
+            Self::SetPhoto(photo) => settings(plant, |s| s.photo = Some(*photo)),
+            Self::PlacePhoto(place) => {
+                if plant.settings.photo().is_none() {
+                    return Err(CommandError::NoPhoto);
+                }
+                settings(plant, |s| s.photo.iter_mut().for_each(|p| p.place = place))
+            }
+            Self::RemovePhoto => settings(plant, |s| s.photo = None),
             Self::SetDay(day) => settings(plant, |s| s.day = day),
             Self::SetLeaf(leaf) => {
                 may_bear(plant, leaf, document)?;

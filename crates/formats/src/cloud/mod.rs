@@ -13,59 +13,9 @@ use mesh::PointCloud;
 
 use crate::ExportSpec;
 use crate::error::{CloudError, FileFault, Place, WriteError};
-
-/// Largest scan that is read: 1 GiB.
-pub const MAX_CLOUD_BYTES: u64 = 1 << 30;
-/// Most points of a scan: 32 million.
-pub(crate) const MAX_POINTS: usize = 32 << 20;
-
-/// The file formats that hold scans.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum CloudFormat {
-    /// Polygon file format, text or binary; faces are left out.
-    Ply,
-    /// One point a line: x y z and more columns, separated by spaces, commas or semicolons.
-    Xyz,
-    /// Point cloud data of PCL, text, binary or compressed.
-    Pcd,
-    /// LAS 1.0 to 1.4, uncompressed.
-    Las,
-    /// Vertices of a Wavefront OBJ; faces are left out.
-    Obj,
-}
+use crate::kind::CloudFormat;
 
 impl CloudFormat {
-    /// Every format.
-    pub const ALL: [Self; 5] = [Self::Ply, Self::Xyz, Self::Pcd, Self::Las, Self::Obj];
-
-    /// The name for messages.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Ply => "PLY",
-            Self::Xyz => "XYZ",
-            Self::Pcd => "PCD",
-            Self::Las => "LAS",
-            Self::Obj => "OBJ",
-        }
-    }
-
-    /// The format that a file's extension (without the dot, any case) stands for.
-    ///
-    /// ```
-    /// use formats::CloudFormat;
-    /// assert_eq!(CloudFormat::from_extension("TXT"), Some(CloudFormat::Xyz));
-    /// ```
-    pub fn from_extension(extension: &str) -> Option<Self> {
-        match extension.to_ascii_lowercase().as_str() {
-            "ply" => Some(Self::Ply),
-            "xyz" | "txt" | "csv" | "asc" | "pts" | "xyzn" | "xyzrgb" => Some(Self::Xyz),
-            "pcd" => Some(Self::Pcd),
-            "las" | "laz" => Some(Self::Las),
-            "obj" => Some(Self::Obj),
-            _ => None,
-        }
-    }
-
     /// The format of a file that starts with these bytes (4,096 of them are plenty), if they can be a scan.
     ///
     /// ```
@@ -91,6 +41,11 @@ impl CloudFormat {
         }
     }
 }
+
+/// Largest scan that is read: 1 GiB.
+pub const MAX_CLOUD_BYTES: u64 = 1 << 30;
+/// Most points of a scan: 32 million.
+pub(crate) const MAX_POINTS: usize = 32 << 20;
 
 /// Farthest that a point may lie from the origin, in units of its file: whatever is measured on Earth, in any unit.
 /// Single precision and squares hold it.

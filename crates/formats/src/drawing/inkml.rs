@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 
 use base::Report;
 use glam::DVec2;
+use ink::{Drawing, InkSample, Stroke, StrokeMode};
 use roxmltree::Node;
-use sketch::{Drawing, InkSample, Stroke, StrokeMode};
 
 use super::mode::mode_in;
 use super::{parse_color, xml};

@@ -4,8 +4,8 @@ use std::io::Write;
 
 use base::Report;
 use glam::DVec2;
+use ink::{Drawing, InkSample, Stroke, StrokeMode};
 use serde::{Deserialize, Serialize};
-use sketch::{Drawing, InkSample, Stroke, StrokeMode};
 
 use super::{mode::mode_in, parse_color};
 use crate::DrawingFormat;
@@ -153,7 +153,7 @@ fn read_stroke(
 ///
 /// ```
 /// use formats::{DrawingFormat, read_drawings, write_drawing};
-/// let stem = sketch::Drawing::from_polylines("stem", &[vec![glam::DVec2::ZERO, glam::DVec2::Y]]);
+/// let stem = ink::Drawing::from_polylines("stem", &[vec![glam::DVec2::ZERO, glam::DVec2::Y]]);
 /// let mut file = Vec::new();
 /// write_drawing(&stem, &mut file)?;
 /// assert_eq!(read_drawings(&file[..], DrawingFormat::Json, "").next().unwrap()?.drawing, stem);

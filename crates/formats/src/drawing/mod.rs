@@ -1,4 +1,4 @@
-//! bytes -> [`sketch::Drawing`]s, y up, in whatever unit the file has.
+//! bytes -> [`ink::Drawing`]s, y up, in whatever unit the file has.
 
 mod inkml;
 mod json;
@@ -10,79 +10,14 @@ mod xml;
 use std::io::{BufRead, Read};
 
 use base::Warning;
-use sketch::Drawing;
+use ink::Drawing;
 
 use crate::error::{DrawingError, FileFault, Place};
+use crate::kind::DrawingFormat;
 pub use json::write_drawing;
 
 /// Largest file (or line of a file with a drawing a line) that is read whole: 64 MiB.
 pub const MAX_DRAWING_BYTES: u64 = 64 << 20;
-
-/// The file formats that hold strokes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum DrawingFormat {
-    /// Scalable Vector Graphics; one drawing a file.
-    Svg,
-    /// Ink Markup Language (W3C 2011); one drawing a file.
-    InkMl,
-    /// One JSON object a line, as in "Quick, Draw!"; any number of drawings a file.
-    Ndjson,
-    /// Our own `drawing/1`; one drawing a file.
-    Json,
-}
-
-impl DrawingFormat {
-    /// Every format.
-    pub const ALL: [Self; 4] = [Self::Svg, Self::InkMl, Self::Ndjson, Self::Json];
-
-    /// The name for messages.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Svg => "SVG",
-            Self::InkMl => "InkML",
-            Self::Ndjson => "ndjson",
-            Self::Json => "drawing JSON",
-        }
-    }
-
-    /// The format that a file's extension (without the dot, any case) stands for.
-    ///
-    /// ```
-    /// use formats::DrawingFormat;
-    /// assert_eq!(DrawingFormat::from_extension("SVG"), Some(DrawingFormat::Svg));
-    /// assert_eq!(DrawingFormat::from_extension("docx"), None);
-    /// ```
-    pub fn from_extension(extension: &str) -> Option<Self> {
-        match extension.to_ascii_lowercase().as_str() {
-            "svg" => Some(Self::Svg),
-            "inkml" | "ink" => Some(Self::InkMl),
-            "ndjson" | "jsonl" => Some(Self::Ndjson),
-            "json" => Some(Self::Json),
-            _ => None,
-        }
-    }
-
-    /// The format that the first bytes of a file look like.
-    ///
-    /// ```
-    /// use formats::DrawingFormat;
-    /// assert_eq!(DrawingFormat::sniff(b"<?xml version='1.0'?><svg/>"), Some(DrawingFormat::Svg));
-    /// assert_eq!(DrawingFormat::sniff(br#"{"word":"leaf","drawing":[]}"#), Some(DrawingFormat::Ndjson));
-    /// ```
-    pub fn sniff(start: &[u8]) -> Option<Self> {
-        let head = &start[..start.len().min(4096)];
-        let has = |word: &str| head.windows(word.len()).any(|w| w == word.as_bytes());
-        let first = head.iter().find(|b| !b.is_ascii_whitespace() && !matches!(b, 0xef | 0xbb | 0xbf))?;
-        match first {
-            b'<' if has("<svg") || has(":svg") => Some(Self::Svg),
-            b'<' if has("<ink") || has(":ink") => Some(Self::InkMl),
-            b'{' if has("\"burgeon\"") => Some(Self::Json),
-            b'{' if has("\"drawing\"") || has("\"key_id\"") => Some(Self::Ndjson),
-            b'{' if has("\"strokes\"") => Some(Self::Json),
-            _ => None,
-        }
-    }
-}
 
 /// A drawing and what its reader has to say about it.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! Words in layer and element names -> [`StrokeMode`].
 
-use sketch::StrokeMode;
+use ink::StrokeMode;
 
 /// The mode that a name asks for: `parts`, `branch-contour` or `leaf-contour`, in any case, with `-`, `_`,
 /// spaces, camel case or nothing between the words, and with anything after (`Leaf contour 2`).

@@ -4,8 +4,8 @@ use std::io::{BufRead, Read as _};
 
 use base::Report;
 use glam::DVec2;
+use ink::{Drawing, InkSample, Stroke};
 use serde::Deserialize;
-use sketch::{Drawing, InkSample, Stroke};
 
 use super::{MAX_DRAWING_BYTES, ReadDrawing, json, text_of};
 use crate::DrawingFormat;

@@ -29,96 +29,12 @@ pub use stl::write_stl;
 pub use usd_write::{UsdFiles, usd_files};
 
 use crate::error::{FileFault, ModelError, Place, WriteError};
+use crate::kind::ModelFormat;
 
 /// Largest model file that is read: 1 GiB.
 pub const MAX_MODEL_BYTES: u64 = 1 << 30;
 /// Most vertices or triangles of a model that is read.
 pub(crate) const MAX_ROWS: usize = 32 << 20;
-
-/// The file formats that hold models.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum ModelFormat {
-    /// Binary glTF 2.0: one file with textures and materials.
-    Glb,
-    /// glTF 2.0 as JSON with embedded buffers; read only.
-    Gltf,
-    /// Wavefront OBJ with its material file and textures beside it.
-    Obj,
-    /// Polygon file format: one mesh with colours at its vertices.
-    Ply,
-    /// Stereolithography: bare triangles.
-    Stl,
-    /// Universal Scene Description as text, with textures beside it; written only.
-    Usda,
-}
-
-impl ModelFormat {
-    /// Every format.
-    pub const ALL: [Self; 6] = [Self::Glb, Self::Gltf, Self::Obj, Self::Ply, Self::Stl, Self::Usda];
-
-    /// The name for messages.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Glb => "GLB",
-            Self::Gltf => "glTF",
-            Self::Obj => "OBJ",
-            Self::Ply => "PLY",
-            Self::Stl => "STL",
-            Self::Usda => "USD",
-        }
-    }
-
-    /// The format that a file's extension (without the dot, any case) stands for.
-    ///
-    /// ```
-    /// use formats::ModelFormat;
-    /// assert_eq!(ModelFormat::from_extension("GLB"), Some(ModelFormat::Glb));
-    /// ```
-    pub fn from_extension(extension: &str) -> Option<Self> {
-        match extension.to_ascii_lowercase().as_str() {
-            "glb" => Some(Self::Glb),
-            "gltf" => Some(Self::Gltf),
-            "obj" => Some(Self::Obj),
-            "ply" => Some(Self::Ply),
-            "stl" => Some(Self::Stl),
-            "usda" => Some(Self::Usda),
-            _ => None,
-        }
-    }
-
-    /// The format that the first bytes of a file look like. A binary STL has no mark and is not recognised.
-    pub fn sniff(start: &[u8]) -> Option<Self> {
-        let text = start.trim_ascii_start();
-        // Exporters of OBJ sign in comments.
-        let mut lines = start.split(|&b| b == b'\n').map(<[u8]>::trim_ascii_start);
-        let first = lines.find(|l| !l.is_empty() && !l.starts_with(b"#")).unwrap_or_default();
-        if start.starts_with(b"glTF") {
-            Some(Self::Glb)
-        } else if start.starts_with(b"#usda ") {
-            Some(Self::Usda)
-        } else if start.starts_with(b"ply\n") || start.starts_with(b"ply\r") {
-            Some(Self::Ply)
-        } else if text.starts_with(b"solid ") {
-            Some(Self::Stl)
-        } else if text.starts_with(b"{") && start.windows(7).any(|w| w == b"\"asset\"") {
-            Some(Self::Gltf)
-        } else if [&b"v "[..], b"vn ", b"mtllib ", b"o ", b"g "].iter().any(|w| first.starts_with(w)) {
-            Some(Self::Obj)
-        } else {
-            None
-        }
-    }
-
-    /// The axes and the unit are the format's own: metres, +Y up.
-    pub const fn fixed_axes(self) -> bool {
-        matches!(self, Self::Glb | Self::Gltf)
-    }
-
-    /// Files of this format have room for how wind moves each vertex.
-    pub const fn carries_wind(self) -> bool {
-        matches!(self, Self::Glb | Self::Gltf | Self::Usda)
-    }
-}
 
 /// Finds a file that a model refers to (a material file, a texture) by the name that the model uses.
 pub type Resolver<'a> = &'a dyn Fn(&str) -> Option<Vec<u8>>;

@@ -1,14 +1,9 @@
 //! Points -> controls: interpolation with natural ends, least squares.
 
-use core::ops::{Add, Mul, Sub};
-
 use glam::DVec3;
 
 use super::{Basis, SplineError};
-
-/// What can be interpolated: numbers, points, balls.
-pub trait Blend: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self> {}
-impl<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f64, Output = T>> Blend for T {}
+use crate::linear::{Blend, solve_positive};
 
 /// Parameters of points by the length of the chords between them, from 0 to 1.
 ///
@@ -177,42 +172,4 @@ pub(super) fn least_squares<V: Blend>(
     all.extend(right);
     all.push(last);
     Ok((basis, all))
-}
-
-/// Solves a symmetric positive definite system in place (Cholesky); `None` if it is none.
-pub(crate) fn solve_positive<V: Blend>(matrix: &mut [f64], right: &mut [V]) -> Option<()> {
-    let n = right.len();
-    let largest = (0..n).map(|i| matrix[i * n + i]).fold(0.0, f64::max);
-    for i in 0..n {
-        for j in 0..=i {
-            let (head, tail) = matrix.split_at(i * n);
-            let row_j = if i == j { &tail[..j] } else { &head[j * n..j * n + j] };
-            let dot: f64 = tail[..j].iter().zip(row_j).map(|(x, y)| x * y).sum();
-            let rest = tail[j] - dot;
-            if i == j {
-                // 1e-13: below this a control hangs in the air (no data near it).
-                if rest <= 1e-13 * largest || rest.is_nan() {
-                    return None;
-                }
-                matrix[i * n + i] = rest.sqrt();
-            } else {
-                matrix[i * n + j] = rest / matrix[j * n + j];
-            }
-        }
-    }
-    for i in 0..n {
-        let mut value = right[i];
-        for j in 0..i {
-            value = value - right[j] * matrix[i * n + j];
-        }
-        right[i] = value * (1.0 / matrix[i * n + i]);
-    }
-    for i in (0..n).rev() {
-        let mut value = right[i];
-        for j in i + 1..n {
-            value = value - right[j] * matrix[j * n + i];
-        }
-        right[i] = value * (1.0 / matrix[i * n + i]);
-    }
-    Some(())
 }

@@ -2,8 +2,8 @@
 
 use glam::{DVec2, DVec3};
 
-use super::fit::solve_positive;
 use super::{Basis, SplineError, Weights};
+use crate::linear::solve_positive;
 use crate::vector::Vector as _;
 
 /// A bicubic height over a rectangle of the xy plane.

@@ -2,9 +2,9 @@
 
 use base::{Counted, Draw, Run, Seed};
 
-use super::LsystemError;
 use super::grammar::{Lsystem, Rule, Written};
 use crate::GrowthError;
+use crate::error::LsystemError;
 
 /// A string of modules in columns.
 #[derive(Clone, Debug, Default)]

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::LsystemError;
 use super::expr::{Expression, Reader};
+use crate::error::LsystemError;
 
 /// Parameters of one module: more are a slip.
 const MOST_PARAMETERS: usize = 8;

@@ -14,7 +14,6 @@ use glam::DVec3;
 use plant::Phyllotaxis;
 
 use crate::colonize::{grow_bole, plant_roots};
-use crate::tree::GROWN;
 use crate::{GrowthError, JointId, Obstacles, Skeleton};
 use grove::{Grove, Kept};
 use resource::{Fed, Flow, Sharing};
@@ -119,7 +118,7 @@ pub fn self_organize(
         }
         // Later years have more to do.
         let share = f64::from(year + 1) / f64::from(spec.years);
-        run.cancel.reached(GROWN * share * share);
+        run.cancel.reached(crate::GROWN * share * share);
     }
     let bare = forest.grove.skeleton.parent.iter().all(Option::is_none);
     if spec.years > 0 && (bare || forest.generated == 0) {

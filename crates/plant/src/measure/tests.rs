@@ -42,7 +42,7 @@ fn leaf(p: &mut Plant, bearer: NodeId, shape: ShapeId, along: DVec3, scale: f64)
         shape,
         frame,
         scale,
-        tint: [1.0; 3],
+        paint: Paint::default(),
         key,
         source: None,
     });

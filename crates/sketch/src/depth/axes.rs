@@ -4,7 +4,7 @@ use base::Seed;
 use glam::{DVec2, DVec3};
 use plant::AxisKind;
 
-use crate::{Attachment, Reading};
+use reading::{Attachment, Reading};
 
 /// Distance of nodes, ink units: 50 to the drawing's diagonal keep a drawn curve smooth.
 const STEP: f64 = 0.02;
@@ -279,7 +279,7 @@ impl Line {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::AxisReading;
+    use reading::AxisReading;
 
     fn axis(points: Vec<DVec2>, bearer: Option<Attachment>) -> AxisReading {
         AxisReading { points, kind: AxisKind::Branch, bearer, half_width: vec![], source: None }

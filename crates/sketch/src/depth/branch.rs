@@ -257,7 +257,7 @@ fn turn_towards(piece: DVec3, target: DVec3, pull: f64) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Attachment, AxisReading, Reading};
+    use reading::{Attachment, AxisReading, Reading};
 
     /// Straight children at right angles to the bearer, on both sides, all at one place.
     fn whorl(left: usize, right: usize, first: impl Fn(usize) -> f64) -> Vec<Child> {

@@ -6,11 +6,11 @@ use base::{Draw, ops};
 use geom::{Cone, FlowerCone, Sheet, flower_cone};
 use glam::{DVec2, DVec3};
 use plant::{AxisKind, Blade, Flower, FlowerId, Frame, Lift, NodeId, Organ, OrganKind, Plant, Relief, Shape};
+use reading::{BladeReading, FlowerReading};
 
 use super::axes::{Part, key_of};
 use super::leaf::LocalBlade;
 use super::scene::{Bearing, Scene, around_one, sane, usable};
-use crate::{BladeReading, FlowerReading};
 
 /// Half opening of a flower whose drawing does not tell (60 degrees).
 const OPEN: f64 = ops::PI / 3.0;
@@ -158,7 +158,7 @@ impl Organs<'_, '_> {
     fn push(&mut self, kind: OrganKind, shape: Shape, frame: Frame, key: u64, source: Option<u32>) {
         let shape = self.plant.add_shape(shape);
         let petal = kind == OrganKind::Petal;
-        let tint = self.scene.tint(if petal { key } else { self.key }, self.color.filter(|_| petal));
+        let paint = self.scene.paint(if petal { key } else { self.key }, self.color.filter(|_| petal));
         self.plant.organs.push(Organ {
             kind,
             bearer: self.bearer,
@@ -166,7 +166,7 @@ impl Organs<'_, '_> {
             shape,
             frame,
             scale: 1.0,
-            tint,
+            paint,
             key,
             source,
         });

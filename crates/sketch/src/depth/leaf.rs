@@ -5,10 +5,11 @@
 use base::{Draw, ops};
 use glam::{DVec2, DVec3};
 use plant::{AxisKind, Blade, Frame, Lift, Organ, OrganKind, Plant, Relief, Shape, ShapeId};
+use reading::BladeReading;
 
 use super::axes::{Part, key_of};
 use super::scene::{Bearing, Scene, around_one, sane, usable};
-use crate::{BladeReading, LeafDepth};
+use crate::LeafDepth;
 
 /// Largest slope of a `drawn` leaf out of the plane: 35 degrees along it, 25 across.
 const TILT_ALONG: f64 = 35.0 * (ops::PI / 180.0);
@@ -147,7 +148,7 @@ pub(crate) fn place_leaf(
         shape,
         frame,
         scale: 1.0,
-        tint: scene.tint(key, leaf.color),
+        paint: scene.paint(key, leaf.color),
         key,
         source: leaf.source,
     });

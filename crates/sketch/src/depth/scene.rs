@@ -2,10 +2,11 @@
 
 use base::{Draw, Seed, ops};
 use glam::{DVec2, DVec3};
-use plant::{AxisId, AxisKind, NodeId, Plant};
+use plant::{AxisId, AxisKind, NodeId, Paint, Plant};
+use reading::Attachment;
 
 use super::Plans;
-use crate::{Attachment, PlantMap, SketchSpec};
+use crate::{PlantMap, SketchSpec};
 
 /// Roots farther from their bearer than this get a stalk, ink units: nearer ones read as touching.
 const TOUCHING: f64 = 0.012;
@@ -99,13 +100,14 @@ impl Scene<'_> {
 
     /// The colour in which an organ was drawn, if the drawing is a coloured one, else white; varied slightly in
     /// brightness and warmth, so that no two organs look alike.
-    pub(crate) fn tint(&self, key: u64, color: Option<[u8; 3]>) -> [f32; 3] {
+    pub(crate) fn paint(&self, key: u64, color: Option<[u8; 3]>) -> Paint {
         let mut s = self.seed.child(key).stream(Draw::Tint);
         let (light, warm) = (s.range(0.88, 1.12), s.range(-0.05, 0.05));
-        let drawn = color.filter(|_| self.coloured).and_then(drawn_light).unwrap_or([1.0; 3]);
+        let drawn = color.filter(|_| self.coloured).and_then(drawn_light);
         let varied = [light * (1.0 + warm), light, light * (1.0 - warm)];
         #[expect(clippy::cast_possible_truncation, reason = "a colour")]
-        [0, 1, 2].map(|i| (drawn[i] * varied[i]) as f32)
+        let times = |light: [f64; 3]| [0, 1, 2].map(|i| (light[i] * varied[i]) as f32);
+        drawn.map_or_else(|| Paint::Natural(times([1.0; 3])), |light| Paint::Drawn(times(light)))
     }
 }
 
@@ -119,7 +121,9 @@ pub(crate) fn coloured(mut colors: impl Iterator<Item = [u8; 3]> + Clone) -> boo
 
 /// The linear light of a colour that something was drawn in; `None` for ink: black, grey or white.
 pub(crate) fn drawn_light(color: [u8; 3]) -> Option<[f64; 3]> {
-    is_coloured(color).then(|| color.map(linear))
+    let light = color.map(linear);
+    // Of the darkest ink nobody sees the hue.
+    (is_coloured(color) && light.into_iter().any(|x| x > 0.04)).then_some(light)
 }
 
 /// Not black, grey or white.

@@ -3,11 +3,11 @@
 use base::{Draw, ops};
 use geom::{Pca2, pca2};
 use glam::{DVec2, DVec3};
-use plant::{AxisKind, Frame, Organ, OrganKind, Plant, Shape};
+use plant::{AxisKind, Frame, Organ, OrganKind, Paint, Plant, Shape};
+use reading::{Attachment, FruitReading};
 
 use super::axes::{Part, key_of};
 use super::scene::{Bearing, Scene, usable};
-use crate::{Attachment, FruitReading};
 
 /// Rings of a fruit from pole to pole.
 const RINGS: usize = 13;
@@ -55,7 +55,7 @@ pub(crate) fn place_fruit(
         shape,
         frame: Frame::looking(origin, along.extend(0.0), DVec3::Z),
         scale: 1.0,
-        tint: scene.tint(key, fruit.color),
+        paint: scene.paint(key, fruit.color),
         key,
         source: fruit.source,
     });
@@ -143,7 +143,7 @@ pub(crate) fn place_thorn(
         shape,
         frame: Frame { origin, right: DVec3::X, along: DVec3::Y, normal: DVec3::Z },
         scale: 1.0,
-        tint: [1.0; 3],
+        paint: Paint::default(),
         key,
         source: thorn.2,
     });

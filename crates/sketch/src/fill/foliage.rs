@@ -5,7 +5,7 @@
 use base::ops::sin_cos;
 use base::{Draw, Seed, ops};
 use glam::DVec3;
-use plant::{AxisId, Frame, NodeId, Organ, OrganKind, Phyllotaxis, Plant, Shape, ShapeId};
+use plant::{AxisId, Frame, NodeId, Organ, OrganKind, Paint, Phyllotaxis, Plant, Shape, ShapeId};
 
 use super::grow::{key_of, tangent};
 use super::volume::Volume;
@@ -115,7 +115,7 @@ fn organ(foliage: &Foliage, node: NodeId, at: DVec3, twig: DVec3, azimuth: f64, 
         shape,
         frame,
         scale: (foliage.length * size / unit).max(f64::MIN_POSITIVE),
-        tint,
+        paint: Paint::Natural(tint),
         key: leaf.number(),
         source: None,
     }

@@ -4,7 +4,7 @@
 
 use base::{Draw, Seed};
 use glam::DVec3;
-use plant::{AxisId, AxisKind, Frame, Organ, OrganKind, Plant};
+use plant::{AxisId, AxisKind, Frame, Organ, OrganKind, Paint, Plant};
 
 use super::crown::count_of;
 use super::foliage::Foliage;
@@ -120,7 +120,7 @@ impl Leaves<'_> {
             frame,
             // Drawn leaves of one plant differ by a fifth or so: larger ones would be of another plant.
             scale: (midrib.length().clamp(0.75 * f.length, 1.2 * f.length) / unit).max(f64::MIN_POSITIVE),
-            tint: [value; 3],
+            paint: Paint::Natural([value; 3]),
             key: leaf.number(),
             source: None,
         });

@@ -23,13 +23,14 @@ use std::collections::BTreeMap;
 
 use base::{Cancelled, Draw, Report, Run, Seed};
 use glam::{DVec2, DVec3};
-use plant::{AxisId, AxisKind, Phyllotaxis, Plant, Shape, ShapeId};
+use plant::{AxisId, AxisKind, Paint, Phyllotaxis, Plant, Shape, ShapeId};
 
 use crate::depth::drawn_light;
-use crate::{FillSpec, LeafForm, PlantMap, Reading, RegionKind, RegionReading, SketchSpec};
+use crate::{FillSpec, LeafForm, PlantMap, SketchSpec};
 use crown::{Crown, Habit};
 use foliage::Foliage;
 use leaves::Leaves;
+use reading::{Reading, RegionKind, RegionReading};
 use twigs::Twigs;
 use volume::{Inflation, Volume, above};
 
@@ -135,7 +136,8 @@ pub(crate) fn fill(
             for organ in &mut plant.organs[first..] {
                 #[expect(clippy::cast_possible_truncation, reason = "colours are f32")]
                 let light = light.map(|x| x as f32);
-                organ.tint = [0, 1, 2].map(|i| organ.tint[i] * light[i]);
+                let varied = organ.paint.rgb();
+                organ.paint = Paint::Drawn([0, 1, 2].map(|i| varied[i] * light[i]));
             }
         }
         if axes + leaves == 0 {

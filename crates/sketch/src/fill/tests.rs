@@ -2,9 +2,9 @@
 
 use base::ops::{TAU, sin_cos};
 use proptest::prelude::*;
+use reading::{Attachment, AxisReading};
 
 use super::*;
-use crate::{Attachment, AxisReading};
 
 /// A crown's contour by name, ink coordinates, with the trunk below it ending at `trunk_top`.
 pub(super) fn contour(name: &str) -> (Vec<DVec2>, f64) {

@@ -3,7 +3,7 @@
 
 use base::{Draw, Executor, Seed, ops};
 use glam::{DVec2, DVec3};
-use plant::{AxisKind, Blade, Frame, Lift, NodeId, Organ, OrganKind, Plant, Relief, Shape, ShapeId};
+use plant::{AxisKind, Blade, Frame, Lift, NodeId, Organ, OrganKind, Paint, Plant, Relief, Shape, ShapeId};
 
 /// Three threads, each from the last job to the first.
 #[derive(Debug)]
@@ -49,7 +49,7 @@ pub(crate) fn organ(
     frame: Frame,
     key: u64,
 ) -> Organ {
-    Organ { kind, bearer, flower: None, shape, frame, scale: 1.0, tint: [1.0; 3], key, source: None }
+    Organ { kind, bearer, flower: None, shape, frame, scale: 1.0, paint: Paint::default(), key, source: None }
 }
 
 /// The last node of the plant's newest axis.
@@ -208,7 +208,7 @@ pub(crate) fn still_life() -> Plant {
     });
     let upright = |x: f64| Frame::looking(DVec3::new(x, 0.0, 0.0), DVec3::Y, DVec3::Z);
     p.organs.push(organ(OrganKind::Fruit, None, apple, upright(-0.35), 1));
-    p.organs.push(organ(OrganKind::Fruit, None, body, upright(0.0), 2));
+    p.organs.push(organ(OrganKind::Body, None, body, upright(0.0), 2));
     for k in 0..60_u32 {
         let (sin, cos) = ops::sin_cos(ops::TAU * f64::from(k % 8) / 8.0);
         let y = 0.06 + 0.055 * f64::from(k / 8);
@@ -220,7 +220,7 @@ pub(crate) fn still_life() -> Plant {
     let leaf = p.add_shape(Shape::Blade(blade(0.35, 0.2, 0.4, 0.9, relief)));
     let frame = Frame::looking(DVec3::new(0.4, 0.1, 0.0), DVec3::new(0.1, 1.0, 0.1), DVec3::Z);
     let mut red = organ(OrganKind::Leaf, None, leaf, frame, 100);
-    red.tint = [0.6, 0.05, 0.03];
+    red.paint = Paint::Drawn([0.6, 0.05, 0.03]);
     p.organs.push(red);
     for k in 0..4_u32 {
         let (sin, cos) = ops::sin_cos(1.2 + ops::TAU * f64::from(k) / 4.0);

@@ -6,7 +6,7 @@ use base::ops::{self, PI, TAU};
 use base::{Draw, Seed};
 use glam::{DVec2, DVec3};
 use growth::{BlossomSpec, Obstacles};
-use plant::{Blade, Flower, FlowerId, Frame, Lift, Organ, OrganKind, Plant, Relief, Shape, ShapeId};
+use plant::{Blade, Flower, FlowerId, Frame, Lift, Organ, OrganKind, Paint, Plant, Relief, Shape, ShapeId};
 
 // The whorls of a flower open this far from its axis: the outermost, and the innermost of six.
 const OPEN: f64 = 76.0 * PI / 180.0;
@@ -68,14 +68,14 @@ fn add_flower(spec: &BlossomSpec, plant: &mut Plant, place: &Organ, shapes: &Sha
     let across = axis.any_orthonormal_vector();
     let up = axis.cross(across);
     let turn = TAU * draw.uniform();
-    let organ = |kind, shape, frame, scale, tint, key: Seed| Organ {
+    let organ = |kind, shape, frame, scale, paint, key: Seed| Organ {
         kind,
         bearer,
         flower: Some(id),
         shape,
         frame,
         scale,
-        tint,
+        paint,
         key: key.number(),
         source: None,
     };
@@ -97,16 +97,23 @@ fn add_flower(spec: &BlossomSpec, plant: &mut Plant, place: &Organ, shapes: &Sha
                 shapes.petal,
                 frame,
                 scale * (1.0 - 0.45 * inner),
-                tint,
+                Paint::Tinted(tint),
                 key,
             ));
         }
     }
     let frame =
         Frame { origin: centre + axis * (0.06 * spec.diameter_m), right: across, along: up, normal: axis };
-    plant.organs.push(organ(OrganKind::Disc, shapes.disc, frame, scale, [1.0; 3], key.child(u64::MAX)));
+    plant.organs.push(organ(
+        OrganKind::Disc,
+        shapes.disc,
+        frame,
+        scale,
+        Paint::default(),
+        key.child(u64::MAX),
+    ));
     let key = key.child(u64::MAX - 1);
-    plant.organs.push(organ(OrganKind::Pedicel, shapes.stalk, place.frame, longer, [1.0; 3], key));
+    plant.organs.push(organ(OrganKind::Pedicel, shapes.stalk, place.frame, longer, Paint::default(), key));
 }
 
 fn push(plant: &mut Plant, shape: Shape) -> ShapeId {

@@ -8,7 +8,7 @@ use base::ops::{self, TAU};
 use base::{Draw, Seed};
 use growth::{Bark, Look};
 use mesh::{Material, MaterialKind, Model, Texture};
-use plant::{OrganKind, Plant};
+use plant::{OrganKind, Paint, Plant};
 use spec::Colour;
 
 /// Gives each leaf its colour. Leaves that have a picture only vary in brightness.
@@ -22,7 +22,7 @@ pub(super) fn tint(look: &Look, plant: &mut Plant, pictured: bool, seed: Seed) {
         let share = look.leaf_variation * seed.child(organ.key).stream(Draw::Tint).uniform();
         #[expect(clippy::cast_possible_truncation, reason = "a colour")]
         let mixed = [0, 1, 2].map(|i| ops::lerp(from[i], to[i], share) as f32);
-        organ.tint = mixed;
+        organ.paint = if pictured { Paint::Natural(mixed) } else { Paint::Tinted(mixed) };
     }
 }
 

@@ -27,6 +27,7 @@ use document::PlantEdit;
 use glam::DVec3;
 use growth::{Grown, GrowthError, Method, Obstacle, Obstacles, TreeSpec};
 use mesh::Model;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use skin::SkinSpec;
 use spec::SpecFault;
@@ -126,7 +127,7 @@ impl From<GrowthError> for TreeError {
 }
 
 /// The part of a report about growth.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct GrowthReport {
     /// `competition`, `colonization`, `self-organizing`, `guided` or `lsystem`.
     pub method: String,

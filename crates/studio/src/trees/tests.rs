@@ -53,7 +53,7 @@ fn a_tree_has_its_model_its_report_and_its_colours() {
     assert!(made.item.counts.triangles > 1000 && growth.leaves_kept > 50, "{:?}", made.item);
     let again = plain(&young("alder"));
     assert_eq!(made.item.digest, again.item.digest);
-    let leaf = made.grown.plant.organs.first().expect("a leaf").tint;
+    let leaf = made.grown.plant.organs.first().expect("a leaf").paint.rgb();
     assert!(leaf[1] > leaf[0] && leaf[1] > leaf[2], "green: {leaf:?}");
     let bark = made.model.materials.iter().find(|m| m.name.starts_with("bark")).expect("bark");
     let t = bark.texture.as_ref().expect("painted");

@@ -11,8 +11,8 @@ use std::collections::BTreeMap;
 
 use base::Report;
 use glam::{DAffine2, DVec2};
+use ink::{Drawing, InkSample, Stroke};
 use roxmltree::{Node, NodeId};
-use sketch::{Drawing, InkSample, Stroke};
 
 use self::path::SubPath;
 use self::style::{Paint, Sheet, Style};

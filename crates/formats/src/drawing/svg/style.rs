@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use ink::StrokeMode;
 use roxmltree::Node;
-use sketch::StrokeMode;
 
 use crate::drawing::mode::mode_in;
 use crate::drawing::parse_color;

@@ -1,4 +1,4 @@
-use sketch::StrokeMode;
+use ink::StrokeMode;
 
 use super::*;
 

@@ -1,0 +1,156 @@
+//! `burgeon bloom`.
+
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand};
+
+use super::given::Given;
+use super::shared::{AxesArgs, CommonArgs, ViewWord, ranged, size};
+
+/// The two commands.
+#[derive(Debug, Subcommand)]
+pub(crate) enum BloomCommand {
+    /// Fit growth laws to scans of several days
+    ///
+    /// Reads the scans that a stages file names, cleans them, splits them into organs and regions, and fits a
+    /// logistic law f(x) = K / (1 + (K / p0 - 1) exp(-r x)) to the means of x, y and z of each region.
+    Fit(Box<FitArgs>),
+    /// Make a plant's shape at any day, or the animation of all days
+    ///
+    /// Control points around each organ of the first shape move along the law to the last shape. START is a scan, a
+    /// model, a stages file (all its stages are met), a whole flower (rose, lily, tulip, sunflower, clivia), or a drawing of
+    /// flowers (.svg, .inkml, .json, .burgeon), which then open.
+    Run(Box<BloomRunArgs>),
+}
+
+#[derive(Args, Debug)]
+#[command(after_long_help = "Stages file (TOML):
+  name = \"tomato\"
+  unit = \"mm\"            # m, cm or mm [default: --unit]
+  up = \"z\"               # y or z [default: --up]
+  split = \"auto\"         # auto: stem and leaves are found; none: each file is one organ
+  clean = true           # take stray points and the ground out
+  [[stage]]
+  file = \"march-05.xyz\"  # .ply .xyz .txt .pcd .las .obj, beside the stages file
+  day = 5
+  # organ = \"petal-1\"    # the file is this organ; several files a day give several organs
+  # region = 1           # ... or only this region of it, from 1 at the base
+  # seed = [x, y, z]     # the organ at this place is cut out, in the file's unit
+  # base = [x, y, z]     # where the organ is attached
+  # crop = [[x, y, z], [x, y, z]]
+
+Examples:
+  burgeon bloom fit stages.toml -o tomato.law.json --plot tomato.svg")]
+pub(crate) struct FitArgs {
+    /// The stages file.
+    #[arg(value_name = "STAGES.toml")]
+    pub(crate) input: PathBuf,
+    /// The law: .json.
+    #[arg(long, short, value_name = "LAW.json")]
+    pub(crate) output: PathBuf,
+    /// Plot of the fits with their points: .svg.
+    #[arg(long, value_name = "FIT.svg")]
+    pub(crate) plot: Option<PathBuf>,
+    /// Parts of each organ from base to tip, 1 to 20.
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=20))]
+    pub(crate) regions: u32,
+    /// Number that the search for the ground follows from.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) axes: AxesArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+#[derive(Args, Debug)]
+#[command(after_long_help = "Examples:
+  burgeon bloom run stages.toml --law tomato.law.json --day 8 -o day8.ply
+  burgeon bloom run first.ply --end last.ply --law lily.law.json --day 3 -o day3.ply --compare scan3.ply --unit mm
+  burgeon bloom run first.glb --end last.glb --law lily.law.json --frames 20 -o opening.glb
+  burgeon bloom run rose -o rose.glb --frames 16 --png rose.png
+  burgeon bloom run rose --petal petal.csv -o own-rose.glb       petals from marks, a model or a drawing
+  burgeon bloom run flower.svg -o flower.glb                     a drawn flower opens and wilts
+  burgeon bloom run my-flower.toml -o flower.glb                 a flower of your own (docs/bloom.md)
+  burgeon bloom run rose --law lily.law.json -o rose-as-lily/ --frames 16 --format obj")]
+pub(crate) struct BloomRunArgs {
+    /// First: clap takes the values of the others away as it reads them.
+    #[command(flatten)]
+    pub(crate) given: Given,
+    /// First shape: a scan or a model; or a stages file (.toml); or rose, lily, tulip, sunflower, clivia, or a flower of
+    /// your own (.toml); or a drawing.
+    #[arg(value_name = "START")]
+    pub(crate) start: String,
+    /// The result: .glb (animation, or one shape with --day), .ply, .obj or .stl (one shape), or a folder (a file a
+    /// frame).
+    #[arg(long, short, value_name = "OUT")]
+    pub(crate) output: PathBuf,
+    /// Last shape: a scan or a model.
+    #[arg(long, value_name = "END")]
+    pub(crate) end: Option<PathBuf>,
+    /// Form of the petals of a whole flower: marks of a petal (.csv), a model of one, or a drawing whose first petal
+    /// or leaf it is.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) petal: Option<PathBuf>,
+    /// The law that sets the pace [default: a straight line; for a flower its own].
+    #[arg(long, value_name = "LAW.json")]
+    pub(crate) law: Option<PathBuf>,
+    /// Control points along the three axes of each organ, each 2 to 16.
+    #[arg(long, value_name = "LxMxN", default_value = "4x4x4", value_parser = lattice)]
+    pub(crate) lattice: [usize; 3],
+    /// Shapes of an animation or of a folder, 2 to 1000.
+    #[arg(long, value_name = "N", default_value_t = 12, value_parser = clap::value_parser!(u32).range(2..=1000))]
+    pub(crate) frames: u32,
+    /// One shape, at this day in the count of the stages (0 is the start where there are none).
+    #[arg(long, value_name = "D", allow_hyphen_values = true)]
+    pub(crate) day: Option<f64>,
+    /// Day of START [default: the first of the law].
+    #[arg(long, value_name = "D", allow_hyphen_values = true)]
+    pub(crate) start_day: Option<f64>,
+    /// Day of END [default: the last of the law].
+    #[arg(long, value_name = "D", allow_hyphen_values = true)]
+    pub(crate) end_day: Option<f64>,
+    /// Measure the shape of --day against a scan of that day, in the unit and with the up axis of the stages: mean over x,
+    /// y and z (the paper's error) and Euclidean distances both ways, in millimetres.
+    #[arg(long, value_name = "SCAN", requires = "day")]
+    pub(crate) compare: Option<PathBuf>,
+    /// Do not split scans into organs: each is one organ. Models with faces are never split.
+    #[arg(long)]
+    pub(crate) whole: bool,
+    /// Do not take stray points and the ground out of scans.
+    #[arg(long)]
+    pub(crate) no_clean: bool,
+    /// Control points move on straight lines, as published, instead of turning with their organ.
+    #[arg(long)]
+    pub(crate) straight: bool,
+    /// Seconds of an animation, above 0 to 600.
+    #[arg(long, value_name = "S", default_value_t = 6.0, value_parser = |s: &str| ranged(s, 0.01, 600.0))]
+    pub(crate) seconds: f64,
+    /// Format of the files in a folder.
+    #[arg(long, value_enum, default_value_t = crate::args::FormatWord::Glb)]
+    pub(crate) format: crate::args::FormatWord,
+    /// Also make a picture of the shape at --day; without it of the last shape (for a flower, of full bloom).
+    #[arg(long, value_name = "FILE.png")]
+    pub(crate) png: Option<PathBuf>,
+    /// Number that all chance follows from.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Size of the picture in pixels, each 1 to 8192.
+    #[arg(long, value_name = "WxH", default_value = "1024x768", value_parser = size)]
+    pub(crate) size: (u32, u32),
+    /// From where the picture is taken.
+    #[arg(long, value_enum, default_value_t = ViewWord::ThreeQuarter)]
+    pub(crate) view: ViewWord,
+    #[command(flatten)]
+    pub(crate) axes: AxesArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+fn lattice(text: &str) -> Result<[usize; 3], String> {
+    let parts: Option<Vec<usize>> = text.split(['x', 'X']).map(|w| w.parse().ok()).collect();
+    match parts.as_deref() {
+        Some(&[a, b, c]) if [a, b, c].iter().all(|n| (2..=16).contains(n)) => Ok([a, b, c]),
+        _ => Err("give the control points along three axes, each 2 to 16, such as 4x4x4".into()),
+    }
+}

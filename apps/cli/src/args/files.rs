@@ -1,0 +1,104 @@
+//! `burgeon render`, `convert`, `info` and `studio`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::given::Given;
+use super::shared::{AxesArgs, CommonArgs, PictureArgs, UnitWord, UpWord, seed};
+
+#[derive(Args, Debug)]
+#[command(after_long_help = "Examples:
+  burgeon render daisy.glb -o daisy.png
+  burgeon render tree.obj -o tree.png --view turntable --size 1600x900
+  burgeon render tree.glb -o tree.png --background transparent --no-shadow")]
+pub(crate) struct RenderArgs {
+    /// First: clap takes the values of the others away as it reads them.
+    #[command(flatten)]
+    pub(crate) given: Given,
+    /// The model: .glb, .gltf, .obj, .ply or .stl.
+    #[arg(value_name = "MODEL")]
+    pub(crate) input: PathBuf,
+    /// The picture: .png.
+    #[arg(long, short, value_name = "PNG")]
+    pub(crate) output: PathBuf,
+    /// Number that the pattern of the lights follows from.
+    #[arg(long, value_name = "N", default_value_t = 1, allow_hyphen_values = true, value_parser = seed)]
+    pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
+    #[command(flatten)]
+    pub(crate) axes: AxesArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+#[derive(Args, Debug)]
+#[command(after_long_help = "Examples:
+  burgeon convert oak.glb -o oak.obj
+  burgeon convert scan.ply -o scan.glb --up z --unit mm
+  burgeon convert scan.ply -o scan.obj --in-unit mm --unit m")]
+pub(crate) struct ConvertArgs {
+    /// First: clap takes the values of the others away as it reads them.
+    #[command(flatten)]
+    pub(crate) given: Given,
+    /// The file to read.
+    #[arg(value_name = "IN")]
+    pub(crate) input: PathBuf,
+    /// The file to write; its extension says the format.
+    #[arg(long, short, value_name = "OUT")]
+    pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) axes: AxesArgs,
+    /// Axis that points up in the input, where it differs from --up.
+    #[arg(long, value_enum, value_name = "UP", help_heading = "Geometry")]
+    pub(crate) in_up: Option<UpWord>,
+    /// Unit of length in the input, where it differs from --unit.
+    #[arg(long, value_enum, value_name = "UNIT", help_heading = "Geometry")]
+    pub(crate) in_unit: Option<UnitWord>,
+    /// Also make a picture of a model.
+    #[arg(long, value_name = "FILE.png")]
+    pub(crate) png: Option<PathBuf>,
+    /// Number that the pattern of the picture's lights follows from.
+    #[arg(long, value_name = "N", default_value_t = 1, allow_hyphen_values = true, value_parser = seed)]
+    pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct InfoArgs {
+    /// First: clap takes the values of the others away as it reads them.
+    #[command(flatten)]
+    pub(crate) given: Given,
+    /// The file: a model (.glb, .gltf, .obj, .ply, .stl), a drawing (.svg, .inkml, .ndjson, .json) or a project
+    /// (.burgeon).
+    #[arg(value_name = "FILE")]
+    pub(crate) input: PathBuf,
+    #[command(flatten)]
+    pub(crate) axes: AxesArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+#[derive(Args, Debug)]
+#[command(after_long_help = "Examples:
+  burgeon studio
+  burgeon studio daisy.svg
+  burgeon studio --no-open --port 8080")]
+pub(crate) struct StudioArgs {
+    /// A drawing, project or model to open.
+    #[arg(value_name = "FILE")]
+    pub(crate) file: Option<PathBuf>,
+    /// Port of 127.0.0.1, 1 to 65535, or 0 for any free one [default: 7734, or the next free one].
+    #[arg(long, value_name = "N")]
+    pub(crate) port: Option<u16>,
+    /// Open no browser.
+    #[arg(long)]
+    pub(crate) no_open: bool,
+    /// The folder of the built Studio [default: found beside the program].
+    #[arg(long, value_name = "DIR")]
+    pub(crate) folder: Option<PathBuf>,
+}

@@ -1,0 +1,115 @@
+//! Which options stand on the command line: one that a command does not use is an error, never ignored.
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+use burgeon::formats::ModelFormat;
+use clap::parser::ValueSource;
+use clap::{ArgMatches, Command, FromArgMatches};
+
+use super::shared::{CommonArgs, PictureArgs, PlantFormat, ViewWord};
+use crate::failure::{Failure, Outcome};
+
+/// The options that stand on the command line, rather than those that have a default, by the names of their fields.
+#[derive(Debug, Default)]
+pub(crate) struct Given(BTreeSet<String>);
+
+impl Given {
+    /// This option was given.
+    pub(crate) fn has(&self, option: &str) -> bool {
+        self.0.contains(option)
+    }
+
+    /// Fails if one of `options` was given, which `users` use and `this` does not.
+    ///
+    /// ```text
+    /// --lattice is for scans and models; rose is a whole flower: leave it out
+    /// ```
+    pub(crate) fn refuse(&self, options: &[&str], users: &str, this: &str) -> Outcome {
+        match options.iter().find(|o| self.0.contains(**o)) {
+            Some(option) => {
+                let option = match *option {
+                    "inputs" => "DATA".to_owned(),
+                    "what" => "a plant".to_owned(),
+                    option => format!("--{}", option.replace('_', "-")),
+                };
+                Err(Failure::Bad(format!("{option} is for {users}; {this}: leave it out")))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// [`refuse`](Self::refuse), unless `used`.
+    pub(crate) fn only_if(&self, used: bool, options: &[&str], users: &str, this: &str) -> Outcome {
+        if used { Ok(()) } else { self.refuse(options, users, this) }
+    }
+
+    /// The options of pictures, where none is made, and those of a turntable, where one view is taken.
+    pub(crate) fn check_picture(&self, picture: bool, args: &PictureArgs) -> Outcome {
+        let all = ["size", "view", "frames", "background", "no_shadow", "supersample"];
+        self.only_if(picture, &all, "pictures", "--png FILE.png, which makes one, is missing")?;
+        let turntable = matches!(args.view, ViewWord::Turntable);
+        self.only_if(turntable, &["frames"], "--view turntable", "the picture has one view")
+    }
+
+    /// The options of axes, where no file is read or written whose axes and unit are not its format's own.
+    pub(crate) fn check_axes(&self, used: bool) -> Outcome {
+        let users = "OBJ, PLY, STL, USD, MTG, QSM and other files that do not fix their axes and unit";
+        self.only_if(used, &["up", "unit"], users, "none is read or written (glTF is in metres, +Y up)")
+    }
+
+    /// The options of a plant's meshes, by what is made of them.
+    pub(crate) fn check_surface(&self, seen: Seen) -> Outcome {
+        let colours = ["no_textures", "petals", "variation"];
+        let none = "neither a model nor a picture is made";
+        self.only_if(seen.model.is_some() || seen.picture, &colours, "models and pictures", none)?;
+        let counted = seen.model.is_some() || seen.picture || seen.report;
+        self.only_if(counted, &["detail", "sides"], "models, pictures and reports", "none is made")?;
+        let wind = seen.model.is_some_and(ModelFormat::carries_wind);
+        self.only_if(wind, &["wind"], "models as .glb or .usda", "none is made")?;
+        self.only_if(seen.model.is_some(), &["lods"], "models", "none is made")
+    }
+}
+
+/// Where a plant's meshes come out.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Seen {
+    /// As a model of this format.
+    pub(crate) model: Option<ModelFormat>,
+    pub(crate) picture: bool,
+    /// Counted in a report.
+    pub(crate) report: bool,
+}
+
+impl Seen {
+    pub(crate) fn new(plant: Option<PlantFormat>, png: Option<&PathBuf>, common: &CommonArgs) -> Self {
+        let model = match plant {
+            Some(PlantFormat::Model(format)) => Some(format),
+            Some(PlantFormat::Mtg) | None => None,
+        };
+        Self { model, picture: png.is_some(), report: common.reports() }
+    }
+}
+
+// Flattened into the options of a command it sees that command's own matches and adds no option.
+impl FromArgMatches for Given {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let given = |id: &&clap::Id| matches.value_source(id.as_str()) == Some(ValueSource::CommandLine);
+        Ok(Self(matches.ids().filter(given).map(ToString::to_string).collect()))
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+impl clap::Args for Given {
+    fn augment_args(command: Command) -> Command {
+        command
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        command
+    }
+}

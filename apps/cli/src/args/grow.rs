@@ -1,0 +1,151 @@
+//! `burgeon grow`.
+
+use std::path::PathBuf;
+
+use burgeon::glam::DVec3;
+use clap::{Args, ValueEnum};
+
+use super::given::Given;
+use super::shared::{AxesArgs, CommonArgs, PictureArgs, SkinArgs, ranged, seed};
+
+#[derive(Args, Debug)]
+#[command(after_long_help = GROW_EXAMPLES)]
+pub(crate) struct GrowArgs {
+    /// First: clap takes the values of the others away as it reads them.
+    #[command(flatten)]
+    pub(crate) given: Given,
+    /// A species of `burgeon presets`, or a spec (.toml) [default: a plain tree].
+    #[arg(value_name = "PRESET|SPEC.toml", required_unless_present_any = ["method", "attractors"])]
+    pub(crate) what: Option<PathBuf>,
+    /// The model (.glb, .obj, .ply, .stl or .usda), or the structure (.mtg).
+    #[arg(long, short, value_name = "OUT", required_unless_present_any = ["png", "qsm", "report", "json"])]
+    pub(crate) output: Option<PathBuf>,
+    /// Also write the wood as cylinders: a quantitative structure model, one a row, with `TreeQSM`'s column names.
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) qsm: Option<PathBuf>,
+    /// Also make a picture.
+    #[arg(long, value_name = "FILE.png")]
+    pub(crate) png: Option<PathBuf>,
+    /// Number that all chance follows from.
+    #[arg(long, value_name = "N", default_value_t = 1, allow_hyphen_values = true, value_parser = seed)]
+    pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) growth: GrowthArgs,
+    #[command(flatten)]
+    pub(crate) points: PointsArgs,
+    #[command(flatten)]
+    pub(crate) surface: TreeSurfaceArgs,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
+    #[command(flatten)]
+    pub(crate) axes: AxesArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+const GROW_EXAMPLES: &str = "Examples:
+  burgeon grow oak -o oak.glb --png oak.png
+  burgeon grow pine -o pine.glb --leaf-keep 0.4 --lods 3         pine.glb, pine-lod1.glb, ...
+  burgeon grow oak -o oak.glb --obstacle house.obj               around a house
+  burgeon grow alder -o young.glb --age 12
+  burgeon grow oak -o oak.glb --leaf-template leaf.csv           with a leaf of your own (burgeon leaf --help)
+  burgeon grow oak -o oak.mtg --qsm oak.csv --report oak.json    structure and measures for programs of the field
+  burgeon grow --attractors scan.xyz --root 0,0,0 --influence 1 --kill 0.4 -o tree.glb
+  burgeon presets --show oak > mine.toml; burgeon grow mine.toml -o mine.glb";
+
+/// What grows, and for how long.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Growth")]
+pub(crate) struct GrowthArgs {
+    /// Grow by this method: where PRESET or SPEC.toml uses another one, with that method's own defaults in the same
+    /// envelope [default: the preset's].
+    #[arg(long, value_enum)]
+    pub(crate) method: Option<MethodWord>,
+    /// A solid mesh (.glb, .gltf, .obj, .ply, .stl) to grow around, in the axes of --up and the --unit (glTF: metres, +Y
+    /// up); may be given several times.
+    #[arg(long, value_name = "MESH")]
+    pub(crate) obstacle: Vec<PathBuf>,
+    /// A leaf that the tree bears instead of its own: marks (.csv), a vein graph (.json) or a model of one leaf (.glb,
+    /// .obj, .ply, .stl) with its root at the origin.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) leaf_template: Option<PathBuf>,
+    /// Share of the leaves kept, the best lit ones, 0 to 1 [default: the preset's, mostly 1].
+    #[arg(long, value_name = "F", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 0.0, 1.0))]
+    pub(crate) leaf_keep: Option<f64>,
+    /// The tree as it was after N rounds, years (self-organizing) or rewriting steps (lsystem) [default: full-grown].
+    #[arg(long, value_name = "N")]
+    pub(crate) age: Option<u32>,
+}
+
+/// Growth on given points.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Given points")]
+pub(crate) struct PointsArgs {
+    /// Attraction points (.xyz, .txt, .ply, .pcd, .las, .obj) instead of an envelope: space colonization of just these.
+    #[arg(long, value_name = "FILE", conflicts_with = "method")]
+    pub(crate) attractors: Option<PathBuf>,
+    /// Where the tree stands, in the axes of --up and the --unit, as the points have it, also where these lie far from
+    /// the origin (UTM); may be given several times [default: the preset's, mostly 0,0,0].
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = point)]
+    pub(crate) root: Vec<DVec3>,
+    /// Length D of a step, in --unit, above 0 [default: half of --kill].
+    #[arg(long, value_name = "D", allow_hyphen_values = true, value_parser = length)]
+    pub(crate) step: Option<f64>,
+    /// Distance within which a point attracts, in --unit, above 0 [default: 1 m].
+    #[arg(long, value_name = "D", allow_hyphen_values = true, value_parser = length)]
+    pub(crate) influence: Option<f64>,
+    /// Distance within which a point is consumed, in --unit, above 0 and at most --influence [default: 0.4 m].
+    #[arg(long, value_name = "D", allow_hyphen_values = true, value_parser = length)]
+    pub(crate) kill: Option<f64>,
+}
+
+/// How the tree is meshed.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Surface")]
+pub(crate) struct TreeSurfaceArgs {
+    #[command(flatten)]
+    pub(crate) skin: SkinArgs,
+    /// Coarser copies to write beside the model (OUT-lod1, OUT-lod2, ...), 0 to 6.
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=6))]
+    pub(crate) lods: u32,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum MethodWord {
+    /// Life cycles of attraction points (the paper)
+    Competition,
+    /// Space colonization (Runions 2007)
+    Colonization,
+    /// Buds with markers of their own that keep away from one another
+    Guided,
+    /// Buds that compete for light (Palubicki 2009)
+    SelfOrganizing,
+    /// Rewriting rules: an oak, unless the spec has its own
+    Lsystem,
+}
+
+impl MethodWord {
+    pub(crate) const fn word(self) -> &'static str {
+        match self {
+            Self::Competition => "competition",
+            Self::Colonization => "colonization",
+            Self::Guided => "guided",
+            Self::SelfOrganizing => "self-organizing",
+            Self::Lsystem => "lsystem",
+        }
+    }
+}
+
+fn point(text: &str) -> Result<DVec3, String> {
+    let numbers: Vec<f64> = text.split(',').filter_map(|w| w.trim().parse().ok()).collect();
+    match numbers.as_slice() {
+        &[x, y, z] if text.split(',').count() == 3 && [x, y, z].iter().all(|c| c.abs() <= 1e8) => {
+            Ok(DVec3::new(x, y, z))
+        }
+        _ => Err("give three numbers within 1e8 such as 0,0,1.5".into()),
+    }
+}
+
+fn length(text: &str) -> Result<f64, String> {
+    ranged(text, 1e-6, 1e6)
+}

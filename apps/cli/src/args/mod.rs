@@ -1,0 +1,101 @@
+//! Names, options and help of every command: a contract with other programs.
+
+mod bloom;
+mod compare;
+mod files;
+mod given;
+mod grow;
+mod leaf;
+mod presets;
+mod shape;
+mod shared;
+mod sketch;
+
+pub(crate) use bloom::{BloomCommand, BloomRunArgs, FitArgs};
+pub(crate) use compare::{CompareArgs, CompareWord};
+pub(crate) use files::{ConvertArgs, InfoArgs, RenderArgs, StudioArgs};
+pub(crate) use given::{Given, Seen};
+pub(crate) use grow::{GrowArgs, MethodWord, PointsArgs, TreeSurfaceArgs};
+pub(crate) use leaf::{
+    GraphWord, LeafArgs, ParametersWord, RingsWord, SurfaceWord, ThicknessWord, VenationWord,
+};
+pub(crate) use presets::PresetsArgs;
+pub(crate) use shape::ShapeArgs;
+pub(crate) use shared::{
+    AxesArgs, CommonArgs, FormatWord, PictureArgs, PlantFormat, SkinArgs, UnitWord, UpWord,
+};
+pub(crate) use sketch::{ReadingArgs, SketchArgs, SurfaceArgs};
+
+use clap::{Parser, Subcommand};
+
+/// Three-dimensional plants out of what people can draw.
+///
+/// Exit status: 0 on success, 2 for bad usage or bad input (one line on stderr says what, where and what to do),
+/// 1 for a bug of burgeon, 130 after Ctrl-C or another request to end (drawings of a batch that were finished by then
+/// stay). The files of a command are written all or none, and never over a file that it reads; other files of
+/// the same name are replaced, links are followed (docs/exports.md). An input named - is standard input.
+#[derive(Debug, Parser)]
+#[command(
+    name = "burgeon",
+    version,
+    max_term_width = 100,
+    subcommand_required = true,
+    arg_required_else_help = true
+)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Turn drawn strokes into a plant
+    ///
+    /// Lines become stems and branches, closed outlines petals and leaves; a trunk and a crown become a tree.
+    /// Seen from the front the plant is the drawing. Strokes on a layer, or with an id, named branch-contour or
+    /// leaf-contour are filled with twigs or leaves.
+    Sketch(Box<SketchArgs>),
+    /// Turn marks measured on a leaf into a leaf or a whole plant
+    ///
+    /// Veins become solid balls along a spline, the blade a surface through the same points. Works from a CSV file
+    /// of 7 marks along each pair of side veins.
+    Leaf(Box<LeafArgs>),
+    /// Grow a tree: a species that comes with the program, or a spec of your own
+    ///
+    /// Branches compete for space and light, around obstacles; leaves stay where light reaches. `burgeon presets`
+    /// lists the species.
+    Grow(Box<GrowArgs>),
+    /// Edit a plant by hand: prune, turn, move, regrow, sketch or brush branches, fill a silhouette, thin leaves
+    ///
+    /// Works on a species, a spec, a drawing or a project. The edits stand in a JSON file; the rest of the plant stays
+    /// as it is.
+    Shape(Box<ShapeArgs>),
+    /// List the species that `burgeon grow` knows; show one as TOML; write the JSON Schema of specs
+    Presets(PresetsArgs),
+    /// Grow the same oak by three methods and compare them
+    ///
+    /// L-system, space colonization and space competition, at one height: vertices, triangles, leaves, seconds,
+    /// bytes, and what the paper printed.
+    Compare(Box<CompareArgs>),
+    /// Make a picture of a model
+    ///
+    /// The model fills the picture but for a margin and stands on the ground in the light of a soft sun.
+    Render(RenderArgs),
+    /// Convert a model or a drawing to another format
+    ///
+    /// Models: .glb, .gltf, .obj, .ply and .stl to .glb, .obj, .ply, .stl or .usda. Drawings: .svg, .inkml,
+    /// .ndjson and .json to .json. A drawing becomes a model with `burgeon sketch`.
+    Convert(ConvertArgs),
+    /// Say what is in a model or a drawing
+    ///
+    /// Counts, bounds, units, parts and materials, and what is wrong with it.
+    Info(InfoArgs),
+    /// Grow organs through scans of several days; flowers that open
+    #[command(subcommand)]
+    Bloom(BloomCommand),
+    /// Open the Studio: draw on the left, see the plant grow on the right
+    ///
+    /// Serves the built Studio on 127.0.0.1, to this machine's own browser only, and opens it. Nothing is sent
+    /// anywhere: plants are made in the browser.
+    Studio(StudioArgs),
+}

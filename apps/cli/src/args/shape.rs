@@ -1,0 +1,67 @@
+//! `burgeon shape`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::given::Given;
+use super::grow::TreeSurfaceArgs;
+use super::shared::{AxesArgs, CommonArgs, PictureArgs, seed};
+
+#[derive(Args, Debug)]
+#[command(after_long_help = SHAPE_EXAMPLES)]
+pub(crate) struct ShapeArgs {
+    /// First: clap takes the values of the others away as it reads them.
+    #[command(flatten)]
+    pub(crate) given: Given,
+    /// A species of `burgeon presets`, a spec (.toml), a drawing, or a project (.burgeon).
+    #[arg(value_name = "PRESET|SPEC.toml|DRAWING", required_unless_present_any = ["template", "schema"])]
+    pub(crate) what: Option<PathBuf>,
+    /// The edits, a JSON file; --template prints one, docs/shaping.md explains it.
+    #[arg(long, value_name = "EDITS.json", required_unless_present_any = ["template", "schema", "list"])]
+    pub(crate) edits: Option<PathBuf>,
+    /// The model (.glb, .obj, .ply, .stl or .usda), or the structure (.mtg).
+    #[arg(long, short, value_name = "OUT", required_unless_present_any = ["png", "report", "json", "template", "schema", "list", "save"])]
+    pub(crate) output: Option<PathBuf>,
+    /// Which plant of a project that holds several: its name, or its number from 1.
+    #[arg(long, value_name = "NAME|N")]
+    pub(crate) plant: Option<String>,
+    /// Also save the project with the edits after those that it has.
+    #[arg(long, value_name = "PROJECT.burgeon")]
+    pub(crate) save: Option<PathBuf>,
+    /// Also make a picture.
+    #[arg(long, value_name = "FILE.png")]
+    pub(crate) png: Option<PathBuf>,
+    /// Number that all chance of the plant follows from; edits have their own. Default 1, or the project's.
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = seed)]
+    pub(crate) seed: Option<u64>,
+    /// Print the branches up to this order (0 is the trunk) with the paths that name them, after the edits if any.
+    #[arg(long, value_name = "ORDER", num_args = 0..=1, default_missing_value = "1")]
+    pub(crate) list: Option<u32>,
+    /// Print an edits file with an edit of each kind.
+    #[arg(long)]
+    pub(crate) template: bool,
+    /// Write the JSON Schema of edits files: every field with its meaning, unit, range and default.
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) schema: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) surface: TreeSurfaceArgs,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
+    #[command(flatten)]
+    pub(crate) axes: AxesArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+const SHAPE_EXAMPLES: &str = "Examples:
+  burgeon shape --template > edits.json
+  burgeon shape oak --list                                       which branch has which path?
+  burgeon shape oak --edits edits.json -o oak.glb --png oak.png
+  burgeon shape tree.svg --edits edits.json -o tree.glb --report tree.json
+  burgeon shape garden.burgeon --plant bush --edits edits.json -o bush.glb --save garden2.burgeon
+
+Edits are done one after another; one that cannot be done says why and changes nothing. If none can be done
+that is an error, and so is a number out of its range, such as an \"at\" outside of 0 to 1.
+A branch is named by  {\"path\": [0, 2]}  (stem 0, its branch number 2 from the base up),
+by  {\"near\": [1.2, 3.4, 0]}  (metres), or by the mark that the Studio keeps.";

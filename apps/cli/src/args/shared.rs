@@ -1,0 +1,321 @@
+//! Options that commands share, and their words.
+
+use std::path::PathBuf;
+
+use burgeon::formats::ModelFormat;
+use burgeon::render::{Background, PictureSpec, View};
+use burgeon::skin::SkinSpec;
+use burgeon::{Seed, Unit, UpAxis};
+use clap::{Args, ValueEnum};
+
+/// Options of every command.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Running")]
+pub(crate) struct CommonArgs {
+    /// Number of threads, 1 to 256 [default: all of the machine]. The result does not depend on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub(crate) threads: Option<u16>,
+    /// How many times the usual limits of docs/limits.md may be exceeded, 1 to 1000: memory, points, joints, leaves,
+    /// triangles and the like. What is more is refused.
+    #[arg(long, value_name = "X", default_value_t = 1.0, allow_hyphen_values = true,
+          value_parser = |s: &str| ranged(s, 1.0, 1000.0))]
+    pub(crate) budget: f64,
+    /// Print nothing but errors; show no progress.
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+    /// Write the report to a JSON file: what was read, understood, counted and timed.
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) report: Option<PathBuf>,
+    /// Print the report as JSON on stdout instead of the summary.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+impl CommonArgs {
+    /// Somebody reads the report.
+    pub(crate) fn reports(&self) -> bool {
+        self.report.is_some() || self.json
+    }
+}
+
+/// How plants are meshed.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Surface")]
+pub(crate) struct SkinArgs {
+    /// Fineness of the meshes, 0.1 to 8; triangle counts grow in proportion. At 1 a crown's leaf has 6 to 24
+    /// [default: 1].
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 0.1, 8.0))]
+    pub(crate) detail: Option<f64>,
+    /// Sides of an ordinary branch, 3 to 24; thick branches get more [default: 8].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(3..=24))]
+    pub(crate) sides: Option<u32>,
+    /// Plain colours instead of textures.
+    #[arg(long)]
+    pub(crate) no_textures: bool,
+    /// Also write how wind moves each vertex, for shaders: attributes _WIND and _PIVOT of .glb, primvars of .usda
+    /// (docs/exports.md).
+    #[arg(long)]
+    pub(crate) wind: bool,
+}
+
+impl SkinArgs {
+    /// What was asked for, in the place of what was there.
+    pub(crate) fn set(&self, skin: &mut SkinSpec) {
+        skin.detail = self.detail.unwrap_or(skin.detail);
+        skin.sides = self.sides.unwrap_or(skin.sides);
+        skin.textures &= !self.no_textures;
+        skin.wind = self.wind;
+    }
+
+    /// A plain surface with what was asked for.
+    pub(crate) fn spec(&self) -> SkinSpec {
+        let mut skin = SkinSpec::default();
+        self.set(&mut skin);
+        skin
+    }
+}
+
+/// How pictures are taken.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Picture")]
+pub(crate) struct PictureArgs {
+    /// Size of the picture in pixels, each 1 to 8192.
+    #[arg(long, value_name = "WxH", default_value = "1024x768", value_parser = size)]
+    pub(crate) size: (u32, u32),
+    /// From where: front is orthographic and shows what was drawn; turntable is a sheet of views all around.
+    #[arg(long, value_enum, default_value_t = ViewWord::ThreeQuarter)]
+    pub(crate) view: ViewWord,
+    /// Views of a turntable, 1 to 64.
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub(crate) frames: u32,
+    /// What is behind: sky, transparent, white or a colour as #rrggbb.
+    #[arg(long, value_name = "sky|transparent|white|#rrggbb", default_value = "sky", value_parser = background)]
+    pub(crate) background: Background,
+    /// Leave out the shadow on the ground.
+    #[arg(long)]
+    pub(crate) no_shadow: bool,
+    /// Samples along a pixel's edge, 1 (rough) to 6 (finest).
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=6))]
+    pub(crate) supersample: u32,
+}
+
+impl PictureArgs {
+    pub(crate) fn spec(&self, seed: u64) -> PictureSpec {
+        PictureSpec {
+            width: self.size.0,
+            height: self.size.1,
+            view: match self.view {
+                ViewWord::Front => View::Front,
+                ViewWord::ThreeQuarter => View::ThreeQuarter,
+                ViewWord::Side => View::Side,
+                ViewWord::Top => View::Top,
+                ViewWord::Turntable => View::Turntable { frames: self.frames },
+            },
+            background: self.background,
+            ground_shadow: !self.no_shadow,
+            supersample: self.supersample,
+            seed: Seed::new(seed),
+            ..PictureSpec::default()
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum ViewWord {
+    /// Orthographic, the drawing's own view
+    Front,
+    /// Perspective from the front right, a little above
+    ThreeQuarter,
+    /// Orthographic, from the plant's right
+    Side,
+    /// Orthographic, from above
+    Top,
+    /// A sheet of perspective views all around
+    Turntable,
+}
+
+/// Axes and unit of files whose format does not fix them.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Geometry")]
+pub(crate) struct AxesArgs {
+    /// Axis that points up in OBJ, PLY, STL, USD, MTG and QSM files, clouds, and coordinates given as options; glTF is
+    /// always +Y [default: y; z for MTG and QSM].
+    #[arg(long, value_enum)]
+    pub(crate) up: Option<UpWord>,
+    /// Unit of length in OBJ, PLY, STL, USD, MTG and QSM files, clouds, and lengths said to be in --unit; glTF is always
+    /// in metres.
+    #[arg(long, value_enum, default_value_t = UnitWord::M)]
+    pub(crate) unit: UnitWord,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum UpWord {
+    /// +Y
+    Y,
+    /// +Z
+    Z,
+}
+
+impl From<UpWord> for UpAxis {
+    fn from(word: UpWord) -> Self {
+        match word {
+            UpWord::Y => Self::Y,
+            UpWord::Z => Self::Z,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum UnitWord {
+    /// Metres
+    M,
+    /// Centimetres
+    Cm,
+    /// Millimetres
+    Mm,
+}
+
+impl From<UnitWord> for Unit {
+    fn from(word: UnitWord) -> Self {
+        match word {
+            UnitWord::M => Self::Metre,
+            UnitWord::Cm => Self::Centimetre,
+            UnitWord::Mm => Self::Millimetre,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum FormatWord {
+    /// Binary glTF: one file with textures and materials
+    Glb,
+    /// Wavefront OBJ with its material file and textures beside it
+    Obj,
+    /// PLY: one mesh with colours
+    Ply,
+    /// Universal Scene Description as text, with textures beside it
+    Usda,
+}
+
+impl FormatWord {
+    pub(crate) const fn format(self) -> ModelFormat {
+        match self {
+            Self::Glb => ModelFormat::Glb,
+            Self::Obj => ModelFormat::Obj,
+            Self::Ply => ModelFormat::Ply,
+            Self::Usda => ModelFormat::Usda,
+        }
+    }
+
+    pub(crate) const fn extension(self) -> &'static str {
+        match self {
+            Self::Glb => "glb",
+            Self::Obj => "obj",
+            Self::Ply => "ply",
+            Self::Usda => "usda",
+        }
+    }
+}
+
+/// What a plant is written as.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum PlantFormatWord {
+    /// Binary glTF: one file with textures and materials
+    Glb,
+    /// Wavefront OBJ with its material file and textures beside it
+    Obj,
+    /// PLY: one mesh with colours
+    Ply,
+    /// Universal Scene Description as text, with textures beside it
+    Usda,
+    /// Multiscale tree graph: axes, nodes and organs as text
+    Mtg,
+}
+
+impl PlantFormatWord {
+    pub(crate) const fn format(self) -> PlantFormat {
+        match self {
+            Self::Glb => PlantFormat::Model(ModelFormat::Glb),
+            Self::Obj => PlantFormat::Model(ModelFormat::Obj),
+            Self::Ply => PlantFormat::Model(ModelFormat::Ply),
+            Self::Usda => PlantFormat::Model(ModelFormat::Usda),
+            Self::Mtg => PlantFormat::Mtg,
+        }
+    }
+
+    pub(crate) const fn extension(self) -> &'static str {
+        match self {
+            Self::Glb => "glb",
+            Self::Obj => "obj",
+            Self::Ply => "ply",
+            Self::Usda => "usda",
+            Self::Mtg => "mtg",
+        }
+    }
+}
+
+pub(crate) fn size(text: &str) -> Result<(u32, u32), String> {
+    let parts = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    match parts {
+        Some((w, h)) if (1..=8192).contains(&w) && (1..=8192).contains(&h) => Ok((w, h)),
+        _ => Err("give width and height in pixels, each 1 to 8192, such as 1024x768".into()),
+    }
+}
+
+fn background(text: &str) -> Result<Background, String> {
+    let hex = || {
+        let hex = text.strip_prefix('#').filter(|h| h.len() == 6 && h.is_ascii())?;
+        let byte = |i: usize| u8::from_str_radix(hex.get(i..i + 2)?, 16).ok();
+        Some(Background::Plain([byte(0)?, byte(2)?, byte(4)?]))
+    };
+    match text {
+        "sky" => Ok(Background::Sky),
+        "transparent" => Ok(Background::Transparent),
+        "white" => Ok(Background::Plain([255; 3])),
+        _ => hex().ok_or_else(|| "give sky, transparent, white or a colour such as #f0f4e8".into()),
+    }
+}
+
+pub(crate) fn seed(text: &str) -> Result<u64, String> {
+    text.parse().ok().ok_or_else(|| format!("give a whole number from 0 to {}", u64::MAX))
+}
+
+pub(crate) fn ranged(text: &str, low: f64, high: f64) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|x| (low..=high).contains(x))
+        .ok_or_else(|| format!("give a number from {low} to {high}"))
+}
+
+/// What a plant is written as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum PlantFormat {
+    /// Its meshes.
+    Model(ModelFormat),
+    /// Its structure, as a multiscale tree graph.
+    Mtg,
+}
+
+impl PlantFormat {
+    /// The axes and the unit are the format's own.
+    pub(crate) const fn fixed_axes(self) -> bool {
+        matches!(self, Self::Model(format) if format.fixed_axes())
+    }
+
+    pub(crate) fn from_extension(extension: &str) -> Option<Self> {
+        if extension.eq_ignore_ascii_case("mtg") {
+            return Some(Self::Mtg);
+        }
+        ModelFormat::from_extension(extension).map(Self::Model)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory as _;
+
+    #[test]
+    fn commands_are_consistent() {
+        crate::args::Cli::command().debug_assert();
+    }
+}

@@ -1,0 +1,191 @@
+//! `burgeon sketch`.
+
+use std::path::PathBuf;
+
+use burgeon::sketch::{BranchDepth, LeafDepth};
+use burgeon::skin::PetalColor;
+use clap::{Args, ValueEnum};
+
+use super::given::Given;
+use super::shared::{AxesArgs, CommonArgs, PictureArgs, PlantFormatWord, SkinArgs, ranged, seed};
+
+#[derive(Args, Debug)]
+#[command(after_long_help = SKETCH_EXAMPLES)]
+pub(crate) struct SketchArgs {
+    /// First: clap takes the values of the others away as it reads them.
+    #[command(flatten)]
+    pub(crate) given: Given,
+    /// Drawings: .svg, .inkml, .ndjson (one drawing a line) or .json; projects: .burgeon, with their settings;
+    /// - for standard input.
+    #[arg(value_name = "IN", required = true)]
+    pub(crate) inputs: Vec<PathBuf>,
+    /// The model: .glb, .obj, .ply, .stl or .usda; or the plant's structure: .mtg (multiscale tree graph). For
+    /// several drawings a folder, which is created and gets one file each.
+    #[arg(long, short, value_name = "OUT", required_unless_present_any = ["png", "qsm", "report", "json"])]
+    pub(crate) output: Option<PathBuf>,
+    /// Format of the files in a folder.
+    #[arg(long, value_enum, default_value_t = PlantFormatWord::Glb)]
+    pub(crate) format: PlantFormatWord,
+    /// Also write the branches as cylinders, one a row, as `TreeQSM` has them. For several drawings a folder.
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) qsm: Option<PathBuf>,
+    /// Also make a picture. For several drawings a folder, which is created and gets one picture each.
+    #[arg(long, value_name = "FILE.png")]
+    pub(crate) png: Option<PathBuf>,
+    /// Number that all chance follows from; another number gives another plant of the same drawing
+    /// [default: 1, or the project's].
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = seed)]
+    pub(crate) seed: Option<u64>,
+    #[command(flatten)]
+    pub(crate) reading: ReadingArgs,
+    #[command(flatten)]
+    pub(crate) surface: SurfaceArgs,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
+    #[command(flatten)]
+    pub(crate) axes: AxesArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+const SKETCH_EXAMPLES: &str = "Examples:
+  burgeon sketch daisy.svg -o daisy.glb --png daisy.png
+  burgeon sketch trees.ndjson -o trees/ --format obj --png trees/
+  burgeon sketch oak.svg -o oak.mtg --qsm oak.csv               structure for programs of the field
+  burgeon sketch daisy.svg --report daisy.json                  what was each stroke taken for?
+  burgeon sketch daisy.svg -o daisy.glb --classes daisy.json    ... corrected in that file
+
+Class files (--classes) set strokes by their index from 0:
+  CSV    lines of  stroke,class  or  drawing,stroke,class
+  JSON   {\"3\": \"axis\"}  or  {\"drawing name\": {\"3\": \"axis\"}}
+  JSON   a report of this command (--report) in which classes were corrected
+Classes: blade, corolla, axis, trunk_outline, crown, vein, disc, pot, ground, fruit, scribble, other";
+
+/// How the drawing is understood and given depth.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Plant")]
+pub(crate) struct ReadingArgs {
+    /// Height of the plant in metres, 0.001 to 1000 [default: 8 for a tree, 0.5 for a herb].
+    #[arg(long, value_name = "METRES", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 0.001, 1000.0))]
+    pub(crate) height: Option<f64>,
+    /// How branches leave the drawing's plane: riesz spreads siblings evenly, paper is the published entropy
+    /// [default: riesz].
+    #[arg(long, value_enum, value_name = "MODE", hide_default_value = true)]
+    pub(crate) branch_depth: Option<BranchDepthWord>,
+    /// How leaves leave the drawing's plane: drawn keeps the front view, paper turns all leaves to one side as
+    /// published, signed keeps left and right [default: drawn].
+    #[arg(long, value_enum, value_name = "MODE")]
+    pub(crate) leaf_depth: Option<LeafDepthWord>,
+    /// Set what strokes are: a CSV or JSON file, see the end of this help.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) classes: Option<PathBuf>,
+    /// Flowers that face away from the viewer, by number from 0, separated by commas [default: none].
+    #[arg(long, value_name = "N,N", value_delimiter = ',')]
+    pub(crate) flip_flowers: Vec<u32>,
+    /// How many twigs and leaves fill contours and crowns, relative to the usual, 0.1 to 10 [default: 1].
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 0.1, 10.0))]
+    pub(crate) density: Option<f64>,
+    /// Direction of grown twigs, -1 (weeping) to 1 (upright) [default: 0.1].
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, -1.0, 1.0))]
+    pub(crate) tropism: Option<f64>,
+    /// Exponent of the pipe model, 1.8 to 3: higher makes branches below forks thinner
+    /// [default: 2 for a tree, 2.5 for a herb].
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 1.8, 3.0))]
+    pub(crate) pipe_exponent: Option<f64>,
+    /// Pull of light on drawn branches, -1 to 1, upwards [default: 0].
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, -1.0, 1.0))]
+    pub(crate) phototropism: Option<f64>,
+    /// Sag of drawn branches, 0 to 1 [default: 0].
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 0.0, 1.0))]
+    pub(crate) gravity: Option<f64>,
+    /// A leaf that the plant bears instead of the drawn or built-in ones: marks (.csv), a vein graph (.json) or a
+    /// model of one leaf (.glb, .obj, .ply, .stl) with its root at the origin.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) leaf_template: Option<PathBuf>,
+    /// All settings of the sketch maker as JSON (what is missing keeps its default); options above win over it.
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) spec: Option<PathBuf>,
+}
+
+/// How the plant is meshed and coloured.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Surface")]
+pub(crate) struct SurfaceArgs {
+    #[command(flatten)]
+    pub(crate) skin: SkinArgs,
+    /// Colour of petals that were drawn without one [default: by seed and name].
+    #[arg(long, value_enum, value_name = "COLOUR")]
+    pub(crate) petals: Option<PetalWord>,
+    /// Variation of colour from organ to organ, 0 (none) to 1 [default: 1].
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 0.0, 1.0))]
+    pub(crate) variation: Option<f64>,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum BranchDepthWord {
+    /// The sum of the angles between siblings, as published
+    Paper,
+    /// Siblings spread evenly
+    Riesz,
+}
+
+impl From<BranchDepthWord> for BranchDepth {
+    fn from(word: BranchDepthWord) -> Self {
+        match word {
+            BranchDepthWord::Paper => Self::Paper,
+            BranchDepthWord::Riesz => Self::Riesz,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum LeafDepthWord {
+    /// The front view is the drawing
+    Drawn,
+    /// Leaves turn to the light, all to one side, as published
+    Paper,
+    /// Leaves turn to the light, left and right kept
+    Signed,
+}
+
+impl From<LeafDepthWord> for LeafDepth {
+    fn from(word: LeafDepthWord) -> Self {
+        match word {
+            LeafDepthWord::Drawn => Self::Drawn,
+            LeafDepthWord::Paper => Self::Paper,
+            LeafDepthWord::Signed => Self::Signed,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum PetalWord {
+    /// Rose pink with a pale base
+    Pink,
+    /// White with a greenish base
+    White,
+    /// Warm yellow
+    Yellow,
+    /// Violet blue with a pale base
+    Violet,
+    /// Poppy red with a dark base
+    Red,
+    /// Orange with a yellow base
+    Orange,
+    /// Sky blue with a white base
+    Blue,
+}
+
+impl From<PetalWord> for PetalColor {
+    fn from(word: PetalWord) -> Self {
+        match word {
+            PetalWord::Pink => Self::Pink,
+            PetalWord::White => Self::White,
+            PetalWord::Yellow => Self::Yellow,
+            PetalWord::Violet => Self::Violet,
+            PetalWord::Red => Self::Red,
+            PetalWord::Orange => Self::Orange,
+            PetalWord::Blue => Self::Blue,
+        }
+    }
+}

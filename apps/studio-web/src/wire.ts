@@ -1,0 +1,1458 @@
+// Made by `cargo xtask types` from the types of the crate `workspace`. Change those instead.
+
+/** What has no type of its own here: the page passes it on. */
+export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };
+
+/** What can be asked that is more than one [`document::Command`]. */
+export type Action =
+  | /** An empty document in the place of this one. */
+  "new"
+  | /** Adds a plant beside the others and chooses it. */
+  {
+    add: {
+      /** Who makes it. */
+      maker: NewMaker;
+      /** What it is called. */
+      name: string;
+    };
+  }
+  | /** Makes a tree another species. */
+  {
+    preset: {
+      /** The key of the preset. */
+      key: string;
+      /** The tree. */
+      plant: PlantId;
+    };
+  };
+
+/** Names one axis of a plant. */
+export type AxisKey =
+  | /** What a program remembers of an axis that was picked. */
+  {
+    mark: Mark;
+  }
+  | /** By number: which stem of the plant, which of its branches from the base up, and so on; all from 0. */
+  {
+    path: number[];
+  }
+  | /** The axis nearest to this point, metres. */
+  {
+    near: [number, number, number];
+  };
+
+/** How the depth of branches is found (paper 000, section 5.2). */
+export type BranchDepth =
+  | /** Eq 4 as printed: the sum of the angles between siblings. */
+  "paper"
+  | /** Riesz energy of the angles: siblings spread evenly (the sum cannot tell even from two clumps). */
+  "riesz";
+
+/** What an edit changed. */
+export type Changed = {
+  /** Branches added. */
+  added: number;
+  /** The branch was found by its likeness: its own key had changed. */
+  by_likeness: boolean;
+  /** Leaves added. */
+  leaves_added: number;
+  /** Leaves taken away. */
+  leaves_removed: number;
+  /** Branches turned or moved, those borne included. */
+  moved: number;
+  /** Branches taken away. */
+  removed: number;
+};
+
+/** What can be asked of a document: of the scene, of any plant, or of a plant of one maker. */
+export type Command =
+  | /** Plants come and go. */
+  {
+    scene: SceneCommand;
+  }
+  | /** Name, seed, place of a plant. */
+  {
+    plant: [PlantId, PlantCommand];
+  }
+  | /** Edits by hand of a plant with branches. */
+  {
+    shape: [PlantId, ShapeCommand];
+  }
+  | /** Strokes and settings of a sketch. */
+  {
+    sketch: [PlantId, SketchCommand];
+  }
+  | /** Spec and obstacles of a tree. */
+  {
+    tree: [PlantId, TreeCommand];
+  }
+  | /** Marks and surface of a leaf. */
+  {
+    leaf: [PlantId, LeafCommand];
+  }
+  | /** Species and day of a flower. */
+  {
+    flower: [PlantId, FlowerCommand];
+  };
+
+/** Numbers of things in a plant and its meshes; none of what was not counted, such as the leaves of a model that was read. */
+export type Counts = {
+  /** Axes of every kind. */
+  axes: number | null;
+  /** Trunks, branches, twigs and stems (not petioles, not roots). */
+  branches: number | null;
+  /** Flowers. */
+  flowers: number | null;
+  /** Leaves. */
+  leaves: number | null;
+  /** Nodes of all axes. */
+  nodes: number | null;
+  /** Petals. */
+  petals: number | null;
+  /** Mesh triangles. */
+  triangles: number;
+  /** Mesh vertices. */
+  vertices: number;
+};
+
+/** Where a branch is moved to. */
+export type Destination =
+  | /** Along its bearer by so many metres, towards the tip if positive; it keeps its angle to the bearer. */
+  {
+    'slide-m': number;
+  }
+  | /** Onto a place of another branch, or of its own bearer; it keeps its angle to what bears it. */
+  {
+    place: {
+      /** Where along it, as a share of its length. */
+      at: number;
+      /** What bears it then. */
+      axis: AxisKey;
+    };
+  }
+  | /** By a vector, metres: what stands on the ground is set elsewhere, what is borne slides to the place of its bearer that is nearest to the new base. */
+  {
+    'by-m': [number, number, number];
+  };
+
+/** A document with its history, as lists and panels show it. */
+export type DocumentState = {
+  /** The plant that is chosen. */
+  current: 
+    | PlantId
+    | null;
+  /** Name of the scene. */
+  name: string;
+  /** The plants in the order in which they came in. */
+  plants: PlantState[];
+  /** Name of the step that redo does again. */
+  redo: string | null;
+  /** Grows with every change. */
+  revision: number;
+  /** Steps that can be undone. */
+  steps: number;
+  /** Name of the step that undo takes back. */
+  undo: string | null;
+};
+
+/** What became of one edit. */
+export type EditReport = {
+  /** What it changed; all 0 if it was not done. */
+  changed: Changed;
+  /** `done`, or a stable word for why not. */
+  code: string;
+  /** Whether it was done. */
+  done: boolean;
+  /** Its place in the list, from 0. */
+  index: number;
+  /** In plain words. */
+  said: string;
+};
+
+/** What kind of edit by hand. */
+export type EditState = {
+  /** Left out for now. */
+  off: boolean;
+  /** The word of [`burgeon::shape::HandEdit`]. */
+  op: string;
+};
+
+/** As what something is written. */
+export type ExportFormat =
+  | /** A binary glTF file. */
+  "glb"
+  | /** A USD stage with its textures. */
+  "usda"
+  | /** OBJ with its material file and textures. */
+  "obj"
+  | /** Triangles with colours. */
+  "ply"
+  | /** Bare triangles. */
+  "stl"
+  | /** The structure of each plant as a multiscale tree graph. */
+  "mtg"
+  | /** The structure of each plant as a table of cylinders. */
+  "qsm"
+  | /** The current drawing in our JSON. */
+  "json";
+
+/** What is exported, and how it is written. */
+export type ExportRequest = {
+  /** The format. */
+  format: ExportFormat;
+  /** Levels of detail, 1 to 4: each has about half of the triangles of the one before. */
+  levels: number;
+  /** The unit of the file. */
+  unit: LengthUnit;
+  /** The vertical axis of the file. */
+  up: Up;
+  /** The whole scene, else the current plant. */
+  whole: boolean;
+  /** How wind moves drawings and trees, where the format has room for it. */
+  wind: boolean;
+};
+
+/** Vertices and faces of a mesh. */
+export type FaceCounts = {
+  /** Faces. */
+  faces: number;
+  /** Vertices. */
+  vertices: number;
+};
+
+/** Reprojection error of axes, petals and `drawn` leaves against the drawing, as shares of its diagonal; none where no stroke was compared. */
+export type Fidelity = {
+  /** Mean distance. */
+  reprojection_mean: number | null;
+  /** 95th percentile. */
+  reprojection_p95: number | null;
+};
+
+/** What a file was. */
+export type FileKind =
+  | /** Took the document's place. */
+  "project"
+  | /** Took the document's place. */
+  "drawing"
+  | /** Is looked at. */
+  "model"
+  | /** Marks that went to a leaf. */
+  "leaf"
+  | /** A new tree. */
+  "tree"
+  | /** A growth law that went to the current flower. */
+  "law";
+
+/** Eq 2: growth of twigs and midribs inside a contour. */
+export type FillSpec = {
+  /** Attraction along the bearer, `k_b`. */
+  bearer_pull: number;
+  /** Attraction by the contour, `k_p`. */
+  contour_pull: number;
+  /** How many twigs and leaves relative to the default, 0.1 to 10, default 1. */
+  density: number;
+  /** Memory of the last direction, `k_m`. */
+  memory: number;
+  /** Pull against gravity on grown twigs, -1 (weeping) to 1 (upright), default 0.1. */
+  tropism: number;
+};
+
+/** How far measured points are from the blade, millimetres. */
+export type FitError = {
+  /** Share of the points that the blade explains (within 2 mm): all of them for marks that it passes through. */
+  explained: number;
+  /** The farthest. */
+  max_mm: number;
+  /** 95 of 100 points are nearer. */
+  p95_mm: number;
+  /** Root of the mean square. */
+  rms_mm: number;
+};
+
+/** What can be asked of a flower. */
+export type FlowerCommand =
+  | /** Sets species, day and form. */
+  {
+    set: FlowerSettings;
+  }
+  | /** Takes a fitted law, or the species' own pace again. */
+  {
+    'set-law': Json;
+  };
+
+/** How a flower looks, and on which day. */
+export type FlowerSettings = {
+  /** Days since the bud: 0 is the bud, `opening_days` full bloom, then it wilts. */
+  day: number;
+  /** Angle by which the open flower nods, degrees, 0 to 90; default that of the species. */
+  nod_deg: number | null;
+  /** Days from bud to full bloom, 0.1 to 60; default those of the species. */
+  opening_days: number | null;
+  /** The species. */
+  species: string;
+  /** Length of the stalk, metres, 0 to 5; default that of the species. */
+  stalk_m: number | null;
+  /** Days from full bloom to wilted, 0.1 to 40; default those of the species. */
+  wilting_days: number | null;
+};
+
+/** Which flower, on which day. */
+export type FlowerState = {
+  /** Name of the fitted law that sets its pace. */
+  law: string | null;
+  /** Species, day and form. */
+  settings: FlowerSettings;
+};
+
+/** How a drawing lies in the front view of its plant. */
+export type Front = {
+  /** Metres of the drawing's unit. */
+  metres_per_unit: number;
+  /** Where the plant's origin lies in the drawing. */
+  x: number;
+  /** Where the plant's origin lies in the drawing, y up. */
+  y: number;
+};
+
+/** The part of a report about growth. */
+export type GrowthReport = {
+  /** Attraction points or markers of all cycles. */
+  attractors: number;
+  /** Of these, consumed. */
+  consumed: number;
+  /** Life cycles. */
+  cycles: number;
+  /** Vertices of the meshes, wood and leaves alike, that lie more than a millimetre inside an obstacle; none where there is no obstacle, or nothing was measured. */
+  inside_obstacle: number | null;
+  /** How deep the deepest vertex lies inside an obstacle, metres; 0 where none does; none as above. */
+  inside_obstacle_depth_m: number | null;
+  /** Rounds, years or rewriting steps. */
+  iterations: number;
+  /** Leaves on the tree. */
+  leaves_kept: number;
+  /** Places for leaves. */
+  leaves_placed: number;
+  /** `competition`, `colonization`, `self-organizing`, `guided` or `lsystem`. */
+  method: string;
+  /** Joints of the skeleton. */
+  nodes: number;
+  /** Of these, never reached. */
+  unreachable: number;
+};
+
+/** One edit of a plant by hand. */
+export type HandEdit =
+  | /** Turns a branch about its base, with all that it bears. */
+  {
+    /** The branch. */
+    axis: AxisKey;
+    op: "rotate";
+    /** How. */
+    turn: Turn;
+  }
+  | /** Moves a branch with all that it bears. */
+  {
+    /** The branch. */
+    axis: AxisKey;
+    op: "move";
+    /** Where to. */
+    to: Destination;
+  }
+  | /** Cuts a branch off, with all that it bears beyond the cut. */
+  {
+    /** Where along it, as a share of its length; 0 (the default) takes all of it. */
+    at: number;
+    /** The branch. */
+    axis: AxisKey;
+    op: "prune";
+  }
+  | /** Cuts a branch off and lets another one grow in the room that it had. */
+  {
+    /** The branch. */
+    axis: AxisKey;
+    op: "regrow";
+    /** Another number, another branch. */
+    seed: number;
+  }
+  | /** Adds a branch that was drawn in space. */
+  {
+    /** Where along it, as a share of its length; without, where the line starts nearest to it. */
+    at?: number | null;
+    /** The branch that it grows from. */
+    bearer: AxisKey;
+    op: "sketch-branch";
+    /** Its course, metres, at least two points; it is joined to its bearer. */
+    points: [number, number, number][];
+    /** Another number, other twigs. */
+    seed: number;
+    /** How many twigs grow on it, relative to the plant's habit, 0 (none) to 4; default 1. */
+    twigs: number;
+  }
+  | /** Lets branches grow along a stroke of a brush (paper 002). */
+  {
+    /** The branch that they grow from; without, the one nearest to the stroke's start. */
+    bearer?: 
+      | AxisKey
+      | null;
+    /** How densely it fills, 0.1 to 10: more markers, more branches; default 1. */
+    density: number;
+    op: "brush";
+    /** The stroke, metres, at least two points. */
+    points: [number, number, number][];
+    /** Radius of the brush, metres, above 0: one number, or one for each point. */
+    radius_m: number[];
+    /** Another number, other branches. */
+    seed: number;
+  }
+  | /** Fills an outline that was drawn in a plane facing the viewer (paper 002). */
+  {
+    /** How densely it is filled, 0.1 to 10; default 1. */
+    density: number;
+    op: "silhouette";
+    /** The outline in the plane, metres, at least three points; the first is not repeated. */
+    outline: [number, number][];
+    /** The plane. */
+    plane: ViewPlane;
+    /** Another number, other branches. */
+    seed: number;
+    /** Cuts off what leaves the outline. */
+    trim: boolean;
+  }
+  | /** Takes leaves away, or adds some. */
+  {
+    /** Share of the leaves that stay, 0 to 1; above 1, to 4: as many times more. */
+    keep: number;
+    op: "leaf-density";
+    /** Where. */
+    region: LeafRegion;
+    /** Another number, other leaves. */
+    seed: number;
+  };
+
+/** A tool in the hand, with its settings. */
+export type HeldTool =
+  | /** Points only. */
+  "pick"
+  | /** See [`ToolKind::Rotate`]. */
+  "rotate"
+  | /** See [`ToolKind::Move`]. */
+  "move"
+  | /** See [`ToolKind::Prune`]. */
+  {
+    prune: {
+      /** The whole branch, not from the place that was picked. */
+      whole: boolean;
+    };
+  }
+  | /** See [`ToolKind::Regrow`]. */
+  "regrow"
+  | /** See [`ToolKind::Sketch`]. */
+  {
+    sketch: {
+      /** Out of the plane of view, degrees. */
+      tilt_deg: number;
+      /** How many twigs it bears. */
+      twigs: number;
+    };
+  }
+  | /** See [`ToolKind::Brush`]. */
+  {
+    brush: {
+      /** How many branches it makes. */
+      density: number;
+      /** How thick it is. */
+      radius_m: number;
+    };
+  }
+  | /** See [`ToolKind::Silhouette`]. */
+  {
+    silhouette: {
+      /** How many branches it makes. */
+      density: number;
+      /** Cut what is outside. */
+      trim: boolean;
+    };
+  }
+  | /** See [`ToolKind::Leaves`]. */
+  {
+    leaves: {
+      /** Share of the leaves that stay. */
+      keep: number;
+      /** How thick it is. */
+      radius_m: number;
+    };
+  };
+
+/** One plant. */
+export type ItemReport = {
+  /** Of `shape --list`: the branches that were asked for. */
+  branches?: Json[];
+  /** Numbers of things. */
+  counts: Counts;
+  /** Fingerprint of the plant: independent of platform and threads. */
+  digest: string;
+  /** Of a plant that was edited by hand: what became of each edit, in their order. */
+  edits?: EditReport[];
+  /** How near the model's front view is to the drawing. */
+  fidelity: Fidelity;
+  /** Of `grow`: what growth did. */
+  growth?: 
+    | GrowthReport
+    | null;
+  /** Of `leaf`: veins, blade and how well they fit. */
+  leaf?: 
+    | LeafReport
+    | null;
+  /** Name of the drawing. */
+  name: string;
+  /** The file that was written; empty if none. */
+  output: string;
+  /** Of a plant with axes: what a botanist would measure on it. */
+  plant?: Json;
+  /** Every stroke and what became of it. */
+  strokes: StrokeReport[];
+  /** Times of the stages. */
+  timings_ms: TimingsMs;
+  /** What was not as the user might expect. */
+  warnings: string[];
+};
+
+/** [`AxisKind`] as it is written. */
+export type KindWord =
+  | /** Trunk, branch or twig. */
+  "wood"
+  | /** Green stem. */
+  "stem"
+  | /** Stalk of a leaf. */
+  "petiole"
+  | /** Below ground. */
+  "root";
+
+/** What can be asked of a measured leaf. */
+export type LeafCommand =
+  | /** Takes other measurements. */
+  {
+    'set-data': LeafData;
+  }
+  | /** Sets how the leaf is made. */
+  {
+    set: LeafSettings;
+  };
+
+/** The file of a measured leaf: marks as CSV, or a vein graph as JSON. */
+export type LeafData = {
+  /** Name of the file. */
+  name: string;
+  /** Its text. */
+  text: string;
+};
+
+/** How the depth of leaves is found (paper 000, section 5.3). */
+export type LeafDepth =
+  | /** The light prior as printed: every leaf turns to the same side. */
+  "paper"
+  | /** The light prior with left and right kept. */
+  "signed"
+  | /** The front view of the model is the drawing; the blade leaves the plane by tilt and bend only. */
+  "drawn";
+
+/** What colours a measured blade. */
+export type LeafPaint =
+  | /** Painted by the distance from the veins. */
+  "veins"
+  | /** One green. */
+  "plain";
+
+/** Which leaves are meant. */
+export type LeafRegion =
+  | /** All. */
+  "all"
+  | /** Those of a branch and of all that it bears. */
+  {
+    branch: AxisKey;
+  }
+  | /** Those within a stroke. */
+  {
+    stroke: {
+      /** The stroke, metres, one point or more. */
+      points: [number, number, number][];
+      /** Its radius, metres, above 0. */
+      radius_m: number;
+    };
+  };
+
+/** The part of a report about a leaf. */
+export type LeafReport = {
+  /** Area of the blade's mesh, square millimetres. */
+  area_mm2: number;
+  /** The blade's mesh; faces are quads. */
+  blade: FaceCounts;
+  /** Rings at which a vein is thicker than it bends. */
+  crossing_rings: number | null;
+  /** Distances of what was measured from the blade. */
+  fit_error: FitError;
+  /** Length of the midrib, millimetres. */
+  length_mm: number;
+  /** Rows of marks. */
+  rows: number;
+  /** Of a scan: what was found in it. */
+  scan?: 
+    | ScanReport
+    | null;
+  /** `interpolate`, `approximate`, `bezier` or `nurbs`. */
+  surface: string;
+  /** Rings whose ball is inside its neighbours; none for plain rings. */
+  swallowed_rings: number | null;
+  /** The farthest that a vein's centre line is from the blade, millimetres. */
+  vein_gap_mm: number | null;
+  /** The veins' mesh; faces are quads (and triangles of caps). */
+  veins: FaceCounts;
+};
+
+/** The rings of veins. */
+export type LeafRings =
+  | /** Circles across the vein, as published. */
+  "plain"
+  | /** Where each ball touches the surface of all. */
+  "envelope";
+
+/** How a leaf is made of its marks. */
+export type LeafSettings = {
+  /** Round ends on the veins; default false. */
+  caps: boolean;
+  /** Roll about the midrib: -1 (margins meet below) to 1 (above), 0 as measured, default 0. */
+  curl: number;
+  /** Length of the midrib for a vein graph in pixels, metres, 0.002 to 10, default 0.1. */
+  length_m: number;
+  /** A vein along the margin too; default false. */
+  margin_vein: boolean;
+  /** Rings of the veins. */
+  rings: LeafRings;
+  /** Points around a vein, 3 to 64, default 10. */
+  sides: number;
+  /** Parts of each span between marks, 1 to 64, default 5. */
+  subdivisions: number;
+  /** Surface of the blade. */
+  surface: LeafSurface;
+  /** Colour of the blade. */
+  texture: LeafPaint;
+  /** What a measured thickness is; default what the file says, else the diameter. */
+  thickness: 
+    | LeafThickness
+    | null;
+  /** Pull of the thickest vein on a NURBS blade, 1 (none) to 100, default 4. */
+  vein_weight: number;
+  /** Loss of stiffness: 0 as measured to 1 hanging limp, default 0. */
+  wilt: number;
+};
+
+/** What a leaf is made of. */
+export type LeafState = {
+  /** Name of the file of marks or veins. */
+  file: string;
+  /** How the leaf is made of it. */
+  settings: LeafSettings;
+  /** Its text. */
+  text: string;
+};
+
+/** The surface of a measured blade. */
+export type LeafSurface =
+  | /** Through all marks, with the folds of the blade. */
+  "interpolate"
+  | /** A B-spline near the marks. */
+  "approximate"
+  | /** One smooth polynomial. */
+  "bezier"
+  | /** As approximate, drawn towards thick veins. */
+  "nurbs";
+
+/** What a measured thickness is. */
+export type LeafThickness =
+  | /** As callipers measure. */
+  "diameter"
+  | /** As the formulas take it. */
+  "radius";
+
+/** A unit of length. */
+export type LengthUnit =
+  | /** Metres, as inside. */
+  "m"
+  | /** Centimetres. */
+  "cm"
+  | /** Millimetres. */
+  "mm";
+
+/** Who makes a plant. */
+export type MakerWord =
+  | /** Drawn with a pen. */
+  "sketch"
+  | /** Grown. */
+  "tree"
+  | /** Measured. */
+  "leaf"
+  | /** A species that opens. */
+  "flower";
+
+/** What is remembered of an axis. */
+export type Mark = {
+  /** Where it starts. */
+  base: [number, number, number];
+  /** From base to tip, a unit vector. */
+  direction: [number, number, number];
+  /** The axis's own key, hexadecimal. */
+  id: string;
+  /** Woody or green, stalk or root. */
+  kind: KindWord;
+  /** Along its course. */
+  length: number;
+  /** Order of branching, 0 for a trunk. */
+  order: number;
+};
+
+/** How a mesh looks. */
+export type MaterialView = {
+  /** Linear red, green, blue. */
+  color: [number, number, number];
+  /** What it is of: bark, leaf, petal, ... */
+  kind: string;
+  /** The texture has holes. */
+  masked: boolean;
+  /** Its name in files. */
+  name: string;
+  /** 0 to 1. */
+  roughness: number;
+  /** Its picture. */
+  texture: 
+    | TextureView
+    | null;
+  /** 0 to 1. */
+  translucency: number;
+  /** Seen from both sides. */
+  two_sided: boolean;
+};
+
+/** An obstacle with the name under which a person knows it. */
+export type NamedObstacle = {
+  /** For lists; at most 200 characters. */
+  name: string;
+  /** The solid. */
+  shape: Obstacle;
+};
+
+/** An obstacle with its name. */
+export type NamedShape = {
+  /** For lists. */
+  name: string;
+  /** The solid. */
+  shape: ObstacleView;
+};
+
+/** Who makes a new plant. */
+export type NewMaker =
+  | /** An empty sheet. */
+  "sketch"
+  | /** A tree of this preset. */
+  {
+    tree: string;
+  }
+  | /** A leaf that waits for its marks. */
+  "leaf"
+  | /** A flower of this species. */
+  {
+    flower: string;
+  };
+
+/** A solid thing. */
+export type Obstacle =
+  | /** A box along the axes. */
+  {
+    /** Upper corner, above the lower one in each coordinate. */
+    max: [number, number, number];
+    /** Lower corner. */
+    min: [number, number, number];
+    shape: "box";
+  }
+  | /** A ball. */
+  {
+    /** Its middle. */
+    centre: [number, number, number];
+    /** Above 0. */
+    radius_m: number;
+    shape: "sphere";
+  }
+  | /** An upright cylinder. */
+  {
+    /** Middle of its base. */
+    base: [number, number, number];
+    /** Above 0. */
+    height_m: number;
+    /** Above 0. */
+    radius_m: number;
+    shape: "cylinder";
+  }
+  | /** Everything behind a plane: a wall, a slope. */
+  {
+    /** Away from the solid side; any length above 0. */
+    normal: [number, number, number];
+    /** Any point of the plane. */
+    point: [number, number, number];
+    shape: "plane";
+  }
+  | /** A mesh, in metres, +Y up; small holes and inverted faces are borne (winding number). */
+  {
+    shape: "mesh";
+    /** Corners of each triangle. */
+    triangles: [number, number, number][];
+    /** Vertices. */
+    vertices: [number, number, number][];
+  };
+
+/** An obstacle to be shown: a mesh is told by its size only, its corners are asked for. */
+export type ObstacleView =
+  | /** Any but a mesh. */
+  Obstacle
+  | /** A mesh. */
+  {
+    /** Always `mesh`. */
+    shape: string;
+    /** How many it has. */
+    triangles: number;
+  };
+
+/** What was opened. */
+export type Opened = {
+  /** What it was. */
+  kind: FileKind;
+  /** What it is called. */
+  name: string;
+  /** Every drawing of the file, at most a thousand. */
+  names: string[];
+  /** What is odd about it. */
+  warnings: string[];
+};
+
+/** One mesh. */
+export type PartView = {
+  /** Row of its material. */
+  material: number;
+  /** Its name in files. */
+  name: string;
+};
+
+/** Natural petal colours. */
+export type PetalColor =
+  | /** Rose pink with a pale base. */
+  "pink"
+  | /** White with a greenish base. */
+  "white"
+  | /** Warm yellow. */
+  "yellow"
+  | /** Violet blue with a pale base. */
+  "violet"
+  | /** Poppy red with a dark base. */
+  "red"
+  | /** Orange with a yellow base. */
+  "orange"
+  | /** Sky blue with a white base. */
+  "blue"
+  | /** Crimson magenta. */
+  "magenta";
+
+/** How a photograph lies under the drawing. */
+export type PhotoPlace = {
+  /** How strongly it shows under the drawing, 0 to 1, default 0.5. */
+  opacity: number;
+  /** Whether organs that were traced over it take its colours. */
+  paint: boolean;
+  /** Width, in the drawing's unit, above 0; the height follows from the picture. */
+  width: number;
+  /** Left edge, in the drawing's unit. */
+  x: number;
+  /** Lower edge, in the drawing's unit, y up. */
+  y: number;
+};
+
+/** How a photograph lies, and its size. */
+export type PhotoState = {
+  /** Height in the drawing's unit: it follows from the picture. */
+  height: number;
+  /** Pixels across and down. */
+  pixels: [number, number];
+  /** As it was asked for. */
+  place: PhotoPlace;
+};
+
+/** The branch that is meant. */
+export type Picked = {
+  /** Where along it, a share of its length. */
+  at: number;
+  /** Its row. */
+  axis: number;
+  /** Shoots that it bears, and that these bear. */
+  bears: number;
+  /** A name for edits, where the pointer went down or up. */
+  key: 
+    | AxisKey
+    | null;
+  /** Along its course. */
+  length_m: number;
+  /** 0 for the main axis. */
+  order: number;
+  /** Where, metres. */
+  point: [number, number, number];
+  /** Nothing bears it. */
+  stands: boolean;
+};
+
+/** Where a plant stands: scaled, turned about the vertical, then moved. */
+export type Placement = {
+  /** Where its origin stands, metres; each coordinate up to 100 km. */
+  position: [number, number, number];
+  /** Size, 0.001 to 1,000. */
+  scale: number;
+  /** Turn about +Y, degrees, counter-clockwise seen from above. */
+  yaw_deg: number;
+};
+
+/** What can be asked of any plant. */
+export type PlantCommand =
+  | /** Names it. */
+  {
+    rename: string;
+  }
+  | /** Sets its seed; text as JSON, because JavaScript's numbers hold 53 bits. */
+  {
+    'set-seed': string;
+  }
+  | /** Keeps its seed from dice, or no longer. */
+  {
+    lock: boolean;
+  }
+  | /** Takes it out of the view, or back. */
+  {
+    hide: boolean;
+  }
+  | /** Sets where it stands. */
+  {
+    place: Placement;
+  };
+
+/** Names one plant for as long as the document lives. */
+export type PlantId = number;
+
+/** One plant; of `sketch`, `tree`, `leaf` and `flower` that of its maker is there. */
+export type PlantState = {
+  /** Edits by hand, in the order in which they are done. */
+  edits: EditState[];
+  /** Of a flower. */
+  flower: 
+    | FlowerState
+    | null;
+  /** It is left out of the view. */
+  hidden: boolean;
+  /** Its name within the document. */
+  id: PlantId;
+  /** Of a measured leaf. */
+  leaf: 
+    | LeafState
+    | null;
+  /** Whether others may bear its leaf. */
+  lends: boolean;
+  /** Dice leave its seed alone. */
+  locked: boolean;
+  /** Who makes it. */
+  maker: MakerWord;
+  /** Its name. */
+  name: string;
+  /** Metres. */
+  position: [number, number, number];
+  /** Size. */
+  scale: number;
+  /** As text: JavaScript's numbers hold 53 bits. */
+  seed: string;
+  /** Of a drawing. */
+  sketch: 
+    | SketchState
+    | null;
+  /** Of a tree. */
+  tree: 
+    | TreeState
+    | null;
+  /** Turn about +Y, degrees. */
+  yaw_deg: number;
+};
+
+/** A plant as it is seen. */
+export type PlantView = {
+  /** Bud to full bloom, and from there to wilted. */
+  days: [number, number] | null;
+  /** Why it could not be made; what was made before stays. */
+  error: string | null;
+  /** Its meshes are others than those of the last view. */
+  fresh: boolean;
+  /** How a drawing lies in the front view. */
+  front: 
+    | Front
+    | null;
+  /** Its name within the document, or [`crate::GUEST`]. */
+  id: PlantId;
+  /** The entry of the report. */
+  item: 
+    | ItemReport
+    | null;
+  /** What they are made of. */
+  materials: MaterialView[];
+  /** Upper corner of its bounds, metres. */
+  max: [number, number, number];
+  /** Lower corner of its bounds, metres. */
+  min: [number, number, number];
+  /** What it grows around. */
+  obstacles: ObstacleView[];
+  /** Its meshes. */
+  parts: PartView[];
+  /** What was done again. */
+  stages: string[];
+};
+
+/** Eq 5 and section 6.2: how blades bend and hollow, as shares of their length. */
+export type ReliefSpec = {
+  /** A of Eq 5 for leaves, default 0.05. */
+  leaf_bend_a: number;
+  /** B of Eq 5 for leaves, default 0.18. */
+  leaf_bend_b: number;
+  /** Fold of leaves along the midrib, slope of the halves, 0 to 1, default 0.25. */
+  leaf_fold: number;
+  /** A of Eq 5 for petals, -0.2 to 0.2, default 0.08. */
+  petal_bend_a: number;
+  /** B of Eq 5 for petals, -0.3 to 0.5, default 0.06. */
+  petal_bend_b: number;
+  /** Hollow of petals, 0 to 0.3, default 0.08. */
+  petal_hollow: number;
+};
+
+/** What was found in a scan. */
+export type ScanReport = {
+  /** Share of the blade that has a point within 2 mm; the rest are holes that were bridged. */
+  covered: number;
+  /** Points left out because their neighbours are far. */
+  outliers: number;
+  /** Length of the outline, millimetres. */
+  outline_mm: number;
+  /** Points read, without those that are no numbers. */
+  points: number;
+  /** Length of the stalk, millimetres; none if there is no stalk. */
+  stalk_mm: number | null;
+  /** Greatest width across the midrib, millimetres. */
+  width_mm: number;
+};
+
+/** What can be asked of the scene. */
+export type SceneCommand =
+  | /** Names the scene. */
+  {
+    rename: string;
+  }
+  | /** Adds a moved copy of a plant after the others, metres. */
+  {
+    duplicate: [PlantId, [number, number, number]];
+  }
+  | /** Deletes plants; who bore their leaf bears its own again. */
+  {
+    remove: PlantId[];
+  };
+
+/** Every plant of a scene, as it was made last. */
+export type SceneView = {
+  /** A model that is looked at instead. */
+  guest: 
+    | PlantView
+    | null;
+  /** In the document's order. */
+  plants: PlantView[];
+  /** Of the document when it was made. */
+  revision: number;
+};
+
+/** What came of an input. */
+export type ShapeAnswer = {
+  /** What is shown of the plant is out of date. */
+  again: boolean;
+  /** A gesture is going on. */
+  busy: boolean;
+  /** The edit of a gesture that ended: to be asked for as a command. */
+  commit: 
+    | HandEdit
+    | null;
+  /** The branch that is meant. */
+  picked: 
+    | Picked
+    | null;
+};
+
+/** What can be asked of the edits by hand of a plant. */
+export type ShapeCommand =
+  | /** Does one more, after the others. */
+  {
+    add: HandEdit;
+  }
+  | /** Does another in the place of that of a row. */
+  {
+    replace: [number, HandEdit];
+  }
+  | /** Leaves the edit of a row out, or does it again. */
+  {
+    leave: [number, boolean];
+  }
+  | /** Takes those of these rows away. */
+  {
+    remove: number[];
+  };
+
+/** What the hand did. */
+export type ShapeInput =
+  | /** It went down. */
+  {
+    down: ShapePointer;
+  }
+  | /** It moved; several moves at once, so that no point of a stroke is lost. */
+  {
+    move: ShapePointer[];
+  }
+  | /** It was lifted. */
+  {
+    up: ShapePointer;
+  }
+  | /** It takes everything back. */
+  "cancel"
+  | /** It turned what it holds, degrees. */
+  {
+    twist: number;
+  }
+  | /** It changed its brush. */
+  {
+    brush: {
+      /** How many branches it makes. */
+      density: number;
+      /** How thick it is, metres. */
+      radius_m: number;
+    };
+  };
+
+/** A pointer in the plant's own coordinates, metres; unit vectors. */
+export type ShapePointer = {
+  /** Along its ray. */
+  direction: [number, number, number];
+  /** Into the view. */
+  forward: [number, number, number];
+  /** Where its ray starts. */
+  origin: [number, number, number];
+  /** 0 to 1. */
+  pressure: number;
+  /** Upwards in the view. */
+  up: [number, number, number];
+};
+
+/** How far beside a branch it is still meant: `metres + per_metre * distance`. */
+export type ShapeReach = {
+  /** Not the branch but what bears it, so many up. */
+  bearers: number;
+  /** Close by. */
+  metres: number;
+  /** More with each metre of distance. */
+  per_metre: number;
+};
+
+/** What can be asked of a sketch. */
+export type SketchCommand =
+  | /** Adds moved copies of strokes after the others, with what was said of them. */
+  {
+    duplicate: [StrokeId[], [number, number]];
+  }
+  | /** Erases strokes. */
+  {
+    'remove-strokes': StrokeId[];
+  }
+  | /** Moves strokes, in the drawing's unit, y up. */
+  {
+    'move-strokes': [StrokeId[], [number, number]];
+  }
+  | /** Sets the class of strokes, or leaves it to the classifier again. */
+  {
+    'set-class': [StrokeId[], 
+      | StrokeClass
+      | null];
+  }
+  | /** Sets the mode of strokes. */
+  {
+    'set-mode': [StrokeId[], StrokeMode];
+  }
+  | /** Gives strokes a colour, or takes it away. */
+  {
+    'set-color': [StrokeId[], [number, number, number] | null];
+  }
+  | /** Erases every stroke. */
+  "clear"
+  | /** Sets how the drawing is understood. */
+  {
+    'set-sketch': SketchSpec;
+  }
+  | /** Sets how the plant is meshed and coloured. */
+  {
+    'set-skin': SkinSpec;
+  }
+  | /** Changes how the photograph lies under the drawing. */
+  {
+    'place-photo': PhotoPlace;
+  }
+  | /** Takes the photograph away. */
+  "remove-photo"
+  | /** Shows its flowers at a day, or as they are drawn. */
+  {
+    'set-day': number | null;
+  }
+  | /** Bears the leaf of another plant, or its own again. */
+  {
+    'set-leaf': 
+      | PlantId
+      | null;
+  };
+
+/** Everything that can be asked of the sketch maker; saved with the document. */
+export type SketchSpec = {
+  /** Depth of branches. */
+  branch_depth: BranchDepth;
+  /** Growth inside contours. */
+  fill: FillSpec;
+  /** Flowers (by index in the reading) that face away from the viewer: orthography cannot tell. */
+  flipped_flowers: number[];
+  /** Sag of recovered branches under gravity, 0 to 1, default 0. */
+  gravity: number;
+  /** Height of the plant in metres, above 0. */
+  height_m: number | null;
+  /** Depth of leaves. */
+  leaf_depth: LeafDepth;
+  /** Pull of light (upwards) on recovered branches, -1 to 1, default 0. */
+  phototropism: number;
+  /** Pipe model exponent t of Eq 6, 1.8 to 3. */
+  pipe_exponent: number | null;
+  /** Bending of blades. */
+  relief: ReliefSpec;
+  /** Thinning along an axis. */
+  taper: TaperSpec;
+};
+
+/** A drawing without its points. */
+export type SketchState = {
+  /** The day at which its flowers are shown. */
+  day: number | null;
+  /** The plant whose leaf it bears. */
+  leaf: 
+    | PlantId
+    | null;
+  /** What lies under it. */
+  photo: 
+    | PhotoState
+    | null;
+  /** How it is understood. */
+  sketch: SketchSpec;
+  /** How it is meshed. */
+  skin: SkinSpec;
+  /** Its strokes in the order in which they were drawn. */
+  strokes: StrokeState[];
+};
+
+/** How a plant is given its surface. */
+export type SkinSpec = {
+  /** Fineness: 1 gives about 500 triangles for a branch of average length and 250 to 800 for a drawn blade; counts grow in proportion. */
+  detail: number;
+  /** Colour of petals whose organs have no colour of their own; `None` picks one by seed and plant name. */
+  petals: 
+    | PetalColor
+    | null;
+  /** Sides of an ordinary branch at `detail` 1 or more; thick ones get up to 24. */
+  sides: number;
+  /** Give materials procedural textures; without, they have plain colours. */
+  textures: boolean;
+  /** Variation of hue and brightness from organ to organ, 0 (none) to 1 (default). */
+  variation: number;
+};
+
+/** What one stroke is. */
+export type StrokeClass =
+  | /** One petal or leaf as a nearly closed outline. */
+  "blade"
+  | /** Several petals, fronds or grass blades in one stroke. */
+  "corolla"
+  | /** A stem, branch, stalk or spine drawn as a line. */
+  "axis"
+  | /** A trunk (or cactus body or arm) drawn as an outline. */
+  "trunk_outline"
+  | /** The outline of a tree's crown. */
+  "crown"
+  | /** A vein or midrib of a blade. */
+  "vein"
+  | /** The centre of a flower. */
+  "disc"
+  | /** A flower pot. */
+  "pot"
+  | /** The ground. */
+  "ground"
+  | /** A fruit. */
+  "fruit"
+  | /** Shading, bark lines. */
+  "scribble"
+  | /** Nothing of the plant. */
+  "other";
+
+/** Names one stroke for as long as the document lives, whatever is drawn or erased around it. */
+export type StrokeId = number;
+
+/** In which mode a stroke was drawn (paper 000, section 4.1). */
+export type StrokeMode =
+  | /** A part of the plant: what it is, is found out. */
+  "parts"
+  | /** A contour to be filled with twigs. */
+  "branch-contour"
+  | /** A contour to be filled with leaves. */
+  "leaf-contour";
+
+/** One stroke. */
+export type StrokeReport = {
+  /** What it is. */
+  class: string;
+  /** 0 to 1. */
+  confidence: number;
+  /** Its index in the drawing, from 0. */
+  index: number;
+  /** What became of it. */
+  organ: string;
+};
+
+/** A stroke without its points. */
+export type StrokeState = {
+  /** The class that the person set. */
+  class: 
+    | StrokeClass
+    | null;
+  /** Its own colour. */
+  color: [number, number, number] | null;
+  /** Its name within the document. */
+  id: StrokeId;
+  /** In which mode it was drawn. */
+  mode: StrokeMode;
+};
+
+/** Eq 7: how an axis thins from base to tip: r(x) = (s^(-alpha x) + m) / (1 + m). */
+export type TaperSpec = {
+  /** alpha, above 0, default 0.5. */
+  alpha: number;
+  /** m, 0 or more, default 0: the tip is 0.1 of the base. */
+  m: number;
+  /** s, above 1, default 100. */
+  s: number;
+};
+
+/** A picture by its number: pixels are asked for once. */
+export type TextureView = {
+  /** Pixels down. */
+  height: number;
+  /** Its name in [`crate::Workspace::texture`]. */
+  number: number;
+  /** Pixels across. */
+  width: number;
+};
+
+/** Milliseconds of each stage. */
+export type TimingsMs = {
+  /** Stroke classes. */
+  classify: number;
+  /** Filling, depth, radii. */
+  depth: number;
+  /** Skinning. */
+  mesh: number;
+  /** Resampling and smoothing. */
+  preprocess: number;
+  /** Reading the file. */
+  read: number;
+  /** Hierarchy, flowers, attachment. */
+  structure: number;
+  /** From the command's start to its last file but the report: reading, computing, pictures and writing. */
+  total: number;
+  /** Writing the model. */
+  write: number;
+};
+
+/** What can be asked of a tree. */
+export type TreeCommand =
+  | /** Takes another spec, such as that of a preset. */
+  {
+    'set-spec': [string | null, Json];
+  }
+  | /** Sets one field of the spec, named by a JSON pointer such as `/method/points`. */
+  {
+    'set-field': [string, Json];
+  }
+  | /** Adds an obstacle after the others. */
+  {
+    'add-obstacle': NamedObstacle;
+  }
+  | /** Replaces the obstacle of a row. */
+  {
+    'set-obstacle': [number, NamedObstacle];
+  }
+  | /** Takes the obstacle of a row away. */
+  {
+    'remove-obstacle': number;
+  }
+  | /** Sets how it is meshed. */
+  {
+    'set-skin': SkinSpec;
+  }
+  | /** Bears the leaf of another plant, or its own again. */
+  {
+    'set-leaf': 
+      | PlantId
+      | null;
+  };
+
+/** What a tree is grown from. */
+export type TreeState = {
+  /** The plant whose leaf it bears. */
+  leaf: 
+    | PlantId
+    | null;
+  /** What it grows around. */
+  obstacles: NamedShape[];
+  /** The species that the spec came from. */
+  preset: string | null;
+  /** How it is meshed. */
+  skin: SkinSpec;
+  /** The spec, without obstacles. */
+  spec: Record<string, Json>;
+};
+
+/** A rotation about an axis. */
+export type Turn = {
+  /** The axis, of any length above 0; right-handed. */
+  about: [number, number, number];
+  /** How far. */
+  degrees: number;
+};
+
+/** A vertical axis. */
+export type Up =
+  | /** As inside. */
+  "y"
+  | /** As Blender and most CAD programs have it. */
+  "z";
+
+/** A plane in which an outline is drawn. */
+export type ViewPlane = {
+  /** Where (0, 0) of the outline lies, metres. */
+  origin: [number, number, number];
+  /** To the viewer's right. */
+  right: [number, number, number];
+  /** Upwards as the viewer sees it; made to stand at a right angle to `right`. */
+  up: [number, number, number];
+};

@@ -1,0 +1,200 @@
+//! What kind of file it is: by its name, by its first bytes.
+
+/// The file formats that hold scans.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum CloudFormat {
+    /// Polygon file format, text or binary; faces are left out.
+    Ply,
+    /// One point a line: x y z and more columns, separated by spaces, commas or semicolons.
+    Xyz,
+    /// Point cloud data of PCL, text, binary or compressed.
+    Pcd,
+    /// LAS 1.0 to 1.4, uncompressed.
+    Las,
+    /// Vertices of a Wavefront OBJ; faces are left out.
+    Obj,
+}
+
+impl CloudFormat {
+    /// Every format.
+    pub const ALL: [Self; 5] = [Self::Ply, Self::Xyz, Self::Pcd, Self::Las, Self::Obj];
+
+    /// The name for messages.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Ply => "PLY",
+            Self::Xyz => "XYZ",
+            Self::Pcd => "PCD",
+            Self::Las => "LAS",
+            Self::Obj => "OBJ",
+        }
+    }
+
+    /// The format that a file's extension (without the dot, any case) stands for.
+    ///
+    /// ```
+    /// use formats::CloudFormat;
+    /// assert_eq!(CloudFormat::from_extension("TXT"), Some(CloudFormat::Xyz));
+    /// ```
+    pub fn from_extension(extension: &str) -> Option<Self> {
+        match extension.to_ascii_lowercase().as_str() {
+            "ply" => Some(Self::Ply),
+            "xyz" | "txt" | "csv" | "asc" | "pts" | "xyzn" | "xyzrgb" => Some(Self::Xyz),
+            "pcd" => Some(Self::Pcd),
+            "las" | "laz" => Some(Self::Las),
+            "obj" => Some(Self::Obj),
+            _ => None,
+        }
+    }
+}
+
+/// The file formats that hold strokes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum DrawingFormat {
+    /// Scalable Vector Graphics; one drawing a file.
+    Svg,
+    /// Ink Markup Language (W3C 2011); one drawing a file.
+    InkMl,
+    /// One JSON object a line, as in "Quick, Draw!"; any number of drawings a file.
+    Ndjson,
+    /// Our own `drawing/1`; one drawing a file.
+    Json,
+}
+
+impl DrawingFormat {
+    /// Every format.
+    pub const ALL: [Self; 4] = [Self::Svg, Self::InkMl, Self::Ndjson, Self::Json];
+
+    /// The name for messages.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Svg => "SVG",
+            Self::InkMl => "InkML",
+            Self::Ndjson => "ndjson",
+            Self::Json => "drawing JSON",
+        }
+    }
+
+    /// The format that a file's extension (without the dot, any case) stands for.
+    ///
+    /// ```
+    /// use formats::DrawingFormat;
+    /// assert_eq!(DrawingFormat::from_extension("SVG"), Some(DrawingFormat::Svg));
+    /// assert_eq!(DrawingFormat::from_extension("docx"), None);
+    /// ```
+    pub fn from_extension(extension: &str) -> Option<Self> {
+        match extension.to_ascii_lowercase().as_str() {
+            "svg" => Some(Self::Svg),
+            "inkml" | "ink" => Some(Self::InkMl),
+            "ndjson" | "jsonl" => Some(Self::Ndjson),
+            "json" => Some(Self::Json),
+            _ => None,
+        }
+    }
+
+    /// The format that the first bytes of a file look like.
+    ///
+    /// ```
+    /// use formats::DrawingFormat;
+    /// assert_eq!(DrawingFormat::sniff(b"<?xml version='1.0'?><svg/>"), Some(DrawingFormat::Svg));
+    /// assert_eq!(DrawingFormat::sniff(br#"{"word":"leaf","drawing":[]}"#), Some(DrawingFormat::Ndjson));
+    /// ```
+    pub fn sniff(start: &[u8]) -> Option<Self> {
+        let head = &start[..start.len().min(4096)];
+        let has = |word: &str| head.windows(word.len()).any(|w| w == word.as_bytes());
+        let first = head.iter().find(|b| !b.is_ascii_whitespace() && !matches!(b, 0xef | 0xbb | 0xbf))?;
+        match first {
+            b'<' if has("<svg") || has(":svg") => Some(Self::Svg),
+            b'<' if has("<ink") || has(":ink") => Some(Self::InkMl),
+            b'{' if has("\"burgeon\"") => Some(Self::Json),
+            b'{' if has("\"drawing\"") || has("\"key_id\"") => Some(Self::Ndjson),
+            b'{' if has("\"strokes\"") => Some(Self::Json),
+            _ => None,
+        }
+    }
+}
+
+/// The file formats that hold models.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum ModelFormat {
+    /// Binary glTF 2.0: one file with textures and materials.
+    Glb,
+    /// glTF 2.0 as JSON with embedded buffers; read only.
+    Gltf,
+    /// Wavefront OBJ with its material file and textures beside it.
+    Obj,
+    /// Polygon file format: one mesh with colours at its vertices.
+    Ply,
+    /// Stereolithography: bare triangles.
+    Stl,
+    /// Universal Scene Description as text, with textures beside it; written only.
+    Usda,
+}
+
+impl ModelFormat {
+    /// Every format.
+    pub const ALL: [Self; 6] = [Self::Glb, Self::Gltf, Self::Obj, Self::Ply, Self::Stl, Self::Usda];
+
+    /// The name for messages.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Glb => "GLB",
+            Self::Gltf => "glTF",
+            Self::Obj => "OBJ",
+            Self::Ply => "PLY",
+            Self::Stl => "STL",
+            Self::Usda => "USD",
+        }
+    }
+
+    /// The format that a file's extension (without the dot, any case) stands for.
+    ///
+    /// ```
+    /// use formats::ModelFormat;
+    /// assert_eq!(ModelFormat::from_extension("GLB"), Some(ModelFormat::Glb));
+    /// ```
+    pub fn from_extension(extension: &str) -> Option<Self> {
+        match extension.to_ascii_lowercase().as_str() {
+            "glb" => Some(Self::Glb),
+            "gltf" => Some(Self::Gltf),
+            "obj" => Some(Self::Obj),
+            "ply" => Some(Self::Ply),
+            "stl" => Some(Self::Stl),
+            "usda" => Some(Self::Usda),
+            _ => None,
+        }
+    }
+
+    /// The format that the first bytes of a file look like. A binary STL has no mark and is not recognised.
+    pub fn sniff(start: &[u8]) -> Option<Self> {
+        let text = start.trim_ascii_start();
+        // Exporters of OBJ sign in comments.
+        let mut lines = start.split(|&b| b == b'\n').map(<[u8]>::trim_ascii_start);
+        let first = lines.find(|l| !l.is_empty() && !l.starts_with(b"#")).unwrap_or_default();
+        if start.starts_with(b"glTF") {
+            Some(Self::Glb)
+        } else if start.starts_with(b"#usda ") {
+            Some(Self::Usda)
+        } else if start.starts_with(b"ply\n") || start.starts_with(b"ply\r") {
+            Some(Self::Ply)
+        } else if text.starts_with(b"solid ") {
+            Some(Self::Stl)
+        } else if text.starts_with(b"{") && start.windows(7).any(|w| w == b"\"asset\"") {
+            Some(Self::Gltf)
+        } else if [&b"v "[..], b"vn ", b"mtllib ", b"o ", b"g "].iter().any(|w| first.starts_with(w)) {
+            Some(Self::Obj)
+        } else {
+            None
+        }
+    }
+
+    /// The axes and the unit are the format's own: metres, +Y up.
+    pub const fn fixed_axes(self) -> bool {
+        matches!(self, Self::Glb | Self::Gltf)
+    }
+
+    /// Files of this format have room for how wind moves each vertex.
+    pub const fn carries_wind(self) -> bool {
+        matches!(self, Self::Glb | Self::Gltf | Self::Usda)
+    }
+}

@@ -1,0 +1,65 @@
+//! A support vector machine as bytes: `Svm -> bytes -> Svm`, for programs that carry one.
+//!
+//! LIBSVM's text is four times as long and takes longer to read. Little endian: classes and columns (u32), labels
+//! (i32), vectors of each class (u32), gamma and rho (f64), then coefficients (f64) and vectors (f32) column by
+//! column, because the numbers of a column are alike and so compress better.
+
+use super::svm::{ModelError, Svm};
+
+/// First bytes of the form.
+pub(super) const MAGIC: &[u8] = b"svm1";
+
+/// Reads a machine for rows of `columns` numbers.
+///
+/// # Errors
+/// [`ModelError`] where the bytes are not such a machine.
+pub(super) fn unpack(mut bytes: &[u8], columns: usize) -> Result<Svm, ModelError> {
+    let from = &mut bytes;
+    if take(from, MAGIC.len())? != MAGIC {
+        return Err(fault("not a packed machine"));
+    }
+    let &[classes, found] = &numbers(from, 2, u32::from_le_bytes)?[..] else { return Err(cut()) };
+    let classes = classes as usize;
+    if classes < 2 || found as usize != columns {
+        return Err(fault("the features have changed: run `cargo xtask train-strokes`"));
+    }
+    let labels = numbers(from, classes, i32::from_le_bytes)?;
+    let mut starts = vec![0_usize];
+    for count in numbers(from, classes, u32::from_le_bytes)? {
+        let end = starts.last().and_then(|s| s.checked_add(count as usize));
+        starts.push(end.ok_or_else(cut)?);
+    }
+    let vectors = starts.last().copied().unwrap_or(0);
+    let &[gamma] = &numbers(from, 1, f64::from_le_bytes)?[..] else { return Err(cut()) };
+    let rho = numbers(from, classes.saturating_mul(classes - 1) / 2, f64::from_le_bytes)?;
+    let coefficients = numbers(from, vectors.saturating_mul(classes - 1), f64::from_le_bytes)?;
+    let values = numbers(from, vectors.saturating_mul(columns), f32::from_le_bytes)?;
+    if !from.is_empty() {
+        return Err(fault("more bytes than the machine has"));
+    }
+    Ok(Svm::new(gamma, labels, rho, starts, &coefficients, &values))
+}
+
+fn fault(what: impl Into<String>) -> ModelError {
+    ModelError { line: 0, what: what.into() }
+}
+
+fn cut() -> ModelError {
+    fault("cut off")
+}
+
+fn take<'a>(from: &mut &'a [u8], count: usize) -> Result<&'a [u8], ModelError> {
+    let (taken, rest) = from.split_at_checked(count).ok_or_else(cut)?;
+    *from = rest;
+    Ok(taken)
+}
+
+/// `count` numbers of `N` bytes each.
+fn numbers<T, const N: usize>(
+    from: &mut &[u8],
+    count: usize,
+    read: fn([u8; N]) -> T,
+) -> Result<Vec<T>, ModelError> {
+    let (numbers, _) = take(from, count.saturating_mul(N))?.as_chunks::<N>();
+    Ok(numbers.iter().map(|&bytes| read(bytes)).collect())
+}

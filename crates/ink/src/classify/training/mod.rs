@@ -1,0 +1,221 @@
+//! `table -> models` and how good they are: cross-validation by drawing, never by stroke.
+
+use std::collections::BTreeMap;
+
+use base::{Draw, Seed};
+
+use super::features::StrokeFeatures;
+use super::model::StrokeModels;
+use super::svm::{ModelError, Scale, Svm};
+use crate::StrokeClass;
+use libsvm::RbfLearner;
+pub(super) use libsvm::pack;
+pub use table::{StrokeRow, StrokeSource, read_stroke_table, write_stroke_table};
+
+mod libsvm;
+mod table;
+
+/// The classes: chosen by cross-validation among 1 to 100.
+const CLASSES: RbfLearner = RbfLearner { cost: 10.0, gamma: 0.3 };
+/// Closed outline or line, by the paper's three features.
+const CLOSED: RbfLearner = RbfLearner { cost: 10.0, gamma: 3.0 };
+/// Drawings are dealt into this many folds.
+const FOLDS: usize = 10;
+/// Classes with fewer clear strokes than this are not counted in the macro F1: chance would rule it.
+const FEW: usize = 20;
+
+/// The models as text, as they are kept in the repository.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StrokeModelTexts {
+    /// Name, mean and one over the deviation of every feature.
+    pub scale: String,
+    /// The classes, LIBSVM text; label numbers are places in [`StrokeClass::ALL`].
+    pub classes: String,
+}
+
+impl StrokeModelTexts {
+    /// The classes as programs carry them: the same machine in a quarter of the bytes.
+    ///
+    /// # Errors
+    /// [`ModelError`] where the text is no model of today's features.
+    pub fn packed_classes(&self) -> Result<Vec<u8>, ModelError> {
+        let columns = StrokeFeatures::NAMES.len();
+        pack(&Svm::parse(&self.classes, columns)?, columns)
+    }
+}
+
+impl StrokeModels {
+    /// Reads the models.
+    ///
+    /// # Errors
+    /// [`ModelError`] where a text is not a model of today's features.
+    pub(super) fn parse(texts: &StrokeModelTexts) -> Result<Self, ModelError> {
+        Ok(Self {
+            scale: Scale::parse(&texts.scale, &StrokeFeatures::NAMES)?,
+            classes: Svm::parse(&texts.classes, StrokeFeatures::NAMES.len())?,
+        })
+    }
+}
+
+/// How well strokes of drawings that were not trained on were recognised.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StrokeFigures {
+    /// Rows are labels, columns what was found, both in the order of [`StrokeClass::ALL`].
+    pub confusion: [[u32; 12]; 12],
+    /// F1 of each class that has at least 20 clear strokes, else `None`.
+    pub f1: [Option<f64>; 12],
+    /// Mean of those.
+    pub macro_f1: f64,
+    /// Share of closed outlines (blade, corolla, crown, disc) and lines (axis, vein) whose class found is in the
+    /// same group; any third class counts as wrong.
+    pub grouped: f64,
+    /// Share of them that were not taken for the other group.
+    pub not_swapped: f64,
+    /// Share of them that the machine with the paper's three features alone puts right.
+    pub three_features: f64,
+    /// Label, found, for every clear stroke of SPG, by kind of drawing.
+    pub parts: Vec<(String, StrokeClass, StrokeClass)>,
+}
+
+/// 1 for closed outlines, 0 for lines, `None` for what is neither.
+fn closed(class: StrokeClass) -> Option<bool> {
+    match class {
+        StrokeClass::Blade | StrokeClass::Corolla | StrokeClass::Crown | StrokeClass::Disc => Some(true),
+        StrokeClass::Axis | StrokeClass::Vein => Some(false),
+        _ => None,
+    }
+}
+
+/// Trains the models of a table.
+///
+/// Deterministic on one platform; on another one the training's `exp` may round differently and change last
+/// digits, not decisions.
+///
+/// # Errors
+/// [`ModelError`] where the table has fewer than two classes.
+pub fn train_strokes(rows: &[StrokeRow]) -> Result<StrokeModelTexts, ModelError> {
+    train(&rows.iter().collect::<Vec<_>>())
+}
+
+fn train(rows: &[&StrokeRow]) -> Result<StrokeModelTexts, ModelError> {
+    let clear: Vec<&&StrokeRow> = rows.iter().filter(|r| r.is_clear()).collect();
+    let values: Vec<Vec<f64>> = clear.iter().map(|r| r.features.values().to_vec()).collect();
+    let scale = Scale::of(&values);
+    let scaled: Vec<Vec<f64>> = values.iter().map(|v| scale.apply(v)).collect();
+    let labels: Vec<i32> = clear.iter().map(|r| number(r.label)).collect();
+    Ok(StrokeModelTexts {
+        scale: scale.to_text(&StrokeFeatures::NAMES),
+        classes: CLASSES.learn(&scaled, &labels)?,
+    })
+}
+
+/// The paper's three features (section 4.1), each in \[0, 1\].
+fn three(row: &StrokeRow) -> Vec<f64> {
+    vec![row.features.gap, row.features.slim, row.features.box_area]
+}
+
+/// The paper's own machine: closed outline (1) or line (0) by the three features alone. It is here to measure by.
+fn train_three(rows: &[&StrokeRow]) -> Result<Svm, ModelError> {
+    let clear = rows.iter().filter(|r| r.is_clear());
+    let (values, sides): (Vec<Vec<f64>>, Vec<i32>) =
+        clear.filter_map(|r| closed(r.label).map(|c| (three(r), i32::from(c)))).unzip();
+    Svm::parse(&CLOSED.learn(&values, &sides)?, 3)
+}
+
+fn number(class: StrokeClass) -> i32 {
+    StrokeClass::ALL.iter().zip(0..).find(|(c, _)| **c == class).map_or(0, |(_, k)| k)
+}
+
+fn place(class: StrokeClass) -> usize {
+    StrokeClass::ALL.iter().position(|c| *c == class).unwrap_or(0)
+}
+
+/// Deals the drawings into folds, kinds evenly, trains on nine tenths and measures on the rest, ten times.
+///
+/// `seed` shuffles the dealing. Takes about a second.
+///
+/// # Errors
+/// [`ModelError`] where the table has too few rows.
+pub fn cross_validate_strokes(rows: &[StrokeRow], seed: Seed) -> Result<StrokeFigures, ModelError> {
+    let fold = deal(rows, seed);
+    let mut found = vec![None; rows.len()];
+    for k in 0..FOLDS {
+        let training: Vec<&StrokeRow> =
+            rows.iter().zip(&fold).filter(|(_, f)| **f != k).map(|(r, _)| r).collect();
+        let models = StrokeModels::parse(&train(&training)?)?;
+        let paper = train_three(&training)?;
+        for (i, row) in rows.iter().enumerate().filter(|(i, _)| fold[*i] == k) {
+            let is_closed =
+                paper.labels.iter().zip(paper.shares(&three(row))).any(|(&l, s)| l == 1 && s > 0.5);
+            found[i] = Some((models.decide(&row.features).class, is_closed));
+        }
+    }
+    Ok(figures(rows, &found))
+}
+
+/// The fold of every row: by drawing, kinds dealt evenly.
+fn deal(rows: &[StrokeRow], seed: Seed) -> Vec<usize> {
+    let mut kinds: BTreeMap<(StrokeSource, &str), Vec<&str>> = BTreeMap::new();
+    for row in rows {
+        let keys = kinds.entry((row.source, &row.kind)).or_default();
+        if !keys.contains(&row.drawing.as_str()) {
+            keys.push(&row.drawing);
+        }
+    }
+    let mut stream = seed.stream(Draw::Folds);
+    let mut fold_of: BTreeMap<&str, usize> = BTreeMap::new();
+    for keys in kinds.values_mut() {
+        keys.sort_unstable();
+        for k in (1..keys.len()).rev() {
+            keys.swap(k, stream.below(k + 1));
+        }
+        let start = stream.below(FOLDS);
+        for (k, key) in keys.iter().enumerate() {
+            fold_of.insert(key, (start + k) % FOLDS);
+        }
+    }
+    rows.iter().map(|r| fold_of.get(r.drawing.as_str()).copied().unwrap_or(0)).collect()
+}
+
+fn figures(rows: &[StrokeRow], found: &[Option<(StrokeClass, bool)>]) -> StrokeFigures {
+    let mut confusion = [[0_u32; 12]; 12];
+    let mut parts = Vec::new();
+    let (mut pairs, mut same, mut kept, mut three) = (0_u32, 0_u32, 0_u32, 0_u32);
+    for (row, found) in rows.iter().zip(found) {
+        let Some((class, is_closed)) = found.filter(|_| row.is_clear()) else { continue };
+        match row.source {
+            StrokeSource::Made => continue,
+            StrokeSource::Parts => {
+                parts.push((row.kind.clone(), row.label, class));
+                continue;
+            }
+            StrokeSource::Public => {}
+        }
+        confusion[place(row.label)][place(class)] += 1;
+        if let Some(side) = closed(row.label) {
+            pairs += 1;
+            same += u32::from(closed(class) == Some(side));
+            kept += u32::from(closed(class) != Some(!side));
+            three += u32::from(is_closed == side);
+        }
+    }
+    let mut f1 = [None; 12];
+    for (k, slot) in f1.iter_mut().enumerate() {
+        let labelled: u32 = confusion[k].iter().sum();
+        let taken: u32 = confusion.iter().map(|r| r[k]).sum();
+        if labelled as usize >= FEW {
+            *slot = Some(2.0 * f64::from(confusion[k][k]) / f64::from(labelled + taken));
+        }
+    }
+    let counted: Vec<f64> = f1.iter().flatten().copied().collect();
+    let of = |n: u32| f64::from(n) / f64::from(pairs.max(1));
+    StrokeFigures {
+        confusion,
+        f1,
+        macro_f1: counted.iter().sum::<f64>() / (counted.len().max(1) as f64),
+        grouped: of(same),
+        not_swapped: of(kept),
+        three_features: of(three),
+        parts,
+    }
+}

@@ -1,0 +1,444 @@
+//! Paper 000, section 3: the pen's samples to clean strokes of even step in ink coordinates.
+//!
+//! `Drawing -> Ink`
+
+use base::{Report, ops};
+use glam::DVec2;
+
+use crate::{Drawing, StrokeMode};
+
+/// Even step of resampled strokes, a share of the drawing's diagonal: the line width of a felt pen on a sheet.
+pub(crate) const STEP: f64 = 0.005;
+/// Short strokes are resampled to at least this many steps, so that small leaves keep their form.
+const MIN_STEPS: f64 = 16.0;
+/// Most points that all strokes together are resampled to (besides `MIN_STEPS` of each): bounds memory.
+const MAX_POINTS: f64 = 400_000.0;
+/// Half window m of Eq 1, in steps: 3 steps reach past the jitter of a mouse, not past a petal's tip.
+const HALF_WINDOW: usize = 3;
+/// Corners sharper than this are kept: cos 60 degrees.
+const CORNER_COS: f64 = 0.5;
+/// Beyond this no difference of two coordinates could overflow.
+const LARGEST: f64 = 1e304;
+/// A sample this many times farther from the middle than nine tenths of all samples is a stray.
+const STRAY: f64 = 1000.0;
+/// Warnings of one kind that are told one by one.
+const TOLD: usize = 20;
+
+/// Where ink coordinates lie in the drawing: `ink = (drawing - origin) * scale`.
+///
+/// ```
+/// use glam::DVec2;
+/// let map = ink::InkMap { origin: DVec2::new(10.0, 0.0), scale: 0.5 };
+/// assert_eq!(map.to_ink(DVec2::new(12.0, 4.0)), DVec2::new(1.0, 2.0));
+/// assert_eq!(map.to_drawing(DVec2::new(1.0, 2.0)), DVec2::new(12.0, 4.0));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InkMap {
+    /// The drawing's lower left corner, in the drawing's unit.
+    pub origin: DVec2,
+    /// One over the drawing's diagonal, above 0.
+    pub scale: f64,
+}
+
+impl InkMap {
+    /// From the drawing's coordinates to ink coordinates.
+    pub fn to_ink(&self, p: DVec2) -> DVec2 {
+        (p - self.origin) * self.scale
+    }
+
+    /// From ink coordinates to the drawing's.
+    pub fn to_drawing(&self, p: DVec2) -> DVec2 {
+        p / self.scale + self.origin
+    }
+}
+
+impl Default for InkMap {
+    fn default() -> Self {
+        Self { origin: DVec2::ZERO, scale: 1.0 }
+    }
+}
+
+/// One clean stroke, ink coordinates.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct InkStroke {
+    /// Its index in the drawing.
+    pub index: u32,
+    /// At least 2 finite points, none repeated: even steps of [`InkStroke::step`], smoothed by Eq 1, both ends and
+    /// corners above 60 degrees kept.
+    pub points: Vec<DVec2>,
+    /// The pen's samples, normalised but neither resampled nor smoothed; at least 2.
+    pub raw: Vec<DVec2>,
+    /// Milliseconds at each point of `raw`, if the file had them for every one.
+    pub times_ms: Option<Vec<f64>>,
+    /// Mean pen pressure 0 to 1, if known.
+    pub pressure: Option<f64>,
+    /// The mode that it was drawn in.
+    pub mode: StrokeMode,
+    /// Its colour as sRGB, if the file has one.
+    pub color: Option<[u8; 3]>,
+    /// Length of `points`, above 0.
+    pub length: f64,
+    /// Distance of neighbouring points before smoothing.
+    pub step: f64,
+}
+
+/// A clean drawing: y up, its bounding box has diagonal 1 and its lower left corner at the origin.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Ink {
+    /// The strokes that can be used, in the drawing's order.
+    pub strokes: Vec<InkStroke>,
+    /// Indices of the drawing's strokes that cannot (one point, no length, no finite sample), ascending.
+    pub skipped: Vec<u32>,
+    /// How ink coordinates were made from the drawing's.
+    pub map: InkMap,
+}
+
+/// Cleans a drawing: paper 000, section 3, Eq 1.
+///
+/// Guaranteed: every coordinate is finite and within \[0, 1\]; the number of points is bounded by 400,000 plus
+/// 18 for each stroke. Samples that are not finite, strays that blow the box up a thousandfold and strokes
+/// without length are left out with a warning that names the stroke. Linear in samples.
+///
+/// ```
+/// use glam::DVec2;
+/// let drawing = ink::Drawing::from_polylines("stem", &[vec![DVec2::ZERO, DVec2::new(0.0, 300.0)]]);
+/// let ink = ink::clean(&drawing, &mut base::Report::default());
+/// assert_eq!((ink.strokes.len(), ink.strokes[0].points.len()), (1, 201));
+/// assert!((ink.strokes[0].length - 1.0).abs() < 1e-12);
+/// ```
+pub fn clean(drawing: &Drawing, report: &mut Report) -> Ink {
+    let mut notes = Notes::default();
+    let usable = usable_samples(drawing, &mut notes);
+    let map = ink_map(drawing, &usable);
+    let mut ink = Ink { map: map.unwrap_or_default(), ..Ink::default() };
+    for (index, (stroke, kept)) in (0_u32..).zip(drawing.strokes.iter().zip(&usable)) {
+        let raw: Vec<DVec2> = if map.is_some() {
+            kept.iter().map(|&k| ink.map.to_ink(stroke.samples[k].at)).collect()
+        } else {
+            Vec::new()
+        };
+        let length = length(&raw);
+        if length < 1e-9 {
+            notes.skipped.push((index, raw.len()));
+            ink.skipped.push(index);
+            continue;
+        }
+        let times: Option<Vec<f64>> =
+            kept.iter().map(|&k| stroke.samples[k].time_ms.filter(|t| t.is_finite())).collect();
+        ink.strokes.push(InkStroke {
+            index,
+            raw,
+            times_ms: times,
+            pressure: mean_pressure(kept.iter().filter_map(|&k| stroke.samples[k].pressure)),
+            mode: stroke.mode,
+            color: stroke.color,
+            length,
+            ..InkStroke::default()
+        });
+    }
+    let total: f64 = ink.strokes.iter().map(|s| s.length).sum();
+    let step = STEP.max(total / MAX_POINTS);
+    for stroke in &mut ink.strokes {
+        stroke.step = step.min(stroke.length / MIN_STEPS);
+        stroke.points = smooth(&resample(&stroke.raw, stroke.length, stroke.step), stroke.step);
+        stroke.length = length(&stroke.points);
+    }
+    notes.tell(report);
+    if ink.strokes.is_empty() {
+        report.warn("empty-drawing", "the drawing has no stroke that can be used: draw a line or an outline");
+    }
+    ink
+}
+
+/// Sample numbers that can be used, for each stroke: finite, and no strays.
+fn usable_samples(drawing: &Drawing, notes: &mut Notes) -> Vec<Vec<usize>> {
+    let finite = |p: DVec2| p.x.abs() <= LARGEST && p.y.abs() <= LARGEST;
+    let mut kept: Vec<Vec<usize>> = Vec::with_capacity(drawing.strokes.len());
+    for (index, stroke) in (0_u32..).zip(&drawing.strokes) {
+        let good: Vec<usize> = (0..stroke.samples.len()).filter(|&k| finite(stroke.samples[k].at)).collect();
+        if good.len() < stroke.samples.len() {
+            notes.broken.push((index, stroke.samples.len() - good.len()));
+        }
+        kept.push(good);
+    }
+    let places = || kept.iter().zip(&drawing.strokes).flat_map(|(k, s)| k.iter().map(|&i| s.samples[i].at));
+    let mut xs: Vec<f64> = places().map(|p| p.x).collect();
+    let mut ys: Vec<f64> = places().map(|p| p.y).collect();
+    if xs.len() < 5 {
+        return kept;
+    }
+    let middle = DVec2::new(quantile(&mut xs, 0.5), quantile(&mut ys, 0.5));
+    // The larger of both coordinates: squares could overflow, and a stray is one by far.
+    let far = |p: DVec2| (p - middle).abs().max_element();
+    let mut distances: Vec<f64> = places().map(far).collect();
+    let limit = quantile(&mut distances, 0.9) * STRAY;
+    if limit > 0.0 {
+        for (index, (k, stroke)) in (0_u32..).zip(kept.iter_mut().zip(&drawing.strokes)) {
+            let before = k.len();
+            k.retain(|&i| far(stroke.samples[i].at) <= limit);
+            if k.len() < before {
+                notes.strays.push((index, before - k.len()));
+            }
+        }
+    }
+    kept
+}
+
+/// The map that puts the lower left corner at the origin and makes the diagonal 1; `None` without an extent.
+fn ink_map(drawing: &Drawing, kept: &[Vec<usize>]) -> Option<InkMap> {
+    let mut lo = DVec2::INFINITY;
+    let mut hi = DVec2::NEG_INFINITY;
+    for (stroke, numbers) in drawing.strokes.iter().zip(kept) {
+        for &k in numbers {
+            lo = lo.min(stroke.samples[k].at);
+            hi = hi.max(stroke.samples[k].at);
+        }
+    }
+    let scale = 1.0 / ops::hypot(hi.x - lo.x, hi.y - lo.y);
+    (lo.is_finite() && scale.is_finite() && scale > 0.0).then_some(InkMap { origin: lo, scale })
+}
+
+fn length(points: &[DVec2]) -> f64 {
+    points.windows(2).map(|w| w[0].distance(w[1])).sum()
+}
+
+fn mean_pressure(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let (sum, n) =
+        values.filter(|v| v.is_finite()).fold((0.0, 0.0), |(s, n), v| (s + v.clamp(0.0, 1.0), n + 1.0));
+    (n > 0.0).then(|| sum / n)
+}
+
+/// The value that a share `q` of the values lies below. `values` is not empty.
+fn quantile(values: &mut [f64], q: f64) -> f64 {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "q is within 0 and 1")]
+    #[expect(clippy::cast_precision_loss, reason = "a rank need not be exact beyond 2^53 samples")]
+    let rank = ((values.len() - 1) as f64 * q) as usize;
+    *values.select_nth_unstable_by(rank, f64::total_cmp).1
+}
+
+/// Even steps of at most `step` along a polyline of length `length`, both ends kept.
+fn resample(raw: &[DVec2], length: f64, step: f64) -> Vec<DVec2> {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded by MAX_POINTS")]
+    let steps = (length / step - 1e-6).ceil().clamp(1.0, MAX_POINTS) as usize;
+    let even = length / f64::from(u32::try_from(steps).unwrap_or(u32::MAX));
+    let mut points = Vec::with_capacity(steps + 1);
+    points.push(raw[0]);
+    let (mut gone, mut next) = (0.0, even);
+    for w in raw.windows(2) {
+        let d = w[0].distance(w[1]);
+        while next <= gone + d && points.len() < steps {
+            points.push(w[0].lerp(w[1], (next - gone) / d));
+            next += even;
+        }
+        gone += d;
+    }
+    points.push(raw[raw.len() - 1]);
+    points
+}
+
+/// Eq 1 between the corners: the ends of the stroke and corners above 60 degrees stay where they are.
+fn smooth(points: &[DVec2], step: f64) -> Vec<DVec2> {
+    // The weight falls to 1/e at two steps: c = (2 step)^2.
+    let c = 4.0 * step * step;
+    let mut out = points.to_vec();
+    let corners = corners(points);
+    for pair in corners.windows(2) {
+        for i in pair[0] + 1..pair[1] {
+            // The window is cut alike on both sides at a corner: a one-sided mean would pull the line short.
+            let m = HALF_WINDOW.min(i - pair[0]).min(pair[1] - i);
+            let (mut sum, mut weights) = (DVec2::ZERO, 0.0);
+            for p in &points[i - m..=i + m] {
+                let w = ops::exp(-p.distance_squared(points[i]) / c);
+                sum += *p * w;
+                weights += w;
+            }
+            out[i] = sum / weights;
+        }
+    }
+    // Where the pen went back on its own line two neighbours may meet.
+    out.dedup();
+    out
+}
+
+/// First and last point and the sharpest point of every corner above 60 degrees, ascending.
+fn corners(points: &[DVec2]) -> Vec<usize> {
+    let last = points.len() - 1;
+    let mut found = vec![0];
+    let mut best: Option<(f64, usize)> = None;
+    for i in 1..last {
+        let k = HALF_WINDOW.min(i).min(last - i);
+        let (a, b) = (points[i] - points[i - k], points[i + k] - points[i]);
+        let cos = a.dot(b) / (a.length() * b.length()).max(1e-300);
+        if cos < CORNER_COS {
+            if best.is_none_or(|(c, _)| cos < c) {
+                best = Some((cos, i));
+            }
+        } else if let Some((_, at)) = best.take() {
+            found.push(at);
+        }
+    }
+    found.extend(best.map(|(_, at)| at));
+    found.push(last);
+    found
+}
+
+/// What cleaning left out, told in few words however much it is.
+#[derive(Debug, Default)]
+struct Notes {
+    broken: Vec<(u32, usize)>,
+    strays: Vec<(u32, usize)>,
+    skipped: Vec<(u32, usize)>,
+}
+
+impl Notes {
+    fn tell(&self, report: &mut Report) {
+        tell(report, "sample-skipped", &self.broken, |i, n| {
+            format!("stroke {i}: {n} sample(s) are not usable numbers and were left out")
+        });
+        tell(report, "stray-skipped", &self.strays, |i, n| {
+            format!(
+                "stroke {i}: {n} sample(s) lie a thousand times farther out than the drawing and were left out"
+            )
+        });
+        tell(report, "stroke-skipped", &self.skipped, |i, n| match n {
+            0 => format!("stroke {i} has no usable point and was left out"),
+            1 => format!("stroke {i} has one point and was left out"),
+            _ => format!("stroke {i} has no length and was left out"),
+        });
+    }
+}
+
+fn tell(
+    report: &mut Report,
+    code: &'static str,
+    notes: &[(u32, usize)],
+    words: impl Fn(u32, usize) -> String,
+) {
+    for &(index, n) in notes.iter().take(TOLD) {
+        report.warn(code, words(index, n));
+    }
+    if notes.len() > TOLD {
+        report.warn(code, format!("and {} more strokes likewise", notes.len() - TOLD));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Stroke;
+    use proptest::prelude::*;
+
+    fn lines(lines: &[Vec<DVec2>]) -> Drawing {
+        Drawing::from_polylines("test", lines)
+    }
+
+    fn codes(report: &Report) -> Vec<&'static str> {
+        report.warnings.iter().map(|w| w.code).collect()
+    }
+
+    #[test]
+    fn box_has_diagonal_one_at_the_origin() {
+        let d = lines(&[
+            vec![DVec2::new(5.0, 7.0), DVec2::new(8.0, 7.0)],
+            vec![DVec2::new(8.0, 7.0), DVec2::new(8.0, 11.0)],
+        ]);
+        let ink = clean(&d, &mut Report::default());
+        assert_eq!((ink.map.origin, ink.map.scale), (DVec2::new(5.0, 7.0), 0.2));
+        assert_eq!(ink.strokes[0].points[0], DVec2::ZERO);
+        assert!(
+            ink.strokes[1].points.last().is_some_and(|p| p.distance(DVec2::new(0.6, 0.8)) < 1e-12),
+            "far corner"
+        );
+    }
+
+    #[test]
+    fn empty_and_dots_give_an_empty_ink_and_warnings() {
+        for d in [lines(&[]), lines(&[vec![]]), lines(&[vec![DVec2::ONE]]), lines(&[vec![DVec2::ONE; 7]])] {
+            let mut report = Report::default();
+            let ink = clean(&d, &mut report);
+            assert!(ink.strokes.is_empty(), "nothing to draw: {d:?}");
+            assert_eq!(ink.skipped.len(), d.strokes.len());
+            assert!(codes(&report).contains(&"empty-drawing"), "{report:?}");
+        }
+    }
+
+    #[test]
+    fn nan_stray_and_dot_are_named_and_left_out() {
+        let mut line: Vec<DVec2> = (0..20).map(|i| DVec2::new(f64::from(i), 0.0)).collect();
+        line[3].y = f64::NAN;
+        line[9] = DVec2::new(1e300, 0.0);
+        let mut report = Report::default();
+        let ink = clean(&lines(&[line, vec![DVec2::new(2.0, 2.0)], vec![DVec2::X, DVec2::Y]]), &mut report);
+        assert_eq!(codes(&report), ["sample-skipped", "stray-skipped", "stroke-skipped"]);
+        assert_eq!((ink.strokes.len(), ink.strokes[1].index, &ink.skipped[..]), (2, 2, &[1][..]));
+        assert!(
+            (ink.map.scale - 1.0 / ops::hypot(19.0, 2.0)).abs() < 1e-3,
+            "the stray must not set the scale"
+        );
+    }
+
+    #[test]
+    fn a_drawing_at_1e300_is_as_good_as_any() {
+        let d = lines(&[vec![DVec2::splat(-1e300), DVec2::new(1e300, 0.0), DVec2::splat(1e300)]]);
+        let ink = clean(&d, &mut Report::default());
+        assert!(
+            (ink.strokes[0].raw[2] - DVec2::splat(0.5_f64.sqrt())).length() < 1e-12,
+            "{:?}",
+            ink.strokes[0].raw
+        );
+    }
+
+    #[test]
+    fn smoothing_removes_jitter_and_keeps_ends_and_corners() {
+        let zigzag = |i: i32| DVec2::new(f64::from(i), if i % 2 == 0 { 0.25 } else { -0.25 });
+        let mut line: Vec<DVec2> = (0..=100).map(zigzag).collect();
+        line.extend((1..=100).map(|i| DVec2::new(100.0, 0.25 + f64::from(i))));
+        let ink = clean(&lines(&[line]), &mut Report::default());
+        let s = &ink.strokes[0];
+        let roughness = |p: &[DVec2]| p.windows(3).map(|w| (w[0] + w[2] - 2.0 * w[1]).length()).sum::<f64>();
+        let before = roughness(&resample(&s.raw, length(&s.raw), s.step));
+        assert!(roughness(&s.points) < 0.5 * before, "{} of {before}", roughness(&s.points));
+        assert_eq!((s.points[0], s.points[s.points.len() - 1]), (s.raw[0], s.raw[s.raw.len() - 1]));
+        let corner = s.points.iter().map(|p| p.distance(s.raw[100])).fold(1.0, f64::min);
+        assert!(corner < STEP, "corner moved by {corner}");
+    }
+
+    #[test]
+    fn a_hundred_thousand_strokes_stay_bounded() {
+        let d = Drawing {
+            name: String::new(),
+            strokes: (0..100_000)
+                .map(|i| {
+                    let x = f64::from(i);
+                    let samples = [DVec2::new(x, 0.0), DVec2::new(x, 1e5)].map(Into::into).to_vec();
+                    Stroke { samples, ..Stroke::default() }
+                })
+                .collect(),
+        };
+        let ink = clean(&d, &mut Report::default());
+        let points: usize = ink.strokes.iter().map(|s| s.points.len()).sum();
+        assert!(ink.strokes.len() == 100_000 && points <= 400_000 + 1_800_000, "{points}");
+    }
+
+    proptest! {
+        #[test]
+        fn any_drawing_gives_clean_ink(strokes in strokes()) {
+            let mut report = Report::default();
+            let ink = clean(&lines(&strokes), &mut report);
+            prop_assert_eq!(ink.strokes.len() + ink.skipped.len(), strokes.len());
+            for s in &ink.strokes {
+                prop_assert!(s.points.len() >= 2 && s.raw.len() >= 2 && s.length > 0.0, "{:?}", s);
+                for p in s.points.iter().chain(&s.raw) {
+                    prop_assert!(p.min_element() > -1e-9 && p.max_element() < 1.0 + 1e-9, "{}", p);
+                }
+                prop_assert!(s.points.windows(2).all(|w| w[0] != w[1]), "repeated point");
+            }
+        }
+    }
+
+    fn strokes() -> impl Strategy<Value = Vec<Vec<DVec2>>> {
+        let value = prop_oneof![8 => -10.0..10.0, 1 => Just(f64::NAN), 1 => Just(1e300), 1 => Just(0.0), 1 => Just(1e-12)];
+        let point = (value.clone(), value).prop_map(|(x, y)| DVec2::new(x, y));
+        prop::collection::vec(prop::collection::vec(point, 0..12), 0..6)
+    }
+}

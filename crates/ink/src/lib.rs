@@ -1,0 +1,28 @@
+//! What the pen drew, and what each stroke is (He and Cheng 2021, "paper 000", sections 3 and 4.1).
+//!
+//! `Drawing -> Ink (clean strokes) -> classes`
+//!
+//! | step | module | paper |
+//! |---|---|---|
+//! | strokes as they were drawn | `drawing` | |
+//! | resample, smooth, normalise | `clean` | section 3, Eq 1 |
+//! | what a stroke can be, and what each one is | `class`, `classify` | section 4.1 |
+//!
+//! The feature `training` adds what trains the classifier; programs that make plants do without it.
+
+mod class;
+mod classify;
+mod clean;
+mod drawing;
+
+pub use class::StrokeClass;
+pub use classify::{
+    Classified, KeptMeasures, ModelError, StrokeFeatures, classify, classify_again, features,
+};
+#[cfg(any(test, feature = "training"))]
+pub use classify::{
+    StrokeFigures, StrokeModelTexts, StrokeRow, StrokeSource, cross_validate_strokes, read_stroke_table,
+    train_strokes, write_stroke_table,
+};
+pub use clean::{Ink, InkMap, InkStroke, clean};
+pub use drawing::{Drawing, InkSample, Stroke, StrokeMode};

@@ -1,0 +1,371 @@
+//! Who bears what: stems lead to flowers, leaves get their stalks, fruits and roots find their places.
+
+use geom::{contains, point_at, polyline_length};
+use glam::DVec2;
+use ink::StrokeClass;
+use plant::AxisKind;
+
+use crate::blade::{Sheetlet, found_midrib, midrib, tip};
+use crate::branches::{Line, oriented};
+use crate::draft::Draft;
+use crate::flowers::{FlowerDraft, whorls};
+use crate::near::Near;
+use crate::near::bounds;
+use crate::veins::{Veins, choose_midrib};
+use crate::{Attachment, BladeReading, DiscReading, FlowerReading, FruitReading, OrganWord};
+
+/// A thorn: root and tip, what bears it, its stroke.
+pub(crate) type Thorn = (Vec<DVec2>, Option<Attachment>, Option<u32>);
+
+/// A leaf nearer to its bearer than this sits on it; farther, it has a stalk.
+const SESSILE: f64 = 0.02;
+/// More lines than this are no tuft of grass that a person drew.
+const MOST_GRASS: usize = 2_000;
+/// Leaves and flowers farther than this from every axis are borne by none.
+const FAR: f64 = 0.25;
+
+/// Lines that fan out from the top of a trunk without a crown are the fronds of a palm.
+pub(crate) fn fronds(draft: &mut Draft<'_>) {
+    if draft.bodies.is_empty() || !draft.regions.is_empty() || (!draft.open_top && draft.blades.is_empty()) {
+        return;
+    }
+    let tops: Vec<(DVec2, f64)> = draft
+        .bodies
+        .iter()
+        .filter_map(|&r| {
+            let top = *draft.forest.axes[r].points.last()?;
+            Some((top, 0.06 + draft.forest.half_width(r, f64::INFINITY)))
+        })
+        .collect();
+    let from_top = |line: &Line| {
+        let ends = [line.points[0], line.points[line.points.len() - 1]];
+        let near = |p: DVec2| tops.iter().map(|(t, r)| t.distance(p) - r).fold(f64::INFINITY, f64::min);
+        let last = near(ends[1]) < near(ends[0]);
+        (near(ends[usize::from(last)]) < 0.0 && polyline_length(&line.points) > 0.06).then_some(last)
+    };
+    let fans: Vec<Option<bool>> = draft.lines.iter().map(from_top).collect();
+    if fans.iter().flatten().count() + draft.blades.len() < 2 {
+        return;
+    }
+    for (line, fan) in std::mem::take(&mut draft.lines).into_iter().zip(fans) {
+        let stroke = line.source.and_then(|i| draft.ink.strokes.binary_search_by_key(&i, |s| s.index).ok());
+        let blade = fan.zip(stroke).and_then(|(last, k)| {
+            let points = oriented(&line.points, last);
+            Sheetlet::lens(&points, k, 0.055 * polyline_length(&points))
+        });
+        match blade {
+            Some(blade) => {
+                draft.set_organ(line.source, OrganWord::Leaf);
+                draft.blades.push(blade);
+            }
+            None => draft.lines.push(line),
+        }
+    }
+}
+
+/// Single lines that stand beside one another, with nothing that they bear, are blades of grass.
+pub(crate) fn grass_blades(draft: &mut Draft<'_>) {
+    const FEWEST: usize = 4;
+    let bare = draft.blades.is_empty()
+        && draft.regions.is_empty()
+        && draft.forest.axes.is_empty()
+        && !draft.class.iter().any(|c| {
+            use StrokeClass::{Corolla, Crown, Disc, Fruit, Pot, Scribble};
+            [Corolla, Crown, Disc, Fruit, Pot, Scribble].contains(c)
+        });
+    if !bare || draft.lines.len() < FEWEST || draft.lines.len() > MOST_GRASS {
+        return;
+    }
+    let mut near = Near::new(0.04);
+    for (i, line) in draft.lines.iter().enumerate() {
+        near.add_line(i, &line.points);
+    }
+    // A branch starts somewhere along another line; a blade of grass on the ground or where others start.
+    let foot = |l: &Line| {
+        let (a, b) = (l.points[0], l.points[l.points.len() - 1]);
+        if a.y < b.y { a } else { b }
+    };
+    let level = |l: &Line| {
+        let (a, b) = (l.points[0], l.points[l.points.len() - 1]);
+        let straight = a.distance(b) > 0.93 * polyline_length(&l.points);
+        straight && (a.y - b.y).abs() < 0.15 * (a.x - b.x).abs()
+    };
+    let branches = (0..draft.lines.len())
+        .filter(|&i| {
+            let p = foot(&draft.lines[i]);
+            let own =
+                |j: usize| j != i && foot(&draft.lines[j]).distance(p) > 0.06 && !level(&draft.lines[j]);
+            near.nearest(p, 0.02, own).is_some()
+        })
+        .count();
+    if branches * 3 > draft.lines.len() || draft.lines.iter().all(level) {
+        return;
+    }
+    for line in std::mem::take(&mut draft.lines) {
+        let stroke = line.source.and_then(|i| draft.ink.strokes.binary_search_by_key(&i, |s| s.index).ok());
+        let last = line.points[0].y > line.points[line.points.len() - 1].y;
+        let blade = stroke.filter(|_| !level(&line)).and_then(|k| {
+            let points = oriented(&line.points, last);
+            Sheetlet::lens(&points, k, 0.028 * polyline_length(&points))
+        });
+        match blade {
+            Some(blade) => {
+                draft.set_organ(line.source, OrganWord::Leaf);
+                draft.blades.push(Sheetlet { leaf: true, ..blade });
+            }
+            // The line of the ground under it.
+            None if level(&line) => draft.set_organ(line.source, OrganWord::Ignored),
+            None => draft.lines.push(line),
+        }
+    }
+}
+
+/// Discs of flowers, and the strokes of those that are nuts at the top of a trunk or fruits in a crown.
+pub(crate) fn part_discs(
+    draft: &Draft<'_>,
+    discs: Vec<(DiscReading, usize)>,
+) -> (Vec<(DiscReading, usize)>, Vec<usize>) {
+    let mut nuts = Vec::new();
+    let flowers = discs
+        .into_iter()
+        .filter(|(disc, stroke)| {
+            let in_crown = draft.regions.iter().any(|r| contains(&r.outline, disc.centre));
+            let on_trunk = draft.open_top
+                && draft.bodies.iter().any(|&r| {
+                    let axis = &draft.forest.axes[r];
+                    let wide = 1.5 * draft.forest.half_width(r, f64::INFINITY);
+                    axis.points.last().is_some_and(|t| t.distance(disc.centre) < disc.radius + wide + 0.03)
+                        && disc.radius < 1.2 * wide
+                });
+            if in_crown || on_trunk {
+                nuts.push(*stroke);
+            }
+            !(in_crown || on_trunk)
+        })
+        .collect();
+    (flowers, nuts)
+}
+
+/// Short lines from a flower's centre outwards are its stamens.
+pub(crate) fn stamens(draft: &mut Draft<'_>, flowers: &mut [FlowerDraft], roots: &[DVec2]) {
+    if flowers.is_empty() || draft.lines.is_empty() {
+        return;
+    }
+    let mut index = Near::new(0.1);
+    let mut reach = Vec::new();
+    for (f, flower) in flowers.iter().enumerate() {
+        index.add_line(f, &[flower.centre]);
+        let petals = flower.petals.iter().map(|&i| draft.blades[i].size).fold(0.0, f64::max);
+        let apart = flower.petals.iter().map(|&i| roots[i].distance(flower.centre)).fold(0.0, f64::max);
+        reach.push((0.75 * petals + 0.5 * apart).max(flower.disc.map_or(0.0, |d| 3.0 * d.radius)));
+    }
+    let longest = draft.longest();
+    let alone = draft.lines.len() == 1;
+    for line in std::mem::take(&mut draft.lines) {
+        let (a, b) = (line.points[0], line.points[line.points.len() - 1]);
+        let length = polyline_length(&line.points);
+        let found = index.nearest(a.midpoint(b), 0.3, |f| {
+            let centre = flowers[f].centre;
+            let disc = flowers[f].disc.map_or(0.0, |d| 1.35 * d.radius);
+            let (near, far) =
+                (a.distance(centre).min(b.distance(centre)), a.distance(centre).max(b.distance(centre)));
+            near < disc.max(0.3 * reach[f]) && far < reach[f] && length < 1.3 * reach[f]
+        });
+        match found {
+            Some((e, _)) if !alone && (length < 0.6 * longest || draft.lines.is_empty()) => {
+                let last = b.distance(e.point) < a.distance(e.point);
+                flowers[e.owner].stamens.push(oriented(&line.points, last));
+                draft.set_organ(line.source, OrganWord::Stamen);
+            }
+            _ => draft.lines.push(line),
+        }
+    }
+}
+
+/// Axes below the ground line, or from the foot of a trunk downwards, are roots.
+pub(crate) fn roots(draft: &mut Draft<'_>) {
+    let ground = draft.of_class(StrokeClass::Ground).into_iter().next().map(|k| &draft.ink.strokes[k].points);
+    let ground_y = ground.and_then(|g| bounds(g)).map(|(lo, hi)| 0.5 * (lo.y + hi.y));
+    let feet: Vec<(usize, DVec2, f64)> = draft
+        .bodies
+        .iter()
+        .map(|&r| (r, draft.forest.axes[r].points[0], draft.forest.half_width(r, 0.0)))
+        .collect();
+    let mut found = Vec::new();
+    for (row, axis) in draft.forest.axes.iter().enumerate() {
+        if draft.bodies.contains(&row) || !axis.half_width.is_empty() {
+            continue;
+        }
+        #[expect(clippy::cast_precision_loss, reason = "a mean of a few points")]
+        let mean = axis.points.iter().map(|p| p.y).sum::<f64>() / axis.points.len() as f64;
+        let top = axis.points.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
+        let under_ground = ground_y.is_some_and(|y| mean < y - 0.005 && top < y + 0.04);
+        let below_foot = feet.iter().any(|(_, p, w)| {
+            top < p.y + 0.03 && mean < p.y - 0.01 && axis.points[0].distance(*p) < 2.0 * w + 0.08
+        });
+        if under_ground || below_foot {
+            found.push(row);
+        }
+    }
+    for row in found {
+        draft.forest.axes[row].kind = AxisKind::Root;
+        let source = draft.forest.axes[row].source;
+        draft.set_organ(source, OrganWord::Root);
+        // Upper end first.
+        let free = draft.forest.axes[row].bearer.is_none();
+        let points_up = {
+            let p = &draft.forest.axes[row].points;
+            p[p.len() - 1].y > p[0].y
+        };
+        let bears = draft.forest.axes.iter().any(|a| a.bearer.is_some_and(|b| b.axis == row));
+        if free && points_up && !bears {
+            draft.forest.axes[row].points.reverse();
+        }
+    }
+    for axis in 0..draft.forest.axes.len() {
+        if draft.forest.axes[axis].kind == AxisKind::Root {
+            let source = draft.forest.axes[axis].source;
+            draft.set_organ(source, OrganWord::Root);
+        }
+    }
+}
+
+/// Flowers on their stems, leaves on their bearers.
+pub(crate) fn organs(
+    draft: &mut Draft<'_>,
+    flowers: Vec<FlowerDraft>,
+    roots: &[DVec2],
+    mut veins: Veins,
+    soil: &Near,
+) -> (Vec<FlowerReading>, Vec<BladeReading>) {
+    veins.resize(draft.blades.len(), Vec::new());
+    let mut is_petal = vec![false; draft.blades.len()];
+    let mut read = Vec::new();
+    for flower in flowers {
+        if flower.petals.is_empty() && flower.disc.is_none() {
+            continue;
+        }
+        let rings = whorls(draft, &flower, roots);
+        let mut petals = Vec::new();
+        for (&i, whorl) in flower.petals.iter().zip(rings) {
+            is_petal[i] = true;
+            draft.organ[draft.blades[i].stroke] = OrganWord::Petal;
+            petals.push(BladeReading {
+                whorl,
+                ..blade_reading(draft, i, roots[i], std::mem::take(&mut veins[i]))
+            });
+        }
+        if let Some(disc) = flower.disc {
+            draft.set_organ(disc.source, OrganWord::Disc);
+        }
+        let reach = petals
+            .iter()
+            .map(|p| p.tip.distance(flower.centre))
+            .fold(flower.disc.map_or(0.0, |d| 1.4 * d.radius), f64::max);
+        let bearer = flower_bearer(draft, flower.centre, reach);
+        read.push(FlowerReading {
+            centre: flower.centre,
+            petals,
+            disc: flower.disc,
+            stamens: flower.stamens,
+            bearer,
+        });
+    }
+    let mut leaves = Vec::new();
+    for i in 0..draft.blades.len() {
+        if !is_petal[i] {
+            let mut leaf = blade_reading(draft, i, roots[i], std::mem::take(&mut veins[i]));
+            leaf.bearer = leaf_bearer(draft, &leaf, draft.blades[i].size, soil);
+            leaves.push(leaf);
+        }
+    }
+    (read, leaves)
+}
+
+fn blade_reading(draft: &Draft<'_>, i: usize, root: DVec2, veins: Vec<Vec<DVec2>>) -> BladeReading {
+    let blade = &draft.blades[i];
+    let far = tip(&blade.outline, root);
+    let (rib, veins) = choose_midrib(veins, root, far);
+    let veins = veins.into_iter().filter(|v| v.len() > 1).collect();
+    let rib = match rib {
+        Some(drawn) => midrib(&drawn, root, far),
+        None => found_midrib(&blade.outline, root, far),
+    };
+    BladeReading {
+        outline: blade.outline.clone(),
+        root,
+        tip: far,
+        midrib: rib,
+        veins,
+        bearer: None,
+        whorl: 0,
+        source: Some(draft.ink.strokes[blade.stroke].index),
+        color: draft.ink.strokes[blade.stroke].color,
+    }
+}
+
+/// The stem of a flower: one that passes through its centre, one that ends within it (and is led on to the
+/// centre), or a stalk from the nearest axis.
+fn flower_bearer(draft: &mut Draft<'_>, centre: DVec2, reach: f64) -> Option<Attachment> {
+    let (at, gap) = draft
+        .forest
+        .nearest(centre, (1.35 * reach).clamp(0.06, 0.5))
+        .or_else(|| draft.forest.nearest(centre, FAR))?;
+    if draft.forest.axes[at.axis].kind == AxisKind::Root {
+        return None;
+    }
+    let length = draft.forest.length(at.axis);
+    let tip = *draft.forest.axes[at.axis].points.last()?;
+    if length - at.at < 0.25 * length.min(reach) + 0.01 && gap < (1.35 * reach).max(0.06) {
+        let way = tip.distance(centre);
+        if way > 0.004 {
+            let more: Vec<DVec2> = (1..=6).map(|i| tip.lerp(centre, f64::from(i) / 6.0)).collect();
+            let width = draft.forest.half_width(at.axis, f64::INFINITY);
+            draft.forest.extend(at.axis, &more, width);
+        }
+        return Some(Attachment { axis: at.axis, at: draft.forest.length(at.axis) });
+    }
+    if gap < 0.012 {
+        return Some(at);
+    }
+    let stalk = stalk(draft, at, centre, AxisKind::Stem)?;
+    Some(Attachment { axis: stalk, at: draft.forest.length(stalk) })
+}
+
+/// The bearer of a leaf; one that does not touch it gets a stalk.
+fn leaf_bearer(draft: &mut Draft<'_>, leaf: &BladeReading, size: f64, soil: &Near) -> Option<Attachment> {
+    let (at, gap) = draft
+        .forest
+        .nearest(leaf.root, (0.3 * size).max(0.05))
+        .or_else(|| draft.forest.nearest(leaf.root, FAR))?;
+    let on_ground = gap > SESSILE && soil.nearest(leaf.root, gap, |_| true).is_some();
+    if draft.forest.axes[at.axis].kind == AxisKind::Root || on_ground {
+        return None;
+    }
+    if gap < SESSILE || gap < 0.08 * size {
+        return Some(at);
+    }
+    let stalk = stalk(draft, at, leaf.root, AxisKind::Petiole)?;
+    Some(Attachment { axis: stalk, at: draft.forest.length(stalk) })
+}
+
+/// Adds a stalk from a place on an axis to `to`; it leaves its bearer a little below the nearest place.
+fn stalk(draft: &mut Draft<'_>, at: Attachment, to: DVec2, kind: AxisKind) -> Option<usize> {
+    let foot = point_at(&draft.forest.axes[at.axis].points, at.at)?;
+    let lower = Attachment { axis: at.axis, at: (at.at - 0.5 * foot.distance(to)).max(0.0) };
+    let from = point_at(&draft.forest.axes[at.axis].points, lower.at)?;
+    let bend = from.lerp(to, 0.6) + (foot - from) * 0.1;
+    let line: Vec<DVec2> =
+        (0..=10).map(|i| f64::from(i) / 10.0).map(|t| from.lerp(bend, t).lerp(bend.lerp(to, t), t)).collect();
+    let row = draft.forest.push(line, Vec::new(), Some(lower), None)?;
+    draft.forest.axes[row].kind = kind;
+    Some(row)
+}
+
+/// Fruits hang from the nearest axis.
+pub(crate) fn fruits(draft: &mut Draft<'_>, fruits: &mut [FruitReading]) {
+    for fruit in fruits {
+        let middle = geom::centroid(&fruit.outline);
+        fruit.bearer = draft.forest.nearest(middle, FAR).map(|f| f.0);
+    }
+}

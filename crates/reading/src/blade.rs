@@ -1,0 +1,313 @@
+//! One leaf or petal: outline, root, tip, midrib (methods 1.7).
+
+use geom::{
+    closest_on_polyline, contains, medial_axis_width, resample, signed_area, simple_outline, simplify,
+    smooth_gaussian,
+};
+use glam::DVec2;
+
+use crate::near::bounds;
+
+/// Points round an outline that the tip is looked for among.
+const ROUND: usize = 96;
+/// The tip is the farthest of this many sharpest places.
+const SHARPEST: usize = 8;
+/// A tip turns at least this much over six of the points, radians: 57 degrees.
+const POINTED: f64 = 1.0;
+/// A loose end of an outline longer than this share of the stroke is a stalk.
+const STALK: f64 = 0.07;
+/// The ends of a closed blade are at most this share of the stroke apart.
+const CLOSED: f64 = 0.035;
+
+/// A blade whose root is not decided yet.
+#[derive(Clone, Debug)]
+pub(crate) struct Sheetlet {
+    /// Simple, counter-clockwise.
+    pub(crate) outline: Vec<DVec2>,
+    /// Where the pen began and ended: most people begin a leaf where it is attached.
+    pub(crate) gap: DVec2,
+    /// How far the two ends are apart.
+    pub(crate) gap_width: f64,
+    /// The root, where the way it was drawn leaves no doubt (a piece of a corolla).
+    pub(crate) root: Option<DVec2>,
+    /// Surely a leaf, whatever stands round it: a frond, a blade of grass.
+    pub(crate) leaf: bool,
+    /// Stroke of the ink that it came from.
+    pub(crate) stroke: usize,
+    /// The midrib, where margin and midrib are one stroke.
+    pub(crate) rib: Option<Vec<DVec2>>,
+    /// Longest diameter.
+    pub(crate) size: f64,
+    /// Mean of the outline's points.
+    pub(crate) middle: DVec2,
+}
+
+impl Sheetlet {
+    /// From a closed line; `None` where it has no area to speak of.
+    pub(crate) fn new(line: &[DVec2], stroke: usize) -> Option<Self> {
+        let outline = simple_outline(&tidy(line))?;
+        let (first, last) = (*line.first()?, *line.last()?);
+        let (lo, hi) = bounds(&outline)?;
+        let size = lo.distance(hi);
+        let area = signed_area(&outline);
+        // Thinner than 1 in 60 is a line that was drawn there and back.
+        if area <= size * size / 120.0 {
+            return None;
+        }
+        Some(Self {
+            middle: geom::centroid(&outline),
+            // Ends far apart are no gap to be attached at: then the lower end is.
+            gap: match first.distance(last) < 0.5 * size {
+                true => first.midpoint(last),
+                false if first.y < last.y => first,
+                false => last,
+            },
+            gap_width: first.distance(last),
+            root: None,
+            leaf: false,
+            rib: None,
+            outline,
+            stroke,
+            size,
+        })
+    }
+
+    /// From margin and midrib in one go; `None` where it is nothing of the kind.
+    pub(crate) fn with_rib(line: &[DVec2], stroke: usize) -> Option<Self> {
+        let margin = first_round(line);
+        let blade = Self::new(margin, stroke).filter(|_| margin.len() < line.len())?;
+        let from_start = margin.as_ptr() == line.as_ptr();
+        let rest = if from_start { &line[margin.len()..] } else { &line[..line.len() - margin.len()] };
+        let inside = rest.iter().filter(|p| contains(&blade.outline, **p)).count();
+        (inside * 5 > rest.len() * 4).then(|| Self { rib: Some(rest.to_vec()), ..blade })
+    }
+
+    /// A lens round a line: a frond or grass blade that was drawn as one stroke of the pen. `None` for a line
+    /// without length.
+    pub(crate) fn lens(line: &[DVec2], stroke: usize, half_width: f64) -> Option<Self> {
+        let spine = resample(&simplify(line, 0.002), geom::polyline_length(line) / 16.0);
+        let n = spine.len();
+        if n < 3 {
+            return None;
+        }
+        let side = |i: usize, sign: f64| {
+            let along = (spine[(i + 1).min(n - 1)] - spine[i.saturating_sub(1)]).normalize_or_zero();
+            #[expect(clippy::cast_precision_loss, reason = "a few dozen points")]
+            let t = i as f64 / (n - 1) as f64;
+            // Widest at a third, pointed at both ends.
+            let w = half_width * 2.6 * t.sqrt() * (1.0 - t) * (1.0 - 0.25 * t);
+            spine[i] + along.perp() * (sign * w)
+        };
+        let mut ring: Vec<DVec2> = (0..n).map(|i| side(i, -1.0)).collect();
+        ring.extend((1..n - 1).rev().map(|i| side(i, 1.0)));
+        let mut lens = Self::new(&ring, stroke)?;
+        lens.root = Some(spine[0]);
+        Some(lens)
+    }
+
+    /// The point of the outline nearest to `p`, and its distance.
+    pub(crate) fn nearest(&self, p: DVec2) -> (DVec2, f64) {
+        nearest_on_ring(&self.outline, p)
+    }
+}
+
+/// The point of a closed outline nearest to `p`, and its distance.
+pub(crate) fn nearest_on_ring(outline: &[DVec2], p: DVec2) -> (DVec2, f64) {
+    let open = closest_on_polyline(outline, p);
+    let close = match (outline.last(), outline.first()) {
+        (Some(&a), Some(&b)) => closest_on_polyline(&[a, b], p),
+        _ => None,
+    };
+    [open, close]
+        .into_iter()
+        .flatten()
+        .min_by(|a, b| a.distance.total_cmp(&b.distance))
+        .map_or((p, f64::INFINITY), |c| (c.point, c.distance))
+}
+
+/// Fewer points where a line is straight: outlines are compared point by point.
+fn tidy(line: &[DVec2]) -> Vec<DVec2> {
+    simplify(line, 0.0006)
+}
+
+/// The round of a line that comes back to where it began and goes on for a good way, or that begins a good way before
+/// where it ends; of the two the larger round. All of it where there is none.
+pub(crate) fn first_round(points: &[DVec2]) -> &[DVec2] {
+    let n = points.len();
+    let size = bounds(points).map_or(0.0, |(lo, hi)| lo.distance(hi));
+    // Ink is sampled evenly: a share of the points is a share of the length. A midrib is at least a sixth of it.
+    let nearest = |from: DVec2, range: core::ops::Range<usize>| {
+        range
+            .map(|k| (k, points[k].distance(from)))
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .filter(|&(_, d)| d < 0.08 * size)
+    };
+    let ahead = nearest(points[0], n / 2..n * 5 / 6).map(|(k, _)| &points[..=k]);
+    let back = nearest(points[n - 1], n / 6..n / 2).map(|(k, _)| &points[k..]);
+    let area = |round: &&[DVec2]| signed_area(round).abs();
+    ahead.into_iter().chain(back).max_by(|a, b| area(a).total_cmp(&area(b))).unwrap_or(points)
+}
+
+/// Splits a blade's stroke into the closed part and loose ends that are stalks or stems (drawn in one go).
+///
+/// Each loose end runs from its free end to the blade. Quadratic in 160 points at most.
+///
+/// `near`: how much nearer than its ends the stroke comes to itself where it closes, as a share (blades 0.35).
+pub(crate) fn split_stalks(points: &[DVec2], near: f64) -> (Vec<DVec2>, Vec<Vec<DVec2>>) {
+    let length = geom::polyline_length(points);
+    let whole = || (points.to_vec(), Vec::new());
+    let (Some(first), Some(last)) = (points.first(), points.last()) else { return whole() };
+    let gap = first.distance(*last);
+    if gap < CLOSED * length {
+        return whole();
+    }
+    let stride = points.len().div_ceil(160);
+    let n = points.len() / stride;
+    let p = |i: usize| points[(i * stride).min(points.len() - 1)];
+    // Close i and j nearer than the ends are: the rest of the stroke hangs out. Shorter loose ends are better.
+    let mut best: Option<(f64, usize, usize)> = None;
+    for i in 0..n / 2 {
+        for j in (i + n * 2 / 5).max(i + 3)..n {
+            let d = p(i).distance(p(j));
+            #[expect(clippy::cast_precision_loss, reason = "at most 160")]
+            let loose = (i + n - 1 - j) as f64 / n as f64 * length;
+            let cost = d + 0.25 * loose;
+            if d < near * gap && best.is_none_or(|(c, ..)| cost < c) {
+                best = Some((cost, i, j));
+            }
+        }
+    }
+    let Some((cost, i, j)) = best else { return whole() };
+    if cost > 0.8 * gap {
+        return whole();
+    }
+    let (i, j) = (i * stride, (j * stride).min(points.len() - 1));
+    let mut stalks = Vec::new();
+    if geom::polyline_length(&points[..=i]) > STALK * length {
+        stalks.push(points[..=i].to_vec());
+    }
+    if geom::polyline_length(&points[j..]) > STALK * length {
+        stalks.push(points[j..].iter().rev().copied().collect());
+    }
+    (points[i..=j].to_vec(), stalks)
+}
+
+/// The point farthest out: of the sharpest places of the smoothed outline the one farthest from the root; the
+/// farthest point itself where no sharp place is nearly as far.
+pub(crate) fn tip(outline: &[DVec2], root: DVec2) -> DVec2 {
+    let Some(farthest) =
+        outline.iter().copied().max_by(|a, b| a.distance_squared(root).total_cmp(&b.distance_squared(root)))
+    else {
+        return root;
+    };
+    let mut closed = outline.to_vec();
+    closed.extend(outline.first());
+    #[expect(clippy::cast_precision_loss, reason = "96")]
+    let step = geom::polyline_length(&closed) / ROUND as f64;
+    let even = resample(&closed, step);
+    let n = even.len().saturating_sub(1);
+    if n < 8 {
+        return farthest;
+    }
+    let turn = |i: usize| {
+        let at = |k: usize| even[k % n];
+        let (a, b) = (at(i) - at(i + n - 3), at(i + 3) - at(i));
+        base::ops::atan2(a.perp_dot(b), a.dot(b)).abs()
+    };
+    let mut sharpest: Vec<(f64, usize)> = (0..n).map(|i| (turn(i), i)).filter(|t| t.0 > POINTED).collect();
+    base::sort_by(&mut sharpest, |a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    // Of a round petal's far side the middle counts, not a corner that is a little farther away.
+    let out = (geom::centroid(outline) - root).normalize_or_zero();
+    let reach = |p: DVec2| 0.5 * (p - root).dot(out) + 0.5 * p.distance(root);
+    let farthest = even.iter().copied().max_by(|a, b| reach(*a).total_cmp(&reach(*b))).unwrap_or(farthest);
+    let sharp = sharpest
+        .iter()
+        .take(SHARPEST)
+        .map(|&(_, i)| even[i])
+        .max_by(|a, b| reach(*a).total_cmp(&reach(*b)))
+        .unwrap_or(farthest);
+    if reach(sharp) > 0.9 * reach(farthest) { sharp } else { farthest }
+}
+
+/// A midrib from the outline alone: through the middles of its cross-sections, root to tip.
+pub(crate) fn found_midrib(outline: &[DVec2], root: DVec2, tip: DVec2) -> Vec<DVec2> {
+    let mut line = vec![root];
+    let sections = medial_axis_width(outline, root, tip, 11);
+    if sections.len() > 4 {
+        line.extend(sections[2..sections.len() - 2].iter().map(|s| s.0).filter(|c| c.is_finite()));
+    }
+    line.push(tip);
+    let reach = root.distance(tip);
+    // A wild section (a lobe cut lengthwise) would send the midrib out and back: keep what leads on to the tip.
+    let along = (tip - root) / reach.max(1e-12);
+    let mut ahead = f64::NEG_INFINITY;
+    line.retain(|p| {
+        let s = (*p - root).dot(along);
+        let on = s > ahead + 0.02 * reach && (s < 0.98 * reach || *p == tip);
+        if on {
+            ahead = s;
+        }
+        on
+    });
+    midrib(&line, root, tip)
+}
+
+/// A smooth midrib that begins at the root and ends at the tip.
+pub(crate) fn midrib(line: &[DVec2], root: DVec2, tip: DVec2) -> Vec<DVec2> {
+    let mut whole = vec![root];
+    whole.extend(line.iter().copied().filter(|p| p.distance(root) > 1e-9 && p.distance(tip) > 1e-9));
+    whole.push(tip);
+    let length = geom::polyline_length(&whole);
+    if length <= 1e-9 {
+        return vec![root, if tip == root { root + DVec2::new(0.0, 1e-6) } else { tip }];
+    }
+    let step = length / 12.0;
+    let even = resample(&whole, step);
+    smooth_gaussian(&even, 2, 4.0 * step * step)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use base::ops;
+
+    fn ellipse(centre: DVec2, a: f64, b: f64, from: f64) -> Vec<DVec2> {
+        (0..=60)
+            .map(|i| ops::sin_cos(from + ops::TAU * f64::from(i) / 60.0))
+            .map(|(s, c)| centre + DVec2::new(a * c, b * s))
+            .collect()
+    }
+
+    #[test]
+    fn tip_is_opposite_the_root_and_the_midrib_goes_through_the_middle() {
+        let leaf = Sheetlet::new(&ellipse(DVec2::new(0.5, 0.5), 0.3, 0.1, ops::PI), 0).expect("has area");
+        assert!(leaf.gap.distance(DVec2::new(0.2, 0.5)) < 1e-6);
+        let t = tip(&leaf.outline, leaf.gap);
+        assert!(t.distance(DVec2::new(0.8, 0.5)) < 0.02, "{t}");
+        let rib = found_midrib(&leaf.outline, leaf.gap, t);
+        assert!(rib.len() >= 10 && rib.iter().all(|p| (p.y - 0.5).abs() < 0.02), "{rib:?}");
+    }
+
+    #[test]
+    fn a_leaf_with_its_stalk_in_one_stroke_is_taken_apart() {
+        let mut line: Vec<DVec2> = (0..20).map(|i| DVec2::new(0.0, f64::from(i) * 0.01)).collect();
+        line.extend(ellipse(DVec2::new(0.0, 0.5), 0.1, 0.3, -ops::FRAC_PI_2));
+        let (blade, stalks) = split_stalks(&line, 0.35);
+        assert_eq!(stalks.len(), 1);
+        assert!(
+            stalks[0][0] == DVec2::ZERO
+                && stalks[0].last().is_some_and(|p| p.distance(DVec2::new(0.0, 0.2)) < 0.05),
+            "{stalks:?}"
+        );
+        assert!(
+            Sheetlet::new(&blade, 0).is_some_and(|b| b.outline.iter().all(|p| p.y > 0.12)),
+            "no stalk in the outline"
+        );
+    }
+
+    #[test]
+    fn an_open_leaf_without_a_stalk_stays_whole() {
+        let line: Vec<DVec2> = ellipse(DVec2::ZERO, 0.1, 0.3, 0.0)[..52].to_vec();
+        assert!(split_stalks(&line, 0.35).1.is_empty(), "a gap is no stalk");
+    }
+}

@@ -1,0 +1,390 @@
+//! The drawing half understood, and the small steps that belong to no other module.
+
+use std::collections::BTreeMap;
+
+use base::Report;
+use geom::{contains, convex_hull, polyline_length, signed_area};
+use glam::DVec2;
+use ink::{Classified, Ink, StrokeClass, StrokeMode};
+use plant::AxisKind;
+
+use crate::blade::{Sheetlet, split_stalks};
+use crate::branches::{Forest, Hints, Line};
+use crate::near::bounds;
+use crate::{
+    BladeReading, DiscReading, FlowerReading, FruitReading, OrganWord, Reading, RegionKind, RegionReading,
+    StrokeReading, attach, blade, flowers, outlines, rings,
+};
+
+/// Regions beyond this number are left out: nobody draws so many crowns, and each is led to by an axis.
+pub(crate) const MOST_REGIONS: usize = 200;
+/// Scribbles smaller than this share of the sheet are dirt.
+const SCRIBBLE_AREA: f64 = 0.008;
+
+/// A contour before its bearers are known.
+#[derive(Clone, Debug)]
+pub(crate) struct RegionDraft {
+    pub(crate) outline: Vec<DVec2>,
+    pub(crate) bounds: (DVec2, DVec2),
+    pub(crate) kind: RegionKind,
+    pub(crate) source: Option<u32>,
+    pub(crate) color: Option<[u8; 3]>,
+}
+
+impl RegionDraft {
+    /// A point well inside, in the upper middle: where a trunk is led to.
+    pub(crate) fn heart(&self) -> DVec2 {
+        let c = geom::centroid(&self.outline);
+        if contains(&self.outline, c) {
+            c
+        } else {
+            self.outline[0].midpoint(self.outline[self.outline.len() / 2])
+        }
+    }
+}
+
+/// The drawing half understood.
+#[derive(Debug)]
+pub(crate) struct Draft<'a> {
+    pub(crate) ink: &'a Ink,
+    pub(crate) class: Vec<StrokeClass>,
+    pub(crate) confidence: Vec<f64>,
+    pub(crate) organ: Vec<OrganWord>,
+    /// Lines that will be axes.
+    pub(crate) lines: Vec<Line>,
+    pub(crate) blades: Vec<Sheetlet>,
+    pub(crate) regions: Vec<RegionDraft>,
+    pub(crate) forest: Forest,
+    /// Rows of outlined bodies that stand on the ground.
+    pub(crate) bodies: Vec<usize>,
+    /// Two of the lines are surely the sides of a trunk.
+    pub(crate) trunk: bool,
+    /// A body is open above: a trunk, not a cactus.
+    pub(crate) open_top: bool,
+    /// Rows that were led on into a crown.
+    pub(crate) led: Vec<usize>,
+    /// Pots and the ground.
+    pub(crate) soil: Vec<Vec<DVec2>>,
+    /// Sides of trunks that were drawn in one go with a crown, and the crown's stroke.
+    pub(crate) sides: Vec<(usize, Vec<DVec2>)>,
+    /// What is left of those strokes.
+    pub(crate) loops: BTreeMap<usize, Vec<DVec2>>,
+    /// Lines that were drawn in one go, there and back: the pieces of each such stroke.
+    pub(crate) legs: BTreeMap<usize, Vec<Vec<DVec2>>>,
+}
+
+impl<'a> Draft<'a> {
+    pub(crate) fn new(ink: &'a Ink, classes: &[Classified]) -> Self {
+        let class = |k: usize| classes.get(k).map_or(StrokeClass::Other, |c| c.class);
+        let confidence = |k: usize| classes.get(k).map_or(0.0, |c| c.confidence);
+        Self {
+            ink,
+            class: (0..ink.strokes.len()).map(class).collect(),
+            confidence: (0..ink.strokes.len()).map(confidence).collect(),
+            organ: vec![OrganWord::Ignored; ink.strokes.len()],
+            lines: Vec::new(),
+            blades: Vec::new(),
+            regions: Vec::new(),
+            forest: Forest::new(),
+            bodies: Vec::new(),
+            trunk: false,
+            open_top: false,
+            led: Vec::new(),
+            soil: Vec::new(),
+            sides: Vec::new(),
+            loops: BTreeMap::new(),
+            legs: BTreeMap::new(),
+        }
+    }
+
+    /// Strokes of a class that were drawn in parts mode.
+    pub(crate) fn of_class(&self, class: StrokeClass) -> Vec<usize> {
+        (0..self.class.len())
+            .filter(|&k| self.class[k] == class && self.ink.strokes[k].mode == StrokeMode::Parts)
+            .collect()
+    }
+
+    /// Makes a stroke a line of the draft, or several where the pen went there and back.
+    pub(crate) fn line_of(&mut self, stroke: usize, organ: OrganWord) {
+        let s = &self.ink.strokes[stroke];
+        self.organ[stroke] = organ;
+        let whole = || vec![s.points.clone()];
+        let pieces = self.legs.get(&stroke).cloned().unwrap_or_else(whole);
+        self.lines.extend(pieces.into_iter().map(|points| Line { points, source: Some(s.index) }));
+    }
+
+    pub(crate) fn set_organ(&mut self, source: Option<u32>, organ: OrganWord) {
+        if let Some(Ok(k)) = source.map(|i| self.ink.strokes.binary_search_by_key(&i, |s| s.index)) {
+            self.organ[k] = organ;
+        }
+    }
+
+    pub(crate) fn add_region(&mut self, outline: Vec<DVec2>, kind: RegionKind, stroke: usize) {
+        if let Some(bounds) = bounds(&outline) {
+            let s = &self.ink.strokes[stroke];
+            self.regions.push(RegionDraft { outline, bounds, kind, source: Some(s.index), color: s.color });
+        }
+    }
+
+    /// The user's contours, whatever their class.
+    pub(crate) fn contours(&mut self) {
+        for k in 0..self.ink.strokes.len() {
+            let (kind, organ) = match self.ink.strokes[k].mode {
+                StrokeMode::Parts => continue,
+                StrokeMode::BranchContour => (RegionKind::Twigs, OrganWord::TwigContour),
+                StrokeMode::LeafContour => (RegionKind::Leaves, OrganWord::LeafContour),
+            };
+            if self.regions.len() < MOST_REGIONS
+                && let Some(outline) = outlines::crown_outline(&self.ink.strokes[k].points)
+            {
+                self.organ[k] = organ;
+                self.add_region(outline, kind, k);
+            }
+        }
+    }
+
+    pub(crate) fn find_soil(&mut self) {
+        for class in [StrokeClass::Pot, StrokeClass::Ground] {
+            for k in self.of_class(class) {
+                self.soil.push(self.ink.strokes[k].points.clone());
+            }
+        }
+    }
+
+    /// The height of the ground: the ground line, the foot of the plant, or the sheet's lower edge.
+    pub(crate) fn floor(&self) -> f64 {
+        let ground = self.of_class(StrokeClass::Ground).into_iter().next();
+        if let Some((lo, hi)) = ground.and_then(|k| bounds(&self.ink.strokes[k].points)) {
+            return 0.5 * (lo.y + hi.y);
+        }
+        let axes = self.forest.axes.iter().filter(|a| a.kind != AxisKind::Root).flat_map(|a| &a.points);
+        let crowns = self.regions.iter().map(|r| r.bounds.0.y);
+        let low = axes.map(|p| p.y).chain(crowns).fold(f64::INFINITY, f64::min);
+        if low.is_finite() { low } else { 0.0 }
+    }
+
+    /// Blade strokes to outlines; half outlines are joined, stalks become lines.
+    pub(crate) fn blades(&mut self) {
+        let ink = self.ink;
+        let strokes = self.of_class(StrokeClass::Blade);
+        let gap = |k: usize| {
+            let s = &ink.strokes[k];
+            s.points[0].distance(s.points[s.points.len() - 1]) / s.length
+        };
+        // Closed by itself, with or without a stalk; or so open that it may be one side of a leaf.
+        let mut open = Vec::new();
+        for k in strokes {
+            if let Some(blade) = Sheetlet::with_rib(&ink.strokes[k].points, k) {
+                self.organ[k] = OrganWord::Leaf;
+                self.blades.push(blade);
+                continue;
+            }
+            let (line, stalks) = split_stalks(&ink.strokes[k].points, 0.35);
+            if stalks.is_empty() && gap(k) > 0.1 {
+                open.push(k);
+            } else if let Some(blade) = Sheetlet::new(&line, k) {
+                self.organ[k] = OrganWord::Leaf;
+                self.blades.push(blade);
+                let source = Some(ink.strokes[k].index);
+                self.lines.extend(stalks.into_iter().map(|points| Line { points, source }));
+            } else {
+                self.line_of(k, OrganWord::Branch);
+            }
+        }
+        let points: Vec<&[DVec2]> = open.iter().map(|&k| ink.strokes[k].points.as_slice()).collect();
+        let mut single = Vec::new();
+        for ring in rings::rings(&points) {
+            let parts: Vec<usize> = ring.parts.iter().map(|&p| open[p]).collect();
+            // Only a part that is clearly one side of a leaf is completed by another stroke.
+            let sides = parts.len() > 1 && parts.iter().any(|&k| gap(k) > 0.45);
+            match Sheetlet::new(&ring.points, parts[0]).filter(|_| sides) {
+                Some(blade) => {
+                    parts.iter().for_each(|&k| self.organ[k] = OrganWord::Leaf);
+                    self.blades.push(blade);
+                }
+                None => single.extend(parts),
+            }
+        }
+        single.sort_unstable();
+        for k in single {
+            match Sheetlet::new(&ink.strokes[k].points, k) {
+                Some(blade) => {
+                    self.organ[k] = OrganWord::Leaf;
+                    self.blades.push(blade);
+                }
+                None => self.line_of(k, OrganWord::Branch),
+            }
+        }
+    }
+
+    /// Large scribbles are the crown where nothing else could be one.
+    pub(crate) fn scribbled_crowns(&mut self, report: &mut Report) {
+        if !self.regions.is_empty() || !self.blades.is_empty() || (!self.bodies.is_empty() && !self.open_top)
+        {
+            return;
+        }
+        for k in self.of_class(StrokeClass::Scribble) {
+            let hull = convex_hull(&self.ink.strokes[k].points);
+            let free = self.organ[k] == OrganWord::Ignored && signed_area(&hull) > SCRIBBLE_AREA;
+            let shading = hull.len() > 2 && self.forest.nearest(geom::centroid(&hull), 0.005).is_some();
+            if free && !shading && self.regions.len() < MOST_REGIONS {
+                self.crown_from(k, report);
+            }
+        }
+    }
+
+    pub(crate) fn crown_from(&mut self, k: usize, report: &mut Report) -> bool {
+        let Some(outline) = outlines::crown_outline(&self.ink.strokes[k].points) else { return false };
+        self.organ[k] = OrganWord::LeafContour;
+        self.add_region(outline, RegionKind::Crown, k);
+        let index = self.ink.strokes[k].index;
+        report.warn("scribble", format!("stroke {index} is a scribble and was read as a crown of leaves"));
+        true
+    }
+
+    /// A drawing of which nothing else could be read still gives a plant: from its longest stroke.
+    pub(crate) fn last_resort(&mut self, discs: &[(DiscReading, usize)], report: &mut Report) {
+        let something = !self.lines.is_empty()
+            || !self.blades.is_empty()
+            || !self.regions.is_empty()
+            || !self.forest.axes.is_empty()
+            || !discs.is_empty()
+            || self
+                .of_class(StrokeClass::Fruit)
+                .into_iter()
+                .any(|k| geom::simple_outline(&self.ink.strokes[k].points).is_some());
+        if something {
+            return;
+        }
+        let strokes = &self.ink.strokes;
+        let Some(k) = (0..strokes.len())
+            .max_by(|&a, &b| strokes[a].length.total_cmp(&strokes[b].length).then(b.cmp(&a)))
+        else {
+            return;
+        };
+        // Inside nothing but soil: what was taken for soil is the plant.
+        self.soil.clear();
+        let s = &strokes[k];
+        let straight = s.points[0].distance(s.points[s.points.len() - 1]) > 0.7 * s.length;
+        if straight || !self.crown_from(k, report) {
+            self.line_of(k, OrganWord::Branch);
+            report
+                .warn("scribble", format!("stroke {} was read as a stem, for want of a better one", s.index));
+        }
+    }
+
+    /// Stems begin at the pot's rim: what was drawn inside the pot is cut off.
+    pub(crate) fn trim_at_pots(&mut self) {
+        let pots: Vec<Vec<DVec2>> = self
+            .of_class(StrokeClass::Pot)
+            .into_iter()
+            .take(MOST_REGIONS)
+            .filter_map(|k| geom::simple_outline(&self.ink.strokes[k].points))
+            .collect();
+        let deep =
+            |p: DVec2| pots.iter().any(|pot| contains(pot, p) && blade::nearest_on_ring(pot, p).1 > 0.03);
+        if pots.is_empty() {
+            return;
+        }
+        for line in &mut self.lines {
+            for _ in 0..2 {
+                line.points.reverse();
+                if !deep(line.points[0]) {
+                    continue;
+                }
+                let out = line.points.iter().position(|&p| !pots.iter().any(|pot| contains(pot, p)));
+                if let Some(out) = out.filter(|&o| o + 1 < line.points.len()) {
+                    line.points.drain(..out);
+                }
+            }
+        }
+    }
+
+    pub(crate) fn fruits(&mut self, nuts: &[usize]) -> Vec<FruitReading> {
+        let mut strokes = self.of_class(StrokeClass::Fruit);
+        strokes.extend(nuts);
+        strokes.sort_unstable();
+        let mut fruits = Vec::new();
+        for k in strokes {
+            let s = &self.ink.strokes[k];
+            if let Some(outline) = geom::simple_outline(&s.points) {
+                self.organ[k] = OrganWord::Fruit;
+                fruits.push(FruitReading { outline, bearer: None, source: Some(s.index), color: s.color });
+            }
+        }
+        fruits
+    }
+
+    /// Where stems begin and end.
+    pub(crate) fn hints(&self, flowers: &[flowers::FlowerDraft]) -> Hints {
+        let mut hints = Hints::default();
+        for (i, blade) in self.blades.iter().enumerate() {
+            hints.organs.add_line(i, &blade.outline);
+        }
+        for (i, flower) in flowers.iter().enumerate() {
+            hints.organs.add_line(i, &[flower.centre]);
+        }
+        for (i, region) in self.regions.iter().enumerate() {
+            hints.organs.add_line(i, &region.outline);
+        }
+        for (i, soil) in self.soil.iter().enumerate() {
+            hints.soil.add_line(i, soil);
+        }
+        hints
+    }
+
+    pub(crate) fn finish(
+        mut self,
+        region_bearers: Vec<Vec<usize>>,
+        flowers: Vec<FlowerReading>,
+        leaves: Vec<BladeReading>,
+        fruits: Vec<FruitReading>,
+        thorns: Vec<attach::Thorn>,
+    ) -> Reading {
+        let crown = self.regions.iter().any(|r| r.kind != RegionKind::Leaves);
+        let trunk = !self.bodies.is_empty() && (self.open_top || !leaves.is_empty());
+        let orders = self.forest.order.iter().copied().max().unwrap_or(0);
+        let woody = crown || trunk || (orders >= 2 && flowers.is_empty() && self.bodies.is_empty());
+        for axis in &mut self.forest.axes {
+            if axis.kind == AxisKind::Stem && woody {
+                axis.kind = AxisKind::Branch;
+            }
+        }
+        let regions = self
+            .regions
+            .into_iter()
+            .zip(region_bearers)
+            .filter(|(_, bearers)| !bearers.is_empty())
+            .map(|(r, bearers)| RegionReading {
+                outline: r.outline,
+                kind: r.kind,
+                bearers,
+                source: r.source,
+                color: r.color,
+            })
+            .collect();
+        let skipped = self.ink.skipped.iter().map(|&index| StrokeReading {
+            index,
+            class: StrokeClass::Other,
+            organ: OrganWord::Ignored,
+            confidence: 0.0,
+        });
+        let mut strokes: Vec<StrokeReading> = (0..self.class.len())
+            .map(|k| StrokeReading {
+                index: self.ink.strokes[k].index,
+                class: self.class[k],
+                organ: self.organ[k],
+                confidence: self.confidence[k],
+            })
+            .chain(skipped)
+            .collect();
+        base::sort_by_key(&mut strokes, |s| s.index);
+        Reading { strokes, axes: self.forest.axes, flowers, leaves, regions, fruits, thorns, woody }
+    }
+
+    /// Length of the longest line or axis.
+    pub(crate) fn longest(&self) -> f64 {
+        let lines = self.lines.iter().map(|l| polyline_length(&l.points));
+        lines.chain((0..self.forest.axes.len()).map(|r| self.forest.length(r))).fold(0.0, f64::max)
+    }
+}

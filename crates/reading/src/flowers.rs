@@ -1,0 +1,525 @@
+//! Which blades are petals of one flower, and which are leaves (paper 000, section 4.1).
+//!
+//! Roots of petals lie together, roots of leaves do not: mean shift on roots, clusters of more than 2 are
+//! flowers. Beyond the paper: a drawn disc gathers its petals; blades are rooted where they touch their bearer
+//! even if the pen began at the tip; leaves that stand thick along a branch are no flower; whorls.
+
+use std::collections::BTreeMap;
+
+use base::ops;
+use geom::{contains, mean_shift, polyline_length};
+use glam::DVec2;
+use ink::StrokeClass;
+
+use crate::blade::{Sheetlet, tip};
+use crate::body;
+use crate::corolla::{Core, split, visits, winding};
+use crate::draft::Draft;
+use crate::near::{Near, bounds};
+use crate::outlines::{neck, width_at};
+use crate::rings::Ring;
+use crate::{DiscReading, OrganWord};
+
+/// Roots this near together, as a share of the median petal length, are one flower (methods 1.7).
+const BANDWIDTH: f64 = 0.25;
+/// Roots that are clustered by mean shift; more are told apart by cells.
+const MOST_ROOTS: usize = 2_000;
+
+/// A flower before its petals are read.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct FlowerDraft {
+    pub(crate) centre: DVec2,
+    /// Blades of the draft with their roots.
+    pub(crate) petals: Vec<usize>,
+    pub(crate) disc: Option<DiscReading>,
+    pub(crate) stamens: Vec<Vec<DVec2>>,
+}
+
+/// Discs of the draft: middle and mean radius of each disc stroke.
+pub(crate) fn discs(draft: &Draft<'_>) -> Vec<(DiscReading, usize)> {
+    let mut discs: Vec<(DiscReading, usize)> = Vec::new();
+    for k in draft.of_class(StrokeClass::Disc) {
+        let stroke = &draft.ink.strokes[k];
+        let Some((lo, hi)) = bounds(&stroke.points) else { continue };
+        let hull = geom::convex_hull(&stroke.points);
+        let centre = if hull.len() > 2 { geom::centroid(&hull) } else { lo.midpoint(hi) };
+        let radius =
+            if hull.len() > 2 { (geom::signed_area(&hull) / ops::PI).sqrt() } else { 0.25 * lo.distance(hi) };
+        let disc = DiscReading { centre, radius: radius.max(1e-4), source: Some(stroke.index) };
+        discs.push((disc, k));
+    }
+    discs
+}
+
+/// Cuts corollas into blades. Those that stand on a trunk's top, along a stem or on the ground are leaves.
+pub(crate) fn corollas(draft: &mut Draft<'_>, discs: &[(DiscReading, usize)]) {
+    let mut centres = Near::new(0.1);
+    for (i, (d, _)) in discs.iter().enumerate() {
+        centres.add_line(i, &[d.centre]);
+    }
+    let ink = draft.ink;
+    let axes: Vec<&[DVec2]> =
+        draft.of_class(StrokeClass::Axis).into_iter().map(|k| ink.strokes[k].points.as_slice()).collect();
+    for k in draft.of_class(StrokeClass::Corolla) {
+        let mut points = ink.strokes[k].points.clone();
+        if draft.bodies.is_empty()
+            && axes.is_empty()
+            && let Some(outline) = geom::simple_outline(&points)
+            && let Some((trunk, top)) = neck(&outline)
+            && discs.is_empty()
+            && slender(&trunk)
+        {
+            let ring = Ring { points: trunk, ..Ring::default() };
+            let row = draft.forest.add_body(body::limbs(&ring, None), None, Some(ink.strokes[k].index));
+            draft.bodies.extend(row);
+            draft.open_top |= row.is_some();
+            points = top;
+            points.extend(points.first().copied());
+        }
+        let core = core_of(draft, &points, discs, &centres, &axes);
+        let mut pieces = split(&points, &core, k);
+        if pieces.is_empty() {
+            pieces.extend(Sheetlet::new(&points, k));
+        }
+        if draft.bodies.is_empty() && axes.is_empty() && discs.is_empty() {
+            trunk_piece(draft, &mut pieces);
+        }
+        draft.organ[k] = if pieces.is_empty() { OrganWord::Ignored } else { OrganWord::Leaf };
+        draft.blades.extend(pieces);
+    }
+}
+
+/// A lower part that is clearly taller than wide: the trunk of a palm rather than a flower's lowest petal.
+fn slender(outline: &[DVec2]) -> bool {
+    bounds(outline).is_some_and(|(lo, hi)| hi.y - lo.y > 1.6 * (hi.x - lo.x))
+}
+
+/// A palm in one stroke: the piece that points straight down, the longest of all, is the trunk.
+fn trunk_piece(draft: &mut Draft<'_>, pieces: &mut Vec<Sheetlet>) {
+    let usual = median(pieces.iter().map(|p| p.size)).unwrap_or(0.0);
+    let floor = pieces.iter().flat_map(|p| &p.outline).map(|p| p.y).fold(f64::INFINITY, f64::min);
+    let found = pieces.iter().position(|p| {
+        let Some(root) = p.root else { return false };
+        let foot = tip(&p.outline, root);
+        let down = root - foot;
+        let wide = geom::signed_area(&p.outline) / p.size.max(1e-9);
+        // A trunk is cut off flat below; a petal is round or pointed.
+        let flat =
+            width_at(&p.outline, foot.y + 0.06 * down.y) > 0.7 * width_at(&p.outline, foot.y + 0.5 * down.y);
+        let long = p.size > 0.9 * usual && down.y > 0.9 * down.length() && down.y > 1.8 * wide;
+        long && flat && foot.y < floor + 0.06
+    });
+    if let Some(k) = found.filter(|_| pieces.len() > 2) {
+        let trunk = pieces.remove(k);
+        let ring = Ring { points: trunk.outline, ..Ring::default() };
+        let row = draft.forest.add_body(
+            body::limbs(&ring, None),
+            None,
+            Some(draft.ink.strokes[trunk.stroke].index),
+        );
+        draft.bodies.extend(row);
+        draft.open_top |= row.is_some();
+    }
+}
+
+/// What the petals of one stroke stand around.
+fn core_of(
+    draft: &Draft<'_>,
+    points: &[DVec2],
+    discs: &[(DiscReading, usize)],
+    centres: &Near,
+    axes: &[&[DVec2]],
+) -> Core {
+    let Some((lo, hi)) = bounds(points) else { return Core::Ground(0.0) };
+    let size = lo.distance(hi);
+    let hull = geom::convex_hull(points);
+    let middle = if hull.len() > 2 { geom::centroid(&hull) } else { lo.midpoint(hi) };
+    let top = draft
+        .bodies
+        .iter()
+        .filter_map(|&r| draft.forest.axes[r].points.last().copied())
+        .find(|&t| contains(&hull, t) || crate::blade::nearest_on_ring(&hull, t).1 < 0.12 * size);
+    if let Some(top) = top {
+        return Core::Point(top, 0.0);
+    }
+    let disc = centres
+        .nearest(middle, 0.5 * size, |i| {
+            let d = &discs[i].0;
+            contains(&hull, d.centre) || crate::blade::nearest_on_ring(&hull, d.centre).1 < 1.3 * d.radius
+        })
+        .map(|(e, _)| discs[e.owner].0);
+    if let Some(disc) = disc {
+        return Core::Point(disc.centre, disc.radius);
+    }
+    let near = 0.07 * size;
+    let mut along: Option<Vec<DVec2>> = None;
+    let around = winding(points, middle) > 4.0;
+    for line in axes.iter().take(200) {
+        for end in [line[0], line[line.len() - 1]] {
+            if visits(points, end, near) >= 2 {
+                return Core::Point(end, 0.0);
+            }
+        }
+        let touching: usize = line.iter().step_by(6).filter(|p| visits(points, **p, near) >= 1).count();
+        if !around && touching * 6 > line.len() / 3 && polyline_length(line) > 0.4 * size {
+            along = Some(line.to_vec());
+        }
+    }
+    if let Some(line) = along {
+        return Core::Line(line);
+    }
+    if around { Core::Point(middle, 0.0) } else { Core::Ground(lo.y) }
+}
+
+/// Decides roots and gathers flowers. `bearers`: points of everything that can bear a blade.
+pub(crate) fn gather(
+    draft: &mut Draft<'_>,
+    discs: &[(DiscReading, usize)],
+    bearers: &Bearers,
+) -> (Vec<FlowerDraft>, Vec<DVec2>) {
+    let n = draft.blades.len();
+    let mut flowers: Vec<FlowerDraft> = Vec::new();
+    let mut roots: Vec<Option<DVec2>> = draft.blades.iter().map(|b| b.root).collect();
+    let mut taken = vec![false; n];
+    let usual = median(draft.blades.iter().map(|b| b.size)).unwrap_or(0.1);
+
+    by_disc(draft, discs, &mut flowers, &mut roots, &mut taken);
+    // Petals begin and end at the centre: the pen's own gap tells before anything that happens to touch.
+    let free: Vec<usize> = (0..n).filter(|&i| !taken[i] && !draft.blades[i].leaf).collect();
+    let gaps: Vec<DVec2> = free.iter().map(|&i| draft.blades[i].gap).collect();
+    for members in clusters(&gaps, BANDWIDTH * usual) {
+        let members: Vec<usize> = members.into_iter().map(|m| free[m]).collect();
+        let narrow =
+            |i: &usize| draft.blades[*i].gap_width < 0.5 * draft.blades[*i].size || roots[*i].is_some();
+        if members.iter().all(narrow) && is_flower(draft, &members, usual, bearers, discs) {
+            let centre = mean(members.iter().map(|&i| draft.blades[i].gap));
+            for &i in &members {
+                taken[i] = true;
+                roots[i] = Some(roots[i].unwrap_or(draft.blades[i].gap));
+            }
+            flowers.push(FlowerDraft { centre, petals: members, ..FlowerDraft::default() });
+        }
+    }
+    rosettes(draft, usual, (bearers, discs), &mut flowers, &mut roots, &mut taken);
+    adopt(draft, usual, &mut flowers, &mut roots, &mut taken);
+    let roots: Vec<DVec2> =
+        roots.iter().zip(&draft.blades).map(|(r, b)| r.unwrap_or_else(|| bearers.root_of(b))).collect();
+    for f in &mut flowers {
+        if f.disc.is_none() && !f.petals.is_empty() {
+            f.centre = mean(f.petals.iter().map(|&i| roots[i]));
+        }
+    }
+    (flowers, roots)
+}
+
+/// Petals whose outline comes near a drawn disc; a disc with none stays a flower of its own.
+fn by_disc(
+    draft: &Draft<'_>,
+    discs: &[(DiscReading, usize)],
+    flowers: &mut Vec<FlowerDraft>,
+    roots: &mut [Option<DVec2>],
+    taken: &mut [bool],
+) {
+    let mut index = Near::new(0.1);
+    for (i, (d, _)) in discs.iter().enumerate() {
+        flowers.push(FlowerDraft { centre: d.centre, disc: Some(*d), ..FlowerDraft::default() });
+        index.add_line(i, &[d.centre]);
+    }
+    if discs.is_empty() {
+        return;
+    }
+    for (i, blade) in draft.blades.iter().enumerate() {
+        let mut best: Option<(f64, usize, DVec2)> = None;
+        index.visit(blade.middle, blade.size.min(0.5) + 0.15, |e, _| {
+            let disc = &discs[e.owner].0;
+            let (p, d) = match roots[i] {
+                Some(r) => (r, r.distance(disc.centre)),
+                None => blade.nearest(disc.centre),
+            };
+            let reach = disc.radius + (0.2 * blade.size).max(0.25 * disc.radius);
+            if d < reach && disc.radius < 2.0 * blade.size && best.is_none_or(|(b, ..)| d < b) {
+                best = Some((d, e.owner, p));
+            }
+        });
+        if let Some((_, owner, p)) = best {
+            flowers[owner].petals.push(i);
+            roots[i] = Some(p);
+            taken[i] = true;
+        }
+    }
+}
+
+/// The open top of a trunk is near: what stands round it are fronds.
+fn bears_fronds(draft: &Draft<'_>, centre: DVec2, usual: f64) -> bool {
+    draft.open_top
+        && draft.bodies.iter().any(|&r| {
+            let top = draft.forest.axes[r].points.last();
+            top.is_some_and(|t| t.distance(centre) < 0.6 * usual + draft.forest.half_width(r, f64::INFINITY))
+        })
+}
+
+/// The paper's rule, more than 2, with what tells leaves on a branch from petals on a stem's end.
+fn is_flower(
+    draft: &Draft<'_>,
+    members: &[usize],
+    usual: f64,
+    bearers: &Bearers,
+    discs: &[(DiscReading, usize)],
+) -> bool {
+    if members.len() < 3 {
+        return false;
+    }
+    let centre = mean(members.iter().map(|&i| draft.blades[i].gap));
+    let mut angles: Vec<f64> =
+        members.iter().map(|&i| draft.blades[i].middle - centre).map(|v| ops::atan2(v.y, v.x)).collect();
+    angles.sort_by(f64::total_cmp);
+    if bears_fronds(draft, centre, usual) || bearers.leads_up(centre, usual, discs) {
+        return false;
+    }
+    let widest = angles
+        .windows(2)
+        .map(|w| w[1] - w[0])
+        .chain(angles.first().zip(angles.last()).map(|(a, b)| a + ops::TAU - b))
+        .fold(0.0, f64::max);
+    match bearers.stand(centre, 0.4 * usual) {
+        // Fronds on a trunk.
+        Stand::Body => false,
+        // Leaves at a node of a stem: only a whole ring of many is a flower in front of it.
+        Stand::Along => members.len() >= 5 && widest < 1.9,
+        // On the ground a tuft of leaves, unless they stand all round.
+        Stand::Soil => widest < 2.6,
+        // A shoot's end may be thick with leaves: petals meet in one place, or stand all round.
+        Stand::End => {
+            let spread = members.iter().map(|&i| draft.blades[i].gap.distance(centre)).fold(0.0, f64::max);
+            spread < 0.15 * usual || widest < 2.6
+        }
+        Stand::Free => true,
+    }
+}
+
+/// Rings of petals whose strokes began elsewhere: blades that touch one another round a common middle.
+fn rosettes(
+    draft: &Draft<'_>,
+    usual: f64,
+    (bearers, discs): (&Bearers, &[(DiscReading, usize)]),
+    flowers: &mut Vec<FlowerDraft>,
+    roots: &mut [Option<DVec2>],
+    taken: &mut [bool],
+) {
+    let free: Vec<usize> = (0..draft.blades.len())
+        .filter(|&i| !taken[i] && roots[i].is_none() && !draft.blades[i].leaf)
+        .collect();
+    if free.len() < 3 || free.len() > MOST_ROOTS {
+        return;
+    }
+    let middles: Vec<DVec2> = free.iter().map(|&i| draft.blades[i].middle).collect();
+    for members in clusters(&middles, 1.1 * usual) {
+        let members: Vec<usize> = members.into_iter().map(|m| free[m]).collect();
+        if members.len() < 4 {
+            continue;
+        }
+        let centre = mean(members.iter().map(|&i| draft.blades[i].middle));
+        let feet: Vec<(DVec2, f64)> = members.iter().map(|&i| draft.blades[i].nearest(centre)).collect();
+        if bears_fronds(draft, centre, usual) || bearers.leads_up(centre, usual, discs) {
+            continue;
+        }
+        let close = members.iter().zip(&feet).all(|(&i, f)| f.1 < 0.25 * draft.blades[i].size)
+            && !matches!(bearers.stand(centre, 0.2 * usual), Stand::Along | Stand::Body);
+        let mut angles: Vec<f64> =
+            members.iter().map(|&i| draft.blades[i].middle - centre).map(|v| ops::atan2(v.y, v.x)).collect();
+        angles.sort_by(f64::total_cmp);
+        let even = angles.windows(2).all(|w| w[1] - w[0] < 2.2)
+            && angles.first().zip(angles.last()).is_some_and(|(a, b)| a + ops::TAU - b < 2.2);
+        if close && even {
+            for (&i, f) in members.iter().zip(&feet) {
+                taken[i] = true;
+                roots[i] = Some(f.0);
+            }
+            flowers.push(FlowerDraft { centre, petals: members, ..FlowerDraft::default() });
+        }
+    }
+}
+
+/// A petal that was begun at its tip still touches its flower's centre.
+fn adopt(
+    draft: &Draft<'_>,
+    usual: f64,
+    flowers: &mut [FlowerDraft],
+    roots: &mut [Option<DVec2>],
+    taken: &mut [bool],
+) {
+    let mut index = Near::new(0.1);
+    for (f, flower) in flowers.iter().enumerate() {
+        if flower.petals.len() > 2 {
+            index.add_line(f, &[flower.centre]);
+        }
+    }
+    for (i, blade) in draft.blades.iter().enumerate() {
+        if taken[i] || roots[i].is_some() {
+            continue;
+        }
+        let mut best: Option<(f64, usize, DVec2)> = None;
+        index.visit(blade.middle, blade.size.min(0.4), |e, _| {
+            let (p, d) = blade.nearest(e.point);
+            if d < 1.2 * BANDWIDTH * usual && best.is_none_or(|(b, ..)| d < b) {
+                best = Some((d, e.owner, p));
+            }
+        });
+        if let Some((_, f, p)) = best {
+            flowers[f].petals.push(i);
+            roots[i] = Some(p);
+            taken[i] = true;
+        }
+    }
+}
+
+/// How something stands on what bears it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Stand {
+    Body,
+    Along,
+    End,
+    Soil,
+    Free,
+}
+
+/// Everything that can bear a blade, before the hierarchy is known.
+#[derive(Clone, Debug)]
+pub(crate) struct Bearers {
+    /// Owner `i` is line `i` of the draft; bodies follow; soil is last.
+    near: Near,
+    lines: usize,
+    length: Vec<f64>,
+    soil: usize,
+    /// Both ends of the first lines; more are no stems of flowers.
+    ends: Vec<(DVec2, DVec2)>,
+}
+
+impl Bearers {
+    pub(crate) fn new(draft: &Draft<'_>) -> Self {
+        let mut near = Near::new(0.04);
+        let mut length = Vec::new();
+        for line in &draft.lines {
+            near.add_line(length.len(), &line.points);
+            length.push(polyline_length(&line.points));
+        }
+        let lines = length.len();
+        for axis in &draft.forest.axes {
+            near.add_line(length.len(), &axis.points);
+            length.push(polyline_length(&axis.points));
+        }
+        let soil = length.len();
+        for line in &draft.soil {
+            near.add_line(soil, line);
+        }
+        let ends =
+            draft.lines.iter().take(200).map(|l| (l.points[0], l.points[l.points.len() - 1])).collect();
+        Self { near, lines, length, soil, ends }
+    }
+
+    /// A stem begins near `p` and ends at a drawn disc well above: what stands at its foot are leaves.
+    fn leads_up(&self, p: DVec2, usual: f64, discs: &[(DiscReading, usize)]) -> bool {
+        self.ends.iter().any(|&(a, b)| {
+            let (foot, top) = if a.y < b.y { (a, b) } else { (b, a) };
+            let at_disc = |d: &DiscReading| d.centre.distance(top) < 2.0 * d.radius + 0.03;
+            foot.distance(p) < 0.5 * usual.max(0.08)
+                && top.y - foot.y > 1.2 * usual
+                && discs.iter().any(|(d, _)| at_disc(d) && d.centre.distance(p) > usual)
+        })
+    }
+
+    fn stand(&self, p: DVec2, r: f64) -> Stand {
+        let Some((e, _)) = self.near.nearest(p, r.max(0.03), |_| true) else { return Stand::Free };
+        if e.owner == self.soil {
+            return Stand::Soil;
+        }
+        if e.owner >= self.lines {
+            return Stand::Body;
+        }
+        let length = self.length[e.owner];
+        let margin = r.max(0.05 * length);
+        if e.at < margin || e.at > length - margin { Stand::End } else { Stand::Along }
+    }
+
+    /// Where a single blade is attached: at its gap if that is near a bearer, else where it comes nearest to one,
+    /// else at its gap.
+    fn root_of(&self, blade: &Sheetlet) -> DVec2 {
+        let reach = (0.22 * blade.size).clamp(0.015, 0.08);
+        let gap = blade.nearest(blade.gap).0;
+        if self.near.nearest(gap, reach, |_| true).is_some() {
+            return gap;
+        }
+        let stride = blade.outline.len().div_ceil(64).max(1);
+        let touch = blade
+            .outline
+            .iter()
+            .step_by(stride)
+            .filter_map(|&p| self.near.nearest(p, reach.max(0.03), |_| true).map(|(_, d)| (d, p)))
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        touch.map_or(gap, |(_, p)| p)
+    }
+}
+
+/// Rings of a flower, 0 outermost: a petal that stands in front of a clearly longer one is of an inner ring.
+pub(crate) fn whorls(draft: &Draft<'_>, flower: &FlowerDraft, roots: &[DVec2]) -> Vec<u32> {
+    let petals: Vec<(f64, f64, f64)> = flower
+        .petals
+        .iter()
+        .map(|&i| {
+            let blade = &draft.blades[i];
+            let v = tip(&blade.outline, roots[i]) - flower.centre;
+            let reach = v.length().max(1e-9);
+            let half = 0.5 * geom::signed_area(&blade.outline) / blade.size.max(1e-9);
+            (reach, ops::atan2(v.y, v.x), ops::atan2(half, 0.6 * reach))
+        })
+        .collect();
+    let mut order: Vec<usize> = (0..petals.len()).collect();
+    base::sort_by(&mut order, |&a, &b| petals[b].0.total_cmp(&petals[a].0).then(a.cmp(&b)));
+    let mut whorl = vec![0_u32; petals.len()];
+    if petals.len() > 300 {
+        return whorl;
+    }
+    for (k, &i) in order.iter().enumerate() {
+        for &j in &order[..k] {
+            let mut apart = (petals[i].1 - petals[j].1).abs();
+            apart = apart.min(ops::TAU - apart);
+            if petals[i].0 < 0.72 * petals[j].0 && apart < 0.8 * petals[j].2 {
+                whorl[i] = whorl[i].max(whorl[j] + 1);
+            }
+        }
+    }
+    // One small petal is a small petal, not a ring.
+    let inner = whorl.iter().filter(|w| **w > 0).count();
+    if inner < 3 { vec![0; petals.len()] } else { whorl }
+}
+
+/// Clusters of at least 3 points that lie within `bandwidth` of one another.
+fn clusters(points: &[DVec2], bandwidth: f64) -> Vec<Vec<usize>> {
+    let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    if points.len() <= MOST_ROOTS {
+        for (i, c) in mean_shift(points, bandwidth).into_iter().enumerate() {
+            groups.entry(c).or_default().push(i);
+        }
+    } else {
+        // So many roots are told apart by cells of a bandwidth: linear, and coarse as such a drawing is.
+        let mut cells: BTreeMap<(i64, i64), Vec<usize>> = BTreeMap::new();
+        for (i, p) in points.iter().enumerate() {
+            #[expect(clippy::cast_possible_truncation, reason = "saturates")]
+            let key = |v: f64| (v / bandwidth.max(1e-4)).floor() as i64;
+            cells.entry((key(p.x), key(p.y))).or_default().push(i);
+        }
+        groups = cells.into_values().enumerate().collect();
+    }
+    groups.into_values().filter(|g| g.len() > 2).collect()
+}
+
+fn mean(points: impl Iterator<Item = DVec2>) -> DVec2 {
+    let (sum, n) = points.fold((DVec2::ZERO, 0.0), |(s, n), p| (s + p, n + 1.0));
+    if n > 0.0 { sum / n } else { sum }
+}
+
+fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}

@@ -1,0 +1,40 @@
+//! What the strokes of a drawing mean (He and Cheng 2021, "paper 000", section 4), still flat.
+//!
+//! `Ink + classes -> Reading`
+//!
+//! | module | reads | paper |
+//! |---|---|---|
+//! | `read`, `draft` | the order of the steps, and the drawing half understood | |
+//! | `second`, `standing` | classes that the whole drawing contradicts | beyond |
+//! | `outlines`, `rings`, `body` | trunks, cactus bodies and crowns drawn as outlines | beyond |
+//! | `blade`, `corolla`, `veins` | outlines, roots, tips and midribs of leaves and petals | 4.1, 4.3 |
+//! | `flowers` | which blades are petals of one flower | 4.1 |
+//! | `branches` | the hierarchy of axes | 4.2 |
+//! | `attach` | what bears what | beyond |
+//! | `rows`, `validate` | the result, and what every reading guarantees | |
+
+mod attach;
+mod blade;
+mod body;
+mod branches;
+mod corolla;
+mod draft;
+mod flowers;
+mod near;
+mod outlines;
+mod read;
+mod rings;
+mod rows;
+mod second;
+mod standing;
+#[cfg(test)]
+mod tests;
+mod validate;
+mod veins;
+
+pub use read::read;
+pub use rows::{
+    Attachment, AxisReading, BladeReading, DiscReading, FlowerReading, FruitReading, OrganWord, Reading,
+    RegionKind, RegionReading, StrokeReading,
+};
+pub use validate::ReadingFault;

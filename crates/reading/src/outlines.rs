@@ -1,0 +1,475 @@
+//! Trunks and crowns drawn as outlines (product A12).
+
+use base::Report;
+use geom::{
+    centroid, contains, convex_hull, distance_to_polyline, polyline_length, signed_area, simple_outline,
+    simplify,
+};
+use glam::DVec2;
+use ink::StrokeClass;
+use plant::AxisKind;
+
+use crate::blade::{nearest_on_ring, split_stalks};
+use crate::body::limbs;
+use crate::branches::{Forest, Line};
+use crate::draft::{Draft, MOST_REGIONS, RegionDraft};
+use crate::near::bounds;
+use crate::rings::{Ring, rings};
+use crate::{Attachment, OrganWord, RegionKind};
+
+/// More bodies than this are scribbles: the smaller ones become plain lines (keeps the work linear).
+const MOST_BODIES: usize = 100;
+/// A body's outline is thinner than this share of its length: a line.
+const THIN: f64 = 0.008;
+/// The base of an arm lies this near to the body.
+const ARM: f64 = 0.03;
+
+/// Cuts sides of trunks off crown strokes: a loose end that runs straight down, or what hangs below the crown.
+pub(crate) fn trunk_sides(draft: &mut Draft<'_>) {
+    // Where the trunk has two lines of its own, what hangs below is a second round of the crown.
+    if draft.trunk {
+        return;
+    }
+    let ink = draft.ink;
+    for k in draft.of_class(StrokeClass::Crown).into_iter().take(MOST_REGIONS) {
+        let (crown, ends) = split_stalks(&ink.strokes[k].points, 0.75);
+        let foot = bounds(&crown).map_or(0.0, |b| b.0.y);
+        let side = |l: &Vec<DVec2>| {
+            let (free, at) = (l[0], l[l.len() - 1]);
+            free.y < foot + 0.02 && at.y - free.y > 0.06 && free.distance(at) > 0.75 * polyline_length(l)
+        };
+        if !ends.is_empty() && ends.iter().all(side) {
+            draft.sides.extend(ends.into_iter().map(|l| (k, l)));
+            draft.loops.insert(k, crown);
+            continue;
+        }
+        let points = &ink.strokes[k].points;
+        let Some((outline, low)) = crown_outline(points).and_then(|o| bounds(&o).map(|b| (o, b.0.y))) else {
+            continue;
+        };
+        let below: Vec<DVec2> = points.iter().copied().filter(|p| p.y < low - 0.01).collect();
+        if bounds(&below).is_some_and(|(lo, hi)| hi.y - lo.y > 0.08 && hi.x - lo.x > 0.02) {
+            draft.sides.push((k, below));
+            draft.loops.insert(k, outline);
+        }
+    }
+}
+
+/// Reads trunk outlines into axes with half widths; what is no body becomes a line of the draft.
+pub(crate) fn bodies(draft: &mut Draft<'_>) {
+    let sides = std::mem::take(&mut draft.sides);
+    let ink = draft.ink;
+    let mut strokes = draft.of_class(StrokeClass::TrunkOutline);
+    let mut points: Vec<&[DVec2]> = strokes.iter().map(|&k| ink.strokes[k].points.as_slice()).collect();
+    strokes.extend(sides.iter().map(|s| s.0));
+    points.extend(sides.iter().map(|s| s.1.as_slice()));
+    let as_lines = |draft: &mut Draft<'_>, ring: &Ring| {
+        for &part in &ring.parts {
+            let k = strokes[part];
+            draft.organ[k] = OrganWord::Trunk;
+            draft.lines.push(Line { points: points[part].to_vec(), source: Some(ink.strokes[k].index) });
+        }
+    };
+    let mut found: Vec<(f64, Ring)> = Vec::new();
+    let alone = !draft.class.iter().any(|c| [StrokeClass::Blade, StrokeClass::Crown].contains(c));
+    for mut ring in rings(&points) {
+        if alone {
+            plumb(&mut ring);
+        }
+        let area = signed_area(&ring.points).abs();
+        let drawn: f64 = ring.drawn().iter().map(|d| polyline_length(d)).sum();
+        if area > THIN * drawn * drawn && found.len() < MOST_BODIES {
+            found.push((area, ring));
+        } else {
+            as_lines(draft, &ring);
+        }
+    }
+    // The largest first: arms stand on it.
+    base::sort_by(&mut found, |a, b| b.0.total_cmp(&a.0));
+    for (i, (_, ring)) in found.iter().enumerate() {
+        let base = arm_base(&draft.forest, ring, i > 0);
+        let source = ring.parts.first().map(|&p| draft.ink.strokes[strokes[p]].index);
+        let closed = limbs(ring, base.map(|b| b.1));
+        if closed.is_empty() {
+            as_lines(draft, ring);
+            continue;
+        }
+        draft.open_top |= draft.trunk || closed.first().is_some_and(|l| !l.closed_end);
+        let first = draft.forest.add_body(closed, base.map(|b| b.0), source);
+        draft.bodies.extend(first.filter(|_| base.is_none()));
+        for &part in &ring.parts {
+            draft.organ[strokes[part]] = OrganWord::Trunk;
+        }
+    }
+}
+
+/// An outline that was left off far above its foot goes straight down to it: half a body is no slanting one.
+fn plumb(ring: &mut Ring) {
+    let Some((lo, hi)) = bounds(&ring.points) else { return };
+    let wide = |&g: &usize| {
+        let (a, b) = ring.gap(ring.gaps[g]);
+        a.distance(b) > 0.1 * (hi.y - lo.y)
+    };
+    let [at] = (0..ring.gaps.len()).filter(wide).collect::<Vec<_>>()[..] else { return };
+    let gap = ring.gaps[at];
+    let (a, b) = ring.gap(gap);
+    let (top, foot) = if a.y > b.y { (a, b) } else { (b, a) };
+    let high = top.y - foot.y > 0.3 * (hi.y - lo.y) && foot.y < lo.y + 0.08 * (hi.y - lo.y);
+    let wide = (top.x - foot.x).abs() > 0.04 * (hi.y - lo.y) && (top.x - foot.x).abs() < top.y - foot.y;
+    if !(high && wide) {
+        return;
+    }
+    ring.points.insert(gap + 1, DVec2::new(top.x, foot.y));
+    // What stays open is the foot.
+    ring.gaps[at] += usize::from(a.y > b.y);
+    ring.gaps[at + 1..].iter_mut().for_each(|g| *g += 1);
+}
+
+/// Where an arm whose opening lies on a body stands: the bearer, and the middle of the opening.
+fn arm_base(forest: &Forest, ring: &Ring, later: bool) -> Option<(Attachment, DVec2)> {
+    if !later {
+        return None;
+    }
+    ring.gaps.iter().find_map(|&g| {
+        let (a, b) = ring.gap(g);
+        let middle = a.midpoint(b);
+        let touches = |p| forest.nearest(p, ARM).is_some();
+        let (bearer, _) = forest.nearest(middle, ARM + 0.5 * a.distance(b))?;
+        (touches(a) && touches(b)).then_some((bearer, middle))
+    })
+}
+
+/// Reads crown contours into regions; a trunk that was drawn in the same stroke is cut off and read as a body.
+pub(crate) fn crowns(draft: &mut Draft<'_>, report: &mut Report) {
+    let strokes = draft.of_class(StrokeClass::Crown);
+    let loops = std::mem::take(&mut draft.loops);
+    let points: Vec<&[DVec2]> = strokes
+        .iter()
+        .map(|k| loops.get(k).map_or(draft.ink.strokes[*k].points.as_slice(), Vec::as_slice))
+        .collect();
+    let mut left_out = 0;
+    for ring in rings(&points) {
+        let Some(mut outline) = crown_outline(&ring.points) else {
+            for &part in &ring.parts {
+                draft.line_of(strokes[part], OrganWord::Branch);
+            }
+            continue;
+        };
+        let stroke = ring.parts.first().map_or(0, |&p| strokes[p]);
+        if draft.bodies.len() < MOST_BODIES
+            && let Some((trunk, crown)) = neck(&outline)
+        {
+            let source = Some(draft.ink.strokes[stroke].index);
+            let bottom = Ring { gaps: Vec::new(), parts: Vec::new(), points: trunk };
+            draft.open_top = true;
+            let row = draft.forest.add_body(limbs(&bottom, None), None, source);
+            draft.bodies.extend(row);
+            outline = crown;
+        }
+        if draft.regions.len() >= MOST_REGIONS {
+            left_out += ring.parts.len();
+            continue;
+        }
+        for &part in &ring.parts {
+            draft.organ[strokes[part]] = OrganWord::LeafContour;
+        }
+        draft.add_region(outline, RegionKind::Crown, stroke);
+    }
+    if left_out > 0 {
+        report.warn(
+            "stroke-skipped",
+            format!("{left_out} of the drawing's crown outlines were left out: {MOST_REGIONS} are read"),
+        );
+    }
+}
+
+/// The outline of a crown, however loopy: the largest simple polygon, or the hull of a scribble.
+pub(crate) fn crown_outline(points: &[DVec2]) -> Option<Vec<DVec2>> {
+    let hull = convex_hull(points);
+    let hull_area = signed_area(&hull);
+    // A line, not a crown.
+    if hull_area <= 2e-4 {
+        return None;
+    }
+    match simple_outline(&simplify(points, 0.001)) {
+        Some(outline) if signed_area(&outline) > 0.4 * hull_area => Some(outline),
+        _ => Some(hull),
+    }
+}
+
+/// Splits an outline with a narrow lower part and a wide upper part at the neck: trunk and crown.
+pub(crate) fn neck(outline: &[DVec2]) -> Option<(Vec<DVec2>, Vec<DVec2>)> {
+    const LEVELS: usize = 60;
+    let (lo, hi) = bounds(outline)?;
+    let height = hi.y - lo.y;
+    #[expect(clippy::cast_precision_loss, reason = "60 levels")]
+    let y_of = |k: usize| lo.y + height * (k as f64 + 0.5) / LEVELS as f64;
+    let width: Vec<f64> = (0..LEVELS).map(|k| width_at(outline, y_of(k))).collect();
+    let widest = width.iter().copied().fold(0.0, f64::max);
+    let first_wide = width.iter().position(|w| *w > 0.5 * widest)?;
+    let mut below: Vec<f64> = width[..first_wide].to_vec();
+    below.sort_by(f64::total_cmp);
+    let median = below.get(below.len() / 2).copied()?;
+    // The neck ends where the outline first becomes clearly wider than the trunk for good.
+    let top = (0..=first_wide).rev().find(|&k| width[k] < 1.5 * median).map_or(first_wide, |k| k + 1);
+    let (trunk_height, crown_height) = (y_of(top) - lo.y, hi.y - y_of(top));
+    let jump = width[(top + 3).min(LEVELS - 1)] > 1.7 * width[top.saturating_sub(3)];
+    let fits = median < 0.4 * widest
+        && trunk_height > 0.8 * median
+        && trunk_height > 0.12 * height
+        && crown_height > 0.2 * height;
+    if !(fits && jump) {
+        return None;
+    }
+    let cut = |keep_above: bool| {
+        let y = y_of(top);
+        let inside = |p: DVec2| (p.y >= y) == keep_above;
+        let mut part = Vec::new();
+        for (i, &a) in outline.iter().enumerate() {
+            let b = outline[(i + 1) % outline.len()];
+            if inside(a) {
+                part.push(a);
+            }
+            if inside(a) != inside(b) {
+                part.push(a.lerp(b, (y - a.y) / (b.y - a.y)));
+            }
+        }
+        simple_outline(&part)
+    };
+    cut(false).zip(cut(true))
+}
+
+pub(crate) fn width_at(outline: &[DVec2], y: f64) -> f64 {
+    let mut xs: Vec<f64> = outline
+        .iter()
+        .enumerate()
+        .filter_map(|(i, &a)| {
+            let b = outline[(i + 1) % outline.len()];
+            ((a.y > y) != (b.y > y)).then(|| a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y))
+        })
+        .collect();
+    xs.sort_by(f64::total_cmp);
+    xs.chunks_exact(2).map(|w| w[1] - w[0]).sum()
+}
+
+/// Finds, leads or adds the axes that run into each region; what comes back is one list of rows per region.
+pub(crate) fn bear_regions(draft: &mut Draft<'_>) -> Vec<Vec<usize>> {
+    let regions = std::mem::take(&mut draft.regions);
+    let drawn = draft.forest.axes.len();
+    let tops: Vec<DVec2> = draft.forest.axes.iter().filter_map(|a| a.points.last().copied()).collect();
+    let mut index = crate::near::Near::new(0.05);
+    for (row, axis) in draft.forest.axes.iter().enumerate() {
+        index.add_line(row, &axis.points);
+    }
+    let floor = draft.floor();
+    let mut all = Vec::new();
+    for region in &regions {
+        let mut rows = inside_rows(draft, region, &index, drawn);
+        let deep = rows.iter().any(|&r| depth_inside(&draft.forest, r, region) > 0.3);
+        if region.kind == RegionKind::Crown && !deep {
+            let led = lead_into(draft, region, &tops, floor);
+            rows.extend(led.into_iter().filter(|r| !rows.contains(r)).collect::<Vec<_>>());
+        } else if rows.is_empty() {
+            rows = lead_into(draft, region, &tops, floor);
+        }
+        rows.sort_unstable();
+        all.push(rows);
+    }
+    draft.regions = regions;
+    all
+}
+
+/// Rows with a part inside the region, from the index.
+fn inside_rows(
+    draft: &Draft<'_>,
+    region: &RegionDraft,
+    index: &crate::near::Near,
+    drawn: usize,
+) -> Vec<usize> {
+    let (lo, hi) = region.bounds;
+    let mut rows: Vec<usize> = Vec::new();
+    index.visit(lo.midpoint(hi), 0.5 * lo.distance(hi) + 0.01, |e, _| {
+        if e.owner < drawn && !rows.contains(&e.owner) && contains(&region.outline, e.point) {
+            rows.push(e.owner);
+        }
+    });
+    rows.retain(|&r| draft.forest.axes[r].kind != AxisKind::Root);
+    rows
+}
+
+/// Length of an axis inside a region, as a share of the region's size.
+fn depth_inside(forest: &Forest, row: usize, region: &RegionDraft) -> f64 {
+    let (lo, hi) = region.bounds;
+    let inside: f64 = forest.axes[row]
+        .points
+        .windows(2)
+        .filter(|w| contains(&region.outline, w[0].midpoint(w[1])))
+        .map(|w| w[0].distance(w[1]))
+        .sum();
+    inside / (hi - lo).max_element().max(1e-9)
+}
+
+/// Leads an axis into a region that none runs deep into: goes on with the trunk, sends a branch, or adds stems.
+fn lead_into(draft: &mut Draft<'_>, region: &RegionDraft, tops: &[DVec2], floor: f64) -> Vec<usize> {
+    let (lo, hi) = region.bounds;
+    let size = (hi - lo).max_element();
+    let goal = region.heart();
+    // A trunk that ends in the crown or just below it goes on into it.
+    let near = |p: DVec2| {
+        if contains(&region.outline, p) { 0.0 } else { nearest_on_ring(&region.outline, p).1 }
+    };
+    let end = tops
+        .iter()
+        .enumerate()
+        .filter(|&(r, _)| draft.forest.axes[r].kind != AxisKind::Root && !draft.led.contains(&r))
+        .filter(|(_, p)| p.y < goal.y + 0.25 * (hi.y - lo.y))
+        .map(|(r, p)| (near(*p) - 0.5 * draft.forest.half_width(r, f64::INFINITY), r))
+        .filter(|(d, _)| *d < (0.35 * size).max(0.05))
+        .min_by(|a, b| {
+            let long = |r: usize| draft.forest.length(r);
+            a.0.max(0.02).total_cmp(&b.0.max(0.02)).then(long(b.1).total_cmp(&long(a.1)))
+        });
+    if let Some((_, row)) = end {
+        let tip = tops[row];
+        let axis = &draft.forest.axes[row].points;
+        let back = axis[axis.len().saturating_sub(6)];
+        let ahead = (tip - back).normalize_or(DVec2::Y);
+        let way = tip.distance(goal);
+        let bend = tip + ahead * (0.4 * way);
+        let more: Vec<DVec2> = (1..=8)
+            .map(|i| f64::from(i) / 8.0)
+            .map(|t| tip.lerp(bend, t).lerp(bend.lerp(goal, t), t))
+            .collect();
+        let width = 0.25 * draft.forest.half_width(row, f64::INFINITY);
+        if way > 0.02 {
+            draft.forest.extend(row, &more, width);
+        }
+        draft.led.push(row);
+        return vec![row];
+    }
+    let on_ground = region.kind == RegionKind::Crown && lo.y < floor + 0.2 * (hi.y - lo.y);
+    if !on_ground
+        && let Some((bearer, gap)) = draft.forest.nearest(goal, 0.6 * size + 0.1)
+        && gap > 0.0
+    {
+        let foot = geom::point_at(&draft.forest.axes[bearer.axis].points, bearer.at).unwrap_or(goal);
+        // The branch leaves a little lower than the nearest place: branches rise.
+        let lower = Attachment { axis: bearer.axis, at: (bearer.at - 0.3 * foot.distance(goal)).max(0.0) };
+        let from = geom::point_at(&draft.forest.axes[bearer.axis].points, lower.at).unwrap_or(foot);
+        let line: Vec<DVec2> = (0..=12).map(|i| from.lerp(goal, f64::from(i) / 12.0)).collect();
+        return draft.forest.push(line, Vec::new(), Some(lower), region.source).into_iter().collect();
+    }
+    stems_below(draft, region, floor)
+}
+
+/// A crown without a trunk: one over the ground gets a trunk, one on the ground (a bush) several stems.
+fn stems_below(draft: &mut Draft<'_>, region: &RegionDraft, floor: f64) -> Vec<usize> {
+    let (lo, hi) = region.bounds;
+    let (width, height) = (hi.x - lo.x, hi.y - lo.y);
+    let heart = region.heart();
+    let mut rows = Vec::new();
+    if lo.y > floor + 0.35 * height {
+        let line: Vec<DVec2> =
+            (0..=24).map(|i| DVec2::new(heart.x, floor).lerp(heart, f64::from(i) / 24.0)).collect();
+        rows.extend(draft.forest.push(line, Vec::new(), None, None));
+    } else {
+        // The stems stand where the crown meets the ground.
+        let foot: Vec<f64> =
+            region.outline.iter().filter(|p| p.y < lo.y + 0.25 * height).map(|p| p.x).collect();
+        let (left, right) = foot.iter().fold((hi.x, lo.x), |(l, r), x| (l.min(*x), r.max(*x)));
+        let (middle, spread) = (0.5 * (left + right), (0.4 * (right - left)).min(0.12 * width));
+        let stems = if width > 2.0 * height { 5 } else { 3 };
+        for i in 0..stems {
+            let side = f64::from(i) / f64::from(stems - 1) * 2.0 - 1.0;
+            let base = DVec2::new(middle + side * spread, lo.y);
+            let tip = DVec2::new(heart.x + 0.3 * side * width, lo.y + height * (0.72 - 0.2 * side.abs()));
+            let bend = DVec2::new(base.x + 0.04 * side * width, lo.y + 0.45 * height);
+            let line: Vec<DVec2> = (0..=16)
+                .map(|k| f64::from(k) / 16.0)
+                .map(|t| base.lerp(bend, t).lerp(bend.lerp(tip, t), t))
+                .collect();
+            rows.extend(draft.forest.push(line, Vec::new(), None, None));
+        }
+    }
+    rows
+}
+
+/// Shading below a crown that has no trunk is its trunk.
+pub(crate) fn scribbled_trunk(draft: &mut Draft<'_>) {
+    if !draft.bodies.is_empty() || draft.regions.is_empty() || !draft.of_class(StrokeClass::Axis).is_empty() {
+        return;
+    }
+    let found = draft.of_class(StrokeClass::Scribble).into_iter().find_map(|k| {
+        let hull = convex_hull(&draft.ink.strokes[k].points);
+        let (lo, hi) = bounds(&hull)?;
+        let middle = centroid(&hull);
+        let below = draft
+            .regions
+            .iter()
+            .any(|r| middle.y < r.heart().y && hi.y > r.bounds.0.y - 0.05 && r.bounds.0.y > lo.y);
+        (below && hi.y - lo.y > 1.2 * (hi.x - lo.x)).then_some((k, hull))
+    });
+    if let Some((k, hull)) = found {
+        let source = Some(draft.ink.strokes[k].index);
+        let ring = Ring { points: hull, ..Ring::default() };
+        let row = draft.forest.add_body(limbs(&ring, None), None, source);
+        draft.open_top |= row.is_some();
+        draft.bodies.extend(row);
+        draft.organ[k] = OrganWord::Trunk;
+    }
+}
+
+/// Short lines on the outline of a cactus are its thorns: root and tip, with what bears them.
+pub(crate) fn thorns(draft: &mut Draft<'_>) -> Vec<(Vec<DVec2>, Option<Attachment>, Option<u32>)> {
+    if draft.bodies.is_empty() || !draft.regions.is_empty() || draft.open_top {
+        return Vec::new();
+    }
+    let height: f64 = draft.bodies.iter().map(|&r| draft.forest.length(r)).fold(0.0, f64::max);
+    let mut thorns = Vec::new();
+    for line in std::mem::take(&mut draft.lines) {
+        let length = polyline_length(&line.points);
+        let (a, b) = (line.points[0], line.points[line.points.len() - 1]);
+        let touch = |p| draft.forest.nearest(p, 0.03);
+        let (at, bt) = (touch(a), touch(b));
+        let nearer_a = at.map_or(f64::INFINITY, |x| x.1) <= bt.map_or(f64::INFINITY, |x| x.1);
+        let bearer = if nearer_a { at } else { bt }.map(|x| x.0);
+        if let (true, Some(bearer)) = (length < 0.3 * height, bearer) {
+            let mut points = line.points;
+            // Both ends on the body: the one farther from its middle line is the tip.
+            let from_middle =
+                |p: DVec2| distance_to_polyline(&draft.forest.axes[bearer.axis].points, p).unwrap_or(0.0);
+            if from_middle(a) > from_middle(b) {
+                points.reverse();
+            }
+            draft.set_organ(line.source, OrganWord::Thorn);
+            thorns.push((points, Some(bearer), line.source));
+        } else {
+            draft.lines.push(Line { ..line });
+        }
+    }
+    thorns
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tree_in_one_stroke_is_cut_at_its_neck() {
+        let p = |x: f64, y: f64| DVec2::new(x, y);
+        let tree = [
+            p(0.45, 0.0),
+            p(0.55, 0.0),
+            p(0.55, 0.4),
+            p(0.9, 0.45),
+            p(0.9, 0.9),
+            p(0.1, 0.9),
+            p(0.1, 0.45),
+            p(0.45, 0.4),
+        ];
+        let (trunk, crown) = neck(&tree).expect("has a neck");
+        assert!((signed_area(&trunk) - 0.04).abs() < 0.005, "{}", signed_area(&trunk));
+        assert!(crown.iter().all(|q| q.y > 0.35), "{crown:?}");
+        assert!(neck(&[p(0.0, 0.0), p(1.0, 0.0), p(1.0, 1.0), p(0.0, 1.0)]).is_none(), "a box has no neck");
+    }
+}

@@ -1,0 +1,59 @@
+//! The order in which a drawing is understood: `Ink + classes -> Reading`.
+
+use base::Report;
+use ink::{Classified, Ink};
+
+use crate::draft::Draft;
+use crate::{Reading, attach, flowers, outlines, second, veins};
+
+/// Understands a drawing.
+///
+/// `classes`: one for each ink stroke, in their order; strokes without one count as `other`. Guaranteed:
+/// [`Reading::validate`] finds no fault, whatever the strokes and classes; every stroke of the drawing has its
+/// row in `strokes`; a drawing with a usable stroke gives at least one axis, organ or region (with a warning
+/// where that is a guess). Cost: about linear in strokes.
+///
+/// ```
+/// use glam::DVec2;
+/// use ink::{Classified, Drawing, StrokeClass};
+/// let mut report = base::Report::default();
+/// let drawing = Drawing::from_polylines("stem", &[vec![DVec2::Y, DVec2::ZERO]]);
+/// let ink = ink::clean(&drawing, &mut report);
+/// let stem = Classified { class: StrokeClass::Axis, confidence: 1.0 };
+/// let reading = reading::read(&ink, &[stem], &mut report);
+/// assert_eq!(reading.axes[0].points[0], DVec2::ZERO);
+/// assert_eq!(reading.validate().count(), 0);
+/// ```
+pub fn read(ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
+    let mut draft = Draft::new(ink, classes);
+    second::thoughts(&mut draft);
+    draft.contours();
+    draft.find_soil();
+    outlines::trunk_sides(&mut draft);
+    outlines::bodies(&mut draft);
+    outlines::crowns(&mut draft, report);
+    draft.blades();
+    let discs = flowers::discs(&draft);
+    flowers::corollas(&mut draft, &discs);
+    outlines::scribbled_trunk(&mut draft);
+    draft.scribbled_crowns(report);
+    let veins = veins::collect(&mut draft);
+    draft.trim_at_pots();
+    draft.last_resort(&discs, report);
+    let thorns = outlines::thorns(&mut draft);
+    attach::fronds(&mut draft);
+    attach::grass_blades(&mut draft);
+    let (discs, nuts) = attach::part_discs(&draft, discs);
+    let bearers = flowers::Bearers::new(&draft);
+    let (mut flowers, roots) = flowers::gather(&mut draft, &discs, &bearers);
+    attach::stamens(&mut draft, &mut flowers, &roots);
+    let mut fruits = draft.fruits(&nuts);
+    let hints = draft.hints(&flowers);
+    let lines = std::mem::take(&mut draft.lines);
+    draft.forest.grow(lines, &hints);
+    attach::roots(&mut draft);
+    let region_bearers = outlines::bear_regions(&mut draft);
+    let (flowers, leaves) = attach::organs(&mut draft, flowers, &roots, veins, &hints.soil);
+    attach::fruits(&mut draft, &mut fruits);
+    draft.finish(region_bearers, flowers, leaves, fruits, thorns)
+}

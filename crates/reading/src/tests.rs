@@ -1,0 +1,523 @@
+use base::Report;
+use base::ops;
+use geom::contains;
+use glam::DVec2;
+use plant::AxisKind;
+use proptest::prelude::*;
+
+use ink::{Classified, Drawing, StrokeClass, StrokeMode, clean};
+
+use crate::{Reading, RegionKind, read};
+
+fn line(from: (f64, f64), to: (f64, f64)) -> Vec<DVec2> {
+    let (a, b) = (DVec2::from(from), DVec2::from(to));
+    (0..=30).map(|i| a.lerp(b, f64::from(i) / 30.0)).collect()
+}
+
+fn path(corners: &[(f64, f64)]) -> Vec<DVec2> {
+    corners.windows(2).flat_map(|w| line(w[0], w[1])).collect()
+}
+
+/// A pointed blade from `root` towards `to`, `wide` wide, drawn from its root and back.
+fn leaf(root: (f64, f64), to: (f64, f64), wide: f64) -> Vec<DVec2> {
+    let (root, to) = (DVec2::from(root), DVec2::from(to));
+    let across = (to - root).normalize().perp() * (0.5 * wide);
+    let side = |sign: f64| {
+        move |i: i32| {
+            let t = f64::from(i) / 20.0;
+            root.lerp(to, t) + across * (sign * ops::sin(ops::PI * t))
+        }
+    };
+    (0..20).map(side(1.0)).chain((1..=20).rev().map(side(-1.0))).collect()
+}
+
+fn circle(centre: (f64, f64), r: f64) -> Vec<DVec2> {
+    let angle = |i: i32| ops::TAU * f64::from(i) / 60.0;
+    (0..60).map(|i| DVec2::from(centre) + DVec2::new(ops::cos(angle(i)), ops::sin(angle(i))) * r).collect()
+}
+
+fn petals(centre: (f64, f64), n: i32, reach: f64) -> Vec<Vec<DVec2>> {
+    let to = |k: i32| {
+        let a = ops::TAU * f64::from(k) / f64::from(n) + 0.3;
+        (centre.0 + reach * ops::cos(a), centre.1 + reach * ops::sin(a))
+    };
+    (0..n).map(|k| leaf(centre, to(k), 0.5 * reach)).collect()
+}
+
+fn reading(strokes: &[(StrokeClass, Vec<DVec2>)]) -> (Reading, Report) {
+    let mut report = Report::default();
+    let lines: Vec<Vec<DVec2>> = strokes.iter().map(|s| s.1.clone()).collect();
+    let ink = clean(&Drawing::from_polylines("test", &lines), &mut report);
+    let classes: Vec<Classified> = ink
+        .strokes
+        .iter()
+        .map(|s| Classified { class: strokes[s.index as usize].0, confidence: 1.0 })
+        .collect();
+    let reading = read(&ink, &classes, &mut report);
+    let faults: Vec<String> = reading.validate().map(|f| f.to_string()).collect();
+    assert!(faults.is_empty(), "{faults:?}");
+    (reading, report)
+}
+
+fn organs(reading: &Reading) -> Vec<&'static str> {
+    reading.strokes.iter().map(|s| s.organ.word()).collect()
+}
+
+#[test]
+fn a_flower_with_a_stem_and_two_leaves() {
+    let mut strokes: Vec<_> =
+        petals((5.0, 10.0), 5, 2.0).into_iter().map(|p| (StrokeClass::Blade, p)).collect();
+    strokes.push((StrokeClass::Axis, line((5.0, 9.8), (5.2, 0.0))));
+    strokes.push((StrokeClass::Blade, leaf((5.1, 4.0), (7.5, 5.5), 0.8)));
+    strokes.push((StrokeClass::Blade, leaf((5.1, 3.0), (2.5, 4.5), 0.8)));
+    let (r, _) = reading(&strokes);
+    assert_eq!((r.flowers.len(), r.flowers[0].petals.len(), r.leaves.len(), r.axes.len()), (1, 5, 2, 1));
+    assert_eq!(organs(&r), ["petal", "petal", "petal", "petal", "petal", "branch", "leaf", "leaf"]);
+    let stem = &r.axes[0].points;
+    assert!(
+        stem[0].y < 0.01 && stem.last().is_some_and(|p| p.distance(r.flowers[0].centre) < 1e-6),
+        "to the centre"
+    );
+    assert!(r.flowers[0].bearer.is_some() && r.leaves.iter().all(|l| l.bearer.is_some_and(|b| b.axis == 0)));
+    assert!(!r.woody, "a herb");
+    for leaf in &r.leaves {
+        assert!(leaf.root.distance(leaf.tip) > 0.15 && leaf.midrib[0] == leaf.root, "{leaf:?}");
+    }
+}
+
+#[test]
+fn petals_begun_at_their_tips_are_rooted_in_the_middle() {
+    let mut strokes: Vec<_> = petals((5.0, 10.0), 6, 2.0)
+        .into_iter()
+        .map(|mut p| {
+            p.rotate_left(20);
+            (StrokeClass::Blade, p)
+        })
+        .collect();
+    strokes.push((StrokeClass::Axis, line((5.0, 8.0), (5.2, 0.0))));
+    let (r, _) = reading(&strokes);
+    assert_eq!((r.flowers.len(), r.leaves.len()), (1, 0));
+    let f = &r.flowers[0];
+    assert_eq!(f.petals.len(), 6);
+    assert!(f.petals.iter().all(|p| p.root.distance(f.centre) < 0.03), "roots in the middle");
+}
+
+#[test]
+fn a_disc_gathers_its_petals_and_two_whorls_are_told_apart() {
+    let mut strokes = vec![(StrokeClass::Disc, circle((5.0, 10.0), 0.6))];
+    strokes.extend(petals((5.0, 10.0), 6, 3.0).into_iter().map(|p| (StrokeClass::Blade, p)));
+    strokes.extend(petals((5.0, 10.0), 6, 1.7).into_iter().map(|p| (StrokeClass::Blade, p)));
+    strokes.push((StrokeClass::Axis, line((5.0, 7.0), (5.2, 0.0))));
+    let (r, _) = reading(&strokes);
+    assert_eq!((r.flowers.len(), r.flowers[0].petals.len()), (1, 12));
+    let inner = r.flowers[0].petals.iter().filter(|p| p.whorl == 1).count();
+    assert_eq!(inner, 6);
+    assert!(r.flowers[0].disc.is_some_and(|d| d.centre.distance(r.flowers[0].centre) < 1e-9));
+}
+
+#[test]
+fn a_rose_window_in_one_stroke() {
+    let scallops: Vec<DVec2> = (0..=400)
+        .map(|i| ops::TAU * f64::from(i) / 400.0)
+        .map(|t| {
+            DVec2::new(5.0, 10.0) + DVec2::new(ops::cos(t), ops::sin(t)) * (2.0 + ops::sin(4.0 * t).abs())
+        })
+        .collect();
+    let (r, _) =
+        reading(&[(StrokeClass::Corolla, scallops), (StrokeClass::Axis, line((5.0, 8.0), (5.0, 0.0)))]);
+    assert_eq!((r.flowers.len(), r.leaves.len(), r.axes.len()), (1, 0, 1));
+    assert_eq!(r.flowers[0].petals.len(), 8);
+    assert_eq!(organs(&r), ["petal", "branch"]);
+}
+
+#[test]
+fn leaves_thick_along_a_branch_are_no_flower() {
+    let mut strokes = vec![(StrokeClass::Axis, line((0.0, 0.0), (10.0, 3.0)))];
+    for i in 0..30 {
+        let x = 0.5 + 0.3 * f64::from(i);
+        let up = if i % 2 == 0 { 1.0 } else { -1.0 };
+        strokes.push((StrokeClass::Blade, leaf((x, 0.3 * x), (x + 0.5, 0.3 * x + up), 0.4)));
+    }
+    let (r, _) = reading(&strokes);
+    assert_eq!((r.flowers.len(), r.leaves.len()), (0, 30));
+    assert!(r.leaves.iter().all(|l| l.bearer.is_some()), "all borne");
+}
+
+#[test]
+fn a_tree_of_lines_is_woody() {
+    let (r, _) = reading(&[
+        (StrokeClass::Axis, line((5.0, 0.0), (5.0, 10.0))),
+        (StrokeClass::Axis, line((5.0, 5.0), (8.0, 8.0))),
+        (StrokeClass::Axis, line((5.0, 6.0), (2.0, 9.0))),
+        (StrokeClass::Axis, line((7.0, 7.0), (8.5, 7.2))),
+    ]);
+    assert!(r.woody && r.axes.iter().all(|a| a.kind == AxisKind::Branch), "{r:?}");
+    assert_eq!(r.axes.iter().filter(|a| a.bearer.is_some()).count(), 3);
+}
+
+#[test]
+fn two_lines_and_a_crown_are_a_tree() {
+    let (r, _) = reading(&[
+        (StrokeClass::TrunkOutline, line((4.5, 0.0), (4.6, 4.2))),
+        (StrokeClass::TrunkOutline, line((5.4, 4.2), (5.5, 0.0))),
+        (StrokeClass::Crown, circle((5.0, 7.0), 3.0)),
+    ]);
+    assert_eq!((r.axes.len(), r.regions.len(), r.woody), (1, 1, true));
+    assert_eq!((r.regions[0].kind, &r.regions[0].bearers[..]), (RegionKind::Crown, &[0][..]));
+    let trunk = &r.axes[0];
+    let size = ops::hypot(6.0, 10.0);
+    assert!((trunk.half_width[1] - 0.5 / size).abs() < 0.012, "{:?}", trunk.half_width);
+    assert!(trunk.points.last().is_some_and(|p| contains(&r.regions[0].outline, *p)), "into the crown");
+    assert_eq!(organs(&r), ["trunk", "trunk", "leaf_contour"]);
+}
+
+#[test]
+fn a_crown_alone_gets_stems_and_one_in_the_air_a_trunk() {
+    let (bush, _) = reading(&[(StrokeClass::Crown, circle((5.0, 3.0), 3.0))]);
+    assert!(bush.regions[0].bearers.len() >= 3, "several stems");
+    let (tree, _) = reading(&[
+        (StrokeClass::Crown, circle((5.0, 7.0), 3.0)),
+        (StrokeClass::Ground, line((0.0, 0.0), (10.0, 0.0))),
+    ]);
+    assert_eq!(tree.regions[0].bearers.len(), 1);
+    assert!(tree.axes[0].points[0].y < 0.01, "from the ground");
+}
+
+#[test]
+fn a_lone_leaf_has_its_midrib_and_petiole() {
+    let (r, _) = reading(&[
+        (StrokeClass::Blade, leaf((5.0, 3.0), (5.0, 10.0), 4.0)),
+        (StrokeClass::Vein, line((5.0, 9.5), (5.0, 0.0))),
+        (StrokeClass::Vein, line((5.0, 6.0), (6.0, 7.0))),
+    ]);
+    assert_eq!((r.leaves.len(), r.axes.len()), (1, 1));
+    let l = &r.leaves[0];
+    assert_eq!(l.veins.len(), 1);
+    assert!(
+        l.tip.y > l.root.y + 0.4 && l.midrib.iter().all(|p| (p.x - l.root.x).abs() < 0.02),
+        "{:?}",
+        l.midrib
+    );
+    assert!(r.axes[0].points[0].y < 0.01 && l.bearer.is_some(), "borne by its petiole");
+    assert_eq!(organs(&r), ["leaf", "vein", "vein"]);
+}
+
+#[test]
+fn a_palm_has_its_fronds_on_top() {
+    let fronds = path(&[
+        (5.0, 8.0),
+        (1.0, 7.0),
+        (4.8, 8.1),
+        (2.0, 10.5),
+        (5.0, 8.2),
+        (8.0, 10.5),
+        (5.2, 8.1),
+        (9.0, 7.0),
+        (5.0, 7.8),
+    ]);
+    let (r, _) = reading(&[
+        (StrokeClass::TrunkOutline, line((4.7, 0.0), (4.8, 8.0))),
+        (StrokeClass::TrunkOutline, line((5.2, 8.0), (5.3, 0.0))),
+        (StrokeClass::Corolla, fronds),
+        (StrokeClass::Axis, line((5.1, 8.0), (7.0, 5.0))),
+    ]);
+    assert_eq!(r.flowers.len(), 0);
+    assert!(
+        r.leaves.len() >= 4 && r.leaves.iter().all(|l| l.bearer.is_some_and(|b| b.axis == 0)),
+        "{:?}",
+        r.leaves.len()
+    );
+    assert!(r.woody, "a trunk");
+}
+
+#[test]
+fn a_cactus_has_arms_and_thorns_and_no_bark() {
+    let body = path(&[
+        (4.0, 0.0),
+        (4.0, 8.0),
+        (5.0, 10.0),
+        (6.0, 8.0),
+        (6.0, 5.0),
+        (8.0, 5.0),
+        (8.0, 7.0),
+        (9.0, 7.0),
+        (9.0, 4.0),
+        (6.0, 4.0),
+        (6.0, 0.0),
+    ]);
+    let (r, _) = reading(&[
+        (StrokeClass::TrunkOutline, body),
+        (StrokeClass::Axis, line((4.0, 3.0), (3.2, 3.3))),
+        (StrokeClass::Axis, line((4.0, 5.0), (3.2, 5.3))),
+        (StrokeClass::Axis, line((6.0, 2.0), (6.8, 2.3))),
+    ]);
+    assert_eq!((r.axes.len(), r.thorns.len(), r.woody), (2, 3, false));
+    assert!(r.axes[1].bearer.is_some_and(|b| b.axis == 0), "the arm stands on the body");
+    assert!(r.thorns.iter().all(|t| t.1.is_some()), "thorns are borne");
+    assert_eq!(organs(&r)[1..], ["thorn", "thorn", "thorn"]);
+}
+
+#[test]
+fn a_pot_is_left_out_and_the_plant_stands_on_it() {
+    let (r, _) = reading(&[
+        (StrokeClass::Pot, path(&[(3.0, 3.0), (7.0, 3.0), (6.5, 0.0), (3.5, 0.0), (3.0, 3.0)])),
+        (StrokeClass::Axis, line((5.0, 1.5), (5.0, 9.0))),
+        (StrokeClass::Blade, leaf((5.0, 6.0), (7.5, 7.5), 0.8)),
+    ]);
+    assert_eq!((organs(&r)[0], r.axes.len(), r.leaves.len()), ("ignored", 1, 1));
+    let rim = 3.0 / ops::hypot(4.5, 9.0);
+    assert!((r.axes[0].points[0].y - rim).abs() < 0.02, "{}", r.axes[0].points[0].y);
+}
+
+#[test]
+fn roots_go_down_from_a_trunk() {
+    let (r, _) = reading(&[
+        (StrokeClass::TrunkOutline, line((4.5, 3.0), (4.6, 8.0))),
+        (StrokeClass::TrunkOutline, line((5.4, 8.0), (5.5, 3.0))),
+        (StrokeClass::Crown, circle((5.0, 10.0), 2.5)),
+        (StrokeClass::Ground, line((0.0, 3.0), (10.0, 3.0))),
+        (StrokeClass::Axis, line((4.6, 2.9), (3.0, 1.0))),
+        (StrokeClass::Axis, line((6.5, 0.0), (5.4, 2.9))),
+    ]);
+    let roots: Vec<_> = r.axes.iter().filter(|a| a.kind == AxisKind::Root).collect();
+    assert_eq!(roots.len(), 2);
+    assert!(roots.iter().all(|a| a.points[0].y > a.points[a.points.len() - 1].y), "upper end first");
+    assert_eq!(organs(&r)[4..], ["root", "root"]);
+}
+
+#[test]
+fn a_user_contour_needs_no_class_and_gets_a_bearer() {
+    let mut drawing = Drawing::from_polylines("c", &[circle((5.0, 5.0), 3.0), line((5.0, 0.0), (5.0, 3.5))]);
+    drawing.strokes[0].mode = StrokeMode::LeafContour;
+    let ink = clean(&drawing, &mut Report::default());
+    let classes = [StrokeClass::Other, StrokeClass::Axis].map(|class| Classified { class, confidence: 1.0 });
+    let r = read(&ink, &classes, &mut Report::default());
+    assert_eq!((r.regions[0].kind, &r.regions[0].bearers[..]), (RegionKind::Leaves, &[0][..]));
+    assert_eq!(organs(&r), ["leaf_contour", "branch"]);
+    assert_eq!(r.validate().count(), 0);
+}
+
+#[test]
+fn a_scribble_alone_becomes_a_plant_with_a_warning() {
+    let scribble: Vec<DVec2> =
+        (0..400).map(f64::from).map(|t| DVec2::new(ops::sin(t * 1.3), ops::sin(t * 0.7 + 1.0))).collect();
+    for class in [StrokeClass::Scribble, StrokeClass::Other, StrokeClass::Pot] {
+        let (r, report) = reading(&[(class, scribble.clone())]);
+        assert!(!r.axes.is_empty() && !r.regions.is_empty(), "{class:?}");
+        assert!(report.warnings.iter().any(|w| w.code == "scribble"), "{class:?}");
+    }
+}
+
+#[test]
+fn thousands_of_strokes_of_any_class() {
+    for alike in [false, true] {
+        let lines: Vec<Vec<DVec2>> = (0..4_000)
+            .map(|i: i32| {
+                let (x, y) = if alike { (1.0, 1.0) } else { (f64::from(i % 100), f64::from(i / 100)) };
+                vec![
+                    DVec2::new(x, y),
+                    DVec2::new(x + 0.7, y + 0.4),
+                    DVec2::new(x + 0.1, y + 0.8),
+                    DVec2::new(x, y + 0.01),
+                ]
+            })
+            .collect();
+        let ink = clean(&Drawing::from_polylines("many", &lines), &mut Report::default());
+        for class in [StrokeClass::Axis, StrokeClass::Blade, StrokeClass::TrunkOutline, StrokeClass::Corolla]
+        {
+            let classes = vec![Classified { class, confidence: 1.0 }; ink.strokes.len()];
+            let r = read(&ink, &classes, &mut Report::default());
+            assert_eq!(r.strokes.len(), 4_000, "{class:?}");
+        }
+    }
+}
+
+#[test]
+fn a_fruit_or_a_contour_drawn_as_a_line_is_still_a_plant() {
+    let (r, report) = reading(&[(StrokeClass::Fruit, line((0.0, 2.0), (1.0, 1.0)))]);
+    assert_eq!((r.axes.len(), r.fruits.len()), (1, 0));
+    assert!(report.warnings.iter().any(|w| w.code == "scribble"), "{report:?}");
+    let mut drawing = Drawing::from_polylines("c", &[line((0.0, 0.0), (1.0, 1.0))]);
+    drawing.strokes[0].mode = StrokeMode::LeafContour;
+    let ink = clean(&drawing, &mut Report::default());
+    assert_eq!(read(&ink, &[], &mut Report::default()).axes.len(), 1);
+}
+
+#[test]
+fn a_leaf_taken_for_a_body_is_seen_by_its_midrib_unless_the_user_says_so() {
+    let strokes = [leaf((5.0, 3.0), (5.0, 10.0), 4.0), line((5.0, 9.5), (5.0, 0.0))];
+    let ink = clean(&Drawing::from_polylines("leaf", &strokes), &mut Report::default());
+    let body = |confidence| {
+        [StrokeClass::TrunkOutline, StrokeClass::Axis].map(|class| Classified { class, confidence })
+    };
+    let guessed = read(&ink, &body(0.6), &mut Report::default());
+    assert_eq!((guessed.leaves.len(), guessed.strokes[0].class), (1, StrokeClass::Blade));
+    let set = read(&ink, &body(1.0), &mut Report::default());
+    assert_eq!((set.leaves.len(), set.strokes[0].class), (0, StrokeClass::TrunkOutline));
+}
+
+#[test]
+fn margin_and_midrib_in_one_go_with_side_veins_are_a_leaf() {
+    let (margin, midrib) = (leaf((5.0, 0.0), (5.0, 10.0), 4.0), line((5.0, 0.0), (5.0, 10.0)));
+    let mut on_from_the_tip = leaf((5.0, 10.0), (5.0, 0.0), 4.0);
+    on_from_the_tip.splice(0..0, midrib.clone());
+    for outline in [[margin, midrib].concat(), on_from_the_tip] {
+        let veins = [3.0, 5.0, 7.0].map(|y| line((4.2, y), (5.8, y + 0.4)));
+        let strokes: Vec<_> = [outline].into_iter().chain(veins).collect();
+        let ink = clean(&Drawing::from_polylines("leaf", &strokes), &mut Report::default());
+        let class = |k| if k == 0 { StrokeClass::TrunkOutline } else { StrokeClass::Axis };
+        let classes = [0, 1, 2, 3].map(|k| Classified { class: class(k), confidence: 0.6 });
+        let r = read(&ink, &classes, &mut Report::default());
+        assert_eq!((r.leaves.len(), r.thorns.len()), (1, 0), "{r:?}");
+        assert!(r.strokes[1..].iter().all(|s| s.class == StrokeClass::Vein), "{:?}", r.strokes);
+    }
+}
+
+#[test]
+fn grass_is_neither_trunks_nor_a_crown() {
+    let stalks: Vec<_> = (0..6).map(|i| line((f64::from(i), 0.0), (f64::from(i) + 0.3, 3.0))).collect();
+    let ink = clean(&Drawing::from_polylines("grass", &stalks), &mut Report::default());
+    let r = read(
+        &ink,
+        &[Classified { class: StrokeClass::TrunkOutline, confidence: 0.5 }; 6],
+        &mut Report::default(),
+    );
+    assert_eq!((r.axes.len(), r.leaves.len()), (0, 6), "{r:?}");
+    assert!(r.leaves.iter().all(|l| l.root.y < 0.02 && l.tip.y > 0.2), "rooted on the ground");
+    let zigzag = path(&[
+        (0.0, 0.0),
+        (0.5, 3.0),
+        (1.0, 0.0),
+        (1.5, 3.0),
+        (2.0, 0.0),
+        (2.5, 3.0),
+        (3.0, 0.0),
+        (3.5, 3.0),
+        (4.0, 0.0),
+    ]);
+    let ink = clean(&Drawing::from_polylines("grass", &[zigzag]), &mut Report::default());
+    let r = read(&ink, &[Classified { class: StrokeClass::Crown, confidence: 0.5 }], &mut Report::default());
+    assert_eq!((r.leaves.len(), r.regions.len()), (4, 0));
+}
+
+#[test]
+fn a_lawn_drawn_as_a_flat_line_and_a_zigzag_is_grass() {
+    let flat = path(&[(-0.2, 2.4), (-0.3, 0.3), (6.0, 0.0)]);
+    let zigzag = path(&[
+        (6.5, 0.0),
+        (7.5, 2.0),
+        (8.0, 0.6),
+        (9.5, 2.6),
+        (10.0, 0.8),
+        (11.0, 2.0),
+        (11.5, 0.8),
+        (12.5, 1.8),
+    ]);
+    let r = guessed(&[(StrokeClass::TrunkOutline, flat), (StrokeClass::TrunkOutline, zigzag)]);
+    assert_eq!((r.axes.len(), r.strokes[0].class), (0, StrokeClass::Ground), "{:?}", r.strokes);
+    assert!(r.leaves.len() >= 3, "{} blades", r.leaves.len());
+}
+
+fn guessed(strokes: &[(StrokeClass, Vec<DVec2>)]) -> Reading {
+    let lines: Vec<Vec<DVec2>> = strokes.iter().map(|s| s.1.clone()).collect();
+    let ink = clean(&Drawing::from_polylines("guessed", &lines), &mut Report::default());
+    let classes: Vec<Classified> = ink
+        .strokes
+        .iter()
+        .map(|s| Classified { class: strokes[s.index as usize].0, confidence: 0.5 })
+        .collect();
+    read(&ink, &classes, &mut Report::default())
+}
+
+#[test]
+fn a_tuft_of_grass_in_strokes_down_and_up_again_is_no_crown() {
+    let v = |x: f64| path(&[(x - 1.0, 4.0), (x, 0.0), (x + 1.2, 4.0)]);
+    let r = guessed(&[
+        (StrokeClass::Crown, v(0.0)),
+        (StrokeClass::Fruit, v(3.0)),
+        (StrokeClass::Axis, line((6.0, 0.0), (6.3, 3.0))),
+    ]);
+    assert_eq!((r.regions.len(), r.fruits.len(), r.leaves.len()), (0, 0, 5), "{:?}", r.strokes);
+    // A trough is no root: what is round below stays a crown.
+    let bowl: Vec<DVec2> = (0..=40)
+        .map(|i| ops::PI * f64::from(i) / 40.0)
+        .map(|a| DVec2::new(-ops::cos(a), 1.0 - ops::sin(a)))
+        .collect();
+    assert_eq!(guessed(&[(StrokeClass::Crown, bowl)]).regions.len(), 1);
+}
+
+#[test]
+fn a_line_that_crosses_itself_all_over_is_a_scribble_not_petals() {
+    let tangle: Vec<DVec2> = (0..600)
+        .map(|i| f64::from(i) * 0.1)
+        .map(|t| DVec2::new(1.5 * ops::sin(1.9 * t), ops::sin(3.1 * t)))
+        .collect();
+    let r = guessed(&[(StrokeClass::Corolla, tangle)]);
+    assert_eq!((r.flowers.len(), r.strokes[0].class), (0, StrokeClass::Scribble));
+    // Petals in one go cross in the middle only.
+    let rose: Vec<DVec2> = (0..=300)
+        .map(|i| ops::PI * f64::from(i) / 300.0 + 0.1)
+        .map(|t| DVec2::new(ops::cos(t), ops::sin(t)) * ops::cos(9.0 * t))
+        .collect();
+    assert_eq!(guessed(&[(StrokeClass::Corolla, rose)]).strokes[0].class, StrokeClass::Corolla);
+}
+
+#[test]
+fn half_a_cactus_stands_upright() {
+    // Up the left side, round an arm and the top, and left off half way down the right side.
+    let half = path(&[
+        (1.0, 0.0),
+        (1.0, 2.0),
+        (0.0, 2.0),
+        (0.0, 3.5),
+        (0.5, 3.5),
+        (0.5, 2.6),
+        (1.0, 2.6),
+        (1.0, 5.0),
+        (1.9, 5.0),
+        (1.9, 2.5),
+    ]);
+    let r = guessed(&[(StrokeClass::TrunkOutline, half)]);
+    let trunk = &r.axes[0];
+    let (foot, top) = (trunk.points[0], trunk.points[trunk.points.len() - 1]);
+    assert!((foot.x - top.x).abs() < 0.05, "leans from {foot} to {top}");
+    let wide = |tenths: usize| trunk.half_width[(trunk.half_width.len() - 1) * tenths / 10];
+    assert!(wide(1) > 0.7 * wide(7), "{} at the foot, {} above", wide(1), wide(7));
+}
+
+fn any_class() -> impl Strategy<Value = StrokeClass> {
+    (0..StrokeClass::ALL.len()).prop_map(|k| StrokeClass::ALL[k])
+}
+
+fn any_stroke() -> impl Strategy<Value = Vec<DVec2>> {
+    let coarse = (0..6, 0..6).prop_map(|(x, y)| DVec2::new(f64::from(x), f64::from(y)));
+    let fine = (0.0..6.0, 0.0..6.0).prop_map(|(x, y)| DVec2::new(x, y));
+    let shape = (0.0..5.0, 0.0..5.0, 0.1..2.0).prop_map(|(x, y, r)| circle((x, y), r));
+    prop_oneof![
+        3 => prop::collection::vec(coarse, 1..9),
+        2 => prop::collection::vec(fine, 1..30),
+        1 => shape,
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
+    #[test]
+    fn any_strokes_and_classes_give_a_sound_reading(
+        strokes in prop::collection::vec((any_class(), any_stroke(), 0..10), 0..12)
+    ) {
+        let mut drawing = Drawing::from_polylines("any", &strokes.iter().map(|s| s.1.clone()).collect::<Vec<_>>());
+        for (s, (_, _, mode)) in drawing.strokes.iter_mut().zip(&strokes) {
+            s.mode = match mode { 0 => StrokeMode::BranchContour, 1 => StrokeMode::LeafContour, _ => StrokeMode::Parts };
+        }
+        let mut report = Report::default();
+        let ink = clean(&drawing, &mut report);
+        let classes: Vec<Classified> = ink.strokes.iter().map(|s| Classified { class: strokes[s.index as usize].0, confidence: 0.5 }).collect();
+        let r = read(&ink, &classes, &mut report);
+        let faults: Vec<String> = r.validate().map(|f| f.to_string()).collect();
+        prop_assert!(faults.is_empty(), "{:?}", faults);
+        prop_assert_eq!(r.strokes.len(), strokes.len());
+        let organs = r.axes.len() + r.leaves.len() + r.flowers.len() + r.regions.len() + r.fruits.len();
+        prop_assert!(ink.strokes.is_empty() || organs > 0, "no plant at all");
+    }
+}

@@ -1,0 +1,136 @@
+//! Veins: lines inside a blade. The one from root to tip becomes its midrib.
+
+use geom::{contains, polyline_length};
+use glam::DVec2;
+use ink::StrokeClass;
+
+use crate::OrganWord;
+use crate::branches::Line;
+use crate::draft::Draft;
+use crate::near::Boxes;
+
+/// Samples of a line that are tested.
+const SAMPLES: usize = 24;
+
+/// The veins of each blade: line and stroke.
+pub(crate) type Veins = Vec<Vec<Vec<DVec2>>>;
+
+/// Takes the lines that lie inside blades out of the draft's vein and axis strokes.
+///
+/// A vein that runs on beyond its blade is its stalk out there.
+pub(crate) fn collect(draft: &mut Draft<'_>) -> Veins {
+    let boxes = Boxes::new(draft.blades.iter().map(|b| b.outline.as_slice()));
+    let mut veins: Veins = draft.blades.iter_mut().map(|b| b.rib.take().into_iter().collect()).collect();
+    for class in [StrokeClass::Vein, StrokeClass::Axis] {
+        // A line called an axis must lie in the blade as a whole.
+        let share = if class == StrokeClass::Vein { 0.25 } else { 0.9 };
+        for k in draft.of_class(class) {
+            let points = draft.ink.strokes[k].points.clone();
+            match host(draft, &boxes, &points, share) {
+                Some(blade) => {
+                    draft.organ[k] = OrganWord::Vein;
+                    let (inner, outer) = part(&points, &draft.blades[blade].outline);
+                    let source = Some(draft.ink.strokes[k].index);
+                    for stalk in outer {
+                        if polyline_length(&stalk) > 0.1 * draft.blades[blade].size {
+                            draft.lines.push(Line { points: stalk, source });
+                        }
+                    }
+                    veins[blade].push(inner);
+                }
+                None => draft.line_of(k, OrganWord::Branch),
+            }
+        }
+    }
+    veins
+}
+
+/// The blade that holds at least `share` of a line; of several the smallest.
+fn host(draft: &Draft<'_>, boxes: &Boxes, points: &[DVec2], share: f64) -> Option<usize> {
+    let stride = (points.len() / SAMPLES).max(1);
+    let mut hits: Vec<(usize, usize)> = Vec::new();
+    let mut samples = 0;
+    for &p in points.iter().step_by(stride) {
+        samples += 1;
+        for &b in boxes.around(p) {
+            if contains(&draft.blades[b].outline, p) {
+                match hits.iter_mut().find(|h| h.0 == b) {
+                    Some(h) => h.1 += 1,
+                    None => hits.push((b, 1)),
+                }
+            }
+        }
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most a few dozen")]
+    let enough = (share * f64::from(samples)).ceil() as usize;
+    hits.into_iter()
+        .filter(|h| h.1 >= enough)
+        .min_by(|a, b| draft.blades[a.0].size.total_cmp(&draft.blades[b.0].size).then(a.0.cmp(&b.0)))
+        .map(|h| h.0)
+}
+
+/// Cuts a vein at its blade's outline: the part inside, and loose ends from the free end to the blade.
+fn part(points: &[DVec2], outline: &[DVec2]) -> (Vec<DVec2>, Vec<Vec<DVec2>>) {
+    let inside = |p: &DVec2| contains(outline, *p);
+    let (Some(first), Some(last)) = (points.iter().position(inside), points.iter().rposition(inside)) else {
+        return (points.to_vec(), Vec::new());
+    };
+    if last <= first {
+        return (points.to_vec(), Vec::new());
+    }
+    let head = points[..=first].to_vec();
+    let tail: Vec<DVec2> = points[last..].iter().rev().copied().collect();
+    (points[first..=last].to_vec(), [head, tail].into_iter().filter(|l| l.len() > 1).collect())
+}
+
+/// Of a blade's veins the midrib, root first: it leads from near the root towards the tip. The rest are side veins.
+pub(crate) fn choose_midrib(
+    veins: Vec<Vec<DVec2>>,
+    root: DVec2,
+    tip: DVec2,
+) -> (Option<Vec<DVec2>>, Vec<Vec<DVec2>>) {
+    let reach = root.distance(tip).max(1e-9);
+    let along = (tip - root) / reach;
+    let score = |v: &[DVec2]| {
+        let (Some(&a), Some(&b)) = (v.first(), v.last()) else { return 0.0 };
+        let run = (b - a).dot(along).abs() / reach;
+        let aside = v.iter().map(|p| (*p - root).perp_dot(along).abs()).fold(0.0, f64::max) / reach;
+        let start = (a - root).dot(along).min((b - root).dot(along)) / reach;
+        if run > 0.4 && aside < 0.35 && start < 0.4 { run - 0.5 * aside } else { 0.0 }
+    };
+    let best =
+        (0..veins.len()).max_by(|&a, &b| score(&veins[a]).total_cmp(&score(&veins[b])).then(b.cmp(&a)));
+    let Some(best) = best.filter(|&b| score(&veins[b]) > 0.0) else { return (None, veins) };
+    let mut rest = veins;
+    let mut rib = rest.remove(best);
+    let away = |p: Option<&DVec2>| p.map_or(0.0, |p| (*p - root).dot(along));
+    if away(rib.first()) > away(rib.last()) {
+        rib.reverse();
+    }
+    (Some(rib), rest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_vein_along_the_leaf_is_its_midrib() {
+        let p = |x: f64, y: f64| DVec2::new(x, y);
+        let side = vec![p(0.5, 0.4), p(0.6, 0.5)];
+        let middle = vec![p(0.5, 0.8), p(0.5, 0.5), p(0.5, 0.15)];
+        let (rib, rest) = choose_midrib(vec![side.clone(), middle.clone()], p(0.5, 0.1), p(0.5, 0.9));
+        assert_eq!(rib, Some(middle.into_iter().rev().collect()));
+        assert_eq!(rest, [side]);
+    }
+
+    #[test]
+    fn what_sticks_out_of_the_leaf_is_its_stalk() {
+        let p = |x: f64, y: f64| DVec2::new(x, y);
+        let square = [p(0.0, 0.0), p(1.0, 0.0), p(1.0, 1.0), p(0.0, 1.0)];
+        let line: Vec<DVec2> = (0..15).map(|i| p(0.5, f64::from(i) * 0.1 - 0.55)).collect();
+        let (inner, outer) = part(&line, &square);
+        assert!(inner.iter().all(|q| q.y > 0.0) && outer.len() == 1, "{outer:?}");
+        assert_eq!(outer[0][0], line[0]);
+    }
+}

@@ -1,0 +1,57 @@
+//! What every edit is given, and why one stops.
+
+use base::{Cancelled, Report, Run};
+use growth::{GrowthError, Obstacles};
+
+use crate::draft::Draft;
+use crate::habit::Habit;
+use crate::outcome::Why;
+
+/// A plant may have so many axes at most after an edit that lets something grow.
+pub(crate) const MOST_AXES: usize = 400_000;
+
+/// Why an edit stopped.
+pub(crate) enum Stop {
+    Why(Why),
+    Cancelled(Cancelled),
+}
+
+impl From<Why> for Stop {
+    fn from(why: Why) -> Self {
+        Self::Why(why)
+    }
+}
+
+impl From<Cancelled> for Stop {
+    fn from(c: Cancelled) -> Self {
+        Self::Cancelled(c)
+    }
+}
+
+impl From<GrowthError> for Stop {
+    fn from(error: GrowthError) -> Self {
+        match error {
+            GrowthError::Cancelled(c) => Self::Cancelled(c),
+            // All numbers are ours or checked: what is left is a place where nothing can grow.
+            _ => Self::Why(Why::NothingGrew),
+        }
+    }
+}
+
+/// What every edit is given.
+pub(crate) struct Bench<'a> {
+    pub(crate) obstacles: &'a Obstacles,
+    pub(crate) exponent: Option<f64>,
+    pub(crate) run: &'a Run<'a>,
+}
+
+impl Bench<'_> {
+    pub(crate) fn habit(&self, draft: &Draft) -> Habit {
+        Habit::of(draft, self.exponent)
+    }
+}
+
+/// A report that nobody reads: what growth warns of is part of the outcome or of no interest to a hand.
+pub(crate) fn unread() -> Report {
+    Report::default()
+}

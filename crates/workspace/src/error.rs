@@ -1,0 +1,107 @@
+//! Why something was not done.
+
+use burgeon::document::{ArchiveError, CommandError, PhotoError, ProjectError};
+use burgeon::formats::{DrawingError, ModelError, WriteError};
+use burgeon::{SceneError, Stopped, TreeError};
+
+/// Why a workspace refused; it is as it was.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum WorkspaceError {
+    /// The document has no plant.
+    #[error("there is no plant; add one first")]
+    NoPlant,
+    /// The plant that is to be chosen was deleted.
+    #[error("that plant is not there any more")]
+    PlantGone,
+    /// No preset has that key.
+    #[error("there is no tree {0:?}")]
+    NoTree(String),
+    /// None of the strokes is there.
+    #[error("no stroke is selected")]
+    NoStroke,
+    /// The text is no drawing.
+    #[error("the clipboard holds no drawing")]
+    NoClipboard,
+    /// The file has no drawing.
+    #[error("there is no drawing in it")]
+    NoDrawing,
+    /// Every stroke is empty.
+    #[error("there is no stroke in it that can be used")]
+    NoUsableStroke,
+    /// The photograph is to be moved and there is none.
+    #[error("there is no photograph under the drawing")]
+    NoPhoto,
+    /// Nothing says what the file is.
+    #[error(
+        "this is no file that Burgeon reads: give a project (.burgeon), a drawing (.svg, .inkml, .ndjson, .json), marks \
+         of a leaf (.csv), a tree (.toml) or a model (.glb, .gltf, .obj, .ply, .stl)"
+    )]
+    UnknownFile,
+    /// The bytes are not UTF-8.
+    #[error(transparent)]
+    NotText(#[from] core::str::Utf8Error),
+    /// An obstacle that is no model.
+    #[error("an obstacle is a model: give a .glb, .gltf, .obj, .ply or .stl file")]
+    ObstacleFile,
+    /// A model without triangles.
+    #[error("there is no surface in it")]
+    NoSurface,
+    /// There is nothing to export.
+    #[error("there is no plant yet: draw at least one line, or add a tree, a leaf or a flower")]
+    NothingMade,
+    /// Leaves and flowers have no axes.
+    #[error("only plants with axes have a structure: a sketch or a tree")]
+    NoStructure,
+    /// A model that is only looked at is no plant and no drawing.
+    #[error("models are not written as {0:?}")]
+    Format(&'static str),
+    /// The tool needs a plant.
+    #[error("there is no plant to shape yet")]
+    NothingToShape,
+    /// The document refused.
+    #[error(transparent)]
+    Command(#[from] CommandError),
+    /// The project cannot be read or written.
+    #[error(transparent)]
+    Project(#[from] ProjectError),
+    /// The drawing cannot be read.
+    #[error(transparent)]
+    Drawing(#[from] DrawingError),
+    /// The model cannot be read.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// The tree's file cannot be read.
+    #[error(transparent)]
+    Tree(#[from] TreeError),
+    /// The growth law cannot be read.
+    #[error("the growth law: {0}")]
+    Law(#[source] serde_json::Error),
+    /// The plant cannot be made.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The picture is no photograph that is taken.
+    #[error(transparent)]
+    Photo(#[from] PhotoError),
+    /// A file cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// Several files do not go into one.
+    #[error(transparent)]
+    Archive(#[from] ArchiveError),
+    /// Stopped from outside: a newer change, or the person.
+    #[error("cancelled")]
+    Cancelled,
+    /// Our bug.
+    #[error("internal: {0}")]
+    Internal(&'static str),
+}
+
+impl From<Stopped> for WorkspaceError {
+    fn from(stopped: Stopped) -> Self {
+        match stopped {
+            Stopped::Cancelled(_) => Self::Cancelled,
+            Stopped::OverBudget(o) => Self::Tree(TreeError::OverBudget(o)),
+        }
+    }
+}

@@ -1,0 +1,256 @@
+//! What is shown: plants made again where something changed, their meshes as columns.
+
+use std::collections::BTreeMap;
+
+use burgeon::document::{self, DocumentPlant, Editor, Maker, PlantId};
+use burgeon::growth::Obstacle;
+use burgeon::ink::Drawing;
+use burgeon::mesh::Model;
+use burgeon::plant::{OrganKind, Shape};
+use burgeon::{Evaluator, ItemReport, MakeError, Run, SceneError, Seed, SketchOptions};
+
+use crate::shaping::coarser;
+use crate::workspace::GUEST;
+use crate::{Column, ObstacleView, PlantView, SceneView, Workspace, WorkspaceError};
+
+/// Share of the triangles while a stroke is drawn.
+pub(crate) const PREVIEW_DETAIL: f64 = 0.4;
+
+/// What came of a plant.
+#[derive(Debug)]
+pub(crate) enum Outcome {
+    Made,
+    /// Nothing to make it of yet.
+    Bare,
+    Failed(SceneError),
+}
+
+impl Workspace {
+    /// Brings every plant that is shown up to date. While a stroke is drawn only the current one, coarser.
+    ///
+    /// A plant that cannot be made says why in its view; the others are made all the same. `run.cancel` tells how far the
+    /// plant that is being made is.
+    ///
+    /// # Errors
+    /// [`WorkspaceError::Cancelled`]; what was made before it stays.
+    pub fn evaluate(&mut self, run: &Run<'_>) -> Result<SceneView, WorkspaceError> {
+        self.previewed = false;
+        let current = self.current();
+        let drawn = self.draft.is_some();
+        let gesture = self.with_gesture();
+        if self.guest.is_none() {
+            let document = self.editor.document();
+            self.scene.retain(document);
+            for plant in document.plants().iter().filter(|p| !p.settings().hidden) {
+                let id = plant.id();
+                run.cancel.forget();
+                let outcome = if drawn && Some(id) == current {
+                    self.previewed = true;
+                    let look = self.preview.get_or_insert_with(Evaluator::previewing);
+                    let mut drawing = plant.drawing();
+                    // With each stroke anew: what came before may be understood otherwise by now.
+                    let now = Some((id, self.editor.revision()));
+                    if self.followed != now
+                        && self.scene.evaluator(id).is_some_and(|whole| look.follow(whole, &drawing))
+                    {
+                        self.followed = now;
+                    }
+                    drawing.strokes.extend(self.draft.clone());
+                    let looked = preview(look, plant, &drawing, run);
+                    looked.map(|item| self.preview_item = Some(item)).map_err(SceneError::from)
+                } else if drawn && self.outcomes.contains_key(&id) {
+                    continue; // the pen goes first
+                } else if let Some((_, shaped)) = gesture.as_ref().filter(|(held, _)| *held == id) {
+                    self.scene.set_looking(self.held.as_ref().is_some_and(|h| h.large));
+                    let looked = self.scene.update(id, shaped, run);
+                    self.scene.set_looking(false);
+                    looked
+                } else {
+                    self.scene.update(id, document, run)
+                };
+                let outcome = match outcome {
+                    Ok(()) => Outcome::Made,
+                    Err(e) if e.is_cancelled() => return Err(WorkspaceError::Cancelled),
+                    Err(e) if e.is_bare() => Outcome::Bare,
+                    Err(e) => Outcome::Failed(e),
+                };
+                self.outcomes.insert(id, outcome);
+            }
+        }
+        Ok(self.view())
+    }
+
+    fn view(&mut self) -> SceneView {
+        let mut view = SceneView { revision: self.editor.revision(), guest: None, plants: Vec::new() };
+        let mut textures = std::mem::take(&mut self.textures);
+        let mut given = BTreeMap::new();
+        if let Some(model) = &self.guest {
+            let mut seen = PlantView::of(GUEST, model, &mut textures);
+            seen.fresh = true;
+            view.guest = Some(seen);
+        }
+        for plant in self.editor.document().plants() {
+            let id = plant.id();
+            let previewed = self.previewed && self.current() == Some(id);
+            let model = self.model(id);
+            // None for what the page shows nothing of, or a look: whatever comes next is new to it.
+            let shown = !previewed && model.is_some();
+            let revision = self.scene.get(id).map(|p| p.revision).filter(|_| shown);
+            let mut seen =
+                model.map_or_else(|| PlantView::empty(id), |m| PlantView::of(id, m, &mut textures));
+            seen.fresh = previewed || model.is_none() || self.meshes.get(&id) != Some(&revision);
+            seen.item = self.item(id);
+            seen.stages = if previewed {
+                self.preview.as_ref().map_or_else(Vec::new, |e| e.stages_done().to_vec())
+            } else {
+                self.scene.get(id).map_or_else(Vec::new, |p| p.stages.to_vec())
+            };
+            let front = if previewed {
+                self.preview.as_ref().and_then(Evaluator::front)
+            } else {
+                self.scene.get(id).and_then(|p| p.front)
+            };
+            seen.front = front.filter(|_| model.is_some()).map(Into::into);
+            seen.days = self.scene.days(id, self.editor.document());
+            if let Some(Outcome::Failed(why)) = self.outcomes.get(&id) {
+                seen.error = Some(why.to_string());
+            }
+            if let Maker::Tree(t) = &plant.settings().maker {
+                seen.obstacles = t.obstacles.iter().map(|o| ObstacleView::of(&o.shape)).collect();
+            }
+            given.insert(id, revision);
+            view.plants.push(seen);
+        }
+        self.meshes = given;
+        self.textures = textures;
+        view
+    }
+
+    fn item(&self, id: PlantId) -> Option<ItemReport> {
+        if !matches!(self.outcomes.get(&id), Some(Outcome::Made)) {
+            return None;
+        }
+        if self.previewed && self.current() == Some(id) {
+            return self.preview_item.clone();
+        }
+        self.scene.get(id).map(|p| p.item.clone())
+    }
+
+    /// What is shown of a plant.
+    pub(crate) fn model(&self, id: PlantId) -> Option<&Model> {
+        if id == GUEST {
+            return self.variant.as_ref().or(self.guest.as_ref());
+        }
+        if matches!(self.outcomes.get(&id), None | Some(Outcome::Bare)) {
+            return None;
+        }
+        if self.previewed && self.current() == Some(id) {
+            return self.preview.as_ref()?.model();
+        }
+        self.scene.get(id).map(|p| p.model)
+    }
+
+    /// A column of a mesh of the last view; empty for what is not there.
+    pub fn column(&self, plant: PlantId, part: usize, column: Column) -> &[f32] {
+        let Some(part) = self.model(plant).and_then(|m| m.parts.get(part)) else { return &[] };
+        let mesh = &part.mesh;
+        match column {
+            Column::Positions => mesh.positions.as_flattened(),
+            Column::Normals => mesh.normals.as_flattened(),
+            Column::Uvs => mesh.uvs.as_flattened(),
+            Column::Colors => mesh.colors.as_flattened(),
+        }
+    }
+
+    /// Three indices a triangle of a mesh of the last view.
+    pub fn indices(&self, plant: PlantId, part: usize) -> &[u32] {
+        let part = self.model(plant).and_then(|m| m.parts.get(part));
+        part.map_or(&[], |p| p.mesh.triangles.as_flattened())
+    }
+
+    /// Corners of an obstacle that is a mesh, three to a triangle; empty for others.
+    pub fn obstacle(&self, plant: PlantId, row: usize) -> Vec<f32> {
+        let plant = self.editor.document().plant(plant);
+        let Some(Maker::Tree(tree)) = plant.map(|p| &p.settings().maker) else { return Vec::new() };
+        let Some(Obstacle::Mesh { vertices, triangles }) = tree.obstacles.get(row).map(|o| &*o.shape) else {
+            return Vec::new();
+        };
+        let corners = triangles.iter().flatten().filter_map(|&i| vertices.get(i as usize));
+        corners.flat_map(|p| p.as_vec3().to_array()).collect()
+    }
+
+    /// RGBA bytes of a texture by its number in the last view; empty for one that is not in it.
+    pub fn texture(&self, number: u32) -> &[u8] {
+        self.textures.get(number).map_or(&[], |t| &t.pixels)
+    }
+
+    /// Makes the current plant of another seed for a look, a drawing with fewer triangles;
+    /// [`Workspace::end_variant`] goes back.
+    ///
+    /// # Errors
+    /// [`WorkspaceError::Cancelled`], or why there is none.
+    pub fn variant(&mut self, seed: Seed, detail: f64, run: &Run<'_>) -> Result<PlantView, WorkspaceError> {
+        let id = self.must()?;
+        let mut document = Editor::new(self.editor.document().clone());
+        let mut change = |c| match document.run(c) {
+            Ok(()) | Err(document::CommandError::Nothing(_)) => Ok(()),
+            Err(e) => Err(e),
+        };
+        change(document::PlantCommand::SetSeed(seed).of(id))?;
+        let coarse = coarser(self.editor.document(), id, detail);
+        coarse.map_or(Ok(()), change)?;
+        let mut aside = self.scene.clone();
+        aside.update(id, document.document(), run)?;
+        let model = aside.get(id).map(|p| p.model.clone()).ok_or(WorkspaceError::NothingMade)?;
+        let seen = PlantView::of(GUEST, &model, &mut self.textures);
+        self.variant = Some(model);
+        Ok(seen)
+    }
+
+    /// Goes back to the plant itself.
+    pub fn end_variant(&mut self) {
+        self.variant = None;
+    }
+
+    /// Pairs of points of the current plant's axes: x, y, z and order of each; then of its blades, from root to tip,
+    /// with "order" 100 (leaves) or 101 (petals). Empty while a model file is looked at.
+    pub fn skeleton(&self) -> Vec<f32> {
+        let id = self.current().filter(|&id| self.guest.is_none() && self.model(id).is_some());
+        let previewed = self.preview.as_ref().filter(|_| self.previewed).and_then(Evaluator::plant);
+        let plant = id.and_then(|id| previewed.or_else(|| self.scene.get(id)?.plant));
+        let Some(plant) = plant else { return Vec::new() };
+        let mut out = Vec::new();
+        for axis in &plant.axes {
+            let nodes = plant.nodes.position.get(axis.nodes.start as usize..axis.nodes.end as usize);
+            for pair in nodes.unwrap_or_default().windows(2) {
+                for p in pair {
+                    let p = p.as_vec3();
+                    #[expect(clippy::cast_precision_loss, reason = "orders are small")]
+                    out.extend([p.x, p.y, p.z, axis.order as f32]);
+                }
+            }
+        }
+        for organ in &plant.organs {
+            let Some(Shape::Blade(blade)) = plant.shapes.get(organ.shape.index()) else { continue };
+            let tip = organ.frame.origin + organ.frame.along * (blade.length() * organ.scale);
+            let kind = if organ.kind == OrganKind::Petal { 101.0 } else { 100.0 };
+            for p in [organ.frame.origin, tip].map(|p| p.as_vec3()) {
+                out.extend([p.x, p.y, p.z, kind]);
+            }
+        }
+        out
+    }
+}
+
+/// The plant of a stroke that is still being drawn.
+fn preview(
+    look: &mut Evaluator,
+    plant: &DocumentPlant,
+    drawing: &Drawing,
+    run: &Run<'_>,
+) -> Result<ItemReport, MakeError> {
+    let mut options = SketchOptions::of_plant(plant);
+    // Fast while the pen is down, fine when it is lifted.
+    options.skin.detail = (options.skin.detail * PREVIEW_DETAIL).max(0.1);
+    look.update(drawing, &options, plant.settings().seed, run)
+}

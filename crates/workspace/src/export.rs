@@ -1,0 +1,303 @@
+//! Exports: the scene or one plant, in every format that the command line writes.
+
+use burgeon::document::{self, Document, DocumentPlant, Maker, PlantId};
+use burgeon::formats::{self, ExportSpec, ModelFormat, obj_files, usd_files};
+use burgeon::mesh::Model;
+use burgeon::plant::Plant;
+use burgeon::{Report, Run, SceneEvaluator, Unit, UpAxis, coarser, scene_model};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::{Workspace, WorkspaceError};
+
+/// A name and the bytes under it.
+pub type NamedFile = (String, Vec<u8>);
+
+/// As what something is written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ExportFormat {
+    /// A binary glTF file.
+    #[default]
+    Glb,
+    /// A USD stage with its textures.
+    Usda,
+    /// OBJ with its material file and textures.
+    Obj,
+    /// Triangles with colours.
+    Ply,
+    /// Bare triangles.
+    Stl,
+    /// The structure of each plant as a multiscale tree graph.
+    Mtg,
+    /// The structure of each plant as a table of cylinders.
+    Qsm,
+    /// The current drawing in our JSON.
+    Json,
+}
+
+impl ExportFormat {
+    fn model(self) -> Result<ModelFormat, WorkspaceError> {
+        Ok(match self {
+            Self::Glb => ModelFormat::Glb,
+            Self::Usda => ModelFormat::Usda,
+            Self::Obj => ModelFormat::Obj,
+            Self::Ply => ModelFormat::Ply,
+            Self::Stl => ModelFormat::Stl,
+            Self::Mtg => return Err(WorkspaceError::Format("mtg")),
+            Self::Qsm => return Err(WorkspaceError::Format("qsm")),
+            Self::Json => return Err(WorkspaceError::Format("json")),
+        })
+    }
+}
+
+/// What is exported, and how it is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ExportRequest {
+    /// The format.
+    pub format: ExportFormat,
+    /// Levels of detail, 1 to 4: each has about half of the triangles of the one before.
+    pub levels: u32,
+    /// The vertical axis of the file.
+    pub up: Up,
+    /// The unit of the file.
+    pub unit: LengthUnit,
+    /// The whole scene, else the current plant.
+    pub whole: bool,
+    /// How wind moves drawings and trees, where the format has room for it.
+    pub wind: bool,
+}
+
+impl Default for ExportRequest {
+    fn default() -> Self {
+        let format = ExportFormat::default();
+        Self { format, levels: 1, up: Up::Y, unit: LengthUnit::M, whole: false, wind: false }
+    }
+}
+
+/// A vertical axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Up {
+    /// As inside.
+    Y,
+    /// As Blender and most CAD programs have it.
+    Z,
+}
+
+/// A unit of length.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum LengthUnit {
+    /// Metres, as inside.
+    M,
+    /// Centimetres.
+    Cm,
+    /// Millimetres.
+    Mm,
+}
+
+impl ExportRequest {
+    fn spec(&self) -> ExportSpec {
+        let up = match self.up {
+            Up::Y => UpAxis::Y,
+            Up::Z => UpAxis::Z,
+        };
+        let unit = match self.unit {
+            LengthUnit::M => Unit::Metre,
+            LengthUnit::Cm => Unit::Centimetre,
+            LengthUnit::Mm => Unit::Millimetre,
+        };
+        ExportSpec { up, unit }
+    }
+}
+
+impl Workspace {
+    /// What is shown as files: several for formats with textures beside them, levels of detail, and structures of several
+    /// plants.
+    ///
+    /// # Errors
+    /// [`WorkspaceError`]: when there is nothing to export.
+    pub fn export(
+        &mut self,
+        wanted: &ExportRequest,
+        run: &Run<'_>,
+    ) -> Result<Vec<NamedFile>, WorkspaceError> {
+        if wanted.format == ExportFormat::Json {
+            let plant = self.current_plant().ok_or(WorkspaceError::NoDrawing)?;
+            let mut out = Vec::new();
+            formats::write_drawing(&plant.drawing(), &mut out)?;
+            return Ok(vec![("drawing.json".into(), out)]);
+        }
+        if let Some(model) = &self.guest {
+            return written(model, wanted.format.model()?, "plant", &wanted.spec());
+        }
+        self.draft = None;
+        let only = if wanted.whole { None } else { Some(self.must()?) };
+        export(&mut self.scene, self.editor.document(), only, wanted, run)
+    }
+}
+
+fn export(
+    scene: &mut SceneEvaluator,
+    document: &Document,
+    only: Option<PlantId>,
+    wanted: &ExportRequest,
+    run: &Run<'_>,
+) -> Result<Vec<NamedFile>, WorkspaceError> {
+    let model = wanted.format.model();
+    let wind = wanted.wind && model.as_ref().is_ok_and(|f| f.carries_wind());
+    let mut aside;
+    let scene = if wind {
+        // What is shown stays without: its meshes would be half as large again.
+        aside = scene.clone();
+        aside.set_wind(true);
+        &mut aside
+    } else {
+        scene
+    };
+    let chosen = |p: &&DocumentPlant| only.map_or(!p.settings().hidden, |id| p.id() == id);
+    let mut made = Vec::new();
+    for plant in document.plants().iter().filter(chosen) {
+        match scene.update(plant.id(), document, run) {
+            Ok(()) => made.push(plant),
+            Err(e) if e.is_bare() && only.is_none() => {}
+            Err(e) if e.is_cancelled() => return Err(WorkspaceError::Cancelled),
+            Err(e) => return Err(e.into()),
+        }
+    }
+    if made.is_empty() {
+        return Err(WorkspaceError::NothingMade);
+    }
+    let structures = made.iter().filter_map(|p| Some((p.id(), scene.get(p.id())?.plant?)));
+    match wanted.format {
+        ExportFormat::Mtg => {
+            return structure(structures, "mtg", |plant, out| formats::write_mtg(plant, &wanted.spec(), out));
+        }
+        ExportFormat::Qsm => {
+            return structure(structures, "csv", |plant, out| formats::write_qsm(plant, &wanted.spec(), out));
+        }
+        _ => {}
+    }
+    let (model, spec) = (model?, wanted.spec());
+    let levels = wanted.levels.clamp(1, 4);
+    let mut files = Vec::new();
+    for level in 0..levels {
+        let mut models = Vec::new();
+        for plant in &made {
+            let placement =
+                if only.is_some() { document::Placement::default() } else { plant.settings().placement };
+            models.push((placement, at_level(scene, document, plant, (level, wind), run)?));
+        }
+        let whole = scene_model(document.name(), models.iter().map(|(at, m)| (*at, m)));
+        let stem = if levels == 1 { "plant".into() } else { format!("plant_LOD{level}") };
+        files.extend(written(&whole, model, &stem, &spec)?);
+    }
+    Ok(files)
+}
+
+/// A plant's model, coarser for each level.
+fn at_level(
+    scene: &SceneEvaluator,
+    document: &Document,
+    plant: &DocumentPlant,
+    (level, wind): (u32, bool),
+    run: &Run<'_>,
+) -> Result<Model, WorkspaceError> {
+    let shown = scene.get(plant.id()).ok_or(WorkspaceError::NothingMade)?;
+    if level == 0 {
+        return Ok(shown.model.clone());
+    }
+    match (&plant.settings().maker, shown.plant) {
+        (Maker::Tree(tree), Some(grown)) => {
+            let seed = plant.settings().seed;
+            let skin = burgeon::skin::SkinSpec { seed, wind, ..tree.skin.clone() };
+            let (copy, skin) = coarser(grown, &skin, level);
+            let mut model = burgeon::skin::skin(&copy, &skin, run)?;
+            // Colours and textures are those of the finest.
+            model.name.clone_from(&shown.model.name);
+            for m in &mut model.materials {
+                if let Some(fine) = shown.model.materials.iter().find(|f| f.name == m.name) {
+                    *m = fine.clone();
+                }
+            }
+            Ok(model)
+        }
+        (Maker::Sketch(sketch), _) => {
+            let mut skin = sketch.skin.clone();
+            for _ in 0..level {
+                skin.detail = (skin.detail / 3.0).max(0.1);
+                skin.sides = (skin.sides / 2).max(3);
+            }
+            let mut coarse = document::Editor::new(document.clone());
+            coarse.run(document::SketchCommand::SetSkin(skin).of(plant.id()))?;
+            let mut aside = scene.clone();
+            aside.update(plant.id(), coarse.document(), run)?;
+            Ok(aside.get(plant.id()).ok_or(WorkspaceError::Internal("no model"))?.model.clone())
+        }
+        // A measured leaf and a flower are one level.
+        _ => Ok(shown.model.clone()),
+    }
+}
+
+/// A file a plant.
+fn structure<'a>(
+    plants: impl Iterator<Item = (PlantId, &'a Plant)>,
+    extension: &str,
+    write: impl Fn(&Plant, &mut Vec<u8>) -> Result<(), formats::WriteError>,
+) -> Result<Vec<NamedFile>, WorkspaceError> {
+    let mut files = Vec::new();
+    for (id, plant) in plants {
+        let mut out = Vec::new();
+        write(plant, &mut out)?;
+        files.push((format!("plant-{}.{extension}", id.0 + 1), out));
+    }
+    if files.is_empty() { Err(WorkspaceError::NoStructure) } else { Ok(files) }
+}
+
+/// One file as it is, several as a zip; USD always as a zip, so that the name of what is saved is known before its
+/// textures are.
+///
+/// # Errors
+/// [`WorkspaceError::Archive`] for what no zip holds.
+pub fn packed(format: ExportFormat, mut files: Vec<NamedFile>) -> Result<Vec<u8>, WorkspaceError> {
+    match files.len() {
+        1 if format != ExportFormat::Usda => Ok(files.swap_remove(0).1),
+        _ => Ok(document::pack(&files)?),
+    }
+}
+
+/// The files of a model.
+fn written(
+    model: &Model,
+    format: ModelFormat,
+    stem: &str,
+    spec: &ExportSpec,
+) -> Result<Vec<NamedFile>, WorkspaceError> {
+    let (main, beside) = match format {
+        ModelFormat::Obj => {
+            let files = obj_files(model, stem, spec)?;
+            let mut beside = vec![(format!("{stem}.mtl"), files.mtl)];
+            beside.extend(files.textures);
+            (("obj", files.obj), beside)
+        }
+        ModelFormat::Usda => {
+            let files = usd_files(model, stem, spec)?;
+            (("usda", files.usda), files.textures)
+        }
+        _ => {
+            let mut out = Vec::new();
+            formats::write_model(model, format, spec, &mut out, &mut Report::default())?;
+            let extension = match format {
+                ModelFormat::Ply => "ply",
+                ModelFormat::Stl => "stl",
+                _ => "glb",
+            };
+            ((extension, out), Vec::new())
+        }
+    };
+    let mut all = vec![(format!("{stem}.{}", main.0), main.1)];
+    all.extend(beside);
+    Ok(all)
+}

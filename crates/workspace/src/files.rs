@@ -1,0 +1,232 @@
+//! Files in and out of a workspace, as bytes.
+
+use std::sync::Arc;
+
+use burgeon::document::{
+    self, Document, DocumentPlant, Editor, FlowerCommand, LeafData, LeafMaker, Maker, SceneCommand,
+    TreeCommand,
+};
+use burgeon::formats::{DrawingFormat, ExportSpec, ModelFormat, no_files, read_drawings, read_model};
+use burgeon::glam::DVec3;
+use burgeon::growth::Obstacle;
+use burgeon::ink::Drawing;
+use burgeon::{LeafError, Report, SceneError, leaf_marks, read_tree_spec, tree_settings};
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::{Workspace, WorkspaceError};
+
+/// What a file was.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum FileKind {
+    /// Took the document's place.
+    Project,
+    /// Took the document's place.
+    Drawing,
+    /// Is looked at.
+    Model,
+    /// Marks that went to a leaf.
+    Leaf,
+    /// A new tree.
+    Tree,
+    /// A growth law that went to the current flower.
+    Law,
+}
+
+/// What was opened.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct Opened {
+    /// What it was.
+    pub kind: FileKind,
+    /// What it is called.
+    pub name: String,
+    /// Every drawing of the file, at most a thousand.
+    pub names: Vec<String>,
+    /// What is odd about it.
+    pub warnings: Vec<String>,
+}
+
+impl Opened {
+    fn new(kind: FileKind, name: impl Into<String>) -> Self {
+        Self { kind, name: name.into(), names: Vec::new(), warnings: Vec::new() }
+    }
+}
+
+/// Drawings of a file that are offered for choice.
+const OFFERED: usize = 1000;
+
+impl Workspace {
+    /// Opens any file that is read. A project or drawing takes the document's place (one step of undo, or none with
+    /// `fresh`), a model is only looked at. `row` picks a drawing of an ndjson file.
+    ///
+    /// # Errors
+    /// [`WorkspaceError`]: what is wrong with the file and what to do.
+    pub fn open(
+        &mut self,
+        file_name: &str,
+        bytes: &[u8],
+        row: usize,
+        fresh: bool,
+    ) -> Result<Opened, WorkspaceError> {
+        let (stem, extension) = file_name.rsplit_once('.').unwrap_or((file_name, ""));
+        let is = |wanted: &str| extension.eq_ignore_ascii_case(wanted);
+        let drawing = DrawingFormat::from_extension(extension);
+        let model = ModelFormat::from_extension(extension);
+        let model = model.or_else(|| ModelFormat::sniff(bytes)).filter(|_| drawing.is_none());
+        let holds = |word: &[u8]| bytes.windows(word.len()).take(4096).any(|w| w == word);
+        if is("burgeon") || document::is_project(bytes) {
+            let document = document::read_project(bytes)?;
+            let opened = Opened::new(FileKind::Project, document.name());
+            self.replace(document, fresh)?;
+            Ok(opened)
+        } else if is("csv") || (is("json") && holds(b"\"edges\"")) {
+            self.open_leaf(stem, file_name, bytes)
+        } else if is("toml") {
+            let spec = read_tree_spec(core::str::from_utf8(bytes)?, &|_| None)?;
+            let settings = tree_settings(&spec, None);
+            self.add_plant(&spec.name, Maker::Tree(Box::new(settings)))?;
+            Ok(Opened::new(FileKind::Tree, spec.name))
+        } else if is("json") && holds(b"burgeon.law/") {
+            let law = serde_json::from_slice(bytes).map_err(WorkspaceError::Law)?;
+            self.run(FlowerCommand::SetLaw(Some(Arc::new(law))).of(self.must()?))?;
+            Ok(Opened::new(FileKind::Law, stem))
+        } else if let Some(format) = model {
+            self.look_at(format, stem, bytes)
+        } else if let Some(format) = drawing.or_else(|| DrawingFormat::sniff(bytes)) {
+            let (drawing, opened) = pick(bytes, format, stem, row)?;
+            let document = Document::from_drawing(&drawing);
+            if document.plants().iter().all(|p| p.strokes().is_empty()) {
+                return Err(WorkspaceError::NoUsableStroke);
+            }
+            self.replace(document, fresh)?;
+            Ok(opened)
+        } else {
+            Err(WorkspaceError::UnknownFile)
+        }
+    }
+
+    /// What the document leaves to who sends a command: that measurements make a leaf.
+    pub(crate) fn check(&self, command: &document::Command) -> Result<(), WorkspaceError> {
+        match command {
+            document::Command::Leaf(_, document::LeafCommand::SetData(data)) => check_marks(data),
+            _ => Ok(()),
+        }
+    }
+
+    /// Measurements of a leaf: they go to the leaf that is chosen if it has none, else to a new plant.
+    fn open_leaf(&mut self, stem: &str, file_name: &str, bytes: &[u8]) -> Result<Opened, WorkspaceError> {
+        let data = LeafData { name: file_name.into(), text: core::str::from_utf8(bytes)?.into() };
+        check_marks(&data)?;
+        let waiting = self
+            .current_plant()
+            .filter(|p| matches!(&p.settings().maker, Maker::Leaf(l) if l.data.text.is_empty()));
+        match waiting.map(DocumentPlant::id) {
+            Some(id) => self.editor.run(document::LeafCommand::SetData(data).of(id))?,
+            None => {
+                self.add_plant(stem, Maker::Leaf(Box::new(LeafMaker { data, ..LeafMaker::default() })))?
+            }
+        }
+        self.guest = None;
+        Ok(Opened::new(FileKind::Leaf, stem))
+    }
+
+    fn replace(&mut self, document: Document, fresh: bool) -> Result<(), WorkspaceError> {
+        self.editor.cancel_gesture();
+        if fresh {
+            self.editor = Editor::new(document);
+        } else {
+            self.editor.run(SceneCommand::Open(Box::new(document)))?;
+        }
+        self.current = self.editor.document().plants().first().map(DocumentPlant::id);
+        self.draft = None;
+        self.guest = None;
+        Ok(())
+    }
+
+    fn look_at(&mut self, format: ModelFormat, stem: &str, bytes: &[u8]) -> Result<Opened, WorkspaceError> {
+        let mut report = Report::default();
+        let model = read_model(bytes, format, stem, &ExportSpec::default(), &no_files, &mut report)?;
+        let warnings = report.warnings.iter().map(ToString::to_string).collect();
+        let opened = Opened { warnings, ..Opened::new(FileKind::Model, &model.name) };
+        self.guest = Some(model);
+        Ok(opened)
+    }
+
+    /// A model file as an obstacle of the current tree.
+    ///
+    /// # Errors
+    /// [`WorkspaceError`]: what is wrong with the file, or that no tree is chosen.
+    pub fn add_obstacle(&mut self, file_name: &str, bytes: &[u8]) -> Result<(), WorkspaceError> {
+        let (stem, extension) = file_name.rsplit_once('.').unwrap_or((file_name, ""));
+        let format = ModelFormat::from_extension(extension).or_else(|| ModelFormat::sniff(bytes));
+        let format = format.ok_or(WorkspaceError::ObstacleFile)?;
+        let model =
+            read_model(bytes, format, stem, &ExportSpec::default(), &no_files, &mut Report::default());
+        let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+        for part in model?.parts {
+            let first = u32::try_from(vertices.len()).unwrap_or(u32::MAX);
+            vertices.extend(part.mesh.positions.iter().map(|p| DVec3::from_array(p.map(f64::from))));
+            triangles.extend(part.mesh.triangles.iter().map(|t| t.map(|i| i.saturating_add(first))));
+        }
+        if triangles.is_empty() {
+            return Err(WorkspaceError::NoSurface);
+        }
+        let shape = Arc::new(Obstacle::Mesh { vertices, triangles });
+        let new = document::NamedObstacle { name: stem.into(), shape };
+        Ok(self.editor.run(TreeCommand::AddObstacle(new).of(self.must()?))?)
+    }
+
+    /// A small project for a link: rounded, without times and photographs.
+    ///
+    /// # Errors
+    /// [`WorkspaceError::Project`]; never, but for our own bugs.
+    pub fn share(&self) -> Result<Vec<u8>, WorkspaceError> {
+        Ok(document::write_project(&self.editor.document().compact(), burgeon::VERSION)?)
+    }
+
+    /// The document as a `.burgeon` file.
+    ///
+    /// # Errors
+    /// [`WorkspaceError::Project`]; never, but for our own bugs.
+    pub fn save(&self) -> Result<Vec<u8>, WorkspaceError> {
+        Ok(document::write_project(self.editor.document(), burgeon::VERSION)?)
+    }
+}
+
+/// Whether measurements make a leaf.
+fn check_marks(data: &LeafData) -> Result<(), WorkspaceError> {
+    let (marks, _) = leaf_marks(data, 0.1)?;
+    marks.complete(&mut Report::default()).map_err(|e| SceneError::from(LeafError::from(e)))?;
+    Ok(())
+}
+
+/// The drawing of this row among those that can be read, and the names of all.
+fn pick(
+    bytes: &[u8],
+    format: DrawingFormat,
+    stem: &str,
+    row: usize,
+) -> Result<(Drawing, Opened), WorkspaceError> {
+    let mut opened = Opened::new(FileKind::Drawing, "");
+    let mut picked = None;
+    let mut failed = None;
+    for read in read_drawings(bytes, format, stem).take(OFFERED) {
+        match read {
+            Ok(read) => {
+                if opened.names.len() == row {
+                    opened.name.clone_from(&read.drawing.name);
+                    opened.warnings = read.warnings.iter().map(ToString::to_string).collect();
+                    picked = Some(read.drawing.clone());
+                }
+                opened.names.push(read.drawing.name);
+            }
+            Err(e) => failed = failed.or(Some(e)),
+        }
+    }
+    match (picked, failed) {
+        (Some(drawing), _) => Ok((drawing, opened)),
+        (None, Some(e)) => Err(e.into()),
+        (None, None) => Err(WorkspaceError::NoDrawing),
+    }
+}

@@ -1,0 +1,39 @@
+//! What a person does with a document: draws, drafts, shapes by hand, looks, opens and exports. Any shell may hold one.
+//!
+//! `Command | Action | stroke | pointer -> Workspace -> DocumentState, SceneView, columns of meshes, files`
+//!
+//! | module | owns |
+//! |---|---|
+//! | `workspace` | [`Workspace`]: the document with its history, the plant that is chosen, the draft |
+//! | `files` | files in and out |
+//! | `export` | models and structures as files |
+//! | `evaluate` | plants made and shown, meshes as columns |
+//! | `shaping` | tools that shape a plant by hand |
+//! | `state` | what a shell shows of the document |
+//! | `view` | what a shell shows of the plants |
+//! | `error` | [`WorkspaceError`] |
+//!
+//! It reads no clock and opens no file: what computes takes a [`burgeon::Run`], files come and go as bytes.
+
+mod error;
+mod evaluate;
+mod export;
+mod files;
+mod shaping;
+mod state;
+mod view;
+mod workspace;
+
+#[cfg(test)]
+mod tests;
+
+pub use error::WorkspaceError;
+pub use export::{ExportFormat, ExportRequest, LengthUnit, NamedFile, Up, packed};
+pub use files::{FileKind, Opened};
+pub use shaping::{HeldTool, Picked, ShapeAnswer, ShapeInput, ShapePointer, ShapeReach};
+pub use state::{
+    DocumentState, EditState, FlowerState, LeafState, MakerWord, NamedShape, ObstacleView, PhotoState,
+    PlantState, SketchState, StrokeState, TreeState,
+};
+pub use view::{Column, Front, MaterialView, PartView, PlantView, SceneView, TextureView};
+pub use workspace::{Action, GUEST, NewMaker, Workspace};

@@ -1,0 +1,368 @@
+//! Hands on a plant: a tool of `shape`, what it holds, and what letting go would make.
+//!
+//! `tool + pointers -> shape::Tool -> a preview that is never in the document | the edit, to be asked for`
+
+use std::sync::Arc;
+
+use burgeon::document::{
+    Command, CommandError, Document, Editor, Maker, PlantId, ShapeCommand, SketchCommand, TreeCommand,
+};
+use burgeon::geom;
+use burgeon::glam::DVec3;
+use burgeon::plant::{AxisId, AxisKind, Plant};
+use burgeon::shape::{self, AxisKey, HandEdit, Input, Pick, Pointer, Ray, Reach, Tool, ToolKind};
+use burgeon::skin::SkinSpec;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::evaluate::PREVIEW_DETAIL;
+use crate::{Workspace, WorkspaceError};
+
+/// A plant of more triangles is shown coarser while a gesture is going on.
+const COARSE_ABOVE: u64 = 40_000;
+/// Radians of a degree.
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
+
+/// A tool in the hand, with its settings. Lengths in metres of the plant.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum HeldTool {
+    /// Points only.
+    Pick,
+    /// See [`ToolKind::Rotate`].
+    Rotate,
+    /// See [`ToolKind::Move`].
+    Move,
+    /// See [`ToolKind::Prune`].
+    Prune {
+        /// The whole branch, not from the place that was picked.
+        whole: bool,
+    },
+    /// See [`ToolKind::Regrow`].
+    Regrow,
+    /// See [`ToolKind::Sketch`].
+    Sketch {
+        /// How many twigs it bears.
+        twigs: f64,
+        /// Out of the plane of view, degrees.
+        tilt_deg: f64,
+    },
+    /// See [`ToolKind::Brush`].
+    Brush {
+        /// How thick it is.
+        radius_m: f64,
+        /// How many branches it makes.
+        density: f64,
+    },
+    /// See [`ToolKind::Silhouette`].
+    Silhouette {
+        /// How many branches it makes.
+        density: f64,
+        /// Cut what is outside.
+        trim: bool,
+    },
+    /// See [`ToolKind::Leaves`].
+    Leaves {
+        /// How thick it is.
+        radius_m: f64,
+        /// Share of the leaves that stay.
+        keep: f64,
+    },
+}
+
+impl HeldTool {
+    /// None for the tool that only points.
+    fn kind(self) -> Option<ToolKind> {
+        Some(match self {
+            Self::Pick => return None,
+            Self::Rotate => ToolKind::Rotate,
+            Self::Move => ToolKind::Move,
+            Self::Prune { whole } => ToolKind::Prune { whole },
+            Self::Regrow => ToolKind::Regrow,
+            Self::Sketch { twigs, tilt_deg } => ToolKind::Sketch { twigs, tilt: tilt_deg * DEGREE },
+            Self::Brush { radius_m, density } => ToolKind::Brush { radius_m, density },
+            Self::Silhouette { density, trim } => ToolKind::Silhouette { density, trim },
+            Self::Leaves { radius_m, keep } => ToolKind::Leaves { radius_m, keep },
+        })
+    }
+}
+
+/// A pointer in the plant's own coordinates, metres; unit vectors.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ShapePointer {
+    /// Where its ray starts.
+    pub origin: [f64; 3],
+    /// Along its ray.
+    pub direction: [f64; 3],
+    /// Into the view.
+    pub forward: [f64; 3],
+    /// Upwards in the view.
+    pub up: [f64; 3],
+    /// 0 to 1.
+    pub pressure: f64,
+}
+
+impl From<ShapePointer> for Pointer {
+    fn from(p: ShapePointer) -> Self {
+        let v = DVec3::from_array;
+        let ray = Ray { origin: v(p.origin), direction: v(p.direction) };
+        Self { ray, forward: v(p.forward), up: v(p.up), pressure: p.pressure, tip: None }
+    }
+}
+
+/// What the hand did.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum ShapeInput {
+    /// It went down.
+    Down(ShapePointer),
+    /// It moved; several moves at once, so that no point of a stroke is lost.
+    Move(Vec<ShapePointer>),
+    /// It was lifted.
+    Up(ShapePointer),
+    /// It takes everything back.
+    Cancel,
+    /// It turned what it holds, degrees.
+    Twist(f64),
+    /// It changed its brush.
+    Brush {
+        /// How thick it is, metres.
+        radius_m: f64,
+        /// How many branches it makes.
+        density: f64,
+    },
+}
+
+/// How far beside a branch it is still meant: `metres + per_metre * distance`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ShapeReach {
+    /// Close by.
+    pub metres: f64,
+    /// More with each metre of distance.
+    pub per_metre: f64,
+    /// Not the branch but what bears it, so many up.
+    pub bearers: u32,
+}
+
+/// The branch that is meant.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct Picked {
+    /// Its row.
+    pub axis: u32,
+    /// Where along it, a share of its length.
+    pub at: f64,
+    /// Where, metres.
+    pub point: [f64; 3],
+    /// 0 for the main axis.
+    pub order: u32,
+    /// Along its course.
+    pub length_m: f64,
+    /// Shoots that it bears, and that these bear.
+    pub bears: usize,
+    /// Nothing bears it.
+    pub stands: bool,
+    /// A name for edits, where the pointer went down or up.
+    pub key: Option<AxisKey>,
+}
+
+/// What came of an input.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
+pub struct ShapeAnswer {
+    /// The branch that is meant.
+    pub picked: Option<Picked>,
+    /// The edit of a gesture that ended: to be asked for as a command.
+    pub commit: Option<HandEdit>,
+    /// A gesture is going on.
+    pub busy: bool,
+    /// What is shown of the plant is out of date.
+    pub again: bool,
+}
+
+/// A gesture that is going on, or was and waits for its command.
+#[derive(Clone, Debug)]
+pub(crate) struct Held {
+    tool: Tool,
+    plant: PlantId,
+    /// The plant as it was when the gesture began.
+    before: Plant,
+    /// It has so many triangles that a gesture shows it coarser and without a digest.
+    pub(crate) large: bool,
+    /// What letting go would make, or made: shown until the command comes.
+    preview: Option<Arc<HandEdit>>,
+}
+
+impl Workspace {
+    /// Lets a tool shape the current plant. What a gesture would make is shown but is not in the document; what it made
+    /// is the caller's to ask for by a [`ShapeCommand`].
+    ///
+    /// # Errors
+    /// [`WorkspaceError`]: when there is no plant.
+    pub fn shape(
+        &mut self,
+        tool: HeldTool,
+        reach: ShapeReach,
+        input: ShapeInput,
+    ) -> Result<ShapeAnswer, WorkspaceError> {
+        let ShapeReach { metres, per_metre, bearers } = reach;
+        let reach = Reach { metres, per_metre, bearers };
+        let id = self.must()?;
+        let Some(kind) = tool.kind() else { return Ok(self.point(id, reach, &input)) };
+        let had = self.preview_edit(id).cloned();
+        let going = self.held.as_ref().is_some_and(|h| h.tool.is_busy() && h.plant == id);
+        if !going {
+            // Between gestures only a pointer that goes down begins something; all else looks around.
+            if !matches!(input, ShapeInput::Down(_)) {
+                return Ok(self.point(id, reach, &input));
+            }
+            let plant = self.shown_plant(id).ok_or(WorkspaceError::NothingToShape)?.clone();
+            let edits = self.editor.document().plant(id).map_or(0, |p| p.settings().edits.len());
+            let tool = Tool::new(kind).with(reach, edits as u64 + 1);
+            let large = self.scene.get(id).is_some_and(|p| p.item.counts.triangles > COARSE_ABOVE);
+            self.held = Some(Held { tool, plant: id, before: plant, large, preview: None });
+        }
+        let Some(held) = &mut self.held else { return Err(WorkspaceError::Internal("no tool")) };
+        let (tool, plant) = (&mut held.tool, &held.before);
+        let said = match input {
+            ShapeInput::Down(at) => tool.handle(plant, &Input::Down(at.into())),
+            ShapeInput::Up(at) => tool.handle(plant, &Input::Up(at.into())),
+            ShapeInput::Cancel => tool.handle(plant, &Input::Cancel),
+            ShapeInput::Twist(degrees) => tool.handle(plant, &Input::Twist(degrees * DEGREE)),
+            ShapeInput::Brush { radius_m, density } => tool.handle(plant, &Input::Brush(radius_m, density)),
+            ShapeInput::Move(moves) => {
+                let moves = moves.into_iter().map(|p| tool.handle(plant, &Input::Move(p.into())));
+                moves.last().unwrap_or_default()
+            }
+        };
+        let busy = tool.is_busy();
+        let picked = said.picked.and_then(|k| picked(plant, k, false));
+        held.preview = said.preview.or_else(|| said.commit.clone()).map(Arc::new);
+        let now = held.preview.clone();
+        if !busy && now.is_none() {
+            self.held = None;
+        }
+        Ok(ShapeAnswer { picked, commit: said.commit, busy, again: now != had })
+    }
+
+    /// Only looks what is under the pointer.
+    fn point(&mut self, id: PlantId, reach: Reach, input: &ShapeInput) -> ShapeAnswer {
+        let (at, named) = match input {
+            ShapeInput::Down(at) | ShapeInput::Up(at) => (Some(*at), true),
+            ShapeInput::Move(moves) => (moves.last().copied(), false),
+            _ => (None, false),
+        };
+        let again = matches!(input, ShapeInput::Cancel) && self.held.take().is_some();
+        let plant = self.shown_plant(id);
+        let found = at.zip(plant).and_then(|(at, plant)| {
+            let pick = shape::pick(plant, &Pointer::from(at).ray, reach)?;
+            picked(plant, pick, named)
+        });
+        ShapeAnswer { picked: found, again, ..ShapeAnswer::default() }
+    }
+
+    /// The plant that is seen, without the preview of a gesture.
+    fn shown_plant(&self, id: PlantId) -> Option<&Plant> {
+        if let Some(held) = self.held.as_ref().filter(|h| h.plant == id && h.preview.is_some()) {
+            return Some(&held.before);
+        }
+        self.model(id)?;
+        self.scene.get(id)?.plant
+    }
+
+    /// A branch of the current plant that was picked, and all that it bears, as pairs of points: x, y, z and radius of each.
+    pub fn branch(&self, axis: u32) -> Vec<f32> {
+        let plant = self.current().and_then(|id| self.shown_plant(id));
+        let Some(plant) = plant.filter(|p| (axis as usize) < p.axes.len()) else { return Vec::new() };
+        let mut out = Vec::new();
+        for (i, _) in borne(plant, axis as usize).into_iter().enumerate().filter(|(_, is)| *is) {
+            let id = AxisId::new(i);
+            let (points, radii) = (plant.axis_points(id), plant.axis_radii(id));
+            for k in 1..points.len().min(radii.len()) {
+                for j in [k - 1, k] {
+                    let [x, y, z] = points[j].as_vec3().to_array();
+                    #[expect(clippy::cast_possible_truncation, reason = "for the screen")]
+                    out.extend([x, y, z, radii[j] as f32]);
+                }
+            }
+        }
+        out
+    }
+
+    /// The edit of the gesture that is shown of a plant.
+    fn preview_edit(&self, id: PlantId) -> Option<&Arc<HandEdit>> {
+        self.held.as_ref().filter(|h| h.plant == id)?.preview.as_ref()
+    }
+
+    /// The document with the edit of the gesture in it, coarser where that is faster; none where nothing is held.
+    pub(crate) fn with_gesture(&self) -> Option<(PlantId, Document)> {
+        let id = self.current()?;
+        let edit = self.preview_edit(id)?;
+        let mut aside = Editor::new(self.editor.document().clone());
+        aside.run(ShapeCommand::Add(Arc::clone(edit)).of(id)).ok()?;
+        if self.held.as_ref().is_some_and(|h| h.large) {
+            let command = coarser(aside.document(), id, PREVIEW_DETAIL);
+            // A mesh that is as coarse as it can be stays as it is.
+            if let Some(Err(e)) = command.map(|c| aside.run(c))
+                && !matches!(e, CommandError::Nothing(_))
+            {
+                return None;
+            }
+        }
+        Some((id, aside.document().clone()))
+    }
+}
+
+/// The command that makes a plant's mesh coarser by a factor.
+pub(crate) fn coarser(document: &Document, id: PlantId, factor: f64) -> Option<Command> {
+    let coarse = |skin: &SkinSpec| {
+        let detail = (skin.detail * factor).clamp(0.1, 8.0);
+        SkinSpec { detail, ..skin.clone() }
+    };
+    match &document.plant(id)?.settings().maker {
+        Maker::Sketch(s) => Some(SketchCommand::SetSkin(coarse(&s.skin)).of(id)),
+        Maker::Tree(t) => Some(TreeCommand::SetSkin(coarse(&t.skin)).of(id)),
+        _ => None,
+    }
+}
+
+/// Which axes are this one or are borne by it.
+fn borne(plant: &Plant, top: usize) -> Vec<bool> {
+    let bearer = |i: usize| Some(plant.nodes.axis.get(plant.axes[i].bearer?.index())?.index());
+    let mut known: Vec<Option<bool>> = vec![None; plant.axes.len()];
+    known[top] = Some(true);
+    for i in 0..plant.axes.len() {
+        let (mut way, mut at) = (vec![i], bearer(i));
+        if known[i].is_some() {
+            continue;
+        }
+        // No longer than there are axes: a sound plant has no circle.
+        while let Some(b) = at.filter(|&b| known[b].is_none() && way.len() <= plant.axes.len()) {
+            way.push(b);
+            at = bearer(b);
+        }
+        let is = at.and_then(|b| known[b]).unwrap_or(false);
+        way.into_iter().for_each(|w| known[w] = Some(is));
+    }
+    known.into_iter().map(|k| k == Some(true)).collect()
+}
+
+/// What is told of a branch; `named`: with a name for edits.
+fn picked(plant: &Plant, pick: Pick, named: bool) -> Option<Picked> {
+    let axis = u32::try_from(pick.axis.index()).ok()?;
+    let shoots = borne(plant, pick.axis.index());
+    let shoots = shoots
+        .iter()
+        .zip(&plant.axes)
+        .filter(|(is, a)| **is && !matches!(a.kind, AxisKind::Petiole | AxisKind::Root));
+    Some(Picked {
+        axis,
+        at: pick.at,
+        point: pick.point.to_array(),
+        order: plant.axis(pick.axis).order,
+        length_m: geom::polyline_length3(plant.axis_points(pick.axis)),
+        bears: shoots.count().saturating_sub(1),
+        stands: plant.axis(pick.axis).bearer.is_none(),
+        key: if named { AxisKey::of(plant, pick.axis) } else { None },
+    })
+}

@@ -1,0 +1,510 @@
+//! The workspace as a page uses it: commands and answers as JSON.
+
+use burgeon::document::{Command, Document, PlantId, SketchCommand, StrokeId};
+use burgeon::glam::DVec2;
+use burgeon::ink::{InkSample, Stroke, StrokeMode};
+use burgeon::{Budget, Run, Seed, SketchOptions, formats};
+use serde::Serialize;
+use serde_json::Value;
+
+use crate::{Action, Column, ExportFormat, ExportRequest, GUEST, Workspace, WorkspaceError, packed};
+
+fn line(points: &[(f64, f64)]) -> Stroke {
+    let samples =
+        points.iter().map(|&(x, y)| InkSample { at: DVec2::new(x, y), time_ms: None, pressure: Some(0.5) });
+    Stroke { samples: samples.collect(), ..Stroke::default() }
+}
+
+fn stem() -> Stroke {
+    line(&(0..40).map(|k| (0.1 * f64::from(k % 7), 5.0 * f64::from(k))).collect::<Vec<_>>())
+}
+
+fn json(answer: &impl Serialize) -> Value {
+    serde_json::to_value(answer).unwrap()
+}
+
+/// What a page may ask for in a moment.
+fn run() -> Run<'static> {
+    Run { budget: Budget { times: 0.25, raise: None }, ..Run::plain() }
+}
+
+impl Workspace {
+    fn ask(&mut self, command: &str) -> Result<(), WorkspaceError> {
+        self.run(serde_json::from_str::<Command>(command).unwrap())
+    }
+
+    fn stroke_points(&self, id: StrokeId) -> Vec<(f64, f64)> {
+        let samples = self.stroke(id).map_or(&[][..], |s| &s.samples);
+        samples.iter().map(|p| (p.at.x, p.at.y)).collect()
+    }
+
+    fn file(&mut self, format: ExportFormat) -> Vec<u8> {
+        self.exported(&ExportRequest { format, ..ExportRequest::default() })
+    }
+
+    fn exported(&mut self, request: &ExportRequest) -> Vec<u8> {
+        packed(request.format, self.export(request, &run()).unwrap()).unwrap()
+    }
+}
+
+/// What is seen of the model that is looked at, or of the plant that is chosen.
+fn look(s: &mut Workspace) -> Value {
+    let view = json(&s.evaluate(&run()).unwrap());
+    let id = s.current().map(|id| id.0);
+    let plant = view["plants"].as_array().unwrap().iter().find(|p| p["id"].as_u64() == id.map(u64::from));
+    if view["guest"].is_null() { plant.cloned().unwrap_or_default() } else { view["guest"].clone() }
+}
+
+fn sample() -> Vec<u8> {
+    std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/sketches/sample.svg")).unwrap()
+}
+
+#[test]
+fn a_stroke_becomes_a_plant_and_undo_takes_it_back() {
+    let mut s = Workspace::default();
+    assert_eq!(look(&mut s)["item"], Value::Null);
+    let id = s.add_stroke(stem()).unwrap();
+    assert_eq!(s.fresh_strokes(), [id]);
+    assert!(s.fresh_strokes().is_empty());
+    assert_eq!(s.stroke_points(id).len(), 40);
+    let view = look(&mut s);
+    assert_eq!(view["item"]["counts"]["branches"], 1);
+    assert!(view["item"]["strokes"][0]["organ"].is_string());
+    assert!(s.column(PlantId(0), 0, Column::Positions).len() > 300 && s.indices(PlantId(0), 0).len() > 300);
+    let texture = &view["materials"][0]["texture"];
+    assert_eq!(
+        s.texture(0).len() as u64,
+        4 * texture["width"].as_u64().unwrap() * texture["height"].as_u64().unwrap()
+    );
+    assert_eq!(s.undo(), Some("draw"));
+    let view = look(&mut s);
+    assert_eq!((&view["item"], view["parts"].as_array().unwrap().len()), (&Value::Null, 0));
+    assert_eq!(s.redo(), Some("draw"));
+    assert_eq!(look(&mut s)["item"]["counts"]["branches"], 1);
+}
+
+#[test]
+fn the_project_is_the_same_plant_elsewhere() {
+    let mut s = Workspace::default();
+    s.open("sample.svg", &sample(), 0, false).unwrap();
+    s.ask(r#"{"plant":[0,{"set-seed":"18446744073709551615"}]}"#).unwrap();
+    s.ask(r#"{"sketch":[0,{"set-class":[[0],"axis"]}]}"#).unwrap();
+    let here = look(&mut s);
+    let mut other = Workspace::default();
+    let opened = json(&other.open("x.burgeon", &s.save().unwrap(), 0, true).unwrap());
+    assert_eq!(opened["kind"], "project");
+    let there = look(&mut other);
+    assert_eq!(here["item"]["digest"], there["item"]["digest"]);
+    assert_eq!(json(&other.state())["plants"][0]["seed"], "18446744073709551615");
+    assert_eq!(other.undo(), None, "opened fresh");
+    let plant = &s.document().plants()[0];
+    let options = SketchOptions::of_plant(plant);
+    let made = burgeon::make_from_sketch(&plant.drawing(), &options, plant.settings().seed, &Run::plain());
+    assert_eq!(here["item"]["digest"], made.unwrap().item.digest.as_str());
+}
+
+#[test]
+fn every_format_opens_and_a_bad_file_changes_nothing() {
+    let mut s = Workspace::default();
+    s.open("sample.svg", &sample(), 0, false).unwrap();
+    let state = json(&s.state());
+    for (name, bytes) in [
+        ("x.svg", &b"<svg"[..]),
+        ("x.burgeon", b"PK\x03\x04"),
+        ("x.glb", b"glTF"),
+        ("x.exe", b"MZ"),
+        ("x.json", b"{}"),
+        ("x.ndjson", b"\n\n"),
+        ("", b""),
+    ] {
+        let said = s.open(name, bytes, 0, false).unwrap_err().to_string();
+        assert!(said.len() > 20, "{name}: {said}");
+        assert_eq!(json(&s.state()), state, "{name}");
+    }
+    for (format, word) in [(ExportFormat::Glb, "glb"), (ExportFormat::Ply, "ply"), (ExportFormat::Stl, "stl")]
+    {
+        let file = s.file(format);
+        let mut other = Workspace::default();
+        let opened = json(&other.open(&format!("plant.{word}"), &file, 0, false).unwrap());
+        assert_eq!(opened["kind"], "model");
+        let view = look(&mut other);
+        assert!(!view["parts"].as_array().unwrap().is_empty() && view["max"][1].as_f64().unwrap() > 0.1);
+        assert!(other.file(ExportFormat::Glb).starts_with(b"glTF"));
+        let structure = ExportRequest { format: ExportFormat::Mtg, ..ExportRequest::default() };
+        assert!(matches!(other.export(&structure, &run()), Err(WorkspaceError::Format("mtg"))));
+    }
+    assert!(s.file(ExportFormat::Obj).starts_with(b"PK"));
+    let drawing = s.file(ExportFormat::Json);
+    assert_eq!(json(&Workspace::default().open("d.json", &drawing, 0, false).unwrap())["kind"], "drawing");
+    let two = concat!(
+        r#"{"word":"a","drawing":[[[0,9],[0,90]]]}"#,
+        "\nbad\n",
+        r#"{"word":"b","drawing":[[[0,5],[0,70]]]}"#,
+        "\n"
+    );
+    let opened = json(&s.open("two.ndjson", two.as_bytes(), 1, false).unwrap());
+    assert_eq!((opened["names"].as_array().unwrap().len(), &opened["name"]), (2, &opened["names"][1]));
+}
+
+#[test]
+fn looks_at_a_draft_keep_what_the_whole_drawing_was_understood_as() {
+    let mut whole = Workspace::default();
+    whole.open("sample.svg", &sample(), 0, false).unwrap();
+    let said = |view: &Value| -> Vec<(Value, Value)> {
+        let rows = view["item"]["strokes"].as_array().unwrap();
+        rows.iter().map(|r| (r["class"].clone(), r["confidence"].clone())).collect()
+    };
+    let mut s = Workspace::default();
+    let mut changes = 0;
+    let mut before = Vec::new();
+    for id in whole.fresh_strokes() {
+        let rows = whole.stroke_points(id);
+        for part in [rows.len() / 2, rows.len()] {
+            s.draft(line(&rows[..part]));
+            let now = said(&look(&mut s));
+            assert_eq!(now[..before.len()], before, "{id:?}");
+        }
+        s.add_stroke(line(&rows)).unwrap();
+        let now = said(&look(&mut s));
+        changes += usize::from(now[..before.len()] != before[..]);
+        before = now;
+    }
+    assert!(changes > 0, "a stroke that comes later changes what an earlier one is");
+}
+
+#[test]
+fn a_drag_is_staged_and_a_draft_leaves_no_trace() {
+    let mut s = Workspace::default();
+    let id = s.add_stroke(stem()).unwrap();
+    s.begin("move").unwrap();
+    s.stage(SketchCommand::MoveStrokes(vec![id], DVec2::new(5.0, 1.0)).of(PlantId(0))).unwrap();
+    s.stage(SketchCommand::MoveStrokes(vec![id], DVec2::new(50.0, 0.0)).of(PlantId(0))).unwrap();
+    s.commit();
+    assert_eq!(s.stroke_points(id)[0].0, 50.0);
+    assert_eq!(json(&s.state())["steps"], 2);
+    let before = look(&mut s);
+    let contour = line(&[(0.0, 0.0), (40.0, 0.0), (40.0, 40.0)]);
+    s.draft(Stroke { mode: StrokeMode::LeafContour, ..contour });
+    assert_eq!(look(&mut s)["item"]["strokes"].as_array().unwrap().len(), 2);
+    s.draft(line(&[]));
+    let after = look(&mut s);
+    assert_eq!(before["item"]["digest"], after["item"]["digest"]);
+    assert!(serde_json::from_str::<Command>(r#"{"sketch":[0,{"explode":1}]}"#).is_err());
+}
+
+fn photo() -> Vec<u8> {
+    let pixels: Vec<u8> = (0..64).flat_map(|k| [200, 3 * (k % 8), 3 * (k / 8), 255]).collect();
+    let mut png = Vec::new();
+    formats::write_png(8, 8, &pixels, &mut png).unwrap();
+    png
+}
+
+#[test]
+fn traced_organs_take_the_photograph_and_others_do_not() {
+    let mut s = Workspace::default();
+    s.open("sample.svg", &sample(), 0, true).unwrap();
+    let plain = look(&mut s);
+    assert!(s.place_photo(b"GIF", DVec2::ZERO, 1.0).is_err());
+    s.place_photo(&photo(), DVec2::splat(-1e4), 2e4).unwrap();
+    assert_eq!((s.fresh_photo().as_deref(), s.fresh_photo()), (Some(&photo()[..]), None));
+    let traced = look(&mut s);
+    assert_eq!(traced["item"]["digest"], plain["item"]["digest"], "the plant is the same");
+    assert_eq!(traced["stages"].as_array().unwrap().len(), 1, "only the surface is made again");
+    let names = |v: &Value| -> Vec<String> {
+        v["parts"].as_array().unwrap().iter().map(|p| p["name"].as_str().unwrap().to_owned()).collect()
+    };
+    assert!(names(&traced).contains(&"petals-traced".to_owned()), "{:?}", names(&traced));
+    let part = names(&traced).iter().position(|n| n == "petals-traced").unwrap();
+    let uvs = s.column(PlantId(0), part, Column::Uvs);
+    assert_eq!(uvs.len() / 2, s.column(PlantId(0), part, Column::Positions).len() / 3);
+    assert!(uvs.iter().all(|x| (0.0..=1.0).contains(x)));
+    // A small photograph far away traces nothing; one that does not paint neither.
+    s.ask(r#"{"sketch":[0,{"place-photo":{"x":-9000,"y":-9000,"width":1,"opacity":0.5,"paint":true}}]}"#)
+        .unwrap();
+    assert_eq!(names(&look(&mut s)), names(&plain));
+    s.ask(r#"{"sketch":[0,{"place-photo":{"x":-1e4,"y":-1e4,"width":2e4,"opacity":0.2,"paint":false}}]}"#)
+        .unwrap();
+    assert_eq!(names(&look(&mut s)), names(&plain));
+    let mut other = Workspace::default();
+    other.open("p.burgeon", &s.save().unwrap(), 0, true).unwrap();
+    assert_eq!(other.fresh_photo().as_deref(), Some(&photo()[..]));
+    s.ask(r#"{"sketch":[0,"remove-photo"]}"#).unwrap();
+    assert!(
+        s.ask(r#"{"sketch":[0,{"place-photo":{"x":0,"y":0,"width":1,"opacity":0.2,"paint":true}}]}"#)
+            .is_err()
+    );
+    assert_eq!(s.undo(), Some("photo"));
+}
+
+#[test]
+fn copies_variants_levels_and_links() {
+    let mut s = Workspace::default();
+    s.open("sample.svg", &sample(), 0, true).unwrap();
+    let plant = look(&mut s);
+    let text = String::from_utf8(s.copy(&[StrokeId(0), StrokeId(1)]).unwrap()).unwrap();
+    assert!(s.copy(&[StrokeId(99)]).is_err() && s.paste("no drawing", DVec2::ZERO).is_err());
+    assert_eq!(s.paste(&text, DVec2::new(5.0, 0.0)).unwrap(), [StrokeId(15), StrokeId(16)]);
+    assert_eq!(s.stroke_points(StrokeId(15))[0].0, s.stroke_points(StrokeId(0))[0].0 + 5.0);
+    s.ask(r#"{"sketch":[0,{"duplicate":[[0],[0,1]]}]}"#).unwrap();
+    assert_eq!(s.undo(), Some("duplicate"));
+    assert_eq!(s.undo(), Some("draw"));
+
+    let other = json(&s.variant(Seed::new(77), 0.4, &run()).unwrap());
+    let positions = s.column(GUEST, 0, Column::Positions).len();
+    s.end_variant();
+    assert!(other["item"].is_null() && positions > 0);
+    let again = look(&mut s);
+    assert_eq!(again["item"]["digest"], plant["item"]["digest"], "a look at another seed changes nothing");
+    assert!(s.column(PlantId(0), 0, Column::Positions).len() > positions);
+    assert_eq!(s.skeleton().len() % 8, 0);
+    assert!(!s.skeleton().is_empty());
+
+    let levels = s.exported(&ExportRequest { levels: 3, ..ExportRequest::default() });
+    assert!(
+        levels.starts_with(b"PK") && levels.windows(9).any(|w| w == b"LOD2.glb\0" || &w[..8] == b"LOD2.glb")
+    );
+
+    let link = s.share().unwrap();
+    assert!(link.len() < 16 << 10, "{} bytes", link.len());
+    let mut linked = Workspace::default();
+    linked.open("x.burgeon", &link, 0, true).unwrap();
+    let shared = look(&mut linked);
+    assert_eq!(shared["item"]["counts"]["flowers"], plant["item"]["counts"]["flowers"]);
+}
+
+const BUSH: &str = "name = \"bush\"\n[method]\nkind = \"competition\"\npoints = 200\nlifespan = 1\n";
+
+fn marks() -> Vec<u8> {
+    std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/leaves/leaf1.csv")).unwrap()
+}
+
+/// Name, digest and problem of every plant.
+fn scene(s: &mut Workspace) -> Vec<(String, String, Value)> {
+    let state = json(&s.state());
+    let view = json(&s.evaluate(&run()).unwrap());
+    let both = state["plants"].as_array().unwrap().iter().zip(view["plants"].as_array().unwrap());
+    let word = |v: &Value| v.as_str().unwrap_or_default().to_owned();
+    both.map(|(p, v)| (word(&p["name"]), word(&v["item"]["digest"]), v["error"].clone())).collect()
+}
+
+#[test]
+fn a_tree_a_leaf_and_a_flower_in_one_scene() {
+    let mut s = Workspace::default();
+    let opened = json(&s.open("bush.toml", BUSH.as_bytes(), 0, false).unwrap());
+    assert_eq!(
+        (opened["kind"].as_str(), s.document().plants().len()),
+        (Some("tree"), 1),
+        "the blank sheet gave way"
+    );
+    s.evaluate(&run()).unwrap();
+    s.open("leaf1.csv", &marks(), 0, false).unwrap();
+    s.act(&serde_json::from_str::<Action>(r#"{"add":{"name":"a rose","maker":{"flower":"rose"}}}"#).unwrap())
+        .unwrap();
+    let made = scene(&mut s);
+    assert_eq!(made.len(), 3);
+    assert!(made.iter().all(|(_, digest, error)| digest.len() > 8 && error.is_null()), "{made:?}");
+    // Nothing is grown or sent again for a change elsewhere.
+    s.ask(r#"{"flower":[3,{"set":{"species":"rose","day":1.5}}]}"#).unwrap();
+    let view = json(&s.evaluate(&run()).unwrap());
+    let fresh: Vec<bool> = (0..3).map(|k| view["plants"][k]["fresh"].as_bool().unwrap()).collect();
+    assert_eq!(fresh, [false, false, true]);
+    assert_eq!(view["plants"][2]["days"].as_array().unwrap().len(), 2);
+    let mut other = Workspace::default();
+    other.open("three.burgeon", &s.save().unwrap(), 0, true).unwrap();
+    assert_eq!(scene(&mut other), scene(&mut s));
+    // An obstacle is grown around; a spec that is none is refused.
+    let ids: Vec<PlantId> = s.document().plants().iter().map(|p| p.id()).collect();
+    assert_eq!(ids.len(), made.len());
+    s.select(ids[0]).unwrap();
+    let before = scene(&mut s);
+    s.ask(r#"{"tree":[1,{"add-obstacle":{"name":"ball","shape":{"shape":"sphere","centre":[0,3,0],"radius_m":1}}}]}"#)
+        .unwrap();
+    assert_ne!(scene(&mut s)[0].1, before[0].1);
+    assert!(s.ask(r#"{"tree":[1,{"set-field":["/age","old"]}]}"#).is_err());
+    assert!(s.ask(r#"{"tree":[1,{"set-field":["/no/such",1]}]}"#).is_err());
+    s.ask(r#"{"tree":[1,{"set-field":["/clearance_m",-1]}]}"#).unwrap();
+    assert!(scene(&mut s)[0].2.as_str().unwrap().contains("clearance_m"), "{:?}", scene(&mut s)[0]);
+    s.undo();
+    let model = s.file(ExportFormat::Obj);
+    assert!(model.starts_with(b"PK"));
+    let ball = s.file(ExportFormat::Ply);
+    s.add_obstacle("itself.ply", &ball).unwrap();
+    assert!(!s.obstacle(ids[0], 1).is_empty() && s.obstacle(ids[0], 0).is_empty());
+    s.undo();
+    s.undo();
+    s.ask(r#"{"tree":[1,{"set-leaf":2}]}"#).unwrap();
+    let borne = scene(&mut s);
+    assert!(borne[0].2.is_null() && borne[0].1 != before[0].1);
+    // Hidden plants are not in an export of the scene.
+    let all = ExportRequest { whole: true, ..ExportRequest::default() };
+    let whole = s.exported(&all).len();
+    s.ask(r#"{"plant":[3,{"hide":true}]}"#).unwrap();
+    assert!(s.exported(&all).len() < whole);
+    assert!(s.file(ExportFormat::Mtg).len() > 200);
+    s.ask(r#"{"scene":{"remove":[2]}}"#).unwrap();
+    assert_eq!(scene(&mut s)[0].1, before[0].1, "its own leaf again");
+    while s.undo().is_some() {}
+    assert_eq!(s.document(), &Document::default());
+}
+
+#[test]
+fn a_drawn_flower_opens_and_closes() {
+    let mut s = Workspace::default();
+    s.open("sample.svg", &sample(), 0, true).unwrap();
+    let drawn = look(&mut s);
+    s.ask(r#"{"sketch":[0,{"set-day":0}]}"#).unwrap();
+    let bud = look(&mut s);
+    assert!(bud["fresh"].as_bool().unwrap() && bud["error"].is_null(), "{}", bud["error"]);
+    let days = bud["days"].as_array().unwrap();
+    assert_eq!((days.len(), &bud["item"]["digest"]), (2, &drawn["item"]["digest"]));
+    let closed = s.column(PlantId(0), 0, Column::Positions).to_vec();
+    s.ask(r#"{"sketch":[0,{"set-day":6}]}"#).unwrap();
+    s.evaluate(&run()).unwrap();
+    let last = s.model(PlantId(0)).unwrap().parts.len() - 1;
+    let open = s.column(PlantId(0), last, Column::Positions);
+    assert!(!open.is_empty() && closed != *open);
+    s.undo();
+    s.undo();
+    assert_eq!(look(&mut s)["parts"], drawn["parts"]);
+    // What was taken off the page comes back with its meshes.
+    s.act(&Action::New).unwrap();
+    assert!(look(&mut s)["parts"].as_array().unwrap().is_empty());
+    s.undo();
+    let back = look(&mut s);
+    assert!(back["fresh"].as_bool().unwrap() && back["parts"] == drawn["parts"]);
+}
+
+/// A pointer in front of the plant, looking along -Z at (x, y).
+fn at(x: f64, y: f64) -> String {
+    format!(r#"{{"origin":[{x},{y},9],"direction":[0,0,-1],"forward":[0,0,-1],"up":[0,1,0],"pressure":1}}"#)
+}
+
+const REACH: &str = r#"{"metres":0.05,"per_metre":0,"bearers":0}"#;
+
+fn hand(s: &mut Workspace, tool: &str, input: &str) -> Value {
+    let read = |text| serde_json::from_str(text).unwrap();
+    json(
+        &s.shape(read(tool), serde_json::from_str(REACH).unwrap(), serde_json::from_str(input).unwrap())
+            .unwrap(),
+    )
+}
+
+/// A gesture from one place to another: what it would make, and the command for it.
+fn gesture(s: &mut Workspace, tool: &str, from: (f64, f64), to: (f64, f64)) -> Value {
+    hand(s, tool, &format!(r#"{{"down":{}}}"#, at(from.0, from.1)));
+    hand(s, tool, &format!(r#"{{"move":[{}]}}"#, at(to.0, to.1)));
+    hand(s, tool, &format!(r#"{{"up":{}}}"#, at(to.0, to.1)))
+}
+
+/// A bush, and the middle of one of its branches as the viewer sees it.
+fn bush() -> (Workspace, (f64, f64)) {
+    let mut s = Workspace::default();
+    s.open("bush.toml", BUSH.as_bytes(), 0, false).unwrap();
+    s.evaluate(&run()).unwrap();
+    let plant = s.scene.get(PlantId(1)).unwrap().plant.unwrap();
+    let branch = plant.axes.iter().position(|a| a.order == 1).unwrap();
+    let points = plant.axis_points(burgeon::plant::AxisId::new(branch));
+    let middle = points[points.len() / 2];
+    (s, (middle.x, middle.y))
+}
+
+#[test]
+fn an_impossible_tree_is_an_error_on_the_page_and_the_last_one_stays() {
+    let (mut s, _) = bush();
+    let before = scene(&mut s);
+    assert!(before[0].2.is_null() && !s.scene.get(PlantId(1)).unwrap().model.parts.is_empty());
+    // Within the limits of the command line, beyond the quarter of them that a page has.
+    s.ask(r#"{"tree":[1,{"set-field":["/method",{"kind":"competition","points":600000}]}]}"#).unwrap();
+    let said = scene(&mut s)[0].2.as_str().unwrap().to_owned();
+    assert!(said.contains("600,000 attraction points") && said.contains("500,000"), "{said}");
+    assert!(!said.contains("--budget"), "a page has no options: {said}");
+    assert!(!s.scene.get(PlantId(1)).unwrap().model.parts.is_empty());
+    s.undo();
+    assert_eq!(scene(&mut s), before);
+}
+
+#[test]
+fn a_gesture_is_shown_and_is_one_step_when_it_is_asked_for() {
+    let (mut s, (x, y)) = bush();
+    let before = look(&mut s);
+    let still = s.skeleton();
+    let looked = hand(&mut s, r#""pick""#, &format!(r#"{{"down":{}}}"#, at(x, y)));
+    assert!(looked["picked"]["key"]["mark"].is_object(), "{looked}");
+    let axis = u32::try_from(looked["picked"]["axis"].as_u64().unwrap()).unwrap();
+    let lines = s.branch(axis);
+    assert!(!lines.is_empty() && lines.len() % 8 == 0 && s.branch(u32::MAX).is_empty());
+    // The trunk bears everything.
+    assert!(s.branch(0).len() >= lines.len());
+
+    let rotate = r#""rotate""#;
+    let down = hand(&mut s, rotate, &format!(r#"{{"down":{}}}"#, at(x, y)));
+    assert_eq!((&down["busy"], &down["again"]), (&Value::Bool(true), &Value::Bool(false)));
+    let held = hand(&mut s, rotate, &format!(r#"{{"move":[{}]}}"#, at(x, y + 0.4)));
+    assert_eq!((&held["busy"], &held["again"]), (&Value::Bool(true), &Value::Bool(true)), "{held}");
+    // A large plant has no digest while it is in the hand.
+    assert_eq!(look(&mut s)["item"]["digest"], "");
+    let shown = s.skeleton();
+    assert_ne!(shown, still, "a look at what would be");
+    assert_eq!(json(&s.state())["plants"][0]["edits"], Value::Array(vec![]));
+    let up = hand(&mut s, rotate, &format!(r#"{{"up":{}}}"#, at(x, y + 0.4)));
+    look(&mut s);
+    assert_eq!(s.skeleton(), shown, "shown until it is asked for");
+    s.ask(&format!(r#"{{"shape":[1,{{"add":{}}}]}}"#, up["commit"])).unwrap();
+    let after = look(&mut s);
+    assert_eq!(s.skeleton(), shown, "and the same then");
+    assert!(after["item"]["digest"].as_str().is_some_and(|d| d.len() == 32));
+    assert_eq!(after["item"]["edits"][0]["done"], true);
+    assert_eq!(s.undo(), Some("shape-rotate"));
+    assert_eq!(look(&mut s)["item"]["digest"], before["item"]["digest"]);
+    // Escape leaves nothing behind.
+    gesture(&mut s, rotate, (50.0, 50.0), (51.0, 50.0));
+    hand(&mut s, rotate, &format!(r#"{{"down":{}}}"#, at(x, y)));
+    hand(&mut s, rotate, &format!(r#"{{"move":[{}]}}"#, at(x, y + 0.5)));
+    assert_eq!(hand(&mut s, rotate, r#""cancel""#)["again"], true);
+    assert_eq!(look(&mut s)["item"]["digest"], before["item"]["digest"]);
+}
+
+#[test]
+fn edits_survive_a_file_and_say_when_their_branch_is_gone() {
+    let (mut s, (x, y)) = bush();
+    for tool in [
+        r#"{"prune":{"whole":false}}"#,
+        r#""regrow""#,
+        r#"{"sketch":{"twigs":1,"tilt_deg":20}}"#,
+        r#"{"brush":{"radius_m":0.4,"density":1}}"#,
+        r#"{"leaves":{"radius_m":0.5,"keep":0.2}}"#,
+        r#""move""#,
+    ] {
+        let made = gesture(&mut s, tool, (x, y), (x + 0.4, y + 0.5));
+        assert!(made["commit"].is_object(), "{tool}: {made}");
+        s.ask(&format!(r#"{{"shape":[1,{{"add":{}}}]}}"#, made["commit"])).unwrap();
+        look(&mut s);
+    }
+    let shaped = look(&mut s);
+    let told = shaped["item"]["edits"].as_array().unwrap();
+    assert_eq!(told.len(), 6);
+    assert!(told.iter().take(5).all(|e| e["done"] == true), "{told:?}");
+    let mut other = Workspace::default();
+    other.open("x.burgeon", &s.save().unwrap(), 0, true).unwrap();
+    assert_eq!(look(&mut other)["item"]["digest"], shaped["item"]["digest"]);
+    // One is left out, by its row; what stays keeps its number.
+    s.ask(r#"{"shape":[1,{"leave":[0,true]}]}"#).unwrap();
+    let left = look(&mut s);
+    assert_eq!(
+        (left["item"]["edits"][0]["index"].as_u64(), left["item"]["edits"].as_array().unwrap().len()),
+        (Some(1), 5)
+    );
+    s.ask(r#"{"shape":[1,{"remove":[0,1,2,3,4,5]}]}"#).unwrap();
+    s.ask(r#"{"shape":[1,{"add":{"op":"prune","axis":{"mark":{"id":"0","kind":"wood","order":9,"base":[0,9,0],"direction":[1,0,0],"length":9}}}}]}"#).unwrap();
+    let gone = look(&mut s);
+    assert_eq!(gone["item"]["edits"][0]["code"], "branch-gone");
+    assert!(
+        gone["item"]["warnings"][0].as_str().unwrap().contains("edit 0 by hand (prune): not done"),
+        "{gone}"
+    );
+    assert!(s.ask(r#"{"shape":[1,{"add":{"op":"prune","axis":{"path":[0]},"at":7}}]}"#).is_err());
+    // Nothing is grown again for an edit.
+    s.ask(r#"{"shape":[1,{"add":{"op":"prune","axis":{"path":[0,0]}}}]}"#).unwrap();
+    let pruned = look(&mut s);
+    assert_eq!(pruned["stages"], serde_json::json!(["shape", "mesh"]));
+}

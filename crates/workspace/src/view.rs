@@ -1,0 +1,191 @@
+//! What a shell shows of the plants: figures and names. Meshes are columns, asked for one by one.
+
+use std::sync::Arc;
+
+use burgeon::document::PlantId;
+use burgeon::mesh::{AlphaMode, Model, Texture};
+use burgeon::{FrontView, ItemReport};
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::ObstacleView;
+
+/// A column of vertices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Column {
+    /// Three floats a vertex, metres.
+    Positions,
+    /// Three floats a vertex.
+    Normals,
+    /// Two floats a vertex, v down; may be empty.
+    Uvs,
+    /// Three floats a vertex, linear; may be empty.
+    Colors,
+}
+
+/// Every plant of a scene, as it was made last.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct SceneView {
+    /// Of the document when it was made.
+    pub revision: u64,
+    /// A model that is looked at instead.
+    pub guest: Option<PlantView>,
+    /// In the document's order.
+    pub plants: Vec<PlantView>,
+}
+
+/// A plant as it is seen.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct PlantView {
+    /// Its name within the document, or [`crate::GUEST`].
+    pub id: PlantId,
+    /// Its meshes are others than those of the last view.
+    pub fresh: bool,
+    /// Why it could not be made; what was made before stays.
+    pub error: Option<String>,
+    /// The entry of the report.
+    pub item: Option<ItemReport>,
+    /// What was done again.
+    pub stages: Vec<&'static str>,
+    /// How a drawing lies in the front view.
+    pub front: Option<Front>,
+    /// Bud to full bloom, and from there to wilted.
+    pub days: Option<[f64; 2]>,
+    /// Lower corner of its bounds, metres.
+    pub min: [f64; 3],
+    /// Upper corner of its bounds, metres.
+    pub max: [f64; 3],
+    /// Its meshes.
+    pub parts: Vec<PartView>,
+    /// What they are made of.
+    pub materials: Vec<MaterialView>,
+    /// What it grows around.
+    pub obstacles: Vec<ObstacleView>,
+}
+
+/// How a drawing lies in the front view of its plant.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct Front {
+    /// Metres of the drawing's unit.
+    pub metres_per_unit: f64,
+    /// Where the plant's origin lies in the drawing.
+    pub x: f64,
+    /// Where the plant's origin lies in the drawing, y up.
+    pub y: f64,
+}
+
+impl From<FrontView> for Front {
+    fn from(front: FrontView) -> Self {
+        Self { metres_per_unit: front.metres_per_unit, x: front.origin.x, y: front.origin.y }
+    }
+}
+
+/// One mesh.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct PartView {
+    /// Its name in files.
+    pub name: String,
+    /// Row of its material.
+    pub material: usize,
+}
+
+/// How a mesh looks.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct MaterialView {
+    /// Its name in files.
+    pub name: String,
+    /// What it is of: bark, leaf, petal, ...
+    pub kind: &'static str,
+    /// Linear red, green, blue.
+    pub color: [f32; 3],
+    /// 0 to 1.
+    pub roughness: f32,
+    /// 0 to 1.
+    pub translucency: f32,
+    /// The texture has holes.
+    pub masked: bool,
+    /// Seen from both sides.
+    pub two_sided: bool,
+    /// Its picture.
+    pub texture: Option<TextureView>,
+}
+
+/// A picture by its number: pixels are asked for once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct TextureView {
+    /// Its name in [`crate::Workspace::texture`]. Never given to another picture.
+    pub number: u32,
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+}
+
+/// Pictures with the numbers by which shells know them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Textures {
+    rows: Vec<(u32, Arc<Texture>)>,
+    next: u32,
+}
+
+impl Textures {
+    pub(crate) fn get(&self, number: u32) -> Option<&Texture> {
+        self.rows.iter().find(|(n, _)| *n == number).map(|(_, t)| &**t)
+    }
+
+    fn number_of(&mut self, texture: &Arc<Texture>) -> u32 {
+        let same = |t: &Arc<Texture>| Arc::ptr_eq(t, texture) || t == texture;
+        if let Some((number, _)) = self.rows.iter().find(|(_, t)| same(t)) {
+            return *number;
+        }
+        let number = self.next;
+        self.next = self.next.wrapping_add(1);
+        self.rows.push((number, Arc::clone(texture)));
+        number
+    }
+}
+
+impl PlantView {
+    pub(crate) fn empty(id: PlantId) -> Self {
+        Self {
+            id,
+            fresh: true,
+            error: None,
+            item: None,
+            stages: Vec::new(),
+            front: None,
+            days: None,
+            min: [0.0; 3],
+            max: [0.0; 3],
+            parts: Vec::new(),
+            materials: Vec::new(),
+            obstacles: Vec::new(),
+        }
+    }
+
+    pub(crate) fn of(id: PlantId, model: &Model, textures: &mut Textures) -> Self {
+        let mut view = Self::empty(id);
+        let bounds = model.bounds();
+        if !bounds.is_empty() {
+            (view.min, view.max) = (bounds.min.to_array(), bounds.max.to_array());
+        }
+        let parts = model.parts.iter();
+        view.parts = parts.map(|p| PartView { name: p.name.clone(), material: p.material.index() }).collect();
+        let materials = model.materials.iter().map(|m| MaterialView {
+            name: m.name.clone(),
+            kind: m.kind.word(),
+            color: m.base_color,
+            roughness: m.roughness,
+            translucency: m.translucency,
+            masked: m.alpha == AlphaMode::Mask,
+            two_sided: m.double_sided,
+            texture: m.texture.as_ref().map(|t| TextureView {
+                number: textures.number_of(t),
+                width: t.width,
+                height: t.height,
+            }),
+        });
+        view.materials = materials.collect();
+        view
+    }
+}

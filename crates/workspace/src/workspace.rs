@@ -1,0 +1,398 @@
+//! The document that is worked on: plants, strokes, commands, gestures, undo.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use burgeon::document::{
+    self, Document, DocumentPlant, Editor, Maker, NewPlant, NewStroke, Photo, PhotoPlace, PlantId,
+    SceneCommand, Settings, SketchCommand, StrokeId,
+};
+use burgeon::formats::{self, DrawingFormat, read_drawings};
+use burgeon::glam::DVec2;
+use burgeon::ink::{Drawing, Stroke};
+use burgeon::mesh::Model;
+use burgeon::{Evaluator, ItemReport, Preset, SceneEvaluator, tree_settings};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::evaluate::Outcome;
+use crate::shaping::Held;
+use crate::view::Textures;
+use crate::{DocumentState, WorkspaceError};
+
+/// Stands in a [`crate::PlantView`] for what is no plant of the document: a model that is looked at, another seed.
+pub const GUEST: PlantId = PlantId(u32::MAX);
+/// Room between a new plant and the others, metres: as wide as the crown of a tree, or a hand.
+const TREE_ROOM: f64 = 4.0;
+const ROOM: f64 = 0.25;
+
+/// What can be asked that is more than one [`document::Command`]. One step of undo each.
+///
+/// ```
+/// let action: workspace::Action = serde_json::from_str(r#"{"add":{"name":"my oak","maker":{"tree":"oak"}}}"#)?;
+/// assert!(matches!(action, workspace::Action::Add { .. }));
+/// # Ok::<(), serde_json::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Action {
+    /// An empty document in the place of this one.
+    New,
+    /// Adds a plant beside the others and chooses it. A sheet on which nothing was drawn gives way.
+    Add {
+        /// What it is called.
+        name: String,
+        /// Who makes it.
+        maker: NewMaker,
+    },
+    /// Makes a tree another species.
+    Preset {
+        /// The tree.
+        plant: PlantId,
+        /// The key of the preset.
+        key: String,
+    },
+}
+
+/// Who makes a new plant.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum NewMaker {
+    /// An empty sheet.
+    Sketch,
+    /// A tree of this preset.
+    Tree(String),
+    /// A leaf that waits for its marks.
+    Leaf,
+    /// A flower of this species.
+    Flower(String),
+}
+
+/// A document with its history, its plants as they were made last, and what the hand holds.
+///
+/// Guaranteed: after an error everything is as it was. What is shown never depends on what was asked before, but for
+/// drafts, gestures, and the numbers of textures.
+///
+/// ```
+/// use burgeon::Run;
+/// use workspace::{Action, NewMaker, Workspace};
+/// let mut workspace = Workspace::default();
+/// workspace.act(&Action::Add { name: "a lily".into(), maker: NewMaker::Flower("lily".into()) })?;
+/// let view = workspace.evaluate(&Run::plain())?;
+/// assert_eq!(view.plants[0].item.as_ref().and_then(|i| i.counts.flowers), Some(1));
+/// assert_eq!(workspace.undo(), Some("add-plant"));
+/// # Ok::<(), workspace::WorkspaceError>(())
+/// ```
+#[derive(Debug, Default)]
+pub struct Workspace {
+    pub(crate) editor: Editor,
+    pub(crate) scene: SceneEvaluator,
+    /// The plant that was chosen.
+    pub(crate) current: Option<PlantId>,
+    pub(crate) draft: Option<Stroke>,
+    /// The current plant while a stroke is drawn.
+    pub(crate) preview: Option<Evaluator>,
+    /// The plant and the revision whose classes the looks at a draft began with.
+    pub(crate) followed: Option<(PlantId, u64)>,
+    pub(crate) preview_item: Option<ItemReport>,
+    pub(crate) previewed: bool,
+    /// A model file that is looked at instead of the scene.
+    pub(crate) guest: Option<Model>,
+    /// Another plant of the same description, looked at for a moment.
+    pub(crate) variant: Option<Model>,
+    /// What came of each plant at the last evaluation.
+    pub(crate) outcomes: BTreeMap<PlantId, Outcome>,
+    /// What each plant's meshes were made of in the last view: a revision, or a look.
+    pub(crate) meshes: BTreeMap<PlantId, Option<u64>>,
+    /// Points that the shell has. Holding them keeps their addresses from being used again.
+    given: BTreeMap<StrokeId, Arc<Stroke>>,
+    pub(crate) textures: Textures,
+    /// A tool that shapes a plant.
+    pub(crate) held: Option<Held>,
+    /// The photograph that the shell has.
+    given_photo: Option<Arc<[u8]>>,
+}
+
+impl Workspace {
+    /// The document as it is now, an open gesture included.
+    pub fn document(&self) -> &Document {
+        self.editor.document()
+    }
+
+    /// The plant on the sheet and in the panel: the one that was chosen, or the last.
+    pub fn current(&self) -> Option<PlantId> {
+        let document = self.editor.document();
+        let chosen = self.current.filter(|&id| document.plant(id).is_some());
+        chosen.or_else(|| document.plants().last().map(DocumentPlant::id))
+    }
+
+    pub(crate) fn current_plant(&self) -> Option<&DocumentPlant> {
+        self.editor.document().plant(self.current()?)
+    }
+
+    pub(crate) fn must(&self) -> Result<PlantId, WorkspaceError> {
+        self.current().ok_or(WorkspaceError::NoPlant)
+    }
+
+    /// Chooses the plant that strokes, drafts, tools and exports are for.
+    ///
+    /// # Errors
+    /// [`WorkspaceError::PlantGone`].
+    pub fn select(&mut self, plant: PlantId) -> Result<(), WorkspaceError> {
+        if self.editor.document().plant(plant).is_none() {
+            return Err(WorkspaceError::PlantGone);
+        }
+        self.current = Some(plant);
+        self.draft = None;
+        self.guest = None;
+        self.let_go();
+        Ok(())
+    }
+
+    /// Starts empty and forgets the history: the memory of the document is given back.
+    pub fn close(&mut self) {
+        *self = Self::default();
+    }
+
+    /// Does a command as one step of undo, or as part of the open gesture. A copy of a plant is chosen.
+    ///
+    /// # Errors
+    /// [`WorkspaceError`]: why it was refused.
+    pub fn run(&mut self, command: impl Into<document::Command>) -> Result<(), WorkspaceError> {
+        let command = command.into();
+        self.let_go();
+        self.check(&command)?;
+        let copies = matches!(command, document::Command::Scene(SceneCommand::Duplicate(..)));
+        self.editor.run(command)?;
+        if copies {
+            self.current = self.editor.document().plants().last().map(DocumentPlant::id);
+        }
+        self.guest = None;
+        Ok(())
+    }
+
+    /// Does what takes more than one command, as one step of undo.
+    ///
+    /// # Errors
+    /// [`WorkspaceError`]: why it was refused.
+    pub fn act(&mut self, action: &Action) -> Result<(), WorkspaceError> {
+        match action {
+            Action::New => self.run(SceneCommand::Open(Box::default())),
+            Action::Add { name, maker } => {
+                self.let_go();
+                let maker = match maker {
+                    NewMaker::Sketch => Maker::default(),
+                    NewMaker::Tree(key) => Maker::Tree(Box::new(preset(key)?)),
+                    NewMaker::Leaf => Maker::Leaf(Box::default()),
+                    NewMaker::Flower(species) => {
+                        let mut flower = document::FlowerMaker::default();
+                        flower.settings.species.clone_from(species);
+                        Maker::Flower(Box::new(flower))
+                    }
+                };
+                self.add_plant(name, maker)?;
+                self.guest = None;
+                Ok(())
+            }
+            Action::Preset { plant, key } => {
+                let document::TreeSettings { preset, spec, .. } = preset(key)?;
+                self.run(document::TreeCommand::SetSpec(preset, spec).of(*plant))
+            }
+        }
+    }
+
+    /// Adds a plant beside the others and chooses it. A sheet on which nothing was drawn gives way.
+    pub(crate) fn add_plant(&mut self, name: &str, maker: Maker) -> Result<(), WorkspaceError> {
+        let document = self.editor.document();
+        let blank = match document.plants() {
+            [only]
+                if only.settings().sketch().is_some()
+                    && only.strokes().is_empty()
+                    && maker.word() != "sketch" =>
+            {
+                Some(only.id())
+            }
+            _ => None,
+        };
+        let mut settings = Settings { name: name.into(), maker, ..Settings::default() };
+        if blank.is_none() && !document.plants().is_empty() {
+            let room = if matches!(settings.maker, Maker::Tree(_)) { TREE_ROOM } else { ROOM };
+            let right = document.plants().iter().filter_map(|p| {
+                let model = self.scene.get(p.id())?.model;
+                let at = p.settings().placement;
+                Some(at.position.x + at.scale * model.bounds().max.x.max(0.0))
+            });
+            settings.placement.position.x = (10.0 * (right.fold(0.0, f64::max) + room)).round() / 10.0;
+        }
+        let add = SceneCommand::Add(Box::new(NewPlant { settings, strokes: Vec::new() }));
+        if let Some(blank) = blank {
+            self.editor.begin_gesture("add-plant")?;
+            let done = self.editor.run(add).and_then(|()| self.editor.run(SceneCommand::Remove(vec![blank])));
+            if let Err(e) = done {
+                self.editor.cancel_gesture();
+                return Err(e.into());
+            }
+            self.editor.commit();
+        } else {
+            self.editor.run(add)?;
+        }
+        self.current = self.editor.document().plants().last().map(DocumentPlant::id);
+        self.draft = None;
+        Ok(())
+    }
+
+    /// Adds a stroke to the current drawing and returns its number.
+    ///
+    /// # Errors
+    /// [`WorkspaceError`]: no point is finite, or the plant is no drawing.
+    pub fn add_stroke(&mut self, stroke: Stroke) -> Result<StrokeId, WorkspaceError> {
+        self.draft = None;
+        self.guest = None;
+        let id = self.must()?;
+        self.editor.run(SketchCommand::AddStrokes(vec![NewStroke { stroke, class: None }]).of(id))?;
+        let last = self.editor.document().plant(id).and_then(|p| p.strokes().last());
+        last.map(|s| s.id).ok_or(WorkspaceError::Internal("no stroke"))
+    }
+
+    /// Shows a stroke that is still being drawn and is not in the document; one without points takes it away.
+    pub fn draft(&mut self, stroke: Stroke) {
+        self.draft = Some(stroke).filter(|s| !s.samples.is_empty());
+        if self.draft.is_some() {
+            self.guest = None;
+        }
+    }
+
+    /// Opens a gesture: what is staged up to [`Workspace::commit`] is one step of this name.
+    ///
+    /// # Errors
+    /// While another is open.
+    pub fn begin(&mut self, name: &str) -> Result<(), WorkspaceError> {
+        self.let_go();
+        Ok(self.editor.begin_gesture(name)?)
+    }
+
+    /// Replaces what the open gesture did by one command.
+    ///
+    /// # Errors
+    /// [`WorkspaceError`]: why it was refused.
+    pub fn stage(&mut self, command: impl Into<document::Command>) -> Result<(), WorkspaceError> {
+        let command = command.into();
+        self.check(&command)?;
+        Ok(self.editor.stage(command)?)
+    }
+
+    /// Closes the gesture.
+    pub fn commit(&mut self) {
+        self.editor.commit();
+    }
+
+    /// Closes the gesture and takes back what it did.
+    pub fn abandon(&mut self) {
+        self.editor.cancel_gesture();
+    }
+
+    /// Strokes of the current drawing as a drawing in our JSON, for a clipboard.
+    ///
+    /// # Errors
+    /// [`WorkspaceError::NoStroke`] when none of them is there.
+    pub fn copy(&self, ids: &[StrokeId]) -> Result<Vec<u8>, WorkspaceError> {
+        let plant = self.current_plant().ok_or(WorkspaceError::NoStroke)?;
+        let chosen = plant.strokes().iter().filter(|s| ids.contains(&s.id));
+        let strokes: Vec<Stroke> = chosen.map(|s| Stroke::clone(&s.stroke)).collect();
+        if strokes.is_empty() {
+            return Err(WorkspaceError::NoStroke);
+        }
+        let mut out = Vec::new();
+        let drawing = Drawing { name: plant.settings().name.clone(), strokes };
+        formats::write_drawing(&drawing, &mut out)?;
+        Ok(out)
+    }
+
+    /// Adds the strokes of a drawing as text (our JSON, SVG, InkML), moved; returns their numbers.
+    ///
+    /// # Errors
+    /// [`WorkspaceError`]: what is wrong with it.
+    pub fn paste(&mut self, text: &str, by: DVec2) -> Result<Vec<StrokeId>, WorkspaceError> {
+        let format = DrawingFormat::sniff(text.as_bytes()).ok_or(WorkspaceError::NoClipboard)?;
+        let read = read_drawings(text.as_bytes(), format, "clipboard").next();
+        let mut strokes = read.ok_or(WorkspaceError::NoClipboard)??.drawing.strokes;
+        for p in strokes.iter_mut().flat_map(|s| &mut s.samples) {
+            p.at += by;
+        }
+        let id = self.must()?;
+        let before = self.current_plant().map_or(0, |p| p.strokes().len());
+        let new = strokes.into_iter().map(|stroke| NewStroke { stroke, class: None }).collect();
+        self.editor.run(SketchCommand::AddStrokes(new).of(id))?;
+        self.guest = None;
+        let strokes = self.current_plant().map_or(&[][..], DocumentPlant::strokes);
+        Ok(strokes.iter().skip(before).map(|s| s.id).collect())
+    }
+
+    /// Puts a photograph (PNG) under the current drawing: left lower corner and width in the drawing's unit.
+    ///
+    /// # Errors
+    /// [`WorkspaceError::Photo`] when it is no PNG or too large.
+    pub fn place_photo(&mut self, png: &[u8], at: DVec2, width: f64) -> Result<(), WorkspaceError> {
+        let mut photo = Photo::new(png.into())?;
+        photo.place = PhotoPlace { x: at.x, y: at.y, width, ..photo.place };
+        Ok(self.editor.run(SketchCommand::SetPhoto(Box::new(photo)).of(self.must()?))?)
+    }
+
+    /// The photograph's file if the shell has another one; it counts as had from now on.
+    pub fn fresh_photo(&mut self) -> Option<Arc<[u8]>> {
+        let photo = self.current_plant()?.settings().photo().map(|p| Arc::clone(p.png()))?;
+        let had = self.given_photo.as_ref().is_some_and(|had| Arc::ptr_eq(&photo, had));
+        self.given_photo = Some(Arc::clone(&photo));
+        (!had).then_some(photo)
+    }
+
+    /// Takes the last step back and returns its name.
+    pub fn undo(&mut self) -> Option<&str> {
+        self.guest = None;
+        self.let_go();
+        self.editor.undo()
+    }
+
+    /// Does the last step that was taken back again and returns its name.
+    pub fn redo(&mut self) -> Option<&str> {
+        self.guest = None;
+        self.let_go();
+        self.editor.redo()
+    }
+
+    /// The document as lists and panels show it, without points.
+    pub fn state(&self) -> DocumentState<'_> {
+        DocumentState::of(&self.editor, self.current())
+    }
+
+    /// Strokes of the current drawing whose points the shell does not have yet; they count as had from now on.
+    pub fn fresh_strokes(&mut self) -> Vec<StrokeId> {
+        let mut fresh = Vec::new();
+        let mut given = BTreeMap::new();
+        let plant = self.current().and_then(|id| self.editor.document().plant(id));
+        for s in plant.map_or(&[][..], DocumentPlant::strokes) {
+            if !self.given.get(&s.id).is_some_and(|old| Arc::ptr_eq(old, &s.stroke)) {
+                fresh.push(s.id);
+            }
+            given.insert(s.id, Arc::clone(&s.stroke));
+        }
+        self.given = given;
+        fresh
+    }
+
+    /// A stroke of the current drawing.
+    pub fn stroke(&self, id: StrokeId) -> Option<&Stroke> {
+        let plant = self.current_plant()?;
+        plant.strokes().get(plant.row(id)?).map(|s| &*s.stroke)
+    }
+
+    /// The document changed, or another plant is looked at: what was held is let go.
+    fn let_go(&mut self) {
+        self.held = None;
+    }
+}
+
+fn preset(key: &str) -> Result<document::TreeSettings, WorkspaceError> {
+    let preset = Preset::find(key).ok_or_else(|| WorkspaceError::NoTree(key.into()))?;
+    Ok(tree_settings(&preset.spec().map_err(burgeon::TreeError::from)?, Some(key)))
+}

@@ -1,0 +1,237 @@
+//! `cargo xtask layers`: modules of a crate that use one another in a circle are one module in several files.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use syn::visit::Visit;
+use syn::{Attribute, Item, ItemMod, ItemUse, UseTree};
+
+use crate::shell::{Outcome, repository, say};
+
+/// For each module of a crate's root the others that it uses, each with one place where it does.
+type Uses = BTreeMap<String, BTreeMap<String, String>>;
+
+/// Looks for circles among the modules of every crate.
+pub(crate) fn check() -> Outcome {
+    let mut roots = Vec::new();
+    for folder in ["crates", "apps", "."] {
+        let folder = repository().join(folder);
+        let entries = std::fs::read_dir(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+        let sources = entries.filter_map(Result::ok).map(|e| e.path().join("src"));
+        roots.extend(sources.flat_map(|s| [s.join("lib.rs"), s.join("main.rs")]).filter(|f| f.is_file()));
+    }
+    roots.sort();
+    let mut faults = Vec::new();
+    for root in &roots {
+        faults.extend(circles(&uses(root)?).iter().map(|c| format!("{}: {c}", root.display())));
+    }
+    if faults.is_empty() {
+        say(&format!("circles: none among the modules of {} crates", roots.len()));
+        Ok(())
+    } else {
+        Err(format!("modules that use one another in a circle:\n  {}", faults.join("\n  ")))
+    }
+}
+
+fn parse(path: &Path) -> Outcome<syn::File> {
+    let text = std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))?;
+    syn::parse_file(&text).map_err(|e| format!("{}: {e}", path.display()))
+}
+
+/// Who uses whom among the modules that a crate's root declares. Tests may use what they like.
+fn uses(root: &Path) -> Outcome<Uses> {
+    let file = parse(root)?;
+    let folder = root.parent().unwrap_or(Path::new("."));
+    let modules: BTreeSet<String> = declared(&file).map(|m| m.ident.to_string()).collect();
+    // Names that the root gives to its modules' items: `crate::Name` means the module that has it.
+    let mut names = BTreeMap::new();
+    for item in &file.items {
+        if let Item::Use(u) = item {
+            let mut paths = Vec::new();
+            flatten(&u.tree, &mut Vec::new(), &mut paths);
+            for path in paths {
+                let path: Vec<_> = path.into_iter().skip_while(|p| p == "crate" || p == "self").collect();
+                if let [first, .., last] = path.as_slice()
+                    && modules.contains(first)
+                {
+                    names.insert(last.clone(), first.clone());
+                }
+            }
+        }
+    }
+    let mut all = Uses::new();
+    for module in &modules {
+        let mut seen = Seen { module: vec![module.clone()], paths: Vec::new() };
+        let own = [folder.join(format!("{module}.rs")), folder.join(module).join("mod.rs")];
+        let Some(path) = own.into_iter().find(|p| p.is_file()) else { continue };
+        seen.file(&path)?;
+        let found = all.entry(module.clone()).or_default();
+        for (path, place) in seen.paths {
+            let Some(first) = path.first() else { continue };
+            let used = if modules.contains(first) { Some(first) } else { names.get(first) };
+            if let Some(used) = used.filter(|u| *u != module) {
+                found.entry(used.clone()).or_insert_with(|| format!("{place} uses {}", path.join("::")));
+            }
+        }
+    }
+    Ok(all)
+}
+
+/// Modules in files of their own, without those of tests.
+fn declared(file: &syn::File) -> impl Iterator<Item = &ItemMod> {
+    file.items.iter().filter_map(|item| match item {
+        Item::Mod(m) if m.content.is_none() && !is_test(&m.attrs) => Some(m),
+        _ => None,
+    })
+}
+
+fn is_test(attributes: &[Attribute]) -> bool {
+    attributes
+        .iter()
+        .any(|a| a.path().is_ident("cfg") && a.parse_args::<syn::Path>().is_ok_and(|p| p.is_ident("test")))
+}
+
+/// The paths of a `use`, one for each name.
+fn flatten(tree: &UseTree, before: &mut Vec<String>, out: &mut Vec<Vec<String>>) {
+    let whole = |name: String| before.iter().cloned().chain([name]).collect();
+    match tree {
+        UseTree::Path(p) => {
+            before.push(p.ident.to_string());
+            flatten(&p.tree, before, out);
+            before.pop();
+        }
+        UseTree::Name(n) => out.push(whole(n.ident.to_string())),
+        UseTree::Rename(n) => out.push(whole(n.ident.to_string())),
+        UseTree::Glob(_) => out.push(before.clone()),
+        UseTree::Group(g) => g.items.iter().for_each(|t| flatten(t, before, out)),
+    }
+}
+
+/// What a module and the modules below it name, from the crate's root on, and in which file.
+struct Seen {
+    /// The module that is read, from the root.
+    module: Vec<String>,
+    paths: Vec<(Vec<String>, String)>,
+}
+
+impl Seen {
+    fn file(&mut self, path: &Path) -> Outcome {
+        let file = parse(path)?;
+        let place = path.strip_prefix(repository()).unwrap_or(path).display().to_string();
+        let before = self.paths.len();
+        self.visit_file(&file);
+        self.paths[before..].iter_mut().for_each(|(_, at)| at.clone_from(&place));
+        let folder: PathBuf = if path.file_name().is_some_and(|n| n == "mod.rs") {
+            path.parent().unwrap_or(path).to_path_buf()
+        } else {
+            path.with_extension("")
+        };
+        for module in declared(&file) {
+            let name = module.ident.to_string();
+            let own = [folder.join(format!("{name}.rs")), folder.join(&name).join("mod.rs")];
+            if let Some(path) = own.into_iter().find(|p| p.is_file()) {
+                self.module.push(name);
+                self.file(&path)?;
+                self.module.pop();
+            }
+        }
+        Ok(())
+    }
+
+    /// Keeps a path that starts at the crate's root or above this module.
+    fn keep(&mut self, path: &[String]) {
+        let ups = path.iter().take_while(|p| *p == "super").count();
+        let from = match path.first().map(String::as_str) {
+            Some("crate") => &[][..],
+            Some("super") => &self.module[..self.module.len().saturating_sub(ups)],
+            _ => return,
+        };
+        let rest = path.iter().skip(ups.max(1)).filter(|p| *p != "self");
+        self.paths.push((from.iter().chain(rest).cloned().collect(), String::new()));
+    }
+}
+
+impl<'a> Visit<'a> for Seen {
+    fn visit_item_mod(&mut self, module: &'a ItemMod) {
+        if !is_test(&module.attrs) {
+            self.module.push(module.ident.to_string());
+            syn::visit::visit_item_mod(self, module);
+            self.module.pop();
+        }
+    }
+
+    fn visit_item_use(&mut self, item: &'a ItemUse) {
+        let mut paths = Vec::new();
+        flatten(&item.tree, &mut Vec::new(), &mut paths);
+        paths.iter().for_each(|p| self.keep(p));
+    }
+
+    fn visit_path(&mut self, path: &'a syn::Path) {
+        let names: Vec<String> = path.segments.iter().map(|s| s.ident.to_string()).collect();
+        self.keep(&names);
+        syn::visit::visit_path(self, path);
+    }
+}
+
+/// Each circle in words: modules from which every other of the circle can be reached.
+fn circles(uses: &Uses) -> Vec<String> {
+    let reached = |from: &String| {
+        let (mut open, mut all) = (vec![from], BTreeSet::new());
+        while let Some(module) = open.pop() {
+            for next in uses.get(module).into_iter().flat_map(BTreeMap::keys) {
+                if all.insert(next) {
+                    open.push(next);
+                }
+            }
+        }
+        all
+    };
+    let reach: BTreeMap<&String, BTreeSet<&String>> = uses.keys().map(|m| (m, reached(m))).collect();
+    let mut told = BTreeSet::new();
+    let mut out = Vec::new();
+    for (module, all) in &reach {
+        let circle: Vec<&&String> =
+            all.iter().filter(|m| reach.get(**m).is_some_and(|r| r.contains(module))).collect();
+        if circle.is_empty() || !told.insert(circle.clone()) {
+            continue;
+        }
+        let inside = |used: &String| circle.iter().any(|m| **m == used);
+        let edges = circle.iter().flat_map(|m| uses[**m].iter().filter(|(used, _)| inside(used)));
+        let edges: Vec<String> = edges.map(|(_, place)| format!("\n    {place}")).collect();
+        out.push(edges.concat());
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(files: &[(&str, &str)]) -> Vec<String> {
+        let folder =
+            std::env::temp_dir().join(format!("burgeon-circles-{}-{}", std::process::id(), files.len()));
+        for (name, text) in files {
+            let path = folder.join(name);
+            std::fs::create_dir_all(path.parent().expect("a folder")).expect("can be made");
+            std::fs::write(path, text).expect("can be written");
+        }
+        let found = circles(&uses(&folder.join("lib.rs")).expect("can be parsed"));
+        std::fs::remove_dir_all(folder).expect("was made");
+        found
+    }
+
+    #[test]
+    fn circles_are_found_through_names_of_the_root_and_modules_below() {
+        let root = ("lib.rs", "mod a; mod b; mod c; pub use b::Thing;");
+        let fine =
+            [root, ("a.rs", "use crate::Thing;"), ("b.rs", "pub struct Thing;"), ("c.rs", "use crate::a;")];
+        assert_eq!(of(&fine), Vec::<String>::new());
+        let back = ("b/mod.rs", "mod d; #[cfg(test)] mod tests { use crate::c; }");
+        let bad = [root, fine[1], fine[3], back, ("b/d.rs", "fn f() { super::super::a::g(); }")];
+        let found = of(&bad);
+        assert!(
+            found.len() == 1 && found[0].contains("d.rs uses a::g") && found[0].contains("uses Thing"),
+            "{found:?}"
+        );
+    }
+}

@@ -1,0 +1,61 @@
+//! Habits that no compiler checks: what dependencies may be, spelling, packages that could be published.
+
+use std::path::PathBuf;
+
+use crate::shell::{Outcome, cache_dir, cargo, cargo_path, finish, output, prepare, say};
+
+/// A program that checks one of them.
+struct Checker {
+    /// Its package.
+    package: &'static str,
+    version: &'static str,
+    program: &'static str,
+}
+
+const DENY: Checker = Checker { package: "cargo-deny", version: "0.20.2", program: "cargo-deny" };
+const TYPOS: Checker = Checker { package: "typos-cli", version: "1.52.0", program: "typos" };
+
+/// Runs them all.
+pub(crate) fn check() -> Outcome {
+    if let Some(deny) = DENY.found() {
+        say("$ cargo deny check licenses bans sources (deny.toml)");
+        finish(prepare(&deny, &["--log-level", "error", "check", "licenses", "bans", "sources"]))?;
+        // The list of advisories lies elsewhere: it cannot be had everywhere.
+        say("$ cargo deny fetch db");
+        match output(prepare(&deny, &["--log-level", "error", "fetch", "db"])) {
+            Ok(_) => finish(prepare(&deny, &["--log-level", "error", "check", "advisories"]))?,
+            Err(e) => say(&format!("skipped: security advisories cannot be fetched here ({e})")),
+        }
+    }
+    if let Some(typos) = TYPOS.found() {
+        say("$ typos (typos.toml)");
+        finish(prepare(&typos, &["--format", "brief"]))?;
+    }
+    let mut package = vec!["package", "--workspace", "--no-verify", "--allow-dirty", "--quiet"];
+    package.extend(["--exclude", "burgeon-wasm", "--exclude", "burgeon-bench", "--exclude", "xtask"]);
+    cargo(&package)
+}
+
+impl Checker {
+    /// The program: installed for this checkout, or now; none where that fails, and says so.
+    fn found(&self) -> Option<PathBuf> {
+        let root = cache_dir().join(format!("{}-{}", self.package, self.version));
+        let program = root.join("bin").join(format!("{}{}", self.program, std::env::consts::EXE_SUFFIX));
+        if program.exists() {
+            return Some(program);
+        }
+        say(&format!("$ cargo install {} --version ={} (once)", self.package, self.version));
+        let (exact, root) = (format!("={}", self.version), root.to_string_lossy().into_owned());
+        let mut c = prepare(cargo_path(), &["install", "--quiet", self.package, "--version", &exact]);
+        c.args(["--root", &root]);
+        // It runs for a second: what it takes to build counts.
+        c.env("CARGO_PROFILE_RELEASE_OPT_LEVEL", "0").env("CARGO_PROFILE_RELEASE_LTO", "off");
+        match finish(c) {
+            Ok(()) => Some(program),
+            Err(e) => {
+                say(&format!("skipped: {} cannot be installed here ({e})", self.package));
+                None
+            }
+        }
+    }
+}
