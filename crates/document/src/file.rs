@@ -314,3 +314,16 @@ fn from_tree(tree: TreeV3) -> Result<Maker, ProjectError> {
         leaf: leaf.map(PlantId),
     })))
 }
+
+base::coded!(ProjectError {
+    Self::Archive(why) => "project-archive" { why },
+    Self::Missing(name) => "project-missing" { name },
+    Self::Version { found } => "project-version" { found },
+    Self::Json { entry, source } => "project-json" { entry, why = source },
+    Self::Stroke { row, what } => "project-stroke" { row, why = what },
+    Self::Setting(why) => "project-setting" { why },
+    Self::Scene(why) => "project-scene" { why },
+    Self::TooMuch { what, limit } => "project-too-much" { what, limit },
+} wraps {
+    Self::Photo(e) => e, PhotoError;
+});

@@ -684,6 +684,17 @@ fn fold_of(marks: &FullMarks) -> f64 {
     if wide > 0.0 { (rise / wide).clamp(-1.0, 1.0) } else { 0.0 }
 }
 
+base::coded!(LeafError {
+    Self::Spline(why) => "leaf-surface" { why },
+    Self::Rays(why) => "leaf-veins" { why },
+    Self::Scan(why) => "leaf-scan" { why },
+    Self::NoLeaves => "no-leaves" {},
+} wraps {
+    Self::Marks(e) => e, MarksError;
+    Self::Cancelled(e) => e, Cancelled;
+    Self::OverBudget(e) => e, OverBudget;
+});
+
 #[cfg(test)]
 mod tests {
     use base::Report;

@@ -248,3 +248,9 @@ fn placed(plant: &Plant, flower: &Flower, organs: &[&Organ], dye: [f32; 3]) -> O
     let centre = flower.centre + axis * (0.3 * disc);
     Some(Placed { spec, centre, turn: base::turn::between(DVec3::Y, axis) })
 }
+
+base::coded!(OpeningError {
+    Self::NoFlowers(name) => "no-flowers" { name },
+} wraps {
+    Self::Make(e) => e, MakeError;
+});

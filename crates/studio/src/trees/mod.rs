@@ -272,5 +272,14 @@ fn look_at_meshes(obstacles: &[Obstacle], report: &mut Report) {
     }
 }
 
+base::coded!(TreeError {
+    Self::Spec { line, message } => "tree-spec" { line, why = message },
+    Self::File { file } => "tree-file" { file },
+} wraps {
+    Self::Growth(e) => e, GrowthError;
+    Self::Cancelled(e) => e, Cancelled;
+    Self::OverBudget(e) => e, OverBudget;
+});
+
 #[cfg(test)]
 mod tests;
