@@ -9,7 +9,6 @@ use burgeon::growth::{
     SelfOrganizingSpec,
 };
 use burgeon::mesh::Model;
-use burgeon::skin::SkinSpec;
 use burgeon::{
     ItemReport, LeafTemplate, MadeTree, NamedMesh, Preset, Report, RunReport, Seed, TreeError, TreeOptions,
     TreeSpec, make_tree, method_word, read_tree_spec,
@@ -50,13 +49,7 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     outputs.check()?;
     let seed = Seed::new(args.seed);
     let options = TreeOptions {
-        skin: SkinSpec {
-            detail: args.surface.detail,
-            sides: args.surface.sides,
-            textures: !args.surface.no_textures,
-            wind: args.surface.wind,
-            ..SkinSpec::default()
-        },
+        skin: args.surface.skin.spec(),
         leaf,
         lods: if matches!(format, Some(PlantFormat::Model(_))) { args.surface.lods } else { 0 },
         ..TreeOptions::default()

@@ -8,10 +8,9 @@ use burgeon::document::{
 };
 use burgeon::mesh::Model;
 use burgeon::plant::Plant;
-use burgeon::skin::SkinSpec;
 use burgeon::{ItemReport, SceneEvaluator, Seed};
 
-use crate::args::TreeSurfaceArgs;
+use crate::args::{SkinArgs, TreeSurfaceArgs};
 use crate::failure::{Failure, Outcome};
 use crate::machine::Machine;
 use crate::output::Outputs;
@@ -104,13 +103,9 @@ pub(crate) fn asked(
         Some(Maker::Tree(t)) => (&t.skin, true),
         _ => return Err(Failure::Bug("the chosen plant has no branches".into())),
     };
-    let plain = SkinSpec::default();
-    let asked = SkinSpec {
-        detail: if surface.detail == plain.detail { skin.detail } else { surface.detail },
-        sides: if surface.sides == plain.sides { skin.sides } else { surface.sides },
-        textures: skin.textures && !surface.no_textures,
-        ..skin.clone()
-    };
+    let mut asked = skin.clone();
+    // Wind is chosen for an export, not saved.
+    SkinArgs { wind: skin.wind, ..surface.skin.clone() }.set(&mut asked);
     let mut commands = Vec::new();
     if asked != *skin {
         commands.push(match is_tree {

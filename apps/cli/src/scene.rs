@@ -75,7 +75,7 @@ pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine:
     given.check_surface(Seen::new(format, args.png.as_ref(), &args.common))?;
     given.check_axes(args.qsm.is_some() || format.is_some_and(|f| !f.fixed_axes()))?;
     let mut scene = SceneEvaluator::default();
-    scene.set_wind(args.surface.wind);
+    scene.set_wind(args.surface.skin.wind);
     let mut report = RunReport::new("sketch", 1);
     report.input.path = path.display().to_string();
     report.input.drawings = document.plants().len() as u64;

@@ -195,13 +195,7 @@ fn make(
     told: &mut Report,
     machine: &Machine,
 ) -> Outcome<Shaped> {
-    let skin = SkinSpec {
-        detail: args.surface.detail,
-        sides: args.surface.sides,
-        textures: !args.surface.no_textures,
-        wind: args.surface.wind,
-        ..SkinSpec::default()
-    };
+    let skin = args.surface.skin.spec();
     let seed = Seed::new(args.seed.unwrap_or(1));
     let is_preset = what.to_str().and_then(Preset::find).is_some() && !what.is_file();
     let is_spec = files::extension(what).is_none_or(|e| e.eq_ignore_ascii_case("toml"));
@@ -238,7 +232,7 @@ fn make(
             let id = project::choose(what, &document, args.plant.as_deref())?;
             let document = project::edited(what, document, id, edits)?;
             let asked = project::asked(what, &document, id, args.seed, &args.surface)?;
-            let (plant, model, item) = project::make(what, &asked, id, args.surface.wind, machine)?;
+            let (plant, model, item) = project::make(what, &asked, id, args.surface.skin.wind, machine)?;
             let seed = asked.plant(id).map_or(seed, |p| p.settings().seed);
             return Ok(Shaped { plant, model, lods: Vec::new(), item, seed, edited: Some(document) });
         }

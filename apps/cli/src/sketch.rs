@@ -576,10 +576,7 @@ fn set_sketch(spec: &mut SketchSpec, args: &ReadingArgs) {
 }
 
 fn set_skin(skin: &mut SkinSpec, args: &SurfaceArgs) {
-    skin.detail = args.detail.unwrap_or(skin.detail);
-    skin.sides = args.sides.unwrap_or(skin.sides);
-    skin.textures &= !args.no_textures;
-    skin.wind = args.wind;
+    args.skin.set(skin);
     skin.petals = args.petals.map(Into::into).or(skin.petals);
     skin.variation = args.variation.unwrap_or(skin.variation);
 }

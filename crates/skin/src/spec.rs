@@ -4,6 +4,8 @@ use base::Seed;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::LeafMeshSpec;
+
 /// How a plant is given its surface. Saved with the document.
 ///
 /// ```
@@ -20,6 +22,9 @@ pub struct SkinSpec {
     /// Sides of an ordinary branch at `detail` 1 or more; thick ones get up to 24. 3 to 24, default 8 (the
     /// paper's octagons).
     pub sides: u32,
+    /// How leaves of measured veins are meshed at `detail` 1. What a leaf is asked for, not saved here.
+    #[serde(skip)]
+    pub leaf: LeafMeshSpec,
     /// Give materials procedural textures; without, they have plain colours. Default true.
     pub textures: bool,
     /// Colour of petals whose organs have no colour of their own; `None` picks one by seed and plant name.
@@ -40,6 +45,7 @@ impl Default for SkinSpec {
         Self {
             detail: 1.0,
             sides: 8,
+            leaf: LeafMeshSpec::default(),
             textures: true,
             petals: None,
             variation: 1.0,

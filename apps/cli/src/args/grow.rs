@@ -6,7 +6,7 @@ use burgeon::glam::DVec3;
 use clap::{Args, ValueEnum};
 
 use super::given::Given;
-use super::shared::{AxesArgs, CommonArgs, PictureArgs, ranged, seed};
+use super::shared::{AxesArgs, CommonArgs, PictureArgs, SkinArgs, ranged, seed};
 
 #[derive(Args, Debug)]
 #[command(after_long_help = GROW_EXAMPLES)]
@@ -103,23 +103,11 @@ pub(crate) struct PointsArgs {
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Surface")]
 pub(crate) struct TreeSurfaceArgs {
-    /// Fineness of the meshes, 0.1 to 8; triangle counts grow in proportion. At 1 a crown's leaf has 6 to 24.
-    #[arg(long, value_name = "X", default_value_t = 1.0, allow_hyphen_values = true,
-          value_parser = |s: &str| ranged(s, 0.1, 8.0))]
-    pub(crate) detail: f64,
-    /// Sides of an ordinary branch, 3 to 24; thick branches get more.
-    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(3..=24))]
-    pub(crate) sides: u32,
+    #[command(flatten)]
+    pub(crate) skin: SkinArgs,
     /// Coarser copies to write beside the model (OUT-lod1, OUT-lod2, ...), 0 to 6.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=6))]
     pub(crate) lods: u32,
-    /// Plain colours instead of textures.
-    #[arg(long)]
-    pub(crate) no_textures: bool,
-    /// Also write how wind moves each vertex, for shaders: attributes _WIND and _PIVOT of .glb, primvars of .usda
-    /// (docs/exports.md).
-    #[arg(long)]
-    pub(crate) wind: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -21,7 +21,9 @@ pub(crate) use leaf::{
 };
 pub(crate) use presets::PresetsArgs;
 pub(crate) use shape::ShapeArgs;
-pub(crate) use shared::{AxesArgs, CommonArgs, FormatWord, PictureArgs, PlantFormat, UnitWord, UpWord};
+pub(crate) use shared::{
+    AxesArgs, CommonArgs, FormatWord, PictureArgs, PlantFormat, SkinArgs, UnitWord, UpWord,
+};
 pub(crate) use sketch::{ReadingArgs, SketchArgs, SurfaceArgs};
 
 use clap::{Parser, Subcommand};

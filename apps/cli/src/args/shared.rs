@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use burgeon::formats::ModelFormat;
 use burgeon::render::{Background, PictureSpec, View};
+use burgeon::skin::SkinSpec;
 use burgeon::{Seed, Unit, UpAxis};
 use clap::{Args, ValueEnum};
 
@@ -34,6 +35,43 @@ impl CommonArgs {
     /// Somebody reads the report.
     pub(crate) fn reports(&self) -> bool {
         self.report.is_some() || self.json
+    }
+}
+
+/// How plants are meshed.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Surface")]
+pub(crate) struct SkinArgs {
+    /// Fineness of the meshes, 0.1 to 8; triangle counts grow in proportion. At 1 a crown's leaf has 6 to 24
+    /// [default: 1].
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 0.1, 8.0))]
+    pub(crate) detail: Option<f64>,
+    /// Sides of an ordinary branch, 3 to 24; thick branches get more [default: 8].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(3..=24))]
+    pub(crate) sides: Option<u32>,
+    /// Plain colours instead of textures.
+    #[arg(long)]
+    pub(crate) no_textures: bool,
+    /// Also write how wind moves each vertex, for shaders: attributes _WIND and _PIVOT of .glb, primvars of .usda
+    /// (docs/exports.md).
+    #[arg(long)]
+    pub(crate) wind: bool,
+}
+
+impl SkinArgs {
+    /// What was asked for, in the place of what was there.
+    pub(crate) fn set(&self, skin: &mut SkinSpec) {
+        skin.detail = self.detail.unwrap_or(skin.detail);
+        skin.sides = self.sides.unwrap_or(skin.sides);
+        skin.textures &= !self.no_textures;
+        skin.wind = self.wind;
+    }
+
+    /// A plain surface with what was asked for.
+    pub(crate) fn spec(&self) -> SkinSpec {
+        let mut skin = SkinSpec::default();
+        self.set(&mut skin);
+        skin
     }
 }
 

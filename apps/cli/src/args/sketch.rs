@@ -7,7 +7,7 @@ use burgeon::skin::PetalColor;
 use clap::{Args, ValueEnum};
 
 use super::given::Given;
-use super::shared::{AxesArgs, CommonArgs, PictureArgs, PlantFormatWord, ranged, seed};
+use super::shared::{AxesArgs, CommonArgs, PictureArgs, PlantFormatWord, SkinArgs, ranged, seed};
 
 #[derive(Args, Debug)]
 #[command(after_long_help = SKETCH_EXAMPLES)]
@@ -111,22 +111,11 @@ pub(crate) struct ReadingArgs {
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Surface")]
 pub(crate) struct SurfaceArgs {
-    /// Fineness of the meshes, 0.1 to 8; triangle counts grow in proportion [default: 1].
-    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 0.1, 8.0))]
-    pub(crate) detail: Option<f64>,
-    /// Sides of an ordinary branch, 3 to 24; thick branches get more [default: 8].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(3..=24))]
-    pub(crate) sides: Option<u32>,
-    /// Plain colours instead of textures.
-    #[arg(long)]
-    pub(crate) no_textures: bool,
+    #[command(flatten)]
+    pub(crate) skin: SkinArgs,
     /// Colour of petals that were drawn without one [default: by seed and name].
     #[arg(long, value_enum, value_name = "COLOUR")]
     pub(crate) petals: Option<PetalWord>,
-    /// Also write how wind moves each vertex, for shaders: attributes _WIND and _PIVOT of .glb, primvars of .usda
-    /// (docs/exports.md).
-    #[arg(long)]
-    pub(crate) wind: bool,
     /// Variation of colour from organ to organ, 0 (none) to 1 [default: 1].
     #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 0.0, 1.0))]
     pub(crate) variation: Option<f64>,
