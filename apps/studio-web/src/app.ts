@@ -27,7 +27,7 @@ import { settingsPanel } from './settings';
 import { Shaping } from './shaping';
 import { statsTable } from './stats';
 import { setSetting, setting } from './store';
-import { currentLanguage, number, setLanguage, t, tOf, type TextKey } from './text';
+import { currentLanguage, number, setLanguage, t, tell, tOf, type TextKey } from './text';
 import { endTour, firstRun } from './tour';
 import { button, closePopover, dialog, el, icon, note, popover, relabel, type IconName } from './ui';
 import { openVariations } from './variations';
@@ -102,7 +102,7 @@ export class App {
         this.sheet.setOrgans(this.organs());
         this.panel.follow();
         if (fresh.some((f) => f.view.id === this.state?.current)) this.shaping?.renewed();
-        for (const { id, error } of view.plants) this.tellOf(id, error);
+        for (const { id, error } of view.plants) this.tellOf(id, error && tell(error));
         this.idle();
         this.showView();
         this.refreshSkeleton();
@@ -117,8 +117,8 @@ export class App {
       failed: (why) => {
         this.idle();
         note(
-          why === 'cancelled' ? t('status.stopped') : t('note.refused', { why }),
-          why === 'cancelled' ? 'good' : 'bad',
+          why.code === 'cancelled' ? t('status.stopped') : t('note.refused', { why: tell(why) }),
+          why.code === 'cancelled' ? 'good' : 'bad',
         );
       },
       fault: (hold) => {

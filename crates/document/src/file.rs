@@ -328,3 +328,17 @@ fn from_tree(tree: TreeV3) -> Result<Maker, ProjectError> {
         leaf: leaf.map(PlantId),
     })))
 }
+
+base::coded!(ProjectError {
+    Self::Archive(why) => "project-archive" { why },
+    Self::Missing(name) => "project-missing" { name },
+    Self::Version { found } => "project-version" { found },
+    Self::Json { entry, source } => "project-json" { entry, why = source },
+    Self::Stroke { row, what } => "project-stroke" { row, why = what },
+    Self::Setting(why) => "project-setting" { why },
+    Self::Scene(why) => "project-scene" { why },
+    Self::TooMuch { what, limit } => "project-too-much" { what, limit },
+} wraps {
+    Self::Tree(e) => e, SpecFault;
+    Self::Photo(e) => e, PhotoError;
+});

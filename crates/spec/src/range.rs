@@ -46,6 +46,10 @@ impl RangeFault {
     }
 }
 
+base::coded!(RangeFault {
+    fault => "field-range" { field = fault.path, range = fault.range(), value = fault.value },
+});
+
 /// Large and small numbers as people write them.
 fn short(x: f64) -> String {
     if x != 0.0 && !(1e-4..1e6).contains(&x.abs()) { format!("{x:e}") } else { x.to_string() }

@@ -31,6 +31,13 @@ pub enum SpecFault {
     Pointer(String),
 }
 
+base::coded!(SpecFault {
+    Self::Text { path, message, .. } => "spec-text" { path, why = message },
+    Self::Pointer(path) => "spec-pointer" { path },
+} wraps {
+    Self::Range { fault, .. } => fault, RangeFault;
+});
+
 fn on(line: Option<usize>) -> String {
     line.map(|line| format!("line {line}: ")).unwrap_or_default()
 }

@@ -34,8 +34,8 @@ mod trees;
 mod venation;
 
 pub use base::{
-    Angle, Budget, CancelToken, Cancelled, Clock, Counted, Digest, Executor, NoClock, OverBudget, Report,
-    Run, Seed, Serial, Stopped, Unit, UpAxis, Warning, brief, map_indexed, quoted,
+    Angle, Budget, CancelToken, Cancelled, Clock, Code, Coded, Counted, Digest, Executor, NoClock,
+    OverBudget, Report, Run, Seed, Serial, Stopped, Told, Unit, UpAxis, Warning, brief, map_indexed, quoted,
 };
 pub use evaluate::{Evaluator, FrontView};
 pub use flowers::{FlowerOptions, make_flower};
@@ -66,6 +66,7 @@ pub use trees::{
 };
 pub use venation::make_ray_leaf;
 
+pub use base::coded;
 pub use growth::{Bark, BladeForm, BladeSpec, BlossomSpec, Look, TreeSpec};
 pub use spec::{Colour, Spec, SpecFault};
 

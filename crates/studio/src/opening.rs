@@ -266,3 +266,9 @@ fn placed(
     let seat = Seat { centre, turn: base::turn::between(DVec3::Y, axis), bearer: flower.bearer };
     Some(Placed { spec, flower: id, seat })
 }
+
+base::coded!(OpeningError {
+    Self::NoFlowers(name) => "no-flowers" { name },
+} wraps {
+    Self::Make(e) => e, MakeError;
+});

@@ -112,6 +112,21 @@ impl From<LeafError> for SceneError {
     }
 }
 
+base::coded!(SceneError {
+    Self::NoMarks => "leaf-no-marks" {},
+    Self::Species(name) => "no-species" { name },
+    Self::Lender(name) => "lender-without-leaf" { name },
+} wraps {
+    Self::Sketch(e) => e, MakeError;
+    Self::Opening(e) => e, OpeningError;
+    Self::Tree(e) => e, TreeError;
+    Self::File(e) => e, LeafFileError;
+    Self::Graph(e) => e, leaf::GraphError;
+    Self::Leaf(e) => e, LeafError;
+    Self::Cancelled(e) => e, Cancelled;
+    Self::OverBudget(e) => e, OverBudget;
+});
+
 /// What was made of one plant.
 #[derive(Clone, Copy, Debug)]
 pub struct ScenePlant<'a> {
@@ -271,9 +286,22 @@ impl SceneEvaluator {
         lent.map(Some).ok_or_else(none)
     }
 
-    /// Forgets plants that are not in the document.
-    pub fn retain(&mut self, document: &Document) {
-        self.plants.retain(|&id, _| document.plant(id).is_some());
+    /// A copy of what is kept of plants and of those whose leaves they bear, to try something with.
+    pub fn aside<'a>(&self, plants: impl IntoIterator<Item = &'a DocumentPlant>) -> Self {
+        let wanted = plants.into_iter().flat_map(|p| [Some(p.id()), p.settings().maker.leaf()]);
+        let kept = wanted.flatten().filter_map(|id| Some((id, self.plants.get(&id)?.clone())));
+        Self { wind: self.wind, looking: self.looking, plants: kept.collect() }
+    }
+
+    /// Forgets a plant: it is made from the beginning when it is asked for again.
+    pub fn forget(&mut self, id: PlantId) {
+        self.plants.remove(&id);
+    }
+
+    /// The plants of which something is kept, and about how many bytes: meshes, textures, and the plant in the stages in
+    /// which it is kept for the next change.
+    pub fn kept(&self) -> impl Iterator<Item = (PlantId, usize)> + '_ {
+        self.plants.iter().map(|(&id, made)| (id, made.bytes()))
     }
 
     /// What makes the plant, of a sketch.
@@ -305,6 +333,19 @@ impl SceneEvaluator {
 }
 
 impl Made {
+    fn bytes(&self) -> usize {
+        // As grown, dressed, and twice on the way through the edits by hand.
+        const STAGES: usize = 4;
+        let models = [self.model.as_ref(), self.sketch.model(), self.tree.model()];
+        let plants = [self.sketch.plant(), self.tree.plant()];
+        let plant = |p: &Plant| {
+            let nodes = p.nodes.position.len() * (size_of::<DVec3>() + size_of::<f64>() + size_of::<u32>());
+            nodes + size_of_val(&*p.axes) + size_of_val(&*p.organs)
+        };
+        models.into_iter().flatten().map(Model::bytes).sum::<usize>()
+            + STAGES * plants.into_iter().flatten().map(plant).sum::<usize>()
+    }
+
     fn sketched(
         &mut self,
         settings: &SketchSettings,

@@ -152,3 +152,18 @@ fn may_bear(plant: &DocumentPlant, leaf: Option<PlantId>, document: &Document) -
     }
     Ok(())
 }
+
+base::coded!(CommandError {
+    Self::NoSuchStroke(id) => "no-such-stroke" { stroke = id.0 },
+    Self::NoSuchPlant(id) => "no-such-plant" { plant = id.0 },
+    Self::OtherMaker { wanted, found } => "other-maker" { wanted, found },
+    Self::NoLeaf => "no-leaf-to-lend" {},
+    Self::NoPhoto => "no-photo" {},
+    Self::Nothing(_) => "nothing-to-do" {},
+    Self::OutOfRange(why) => "out-of-range" { why },
+    Self::TooFar => "too-far" {},
+    Self::Full(what) => "full" { what },
+    Self::Gesture(_) => "gesture" {},
+} wraps {
+    Self::Spec(e) => e, spec::SpecFault;
+});

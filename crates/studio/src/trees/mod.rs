@@ -269,5 +269,15 @@ fn look_at_meshes(obstacles: &[Obstacle], report: &mut Report) {
     }
 }
 
+base::coded!(TreeError {
+    Self::Line { line, error } => "tree-line" { line, why = error },
+    Self::File { file } => "tree-file" { file },
+} wraps {
+    Self::Spec(e) => e, SpecFault;
+    Self::Growth(e) => e, GrowthError;
+    Self::Cancelled(e) => e, Cancelled;
+    Self::OverBudget(e) => e, OverBudget;
+});
+
 #[cfg(test)]
 mod tests;
