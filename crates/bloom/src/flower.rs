@@ -7,8 +7,9 @@
 
 use base::{Seed, ops, turn};
 use glam::{DQuat, DVec2, DVec3};
-use mesh::{Material, MaterialId, MaterialKind, Model, Part, TriMesh};
+use plant::{Flower, FlowerId, OrganKind, Plant};
 
+use crate::organs::{Bed, Grid, Seat};
 use crate::{GrowthLaw, Quantity};
 
 /// One ring of petals.
@@ -133,38 +134,8 @@ pub struct FlowerSpec {
     pub days: [f64; 2],
     /// Rate of the default law, per day.
     pub rate: f64,
-    /// Rows and columns of a petal's mesh, each at least 2.
+    /// Rows and columns of a petal's grid, each at least 2.
     pub mesh: [u32; 2],
-}
-
-/// A flower at one day, and which petal each triangle of its petals belongs to.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FlowerFrame {
-    /// Meshes in metres; the same vertices and triangles at every day.
-    pub model: Model,
-    /// For each part the petal of each triangle; `u32::MAX` for what is no petal.
-    pub petals: Vec<Vec<u32>>,
-}
-
-impl FlowerFrame {
-    /// Share of petal triangles that cross another petal, over all parts.
-    pub fn overlap(&self) -> f64 {
-        let mut whole = TriMesh::default();
-        let mut groups = Vec::new();
-        for (part, petals) in self.model.parts.iter().zip(&self.petals) {
-            if petals.iter().all(|&p| p == u32::MAX) {
-                continue;
-            }
-            let bare = TriMesh {
-                positions: part.mesh.positions.clone(),
-                triangles: part.mesh.triangles.clone(),
-                ..TriMesh::default()
-            };
-            whole.append(&bare);
-            groups.extend_from_slice(petals);
-        }
-        crate::overlap_share(&whole, &groups)
-    }
 }
 
 /// State of one whorl at one day.
@@ -261,39 +232,51 @@ impl FlowerSpec {
 
     /// The flower at `day`: 0 is the bud, `days[0]` full bloom, `days[0] + days[1]` wilted.
     ///
-    /// Guaranteed: the same vertices and triangles at every day; `model.validate()` finds nothing. `law` sets the
-    /// pace by its size and region laws, whatever species it was fitted to (paper 003, figure 13).
-    pub fn at(&self, day: f64, law: &GrowthLaw, seed: Seed) -> FlowerFrame {
-        let mut frame = FlowerFrame {
-            model: Model { name: self.name.clone(), parts: vec![], materials: materials(), offset_m: None },
-            petals: vec![],
-        };
-        let flowers = self.umbel.max(1);
-        let mut next = 0;
-        for (w, whorl) in self.whorls.iter().enumerate() {
-            let mut mesh = TriMesh::default();
-            let mut petals = Vec::new();
-            let profile = whorl.profile(self, law, day);
-            for f in 0..flowers {
-                let place = self.place(f, day);
-                for k in 0..whorl.count {
-                    self.petal(whorl, &profile, k, place, &mut mesh);
-                    let triangles = mesh.triangles.len() - petals.len();
-                    petals.extend(core::iter::repeat_n(next, triangles));
-                    next += 1;
-                }
-            }
-            finish(&mut frame, format!("petals-{}", w + 1), 0, mesh, petals);
-        }
+    /// Guaranteed: the same axes, organs and grids at every day; `validate()` finds nothing. `law` sets the pace by its
+    /// size and region laws, whatever species it was fitted to (paper 003, figure 13).
+    pub fn at(&self, day: f64, law: &GrowthLaw, seed: Seed) -> Plant {
+        let mut plant = Plant { name: self.name.clone(), ..Plant::default() };
+        self.add_to(&mut plant, &Seat::default(), day, law, seed);
+        plant
+    }
+
+    /// As [`at`](Self::at), on a plant that there is already.
+    pub fn add_to(&self, plant: &mut Plant, seat: &Seat, day: f64, law: &GrowthLaw, seed: Seed) {
         let [opening, wilting] = self.days.map(|d| d.max(1e-6));
         let share = (day / opening).clamp(0.0, 1.0);
         let g = law
             .progress("petal", Quantity::Size, 0.3, 0.0, law.span_days, share * law.span_days)
             .clamp(0.0, 1.0);
         let wilt = ((day - opening) / wilting).clamp(0.0, 1.0);
-        self.centre(&mut frame, g, wilt, day, seed);
-        self.stalks(&mut frame, day);
-        frame
+        let profiles: Vec<Profile> = self.whorls.iter().map(|w| w.profile(self, law, day)).collect();
+        let petals = || self.whorls.iter().zip(&profiles).filter(|(w, _)| !w.sepal);
+        let half_angle = petals().next().map_or(0.0, |(_, p)| p.angle[1].clamp(0.0, ops::FRAC_PI_2));
+        let whorls = u32::try_from(petals().count()).unwrap_or(u32::MAX);
+        let bearers = self.stalks(plant, seat, day, seed);
+        for (f, bearer) in (0..).zip(bearers) {
+            let (centre, turn) = self.place(f, day);
+            let place = (seat.at(centre), seat.turn * turn);
+            let (flower, axis) = (FlowerId::new(plant.flowers.len()), place.1 * DVec3::Y);
+            let axis = axis.normalize_or(DVec3::Y);
+            plant.flowers.push(Flower { bearer, centre: place.0, axis, half_angle, whorls });
+            let seed = seed.child(u64::from(f));
+            let mut bed = Bed { plant: &mut *plant, flower, bearer, place, seed };
+            self.receptacle(&mut bed);
+            for (whorl, profile) in self.whorls.iter().zip(&profiles) {
+                let kind = if whorl.sepal { OrganKind::Sepal } else { OrganKind::Petal };
+                for k in 0..whorl.count {
+                    bed.petal(kind, self.petal(whorl, profile, k));
+                }
+            }
+            self.centre(&mut bed, g, wilt);
+        }
+    }
+
+    /// About how large the open flower is with its stalk, metres.
+    pub fn size_m(&self) -> f64 {
+        let longest = self.whorls.iter().map(|w| w.length).fold(self.disc, f64::max);
+        let pedicel = if self.umbel > 1 { self.pedicel() } else { 0.0 };
+        self.stalk + pedicel + 2.0 * longest
     }
 
     /// Petals of this form in all whorls but those of sepals; `aspect` is width over length.
@@ -339,11 +322,13 @@ impl FlowerSpec {
         soft * (1.0 - profile.wilt) + 0.019 * profile.wilt * crumpled
     }
 
-    fn petal(&self, whorl: &Whorl, profile: &Profile, k: u32, place: (DVec3, DQuat), mesh: &mut TriMesh) {
+    /// One petal in the flower's own coordinates.
+    fn petal(&self, whorl: &Whorl, profile: &Profile, k: u32) -> Grid {
         let (rows, columns) = (self.mesh[0].max(2), self.mesh[1].max(2));
+        let across = (0..=columns).map(|j| f64::from(j) / f64::from(columns)).collect();
+        let mut grid = Grid { points: Vec::new(), across, along: Vec::new(), colors: Vec::new() };
         let apart = ops::TAU / f64::from(whorl.count.max(1));
         let azimuth = rad(whorl.phase) + apart * f64::from(k);
-        let start = u32::try_from(mesh.positions.len()).unwrap_or(u32::MAX);
         // The profile by small steps; angles between the three places by a parabola through them.
         let fine = 8 * rows;
         let [a, b, c] = profile.angle;
@@ -357,6 +342,7 @@ impl FlowerSpec {
             let step = profile.length * (row_at((i + 1).min(fine)) - v);
             let (s, c) = ops::sin_cos(angle(v));
             if i.is_multiple_of(8) {
+                grid.along.push(v);
                 let half = 0.5 * profile.width * whorl.outline(v);
                 // A petal wraps the axis, but neither itself nor more than its next neighbours.
                 let spread = (half / radius.max(1e-4)).min(0.9 * ops::PI).min(0.85 * apart);
@@ -369,55 +355,14 @@ impl FlowerSpec {
                     let wave = room * self.waves(azimuth + u * spread, v, profile);
                     let lean = whorl.lean * u + wave;
                     let (r, y) = (radius + lean * c, height - lean * s);
-                    let p = place.0 + place.1 * DVec3::new(r.max(1e-5) * cos, y, r.max(1e-5) * sin);
-                    mesh.push(p);
-                    mesh.colors.push(whorl.color(u, v, profile));
-                    #[expect(clippy::cast_possible_truncation, reason = "texture coordinates are f32")]
-                    mesh.uvs.push([(0.5 + 0.5 * u) as f32, 1.0 - v as f32]);
+                    grid.points.push(DVec3::new(r.max(1e-5) * cos, y, r.max(1e-5) * sin));
+                    grid.colors.push(whorl.color(u, v, profile));
                 }
             }
             // A profile that comes to the axis runs up along it.
             radius = (radius + s * step).max(whorl.insertion[0].min(0.0012));
             height += c * step;
         }
-        quads(mesh, start, rows, columns);
-    }
-}
-
-fn materials() -> Vec<Material> {
-    let white = [1.0; 3];
-    let mut petal = Material::plain("petal", MaterialKind::Petal, white);
-    petal.double_sided = true;
-    petal.translucency = 0.3;
-    petal.roughness = 0.6;
-    vec![
-        petal,
-        Material::plain("stamen", MaterialKind::Stamen, white),
-        Material::plain("disc", MaterialKind::Disc, white),
-        Material::plain("stem", MaterialKind::Stem, white),
-    ]
-}
-
-pub(crate) fn finish(
-    frame: &mut FlowerFrame,
-    name: String,
-    material: usize,
-    mut mesh: TriMesh,
-    petals: Vec<u32>,
-) {
-    mesh.compute_normals();
-    frame.model.parts.push(Part { name, material: MaterialId::new(material), mesh });
-    frame.petals.push(petals);
-}
-
-/// Triangles of a grid of `rows` by `columns` quads from vertex `start` on.
-pub(crate) fn quads(mesh: &mut TriMesh, start: u32, rows: u32, columns: u32) {
-    let across = columns + 1;
-    for i in 0..rows {
-        for j in 0..columns {
-            let a = start + i * across + j;
-            mesh.triangles.push([a, a + across, a + 1]);
-            mesh.triangles.push([a + 1, a + across, a + across + 1]);
-        }
+        grid
     }
 }

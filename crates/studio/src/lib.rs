@@ -18,6 +18,7 @@
 //! ```
 
 mod evaluate;
+mod flowers;
 mod leaf_blade;
 mod leaves;
 mod make;
@@ -37,6 +38,7 @@ pub use base::{
     Run, Seed, Serial, Stopped, Unit, UpAxis, Warning, brief, map_indexed, quoted,
 };
 pub use evaluate::{Evaluator, FrontView};
+pub use flowers::{FlowerOptions, make_flower};
 pub use leaf_blade::leaf_blade;
 pub use leaves::{
     FaceCounts, FitError, LeafError, LeafOptions, LeafReport, LeafTexture, ScanReport, make_leaf,
@@ -44,7 +46,7 @@ pub use leaves::{
 };
 pub use make::{ClassOverrides, Made, MadePlant, MakeError, SketchOptions, make_from_sketch};
 pub use motion::{cloud_model, motion_model};
-pub use opening::{OpeningError, OpeningPlant};
+pub use opening::{OpenedPlant, OpeningError, OpeningPlant};
 pub use report::{
     Counts, Fidelity, InputReport, ItemReport, REPORT_SCHEMA, RunReport, StrokeReport, TimingsMs,
 };

@@ -5,7 +5,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use base::{Cancelled, Digest, Report, Run, Seed};
+use base::{Cancelled, OverBudget, Report, Run, Seed, Stopped};
 use document::{
     Document, DocumentPlant, FlowerMaker, LeafData, LeafMaker, LeafPaint, LeafRings, LeafSettings,
     LeafSurface, LeafThickness, Maker, Placement, PlantEdit, PlantId, SketchSettings, TreeSettings,
@@ -20,10 +20,11 @@ use plant::Plant;
 use skin::{LeafMeshSpec, SkinSpec};
 
 use crate::evaluate::{Evaluator, FrontView};
+use crate::flowers::{FlowerOptions, make_flower};
 use crate::leaves::{LeafError, LeafOptions, LeafTexture, make_leaf_of};
 use crate::make::{MakeError, SketchOptions};
 use crate::opening::{OpeningError, OpeningPlant};
-use crate::report::{Counts, ItemReport, TimingsMs};
+use crate::report::ItemReport;
 use crate::template::LeafTemplate;
 use crate::trees::{TreeError, TreeEvaluator, TreeOptions, TreeSpec, spec_from_json};
 
@@ -66,6 +67,9 @@ pub enum SceneError {
     /// The user asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    /// It would have been too much.
+    #[error(transparent)]
+    OverBudget(#[from] OverBudget),
 }
 
 impl SceneError {
@@ -93,6 +97,15 @@ impl From<TreeError> for SceneError {
     }
 }
 
+impl From<Stopped> for SceneError {
+    fn from(stopped: Stopped) -> Self {
+        match stopped {
+            Stopped::Cancelled(c) => Self::Cancelled(c),
+            Stopped::OverBudget(o) => Self::OverBudget(o),
+        }
+    }
+}
+
 impl From<LeafError> for SceneError {
     fn from(e: LeafError) -> Self {
         if let LeafError::Cancelled(c) = e { Self::Cancelled(c) } else { Self::Leaf(e) }
@@ -106,7 +119,7 @@ pub struct ScenePlant<'a> {
     pub item: &'a ItemReport,
     /// The meshes, in the plant's own coordinates.
     pub model: &'a Model,
-    /// The plant; none for a single leaf or flower.
+    /// The plant; none where nothing was made.
     pub plant: Option<&'a Plant>,
     /// How a drawing lies in the front view.
     pub front: Option<FrontView>,
@@ -154,7 +167,7 @@ struct Made {
     item: ItemReport,
     /// Of leaves and flowers, and of sketches whose flowers open.
     model: Option<Model>,
-    /// Of leaves and flowers.
+    /// Of leaves, flowers and sketches whose flowers open.
     plant: Option<Plant>,
     lent: Option<LeafTemplate>,
     revision: u64,
@@ -162,8 +175,7 @@ struct Made {
 }
 
 impl SceneEvaluator {
-    /// Whether models of trees and of drawings whose flowers do not open say how wind moves them, from the next update
-    /// on. Default: no.
+    /// Whether models say how wind moves them, from the next update on. Default: no.
     pub fn set_wind(&mut self, wind: bool) {
         if self.wind != wind {
             self.wind = wind;
@@ -208,8 +220,7 @@ impl SceneEvaluator {
         (made.sketch.looking, made.tree.looking) = (looking, looking);
         if let Maker::Sketch(s) = &settings.maker {
             let mut options = SketchOptions { leaf, ..SketchOptions::of_plant(plant) };
-            // Flowers that open have none: what bears them would sway away from them.
-            options.skin.wind = wind && s.day.is_none();
+            options.skin.wind = wind;
             return made.sketched(s, &drawing, &options, settings.seed, run);
         }
         let same = |k: &MadeFrom| {
@@ -226,7 +237,7 @@ impl SceneEvaluator {
         match &settings.maker {
             Maker::Tree(t) => made.grown((name, wind), t, leaf.as_ref(), &settings.edits, seed, run)?,
             Maker::Leaf(l) => made.measured((name, wind), l, &settings.edits, seed, run)?,
-            Maker::Flower(f) => made.flowered(name, f, seed, run)?,
+            Maker::Flower(f) => made.flowered((name, wind), f, &settings.edits, seed, run)?,
             _ => {}
         }
         made.revision += 1;
@@ -319,13 +330,14 @@ impl Made {
             (Some(day), Some(plant), Some(model)) => {
                 if self.opening.is_none() {
                     let made = (plant, model, &self.item);
-                    self.opening = Some(OpeningPlant::of_made(&drawing.name, made, &options.skin, run)?);
+                    self.opening = Some(OpeningPlant::of_made(&drawing.name, made, &options.skin)?);
                 }
-                if let Some(opening) = self.opening.as_ref().filter(|_| changed || day_changed) {
-                    self.model = Some(opening.at(day, &opening.law(), seed).0);
+                if let Some(opening) = self.opening.as_mut().filter(|_| changed || day_changed) {
+                    let open = opening.at(day, &opening.law(), seed, run)?;
+                    (self.plant, self.model) = (Some(open.plant), Some(open.model));
                 }
             }
-            _ => (self.model, self.opening) = (None, None),
+            _ => (self.plant, self.model, self.opening) = (None, None, None),
         }
         if changed || day_changed {
             self.revision += 1;
@@ -376,37 +388,19 @@ impl Made {
 
     fn flowered(
         &mut self,
-        name: &str,
+        (name, wind): (&str, bool),
         flower: &FlowerMaker,
+        edits: &[PlantEdit],
         seed: Seed,
         run: &Run<'_>,
     ) -> Result<(), SceneError> {
         let spec = flower_spec(flower).ok_or_else(|| SceneError::Species(flower.settings.species.clone()))?;
         let own = || bloom::GrowthLaw::logistic(&spec.name, spec.days[0], spec.rate);
         let law = flower.law.as_ref().map_or_else(own, |l| (**l).clone());
-        let mut report = Report::default();
-        let frame = report.stage("mesh", run.clock, |_| spec.at(flower.settings.day, &law, seed));
-        run.cancel.check()?;
-        let mut model = frame.model;
-        name.clone_into(&mut model.name);
-        let mut digest = Digest::new();
-        digest.add(&model);
-        let petals: u64 = spec.whorls.iter().filter(|w| !w.sepal).map(|w| u64::from(w.count)).sum();
-        let flowers = u64::from(spec.umbel.max(1));
-        self.item = ItemReport {
-            name: name.into(),
-            counts: Counts {
-                flowers: Some(flowers),
-                petals: Some(petals * flowers),
-                vertices: model.vertex_count() as u64,
-                triangles: model.triangle_count() as u64,
-                ..Counts::default()
-            },
-            timings_ms: TimingsMs::from_report(&report),
-            digest: digest.hex(),
-            ..ItemReport::default()
-        };
-        self.model = Some(model);
+        let mut options = FlowerOptions { edits: edits.to_vec(), ..FlowerOptions::default() };
+        options.skin.wind = wind;
+        let made = make_flower(name, &spec, (flower.settings.day, &law), &options, seed, run)?;
+        (self.item, self.model, self.plant) = (made.item, Some(made.model), Some(made.plant));
         self.done.push("mesh");
         Ok(())
     }

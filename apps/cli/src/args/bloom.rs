@@ -79,8 +79,8 @@ pub(crate) struct BloomRunArgs {
     /// First shape: a scan or a model; or a stages file (.toml); or rose, lily, tulip, sunflower, clivia; or a drawing.
     #[arg(value_name = "START")]
     pub(crate) start: String,
-    /// The result: .glb (animation, or one shape with --day), .ply, .obj or .stl (one shape), or a folder (a file a
-    /// frame).
+    /// The result: .glb (animation, or one shape with --day), .ply, .obj, .stl or .usda (one shape), .mtg (the structure of a
+    /// flower or drawing), or a folder (a file a frame).
     #[arg(long, short, value_name = "OUT")]
     pub(crate) output: PathBuf,
     /// Last shape: a scan or a model.
@@ -124,6 +124,10 @@ pub(crate) struct BloomRunArgs {
     /// Seconds of an animation, above 0 to 600.
     #[arg(long, value_name = "S", default_value_t = 6.0, value_parser = |s: &str| ranged(s, 0.01, 600.0))]
     pub(crate) seconds: f64,
+    /// Also write how wind moves each vertex of a whole flower or a drawing, for shaders: attributes _WIND and _PIVOT
+    /// of .glb, primvars of .usda.
+    #[arg(long)]
+    pub(crate) wind: bool,
     /// Format of the files in a folder.
     #[arg(long, value_enum, default_value_t = crate::args::FormatWord::Glb)]
     pub(crate) format: crate::args::FormatWord,

@@ -7,7 +7,7 @@ use document::PlantEdit;
 use growth::{Grown, Method};
 use mesh::Model;
 use plant::{Blade, Plant};
-use skin::{PetalColor, SkinSpec};
+use skin::SkinSpec;
 
 use super::look::KeptBarks;
 use super::{
@@ -187,7 +187,7 @@ impl TreeEvaluator {
         report: &mut Report,
         run: &Run<'_>,
     ) -> Result<bool, TreeError> {
-        let from = (skin_spec(spec, seed, options), spec.look.clone(), options.leaf.clone());
+        let from = (skin_spec(seed, options), spec.look.clone(), options.leaf.clone());
         if !self.stale && self.model.as_ref().is_some_and(|(f, _)| *f == from) {
             return Ok(false);
         }
@@ -210,7 +210,7 @@ impl TreeEvaluator {
         run: &Run<'_>,
     ) -> Result<Vec<Model>, TreeError> {
         let Some(plant) = self.plant() else { return Ok(Vec::new()) };
-        let fine = skin_spec(spec, seed, options);
+        let fine = skin_spec(seed, options);
         let mut barks = self.barks.clone();
         let obstacles = growth::Obstacles::new(&spec.obstacles, spec.clearance_m)?;
         let lods = (1..=options.lods.min(6)).map(|level| {
@@ -276,9 +276,8 @@ impl TreeEvaluator {
     }
 }
 
-fn skin_spec(spec: &TreeSpec, seed: Seed, options: &TreeOptions) -> SkinSpec {
-    let petals = options.skin.petals.or((spec.blossom.share > 0.0).then_some(PetalColor::White));
-    SkinSpec { seed, petals, ..options.skin.clone() }
+fn skin_spec(seed: Seed, options: &TreeOptions) -> SkinSpec {
+    SkinSpec { seed, ..options.skin.clone() }
 }
 
 fn skinned(
