@@ -15,7 +15,7 @@ use ink::{
 use reading::{RULES, Reading, read_without};
 
 use crate::made_strokes::made_sketches;
-use crate::train_strokes::drawings_of;
+use crate::quickdraw::drawings_of;
 
 /// Dealings of the drawings that the strokes read right are summed over.
 const DEALINGS: u64 = 4;

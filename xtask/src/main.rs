@@ -11,6 +11,7 @@ mod layers;
 mod made_strokes;
 mod native;
 mod pixels;
+mod quickdraw;
 mod scenes;
 mod shell;
 mod species;

@@ -1,21 +1,16 @@
 //! `cargo xtask train-strokes`: the table of measured strokes -> the classifier's models and `docs/strokes.md`.
 
-use std::{
-    collections::BTreeMap,
-    fmt::Write as _,
-    fs,
-    path::{Path, PathBuf},
-};
+use std::{collections::BTreeMap, fmt::Write as _, fs, path::Path};
 
-use glam::DVec2;
 use ink::{
-    Drawing, InkSample, Stroke, StrokeClass, StrokeFigures, StrokeRow, StrokeSource, cross_validate_strokes,
-    read_stroke_table, train_strokes, write_stroke_table,
+    Drawing, StrokeClass, StrokeFigures, StrokeRow, StrokeSource, cross_validate_strokes, read_stroke_table,
+    train_strokes, write_stroke_table,
 };
 use serde_json::Value;
 
 use crate::ablation;
 use crate::made_strokes::made_sketches;
+use crate::quickdraw::{drawing_of, drawings_of, json_lines, list, read, text_of};
 
 /// Fold seeds that the figures are averaged over.
 const SEEDS: u64 = 8;
@@ -162,27 +157,8 @@ fn update_docs(path: &Path, name: &str, block: &str) -> Result<(), String> {
     write(path, &format!("{before}{open}{block}{close}{after}"))
 }
 
-fn read(path: &Path) -> Result<String, String> {
-    fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))
-}
-
 fn write(path: &Path, text: &str) -> Result<(), String> {
     fs::write(path, text).map_err(|e| format!("{}: {e}", path.display()))
-}
-
-fn json_lines(path: &Path) -> Result<Vec<Value>, String> {
-    let parse = |(k, line): (usize, &str)| {
-        serde_json::from_str(line).map_err(|e| format!("{}, line {}: {e}", path.display(), k + 1))
-    };
-    read(path)?.lines().enumerate().filter(|(_, l)| !l.trim().is_empty()).map(parse).collect()
-}
-
-fn text_of<'a>(value: &'a Value, key: &str) -> &'a str {
-    value.get(key).and_then(Value::as_str).unwrap_or_default()
-}
-
-fn list(value: Option<&Value>) -> &[Value] {
-    value.and_then(Value::as_array).map_or(&[], Vec::as_slice)
 }
 
 /// Label of one stroke of a drawing.
@@ -244,32 +220,6 @@ fn measure(sketches: &Path) -> Result<Vec<StrokeRow>, String> {
         measure_ink(&mut rows, StrokeSource::Made, made.kind, &drawing, &labels);
     }
     Ok(rows)
-}
-
-/// The drawings of a folder's files, by their keys.
-pub(crate) fn drawings_of(folder: &Path) -> Result<BTreeMap<String, Drawing>, String> {
-    let entries = fs::read_dir(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
-    let mut files: Vec<PathBuf> = entries.flatten().map(|f| f.path()).collect();
-    files.retain(|f| f.extension().is_some_and(|e| e == "ndjson"));
-    files.sort();
-    let mut drawings = BTreeMap::new();
-    for file in files {
-        drawings.extend(
-            json_lines(&file)?.iter().map(|line| (text_of(line, "key_id").to_owned(), drawing_of(line))),
-        );
-    }
-    Ok(drawings)
-}
-
-fn drawing_of(line: &Value) -> Drawing {
-    let stroke = |s: &Value| {
-        let column = |k: usize| list(s.get(k)).iter().filter_map(Value::as_f64);
-        // Points lie y down in the files.
-        let samples = column(0).zip(column(1)).map(|(x, y)| InkSample::from(DVec2::new(x, -y))).collect();
-        Stroke { samples, ..Stroke::default() }
-    };
-    let name = text_of(line, "key_id").to_owned();
-    Drawing { name, strokes: list(line.get("drawing")).iter().map(stroke).collect() }
 }
 
 fn measure_ink(

@@ -10,16 +10,20 @@ use plant::AxisKind;
 
 use crate::blade::{Sheetlet, split_stalks};
 use crate::branches::{Forest, Hints, Line};
+use crate::contour::crown_outline;
 use crate::near::bounds;
 use crate::{
-    BladeReading, DiscReading, FlowerReading, FruitReading, OrganWord, Reading, RegionKind, RegionReading,
-    StrokeReading, attach, blade, flowers, outlines, rings,
+    Attachment, BladeReading, DiscReading, FlowerReading, FruitReading, OrganWord, Reading, RegionKind,
+    RegionReading, StrokeReading, blade, rings,
 };
 
 /// Regions beyond this number are left out: nobody draws so many crowns, and each is led to by an axis.
 pub(crate) const MOST_REGIONS: usize = 200;
 /// Scribbles smaller than this share of the sheet are dirt.
 const SCRIBBLE_AREA: f64 = 0.008;
+
+/// A thorn: root and tip, what bears it, its stroke.
+pub(crate) type Thorn = (Vec<DVec2>, Option<Attachment>, Option<u32>);
 
 /// A contour before its bearers are known.
 #[derive(Clone, Debug)]
@@ -139,7 +143,7 @@ impl<'a> Draft<'a> {
                 StrokeMode::LeafContour => (RegionKind::Leaves, OrganWord::LeafContour),
             };
             if self.regions.len() < MOST_REGIONS
-                && let Some(outline) = outlines::crown_outline(&self.ink.strokes[k].points)
+                && let Some(outline) = crown_outline(&self.ink.strokes[k].points)
             {
                 self.organ[k] = organ;
                 self.add_region(outline, kind, k);
@@ -238,7 +242,7 @@ impl<'a> Draft<'a> {
     }
 
     pub(crate) fn crown_from(&mut self, k: usize, report: &mut Report) -> bool {
-        let Some(outline) = outlines::crown_outline(&self.ink.strokes[k].points) else { return false };
+        let Some(outline) = crown_outline(&self.ink.strokes[k].points) else { return false };
         self.organ[k] = OrganWord::LeafContour;
         self.add_region(outline, RegionKind::Crown, k);
         let index = self.ink.strokes[k].index;
@@ -319,14 +323,14 @@ impl<'a> Draft<'a> {
         fruits
     }
 
-    /// Where stems begin and end.
-    pub(crate) fn hints(&self, flowers: &[flowers::FlowerDraft]) -> Hints {
+    /// Where stems begin and end; `flowers`: their centres.
+    pub(crate) fn hints(&self, flowers: &[DVec2]) -> Hints {
         let mut hints = Hints::default();
         for (i, blade) in self.blades.iter().enumerate() {
             hints.organs.add_line(i, &blade.outline);
         }
-        for (i, flower) in flowers.iter().enumerate() {
-            hints.organs.add_line(i, &[flower.centre]);
+        for (i, &centre) in flowers.iter().enumerate() {
+            hints.organs.add_line(i, &[centre]);
         }
         for (i, region) in self.regions.iter().enumerate() {
             hints.organs.add_line(i, &region.outline);
@@ -353,7 +357,7 @@ impl<'a> Draft<'a> {
         flowers: Vec<FlowerReading>,
         leaves: Vec<BladeReading>,
         fruits: Vec<FruitReading>,
-        thorns: Vec<attach::Thorn>,
+        thorns: Vec<Thorn>,
     ) -> Reading {
         let mut strokes: Vec<StrokeReading> = (0..self.class.len()).map(|k| self.stroke(k)).collect();
         let crown = self.regions.iter().any(|r| r.kind != RegionKind::Leaves);

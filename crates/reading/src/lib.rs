@@ -6,7 +6,7 @@
 //! |---|---|---|
 //! | `read`, `draft` | the order of the steps, and the drawing half understood | |
 //! | `rules` | classes that the whole drawing contradicts | beyond |
-//! | `outlines`, `rings`, `body` | trunks, cactus bodies and crowns drawn as outlines | beyond |
+//! | `outlines`, `contour`, `rings`, `body` | trunks, cactus bodies and crowns drawn as outlines | beyond |
 //! | `blade`, `corolla`, `veins` | outlines, roots, tips and midribs of leaves and petals | 4.1, 4.3 |
 //! | `flowers` | which blades are petals of one flower | 4.1 |
 //! | `branches` | the hierarchy of axes | 4.2 |
@@ -17,6 +17,7 @@ mod attach;
 mod blade;
 mod body;
 mod branches;
+mod contour;
 mod corolla;
 mod draft;
 mod flowers;

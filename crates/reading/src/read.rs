@@ -59,7 +59,7 @@ pub fn read_without(off: &[&str], ink: &Ink, classes: &[Classified], report: &mu
     let (mut flowers, roots) = flowers::gather(&mut draft, &discs, &bearers);
     attach::stamens(&mut draft, &mut flowers, &roots);
     let mut fruits = draft.fruits(&nuts);
-    let hints = draft.hints(&flowers);
+    let hints = draft.hints(&flowers.iter().map(|f| f.centre).collect::<Vec<_>>());
     let lines = std::mem::take(&mut draft.lines);
     draft.forest.grow(lines, &hints);
     attach::roots(&mut draft);

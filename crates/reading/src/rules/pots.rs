@@ -5,9 +5,9 @@ use glam::DVec2;
 use ink::StrokeClass;
 
 use super::{Findings, any, unsure};
+use crate::contour::width_at;
 use crate::draft::Draft;
 use crate::near::bounds;
-use crate::outlines::width_at;
 
 /// A pot is at least this wide.
 const NARROWEST: f64 = 0.05;

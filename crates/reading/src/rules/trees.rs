@@ -6,10 +6,10 @@ use ink::StrokeClass;
 
 use super::{CLOSED, Findings, REACH, SIDE, any, openness, outside, share_inside, standing, unsure, upright};
 use crate::blade::split_stalks;
+use crate::contour::{crown_outline, neck};
 use crate::corolla::dips;
 use crate::draft::Draft;
 use crate::near::bounds;
-use crate::outlines::{crown_outline, neck};
 use crate::rings::rings;
 
 /// A crown fills this share of its hull; the arms of a cactus leave hollows.
