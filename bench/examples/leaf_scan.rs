@@ -43,10 +43,10 @@ fn main() {
     for count in [1_000, 10_000, 100_000, 1_000_000, 5_000_000] {
         let points = cloud(count);
         let from = watch.now_ms();
-        let (_, item, _) =
+        let (made, _) =
             make_leaf_from_scan("leaf", &points, &ScanSpec::default(), &run).expect("the cloud is a leaf");
         let seconds = 1e-3 * (watch.now_ms() - from);
-        let leaf = item.leaf.expect("a leaf");
+        let leaf = made.item.leaf.expect("a leaf");
         let fit = leaf.fit_error;
         println!(
             "| {count} | {seconds:.2} | {:.1} | {:.3} | {:.3} | {} |",

@@ -6,11 +6,13 @@ use std::sync::Arc;
 use burgeon::formats::{ExportSpec, PngCache, marks_template, read_picture, write_marks, write_rays};
 use burgeon::geom::RingRule;
 use burgeon::leaf::{
-    FullMarks, LeafGrowth, LeafSpec, Marks, MeshSpec, PalmateSpec, ParallelSpec, Pose, Rays, ScanSpec,
-    ThicknessRule, VeinParameters,
+    FullMarks, LeafGrowth, LeafSpec, Marks, PalmateSpec, ParallelSpec, Pose, Rays, ScanSpec, ThicknessRule,
+    VeinParameters,
 };
-use burgeon::mesh::Model;
-use burgeon::{ItemReport, LeafError, LeafOptions, LeafTexture, Report, RunReport, Seed, ShootSpec};
+use burgeon::skin::{LeafMeshSpec, SkinSpec};
+use burgeon::{
+    ItemReport, LeafError, LeafOptions, LeafTexture, MadePlant, Report, RunReport, Seed, ShootSpec,
+};
 
 use crate::args::{LeafArgs, ParametersWord, RingsWord, SurfaceWord, UnitWord, VenationWord};
 use crate::failure::{Failure, Outcome};
@@ -59,7 +61,7 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
         // What is read may be in any unit; what is made from numbers alone has none but the file's.
         args.given.check_axes(!args.inputs.is_empty() || !format.fixed_axes())?;
     }
-    let Product { model, mut item, marks, offset_m } =
+    let Product { made: MadePlant { model, mut item, .. }, marks, offset_m } =
         if args.scan { scan(args, &machine)? } else { make(args, &machine)? };
     machine.cancel.check()?;
     if let (Some(path), Some(marks)) = (&args.marks, &marks) {
@@ -216,7 +218,7 @@ fn options(args: &LeafArgs, in_file: Option<ThicknessRule>) -> Outcome<LeafOptio
         },
         vein_weight: args.shape.vein_weight,
     };
-    let mesh = MeshSpec {
+    let mesh = LeafMeshSpec {
         subdivisions: args.shape.subdivisions as usize,
         sides: args.shape.sides as usize,
         rings: match args.shape.rings {
@@ -241,13 +243,13 @@ fn options(args: &LeafArgs, in_file: Option<ThicknessRule>) -> Outcome<LeafOptio
     };
     let side_veins =
         args.side_veins.unwrap_or(if args.venation == Some(VenationWord::Palmate) { 4 } else { 0 });
-    Ok(LeafOptions { spec, mesh, pose, texture, side_veins })
+    let skin = SkinSpec { leaf: mesh, ..SkinSpec::default() };
+    Ok(LeafOptions { spec, skin, pose, texture, side_veins, ..LeafOptions::default() })
 }
 
 /// What comes out before it is written.
 struct Product {
-    model: Model,
-    item: ItemReport,
+    made: MadePlant,
     marks: Option<Measured>,
     /// What was taken off a scan's coordinates.
     offset_m: Option<[f64; 3]>,
@@ -285,12 +287,13 @@ fn scan(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
         let (name, spec) = (files::stem(path), ScanSpec::default());
         burgeon::make_leaf_from_scan(&name, &points, &spec, &machine.run())
     });
-    let (mut model, mut item, found) = made.map_err(|e| failure(args, e))?;
-    model.offset_m = origin.offset_m;
+    let (mut made, found) = made.map_err(|e| failure(args, e))?;
+    made.model.offset_m = origin.offset_m;
+    let item = &mut made.item;
     item.warnings.splice(0..0, report.warnings.iter().map(ToString::to_string));
     item.timings_ms.add_io(read_ms, 0.0);
     let offset_m = origin.told(&axes);
-    Ok(Product { model, item, marks: Some(Measured::Rows(found.marks)), offset_m })
+    Ok(Product { made, marks: Some(Measured::Rows(found.marks)), offset_m })
 }
 
 fn make(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
@@ -318,7 +321,7 @@ fn make(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
         let veins = std::mem::take(veins);
         let leaf = read.remove(0);
         let mut product = rays(args, leaf, veins, machine)?;
-        product.item.timings_ms.add_io(read_ms, 0.0);
+        product.made.item.timings_ms.add_io(read_ms, 0.0);
         return Ok(product);
     }
     args.given.refuse(&["side_veins"], "leaves of chief veins", "this is one of rows of marks")?;
@@ -335,7 +338,7 @@ fn make(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
         report.warnings.extend(one.warnings.iter().cloned());
         full.push(marks.complete(&mut report).map_err(|e| Failure::at(path, e))?);
     }
-    let (model, mut item, marks) = if args.plant.plant {
+    let (mut made, marks) = if args.plant.plant {
         let spec = ShootSpec {
             leaves: args.plant.leaves,
             height_m: args.plant.height,
@@ -345,17 +348,17 @@ fn make(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
         let made = machine.with_progress("plant", |_| {
             burgeon::make_shoot("plant", &full, &spec, &options, seed, &machine.run())
         });
-        let (model, mut item) = made.map_err(|e| failure(args, e))?;
-        item.warnings.splice(0..0, report.warnings.iter().map(ToString::to_string));
-        (model, item, None)
+        let mut made = made.map_err(|e| failure(args, e))?;
+        made.item.warnings.splice(0..0, report.warnings.iter().map(ToString::to_string));
+        (made, None)
     } else {
         let marks = grown(args, full)?;
         let made = burgeon::make_leaf_of(&name, &marks, &options, seed, &machine.run(), report);
         let made = made.map_err(|e| failure(args, e))?;
-        (made.model, made.item, Some(Measured::Rows(made.marks.to_marks())))
+        (made, Some(Measured::Rows(options.pose.apply(&marks).to_marks())))
     };
-    item.timings_ms.add_io(read_ms, 0.0);
-    Ok(Product { model, item, marks, offset_m: None })
+    made.item.timings_ms.add_io(read_ms, 0.0);
+    Ok(Product { made, marks, offset_m: None })
 }
 
 /// A leaf of chief veins, made from numbers or digitised.
@@ -365,9 +368,9 @@ fn rays(args: &LeafArgs, leaf: ReadLeaf, rays: Rays, machine: &Machine) -> Outco
     }
     let options = options(args, leaf.thickness)?;
     let made = burgeon::make_ray_leaf(&leaf.name, &rays, &options, &machine.run());
-    let (model, mut item) = made.map_err(|e| failure(args, e))?;
-    item.warnings.splice(0..0, leaf.warnings.iter().map(ToString::to_string));
-    Ok(Product { model, item, marks: Some(Measured::Rays(rays)), offset_m: None })
+    let mut made = made.map_err(|e| failure(args, e))?;
+    made.item.warnings.splice(0..0, leaf.warnings.iter().map(ToString::to_string));
+    Ok(Product { made, marks: Some(Measured::Rays(rays)), offset_m: None })
 }
 
 /// The chief veins of --venation.

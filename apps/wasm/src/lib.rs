@@ -61,7 +61,7 @@ pub fn leaf_report(file_name: &str, bytes: &[u8], seed: u64) -> Result<String, J
         "xyz" => {
             let axes = ExportSpec { unit: Unit::Millimetre, ..ExportSpec::default() };
             let cloud = formats::read_cloud(bytes, CloudFormat::Xyz, &axes, &mut report)?;
-            burgeon::make_leaf_from_scan(name, &cloud.points, &ScanSpec::default(), &run)?.1
+            burgeon::make_leaf_from_scan(name, &cloud.points, &ScanSpec::default(), &run)?.0.item
         }
         "json" => {
             let marks = formats::read_vein_graph(bytes)?.graph.marks(&mut report)?;
@@ -72,7 +72,7 @@ pub fn leaf_report(file_name: &str, bytes: &[u8], seed: u64) -> Result<String, J
         _ if formats::is_rays(bytes) => {
             let read = formats::read_rays(bytes, name, formats::MarksAxes::default())?;
             options.spec.thickness = read.thickness.unwrap_or_default();
-            burgeon::make_ray_leaf(&read.name, &read.rays, &options, &run)?.1
+            burgeon::make_ray_leaf(&read.name, &read.rays, &options, &run)?.item
         }
         _ => {
             let read = formats::read_marks(bytes, name, formats::MarksAxes::default())?;

@@ -54,6 +54,6 @@ pub use polyline::{
 };
 pub use spline::{
     Ball, BallBSpline, Basis, EndCap, HeightField, MAX_DEGREE, NaturalCubic, RingRule, SplineError,
-    SplineSurface, SurfacePoint, Tube, TubeSpec, Weights, chord_parameters,
+    SplineSurface, SurfacePoint, Tube, TubeSpec, Weights, chord_parameters, subdivided,
 };
 pub use triangulate::{TriangulateError, Triangulation, triangulate_blade};

@@ -1,7 +1,8 @@
 //! Marks -> veins as ball B-splines and a blade as a spline surface, both of the same controls.
 
-use geom::{Ball, BallBSpline, NaturalCubic, SplineError, SplineSurface};
+use geom::{Ball, BallBSpline, NaturalCubic, SplineError, SplineSurface, subdivided};
 use glam::DVec3;
+use plant::{Chart, SplineBlade, Vein, Venation};
 
 use crate::marks::{FullMarks, MARKS_A_ROW};
 
@@ -77,15 +78,6 @@ impl Default for LeafSpec {
             vein_weight: 4.0,
         }
     }
-}
-
-/// One vein: a ball B-spline and the parameters of its marks.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Vein {
-    /// Centre line and radius, from the midrib's root, or from the left margin to the right.
-    pub curve: BallBSpline,
-    /// Parameters at which marks lie (or count most); they split the curve into spans for meshing.
-    pub marks: Vec<f64>,
 }
 
 /// A leaf as curves and a surface.
@@ -174,33 +166,35 @@ impl Leaf {
         Ok(Self { blade, midrib, sides, margins, middle })
     }
 
+    /// The leaf as a shape of a plant, where it was measured; its texture is the leaf laid flat.
+    pub fn blade(&self) -> SplineBlade {
+        let mut veins = vec![self.midrib.clone()];
+        veins.extend_from_slice(&self.sides);
+        SplineBlade {
+            surface: self.blade.clone(),
+            middle: self.middle,
+            veins: Venation { veins, fine: Vec::new(), margins: self.margins.to_vec() },
+            chart: Chart::Unrolled,
+            form: 0,
+        }
+    }
+
     /// The farthest that any vein's centre line is from the place on the blade where it should lie, metres.
     ///
     /// At `steps` parameters a span. Rounding noise with [`VeinParameters::Shared`].
     pub fn vein_gap(&self, steps: usize) -> f64 {
         let mut gap: f64 = 0.0;
-        for t in samples(&self.midrib.marks, steps) {
+        for t in subdivided(&self.midrib.marks, steps) {
             gap = gap.max(self.midrib.curve.ball(t).centre.distance(self.blade.point(self.middle, t)));
         }
-        let us = samples(self.blade.columns_at(), steps);
+        let us = subdivided(self.blade.columns_at(), steps);
         for (side, &v) in self.sides.iter().zip(self.blade.rows_at()) {
-            for (&t, &u) in samples(&side.marks, steps).iter().zip(&us) {
+            for (&t, &u) in subdivided(&side.marks, steps).iter().zip(&us) {
                 gap = gap.max(side.curve.ball(t).centre.distance(self.blade.point(u, v)));
             }
         }
         gap
     }
-}
-
-/// The parameters that split each span between `marks` into `steps` equal parts.
-pub(crate) fn samples(marks: &[f64], steps: usize) -> Vec<f64> {
-    let steps = steps.max(1);
-    let mut out = Vec::with_capacity(marks.len() * steps);
-    for w in marks.windows(2) {
-        out.extend((0..steps).map(|k| base::ops::lerp(w[0], w[1], k as f64 / steps as f64)));
-    }
-    out.extend(marks.last());
-    out
 }
 
 fn own_vein(points: &[DVec3], radii: &[f64]) -> Result<Vein, SplineError> {
@@ -308,5 +302,31 @@ mod tests {
             leaf.blade.point(leaf.middle, 0.5).z
         };
         assert!(depth(SurfaceKind::Nurbs) < depth(SurfaceKind::Approximate) - 0.005);
+    }
+
+    #[test]
+    fn flat_leaf_has_its_measured_lengths_however_it_is_bent() {
+        let mut marks = sample(8);
+        marks.rows.iter_mut().for_each(|r| r.points.iter_mut().for_each(|p| p.z = 0.0));
+        let make = |marks: &crate::Marks| {
+            let full = marks.complete(&mut Report::default()).unwrap();
+            Leaf::new(&full, &LeafSpec::default()).unwrap().blade().flat(6)
+        };
+        let plain = make(&marks);
+        // Bent round a cylinder across the midrib of radius 0.5.
+        let bend = |p: DVec3| {
+            let (s, c) = base::ops::sin_cos(p.y / 0.5);
+            DVec3::new(p.x, 0.5 * s, 0.5 * (c - 1.0))
+        };
+        let mut bent = marks.clone();
+        bent.rows.iter_mut().for_each(|r| r.points = r.points.map(bend));
+        bent.tip = bend(bent.tip);
+        let bent = make(&bent);
+        for (a, b) in plain.points.iter().zip(&bent.points) {
+            assert!(a.distance(*b) < 0.012, "{a:?} {b:?}");
+        }
+        let area = geom::signed_area(&plain.outline());
+        assert!(area > 0.0 && geom::self_crossings(&plain.outline()) == 0, "{area}");
+        assert_eq!(plain.side_veins().len(), 16);
     }
 }

@@ -1,6 +1,6 @@
 //! Leaves from measured veins (paper 004): marks -> veins with thickness and a blade through the same points.
 //!
-//! `Marks -> complete -> Leaf { veins, blade } -> LeafMesh`
+//! `Marks -> complete -> Leaf { veins, blade } -> plant::SplineBlade`
 //!
 //! | module | owns |
 //! |---|---|
@@ -8,39 +8,30 @@
 //! | `graph` | [`VeinGraph`]: a network of veins with radii -> marks |
 //! | `palmate` | a network whose chief veins start together -> rays |
 //! | `blade` | [`Leaf`]: the four surfaces, veins that lie on them |
-//! | `meshes` | [`LeafMesh`]: tubes and grid at any resolution, the counts of the paper's Table 1 |
 //! | `pose` | curl and wilt |
 //! | `profile` | [`LeafProfile`]: a midrib from the side and the width along it -> rays |
 //! | `growth` | a leaf between measured stages |
 //! | `rays` | [`Rays`], [`RayLeaf`]: palmate and parallel leaves, made or measured |
 //! | `lobes` | side veins of the lobes of palmate leaves |
 //! | `scan` | a leaf found in a cloud of points |
-//! | `flat` | the leaf unrolled into a plane: template of a blade, texture coordinates |
-//! | `colour` | a texture coloured by the distance from the veins |
 //!
-//! Lengths are metres. A leaf knows nothing of the plant that bears it.
+//! Lengths are metres. A leaf knows nothing of the plant that bears it; its triangles are `skin`'s to make.
 
 mod blade;
-mod colour;
-mod flat;
 mod graph;
 mod growth;
 mod lobes;
 mod marks;
-mod meshes;
 mod palmate;
 mod pose;
 mod profile;
 mod rays;
 mod scan;
 
-pub use blade::{Leaf, LeafSpec, SurfaceKind, ThicknessRule, Vein, VeinParameters};
-pub use colour::{LeafColours, vein_texture};
-pub use flat::FlatLeaf;
+pub use blade::{Leaf, LeafSpec, SurfaceKind, ThicknessRule, VeinParameters};
 pub use graph::{GraphError, VeinGraph};
 pub use growth::{GrowthError, LeafGrowth};
 pub use marks::{FullMarks, FullRow, MARKS_A_ROW, MarkRow, Marks, MarksError};
-pub use meshes::{LeafMesh, MeshSpec};
 pub use pose::Pose;
 pub use profile::{LeafProfile, ProfileError};
 pub use rays::{PalmateSpec, ParallelSpec, Ray, RayLeaf, Rays, RaysError};

@@ -5,8 +5,8 @@
 use base::ops;
 use geom::{Ball, BallBSpline, NaturalCubic, SplineSurface};
 use glam::{DVec2, DVec3};
+use plant::Vein;
 
-use crate::blade::Vein;
 use crate::rays::{RayLeaf, Rays};
 
 /// Points of a side vein on the blade; between them it is a cubic.
@@ -170,64 +170,7 @@ fn nearest(blade: &SplineSurface, mut uv: DVec2, p: DVec3) -> DVec2 {
 
 #[cfg(test)]
 mod tests {
-    use crate::{MeshSpec, PalmateSpec, ParallelSpec, RayLeaf, Rays, ThicknessRule};
-
-    #[test]
-    fn lobes_have_side_veins_that_lie_on_the_blade() {
-        for veins in [3, 5, 7] {
-            let rays = Rays::palmate(&PalmateSpec { veins, ..PalmateSpec::default() });
-            let mut leaf = RayLeaf::new(&rays, ThicknessRule::Diameter).unwrap();
-            let bare = leaf.mesh(&MeshSpec::default(), |_| [0.0; 3]);
-            leaf.add_side_veins(&rays, 4);
-            println!("{veins} lobes: {} side veins", leaf.sides.len());
-            assert!(
-                leaf.sides.len() >= 4 * veins as usize,
-                "{} side veins of {veins} lobes",
-                leaf.sides.len()
-            );
-            let fine = MeshSpec { subdivisions: 8, ..MeshSpec::default() };
-            let blade = leaf.mesh(&fine, |_| [0.0; 3]).blade;
-            for side in &leaf.sides {
-                let first = side.curve.ball(side.marks[0]);
-                // It begins on a chief vein, thinner than that.
-                let chief =
-                    leaf.veins.iter().flat_map(|v| (0..=200).map(|k| v.curve.ball(f64::from(k) / 200.0)));
-                let near = chief.min_by(|a, b| {
-                    a.centre.distance(first.centre).total_cmp(&b.centre.distance(first.centre))
-                });
-                let near = near.unwrap();
-                assert!(
-                    near.centre.distance(first.centre) < 0.0006 && first.radius < near.radius,
-                    "{first:?}"
-                );
-                // Its marks lie on the blade: the mesh of that is finer than a tenth of a millimetre of arch.
-                for &t in side.marks.iter().skip(3).step_by(6) {
-                    let ball = side.curve.ball(t);
-                    let gap = blade.triangles.iter().map(|t| {
-                        let [a, b, c] = t.map(|k| {
-                            let p = blade.positions[k as usize].map(f64::from);
-                            glam::DVec3::from_array(p)
-                        });
-                        // Inside the triangle as seen from above: the height over it.
-                        let flat = |p: glam::DVec3| p.truncate();
-                        let area = (flat(b) - flat(a)).perp_dot(flat(c) - flat(a));
-                        let w = [(b, c), (c, a), (a, b)]
-                            .map(|(p, q)| (flat(q) - flat(p)).perp_dot(flat(ball.centre) - flat(p)) / area);
-                        if w.iter().all(|w| *w >= -1e-6) {
-                            (a.z * w[0] + b.z * w[1] + c.z * w[2] - ball.centre.z).abs()
-                        } else {
-                            f64::INFINITY
-                        }
-                    });
-                    let gap = gap.fold(f64::INFINITY, f64::min);
-                    assert!(gap < 1e-4, "{veins} lobes: {gap} m from the blade");
-                }
-            }
-            let mesh = leaf.mesh(&MeshSpec::default(), |_| [0.0; 3]);
-            assert!(mesh.veins.positions.len() > bare.veins.positions.len());
-            assert_eq!(mesh.veins.validate().chain(mesh.blade.validate()).next(), None);
-        }
-    }
+    use crate::{ParallelSpec, RayLeaf, Rays, ThicknessRule};
 
     #[test]
     fn parallel_veins_have_none() {

@@ -3,11 +3,11 @@
 //! `Rays -> RayLeaf { blade, veins } -> LeafMesh`
 
 use base::ops;
-use geom::{EndCap, NaturalCubic, SplineError, SplineSurface, TubeSpec};
+use geom::{NaturalCubic, SplineError, SplineSurface, subdivided};
 use glam::DVec3;
+use plant::{Chart, SplineBlade, Vein, VeinShade, Venation};
 
-use crate::blade::{ThicknessRule, Vein, samples};
-use crate::meshes::{LeafMesh, MeshSpec, narrow};
+use crate::blade::ThicknessRule;
 
 /// Lines of marks that all run from the base of the leaf towards its margin.
 ///
@@ -350,70 +350,19 @@ impl RayLeaf {
     pub fn vein_gap(&self, steps: usize) -> f64 {
         let mut gap: f64 = 0.0;
         for (vein, &u) in self.veins.iter().zip(&self.at) {
-            for t in samples(&vein.marks, steps) {
+            for t in subdivided(&vein.marks, steps) {
                 gap = gap.max(vein.curve.ball(t).centre.distance(self.blade.point(u, t)));
             }
         }
         gap
     }
 
-    /// The triangles: as many parts of each span of `v` as `spec` says, and half as many of `u`.
-    ///
-    /// `shade` gives the colour of the blade at a distance from the nearest vein, metres. Texture coordinates are u
-    /// and 1 - v.
-    pub fn mesh(&self, spec: &MeshSpec, shade: impl Fn(f64) -> [f32; 3]) -> LeafMesh {
-        let steps = spec.subdivisions.clamp(1, 64);
-        let mut out = LeafMesh::default();
-        let cap = if spec.caps { EndCap::Round(3) } else { EndCap::Open };
-        let tube = TubeSpec { rings: spec.rings, sides: spec.sides.clamp(3, 64), cap, first_normal: None };
-        for vein in &self.veins {
-            out.add_tube(&vein.curve, &samples(&vein.marks, steps), &tube);
-        }
-        for vein in &self.sides {
-            // At its marks it lies on the blade.
-            out.add_tube(&vein.curve, &vein.marks, &tube);
-        }
-        let us = samples(self.blade.columns_at(), (steps / 2).max(1));
-        let vs = samples(self.blade.rows_at(), steps);
-        let wide = us.len();
-        let points = self.blade.grid(&us, &vs);
-        for (k, p) in points.iter().enumerate() {
-            let (u, v) = (us[k % wide], vs[k / wide]);
-            // Where the surface is pinched (base and tip) its neighbourhood knows the direction.
-            let inner = v + 1e-3 * (0.5 - v);
-            let normal = p.normal.or_else(|| self.blade.at(u, inner).normal).unwrap_or(DVec3::Z);
-            let near = |vein: &Vein| {
-                let ball: geom::Ball = vein.curve.ball(v);
-                (ball.centre.distance(p.position) - ball.radius).max(0.0)
-            };
-            let distance = self.veins.iter().map(near).fold(f64::INFINITY, f64::min);
-            out.blade.push(p.position);
-            out.blade.normals.push(narrow(normal));
-            out.blade.colors.push(shade(distance));
-            #[expect(
-                clippy::cast_possible_truncation,
-                reason = "f64 in the model, f32 in the mesh, by design"
-            )]
-            out.blade.uvs.push([u as f32, 1.0 - v as f32]);
-        }
-        let size = points.iter().map(|p| p.position.distance(points[0].position)).fold(0.0, f64::max);
-        let index = |i: usize| u32::try_from(i).unwrap_or(u32::MAX);
-        for i in 1..vs.len() {
-            for j in 1..wide {
-                let corners = [(i - 1) * wide + j - 1, (i - 1) * wide + j, i * wide + j, i * wide + j - 1];
-                let [a, b, c, d] = corners;
-                let one = |x: usize, y: usize| points[x].position.distance(points[y].position) < 1e-9 * size;
-                // At the base, and at the tip of parallel veins, two corners are one place.
-                if !one(a, b) {
-                    out.blade.triangles.push([a, b, c].map(index));
-                }
-                if !one(c, d) {
-                    out.blade.triangles.push([a, c, d].map(index));
-                }
-                out.blade_faces += 1;
-            }
-        }
-        out
+    /// The leaf as a shape of a plant, where it was measured, in these colours.
+    pub fn blade(&self, shade: VeinShade) -> SplineBlade {
+        let (a, b) = self.blade.u().domain();
+        let veins = Venation { veins: self.veins.clone(), fine: self.sides.clone(), margins: Vec::new() };
+        let (surface, chart) = (self.blade.clone(), Chart::Parameters(shade));
+        SplineBlade { surface, middle: 0.5 * (a + b), veins, chart, form: 0 }
     }
 }
 
@@ -440,10 +389,6 @@ mod tests {
                     assert!((2.0 * ball.radius - ray.thickness[m].unwrap()).abs() < 1e-12, "mark {m}");
                 }
             }
-            let mesh = leaf.mesh(&MeshSpec::default(), |_| [0.0; 3]);
-            assert_eq!(mesh.veins.validate().chain(mesh.blade.validate()).next(), None);
-            let up = mesh.blade.normals.iter().filter(|n| n[2] > 0.0).count();
-            assert!(up * 100 > 98 * mesh.blade.normals.len(), "{up} of {}", mesh.blade.normals.len());
         }
     }
 

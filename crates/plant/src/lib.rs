@@ -7,19 +7,23 @@
 //! another (`<`); axes and organs are borne (`+`) by nodes.
 
 mod blade;
+mod flat;
 mod measure;
 mod organ;
 mod phyllotaxis;
 mod pipe;
 mod relief;
+mod sheet;
 mod topology;
 mod validate;
 
 pub use blade::{Blade, Lift, Relief};
+pub use flat::FlatLeaf;
 pub use measure::{Measures, OrderMeasures, RadiusExponent, Strahler};
 pub use organ::{Flower, FlowerId, Frame, Organ, OrganId, OrganKind, Paint, Shape, ShapeId};
 pub use phyllotaxis::{Divergence, Phyllotaxis};
 pub use pipe::{PipeModel, Taper, pipe_radii};
 pub use relief::BladeSurface;
+pub use sheet::{Chart, Sheet, SplineBlade, Vein, VeinShade, Venation};
 pub use topology::{Axis, AxisId, AxisKind, NodeId, Nodes, Plant};
 pub use validate::Fault;

@@ -1,9 +1,11 @@
 //! Leaves, petals and the other organs that nodes bear.
 
+use std::sync::Arc;
+
 use base::{Digest, Digestible};
 use glam::{DVec2, DVec3};
 
-use crate::{Blade, NodeId};
+use crate::{Blade, NodeId, Sheet, SplineBlade};
 
 base::define_id! {
     /// One organ.
@@ -134,6 +136,10 @@ pub enum Shape {
         /// The generating line; radii 0 or more.
         profile: Vec<DVec2>,
     },
+    /// A leaf of measured veins: a smooth surface.
+    Spline(Arc<SplineBlade>),
+    /// A blade as a grid of points: of a scan, or a petal at one day.
+    Sheet(Arc<Sheet>),
     /// A round strand (filament, style, thorn, stalk) along local points with a radius at each, its end closed.
     Strand {
         /// Local points, root first.
@@ -152,7 +158,21 @@ impl Shape {
             Self::Blade(b) => b.length(),
             Self::Dome { radius_m, .. } => *radius_m,
             Self::Revolution { profile } => profile.iter().map(|p| p.y.abs()).fold(0.0, f64::max),
+            Self::Spline(blade) => blade.reach(),
+            Self::Sheet(sheet) => sheet.reach(),
             Self::Strand { path, .. } => path.last().map_or(0.0, |p| p.length()),
+        }
+    }
+
+    /// The length from root to tip, metres at scale 1: along the midrib in the plane of a flat blade, along the line of
+    /// a strand; none for bodies.
+    pub fn length(&self) -> Option<f64> {
+        match self {
+            Self::Blade(b) => Some(b.length()),
+            Self::Spline(blade) => Some(blade.length()),
+            Self::Sheet(sheet) => Some(sheet.reach()),
+            Self::Strand { path, .. } => Some(geom::polyline_length3(path)),
+            Self::Dome { .. } | Self::Revolution { .. } => None,
         }
     }
 
@@ -181,6 +201,8 @@ impl Shape {
                 };
                 profile.iter().flat_map(ring).collect()
             }
+            Self::Spline(blade) => blade.corners(),
+            Self::Sheet(sheet) => sheet.points.clone(),
             Self::Strand { path, radius_m, knob_m } => {
                 let radius = |i: usize| radius_m.get(i).or(radius_m.last()).copied().unwrap_or(0.0);
                 let end = path.last().map(|p| (*p, *knob_m));
@@ -280,6 +302,12 @@ impl Digestible for Shape {
             }
             Self::Revolution { profile } => {
                 d.add(&2_u8).add(profile);
+            }
+            Self::Spline(blade) => {
+                d.add(&4_u8).add(&**blade);
+            }
+            Self::Sheet(sheet) => {
+                d.add(&5_u8).add(&**sheet);
             }
             Self::Strand { path, radius_m, knob_m } => {
                 d.add(&3_u8).add(path).add(radius_m).add(knob_m);

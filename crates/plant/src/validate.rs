@@ -120,6 +120,8 @@ impl Plant {
             Shape::Revolution { profile } => {
                 profile.len() >= 2 && profile.iter().all(|p| p.is_finite() && p.x >= 0.0)
             }
+            Shape::Spline(blade) => blade.sound(),
+            Shape::Sheet(sheet) => sheet.sound(),
             Shape::Strand { path, radius_m, knob_m } => {
                 path.len() >= 2
                     && path.len() == radius_m.len()

@@ -9,10 +9,11 @@
 //!
 //! | module | owns |
 //! |---|---|
-//! | `spec` | [`SkinSpec`], [`PetalColor`]; how triangles are shared out |
-//! | `spine`, `rings`, `tube` | smooth centre lines, cross-sections, [`tube`] |
+//! | `spec` | [`SkinSpec`], [`LeafMeshSpec`], [`PetalColor`]; how triangles are shared out |
+//! | `spine`, `rings`, `sleeve`, `tube` | smooth centre lines, cross-sections, their triangles, [`tube`] |
 //! | `fork`, `axes` | fillets at forks; which axes are one tube |
 //! | `blade`, `lean`, `body`, `organs` | [`blade_mesh`], [`BladeChart`]; leaves of a crowd; discs, fruits, strands; placed copies |
+//! | `leaf` | [`ShapeMesh`]: leaves of measured veins, sheets |
 //! | `traced` | [`Traced`]: organs in the colours of a photograph |
 //! | `wind` | weights and pivots for wind |
 //! | `texture`, `parts` | painted textures, materials, parts |
@@ -22,10 +23,12 @@ mod axes;
 mod blade;
 mod body;
 mod fork;
+mod leaf;
 mod lean;
 mod organs;
 mod parts;
 mod rings;
+mod sleeve;
 mod spec;
 mod spine;
 mod texture;
@@ -33,9 +36,11 @@ mod traced;
 mod tube;
 mod wind;
 
+pub use self::spec::{LeafMeshSpec, PetalColor, SkinSpec};
 pub use blade::{BladeChart, blade_mesh};
+pub use leaf::ShapeMesh;
 pub use organs::KeptShapes;
-pub use spec::{PetalColor, SkinSpec};
+pub use texture::{LeafColours, vein_texture};
 pub use traced::Traced;
 pub use tube::{TubeSpec, tube};
 
@@ -51,7 +56,7 @@ use crate::spec::Budget;
 ///
 /// Guaranteed, for any plant: finite coordinates, unit normals, no triangle that uses a vertex twice
 /// ([`Model::validate`] is clean); every tube closed; wood is drawn where the plant has it, to 0.07 % of the plant's
-/// size and within its own radius (both over [`SkinSpec::detail`]); the same bits for any executor. One part per kind of surface, in the order bark, stems, roots, leaves, petals, discs, fruits,
+/// size and within its own radius (both over [`SkinSpec::detail`]); the same bits for any executor. One part per kind of surface, in the order bark, stems, roots, leaves, veins, petals, discs, fruits,
 /// stamens, thorns; kinds that do not occur leave no part. Organs have vertex colours: their paint, varied by
 /// seed and key. On one that is tinted or drawn a texture without a hue of its own is used.
 /// With [`SkinSpec::wind`] every vertex also has four numbers, each 0 to 1, and a pivot: sway of the whole plant (0 on

@@ -4,15 +4,17 @@ use std::sync::Arc;
 
 use base::{Cancelled, Counted, Draw, Run, Seed, Stopped, map_indexed};
 use mesh::TriMesh;
-use plant::{Organ, OrganKind, Plant, Shape};
+use plant::{Organ, OrganKind, Plant, Shape, ShapeId};
 
+use crate::LeafMeshSpec;
 use crate::blade::blade_mesh;
 use crate::body::{dome, prism, revolution, strand};
+use crate::leaf::{ShapeMesh, sheet_mesh, spline_mesh};
 use crate::lean::lean_mesh;
 use crate::parts::{Coat, Slot};
+use crate::sleeve::{narrow, wide};
 use crate::spec::{Budget, PetalColor, SkinSpec};
 use crate::traced::Traced;
-use crate::tube::{narrow, wide};
 use crate::wind::{Wind, flutter};
 
 // Organs are copied in groups of about this many vertices: one job each would cost more than the copy.
@@ -46,31 +48,39 @@ pub(crate) fn organs(
     if let Some(kept) = kept {
         kept.replace(&plant.shapes, &made);
     }
-    let shapes: Vec<Arc<TriMesh>> = made.into_iter().map(|(_, mesh)| mesh).collect();
-    let flutters: Vec<Vec<f32>> = match wind {
-        Some(_) => plant.shapes.iter().zip(&shapes).map(|(s, m)| flutter(s, m)).collect(),
+    let shapes: Vec<Arc<ShapeMesh>> = made.into_iter().map(|(_, mesh)| mesh).collect();
+    let flutters: Vec<[Vec<f32>; 2]> = match wind {
+        Some(_) => {
+            let both = |(s, m): (&Shape, &Arc<ShapeMesh>)| [&m.surface, &m.veins].map(|m| flutter(s, m));
+            plant.shapes.iter().zip(&shapes).map(both).collect()
+        }
         None => Vec::new(),
     };
-    let mut order: Vec<(Slot, usize)> = plant
-        .organs
-        .iter()
-        .enumerate()
-        .filter(|(_, o)| shapes.get(o.shape.index()).is_some_and(|m| !m.triangles.is_empty()) && sound(o))
-        .map(|(i, o)| {
-            let slot = ground.slot(o);
-            (if of_photo(o).is_some() { slot.traced() } else { slot }, i)
-        })
-        .collect();
-    let blades = order.iter().map(|&(_, i)| shapes[plant.organs[i].shape.index()].triangles.len());
+    let mesh_of = |&(_, i, layer): &Copied| match layer {
+        Layer::Surface => &shapes[plant.organs[i].shape.index()].surface,
+        Layer::Veins => &shapes[plant.organs[i].shape.index()].veins,
+    };
+    let placed = |(i, o): (usize, &Organ)| {
+        let slot = match plant.shapes[o.shape.index()] {
+            Shape::Spline(ref blade) => Slot::Form(blade.form, Coat::of(o.paint)),
+            _ => ground.slot(o),
+        };
+        let slot = if of_photo(o).is_some() { slot.traced() } else { slot };
+        [(slot, i, Layer::Surface), (Slot::Veins, i, Layer::Veins)]
+    };
+    let organs = plant.organs.iter().enumerate();
+    let organs = organs.filter(|(_, o)| o.shape.index() < shapes.len() && sound(o));
+    let mut order: Vec<Copied> =
+        organs.flat_map(placed).filter(|c| !mesh_of(c).triangles.is_empty()).collect();
+    let blades = order.iter().map(|c| mesh_of(c).triangles.len());
     run.budget.check(Counted::Triangles, (wood + blades.sum::<usize>()) as u64, crate::FEWER)?;
-    base::sort_by_key(&mut order, |&(slot, _)| slot);
-    let groups = groups(&order, |i| shapes[plant.organs[i].shape.index()].positions.len());
+    base::sort_by_key(&mut order, |&(slot, ..)| slot);
+    let groups = groups(&order, |c| mesh_of(c).positions.len());
     let meshes = map_indexed(run.executor, groups.len(), |g| {
         run.cancel.check()?;
         let members = &order[groups[g].clone()];
         let mut mesh = TriMesh::default();
-        let vertices: usize =
-            members.iter().map(|&(_, i)| shapes[plant.organs[i].shape.index()].positions.len()).sum();
+        let vertices: usize = members.iter().map(|c| mesh_of(c).positions.len()).sum();
         mesh.positions.reserve_exact(vertices);
         mesh.normals.reserve_exact(vertices);
         mesh.uvs.reserve_exact(vertices);
@@ -79,17 +89,19 @@ pub(crate) fn organs(
             mesh.wind.reserve_exact(vertices);
             mesh.pivots.reserve_exact(vertices);
         }
-        for &(slot, i) in members {
+        for copied in members {
+            let &(slot, i, layer) = copied;
             let organ = &plant.organs[i];
             let first = mesh.positions.len();
             let photo = of_photo(organ);
-            let color = if photo.is_some() { [1.0; 3] } else { tint(organ, slot, spec) };
-            place(&mut mesh, &shapes[organ.shape.index()], organ, color);
+            let color =
+                if photo.is_some() || slot == Slot::Veins { [1.0; 3] } else { tint(organ, slot, spec) };
+            place(&mut mesh, mesh_of(copied), organ, color);
             if let Some(photo) = photo {
                 photo.organ(&mut mesh, first);
             }
             if let Some(wind) = wind {
-                wind.organ(&mut mesh, first, organ, &flutters[organ.shape.index()]);
+                wind.organ(&mut mesh, first, organ, &flutters[organ.shape.index()][layer as usize]);
             }
         }
         Ok((members[0].0, mesh))
@@ -133,16 +145,26 @@ fn uses(plant: &Plant) -> Vec<Option<Use>> {
     uses
 }
 
+/// The surface of an organ's shape, or its veins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Layer {
+    Surface,
+    Veins,
+}
+
+/// One mesh of a shape for one organ.
+type Copied = (Slot, usize, Layer);
+
 /// Runs of one slot with about [`GROUP`] vertices each.
-fn groups(order: &[(Slot, usize)], vertices: impl Fn(usize) -> usize) -> Vec<core::ops::Range<usize>> {
+fn groups(order: &[Copied], vertices: impl Fn(&Copied) -> usize) -> Vec<core::ops::Range<usize>> {
     let mut out = Vec::new();
     let (mut start, mut held) = (0, 0);
-    for (k, &(slot, i)) in order.iter().enumerate() {
-        if k > start && (held > GROUP || slot != order[start].0) {
+    for (k, copied) in order.iter().enumerate() {
+        if k > start && (held > GROUP || copied.0 != order[start].0) {
             out.push(start..k);
             (start, held) = (k, 0);
         }
-        held += vertices(i);
+        held += vertices(copied);
     }
     if start < order.len() {
         out.push(start..order.len());
@@ -165,6 +187,9 @@ enum Wish {
     },
     /// A strand of a crown.
     Prism,
+    Spline(LeafMeshSpec),
+    /// With this detail.
+    Grid(LeafMeshSpec, f64),
 }
 
 impl Wish {
@@ -180,8 +205,10 @@ impl Wish {
         }
     }
 
-    fn mesh(self, shape: &Shape) -> TriMesh {
+    fn mesh(self, shape: &Shape) -> ShapeMesh {
         match (self, shape) {
+            (Self::Spline(spec), Shape::Spline(blade)) => return spline_mesh(blade, &spec),
+            (Self::Grid(spec, detail), Shape::Sheet(sheet)) => return sheet_mesh(sheet, &spec, detail),
             (Self::Lean(n), Shape::Blade(blade)) => lean(blade, n).unwrap_or_else(|| blade_mesh(blade, n)),
             (Self::Sheet(n), Shape::Blade(blade)) => blade_mesh(blade, n),
             (Self::Dome(n), Shape::Dome { radius_m, height_m }) => dome(*radius_m, *height_m, n),
@@ -193,6 +220,7 @@ impl Wish {
             (Self::Prism, Shape::Strand { path, radius_m, .. }) => prism(path, radius_m),
             _ => TriMesh::default(),
         }
+        .into()
     }
 }
 
@@ -208,7 +236,7 @@ pub struct KeptShapes {
 }
 
 /// A shape's mesh and the wish that it was made by.
-type Made = (Wish, Arc<TriMesh>);
+type Made = (Wish, Arc<ShapeMesh>);
 
 impl KeptShapes {
     /// Rows that are looked at before and after a shape's own: a stroke brings few shapes.
@@ -221,6 +249,11 @@ impl KeptShapes {
     #[must_use]
     pub fn loose() -> Self {
         Self { loose: true, ..Self::default() }
+    }
+
+    /// The mesh of a shape of the plant that was meshed last, in the shape's own frame.
+    pub fn get(&self, shape: ShapeId) -> Option<&ShapeMesh> {
+        self.made.get(shape.index()).map(|(_, mesh)| &**mesh)
     }
 
     fn find(&self, shape: &Shape, wish: Wish, row: usize) -> Option<Made> {
@@ -248,6 +281,7 @@ struct Ground {
     petals: PetalColor,
     /// Few enough stamens and thorns to give each more than three rings.
     fine_strands: bool,
+    leaf: LeafMeshSpec,
 }
 
 impl Ground {
@@ -273,7 +307,7 @@ impl Ground {
         } else {
             PetalColor::ALL[tint.below(PetalColor::ALL.len())]
         };
-        Self { petals: spec.petals.unwrap_or(chosen), fine_strands: strands <= 40 }
+        Self { petals: spec.petals.unwrap_or(chosen), fine_strands: strands <= 40, leaf: spec.leaf }
     }
 
     fn wish(&self, shape: &Shape, used: Use, budget: &Budget) -> Wish {
@@ -305,6 +339,8 @@ impl Ground {
             }
             Shape::Strand { knob_m: 0.0, .. } if budget.crown() => Wish::Prism,
             Shape::Strand { .. } => Wish::Strand { fine: self.fine_strands && budget.detail >= 0.5 },
+            Shape::Spline(_) => Wish::Spline(self.leaf.at(budget.detail)),
+            Shape::Sheet(_) => Wish::Grid(self.leaf.at(budget.detail), budget.detail),
             _ => Wish::Nothing,
         }
     }
@@ -357,6 +393,9 @@ fn place(out: &mut TriMesh, local: &TriMesh, organ: &Organ, color: [f32; 3]) {
     out.positions.extend(local.positions.iter().map(|&p| narrow(f.place(wide(p), organ.scale))));
     out.normals.extend(local.normals.iter().map(|&n| narrow(f.rotate(wide(n)))));
     out.uvs.extend_from_slice(&local.uvs);
+    out.uvs.resize(out.positions.len(), [0.0; 2]);
+    let times = |c: &[f32; 3]| [0, 1, 2].map(|i| c[i] * color[i]);
+    out.colors.extend(local.colors.iter().map(times));
     out.colors.resize(out.positions.len(), color);
     out.triangles.extend(local.triangles.iter().map(|t| t.map(|i| i + first)));
 }

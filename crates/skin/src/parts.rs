@@ -1,5 +1,6 @@
 //! Kinds of surface: their materials, and the parts that gather them.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use base::Executor;
@@ -23,6 +24,10 @@ pub(crate) enum Slot {
     Stem,
     Root,
     Leaf(Coat),
+    /// Measured leaves of one form, which may have a texture of its own.
+    Form(u32, Coat),
+    /// Veins of measured leaves.
+    Veins,
     /// With the colour of those that have a natural one.
     Petal(Coat, PetalColor),
     Disc(Coat),
@@ -66,7 +71,7 @@ impl Slot {
             Self::Bark | Self::YoungBark => MaterialKind::Bark,
             Self::Stem | Self::Body | Self::Thorn => MaterialKind::Stem,
             Self::Root => MaterialKind::Root,
-            Self::Leaf(_) => MaterialKind::Leaf,
+            Self::Leaf(_) | Self::Form(..) | Self::Veins => MaterialKind::Leaf,
             Self::Petal(..) => MaterialKind::Petal,
             Self::Disc(_) => MaterialKind::Disc,
             Self::Fruit(_) => MaterialKind::Fruit,
@@ -75,8 +80,11 @@ impl Slot {
     }
 
     /// Names of the part and of its material.
-    fn names(self) -> (&'static str, String) {
-        match self {
+    fn names(self) -> (Cow<'static, str>, String) {
+        let (part, material) = match self {
+            Self::Form(0, _) => ("leaves", "leaf".into()),
+            Self::Form(k, _) => return (format!("leaves-{}", k + 1).into(), format!("leaf-{}", k + 1)),
+            Self::Veins => ("veins", "leaf-veins".into()),
             Self::Bark => ("branches", "bark".into()),
             Self::YoungBark => ("twigs", "bark-young".into()),
             Self::Stem => ("stems", "stem".into()),
@@ -107,11 +115,14 @@ impl Slot {
                 };
                 (part, format!("{}-traced", kind.word()))
             }
-        }
+        };
+        (part.into(), material)
     }
 
-    fn motif(self) -> Motif {
-        match self {
+    /// What its texture shows; none for what has no texture of its own.
+    fn motif(self) -> Option<Motif> {
+        Some(match self {
+            Self::Form(..) | Self::Veins => return None,
             Self::Bark => Motif::Bark,
             Self::YoungBark => Motif::YoungBark,
             Self::Stem => Motif::Stem,
@@ -128,7 +139,7 @@ impl Slot {
             Self::Body => Motif::Body,
             Self::Stamen => Motif::Stamen,
             Self::Thorn => Motif::Thorn,
-        }
+        })
     }
 
     /// Linear colour that stands for the texture where none is wanted: its mean.
@@ -138,7 +149,7 @@ impl Slot {
             Self::YoungBark => [0.13, 0.095, 0.055],
             Self::Stem => [0.111, 0.223, 0.034],
             Self::Root => [0.27, 0.168, 0.092],
-            Self::Leaf(Coat::Natural) => [0.051, 0.149, 0.018],
+            Self::Leaf(Coat::Natural) | Self::Form(_, Coat::Natural) => [0.051, 0.149, 0.018],
             Self::Petal(Coat::Natural, color) => match color {
                 PetalColor::Pink => [0.80, 0.33, 0.42],
                 PetalColor::White => [0.90, 0.91, 0.80],
@@ -154,17 +165,23 @@ impl Slot {
             Self::Body => [0.06, 0.16, 0.05],
             Self::Stamen => [0.72, 0.55, 0.15],
             Self::Thorn => [0.28, 0.16, 0.08],
-            Self::Leaf(_) | Self::Petal(..) | Self::Disc(_) | Self::Fruit(_) | Self::Traced(_) => [1.0; 3],
+            Self::Veins => [0.44, 0.52, 0.18],
+            Self::Leaf(_)
+            | Self::Form(..)
+            | Self::Petal(..)
+            | Self::Disc(_)
+            | Self::Fruit(_)
+            | Self::Traced(_) => [1.0; 3],
         }
     }
 
     fn material(self, textures: Option<&dyn Executor>, photo: Option<&Arc<Texture>>) -> Material {
         let kind = self.kind();
-        let color = if textures.is_some() { [1.0; 3] } else { self.plain_color() };
+        let color = if textures.is_some() && self.motif().is_some() { [1.0; 3] } else { self.plain_color() };
         let mut m = Material::plain(self.names().1, kind, color);
         m.texture = match self {
             Self::Traced(_) => photo.cloned(),
-            _ => textures.map(|executor| self.motif().texture(executor)),
+            _ => textures.zip(self.motif()).map(|(executor, motif)| motif.texture(executor)),
         };
         (m.roughness, m.translucency) = match kind {
             MaterialKind::Leaf => (0.55, 0.4),
@@ -201,7 +218,7 @@ pub(crate) fn model(
         };
         let material = MaterialId::new(model.materials.len());
         model.materials.push(slot.material(textures, photo));
-        model.parts.push(Part { name: slot.names().0.to_owned(), material, mesh });
+        model.parts.push(Part { name: slot.names().0.into_owned(), material, mesh });
     }
     model
 }

@@ -1,6 +1,7 @@
 //! What the caller may choose, and how triangles are shared out.
 
 use base::Seed;
+use geom::{EndCap, RingRule, TubeSpec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -16,15 +17,21 @@ pub struct SkinSpec {
     /// Fineness: 1 gives about 500 triangles for a branch of average length and 250 to 800 for a drawn blade;
     /// counts grow in proportion. In a crown of hundreds of branches each gets what its bends take. 0.1 to 8,
     /// default 1.
+    #[schemars(range(min = 0.1, max = 8.0))]
     pub detail: f64,
     /// Sides of an ordinary branch at `detail` 1 or more; thick ones get up to 24. 3 to 24, default 8 (the
     /// paper's octagons).
+    #[schemars(range(min = 3, max = 24))]
     pub sides: u32,
+    /// How leaves of measured veins are meshed at `detail` 1. What a leaf is asked for, not saved here.
+    #[serde(skip)]
+    pub leaf: LeafMeshSpec,
     /// Give materials procedural textures; without, they have plain colours. Default true.
     pub textures: bool,
     /// Colour of petals whose organs have no colour of their own; `None` picks one by seed and plant name.
     pub petals: Option<PetalColor>,
     /// Variation of hue and brightness from organ to organ, 0 (none) to 1 (default).
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub variation: f64,
     /// Also fill the columns that say how wind moves each vertex ([`mesh::TriMesh::wind`], `pivots`). Chosen for an
     /// export, not saved. Default false.
@@ -35,17 +42,67 @@ pub struct SkinSpec {
     pub seed: Seed,
 }
 
+spec::schemas!(SkinSpec);
+
 impl Default for SkinSpec {
     fn default() -> Self {
         Self {
             detail: 1.0,
             sides: 8,
+            leaf: LeafMeshSpec::default(),
             textures: true,
             petals: None,
             variation: 1.0,
             wind: false,
             seed: Seed::default(),
         }
+    }
+}
+
+/// How finely leaves of measured veins are meshed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LeafMeshSpec {
+    /// Parts of each span between marks, 1 to 64. Default 5, as in Table 1 of paper 004.
+    pub subdivisions: usize,
+    /// Points of each ring of a vein, 3 to 64. Default 10, as in Table 1.
+    pub sides: usize,
+    /// Plain rings (paper) or the exact envelope of the balls.
+    pub rings: RingRule,
+    /// Round ends of the veins; the paper's are open.
+    pub caps: bool,
+    /// A vein along the margin too; the paper draws it and does not count it.
+    pub margin: bool,
+}
+
+impl Default for LeafMeshSpec {
+    fn default() -> Self {
+        Self { subdivisions: 5, sides: 10, rings: RingRule::Plain, caps: false, margin: false }
+    }
+}
+
+impl LeafMeshSpec {
+    /// About how many triangles a leaf with so many rows of marks has, from the numbers of Table 1.
+    pub fn triangles(&self, rows: usize) -> u64 {
+        let [rows, steps, sides] =
+            [rows, self.subdivisions.clamp(1, 64), self.sides.clamp(3, 64)].map(|n| n as u64);
+        // Of 7 spans of veins (9 with the margin) and 6 columns of the blade a row, two a quad.
+        let spans = if self.margin { 9 } else { 7 };
+        2 * rows * (spans * steps * sides + 6 * steps * steps)
+    }
+
+    /// Coarser or finer: triangles in proportion to `detail`, 1 as it is.
+    pub(crate) fn at(self, detail: f64) -> Self {
+        let times = |n: usize, low: f64| {
+            #[expect(clippy::cast_precision_loss, reason = "at most 64")]
+            let wanted = (n as f64 * detail.sqrt()).round();
+            whole(wanted.clamp(low, 64.0)) as usize
+        };
+        Self { subdivisions: times(self.subdivisions, 1.0), sides: times(self.sides, 3.0), ..self }
+    }
+
+    pub(crate) fn tube(&self) -> TubeSpec {
+        let cap = if self.caps { EndCap::Round(3) } else { EndCap::Open };
+        TubeSpec { rings: self.rings, sides: self.sides.clamp(3, 64), cap, first_normal: None }
     }
 }
 

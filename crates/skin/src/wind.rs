@@ -12,9 +12,9 @@ use glam::DVec3;
 use mesh::{Bounds, TriMesh};
 use plant::{AxisKind, NodeId, Organ, Plant, Shape};
 
-use crate::fork::{Bearer, Reach};
-use crate::spine::Spine;
-use crate::tube::{narrow, wide};
+use crate::fork::Bearer;
+use crate::sleeve::{narrow, wide};
+use crate::spine::{Reach, Spine};
 
 /// What a chain of axes has to know.
 #[derive(Clone, Copy, Debug)]
@@ -255,7 +255,7 @@ impl<'a> Wind<'a> {
 /// How much each vertex of a shape flutters, 0 to 1: a blade from its root (0) to its tip and margin, other shapes not.
 pub(crate) fn flutter(shape: &Shape, mesh: &TriMesh) -> Vec<f32> {
     let n = mesh.positions.len();
-    if !matches!(shape, Shape::Blade(_)) {
+    if !matches!(shape, Shape::Blade(_) | Shape::Spline(_) | Shape::Sheet(_)) {
         return vec![0.0; n];
     }
     let far = mesh.positions.iter().map(|p| wide(*p).length()).fold(0.0, f64::max);

@@ -18,13 +18,16 @@
 //! ```
 
 mod evaluate;
+mod leaf_blade;
 mod leaves;
 mod make;
 mod motion;
 mod opening;
 mod report;
+mod scanned;
 mod scene;
 mod shaping;
+mod shoot;
 mod template;
 mod trees;
 mod venation;
@@ -34,21 +37,24 @@ pub use base::{
     Run, Seed, Serial, Stopped, Unit, UpAxis, Warning, brief, map_indexed, quoted,
 };
 pub use evaluate::{Evaluator, FrontView};
+pub use leaf_blade::leaf_blade;
 pub use leaves::{
-    FaceCounts, FitError, LeafError, LeafOptions, LeafReport, LeafTexture, MadeLeaf, ScanReport, ShootSpec,
-    leaf_blade, make_leaf, make_leaf_from_scan, make_leaf_of, make_shoot,
+    FaceCounts, FitError, LeafError, LeafOptions, LeafReport, LeafTexture, ScanReport, make_leaf,
+    make_leaf_of,
 };
-pub use make::{ClassOverrides, Made, MakeError, SketchOptions, make_from_sketch};
+pub use make::{ClassOverrides, Made, MadePlant, MakeError, SketchOptions, make_from_sketch};
 pub use motion::{cloud_model, motion_model};
 pub use opening::{OpeningError, OpeningPlant};
 pub use report::{
     Counts, Fidelity, InputReport, ItemReport, REPORT_SCHEMA, RunReport, StrokeReport, TimingsMs,
 };
+pub use scanned::make_leaf_from_scan;
 pub use scene::{
     SceneError, SceneEvaluator, ScenePlant, flower_schema, leaf_marks, leaf_schema, scene_model,
     tree_settings, tree_spec,
 };
 pub use shaping::{BranchRow, EditReport, branch_rows, edits_schema, edits_template};
+pub use shoot::{ShootSpec, make_shoot};
 pub use template::{LeafTemplate, TemplateError};
 
 pub use trees::{

@@ -108,6 +108,17 @@ pub struct Made {
     pub item: ItemReport,
 }
 
+/// A plant of measured leaves or of flowers that open, with its meshes.
+#[derive(Clone, Debug)]
+pub struct MadePlant {
+    /// The plant.
+    pub plant: Plant,
+    /// Its meshes and materials.
+    pub model: Model,
+    /// The report's entry; `output` and the times of reading and writing are the shell's to fill.
+    pub item: ItemReport,
+}
+
 /// Makes a plant and its meshes from a drawing (paper 000).
 ///
 /// The same drawing, options and seed give the same bits on every platform and for any executor.

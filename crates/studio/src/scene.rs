@@ -16,9 +16,10 @@ use geom::RingRule;
 use glam::{DQuat, DVec3};
 use growth::TreeSpec;
 use ink::Drawing;
-use leaf::{FullMarks, MeshSpec, Pose, SurfaceKind, ThicknessRule, VeinParameters};
+use leaf::{FullMarks, Pose, SurfaceKind, ThicknessRule, VeinParameters};
 use mesh::{MaterialId, Model};
 use plant::Plant;
+use skin::{LeafMeshSpec, SkinSpec};
 use spec::Spec;
 
 use crate::evaluate::{Evaluator, FrontView};
@@ -153,6 +154,8 @@ struct Made {
     item: ItemReport,
     /// Of leaves and flowers, and of sketches whose flowers open.
     model: Option<Model>,
+    /// Of leaves and flowers.
+    plant: Option<Plant>,
     lent: Option<LeafTemplate>,
     revision: u64,
     done: Vec<&'static str>,
@@ -222,7 +225,7 @@ impl SceneEvaluator {
         let (name, seed) = (settings.name.as_str(), settings.seed);
         match &settings.maker {
             Maker::Tree(t) => made.grown((name, wind), t, leaf.as_ref(), &settings.edits, seed, run)?,
-            Maker::Leaf(l) => made.measured(name, l, seed, run)?,
+            Maker::Leaf(l) => made.measured((name, wind), l, &settings.edits, seed, run)?,
             Maker::Flower(f) => made.flowered(name, f, seed, run)?,
             _ => {}
         }
@@ -273,7 +276,7 @@ impl SceneEvaluator {
         Some(ScenePlant {
             item: &made.item,
             model: made.model.as_ref().or_else(|| made.sketch.model()).or_else(|| made.tree.model())?,
-            plant: made.sketch.plant().or_else(|| made.tree.plant()),
+            plant: made.plant.as_ref().or_else(|| made.sketch.plant()).or_else(|| made.tree.plant()),
             front: made.sketch.front(),
             revision: made.revision,
             stages: &made.done,
@@ -343,7 +346,7 @@ impl Made {
     ) -> Result<(), SceneError> {
         let spec = TreeSpec { name: name.into(), ..tree_spec(tree) };
         let options = TreeOptions {
-            skin: skin::SkinSpec { wind, ..tree.skin.clone() },
+            skin: SkinSpec { wind, ..tree.skin.clone() },
             leaf: leaf.cloned(),
             edits: edits.to_vec(),
             ..TreeOptions::default()
@@ -355,14 +358,18 @@ impl Made {
 
     fn measured(
         &mut self,
-        name: &str,
+        (name, wind): (&str, bool),
         leaf: &LeafMaker,
+        edits: &[PlantEdit],
         seed: Seed,
         run: &Run<'_>,
     ) -> Result<(), SceneError> {
-        let (marks, options) = leaf_input(leaf)?;
+        let (marks, mut options) = leaf_input(leaf)?;
+        options.skin.wind = wind;
+        options.edits = edits.to_vec();
         let made = make_leaf_of(name, &marks, &options, seed, run, Report::default())?;
-        (self.item, self.model, self.lent) = (made.item, Some(made.model), None);
+        (self.item, self.model, self.plant, self.lent) =
+            (made.item, Some(made.model), Some(made.plant), None);
         self.done.push("mesh");
         Ok(())
     }
@@ -428,8 +435,8 @@ pub fn tree_settings(spec: &TreeSpec, preset: Option<&str>) -> TreeSettings {
 }
 
 /// The JSON Schema of what can be set of a measured leaf.
-pub fn leaf_schema() -> serde_json::Value {
-    schemars::schema_for!(LeafSettings).to_value()
+pub fn leaf_schema() -> &'static serde_json::Value {
+    LeafSettings::schema()
 }
 
 /// The JSON Schema of what can be set of a flower.
@@ -489,22 +496,25 @@ fn leaf_options(s: &LeafSettings, in_file: Option<ThicknessRule>) -> LeafOptions
             parameters: VeinParameters::default(),
             vein_weight: s.vein_weight,
         },
-        mesh: MeshSpec {
-            subdivisions: s.subdivisions as usize,
-            sides: s.sides as usize,
-            rings: match s.rings {
-                LeafRings::Plain => RingRule::Plain,
-                LeafRings::Envelope => RingRule::Envelope,
+        skin: SkinSpec {
+            leaf: LeafMeshSpec {
+                subdivisions: s.subdivisions as usize,
+                sides: s.sides as usize,
+                rings: match s.rings {
+                    LeafRings::Plain => RingRule::Plain,
+                    LeafRings::Envelope => RingRule::Envelope,
+                },
+                caps: s.caps,
+                margin: s.margin_vein,
             },
-            caps: s.caps,
-            margin: s.margin_vein,
+            ..SkinSpec::default()
         },
         pose: Pose { curl: s.curl, wilt: s.wilt, ..Pose::default() },
         texture: match s.texture {
             LeafPaint::Veins => LeafTexture::Veins,
             LeafPaint::Plain => LeafTexture::Plain,
         },
-        side_veins: 0,
+        ..LeafOptions::default()
     }
 }
 

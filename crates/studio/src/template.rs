@@ -5,11 +5,13 @@ use std::sync::Arc;
 
 use base::{Run, Seed};
 use glam::{DMat3, DVec2, DVec3};
-use leaf::{FlatLeaf, FullMarks, Leaf, LeafColours, Rays};
+use leaf::{FullMarks, Leaf, Rays};
 use mesh::{MaterialKind, Model, Texture, TriMesh};
-use plant::{Blade, Lift, OrganKind, Plant, Relief, Shape};
+use plant::{Blade, FlatLeaf, Lift, OrganKind, Plant, Relief, Shape};
+use skin::LeafColours;
 
-use crate::leaves::{LeafError, LeafOptions, LeafTexture, leaf_blade};
+use crate::leaf_blade::leaf_blade;
+use crate::leaves::{LeafError, LeafOptions, LeafTexture};
 
 /// A leaf that other makers' plants bear: a blade of length 1 and, where there is one, its picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,13 +56,13 @@ impl LeafTemplate {
         run.cancel.check()?;
         let mut blade = leaf_blade(&leaf, &marks, 1.0);
         blade.outline = thinned(blade.outline);
-        let flat = leaf.flat(5);
+        let flat = leaf.blade().flat(5);
         let picture = match &options.texture {
             LeafTexture::Plain => None,
             LeafTexture::Picture(picture) => Some(picture.clone()),
             LeafTexture::Veins => {
                 let colours = LeafColours::default().wilted(options.pose.wilt);
-                Some(Arc::new(leaf::vein_texture(&flat, &colours, 512, seed, run.executor)))
+                Some(Arc::new(skin::vein_texture(&flat, &colours, 512, seed, run.executor)))
             }
         };
         let scale = flat.midrib().last().map_or(1.0, |tip| tip.length()).max(f64::MIN_POSITIVE);
@@ -77,7 +79,7 @@ impl LeafTemplate {
         options: &LeafOptions,
         run: &Run<'_>,
     ) -> Result<Result<Self, TemplateError>, LeafError> {
-        let (mut model, _) = crate::make_ray_leaf("leaf", rays, options, run)?;
+        let mut model = crate::make_ray_leaf("leaf", rays, options, run)?.model;
         // The root is where the veins start together; it may lie anywhere.
         let root = rays.rays.iter().find_map(|r| r.points.first()).copied().unwrap_or_default();
         for p in model.parts.iter_mut().flat_map(|p| &mut p.mesh.positions) {

@@ -260,12 +260,7 @@ impl<W: Write> Writer<'_, W> {
             OrganKind::Pedicel => ('Q', "pedicel"),
             _ => ('L', "leaf"),
         };
-        let shape = &self.plant.shapes[organ.shape.index()];
-        let long = match shape {
-            Shape::Blade(b) => Some(b.length()),
-            Shape::Strand { path, .. } => Some(geom::polyline_length3(path)),
-            _ => None,
-        };
+        let long = self.plant.shapes[organ.shape.index()].length();
         let features = Row {
             kind,
             at: Some(organ.frame.origin),

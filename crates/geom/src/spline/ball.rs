@@ -174,6 +174,13 @@ impl BallBSpline {
         &mut self.controls
     }
 
+    /// The curve with the centre of every control ball moved: the same curve elsewhere, if `place` turns and shifts.
+    #[must_use]
+    pub fn moved(mut self, place: impl Fn(DVec3) -> DVec3) -> Self {
+        self.controls.iter_mut().for_each(|b| b.centre = place(b.centre));
+        self
+    }
+
     /// The weights of a rational curve.
     pub fn weights(&self) -> Option<&[f64]> {
         self.weights.as_deref()

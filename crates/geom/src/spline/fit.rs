@@ -5,6 +5,21 @@ use glam::DVec3;
 use super::{Basis, SplineError};
 use crate::linear::{Blend, solve_positive};
 
+/// The parameters that split each span between `marks` into `steps` equal parts (at least 1).
+///
+/// ```
+/// assert_eq!(geom::subdivided(&[0.0, 1.0, 3.0], 2), [0.0, 0.5, 1.0, 2.0, 3.0]);
+/// ```
+pub fn subdivided(marks: &[f64], steps: usize) -> Vec<f64> {
+    let steps = steps.max(1);
+    let mut out = Vec::with_capacity(marks.len() * steps);
+    for w in marks.windows(2) {
+        out.extend((0..steps).map(|k| base::ops::lerp(w[0], w[1], k as f64 / steps as f64)));
+    }
+    out.extend(marks.last());
+    out
+}
+
 /// Parameters of points by the length of the chords between them, from 0 to 1.
 ///
 /// Repeated points get equal parameters: merge them first where increasing ones are needed. `None` if all

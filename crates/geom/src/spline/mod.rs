@@ -12,7 +12,7 @@ mod tube;
 
 pub use ball::{Ball, BallBSpline};
 pub use basis::{Basis, MAX_DEGREE, Weights};
-pub use fit::{NaturalCubic, chord_parameters};
+pub use fit::{NaturalCubic, chord_parameters, subdivided};
 pub use height::HeightField;
 pub use surface::{SplineSurface, SurfacePoint};
 pub use tube::{EndCap, RingRule, Tube, TubeSpec};

@@ -144,6 +144,13 @@ impl SplineSurface {
         Ok(Self { u, v, controls, weights, places })
     }
 
+    /// The surface with every control moved: the same surface elsewhere, if `place` turns and shifts.
+    #[must_use]
+    pub fn moved(mut self, place: impl Fn(DVec3) -> DVec3) -> Self {
+        self.controls.iter_mut().for_each(|p| *p = place(*p));
+        self
+    }
+
     /// The basis along a row.
     pub fn u(&self) -> &Basis {
         &self.u
@@ -157,6 +164,11 @@ impl SplineSurface {
     /// The controls, row after row.
     pub fn controls(&self) -> &[DVec3] {
         &self.controls
+    }
+
+    /// The weights of a rational surface, one a control.
+    pub fn weights(&self) -> Option<&[f64]> {
+        self.weights.as_deref()
     }
 
     /// The parameters u at which the columns of marks lie (interpolating) or count most (else).

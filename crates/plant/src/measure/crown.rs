@@ -93,6 +93,7 @@ fn margin(shape: &Shape) -> Vec<DVec3> {
         Shape::Revolution { profile } => {
             profile.iter().flat_map(|p| ring(p.x, |x, z| DVec3::new(x, p.y, z))).collect()
         }
+        Shape::Spline(_) | Shape::Sheet(_) => shape.corners(),
         Shape::Strand { path, .. } => path.clone(),
     }
 }
@@ -127,6 +128,8 @@ impl Shape {
                 let strip = |w: &[DVec2]| ops::PI * (w[0].x + w[1].x) * w[0].distance(w[1]);
                 profile.windows(2).map(strip).sum::<f64>() / 2.0
             }
+            Self::Spline(blade) => blade.area_m2(),
+            Self::Sheet(sheet) => crate::sheet::area(&sheet.points, sheet.triangles()),
             Self::Strand { path, radius_m, .. } => {
                 let piece = |(p, r): (&[DVec3], &[f64])| ops::PI * (r[0] + r[1]) * p[0].distance(p[1]);
                 path.windows(2).zip(radius_m.windows(2)).map(piece).sum::<f64>() / 2.0

@@ -4,6 +4,7 @@ mod blades;
 mod bodies;
 mod noise;
 mod tubes;
+mod veins;
 
 use std::sync::{Arc, OnceLock};
 
@@ -11,6 +12,8 @@ use base::{Executor, map_indexed};
 use mesh::Texture;
 
 use crate::PetalColor;
+
+pub use veins::{LeafColours, vein_texture};
 
 pub(crate) use bodies::{DISC_RADIUS, RECEPTACLE_AT};
 

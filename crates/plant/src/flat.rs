@@ -3,8 +3,6 @@
 use geom::SurfacePoint;
 use glam::{DVec2, DVec3};
 
-use crate::blade::Leaf;
-
 /// A leaf laid flat: the midrib along +y from the origin, side veins as long as they are.
 ///
 /// Each step along a row keeps its length and its part along the midrib. Exact for a leaf that only bends
@@ -25,7 +23,8 @@ pub struct FlatLeaf {
 }
 
 impl FlatLeaf {
-    pub(crate) fn of_grid(points: &[SurfacePoint], columns: usize, steps: usize) -> Self {
+    /// Lays the grid of a surface flat: rows from the root up, `columns` points each from left to right.
+    pub fn of_grid(points: &[SurfacePoint], columns: usize, steps: usize) -> Self {
         let middle = columns / 2;
         let rows = points.len() / columns;
         let at = |i: usize, j: usize| points[i * columns + j].position;
@@ -103,49 +102,5 @@ impl FlatLeaf {
             [row[..=middle].iter().rev().copied().collect(), row[middle..].to_vec()]
         })
         .collect()
-    }
-}
-
-impl Leaf {
-    /// The leaf laid flat, with `steps` parts between marks.
-    pub fn flat(&self, steps: usize) -> FlatLeaf {
-        let steps = steps.clamp(1, 64);
-        let (us, vs) = (self.grid_u(steps), self.grid_v(steps));
-        FlatLeaf::of_grid(&self.blade.grid(&us, &vs), us.len(), steps)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use base::{Report, ops};
-
-    use super::*;
-    use crate::LeafSpec;
-    use crate::marks::tests::sample;
-
-    #[test]
-    fn flat_leaf_has_its_measured_lengths_however_it_is_bent() {
-        let mut marks = sample(8);
-        marks.rows.iter_mut().for_each(|r| r.points.iter_mut().for_each(|p| p.z = 0.0));
-        let make = |marks: &crate::Marks| {
-            let full = marks.complete(&mut Report::default()).unwrap();
-            Leaf::new(&full, &LeafSpec::default()).unwrap().flat(6)
-        };
-        let plain = make(&marks);
-        // Bent round a cylinder across the midrib of radius 0.5.
-        let bend = |p: DVec3| {
-            let (s, c) = ops::sin_cos(p.y / 0.5);
-            DVec3::new(p.x, 0.5 * s, 0.5 * (c - 1.0))
-        };
-        let mut bent = marks.clone();
-        bent.rows.iter_mut().for_each(|r| r.points = r.points.map(bend));
-        bent.tip = bend(bent.tip);
-        let bent = make(&bent);
-        for (a, b) in plain.points.iter().zip(&bent.points) {
-            assert!(a.distance(*b) < 0.012, "{a:?} {b:?}");
-        }
-        let area = geom::signed_area(&plain.outline());
-        assert!(area > 0.0 && geom::self_crossings(&plain.outline()) == 0, "{area}");
-        assert_eq!(plain.side_veins().len(), 16);
     }
 }

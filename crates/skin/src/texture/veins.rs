@@ -4,8 +4,7 @@ use base::{Draw, Executor, Seed, map_indexed, ops::smoothstep};
 use geom::KdTree2;
 use glam::{DVec2, DVec3};
 use mesh::Texture;
-
-use crate::flat::FlatLeaf;
+use plant::FlatLeaf;
 
 /// Colours of a leaf, sRGB.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,8 +53,8 @@ struct Veins {
 /// Cost: linear in pixels.
 ///
 /// ```
-/// # use leaf::{FlatLeaf, LeafColours, vein_texture};
-/// let none = vein_texture(&FlatLeaf::default(), &LeafColours::default(), 64, base::Seed::new(1), &base::Serial);
+/// # use skin::{LeafColours, vein_texture};
+/// let none = vein_texture(&plant::FlatLeaf::default(), &LeafColours::default(), 64, base::Seed::new(1), &base::Serial);
 /// assert_eq!(none.pixels.len(), 4 * (none.width * none.height) as usize);
 /// ```
 pub fn vein_texture(
@@ -213,17 +212,26 @@ fn bytes(c: DVec3) -> [u8; 3] {
 
 #[cfg(test)]
 mod tests {
-    use base::{Report, Serial};
+    use base::Serial;
+    use geom::SplineSurface;
+    use plant::{Chart, SplineBlade, Venation};
 
     use super::*;
-    use crate::marks::tests::sample;
-    use crate::{Leaf, LeafSpec};
 
     #[test]
     fn veins_are_paler_than_the_blade_between() {
-        let marks = sample(6).complete(&mut Report::default()).unwrap();
-        let leaf = Leaf::new(&marks, &LeafSpec::default()).unwrap();
-        let flat = leaf.flat(5);
+        // Six rows of seven marks on a lens, side veins slanting upwards, and the tip.
+        let mark = |i: usize, j: usize| {
+            let (t, s) = (i as f64 / 6.0, (j as f64 - 3.0) / 3.0);
+            let half = 0.02 * base::ops::sin(base::ops::PI * (0.15 + 0.85 * t)).max(0.0);
+            DVec3::new(s * half, 0.1 * (t + 0.1 * s.abs() * (1.0 - t)), 0.0)
+        };
+        let grid: Vec<DVec3> = (0..7).flat_map(|i| (0..7).map(move |j| mark(i, j))).collect();
+        let surface = SplineSurface::interpolate(&grid, 7).unwrap();
+        let middle = surface.columns_at()[3];
+        let blade =
+            SplineBlade { surface, middle, veins: Venation::default(), chart: Chart::Unrolled, form: 0 };
+        let flat = blade.flat(5);
         let colours = LeafColours::default();
         let t = vein_texture(&flat, &colours, 256, Seed::new(3), &Serial);
         let (min, size) = flat.extent();

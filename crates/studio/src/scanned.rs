@@ -1,0 +1,98 @@
+//! The scan of one leaf -> a plant.
+
+use std::sync::Arc;
+
+use base::{Report, Run, ops};
+use geom::{Ball, BallBSpline, SplineError};
+use glam::DVec3;
+use leaf::{ScanLeaf, ScanSpec};
+use plant::{AxisKind, NodeId, Plant, Shape, Sheet, Vein, Venation};
+use skin::{LeafMeshSpec, SkinSpec};
+
+use crate::leaves::{
+    FaceCounts, FitError, LeafError, LeafOptions, LeafReport, LeafTexture, ScanReport, add_leaf, area, finish,
+};
+use crate::make::MadePlant;
+
+/// Makes a leaf from the points of a scan: blade, midrib and stalk, with their distances from the cloud.
+///
+/// # Errors
+/// [`LeafError::Scan`].
+pub fn make_leaf_from_scan(
+    name: &str,
+    points: &[DVec3],
+    spec: &ScanSpec,
+    run: &Run<'_>,
+) -> Result<(MadePlant, ScanLeaf), LeafError> {
+    let mut report = Report::default();
+    let found = report.stage("structure", run.clock, |r| leaf::fit_scan(points, spec, run, r))?;
+    let line = found.midrib();
+    let mut plant = Plant { name: name.into(), ..Plant::default() };
+    let bearer = found.stalk.as_ref().and_then(|stalk| add_stalk(&mut plant, stalk));
+    let n = found.columns;
+    let rows = found.grid.len() / n;
+    let sheet = Sheet {
+        // The grid's rows run from left to right.
+        points: found.grid.chunks(n).flat_map(|row| row.iter().rev().copied()).collect(),
+        across: (0..n).rev().map(|j| j as f64 / (n - 1) as f64).collect(),
+        along: (0..rows).map(|i| i as f64 / (rows - 1) as f64).collect(),
+        colors: Vec::new(),
+        veins: Venation { fine: vec![midrib(&found, &line)?], ..Venation::default() },
+    };
+    let options = LeafOptions { texture: LeafTexture::Plain, ..LeafOptions::default() };
+    if let Some((sheet, frame)) = sheet.framed() {
+        let shape = plant.add_shape(Shape::Sheet(Arc::new(sheet)));
+        add_leaf(&mut plant, shape, frame, bearer, options.paint([1.0; 3]), 1);
+    }
+    let leaf = LeafMeshSpec { caps: true, ..LeafMeshSpec::default() };
+    let options = LeafOptions { skin: SkinSpec { leaf, ..SkinSpec::default() }, ..options };
+    let made = finish(plant, &[], &options, run, &mut report)?;
+    let width = found.grid.chunks(n).map(geom::polyline_length3).fold(0.0, f64::max);
+    let mut outline = found.outline();
+    outline.extend(outline.first().copied());
+    let (blade, veins) = (&made.mesh.surface, &made.mesh.veins);
+    let about = LeafReport {
+        surface: "scan".into(),
+        rows: rows as u64,
+        length_mm: 1e3 * geom::polyline_length3(&line),
+        area_mm2: 1e6 * area(blade),
+        veins: FaceCounts { vertices: veins.positions.len() as u64, faces: veins.triangles.len() as u64 },
+        blade: FaceCounts { vertices: blade.positions.len() as u64, faces: made.mesh.blade_faces as u64 },
+        fit_error: FitError { explained: found.explained, ..FitError::of(&found.distances) },
+        scan: Some(ScanReport {
+            points: (found.used + found.outliers) as u64,
+            outliers: found.outliers as u64,
+            covered: found.covered,
+            stalk_mm: found.stalk.as_ref().map(|s| 1e3 * s.length(200)),
+            outline_mm: 1e3 * geom::polyline_length3(&outline),
+            width_mm: 1e3 * width,
+        }),
+        ..LeafReport::default()
+    };
+    Ok((made.with_leaf(about), found))
+}
+
+/// The midrib, thinner towards the tip; how thick it is only a stalk tells.
+fn midrib(found: &ScanLeaf, line: &[DVec3]) -> Result<Vein, SplineError> {
+    let base = found.marks.rows.last().and_then(|r| r.midrib).unwrap_or(0.001) * 0.5;
+    let last = (line.len() - 1).max(1) as f64;
+    let ball = |(k, &p): (usize, &DVec3)| Ball::new(p, base * (1.0 - 0.8 * k as f64 / last));
+    let balls: Vec<Ball> = line.iter().enumerate().map(ball).collect();
+    let curve = BallBSpline::fit(&balls, 12)?;
+    let marks = evenly(&curve, 60);
+    Ok(Vein { curve, marks })
+}
+
+/// The stalk as an axis from its lower end to the blade; its last node.
+fn add_stalk(plant: &mut Plant, stalk: &BallBSpline) -> Option<NodeId> {
+    let balls: Vec<Ball> = evenly(stalk, 40).into_iter().rev().map(|t| stalk.ball(t)).collect();
+    let points: Vec<DVec3> = balls.iter().map(|b| b.centre).collect();
+    let axis = plant.add_axis(AxisKind::Petiole, None, 1, &points, None);
+    plant.nodes.radius_m = balls.iter().map(|b| b.radius).collect();
+    plant.axis(axis).node_ids().last()
+}
+
+fn evenly(curve: &BallBSpline, steps: u32) -> Vec<f64> {
+    let (a, b) = curve.domain();
+    (0..=steps).map(|k| ops::lerp(a, b, f64::from(k) / f64::from(steps))).collect()
+}
