@@ -12,8 +12,8 @@ mod host;
 use burgeon::formats::{self, CloudFormat, DrawingFormat, ExportSpec};
 use burgeon::leaf::ScanSpec;
 use burgeon::{
-    Digest, ItemReport, LeafOptions, OpeningPlant, Preset, Report, Run, SceneEvaluator, Seed, SketchOptions,
-    TreeOptions, Unit, bloom, make_from_sketch, make_leaf, make_tree,
+    Digest, FlowerOptions, ItemReport, LeafOptions, OpeningPlant, Preset, Report, Run, SceneEvaluator, Seed,
+    SketchOptions, TreeOptions, Unit, bloom, make_flower, make_from_sketch, make_leaf, make_tree,
 };
 use wasm_bindgen::prelude::*;
 
@@ -93,11 +93,13 @@ pub fn flower_digest(species: &str, frames: u32, seed: u64) -> Result<String, Js
     if frames < 2 {
         return Err(JsError::new("a flower that opens has at least 2 frames"));
     }
-    let law = bloom::GrowthLaw::logistic(&spec.name, spec.days[0], spec.rate);
+    let law = spec.own_law();
     let mut digest = Digest::new();
     for k in 0..frames {
-        let day = (spec.days[0] + spec.days[1]) * (f64::from(k) / f64::from(frames - 1));
-        digest.add(&spec.at(day, &law, Seed::new(seed)).model);
+        let day = (spec.opening_days + spec.wilting_days) * (f64::from(k) / f64::from(frames - 1));
+        let options = FlowerOptions::default();
+        let made = make_flower(&spec.name, &spec, (day, &law), &options, Seed::new(seed), &Run::plain())?;
+        digest.add(&made.model);
     }
     Ok(digest.hex())
 }
@@ -111,7 +113,7 @@ pub fn opening_digest(name: &str, bytes: &[u8], frames: u32, seed: u64) -> Resul
     let read = formats::read_drawings(bytes, DrawingFormat::Svg, name).next();
     let drawing = read.ok_or_else(|| JsError::new("there is no drawing"))??.drawing;
     let seed = Seed::new(seed);
-    let plant = OpeningPlant::new(&drawing, &SketchOptions::default(), seed, &Run::plain())?;
+    let mut plant = OpeningPlant::new(&drawing, &SketchOptions::default(), seed, &Run::plain())?;
     if frames < 2 {
         return Err(JsError::new("a flower that opens has at least 2 frames"));
     }
@@ -119,7 +121,7 @@ pub fn opening_digest(name: &str, bytes: &[u8], frames: u32, seed: u64) -> Resul
     let mut digest = Digest::new();
     for k in 0..frames {
         let day = (plant.days[0] + plant.days[1]) * (f64::from(k) / f64::from(frames - 1));
-        digest.add(&plant.at(day, &law, seed).0);
+        digest.add(&plant.at(day, &law, seed, &Run::plain())?.model);
     }
     Ok(digest.hex())
 }
