@@ -97,5 +97,7 @@ export type FromWorker =
 
 /** Numbers of the textures that these plants are shown with. */
 export function texturesOf(plants: readonly PlantView[]): Set<number> {
-  return new Set(plants.flatMap((p) => p.materials.flatMap(({ texture }) => (texture ? [texture.number] : []))));
+  return new Set(
+    plants.flatMap((p) => p.materials.flatMap(({ texture }) => (texture ? [texture.number] : []))),
+  );
 }

@@ -407,6 +407,20 @@ fn three_hundred_trees_one_after_the_other_do_not_grow_without_bound() {
     assert_eq!(s.scene.kept().count(), 1);
 }
 
+#[test]
+fn a_tree_where_another_document_had_a_drawing() {
+    let (mut grown, _) = bush();
+    let project = grown.save().unwrap();
+    let mut s = Workspace::default();
+    s.open("sample.svg", &sample(), 0, true).unwrap();
+    look(&mut s);
+    s.open("bush.burgeon", &project, 0, false).unwrap();
+    let (here, there) = (look(&mut s), look(&mut grown));
+    assert_eq!((&here["parts"], &here["max"]), (&there["parts"], &there["max"]));
+    s.undo();
+    assert!(look(&mut s)["front"].is_object());
+}
+
 /// A pointer in front of the plant, looking along -Z at (x, y).
 fn at(x: f64, y: f64) -> String {
     format!(r#"{{"origin":[{x},{y},9],"direction":[0,0,-1],"forward":[0,0,-1],"up":[0,1,0],"pressure":1}}"#)
