@@ -79,17 +79,15 @@ export const CODES = {
   "project-setting": ["why"],
   "project-stroke": ["row", "why"],
   "project-too-much": ["what", "limit"],
-  "project-tree": ["why"],
   "project-version": ["found"],
-  "range": ["why"],
   "root-far": ["root"],
   "root-in-obstacle": ["root", "obstacle"],
-  "spec": ["why"],
+  "spec-pointer": ["path"],
+  "spec-text": ["path", "why"],
   "step-too-long": ["step_m", "space_m"],
   "too-far": [],
   "tree-file": ["file"],
   "tree-line": ["line", "why"],
-  "tree-spec": ["why"],
   "unknown-file": [],
   "write": ["why"],
 } as const;
@@ -1375,6 +1373,8 @@ export type SkinSpec = {
     | null;
   /** Sides of an ordinary branch at `detail` 1 or more; thick ones get up to 24. */
   sides: number;
+  /** Of a plant that changes from day to day its size in full bloom, metres: fineness is relative to that and not to the day's, so that triangles are the same at every day. */
+  steady_m: number | null;
   /** Give materials procedural textures; without, they have plain colours. */
   textures: boolean;
   /** Variation of hue and brightness from organ to organ, 0 (none) to 1 (default). */
