@@ -14,6 +14,7 @@ use ink::{
 };
 use serde_json::Value;
 
+use crate::ablation;
 use crate::made_strokes::made_sketches;
 
 /// Fold seeds that the figures are averaged over.
@@ -62,7 +63,16 @@ pub(crate) fn run(args: &[String]) -> Result<(), String> {
     write(&data.join("strokes.model"), &models.classes)?;
     let packed = models.packed_classes().map_err(|e| e.to_string())?;
     fs::write(data.join("strokes.packed"), packed).map_err(|e| format!("strokes.packed: {e}"))?;
-    update_docs(&root.join("docs/strokes.md"), &block)
+    let docs = root.join("docs/strokes.md");
+    update_docs(&docs, "figures", &block)?;
+    let sketches = root.join("../shared/data/sketches");
+    if !sketches.is_dir() {
+        println!("skipped: what each rule is worth, because {} is not here", sketches.display());
+        return Ok(());
+    }
+    let rules = ablation::block(&rows, &sketches, &root.join("fixtures/sketches"))?;
+    println!("{rules}");
+    update_docs(&docs, "rules", &rules)
 }
 
 /// The block of `docs/strokes.md` that this command owns.
@@ -142,14 +152,14 @@ fn parts_block(out: &mut String, all: &[StrokeFigures]) {
     }
 }
 
-fn update_docs(path: &Path, block: &str) -> Result<(), String> {
-    const OPEN: &str = "<!-- figures: written by cargo xtask train-strokes -->\n";
-    const CLOSE: &str = "<!-- end of figures -->\n";
+fn update_docs(path: &Path, name: &str, block: &str) -> Result<(), String> {
+    let open = format!("<!-- {name}: written by cargo xtask train-strokes -->\n");
+    let close = format!("<!-- end of {name} -->\n");
     let text = read(path)?;
-    let parts = text.split_once(OPEN).and_then(|(a, rest)| rest.split_once(CLOSE).map(|(_, b)| (a, b)));
+    let parts = text.split_once(&open).and_then(|(a, rest)| rest.split_once(&close).map(|(_, b)| (a, b)));
     let (before, after) =
-        parts.ok_or_else(|| format!("{}: the figures' marks are missing", path.display()))?;
-    write(path, &format!("{before}{OPEN}{block}{CLOSE}{after}"))
+        parts.ok_or_else(|| format!("{}: the marks of its {name} are missing", path.display()))?;
+    write(path, &format!("{before}{open}{block}{close}{after}"))
 }
 
 fn read(path: &Path) -> Result<String, String> {
@@ -185,16 +195,7 @@ struct Label {
 
 /// Measures every labelled drawing of a folder.
 fn measure(sketches: &Path) -> Result<Vec<StrokeRow>, String> {
-    let quickdraw = sketches.join("quickdraw");
-    let entries = fs::read_dir(&quickdraw).map_err(|e| format!("{}: {e}", quickdraw.display()))?;
-    let mut files: Vec<PathBuf> = entries.flatten().map(|f| f.path()).collect();
-    files.sort();
-    let mut drawings = BTreeMap::new();
-    for file in files {
-        for line in json_lines(&file)? {
-            drawings.insert(text_of(&line, "key_id").to_owned(), line);
-        }
-    }
+    let drawings = drawings_of(&sketches.join("quickdraw"))?;
     let mut rows = Vec::new();
     for line in json_lines(&sketches.join("labels.ndjson"))? {
         let key = text_of(&line, "key_id");
@@ -207,7 +208,7 @@ fn measure(sketches: &Path) -> Result<Vec<StrokeRow>, String> {
             Ok(Label { stroke, class, unsure: flag("unsure"), mixed: flag("mixed") })
         };
         let labels: Vec<Label> = list(line.get("labels")).iter().map(label).collect::<Result<_, String>>()?;
-        measure_drawing(&mut rows, StrokeSource::Public, text_of(&line, "word"), drawing, &labels);
+        measure_ink(&mut rows, StrokeSource::Public, text_of(&line, "word"), drawing, &labels);
     }
     for (kind, every, classes) in SPG {
         for line in json_lines(&sketches.join(format!("spg/{kind}.ndjson")))?.iter().step_by(every) {
@@ -224,7 +225,7 @@ fn measure(sketches: &Path) -> Result<Vec<StrokeRow>, String> {
                     (*seen <= PER_PART).then_some(Label { stroke, class, unsure: false, mixed: false })
                 })
                 .collect();
-            measure_drawing(&mut rows, StrokeSource::Parts, kind, line, &labels);
+            measure_ink(&mut rows, StrokeSource::Parts, kind, &drawing_of(line), &labels);
         }
     }
     for (number, made) in made_sketches().into_iter().enumerate() {
@@ -245,13 +246,22 @@ fn measure(sketches: &Path) -> Result<Vec<StrokeRow>, String> {
     Ok(rows)
 }
 
-fn measure_drawing(
-    rows: &mut Vec<StrokeRow>,
-    source: StrokeSource,
-    kind: &str,
-    line: &Value,
-    labels: &[Label],
-) {
+/// The drawings of a folder's files, by their keys.
+pub(crate) fn drawings_of(folder: &Path) -> Result<BTreeMap<String, Drawing>, String> {
+    let entries = fs::read_dir(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    let mut files: Vec<PathBuf> = entries.flatten().map(|f| f.path()).collect();
+    files.retain(|f| f.extension().is_some_and(|e| e == "ndjson"));
+    files.sort();
+    let mut drawings = BTreeMap::new();
+    for file in files {
+        drawings.extend(
+            json_lines(&file)?.iter().map(|line| (text_of(line, "key_id").to_owned(), drawing_of(line))),
+        );
+    }
+    Ok(drawings)
+}
+
+fn drawing_of(line: &Value) -> Drawing {
     let stroke = |s: &Value| {
         let column = |k: usize| list(s.get(k)).iter().filter_map(Value::as_f64);
         // Points lie y down in the files.
@@ -259,8 +269,7 @@ fn measure_drawing(
         Stroke { samples, ..Stroke::default() }
     };
     let name = text_of(line, "key_id").to_owned();
-    let drawing = Drawing { name, strokes: list(line.get("drawing")).iter().map(stroke).collect() };
-    measure_ink(rows, source, kind, &drawing, labels);
+    Drawing { name, strokes: list(line.get("drawing")).iter().map(stroke).collect() }
 }
 
 fn measure_ink(

@@ -297,7 +297,7 @@ fn run(args: &BloomRunArgs) -> Outcome {
     }
     let start = Path::new(&args.start);
     check_used(args)?;
-    if let Some(spec) = bloom::preset(&args.start).filter(|_| !start.exists() || start.is_dir()) {
+    if let Some(spec) = species(start, &args.start)? {
         return flower(args, spec, law, outputs, &machine);
     }
     let flowers = format!("whole flowers ({})", FlowerSpec::PRESETS.join(", "));
@@ -575,6 +575,21 @@ fn drawn_flower(
     tell(args, machine, told, written, outputs)
 }
 
+/// A flower by its name, or of a file of its own; none for scans and drawings.
+fn species(start: &Path, name: &str) -> Outcome<Option<FlowerSpec>> {
+    let preset = bloom::preset(name).filter(|_| !start.exists() || start.is_dir());
+    if preset.is_some()
+        || !files::extension(start).is_some_and(|e| e.eq_ignore_ascii_case("toml"))
+        || !start.exists()
+    {
+        return Ok(preset);
+    }
+    let text = files::read_text(start)?;
+    // A file of stages has none.
+    let whorls = burgeon::spec::Node::from_toml(&text).is_ok_and(|tree| tree.field("whorls").is_some());
+    whorls.then(|| burgeon::spec::from_toml(&text).map_err(|e| Failure::at(start, e))).transpose()
+}
+
 fn flower(
     args: &BloomRunArgs,
     spec: FlowerSpec,
@@ -583,6 +598,7 @@ fn flower(
     machine: &Machine,
 ) -> Outcome {
     no_scans(args, &spec.name)?;
+    spec.check(&machine.run().budget).map_err(|e| Failure::at(Path::new(&args.start), e))?;
     let spec = match &args.petal {
         Some(path) => {
             let (form, aspect) = petal_form(path, args.seed, machine)?;
@@ -590,15 +606,15 @@ fn flower(
         }
         None => spec,
     };
-    let law = law.unwrap_or_else(|| GrowthLaw::logistic(&spec.name, spec.days[0], spec.rate));
+    let law = law.unwrap_or_else(|| spec.own_law());
     let seed = Seed::new(args.seed);
     let mut options = FlowerOptions::default();
     options.skin.wind = args.wind;
     let axes = files::axes(args.axes.up, args.axes.unit);
     let mut show = Show {
         name: spec.name.clone(),
-        days: [0.0, spec.days[0] + spec.days[1]],
-        best: spec.days[0],
+        days: [0.0, spec.opening_days + spec.wilting_days],
+        best: spec.opening_days,
         shape: Box::new(|day| {
             let made = make_flower(&spec.name, &spec, (day, &law), &options, seed, &machine.run())?;
             let overlap = bloom::petal_overlap(&made.plant, None);

@@ -93,10 +93,10 @@ pub fn flower_digest(species: &str, frames: u32, seed: u64) -> Result<String, Js
     if frames < 2 {
         return Err(JsError::new("a flower that opens has at least 2 frames"));
     }
-    let law = bloom::GrowthLaw::logistic(&spec.name, spec.days[0], spec.rate);
+    let law = spec.own_law();
     let mut digest = Digest::new();
     for k in 0..frames {
-        let day = (spec.days[0] + spec.days[1]) * (f64::from(k) / f64::from(frames - 1));
+        let day = (spec.opening_days + spec.wilting_days) * (f64::from(k) / f64::from(frames - 1));
         let options = FlowerOptions::default();
         let made = make_flower(&spec.name, &spec, (day, &law), &options, Seed::new(seed), &Run::plain())?;
         digest.add(&made.model);

@@ -4,30 +4,30 @@ use base::{Draw, Seed, ops};
 use glam::DVec3;
 use plant::{AxisKind, NodeId, OrganKind, Plant};
 
-use crate::flower::{FlowerSpec, rad};
+use crate::flower::{FlowerSpec, Stamens, rad};
 use crate::organs::{Bed, Grid, Seat};
 
 impl FlowerSpec {
     /// Stamens, pistil and disc: `g` is how far the flower has opened, `wilt` how far it has wilted, 0 to 1.
     pub(crate) fn centre(&self, bed: &mut Bed<'_>, g: f64, wilt: f64) {
-        let heights = || self.whorls.iter().map(|w| w.insertion[1]);
+        let heights = || self.whorls.iter().map(|w| w.insertion.height_m);
         let (low, high) = (heights().fold(f64::INFINITY, f64::min), heights().fold(0.0, f64::max));
         let base = if low.is_finite() { low } else { 0.0 };
-        for k in 0..self.stamens.0 {
+        for k in 0..self.stamens.count {
             self.stamen(bed, k, [g, wilt, base]);
         }
-        if self.pistil > 0.0 {
-            pistil(bed, self.pistil * ops::lerp(0.5, 1.0, g), self.pistil, base, wilt);
+        if self.pistil_m > 0.0 {
+            pistil(bed, self.pistil_m * ops::lerp(0.5, 1.0, g), self.pistil_m, base, wilt);
         }
-        if self.disc > 0.0 {
-            florets(bed, self.disc * ops::lerp(0.75, 1.0, g), high, [g, wilt]);
+        if self.disc_m > 0.0 {
+            florets(bed, self.disc_m * ops::lerp(0.75, 1.0, g), high, [g, wilt]);
         }
     }
 
     /// A filament that bends outwards, and an anther across its end.
     fn stamen(&self, bed: &mut Bed<'_>, k: u32, [g, wilt, base]: [f64; 3]) {
         let seed = bed.seed.child(u64::from(k));
-        let (count, length, spread) = self.stamens;
+        let Stamens { count, length_m: length, spread_deg: spread } = self.stamens;
         let ring = f64::from(k) / f64::from(count.max(1));
         let tilt = rad(spread * ops::lerp(0.25, 1.0, g) * ops::lerp(0.6, 1.0, ring) + 18.0 * wilt);
         let long =
@@ -62,7 +62,7 @@ impl FlowerSpec {
 
     /// The stalk, bent towards where the head nods, and stalks of an umbel: what bears each flower.
     pub(crate) fn stalks(&self, plant: &mut Plant, seat: &Seat, day: f64, seed: Seed) -> Vec<Option<NodeId>> {
-        let thick = self.whorls.first().map_or(0.002, |w| 0.03 * w.length + 0.001).max(0.28 * self.disc);
+        let thick = self.whorls.first().map_or(0.002, |w| 0.03 * w.length_m + 0.001).max(0.28 * self.disc_m);
         let slim = thick.min(0.006);
         let mut stem = |bearer, line: &[DVec3], radius: f64, key: Seed| {
             let line: Vec<DVec3> = line.iter().map(|&p| seat.at(p)).collect();
@@ -72,12 +72,12 @@ impl FlowerSpec {
             plant.axis(id).node_ids().last()
         };
         let mut bearer = seat.bearer;
-        if self.stalk > 0.0 {
-            let end = if self.umbel > 1 { DVec3::Y * self.stalk } else { self.place(0, day).0 };
+        if self.stalk_m > 0.0 {
+            let end = if self.umbel > 1 { DVec3::Y * self.stalk_m } else { self.place(0, day).0 };
             // Straight up at the foot; at the end half as steep as the head nods.
-            let (s, c) = ops::sin_cos(rad(if self.umbel > 1 { 0.0 } else { 0.8 * self.nod }));
-            let foot = DVec3::Y * (0.55 * self.stalk);
-            let back = end - DVec3::new(0.0, c, s) * (0.22 * self.stalk);
+            let (s, c) = ops::sin_cos(rad(if self.umbel > 1 { 0.0 } else { 0.8 * self.nod_deg }));
+            let foot = DVec3::Y * (0.55 * self.stalk_m);
+            let back = end - DVec3::new(0.0, c, s) * (0.22 * self.stalk_m);
             let at = |t: f64| {
                 let (a, b, d) = (DVec3::ZERO.lerp(foot, t), foot.lerp(back, t), back.lerp(end, t));
                 a.lerp(b, t).lerp(b.lerp(d, t), t)
@@ -89,7 +89,7 @@ impl FlowerSpec {
             return vec![bearer];
         }
         let pedicel = |f: u32| {
-            let foot = DVec3::Y * self.stalk;
+            let foot = DVec3::Y * self.stalk_m;
             let place = self.place(f, day).0;
             let middle = foot.lerp(place, 0.5) + DVec3::Y * 0.004;
             stem(bearer, &[foot, middle, place], 0.5 * slim, seed.child(u64::from(f)))
@@ -99,10 +99,10 @@ impl FlowerSpec {
 
     /// What joins stalk and petals: from the stalk up along the feet of sepals and petals, and to the axis.
     pub(crate) fn receptacle(&self, bed: &mut Bed<'_>) {
-        let wide = self.whorls.iter().map(|w| w.insertion[0]).fold(0.0, f64::max).max(self.disc);
+        let wide = self.whorls.iter().map(|w| w.insertion.radius_m).fold(0.0, f64::max).max(self.disc_m);
         let low = -0.6 * wide - 0.002;
         let mut rings = vec![[0.08 * wide, low], [0.6 * wide, 0.45 * low]];
-        rings.extend(self.whorls.iter().map(|w| [1.01 * w.insertion[0], w.insertion[1]]));
+        rings.extend(self.whorls.iter().map(|w| [1.01 * w.insertion.radius_m, w.insertion.height_m]));
         let top = rings.last().map_or(0.0, |r| r[1]);
         rings.push([0.02 * wide, top + 0.0004]);
         let last = (rings.len() - 1) as f64;

@@ -23,7 +23,10 @@ pub enum GrowthError {
         /// Diagonal of the box around roots and points, metres, to a millimetre.
         space_m: f64,
     },
-    /// A number of the spec is out of range or not finite.
+    /// A number of the spec is out of the range that its schema has.
+    #[error(transparent)]
+    Range(#[from] spec::RangeFault),
+    /// Something of the spec does not go with the rest of it, or is no place or direction.
     #[error("{field} must be {range}, not {value}")]
     Field {
         /// The field.

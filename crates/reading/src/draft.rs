@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use base::Report;
 use geom::{contains, convex_hull, polyline_length, signed_area};
 use glam::DVec2;
-use ink::{Classified, Ink, StrokeClass, StrokeMode};
+use ink::{Classified, Ink, Source, StrokeClass, StrokeMode};
 use plant::AxisKind;
 
 use crate::blade::{Sheetlet, split_stalks};
@@ -48,7 +48,10 @@ impl RegionDraft {
 pub(crate) struct Draft<'a> {
     pub(crate) ink: &'a Ink,
     pub(crate) class: Vec<StrokeClass>,
-    pub(crate) confidence: Vec<f64>,
+    /// What was said of each stroke before any rule.
+    pub(crate) said: Vec<Classified>,
+    /// The rule that gave a stroke its class.
+    pub(crate) rule: Vec<Option<&'static str>>,
     pub(crate) organ: Vec<OrganWord>,
     /// Lines that will be axes.
     pub(crate) lines: Vec<Line>,
@@ -75,12 +78,13 @@ pub(crate) struct Draft<'a> {
 
 impl<'a> Draft<'a> {
     pub(crate) fn new(ink: &'a Ink, classes: &[Classified]) -> Self {
-        let class = |k: usize| classes.get(k).map_or(StrokeClass::Other, |c| c.class);
-        let confidence = |k: usize| classes.get(k).map_or(0.0, |c| c.confidence);
+        let said: Vec<Classified> =
+            (0..ink.strokes.len()).map(|k| classes.get(k).copied().unwrap_or_default()).collect();
         Self {
             ink,
-            class: (0..ink.strokes.len()).map(class).collect(),
-            confidence: (0..ink.strokes.len()).map(confidence).collect(),
+            class: said.iter().map(|c| c.class).collect(),
+            rule: vec![None; said.len()],
+            said,
             organ: vec![OrganWord::Ignored; ink.strokes.len()],
             lines: Vec::new(),
             blades: Vec::new(),
@@ -333,6 +337,16 @@ impl<'a> Draft<'a> {
         hints
     }
 
+    /// What a stroke was read as, and what decided its class.
+    fn stroke(&self, k: usize) -> StrokeReading {
+        let (class, said) = (self.class[k], &self.said[k]);
+        let (source, confidence) = match self.rule[k] {
+            Some(name) if class != said.class => (Source::Rule(name), said.shares[class.place()]),
+            _ => (said.source, said.confidence),
+        };
+        StrokeReading { index: self.ink.strokes[k].index, class, organ: self.organ[k], confidence, source }
+    }
+
     pub(crate) fn finish(
         mut self,
         region_bearers: Vec<Vec<usize>>,
@@ -341,6 +355,7 @@ impl<'a> Draft<'a> {
         fruits: Vec<FruitReading>,
         thorns: Vec<attach::Thorn>,
     ) -> Reading {
+        let mut strokes: Vec<StrokeReading> = (0..self.class.len()).map(|k| self.stroke(k)).collect();
         let crown = self.regions.iter().any(|r| r.kind != RegionKind::Leaves);
         let trunk = !self.bodies.is_empty() && (self.open_top || !leaves.is_empty());
         let orders = self.forest.order.iter().copied().max().unwrap_or(0);
@@ -368,16 +383,9 @@ impl<'a> Draft<'a> {
             class: StrokeClass::Other,
             organ: OrganWord::Ignored,
             confidence: 0.0,
+            source: Source::Classifier,
         });
-        let mut strokes: Vec<StrokeReading> = (0..self.class.len())
-            .map(|k| StrokeReading {
-                index: self.ink.strokes[k].index,
-                class: self.class[k],
-                organ: self.organ[k],
-                confidence: self.confidence[k],
-            })
-            .chain(skipped)
-            .collect();
+        strokes.extend(skipped);
         base::sort_by_key(&mut strokes, |s| s.index);
         Reading { strokes, axes: self.forest.axes, flowers, leaves, regions, fruits, thorns, woody }
     }

@@ -4,9 +4,10 @@ use base::ops;
 use glam::{DVec2, DVec3};
 use mesh::TriMesh;
 
+use crate::sleeve::{Circle, drop_flat, narrow, narrow2, wide};
 use crate::spec::whole;
 use crate::texture::{DISC_RADIUS, RECEPTACLE_AT, unevenness};
-use crate::tube::{Circle, TubeSpec, drop_flat, narrow, narrow2, tube, wide};
+use crate::tube::{TubeSpec, tube};
 
 /// Columns that grow together.
 #[derive(Default)]

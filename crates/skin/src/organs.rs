@@ -6,14 +6,15 @@ use base::{Cancelled, Counted, Draw, Run, Seed, Stopped, map_indexed};
 use mesh::TriMesh;
 use plant::{Organ, OrganKind, Plant, Shape, ShapeId};
 
+use crate::LeafMeshSpec;
 use crate::blade::blade_mesh;
 use crate::body::{dome, prism, revolution, rod, strand};
-use crate::leaf::{LeafMeshSpec, ShapeMesh, sheet_mesh, spline_mesh};
+use crate::leaf::{ShapeMesh, sheet_mesh, spline_mesh};
 use crate::lean::lean_mesh;
 use crate::parts::{Coat, Slot};
+use crate::sleeve::{narrow, wide};
 use crate::spec::{Budget, PetalColor, SkinSpec};
 use crate::traced::Traced;
-use crate::tube::{narrow, wide};
 use crate::wind::{Wind, flutter};
 
 // Organs are copied in groups of about this many vertices: one job each would cost more than the copy.

@@ -86,7 +86,7 @@ mod tests {
     fn a_flower_has_the_same_triangles_at_every_day() {
         for name in FlowerSpec::PRESETS {
             let spec = bloom::preset(name).unwrap();
-            let law = GrowthLaw::logistic(name, spec.days[0], spec.rate);
+            let law = spec.own_law();
             let options = FlowerOptions::default();
             let at =
                 |day| make_flower(name, &spec, (day, &law), &options, Seed::new(1), &Run::plain()).unwrap();
@@ -94,7 +94,7 @@ mod tests {
             let names: Vec<&str> = first.model.parts.iter().map(|p| p.name.as_str()).collect();
             assert!(names.contains(&"petals") && names.contains(&"stems"), "{names:?}");
             for k in 0..=8 {
-                let day = (spec.days[0] + spec.days[1]) * f64::from(k) / 8.0;
+                let day = (spec.opening_days + spec.wilting_days) * f64::from(k) / 8.0;
                 let made = at(day);
                 assert_eq!(made.plant.validate().next(), None, "{name} at {day}");
                 assert_eq!(made.model.validate().next(), None, "{name} at {day}");

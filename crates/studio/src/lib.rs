@@ -60,16 +60,18 @@ pub use shoot::{ShootSpec, make_shoot};
 pub use template::{LeafTemplate, TemplateError};
 
 pub use trees::{
-    Bark, BladeForm, BladeSpec, BlossomSpec, Colour, GUIDED_METHODS, GrowthReport, Look, MadeTree, NamedMesh,
-    OAK_METHODS, PAPER_OAKS, PRESETS, PaperOak, Preset, TreeError, TreeEvaluator, TreeOptions, TreeSize,
-    TreeSpec, coarser, guided_methods, make_tree, method_word, read_tree_spec, scale_to_height,
-    show_obstacles, tree_schema, tree_size,
+    GUIDED_METHODS, GrowthReport, MadeTree, NamedMesh, OAK_METHODS, PAPER_OAKS, PRESETS, PaperOak, Preset,
+    TreeError, TreeEvaluator, TreeOptions, TreeSize, coarser, guided_methods, make_tree, method_word,
+    read_tree_spec, scale_to_height, show_obstacles, tree_blade, tree_schema, tree_size,
 };
 pub use venation::make_ray_leaf;
 
+pub use growth::{Bark, BladeForm, BladeSpec, BlossomSpec, Look, TreeSpec};
+pub use spec::{Colour, Spec, SpecFault};
+
 pub use {
     bloom, document, formats, geom, glam, growth, ink, leaf, mesh, plant, reading, render, shape, sketch,
-    skin,
+    skin, spec,
 };
 
 /// The version that is written into reports and files.

@@ -3,7 +3,7 @@
 //! drawing -> plant -> (plant without flowers, a [`bloom::FlowerSpec`] a flower) -> the plant of any day
 
 use base::{Run, Seed, Stopped};
-use bloom::{FlowerSpec, GrowthLaw, PetalForm, Seat, Whorl};
+use bloom::{FlowerSpec, GrowthLaw, Insertion, PetalForm, PetalMesh, Seat, Stamens, Whorl};
 use glam::DVec3;
 use ink::Drawing;
 use mesh::{MaterialKind, Model};
@@ -100,7 +100,7 @@ impl OpeningPlant {
         }
         rest.organs.retain(|o| !(flower_organs(o.kind) && o.flower.is_some()));
         name.clone_into(&mut rest.name);
-        let days = flowers[0].spec.days;
+        let days = flowers[0].spec.days();
         let size_m = plant.extent().map_or(1.0, |(low, high)| low.distance(high));
         let (skin, kept, item) = (skin.clone(), KeptShapes::default(), item.clone());
         Ok(Self { name: name.into(), days, item, rest, skin, size_m, kept, flowers })
@@ -108,7 +108,7 @@ impl OpeningPlant {
 
     /// The law of the first flower, for use without a fitted one.
     pub fn law(&self) -> GrowthLaw {
-        let rate = self.flowers.first().map_or(0.95, |f| f.spec.rate);
+        let rate = self.flowers.first().map_or(0.95, |f| f.spec.rate_per_day);
         GrowthLaw::logistic(&self.name, self.days[0], rate)
     }
 
@@ -227,16 +227,20 @@ fn placed(
             let color = dye.map(|c| c * shade);
             Some(Whorl {
                 count: u32::try_from(ring.len()).ok()?,
-                length,
-                width: length * aspect,
-                insertion: [disc.max(0.05 * length) * (1.0 - 0.35 * inner), 0.02 * length * k as f64],
-                bud: [14.0 - 6.0 * inner, 2.0 - 2.0 * inner, -9.0],
-                open: [0.75, 1.0, 1.1].map(|x| x * open * (1.0 - 0.35 * inner)),
-                wilted: [0.9, 1.35, 1.75].map(|x| (x * open * (1.0 - 0.35 * inner)).min(165.0)),
+                length_m: length,
+                width_m: length * aspect,
+                insertion: Insertion {
+                    radius_m: disc.max(0.05 * length) * (1.0 - 0.35 * inner),
+                    height_m: 0.02 * length * k as f64,
+                },
+                bud_deg: [14.0 - 6.0 * inner, 2.0 - 2.0 * inner, -9.0],
+                open_deg: [0.75, 1.0, 1.1].map(|x| x * open * (1.0 - 0.35 * inner)),
+                wilted_deg: [0.9, 1.35, 1.75].map(|x| (x * open * (1.0 - 0.35 * inner)).min(165.0)),
                 delay: 0.1 * inner,
-                phase: 180.0 / n * k as f64 + 90.0,
-                lean: 0.008 * length,
-                colors: [color.map(|c| (1.15 * c + 0.05).min(1.0)), color],
+                phase_deg: 180.0 / n * k as f64 + 90.0,
+                lean_m: 0.008 * length,
+                base_color: color.map(|c| (1.15 * c + 0.05).min(1.0)),
+                tip_color: color,
                 form: PetalForm::mean(&forms),
                 ..Whorl::default()
             })
@@ -245,15 +249,16 @@ fn placed(
     let spec = FlowerSpec {
         name: plant.name.clone(),
         whorls,
-        stamens: (u32::try_from(stamens).unwrap_or(0).min(40), 0.45 * longest, 18.0),
-        pistil: if stamens > 0 { 0.5 * longest } else { 0.0 },
-        disc,
-        stalk: 0.0,
-        nod: 0.0,
-        umbel: 1,
-        days: [6.0, 4.0],
-        rate: 0.95,
-        mesh: [16, 10],
+        stamens: Stamens {
+            count: u32::try_from(stamens).unwrap_or(0).min(40),
+            length_m: 0.45 * longest,
+            spread_deg: 18.0,
+        },
+        pistil_m: if stamens > 0 { 0.5 * longest } else { 0.0 },
+        disc_m: disc,
+        stalk_m: 0.0,
+        mesh: PetalMesh { rows: 16, columns: 10 },
+        ..FlowerSpec::default()
     };
     let axis = flower.axis.try_normalize().unwrap_or(DVec3::Y);
     // Off the end of the stem, which would show through the disc.

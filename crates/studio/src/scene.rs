@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use base::{Cancelled, OverBudget, Report, Run, Seed, Stopped};
+use bloom::FlowerSettings;
 use document::{
     Document, DocumentPlant, FlowerMaker, LeafData, LeafMaker, LeafPaint, LeafRings, LeafSettings,
     LeafSurface, LeafThickness, Maker, Placement, PlantEdit, PlantId, SketchSettings, TreeSettings,
@@ -13,11 +14,13 @@ use document::{
 use formats::{LeafFileError, MarksAxes, read_marks, read_vein_graph};
 use geom::RingRule;
 use glam::{DQuat, DVec3};
+use growth::TreeSpec;
 use ink::Drawing;
 use leaf::{FullMarks, Pose, SurfaceKind, ThicknessRule, VeinParameters};
 use mesh::{MaterialId, Model};
 use plant::Plant;
 use skin::{LeafMeshSpec, SkinSpec};
+use spec::Spec;
 
 use crate::evaluate::{Evaluator, FrontView};
 use crate::flowers::{FlowerOptions, make_flower};
@@ -26,7 +29,7 @@ use crate::make::{MakeError, SketchOptions};
 use crate::opening::{OpeningError, OpeningPlant};
 use crate::report::ItemReport;
 use crate::template::LeafTemplate;
-use crate::trees::{TreeError, TreeEvaluator, TreeOptions, TreeSpec, spec_from_json};
+use crate::trees::{TreeError, TreeEvaluator, TreeOptions};
 
 /// Why a plant of a scene could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -41,9 +44,6 @@ pub enum SceneError {
     /// The tree does not grow.
     #[error(transparent)]
     Tree(TreeError),
-    /// The tree's spec is none.
-    #[error("the tree's spec: {0}")]
-    Spec(#[source] serde_json::Error),
     /// The leaf's file cannot be read.
     #[error(transparent)]
     File(#[from] LeafFileError),
@@ -298,7 +298,7 @@ impl SceneEvaluator {
     pub fn days(&self, id: PlantId, document: &Document) -> Option<[f64; 2]> {
         match &document.plant(id)?.settings().maker {
             Maker::Sketch(_) => self.plants.get(&id)?.opening.as_ref().map(|o| o.days),
-            Maker::Flower(f) => Some(flower_spec(f)?.days),
+            Maker::Flower(f) => Some(f.settings.spec()?.days()),
             _ => None,
         }
     }
@@ -356,7 +356,7 @@ impl Made {
         seed: Seed,
         run: &Run<'_>,
     ) -> Result<(), SceneError> {
-        let spec = TreeSpec { name: name.into(), ..tree_spec(tree)? };
+        let spec = TreeSpec { name: name.into(), ..tree_spec(tree) };
         let options = TreeOptions {
             skin: SkinSpec { wind, ..tree.skin.clone() },
             leaf: leaf.cloned(),
@@ -394,9 +394,9 @@ impl Made {
         seed: Seed,
         run: &Run<'_>,
     ) -> Result<(), SceneError> {
-        let spec = flower_spec(flower).ok_or_else(|| SceneError::Species(flower.settings.species.clone()))?;
-        let own = || bloom::GrowthLaw::logistic(&spec.name, spec.days[0], spec.rate);
-        let law = flower.law.as_ref().map_or_else(own, |l| (**l).clone());
+        let spec =
+            flower.settings.spec().ok_or_else(|| SceneError::Species(flower.settings.species.clone()))?;
+        let law = flower.law.as_ref().map_or_else(|| spec.own_law(), |l| (**l).clone());
         let mut options = FlowerOptions { edits: edits.to_vec(), ..FlowerOptions::default() };
         options.skin.wind = wind;
         let made = make_flower(name, &spec, (flower.settings.day, &law), &options, seed, run)?;
@@ -406,25 +406,10 @@ impl Made {
     }
 }
 
-/// The species with what was asked for in its place.
-fn flower_spec(flower: &FlowerMaker) -> Option<bloom::FlowerSpec> {
-    let s = &flower.settings;
-    let mut spec = bloom::preset(&s.species)?;
-    spec.days[0] = s.opening_days.unwrap_or(spec.days[0]);
-    spec.days[1] = s.wilting_days.unwrap_or(spec.days[1]);
-    spec.stalk = s.stalk_m.unwrap_or(spec.stalk);
-    spec.nod = s.nod_deg.unwrap_or(spec.nod);
-    Some(spec)
-}
-
 /// The spec of a tree of a document, with its obstacles.
-///
-/// # Errors
-/// [`SceneError::Spec`] for JSON that is no spec.
-pub fn tree_spec(tree: &TreeSettings) -> Result<TreeSpec, SceneError> {
-    let mut spec = spec_from_json(&tree.spec).map_err(SceneError::Spec)?;
-    spec.obstacles = tree.obstacles.iter().map(|o| (*o.shape).clone()).collect();
-    Ok(spec)
+pub fn tree_spec(tree: &TreeSettings) -> TreeSpec {
+    let obstacles = tree.obstacles.iter().map(|o| (*o.shape).clone()).collect();
+    TreeSpec { obstacles, ..(*tree.spec).clone() }
 }
 
 /// What a tree of a document is, from a spec: its obstacles get names.
@@ -435,13 +420,9 @@ pub fn tree_settings(spec: &TreeSpec, preset: Option<&str>) -> TreeSettings {
     });
     let obstacles = obstacles.collect();
     let plain = TreeSpec { obstacles: Vec::new(), ..spec.clone() };
-    let mut value = serde_json::to_value(&plain).unwrap_or_default();
-    if let Some(fields) = value.as_object_mut() {
-        fields.remove("obstacles");
-    }
     TreeSettings {
         preset: preset.map(Into::into),
-        spec: Arc::new(value),
+        spec: Arc::new(plain),
         obstacles,
         ..TreeSettings::default()
     }
@@ -457,8 +438,8 @@ pub fn leaf_schema() -> serde_json::Value {
 /// ```
 /// assert_eq!(burgeon::flower_schema()["properties"]["day"]["x-unit"], "d");
 /// ```
-pub fn flower_schema() -> serde_json::Value {
-    schemars::schema_for!(document::FlowerSettings).to_value()
+pub fn flower_schema() -> &'static serde_json::Value {
+    FlowerSettings::schema()
 }
 
 /// The marks of a leaf of a document, and how it is made.

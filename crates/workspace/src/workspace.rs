@@ -394,5 +394,5 @@ impl Workspace {
 
 fn preset(key: &str) -> Result<document::TreeSettings, WorkspaceError> {
     let preset = Preset::find(key).ok_or_else(|| WorkspaceError::NoTree(key.into()))?;
-    Ok(tree_settings(&preset.spec()?, Some(key)))
+    Ok(tree_settings(&preset.spec().map_err(burgeon::TreeError::from)?, Some(key)))
 }

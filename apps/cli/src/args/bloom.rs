@@ -71,12 +71,14 @@ pub(crate) struct FitArgs {
   burgeon bloom run rose -o rose.glb --frames 16 --png rose.png
   burgeon bloom run rose --petal petal.csv -o own-rose.glb       petals from marks, a model or a drawing
   burgeon bloom run flower.svg -o flower.glb                     a drawn flower opens and wilts
+  burgeon bloom run my-flower.toml -o flower.glb                 a flower of your own (docs/bloom.md)
   burgeon bloom run rose --law lily.law.json -o rose-as-lily/ --frames 16 --format obj")]
 pub(crate) struct BloomRunArgs {
     /// First: clap takes the values of the others away as it reads them.
     #[command(flatten)]
     pub(crate) given: Given,
-    /// First shape: a scan or a model; or a stages file (.toml); or rose, lily, tulip, sunflower, clivia; or a drawing.
+    /// First shape: a scan or a model; or a stages file (.toml); or rose, lily, tulip, sunflower, clivia, or a flower of
+    /// your own (.toml); or a drawing.
     #[arg(value_name = "START")]
     pub(crate) start: String,
     /// The result: .glb (animation, or one shape with --day), .ply, .obj, .stl or .usda (one shape), .mtg (the structure of a

@@ -62,8 +62,7 @@ export function plainHelp(text: string): string {
     .replace(/\[([^\]]*)\](\([^)]*\))?/g, '$1');
 }
 
-/** What the core says of a field, a choice or a species, in the current language. */
-export function helpOf(text: string): string {
-  const plain = plainHelp(text);
-  return language === 'zh' ? (zhHelp[plain] ?? plain) : plain;
+/** What the core says of a field, a choice or a species, in the current language; `key` is its name (`schema.ts`). */
+export function helpOf(key: string | undefined, english = ''): string {
+  return (language === 'zh' && key !== undefined ? zhHelp[key] : undefined) ?? plainHelp(english);
 }

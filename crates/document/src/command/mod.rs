@@ -49,7 +49,7 @@ pub enum Command {
 }
 
 /// Why a command was refused; the document is as it was.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CommandError {
     /// A stroke is named that is not there.
@@ -78,6 +78,9 @@ pub enum CommandError {
     /// A setting is out of its range.
     #[error("{0}")]
     OutOfRange(String),
+    /// A field of a spec cannot be set so.
+    #[error(transparent)]
+    Spec(#[from] spec::SpecFault),
     /// A point would leave the range of numbers.
     #[error("a stroke cannot be moved that far")]
     TooFar,
