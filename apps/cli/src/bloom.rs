@@ -528,7 +528,10 @@ fn no_scans(args: &BloomRunArgs, name: &str) -> Outcome {
     let written =
         if folder { PlantFormat::Model(args.format.format()) } else { files::plant_writable(&args.output)? };
     let wind = matches!(written, PlantFormat::Model(format) if format.carries_wind());
-    given.only_if(wind, &["wind"], "models as .glb or .usda", "none is made")?;
+    // An animation moves its vertices itself.
+    let film =
+        args.day.is_none() && files::extension(&args.output).is_some_and(|e| e.eq_ignore_ascii_case("glb"));
+    given.only_if(wind && !film, &["wind"], "models of one day as .glb (--day) or .usda", "none is made")?;
     given.check_axes(!written.fixed_axes())
 }
 

@@ -105,7 +105,20 @@ impl FlowerSpec {
         rings.extend(self.whorls.iter().map(|w| [1.01 * w.insertion.radius_m, w.insertion.height_m]));
         let top = rings.last().map_or(0.0, |r| r[1]);
         rings.push([0.02 * wide, top + 0.0004]);
-        bed.turned(OrganKind::Pedicel, &rings);
+        let last = (rings.len() - 1) as f64;
+        let mut bowl = Grid {
+            points: Vec::new(),
+            across: (0..=12).map(|k| f64::from(k) / 12.0).collect(),
+            along: (0..rings.len()).map(|i| i as f64 / last).collect(),
+            colors: Vec::new(),
+        };
+        for [r, y] in rings {
+            for k in 0..=12 {
+                let (s, c) = ops::sin_cos(ops::TAU * f64::from(k) / 12.0);
+                bowl.points.push(DVec3::new(r * c, y, r * s));
+            }
+        }
+        bed.around(OrganKind::Pedicel, DVec3::Y * low, bowl);
     }
 }
 

@@ -85,18 +85,6 @@ impl Bed<'_> {
         self.push(kind, Shape::Sheet(Arc::new(sheet)), frame, [1.0; 3]);
     }
 
-    /// A body around the flower's axis: `(radius, height)` from below upwards.
-    pub(crate) fn turned(&mut self, kind: OrganKind, profile: &[[f64; 2]]) {
-        let [right, along, normal] = [DVec3::X, DVec3::Y, DVec3::Z].map(|d| self.place.1 * d);
-        let frame = Frame { origin: self.place.0, right, along, normal };
-        let profile = profile.iter().map(|&p| p.into()).collect();
-        let shape = self.plant.add_shape(Shape::Revolution { profile });
-        let key = self.seed.child(self.plant.organs.len() as u64).number();
-        let (bearer, flower, paint) = (self.bearer, Some(self.flower), Paint::default());
-        let organ = Organ { kind, bearer, flower, shape, frame, scale: 1.0, paint, key, source: None };
-        self.plant.organs.push(organ);
-    }
-
     /// A strand through points of the flower's own coordinates, root first.
     pub(crate) fn strand(&mut self, kind: OrganKind, line: &[DVec3], radii: &[f64], rgb: [f32; 3]) {
         let line: Vec<DVec3> = line.iter().map(|&p| self.at(p)).collect();
