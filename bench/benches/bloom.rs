@@ -78,8 +78,8 @@ fn logistic_25_with_leave_one_out(bencher: Bencher<'_, '_>) {
 fn overlap_of_a_tulip(bencher: Bencher<'_, '_>) {
     let spec = preset("tulip").expect("a preset");
     let law = burgeon::bloom::GrowthLaw::logistic("tulip", 5.0, 1.0);
-    let frame = spec.at(2.0, &law, burgeon::Seed::new(1));
-    bencher.bench_local(|| frame.overlap());
+    let plant = spec.at(2.0, &law, burgeon::Seed::new(1));
+    bencher.bench_local(|| burgeon::bloom::petal_overlap(black_box(&plant), None));
 }
 
 /// A blade of 10 rows of 7 marks: parameters, knots and controls of the bicubic surface through all of them.

@@ -58,7 +58,7 @@ impl Oak {
         let spec = TreeSpec {
             name: "oak".into(),
             method: Method::Competition(CompetitionSpec { lifespan, points, ..CompetitionSpec::oak() }),
-            leaves: Some(LeafSpec { spacing_m, leaf_keep, ..LeafSpec::default() }),
+            leaves: LeafSpec { spacing_m, leaf_keep, ..LeafSpec::default() },
             ..TreeSpec::default()
         };
         let mut report = Report::default();

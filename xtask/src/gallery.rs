@@ -1,5 +1,5 @@
-//! `cargo xtask gallery`: makes every fixture drawing again and writes docs/table1.md and docs/gallery.md with
-//! the pictures and the figures of that very run.
+//! `cargo xtask gallery`: makes every fixture drawing and writes docs/table1.md and docs/gallery.md with
+//! the pictures and the figures of that run.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use crate::shell::{Outcome, built_burgeon, burgeon, command, repository, say, target_dir};
 
-/// Table 1 of paper 000: strokes, leaves or petals, branches, triangles, milliseconds.
+/// Table 1 of He and Cheng (2021): strokes, leaves or petals, branches, triangles, milliseconds.
 const PAPER: [(&str, [u32; 5]); 8] = [
     ("a", [15, 0, 56, 29_888, 145]),
     ("b", [7, 6, 1, 5_132, 148]),
@@ -24,11 +24,12 @@ const PAPER: [(&str, [u32; 5]); 8] = [
 pub(crate) fn run() -> Outcome {
     built_burgeon()?;
     let mut page = String::from(
-        "# The eight sketches of the paper's Table 1\n\n\
-         He and Cheng (2021) report eight drawings by users. Theirs are not published, so these are our own of the \
-         same make-up. Each cell reads *ours / the paper's*. Written by `cargo xtask gallery`, which makes the \
-         models, the pictures and this page; times are one run of the command line, from strokes in memory to \
-         meshes in memory (`docs/performance.md` has the benchmark).\n\n\
+        "# The eight sketches of Table 1\n\n\
+         He and Cheng (2021) report on eight drawings by users. Their drawings are not published, so we drew\n\
+         our own of the same composition. Each cell reads *ours / the paper's*.\n\n\
+         `cargo xtask gallery` makes the models, the pictures and this page. Times are for one run of the\n\
+         command line, from strokes in memory to meshes in memory ([performance](performance.md) has the\n\
+         benchmark).\n\n\
          | | drawing | model | strokes | leaves or petals | branches | triangles | time, ms |\n\
          |---|---|---|---|---|---|---|---|\n",
     );
@@ -53,9 +54,11 @@ pub(crate) fn run() -> Outcome {
     write(&repository().join("docs/table1.md"), &page)?;
 
     let mut page = String::from(
-        "# Gallery\n\nDrawings of this repository and what `burgeon sketch` makes of them, without any setting. \
-         Written by `cargo xtask gallery`. The eight of the [paper's Table 1](table1.md) come last.\n\n\
-         | drawing | model | what it was understood as |\n|---|---|---|\n",
+        "# Gallery\n\n\
+         These are drawings of this repository and what `burgeon sketch` makes of them with default\n\
+         settings. The eight drawings of [Table 1](table1.md) come last. `cargo xtask gallery` writes this\n\
+         page.\n\n\
+         | drawing | model | what was recognised |\n|---|---|---|\n",
     );
     let folder = repository().join("fixtures/sketches/gallery");
     let entries = std::fs::read_dir(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
@@ -118,8 +121,17 @@ fn make(name: &str) -> Outcome<Value> {
 /// One line about a plant: its name, and counts that are not 0.
 fn summary(item: &Value) -> String {
     let counts = &item["counts"];
-    let parts = ["flowers", "petals", "leaves", "branches", "triangles"].into_iter();
-    let parts = parts.filter_map(|key| counts[key].as_u64().filter(|&n| n > 0).map(|n| format!("{n} {key}")));
+    let words = [
+        ("flower", "flowers"),
+        ("petal", "petals"),
+        ("leaf", "leaves"),
+        ("branch", "branches"),
+        ("triangle", "triangles"),
+    ];
+    let parts = words.into_iter().filter_map(|(one, many)| {
+        let n = counts[many].as_u64().filter(|&n| n > 0)?;
+        Some(format!("{n} {}", if n == 1 { one } else { many }))
+    });
     format!(
         "{} strokes: {}",
         item["strokes"].as_array().map_or(0, Vec::len),

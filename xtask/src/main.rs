@@ -1,6 +1,7 @@
 //! `cargo xtask`: set-up, checks and chores. Installs what is missing, so that a fresh machine with rustup and
 //! Node needs nothing else.
 
+mod ablation;
 mod circles;
 mod flowers;
 mod gallery;
@@ -10,6 +11,7 @@ mod layers;
 mod made_strokes;
 mod native;
 mod pixels;
+mod quickdraw;
 mod scenes;
 mod shell;
 mod species;
@@ -38,7 +40,7 @@ cargo xtask COMMAND
   types          writes the TypeScript types of what travels between the page and the core
   habits         checks licences and versions of dependencies, spelling, and that the crates could be published
   layers         checks that each crate uses only what ARCHITECTURE.md allows, and no modules in a circle
-  train-strokes  trains the stroke classifier from its table (see docs/strokes.md)
+  train-strokes  trains the stroke classifier from its table, and says what it and each rule are worth (docs/strokes.md)
   test-web       the WASM, validator and Studio part of `test` alone
   test-studio    the Studio part of `test` alone
   bench-web      measures the Studio in a browser: pen, undo, opening, memory, first paint, transfer

@@ -1,20 +1,16 @@
 //! `cargo xtask train-strokes`: the table of measured strokes -> the classifier's models and `docs/strokes.md`.
 
-use std::{
-    collections::BTreeMap,
-    fmt::Write as _,
-    fs,
-    path::{Path, PathBuf},
-};
+use std::{collections::BTreeMap, fmt::Write as _, fs, path::Path};
 
-use glam::DVec2;
 use ink::{
-    Drawing, InkSample, Stroke, StrokeClass, StrokeFigures, StrokeRow, StrokeSource, cross_validate_strokes,
-    read_stroke_table, train_strokes, write_stroke_table,
+    Drawing, StrokeClass, StrokeFigures, StrokeRow, StrokeSource, cross_validate_strokes, read_stroke_table,
+    train_strokes, write_stroke_table,
 };
 use serde_json::Value;
 
+use crate::ablation;
 use crate::made_strokes::made_sketches;
+use crate::quickdraw::{drawing_of, drawings_of, json_lines, list, read, text_of};
 
 /// Fold seeds that the figures are averaged over.
 const SEEDS: u64 = 8;
@@ -62,7 +58,16 @@ pub(crate) fn run(args: &[String]) -> Result<(), String> {
     write(&data.join("strokes.model"), &models.classes)?;
     let packed = models.packed_classes().map_err(|e| e.to_string())?;
     fs::write(data.join("strokes.packed"), packed).map_err(|e| format!("strokes.packed: {e}"))?;
-    update_docs(&root.join("docs/strokes.md"), &block)
+    let docs = root.join("docs/strokes.md");
+    update_docs(&docs, "figures", &block)?;
+    let sketches = root.join("../shared/data/sketches");
+    if !sketches.is_dir() {
+        println!("skipped: what each rule is worth, because {} is not here", sketches.display());
+        return Ok(());
+    }
+    let rules = ablation::block(&rows, &sketches, &root.join("fixtures/sketches"))?;
+    println!("{rules}");
+    update_docs(&docs, "rules", &rules)
 }
 
 /// The block of `docs/strokes.md` that this command owns.
@@ -142,37 +147,18 @@ fn parts_block(out: &mut String, all: &[StrokeFigures]) {
     }
 }
 
-fn update_docs(path: &Path, block: &str) -> Result<(), String> {
-    const OPEN: &str = "<!-- figures: written by cargo xtask train-strokes -->\n";
-    const CLOSE: &str = "<!-- end of figures -->\n";
+fn update_docs(path: &Path, name: &str, block: &str) -> Result<(), String> {
+    let open = format!("<!-- {name}: written by cargo xtask train-strokes -->\n");
+    let close = format!("<!-- end of {name} -->\n");
     let text = read(path)?;
-    let parts = text.split_once(OPEN).and_then(|(a, rest)| rest.split_once(CLOSE).map(|(_, b)| (a, b)));
+    let parts = text.split_once(&open).and_then(|(a, rest)| rest.split_once(&close).map(|(_, b)| (a, b)));
     let (before, after) =
-        parts.ok_or_else(|| format!("{}: the figures' marks are missing", path.display()))?;
-    write(path, &format!("{before}{OPEN}{block}{CLOSE}{after}"))
-}
-
-fn read(path: &Path) -> Result<String, String> {
-    fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))
+        parts.ok_or_else(|| format!("{}: the marks of its {name} are missing", path.display()))?;
+    write(path, &format!("{before}{open}{block}{close}{after}"))
 }
 
 fn write(path: &Path, text: &str) -> Result<(), String> {
     fs::write(path, text).map_err(|e| format!("{}: {e}", path.display()))
-}
-
-fn json_lines(path: &Path) -> Result<Vec<Value>, String> {
-    let parse = |(k, line): (usize, &str)| {
-        serde_json::from_str(line).map_err(|e| format!("{}, line {}: {e}", path.display(), k + 1))
-    };
-    read(path)?.lines().enumerate().filter(|(_, l)| !l.trim().is_empty()).map(parse).collect()
-}
-
-fn text_of<'a>(value: &'a Value, key: &str) -> &'a str {
-    value.get(key).and_then(Value::as_str).unwrap_or_default()
-}
-
-fn list(value: Option<&Value>) -> &[Value] {
-    value.and_then(Value::as_array).map_or(&[], Vec::as_slice)
 }
 
 /// Label of one stroke of a drawing.
@@ -185,16 +171,7 @@ struct Label {
 
 /// Measures every labelled drawing of a folder.
 fn measure(sketches: &Path) -> Result<Vec<StrokeRow>, String> {
-    let quickdraw = sketches.join("quickdraw");
-    let entries = fs::read_dir(&quickdraw).map_err(|e| format!("{}: {e}", quickdraw.display()))?;
-    let mut files: Vec<PathBuf> = entries.flatten().map(|f| f.path()).collect();
-    files.sort();
-    let mut drawings = BTreeMap::new();
-    for file in files {
-        for line in json_lines(&file)? {
-            drawings.insert(text_of(&line, "key_id").to_owned(), line);
-        }
-    }
+    let drawings = drawings_of(&sketches.join("quickdraw"))?;
     let mut rows = Vec::new();
     for line in json_lines(&sketches.join("labels.ndjson"))? {
         let key = text_of(&line, "key_id");
@@ -207,7 +184,7 @@ fn measure(sketches: &Path) -> Result<Vec<StrokeRow>, String> {
             Ok(Label { stroke, class, unsure: flag("unsure"), mixed: flag("mixed") })
         };
         let labels: Vec<Label> = list(line.get("labels")).iter().map(label).collect::<Result<_, String>>()?;
-        measure_drawing(&mut rows, StrokeSource::Public, text_of(&line, "word"), drawing, &labels);
+        measure_ink(&mut rows, StrokeSource::Public, text_of(&line, "word"), drawing, &labels);
     }
     for (kind, every, classes) in SPG {
         for line in json_lines(&sketches.join(format!("spg/{kind}.ndjson")))?.iter().step_by(every) {
@@ -224,7 +201,7 @@ fn measure(sketches: &Path) -> Result<Vec<StrokeRow>, String> {
                     (*seen <= PER_PART).then_some(Label { stroke, class, unsure: false, mixed: false })
                 })
                 .collect();
-            measure_drawing(&mut rows, StrokeSource::Parts, kind, line, &labels);
+            measure_ink(&mut rows, StrokeSource::Parts, kind, &drawing_of(line), &labels);
         }
     }
     for (number, made) in made_sketches().into_iter().enumerate() {
@@ -243,24 +220,6 @@ fn measure(sketches: &Path) -> Result<Vec<StrokeRow>, String> {
         measure_ink(&mut rows, StrokeSource::Made, made.kind, &drawing, &labels);
     }
     Ok(rows)
-}
-
-fn measure_drawing(
-    rows: &mut Vec<StrokeRow>,
-    source: StrokeSource,
-    kind: &str,
-    line: &Value,
-    labels: &[Label],
-) {
-    let stroke = |s: &Value| {
-        let column = |k: usize| list(s.get(k)).iter().filter_map(Value::as_f64);
-        // Points lie y down in the files.
-        let samples = column(0).zip(column(1)).map(|(x, y)| InkSample::from(DVec2::new(x, -y))).collect();
-        Stroke { samples, ..Stroke::default() }
-    };
-    let name = text_of(line, "key_id").to_owned();
-    let drawing = Drawing { name, strokes: list(line.get("drawing")).iter().map(stroke).collect() };
-    measure_ink(rows, source, kind, &drawing, labels);
 }
 
 fn measure_ink(

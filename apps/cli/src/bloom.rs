@@ -8,10 +8,13 @@ use burgeon::bloom::{
 use burgeon::formats::{ExportSpec, ModelFormat, Morph, PngCache, write_cloud_ply, write_glb_morph};
 use burgeon::glam::DVec3;
 use burgeon::mesh::{Model, PointCloud};
-use burgeon::{Digest, MakeError, OpeningError, OpeningPlant, RunReport, Seed};
+use burgeon::plant::{Measures, Plant};
+use burgeon::{
+    Counts, Digest, FlowerOptions, MakeError, OpeningError, OpeningPlant, RunReport, Seed, make_flower,
+};
 use serde::Serialize;
 
-use crate::args::{BloomCommand, BloomRunArgs, FitArgs, PictureArgs};
+use crate::args::{AxesArgs, BloomCommand, BloomRunArgs, FitArgs, PictureArgs, PlantFormat};
 use crate::failure::{Failure, Outcome};
 use crate::files::Goal;
 use crate::machine::Machine;
@@ -237,8 +240,16 @@ fn read_law(path: &Path) -> Outcome<GrowthLaw> {
     }
 }
 
-/// The model of a day, and the share of petal triangles that cross another petal.
-type Shape<'a> = Box<dyn Fn(f64) -> Outcome<(Model, Option<f64>)> + 'a>;
+/// What there is at a day.
+struct Shown {
+    /// None of scans, of which only points are known.
+    plant: Option<Plant>,
+    model: Model,
+    /// The share of petal triangles that cross another petal.
+    overlap: Option<f64>,
+}
+
+type Shape<'a> = Box<dyn FnMut(f64) -> Outcome<Shown> + 'a>;
 
 /// Shapes over time, wherever they come from.
 struct Show<'a> {
@@ -259,7 +270,7 @@ fn planned(args: &BloomRunArgs) -> Outcome<Outputs> {
     match (files::extension(&args.output), args.day) {
         (Some(_), _) => {
             outputs.plan("-o", &args.output)?;
-            files::plan_model(&mut outputs, &args.output)?;
+            files::plan_plant(&mut outputs, &args.output, 0)?;
         }
         (None, Some(_)) => {
             return Err(Failure::at(&args.output, "has no extension; end it with .glb, .ply, .obj or .stl"));
@@ -286,13 +297,18 @@ fn run(args: &BloomRunArgs) -> Outcome {
     }
     let start = Path::new(&args.start);
     check_used(args)?;
-    if let Some(spec) = bloom::preset(&args.start).filter(|_| !start.exists() || start.is_dir()) {
+    if let Some(spec) = species(start, &args.start)? {
         return flower(args, spec, law, outputs, &machine);
     }
     let flowers = format!("whole flowers ({})", FlowerSpec::PRESETS.join(", "));
     args.given.refuse(&["petal"], &flowers, &format!("{} is none", args.start))?;
     if is_drawing(start) {
         return drawn_flower(args, start, law, outputs, &machine);
+    }
+    args.given.refuse(&["wind"], &format!("{flowers} and drawings"), &format!("{} is none", args.start))?;
+    if files::extension(&args.output).is_some() {
+        // Of scans only surfaces are known, no structure.
+        files::writable(&args.output)?;
     }
     let axes = files::axes(args.axes.up, args.axes.unit);
     let options = stages::Options { clean: !args.no_clean, split: !args.whole };
@@ -327,7 +343,7 @@ fn run(args: &BloomRunArgs) -> Outcome {
         }
         error = Some(e);
     }
-    let show = Show {
+    let mut show = Show {
         name: loaded.name.clone(),
         days: [first_day, last_day],
         best: last_day,
@@ -340,10 +356,11 @@ fn run(args: &BloomRunArgs) -> Outcome {
                 return Err(Failure::at(start, line));
             }
             let model = burgeon::motion_model(&loaded.name, loaded.mesh.as_ref(), &motion, &points);
-            Ok((Model { offset_m: loaded.origin.offset_m, ..model }, None))
+            let model = Model { offset_m: loaded.origin.offset_m, ..model };
+            Ok(Shown { plant: None, model, overlap: None })
         }),
     };
-    let (written, write_ms) = machine.timed(|| write_show(args, &show, &axes, &mut outputs, &machine));
+    let (written, write_ms) = machine.timed(|| write_show(args, &mut show, &axes, &mut outputs, &machine));
     let written = written?;
     let mut head = head("bloom run", args.seed, &args.start, &loaded.name, &args.output);
     head.input.offset_m = loaded.origin.told(&loaded.axes);
@@ -384,8 +401,7 @@ fn tell(
     outputs: Outputs,
 ) -> Outcome {
     let item = &mut told.head.items[0];
-    item.counts.vertices = written.vertices;
-    item.counts.triangles = written.triangles;
+    (item.counts, item.plant) = (written.counts, written.measures);
     item.digest = written.digest;
     item.timings_ms.structure = told.times[1];
     item.timings_ms.add_io(told.times[0], told.times[2]);
@@ -509,7 +525,10 @@ fn no_scans(args: &BloomRunArgs, name: &str) -> Outcome {
     let options = ["end", "compare", "lattice", "straight", "whole", "no_clean", "start_day", "end_day"];
     given.refuse(&options, "scans and models", &format!("{name} is a whole flower"))?;
     let folder = files::extension(&args.output).is_none();
-    let written = if folder { args.format.format() } else { files::writable(&args.output)? };
+    let written =
+        if folder { PlantFormat::Model(args.format.format()) } else { files::plant_writable(&args.output)? };
+    let wind = matches!(written, PlantFormat::Model(format) if format.carries_wind());
+    given.only_if(wind, &["wind"], "models as .glb or .usda", "none is made")?;
     given.check_axes(!written.fixed_axes())
 }
 
@@ -522,37 +541,50 @@ fn drawn_flower(
     machine: &Machine,
 ) -> Outcome {
     no_scans(args, &args.start)?;
-    let ((drawing, options), read_ms) = {
+    let ((drawing, mut options), read_ms) = {
         let (read, ms) = machine.timed(|| drawing(path));
         (read?, ms)
     };
+    options.skin.wind = args.wind;
     let seed = Seed::new(args.seed);
     let (plant, made_ms) = machine.timed(|| OpeningPlant::new(&drawing, &options, seed, &machine.run()));
-    let plant = plant.map_err(|e| match e {
+    let mut plant = plant.map_err(|e| match e {
         OpeningError::Make(MakeError::Cancelled(_)) => Failure::Cancelled,
         other => Failure::at(path, other),
     })?;
     let law = law.unwrap_or_else(|| plant.law());
     let axes = files::axes(args.axes.up, args.axes.unit);
-    let show = Show {
+    let mut head = head("bloom run", args.seed, &args.start, &plant.name, &args.output);
+    head.items[0].warnings.clone_from(&plant.item.warnings);
+    let mut show = Show {
         name: files::stem(path),
         days: [0.0, plant.days[0] + plant.days[1]],
         best: plant.days[0],
         shape: Box::new(|day| {
-            let (model, overlap) = plant.at(day, &law, seed);
-            Ok((model, Some(overlap)))
+            let open = plant.at(day, &law, seed, &machine.run())?;
+            Ok(Shown { plant: Some(open.plant), model: open.model, overlap: Some(open.overlap) })
         }),
     };
-    let (written, write_ms) = machine.timed(|| write_show(args, &show, &axes, &mut outputs, machine));
+    let (written, write_ms) = machine.timed(|| write_show(args, &mut show, &axes, &mut outputs, machine));
     let written = written?;
-    let mut head = head("bloom run", args.seed, &args.start, &plant.name, &args.output);
-    head.items[0].counts = plant.item.counts;
-    let (flowers, petals) = plant.counts();
-    (head.items[0].counts.flowers, head.items[0].counts.petals) = (Some(flowers), Some(petals));
-    head.items[0].warnings.clone_from(&plant.item.warnings);
     let times = [read_ms, made_ms, write_ms];
     let told = Told { head, residuals: vec![], error: None, stages: vec![], lattice: None, times };
     tell(args, machine, told, written, outputs)
+}
+
+/// A flower by its name, or of a file of its own; none for scans and drawings.
+fn species(start: &Path, name: &str) -> Outcome<Option<FlowerSpec>> {
+    let preset = bloom::preset(name).filter(|_| !start.exists() || start.is_dir());
+    if preset.is_some()
+        || !files::extension(start).is_some_and(|e| e.eq_ignore_ascii_case("toml"))
+        || !start.exists()
+    {
+        return Ok(preset);
+    }
+    let text = files::read_text(start)?;
+    // A file of stages has none.
+    let whorls = burgeon::spec::Node::from_toml(&text).is_ok_and(|tree| tree.field("whorls").is_some());
+    whorls.then(|| burgeon::spec::from_toml(&text).map_err(|e| Failure::at(start, e))).transpose()
 }
 
 fn flower(
@@ -563,6 +595,7 @@ fn flower(
     machine: &Machine,
 ) -> Outcome {
     no_scans(args, &spec.name)?;
+    spec.check(&machine.run().budget).map_err(|e| Failure::at(Path::new(&args.start), e))?;
     let spec = match &args.petal {
         Some(path) => {
             let (form, aspect) = petal_form(path, args.seed, machine)?;
@@ -570,24 +603,24 @@ fn flower(
         }
         None => spec,
     };
-    let law = law.unwrap_or_else(|| GrowthLaw::logistic(&spec.name, spec.days[0], spec.rate));
+    let law = law.unwrap_or_else(|| spec.own_law());
+    let seed = Seed::new(args.seed);
+    let mut options = FlowerOptions::default();
+    options.skin.wind = args.wind;
     let axes = files::axes(args.axes.up, args.axes.unit);
-    let show = Show {
+    let mut show = Show {
         name: spec.name.clone(),
-        days: [0.0, spec.days[0] + spec.days[1]],
-        best: spec.days[0],
+        days: [0.0, spec.opening_days + spec.wilting_days],
+        best: spec.opening_days,
         shape: Box::new(|day| {
-            let frame = spec.at(day, &law, Seed::new(args.seed));
-            let overlap = frame.overlap();
-            Ok((frame.model, Some(overlap)))
+            let made = make_flower(&spec.name, &spec, (day, &law), &options, seed, &machine.run())?;
+            let overlap = bloom::petal_overlap(&made.plant, None);
+            Ok(Shown { plant: Some(made.plant), model: made.model, overlap: Some(overlap) })
         }),
     };
-    let (written, write_ms) = machine.timed(|| write_show(args, &show, &axes, &mut outputs, machine));
+    let (written, write_ms) = machine.timed(|| write_show(args, &mut show, &axes, &mut outputs, machine));
     let written = written?;
-    let mut head = head("bloom run", args.seed, &args.start, &spec.name, &args.output);
-    let petals: u32 = spec.whorls.iter().map(|w| w.count).sum();
-    head.items[0].counts.flowers = Some(u64::from(spec.umbel));
-    head.items[0].counts.petals = Some(u64::from(petals) * u64::from(spec.umbel));
+    let head = head("bloom run", args.seed, &args.start, &spec.name, &args.output);
     let times = [0.0, 0.0, write_ms];
     let told = Told { head, residuals: vec![], error: None, stages: vec![], lattice: None, times };
     tell(args, machine, told, written, outputs)
@@ -597,24 +630,30 @@ fn flower(
 #[derive(Default)]
 struct Written {
     frames: u32,
-    vertices: u64,
-    triangles: u64,
+    /// Of the last one.
+    counts: Counts,
+    measures: Option<Measures>,
     digest: String,
     overlap: Vec<f64>,
 }
 
 impl Written {
-    fn take(&mut self, model: &Model, overlap: Option<f64>) {
+    fn take(&mut self, shown: &Shown) {
         self.frames += 1;
-        self.vertices = model.vertex_count() as u64;
-        self.triangles = model.triangle_count() as u64;
-        self.overlap.extend(overlap);
+        self.counts = match &shown.plant {
+            Some(plant) => Counts::of_plant(plant),
+            None => Counts::default(),
+        };
+        self.counts.vertices = shown.model.vertex_count() as u64;
+        self.counts.triangles = shown.model.triangle_count() as u64;
+        self.measures = shown.plant.as_ref().map(Plant::measure);
+        self.overlap.extend(shown.overlap);
     }
 }
 
 fn write_show(
     args: &BloomRunArgs,
-    show: &Show<'_>,
+    show: &mut Show<'_>,
     axes: &ExportSpec,
     outputs: &mut Outputs,
     machine: &Machine,
@@ -628,10 +667,10 @@ fn write_show(
     };
     let mut one = |day: f64, path: &Path, written: &mut Written, digest: &mut Digest| -> Outcome {
         machine.cancel.check()?;
-        let (model, overlap) = (show.shape)(day)?;
-        digest.add(&model);
-        written.take(&model, overlap);
-        write_one(outputs, path, &model, axes)
+        let shown = (show.shape)(day)?;
+        digest.add(&shown.model);
+        written.take(&shown);
+        write_one(outputs, path, &shown, (axes, &args.axes))
     };
     match (extension.as_deref(), args.day) {
         (None, _) => {
@@ -646,10 +685,10 @@ fn write_show(
             let mut models = Vec::new();
             for k in 0..args.frames {
                 machine.cancel.check()?;
-                let (model, overlap) = (show.shape)(at(k))?;
-                digest.add(&model);
-                written.take(&model, overlap);
-                models.push(model);
+                let shown = (show.shape)(at(k))?;
+                digest.add(&shown.model);
+                written.take(&shown);
+                models.push(shown.model);
             }
             // The frame nearest to full bloom is the model itself: what shows no animation, or no colours of one,
             // shows the open flower.
@@ -667,7 +706,7 @@ fn write_show(
         (Some(_), None) => one(show.best, &args.output, &mut written, &mut digest)?,
     }
     if let Some(png) = &args.png {
-        let (model, _) = (show.shape)(args.day.unwrap_or(show.best))?;
+        let model = (show.shape)(args.day.unwrap_or(show.best))?.model;
         let look = PictureArgs {
             size: args.size,
             view: args.view,
@@ -687,7 +726,16 @@ fn write_show(
 }
 
 /// Clouds as PLY in double precision, everything else by the writers of models.
-fn write_one(outputs: &mut Outputs, path: &Path, model: &Model, axes: &ExportSpec) -> Outcome {
+fn write_one(
+    outputs: &mut Outputs,
+    path: &Path,
+    Shown { plant, model, .. }: &Shown,
+    (axes, named): (&ExportSpec, &AxesArgs),
+) -> Outcome {
+    if let (Some(plant), PlantFormat::Mtg) = (plant, files::plant_writable(path)?) {
+        let (goal, cache) = (Goal::new("-o", path), &mut PngCache::new());
+        return files::write_plant(outputs, goal, (plant, model), PlantFormat::Mtg, named, cache).map(drop);
+    }
     let bare = model.parts.iter().all(|p| p.mesh.triangles.is_empty());
     let format: ModelFormat = files::writable(path)?;
     if bare && format == ModelFormat::Ply {

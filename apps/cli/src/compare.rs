@@ -21,7 +21,7 @@ impl CompareWord {
         let preset = |key: &'static str| {
             let preset =
                 Preset::find(key).ok_or_else(|| Failure::Bug(format!("preset {key}: is missing")))?;
-            preset.spec().map_err(|e| cancelled_or(e, key))
+            preset.spec().map_err(|e| Failure::Bug(format!("preset {key}: {e}")))
         };
         match self {
             Self::Oak => {

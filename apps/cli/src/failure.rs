@@ -76,6 +76,15 @@ fn shown(path: &Path) -> impl fmt::Display {
     if crate::inputs::is_stdin(path) { Path::new("standard input") } else { path }.display()
 }
 
+impl From<burgeon::Stopped> for Failure {
+    fn from(stopped: burgeon::Stopped) -> Self {
+        match stopped {
+            burgeon::Stopped::Cancelled(_) => Self::Cancelled,
+            burgeon::Stopped::OverBudget(much) => Self::Bad(much.to_string()),
+        }
+    }
+}
+
 impl From<burgeon::Cancelled> for Failure {
     fn from(_: burgeon::Cancelled) -> Self {
         Self::Cancelled

@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use burgeon::formats::{ExportSpec, PngCache, marks_template, read_picture, write_marks, write_rays};
+use burgeon::formats::{
+    ExportSpec, ModelFormat, PngCache, marks_template, read_picture, write_marks, write_rays,
+};
 use burgeon::geom::RingRule;
 use burgeon::leaf::{
     FullMarks, LeafGrowth, LeafSpec, Marks, PalmateSpec, ParallelSpec, Pose, Rays, ScanSpec, ThicknessRule,
@@ -14,7 +16,7 @@ use burgeon::{
     ItemReport, LeafError, LeafOptions, LeafTexture, MadePlant, Report, RunReport, Seed, ShootSpec,
 };
 
-use crate::args::{LeafArgs, ParametersWord, RingsWord, SurfaceWord, UnitWord, VenationWord};
+use crate::args::{LeafArgs, ParametersWord, PlantFormat, RingsWord, SurfaceWord, UnitWord, VenationWord};
 use crate::failure::{Failure, Outcome};
 use crate::files::Goal;
 use crate::leaf_data::{self, Form, ReadLeaf};
@@ -53,7 +55,7 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
             "say what to make of it: -o OUT, --png FILE.png, --report FILE.json or --json".into(),
         ));
     }
-    let format = args.output.as_deref().map(|p| files::plan_model(&mut outputs, p)).transpose()?;
+    let format = args.output.as_deref().map(|p| files::plan_plant(&mut outputs, p, 0)).transpose()?;
     if let Some(png) = &args.png {
         picture::check_name(png)?;
     }
@@ -61,7 +63,9 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
         // What is read may be in any unit; what is made from numbers alone has none but the file's.
         args.given.check_axes(!args.inputs.is_empty() || !format.fixed_axes())?;
     }
-    let Product { made: MadePlant { model, mut item, .. }, marks, offset_m } =
+    let blown = matches!(format, Some(PlantFormat::Model(format)) if format.carries_wind());
+    args.given.only_if(blown, &["wind"], "models as .glb or .usda", "none is made")?;
+    let Product { made: MadePlant { plant, model, mut item }, marks, offset_m } =
         if args.scan { scan(args, &machine)? } else { make(args, &machine)? };
     machine.cancel.check()?;
     if let (Some(path), Some(marks)) = (&args.marks, &marks) {
@@ -74,10 +78,12 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
         let Some((path, format)) = args.output.as_deref().zip(format) else { return Ok(Vec::new()) };
         item.output = path.display().to_string();
         // --unit and --up were those of the input: a GLB in metres with +Y up is no surprise.
-        let read = !args.inputs.is_empty() && format == burgeon::formats::ModelFormat::Glb;
-        let axes = if read { ExportSpec::default() } else { files::axes(args.axes.up, args.axes.unit) };
-        let goal = Goal::new("-o", path);
-        files::write_model(&mut outputs, goal, &model, format, &axes, &mut PngCache::new())
+        let (goal, cache) = (Goal::new("-o", path), &mut PngCache::new());
+        if format == PlantFormat::Model(ModelFormat::Glb) && !args.inputs.is_empty() {
+            let axes = ExportSpec::default();
+            return files::write_model(&mut outputs, goal, &model, ModelFormat::Glb, &axes, cache);
+        }
+        files::write_plant(&mut outputs, goal, (&plant, &model), format, &args.axes, cache)
     });
     item.warnings.extend(written?.iter().map(ToString::to_string));
     item.timings_ms.add_io(0.0, write_ms);
@@ -145,7 +151,7 @@ fn check_used(args: &LeafArgs) -> Outcome {
 }
 
 /// How blade and veins are meshed.
-const MESH: [&str; 5] = ["subdivisions", "sides", "rings", "caps", "margin_vein"];
+const MESH: [&str; 6] = ["subdivisions", "sides", "rings", "caps", "margin_vein", "wind"];
 /// What surface the blade is.
 const SURFACE: [&str; 3] = ["surface", "parameters", "vein_weight"];
 /// How the leaf is bent and painted.
@@ -243,7 +249,7 @@ fn options(args: &LeafArgs, in_file: Option<ThicknessRule>) -> Outcome<LeafOptio
     };
     let side_veins =
         args.side_veins.unwrap_or(if args.venation == Some(VenationWord::Palmate) { 4 } else { 0 });
-    let skin = SkinSpec { leaf: mesh, ..SkinSpec::default() };
+    let skin = SkinSpec { leaf: mesh, wind: args.wind, ..SkinSpec::default() };
     Ok(LeafOptions { spec, skin, pose, texture, side_veins, ..LeafOptions::default() })
 }
 

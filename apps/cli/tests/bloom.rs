@@ -97,6 +97,40 @@ fn a_law_is_fitted_and_drives_a_day_an_animation_and_another_species() {
 }
 
 #[test]
+fn a_flower_of_your_own_is_a_file() {
+    let dir = folder("bloom_own");
+    // What docs/bloom.md shows.
+    let docs = include_str!("../../../docs/bloom.md");
+    let star = docs.split("```toml").find(|part| part.contains("name = \"star\"")).unwrap();
+    let star = star.split("```").next().unwrap().trim_start();
+    fs::write(dir.join("star.toml"), star).unwrap();
+    good(&dir, &["bloom", "run", "star.toml", "-o", "star.glb", "--day", "6", "--report", "star.json"]);
+    let report = json(&dir.join("star.json"));
+    assert_eq!(
+        (&report["items"][0]["name"], &report["items"][0]["counts"]["petals"]),
+        (&"star".into(), &5.into())
+    );
+    // A preset's file is the preset.
+    let lily = include_str!("../../../crates/bloom/presets/lily.toml");
+    fs::write(dir.join("mine.toml"), lily).unwrap();
+    for (start, out) in [("mine.toml", "mine.ply"), ("lily", "own.ply")] {
+        good(&dir, &["bloom", "run", start, "-o", out, "--day", "3"]);
+    }
+    assert_eq!(fs::read(dir.join("mine.ply")).unwrap(), fs::read(dir.join("own.ply")).unwrap());
+    for (text, want) in [
+        (
+            star.replace("count = 5\nlength", "petals = 5\nlength"),
+            "line 5: whorls[0]: unknown field `petals`",
+        ),
+        (star.replace("0.12", "9"), "line 2: stalk_m must be 0 to 5 m, not 9"),
+        (format!("umbel = 200\nmesh = {{ rows = 100, columns = 100 }}\n{star}"), "triangles"),
+    ] {
+        fs::write(dir.join("bad.toml"), text).unwrap();
+        bad(&dir, &["bloom", "run", "bad.toml", "-o", "bad.glb"], want);
+    }
+}
+
+#[test]
 fn flowers_open_and_their_overlap_is_told() {
     let dir = folder("bloom_flower");
     good(

@@ -49,6 +49,10 @@ fn sketch_writes_model_picture_and_report() {
     for stroke in strokes {
         assert!(stroke["index"].is_u64() && stroke["class"].is_string() && stroke["organ"].is_string());
         assert!((0.0..=1.0).contains(&stroke["confidence"].as_f64().unwrap()), "{stroke}");
+        assert!(
+            stroke["source"] == "classifier" || stroke["source"].as_str().unwrap().starts_with("rule:"),
+            "{stroke}"
+        );
     }
     for key in ["flowers", "petals", "leaves", "branches", "nodes", "axes", "vertices", "triangles"] {
         assert!(item["counts"][key].is_u64(), "{key}");
@@ -260,6 +264,7 @@ fn classes_can_be_corrected_in_the_report() {
     let again: Value = serde_json::from_str(&said).unwrap();
     let strokes = &again["items"][0]["strokes"];
     assert_eq!((&strokes[1]["class"], &strokes[1]["confidence"]), (&"scribble".into(), &1.0.into()));
+    assert_eq!(strokes[1]["source"], "user");
     assert_ne!(again["items"][0]["digest"], report["items"][0]["digest"]);
 }
 

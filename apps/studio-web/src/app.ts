@@ -15,7 +15,7 @@ import { Shaping } from './shaping';
 import { Sheet, type SheetEvents, type Tool } from './sheet/sheet';
 import { Show } from './show';
 import { setSetting } from './store';
-import { currentLanguage, setLanguage, t } from './text';
+import { currentLanguage, setLanguage, t, tell } from './text';
 import { Theme } from './theme';
 import { SHEET_TOOLS } from './tools';
 import { endTour, firstRun, tour } from './tour';
@@ -129,7 +129,7 @@ export class App implements Page {
         this.sheet.setOrgans(session.organs);
         this.panel.follow();
         if (fresh.some((f) => f.view.id === session.state?.current)) this.shaping?.renewed();
-        for (const { id, error } of view.plants) this.sayOnce(id, error);
+        for (const { id, error } of view.plants) this.sayOnce(id, error && tell(error));
         this.show.idle();
         this.show.view();
         this.modes.refresh();
@@ -143,8 +143,8 @@ export class App implements Page {
       progress: (share) => this.show.progress(share),
       failed: (why) => {
         this.show.idle();
-        if (why === 'cancelled') note(t('status.stopped'));
-        else note(t('note.refused', { why }), 'bad');
+        if (why.code === 'cancelled') note(t('status.stopped'));
+        else note(t('note.refused', { why: tell(why) }), 'bad');
       },
       fault: (hold) => {
         this.show.idle();

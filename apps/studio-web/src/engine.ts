@@ -4,7 +4,8 @@
  */
 import wasmUrl from './wasm/burgeon_wasm_bg.wasm?url';
 import type { FromWorker, Request, Sent, StrokePoints, ToWorker } from './protocol';
-import type { DocumentState, SceneView } from './wire';
+import { tell } from './text';
+import type { DocumentState, Refusal, SceneView } from './wire';
 
 export interface EngineEvents {
   ready(): void;
@@ -14,7 +15,7 @@ export interface EngineEvents {
   /** The share that is done of what is grown, 0 to 1. */
   progress(share: number): void;
   /** No plant could be made; the last one stays. */
-  failed(why: string): void;
+  failed(why: Refusal): void;
   /** The worker died and was replaced; with `hold` it does not grow this drawing again by itself. */
   fault(hold: boolean): void;
   /** The worker cannot be started at all. */
@@ -117,7 +118,7 @@ export class Engine {
         const waiting = this.waiting.get(message.seq);
         // What was refused once would only be refused again.
         if (waiting) this.journal = this.journal.filter((r) => r !== waiting.request);
-        waiting?.reject(new Error(message.why));
+        waiting?.reject(new Error(tell(message.why)));
         this.waiting.delete(message.seq);
         break;
       }
@@ -138,7 +139,7 @@ export class Engine {
         break;
       case 'failed': {
         // What gave way to a newer change is no news.
-        const told = message.why !== 'cancelled' || this.interrupted;
+        const told = message.why.code !== 'cancelled' || this.interrupted;
         this.interrupted = false;
         this.growing = false;
         if (told) this.events.failed(message.why);

@@ -3,26 +3,10 @@
  * the core; nothing here knows what a field does.
  */
 import type { Json } from './wire';
+import type { Schema } from './schema';
 import { fieldName, helpOf, t, unitOf, wordOf } from './text';
 import { el } from './ui';
 
-export interface Schema {
-  $ref?: string;
-  $defs?: Record<string, Schema>;
-  type?: string | string[];
-  description?: string;
-  default?: Json;
-  minimum?: number;
-  maximum?: number;
-  'x-unit'?: string;
-  enum?: Json[];
-  const?: Json;
-  oneOf?: Schema[];
-  anyOf?: Schema[];
-  properties?: Record<string, Schema>;
-  required?: string[];
-  items?: Schema | boolean;
-}
 export type Fields = { [key: string]: Json };
 
 export interface FormEvents {
@@ -71,7 +55,7 @@ function tagOf(s: Schema): string | undefined {
 }
 
 /** The schema's own words, in the person's language. */
-const tip = (s: Schema): string => helpOf(s.description ?? '');
+const tip = (s: Schema): string => helpOf(s['x-help'], s.description);
 
 const round = (x: number): number => Number(x.toPrecision(4));
 
@@ -233,7 +217,7 @@ export class Form {
       onchange: () => this.events.set(path, select.value === '' ? null : select.value),
     });
     if (s.nullable) select.append(el('option', { value: '' }, t('form.auto')));
-    const meant = (word: string): string => helpOf(s.oneOf?.find((o) => o.const === word)?.description ?? '');
+    const meant = (word: string): string => tip(s.oneOf?.find((o) => o.const === word) ?? {});
     for (const word of choices)
       select.append(el('option', { value: word, title: meant(word) }, wordOf(word)));
     select.value = now === null ? '' : String(now);
@@ -323,14 +307,9 @@ export class Form {
       if (o === current || start(o))
         select.append(el('option', { value: wordFor(o), title: tip(o) }, wordOf(wordFor(o))));
     select.value = wordFor(current);
-    const kind = this.row(tag, { description: current.description ?? '' }, select);
-    return this.group(
-      name,
-      { ...current, ...(s.description ? { description: s.description } : {}) },
-      now,
-      path,
-      [kind],
-      tag,
-    );
+    const text = (s: Schema): Schema =>
+      s.description === undefined ? {} : { description: s.description, 'x-help': s['x-help'] ?? '' };
+    const kind = this.row(tag, text(current), select);
+    return this.group(name, { ...current, ...text(s) }, now, path, [kind], tag);
   }
 }

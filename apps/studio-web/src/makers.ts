@@ -1,6 +1,6 @@
 /** The left side of plants that are not drawn: species, age, obstacles; marks and surface; species and day. */
 import type { Engine } from './engine';
-import { Form, type Fields, type Schema } from './form';
+import { Form, type Fields } from './form';
 import type {
   Action,
   Command,
@@ -11,6 +11,7 @@ import type {
   PlantView,
   TreeCommand,
 } from './wire';
+import { named, type Schema } from './schema';
 import { helpOf, t, wordOf } from './text';
 import { button, el, icon } from './ui';
 
@@ -63,7 +64,7 @@ export function gallery(
           type: 'button',
           'data-preset': key,
           'aria-pressed': String(key === chosen),
-          title: [species, helpOf(about)].filter((x) => x).join(' · '),
+          title: [species, helpOf(`preset.${key}`, about)].filter((x) => x).join(' · '),
           onclick: () => act(key),
         },
         thumbnail(key, wordOf(key)),
@@ -547,5 +548,7 @@ export class MakerPanel {
 }
 
 export async function catalogueOf(engine: Engine): Promise<Catalogue> {
-  return JSON.parse(await engine.ask<string>({ kind: 'schema' })) as Catalogue;
+  const all = JSON.parse(await engine.ask<string>({ kind: 'schema' })) as Catalogue;
+  for (const maker of ['tree', 'leaf', 'flower'] as const) named(all[maker], maker);
+  return all;
 }

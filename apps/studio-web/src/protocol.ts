@@ -6,6 +6,7 @@ import type {
   ExportRequest,
   HeldTool,
   PlantView,
+  Refusal,
   SceneView,
   ShapeInput,
   ShapeReach,
@@ -84,12 +85,19 @@ export interface Sent {
 export type FromWorker =
   | { kind: 'ready' }
   | { kind: 'done'; seq: number; value: unknown }
-  | { kind: 'refused'; seq: number; why: string }
+  | { kind: 'refused'; seq: number; why: Refusal }
   | { kind: 'state'; state: DocumentState; fresh: StrokePoints[]; photo: Uint8Array<ArrayBuffer> | null }
   /** `fresh`: the plants whose meshes changed. */
   | { kind: 'view'; view: SceneView; fresh: Sent[] }
   | { kind: 'busy' }
   /** The share of an evaluation that is done. */
   | { kind: 'progress'; share: number }
-  | { kind: 'failed'; why: string }
+  | { kind: 'failed'; why: Refusal }
   | { kind: 'fault'; why: string };
+
+/** Numbers of the textures that these plants are shown with. */
+export function texturesOf(plants: readonly PlantView[]): Set<number> {
+  return new Set(
+    plants.flatMap((p) => p.materials.flatMap(({ texture }) => (texture ? [texture.number] : []))),
+  );
+}

@@ -1,6 +1,6 @@
 /** The list of the scene's plants: choose, name, hide, copy, delete, place; and the way to add another. */
 import type { Command, DocumentState, MakerWord, PlantState, SceneView } from './wire';
-import { t, type TextKey } from './text';
+import { t, tell, type TextKey } from './text';
 import { button, closePopover, dialog, el, icon, popover } from './ui';
 
 export type Gizmo = 'translate' | 'rotate' | 'scale';
@@ -75,7 +75,7 @@ export class SceneList {
   }
 
   private row(p: PlantState, state: DocumentState, view: SceneView | undefined): HTMLElement {
-    const error = view?.plants.find((v) => v.id === p.id)?.error ?? null;
+    const error = view?.plants.find((v) => v.id === p.id)?.error;
     const name = el(
       'button',
       {
@@ -83,13 +83,13 @@ export class SceneList {
         class: 'plant',
         'data-key': `p${p.id}`,
         'data-plant': p.maker,
-        title: error ?? t(`maker.${p.maker}` as TextKey),
+        title: error ? tell(error) : t(`maker.${p.maker}` as TextKey),
         'aria-pressed': String(p.id === state.current),
         onclick: () => this.events.select(p.id),
         ondblclick: () => this.rename(p),
         onkeydown: (e) => this.key(e as KeyboardEvent, p, state),
       },
-      icon(error === null ? p.maker : 'warning'),
+      icon(error ? 'warning' : p.maker),
       el('span', {}, p.name),
     );
     const eye = button(

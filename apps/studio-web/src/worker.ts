@@ -1,7 +1,8 @@
 /** The worker: owns the session, answers requests in order, and grows the plant when nothing else is to do. */
 import init, { studio_schema as studioSchema, StudioSession } from './wasm/burgeon_wasm.js';
+import { texturesOf } from './protocol';
 import type { FromWorker, PartArrays, Request, Sent, TexturePixels, ToWorker } from './protocol';
-import type { PlantView, SceneView, ShapeAnswer } from './wire';
+import type { PlantView, Refusal, SceneView, ShapeAnswer } from './wire';
 
 const page = self as unknown as DedicatedWorkerGlobalScope;
 let session: StudioSession | undefined;
@@ -25,6 +26,12 @@ function tell(message: FromWorker, transfer: Transferable[] = []): void {
 }
 
 const words = (e: unknown): string => (e instanceof Error ? e.message : String(e));
+
+/** What the core refuses it throws as the JSON of a `Refusal`; all else is a bug. */
+function refusal(e: unknown): Refusal {
+  if (typeof e === 'string') return JSON.parse(e);
+  return { code: 'internal', fields: { why: words(e) }, message: words(e) };
+}
 
 /** After a trap the memory of the session is not to be trusted: the page starts another worker. */
 function fault(e: unknown): void {
@@ -159,13 +166,17 @@ function evaluate(): void {
     const view: SceneView = JSON.parse(session.evaluate());
     const s = session;
     const all = view.guest ? [view.guest, ...view.plants] : view.plants;
+    // The core and the page forget pictures that nothing shows.
+    const shown = texturesOf(all);
+    for (const number of sent) if (!shown.has(number)) sent.delete(number);
     const fresh = all.filter((p) => p.fresh).map((p) => pack(s, p));
     tell({ kind: 'view', view, fresh }, fresh.flatMap(buffers));
   } catch (e) {
     if (e instanceof WebAssembly.RuntimeError || e instanceof RangeError) fault(e);
     else {
-      stale = words(e) === 'cancelled';
-      tell({ kind: 'failed', why: words(e) });
+      const why = refusal(e);
+      stale = why.code === 'cancelled';
+      tell({ kind: 'failed', why });
     }
   }
 }
@@ -205,7 +216,7 @@ page.onmessage = ({ data }: MessageEvent<ToWorker>) => {
   if (stop) Atomics.store(stop, 0, 0);
   const { seq, request } = data;
   if (!session) {
-    tell({ kind: 'refused', seq, why: 'the plant maker is not there' });
+    tell({ kind: 'refused', seq, why: refusal(new Error('the plant maker is not there')) });
     return;
   }
   try {
@@ -221,7 +232,7 @@ page.onmessage = ({ data }: MessageEvent<ToWorker>) => {
     tell({ kind: 'done', seq, value }, bytes);
     if (!quiet) schedule();
   } catch (e) {
-    tell({ kind: 'refused', seq, why: words(e) });
+    tell({ kind: 'refused', seq, why: refusal(e) });
     if (stale) schedule(); // stopped for a change that did not come
     if (e instanceof WebAssembly.RuntimeError || e instanceof RangeError) fault(e);
   }

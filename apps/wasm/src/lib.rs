@@ -12,8 +12,8 @@ mod host;
 use burgeon::formats::{self, CloudFormat, DrawingFormat, ExportSpec};
 use burgeon::leaf::ScanSpec;
 use burgeon::{
-    Digest, ItemReport, LeafOptions, OpeningPlant, Preset, Report, Run, SceneEvaluator, Seed, SketchOptions,
-    TreeOptions, Unit, bloom, make_from_sketch, make_leaf, make_tree,
+    Digest, FlowerOptions, ItemReport, LeafOptions, OpeningPlant, Preset, Report, Run, SceneEvaluator, Seed,
+    SketchOptions, TreeOptions, Unit, bloom, make_flower, make_from_sketch, make_leaf, make_tree,
 };
 use wasm_bindgen::prelude::*;
 
@@ -22,7 +22,7 @@ use burgeon::glam::DVec2;
 use burgeon::ink::{InkSample, Stroke, StrokeMode};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use workspace::{Column, ExportRequest, Workspace, packed};
+use workspace::{Column, ExportRequest, Refusal, Workspace, WorkspaceError, packed};
 
 use crate::host::page_run;
 
@@ -93,11 +93,13 @@ pub fn flower_digest(species: &str, frames: u32, seed: u64) -> Result<String, Js
     if frames < 2 {
         return Err(JsError::new("a flower that opens has at least 2 frames"));
     }
-    let law = bloom::GrowthLaw::logistic(&spec.name, spec.days[0], spec.rate);
+    let law = spec.own_law();
     let mut digest = Digest::new();
     for k in 0..frames {
-        let day = (spec.days[0] + spec.days[1]) * (f64::from(k) / f64::from(frames - 1));
-        digest.add(&spec.at(day, &law, Seed::new(seed)).model);
+        let day = (spec.opening_days + spec.wilting_days) * (f64::from(k) / f64::from(frames - 1));
+        let options = FlowerOptions::default();
+        let made = make_flower(&spec.name, &spec, (day, &law), &options, Seed::new(seed), &Run::plain())?;
+        digest.add(&made.model);
     }
     Ok(digest.hex())
 }
@@ -111,7 +113,7 @@ pub fn opening_digest(name: &str, bytes: &[u8], frames: u32, seed: u64) -> Resul
     let read = formats::read_drawings(bytes, DrawingFormat::Svg, name).next();
     let drawing = read.ok_or_else(|| JsError::new("there is no drawing"))??.drawing;
     let seed = Seed::new(seed);
-    let plant = OpeningPlant::new(&drawing, &SketchOptions::default(), seed, &Run::plain())?;
+    let mut plant = OpeningPlant::new(&drawing, &SketchOptions::default(), seed, &Run::plain())?;
     if frames < 2 {
         return Err(JsError::new("a flower that opens has at least 2 frames"));
     }
@@ -119,7 +121,7 @@ pub fn opening_digest(name: &str, bytes: &[u8], frames: u32, seed: u64) -> Resul
     let mut digest = Digest::new();
     for k in 0..frames {
         let day = (plant.days[0] + plant.days[1]) * (f64::from(k) / f64::from(frames - 1));
-        digest.add(&plant.at(day, &law, seed).0);
+        digest.add(&plant.at(day, &law, seed, &Run::plain())?.model);
     }
     Ok(digest.hex())
 }
@@ -206,16 +208,39 @@ pub fn tree_digest(preset: &str, detail: f64, seed: u64) -> Result<String, JsErr
     Ok(format!("{digest} {} {}", counts.vertices, counts.triangles))
 }
 
-fn to_json(value: &impl Serialize) -> Result<String, JsError> {
+/// A `Refusal` as JSON: what the worker catches.
+#[derive(Debug)]
+pub struct Refused(String);
+
+impl From<Refused> for JsValue {
+    fn from(refused: Refused) -> Self {
+        Self::from_str(&refused.0)
+    }
+}
+
+impl From<WorkspaceError> for Refused {
+    fn from(error: WorkspaceError) -> Self {
+        let refusal = Refusal::of(&error);
+        Self(serde_json::to_string(&refusal).unwrap_or(refusal.message))
+    }
+}
+
+impl From<serde_json::Error> for Refused {
+    fn from(error: serde_json::Error) -> Self {
+        WorkspaceError::Message(error.to_string()).into()
+    }
+}
+
+fn to_json(value: &impl Serialize) -> Result<String, Refused> {
     Ok(serde_json::to_string(value)?)
 }
 
-fn from_json<T: DeserializeOwned>(text: &str) -> Result<T, JsError> {
+fn from_json<T: DeserializeOwned>(text: &str) -> Result<T, Refused> {
     Ok(serde_json::from_str(text)?)
 }
 
 /// `samples`: x, y (up), milliseconds, pressure of each point; NaN where not known.
-fn stroke(mode: &str, samples: &[f64]) -> Result<Stroke, JsError> {
+fn stroke(mode: &str, samples: &[f64]) -> Result<Stroke, Refused> {
     let mode: StrokeMode = from_json(&to_json(&mode)?)?;
     let known = |x: f64| x.is_finite().then_some(x);
     let samples = samples.chunks_exact(4).filter(|p| p[0].is_finite() && p[1].is_finite());
@@ -252,7 +277,7 @@ impl StudioSession {
     ///
     /// # Errors
     /// What is wrong with the file and what to do.
-    pub fn open(&mut self, file_name: &str, bytes: &[u8], row: u32, fresh: bool) -> Result<String, JsError> {
+    pub fn open(&mut self, file_name: &str, bytes: &[u8], row: u32, fresh: bool) -> Result<String, Refused> {
         to_json(&self.0.open(file_name, bytes, row as usize, fresh)?)
     }
 
@@ -260,7 +285,7 @@ impl StudioSession {
     ///
     /// # Errors
     /// When it is not there.
-    pub fn select(&mut self, plant: u32) -> Result<(), JsError> {
+    pub fn select(&mut self, plant: u32) -> Result<(), Refused> {
         Ok(self.0.select(PlantId(plant))?)
     }
 
@@ -268,7 +293,7 @@ impl StudioSession {
     ///
     /// # Errors
     /// What is wrong with the file, or that no tree is chosen.
-    pub fn add_obstacle(&mut self, file_name: &str, bytes: &[u8]) -> Result<(), JsError> {
+    pub fn add_obstacle(&mut self, file_name: &str, bytes: &[u8]) -> Result<(), Refused> {
         Ok(self.0.add_obstacle(file_name, bytes)?)
     }
 
@@ -287,7 +312,7 @@ impl StudioSession {
     ///
     /// # Errors
     /// When no point is finite, or the mode is unknown.
-    pub fn add_stroke(&mut self, mode: &str, samples: &[f64]) -> Result<u32, JsError> {
+    pub fn add_stroke(&mut self, mode: &str, samples: &[f64]) -> Result<u32, Refused> {
         Ok(self.0.add_stroke(stroke(mode, samples)?)?.0)
     }
 
@@ -295,7 +320,7 @@ impl StudioSession {
     ///
     /// # Errors
     /// When the mode is unknown.
-    pub fn draft(&mut self, mode: &str, samples: &[f64]) -> Result<(), JsError> {
+    pub fn draft(&mut self, mode: &str, samples: &[f64]) -> Result<(), Refused> {
         self.0.draft(stroke(mode, samples)?);
         Ok(())
     }
@@ -304,7 +329,7 @@ impl StudioSession {
     ///
     /// # Errors
     /// Why it was refused.
-    pub fn run(&mut self, command: &str) -> Result<(), JsError> {
+    pub fn run(&mut self, command: &str) -> Result<(), Refused> {
         Ok(self.0.run(from_json::<burgeon::document::Command>(command)?)?)
     }
 
@@ -312,7 +337,7 @@ impl StudioSession {
     ///
     /// # Errors
     /// Why it was refused.
-    pub fn act(&mut self, action: &str) -> Result<(), JsError> {
+    pub fn act(&mut self, action: &str) -> Result<(), Refused> {
         Ok(self.0.act(&from_json(action)?)?)
     }
 
@@ -320,16 +345,16 @@ impl StudioSession {
     ///
     /// # Errors
     /// When none of them is there.
-    pub fn copy(&self, ids: &[u32]) -> Result<String, JsError> {
+    pub fn copy(&self, ids: &[u32]) -> Result<String, Refused> {
         let ids: Vec<StrokeId> = ids.iter().copied().map(StrokeId).collect();
-        Ok(String::from_utf8(self.0.copy(&ids)?)?)
+        Ok(String::from_utf8_lossy(&self.0.copy(&ids)?).into_owned())
     }
 
     /// Adds the strokes of a drawing given as text (our JSON, SVG, InkML), moved; returns their numbers.
     ///
     /// # Errors
     /// What is wrong with it.
-    pub fn paste(&mut self, text: &str, x: f64, y: f64) -> Result<Vec<u32>, JsError> {
+    pub fn paste(&mut self, text: &str, x: f64, y: f64) -> Result<Vec<u32>, Refused> {
         Ok(numbers(self.0.paste(text, DVec2::new(x, y))?))
     }
 
@@ -337,7 +362,7 @@ impl StudioSession {
     ///
     /// # Errors
     /// When it is no PNG or too large.
-    pub fn place_photo(&mut self, png: &[u8], x: f64, y: f64, width: f64) -> Result<(), JsError> {
+    pub fn place_photo(&mut self, png: &[u8], x: f64, y: f64, width: f64) -> Result<(), Refused> {
         Ok(self.0.place_photo(png, DVec2::new(x, y), width)?)
     }
 
@@ -350,8 +375,9 @@ impl StudioSession {
     ///
     /// # Errors
     /// `cancelled`, or why there is none.
-    pub fn variant(&mut self, seed: &str, detail: f64) -> Result<String, JsError> {
-        let seed = Seed::new(seed.parse()?);
+    pub fn variant(&mut self, seed: &str, detail: f64) -> Result<String, Refused> {
+        let seed: Seed =
+            Seed::new(seed.parse().map_err(|_| WorkspaceError::Message(format!("{seed:?} is no seed")))?);
         to_json(&page_run(|run| self.0.variant(seed, detail, run))?)
     }
 
@@ -369,7 +395,7 @@ impl StudioSession {
     ///
     /// # Errors
     /// When there is no plant, or the words are not known.
-    pub fn shape(&mut self, tool: &str, reach: &str, input: &str) -> Result<String, JsError> {
+    pub fn shape(&mut self, tool: &str, reach: &str, input: &str) -> Result<String, Refused> {
         to_json(&self.0.shape(from_json(tool)?, from_json(reach)?, from_json(input)?)?)
     }
 
@@ -382,7 +408,7 @@ impl StudioSession {
     ///
     /// # Errors
     /// Never, but for our own bugs.
-    pub fn share(&self) -> Result<Vec<u8>, JsError> {
+    pub fn share(&self) -> Result<Vec<u8>, Refused> {
         Ok(self.0.share()?)
     }
 
@@ -390,7 +416,7 @@ impl StudioSession {
     ///
     /// # Errors
     /// While another is open.
-    pub fn begin(&mut self, name: &str) -> Result<(), JsError> {
+    pub fn begin(&mut self, name: &str) -> Result<(), Refused> {
         Ok(self.0.begin(name)?)
     }
 
@@ -398,7 +424,7 @@ impl StudioSession {
     ///
     /// # Errors
     /// Why it was refused.
-    pub fn stage(&mut self, command: &str) -> Result<(), JsError> {
+    pub fn stage(&mut self, command: &str) -> Result<(), Refused> {
         Ok(self.0.stage(from_json::<burgeon::document::Command>(command)?)?)
     }
 
@@ -426,7 +452,7 @@ impl StudioSession {
     ///
     /// # Errors
     /// Never, but for our own bugs.
-    pub fn state(&self) -> Result<String, JsError> {
+    pub fn state(&self) -> Result<String, Refused> {
         to_json(&self.0.state())
     }
 
@@ -445,7 +471,7 @@ impl StudioSession {
     ///
     /// # Errors
     /// `cancelled`.
-    pub fn evaluate(&mut self) -> Result<String, JsError> {
+    pub fn evaluate(&mut self) -> Result<String, Refused> {
         to_json(&page_run(|run| self.0.evaluate(run))?)
     }
 
@@ -483,7 +509,7 @@ impl StudioSession {
     ///
     /// # Errors
     /// Never, but for our own bugs.
-    pub fn save(&self) -> Result<Vec<u8>, JsError> {
+    pub fn save(&self) -> Result<Vec<u8>, Refused> {
         Ok(self.0.save()?)
     }
 
@@ -491,7 +517,7 @@ impl StudioSession {
     ///
     /// # Errors
     /// When there is nothing to export.
-    pub fn export(&mut self, request: &str) -> Result<Vec<u8>, JsError> {
+    pub fn export(&mut self, request: &str) -> Result<Vec<u8>, Refused> {
         let request: ExportRequest = from_json(request)?;
         Ok(packed(request.format, page_run(|run| self.0.export(&request, run))?)?)
     }

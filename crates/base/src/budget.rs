@@ -213,6 +213,12 @@ impl fmt::Display for Grouped {
     }
 }
 
+crate::coded!(OverBudget {
+    Self { what, number, limit, .. } => "over-budget" {
+        what = what.words(), number = Grouped(*number), limit = Grouped(*limit)
+    },
+});
+
 #[cfg(test)]
 mod tests {
     use super::*;

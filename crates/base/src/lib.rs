@@ -8,6 +8,7 @@
 //! | [`turn`] | turns and directions, likewise |
 //! | `seed` | [`Seed`], [`Draw`], [`Stream`]: randomness as a value |
 //! | `budget` | [`Budget`], [`OverBudget`]: how much may be made |
+//! | `coded` | [`Coded`], [`coded!`]: errors as codes with fields |
 //! | `task` | [`CancelToken`], [`Executor`], [`Run`]: how something is computed, never what |
 //! | `quote` | [`brief`], [`quoted`]: how much of somebody's words a message repeats |
 //! | `report` | [`Report`], [`Warning`]: what a computation wants to tell its user |
@@ -17,6 +18,7 @@
 //! | `ids` | [`define_id!`]: typed `u32` handles |
 
 mod budget;
+mod coded;
 mod digest;
 mod exps;
 mod ids;
@@ -30,6 +32,7 @@ pub mod turn;
 mod units;
 
 pub use budget::{Budget, Counted, OverBudget};
+pub use coded::{Code, Coded, Told};
 pub use digest::{Digest, Digestible};
 pub use quote::{brief, quoted};
 pub use report::{Report, Stage, Warning};

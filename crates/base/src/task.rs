@@ -166,6 +166,8 @@ impl Run<'static> {
     }
 }
 
+crate::coded!(Cancelled { Self => "cancelled" {} });
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,51 +1,33 @@
 //! Stamens, pistil, disc and stalk of a flower at one day.
 
 use base::{Draw, Seed, ops};
-use glam::{DQuat, DVec3};
-use mesh::TriMesh;
+use glam::DVec3;
+use plant::{AxisKind, NodeId, OrganKind, Plant};
 
-use crate::flower::{FlowerFrame, FlowerSpec, finish, quads, rad};
-
-const GREEN: [f32; 3] = [0.16, 0.32, 0.07];
+use crate::flower::{FlowerSpec, Stamens, rad};
+use crate::organs::{Bed, Grid, Seat};
 
 impl FlowerSpec {
     /// Stamens, pistil and disc: `g` is how far the flower has opened, `wilt` how far it has wilted, 0 to 1.
-    pub(crate) fn centre(&self, frame: &mut FlowerFrame, g: f64, wilt: f64, day: f64, seed: Seed) {
-        let (mut stamens, mut disc) = (TriMesh::default(), TriMesh::default());
-        let heights = || self.whorls.iter().map(|w| w.insertion[1]);
+    pub(crate) fn centre(&self, bed: &mut Bed<'_>, g: f64, wilt: f64) {
+        let heights = || self.whorls.iter().map(|w| w.insertion.height_m);
         let (low, high) = (heights().fold(f64::INFINITY, f64::min), heights().fold(0.0, f64::max));
         let base = if low.is_finite() { low } else { 0.0 };
-        for f in 0..self.umbel.max(1) {
-            let place = self.place(f, day);
-            for k in 0..self.stamens.0 {
-                let draws = seed.child(u64::from(f)).child(u64::from(k));
-                self.stamen(&mut stamens, k, [g, wilt, base], place, draws);
-            }
-            if self.pistil > 0.0 {
-                pistil(&mut stamens, self.pistil * ops::lerp(0.5, 1.0, g), self.pistil, base, place, wilt);
-            }
-            if self.disc > 0.0 {
-                florets(&mut disc, self.disc * ops::lerp(0.75, 1.0, g), high, place, [g, wilt]);
-            }
+        for k in 0..self.stamens.count {
+            self.stamen(bed, k, [g, wilt, base]);
         }
-        for (name, material, mesh) in [("stamens", 1, stamens), ("disc", 2, disc)] {
-            if !mesh.positions.is_empty() {
-                let none = vec![u32::MAX; mesh.triangles.len()];
-                finish(frame, name.into(), material, mesh, none);
-            }
+        if self.pistil_m > 0.0 {
+            pistil(bed, self.pistil_m * ops::lerp(0.5, 1.0, g), self.pistil_m, base, wilt);
+        }
+        if self.disc_m > 0.0 {
+            florets(bed, self.disc_m * ops::lerp(0.75, 1.0, g), high, [g, wilt]);
         }
     }
 
     /// A filament that bends outwards, and an anther across its end.
-    fn stamen(
-        &self,
-        mesh: &mut TriMesh,
-        k: u32,
-        [g, wilt, base]: [f64; 3],
-        place: (DVec3, DQuat),
-        seed: Seed,
-    ) {
-        let (count, length, spread) = self.stamens;
+    fn stamen(&self, bed: &mut Bed<'_>, k: u32, [g, wilt, base]: [f64; 3]) {
+        let seed = bed.seed.child(u64::from(k));
+        let Stamens { count, length_m: length, spread_deg: spread } = self.stamens;
         let ring = f64::from(k) / f64::from(count.max(1));
         let tilt = rad(spread * ops::lerp(0.25, 1.0, g) * ops::lerp(0.6, 1.0, ring) + 18.0 * wilt);
         let long =
@@ -61,143 +43,104 @@ impl FlowerSpec {
             foot + (out * sin + DVec3::Y * cos) * (long * t)
         };
         let thick = (0.010 * length).clamp(0.0002, 0.0010);
-        let line: Vec<DVec3> = (0..=6).map(|i| place.0 + place.1 * at(f64::from(i) / 6.0)).collect();
+        let line: Vec<DVec3> = (0..=6).map(|i| at(f64::from(i) / 6.0)).collect();
         let radii: Vec<f64> = (0..=6).map(|i| thick * (1.0 - 0.5 * f64::from(i) / 6.0)).collect();
-        tube(mesh, &line, &radii, [0.72, 0.78, 0.48]);
+        bed.strand(OrganKind::Stamen, &line, &radii, [0.72, 0.78, 0.48]);
         let half = (0.085 * length).clamp(0.0009, 0.006) * ops::lerp(0.7, 1.0, g);
         let across = (DVec3::Y.cross(out) + out * 0.25 + DVec3::Y * 0.2).try_normalize().unwrap_or(DVec3::X);
         let tip = at(1.0);
-        let line: Vec<DVec3> = (0..=4)
-            .map(|i| place.0 + place.1 * (tip + across * (half * (f64::from(i) / 2.0 - 1.0))))
-            .collect();
+        let line: Vec<DVec3> = (0..=4).map(|i| tip + across * (half * (f64::from(i) / 2.0 - 1.0))).collect();
         let fat = 0.24 * half + 0.8 * thick;
         // Open anthers are dusted with pollen; later they shrink and darken.
         let [fresh, old] = [[0.74_f32, 0.32, 0.04], [0.22, 0.10, 0.03]];
         #[expect(clippy::cast_possible_truncation, reason = "colours are f32")]
         let w = wilt as f32;
         let color = [0, 1, 2].map(|q| fresh[q] + (old[q] - fresh[q]) * w);
-        tube(mesh, &line, &[0.25, 0.85, 1.0, 0.85, 0.25].map(|r| r * fat * (1.0 - 0.35 * wilt)), color);
+        let radii = [0.25, 0.85, 1.0, 0.85, 0.25].map(|r| r * fat * (1.0 - 0.35 * wilt));
+        bed.strand(OrganKind::Anther, &line, &radii, color);
     }
 
-    /// The stalk, bent towards where the head nods, and what joins it with the petals.
-    pub(crate) fn stalks(&self, frame: &mut FlowerFrame, day: f64) {
-        let mut mesh = TriMesh::default();
-        let thick = self.whorls.first().map_or(0.002, |w| 0.03 * w.length + 0.001).max(0.28 * self.disc);
+    /// The stalk, bent towards where the head nods, and stalks of an umbel: what bears each flower.
+    pub(crate) fn stalks(&self, plant: &mut Plant, seat: &Seat, day: f64, seed: Seed) -> Vec<Option<NodeId>> {
+        let thick = self.whorls.first().map_or(0.002, |w| 0.03 * w.length_m + 0.001).max(0.28 * self.disc_m);
         let slim = thick.min(0.006);
-        if self.stalk > 0.0 {
-            let end = if self.umbel > 1 { DVec3::Y * self.stalk } else { self.place(0, day).0 };
+        let mut stem = |bearer, line: &[DVec3], radius: f64, key: Seed| {
+            let line: Vec<DVec3> = line.iter().map(|&p| seat.at(p)).collect();
+            let id = plant.add_axis(AxisKind::Stem, bearer, key.number(), &line, None);
+            let first = plant.axis(id).nodes.start as usize;
+            plant.nodes.radius_m[first..].fill(radius);
+            plant.axis(id).node_ids().last()
+        };
+        let mut bearer = seat.bearer;
+        if self.stalk_m > 0.0 {
+            let end = if self.umbel > 1 { DVec3::Y * self.stalk_m } else { self.place(0, day).0 };
             // Straight up at the foot; at the end half as steep as the head nods.
-            let (s, c) = ops::sin_cos(rad(if self.umbel > 1 { 0.0 } else { 0.8 * self.nod }));
-            let foot = DVec3::Y * (0.55 * self.stalk);
-            let back = end - DVec3::new(0.0, c, s) * (0.22 * self.stalk);
+            let (s, c) = ops::sin_cos(rad(if self.umbel > 1 { 0.0 } else { 0.8 * self.nod_deg }));
+            let foot = DVec3::Y * (0.55 * self.stalk_m);
+            let back = end - DVec3::new(0.0, c, s) * (0.22 * self.stalk_m);
             let at = |t: f64| {
                 let (a, b, d) = (DVec3::ZERO.lerp(foot, t), foot.lerp(back, t), back.lerp(end, t));
                 a.lerp(b, t).lerp(b.lerp(d, t), t)
             };
             let line: Vec<DVec3> = (0..=12).map(|i| at(f64::from(i) / 12.0)).collect();
-            tube(&mut mesh, &line, &[slim; 13], GREEN);
+            bearer = stem(bearer, &line, slim, seed);
         }
-        for f in 0..self.umbel.max(1) {
-            let (place, turn) = self.place(f, day);
-            if self.umbel > 1 {
-                let foot = DVec3::Y * self.stalk;
-                let middle = foot.lerp(place, 0.5) + DVec3::Y * 0.004;
-                tube(&mut mesh, &[foot, middle, place], &[0.5 * slim; 3], GREEN);
-            }
-            // The receptacle joins stalk and petals.
-            let wide = self.whorls.iter().map(|w| w.insertion[0]).fold(0.0, f64::max).max(self.disc);
-            let ends = self.whorls.iter().map(|w| w.insertion);
-            bowl(&mut mesh, (place, turn), wide, -0.6 * wide - 0.002, ends);
+        if self.umbel <= 1 {
+            return vec![bearer];
         }
-        let none = vec![u32::MAX; mesh.triangles.len()];
-        finish(frame, "stalk".into(), 3, mesh, none);
+        let pedicel = |f: u32| {
+            let foot = DVec3::Y * self.stalk_m;
+            let place = self.place(f, day).0;
+            let middle = foot.lerp(place, 0.5) + DVec3::Y * 0.004;
+            stem(bearer, &[foot, middle, place], 0.5 * slim, seed.child(u64::from(f)))
+        };
+        (0..self.umbel).map(pedicel).collect()
+    }
+
+    /// What joins stalk and petals: from the stalk up along the feet of sepals and petals, and to the axis.
+    pub(crate) fn receptacle(&self, bed: &mut Bed<'_>) {
+        let wide = self.whorls.iter().map(|w| w.insertion.radius_m).fold(0.0, f64::max).max(self.disc_m);
+        let low = -0.6 * wide - 0.002;
+        let mut rings = vec![[0.08 * wide, low], [0.6 * wide, 0.45 * low]];
+        rings.extend(self.whorls.iter().map(|w| [1.01 * w.insertion.radius_m, w.insertion.height_m]));
+        let top = rings.last().map_or(0.0, |r| r[1]);
+        rings.push([0.02 * wide, top + 0.0004]);
+        bed.turned(OrganKind::Pedicel, &rings);
     }
 }
 
-fn pistil(mesh: &mut TriMesh, long: f64, full: f64, base: f64, place: (DVec3, DQuat), wilt: f64) {
+fn pistil(bed: &mut Bed<'_>, long: f64, full: f64, base: f64, wilt: f64) {
     let thick = (0.016 * full).clamp(0.0005, 0.0022);
     // Ovary, style, stigma.
     let parts =
         [(0.0, 1.6), (0.1, 2.0), (0.22, 1.1), (0.6, 0.8), (0.93, 0.9), (0.96, 2.0), (0.99, 2.2), (1.0, 1.2)];
-    let line: Vec<DVec3> =
-        parts.iter().map(|p| place.0 + place.1 * DVec3::new(0.0, base + p.0 * long, 0.0)).collect();
-    let radii: Vec<f64> = parts.iter().map(|p| p.1 * thick).collect();
+    let line = parts.map(|p| DVec3::new(0.0, base + p.0 * long, 0.0));
+    let radii = parts.map(|p| p.1 * thick);
     #[expect(clippy::cast_possible_truncation, reason = "colours are f32")]
     let w = 0.5 * wilt as f32;
-    tube(mesh, &line, &radii, [0.50, 0.64, 0.22].map(|x: f32| x * (1.0 - w)));
-}
-
-/// A six-sided tube with a radius at each point, its ends closed. Nothing for fewer than two points.
-fn tube(mesh: &mut TriMesh, line: &[DVec3], radii: &[f64], color: [f32; 3]) {
-    let start = u32::try_from(mesh.positions.len()).unwrap_or(u32::MAX);
-    let frames = geom::rotation_minimising_frames(line, None);
-    let (Some(first), Some(last)) = (frames.first(), frames.last()) else { return };
-    for (f, r) in frames.iter().zip(radii) {
-        for k in 0..=6 {
-            let (s, c) = ops::sin_cos(ops::TAU * f64::from(k) / 6.0);
-            mesh.push(f.origin + (f.normal * c + f.binormal * s) * *r);
-            mesh.colors.push(color);
-            mesh.uvs.push([0.0, 0.0]);
-        }
-    }
-    let before = mesh.triangles.len();
-    let rows = u32::try_from(frames.len().min(radii.len()) - 1).unwrap_or(0);
-    quads(mesh, start, rows, 6);
-    mesh.triangles.iter_mut().skip(before).for_each(|t| t.swap(1, 2));
-    for (ring, origin, flip) in [(0, first.origin, true), (rows, last.origin, false)] {
-        let middle = mesh.push(origin);
-        mesh.colors.push(color);
-        mesh.uvs.push([0.0, 0.0]);
-        for k in 0..6 {
-            let (a, b) = (start + 7 * ring + k, start + 7 * ring + k + 1);
-            mesh.triangles.push(if flip { [middle, b, a] } else { [middle, a, b] });
-        }
-    }
-}
-
-/// From the stalk up along the feet of sepals and petals, `ends` from the outermost on, and to the axis.
-fn bowl(
-    mesh: &mut TriMesh,
-    (place, turn): (DVec3, DQuat),
-    wide: f64,
-    low: f64,
-    ends: impl Iterator<Item = [f64; 2]>,
-) {
-    let start = u32::try_from(mesh.positions.len()).unwrap_or(u32::MAX);
-    let mut rings = vec![[0.08 * wide, low], [0.6 * wide, 0.45 * low]];
-    rings.extend(ends.map(|[r, y]| [1.01 * r, y]));
-    let top = rings.last().map_or(0.0, |r| r[1]);
-    rings.push([0.02 * wide, top + 0.0004]);
-    for [r, y] in &rings {
-        for k in 0..=12 {
-            let (s, c) = ops::sin_cos(ops::TAU * f64::from(k) / 12.0);
-            mesh.push(place + turn * DVec3::new(r * c, *y, r * s));
-            mesh.colors.push(GREEN);
-            mesh.uvs.push([0.0, 0.0]);
-        }
-    }
-    quads(mesh, start, u32::try_from(rings.len() - 1).unwrap_or(0), 12);
+    bed.strand(OrganKind::Pistil, &line, &radii, [0.50, 0.64, 0.22].map(|x: f32| x * (1.0 - w)));
 }
 
 /// A dome of florets in Vogel's spiral (phyllotaxis of 137.5 degrees): they open, with pollen, from the rim inwards.
-fn florets(mesh: &mut TriMesh, radius: f64, base: f64, place: (DVec3, DQuat), [g, wilt]: [f64; 2]) {
+fn florets(bed: &mut Bed<'_>, radius: f64, base: f64, [g, wilt]: [f64; 2]) {
     let height = |share: f64| base + 0.30 * radius * (1.0 - share) - 0.001;
-    let start = u32::try_from(mesh.positions.len()).unwrap_or(u32::MAX);
-    let floor = [0.05, 0.035, 0.012];
+    let mut floor = Grid {
+        points: Vec::new(),
+        across: (0..=24).map(|k| f64::from(k) / 24.0).collect(),
+        along: (0..=6).map(|i| f64::from(i) / 6.0).collect(),
+        colors: vec![[0.05, 0.035, 0.012]; 7 * 25],
+    };
     for i in 0..=6 {
         let r = f64::from(i) / 6.0;
-        for k in 0..=24 {
+        let y = if i == 6 { base - 0.25 * radius } else { height(r * r) };
+        let r = radius * if i == 6 { 0.9 } else { r };
+        // Round the other way: a sheet's upper side has its columns from right to left.
+        for k in (0..=24).rev() {
             let (s, c) = ops::sin_cos(ops::TAU * f64::from(k) / 24.0);
-            let y = if i == 6 { base - 0.25 * radius } else { height(r * r) };
-            let r = radius * if i == 6 { 0.9 } else { r };
-            mesh.push(place.0 + place.1 * DVec3::new(r * c, y, r * s));
-            mesh.colors.push(floor);
-            mesh.uvs.push([0.0, 0.0]);
+            floor.points.push(DVec3::new(r * c, y, r * s));
         }
     }
-    let before = mesh.triangles.len();
-    quads(mesh, start, 6, 24);
-    mesh.triangles.iter_mut().skip(before).for_each(|t| t.swap(1, 2));
+    bed.around(OrganKind::Disc, DVec3::Y * base, floor);
     let count = 280;
     for k in 0..count {
         let share = (f64::from(k) + 0.5) / f64::from(count);
@@ -216,9 +159,8 @@ fn florets(mesh: &mut TriMesh, radius: f64, base: f64, place: (DVec3, DQuat), [g
             let x = ops::lerp(ops::lerp(young, pollen[q], 0.85 * bloom), dry[q], wilt) as f32;
             x
         });
-        let line: Vec<DVec3> =
-            [0.0, 0.6, 1.0].iter().map(|t| place.0 + place.1 * (foot + up * (t * long))).collect();
+        let line = [0.0, 0.6, 1.0].map(|t| foot + up * (t * long));
         let fat = 0.047 * radius;
-        tube(mesh, &line, &[fat, fat, 0.45 * fat], color);
+        bed.strand(OrganKind::Floret, &line, &[fat, fat, 0.45 * fat], color);
     }
 }

@@ -5,55 +5,108 @@
 //! leans: one edge lies inside its neighbour, the other outside, so petals may overlap but never meet; whorls are
 //! nested.
 
-use base::{Seed, ops, turn};
+use base::{Budget, Counted, OverBudget, Seed, ops, turn};
 use glam::{DQuat, DVec2, DVec3};
-use mesh::{Material, MaterialId, MaterialKind, Model, Part, TriMesh};
+use plant::{Flower, FlowerId, OrganKind, Plant};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
+use crate::organs::{Bed, Grid, Seat};
 use crate::{GrowthLaw, Quantity};
 
 /// One ring of petals.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
 pub struct Whorl {
-    /// Petals.
+    /// Petals, 1 to 200, default 6.
+    #[schemars(range(min = 1, max = 200))]
     pub count: u32,
-    /// Length of an open petal, metres.
-    pub length: f64,
-    /// Greatest width, metres.
-    pub width: f64,
-    /// Place of the greatest width along the petal, 0.2 to 0.9.
+    /// Length of an open petal, metres, default 0.05.
+    #[schemars(range(min = 1e-4, max = 10.0), extend("x-unit" = "m"))]
+    pub length_m: f64,
+    /// Greatest width, metres, default 0.02.
+    #[schemars(range(min = 1e-5, max = 10.0), extend("x-unit" = "m"))]
+    pub width_m: f64,
+    /// Place of the greatest width along the petal, 0.2 to 0.9, default 0.5.
+    #[schemars(range(min = 0.2, max = 0.9))]
     pub widest: f64,
-    /// Width at the base as a share of the greatest.
+    /// Width at the base as a share of the greatest, default 0.3.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub claw: f64,
-    /// How pointed the tip is: 1 is a point, 0 is round.
+    /// How pointed the tip is: 1 is a point, 0 is round; default 0.5.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub point: f64,
-    /// Radius and height of the insertion, metres.
-    pub insertion: [f64; 2],
+    /// Where petals are inserted.
+    pub insertion: Insertion,
     /// Angle to the axis at base, middle and tip in the bud, degrees.
-    pub bud: [f64; 3],
+    #[schemars(inner(range(min = -180.0, max = 360.0)), extend("x-unit" = "deg"))]
+    pub bud_deg: [f64; 3],
     /// The same in full bloom.
-    pub open: [f64; 3],
+    #[schemars(inner(range(min = -180.0, max = 360.0)), extend("x-unit" = "deg"))]
+    pub open_deg: [f64; 3],
     /// The same when wilted.
-    pub wilted: [f64; 3],
-    /// Days that the whorl opens later than the first, as a share of the opening.
+    #[schemars(inner(range(min = -180.0, max = 360.0)), extend("x-unit" = "deg"))]
+    pub wilted_deg: [f64; 3],
+    /// Days that the whorl opens later than the first, as a share of the opening, 0 to 0.9, default 0.
+    #[schemars(range(min = 0.0, max = 0.9))]
     pub delay: f64,
-    /// Turn of the whorl about the axis, degrees.
-    pub phase: f64,
-    /// Lean within the whorl: distance of one edge to the other across the petal, metres.
-    pub lean: f64,
-    /// Linear colour at the base and at the tip.
-    pub colors: [[f32; 3]; 2],
-    /// How green the bud still is, 0 to 1.
+    /// Turn of the whorl about the axis, degrees, default 0.
+    #[schemars(range(min = -360.0, max = 3600.0), extend("x-unit" = "deg"))]
+    pub phase_deg: f64,
+    /// Lean within the whorl: distance of one edge to the other across the petal, metres, default 0.002.
+    #[schemars(range(min = -1.0, max = 1.0), extend("x-unit" = "m"))]
+    pub lean_m: f64,
+    /// Linear colour at the base: shares of red, green and blue light.
+    #[schemars(inner(range(min = 0.0, max = 1.0)))]
+    pub base_color: [f32; 3],
+    /// Linear colour at the tip.
+    #[schemars(inner(range(min = 0.0, max = 1.0)))]
+    pub tip_color: [f32; 3],
+    /// How green the bud still is, 0 to 1, default 0.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub green: f64,
-    /// Sepals or bracts: they keep their form when petals are replaced.
+    /// Sepals or bracts: they keep their form when petals are replaced. Default false.
     pub sepal: bool,
-    /// The petal's own outline, drawn or measured; without one it is made of the shares above.
+    /// The petal's own outline, drawn or measured; without one it is made of the shares above. Not saved.
+    #[serde(skip)]
     pub form: Option<PetalForm>,
+}
+
+/// Where the petals of a whorl are inserted.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Insertion {
+    /// Distance from the axis, metres.
+    #[schemars(range(min = 0.0, max = 10.0), extend("x-unit" = "m"))]
+    pub radius_m: f64,
+    /// Height above the base of the flower, metres.
+    #[schemars(range(min = -10.0, max = 10.0), extend("x-unit" = "m"))]
+    pub height_m: f64,
 }
 
 impl Default for Whorl {
     /// Six slender petals of 5 cm.
     fn default() -> Self {
-        crate::species::PLAIN
+        Self {
+            count: 6,
+            length_m: 0.05,
+            width_m: 0.02,
+            widest: 0.5,
+            claw: 0.3,
+            point: 0.5,
+            insertion: Insertion { radius_m: 0.004, height_m: 0.0 },
+            bud_deg: [20.0, 0.0, -8.0],
+            open_deg: [30.0, 50.0, 80.0],
+            wilted_deg: [60.0, 100.0, 140.0],
+            delay: 0.0,
+            phase_deg: 0.0,
+            lean_m: 0.002,
+            base_color: [0.8; 3],
+            tip_color: [0.8; 3],
+            green: 0.0,
+            sepal: false,
+            form: None,
+        }
     }
 }
 
@@ -110,60 +163,97 @@ impl PetalForm {
     }
 }
 
-/// A flower that opens.
-#[derive(Clone, Debug, PartialEq)]
+/// A flower that opens. Saved as TOML; the species that come with the program are such files ([`preset`](crate::preset)).
+///
+/// ```
+/// let text = "name = \"star\"\nstalk_m = 0.1\n[[whorls]]\ncount = 5\nlength_m = 0.03";
+/// let star: bloom::FlowerSpec = spec::from_toml(text)?;
+/// assert_eq!((star.whorls[0].count, star.umbel, star.opening_days), (5, 1, 6.0));
+/// # Ok::<(), spec::SpecFault>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
 pub struct FlowerSpec {
     /// Name of the species.
     pub name: String,
-    /// Outermost first.
+    /// Rings of petals, outermost first.
     pub whorls: Vec<Whorl>,
-    /// Stamens: number, open length in metres, spread in degrees.
-    pub stamens: (u32, f64, f64),
-    /// Length of the pistil, metres; 0 for none.
-    pub pistil: f64,
-    /// Radius of a disc of florets, metres; 0 for none.
-    pub disc: f64,
-    /// Length of the stalk, metres; 0 for a flower without one, such as one that is put on a plant.
-    pub stalk: f64,
-    /// Angle by which the open flower nods, degrees; wilting adds to it.
-    pub nod: f64,
-    /// Flowers of an umbel; 1 for a single flower.
+    /// Stamens; default none.
+    pub stamens: Stamens,
+    /// Length of the pistil, metres; 0, the default, for none.
+    #[schemars(range(min = 0.0, max = 5.0), extend("x-unit" = "m"))]
+    pub pistil_m: f64,
+    /// Radius of a disc of florets, metres; 0, the default, for none.
+    #[schemars(range(min = 0.0, max = 5.0), extend("x-unit" = "m"))]
+    pub disc_m: f64,
+    /// Length of the stalk, metres, 0 to 5, default 0.25; 0 for a flower without one, such as one that is put on a plant.
+    #[schemars(range(min = 0.0, max = 5.0), extend("x-unit" = "m"))]
+    pub stalk_m: f64,
+    /// Angle by which the open flower nods, degrees, 0 to 90, default 0; wilting adds to it.
+    #[schemars(range(min = 0.0, max = 90.0), extend("x-unit" = "deg"))]
+    pub nod_deg: f64,
+    /// Flowers of an umbel, 1 to 200; 1, the default, for a single flower.
+    #[schemars(range(min = 1, max = 200))]
     pub umbel: u32,
-    /// Days from bud to full bloom, and from there to wilted.
-    pub days: [f64; 2],
-    /// Rate of the default law, per day.
-    pub rate: f64,
-    /// Rows and columns of a petal's mesh, each at least 2.
-    pub mesh: [u32; 2],
+    /// Days from bud to full bloom, 0.1 to 60, default 6.
+    #[schemars(range(min = 0.1, max = 60.0), extend("x-unit" = "d"))]
+    pub opening_days: f64,
+    /// Days from full bloom to wilted, 0.1 to 40, default 4.
+    #[schemars(range(min = 0.1, max = 40.0), extend("x-unit" = "d"))]
+    pub wilting_days: f64,
+    /// Rate of the flower's own growth law, per day, 0.01 to 100, default 0.95.
+    #[schemars(range(min = 0.01, max = 100.0))]
+    pub rate_per_day: f64,
+    /// How fine a petal is meshed.
+    pub mesh: PetalMesh,
 }
 
-/// A flower at one day, and which petal each triangle of its petals belongs to.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FlowerFrame {
-    /// Meshes in metres; the same vertices and triangles at every day.
-    pub model: Model,
-    /// For each part the petal of each triangle; `u32::MAX` for what is no petal.
-    pub petals: Vec<Vec<u32>>,
+spec::schemas!(FlowerSpec);
+
+/// The stamens of a flower.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Stamens {
+    /// How many, 0 to 500.
+    #[schemars(range(min = 0, max = 500))]
+    pub count: u32,
+    /// Length of one in an open flower, metres.
+    #[schemars(range(min = 0.0, max = 5.0), extend("x-unit" = "m"))]
+    pub length_m: f64,
+    /// Angle by which they spread from the axis, degrees, 0 to 180.
+    #[schemars(range(min = 0.0, max = 180.0), extend("x-unit" = "deg"))]
+    pub spread_deg: f64,
 }
 
-impl FlowerFrame {
-    /// Share of petal triangles that cross another petal, over all parts.
-    pub fn overlap(&self) -> f64 {
-        let mut whole = TriMesh::default();
-        let mut groups = Vec::new();
-        for (part, petals) in self.model.parts.iter().zip(&self.petals) {
-            if petals.iter().all(|&p| p == u32::MAX) {
-                continue;
-            }
-            let bare = TriMesh {
-                positions: part.mesh.positions.clone(),
-                triangles: part.mesh.triangles.clone(),
-                ..TriMesh::default()
-            };
-            whole.append(&bare);
-            groups.extend_from_slice(petals);
+/// How fine a petal is meshed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PetalMesh {
+    /// Rows from base to tip, 2 to 100.
+    #[schemars(range(min = 2, max = 100))]
+    pub rows: u32,
+    /// Columns across, 2 to 100.
+    #[schemars(range(min = 2, max = 100))]
+    pub columns: u32,
+}
+
+impl Default for FlowerSpec {
+    /// A stalk without petals.
+    fn default() -> Self {
+        Self {
+            name: "flower".into(),
+            whorls: Vec::new(),
+            stamens: Stamens::default(),
+            pistil_m: 0.0,
+            disc_m: 0.0,
+            stalk_m: 0.25,
+            nod_deg: 0.0,
+            umbel: 1,
+            opening_days: 6.0,
+            wilting_days: 4.0,
+            rate_per_day: 0.95,
+            mesh: PetalMesh { rows: 18, columns: 14 },
         }
-        crate::overlap_share(&whole, &groups)
     }
 }
 
@@ -188,7 +278,7 @@ fn blend3(a: [f64; 3], b: [f64; 3], g: [f64; 3]) -> [f64; 3] {
 
 impl Whorl {
     fn profile(&self, spec: &FlowerSpec, law: &GrowthLaw, day: f64) -> Profile {
-        let [opening, wilting] = spec.days.map(|d| d.max(1e-6));
+        let [opening, wilting] = [spec.opening_days, spec.wilting_days].map(|d| d.max(1e-6));
         // The law's own time is stretched to the opening; a whorl with a delay starts later and ends with the others.
         let share = ((day / opening - self.delay) / (1.0 - self.delay.clamp(0.0, 0.9))).clamp(0.0, 1.0);
         let at = |along: f64, axis| {
@@ -197,14 +287,14 @@ impl Whorl {
         let g = [0.15, 0.5, 0.85].map(|along| at(along, Quantity::Size).max(0.0));
         let size = at(0.5, Quantity::Size);
         let wilt = ops::smoothstep(0.0, 1.0, ((day - opening) / wilting).clamp(0.0, 1.0));
-        let open = blend3(self.bud, self.open, g);
+        let open = blend3(self.bud_deg, self.open_deg, g);
         let young = if self.sepal { [0.82, 0.8] } else { [0.62, 0.55] };
         Profile {
-            angle: blend3(open, self.wilted, [wilt; 3]).map(rad),
+            angle: blend3(open, self.wilted_deg, [wilt; 3]).map(rad),
             // Sepals and bracts are nearly grown in the bud. Withered petals are about a quarter shorter and half as
             // wide: they roll in and dry.
-            length: self.length * ops::lerp(young[0], 1.0, size) * (1.0 - 0.24 * wilt),
-            width: self.width * ops::lerp(young[1], 1.0, size) * (1.0 - 0.45 * wilt),
+            length: self.length_m * ops::lerp(young[0], 1.0, size) * (1.0 - 0.24 * wilt),
+            width: self.width_m * ops::lerp(young[1], 1.0, size) * (1.0 - 0.45 * wilt),
             open: size.clamp(0.0, 1.0),
             wilt,
         }
@@ -247,7 +337,7 @@ impl Whorl {
         // Pink over green is grey: the tip's own colour comes when most of the green has gone.
         let late = (1.0 - green) * (1.0 - green);
         [0, 1, 2].map(|q| {
-            let own = (self.colors[0][q] + (self.colors[1][q] - self.colors[0][q]) * share * late) * middle;
+            let own = (self.base_color[q] + (self.tip_color[q] - self.base_color[q]) * share * late) * middle;
             let fresh = own + (BUD[q] - own) * green;
             // Some of the petal's own colour stays.
             fresh + (0.88 * dry[q] + 0.12 * fresh - fresh) * withered
@@ -256,44 +346,74 @@ impl Whorl {
 }
 
 impl FlowerSpec {
-    /// The names of the presets.
-    pub const PRESETS: [&'static str; 5] = ["rose", "lily", "tulip", "sunflower", "clivia"];
+    /// Days from bud to full bloom, and from there to wilted.
+    pub const fn days(&self) -> [f64; 2] {
+        [self.opening_days, self.wilting_days]
+    }
 
-    /// The flower at `day`: 0 is the bud, `days[0]` full bloom, `days[0] + days[1]` wilted.
+    /// Fails if its petals have more triangles than the budget allows.
     ///
-    /// Guaranteed: the same vertices and triangles at every day; `model.validate()` finds nothing. `law` sets the
-    /// pace by its size and region laws, whatever species it was fitted to (paper 003, figure 13).
-    pub fn at(&self, day: f64, law: &GrowthLaw, seed: Seed) -> FlowerFrame {
-        let mut frame = FlowerFrame {
-            model: Model { name: self.name.clone(), parts: vec![], materials: materials(), offset_m: None },
-            petals: vec![],
-        };
-        let flowers = self.umbel.max(1);
-        let mut next = 0;
-        for (w, whorl) in self.whorls.iter().enumerate() {
-            let mut mesh = TriMesh::default();
-            let mut petals = Vec::new();
-            let profile = whorl.profile(self, law, day);
-            for f in 0..flowers {
-                let place = self.place(f, day);
-                for k in 0..whorl.count {
-                    self.petal(whorl, &profile, k, place, &mut mesh);
-                    let triangles = mesh.triangles.len() - petals.len();
-                    petals.extend(core::iter::repeat_n(next, triangles));
-                    next += 1;
-                }
-            }
-            finish(&mut frame, format!("petals-{}", w + 1), 0, mesh, petals);
-        }
-        let [opening, wilting] = self.days.map(|d| d.max(1e-6));
+    /// # Errors
+    /// [`OverBudget`].
+    pub fn check(&self, budget: &Budget) -> Result<(), OverBudget> {
+        let petals: u64 = self.whorls.iter().map(|w| u64::from(w.count)).sum();
+        let each = 2 * u64::from(self.mesh.rows) * u64::from(self.mesh.columns);
+        let all = petals.saturating_mul(u64::from(self.umbel)).saturating_mul(each);
+        budget.check(Counted::Triangles, all, "lower count, umbel or mesh")
+    }
+
+    /// The growth law of the species itself.
+    pub fn own_law(&self) -> GrowthLaw {
+        GrowthLaw::logistic(&self.name, self.opening_days, self.rate_per_day)
+    }
+
+    /// The flower at `day`: 0 is the bud, `opening_days` full bloom, `wilting_days` later it has wilted.
+    ///
+    /// Guaranteed: the same axes, organs and grids at every day; `validate()` finds nothing. `law` sets the pace by its
+    /// size and region laws, whatever species it was fitted to (paper 003, figure 13).
+    pub fn at(&self, day: f64, law: &GrowthLaw, seed: Seed) -> Plant {
+        let mut plant = Plant { name: self.name.clone(), ..Plant::default() };
+        self.add_to(&mut plant, &Seat::default(), day, law, seed);
+        plant
+    }
+
+    /// As [`at`](Self::at), on a plant that there is already.
+    pub fn add_to(&self, plant: &mut Plant, seat: &Seat, day: f64, law: &GrowthLaw, seed: Seed) {
+        let [opening, wilting] = [self.opening_days, self.wilting_days].map(|d| d.max(1e-6));
         let share = (day / opening).clamp(0.0, 1.0);
         let g = law
             .progress("petal", Quantity::Size, 0.3, 0.0, law.span_days, share * law.span_days)
             .clamp(0.0, 1.0);
         let wilt = ((day - opening) / wilting).clamp(0.0, 1.0);
-        self.centre(&mut frame, g, wilt, day, seed);
-        self.stalks(&mut frame, day);
-        frame
+        let profiles: Vec<Profile> = self.whorls.iter().map(|w| w.profile(self, law, day)).collect();
+        let petals = || self.whorls.iter().zip(&profiles).filter(|(w, _)| !w.sepal);
+        let half_angle = petals().next().map_or(0.0, |(_, p)| p.angle[1].clamp(0.0, ops::FRAC_PI_2));
+        let whorls = u32::try_from(petals().count()).unwrap_or(u32::MAX);
+        let bearers = self.stalks(plant, seat, day, seed);
+        for (f, bearer) in (0..).zip(bearers) {
+            let (centre, turn) = self.place(f, day);
+            let place = (seat.at(centre), seat.turn * turn);
+            let (flower, axis) = (FlowerId::new(plant.flowers.len()), place.1 * DVec3::Y);
+            let axis = axis.normalize_or(DVec3::Y);
+            plant.flowers.push(Flower { bearer, centre: place.0, axis, half_angle, whorls });
+            let seed = seed.child(u64::from(f));
+            let mut bed = Bed { plant: &mut *plant, flower, bearer, place, seed };
+            self.receptacle(&mut bed);
+            for (whorl, profile) in self.whorls.iter().zip(&profiles) {
+                let kind = if whorl.sepal { OrganKind::Sepal } else { OrganKind::Petal };
+                for k in 0..whorl.count {
+                    bed.petal(kind, self.petal(whorl, profile, k));
+                }
+            }
+            self.centre(&mut bed, g, wilt);
+        }
+    }
+
+    /// About how large the open flower is with its stalk, metres.
+    pub fn size_m(&self) -> f64 {
+        let longest = self.whorls.iter().map(|w| w.length_m).fold(self.disc_m, f64::max);
+        let pedicel = if self.umbel > 1 { self.pedicel() } else { 0.0 };
+        self.stalk_m + pedicel + 2.0 * longest
     }
 
     /// Petals of this form in all whorls but those of sepals; `aspect` is width over length.
@@ -301,7 +421,7 @@ impl FlowerSpec {
     pub fn with_petals(mut self, form: PetalForm, aspect: f64) -> Self {
         for whorl in self.whorls.iter_mut().filter(|w| !w.sepal) {
             whorl.form = Some(form);
-            whorl.width = whorl.length * aspect;
+            whorl.width_m = whorl.length_m * aspect;
         }
         self
     }
@@ -310,14 +430,14 @@ impl FlowerSpec {
     pub(crate) fn place(&self, f: u32, day: f64) -> (DVec3, DQuat) {
         let n = self.umbel.max(1);
         if n == 1 {
-            let [opening, wilting] = self.days.map(|d| d.max(1e-6));
+            let [opening, wilting] = [self.opening_days, self.wilting_days].map(|d| d.max(1e-6));
             let open = ops::smoothstep(0.0, 1.0, (day / opening).clamp(0.0, 1.0));
             let wilt = ops::smoothstep(0.0, 1.0, ((day - opening) / wilting).clamp(0.0, 1.0));
-            let nod = rad(self.nod * (0.35 + 0.65 * open + 0.6 * wilt));
+            let nod = rad(self.nod_deg * (0.35 + 0.65 * open + 0.6 * wilt));
             let (s, c) = ops::sin_cos(0.5 * nod);
             // The stalk stays where it is: only the head turns, towards +Z.
-            let forward = 0.22 * self.stalk * ops::sin(rad(self.nod));
-            return (DVec3::new(0.0, self.stalk, forward), DQuat::from_xyzw(s, 0.0, 0.0, c));
+            let forward = 0.22 * self.stalk_m * ops::sin(rad(self.nod_deg));
+            return (DVec3::new(0.0, self.stalk_m, forward), DQuat::from_xyzw(s, 0.0, 0.0, c));
         }
         // Evenly over a cap of 75 degrees (Vogel's spiral), each on its own pedicel.
         let t = (f64::from(f) + 0.5) / f64::from(n);
@@ -325,11 +445,11 @@ impl FlowerSpec {
         let azimuth = f64::from(f) * rad(137.507_8);
         let (s, c) = ops::sin_cos(azimuth);
         let direction = DVec3::new(ops::sin(tilt) * c, ops::cos(tilt), ops::sin(tilt) * s);
-        (DVec3::Y * self.stalk + direction * self.pedicel(), turn::between(DVec3::Y, direction))
+        (DVec3::Y * self.stalk_m + direction * self.pedicel(), turn::between(DVec3::Y, direction))
     }
 
     fn pedicel(&self) -> f64 {
-        self.whorls.first().map_or(0.05, |w| 1.1 * w.length)
+        self.whorls.first().map_or(0.05, |w| 1.1 * w.length_m)
     }
 
     /// Height of the waves of margins, as a share of the petal's length: soft in bloom, crumpled when withered.
@@ -339,17 +459,19 @@ impl FlowerSpec {
         soft * (1.0 - profile.wilt) + 0.019 * profile.wilt * crumpled
     }
 
-    fn petal(&self, whorl: &Whorl, profile: &Profile, k: u32, place: (DVec3, DQuat), mesh: &mut TriMesh) {
-        let (rows, columns) = (self.mesh[0].max(2), self.mesh[1].max(2));
+    /// One petal in the flower's own coordinates.
+    fn petal(&self, whorl: &Whorl, profile: &Profile, k: u32) -> Grid {
+        let (rows, columns) = (self.mesh.rows.max(2), self.mesh.columns.max(2));
+        let across = (0..=columns).map(|j| f64::from(j) / f64::from(columns)).collect();
+        let mut grid = Grid { points: Vec::new(), across, along: Vec::new(), colors: Vec::new() };
         let apart = ops::TAU / f64::from(whorl.count.max(1));
-        let azimuth = rad(whorl.phase) + apart * f64::from(k);
-        let start = u32::try_from(mesh.positions.len()).unwrap_or(u32::MAX);
+        let azimuth = rad(whorl.phase_deg) + apart * f64::from(k);
         // The profile by small steps; angles between the three places by a parabola through them.
         let fine = 8 * rows;
         let [a, b, c] = profile.angle;
         let angle =
             |v: f64| a * (1.0 - v) * (1.0 - 2.0 * v) + 4.0 * b * v * (1.0 - v) + c * v * (2.0 * v - 1.0);
-        let (mut radius, mut height) = (whorl.insertion[0], whorl.insertion[1]);
+        let (mut radius, mut height) = (whorl.insertion.radius_m, whorl.insertion.height_m);
         // Rows are closer towards the tip, where the outline turns.
         let row_at = |i: u32| 1.0 - ops::powf(1.0 - f64::from(i) / f64::from(fine), 1.6);
         for i in 0..=fine {
@@ -357,6 +479,7 @@ impl FlowerSpec {
             let step = profile.length * (row_at((i + 1).min(fine)) - v);
             let (s, c) = ops::sin_cos(angle(v));
             if i.is_multiple_of(8) {
+                grid.along.push(v);
                 let half = 0.5 * profile.width * whorl.outline(v);
                 // A petal wraps the axis, but neither itself nor more than its next neighbours.
                 let spread = (half / radius.max(1e-4)).min(0.9 * ops::PI).min(0.85 * apart);
@@ -367,57 +490,16 @@ impl FlowerSpec {
                     // Near the axis there is no room for them.
                     let room = profile.length.min(4.0 * radius) * v * v;
                     let wave = room * self.waves(azimuth + u * spread, v, profile);
-                    let lean = whorl.lean * u + wave;
+                    let lean = whorl.lean_m * u + wave;
                     let (r, y) = (radius + lean * c, height - lean * s);
-                    let p = place.0 + place.1 * DVec3::new(r.max(1e-5) * cos, y, r.max(1e-5) * sin);
-                    mesh.push(p);
-                    mesh.colors.push(whorl.color(u, v, profile));
-                    #[expect(clippy::cast_possible_truncation, reason = "texture coordinates are f32")]
-                    mesh.uvs.push([(0.5 + 0.5 * u) as f32, 1.0 - v as f32]);
+                    grid.points.push(DVec3::new(r.max(1e-5) * cos, y, r.max(1e-5) * sin));
+                    grid.colors.push(whorl.color(u, v, profile));
                 }
             }
             // A profile that comes to the axis runs up along it.
-            radius = (radius + s * step).max(whorl.insertion[0].min(0.0012));
+            radius = (radius + s * step).max(whorl.insertion.radius_m.min(0.0012));
             height += c * step;
         }
-        quads(mesh, start, rows, columns);
-    }
-}
-
-fn materials() -> Vec<Material> {
-    let white = [1.0; 3];
-    let mut petal = Material::plain("petal", MaterialKind::Petal, white);
-    petal.double_sided = true;
-    petal.translucency = 0.3;
-    petal.roughness = 0.6;
-    vec![
-        petal,
-        Material::plain("stamen", MaterialKind::Stamen, white),
-        Material::plain("disc", MaterialKind::Disc, white),
-        Material::plain("stem", MaterialKind::Stem, white),
-    ]
-}
-
-pub(crate) fn finish(
-    frame: &mut FlowerFrame,
-    name: String,
-    material: usize,
-    mut mesh: TriMesh,
-    petals: Vec<u32>,
-) {
-    mesh.compute_normals();
-    frame.model.parts.push(Part { name, material: MaterialId::new(material), mesh });
-    frame.petals.push(petals);
-}
-
-/// Triangles of a grid of `rows` by `columns` quads from vertex `start` on.
-pub(crate) fn quads(mesh: &mut TriMesh, start: u32, rows: u32, columns: u32) {
-    let across = columns + 1;
-    for i in 0..rows {
-        for j in 0..columns {
-            let a = start + i * across + j;
-            mesh.triangles.push([a, a + across, a + 1]);
-            mesh.triangles.push([a + 1, a + across, a + across + 1]);
-        }
+        grid
     }
 }

@@ -14,7 +14,7 @@
 //! | `segment` | [`organs`]: stem and leaves, and regions along them |
 //! | `law` | [`GrowthLaw`]: fitted, saved, moved to another species |
 //! | `motion` | [`Motion`]: the shape at any day |
-//! | `flower`, `centre`, `species` | [`FlowerSpec`]: whole flowers that open and wilt |
+//! | `flower`, `centre`, `organs`, `species` | [`FlowerSpec`]: whole flowers that open and wilt, day -> `Plant` |
 //! | `overlap` | [`overlap_share`]: do petals pass through one another |
 //! | `plot` | [`plot_svg`]: fits with their points |
 //! | `register` | [`register`]: the lattice that carries one scan into another |
@@ -31,6 +31,7 @@ mod law;
 mod logistic;
 mod motion;
 mod obb;
+mod organs;
 mod overlap;
 mod plot;
 mod register;
@@ -41,14 +42,15 @@ mod thin;
 pub use clean::{CleanSpec, Cleaned, clean};
 pub use error::{Distances, ShapeError, compare};
 pub use errors::BloomError;
-pub use flower::{FlowerFrame, FlowerSpec, PetalForm, Whorl};
+pub use flower::{FlowerSpec, Insertion, PetalForm, PetalMesh, Stamens, Whorl};
 pub use lattice::{Lattice, Weights};
 pub use law::{GrowthLaw, LAW_SCHEMA, LawFault, LawSpec, Quantity, RegionLaw, Stage, fit_stages};
 pub use logistic::{Fit, FitError, Logistic, Offset, fit_law, fit_logistic};
 pub use motion::{Motion, MotionSpec, name_alike};
 pub use obb::Obb;
-pub use overlap::overlap_share;
+pub use organs::Seat;
+pub use overlap::{overlap_share, petal_overlap};
 pub use plot::plot_svg;
 pub use register::{RegisterSpec, Registration, register};
 pub use segment::{Organ, SegmentSpec, match_organs, organ_at, organs, single_organ};
-pub use species::preset;
+pub use species::{FlowerSettings, preset};

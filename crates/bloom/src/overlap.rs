@@ -1,29 +1,21 @@
 //! Do petals pass through one another? Triangles of different petals that cross.
 
 use glam::DVec3;
-use mesh::TriMesh;
+use plant::{FlowerId, OrganKind, Plant, Shape};
 
-/// Share of triangles that cross a triangle of another group, 0 to 1. `groups` names the petal of each triangle.
+/// Share of triangles that cross a triangle of another group, 0 to 1; each comes with its group, the petal.
 ///
-/// Touching within 1e-12 of the box's size is no crossing. Triangles whose group is `u32::MAX` take no part. Cost:
-/// about n log n for petals of like fineness.
+/// Touching within 1e-12 of the box's size is no crossing. Cost: about n log n for petals of like fineness.
 ///
 /// ```
-/// use mesh::TriMesh;
-/// let positions = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.2, 0.2, -1.0], [0.2, 0.2, 1.0], [0.9, 0.9, 0.0]];
-/// let m = TriMesh { positions, triangles: vec![[0, 1, 2], [3, 4, 5]], ..TriMesh::default() };
-/// assert_eq!(bloom::overlap_share(&m, &[0, 1]), 1.0);
-/// assert_eq!(bloom::overlap_share(&m, &[0, 0]), 0.0);
+/// use glam::DVec3;
+/// let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.2, 0.2, -1.0], [0.2, 0.2, 1.0], [0.9, 0.9, 0.0]];
+/// let corner = |k: usize| DVec3::from_array(points[k]);
+/// let [a, b] = [[0, 1, 2], [3, 4, 5]].map(|t| t.map(corner));
+/// assert_eq!(bloom::overlap_share(&[(0, a), (1, b)]), 1.0);
+/// assert_eq!(bloom::overlap_share(&[(0, a), (0, b)]), 0.0);
 /// ```
-pub fn overlap_share(mesh: &TriMesh, groups: &[u32]) -> f64 {
-    let n = mesh.positions.len();
-    let rows: Vec<(u32, [DVec3; 3])> = mesh
-        .triangles
-        .iter()
-        .zip(groups)
-        .filter(|(t, g)| **g != u32::MAX && t.iter().all(|&i| (i as usize) < n))
-        .map(|(t, g)| (*g, t.map(|i| mesh.position(i))))
-        .collect();
+pub fn overlap_share(rows: &[(u32, [DVec3; 3])]) -> f64 {
     if rows.is_empty() {
         return 0.0;
     }
@@ -51,6 +43,20 @@ pub fn overlap_share(mesh: &TriMesh, groups: &[u32]) -> f64 {
         open.push(i);
     }
     crossed.iter().filter(|c| **c).count() as f64 / rows.len() as f64
+}
+
+/// Share of the triangles of petals and sepals that cross another one's; of one flower, or of all together.
+///
+/// Only sheets are looked at: petals as they are at a day.
+pub fn petal_overlap(plant: &Plant, flower: Option<FlowerId>) -> f64 {
+    let mut rows = Vec::new();
+    let petals = plant.organs.iter().filter(|o| matches!(o.kind, OrganKind::Petal | OrganKind::Sepal));
+    for (petal, organ) in (0..).zip(petals.filter(|o| flower.is_none() || o.flower == flower)) {
+        let Some(Shape::Sheet(sheet)) = plant.shapes.get(organ.shape.index()) else { continue };
+        let points: Vec<DVec3> = sheet.points.iter().map(|&p| organ.frame.place(p, organ.scale)).collect();
+        rows.extend(sheet.triangles().map(|t| (petal, t.map(|k| points[k]))));
+    }
+    overlap_share(&rows)
 }
 
 /// An edge of one passes through the inside of the other.

@@ -106,3 +106,5 @@ pub(crate) fn unpack(
     }
     Ok(found)
 }
+
+base::coded!(ArchiveError { why => "archive" { why } });

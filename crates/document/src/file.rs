@@ -7,9 +7,12 @@ use std::sync::Arc;
 
 use base::Seed;
 use glam::DVec3;
+use growth::TreeSpec;
 use serde::de::Error as _;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use shape::HandEdit;
+use spec::SpecFault;
 
 use crate::archive::{ArchiveError, pack, unpack};
 use crate::forms::{
@@ -71,6 +74,9 @@ pub enum ProjectError {
         /// What is wrong and what to do.
         what: &'static str,
     },
+    /// The spec of a tree is none.
+    #[error("project file, spec of a tree: {0}")]
+    Tree(#[source] SpecFault),
     /// A setting is out of its range.
     #[error("project file: {0}")]
     Setting(String),
@@ -149,7 +155,7 @@ fn plant_to_file(plant: &DocumentPlant, row: &dyn Fn(PlantId) -> Option<u32>) ->
         }),
         Maker::Tree(t) => MakerV3::Tree(TreeV3 {
             preset: t.preset.clone(),
-            spec: (*t.spec).clone(),
+            spec: spec_to_file(&t.spec),
             obstacles: t
                 .obstacles
                 .iter()
@@ -186,7 +192,7 @@ fn plant_to_file(plant: &DocumentPlant, row: &dyn Fn(PlantId) -> Option<u32>) ->
 /// Reads a `.burgeon` file. The bytes may be hostile: sizes are bounded and nothing is believed unseen.
 ///
 /// Guaranteed: a document whose `validate()` is empty. Its plants and strokes are numbered from 0.
-/// Not guaranteed: that the spec of a tree or the marks of a leaf make one; whoever makes them says so.
+/// Not guaranteed: that the numbers of a tree's spec or the marks of a leaf make one; whoever makes them says so.
 ///
 /// # Errors
 /// [`ProjectError`]: what is wrong, where, and what to do.
@@ -300,12 +306,20 @@ fn from_sketch(
     Ok((Maker::Sketch(Box::new(settings)), strokes))
 }
 
+/// Obstacles lie beside the spec, with their names.
+fn spec_to_file(spec: &TreeSpec) -> Value {
+    let mut value = spec::to_json(spec);
+    value.as_object_mut().map(|fields| fields.remove("obstacles"));
+    value
+}
+
 fn from_tree(tree: TreeV3) -> Result<Maker, ProjectError> {
     let TreeV3 { preset, spec, obstacles, skin, leaf } = tree;
     let obstacles = obstacles
         .into_iter()
         .map(|o| NamedObstacle { name: shortened(&o.name), shape: Arc::new(o.shape) })
         .collect();
+    let spec = spec::from_json(&spec).map_err(ProjectError::Tree)?;
     Ok(Maker::Tree(Box::new(TreeSettings {
         preset: preset.map(|p| shortened(&p)),
         spec: Arc::new(spec),
@@ -314,3 +328,17 @@ fn from_tree(tree: TreeV3) -> Result<Maker, ProjectError> {
         leaf: leaf.map(PlantId),
     })))
 }
+
+base::coded!(ProjectError {
+    Self::Archive(why) => "project-archive" { why },
+    Self::Missing(name) => "project-missing" { name },
+    Self::Version { found } => "project-version" { found },
+    Self::Json { entry, source } => "project-json" { entry, why = source },
+    Self::Stroke { row, what } => "project-stroke" { row, why = what },
+    Self::Setting(why) => "project-setting" { why },
+    Self::Scene(why) => "project-scene" { why },
+    Self::TooMuch { what, limit } => "project-too-much" { what, limit },
+} wraps {
+    Self::Tree(e) => e, SpecFault;
+    Self::Photo(e) => e, PhotoError;
+});

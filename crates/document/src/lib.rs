@@ -27,6 +27,7 @@ mod photo;
 mod state;
 
 pub use archive::{ArchiveError, pack};
+pub use bloom::FlowerSettings;
 pub use command::{
     Command, CommandError, FlowerCommand, LeafCommand, NewPlant, NewStroke, PlantCommand, SceneCommand,
     ShapeCommand, SketchCommand, TreeCommand,
@@ -35,8 +36,8 @@ pub use editor::{Editor, Step};
 pub use event::{Event, StrokeRows};
 pub use file::{MAX_PROJECT_BYTES, PROJECT_SCHEMA, ProjectError, is_project, read_project, write_project};
 pub use makers::{
-    FlowerMaker, FlowerSettings, LeafData, LeafMaker, LeafPaint, LeafRings, LeafSettings, LeafSurface,
-    LeafThickness, Maker, NamedObstacle, SketchSettings, TreeSettings,
+    FlowerMaker, LeafData, LeafMaker, LeafPaint, LeafRings, LeafSettings, LeafSurface, LeafThickness, Maker,
+    NamedObstacle, SketchSettings, TreeSettings,
 };
 pub use photo::{MAX_PHOTO_BYTES, Photo, PhotoError, PhotoPlace};
 pub use state::{

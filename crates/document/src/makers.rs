@@ -2,11 +2,10 @@
 
 use std::sync::Arc;
 
-use bloom::GrowthLaw;
-use growth::Obstacle;
+use bloom::{FlowerSettings, FlowerSpec, GrowthLaw};
+use growth::{Obstacle, TreeSpec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 use sketch::SketchSpec;
 use skin::SkinSpec;
 
@@ -104,27 +103,19 @@ impl SketchSettings {
     }
 }
 
-/// A tree that is grown. Its spec is kept as JSON: the fields are those of the facade's `TreeSpec`, which has a default
-/// for each, so that specs of earlier versions stay readable; whoever grows it checks it.
-#[derive(Clone, Debug, PartialEq)]
+/// A tree that is grown. Whoever grows it says what is wrong with its spec.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct TreeSettings {
     /// The species that the spec came from.
     pub preset: Option<String>,
-    /// The spec, a JSON object without `obstacles`.
-    pub spec: Arc<Value>,
+    /// The spec, without obstacles.
+    pub spec: Arc<TreeSpec>,
     /// What it grows around, in the tree's own coordinates; at most 64.
     pub obstacles: Vec<NamedObstacle>,
     /// How the tree is meshed. Its `seed` is not saved.
     pub skin: SkinSpec,
     /// The plant of the scene whose leaf this tree bears in the place of its own.
     pub leaf: Option<PlantId>,
-}
-
-impl Default for TreeSettings {
-    fn default() -> Self {
-        let spec = Arc::new(Value::Object(serde_json::Map::new()));
-        Self { preset: None, spec, obstacles: Vec::new(), skin: SkinSpec::default(), leaf: None }
-    }
 }
 
 impl TreeSettings {
@@ -134,8 +125,8 @@ impl TreeSettings {
                 "a tree has at most {MAX_OBSTACLES} obstacles; join some of them into one mesh"
             ));
         }
-        if !self.spec.is_object() {
-            return Some("the spec of a tree is a JSON object".into());
+        if self.obstacles.iter().any(|o| !o.shape.is_finite()) {
+            return Some("every number of an obstacle must be finite".into());
         }
         skin_fault(&self.skin)
     }
@@ -304,63 +295,19 @@ pub struct FlowerMaker {
 impl FlowerMaker {
     fn fault(&self) -> Option<String> {
         let law = self.law.as_ref().and_then(|l| l.validate().next()).map(|f| f.to_string());
-        law.or_else(|| self.settings.fault())
+        law.or_else(|| flower_fault(&self.settings))
     }
 }
 
-/// How a flower looks, and on which day.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct FlowerSettings {
-    /// The species.
-    pub species: String,
-    /// Days since the bud: 0 is the bud, `opening_days` full bloom, then it wilts. 0 to 100, default 4.
-    #[schemars(range(min = 0.0, max = 100.0), extend("x-unit" = "d"))]
-    pub day: f64,
-    /// Days from bud to full bloom, 0.1 to 60; default those of the species.
-    #[schemars(range(min = 0.1, max = 60.0), extend("x-unit" = "d"))]
-    pub opening_days: Option<f64>,
-    /// Days from full bloom to wilted, 0.1 to 40; default those of the species.
-    #[schemars(range(min = 0.1, max = 40.0), extend("x-unit" = "d"))]
-    pub wilting_days: Option<f64>,
-    /// Length of the stalk, metres, 0 to 5; default that of the species.
-    #[schemars(range(min = 0.0, max = 5.0), extend("x-unit" = "m"))]
-    pub stalk_m: Option<f64>,
-    /// Angle by which the open flower nods, degrees, 0 to 90; default that of the species.
-    #[schemars(range(min = 0.0, max = 90.0), extend("x-unit" = "deg"))]
-    pub nod_deg: Option<f64>,
-}
-
-impl Default for FlowerSettings {
-    fn default() -> Self {
-        let none = None;
-        Self {
-            species: "lily".into(),
-            day: 4.0,
-            opening_days: none,
-            wilting_days: none,
-            stalk_m: none,
-            nod_deg: none,
-        }
+fn flower_fault(settings: &FlowerSettings) -> Option<String> {
+    if !FlowerSpec::PRESETS.contains(&settings.species.as_str()) {
+        let short = base::quoted(&settings.species);
+        return Some(format!(
+            "the flower {short:?} is unknown; use one of {}",
+            FlowerSpec::PRESETS.join(", ")
+        ));
     }
-}
-
-impl FlowerSettings {
-    fn fault(&self) -> Option<String> {
-        if bloom::preset(&self.species).is_none() {
-            let short = base::quoted(&self.species);
-            let known = bloom::FlowerSpec::PRESETS.join(", ");
-            return Some(format!("the flower {short:?} is unknown; use one of {known}"));
-        }
-        let rows = [
-            ("day", Some(self.day), 0.0, 100.0),
-            ("opening_days", self.opening_days, 0.1, 60.0),
-            ("wilting_days", self.wilting_days, 0.1, 40.0),
-            ("stalk_m", self.stalk_m, 0.0, 5.0),
-            ("nod_deg", self.nod_deg, 0.0, 90.0),
-        ];
-        rows.into_iter().find_map(|(name, value, low, high)| out(name, value?, low, high))
-    }
+    spec::check(settings).err().map(|fault| fault.to_string())
 }
 
 fn out(name: &str, value: f64, low: f64, high: f64) -> Option<String> {

@@ -118,3 +118,8 @@ impl Photo {
         (!(0.0..=1.0).contains(&opacity)).then(|| format!("opacity is {opacity}, but must be from 0 to 1"))
     }
 }
+
+base::coded!(PhotoError {
+    Self::NotPng => "photo-not-png" {},
+    Self::TooLarge => "photo-too-large" {},
+});

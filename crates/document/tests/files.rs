@@ -79,7 +79,7 @@ fn refusals_say_what_and_what_to_do() {
             "unknown variant",
         ),
         (scene(r#"{"flower":{"settings":{"species":"weed"}}}"#, ""), "\"weed\" is unknown"),
-        (scene(r#"{"flower":{"settings":{"day":1e300}}}"#, ""), "from 0 to 100"),
+        (scene(r#"{"flower":{"settings":{"day":1e300}}}"#, ""), "day must be 0 to 100 d, not 1e"),
         (scene(r#"{"leaf":{"file":"m","data":"","settings":{"sides":1}}}"#, ""), "sides is 1"),
         (scene(r#"{"tree":{"spec":[]}}"#, ""), "JSON object"),
         (scene(r#"{"tree":{"spec":{},"leaf":0}}"#, ""), "bears the leaf"),

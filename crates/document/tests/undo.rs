@@ -10,7 +10,7 @@ use document::{
     write_project,
 };
 use glam::{DVec2, DVec3};
-use growth::Obstacle;
+use growth::{Obstacle, TreeSpec};
 use ink::{Drawing, InkSample, Stroke, StrokeClass, StrokeMode};
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -79,8 +79,15 @@ fn obstacle() -> impl Strategy<Value = NamedObstacle> {
 }
 
 fn tree_command() -> impl Strategy<Value = TreeCommand> {
-    let spec = (0..9u32).prop_map(|age| Arc::new(serde_json::json!({ "age": age, "wood": { "tips": age } })));
-    let path = prop_oneof![Just("/age"), Just("/wood/tips"), Just("/no/such"), Just("age"), Just("")];
+    let spec = (0..9u32).prop_map(|age| Arc::new(TreeSpec { age: Some(age), ..TreeSpec::default() }));
+    let path = prop_oneof![
+        Just("/clearance_m"),
+        Just("/wood/thin_out"),
+        Just("/method/kill_m"),
+        Just("/no/such"),
+        Just("age"),
+        Just("")
+    ];
     prop_oneof![
         spec.prop_map(|s| TreeCommand::SetSpec(Some("oak".into()), s)),
         (path, -1e3..1e3f64).prop_map(|(p, x)| TreeCommand::SetField(p.into(), serde_json::json!(x))),

@@ -231,3 +231,17 @@ pub enum WriteError {
         instead: &'static str,
     },
 }
+
+base::coded!(FileFault {
+    Self::Empty => "file-empty" {},
+    Self::Malformed { what, .. } => "file-malformed" { what },
+    Self::Truncated { inside } => "file-truncated" { inside },
+    Self::Unsupported { what, .. } => "file-unsupported" { what },
+    Self::TooMuch { what, limit, .. } => "file-too-much" { what, limit },
+    Self::NoStrokes { .. } => "file-no-strokes" {},
+    Self::NotUtf8 { after } => "file-not-utf8" { after },
+    Self::Io(why) => "file-io" { why },
+});
+base::coded!(WriteError { why => "write" { why } });
+base::coded!(DrawingError {} wraps { Self { fault, .. } => fault, FileFault });
+base::coded!(ModelError {} wraps { Self { fault, .. } => fault, FileFault });

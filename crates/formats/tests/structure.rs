@@ -66,6 +66,9 @@ fn wild(seed: u64, axes: usize) -> Plant {
                 OrganKind::Thorn,
                 OrganKind::Pedicel,
                 OrganKind::Body,
+                OrganKind::Sepal,
+                OrganKind::Anther,
+                OrganKind::Floret,
             ];
             let kind = kinds[s.below(kinds.len())];
             p.organs.push(Organ {
@@ -143,8 +146,10 @@ fn same(p: &Plant, g: &Graph, up: UpAxis, per_metre: f64) {
         let bearing_axis = bearer.map(|b| p.nodes.axis[b.index()].index() + 1);
         assert_eq!(g.vertices[v].parent.map(|(a, _)| g.index(a)), bearing_axis, "the bearing axis");
     }
-    let organs: Vec<usize> =
-        ["L", "K", "D", "U", "B", "S", "C", "T", "Q"].into_iter().flat_map(|s| g.with_symbol(s)).collect();
+    let organs: Vec<usize> = ["L", "K", "D", "U", "B", "S", "C", "T", "Q", "E", "H", "F"]
+        .into_iter()
+        .flat_map(|s| g.with_symbol(s))
+        .collect();
     assert_eq!(organs.len(), p.organs.len(), "organs");
     for v in organs {
         let organ = &p.organs[g.index(v) - 1];

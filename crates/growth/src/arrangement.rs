@@ -5,7 +5,6 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::GrowthError;
-use crate::error::within;
 
 /// How buds or leaves stand around their axis.
 ///
@@ -39,6 +38,8 @@ pub enum Arrangement {
     },
 }
 
+spec::schemas!(Arrangement);
+
 impl Default for Arrangement {
     fn default() -> Self {
         Self::Spiral { divergence_deg: 137.507_764 }
@@ -49,25 +50,22 @@ impl Arrangement {
     /// The checked form.
     ///
     /// # Errors
-    /// [`GrowthError::Field`] for a divergence that is not finite or a whorl of other than 2 to 12.
+    /// [`GrowthError::Range`] for a divergence that is not finite or a whorl of other than 2 to 12.
     pub fn phyllotaxis(self) -> Result<Phyllotaxis, GrowthError> {
+        spec::check(&self)?;
         Ok(match self {
             Self::Spiral { divergence_deg } => {
-                let d = within("divergence_deg", divergence_deg, -360.0, 360.0, "-360 to 360")?;
                 let fault = |e: base::NotFinite| GrowthError::Field {
                     field: "divergence_deg",
                     range: "-360 to 360",
                     value: e.value,
                 };
-                Phyllotaxis::Spiral(Divergence::from_deg(d).map_err(fault)?)
+                Phyllotaxis::Spiral(Divergence::from_deg(divergence_deg).map_err(fault)?)
             }
             Self::Distichous => Phyllotaxis::Distichous,
             Self::Opposite => Phyllotaxis::Opposite,
             Self::Decussate => Phyllotaxis::Decussate,
-            Self::Whorled { count } => {
-                within("whorl count", f64::from(count), 2.0, 12.0, "2 to 12")?;
-                Phyllotaxis::Whorled(count)
-            }
+            Self::Whorled { count } => Phyllotaxis::Whorled(count),
         })
     }
 }

@@ -7,7 +7,7 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::error::{GrowthError, usable, within};
+use crate::error::{GrowthError, usable};
 use crate::field::{Change, Field, NOBODY};
 use crate::{JointId, Obstacles, Skeleton, Tropism};
 
@@ -38,6 +38,8 @@ pub struct ColonizeSpec {
     #[schemars(range(min = 1, max = 2_147_483_648_u64))]
     pub max_joints: u32,
 }
+
+spec::schemas!(ColonizeSpec);
 
 impl Default for ColonizeSpec {
     fn default() -> Self {
@@ -91,9 +93,8 @@ struct Steps {
 
 impl ColonizeSpec {
     fn check(&self, report: &mut Report) -> Result<Steps, GrowthError> {
-        let length = |field, x| within(field, x, 1e-6, 1e6, "above 0 and at most 1e6 m");
-        let kill = length("kill_m", self.kill_m)?;
-        let mut attraction = length("attraction_m", self.attraction_m)?;
+        spec::check(self)?;
+        let (kill, mut attraction) = (self.kill_m, self.attraction_m);
         if kill > attraction {
             report.warn(
                 "attraction-raised",
@@ -103,9 +104,7 @@ impl ColonizeSpec {
             );
             attraction = kill;
         }
-        let step = length("step_m", self.step_m.unwrap_or(0.5 * kill))?;
-        within("inertia", self.inertia, 0.0, 10.0, "0 to 10")?;
-        let most = within("max_joints", f64::from(self.max_joints), 1.0, 2_147_483_648.0, "1 to 2^31")?;
+        let step = self.step_m.unwrap_or(0.5 * kill);
         let pull = Tropism::sum(&self.tropisms)?;
         if step > 2.0 * kill {
             report.warn(
@@ -113,7 +112,6 @@ impl ColonizeSpec {
                 format!("steps of {step} m can pass points by, which are consumed within {kill} m only"),
             );
         }
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 2^31")]
         Ok(Steps {
             attraction,
             kill,
@@ -121,7 +119,7 @@ impl ColonizeSpec {
             pull,
             inertia: self.inertia,
             late: self.steer_before_kill,
-            most: most as usize,
+            most: self.max_joints as usize,
         })
     }
 }

@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::colonize::{colonize_part, plant_roots};
-use crate::error::{GrowthError, within};
+use crate::error::GrowthError;
 use crate::{ColonizeSpec, Envelope, Fate, Obstacles, Skeleton, Tropism};
 
 /// Trees after paper 001. Lengths in metres; places relative to the root.
@@ -65,6 +65,8 @@ pub struct CompetitionSpec {
     #[schemars(range(min = 1, max = 2_147_483_648_u64))]
     pub max_joints: u32,
 }
+
+spec::schemas!(CompetitionSpec);
 
 impl Default for CompetitionSpec {
     fn default() -> Self {
@@ -197,23 +199,6 @@ impl CompetitionSpec {
             max_joints: self.max_joints,
         }
     }
-
-    fn check(&self) -> Result<(), GrowthError> {
-        within("points", f64::from(self.points), 1.0, 1e7, "1 to 10 million")?;
-        within("lifespan", f64::from(self.lifespan), 1.0, 20.0, "1 to 20")?;
-        within("joints_share", self.joints_share, 0.0, 1.0, "0 to 1")?;
-        within("points_per_joint", f64::from(self.points_per_joint), 1.0, 1e4, "1 to 10000")?;
-        within("ball_height", self.ball_height, 0.0, 4.0, "0 to 4")?;
-        within("hollow", self.hollow, 0.0, 0.99, "0 to 0.99")?;
-        within("shrink", self.shrink, 0.1, 1.0, "0.1 to 1")?;
-        if let Some(r) = self.ball_m {
-            within("ball_m", r, 1e-6, 1e6, "above 0 and at most 1e6 m")?;
-        }
-        if let Some(r) = self.tier_m {
-            within("tier_m", r, 1e-6, 1e6, "above 0 and at most 1e6 m")?;
-        }
-        Ok(())
-    }
 }
 
 /// What one life cycle did.
@@ -262,7 +247,7 @@ pub fn compete(
     run: &Run<'_>,
     report: &mut Report,
 ) -> Result<Competed, GrowthError> {
-    spec.check()?;
+    spec::check(spec)?;
     let all = u64::from(spec.points) * roots.len() as u64;
     run.budget.check(Counted::Points, all, "lower points or give fewer roots")?;
     let crown = spec.envelope.prepare()?;
@@ -453,7 +438,7 @@ mod tests {
             &Run::plain(),
             &mut Report::default(),
         );
-        assert_eq!(got, Err(GrowthError::Field { field: "shrink", range: "0.1 to 1", value: 2.0 }));
+        assert_eq!(got.map_err(|e| e.to_string()), Err("shrink must be 0.1 to 1, not 2".into()));
     }
 
     #[test]

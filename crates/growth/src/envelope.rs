@@ -98,6 +98,8 @@ pub enum Envelope {
     },
 }
 
+spec::schemas!(Envelope);
+
 impl Default for Envelope {
     /// The crown of a young broadleaf tree: a ball of 2 m radius, its middle 4 m above the ground.
     fn default() -> Self {
@@ -138,9 +140,9 @@ impl Envelope {
     /// Cost: linear in points, n log n in triangles.
     ///
     /// # Errors
-    /// [`GrowthError::Field`] for numbers out of range, [`GrowthError::Mesh`] for a mesh without volume.
+    /// [`GrowthError::Range`] for numbers out of range, [`GrowthError::Field`] for points and outlines that are none, [`GrowthError::Mesh`] for a mesh without volume.
     pub fn prepare(&self) -> Result<Region, GrowthError> {
-        let length = |field, x| within(field, x, 1e-6, FAR_M, "above 0 and at most 1e6 m");
+        spec::check(self)?;
         let place = |field, p: DVec3| {
             if usable(p) {
                 Ok(p)
@@ -154,24 +156,21 @@ impl Envelope {
             }
         };
         let form = match self {
-            Self::Sphere { centre, radius_m } => Form::Ellipsoid(
-                place("envelope.centre", *centre)?,
-                DVec3::splat(length("envelope.radius_m", *radius_m)?),
-            ),
+            Self::Sphere { centre, radius_m } => {
+                Form::Ellipsoid(place("envelope.centre", *centre)?, DVec3::splat(*radius_m))
+            }
             Self::Ellipsoid { centre, radii_m } => {
                 for r in radii_m.to_array() {
-                    length("envelope.radii_m", r)?;
+                    within("envelope.radii_m", r, 1e-6, FAR_M, "above 0 and at most 1e6 m")?;
                 }
                 Form::Ellipsoid(place("envelope.centre", *centre)?, *radii_m)
             }
             Self::Cone { base, radius_m, height_m } => {
-                let (r, h) =
-                    (length("envelope.radius_m", *radius_m)?, length("envelope.height_m", *height_m)?);
+                let (r, h) = (*radius_m, *height_m);
                 Form::Revolution(place("envelope.base", *base)?, vec![DVec2::new(r, 0.0), DVec2::new(0.0, h)])
             }
             Self::Cylinder { base, radius_m, height_m } => {
-                let (r, h) =
-                    (length("envelope.radius_m", *radius_m)?, length("envelope.height_m", *height_m)?);
+                let (r, h) = (*radius_m, *height_m);
                 Form::Revolution(place("envelope.base", *base)?, vec![DVec2::new(r, 0.0), DVec2::new(r, h)])
             }
             Self::Revolution { base, profile } => {
@@ -179,8 +178,6 @@ impl Envelope {
                 Form::Revolution(place("envelope.base", *base)?, profile.clone())
             }
             Self::Outline { polygon, centre_z_m, depth } => {
-                within("envelope.depth", *depth, 1e-3, 1e3, "0.001 to 1000")?;
-                within("envelope.centre_z_m", *centre_z_m, -FAR_M, FAR_M, "within 1e6 m")?;
                 for p in polygon {
                     place("envelope.polygon", p.extend(0.0))?;
                 }
@@ -198,7 +195,6 @@ impl Envelope {
             }
             Self::Mesh { vertices, triangles } => Form::Mesh(Solid::new(vertices, triangles)?),
             Self::Points { points, reach_m } => {
-                let reach = length("envelope.reach_m", *reach_m)?;
                 let good: Vec<DVec3> = points.iter().copied().filter(|&p| usable(p)).collect();
                 if good.is_empty() {
                     return Err(GrowthError::Field {
@@ -207,7 +203,7 @@ impl Envelope {
                         value: 0.0,
                     });
                 }
-                Form::Points(KdTree::new(&good), reach)
+                Form::Points(KdTree::new(&good), *reach_m)
             }
         };
         let (lo, hi) = self.bounds(&form);
@@ -437,7 +433,7 @@ mod tests {
             Envelope::Points { points: vec![DVec3::NAN], reach_m: 1.0 },
         ];
         for e in bad {
-            assert!(matches!(e.prepare(), Err(GrowthError::Field { .. })), "{e:?}");
+            assert!(matches!(e.prepare(), Err(GrowthError::Field { .. } | GrowthError::Range(_))), "{e:?}");
         }
         let region = Envelope::default().prepare().expect("sound");
         let none = region.scatter(5, 0.0, Seed::new(1), |_| false);

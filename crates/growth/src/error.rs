@@ -23,7 +23,10 @@ pub enum GrowthError {
         /// Diagonal of the box around roots and points, metres, to a millimetre.
         space_m: f64,
     },
-    /// A number of the spec is out of range or not finite.
+    /// A number of the spec is out of the range that its schema has.
+    #[error(transparent)]
+    Range(#[from] spec::RangeFault),
+    /// Something of the spec does not go with the rest of it, or is no place or direction.
     #[error("{field} must be {range}, not {value}")]
     Field {
         /// The field.
@@ -197,3 +200,20 @@ impl LsystemError {
 pub(crate) fn usable(p: glam::DVec3) -> bool {
     p.is_finite() && p.abs().max_element() <= FAR_M
 }
+
+base::coded!(GrowthError {
+    Self::StepTooLong { step_m, space_m } => "step-too-long" { step_m, space_m },
+    Self::Field { field, range, value } => "field-range" { field, range, value },
+    Self::NoRoots => "no-roots" {},
+    Self::Root { root } => "root-far" { root },
+    Self::RootInObstacle { root, obstacle } => "root-in-obstacle" { root, obstacle },
+    Self::Obstacle { name, fault, .. } => "obstacle" { name, why = fault },
+    Self::Nothing { why } => "nothing-grew" { why },
+    Self::Mesh(why) => "mesh" { why },
+    Self::Lsystem(why) => "lsystem" { why },
+    Self::NoRoom { found, wanted, .. } => "no-room" { found, wanted },
+} wraps {
+    Self::Range(e) => e, spec::RangeFault;
+    Self::Cancelled(e) => e, Cancelled;
+    Self::OverBudget(e) => e, base::OverBudget;
+});

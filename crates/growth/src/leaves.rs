@@ -9,7 +9,6 @@ use plant::{AxisId, Blade, Frame, Lift, NodeId, Organ, OrganKind, Paint, Phyllot
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::error::within;
 use crate::self_organize::ShadowGrid;
 use crate::{Arrangement, GrowthError, LeafMark, Obstacles};
 
@@ -67,6 +66,8 @@ pub struct LeafSpec {
     pub max_leaves: u32,
 }
 
+spec::schemas!(LeafSpec);
+
 impl Default for LeafSpec {
     fn default() -> Self {
         Self {
@@ -110,21 +111,7 @@ impl LeafSpec {
     }
 
     fn check(&self) -> Result<Phyllotaxis, GrowthError> {
-        within("spacing_m", self.spacing_m, 1e-4, 1e3, "0.0001 to 1000 m")?;
-        within("length_m", self.length_m, 1e-4, 100.0, "0.0001 to 100 m")?;
-        within("width", self.width, 0.01, 3.0, "0.01 to 3")?;
-        within("size_variation", self.size_variation, 0.0, 0.5, "0 to 0.5")?;
-        within("angle_deg", self.angle_deg, 0.0, 180.0, "0 to 180")?;
-        within("droop", self.droop, -1.0, 1.0, "-1 to 1")?;
-        within("max_radius_m", self.max_radius_m, 0.0, 100.0, "0 to 100 m")?;
-        within("leaf_keep", self.leaf_keep, 0.0, 1.0, "0 to 1")?;
-        within("min_light", self.min_light, 0.0, 1e6, "0 or more")?;
-        within("shade", self.shade, 1e-6, 100.0, "above 0 and at most 100")?;
-        within("shade_fall", self.shade_fall, 1.0, 100.0, "1 to 100")?;
-        within("shade_layers", f64::from(self.shade_layers), 1.0, 32.0, "1 to 32")?;
-        if let Some(v) = self.voxel_m {
-            within("voxel_m", v, 1e-3, 1e3, "0.001 to 1000 m")?;
-        }
+        spec::check(self)?;
         self.arrangement.phyllotaxis()
     }
 }
@@ -171,7 +158,7 @@ impl Candidate {
 /// linear in places for leaves, times the square of `shade_layers`.
 ///
 /// # Errors
-/// [`GrowthError::Field`], [`GrowthError::Cancelled`].
+/// [`GrowthError::Range`], [`GrowthError::Cancelled`].
 ///
 /// ```
 /// use base::{Report, Run, Seed};
@@ -528,6 +515,6 @@ mod tests {
         let none = Obstacles::none();
         let got =
             add_leaves(&mut plant, &bad, bad.blade(), &[], &none, Seed::new(1), &run, &mut Report::default());
-        assert_eq!(got, Err(GrowthError::Field { field: "leaf_keep", range: "0 to 1", value: 1.5 }));
+        assert_eq!(got.map_err(|e| e.to_string()), Err("leaf_keep must be 0 to 1, not 1.5".into()));
     }
 }

@@ -16,6 +16,7 @@
 //! | `skeleton` | what growers make: joints and the joints they grew from |
 //! | `wood` | axes, smooth courses, radii |
 //! | `leaves` | phyllotaxis, culled by shadow propagation |
+//! | `spec`, `look` | [`TreeSpec`]: everything that can be asked of a tree, and what it looks like |
 //! | `tree` | the whole way: [`grow`] |
 
 mod arrangement;
@@ -27,6 +28,7 @@ mod error;
 mod field;
 mod guided;
 mod leaves;
+mod look;
 mod lsystem;
 mod mesh_faults;
 mod obstacle;
@@ -34,10 +36,12 @@ mod self_organize;
 mod sieve;
 mod skeleton;
 mod solid;
+mod spec;
 mod tree;
 mod tropism;
 mod wood;
 
+pub use self::spec::{Method, TreeSpec};
 pub use arrangement::Arrangement;
 pub use colonize::{ColonizeSpec, Colonized, Fate, colonize, colonize_from, regrow};
 pub use competition::{Competed, CompetitionSpec, Cycle, compete};
@@ -45,12 +49,13 @@ pub use envelope::{Envelope, Region};
 pub use error::{GrowthError, LsystemError, MeshFault};
 pub use guided::{BrushStroke, Guided, GuidedSpec, StartBud, guide, guide_from};
 pub use leaves::{LeafCount, LeafSpec, add_leaves};
+pub use look::{Bark, BladeForm, BladeSpec, BlossomSpec, Look};
 pub use lsystem::{LeafMark, Lsystem, LsystemTree, OAK_RULES, grow_lsystem};
 pub use mesh_faults::{open_edges, signed_volume};
 pub use obstacle::{Obstacle, Obstacles};
 pub use self_organize::{Light, Resource, SelfOrganized, SelfOrganizingSpec, self_organize};
 pub use skeleton::{JointId, Skeleton, SkeletonFault};
-pub use tree::{Grown, Method, Tally, TreeSpec, grow};
+pub use tree::{Grown, Tally, grow};
 pub use tropism::Tropism;
 pub use wood::{Wood, WoodSpec, make_wood};
 

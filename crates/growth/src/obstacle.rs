@@ -64,6 +64,8 @@ pub enum Obstacle {
     },
 }
 
+spec::schemas!(Obstacle);
+
 /// Obstacles made ready to be asked.
 ///
 /// ```
@@ -92,6 +94,19 @@ enum Body {
 }
 
 impl Obstacle {
+    /// Whether every number of it is finite: only such a one can be saved.
+    pub fn is_finite(&self) -> bool {
+        match self {
+            Self::Box { min, max } => min.is_finite() && max.is_finite(),
+            Self::Sphere { centre, radius_m } => centre.is_finite() && radius_m.is_finite(),
+            Self::Cylinder { base, radius_m, height_m } => {
+                base.is_finite() && radius_m.is_finite() && height_m.is_finite()
+            }
+            Self::Plane { point, normal } => point.is_finite() && normal.is_finite(),
+            Self::Mesh { vertices, .. } => vertices.iter().all(|v| v.is_finite()),
+        }
+    }
+
     /// The word of its shape, as specs have it.
     pub const fn shape(&self) -> &'static str {
         match self {
@@ -232,7 +247,7 @@ impl Obstacles {
 
 impl Body {
     fn new(o: &Obstacle) -> Result<Self, GrowthError> {
-        let length = |field, x| within(field, x, 1e-6, FAR_M, "above 0 and at most 1e6 m");
+        spec::check(o)?;
         let place = |field, p: DVec3| {
             let value = p.to_array().into_iter().find(|c| c.abs() > FAR_M || !c.is_finite());
             let range = "a finite point within 1e6 m";
@@ -246,12 +261,9 @@ impl Body {
                 }
                 Self::Box(*min, *max)
             }
-            Obstacle::Sphere { centre, radius_m } => {
-                Self::Sphere(place("centre", *centre)?, length("radius_m", *radius_m)?)
-            }
+            Obstacle::Sphere { centre, radius_m } => Self::Sphere(place("centre", *centre)?, *radius_m),
             Obstacle::Cylinder { base, radius_m, height_m } => {
-                let radius = length("radius_m", *radius_m)?;
-                Self::Cylinder(place("base", *base)?, radius, length("height_m", *height_m)?)
+                Self::Cylinder(place("base", *base)?, *radius_m, *height_m)
             }
             Obstacle::Plane { point, normal } => {
                 let unit = if usable(*normal) { normal.try_normalize() } else { None };

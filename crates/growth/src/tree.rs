@@ -2,156 +2,21 @@
 //!
 //! `TreeSpec -> Skeleton (any method) -> wood -> leaves -> Plant`
 
-use base::{Budget, Counted, Report, Run, Seed};
+use base::{Counted, Report, Run, Seed};
 use glam::DVec3;
 use plant::{Blade, NodeId, Plant};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
 use crate::colonize::{colonize_part, plant_roots};
-use crate::error::within;
 use crate::{
-    ColonizeSpec, Colonized, CompetitionSpec, Cycle, Envelope, Fate, GrowthError, GuidedSpec, LeafCount,
-    LeafMark, LeafSpec, Light, Lsystem, Obstacle, Obstacles, SelfOrganizingSpec, Skeleton, Wood, WoodSpec,
-    add_leaves, compete, grow_lsystem, guide, make_wood, self_organize,
+    ColonizeSpec, Colonized, Cycle, Fate, GrowthError, LeafCount, LeafMark, Lsystem, Method, Obstacles,
+    SelfOrganizingSpec, Skeleton, TreeSpec, Wood, add_leaves, compete, grow_lsystem, guide, make_wood,
+    self_organize,
 };
 
 /// The shares of the work that are done, for people who wait, when it is wood, and when it has leaves; meshes are the
 /// rest. As of an oak.
 const WOODY: f64 = 0.45;
 const LEAFY: f64 = 0.6;
-
-/// How a tree grows.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
-#[non_exhaustive]
-pub enum Method {
-    /// Space colonisation (Runions 2007).
-    Colonization {
-        /// The space of the crown, relative to the root.
-        envelope: Envelope,
-        /// Attraction points for each tree, 1 to 10 million.
-        #[schemars(range(min = 1, max = 10_000_000))]
-        points: u32,
-        /// Share of the envelope left empty inside, 0 to 0.99.
-        #[serde(default)]
-        #[schemars(range(min = 0.0, max = 0.99))]
-        hollow: f64,
-        /// Distances and pulls.
-        #[serde(default)]
-        steps: ColonizeSpec,
-    },
-    /// Space colonisation of points that are given instead of scattered.
-    Points {
-        /// Attraction points, metres; not relative to a root.
-        #[schemars(with = "Vec<[f64; 3]>", extend("x-unit" = "m"))]
-        points: Vec<DVec3>,
-        /// Distances and pulls.
-        #[serde(default)]
-        steps: ColonizeSpec,
-    },
-    /// Competition for space in life cycles (paper 001).
-    Competition(CompetitionSpec),
-    /// Buds that compete for light (Palubicki 2009).
-    SelfOrganizing(SelfOrganizingSpec),
-    /// Buds with markers of their own that keep away from others' and follow strokes of a brush (paper 002).
-    Guided(GuidedSpec),
-    /// Rules (Prusinkiewicz and Lindenmayer 1990). Obstacles cut off what grows into them.
-    Lsystem {
-        /// The text that [`Lsystem::parse`] reads.
-        rules: String,
-        /// Most modules of all trees, 1 to 100 million.
-        #[schemars(range(min = 1, max = 100_000_000))]
-        most_modules: u32,
-    },
-}
-
-/// One or several trees of one kind, grown together.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct TreeSpec {
-    /// For files and reports.
-    pub name: String,
-    /// Where trees stand, metres; default one at the origin.
-    pub roots: Vec<DVec3>,
-    /// What they grow around. Default nothing.
-    pub obstacles: Vec<Obstacle>,
-    /// Distance that bark keeps from obstacles where there is room, metres, 0 or more, default 0.05.
-    pub clearance_m: f64,
-    /// The trees as they were after so many rounds, years (self-organising) or rewriting steps (L-systems) of growth;
-    /// default none: to the end.
-    pub age: Option<u32>,
-    /// How they grow.
-    pub method: Method,
-    /// How skeletons become wood.
-    pub wood: WoodSpec,
-    /// What leaves they bear; none for dead or winter trees. Default [`LeafSpec::default`].
-    pub leaves: Option<LeafSpec>,
-}
-
-impl Default for TreeSpec {
-    fn default() -> Self {
-        Self {
-            name: "tree".into(),
-            roots: vec![DVec3::ZERO],
-            obstacles: Vec::new(),
-            clearance_m: 0.05,
-            age: None,
-            method: Method::Competition(CompetitionSpec::default()),
-            wood: WoodSpec::default(),
-            leaves: Some(LeafSpec::default()),
-        }
-    }
-}
-
-impl TreeSpec {
-    /// Fails if its meshes, point clouds and roots are more than the budget allows. [`grow`] asks first; ask yourself
-    /// before you prepare parts of it.
-    ///
-    /// # Errors
-    /// [`GrowthError::OverBudget`].
-    pub fn check(&self, budget: &Budget) -> Result<(), GrowthError> {
-        budget.check(Counted::Roots, self.roots.len() as u64, "give fewer roots")?;
-        let of_obstacles = self.obstacles.iter().map(|o| match o {
-            Obstacle::Mesh { triangles, .. } => triangles.len(),
-            _ => 0,
-        });
-        let envelopes = match &self.method {
-            Method::Colonization { envelope, .. } => [Some(envelope), None],
-            Method::Competition(s) => [Some(&s.envelope), s.first_envelope.as_ref()],
-            Method::Guided(s) => [s.envelope.as_ref(), None],
-            Method::SelfOrganizing(SelfOrganizingSpec { light: Light::Space { envelope, .. }, .. }) => {
-                [Some(envelope), None]
-            }
-            _ => [None, None],
-        };
-        let (mut triangles, mut points) = (of_obstacles.sum::<usize>(), 0);
-        for envelope in envelopes.into_iter().flatten() {
-            match envelope {
-                Envelope::Mesh { triangles: own, .. } => triangles += own.len(),
-                Envelope::Points { points: own, .. } => points += own.len(),
-                _ => {}
-            }
-        }
-        budget.check(
-            Counted::Obstacles,
-            triangles as u64,
-            "simplify the meshes of obstacles and envelopes",
-        )?;
-        for obstacle in &self.obstacles {
-            if let Obstacle::Mesh { vertices, triangles } = obstacle {
-                let slivers = crate::solid::slivers(vertices, triangles);
-                budget.check_estimate(
-                    Counted::Slivers,
-                    slivers,
-                    "remesh the obstacle into even triangles",
-                )?;
-            }
-        }
-        budget.check(Counted::Points, points as u64, "thin out envelope.points")?;
-        Ok(())
-    }
-}
 
 /// What growth itself counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -181,7 +46,7 @@ pub struct Grown {
     pub leaves: LeafCount,
 }
 
-/// Grows trees of any method and dresses them with leaves of the given blade ([`LeafSpec::blade`] if none).
+/// Grows trees of any method and dresses them with leaves of the given blade ([`crate::LeafSpec::blade`] if none).
 ///
 /// Guaranteed: the same plant for the same spec and seed, on every platform and any thread count; it ends; a clean
 /// `validate()`. Books its time under `grow`, `wood` and `leaves`, and tells the run's token how far it is.
@@ -227,7 +92,8 @@ pub fn grow(
     }
     plant.name.clone_from(&spec.name);
     let mut leaves = LeafCount::default();
-    if let Some(leaf) = &spec.leaves {
+    if !spec.bare {
+        let leaf = &spec.leaves;
         let places: Vec<(NodeId, LeafMark)> =
             marks.iter().filter_map(|m| Some((wood.node_of_joint[m.joint.index()]?, *m))).collect();
         let blade = blade.unwrap_or_else(|| leaf.blade());
@@ -344,8 +210,6 @@ fn bones(
 ) -> Result<Bones, GrowthError> {
     match &spec.method {
         Method::Colonization { envelope, points, hollow, steps } => {
-            within("points", f64::from(*points), 1.0, 1e7, "1 to 10 million")?;
-            within("hollow", *hollow, 0.0, 0.99, "0 to 0.99")?;
             let all = u64::from(*points) * spec.roots.len() as u64;
             run.budget.check(Counted::Points, all, "lower points or give fewer roots")?;
             let roots = plant_roots(&spec.roots, obstacles, run)?;
@@ -420,6 +284,7 @@ fn bones(
 mod tests {
     use super::*;
     use crate::OAK_RULES;
+    use crate::{CompetitionSpec, Envelope, GuidedSpec, Obstacle};
 
     fn methods() -> Vec<Method> {
         vec![

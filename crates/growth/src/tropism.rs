@@ -4,7 +4,7 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::error::{GrowthError, usable, within};
+use crate::error::{GrowthError, usable};
 
 /// A pull in one direction: light from above, weight downwards, wind.
 ///
@@ -26,6 +26,8 @@ pub struct Tropism {
     pub strength: f64,
 }
 
+spec::schemas!(Tropism);
+
 impl Tropism {
     /// A gentle pull to the light.
     pub const UPWARDS: Self = Self { direction: DVec3::Y, strength: 0.2 };
@@ -33,10 +35,10 @@ impl Tropism {
     /// All pulls together.
     ///
     /// # Errors
-    /// [`GrowthError::Field`] for a direction without length or numbers out of range.
+    /// [`GrowthError::Field`] for a direction without length, [`GrowthError::Range`] for a strength out of range.
     pub fn sum(all: &[Self]) -> Result<DVec3, GrowthError> {
         all.iter().try_fold(DVec3::ZERO, |sum, t| {
-            within("tropism.strength", t.strength, -10.0, 10.0, "-10 to 10")?;
+            spec::check(t)?;
             let unit = if usable(t.direction) { t.direction.try_normalize() } else { None };
             let range = "a finite direction with a length";
             let fault = GrowthError::Field { field: "tropism.direction", range, value: t.direction.length() };

@@ -43,6 +43,8 @@ pub struct WoodSpec {
     pub thin_out: f64,
 }
 
+spec::schemas!(WoodSpec);
+
 impl Default for WoodSpec {
     fn default() -> Self {
         Self {
@@ -76,7 +78,7 @@ pub struct Wood {
 /// bearer's alone. Cost: n log n in joints at most.
 ///
 /// # Errors
-/// [`GrowthError::Field`], [`GrowthError::Cancelled`].
+/// [`GrowthError::Range`], [`GrowthError::Cancelled`].
 ///
 /// ```
 /// use base::Run;
@@ -99,14 +101,10 @@ pub fn make_wood(
     obstacles: &Obstacles,
     run: &Run<'_>,
 ) -> Result<Wood, GrowthError> {
-    within("pipe_exponent", spec.pipe_exponent, 1.0, 4.0, "1 to 4")?;
-    within("tip_radius_m", spec.tip_radius_m, 1e-6, 10.0, "above 0 and at most 10 m")?;
-    within("internode_share", spec.internode_share, 0.0, 1.0, "0 to 1")?;
-    within("thin_out", spec.thin_out, 0.0, 10.0, "0 to 10")?;
+    spec::check(spec)?;
     if let Some(r) = spec.trunk_radius_m {
         within("trunk_radius_m", r, spec.tip_radius_m, 100.0, "the tips' radius to 100 m")?;
     }
-    within("relax", f64::from(spec.relax), 0.0, 10.0, "0 to 10")?;
     let radius = radii(skeleton, spec);
     let relaxed = relax(skeleton, spec.relax, obstacles);
     let skeleton = &relaxed;

@@ -212,7 +212,7 @@ proptest! {
             obstacles,
             age,
             method,
-            leaves: Some(LeafSpec { leaf_keep, max_leaves: 20_000, ..LeafSpec::default() }),
+            leaves: LeafSpec { leaf_keep, max_leaves: 20_000, ..LeafSpec::default() },
             ..TreeSpec::default()
         };
         let mut report = Report::default();

@@ -4,7 +4,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// What one stroke is. The words of the command line's contract.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema,
+)]
 #[serde(rename_all = "snake_case")]
 pub enum StrokeClass {
     /// One petal or leaf as a nearly closed outline.
@@ -30,6 +32,7 @@ pub enum StrokeClass {
     /// Shading, bark lines.
     Scribble,
     /// Nothing of the plant.
+    #[default]
     Other,
 }
 
@@ -49,6 +52,11 @@ impl StrokeClass {
         Self::Scribble,
         Self::Other,
     ];
+
+    /// Its place in [`ALL`](Self::ALL): the trained model's label number.
+    pub const fn place(self) -> usize {
+        self as usize
+    }
 
     /// The word in reports, label files and class overrides.
     pub const fn word(self) -> &'static str {

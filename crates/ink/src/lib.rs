@@ -17,12 +17,13 @@ mod drawing;
 
 pub use class::StrokeClass;
 pub use classify::{
-    Classified, KeptMeasures, ModelError, StrokeFeatures, classify, classify_again, features,
+    Classified, KeptMeasures, LONE_LINE, ModelError, Source, StrokeFeatures, classify, classify_again,
+    features,
 };
 #[cfg(any(test, feature = "training"))]
 pub use classify::{
-    StrokeFigures, StrokeModelTexts, StrokeRow, StrokeSource, cross_validate_strokes, read_stroke_table,
-    train_strokes, write_stroke_table,
+    FEW_CLEAR, HeldOut, StrokeFigures, StrokeModelTexts, StrokeRow, StrokeSource, cross_validate_strokes,
+    held_out_strokes, read_stroke_table, train_strokes, write_stroke_table,
 };
 pub use clean::{Ink, InkMap, InkStroke, clean};
 pub use drawing::{Drawing, InkSample, Stroke, StrokeMode};

@@ -607,6 +607,14 @@ pub(crate) fn median_near(radii: &[f64], k: usize) -> f64 {
     part.get(part.len() / 2).copied().unwrap_or(1e-5)
 }
 
+base::coded!(GraphError {
+    Self::Node(node) => "graph-node" { node },
+    Self::Radii { nodes, radii } => "graph-radii" { nodes, radii },
+    Self::Edge { edge, node, last } => "graph-edge" { edge, node, last },
+    Self::TooSmall(nodes) => "graph-small" { nodes },
+    Self::OneSided => "graph-one-sided" {},
+});
+
 #[cfg(test)]
 mod tests {
     use super::*;

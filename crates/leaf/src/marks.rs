@@ -423,3 +423,12 @@ pub(crate) mod tests {
         assert_eq!(fault(|m| m.rows.truncate(1)), MarksError::TooFewRows(1));
     }
 }
+
+base::coded!(MarksError {
+    Self::TooFewRows(rows) => "marks-few" { rows },
+    Self::NotFinite { row, mark } => "marks-not-finite" { row, mark },
+    Self::Thickness { row, mark, value } => "marks-thickness" { row, mark, value },
+    Self::Point(row) => "marks-one-point" { row },
+    Self::SameRow(row) => "marks-same-row" { row, next = row + 1 },
+    Self::TipRepeated => "marks-tip" {},
+});

@@ -231,6 +231,22 @@ impl Digestible for TriMesh {
 }
 
 impl Model {
+    /// Bytes of the columns and textures, to know how much is held.
+    pub fn bytes(&self) -> usize {
+        let columns = |m: &TriMesh| {
+            size_of_val(&*m.positions)
+                + size_of_val(&*m.normals)
+                + size_of_val(&*m.uvs)
+                + size_of_val(&*m.colors)
+                + size_of_val(&*m.wind)
+                + size_of_val(&*m.pivots)
+                + size_of_val(&*m.triangles)
+        };
+        let textures = self.materials.iter().filter_map(|m| m.texture.as_ref());
+        self.parts.iter().map(|p| columns(&p.mesh)).sum::<usize>()
+            + textures.map(|t| t.pixels.len()).sum::<usize>()
+    }
+
     /// Vertices of all parts.
     pub fn vertex_count(&self) -> usize {
         self.parts.iter().map(|p| p.mesh.positions.len()).sum()

@@ -40,6 +40,12 @@ pub enum OrganKind {
     Thorn,
     /// Stalk of a flower.
     Pedicel,
+    /// Green or coloured blade that held the bud: sepal or bract.
+    Sepal,
+    /// End of a stamen, with the pollen.
+    Anther,
+    /// One of the small flowers of a disc.
+    Floret,
     /// A green body, such as a cactus's: what stands for stem and leaves in one.
     Body,
 }

@@ -14,9 +14,6 @@ use crate::near::bounds;
 use crate::veins::{Veins, choose_midrib};
 use crate::{Attachment, BladeReading, DiscReading, FlowerReading, FruitReading, OrganWord};
 
-/// A thorn: root and tip, what bears it, its stroke.
-pub(crate) type Thorn = (Vec<DVec2>, Option<Attachment>, Option<u32>);
-
 /// A leaf nearer to its bearer than this sits on it; farther, it has a stalk.
 const SESSILE: f64 = 0.02;
 /// More lines than this are no tuft of grass that a person drew.

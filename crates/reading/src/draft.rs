@@ -5,21 +5,25 @@ use std::collections::BTreeMap;
 use base::Report;
 use geom::{contains, convex_hull, polyline_length, signed_area};
 use glam::DVec2;
-use ink::{Classified, Ink, StrokeClass, StrokeMode};
+use ink::{Classified, Ink, Source, StrokeClass, StrokeMode};
 use plant::AxisKind;
 
 use crate::blade::{Sheetlet, split_stalks};
 use crate::branches::{Forest, Hints, Line};
+use crate::contour::crown_outline;
 use crate::near::bounds;
 use crate::{
-    BladeReading, DiscReading, FlowerReading, FruitReading, OrganWord, Reading, RegionKind, RegionReading,
-    StrokeReading, attach, blade, flowers, outlines, rings,
+    Attachment, BladeReading, DiscReading, FlowerReading, FruitReading, OrganWord, Reading, RegionKind,
+    RegionReading, StrokeReading, blade, rings,
 };
 
 /// Regions beyond this number are left out: nobody draws so many crowns, and each is led to by an axis.
 pub(crate) const MOST_REGIONS: usize = 200;
 /// Scribbles smaller than this share of the sheet are dirt.
 const SCRIBBLE_AREA: f64 = 0.008;
+
+/// A thorn: root and tip, what bears it, its stroke.
+pub(crate) type Thorn = (Vec<DVec2>, Option<Attachment>, Option<u32>);
 
 /// A contour before its bearers are known.
 #[derive(Clone, Debug)]
@@ -48,7 +52,10 @@ impl RegionDraft {
 pub(crate) struct Draft<'a> {
     pub(crate) ink: &'a Ink,
     pub(crate) class: Vec<StrokeClass>,
-    pub(crate) confidence: Vec<f64>,
+    /// What was said of each stroke before any rule.
+    pub(crate) said: Vec<Classified>,
+    /// The rule that gave a stroke its class.
+    pub(crate) rule: Vec<Option<&'static str>>,
     pub(crate) organ: Vec<OrganWord>,
     /// Lines that will be axes.
     pub(crate) lines: Vec<Line>,
@@ -75,12 +82,13 @@ pub(crate) struct Draft<'a> {
 
 impl<'a> Draft<'a> {
     pub(crate) fn new(ink: &'a Ink, classes: &[Classified]) -> Self {
-        let class = |k: usize| classes.get(k).map_or(StrokeClass::Other, |c| c.class);
-        let confidence = |k: usize| classes.get(k).map_or(0.0, |c| c.confidence);
+        let said: Vec<Classified> =
+            (0..ink.strokes.len()).map(|k| classes.get(k).copied().unwrap_or_default()).collect();
         Self {
             ink,
-            class: (0..ink.strokes.len()).map(class).collect(),
-            confidence: (0..ink.strokes.len()).map(confidence).collect(),
+            class: said.iter().map(|c| c.class).collect(),
+            rule: vec![None; said.len()],
+            said,
             organ: vec![OrganWord::Ignored; ink.strokes.len()],
             lines: Vec::new(),
             blades: Vec::new(),
@@ -135,7 +143,7 @@ impl<'a> Draft<'a> {
                 StrokeMode::LeafContour => (RegionKind::Leaves, OrganWord::LeafContour),
             };
             if self.regions.len() < MOST_REGIONS
-                && let Some(outline) = outlines::crown_outline(&self.ink.strokes[k].points)
+                && let Some(outline) = crown_outline(&self.ink.strokes[k].points)
             {
                 self.organ[k] = organ;
                 self.add_region(outline, kind, k);
@@ -234,7 +242,7 @@ impl<'a> Draft<'a> {
     }
 
     pub(crate) fn crown_from(&mut self, k: usize, report: &mut Report) -> bool {
-        let Some(outline) = outlines::crown_outline(&self.ink.strokes[k].points) else { return false };
+        let Some(outline) = crown_outline(&self.ink.strokes[k].points) else { return false };
         self.organ[k] = OrganWord::LeafContour;
         self.add_region(outline, RegionKind::Crown, k);
         let index = self.ink.strokes[k].index;
@@ -315,14 +323,14 @@ impl<'a> Draft<'a> {
         fruits
     }
 
-    /// Where stems begin and end.
-    pub(crate) fn hints(&self, flowers: &[flowers::FlowerDraft]) -> Hints {
+    /// Where stems begin and end; `flowers`: their centres.
+    pub(crate) fn hints(&self, flowers: &[DVec2]) -> Hints {
         let mut hints = Hints::default();
         for (i, blade) in self.blades.iter().enumerate() {
             hints.organs.add_line(i, &blade.outline);
         }
-        for (i, flower) in flowers.iter().enumerate() {
-            hints.organs.add_line(i, &[flower.centre]);
+        for (i, &centre) in flowers.iter().enumerate() {
+            hints.organs.add_line(i, &[centre]);
         }
         for (i, region) in self.regions.iter().enumerate() {
             hints.organs.add_line(i, &region.outline);
@@ -333,14 +341,25 @@ impl<'a> Draft<'a> {
         hints
     }
 
+    /// What a stroke was read as, and what decided its class.
+    fn stroke(&self, k: usize) -> StrokeReading {
+        let (class, said) = (self.class[k], &self.said[k]);
+        let (source, confidence) = match self.rule[k] {
+            Some(name) if class != said.class => (Source::Rule(name), said.shares[class.place()]),
+            _ => (said.source, said.confidence),
+        };
+        StrokeReading { index: self.ink.strokes[k].index, class, organ: self.organ[k], confidence, source }
+    }
+
     pub(crate) fn finish(
         mut self,
         region_bearers: Vec<Vec<usize>>,
         flowers: Vec<FlowerReading>,
         leaves: Vec<BladeReading>,
         fruits: Vec<FruitReading>,
-        thorns: Vec<attach::Thorn>,
+        thorns: Vec<Thorn>,
     ) -> Reading {
+        let mut strokes: Vec<StrokeReading> = (0..self.class.len()).map(|k| self.stroke(k)).collect();
         let crown = self.regions.iter().any(|r| r.kind != RegionKind::Leaves);
         let trunk = !self.bodies.is_empty() && (self.open_top || !leaves.is_empty());
         let orders = self.forest.order.iter().copied().max().unwrap_or(0);
@@ -368,16 +387,9 @@ impl<'a> Draft<'a> {
             class: StrokeClass::Other,
             organ: OrganWord::Ignored,
             confidence: 0.0,
+            source: Source::Classifier,
         });
-        let mut strokes: Vec<StrokeReading> = (0..self.class.len())
-            .map(|k| StrokeReading {
-                index: self.ink.strokes[k].index,
-                class: self.class[k],
-                organ: self.organ[k],
-                confidence: self.confidence[k],
-            })
-            .chain(skipped)
-            .collect();
+        strokes.extend(skipped);
         base::sort_by_key(&mut strokes, |s| s.index);
         Reading { strokes, axes: self.forest.axes, flowers, leaves, regions, fruits, thorns, woody }
     }

@@ -13,10 +13,10 @@ use ink::StrokeClass;
 
 use crate::blade::{Sheetlet, tip};
 use crate::body;
+use crate::contour::{neck, width_at};
 use crate::corolla::{Core, split, visits, winding};
 use crate::draft::Draft;
 use crate::near::{Near, bounds};
-use crate::outlines::{neck, width_at};
 use crate::rings::Ring;
 use crate::{DiscReading, OrganWord};
 

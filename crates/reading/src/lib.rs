@@ -5,8 +5,8 @@
 //! | module | reads | paper |
 //! |---|---|---|
 //! | `read`, `draft` | the order of the steps, and the drawing half understood | |
-//! | `second`, `standing` | classes that the whole drawing contradicts | beyond |
-//! | `outlines`, `rings`, `body` | trunks, cactus bodies and crowns drawn as outlines | beyond |
+//! | `rules` | classes that the whole drawing contradicts | beyond |
+//! | `outlines`, `contour`, `rings`, `body` | trunks, cactus bodies and crowns drawn as outlines | beyond |
 //! | `blade`, `corolla`, `veins` | outlines, roots, tips and midribs of leaves and petals | 4.1, 4.3 |
 //! | `flowers` | which blades are petals of one flower | 4.1 |
 //! | `branches` | the hierarchy of axes | 4.2 |
@@ -17,6 +17,7 @@ mod attach;
 mod blade;
 mod body;
 mod branches;
+mod contour;
 mod corolla;
 mod draft;
 mod flowers;
@@ -25,16 +26,16 @@ mod outlines;
 mod read;
 mod rings;
 mod rows;
-mod second;
-mod standing;
+mod rules;
 #[cfg(test)]
 mod tests;
 mod validate;
 mod veins;
 
-pub use read::read;
+pub use read::{read, read_without};
 pub use rows::{
     Attachment, AxisReading, BladeReading, DiscReading, FlowerReading, FruitReading, OrganWord, Reading,
     RegionKind, RegionReading, StrokeReading,
 };
+pub use rules::{RULES, Rule};
 pub use validate::ReadingFault;

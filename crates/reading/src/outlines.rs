@@ -1,10 +1,7 @@
 //! Trunks and crowns drawn as outlines (product A12).
 
 use base::Report;
-use geom::{
-    centroid, contains, convex_hull, distance_to_polyline, polyline_length, signed_area, simple_outline,
-    simplify,
-};
+use geom::{centroid, contains, convex_hull, distance_to_polyline, polyline_length, signed_area};
 use glam::DVec2;
 use ink::StrokeClass;
 use plant::AxisKind;
@@ -12,6 +9,7 @@ use plant::AxisKind;
 use crate::blade::{nearest_on_ring, split_stalks};
 use crate::body::limbs;
 use crate::branches::{Forest, Line};
+use crate::contour::{crown_outline, neck};
 use crate::draft::{Draft, MOST_REGIONS, RegionDraft};
 use crate::near::bounds;
 use crate::rings::{Ring, rings};
@@ -181,75 +179,6 @@ pub(crate) fn crowns(draft: &mut Draft<'_>, report: &mut Report) {
             format!("{left_out} of the drawing's crown outlines were left out: {MOST_REGIONS} are read"),
         );
     }
-}
-
-/// The outline of a crown, however loopy: the largest simple polygon, or the hull of a scribble.
-pub(crate) fn crown_outline(points: &[DVec2]) -> Option<Vec<DVec2>> {
-    let hull = convex_hull(points);
-    let hull_area = signed_area(&hull);
-    // A line, not a crown.
-    if hull_area <= 2e-4 {
-        return None;
-    }
-    match simple_outline(&simplify(points, 0.001)) {
-        Some(outline) if signed_area(&outline) > 0.4 * hull_area => Some(outline),
-        _ => Some(hull),
-    }
-}
-
-/// Splits an outline with a narrow lower part and a wide upper part at the neck: trunk and crown.
-pub(crate) fn neck(outline: &[DVec2]) -> Option<(Vec<DVec2>, Vec<DVec2>)> {
-    const LEVELS: usize = 60;
-    let (lo, hi) = bounds(outline)?;
-    let height = hi.y - lo.y;
-    #[expect(clippy::cast_precision_loss, reason = "60 levels")]
-    let y_of = |k: usize| lo.y + height * (k as f64 + 0.5) / LEVELS as f64;
-    let width: Vec<f64> = (0..LEVELS).map(|k| width_at(outline, y_of(k))).collect();
-    let widest = width.iter().copied().fold(0.0, f64::max);
-    let first_wide = width.iter().position(|w| *w > 0.5 * widest)?;
-    let mut below: Vec<f64> = width[..first_wide].to_vec();
-    below.sort_by(f64::total_cmp);
-    let median = below.get(below.len() / 2).copied()?;
-    // The neck ends where the outline first becomes clearly wider than the trunk for good.
-    let top = (0..=first_wide).rev().find(|&k| width[k] < 1.5 * median).map_or(first_wide, |k| k + 1);
-    let (trunk_height, crown_height) = (y_of(top) - lo.y, hi.y - y_of(top));
-    let jump = width[(top + 3).min(LEVELS - 1)] > 1.7 * width[top.saturating_sub(3)];
-    let fits = median < 0.4 * widest
-        && trunk_height > 0.8 * median
-        && trunk_height > 0.12 * height
-        && crown_height > 0.2 * height;
-    if !(fits && jump) {
-        return None;
-    }
-    let cut = |keep_above: bool| {
-        let y = y_of(top);
-        let inside = |p: DVec2| (p.y >= y) == keep_above;
-        let mut part = Vec::new();
-        for (i, &a) in outline.iter().enumerate() {
-            let b = outline[(i + 1) % outline.len()];
-            if inside(a) {
-                part.push(a);
-            }
-            if inside(a) != inside(b) {
-                part.push(a.lerp(b, (y - a.y) / (b.y - a.y)));
-            }
-        }
-        simple_outline(&part)
-    };
-    cut(false).zip(cut(true))
-}
-
-pub(crate) fn width_at(outline: &[DVec2], y: f64) -> f64 {
-    let mut xs: Vec<f64> = outline
-        .iter()
-        .enumerate()
-        .filter_map(|(i, &a)| {
-            let b = outline[(i + 1) % outline.len()];
-            ((a.y > y) != (b.y > y)).then(|| a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y))
-        })
-        .collect();
-    xs.sort_by(f64::total_cmp);
-    xs.chunks_exact(2).map(|w| w[1] - w[0]).sum()
 }
 
 /// Finds, leads or adds the axes that run into each region; what comes back is one list of rows per region.
@@ -448,28 +377,4 @@ pub(crate) fn thorns(draft: &mut Draft<'_>) -> Vec<(Vec<DVec2>, Option<Attachmen
         }
     }
     thorns
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_tree_in_one_stroke_is_cut_at_its_neck() {
-        let p = |x: f64, y: f64| DVec2::new(x, y);
-        let tree = [
-            p(0.45, 0.0),
-            p(0.55, 0.0),
-            p(0.55, 0.4),
-            p(0.9, 0.45),
-            p(0.9, 0.9),
-            p(0.1, 0.9),
-            p(0.1, 0.45),
-            p(0.45, 0.4),
-        ];
-        let (trunk, crown) = neck(&tree).expect("has a neck");
-        assert!((signed_area(&trunk) - 0.04).abs() < 0.005, "{}", signed_area(&trunk));
-        assert!(crown.iter().all(|q| q.y > 0.35), "{crown:?}");
-        assert!(neck(&[p(0.0, 0.0), p(1.0, 0.0), p(1.0, 1.0), p(0.0, 1.0)]).is_none(), "a box has no neck");
-    }
 }

@@ -1,10 +1,10 @@
 //! The order in which a drawing is understood: `Ink + classes -> Reading`.
 
 use base::Report;
-use ink::{Classified, Ink};
+use ink::{Classified, Ink, Source};
 
 use crate::draft::Draft;
-use crate::{Reading, attach, flowers, outlines, second, veins};
+use crate::{Reading, attach, flowers, outlines, rules, veins};
 
 /// Understands a drawing.
 ///
@@ -19,14 +19,25 @@ use crate::{Reading, attach, flowers, outlines, second, veins};
 /// let mut report = base::Report::default();
 /// let drawing = Drawing::from_polylines("stem", &[vec![DVec2::Y, DVec2::ZERO]]);
 /// let ink = ink::clean(&drawing, &mut report);
-/// let stem = Classified { class: StrokeClass::Axis, confidence: 1.0 };
+/// let stem = Classified::by_user(StrokeClass::Axis);
 /// let reading = reading::read(&ink, &[stem], &mut report);
 /// assert_eq!(reading.axes[0].points[0], DVec2::ZERO);
 /// assert_eq!(reading.validate().count(), 0);
 /// ```
 pub fn read(ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
+    read_without(&[], ink, classes, report)
+}
+
+/// As [`read`], with some [rules](crate::RULES) switched off by their names: for measuring what each is worth.
+pub fn read_without(off: &[&str], ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
     let mut draft = Draft::new(ink, classes);
-    second::thoughts(&mut draft);
+    for (k, said) in draft.said.iter_mut().enumerate() {
+        if matches!(said.source, Source::Rule(name) if off.contains(&name)) {
+            *said = Classified::by_shares(said.shares);
+            draft.class[k] = said.class;
+        }
+    }
+    rules::apply(&mut draft, off);
     draft.contours();
     draft.find_soil();
     outlines::trunk_sides(&mut draft);
@@ -48,7 +59,7 @@ pub fn read(ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
     let (mut flowers, roots) = flowers::gather(&mut draft, &discs, &bearers);
     attach::stamens(&mut draft, &mut flowers, &roots);
     let mut fruits = draft.fruits(&nuts);
-    let hints = draft.hints(&flowers);
+    let hints = draft.hints(&flowers.iter().map(|f| f.centre).collect::<Vec<_>>());
     let lines = std::mem::take(&mut draft.lines);
     draft.forest.grow(lines, &hints);
     attach::roots(&mut draft);

@@ -3,7 +3,7 @@
 //! `Ink + classes -> Reading -> Plant`
 
 use glam::DVec2;
-use ink::StrokeClass;
+use ink::{Source, StrokeClass};
 use plant::AxisKind;
 use serde::{Deserialize, Serialize};
 
@@ -70,8 +70,11 @@ pub struct StrokeReading {
     pub class: StrokeClass,
     /// What became of it.
     pub organ: OrganWord,
-    /// How sure the classifier is, 0 to 1; 1 for a class that the user set.
+    /// How sure this class is, 0 to 1: the share that the classifier gave it, also where a [rule](crate::RULES) chose it
+    /// against a larger one; 1 for a class that the user set and for a line by itself.
     pub confidence: f64,
+    /// What decided the class.
+    pub source: Source,
 }
 
 /// Where something is borne: a place along an axis of the reading.

@@ -5,9 +5,9 @@ use glam::DVec2;
 use plant::AxisKind;
 use proptest::prelude::*;
 
-use ink::{Classified, Drawing, StrokeClass, StrokeMode, clean};
+use ink::{Classified, Drawing, Source, StrokeClass, StrokeMode, clean};
 
-use crate::{Reading, RegionKind, read};
+use crate::{RULES, Reading, RegionKind, read, read_without};
 
 fn line(from: (f64, f64), to: (f64, f64)) -> Vec<DVec2> {
     let (a, b) = (DVec2::from(from), DVec2::from(to));
@@ -48,15 +48,17 @@ fn reading(strokes: &[(StrokeClass, Vec<DVec2>)]) -> (Reading, Report) {
     let mut report = Report::default();
     let lines: Vec<Vec<DVec2>> = strokes.iter().map(|s| s.1.clone()).collect();
     let ink = clean(&Drawing::from_polylines("test", &lines), &mut report);
-    let classes: Vec<Classified> = ink
-        .strokes
-        .iter()
-        .map(|s| Classified { class: strokes[s.index as usize].0, confidence: 1.0 })
-        .collect();
+    let classes: Vec<Classified> =
+        ink.strokes.iter().map(|s| Classified::by_user(strokes[s.index as usize].0)).collect();
     let reading = read(&ink, &classes, &mut report);
     let faults: Vec<String> = reading.validate().map(|f| f.to_string()).collect();
     assert!(faults.is_empty(), "{faults:?}");
     (reading, report)
+}
+
+/// What a classifier says that is not sure.
+fn perhaps(class: StrokeClass, confidence: f64) -> Classified {
+    Classified { class, confidence, ..Classified::default() }
 }
 
 fn organs(reading: &Reading) -> Vec<&'static str> {
@@ -290,7 +292,7 @@ fn a_user_contour_needs_no_class_and_gets_a_bearer() {
     let mut drawing = Drawing::from_polylines("c", &[circle((5.0, 5.0), 3.0), line((5.0, 0.0), (5.0, 3.5))]);
     drawing.strokes[0].mode = StrokeMode::LeafContour;
     let ink = clean(&drawing, &mut Report::default());
-    let classes = [StrokeClass::Other, StrokeClass::Axis].map(|class| Classified { class, confidence: 1.0 });
+    let classes = [StrokeClass::Other, StrokeClass::Axis].map(Classified::by_user);
     let r = read(&ink, &classes, &mut Report::default());
     assert_eq!((r.regions[0].kind, &r.regions[0].bearers[..]), (RegionKind::Leaves, &[0][..]));
     assert_eq!(organs(&r), ["leaf_contour", "branch"]);
@@ -325,7 +327,7 @@ fn thousands_of_strokes_of_any_class() {
         let ink = clean(&Drawing::from_polylines("many", &lines), &mut Report::default());
         for class in [StrokeClass::Axis, StrokeClass::Blade, StrokeClass::TrunkOutline, StrokeClass::Corolla]
         {
-            let classes = vec![Classified { class, confidence: 1.0 }; ink.strokes.len()];
+            let classes = vec![Classified::by_user(class); ink.strokes.len()];
             let r = read(&ink, &classes, &mut Report::default());
             assert_eq!(r.strokes.len(), 4_000, "{class:?}");
         }
@@ -347,9 +349,8 @@ fn a_fruit_or_a_contour_drawn_as_a_line_is_still_a_plant() {
 fn a_leaf_taken_for_a_body_is_seen_by_its_midrib_unless_the_user_says_so() {
     let strokes = [leaf((5.0, 3.0), (5.0, 10.0), 4.0), line((5.0, 9.5), (5.0, 0.0))];
     let ink = clean(&Drawing::from_polylines("leaf", &strokes), &mut Report::default());
-    let body = |confidence| {
-        [StrokeClass::TrunkOutline, StrokeClass::Axis].map(|class| Classified { class, confidence })
-    };
+    let body =
+        |confidence| [StrokeClass::TrunkOutline, StrokeClass::Axis].map(|class| perhaps(class, confidence));
     let guessed = read(&ink, &body(0.6), &mut Report::default());
     assert_eq!((guessed.leaves.len(), guessed.strokes[0].class), (1, StrokeClass::Blade));
     let set = read(&ink, &body(1.0), &mut Report::default());
@@ -366,7 +367,7 @@ fn margin_and_midrib_in_one_go_with_side_veins_are_a_leaf() {
         let strokes: Vec<_> = [outline].into_iter().chain(veins).collect();
         let ink = clean(&Drawing::from_polylines("leaf", &strokes), &mut Report::default());
         let class = |k| if k == 0 { StrokeClass::TrunkOutline } else { StrokeClass::Axis };
-        let classes = [0, 1, 2, 3].map(|k| Classified { class: class(k), confidence: 0.6 });
+        let classes = [0, 1, 2, 3].map(|k| perhaps(class(k), 0.6));
         let r = read(&ink, &classes, &mut Report::default());
         assert_eq!((r.leaves.len(), r.thorns.len()), (1, 0), "{r:?}");
         assert!(r.strokes[1..].iter().all(|s| s.class == StrokeClass::Vein), "{:?}", r.strokes);
@@ -377,11 +378,7 @@ fn margin_and_midrib_in_one_go_with_side_veins_are_a_leaf() {
 fn grass_is_neither_trunks_nor_a_crown() {
     let stalks: Vec<_> = (0..6).map(|i| line((f64::from(i), 0.0), (f64::from(i) + 0.3, 3.0))).collect();
     let ink = clean(&Drawing::from_polylines("grass", &stalks), &mut Report::default());
-    let r = read(
-        &ink,
-        &[Classified { class: StrokeClass::TrunkOutline, confidence: 0.5 }; 6],
-        &mut Report::default(),
-    );
+    let r = read(&ink, &[perhaps(StrokeClass::TrunkOutline, 0.5); 6], &mut Report::default());
     assert_eq!((r.axes.len(), r.leaves.len()), (0, 6), "{r:?}");
     assert!(r.leaves.iter().all(|l| l.root.y < 0.02 && l.tip.y > 0.2), "rooted on the ground");
     let zigzag = path(&[
@@ -396,7 +393,7 @@ fn grass_is_neither_trunks_nor_a_crown() {
         (4.0, 0.0),
     ]);
     let ink = clean(&Drawing::from_polylines("grass", &[zigzag]), &mut Report::default());
-    let r = read(&ink, &[Classified { class: StrokeClass::Crown, confidence: 0.5 }], &mut Report::default());
+    let r = read(&ink, &[perhaps(StrokeClass::Crown, 0.5)], &mut Report::default());
     assert_eq!((r.leaves.len(), r.regions.len()), (4, 0));
 }
 
@@ -421,11 +418,8 @@ fn a_lawn_drawn_as_a_flat_line_and_a_zigzag_is_grass() {
 fn guessed(strokes: &[(StrokeClass, Vec<DVec2>)]) -> Reading {
     let lines: Vec<Vec<DVec2>> = strokes.iter().map(|s| s.1.clone()).collect();
     let ink = clean(&Drawing::from_polylines("guessed", &lines), &mut Report::default());
-    let classes: Vec<Classified> = ink
-        .strokes
-        .iter()
-        .map(|s| Classified { class: strokes[s.index as usize].0, confidence: 0.5 })
-        .collect();
+    let classes: Vec<Classified> =
+        ink.strokes.iter().map(|s| perhaps(strokes[s.index as usize].0, 0.5)).collect();
     read(&ink, &classes, &mut Report::default())
 }
 
@@ -512,12 +506,104 @@ proptest! {
         }
         let mut report = Report::default();
         let ink = clean(&drawing, &mut report);
-        let classes: Vec<Classified> = ink.strokes.iter().map(|s| Classified { class: strokes[s.index as usize].0, confidence: 0.5 }).collect();
+        let classes: Vec<Classified> = ink.strokes.iter().map(|s| perhaps(strokes[s.index as usize].0, 0.5)).collect();
         let r = read(&ink, &classes, &mut report);
         let faults: Vec<String> = r.validate().map(|f| f.to_string()).collect();
         prop_assert!(faults.is_empty(), "{:?}", faults);
         prop_assert_eq!(r.strokes.len(), strokes.len());
         let organs = r.axes.len() + r.leaves.len() + r.flowers.len() + r.regions.len() + r.fruits.len();
         prop_assert!(ink.strokes.is_empty() || organs > 0, "no plant at all");
+    }
+}
+
+/// Read with all rules, and without one: regions of each.
+fn regions_with_and_without(rule: &str, strokes: &[(StrokeClass, Vec<DVec2>)]) -> [usize; 2] {
+    let lines: Vec<Vec<DVec2>> = strokes.iter().map(|s| s.1.clone()).collect();
+    let ink = clean(&Drawing::from_polylines("tree", &lines), &mut Report::default());
+    let classes: Vec<Classified> = strokes.iter().map(|s| perhaps(s.0, 0.5)).collect();
+    [&[][..], &[rule]].map(|off| read_without(off, &ink, &classes, &mut Report::default()).regions.len())
+}
+
+#[test]
+fn a_line_round_a_crown_and_down_one_side_of_its_trunk_is_a_tree() {
+    let round = (4..=60).map(|i| {
+        let a = ops::TAU * f64::from(i) / 64.0 - 0.5 * ops::PI;
+        DVec2::new(5.0 + 3.0 * ops::cos(a), 8.0 + 3.0 * ops::sin(a))
+    });
+    let mut crown: Vec<DVec2> = line((5.6, 0.0), (5.6, 5.0));
+    crown.extend(round);
+    crown.extend([DVec2::new(5.1, 5.05), DVec2::new(5.5, 5.0)]);
+    let strokes =
+        [(StrokeClass::TrunkOutline, crown), (StrokeClass::TrunkOutline, line((4.6, 5.0), (4.6, 0.0)))];
+    assert_eq!(regions_with_and_without("crown-with-a-side", &strokes), [1, 0]);
+}
+
+#[test]
+fn a_scribble_at_the_top_of_a_trunk_is_its_crown() {
+    let scribble = (0..400).map(|i| {
+        let t = f64::from(i) * 0.7;
+        DVec2::new(5.0 + 3.0 * ops::sin(t), 8.0 + 2.0 * ops::cos(1.37 * t))
+    });
+    let strokes = [
+        // They meet above: a body without an open top could be a cactus.
+        (StrokeClass::TrunkOutline, line((4.5, 0.0), (5.0, 6.0))),
+        (StrokeClass::TrunkOutline, line((5.5, 0.0), (5.0, 6.0))),
+        (StrokeClass::Scribble, scribble.collect()),
+    ];
+    assert_eq!(regions_with_and_without("scribbled-crown", &strokes), [1, 0]);
+}
+
+#[test]
+fn a_class_says_what_decided_it_and_how_sure_it_is() {
+    let strokes = [leaf((5.0, 3.0), (5.0, 10.0), 4.0), line((5.0, 9.5), (5.0, 0.0))];
+    let ink = clean(&Drawing::from_polylines("leaf", &strokes), &mut Report::default());
+    let said = |class: StrokeClass, share: f64, other: StrokeClass| {
+        let mut shares = [0.0; StrokeClass::ALL.len()];
+        (shares[class.place()], shares[other.place()]) = (share, 1.0 - share);
+        Classified::by_shares(shares)
+    };
+    let body = said(StrokeClass::TrunkOutline, 0.75, StrokeClass::Blade);
+    let classes = [body, said(StrokeClass::Vein, 0.5, StrokeClass::Axis)];
+    let of = |r: &Reading| r.strokes.iter().map(|s| (s.class, s.source, s.confidence)).collect::<Vec<_>>();
+    let line = |class, source| (class, source, 0.5);
+    let all = read(&ink, &classes, &mut Report::default());
+    // The rule agrees about the line: the classifier's class is shown, and its share.
+    let rule = (StrokeClass::Blade, Source::Rule("lone-leaf"), 0.25);
+    assert_eq!(of(&all)[0], rule);
+    assert_eq!(of(&all)[1].0, StrokeClass::Vein);
+    let off = read_without(&["lone-leaf", "tree-in-one-stroke"], &ink, &classes, &mut Report::default());
+    assert_eq!(of(&off)[0], (StrokeClass::TrunkOutline, Source::Classifier, 0.75));
+    let set = [Classified::by_user(StrokeClass::TrunkOutline), classes[1]];
+    let set = read(&ink, &set, &mut Report::default());
+    assert_eq!(of(&set)[0], (StrokeClass::TrunkOutline, Source::User, 1.0));
+    assert_eq!(of(&set)[1], line(classes[1].class, Source::Classifier));
+}
+
+#[test]
+fn a_line_by_itself_is_the_classifiers_where_its_rule_is_off() {
+    let ink =
+        clean(&Drawing::from_polylines("line", &[line((0.0, 0.0), (1.0, 9.0))]), &mut Report::default());
+    let classes = ink::classify(&ink, &base::Run::plain());
+    let on = read(&ink, &classes, &mut Report::default()).strokes[0];
+    assert_eq!((on.class, on.source), (StrokeClass::Axis, Source::Rule(ink::LONE_LINE)));
+    let off = read_without(&[ink::LONE_LINE], &ink, &classes, &mut Report::default()).strokes[0];
+    assert_eq!((off.class, off.source), (Classified::by_shares(classes[0].shares).class, Source::Classifier));
+}
+
+#[test]
+fn the_documented_rules_are_these() {
+    let docs = include_str!("../../../docs/strokes.md");
+    let rows = docs.lines().filter(|l| l.starts_with("| `") && l.contains("` | "));
+    let documented: Vec<&str> = rows.filter_map(|l| l.split('|').nth(1)).map(str::trim).collect();
+    let names: Vec<String> = RULES.iter().map(|r| format!("`{}`", r.name)).collect();
+    assert_eq!(documented, names, "run `cargo xtask train-strokes`");
+    for rule in RULES {
+        assert!(
+            docs.contains(&format!("| `{}` | {} |", rule.name, rule.why)),
+            "{} is told otherwise",
+            rule.name
+        );
+        let kebab = rule.name.chars().all(|c| c.is_ascii_lowercase() || c == '-');
+        assert!(kebab && rule.why.ends_with('.'), "{} is a name, its reason a sentence", rule.name);
     }
 }

@@ -19,7 +19,7 @@ fn method(kind: usize) -> Method {
 }
 
 fn tree(kind: usize, seed: u64) -> Plant {
-    let leaves = Some(LeafSpec { spacing_m: 0.15, ..LeafSpec::default() });
+    let leaves = LeafSpec { spacing_m: 0.15, ..LeafSpec::default() };
     let age = (kind == 3).then_some(6);
     let spec = TreeSpec { method: method(kind), leaves, age, ..TreeSpec::default() };
     grow(&spec, None, Seed::new(seed), &Run::plain(), &mut Report::default()).expect("sound").plant

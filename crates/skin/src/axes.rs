@@ -5,12 +5,12 @@ use glam::DVec3;
 use mesh::TriMesh;
 use plant::{AxisId, AxisKind, NodeId, Plant};
 
-use crate::fork::{Bearer, Collar, Reach, reach};
+use crate::fork::{Bearer, Collar, reach};
 use crate::rings::{drawn, rings};
+use crate::sleeve::{Circle, Sleeve, drop_flat};
 use crate::spec::{Budget, SkinSpec, whole};
-use crate::spine::Spine;
+use crate::spine::{Reach, Spine};
 use crate::traced::Traced;
-use crate::tube::{Circle, Sleeve, drop_flat};
 use crate::wind::{self, Wind, Wood};
 
 /// Which part of the model an axis belongs to.

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 use mesh::TriMesh;
 use plant::Blade;
 
-use crate::tube::{drop_flat, narrow2};
+use crate::sleeve::{drop_flat, narrow2};
 
 // With fewer triangles than this, veins other than the midrib would leave slivers only.
 const VEINS_FROM: f64 = 100.0;

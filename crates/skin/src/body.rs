@@ -4,9 +4,10 @@ use base::ops;
 use glam::{DVec2, DVec3};
 use mesh::TriMesh;
 
+use crate::sleeve::{Circle, drop_flat, narrow, narrow2, wide};
 use crate::spec::whole;
 use crate::texture::{DISC_RADIUS, RECEPTACLE_AT, unevenness};
-use crate::tube::{Circle, TubeSpec, drop_flat, narrow, narrow2, tube, wide};
+use crate::tube::{TubeSpec, tube};
 
 /// Columns that grow together.
 #[derive(Default)]
@@ -184,6 +185,42 @@ pub(crate) fn strand(path: &[DVec3], radii: &[f64], knob: f64, fine: bool) -> Tr
         mesh.append(&ball(end, axis, knob, if fine { 6 } else { 4 }));
     }
     mesh
+}
+
+/// A strand with six sides, a ring at each of its points and flat ends: the same triangles however it bends.
+pub(crate) fn rod(path: &[DVec3], radii: &[f64]) -> TriMesh {
+    const SIDES: u32 = 6;
+    let mut out = Columns::default();
+    let frames = geom::rotation_minimising_frames(path, None);
+    let rings = frames.len().min(radii.len());
+    if rings < 2 {
+        return out.0;
+    }
+    let circle = Circle::new(SIDES);
+    let mut first = Vec::with_capacity(rings);
+    #[expect(clippy::cast_precision_loss, reason = "a few rings")]
+    let along = |i: usize| 1.0 - i as f64 / (rings - 1) as f64;
+    for (i, (f, r)) in frames.iter().zip(radii).enumerate() {
+        first.push(crate::parts::index(out.0.positions.len()));
+        for (j, &(cos, sin)) in (0_u32..).zip(&circle.0) {
+            let p = f.origin + (f.normal * cos + f.binormal * sin) * *r;
+            out.vertex(p, (f64::from(j) / f64::from(SIDES), along(i)));
+        }
+    }
+    for pair in first.windows(2) {
+        for j in 0..SIDES {
+            out.quad(pair[0], pair[1], j);
+        }
+    }
+    for (ring, i) in [(first[0], 0), (first[rings - 1], rings - 1)] {
+        let middle = out.vertex(frames[i].origin, (0.5, along(i)));
+        for j in 0..SIDES {
+            let (a, b) = if i == 0 { (ring + j + 1, ring + j) } else { (ring + j, ring + j + 1) };
+            out.0.triangles.push([middle, a, b]);
+        }
+    }
+    smooth_seam(&mut out.0, &first, SIDES);
+    out.0
 }
 
 /// The fewest triangles that show a strand: a closed prism of eight, from its first point to its last.

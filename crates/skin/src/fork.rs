@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use crate::rings::Ring;
-use crate::spine::{Spine, Station};
-use crate::tube::{Circle, Sleeve};
+use crate::sleeve::{Circle, Sleeve};
+use crate::spine::{Reach, Spine, Station};
 
 /// The bearer of a branch.
 #[derive(Clone, Copy, Debug)]
@@ -15,17 +15,6 @@ pub(crate) struct Bearer<'a> {
     /// Sides of the bearer's tube: its flat faces lie deeper than its radius.
     pub sides: u32,
     /// The arc length up to which the bearer is a fillet itself.
-    pub top: f64,
-}
-
-/// Where the fillet lies along a branch.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Reach {
-    /// Where the centre line leaves the bearer.
-    pub exit: Station,
-    /// The bearer's arc length there.
-    pub on: f64,
-    /// The arc length at which the fillet ends and the branch's own tube starts.
     pub top: f64,
 }
 

@@ -1,58 +1,12 @@
 //! Blades that are surfaces -> triangles: tubes of the veins, grid of the blade, at any resolution.
 
-use geom::{BallBSpline, EndCap, RingRule, TubeSpec, subdivided};
+use geom::{BallBSpline, TubeSpec, subdivided};
 use glam::DVec3;
 use mesh::TriMesh;
 use plant::{Chart, Sheet, SplineBlade, VeinShade, Venation};
 
-use crate::tube::{narrow, narrow2, wide};
-
-/// How finely leaves of measured veins are meshed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LeafMeshSpec {
-    /// Parts of each span between marks, 1 to 64. Default 5, as in Table 1 of paper 004.
-    pub subdivisions: usize,
-    /// Points of each ring of a vein, 3 to 64. Default 10, as in Table 1.
-    pub sides: usize,
-    /// Plain rings (paper) or the exact envelope of the balls.
-    pub rings: RingRule,
-    /// Round ends of the veins; the paper's are open.
-    pub caps: bool,
-    /// A vein along the margin too; the paper draws it and does not count it.
-    pub margin: bool,
-}
-
-impl Default for LeafMeshSpec {
-    fn default() -> Self {
-        Self { subdivisions: 5, sides: 10, rings: RingRule::Plain, caps: false, margin: false }
-    }
-}
-
-impl LeafMeshSpec {
-    /// About how many triangles a leaf with so many rows of marks has, from the numbers of Table 1.
-    pub fn triangles(&self, rows: usize) -> u64 {
-        let [rows, steps, sides] =
-            [rows, self.subdivisions.clamp(1, 64), self.sides.clamp(3, 64)].map(|n| n as u64);
-        // Of 7 spans of veins (9 with the margin) and 6 columns of the blade a row, two a quad.
-        let spans = if self.margin { 9 } else { 7 };
-        2 * rows * (spans * steps * sides + 6 * steps * steps)
-    }
-
-    /// Coarser or finer: triangles in proportion to `detail`, 1 as it is.
-    pub(crate) fn at(self, detail: f64) -> Self {
-        let times = |n: usize, low: f64| {
-            #[expect(clippy::cast_precision_loss, reason = "at most 64")]
-            let wanted = (n as f64 * detail.sqrt()).round();
-            crate::spec::whole(wanted.clamp(low, 64.0)) as usize
-        };
-        Self { subdivisions: times(self.subdivisions, 1.0), sides: times(self.sides, 3.0), ..self }
-    }
-
-    fn tube(&self) -> TubeSpec {
-        let cap = if self.caps { EndCap::Round(3) } else { EndCap::Open };
-        TubeSpec { rings: self.rings, sides: self.sides.clamp(3, 64), cap, first_normal: None }
-    }
-}
+use crate::LeafMeshSpec;
+use crate::sleeve::{narrow, narrow2, wide};
 
 /// The triangles of one shape, in its own frame.
 ///
@@ -166,7 +120,7 @@ pub(crate) fn sheet_mesh(sheet: &Sheet, spec: &LeafMeshSpec, detail: f64) -> Sha
     out.blade_faces = across.len().saturating_sub(1) * along.len().saturating_sub(1);
     mesh.triangles.extend(thin.triangles().map(|t| t.map(crate::parts::index)));
     mesh.colors = thin.colors;
-    crate::tube::drop_flat(mesh);
+    // Cells without area stay: a bud has the triangles of the bloom.
     mesh.compute_normals();
     out
 }

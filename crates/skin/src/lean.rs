@@ -7,7 +7,7 @@ use mesh::TriMesh;
 use plant::Blade;
 
 use crate::blade::BladeChart;
-use crate::tube::{drop_flat, narrow2};
+use crate::sleeve::{drop_flat, narrow2};
 
 /// A blade in at most about `triangles` triangles, 2 to 60, folded along its midrib.
 ///

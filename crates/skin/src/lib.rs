@@ -9,11 +9,11 @@
 //!
 //! | module | owns |
 //! |---|---|
-//! | `spec` | [`SkinSpec`], [`PetalColor`]; how triangles are shared out |
-//! | `spine`, `rings`, `tube` | smooth centre lines, cross-sections, [`tube`] |
+//! | `spec` | [`SkinSpec`], [`LeafMeshSpec`], [`PetalColor`]; how triangles are shared out |
+//! | `spine`, `rings`, `sleeve`, `tube` | smooth centre lines, cross-sections, their triangles, [`tube`] |
 //! | `fork`, `axes` | fillets at forks; which axes are one tube |
 //! | `blade`, `lean`, `body`, `organs` | [`blade_mesh`], [`BladeChart`]; leaves of a crowd; discs, fruits, strands; placed copies |
-//! | `leaf` | [`LeafMeshSpec`], [`ShapeMesh`]: leaves of measured veins, sheets |
+//! | `leaf` | [`ShapeMesh`]: leaves of measured veins, sheets |
 //! | `traced` | [`Traced`]: organs in the colours of a photograph |
 //! | `wind` | weights and pivots for wind |
 //! | `texture`, `parts` | painted textures, materials, parts |
@@ -28,6 +28,7 @@ mod lean;
 mod organs;
 mod parts;
 mod rings;
+mod sleeve;
 mod spec;
 mod spine;
 mod texture;
@@ -36,9 +37,9 @@ mod tube;
 mod wind;
 
 pub use blade::{BladeChart, blade_mesh};
-pub use leaf::{LeafMeshSpec, ShapeMesh};
+pub use leaf::ShapeMesh;
 pub use organs::KeptShapes;
-pub use spec::{PetalColor, SkinSpec};
+pub use spec::{LeafMeshSpec, PetalColor, SkinSpec};
 pub use texture::{LeafColours, vein_texture};
 pub use traced::Traced;
 pub use tube::{TubeSpec, tube};
@@ -137,8 +138,9 @@ fn budget(plant: &Plant, spec: &SkinSpec) -> Budget {
             counted += 1;
         }
     }
+    let size = spec.steady_m.unwrap_or_else(|| bounds.size().length());
     let mean = if counted > 0 { length / f64::from(counted) } else { 1.0 };
-    Budget::new(spec.detail, bounds.size().length(), mean, counted as usize, plant.organs.len())
+    Budget::new(spec.detail, size, mean, counted as usize, plant.organs.len())
 }
 
 /// The box around nodes and organs.

@@ -6,14 +6,15 @@ use base::{Cancelled, Counted, Draw, Run, Seed, Stopped, map_indexed};
 use mesh::TriMesh;
 use plant::{Organ, OrganKind, Plant, Shape, ShapeId};
 
+use crate::LeafMeshSpec;
 use crate::blade::blade_mesh;
-use crate::body::{dome, prism, revolution, strand};
-use crate::leaf::{LeafMeshSpec, ShapeMesh, sheet_mesh, spline_mesh};
+use crate::body::{dome, prism, revolution, rod, strand};
+use crate::leaf::{ShapeMesh, sheet_mesh, spline_mesh};
 use crate::lean::lean_mesh;
 use crate::parts::{Coat, Slot};
+use crate::sleeve::{narrow, wide};
 use crate::spec::{Budget, PetalColor, SkinSpec};
 use crate::traced::Traced;
-use crate::tube::{narrow, wide};
 use crate::wind::{Wind, flutter};
 
 // Organs are copied in groups of about this many vertices: one job each would cost more than the copy.
@@ -60,9 +61,10 @@ pub(crate) fn organs(
         Layer::Veins => &shapes[plant.organs[i].shape.index()].veins,
     };
     let placed = |(i, o): (usize, &Organ)| {
-        let slot = match plant.shapes[o.shape.index()] {
-            Shape::Spline(ref blade) => Slot::Form(blade.form, Coat::of(o.paint)),
-            _ => ground.slot(o),
+        let shape = &plant.shapes[o.shape.index()];
+        let slot = match *shape {
+            Shape::Spline(ref blade) => Slot::Form(blade.form, Coat::of(o.paint, shape)),
+            _ => ground.slot(o, shape),
         };
         let slot = if of_photo(o).is_some() { slot.traced() } else { slot };
         [(slot, i, Layer::Surface), (Slot::Veins, i, Layer::Veins)]
@@ -186,6 +188,8 @@ enum Wish {
     },
     /// A strand of a crown.
     Prism,
+    /// A strand of a plant of which there are several days.
+    Rod,
     Spline(LeafMeshSpec),
     /// With this detail.
     Grid(LeafMeshSpec, f64),
@@ -216,6 +220,7 @@ impl Wish {
                 let knob = if knob_m.is_finite() { *knob_m } else { 0.0 };
                 strand(path, radius_m, knob, fine)
             }
+            (Self::Rod, Shape::Strand { path, radius_m, .. }) => rod(path, radius_m),
             (Self::Prism, Shape::Strand { path, radius_m, .. }) => prism(path, radius_m),
             _ => TriMesh::default(),
         }
@@ -281,6 +286,8 @@ struct Ground {
     /// Few enough stamens and thorns to give each more than three rings.
     fine_strands: bool,
     leaf: LeafMeshSpec,
+    /// The same triangles at every day.
+    steady: bool,
 }
 
 impl Ground {
@@ -306,7 +313,12 @@ impl Ground {
         } else {
             PetalColor::ALL[tint.below(PetalColor::ALL.len())]
         };
-        Self { petals: spec.petals.unwrap_or(chosen), fine_strands: strands <= 40, leaf: spec.leaf }
+        Self {
+            petals: spec.petals.unwrap_or(chosen),
+            fine_strands: strands <= 40,
+            leaf: spec.leaf,
+            steady: spec.steady_m.is_some(),
+        }
     }
 
     fn wish(&self, shape: &Shape, used: Use, budget: &Budget) -> Wish {
@@ -336,6 +348,7 @@ impl Ground {
                     Wish::Revolution(triangles(area), 0)
                 }
             }
+            Shape::Strand { knob_m: 0.0, .. } if self.steady => Wish::Rod,
             Shape::Strand { knob_m: 0.0, .. } if budget.crown() => Wish::Prism,
             Shape::Strand { .. } => Wish::Strand { fine: self.fine_strands && budget.detail >= 0.5 },
             Shape::Spline(_) => Wish::Spline(self.leaf.at(budget.detail)),
@@ -344,14 +357,15 @@ impl Ground {
         }
     }
 
-    fn slot(&self, organ: &Organ) -> Slot {
-        let coat = Coat::of(organ.paint);
+    fn slot(&self, organ: &Organ, shape: &Shape) -> Slot {
+        let coat = Coat::of(organ.paint, shape);
         match organ.kind {
             OrganKind::Petal => Slot::Petal(coat, self.petals),
-            OrganKind::Disc => Slot::Disc(coat),
+            OrganKind::Sepal => Slot::Sepal(coat),
+            OrganKind::Disc | OrganKind::Floret => Slot::Disc(coat),
             OrganKind::Body if coat == Coat::Natural => Slot::Body,
             OrganKind::Fruit | OrganKind::Body => Slot::Fruit(coat),
-            OrganKind::Stamen | OrganKind::Pistil => Slot::Stamen,
+            OrganKind::Stamen | OrganKind::Anther | OrganKind::Pistil => Slot::Stamen(coat),
             OrganKind::Thorn => Slot::Thorn,
             OrganKind::Pedicel => Slot::Stem,
             _ => Slot::Leaf(coat),
@@ -372,7 +386,7 @@ fn tint(organ: &Organ, slot: Slot, spec: &SkinSpec) -> [f32; 3] {
     let [light, warm] = [light, warm].map(|x| x * strength);
     let own = match organ.kind {
         // The stamens' texture in the green of a pistil.
-        OrganKind::Pistil => [0.62, 0.86, 0.42],
+        OrganKind::Pistil if slot == Slot::Stamen(Coat::Natural) => [0.62, 0.86, 0.42],
         _ => [1.0; 3],
     };
     let paint = organ.paint.rgb();

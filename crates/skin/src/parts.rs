@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use base::Executor;
 use mesh::{Material, MaterialId, MaterialKind, Model, Part, Texture, TriMesh};
-use plant::Paint;
+use plant::{Paint, Shape};
 
 use crate::PetalColor;
 use crate::texture::Motif;
@@ -30,10 +30,11 @@ pub(crate) enum Slot {
     Veins,
     /// With the colour of those that have a natural one.
     Petal(Coat, PetalColor),
+    Sepal(Coat),
     Disc(Coat),
     Fruit(Coat),
     Body,
-    Stamen,
+    Stamen(Coat),
     Thorn,
     /// In the colours of the photograph that it was traced over.
     Traced(MaterialKind),
@@ -45,13 +46,16 @@ pub(crate) enum Coat {
     Natural,
     /// Vertex colours over a texture without a hue.
     Tinted,
+    /// Vertex colours that differ over the surface, and no texture.
+    Own,
     /// So is what was drawn in colour; it has a part of its own.
     Drawn,
 }
 
 impl Coat {
-    pub(crate) fn of(paint: Paint) -> Self {
+    pub(crate) fn of(paint: Paint, shape: &Shape) -> Self {
         match paint {
+            _ if matches!(shape, Shape::Sheet(s) if !s.colors.is_empty()) => Self::Own,
             Paint::Natural(_) => Self::Natural,
             Paint::Tinted(_) => Self::Tinted,
             Paint::Drawn(_) => Self::Drawn,
@@ -72,10 +76,10 @@ impl Slot {
             Self::Stem | Self::Body | Self::Thorn => MaterialKind::Stem,
             Self::Root => MaterialKind::Root,
             Self::Leaf(_) | Self::Form(..) | Self::Veins => MaterialKind::Leaf,
-            Self::Petal(..) => MaterialKind::Petal,
+            Self::Petal(..) | Self::Sepal(_) => MaterialKind::Petal,
             Self::Disc(_) => MaterialKind::Disc,
             Self::Fruit(_) => MaterialKind::Fruit,
-            Self::Stamen => MaterialKind::Stamen,
+            Self::Stamen(_) => MaterialKind::Stamen,
         }
     }
 
@@ -92,14 +96,15 @@ impl Slot {
             Self::Leaf(Coat::Drawn) => ("leaves-drawn", "leaf-drawn".into()),
             Self::Leaf(_) => ("leaves", "leaf".into()),
             Self::Petal(Coat::Natural, color) => ("petals", format!("petal-{}", color.word())),
-            Self::Petal(Coat::Tinted, _) => ("petals", "petal".into()),
+            Self::Petal(Coat::Tinted | Coat::Own, _) => ("petals", "petal".into()),
             Self::Petal(Coat::Drawn, _) => ("petals-drawn", "petal-drawn".into()),
+            Self::Sepal(_) => ("sepals", "sepal".into()),
             Self::Disc(Coat::Drawn) => ("discs-drawn", "disc-drawn".into()),
             Self::Disc(_) => ("discs", "disc".into()),
             Self::Fruit(Coat::Drawn) => ("fruits-drawn", "fruit-drawn".into()),
             Self::Fruit(_) => ("fruits", "fruit".into()),
             Self::Body => ("bodies", "body".into()),
-            Self::Stamen => ("stamens", "stamen".into()),
+            Self::Stamen(_) => ("stamens", "stamen".into()),
             Self::Thorn => ("thorns", "thorn".into()),
             Self::Traced(kind) => {
                 let part = match kind {
@@ -122,7 +127,11 @@ impl Slot {
     /// What its texture shows; none for what has no texture of its own.
     fn motif(self) -> Option<Motif> {
         Some(match self {
-            Self::Form(..) | Self::Veins => return None,
+            Self::Form(..) | Self::Veins | Self::Sepal(_) => return None,
+            Self::Stamen(coat) if coat != Coat::Natural => return None,
+            Self::Leaf(Coat::Own) | Self::Petal(Coat::Own, _) => return None,
+            // Florets of a disc are organs of their own.
+            Self::Disc(Coat::Own | Coat::Tinted) => return None,
             Self::Bark => Motif::Bark,
             Self::YoungBark => Motif::YoungBark,
             Self::Stem => Motif::Stem,
@@ -137,7 +146,7 @@ impl Slot {
             Self::Fruit(Coat::Natural) => Motif::Fruit,
             Self::Fruit(_) => Motif::PaleFruit,
             Self::Body => Motif::Body,
-            Self::Stamen => Motif::Stamen,
+            Self::Stamen(_) => Motif::Stamen,
             Self::Thorn => Motif::Thorn,
         })
     }
@@ -163,12 +172,14 @@ impl Slot {
             Self::Disc(Coat::Natural) => [0.55, 0.25, 0.02],
             Self::Fruit(Coat::Natural) => [0.56, 0.06, 0.02],
             Self::Body => [0.06, 0.16, 0.05],
-            Self::Stamen => [0.72, 0.55, 0.15],
+            Self::Stamen(Coat::Natural) => [0.72, 0.55, 0.15],
             Self::Thorn => [0.28, 0.16, 0.08],
             Self::Veins => [0.44, 0.52, 0.18],
             Self::Leaf(_)
             | Self::Form(..)
             | Self::Petal(..)
+            | Self::Sepal(_)
+            | Self::Stamen(_)
             | Self::Disc(_)
             | Self::Fruit(_)
             | Self::Traced(_) => [1.0; 3],

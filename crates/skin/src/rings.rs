@@ -2,8 +2,7 @@
 
 use glam::DVec3;
 
-use crate::fork::Reach;
-use crate::spine::{Spine, Station};
+use crate::spine::{Reach, Spine, Station};
 
 /// A cross-section: a station with two unit vectors across, `across` x `up` = `tangent`.
 #[derive(Clone, Copy, Debug)]

@@ -1,10 +1,9 @@
 //! What the caller may choose, and how triangles are shared out.
 
 use base::Seed;
+use geom::{EndCap, RingRule, TubeSpec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::LeafMeshSpec;
 
 /// How a plant is given its surface. Saved with the document.
 ///
@@ -22,7 +21,7 @@ pub struct SkinSpec {
     /// Sides of an ordinary branch at `detail` 1 or more; thick ones get up to 24. 3 to 24, default 8 (the
     /// paper's octagons).
     pub sides: u32,
-    /// How leaves of measured veins are meshed at `detail` 1. Follows from what is asked of the leaf, not saved here.
+    /// How leaves of measured veins are meshed at `detail` 1. What a leaf is asked for, not saved here.
     #[serde(skip)]
     pub leaf: LeafMeshSpec,
     /// Give materials procedural textures; without, they have plain colours. Default true.
@@ -35,6 +34,9 @@ pub struct SkinSpec {
     /// export, not saved. Default false.
     #[serde(skip)]
     pub wind: bool,
+    /// Of a plant that changes from day to day its size in full bloom, metres: fineness is relative to that and not
+    /// to the day's, so that triangles are the same at every day. Default none.
+    pub steady_m: Option<f64>,
     /// What the variation and the choice of colours are drawn from, and the phases of the wind.
     #[serde(skip)]
     pub seed: Seed,
@@ -50,8 +52,56 @@ impl Default for SkinSpec {
             petals: None,
             variation: 1.0,
             wind: false,
+            steady_m: None,
             seed: Seed::default(),
         }
+    }
+}
+
+/// How finely leaves of measured veins are meshed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LeafMeshSpec {
+    /// Parts of each span between marks, 1 to 64. Default 5, as in Table 1 of paper 004.
+    pub subdivisions: usize,
+    /// Points of each ring of a vein, 3 to 64. Default 10, as in Table 1.
+    pub sides: usize,
+    /// Plain rings (paper) or the exact envelope of the balls.
+    pub rings: RingRule,
+    /// Round ends of the veins; the paper's are open.
+    pub caps: bool,
+    /// A vein along the margin too; the paper draws it and does not count it.
+    pub margin: bool,
+}
+
+impl Default for LeafMeshSpec {
+    fn default() -> Self {
+        Self { subdivisions: 5, sides: 10, rings: RingRule::Plain, caps: false, margin: false }
+    }
+}
+
+impl LeafMeshSpec {
+    /// About how many triangles a leaf with so many rows of marks has, from the numbers of Table 1.
+    pub fn triangles(&self, rows: usize) -> u64 {
+        let [rows, steps, sides] =
+            [rows, self.subdivisions.clamp(1, 64), self.sides.clamp(3, 64)].map(|n| n as u64);
+        // Of 7 spans of veins (9 with the margin) and 6 columns of the blade a row, two a quad.
+        let spans = if self.margin { 9 } else { 7 };
+        2 * rows * (spans * steps * sides + 6 * steps * steps)
+    }
+
+    /// Coarser or finer: triangles in proportion to `detail`, 1 as it is.
+    pub(crate) fn at(self, detail: f64) -> Self {
+        let times = |n: usize, low: f64| {
+            #[expect(clippy::cast_precision_loss, reason = "at most 64")]
+            let wanted = (n as f64 * detail.sqrt()).round();
+            whole(wanted.clamp(low, 64.0)) as usize
+        };
+        Self { subdivisions: times(self.subdivisions, 1.0), sides: times(self.sides, 3.0), ..self }
+    }
+
+    pub(crate) fn tube(&self) -> TubeSpec {
+        let cap = if self.caps { EndCap::Round(3) } else { EndCap::Open };
+        TubeSpec { rings: self.rings, sides: self.sides.clamp(3, 64), cap, first_normal: None }
     }
 }
 

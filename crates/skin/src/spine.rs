@@ -27,6 +27,17 @@ pub(crate) struct Station {
     pub slope: f64,
 }
 
+/// Where the fillet lies along a branch.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reach {
+    /// Where the centre line leaves the bearer.
+    pub exit: Station,
+    /// The bearer's arc length there.
+    pub on: f64,
+    /// The arc length at which the fillet ends and the branch's own tube starts.
+    pub top: f64,
+}
+
 // Radii below this share of the axis's length are drawn as that: a line without width has no surface.
 const THINNEST: f64 = 1.0 / 2000.0;
 // Rings fold over one another where radius x curvature passes 1; stay below.

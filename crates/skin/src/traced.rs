@@ -7,8 +7,8 @@ use std::sync::Arc;
 use glam::DVec3;
 use mesh::{Texture, TriMesh};
 
+use crate::sleeve::{narrow2, wide};
 use crate::spine::Spine;
-use crate::tube::{narrow2, wide};
 
 // Hands trace a little outside an edge: organs take what lies this much nearer to their middle.
 const INSET: f64 = 0.95;

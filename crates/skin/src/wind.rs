@@ -12,9 +12,9 @@ use glam::DVec3;
 use mesh::{Bounds, TriMesh};
 use plant::{AxisKind, NodeId, Organ, Plant, Shape};
 
-use crate::fork::{Bearer, Reach};
-use crate::spine::Spine;
-use crate::tube::{narrow, wide};
+use crate::fork::Bearer;
+use crate::sleeve::{narrow, wide};
+use crate::spine::{Reach, Spine};
 
 /// What a chain of axes has to know.
 #[derive(Clone, Copy, Debug)]

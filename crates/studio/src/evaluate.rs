@@ -198,7 +198,7 @@ impl Evaluator {
         let mut classes = classes.clone();
         for (stroke, class) in ink.strokes.iter().zip(&mut classes) {
             if let Some(&wanted) = wanted.get(&stroke.index) {
-                *class = Classified { class: wanted, confidence: 1.0 };
+                *class = Classified::by_user(wanted);
             }
         }
         let mut report = Report::default();
@@ -407,6 +407,7 @@ fn stroke_report(s: &reading::StrokeReading) -> StrokeReport {
         class: s.class.word().into(),
         organ: s.organ.word().into(),
         confidence: s.confidence,
+        source: s.source.to_string(),
     }
 }
 

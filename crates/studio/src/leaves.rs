@@ -400,6 +400,16 @@ pub(crate) fn area(mesh: &TriMesh) -> f64 {
     mesh.triangles.iter().map(|&[a, b, c]| 0.5 * (p(b) - p(a)).cross(p(c) - p(a)).length()).sum()
 }
 
+base::coded!(LeafError {
+    Self::Spline(why) => "leaf-surface" { why },
+    Self::Rays(why) => "leaf-veins" { why },
+    Self::Scan(why) => "leaf-scan" { why },
+    Self::NoLeaves => "no-leaves" {},
+} wraps {
+    Self::Marks(e) => e, MarksError;
+    Self::Cancelled(e) => e, Cancelled;
+    Self::OverBudget(e) => e, OverBudget;
+});
 #[cfg(test)]
 mod tests {
     use leaf::ScanSpec;

@@ -18,6 +18,7 @@
 //! ```
 
 mod evaluate;
+mod flowers;
 mod leaf_blade;
 mod leaves;
 mod make;
@@ -33,10 +34,11 @@ mod trees;
 mod venation;
 
 pub use base::{
-    Angle, Budget, CancelToken, Cancelled, Clock, Counted, Digest, Executor, NoClock, OverBudget, Report,
-    Run, Seed, Serial, Stopped, Unit, UpAxis, Warning, brief, map_indexed, quoted,
+    Angle, Budget, CancelToken, Cancelled, Clock, Code, Coded, Counted, Digest, Executor, NoClock,
+    OverBudget, Report, Run, Seed, Serial, Stopped, Told, Unit, UpAxis, Warning, brief, map_indexed, quoted,
 };
 pub use evaluate::{Evaluator, FrontView};
+pub use flowers::{FlowerOptions, make_flower};
 pub use leaf_blade::leaf_blade;
 pub use leaves::{
     FaceCounts, FitError, LeafError, LeafOptions, LeafReport, LeafTexture, ScanReport, make_leaf,
@@ -44,7 +46,7 @@ pub use leaves::{
 };
 pub use make::{ClassOverrides, Made, MadePlant, MakeError, SketchOptions, make_from_sketch};
 pub use motion::{cloud_model, motion_model};
-pub use opening::{OpeningError, OpeningPlant};
+pub use opening::{OpenedPlant, OpeningError, OpeningPlant};
 pub use report::{
     Counts, Fidelity, InputReport, ItemReport, REPORT_SCHEMA, RunReport, StrokeReport, TimingsMs,
 };
@@ -58,16 +60,19 @@ pub use shoot::{ShootSpec, make_shoot};
 pub use template::{LeafTemplate, TemplateError};
 
 pub use trees::{
-    Bark, BladeForm, BladeSpec, BlossomSpec, Colour, GUIDED_METHODS, GrowthReport, Look, MadeTree, NamedMesh,
-    OAK_METHODS, PAPER_OAKS, PRESETS, PaperOak, Preset, TreeError, TreeEvaluator, TreeOptions, TreeSize,
-    TreeSpec, coarser, guided_methods, make_tree, method_word, read_tree_spec, scale_to_height,
-    show_obstacles, tree_schema, tree_size,
+    GUIDED_METHODS, GrowthReport, MadeTree, NamedMesh, OAK_METHODS, PAPER_OAKS, PRESETS, PaperOak, Preset,
+    TreeError, TreeEvaluator, TreeOptions, TreeSize, coarser, guided_methods, make_tree, method_word,
+    read_tree_spec, scale_to_height, show_obstacles, tree_blade, tree_schema, tree_size,
 };
 pub use venation::make_ray_leaf;
 
+pub use base::coded;
+pub use growth::{Bark, BladeForm, BladeSpec, BlossomSpec, Look, TreeSpec};
+pub use spec::{Colour, Spec, SpecFault};
+
 pub use {
     bloom, document, formats, geom, glam, growth, ink, leaf, mesh, plant, reading, render, shape, sketch,
-    skin,
+    skin, spec,
 };
 
 /// The version that is written into reports and files.

@@ -137,3 +137,11 @@ pub fn make_from_sketch(
     let (reading, plant, model) = evaluator.take().ok_or(Cancelled)?; // update succeeded: all three are there
     Ok(Made { reading, plant, model, item })
 }
+
+base::coded!(MakeError {
+    Self::NoStrokes { name, .. } => "no-strokes" { name },
+    Self::NoSuchStroke { index, .. } => "class-without-stroke" { index },
+} wraps {
+    Self::Cancelled(e) => e, Cancelled;
+    Self::OverBudget(e) => e, OverBudget;
+});

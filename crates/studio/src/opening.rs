@@ -1,15 +1,16 @@
 //! A drawn plant whose flowers open: its own petals, from the bud to full bloom and on to wilting.
 //!
-//! drawing -> plant -> (plant without flowers, a [`bloom::FlowerSpec`] a flower) -> the model of any day
+//! drawing -> plant -> (plant without flowers, a [`bloom::FlowerSpec`] a flower) -> the plant of any day
 
-use base::{Run, Seed};
-use bloom::{FlowerSpec, GrowthLaw, PetalForm, Whorl};
-use glam::{DQuat, DVec3};
+use base::{Run, Seed, Stopped};
+use bloom::{FlowerSpec, GrowthLaw, Insertion, PetalForm, PetalMesh, Seat, Stamens, Whorl};
+use glam::DVec3;
 use ink::Drawing;
-use mesh::{MaterialId, MaterialKind, Model};
-use plant::{Flower, Organ, OrganKind, Plant, Shape};
-use skin::SkinSpec;
+use mesh::{MaterialKind, Model};
+use plant::{Flower, FlowerId, Organ, OrganKind, Plant, Shape};
+use skin::{KeptShapes, SkinSpec};
 
+use crate::flowers::steady;
 use crate::make::{MakeError, SketchOptions, make_from_sketch};
 use crate::report::ItemReport;
 
@@ -22,7 +23,11 @@ pub struct OpeningPlant {
     pub days: [f64; 2],
     /// The entry of the report for the plant as it was drawn.
     pub item: ItemReport,
-    rest: Model,
+    /// The plant without what its flowers are made of.
+    rest: Plant,
+    skin: SkinSpec,
+    size_m: f64,
+    kept: KeptShapes,
     flowers: Vec<Placed>,
 }
 
@@ -30,8 +35,8 @@ pub struct OpeningPlant {
 #[derive(Clone, Debug)]
 struct Placed {
     spec: FlowerSpec,
-    centre: DVec3,
-    turn: DQuat,
+    flower: FlowerId,
+    seat: Seat,
 }
 
 /// Why no flower opens.
@@ -46,8 +51,8 @@ pub enum OpeningError {
     NoFlowers(String),
 }
 
-impl From<base::Stopped> for OpeningError {
-    fn from(stopped: base::Stopped) -> Self {
+impl From<Stopped> for OpeningError {
+    fn from(stopped: Stopped) -> Self {
         Self::Make(stopped.into())
     }
 }
@@ -68,7 +73,7 @@ impl OpeningPlant {
         run: &Run<'_>,
     ) -> Result<Self, OpeningError> {
         let made = make_from_sketch(drawing, options, seed, run)?;
-        Self::of_made(&drawing.name, (&made.plant, &made.model, &made.item), &options.skin, run)
+        Self::of_made(&drawing.name, (&made.plant, &made.model, &made.item), &options.skin)
     }
 
     /// As [`OpeningPlant::new`], of a plant that was made of a drawing already: plant, model, entry of the report.
@@ -79,7 +84,6 @@ impl OpeningPlant {
         name: &str,
         (plant, model, item): (&Plant, &Model, &ItemReport),
         skin: &SkinSpec,
-        run: &Run<'_>,
     ) -> Result<Self, OpeningError> {
         let dye = petal_color(model);
         let mut rest = plant.clone();
@@ -89,61 +93,64 @@ impl OpeningPlant {
         for (k, flower) in plant.flowers.iter().enumerate() {
             let own = |o: &&Organ| o.flower.is_some_and(|f| f.index() == k);
             let organs: Vec<&Organ> = plant.organs.iter().filter(own).collect();
-            flowers.extend(placed(plant, flower, &organs, dye));
+            flowers.extend(placed(plant, (FlowerId::new(k), flower), &organs, dye));
         }
         if flowers.is_empty() {
             return Err(OpeningError::NoFlowers(name.into()));
         }
         rest.organs.retain(|o| !(flower_organs(o.kind) && o.flower.is_some()));
-        let rest = skin::skin(&rest, skin, run)?;
-        let days = flowers[0].spec.days;
-        Ok(Self { name: name.into(), days, item: item.clone(), rest, flowers })
-    }
-
-    /// Number of flowers, and of their petals.
-    pub fn counts(&self) -> (u64, u64) {
-        let petals = |p: &Placed| p.spec.whorls.iter().map(|w| u64::from(w.count)).sum::<u64>();
-        (self.flowers.len() as u64, self.flowers.iter().map(petals).sum())
+        name.clone_into(&mut rest.name);
+        let days = flowers[0].spec.days();
+        let size_m = plant.extent().map_or(1.0, |(low, high)| low.distance(high));
+        let (skin, kept, item) = (skin.clone(), KeptShapes::default(), item.clone());
+        Ok(Self { name: name.into(), days, item, rest, skin, size_m, kept, flowers })
     }
 
     /// The law of the first flower, for use without a fitted one.
     pub fn law(&self) -> GrowthLaw {
-        let rate = self.flowers.first().map_or(0.95, |f| f.spec.rate);
+        let rate = self.flowers.first().map_or(0.95, |f| f.spec.rate_per_day);
         GrowthLaw::logistic(&self.name, self.days[0], rate)
     }
 
-    /// The plant at a day, and the greatest share of petal triangles of a flower that cross another petal.
+    /// The plant at a day.
     ///
     /// Guaranteed: the same vertices and triangles at every day.
-    pub fn at(&self, day: f64, law: &GrowthLaw, seed: Seed) -> (Model, f64) {
-        let mut model = self.rest.clone();
-        model.name.clone_from(&self.name);
-        let mut worst = 0.0_f64;
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub fn at(
+        &mut self,
+        day: f64,
+        law: &GrowthLaw,
+        seed: Seed,
+        run: &Run<'_>,
+    ) -> Result<OpenedPlant, Stopped> {
+        let mut plant = self.rest.clone();
+        let mut overlap = 0.0_f64;
         for (k, placed) in self.flowers.iter().enumerate() {
-            let frame = placed.spec.at(day, law, seed.child(k as u64));
-            worst = worst.max(frame.overlap());
-            let first = model.materials.len();
-            model.materials.extend(frame.model.materials);
-            for mut part in frame.model.parts {
-                if part.mesh.triangles.is_empty() {
-                    continue;
-                }
-                for (p, n) in part.mesh.positions.iter_mut().zip(&mut part.mesh.normals) {
-                    let at = placed.centre + placed.turn * DVec3::from_array(p.map(f64::from));
-                    let towards = placed.turn * DVec3::from_array(n.map(f64::from));
-                    #[expect(clippy::cast_possible_truncation, reason = "f64 in the model, f32 in the mesh")]
-                    {
-                        *p = at.to_array().map(|x| x as f32);
-                        *n = towards.to_array().map(|x| x as f32);
-                    }
-                }
-                part.name = format!("flower-{}-{}", k + 1, part.name);
-                part.material = MaterialId::new(first + part.material.index());
-                model.parts.push(part);
+            let first = plant.organs.len();
+            placed.spec.add_to(&mut plant, &placed.seat, day, law, seed.child(k as u64));
+            // It takes the place of the drawn one.
+            if let Some(open) = plant.flowers.pop() {
+                plant.flowers[placed.flower.index()] = open;
             }
+            plant.organs[first..].iter_mut().for_each(|o| o.flower = Some(placed.flower));
+            overlap = overlap.max(bloom::petal_overlap(&plant, Some(placed.flower)));
         }
-        (model, worst)
+        let model = steady(&plant, self.skin.clone(), self.size_m, Some(&mut self.kept), run)?;
+        Ok(OpenedPlant { plant, model, overlap })
     }
+}
+
+/// A plant of a drawing at one day.
+#[derive(Clone, Debug)]
+pub struct OpenedPlant {
+    /// The plant.
+    pub plant: Plant,
+    /// Its meshes.
+    pub model: Model,
+    /// The greatest share of petal triangles of a flower that cross another petal.
+    pub overlap: f64,
 }
 
 /// The mean colour of the petals as they are seen: texture, base colour and tints together.
@@ -175,7 +182,12 @@ fn petal_color(model: &Model) -> [f32; 3] {
 }
 
 /// The flower as data; none without petals.
-fn placed(plant: &Plant, flower: &Flower, organs: &[&Organ], dye: [f32; 3]) -> Option<Placed> {
+fn placed(
+    plant: &Plant,
+    (id, flower): (FlowerId, &Flower),
+    organs: &[&Organ],
+    dye: [f32; 3],
+) -> Option<Placed> {
     let petals = organs.iter().filter(|o| o.kind == OrganKind::Petal);
     let mut blades: Vec<(f64, PetalForm, f64)> = petals
         .filter_map(|o| match plant.shapes.get(o.shape.index())? {
@@ -215,16 +227,20 @@ fn placed(plant: &Plant, flower: &Flower, organs: &[&Organ], dye: [f32; 3]) -> O
             let color = dye.map(|c| c * shade);
             Some(Whorl {
                 count: u32::try_from(ring.len()).ok()?,
-                length,
-                width: length * aspect,
-                insertion: [disc.max(0.05 * length) * (1.0 - 0.35 * inner), 0.02 * length * k as f64],
-                bud: [14.0 - 6.0 * inner, 2.0 - 2.0 * inner, -9.0],
-                open: [0.75, 1.0, 1.1].map(|x| x * open * (1.0 - 0.35 * inner)),
-                wilted: [0.9, 1.35, 1.75].map(|x| (x * open * (1.0 - 0.35 * inner)).min(165.0)),
+                length_m: length,
+                width_m: length * aspect,
+                insertion: Insertion {
+                    radius_m: disc.max(0.05 * length) * (1.0 - 0.35 * inner),
+                    height_m: 0.02 * length * k as f64,
+                },
+                bud_deg: [14.0 - 6.0 * inner, 2.0 - 2.0 * inner, -9.0],
+                open_deg: [0.75, 1.0, 1.1].map(|x| x * open * (1.0 - 0.35 * inner)),
+                wilted_deg: [0.9, 1.35, 1.75].map(|x| (x * open * (1.0 - 0.35 * inner)).min(165.0)),
                 delay: 0.1 * inner,
-                phase: 180.0 / n * k as f64 + 90.0,
-                lean: 0.008 * length,
-                colors: [color.map(|c| (1.15 * c + 0.05).min(1.0)), color],
+                phase_deg: 180.0 / n * k as f64 + 90.0,
+                lean_m: 0.008 * length,
+                base_color: color.map(|c| (1.15 * c + 0.05).min(1.0)),
+                tip_color: color,
                 form: PetalForm::mean(&forms),
                 ..Whorl::default()
             })
@@ -233,18 +249,26 @@ fn placed(plant: &Plant, flower: &Flower, organs: &[&Organ], dye: [f32; 3]) -> O
     let spec = FlowerSpec {
         name: plant.name.clone(),
         whorls,
-        stamens: (u32::try_from(stamens).unwrap_or(0).min(40), 0.45 * longest, 18.0),
-        pistil: if stamens > 0 { 0.5 * longest } else { 0.0 },
-        disc,
-        stalk: 0.0,
-        nod: 0.0,
-        umbel: 1,
-        days: [6.0, 4.0],
-        rate: 0.95,
-        mesh: [16, 10],
+        stamens: Stamens {
+            count: u32::try_from(stamens).unwrap_or(0).min(40),
+            length_m: 0.45 * longest,
+            spread_deg: 18.0,
+        },
+        pistil_m: if stamens > 0 { 0.5 * longest } else { 0.0 },
+        disc_m: disc,
+        stalk_m: 0.0,
+        mesh: PetalMesh { rows: 16, columns: 10 },
+        ..FlowerSpec::default()
     };
     let axis = flower.axis.try_normalize().unwrap_or(DVec3::Y);
     // Off the end of the stem, which would show through the disc.
     let centre = flower.centre + axis * (0.3 * disc);
-    Some(Placed { spec, centre, turn: base::turn::between(DVec3::Y, axis) })
+    let seat = Seat { centre, turn: base::turn::between(DVec3::Y, axis), bearer: flower.bearer };
+    Some(Placed { spec, flower: id, seat })
 }
+
+base::coded!(OpeningError {
+    Self::NoFlowers(name) => "no-flowers" { name },
+} wraps {
+    Self::Make(e) => e, MakeError;
+});

@@ -109,8 +109,11 @@ pub struct StrokeReport {
     pub class: String,
     /// What became of it.
     pub organ: String,
-    /// 0 to 1.
+    /// How sure that class is, 0 to 1: the classifier's share of it, also where a rule chose it; 1 where the user did.
     pub confidence: f64,
+    /// What decided the class: `user`, `classifier` or `rule:NAME` (`docs/strokes.md` lists the rules).
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub source: String,
 }
 
 /// Numbers of things in a plant and its meshes; none of what was not counted, such as the leaves of a model that was read.

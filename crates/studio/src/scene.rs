@@ -5,7 +5,8 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use base::{Cancelled, Digest, Report, Run, Seed};
+use base::{Cancelled, OverBudget, Report, Run, Seed, Stopped};
+use bloom::FlowerSettings;
 use document::{
     Document, DocumentPlant, FlowerMaker, LeafData, LeafMaker, LeafPaint, LeafRings, LeafSettings,
     LeafSurface, LeafThickness, Maker, Placement, PlantEdit, PlantId, SketchSettings, TreeSettings,
@@ -13,19 +14,22 @@ use document::{
 use formats::{LeafFileError, MarksAxes, read_marks, read_vein_graph};
 use geom::RingRule;
 use glam::{DQuat, DVec3};
+use growth::TreeSpec;
 use ink::Drawing;
 use leaf::{FullMarks, Pose, SurfaceKind, ThicknessRule, VeinParameters};
 use mesh::{MaterialId, Model};
 use plant::Plant;
 use skin::{LeafMeshSpec, SkinSpec};
+use spec::Spec;
 
 use crate::evaluate::{Evaluator, FrontView};
+use crate::flowers::{FlowerOptions, make_flower};
 use crate::leaves::{LeafError, LeafOptions, LeafTexture, make_leaf_of};
 use crate::make::{MakeError, SketchOptions};
 use crate::opening::{OpeningError, OpeningPlant};
-use crate::report::{Counts, ItemReport, TimingsMs};
+use crate::report::ItemReport;
 use crate::template::LeafTemplate;
-use crate::trees::{TreeError, TreeEvaluator, TreeOptions, TreeSpec, spec_from_json};
+use crate::trees::{TreeError, TreeEvaluator, TreeOptions};
 
 /// Why a plant of a scene could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -40,9 +44,6 @@ pub enum SceneError {
     /// The tree does not grow.
     #[error(transparent)]
     Tree(TreeError),
-    /// The tree's spec is none.
-    #[error("the tree's spec: {0}")]
-    Spec(#[source] serde_json::Error),
     /// The leaf's file cannot be read.
     #[error(transparent)]
     File(#[from] LeafFileError),
@@ -66,6 +67,9 @@ pub enum SceneError {
     /// The user asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    /// It would have been too much.
+    #[error(transparent)]
+    OverBudget(#[from] OverBudget),
 }
 
 impl SceneError {
@@ -93,11 +97,35 @@ impl From<TreeError> for SceneError {
     }
 }
 
+impl From<Stopped> for SceneError {
+    fn from(stopped: Stopped) -> Self {
+        match stopped {
+            Stopped::Cancelled(c) => Self::Cancelled(c),
+            Stopped::OverBudget(o) => Self::OverBudget(o),
+        }
+    }
+}
+
 impl From<LeafError> for SceneError {
     fn from(e: LeafError) -> Self {
         if let LeafError::Cancelled(c) = e { Self::Cancelled(c) } else { Self::Leaf(e) }
     }
 }
+
+base::coded!(SceneError {
+    Self::NoMarks => "leaf-no-marks" {},
+    Self::Species(name) => "no-species" { name },
+    Self::Lender(name) => "lender-without-leaf" { name },
+} wraps {
+    Self::Sketch(e) => e, MakeError;
+    Self::Opening(e) => e, OpeningError;
+    Self::Tree(e) => e, TreeError;
+    Self::File(e) => e, LeafFileError;
+    Self::Graph(e) => e, leaf::GraphError;
+    Self::Leaf(e) => e, LeafError;
+    Self::Cancelled(e) => e, Cancelled;
+    Self::OverBudget(e) => e, OverBudget;
+});
 
 /// What was made of one plant.
 #[derive(Clone, Copy, Debug)]
@@ -106,7 +134,7 @@ pub struct ScenePlant<'a> {
     pub item: &'a ItemReport,
     /// The meshes, in the plant's own coordinates.
     pub model: &'a Model,
-    /// The plant; none for a single leaf or flower.
+    /// The plant; none where nothing was made.
     pub plant: Option<&'a Plant>,
     /// How a drawing lies in the front view.
     pub front: Option<FrontView>,
@@ -154,7 +182,7 @@ struct Made {
     item: ItemReport,
     /// Of leaves and flowers, and of sketches whose flowers open.
     model: Option<Model>,
-    /// Of leaves and flowers.
+    /// Of leaves, flowers and sketches whose flowers open.
     plant: Option<Plant>,
     lent: Option<LeafTemplate>,
     revision: u64,
@@ -162,8 +190,7 @@ struct Made {
 }
 
 impl SceneEvaluator {
-    /// Whether models of trees and of drawings whose flowers do not open say how wind moves them, from the next update
-    /// on. Default: no.
+    /// Whether models say how wind moves them, from the next update on. Default: no.
     pub fn set_wind(&mut self, wind: bool) {
         if self.wind != wind {
             self.wind = wind;
@@ -208,8 +235,7 @@ impl SceneEvaluator {
         (made.sketch.looking, made.tree.looking) = (looking, looking);
         if let Maker::Sketch(s) = &settings.maker {
             let mut options = SketchOptions { leaf, ..SketchOptions::of_plant(plant) };
-            // Flowers that open have none: what bears them would sway away from them.
-            options.skin.wind = wind && s.day.is_none();
+            options.skin.wind = wind;
             return made.sketched(s, &drawing, &options, settings.seed, run);
         }
         let same = |k: &MadeFrom| {
@@ -226,7 +252,7 @@ impl SceneEvaluator {
         match &settings.maker {
             Maker::Tree(t) => made.grown((name, wind), t, leaf.as_ref(), &settings.edits, seed, run)?,
             Maker::Leaf(l) => made.measured((name, wind), l, &settings.edits, seed, run)?,
-            Maker::Flower(f) => made.flowered(name, f, seed, run)?,
+            Maker::Flower(f) => made.flowered((name, wind), f, &settings.edits, seed, run)?,
             _ => {}
         }
         made.revision += 1;
@@ -260,9 +286,22 @@ impl SceneEvaluator {
         lent.map(Some).ok_or_else(none)
     }
 
-    /// Forgets plants that are not in the document.
-    pub fn retain(&mut self, document: &Document) {
-        self.plants.retain(|&id, _| document.plant(id).is_some());
+    /// A copy of what is kept of plants and of those whose leaves they bear, to try something with.
+    pub fn aside<'a>(&self, plants: impl IntoIterator<Item = &'a DocumentPlant>) -> Self {
+        let wanted = plants.into_iter().flat_map(|p| [Some(p.id()), p.settings().maker.leaf()]);
+        let kept = wanted.flatten().filter_map(|id| Some((id, self.plants.get(&id)?.clone())));
+        Self { wind: self.wind, looking: self.looking, plants: kept.collect() }
+    }
+
+    /// Forgets a plant: it is made from the beginning when it is asked for again.
+    pub fn forget(&mut self, id: PlantId) {
+        self.plants.remove(&id);
+    }
+
+    /// The plants of which something is kept, and about how many bytes: meshes, textures, and the plant in the stages in
+    /// which it is kept for the next change.
+    pub fn kept(&self) -> impl Iterator<Item = (PlantId, usize)> + '_ {
+        self.plants.iter().map(|(&id, made)| (id, made.bytes()))
     }
 
     /// What makes the plant, of a sketch.
@@ -287,13 +326,26 @@ impl SceneEvaluator {
     pub fn days(&self, id: PlantId, document: &Document) -> Option<[f64; 2]> {
         match &document.plant(id)?.settings().maker {
             Maker::Sketch(_) => self.plants.get(&id)?.opening.as_ref().map(|o| o.days),
-            Maker::Flower(f) => Some(flower_spec(f)?.days),
+            Maker::Flower(f) => Some(f.settings.spec()?.days()),
             _ => None,
         }
     }
 }
 
 impl Made {
+    fn bytes(&self) -> usize {
+        // As grown, dressed, and twice on the way through the edits by hand.
+        const STAGES: usize = 4;
+        let models = [self.model.as_ref(), self.sketch.model(), self.tree.model()];
+        let plants = [self.sketch.plant(), self.tree.plant()];
+        let plant = |p: &Plant| {
+            let nodes = p.nodes.position.len() * (size_of::<DVec3>() + size_of::<f64>() + size_of::<u32>());
+            nodes + size_of_val(&*p.axes) + size_of_val(&*p.organs)
+        };
+        models.into_iter().flatten().map(Model::bytes).sum::<usize>()
+            + STAGES * plants.into_iter().flatten().map(plant).sum::<usize>()
+    }
+
     fn sketched(
         &mut self,
         settings: &SketchSettings,
@@ -319,13 +371,14 @@ impl Made {
             (Some(day), Some(plant), Some(model)) => {
                 if self.opening.is_none() {
                     let made = (plant, model, &self.item);
-                    self.opening = Some(OpeningPlant::of_made(&drawing.name, made, &options.skin, run)?);
+                    self.opening = Some(OpeningPlant::of_made(&drawing.name, made, &options.skin)?);
                 }
-                if let Some(opening) = self.opening.as_ref().filter(|_| changed || day_changed) {
-                    self.model = Some(opening.at(day, &opening.law(), seed).0);
+                if let Some(opening) = self.opening.as_mut().filter(|_| changed || day_changed) {
+                    let open = opening.at(day, &opening.law(), seed, run)?;
+                    (self.plant, self.model) = (Some(open.plant), Some(open.model));
                 }
             }
-            _ => (self.model, self.opening) = (None, None),
+            _ => (self.plant, self.model, self.opening) = (None, None, None),
         }
         if changed || day_changed {
             self.revision += 1;
@@ -344,7 +397,7 @@ impl Made {
         seed: Seed,
         run: &Run<'_>,
     ) -> Result<(), SceneError> {
-        let spec = TreeSpec { name: name.into(), ..tree_spec(tree)? };
+        let spec = TreeSpec { name: name.into(), ..tree_spec(tree) };
         let options = TreeOptions {
             skin: SkinSpec { wind, ..tree.skin.clone() },
             leaf: leaf.cloned(),
@@ -376,61 +429,28 @@ impl Made {
 
     fn flowered(
         &mut self,
-        name: &str,
+        (name, wind): (&str, bool),
         flower: &FlowerMaker,
+        edits: &[PlantEdit],
         seed: Seed,
         run: &Run<'_>,
     ) -> Result<(), SceneError> {
-        let spec = flower_spec(flower).ok_or_else(|| SceneError::Species(flower.settings.species.clone()))?;
-        let own = || bloom::GrowthLaw::logistic(&spec.name, spec.days[0], spec.rate);
-        let law = flower.law.as_ref().map_or_else(own, |l| (**l).clone());
-        let mut report = Report::default();
-        let frame = report.stage("mesh", run.clock, |_| spec.at(flower.settings.day, &law, seed));
-        run.cancel.check()?;
-        let mut model = frame.model;
-        name.clone_into(&mut model.name);
-        let mut digest = Digest::new();
-        digest.add(&model);
-        let petals: u64 = spec.whorls.iter().filter(|w| !w.sepal).map(|w| u64::from(w.count)).sum();
-        let flowers = u64::from(spec.umbel.max(1));
-        self.item = ItemReport {
-            name: name.into(),
-            counts: Counts {
-                flowers: Some(flowers),
-                petals: Some(petals * flowers),
-                vertices: model.vertex_count() as u64,
-                triangles: model.triangle_count() as u64,
-                ..Counts::default()
-            },
-            timings_ms: TimingsMs::from_report(&report),
-            digest: digest.hex(),
-            ..ItemReport::default()
-        };
-        self.model = Some(model);
+        let spec =
+            flower.settings.spec().ok_or_else(|| SceneError::Species(flower.settings.species.clone()))?;
+        let law = flower.law.as_ref().map_or_else(|| spec.own_law(), |l| (**l).clone());
+        let mut options = FlowerOptions { edits: edits.to_vec(), ..FlowerOptions::default() };
+        options.skin.wind = wind;
+        let made = make_flower(name, &spec, (flower.settings.day, &law), &options, seed, run)?;
+        (self.item, self.model, self.plant) = (made.item, Some(made.model), Some(made.plant));
         self.done.push("mesh");
         Ok(())
     }
 }
 
-/// The species with what was asked for in its place.
-fn flower_spec(flower: &FlowerMaker) -> Option<bloom::FlowerSpec> {
-    let s = &flower.settings;
-    let mut spec = bloom::preset(&s.species)?;
-    spec.days[0] = s.opening_days.unwrap_or(spec.days[0]);
-    spec.days[1] = s.wilting_days.unwrap_or(spec.days[1]);
-    spec.stalk = s.stalk_m.unwrap_or(spec.stalk);
-    spec.nod = s.nod_deg.unwrap_or(spec.nod);
-    Some(spec)
-}
-
 /// The spec of a tree of a document, with its obstacles.
-///
-/// # Errors
-/// [`SceneError::Spec`] for JSON that is no spec.
-pub fn tree_spec(tree: &TreeSettings) -> Result<TreeSpec, SceneError> {
-    let mut spec = spec_from_json(&tree.spec).map_err(SceneError::Spec)?;
-    spec.obstacles = tree.obstacles.iter().map(|o| (*o.shape).clone()).collect();
-    Ok(spec)
+pub fn tree_spec(tree: &TreeSettings) -> TreeSpec {
+    let obstacles = tree.obstacles.iter().map(|o| (*o.shape).clone()).collect();
+    TreeSpec { obstacles, ..(*tree.spec).clone() }
 }
 
 /// What a tree of a document is, from a spec: its obstacles get names.
@@ -441,13 +461,9 @@ pub fn tree_settings(spec: &TreeSpec, preset: Option<&str>) -> TreeSettings {
     });
     let obstacles = obstacles.collect();
     let plain = TreeSpec { obstacles: Vec::new(), ..spec.clone() };
-    let mut value = serde_json::to_value(&plain).unwrap_or_default();
-    if let Some(fields) = value.as_object_mut() {
-        fields.remove("obstacles");
-    }
     TreeSettings {
         preset: preset.map(Into::into),
-        spec: Arc::new(value),
+        spec: Arc::new(plain),
         obstacles,
         ..TreeSettings::default()
     }
@@ -463,8 +479,8 @@ pub fn leaf_schema() -> serde_json::Value {
 /// ```
 /// assert_eq!(burgeon::flower_schema()["properties"]["day"]["x-unit"], "d");
 /// ```
-pub fn flower_schema() -> serde_json::Value {
-    schemars::schema_for!(document::FlowerSettings).to_value()
+pub fn flower_schema() -> &'static serde_json::Value {
+    FlowerSettings::schema()
 }
 
 /// The marks of a leaf of a document, and how it is made.

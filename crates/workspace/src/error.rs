@@ -1,8 +1,13 @@
 //! Why something was not done.
 
+use core::fmt::Display;
+use std::collections::BTreeMap;
+
 use burgeon::document::{ArchiveError, CommandError, PhotoError, ProjectError};
 use burgeon::formats::{DrawingError, ModelError, WriteError};
-use burgeon::{SceneError, Stopped, TreeError};
+use burgeon::{Coded, SceneError, Stopped, Told, TreeError};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 /// Why a workspace refused; it is as it was.
 #[derive(Debug, thiserror::Error)]
@@ -29,9 +34,6 @@ pub enum WorkspaceError {
     /// Every stroke is empty.
     #[error("there is no stroke in it that can be used")]
     NoUsableStroke,
-    /// The photograph is to be moved and there is none.
-    #[error("there is no photograph under the drawing")]
-    NoPhoto,
     /// Nothing says what the file is.
     #[error(
         "this is no file that Burgeon reads: give a project (.burgeon), a drawing (.svg, .inkml, .ndjson, .json), marks \
@@ -92,6 +94,9 @@ pub enum WorkspaceError {
     /// Stopped from outside: a newer change, or the person.
     #[error("cancelled")]
     Cancelled,
+    /// A command that cannot be read: a bug of the shell.
+    #[error("the message cannot be read: {0}")]
+    Message(String),
     /// Our bug.
     #[error("internal: {0}")]
     Internal(&'static str),
@@ -103,5 +108,57 @@ impl From<Stopped> for WorkspaceError {
             Stopped::Cancelled(_) => Self::Cancelled,
             Stopped::OverBudget(o) => Self::Tree(TreeError::OverBudget(o)),
         }
+    }
+}
+
+burgeon::coded!(WorkspaceError {
+    Self::NoPlant => "no-plant" {},
+    Self::PlantGone => "plant-gone" {},
+    Self::NoTree(name) => "no-tree" { name },
+    Self::NoStroke => "no-stroke" {},
+    Self::NoClipboard => "no-clipboard" {},
+    Self::NoDrawing => "no-drawing" {},
+    Self::NoUsableStroke => "no-usable-stroke" {},
+    Self::UnknownFile => "unknown-file" {},
+    Self::NotText(why) => "not-text" { why },
+    Self::ObstacleFile => "obstacle-file" {},
+    Self::NoSurface => "no-surface" {},
+    Self::NothingMade => "nothing-made" {},
+    Self::NoStructure => "no-structure" {},
+    Self::Format(format) => "no-such-export" { format },
+    Self::NothingToShape => "nothing-to-shape" {},
+    Self::Law(why) => "law" { why },
+    Self::Cancelled => "cancelled" {},
+    Self::Message(why) => "message" { why },
+    Self::Internal(why) => "internal" { why },
+} wraps {
+    Self::Command(e) => e, CommandError;
+    Self::Project(e) => e, ProjectError;
+    Self::Drawing(e) => e, DrawingError;
+    Self::Model(e) => e, ModelError;
+    Self::Tree(e) => e, TreeError;
+    Self::Scene(e) => e, SceneError;
+    Self::Photo(e) => e, PhotoError;
+    Self::Write(e) => e, WriteError;
+    Self::Archive(e) => e, ArchiveError;
+});
+
+/// Why something was not done, for a shell: words for people in English, and what another language needs for its own.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct Refusal {
+    /// A word in kebab-case that never changes its meaning.
+    pub code: String,
+    /// Names and values, as people read them.
+    pub fields: BTreeMap<String, String>,
+    /// The sentence in English.
+    pub message: String,
+}
+
+impl Refusal {
+    /// Of any error with a code.
+    pub fn of(error: &(impl Coded + Display)) -> Self {
+        let Told { code, fields } = error.told();
+        let fields = fields.into_iter().map(|(name, value)| (name.into(), value)).collect();
+        Self { code: code.into(), fields, message: error.to_string() }
     }
 }

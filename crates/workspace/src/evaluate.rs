@@ -11,7 +11,7 @@ use burgeon::{Evaluator, ItemReport, MakeError, Run, SceneError, Seed, SketchOpt
 
 use crate::shaping::coarser;
 use crate::workspace::GUEST;
-use crate::{Column, ObstacleView, PlantView, SceneView, Workspace, WorkspaceError};
+use crate::{Column, ObstacleView, PlantView, Refusal, SceneView, Workspace, WorkspaceError};
 
 /// Share of the triangles while a stroke is drawn.
 pub(crate) const PREVIEW_DETAIL: f64 = 0.4;
@@ -40,7 +40,6 @@ impl Workspace {
         let gesture = self.with_gesture();
         if self.guest.is_none() {
             let document = self.editor.document();
-            self.scene.retain(document);
             for plant in document.plants().iter().filter(|p| !p.settings().hidden) {
                 let id = plant.id();
                 run.cancel.forget();
@@ -77,6 +76,7 @@ impl Workspace {
                 self.outcomes.insert(id, outcome);
             }
         }
+        self.make_room();
         Ok(self.view())
     }
 
@@ -113,7 +113,7 @@ impl Workspace {
             seen.front = front.filter(|_| model.is_some()).map(Into::into);
             seen.days = self.scene.days(id, self.editor.document());
             if let Some(Outcome::Failed(why)) = self.outcomes.get(&id) {
-                seen.error = Some(why.to_string());
+                seen.error = Some(Refusal::of(why));
             }
             if let Maker::Tree(t) = &plant.settings().maker {
                 seen.obstacles = t.obstacles.iter().map(|o| ObstacleView::of(&o.shape)).collect();
@@ -122,6 +122,7 @@ impl Workspace {
             view.plants.push(seen);
         }
         self.meshes = given;
+        textures.keep(view.guest.iter().chain(&view.plants));
         self.textures = textures;
         view
     }
@@ -199,7 +200,7 @@ impl Workspace {
         change(document::PlantCommand::SetSeed(seed).of(id))?;
         let coarse = coarser(self.editor.document(), id, detail);
         coarse.map_or(Ok(()), change)?;
-        let mut aside = self.scene.clone();
+        let mut aside = self.scene.aside(document.document().plant(id));
         aside.update(id, document.document(), run)?;
         let model = aside.get(id).map(|p| p.model.clone()).ok_or(WorkspaceError::NothingMade)?;
         let seen = PlantView::of(GUEST, &model, &mut self.textures);

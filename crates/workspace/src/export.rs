@@ -148,16 +148,16 @@ fn export(
 ) -> Result<Vec<NamedFile>, WorkspaceError> {
     let model = wanted.format.model();
     let wind = wanted.wind && model.as_ref().is_ok_and(|f| f.carries_wind());
+    let chosen = |p: &&DocumentPlant| only.map_or(!p.settings().hidden, |id| p.id() == id);
     let mut aside;
     let scene = if wind {
         // What is shown stays without: its meshes would be half as large again.
-        aside = scene.clone();
+        aside = scene.aside(document.plants().iter().filter(chosen));
         aside.set_wind(true);
         &mut aside
     } else {
         scene
     };
-    let chosen = |p: &&DocumentPlant| only.map_or(!p.settings().hidden, |id| p.id() == id);
     let mut made = Vec::new();
     for plant in document.plants().iter().filter(chosen) {
         match scene.update(plant.id(), document, run) {
@@ -232,7 +232,7 @@ fn at_level(
             }
             let mut coarse = document::Editor::new(document.clone());
             coarse.run(document::SketchCommand::SetSkin(skin).of(plant.id()))?;
-            let mut aside = scene.clone();
+            let mut aside = scene.aside([plant]);
             aside.update(plant.id(), coarse.document(), run)?;
             Ok(aside.get(plant.id()).ok_or(WorkspaceError::Internal("no model"))?.model.clone())
         }

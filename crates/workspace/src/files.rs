@@ -10,7 +10,7 @@ use burgeon::formats::{DrawingFormat, ExportSpec, ModelFormat, no_files, read_dr
 use burgeon::glam::DVec3;
 use burgeon::growth::Obstacle;
 use burgeon::ink::Drawing;
-use burgeon::{LeafError, Report, SceneError, leaf_marks, read_tree_spec, tree_settings, tree_spec};
+use burgeon::{LeafError, Report, SceneError, leaf_marks, read_tree_spec, tree_settings};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -106,21 +106,10 @@ impl Workspace {
         }
     }
 
-    /// What the document leaves to who sends a command: that measurements make a leaf and specs a tree.
+    /// What the document leaves to who sends a command: that measurements make a leaf.
     pub(crate) fn check(&self, command: &document::Command) -> Result<(), WorkspaceError> {
         match command {
             document::Command::Leaf(_, document::LeafCommand::SetData(data)) => check_marks(data),
-            document::Command::Tree(id, change @ (TreeCommand::SetField(..) | TreeCommand::SetSpec(..))) => {
-                let mut aside = Editor::new(self.editor.document().clone());
-                match aside.run(change.clone().of(*id)) {
-                    Ok(()) | Err(document::CommandError::Nothing(_)) => {}
-                    Err(e) => return Err(e.into()),
-                }
-                if let Some(Maker::Tree(tree)) = aside.document().plant(*id).map(|p| &p.settings().maker) {
-                    tree_spec(tree)?;
-                }
-                Ok(())
-            }
             _ => Ok(()),
         }
     }

@@ -8,10 +8,11 @@
 //! | `files` | files in and out |
 //! | `export` | models and structures as files |
 //! | `evaluate` | plants made and shown, meshes as columns |
+//! | `kept` | how long results are kept |
 //! | `shaping` | tools that shape a plant by hand |
 //! | `state` | what a shell shows of the document |
 //! | `view` | what a shell shows of the plants |
-//! | `error` | [`WorkspaceError`] |
+//! | `error` | [`WorkspaceError`], [`Refusal`] |
 //!
 //! It reads no clock and opens no file: what computes takes a [`burgeon::Run`], files come and go as bytes.
 
@@ -19,6 +20,7 @@ mod error;
 mod evaluate;
 mod export;
 mod files;
+mod kept;
 mod shaping;
 mod state;
 mod view;
@@ -27,9 +29,10 @@ mod workspace;
 #[cfg(test)]
 mod tests;
 
-pub use error::WorkspaceError;
+pub use error::{Refusal, WorkspaceError};
 pub use export::{ExportFormat, ExportRequest, LengthUnit, NamedFile, Up, packed};
 pub use files::{FileKind, Opened};
+pub use kept::KEPT_BYTES;
 pub use shaping::{HeldTool, Picked, ShapeAnswer, ShapeInput, ShapePointer, ShapeReach};
 pub use state::{
     DocumentState, EditState, FlowerState, LeafState, MakerWord, NamedShape, ObstacleView, PhotoState,

@@ -3,10 +3,11 @@
 use burgeon::document::{
     Document, DocumentPlant, Editor, FlowerSettings, LeafSettings, Maker, PhotoPlace, PlantId, StrokeId,
 };
-use burgeon::growth::Obstacle;
+use burgeon::growth::{Obstacle, TreeSpec};
 use burgeon::ink::{StrokeClass, StrokeMode};
 use burgeon::sketch::SketchSpec;
 use burgeon::skin::SkinSpec;
+use burgeon::spec;
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value;
@@ -151,7 +152,8 @@ pub struct TreeState<'a> {
     pub preset: Option<&'a str>,
     /// The spec, without obstacles.
     #[schemars(with = "std::collections::BTreeMap<String, Value>")]
-    pub spec: &'a Value,
+    #[serde(serialize_with = "spec::through_json::serialize")]
+    pub spec: &'a TreeSpec,
     /// How it is meshed.
     pub skin: &'a SkinSpec,
     /// The plant whose leaf it bears.

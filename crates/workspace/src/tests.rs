@@ -1,6 +1,6 @@
 //! The workspace as a page uses it: commands and answers as JSON.
 
-use burgeon::document::{Command, Document, PlantId, SketchCommand, StrokeId};
+use burgeon::document::{Command, Document, PlantCommand, PlantId, SceneCommand, SketchCommand, StrokeId};
 use burgeon::glam::DVec2;
 use burgeon::ink::{InkSample, Stroke, StrokeMode};
 use burgeon::{Budget, Run, Seed, SketchOptions, formats};
@@ -284,7 +284,7 @@ fn scene(s: &mut Workspace) -> Vec<(String, String, Value)> {
     let view = json(&s.evaluate(&run()).unwrap());
     let both = state["plants"].as_array().unwrap().iter().zip(view["plants"].as_array().unwrap());
     let word = |v: &Value| v.as_str().unwrap_or_default().to_owned();
-    both.map(|(p, v)| (word(&p["name"]), word(&v["item"]["digest"]), v["error"].clone())).collect()
+    both.map(|(p, v)| (word(&p["name"]), word(&v["item"]["digest"]), v["error"]["message"].clone())).collect()
 }
 
 #[test]
@@ -372,6 +372,40 @@ fn a_drawn_flower_opens_and_closes() {
     s.undo();
     let back = look(&mut s);
     assert!(back["fresh"].as_bool().unwrap() && back["parts"] == drawn["parts"]);
+}
+
+#[test]
+fn three_hundred_trees_one_after_the_other_do_not_grow_without_bound() {
+    let mut s = Workspace::default();
+    let mut first = Value::Null;
+    for k in 0..300 {
+        s.open("bush.toml", BUSH.as_bytes(), 0, false).unwrap();
+        let id = s.current().unwrap();
+        s.run(PlantCommand::SetSeed(Seed::new(k + 7)).of(id)).unwrap();
+        let made = look(&mut s);
+        assert!(made["item"]["digest"].is_string(), "{made}");
+        if k == 0 {
+            s.keep_at_most(8 * s.kept_bytes());
+            first = made;
+        }
+        s.run(SceneCommand::Remove(vec![id])).unwrap();
+        s.evaluate(&run()).unwrap();
+        assert!(s.kept_bytes() <= s.kept.limit, "{k}: {}", s.kept_bytes());
+    }
+    assert!(s.scene.kept().count() > 2, "there is room for some");
+    // The last one is still there, the first is made again.
+    s.undo();
+    assert_eq!(look(&mut s)["stages"], serde_json::json!([]));
+    while s.state().steps > 2 {
+        s.undo();
+    }
+    let again = look(&mut s);
+    assert_eq!(again["item"]["digest"], first["item"]["digest"]);
+    assert_ne!(again["stages"], serde_json::json!([]));
+    // What is shown stays, whatever the limit.
+    s.keep_at_most(0);
+    assert!(look(&mut s)["parts"].as_array().is_some_and(|p| !p.is_empty()));
+    assert_eq!(s.scene.kept().count(), 1);
 }
 
 /// A pointer in front of the plant, looking along -Z at (x, y).

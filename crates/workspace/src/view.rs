@@ -1,5 +1,6 @@
 //! What a shell shows of the plants: figures and names. Meshes are columns, asked for one by one.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use burgeon::document::PlantId;
@@ -8,7 +9,7 @@ use burgeon::{FrontView, ItemReport};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::ObstacleView;
+use crate::{ObstacleView, Refusal};
 
 /// A column of vertices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,7 +43,7 @@ pub struct PlantView {
     /// Its meshes are others than those of the last view.
     pub fresh: bool,
     /// Why it could not be made; what was made before stays.
-    pub error: Option<String>,
+    pub error: Option<Refusal>,
     /// The entry of the report.
     pub item: Option<ItemReport>,
     /// What was done again.
@@ -131,6 +132,13 @@ pub(crate) struct Textures {
 impl Textures {
     pub(crate) fn get(&self, number: u32) -> Option<&Texture> {
         self.rows.iter().find(|(n, _)| *n == number).map(|(_, t)| &**t)
+    }
+
+    /// Forgets all but those of these views.
+    pub(crate) fn keep<'a>(&mut self, views: impl Iterator<Item = &'a PlantView>) {
+        let seen = views.flat_map(|v| &v.materials).filter_map(|m| Some(m.texture?.number));
+        let seen: BTreeSet<u32> = seen.collect();
+        self.rows.retain(|(number, _)| seen.contains(number));
     }
 
     fn number_of(&mut self, texture: &Arc<Texture>) -> u32 {

@@ -16,6 +16,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::evaluate::Outcome;
+use crate::kept::Kept;
 use crate::shaping::Held;
 use crate::view::Textures;
 use crate::{DocumentState, WorkspaceError};
@@ -104,6 +105,7 @@ pub struct Workspace {
     pub(crate) outcomes: BTreeMap<PlantId, Outcome>,
     /// What each plant's meshes were made of in the last view: a revision, or a look.
     pub(crate) meshes: BTreeMap<PlantId, Option<u64>>,
+    pub(crate) kept: Kept,
     /// Points that the shell has. Holding them keeps their addresses from being used again.
     given: BTreeMap<StrokeId, Arc<Stroke>>,
     pub(crate) textures: Textures,
@@ -151,7 +153,7 @@ impl Workspace {
 
     /// Starts empty and forgets the history: the memory of the document is given back.
     pub fn close(&mut self) {
-        *self = Self::default();
+        *self = Self { kept: Kept::at_most(self.kept.limit), ..Self::default() };
     }
 
     /// Does a command as one step of undo, or as part of the open gesture. A copy of a plant is chosen.
@@ -394,5 +396,5 @@ impl Workspace {
 
 fn preset(key: &str) -> Result<document::TreeSettings, WorkspaceError> {
     let preset = Preset::find(key).ok_or_else(|| WorkspaceError::NoTree(key.into()))?;
-    Ok(tree_settings(&preset.spec()?, Some(key)))
+    Ok(tree_settings(&preset.spec().map_err(burgeon::TreeError::from)?, Some(key)))
 }

@@ -4,12 +4,14 @@
 
 use std::fmt::Write as _;
 
+use burgeon::Coded;
 use burgeon::document::Command;
 use schemars::JsonSchema;
 use schemars::generate::{SchemaGenerator, SchemaSettings};
 use serde_json::{Map, Value};
 use workspace::{
-    Action, DocumentState, ExportRequest, HeldTool, Opened, SceneView, ShapeAnswer, ShapeInput, ShapeReach,
+    Action, DocumentState, ExportRequest, HeldTool, Opened, Refusal, SceneView, ShapeAnswer, ShapeInput,
+    ShapeReach, WorkspaceError,
 };
 
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../apps/studio-web/src/wire.ts");
@@ -48,7 +50,17 @@ fn types() -> String {
     add::<ShapeReach>(&mut all);
     add::<ShapeInput>(&mut all);
     add::<ShapeAnswer>(&mut all);
+    add::<Refusal>(&mut all);
     let mut out = HEAD.to_owned();
+    let mut codes = Vec::new();
+    WorkspaceError::codes(&mut codes);
+    codes.sort_unstable();
+    codes.dedup();
+    out += "\n/** Every code of a `Refusal`, with its fields. */\nexport const CODES = {\n";
+    for (code, fields) in codes {
+        writeln!(out, "  {code:?}: {fields:?},").unwrap();
+    }
+    out += "} as const;\n";
     for (name, schema) in &all.take_definitions(true) {
         let text = typed(schema, "");
         let gap = if text.starts_with('\n') { "" } else { " " };

@@ -71,16 +71,18 @@ pub(crate) struct FitArgs {
   burgeon bloom run rose -o rose.glb --frames 16 --png rose.png
   burgeon bloom run rose --petal petal.csv -o own-rose.glb       petals from marks, a model or a drawing
   burgeon bloom run flower.svg -o flower.glb                     a drawn flower opens and wilts
+  burgeon bloom run my-flower.toml -o flower.glb                 a flower of your own (docs/bloom.md)
   burgeon bloom run rose --law lily.law.json -o rose-as-lily/ --frames 16 --format obj")]
 pub(crate) struct BloomRunArgs {
     /// First: clap takes the values of the others away as it reads them.
     #[command(flatten)]
     pub(crate) given: Given,
-    /// First shape: a scan or a model; or a stages file (.toml); or rose, lily, tulip, sunflower, clivia; or a drawing.
+    /// First shape: a scan or a model; or a stages file (.toml); or rose, lily, tulip, sunflower, clivia, or a flower of
+    /// your own (.toml); or a drawing.
     #[arg(value_name = "START")]
     pub(crate) start: String,
-    /// The result: .glb (animation, or one shape with --day), .ply, .obj or .stl (one shape), or a folder (a file a
-    /// frame).
+    /// The result: .glb (animation, or one shape with --day), .ply, .obj, .stl or .usda (one shape), .mtg (the structure of a
+    /// flower or drawing), or a folder (a file a frame).
     #[arg(long, short, value_name = "OUT")]
     pub(crate) output: PathBuf,
     /// Last shape: a scan or a model.
@@ -124,6 +126,10 @@ pub(crate) struct BloomRunArgs {
     /// Seconds of an animation, above 0 to 600.
     #[arg(long, value_name = "S", default_value_t = 6.0, value_parser = |s: &str| ranged(s, 0.01, 600.0))]
     pub(crate) seconds: f64,
+    /// Also write how wind moves each vertex of a whole flower or a drawing, for shaders: attributes _WIND and _PIVOT
+    /// of .glb, primvars of .usda.
+    #[arg(long)]
+    pub(crate) wind: bool,
     /// Format of the files in a folder.
     #[arg(long, value_enum, default_value_t = crate::args::FormatWord::Glb)]
     pub(crate) format: crate::args::FormatWord,

@@ -18,7 +18,7 @@ pub(crate) struct LeafArgs {
     /// reads any of them from standard input.
     #[arg(value_name = "DATA")]
     pub(crate) inputs: Vec<PathBuf>,
-    /// The model: .glb, .obj, .ply, .stl or .usda. With --template the file to fill in.
+    /// The model: .glb, .obj, .ply, .stl or .usda; or the structure: .mtg. With --template the file to fill in.
     #[arg(long, short, value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
     /// Write a file of marks to fill in, with instructions, to -o or to standard output.
@@ -56,6 +56,9 @@ pub(crate) struct LeafArgs {
     /// Also write the leaf as marks, such as those found in a scan or grown between stages.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) marks: Option<PathBuf>,
+    /// Also write how wind moves each vertex, for shaders: attributes _WIND and _PIVOT of .glb, primvars of .usda.
+    #[arg(long)]
+    pub(crate) wind: bool,
     /// Also make a picture.
     #[arg(long, value_name = "FILE.png")]
     pub(crate) png: Option<PathBuf>,

@@ -1,6 +1,6 @@
 import { readFileSync } from 'node:fs';
 import { beforeAll, describe, expect, it, vi } from 'vitest';
-import type { Schema } from '../form';
+import { named, type Schema } from '../schema';
 import { initSync, studio_schema } from '../wasm/burgeon_wasm';
 import { en } from './en';
 import { fieldName, helpOf, plainHelp, setLanguage, unitOf, wordOf } from './index';
@@ -16,7 +16,8 @@ const said = {
   fields: new Set<string>(),
   words: new Set<string>(),
   units: new Set<string>(),
-  texts: new Set<string>(),
+  /** By their names. */
+  texts: new Map<string, string>(),
 };
 
 function gather(s: Schema | Schema[] | unknown): void {
@@ -26,7 +27,14 @@ function gather(s: Schema | Schema[] | unknown): void {
   }
   if (typeof s !== 'object' || s === null) return;
   const schema = s as Schema;
-  if (typeof schema.description === 'string') said.texts.add(plainHelp(schema.description));
+  if (typeof schema.description === 'string') {
+    // A text without a name, or two of one name, would be in English in the Chinese page.
+    expect(schema['x-help'], schema.description).toBeTruthy();
+    expect(said.texts.get(schema['x-help']!) ?? plainHelp(schema.description)).toBe(
+      plainHelp(schema.description),
+    );
+    said.texts.set(schema['x-help']!, plainHelp(schema.description));
+  }
   for (const word of [...(schema.enum ?? []), schema.const])
     if (typeof word === 'string') said.words.add(word);
   if (schema['x-unit'] !== undefined && schema['x-unit'] !== 'colour') said.units.add(schema['x-unit']);
@@ -47,10 +55,10 @@ beforeAll(() => {
     trees: Species[];
     flowers: string[];
   };
-  gather([tree, leaf, flower]);
+  gather([named(tree, 'tree'), named(leaf, 'leaf'), named(flower, 'flower')]);
   for (const { key, about } of trees) {
     said.words.add(key);
-    said.texts.add(plainHelp(about));
+    said.texts.set(`preset.${key}`, plainHelp(about));
   }
   for (const key of flowers) said.words.add(key);
   expect(said.fields.size).toBeGreaterThan(100);
@@ -80,16 +88,16 @@ describe('what the core says', () => {
   });
 
   it('is Chinese in the Chinese page, each text and no other', () => {
-    expect([...said.texts].filter((text) => !(text in zhHelp))).toEqual([]);
-    expect(Object.keys(zhHelp).filter((text) => !said.texts.has(text))).toEqual([]);
+    expect([...said.texts.keys()].filter((key) => !(key in zhHelp))).toEqual([]);
+    expect(Object.keys(zhHelp).filter((key) => !said.texts.has(key))).toEqual([]);
     expect(Object.entries(zhHelp).filter(([, text]) => !/[\u4e00-\u9fff]/.test(text))).toEqual([]);
   });
 
   it('keeps its numbers in Chinese', () => {
     const numbers = (text: string): string[] =>
       text.replace(/\d+ million/g, '').match(/-?\d[\d,.]*\d|-?\d/g) ?? [];
-    for (const [text, chinese] of Object.entries(zhHelp))
-      for (const n of numbers(text)) expect(chinese, text).toContain(n);
+    for (const [key, text] of said.texts)
+      for (const n of numbers(text)) expect(zhHelp[key], key).toContain(n);
   });
 
   it('is asked for in the current language', () => {
@@ -99,12 +107,12 @@ describe('what the core says', () => {
       fieldName('lambda'),
       wordOf('guided'),
       unitOf('m'),
-      helpOf('Colours and\nbark.\n\nMore.'),
+      helpOf('tree.look', 'Colours and\nbark.\n\nMore.'),
     ]).toEqual(['顶端优势', '引导生长', '米', '颜色与树皮。']);
     setLanguage('en');
-    expect([helpOf('What [`Lsystem::parse`] and [`x`](Self::x) read.'), unitOf('colour')]).toEqual([
-      'What Lsystem::parse and x read.',
-      '',
-    ]);
+    expect([
+      helpOf('tree.look', 'What [`Lsystem::parse`] and [`x`](Self::x) read.'),
+      unitOf('colour'),
+    ]).toEqual(['What Lsystem::parse and x read.', '']);
   });
 });

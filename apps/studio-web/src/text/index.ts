@@ -1,5 +1,7 @@
 import { en, type TextKey } from './en';
+import type { Refusal } from '../wire';
 import { zh } from './zh';
+import { zhErrors, zhWords } from './zh-errors';
 import { zhHelp } from './zh-help';
 
 export type { TextKey };
@@ -10,7 +12,7 @@ let language: Language = 'en';
 
 export function setLanguage(to: Language): void {
   language = to;
-  document.documentElement.lang = to === 'zh' ? 'zh-Hans' : 'en';
+  if (typeof document !== 'undefined') document.documentElement.lang = to === 'zh' ? 'zh-Hans' : 'en';
 }
 
 export function currentLanguage(): Language {
@@ -20,6 +22,13 @@ export function currentLanguage(): Language {
 /** The text of a key in the current language, with `{name}` replaced. */
 export function t(key: TextKey, values: Record<string, string | number> = {}): string {
   return tables[language][key].replace(/\{(\w+)\}/g, (whole, name: string) => String(values[name] ?? whole));
+}
+
+/** Why the core did not do something: its own English, or our text for its code. */
+export function tell({ code, fields, message }: Refusal): string {
+  const text: string | undefined = language === 'zh' ? zhErrors[code as keyof typeof zhErrors] : undefined;
+  const told = (name: string): string => zhWords[fields[name] ?? ''] ?? fields[name] ?? '';
+  return text?.replace(/\{(\w+)\}/g, (_, name: string) => told(name)) ?? message;
 }
 
 /** The text of a key made of parts; the last part itself if there is no such key. */
@@ -62,8 +71,7 @@ export function plainHelp(text: string): string {
     .replace(/\[([^\]]*)\](\([^)]*\))?/g, '$1');
 }
 
-/** What the core says of a field, a choice or a species, in the current language. */
-export function helpOf(text: string): string {
-  const plain = plainHelp(text);
-  return language === 'zh' ? (zhHelp[plain] ?? plain) : plain;
+/** What the core says of a field, a choice or a species, in the current language; `key` is its name (`schema.ts`). */
+export function helpOf(key: string | undefined, english = ''): string {
+  return (language === 'zh' && key !== undefined ? zhHelp[key] : undefined) ?? plainHelp(english);
 }

@@ -40,6 +40,22 @@ export class Looks {
     this.materials.clear();
   }
 
+  /** Forgets textures that nothing shows any more, and what is made of them. */
+  keep(numbers: ReadonlySet<number>): void {
+    const gone = new Set<THREE.Texture>();
+    for (const [number, texture] of this.textures) {
+      if (numbers.has(number)) continue;
+      texture.dispose();
+      gone.add(texture);
+      this.textures.delete(number);
+    }
+    for (const [key, material] of this.materials) {
+      if (!material.map || !gone.has(material.map)) continue;
+      material.dispose();
+      this.materials.delete(key);
+    }
+  }
+
   addTexture({ number, width, height, pixels }: TexturePixels): void {
     const texture = new THREE.DataTexture(new Uint8Array(pixels), width, height, THREE.RGBAFormat);
     texture.colorSpace = THREE.SRGBColorSpace;

@@ -1,7 +1,7 @@
 /** The right side: the plant in three dimensions, turned by hand, or from the front exactly as it was drawn. */
 import * as THREE from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
-import type { Sent } from '../protocol';
+import { texturesOf, type Sent } from '../protocol';
 import type { PlantState, PlantView as Seen, SceneView, ShapePointer, ShapeReach } from '../wire';
 import type { Gizmo } from '../scene';
 import type { Box } from '../sheet/geometry';
@@ -221,6 +221,7 @@ export class PlantView {
   }
 
   update(view: SceneView, fresh: Sent[]): void {
+    this.looks.keep(texturesOf(view.guest ? [view.guest, ...view.plants] : view.plants));
     for (const { textures } of fresh) for (const texture of textures) this.looks.addTexture(texture);
     const meshes = new Map(fresh.map((sent) => [sent.view.id, sent]));
     const take = (known: PlantMeshes | undefined, seen: Seen): PlantMeshes => {

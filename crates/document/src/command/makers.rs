@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use bloom::GrowthLaw;
+use growth::TreeSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -14,13 +15,18 @@ use crate::makers::{FlowerMaker, LeafData, LeafMaker, LeafSettings, Maker, Named
 use crate::state::shortened;
 use crate::{Document, DocumentPlant, FlowerSettings, PlantId};
 
-/// What can be asked of a tree. Who sends a spec has checked that it is one.
+/// What can be asked of a tree.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum TreeCommand {
     /// Takes another spec, such as that of a preset. Obstacles stay.
-    SetSpec(Option<String>, Arc<Value>),
+    SetSpec(
+        Option<String>,
+        #[serde(with = "spec::through_json")]
+        #[schemars(with = "Value")]
+        Arc<TreeSpec>,
+    ),
     /// Sets one field of the spec, named by a JSON pointer such as `/method/points`.
     SetField(String, Value),
     /// Adds an obstacle after the others.
@@ -67,15 +73,12 @@ impl TreeCommand {
     fn change(self, tree: &mut TreeSettings) -> Result<(), CommandError> {
         let gone = CommandError::Nothing("the obstacle is not there any more");
         match self {
-            Self::SetSpec(preset, spec) => (tree.preset, tree.spec) = (preset.map(|p| shortened(&p)), spec),
+            Self::SetSpec(preset, spec) => {
+                spec::check(&*spec).map_err(spec::SpecFault::from)?;
+                (tree.preset, tree.spec) = (preset.map(|p| shortened(&p)), spec);
+            }
             Self::SetField(path, value) => {
-                let mut spec = Value::clone(&tree.spec);
-                let (parent, key) = path.rsplit_once('/').unwrap_or(("", &path));
-                let field = spec.pointer_mut(parent).and_then(Value::as_object_mut);
-                let field =
-                    field.ok_or_else(|| CommandError::OutOfRange(format!("the spec has no {path}")))?;
-                field.insert(key.into(), value);
-                tree.spec = Arc::new(spec);
+                tree.spec = Arc::new(spec::set(&*tree.spec, &path, value)?);
             }
             Self::AddObstacle(new) => tree.obstacles.push(named(new)),
             Self::SetObstacle(row, new) => *tree.obstacles.get_mut(row).ok_or(gone)? = named(new),

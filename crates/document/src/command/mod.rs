@@ -49,7 +49,7 @@ pub enum Command {
 }
 
 /// Why a command was refused; the document is as it was.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CommandError {
     /// A stroke is named that is not there.
@@ -78,6 +78,9 @@ pub enum CommandError {
     /// A setting is out of its range.
     #[error("{0}")]
     OutOfRange(String),
+    /// A field of a spec cannot be set so.
+    #[error(transparent)]
+    Spec(#[from] spec::SpecFault),
     /// A point would leave the range of numbers.
     #[error("a stroke cannot be moved that far")]
     TooFar,
@@ -149,3 +152,18 @@ fn may_bear(plant: &DocumentPlant, leaf: Option<PlantId>, document: &Document) -
     }
     Ok(())
 }
+
+base::coded!(CommandError {
+    Self::NoSuchStroke(id) => "no-such-stroke" { stroke = id.0 },
+    Self::NoSuchPlant(id) => "no-such-plant" { plant = id.0 },
+    Self::OtherMaker { wanted, found } => "other-maker" { wanted, found },
+    Self::NoLeaf => "no-leaf-to-lend" {},
+    Self::NoPhoto => "no-photo" {},
+    Self::Nothing(_) => "nothing-to-do" {},
+    Self::OutOfRange(why) => "out-of-range" { why },
+    Self::TooFar => "too-far" {},
+    Self::Full(what) => "full" { what },
+    Self::Gesture(_) => "gesture" {},
+} wraps {
+    Self::Spec(e) => e, spec::SpecFault;
+});

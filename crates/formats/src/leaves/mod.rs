@@ -85,3 +85,5 @@ fn text(input: impl Read) -> Result<String, LeafFileError> {
     }
     text_of(bytes).map_err(file)
 }
+
+base::coded!(LeafFileError {} wraps { Self { fault, .. } => fault, FileFault });

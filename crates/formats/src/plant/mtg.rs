@@ -9,7 +9,7 @@ use super::{decimal, length, micrometres, numbered, place, standing_on, turn};
 use crate::{ExportSpec, WriteError};
 
 /// Symbols of what nodes bear: nodes and the kinds of organs.
-const BORNE: [char; 10] = ['N', 'L', 'K', 'D', 'U', 'B', 'S', 'C', 'T', 'Q'];
+const BORNE: [char; 13] = ['N', 'L', 'K', 'E', 'D', 'F', 'U', 'B', 'S', 'H', 'C', 'T', 'Q'];
 
 /// Columns of numbers and words after the code.
 const FEATURES: [(&str, &str); 15] = [
@@ -31,7 +31,7 @@ const FEATURES: [(&str, &str); 15] = [
 ];
 
 /// Writes a sound plant as MTG text (FORM-A): the plant `P`, its axes `A`, their nodes `N` and organs (`L` leaf, `K`
-/// petal, `D` disc, `U` fruit, `B` body, `S` stamen, `C` pistil, `T` thorn, `Q` pedicel).
+/// petal, `D` disc, `E` sepal, `F` floret, `H` anther, `U` fruit, `B` body, `S` stamen, `C` pistil, `T` thorn, `Q` pedicel).
 ///
 /// A node has its position (`XX`, `YY`, `ZZ`) and the diameter there (`TopDia`); the first node of a borne axis has
 /// the diameter at the axis's base, too (`BotDia`), and is the axis's second point: the first lies at the bearer.
@@ -255,6 +255,9 @@ impl<W: Write> Writer<'_, W> {
             OrganKind::Fruit => ('U', "fruit"),
             OrganKind::Stamen => ('S', "stamen"),
             OrganKind::Pistil => ('C', "pistil"),
+            OrganKind::Sepal => ('E', "sepal"),
+            OrganKind::Anther => ('H', "anther"),
+            OrganKind::Floret => ('F', "floret"),
             OrganKind::Body => ('B', "body"),
             OrganKind::Thorn => ('T', "thorn"),
             OrganKind::Pedicel => ('Q', "pedicel"),

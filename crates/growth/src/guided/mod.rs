@@ -12,12 +12,12 @@ use base::{Counted, Draw, OverBudget, Report, Run, Seed, map_indexed};
 use geom::KdTree;
 use glam::DVec3;
 
+use self::spec::Numbers;
 use crate::colonize::{grow_bole, plant_roots};
 use crate::{GrowthError, JointId, Obstacles, Skeleton};
 use room::Room;
-use spec::Numbers;
 
-pub use spec::{BrushStroke, GuidedSpec};
+pub use self::spec::{BrushStroke, GuidedSpec};
 
 /// A bud that growth starts from.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -16,7 +16,7 @@ pub struct BrushStroke {
     #[schemars(with = "Vec<[f64; 3]>", extend("x-unit" = "m"))]
     pub points: Vec<DVec3>,
     /// Radius, metres, above 0: one number, or one for each point.
-    #[schemars(extend("x-unit" = "m"))]
+    #[schemars(inner(range(min = 1e-6, max = 1e6)), extend("x-unit" = "m"))]
     pub radius_m: Vec<f64>,
     /// Pull along the stroke, `k_s`, 0 to 10; default 1.
     #[serde(default = "one")]
@@ -85,6 +85,8 @@ pub struct GuidedSpec {
     pub max_joints: u32,
 }
 
+spec::schemas!(GuidedSpec);
+
 impl Default for GuidedSpec {
     fn default() -> Self {
         Self {
@@ -151,20 +153,8 @@ pub(super) struct Numbers {
 
 impl GuidedSpec {
     pub(super) fn check(&self) -> Result<Numbers, GrowthError> {
-        within("rounds", f64::from(self.rounds), 0.0, 1000.0, "0 to 1000")?;
-        within("internode_m", self.internode_m, 1e-4, 1e3, "0.0001 to 1000 m")?;
-        within("markers", f64::from(self.markers), 4.0, 1e4, "4 to 10000")?;
-        within("near", self.near, 0.0, 100.0, "0 to 100 internodes")?;
-        within("far", self.far, self.near.max(0.01), 100.0, "above `near` and at most 100 internodes")?;
-        within("half_angle_deg", self.half_angle_deg, 1.0, 180.0, "1 to 180")?;
-        within("repulsion", self.repulsion, 0.0, 10.0, "0 to 10")?;
-        within("alpha", self.alpha, 1e-6, 100.0, "above 0 and at most 100")?;
-        within("lambda", self.lambda, 0.0, 1.0, "0 to 1")?;
-        within("branch_angle_deg", self.branch_angle_deg, 0.0, 180.0, "0 to 180")?;
-        within("jitter_deg", self.jitter_deg, 0.0, 60.0, "0 to 60")?;
-        within("most_per_shoot", f64::from(self.most_per_shoot), 1.0, 100.0, "1 to 100")?;
-        within("shed_up_to", f64::from(self.shed_up_to), 0.0, 1000.0, "0 to 1000")?;
-        within("max_joints", f64::from(self.max_joints), 1.0, 2_147_483_648.0, "1 to 2^31")?;
+        spec::check(self)?;
+        within("far", self.far, self.near, 100.0, "above `near` and at most 100 internodes")?;
         for stroke in &self.strokes {
             let points = stroke.points.len();
             within("strokes.points", points as f64, 2.0, 1e6, "2 to 1 million points")?;
@@ -177,10 +167,6 @@ impl GuidedSpec {
                 let range = "one number, or one for each point";
                 return Err(GrowthError::Field { field: "strokes.radius_m", range, value: radii as f64 });
             }
-            for &r in &stroke.radius_m {
-                within("strokes.radius_m", r, 1e-6, 1e6, "above 0 and at most 1e6 m")?;
-            }
-            within("strokes.pull", stroke.pull, 0.0, 10.0, "0 to 10")?;
         }
         Ok(Numbers { phyllotaxis: self.arrangement.phyllotaxis()?, pull: Tropism::sum(&self.tropisms)? })
     }

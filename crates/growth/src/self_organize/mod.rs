@@ -20,7 +20,7 @@ use resource::{Fed, Flow, Sharing};
 use shadow::OUTSIDE;
 use space::Space;
 
-pub use spec::{Light, Resource, SelfOrganizingSpec};
+pub use self::spec::{Light, Resource, SelfOrganizingSpec};
 
 pub(crate) use shadow::ShadowGrid;
 

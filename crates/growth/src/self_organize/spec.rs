@@ -148,6 +148,8 @@ pub struct SelfOrganizingSpec {
     pub max_joints: u32,
 }
 
+spec::schemas!(SelfOrganizingSpec);
+
 impl Default for SelfOrganizingSpec {
     fn default() -> Self {
         Self {
@@ -181,50 +183,9 @@ pub(super) struct Numbers {
 
 impl SelfOrganizingSpec {
     pub(super) fn check(&self) -> Result<Numbers, GrowthError> {
-        within("years", f64::from(self.years), 0.0, 1000.0, "0 to 1000")?;
-        within("internode_m", self.internode_m, 1e-4, 1e3, "0.0001 to 1000 m")?;
-        within("alpha", self.alpha, 1e-6, 100.0, "above 0 and at most 100")?;
-        within("light_weight", self.light_weight, 0.0, 10.0, "0 to 10")?;
-        within("branch_angle_deg", self.branch_angle_deg, 0.0, 180.0, "0 to 180")?;
-        within("jitter_deg", self.jitter_deg, 0.0, 60.0, "0 to 60")?;
-        within("shed_below", self.shed_below, 0.0, 1e6, "0 or more")?;
-        within("most_per_shoot", f64::from(self.most_per_shoot), 1.0, 100.0, "1 to 100")?;
-        within("pipe_exponent", self.pipe_exponent, 1.0, 4.0, "1 to 4")?;
-        within("tip_radius_m", self.tip_radius_m, 1e-6, 10.0, "above 0 and at most 10 m")?;
-        within("max_joints", f64::from(self.max_joints), 1.0, 2_147_483_648.0, "1 to 2^31")?;
-        match &self.light {
-            Light::Shadow { voxel_m, a, b, layers, full } => {
-                if let Some(v) = voxel_m {
-                    within(
-                        "light.voxel_m",
-                        *v,
-                        0.1 * self.internode_m,
-                        1e3,
-                        "a tenth of an internode to 1000 m",
-                    )?;
-                }
-                within("light.a", *a, 1e-6, 100.0, "above 0 and at most 100")?;
-                within("light.b", *b, 1.0, 100.0, "1 to 100")?;
-                within("light.layers", f64::from(*layers), 1.0, 32.0, "1 to 32")?;
-                within("light.full", *full, 1e-6, 1e6, "above 0")?;
-            }
-            Light::Space { markers, occupancy, perception, half_angle_deg, .. } => {
-                within("light.markers", f64::from(*markers), 1.0, 1e7, "1 to 10 million")?;
-                within("light.occupancy", *occupancy, 0.01, 100.0, "0.01 to 100 internodes")?;
-                within("light.perception", *perception, 0.01, 100.0, "0.01 to 100 internodes")?;
-                within("light.half_angle_deg", *half_angle_deg, 0.1, 180.0, "0.1 to 180")?;
-            }
-        }
-        match self.resource {
-            Resource::BorchertHonda { lambda, lambda_late } => {
-                within("lambda", lambda, 0.0, 1.0, "0 to 1")?;
-                within("lambda_late", lambda_late.unwrap_or(lambda), 0.0, 1.0, "0 to 1")?;
-            }
-            Resource::Priority { w_max, w_min, kappa } => {
-                within("w_max", w_max, 1e-6, 1e6, "above 0")?;
-                within("w_min", w_min, 0.0, 1e6, "0 or more")?;
-                within("kappa", f64::from(kappa), 1.0, 1e6, "1 or more")?;
-            }
+        spec::check(self)?;
+        if let Light::Shadow { voxel_m: Some(v), .. } = self.light {
+            within("light.voxel_m", v, 0.1 * self.internode_m, 1e3, "a tenth of an internode to 1000 m")?;
         }
         Ok(Numbers { phyllotaxis: self.arrangement.phyllotaxis()?, pull: Tropism::sum(&self.tropisms)? })
     }

@@ -3,11 +3,10 @@
 use std::collections::BTreeMap;
 
 use base::{Executor, Run, map_indexed, ops};
+use geom::convex_hull;
 use glam::DVec2;
 
-use super::features::{
-    Shape, StrokeFeatures, convex_hull, hull_of_sorted, left_to_right, shape, signed_area,
-};
+use super::features::{Shape, StrokeFeatures, shape, signed_area};
 use super::region::Region;
 use crate::Ink;
 
@@ -499,11 +498,7 @@ impl Scene {
 
 /// See [`Scene::amid`].
 fn amid(shapes: &[Shape], wanted: &[bool]) -> Vec<Region> {
-    let both = |a: &[DVec2], b: &[DVec2]| {
-        let mut corners = [a, b].concat();
-        corners.sort_by(left_to_right);
-        hull_of_sorted(corners)
-    };
+    let both = |a: &[DVec2], b: &[DVec2]| convex_hull(&[a, b].concat());
     if shapes.len() > COMPANIONS + 1 {
         let all: Vec<DVec2> = shapes.iter().flat_map(|s| s.hull.iter().copied()).collect();
         return vec![Region::new(&convex_hull(&all))];

@@ -1,6 +1,7 @@
 //! What can be measured of a stroke: `InkStroke -> Shape -> StrokeFeatures` (with what [`context`](super::context) adds).
 
 use base::ops;
+use geom::convex_hull;
 use glam::DVec2;
 
 use super::region::Region;
@@ -446,6 +447,7 @@ fn openings(s: &Shape, f: &mut StrokeFeatures) {
     f.opening_level = if d.x + d.y > 1e-12 { d.x / (d.x + d.y) * f.gap } else { 0.0 };
 }
 
+/// As [`geom::signed_area`], but of coordinates as they are: its rounding is what the models were trained with.
 pub(super) fn signed_area(polygon: &[DVec2]) -> f64 {
     let Some(&last) = polygon.last() else { return 0.0 };
     let mut before = last;
@@ -466,44 +468,6 @@ fn perimeter(polygon: &[DVec2]) -> f64 {
         before = p;
     }
     sum
-}
-
-/// Andrew's monotone chain, counter-clockwise.
-pub(super) fn convex_hull(points: &[DVec2]) -> Vec<DVec2> {
-    let mut sorted = points.to_vec();
-    sorted.sort_by(left_to_right);
-    hull_of_sorted(sorted)
-}
-
-/// The order in which a hull is made.
-pub(super) fn left_to_right(a: &DVec2, b: &DVec2) -> core::cmp::Ordering {
-    a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y))
-}
-
-/// The convex hull of points that are sorted from left to right.
-pub(super) fn hull_of_sorted(mut sorted: Vec<DVec2>) -> Vec<DVec2> {
-    sorted.dedup();
-    if sorted.len() < 3 {
-        return sorted;
-    }
-    let mut hull: Vec<DVec2> = Vec::with_capacity(sorted.len() + 1);
-    let mut floor = 0;
-    for pass in 0..2 {
-        for i in 0..sorted.len() {
-            let p = if pass == 0 { sorted[i] } else { sorted[sorted.len() - 1 - i] };
-            while hull.len() >= floor + 2 {
-                let (a, b) = (hull[hull.len() - 2], hull[hull.len() - 1]);
-                if (b - a).perp_dot(p - b) > 0.0 {
-                    break;
-                }
-                hull.pop();
-            }
-            hull.push(p);
-        }
-        hull.pop();
-        floor = hull.len();
-    }
-    hull
 }
 
 /// The open segments `ab` and `cd` cross.

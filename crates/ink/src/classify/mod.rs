@@ -20,12 +20,12 @@ mod training;
 
 pub use context::{KeptMeasures, features};
 pub use features::StrokeFeatures;
-pub use model::Classified;
+pub use model::{Classified, Source};
 pub use svm::ModelError;
 #[cfg(any(test, feature = "training"))]
 pub use training::{
-    StrokeFigures, StrokeModelTexts, StrokeRow, StrokeSource, cross_validate_strokes, read_stroke_table,
-    train_strokes, write_stroke_table,
+    FEW_CLEAR, HeldOut, StrokeFigures, StrokeModelTexts, StrokeRow, StrokeSource, cross_validate_strokes,
+    held_out_strokes, read_stroke_table, train_strokes, write_stroke_table,
 };
 
 use base::{Run, map_indexed};
@@ -33,8 +33,11 @@ use base::{Run, map_indexed};
 use crate::{Ink, StrokeClass};
 use model::StrokeModels;
 
+/// The one rule that is applied here, because it needs no other stroke: crowns and trunks are told by what stands around
+/// them, so a line by itself, the first that anybody draws, is a stem. No rule of reading changes it.
+pub const LONE_LINE: &str = "lone-line";
 /// End gap over length of a stroke that is nearly straight: a half circle has 0.64.
-const LONE_LINE: f64 = 0.7;
+const LONE_GAP: f64 = 0.7;
 
 /// The models in the repository.
 fn trained() -> Option<&'static StrokeModels> {
@@ -77,23 +80,30 @@ pub fn classify_again(
     kept: &mut KeptMeasures,
     run: &Run<'_>,
 ) -> Vec<Classified> {
+    judge(trained(), ink, known, kept, run)
+}
+
+fn judge(
+    models: Option<&StrokeModels>,
+    ink: &Ink,
+    known: &[Option<Classified>],
+    kept: &mut KeptMeasures,
+    run: &Run<'_>,
+) -> Vec<Classified> {
     let unknown = |i: usize| known.get(i).is_none_or(Option::is_none);
     let rows = context::features_again(ink, unknown, kept, run);
-    // Crowns and trunks are told by what stands around them: a line by itself, the first that anybody draws, is a stem.
+    let decide = |i: usize| {
+        // A test reads the models, so they are always there.
+        let models = models.filter(|_| run.cancel.check().is_ok());
+        models.map(|m| m.decide(&rows[i])).unwrap_or_default()
+    };
     if let ([row], None | Some(None)) = (rows.as_slice(), known.first())
-        && row.gap > LONE_LINE
+        && row.gap > LONE_GAP
     {
-        return vec![Classified { class: StrokeClass::Axis, confidence: 1.0 }];
+        let source = Source::Rule(LONE_LINE);
+        return vec![Classified { class: StrokeClass::Axis, confidence: 1.0, source, ..decide(0) }];
     }
-    // A test reads the models, so they are always there.
-    let unknown = Classified { class: StrokeClass::Other, confidence: 0.0 };
-    map_indexed(run.executor, rows.len(), |i| {
-        if let Some(&Some(class)) = known.get(i) {
-            return class;
-        }
-        let model = trained().filter(|_| run.cancel.check().is_ok());
-        model.map_or(unknown, |m| m.decide(&rows[i]))
-    })
+    map_indexed(run.executor, rows.len(), |i| known.get(i).copied().flatten().unwrap_or_else(|| decide(i)))
 }
 
 #[cfg(test)]

@@ -1,17 +1,77 @@
 //! The trained models and what they say of one stroke.
 
+use core::fmt;
+
 use super::features::StrokeFeatures;
 use super::packed::unpack;
 use super::svm::{ModelError, Scale, Svm};
 use crate::StrokeClass;
 
+/// What decided the class of a stroke.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Source {
+    /// The user set it.
+    User,
+    /// The trained classifier.
+    #[default]
+    Classifier,
+    /// A rule, by its name: the other strokes contradict the classifier.
+    Rule(&'static str),
+}
+
+impl fmt::Display for Source {
+    /// `user`, `classifier` or `rule:NAME`: the words of reports.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::User => f.write_str("user"),
+            Self::Classifier => f.write_str("classifier"),
+            Self::Rule(name) => write!(f, "rule:{name}"),
+        }
+    }
+}
+
 /// What a stroke was found to be.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Classified {
     /// The class.
     pub class: StrokeClass,
-    /// The class's share among all classes, 0 to 1: see `docs/strokes.md` for how often a share is right.
+    /// How sure that class is, 0 to 1: its share among all classes, or 1 where no rule of reading may change it. See
+    /// `docs/strokes.md` for how often a share is right.
     pub confidence: f64,
+    /// What decided it.
+    pub source: Source,
+    /// The classifier's share of every class, in the order of [`StrokeClass::ALL`]; zeros where it was not asked.
+    pub shares: [f64; StrokeClass::ALL.len()],
+}
+
+impl Classified {
+    /// A class that the user set: sure.
+    ///
+    /// ```
+    /// use ink::{Classified, Source, StrokeClass};
+    /// let stem = Classified::by_user(StrokeClass::Axis);
+    /// assert_eq!((stem.confidence, stem.source), (1.0, Source::User));
+    /// assert_eq!(Source::Rule("lone-line").to_string(), "rule:lone-line");
+    /// ```
+    pub fn by_user(class: StrokeClass) -> Self {
+        Self { class, confidence: 1.0, source: Source::User, ..Self::default() }
+    }
+
+    /// No rule of reading may change it.
+    pub fn is_sure(&self) -> bool {
+        self.confidence >= 1.0
+    }
+
+    /// What the classifier says: the class with the largest share, the first of equals.
+    pub fn by_shares(shares: [f64; StrokeClass::ALL.len()]) -> Self {
+        let mut best = Self { shares, ..Self::default() };
+        for (class, share) in StrokeClass::ALL.into_iter().zip(shares) {
+            if share > best.confidence {
+                (best.class, best.confidence) = (class, share);
+            }
+        }
+        best
+    }
 }
 
 /// The models, ready to decide.
@@ -33,16 +93,15 @@ impl StrokeModels {
         })
     }
 
-    /// The class of a stroke: the one with the largest share, the first of equals.
+    /// The class of a stroke.
     pub(super) fn decide(&self, f: &StrokeFeatures) -> Classified {
-        let shares = self.classes.shares(&self.scale.apply(&f.values()));
-        let mut best = Classified { class: StrokeClass::Other, confidence: 0.0 };
-        for (&label, share) in self.classes.labels.iter().zip(shares) {
-            let class = usize::try_from(label).ok().and_then(|k| StrokeClass::ALL.get(k));
-            if let Some(&class) = class.filter(|_| share > best.confidence) {
-                best = Classified { class, confidence: share };
+        let found = self.classes.shares(&self.scale.apply(&f.values()));
+        let mut shares = [0.0; StrokeClass::ALL.len()];
+        for (&label, share) in self.classes.labels.iter().zip(found) {
+            if let Some(slot) = usize::try_from(label).ok().and_then(|k| shares.get_mut(k)) {
+                *slot = share;
             }
         }
-        best
+        Classified::by_shares(shares)
     }
 }

@@ -237,7 +237,7 @@ fn a_cancelled_run_judges_nothing() {
     let run = Run { cancel: &cancel, ..Run::plain() };
     assert!(classify(&ink, &run).iter().all(|c| c.confidence > 0.0));
     cancel.cancel();
-    assert_eq!(classify(&ink, &run), [Classified { class: StrokeClass::Other, confidence: 0.0 }; 2]);
+    assert_eq!(classify(&ink, &run), [Classified::default(); 2]);
 }
 
 #[test]
@@ -248,6 +248,22 @@ fn the_first_line_that_anybody_draws_is_a_stem() {
             .map(|t| DVec2::new(20.0 * t + 4.0 * bow * t * (1.0 - t), 460.0 * t))
             .collect();
         let ink = clean(&Drawing::from_polylines("line", &[line]), &mut Report::default());
-        assert_eq!(classify(&ink, &Run::plain())[0].class, StrokeClass::Axis, "bow {bow}");
+        let found = classify(&ink, &Run::plain())[0];
+        assert_eq!((found.class, found.source), (StrokeClass::Axis, Source::Rule(LONE_LINE)), "bow {bow}");
+        assert!(found.shares.iter().sum::<f64>() > 0.99, "the classifier was asked, too");
     }
+}
+
+#[test]
+fn a_class_has_the_number_of_its_place() {
+    assert!(StrokeClass::ALL.iter().enumerate().all(|(k, c)| c.place() == k), "the models' label numbers");
+}
+
+#[test]
+fn a_held_out_drawing_is_in_one_fold() {
+    let rows = table();
+    let folds = held_out_strokes(&rows, Seed::new(0)).expect("the table trains");
+    let held: Vec<&String> = folds.iter().flat_map(|f| &f.drawings).collect();
+    let drawings: std::collections::BTreeSet<&String> = rows.iter().map(|r| &r.drawing).collect();
+    assert_eq!((held.len(), held.iter().copied().collect()), (drawings.len(), drawings));
 }

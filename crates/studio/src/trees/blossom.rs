@@ -5,42 +5,8 @@
 use base::ops::{self, PI, TAU};
 use base::{Draw, Seed};
 use glam::{DVec2, DVec3};
-use growth::{GrowthError, Obstacles};
+use growth::{BlossomSpec, Obstacles};
 use plant::{Blade, Flower, FlowerId, Frame, Lift, Organ, OrganKind, Paint, Plant, Relief, Shape, ShapeId};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
-use super::look::Colour;
-use super::spec::within;
-
-/// What flowers a tree bears where leaves would stand.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct BlossomSpec {
-    /// Share of the leaves' places that bear a flower instead, 0 to 1, default 0: no flowers.
-    #[schemars(range(min = 0.0, max = 1.0))]
-    pub share: f64,
-    /// Petals of a flower's whorl, 3 to 12, default 5.
-    #[schemars(range(min = 3, max = 12))]
-    pub petals: u32,
-    /// Whorls of petals, one within the other, 1 to 6, default 1; 3 and more make a double flower such as a rose's.
-    #[schemars(range(min = 1, max = 6))]
-    pub whorls: u32,
-    /// Across an open flower, metres, default 0.035.
-    #[schemars(range(min = 0.001, max = 1.0), extend("x-unit" = "m"))]
-    pub diameter_m: f64,
-    /// Colour of petals, default a white.
-    pub color: Colour,
-    /// Colour towards which single flowers vary; default none.
-    pub color_to: Option<Colour>,
-}
-
-impl Default for BlossomSpec {
-    fn default() -> Self {
-        let color = Colour([0xf8, 0xf2, 0xf0]);
-        Self { share: 0.0, petals: 5, whorls: 1, diameter_m: 0.035, color, color_to: None }
-    }
-}
 
 // The whorls of a flower open this far from its axis: the outermost, and the innermost of six.
 const OPEN: f64 = 76.0 * PI / 180.0;
@@ -55,119 +21,99 @@ struct Shapes {
     stalk: ShapeId,
 }
 
-impl BlossomSpec {
-    pub(super) fn check(&self) -> Result<(), GrowthError> {
-        within("blossom.share", self.share, 0.0, 1.0, "0 to 1")?;
-        within("blossom.petals", f64::from(self.petals), 3.0, 12.0, "3 to 12")?;
-        within("blossom.whorls", f64::from(self.whorls), 1.0, 6.0, "1 to 6")?;
-        within("blossom.diameter_m", self.diameter_m, 0.001, 1.0, "0.001 to 1 m")
+/// Turns leaves into flowers. Which ones follows from their keys, so that a larger share keeps those of a smaller.
+/// A flower that would enter an obstacle stays a leaf.
+pub(super) fn add_blossom(spec: &BlossomSpec, plant: &mut Plant, obstacles: &Obstacles, seed: Seed) {
+    let blooms = |o: &Organ| {
+        o.kind == OrganKind::Leaf && seed.child(o.key).stream(Draw::Template).uniform() < spec.share
+    };
+    if spec.share <= 0.0 || !plant.organs.iter().any(blooms) {
+        return;
     }
+    let (places, kept): (Vec<Organ>, Vec<Organ>) =
+        std::mem::take(&mut plant.organs).into_iter().partition(blooms);
+    plant.organs = kept;
+    let shapes = Shapes {
+        petal: push(plant, Shape::Blade(petal(0.5 * spec.diameter_m, spec.petals))),
+        disc: push(plant, Shape::Blade(disc(0.15 * spec.diameter_m))),
+        stalk: push(plant, stalk(STALK * spec.diameter_m)),
+    };
+    let corners: Vec<Vec<DVec3>> = plant.shapes.iter().map(Shape::corners).collect();
+    for place in &places {
+        let (organs, flowers) = (plant.organs.len(), plant.flowers.len());
+        add_flower(spec, plant, place, &shapes, seed);
+        let free = |o: &Organ| obstacles.admit(&o.frame, o.scale, &corners[o.shape.index()]);
+        if !obstacles.is_empty() && !plant.organs[organs..].iter().all(free) {
+            plant.organs.truncate(organs);
+            plant.flowers.truncate(flowers);
+            plant.organs.push(place.clone());
+        }
+    }
+}
 
-    /// Turns leaves into flowers. Which ones follows from their keys, so that a larger share keeps those of a smaller.
-    /// A flower that would enter an obstacle stays a leaf.
-    pub(super) fn apply(&self, plant: &mut Plant, obstacles: &Obstacles, seed: Seed) {
-        let blooms = |o: &Organ| {
-            o.kind == OrganKind::Leaf && seed.child(o.key).stream(Draw::Template).uniform() < self.share
-        };
-        if self.share <= 0.0 || !plant.organs.iter().any(blooms) {
-            return;
-        }
-        let (places, kept): (Vec<Organ>, Vec<Organ>) =
-            std::mem::take(&mut plant.organs).into_iter().partition(blooms);
-        plant.organs = kept;
-        let shapes = Shapes {
-            petal: push(plant, Shape::Blade(petal(0.5 * self.diameter_m, self.petals))),
-            disc: push(plant, Shape::Blade(disc(0.15 * self.diameter_m))),
-            stalk: push(plant, stalk(STALK * self.diameter_m)),
-        };
-        let corners: Vec<Vec<DVec3>> = plant.shapes.iter().map(Shape::corners).collect();
-        for place in &places {
-            let (organs, flowers) = (plant.organs.len(), plant.flowers.len());
-            self.flower(plant, place, &shapes, seed);
-            let free = |o: &Organ| obstacles.admit(&o.frame, o.scale, &corners[o.shape.index()]);
-            if !obstacles.is_empty() && !plant.organs[organs..].iter().all(free) {
-                plant.organs.truncate(organs);
-                plant.flowers.truncate(flowers);
-                plant.organs.push(place.clone());
-            }
+fn add_flower(spec: &BlossomSpec, plant: &mut Plant, place: &Organ, shapes: &Shapes, seed: Seed) {
+    let key = seed.child(place.key).child(Draw::Template as u64);
+    let mut draw = key.stream(Draw::Template);
+    // Flowers look outwards, to the light and a little where they please.
+    let stray = DVec3::new(draw.uniform() - 0.5, draw.uniform() - 0.3, draw.uniform() - 0.5);
+    let axis = (place.frame.along + 0.5 * place.frame.normal + 0.7 * stray).normalize_or(DVec3::Y);
+    let longer = 0.7 + 0.6 * draw.uniform();
+    let centre = place.frame.origin + place.frame.along * (STALK * spec.diameter_m * longer);
+    let scale = 0.85 + 0.3 * draw.uniform();
+    let share = draw.uniform();
+    let (from, to) = (spec.color.linear(), spec.color_to.unwrap_or(spec.color).linear());
+    let id = FlowerId::new(plant.flowers.len());
+    let bearer = place.bearer;
+    plant.flowers.push(Flower { bearer, centre, axis, half_angle: OPEN, whorls: spec.whorls });
+    let across = axis.any_orthonormal_vector();
+    let up = axis.cross(across);
+    let turn = TAU * draw.uniform();
+    let organ = |kind, shape, frame, scale, paint, key: Seed| Organ {
+        kind,
+        bearer,
+        flower: Some(id),
+        shape,
+        frame,
+        scale,
+        paint,
+        key: key.number(),
+        source: None,
+    };
+    for whorl in 0..spec.whorls {
+        let inner = f64::from(whorl) / f64::from(spec.whorls.max(2));
+        let open = ops::lerp(OPEN, CLOSED, inner) + 0.2 * (draw.uniform() - 0.5);
+        let (rise, out) = (ops::cos(open), ops::sin(open));
+        for k in 0..spec.petals {
+            let step = f64::from(k) + 0.5 * f64::from(whorl % 2);
+            let (s, c) = ops::sin_cos(turn + TAU * step / f64::from(spec.petals));
+            let along = (across * c + up * s) * out + axis * rise;
+            let frame = Frame::looking(centre, along, axis);
+            let shade = 1.0 - 0.1 * draw.uniform() - 0.15 * inner;
+            #[expect(clippy::cast_possible_truncation, reason = "a colour")]
+            let tint = [0, 1, 2].map(|i| (shade * ops::lerp(from[i], to[i], share)) as f32);
+            let key = key.child(u64::from(whorl * spec.petals + k));
+            plant.organs.push(organ(
+                OrganKind::Petal,
+                shapes.petal,
+                frame,
+                scale * (1.0 - 0.45 * inner),
+                Paint::Tinted(tint),
+                key,
+            ));
         }
     }
-
-    fn flower(&self, plant: &mut Plant, place: &Organ, shapes: &Shapes, seed: Seed) {
-        let key = seed.child(place.key).child(Draw::Template as u64);
-        let mut draw = key.stream(Draw::Template);
-        // Flowers look outwards, to the light and a little where they please.
-        let stray = DVec3::new(draw.uniform() - 0.5, draw.uniform() - 0.3, draw.uniform() - 0.5);
-        let axis = (place.frame.along + 0.5 * place.frame.normal + 0.7 * stray).normalize_or(DVec3::Y);
-        let longer = 0.7 + 0.6 * draw.uniform();
-        let centre = place.frame.origin + place.frame.along * (STALK * self.diameter_m * longer);
-        let scale = 0.85 + 0.3 * draw.uniform();
-        let share = draw.uniform();
-        let (from, to) = (self.color.linear(), self.color_to.unwrap_or(self.color).linear());
-        let id = FlowerId::new(plant.flowers.len());
-        let bearer = place.bearer;
-        plant.flowers.push(Flower { bearer, centre, axis, half_angle: OPEN, whorls: self.whorls });
-        let across = axis.any_orthonormal_vector();
-        let up = axis.cross(across);
-        let turn = TAU * draw.uniform();
-        let organ = |kind, shape, frame, scale, paint, key: Seed| Organ {
-            kind,
-            bearer,
-            flower: Some(id),
-            shape,
-            frame,
-            scale,
-            paint,
-            key: key.number(),
-            source: None,
-        };
-        for whorl in 0..self.whorls {
-            let inner = f64::from(whorl) / f64::from(self.whorls.max(2));
-            let open = ops::lerp(OPEN, CLOSED, inner) + 0.2 * (draw.uniform() - 0.5);
-            let (rise, out) = (ops::cos(open), ops::sin(open));
-            for k in 0..self.petals {
-                let step = f64::from(k) + 0.5 * f64::from(whorl % 2);
-                let (s, c) = ops::sin_cos(turn + TAU * step / f64::from(self.petals));
-                let along = (across * c + up * s) * out + axis * rise;
-                let frame = Frame::looking(centre, along, axis);
-                let shade = 1.0 - 0.1 * draw.uniform() - 0.15 * inner;
-                #[expect(clippy::cast_possible_truncation, reason = "a colour")]
-                let tint = [0, 1, 2].map(|i| (shade * ops::lerp(from[i], to[i], share)) as f32);
-                let key = key.child(u64::from(whorl * self.petals + k));
-                plant.organs.push(organ(
-                    OrganKind::Petal,
-                    shapes.petal,
-                    frame,
-                    scale * (1.0 - 0.45 * inner),
-                    Paint::Tinted(tint),
-                    key,
-                ));
-            }
-        }
-        let frame = Frame {
-            origin: centre + axis * (0.06 * self.diameter_m),
-            right: across,
-            along: up,
-            normal: axis,
-        };
-        plant.organs.push(organ(
-            OrganKind::Disc,
-            shapes.disc,
-            frame,
-            scale,
-            Paint::default(),
-            key.child(u64::MAX),
-        ));
-        let key = key.child(u64::MAX - 1);
-        plant.organs.push(organ(
-            OrganKind::Pedicel,
-            shapes.stalk,
-            place.frame,
-            longer,
-            Paint::default(),
-            key,
-        ));
-    }
+    let frame =
+        Frame { origin: centre + axis * (0.06 * spec.diameter_m), right: across, along: up, normal: axis };
+    plant.organs.push(organ(
+        OrganKind::Disc,
+        shapes.disc,
+        frame,
+        scale,
+        Paint::default(),
+        key.child(u64::MAX),
+    ));
+    let key = key.child(u64::MAX - 1);
+    plant.organs.push(organ(OrganKind::Pedicel, shapes.stalk, place.frame, longer, Paint::default(), key));
 }
 
 fn push(plant: &mut Plant, shape: Shape) -> ShapeId {
@@ -241,14 +187,9 @@ mod tests {
             assert_eq!(Some(ends.len() as u64), tree.item.counts.flowers);
             assert!(ends.iter().all(|off| *off < 1e-9));
         }
-        let white = some.model.materials.iter().any(|m| m.name == "petal-white");
-        assert!(white, "{:?}", some.model.materials.iter().map(|m| &m.name).collect::<Vec<_>>());
-    }
-
-    #[test]
-    fn numbers_out_of_range_are_named() {
-        let bad = BlossomSpec { petals: 40, ..BlossomSpec::default() };
-        let want = GrowthError::Field { field: "blossom.petals", range: "3 to 12", value: 40.0 };
-        assert_eq!(bad.check(), Err(want));
+        let petals = some.model.parts.iter().find(|p| p.name == "petals").expect("petals");
+        let [r, g, b] = petals.mesh.colors[0];
+        assert!(r > 0.5 && g > 0.5 && b > 0.5, "as pale as its spec says: {r} {g} {b}");
+        assert_eq!(some.model.material(petals).name, "petal");
     }
 }

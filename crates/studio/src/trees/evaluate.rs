@@ -4,15 +4,16 @@
 
 use base::{Report, Run, Seed, Stopped, Warning};
 use document::PlantEdit;
-use growth::{Grown, Method};
+use growth::{BlossomSpec, Grown, Look, Method, TreeSpec};
 use mesh::Model;
 use plant::{Blade, Plant};
-use skin::{PetalColor, SkinSpec};
+use skin::SkinSpec;
 
-use super::look::KeptBarks;
+use super::blossom::add_blossom;
+use super::look::{KeptBarks, paint, tint};
 use super::{
-    BlossomSpec, GrowthReport, Inside, Look, TreeError, TreeOptions, TreeSpec, coarser, keep_out,
-    look_at_meshes, scale_to_height,
+    GrowthReport, Inside, TreeError, TreeOptions, coarser, keep_out, look_at_meshes, scale_to_height,
+    tree_blade,
 };
 use crate::report::{Counts, ItemReport, TimingsMs};
 use crate::shaping::{EditReport, Shaper};
@@ -56,7 +57,7 @@ pub struct TreeEvaluator {
 /// What growth made.
 #[derive(Clone, Debug)]
 struct Raw {
-    from: (growth::TreeSpec, Blade, Seed),
+    from: (TreeSpec, Blade, Seed),
     grown: Grown,
     warnings: Vec<Warning>,
 }
@@ -112,27 +113,26 @@ impl TreeEvaluator {
         report: &mut Report,
         run: &Run<'_>,
     ) -> Result<growth::Obstacles, TreeError> {
-        let wanted = spec.growth()?;
         let leaf = options.leaf.as_ref();
         if let (Some(file), None) = (&spec.blade.file, leaf) {
             return Err(TreeError::File { file: file.clone() });
         }
-        wanted.check(&run.budget)?;
-        let obstacles = growth::Obstacles::new(&wanted.obstacles, wanted.clearance_m)?;
-        let blade = leaf.map_or_else(|| spec.blade.blade(), |l| l.scaled(1.0));
-        let same = |k: &Raw| (&k.from.0, &k.from.1, k.from.2) == (&wanted, &blade, seed);
+        spec.check(&run.budget)?;
+        let obstacles = growth::Obstacles::new(&spec.obstacles, spec.clearance_m)?;
+        let blade = leaf.map_or_else(|| tree_blade(&spec.blade), |l| l.scaled(1.0));
+        let same = |k: &Raw| k.from.0.grows_like(spec) && (&k.from.1, k.from.2) == (&blade, seed);
         if self.grown.as_ref().is_some_and(same) {
             return Ok(obstacles);
         }
         let mut told = Report::default();
         look_at_meshes(&spec.obstacles, &mut told);
-        let grown = growth::grow(&wanted, Some(blade.clone()), seed, run, &mut told)?;
+        let grown = growth::grow(spec, Some(blade.clone()), seed, run, &mut told)?;
         for stage in &told.stages {
             report.book(if stage.name == "grow" { "structure" } else { "depth" }, stage.ms);
         }
         (self.dressed, self.shaped, self.stale) = (None, None, true);
         self.done.extend(["structure", "depth"]);
-        self.grown = Some(Raw { from: (wanted, blade, seed), grown, warnings: told.warnings });
+        self.grown = Some(Raw { from: (spec.clone(), blade, seed), grown, warnings: told.warnings });
         Ok(obstacles)
     }
 
@@ -145,8 +145,8 @@ impl TreeEvaluator {
             return;
         }
         let mut grown = raw.grown.clone();
-        spec.look.tint(&mut grown.plant, pictured, seed);
-        spec.blossom.apply(&mut grown.plant, obstacles, seed);
+        tint(&spec.look, &mut grown.plant, pictured, seed);
+        add_blossom(&spec.blossom, &mut grown.plant, obstacles, seed);
         if let Some(height) = height {
             scale_to_height(&mut grown, height);
         }
@@ -187,7 +187,7 @@ impl TreeEvaluator {
         report: &mut Report,
         run: &Run<'_>,
     ) -> Result<bool, TreeError> {
-        let from = (skin_spec(spec, seed, options), spec.look.clone(), options.leaf.clone());
+        let from = (skin_spec(seed, options), spec.look.clone(), options.leaf.clone());
         if !self.stale && self.model.as_ref().is_some_and(|(f, _)| *f == from) {
             return Ok(false);
         }
@@ -210,7 +210,7 @@ impl TreeEvaluator {
         run: &Run<'_>,
     ) -> Result<Vec<Model>, TreeError> {
         let Some(plant) = self.plant() else { return Ok(Vec::new()) };
-        let fine = skin_spec(spec, seed, options);
+        let fine = skin_spec(seed, options);
         let mut barks = self.barks.clone();
         let obstacles = growth::Obstacles::new(&spec.obstacles, spec.clearance_m)?;
         let lods = (1..=options.lods.min(6)).map(|level| {
@@ -276,9 +276,8 @@ impl TreeEvaluator {
     }
 }
 
-fn skin_spec(spec: &TreeSpec, seed: Seed, options: &TreeOptions) -> SkinSpec {
-    let petals = options.skin.petals.or((spec.blossom.share > 0.0).then_some(PetalColor::White));
-    SkinSpec { seed, petals, ..options.skin.clone() }
+fn skin_spec(seed: Seed, options: &TreeOptions) -> SkinSpec {
+    SkinSpec { seed, ..options.skin.clone() }
 }
 
 fn skinned(
@@ -288,7 +287,7 @@ fn skinned(
     run: &Run<'_>,
 ) -> Result<Model, Stopped> {
     let mut model = skin::skin(plant, skin, run)?;
-    look.paint(&mut model, barks);
+    paint(look, &mut model, barks);
     if let Some(leaf) = leaf {
         leaf.dress(&mut model);
     }

@@ -1,11 +1,10 @@
 //! Specs as TOML, and their JSON Schema.
 
 use glam::DVec3;
-use growth::GrowthError;
-use serde::de::Error as _;
+use growth::{GrowthError, TreeSpec};
+use spec::{Entry, Kind, Node, Spec, SpecFault, line_at};
 
-use super::located::{Entry, Fault, Kind, Node};
-use super::{TreeError, TreeSpec};
+use super::TreeError;
 
 /// Vertices and triangles, or points alone, of a file that a spec names.
 pub type NamedMesh = (Vec<DVec3>, Vec<[u32; 3]>);
@@ -16,25 +15,12 @@ pub type NamedMesh = (Vec<DVec3>, Vec<[u32; 3]>);
 /// triangles) or `points`, in metres, +Y up; `None` for a file that is not there. The core opens no files itself.
 ///
 /// # Errors
-/// [`TreeError::Spec`] with the line of what is wrong; [`TreeError::File`] for a file that `open` did not give.
+/// [`TreeError::Spec`] with the line of what is wrong (ranges are looked at when the tree grows); [`TreeError::File`] for a file that `open` did not give.
 pub fn read_tree_spec(text: &str, open: &dyn Fn(&str) -> Option<NamedMesh>) -> Result<TreeSpec, TreeError> {
-    let fault = |f: Fault| TreeError::Spec { line: line_at(text, f.at), message: f.message };
+    let fault = |f| TreeError::Spec(SpecFault::in_text(text, f));
     let mut tree = Node::from_toml(text).map_err(fault)?;
     resolve(&mut tree, open)?;
     tree.read().map_err(fault)
-}
-
-/// Reads a spec that is kept as JSON.
-///
-/// # Errors
-/// What is wrong, with the names of the fields that lead to it.
-pub(crate) fn spec_from_json(value: &serde_json::Value) -> Result<TreeSpec, serde_json::Error> {
-    Node::from_json(value).read().map_err(|f| serde_json::Error::custom(f.message))
-}
-
-/// The line (from 1) of a byte.
-fn line_at(text: &str, at: usize) -> usize {
-    text.as_bytes()[..at.min(text.len())].iter().filter(|b| **b == b'\n').count() + 1
 }
 
 impl TreeError {
@@ -67,6 +53,10 @@ impl TreeError {
                 let error = GrowthError::Obstacle { obstacle, name, fault };
                 place.map_or_else(|| Self::Growth(error.clone()), |at| at_line(text, at, &error))
             }
+            Self::Growth(GrowthError::Range(fault)) => {
+                let line = tree.at_path(&fault.path).map(|node| line_at(text, node.at));
+                Self::Spec(SpecFault::Range { line, fault })
+            }
             Self::Growth(ref error @ GrowthError::Field { field, value, .. }) => {
                 let mut found = Vec::new();
                 let name = field.rsplit('.').next().unwrap_or(field);
@@ -80,7 +70,7 @@ impl TreeError {
 }
 
 fn at_line(text: &str, at: usize, error: &GrowthError) -> TreeError {
-    TreeError::Spec { line: line_at(text, at), message: error.to_string() }
+    TreeError::Line { line: line_at(text, at), error: error.clone() }
 }
 
 /// The line on which the content of a string of several lines starts; `None` of one on a single line.
@@ -146,8 +136,8 @@ fn resolve(tree: &mut Node, open: &dyn Fn(&str) -> Option<NamedMesh>) -> Result<
 /// let schema = burgeon::tree_schema();
 /// assert_eq!(schema["properties"]["clearance_m"]["x-unit"], "m");
 /// ```
-pub fn tree_schema() -> serde_json::Value {
-    schemars::schema_for!(TreeSpec).to_value()
+pub fn tree_schema() -> &'static serde_json::Value {
+    TreeSpec::schema()
 }
 
 #[cfg(test)]
@@ -156,7 +146,12 @@ mod tests {
 
     fn line(text: &str) -> (usize, String) {
         match read_tree_spec(text, &|_| None) {
-            Err(TreeError::Spec { line, message }) => (line, message),
+            Err(TreeError::Spec(SpecFault::Text { line: Some(line), path, message })) if path.is_empty() => {
+                (line, message)
+            }
+            Err(TreeError::Spec(SpecFault::Text { line: Some(line), path, message })) => {
+                (line, format!("{path}: {message}"))
+            }
             other => panic!("{text}: {other:?}"),
         }
     }
@@ -241,10 +236,10 @@ mod tests {
             (rules("rules = '''\naxiom = A\nA -> F(\n'''\n"), "line 8: a number"),
             (rules("rules = \"\"\"axiom = A\nA -> F(\"\"\"\n"), "line 7: a number"),
             (rules("rules = \"\"\"\n\naxiom = A\nsteps = 9\nA -> A A A\n\"\"\"\n"), "`A -> A A A` in line 10 lets"),
-            ("[wood]\nrelax = 99\n".into(), "line 2: relax must be 0 to 10, not 99"),
-            ("[method]\nkind = \"competition\"\nkill_m = nan\n".into(), "line 3: kill_m must"),
+            ("[wood]\nrelax = 99\n".into(), "line 2: wood.relax must be 0 to 10, not 99"),
+            ("[method]\nkind = \"competition\"\nkill_m = nan\n".into(), "line 3: method.kill_m must"),
             ("[[obstacles]]\nshape = \"sphere\"\ncentre = [9, 0, 0]\nradius_m = 1\n[[obstacles]]\nshape = \"sphere\"\ncentre = [9, 0, 0]\nradius_m = 0\n".into(),
-             "line 8: obstacle 1 (a sphere): radius_m must be above 0"),
+             "line 8: obstacles[1].radius_m must be 1e-6 to 1e6 m, not 0"),
             ("[[obstacles]]\nshape = \"mesh\"\nfile = \"rock.obj\"\n".into(), "line 1: obstacle 0 (rock.obj): mesh: it has no triangle"),
         ] {
             let told = told(&text);
@@ -257,15 +252,13 @@ mod tests {
         for preset in crate::PRESETS {
             let spec = preset.spec().expect("sound");
             let value = serde_json::to_value(&spec).expect("plain data");
-            assert_eq!(spec_from_json(&value).ok().as_ref(), Some(&spec), "{}", preset.key);
+            assert_eq!(spec::from_json(&value).ok().as_ref(), Some(&spec), "{}", preset.key);
             // The reader that everybody knows says the same.
             assert_eq!(serde_json::from_value::<TreeSpec>(value).ok(), Some(spec), "{}", preset.key);
         }
         let wrong = serde_json::json!({ "wood": { "relax": "much" } });
-        assert!(
-            spec_from_json(&wrong).is_err_and(|e| e.to_string().contains("much")),
-            "words are no numbers"
-        );
+        let error = spec::from_json::<TreeSpec>(&wrong).expect_err("words are no numbers").to_string();
+        assert!(error.starts_with("wood.relax: ") && error.contains("much"), "{error}");
     }
 
     #[test]

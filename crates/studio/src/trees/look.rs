@@ -6,195 +6,89 @@ use std::sync::Arc;
 
 use base::ops::{self, TAU};
 use base::{Draw, Seed};
-use growth::GrowthError;
+use growth::{Bark, Look};
 use mesh::{Material, MaterialKind, Model, Texture};
 use plant::{OrganKind, Paint, Plant};
-use schemars::JsonSchema;
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use spec::Colour;
 
-use super::spec::within;
-
-/// An sRGB colour, written `#rrggbb`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, JsonSchema)]
-#[schemars(with = "String", extend("pattern" = "^#[0-9a-fA-F]{6}$", "x-unit" = "colour"))]
-pub struct Colour(pub [u8; 3]);
-
-impl Colour {
-    pub(super) fn linear(self) -> [f64; 3] {
-        self.0.map(|b| {
-            let x = f64::from(b) / 255.0;
-            if x <= 0.04045 { x / 12.92 } else { ops::powf((x + 0.055) / 1.055, 2.4) }
-        })
+/// Gives each leaf its colour. Leaves that have a picture only vary in brightness.
+pub(super) fn tint(look: &Look, plant: &mut Plant, pictured: bool, seed: Seed) {
+    let (mut from, mut to) =
+        (look.leaf_color.linear(), look.leaf_color_to.unwrap_or(look.leaf_color).linear());
+    if pictured {
+        (from, to) = ([1.0; 3], [0.8; 3]);
     }
-
-    fn srgb(self) -> [f64; 3] {
-        self.0.map(|b| f64::from(b) / 255.0)
+    for organ in plant.organs.iter_mut().filter(|o| o.kind == OrganKind::Leaf) {
+        let share = look.leaf_variation * seed.child(organ.key).stream(Draw::Tint).uniform();
+        #[expect(clippy::cast_possible_truncation, reason = "a colour")]
+        let mixed = [0, 1, 2].map(|i| ops::lerp(from[i], to[i], share) as f32);
+        organ.paint = if pictured { Paint::Natural(mixed) } else { Paint::Tinted(mixed) };
     }
 }
 
-impl Serialize for Colour {
-    fn serialize<S: Serializer>(&self, s: S) -> Result<S::Ok, S::Error> {
-        let [r, g, b] = self.0;
-        s.serialize_str(&format!("#{r:02x}{g:02x}{b:02x}"))
+/// Repaints the bark of a model, with what is kept where it is the same.
+pub(super) fn paint(look: &Look, model: &mut Model, kept: &mut KeptBarks) {
+    let known = core::mem::take(kept);
+    // A slender tree has no part with old bark: then its stem is among the young ones.
+    let old = model.materials.iter().any(|m| m.name == "bark");
+    for material in model.materials.iter_mut().filter(|m| m.kind == MaterialKind::Bark) {
+        let twig = old && material.name == "bark-young";
+        let colour = if twig { look.twig_color } else { look.bark_color };
+        repaint(look, material, colour, twig, &known, kept);
+    }
+    if let Some(foot) = look.foot_color {
+        let name = if old { "bark" } else { "bark-young" };
+        darken_foot(look, model, name, foot);
     }
 }
 
-impl<'de> Deserialize<'de> for Colour {
-    fn deserialize<D: Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
-        let text = String::deserialize(d)?;
-        let hex = text.strip_prefix('#').filter(|h| h.len() == 6 && h.is_ascii());
-        let byte = |i: usize| hex.and_then(|h| u8::from_str_radix(h.get(i..i + 2)?, 16).ok());
-        match (byte(0), byte(2), byte(4)) {
-            (Some(r), Some(g), Some(b)) => Ok(Self([r, g, b])),
-            _ => Err(serde::de::Error::custom(format!("`{text}` is no colour such as \"#4a6b2c\""))),
+/// Vertex colours that turn the bark of one material into the foot's, from `foot_height` downwards.
+fn darken_foot(look: &Look, model: &mut Model, name: &str, foot: Colour) {
+    let bounds = model.bounds();
+    let height = (bounds.max.y * look.foot_height).max(f64::MIN_POSITIVE);
+    let patches = Lattice::new((16, 16), 41);
+    let (bark, foot) = (look.bark_color.linear(), foot.linear());
+    let ratio = [0, 1, 2].map(|i| (foot[i] / bark[i].max(1e-3)).clamp(0.0, 1.0));
+    let chosen: Vec<bool> = model.materials.iter().map(|m| m.name == name).collect();
+    for part in &mut model.parts {
+        if !chosen.get(part.material.index()).copied().unwrap_or(false) {
+            continue;
         }
-    }
-}
-
-/// What the bark is like.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
-pub enum Bark {
-    /// Ridges and furrows along the trunk: oak, poplar, willow.
-    #[default]
-    Furrowed,
-    /// Without plates: beech, young trees, shrubs.
-    Smooth,
-    /// Large flakes with dark cracks: pine, plane.
-    Plated,
-    /// White paper with dark stripes across: birch.
-    Birch,
-    /// Rings that fallen leaves have left: palm.
-    Ringed,
-    /// Smooth and jointed: bamboo.
-    Cane,
-}
-
-/// Colours and bark. All colours are sRGB.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Look {
-    /// What the bark is like.
-    pub bark: Bark,
-    /// Mean colour of the bark of trunk and branches.
-    pub bark_color: Colour,
-    /// Colour of the bark at the foot of the trunk, old and rough, not lighter than `bark_color`; default the same.
-    pub foot_color: Option<Colour>,
-    /// Share of the tree's height up to which the foot's colour reaches, 0.01 to 1, default 0.2.
-    #[schemars(range(min = 0.01, max = 1.0))]
-    pub foot_height: f64,
-    /// Mean colour of the bark of twigs.
-    pub twig_color: Colour,
-    /// Colour of leaves.
-    pub leaf_color: Colour,
-    /// Colour towards which single leaves vary (autumn, young growth); default that of leaves.
-    pub leaf_color_to: Option<Colour>,
-    /// How far they vary, 0 to 1, default 0.5.
-    #[schemars(range(min = 0.0, max = 1.0))]
-    pub leaf_variation: f64,
-}
-
-impl Default for Look {
-    fn default() -> Self {
-        Self {
-            bark: Bark::default(),
-            bark_color: Colour([0x6e, 0x62, 0x54]),
-            foot_color: None,
-            foot_height: 0.2,
-            twig_color: Colour([0x6a, 0x58, 0x44]),
-            leaf_color: Colour([0x56, 0x7d, 0x2f]),
-            leaf_color_to: None,
-            leaf_variation: 0.5,
+        let mesh = &mut part.mesh;
+        mesh.colors.resize(mesh.positions.len(), [1.0; 3]);
+        for (p, color) in mesh.positions.iter().zip(&mut mesh.colors) {
+            let [x, y, z] = p.map(f64::from);
+            // Patches as large as the trunk is thick, so that the border is ragged.
+            let patch = patches.noise(0.37 * x + 0.11 * z + 0.5, 0.31 * y + 0.17 * z + 0.5);
+            let share = 1.0 - ops::smoothstep(0.25, 1.0, y / height + 0.22 * patch);
+            #[expect(clippy::cast_possible_truncation, reason = "a colour of the mesh")]
+            let shade = ratio.map(|r| ops::lerp(1.0, r, share) as f32);
+            *color = [0, 1, 2].map(|i| color[i] * shade[i]);
         }
     }
 }
 
-impl Look {
-    pub(super) fn check(&self) -> Result<(), GrowthError> {
-        within("look.foot_height", self.foot_height, 0.01, 1.0, "0.01 to 1")?;
-        within("look.leaf_variation", self.leaf_variation, 0.0, 1.0, "0 to 1")
-    }
-
-    /// Gives each leaf its colour. Leaves that have a picture only vary in brightness.
-    pub(super) fn tint(&self, plant: &mut Plant, pictured: bool, seed: Seed) {
-        let (mut from, mut to) =
-            (self.leaf_color.linear(), self.leaf_color_to.unwrap_or(self.leaf_color).linear());
-        if pictured {
-            (from, to) = ([1.0; 3], [0.8; 3]);
-        }
-        for organ in plant.organs.iter_mut().filter(|o| o.kind == OrganKind::Leaf) {
-            let share = self.leaf_variation * seed.child(organ.key).stream(Draw::Tint).uniform();
-            #[expect(clippy::cast_possible_truncation, reason = "a colour")]
-            let mixed = [0, 1, 2].map(|i| ops::lerp(from[i], to[i], share) as f32);
-            organ.paint = if pictured { Paint::Natural(mixed) } else { Paint::Tinted(mixed) };
-        }
-    }
-
-    /// Repaints the bark of a model, with what is kept where it is the same.
-    pub(super) fn paint(&self, model: &mut Model, kept: &mut KeptBarks) {
-        let known = core::mem::take(kept);
-        // A slender tree has no part with old bark: then its stem is among the young ones.
-        let old = model.materials.iter().any(|m| m.name == "bark");
-        for material in model.materials.iter_mut().filter(|m| m.kind == MaterialKind::Bark) {
-            let twig = old && material.name == "bark-young";
-            let colour = if twig { self.twig_color } else { self.bark_color };
-            self.repaint(material, colour, twig, &known, kept);
-        }
-        if let Some(foot) = self.foot_color {
-            let name = if old { "bark" } else { "bark-young" };
-            self.darken_foot(model, name, foot);
-        }
-    }
-
-    /// Vertex colours that turn the bark of one material into the foot's, from `foot_height` downwards.
-    fn darken_foot(&self, model: &mut Model, name: &str, foot: Colour) {
-        let bounds = model.bounds();
-        let height = (bounds.max.y * self.foot_height).max(f64::MIN_POSITIVE);
-        let patches = Lattice::new((16, 16), 41);
-        let (bark, foot) = (self.bark_color.linear(), foot.linear());
-        let ratio = [0, 1, 2].map(|i| (foot[i] / bark[i].max(1e-3)).clamp(0.0, 1.0));
-        let chosen: Vec<bool> = model.materials.iter().map(|m| m.name == name).collect();
-        for part in &mut model.parts {
-            if !chosen.get(part.material.index()).copied().unwrap_or(false) {
-                continue;
-            }
-            let mesh = &mut part.mesh;
-            mesh.colors.resize(mesh.positions.len(), [1.0; 3]);
-            for (p, color) in mesh.positions.iter().zip(&mut mesh.colors) {
-                let [x, y, z] = p.map(f64::from);
-                // Patches as large as the trunk is thick, so that the border is ragged.
-                let patch = patches.noise(0.37 * x + 0.11 * z + 0.5, 0.31 * y + 0.17 * z + 0.5);
-                let share = 1.0 - ops::smoothstep(0.25, 1.0, y / height + 0.22 * patch);
-                #[expect(clippy::cast_possible_truncation, reason = "a colour of the mesh")]
-                let shade = ratio.map(|r| ops::lerp(1.0, r, share) as f32);
-                *color = [0, 1, 2].map(|i| color[i] * shade[i]);
-            }
-        }
-    }
-
-    fn repaint(
-        &self,
-        material: &mut Material,
-        colour: Colour,
-        twig: bool,
-        known: &KeptBarks,
-        kept: &mut KeptBarks,
-    ) {
-        let Some(old) = &material.texture else {
-            #[expect(clippy::cast_possible_truncation, reason = "a colour")]
-            let plain = colour.linear().map(|x| x as f32);
-            material.base_color = plain;
-            return;
-        };
-        let from = Painted { bark: self.bark, colour, twig, old: Arc::clone(old) };
-        let texture = match known.0.iter().find(|(k, _)| k.same(&from)) {
-            Some((_, texture)) => Arc::clone(texture),
-            None => Arc::new(from.paint()),
-        };
-        kept.0.push((from, Arc::clone(&texture)));
-        material.texture = Some(texture);
-    }
+fn repaint(
+    look: &Look,
+    material: &mut Material,
+    colour: Colour,
+    twig: bool,
+    known: &KeptBarks,
+    kept: &mut KeptBarks,
+) {
+    let Some(old) = &material.texture else {
+        #[expect(clippy::cast_possible_truncation, reason = "a colour")]
+        let plain = colour.linear().map(|x| x as f32);
+        material.base_color = plain;
+        return;
+    };
+    let from = Painted { bark: look.bark, colour, twig, old: Arc::clone(old) };
+    let texture = match known.0.iter().find(|(k, _)| k.same(&from)) {
+        Some((_, texture)) => Arc::clone(texture),
+        None => Arc::new(from.paint()),
+    };
+    kept.0.push((from, Arc::clone(&texture)));
+    material.texture = Some(texture);
 }
 
 /// The bark of the last model: painting it takes longer than the meshes of a small tree. Changes no result.
@@ -404,13 +298,5 @@ mod tests {
         let old = Texture { width: 2, height: 1, pixels: vec![100, 100, 100, 255, 50, 50, 50, 255] };
         let new = recoloured(&old, colour, 1.0);
         assert_eq!((new.pixels[0], new.pixels[4]), (171, 85), "a third lighter, a third darker");
-    }
-
-    #[test]
-    fn colours_are_read_and_written() {
-        let look: Look = toml::from_str("bark = \"birch\"\nleaf_color = \"#10AB05\"").expect("sound");
-        assert_eq!((look.bark, look.leaf_color), (Bark::Birch, Colour([0x10, 0xab, 0x05])));
-        let error = toml::from_str::<Look>("leaf_color = \"green\"").expect_err("no colour").to_string();
-        assert!(error.contains("`green` is no colour"), "{error}");
     }
 }

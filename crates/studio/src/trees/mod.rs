@@ -4,9 +4,8 @@
 //!
 //! | file | owns |
 //! |---|---|
-//! | `spec` | [`TreeSpec`]: everything that a user may ask of a tree |
 //! | `evaluate` | a tree that changes: only what a change touches is made again |
-//! | `file`, `located` | TOML in, JSON Schema out; where in a text a fault is |
+//! | `file` | TOML in; where in a text a fault is |
 //! | `blade`, `blossom`, `look` | forms of leaves; flowers in their place; colours and bark |
 //! | `presets` | the species that come with the program |
 //! | `scenery` | obstacles in a picture |
@@ -18,39 +17,34 @@ mod blossom;
 mod compare;
 mod evaluate;
 mod file;
-mod located;
 mod lod;
 mod look;
 mod presets;
 mod scenery;
-mod spec;
 
 use base::{Cancelled, OverBudget, Report, Run, Seed, Stopped};
 use document::PlantEdit;
 use glam::DVec3;
-use growth::{Grown, GrowthError, Method, Obstacle, Obstacles};
+use growth::{Grown, GrowthError, Method, Obstacle, Obstacles, TreeSpec};
 use mesh::Model;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use skin::SkinSpec;
+use spec::SpecFault;
 
 use crate::report::ItemReport;
 use crate::template::LeafTemplate;
 
-pub use blade::{BladeForm, BladeSpec};
-pub use blossom::BlossomSpec;
+pub use blade::tree_blade;
 pub use compare::{
     GUIDED_METHODS, OAK_METHODS, PAPER_OAKS, PaperOak, TreeSize, guided_methods, scale_to_height, tree_size,
 };
 pub use evaluate::TreeEvaluator;
-pub(crate) use file::spec_from_json;
 pub use file::{NamedMesh, read_tree_spec, tree_schema};
 pub use lod::coarser;
 use lod::keep_out;
-pub use look::{Bark, Colour, Look};
 pub use presets::{PRESETS, Preset};
 pub use scenery::show_obstacles;
-pub use spec::TreeSpec;
 
 /// How a tree is meshed. Not saved with it.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -86,12 +80,15 @@ pub struct MadeTree {
 #[non_exhaustive]
 pub enum TreeError {
     /// The text of a spec is at fault.
-    #[error("line {line}: {message}")]
-    Spec {
+    #[error(transparent)]
+    Spec(#[from] SpecFault),
+    /// Growth cannot follow the spec; the line of its text is known.
+    #[error("line {line}: {error}")]
+    Line {
         /// From 1.
         line: usize,
         /// What is wrong.
-        message: String,
+        error: GrowthError,
     },
     /// A file that a spec names could not be had.
     #[error("the file \"{file}\" that it names cannot be read as what it is named for")]
@@ -271,6 +268,16 @@ fn look_at_meshes(obstacles: &[Obstacle], report: &mut Report) {
         }
     }
 }
+
+base::coded!(TreeError {
+    Self::Line { line, error } => "tree-line" { line, why = error },
+    Self::File { file } => "tree-file" { file },
+} wraps {
+    Self::Spec(e) => e, SpecFault;
+    Self::Growth(e) => e, GrowthError;
+    Self::Cancelled(e) => e, Cancelled;
+    Self::OverBudget(e) => e, OverBudget;
+});
 
 #[cfg(test)]
 mod tests;

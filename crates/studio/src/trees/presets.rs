@@ -1,6 +1,7 @@
 //! The species that come with the program.
 
-use super::{TreeError, TreeSpec, read_tree_spec};
+use growth::TreeSpec;
+use spec::SpecFault;
 
 /// A species, as TOML.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,8 +60,8 @@ impl Preset {
     /// Its spec.
     ///
     /// # Errors
-    /// [`TreeError::Spec`] if the file is at fault: our bug.
-    pub fn spec(&self) -> Result<TreeSpec, TreeError> {
-        read_tree_spec(self.toml, &|_| None)
+    /// [`SpecFault`] if the file is at fault: our bug.
+    pub fn spec(&self) -> Result<TreeSpec, SpecFault> {
+        spec::from_toml(self.toml)
     }
 }

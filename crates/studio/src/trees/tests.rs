@@ -25,7 +25,7 @@ fn every_preset_is_sound_and_has_its_words() {
         let spec = preset.spec().expect(preset.key);
         assert!(!spec.about.is_empty() && !spec.species.is_empty(), "{}", preset.key);
         assert!(names.insert(spec.name.clone()), "{} twice", spec.name);
-        assert_eq!(spec.growth().map(|g| g.name), Ok(spec.name.clone()));
+        assert_eq!(spec::check(&spec), Ok(()));
     }
     assert!(PRESETS.len() >= 12);
 }
@@ -157,7 +157,7 @@ fn only_what_a_change_touches_is_made_again() {
     assert_eq!(item.edits.iter().map(|e| e.index).collect::<Vec<_>>(), [1, 2]);
     options.edits.remove(1);
     step(&spec, 1, &options);
-    spec.look.bark = Bark::Smooth;
+    spec.look.bark = growth::Bark::Smooth;
     assert_eq!(step(&spec, 1, &options).0, "shape mesh");
     assert_eq!(step(&spec, 2, &options).0, "structure depth shape mesh");
     options.edits.clear();

@@ -1,13 +1,14 @@
 //! `table -> models` and how good they are: cross-validation by drawing, never by stroke.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use base::{Draw, Seed};
+use base::{Draw, Run, Seed};
 
 use super::features::StrokeFeatures;
 use super::model::StrokeModels;
 use super::svm::{ModelError, Scale, Svm};
-use crate::StrokeClass;
+use super::{Classified, KeptMeasures, judge};
+use crate::{Ink, StrokeClass};
 use libsvm::RbfLearner;
 pub(super) use libsvm::pack;
 pub use table::{StrokeRow, StrokeSource, read_stroke_table, write_stroke_table};
@@ -22,7 +23,7 @@ const CLOSED: RbfLearner = RbfLearner { cost: 10.0, gamma: 3.0 };
 /// Drawings are dealt into this many folds.
 const FOLDS: usize = 10;
 /// Classes with fewer clear strokes than this are not counted in the macro F1: chance would rule it.
-const FEW: usize = 20;
+pub const FEW_CLEAR: usize = 20;
 
 /// The models as text, as they are kept in the repository.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -102,7 +103,7 @@ fn train(rows: &[&StrokeRow]) -> Result<StrokeModelTexts, ModelError> {
     let values: Vec<Vec<f64>> = clear.iter().map(|r| r.features.values().to_vec()).collect();
     let scale = Scale::of(&values);
     let scaled: Vec<Vec<f64>> = values.iter().map(|v| scale.apply(v)).collect();
-    let labels: Vec<i32> = clear.iter().map(|r| number(r.label)).collect();
+    let labels: Vec<i32> = clear.iter().map(|r| r.label as i32).collect();
     Ok(StrokeModelTexts {
         scale: scale.to_text(&StrokeFeatures::NAMES),
         classes: CLASSES.learn(&scaled, &labels)?,
@@ -122,14 +123,6 @@ fn train_three(rows: &[&StrokeRow]) -> Result<Svm, ModelError> {
     Svm::parse(&CLOSED.learn(&values, &sides)?, 3)
 }
 
-fn number(class: StrokeClass) -> i32 {
-    StrokeClass::ALL.iter().zip(0..).find(|(c, _)| **c == class).map_or(0, |(_, k)| k)
-}
-
-fn place(class: StrokeClass) -> usize {
-    StrokeClass::ALL.iter().position(|c| *c == class).unwrap_or(0)
-}
-
 /// Deals the drawings into folds, kinds evenly, trains on nine tenths and measures on the rest, ten times.
 ///
 /// `seed` shuffles the dealing. Takes about a second.
@@ -137,20 +130,54 @@ fn place(class: StrokeClass) -> usize {
 /// # Errors
 /// [`ModelError`] where the table has too few rows.
 pub fn cross_validate_strokes(rows: &[StrokeRow], seed: Seed) -> Result<StrokeFigures, ModelError> {
-    let fold = deal(rows, seed);
     let mut found = vec![None; rows.len()];
-    for k in 0..FOLDS {
-        let training: Vec<&StrokeRow> =
-            rows.iter().zip(&fold).filter(|(_, f)| **f != k).map(|(r, _)| r).collect();
+    for (held, training) in folds(rows, seed) {
         let models = StrokeModels::parse(&train(&training)?)?;
         let paper = train_three(&training)?;
-        for (i, row) in rows.iter().enumerate().filter(|(i, _)| fold[*i] == k) {
+        for i in held {
+            let row = &rows[i];
             let is_closed =
                 paper.labels.iter().zip(paper.shares(&three(row))).any(|(&l, s)| l == 1 && s > 0.5);
             found[i] = Some((models.decide(&row.features).class, is_closed));
         }
     }
     Ok(figures(rows, &found))
+}
+
+/// A classifier that was trained without some drawings: for fair figures of what is made of its classes.
+#[derive(Clone, Debug)]
+pub struct HeldOut {
+    /// Keys of those drawings.
+    pub drawings: BTreeSet<String>,
+    models: StrokeModels,
+}
+
+impl HeldOut {
+    /// As [`classify`](crate::classify), by this classifier.
+    pub fn classify(&self, ink: &Ink, run: &Run<'_>) -> Vec<Classified> {
+        judge(Some(&self.models), ink, &[], &mut KeptMeasures::default(), run)
+    }
+}
+
+/// A classifier for each tenth of the drawings, dealt as for [`cross_validate_strokes`].
+///
+/// # Errors
+/// [`ModelError`] where the table has too few rows.
+pub fn held_out_strokes(rows: &[StrokeRow], seed: Seed) -> Result<Vec<HeldOut>, ModelError> {
+    let fold = |(held, training): (Vec<usize>, Vec<&StrokeRow>)| {
+        let drawings = held.into_iter().map(|i| rows[i].drawing.clone()).collect();
+        Ok(HeldOut { drawings, models: StrokeModels::parse(&train(&training)?)? })
+    };
+    folds(rows, seed).map(fold).collect()
+}
+
+/// For each fold the numbers of the rows that it holds out, and all the other rows.
+fn folds(rows: &[StrokeRow], seed: Seed) -> impl Iterator<Item = (Vec<usize>, Vec<&StrokeRow>)> {
+    let fold = deal(rows, seed);
+    (0..FOLDS).map(move |k| {
+        let held = (0..rows.len()).filter(|&i| fold[i] == k).collect();
+        (held, rows.iter().zip(&fold).filter(|(_, f)| **f != k).map(|(r, _)| r).collect())
+    })
 }
 
 /// The fold of every row: by drawing, kinds dealt evenly.
@@ -191,7 +218,7 @@ fn figures(rows: &[StrokeRow], found: &[Option<(StrokeClass, bool)>]) -> StrokeF
             }
             StrokeSource::Public => {}
         }
-        confusion[place(row.label)][place(class)] += 1;
+        confusion[row.label.place()][class.place()] += 1;
         if let Some(side) = closed(row.label) {
             pairs += 1;
             same += u32::from(closed(class) == Some(side));
@@ -203,7 +230,7 @@ fn figures(rows: &[StrokeRow], found: &[Option<(StrokeClass, bool)>]) -> StrokeF
     for (k, slot) in f1.iter_mut().enumerate() {
         let labelled: u32 = confusion[k].iter().sum();
         let taken: u32 = confusion.iter().map(|r| r[k]).sum();
-        if labelled as usize >= FEW {
+        if labelled as usize >= FEW_CLEAR {
             *slot = Some(2.0 * f64::from(confusion[k][k]) / f64::from(labelled + taken));
         }
     }

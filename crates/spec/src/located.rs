@@ -12,54 +12,64 @@ use toml::de::{DeTable, DeValue};
 
 /// A value and the byte of the text where it starts; 0 where there is no text.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Node {
+pub struct Node {
     /// What is there.
-    pub(super) kind: Kind,
+    pub kind: Kind,
     /// Byte of the text.
-    pub(super) at: usize,
+    pub at: usize,
 }
 
 /// What a node holds.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Kind {
+pub enum Kind {
+    /// JSON's `null`.
     Nothing,
+    /// `true` or `false`.
     Truth(bool),
+    /// A whole number.
     Whole(i64),
     /// Above the largest `i64`.
     Large(u64),
+    /// Any other number.
     Number(f64),
+    /// A text.
     Text(String),
+    /// Rows.
     List(Vec<Node>),
+    /// Fields with their names, in the order of the text.
     Table(Vec<Entry>),
 }
 
 /// A row of a table.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Entry {
+pub struct Entry {
     /// Its name.
-    pub(super) key: String,
+    pub key: String,
     /// Byte of the text where the name starts.
-    pub(super) at: usize,
+    pub at: usize,
     /// Its value.
-    pub(super) node: Node,
+    pub node: Node,
 }
 
 /// What is wrong, and the byte of the text where.
 #[derive(Debug)]
-pub(super) struct Fault {
+pub struct TextFault {
+    /// Names and rows that lead to it: `method.tropisms[1]`; empty for the whole.
+    pub path: String,
     /// In words.
-    pub(super) message: String,
+    pub message: String,
     /// Byte of the text.
-    pub(super) at: usize,
+    pub at: usize,
 }
 
 impl Node {
     /// Of a TOML file. Depth is bounded by TOML's own reader.
     ///
     /// # Errors
-    /// [`Fault`] for what is no TOML, for dates, and for numbers that have no room.
-    pub(super) fn from_toml(text: &str) -> Result<Self, Fault> {
-        let parsed = DeTable::parse(text).map_err(|e| Fault {
+    /// [`TextFault`] for what is no TOML, for dates, and for numbers that have no room.
+    pub fn from_toml(text: &str) -> Result<Self, TextFault> {
+        let parsed = DeTable::parse(text).map_err(|e| TextFault {
+            path: String::new(),
             message: e.message().lines().next().unwrap_or_default().trim().to_owned(),
             at: e.span().map_or(0, |s| s.start),
         })?;
@@ -68,7 +78,7 @@ impl Node {
     }
 
     /// Of a JSON value.
-    pub(super) fn from_json(value: &serde_json::Value) -> Self {
+    pub fn from_json(value: &serde_json::Value) -> Self {
         let kind = match value {
             serde_json::Value::Null => Kind::Nothing,
             serde_json::Value::Bool(truth) => Kind::Truth(*truth),
@@ -91,9 +101,9 @@ impl Node {
         Self { kind, at: 0 }
     }
 
-    fn of_toml(value: &toml::Spanned<DeValue<'_>>) -> Result<Self, Fault> {
+    fn of_toml(value: &toml::Spanned<DeValue<'_>>) -> Result<Self, TextFault> {
         let at = value.span().start;
-        let fault = |message: &str| Fault { message: message.to_owned(), at };
+        let fault = |message: &str| TextFault { path: String::new(), message: message.to_owned(), at };
         let kind = match value.get_ref() {
             DeValue::String(text) => Kind::Text(text.to_string()),
             DeValue::Integer(n) => match i64::from_str_radix(n.as_str(), n.radix()) {
@@ -118,15 +128,14 @@ impl Node {
     /// Reads what the tree describes.
     ///
     /// # Errors
-    /// [`Fault`] with the names of the fields that lead to it. Serde's own readers forget where they are inside of
+    /// [`TextFault`] with the names of the fields that lead to it. Serde's own readers forget where they are inside of
     /// tables that say by a tag what they are, so the place is searched for: by reading again without parts of the tree.
-    pub(super) fn read<T: DeserializeOwned>(&self) -> Result<T, Fault> {
+    pub fn read<T: DeserializeOwned>(&self) -> Result<T, TextFault> {
         T::deserialize(Reader { node: self }).map_err(|e| {
             let message = e.to_string();
             let says = |tree: &Self| T::deserialize(Reader { node: tree }).err().map(|e| e.to_string());
             let (path, at) = self.culprit(&message, &says);
-            let message = base::brief(&if path.is_empty() { message } else { format!("{path}: {message}") });
-            Fault { message, at }
+            TextFault { path, message: base::brief(&message), at }
         })
     }
 
@@ -170,6 +179,10 @@ impl Node {
                         return (path, entry.at);
                     }
                     (path, at) = (joined(&path, &entry.key), entry.node.at);
+                }
+                // A list that is too short or too long is at fault itself, not a number of it.
+                Kind::List(nodes) if message.starts_with("invalid length") && nodes[without].parts() == 0 => {
+                    return (path, at);
                 }
                 Kind::List(nodes) => {
                     path += &format!("[{without}]");
@@ -230,13 +243,24 @@ impl Node {
     }
 
     /// The rows of a table; none of anything else.
-    pub(super) fn entries(&self) -> &[Entry] {
+    pub fn entries(&self) -> &[Entry] {
         if let Kind::Table(entries) = &self.kind { entries } else { &[] }
     }
 
     /// The value of a field of a table.
-    pub(super) fn field(&self, name: &str) -> Option<&Self> {
+    pub fn field(&self, name: &str) -> Option<&Self> {
         self.entries().iter().find(|e| e.key == name).map(|e| &e.node)
+    }
+
+    /// The node that a path such as `method.tropisms[1].strength` leads to.
+    pub fn at_path(&self, path: &str) -> Option<&Self> {
+        path.split(['.', '[']).filter(|step| !step.is_empty()).try_fold(self, |node, step| {
+            match (&node.kind, step.strip_suffix(']')) {
+                (Kind::List(all), Some(row)) => all.get(row.parse::<usize>().ok()?),
+                (_, None) => node.field(step),
+                _ => None,
+            }
+        })
     }
 
     /// With the first `m` parts only, and with tags.
@@ -279,7 +303,7 @@ impl Kind {
         }
     }
 
-    fn of_table(table: &DeTable<'_>) -> Result<Self, Fault> {
+    fn of_table(table: &DeTable<'_>) -> Result<Self, TextFault> {
         let entry = |(key, value): (&toml::Spanned<toml::de::DeString<'_>>, _)| {
             let (at, key) = (key.span().start, key.get_ref().to_string());
             Node::of_toml(value).map(|node| Entry { key, at, node })

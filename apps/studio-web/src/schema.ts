@@ -1,0 +1,42 @@
+/** JSON Schemas as the core writes them, and the names of their texts. */
+import type { Json } from './protocol';
+
+export interface Schema {
+  $ref?: string;
+  $defs?: Record<string, Schema>;
+  type?: string | string[];
+  description?: string;
+  default?: Json;
+  minimum?: number;
+  maximum?: number;
+  'x-unit'?: string;
+  /** Set by `named`: what the description is called in tables of texts. */
+  'x-help'?: string;
+  enum?: Json[];
+  const?: Json;
+  oneOf?: Schema[];
+  anyOf?: Schema[];
+  properties?: Record<string, Schema>;
+  required?: string[];
+  items?: Schema | boolean;
+}
+
+/** The word of one of several forms: what its tag, or it itself, is. */
+function formOf(s: Schema): string {
+  const tag = Object.values(s.properties ?? {}).find((p) => p.const !== undefined);
+  return String(s.const ?? tag?.const ?? s.enum?.join('-') ?? '');
+}
+
+/**
+ * Names the text of every part of a schema by where it stands: `tree.clearance_m`, and for what is defined once and used
+ * in several places `tree.CompetitionSpec.kill_m`, `tree.Envelope.sphere.radius_m`, `tree.Bark.birch`.
+ */
+export function named(schema: Schema, path: string, root = path): Schema {
+  if (schema.description !== undefined) schema['x-help'] = path;
+  for (const [name, field] of Object.entries(schema.properties ?? {})) named(field, `${path}.${name}`, root);
+  for (const [name, part] of Object.entries(schema.$defs ?? {})) named(part, `${root}.${name}`, root);
+  for (const form of schema.oneOf ?? []) named(form, `${path}.${formOf(form)}`, root);
+  for (const form of schema.anyOf ?? []) named(form, path, root);
+  if (typeof schema.items === 'object') named(schema.items, `${path}.items`, root);
+  return schema;
+}

@@ -1,0 +1,26 @@
+import { describe, expect, it } from 'vitest';
+import { CODES } from '../wire';
+import { setLanguage, tell } from './index';
+import { zhErrors } from './zh-errors';
+
+const placeholders = (text: string): string[] => [...text.matchAll(/\{(\w+)\}/g)].map((m) => m[1]!);
+
+describe('refusals', () => {
+  it('have a Chinese text for each code, with fields that the core gives', () => {
+    expect(Object.keys(zhErrors).sort()).toEqual(Object.keys(CODES).sort());
+    for (const [code, fields] of Object.entries(CODES)) {
+      const text = zhErrors[code as keyof typeof CODES];
+      expect(text, code).toMatch(/[\u4e00-\u9fff]/);
+      expect(fields, code).toEqual(expect.arrayContaining(placeholders(text)));
+    }
+  });
+
+  it('are told in the language of the page, else in English', () => {
+    const refusal = { code: 'full', fields: { what: 'plants' }, message: 'the document is full' };
+    expect(tell(refusal)).toBe('the document is full');
+    setLanguage('zh');
+    expect(tell(refusal)).toBe('文档里的植物已满，请新建一个');
+    expect(tell({ ...refusal, code: 'new' })).toBe('the document is full');
+    setLanguage('en');
+  });
+});

@@ -1,0 +1,108 @@
+//! Organs of a flower at one day -> a plant: sheets and strands where the flower sits.
+
+use std::sync::Arc;
+
+use base::Seed;
+use glam::{DQuat, DVec3};
+use plant::{FlowerId, Frame, NodeId, Organ, OrganKind, Paint, Plant, Shape, Sheet, Venation};
+
+/// Where a flower sits: its own origin and its axis +y are brought there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seat {
+    /// The foot of its stalk, or of the flower where it has none; metres.
+    pub centre: DVec3,
+    /// From the flower's own axes to the plant's.
+    pub turn: DQuat,
+    /// The node that bears it.
+    pub bearer: Option<NodeId>,
+}
+
+impl Default for Seat {
+    /// On the ground, upright.
+    fn default() -> Self {
+        Self { centre: DVec3::ZERO, turn: DQuat::IDENTITY, bearer: None }
+    }
+}
+
+impl Seat {
+    pub(crate) fn at(&self, p: DVec3) -> DVec3 {
+        self.centre + self.turn * p
+    }
+}
+
+/// One flower that gets its organs.
+pub(crate) struct Bed<'a> {
+    pub plant: &'a mut Plant,
+    pub flower: FlowerId,
+    pub bearer: Option<NodeId>,
+    /// Its place and turn in the plant.
+    pub place: (DVec3, DQuat),
+    /// What keys of its organs come from.
+    pub seed: Seed,
+}
+
+/// A grid of points in the flower's own coordinates.
+pub(crate) struct Grid {
+    pub points: Vec<DVec3>,
+    pub across: Vec<f64>,
+    pub along: Vec<f64>,
+    pub colors: Vec<[f32; 3]>,
+}
+
+impl Bed<'_> {
+    pub(crate) fn at(&self, p: DVec3) -> DVec3 {
+        self.place.0 + self.place.1 * p
+    }
+
+    fn push(&mut self, kind: OrganKind, shape: Shape, frame: Frame, rgb: [f32; 3]) {
+        let shape = self.plant.add_shape(shape);
+        // Organs of a flower come in one order at every day.
+        let key = self.seed.child(self.plant.organs.len() as u64).number();
+        let (bearer, flower, paint) = (self.bearer, Some(self.flower), Paint::Tinted(rgb));
+        let organ = Organ { kind, bearer, flower, shape, frame, scale: 1.0, paint, key, source: None };
+        self.plant.organs.push(organ);
+    }
+
+    /// A petal: root in the first row, tip in the last.
+    pub(crate) fn petal(&mut self, kind: OrganKind, grid: Grid) {
+        let points = grid.points.iter().map(|&p| self.at(p)).collect();
+        let Grid { across, along, colors, .. } = grid;
+        let sheet = Sheet { points, across, along, colors, veins: Venation::default() };
+        if let Some((sheet, frame)) = sheet.framed() {
+            self.push(kind, Shape::Sheet(Arc::new(sheet)), frame, [1.0; 3]);
+        }
+    }
+
+    /// What lies around the flower's axis, in a frame that looks along it from `foot`.
+    pub(crate) fn around(&mut self, kind: OrganKind, foot: DVec3, grid: Grid) {
+        let points = grid.points.iter().map(|&p| p - foot);
+        // Local z is the flower's y.
+        let points = points.map(|p| DVec3::new(p.z, p.x, p.y)).collect();
+        let Grid { across, along, colors, .. } = grid;
+        let sheet = Sheet { points, across, along, colors, veins: Venation::default() };
+        let [right, up, normal] = [DVec3::Z, DVec3::X, DVec3::Y].map(|d| self.place.1 * d);
+        let frame = Frame { origin: self.at(foot), right, along: up, normal };
+        self.push(kind, Shape::Sheet(Arc::new(sheet)), frame, [1.0; 3]);
+    }
+
+    /// A body around the flower's axis: `(radius, height)` from below upwards.
+    pub(crate) fn turned(&mut self, kind: OrganKind, profile: &[[f64; 2]]) {
+        let [right, along, normal] = [DVec3::X, DVec3::Y, DVec3::Z].map(|d| self.place.1 * d);
+        let frame = Frame { origin: self.place.0, right, along, normal };
+        let profile = profile.iter().map(|&p| p.into()).collect();
+        let shape = self.plant.add_shape(Shape::Revolution { profile });
+        let key = self.seed.child(self.plant.organs.len() as u64).number();
+        let (bearer, flower, paint) = (self.bearer, Some(self.flower), Paint::default());
+        let organ = Organ { kind, bearer, flower, shape, frame, scale: 1.0, paint, key, source: None };
+        self.plant.organs.push(organ);
+    }
+
+    /// A strand through points of the flower's own coordinates, root first.
+    pub(crate) fn strand(&mut self, kind: OrganKind, line: &[DVec3], radii: &[f64], rgb: [f32; 3]) {
+        let line: Vec<DVec3> = line.iter().map(|&p| self.at(p)).collect();
+        let (Some(&root), Some(&end)) = (line.first(), line.last()) else { return };
+        let frame = Frame::looking(root, end - root, DVec3::Z);
+        let path = line.iter().map(|&p| frame.localise(p)).collect();
+        self.push(kind, Shape::Strand { path, radius_m: radii.to_vec(), knob_m: 0.0 }, frame, rgb);
+    }
+}

@@ -1,0 +1,166 @@
+//! What a tree looks like: the form of its leaves, its flowers, its colours and bark.
+//!
+//! Only what is asked for: who meshes and paints a tree makes something of it. Growth itself reads none of it.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use spec::Colour;
+
+/// A botanical form.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum BladeForm {
+    /// Broadest below the middle, drawn-out tip: pear, birch, poplar.
+    #[default]
+    Ovate,
+    /// Broadest in the middle: beech.
+    Elliptic,
+    /// Broadest above the middle: Terminalia, magnolia.
+    Obovate,
+    /// Narrow: willow, olive, bamboo.
+    Lanceolate,
+    /// Heart-shaped: lime.
+    Cordate,
+    /// Nearly a triangle on a broad base: poplar, birch.
+    Deltoid,
+    /// Round lobes on both sides: oak.
+    Lobed,
+    /// Five pointed lobes from one place: maple, plane.
+    Palmate,
+    /// Leaflets in pairs along a midrib: ash, walnut, rowan.
+    Pinnate,
+    /// A long narrow leaflet: palm, grass.
+    Leaflet,
+    /// One needle.
+    Needle,
+    /// A bundle of needles that spread from one place: pine, larch.
+    Tuft,
+    /// A short shoot with needles on both sides: fir, spruce, yew.
+    Spray,
+}
+
+/// A leaf's form.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct BladeSpec {
+    /// The form, default ovate. A `file` goes before it.
+    pub form: BladeForm,
+    /// A leaf of your own instead of the form: marks (.csv), a vein graph (.json) or a model of one leaf (.glb, .obj,
+    /// .ply, .stl), relative to the spec. Default none.
+    pub file: Option<String>,
+    /// Width relative to the form's usual, 0.1 to 4; default 1.
+    #[schemars(range(min = 0.1, max = 4.0))]
+    pub width: Option<f64>,
+    /// How far the tip bends down, as a share of the length, -1 to 1; default the form's.
+    #[schemars(range(min = -1.0, max = 1.0))]
+    pub bend: Option<f64>,
+    /// Slope of the halves along the midrib, -1 to 2; default the form's.
+    #[schemars(range(min = -1.0, max = 2.0))]
+    pub fold: Option<f64>,
+}
+
+impl BladeForm {
+    /// Every form.
+    pub const ALL: [Self; 13] = [
+        Self::Ovate,
+        Self::Elliptic,
+        Self::Obovate,
+        Self::Lanceolate,
+        Self::Cordate,
+        Self::Deltoid,
+        Self::Lobed,
+        Self::Palmate,
+        Self::Pinnate,
+        Self::Leaflet,
+        Self::Needle,
+        Self::Tuft,
+        Self::Spray,
+    ];
+}
+
+/// What flowers a tree bears where leaves would stand.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct BlossomSpec {
+    /// Share of the leaves' places that bear a flower instead, 0 to 1, default 0: no flowers.
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub share: f64,
+    /// Petals of a flower's whorl, 3 to 12, default 5.
+    #[schemars(range(min = 3, max = 12))]
+    pub petals: u32,
+    /// Whorls of petals, one within the other, 1 to 6, default 1; 3 and more make a double flower such as a rose's.
+    #[schemars(range(min = 1, max = 6))]
+    pub whorls: u32,
+    /// Across an open flower, metres, default 0.035.
+    #[schemars(range(min = 0.001, max = 1.0), extend("x-unit" = "m"))]
+    pub diameter_m: f64,
+    /// Colour of petals, default a white.
+    pub color: Colour,
+    /// Colour towards which single flowers vary; default none.
+    pub color_to: Option<Colour>,
+}
+
+impl Default for BlossomSpec {
+    fn default() -> Self {
+        let color = Colour([0xf8, 0xf2, 0xf0]);
+        Self { share: 0.0, petals: 5, whorls: 1, diameter_m: 0.035, color, color_to: None }
+    }
+}
+
+/// What the bark is like.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Bark {
+    /// Ridges and furrows along the trunk: oak, poplar, willow.
+    #[default]
+    Furrowed,
+    /// Without plates: beech, young trees, shrubs.
+    Smooth,
+    /// Large flakes with dark cracks: pine, plane.
+    Plated,
+    /// White paper with dark stripes across: birch.
+    Birch,
+    /// Rings that fallen leaves have left: palm.
+    Ringed,
+    /// Smooth and jointed: bamboo.
+    Cane,
+}
+
+/// Colours and bark. All colours are sRGB.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Look {
+    /// What the bark is like.
+    pub bark: Bark,
+    /// Mean colour of the bark of trunk and branches.
+    pub bark_color: Colour,
+    /// Colour of the bark at the foot of the trunk, old and rough, not lighter than `bark_color`; default the same.
+    pub foot_color: Option<Colour>,
+    /// Share of the tree's height up to which the foot's colour reaches, 0.01 to 1, default 0.2.
+    #[schemars(range(min = 0.01, max = 1.0))]
+    pub foot_height: f64,
+    /// Mean colour of the bark of twigs.
+    pub twig_color: Colour,
+    /// Colour of leaves.
+    pub leaf_color: Colour,
+    /// Colour towards which single leaves vary (autumn, young growth); default that of leaves.
+    pub leaf_color_to: Option<Colour>,
+    /// How far they vary, 0 to 1, default 0.5.
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub leaf_variation: f64,
+}
+
+impl Default for Look {
+    fn default() -> Self {
+        Self {
+            bark: Bark::default(),
+            bark_color: Colour([0x6e, 0x62, 0x54]),
+            foot_color: None,
+            foot_height: 0.2,
+            twig_color: Colour([0x6a, 0x58, 0x44]),
+            leaf_color: Colour([0x56, 0x7d, 0x2f]),
+            leaf_color_to: None,
+            leaf_variation: 0.5,
+        }
+    }
+}

@@ -1,0 +1,198 @@
+//! What a user asks of a tree: a TOML file, or the panels of the Studio.
+
+use base::{Budget, Counted};
+use glam::DVec3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    BladeSpec, BlossomSpec, ColonizeSpec, CompetitionSpec, Envelope, GrowthError, GuidedSpec, LeafSpec,
+    Light, Look, Obstacle, SelfOrganizingSpec, WoodSpec,
+};
+
+/// How a tree grows.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+#[non_exhaustive]
+pub enum Method {
+    /// Space colonisation (Runions 2007).
+    Colonization {
+        /// The space of the crown, relative to the root.
+        envelope: Envelope,
+        /// Attraction points for each tree, 1 to 10 million.
+        #[schemars(range(min = 1, max = 10_000_000))]
+        points: u32,
+        /// Share of the envelope left empty inside, 0 to 0.99.
+        #[serde(default)]
+        #[schemars(range(min = 0.0, max = 0.99))]
+        hollow: f64,
+        /// Distances and pulls.
+        #[serde(default)]
+        steps: ColonizeSpec,
+    },
+    /// Space colonisation of points that are given instead of scattered.
+    Points {
+        /// Attraction points, metres; not relative to a root.
+        #[schemars(with = "Vec<[f64; 3]>", extend("x-unit" = "m"))]
+        points: Vec<DVec3>,
+        /// Distances and pulls.
+        #[serde(default)]
+        steps: ColonizeSpec,
+    },
+    /// Competition for space in life cycles (paper 001).
+    Competition(CompetitionSpec),
+    /// Buds that compete for light (Palubicki 2009).
+    SelfOrganizing(SelfOrganizingSpec),
+    /// Buds with markers of their own that keep away from others' and follow strokes of a brush (paper 002).
+    Guided(GuidedSpec),
+    /// Rules (Prusinkiewicz and Lindenmayer 1990). Obstacles cut off what grows into them.
+    Lsystem {
+        /// The text that [`Lsystem::parse`] reads.
+        rules: String,
+        /// Most modules of all trees, 1 to 100 million.
+        #[schemars(range(min = 1, max = 100_000_000))]
+        most_modules: u32,
+    },
+}
+
+/// A kind of tree, where it stands and how it looks. Metres, degrees, +Y up; saved as TOML.
+///
+/// Every number's unit (`x-unit`), range and default are in its JSON Schema ([`spec::Spec::schema`]).
+///
+/// ```
+/// let spec: growth::TreeSpec = spec::from_toml("name = \"bush\"\n[method]\nkind = \"competition\"\npoints = 300")?;
+/// assert_eq!((spec.name.as_str(), spec.roots.len(), spec.bare), ("bush", 1, false));
+/// # Ok::<(), spec::SpecFault>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct TreeSpec {
+    /// For files and reports.
+    pub name: String,
+    /// Scientific name; may be empty.
+    pub species: String,
+    /// One line about it.
+    pub about: String,
+    /// Where trees of this kind stand, metres; they compete. Default one at the origin.
+    #[schemars(with = "Vec<[f64; 3]>", extend("x-unit" = "m"))]
+    pub roots: Vec<DVec3>,
+    /// What they grow around; meshes may be named by `file`, in metres, +Y up. Default nothing.
+    pub obstacles: Vec<Obstacle>,
+    /// Distance that bark keeps from obstacles where there is room, metres, 0 to 1e6, default 0.05; leaves may touch.
+    #[schemars(range(min = 0.0, max = 1e6), extend("x-unit" = "m"))]
+    pub clearance_m: f64,
+    /// The trees as they were after so many rounds, years (self-organising) or rewriting steps (L-systems); default
+    /// none: to the end.
+    pub age: Option<u32>,
+    /// How they grow.
+    pub method: Method,
+    /// How skeletons become wood.
+    pub wood: WoodSpec,
+    /// How leaves stand, and how many fall.
+    pub leaves: LeafSpec,
+    /// No leaves at all: a dead or winter tree. Default false.
+    pub bare: bool,
+    /// The form of a leaf.
+    pub blade: BladeSpec,
+    /// Flowers in the place of some leaves. Default none.
+    pub blossom: BlossomSpec,
+    /// Colours and bark.
+    pub look: Look,
+}
+
+spec::schemas!(TreeSpec);
+
+impl Default for TreeSpec {
+    fn default() -> Self {
+        Self {
+            name: "tree".into(),
+            species: String::new(),
+            about: String::new(),
+            roots: vec![DVec3::ZERO],
+            obstacles: Vec::new(),
+            clearance_m: 0.05,
+            age: None,
+            method: Method::Competition(CompetitionSpec::default()),
+            wood: WoodSpec::default(),
+            leaves: LeafSpec::default(),
+            bare: false,
+            blade: BladeSpec::default(),
+            blossom: BlossomSpec::default(),
+            look: Look::default(),
+        }
+    }
+}
+
+impl TreeSpec {
+    /// Whether both grow to the same wood and leaves: notes, colours, flowers and the form of a blade may differ.
+    pub fn grows_like(&self, other: &Self) -> bool {
+        // Written out, so that a new field is thought of here.
+        let Self {
+            name,
+            species: _,
+            about: _,
+            roots,
+            obstacles,
+            clearance_m,
+            age,
+            method,
+            wood,
+            leaves,
+            bare,
+            blade: _,
+            blossom: _,
+            look: _,
+        } = self;
+        (name, clearance_m, age, bare) == (&other.name, &other.clearance_m, &other.age, &other.bare)
+            && (roots, obstacles, method) == (&other.roots, &other.obstacles, &other.method)
+            && (wood, leaves) == (&other.wood, &other.leaves)
+    }
+
+    /// Fails if a number is out of its range, or if meshes, point clouds and roots are more than the budget allows.
+    /// [`crate::grow`] asks first; ask yourself before you prepare parts of it.
+    ///
+    /// # Errors
+    /// [`GrowthError::Range`], [`GrowthError::OverBudget`].
+    pub fn check(&self, budget: &Budget) -> Result<(), GrowthError> {
+        spec::check(self)?;
+        budget.check(Counted::Roots, self.roots.len() as u64, "give fewer roots")?;
+        let of_obstacles = self.obstacles.iter().map(|o| match o {
+            Obstacle::Mesh { triangles, .. } => triangles.len(),
+            _ => 0,
+        });
+        let envelopes = match &self.method {
+            Method::Colonization { envelope, .. } => [Some(envelope), None],
+            Method::Competition(s) => [Some(&s.envelope), s.first_envelope.as_ref()],
+            Method::Guided(s) => [s.envelope.as_ref(), None],
+            Method::SelfOrganizing(SelfOrganizingSpec { light: Light::Space { envelope, .. }, .. }) => {
+                [Some(envelope), None]
+            }
+            _ => [None, None],
+        };
+        let (mut triangles, mut points) = (of_obstacles.sum::<usize>(), 0);
+        for envelope in envelopes.into_iter().flatten() {
+            match envelope {
+                Envelope::Mesh { triangles: own, .. } => triangles += own.len(),
+                Envelope::Points { points: own, .. } => points += own.len(),
+                _ => {}
+            }
+        }
+        budget.check(
+            Counted::Obstacles,
+            triangles as u64,
+            "simplify the meshes of obstacles and envelopes",
+        )?;
+        for obstacle in &self.obstacles {
+            if let Obstacle::Mesh { vertices, triangles } = obstacle {
+                let slivers = crate::solid::slivers(vertices, triangles);
+                budget.check_estimate(
+                    Counted::Slivers,
+                    slivers,
+                    "remesh the obstacle into even triangles",
+                )?;
+            }
+        }
+        budget.check(Counted::Points, points as u64, "thin out envelope.points")?;
+        Ok(())
+    }
+}

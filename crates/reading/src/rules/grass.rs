@@ -1,0 +1,139 @@
+//! Rules about grass and scribbles: lines that carry nothing.
+
+use geom::crossing_points;
+use glam::DVec2;
+use ink::StrokeClass;
+
+use super::{Findings, STRAIGHT, any, openness, unsure};
+use crate::corolla::{dips, winding};
+use crate::draft::Draft;
+use crate::near::bounds;
+
+/// A tangle is known by its first so many crossings.
+const MOST_CROSSINGS: usize = 500;
+/// A tangle crosses itself more often than this.
+const TANGLED: usize = 8;
+/// Crossings of petals lie nearer to the middle than this share of the stroke's diagonal.
+const MIDDLE: f64 = 0.12;
+/// A row of grass goes down at least this often.
+const FEWEST_DIPS: usize = 5;
+/// A row turns about its middle by less than this, radians; petals go round.
+const AROUND: f64 = 4.5;
+/// Lines that are grass at least.
+const FEWEST_STALKS: usize = 4;
+/// A blade of grass is no longer than its chord by more than this share.
+const BARE: f64 = 0.85;
+
+/// A line that crosses itself again and again all over the place is a scribble, not petals: those cross in the middle.
+pub(super) fn tangles(draft: &Draft<'_>) -> Findings {
+    use StrokeClass::{Axis, Disc, Pot};
+    let mut found = Findings::default();
+    if any(draft, &[Axis, Disc, Pot]) {
+        return found;
+    }
+    for k in draft.of_class(StrokeClass::Corolla) {
+        let points = &draft.ink.strokes[k].points;
+        let Some((lo, hi)) = bounds(points).filter(|_| unsure(draft, k)) else { continue };
+        let middle = lo.midpoint(hi);
+        let crossings = crossing_points(points, MOST_CROSSINGS);
+        let wide = crossings.iter().filter(|p| p.distance(middle) > MIDDLE * lo.distance(hi)).count();
+        if crossings.len() > TANGLED && 2 * wide > crossings.len() {
+            found.set(k, StrokeClass::Scribble);
+        }
+    }
+    found
+}
+
+/// A stroke that goes up and down and on to the side is a row of grass blades, where no trunk needs a crown.
+pub(super) fn zigzags(draft: &Draft<'_>) -> Findings {
+    use StrokeClass::{Axis, Crown, Other, Scribble, TrunkOutline};
+    let mut found = Findings::default();
+    let zigzag = |k: usize| {
+        let s = &draft.ink.strokes[k];
+        let Some((lo, hi)) = bounds(&s.points) else { return false };
+        let heights: Vec<f64> = s.points.iter().map(|p| p.y - lo.y).collect();
+        let on = (s.points[s.points.len() - 1].x - s.points[0].x).abs() > 0.6 * (hi.x - lo.x);
+        let cuts = dips(&heights, 0.3 * (hi.y - lo.y)).len();
+        on && cuts >= FEWEST_DIPS && winding(&s.points, lo.midpoint(hi)) < AROUND
+    };
+    let rows: Vec<usize> = (0..draft.class.len())
+        .filter(|&k| {
+            unsure(draft, k) && [Axis, Crown, Other, Scribble, TrunkOutline].contains(&draft.class[k])
+        })
+        .filter(|&k| zigzag(k))
+        .collect();
+    // A line that lies beside the row goes on with it; an outline that stands is a plant of another kind.
+    let (lying, standing): (Vec<usize>, Vec<usize>) =
+        draft.of_class(TrunkOutline).into_iter().filter(|k| !rows.contains(k)).partition(|&k| {
+            let s = &draft.ink.strokes[k];
+            let wide = bounds(&s.points).is_some_and(|(lo, hi)| hi.y - lo.y < 0.5 * (hi.x - lo.x));
+            wide && openness(s) > 0.5 && unsure(draft, k)
+        });
+    if standing.is_empty() && !rows.is_empty() {
+        rows.into_iter().for_each(|k| found.set(k, StrokeClass::Corolla));
+        lying.into_iter().for_each(|k| found.set(k, StrokeClass::Ground));
+    }
+    found
+}
+
+/// Blades of grass drawn in one go, down to the root and up again: a crown or fruit has no sharp point below from which
+/// two bare lines rise.
+pub(super) fn tufts(draft: &Draft<'_>) -> Findings {
+    use StrokeClass::{Axis, Blade, Corolla, Crown, Disc, Fruit, Other, Pot, TrunkOutline};
+    let mut found = Findings::default();
+    if draft.trunk || any(draft, &[Blade, Corolla, Disc, Pot]) {
+        return found;
+    }
+    for k in 0..draft.class.len() {
+        if !unsure(draft, k) || ![Crown, Fruit, Other, TrunkOutline].contains(&draft.class[k]) {
+            continue;
+        }
+        if let Some(legs) = two_legs(&draft.ink.strokes[k].points) {
+            found.set(k, Axis);
+            found.legs.push((k, legs));
+        }
+    }
+    found
+}
+
+/// Both sides of a line with one sharp turn at its lowest point, each almost straight, apart above.
+fn two_legs(points: &[DVec2]) -> Option<[Vec<DVec2>; 2]> {
+    let (lo, hi) = bounds(points)?;
+    let low = (0..points.len()).min_by(|&a, &b| points[a].y.total_cmp(&points[b].y))?;
+    let (left, right) = (&points[..=low], &points[low..]);
+    let bare = |leg: &[DVec2]| {
+        let run = leg[0].distance(leg[leg.len() - 1]);
+        run > BARE * geom::polyline_length(leg) && run > 0.25 * lo.distance(hi)
+    };
+    let (a, b) = (points[0] - points[low], points[points.len() - 1] - points[low]);
+    // Sharp at the turn itself, too: a trough is no root.
+    let far = |p: &&DVec2| p.distance(points[low]) > 0.06 * lo.distance(hi);
+    let turn = left.iter().rev().find(far).zip(right.iter().find(far));
+    let turn = turn.map(|(u, v)| (*u - points[low], *v - points[low]));
+    let sharp = turn.is_some_and(|(u, v)| u.dot(v) > -0.4 * u.length() * v.length());
+    let apart = (a - b).length() > 0.15 * a.length().min(b.length());
+    (bare(left) && bare(right) && sharp && apart).then(|| [left.to_vec(), right.to_vec()])
+}
+
+/// Several single lines and nothing that a trunk could carry: stalks of grass, not sides of trunks.
+pub(super) fn grass(draft: &Draft<'_>) -> Findings {
+    use StrokeClass::{Axis, Blade, Corolla, Crown, Disc, Fruit, Scribble, TrunkOutline};
+    let mut found = Findings::default();
+    if draft.trunk || any(draft, &[Crown, Corolla, Blade, Disc, Scribble]) {
+        return found;
+    }
+    let line = |k: usize| {
+        [Axis, TrunkOutline, Fruit].contains(&draft.class[k]) && openness(&draft.ink.strokes[k]) > STRAIGHT
+    };
+    let lines: Vec<usize> = (0..draft.class.len()).filter(|&k| line(k)).collect();
+    let outlines = (0..draft.class.len())
+        .any(|k| draft.class[k] == TrunkOutline && openness(&draft.ink.strokes[k]) <= STRAIGHT);
+    if lines.len() >= FEWEST_STALKS && !outlines {
+        for k in lines {
+            if unsure(draft, k) {
+                found.set(k, Axis);
+            }
+        }
+    }
+    found
+}

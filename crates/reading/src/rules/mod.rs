@@ -1,0 +1,262 @@
+//! Rules of reading: what the whole drawing says about the class of a stroke, against the classifier.
+//!
+//! A stroke on its own cannot tell a leaf from a cactus or grass from a row of trunks; what lies inside it, what it
+//! stands on and what is missing around it can. Each rule is a row of [`RULES`]; they are applied in that order, and none
+//! changes a class that the user set. `cargo xtask train-strokes` says what each is worth.
+//!
+//! Numbers are in ink units (the drawing's diagonal is 1) or shares of something that the rule names. They were chosen by
+//! looking at drawings by the public; the named ones are shared by several tests or say what a line is.
+
+mod grass;
+mod leaves;
+mod pots;
+mod trees;
+
+use geom::contains;
+use glam::DVec2;
+use ink::{InkStroke, LONE_LINE, StrokeClass, StrokeMode};
+
+use crate::blade::nearest_on_ring;
+use crate::draft::Draft;
+
+/// Something that the whole drawing says about the class of a stroke.
+#[derive(Clone, Copy, Debug)]
+pub struct Rule {
+    /// Its name, in kebab-case: what reports and the ablation call it.
+    pub name: &'static str,
+    /// What it holds to be true of drawings, in a sentence for people.
+    pub why: &'static str,
+    /// Drawings of more strokes are left as they are: nobody draws one such plant with so many, and rules compare pairs.
+    most_strokes: usize,
+    /// The classes that it gives to strokes of a drawing half understood.
+    applies: fn(&Draft<'_>) -> Findings,
+}
+
+/// What a rule found.
+#[derive(Debug, Default)]
+struct Findings {
+    classes: Vec<(usize, StrokeClass)>,
+    /// Lines that were drawn in one go, there and back: the pieces of such a stroke.
+    legs: Vec<(usize, [Vec<DVec2>; 2])>,
+    /// Two of the lines are surely the sides of a trunk.
+    trunk: bool,
+}
+
+impl Findings {
+    fn set(&mut self, stroke: usize, class: StrokeClass) {
+        self.classes.push((stroke, class));
+    }
+}
+
+const fn rule(
+    name: &'static str,
+    most_strokes: usize,
+    applies: fn(&Draft<'_>) -> Findings,
+    why: &'static str,
+) -> Rule {
+    Rule { name, why, most_strokes, applies }
+}
+
+/// A drawing of any number of strokes.
+const ANY: usize = usize::MAX;
+/// Of a plant with many parts.
+const MANY: usize = 400;
+/// Of a plant with a leaf or a tuft for each of its lines.
+const SOME: usize = 60;
+/// Of a sketch in a few lines.
+const FEW: usize = 40;
+
+/// The rules, in the order in which they are applied: those that others build on first.
+pub const RULES: &[Rule] = &[
+    rule(
+        LONE_LINE,
+        1,
+        |_| Findings::default(), // `ink::classify` applies it, because a preview keeps its class
+        "A line by itself is a stem: crowns and trunks are recognised by what stands around them.",
+    ),
+    rule(
+        "lone-leaf",
+        ANY,
+        leaves::lone_leaf,
+        "The largest outline of a drawing without crown or petals, with a line along its middle, is a leaf with its midrib.",
+    ),
+    rule(
+        "leaf-with-midrib",
+        SOME,
+        leaves::leaf_with_its_midrib,
+        "Margin and midrib drawn in one go, with veins across, are a leaf and not a body with thorns.",
+    ),
+    rule(
+        "halves-of-a-leaf",
+        SOME,
+        leaves::halves_of_a_leaf,
+        "One or two lines that close around drawn veins are a leaf, not the sides of a trunk.",
+    ),
+    rule(
+        "tree-in-one-stroke",
+        FEW,
+        trees::tree_in_one_stroke,
+        "An outline with a narrow foot and a full head is a tree in one stroke; a cactus has hollows between its arms.",
+    ),
+    rule(
+        "palm-in-one-stroke",
+        3,
+        trees::palm_in_one_stroke,
+        "An outline with many deep hollows around its upper part is a palm in one stroke; a cactus has two arms.",
+    ),
+    rule(
+        "stems-of-leaves",
+        MANY,
+        leaves::stems,
+        "Lines that spread from one place, each to a leaf of its own, are stems and not the sides of a trunk.",
+    ),
+    rule(
+        "sides-of-a-trunk",
+        MANY,
+        trees::trunk_lines,
+        "Two lines side by side that carry a crown, or a fan of fronds, are the sides of a trunk.",
+    ),
+    rule(
+        "crown-with-a-side",
+        MANY,
+        trees::crown_with_a_side,
+        "A line that runs around a crown and then down, beside a line for the other side, is crown and trunk.",
+    ),
+    rule(
+        "crown-on-a-trunk",
+        MANY,
+        trees::crown_on_trunk,
+        "The largest closed outline is a crown where the tops of a trunk reach it from below, however smooth it is.",
+    ),
+    rule(
+        "scribbled-crown",
+        MANY,
+        trees::scribbled_crown,
+        "A large scribble at the top of a trunk is its crown.",
+    ),
+    rule(
+        "outline-goes-on",
+        SOME,
+        trees::outline_goes_on,
+        "A line that begins where the only outline of a body ends goes on with it.",
+    ),
+    rule("fruit-in-a-crown", MANY, trees::fruit_in_crown, "A small ring inside a crown is a fruit."),
+    rule(
+        "pot",
+        MANY,
+        pots::pots,
+        "A box at the bottom with a flat top on which the plant stands is its pot.",
+    ),
+    rule(
+        "loop-in-a-pot",
+        MANY,
+        leaves::loops_in_pots,
+        "A stem in a pot that ends in a loop is a leaf on its stalk.",
+    ),
+    rule(
+        "tangle",
+        ANY,
+        grass::tangles,
+        "A line that crosses itself all over the place is a scribble: petals cross in the middle.",
+    ),
+    rule(
+        "zigzag",
+        FEW,
+        grass::zigzags,
+        "A stroke that goes up and down and on to the side is a row of grass blades.",
+    ),
+    rule(
+        "tuft",
+        SOME,
+        grass::tufts,
+        "Two bare lines drawn in one go, down to a sharp point and up again, are blades of grass.",
+    ),
+    rule(
+        "grass",
+        ANY,
+        grass::grass,
+        "Several single lines and nothing that a trunk could carry are stalks of grass.",
+    ),
+];
+
+/// Applies all rules but those that are switched `off`.
+pub(crate) fn apply(draft: &mut Draft<'_>, off: &[&str]) {
+    let count = draft.class.len();
+    for rule in RULES.iter().filter(|r| count <= r.most_strokes && !off.contains(&r.name)) {
+        let found = (rule.applies)(draft);
+        for (stroke, class) in found.classes {
+            draft.class[stroke] = class;
+            draft.rule[stroke] = Some(rule.name);
+        }
+        draft.legs.extend(found.legs.into_iter().map(|(stroke, legs)| (stroke, legs.into())));
+        draft.trunk |= found.trunk;
+    }
+}
+
+/// Ends farther apart than this share of the length: a line that is rather straight, as in [`ink::LONE_LINE`].
+const STRAIGHT: f64 = 0.7;
+/// Ends nearer than this share of the length: an outline that the pen meant to close.
+const CLOSED: f64 = 0.2;
+/// Up to here a stroke may still be an outline with a wide mouth: what is left of a circle without a third of it.
+const MOUTH: f64 = 0.35;
+/// Of a closed outline with a stalk, the share of the length that the loop has at least.
+const STALK: f64 = 0.35;
+/// As [`STALK`], where the loop is a crown and what hangs from it one side of a trunk.
+const SIDE: f64 = 0.75;
+/// A trunk's top is at most this far from its crown.
+const REACH: f64 = 0.07;
+
+fn any(draft: &Draft<'_>, classes: &[StrokeClass]) -> bool {
+    draft.class.iter().any(|c| classes.contains(c))
+}
+
+/// How far apart a stroke's ends are, as a share of its length.
+fn openness(s: &InkStroke) -> f64 {
+    s.points[0].distance(s.points[s.points.len() - 1]) / s.length.max(1e-12)
+}
+
+/// The share of every `stride`th point that lies in a closed outline, 0 to 1; 0 of no points.
+fn share_inside(points: &[DVec2], stride: usize, outline: &[DVec2]) -> f64 {
+    let (mut looked, mut hits) = (0_u32, 0_u32);
+    for &p in points.iter().step_by(stride) {
+        looked += 1;
+        hits += u32::from(contains(outline, p));
+    }
+    f64::from(hits) / f64::from(looked.max(1))
+}
+
+/// A rule may change it: its class is not sure.
+fn unsure(draft: &Draft<'_>, k: usize) -> bool {
+    !draft.said[k].is_sure() && draft.ink.strokes[k].mode == StrokeMode::Parts
+}
+
+/// Highest point first, lowest point last.
+fn ends(points: &[DVec2]) -> (DVec2, DVec2) {
+    let (a, b) = (points[0], points[points.len() - 1]);
+    if a.y > b.y { (a, b) } else { (b, a) }
+}
+
+/// Distance to an outline, 0 inside.
+fn outside(outline: &[DVec2], p: DVec2) -> f64 {
+    if contains(outline, p) { 0.0 } else { nearest_on_ring(outline, p).1 }
+}
+
+/// A line that stands: rather straight, and higher than wide.
+fn upright(draft: &Draft<'_>, k: usize) -> bool {
+    let s = &draft.ink.strokes[k];
+    let (top, foot) = ends(&s.points);
+    openness(s) > STRAIGHT && top.y - foot.y > 0.8 * (top.x - foot.x).abs()
+}
+
+/// Upper and lower ends of the upright lines of a class.
+fn standing(draft: &Draft<'_>, class: StrokeClass) -> Vec<(usize, DVec2, DVec2)> {
+    draft
+        .of_class(class)
+        .into_iter()
+        .filter(|&k| upright(draft, k))
+        .map(|k| {
+            let (top, foot) = ends(&draft.ink.strokes[k].points);
+            (k, top, foot)
+        })
+        .collect()
+}

@@ -1,0 +1,83 @@
+//! The rule about pots.
+
+use geom::{polyline_length, signed_area, simple_outline};
+use glam::DVec2;
+use ink::StrokeClass;
+
+use super::{Findings, any, unsure};
+use crate::contour::width_at;
+use crate::draft::Draft;
+use crate::near::bounds;
+
+/// A pot is at least this wide.
+const NARROWEST: f64 = 0.05;
+/// A pot is so many times as tall as wide.
+const TALL: core::ops::Range<f64> = 0.25..2.0;
+/// A pot's rim is this share of its width, and what grows from it is narrower than [`FOOT`].
+const RIM: f64 = 0.8;
+/// Share of a pot's width that the foot of what stands in it has at most.
+const FOOT: f64 = 0.9;
+
+/// A box at the bottom with a flat top on which the plant stands is its pot.
+pub(super) fn pots(draft: &Draft<'_>) -> Findings {
+    use StrokeClass::{Axis, Corolla, Crown, Fruit, Ground, Pot, Scribble, TrunkOutline};
+    let mut found = Findings::default();
+    if any(draft, &[Pot, Crown]) {
+        return found;
+    }
+    let boxes: Vec<(DVec2, DVec2)> =
+        draft.ink.strokes.iter().map(|s| bounds(&s.points).unwrap_or_default()).collect();
+    let low = (0..boxes.len())
+        .filter(|&k| draft.class[k] != Ground)
+        .map(|k| boxes[k].0.y)
+        .fold(f64::INFINITY, f64::min);
+    for k in 0..draft.class.len() {
+        let (lo, hi) = boxes[k];
+        let (wide, tall) = (hi.x - lo.x, hi.y - lo.y);
+        if !unsure(draft, k)
+            || lo.y > low + 0.01
+            || wide < NARROWEST
+            || !(TALL.start * wide..TALL.end * wide).contains(&tall)
+        {
+            continue;
+        }
+        let points = &draft.ink.strokes[k].points;
+        // What stands in it: lines whose foot is at its upper edge and that rise out of it.
+        let feet: Vec<(usize, f64)> = (0..draft.class.len())
+            .filter(|&j| j != k && [Axis, TrunkOutline].contains(&draft.class[j]))
+            .filter(|&j| {
+                let (l, h) = boxes[j];
+                l.y > hi.y - 0.4 * tall && l.y < hi.y + 0.06 && h.y > hi.y + 0.5 * tall
+            })
+            .filter_map(|j| {
+                let foot: Vec<DVec2> = draft.ink.strokes[j]
+                    .points
+                    .iter()
+                    .copied()
+                    .filter(|p| p.y < boxes[j].0.y + 0.05 * (boxes[j].1.y - boxes[j].0.y))
+                    .collect();
+                bounds(&foot).filter(|(l, h)| l.x > lo.x && h.x < hi.x).map(|(l, h)| (j, h.x - l.x))
+            })
+            .collect();
+        let nothing_beside = (0..boxes.len())
+            .all(|j| j == k || boxes[j].0.y > lo.y + 0.5 * tall || contained(boxes[j], (lo, hi)));
+        let is_pot = match draft.class[k] {
+            TrunkOutline | Fruit => simple_outline(points).is_some_and(|o| {
+                let at = |t: f64| width_at(&o, lo.y + t * tall);
+                let flat = at(0.93) > RIM * wide && at(0.93) >= 0.95 * at(0.1);
+                flat && signed_area(&o) > 0.6 * wide * tall && feet.iter().any(|f| f.1 < FOOT * wide)
+            }),
+            Corolla | Scribble => feet.len() >= 3,
+            _ => false,
+        };
+        if is_pot && nothing_beside && !feet.is_empty() && polyline_length(points) > 0.0 {
+            found.set(k, Pot);
+            break;
+        }
+    }
+    found
+}
+
+fn contained(inner: (DVec2, DVec2), outer: (DVec2, DVec2)) -> bool {
+    inner.0.cmpge(outer.0 - DVec2::splat(0.01)).all() && inner.1.cmple(outer.1 + DVec2::splat(0.01)).all()
+}

@@ -1,0 +1,336 @@
+//! Rules about trees: trunks, crowns, and what lies in a crown.
+
+use geom::{convex_hull, polyline_length, signed_area, simple_outline};
+use glam::DVec2;
+use ink::StrokeClass;
+
+use super::{CLOSED, Findings, REACH, SIDE, any, openness, outside, share_inside, standing, unsure, upright};
+use crate::blade::split_stalks;
+use crate::contour::{crown_outline, neck};
+use crate::corolla::dips;
+use crate::draft::Draft;
+use crate::near::bounds;
+use crate::rings::rings;
+
+/// A crown fills this share of its hull; the arms of a cactus leave hollows.
+const FULL: f64 = 0.78;
+/// The longer of a trunk's sides is at most one over this times as long as the other.
+const ALIKE: f64 = 0.55;
+/// A trunk is narrower than this share of its crown.
+const NARROW: f64 = 0.7;
+/// A crown covers at least this area.
+const CROWN_AREA: f64 = 0.02;
+/// Hollows of a palm at least; a cactus has two arms.
+const FEWEST_FRONDS: usize = 7;
+/// A fruit in a crown lies there with this share of its points.
+const IN_CROWN: f64 = 0.9;
+/// Of a ring, the shorter side of its box over the longer one at least.
+const ROUND: f64 = 0.6;
+/// A fruit covers less than this share of its crown.
+const SMALL: f64 = 0.03;
+
+/// An outline with a narrow foot and a full head is a tree in one stroke; a cactus has hollows between its arms.
+pub(super) fn tree_in_one_stroke(draft: &Draft<'_>) -> Findings {
+    use StrokeClass::{Blade, Corolla, Crown, TrunkOutline};
+    let mut found = Findings::default();
+    if any(draft, &[Crown, Corolla, Blade]) {
+        return found;
+    }
+    let length = |k: usize| draft.ink.strokes[k].length;
+    let bodies: Vec<usize> = (0..draft.class.len()).filter(|&k| draft.class[k] == TrunkOutline).collect();
+    let total: f64 = bodies.iter().map(|&k| length(k)).sum();
+    // One of several pieces of a body is no tree.
+    let main: Vec<usize> = bodies.into_iter().filter(|&k| length(k) > 0.7 * total).collect();
+    for k in main {
+        let points = &draft.ink.strokes[k].points;
+        let Some(outline) = unsure(draft, k).then(|| simple_outline(points)).flatten() else { continue };
+        let head = neck(&outline).map(|n| n.1);
+        if head.is_some_and(|h| signed_area(&h) > FULL * signed_area(&convex_hull(&h)))
+            || closes_above_its_trunk(points, &outline)
+        {
+            found.set(k, Crown);
+        }
+    }
+    found
+}
+
+/// The pen met its own line where crown and trunk meet: the outline is the crown, and the rest hangs below it.
+fn closes_above_its_trunk(points: &[DVec2], outline: &[DVec2]) -> bool {
+    let (Some((lo, hi)), Some(all)) = (bounds(outline), bounds(points)) else { return false };
+    let below: Vec<DVec2> = points.iter().copied().filter(|p| p.y < lo.y - 0.01).collect();
+    let hangs = bounds(&below).is_some_and(|(l, h)| {
+        h.x - l.x < 0.4 * (hi.x - lo.x) && lo.y - l.y > 0.2 * (all.1.y - all.0.y) && h.x - l.x > 0.02
+    });
+    hangs && signed_area(outline) > 0.6 * signed_area(&convex_hull(outline))
+}
+
+/// An outline with many deep hollows round its upper part is a palm in one stroke; a cactus has two arms.
+pub(super) fn palm_in_one_stroke(draft: &Draft<'_>) -> Findings {
+    use StrokeClass::{Corolla, TrunkOutline};
+    let mut found = Findings::default();
+    for k in draft.of_class(TrunkOutline) {
+        let points = &draft.ink.strokes[k].points;
+        let (hull, Some((lo, hi))) = (convex_hull(points), bounds(points)) else { continue };
+        let upper: Vec<DVec2> = points.iter().copied().filter(|p| p.y > lo.y + 0.4 * (hi.y - lo.y)).collect();
+        if !unsure(draft, k) || hull.len() < 3 || upper.is_empty() {
+            continue;
+        }
+        let middle = geom::centroid(&upper);
+        let away: Vec<f64> = points.iter().map(|p| p.distance(middle)).collect();
+        let reach = away.iter().copied().fold(0.0, f64::max);
+        let hollow = simple_outline(points).is_none_or(|o| signed_area(&o) < 0.6 * signed_area(&hull));
+        if hollow && dips(&away, 0.13 * reach).len() >= FEWEST_FRONDS {
+            found.set(k, Corolla);
+        }
+    }
+    found
+}
+
+/// Two single lines side by side that carry a crown, or a fan of fronds, are the sides of a trunk.
+pub(super) fn trunk_lines(draft: &Draft<'_>) -> Findings {
+    let mut found = Findings::default();
+    // A trunk that was drawn as a closed outline needs no sides.
+    if draft.of_class(StrokeClass::TrunkOutline).iter().any(|&k| openness(&draft.ink.strokes[k]) < 0.5) {
+        return found;
+    }
+    let mut lines = standing(draft, StrokeClass::TrunkOutline);
+    if lines.len() < 2 {
+        lines.extend(standing(draft, StrokeClass::Axis));
+    }
+    let crowns: Vec<Vec<DVec2>> = [StrokeClass::Crown, StrokeClass::Scribble]
+        .into_iter()
+        .flat_map(|c| draft.of_class(c))
+        .map(|k| convex_hull(&draft.ink.strokes[k].points))
+        .filter(|h| h.len() > 2)
+        .collect();
+    let all_ends: Vec<(usize, DVec2)> = (0..draft.class.len())
+        .flat_map(|k| {
+            let p = &draft.ink.strokes[k].points;
+            [(k, p[0]), (k, p[p.len() - 1])]
+        })
+        .collect();
+    let low = all_ends.iter().map(|e| e.1.y).fold(f64::INFINITY, f64::min);
+    let mut sides = None;
+    for (i, &(a, a_top, a_foot)) in lines.iter().enumerate() {
+        for &(b, b_top, b_foot) in &lines[i + 1..] {
+            let (long, short) = (draft.ink.strokes[a].length, draft.ink.strokes[b].length);
+            let gaps = (a_top.distance(b_top), a_foot.distance(b_foot));
+            let alike = short.min(long) > ALIKE * short.max(long);
+            let beside = gaps.0.max(gaps.1) < 1.3 * short.min(long)
+                && gaps.0 > 0.015
+                && gaps.0 < 1.6 * gaps.1
+                && (a_foot.x < b_foot.x) == (a_top.x < b_top.x);
+            let deep = a_foot.y.max(b_foot.y) < low + 0.15;
+            if !(alike && beside && deep && unsure(draft, a) && unsure(draft, b)) {
+                continue;
+            }
+            let crowned = crowns.iter().any(|c| {
+                bounds(c).is_some_and(|(lo, hi)| {
+                    outside(c, a_top) < 2.0 * REACH
+                        && outside(c, b_top) < 2.0 * REACH
+                        && a_foot.y.max(b_foot.y) < lo.y
+                        && gaps.0 < NARROW * (hi.x - lo.x)
+                })
+            });
+            // Fronds begin at the trunk's top and the trunk is longer than they are wide apart.
+            let hub = a_top.midpoint(b_top);
+            let fan = all_ends
+                .iter()
+                .filter(|(k, p)| *k != a && *k != b && p.distance(hub) < 0.5 * gaps.0 + 0.06)
+                .count();
+            let slim = gaps.0.max(gaps.1) < 0.3 * short.min(long);
+            if crowned || (fan >= 4 && slim && crowns.is_empty()) {
+                sides = Some((a, b));
+            }
+        }
+    }
+    if let Some((a, b)) = sides {
+        found.set(a, StrokeClass::TrunkOutline);
+        found.set(b, StrokeClass::TrunkOutline);
+    }
+    found.trunk = sides.is_some();
+    found
+}
+
+/// A line that runs round a crown and then down one side of the trunk, beside a line for its other side.
+pub(super) fn crown_with_a_side(draft: &Draft<'_>) -> Findings {
+    use StrokeClass::{Blade, Corolla, Crown, Pot, TrunkOutline, Vein};
+    let mut found = Findings::default();
+    if any(draft, &[Blade, Corolla, Crown, Pot, Vein]) {
+        return found;
+    }
+    let sides = standing(draft, TrunkOutline);
+    let round = draft.of_class(TrunkOutline).into_iter().find(|&k| {
+        let (round, ends) = split_stalks(&draft.ink.strokes[k].points, SIDE);
+        let (Some(outline), [end]) = (simple_outline(&round), &ends[..]) else { return false };
+        let Some((lo, hi)) = bounds(&outline) else { return false };
+        let (free, at) = (end[0], end[end.len() - 1]);
+        let down = at.y - free.y > 0.06 && free.distance(at) > 0.75 * polyline_length(end);
+        let beside = sides.iter().any(|(j, top, foot)| {
+            *j != k
+                && outside(&outline, *top) < REACH
+                && foot.y < lo.y
+                && top.distance(at) < NARROW * (hi.x - lo.x)
+                && top.distance(at) > 0.02
+        });
+        unsure(draft, k)
+            && down
+            && beside
+            && free.y < lo.y + 0.02
+            && signed_area(&outline) > 0.8 * signed_area(&convex_hull(&round))
+    });
+    if let Some(k) = round {
+        found.set(k, Crown);
+    }
+    found
+}
+
+/// The largest closed outline of the drawing is a crown where the tops of a drawn trunk reach it from below.
+pub(super) fn crown_on_trunk(draft: &Draft<'_>) -> Findings {
+    use StrokeClass::{Axis, Crown, Pot, TrunkOutline, Vein};
+    let mut found = Findings::default();
+    if any(draft, &[Crown, Pot, Vein]) {
+        return found;
+    }
+    let closed = closed_outlines(draft);
+    let largest = closed.iter().max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
+    let Some((area, parts, outline)) = largest.filter(|c| c.1.iter().all(|&k| unsure(draft, k))) else {
+        return found;
+    };
+    let others = closed.iter().filter(|c| c.1 != *parts).map(|c| c.0).fold(0.0, f64::max);
+    let Some((lo, hi)) = bounds(outline) else { return found };
+    let mut sides: Vec<(usize, DVec2, DVec2)> =
+        standing(draft, TrunkOutline).into_iter().filter(|s| !parts.contains(&s.0)).collect();
+    // Sides may have been taken for branches: they begin below the crown, reach it, and are about as long as one another.
+    let outlined = sides.len();
+    if outlined < 2 {
+        let branches = standing(draft, Axis).into_iter().filter(|s| unsure(draft, s.0) && s.2.y < lo.y);
+        sides.extend(branches);
+        let length = |s: &(usize, DVec2, DVec2)| draft.ink.strokes[s.0].length;
+        let longest = sides.iter().map(length).fold(0.0, f64::max);
+        if sides.len() != 2 || sides.iter().map(length).any(|l| l < ALIKE * longest) {
+            return found;
+        }
+    }
+    let carry = sides.len() >= 2
+        && sides.iter().all(|(_, top, foot)| {
+            outside(outline, *top) < REACH && foot.y < lo.y && top.y < lo.y + 0.6 * (hi.y - lo.y)
+        });
+    let over = sides.iter().all(|s| s.1.x > lo.x && s.1.x < hi.x);
+    let wide = sides.iter().map(|s| s.1.x).fold(f64::NEG_INFINITY, f64::max)
+        - sides.iter().map(|s| s.1.x).fold(f64::INFINITY, f64::min);
+    let lone = others < 0.25 * area && *area > CROWN_AREA;
+    // A leaf on a stalk that was drawn as two lines is no tree: trunks are thicker.
+    let trunk = outlined > 0 || wide > 0.1 * (hi.x - lo.x);
+    if carry && lone && over && trunk && wide < NARROW * (hi.x - lo.x) {
+        parts.iter().for_each(|&k| found.set(k, Crown));
+        sides[outlined..].iter().for_each(|s| found.set(s.0, TrunkOutline));
+    }
+    found
+}
+
+/// Outlines that may be a crown: area, strokes, polygon. Each closed by itself, or made of lines that do not stand and
+/// whose ends meet.
+fn closed_outlines(draft: &Draft<'_>) -> Vec<(f64, Vec<usize>, Vec<DVec2>)> {
+    use StrokeClass::{Blade, Disc, Fruit, Other, TrunkOutline};
+    let strokes = &draft.ink.strokes;
+    let (shut, open): (Vec<usize>, Vec<usize>) = (0..draft.class.len())
+        .filter(|&k| [Blade, Disc, Fruit, Other, TrunkOutline].contains(&draft.class[k]))
+        .partition(|&k| openness(&strokes[k]) < CLOSED);
+    let mut found: Vec<(f64, Vec<usize>, Vec<DVec2>)> = shut
+        .into_iter()
+        .filter_map(|k| simple_outline(&strokes[k].points).map(|o| (signed_area(&o), vec![k], o)))
+        .collect();
+    let open: Vec<usize> = open.into_iter().filter(|&k| !upright(draft, k) && unsure(draft, k)).collect();
+    let lines: Vec<&[DVec2]> = open.iter().map(|&k| strokes[k].points.as_slice()).collect();
+    for ring in rings(&lines) {
+        let Some((lo, hi)) = bounds(&ring.points).filter(|_| ring.parts.len() > 1) else { continue };
+        let meets = |&g: &usize| {
+            let (a, b) = ring.gap(g);
+            a.distance(b) < 0.25 * lo.distance(hi)
+        };
+        if let Some(outline) = simple_outline(&ring.points).filter(|_| ring.gaps.iter().all(meets)) {
+            found.push((signed_area(&outline), ring.parts.iter().map(|&p| open[p]).collect(), outline));
+        }
+    }
+    found
+}
+
+/// A large scribble at the top of a trunk is its crown.
+pub(super) fn scribbled_crown(draft: &Draft<'_>) -> Findings {
+    use StrokeClass::{Blade, Corolla, Crown, Scribble, TrunkOutline};
+    let mut found = Findings::default();
+    let sides = standing(draft, TrunkOutline);
+    let crown = draft
+        .of_class(Crown)
+        .iter()
+        .map(|&k| signed_area(&convex_hull(&draft.ink.strokes[k].points)))
+        .sum::<f64>();
+    for k in draft.of_class(Scribble) {
+        let hull = convex_hull(&draft.ink.strokes[k].points);
+        if signed_area(&hull) < 2.0 * crown {
+            continue;
+        }
+        let Some((lo, hi)) = bounds(&hull).filter(|_| hull.len() > 2 && unsure(draft, k)) else { continue };
+        // A leaf or petals elsewhere: no tree. Over the scribble they are pieces of it.
+        let elsewhere = [Blade, Corolla].into_iter().flat_map(|c| draft.of_class(c)).any(|j| {
+            bounds(&draft.ink.strokes[j].points).is_some_and(|(l, h)| outside(&hull, l.midpoint(h)) > REACH)
+        });
+        if elsewhere {
+            continue;
+        }
+        let feet = sides.iter().filter(|s| s.2.y < lo.y && outside(&hull, s.1) < 2.0 * REACH);
+        let reach =
+            feet.clone().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, r), s| (l.min(s.1.x), r.max(s.1.x)));
+        if feet.count() >= 1 && hi.x - lo.x > 1.2 * (reach.1 - reach.0) && signed_area(&hull) > CROWN_AREA {
+            found.set(k, Crown);
+        }
+    }
+    found
+}
+
+/// A short line that begins where the only outline of a body ends goes on with it.
+pub(super) fn outline_goes_on(draft: &Draft<'_>) -> Findings {
+    use StrokeClass::{Axis, Crown, TrunkOutline};
+    let mut found = Findings::default();
+    let ink = draft.ink;
+    let [body] = draft.of_class(TrunkOutline)[..] else { return found };
+    let body = &ink.strokes[body];
+    if draft.class.contains(&Crown) || openness(body) < CLOSED {
+        return found;
+    }
+    let ends = [body.points[0], body.points[body.points.len() - 1]];
+    let piece = draft.of_class(Axis).into_iter().find(|&k| {
+        let s = &ink.strokes[k].points;
+        let (a, b) = (s[0], s[s.len() - 1]);
+        let begins = |p: DVec2| ends.iter().any(|e| e.distance(p) < 0.02);
+        let leaves = |p: DVec2| body.points.iter().all(|q| q.distance(p) > 0.05);
+        unsure(draft, k) && ((begins(a) && leaves(b)) || (begins(b) && leaves(a)))
+    });
+    if let Some(k) = piece {
+        found.set(k, TrunkOutline);
+    }
+    found
+}
+
+/// A small ring inside a crown is a fruit.
+pub(super) fn fruit_in_crown(draft: &Draft<'_>) -> Findings {
+    use StrokeClass::{Axis, Blade, Crown, Disc, Fruit};
+    let mut found = Findings::default();
+    let outline = |k: usize| crown_outline(&draft.ink.strokes[k].points);
+    let crowns: Vec<Vec<DVec2>> = draft.of_class(Crown).into_iter().filter_map(outline).collect();
+    for k in 0..draft.class.len() {
+        if !unsure(draft, k) || ![Axis, Blade, Disc].contains(&draft.class[k]) {
+            continue;
+        }
+        let s = &draft.ink.strokes[k];
+        let around = crowns.iter().find(|c| share_inside(&s.points, 4, c) >= IN_CROWN);
+        let (Some(crown), hull) = (around, convex_hull(&s.points)) else { continue };
+        let Some((lo, hi)) = bounds(&s.points).filter(|_| hull.len() > 2) else { continue };
+        let round = (hi.x - lo.x).min(hi.y - lo.y) > ROUND * (hi.x - lo.x).max(hi.y - lo.y);
+        if openness(s) < CLOSED && round && signed_area(&hull) < SMALL * signed_area(crown) {
+            found.set(k, Fruit);
+        }
+    }
+    found
+}

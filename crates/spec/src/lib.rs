@@ -1,0 +1,31 @@
+//! What people ask of a maker: read from text, described by a JSON Schema, checked by that schema.
+//!
+//! `TOML | JSON -> Node -> a maker's spec -> ranges of its schema`
+//!
+//! A spec is plain data in its maker's own crate. Ranges, units and meaning stand on its fields and nowhere else: the
+//! schema is derived from them, and [`check`] holds every number against it.
+//!
+//! | module | owns |
+//! |---|---|
+//! | `located` | a text as a tree that knows where each value stands |
+//! | `schema` | the schema of a type, made once |
+//! | `range` | the check of ranges |
+//! | `read` | reading, and setting a single field |
+//! | `through_json` | a spec inside of something else |
+//! | `colour` | a colour as `#rrggbb` |
+
+mod colour;
+mod located;
+mod range;
+mod read;
+mod schema;
+pub mod through_json;
+
+pub use colour::Colour;
+pub use located::{Entry, Kind, Node, TextFault};
+pub use range::{RangeFault, check};
+pub use read::{SpecFault, from_json, from_toml, line_at, set, to_json};
+pub use schema::{Spec, made_schema};
+
+#[doc(hidden)]
+pub use {schemars, serde_json};

@@ -1,0 +1,136 @@
+//! Text or JSON -> a spec; one field of a spec.
+
+use serde_json::Value;
+
+use crate::{Node, RangeFault, Spec, TextFault, check};
+
+/// What is wrong with a spec that somebody wrote.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SpecFault {
+    /// It is no such spec: not TOML, a field that is not known or missing, or a value of another kind.
+    #[error("{}{}{message}", on(*line), lead(path))]
+    Text {
+        /// From 1; none where there is no text.
+        line: Option<usize>,
+        /// Names and rows that lead to it; empty for the whole.
+        path: String,
+        /// What is wrong, in words.
+        message: String,
+    },
+    /// A number is out of its range.
+    #[error("{}{fault}", on(*line))]
+    Range {
+        /// From 1; none where there is no text.
+        line: Option<usize>,
+        /// Path, value and range.
+        fault: RangeFault,
+    },
+    /// A field was to be set that is not there.
+    #[error("the spec has no {0}")]
+    Pointer(String),
+}
+
+base::coded!(SpecFault {
+    Self::Text { path, message, .. } => "spec-text" { path, why = message },
+    Self::Pointer(path) => "spec-pointer" { path },
+} wraps {
+    Self::Range { fault, .. } => fault, RangeFault;
+});
+
+fn on(line: Option<usize>) -> String {
+    line.map(|line| format!("line {line}: ")).unwrap_or_default()
+}
+
+fn lead(path: &str) -> String {
+    if path.is_empty() { String::new() } else { format!("{path}: ") }
+}
+
+impl SpecFault {
+    /// The fault of a text that was read.
+    pub fn in_text(text: &str, fault: TextFault) -> Self {
+        let TextFault { path, message, at } = fault;
+        Self::Text { line: Some(line_at(text, at)), path, message }
+    }
+}
+
+impl From<RangeFault> for SpecFault {
+    fn from(fault: RangeFault) -> Self {
+        Self::Range { line: None, fault }
+    }
+}
+
+/// The line (from 1) of a byte.
+pub fn line_at(text: &str, at: usize) -> usize {
+    text.as_bytes()[..at.min(text.len())].iter().filter(|b| **b == b'\n').count() + 1
+}
+
+/// Reads a spec from TOML and checks its ranges.
+///
+/// # Errors
+/// [`SpecFault`] with the line of what is wrong.
+pub fn from_toml<T: Spec>(text: &str) -> Result<T, SpecFault> {
+    let tree = Node::from_toml(text).map_err(|fault| SpecFault::in_text(text, fault))?;
+    let spec = tree.read().map_err(|fault| SpecFault::in_text(text, fault))?;
+    check(&spec).map_err(|fault| {
+        let line = tree.at_path(&fault.path).map(|node| line_at(text, node.at));
+        SpecFault::Range { line, fault }
+    })?;
+    Ok(spec)
+}
+
+/// Reads a spec that is kept as JSON. Ranges are not looked at: a file of an earlier version opens whatever its numbers
+/// are, and who makes something of it says what is wrong.
+///
+/// # Errors
+/// [`SpecFault::Text`] with the names of the fields that lead to what is wrong.
+pub fn from_json<T: Spec>(value: &Value) -> Result<T, SpecFault> {
+    if !value.is_object() {
+        // Serde would take a list for the first fields.
+        let message = "a spec is a JSON object with a field for each thing that is asked for".into();
+        return Err(SpecFault::Text { line: None, path: String::new(), message });
+    }
+    let read = Node::from_json(value).read();
+    read.map_err(|TextFault { path, message, .. }| SpecFault::Text { line: None, path, message })
+}
+
+/// A spec as JSON.
+pub fn to_json<T: Spec>(spec: &T) -> Value {
+    serde_json::to_value(spec).unwrap_or_default()
+}
+
+/// The spec with one field changed, named by a JSON pointer such as `/method/points`. What commands, panels and options
+/// that name a field share.
+///
+/// # Errors
+/// [`SpecFault`]: there is no such field, the value is of another kind, or it is out of range.
+///
+/// ```
+/// # #[derive(Clone, schemars::JsonSchema, serde::Serialize, serde::Deserialize)]
+/// # #[serde(deny_unknown_fields)]
+/// # struct Pot {
+/// #     #[schemars(range(min = 0.0, max = 2.0), extend("x-unit" = "m"))]
+/// #     height_m: f64,
+/// # }
+/// # spec::schemas!(Pot);
+/// let pot = spec::set(&Pot { height_m: 1.0 }, "/height_m", 0.5.into())?;
+/// assert_eq!(pot.height_m, 0.5);
+/// assert!(spec::set(&pot, "/height_m", 3.0.into()).is_err() && spec::set(&pot, "/width_m", 1.0.into()).is_err());
+/// # Ok::<(), spec::SpecFault>(())
+/// ```
+pub fn set<T: Spec>(spec: &T, pointer: &str, value: Value) -> Result<T, SpecFault> {
+    let mut all = to_json(spec);
+    let (parent, key) = pointer.rsplit_once('/').unwrap_or(("", pointer));
+    let nowhere = || SpecFault::Pointer(base::brief(pointer));
+    match all.pointer_mut(parent).ok_or_else(nowhere)? {
+        Value::Object(fields) => drop(fields.insert(key.into(), value)),
+        Value::Array(rows) => {
+            let row = key.parse::<usize>().ok().and_then(|row| rows.get_mut(row));
+            *row.ok_or_else(nowhere)? = value;
+        }
+        _ => return Err(nowhere()),
+    }
+    let spec = from_json(&all)?;
+    check(&spec)?;
+    Ok(spec)
+}

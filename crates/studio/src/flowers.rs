@@ -1,0 +1,108 @@
+//! Flowers that open -> a plant with its meshes, at any day.
+
+use base::{Report, Run, Seed, Stopped};
+use bloom::{FlowerSpec, GrowthLaw};
+use document::PlantEdit;
+use mesh::Model;
+use plant::Plant;
+use skin::{KeptShapes, SkinSpec};
+
+use crate::make::MadePlant;
+use crate::shaping::Shaper;
+use crate::{Counts, ItemReport, TimingsMs};
+
+/// What is asked of a flower beside its species and day.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FlowerOptions {
+    /// How it is meshed: `detail`, `wind`. Its colours are those of the species.
+    pub skin: SkinSpec,
+    /// Edits by hand, done on the plant in this order.
+    pub edits: Vec<PlantEdit>,
+}
+
+/// Makes a whole flower as it is at `day` (paper 003).
+///
+/// Guaranteed: the same vertices and triangles at every day, for edits that do not cut.
+///
+/// # Errors
+/// [`Stopped`].
+pub fn make_flower(
+    name: &str,
+    spec: &FlowerSpec,
+    (day, law): (f64, &GrowthLaw),
+    options: &FlowerOptions,
+    seed: Seed,
+    run: &Run<'_>,
+) -> Result<MadePlant, Stopped> {
+    let mut report = Report::default();
+    let mut plant = report.stage("structure", run.clock, |_| spec.at(day, law, seed));
+    name.clone_into(&mut plant.name);
+    let mut edits = Vec::new();
+    if !options.edits.is_empty() {
+        (plant, edits) = Shaper::default().shape(&plant, &options.edits, &shape::Context::default(), run)?;
+    }
+    run.cancel.check()?;
+    let skin = SkinSpec { textures: false, variation: 0.0, ..options.skin.clone() };
+    let model = report.stage("mesh", run.clock, |_| steady(&plant, skin, spec.size_m(), None, run));
+    let mut model = model?;
+    for stem in model.materials.iter_mut().filter(|m| m.name == "stem") {
+        stem.base_color = [0.16, 0.32, 0.07];
+    }
+    let counts = Counts {
+        vertices: model.vertex_count() as u64,
+        triangles: model.triangle_count() as u64,
+        ..Counts::of_plant(&plant)
+    };
+    let item = ItemReport {
+        name: name.into(),
+        counts,
+        timings_ms: TimingsMs::from_report(&report),
+        digest: crate::leaves::digest(&model),
+        warnings: edits.iter().filter_map(|e| e.warning(&options.edits)).collect(),
+        plant: Some(plant.measure()),
+        edits,
+        ..ItemReport::default()
+    };
+    Ok(MadePlant { plant, model, item })
+}
+
+/// The meshes of a plant that is one of several days; `size_m`: how large it is in full bloom.
+pub(crate) fn steady(
+    plant: &Plant,
+    skin: SkinSpec,
+    size_m: f64,
+    kept: Option<&mut KeptShapes>,
+    run: &Run<'_>,
+) -> Result<Model, Stopped> {
+    debug_assert_eq!(plant.validate().next(), None, "a sound plant");
+    skin::skin_again(plant, &SkinSpec { steady_m: Some(size_m), ..skin }, None, kept, run)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_flower_has_the_same_triangles_at_every_day() {
+        for name in FlowerSpec::PRESETS {
+            let spec = bloom::preset(name).unwrap();
+            let law = spec.own_law();
+            let options = FlowerOptions::default();
+            let at =
+                |day| make_flower(name, &spec, (day, &law), &options, Seed::new(1), &Run::plain()).unwrap();
+            let first = at(0.0);
+            let names: Vec<&str> = first.model.parts.iter().map(|p| p.name.as_str()).collect();
+            assert!(names.contains(&"petals") && names.contains(&"stems"), "{names:?}");
+            for k in 0..=8 {
+                let day = (spec.opening_days + spec.wilting_days) * f64::from(k) / 8.0;
+                let made = at(day);
+                assert_eq!(made.plant.validate().next(), None, "{name} at {day}");
+                assert_eq!(made.model.validate().next(), None, "{name} at {day}");
+                let triangles =
+                    |m: &Model| m.parts.iter().map(|p| p.mesh.triangles.clone()).collect::<Vec<_>>();
+                assert!(triangles(&made.model) == triangles(&first.model), "{name} at {day}");
+                assert_eq!(made.item.counts, first.item.counts, "{name} at {day}");
+            }
+        }
+    }
+}
