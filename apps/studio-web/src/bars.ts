@@ -66,28 +66,10 @@ export function buildPage(host: HTMLElement, page: Page, pieces: Pieces): Parts 
   };
   pieces.panel.id = 'b-maker';
   parts.model.hidden = true;
-  const stop = () => page.session.engine.interrupt();
-  parts.busy.append(
-    el('i'),
-    parts.busyText,
-    el('button', { type: 'button', class: 'link', onclick: stop }, t('status.cancel')),
-  );
-  const left = el(
-    'section',
-    { class: 'left' },
-    page.sheet.element,
-    parts.sheetTools,
-    parts.empty,
-    parts.legend,
-    pieces.card,
-    parts.bloom,
-    parts.maker,
-    parts.noPlant,
-  );
   host.replaceChildren(
     topBar(buttons, page, parts.name),
-    sides(left, rightSide(buttons, page, pieces, parts)),
-    el('footer', { class: 'foot' }, parts.counts, space(), parts.busy, parts.kept),
+    sides(leftSide(page, pieces, parts), rightSide(buttons, page, pieces, parts)),
+    footer(page, parts),
   );
   return parts;
 }
@@ -243,6 +225,23 @@ function emptySheet(page: Page): HTMLElement {
   );
 }
 
+function leftSide(page: Page, pieces: Pieces, parts: Parts): HTMLElement {
+  const sheet = page.sheet.element;
+  const { sheetTools, empty, legend, bloom, maker, noPlant } = parts;
+  return el(
+    'section',
+    { class: 'left' },
+    sheet,
+    sheetTools,
+    empty,
+    legend,
+    pieces.card,
+    bloom,
+    maker,
+    noPlant,
+  );
+}
+
 function rightSide(buttons: Buttons, page: Page, pieces: Pieces, parts: Parts): HTMLElement {
   const { view, shaping } = page;
   const shown =
@@ -252,6 +251,13 @@ function rightSide(buttons: Buttons, page: Page, pieces: Pieces, parts: Parts): 
   // The scene and the edits by hand, in the view's corner.
   const column = el('div', { class: 'column' }, pieces.list, ...(shaping ? [shaping.list] : []));
   return el('section', { class: 'right' }, ...shown, parts.stats, column, parts.grows, parts.model);
+}
+
+function footer(page: Page, { counts, busy, busyText, kept }: Parts): HTMLElement {
+  const stop = () => page.session.engine.interrupt();
+  const cancel = el('button', { type: 'button', class: 'link', onclick: stop }, t('status.cancel'));
+  busy.append(el('i'), busyText, cancel);
+  return el('footer', { class: 'foot' }, counts, space(), busy, kept);
 }
 
 /** The sheet and the view with a bar between them, which is dragged or moved with the arrow keys. */

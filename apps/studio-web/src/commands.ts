@@ -10,7 +10,7 @@ import type { Shaping } from './shaping';
 import type { Sheet, Tool } from './sheet/sheet';
 import type { TextKey } from './text';
 import type { Theme } from './theme';
-import { SHAPE_TOOLS, SHEET_TOOLS } from './tools';
+import { CLIMB_KEYS, SHAPE_TOOLS, SHEET_TOOLS } from './tools';
 import type { PlantView } from './view/view';
 import type { ViewModes } from './viewmode';
 
@@ -122,11 +122,17 @@ const TABLE = [
     shaping: true as const,
     run: (p: Page) => p.shaping?.take(word),
   })),
-  { id: 'shape-up', label: 'shape.up.hint', keys: 'Q', shaping: true, run: (p) => p.shaping?.climb(1) },
+  {
+    id: 'shape-up',
+    label: 'shape.up.hint',
+    keys: CLIMB_KEYS.up,
+    shaping: true,
+    run: (p) => p.shaping?.climb(1),
+  },
   {
     id: 'shape-down',
     label: 'shape.down.hint',
-    keys: 'Shift+Q',
+    keys: CLIMB_KEYS.down,
     shaping: true,
     run: (p) => p.shaping?.climb(-1),
   },

@@ -13,7 +13,7 @@ import type {
   ShapePointer,
 } from './wire';
 import { number, t, tOf, type TextKey } from './text';
-import { SHAPE_TOOLS, type ShapeTool } from './tools';
+import { CLIMB_KEYS, SHAPE_TOOLS, type ShapeTool } from './tools';
 import { button, el, icon, type IconName } from './ui';
 import { Overlay } from './view/overlay';
 import type { PlantView } from './view/view';
@@ -431,11 +431,11 @@ export class Shaping {
       step(
         'b-shape-up',
         'shape.up',
-        'Q',
+        CLIMB_KEYS.up,
         1,
         `${t('shape.up')}${this.bearers > 0 ? ` +${this.bearers}` : ''}`,
       ),
-      step('b-shape-down', 'shape.down', 'Shift+Q', -1, t('shape.down')),
+      step('b-shape-down', 'shape.down', CLIMB_KEYS.down, -1, t('shape.down')),
     ];
     up.setAttribute('aria-pressed', String(this.bearers > 0));
     down.disabled = this.bearers === 0;

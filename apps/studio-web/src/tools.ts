@@ -25,3 +25,6 @@ export const SHAPE_TOOLS: readonly [ShapeTool, string][] = [
   ['silhouette', '8'],
   ['leaves', '9'],
 ];
+
+/** To what bears the branch that a tool points at, and back to the twig. */
+export const CLIMB_KEYS = { up: 'Q', down: 'Shift+Q' } as const;
