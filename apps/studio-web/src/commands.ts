@@ -242,7 +242,7 @@ const KEY_ROWS: readonly [CommandId[], string, TextKey][] = [
   [['dice'], '', 'key.dice'],
   [['grid'], '', 'variations.title'],
   [['front'], '', 'key.front'],
-  [['wire', 'skeleton'], ' · ', 'key.looks'],
+  [['wire', 'skeleton'], ' · ', 'key.modes'],
   [['stats'], '', 'view.stats'],
   [['shape'], '', 'key.shape'],
   [['shape-pick', 'shape-leaves'], ' – ', 'key.shape.tools'],

@@ -3,17 +3,19 @@ import type { Files } from './files';
 import { type Catalogue, catalogueOf, gallery } from './makers';
 import { asPng, photoPanel, placed } from './photo';
 import type { Session } from './session';
-import { settingsPanel } from './settings';
+import { type SettingsEvents, settingsPanel } from './settings';
 import type { Sheet } from './sheet/sheet';
 import { setSetting, setting } from './store';
 import { t, tOf, type TextKey } from './text';
 import { closePopover, dialog, note, popover } from './ui';
 import { openVariations } from './variations';
 import type { PlantView } from './view/view';
-import type { MakerWord, NewMaker, SketchCommand, SketchState } from './wire';
+import type { MakerWord, NewMaker, SketchState } from './wire';
 
 /** Size of a picture in the grid of variations. */
 const PICTURE_SIZE = [200, 190] as const;
+
+type DrawingEvents = Pick<SettingsEvents, 'run' | 'begin' | 'stage' | 'commit'>;
 
 export interface PanelsPage {
   readonly session: Session;
@@ -121,12 +123,7 @@ export class Panels {
   }
 
   /** How a panel changes the drawing. */
-  private drawing(): {
-    run(command: SketchCommand): void;
-    begin(name: string): void;
-    stage(command: SketchCommand): void;
-    commit(): void;
-  } {
+  private drawing(): DrawingEvents {
     const { session } = this.page;
     return {
       run: (c) => session.draw(c),
