@@ -3,6 +3,97 @@
 /** What has no type of its own here: the page passes it on. */
 export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };
 
+/** Every code of a `Refusal`, with its fields. */
+export const CODES = {
+  "archive": ["why"],
+  "cancelled": [],
+  "class-without-stroke": ["index"],
+  "field-range": ["field", "range", "value"],
+  "file-empty": [],
+  "file-io": ["why"],
+  "file-malformed": ["what"],
+  "file-no-strokes": [],
+  "file-not-utf8": ["after"],
+  "file-too-much": ["what", "limit"],
+  "file-truncated": ["inside"],
+  "file-unsupported": ["what"],
+  "full": ["what"],
+  "gesture": [],
+  "graph-edge": ["edge", "node", "last"],
+  "graph-node": ["node"],
+  "graph-one-sided": [],
+  "graph-radii": ["nodes", "radii"],
+  "graph-small": ["nodes"],
+  "internal": ["why"],
+  "law": ["why"],
+  "leaf-no-marks": [],
+  "leaf-scan": ["why"],
+  "leaf-surface": ["why"],
+  "leaf-veins": ["why"],
+  "lender-without-leaf": ["name"],
+  "lsystem": ["why"],
+  "marks-few": ["rows"],
+  "marks-not-finite": ["row", "mark"],
+  "marks-one-point": ["row"],
+  "marks-same-row": ["row", "next"],
+  "marks-thickness": ["row", "mark", "value"],
+  "marks-tip": [],
+  "mesh": ["why"],
+  "message": ["why"],
+  "no-clipboard": [],
+  "no-drawing": [],
+  "no-flowers": ["name"],
+  "no-leaf-to-lend": [],
+  "no-leaves": [],
+  "no-photo": [],
+  "no-plant": [],
+  "no-room": ["found", "wanted"],
+  "no-roots": [],
+  "no-species": ["name"],
+  "no-stroke": [],
+  "no-strokes": ["name"],
+  "no-structure": [],
+  "no-such-export": ["format"],
+  "no-such-plant": ["plant"],
+  "no-such-stroke": ["stroke"],
+  "no-surface": [],
+  "no-tree": ["name"],
+  "no-usable-stroke": [],
+  "not-text": ["why"],
+  "nothing-grew": ["why"],
+  "nothing-made": [],
+  "nothing-to-do": [],
+  "nothing-to-shape": [],
+  "obstacle": ["name", "why"],
+  "obstacle-file": [],
+  "other-maker": ["wanted", "found"],
+  "out-of-range": ["why"],
+  "over-budget": ["what", "number", "limit"],
+  "photo-not-png": [],
+  "photo-too-large": [],
+  "plant-gone": [],
+  "project-archive": ["why"],
+  "project-json": ["entry", "why"],
+  "project-missing": ["name"],
+  "project-scene": ["why"],
+  "project-setting": ["why"],
+  "project-stroke": ["row", "why"],
+  "project-too-much": ["what", "limit"],
+  "project-tree": ["why"],
+  "project-version": ["found"],
+  "range": ["why"],
+  "root-far": ["root"],
+  "root-in-obstacle": ["root", "obstacle"],
+  "spec": ["why"],
+  "step-too-long": ["step_m", "space_m"],
+  "too-far": [],
+  "tree-file": ["file"],
+  "tree-line": ["line", "why"],
+  "tree-spec": ["why"],
+  "unknown-file": [],
+  "write": ["why"],
+} as const;
+
 /** What can be asked that is more than one [`document::Command`]. */
 export type Action =
   | /** An empty document in the place of this one. */
@@ -988,7 +1079,9 @@ export type PlantView = {
   /** Bud to full bloom, and from there to wilted. */
   days: [number, number] | null;
   /** Why it could not be made; what was made before stays. */
-  error: string | null;
+  error: 
+    | Refusal
+    | null;
   /** Its meshes are others than those of the last view. */
   fresh: boolean;
   /** How a drawing lies in the front view. */
@@ -1013,6 +1106,16 @@ export type PlantView = {
   parts: PartView[];
   /** What was done again. */
   stages: string[];
+};
+
+/** Why something was not done, for a shell: words for people in English, and what another language needs for its own. */
+export type Refusal = {
+  /** A word in kebab-case that never changes its meaning. */
+  code: string;
+  /** Names and values, as people read them. */
+  fields: Record<string, string>;
+  /** The sentence in English. */
+  message: string;
 };
 
 /** Eq 5 and section 6.2: how blades bend and hollow, as shares of their length. */
@@ -1321,12 +1424,14 @@ export type StrokeMode =
 export type StrokeReport = {
   /** What it is. */
   class: string;
-  /** 0 to 1. */
+  /** How sure that class is, 0 to 1: the classifier's share of it, also where a rule chose it; 1 where the user did. */
   confidence: number;
   /** Its index in the drawing, from 0. */
   index: number;
   /** What became of it. */
   organ: string;
+  /** What decided the class: `user`, `classifier` or `rule:NAME` (`docs/strokes.md` lists the rules). */
+  source?: string;
 };
 
 /** A stroke without its points. */

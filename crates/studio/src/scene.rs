@@ -174,6 +174,8 @@ type MadeFrom = (Maker, Seed, String, Option<LeafTemplate>, Vec<PlantEdit>);
 /// The last result of a plant.
 #[derive(Clone, Debug, Default)]
 struct Made {
+    /// The word of who made it.
+    maker: &'static str,
     /// What the result was made from.
     from: Option<MadeFrom>,
     sketch: Evaluator,
@@ -232,6 +234,10 @@ impl SceneEvaluator {
         };
         let (wind, looking) = (self.wind, self.looking);
         let made = self.plants.entry(plant.id()).or_default();
+        if made.maker != settings.maker.word() {
+            // Of a document in which this number was another plant's.
+            *made = Made { maker: settings.maker.word(), revision: made.revision, ..Made::default() };
+        }
         (made.sketch.looking, made.tree.looking) = (looking, looking);
         if let Maker::Sketch(s) = &settings.maker {
             let mut options = SketchOptions { leaf, ..SketchOptions::of_plant(plant) };
