@@ -1,264 +1,258 @@
-/** What a person can ask for by name or key: the command palette, the keys, the sheet that lists them. */
-import type { App } from './app';
-import { openPalette, type Action } from './palette';
-import { SHAPE_TOOLS } from './shaping';
-import type { Tool } from './sheet/sheet';
-import { t, type TextKey } from './text';
-import { tour } from './tour';
-import { dialog, el } from './ui';
+/**
+ * Everything that a person can ask the page for, in one table. The palette, the keyboard, the buttons of the bars and
+ * the sheet of keys are all read from it.
+ */
+import type { Clipboard } from './clipboard';
+import type { Files } from './files';
+import type { Panels } from './panels';
+import type { Session } from './session';
+import type { Shaping } from './shaping';
+import type { Sheet, Tool } from './sheet/sheet';
+import type { TextKey } from './text';
+import type { Theme } from './theme';
+import { CLIMB_KEYS, SHAPE_TOOLS, SHEET_TOOLS } from './tools';
+import type { PlantView } from './view/view';
+import type { ViewModes } from './viewmode';
 
-/** Tools of the sheet and their keys. */
-export const TOOLS: readonly [Tool, string][] = [
-  ['parts', 'P'],
-  ['branch-contour', 'B'],
-  ['leaf-contour', 'L'],
-  ['erase', 'E'],
-  ['select', 'V'],
+/** The parts of the page that commands work on. */
+export interface Page {
+  readonly session: Session;
+  readonly sheet: Sheet;
+  /** The view and its tools: none without WebGL 2. */
+  readonly view: PlantView | undefined;
+  readonly shaping: Shaping | undefined;
+  readonly modes: ViewModes;
+  readonly files: Files;
+  readonly clipboard: Clipboard;
+  readonly panels: Panels;
+  readonly theme: Theme;
+  setTool(tool: Tool): void;
+  choose(strokes: number[]): void;
+  toggleMirror(): void;
+  toggleStats(): void;
+  switchLanguage(): void;
+  openPalette(): void;
+  openHelp(): void;
+  startTour(): void;
+}
+
+export interface PageCommand {
+  readonly id: string;
+  /** What the palette calls it; what has no label is reached by its key alone. */
+  readonly label?: TextKey;
+  /** Keys with a space between them; the first is the one that is shown. */
+  readonly keys?: string;
+  /** The keys count only while a tool of the view is held, and then before those of the page. */
+  readonly shaping?: true;
+  /** Whether the keys would do something now; if not, they are left to others and to the browser. */
+  readonly when?: (page: Page) => boolean;
+  readonly run: (page: Page) => void;
+}
+
+const hasSelection = (p: Page): boolean => p.sheet.selected.length > 0;
+const isPicking = (p: Page): boolean => p.shaping?.word === 'pick';
+const isBrushing = (p: Page): boolean => p.shaping?.word === 'brush' || p.shaping?.word === 'leaves';
+/** How much the brackets change a brush. */
+const BRUSH_STEP = 1.15;
+/** How far an arrow moves strokes, pixels; with Shift five times as far. */
+const NUDGE = 5;
+
+const ARROWS = [
+  ['←', -1, 0],
+  ['↑', 0, 1],
+  ['→', 1, 0],
+  ['↓', 0, -1],
+] as const;
+
+function nudge(page: Page, x: number, y: number): void {
+  const step = NUDGE * page.sheet.unitsPerPixel;
+  page.session.draw({ 'move-strokes': [page.sheet.selected, [x * step, y * step]] });
+}
+
+function selectNext(page: Page, by: 1 | -1): void {
+  page.setTool('select');
+  page.sheet.selectNext(by);
+}
+
+const TABLE = [
+  ...SHEET_TOOLS.map(([tool, keys]) => ({
+    id: tool,
+    label: `tool.${tool}` as const,
+    keys,
+    run: (p: Page) => p.setTool(tool),
+  })),
+  { id: 'undo', label: 'undo', keys: 'Ctrl+Z', run: (p) => p.session.ask({ kind: 'undo' }) },
+  { id: 'redo', label: 'redo', keys: 'Ctrl+Shift+Z Ctrl+Y', run: (p) => p.session.ask({ kind: 'redo' }) },
+  { id: 'new', label: 'menu.new', run: (p) => p.files.fresh() },
+  {
+    id: 'close',
+    label: 'act.close',
+    run: (p) => {
+      p.view?.forget();
+      void p.files.close();
+    },
+  },
+  { id: 'open', label: 'menu.open', keys: 'Ctrl+O', run: (p) => p.files.choose() },
+  { id: 'samples', label: 'menu.samples', run: (p) => p.files.samples() },
+  { id: 'save', label: 'menu.save', keys: 'Ctrl+S', run: (p) => void p.files.save() },
+  { id: 'export', label: 'menu.export', keys: 'Ctrl+E', run: (p) => p.files.chooseExport() },
+  { id: 'share', label: 'menu.share', run: (p) => void p.files.share() },
+  { id: 'dice', label: 'dice', keys: 'R', run: (p) => p.panels.roll() },
+  { id: 'lock', label: 'lock', run: (p) => p.panels.toggleLock() },
+  { id: 'grid', label: 'variations.title', keys: 'G', run: (p) => p.panels.openVariations() },
+  { id: 'settings', label: 'menu.settings', run: (p) => p.panels.openSettings() },
+  { id: 'mirror', label: 'tool.mirror', keys: 'M', run: (p) => p.toggleMirror() },
+  { id: 'photo', label: 'tool.photo', keys: 'U', run: (p) => p.panels.openPhoto() },
+  { id: 'fit', label: 'tool.fit', keys: '0', run: (p) => p.sheet.fit() },
+  { id: 'front', label: 'view.front', keys: 'F', run: (p) => p.view?.setFront(!p.view.isFront) },
+  { id: 'frame', label: 'view.frame', keys: 'Shift+0', run: (p) => p.view?.frameNow() },
+  { id: 'wire', label: 'view.wire', keys: 'W', run: (p) => p.modes.toggle('wire') },
+  { id: 'skeleton', label: 'view.skeleton', keys: 'K', run: (p) => p.modes.toggle('skeleton') },
+  {
+    id: 'shape',
+    label: 'shape.title',
+    keys: 'S',
+    when: (p) => p.shaping !== undefined,
+    run: (p) => p.shaping?.toggle(),
+  },
+  ...SHAPE_TOOLS.map(([word, keys]) => ({
+    id: `shape-${word}` as const,
+    label: `shape.${word}` as const,
+    keys,
+    shaping: true as const,
+    run: (p: Page) => p.shaping?.take(word),
+  })),
+  {
+    id: 'shape-up',
+    label: 'shape.up.hint',
+    keys: CLIMB_KEYS.up,
+    shaping: true,
+    run: (p) => p.shaping?.climb(1),
+  },
+  {
+    id: 'shape-down',
+    label: 'shape.down.hint',
+    keys: CLIMB_KEYS.down,
+    shaping: true,
+    run: (p) => p.shaping?.climb(-1),
+  },
+  {
+    id: 'shape-smaller',
+    keys: '[',
+    shaping: true,
+    when: isBrushing,
+    run: (p) => p.shaping?.resize(1 / BRUSH_STEP),
+  },
+  {
+    id: 'shape-larger',
+    keys: ']',
+    shaping: true,
+    when: isBrushing,
+    run: (p) => p.shaping?.resize(BRUSH_STEP),
+  },
+  { id: 'shape-remove', keys: 'Del', shaping: true, when: isPicking, run: (p) => p.shaping?.remove() },
+  {
+    id: 'shape-leave',
+    keys: 'Esc',
+    shaping: true,
+    run: (p) => {
+      if (!p.shaping?.cancel()) p.shaping?.take(undefined);
+    },
+  },
+  { id: 'stats', label: 'view.stats', keys: 'I', run: (p) => p.toggleStats() },
+  { id: 'picture', label: 'export.png', run: (p) => void p.files.picture() },
+  {
+    id: 'all',
+    label: 'act.all',
+    keys: 'Ctrl+A',
+    run: (p) => p.choose(p.session.drawn?.strokes.map((s) => s.id) ?? []),
+  },
+  {
+    id: 'copy',
+    label: 'act.copy',
+    keys: 'Ctrl+C',
+    when: (p) => hasSelection(p) && !getSelection()?.toString(),
+    run: (p) => void p.clipboard.copy(),
+  },
+  { id: 'cut', keys: 'Ctrl+X', when: hasSelection, run: (p) => void p.clipboard.cut() },
+  {
+    id: 'paste',
+    label: 'act.paste',
+    keys: 'Ctrl+V',
+    // The browser's own paste follows the key and brings what other programs copied.
+    when: () => false,
+    run: (p) => void p.clipboard.pasteText(''),
+  },
+  { id: 'duplicate', label: 'act.duplicate', keys: 'Ctrl+D', run: (p) => p.clipboard.duplicate() },
+  { id: 'clear', label: 'act.clear', run: (p) => p.session.draw('clear') },
+  {
+    id: 'remove',
+    keys: 'Del',
+    when: hasSelection,
+    run: (p) => p.session.draw({ 'remove-strokes': p.sheet.selected }),
+  },
+  { id: 'select-none', keys: 'Esc', run: (p) => p.sheet.select([]) },
+  { id: 'select-previous', keys: '[', run: (p) => selectNext(p, -1) },
+  { id: 'select-next', keys: ']', run: (p) => selectNext(p, 1) },
+  ...ARROWS.flatMap(([arrow, x, y]) =>
+    ([1, 5] as const).map((times) => ({
+      id: `nudge-${arrow}-${times}` as const,
+      keys: times === 1 ? arrow : `Shift+${arrow}`,
+      when: (p: Page) => hasSelection(p) && document.activeElement === p.sheet.element,
+      run: (p: Page) => nudge(p, x * times, y * times),
+    })),
+  ),
+  ...(['sketch', 'tree', 'leaf', 'flower'] as const).map((maker) => ({
+    id: `add-${maker}` as const,
+    label: `scene.add.${maker}` as const,
+    run: (p: Page) => void p.panels.add(maker),
+  })),
+  { id: 'language', label: 'menu.language.hint', run: (p) => p.switchLanguage() },
+  { id: 'theme', label: 'menu.theme', run: (p) => p.theme.next() },
+  { id: 'tour', label: 'tour.again', run: (p) => p.startTour() },
+  { id: 'palette', keys: 'Ctrl+K', run: (p) => p.openPalette() },
+  { id: 'help', label: 'dialog.help', keys: '?', run: (p) => p.openHelp() },
+] as const satisfies readonly PageCommand[];
+
+export type CommandId = (typeof TABLE)[number]['id'];
+export const COMMANDS: readonly (PageCommand & { id: CommandId })[] = TABLE;
+
+const BY_ID = new Map(COMMANDS.map((c) => [c.id, c]));
+
+export function commandOf(id: CommandId): PageCommand {
+  return BY_ID.get(id)!;
+}
+
+/** The key of a command that is shown to people; empty if it has none. */
+export function keyOf(id: CommandId): string {
+  return commandOf(id).keys?.split(' ')[0] ?? '';
+}
+
+/** The rows of the sheet of keys: whose keys, what stands between them, and what they do. */
+const KEY_ROWS: readonly [CommandId[], string, TextKey][] = [
+  [SHEET_TOOLS.map(([tool]) => tool), ' ', 'key.tools'],
+  [['undo', 'redo'], ' · ', 'key.undo'],
+  [['open', 'save', 'export'], ' · ', 'key.files'],
+  [['copy', 'cut', 'paste', 'duplicate'], ' · ', 'key.copy'],
+  [['all'], '', 'act.all'],
+  [['remove'], '', 'key.delete'],
+  [ARROWS.map(([arrow]) => `nudge-${arrow}-1` as const), ' ', 'key.nudge'],
+  [['mirror'], '', 'tool.mirror'],
+  [['photo'], '', 'tool.photo'],
+  [['dice'], '', 'key.dice'],
+  [['grid'], '', 'variations.title'],
+  [['front'], '', 'key.front'],
+  [['wire', 'skeleton'], ' · ', 'key.modes'],
+  [['stats'], '', 'view.stats'],
+  [['shape'], '', 'key.shape'],
+  [['shape-pick', 'shape-leaves'], ' – ', 'key.shape.tools'],
+  [['shape-up', 'shape-down'], ' · ', 'key.shape.up'],
+  [['shape-smaller', 'shape-larger'], ' ', 'key.shape.size'],
+  [['palette'], '', 'palette.title'],
+  [['help'], '', 'key.help'],
 ];
 
-export class Commands {
-  constructor(private readonly app: App) {}
-
-  openPalette(): void {
-    openPalette(this.actions());
-  }
-
-  /** Everything the page can do: for the palette. */
-  private actions(): Action[] {
-    const { app } = this;
-    const a = (id: string, key: TextKey, act: () => void, keys = ''): Action => ({
-      id,
-      label: t(key),
-      act,
-      ...(keys ? { keys } : {}),
-    });
-    return [
-      ...TOOLS.map(([tool, keys]) => a(tool, `tool.${tool}` as TextKey, () => app.setTool(tool), keys)),
-      a('undo', 'undo', () => app.ask({ kind: 'undo' }), 'Ctrl+Z'),
-      a('redo', 'redo', () => app.ask({ kind: 'redo' }), 'Ctrl+Shift+Z'),
-      a('new', 'menu.new', () => app.files.fresh()),
-      a('close', 'act.close', () => {
-        app.view?.forget();
-        void app.files.close();
-      }),
-      a('open', 'menu.open', () => app.files.choose(), 'Ctrl+O'),
-      a('samples', 'menu.samples', () => app.files.samples()),
-      a('save', 'menu.save', () => void app.files.save(), 'Ctrl+S'),
-      a('export', 'menu.export', () => app.files.chooseExport(), 'Ctrl+E'),
-      a('share', 'menu.share', () => void app.files.share()),
-      a('dice', 'dice', () => app.roll(), 'R'),
-      a('lock', 'lock', () => app.toggleLock()),
-      a('grid', 'variations.title', () => app.openVariations(), 'G'),
-      a('settings', 'menu.settings', () => app.openSettings()),
-      a('mirror', 'tool.mirror', () => app.toggleMirror(), 'M'),
-      a('photo', 'tool.photo', () => app.openPhoto(), 'U'),
-      a('fit', 'tool.fit', () => app.sheet.fit(), '0'),
-      a('front', 'view.front', () => app.view?.setFront(!app.view.isFront), 'F'),
-      a('frame', 'view.frame', () => app.view?.frameNow(), 'Shift+0'),
-      a('wire', 'view.wire', () => app.setLook(app.look === 'wire' ? 'solid' : 'wire'), 'W'),
-      a('skeleton', 'view.skeleton', () => app.setLook(app.look === 'skeleton' ? 'solid' : 'skeleton'), 'K'),
-      a('shape', 'shape.title', () => app.shaping?.toggle(), 'S'),
-      ...SHAPE_TOOLS.map(([word, keys]) =>
-        a(
-          `shape-${word}`,
-          `shape.${word}` as TextKey,
-          () => app.shaping?.take(word),
-          app.shaping?.isOn ? keys : '',
-        ),
-      ),
-      a('shape-up', 'shape.up.hint', () => app.shaping?.climb(1), 'Q'),
-      a('shape-down', 'shape.down.hint', () => app.shaping?.climb(-1), 'Shift+Q'),
-      a('stats', 'view.stats', () => app.toggleStats(), 'I'),
-      a('picture', 'export.png', () => void app.files.picture()),
-      a('all', 'act.all', () => app.selectAll(), 'Ctrl+A'),
-      a('copy', 'act.copy', () => void app.clipboard.copy(), 'Ctrl+C'),
-      a('paste', 'act.paste', () => void app.clipboard.pasteText(''), 'Ctrl+V'),
-      a('duplicate', 'act.duplicate', () => app.clipboard.duplicate(), 'Ctrl+D'),
-      a('clear', 'act.clear', () => app.draw('clear')),
-      ...(['sketch', 'tree', 'leaf', 'flower'] as const).map((maker) =>
-        a(`add-${maker}`, `scene.add.${maker}` as TextKey, () => void app.add(maker)),
-      ),
-      a('language', 'menu.language.hint', () => app.switchLanguage()),
-      a('theme', 'menu.theme', () => app.switchTheme()),
-      a('tour', 'tour.again', () => tour()),
-      a('help', 'dialog.help', () => this.help(), '?'),
-    ];
-  }
-
-  help(): void {
-    const rows: [string, TextKey][] = [
-      ['P B L E V', 'key.tools'],
-      ['Ctrl+Z · Ctrl+Shift+Z', 'key.undo'],
-      ['Ctrl+O · Ctrl+S · Ctrl+E', 'key.files'],
-      ['Ctrl+C · Ctrl+X · Ctrl+V · Ctrl+D', 'key.copy'],
-      ['Ctrl+A', 'act.all'],
-      ['Del', 'key.delete'],
-      ['← ↑ → ↓', 'key.nudge'],
-      ['M', 'tool.mirror'],
-      ['U', 'tool.photo'],
-      ['R', 'key.dice'],
-      ['G', 'variations.title'],
-      ['F', 'key.front'],
-      ['W · K', 'key.looks'],
-      ['I', 'view.stats'],
-      ['S', 'key.shape'],
-      ['1 – 9', 'key.shape.tools'],
-      ['Q · Shift+Q', 'key.shape.up'],
-      ['[ ]', 'key.shape.size'],
-      ['Ctrl+K', 'palette.title'],
-      ['?', 'key.help'],
-    ];
-    const keys = el('dl', { class: 'keys' });
-    for (const [key, text] of rows) keys.append(el('dt', {}, el('kbd', {}, key)), el('dd', {}, t(text)));
-    const texts = (['help.draw', 'help.pan', 'help.correct', 'help.shape', 'help.drop'] as const).map((k) =>
-      el('li', {}, t(k)),
-    );
-    const again = el(
-      'button',
-      {
-        type: 'button',
-        class: 'link',
-        onclick: () => {
-          d.close();
-          tour();
-        },
-      },
-      t('tour.again'),
-    );
-    const d = dialog(t('dialog.help'), el('ul', {}, ...texts), keys, again);
-  }
-
-  key(e: KeyboardEvent): void {
-    const target = e.target as HTMLElement;
-    if (target.matches('input, select, textarea') || document.querySelector('dialog[open]')) return;
-    const command = e.ctrlKey || e.metaKey;
-    const act = command ? this.commandKey(e) : this.plainKey(e);
-    if (act) {
-      e.preventDefault();
-      act();
-    }
-  }
-
-  private commandKey(e: KeyboardEvent): (() => void) | undefined {
-    const { app } = this;
-    switch (e.key.toLowerCase()) {
-      case 'z':
-        return () => app.ask({ kind: e.shiftKey ? 'redo' : 'undo' });
-      case 'y':
-        return () => app.ask({ kind: 'redo' });
-      case 's':
-        return () => void app.files.save();
-      case 'o':
-        return () => app.files.choose();
-      case 'e':
-        return () => app.files.chooseExport();
-      case 'k':
-        return () => this.openPalette();
-      case 'a':
-        return () => app.selectAll();
-      case 'c':
-        return app.sheet.selected.length > 0 && !getSelection()?.toString()
-          ? () => void app.clipboard.copy()
-          : undefined;
-      case 'x':
-        return app.sheet.selected.length > 0 ? () => void app.clipboard.cut() : undefined;
-      case 'd':
-        return () => app.clipboard.duplicate();
-      default:
-        return undefined;
-    }
-  }
-
-  /** Keys of the tools in the view. */
-  private shapeKey(e: KeyboardEvent): (() => void) | undefined {
-    const { shaping } = this.app;
-    if (!shaping) return undefined;
-    if (e.key === 's' || e.key === 'S') return () => shaping.toggle();
-    if (!shaping.isOn) return undefined;
-    const tool = SHAPE_TOOLS.find(([, key]) => key === e.key);
-    if (tool) return () => shaping.take(tool[0]);
-    switch (e.key) {
-      case 'Escape':
-        return () => {
-          if (!shaping.cancel()) shaping.take(undefined);
-        };
-      case 'Delete':
-      case 'Backspace':
-        return shaping.word === 'pick' ? () => shaping.remove() : undefined;
-      case '[':
-        return shaping.word === 'brush' || shaping.word === 'leaves'
-          ? () => shaping.resize(1 / 1.15)
-          : undefined;
-      case ']':
-        return shaping.word === 'brush' || shaping.word === 'leaves' ? () => shaping.resize(1.15) : undefined;
-      case 'q':
-      case 'Q':
-        return () => shaping.climb(e.shiftKey ? -1 : 1);
-      default:
-        return undefined;
-    }
-  }
-
-  private plainKey(e: KeyboardEvent): (() => void) | undefined {
-    const { app } = this;
-    const shape = this.shapeKey(e);
-    if (shape) return shape;
-    const tool = TOOLS.find(([, key]) => key.toLowerCase() === e.key.toLowerCase());
-    if (tool) return () => app.setTool(tool[0]);
-    const ids = app.sheet.selected;
-    const step = 5 * app.sheet.unitsPerPixel * (e.shiftKey ? 5 : 1);
-    const nudge = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[e.key];
-    if (nudge && ids.length > 0 && document.activeElement === app.sheet.element) {
-      return () => app.draw({ 'move-strokes': [ids, [nudge[0]! * step, nudge[1]! * step]] });
-    }
-    switch (e.key) {
-      case 'r':
-      case 'R':
-        return () => app.roll();
-      case 'f':
-      case 'F':
-        return () => app.view?.setFront(!app.view.isFront);
-      case 'w':
-      case 'W':
-        return () => app.setLook(app.look === 'wire' ? 'solid' : 'wire');
-      case 'k':
-      case 'K':
-        return () => app.setLook(app.look === 'skeleton' ? 'solid' : 'skeleton');
-      case 'i':
-      case 'I':
-        return () => app.toggleStats();
-      case 'g':
-      case 'G':
-        return () => app.openVariations();
-      case 'm':
-      case 'M':
-        return () => app.toggleMirror();
-      case 'u':
-      case 'U':
-        return () => app.openPhoto();
-      case '0':
-        return () => app.sheet.fit();
-      case ')':
-        return () => app.view?.frameNow();
-      case '?':
-        return () => this.help();
-      case '[':
-        return () => {
-          app.setTool('select');
-          app.sheet.selectNext(-1);
-        };
-      case ']':
-        return () => {
-          app.setTool('select');
-          app.sheet.selectNext(1);
-        };
-      case 'Escape':
-        return () => app.sheet.select([]);
-      case 'Delete':
-      case 'Backspace':
-        return ids.length > 0 ? () => app.draw({ 'remove-strokes': ids }) : undefined;
-      default:
-        return undefined;
-    }
-  }
+/** The sheet of keys, ready to be written: keys and what they do. */
+export function keySheet(): { keys: string; text: TextKey }[] {
+  return KEY_ROWS.map(([ids, between, text]) => ({ keys: ids.map(keyOf).join(between), text }));
 }

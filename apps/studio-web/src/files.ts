@@ -28,17 +28,19 @@ export interface FilesEvents {
   picture(): Promise<Blob> | undefined;
   name(): string;
   empty(): boolean;
-  looking(name: string): void;
+  /** A model is viewed instead of the plants. */
+  viewed(name: string): void;
   /** The scene has more than one plant. */
   several(): boolean;
   /** The maker of the plant that is chosen. */
   kind(): MakerWord;
   /** A picture was given: it goes under the drawing. */
   photo(file: File): Promise<void>;
+  /** The project is in the browser's storage. */
+  kept(): void;
 }
 
 export class Files {
-  onKept: () => void = () => {};
   private timer = 0;
   private stale = false;
   private toldOfStorage = false;
@@ -99,7 +101,7 @@ export class Files {
     const start = performance.now();
     const opened = await this.engine.ask<Opened>({ kind: 'open', name, bytes, row, fresh });
     measured('open', start);
-    if (opened.kind === 'model') this.events.looking(opened.name || name);
+    if (opened.kind === 'model') this.events.viewed(opened.name || name);
     this.events.opened();
     this.changed();
     if (!quiet) {
@@ -277,7 +279,7 @@ export class Files {
     try {
       const bytes = await this.engine.ask<Uint8Array>({ kind: 'save' });
       await keep({ bytes, name: this.events.name(), time: Date.now() });
-      this.onKept();
+      this.events.kept();
     } catch (e) {
       if ((e as Error).message === 'restarted') {
         this.changed();

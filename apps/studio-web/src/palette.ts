@@ -1,37 +1,49 @@
 /** The command palette: everything the page can do, by name. */
+import { COMMANDS, keyOf, type Page } from './commands';
+import { isAwake } from './keyboard';
 import { nearness } from './nearness';
 import { t } from './text';
 import { dialog, el } from './ui';
 
-export interface Action {
+interface Entry {
   id: string;
   label: string;
-  keys?: string;
+  keys: string;
   act(): void;
 }
 
-export function openPalette(actions: readonly Action[]): void {
+/** What has a name, with the key that would do the same now. */
+function entriesOf(page: Page): Entry[] {
+  return COMMANDS.flatMap((c) =>
+    c.label
+      ? [{ id: c.id, label: t(c.label), keys: isAwake(page, c) ? keyOf(c.id) : '', act: () => c.run(page) }]
+      : [],
+  );
+}
+
+export function openPalette(page: Page): void {
+  const entries = entriesOf(page);
   const list = el('div', {
     class: 'menu',
     role: 'listbox',
     id: 'palette-list',
     'aria-label': t('palette.title'),
   });
-  let shown: Action[] = [];
+  let shown: Entry[] = [];
   let chosen = 0;
   const mark = (): void => {
     [...list.children].forEach((c, i) => c.setAttribute('aria-selected', String(i === chosen)));
     input.setAttribute('aria-activedescendant', list.children[chosen]?.id ?? '');
     list.children[chosen]?.scrollIntoView({ block: 'nearest' });
   };
-  const run = (a: Action | undefined): void => {
+  const run = (a: Entry | undefined): void => {
     if (a) {
       d.close();
       a.act();
     }
   };
   const fill = (): void => {
-    const found = actions.flatMap((a) => {
+    const found = entries.flatMap((a) => {
       const n = nearness(a.label, input.value);
       return n === undefined ? [] : [{ a, n }];
     });

@@ -13,6 +13,7 @@ import type {
   ShapePointer,
 } from './wire';
 import { number, t, tOf, type TextKey } from './text';
+import { CLIMB_KEYS, SHAPE_TOOLS, type ShapeTool } from './tools';
 import { button, el, icon, type IconName } from './ui';
 import { Overlay } from './view/overlay';
 import type { PlantView } from './view/view';
@@ -26,28 +27,21 @@ export interface ShapingEvents {
   changed(): void;
 }
 
-type WordOf<T> = T extends string ? T : keyof T & string;
-export type Word = WordOf<HeldTool>;
-export const SHAPE_TOOLS: readonly [Word, string][] = [
-  ['pick', '1'],
-  ['rotate', '2'],
-  ['move', '3'],
-  ['prune', '4'],
-  ['regrow', '5'],
-  ['sketch', '6'],
-  ['brush', '7'],
-  ['silhouette', '8'],
-  ['leaves', '9'],
-];
 /** How the pointer of a tool leaves a trace. */
-const TRACES: Partial<Record<Word, 'line' | 'brush' | 'outline'>> = {
+const TRACES: Partial<Record<ShapeTool, 'line' | 'brush' | 'outline'>> = {
   sketch: 'line',
   brush: 'brush',
   silhouette: 'outline',
   leaves: 'brush',
 };
 /** Tools that mean a branch: in a dense crown, what bears the twig under the pointer. */
-const CLIMBS: ReadonlySet<Word | undefined> = new Set<Word>(['pick', 'rotate', 'move', 'prune', 'regrow']);
+const CLIMBS: ReadonlySet<ShapeTool | undefined> = new Set<ShapeTool>([
+  'pick',
+  'rotate',
+  'move',
+  'prune',
+  'regrow',
+]);
 /** So near to a branch, in pixels, a pointer means it; a finger is thicker. */
 const NEAR = 9;
 const NEAR_TOUCH = 22;
@@ -68,7 +62,7 @@ const EDIT_ICONS: Record<string, IconName> = {
   silhouette: 'silhouette',
   'leaf-density': 'leaf',
 };
-export const TOOL_ICONS: Record<Word, IconName> = {
+const TOOL_ICONS: Record<ShapeTool, IconName> = {
   pick: 'select',
   rotate: 'rotate',
   move: 'slide',
@@ -84,8 +78,8 @@ export class Shaping {
   readonly element = el('div', { class: 'shaping' });
   readonly list = el('section', { class: 'edits' });
   readonly overlay: Overlay;
-  private tool: Word | undefined;
-  private last: Word = 'rotate';
+  private tool: ShapeTool | undefined;
+  private last: ShapeTool = 'rotate';
   private plant: PlantState | undefined;
   private seen: Seen | undefined;
   private settings = {
@@ -156,7 +150,7 @@ export class Shaping {
   }
 
   /** The tool, if one is in the hand. */
-  get word(): Word | undefined {
+  get word(): ShapeTool | undefined {
     return this.tool;
   }
 
@@ -174,7 +168,7 @@ export class Shaping {
   }
 
   /** Takes a tool up, or lays it down. */
-  take(tool: Word | undefined): void {
+  take(tool: ShapeTool | undefined): void {
     if (tool && !this.isPossible) return;
     if (this.isBusy) this.cancel();
     this.tool = tool;
@@ -437,11 +431,11 @@ export class Shaping {
       step(
         'b-shape-up',
         'shape.up',
-        'Q',
+        CLIMB_KEYS.up,
         1,
         `${t('shape.up')}${this.bearers > 0 ? ` +${this.bearers}` : ''}`,
       ),
-      step('b-shape-down', 'shape.down', 'Shift+Q', -1, t('shape.down')),
+      step('b-shape-down', 'shape.down', CLIMB_KEYS.down, -1, t('shape.down')),
     ];
     up.setAttribute('aria-pressed', String(this.bearers > 0));
     down.disabled = this.bearers === 0;

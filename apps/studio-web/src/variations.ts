@@ -5,7 +5,7 @@ import { t } from './text';
 import { dialog, el } from './ui';
 
 const COUNT = 9;
-/** A look needs fewer triangles than the plant itself. */
+/** A small picture needs fewer triangles than the plant itself. */
 const DETAIL = 0.4;
 
 export interface VariationsEvents {

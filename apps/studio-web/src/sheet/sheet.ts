@@ -230,6 +230,11 @@ export class Sheet {
     this.redraw(false);
   }
 
+  /** Says again what is selected: it moved on the screen, or what is known of it changed. */
+  reselect(): void {
+    if (this.selection.size > 0) this.select(this.selected);
+  }
+
   /** Selects the stroke after (or before) the selected one. */
   selectNext(step: number): void {
     const n = this.strokes.length;

@@ -228,7 +228,7 @@ export const en = {
   'note.link.bad': 'it is cut off or is no drawing',
   'note.link.opened': 'A shared drawing is open. Undo brings yours back.',
   'key.copy': 'copy, cut, paste, duplicate',
-  'key.looks': 'wireframe, skeleton',
+  'key.modes': 'wireframe, skeleton',
   'tour.draw': 'Draw here',
   'tour.draw.text': 'One line makes a stem, closed shapes make leaves and petals. Pen, mouse or finger.',
   'tour.see': 'See it grow',

@@ -225,7 +225,7 @@ export const zh: Record<TextKey, string> = {
   'note.link.bad': '链接被截断或不是画稿',
   'note.link.opened': '已打开分享的画。撤销即可回到你的画。',
   'key.copy': '复制、剪切、粘贴、再制',
-  'key.looks': '线框、骨架',
+  'key.modes': '线框、骨架',
   'tour.draw': '在这里画',
   'tour.draw.text': '一条线成为茎，封闭的形状成为叶和花瓣。用笔、鼠标或手指都行。',
   'tour.see': '看它生长',

@@ -30,7 +30,7 @@ export class PlantView {
   private readonly stage: Stage;
   private readonly looks: Looks;
   private readonly plants = new Map<number, PlantMeshes>();
-  /** A model that is looked at instead of the scene. */
+  /** A model that is viewed instead of the scene. */
   private guest: PlantMeshes | undefined;
   private states: PlantState[] = [];
   private current: number | null = null;

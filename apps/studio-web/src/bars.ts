@@ -1,0 +1,286 @@
+/** The page: its bars, its two sides and what lies over them. Made anew for another language; nothing is decided here. */
+import { type CommandId, commandOf, keyOf, type Page } from './commands';
+import { t, type TextKey } from './text';
+import { SHEET_TOOLS } from './tools';
+import { button, el, icon, type IconName } from './ui';
+
+/** The pieces that know how to show themselves. */
+export interface Pieces {
+  card: HTMLElement;
+  panel: HTMLElement;
+  list: HTMLElement;
+}
+
+type Child = HTMLElement | string;
+/** Buttons by their names, which stand in their ids. */
+export type Buttons = Map<string, HTMLButtonElement>;
+
+/** What is changed later. */
+export interface Parts {
+  buttons: Buttons;
+  name: HTMLInputElement;
+  sheetTools: HTMLElement;
+  /** Over an empty sheet. */
+  empty: HTMLElement;
+  /** In place of the sheet, where there is no plant. */
+  noPlant: HTMLElement;
+  legend: HTMLElement;
+  bloom: HTMLElement;
+  maker: HTMLElement;
+  stats: HTMLElement;
+  /** Over an empty view. */
+  grows: HTMLElement;
+  /** Which model is viewed instead of the plant. */
+  model: HTMLElement;
+  counts: HTMLElement;
+  busy: HTMLElement;
+  busyText: HTMLElement;
+  kept: HTMLElement;
+}
+
+/** Puts the page into `host`. */
+export function buildPage(host: HTMLElement, page: Page, pieces: Pieces): Parts {
+  const buttons: Buttons = new Map();
+  const parts: Parts = {
+    buttons,
+    name: nameField(page),
+    sheetTools: sheetTools(buttons, page),
+    empty: emptySheet(page),
+    noPlant: named(
+      'noplant',
+      'div',
+      { class: 'nothing' },
+      el('h1', {}, t('scene.empty')),
+      el('p', {}, t('scene.empty.hint')),
+    ),
+    legend: named('legend', 'div', { class: 'legend', role: 'list', 'aria-label': t('legend.title') }),
+    bloom: named('bloom', 'div', { class: 'bloom' }),
+    maker: pieces.panel,
+    stats: named('statsbox', 'div', { class: 'statsbox' }),
+    grows: named('grows', 'p', { class: 'grows' }, t('view.empty')),
+    model: named('looking', 'p', { class: 'looking' }),
+    counts: named('counts', 'span', { class: 'counts' }),
+    busy: named('busy', 'span', { class: 'busy' }),
+    busyText: named('busytext', 'span', {}, t('status.loading')),
+    kept: named('kept', 'span', { class: 'muted' }),
+  };
+  pieces.panel.id = 'b-maker';
+  parts.model.hidden = true;
+  host.replaceChildren(
+    topBar(buttons, page, parts.name),
+    sides(leftSide(page, pieces, parts), rightSide(buttons, page, pieces, parts)),
+    footer(page, parts),
+  );
+  return parts;
+}
+
+/** An element whose id tests and other programs go by. */
+function named<K extends keyof HTMLElementTagNameMap>(
+  name: string,
+  tag: K,
+  attributes: Record<string, string | ((e: Event) => void)>,
+  ...children: Child[]
+): HTMLElementTagNameMap[K] {
+  return el(tag, { id: `b-${name}`, ...attributes }, ...children);
+}
+
+const space = (): HTMLElement => el('span', { class: 'space' });
+const group = (...children: Child[]): HTMLElement => el('span', { class: 'group' }, ...children);
+
+/** A button of a command, with its name and its key; `name` and `label` where they are not those of the command. */
+interface ButtonSpec {
+  command: CommandId;
+  icon: IconName;
+  name?: string;
+  label?: TextKey;
+}
+
+function labelOf({ command, label }: ButtonSpec): string {
+  return t(label ?? commandOf(command).label!);
+}
+
+/** A button that is an icon. */
+function iconButton(buttons: Buttons, page: Page, spec: ButtonSpec): HTMLButtonElement {
+  const act = () => commandOf(spec.command).run(page);
+  return keepButton(buttons, spec, button(spec.icon, labelOf(spec), act, keyOf(spec.command)));
+}
+
+/** A button with its name beside the icon. */
+function wideButton(buttons: Buttons, page: Page, spec: ButtonSpec): HTMLButtonElement {
+  const label = labelOf(spec);
+  const key = keyOf(spec.command);
+  const title = key ? `${label}  (${key})` : label;
+  const act = () => commandOf(spec.command).run(page);
+  const attributes = { type: 'button', class: 'wide', title, onclick: act };
+  return keepButton(buttons, spec, el('button', attributes, icon(spec.icon), el('span', {}, label)));
+}
+
+function keepButton(buttons: Buttons, spec: ButtonSpec, b: HTMLButtonElement): HTMLButtonElement {
+  const name = spec.name ?? spec.command;
+  b.id = `b-${name}`;
+  buttons.set(name, b);
+  return b;
+}
+
+function nameField(page: Page): HTMLInputElement {
+  const field = named('name', 'input', {
+    class: 'name',
+    spellcheck: 'false',
+    maxlength: '200',
+    'aria-label': t('menu.name'),
+    title: t('menu.name'),
+    onchange: () => {
+      const name = field.value.trim();
+      if (name) page.session.run({ scene: { rename: name } });
+    },
+    onkeydown: (e) => {
+      if ((e as KeyboardEvent).key === 'Enter') field.blur();
+    },
+  });
+  return field;
+}
+
+function topBar(buttons: Buttons, page: Page, name: HTMLInputElement): HTMLElement {
+  const small = (spec: ButtonSpec) => iconButton(buttons, page, spec);
+  const wide = (spec: ButtonSpec) => wideButton(buttons, page, spec);
+  const language = { class: 'plain', type: 'button', title: t('menu.language.hint') };
+  return el(
+    'header',
+    { class: 'bar' },
+    el(
+      'span',
+      { class: 'logo' },
+      el('img', { src: './icon.svg', alt: '', width: '26', height: '26' }),
+      el('b', {}, 'Burgeon'),
+    ),
+    name,
+    group(small({ command: 'undo', icon: 'undo' }), small({ command: 'redo', icon: 'redo' })),
+    group(
+      small({ command: 'dice', icon: 'dice' }),
+      small({ command: 'lock', icon: 'unlock' }),
+      small({ command: 'grid', icon: 'grid' }),
+      small({ command: 'settings', icon: 'settings' }),
+    ),
+    space(),
+    group(
+      wide({ command: 'new', icon: 'fresh', name: 'fresh' }),
+      wide({ command: 'samples', icon: 'samples' }),
+      wide({ command: 'open', icon: 'open' }),
+      wide({ command: 'save', icon: 'save' }),
+      wide({ command: 'share', icon: 'share' }),
+      wide({ command: 'export', icon: 'export' }),
+    ),
+    group(
+      named(
+        'language',
+        'button',
+        { ...language, onclick: () => commandOf('language').run(page) },
+        t('menu.language'),
+      ),
+      small({ command: 'theme', icon: 'theme' }),
+      small({ command: 'palette', icon: 'commands', name: 'commands', label: 'palette.title' }),
+      small({ command: 'help', icon: 'help', label: 'menu.help' }),
+    ),
+  );
+}
+
+function sheetTools(buttons: Buttons, page: Page): HTMLElement {
+  const small = (command: CommandId & IconName) => iconButton(buttons, page, { command, icon: command });
+  return el(
+    'div',
+    { class: 'tools', role: 'toolbar', 'aria-orientation': 'vertical' },
+    ...SHEET_TOOLS.map(([tool]) => small(tool)),
+    el('hr'),
+    small('mirror'),
+    small('photo'),
+    small('fit'),
+  );
+}
+
+function viewTools(buttons: Buttons, page: Page): HTMLElement {
+  const small = (command: CommandId, icon: IconName) => iconButton(buttons, page, { command, icon });
+  return el(
+    'div',
+    { class: 'tools right-tools', role: 'toolbar' },
+    small('shape', 'shape'),
+    el('hr'),
+    small('front', 'front'),
+    small('frame', 'fit'),
+    small('wire', 'wire'),
+    small('skeleton', 'skeleton'),
+    small('stats', 'stats'),
+    small('picture', 'picture'),
+  );
+}
+
+function emptySheet(page: Page): HTMLElement {
+  const samples = () => commandOf('samples').run(page);
+  return named(
+    'empty',
+    'div',
+    { class: 'empty' },
+    el('h1', {}, t('sheet.empty')),
+    el('p', {}, t('sheet.empty.hint')),
+    el('button', { type: 'button', class: 'link', onclick: samples }, t('sheet.empty.sample')),
+  );
+}
+
+function leftSide(page: Page, pieces: Pieces, parts: Parts): HTMLElement {
+  const sheet = page.sheet.element;
+  const { sheetTools, empty, legend, bloom, maker, noPlant } = parts;
+  return el(
+    'section',
+    { class: 'left' },
+    sheet,
+    sheetTools,
+    empty,
+    legend,
+    pieces.card,
+    bloom,
+    maker,
+    noPlant,
+  );
+}
+
+function rightSide(buttons: Buttons, page: Page, pieces: Pieces, parts: Parts): HTMLElement {
+  const { view, shaping } = page;
+  const shown =
+    view && shaping
+      ? [view.element, shaping.overlay.element, viewTools(buttons, page), shaping.element]
+      : [el('p', { class: 'nogl' }, t('note.nowebgl'))];
+  // The scene and the edits by hand, in the view's corner.
+  const column = el('div', { class: 'column' }, pieces.list, ...(shaping ? [shaping.list] : []));
+  return el('section', { class: 'right' }, ...shown, parts.stats, column, parts.grows, parts.model);
+}
+
+function footer(page: Page, { counts, busy, busyText, kept }: Parts): HTMLElement {
+  const stop = () => page.session.engine.interrupt();
+  const cancel = el('button', { type: 'button', class: 'link', onclick: stop }, t('status.cancel'));
+  busy.append(el('i'), busyText, cancel);
+  return el('footer', { class: 'foot' }, counts, space(), busy, kept);
+}
+
+/** The sheet and the view with a bar between them, which is dragged or moved with the arrow keys. */
+function sides(left: HTMLElement, right: HTMLElement): HTMLElement {
+  const split = el('div', {
+    class: 'split',
+    role: 'separator',
+    'aria-orientation': 'vertical',
+    tabindex: '0',
+  });
+  const body = el('main', {}, left, split, right);
+  const to = (share: number): void =>
+    body.style.setProperty('--left', `${Math.min(80, Math.max(20, share))}%`);
+  split.addEventListener('pointerdown', (e) => split.setPointerCapture(e.pointerId));
+  split.addEventListener('pointermove', (e) => {
+    if (!split.hasPointerCapture(e.pointerId)) return;
+    const box = body.getBoundingClientRect();
+    const upright = box.height > box.width;
+    to(upright ? ((e.clientY - box.top) / box.height) * 100 : ((e.clientX - box.left) / box.width) * 100);
+  });
+  split.addEventListener('keydown', (e) => {
+    const by = { ArrowLeft: -3, ArrowUp: -3, ArrowRight: 3, ArrowDown: 3 }[e.key];
+    if (by) to((parseFloat(body.style.getPropertyValue('--left')) || 50) + by);
+  });
+  return body;
+}

@@ -1,0 +1,151 @@
+import { afterEach, describe, expect, it, vi } from 'vitest';
+import { COMMANDS, keyOf, keySheet, type Page } from './commands';
+import { commandFor, type Pressed } from './keyboard';
+import { en } from './text/en';
+import { zh } from './text/zh';
+
+/** A page on which nothing is selected, without a view unless one is given. */
+function pageWith(parts: object = {}): Page {
+  return { sheet: { selected: [], element: null, unitsPerPixel: 1 }, ...parts } as unknown as Page;
+}
+
+const holding = (word: string): object => ({ shaping: { isOn: true, word } });
+
+/** What is pressed, written as in the table; the key itself as a browser says it. */
+function press(written: string): Pressed {
+  const key = written.replace(/^(Ctrl\+|Shift\+)*/, '');
+  return {
+    key,
+    ctrlKey: written.includes('Ctrl+'),
+    metaKey: false,
+    shiftKey: written.includes('Shift+'),
+  };
+}
+
+const idFor = (page: Page, written: string): string | undefined => commandFor(page, press(written))?.id;
+
+describe('the table of commands', () => {
+  it('names each command once', () => {
+    const ids = COMMANDS.map((c) => c.id);
+    expect(new Set(ids).size).toBe(ids.length);
+  });
+
+  it('gives no key to two commands of one context', () => {
+    for (const shaping of [false, true]) {
+      const keys = COMMANDS.filter((c) => (c.shaping ?? false) === shaping).flatMap(
+        (c) => c.keys?.split(' ') ?? [],
+      );
+      expect(keys.length).toBeGreaterThan(0);
+      expect(keys.filter((key, i) => keys.indexOf(key) !== i)).toEqual([]);
+    }
+  });
+
+  it('has a label or a key for every command, and labels in both languages', () => {
+    for (const c of COMMANDS) expect(c.label ?? c.keys, c.id).toBeTruthy();
+    const labels = COMMANDS.flatMap((c) => c.label ?? []);
+    for (const texts of [en, zh]) for (const label of labels) expect(texts[label], label).toMatch(/\S/);
+  });
+});
+
+describe('the sheet of keys', () => {
+  it('lists only keys that commands have', () => {
+    const known = new Set(COMMANDS.flatMap((c) => c.keys?.split(' ') ?? []));
+    for (const { keys } of keySheet())
+      for (const key of keys.split(' ').filter((k) => k !== '·' && k !== '–'))
+        expect(known, keys).toContain(key);
+  });
+
+  it('says in both languages what each key does', () => {
+    for (const texts of [en, zh]) for (const { text } of keySheet()) expect(texts[text], text).toMatch(/\S/);
+  });
+
+  it('reads as it is written for people', () => {
+    const rows = keySheet().map(({ keys }) => keys);
+    expect(rows).toEqual([
+      'P B L E V',
+      'Ctrl+Z · Ctrl+Shift+Z',
+      'Ctrl+O · Ctrl+S · Ctrl+E',
+      'Ctrl+C · Ctrl+X · Ctrl+V · Ctrl+D',
+      'Ctrl+A',
+      'Del',
+      '← ↑ → ↓',
+      'M',
+      'U',
+      'R',
+      'G',
+      'F',
+      'W · K',
+      'I',
+      'S',
+      '1 – 9',
+      'Q · Shift+Q',
+      '[ ]',
+      'Ctrl+K',
+      '?',
+    ]);
+  });
+});
+
+describe('a key', () => {
+  afterEach(() => void vi.unstubAllGlobals());
+
+  it('means its command, whatever the case', () => {
+    const page = pageWith();
+    for (const key of ['r', 'R', 'Shift+R']) expect(idFor(page, key)).toBe('dice');
+    expect(idFor(page, 'Ctrl+z')).toBe('undo');
+    expect(idFor(page, 'Ctrl+Shift+Z')).toBe('redo');
+    expect(idFor(page, 'Ctrl+y')).toBe('redo');
+    expect(idFor(page, 'Ctrl+Shift+S')).toBe('save');
+    expect(commandFor(page, { key: 'k', ctrlKey: false, metaKey: true, shiftKey: false })?.id).toBe(
+      'palette',
+    );
+    expect(idFor(page, 'Shift+)')).toBe('frame');
+    expect(idFor(page, '0')).toBe('fit');
+    expect(idFor(page, 'Shift+?')).toBe('help');
+    expect(idFor(page, 'x')).toBeUndefined();
+  });
+
+  it('is the view’s own while a tool is held there', () => {
+    expect(idFor(pageWith(), '1')).toBeUndefined();
+    expect(idFor(pageWith(), 'q')).toBeUndefined();
+    expect(idFor(pageWith(), ']')).toBe('select-next');
+    expect(idFor(pageWith(), 'Escape')).toBe('select-none');
+    const brush = pageWith(holding('brush'));
+    expect(idFor(brush, '1')).toBe('shape-pick');
+    expect(idFor(brush, 'q')).toBe('shape-up');
+    expect(idFor(brush, 'Shift+Q')).toBe('shape-down');
+    expect(idFor(brush, ']')).toBe('shape-larger');
+    expect(idFor(brush, 'Escape')).toBe('shape-leave');
+    expect(idFor(pageWith(holding('pick')), ']')).toBe('select-next');
+    expect(idFor(pageWith(holding('pick')), 'Backspace')).toBe('shape-remove');
+  });
+
+  it('is left to the browser where it would do nothing', () => {
+    vi.stubGlobal('getSelection', () => null);
+    vi.stubGlobal('document', { activeElement: null });
+    for (const key of ['Ctrl+c', 'Ctrl+x', 'Delete', 'ArrowLeft', 's'])
+      expect(idFor(pageWith(), key)).toBeUndefined();
+    const selected = pageWith({ sheet: { selected: [3], element: null, unitsPerPixel: 2 } });
+    expect(idFor(selected, 'Ctrl+c')).toBe('copy');
+    expect(idFor(selected, 'Delete')).toBe('remove');
+    expect(idFor(selected, 'Ctrl+v')).toBeUndefined();
+  });
+
+  it('moves what is selected, with Shift five times as far', () => {
+    const sheet = { selected: [3], element: {}, unitsPerPixel: 2 };
+    const draw = vi.fn();
+    const page = pageWith({ sheet, session: { draw } });
+    vi.stubGlobal('document', { activeElement: sheet.element });
+    commandFor(page, press('ArrowLeft'))?.run(page);
+    commandFor(page, press('Shift+ArrowUp'))?.run(page);
+    expect(draw.mock.calls).toEqual([
+      [{ 'move-strokes': [[3], [-10, 0]] }],
+      [{ 'move-strokes': [[3], [0, 50]] }],
+    ]);
+  });
+
+  it('is shown to people as the first of a command’s keys', () => {
+    expect(keyOf('redo')).toBe('Ctrl+Shift+Z');
+    expect(keyOf('new')).toBe('');
+  });
+});

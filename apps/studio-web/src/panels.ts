@@ -1,0 +1,163 @@
+/** The dialogs and panels that the page opens for a plant, and the plants and pictures that come of them. */
+import type { Files } from './files';
+import { type Catalogue, catalogueOf, gallery } from './makers';
+import { asPng, photoPanel, placed } from './photo';
+import type { Session } from './session';
+import { type SettingsEvents, settingsPanel } from './settings';
+import type { Sheet } from './sheet/sheet';
+import { setSetting, setting } from './store';
+import { t, tOf, type TextKey } from './text';
+import { closePopover, dialog, note, popover } from './ui';
+import { openVariations } from './variations';
+import type { PlantView } from './view/view';
+import type { MakerWord, NewMaker, SketchState } from './wire';
+
+/** Size of a picture in the grid of variations. */
+const PICTURE_SIZE = [200, 190] as const;
+
+type DrawingEvents = Pick<SettingsEvents, 'run' | 'begin' | 'stage' | 'commit'>;
+
+export interface PanelsPage {
+  readonly session: Session;
+  readonly sheet: Sheet;
+  readonly files: Files;
+  readonly view: PlantView | undefined;
+  /** The button below which a panel opens. */
+  anchor(name: 'photo' | 'settings'): HTMLElement;
+  catalogueCame(): void;
+}
+
+export class Panels {
+  /** What each maker can make; not there before the worker has said it. */
+  catalogue: Catalogue | undefined;
+  /** Strength of the stabiliser of the pen, 0 to 3. */
+  private steady = Math.min(3, Math.max(0, Number(setting('steady') ?? 1) || 0));
+
+  constructor(private readonly page: PanelsPage) {
+    page.sheet.steady = this.steady;
+  }
+
+  async loadCatalogue(): Promise<void> {
+    if (this.catalogue) return;
+    this.catalogue = await catalogueOf(this.page.session.engine).catch(() => undefined);
+    this.page.catalogueCame();
+  }
+
+  /** A plant of a maker: trees ask for their species first. */
+  async add(maker: MakerWord): Promise<void> {
+    const { session } = this.page;
+    await this.loadCatalogue();
+    if (maker !== 'tree' || !this.catalogue) {
+      const name = t(`maker.${maker}` as TextKey);
+      const made: NewMaker =
+        maker === 'flower' ? { flower: 'lily' } : maker === 'tree' ? { tree: 'oak' } : maker;
+      session.act({ add: { name, maker: made } });
+      return;
+    }
+    const d = dialog(
+      t('tree.choose'),
+      gallery(this.catalogue, null, (key) => {
+        d.close();
+        session.act({ add: { name: tOf('word', key), maker: { tree: key } } });
+      }),
+    );
+    d.classList.add('wide-dialog');
+  }
+
+  async addObstacle(file: File): Promise<void> {
+    const { session, files } = this.page;
+    try {
+      const bytes = new Uint8Array(await file.arrayBuffer());
+      await session.engine.ask({ kind: 'obstacle', name: file.name, bytes });
+      files.changed();
+    } catch (e) {
+      note(t('note.unreadable', { name: file.name, why: (e as Error).message }), 'bad');
+    }
+  }
+
+  async layPhoto(file: File): Promise<void> {
+    const { session, sheet, files } = this.page;
+    const { png, aspect } = await asPng(file);
+    const { x, y, width } = placed(sheet.seen(), aspect);
+    if (!session.drawn) throw new Error(t('note.nosketch'));
+    await session.engine.ask({ kind: 'photo', png, x, y, width });
+    files.changed();
+    note(t('note.photo'));
+  }
+
+  openPhoto(): void {
+    const { session, sheet, files } = this.page;
+    const panel = photoPanel(() => session.drawn?.photo ?? null, sheet.placing, {
+      ...this.drawing(),
+      run: (c) => {
+        session.draw(c);
+        if (c === 'remove-photo') closePopover();
+      },
+      choose: () => {
+        closePopover();
+        files.choose('image/*');
+      },
+      placing: (on) => {
+        sheet.placing = on;
+      },
+    });
+    popover(this.page.anchor('photo'), panel, t('tool.photo'));
+  }
+
+  openSettings(): void {
+    const { session, sheet } = this.page;
+    const first = session.drawn;
+    if (!first) return;
+    const now = (): SketchState => session.drawn ?? first;
+    const lenders = (session.state?.plants ?? []).filter((p) => p.lends && p.id !== session.plant?.id);
+    const panel = settingsPanel(now, lenders, {
+      ...this.drawing(),
+      steady: this.steady,
+      setSteady: (strength) => {
+        this.steady = strength;
+        sheet.steady = strength;
+        setSetting('steady', String(strength));
+      },
+    });
+    popover(this.page.anchor('settings'), panel, t('menu.settings'));
+  }
+
+  /** How a panel changes the drawing. */
+  private drawing(): DrawingEvents {
+    const { session } = this.page;
+    return {
+      run: (c) => session.draw(c),
+      begin: (name) => session.begin(name),
+      stage: (c) => session.stageDrawn(c),
+      commit: () => session.commit(),
+    };
+  }
+
+  openVariations(): void {
+    const { session } = this.page;
+    const { plant } = session;
+    if (!plant || plant.locked || session.drawn?.strokes.length === 0) return;
+    openVariations(session.engine, plant.seed, {
+      snapshot: (sent) => this.page.view?.snapshot(sent, ...PICTURE_SIZE),
+      take: (seed) => session.run({ plant: [plant.id, { 'set-seed': seed }] }),
+    });
+  }
+
+  roll(): void {
+    const { session } = this.page;
+    const { plant } = session;
+    if (!plant) return;
+    if (plant.locked) {
+      note(t('note.locked'));
+      return;
+    }
+    const [n] = crypto.getRandomValues(new Uint32Array(1));
+    session.run({ plant: [plant.id, { 'set-seed': String(1 + (n! % 999_999)) }] });
+  }
+
+  toggleLock(): void {
+    const { session } = this.page;
+    const { plant } = session;
+    if (plant) session.run({ plant: [plant.id, { lock: !plant.locked }] });
+  }
+}

@@ -1,0 +1,104 @@
+import { beforeEach, describe, expect, it, vi } from 'vitest';
+import type { EngineEvents } from './engine';
+import type { Request } from './protocol';
+import { Session, type SessionEvents } from './session';
+import type { DocumentState, SceneView } from './wire';
+
+/** Stands for the worker: keeps what it was asked, and says what a test lets it say. */
+const worker = vi.hoisted(() => ({
+  asked: [] as Request[],
+  growing: false,
+  refuses: false,
+  events: undefined as EngineEvents | undefined,
+}));
+
+vi.mock('./engine', () => ({
+  Engine: class {
+    constructor(events: EngineEvents) {
+      worker.events = events;
+    }
+    get growing(): boolean {
+      return worker.growing;
+    }
+    set growing(on: boolean) {
+      worker.growing = on;
+    }
+    async ask(request: Request): Promise<void> {
+      worker.asked.push(request);
+      if (worker.refuses) throw new Error('no');
+    }
+  },
+}));
+
+const MARKS = new Float64Array(3);
+const kinds = (): string[] => worker.asked.map((r) => r.kind);
+
+/** Two drawings, of which one is on the sheet. */
+const documentAt = (current: number): DocumentState =>
+  ({ current, plants: [0, 1].map((id) => ({ id, sketch: { strokes: [] } })) }) as unknown as DocumentState;
+
+function sessionWith(events: Partial<SessionEvents> = {}): Session {
+  const names = ['ready', 'state', 'view', 'busy', 'progress', 'failed', 'fault', 'dead', 'done', 'refused'];
+  const quiet = Object.fromEntries(names.map((name) => [name, () => {}]));
+  return new Session({ ...quiet, ...events } as SessionEvents);
+}
+
+beforeEach(() => Object.assign(worker, { asked: [], growing: false, refuses: false }));
+
+describe('a session', () => {
+  it('says when another plant comes onto the sheet, but not for the first', () => {
+    const others: boolean[] = [];
+    sessionWith({ state: (_fresh, _photo, other) => others.push(other) });
+    for (const current of [0, 0, 1]) worker.events!.state(documentAt(current), [], null);
+    expect(others).toEqual([false, false, true]);
+  });
+
+  it('asks the plant on the sheet, and nothing where there is none', () => {
+    const session = sessionWith();
+    session.draw('clear');
+    expect(worker.asked).toEqual([]);
+    worker.events!.state(documentAt(1), [], null);
+    session.draw('clear');
+    expect(worker.asked).toEqual([{ kind: 'command', command: { sketch: [1, 'clear'] } }]);
+  });
+
+  it('makes a stroke and its mirror image one step of undo', () => {
+    const session = sessionWith();
+    session.stroke('parts', MARKS, undefined);
+    expect(kinds()).toEqual(['stroke']);
+    session.stroke('parts', MARKS, MARKS);
+    expect(kinds().slice(1)).toEqual(['begin', 'stroke', 'stroke', 'commit']);
+  });
+
+  it('sends one draft at a time, the newest', () => {
+    const session = sessionWith();
+    session.setDraft('parts', MARKS);
+    session.setDraft('leaf-contour', MARKS);
+    session.setDraft('branch-contour', MARKS);
+    expect(kinds()).toEqual(['draft']);
+    worker.events!.view({ plants: [] } as unknown as SceneView, []);
+    expect(worker.asked.slice(1)).toEqual([{ kind: 'draft', mode: 'branch-contour', samples: MARKS }]);
+  });
+
+  it('takes back a draft only if it was sent', () => {
+    const session = sessionWith();
+    session.dropDraft();
+    expect(worker.asked).toEqual([]);
+    session.setDraft('parts', MARKS);
+    session.dropDraft();
+    expect(worker.asked[1]).toEqual({ kind: 'draft', mode: 'parts', samples: new Float64Array() });
+    session.dropDraft();
+    expect(worker.asked.length).toBe(2);
+  });
+
+  it('reports what was done and what was refused', async () => {
+    const [done, refused] = [vi.fn(), vi.fn()];
+    const session = sessionWith({ done, refused });
+    session.end(true);
+    await vi.waitFor(() => expect(done).toHaveBeenCalledWith({ kind: 'commit' }));
+    worker.refuses = true;
+    session.end(false);
+    await vi.waitFor(() => expect(refused).toHaveBeenCalledWith({ kind: 'abandon' }, 'no'));
+    expect(done).toHaveBeenCalledTimes(1);
+  });
+});

@@ -1,0 +1,224 @@
+/** Shows in the bars and over both sides what the document and its plant are now. */
+import type { Parts } from './bars';
+import { keyOf } from './commands';
+import { dot } from './correct';
+import type { MakerPanel } from './makers';
+import type { SceneList } from './scene';
+import type { Session } from './session';
+import type { Shaping } from './shaping';
+import type { Sheet } from './sheet/sheet';
+import { statsTable } from './stats';
+import { number, t, tOf } from './text';
+import type { Theme } from './theme';
+import { el, icon, relabel } from './ui';
+import type { ViewModes } from './viewmode';
+import type { DocumentState } from './wire';
+
+/** A flash of work shorter than this only disturbs. */
+const MOMENT_MS = 200;
+/** The day to which a drawn flower opens when it is told to. */
+const OPEN_DAY = 6;
+
+export interface Shown {
+  readonly session: Session;
+  readonly sheet: Sheet;
+  readonly panel: MakerPanel;
+  readonly list: SceneList;
+  readonly shaping: Shaping | undefined;
+  readonly modes: ViewModes;
+  readonly theme: Theme;
+}
+
+export class Show {
+  private statsOn = false;
+  private busyTimer = 0;
+
+  constructor(
+    private readonly shown: Shown,
+    /** Others after the page was made anew. */
+    public parts: Parts,
+  ) {}
+
+  toggleStats(): void {
+    this.statsOn = !this.statsOn;
+    this.switches();
+    this.view();
+  }
+
+  // The document -------------------------------------------------------------------------------------------------
+
+  document(): void {
+    const { session, sheet } = this.shown;
+    const { state, plant, drawn } = session;
+    const { parts } = this;
+    if (!state) return;
+    if (document.activeElement !== parts.name) parts.name.value = state.name;
+    this.steps(state);
+    const seed = plant ? ` · ${t('dice.seed', { seed: plant.seed })}` : '';
+    relabel(parts.buttons.get('dice')!, t('dice') + seed, keyOf('dice'));
+    const { dataset } = document.body;
+    dataset['strokes'] = String(drawn?.strokes.length ?? 0);
+    dataset['plants'] = String(state.plants.length);
+    dataset['current'] = plant?.maker ?? '';
+    parts.sheetTools.hidden = sheet.element.hidden = parts.legend.hidden = !drawn;
+    parts.maker.hidden = !plant || drawn !== null;
+    parts.noPlant.hidden = plant !== undefined;
+    parts.buttons.get('settings')!.disabled = !drawn;
+    this.pieces(state);
+    this.switches();
+    document.title = `${state.name} · ${t('app.title')}`;
+    this.model(undefined);
+    this.emptySheet();
+  }
+
+  /** What would be undone and done again. */
+  private steps(state: DocumentState): void {
+    for (const which of ['undo', 'redo'] as const) {
+      const step = state[which];
+      const b = this.parts.buttons.get(which)!;
+      b.disabled = step === null;
+      const label = step === null ? t(which) : t(`${which}.step`, { step: tOf('step', step) });
+      relabel(b, label, keyOf(which));
+    }
+  }
+
+  /** What has a part of the page to itself. */
+  private pieces(state: DocumentState): void {
+    const { session, panel, list, shaping } = this.shown;
+    panel.show(session.plant, state, session.seen);
+    list.show(state, session.scene);
+    shaping?.show(session.plant, session.shapeable);
+    this.shaping();
+    this.bloom();
+  }
+
+  switches(): void {
+    const { session, sheet, modes } = this.shown;
+    const { buttons, stats } = this.parts;
+    const { plant } = session;
+    const locked = plant?.locked ?? false;
+    this.press('wire', modes.mode === 'wire');
+    this.press('skeleton', modes.mode === 'skeleton');
+    this.press('stats', this.statsOn);
+    this.press('mirror', sheet.symmetric);
+    this.press('lock', locked);
+    buttons.get('lock')!.replaceChildren(icon(locked ? 'lock' : 'unlock'));
+    stats.hidden = !this.statsOn;
+    for (const name of ['dice', 'grid']) buttons.get(name)!.disabled = locked || !plant;
+  }
+
+  press(button: string, on: boolean): void {
+    this.parts.buttons.get(button)?.setAttribute('aria-pressed', String(on));
+  }
+
+  /** The tools of the view: whether one is held, whether one could be. */
+  shaping(): void {
+    const { shaping } = this.shown;
+    if (!shaping) return;
+    this.press('shape', shaping.isOn);
+    this.parts.buttons.get('shape')!.disabled = !shaping.isPossible && !shaping.isOn;
+    document.body.dataset['shape'] = shaping.word ?? '';
+  }
+
+  emptySheet(): void {
+    this.parts.empty.hidden = !this.shown.sheet.isEmpty || !this.shown.session.drawn;
+  }
+
+  /** The name of the model that is viewed instead of the plant, if one is. */
+  model(name: string | undefined): void {
+    const line = this.parts.model;
+    line.hidden = name === undefined;
+    line.textContent = name === undefined ? '' : t('view.model', { name });
+  }
+
+  // The plant ----------------------------------------------------------------------------------------------------
+
+  view(): void {
+    const { session, sheet, theme } = this.shown;
+    const { seen, state } = session;
+    const { parts } = this;
+    this.counts();
+    if (this.statsOn) parts.stats.replaceChildren(statsTable(session.plant, seen));
+    parts.grows.hidden = !session.isBare;
+    if (state) this.pieces(state);
+    const organs = [...new Set(session.organs.values())];
+    parts.legend.replaceChildren(
+      ...organs.map((o) => el('span', { role: 'listitem' }, dot(o, theme.isDark), tOf('organ', o))),
+    );
+    const { dataset } = document.body;
+    const counts = seen?.item?.counts;
+    dataset['triangles'] = String(counts?.triangles ?? 0);
+    dataset['flowers'] = String(counts?.flowers ?? 0);
+    dataset['parts'] = String(seen?.parts.length ?? 0);
+    dataset['digest'] = seen?.item?.digest ?? '';
+    dataset['revision'] = String(session.scene?.revision ?? 0);
+    sheet.reselect();
+  }
+
+  /** The figures at the foot of the page. */
+  private counts(): void {
+    const { session } = this.shown;
+    const item = session.seen?.item;
+    const texts: string[] = [];
+    const strokes = session.drawn?.strokes.length;
+    if (strokes) texts.push(t('status.strokes', { count: number(strokes) }));
+    if (item) {
+      for (const kind of ['flowers', 'petals', 'leaves', 'branches', 'triangles'] as const) {
+        const count = item.counts[kind];
+        if (count) texts.push(t(`status.${kind}`, { count: number(count) }));
+      }
+      texts.push(t('status.time', { ms: number(Math.round(item.timings_ms.total)) }));
+    }
+    this.parts.counts.textContent = texts.join('  ·  ');
+    this.parts.counts.title = (item?.warnings ?? []).join('\n');
+  }
+
+  /** A drawn flower that opens: its day, and a button to play it. */
+  private bloom(): void {
+    const { session, panel } = this.shown;
+    const { drawn } = session;
+    const box = this.parts.bloom;
+    const flowers = (session.seen?.item?.counts.flowers ?? 0) > 0;
+    box.hidden = !drawn || (!flowers && drawn.day === null);
+    const held = box.contains(document.activeElement) && document.activeElement instanceof HTMLInputElement;
+    if (box.hidden || !drawn || panel.isPlaying || held) return;
+    const opens = drawn.day !== null;
+    const toggle = el(
+      'button',
+      {
+        type: 'button',
+        class: 'chip',
+        id: 'b-opens',
+        'aria-pressed': String(opens),
+        title: t('bloom.hint'),
+        onclick: () => session.draw({ 'set-day': opens ? null : OPEN_DAY }),
+      },
+      t('bloom.opens'),
+    );
+    box.replaceChildren(toggle, ...(opens ? [panel.dayRow(drawn.day!)] : []));
+  }
+
+  // The work -----------------------------------------------------------------------------------------------------
+
+  busy(): void {
+    if (this.busyTimer) return;
+    this.busyTimer = window.setTimeout(() => {
+      this.parts.busyText.textContent = t('status.working');
+      this.parts.busy.hidden = false;
+    }, MOMENT_MS);
+  }
+
+  progress(share: number): void {
+    this.parts.busyText.textContent = t('status.working.percent', { percent: Math.floor(100 * share) });
+  }
+
+  idle(): void {
+    clearTimeout(this.busyTimer);
+    this.busyTimer = 0;
+    this.parts.busy.hidden = true;
+  }
+
+  kept(): void {
+    this.parts.kept.textContent = t('status.saved');
+  }
+}
