@@ -555,9 +555,7 @@ fn read_spec(path: &Path) -> Outcome<SketchSpec> {
     let text = files::read_text(path)?;
     let spec: SketchSpec = serde_json::from_str(&text)
         .map_err(|e| Failure::at(path, format_args!("is not a sketch spec: {e}")))?;
-    if let Some(fault) = spec.validate().next() {
-        return Err(Failure::at(path, fault));
-    }
+    burgeon::spec::check(&spec).map_err(|fault| Failure::at(path, fault))?;
     Ok(spec)
 }
 

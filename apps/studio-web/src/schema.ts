@@ -1,5 +1,5 @@
 /** JSON Schemas as the core writes them, and the names of their texts. */
-import type { Json } from './protocol';
+import type { Json } from './wire';
 
 export interface Schema {
   $ref?: string;

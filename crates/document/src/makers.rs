@@ -72,7 +72,7 @@ impl Maker {
         match self {
             Self::Sketch(s) => s.fault(),
             Self::Tree(t) => t.fault(),
-            Self::Leaf(l) => l.settings.fault(),
+            Self::Leaf(l) => fault(&l.settings),
             Self::Flower(f) => f.fault(),
         }
     }
@@ -95,11 +95,9 @@ pub struct SketchSettings {
 
 impl SketchSettings {
     fn fault(&self) -> Option<String> {
-        if let Some(fault) = self.sketch.validate().next() {
-            return Some(fault.to_string());
-        }
         let photo = self.photo.as_ref().and_then(Photo::fault);
-        photo.or_else(|| skin_fault(&self.skin)).or_else(|| out("day", self.day.unwrap_or(0.0), 0.0, 100.0))
+        let day = || FlowerSettings { day: self.day.unwrap_or(0.0), ..FlowerSettings::default() };
+        fault(&self.sketch).or(photo).or_else(|| fault(&self.skin)).or_else(|| fault(&day()))
     }
 }
 
@@ -128,7 +126,7 @@ impl TreeSettings {
         if self.obstacles.iter().any(|o| !o.shape.is_finite()) {
             return Some("every number of an obstacle must be finite".into());
         }
-        skin_fault(&self.skin)
+        fault(&self.skin)
     }
 }
 
@@ -250,6 +248,8 @@ pub struct LeafSettings {
     pub length_m: f64,
 }
 
+spec::schemas!(LeafSettings);
+
 impl Default for LeafSettings {
     fn default() -> Self {
         Self {
@@ -266,20 +266,6 @@ impl Default for LeafSettings {
             margin_vein: false,
             length_m: 0.1,
         }
-    }
-}
-
-impl LeafSettings {
-    fn fault(&self) -> Option<String> {
-        let rows = [
-            ("curl", self.curl, -1.0, 1.0),
-            ("wilt", self.wilt, 0.0, 1.0),
-            ("vein_weight", self.vein_weight, 1.0, 100.0),
-            ("subdivisions", f64::from(self.subdivisions), 1.0, 64.0),
-            ("sides", f64::from(self.sides), 3.0, 64.0),
-            ("length_m", self.length_m, 0.002, 10.0),
-        ];
-        rows.into_iter().find_map(|(name, value, low, high)| out(name, value, low, high))
     }
 }
 
@@ -307,19 +293,10 @@ fn flower_fault(settings: &FlowerSettings) -> Option<String> {
             FlowerSpec::PRESETS.join(", ")
         ));
     }
+    fault(settings)
+}
+
+/// What is out of its range, in words.
+fn fault<T: spec::Spec>(settings: &T) -> Option<String> {
     spec::check(settings).err().map(|fault| fault.to_string())
-}
-
-fn out(name: &str, value: f64, low: f64, high: f64) -> Option<String> {
-    let inside = (low..=high).contains(&value);
-    (!inside).then(|| format!("{name} is {value}, but must be from {low} to {high}"))
-}
-
-fn skin_fault(skin: &SkinSpec) -> Option<String> {
-    let rows = [
-        ("detail", skin.detail, 0.1, 8.0),
-        ("sides", f64::from(skin.sides), 3.0, 24.0),
-        ("variation", skin.variation, 0.0, 1.0),
-    ];
-    rows.into_iter().find_map(|(name, value, low, high)| out(name, value, low, high))
 }

@@ -18,9 +18,9 @@ mod map;
 mod spec;
 mod template;
 
+pub use self::spec::{BranchDepth, FillSpec, LeafDepth, ReliefSpec, SketchSpec, TaperSpec};
 pub use build::{Built, build, build_again};
 pub use fidelity::{Fidelity, StrokeFidelity, fidelity};
 pub use fill::KeptBodies;
 pub use map::PlantMap;
-pub use spec::{BranchDepth, FillSpec, LeafDepth, ReliefSpec, SketchSpec, SpecFault, TaperSpec};
 pub use template::LeafForm;

@@ -32,14 +32,19 @@ pub enum LeafDepth {
 #[serde(default, deny_unknown_fields)]
 pub struct FillSpec {
     /// Attraction by the contour, `k_p`. 0 to 1, default 0.55 (Fig 2b of the paper).
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub contour_pull: f64,
     /// Attraction along the bearer, `k_b`. 0 to 1, default 0.35.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub bearer_pull: f64,
     /// Memory of the last direction, `k_m`. 0 to 1, default 0.1.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub memory: f64,
     /// How many twigs and leaves relative to the default, 0.1 to 10, default 1.
+    #[schemars(range(min = 0.1, max = 10.0))]
     pub density: f64,
     /// Pull against gravity on grown twigs, -1 (weeping) to 1 (upright), default 0.1.
+    #[schemars(range(min = -1.0, max = 1.0))]
     pub tropism: f64,
 }
 
@@ -53,11 +58,14 @@ impl Default for FillSpec {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct TaperSpec {
-    /// s, above 1, default 100.
+    /// s, above 1, default 100; beyond the bounds of the three an axis is a thread or a post.
+    #[schemars(range(min = 1.001, max = 1e6))]
     pub s: f64,
     /// alpha, above 0, default 0.5.
+    #[schemars(range(min = 0.001, max = 10.0))]
     pub alpha: f64,
     /// m, 0 or more, default 0: the tip is 0.1 of the base.
+    #[schemars(range(min = 0.0, max = 1000.0))]
     pub m: f64,
 }
 
@@ -72,16 +80,22 @@ impl Default for TaperSpec {
 #[serde(default, deny_unknown_fields)]
 pub struct ReliefSpec {
     /// A of Eq 5 for petals, -0.2 to 0.2, default 0.08.
+    #[schemars(range(min = -0.2, max = 0.2))]
     pub petal_bend_a: f64,
     /// B of Eq 5 for petals, -0.3 to 0.5, default 0.06.
+    #[schemars(range(min = -0.3, max = 0.5))]
     pub petal_bend_b: f64,
     /// Hollow of petals, 0 to 0.3, default 0.08.
+    #[schemars(range(min = 0.0, max = 0.3))]
     pub petal_hollow: f64,
     /// A of Eq 5 for leaves, default 0.05.
+    #[schemars(range(min = -0.2, max = 0.2))]
     pub leaf_bend_a: f64,
     /// B of Eq 5 for leaves, default 0.18.
+    #[schemars(range(min = -0.3, max = 0.5))]
     pub leaf_bend_b: f64,
     /// Fold of leaves along the midrib, slope of the halves, 0 to 1, default 0.25.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub leaf_fold: f64,
 }
 
@@ -98,11 +112,20 @@ impl Default for ReliefSpec {
     }
 }
 
-/// Everything that can be asked of the sketch maker; saved with the document.
+/// Everything that can be asked of the sketch maker; saved with the document. The maker itself takes any numbers: it
+/// clamps what would break it.
+///
+/// ```
+/// use sketch::SketchSpec;
+/// let spec = SketchSpec { gravity: 7.0, ..SketchSpec::default() };
+/// assert_eq!(spec::check(&spec).unwrap_err().to_string(), "gravity must be 0 to 1, not 7");
+/// assert_eq!(spec::check(&SketchSpec::default()), Ok(()));
+/// ```
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct SketchSpec {
     /// Height of the plant in metres, above 0. `None`: 8 m for a tree, 0.5 m for a herb.
+    #[schemars(range(min = 0.001, max = 1000.0), extend("x-unit" = "m"))]
     pub height_m: Option<f64>,
     /// Depth of branches.
     pub branch_depth: BranchDepth,
@@ -111,6 +134,7 @@ pub struct SketchSpec {
     /// Flowers (by index in the reading) that face away from the viewer: orthography cannot tell.
     pub flipped_flowers: Vec<u32>,
     /// Pipe model exponent t of Eq 6, 1.8 to 3. `None`: 2 for a tree, 2.5 for a herb.
+    #[schemars(range(min = 1.8, max = 3.0))]
     pub pipe_exponent: Option<f64>,
     /// Thinning along an axis.
     pub taper: TaperSpec,
@@ -119,62 +143,11 @@ pub struct SketchSpec {
     /// Bending of blades.
     pub relief: ReliefSpec,
     /// Pull of light (upwards) on recovered branches, -1 to 1, default 0.
+    #[schemars(range(min = -1.0, max = 1.0))]
     pub phototropism: f64,
     /// Sag of recovered branches under gravity, 0 to 1, default 0.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub gravity: f64,
 }
 
-/// A number of a [`SketchSpec`] that lies outside its range.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("{field} is {value}, but must be from {low} to {high}")]
-pub struct SpecFault {
-    /// The field, as it stands in the file.
-    pub field: &'static str,
-    /// What was given.
-    pub value: f64,
-    /// Smallest value.
-    pub low: f64,
-    /// Largest value.
-    pub high: f64,
-}
-
-impl SketchSpec {
-    /// Every number that lies outside its range. The maker itself takes any spec: it clamps what would break it.
-    ///
-    /// ```
-    /// use sketch::SketchSpec;
-    /// let spec = SketchSpec { gravity: 7.0, ..SketchSpec::default() };
-    /// let fault = spec.validate().next().unwrap();
-    /// assert_eq!(fault.to_string(), "gravity is 7, but must be from 0 to 1");
-    /// assert_eq!(SketchSpec::default().validate().count(), 0);
-    /// ```
-    pub fn validate(&self) -> impl Iterator<Item = SpecFault> + use<> {
-        let (fill, taper, relief) = (&self.fill, &self.taper, &self.relief);
-        let optional =
-            [("height_m", self.height_m, 0.001, 1000.0), ("pipe_exponent", self.pipe_exponent, 1.8, 3.0)];
-        let optional = optional.into_iter().filter_map(|(f, v, low, high)| Some((f, v?, low, high)));
-        let rest = [
-            ("phototropism", self.phototropism, -1.0, 1.0),
-            ("gravity", self.gravity, 0.0, 1.0),
-            ("fill.contour_pull", fill.contour_pull, 0.0, 1.0),
-            ("fill.bearer_pull", fill.bearer_pull, 0.0, 1.0),
-            ("fill.memory", fill.memory, 0.0, 1.0),
-            ("fill.density", fill.density, 0.1, 10.0),
-            ("fill.tropism", fill.tropism, -1.0, 1.0),
-            // Beyond these bounds an axis is a thread or a post.
-            ("taper.s", taper.s, 1.001, 1e6),
-            ("taper.alpha", taper.alpha, 0.001, 10.0),
-            ("taper.m", taper.m, 0.0, 1000.0),
-            ("relief.petal_bend_a", relief.petal_bend_a, -0.2, 0.2),
-            ("relief.petal_bend_b", relief.petal_bend_b, -0.3, 0.5),
-            ("relief.petal_hollow", relief.petal_hollow, 0.0, 0.3),
-            ("relief.leaf_bend_a", relief.leaf_bend_a, -0.2, 0.2),
-            ("relief.leaf_bend_b", relief.leaf_bend_b, -0.3, 0.5),
-            ("relief.leaf_fold", relief.leaf_fold, 0.0, 1.0),
-        ];
-        optional
-            .chain(rest)
-            .filter(|(_, value, low, high)| !(low..=high).contains(&value))
-            .map(|(field, value, low, high)| SpecFault { field, value, low, high })
-    }
-}
+spec::schemas!(SketchSpec);

@@ -36,10 +36,10 @@ mod traced;
 mod tube;
 mod wind;
 
+pub use self::spec::{LeafMeshSpec, PetalColor, SkinSpec};
 pub use blade::{BladeChart, blade_mesh};
 pub use leaf::ShapeMesh;
 pub use organs::KeptShapes;
-pub use spec::{LeafMeshSpec, PetalColor, SkinSpec};
 pub use texture::{LeafColours, vein_texture};
 pub use traced::Traced;
 pub use tube::{TubeSpec, tube};

@@ -17,9 +17,11 @@ pub struct SkinSpec {
     /// Fineness: 1 gives about 500 triangles for a branch of average length and 250 to 800 for a drawn blade;
     /// counts grow in proportion. In a crown of hundreds of branches each gets what its bends take. 0.1 to 8,
     /// default 1.
+    #[schemars(range(min = 0.1, max = 8.0))]
     pub detail: f64,
     /// Sides of an ordinary branch at `detail` 1 or more; thick ones get up to 24. 3 to 24, default 8 (the
     /// paper's octagons).
+    #[schemars(range(min = 3, max = 24))]
     pub sides: u32,
     /// How leaves of measured veins are meshed at `detail` 1. What a leaf is asked for, not saved here.
     #[serde(skip)]
@@ -29,6 +31,7 @@ pub struct SkinSpec {
     /// Colour of petals whose organs have no colour of their own; `None` picks one by seed and plant name.
     pub petals: Option<PetalColor>,
     /// Variation of hue and brightness from organ to organ, 0 (none) to 1 (default).
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub variation: f64,
     /// Also fill the columns that say how wind moves each vertex ([`mesh::TriMesh::wind`], `pivots`). Chosen for an
     /// export, not saved. Default false.
@@ -41,6 +44,8 @@ pub struct SkinSpec {
     #[serde(skip)]
     pub seed: Seed,
 }
+
+spec::schemas!(SkinSpec);
 
 impl Default for SkinSpec {
     fn default() -> Self {

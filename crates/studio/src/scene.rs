@@ -470,8 +470,8 @@ pub fn tree_settings(spec: &TreeSpec, preset: Option<&str>) -> TreeSettings {
 }
 
 /// The JSON Schema of what can be set of a measured leaf.
-pub fn leaf_schema() -> serde_json::Value {
-    schemars::schema_for!(LeafSettings).to_value()
+pub fn leaf_schema() -> &'static serde_json::Value {
+    LeafSettings::schema()
 }
 
 /// The JSON Schema of what can be set of a flower.
