@@ -1321,12 +1321,14 @@ export type StrokeMode =
 export type StrokeReport = {
   /** What it is. */
   class: string;
-  /** 0 to 1. */
+  /** How sure that class is, 0 to 1: the classifier's share of it, also where a rule chose it; 1 where the user did. */
   confidence: number;
   /** Its index in the drawing, from 0. */
   index: number;
   /** What became of it. */
   organ: string;
+  /** What decided the class: `user`, `classifier` or `rule:NAME` (`docs/strokes.md` lists the rules). */
+  source?: string;
 };
 
 /** A stroke without its points. */

@@ -72,7 +72,7 @@ fn refusals_say_what_and_what_to_do() {
         (project(V1, r#"{"name":"a","seed":1,"strokes":[],"skin":{"detail":1e9}}"#), "0.1 to 8"),
         (
             project(V1, r#"{"name":"a","seed":1,"strokes":[],"sketch":{"fill":{"density":1e300}}}"#),
-            "fill.density is",
+            "fill.density must be 0.1 to 10",
         ),
         (
             project(V3, r#"{"name":"a","plants":[{"name":"a","seed":1,"maker":{"shrub":{}}}]}"#),
@@ -80,7 +80,10 @@ fn refusals_say_what_and_what_to_do() {
         ),
         (scene(r#"{"flower":{"settings":{"species":"weed"}}}"#, ""), "\"weed\" is unknown"),
         (scene(r#"{"flower":{"settings":{"day":1e300}}}"#, ""), "day must be 0 to 100 d, not 1e"),
-        (scene(r#"{"leaf":{"file":"m","data":"","settings":{"sides":1}}}"#, ""), "sides is 1"),
+        (
+            scene(r#"{"leaf":{"file":"m","data":"","settings":{"sides":1}}}"#, ""),
+            "sides must be 3 to 64, not 1",
+        ),
         (scene(r#"{"tree":{"spec":[]}}"#, ""), "JSON object"),
         (scene(r#"{"tree":{"spec":{},"leaf":0}}"#, ""), "bears the leaf"),
         (scene(r#"{"tree":{"spec":{},"leaf":7}}"#, ""), "bears the leaf"),

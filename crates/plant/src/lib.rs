@@ -8,6 +8,8 @@
 
 mod blade;
 mod flat;
+mod frame;
+mod ids;
 mod measure;
 mod organ;
 mod phyllotaxis;
@@ -19,11 +21,13 @@ mod validate;
 
 pub use blade::{Blade, Lift, Relief};
 pub use flat::FlatLeaf;
+pub use frame::Frame;
+pub use ids::{AxisId, FlowerId, NodeId, OrganId, ShapeId};
 pub use measure::{Measures, OrderMeasures, RadiusExponent, Strahler};
-pub use organ::{Flower, FlowerId, Frame, Organ, OrganId, OrganKind, Paint, Shape, ShapeId};
+pub use organ::{Flower, Organ, OrganKind, Paint, Shape};
 pub use phyllotaxis::{Divergence, Phyllotaxis};
 pub use pipe::{PipeModel, Taper, pipe_radii};
 pub use relief::BladeSurface;
 pub use sheet::{Chart, Sheet, SplineBlade, Vein, VeinShade, Venation};
-pub use topology::{Axis, AxisId, AxisKind, NodeId, Nodes, Plant};
+pub use topology::{Axis, AxisKind, Nodes, Plant};
 pub use validate::Fault;

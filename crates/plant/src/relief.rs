@@ -51,6 +51,36 @@ pub struct BladeSurface<'a> {
     top: f64,
 }
 
+impl Blade {
+    /// The blade ready to be evaluated at many points: tables of its width and lengths are made once.
+    ///
+    /// Cost: linear in the points of the outline and midrib.
+    pub fn surface(&self) -> BladeSurface<'_> {
+        BladeSurface::new(self)
+    }
+
+    /// Puts one point of the plane into space (local coordinates, scale 1); [`surface`](Self::surface) for many.
+    ///
+    /// Guaranteed: with `keep_length` off, x and y stay as they are, so the view along z is the drawing.
+    /// Paper 000, Eq 5 and section 6.2.
+    ///
+    /// ```
+    /// use glam::{DVec2, DVec3};
+    /// use plant::{Blade, Lift, Relief};
+    /// let blade = Blade {
+    ///     outline: vec![DVec2::ZERO, DVec2::new(0.3, 0.5), DVec2::Y, DVec2::new(-0.3, 0.5)],
+    ///     midrib: vec![DVec2::ZERO, DVec2::Y],
+    ///     veins: vec![],
+    ///     lift: Lift::Flat,
+    ///     relief: Relief { bend_a: 0.1, bend_b: 0.2, ..Relief::default() },
+    /// };
+    /// assert!(blade.point(DVec2::Y).distance(DVec3::new(0.0, 1.0, -0.3)) < 1e-12);
+    /// ```
+    pub fn point(&self, p: DVec2) -> DVec3 {
+        self.surface().point(p)
+    }
+}
+
 impl<'a> BladeSurface<'a> {
     pub(crate) fn new(blade: &'a Blade) -> Self {
         let tip = blade.midrib.last().copied().unwrap_or(DVec2::Y);

@@ -5,16 +5,8 @@ use core::ops::Range;
 use base::{Digest, Digestible};
 use glam::DVec3;
 
+use crate::ids::{AxisId, NodeId, ShapeId};
 use crate::{Flower, Organ, Shape};
-
-base::define_id! {
-    /// One axis: a trunk, branch, twig, stem, stalk or root.
-    pub struct AxisId;
-}
-base::define_id! {
-    /// One node: a point of an axis where something may be borne.
-    pub struct NodeId;
-}
 
 /// What an axis is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -151,9 +143,9 @@ impl Plant {
     }
 
     /// Adds a shape and returns its handle.
-    pub fn add_shape(&mut self, shape: Shape) -> crate::ShapeId {
+    pub fn add_shape(&mut self, shape: Shape) -> ShapeId {
         self.shapes.push(shape);
-        crate::ShapeId::new(self.shapes.len() - 1)
+        ShapeId::new(self.shapes.len() - 1)
     }
 
     /// The fingerprint of the whole plant: the same on every platform and for any thread count.

@@ -58,7 +58,8 @@ impl Default for FillSpec {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct TaperSpec {
-    /// s, above 1, default 100; beyond the bounds of the three an axis is a thread or a post.
+    // Beyond the bounds of these three an axis is a thread or a post.
+    /// s, above 1, default 100.
     #[schemars(range(min = 1.001, max = 1e6))]
     pub s: f64,
     /// alpha, above 0, default 0.5.

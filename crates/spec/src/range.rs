@@ -72,8 +72,8 @@ pub fn check<T: Spec>(value: &T) -> Result<(), RangeFault> {
 /// The way from the root to a value, on the stack.
 enum Trail<'a> {
     Root,
-    Field(&'a Trail<'a>, &'a str),
-    Row(&'a Trail<'a>, usize),
+    Field(&'a Self, &'a str),
+    Row(&'a Self, usize),
 }
 
 impl fmt::Display for Trail<'_> {
