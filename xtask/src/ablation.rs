@@ -98,10 +98,11 @@ pub(crate) fn block(rows: &[StrokeRow], sketches: &Path, fixtures: &Path) -> Res
     let count =
         |source, clear| strokes.clone().filter(|r| r.source == source && r.is_clear() == clear).count();
     let mut out = format!(
-        "Classifiers that have not seen a drawing and all rules together read right, over {DEALINGS} dealings: of the \
-         public's strokes {} of {} clear and {} of {} doubtful ones (the labeller was not sure, or they are two things \
-         at once), and {} of {} parts labelled by others; the macro F1 is {:.4}. The table says what changes without \
-         each rule: these figures, and how many drawings are read otherwise of {} fixtures and {} others.\n\n\
+        "Measured with classifiers that have not seen the drawing, and with all rules, over {DEALINGS} random splits. \
+         Correct: {} of\n{} clear strokes of the public, {} of {} doubtful ones (the labeller was unsure, or they are \
+         two things at once),\nand {} of {} parts labelled by others. The macro F1 is {:.4}.\n\n\
+         The table shows how these figures change without each rule, and how many of {} fixtures and {} other drawings \
+         are\nthen read differently.\n\n\
          | rule | why | clear | doubtful | parts | macro F1 | fixtures | others |\n\
          |---|---|---|---|---|---|---|---|\n",
         all.right(),

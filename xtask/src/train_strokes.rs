@@ -82,7 +82,7 @@ fn figures_block(rows: &[StrokeRow], all: &[StrokeFigures]) -> String {
     let clear = rows.iter().filter(|r| r.source == StrokeSource::Public && r.is_clear()).count();
     let _ = writeln!(
         out,
-        "{clear} clear strokes, 10 folds by drawing, dealt {} times (mean, spread of the dealings):\n",
+        "{clear} clear strokes, 10 folds by drawing, {} random splits (mean and spread over the splits):\n",
         all.len()
     );
     let _ = writeln!(out, "| figure | mean | spread |\n|---|---|---|");
@@ -105,7 +105,7 @@ fn figures_block(rows: &[StrokeRow], all: &[StrokeFigures]) -> String {
         }
     }
     if let Some(first) = all.first() {
-        let _ = writeln!(out, "\nConfusion of the first dealing (rows: label, columns: found):\n");
+        let _ = writeln!(out, "\nConfusion matrix of the first split (rows: label, columns: found):\n");
         let words: Vec<&str> = StrokeClass::ALL.iter().map(|c| c.word()).collect();
         let _ = writeln!(out, "| | {} |\n|---|{}", words.join(" | "), "---|".repeat(words.len()));
         for (word, row) in words.iter().zip(&first.confusion) {
@@ -126,7 +126,7 @@ fn parts_block(out: &mut String, all: &[StrokeFigures]) {
     }
     let _ = writeln!(
         out,
-        "\nSPG drawings (strokes of which nine tenths of the points bear one label), found as:\n"
+        "\nSPG drawings (strokes with nine tenths of their points under one label), found as:\n"
     );
     let _ = writeln!(out, "| drawing | label | found |\n|---|---|---|");
     for ((kind, label), found) in parts {
