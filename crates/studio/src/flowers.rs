@@ -7,7 +7,7 @@ use mesh::Model;
 use plant::Plant;
 use skin::{KeptShapes, SkinSpec};
 
-use crate::make::MadePlant;
+use crate::made::MadePlant;
 use crate::shaping::Shaper;
 use crate::{Counts, ItemReport, TimingsMs};
 

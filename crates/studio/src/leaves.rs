@@ -8,13 +8,11 @@ use geom::SplineError;
 use leaf::{FullMarks, Leaf, LeafSpec, Marks, MarksError, Pose, RaysError, ScanError};
 use mesh::{Model, Texture, TriMesh};
 use plant::{Frame, NodeId, Organ, OrganKind, Paint, Plant, Shape, ShapeId, SplineBlade};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use skin::{KeptShapes, LeafColours, ShapeMesh, SkinSpec};
 
-use crate::make::MadePlant;
+use crate::made::MadePlant;
+use crate::report::{Counts, FaceCounts, ItemReport, LeafFit, LeafReport, TimingsMs};
 use crate::shaping::Shaper;
-use crate::{Counts, ItemReport, TimingsMs};
 
 /// What the blade's colour is.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -78,88 +76,6 @@ impl From<Stopped> for LeafError {
             Stopped::Cancelled(c) => Self::Cancelled(c),
             Stopped::OverBudget(o) => Self::OverBudget(o),
         }
-    }
-}
-
-/// The part of a report about a leaf.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct LeafReport {
-    /// `interpolate`, `approximate`, `bezier` or `nurbs`.
-    pub surface: String,
-    /// Rows of marks.
-    pub rows: u64,
-    /// Length of the midrib, millimetres.
-    pub length_mm: f64,
-    /// Area of the blade's mesh, square millimetres.
-    pub area_mm2: f64,
-    /// The veins' mesh; faces are quads (and triangles of caps).
-    pub veins: FaceCounts,
-    /// The blade's mesh; faces are quads.
-    pub blade: FaceCounts,
-    /// Distances of what was measured from the blade.
-    pub fit_error: FitError,
-    /// The farthest that a vein's centre line is from the blade, millimetres.
-    pub vein_gap_mm: Option<f64>,
-    /// Rings whose ball is inside its neighbours; none for plain rings.
-    pub swallowed_rings: Option<u64>,
-    /// Rings at which a vein is thicker than it bends.
-    pub crossing_rings: Option<u64>,
-    /// Of a scan: what was found in it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub scan: Option<ScanReport>,
-}
-
-/// What was found in a scan.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct ScanReport {
-    /// Points read, without those that are no numbers.
-    pub points: u64,
-    /// Points left out because their neighbours are far.
-    pub outliers: u64,
-    /// Share of the blade that has a point within 2 mm; the rest are holes that were bridged.
-    pub covered: f64,
-    /// Length of the stalk, millimetres; none if there is no stalk.
-    pub stalk_mm: Option<f64>,
-    /// Length of the outline, millimetres.
-    pub outline_mm: f64,
-    /// Greatest width across the midrib, millimetres.
-    pub width_mm: f64,
-}
-
-/// Vertices and faces of a mesh.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub struct FaceCounts {
-    /// Vertices.
-    pub vertices: u64,
-    /// Faces.
-    pub faces: u64,
-}
-
-/// How far measured points are from the blade, millimetres.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct FitError {
-    /// Root of the mean square.
-    pub rms_mm: f64,
-    /// 95 of 100 points are nearer.
-    pub p95_mm: f64,
-    /// The farthest.
-    pub max_mm: f64,
-    /// Share of the points that the blade explains (within 2 mm): all of them for marks that it passes through.
-    pub explained: f64,
-}
-
-impl FitError {
-    /// From distances in metres; a point is explained up to 2 mm.
-    pub fn of(distances: &[f64]) -> Self {
-        let mut sorted: Vec<f64> = distances.iter().map(|d| d * 1e3).collect();
-        sorted.sort_by(f64::total_cmp);
-        let n = sorted.len();
-        let Some(&max) = sorted.last() else { return Self::default() };
-        let square: f64 = sorted.iter().map(|d| d * d).sum();
-        let explained = sorted.partition_point(|&d| d <= 2.0) as f64 / n as f64;
-        // The smallest distance that at least 95 % do not exceed.
-        let p95 = sorted[(95 * n).div_ceil(100).max(1) - 1];
-        Self { rms_mm: (square / n as f64).sqrt(), p95_mm: p95, max_mm: max, explained }
     }
 }
 
@@ -381,7 +297,7 @@ fn leaf_report(marks: &FullMarks, leaf: &Leaf, meshes: &ShapeMesh, options: &Lea
         area_mm2: 1e6 * area(&meshes.surface),
         veins: counts(&meshes.veins, meshes.vein_faces),
         blade: counts(&meshes.surface, meshes.blade_faces),
-        fit_error: FitError::of(&distances),
+        fit_error: LeafFit::of(&distances),
         vein_gap_mm: Some(1e3 * leaf.vein_gap(8)),
         swallowed_rings: swallowed(options, meshes),
         crossing_rings: Some(meshes.crossing as u64),

@@ -21,6 +21,7 @@ mod evaluate;
 mod flowers;
 mod leaf_blade;
 mod leaves;
+mod made;
 mod make;
 mod motion;
 mod opening;
@@ -37,18 +38,17 @@ pub use base::{
     Angle, Budget, CancelToken, Cancelled, Clock, Code, Coded, Counted, Digest, Executor, NoClock,
     OverBudget, Report, Run, Seed, Serial, Stopped, Told, Unit, UpAxis, Warning, brief, map_indexed, quoted,
 };
-pub use evaluate::{Evaluator, FrontView};
+pub use evaluate::{Evaluator, FrontView, make_from_sketch};
 pub use flowers::{FlowerOptions, make_flower};
 pub use leaf_blade::leaf_blade;
-pub use leaves::{
-    FaceCounts, FitError, LeafError, LeafOptions, LeafReport, LeafTexture, ScanReport, make_leaf,
-    make_leaf_of,
-};
-pub use make::{ClassOverrides, Made, MadePlant, MakeError, SketchOptions, make_from_sketch};
+pub use leaves::{LeafError, LeafOptions, LeafTexture, make_leaf, make_leaf_of};
+pub use made::{Made, MadePlant};
+pub use make::{ClassOverrides, MakeError, SketchOptions};
 pub use motion::{cloud_model, motion_model};
 pub use opening::{OpenedPlant, OpeningError, OpeningPlant};
 pub use report::{
-    Counts, Fidelity, InputReport, ItemReport, REPORT_SCHEMA, RunReport, StrokeReport, TimingsMs,
+    Counts, FaceCounts, FidelityReport, GrowthReport, InputReport, ItemReport, LeafFit, LeafReport,
+    REPORT_SCHEMA, RunReport, ScanReport, StrokeReport, TimingsMs,
 };
 pub use scanned::make_leaf_from_scan;
 pub use scene::{
@@ -60,9 +60,9 @@ pub use shoot::{ShootSpec, make_shoot};
 pub use template::{LeafTemplate, TemplateError};
 
 pub use trees::{
-    GUIDED_METHODS, GrowthReport, MadeTree, NamedMesh, OAK_METHODS, PAPER_OAKS, PRESETS, PaperOak, Preset,
-    TreeError, TreeEvaluator, TreeOptions, TreeSize, coarser, guided_methods, make_tree, method_word,
-    read_tree_spec, scale_to_height, show_obstacles, tree_blade, tree_schema, tree_size,
+    GUIDED_METHODS, MadeTree, NamedMesh, OAK_METHODS, PAPER_OAKS, PRESETS, PaperOak, Preset, TreeError,
+    TreeEvaluator, TreeOptions, TreeSize, coarser, guided_methods, make_tree, method_word, read_tree_spec,
+    scale_to_height, show_obstacles, tree_blade, tree_schema, tree_size,
 };
 pub use venation::make_ray_leaf;
 

@@ -2,17 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use base::{Cancelled, OverBudget, Run, Seed, Stopped};
+use base::{Cancelled, OverBudget, Stopped};
 use document::{DocumentPlant, Photo, PlantEdit};
-use ink::{Drawing, StrokeClass};
-use mesh::Model;
-use plant::Plant;
-use reading::Reading;
+use ink::StrokeClass;
 use sketch::SketchSpec;
 use skin::SkinSpec;
 
-use crate::evaluate::Evaluator;
-use crate::report::ItemReport;
 use crate::template::LeafTemplate;
 
 /// Classes that the user set, by stroke index in the drawing.
@@ -93,49 +88,6 @@ impl From<Stopped> for MakeError {
             Stopped::OverBudget(o) => Self::OverBudget(o),
         }
     }
-}
-
-/// Everything made from one drawing.
-#[derive(Clone, Debug)]
-pub struct Made {
-    /// What was meant, still flat.
-    pub reading: Reading,
-    /// The plant.
-    pub plant: Plant,
-    /// Its meshes and materials.
-    pub model: Model,
-    /// The report's entry; `output` and the times of reading and writing are the shell's to fill.
-    pub item: ItemReport,
-}
-
-/// A plant of measured leaves or of flowers that open, with its meshes.
-#[derive(Clone, Debug)]
-pub struct MadePlant {
-    /// The plant.
-    pub plant: Plant,
-    /// Its meshes and materials.
-    pub model: Model,
-    /// The report's entry; `output` and the times of reading and writing are the shell's to fill.
-    pub item: ItemReport,
-}
-
-/// Makes a plant and its meshes from a drawing (paper 000).
-///
-/// The same drawing, options and seed give the same bits on every platform and for any executor.
-/// Cost: linear in ink and organs, some milliseconds for a drawing of 30 strokes.
-///
-/// # Errors
-/// [`MakeError`]: nothing usable in the drawing, an override of a missing stroke, or a cancelled run.
-pub fn make_from_sketch(
-    drawing: &Drawing,
-    options: &SketchOptions,
-    seed: Seed,
-    run: &Run<'_>,
-) -> Result<Made, MakeError> {
-    let mut evaluator = Evaluator::default();
-    let item = evaluator.update(drawing, options, seed, run)?;
-    let (reading, plant, model) = evaluator.take().ok_or(Cancelled)?; // update succeeded: all three are there
-    Ok(Made { reading, plant, model, item })
 }
 
 base::coded!(MakeError {

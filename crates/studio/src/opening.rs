@@ -10,8 +10,9 @@ use mesh::{MaterialKind, Model};
 use plant::{Flower, FlowerId, Organ, OrganKind, Plant, Shape};
 use skin::{KeptShapes, SkinSpec};
 
+use crate::evaluate::make_from_sketch;
 use crate::flowers::steady;
-use crate::make::{MakeError, SketchOptions, make_from_sketch};
+use crate::make::{MakeError, SketchOptions};
 use crate::report::ItemReport;
 
 /// A plant of a drawing, its flowers at any day.

@@ -76,7 +76,7 @@ pub struct ItemReport {
     /// Times of the stages.
     pub timings_ms: TimingsMs,
     /// How near the model's front view is to the drawing.
-    pub fidelity: Fidelity,
+    pub fidelity: FidelityReport,
     /// Fingerprint of the plant: independent of platform and threads.
     pub digest: String,
     /// What was not as the user might expect.
@@ -87,10 +87,10 @@ pub struct ItemReport {
     pub plant: Option<plant::Measures>,
     /// Of `leaf`: veins, blade and how well they fit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub leaf: Option<crate::LeafReport>,
+    pub leaf: Option<LeafReport>,
     /// Of `grow`: what growth did.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub growth: Option<crate::GrowthReport>,
+    pub growth: Option<GrowthReport>,
     /// Of a plant that was edited by hand: what became of each edit, in their order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub edits: Vec<crate::EditReport>,
@@ -204,9 +204,120 @@ impl TimingsMs {
 /// Reprojection error of axes, petals and `drawn` leaves against the drawing, as shares of its diagonal; none where no stroke
 /// was compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Fidelity {
+pub struct FidelityReport {
     /// Mean distance.
     pub reprojection_mean: Option<f64>,
     /// 95th percentile.
     pub reprojection_p95: Option<f64>,
+}
+
+/// The part of a report about a leaf.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct LeafReport {
+    /// `interpolate`, `approximate`, `bezier` or `nurbs`.
+    pub surface: String,
+    /// Rows of marks.
+    pub rows: u64,
+    /// Length of the midrib, millimetres.
+    pub length_mm: f64,
+    /// Area of the blade's mesh, square millimetres.
+    pub area_mm2: f64,
+    /// The veins' mesh; faces are quads (and triangles of caps).
+    pub veins: FaceCounts,
+    /// The blade's mesh; faces are quads.
+    pub blade: FaceCounts,
+    /// Distances of what was measured from the blade.
+    pub fit_error: LeafFit,
+    /// The farthest that a vein's centre line is from the blade, millimetres.
+    pub vein_gap_mm: Option<f64>,
+    /// Rings whose ball is inside its neighbours; none for plain rings.
+    pub swallowed_rings: Option<u64>,
+    /// Rings at which a vein is thicker than it bends.
+    pub crossing_rings: Option<u64>,
+    /// Of a scan: what was found in it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scan: Option<ScanReport>,
+}
+
+/// What was found in a scan.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ScanReport {
+    /// Points read, without those that are no numbers.
+    pub points: u64,
+    /// Points left out because their neighbours are far.
+    pub outliers: u64,
+    /// Share of the blade that has a point within 2 mm; the rest are holes that were bridged.
+    pub covered: f64,
+    /// Length of the stalk, millimetres; none if there is no stalk.
+    pub stalk_mm: Option<f64>,
+    /// Length of the outline, millimetres.
+    pub outline_mm: f64,
+    /// Greatest width across the midrib, millimetres.
+    pub width_mm: f64,
+}
+
+/// Vertices and faces of a mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct FaceCounts {
+    /// Vertices.
+    pub vertices: u64,
+    /// Faces.
+    pub faces: u64,
+}
+
+/// How far measured points are from the blade, millimetres.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct LeafFit {
+    /// Root of the mean square.
+    pub rms_mm: f64,
+    /// 95 of 100 points are nearer.
+    pub p95_mm: f64,
+    /// The farthest.
+    pub max_mm: f64,
+    /// Share of the points that the blade explains (within 2 mm): all of them for marks that it passes through.
+    pub explained: f64,
+}
+
+impl LeafFit {
+    /// From distances in metres; a point is explained up to 2 mm.
+    pub fn of(distances: &[f64]) -> Self {
+        let mut sorted: Vec<f64> = distances.iter().map(|d| d * 1e3).collect();
+        sorted.sort_by(f64::total_cmp);
+        let n = sorted.len();
+        let Some(&max) = sorted.last() else { return Self::default() };
+        let square: f64 = sorted.iter().map(|d| d * d).sum();
+        let explained = sorted.partition_point(|&d| d <= 2.0) as f64 / n as f64;
+        // The smallest distance that at least 95 % do not exceed.
+        let p95 = sorted[(95 * n).div_ceil(100).max(1) - 1];
+        Self { rms_mm: (square / n as f64).sqrt(), p95_mm: p95, max_mm: max, explained }
+    }
+}
+
+/// The part of a report about growth.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct GrowthReport {
+    /// `competition`, `colonization`, `self-organizing`, `guided` or `lsystem`.
+    pub method: String,
+    /// Attraction points or markers of all cycles.
+    pub attractors: u64,
+    /// Of these, consumed.
+    pub consumed: u64,
+    /// Of these, never reached.
+    pub unreachable: u64,
+    /// Rounds, years or rewriting steps.
+    pub iterations: u64,
+    /// Life cycles.
+    pub cycles: u64,
+    /// Joints of the skeleton.
+    pub nodes: u64,
+    /// Places for leaves.
+    pub leaves_placed: u64,
+    /// Leaves on the tree.
+    pub leaves_kept: u64,
+    /// Vertices of the meshes, wood and leaves alike, that lie more than a millimetre inside an obstacle; none where
+    /// there is no obstacle, or nothing was measured.
+    pub inside_obstacle: Option<u64>,
+    /// How deep the deepest vertex lies inside an obstacle, metres; 0 where none does; none as above.
+    #[serde(default)]
+    pub inside_obstacle_depth_m: Option<f64>,
 }

@@ -9,10 +9,9 @@ use leaf::{ScanLeaf, ScanSpec};
 use plant::{AxisKind, NodeId, Plant, Shape, Sheet, Vein, Venation};
 use skin::{LeafMeshSpec, SkinSpec};
 
-use crate::leaves::{
-    FaceCounts, FitError, LeafError, LeafOptions, LeafReport, LeafTexture, ScanReport, add_leaf, area, finish,
-};
-use crate::make::MadePlant;
+use crate::leaves::{LeafError, LeafOptions, LeafTexture, add_leaf, area, finish};
+use crate::made::MadePlant;
+use crate::report::{FaceCounts, LeafFit, LeafReport, ScanReport};
 
 /// Makes a leaf from the points of a scan: blade, midrib and stalk, with their distances from the cloud.
 ///
@@ -58,7 +57,7 @@ pub fn make_leaf_from_scan(
         area_mm2: 1e6 * area(blade),
         veins: FaceCounts { vertices: veins.positions.len() as u64, faces: veins.triangles.len() as u64 },
         blade: FaceCounts { vertices: blade.positions.len() as u64, faces: made.mesh.blade_faces as u64 },
-        fit_error: FitError { explained: found.explained, ..FitError::of(&found.distances) },
+        fit_error: LeafFit { explained: found.explained, ..LeafFit::of(&found.distances) },
         scan: Some(ScanReport {
             points: (found.used + found.outliers) as u64,
             outliers: found.outliers as u64,

@@ -7,7 +7,7 @@ use leaf::{FullMarks, Leaf, Pose};
 use plant::{AxisKind, NodeId, Plant, SplineBlade};
 
 use crate::leaves::{COARSER, LeafError, LeafOptions, bear, finish, leaf_texture};
-use crate::make::MadePlant;
+use crate::made::MadePlant;
 
 /// A whole shoot of measured leaves (paper 004, section 3 and Fig 9).
 #[derive(Clone, Copy, Debug, PartialEq)]

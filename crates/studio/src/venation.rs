@@ -5,8 +5,9 @@ use leaf::{RayLeaf, Rays};
 use plant::{Paint, Plant, VeinShade};
 use skin::LeafColours;
 
-use crate::leaves::{FaceCounts, FitError, LeafError, LeafOptions, LeafReport, area, bear, finish};
-use crate::make::MadePlant;
+use crate::leaves::{LeafError, LeafOptions, area, bear, finish};
+use crate::made::MadePlant;
+use crate::report::{FaceCounts, LeafFit, LeafReport};
 
 /// Makes a leaf whose chief veins start together.
 ///
@@ -63,7 +64,7 @@ pub fn make_ray_leaf(
         area_mm2: 1e6 * area(&meshes.surface),
         veins: counts(&meshes.veins, meshes.vein_faces),
         blade: counts(&meshes.surface, meshes.blade_faces),
-        fit_error: FitError::of(&distances),
+        fit_error: LeafFit::of(&distances),
         vein_gap_mm: Some(1e3 * leaf.vein_gap(8)),
         swallowed_rings: crate::leaves::swallowed(options, meshes),
         crossing_rings: Some(meshes.crossing as u64),

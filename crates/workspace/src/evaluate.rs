@@ -1,6 +1,6 @@
 //! What is shown: plants made again where something changed, their meshes as columns.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use burgeon::document::{self, DocumentPlant, Editor, Maker, PlantId};
 use burgeon::growth::Obstacle;
@@ -9,21 +9,8 @@ use burgeon::mesh::Model;
 use burgeon::plant::{OrganKind, Shape};
 use burgeon::{Evaluator, ItemReport, MakeError, Run, SceneError, Seed, SketchOptions};
 
-use crate::shaping::coarser;
-use crate::workspace::GUEST;
+use crate::view::{GUEST, Outcome, PREVIEW_DETAIL, coarser};
 use crate::{Column, ObstacleView, PlantView, Refusal, SceneView, Workspace, WorkspaceError};
-
-/// Share of the triangles while a stroke is drawn.
-pub(crate) const PREVIEW_DETAIL: f64 = 0.4;
-
-/// What came of a plant.
-#[derive(Debug)]
-pub(crate) enum Outcome {
-    Made,
-    /// Nothing to make it of yet.
-    Bare,
-    Failed(SceneError),
-}
 
 impl Workspace {
     /// Brings every plant that is shown up to date. While a stroke is drawn only the current one, coarser.
@@ -254,4 +241,43 @@ fn preview(
     // Fast while the pen is down, fine when it is lifted.
     options.skin.detail = (options.skin.detail * PREVIEW_DETAIL).max(0.1);
     look.update(drawing, &options, plant.settings().seed, run)
+}
+
+impl Workspace {
+    /// About how many bytes the results of all plants take.
+    pub fn kept_bytes(&self) -> usize {
+        self.scene.kept().map(|(_, bytes)| bytes).sum()
+    }
+
+    /// How many bytes the results of all plants may take before those of plants that are hidden or deleted go. What is
+    /// shown always stays. From the next evaluation on; default [`crate::KEPT_BYTES`].
+    pub fn keep_at_most(&mut self, bytes: usize) {
+        self.kept.limit = bytes;
+    }
+
+    /// Forgets what is not shown until the rest fits. A plant that comes back is made again, with the same bits.
+    pub(crate) fn make_room(&mut self) {
+        let plants = self.editor.document().plants().iter();
+        let shown: BTreeSet<PlantId> =
+            plants.filter(|p| !p.settings().hidden).map(DocumentPlant::id).collect();
+        self.kept.now += 1;
+        for &id in &shown {
+            self.kept.shown.insert(id, self.kept.now);
+        }
+        let mut total = self.kept_bytes();
+        let last = |id| self.kept.shown.get(&id).copied().unwrap_or(0);
+        let aside = self.scene.kept().filter(|(id, _)| !shown.contains(id));
+        let mut aside: Vec<(u64, PlantId, usize)> = aside.map(|(id, bytes)| (last(id), id, bytes)).collect();
+        aside.sort_unstable();
+        for (_, id, bytes) in aside {
+            if total <= self.kept.limit {
+                break;
+            }
+            self.scene.forget(id);
+            total -= bytes;
+        }
+        let kept: BTreeSet<PlantId> = self.scene.kept().map(|(id, _)| id).collect();
+        self.kept.shown.retain(|id, _| kept.contains(id));
+        self.outcomes.retain(|id, _| kept.contains(id) || shown.contains(id));
+    }
 }

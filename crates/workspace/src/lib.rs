@@ -20,6 +20,7 @@ mod error;
 mod evaluate;
 mod export;
 mod files;
+mod held;
 mod kept;
 mod shaping;
 mod state;
@@ -38,5 +39,5 @@ pub use state::{
     DocumentState, EditState, FlowerState, LeafState, MakerWord, NamedShape, ObstacleView, PhotoState,
     PlantState, SketchState, StrokeState, TreeState,
 };
-pub use view::{Column, Front, MaterialView, PartView, PlantView, SceneView, TextureView};
-pub use workspace::{Action, GUEST, NewMaker, Workspace};
+pub use view::{Column, Front, GUEST, MaterialView, PartView, PlantView, SceneView, TextureView};
+pub use workspace::{Action, NewMaker, Workspace};

@@ -4,18 +4,16 @@
 
 use std::sync::Arc;
 
-use burgeon::document::{
-    Command, CommandError, Document, Editor, Maker, PlantId, ShapeCommand, SketchCommand, TreeCommand,
-};
+use burgeon::document::{CommandError, Document, Editor, PlantId, ShapeCommand};
 use burgeon::geom;
 use burgeon::glam::DVec3;
 use burgeon::plant::{AxisId, AxisKind, Plant};
 use burgeon::shape::{self, AxisKey, HandEdit, Input, Pick, Pointer, Ray, Reach, Tool, ToolKind};
-use burgeon::skin::SkinSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::evaluate::PREVIEW_DETAIL;
+use crate::held::Held;
+use crate::view::{PREVIEW_DETAIL, coarser};
 use crate::{Workspace, WorkspaceError};
 
 /// A plant of more triangles is shown coarser while a gesture is going on.
@@ -180,19 +178,6 @@ pub struct ShapeAnswer {
     pub again: bool,
 }
 
-/// A gesture that is going on, or was and waits for its command.
-#[derive(Clone, Debug)]
-pub(crate) struct Held {
-    tool: Tool,
-    plant: PlantId,
-    /// The plant as it was when the gesture began.
-    before: Plant,
-    /// It has so many triangles that a gesture shows it coarser and without a digest.
-    pub(crate) large: bool,
-    /// What letting go would make, or made: shown until the command comes.
-    preview: Option<Arc<HandEdit>>,
-}
-
 impl Workspace {
     /// Lets a tool shape the current plant. What a gesture would make is shown but is not in the document; what it made
     /// is the caller's to ask for by a [`ShapeCommand`].
@@ -310,19 +295,6 @@ impl Workspace {
             }
         }
         Some((id, aside.document().clone()))
-    }
-}
-
-/// The command that makes a plant's mesh coarser by a factor.
-pub(crate) fn coarser(document: &Document, id: PlantId, factor: f64) -> Option<Command> {
-    let coarse = |skin: &SkinSpec| {
-        let detail = (skin.detail * factor).clamp(0.1, 8.0);
-        SkinSpec { detail, ..skin.clone() }
-    };
-    match &document.plant(id)?.settings().maker {
-        Maker::Sketch(s) => Some(SketchCommand::SetSkin(coarse(&s.skin)).of(id)),
-        Maker::Tree(t) => Some(TreeCommand::SetSkin(coarse(&t.skin)).of(id)),
-        _ => None,
     }
 }
 

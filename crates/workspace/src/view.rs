@@ -3,13 +3,20 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use burgeon::document::PlantId;
+use burgeon::document::{Command, Document, Maker, PlantId, SketchCommand, TreeCommand};
 use burgeon::mesh::{AlphaMode, Model, Texture};
-use burgeon::{FrontView, ItemReport};
+use burgeon::skin::SkinSpec;
+use burgeon::{FrontView, ItemReport, SceneError};
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::{ObstacleView, Refusal};
+
+/// Share of the triangles while a stroke is drawn.
+pub(crate) const PREVIEW_DETAIL: f64 = 0.4;
+
+/// Stands in a [`crate::PlantView`] for what is no plant of the document: a model that is looked at, another seed.
+pub const GUEST: PlantId = PlantId(u32::MAX);
 
 /// A column of vertices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,7 +45,7 @@ pub struct SceneView {
 /// A plant as it is seen.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct PlantView {
-    /// Its name within the document, or [`crate::GUEST`].
+    /// Its name within the document, or [`GUEST`].
     pub id: PlantId,
     /// Its meshes are others than those of the last view.
     pub fresh: bool,
@@ -195,5 +202,27 @@ impl PlantView {
         });
         view.materials = materials.collect();
         view
+    }
+}
+
+/// What came of a plant.
+#[derive(Debug)]
+pub(crate) enum Outcome {
+    Made,
+    /// Nothing to make it of yet.
+    Bare,
+    Failed(SceneError),
+}
+
+/// The command that makes a plant's mesh coarser by a factor.
+pub(crate) fn coarser(document: &Document, id: PlantId, factor: f64) -> Option<Command> {
+    let coarse = |skin: &SkinSpec| {
+        let detail = (skin.detail * factor).clamp(0.1, 8.0);
+        SkinSpec { detail, ..skin.clone() }
+    };
+    match &document.plant(id)?.settings().maker {
+        Maker::Sketch(s) => Some(SketchCommand::SetSkin(coarse(&s.skin)).of(id)),
+        Maker::Tree(t) => Some(TreeCommand::SetSkin(coarse(&t.skin)).of(id)),
+        _ => None,
     }
 }

@@ -15,14 +15,11 @@ use burgeon::{Evaluator, ItemReport, Preset, SceneEvaluator, tree_settings};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::evaluate::Outcome;
+use crate::held::Held;
 use crate::kept::Kept;
-use crate::shaping::Held;
-use crate::view::Textures;
+use crate::view::{Outcome, Textures};
 use crate::{DocumentState, WorkspaceError};
 
-/// Stands in a [`crate::PlantView`] for what is no plant of the document: a model that is looked at, another seed.
-pub const GUEST: PlantId = PlantId(u32::MAX);
 /// Room between a new plant and the others, metres: as wide as the crown of a tree, or a hand.
 const TREE_ROOM: f64 = 4.0;
 const ROOM: f64 = 0.25;

@@ -11,11 +11,8 @@ use skin::SkinSpec;
 
 use super::blossom::add_blossom;
 use super::look::{KeptBarks, paint, tint};
-use super::{
-    GrowthReport, Inside, TreeError, TreeOptions, coarser, keep_out, look_at_meshes, scale_to_height,
-    tree_blade,
-};
-use crate::report::{Counts, ItemReport, TimingsMs};
+use super::{Inside, TreeError, TreeOptions, coarser, keep_out, look_at_meshes, scale_to_height, tree_blade};
+use crate::report::{Counts, GrowthReport, ItemReport, TimingsMs};
 use crate::shaping::{EditReport, Shaper};
 use crate::template::LeafTemplate;
 

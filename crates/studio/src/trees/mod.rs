@@ -27,12 +27,10 @@ use document::PlantEdit;
 use glam::DVec3;
 use growth::{Grown, GrowthError, Method, Obstacle, Obstacles, TreeSpec};
 use mesh::Model;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use skin::SkinSpec;
 use spec::SpecFault;
 
-use crate::report::ItemReport;
+use crate::report::{GrowthReport, ItemReport};
 use crate::template::LeafTemplate;
 
 pub use blade::tree_blade;
@@ -124,35 +122,6 @@ impl From<GrowthError> for TreeError {
             other => Self::Growth(other),
         }
     }
-}
-
-/// The part of a report about growth.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct GrowthReport {
-    /// `competition`, `colonization`, `self-organizing`, `guided` or `lsystem`.
-    pub method: String,
-    /// Attraction points or markers of all cycles.
-    pub attractors: u64,
-    /// Of these, consumed.
-    pub consumed: u64,
-    /// Of these, never reached.
-    pub unreachable: u64,
-    /// Rounds, years or rewriting steps.
-    pub iterations: u64,
-    /// Life cycles.
-    pub cycles: u64,
-    /// Joints of the skeleton.
-    pub nodes: u64,
-    /// Places for leaves.
-    pub leaves_placed: u64,
-    /// Leaves on the tree.
-    pub leaves_kept: u64,
-    /// Vertices of the meshes, wood and leaves alike, that lie more than a millimetre inside an obstacle; none where
-    /// there is no obstacle, or nothing was measured.
-    pub inside_obstacle: Option<u64>,
-    /// How deep the deepest vertex lies inside an obstacle, metres; 0 where none does; none as above.
-    #[serde(default)]
-    pub inside_obstacle_depth_m: Option<f64>,
 }
 
 impl GrowthReport {

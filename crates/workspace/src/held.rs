@@ -1,0 +1,20 @@
+//! A tool in the hand.
+
+use std::sync::Arc;
+
+use burgeon::document::PlantId;
+use burgeon::plant::Plant;
+use burgeon::shape::{HandEdit, Tool};
+
+/// A gesture that is going on, or was and waits for its command.
+#[derive(Clone, Debug)]
+pub(crate) struct Held {
+    pub(crate) tool: Tool,
+    pub(crate) plant: PlantId,
+    /// The plant as it was when the gesture began.
+    pub(crate) before: Plant,
+    /// It has so many triangles that a gesture shows it coarser and without a digest.
+    pub(crate) large: bool,
+    /// What letting go would make, or made: shown until the command comes.
+    pub(crate) preview: Option<Arc<HandEdit>>,
+}
