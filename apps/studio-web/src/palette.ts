@@ -21,6 +21,15 @@ function entriesOf(page: Page): Entry[] {
   );
 }
 
+function option(entry: Entry, onclick: () => void): HTMLElement {
+  return el(
+    'button',
+    { type: 'button', role: 'option', id: `p-${entry.id}`, tabindex: '-1', onclick },
+    el('span', {}, entry.label),
+    ...(entry.keys ? [el('kbd', {}, entry.keys)] : []),
+  );
+}
+
 export function openPalette(page: Page): void {
   const entries = entriesOf(page);
   const list = el('div', {
@@ -49,16 +58,7 @@ export function openPalette(page: Page): void {
     });
     shown = found.sort((x, y) => x.n - y.n).map(({ a }) => a);
     chosen = 0;
-    list.replaceChildren(
-      ...shown.map((a) =>
-        el(
-          'button',
-          { type: 'button', role: 'option', id: `p-${a.id}`, tabindex: '-1', onclick: () => run(a) },
-          el('span', {}, a.label),
-          ...(a.keys ? [el('kbd', {}, a.keys)] : []),
-        ),
-      ),
-    );
+    list.replaceChildren(...shown.map((a) => option(a, () => run(a))));
     if (shown.length === 0) list.append(el('p', { class: 'muted' }, t('palette.none')));
     mark();
   };
