@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use burgeon::document::{DocumentPlant, PlantId};
+use burgeon::document::PlantId;
 
 /// How much is kept unless [`crate::Workspace::keep_at_most`] says otherwise: 256 MiB, a quarter of what a tab may ask for.
 pub const KEPT_BYTES: usize = 256 << 20;
