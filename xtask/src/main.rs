@@ -132,6 +132,8 @@ fn types() -> Outcome {
 fn test() -> Outcome {
     let tools = web::setup()?;
     cargo(&["test", "--workspace", "--no-fail-fast"])?;
+    // Built with the tests; the library as a program of its own uses it.
+    cargo(&["run", "--quiet", "--package", "burgeon", "--example", "inventory"])?;
     web::test(&tools, true)?;
     studio::test(&tools, true)
 }

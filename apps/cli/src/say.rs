@@ -3,6 +3,8 @@
 use std::ffi::OsStr;
 use std::io::{self, IsTerminal, Write, stderr, stdout};
 
+pub(crate) use burgeon::grouped;
+
 /// A line on stdout for people; what stands in names of files and drawings cannot steer the terminal.
 pub(crate) fn line(text: &str) {
     let _ = writeln!(stdout(), "{}", printable(text));
@@ -80,19 +82,6 @@ fn plain(no_color: Option<&OsStr>, term: Option<&OsStr>) -> bool {
     no_color.is_some() || term.is_some_and(|t| t == "dumb")
 }
 
-/// 1234567 as `1,234,567`.
-pub(crate) fn grouped(n: u64) -> String {
-    let digits = n.to_string();
-    let mut out = String::with_capacity(digits.len() + digits.len() / 3);
-    for (i, c) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            out.push(',');
-        }
-        out.push(c);
-    }
-    out
-}
-
 /// `1 leaf`, `2 leaves`.
 pub(crate) fn counted(n: u64, one: &str, many: &str) -> String {
     format!("{} {}", grouped(n), if n == 1 { one } else { many })
@@ -124,11 +113,5 @@ mod tests {
         };
         assert!(plain(None, Some("dumb")) && plain(Some("1"), Some("xterm")));
         assert!(!plain(None, Some("xterm-256color")) && !plain(None, None));
-    }
-
-    #[test]
-    fn thousands_are_grouped() {
-        let got = [0, 999, 1000, 1_234_567].map(super::grouped);
-        assert_eq!(got, ["0", "999", "1,000", "1,234,567"]);
     }
 }

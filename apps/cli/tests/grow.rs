@@ -285,7 +285,7 @@ fn no_points_at_all_is_an_error_that_says_where() {
         let shape = "envelope = { shape = \"sphere\", centre = [0, 3, 0], radius_m = 1 }";
         spec(&at, "zero.toml", &format!("[method]\nkind = \"{kind}\"\npoints = 0\n{shape}\n"));
         let told = bad(&at, &["grow", "zero.toml", "-o", "x.glb"]);
-        assert!(told.contains("zero.toml: line 3: points must be 1 to 10 million, not 0"), "{told}");
+        assert!(told.contains("zero.toml: line 3: method.points must be 1 to 10,000,000, not 0"), "{told}");
     }
     assert!(!at.join("x.glb").exists());
 }

@@ -157,7 +157,7 @@ fn files_of_settings_are_checked() {
     fs::File::create(dir.join("large.json")).unwrap().set_len(20 << 20).unwrap();
     let before = names(&dir);
     for (file, parts) in [
-        ("low.json", ["height_m is -5", "0.001 to 1000"]),
+        ("low.json", ["height_m must be 0.001 to 1000 m", "not -5"]),
         ("dense.json", ["fill.density", "0.1 to 10"]),
         ("bytes.json", ["UTF-8", "save it again"]),
         ("large.json", ["larger than 16 MiB", "right one"]),

@@ -208,7 +208,7 @@ fn faults_name_their_field_their_line_and_not_three_megabytes() {
             "name = \"a\"\n\n\n[method]\nkind = \"competition\"\n\n\nkill_m = \"two\"\n".to_owned(),
             "line 8: method.kill_m: ",
         ),
-        ("[method]\nkind = \"competition\"\n\nkill_m = -2\n".into(), "line 4: kill_m must be"),
+        ("[method]\nkind = \"competition\"\n\nkill_m = -2\n".into(), "line 4: method.kill_m must be"),
         (
             "[method]\nkind = \"lsystem\"\nmost_modules = 9\nrules = \"\"\"\naxiom = A\n\nA -> [ F\n\"\"\"\n"
                 .into(),
@@ -217,7 +217,7 @@ fn faults_name_their_field_their_line_and_not_three_megabytes() {
         ("[[obstacles]]\nshape = \"mesh\"\nfile = \"flat.obj\"\n".into(), "line 1: obstacle 0 (flat.obj): "),
         (
             "[[obstacles]]\nshape = \"cylinder\"\nbase = [9, 0, 0]\nradius_m = 1\nheight_m = 0\n".into(),
-            "line 5: obstacle 0 (a cylinder): height_m",
+            "line 5: obstacles[0].height_m must be above 0",
         ),
     ] {
         write(&at, "slip.toml", &text);

@@ -310,7 +310,7 @@ export type FaceCounts = {
 };
 
 /** Reprojection error of axes, petals and `drawn` leaves against the drawing, as shares of its diagonal; none where no stroke was compared. */
-export type Fidelity = {
+export type FidelityReport = {
   /** Mean distance. */
   reprojection_mean: number | null;
   /** 95th percentile. */
@@ -344,18 +344,6 @@ export type FillSpec = {
   memory: number;
   /** Pull against gravity on grown twigs, -1 (weeping) to 1 (upright), default 0.1. */
   tropism: number;
-};
-
-/** How far measured points are from the blade, millimetres. */
-export type FitError = {
-  /** Share of the points that the blade explains (within 2 mm): all of them for marks that it passes through. */
-  explained: number;
-  /** The farthest. */
-  max_mm: number;
-  /** 95 of 100 points are nearer. */
-  p95_mm: number;
-  /** Root of the mean square. */
-  rms_mm: number;
 };
 
 /** What can be asked of a flower. */
@@ -583,7 +571,7 @@ export type ItemReport = {
   /** Of a plant that was edited by hand: what became of each edit, in their order. */
   edits?: EditReport[];
   /** How near the model's front view is to the drawing. */
-  fidelity: Fidelity;
+  fidelity: FidelityReport;
   /** Of `grow`: what growth did. */
   growth?: 
     | GrowthReport
@@ -645,6 +633,18 @@ export type LeafDepth =
   | /** The front view of the model is the drawing; the blade leaves the plane by tilt and bend only. */
   "drawn";
 
+/** How far measured points are from the blade, millimetres. */
+export type LeafFit = {
+  /** Share of the points that the blade explains (within 2 mm): all of them for marks that it passes through. */
+  explained: number;
+  /** The farthest. */
+  max_mm: number;
+  /** 95 of 100 points are nearer. */
+  p95_mm: number;
+  /** Root of the mean square. */
+  rms_mm: number;
+};
+
 /** What colours a measured blade. */
 export type LeafPaint =
   | /** Painted by the distance from the veins. */
@@ -679,7 +679,7 @@ export type LeafReport = {
   /** Rings at which a vein is thicker than it bends. */
   crossing_rings: number | null;
   /** Distances of what was measured from the blade. */
-  fit_error: FitError;
+  fit_error: LeafFit;
   /** Length of the midrib, millimetres. */
   length_mm: number;
   /** Rows of marks. */
@@ -1086,7 +1086,7 @@ export type PlantView = {
   front: 
     | Front
     | null;
-  /** Its name within the document, or [`crate::GUEST`]. */
+  /** Its name within the document, or [`GUEST`]. */
   id: PlantId;
   /** The entry of the report. */
   item: 

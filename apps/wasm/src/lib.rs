@@ -376,8 +376,9 @@ impl StudioSession {
     /// # Errors
     /// `cancelled`, or why there is none.
     pub fn variant(&mut self, seed: &str, detail: f64) -> Result<String, Refused> {
-        let seed: Seed =
-            Seed::new(seed.parse().map_err(|_| WorkspaceError::Message(format!("{seed:?} is no seed")))?);
+        let seed: Seed = Seed::new(
+            seed.parse().map_err(|_digits| WorkspaceError::Message(format!("{seed:?} is no seed")))?,
+        );
         to_json(&page_run(|run| self.0.variant(seed, detail, run))?)
     }
 

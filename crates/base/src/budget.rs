@@ -191,37 +191,40 @@ impl core::error::Error for OverBudget {}
 impl fmt::Display for OverBudget {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { what, number, limit, remedy, raise } = self;
-        let (number, limit, what) = (Grouped(*number), Grouped(*limit), what.words());
+        let (number, limit, what) = (grouped(*number), grouped(*limit), what.words());
         write!(f, "{number} {what} are more than the limit of {limit}: {remedy}")?;
         raise.map_or(Ok(()), |(option, times)| write!(f, ", or allow more with {option} {times}"))
     }
 }
 
-/// Digits in groups of three.
-struct Grouped(u64);
-
-impl fmt::Display for Grouped {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let digits = self.0.to_string();
-        for (i, digit) in digits.chars().enumerate() {
-            if i > 0 && (digits.len() - i).is_multiple_of(3) {
-                f.write_str(",")?;
-            }
-            write!(f, "{digit}")?;
+/// A number with its digits in groups of three: `10,000,000`.
+pub fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let mut out = String::with_capacity(digits.len() + digits.len() / 3);
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            out.push(',');
         }
-        Ok(())
+        out.push(digit);
     }
+    out
 }
 
 crate::coded!(OverBudget {
     Self { what, number, limit, .. } => "over-budget" {
-        what = what.words(), number = Grouped(*number), limit = Grouped(*limit)
+        what = what.words(), number = grouped(*number), limit = grouped(*limit)
     },
 });
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn thousands_are_grouped() {
+        let got = [0, 999, 1000, 1_234_567].map(grouped);
+        assert_eq!(got, ["0", "999", "1,000", "1,234,567"]);
+    }
 
     #[test]
     fn what_is_at_the_limit_passes_and_one_more_does_not() {

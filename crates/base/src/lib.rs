@@ -31,7 +31,7 @@ mod task;
 pub mod turn;
 mod units;
 
-pub use budget::{Budget, Counted, OverBudget};
+pub use budget::{Budget, Counted, OverBudget, grouped};
 pub use coded::{Code, Coded, Told};
 pub use digest::{Digest, Digestible};
 pub use quote::{brief, quoted};

@@ -52,7 +52,15 @@ base::coded!(RangeFault {
 
 /// Large and small numbers as people write them.
 fn short(x: f64) -> String {
-    if x != 0.0 && !(1e-4..1e6).contains(&x.abs()) { format!("{x:e}") } else { x.to_string() }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole and below 1e15")]
+    let whole = |x: f64| base::grouped(x.abs() as u64);
+    match x {
+        _ if x.fract() == 0.0 && (1e4..1e15).contains(&x.abs()) => {
+            format!("{}{}", if x < 0.0 { "-" } else { "" }, whole(x))
+        }
+        _ if x != 0.0 && !(1e-4..1e15).contains(&x.abs()) => format!("{x:e}"),
+        _ => x.to_string(),
+    }
 }
 
 /// Fails on the first number that lies outside of the range that the schema gives it.

@@ -36,7 +36,8 @@ mod venation;
 
 pub use base::{
     Angle, Budget, CancelToken, Cancelled, Clock, Code, Coded, Counted, Digest, Executor, NoClock,
-    OverBudget, Report, Run, Seed, Serial, Stopped, Told, Unit, UpAxis, Warning, brief, map_indexed, quoted,
+    OverBudget, Report, Run, Seed, Serial, Stopped, Told, Unit, UpAxis, Warning, brief, grouped, map_indexed,
+    quoted,
 };
 pub use evaluate::{Evaluator, FrontView, make_from_sketch};
 pub use flowers::{FlowerOptions, make_flower};
@@ -77,3 +78,8 @@ pub use {
 
 /// The version that is written into reports and files.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// The example of the README is compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

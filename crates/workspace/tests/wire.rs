@@ -27,7 +27,7 @@ export type Json = null | boolean | number | string | Json[] | { [key: string]: 
 fn the_types_of_the_page_are_those_of_the_workspace() {
     let made = types();
     if std::env::var_os("BURGEON_WRITE_TYPES").is_some() {
-        std::fs::write(FILE, &made).unwrap();
+        std::fs::write(FILE, &made).expect("strings take all");
     }
     let kept = std::fs::read_to_string(FILE).unwrap_or_default();
     let differs = made.lines().zip(kept.lines()).find(|(a, b)| a != b);
@@ -58,13 +58,13 @@ fn types() -> String {
     codes.dedup();
     out += "\n/** Every code of a `Refusal`, with its fields. */\nexport const CODES = {\n";
     for (code, fields) in codes {
-        writeln!(out, "  {code:?}: {fields:?},").unwrap();
+        writeln!(out, "  {code:?}: {fields:?},").expect("strings take all");
     }
     out += "} as const;\n";
     for (name, schema) in &all.take_definitions(true) {
         let text = typed(schema, "");
         let gap = if text.starts_with('\n') { "" } else { " " };
-        write!(out, "\n{}export type {name} ={gap}{text};\n", doc(schema, "")).unwrap();
+        write!(out, "\n{}export type {name} ={gap}{text};\n", doc(schema, "")).expect("strings take all");
     }
     out
 }
@@ -128,7 +128,9 @@ fn array(schema: &Map<String, Value>, indent: &str) -> String {
     }
     let item = schema.get("items").cloned().unwrap_or_default();
     match (schema.get("minItems").and_then(Value::as_u64), schema.get("maxItems").and_then(Value::as_u64)) {
-        (Some(low), Some(high)) if low == high => format!("[{}]", each(&vec![item; low as usize])),
+        (Some(low), Some(high)) if low == high => {
+            format!("[{}]", each(&vec![item; usize::try_from(low).expect("a few")]))
+        }
         _ => {
             let one = typed(&item, indent);
             if one.contains(['|', '&']) { format!("({one})[]") } else { format!("{one}[]") }
@@ -153,8 +155,9 @@ fn object(schema: &Map<String, Value>, indent: &str) -> String {
     for (name, field) in fields {
         let key = if name.contains('-') { format!("'{name}'") } else { name.clone() };
         let mark = if required.contains(&name.as_str()) { "" } else { "?" };
-        writeln!(out, "{inner}{}{key}{mark}: {};", doc(field, &inner), typed(field, &inner)).unwrap();
+        writeln!(out, "{inner}{}{key}{mark}: {};", doc(field, &inner), typed(field, &inner))
+            .expect("strings take all");
     }
-    write!(out, "{indent}}}").unwrap();
+    write!(out, "{indent}}}").expect("strings take all");
     out
 }

@@ -206,6 +206,6 @@ mod as_text {
         let text = String::deserialize(from)?;
         text.parse()
             .map(Seed::new)
-            .map_err(|_| Error::custom("the seed is a whole number from 0 to 2^64 - 1"))
+            .map_err(|_digits| Error::custom("the seed is a whole number from 0 to 2^64 - 1"))
     }
 }

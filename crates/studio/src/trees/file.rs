@@ -332,7 +332,7 @@ mod tests {
     fn the_schema_has_ranges_and_units_and_they_are_enforced() {
         let schema = tree_schema();
         let mut all = Vec::new();
-        ranges(&schema, &schema, "", &mut all);
+        ranges(schema, schema, "", &mut all);
         assert!(all.len() >= 24, "{}: {all:?}", all.len());
         for (path, lo, hi) in &all {
             refused(&TreeSpec::default(), path, (*lo, *hi));
@@ -353,7 +353,7 @@ mod tests {
             let text = format!("[method]\nkind = \"{kind}\"\n{more}");
             let base = read_tree_spec(&text, &|_| None).expect(kind);
             let mut own = Vec::new();
-            ranges(&schema, variant, "/method", &mut own);
+            ranges(schema, variant, "/method", &mut own);
             for (path, lo, hi) in &own {
                 // Of modules more than the most are cut down to it: a limit, not a fault.
                 if !path.ends_with("most_modules") {
