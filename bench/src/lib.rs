@@ -9,7 +9,7 @@ use burgeon::ink::Drawing;
 use burgeon::mesh::Model;
 use burgeon::skin::{SkinSpec, skin};
 use burgeon::{Clock, Executor};
-use growth::{CompetitionSpec, Grown, LeafSpec, Method, TreeSpec, grow};
+use growth::{CompetitionSpec, FoliageSpec, Grown, Method, TreeSpec, grow};
 use rayon::prelude::*;
 
 /// The eight drawings of the paper's Table 1.
@@ -58,7 +58,7 @@ impl Oak {
         let spec = TreeSpec {
             name: "oak".into(),
             method: Method::Competition(CompetitionSpec { lifespan, points, ..CompetitionSpec::oak() }),
-            leaves: LeafSpec { spacing_m, leaf_keep, ..LeafSpec::default() },
+            leaves: FoliageSpec { spacing_m, leaf_keep, ..FoliageSpec::default() },
             ..TreeSpec::default()
         };
         let mut report = Report::default();

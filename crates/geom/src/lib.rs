@@ -53,7 +53,7 @@ pub use polyline::{
     smooth_gaussian_closed, tangent_at, tangent_at3, turning_angles,
 };
 pub use spline::{
-    Ball, BallBSpline, Basis, EndCap, HeightField, MAX_DEGREE, NaturalCubic, RingRule, SplineError,
-    SplineSurface, SurfacePoint, Tube, TubeSpec, Weights, chord_parameters, subdivided,
+    Ball, BallBSpline, BallTubeSpec, Basis, EndCap, HeightField, MAX_DEGREE, NaturalCubic, RingRule,
+    SplineError, SplineSurface, SurfacePoint, Tube, Weights, chord_parameters, subdivided,
 };
 pub use triangulate::{TriangulateError, Triangulation, triangulate_blade};

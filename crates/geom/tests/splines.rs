@@ -1,7 +1,7 @@
 //! Splines against numbers that were computed once with scipy 1.x (`CubicSpline`, `BSpline`) and geomdl 5.x.
 
 use base::ops;
-use geom::{Ball, BallBSpline, EndCap, NaturalCubic, RingRule, SplineError, SplineSurface, TubeSpec};
+use geom::{Ball, BallBSpline, BallTubeSpec, EndCap, NaturalCubic, RingRule, SplineError, SplineSurface};
 use glam::DVec3;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -154,7 +154,8 @@ fn envelope_of_a_straight_taper_is_the_tangent_cone() {
     let marks = [Ball::new(DVec3::ZERO, 1.0), Ball::new(DVec3::Y * 4.0, 0.2)];
     let curve = BallBSpline::interpolate(&marks).unwrap();
     let at: Vec<f64> = (0..=8).map(|k| f64::from(k) / 8.0).collect();
-    let spec = TubeSpec { rings: RingRule::Envelope, sides: 7, cap: EndCap::Round(64), first_normal: None };
+    let spec =
+        BallTubeSpec { rings: RingRule::Envelope, sides: 7, cap: EndCap::Round(64), first_normal: None };
     let tube = curve.tube(&at, &spec);
     let slope: f64 = 0.2; // (1.0 - 0.2) / 4
     let flat = (1.0 - slope * slope).sqrt();
@@ -185,7 +186,8 @@ fn capped_tube_is_closed_and_faces_outwards() {
     let at: Vec<f64> = (0..=12).map(|k| f64::from(k) / 12.0).collect();
     for rings in [RingRule::Plain, RingRule::Envelope] {
         let thin = curve.offset(0.0);
-        let tube = thin.tube(&at, &TubeSpec { rings, sides: 9, cap: EndCap::Round(3), first_normal: None });
+        let tube =
+            thin.tube(&at, &BallTubeSpec { rings, sides: 9, cap: EndCap::Round(3), first_normal: None });
         let mut edges = std::collections::BTreeMap::new();
         let faces = tube.quads.iter().map(|q| q.to_vec()).chain(tube.triangles.iter().map(|t| t.to_vec()));
         for face in faces {
@@ -222,11 +224,11 @@ fn tube_volume(slope: f64, sides: u32) -> f64 {
 fn ball_inside_its_neighbour_is_counted() {
     let marks = [Ball::new(DVec3::ZERO, 3.0), Ball::new(DVec3::Y, 0.5)];
     let curve = BallBSpline::interpolate(&marks).unwrap();
-    let spec = TubeSpec { rings: RingRule::Envelope, ..TubeSpec::default() };
+    let spec = BallTubeSpec { rings: RingRule::Envelope, ..BallTubeSpec::default() };
     let tube = curve.tube(&[0.0, 0.5, 1.0], &spec);
     assert_eq!(tube.swallowed, 3);
     assert!(tube.positions.iter().all(|p| p.is_finite()));
-    assert_eq!(curve.tube(&[0.0, 0.5, 1.0], &TubeSpec::default()).swallowed, 0);
+    assert_eq!(curve.tube(&[0.0, 0.5, 1.0], &BallTubeSpec::default()).swallowed, 0);
 }
 
 #[test]
@@ -237,17 +239,17 @@ fn tube_thicker_than_its_bend_is_counted() {
         .collect();
     let at: Vec<f64> = (0..=20).map(|k| f64::from(k) / 20.0).collect();
     let curve = BallBSpline::interpolate(&marks).unwrap();
-    let thick = curve.tube(&at, &TubeSpec::default()).crossing;
+    let thick = curve.tube(&at, &BallTubeSpec::default()).crossing;
     // At natural ends the curvature is 0; in the middle it is 1.
     assert!((14..=20).contains(&thick), "{thick}");
-    assert_eq!(curve.offset(-0.5).tube(&at, &TubeSpec::default()).crossing, 0);
+    assert_eq!(curve.offset(-0.5).tube(&at, &BallTubeSpec::default()).crossing, 0);
 }
 
 #[test]
 fn offset_moves_the_envelope_along_its_normals() {
     let curve = BallBSpline::interpolate(&marks()).unwrap();
     let at: Vec<f64> = (1..20).map(|k| f64::from(k) / 20.0).collect();
-    let spec = TubeSpec { rings: RingRule::Envelope, ..TubeSpec::default() };
+    let spec = BallTubeSpec { rings: RingRule::Envelope, ..BallTubeSpec::default() };
     let (near, far) = (curve.tube(&at, &spec), curve.offset(0.3).tube(&at, &spec));
     for k in 0..near.positions.len() {
         assert!(far.positions[k].distance(near.positions[k] + near.normals[k] * 0.3) < 1e-12, "{k}");
@@ -326,10 +328,10 @@ proptest! {
         envelope in any::<bool>(),
     ) {
         let marks: Vec<Ball> = raw.iter().map(|&(x, y, z, r)| Ball::new(DVec3::new(x, y, z), r)).collect();
-        let spec = TubeSpec {
+        let spec = BallTubeSpec {
             rings: if envelope { RingRule::Envelope } else { RingRule::Plain },
             cap: EndCap::Round(2),
-            ..TubeSpec::default()
+            ..BallTubeSpec::default()
         };
         let at: Vec<f64> = (0..=9).map(|k| f64::from(k) / 9.0).collect();
         let curves = [BallBSpline::interpolate(&marks), BallBSpline::approximate(&marks), BallBSpline::fit(&marks, 4)];

@@ -1,6 +1,6 @@
 //! Leaves on the thin shoots, where light reaches.
 //!
-//! `Plant + LeafSpec -> candidates by phyllotaxis -> shadows -> the brightest` (paper 001, section 3.3)
+//! `Plant + FoliageSpec -> candidates by phyllotaxis -> shadows -> the brightest` (paper 001, section 3.3)
 
 use base::ops::{self, PI};
 use base::{Counted, Draw, Report, Run, Seed, map_indexed};
@@ -18,7 +18,7 @@ const GROUP: usize = 64;
 /// What leaves a tree bears.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
-pub struct LeafSpec {
+pub struct FoliageSpec {
     /// How they stand around the shoot, default a golden spiral.
     pub arrangement: Arrangement,
     /// Between two nodes of a shoot, metres, above 0, default 0.06.
@@ -66,9 +66,9 @@ pub struct LeafSpec {
     pub max_leaves: u32,
 }
 
-spec::schemas!(LeafSpec);
+spec::schemas!(FoliageSpec);
 
-impl Default for LeafSpec {
+impl Default for FoliageSpec {
     fn default() -> Self {
         Self {
             arrangement: Arrangement::default(),
@@ -91,7 +91,7 @@ impl Default for LeafSpec {
     }
 }
 
-impl LeafSpec {
+impl FoliageSpec {
     /// A plain blade of length 1: broadest in the middle, a little folded and bent.
     pub fn blade(&self) -> Blade {
         let half = 0.5 * if self.width.is_finite() { self.width.clamp(0.01, 3.0) } else { 0.5 };
@@ -163,11 +163,11 @@ impl Candidate {
 /// ```
 /// use base::{Report, Run, Seed};
 /// use glam::DVec3;
-/// use growth::{LeafSpec, Obstacles, add_leaves};
+/// use growth::{FoliageSpec, Obstacles, add_leaves};
 /// use plant::{AxisKind, Plant};
 /// let mut plant = Plant::default();
 /// plant.add_axis(AxisKind::Branch, None, 1, &[DVec3::ZERO, DVec3::Y], None);
-/// let spec = LeafSpec { leaf_keep: 0.5, ..LeafSpec::default() };
+/// let spec = FoliageSpec { leaf_keep: 0.5, ..FoliageSpec::default() };
 /// let (run, none) = (Run::plain(), Obstacles::none());
 /// let n = add_leaves(&mut plant, &spec, spec.blade(), &[], &none, Seed::new(1), &run, &mut Report::default())?;
 /// assert_eq!((n.placed, n.kept, plant.organs.len()), (17, 9, 9));
@@ -176,7 +176,7 @@ impl Candidate {
 #[expect(clippy::too_many_arguments, reason = "what, where, around what, and how; all are different things")]
 pub fn add_leaves(
     plant: &mut Plant,
-    spec: &LeafSpec,
+    spec: &FoliageSpec,
     blade: Blade,
     marks: &[(NodeId, LeafMark)],
     obstacles: &Obstacles,
@@ -246,7 +246,7 @@ pub fn add_leaves(
 /// Places on all axes, in their order; those of several axes are found at a time.
 fn on_shoots(
     plant: &Plant,
-    spec: &LeafSpec,
+    spec: &FoliageSpec,
     phyllotaxis: Phyllotaxis,
     scale: f64,
     seed: Seed,
@@ -296,7 +296,7 @@ fn on_shoots(
 }
 
 /// No less than the places on an axis.
-fn room(plant: &Plant, id: AxisId, spec: &LeafSpec, phyllotaxis: Phyllotaxis) -> usize {
+fn room(plant: &Plant, id: AxisId, spec: &FoliageSpec, phyllotaxis: Phyllotaxis) -> usize {
     let (points, radii) = (plant.axis_points(id), plant.axis_radii(id));
     let pieces = points.windows(2).zip(radii.windows(2));
     let thin = pieces.filter(|(_, r)| r[0].min(r[1]) <= spec.max_radius_m);
@@ -310,7 +310,7 @@ fn room(plant: &Plant, id: AxisId, spec: &LeafSpec, phyllotaxis: Phyllotaxis) ->
 fn on_axis(
     plant: &Plant,
     id: AxisId,
-    spec: &LeafSpec,
+    spec: &FoliageSpec,
     phyllotaxis: Phyllotaxis,
     scale: f64,
     seed: Seed,
@@ -351,7 +351,7 @@ fn on_axis(
 }
 
 fn leaf(
-    spec: &LeafSpec,
+    spec: &FoliageSpec,
     at: DVec3,
     shoot: DVec3,
     out: DVec3,
@@ -372,7 +372,7 @@ fn leaf(
 }
 
 /// Eq 6: Q = max(C - s, 0) with C = 1, and the leaf's own shadow added back unless the spec says otherwise.
-fn light_of(all: &[Candidate], length: f64, spec: &LeafSpec) -> Vec<f64> {
+fn light_of(all: &[Candidate], length: f64, spec: &FoliageSpec) -> Vec<f64> {
     let middles: Vec<DVec3> = all.iter().map(|c| c.tip(0.5, length)).collect();
     let all_round = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let (lo, hi) = middles.iter().fold(all_round, |(lo, hi), &p| (lo.min(p), hi.max(p)));
@@ -393,7 +393,7 @@ fn light_of(all: &[Candidate], length: f64, spec: &LeafSpec) -> Vec<f64> {
 }
 
 /// Which leaves stay: enough light, and among the brightest; keys decide between equals.
-fn brightest(all: &[Candidate], light: &[f64], spec: &LeafSpec) -> Vec<bool> {
+fn brightest(all: &[Candidate], light: &[f64], spec: &FoliageSpec) -> Vec<bool> {
     let mut keeps = vec![false; all.len()];
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a length")]
     let wanted = (spec.leaf_keep * all.len() as f64).round() as usize;
@@ -425,7 +425,7 @@ mod tests {
             .plant
     }
 
-    fn dressed(spec: &LeafSpec, obstacles: &Obstacles) -> (Plant, LeafCount) {
+    fn dressed(spec: &FoliageSpec, obstacles: &Obstacles) -> (Plant, LeafCount) {
         let mut plant = bare();
         let run = Run::plain();
         let count = add_leaves(
@@ -450,7 +450,7 @@ mod tests {
     #[test]
     fn fewer_leaves_are_a_part_of_many_and_the_bright_ones() {
         let none = Obstacles::none();
-        let of = |leaf_keep: f64| dressed(&LeafSpec { leaf_keep, ..LeafSpec::default() }, &none);
+        let of = |leaf_keep: f64| dressed(&FoliageSpec { leaf_keep, ..FoliageSpec::default() }, &none);
         let ((many, all), (some, half), (few, tenth)) = (of(1.0), of(0.5), of(0.1));
         assert!(all.placed > 3000 && all.kept == all.placed, "{all:?}");
         assert!(half.kept.abs_diff(all.placed / 2) <= 1 && tenth.kept.abs_diff(all.placed / 10) <= 1);
@@ -467,7 +467,8 @@ mod tests {
         let line = [DVec3::ZERO, DVec3::Y * 0.5, DVec3::Y];
         let axis = plant.add_axis(plant::AxisKind::Branch, None, 1, &line, None);
         assert_eq!(plant.axis_radii(axis), [0.0; 3]);
-        let spec = LeafSpec { arrangement: Arrangement::Decussate, spacing_m: 0.1, ..LeafSpec::default() };
+        let spec =
+            FoliageSpec { arrangement: Arrangement::Decussate, spacing_m: 0.1, ..FoliageSpec::default() };
         let run = Run::plain();
         let none = Obstacles::none();
         let n = add_leaves(
@@ -495,7 +496,7 @@ mod tests {
     fn no_leaf_hangs_in_an_obstacle() {
         let rock = Obstacle::Sphere { centre: DVec3::new(0.8, 4.2, 0.0), radius_m: 0.9 };
         let obstacles = Obstacles::new(&[rock], 0.0).expect("sound");
-        let (plant, count) = dressed(&LeafSpec::default(), &obstacles);
+        let (plant, count) = dressed(&FoliageSpec::default(), &obstacles);
         assert!(count.buried > 50, "{count:?}");
         for o in &plant.organs {
             for corner in plant.shapes[o.shape.index()].corners() {
@@ -506,11 +507,11 @@ mod tests {
 
     #[test]
     fn dark_leaves_fall_by_threshold_too() {
-        let spec = LeafSpec { min_light: 0.8, ..LeafSpec::default() };
+        let spec = FoliageSpec { min_light: 0.8, ..FoliageSpec::default() };
         let (_, count) = dressed(&spec, &Obstacles::none());
         assert!(count.fallen > 100 && count.kept > 100, "{count:?}");
         let mut plant = bare();
-        let bad = LeafSpec { leaf_keep: 1.5, ..LeafSpec::default() };
+        let bad = FoliageSpec { leaf_keep: 1.5, ..FoliageSpec::default() };
         let run = Run::plain();
         let none = Obstacles::none();
         let got =

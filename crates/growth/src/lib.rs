@@ -48,7 +48,7 @@ pub use competition::{Competed, CompetitionSpec, Cycle, compete};
 pub use envelope::{Envelope, Region};
 pub use error::{GrowthError, LsystemError, MeshFault};
 pub use guided::{BrushStroke, Guided, GuidedSpec, StartBud, guide, guide_from};
-pub use leaves::{LeafCount, LeafSpec, add_leaves};
+pub use leaves::{FoliageSpec, LeafCount, add_leaves};
 pub use look::{Bark, BladeForm, BladeSpec, BlossomSpec, Look};
 pub use lsystem::{LeafMark, Lsystem, LsystemTree, OAK_RULES, grow_lsystem};
 pub use mesh_faults::{open_edges, signed_volume};

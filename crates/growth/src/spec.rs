@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    BladeSpec, BlossomSpec, ColonizeSpec, CompetitionSpec, Envelope, GrowthError, GuidedSpec, LeafSpec,
+    BladeSpec, BlossomSpec, ColonizeSpec, CompetitionSpec, Envelope, FoliageSpec, GrowthError, GuidedSpec,
     Light, Look, Obstacle, SelfOrganizingSpec, WoodSpec,
 };
 
@@ -89,7 +89,7 @@ pub struct TreeSpec {
     /// How skeletons become wood.
     pub wood: WoodSpec,
     /// How leaves stand, and how many fall.
-    pub leaves: LeafSpec,
+    pub leaves: FoliageSpec,
     /// No leaves at all: a dead or winter tree. Default false.
     pub bare: bool,
     /// The form of a leaf.
@@ -114,7 +114,7 @@ impl Default for TreeSpec {
             age: None,
             method: Method::Competition(CompetitionSpec::default()),
             wood: WoodSpec::default(),
-            leaves: LeafSpec::default(),
+            leaves: FoliageSpec::default(),
             bare: false,
             blade: BladeSpec::default(),
             blossom: BlossomSpec::default(),

@@ -46,7 +46,7 @@ pub struct Grown {
     pub leaves: LeafCount,
 }
 
-/// Grows trees of any method and dresses them with leaves of the given blade ([`crate::LeafSpec::blade`] if none).
+/// Grows trees of any method and dresses them with leaves of the given blade ([`crate::FoliageSpec::blade`] if none).
 ///
 /// Guaranteed: the same plant for the same spec and seed, on every platform and any thread count; it ends; a clean
 /// `validate()`. Books its time under `grow`, `wood` and `leaves`, and tells the run's token how far it is.

@@ -6,8 +6,8 @@
 use base::{Report, Run, Seed};
 use glam::{DVec2, DVec3};
 use growth::{
-    ColonizeSpec, CompetitionSpec, Envelope, Fate, GrowthError, LeafSpec, Light, Lsystem, Method, OAK_RULES,
-    Obstacle, Obstacles, Resource, SelfOrganizingSpec, TreeSpec, colonize, compete, grow,
+    ColonizeSpec, CompetitionSpec, Envelope, Fate, FoliageSpec, GrowthError, Light, Lsystem, Method,
+    OAK_RULES, Obstacle, Obstacles, Resource, SelfOrganizingSpec, TreeSpec, colonize, compete, grow,
 };
 use proptest::prelude::*;
 
@@ -212,7 +212,7 @@ proptest! {
             obstacles,
             age,
             method,
-            leaves: LeafSpec { leaf_keep, max_leaves: 20_000, ..LeafSpec::default() },
+            leaves: FoliageSpec { leaf_keep, max_leaves: 20_000, ..FoliageSpec::default() },
             ..TreeSpec::default()
         };
         let mut report = Report::default();

@@ -28,7 +28,7 @@ struct Stage {
 /// Why no leaf can be grown between stages.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum GrowthError {
+pub enum StagesError {
     /// Nothing to grow between.
     #[error("growth needs at least 2 stages, {0} were given")]
     TooFew(usize),
@@ -79,22 +79,22 @@ impl LeafGrowth {
     /// Stages of one leaf by day. Stages with fewer rows than others get as many, on their own blade.
     ///
     /// # Errors
-    /// [`GrowthError`].
-    pub fn new(stages: Vec<(f64, FullMarks)>) -> Result<Self, GrowthError> {
+    /// [`StagesError`].
+    pub fn new(stages: Vec<(f64, FullMarks)>) -> Result<Self, StagesError> {
         if stages.len() < 2 {
-            return Err(GrowthError::TooFew(stages.len()));
+            return Err(StagesError::TooFew(stages.len()));
         }
         for w in stages.windows(2) {
             let (before, this) = (w[0].0, w[1].0);
             if before.is_nan() || this.is_nan() || before >= this || !(this - before).is_finite() {
-                return Err(GrowthError::Order { before, this });
+                return Err(StagesError::Order { before, this });
             }
         }
         let rows = stages.iter().map(|s| s.1.rows.len()).max().unwrap_or(0);
         let mut all = Vec::with_capacity(stages.len());
         for (day, marks) in stages {
             if let Some(fault) = marks.to_marks().validate().next() {
-                return Err(GrowthError::Marks { day, fault });
+                return Err(StagesError::Marks { day, fault });
             }
             let marks = with_rows(marks, rows);
             let length = geom::polyline_length3(&marks.midrib());
@@ -103,7 +103,7 @@ impl LeafGrowth {
         for w in all.windows(2) {
             let factor = w[1].length / w[0].length;
             if !(1.0 / MOST..=MOST).contains(&factor) {
-                return Err(GrowthError::Unit { before: w[0].day, this: w[1].day, factor });
+                return Err(StagesError::Unit { before: w[0].day, this: w[1].day, factor });
             }
         }
         set_slopes(&mut all);
@@ -118,11 +118,11 @@ impl LeafGrowth {
     /// The leaf on a day between the first and the last.
     ///
     /// # Errors
-    /// [`GrowthError::Outside`].
-    pub fn at(&self, day: f64) -> Result<FullMarks, GrowthError> {
+    /// [`StagesError::Outside`].
+    pub fn at(&self, day: f64) -> Result<FullMarks, StagesError> {
         let (first, last) = self.days();
         if !(first..=last).contains(&day) {
-            return Err(GrowthError::Outside { day, first, last });
+            return Err(StagesError::Outside { day, first, last });
         }
         let next = self.stages.partition_point(|s| s.day <= day).clamp(1, self.stages.len() - 1);
         let (a, b) = (&self.stages[next - 1], &self.stages[next]);
@@ -273,19 +273,19 @@ mod tests {
     #[test]
     fn wrong_series_are_refused() {
         let one = || full(4, 0.1);
-        assert_eq!(LeafGrowth::new(vec![(1.0, one())]), Err(GrowthError::TooFew(1)));
-        assert!(matches!(LeafGrowth::new(vec![(2.0, one()), (1.0, one())]), Err(GrowthError::Order { .. })));
+        assert_eq!(LeafGrowth::new(vec![(1.0, one())]), Err(StagesError::TooFew(1)));
+        assert!(matches!(LeafGrowth::new(vec![(2.0, one()), (1.0, one())]), Err(StagesError::Order { .. })));
         assert!(matches!(
             LeafGrowth::new(vec![(1.0, one()), (f64::NAN, one())]),
-            Err(GrowthError::Order { .. })
+            Err(StagesError::Order { .. })
         ));
         let millimetres = full(4, 1000.0 * 0.12);
         assert!(matches!(
             LeafGrowth::new(vec![(1.0, one()), (2.0, millimetres)]),
-            Err(GrowthError::Unit { .. })
+            Err(StagesError::Unit { .. })
         ));
         let growth = LeafGrowth::new(vec![(1.0, one()), (2.0, one())]).unwrap();
-        assert!(matches!(growth.at(2.5), Err(GrowthError::Outside { .. })));
-        assert!(matches!(growth.at(f64::NAN), Err(GrowthError::Outside { .. })));
+        assert!(matches!(growth.at(2.5), Err(StagesError::Outside { .. })));
+        assert!(matches!(growth.at(f64::NAN), Err(StagesError::Outside { .. })));
     }
 }

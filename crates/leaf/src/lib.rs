@@ -30,7 +30,7 @@ mod scan;
 
 pub use blade::{Leaf, LeafSpec, SurfaceKind, ThicknessRule, VeinParameters};
 pub use graph::{GraphError, VeinGraph};
-pub use growth::{GrowthError, LeafGrowth};
+pub use growth::{LeafGrowth, StagesError};
 pub use marks::{FullMarks, FullRow, MARKS_A_ROW, MarkRow, Marks, MarksError};
 pub use pose::Pose;
 pub use profile::{LeafProfile, ProfileError};

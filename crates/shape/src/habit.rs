@@ -4,7 +4,7 @@
 
 use base::ops;
 use glam::DVec3;
-use growth::LeafSpec;
+use growth::FoliageSpec;
 use plant::{AxisKind, Blade, OrganKind, Paint, Shape, ShapeId};
 
 use crate::draft::Draft;
@@ -31,7 +31,7 @@ pub(crate) struct Habit {
 /// How leaves stand.
 #[derive(Clone, Debug)]
 pub(crate) struct LeafHabit {
-    pub(crate) spec: LeafSpec,
+    pub(crate) spec: FoliageSpec,
     pub(crate) blade: Blade,
     pub(crate) shape: ShapeId,
     /// Colours that occur.
@@ -140,13 +140,13 @@ fn leaf_habit(draft: &Draft) -> Option<LeafHabit> {
         .sum();
     let borne: usize = leafy.iter().sum();
     let spacing = if borne > 0 { run / borne as f64 } else { 0.7 * length_m };
-    let spec = LeafSpec {
+    let spec = FoliageSpec {
         spacing_m: spacing.clamp(0.05 * length_m, 4.0 * length_m).clamp(1e-4, 1e3),
         length_m: length_m.clamp(1e-4, 100.0),
         angle_deg: median(angles, 55.0).clamp(10.0, 90.0),
         max_radius_m: max_radius_m.min(100.0),
         max_leaves: 200_000,
-        ..LeafSpec::default()
+        ..FoliageSpec::default()
     };
     let paints = of_shape().map(|o| o.what.paint).collect();
     (length_m > 0.0).then(|| LeafHabit { spec, blade: blade.clone(), shape: id, paints })

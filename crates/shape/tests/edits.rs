@@ -2,7 +2,9 @@
 
 use base::{Executor, NoClock, Report, Run, Seed};
 use glam::{DVec2, DVec3};
-use growth::{CompetitionSpec, GuidedSpec, LeafSpec, Method, OAK_RULES, SelfOrganizingSpec, TreeSpec, grow};
+use growth::{
+    CompetitionSpec, FoliageSpec, GuidedSpec, Method, OAK_RULES, SelfOrganizingSpec, TreeSpec, grow,
+};
 use plant::{AxisId, AxisKind, NodeId, OrganKind, Plant};
 use proptest::prelude::*;
 use shape::{
@@ -19,7 +21,7 @@ fn method(kind: usize) -> Method {
 }
 
 fn tree(kind: usize, seed: u64) -> Plant {
-    let leaves = LeafSpec { spacing_m: 0.15, ..LeafSpec::default() };
+    let leaves = FoliageSpec { spacing_m: 0.15, ..FoliageSpec::default() };
     let age = (kind == 3).then_some(6);
     let spec = TreeSpec { method: method(kind), leaves, age, ..TreeSpec::default() };
     grow(&spec, None, Seed::new(seed), &Run::plain(), &mut Report::default()).expect("sound").plant

@@ -1,6 +1,6 @@
 //! Blades that are surfaces -> triangles: tubes of the veins, grid of the blade, at any resolution.
 
-use geom::{BallBSpline, TubeSpec, subdivided};
+use geom::{BallBSpline, BallTubeSpec, subdivided};
 use glam::DVec3;
 use mesh::TriMesh;
 use plant::{Chart, Sheet, SplineBlade, VeinShade, Venation};
@@ -148,7 +148,7 @@ impl ShapeMesh {
         }
     }
 
-    fn add_tube(&mut self, curve: &BallBSpline, at: &[f64], spec: &TubeSpec) {
+    fn add_tube(&mut self, curve: &BallBSpline, at: &[f64], spec: &BallTubeSpec) {
         let tube = curve.tube(at, spec);
         let mut mesh = TriMesh::default();
         for (&p, &n) in tube.positions.iter().zip(&tube.normals) {

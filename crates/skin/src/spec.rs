@@ -1,7 +1,7 @@
 //! What the caller may choose, and how triangles are shared out.
 
 use base::Seed;
-use geom::{EndCap, RingRule, TubeSpec};
+use geom::{BallTubeSpec, EndCap, RingRule};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -104,9 +104,9 @@ impl LeafMeshSpec {
         Self { subdivisions: times(self.subdivisions, 1.0), sides: times(self.sides, 3.0), ..self }
     }
 
-    pub(crate) fn tube(&self) -> TubeSpec {
+    pub(crate) fn tube(&self) -> BallTubeSpec {
         let cap = if self.caps { EndCap::Round(3) } else { EndCap::Open };
-        TubeSpec { rings: self.rings, sides: self.sides.clamp(3, 64), cap, first_normal: None }
+        BallTubeSpec { rings: self.rings, sides: self.sides.clamp(3, 64), cap, first_normal: None }
     }
 }
 

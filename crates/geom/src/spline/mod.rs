@@ -15,7 +15,7 @@ pub use basis::{Basis, MAX_DEGREE, Weights};
 pub use fit::{NaturalCubic, chord_parameters, subdivided};
 pub use height::HeightField;
 pub use surface::{SplineSurface, SurfacePoint};
-pub use tube::{EndCap, RingRule, Tube, TubeSpec};
+pub use tube::{BallTubeSpec, EndCap, RingRule, Tube};
 
 /// Why a curve or surface cannot be made of what was given.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]

@@ -29,7 +29,7 @@ pub enum EndCap {
 
 /// How finely and by which rule a tube is sampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TubeSpec {
+pub struct BallTubeSpec {
     /// The rule of the rings.
     pub rings: RingRule,
     /// Points a ring, 3 to 1024; the paper has 10.
@@ -40,7 +40,7 @@ pub struct TubeSpec {
     pub first_normal: Option<DVec3>,
 }
 
-impl Default for TubeSpec {
+impl Default for BallTubeSpec {
     fn default() -> Self {
         Self { rings: RingRule::Plain, sides: 10, cap: EndCap::Open, first_normal: None }
     }
@@ -87,7 +87,7 @@ impl BallBSpline {
     /// Frames turn as little as can be (double reflection). With [`RingRule::Envelope`] every point lies on the
     /// envelope: `x = c - (r r' / |c'|^2) c' + r sqrt(1 - r'^2 / |c'|^2) (N cos + B sin)` with the outward
     /// normal `(x - c) / r`. Fewer than 2 parameters give an empty tube. Cost: linear in the points.
-    pub fn tube(&self, parameters: &[f64], spec: &TubeSpec) -> Tube {
+    pub fn tube(&self, parameters: &[f64], spec: &BallTubeSpec) -> Tube {
         let sides = spec.sides.clamp(3, 1024);
         let mut tube = Tube { sides, ..Tube::default() };
         if parameters.len() < 2 {
