@@ -30,7 +30,7 @@ pub fn table1(name: &str) -> Drawing {
     }
 }
 
-/// An oak in the envelope of paper 001's Table 2, from its spec to meshes without textures.
+/// An oak in the envelope of Yang et al.'s Table 2, from its spec to meshes without textures.
 #[derive(Clone, Copy, Debug)]
 pub struct Oak {
     lifespan: u32,

@@ -344,7 +344,7 @@ fn own_fixtures_make_plants() {
     assert!(item["counts"]["leaves"].as_u64().unwrap() >= 1, "{item:#}");
 }
 
-/// Table 1 of paper 000: drawings of the same make-up give models of the same make-up.
+/// Table 1 of He and Cheng (2021): drawings of the same make-up give models of the same make-up.
 #[test]
 fn the_eight_sketches_of_table_1_have_the_papers_counts() {
     // Strokes, leaves and petals, branches, triangles.

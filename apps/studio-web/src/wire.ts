@@ -130,7 +130,7 @@ export type AxisKey =
     near: [number, number, number];
   };
 
-/** How the depth of branches is found (paper 000, section 5.2). */
+/** How the depth of branches is found (He and Cheng 2021, section 5.2). */
 export type BranchDepth =
   | /** Eq 4 as printed: the sum of the angles between siblings. */
   "paper"
@@ -465,7 +465,7 @@ export type HandEdit =
     /** How many twigs grow on it, relative to the plant's habit, 0 (none) to 4; default 1. */
     twigs: number;
   }
-  | /** Lets branches grow along a stroke of a brush (paper 002). */
+  | /** Lets branches grow along a stroke of a brush (the VR paper). */
   {
     /** The branch that they grow from; without, the one nearest to the stroke's start. */
     bearer?: 
@@ -481,7 +481,7 @@ export type HandEdit =
     /** Another number, other branches. */
     seed: number;
   }
-  | /** Fills an outline that was drawn in a plane facing the viewer (paper 002). */
+  | /** Fills an outline that was drawn in a plane facing the viewer (the VR paper). */
   {
     /** How densely it is filled, 0.1 to 10; default 1. */
     density: number;
@@ -624,7 +624,7 @@ export type LeafData = {
   text: string;
 };
 
-/** How the depth of leaves is found (paper 000, section 5.3). */
+/** How the depth of leaves is found (He and Cheng 2021, section 5.3). */
 export type LeafDepth =
   | /** The light prior as printed: every leaf turns to the same side. */
   "paper"
@@ -1411,7 +1411,7 @@ export type StrokeClass =
 /** Names one stroke for as long as the document lives, whatever is drawn or erased around it. */
 export type StrokeId = number;
 
-/** In which mode a stroke was drawn (paper 000, section 4.1). */
+/** In which mode a stroke was drawn (He and Cheng 2021, section 4.1). */
 export type StrokeMode =
   | /** A part of the plant: what it is, is found out. */
   "parts"

@@ -10,7 +10,7 @@ use crate::BloomError;
 /// Distances from the points of one shape to the nearest points of another, metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Distances {
-    /// As paper 003 defines its error: the mean over x, y and z of the absolute difference. Up to root 3 below
+    /// As Huai, Yang and Cai (2019) define their error: the mean over x, y and z of the absolute difference. Up to root 3 below
     /// the Euclidean mean.
     pub paper: f64,
     /// Mean Euclidean distance.
@@ -37,7 +37,7 @@ pub struct ShapeError {
 }
 
 impl ShapeError {
-    /// The distance within which a measured point counts as met: the 2 mm of paper 003.
+    /// The distance within which a measured point counts as met: the 2 mm of Huai, Yang and Cai (2019).
     pub const TOLERANCE: f64 = 0.002;
 }
 

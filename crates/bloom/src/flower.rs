@@ -370,7 +370,7 @@ impl FlowerSpec {
     /// The flower at `day`: 0 is the bud, `opening_days` full bloom, `wilting_days` later it has wilted.
     ///
     /// Guaranteed: the same axes, organs and grids at every day; `validate()` finds nothing. `law` sets the pace by its
-    /// size and region laws, whatever species it was fitted to (paper 003, figure 13).
+    /// size and region laws, whatever species it was fitted to (Huai, Yang and Cai 2019, figure 13).
     pub fn at(&self, day: f64, law: &GrowthLaw, seed: Seed) -> Plant {
         let mut plant = Plant { name: self.name.clone(), ..Plant::default() };
         self.add_to(&mut plant, &Seat::default(), day, law, seed);

@@ -1,4 +1,4 @@
-//! Box and control points -> deformed points: Bernstein free-form deformation (paper 003, eq 5).
+//! Box and control points -> deformed points: Bernstein free-form deformation (Huai, Yang and Cai 2019, eq 5).
 
 use base::{Run, map_indexed};
 use glam::DVec3;

@@ -133,7 +133,7 @@ impl GrowthLaw {
     }
 
     /// How far an organ is on its way from its shape at day `from` to that at day `to`: 0 and 1 at these days,
-    /// monotone between (methods.md section 7: `g = (f(x) - f(from)) / (f(to) - f(from))`).
+    /// monotone between (`g = (f(x) - f(from)) / (f(to) - f(from))`).
     ///
     /// `along` is the place on the organ, 0 at the base to 1 at the tip: between the middles of two regions their
     /// laws are blended. A law that hardly moves says nothing about pace: then the organ's size law speaks, then
@@ -252,7 +252,7 @@ impl Default for LawSpec {
 }
 
 /// Fits a law to each organ that is there on at least 3 days: for each region the means of x, y and z from the
-/// organ's base (paper 003, step 3), and the organ's size.
+/// organ's base (Huai, Yang and Cai 2019, step 3), and the organ's size.
 ///
 /// # Errors
 /// [`FitError::TooFew`] below 3 stages, [`FitError::Order`] for days that do not increase, and for a coordinate

@@ -2,7 +2,7 @@
 //!
 //! `stages -> organs -> regions -> GrowthLaw -> Lattice -> any day`
 //!
-//! After Huai, Yang and Cai 2019 (paper 003): control points of a lattice around an organ move along a logistic
+//! After Huai, Yang and Cai (2019): control points of a lattice around an organ move along a logistic
 //! law that was fitted to scans of other days.
 //!
 //! | module | owns |

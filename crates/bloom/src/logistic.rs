@@ -1,4 +1,4 @@
-//! A series of days and values -> the logistic growth law and how far it can be trusted (paper 003, eq 6).
+//! A series of days and values -> the logistic growth law and how far it can be trusted (Huai, Yang and Cai 2019, eq 6).
 
 use base::ops;
 use serde::{Deserialize, Serialize};

@@ -21,7 +21,7 @@ pub struct Obb {
 }
 
 impl Obb {
-    /// Principal axes of the finite points and the box around them (paper 003, algorithm 1).
+    /// Principal axes of the finite points and the box around them (Huai, Yang and Cai 2019, algorithm 1).
     ///
     /// `floor`: the least edge as a share of the longest, 0 to 1; a flat petal with 0 thickness would have no
     /// third coordinate. The paper gives none; 0.05 suits petals. Each edge is padded by 1e-6 of itself so

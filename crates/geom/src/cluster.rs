@@ -15,7 +15,7 @@ const MAX_STEPS: usize = 100;
 /// depends on nothing but the input. Cost per step: the number of pairs within reach, linear for points that
 /// are spread wider than the bandwidth.
 ///
-/// Comaniciu and Meer 2002; used by paper 000 on petal roots.
+/// Comaniciu and Meer 2002; used by He and Cheng (2021) on petal roots.
 ///
 /// ```
 /// use glam::DVec2;

@@ -1,6 +1,6 @@
 //! The cone on which the petals of a flower lie: tips in the drawing -> cone -> depth of every petal point.
 //!
-//! The drawing is a parallel projection along z, the viewer at +z (paper 000, section 5.1, with the height
+//! The drawing is a parallel projection along z, the viewer at +z (He and Cheng 2021, section 5.1, with the height
 //! corrected: h = |v| / cos theta).
 
 use crate::ellipse::{Ellipse, fit_ellipse, fit_ellipse_harmonic};
@@ -63,7 +63,7 @@ impl Cone {
     /// silhouette the depth is that of the tangent point. Guaranteed: finite; at most a thousand times as far
     /// from the apex in z as in the drawing; the apex's z if `xy` is not usable.
     ///
-    /// Paper 000, Eq 3, in closed form (methods 1.3).
+    /// He and Cheng (2021), Eq 3, in closed form (docs/papers.md).
     pub fn depth(&self, xy: DVec2, sheet: Sheet) -> f64 {
         if !xy.usable() {
             return self.apex.z;
@@ -81,7 +81,7 @@ impl Cone {
     ///
     /// The sheet whose depth at the tip is nearer to that of the rim's plane. Seen edge-on (axis within 3
     /// degrees of the drawing plane) a single tip does not tell, and the answer is `Near`: use
-    /// [`Cone::sheets_for_tips`] there. Methods 1.3.
+    /// [`Cone::sheets_for_tips`] there.
     pub fn sheet_for_tip(&self, tip: DVec2, height: f64) -> Sheet {
         if !tip.usable() || self.axis.z.abs() < EDGE_ON {
             return Sheet::Near;
@@ -176,7 +176,7 @@ pub struct FlowerCone {
 /// the height is not in the drawing and comes from a half opening of 60 degrees; ratios from 0.90 to 0.97,
 /// and centre offsets from 0.10 down to 0.05 radii, go over to that gradually.
 ///
-/// Paper 000, section 5.1, corrected: methods 1.2 to 1.4.
+/// He and Cheng (2021), section 5.1, corrected: docs/papers.md.
 pub fn flower_cone(centre: DVec2, tips: &[DVec2], facing_viewer: bool) -> Option<FlowerCone> {
     if !centre.usable() {
         return None;
@@ -220,7 +220,7 @@ fn rim(centre: DVec2, tips: &[DVec2]) -> Option<Ellipse> {
     Some(fit_ellipse(tips).filter(|e| makes_sense(e, centre, reach)).unwrap_or(harmonic))
 }
 
-/// The listed ways in which an algebraic fit goes wrong on few hand-drawn tips (methods 1.4).
+/// The listed ways in which an algebraic fit goes wrong on few hand-drawn tips.
 fn makes_sense(e: &Ellipse, centre: DVec2, reach: f64) -> bool {
     let rho = e.ratio();
     let offset = e.centre - centre;
@@ -390,7 +390,7 @@ mod tests {
 
     #[test]
     fn noise_of_a_hand_is_borne() {
-        // Measured before (methods 1.4): noise 3 % of the radius, median error of rho .015 to .036.
+        // Measured: noise 3 % of the radius, median error of rho .015 to .036.
         let mut made = Made::new(4);
         for n in [3, 4, 5, 6, 8] {
             let mut errors: Vec<f64> = (0..300)

@@ -13,7 +13,7 @@ const MAX_PER_PIECE: usize = 4096;
 /// dropped; fewer than three distinct points are returned as they are. With n distinct points the result has
 /// `(n - 2) * per_piece + 1` points; `per_piece` is clamped to 1..=4096.
 ///
-/// Paper 001: `P0 = (M0 + M1)/2`, control point `M1`, `P2 = (M1 + M2)/2`.
+/// Yang et al. (2019): `P0 = (M0 + M1)/2`, control point `M1`, `P2 = (M1 + M2)/2`.
 pub fn bezier_quadratic_c1(points: &[DVec3], per_piece: usize) -> Vec<DVec3> {
     let m = distinct(points);
     if m.len() < 3 {

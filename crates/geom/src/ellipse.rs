@@ -126,7 +126,7 @@ fn from_conic([a, b, c, d, e, f]: [f64; 6]) -> Option<Ellipse> {
 /// polygon (for 3 tips: Steiner's circumscribed ellipse; for 4: from conjugate diameters). Tips on a straight
 /// line give `minor` 0. Cost: n log n.
 ///
-/// The "highly symmetric" assumption of paper 000, section 5.1; see methods 1.4.
+/// The "highly symmetric" assumption of He and Cheng (2021), section 5.1.
 pub fn fit_ellipse_harmonic(tips: &[DVec2]) -> Option<Ellipse> {
     let (usable, centre, scale) = centre_and_scale(tips)?;
     let n = usable.len();

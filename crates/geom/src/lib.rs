@@ -10,13 +10,13 @@
 //! | `polygon` | area, inside test, hull, cross-sections of closed lines |
 //! | `outline` | [`simple_outline`]: the polygon that a scribble means |
 //! | `pca` | principal axes and their box |
-//! | `ellipse`, `cone` | the flower's ellipse and cone (paper 000, section 5.1) |
+//! | `ellipse`, `cone` | the flower's ellipse and cone (He and Cheng 2021, section 5.1) |
 //! | `cluster` | mean shift |
 //! | `curve`, `frame` | smooth curves through points, frames along them |
 //! | `triangulate` | constrained Delaunay triangulation of a blade |
 //! | `kd`, `cubes` | neighbours; few points for many |
 //! | `hull3` | convex hulls in space |
-//! | `spline` | ball B-spline curves and their tubes, tensor-product surfaces (paper 004) |
+//! | `spline` | ball B-spline curves and their tubes, tensor-product surfaces (Wang et al. 2011) |
 
 mod cluster;
 mod cone;

@@ -99,7 +99,7 @@ fn gaussian_mean(points: &[DVec2], i: usize, c: f64, near: impl Iterator<Item = 
 /// The ends stay where they are, and the number of points stays the same; unusable points are passed through
 /// and take no part. With `c` not positive the line is returned as it is. Cost: points x window.
 ///
-/// Paper 000, Eq 1.
+/// He and Cheng (2021), Eq 1.
 pub fn smooth_gaussian(points: &[DVec2], half_window: usize, c: f64) -> Vec<DVec2> {
     let mut out = points.to_vec();
     let sound = c > 0.0;

@@ -1,6 +1,6 @@
 //! Space colonisation: branches grow towards the attraction points that are nearest to them.
 //!
-//! `roots + attractors -> Skeleton` (Runions, Lane and Prusinkiewicz 2007; paper 001, Eq 1 and 2)
+//! `roots + attractors -> Skeleton` (Runions, Lane and Prusinkiewicz 2007; Yang et al. 2019, Eq 1 and 2)
 
 use base::{Counted, Report, Run};
 use glam::DVec3;
@@ -30,7 +30,7 @@ pub struct ColonizeSpec {
     /// Share of the last direction kept in each step, 0 to 10, default 0.
     #[schemars(range(min = 0.0, max = 10.0))]
     pub inertia: f64,
-    /// A point steers one step before it is consumed, as in paper 001, instead of being consumed as soon as a joint
+    /// A point steers one step before it is consumed, as in Yang et al. (2019), instead of being consumed as soon as a joint
     /// comes near (Runions). Needed where `kill_m` is near `attraction_m`: else hardly any point steers. Default
     /// false.
     pub steer_before_kill: bool,

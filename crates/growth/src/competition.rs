@@ -1,6 +1,6 @@
 //! Competition for space in life cycles.
 //!
-//! `envelope -> N points -> skeleton -> K joints x M points -> finer skeleton -> ...` (paper 001, section 3.1)
+//! `envelope -> N points -> skeleton -> K joints x M points -> finer skeleton -> ...` (Yang et al. 2019, section 3.1)
 
 use base::{Counted, Draw, Report, Run, Seed};
 use glam::DVec3;
@@ -11,7 +11,7 @@ use crate::colonize::{colonize_part, plant_roots};
 use crate::error::GrowthError;
 use crate::{ColonizeSpec, Envelope, Fate, Obstacles, Skeleton, Tropism};
 
-/// Trees after paper 001. Lengths in metres; places relative to the root.
+/// Trees after Yang et al. (2019). Lengths in metres; places relative to the root.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct CompetitionSpec {
@@ -221,7 +221,7 @@ pub struct Competed {
     pub cycles: Vec<Cycle>,
 }
 
-/// Grows trees by competition for space (paper 001, section 3.1), one from each root; they compete with one another.
+/// Grows trees by competition for space (Yang et al. 2019, section 3.1), one from each root; they compete with one another.
 ///
 /// Guaranteed: it ends; a clean `validate()`; no joint in an obstacle; the skeleton after cycle n does not depend on
 /// the lifespan. Points that cannot be reached are warned of, by cycle. Cost: about linear in points and joints.

@@ -1,6 +1,6 @@
 //! Leaves on the thin shoots, where light reaches.
 //!
-//! `Plant + FoliageSpec -> candidates by phyllotaxis -> shadows -> the brightest` (paper 001, section 3.3)
+//! `Plant + FoliageSpec -> candidates by phyllotaxis -> shadows -> the brightest` (Yang et al. 2019, section 3.3)
 
 use base::ops::{self, PI};
 use base::{Counted, Draw, Report, Run, Seed, map_indexed};
@@ -42,7 +42,7 @@ pub struct FoliageSpec {
     /// Shoots bear leaves where they are not thicker than this, metres; default 0.009: two of the usual tips.
     #[schemars(range(min = 0.0, max = 100.0), extend("x-unit" = "m"))]
     pub max_radius_m: f64,
-    /// Share of the leaves kept, the best lit ones, 0 to 1; default 1. Many, suitable and few in Fig 11 of paper 001.
+    /// Share of the leaves kept, the best lit ones, 0 to 1; default 1. Many, suitable and few in Fig 11 of Yang et al. (2019).
     #[schemars(range(min = 0.0, max = 1.0))]
     pub leaf_keep: f64,
     /// Leaves with less light fall in any case, 0 or more (full light is 1), default 0.

@@ -9,9 +9,9 @@
 //! | `beside` | courses of wood beside obstacles: room for bark |
 //! | `mesh_faults` | whether a mesh is closed, for warnings |
 //! | `colonize` | space colonisation (Runions 2007) |
-//! | `competition` | life cycles of attraction points (paper 001) |
+//! | `competition` | life cycles of attraction points (Yang et al. 2019) |
 //! | `self_organize` | buds that compete for light, shedding, wood (Palubicki 2009) |
-//! | `guided` | buds with markers of their own, repulsion, strokes of a brush (paper 002) |
+//! | `guided` | buds with markers of their own, repulsion, strokes of a brush (the VR paper) |
 //! | `lsystem` | rules read from text |
 //! | `skeleton` | what growers make: joints and the joints they grew from |
 //! | `wood` | axes, smooth courses, radii |

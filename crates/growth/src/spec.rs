@@ -39,11 +39,11 @@ pub enum Method {
         #[serde(default)]
         steps: ColonizeSpec,
     },
-    /// Competition for space in life cycles (paper 001).
+    /// Competition for space in life cycles (Yang et al. 2019).
     Competition(CompetitionSpec),
     /// Buds that compete for light (Palubicki 2009).
     SelfOrganizing(SelfOrganizingSpec),
-    /// Buds with markers of their own that keep away from others' and follow strokes of a brush (paper 002).
+    /// Buds with markers of their own that keep away from others' and follow strokes of a brush (the VR paper).
     Guided(GuidedSpec),
     /// Rules (Prusinkiewicz and Lindenmayer 1990). Obstacles cut off what grows into them.
     Lsystem {

@@ -29,7 +29,7 @@ pub struct Tally {
     pub unreachable: usize,
     /// Rounds, years or rewriting steps.
     pub iterations: u32,
-    /// Life cycles of paper 001; 1 for methods without.
+    /// Life cycles of Yang et al. (2019); 1 for methods without.
     pub cycles: u32,
 }
 

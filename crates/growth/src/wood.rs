@@ -17,7 +17,7 @@ use crate::{GrowthError, JointId, Obstacles, Skeleton};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct WoodSpec {
-    /// Exponent t of `r^t = sum of r_i^t` (paper 001, Eq 4), 1 to 4, default 2.4; trees are measured at 1.8 to 2.6.
+    /// Exponent t of `r^t = sum of r_i^t` (Yang et al. 2019, Eq 4), 1 to 4, default 2.4; trees are measured at 1.8 to 2.6.
     #[schemars(range(min = 1.0, max = 4.0))]
     pub pipe_exponent: f64,
     /// Radius of a tip, metres, above 0, default 0.004.

@@ -1,4 +1,4 @@
-//! Paper 000, section 3: the pen's samples to clean strokes of even step in ink coordinates.
+//! He and Cheng (2021), section 3: the pen's samples to clean strokes of even step in ink coordinates.
 //!
 //! `Drawing -> Ink`
 
@@ -93,7 +93,7 @@ pub struct Ink {
     pub map: InkMap,
 }
 
-/// Cleans a drawing: paper 000, section 3, Eq 1.
+/// Cleans a drawing: He and Cheng (2021), section 3, Eq 1.
 ///
 /// Guaranteed: every coordinate is finite and within \[0, 1\]; the number of points is bounded by 400,000 plus
 /// 18 for each stroke. Samples that are not finite, strays that blow the box up a thousandfold and strokes

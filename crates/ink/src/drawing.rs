@@ -4,7 +4,7 @@ use glam::DVec2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// In which mode a stroke was drawn (paper 000, section 4.1).
+/// In which mode a stroke was drawn (He and Cheng 2021, section 4.1).
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema,
 )]

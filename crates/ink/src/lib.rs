@@ -1,4 +1,4 @@
-//! What the pen drew, and what each stroke is (He and Cheng 2021, "paper 000", sections 3 and 4.1).
+//! What the pen drew, and what each stroke is (He and Cheng 2021, sections 3 and 4.1).
 //!
 //! `Drawing -> Ink (clean strokes) -> classes`
 //!

@@ -6,7 +6,7 @@ use plant::{Chart, SplineBlade, Vein, Venation};
 
 use crate::marks::{FullMarks, MARKS_A_ROW};
 
-/// Which surface is laid through or near the marks (paper 004, section 2.2).
+/// Which surface is laid through or near the marks (Wang et al. 2011, section 2.2).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SurfaceKind {
     /// One polynomial of the marks as controls: smooth, far from the marks.

@@ -1,4 +1,4 @@
-//! Leaves from measured veins (paper 004): marks -> veins with thickness and a blade through the same points.
+//! Leaves from measured veins (Wang et al. 2011): marks -> veins with thickness and a blade through the same points.
 //!
 //! `Marks -> complete -> Leaf { veins, blade } -> plant::SplineBlade`
 //!

@@ -8,12 +8,12 @@ pub const MARKS_A_ROW: usize = 7;
 
 const MIDDLE: usize = 3;
 
-/// The blade is about 2.6 % as thick as its veins are on average (paper 004, section 2).
+/// The blade is about 2.6 % as thick as its veins are on average (Wang et al. 2011, section 2).
 const BLADE_SHARE: f64 = 0.026;
 
 /// Marks on one leaf as they were measured; thickness may be missing.
 ///
-/// Paper 004, section 1.2: rows are counted from the tip down, marks from the right margin to the left as one
+/// Wang et al. (2011), section 1.2: rows are counted from the tip down, marks from the right margin to the left as one
 /// looks at the upper side with the tip up; the fourth lies where the side veins leave the midrib.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Marks {

@@ -33,7 +33,7 @@ pub enum Lift {
         /// Rise per unit across and along the blade.
         slope: DVec2,
     },
-    /// On a cone (paper 000, Eq 3; see `geom::Cone`), in the blade's local coordinates.
+    /// On a cone (He and Cheng 2021, Eq 3; see `geom::Cone`), in the blade's local coordinates.
     Cone {
         /// The cone and the sheet of it on which this petal lies.
         cone: geom::Cone,
@@ -42,7 +42,7 @@ pub enum Lift {
     },
 }
 
-/// Bending and hollowing (paper 000, Eq 5 and section 6.2), all as shares of the blade's length.
+/// Bending and hollowing (He and Cheng 2021, Eq 5 and section 6.2), all as shares of the blade's length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Relief {
     /// Quartic coefficient A of Eq 5, positive bends the tip away from the upper side. About -0.2 to 0.2.

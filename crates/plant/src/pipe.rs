@@ -1,4 +1,4 @@
-//! Radii of axes by the pipe model (paper 000, Eq 6) and the taper along an axis (Eq 7).
+//! Radii of axes by the pipe model (He and Cheng 2021, Eq 6) and the taper along an axis (Eq 7).
 //!
 //! `topology + tips carried -> radius at every node`
 

@@ -62,7 +62,7 @@ impl Blade {
     /// Puts one point of the plane into space (local coordinates, scale 1); [`surface`](Self::surface) for many.
     ///
     /// Guaranteed: with `keep_length` off, x and y stay as they are, so the view along z is the drawing.
-    /// Paper 000, Eq 5 and section 6.2.
+    /// He and Cheng (2021), Eq 5 and section 6.2.
     ///
     /// ```
     /// use glam::{DVec2, DVec3};
@@ -116,7 +116,7 @@ impl<'a> BladeSurface<'a> {
     /// Puts a point of the blade's plane into space, local coordinates at scale 1.
     ///
     /// Guaranteed: finite for finite blades and points; x and y unchanged unless `keep_length` is set.
-    /// Paper 000, Eq 5 (along minus the normal, x measured along the unit axis) and section 6.2.
+    /// He and Cheng (2021), Eq 5 (along minus the normal, x measured along the unit axis) and section 6.2.
     pub fn point(&self, p: DVec2) -> DVec3 {
         let relief = self.blade.relief;
         let (u, v) = (p.dot(self.across), p.dot(self.along));
@@ -276,7 +276,7 @@ impl<'a> BladeSurface<'a> {
 
     /// The bent midrib with the length of the one that is not bent: where each row comes to lie, and its sag.
     ///
-    /// Methods 1.7: for a flat blade `v' = integral of sqrt(1 - sag'^2)`; on a lifted one the same with the lift's
+    /// For a flat blade `v' = integral of sqrt(1 - sag'^2)`; on a lifted one the same with the lift's
     /// own slope in both lengths.
     fn bend_midrib(&self) -> Vec<DVec2> {
         const FINE: usize = 4;

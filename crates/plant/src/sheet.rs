@@ -46,7 +46,7 @@ pub struct VeinShade {
     pub reach_m: f64,
 }
 
-/// A blade as a spline surface with its veins (He et al. 2018), in its own frame as a [`Blade`](crate::Blade) is.
+/// A blade as a spline surface with its veins (Wang et al. 2011, section 2), in its own frame as a [`Blade`](crate::Blade) is.
 ///
 /// u runs from the left margin to the right, v from the root to the tip, so that `du x dv` looks to the upper side.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,4 +1,4 @@
-//! One leaf or petal: outline, root, tip, midrib (methods 1.7).
+//! One leaf or petal: outline, root, tip, midrib.
 
 use geom::{
     closest_on_polyline, contains, medial_axis_width, resample, signed_area, simple_outline, simplify,

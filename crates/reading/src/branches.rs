@@ -1,4 +1,4 @@
-//! The hierarchy of axes, from the longest stroke outwards (paper 000, section 4.2).
+//! The hierarchy of axes, from the longest stroke outwards (He and Cheng 2021, section 4.2).
 //!
 //! A line is borne by the line of the last level that one of its ends comes nearest to, if nearer than a
 //! threshold. Beyond the paper: outlined trunks come first; the threshold is a share of the drawing; lines that

@@ -1,4 +1,4 @@
-//! Which blades are petals of one flower, and which are leaves (paper 000, section 4.1).
+//! Which blades are petals of one flower, and which are leaves (He and Cheng 2021, section 4.1).
 //!
 //! Roots of petals lie together, roots of leaves do not: mean shift on roots, clusters of more than 2 are
 //! flowers. Beyond the paper: a drawn disc gathers its petals; blades are rooted where they touch their bearer
@@ -20,7 +20,7 @@ use crate::near::{Near, bounds};
 use crate::rings::Ring;
 use crate::{DiscReading, OrganWord};
 
-/// Roots this near together, as a share of the median petal length, are one flower (methods 1.7).
+/// Roots this near together, as a share of the median petal length, are one flower.
 const BANDWIDTH: f64 = 0.25;
 /// Roots that are clustered by mean shift; more are told apart by cells.
 const MOST_ROOTS: usize = 2_000;

@@ -1,4 +1,4 @@
-//! What the strokes of a drawing mean (He and Cheng 2021, "paper 000", section 4), still flat.
+//! What the strokes of a drawing mean (He and Cheng 2021, section 4), still flat.
 //!
 //! `Ink + classes -> Reading`
 //!

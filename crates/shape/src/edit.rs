@@ -70,7 +70,7 @@ pub enum HandEdit {
         #[serde(default)]
         seed: u64,
     },
-    /// Lets branches grow along a stroke of a brush (paper 002).
+    /// Lets branches grow along a stroke of a brush (the VR paper).
     Brush {
         /// The branch that they grow from; without, the one nearest to the stroke's start.
         #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -89,7 +89,7 @@ pub enum HandEdit {
         #[serde(default)]
         seed: u64,
     },
-    /// Fills an outline that was drawn in a plane facing the viewer (paper 002).
+    /// Fills an outline that was drawn in a plane facing the viewer (the VR paper).
     Silhouette {
         /// The plane.
         #[serde(default)]

@@ -12,7 +12,7 @@ use crate::draft::Draft;
 /// The habit of a plant.
 #[derive(Clone, Debug)]
 pub(crate) struct Habit {
-    /// Exponent t of `r^t = sum of r_i^t` (paper 001, Eq 4).
+    /// Exponent t of `r^t = sum of r_i^t` (Yang et al. 2019, Eq 4).
     pub(crate) exponent: f64,
     /// Radius of a tip, metres.
     pub(crate) tip_m: f64,

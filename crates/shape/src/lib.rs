@@ -1,4 +1,4 @@
-//! Hand edits on any plant: rotate, move, prune, regrow, sketch, brush, fill a silhouette, thin leaves (paper 002).
+//! Hand edits on any plant: rotate, move, prune, regrow, sketch, brush, fill a silhouette, thin leaves (the VR paper).
 //!
 //! `Plant + [HandEdit] -> Plant + [Outcome]`
 //!

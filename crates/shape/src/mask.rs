@@ -1,4 +1,4 @@
-//! An outline drawn in a plane -> markers in space (paper 002, silhouette editing).
+//! An outline drawn in a plane -> markers in space (the VR paper, silhouette editing).
 
 use base::ops;
 use base::{Draw, Seed};

@@ -1,6 +1,6 @@
 //! Radii after a cut or a graft: the pipe model, applied to what changed and to nothing else.
 //!
-//! `r^t = sum of r_i^t` (paper 000, Eq 6; paper 001, Eq 4)
+//! `r^t = sum of r_i^t` (He and Cheng 2021, Eq 6; Yang et al. 2019, Eq 4)
 
 use base::ops;
 

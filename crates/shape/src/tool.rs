@@ -166,7 +166,7 @@ struct Stroking {
 
 /// A drag of less than this many degrees is a slip of the hand, not a rotation.
 const LEAST_TURN_DEG: f64 = 0.2;
-/// Nearer to the pivot than this share of the branch, a drag says nothing about an angle (paper 002's dead zone).
+/// Nearer to the pivot than this share of the branch, a drag says nothing about an angle (the VR paper's dead zone).
 const DEAD: f64 = 0.05;
 
 impl Tool {
@@ -306,7 +306,7 @@ impl Tool {
                 let length = geom::polyline_length3(plant.axis_points(pick.axis));
                 let now = hand(p, *pivot, *about).filter(|b| b.length() > DEAD * length);
                 if let (Some(a), Some(b)) = (*last, now) {
-                    // angle = atan2(a x b, a . b) about the view direction (paper 002, 3.5), added up.
+                    // angle = atan2(a x b, a . b) about the view direction (the VR paper), added up.
                     *angle += base::ops::atan2(a.cross(b).dot(*about), a.dot(b));
                 }
                 *last = now.or(*last);

@@ -31,7 +31,7 @@ pub struct Built {
 /// length and references to rows that are not there are left out. Guaranteed: the same plant for the same reading,
 /// spec and seed, on every platform; a clean `validate()`; with `leaf_depth` drawn, light and weight 0, the front
 /// view of axes, petals and leaves is the drawing. Not guaranteed: that anything is left of a reading of nothing.
-/// Books its time under `depth`. Paper 000, sections 4.3 to 6.
+/// Books its time under `depth`. He and Cheng (2021), sections 4.3 to 6.
 ///
 /// # Errors
 /// [`Cancelled`] when the caller asked to stop.

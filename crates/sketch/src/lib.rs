@@ -1,4 +1,4 @@
-//! The plant of a drawing that was read (He and Cheng 2021, "paper 000").
+//! The plant of a drawing that was read (He and Cheng 2021).
 //!
 //! `Reading -> Plant`
 //!

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How the depth of branches is found (paper 000, section 5.2).
+/// How the depth of branches is found (He and Cheng 2021, section 5.2).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum BranchDepth {
@@ -14,7 +14,7 @@ pub enum BranchDepth {
     Riesz,
 }
 
-/// How the depth of leaves is found (paper 000, section 5.3).
+/// How the depth of leaves is found (He and Cheng 2021, section 5.3).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum LeafDepth {

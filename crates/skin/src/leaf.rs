@@ -11,7 +11,7 @@ use crate::sleeve::{narrow, narrow2, wide};
 /// The triangles of one shape, in its own frame.
 ///
 /// Of a leaf of N rows of marks with the default [`LeafMeshSpec`] the veins have `10 (36 N + 1)` vertices and `350 N`
-/// quads, the blade `(5 N + 1) * 31` vertices and `150 N` quads (paper 004, Table 1). Triangles are two a quad, but one
+/// quads, the blade `(5 N + 1) * 31` vertices and `150 N` quads (Wang et al. 2011, Table 1). Triangles are two a quad, but one
 /// at the tip, where a row of the blade is one point.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ShapeMesh {

@@ -76,7 +76,7 @@ use crate::spec::Budget;
 /// # Errors
 /// [`Stopped`] when the caller's token says so, or when there would be more triangles than the budget allows.
 ///
-/// Paper 000, sections 5.3 and 6.
+/// He and Cheng (2021), sections 5.3 and 6.
 ///
 /// ```
 /// use glam::DVec3;

@@ -66,7 +66,7 @@ impl Default for SkinSpec {
 /// How finely leaves of measured veins are meshed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LeafMeshSpec {
-    /// Parts of each span between marks, 1 to 64. Default 5, as in Table 1 of paper 004.
+    /// Parts of each span between marks, 1 to 64. Default 5, as in Table 1 of Wang et al. (2011).
     pub subdivisions: usize,
     /// Points of each ring of a vein, 3 to 64. Default 10, as in Table 1.
     pub sides: usize,
@@ -173,7 +173,7 @@ pub(crate) struct Budget {
     blades: f64,
 }
 
-// The paper's sketch (a) has 33.4 rings a branch (methods 1.9); collar and tip are part of them.
+// The paper's sketch (a) has 33.4 rings a branch; collar and tip are part of them.
 const RINGS: f64 = 32.0;
 // Above these totals (at detail 1) axes and blades share: a crown of thousands of twigs and leaves stays a
 // model that a game or a page can hold, while every sketch of the paper's Table 1 stays below.

@@ -412,7 +412,7 @@ fn stroke_report(s: &reading::StrokeReading) -> StrokeReport {
     }
 }
 
-/// Makes a plant and its meshes from a drawing (paper 000).
+/// Makes a plant and its meshes from a drawing (He and Cheng 2021).
 ///
 /// The same drawing, options and seed give the same bits on every platform and for any executor.
 /// Cost: linear in ink and organs, some milliseconds for a drawing of 30 strokes.

@@ -20,7 +20,7 @@ pub struct FlowerOptions {
     pub edits: Vec<PlantEdit>,
 }
 
-/// Makes a whole flower as it is at `day` (paper 003).
+/// Makes a whole flower as it is at `day` (Huai, Yang and Cai 2019).
 ///
 /// Guaranteed: the same vertices and triangles at every day, for edits that do not cut.
 ///

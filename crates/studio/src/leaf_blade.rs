@@ -5,7 +5,7 @@ use leaf::{FullMarks, Leaf};
 
 /// A flat leaf as the blade of another maker's plant: outline, midrib and veins, of length `length_m`.
 ///
-/// The measured relief becomes that of paper 000: the bend along the midrib (Eq 5) and the fold of the halves,
+/// The measured relief becomes that of He and Cheng (2021): the bend along the midrib (Eq 5) and the fold of the halves,
 /// fitted to the marks by least squares.
 pub fn leaf_blade(leaf: &Leaf, marks: &FullMarks, length_m: f64) -> plant::Blade {
     let flat = leaf.blade().flat(3);

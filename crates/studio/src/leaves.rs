@@ -82,7 +82,7 @@ impl From<Stopped> for LeafError {
 /// What to do where a leaf would have too many triangles.
 pub(crate) const COARSER: &str = "lower subdivisions or sides, or make fewer leaves";
 
-/// Makes a leaf and its meshes from marks (paper 004).
+/// Makes a leaf and its meshes from marks (Wang et al. 2011).
 ///
 /// # Errors
 /// [`LeafError`].

@@ -9,7 +9,7 @@ use plant::{AxisKind, NodeId, Plant, SplineBlade};
 use crate::leaves::{COARSER, LeafError, LeafOptions, bear, finish, leaf_texture};
 use crate::made::MadePlant;
 
-/// A whole shoot of measured leaves (paper 004, section 3 and Fig 9).
+/// A whole shoot of measured leaves (Wang et al. 2011, section 3 and Fig 9).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShootSpec {
     /// Number of leaves, 1 to 200. Default 22.

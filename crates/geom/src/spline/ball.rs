@@ -50,7 +50,7 @@ impl Mul<f64> for Ball {
 /// Guaranteed: [`ball`](Self::ball) never has a negative radius (a cubic through small radii may dip below 0;
 /// there it is cut off at 0). Not guaranteed: that the tube does not cut itself (see [`Tube`](super::Tube)).
 ///
-/// Paper 004, section 2.1.1: `<P; r>(t) = sum N_i(t) <P_i; r_i>`.
+/// Wang et al. (2011), section 2.1.1: `<P; r>(t) = sum N_i(t) <P_i; r_i>`.
 ///
 /// ```
 /// use geom::{Ball, BallBSpline};
@@ -113,7 +113,7 @@ impl BallBSpline {
     /// The cubic curve through all marks, by chord length, with natural ends.
     ///
     /// Marks nearer to the one before than 1e-9 of the whole length are merged with it. Two marks give a
-    /// straight piece. Paper 004, section 2.1.2.
+    /// straight piece. Wang et al. (2011), section 2.1.2.
     ///
     /// # Errors
     /// [`SplineError::TooFew`] for less than 2 distinct marks, [`SplineError::NotFinite`],
@@ -167,7 +167,7 @@ impl BallBSpline {
         &self.controls
     }
 
-    /// The control balls, to move and rescale them: the deformation of paper 004, Fig 4.
+    /// The control balls, to move and rescale them: the deformation of Wang et al. (2011), Fig 4.
     ///
     /// One ball shapes the curve over `degree + 1` neighbouring spans only.
     pub fn controls_mut(&mut self) -> &mut [Ball] {

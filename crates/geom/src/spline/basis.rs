@@ -10,7 +10,7 @@ pub const MAX_DEGREE: usize = 63;
 /// Guaranteed: at every parameter of the domain the weights are at least 0 and sum to 1, and only
 /// `degree + 1` neighbouring ones are above 0. Parameters outside the domain are clamped to it.
 ///
-/// Paper 004, section 2.1.1; Piegl and Tiller, The NURBS Book, section 2.2.
+/// Wang et al. (2011), section 2.1.1; Piegl and Tiller, The NURBS Book, section 2.2.
 ///
 /// ```
 /// let basis = geom::Basis::bezier(3)?;

@@ -44,7 +44,7 @@ pub fn chord_parameters(points: &[DVec3]) -> Option<Vec<f64>> {
 ///
 /// Factored once, it is solved for any number of sets of values at those parameters in linear time.
 ///
-/// Paper 004, section 2.1.2: end knots fourfold, an inner knot at each inner parameter, `n + 2` controls for
+/// Wang et al. (2011), section 2.1.2: end knots fourfold, an inner knot at each inner parameter, `n + 2` controls for
 /// `n` points; the first and last control are the first and last point.
 ///
 /// ```

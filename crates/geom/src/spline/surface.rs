@@ -12,7 +12,7 @@ use crate::vector::Vector as _;
 
 /// A tensor-product surface over (u, v): u runs along a row of marks, v from row to row.
 ///
-/// Paper 004, section 2.2: `P(u, v) = sum_ij N_i(v) N_j(u) P_ij`, with weights the quotient of NURBS.
+/// Wang et al. (2011), section 2.2: `P(u, v) = sum_ij N_i(v) N_j(u) P_ij`, with weights the quotient of NURBS.
 ///
 /// ```
 /// use geom::SplineSurface;

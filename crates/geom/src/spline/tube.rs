@@ -9,7 +9,7 @@ use crate::frame::{perpendicular, rotation_minimising_frames};
 /// How a ring of the tube is placed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RingRule {
-    /// A circle of the ball's radius in the plane across the centre line (paper 004).
+    /// A circle of the ball's radius in the plane across the centre line (Wang et al. 2011).
     #[default]
     Plain,
     /// The circle in which the ball touches the envelope of all balls: the exact surface. The same as plain

@@ -1,6 +1,6 @@
 //! Guided growth: buds that make markers of their own, keep away from others' and follow a brush.
 //!
-//! `buds -> (markers in their cones -> directions, free space -> vigour -> shoots) x rounds -> Skeleton` (paper 002)
+//! `buds -> (markers in their cones -> directions, free space -> vigour -> shoots) x rounds -> Skeleton` (the VR paper)
 
 mod room;
 mod spec;

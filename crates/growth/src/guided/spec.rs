@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::{usable, within};
 use crate::{Arrangement, Envelope, GrowthError, Tropism};
 
-/// A stroke of a brush in space: buds find room only inside it, and are drawn along it (paper 002).
+/// A stroke of a brush in space: buds find room only inside it, and are drawn along it (the VR paper).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BrushStroke {
@@ -28,7 +28,7 @@ const fn one() -> f64 {
     1.0
 }
 
-/// Guided growth: each bud makes its own markers, and others' markers push it away (paper 002). Metres, degrees.
+/// Guided growth: each bud makes its own markers, and others' markers push it away (the VR paper). Metres, degrees.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct GuidedSpec {

@@ -140,7 +140,7 @@ pub struct SelfOrganizingSpec {
     /// Radius of a fresh shoot, above 0, default 0.004.
     #[schemars(range(min = 1e-6, max = 10.0), extend("x-unit" = "m"))]
     pub tip_radius_m: f64,
-    /// Whether a bud suffers from the shadow of its own leaf (paper 001 has no correction), default false.
+    /// Whether a bud suffers from the shadow of its own leaf (Yang et al. 2019 have no correction), default false.
     pub self_shadow: bool,
     /// Most joints of all trees together; growth stops, with a warning, before the year that would make more. Default
     /// 200,000: some six million triangles.

@@ -1,4 +1,4 @@
-//! What each stroke is (paper 000, section 4.1): `Ink -> Vec<Classified>`.
+//! What each stroke is (He and Cheng 2021, section 4.1): `Ink -> Vec<Classified>`.
 //!
 //! | step | module |
 //! |---|---|

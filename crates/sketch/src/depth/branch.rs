@@ -1,4 +1,4 @@
-//! Depth of branches by maximum entropy (paper 000, section 5.2, Eq 4; methods 1.5).
+//! Depth of branches by maximum entropy (He and Cheng 2021, section 5.2, Eq 4; docs/papers.md).
 //!
 //! `flat AxisPlans -> rotation of each branch about its bearer -> z of every node`
 //!
@@ -164,7 +164,7 @@ fn child(plan: &AxisPlan, along: DVec2, rise: f64, mode: BranchDepth, seed: Seed
 /// The rotations of siblings at which Eq 4 is large: coordinate ascent with halving steps.
 ///
 /// `paper`: `alpha * mean angle + beta * mean exp(-lengthening)`; `riesz`: `-alpha * mean 1/angle^2` instead, since
-/// the sum of angles cannot tell an even spread from two clumps (methods 1.5). alpha = beta = 1. Siblings in the
+/// the sum of angles cannot tell an even spread from two clumps (docs/papers.md). alpha = beta = 1. Siblings in the
 /// order of their places along the bearer.
 pub(crate) fn most_entropy(children: &[Child], mode: BranchDepth) -> Vec<f64> {
     let n = children.len();

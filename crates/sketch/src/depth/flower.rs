@@ -1,4 +1,4 @@
-//! Flowers on cones (paper 000, section 5.1; methods 1.2 to 1.4).
+//! Flowers on cones (He and Cheng 2021, section 5.1; docs/papers.md).
 //!
 //! `FlowerReading -> cone (nested ones for inner whorls) -> petals, disc, stamens`
 

@@ -1,4 +1,4 @@
-//! Leaves in space (paper 000, section 5.3; methods 1.6), and drawn outlines as blades.
+//! Leaves in space (He and Cheng 2021, section 5.3; docs/papers.md), and drawn outlines as blades.
 //!
 //! `BladeReading + its bearer -> Blade + Frame`
 
@@ -158,7 +158,7 @@ pub(crate) fn place_leaf(
 /// first disturbance), then about the plumb line by `phi * pi^(-|cos phi|)` plus the second.
 ///
 /// `va`, `vb`: unit directions of leaf and bearer in the drawing. Paper mode turns every leaf to +X and on towards
-/// -Z, as printed; signed mode keeps left leaves left (methods 1.6).
+/// -Z, as printed; signed mode keeps left leaves left (docs/papers.md).
 fn light_frame(origin: DVec3, va: DVec2, vb: DVec2, disturbed: DVec2, signed: bool) -> Frame {
     let phi = ops::acos_clamped(va.dot(vb));
     let turn = phi * ops::powf(ops::PI, -ops::cos(phi).abs()) + disturbed.y;

@@ -1,4 +1,4 @@
-//! From flat reading to depth (paper 000, section 5): axes by entropy, flowers by cones, leaves by the light prior.
+//! From flat reading to depth (He and Cheng 2021, section 5): axes by entropy, flowers by cones, leaves by the light prior.
 //!
 //! `Reading -> AxisPlan (nodes) -> z of every node -> organs in space`
 

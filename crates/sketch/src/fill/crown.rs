@@ -3,7 +3,7 @@
 //! `contour + trunk -> leader and limbs -> branches -> twigs -> leaves`
 //!
 //! Big to small (Runions 2007, Fig 8): every level strews attraction points in what the last one left empty,
-//! joins each to the place from which it is best reached, and grows there by Eq 2 of paper 000.
+//! joins each to the place from which it is best reached, and grows there by Eq 2 of He and Cheng (2021).
 
 use base::ops::sin_cos;
 use base::{Draw, Seed, ops};

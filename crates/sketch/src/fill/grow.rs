@@ -1,6 +1,6 @@
 //! Growth of one axis towards its attraction point, and the places where further ones may start.
 //!
-//! Paper 000, Eq 2: `p' = p + r (k_p v_p + k_b v_b + k_m v_m)`, all three directions unit vectors.
+//! He and Cheng (2021), Eq 2: `p' = p + r (k_p v_p + k_b v_b + k_m v_m)`, all three directions unit vectors.
 
 use base::Stream;
 use glam::DVec3;

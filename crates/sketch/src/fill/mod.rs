@@ -1,4 +1,4 @@
-//! Contours filled with twigs and leaves (paper 000, section 4.3).
+//! Contours filled with twigs and leaves (He and Cheng 2021, section 4.3).
 //!
 //! `Reading::regions + the plant's drawn axes -> grown twigs and leaves`
 //!

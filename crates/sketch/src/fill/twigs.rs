@@ -33,7 +33,7 @@ impl Twigs<'_> {
     ///
     /// A bearer that ends well below the far side of its contour goes on there as a leading shoot. Twigs start
     /// along bearers and leaders at equal arc lengths, in a spiral around them, and are drawn to the contour on
-    /// their side (paper 000, section 4.3). What stays empty then is reached by twigs from twigs.
+    /// their side (He and Cheng 2021, section 4.3). What stays empty then is reached by twigs from twigs.
     pub(super) fn grow(&self, plant: &mut Plant, sites: &mut Vec<Site>) -> usize {
         let before = plant.axes.len();
         let v = self.volume;

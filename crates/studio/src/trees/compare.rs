@@ -1,4 +1,4 @@
-//! One oak by three methods, as paper 001 compares them in its Table 2.
+//! One oak by three methods, as Yang et al. (2019) compare them in its Table 2.
 
 use base::ops;
 use growth::{Grown, GuidedSpec, Light, Method, Resource, SelfOrganizingSpec};
@@ -10,7 +10,7 @@ pub const OAK_METHODS: [(&str, &str); 3] =
 /// What [`guided_methods`] compares.
 pub const GUIDED_METHODS: [&str; 2] = ["guided growth", "self-organisation"];
 
-/// One crown by the improved growth of paper 002 and by its baseline, space colonisation by buds (Palubicki et al.
+/// One crown by the improved growth of the VR paper and by its baseline, space colonisation by buds (Palubicki et al.
 /// 2009): in one envelope, with internodes of one length, one perception, angle, phyllotaxis, bias and number of rounds.
 ///
 /// `None` where the method has no envelope. The baseline's markers are as dense as a bud's own in its perception cone.
@@ -70,7 +70,7 @@ pub struct PaperOak {
     pub seconds: f64,
 }
 
-/// Paper 001, Table 2.
+/// Yang et al. (2019), Table 2.
 pub const PAPER_OAKS: [PaperOak; 3] = [
     PaperOak { method: "L-system", vertices_k: 601.0, triangles_k: 635.6, seconds: 45.0 },
     PaperOak { method: "space colonization", vertices_k: 117.8, triangles_k: 147.2, seconds: 8.0 },

@@ -14,7 +14,7 @@ pub struct Preset {
 
 macro_rules! presets {
     ($($key:literal),* $(,)?) => {
-        /// Every preset, those of paper 001 first.
+        /// Every preset, those of Yang et al. (2019) first.
         pub const PRESETS: &[Preset] = &[$(Preset {
             key: $key,
             toml: include_str!(concat!("../../presets/", $key, ".toml")),
