@@ -47,7 +47,7 @@ pub enum Method {
     Guided(GuidedSpec),
     /// Rules (Prusinkiewicz and Lindenmayer 1990). Obstacles cut off what grows into them.
     Lsystem {
-        /// The text that [`Lsystem::parse`] reads.
+        /// Axiom and rules, one a line.
         rules: String,
         /// Most modules of all trees, 1 to 100 million.
         #[schemars(range(min = 1, max = 100_000_000))]

@@ -27,7 +27,7 @@ pub struct Built {
 
 /// Builds the plant of a reading.
 ///
-/// `reading`: whatever [`read`](crate::read) or a caller made; coordinates that are not finite, lines without
+/// `reading`: whatever [`read`](reading::read) or a caller made; coordinates that are not finite, lines without
 /// length and references to rows that are not there are left out. Guaranteed: the same plant for the same reading,
 /// spec and seed, on every platform; a clean `validate()`; with `leaf_depth` drawn, light and weight 0, the front
 /// view of axes, petals and leaves is the drawing. Not guaranteed: that anything is left of a reading of nothing.

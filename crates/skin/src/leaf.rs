@@ -23,7 +23,7 @@ pub struct ShapeMesh {
     pub vein_faces: usize,
     /// Quads of the blade of a measured leaf.
     pub blade_faces: usize,
-    /// Rings whose ball lies inside its neighbours; only with [`RingRule::Envelope`].
+    /// Rings whose ball lies inside its neighbours; only with [`geom::RingRule::Envelope`].
     pub swallowed: usize,
     /// Rings at which a vein is thicker than it bends, so that its surface cuts itself.
     pub crossing: usize,
