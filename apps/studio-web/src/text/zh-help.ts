@@ -226,7 +226,8 @@ export const zhHelp: Readonly<Record<string, string>> = {
   'tree.Method.self-organizing.most_per_shoot': '一根枝条每年最多的节间数，1 至 100，默认 6。',
   'tree.Method.self-organizing.pipe_exponent': '管道模型的指数 n，1 至 4，默认 2.4。',
   'tree.Method.self-organizing.resource': '养分如何分配。',
-  'tree.Method.self-organizing.self_shadow': '芽是否受自身叶片阴影的影响（Yang 等（2019） 不作修正），默认否。',
+  'tree.Method.self-organizing.self_shadow':
+    '芽是否受自身叶片阴影的影响（Yang 等（2019） 不作修正），默认否。',
   'tree.Method.self-organizing.shed_after_years': '枝条在此年数之内不会脱落，默认 3。',
   'tree.Method.self-organizing.shed_below': '每节间平均光照低于此值的枝条会脱落，0 或以上，默认 0.15。',
   'tree.Method.self-organizing.tip_radius_m': '新枝的半径，大于 0，默认 0.004。',
