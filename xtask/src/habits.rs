@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::shell::{Outcome, cache_dir, cargo, cargo_path, finish, output, prepare, say};
+use crate::shell::{Outcome, cargo, finish, installed, output, prepare, say};
 
 /// A program that checks one of them.
 struct Checker {
@@ -39,19 +39,9 @@ pub(crate) fn check() -> Outcome {
 impl Checker {
     /// The program: installed for this checkout, or now; none where that fails, and says so.
     fn found(&self) -> Option<PathBuf> {
-        let root = cache_dir().join(format!("{}-{}", self.package, self.version));
-        let program = root.join("bin").join(format!("{}{}", self.program, std::env::consts::EXE_SUFFIX));
-        if program.exists() {
-            return Some(program);
-        }
-        say(&format!("$ cargo install {} --version ={} (once)", self.package, self.version));
-        let (exact, root) = (format!("={}", self.version), root.to_string_lossy().into_owned());
-        let mut c = prepare(cargo_path(), &["install", "--quiet", self.package, "--version", &exact]);
-        c.args(["--root", &root]);
         // It runs for a second: what it takes to build counts.
-        c.env("CARGO_PROFILE_RELEASE_OPT_LEVEL", "0").env("CARGO_PROFILE_RELEASE_LTO", "off");
-        match finish(c) {
-            Ok(()) => Some(program),
+        match installed((self.package, self.program), self.version, &[], "0") {
+            Ok(program) => Some(program),
             Err(e) => {
                 say(&format!("skipped: {} cannot be installed here ({e})", self.package));
                 None

@@ -98,3 +98,26 @@ fn describe(c: &Command) -> String {
     let words = std::iter::once(c.get_program()).chain(c.get_args());
     words.map(|w| w.to_string_lossy()).collect::<Vec<_>>().join(" ")
 }
+
+/// A program of the registry, of one version: built into the cache if it is not there. `extra`: further arguments of
+/// `cargo install`; `optimise`: the level, of which compiling for long counts against running for seconds.
+pub(crate) fn installed(
+    (package, program): (&str, &str),
+    version: &str,
+    extra: &[&str],
+    optimise: &str,
+) -> Outcome<PathBuf> {
+    let root = cache_dir().join(format!("{program}-{version}"));
+    let path = root.join("bin").join(format!("{program}{}", std::env::consts::EXE_SUFFIX));
+    if path.exists() {
+        return Ok(path);
+    }
+    say(&format!("$ cargo install {package} --version ={version} (once)"));
+    let exact = format!("={version}");
+    // No --locked: the lock file inside a crate may name versions that a registry does not serve.
+    let mut c = prepare(cargo_path(), &["install", "--quiet", package, "--version", &exact]);
+    c.args(extra).arg("--root").arg(&root);
+    c.env("CARGO_PROFILE_RELEASE_OPT_LEVEL", optimise).env("CARGO_PROFILE_RELEASE_LTO", "off");
+    finish(c)?;
+    Ok(path)
+}

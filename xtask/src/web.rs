@@ -3,8 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::shell::{
-    Outcome, burgeon, cache_dir, cargo_path, command, debug_burgeon, finish, output, prepare, repository,
-    say, target_dir,
+    Outcome, burgeon, command, debug_burgeon, finish, installed, output, prepare, repository, say, target_dir,
 };
 use crate::toolchain::{TARGET, WasmCargo, is_root_on_debian, shown, wasm_cargo};
 use crate::{golden, native};
@@ -48,20 +47,8 @@ fn wasm_bindgen() -> Outcome<PathBuf> {
         .and_then(|p| p.split("version = \"").nth(1)?.split('"').next())
         .ok_or("Cargo.lock names no wasm-bindgen")?
         .to_owned();
-    let root = cache_dir().join(format!("wasm-bindgen-{version}"));
-    let program = root.join("bin").join(format!("wasm-bindgen{}", std::env::consts::EXE_SUFFIX));
-    if program.exists() {
-        return Ok(program);
-    }
-    say(&format!("$ cargo install wasm-bindgen-cli --version ={version} (once)"));
-    // No --locked: the lock file inside that crate may name versions that a registry does not serve.
-    let root_arg = root.to_string_lossy().into_owned();
-    let exact = format!("={version}");
-    let mut c = prepare(cargo_path(), &["install", "--quiet", "wasm-bindgen-cli", "--version", &exact]);
-    c.args(["--no-default-features", "--bin", "wasm-bindgen", "--root", &root_arg]);
-    c.env("CARGO_PROFILE_RELEASE_OPT_LEVEL", "1");
-    finish(c)?;
-    Ok(program)
+    let only = ["--no-default-features", "--bin", "wasm-bindgen"];
+    installed(("wasm-bindgen-cli", "wasm-bindgen"), &version, &only, "1")
 }
 
 /// Builds the WASM package, runs it in Node beside the native program, and validates every GLB. `tested`: the tests of

@@ -10,7 +10,8 @@ use burgeon::glam::DVec3;
 use burgeon::mesh::{Model, PointCloud};
 use burgeon::plant::{Measures, Plant};
 use burgeon::{
-    Counts, Digest, FlowerOptions, MakeError, OpeningError, OpeningPlant, RunReport, Seed, make_flower,
+    Counts, Digest, FlowerOptions, MakeError, OpeningError, OpeningPlant, RunReport, Seed, Stopped,
+    make_flower,
 };
 use serde::Serialize;
 
@@ -598,7 +599,6 @@ fn flower(
     machine: &Machine,
 ) -> Outcome {
     no_scans(args, &spec.name)?;
-    spec.check(&machine.run().budget).map_err(|e| Failure::at(Path::new(&args.start), e))?;
     let spec = match &args.petal {
         Some(path) => {
             let (form, aspect) = petal_form(path, args.seed, machine)?;
@@ -616,7 +616,11 @@ fn flower(
         days: [0.0, spec.opening_days + spec.wilting_days],
         best: spec.opening_days,
         shape: Box::new(|day| {
-            let made = make_flower(&spec.name, &spec, (day, &law), &options, seed, &machine.run())?;
+            let made = make_flower(&spec.name, &spec, (day, &law), &options, seed, &machine.run());
+            let made = made.map_err(|stopped| match stopped {
+                Stopped::Cancelled(_) => Failure::Cancelled,
+                Stopped::OverBudget(much) => Failure::at(Path::new(&args.start), much),
+            })?;
             let overlap = bloom::petal_overlap(&made.plant, None);
             Ok(Shown { plant: Some(made.plant), model: made.model, overlap: Some(overlap) })
         }),

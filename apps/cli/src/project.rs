@@ -138,9 +138,7 @@ pub(crate) fn make(
         .map_err(|e| if e.is_cancelled() { Failure::Cancelled } else { Failure::at(path, e) })?;
     let made =
         scene.get(id).and_then(|made| Some((made.plant?.clone(), made.model.clone(), made.item.clone())));
-    made.ok_or_else(|| {
-        Failure::at(path, "shows its flowers opening, which has no branches; take its day away in the Studio")
-    })
+    made.ok_or_else(|| Failure::Bug("no plant was made".into()))
 }
 
 /// Writes a project.

@@ -285,9 +285,9 @@ export class App implements Page {
   private showAll(): void {
     this.setTool(this.tool);
     this.show.switches();
-    this.theme.apply();
     this.show.document();
-    this.show.view();
+    // The view is shown with it.
+    this.theme.apply();
   }
 
   anchor(name: 'photo' | 'settings'): HTMLElement {

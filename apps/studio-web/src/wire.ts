@@ -52,7 +52,6 @@ export const CODES = {
   "no-species": ["name"],
   "no-stroke": [],
   "no-strokes": ["name"],
-  "no-structure": [],
   "no-such-export": ["format"],
   "no-such-plant": ["plant"],
   "no-such-stroke": ["stroke"],

@@ -14,6 +14,7 @@
 //! | `report` | [`Report`], [`Warning`]: what a computation wants to tell its user |
 //! | `digest` | [`Digest`]: a fingerprint of a result that does not depend on the machine |
 //! | `sort` | [`sort_by`], [`sort_by_key`]: sorting that is compiled once |
+//! | `srgb` | [`linear_of_srgb`], [`srgb_of_linear`] |
 //! | `units` | [`Unit`], [`UpAxis`], [`Angle`]: conversions at the door |
 //! | `ids` | [`define_id!`]: typed `u32` handles |
 
@@ -27,6 +28,7 @@ mod quote;
 mod report;
 mod seed;
 mod sort;
+mod srgb;
 mod task;
 pub mod turn;
 mod units;
@@ -38,5 +40,6 @@ pub use quote::{brief, quoted};
 pub use report::{Report, Stage, Warning};
 pub use seed::{Draw, Seed, Stream};
 pub use sort::{sort_by, sort_by_key};
+pub use srgb::{linear_of_srgb, srgb_of_linear};
 pub use task::{CancelToken, Cancelled, Clock, Executor, NoClock, Run, Serial, Stopped, map_indexed};
 pub use units::{Angle, NotFinite, Tolerance, Unit, UpAxis};

@@ -148,7 +148,7 @@ impl Shape {
                 };
                 profile.iter().flat_map(ring).collect()
             }
-            Self::Spline(blade) => blade.corners(),
+            Self::Spline(blade) => blade.marks(),
             Self::Sheet(sheet) => sheet.points.clone(),
             Self::Strand { path, radius_m, knob_m } => {
                 let radius = |i: usize| radius_m.get(i).or(radius_m.last()).copied().unwrap_or(0.0);

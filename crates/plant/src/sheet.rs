@@ -98,7 +98,7 @@ impl Venation {
 impl SplineBlade {
     /// The frame of a blade that was measured in the plant's coordinates, and the blade within it.
     pub fn framed(self) -> (Self, Frame) {
-        let (_, v) = (self.surface.u().domain(), self.surface.v().domain());
+        let v = self.surface.v().domain();
         let (root, tip) = (self.surface.point(self.middle, v.0), self.surface.point(self.middle, v.1));
         let normal = self.surface.at(self.middle, 0.5 * (v.0 + v.1)).normal.unwrap_or(DVec3::Z);
         let frame = Frame::looking(root, tip - root, normal);
@@ -121,7 +121,8 @@ impl SplineBlade {
         FlatLeaf::of_grid(&self.surface.grid(&us, &vs), us.len(), steps)
     }
 
-    fn marks(&self) -> Vec<DVec3> {
+    /// The points at its marks.
+    pub(crate) fn marks(&self) -> Vec<DVec3> {
         let grid = self.surface.grid(self.surface.columns_at(), self.surface.rows_at());
         grid.iter().map(|p: &SurfacePoint| p.position).collect()
     }
@@ -137,6 +138,20 @@ impl SplineBlade {
         let (_, vs) = self.grid_at(4);
         let line: Vec<DVec3> = vs.iter().map(|&v| self.surface.point(self.middle, v)).collect();
         geom::polyline_length3(&line)
+    }
+
+    /// The area of one side, metres squared; to about a per cent.
+    pub fn area_m2(&self) -> f64 {
+        let (us, vs) = self.grid_at(2);
+        let points: Vec<DVec3> = self.surface.grid(&us, &vs).iter().map(|p| p.position).collect();
+        let veins = Venation::default();
+        let sheet = Sheet { points, across: us, along: vs, colors: vec![], veins };
+        area(&sheet.points, sheet.triangles())
+    }
+
+    pub(crate) fn sound(&self) -> bool {
+        let veins = self.veins.all().all(|v| v.marks.len() >= 2 && v.marks.iter().all(|m| m.is_finite()));
+        veins && self.middle.is_finite() && self.marks().iter().all(|p| p.is_finite())
     }
 }
 
@@ -176,6 +191,13 @@ impl Sheet {
         let columns = self.across.len();
         self.points.len().checked_sub(columns).map_or(0.0, |last| self.points[last + columns / 2].length())
     }
+
+    pub(crate) fn sound(&self) -> bool {
+        let n = self.points.len();
+        let grid = self.across.len() >= 2 && self.along.len() >= 2;
+        let full = n == self.across.len() * self.along.len() && [0, n].contains(&self.colors.len());
+        grid && full && self.points.iter().all(|p| p.is_finite())
+    }
 }
 
 /// A blade of either kind as points and triangles, for areas: at its marks and at its points.
@@ -185,35 +207,6 @@ pub(crate) fn area(points: &[DVec3], triangles: impl Iterator<Item = [usize; 3]>
         (b - a).cross(c - a).length() / 2.0
     };
     triangles.map(of).fold(0.0, |sum, a| sum + a)
-}
-
-impl SplineBlade {
-    /// The area of one side, metres squared; to about a per cent.
-    pub fn area_m2(&self) -> f64 {
-        let (us, vs) = self.grid_at(2);
-        let points: Vec<DVec3> = self.surface.grid(&us, &vs).iter().map(|p| p.position).collect();
-        let veins = Venation::default();
-        let sheet = Sheet { points, across: us, along: vs, colors: vec![], veins };
-        area(&sheet.points, sheet.triangles())
-    }
-
-    pub(crate) fn corners(&self) -> Vec<DVec3> {
-        self.marks()
-    }
-
-    pub(crate) fn sound(&self) -> bool {
-        let veins = self.veins.all().all(|v| v.marks.len() >= 2 && v.marks.iter().all(|m| m.is_finite()));
-        veins && self.middle.is_finite() && self.marks().iter().all(|p| p.is_finite())
-    }
-}
-
-impl Sheet {
-    pub(crate) fn sound(&self) -> bool {
-        let n = self.points.len();
-        let grid = self.across.len() >= 2 && self.along.len() >= 2;
-        let full = n == self.across.len() * self.along.len() && [0, n].contains(&self.colors.len());
-        grid && full && self.points.iter().all(|p| p.is_finite())
-    }
 }
 
 impl Digestible for Vein {

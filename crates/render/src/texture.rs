@@ -3,18 +3,12 @@
 
 use std::sync::OnceLock;
 
-use base::ops;
 use glam::{DVec2, DVec3, DVec4};
 
 /// Linear value of an sRGB byte.
 pub(crate) fn linear(byte: u8) -> f64 {
     static TABLE: OnceLock<[f64; 256]> = OnceLock::new();
-    TABLE.get_or_init(|| {
-        core::array::from_fn(|i| {
-            let s = i as f64 / 255.0;
-            if s <= 0.040_45 { s / 12.92 } else { ops::powf((s + 0.055) / 1.055, 2.4) }
-        })
-    })[byte as usize]
+    TABLE.get_or_init(|| core::array::from_fn(|i| base::linear_of_srgb(i as f64 / 255.0)))[byte as usize]
 }
 
 const STEPS: usize = 1 << 14;
@@ -23,13 +17,7 @@ const STEPS: usize = 1 << 14;
 pub(crate) fn srgb(x: f64) -> u8 {
     static TABLE: OnceLock<Vec<u8>> = OnceLock::new();
     let table = TABLE.get_or_init(|| {
-        (0..=STEPS)
-            .map(|i| {
-                let x = i as f64 / STEPS as f64;
-                let s = if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * ops::powf(x, 1.0 / 2.4) - 0.055 };
-                (s * 255.0 + 0.5) as u8
-            })
-            .collect()
+        (0..=STEPS).map(|i| (base::srgb_of_linear(i as f64 / STEPS as f64) * 255.0 + 0.5) as u8).collect()
     });
     table[((x.clamp(0.0, 1.0) * STEPS as f64 + 0.5) as usize).min(STEPS)]
 }

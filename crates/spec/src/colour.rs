@@ -1,6 +1,5 @@
 //! A colour as people write it.
 
-use base::ops;
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -12,7 +11,7 @@ pub struct Colour(pub [u8; 3]);
 impl Colour {
     /// As shares of light, 0 to 1.
     pub fn linear(self) -> [f64; 3] {
-        self.srgb().map(|x| if x <= 0.04045 { x / 12.92 } else { ops::powf((x + 0.055) / 1.055, 2.4) })
+        self.srgb().map(base::linear_of_srgb)
     }
 
     /// As written, 0 to 1.

@@ -8,8 +8,7 @@ use plant::Plant;
 use skin::{KeptShapes, SkinSpec};
 
 use crate::made::MadePlant;
-use crate::shaping::Shaper;
-use crate::{Counts, ItemReport, TimingsMs};
+use crate::shaping::shaped;
 
 /// What is asked of a flower beside its species and day.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -25,7 +24,7 @@ pub struct FlowerOptions {
 /// Guaranteed: the same vertices and triangles at every day, for edits that do not cut.
 ///
 /// # Errors
-/// [`Stopped`].
+/// [`Stopped`]; petals of more triangles than the budget allows are refused before any is made.
 pub fn make_flower(
     name: &str,
     spec: &FlowerSpec,
@@ -34,13 +33,11 @@ pub fn make_flower(
     seed: Seed,
     run: &Run<'_>,
 ) -> Result<MadePlant, Stopped> {
+    spec.check(&run.budget)?;
     let mut report = Report::default();
     let mut plant = report.stage("structure", run.clock, |_| spec.at(day, law, seed));
     name.clone_into(&mut plant.name);
-    let mut edits = Vec::new();
-    if !options.edits.is_empty() {
-        (plant, edits) = Shaper::default().shape(&plant, &options.edits, &shape::Context::default(), run)?;
-    }
+    let (plant, edits) = shaped(plant, &options.edits, run)?;
     run.cancel.check()?;
     let skin = SkinSpec { textures: false, variation: 0.0, ..options.skin.clone() };
     let model = report.stage("mesh", run.clock, |_| steady(&plant, skin, spec.size_m(), None, run));
@@ -48,22 +45,9 @@ pub fn make_flower(
     for stem in model.materials.iter_mut().filter(|m| m.name == "stem") {
         stem.base_color = [0.16, 0.32, 0.07];
     }
-    let counts = Counts {
-        vertices: model.vertex_count() as u64,
-        triangles: model.triangle_count() as u64,
-        ..Counts::of_plant(&plant)
-    };
-    let item = ItemReport {
-        name: name.into(),
-        counts,
-        timings_ms: TimingsMs::from_report(&report),
-        digest: crate::leaves::digest(&model),
-        warnings: edits.iter().filter_map(|e| e.warning(&options.edits)).collect(),
-        plant: Some(plant.measure()),
-        edits,
-        ..ItemReport::default()
-    };
-    Ok(MadePlant { plant, model, item })
+    let mut made = MadePlant::new(plant, model, (edits, &options.edits), &report);
+    made.item.plant = Some(made.plant.measure());
+    Ok(made)
 }
 
 /// The meshes of a plant that is one of several days; `size_m`: how large it is in full bloom.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use base::{Cancelled, Counted, Digest, OverBudget, Report, Run, Seed, Stopped, ops};
+use base::{Cancelled, Counted, OverBudget, Report, Run, Seed, Stopped, ops};
 use document::PlantEdit;
 use geom::SplineError;
 use leaf::{FullMarks, Leaf, LeafSpec, Marks, MarksError, Pose, RaysError, ScanError};
@@ -11,8 +11,8 @@ use plant::{Frame, NodeId, Organ, OrganKind, Paint, Plant, Shape, ShapeId, Splin
 use skin::{KeptShapes, LeafColours, ShapeMesh, SkinSpec};
 
 use crate::made::MadePlant;
-use crate::report::{Counts, FaceCounts, ItemReport, LeafFit, LeafReport, TimingsMs};
-use crate::shaping::Shaper;
+use crate::report::{FaceCounts, LeafFit, LeafReport};
+use crate::shaping::shaped;
 
 /// What the blade's colour is.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -119,9 +119,9 @@ pub fn make_leaf_of(
     let texture = report.stage("mesh", run.clock, |_| leaf_texture(&leaf, options, seed, run));
     let mut plant = Plant { name: name.into(), ..Plant::default() };
     bear(&mut plant, leaf.blade(), None, options.paint([1.0; 3]), seed.number());
-    let made = finish(plant, &[texture], options, run, &mut report)?;
-    let about = leaf_report(&marks, &leaf, &made.mesh, options);
-    Ok(made.with_leaf(about))
+    let (mut made, mesh) = finish(plant, &[texture], options, run, &mut report)?;
+    made.item.leaf = Some(leaf_report(&marks, &leaf, &mesh, options));
+    Ok(made)
 }
 
 /// Adds a leaf that was measured in the plant's coordinates; its frame is that of its root and tip.
@@ -143,40 +143,17 @@ pub(crate) fn add_leaf(
     plant.organs.push(Organ { kind, bearer, flower, shape, frame, scale: 1.0, paint, key, source });
 }
 
-/// A plant of measured leaves with its meshes.
-pub(crate) struct Finished {
-    plant: Plant,
-    model: Model,
-    item: ItemReport,
-    /// Of the first leaf.
-    pub(crate) mesh: ShapeMesh,
-}
-
-impl Finished {
-    pub(crate) fn with_leaf(mut self, about: LeafReport) -> MadePlant {
-        self.item.leaf = Some(about);
-        self.made()
-    }
-
-    pub(crate) fn made(self) -> MadePlant {
-        MadePlant { plant: self.plant, model: self.model, item: self.item }
-    }
-}
-
-/// Edits by hand, meshes, and the report of a plant of measured leaves; `textures` are those of its forms.
+/// Edits by hand, meshes, and the report of a plant of measured leaves, and the mesh of its first leaf; `textures` are
+/// those of its forms.
 pub(crate) fn finish(
-    mut plant: Plant,
+    plant: Plant,
     textures: &[Option<Arc<Texture>>],
     options: &LeafOptions,
     run: &Run<'_>,
     report: &mut Report,
-) -> Result<Finished, LeafError> {
+) -> Result<(MadePlant, ShapeMesh), LeafError> {
     debug_assert_eq!(plant.validate().next(), None, "a sound plant");
-    let mut edits = Vec::new();
-    if !options.edits.is_empty() {
-        let shaped = Shaper::default().shape(&plant, &options.edits, &shape::Context::default(), run);
-        (plant, edits) = shaped.map_err(LeafError::from)?;
-    }
+    let (plant, edits) = shaped(plant, &options.edits, run)?;
     let mut kept = KeptShapes::default();
     let spec = SkinSpec { textures: false, variation: 0.0, ..options.skin.clone() };
     let skinned =
@@ -199,29 +176,7 @@ pub(crate) fn finish(
             format!("{} rings lie inside their neighbours' balls and were drawn to a point", mesh.swallowed),
         );
     }
-    let counts = Counts {
-        vertices: model.vertex_count() as u64,
-        triangles: model.triangle_count() as u64,
-        ..Counts::of_plant(&plant)
-    };
-    let mut warnings: Vec<String> = report.warnings.iter().map(ToString::to_string).collect();
-    warnings.extend(edits.iter().filter_map(|e: &crate::EditReport| e.warning(&options.edits)));
-    let item = ItemReport {
-        name: plant.name.clone(),
-        counts,
-        timings_ms: TimingsMs::from_report(report),
-        digest: digest(&model),
-        warnings,
-        edits,
-        ..ItemReport::default()
-    };
-    Ok(Finished { plant, model, item, mesh })
-}
-
-pub(crate) fn digest(model: &Model) -> String {
-    let mut d = Digest::new();
-    d.add(model);
-    d.hex()
+    Ok((MadePlant::new(plant, model, (edits, &options.edits), report), mesh))
 }
 
 pub(crate) fn leaf_texture(

@@ -1,10 +1,13 @@
 //! What makers give: a plant, its meshes, its entry of the report.
 
+use base::{Digest, Report};
+use document::PlantEdit;
 use mesh::Model;
 use plant::Plant;
 use reading::Reading;
 
-use crate::report::ItemReport;
+use crate::report::{Counts, ItemReport, TimingsMs};
+use crate::shaping::EditReport;
 
 /// Everything made from one drawing.
 #[derive(Clone, Debug)]
@@ -28,4 +31,33 @@ pub struct MadePlant {
     pub model: Model,
     /// The report's entry; `output` and the times of reading and writing are the shell's to fill.
     pub item: ItemReport,
+}
+
+impl MadePlant {
+    /// With an entry that tells counts, times, digest, warnings, and what became of the edits that were asked for.
+    pub(crate) fn new(
+        plant: Plant,
+        model: Model,
+        (edits, asked): (Vec<EditReport>, &[PlantEdit]),
+        report: &Report,
+    ) -> Self {
+        let mut digest = Digest::new();
+        digest.add(&model);
+        let mut warnings: Vec<String> = report.warnings.iter().map(ToString::to_string).collect();
+        warnings.extend(edits.iter().filter_map(|e| e.warning(asked)));
+        let item = ItemReport {
+            name: plant.name.clone(),
+            counts: Counts {
+                vertices: model.vertex_count() as u64,
+                triangles: model.triangle_count() as u64,
+                ..Counts::of_plant(&plant)
+            },
+            timings_ms: TimingsMs::from_report(report),
+            digest: digest.hex(),
+            warnings,
+            edits,
+            ..ItemReport::default()
+        };
+        Self { plant, model, item }
+    }
 }

@@ -12,6 +12,7 @@ use skin::{KeptShapes, SkinSpec};
 
 use crate::evaluate::make_from_sketch;
 use crate::flowers::steady;
+use crate::leaves::linear_of;
 use crate::make::{MakeError, SketchOptions};
 use crate::report::ItemReport;
 
@@ -171,13 +172,7 @@ fn petal_color(model: &Model) -> [f32; 3] {
     let texture = material.texture.as_ref().map_or([1.0; 3], |t| {
         // A hundred pixels say it; bytes are sRGB.
         let step = (t.pixels.len() / 400).max(1);
-        mean(&mut t.pixels.chunks_exact(4).step_by(step).map(|p| {
-            [0, 1, 2].map(|q| {
-                #[expect(clippy::cast_possible_truncation, reason = "a colour")]
-                let x = base::ops::powf(f64::from(p[q]) / 255.0, 2.2) as f32;
-                x
-            })
-        }))
+        mean(&mut t.pixels.chunks_exact(4).step_by(step).map(|p| [0, 1, 2].map(|q| linear_of(p[q]))))
     });
     [0, 1, 2].map(|q| (tint[q] * texture[q] * material.base_color[q]).clamp(0.0, 1.0))
 }

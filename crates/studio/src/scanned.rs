@@ -45,18 +45,18 @@ pub fn make_leaf_from_scan(
     }
     let leaf = LeafMeshSpec { caps: true, ..LeafMeshSpec::default() };
     let options = LeafOptions { skin: SkinSpec { leaf, ..SkinSpec::default() }, ..options };
-    let made = finish(plant, &[], &options, run, &mut report)?;
+    let (mut made, mesh) = finish(plant, &[], &options, run, &mut report)?;
     let width = found.grid.chunks(n).map(geom::polyline_length3).fold(0.0, f64::max);
     let mut outline = found.outline();
     outline.extend(outline.first().copied());
-    let (blade, veins) = (&made.mesh.surface, &made.mesh.veins);
-    let about = LeafReport {
+    let (blade, veins) = (&mesh.surface, &mesh.veins);
+    made.item.leaf = Some(LeafReport {
         surface: "scan".into(),
         rows: rows as u64,
         length_mm: 1e3 * geom::polyline_length3(&line),
         area_mm2: 1e6 * area(blade),
         veins: FaceCounts { vertices: veins.positions.len() as u64, faces: veins.triangles.len() as u64 },
-        blade: FaceCounts { vertices: blade.positions.len() as u64, faces: made.mesh.blade_faces as u64 },
+        blade: FaceCounts { vertices: blade.positions.len() as u64, faces: mesh.blade_faces as u64 },
         fit_error: LeafFit { explained: found.explained, ..LeafFit::of(&found.distances) },
         scan: Some(ScanReport {
             points: (found.used + found.outliers) as u64,
@@ -67,8 +67,8 @@ pub fn make_leaf_from_scan(
             width_mm: 1e3 * width,
         }),
         ..LeafReport::default()
-    };
-    Ok((made.with_leaf(about), found))
+    });
+    Ok((made, found))
 }
 
 /// The midrib, thinner towards the tip; how thick it is only a stalk tells.

@@ -134,7 +134,7 @@ pub struct ScenePlant<'a> {
     pub item: &'a ItemReport,
     /// The meshes, in the plant's own coordinates.
     pub model: &'a Model,
-    /// The plant; none where nothing was made.
+    /// The plant; none after an update that was stopped on the way.
     pub plant: Option<&'a Plant>,
     /// How a drawing lies in the front view.
     pub front: Option<FrontView>,

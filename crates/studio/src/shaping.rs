@@ -99,6 +99,18 @@ impl Shaper {
     }
 }
 
+/// A plant after its edits; it is not kept for the next ones.
+pub(crate) fn shaped(
+    plant: Plant,
+    edits: &[PlantEdit],
+    run: &Run<'_>,
+) -> Result<(Plant, Vec<EditReport>), Stopped> {
+    if edits.is_empty() {
+        return Ok((plant, Vec::new()));
+    }
+    Shaper::default().shape(&plant, edits, &Context::default(), run)
+}
+
 /// One branch in a list of all.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BranchRow {

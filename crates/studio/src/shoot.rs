@@ -72,7 +72,7 @@ pub fn make_shoot(
     for ((k, blade), (place, node)) in made.into_iter().enumerate().zip(places.iter().zip(nodes)) {
         bear(&mut plant, blade?, node, options.paint(place.tint), seed.child(k as u64).number());
     }
-    let mut made = finish(plant, &textures, options, run, &mut report)?.made();
+    let (mut made, _) = finish(plant, &textures, options, run, &mut report)?;
     made.item.plant = Some(made.plant.measure());
     Ok(made)
 }

@@ -46,8 +46,7 @@ pub fn make_ray_leaf(
     run.budget.check(Counted::Triangles, triangles, "lower subdivisions, sides or side-veins")?;
     let mut plant = Plant { name: name.into(), ..Plant::default() };
     bear(&mut plant, leaf.blade(shade), None, Paint::Tinted([1.0; 3]), 1);
-    let made = finish(plant, &[], options, run, &mut report)?;
-    let meshes = &made.mesh;
+    let (mut made, meshes) = finish(plant, &[], options, run, &mut report)?;
     let (us, vs) = (leaf.blade.columns_at(), leaf.blade.rows_at());
     let mut distances = Vec::new();
     for (ray, &u) in rays.rays.iter().rev().zip(us) {
@@ -66,9 +65,10 @@ pub fn make_ray_leaf(
         blade: counts(&meshes.surface, meshes.blade_faces),
         fit_error: LeafFit::of(&distances),
         vein_gap_mm: Some(1e3 * leaf.vein_gap(8)),
-        swallowed_rings: crate::leaves::swallowed(options, meshes),
+        swallowed_rings: crate::leaves::swallowed(options, &meshes),
         crossing_rings: Some(meshes.crossing as u64),
         scan: None,
     };
-    Ok(made.with_leaf(about))
+    made.item.leaf = Some(about);
+    Ok(made)
 }

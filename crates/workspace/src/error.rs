@@ -52,9 +52,6 @@ pub enum WorkspaceError {
     /// There is nothing to export.
     #[error("there is no plant yet: draw at least one line, or add a tree, a leaf or a flower")]
     NothingMade,
-    /// Leaves and flowers have no axes.
-    #[error("only plants with axes have a structure: a sketch or a tree")]
-    NoStructure,
     /// A model that is only looked at is no plant and no drawing.
     #[error("models are not written as {0:?}")]
     Format(&'static str),
@@ -124,7 +121,6 @@ burgeon::coded!(WorkspaceError {
     Self::ObstacleFile => "obstacle-file" {},
     Self::NoSurface => "no-surface" {},
     Self::NothingMade => "nothing-made" {},
-    Self::NoStructure => "no-structure" {},
     Self::Format(format) => "no-such-export" { format },
     Self::NothingToShape => "nothing-to-shape" {},
     Self::Law(why) => "law" { why },

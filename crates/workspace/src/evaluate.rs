@@ -228,22 +228,7 @@ impl Workspace {
         }
         out
     }
-}
 
-/// The plant of a stroke that is still being drawn.
-fn preview(
-    look: &mut Evaluator,
-    plant: &DocumentPlant,
-    drawing: &Drawing,
-    run: &Run<'_>,
-) -> Result<ItemReport, MakeError> {
-    let mut options = SketchOptions::of_plant(plant);
-    // Fast while the pen is down, fine when it is lifted.
-    options.skin.detail = (options.skin.detail * PREVIEW_DETAIL).max(0.1);
-    look.update(drawing, &options, plant.settings().seed, run)
-}
-
-impl Workspace {
     /// About how many bytes the results of all plants take.
     pub fn kept_bytes(&self) -> usize {
         self.scene.kept().map(|(_, bytes)| bytes).sum()
@@ -280,4 +265,17 @@ impl Workspace {
         self.kept.shown.retain(|id, _| kept.contains(id));
         self.outcomes.retain(|id, _| kept.contains(id) || shown.contains(id));
     }
+}
+
+/// The plant of a stroke that is still being drawn.
+fn preview(
+    look: &mut Evaluator,
+    plant: &DocumentPlant,
+    drawing: &Drawing,
+    run: &Run<'_>,
+) -> Result<ItemReport, MakeError> {
+    let mut options = SketchOptions::of_plant(plant);
+    // Fast while the pen is down, fine when it is lifted.
+    options.skin.detail = (options.skin.detail * PREVIEW_DETAIL).max(0.1);
+    look.update(drawing, &options, plant.settings().seed, run)
 }

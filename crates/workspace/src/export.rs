@@ -170,7 +170,7 @@ fn export(
     if made.is_empty() {
         return Err(WorkspaceError::NothingMade);
     }
-    let structures = made.iter().filter_map(|p| Some((p.id(), scene.get(p.id())?.plant?)));
+    let structures = made.iter().map(|p| (p.id(), scene.get(p.id()).and_then(|made| made.plant)));
     match wanted.format {
         ExportFormat::Mtg => {
             return structure(structures, "mtg", |plant, out| formats::write_mtg(plant, &wanted.spec(), out));
@@ -243,17 +243,18 @@ fn at_level(
 
 /// A file a plant.
 fn structure<'a>(
-    plants: impl Iterator<Item = (PlantId, &'a Plant)>,
+    plants: impl Iterator<Item = (PlantId, Option<&'a Plant>)>,
     extension: &str,
     write: impl Fn(&Plant, &mut Vec<u8>) -> Result<(), formats::WriteError>,
 ) -> Result<Vec<NamedFile>, WorkspaceError> {
     let mut files = Vec::new();
     for (id, plant) in plants {
+        let plant = plant.ok_or(WorkspaceError::Internal("no plant"))?;
         let mut out = Vec::new();
         write(plant, &mut out)?;
         files.push((format!("plant-{}.{extension}", id.0 + 1), out));
     }
-    if files.is_empty() { Err(WorkspaceError::NoStructure) } else { Ok(files) }
+    Ok(files)
 }
 
 /// One file as it is, several as a zip; USD always as a zip, so that the name of what is saved is known before its

@@ -15,7 +15,6 @@ export const zhErrors: Record<keyof typeof CODES, string> = {
   'obstacle-file': '障碍物是模型：请提供 .glb、.gltf、.obj、.ply 或 .stl 文件',
   'no-surface': '模型里没有表面',
   'nothing-made': '还没有植物：至少画一条线，或添加树、叶或花',
-  'no-structure': '只有带轴的植物才有结构：草图或树',
   'no-such-export': '模型不能写成 {format}',
   'nothing-to-shape': '还没有可修整的植物',
   law: '无法读取生长规律：{why}',

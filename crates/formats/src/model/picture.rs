@@ -3,7 +3,6 @@
 use std::io::{Cursor, Write};
 use std::sync::Arc;
 
-use base::ops;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder, ImageFormat, ImageReader, Limits};
 use mesh::Texture;
@@ -95,14 +94,13 @@ impl PngCache {
 /// Linear 0 to 1 as sRGB 0 to 1 (IEC 61966-2-1).
 pub(super) fn srgb(linear: f32) -> f32 {
     let x = f64::from(if linear.is_nan() { 0.0 } else { linear.clamp(0.0, 1.0) });
-    let y = if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * ops::powf(x, 1.0 / 2.4) - 0.055 };
-    narrow(y)
+    narrow(base::srgb_of_linear(x))
 }
 
 /// sRGB 0 to 1 as linear 0 to 1.
 pub(super) fn linear(srgb: f32) -> f32 {
     let y = f64::from(if srgb.is_nan() { 0.0 } else { srgb.clamp(0.0, 1.0) });
-    narrow(if y <= 0.040_45 { y / 12.92 } else { ops::powf((y + 0.055) / 1.055, 2.4) })
+    narrow(base::linear_of_srgb(y))
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "colours are f32 by design")]

@@ -121,7 +121,7 @@ pub(crate) fn coloured(mut colors: impl Iterator<Item = [u8; 3]> + Clone) -> boo
 
 /// The linear light of a colour that something was drawn in; `None` for ink: black, grey or white.
 pub(crate) fn drawn_light(color: [u8; 3]) -> Option<[f64; 3]> {
-    let light = color.map(linear);
+    let light = color.map(|byte| base::linear_of_srgb(f64::from(byte) / 255.0));
     // Of the darkest ink nobody sees the hue.
     (is_coloured(color) && light.into_iter().any(|x| x > 0.04)).then_some(light)
 }
@@ -130,12 +130,6 @@ pub(crate) fn drawn_light(color: [u8; 3]) -> Option<[f64; 3]> {
 fn is_coloured(c: [u8; 3]) -> bool {
     let (low, high) = c.iter().fold((u8::MAX, 0), |(l, h), &x| (l.min(x), h.max(x)));
     high - low > 30
-}
-
-/// sRGB to linear (IEC 61966-2-1).
-fn linear(byte: u8) -> f64 {
-    let c = f64::from(byte) / 255.0;
-    if c <= 0.040_45 { c / 12.92 } else { ops::powf((c + 0.055) / 1.055, 2.4) }
 }
 
 /// A number of the spec, kept within what the geometry can bear; nonsense becomes 0.
