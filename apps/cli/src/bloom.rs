@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use burgeon::bloom::{
     self, FlowerSpec, GrowthLaw, LawSpec, Motion, MotionSpec, Quantity, RegisterSpec, ShapeError,
 };
+use burgeon::document::PlantEdit;
 use burgeon::formats::{ExportSpec, ModelFormat, Morph, PngCache, write_cloud_ply, write_glb_morph};
 use burgeon::glam::DVec3;
 use burgeon::mesh::{Model, PointCloud};
@@ -22,7 +23,7 @@ use crate::machine::Machine;
 use crate::output::Outputs;
 use crate::petals::{drawing, is_drawing, petal_form};
 use crate::stages::{self, Loaded};
-use crate::{files, inputs, names, picture, report, say};
+use crate::{edits, files, inputs, names, picture, report, say};
 
 /// A law as the report tells it, lengths in metres.
 #[derive(Debug, Serialize)]
@@ -246,6 +247,8 @@ struct Shown {
     /// None of scans, of which only points are known.
     plant: Option<Plant>,
     model: Model,
+    /// Coarser copies.
+    lods: Vec<Model>,
     /// The share of petal triangles that cross another petal.
     overlap: Option<f64>,
 }
@@ -265,13 +268,19 @@ struct Show<'a> {
 /// The outputs of `run`: -o is a file, or a folder for the shapes of all days.
 fn planned(args: &BloomRunArgs) -> Outcome<Outputs> {
     let start = PathBuf::from(&args.start);
-    let inputs =
-        [Some(&start), args.end.as_ref(), args.petal.as_ref(), args.law.as_ref(), args.compare.as_ref()];
+    let inputs = [
+        Some(&start),
+        args.end.as_ref(),
+        args.petal.as_ref(),
+        args.law.as_ref(),
+        args.compare.as_ref(),
+        args.edits.as_ref(),
+    ];
     let mut outputs = Outputs::new(&[], &inputs.into_iter().flatten().collect::<Vec<_>>())?;
     match (files::extension(&args.output), args.day) {
         (Some(_), _) => {
             outputs.plan("-o", &args.output)?;
-            files::plan_plant(&mut outputs, &args.output, 0)?;
+            files::plan_plant(&mut outputs, &args.output, args.lods)?;
         }
         (None, Some(_)) => {
             return Err(Failure::at(&args.output, "has no extension; end it with .glb, .ply, .obj or .stl"));
@@ -298,7 +307,7 @@ fn run(args: &BloomRunArgs) -> Outcome {
     }
     let start = Path::new(&args.start);
     check_used(args)?;
-    if let Some(spec) = species(start, &args.start)? {
+    if let Some(spec) = species(start)? {
         return flower(args, spec, law, outputs, &machine);
     }
     let flowers = format!("whole flowers ({})", FlowerSpec::PRESETS.join(", "));
@@ -306,7 +315,8 @@ fn run(args: &BloomRunArgs) -> Outcome {
     if is_drawing(start) {
         return drawn_flower(args, start, law, outputs, &machine);
     }
-    args.given.refuse(&["wind"], &format!("{flowers} and drawings"), &format!("{} is none", args.start))?;
+    let plants = ["wind", "edits", "lods"];
+    args.given.refuse(&plants, &format!("{flowers} and drawings"), &format!("{} is none", args.start))?;
     if files::extension(&args.output).is_some() {
         // Of scans only surfaces are known, no structure.
         files::writable(&args.output)?;
@@ -358,7 +368,7 @@ fn run(args: &BloomRunArgs) -> Outcome {
             }
             let model = burgeon::motion_model(&loaded.name, loaded.mesh.as_ref(), &motion, &points);
             let model = Model { offset_m: loaded.origin.offset_m, ..model };
-            Ok(Shown { plant: None, model, overlap: None })
+            Ok(Shown { plant: None, model, lods: Vec::new(), overlap: None })
         }),
     };
     let (written, write_ms) = machine.timed(|| write_show(args, &mut show, &axes, &mut outputs, &machine));
@@ -512,6 +522,9 @@ fn check_used(args: &BloomRunArgs) -> Outcome {
     given.only_if(several, &["frames"], "animations (.glb without --day) and folders", one)?;
     let film = several && extension.is_some();
     given.only_if(film, &["seconds"], "animations (.glb without --day)", "none is written")?;
+    let mtg = extension.is_some_and(|e| e.eq_ignore_ascii_case("mtg"));
+    let users = "models of one shape (--day, or another format than .glb)";
+    given.only_if(!several && !mtg, &["lods"], users, "none is written")?;
     given.only_if(
         extension.is_none(),
         &["format"],
@@ -550,23 +563,32 @@ fn drawn_flower(
         (read?, ms)
     };
     options.skin.wind = args.wind;
+    let asked = hand_edits(args)?;
+    let count = asked.len();
+    options.edits.extend(asked);
     let seed = Seed::new(args.seed);
     let (plant, made_ms) = machine.timed(|| OpeningPlant::new(&drawing, &options, seed, &machine.run()));
     let mut plant = plant.map_err(|e| match e {
         OpeningError::Make(MakeError::Cancelled(_)) => Failure::Cancelled,
         other => Failure::at(path, other),
     })?;
+    if let Some(edits) = &args.edits {
+        edits::some_done(edits, &plant.item, count)?;
+    }
     let law = law.unwrap_or_else(|| plant.law());
     let axes = files::axes(args.axes.up, args.axes.unit);
     let mut head = head("bloom run", args.seed, &args.start, &plant.name, &args.output);
     head.items[0].warnings.clone_from(&plant.item.warnings);
+    head.items[0].edits.clone_from(&plant.item.edits);
     let mut show = Show {
         name: files::stem(path),
         days: [0.0, plant.days[0] + plant.days[1]],
         best: plant.days[0],
         shape: Box::new(|day| {
             let open = plant.at(day, &law, seed, &machine.run())?;
-            Ok(Shown { plant: Some(open.plant), model: open.model, overlap: Some(open.overlap) })
+            let lods = (1..=args.lods).map(|level| plant.at_level(&open, level, &machine.run()));
+            let lods = lods.collect::<Result<_, _>>()?;
+            Ok(Shown { plant: Some(open.plant), model: open.model, lods, overlap: Some(open.overlap) })
         }),
     };
     let (written, write_ms) = machine.timed(|| write_show(args, &mut show, &axes, &mut outputs, machine));
@@ -577,8 +599,8 @@ fn drawn_flower(
 }
 
 /// A flower by its name, or of a file of its own; none for scans and drawings.
-fn species(start: &Path, name: &str) -> Outcome<Option<FlowerSpec>> {
-    let preset = bloom::preset(name).filter(|_| !start.exists() || start.is_dir());
+pub(crate) fn species(start: &Path) -> Outcome<Option<FlowerSpec>> {
+    let preset = start.to_str().and_then(bloom::preset).filter(|_| !start.exists() || start.is_dir());
     if preset.is_some()
         || !files::extension(start).is_some_and(|e| e.eq_ignore_ascii_case("toml"))
         || !start.exists()
@@ -608,8 +630,19 @@ fn flower(
     };
     let law = law.unwrap_or_else(|| spec.own_law());
     let seed = Seed::new(args.seed);
-    let mut options = FlowerOptions::default();
+    let mut options = FlowerOptions { edits: hand_edits(args)?, ..FlowerOptions::default() };
     options.skin.wind = args.wind;
+    let failed = |stopped| match stopped {
+        Stopped::Cancelled(_) => Failure::Cancelled,
+        Stopped::OverBudget(much) => Failure::at(Path::new(&args.start), much),
+    };
+    let mut head = head("bloom run", args.seed, &args.start, &spec.name, &args.output);
+    if let Some(edits) = &args.edits {
+        let day = (spec.opening_days, &law);
+        let made = make_flower(&spec.name, &spec, day, &options, seed, &machine.run()).map_err(failed)?;
+        edits::some_done(edits, &made.item, options.edits.len())?;
+        (head.items[0].warnings, head.items[0].edits) = (made.item.warnings, made.item.edits);
+    }
     let axes = files::axes(args.axes.up, args.axes.unit);
     let mut show = Show {
         name: spec.name.clone(),
@@ -617,20 +650,23 @@ fn flower(
         best: spec.opening_days,
         shape: Box::new(|day| {
             let made = make_flower(&spec.name, &spec, (day, &law), &options, seed, &machine.run());
-            let made = made.map_err(|stopped| match stopped {
-                Stopped::Cancelled(_) => Failure::Cancelled,
-                Stopped::OverBudget(much) => Failure::at(Path::new(&args.start), much),
-            })?;
+            let made = made.map_err(failed)?;
+            let lods = (1..=args.lods).map(|level| made.at_level(level, &machine.run()));
+            let lods = lods.collect::<Result<_, _>>().map_err(failed)?;
             let overlap = bloom::petal_overlap(&made.plant, None);
-            Ok(Shown { plant: Some(made.plant), model: made.model, overlap: Some(overlap) })
+            Ok(Shown { plant: Some(made.plant), model: made.model, lods, overlap: Some(overlap) })
         }),
     };
     let (written, write_ms) = machine.timed(|| write_show(args, &mut show, &axes, &mut outputs, machine));
     let written = written?;
-    let head = head("bloom run", args.seed, &args.start, &spec.name, &args.output);
     let times = [0.0, 0.0, write_ms];
     let told = Told { head, residuals: vec![], error: None, stages: vec![], lattice: None, times };
     tell(args, machine, told, written, outputs)
+}
+
+/// The edits by hand that are asked for.
+fn hand_edits(args: &BloomRunArgs) -> Outcome<Vec<PlantEdit>> {
+    Ok(args.edits.as_deref().map(edits::read).transpose()?.unwrap_or_default())
 }
 
 /// What was written.
@@ -736,7 +772,7 @@ fn write_show(
 fn write_one(
     outputs: &mut Outputs,
     path: &Path,
-    Shown { plant, model, .. }: &Shown,
+    Shown { plant, model, lods, .. }: &Shown,
     (axes, named): (&ExportSpec, &AxesArgs),
 ) -> Outcome {
     if let (Some(plant), PlantFormat::Mtg) = (plant, files::plant_writable(path)?) {
@@ -759,5 +795,11 @@ fn write_one(
     }
     // --unit and --up were those of the scans: a GLB in metres with +Y up is no surprise.
     let axes = if format == ModelFormat::Glb { &ExportSpec::default() } else { axes };
-    files::write_model(outputs, Goal::new("-o", path), model, format, axes, &mut PngCache::new()).map(drop)
+    let mut cache = PngCache::new();
+    files::write_model(outputs, Goal::new("-o", path), model, format, axes, &mut cache)?;
+    for (model, level) in lods.iter().zip(1..) {
+        let path = files::lod(path, level);
+        files::write_model(outputs, Goal::new("--lods", &path), model, format, axes, &mut cache)?;
+    }
+    Ok(())
 }

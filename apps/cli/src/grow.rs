@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use burgeon::formats::{CloudFormat, ExportSpec, PngCache};
+use burgeon::formats::{CloudFormat, ExportSpec};
 use burgeon::glam::DVec3;
 use burgeon::growth::{
     ColonizeSpec, CompetitionSpec, Envelope, GrowthError, GuidedSpec, Method, OAK_RULES, Obstacle,
@@ -16,11 +16,10 @@ use burgeon::{
 
 use crate::args::{GrowArgs, MethodWord, PlantFormat, PointsArgs, Seen};
 use crate::failure::{Failure, Outcome};
-use crate::files::Goal;
 use crate::machine::Machine;
 use crate::origin::Origin;
 use crate::output::Outputs;
-use crate::{files, inputs, picture, report, say};
+use crate::{files, inputs, levels, picture, report, say};
 
 pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     let machine = Machine::new(&args.common);
@@ -65,25 +64,8 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     }
     let mut items = vec![item];
     if let Some((path, format)) = args.output.as_deref().zip(format) {
-        let mut cache = PngCache::new();
-        let all = std::iter::once((&model, "-o", path.to_path_buf()));
-        let all = all.chain(lods.iter().zip(1..).map(|(m, level)| (m, "--lods", files::lod(path, level))));
-        for (level, (model, by, path)) in all.enumerate() {
-            machine.cancel.check()?;
-            let goal = Goal::new(by, &path);
-            let (written, write_ms) = machine.timed(|| {
-                let plant = (&grown.plant, model);
-                files::write_plant(&mut outputs, goal, plant, format, &args.axes, &mut cache)
-            });
-            let written = written?;
-            if level > 0 {
-                items.push(lod_item(&items[0], model, level));
-            }
-            let item = &mut items[level];
-            item.output = path.display().to_string();
-            item.warnings.extend(written.iter().map(ToString::to_string));
-            item.timings_ms.add_io(0.0, write_ms);
-        }
+        let (goal, plant) = ((path, format), (&grown.plant, &model));
+        levels::write(&mut outputs, goal, plant, &lods, &args.axes, &mut items, &machine)?;
     }
     if let Some(path) = &args.qsm {
         files::write_qsm(&mut outputs, path, &grown.plant, &args.axes)?;
@@ -137,12 +119,6 @@ fn summary(item: &ItemReport, png: Option<&Path>) -> String {
         String::new()
     };
     line.replacen("; ", &format!(" by {}{points}; ", g.method), 1)
-}
-
-fn lod_item(full: &ItemReport, model: &Model, level: usize) -> ItemReport {
-    let mut item = picture::model_item(model, Path::new(""), &[]);
-    item.name = format!("{} lod{level}", full.name);
-    item
 }
 
 fn failure(args: &GrowArgs, spec: &TreeSpec, error: TreeError) -> Failure {

@@ -3,27 +3,25 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use burgeon::formats::{
-    ExportSpec, ModelFormat, PngCache, marks_template, read_picture, write_marks, write_rays,
-};
+use burgeon::formats::{ModelFormat, marks_template, read_picture, write_marks, write_rays};
 use burgeon::geom::RingRule;
 use burgeon::leaf::{
-    FullMarks, LeafGrowth, LeafSpec, Marks, PalmateSpec, ParallelSpec, Pose, Rays, ScanSpec, ThicknessRule,
-    VeinParameters,
+    FullMarks, LeafGrowth, LeafPaint, LeafSpec, Marks, PalmateSpec, ParallelSpec, Rays, ScanSpec,
+    ThicknessRule, VeinParameters,
 };
-use burgeon::skin::{LeafMeshSpec, SkinSpec};
-use burgeon::{
-    ItemReport, LeafError, LeafOptions, LeafTexture, MadePlant, Report, RunReport, Seed, ShootSpec,
-};
+use burgeon::mesh::Model;
+use burgeon::skin::SkinSpec;
+use burgeon::{ItemReport, LeafError, LeafOptions, MadePlant, Report, RunReport, Seed, ShootSpec};
 
-use crate::args::{LeafArgs, ParametersWord, PlantFormat, RingsWord, SurfaceWord, UnitWord, VenationWord};
+use crate::args::{
+    AxesArgs, LeafArgs, ParametersWord, PlantFormat, RingsWord, SurfaceWord, UnitWord, VenationWord,
+};
 use crate::failure::{Failure, Outcome};
-use crate::files::Goal;
 use crate::leaf_data::{self, Form, ReadLeaf};
 use crate::machine::Machine;
 use crate::origin::Origin;
 use crate::output::Outputs;
-use crate::{files, inputs, picture, report, say};
+use crate::{edits, files, inputs, levels, picture, report, say};
 
 pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
     let machine = Machine::new(&args.common);
@@ -35,7 +33,8 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
     ];
     let picture =
         Some(&args.look.texture).filter(|t| !["veins", "plain"].iter().any(|word| t.as_os_str() == *word));
-    let mut outputs = Outputs::new(&outputs, &args.inputs.iter().chain(picture).collect::<Vec<_>>())?;
+    let mut outputs =
+        Outputs::new(&outputs, &args.inputs.iter().chain(picture).chain(&args.edits).collect::<Vec<_>>())?;
     check_used(args)?;
     if args.template {
         return template(args, outputs);
@@ -55,7 +54,7 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
             "say what to make of it: -o OUT, --png FILE.png, --report FILE.json or --json".into(),
         ));
     }
-    let format = args.output.as_deref().map(|p| files::plan_plant(&mut outputs, p, 0)).transpose()?;
+    let format = args.output.as_deref().map(|p| files::plan_plant(&mut outputs, p, args.lods)).transpose()?;
     if let Some(png) = &args.png {
         picture::check_name(png)?;
     }
@@ -64,46 +63,51 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
         args.given.check_axes(!args.inputs.is_empty() || !format.fixed_axes())?;
     }
     let blown = matches!(format, Some(PlantFormat::Model(format)) if format.carries_wind());
+    let meshed = matches!(format, Some(PlantFormat::Model(_)));
+    args.given.only_if(meshed, &["lods"], "models", "none is made")?;
     args.given.only_if(blown, &["wind"], "models as .glb or .usda", "none is made")?;
-    let Product { made: MadePlant { plant, model, mut item }, marks, offset_m } =
+    let Product { mut made, marks, offset_m } =
         if args.scan { scan(args, &machine)? } else { make(args, &machine)? };
     machine.cancel.check()?;
+    let item = std::mem::take(&mut made.item);
+    if let Some(path) = &args.edits {
+        edits::some_done(path, &item, item.edits.len())?;
+    }
+    let lods = (1..=args.lods).map(|level| made.at_level(level, &machine.run()));
+    let mut lods = lods.collect::<Result<Vec<Model>, _>>().map_err(|e| failure(args, e.into()))?;
+    lods.iter_mut().for_each(|m| m.offset_m = made.model.offset_m);
     if let (Some(path), Some(marks)) = (&args.marks, &marks) {
         outputs.write("--marks", path, |out| match marks {
             Measured::Rows(marks) => write_marks(marks, &item.name, out),
             Measured::Rays(rays) => write_rays(rays, &item.name, out),
         })?;
     }
-    let (written, write_ms) = machine.timed(|| {
-        let Some((path, format)) = args.output.as_deref().zip(format) else { return Ok(Vec::new()) };
-        item.output = path.display().to_string();
+    let mut items = vec![item];
+    if let Some((path, format)) = args.output.as_deref().zip(format) {
         // --unit and --up were those of the input: a GLB in metres with +Y up is no surprise.
-        let (goal, cache) = (Goal::new("-o", path), &mut PngCache::new());
-        if format == PlantFormat::Model(ModelFormat::Glb) && !args.inputs.is_empty() {
-            let axes = ExportSpec::default();
-            return files::write_model(&mut outputs, goal, &model, ModelFormat::Glb, &axes, cache);
-        }
-        files::write_plant(&mut outputs, goal, (&plant, &model), format, &args.axes, cache)
-    });
-    item.warnings.extend(written?.iter().map(ToString::to_string));
-    item.timings_ms.add_io(0.0, write_ms);
+        let plain = format == PlantFormat::Model(ModelFormat::Glb) && !args.inputs.is_empty();
+        let axes = if plain { &AxesArgs::default() } else { &args.axes };
+        let (goal, plant) = ((path, format), (&made.plant, &made.model));
+        levels::write(&mut outputs, goal, plant, &lods, axes, &mut items, &machine)?;
+    }
     if let Some(png) = &args.png {
         let spec = args.picture.spec(args.seed);
-        let drawn =
-            machine.with_progress("picture", |_| burgeon::render::render(&model, &spec, &machine.run()))?;
+        let drawn = machine
+            .with_progress("picture", |_| burgeon::render::render(&made.model, &spec, &machine.run()))?;
         picture::write(&mut outputs, "--png", png, &drawn)?;
     }
-    item.timings_ms.total = machine.whole_ms();
+    items[0].timings_ms.total = machine.whole_ms();
     let mut run = RunReport::new("leaf", args.seed);
     run.input.offset_m = offset_m;
     run.input.path = args.inputs.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(", ");
-    run.items.push(item);
+    run.items = items;
     run.ok = 1;
     report::finish(&run, &args.common, outputs)?;
     if !machine.quiet {
         let item = &run.items[0];
         item.warnings.iter().for_each(|w| say::warning(&format!("{}: {w}", run.input.path)));
         say::line(&summary(item, args.png.as_deref()));
+        run.items[1..].iter().for_each(|i| say::line(&report::summary(i, None)));
     }
     Ok(())
 }
@@ -157,9 +161,10 @@ const SURFACE: [&str; 3] = ["surface", "parameters", "vein_weight"];
 /// How the leaf is bent and painted.
 const LOOK: [&str; 3] = ["curl", "wilt", "texture"];
 /// A whole plant, and what only that has.
-const PLANT: [&str; 4] = ["plant", "leaves", "height", "azimuth"];
+const PLANT: [&str; 5] = ["plant", "leaves", "height", "azimuth", "edits"];
 /// What else only a leaf has that is made.
-const MADE: [&str; 12] = [
+const MADE: [&str; 13] = [
+    "lods",
     "number",
     "length",
     "thickness",
@@ -214,43 +219,45 @@ fn summary(item: &ItemReport, png: Option<&Path>) -> String {
 
 /// What the options ask for.
 fn options(args: &LeafArgs, in_file: Option<ThicknessRule>) -> Outcome<LeafOptions> {
-    let thickness = in_file.or(args.shape.thickness.map(Into::into)).unwrap_or_default();
-    let spec = LeafSpec {
-        surface: args.shape.surface.into(),
-        thickness,
-        parameters: match args.shape.parameters {
-            ParametersWord::Shared => VeinParameters::Shared,
-            ParametersWord::Own => VeinParameters::Own,
-        },
-        vein_weight: args.shape.vein_weight,
-    };
-    let mesh = LeafMeshSpec {
-        subdivisions: args.shape.subdivisions as usize,
-        sides: args.shape.sides as usize,
-        rings: match args.shape.rings {
-            RingsWord::Plain => RingRule::Plain,
-            RingsWord::Envelope => RingRule::Envelope,
-        },
-        caps: args.shape.caps,
-        margin: args.shape.margin_vein,
-    };
-    let pose = Pose { curl: args.look.curl, wilt: args.look.wilt, ..Pose::default() };
-    let texture = match args.look.texture.to_str() {
-        Some("veins") => LeafTexture::Veins,
-        Some("plain") => LeafTexture::Plain,
+    let (shape, look) = (&args.shape, &args.look);
+    let (texture, picture) = match look.texture.to_str() {
+        Some("veins") => (LeafPaint::Veins, None),
+        Some("plain") => (LeafPaint::Plain, None),
         _ => {
-            let path = &args.look.texture;
+            let path = &look.texture;
             let bytes = inputs::bytes(path).map_err(|e| Failure::io(path, "read", &e))?;
             let picture = read_picture(&bytes);
             let picture =
                 picture.ok_or_else(|| Failure::at(path, "is no PNG or JPEG picture that can be read"))?;
-            LeafTexture::Picture(Arc::new(picture))
+            (LeafPaint::default(), Some(Arc::new(picture)))
         }
+    };
+    let spec = LeafSpec {
+        surface: shape.surface.into(),
+        curl: look.curl,
+        wilt: look.wilt,
+        texture,
+        thickness: in_file.or(shape.thickness.map(Into::into)),
+        parameters: match shape.parameters {
+            ParametersWord::Shared => VeinParameters::Shared,
+            ParametersWord::Own => VeinParameters::Own,
+        },
+        vein_weight: shape.vein_weight,
+        rings: match shape.rings {
+            RingsWord::Plain => RingRule::Plain,
+            RingsWord::Envelope => RingRule::Envelope,
+        },
+        subdivisions: shape.subdivisions,
+        sides: shape.sides,
+        caps: shape.caps,
+        margin_vein: shape.margin_vein,
+        ..LeafSpec::default()
     };
     let side_veins =
         args.side_veins.unwrap_or(if args.venation == Some(VenationWord::Palmate) { 4 } else { 0 });
-    let skin = SkinSpec { leaf: mesh, wind: args.wind, ..SkinSpec::default() };
-    Ok(LeafOptions { spec, skin, pose, texture, side_veins, ..LeafOptions::default() })
+    let skin = SkinSpec { wind: args.wind, ..SkinSpec::default() };
+    let edits = args.edits.as_deref().map(edits::read).transpose()?.unwrap_or_default();
+    Ok(LeafOptions { spec, skin, picture, side_veins, edits })
 }
 
 /// What comes out before it is written.
@@ -361,7 +368,7 @@ fn make(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
         let marks = grown(args, full)?;
         let made = burgeon::make_leaf_of(&name, &marks, &options, seed, &machine.run(), report);
         let made = made.map_err(|e| failure(args, e))?;
-        (made, Some(Measured::Rows(options.pose.apply(&marks).to_marks())))
+        (made, Some(Measured::Rows(options.spec.pose().apply(&marks).to_marks())))
     };
     made.item.timings_ms.add_io(read_ms, 0.0);
     Ok(Product { made, marks, offset_m: None })

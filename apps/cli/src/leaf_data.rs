@@ -255,7 +255,7 @@ pub(crate) fn template_of(path: &Path, seed: u64, machine: &Machine) -> Outcome<
     };
     let read = asked.read(path, input)?;
     let mut options = LeafOptions::default();
-    options.spec.thickness = read.thickness.unwrap_or_default();
+    options.spec.thickness = read.thickness;
     match read.form {
         Form::Rows(marks) => {
             let full = marks.complete(&mut Report::default()).map_err(|e| Failure::at(path, e))?;

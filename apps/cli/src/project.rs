@@ -8,17 +8,13 @@ use burgeon::document::{
 };
 use burgeon::mesh::Model;
 use burgeon::plant::Plant;
-use burgeon::{ItemReport, SceneEvaluator, Seed};
+use burgeon::skin::SkinSpec;
+use burgeon::{ItemReport, SceneError, SceneEvaluator, Seed};
 
 use crate::args::{SkinArgs, TreeSurfaceArgs};
 use crate::failure::{Failure, Outcome};
 use crate::machine::Machine;
 use crate::output::Outputs;
-
-/// Whether a plant has branches that hands can shape.
-fn branches(plant: &DocumentPlant) -> bool {
-    matches!(plant.settings().maker, Maker::Sketch(_) | Maker::Tree(_))
-}
 
 /// The plants with their numbers, for errors.
 fn listed(document: &Document) -> String {
@@ -34,11 +30,11 @@ fn listed(document: &Document) -> String {
 pub(crate) fn choose(path: &Path, document: &Document, wanted: Option<&str>) -> Outcome<PlantId> {
     let plants = document.plants();
     let Some(wanted) = wanted else {
-        let mut shapable = plants.iter().filter(|p| branches(p));
+        let mut shapable = plants.iter().filter(|p| p.settings().maker.branches());
         return match (shapable.next(), shapable.next()) {
             (Some(only), None) => Ok(only.id()),
             (None, _) => {
-                Err(Failure::at(path, "holds no tree or drawing, which alone have branches to edit"))
+                Err(Failure::at(path, "holds no tree, drawing or flower, which alone have branches to edit"))
             }
             (Some(_), Some(_)) => {
                 let line = format!(
@@ -62,7 +58,7 @@ pub(crate) fn choose(path: &Path, document: &Document, wanted: Option<&str>) -> 
             return Err(Failure::at(path, line));
         }
     };
-    if !branches(chosen) {
+    if !chosen.settings().maker.branches() {
         let s = chosen.settings();
         let line = format!("\"{}\" is a {}, which has no branches to edit", s.name, s.maker.word());
         return Err(Failure::at(path, line));
@@ -92,26 +88,23 @@ pub(crate) fn asked(
     seed: Option<u64>,
     surface: &TreeSurfaceArgs,
 ) -> Outcome<Document> {
-    if surface.lods > 0 {
-        let line = "is a project: --lods is for presets and specs; the Studio exports levels of its plants";
-        return Err(Failure::at(path, line));
-    }
     let mut editor = Editor::new(document.clone());
     let settings = document.plant(id).map(DocumentPlant::settings);
-    let (skin, is_tree) = match settings.map(|s| &s.maker) {
-        Some(Maker::Sketch(s)) => (&s.skin, false),
-        Some(Maker::Tree(t)) => (&t.skin, true),
-        _ => return Err(Failure::Bug("the chosen plant has no branches".into())),
-    };
-    let mut asked = skin.clone();
     // Wind is chosen for an export, not saved.
-    SkinArgs { wind: skin.wind, ..surface.skin.clone() }.set(&mut asked);
+    let asked = |skin: &SkinSpec| {
+        let mut asked = skin.clone();
+        SkinArgs { wind: skin.wind, ..surface.skin.clone() }.set(&mut asked);
+        (asked != *skin).then_some(asked)
+    };
     let mut commands = Vec::new();
-    if asked != *skin {
-        commands.push(match is_tree {
-            true => TreeCommand::SetSkin(asked).of(id),
-            false => SketchCommand::SetSkin(asked).of(id),
-        });
+    match settings.map(|s| &s.maker) {
+        Some(Maker::Sketch(s)) => commands.extend(asked(&s.skin).map(|s| SketchCommand::SetSkin(s).of(id))),
+        Some(Maker::Tree(t)) => commands.extend(asked(&t.skin).map(|s| TreeCommand::SetSkin(s).of(id))),
+        _ if asked(&SkinSpec::default()).is_some() => {
+            let line = "holds a flower, whose surface is its species'; leave --detail, --sides and --no-textures out";
+            return Err(Failure::at(path, line));
+        }
+        _ => {}
     }
     let own = settings.map(|s| s.seed);
     if let Some(seed) = seed.map(Seed::new).filter(|s| Some(*s) != own) {
@@ -123,22 +116,24 @@ pub(crate) fn asked(
     Ok(editor.document().clone())
 }
 
-/// Makes one plant of a project, with the columns of wind if they are wanted.
+/// Makes one plant of a document, with the columns of wind and the coarser copies that are wanted.
 pub(crate) fn make(
     path: &Path,
     document: &Document,
     id: PlantId,
-    wind: bool,
+    surface: &TreeSurfaceArgs,
     machine: &Machine,
-) -> Outcome<(Plant, Model, ItemReport)> {
+) -> Outcome<(Plant, Model, Vec<Model>, ItemReport)> {
+    let failed = |e: SceneError| if e.is_cancelled() { Failure::Cancelled } else { Failure::at(path, e) };
+    let none = || Failure::Bug("no plant was made".into());
     let mut scene = SceneEvaluator::default();
-    scene.set_wind(wind);
-    scene
-        .update(id, document, &machine.run())
-        .map_err(|e| if e.is_cancelled() { Failure::Cancelled } else { Failure::at(path, e) })?;
-    let made =
-        scene.get(id).and_then(|made| Some((made.plant?.clone(), made.model.clone(), made.item.clone())));
-    made.ok_or_else(|| Failure::Bug("no plant was made".into()))
+    scene.set_wind(surface.skin.wind);
+    scene.update(id, document, &machine.run()).map_err(failed)?;
+    let chosen = document.plant(id).ok_or_else(none)?;
+    let levels = (1..=surface.lods).map(|level| scene.at_level(chosen, document, level, &machine.run()));
+    let lods = levels.collect::<Result<_, _>>().map_err(failed)?;
+    let made = scene.get(id).ok_or_else(none)?;
+    Ok((made.plant.ok_or_else(none)?.clone(), made.model.clone(), lods, made.item.clone()))
 }
 
 /// Writes a project.

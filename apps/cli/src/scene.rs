@@ -96,7 +96,7 @@ pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine:
             return Err(Failure::at(path, "holds several plants; a structure (MTG, QSM) is of one"));
         };
         let plant = scene.get(only.id()).and_then(|p| p.plant);
-        plant.ok_or_else(|| Failure::at(path, "holds a single leaf or flower, which has no axes"))
+        plant.ok_or_else(|| Failure::Bug("no plant was made".into()))
     };
     if let Some(qsm) = &args.qsm {
         files::write_qsm(&mut outputs, qsm, structure()?, &args.axes)?;

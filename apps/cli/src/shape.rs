@@ -2,24 +2,23 @@
 
 use std::path::Path;
 
+use burgeon::bloom::FlowerSpec;
 use burgeon::document::{Document, PlantEdit};
-use burgeon::formats::{PngCache, read_drawings};
+use burgeon::formats::read_drawings;
 use burgeon::glam::DVec3;
 use burgeon::mesh::Model;
 use burgeon::plant::Plant;
-use burgeon::shape::{Destination, EDITS_SCHEMA, EditsFile, HandEdit};
-use burgeon::skin::SkinSpec;
 use burgeon::{
-    BranchRow, ItemReport, Made, MadeTree, MakeError, Preset, Report, RunReport, Seed, SketchOptions,
-    TreeError, TreeOptions, branch_rows, edits_schema, edits_template, make_from_sketch, make_tree,
+    BranchRow, FlowerOptions, ItemReport, MadePlant, MadeTree, Preset, Report, RunReport, Seed, Stopped,
+    TreeError, TreeOptions, branch_rows, edits_schema, edits_template, make_flower, make_tree,
 };
 
 use crate::args::{PlantFormat, Seen, ShapeArgs};
 use crate::failure::{Failure, Outcome};
-use crate::files::{Goal, Kind};
+use crate::files::Kind;
 use crate::machine::Machine;
 use crate::output::Outputs;
-use crate::{files, grow, inputs, picture, project, report, say};
+use crate::{bloom, edits, files, grow, inputs, levels, picture, project, report, say};
 
 /// A plant with its meshes, whoever made it.
 struct Shaped {
@@ -59,15 +58,16 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
     if let Some(png) = &args.png {
         picture::check_name(png)?;
     }
-    let edits = args.edits.as_deref().map(read_edits).transpose()?.unwrap_or_default();
+    let edits = args.edits.as_deref().map(edits::read).transpose()?.unwrap_or_default();
     let asked = edits.len();
-    let edits = edits.into_iter().map(PlantEdit::from).collect();
     let mut told = Report::default();
     let made = machine.with_progress("shape", |_| make(args, what, edits, &mut told, &machine))?;
     outputs.check()?;
     machine.cancel.check()?;
     let Shaped { plant, model, lods, mut item, seed, edited } = made;
-    some_done(args, &item, asked)?;
+    if let Some(path) = &args.edits {
+        edits::some_done(path, &item, asked)?;
+    }
     if let Some((path, document)) = args.save.as_ref().zip(edited) {
         project::save(&mut outputs, path, &document)?;
     }
@@ -75,19 +75,10 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
     if args.common.reports() {
         item.plant = Some(plant.measure());
     }
+    let mut items = vec![item];
     if let Some((path, format)) = args.output.as_deref().zip(format) {
-        let mut cache = PngCache::new();
-        let all = std::iter::once((&model, "-o", path.to_path_buf()));
-        let all = all.chain(lods.iter().zip(1..).map(|(m, level)| (m, "--lods", files::lod(path, level))));
-        for (model, by, path) in all {
-            machine.cancel.check()?;
-            let (goal, plant) = (Goal::new(by, &path), (&plant, model));
-            let (written, write_ms) = machine
-                .timed(|| files::write_plant(&mut outputs, goal, plant, format, &args.axes, &mut cache));
-            item.warnings.extend(written?.iter().map(ToString::to_string));
-            item.timings_ms.add_io(0.0, write_ms);
-        }
-        item.output = path.display().to_string();
+        let goal = (path, format);
+        levels::write(&mut outputs, goal, (&plant, &model), &lods, &args.axes, &mut items, &machine)?;
     }
     if let Some(png) = &args.png {
         let spec = args.picture.spec(seed.number());
@@ -95,14 +86,14 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
             machine.with_progress("picture", |_| burgeon::render::render(&model, &spec, &machine.run()))?;
         picture::write(&mut outputs, "--png", png, &drawn)?;
     }
-    item.timings_ms.total = machine.whole_ms();
+    items[0].timings_ms.total = machine.whole_ms();
     let mut run = RunReport::new("shape", seed.number());
     run.input.path = what.display().to_string();
     run.ok = 1;
     if let Some(order) = args.list {
-        item.branches = branch_rows(&plant, order);
+        items[0].branches = branch_rows(&plant, order);
     }
-    run.items = vec![item];
+    run.items = items;
     report::finish(&run, &args.common, outputs)?;
     if !machine.quiet {
         let item = &run.items[0];
@@ -111,6 +102,7 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
             say::line(&format!("edit {}: {}", edit.index, edit.said));
         }
         say::line(&report::summary(item, args.png.as_deref()));
+        run.items[1..].iter().for_each(|i| say::line(&report::summary(i, None)));
     }
     match args.list {
         // With --json standard output is the report, which has them.
@@ -139,55 +131,6 @@ fn out(text: &str) -> Outcome {
     say::data(text).map_err(|e| Failure::io(Path::new("standard output"), "written", &e))
 }
 
-fn read_edits(path: &Path) -> Outcome<Vec<HandEdit>> {
-    let text = files::read_text(path)?;
-    let file: EditsFile = serde_json::from_str(&text).map_err(|e| {
-        Failure::at(path, format_args!("is not an edits file: {e}; `burgeon shape --template` prints one"))
-    })?;
-    if file.schema != EDITS_SCHEMA {
-        let what = format_args!("is of schema \"{}\"; this version reads \"{EDITS_SCHEMA}\"", file.schema);
-        return Err(Failure::at(path, what));
-    }
-    for (k, edit) in file.edits.iter().enumerate() {
-        edit.check().map_err(|why| {
-            let word = edit.word();
-            match along(edit).filter(|at| !(0.0..=1.0).contains(at)) {
-                Some(at) => {
-                    let line = "but it is a share of the branch's length; give a number from 0 to 1";
-                    Failure::at(path, format_args!("edit {k} ({word}): at is {at}, {line}"))
-                }
-                None => Failure::at(path, format_args!("edit {k} ({word}): {why}")),
-            }
-        })?;
-    }
-    Ok(file.edits)
-}
-
-/// The place along a branch that an edit names.
-fn along(edit: &HandEdit) -> Option<f64> {
-    match edit {
-        HandEdit::Prune { at, .. } | HandEdit::Move { to: Destination::Place { at, .. }, .. } => Some(*at),
-        HandEdit::SketchBranch { at, .. } => *at,
-        _ => None,
-    }
-}
-
-/// A plant whose new edits all failed is not what was asked for. A project's own edits, which come first, do not count.
-fn some_done(args: &ShapeArgs, item: &ItemReport, asked: usize) -> Outcome {
-    let new = &item.edits[item.edits.len().saturating_sub(asked)..];
-    let (Some(path), Some(first)) = (&args.edits, new.first()) else { return Ok(()) };
-    if new.iter().any(|e| e.done) {
-        return Ok(());
-    }
-    let why = first.said.trim_start_matches("not done: ");
-    let line = match new.len() {
-        1 => format!("its edit could not be done: {why}"),
-        n => format!("none of its {n} edits could be done; the first: {why}"),
-    };
-    let line = format_args!("{line}; `burgeon shape --list` names the branches");
-    Err(Failure::at(path, line))
-}
-
 fn make(
     args: &ShapeArgs,
     what: &Path,
@@ -195,7 +138,9 @@ fn make(
     told: &mut Report,
     machine: &Machine,
 ) -> Outcome<Shaped> {
-    let skin = args.surface.skin.spec();
+    if let Some(spec) = bloom::species(what)? {
+        return flower(args, what, &spec, edits, machine);
+    }
     let seed = Seed::new(args.seed.unwrap_or(1));
     let is_preset = what.to_str().and_then(Preset::find).is_some() && !what.is_file();
     let is_spec = files::extension(what).is_none_or(|e| e.eq_ignore_ascii_case("toml"));
@@ -208,6 +153,7 @@ fn make(
             Some((input, _)) => grow::spec_of(what, &files::text_of(what, input)?, told)?,
             None => grow::read_spec(what, told)?,
         };
+        let skin = args.surface.skin.spec();
         let options = TreeOptions { skin, lods: args.surface.lods, edits, ..TreeOptions::default() };
         let made = make_tree(&spec, seed, &options, &machine.run()).map_err(|e| match e {
             TreeError::Cancelled(_) => Failure::Cancelled,
@@ -220,21 +166,21 @@ fn make(
         Some((input, start)) => (input, files::kind_of(what, &start)?),
         None => files::open(what)?,
     };
-    let read = match opened {
+    let (document, id) = match opened {
         (file, Kind::Drawing(format)) => {
-            no_project(args, what)?;
+            args.given.refuse(&["plant"], "projects (.burgeon)", "a drawing is one plant")?;
             let mut drawings = read_drawings(file, format, &files::stem(what));
             let first = drawings.next().ok_or_else(|| Failure::at(what, "holds no drawing"))?;
-            first.map_err(|e| Failure::at(what, e))?
+            let read = first.map_err(|e| Failure::at(what, e))?;
+            told.warnings.extend(read.warnings);
+            let document = Document::from_drawing(&read.drawing);
+            let id = project::choose(what, &document, None)?;
+            (document, id)
         }
         (file, Kind::Project) => {
             let document = files::read_project(what, file)?;
             let id = project::choose(what, &document, args.plant.as_deref())?;
-            let document = project::edited(what, document, id, edits)?;
-            let asked = project::asked(what, &document, id, args.seed, &args.surface)?;
-            let (plant, model, item) = project::make(what, &asked, id, args.surface.skin.wind, machine)?;
-            let seed = asked.plant(id).map_or(seed, |p| p.settings().seed);
-            return Ok(Shaped { plant, model, lods: Vec::new(), item, seed, edited: Some(document) });
+            (document, id)
         }
         (_, Kind::Model(format)) => {
             let what_it_is = format_args!(
@@ -244,16 +190,36 @@ fn make(
             return Err(Failure::at(what, what_it_is));
         }
     };
-    let given = &args.given;
-    given.refuse(&["lods"], "presets and specs", "a drawing's plant has no levels of detail")?;
-    told.warnings.extend(read.warnings);
-    let options = SketchOptions { skin: SkinSpec { seed, ..skin }, edits, ..SketchOptions::default() };
-    let made = make_from_sketch(&read.drawing, &options, seed, &machine.run()).map_err(|e| match e {
-        MakeError::Cancelled(_) => Failure::Cancelled,
-        other => Failure::at(what, other),
-    })?;
-    let Made { plant, model, item, .. } = made;
-    Ok(Shaped { plant, model, lods: Vec::new(), item, seed, edited: None })
+    let document = project::edited(what, document, id, edits)?;
+    let asked = project::asked(what, &document, id, args.seed, &args.surface)?;
+    let (plant, model, lods, item) = project::make(what, &asked, id, &args.surface, machine)?;
+    let seed = asked.plant(id).map_or(seed, |p| p.settings().seed);
+    Ok(Shaped { plant, model, lods, item, seed, edited: Some(document) })
+}
+
+/// A flower in full bloom.
+fn flower(
+    args: &ShapeArgs,
+    what: &Path,
+    spec: &FlowerSpec,
+    edits: Vec<PlantEdit>,
+    machine: &Machine,
+) -> Outcome<Shaped> {
+    no_project(args, what)?;
+    args.given.refuse(&["no_textures"], "trees and drawings", "a flower has the colours of its species")?;
+    let seed = Seed::new(args.seed.unwrap_or(1));
+    let options = FlowerOptions { skin: args.surface.skin.spec(), edits };
+    let run = machine.run();
+    let failed = |stopped| match stopped {
+        Stopped::Cancelled(_) => Failure::Cancelled,
+        Stopped::OverBudget(much) => Failure::at(what, much),
+    };
+    let day = (spec.opening_days, &spec.own_law());
+    let made = make_flower(&spec.name, spec, day, &options, seed, &run).map_err(failed)?;
+    let lods = (1..=args.surface.lods).map(|level| made.at_level(level, &run));
+    let lods = lods.collect::<Result<_, _>>().map_err(failed)?;
+    let MadePlant { plant, model, item, .. } = made;
+    Ok(Shaped { plant, model, lods, item, seed, edited: None })
 }
 
 /// Options of projects are for nothing else.

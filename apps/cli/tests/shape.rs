@@ -187,11 +187,67 @@ fn a_choice_among_plants_that_is_missing_or_wrong_names_them() {
     assert!(unknown.contains("no plant \"elm\"") && unknown.contains("2 \"bush\" (tree)"), "{unknown}");
     assert!(told(&["garden.burgeon", "--plant", "9"]).contains("no plant \"9\""));
     assert!(told(&["garden.burgeon", "--plant", "tobacco"]).contains("is a leaf, which has no branches"));
-    assert!(told(&["garden.burgeon", "--plant", "bush", "--lods", "2"]).contains("--lods"));
     assert!(told(&["small.toml", "--plant", "bush"]).contains("no project"));
     assert!(told(&["small.toml", "--save", "y.burgeon"]).contains("--save"));
     assert!(
         told(&["garden.burgeon", "--plant", "bush", "--save", "garden.burgeon"]).contains("garden.burgeon")
     );
     assert!(!f.join("x.glb").exists() && !f.join("y.burgeon").exists());
+}
+
+#[test]
+fn flowers_and_leaf_shoots_take_edits_and_every_plant_has_levels_of_detail() {
+    let f = folder("shape-flowers");
+    let json = |args: &[&str]| -> Value {
+        serde_json::from_str(&good(&f, &[args, &["--json", "--quiet"]].concat())).unwrap()
+    };
+    let edits = |name: &str, op: &str| {
+        fs::write(f.join(name), format!(r#"{{"schema": "burgeon.edits/1", "edits": [{op}]}}"#)).unwrap();
+    };
+    edits(
+        "lean.json",
+        r#"{"op": "rotate", "axis": {"path": [0]}, "turn": {"about": [0, 0, 1], "degrees": 20}}"#,
+    );
+    edits("none.json", r#"{"op": "prune", "axis": {"path": [0, 999]}}"#);
+    let triangles = |item: &Value| item["counts"]["triangles"].as_u64().unwrap();
+    let leaf = |k: u32| format!("{}/../../fixtures/leaves/leaf{k}.csv", env!("CARGO_MANIFEST_DIR"));
+    let (one, three) = (leaf(1), leaf(3));
+    let drawing = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/sketches/table1/a.svg");
+    let plants: [(&str, &[&str], u64); 4] = [
+        ("rose.glb", &["shape", "rose"], 2),
+        ("lily.glb", &["bloom", "run", "lily", "--day", "5"], 1),
+        ("shoot.glb", &["leaf", &one, &three, "--plant", "--leaves", "6"], 2),
+        ("drawn.glb", &["shape", drawing, "--save", "drawn.burgeon"], 2),
+    ];
+    for (out, command, levels) in plants {
+        let made = |more: &[&str]| json(&[command, &["-o", out], more].concat());
+        let lods = levels.to_string();
+        let leant = made(&["--edits", "lean.json", "--lods", &lods]);
+        let item = &leant["items"][0];
+        assert_eq!(item["edits"][0]["done"], true, "{out}: {item}");
+        let mut before = 0;
+        for level in 0..=levels {
+            let name = if level == 0 { out.into() } else { out.replace(".glb", &format!("-lod{level}.glb")) };
+            let info = json(&["info", &name]);
+            let now = info["model"]["triangles"].as_u64().unwrap();
+            assert!(level == 0 || now < before * 3 / 4, "{name}: {now} after {before}");
+            before = now;
+        }
+        if command[0] != "shape" {
+            assert_ne!(made(&[])["items"][0]["digest"], item["digest"], "{out}");
+        } else {
+            assert_eq!(
+                triangles(&leant["items"][1]),
+                json(&["info", &out.replace(".glb", "-lod1.glb")])["model"]["triangles"]
+            );
+        }
+        let failed = bad(&f, &[command, &["-o", "never.glb", "--edits", "none.json"]].concat());
+        assert!(failed.contains("none.json") && failed.contains("its edit could not be done"), "{failed}");
+    }
+    assert!(!f.join("never.glb").exists());
+    // The same edit on every day: an opening still has one set of triangles.
+    json(&["bloom", "run", "rose", "--edits", "lean.json", "--frames", "3", "-o", "opening.glb"]);
+    // What a drawing became is a project with the edit.
+    let again = json(&["shape", "drawn.burgeon", "--list"]);
+    assert_eq!(again["items"][0]["edits"][0]["done"], true);
 }

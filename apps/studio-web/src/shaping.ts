@@ -154,13 +154,9 @@ export class Shaping {
     return this.tool;
   }
 
-  /** Trees and drawings have branches. */
+  /** All but single leaves have stems and branches. */
   get isPossible(): boolean {
-    return (
-      this.plant !== undefined &&
-      (this.plant.maker === 'tree' || this.plant.maker === 'sketch') &&
-      (this.seen?.parts.length ?? 0) > 0
-    );
+    return this.plant !== undefined && this.plant.maker !== 'leaf' && (this.seen?.parts.length ?? 0) > 0;
   }
 
   toggle(): void {
@@ -195,7 +191,7 @@ export class Shaping {
     this.seen = seen;
     if (this.tool && !this.isPossible) {
       // A plant that is being made again is no reason to lay the tool down; another plant is.
-      if (plant && plant.maker !== 'tree' && plant.maker !== 'sketch') {
+      if (plant?.maker === 'leaf') {
         this.take(undefined);
         return;
       }

@@ -8,6 +8,7 @@ export const CODES = {
   "archive": ["why"],
   "cancelled": [],
   "class-without-stroke": ["index"],
+  "edit-at-fault": ["row", "why"],
   "field-range": ["field", "range", "value"],
   "file-empty": [],
   "file-io": ["why"],
@@ -39,12 +40,17 @@ export const CODES = {
   "marks-thickness": ["row", "mark", "value"],
   "marks-tip": [],
   "mesh": ["why"],
+  "mesh-empty": [],
+  "mesh-index": ["triangle", "vertex", "vertices"],
+  "mesh-vertex": ["vertex"],
   "message": ["why"],
+  "no-branches": ["maker"],
   "no-clipboard": [],
   "no-drawing": [],
   "no-flowers": ["name"],
   "no-leaf-to-lend": [],
   "no-leaves": [],
+  "no-petal-colour": ["word", "known"],
   "no-photo": [],
   "no-plant": [],
   "no-room": ["found", "wanted"],
@@ -65,12 +71,15 @@ export const CODES = {
   "nothing-to-shape": [],
   "obstacle": ["name", "why"],
   "obstacle-file": [],
+  "obstacle-not-finite": [],
   "other-maker": ["wanted", "found"],
-  "out-of-range": ["why"],
   "over-budget": ["what", "number", "limit"],
   "photo-not-png": [],
+  "photo-too-far": [],
   "photo-too-large": [],
+  "place-too-far": [],
   "plant-gone": [],
+  "plant-not-made": ["name"],
   "project-archive": ["why"],
   "project-json": ["entry", "why"],
   "project-missing": ["name"],
@@ -81,13 +90,31 @@ export const CODES = {
   "project-version": ["found"],
   "root-far": ["root"],
   "root-in-obstacle": ["root", "obstacle"],
+  "scan-surface": ["why"],
+  "scan-too-few": ["points"],
+  "scan-too-many": ["points", "most"],
   "spec-pointer": ["path"],
   "spec-text": ["path", "why"],
+  "spline-degree": ["degree"],
+  "spline-knots": [],
+  "spline-not-finite": ["point"],
+  "spline-parameters": [],
+  "spline-radius": ["point"],
+  "spline-ragged": ["points", "columns"],
+  "spline-too-few": ["needed", "given"],
   "step-too-long": ["step_m", "space_m"],
   "too-far": [],
+  "too-many-edits": ["most"],
+  "too-many-obstacles": ["most"],
   "tree-file": ["file"],
   "tree-line": ["line", "why"],
   "unknown-file": [],
+  "veins-none": [],
+  "veins-not-finite": ["ray", "mark"],
+  "veins-repeated": ["ray", "mark"],
+  "veins-thickness": ["ray", "mark", "value"],
+  "veins-too-few": ["rays", "marks"],
+  "veins-unequal": ["ray", "got", "wanted"],
   "write": ["why"],
 } as const;
 
@@ -612,7 +639,7 @@ export type LeafCommand =
   }
   | /** Sets how the leaf is made. */
   {
-    set: LeafSettings;
+    set: LeafSpec;
   };
 
 /** The file of a measured leaf: marks as CSV, or a vein graph as JSON. */
@@ -697,15 +724,8 @@ export type LeafReport = {
   veins: FaceCounts;
 };
 
-/** The rings of veins. */
-export type LeafRings =
-  | /** Circles across the vein, as published. */
-  "plain"
-  | /** Where each ball touches the surface of all. */
-  "envelope";
-
-/** How a leaf is made of its marks. */
-export type LeafSettings = {
+/** How a leaf is made of its marks (Wang et al. */
+export type LeafSpec = {
   /** Round ends on the veins; default false. */
   caps: boolean;
   /** Roll about the midrib: -1 (margins meet below) to 1 (above), 0 as measured, default 0. */
@@ -714,19 +734,21 @@ export type LeafSettings = {
   length_m: number;
   /** A vein along the margin too; default false. */
   margin_vein: boolean;
+  /** Parameters of interpolating side veins. */
+  parameters: VeinParameters;
   /** Rings of the veins. */
-  rings: LeafRings;
+  rings: RingRule;
   /** Points around a vein, 3 to 64, default 10. */
   sides: number;
   /** Parts of each span between marks, 1 to 64, default 5. */
   subdivisions: number;
   /** Surface of the blade. */
-  surface: LeafSurface;
+  surface: SurfaceKind;
   /** Colour of the blade. */
   texture: LeafPaint;
   /** What a measured thickness is; default what the file says, else the diameter. */
   thickness: 
-    | LeafThickness
+    | ThicknessRule
     | null;
   /** Pull of the thickest vein on a NURBS blade, 1 (none) to 100, default 4. */
   vein_weight: number;
@@ -739,28 +761,10 @@ export type LeafState = {
   /** Name of the file of marks or veins. */
   file: string;
   /** How the leaf is made of it. */
-  settings: LeafSettings;
+  settings: LeafSpec;
   /** Its text. */
   text: string;
 };
-
-/** The surface of a measured blade. */
-export type LeafSurface =
-  | /** Through all marks, with the folds of the blade. */
-  "interpolate"
-  | /** A B-spline near the marks. */
-  "approximate"
-  | /** One smooth polynomial. */
-  "bezier"
-  | /** As approximate, drawn towards thick veins. */
-  "nurbs";
-
-/** What a measured thickness is. */
-export type LeafThickness =
-  | /** As callipers measure. */
-  "diameter"
-  | /** As the formulas take it. */
-  "radius";
 
 /** A unit of length. */
 export type LengthUnit =
@@ -1107,6 +1111,8 @@ export type PlantView = {
 
 /** Why something was not done, for a shell: words for people in English, and what another language needs for its own. */
 export type Refusal = {
+  /** Those of the fields that are refusals themselves. */
+  causes?: Record<string, Refusal>;
   /** A word in kebab-case that never changes its meaning. */
   code: string;
   /** Names and values, as people read them. */
@@ -1130,6 +1136,13 @@ export type ReliefSpec = {
   /** Hollow of petals, 0 to 0.3, default 0.08. */
   petal_hollow: number;
 };
+
+/** How a ring of the tube is placed. */
+export type RingRule =
+  | /** A circle of the ball's radius in the plane across the centre line (Wang et al. */
+  "plain"
+  | /** The circle in which the ball touches the envelope of all balls: the exact surface. */
+  "envelope";
 
 /** What was found in a scan. */
 export type ScanReport = {
@@ -1447,6 +1460,17 @@ export type StrokeState = {
   mode: StrokeMode;
 };
 
+/** Surface of a measured blade (Wang et al. */
+export type SurfaceKind =
+  | /** One smooth polynomial of the marks as controls, far from the marks. */
+  "bezier"
+  | /** A B-spline near the marks. */
+  "approximate"
+  | /** A B-spline through all marks, with the folds of the blade. */
+  "interpolate"
+  | /** As approximate, drawn towards thick veins. */
+  "nurbs";
+
 /** Eq 7: how an axis thins from base to tip: r(x) = (s^(-alpha x) + m) / (1 + m). */
 export type TaperSpec = {
   /** alpha, above 0, default 0.5. */
@@ -1466,6 +1490,13 @@ export type TextureView = {
   /** Pixels across. */
   width: number;
 };
+
+/** What a measured thickness is to its vein's ball. */
+export type ThicknessRule =
+  | /** A calliper's reading: the ball's diameter. */
+  "diameter"
+  | /** The ball's radius, as the formulas take it. */
+  "radius";
 
 /** Milliseconds of each stage. */
 export type TimingsMs = {
@@ -1550,6 +1581,13 @@ export type Up =
   "y"
   | /** As Blender and most CAD programs have it. */
   "z";
+
+/** Which parameters an interpolating side vein has. */
+export type VeinParameters =
+  | /** Those of the blade, so that the vein lies on it. */
+  "shared"
+  | /** The chord lengths of its own marks, as published: vein and blade meet at the marks only. */
+  "own";
 
 /** A plane in which an outline is drawn. */
 export type ViewPlane = {

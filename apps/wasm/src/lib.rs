@@ -71,12 +71,12 @@ pub fn leaf_report(file_name: &str, bytes: &[u8], seed: u64) -> Result<String, J
         }
         _ if formats::is_rays(bytes) => {
             let read = formats::read_rays(bytes, name, formats::MarksAxes::default())?;
-            options.spec.thickness = read.thickness.unwrap_or_default();
+            options.spec.thickness = read.thickness;
             burgeon::make_ray_leaf(&read.name, &read.rays, &options, &run)?.item
         }
         _ => {
             let read = formats::read_marks(bytes, name, formats::MarksAxes::default())?;
-            options.spec.thickness = read.thickness.unwrap_or_default();
+            options.spec.thickness = read.thickness;
             make_leaf(&read.name, &read.marks, &options, seed, &run)?.item
         }
     };

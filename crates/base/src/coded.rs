@@ -9,6 +9,8 @@ pub struct Told {
     pub code: &'static str,
     /// Names and values, as people read them.
     pub fields: BTreeMap<&'static str, String>,
+    /// Those of the fields that are errors themselves.
+    pub causes: BTreeMap<&'static str, Told>,
 }
 
 /// A code, and the names of its fields.
@@ -25,10 +27,11 @@ pub trait Coded {
 
 /// Gives each variant of an error its code and its fields; those that wrap another error have the other's.
 ///
-/// A variant that is forgotten does not compile.
+/// A variant that is forgotten does not compile. A field that is an error with codes of its own says its type.
 ///
 /// ```
 /// use base::Coded;
+/// use core::fmt::{Display, Formatter, Result};
 /// enum DoorError {
 ///     Locked(String),
 ///     Broken,
@@ -37,21 +40,42 @@ pub trait Coded {
 ///     Self::Locked(key) => "door-locked" { key },
 ///     Self::Broken => "door-broken" {},
 /// });
-/// let told = DoorError::Locked("brass".into()).told();
-/// assert_eq!((told.code, told.fields["key"].as_str()), ("door-locked", "brass"));
+/// impl Display for DoorError {
+///     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+///         f.write_str("it does not open")
+///     }
+/// }
+/// struct HouseError(DoorError);
+/// base::coded!(HouseError {
+///     Self(door) => "house" { why = door => DoorError },
+/// });
+/// let told = HouseError(DoorError::Locked("brass".into())).told();
+/// assert_eq!((told.code, told.fields["why"].as_str()), ("house", "it does not open"));
+/// let why = &told.causes["why"];
+/// assert_eq!((why.code, why.fields["key"].as_str()), ("door-locked", "brass"));
 /// # let _ = DoorError::Broken;
 /// ```
 #[macro_export]
 macro_rules! coded {
     (@value $field:ident) => { $field };
     (@value $field:ident $value:expr) => { $value };
+    (@cause $field:ident [$($value:expr)?]) => { None };
+    (@cause $field:ident [] $cause:ty) => { $crate::coded!(@cause $field [$field] $cause) };
+    (@cause $field:ident [$value:expr] $cause:ty) => {
+        Some((stringify!($field), <$cause as $crate::Coded>::told($value)))
+    };
     ($type:ty {
-        $($pattern:pat => $code:literal { $($field:ident $(= $value:expr)?),* }),* $(,)?
+        $($pattern:pat => $code:literal { $($field:ident $(= $value:expr)? $(=> $cause:ty)?),* }),* $(,)?
     } $(wraps { $($wrap:pat => $inner:expr, $kind:ty);* $(;)? })?) => {
         impl $crate::Coded for $type {
             fn codes(all: &mut Vec<$crate::Code>) {
                 let own: &[$crate::Code] = &[$(($code, &[$(stringify!($field)),*])),*];
+                // An error may hold one of its own kind.
+                if !own.is_empty() && own.iter().all(|code| all.contains(code)) {
+                    return;
+                }
                 all.extend_from_slice(own);
+                $($($(<$cause as $crate::Coded>::codes(all);)?)*)*
                 $($(<$kind as $crate::Coded>::codes(all);)*)?
             }
 
@@ -61,6 +85,12 @@ macro_rules! coded {
                         code: $code,
                         fields: [$((stringify!($field), $crate::coded!(@value $field $($value)?).to_string())),*]
                             .into_iter()
+                            .collect(),
+                        causes: [None::<(&'static str, $crate::Told)>, $($crate::coded!(
+                            @cause $field [$($value)?] $($cause)?
+                        )),*]
+                            .into_iter()
+                            .flatten()
                             .collect(),
                     },)*
                     $($($wrap => $crate::Coded::told($inner),)*)?

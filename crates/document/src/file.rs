@@ -21,7 +21,7 @@ use crate::forms::{
 };
 use crate::makers::{FlowerMaker, LeafData, LeafMaker, Maker, NamedObstacle, SketchSettings, TreeSettings};
 use crate::state::{MAX_PLANTS, Placement, PlantEdit, range_fault, shortened};
-use crate::{Document, DocumentPlant, DocumentStroke, Photo, PhotoError, PlantId, Settings};
+use crate::{Document, DocumentPlant, DocumentStroke, Photo, PhotoError, PlantId, SettingFault, Settings};
 
 /// The form that this version writes, as `manifest.json` names it.
 pub const PROJECT_SCHEMA: &str = "project/4";
@@ -79,7 +79,7 @@ pub enum ProjectError {
     Tree(#[source] SpecFault),
     /// A setting is out of its range.
     #[error("project file: {0}")]
-    Setting(String),
+    Setting(#[source] SettingFault),
     /// The scene does not hold together.
     #[error("project file: {0}; it was not made by Burgeon or is damaged")]
     Scene(crate::DocumentFault),
@@ -335,7 +335,7 @@ base::coded!(ProjectError {
     Self::Version { found } => "project-version" { found },
     Self::Json { entry, source } => "project-json" { entry, why = source },
     Self::Stroke { row, what } => "project-stroke" { row, why = what },
-    Self::Setting(why) => "project-setting" { why },
+    Self::Setting(why) => "project-setting" { why => SettingFault },
     Self::Scene(why) => "project-scene" { why },
     Self::TooMuch { what, limit } => "project-too-much" { what, limit },
 } wraps {

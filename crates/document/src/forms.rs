@@ -10,7 +10,7 @@ use shape::HandEdit;
 use sketch::SketchSpec;
 use skin::{PetalColor, SkinSpec};
 
-use crate::{DocumentStroke, FlowerSettings, LeafSettings, PhotoPlace};
+use crate::{DocumentStroke, FlowerSettings, PhotoPlace, SettingFault};
 
 /// Form 4: as form 3, and edits by hand.
 #[derive(Serialize, Deserialize)]
@@ -151,7 +151,7 @@ pub(crate) struct LeafV3 {
     pub(crate) file: String,
     pub(crate) data: String,
     #[serde(default)]
-    pub(crate) settings: LeafSettings,
+    pub(crate) settings: leaf::LeafSpec,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -267,13 +267,13 @@ pub(crate) struct StrokeV1 {
 
 impl SkinV1 {
     /// # Errors
-    /// A sentence about a colour that is not known.
-    pub(crate) fn spec(self) -> Result<SkinSpec, String> {
+    /// [`SettingFault::Petals`].
+    pub(crate) fn spec(self) -> Result<SkinSpec, SettingFault> {
         let petals = match self.petals.as_deref() {
             None => None,
             Some(word) => Some(PetalColor::ALL.into_iter().find(|c| c.word() == word).ok_or_else(|| {
                 let known = PetalColor::ALL.map(PetalColor::word).join(", ");
-                format!("the petal colour {word:?} is unknown; use one of {known}")
+                SettingFault::Petals { word: word.into(), known }
             })?),
         };
         let Self { detail, sides, textures, variation, .. } = self;

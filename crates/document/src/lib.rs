@@ -20,6 +20,7 @@ mod archive;
 mod command;
 mod editor;
 mod event;
+mod fault;
 mod file;
 mod forms;
 mod ids;
@@ -35,12 +36,10 @@ pub use command::{
 };
 pub use editor::{Editor, Step};
 pub use event::{Event, StrokeRows};
+pub use fault::SettingFault;
 pub use file::{MAX_PROJECT_BYTES, PROJECT_SCHEMA, ProjectError, is_project, read_project, write_project};
 pub use ids::{PlantId, StrokeId};
-pub use makers::{
-    FlowerMaker, LeafData, LeafMaker, LeafPaint, LeafRings, LeafSettings, LeafSurface, LeafThickness, Maker,
-    NamedObstacle, SketchSettings, TreeSettings,
-};
+pub use makers::{FlowerMaker, LeafData, LeafMaker, Maker, NamedObstacle, SketchSettings, TreeSettings};
 pub use photo::{MAX_PHOTO_BYTES, Photo, PhotoError, PhotoPlace};
 pub use state::{
     Document, DocumentFault, DocumentPlant, DocumentStroke, Placement, PlantEdit, Settings, range_fault,

@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use bloom::{FlowerSettings, FlowerSpec, GrowthLaw};
 use growth::{Obstacle, TreeSpec};
+use leaf::LeafSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sketch::SketchSpec;
 use skin::SkinSpec;
 
-use crate::{Photo, PlantId};
+use crate::{Photo, PlantId, SettingFault};
 
 /// Most obstacles of a tree.
 pub(crate) const MAX_OBSTACLES: usize = 64;
@@ -54,9 +55,9 @@ impl Maker {
         }
     }
 
-    /// Whether it makes plants with branches, which take edits by hand: a sketch or a tree.
+    /// Whether it makes plants with stems and branches, which take edits by hand: all but a single leaf.
     pub const fn branches(&self) -> bool {
-        matches!(self, Self::Sketch(_) | Self::Tree(_))
+        !matches!(self, Self::Leaf(_))
     }
 
     pub(crate) fn set_leaf(&mut self, leaf: Option<PlantId>) {
@@ -67,8 +68,8 @@ impl Maker {
         }
     }
 
-    /// What is out of its range, as a sentence with what to do.
-    pub(crate) fn fault(&self) -> Option<String> {
+    /// What is out of its range.
+    pub(crate) fn fault(&self) -> Option<SettingFault> {
         match self {
             Self::Sketch(s) => s.fault(),
             Self::Tree(t) => t.fault(),
@@ -94,7 +95,7 @@ pub struct SketchSettings {
 }
 
 impl SketchSettings {
-    fn fault(&self) -> Option<String> {
+    fn fault(&self) -> Option<SettingFault> {
         let photo = self.photo.as_ref().and_then(Photo::fault);
         let day = || FlowerSettings { day: self.day.unwrap_or(0.0), ..FlowerSettings::default() };
         fault(&self.sketch).or(photo).or_else(|| fault(&self.skin)).or_else(|| fault(&day()))
@@ -117,14 +118,12 @@ pub struct TreeSettings {
 }
 
 impl TreeSettings {
-    fn fault(&self) -> Option<String> {
+    fn fault(&self) -> Option<SettingFault> {
         if self.obstacles.len() > MAX_OBSTACLES {
-            return Some(format!(
-                "a tree has at most {MAX_OBSTACLES} obstacles; join some of them into one mesh"
-            ));
+            return Some(SettingFault::Obstacles);
         }
         if self.obstacles.iter().any(|o| !o.shape.is_finite()) {
-            return Some("every number of an obstacle must be finite".into());
+            return Some(SettingFault::Obstacle);
         }
         fault(&self.skin)
     }
@@ -146,7 +145,7 @@ pub struct LeafMaker {
     /// What was measured, as a file.
     pub data: LeafData,
     /// How the leaf is made of it.
-    pub settings: LeafSettings,
+    pub settings: LeafSpec,
 }
 
 /// The file of a measured leaf: marks as CSV, or a vein graph as JSON.
@@ -165,110 +164,6 @@ impl Default for LeafData {
     }
 }
 
-/// The surface of a measured blade.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum LeafSurface {
-    /// Through all marks, with the folds of the blade.
-    #[default]
-    Interpolate,
-    /// A B-spline near the marks.
-    Approximate,
-    /// One smooth polynomial.
-    Bezier,
-    /// As approximate, drawn towards thick veins.
-    Nurbs,
-}
-
-/// The rings of veins.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum LeafRings {
-    /// Circles across the vein, as published.
-    #[default]
-    Plain,
-    /// Where each ball touches the surface of all.
-    Envelope,
-}
-
-/// What a measured thickness is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum LeafThickness {
-    /// As callipers measure.
-    Diameter,
-    /// As the formulas take it.
-    Radius,
-}
-
-/// What colours a measured blade.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum LeafPaint {
-    /// Painted by the distance from the veins.
-    #[default]
-    Veins,
-    /// One green.
-    Plain,
-}
-
-/// How a leaf is made of its marks.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct LeafSettings {
-    /// Surface of the blade.
-    pub surface: LeafSurface,
-    /// Roll about the midrib: -1 (margins meet below) to 1 (above), 0 as measured, default 0.
-    #[schemars(range(min = -1.0, max = 1.0))]
-    pub curl: f64,
-    /// Loss of stiffness: 0 as measured to 1 hanging limp, default 0.
-    #[schemars(range(min = 0.0, max = 1.0))]
-    pub wilt: f64,
-    /// Colour of the blade.
-    pub texture: LeafPaint,
-    /// What a measured thickness is; default what the file says, else the diameter.
-    pub thickness: Option<LeafThickness>,
-    /// Pull of the thickest vein on a NURBS blade, 1 (none) to 100, default 4.
-    #[schemars(range(min = 1.0, max = 100.0))]
-    pub vein_weight: f64,
-    /// Rings of the veins.
-    pub rings: LeafRings,
-    /// Parts of each span between marks, 1 to 64, default 5.
-    #[schemars(range(min = 1, max = 64))]
-    pub subdivisions: u32,
-    /// Points around a vein, 3 to 64, default 10.
-    #[schemars(range(min = 3, max = 64))]
-    pub sides: u32,
-    /// Round ends on the veins; default false.
-    pub caps: bool,
-    /// A vein along the margin too; default false.
-    pub margin_vein: bool,
-    /// Length of the midrib for a vein graph in pixels, metres, 0.002 to 10, default 0.1.
-    #[schemars(range(min = 0.002, max = 10.0), extend("x-unit" = "m"))]
-    pub length_m: f64,
-}
-
-spec::schemas!(LeafSettings);
-
-impl Default for LeafSettings {
-    fn default() -> Self {
-        Self {
-            surface: LeafSurface::default(),
-            curl: 0.0,
-            wilt: 0.0,
-            texture: LeafPaint::default(),
-            thickness: None,
-            vein_weight: 4.0,
-            rings: LeafRings::default(),
-            subdivisions: 5,
-            sides: 10,
-            caps: false,
-            margin_vein: false,
-            length_m: 0.1,
-        }
-    }
-}
-
 /// A flower that opens.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FlowerMaker {
@@ -279,24 +174,21 @@ pub struct FlowerMaker {
 }
 
 impl FlowerMaker {
-    fn fault(&self) -> Option<String> {
-        let law = self.law.as_ref().and_then(|l| l.validate().next()).map(|f| f.to_string());
+    fn fault(&self) -> Option<SettingFault> {
+        let law =
+            self.law.as_ref().and_then(|l| l.validate().next()).map(|f| SettingFault::Law(f.to_string()));
         law.or_else(|| flower_fault(&self.settings))
     }
 }
 
-fn flower_fault(settings: &FlowerSettings) -> Option<String> {
+fn flower_fault(settings: &FlowerSettings) -> Option<SettingFault> {
     if !FlowerSpec::PRESETS.contains(&settings.species.as_str()) {
-        let short = base::quoted(&settings.species);
-        return Some(format!(
-            "the flower {short:?} is unknown; use one of {}",
-            FlowerSpec::PRESETS.join(", ")
-        ));
+        return Some(SettingFault::Flower { name: base::quoted(&settings.species).to_string() });
     }
     fault(settings)
 }
 
-/// What is out of its range, in words.
-fn fault<T: spec::Spec>(settings: &T) -> Option<String> {
-    spec::check(settings).err().map(|fault| fault.to_string())
+/// What is out of its range.
+fn fault<T: spec::Spec>(settings: &T) -> Option<SettingFault> {
+    spec::check(settings).err().map(SettingFault::Range)
 }

@@ -4,6 +4,9 @@ use std::sync::Arc;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use spec::RangeFault;
+
+use crate::SettingFault;
 
 /// Most bytes and longest side of a photograph that a document holds: 24 MiB, 4,096 pixels.
 pub const MAX_PHOTO_BYTES: usize = 24 << 20;
@@ -108,14 +111,16 @@ impl Photo {
         (at.x..=at.x + at.width).contains(&x) && (at.y..=at.y + self.height()).contains(&y)
     }
 
-    /// What is out of its range, as a sentence.
-    pub(crate) fn fault(&self) -> Option<String> {
+    /// What is out of its range.
+    pub(crate) fn fault(&self) -> Option<SettingFault> {
         let near = |v: f64| v.abs() <= 1e9;
         let PhotoPlace { x, y, width, opacity, .. } = self.place;
         if !(near(x) && near(y) && width > 1e-9 && width <= 1e9) {
-            return Some("the photograph lies out of reach; put it nearer and make it larger".into());
+            return Some(SettingFault::Photo);
         }
-        (!(0.0..=1.0).contains(&opacity)).then(|| format!("opacity is {opacity}, but must be from 0 to 1"))
+        let (path, least, most) = ("opacity".into(), Some(0.0), Some(1.0));
+        let fault = || RangeFault { path, value: opacity, least, most, above: None, unit: "" };
+        (!(0.0..=1.0).contains(&opacity)).then(|| SettingFault::Range(fault()))
     }
 }
 

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use shape::HandEdit;
 
 use crate::ids::{PlantId, StrokeId};
-use crate::{Maker, Photo, SketchSettings};
+use crate::{Maker, Photo, SettingFault, SketchSettings};
 
 /// One stroke of a sketch.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,10 +44,10 @@ impl Default for Placement {
 }
 
 impl Placement {
-    fn fault(&self) -> Option<String> {
+    fn fault(&self) -> Option<SettingFault> {
         let near = self.position.abs().max_element() <= 1e5 && self.position.is_finite();
         let sound = near && self.yaw_deg.abs() <= 1e6 && (1e-3..=1e3).contains(&self.scale);
-        (!sound).then(|| "a plant stands within 100 km, 0.001 to 1000 times its size".into())
+        (!sound).then_some(SettingFault::Place)
     }
 }
 
@@ -100,16 +100,16 @@ impl Default for Settings {
 }
 
 impl Settings {
-    fn edits_fault(&self) -> Option<String> {
+    fn edits_fault(&self) -> Option<SettingFault> {
         if !self.edits.is_empty() && !self.maker.branches() {
-            return Some(format!("a {} has no branches to edit by hand", self.maker.word()));
+            return Some(SettingFault::NoBranches { maker: self.maker.word() });
         }
         if self.edits.len() > MAX_EDITS {
-            return Some(format!("a plant has at most {MAX_EDITS} edits by hand; remove some"));
+            return Some(SettingFault::Edits);
         }
         let fault = |(row, e): (usize, &PlantEdit)| Some((row, e.edit.check().err()?));
         let (row, why) = self.edits.iter().enumerate().find_map(fault)?;
-        Some(format!("edit {row} by hand: {why}"))
+        Some(SettingFault::Edit { row, why: why.to_string() })
     }
 
     /// The settings of a sketch; `None` for other makers.
@@ -217,7 +217,7 @@ impl Default for Document {
 }
 
 /// Something that is wrong with a document.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DocumentFault {
     /// Two strokes have one name.
@@ -245,14 +245,14 @@ pub enum DocumentFault {
     #[error("there are more than {MAX_PLANTS} plants")]
     Plants,
     /// A setting is out of its range.
-    #[error("{0}")]
-    Setting(String),
+    #[error(transparent)]
+    Setting(#[from] SettingFault),
 }
 
 /// Longest name of a plant, in characters.
 pub(crate) const NAME_LENGTH: usize = 200;
 /// Most edits by hand of a plant.
-const MAX_EDITS: usize = 1000;
+pub(crate) const MAX_EDITS: usize = 1000;
 /// Most plants of a scene.
 pub(crate) const MAX_PLANTS: usize = 200;
 
@@ -380,7 +380,7 @@ pub(crate) fn sound(mut stroke: Stroke) -> Option<Stroke> {
     (!stroke.samples.is_empty()).then_some(stroke)
 }
 
-/// The first setting that is out of its range, as a sentence with what to do; `None` if all are sound.
-pub fn range_fault(settings: &Settings) -> Option<String> {
+/// The first setting that is out of its range, `None` if all are sound.
+pub fn range_fault(settings: &Settings) -> Option<SettingFault> {
     settings.maker.fault().or_else(|| settings.placement.fault()).or_else(|| settings.edits_fault())
 }

@@ -96,7 +96,13 @@ fn refusals_say_what_and_what_to_do() {
             edited(r#"{"tree":{"spec":{}}}"#, r#"{"op":"explode","axis":{"path":[0]}}"#),
             "unknown variant `explode`",
         ),
-        (edited(r#"{"flower":{}}"#, r#"{"op":"prune","axis":{"path":[0]}}"#), "a flower has no branches"),
+        (
+            edited(
+                r#"{"leaf":{"file":"m","data":"","settings":{}}}"#,
+                r#"{"op":"prune","axis":{"path":[0]}}"#,
+            ),
+            "a leaf has no branches",
+        ),
         (scene(r#"{"flower":{}}"#, r#","scale":0"#), "100 km"),
         (scene(r#"{"flower":{}}"#, r#","position":[1e9,0,0]"#), "100 km"),
     ] {

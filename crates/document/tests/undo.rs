@@ -4,10 +4,9 @@ use std::sync::Arc;
 
 use base::Seed;
 use document::{
-    Command, CommandError, Document, Editor, FlowerCommand, FlowerSettings, LeafCommand, LeafData,
-    LeafSettings, Maker, NamedObstacle, NewPlant, NewStroke, Photo, PhotoPlace, Placement, PlantCommand,
-    PlantId, SceneCommand, Settings, ShapeCommand, SketchCommand, StrokeId, TreeCommand, read_project,
-    write_project,
+    Command, CommandError, Document, Editor, FlowerCommand, FlowerSettings, LeafCommand, LeafData, Maker,
+    NamedObstacle, NewPlant, NewStroke, Photo, PhotoPlace, Placement, PlantCommand, PlantId, SceneCommand,
+    Settings, ShapeCommand, SketchCommand, StrokeId, TreeCommand, read_project, write_project,
 };
 use glam::{DVec2, DVec3};
 use growth::{Obstacle, TreeSpec};
@@ -104,7 +103,7 @@ fn leaf_command() -> impl Strategy<Value = LeafCommand> {
         (".{0,300}", ".{0,30}")
             .prop_map(|(name, text)| LeafCommand::SetData(LeafData { name, text: text.into() })),
         (-2.0..2.0f64, 0..70u32).prop_map(|(curl, sides)| {
-            LeafCommand::Set(Box::new(LeafSettings { curl, sides, ..LeafSettings::default() }))
+            LeafCommand::Set(Box::new(leaf::LeafSpec { curl, sides, ..leaf::LeafSpec::default() }))
         }),
     ]
 }
@@ -417,10 +416,13 @@ fn edits_by_hand_are_steps_with_names_and_are_checked_at_the_door() {
     }
     assert!(edits(&editor).is_empty());
     // What has no branches takes none.
-    let settings = Settings { maker: Maker::Flower(Box::default()), ..Settings::default() };
-    editor.run(SceneCommand::Add(Box::new(NewPlant { settings, strokes: vec![] }))).unwrap();
+    for maker in [Maker::Leaf(Box::default()), Maker::Flower(Box::default())] {
+        let settings = Settings { maker, ..Settings::default() };
+        editor.run(SceneCommand::Add(Box::new(NewPlant { settings, strokes: vec![] }))).unwrap();
+    }
     let refused = editor.run(ShapeCommand::Add(cut(0.0)).of(PlantId(1)));
-    assert_eq!(refused, Err(CommandError::OtherMaker { wanted: "plant with branches", found: "flower" }));
+    assert_eq!(refused, Err(CommandError::OtherMaker { wanted: "plant with branches", found: "leaf" }));
+    editor.run(ShapeCommand::Add(cut(0.0)).of(PlantId(2))).unwrap();
 }
 
 #[test]

@@ -96,6 +96,6 @@ mod tests {
     fn one_point_a_cube_is_the_middle_one() {
         let p = [0.1, 0.2, 0.25, 5.2, 0.9].map(DVec3::splat);
         assert_eq!(one_a_cube(&p, 1.0), [2, 3]);
-        assert_eq!(one_a_cube(&[DVec3::NAN], 1.0), []);
+        assert_eq!(one_a_cube(&[DVec3::NAN], 1.0), Vec::<u32>::new());
     }
 }

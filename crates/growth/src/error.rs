@@ -207,13 +207,19 @@ base::coded!(GrowthError {
     Self::NoRoots => "no-roots" {},
     Self::Root { root } => "root-far" { root },
     Self::RootInObstacle { root, obstacle } => "root-in-obstacle" { root, obstacle },
-    Self::Obstacle { name, fault, .. } => "obstacle" { name, why = fault },
+    Self::Obstacle { name, fault, .. } => "obstacle" { name, why = fault => GrowthError },
     Self::Nothing { why } => "nothing-grew" { why },
-    Self::Mesh(why) => "mesh" { why },
+    Self::Mesh(why) => "mesh" { why => MeshFault },
     Self::Lsystem(why) => "lsystem" { why },
     Self::NoRoom { found, wanted, .. } => "no-room" { found, wanted },
 } wraps {
     Self::Range(e) => e, spec::RangeFault;
     Self::Cancelled(e) => e, Cancelled;
     Self::OverBudget(e) => e, base::OverBudget;
+});
+
+base::coded!(MeshFault {
+    Self::Empty => "mesh-empty" {},
+    Self::Index { triangle, vertex, vertices } => "mesh-index" { triangle, vertex, vertices },
+    Self::Vertex { vertex } => "mesh-vertex" { vertex },
 });

@@ -5,80 +5,7 @@ use glam::DVec3;
 use plant::{Chart, SplineBlade, Vein, Venation};
 
 use crate::marks::{FullMarks, MARKS_A_ROW};
-
-/// Which surface is laid through or near the marks (Wang et al. 2011, section 2.2).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub enum SurfaceKind {
-    /// One polynomial of the marks as controls: smooth, far from the marks.
-    Bezier,
-    /// A bicubic B-spline of the marks as controls: smooth, near the marks.
-    Approximate,
-    /// A bicubic B-spline through all marks: keeps the folds of the blade.
-    #[default]
-    Interpolate,
-    /// As `Approximate`, drawn towards the marks on thick veins.
-    Nurbs,
-}
-
-impl SurfaceKind {
-    /// All kinds, in the paper's order.
-    pub const ALL: [Self; 4] = [Self::Bezier, Self::Approximate, Self::Interpolate, Self::Nurbs];
-
-    /// The word used in files, options and reports.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Bezier => "bezier",
-            Self::Approximate => "approximate",
-            Self::Interpolate => "interpolate",
-            Self::Nurbs => "nurbs",
-        }
-    }
-}
-
-/// What a measured thickness is to its vein's ball.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ThicknessRule {
-    /// A calliper's reading: the ball's diameter.
-    #[default]
-    Diameter,
-    /// The ball's radius, as the paper's formulas take it.
-    Radius,
-}
-
-/// Which parameters an interpolating side vein has.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum VeinParameters {
-    /// Those of the blade, so that the vein lies on it.
-    #[default]
-    Shared,
-    /// The chord lengths of its own marks, as the paper has them: vein and blade meet at the marks only.
-    Own,
-}
-
-/// How a leaf is made of its marks.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LeafSpec {
-    /// The blade's surface.
-    pub surface: SurfaceKind,
-    /// What a measured thickness is.
-    pub thickness: ThicknessRule,
-    /// Parameters of interpolating veins.
-    pub parameters: VeinParameters,
-    /// Weight of the thickest vein's mark for [`SurfaceKind::Nurbs`], 1 to 100; the margin has 1. Default 4.
-    pub vein_weight: f64,
-}
-
-impl Default for LeafSpec {
-    fn default() -> Self {
-        Self {
-            surface: SurfaceKind::default(),
-            thickness: ThicknessRule::default(),
-            parameters: VeinParameters::default(),
-            // 4: the blade visibly follows the midrib, and folds beside it stay soft.
-            vein_weight: 4.0,
-        }
-    }
-}
+use crate::spec::{LeafSpec, SurfaceKind, ThicknessRule, VeinParameters};
 
 /// A leaf as curves and a surface.
 ///
@@ -213,7 +140,7 @@ struct Grid {
 
 impl Grid {
     fn new(marks: &FullMarks, spec: &LeafSpec) -> Self {
-        let radius = match spec.thickness {
+        let radius = match spec.thickness.unwrap_or_default() {
             ThicknessRule::Diameter => 0.5,
             ThicknessRule::Radius => 1.0,
         };
@@ -287,7 +214,7 @@ mod tests {
     #[test]
     fn thickness_as_radius_doubles_the_veins() {
         let thin = Leaf::new(&full(4), &LeafSpec::default()).unwrap();
-        let spec = LeafSpec { thickness: ThicknessRule::Radius, ..LeafSpec::default() };
+        let spec = LeafSpec { thickness: Some(ThicknessRule::Radius), ..LeafSpec::default() };
         let thick = Leaf::new(&full(4), &spec).unwrap();
         let r = |l: &Leaf| l.midrib.curve.ball(0.4).radius;
         assert!((r(&thick) - 2.0 * r(&thin)).abs() < 1e-15);

@@ -3,8 +3,9 @@
 use base::ops;
 use glam::DVec3;
 
-use crate::blade::{Leaf, LeafSpec, ThicknessRule};
+use crate::blade::Leaf;
 use crate::marks::{FullMarks, FullRow, MARKS_A_ROW, MarksError};
+use crate::spec::{LeafSpec, ThicknessRule};
 
 /// A leaf measured on several days.
 ///
@@ -200,7 +201,7 @@ fn with_rows(marks: FullMarks, rows: usize) -> FullMarks {
     if have == rows {
         return marks;
     }
-    let spec = LeafSpec { thickness: ThicknessRule::Radius, ..LeafSpec::default() };
+    let spec = LeafSpec { thickness: Some(ThicknessRule::Radius), ..LeafSpec::default() };
     let Ok(leaf) = Leaf::new(&marks, &spec) else { return marks };
     let places = leaf.blade.rows_at();
     let radii = |i: usize, j: usize| marks.rows[have - 1 - i.min(have - 1)].thickness[j];

@@ -27,8 +27,9 @@ mod pose;
 mod profile;
 mod rays;
 mod scan;
+mod spec;
 
-pub use blade::{Leaf, LeafSpec, SurfaceKind, ThicknessRule, VeinParameters};
+pub use blade::Leaf;
 pub use graph::{GraphError, VeinGraph};
 pub use growth::{LeafGrowth, StagesError};
 pub use marks::{FullMarks, FullRow, MARKS_A_ROW, MarkRow, Marks, MarksError};
@@ -36,3 +37,4 @@ pub use pose::Pose;
 pub use profile::{LeafProfile, ProfileError};
 pub use rays::{PalmateSpec, ParallelSpec, Ray, RayLeaf, Rays, RaysError};
 pub use scan::{ScanError, ScanLeaf, ScanSpec, fit_scan};
+pub use spec::{LeafPaint, LeafSpec, SurfaceKind, ThicknessRule, VeinParameters};

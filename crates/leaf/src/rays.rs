@@ -7,7 +7,7 @@ use geom::{NaturalCubic, SplineError, SplineSurface, subdivided};
 use glam::DVec3;
 use plant::{Chart, SplineBlade, Vein, VeinShade, Venation};
 
-use crate::blade::ThicknessRule;
+use crate::spec::ThicknessRule;
 
 /// Lines of marks that all run from the base of the leaf towards its margin.
 ///
@@ -365,6 +365,17 @@ impl RayLeaf {
         SplineBlade { surface, middle: 0.5 * (a + b), veins, chart, form: 0 }
     }
 }
+
+base::coded!(RaysError {
+    Self::TooFew { rays, marks } => "veins-too-few" { rays, marks },
+    Self::Unequal { ray, got, wanted } => "veins-unequal" { ray, got, wanted },
+    Self::NotFinite { ray, mark } => "veins-not-finite" { ray, mark },
+    Self::Thickness { ray, mark, value } => "veins-thickness" { ray, mark, value },
+    Self::Repeated { ray, mark } => "veins-repeated" { ray, mark },
+    Self::NoVein => "veins-none" {},
+} wraps {
+    Self::Spline(e) => e, SplineError;
+});
 
 #[cfg(test)]
 mod tests {

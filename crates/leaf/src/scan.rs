@@ -713,6 +713,14 @@ fn marks_of(grid: &[DVec3], columns: usize, stalk: Option<&BallBSpline>) -> Mark
     marks
 }
 
+base::coded!(ScanError {
+    Self::TooFew(points) => "scan-too-few" { points },
+    Self::TooMany(points, most) => "scan-too-many" { points, most },
+    Self::Spline(why) => "scan-surface" { why => SplineError },
+} wraps {
+    Self::Cancelled(e) => e, base::Cancelled;
+});
+
 #[cfg(test)]
 mod tests {
     use base::{Draw, Seed, ops};

@@ -97,10 +97,8 @@ pub(crate) fn sheet_mesh(sheet: &Sheet, spec: &LeafMeshSpec, detail: f64) -> Sha
         return out;
     }
     out.add_veins(&sheet.veins, 1, spec);
-    let step =
-        if detail < 1.0 { crate::spec::whole((1.0 / detail).sqrt().round()).max(1) as usize } else { 1 };
     let columns = sheet.across.len();
-    let (across, along) = (kept(columns, step), kept(sheet.along.len(), step));
+    let (across, along) = (kept(columns, detail), kept(sheet.along.len(), detail));
     let mut thin = Sheet {
         points: Vec::with_capacity(across.len() * along.len()),
         across: across.iter().map(|&j| sheet.across[j]).collect(),
@@ -125,13 +123,13 @@ pub(crate) fn sheet_mesh(sheet: &Sheet, spec: &LeafMeshSpec, detail: f64) -> Sha
     out
 }
 
-/// Every `step`-th of `n` rows, and the last.
-fn kept(n: usize, step: usize) -> Vec<usize> {
-    let mut rows: Vec<usize> = (0..n).step_by(step).collect();
-    if let Some(last) = n.checked_sub(1).filter(|last| rows.last() != Some(last)) {
-        rows.push(last);
-    }
-    rows
+/// As many of `n` rows, evenly, that triangles are in proportion to `detail`; all from 1 on. The first and the last stay.
+fn kept(n: usize, detail: f64) -> Vec<usize> {
+    let Some(last) = n.checked_sub(1) else { return Vec::new() };
+    #[expect(clippy::cast_precision_loss, reason = "rows of a blade")]
+    let spans = crate::spec::whole((last as f64 * detail.clamp(0.0, 1.0).sqrt()).round()) as usize;
+    let spans = spans.clamp(1, last.max(1));
+    (0..=spans.min(last)).map(|k| (k * last + spans / 2) / spans).collect()
 }
 
 impl ShapeMesh {

@@ -77,6 +77,27 @@ pub fn check<T: Spec>(value: &T) -> Result<(), RangeFault> {
     value.serialize(look).map(|_| ()).or_else(|Stop(fault)| fault.map_or(Ok(()), |f| Err(*f)))
 }
 
+/// The least and the most that the schema allows in a field, `leaf.fold` in dots; `None` for a field that is not there
+/// or is not bounded both ways.
+///
+/// ```
+/// #[derive(Default, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
+/// struct Pot {
+///     #[schemars(range(min = 0.5, max = 2.0))]
+///     height_m: Option<f64>,
+/// }
+/// spec::schemas!(Pot);
+/// assert_eq!(spec::range::<Pot>("height_m"), Some([0.5, 2.0]));
+/// assert_eq!(spec::range::<Pot>("width_m"), None);
+/// ```
+pub fn range<T: Spec>(path: &str) -> Option<[f64; 2]> {
+    let root = T::schema();
+    let field = |at, name| found(root, at, &|s: &'static Value| s.get("properties")?.get(name));
+    let at = path.split('.').try_fold(root, field)?;
+    let limit = |name| found(root, at, &|s| s.get(name)?.as_f64());
+    Some([limit("minimum")?, limit("maximum")?])
+}
+
 /// The way from the root to a value, on the stack.
 enum Trail<'a> {
     Root,

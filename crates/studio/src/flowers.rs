@@ -3,9 +3,7 @@
 use base::{Report, Run, Seed, Stopped};
 use bloom::{FlowerSpec, GrowthLaw};
 use document::PlantEdit;
-use mesh::Model;
-use plant::Plant;
-use skin::{KeptShapes, SkinSpec};
+use skin::SkinSpec;
 
 use crate::made::MadePlant;
 use crate::shaping::shaped;
@@ -39,27 +37,17 @@ pub fn make_flower(
     name.clone_into(&mut plant.name);
     let (plant, edits) = shaped(plant, &options.edits, run)?;
     run.cancel.check()?;
-    let skin = SkinSpec { textures: false, variation: 0.0, ..options.skin.clone() };
-    let model = report.stage("mesh", run.clock, |_| steady(&plant, skin, spec.size_m(), None, run));
+    debug_assert_eq!(plant.validate().next(), None, "a sound plant");
+    let steady_m = Some(spec.size_m());
+    let skin = SkinSpec { textures: false, variation: 0.0, steady_m, ..options.skin.clone() };
+    let model = report.stage("mesh", run.clock, |_| skin::skin(&plant, &skin, run));
     let mut model = model?;
     for stem in model.materials.iter_mut().filter(|m| m.name == "stem") {
         stem.base_color = [0.16, 0.32, 0.07];
     }
-    let mut made = MadePlant::new(plant, model, (edits, &options.edits), &report);
+    let mut made = MadePlant::new(plant, (model, skin), (edits, &options.edits), &report);
     made.item.plant = Some(made.plant.measure());
     Ok(made)
-}
-
-/// The meshes of a plant that is one of several days; `size_m`: how large it is in full bloom.
-pub(crate) fn steady(
-    plant: &Plant,
-    skin: SkinSpec,
-    size_m: f64,
-    kept: Option<&mut KeptShapes>,
-    run: &Run<'_>,
-) -> Result<Model, Stopped> {
-    debug_assert_eq!(plant.validate().next(), None, "a sound plant");
-    skin::skin_again(plant, &SkinSpec { steady_m: Some(size_m), ..skin }, None, kept, run)
 }
 
 #[cfg(test)]
@@ -83,7 +71,7 @@ mod tests {
                 assert_eq!(made.plant.validate().next(), None, "{name} at {day}");
                 assert_eq!(made.model.validate().next(), None, "{name} at {day}");
                 let triangles =
-                    |m: &Model| m.parts.iter().map(|p| p.mesh.triangles.clone()).collect::<Vec<_>>();
+                    |m: &mesh::Model| m.parts.iter().map(|p| p.mesh.triangles.clone()).collect::<Vec<_>>();
                 assert!(triangles(&made.model) == triangles(&first.model), "{name} at {day}");
                 assert_eq!(made.item.counts, first.item.counts, "{name} at {day}");
             }

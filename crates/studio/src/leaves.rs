@@ -5,38 +5,24 @@ use std::sync::Arc;
 use base::{Cancelled, Counted, OverBudget, Report, Run, Seed, Stopped, ops};
 use document::PlantEdit;
 use geom::SplineError;
-use leaf::{FullMarks, Leaf, LeafSpec, Marks, MarksError, Pose, RaysError, ScanError};
+use leaf::{FullMarks, Leaf, LeafPaint, LeafSpec, Marks, MarksError, RaysError, ScanError};
 use mesh::{Model, Texture, TriMesh};
 use plant::{Frame, NodeId, Organ, OrganKind, Paint, Plant, Shape, ShapeId, SplineBlade};
-use skin::{KeptShapes, LeafColours, ShapeMesh, SkinSpec};
+use skin::{KeptShapes, LeafColours, LeafMeshSpec, ShapeMesh, SkinSpec};
 
 use crate::made::MadePlant;
 use crate::report::{FaceCounts, LeafFit, LeafReport};
 use crate::shaping::shaped;
 
-/// What the blade's colour is.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub enum LeafTexture {
-    /// One green.
-    Plain,
-    /// Painted by the distance from the veins.
-    #[default]
-    Veins,
-    /// A picture of the pressed leaf, cropped to its box, tip at the top.
-    Picture(Arc<Texture>),
-}
-
-/// Everything that is asked of a leaf.
+/// What is asked of a leaf beside its spec.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LeafOptions {
-    /// Surface, thickness, parameters.
+    /// Surface, veins, resolution, curl, wilt, colour.
     pub spec: LeafSpec,
-    /// How the leaf is meshed: resolution and rings (`leaf`), `detail`, `wind`. Textures are those of `texture`.
+    /// How the plant is meshed: `detail`, `wind`. What the spec says of the blade is taken from there.
     pub skin: SkinSpec,
-    /// Curl and wilt.
-    pub pose: Pose,
-    /// Colour.
-    pub texture: LeafTexture,
+    /// A picture of the pressed leaf in the place of the spec's colour, cropped to its box, tip at the top.
+    pub picture: Option<Arc<Texture>>,
     /// Side veins on either side of a chief vein in each lobe of a palmate leaf, 0 to 12; made by rule.
     pub side_veins: u32,
     /// Edits by hand, done on the plant in this order.
@@ -100,7 +86,7 @@ pub fn make_leaf(
 
 /// As [`make_leaf`], from marks that are complete, adding to what was reported before.
 ///
-/// The marks as they were meshed are those of [`Pose::apply`].
+/// The marks as they were meshed are those of [`LeafSpec::pose`].
 ///
 /// # Errors
 /// [`LeafError`].
@@ -112,8 +98,8 @@ pub fn make_leaf_of(
     run: &Run<'_>,
     mut report: Report,
 ) -> Result<MadePlant, LeafError> {
-    run.budget.check(Counted::Triangles, options.skin.leaf.triangles(marks.rows.len()), COARSER)?;
-    let marks = options.pose.apply(marks);
+    run.budget.check(Counted::Triangles, options.mesh().triangles(marks.rows.len()), COARSER)?;
+    let marks = options.spec.pose().apply(marks);
     let leaf = report.stage("structure", run.clock, |_| Leaf::new(&marks, &options.spec))?;
     run.cancel.check()?;
     let texture = report.stage("mesh", run.clock, |_| leaf_texture(&leaf, options, seed, run));
@@ -155,11 +141,12 @@ pub(crate) fn finish(
     debug_assert_eq!(plant.validate().next(), None, "a sound plant");
     let (plant, edits) = shaped(plant, &options.edits, run)?;
     let mut kept = KeptShapes::default();
-    let spec = SkinSpec { textures: false, variation: 0.0, ..options.skin.clone() };
+    let skin = options.skin.clone();
+    let spec = SkinSpec { leaf: options.mesh(), textures: false, variation: 0.0, ..skin };
     let skinned =
         report.stage("mesh", run.clock, |_| skin::skin_again(&plant, &spec, None, Some(&mut kept), run));
     let mut model = skinned?;
-    dress(&mut model, textures, options.pose.wilt);
+    dress(&mut model, textures, options.spec.wilt);
     let mesh = kept.get(ShapeId::new(0)).cloned().unwrap_or_default();
     if mesh.crossing > 0 {
         report.warn(
@@ -176,7 +163,7 @@ pub(crate) fn finish(
             format!("{} rings lie inside their neighbours' balls and were drawn to a point", mesh.swallowed),
         );
     }
-    Ok((MadePlant::new(plant, model, (edits, &options.edits), report), mesh))
+    Ok((MadePlant::new(plant, (model, spec), (edits, &options.edits), report), mesh))
 }
 
 pub(crate) fn leaf_texture(
@@ -185,15 +172,14 @@ pub(crate) fn leaf_texture(
     seed: Seed,
     run: &Run<'_>,
 ) -> Option<Arc<Texture>> {
-    match &options.texture {
-        LeafTexture::Plain => None,
-        LeafTexture::Picture(picture) => Some(picture.clone()),
-        LeafTexture::Veins => {
-            let colours = LeafColours::default().wilted(options.pose.wilt);
-            let flat = leaf.blade().flat(options.skin.leaf.subdivisions);
-            Some(Arc::new(skin::vein_texture(&flat, &colours, 768, seed, run.executor)))
-        }
+    if let Some(picture) = &options.picture {
+        return Some(Arc::clone(picture));
     }
+    (options.spec.texture == LeafPaint::Veins).then(|| {
+        let colours = LeafColours::default().wilted(options.spec.wilt);
+        let flat = leaf.blade().flat(options.spec.subdivisions as usize);
+        Arc::new(skin::vein_texture(&flat, &colours, 768, seed, run.executor))
+    })
 }
 
 /// Gives the surfaces of a plant of measured leaves what they are made of.
@@ -218,12 +204,24 @@ fn dress(model: &mut Model, textures: &[Option<Arc<Texture>>], wilt: f64) {
 }
 
 impl LeafOptions {
+    /// How finely blade and veins are meshed.
+    pub(crate) fn mesh(&self) -> LeafMeshSpec {
+        let LeafSpec { rings, subdivisions, sides, caps, margin_vein, .. } = self.spec;
+        LeafMeshSpec {
+            subdivisions: subdivisions as usize,
+            sides: sides as usize,
+            rings,
+            caps,
+            margin: margin_vein,
+        }
+    }
+
     /// What a leaf is painted in that is lighter or darker by `tint`: a texture has its colours, else it is of one.
     pub(crate) fn paint(&self, tint: [f32; 3]) -> Paint {
-        if self.texture != LeafTexture::Plain {
+        if self.picture.is_some() || self.spec.texture == LeafPaint::Veins {
             return Paint::Natural(tint);
         }
-        let plain = LeafColours::default().wilted(self.pose.wilt).blade.map(linear_of);
+        let plain = LeafColours::default().wilted(self.spec.wilt).blade.map(linear_of);
         Paint::Tinted([0, 1, 2].map(|k| plain[k] * tint[k]))
     }
 }
@@ -262,7 +260,7 @@ fn leaf_report(marks: &FullMarks, leaf: &Leaf, meshes: &ShapeMesh, options: &Lea
 
 /// Rings that the exact surface of the veins swallows; plain rings are not asked.
 pub(crate) fn swallowed(options: &LeafOptions, meshes: &ShapeMesh) -> Option<u64> {
-    (options.skin.leaf.rings == geom::RingRule::Envelope).then_some(meshes.swallowed as u64)
+    (options.spec.rings == geom::RingRule::Envelope).then_some(meshes.swallowed as u64)
 }
 
 /// The area of a mesh, square metres.
@@ -272,9 +270,9 @@ pub(crate) fn area(mesh: &TriMesh) -> f64 {
 }
 
 base::coded!(LeafError {
-    Self::Spline(why) => "leaf-surface" { why },
-    Self::Rays(why) => "leaf-veins" { why },
-    Self::Scan(why) => "leaf-scan" { why },
+    Self::Spline(why) => "leaf-surface" { why => SplineError },
+    Self::Rays(why) => "leaf-veins" { why => RaysError },
+    Self::Scan(why) => "leaf-scan" { why => ScanError },
     Self::NoLeaves => "no-leaves" {},
 } wraps {
     Self::Marks(e) => e, MarksError;
@@ -284,7 +282,6 @@ base::coded!(LeafError {
 #[cfg(test)]
 mod tests {
     use leaf::ScanSpec;
-    use skin::LeafMeshSpec;
 
     use super::*;
     use crate::{ShootSpec, leaf_blade, make_leaf_from_scan, make_shoot};
@@ -305,8 +302,8 @@ mod tests {
         let want = [(1, 3610, 3500, 1581, 1500), (2, 6130, 5950, 2666, 2550), (3, 5050, 4900, 2201, 2100)];
         for (k, veins, quads, blade, cells) in want {
             for surface in leaf::SurfaceKind::ALL {
-                let spec = LeafSpec { surface, ..LeafSpec::default() };
-                let options = LeafOptions { spec, texture: LeafTexture::Plain, ..LeafOptions::default() };
+                let spec = LeafSpec { surface, texture: LeafPaint::Plain, ..LeafSpec::default() };
+                let options = LeafOptions { spec, ..LeafOptions::default() };
                 let made =
                     make_leaf("t", &read(k).to_marks(), &options, Seed::new(1), &Run::plain()).unwrap();
                 let about = made.item.leaf.unwrap();
@@ -332,10 +329,7 @@ mod tests {
         let forms = [read(1), read(3)];
         let spec = ShootSpec { leaves: 7, ..ShootSpec::default() };
         let options = LeafOptions {
-            skin: SkinSpec {
-                leaf: LeafMeshSpec { subdivisions: 2, sides: 5, ..LeafMeshSpec::default() },
-                ..SkinSpec::default()
-            },
+            spec: LeafSpec { subdivisions: 2, sides: 5, ..LeafSpec::default() },
             ..LeafOptions::default()
         };
         let run = Run::plain();

@@ -42,7 +42,7 @@ pub use base::{
 pub use evaluate::{Evaluator, FrontView, make_from_sketch};
 pub use flowers::{FlowerOptions, make_flower};
 pub use leaf_blade::leaf_blade;
-pub use leaves::{LeafError, LeafOptions, LeafTexture, make_leaf, make_leaf_of};
+pub use leaves::{LeafError, LeafOptions, make_leaf, make_leaf_of};
 pub use made::{Made, MadePlant};
 pub use make::{ClassOverrides, MakeError, SketchOptions};
 pub use motion::{cloud_model, motion_model};

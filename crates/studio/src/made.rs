@@ -1,10 +1,11 @@
 //! What makers give: a plant, its meshes, its entry of the report.
 
-use base::{Digest, Report};
+use base::{Digest, Report, Run, Stopped};
 use document::PlantEdit;
 use mesh::Model;
 use plant::Plant;
 use reading::Reading;
+use skin::SkinSpec;
 
 use crate::report::{Counts, ItemReport, TimingsMs};
 use crate::shaping::EditReport;
@@ -29,15 +30,26 @@ pub struct MadePlant {
     pub plant: Plant,
     /// Its meshes and materials.
     pub model: Model,
+    /// How it was meshed.
+    pub(crate) skin: SkinSpec,
     /// The report's entry; `output` and the times of reading and writing are the shell's to fill.
     pub item: ItemReport,
 }
 
 impl MadePlant {
+    /// A coarser copy of the meshes, with the same materials: each level has about half of the triangles of the one
+    /// before, and every organ.
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub fn at_level(&self, level: u32, run: &Run<'_>) -> Result<Model, Stopped> {
+        coarse(&self.plant, &self.skin, &self.model, level, run)
+    }
+
     /// With an entry that tells counts, times, digest, warnings, and what became of the edits that were asked for.
     pub(crate) fn new(
         plant: Plant,
-        model: Model,
+        (model, skin): (Model, SkinSpec),
         (edits, asked): (Vec<EditReport>, &[PlantEdit]),
         report: &Report,
     ) -> Self {
@@ -58,6 +70,26 @@ impl MadePlant {
             edits,
             ..ItemReport::default()
         };
-        Self { plant, model, item }
+        Self { plant, model, skin, item }
     }
+}
+
+/// A plant with a half of the triangles for each level, with the materials of `fine`.
+pub(crate) fn coarse(
+    plant: &Plant,
+    skin: &SkinSpec,
+    fine: &Model,
+    level: u32,
+    run: &Run<'_>,
+) -> Result<Model, Stopped> {
+    let level = level.min(6);
+    let detail = skin.detail / f64::from(1_u32 << level);
+    let sides = skin.sides.saturating_sub(2 * level).max(3);
+    let mut model = skin::skin(plant, &SkinSpec { detail, sides, ..skin.clone() }, run)?;
+    for material in &mut model.materials {
+        if let Some(same) = fine.materials.iter().find(|m| m.name == material.name) {
+            *material = same.clone();
+        }
+    }
+    Ok(model)
 }

@@ -11,8 +11,8 @@ use plant::{Flower, FlowerId, Organ, OrganKind, Plant, Shape};
 use skin::{KeptShapes, SkinSpec};
 
 use crate::evaluate::make_from_sketch;
-use crate::flowers::steady;
 use crate::leaves::linear_of;
+use crate::made::coarse;
 use crate::make::{MakeError, SketchOptions};
 use crate::report::ItemReport;
 
@@ -139,8 +139,21 @@ impl OpeningPlant {
             plant.organs[first..].iter_mut().for_each(|o| o.flower = Some(placed.flower));
             overlap = overlap.max(bloom::petal_overlap(&plant, Some(placed.flower)));
         }
-        let model = steady(&plant, self.skin.clone(), self.size_m, Some(&mut self.kept), run)?;
+        debug_assert_eq!(plant.validate().next(), None, "a sound plant");
+        let model = skin::skin_again(&plant, &self.steady(), None, Some(&mut self.kept), run)?;
         Ok(OpenedPlant { plant, model, overlap })
+    }
+
+    /// A coarser copy of the meshes of one day, with the same materials: about half of the triangles a level.
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub fn at_level(&self, open: &OpenedPlant, level: u32, run: &Run<'_>) -> Result<Model, Stopped> {
+        coarse(&open.plant, &self.steady(), &open.model, level, run)
+    }
+
+    fn steady(&self) -> SkinSpec {
+        SkinSpec { steady_m: Some(self.size_m), ..self.skin.clone() }
     }
 }
 

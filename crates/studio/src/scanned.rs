@@ -5,11 +5,10 @@ use std::sync::Arc;
 use base::{Report, Run, ops};
 use geom::{Ball, BallBSpline, SplineError};
 use glam::DVec3;
-use leaf::{ScanLeaf, ScanSpec};
+use leaf::{LeafPaint, LeafSpec, ScanLeaf, ScanSpec};
 use plant::{AxisKind, NodeId, Plant, Shape, Sheet, Vein, Venation};
-use skin::{LeafMeshSpec, SkinSpec};
 
-use crate::leaves::{LeafError, LeafOptions, LeafTexture, add_leaf, area, finish};
+use crate::leaves::{LeafError, LeafOptions, add_leaf, area, finish};
 use crate::made::MadePlant;
 use crate::report::{FaceCounts, LeafFit, LeafReport, ScanReport};
 
@@ -38,13 +37,12 @@ pub fn make_leaf_from_scan(
         colors: Vec::new(),
         veins: Venation { fine: vec![midrib(&found, &line)?], ..Venation::default() },
     };
-    let options = LeafOptions { texture: LeafTexture::Plain, ..LeafOptions::default() };
+    let spec = LeafSpec { texture: LeafPaint::Plain, caps: true, ..LeafSpec::default() };
+    let options = LeafOptions { spec, ..LeafOptions::default() };
     if let Some((sheet, frame)) = sheet.framed() {
         let shape = plant.add_shape(Shape::Sheet(Arc::new(sheet)));
         add_leaf(&mut plant, shape, frame, bearer, options.paint([1.0; 3]), 1);
     }
-    let leaf = LeafMeshSpec { caps: true, ..LeafMeshSpec::default() };
-    let options = LeafOptions { skin: SkinSpec { leaf, ..SkinSpec::default() }, ..options };
     let (mut made, mesh) = finish(plant, &[], &options, run, &mut report)?;
     let width = found.grid.chunks(n).map(geom::polyline_length3).fold(0.0, f64::max);
     let mut outline = found.outline();

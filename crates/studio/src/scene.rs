@@ -8,23 +8,23 @@ use std::sync::Arc;
 use base::{Cancelled, OverBudget, Report, Run, Seed, Stopped};
 use bloom::FlowerSettings;
 use document::{
-    Document, DocumentPlant, FlowerMaker, LeafData, LeafMaker, LeafPaint, LeafRings, LeafSettings,
-    LeafSurface, LeafThickness, Maker, Placement, PlantEdit, PlantId, SketchSettings, TreeSettings,
+    Document, DocumentPlant, Editor, FlowerMaker, LeafData, LeafMaker, Maker, Placement, PlantEdit, PlantId,
+    SketchCommand, SketchSettings, TreeSettings,
 };
 use formats::{LeafFileError, MarksAxes, read_marks, read_vein_graph};
-use geom::RingRule;
 use glam::{DQuat, DVec3};
 use growth::TreeSpec;
 use ink::Drawing;
-use leaf::{FullMarks, Pose, SurfaceKind, ThicknessRule, VeinParameters};
+use leaf::{FullMarks, LeafSpec, ThicknessRule};
 use mesh::{MaterialId, Model};
 use plant::Plant;
-use skin::{LeafMeshSpec, SkinSpec};
+use skin::SkinSpec;
 use spec::Spec;
 
 use crate::evaluate::{Evaluator, FrontView};
 use crate::flowers::{FlowerOptions, make_flower};
-use crate::leaves::{LeafError, LeafOptions, LeafTexture, make_leaf_of};
+use crate::leaves::{LeafError, LeafOptions, make_leaf_of};
+use crate::made::{MadePlant, coarse};
 use crate::make::{MakeError, SketchOptions};
 use crate::opening::{OpeningError, OpeningPlant};
 use crate::report::ItemReport;
@@ -64,6 +64,9 @@ pub enum SceneError {
     /// The plant whose leaf is borne has no leaf.
     #[error("the plant \"{0}\", whose leaf this one bears, has no leaf yet")]
     Lender(String),
+    /// A coarser copy was asked for of what is not made.
+    #[error("the plant \"{0}\" has not been made yet")]
+    NotMade(String),
     /// The user asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -116,6 +119,7 @@ base::coded!(SceneError {
     Self::NoMarks => "leaf-no-marks" {},
     Self::Species(name) => "no-species" { name },
     Self::Lender(name) => "lender-without-leaf" { name },
+    Self::NotMade(name) => "plant-not-made" { name },
 } wraps {
     Self::Sketch(e) => e, MakeError;
     Self::Opening(e) => e, OpeningError;
@@ -186,6 +190,8 @@ struct Made {
     model: Option<Model>,
     /// Of leaves, flowers and sketches whose flowers open.
     plant: Option<Plant>,
+    /// How leaves and flowers are meshed.
+    skin: SkinSpec,
     lent: Option<LeafTemplate>,
     revision: u64,
     done: Vec<&'static str>,
@@ -257,7 +263,7 @@ impl SceneEvaluator {
         let (name, seed) = (settings.name.as_str(), settings.seed);
         match &settings.maker {
             Maker::Tree(t) => made.grown((name, wind), t, leaf.as_ref(), &settings.edits, seed, run)?,
-            Maker::Leaf(l) => made.measured((name, wind), l, &settings.edits, seed, run)?,
+            Maker::Leaf(l) => made.measured((name, wind), l, seed, run)?,
             Maker::Flower(f) => made.flowered((name, wind), f, &settings.edits, seed, run)?,
             _ => {}
         }
@@ -326,6 +332,44 @@ impl SceneEvaluator {
             revision: made.revision,
             stages: &made.done,
         })
+    }
+
+    /// A coarser copy of a plant's last result for level `level` (1 to 6; 0 is the result itself), with the materials of
+    /// the finest. Trees lose leaves and twigs, others only triangles: about a half with each level, of drawings two
+    /// thirds.
+    ///
+    /// # Errors
+    /// [`SceneError`]; [`SceneError::NotMade`] for a plant without a result.
+    pub fn at_level(
+        &self,
+        plant: &DocumentPlant,
+        document: &Document,
+        level: u32,
+        run: &Run<'_>,
+    ) -> Result<Model, SceneError> {
+        let name = || SceneError::NotMade(plant.settings().name.clone());
+        let made = self.plants.get(&plant.id()).ok_or_else(name)?;
+        let shown = self.get(plant.id()).ok_or_else(name)?;
+        match &plant.settings().maker {
+            _ if level == 0 => Ok(shown.model.clone()),
+            Maker::Tree(_) => made.tree.at_level(level, run)?.ok_or_else(name),
+            Maker::Sketch(sketch) => {
+                let mut skin = sketch.skin.clone();
+                for _ in 0..level {
+                    skin.detail = (skin.detail / 3.0).max(0.1);
+                    skin.sides = (skin.sides / 2).max(3);
+                }
+                let mut editor = Editor::new(document.clone());
+                // A mesh that is as coarse as it can be stays as it is.
+                if editor.run(SketchCommand::SetSkin(skin).of(plant.id())).is_err() {
+                    return Ok(shown.model.clone());
+                }
+                let mut aside = self.aside([plant]);
+                aside.update(plant.id(), editor.document(), run)?;
+                aside.get(plant.id()).map(|made| made.model.clone()).ok_or_else(name)
+            }
+            _ => Ok(coarse(shown.plant.ok_or_else(name)?, &made.skin, shown.model, level, run)?),
+        }
     }
 
     /// The days of a plant whose flowers open: bud to full bloom, and from there to wilted.
@@ -419,17 +463,14 @@ impl Made {
         &mut self,
         (name, wind): (&str, bool),
         leaf: &LeafMaker,
-        edits: &[PlantEdit],
         seed: Seed,
         run: &Run<'_>,
     ) -> Result<(), SceneError> {
         let (marks, mut options) = leaf_input(leaf)?;
         options.skin.wind = wind;
-        options.edits = edits.to_vec();
         let made = make_leaf_of(name, &marks, &options, seed, run, Report::default())?;
-        (self.item, self.model, self.plant, self.lent) =
-            (made.item, Some(made.model), Some(made.plant), None);
-        self.done.push("mesh");
+        self.take(made);
+        self.lent = None;
         Ok(())
     }
 
@@ -447,9 +488,14 @@ impl Made {
         let mut options = FlowerOptions { edits: edits.to_vec(), ..FlowerOptions::default() };
         options.skin.wind = wind;
         let made = make_flower(name, &spec, (flower.settings.day, &law), &options, seed, run)?;
-        (self.item, self.model, self.plant) = (made.item, Some(made.model), Some(made.plant));
-        self.done.push("mesh");
+        self.take(made);
         Ok(())
+    }
+
+    fn take(&mut self, made: MadePlant) {
+        let MadePlant { plant, model, skin, item } = made;
+        (self.item, self.model, self.plant, self.skin) = (item, Some(model), Some(plant), skin);
+        self.done.push("mesh");
     }
 }
 
@@ -477,7 +523,7 @@ pub fn tree_settings(spec: &TreeSpec, preset: Option<&str>) -> TreeSettings {
 
 /// The JSON Schema of what can be set of a measured leaf.
 pub fn leaf_schema() -> &'static serde_json::Value {
-    LeafSettings::schema()
+    LeafSpec::schema()
 }
 
 /// The JSON Schema of what can be set of a flower.
@@ -494,7 +540,8 @@ fn leaf_input(leaf: &LeafMaker) -> Result<(FullMarks, LeafOptions), SceneError> 
     let LeafMaker { data, settings } = leaf;
     let (marks, in_file) = leaf_marks(data, settings.length_m)?;
     let full = marks.complete(&mut Report::default()).map_err(LeafError::from)?;
-    Ok((full, leaf_options(settings, in_file)))
+    let spec = LeafSpec { thickness: settings.thickness.or(in_file), ..settings.clone() };
+    Ok((full, LeafOptions { spec, ..LeafOptions::default() }))
 }
 
 /// The marks in a file of a leaf, and what its thickness is if it says so. `length_m`: of a vein graph in pixels.
@@ -518,45 +565,6 @@ pub fn leaf_marks(
     }
     let read = read_marks(data.text.as_bytes(), &data.name, MarksAxes::default())?;
     Ok((read.marks, read.thickness))
-}
-
-fn leaf_options(s: &LeafSettings, in_file: Option<ThicknessRule>) -> LeafOptions {
-    let asked = s.thickness.map(|t| match t {
-        LeafThickness::Diameter => ThicknessRule::Diameter,
-        LeafThickness::Radius => ThicknessRule::Radius,
-    });
-    LeafOptions {
-        spec: leaf::LeafSpec {
-            surface: match s.surface {
-                LeafSurface::Interpolate => SurfaceKind::Interpolate,
-                LeafSurface::Approximate => SurfaceKind::Approximate,
-                LeafSurface::Bezier => SurfaceKind::Bezier,
-                LeafSurface::Nurbs => SurfaceKind::Nurbs,
-            },
-            thickness: asked.or(in_file).unwrap_or_default(),
-            parameters: VeinParameters::default(),
-            vein_weight: s.vein_weight,
-        },
-        skin: SkinSpec {
-            leaf: LeafMeshSpec {
-                subdivisions: s.subdivisions as usize,
-                sides: s.sides as usize,
-                rings: match s.rings {
-                    LeafRings::Plain => RingRule::Plain,
-                    LeafRings::Envelope => RingRule::Envelope,
-                },
-                caps: s.caps,
-                margin: s.margin_vein,
-            },
-            ..SkinSpec::default()
-        },
-        pose: Pose { curl: s.curl, wilt: s.wilt, ..Pose::default() },
-        texture: match s.texture {
-            LeafPaint::Veins => LeafTexture::Veins,
-            LeafPaint::Plain => LeafTexture::Plain,
-        },
-        ..LeafOptions::default()
-    }
 }
 
 /// The models of a scene as one, each where it stands. Parts carry the name of their plant where there are several.

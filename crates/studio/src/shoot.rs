@@ -48,7 +48,7 @@ pub fn make_shoot(
     }
     let mut report = Report::default();
     let count = spec.leaves.clamp(1, 200);
-    let each = forms.iter().map(|form| options.skin.leaf.triangles(form.rows.len())).max().unwrap_or(0);
+    let each = forms.iter().map(|form| options.mesh().triangles(form.rows.len())).max().unwrap_or(0);
     run.budget.check(Counted::Triangles, each * u64::from(count), COARSER)?;
     let stem = stem(spec, seed)?;
     let mut textures = Vec::with_capacity(forms.len());
@@ -166,7 +166,7 @@ impl Place {
         let lift = DQuat::from_xyzw(ops::sin(0.5 * self.tilt), 0.0, 0.0, ops::cos(0.5 * self.tilt));
         let all = self.turn * lift * straight;
         let placed = form.map(|p| self.origin + all * ((p - root) * self.scale), |t| t * self.scale);
-        let curl = (options.pose.curl + self.curl).clamp(-1.0, 1.0);
-        Pose { curl, ..options.pose }.apply(&placed)
+        let curl = (options.spec.curl + self.curl).clamp(-1.0, 1.0);
+        Pose { curl, ..options.spec.pose() }.apply(&placed)
     }
 }

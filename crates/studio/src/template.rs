@@ -5,13 +5,13 @@ use std::sync::Arc;
 
 use base::{Run, Seed};
 use glam::{DMat3, DVec2, DVec3};
-use leaf::{FullMarks, Leaf, Rays};
+use leaf::{FullMarks, Leaf, LeafPaint, Rays};
 use mesh::{MaterialKind, Model, Texture, TriMesh};
 use plant::{Blade, FlatLeaf, Lift, OrganKind, Plant, Relief, Shape};
 use skin::LeafColours;
 
 use crate::leaf_blade::leaf_blade;
-use crate::leaves::{LeafError, LeafOptions, LeafTexture};
+use crate::leaves::{LeafError, LeafOptions};
 
 /// A leaf that other makers' plants bear: a blade of length 1 and, where there is one, its picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,20 +51,18 @@ impl LeafTemplate {
         seed: Seed,
         run: &Run<'_>,
     ) -> Result<Self, LeafError> {
-        let marks = options.pose.apply(marks);
+        let marks = options.spec.pose().apply(marks);
         let leaf = Leaf::new(&marks, &options.spec)?;
         run.cancel.check()?;
         let mut blade = leaf_blade(&leaf, &marks, 1.0);
         blade.outline = thinned(blade.outline);
         let flat = leaf.blade().flat(5);
-        let picture = match &options.texture {
-            LeafTexture::Plain => None,
-            LeafTexture::Picture(picture) => Some(picture.clone()),
-            LeafTexture::Veins => {
-                let colours = LeafColours::default().wilted(options.pose.wilt);
-                Some(Arc::new(skin::vein_texture(&flat, &colours, 512, seed, run.executor)))
-            }
+        let painted = || {
+            let colours = LeafColours::default().wilted(options.spec.wilt);
+            Arc::new(skin::vein_texture(&flat, &colours, 512, seed, run.executor))
         };
+        let veins = options.spec.texture == LeafPaint::Veins;
+        let picture = options.picture.clone().or_else(|| veins.then(painted));
         let scale = flat.midrib().last().map_or(1.0, |tip| tip.length()).max(f64::MIN_POSITIVE);
         let texture = picture.map(|p| Arc::new(charted(&p, &blade, |at| flat_uv(&flat, at * scale))));
         Ok(Self { blade, texture })

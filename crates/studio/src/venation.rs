@@ -24,7 +24,7 @@ pub fn make_ray_leaf(
 ) -> Result<MadePlant, LeafError> {
     let mut report = Report::default();
     let leaf = report.stage("structure", run.clock, |_| {
-        RayLeaf::new(rays, options.spec.thickness).map(|mut leaf| {
+        RayLeaf::new(rays, options.spec.thickness.unwrap_or_default()).map(|mut leaf| {
             leaf.add_side_veins(rays, options.side_veins as usize);
             leaf
         })
@@ -40,7 +40,7 @@ pub fn make_ray_leaf(
     let reach = apart.fold(0.02 * rays.length(), |reach, d| reach.min(0.3 * d)).max(1e-9);
     let shade = VeinShade { vein, blade, reach_m: reach };
     let spans = leaf.veins.iter().chain(&leaf.sides).map(|v| v.marks.len().saturating_sub(1)).sum::<usize>();
-    let (steps, sides) = (options.skin.leaf.subdivisions as u64, options.skin.leaf.sides as u64);
+    let (steps, sides) = (u64::from(options.spec.subdivisions), u64::from(options.spec.sides));
     let squares = (leaf.blade.columns_at().len() * leaf.blade.rows_at().len()) as u64;
     let triangles = 2 * (spans as u64 * steps * sides + squares * steps * steps);
     run.budget.check(Counted::Triangles, triangles, "lower subdivisions, sides or side-veins")?;

@@ -146,6 +146,9 @@ pub struct Refusal {
     pub code: String,
     /// Names and values, as people read them.
     pub fields: BTreeMap<String, String>,
+    /// Those of the fields that are refusals themselves.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty", default)]
+    pub causes: BTreeMap<String, Refusal>,
     /// The sentence in English.
     pub message: String,
 }
@@ -153,8 +156,14 @@ pub struct Refusal {
 impl Refusal {
     /// Of any error with a code.
     pub fn of(error: &(impl Coded + Display)) -> Self {
-        let Told { code, fields } = error.told();
+        Self::told(error.told(), error.to_string())
+    }
+
+    fn told(Told { code, fields, causes }: Told, message: String) -> Self {
+        let sentence = |name| fields.get(name).cloned().unwrap_or_default();
+        let causes = causes.into_iter().map(|(name, told)| (name.into(), Self::told(told, sentence(name))));
+        let causes = causes.collect();
         let fields = fields.into_iter().map(|(name, value)| (name.into(), value)).collect();
-        Self { code: code.into(), fields, message: error.to_string() }
+        Self { code: code.into(), fields, causes, message }
     }
 }

@@ -1,10 +1,10 @@
 //! Exports: the scene or one plant, in every format that the command line writes.
 
-use burgeon::document::{self, Document, DocumentPlant, Maker, PlantId};
+use burgeon::document::{self, Document, DocumentPlant, PlantId};
 use burgeon::formats::{self, ExportSpec, ModelFormat, obj_files, usd_files};
 use burgeon::mesh::Model;
 use burgeon::plant::Plant;
-use burgeon::{Report, Run, SceneEvaluator, Unit, UpAxis, coarser, scene_model};
+use burgeon::{Report, Run, SceneEvaluator, Unit, UpAxis, scene_model};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -188,57 +188,13 @@ fn export(
         for plant in &made {
             let placement =
                 if only.is_some() { document::Placement::default() } else { plant.settings().placement };
-            models.push((placement, at_level(scene, document, plant, (level, wind), run)?));
+            models.push((placement, scene.at_level(plant, document, level, run)?));
         }
         let whole = scene_model(document.name(), models.iter().map(|(at, m)| (*at, m)));
         let stem = if levels == 1 { "plant".into() } else { format!("plant_LOD{level}") };
         files.extend(written(&whole, model, &stem, &spec)?);
     }
     Ok(files)
-}
-
-/// A plant's model, coarser for each level.
-fn at_level(
-    scene: &SceneEvaluator,
-    document: &Document,
-    plant: &DocumentPlant,
-    (level, wind): (u32, bool),
-    run: &Run<'_>,
-) -> Result<Model, WorkspaceError> {
-    let shown = scene.get(plant.id()).ok_or(WorkspaceError::NothingMade)?;
-    if level == 0 {
-        return Ok(shown.model.clone());
-    }
-    match (&plant.settings().maker, shown.plant) {
-        (Maker::Tree(tree), Some(grown)) => {
-            let seed = plant.settings().seed;
-            let skin = burgeon::skin::SkinSpec { seed, wind, ..tree.skin.clone() };
-            let (copy, skin) = coarser(grown, &skin, level);
-            let mut model = burgeon::skin::skin(&copy, &skin, run)?;
-            // Colours and textures are those of the finest.
-            model.name.clone_from(&shown.model.name);
-            for m in &mut model.materials {
-                if let Some(fine) = shown.model.materials.iter().find(|f| f.name == m.name) {
-                    *m = fine.clone();
-                }
-            }
-            Ok(model)
-        }
-        (Maker::Sketch(sketch), _) => {
-            let mut skin = sketch.skin.clone();
-            for _ in 0..level {
-                skin.detail = (skin.detail / 3.0).max(0.1);
-                skin.sides = (skin.sides / 2).max(3);
-            }
-            let mut coarse = document::Editor::new(document.clone());
-            coarse.run(document::SketchCommand::SetSkin(skin).of(plant.id()))?;
-            let mut aside = scene.aside([plant]);
-            aside.update(plant.id(), coarse.document(), run)?;
-            Ok(aside.get(plant.id()).ok_or(WorkspaceError::Internal("no model"))?.model.clone())
-        }
-        // A measured leaf and a flower are one level.
-        _ => Ok(shown.model.clone()),
-    }
 }
 
 /// A file a plant.

@@ -1,7 +1,7 @@
 //! What a shell shows of the document: everything but points, meshes and pictures.
 
 use burgeon::document::{
-    Document, DocumentPlant, Editor, FlowerSettings, LeafSettings, Maker, PhotoPlace, PlantId, StrokeId,
+    Document, DocumentPlant, Editor, FlowerSettings, Maker, PhotoPlace, PlantId, StrokeId,
 };
 use burgeon::growth::{Obstacle, TreeSpec};
 use burgeon::ink::{StrokeClass, StrokeMode};
@@ -203,7 +203,7 @@ pub struct LeafState<'a> {
     /// Its text.
     pub text: &'a str,
     /// How the leaf is made of it.
-    pub settings: &'a LeafSettings,
+    pub settings: &'a burgeon::leaf::LeafSpec,
 }
 
 /// Which flower, on which day.

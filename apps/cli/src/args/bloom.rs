@@ -92,6 +92,9 @@ pub(crate) struct BloomRunArgs {
     /// or leaf it is.
     #[arg(long, value_name = "FILE")]
     pub(crate) petal: Option<PathBuf>,
+    /// Edits by hand on a whole flower or a drawing, a JSON file; `burgeon shape --template` prints one.
+    #[arg(long, value_name = "EDITS.json")]
+    pub(crate) edits: Option<PathBuf>,
     /// The law that sets the pace [default: a straight line; for a flower its own].
     #[arg(long, value_name = "LAW.json")]
     pub(crate) law: Option<PathBuf>,
@@ -130,6 +133,10 @@ pub(crate) struct BloomRunArgs {
     /// of .glb, primvars of .usda.
     #[arg(long)]
     pub(crate) wind: bool,
+    /// Coarser copies of one shape of a whole flower or a drawing (--day, or .obj, .usda, ...) to write beside it
+    /// (OUT-lod1, OUT-lod2, ...), 0 to 6.
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=6))]
+    pub(crate) lods: u32,
     /// Format of the files in a folder.
     #[arg(long, value_enum, default_value_t = crate::args::FormatWord::Glb)]
     pub(crate) format: crate::args::FormatWord,

@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 
 use burgeon::glam::DVec3;
+use burgeon::growth::FoliageSpec;
 use clap::{Args, ValueEnum};
 
 use super::given::Given;
-use super::shared::{AxesArgs, CommonArgs, PictureArgs, SkinArgs, ranged, seed};
+use super::shared::{AxesArgs, CommonArgs, PictureArgs, SkinArgs, of, ranged, seed};
 
 #[derive(Args, Debug)]
 #[command(after_long_help = GROW_EXAMPLES)]
@@ -70,7 +71,7 @@ pub(crate) struct GrowthArgs {
     #[arg(long, value_name = "FILE")]
     pub(crate) leaf_template: Option<PathBuf>,
     /// Share of the leaves kept, the best lit ones, 0 to 1 [default: the preset's, mostly 1].
-    #[arg(long, value_name = "F", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 0.0, 1.0))]
+    #[arg(long, value_name = "F", allow_hyphen_values = true, value_parser = |s: &str| of::<FoliageSpec>(s, "leaf_keep"))]
     pub(crate) leaf_keep: Option<f64>,
     /// The tree as it was after N rounds, years (self-organizing) or rewriting steps (lsystem) [default: full-grown].
     #[arg(long, value_name = "N")]

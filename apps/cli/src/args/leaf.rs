@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use burgeon::leaf::SurfaceKind;
+use burgeon::leaf::{LeafSpec, SurfaceKind};
 use clap::{Args, ValueEnum};
 
 use super::given::Given;
-use super::shared::{AxesArgs, CommonArgs, PictureArgs, ranged};
+use super::shared::{AxesArgs, CommonArgs, PictureArgs, of, ranged, whole};
 
 #[derive(Args, Debug)]
 #[command(after_long_help = LEAF_EXAMPLES)]
@@ -32,7 +32,7 @@ pub(crate) struct LeafArgs {
     pub(crate) scan: bool,
     /// Length of the midrib in metres, 0.002 to 10, for a vein graph in pixels [default: 0.1, with a warning] and for
     /// --venation [default: 0.1 palmate, 0.3 parallel].
-    #[arg(long, value_name = "METRES", value_parser = |s: &str| ranged(s, 0.002, 10.0))]
+    #[arg(long, value_name = "METRES", value_parser = |s: &str| of::<LeafSpec>(s, "length_m"))]
     pub(crate) length: Option<f64>,
     /// A leaf of such veins from a few numbers, without DATA: --veins, --length, --depth.
     #[arg(long, value_enum, conflicts_with_all = ["inputs", "template", "scan", "plant", "days"])]
@@ -59,6 +59,12 @@ pub(crate) struct LeafArgs {
     /// Also write how wind moves each vertex, for shaders: attributes _WIND and _PIVOT of .glb, primvars of .usda.
     #[arg(long)]
     pub(crate) wind: bool,
+    /// Coarser copies to write beside the model (OUT-lod1, OUT-lod2, ...), 0 to 6.
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=6))]
+    pub(crate) lods: u32,
+    /// Edits by hand on a whole plant (--plant), a JSON file; `burgeon shape --template` prints one.
+    #[arg(long, value_name = "EDITS.json")]
+    pub(crate) edits: Option<PathBuf>,
     /// Also make a picture.
     #[arg(long, value_name = "FILE.png")]
     pub(crate) png: Option<PathBuf>,
@@ -122,13 +128,13 @@ pub(crate) struct ShapeArgs {
     #[arg(long, value_enum, default_value_t = ParametersWord::Shared)]
     pub(crate) parameters: ParametersWord,
     /// Pull of the thickest vein on a NURBS blade, 1 (none) to 100.
-    #[arg(long, value_name = "X", default_value_t = 4.0, value_parser = |s: &str| ranged(s, 1.0, 100.0))]
+    #[arg(long, value_name = "X", default_value_t = 4.0, value_parser = |s: &str| of::<LeafSpec>(s, "vein_weight"))]
     pub(crate) vein_weight: f64,
     /// Parts of each span between marks, 1 to 64.
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=64))]
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = |s: &str| whole::<LeafSpec>(s, "subdivisions"))]
     pub(crate) subdivisions: u32,
     /// Points around a vein, 3 to 64.
-    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(3..=64))]
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = |s: &str| whole::<LeafSpec>(s, "sides"))]
     pub(crate) sides: u32,
     /// Round ends on the veins.
     #[arg(long)]
@@ -144,10 +150,10 @@ pub(crate) struct ShapeArgs {
 pub(crate) struct LookArgs {
     /// Roll about the midrib, -1 (below) to 1 (margins meet above); 0 as measured.
     #[arg(long, value_name = "X", default_value_t = 0.0, allow_hyphen_values = true,
-          value_parser = |s: &str| ranged(s, -1.0, 1.0))]
+          value_parser = |s: &str| of::<LeafSpec>(s, "curl"))]
     pub(crate) curl: f64,
     /// Loss of stiffness, 0 (as measured) to 1 (hanging limp).
-    #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = |s: &str| ranged(s, 0.0, 1.0))]
+    #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = |s: &str| of::<LeafSpec>(s, "wilt"))]
     pub(crate) wilt: f64,
     /// Colour of the blade: veins (painted by the distance from them), plain, or a picture of the pressed leaf
     /// (.png or .jpg), cropped to its box with the tip at the top.

@@ -14,8 +14,9 @@ pub(crate) struct ShapeArgs {
     /// First: clap takes the values of the others away as it reads them.
     #[command(flatten)]
     pub(crate) given: Given,
-    /// A species of `burgeon presets`, a spec (.toml), a drawing, or a project (.burgeon).
-    #[arg(value_name = "PRESET|SPEC.toml|DRAWING", required_unless_present_any = ["template", "schema"])]
+    /// A species of `burgeon presets`, a spec (.toml), a flower (rose, lily, tulip, sunflower, clivia, or your own .toml)
+    /// in full bloom, a drawing, or a project (.burgeon).
+    #[arg(value_name = "PRESET|SPEC.toml|FLOWER|DRAWING", required_unless_present_any = ["template", "schema"])]
     pub(crate) what: Option<PathBuf>,
     /// The edits, a JSON file; --template prints one, docs/shaping.md explains it.
     #[arg(long, value_name = "EDITS.json", required_unless_present_any = ["template", "schema", "list"])]
@@ -26,7 +27,7 @@ pub(crate) struct ShapeArgs {
     /// Which plant of a project that holds several: its name, or its number from 1.
     #[arg(long, value_name = "NAME|N")]
     pub(crate) plant: Option<String>,
-    /// Also save the project with the edits after those that it has.
+    /// Also save a project: the drawing with the edits, or the project with the edits after those that it has.
     #[arg(long, value_name = "PROJECT.burgeon")]
     pub(crate) save: Option<PathBuf>,
     /// Also make a picture.

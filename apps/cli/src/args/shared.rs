@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use burgeon::formats::ModelFormat;
 use burgeon::render::{Background, PictureSpec, View};
 use burgeon::skin::SkinSpec;
+use burgeon::spec::Spec;
 use burgeon::{Seed, Unit, UpAxis};
 use clap::{Args, ValueEnum};
 
@@ -44,10 +45,10 @@ impl CommonArgs {
 pub(crate) struct SkinArgs {
     /// Fineness of the meshes, 0.1 to 8; triangle counts grow in proportion. At 1 a crown's leaf has 6 to 24
     /// [default: 1].
-    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 0.1, 8.0))]
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| of::<SkinSpec>(s, "detail"))]
     pub(crate) detail: Option<f64>,
     /// Sides of an ordinary branch, 3 to 24; thick branches get more [default: 8].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(3..=24))]
+    #[arg(long, value_name = "N", value_parser = |s: &str| whole::<SkinSpec>(s, "sides"))]
     pub(crate) sides: Option<u32>,
     /// Plain colours instead of textures.
     #[arg(long)]
@@ -135,7 +136,7 @@ pub(crate) enum ViewWord {
 }
 
 /// Axes and unit of files whose format does not fix them.
-#[derive(Args, Debug)]
+#[derive(Args, Debug, Default)]
 #[command(next_help_heading = "Geometry")]
 pub(crate) struct AxesArgs {
     /// Axis that points up in OBJ, PLY, STL, USD, MTG and QSM files, clouds, and coordinates given as options; glTF is
@@ -165,9 +166,10 @@ impl From<UpWord> for UpAxis {
     }
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
 pub(crate) enum UnitWord {
     /// Metres
+    #[default]
     M,
     /// Centimetres
     Cm,
@@ -285,6 +287,27 @@ pub(crate) fn ranged(text: &str, low: f64, high: f64) -> Result<f64, String> {
         .ok()
         .filter(|x| (low..=high).contains(x))
         .ok_or_else(|| format!("give a number from {low} to {high}"))
+}
+
+/// A number within the range that its spec gives a field.
+pub(crate) fn of<T: Spec>(text: &str, field: &str) -> Result<f64, String> {
+    let [low, high] = range::<T>(field);
+    ranged(text, low, high)
+}
+
+/// As [`of`], a whole number.
+pub(crate) fn whole<T: Spec>(text: &str, field: &str) -> Result<u32, String> {
+    let [low, high] = range::<T>(field);
+    text.parse()
+        .ok()
+        .filter(|&n| (low..=high).contains(&f64::from(n)))
+        .ok_or_else(|| format!("give a whole number from {low} to {high}"))
+}
+
+fn range<T: Spec>(field: &str) -> [f64; 2] {
+    let range = burgeon::spec::range::<T>(field);
+    debug_assert!(range.is_some(), "{field} has a range");
+    range.unwrap_or([f64::NEG_INFINITY, f64::INFINITY])
 }
 
 /// What a plant is written as.

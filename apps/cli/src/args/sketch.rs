@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use burgeon::sketch::{BranchDepth, LeafDepth};
-use burgeon::skin::PetalColor;
+use burgeon::sketch::{BranchDepth, LeafDepth, SketchSpec};
+use burgeon::skin::{PetalColor, SkinSpec};
 use clap::{Args, ValueEnum};
 
 use super::given::Given;
-use super::shared::{AxesArgs, CommonArgs, PictureArgs, PlantFormatWord, SkinArgs, ranged, seed};
+use super::shared::{AxesArgs, CommonArgs, PictureArgs, PlantFormatWord, SkinArgs, of, seed};
 
 #[derive(Args, Debug)]
 #[command(after_long_help = SKETCH_EXAMPLES)]
@@ -66,7 +66,7 @@ Classes: blade, corolla, axis, trunk_outline, crown, vein, disc, pot, ground, fr
 #[command(next_help_heading = "Plant")]
 pub(crate) struct ReadingArgs {
     /// Height of the plant in metres, 0.001 to 1000 [default: 8 for a tree, 0.5 for a herb].
-    #[arg(long, value_name = "METRES", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 0.001, 1000.0))]
+    #[arg(long, value_name = "METRES", allow_hyphen_values = true, value_parser = |s: &str| of::<SketchSpec>(s, "height_m"))]
     pub(crate) height: Option<f64>,
     /// How branches leave the drawing's plane: riesz spreads siblings evenly, paper is the published entropy
     /// [default: riesz].
@@ -83,20 +83,20 @@ pub(crate) struct ReadingArgs {
     #[arg(long, value_name = "N,N", value_delimiter = ',')]
     pub(crate) flip_flowers: Vec<u32>,
     /// How many twigs and leaves fill contours and crowns, relative to the usual, 0.1 to 10 [default: 1].
-    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 0.1, 10.0))]
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| of::<SketchSpec>(s, "fill.density"))]
     pub(crate) density: Option<f64>,
     /// Direction of grown twigs, -1 (weeping) to 1 (upright) [default: 0.1].
-    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, -1.0, 1.0))]
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| of::<SketchSpec>(s, "fill.tropism"))]
     pub(crate) tropism: Option<f64>,
     /// Exponent of the pipe model, 1.8 to 3: higher makes branches below forks thinner
     /// [default: 2 for a tree, 2.5 for a herb].
-    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 1.8, 3.0))]
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| of::<SketchSpec>(s, "pipe_exponent"))]
     pub(crate) pipe_exponent: Option<f64>,
     /// Pull of light on drawn branches, -1 to 1, upwards [default: 0].
-    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, -1.0, 1.0))]
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| of::<SketchSpec>(s, "phototropism"))]
     pub(crate) phototropism: Option<f64>,
     /// Sag of drawn branches, 0 to 1 [default: 0].
-    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 0.0, 1.0))]
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| of::<SketchSpec>(s, "gravity"))]
     pub(crate) gravity: Option<f64>,
     /// A leaf that the plant bears instead of the drawn or built-in ones: marks (.csv), a vein graph (.json) or a
     /// model of one leaf (.glb, .obj, .ply, .stl) with its root at the origin.
@@ -117,7 +117,7 @@ pub(crate) struct SurfaceArgs {
     #[arg(long, value_enum, value_name = "COLOUR")]
     pub(crate) petals: Option<PetalWord>,
     /// Variation of colour from organ to organ, 0 (none) to 1 [default: 1].
-    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| ranged(s, 0.0, 1.0))]
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| of::<SkinSpec>(s, "variation"))]
     pub(crate) variation: Option<f64>,
 }
 

@@ -25,9 +25,12 @@ export function t(key: TextKey, values: Record<string, string | number> = {}): s
 }
 
 /** Why the core did not do something: its own English, or our text for its code. */
-export function tell({ code, fields, message }: Refusal): string {
+export function tell({ code, fields, causes, message }: Refusal): string {
   const text: string | undefined = language === 'zh' ? zhErrors[code as keyof typeof zhErrors] : undefined;
-  const told = (name: string): string => zhWords[fields[name] ?? ''] ?? fields[name] ?? '';
+  const told = (name: string): string => {
+    const cause = causes?.[name];
+    return cause ? tell(cause) : (zhWords[fields[name] ?? ''] ?? fields[name] ?? '');
+  };
   return text?.replace(/\{(\w+)\}/g, (_, name: string) => told(name)) ?? message;
 }
 

@@ -11,7 +11,7 @@ use skin::SkinSpec;
 
 use super::{Command, CommandError, may_bear, set};
 use crate::event::Event;
-use crate::makers::{FlowerMaker, LeafData, LeafMaker, LeafSettings, Maker, NamedObstacle, TreeSettings};
+use crate::makers::{FlowerMaker, LeafData, LeafMaker, Maker, NamedObstacle, TreeSettings};
 use crate::state::shortened;
 use crate::{Document, DocumentPlant, FlowerSettings, PlantId};
 
@@ -107,7 +107,7 @@ pub enum LeafCommand {
     /// Takes other measurements. Who sends them has checked that they make a leaf.
     SetData(LeafData),
     /// Sets how the leaf is made.
-    Set(Box<LeafSettings>),
+    Set(Box<leaf::LeafSpec>),
 }
 
 impl LeafCommand {

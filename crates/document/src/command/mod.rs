@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::event::Event;
 use crate::state::{Settings, range_fault};
-use crate::{Document, DocumentPlant, PlantId, StrokeId};
+use crate::{Document, DocumentPlant, PlantId, SettingFault, StrokeId};
 
 pub use self::shape::ShapeCommand;
 pub use makers::{FlowerCommand, LeafCommand, TreeCommand};
@@ -76,8 +76,8 @@ pub enum CommandError {
     #[error("nothing to do: {0}")]
     Nothing(&'static str),
     /// A setting is out of its range.
-    #[error("{0}")]
-    OutOfRange(String),
+    #[error(transparent)]
+    OutOfRange(SettingFault),
     /// A field of a spec cannot be set so.
     #[error(transparent)]
     Spec(#[from] spec::SpecFault),
@@ -160,10 +160,10 @@ base::coded!(CommandError {
     Self::NoLeaf => "no-leaf-to-lend" {},
     Self::NoPhoto => "no-photo" {},
     Self::Nothing(_) => "nothing-to-do" {},
-    Self::OutOfRange(why) => "out-of-range" { why },
     Self::TooFar => "too-far" {},
     Self::Full(what) => "full" { what },
     Self::Gesture(_) => "gesture" {},
 } wraps {
     Self::Spec(e) => e, spec::SpecFault;
+    Self::OutOfRange(e) => e, SettingFault;
 });

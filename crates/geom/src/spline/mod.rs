@@ -53,3 +53,13 @@ pub enum SplineError {
         columns: usize,
     },
 }
+
+base::coded!(SplineError {
+    Self::TooFew { needed, given } => "spline-too-few" { needed, given },
+    Self::Degree(degree) => "spline-degree" { degree },
+    Self::Knots => "spline-knots" {},
+    Self::Parameters => "spline-parameters" {},
+    Self::NotFinite(point) => "spline-not-finite" { point },
+    Self::NegativeRadius(point) => "spline-radius" { point },
+    Self::Ragged { points, columns } => "spline-ragged" { points, columns },
+});

@@ -2,12 +2,15 @@
 
 use base::ops;
 use glam::DVec3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::ball::{BallBSpline, Jet};
 use crate::frame::{perpendicular, rotation_minimising_frames};
 
 /// How a ring of the tube is placed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum RingRule {
     /// A circle of the ball's radius in the plane across the centre line (Wang et al. 2011).
     #[default]

@@ -198,24 +198,20 @@ impl TreeEvaluator {
         Ok(true)
     }
 
-    /// Coarser copies, finest first.
-    pub(super) fn lods(
-        &self,
-        spec: &TreeSpec,
-        seed: Seed,
-        options: &TreeOptions,
-        run: &Run<'_>,
-    ) -> Result<Vec<Model>, TreeError> {
-        let Some(plant) = self.plant() else { return Ok(Vec::new()) };
-        let fine = skin_spec(seed, options);
-        let mut barks = self.barks.clone();
+    /// A coarser copy of the model, with the same materials; none before an update. See [`coarser`].
+    ///
+    /// # Errors
+    /// [`TreeError`].
+    pub fn at_level(&self, level: u32, run: &Run<'_>) -> Result<Option<Model>, TreeError> {
+        let (Some(raw), Some(plant), Some((from, _))) = (&self.grown, self.plant(), &self.model) else {
+            return Ok(None);
+        };
+        let (spec, (fine, look, leaf)) = (&raw.from.0, from);
         let obstacles = growth::Obstacles::new(&spec.obstacles, spec.clearance_m)?;
-        let lods = (1..=options.lods.min(6)).map(|level| {
-            let (mut plant, skin) = coarser(plant, &fine, level);
-            keep_out(&mut plant, level, &obstacles);
-            Ok(skinned(&plant, &(skin, spec.look.clone(), options.leaf.clone()), &mut barks, run)?)
-        });
-        lods.collect()
+        let (mut plant, skin) = coarser(plant, fine, level);
+        keep_out(&mut plant, level, &obstacles);
+        let mut barks = self.barks.clone();
+        Ok(Some(skinned(&plant, &(skin, look.clone(), leaf.clone()), &mut barks, run)?))
     }
 
     fn item(&self, spec: &TreeSpec, report: &Report) -> ItemReport {

@@ -206,7 +206,8 @@ pub fn make_tree(
     let mut evaluator = TreeEvaluator::default();
     let mut item = evaluator.update(spec, seed, options, run)?;
     let start = run.clock.now_ms();
-    let lods = evaluator.lods(spec, seed, options, run)?;
+    let lods = (1..=options.lods.min(6)).map(|level| evaluator.at_level(level, run));
+    let lods: Vec<Model> = lods.filter_map(Result::transpose).collect::<Result<_, _>>()?;
     if !lods.is_empty() {
         let ms = run.clock.now_ms() - start;
         item.timings_ms.mesh += ms;
@@ -239,7 +240,7 @@ fn look_at_meshes(obstacles: &[Obstacle], report: &mut Report) {
 }
 
 base::coded!(TreeError {
-    Self::Line { line, error } => "tree-line" { line, why = error },
+    Self::Line { line, error } => "tree-line" { line, why = error => GrowthError },
     Self::File { file } => "tree-file" { file },
 } wraps {
     Self::Spec(e) => e, SpecFault;
