@@ -10,7 +10,7 @@ pub struct Told {
     /// Names and values, as people read them.
     pub fields: BTreeMap<&'static str, String>,
     /// Those of the fields that are errors themselves.
-    pub causes: BTreeMap<&'static str, Told>,
+    pub causes: BTreeMap<&'static str, Self>,
 }
 
 /// A code, and the names of its fields.

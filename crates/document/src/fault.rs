@@ -3,8 +3,10 @@
 use bloom::FlowerSpec;
 use spec::RangeFault;
 
-use crate::makers::MAX_OBSTACLES;
-use crate::state::MAX_EDITS;
+/// Most obstacles of a tree.
+pub(crate) const MAX_OBSTACLES: usize = 64;
+/// Most edits by hand of a plant.
+pub(crate) const MAX_EDITS: usize = 1000;
 
 /// The first setting of a plant that is at fault, with what to do.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -10,10 +10,8 @@ use serde::{Deserialize, Serialize};
 use sketch::SketchSpec;
 use skin::SkinSpec;
 
+use crate::fault::MAX_OBSTACLES;
 use crate::{Photo, PlantId, SettingFault};
-
-/// Most obstacles of a tree.
-pub(crate) const MAX_OBSTACLES: usize = 64;
 
 /// Who makes a plant, and of what. Strokes of a sketch lie beside it, in [`crate::DocumentPlant::strokes`].
 #[derive(Clone, Debug, PartialEq)]

@@ -10,6 +10,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use shape::HandEdit;
 
+use crate::fault::MAX_EDITS;
 use crate::ids::{PlantId, StrokeId};
 use crate::{Maker, Photo, SettingFault, SketchSettings};
 
@@ -251,8 +252,6 @@ pub enum DocumentFault {
 
 /// Longest name of a plant, in characters.
 pub(crate) const NAME_LENGTH: usize = 200;
-/// Most edits by hand of a plant.
-pub(crate) const MAX_EDITS: usize = 1000;
 /// Most plants of a scene.
 pub(crate) const MAX_PLANTS: usize = 200;
 

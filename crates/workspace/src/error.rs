@@ -148,7 +148,7 @@ pub struct Refusal {
     pub fields: BTreeMap<String, String>,
     /// Those of the fields that are refusals themselves.
     #[serde(skip_serializing_if = "BTreeMap::is_empty", default)]
-    pub causes: BTreeMap<String, Refusal>,
+    pub causes: BTreeMap<String, Self>,
     /// The sentence in English.
     pub message: String,
 }
