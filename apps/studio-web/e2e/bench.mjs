@@ -309,7 +309,7 @@ for (const sketch of ['a', 'b', 'c', 'd', 'e', 'f', 'g', 'h']) {
           document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true }));
           await until(() => Number(document.body.dataset.triangles) > 0);
           document.querySelector('#b-commands').click();
-          document.querySelector('#p-close').click();
+          document.querySelector('#p-new').click();
           await until(
             () => Number(document.body.dataset.parts) === 0 && Number(document.body.dataset.strokes) === 0,
           );

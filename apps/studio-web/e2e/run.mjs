@@ -1,5 +1,5 @@
-// node e2e/run.mjs CHROMIUM BURGEON OUT : the main journeys through the Studio, in a real browser, against the real
-// server. Pictures of each go to OUT.
+// node e2e/run.mjs CHROMIUM BURGEON OUT [FOLDER] : the main journeys through the Studio, in a real browser, against the
+// real server. Pictures of each go to OUT. FOLDER: the built page, if not that of the tests.
 import { spawn } from 'node:child_process';
 import { mkdirSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
@@ -8,13 +8,13 @@ import { FLAGS } from './flags.mjs';
 import { journeys } from './journeys.mjs';
 import { shaping } from './shaping.mjs';
 
-const [browserPath, burgeon, out] = process.argv.slice(2);
+const [browserPath, burgeon, out, folder = 'dist-test'] = process.argv.slice(2);
 rmSync(out, { recursive: true, force: true });
 mkdirSync(out, { recursive: true });
 
 const server = spawn(
   burgeon,
-  ['studio', '--no-open', '--port', '0', '--folder', 'dist', '../../fixtures/sketches/gallery/tulip.svg'],
+  ['studio', '--no-open', '--port', '0', '--folder', folder, '../../fixtures/sketches/gallery/tulip.svg'],
   {
     stdio: ['ignore', 'pipe', 'inherit'],
   },
