@@ -6,7 +6,6 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
-#[expect(clippy::print_stdout, reason = "this is how a build script speaks to cargo")]
 fn main() -> io::Result<()> {
     println!("cargo::rerun-if-changed=build.rs");
     let folder = |name: &str| env::var_os(name).map(PathBuf::from).ok_or(io::ErrorKind::NotFound);
@@ -17,12 +16,16 @@ fn main() -> io::Result<()> {
         collect(&page.canonicalize()?, "", &mut files)?;
     }
     files.sort();
+    let out = folder("OUT_DIR")?;
     let mut source = String::from("&[\n");
-    for (name, path) in files {
-        let _ = writeln!(source, "    ({name:?}, include_bytes!({path:?}) as &[u8]),");
+    for (k, (name, path)) in files.iter().enumerate() {
+        // A copy: the page may be built anew before the compiler comes here.
+        let copy = out.join(format!("page-{k}"));
+        fs::copy(path, &copy)?;
+        let _ = writeln!(source, "    ({name:?}, include_bytes!({copy:?}) as &[u8]),");
     }
     source += "]\n";
-    fs::write(folder("OUT_DIR")?.join("page.rs"), source)
+    fs::write(out.join("page.rs"), source)
 }
 
 /// The files of a folder: their names in addresses, and where they lie.

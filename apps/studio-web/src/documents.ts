@@ -28,8 +28,8 @@ const SOON_MS = 400;
 const HAND_OVER_MS = 1500;
 /** A picture is made when nothing was grown for so long. */
 const REST_MS = 1500;
-/** Pixels of the small picture. */
-const [WIDTH, HEIGHT] = [240, 180];
+/** Pixels of the longer side of the small picture. */
+const SMALL = 200;
 
 type Free = () => void;
 
@@ -192,8 +192,7 @@ export class Documents {
   /** The document that is here has another name. */
   async named(name: string): Promise<void> {
     const { mine } = this.keeper;
-    const entry = mine && (await documents()).find((e) => e.id === mine.id);
-    if (mine && entry) await portray(mine, { name, picture: entry.picture });
+    if (mine) await portray(mine, name);
   }
 
   // The small picture --------------------------------------------------------------------------------------------
@@ -212,7 +211,7 @@ export class Documents {
     this.stale = false;
     const name = this.events.name();
     const picture = await small(this.events.picture()).catch(() => '');
-    await portray(mine, { name, picture }).catch(() => undefined);
+    await portray(mine, name, picture).catch(() => undefined);
   }
 }
 
@@ -259,11 +258,10 @@ function hold(
 async function small(picture: Promise<Blob> | undefined): Promise<string> {
   if (!picture) return '';
   const image = await createImageBitmap(await picture);
-  const scale = Math.max(WIDTH / image.width, HEIGHT / image.height);
+  const scale = SMALL / Math.max(image.width, image.height);
   const canvas = document.createElement('canvas');
-  [canvas.width, canvas.height] = [WIDTH, HEIGHT];
-  const [w, h] = [image.width * scale, image.height * scale];
-  canvas.getContext('2d')?.drawImage(image, (WIDTH - w) / 2, (HEIGHT - h) / 2, w, h);
+  [canvas.width, canvas.height] = [image.width * scale, image.height * scale];
+  canvas.getContext('2d')?.drawImage(image, 0, 0, canvas.width, canvas.height);
   image.close();
   return canvas.toDataURL('image/jpeg', 0.85);
 }

@@ -5,7 +5,7 @@
  * stays short; and where the journal has a hole, because the storage took something not, or because a step was undone
  * that it does not hold.
  */
-import { append, type Entry, type Mine, type Row, strike, TakenError, writeWhole } from './library';
+import { append, type Entry, mend, type Mine, type Row, strike, TakenError, writeWhole } from './library';
 import type { Request } from './protocol';
 
 /** What is true of the document now. */
@@ -156,7 +156,7 @@ export class Keeper {
   again(request: Request): void {
     const seq = this.seqs.get(request);
     if (seq === undefined || !this.mine || this.mode || this.failed) return;
-    this.track(append(this.entry(this.mine), [{ seq, request }]));
+    this.track(mend(this.mine, { seq, request }));
   }
 
   private enqueue(request: Request): void {
@@ -176,7 +176,7 @@ export class Keeper {
   }
 
   private entry({ id, owner }: Mine): Entry {
-    return { id, owner, name: this.events.name(), time: Date.now(), picture: '', deleted: 0 };
+    return { id, owner, name: this.events.name(), time: Date.now(), deleted: 0 };
   }
 
   private track(write: Promise<void>): void {
@@ -217,7 +217,7 @@ export class Keeper {
   private async writeWhole(): Promise<void> {
     const { mine, seq } = this;
     if (!mine) return;
-    [this.whole, this.wanted] = [true, false];
+    [this.whole, this.wanted, this.cut] = [true, false, true];
     const [count, size] = [this.count, this.size];
     try {
       const bytes = await this.events.save().catch(() => undefined);
@@ -230,7 +230,6 @@ export class Keeper {
       }
       await writeWhole(this.entry(mine), bytes, seq);
       if (mine !== this.mine) return;
-      this.cut = true;
       this.count -= count;
       this.size -= size;
       // Something came meanwhile that is not in it: once more.

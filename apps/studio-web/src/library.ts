@@ -2,15 +2,15 @@
  * The documents that this browser keeps. Of each there is the project file as it was last written whole, and what was
  * asked of it since then: a request is one row, written when it is made, so that a crash loses nothing that was done.
  *
- * Who works on a document owns it. Every write looks for its owner in the same transaction: a tab that lost a document
- * to another cannot write into it, whatever it still has on its way.
+ * Who works on a document owns it, and writes the rows of its journal one after the other. Who takes it over writes the
+ * next one: what the old owner still has on its way finds its row taken, and nothing of it is written.
  */
 import type { Request } from './protocol';
 
 const NAME = 'burgeon';
 /** 1: one project under the key `last`. */
 const VERSION = 2;
-const STORES = ['documents', 'wholes', 'journal'] as const;
+const STORES = ['documents', 'pictures', 'wholes', 'journal'] as const;
 /** Deleted documents are kept so long. */
 const GRACE_MS = 30 * 24 * 3600 * 1000;
 
@@ -20,8 +20,6 @@ export interface Entry {
   name: string;
   /** When it was changed last. */
   time: number;
-  /** A small picture as a data URL; empty if there is none. */
-  picture: string;
   /** When it was deleted; 0 if it was not. */
   deleted: number;
   /** Who may write. */
@@ -79,14 +77,13 @@ function opened(): Promise<IDBDatabase> {
 function upgrade(request: IDBOpenDBRequest, from: number): void {
   const { result, transaction } = request;
   result.createObjectStore('documents', { keyPath: 'id' });
-  result.createObjectStore('wholes');
-  result.createObjectStore('journal');
+  for (const store of ['pictures', 'wholes', 'journal']) result.createObjectStore(store);
   if (from !== 1 || !transaction) return;
   const last = transaction.objectStore('projects').get('last');
   last.onsuccess = () => {
     const old = last.result as { bytes: Uint8Array; name: string; time: number } | undefined;
     if (old) {
-      const entry: Entry = { id: 'last', name: old.name, time: old.time, picture: '', deleted: 0, owner: '' };
+      const entry: Entry = { id: 'last', name: old.name, time: old.time, deleted: 0, owner: '' };
       transaction.objectStore('documents').put(entry);
       transaction.objectStore('wholes').put(old.bytes, entry.id);
     }
@@ -97,10 +94,13 @@ function upgrade(request: IDBOpenDBRequest, from: number): void {
 type Stores = { [name in (typeof STORES)[number]]: IDBObjectStore };
 type Refuse = (why: Error) => void;
 
-/** All or nothing of what `act` asks for; the answer is read when it is done. */
+/**
+ * All or nothing of what `act` asks for; the answer is read when it is done. `commit`: nothing more is asked for, and
+ * the browser need not come back to this page to end it.
+ */
 async function transact<T>(
   mode: IDBTransactionMode,
-  act: (stores: Stores, refuse: Refuse) => () => T,
+  act: (stores: Stores, refuse: Refuse, commit: () => void) => () => T,
 ): Promise<T> {
   const db = await opened();
   return new Promise<T>((resolve, reject) => {
@@ -116,7 +116,7 @@ async function transact<T>(
     transaction.oncomplete = () => resolve(answer!());
     transaction.onabort = () => reject(why ?? transaction.error ?? new Error('aborted'));
     try {
-      answer = act(stores, refuse);
+      answer = act(stores, refuse, () => transaction.commit());
     } catch (e) {
       refuse(e as Error);
     }
@@ -128,7 +128,7 @@ const nothing = (): void => undefined;
 const rowsOf = (id: string, to = Infinity): IDBKeyRange => IDBKeyRange.bound([id, 0], [id, to]);
 const seqOf = (key: IDBValidKey | undefined): number => (key as [string, number] | undefined)?.[1] ?? 0;
 
-/** A change of a document that is still its writer's. `fresh`: what is there before the first change. */
+/** A change of a document that is still its owner's. `fresh`: what is there before the first change. */
 function owned(
   { id, owner }: Mine,
   change: (entry: Entry, stores: Stores) => void,
@@ -149,46 +149,68 @@ function owned(
   });
 }
 
-/** Every document, the latest first; those that were deleted long ago go now. */
-export async function documents(): Promise<Entry[]> {
-  const all = await transact('readonly', ({ documents: d }) => {
-    const get = d.getAll();
-    return () => get.result as Entry[];
+/** Every document with its small picture (a data URL), the latest first; those that were deleted long ago go now. */
+export async function documents(): Promise<(Entry & { picture: string })[]> {
+  const all = await transact('readonly', ({ documents: d, pictures }) => {
+    const [entries, keys, urls] = [d.getAll(), pictures.getAllKeys(), pictures.getAll()];
+    return () => {
+      const seen = new Map(keys.result.map((key, i) => [key, urls.result[i] as string]));
+      return (entries.result as Entry[]).map((e) => ({ ...e, picture: seen.get(e.id) ?? '' }));
+    };
   });
   const gone = all.filter((e) => e.deleted > 0 && Date.now() - e.deleted > GRACE_MS);
   if (gone.length > 0)
-    await transact('readwrite', (s) => {
+    await transact('readwrite', ({ documents: d, pictures, wholes, journal }) => {
       for (const { id } of gone) {
-        s.documents.delete(id);
-        s.wholes.delete(id);
-        s.journal.delete(rowsOf(id));
+        for (const store of [d, pictures, wholes]) store.delete(id);
+        journal.delete(rowsOf(id));
       }
       return nothing;
     });
-  return all.filter((e) => !gone.includes(e)).sort((a, b) => b.time - a.time);
+  return all.filter((e) => !gone.includes(e)).sort((x, y) => y.time - x.time);
 }
 
-/** A document for reading, or for writing too, by this owner from now on. Undefined if it is not there. */
+/**
+ * A document for reading, or for writing too, by this owner from now on. Undefined if it is not there.
+ *
+ * The last row of what an owner gets is its own: it says nothing but that the row is taken.
+ */
 export function take(id: string, owner?: string): Promise<Kept | undefined> {
   return transact(owner === undefined ? 'readonly' : 'readwrite', ({ documents: d, wholes, journal }) => {
     const [entry, whole] = [d.get(id), wholes.get(id)];
     const [keys, requests] = [journal.getAllKeys(rowsOf(id)), journal.getAll(rowsOf(id))];
-    if (owner !== undefined)
-      entry.onsuccess = () => {
-        if (entry.result) d.put({ ...entry.result, owner });
-      };
-    const row = (key: IDBValidKey, i: number): Row => ({ seq: seqOf(key), request: requests.result[i] });
-    return () => entry.result && { entry: entry.result, whole: whole.result, rows: keys.result.map(row) };
+    const rows = (): Row[] =>
+      keys.result.map((key, i) => ({ seq: seqOf(key), request: requests.result[i] as Request }));
+    let mine: Row[] = [];
+    requests.onsuccess = () => {
+      if (owner === undefined || !entry.result) return;
+      const taken: Row = { seq: seqOf(keys.result.at(-1)) + 1, request: { kind: 'abandon' } };
+      mine = [taken];
+      d.put({ ...entry.result, owner });
+      journal.put(taken.request, [id, taken.seq]);
+    };
+    return () => entry.result && { entry: entry.result, whole: whole.result, rows: [...rows(), ...mine] };
   });
 }
 
-/** Writes what was asked. */
-export function append(fresh: Entry, rows: readonly Row[]): Promise<void> {
-  const change = (entry: Entry, { journal }: Stores): void => {
-    entry.time = Date.now();
-    for (const { seq, request } of rows) journal.put(request, [entry.id, seq]);
-  };
-  return owned(fresh, change, fresh);
+/**
+ * Writes what was asked, in rows that nobody has written yet. All is on its way when this returns: what was done is kept
+ * even if the page ends at once.
+ */
+export function append(entry: Entry, rows: readonly Row[]): Promise<void> {
+  return transact('readwrite', ({ documents: d, journal }, _, commit) => {
+    for (const { seq, request } of rows) journal.add(request, [entry.id, seq]);
+    d.put({ ...entry, time: Date.now() });
+    commit();
+    return nothing;
+  }).catch((e: Error) => {
+    throw e.name === 'ConstraintError' ? new TakenError('taken') : e;
+  });
+}
+
+/** Writes a row again that bears more than it did. */
+export function mend(mine: Mine, { seq, request }: Row): Promise<void> {
+  return owned(mine, ({ id }, { journal }) => journal.put(request, [id, seq]));
 }
 
 /** Forgets a request that was refused. */
@@ -206,9 +228,13 @@ export function writeWhole(fresh: Entry, whole: Uint8Array, seq: number): Promis
   return owned(fresh, change, fresh);
 }
 
-/** What the list shows of a document that its owner works on. */
-export function portray(mine: Mine, seen: Pick<Entry, 'name' | 'picture'>): Promise<void> {
-  return owned(mine, (entry) => Object.assign(entry, seen));
+/** What the list shows of a document that its owner works on: its name and a small picture. */
+export function portray(mine: Mine, name: string, picture?: string): Promise<void> {
+  const change = (entry: Entry, { pictures }: Stores): void => {
+    entry.name = name;
+    if (picture !== undefined) pictures.put(picture, entry.id);
+  };
+  return owned(mine, change);
 }
 
 const naming = (name: string): Request => ({ kind: 'command', command: { scene: { rename: name } } });
@@ -228,8 +254,9 @@ export function rename(id: string, name: string): Promise<void> {
 
 /** A copy under another number and name. */
 export function copy(id: string, to: string, name: string): Promise<void> {
-  return transact('readwrite', ({ documents: d, wholes, journal }) => {
-    const [entry, whole, rows] = [d.get(id), wholes.get(id), journal.openCursor(rowsOf(id))];
+  return transact('readwrite', ({ documents: d, pictures, wholes, journal }) => {
+    const [entry, picture, whole] = [d.get(id), pictures.get(id), wholes.get(id)];
+    const rows = journal.openCursor(rowsOf(id));
     let last = 0;
     rows.onsuccess = () => {
       const row = rows.result;
@@ -239,6 +266,7 @@ export function copy(id: string, to: string, name: string): Promise<void> {
         row.continue();
       } else if (entry.result) {
         d.put({ ...entry.result, id: to, name, time: Date.now(), owner: '', deleted: 0 });
+        if (picture.result) pictures.put(picture.result, to);
         if (whole.result) wholes.put(whole.result, to);
         journal.put(naming(name), [to, last + 1]);
       }

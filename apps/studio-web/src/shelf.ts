@@ -1,9 +1,11 @@
 /** The list of the documents that this browser keeps: open, rename, copy, delete and bring back. */
 import { type Documents, held } from './documents';
 import { newId } from './keeper';
-import { copy, documents, type Entry, rename, setDeleted } from './library';
+import { copy, documents, rename, setDeleted } from './library';
 import { currentLanguage, t } from './text';
 import { button, dialog, el, icon } from './ui';
+
+type Entry = Awaited<ReturnType<typeof documents>>[number];
 
 export interface ShelfEvents {
   readonly here: Documents;

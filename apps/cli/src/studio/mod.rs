@@ -103,7 +103,7 @@ mod tests {
 
     #[test]
     fn without_a_page_it_is_said_how_to_build_one() {
-        let why = |folder, inside| format!("{}", page(folder, inside).unwrap_err());
+        let why = |folder, inside| format!("{:?}", page(folder, inside).unwrap_err());
         assert!(why(None, &[]).contains("cargo xtask build-web"));
         let inside: Files = &[("index.html", b"page")];
         assert!(matches!(page(None, inside), Ok(Page::Inside(_))));
