@@ -84,6 +84,10 @@ pub(crate) fn test(tools: &Tools, tested: bool) -> Outcome {
     let mut c = prepare("node", &["e2e/run.mjs"]);
     c.current_dir(folder()).arg(&browser).arg(burgeon("debug")).arg(target_dir().join("studio-test"));
     finish(c)?;
+    say("$ node e2e/kills.mjs");
+    let mut c = prepare("node", &["e2e/kills.mjs"]);
+    c.current_dir(folder()).arg(&browser).arg(burgeon("debug"));
+    finish(c)?;
     say("$ node e2e/morph.mjs");
     let mut c = prepare("node", &["e2e/morph.mjs"]);
     c.current_dir(folder()).arg(browser).arg(burgeon("debug")).arg(target_dir().join("morph-test"));

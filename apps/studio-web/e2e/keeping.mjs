@@ -1,6 +1,6 @@
 // What is drawn stays: crashes, two tabs, the list of documents, a browser that keeps nothing.
 import assert from 'node:assert/strict';
-import { begin, count, data, draw, line, sample, until } from './journeys.mjs';
+import { begin, count, draw, line, sample, until } from './journeys.mjs';
 
 const standing = (page, word) =>
   page.waitForFunction((w) => document.body.dataset.kept === w, word, { timeout: 20_000 });

@@ -56,6 +56,8 @@ export class Engine {
   >();
   private journal: Request[] = [];
   private faults = 0;
+  /** Workers in a row that fell before they were ready. */
+  private stillborn = 0;
   private wasReady = false;
   /** Shared with the worker where the page is isolated: lets an evaluation end early. */
   private readonly stop = globalThis.crossOriginIsolated ? new Int32Array(new SharedArrayBuffer(4)) : null;
@@ -122,6 +124,7 @@ export class Engine {
     switch (message.kind) {
       case 'ready':
         this.wasReady = true;
+        this.stillborn = 0;
         this.events.ready();
         break;
       case 'done': {
@@ -195,9 +198,10 @@ export class Engine {
       return;
     }
     this.faults += 1;
-    // The second fault in a row: growing this drawing is what fails.
+    this.stillborn += 1;
+    // The second fault in a row: growing this drawing is what fails. Each change tries again: undo always works.
     const hold = this.faults > 1;
-    if (this.faults > 4) {
+    if (this.stillborn > 4) {
       this.events.dead(why);
       return;
     }

@@ -218,7 +218,7 @@ export class Keeper {
     const { mine, seq } = this;
     if (!mine) return;
     [this.whole, this.wanted, this.cut] = [true, false, true];
-    const [count, size] = [this.count, this.size];
+    [this.count, this.size] = [0, 0];
     try {
       const bytes = await this.events.save().catch(() => undefined);
       if (mine !== this.mine || this.mode) return;
@@ -230,8 +230,6 @@ export class Keeper {
       }
       await writeWhole(this.entry(mine), bytes, seq);
       if (mine !== this.mine) return;
-      this.count -= count;
-      this.size -= size;
       // Something came meanwhile that is not in it: once more.
       if (!this.wanted) [this.hole, this.failed] = [false, undefined];
     } catch (e) {

@@ -81,6 +81,7 @@ export const CODES = {
   "project-version": ["found"],
   "root-far": ["root"],
   "root-in-obstacle": ["root", "obstacle"],
+  "scene-full": ["mb"],
   "spec-pointer": ["path"],
   "spec-text": ["path", "why"],
   "step-too-long": ["step_m", "space_m"],

@@ -64,6 +64,12 @@ pub enum SceneError {
     /// The plant whose leaf is borne has no leaf.
     #[error("the plant \"{0}\", whose leaf this one bears, has no leaf yet")]
     Lender(String),
+    /// The plants that are shown already take as many bytes as they may.
+    #[error(
+        "there is no room for it: the plants of this scene already take {} MB of memory; hide or delete some of them",
+        .0 >> 20
+    )]
+    NoRoom(usize),
     /// The user asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -116,6 +122,7 @@ base::coded!(SceneError {
     Self::NoMarks => "leaf-no-marks" {},
     Self::Species(name) => "no-species" { name },
     Self::Lender(name) => "lender-without-leaf" { name },
+    Self::NoRoom(bytes) => "scene-full" { mb = bytes >> 20 },
 } wraps {
     Self::Sketch(e) => e, MakeError;
     Self::Opening(e) => e, OpeningError;

@@ -153,7 +153,8 @@ impl Workspace {
 
     /// Starts empty and forgets the history: the memory of the document is given back.
     pub fn close(&mut self) {
-        *self = Self { kept: Kept::at_most(self.kept.limit), ..Self::default() };
+        let kept = Kept { most: self.kept.most, ..Kept::at_most(self.kept.limit) };
+        *self = Self { kept, ..Self::default() };
     }
 
     /// Does a command as one step of undo, or as part of the open gesture. A copy of a plant is chosen.

@@ -140,7 +140,7 @@ export const en = {
   'note.refused': 'Not done: {why}',
   'note.fault': 'The plant maker had a fault and was started again. Your drawing is complete.',
   'note.fault.hold':
-    'The plant maker fails on this drawing. Your drawing is safe: undo the last step or change a stroke, and save it.',
+    'The plant maker fails on this scene, perhaps for want of memory. Your work is safe: undo the last step, or change or delete a plant.',
   'note.storage': 'This browser keeps nothing, as in private mode. Save your work as a file.',
   'note.full':
     'The browser’s storage is full: what you do now is not saved. Delete documents, or save your work as a file.',

@@ -141,7 +141,8 @@ export const zh: Record<TextKey, string> = {
   'note.large': '文件超过 {limit} MB',
   'note.refused': '未执行：{why}',
   'note.fault': '植物生成器出错，已重新启动。你的画完好无损。',
-  'note.fault.hold': '植物生成器无法处理这幅画。你的画是安全的：请撤销上一步或修改笔画，并保存。',
+  'note.fault.hold':
+    '植物生成器无法处理此场景，可能是内存不足。你的作品是安全的：请撤销上一步，或修改、删除一株植物。',
   'note.storage': '此浏览器不能保存数据，例如处于隐私模式。请将作品保存为文件。',
   'note.full': '浏览器的存储空间已满，现在的改动不会保存。请删除一些文档，或将作品保存为文件。',
   'note.readonly': '此文档已在另一个标签页中打开',
