@@ -95,18 +95,20 @@ const pause = (ms) =>
     setTimeout(r, ms);
   });
 
+/** Not with each frame: a tab behind another has none. */
+const until = (page, test) => page.waitForFunction(test, undefined, { polling: 50 });
+
 /** Opens the document of a hand and looks whether everything is there. */
-async function open(context, hand) {
-  const page = await context.newPage();
+async function open(hand) {
+  const { page } = hand;
   page.setDefaultTimeout(60_000);
-  hand.page = page;
   await page.addInitScript(inPage, hand.id);
   await page.exposeFunction('told', (what, n, id) => {
     hand[what] = Math.max(hand[what], n);
     hand.id = id;
   });
   await page.goto(url);
-  await page.waitForFunction(() => document.body.dataset.ready === 'true');
+  await until(page, () => document.body.dataset.ready === 'true');
 }
 
 async function check(hand) {
@@ -122,7 +124,7 @@ async function check(hand) {
 /** A new document: the old one is full, or there is none yet. */
 async function turn(hand) {
   await hand.page.click('#b-fresh');
-  await hand.page.waitForFunction(() => ['empty', 'failed'].includes(document.body.dataset.kept));
+  await until(hand.page, () => document.body.dataset.kept === 'empty');
   if (hand.id !== '') sums.strokes += hand.done;
   Object.assign(hand, { id: '', done: 0, saved: 0 });
 }
@@ -136,7 +138,8 @@ for (let round = 0; sums.pages + sums.browsers * HANDS < kills; round += 1) {
   const plans = hands.map(() => ({ early: random() < 0.1, at: 1000 * random(), gap: 30 + 200 * random() }));
   const work = hands.map(async (hand, i) => {
     const { early, at, gap } = plans[i];
-    const opening = open(context, hand);
+    hand.page = await context.newPage();
+    const opening = open(hand);
     if (early) {
       await Promise.race([pause(at), opening]);
       sums.loading += 1;
@@ -165,7 +168,8 @@ for (let round = 0; sums.pages + sums.browsers * HANDS < kills; round += 1) {
   } else await Promise.all(work);
 }
 for (const hand of hands) {
-  await open(context, hand);
+  hand.page = await context.newPage();
+  await open(hand);
   await check(hand);
   sums.strokes += hand.done;
 }

@@ -591,13 +591,14 @@ fn a_scene_that_is_full_says_so_and_goes_on() {
     assert!(s.evaluate(&run()).unwrap().plants[1].error.is_none(), "the last that has room");
     s.act(&lily).unwrap();
     let view = s.evaluate(&run()).unwrap();
-    assert_eq!(view.plants[2].error.as_ref().map(|e| e.code), Some("scene-full"));
+    assert_eq!(view.plants[2].error.as_ref().map(|e| e.code.as_str()), Some("scene-full"));
     assert!(view.plants[2].parts.is_empty());
     // What is there may change, and room that is made is used.
-    s.ask(r#"{"plant":[0,{"set-seed":"7"}]}"#).unwrap();
+    let first = s.document().plants()[0].id();
+    s.run(PlantCommand::SetSeed(Seed::new(7)).of(first)).unwrap();
     assert!(s.evaluate(&run()).unwrap().plants[0].error.is_none());
     s.keep_at_most(0);
-    s.ask(r#"{"plant":[0,{"hide":true}]}"#).unwrap();
+    s.run(PlantCommand::Hide(true).of(first)).unwrap();
     s.evaluate(&run()).unwrap();
     let view = s.evaluate(&run()).unwrap();
     assert!(view.plants[2].error.is_none() && !view.plants[2].parts.is_empty());
