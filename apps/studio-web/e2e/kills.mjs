@@ -36,6 +36,8 @@ async function launch() {
     executablePath: browserPath,
     args: FLAGS,
     viewport: { width: 640, height: 480 },
+    // It lives in the process of a page: killed with it, it sometimes leaves others without an answer for a minute.
+    serviceWorkers: 'block',
   });
   context.pid = Number(/-(\d+)$/.exec(readlinkSync(join(profile, 'SingletonLock')))[1]);
   return context;

@@ -101,11 +101,11 @@ type Refuse = (why: Error) => void;
 async function transact<T>(
   mode: IDBTransactionMode,
   act: (stores: Stores, refuse: Refuse, commit: () => void) => () => T,
+  durability: 'strict' | 'relaxed' = 'strict',
 ): Promise<T> {
   const db = await opened();
   return new Promise<T>((resolve, reject) => {
-    // Strict: on the disk, and not only on its way there, when it is said to be.
-    const transaction = db.transaction(STORES, mode, { durability: 'strict' });
+    const transaction = db.transaction(STORES, mode, { durability });
     const stores = Object.fromEntries(STORES.map((s) => [s, transaction.objectStore(s)])) as Stores;
     let why: Error | undefined;
     let answer: (() => T) | undefined;
@@ -196,14 +196,21 @@ export function take(id: string, owner?: string): Promise<Kept | undefined> {
 /**
  * Writes what was asked, in rows that nobody has written yet. All is on its way when this returns: what was done is kept
  * even if the page ends at once.
+ *
+ * Relaxed: with the system, not yet on the disk. Who waits for the disk has the next rows wait too, and a page that ends
+ * takes with it what waits. What is written strictly at the next rest brings these rows to the disk as well.
  */
 export function append(entry: Entry, rows: readonly Row[]): Promise<void> {
-  return transact('readwrite', ({ documents: d, journal }, _, commit) => {
-    for (const { seq, request } of rows) journal.add(request, [entry.id, seq]);
-    d.put({ ...entry, time: Date.now() });
-    commit();
-    return nothing;
-  }).catch((e: Error) => {
+  return transact(
+    'readwrite',
+    ({ documents: d, journal }, _, commit) => {
+      for (const { seq, request } of rows) journal.add(request, [entry.id, seq]);
+      d.put({ ...entry, time: Date.now() });
+      commit();
+      return nothing;
+    },
+    'relaxed',
+  ).catch((e: Error) => {
     throw e.name === 'ConstraintError' ? new TakenError('taken') : e;
   });
 }
