@@ -34,12 +34,23 @@ fn packages() -> Outcome {
     std::fs::write(&stamp, wanted).map_err(|e| format!("{}: {e}", stamp.display()))
 }
 
-/// Builds the folder of static files `apps/studio-web/dist`.
+/// Builds the page as a folder of static files: `apps/studio-web/dist`, which goes into the program, or for tests
+/// `apps/studio-web/dist-test`, whose core is quicker to build.
 pub(crate) fn build(tools: &Tools, release: bool) -> Outcome {
     packages()?;
     let wasm = build_wasm(tools, release)?;
     bindgen(tools, &wasm, "web", &folder().join("src/wasm"))?;
-    npm(&["run", "--silent", "build", "--", "--logLevel", "warn"])
+    let to = if release { "dist" } else { "dist-test" };
+    npm(&["run", "--silent", "build", "--", "--logLevel", "warn", "--outDir", to])?;
+    if release { renew_program() } else { Ok(()) }
+}
+
+/// Has cargo look for the page when it builds the program next: it cannot watch a folder that was not there.
+fn renew_program() -> Outcome {
+    let script = repository().join("apps/cli/build.rs");
+    let touched = std::fs::File::options().append(true).open(&script);
+    let touched = touched.and_then(|file| file.set_modified(std::time::SystemTime::now()));
+    touched.map_err(|e| format!("{}: {e}", script.display()))
 }
 
 /// Whether there is no screen for a browser, or nobody to look at it.
@@ -52,8 +63,8 @@ pub(crate) fn headless() -> bool {
 /// Builds the Studio and serves it until Ctrl-C; `args` go to `burgeon studio`.
 pub(crate) fn open(tools: &Tools, args: &[String]) -> Outcome {
     build(tools, true)?;
-    let mut c = prepare(built_burgeon()?, &["studio", "--folder"]);
-    c.arg(folder().join("dist")).args(args);
+    let mut c = prepare(built_burgeon()?, &["studio"]);
+    c.args(args);
     finish(c)
 }
 
@@ -72,6 +83,10 @@ pub(crate) fn test(tools: &Tools, tested: bool) -> Outcome {
     say(&format!("$ node e2e/run.mjs ({})", browser.display()));
     let mut c = prepare("node", &["e2e/run.mjs"]);
     c.current_dir(folder()).arg(&browser).arg(burgeon("debug")).arg(target_dir().join("studio-test"));
+    finish(c)?;
+    say("$ node e2e/kills.mjs");
+    let mut c = prepare("node", &["e2e/kills.mjs"]);
+    c.current_dir(folder()).arg(&browser).arg(burgeon("debug"));
     finish(c)?;
     say("$ node e2e/morph.mjs");
     let mut c = prepare("node", &["e2e/morph.mjs"]);

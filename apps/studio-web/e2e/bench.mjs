@@ -1,26 +1,13 @@
 // node e2e/bench.mjs CHROMIUM BURGEON : measures the Studio as built in dist/, in a real browser against the real server.
-import { spawn } from 'node:child_process';
 import { readdirSync, readFileSync } from 'node:fs';
 import { extname } from 'node:path';
 import { gzipSync } from 'node:zlib';
 import { chromium } from 'playwright-core';
 import { FLAGS } from './flags.mjs';
+import { serve } from './server.mjs';
 
 const [browserPath, burgeon] = process.argv.slice(2);
-const server = spawn(burgeon, ['studio', '--no-open', '--port', '0', '--folder', 'dist'], {
-  stdio: ['ignore', 'pipe', 'inherit'],
-});
-// However this run ends, the server ends with it.
-process.on('exit', () => server.kill());
-const url = await new Promise((resolve, reject) => {
-  let said = '';
-  server.stdout.on('data', (d) => {
-    said += d;
-    const found = /http:\/\/127\.0\.0\.1:\d+\//.exec(said);
-    if (found) resolve(found[0]);
-  });
-  server.on('exit', (code) => reject(new Error(`burgeon studio ended with ${code}`)));
-});
+const url = await serve(burgeon, 'dist');
 const browser = await chromium.launch({
   executablePath: browserPath,
   args: [...FLAGS, '--enable-blink-features=ForceEagerMeasureMemory'],
@@ -309,7 +296,7 @@ for (const sketch of ['a', 'b', 'c', 'd', 'e', 'f', 'g', 'h']) {
           document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true }));
           await until(() => Number(document.body.dataset.triangles) > 0);
           document.querySelector('#b-commands').click();
-          document.querySelector('#p-close').click();
+          document.querySelector('#p-new').click();
           await until(
             () => Number(document.body.dataset.parts) === 0 && Number(document.body.dataset.strokes) === 0,
           );
@@ -329,5 +316,4 @@ for (const sketch of ['a', 'b', 'c', 'd', 'e', 'f', 'g', 'h']) {
   await context.close();
 }
 await browser.close();
-server.removeAllListeners('exit');
 process.exit(0);

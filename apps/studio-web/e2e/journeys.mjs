@@ -21,7 +21,7 @@ export async function begin(page, url) {
 }
 
 /** Moves the mouse along points of the sheet (pixels from its upper left corner) with the button down. */
-async function draw(page, points) {
+export async function draw(page, points) {
   const box = await page.locator('.sheet').boundingBox();
   const [first, ...rest] = points;
   await page.mouse.move(box.x + first[0], box.y + first[1]);
@@ -30,7 +30,7 @@ async function draw(page, points) {
   await page.mouse.up();
 }
 
-const line = (x0, y0, x1, y1, bow = 0, n = 7) =>
+export const line = (x0, y0, x1, y1, bow = 0, n = 7) =>
   Array.from({ length: n + 1 }, (_, i) => {
     const t = i / n;
     return [x0 + (x1 - x0) * t + bow * 4 * t * (1 - t), y0 + (y1 - y0) * t];

@@ -1,42 +1,25 @@
-// node e2e/run.mjs CHROMIUM BURGEON OUT : the main journeys through the Studio, in a real browser, against the real
-// server. Pictures of each go to OUT.
-import { spawn } from 'node:child_process';
+// node e2e/run.mjs CHROMIUM BURGEON OUT [FOLDER] : the main journeys through the Studio, in a real browser, against the
+// real server. Pictures of each go to OUT. FOLDER: the built page, if not that of the tests.
 import { mkdirSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 import { chromium } from 'playwright-core';
 import { FLAGS } from './flags.mjs';
 import { journeys } from './journeys.mjs';
+import { keeping } from './keeping.mjs';
+import { serve } from './server.mjs';
 import { shaping } from './shaping.mjs';
 
-const [browserPath, burgeon, out] = process.argv.slice(2);
+const [browserPath, burgeon, out, folder = 'dist-test'] = process.argv.slice(2);
 rmSync(out, { recursive: true, force: true });
 mkdirSync(out, { recursive: true });
 
-const server = spawn(
-  burgeon,
-  ['studio', '--no-open', '--port', '0', '--folder', 'dist', '../../fixtures/sketches/gallery/tulip.svg'],
-  {
-    stdio: ['ignore', 'pipe', 'inherit'],
-  },
-);
-// However this run ends, the server ends with it.
-process.on('exit', () => server.kill());
-const url = await new Promise((resolve, reject) => {
-  let said = '';
-  server.stdout.on('data', (d) => {
-    said += d;
-    const found = /http:\/\/127\.0\.0\.1:\d+\//.exec(said);
-    if (found) resolve(found[0]);
-  });
-  server.on('error', reject);
-  server.on('exit', (code) => reject(new Error(`burgeon studio ended with ${code}`)));
-});
+const url = await serve(burgeon, folder, '../../fixtures/sketches/gallery/tulip.svg');
 
 const browser = await chromium.launch({ executablePath: browserPath, args: FLAGS });
 
 let failed = 0;
 const only = process.env.ONLY;
-for (const [name, journey, options] of [...journeys, ...shaping]) {
+for (const [name, journey, options] of [...journeys, ...keeping, ...shaping]) {
   if (only && !name.includes(only)) continue;
   const context = await browser.newContext({
     viewport: { width: 1000, height: 640 },
@@ -63,7 +46,7 @@ for (const [name, journey, options] of [...journeys, ...shaping]) {
       context,
       url,
       out,
-      shot: (file) => page.screenshot({ path: join(out, `${file}.png`) }),
+      shot: (file, of = page) => of.screenshot({ path: join(out, `${file}.png`) }),
       troubles,
     });
     if (foreign.length > 0) throw new Error(`asked other hosts: ${foreign.join(', ')}`);
@@ -79,6 +62,5 @@ for (const [name, journey, options] of [...journeys, ...shaping]) {
   await context.close();
 }
 await browser.close();
-server.removeAllListeners('exit');
 console.log(`Studio journeys: ${failed} failed; pictures in ${out}`);
 process.exit(failed > 0 ? 1 : 0);

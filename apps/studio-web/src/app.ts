@@ -3,8 +3,10 @@ import { buildPage, type Parts } from './bars';
 import { Clipboard } from './clipboard';
 import type { Page } from './commands';
 import { Card } from './correct';
+import { Documents } from './documents';
 import { Files } from './files';
 import { openHelp } from './help';
+import type { Standing } from './keeper';
 import { listenForKeys } from './keyboard';
 import { MakerPanel } from './makers';
 import { openPalette } from './palette';
@@ -12,8 +14,9 @@ import { Panels } from './panels';
 import { SceneList } from './scene';
 import { Session, type SessionEvents } from './session';
 import { Shaping } from './shaping';
+import { openShelf } from './shelf';
 import { Sheet, type SheetEvents, type Tool } from './sheet/sheet';
-import { Show } from './show';
+import { Show, whyNot } from './show';
 import { setSetting } from './store';
 import { currentLanguage, setLanguage, t, tell } from './text';
 import { Theme } from './theme';
@@ -37,11 +40,11 @@ export class App implements Page {
   readonly view: PlantView | undefined;
   readonly shaping: Shaping | undefined;
   readonly modes: ViewModes;
+  readonly documents = this.makeDocuments();
   readonly files = this.makeFiles();
   readonly clipboard = new Clipboard(this.session.engine, this.sheet, {
     run: (c) => this.session.draw(c),
     openFile: (file) => this.files.openFile(file),
-    changed: () => this.files.changed(),
     choose: (ids) => this.choose(ids),
   });
   readonly theme = new Theme((dark) => {
@@ -53,6 +56,7 @@ export class App implements Page {
   private readonly show: Show;
   private tool: Tool = 'parts';
   private started = false;
+  private toldOfStorage = false;
   /** Where the photograph lay when a drag began. */
   private photoFrom: SketchState['photo'] = null;
   /** Why each plant could not be made, as it was said last. */
@@ -81,9 +85,6 @@ export class App implements Page {
     this.files.listen(document.body);
     listenForKeys(this);
     document.addEventListener('paste', (e) => this.clipboard.paste(e));
-    document.addEventListener('visibilitychange', () => {
-      if (document.hidden) void this.files.keepNow();
-    });
     this.session.engine.start();
   }
 
@@ -96,8 +97,7 @@ export class App implements Page {
       document.body.dataset['readyAt'] = String(performance.now());
       document.body.dataset['ready'] = 'true';
       // The state may come a moment later; a scene that was restored is there by now.
-      if (!session.state || (session.state.plants.length === 1 && session.drawn?.strokes.length === 0))
-        firstRun();
+      if (!session.state || this.isBlank) firstRun();
       void this.panels.loadCatalogue();
     });
   }
@@ -133,8 +133,8 @@ export class App implements Page {
         this.show.idle();
         this.show.view();
         this.modes.refresh();
+        if (fresh.length > 0) this.documents.seen();
       },
-      done: (request) => this.files.changed(request),
       refused: (request, why) => {
         if (request.kind === 'stroke') this.sheet.dropPending();
         if (why !== 'restarted') note(t('note.refused', { why }), 'bad');
@@ -155,7 +155,16 @@ export class App implements Page {
         this.show.idle();
         note(t('note.noworker'), 'bad');
       },
+      refusal: () => this.documents.refusal(),
+      asked: (request) => this.documents.keeper.record(request),
+      vain: (request) => this.documents.keeper.forget(request),
+      told: (request) => this.documents.keeper.again(request),
     };
+  }
+
+  private get isBlank(): boolean {
+    const { state, drawn } = this.session;
+    return state?.plants.length === 1 && drawn?.strokes.length === 0;
   }
 
   /** A plant that cannot be made says why once. */
@@ -229,13 +238,42 @@ export class App implements Page {
     });
   }
 
+  private makeDocuments(): Documents {
+    const { session } = this;
+    return new Documents({
+      ask: (request) => session.engine.ask(request),
+      save: () => session.engine.ask<Uint8Array>({ kind: 'save' }),
+      name: () => session.state?.name ?? t('app.untitled'),
+      picture: () => (session.isBare ? undefined : this.view?.picture()),
+      opened: () => {
+        // Another document's plants and pictures have the same numbers.
+        this.view?.forget();
+        this.said.clear();
+        this.sheet.select([]);
+        this.opened();
+      },
+      standing: (now) => this.standing(now),
+    });
+  }
+
+  /** What is true of the saving; that nothing is kept is said once, beside the line that stays. */
+  private standing(now: Standing): void {
+    this.show?.standing(now);
+    const failed = typeof now === 'object';
+    if (failed && !this.toldOfStorage)
+      note(t(now.failed.name === 'QuotaExceededError' ? 'note.full' : 'note.storage'), 'bad');
+    this.toldOfStorage = failed;
+  }
+
+  private opened(): void {
+    this.sheet.fit();
+    this.view?.frameNow();
+  }
+
   private makeFiles(): Files {
     const { session } = this;
-    return new Files(session.engine, {
-      opened: () => {
-        this.sheet.fit();
-        this.view?.frameNow();
-      },
+    return new Files(session.engine, this.documents, {
+      opened: () => this.opened(),
       picture: () => this.view?.picture(),
       name: () => session.state?.name ?? t('app.untitled'),
       empty: () => session.isBare,
@@ -243,7 +281,7 @@ export class App implements Page {
       kind: () => session.plant?.maker ?? 'sketch',
       viewed: (name) => this.show.model(name),
       photo: (file) => this.panels.layPhoto(file),
-      kept: () => this.show.kept(),
+      blank: () => this.isBlank,
     });
   }
 
@@ -283,6 +321,7 @@ export class App implements Page {
   }
 
   private showAll(): void {
+    this.show.standing(this.documents.keeper.standing);
     this.setTool(this.tool);
     this.show.switches();
     this.show.document();
@@ -334,6 +373,14 @@ export class App implements Page {
     this.show.parts = this.build();
     this.show.parts.busy.hidden = this.started;
     this.showAll();
+  }
+
+  openShelf(): void {
+    void openShelf({
+      here: this.documents,
+      rename: (name) => this.session.run({ scene: { rename: name } }),
+      failed: (why) => note(t('note.refused', { why: whyNot(why) }), 'bad'),
+    });
   }
 
   openPalette(): void {

@@ -35,7 +35,10 @@ export interface Parts {
   counts: HTMLElement;
   busy: HTMLElement;
   busyText: HTMLElement;
+  /** What is true of the saving. */
   kept: HTMLElement;
+  /** Why the document may only be looked at. */
+  readonly: HTMLElement;
 }
 
 /** Puts the page into `host`. */
@@ -63,11 +66,13 @@ export function buildPage(host: HTMLElement, page: Page, pieces: Pieces): Parts 
     busy: named('busy', 'span', { class: 'busy' }),
     busyText: named('busytext', 'span', {}, t('status.loading')),
     kept: named('kept', 'span', { class: 'muted' }),
+    readonly: readonlyLine(page),
   };
   pieces.panel.id = 'b-maker';
   parts.model.hidden = true;
   host.replaceChildren(
     topBar(buttons, page, parts.name),
+    parts.readonly,
     sides(leftSide(page, pieces, parts), rightSide(buttons, page, pieces, parts)),
     footer(page, parts),
   );
@@ -122,6 +127,22 @@ function keepButton(buttons: Buttons, spec: ButtonSpec, b: HTMLButtonElement): H
   return b;
 }
 
+/** Under the bar, while another tab works on the document. */
+function readonlyLine(page: Page): HTMLElement {
+  const act = (name: string, text: TextKey, run: () => void): HTMLElement =>
+    named(name, 'button', { type: 'button', class: 'link', onclick: run }, t(text));
+  const line = named(
+    'readonly',
+    'div',
+    { class: 'readonly', role: 'status' },
+    el('span', {}, t('readonly.hint')),
+    act('takeover', 'readonly.take', () => void page.documents.takeOver()),
+    act('readonly-new', 'readonly.new', () => commandOf('new').run(page)),
+  );
+  line.hidden = true;
+  return line;
+}
+
 function nameField(page: Page): HTMLInputElement {
   const field = named('name', 'input', {
     class: 'name',
@@ -163,6 +184,7 @@ function topBar(buttons: Buttons, page: Page, name: HTMLInputElement): HTMLEleme
     ),
     space(),
     group(
+      wide({ command: 'documents', icon: 'documents' }),
       wide({ command: 'new', icon: 'fresh', name: 'fresh' }),
       wide({ command: 'samples', icon: 'samples' }),
       wide({ command: 'open', icon: 'open' }),

@@ -9,8 +9,6 @@ export interface ClipboardEvents {
   /** Asked of the drawing. */
   run(command: SketchCommand): void;
   openFile(file: File): Promise<void>;
-  /** The core pasted something. */
-  changed(): void;
   /** Selects strokes. */
   choose(ids: number[]): void;
 }
@@ -79,7 +77,6 @@ export class Clipboard {
       // The state comes before the answer.
       this.fresh = 0;
       const ids = await this.engine.ask<Uint32Array>({ kind: 'paste', text, x: step, y: -step });
-      this.page.changed();
       this.page.choose([...ids]);
     } catch (error) {
       note(t('note.refused', { why: (error as Error).message }), 'bad');

@@ -3,6 +3,7 @@
  * the sheet of keys are all read from it.
  */
 import type { Clipboard } from './clipboard';
+import type { Documents } from './documents';
 import type { Files } from './files';
 import type { Panels } from './panels';
 import type { Session } from './session';
@@ -22,6 +23,7 @@ export interface Page {
   readonly view: PlantView | undefined;
   readonly shaping: Shaping | undefined;
   readonly modes: ViewModes;
+  readonly documents: Documents;
   readonly files: Files;
   readonly clipboard: Clipboard;
   readonly panels: Panels;
@@ -31,6 +33,7 @@ export interface Page {
   toggleMirror(): void;
   toggleStats(): void;
   switchLanguage(): void;
+  openShelf(): void;
   openPalette(): void;
   openHelp(): void;
   startTour(): void;
@@ -83,15 +86,8 @@ const TABLE = [
   })),
   { id: 'undo', label: 'undo', keys: 'Ctrl+Z', run: (p) => p.session.ask({ kind: 'undo' }) },
   { id: 'redo', label: 'redo', keys: 'Ctrl+Shift+Z Ctrl+Y', run: (p) => p.session.ask({ kind: 'redo' }) },
-  { id: 'new', label: 'menu.new', run: (p) => p.files.fresh() },
-  {
-    id: 'close',
-    label: 'act.close',
-    run: (p) => {
-      p.view?.forget();
-      void p.files.close();
-    },
-  },
+  { id: 'new', label: 'menu.new', run: (p) => void p.documents.fresh() },
+  { id: 'documents', label: 'menu.documents', keys: 'D', run: (p) => p.openShelf() },
   { id: 'open', label: 'menu.open', keys: 'Ctrl+O', run: (p) => p.files.choose() },
   { id: 'samples', label: 'menu.samples', run: (p) => p.files.samples() },
   { id: 'save', label: 'menu.save', keys: 'Ctrl+S', run: (p) => void p.files.save() },
@@ -232,6 +228,7 @@ export function keyOf(id: CommandId): string {
 const KEY_ROWS: readonly [CommandId[], string, TextKey][] = [
   [SHEET_TOOLS.map(([tool]) => tool), ' ', 'key.tools'],
   [['undo', 'redo'], ' · ', 'key.undo'],
+  [['documents'], '', 'documents.title'],
   [['open', 'save', 'export'], ' · ', 'key.files'],
   [['copy', 'cut', 'paste', 'duplicate'], ' · ', 'key.copy'],
   [['all'], '', 'act.all'],

@@ -5,7 +5,7 @@
 import wasmUrl from './wasm/burgeon_wasm_bg.wasm?url';
 import type { FromWorker, Request, Sent, StrokePoints, ToWorker } from './protocol';
 import { tell } from './text';
-import type { DocumentState, Refusal, SceneView } from './wire';
+import type { DocumentState, Opened, Refusal, SceneView } from './wire';
 
 export interface EngineEvents {
   ready(): void;
@@ -20,11 +20,18 @@ export interface EngineEvents {
   fault(hold: boolean): void;
   /** The worker cannot be started at all. */
   dead(why: string): void;
+  /** Why nothing may be changed now; undefined if it may. */
+  refusal(): string | undefined;
+  /** A change is asked for. */
+  asked(request: Request): void;
+  /** It was refused, or changed nothing. */
+  vain(request: Request): void;
+  /** It bears now where its plant was put. */
+  told(request: Request): void;
 }
 
 const CHANGES: ReadonlySet<Request['kind']> = new Set([
   'open',
-  'close',
   'select',
   'obstacle',
   'stroke',
@@ -49,6 +56,8 @@ export class Engine {
   >();
   private journal: Request[] = [];
   private faults = 0;
+  /** Workers in a row that fell before they were ready. */
+  private stillborn = 0;
   private wasReady = false;
   /** Shared with the worker where the page is isolated: lets an evaluation end early. */
   private readonly stop = globalThis.crossOriginIsolated ? new Int32Array(new SharedArrayBuffer(4)) : null;
@@ -76,13 +85,20 @@ export class Engine {
   /** Asks; the promise is kept when the worker has done it and broken, with words for people, when it refused. */
   ask<T = unknown>(request: Request): Promise<T> {
     const seq = ++this.seq;
-    if (CHANGES.has(request.kind)) {
+    const changes = CHANGES.has(request.kind);
+    if (changes) {
+      const why = this.events.refusal();
+      // Looking at another plant changes nothing.
+      if (why !== undefined && request.kind !== 'select') return Promise.reject(new Error(why));
       if (request.kind === 'stage') this.forget('stage'); // only the last of a drag counts
-      if (request.kind === 'close') this.journal = []; // what was before is forgotten here too
       this.journal.push(request);
-      // What is being grown is out of date already; a gesture's beginning changes nothing yet.
-      if (this.stop && request.kind !== 'begin') Atomics.store(this.stop, 0, 1);
+      if (why === undefined) this.events.asked(request);
     }
+    // What was before is forgotten here too.
+    if (request.kind === 'load') this.journal = [...request.journal];
+    // What is being grown is out of date already; a gesture's beginning changes nothing yet.
+    if (this.stop && (changes || request.kind === 'load') && request.kind !== 'begin')
+      Atomics.store(this.stop, 0, 1);
     return new Promise((resolve, reject) => {
       this.waiting.set(seq, { resolve: resolve as (v: unknown) => void, reject, request });
       this.send({ kind: 'ask', seq, request });
@@ -108,16 +124,21 @@ export class Engine {
     switch (message.kind) {
       case 'ready':
         this.wasReady = true;
+        this.stillborn = 0;
         this.events.ready();
         break;
-      case 'done':
-        this.waiting.get(message.seq)?.resolve(message.value);
+      case 'done': {
+        const waiting = this.waiting.get(message.seq);
+        if (waiting) this.done(waiting.request, message.placed, message.value);
+        waiting?.resolve(message.value);
         this.waiting.delete(message.seq);
         break;
+      }
       case 'refused': {
         const waiting = this.waiting.get(message.seq);
+        if (waiting?.request.kind === 'load') this.journal = [];
         // What was refused once would only be refused again.
-        if (waiting) this.journal = this.journal.filter((r) => r !== waiting.request);
+        if (waiting) this.drop(waiting.request);
         waiting?.reject(new Error(tell(message.why)));
         this.waiting.delete(message.seq);
         break;
@@ -151,6 +172,21 @@ export class Engine {
     }
   }
 
+  private done(request: Request, placed: number | undefined, value: unknown): void {
+    if (request.kind === 'open' && (value as Opened).kind === 'model')
+      this.drop(request); // only looked at
+    else if (placed !== undefined && (request.kind === 'open' || request.kind === 'action')) {
+      request.placed = placed;
+      this.events.told(request);
+    }
+  }
+
+  private drop(request: Request): void {
+    if (!this.journal.includes(request)) return;
+    this.journal = this.journal.filter((r) => r !== request);
+    this.events.vain(request);
+  }
+
   private fell(why: string): void {
     this.worker?.terminate();
     this.worker = undefined;
@@ -162,9 +198,10 @@ export class Engine {
       return;
     }
     this.faults += 1;
-    // The second fault in a row: growing this drawing is what fails.
+    this.stillborn += 1;
+    // The second fault in a row: growing this drawing is what fails. Each change tries again: undo always works.
     const hold = this.faults > 1;
-    if (this.faults > 4) {
+    if (this.stillborn > 4) {
       this.events.dead(why);
       return;
     }

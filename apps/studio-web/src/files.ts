@@ -1,13 +1,12 @@
-/** Opening, saving, exporting, keeping. */
+/** Files in and out: opening, saving, exporting, and what the page begins with. */
+import type { Documents } from './documents';
 import type { Engine } from './engine';
-import type { Request } from './protocol';
 import type { MakerWord, Opened } from './wire';
 import { LEVELS, openExport, type Target, type ExportOptions } from './exporting';
 import { decode, isLink, link } from './share';
 import { isPhoto } from './photo';
 import { SAMPLES } from './samples';
 import { measured } from './measure';
-import { keep, kept } from './store';
 import { t } from './text';
 import { dialog, download, el, note } from './ui';
 
@@ -36,17 +35,14 @@ export interface FilesEvents {
   kind(): MakerWord;
   /** A picture was given: it goes under the drawing. */
   photo(file: File): Promise<void>;
-  /** The project is in the browser's storage. */
-  kept(): void;
+  /** Nothing is drawn or planted. */
+  blank(): boolean;
 }
 
 export class Files {
-  private timer = 0;
-  private stale = false;
-  private toldOfStorage = false;
-
   constructor(
     private readonly engine: Engine,
+    private readonly documents: Documents,
     private readonly events: FilesEvents,
   ) {}
 
@@ -103,7 +99,6 @@ export class Files {
     measured('open', start);
     if (opened.kind === 'model') this.events.viewed(opened.name || name);
     this.events.opened();
-    this.changed();
     if (!quiet) {
       note(t('note.opened', { name }));
       if (opened.warnings.length > 0) note(opened.warnings.slice(0, 3).join(' · '), 'bad');
@@ -165,23 +160,6 @@ export class Files {
     } catch (e) {
       note(t('note.unreadable', { name, why: (e as Error).message }), 'bad');
     }
-  }
-
-  fresh(): void {
-    this.engine
-      .ask({ kind: 'action', action: 'new' })
-      .then(() => {
-        this.events.opened();
-        this.changed();
-      })
-      .catch(() => undefined);
-  }
-
-  /** Forgets the document and its history. */
-  async close(): Promise<void> {
-    await this.engine.ask({ kind: 'close' });
-    this.events.opened();
-    this.changed();
   }
 
   async save(): Promise<void> {
@@ -263,71 +241,36 @@ export class Files {
     }
   }
 
-  // Keeping ------------------------------------------------------------------------------------------------------
+  // Starting -----------------------------------------------------------------------------------------------------
 
-  /** Something was done: keep it soon. */
-  changed(request?: Request): void {
-    if (request?.kind === 'draft' || request?.kind === 'begin' || request?.kind === 'stage') return;
-    this.stale = true;
-    clearTimeout(this.timer);
-    this.timer = window.setTimeout(() => void this.keepNow(), 400);
-  }
-
-  async keepNow(): Promise<void> {
-    if (!this.stale) return;
-    this.stale = false;
-    try {
-      const bytes = await this.engine.ask<Uint8Array>({ kind: 'save' });
-      await keep({ bytes, name: this.events.name(), time: Date.now() });
-      this.events.kept();
-    } catch (e) {
-      if ((e as Error).message === 'restarted') {
-        this.changed();
-      } else if (!this.toldOfStorage) {
-        this.toldOfStorage = true;
-        note(t('note.storage'), 'bad');
-      }
-    }
-  }
-
-  /** What the address asks for, else what was drawn last. */
+  /** What the address asks for, else what this browser kept; what is asked for comes as a document of its own. */
   async restore(): Promise<void> {
+    const { documents } = this;
     const wanted = new URLSearchParams(location.search).get('open');
     // Only what this very server offers: a link must not make the page fetch from elsewhere.
-    if (wanted && /^opened\/[^/\\?#]+$/.test(wanted)) {
-      history.replaceState(null, '', location.pathname);
-      const name = wanted.slice('opened/'.length);
-      await this.openUrl(name, `./opened/${encodeURIComponent(name)}`);
-      return;
-    }
+    const offered = wanted && /^opened\/[^/\\?#]+$/.test(wanted) ? wanted.slice('opened/'.length) : undefined;
     const shared = isLink(location.hash) ? location.hash : '';
-    if (shared) history.replaceState(null, '', location.pathname);
-    await this.restoreLast();
-    if (shared) await this.openShared(shared);
+    if (offered || shared) history.replaceState(null, '', location.pathname);
+    const restored = await documents.restore();
+    if (offered) {
+      await documents.fresh(true);
+      await this.openUrl(offered, `./opened/${encodeURIComponent(offered)}`);
+    } else if (shared) await this.openShared(shared);
+    else if (restored && !this.events.blank()) note(t('note.restored'));
   }
 
-  /** A link is a step of undo over what was here: it destroys nothing. */
   private async openShared(hash: string): Promise<void> {
-    const bytes = decode(hash);
+    const { documents } = this;
+    const before = documents.current;
     try {
+      const bytes = decode(hash);
       if (!bytes) throw new Error(t('note.link.bad'));
+      await documents.fresh(true);
       await this.open('link.burgeon', bytes, 0, false, true);
       note(t('note.link.opened'));
     } catch (e) {
+      if (before !== undefined) await documents.open(before);
       note(t('note.unreadable', { name: t('share.title'), why: (e as Error).message }), 'bad');
-    }
-  }
-
-  private async restoreLast(): Promise<void> {
-    try {
-      const last = await kept();
-      if (!last) return;
-      await this.open('autosave.burgeon', last.bytes, 0, true, true);
-      if (Number(document.body.dataset['strokes']) > 0 || Number(document.body.dataset['plants']) > 1)
-        note(t('note.restored'));
-    } catch {
-      this.toldOfStorage = true;
-      note(t('note.storage'), 'bad');
     }
   }
 }

@@ -7,12 +7,16 @@ const chosen = setting('language');
 const own = navigator.language.toLowerCase().startsWith('zh') ? 'zh' : 'en';
 setLanguage(chosen === 'zh' || chosen === 'en' ? chosen : own);
 const host = document.getElementById('app');
+let begun = false;
 const begin = (): void => {
-  if (host) new App(host).begin();
+  if (host && !begun) new App(host).begin();
+  begun = true;
 };
-// The program takes the thread for a while: what the page itself holds is painted before. A hidden page is never painted.
+// The program takes the thread for a while: what the page itself holds is painted before. A page that is hidden, or was
+// hidden meanwhile, is never painted.
 if (document.hidden) begin();
 else requestAnimationFrame(() => setTimeout(begin));
+setTimeout(begin, 500);
 
 // Only a page of its own server may keep itself for later: not a file, not a page under development.
 if (import.meta.env.PROD && 'serviceWorker' in navigator && window.isSecureContext) {

@@ -65,23 +65,21 @@ export class Panels {
   }
 
   async addObstacle(file: File): Promise<void> {
-    const { session, files } = this.page;
+    const { session } = this.page;
     try {
       const bytes = new Uint8Array(await file.arrayBuffer());
       await session.engine.ask({ kind: 'obstacle', name: file.name, bytes });
-      files.changed();
     } catch (e) {
       note(t('note.unreadable', { name: file.name, why: (e as Error).message }), 'bad');
     }
   }
 
   async layPhoto(file: File): Promise<void> {
-    const { session, sheet, files } = this.page;
+    const { session, sheet } = this.page;
     const { png, aspect } = await asPng(file);
     const { x, y, width } = placed(sheet.seen(), aspect);
     if (!session.drawn) throw new Error(t('note.nosketch'));
     await session.engine.ask({ kind: 'photo', png, x, y, width });
-    files.changed();
     note(t('note.photo'));
   }
 

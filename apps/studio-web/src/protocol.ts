@@ -13,13 +13,18 @@ import type {
   StrokeMode,
 } from './wire';
 
+/** Where a plant was put that a request added: who does the same again puts it there, without growing the others. */
+interface Placing {
+  placed?: number;
+}
+
 /** What the page asks. Those that change the document are kept in the page's journal. */
 export type Request =
-  | { kind: 'open'; name: string; bytes: Uint8Array; row: number; fresh: boolean }
+  | ({ kind: 'open'; name: string; bytes: Uint8Array; row: number; fresh: boolean } & Placing)
   | { kind: 'stroke'; mode: StrokeMode; samples: Float64Array }
   | { kind: 'command'; command: Command }
   /** What is more than one command. */
-  | { kind: 'action'; action: Action }
+  | ({ kind: 'action'; action: Action } & Placing)
   | { kind: 'begin'; name: string }
   | { kind: 'stage'; command: Command }
   /** Chooses the plant that requests without a plant are for. */
@@ -32,8 +37,8 @@ export type Request =
   | { kind: 'abandon' }
   | { kind: 'undo' }
   | { kind: 'redo' }
-  /** Starts empty and forgets everything. */
-  | { kind: 'close' }
+  /** Forgets everything, and does what was asked of another document. */
+  | { kind: 'load'; journal: readonly Request[] }
   | { kind: 'paste'; text: string; x: number; y: number }
   | { kind: 'photo'; png: Uint8Array; x: number; y: number; width: number }
   | { kind: 'copy'; ids: number[] }
@@ -49,7 +54,7 @@ export type Request =
   | { kind: 'export'; request: ExportRequest };
 
 export type ToWorker =
-  | { kind: 'start'; wasm: string; stop: Int32Array | null; journal: Request[]; hold: boolean }
+  | { kind: 'start'; wasm: string; stop: Int32Array | null; journal: readonly Request[]; hold: boolean }
   | { kind: 'ask'; seq: number; request: Request };
 
 export interface PartArrays {
@@ -84,7 +89,7 @@ export interface Sent {
 
 export type FromWorker =
   | { kind: 'ready' }
-  | { kind: 'done'; seq: number; value: unknown }
+  | { kind: 'done'; seq: number; value: unknown; placed: number | undefined }
   | { kind: 'refused'; seq: number; why: Refusal }
   | { kind: 'state'; state: DocumentState; fresh: StrokePoints[]; photo: Uint8Array<ArrayBuffer> | null }
   /** `fresh`: the plants whose meshes changed. */

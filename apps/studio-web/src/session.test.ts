@@ -38,7 +38,7 @@ const documentAt = (current: number): DocumentState =>
   ({ current, plants: [0, 1].map((id) => ({ id, sketch: { strokes: [] } })) }) as unknown as DocumentState;
 
 function sessionWith(events: Partial<SessionEvents> = {}): Session {
-  const names = ['ready', 'state', 'view', 'busy', 'progress', 'failed', 'fault', 'dead', 'done', 'refused'];
+  const names = ['ready', 'state', 'view', 'busy', 'progress', 'failed', 'fault', 'dead', 'refused'];
   const quiet = Object.fromEntries(names.map((name) => [name, () => {}]));
   return new Session({ ...quiet, ...events } as SessionEvents);
 }
@@ -91,14 +91,13 @@ describe('a session', () => {
     expect(worker.asked.length).toBe(2);
   });
 
-  it('reports what was done and what was refused', async () => {
-    const [done, refused] = [vi.fn(), vi.fn()];
-    const session = sessionWith({ done, refused });
+  it('reports what was refused', async () => {
+    const refused = vi.fn();
+    const session = sessionWith({ refused });
     session.end(true);
-    await vi.waitFor(() => expect(done).toHaveBeenCalledWith({ kind: 'commit' }));
     worker.refuses = true;
     session.end(false);
     await vi.waitFor(() => expect(refused).toHaveBeenCalledWith({ kind: 'abandon' }, 'no'));
-    expect(done).toHaveBeenCalledTimes(1);
+    expect(refused).toHaveBeenCalledTimes(1);
   });
 });

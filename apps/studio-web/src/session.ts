@@ -21,7 +21,6 @@ export interface SessionEvents extends Omit<EngineEvents, 'state'> {
     photo: Parameters<EngineEvents['state']>[2],
     other: boolean,
   ): void;
-  done(request: Request): void;
   refused(request: Request, why: string): void;
 }
 
@@ -91,7 +90,6 @@ export class Session {
       .ask(request)
       .then(() => {
         if (request.kind === 'undo') measured('undo', start);
-        this.events.done(request);
       })
       .catch((e: Error) => this.events.refused(request, e.message));
   }

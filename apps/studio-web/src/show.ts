@@ -2,6 +2,7 @@
 import type { Parts } from './bars';
 import { keyOf } from './commands';
 import { dot } from './correct';
+import type { Standing } from './keeper';
 import type { MakerPanel } from './makers';
 import type { SceneList } from './scene';
 import type { Session } from './session';
@@ -218,7 +219,26 @@ export class Show {
     this.parts.busy.hidden = true;
   }
 
-  kept(): void {
-    this.parts.kept.textContent = t('status.saved');
+  /** What is true of the saving. */
+  standing(now: Standing): void {
+    const { kept, readonly } = this.parts;
+    const failed = typeof now === 'object';
+    kept.textContent = failed
+      ? t('status.failed', { why: whyNot(now.failed) })
+      : {
+          empty: '',
+          opening: t('status.loading'),
+          saving: t('status.saving'),
+          saved: t('status.saved'),
+          readonly: t('status.readonly'),
+        }[now];
+    kept.classList.toggle('bad', failed);
+    readonly.hidden = now !== 'readonly';
+    document.body.dataset['kept'] = failed ? 'failed' : now;
   }
+}
+
+/** Why the browser keeps nothing. */
+export function whyNot(e: Error): string {
+  return t(e.name === 'QuotaExceededError' ? 'failed.full' : 'failed.shut');
 }

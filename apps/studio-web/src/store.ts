@@ -1,60 +1,34 @@
-/** The browser's own storage. Every function may fail quietly: private mode and full disks are told once by the page. */
-
-const NAME = 'burgeon';
-const STORE = 'projects';
-const KEY = 'last';
-
-export interface Kept {
-  bytes: Uint8Array;
-  name: string;
-  time: number;
-}
-
-function open(): Promise<IDBDatabase> {
-  return new Promise((resolve, reject) => {
-    const request = indexedDB.open(NAME, 1);
-    request.onupgradeneeded = () => request.result.createObjectStore(STORE);
-    request.onsuccess = () => resolve(request.result);
-    request.onerror = () => reject(request.error);
-    request.onblocked = () => reject(new Error('blocked'));
-  });
-}
-
-async function transact<T>(mode: IDBTransactionMode, act: (s: IDBObjectStore) => IDBRequest<T>): Promise<T> {
-  const base = await open();
-  try {
-    return await new Promise<T>((resolve, reject) => {
-      const transaction = base.transaction(STORE, mode);
-      const request = act(transaction.objectStore(STORE));
-      transaction.oncomplete = () => resolve(request.result);
-      transaction.onerror = () => reject(transaction.error);
-      transaction.onabort = () => reject(transaction.error);
-    });
-  } finally {
-    base.close();
-  }
-}
-
-export async function keep(kept: Kept): Promise<void> {
-  await transact('readwrite', (s) => s.put(kept, KEY));
-}
-
-export async function kept(): Promise<Kept | undefined> {
-  return (await transact('readonly', (s) => s.get(KEY))) as Kept | undefined;
-}
+/** The browser's own storage. What it does not keep it does not keep: whoever asks says so to people. */
 
 /** A small setting, such as the language; undefined if there is none or nothing may be read. */
 export function setting(name: string): string | undefined {
+  return read(() => localStorage, name);
+}
+
+export function setSetting(name: string, value: string): void {
+  write(() => localStorage, name, value);
+}
+
+/** The same for this tab alone; it survives a reload. */
+export function tabSetting(name: string): string | undefined {
+  return read(() => sessionStorage, name);
+}
+
+export function setTabSetting(name: string, value: string): void {
+  write(() => sessionStorage, name, value);
+}
+
+function read(storage: () => Storage, name: string): string | undefined {
   try {
-    return localStorage.getItem(`burgeon.${name}`) ?? undefined;
+    return storage().getItem(`burgeon.${name}`) ?? undefined;
   } catch {
     return undefined;
   }
 }
 
-export function setSetting(name: string, value: string): void {
+function write(storage: () => Storage, name: string, value: string): void {
   try {
-    localStorage.setItem(`burgeon.${name}`, value);
+    storage().setItem(`burgeon.${name}`, value);
   } catch {
     // The choice lasts until the page closes.
   }

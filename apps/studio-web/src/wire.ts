@@ -93,6 +93,7 @@ export const CODES = {
   "scan-surface": ["why"],
   "scan-too-few": ["points"],
   "scan-too-many": ["points", "most"],
+  "scene-full": ["mb"],
   "spec-pointer": ["path"],
   "spec-text": ["path", "why"],
   "spline-degree": ["degree"],

@@ -71,9 +71,10 @@ function answer(s: StudioSession, request: Request): unknown {
       return s.draft(request.mode, request.samples);
     case 'save':
       return s.save();
-    case 'close':
+    case 'load':
       sent.clear();
-      return s.close();
+      s.close();
+      return replay(s, request.journal);
     case 'paste':
       return s.paste(request.text, request.x, request.y);
     case 'photo':
@@ -101,6 +102,20 @@ function answer(s: StudioSession, request: Request): unknown {
       }
     }
   }
+}
+
+/** The same again. What is refused now was refused the first time too, but for the file that all else stands on. */
+function replay(s: StudioSession, journal: readonly Request[]): void {
+  journal.forEach((request, i) => {
+    if ('placed' in request && request.placed !== undefined) s.place_next(request.placed);
+    try {
+      answer(s, request);
+    } catch (e) {
+      if (e instanceof WebAssembly.RuntimeError || (i === 0 && request.kind === 'open')) throw e;
+    } finally {
+      s.placed();
+    }
+  });
 }
 
 function tellState(s: StudioSession): void {
@@ -195,13 +210,7 @@ async function start(message: Extract<ToWorker, { kind: 'start' }>): Promise<voi
   stop = message.stop;
   await init({ module_or_path: message.wasm });
   const s = new StudioSession();
-  for (const request of message.journal) {
-    try {
-      answer(s, request);
-    } catch (e) {
-      if (e instanceof WebAssembly.RuntimeError) throw e; // a refusal was refused the first time too
-    }
-  }
+  replay(s, message.journal);
   session = s;
   tell({ kind: 'ready' });
   tellState(s);
@@ -229,7 +238,7 @@ page.onmessage = ({ data }: MessageEvent<ToWorker>) => {
     const quiet = QUIET.has(request.kind) || (request.kind === 'shape' && !(value as ShapeAnswer).again);
     // The state first: who waits for the answer may look at it.
     if (!quiet && request.kind !== 'draft' && request.kind !== 'shape') tellState(session);
-    tell({ kind: 'done', seq, value }, bytes);
+    tell({ kind: 'done', seq, value, placed: session.placed() }, bytes);
     if (!quiet) schedule();
   } catch (e) {
     tell({ kind: 'refused', seq, why: refusal(e) });

@@ -297,6 +297,16 @@ impl StudioSession {
         Ok(self.0.add_obstacle(file_name, bytes)?)
     }
 
+    /// See [`Workspace::placed`].
+    pub fn placed(&mut self) -> Option<f64> {
+        self.0.placed()
+    }
+
+    /// See [`Workspace::place_next`].
+    pub fn place_next(&mut self, x: f64) {
+        self.0.place_next(x);
+    }
+
     /// Corners of an obstacle that is a mesh, three to a triangle.
     pub fn obstacle(&self, plant: u32, row: usize) -> Vec<f32> {
         self.0.obstacle(PlantId(plant), row)

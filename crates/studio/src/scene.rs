@@ -67,6 +67,12 @@ pub enum SceneError {
     /// A coarser copy was asked for of what is not made.
     #[error("the plant \"{0}\" has not been made yet")]
     NotMade(String),
+    /// The plants that are shown already take as many bytes as they may.
+    #[error(
+        "there is no room for it: the plants of this scene already take {} MB of memory; hide or delete some of them",
+        .0 >> 20
+    )]
+    NoRoom(usize),
     /// The user asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -120,6 +126,7 @@ base::coded!(SceneError {
     Self::Species(name) => "no-species" { name },
     Self::Lender(name) => "lender-without-leaf" { name },
     Self::NotMade(name) => "plant-not-made" { name },
+    Self::NoRoom(bytes) => "scene-full" { mb = bytes >> 20 },
 } wraps {
     Self::Sketch(e) => e, MakeError;
     Self::Opening(e) => e, OpeningError;

@@ -51,6 +51,8 @@ impl Workspace {
                     let looked = self.scene.update(id, shaped, run);
                     self.scene.set_looking(false);
                     looked
+                } else if self.scene.get(id).is_none() && self.kept_bytes() > self.kept.most {
+                    Err(SceneError::NoRoom(self.kept_bytes()))
                 } else {
                     self.scene.update(id, document, run)
                 };
@@ -232,6 +234,12 @@ impl Workspace {
     /// About how many bytes the results of all plants take.
     pub fn kept_bytes(&self) -> usize {
         self.scene.kept().map(|(_, bytes)| bytes).sum()
+    }
+
+    /// How many bytes the results of all plants may take before no further plant is made: it says so, and is made when
+    /// there is room again. Default [`crate::SHOWN_BYTES`].
+    pub fn show_at_most(&mut self, bytes: usize) {
+        self.kept.most = bytes;
     }
 
     /// How many bytes the results of all plants may take before those of plants that are hidden or deleted go. What is

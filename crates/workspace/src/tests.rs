@@ -555,3 +555,51 @@ fn edits_survive_a_file_and_say_when_their_branch_is_gone() {
     let pruned = look(&mut s);
     assert_eq!(pruned["stages"], serde_json::json!(["shape", "mesh"]));
 }
+
+#[test]
+fn plants_that_are_added_again_stand_where_they_stood() {
+    let lily = Action::Add { name: "lily".into(), maker: crate::NewMaker::Flower("lily".into()) };
+    let mut s = Workspace::default();
+    let mut places = Vec::new();
+    for _ in 0..3 {
+        s.act(&lily).unwrap();
+        places.push(s.placed().unwrap());
+        s.evaluate(&run()).unwrap();
+    }
+    s.undo();
+    assert_eq!(s.placed(), None, "nothing was added");
+    s.redo();
+    // Without growing them.
+    let mut again = Workspace::default();
+    for &x in &places {
+        again.place_next(x);
+        again.act(&lily).unwrap();
+        assert_eq!(again.placed(), Some(x));
+    }
+    assert_eq!(again.document(), s.document());
+    assert!(places[1] < places[2], "{places:?}");
+}
+
+#[test]
+fn a_scene_that_is_full_says_so_and_goes_on() {
+    let lily = Action::Add { name: "lily".into(), maker: crate::NewMaker::Flower("lily".into()) };
+    let mut s = Workspace::default();
+    s.act(&lily).unwrap();
+    s.evaluate(&run()).unwrap();
+    s.show_at_most(s.kept_bytes());
+    s.act(&lily).unwrap();
+    assert!(s.evaluate(&run()).unwrap().plants[1].error.is_none(), "the last that has room");
+    s.act(&lily).unwrap();
+    let view = s.evaluate(&run()).unwrap();
+    assert_eq!(view.plants[2].error.as_ref().map(|e| e.code.as_str()), Some("scene-full"));
+    assert!(view.plants[2].parts.is_empty());
+    // What is there may change, and room that is made is used.
+    let first = s.document().plants()[0].id();
+    s.run(PlantCommand::SetSeed(Seed::new(7)).of(first)).unwrap();
+    assert!(s.evaluate(&run()).unwrap().plants[0].error.is_none());
+    s.keep_at_most(0);
+    s.run(PlantCommand::Hide(true).of(first)).unwrap();
+    s.evaluate(&run()).unwrap();
+    let view = s.evaluate(&run()).unwrap();
+    assert!(view.plants[2].error.is_none() && !view.plants[2].parts.is_empty());
+}

@@ -110,6 +110,9 @@ pub struct Workspace {
     pub(crate) held: Option<Held>,
     /// The photograph that the shell has.
     given_photo: Option<Arc<[u8]>>,
+    /// Where a plant was put that was added last, and where the next one is to be put.
+    placed: Option<f64>,
+    place_next: Option<f64>,
 }
 
 impl Workspace {
@@ -150,7 +153,8 @@ impl Workspace {
 
     /// Starts empty and forgets the history: the memory of the document is given back.
     pub fn close(&mut self) {
-        *self = Self { kept: Kept::at_most(self.kept.limit), ..Self::default() };
+        let kept = Kept { most: self.kept.most, ..Kept::at_most(self.kept.limit) };
+        *self = Self { kept, ..Self::default() };
     }
 
     /// Does a command as one step of undo, or as part of the open gesture. A copy of a plant is chosen.
@@ -200,6 +204,20 @@ impl Workspace {
         }
     }
 
+    /// Where the plants were put that the requests since the last call added: metres along x, of the last one.
+    ///
+    /// How wide the others are is known only where they were grown. Who does the same again without growing them, as a
+    /// shell does after a fault, says so beforehand with [`Workspace::place_next`].
+    pub fn placed(&mut self) -> Option<f64> {
+        self.place_next = None;
+        self.placed.take()
+    }
+
+    /// Puts the plant that the next request adds at this place along x, in metres, and not beside the others.
+    pub fn place_next(&mut self, x: f64) {
+        self.place_next = Some(x);
+    }
+
     /// Adds a plant beside the others and chooses it. A sheet on which nothing was drawn gives way.
     pub(crate) fn add_plant(&mut self, name: &str, maker: Maker) -> Result<(), WorkspaceError> {
         let document = self.editor.document();
@@ -221,8 +239,11 @@ impl Workspace {
                 let at = p.settings().placement;
                 Some(at.position.x + at.scale * model.bounds().max.x.max(0.0))
             });
-            settings.placement.position.x = (10.0 * (right.fold(0.0, f64::max) + room)).round() / 10.0;
+            let beside = || (10.0 * (right.fold(0.0, f64::max) + room)).round() / 10.0;
+            let x = self.place_next.filter(|x| x.is_finite()).unwrap_or_else(beside);
+            settings.placement.position.x = x;
         }
+        self.placed = Some(settings.placement.position.x);
         let add = SceneCommand::Add(Box::new(NewPlant { settings, strokes: Vec::new() }));
         if let Some(blank) = blank {
             self.editor.begin_gesture("add-plant")?;

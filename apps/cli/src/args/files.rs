@@ -98,7 +98,7 @@ pub(crate) struct StudioArgs {
     /// Open no browser.
     #[arg(long)]
     pub(crate) no_open: bool,
-    /// The folder of the built Studio [default: found beside the program].
+    /// The folder of a built Studio [default: the one in the program].
     #[arg(long, value_name = "DIR")]
     pub(crate) folder: Option<PathBuf>,
 }

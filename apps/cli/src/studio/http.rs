@@ -178,6 +178,7 @@ fn send(stream: &mut impl Write, answer: &Answer, end: Instant, takes: &dyn Fn()
 
 #[cfg(test)]
 mod tests {
+    use super::super::site::Page;
     use super::*;
     use std::net::SocketAddr;
     use std::path::PathBuf;
@@ -202,7 +203,7 @@ mod tests {
         std::fs::write(folder.join("large.wasm"), vec![7; 8 << 20]).unwrap();
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let address = listener.local_addr().unwrap();
-        let site = Site::new(&folder, address.port(), None).unwrap();
+        let site = Site::new(Page::Folder(folder), address.port(), None).unwrap();
         std::thread::spawn(move || serve(&listener, &site, limits));
         address
     }

@@ -12,7 +12,10 @@ use crate::args::StudioArgs;
 use crate::failure::{Failure, Outcome};
 use crate::files::{self, Kind};
 use crate::say;
-use site::Site;
+use site::{Files, Page, Site};
+
+/// The page as it was when the program was built; empty where it had not been built then.
+const PAGE: Files = include!(concat!(env!("OUT_DIR"), "/page.rs"));
 
 /// The port that is tried first. The browser keeps drawings by address: another port, another drawer.
 const PORT: u16 = 7734;
@@ -20,17 +23,11 @@ const PORT: u16 = 7734;
 const NEXT: u16 = 8;
 
 pub(crate) fn studio(args: &StudioArgs) -> Outcome {
-    let folder = args.folder.clone().map_or_else(find, Ok)?;
-    if !folder.join("index.html").is_file() {
-        return Err(Failure::at(
-            &folder,
-            "holds no index.html; build the Studio with `cargo xtask build-web`",
-        ));
-    }
+    let page = page(args.folder.as_deref(), PAGE)?;
     let opened = args.file.as_deref().map(checked).transpose()?;
     let listener = listen(args.port)?;
     let port = listener.local_addr().map_err(|e| Failure::Bad(format!("no address: {e}")))?.port();
-    let site = Site::new(&folder, port, opened.clone())?;
+    let site = Site::new(page, port, opened.clone())?;
     let mut url = format!("http://127.0.0.1:{port}/");
     if let Some(name) = opened.as_deref().and_then(Path::file_name) {
         url += &format!("?open=opened%2F{}", site::escaped(&name.to_string_lossy()));
@@ -63,22 +60,23 @@ fn listen(asked: Option<u16>) -> Outcome<TcpListener> {
     found.ok_or_else(|| Failure::Bad("no port of 127.0.0.1 can be used".into()))
 }
 
-/// The built Studio: beside the program, or in the repository that it was built in.
-fn find() -> Outcome<PathBuf> {
-    let program = std::env::current_exe().ok().and_then(|p| p.canonicalize().ok());
-    let beside = program.as_deref().and_then(Path::parent).into_iter().flat_map(|folder| {
-        let share = folder.join("../share/burgeon/studio");
-        let built = folder.join("../../apps/studio-web/dist");
-        [folder.join("studio"), share, built]
-    });
-    let found = beside.into_iter().find(|f| f.join("index.html").is_file());
-    found.ok_or_else(|| {
-        Failure::Bad(
-            "the built Studio was not found beside this program; build it with `cargo xtask build-web` and name its \
-             folder with --folder"
+/// The page that is served: of the folder that is named, else the one in the program.
+fn page(folder: Option<&Path>, inside: Files) -> Outcome<Page> {
+    if let Some(folder) = folder {
+        return if folder.join("index.html").is_file() {
+            Ok(Page::Folder(folder.into()))
+        } else {
+            Err(Failure::at(folder, "holds no index.html; build the Studio with `cargo xtask build-web`"))
+        };
+    }
+    if inside.is_empty() {
+        return Err(Failure::Bad(
+            "this program was built without the Studio's page; in a checkout of Burgeon, run `cargo xtask build-web` and \
+             build it again, or name a folder that holds the page with --folder"
                 .into(),
-        )
-    })
+        ));
+    }
+    Ok(Page::Inside(inside))
 }
 
 fn open_browser(url: &str) -> bool {
@@ -97,4 +95,27 @@ fn open_browser(url: &str) -> bool {
     };
     command.arg(url).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     command.spawn().is_ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn without_a_page_it_is_said_how_to_build_one() {
+        let why = |folder, inside| format!("{:?}", page(folder, inside).unwrap_err());
+        assert!(why(None, &[]).contains("cargo xtask build-web"));
+        let inside: Files = &[("index.html", b"page")];
+        assert!(matches!(page(None, inside), Ok(Page::Inside(_))));
+        // A folder that is named counts, even if it holds nothing.
+        assert!(why(Some(Path::new("no such folder")), inside).contains("index.html"));
+    }
+
+    #[test]
+    fn the_page_in_the_program_is_whole_or_not_there() {
+        let has = |name: &str| PAGE.iter().any(|f| f.0 == name);
+        assert_eq!(has("index.html"), !PAGE.is_empty(), "the page itself");
+        let wasm = |f: &(&str, &[u8])| f.0.ends_with(".wasm") && f.1.starts_with(b"\0asm");
+        assert_eq!(PAGE.iter().any(wasm), !PAGE.is_empty(), "the core");
+    }
 }

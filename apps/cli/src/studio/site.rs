@@ -1,7 +1,8 @@
-//! What is answered to a request: the files of one folder, and the file that the Studio was opened with.
+//! What is answered to a request: the files of the page, and the file that the Studio was opened with.
 //!
-//! `request -> the file, if it lies in the folder -> status, headers, bytes`
+//! `request -> the file, if it is one of the page -> status, headers, bytes`
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use super::request::{NO_FILE, Target, asked};
@@ -29,10 +30,22 @@ const TYPES: [(&str, &str); 8] = [
     ("webmanifest", "application/manifest+json"),
 ];
 
-/// A folder that is served on one port of this machine.
+/// Files by their names in addresses.
+pub(crate) type Files = &'static [(&'static str, &'static [u8])];
+
+/// Where the files of the page are.
+#[derive(Debug)]
+pub(crate) enum Page {
+    /// In this folder, as they are when they are asked for.
+    Folder(PathBuf),
+    /// In the program.
+    Inside(Files),
+}
+
+/// A page that is served on one port of this machine.
 #[derive(Debug)]
 pub(crate) struct Site {
-    root: PathBuf,
+    page: Page,
     hosts: [String; 2],
     opened: Option<PathBuf>,
 }
@@ -42,61 +55,74 @@ pub(crate) struct Site {
 pub(crate) struct Answer {
     pub(crate) status: u16,
     pub(crate) head: String,
-    pub(crate) body: Vec<u8>,
+    pub(crate) body: Cow<'static, [u8]>,
 }
 
 impl Answer {
     /// The answer to a request with this head: to HEAD the headers only, refusals included.
     pub(crate) fn to(self, head: &[u8]) -> Self {
-        let body = if head.starts_with(b"HEAD ") { Vec::new() } else { self.body };
+        let body = if head.starts_with(b"HEAD ") { Cow::default() } else { self.body };
         Self { body, ..self }
     }
 }
 
 impl Site {
-    pub(crate) fn new(folder: &Path, port: u16, opened: Option<PathBuf>) -> Outcome<Self> {
-        let root = folder.canonicalize().map_err(|e| Failure::io(folder, "read", &e))?;
-        Ok(Self { root, hosts: ["127.0.0.1", "localhost"].map(|h| format!("{h}:{port}")), opened })
+    pub(crate) fn new(page: Page, port: u16, opened: Option<PathBuf>) -> Outcome<Self> {
+        let page = match page {
+            Page::Folder(folder) => {
+                Page::Folder(folder.canonicalize().map_err(|e| Failure::io(&folder, "read", &e))?)
+            }
+            inside @ Page::Inside(_) => inside,
+        };
+        Ok(Self { page, hosts: ["127.0.0.1", "localhost"].map(|h| format!("{h}:{port}")), opened })
     }
 
     /// The answer to a request whose head (up to and without the empty line) is `head`.
     pub(crate) fn answer(&self, head: &[u8]) -> Answer {
         let answer = match asked(head, &self.hosts) {
-            Ok(target) => self.path(&target).map_or_else(|| refusal(404, NO_FILE), |path| self.file(&path)),
+            Ok(target) => self.file(&target).unwrap_or_else(|| refusal(404, NO_FILE)),
             Err((status, why)) => refusal(status, why),
         };
         answer.to(head)
     }
 
-    /// The file that is asked for; nothing outside the folder, whatever links lie in it.
-    fn path(&self, target: &Target) -> Option<PathBuf> {
-        let path = match target {
+    fn file(&self, target: &Target) -> Option<Answer> {
+        match target {
             Target::Opened(name) => {
-                let opened = self.opened.as_ref()?;
-                return (opened.file_name()?.to_str()? == name).then(|| opened.clone());
+                let opened =
+                    self.opened.as_ref().filter(|o| o.file_name().is_some_and(|n| n == name.as_str()))?;
+                Some(given("application/octet-stream", false, std::fs::read(opened).ok()?.into()))
             }
-            Target::File(path) => path,
-        };
-        let file = self.root.join(path).canonicalize().ok()?;
-        let known = file.extension().and_then(|e| e.to_str()).is_some_and(|e| TYPES.iter().any(|t| t.0 == e));
-        (known && file.starts_with(&self.root) && file.is_file()).then_some(file)
+            Target::File(path) => {
+                let extension = Path::new(path).extension()?.to_str()?;
+                let kind = TYPES.iter().find(|t| t.0 == extension)?.1;
+                // Built files bear their content in their name.
+                Some(given(kind, path.starts_with("assets/"), self.bytes(path)?))
+            }
+        }
     }
 
-    fn file(&self, path: &Path) -> Answer {
-        let Ok(bytes) = std::fs::read(path) else { return refusal(404, NO_FILE) };
-        let inside = path.strip_prefix(&self.root).ok();
-        let extension = path.extension().and_then(|e| e.to_str()).filter(|_| inside.is_some());
-        let kind = TYPES.iter().find(|t| Some(t.0) == extension).map_or("application/octet-stream", |t| t.1);
-        // Built files bear their content in their name.
-        let forever = inside.is_some_and(|p| p.starts_with("assets"));
-        let cache = if forever { "public, max-age=31536000, immutable" } else { "no-cache" };
-        let head = format!(
-            "HTTP/1.1 200 OK\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nCache-Control: {cache}\r\n\
-             Content-Security-Policy: {POLICY}\r\n{ALWAYS}\r\n",
-            bytes.len()
-        );
-        Answer { status: 200, head, body: bytes }
+    /// A file of the page; nothing outside its folder, whatever links lie in it.
+    fn bytes(&self, path: &str) -> Option<Cow<'static, [u8]>> {
+        match &self.page {
+            Page::Inside(files) => files.iter().find(|f| f.0 == path).map(|f| Cow::Borrowed(f.1)),
+            Page::Folder(root) => {
+                let file = root.join(path).canonicalize().ok()?;
+                let inside = file.starts_with(root) && file.extension() == Path::new(path).extension();
+                (inside && file.is_file()).then(|| std::fs::read(file).ok())?.map(Cow::Owned)
+            }
+        }
     }
+}
+
+fn given(kind: &str, forever: bool, body: Cow<'static, [u8]>) -> Answer {
+    let cache = if forever { "public, max-age=31536000, immutable" } else { "no-cache" };
+    let head = format!(
+        "HTTP/1.1 200 OK\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nCache-Control: {cache}\r\n\
+         Content-Security-Policy: {POLICY}\r\n{ALWAYS}\r\n",
+        body.len()
+    );
+    Answer { status: 200, head, body }
 }
 
 /// An answer that gives nothing but a reason.
@@ -108,7 +134,7 @@ pub(crate) fn refusal(status: u16, why: &str) -> Answer {
          Cache-Control: no-store\r\nContent-Security-Policy: default-src 'none'\r\n{ALWAYS}\r\n",
         body.len()
     );
-    Answer { status, head, body }
+    Answer { status, head, body: body.into() }
 }
 
 /// Text as part of an address.
@@ -145,7 +171,7 @@ mod tests {
         fs::write(base.join("my rose.svg"), "<svg/>").unwrap();
         #[cfg(unix)]
         std::os::unix::fs::symlink(base.join("secret.js"), root.join("link.js")).unwrap();
-        (Site::new(&root, 7734, Some(base.join("my rose.svg"))).unwrap(), base)
+        (Site::new(Page::Folder(root), 7734, Some(base.join("my rose.svg"))).unwrap(), base)
     }
 
     fn get(site: &Site, line: &str, headers: &str) -> Answer {
@@ -156,7 +182,7 @@ mod tests {
     fn files_of_the_folder_are_served_with_strict_headers() {
         let (site, base) = site("serves");
         let page = get(&site, "GET / HTTP/1.1", "\r\nAccept: */*");
-        assert_eq!((page.status, page.body.as_slice()), (200, &b"<!doctype html>page"[..]));
+        assert_eq!((page.status, &*page.body), (200, &b"<!doctype html>page"[..]));
         for header in ["default-src 'none'", "nosniff", "frame-ancestors 'none'", "require-corp", "text/html"]
         {
             assert!(page.head.contains(header), "{header}: {}", page.head);
@@ -181,6 +207,32 @@ mod tests {
         }
         let opened = get(&site, "GET /opened/my%20rose.svg HTTP/1.1", "");
         assert!(opened.status == 200 && opened.head.contains("application/octet-stream"), "{}", opened.head);
+        fs::remove_dir_all(base).unwrap();
+    }
+
+    #[test]
+    fn the_page_inside_the_program_is_served_as_a_folder_is() {
+        let (folder, base) = site("inside");
+        let files: Files =
+            &[("assets/a-1.js", b"code"), ("index.html", b"<!doctype html>page"), ("notes.txt", b"")];
+        let inside = Site::new(Page::Inside(files), 7734, Some(base.join("my rose.svg"))).unwrap();
+        for line in [
+            "GET / HTTP/1.1",
+            "HEAD / HTTP/1.1",
+            "GET /index.html HTTP/1.1",
+            "GET /assets/a-1.js?x=1 HTTP/1.1",
+            "GET /opened/my%20rose.svg HTTP/1.1",
+            "GET /notes.txt HTTP/1.1",
+            "GET /assets HTTP/1.1",
+            "GET /assets/ HTTP/1.1",
+            "GET /a-1.js HTTP/1.1",
+            "GET /../secret.js HTTP/1.1",
+            "POST / HTTP/1.1",
+        ] {
+            assert_eq!(get(&inside, line, ""), get(&folder, line, ""), "{line}");
+        }
+        assert_eq!(get(&inside, "GET / HTTP/1.1", "\r\nOrigin: http://evil.example").status, 403);
+        assert_eq!(inside.answer(b"GET / HTTP/1.1\r\nHost: evil.example").status, 421);
         fs::remove_dir_all(base).unwrap();
     }
 

@@ -85,6 +85,7 @@ export const zhErrors: Record<keyof typeof CODES, string> = {
   'tree-file': '树的说明里的文件“{file}”无法读取',
   'leaf-no-marks': '这片叶还没有测量数据：请把标记表（.csv）或叶脉图（.json）拖到页面上',
   'no-species': '没有名为 {name} 的花',
+  'scene-full': '没有空间了：此场景的植物已占用 {mb} MB 内存，请隐藏或删除其中一些',
   'lender-without-leaf': '被借叶的植物“{name}”还没有叶',
   'too-many-obstacles': '一棵树最多 {most} 个障碍物；请把一些合并成一个网格',
   'obstacle-not-finite': '障碍物的每个数都必须有限',

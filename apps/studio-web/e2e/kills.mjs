@@ -1,0 +1,187 @@
+// node e2e/kills.mjs CHROMIUM BURGEON [FOLDER] : a quick hand draws in several documents while their pages, or the whole
+// browser, are killed at random moments. Every stroke that was finished must be there afterwards. SEED and KILLS change
+// what is done.
+import { mkdtempSync, readlinkSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { chromium } from 'playwright-core';
+import { FLAGS } from './flags.mjs';
+import { serve } from './server.mjs';
+
+const [browserPath, burgeon, folder = 'dist-test'] = process.argv.slice(2);
+const seed = Number(process.env.SEED ?? 1);
+const kills = Number(process.env.KILLS ?? 200);
+/** Documents that are drawn at the same time, each in a tab. */
+const HANDS = 4;
+/** In one round of so many the browser is killed with all its processes, in the others only those of its pages. */
+const WHOLE = 5;
+/** A hand takes a new document after so many strokes. */
+const FULL = 150;
+
+let state = seed >>> 0;
+/** A number from 0 to 1 (mulberry32). */
+function random() {
+  state = (state + 0x6d2b79f5) >>> 0;
+  let t = Math.imul(state ^ (state >>> 15), state | 1);
+  t = (t + Math.imul(t ^ (t >>> 7), t | 61)) ^ t;
+  return ((t ^ (t >>> 14)) >>> 0) / 4294967296;
+}
+
+const url = await serve(burgeon, folder);
+const profile = mkdtempSync(join(tmpdir(), 'burgeon-kills-'));
+process.on('exit', () => rmSync(profile, { recursive: true, force: true, maxRetries: 5 }));
+
+async function launch() {
+  const context = await chromium.launchPersistentContext(profile, {
+    executablePath: browserPath,
+    args: FLAGS,
+    viewport: { width: 640, height: 480 },
+    // It lives in the process of a page: killed with it, it sometimes leaves others without an answer for a minute.
+    serviceWorkers: 'block',
+  });
+  context.pid = Number(/-(\d+)$/.exec(readlinkSync(join(profile, 'SingletonLock')))[1]);
+  return context;
+}
+
+/** In the page: the document of this hand; and one stroke after another, as soon as it is told to. */
+function inPage(id) {
+  // The view is of no use here, and drawing it without a graphics card takes most of the time.
+  const { getContext } = HTMLCanvasElement.prototype;
+  HTMLCanvasElement.prototype.getContext = function get(kind, ...rest) {
+    return kind.startsWith('webgl') ? null : getContext.call(this, kind, ...rest);
+  };
+  localStorage.setItem('burgeon.tour', 'done');
+  sessionStorage.setItem('burgeon.document', id);
+  window.draw = (gap) => {
+    const sheet = document.querySelector('.sheet');
+    sheet.setPointerCapture = () => {};
+    const kept = document.querySelector('#b-kept');
+    let done = Number(document.body.dataset.strokes);
+    const tell = (what) => window.told(what, done, sessionStorage.getItem('burgeon.document'));
+    const saved = () => {
+      if (/^Saved/.test(kept.textContent)) tell('saved');
+    };
+    new MutationObserver(saved).observe(kept, { childList: true, characterData: true, subtree: true });
+    const box = sheet.getBoundingClientRect();
+    const send = (type, x, y) =>
+      sheet.dispatchEvent(
+        new PointerEvent(type, {
+          pointerType: 'mouse',
+          pointerId: 1,
+          clientX: box.left + x,
+          clientY: box.top + y,
+          buttons: 1,
+          bubbles: true,
+          isPrimary: true,
+        }),
+      );
+    const stroke = () => {
+      const [x, y] = [90 + 9 * (done % 16), 50 + 9 * (Math.floor(done / 16) % 10)];
+      send('pointerdown', x, y);
+      for (let k = 1; k < 6; k += 1) send('pointermove', x + k, y + 5 * k);
+      done += 1;
+      send('pointerup', x + 6, y + 30);
+      // Done when the page has heard of it, as it has of a real pen before anything else happens.
+      queueMicrotask(() => tell('done'));
+      setTimeout(stroke, gap);
+    };
+    stroke();
+  };
+}
+
+const sums = { pages: 0, browsers: 0, strokes: 0, atTheMoment: 0, loading: 0 };
+const wrong = [];
+const hands = Array.from({ length: HANDS }, () => ({ id: '', done: 0, saved: 0 }));
+const pause = (ms) =>
+  new Promise((r) => {
+    setTimeout(r, ms);
+  });
+
+/** Not with each frame: a tab behind another has none. */
+const until = (page, test) => page.waitForFunction(test, undefined, { polling: 50 });
+
+/** Opens the document of a hand and looks whether everything is there. */
+async function open(hand) {
+  const { page } = hand;
+  page.setDefaultTimeout(60_000);
+  await page.addInitScript(inPage, hand.id);
+  await page.exposeFunction('told', (what, n, id) => {
+    hand[what] = Math.max(hand[what], n);
+    hand.id = id;
+  });
+  await page.goto(url);
+  await until(page, () => document.body.dataset.ready === 'true');
+}
+
+async function check(hand) {
+  if (hand.id === '') return;
+  const found = await hand.page.evaluate(() => Number(document.body.dataset.strokes));
+  // The last one was under the pen when it was not yet called saved.
+  if (found < hand.saved || found < hand.done - 1)
+    wrong.push(`${found} strokes of ${hand.done}, of which ${hand.saved} were called saved (${hand.id})`);
+  if (found < hand.done) sums.atTheMoment += 1;
+  [hand.done, hand.saved] = [found, found];
+}
+
+/** A new document: the old one is full, or there is none yet. */
+async function turn(hand) {
+  await hand.page.click('#b-fresh');
+  await until(hand.page, () => document.body.dataset.kept === 'empty');
+  if (hand.id !== '') sums.strokes += hand.done;
+  Object.assign(hand, { id: '', done: 0, saved: 0 });
+}
+
+const began = Date.now();
+let context = await launch();
+for (let round = 0; sums.pages + sums.browsers * HANDS < kills; round += 1) {
+  const whole = round % WHOLE === WHOLE - 1;
+  const browserAt = 300 + 1500 * random();
+  // Some are killed while their document is still being opened.
+  const plans = hands.map(() => ({ early: random() < 0.1, at: 1000 * random(), gap: 30 + 200 * random() }));
+  const work = hands.map(async (hand, i) => {
+    const { early, at, gap } = plans[i];
+    hand.page = await context.newPage();
+    const opening = open(hand);
+    if (early) {
+      await Promise.race([pause(at), opening]);
+      sums.loading += 1;
+    } else {
+      await opening;
+      await check(hand);
+      if (hand.id === '' || hand.done >= FULL) await turn(hand);
+      await hand.page.evaluate((g) => window.draw(g), gap);
+      await pause(at);
+    }
+    if (whole) return;
+    const cdp = await context.newCDPSession(hand.page);
+    await Promise.race([cdp.send('Page.crash').catch(() => {}), pause(500)]);
+    sums.pages += 1;
+    opening.catch(() => {});
+    await hand.page.close().catch(() => {});
+  });
+  if (whole) {
+    await Promise.all(work);
+    await pause(browserAt);
+    // Playwright gives the browser a group of its own.
+    process.kill(-context.pid, 'SIGKILL');
+    sums.browsers += 1;
+    await context.close().catch(() => {});
+    context = await launch();
+  } else await Promise.all(work);
+}
+for (const hand of hands) {
+  hand.page = await context.newPage();
+  await open(hand);
+  await check(hand);
+  sums.strokes += hand.done;
+}
+await context.close();
+const pages = sums.pages + HANDS * sums.browsers;
+console.log(
+  `${wrong.length === 0 ? 'ok      ' : 'FAILED  '}${pages} pages killed while ${sums.strokes} strokes were drawn: ` +
+    `${sums.pages} by themselves, ${sums.browsers} times ${HANDS} with the whole browser, ${sums.loading} while they opened; ` +
+    `${sums.atTheMoment} times the stroke of that very moment was not there (seed ${seed}, ` +
+    `${((Date.now() - began) / 1000).toFixed(0)} s)`,
+);
+for (const each of wrong) console.log(`        ${each}`);
+process.exit(wrong.length === 0 ? 0 : 1);

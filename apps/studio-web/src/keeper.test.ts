@@ -1,0 +1,194 @@
+import { beforeEach, describe, expect, it, vi } from 'vitest';
+import { Keeper, type Standing } from './keeper';
+import type { Entry, Row } from './library';
+import type { Request } from './protocol';
+
+/** Stands for the storage: what it holds, and whether it takes anything. */
+const disk = vi.hoisted(() => ({
+  rows: new Map<number, unknown>(),
+  whole: undefined as string | undefined,
+  full: undefined as Error | undefined,
+  appends: 0,
+}));
+
+vi.mock('./library', () => {
+  class TakenError extends Error {}
+  const write = async (act: () => void): Promise<void> => {
+    if (disk.full) throw disk.full;
+    act();
+  };
+  return {
+    TakenError,
+    append: (_: Entry, rows: Row[]) => {
+      disk.appends += 1;
+      return write(() => {
+        if (rows.some((row) => disk.rows.has(row.seq))) throw new TakenError();
+        for (const { seq, request } of rows) disk.rows.set(seq, request);
+      });
+    },
+    mend: (_: Entry, { seq, request }: Row) => write(() => disk.rows.set(seq, request)),
+    strike: (_: Entry, seq: number) => write(() => disk.rows.delete(seq)),
+    writeWhole: (_: Entry, whole: Uint8Array, seq: number) =>
+      write(() => {
+        disk.whole = new TextDecoder().decode(whole);
+        for (const key of disk.rows.keys()) if (key <= seq) disk.rows.delete(key);
+      }),
+  };
+});
+
+const STROKE = { kind: 'stroke', mode: 'parts', samples: new Float64Array(4) } as const;
+const stroke = (): Request => ({ ...STROKE });
+const undo = (): Request => ({ kind: 'undo' });
+const kinds = (): string[] => [...disk.rows.values()].map((r) => (r as Request).kind);
+const settle = async (): Promise<void> => {
+  for (let i = 0; i < 20; i += 1) await Promise.resolve();
+};
+
+let standing: Standing = 'empty';
+let lost = 0;
+let saves = 0;
+
+function keeper(): Keeper {
+  const made = new Keeper('me', {
+    standing: (now) => {
+      standing = now;
+    },
+    created: () => undefined,
+    taken: () => {
+      lost += 1;
+    },
+    save: async () => {
+      saves += 1;
+      return new TextEncoder().encode(`whole ${saves}`);
+    },
+    name: () => 'plant',
+  });
+  made.open(undefined, []);
+  return made;
+}
+
+beforeEach(() => {
+  vi.stubGlobal('window', globalThis);
+  vi.useFakeTimers({ toFake: ['setTimeout', 'clearTimeout'] });
+  Object.assign(disk, { rows: new Map(), whole: undefined, full: undefined, appends: 0 });
+  [standing, lost, saves] = ['empty', 0, 0];
+});
+
+describe('what is asked', () => {
+  it('is written at once, and called saved when it is', async () => {
+    const k = keeper();
+    expect(standing).toBe('empty');
+    k.record({ kind: 'select', plant: 0 });
+    expect(k.mine, 'looking is no document').toBeUndefined();
+    k.record(stroke());
+    expect(standing).toBe('saving');
+    await settle();
+    expect(standing).toBe('saved');
+    expect(kinds()).toEqual(['stroke']);
+  });
+
+  it('is written in one go where it was asked in one go', async () => {
+    const k = keeper();
+    k.record({ kind: 'begin', name: 'draw' });
+    for (const request of [stroke(), stroke(), { kind: 'commit' } as const]) k.record(request);
+    await settle();
+    expect(disk.appends).toBe(1);
+    expect(kinds()).toEqual(['begin', 'stroke', 'stroke', 'commit']);
+  });
+
+  it('is held back while a gesture is open, of which the last place counts', async () => {
+    const k = keeper();
+    const stage = (): Request => ({ kind: 'stage', command: { scene: { rename: 'x' } } });
+    k.record({ kind: 'begin', name: 'move' });
+    for (let i = 0; i < 9; i += 1) k.record(stage());
+    await settle();
+    expect(kinds()).toEqual([]);
+    k.record({ kind: 'abandon' });
+    await settle();
+    expect(kinds()).toEqual([]);
+    for (const request of [{ kind: 'begin', name: 'move' } as const, stage(), stage()]) k.record(request);
+    k.record({ kind: 'commit' });
+    await settle();
+    expect(kinds()).toEqual(['begin', 'stage', 'commit']);
+  });
+
+  it('is forgotten if it was refused, before it was written and after', async () => {
+    const k = keeper();
+    const [early, late] = [stroke(), stroke()];
+    k.record(early);
+    k.forget(early);
+    k.record(late);
+    await settle();
+    k.forget(late);
+    k.record(undo());
+    await settle();
+    expect(kinds()).toEqual(['undo']);
+  });
+});
+
+describe('a document', () => {
+  it('is written whole when its journal is long, with what comes meanwhile behind it', async () => {
+    const k = keeper();
+    for (let i = 0; i < 501; i += 1) k.record(stroke());
+    k.record(stroke());
+    await settle();
+    expect(disk.whole).toBe('whole 1');
+    expect(kinds()).toEqual(['stroke']);
+    expect(standing).toBe('saved');
+  });
+
+  it('is written whole again where a step is undone that its journal does not hold', async () => {
+    const k = keeper();
+    for (let i = 0; i < 501; i += 1) k.record(stroke());
+    // The whole is on its way: it does not hold the steps either.
+    k.record(undo());
+    expect(standing).toBe('saving');
+    await settle();
+    expect(disk.whole).toBe('whole 2');
+    expect(kinds()).toEqual([]);
+    expect(standing).toBe('saved');
+  });
+
+  it('can be opened long, and is made short', async () => {
+    const k = keeper();
+    const rows = Array.from({ length: 300 }, (_, i) => ({ seq: i + 1, request: stroke() }));
+    for (const { seq, request } of rows) disk.rows.set(seq, request);
+    k.open('x', rows);
+    await settle();
+    expect([disk.whole, disk.rows.size]).toEqual(['whole 1', 0]);
+    k.open('x', rows.slice(0, 9), 'readonly');
+    k.forget(rows[0]!.request);
+    expect(standing).toBe('readonly');
+  });
+
+  it('is said not to be saved as long as that is so, and then written whole', async () => {
+    const k = keeper();
+    k.record(stroke());
+    await settle();
+    disk.full = new DOMException('full', 'QuotaExceededError');
+    k.record(stroke());
+    await settle();
+    expect(standing).toEqual({ failed: disk.full });
+    k.record(stroke());
+    await settle();
+    disk.full = undefined;
+    expect(saves, 'not with every stroke').toBe(0);
+    await vi.advanceTimersByTimeAsync(6000);
+    await settle();
+    expect(standing).toBe('saved');
+    expect([disk.whole, disk.rows.size]).toEqual(['whole 1', 0]);
+  });
+
+  it('that another tab took is left alone', async () => {
+    const k = keeper();
+    k.record(stroke());
+    await settle();
+    disk.rows.set(2, { kind: 'abandon' });
+    k.record(stroke());
+    await settle();
+    expect(lost).toBe(1);
+    await k.close('readonly');
+    k.again(stroke());
+    expect(kinds()).toEqual(['stroke', 'abandon']);
+  });
+});
