@@ -3,13 +3,15 @@ import { buildPage, type Parts } from './bars';
 import { Clipboard } from './clipboard';
 import type { Page } from './commands';
 import { Card } from './correct';
-import { Files } from './files';
+import { Files, safe } from './files';
+import { openFilming } from './filming';
 import { openHelp } from './help';
 import { listenForKeys } from './keyboard';
 import { MakerPanel } from './makers';
 import { openPalette } from './palette';
 import { Panels } from './panels';
 import { SceneList } from './scene';
+import { Scenery } from './scenery';
 import { Session, type SessionEvents } from './session';
 import { Shaping } from './shaping';
 import { Sheet, type SheetEvents, type Tool } from './sheet/sheet';
@@ -37,6 +39,7 @@ export class App implements Page {
   readonly view: PlantView | undefined;
   readonly shaping: Shaping | undefined;
   readonly modes: ViewModes;
+  readonly scenery: Scenery;
   readonly files = this.makeFiles();
   readonly clipboard = new Clipboard(this.session.engine, this.sheet, {
     run: (c) => this.session.draw(c),
@@ -67,6 +70,11 @@ export class App implements Page {
     }
     this.modes = new ViewModes(this.session.engine, this.view, () => this.show.switches());
     this.panels = new Panels(this);
+    this.scenery = new Scenery(
+      this.view,
+      (name) => this.show.parts.buttons.get(name)!,
+      (accept, act) => this.files.pickFile(accept, act),
+    );
     this.show = new Show(this, this.build());
     this.showAll();
   }
@@ -334,6 +342,13 @@ export class App implements Page {
     this.show.parts = this.build();
     this.show.parts.busy.hidden = this.started;
     this.showAll();
+  }
+
+  openFilming(): void {
+    const { session, view } = this;
+    if (view && !session.isBare)
+      openFilming({ session, view, name: () => safe(session.state?.name ?? t('app.untitled')) });
+    else note(t(view ? 'note.nothing' : 'note.nowebgl'), 'bad');
   }
 
   openPalette(): void {

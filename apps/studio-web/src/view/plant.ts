@@ -10,7 +10,14 @@ export class Looks {
   private wire = false;
 
   /** `matt`: without gloss, which costs a machine without a graphics card as much as all else. */
-  constructor(private readonly matt: boolean) {}
+  constructor(private matt: boolean) {}
+
+  /** Materials of the other kind from now on; plants have to take them. */
+  setMatt(matt: boolean): void {
+    this.matt = matt;
+    for (const m of this.materials.values()) m.dispose();
+    this.materials.clear();
+  }
 
   /** A plant of its own that shares textures and materials; the caller disposes its geometries. */
   build({ view, parts, textures }: Sent): THREE.Group {
@@ -130,6 +137,15 @@ export class PlantMeshes {
     for (const mesh of old.values()) {
       mesh.geometry.dispose();
       this.group.remove(mesh);
+    }
+  }
+
+  /** Takes its materials anew. */
+  relook(): void {
+    for (const mesh of this.group.children as THREE.Mesh[]) {
+      const part = this.view?.parts.find((p) => p.name === mesh.name);
+      const look = part && this.view?.materials[part.material];
+      if (look) mesh.material = this.looks.material(look, mesh.geometry.hasAttribute('color'));
     }
   }
 

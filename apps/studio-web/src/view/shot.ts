@@ -1,0 +1,78 @@
+/** The view as pixels of any size: tile by tile, so that no size is too large for the graphics card. */
+import * as THREE from 'three';
+import type { Effects, Pipeline } from './post';
+import type { Stage } from './stage';
+
+export interface ShotSize {
+  /** Pixels. */
+  readonly width: number;
+  readonly height: number;
+  /** The plants and their shadow alone. */
+  readonly transparent: boolean;
+}
+
+/** The longest side of a picture, pixels: more than browsers hold in one canvas of any kind. */
+export const LONGEST = 8192;
+/** Side of a tile, pixels, and how much more is drawn around it where effects look at what is near. */
+const TILE = 1536;
+const MARGIN = 96;
+
+export interface Studio {
+  readonly renderer: THREE.WebGLRenderer;
+  readonly stage: Stage;
+  /** What stands on the stage. */
+  readonly plants: THREE.Object3D;
+  readonly pipeline: Pipeline;
+  /** Set to the shape of the picture already. */
+  readonly camera: THREE.PerspectiveCamera | THREE.OrthographicCamera;
+  readonly effects: Omit<Effects, 'transparent' | 'zoom'>;
+}
+
+/** Rows from the top, four bytes for each pixel. `before`: called before each tile is drawn, `after` when it is. */
+export async function shoot(
+  { renderer, stage, plants, pipeline, camera, effects }: Studio,
+  { width, height, transparent }: ShotSize,
+  before: () => void,
+  after: () => void,
+): Promise<Uint8ClampedArray<ArrayBuffer>> {
+  const pixels = new Uint8ClampedArray(width * height * 4);
+  const one = width <= TILE && height <= TILE;
+  const margin = !one && (effects.occlusion || effects.blur > 0) ? MARGIN : 0;
+  const [w, h] = [Math.min(TILE, width), Math.min(TILE, height)];
+  const [tw, th] = [w + 2 * margin, h + 2 * margin];
+  const target = new THREE.WebGLRenderTarget(tw, th, { depthBuffer: false });
+  const read = new Uint8Array(tw * th * 4);
+  try {
+    for (let y = 0; y < height; y += h)
+      for (let x = 0; x < width; x += w) {
+        before();
+        try {
+          if (!one) camera.setViewOffset(width, height, x - margin, y - margin, tw, th);
+          camera.updateMatrixWorld();
+          stage.prepare(false, width / height, plants);
+          pipeline.render(stage.scene, camera, tw, th, target, {
+            ...effects,
+            transparent,
+            zoom: width / tw,
+          });
+          renderer.readRenderTargetPixels(target, 0, 0, tw, th, read);
+        } finally {
+          after();
+        }
+        const [cw, ch] = [Math.min(w, width - x), Math.min(h, height - y)];
+        for (let row = 0; row < ch; row += 1) {
+          const from = ((th - 1 - margin - row) * tw + margin) * 4;
+          pixels.set(read.subarray(from, from + cw * 4), ((y + row) * width + x) * 4);
+        }
+        // The page breathes between tiles.
+        if (!one)
+          await new Promise((resolve) => {
+            setTimeout(resolve);
+          });
+      }
+  } finally {
+    target.dispose();
+  }
+  if (!transparent) for (let i = 3; i < pixels.length; i += 4) pixels[i] = 255;
+  return pixels;
+}
