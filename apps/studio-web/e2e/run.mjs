@@ -7,6 +7,7 @@ import { chromium } from 'playwright-core';
 import { FLAGS } from './flags.mjs';
 import { journeys } from './journeys.mjs';
 import { shaping } from './shaping.mjs';
+import { staging } from './staging.mjs';
 
 const [browserPath, burgeon, out] = process.argv.slice(2);
 rmSync(out, { recursive: true, force: true });
@@ -36,7 +37,7 @@ const browser = await chromium.launch({ executablePath: browserPath, args: FLAGS
 
 let failed = 0;
 const only = process.env.ONLY;
-for (const [name, journey, options] of [...journeys, ...shaping]) {
+for (const [name, journey, options] of [...journeys, ...shaping, ...staging]) {
   if (only && !name.includes(only)) continue;
   const context = await browser.newContext({
     viewport: { width: 1000, height: 640 },

@@ -2,7 +2,7 @@
 import { setSetting, setting } from './store';
 import { t, tOf, type TextKey } from './text';
 import { el, note, popover } from './ui';
-import { LENS, type Pose, SIDES, type Side } from './view/camera';
+import { LENS, MOST_CAMERAS, type Pose, posesFrom, SIDES, type Side } from './view/camera';
 import { type Guide, GUIDES } from './view/guides';
 import {
   BACKGROUNDS,
@@ -19,8 +19,6 @@ import {
 import type { PlantView } from './view/view';
 import type { WalkMode } from './view/walk';
 
-/** As many cameras are kept. */
-const MOST_CAMERAS = 9;
 /** The longest side of a picture behind the plants that is kept, pixels: the browser's storage is small. */
 const KEPT_PICTURE = 1600;
 
@@ -30,23 +28,6 @@ function parsed(name: string): unknown {
   } catch {
     return null;
   }
-}
-
-const isTriple = (x: unknown): x is Pose['position'] =>
-  Array.isArray(x) && x.length === 3 && x.every((n) => typeof n === 'number' && Math.abs(n) < 1000);
-
-/** Cameras that were kept, as far as they can be used. */
-export function posesFrom(kept: unknown): Pose[] {
-  return (Array.isArray(kept) ? kept : [])
-    .filter(
-      (p): p is Pose =>
-        typeof p === 'object' &&
-        p !== null &&
-        isTriple((p as Pose).position) &&
-        isTriple((p as Pose).target) &&
-        typeof (p as Pose).lens === 'number',
-    )
-    .slice(0, MOST_CAMERAS);
 }
 
 const clock = (hour: number): string => {

@@ -172,9 +172,17 @@ export function popover(anchor: HTMLElement, content: HTMLElement, label: string
     content,
   );
   document.body.append(p);
-  const box = anchor.getBoundingClientRect();
-  p.style.top = `${box.bottom + 6}px`;
-  p.style.left = `${Math.max(8, Math.min(box.left, innerWidth - p.offsetWidth - 8))}px`;
+  // Below the button, or beside it where there is no room below; its content may change.
+  const place = (): void => {
+    const box = anchor.getBoundingClientRect();
+    const [w, h] = [p.offsetWidth, p.offsetHeight];
+    const below = box.bottom + 6 + h <= innerHeight - 8;
+    const left = below || box.left - w - 8 < 8 ? box.left : box.left - w - 8;
+    p.style.top = `${below ? box.bottom + 6 : Math.max(8, innerHeight - h - 8)}px`;
+    p.style.left = `${Math.max(8, Math.min(left, innerWidth - w - 8))}px`;
+  };
+  place();
+  new ResizeObserver(place).observe(p);
   anchor.setAttribute('aria-expanded', 'true');
   p.querySelector<HTMLElement>('button, input, select')?.focus();
   const away = (e: Event): void => {

@@ -14,6 +14,26 @@ export interface Pose {
   readonly lens: number;
 }
 
+/** As many cameras are kept. */
+export const MOST_CAMERAS = 9;
+
+const isTriple = (x: unknown): x is Pose['position'] =>
+  Array.isArray(x) && x.length === 3 && x.every((n) => typeof n === 'number' && Math.abs(n) < 1000);
+
+/** Cameras that were kept, as far as they can be used. */
+export function posesFrom(kept: unknown): Pose[] {
+  return (Array.isArray(kept) ? kept : [])
+    .filter(
+      (p): p is Pose =>
+        typeof p === 'object' &&
+        p !== null &&
+        isTriple((p as Pose).position) &&
+        isTriple((p as Pose).target) &&
+        typeof (p as Pose).lens === 'number',
+    )
+    .slice(0, MOST_CAMERAS);
+}
+
 /** Angles about the vertical and from the zenith. */
 const TOWARDS: Record<Side, readonly [number, number]> = {
   front: [0, Math.PI / 2],

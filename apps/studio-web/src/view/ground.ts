@@ -2,8 +2,13 @@
 import * as THREE from 'three';
 import type { GroundKind } from './moods';
 
+/** Rings of the disc, and how many of them have a depth: what lies beyond is haze, which nothing touches. */
+const RINGS = 40;
+const NEAR_RINGS = 18;
 /** As far as the ground reaches, in heights of what stands on it. */
 const FAR = 60;
+/** See `haze`. */
+const HAZE_TONED = 3;
 /** Of each ground, linear: what it throws back up. */
 export const ALBEDO: Record<GroundKind, THREE.Color> = {
   plain: new THREE.Color(0xdfe2cf),
@@ -43,12 +48,12 @@ function tiled(
 
 function paintGrass(c: CanvasRenderingContext2D, size: number): void {
   const next = draws(7);
-  c.fillStyle = hsl(86, 36, 22);
+  c.fillStyle = hsl(80, 28, 29);
   c.fillRect(0, 0, size, size);
   for (let i = 0; i < 70; i += 1) {
     // Patches: a lawn of one green is a billiard table.
     const [x, y, r] = [next() * size, next() * size, size * (0.05 + 0.13 * next())];
-    const style = `hsl(${70 + 34 * next()} ${28 + 20 * next()}% ${20 + 14 * next()}% / 35%)`;
+    const style = `hsl(${62 + 34 * next()} ${22 + 16 * next()}% ${25 + 17 * next()}% / 40%)`;
     tiled(size, x, y, r, (px, py) => {
       const g = c.createRadialGradient(px, py, 0, px, py, r);
       g.addColorStop(0, style);
@@ -61,7 +66,7 @@ function paintGrass(c: CanvasRenderingContext2D, size: number): void {
   for (let i = 0; i < size * 16; i += 1) {
     const [x, y, a] = [next() * size, next() * size, next() * 2 * Math.PI];
     const length = size * (0.008 + 0.018 * next());
-    c.strokeStyle = hsl(72 + 34 * next(), 30 + 22 * next(), 17 + 27 * next() ** 1.4);
+    c.strokeStyle = hsl(66 + 32 * next(), 24 + 18 * next(), 20 + 30 * next() ** 1.3);
     c.lineWidth = size * (0.0012 + 0.0016 * next());
     const bend = a + (next() - 0.5) * 1.4;
     tiled(size, x, y, length, (px, py) => {
@@ -127,13 +132,12 @@ function texture(kind: 'grass' | 'soil', size: number): THREE.CanvasTexture {
   const map = new THREE.CanvasTexture(canvas);
   map.colorSpace = THREE.SRGBColorSpace;
   map.wrapS = map.wrapT = THREE.RepeatWrapping;
-  map.anisotropy = 8;
   return map;
 }
 
 /** A disc with ever wider rings; its corners hold how much of it is seen and how light it is. */
 function disc(): THREE.BufferGeometry {
-  const [rings, sides] = [40, 72];
+  const [rings, sides] = [RINGS, 72];
   const geometry = new THREE.RingGeometry(0, 1, sides, rings);
   const position = geometry.getAttribute('position') as THREE.BufferAttribute;
   const colors = new Float32Array(4 * position.count);
@@ -144,15 +148,18 @@ function disc(): THREE.BufferGeometry {
     const k = r > 0 ? far / r : 0;
     position.setXY(i, x * k, y * k);
     // Long waves hide that the texture repeats.
-    const wave =
-      0.93 + 0.07 * Math.sin(1.7 * x * k + 1.3 * Math.sin(0.9 * y * k)) * Math.sin(1.1 * y * k + 2);
-    const seen = 1 - THREE.MathUtils.smoothstep(far, 0.08 * FAR, 0.85 * FAR);
+    const wave = 0.9 + 0.1 * Math.sin(1.7 * x * k + 1.3 * Math.sin(0.9 * y * k)) * Math.sin(1.1 * y * k + 2);
+    // How much of the haze hides it, as it looks.
+    const seen = 1 - THREE.MathUtils.smoothstep(Math.log(1 + far), Math.log(2.6), Math.log(0.7 * FAR));
     colors.set([wave, wave, wave, seen], 4 * i);
   }
   geometry.setAttribute('color', new THREE.BufferAttribute(colors, 4));
   const uv = geometry.getAttribute('uv') as THREE.BufferAttribute;
   for (let i = 0; i < uv.count; i += 1) uv.setXY(i, position.getX(i), position.getY(i));
   geometry.rotateX(-Math.PI / 2);
+  const inner = NEAR_RINGS * sides * 6;
+  geometry.addGroup(0, inner, 0);
+  geometry.addGroup(inner, Infinity, 1);
   return geometry;
 }
 
@@ -196,9 +203,13 @@ export class Ground {
   private readonly maps = new Map<string, THREE.CanvasTexture>();
   private readonly sheet: THREE.Mesh;
   private built = '';
+  /** How much is seen of each corner of the disc. */
+  private readonly clear: Float32Array;
 
   constructor() {
     this.sheet = new THREE.Mesh(disc());
+    const colors = this.sheet.geometry.getAttribute('color') as THREE.BufferAttribute;
+    this.clear = Float32Array.from({ length: colors.count }, (_, i) => colors.getW(i));
     this.sheet.receiveShadow = true;
     this.sheet.renderOrder = -1;
     this.group.add(this.sheet);
@@ -225,10 +236,13 @@ export class Ground {
     const map = this.maps.get(name) ?? texture(kind, size);
     this.maps.set(name, map);
     // A tile of a metre and a half, as far as that is neither a blur nor a pattern.
-    const tile = Math.min(1.4, Math.max(0.3, 1.5 * metre));
+    const tile = Math.min(1.4, Math.max(0.6, 1.5 * metre));
     map.repeat.setScalar(1 / tile);
-    (this.sheet.material as THREE.Material).dispose();
-    this.sheet.material = this.look({ map, vertexColors: true, transparent: true });
+    map.anisotropy = fine ? 8 : 2;
+    for (const material of [this.sheet.material].flat()) material.dispose();
+    const of = { map, vertexColors: true, transparent: true };
+    this.sheet.material = [this.look(of), this.look({ ...of, depthWrite: false })];
+    this.haze();
     if (this.tufts) {
       this.group.remove(this.tufts);
       this.tufts.geometry.dispose();
@@ -239,9 +253,17 @@ export class Ground {
     this.group.add(this.tufts);
   }
 
+  /** Colours that are toned after they are mixed need less haze for the same look. */
+  private haze(): void {
+    const colors = this.sheet.geometry.getAttribute('color') as THREE.BufferAttribute;
+    for (let i = 0; i < colors.count; i += 1)
+      colors.setW(i, 1 - (1 - this.clear[i]!) ** (this.fine ? HAZE_TONED : 1));
+    colors.needsUpdate = true;
+  }
+
   private look(of: THREE.MeshLambertMaterialParameters): THREE.Material {
     return this.fine
-      ? new THREE.MeshStandardMaterial({ ...of, roughness: 1, metalness: 0 })
+      ? new THREE.MeshPhysicalMaterial({ ...of, roughness: 1, metalness: 0, specularIntensity: 0 })
       : new THREE.MeshLambertMaterial(of);
   }
 
@@ -263,7 +285,7 @@ export class Ground {
       at.scale.set(tall * (1.2 + 0.8 * next()), tall, tall);
       at.updateMatrix();
       mesh.setMatrixAt(i, at.matrix);
-      tint.setHSL((74 + 26 * next()) / 360, 0.38 + 0.16 * next(), 0.24 + 0.1 * next());
+      tint.setHSL((66 + 28 * next()) / 360, 0.26 + 0.16 * next(), 0.33 + 0.13 * next(), THREE.SRGBColorSpace);
       mesh.setColorAt(i, tint);
     }
     mesh.receiveShadow = true;
@@ -286,7 +308,7 @@ export class Ground {
       at.scale.set(s * (0.7 + 0.6 * next()), s * 0.55, s);
       at.updateMatrix();
       mesh.setMatrixAt(i, at.matrix);
-      tint.setHSL((22 + 16 * next()) / 360, 0.12 + 0.14 * next(), 0.2 + 0.22 * next());
+      tint.setHSL((22 + 16 * next()) / 360, 0.12 + 0.14 * next(), 0.26 + 0.2 * next(), THREE.SRGBColorSpace);
       mesh.setColorAt(i, tint);
     }
     mesh.receiveShadow = true;

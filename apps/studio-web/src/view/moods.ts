@@ -30,7 +30,7 @@ export interface StageSetting {
 export const OF_PRESET: Record<Preset, Pick<StageSetting, 'sky' | 'hour' | 'turn' | 'ground' | 'fog'>> = {
   studio: { sky: 'studio', hour: 10, turn: 0, ground: 'plain', fog: 0 },
   noon: { sky: 'clear', hour: 12.5, turn: 35, ground: 'grass', fog: 0 },
-  golden: { sky: 'clear', hour: 18.5, turn: 30, ground: 'grass', fog: 0.12 },
+  golden: { sky: 'clear', hour: 18.5, turn: 28, ground: 'grass', fog: 0.12 },
   overcast: { sky: 'overcast', hour: 11, turn: 0, ground: 'grass', fog: 0.18 },
   night: { sky: 'clear', hour: 23, turn: 0, ground: 'grass', fog: 0.1 },
 };
@@ -115,13 +115,13 @@ export interface Light {
 
 /** Colour and power of the light by the sun's height above the horizon, degrees. */
 const KEYS: readonly (readonly [at: number, colour: Vec3, power: number, ambient: number])[] = [
-  [-10, [0.55, 0.7, 1], 1.1, 7],
+  [-10, [0.62, 0.74, 1], 1.1, 6],
   [-5, [0.6, 0.65, 0.95], 0.5, 4],
-  [0, [1, 0.42, 0.16], 0.8, 1.3],
-  [5, [1, 0.52, 0.24], 3, 1.15],
-  [14, [1, 0.72, 0.46], 3.5, 1],
-  [30, [1, 0.9, 0.76], 3.6, 0.95],
-  [60, [1, 0.95, 0.88], 3.7, 0.95],
+  [0, [1, 0.42, 0.16], 1, 1.2],
+  [5, [1, 0.55, 0.26], 4.6, 1.25],
+  [14, [1, 0.74, 0.48], 4.4, 1.05],
+  [30, [1, 0.9, 0.76], 3.2, 0.85],
+  [60, [1, 0.95, 0.87], 2.9, 0.75],
 ];
 
 const mix = (a: number, b: number, t: number): number => a + (b - a) * t;
@@ -159,7 +159,7 @@ export function lightOf(setting: Pick<StageSetting, 'sky' | 'hour' | 'turn'>): L
     colour: overcast ? [0.95, 0.98, 1] : colour,
     power: mix(low[2], high[2], t) * (overcast ? 0.3 : 1),
     shade: overcast ? 0.5 : 1,
-    ambient: mix(low[3], high[3], t),
+    ambient: overcast ? mix(1.35, 6, night) : mix(low[3], high[3], t),
     night,
     exposure: 1.08 * mix(1.05, 1, day),
   };

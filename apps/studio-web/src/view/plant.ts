@@ -140,6 +140,23 @@ export class PlantMeshes {
     }
   }
 
+  /** The box around it and what it grows around, metres of the scene; empty where it is not seen. */
+  box(): THREE.Box3 {
+    const { place, obstacles, view } = this;
+    const box = new THREE.Box3();
+    if (!view || !place.visible) return box;
+    place.updateMatrix();
+    for (const mesh of obstacles.children as THREE.Mesh[]) {
+      mesh.updateMatrix();
+      mesh.geometry.computeBoundingBox();
+      if (mesh.geometry.boundingBox)
+        box.union(mesh.geometry.boundingBox.clone().applyMatrix4(mesh.matrix).applyMatrix4(place.matrix));
+    }
+    const own = new THREE.Box3(new THREE.Vector3(...view.min), new THREE.Vector3(...view.max));
+    if (view.parts.length > 0) box.union(own.applyMatrix4(place.matrix));
+    return box;
+  }
+
   /** Takes its materials anew. */
   relook(): void {
     for (const mesh of this.group.children as THREE.Mesh[]) {

@@ -24,8 +24,39 @@ export interface Studio {
   readonly plants: THREE.Object3D;
   readonly pipeline: Pipeline;
   /** Set to the shape of the picture already. */
-  readonly camera: THREE.PerspectiveCamera | THREE.OrthographicCamera;
+  readonly camera: Camera;
   readonly effects: Omit<Effects, 'transparent' | 'zoom'>;
+}
+
+type Camera = THREE.PerspectiveCamera | THREE.OrthographicCamera;
+
+/**
+ * A camera for a picture: what the screen shows is in it, whatever its shape. `screen`: the screen's own; `turn`: about the
+ * vertical through the target, radians.
+ */
+export function cameraFor(
+  from: Camera,
+  { width, height }: ShotSize,
+  screen: number,
+  target: THREE.Vector3,
+  turn: number,
+): Camera {
+  const aspect = width / height;
+  const camera = from.clone();
+  camera.clearViewOffset();
+  if (camera instanceof THREE.PerspectiveCamera) {
+    const wider = Math.max(1, Math.min(1, screen) / aspect);
+    const half = Math.tan(THREE.MathUtils.degToRad(camera.fov / 2)) * wider;
+    camera.fov = 2 * THREE.MathUtils.radToDeg(Math.atan(half));
+    camera.aspect = aspect;
+    camera.position.sub(target).applyAxisAngle(camera.up, turn).add(target);
+    if (turn !== 0) camera.lookAt(target);
+  } else {
+    const [middle, wide] = [(camera.left + camera.right) / 2, ((camera.top - camera.bottom) / 2) * aspect];
+    [camera.left, camera.right] = [middle - wide, middle + wide];
+  }
+  camera.updateProjectionMatrix();
+  return camera;
 }
 
 /** Rows from the top, four bytes for each pixel. `before`: called before each tile is drawn, `after` when it is. */

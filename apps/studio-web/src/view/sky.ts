@@ -34,6 +34,7 @@ void main() {
 /** Linear radiances. */
 const OVERCAST = { zenith: [0.7, 0.74, 0.79], horizon: [0.56, 0.6, 0.63] } as const;
 const NIGHT = { zenith: [0.008, 0.016, 0.05], horizon: [0.036, 0.062, 0.12] } as const;
+const GOLDEN = [0.62, 0.3, 0.1] as const;
 const EDGE = { fine: 512, fast: 256 } as const;
 
 function dome(zenith: THREE.Color, horizon: THREE.Color, additive: boolean): THREE.Mesh {
@@ -70,8 +71,8 @@ function skyScene(setting: StageSetting, light: Light): THREE.Scene {
       sky.material.uniforms[name]!.value = value;
     };
     const low = 1 - Math.min(1, Math.max(0, light.sun[1] / 0.5));
-    set('turbidity', 2 + 3 * low);
-    set('rayleigh', 1 + 1.4 * low);
+    set('turbidity', 2 + 6 * low);
+    set('rayleigh', 1 + 0.7 * low);
     set('mieCoefficient', 0.004);
     set('mieDirectionalG', 0.8);
     set('cloudCoverage', 0.36);
@@ -82,6 +83,9 @@ function skyScene(setting: StageSetting, light: Light): THREE.Scene {
     sky.material.uniforms['sunPosition']!.value.set(...light.sun);
     scene.add(sky);
   }
+  // The belt of dust that makes low suns golden all round.
+  const golden = Math.max(0, 1 - Math.abs(light.sun[1] - 0.1) / 0.22);
+  if (golden > 0) scene.add(dome(new THREE.Color(0, 0, 0), colour(GOLDEN, golden), true));
   if (light.night > 0)
     scene.add(dome(colour(NIGHT.zenith, light.night), colour(NIGHT.horizon, light.night), true));
   return scene;
@@ -104,6 +108,14 @@ function read(
       sum.add(new THREE.Color(part(0), part(1), part(2)));
     }
   return sum.multiplyScalar(1 / (faces.length * places.length));
+}
+
+/** How much of a sky's own colour its light keeps. */
+const TINT = 0.4;
+
+function paler(c: THREE.Color): THREE.Color {
+  const grey = 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b;
+  return new THREE.Color(grey, grey, grey).lerp(c, TINT);
 }
 
 /** The floor of what lights from below: it is lit itself. */
@@ -168,10 +180,15 @@ export function bake(
       [0.5, 0.5],
     ],
   );
-  const up = top.lerp(horizon, 0.45);
+  // A sky as blue as it looks would dye every leaf: the eye takes most of that away.
+  const zenith = paler(top);
+  const around = paler(horizon);
+  const up = zenith.clone().lerp(around, 0.45);
   let lighting: THREE.WebGLRenderTarget | undefined;
   if (fine) {
-    scene.add(floor(albedo, light, up));
+    empty(scene);
+    scene.clear();
+    scene.add(dome(zenith, around, false), floor(albedo, light, up));
     const generator = new THREE.PMREMGenerator(renderer);
     lighting = generator.fromScene(scene, 0, 0.1, 1000);
     generator.dispose();

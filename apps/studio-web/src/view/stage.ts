@@ -48,7 +48,7 @@ varying vec4 color;
 ${SRGB}
 void main() {
   float r = length(position) / ${RADIUS.toFixed(1)};
-  color = vec4(shown(ground), r < 0.35 ? mix(1.0, 0.75, r / 0.35) : mix(0.75, 0.0, (r - 0.35) / 0.65));
+  color = vec4(shown(ground), 1.0 - smoothstep(0.0, 1.0, r));
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
 }`;
 // One colour, or a picture cut to the shape of what is drawn.
@@ -121,6 +121,7 @@ export class Stage {
   private stars: THREE.Points | undefined;
   private contact: Contact | undefined;
   private touched = true;
+  private shade = 0.26;
   private baked: Baked | undefined;
   /** What the baked sky was made for. */
   private bakedFor = '';
@@ -297,7 +298,6 @@ export class Stage {
       return;
     }
     this.touched = false;
-    this.contact.plane.material.opacity = this.light.night > 0.5 || this.dark ? 0.55 : 0.5;
     this.contact.update(this.renderer, this.scene, plants);
   }
 
@@ -306,6 +306,10 @@ export class Stage {
     this.touchGround(plants);
     this.shared.encoded.value = onScreen ? 1 : 0;
     this.shared.exposure.value = this.renderer.toneMappingExposure;
+    // Black over colours that are toned later is weaker than over those that are shown.
+    const black = (share: number): number => (onScreen ? share : 1 - (1 - share) ** 2.2);
+    this.shadow.material.opacity = black(this.shade);
+    if (this.contact) this.contact.plane.material.opacity = black(0.5);
     const { uniforms } = this.backdrop.material;
     // A sheet needs no drawing on the screen.
     const painted = this.isPainted;
@@ -342,7 +346,7 @@ export class Stage {
       // At ten the light falls as it does in the studio; other hours turn it.
       this.sun.color.set(mood.sun);
       this.sun.intensity = mood.sunPower;
-      this.shadow.material.opacity = this.dark ? 0.5 : 0.26;
+      this.shade = this.dark ? 0.5 : 0.26;
       this.fill.color.set(this.dark ? 0x9db4cc : 0xdfeeff);
       this.fill.groundColor.set(this.dark ? 0x2b3226 : 0x9a9a78);
       this.fill.intensity = mood.ambient * 2;
@@ -351,7 +355,7 @@ export class Stage {
     } else {
       this.sun.color.setRGB(...light.colour, THREE.LinearSRGBColorSpace);
       this.sun.intensity = light.power;
-      this.shadow.material.opacity = 0.34 * light.shade;
+      this.shade = 0.34 * light.shade;
       this.sun.position
         .set(...light.way)
         .setLength(4.2)
@@ -401,8 +405,8 @@ export class Stage {
     const studio = setting.sky === 'studio';
     const glossy = fine && baked?.environment !== undefined;
     this.scene.environment = glossy ? baked.environment! : null;
-    this.scene.environmentIntensity = studio ? (this.dark ? 0.5 : 0.62) : light.ambient;
-    if (studio) this.fill.intensity = (this.dark ? DARK : LIGHT).ambient * (glossy ? 0.55 : 2);
+    this.scene.environmentIntensity = studio ? (this.dark ? 0.4 : 0.4) : light.ambient;
+    if (studio) this.fill.intensity = (this.dark ? DARK : LIGHT).ambient * (glossy ? 0.7 : 2);
     else if (glossy) this.fill.intensity = 0;
     else if (baked) {
       this.fill.color.copy(baked.up);

@@ -12,7 +12,7 @@ import type { StageSetting } from './moods';
 import { Looks, PlantMeshes } from './plant';
 import type { Effects, Pipeline } from './post';
 import { drawnBySoftware, Pace } from './quality';
-import { type ShotSize, shoot } from './shot';
+import { cameraFor, type ShotSize, shoot } from './shot';
 import { Stage } from './stage';
 import type { WalkMode } from './walk';
 
@@ -308,20 +308,8 @@ export class PlantView {
   /** The box around all that is seen, metres. */
   private bounds(): THREE.Box3 {
     const box = new THREE.Box3();
-    const add = ({ place, obstacles, view }: PlantMeshes): void => {
-      if (!view || !place.visible) return;
-      place.updateMatrix();
-      for (const mesh of obstacles.children as THREE.Mesh[]) {
-        mesh.updateMatrix();
-        mesh.geometry.computeBoundingBox();
-        if (mesh.geometry.boundingBox)
-          box.union(mesh.geometry.boundingBox.clone().applyMatrix4(mesh.matrix).applyMatrix4(place.matrix));
-      }
-      const own = new THREE.Box3(new THREE.Vector3(...view.min), new THREE.Vector3(...view.max));
-      if (view.parts.length > 0) box.union(own.applyMatrix4(place.matrix));
-    };
-    if (this.guest) add(this.guest);
-    else for (const plant of this.plants.values()) add(plant);
+    if (this.guest) box.union(this.guest.box());
+    else for (const plant of this.plants.values()) box.union(plant.box());
     return box;
   }
 
@@ -555,11 +543,8 @@ export class PlantView {
     if (!chosen?.view || chosen.view.parts.length === 0) return;
     this.setFront(false);
     this.rig.stopWalking();
-    const { view, place } = chosen;
-    place.updateMatrix();
-    const own = new THREE.Box3(new THREE.Vector3(...view.min), new THREE.Vector3(...view.max));
     this.follow = false;
-    this.look(own.applyMatrix4(place.matrix), false);
+    this.look(chosen.box(), false);
     this.redraw();
   }
 
@@ -637,24 +622,8 @@ export class PlantView {
   /** The view as pixels of any size; `turn`: of the camera about the vertical, radians. */
   async shot(size: ShotSize, turn = 0): Promise<Uint8ClampedArray<ArrayBuffer>> {
     const pipeline = await this.needPipeline();
-    const aspect = size.width / size.height;
-    const camera = this.camera.clone();
-    camera.clearViewOffset();
-    if (camera instanceof THREE.PerspectiveCamera) {
-      const { clientWidth: w, clientHeight: h } = this.element;
-      // What is seen on the screen is in the picture, whatever its shape.
-      const wider = Math.max(1, Math.min(1, w / Math.max(1, h)) / aspect);
-      const half = Math.tan(THREE.MathUtils.degToRad(camera.fov / 2)) * wider;
-      camera.fov = 2 * THREE.MathUtils.radToDeg(Math.atan(half));
-      camera.aspect = aspect;
-      const { target } = this.rig.controls;
-      camera.position.sub(target).applyAxisAngle(camera.up, turn).add(target);
-      if (turn !== 0) camera.lookAt(target);
-    } else {
-      const [middle, wide] = [(camera.left + camera.right) / 2, ((camera.top - camera.bottom) / 2) * aspect];
-      [camera.left, camera.right] = [middle - wide, middle + wide];
-    }
-    camera.updateProjectionMatrix();
+    const { clientWidth: w, clientHeight: h } = this.element;
+    const camera = cameraFor(this.camera, size, w / Math.max(1, h), this.rig.controls.target, turn);
     const { renderer, stage, effects, holder: plants } = this;
     const shadow = stage.shadowSize;
     const before = (): void => {
