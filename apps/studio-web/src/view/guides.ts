@@ -12,8 +12,8 @@ const OUTLINE: readonly (readonly [number, number])[] = [
   [0, 0.892],
   [0.026, 0.884],
   [0.029, 0.862],
-  [0.062, 0.842],
-  [0.11, 0.824],
+  [0.055, 0.846],
+  [0.112, 0.828],
   [0.135, 0.79],
   [0.145, 0.72],
   [0.152, 0.63],
@@ -76,11 +76,8 @@ function figure(): THREE.Group {
   const head = new THREE.Shape();
   head.absellipse(0, 0.936, 0.051, 0.064, 0, 2 * Math.PI, false, 0);
   const look = new THREE.MeshBasicMaterial({
-    color: 0x6d7a80,
-    transparent: true,
-    opacity: 0.78,
+    color: 0x7d898e,
     side: THREE.DoubleSide,
-    depthWrite: false,
   });
   const group = new THREE.Group();
   group.add(new THREE.Mesh(new THREE.ShapeGeometry([body]), look));

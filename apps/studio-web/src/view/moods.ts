@@ -30,7 +30,7 @@ export interface StageSetting {
 export const OF_PRESET: Record<Preset, Pick<StageSetting, 'sky' | 'hour' | 'turn' | 'ground' | 'fog'>> = {
   studio: { sky: 'studio', hour: 10, turn: 0, ground: 'plain', fog: 0 },
   noon: { sky: 'clear', hour: 12.5, turn: 35, ground: 'grass', fog: 0 },
-  golden: { sky: 'clear', hour: 18.5, turn: 28, ground: 'grass', fog: 0.12 },
+  golden: { sky: 'clear', hour: 18.5, turn: 48, ground: 'grass', fog: 0.12 },
   overcast: { sky: 'overcast', hour: 11, turn: 0, ground: 'grass', fog: 0.18 },
   night: { sky: 'clear', hour: 23, turn: 0, ground: 'grass', fog: 0.1 },
 };
@@ -118,7 +118,7 @@ const KEYS: readonly (readonly [at: number, colour: Vec3, power: number, ambient
   [-10, [0.62, 0.74, 1], 1.1, 6],
   [-5, [0.6, 0.65, 0.95], 0.5, 4],
   [0, [1, 0.42, 0.16], 1, 1.2],
-  [5, [1, 0.55, 0.26], 4.6, 1.25],
+  [5, [1, 0.55, 0.26], 5.4, 1.4],
   [14, [1, 0.74, 0.48], 4.4, 1.05],
   [30, [1, 0.9, 0.76], 3.2, 0.85],
   [60, [1, 0.95, 0.87], 2.9, 0.75],

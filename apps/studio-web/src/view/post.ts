@@ -38,6 +38,23 @@ void main() {
 }`,
 };
 
+/** Sky, sheet and backdrop of the stage have no share (alpha 0): they are shown as they are and not toned. */
+function keepMarked(output: OutputPass): void {
+  const { material } = output;
+  material.uniforms['marked'] = { value: 1 };
+  material.fragmentShader = material.fragmentShader
+    .replace('uniform sampler2D tDiffuse;', 'uniform sampler2D tDiffuse;\nuniform float marked;')
+    .replace(
+      'gl_FragColor = texture2D( tDiffuse, vUv );',
+      'gl_FragColor = texture2D( tDiffuse, vUv );\nvec4 raw = gl_FragColor;',
+    )
+    .replace(
+      '// color space',
+      'gl_FragColor.rgb = mix( raw.rgb, gl_FragColor.rgb, marked > 0.5 ? clamp( raw.a, 0.0, 1.0 ) : 1.0 );\n' +
+        'gl_FragColor.a = max( marked, raw.a );\n// color space',
+    );
+}
+
 export class Pipeline {
   private readonly first: THREE.WebGLRenderTarget;
   private readonly second: THREE.WebGLRenderTarget;
@@ -49,6 +66,7 @@ export class Pipeline {
   private height = 1;
 
   constructor(private readonly renderer: THREE.WebGLRenderer) {
+    keepMarked(this.output);
     const depthTexture = new THREE.DepthTexture(1, 1, THREE.UnsignedIntType);
     this.first = new THREE.WebGLRenderTarget(1, 1, {
       type: THREE.HalfFloatType,
@@ -144,6 +162,7 @@ export class Pipeline {
       this.divide.render(renderer);
       now = into;
     }
+    this.output.material.uniforms['marked']!.value = transparent ? 0 : 1;
     this.output.renderToScreen = to === null;
     this.output.material.blending = THREE.NoBlending;
     this.output.render(renderer, to as THREE.WebGLRenderTarget, now, 0, false);

@@ -13,20 +13,10 @@ const SHADED = 2.4;
 // Colours are mixed at the corners, in many rows: without a graphics card each pixel costs as much as a corner.
 const SRGB = `
 uniform float encoded;
-uniform float exposure;
-// Onto the screen: as it is to look. Into a picture that is toned later: what the tone curve (three's neutral one)
-// makes that of.
+// Onto the screen: as it is to look. Into a picture that is toned later: linear, and marked as not to be toned.
 vec3 shown(vec3 c) {
-  if (encoded > 0.5) return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(vec3(0.0031308), c));
-  float top = min(0.995, max(c.r, max(c.g, c.b)));
-  if (top > 0.76) {
-    float peak = 0.0576 / (1.0 - top) - 0.24 + 0.76;
-    float g = 1.0 - 1.0 / (0.15 * (peak - top) + 1.0);
-    c = (min(c, vec3(top)) - g * top) / (1.0 - g) * (peak / top);
-  }
-  float low = min(c.r, min(c.g, c.b));
-  float x = low < 0.04 ? sqrt(max(0.0, low) / 6.25) : low + 0.04;
-  return (c + x - low) / exposure;
+  if (encoded < 0.5) return c;
+  return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(vec3(0.0031308), c));
 }`;
 const SKY_VERTEX = `
 uniform vec3 zenith;
@@ -41,7 +31,8 @@ void main() {
 }`;
 const SKY_FRAGMENT = `
 varying vec3 color;
-void main() { gl_FragColor = vec4(color, 1.0); }`;
+uniform float encoded;
+void main() { gl_FragColor = vec4(color, encoded); }`;
 const GROUND_VERTEX = `
 uniform vec3 ground;
 varying vec4 color;
@@ -66,7 +57,7 @@ uniform sampler2D picture;
 uniform float pictured;
 ${SRGB}
 void main() {
-  gl_FragColor = vec4(shown(pictured > 0.5 ? texture2D(picture, at).rgb : paint), 1.0);
+  gl_FragColor = vec4(shown(pictured > 0.5 ? texture2D(picture, at).rgb : paint), encoded);
 }`;
 const GROUND_FRAGMENT = `
 varying vec4 color;
@@ -101,6 +92,14 @@ const DARK: Mood = {
   ambient: 0.95,
 };
 
+/** Blends colours and leaves the mark of what lies below. */
+const KEEP_MARK = {
+  blending: THREE.CustomBlending,
+  blendSrc: THREE.SrcAlphaFactor,
+  blendDst: THREE.OneMinusSrcAlphaFactor,
+  blendSrcAlpha: THREE.ZeroFactor,
+  blendDstAlpha: THREE.OneFactor,
+} as const;
 /** Light of the sky on surfaces without gloss is this times its mean radiance. */
 const DIFFUSE = Math.PI;
 /** Thickness of the densest fog, for each height of a plant. */
@@ -115,7 +114,7 @@ export class Stage {
   private readonly ground = new Ground();
   private readonly sun = new THREE.DirectionalLight();
   private readonly fill = new THREE.HemisphereLight();
-  private readonly shared = { encoded: { value: 1 }, exposure: { value: 1.08 } };
+  private readonly shared = { encoded: { value: 1 } };
   private readonly sheet = new THREE.Color();
   private picture: THREE.Texture | undefined;
   private stars: THREE.Points | undefined;
@@ -164,6 +163,7 @@ export class Stage {
         fragmentShader: GROUND_FRAGMENT,
         transparent: true,
         depthWrite: false,
+        ...KEEP_MARK,
       }),
     );
     this.backdrop = new THREE.Mesh(
@@ -305,10 +305,12 @@ export class Stage {
   prepare(onScreen: boolean, aspect: number, plants: THREE.Object3D): void {
     this.touchGround(plants);
     this.shared.encoded.value = onScreen ? 1 : 0;
-    this.shared.exposure.value = this.renderer.toneMappingExposure;
     // Black over colours that are toned later is weaker than over those that are shown.
     const black = (share: number): number => (onScreen ? share : 1 - (1 - share) ** 2.2);
     this.shadow.material.opacity = black(this.shade);
+    // What is marked as not to be toned stays so under a shadow, unless the shadow is all that is there.
+    const looks = [this.shadow.material, ...(this.contact ? [this.contact.plane.material] : [])];
+    for (const look of looks) look.setValues(this.bare ? { blending: THREE.NormalBlending } : KEEP_MARK);
     if (this.contact) this.contact.plane.material.opacity = black(0.5);
     const { uniforms } = this.backdrop.material;
     // A sheet needs no drawing on the screen.
