@@ -215,7 +215,7 @@ async function make(page: FilmingPage, wanted: Wanted, course: Course | undefine
   const bar = progress();
   try {
     const [name, blob] =
-      wanted.shot === 'picture' ? await picture(page, wanted) : await film(page, wanted, course, bar);
+      wanted.shot === 'picture' ? await picture(page, wanted, bar) : await film(page, wanted, course, bar);
     bar.signal.throwIfAborted();
     download(name, blob, blob.type);
     note(t('note.exported', { name }));
@@ -230,10 +230,19 @@ async function make(page: FilmingPage, wanted: Wanted, course: Course | undefine
   }
 }
 
-async function picture({ view, name }: FilmingPage, wanted: Wanted): Promise<[string, Blob]> {
+/** How far the work is, and whether it is to go on. */
+interface Bar {
+  signal: AbortSignal;
+  set(share: number): void;
+}
+
+async function picture({ view, name }: FilmingPage, wanted: Wanted, bar: Bar): Promise<[string, Blob]> {
   const { pngOf } = await import('./film');
   const { width, height, transparent } = wanted;
-  const pixels = await view.shot({ width, height, transparent });
+  const pixels = await view.shot({ width, height, transparent }, 0, (share) => {
+    bar.signal.throwIfAborted();
+    bar.set(share);
+  });
   return [`${name()}.png`, await pngOf(pixels, width, height)];
 }
 
@@ -241,7 +250,7 @@ async function film(
   page: FilmingPage,
   wanted: Wanted,
   course: Course | undefined,
-  bar: { signal: AbortSignal; set(share: number): void },
+  bar: Bar,
 ): Promise<[string, Blob]> {
   const { recorder, sheetShape } = await import('./film');
   const { format, shot } = wanted;
@@ -259,6 +268,8 @@ async function film(
   const growing = shot === 'growth' ? course : undefined;
   const size = { width, height, transparent: sheet && wanted.transparent };
   const { view } = page;
+  // What is seen from the front alone does not turn.
+  if (shot === 'turn') view.setFront(false);
   try {
     const run = async (): Promise<void> => {
       let before = '';

@@ -71,6 +71,7 @@ export class Scenery {
   }
 
   openStage(): void {
+    if (!this.view) return;
     const panel = el('div', { class: 'settings scenery' });
     const fill = (): void => {
       const chosen = presetOf(this.stage);

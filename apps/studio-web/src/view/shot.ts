@@ -59,12 +59,18 @@ export function cameraFor(
   return camera;
 }
 
-/** Rows from the top, four bytes for each pixel. `before`: called before each tile is drawn, `after` when it is. */
+/** Called before each tile is drawn, when it is, and with the share of them that is; the last may throw. */
+export interface Steps {
+  before(): void;
+  after(): void;
+  watch(share: number): void;
+}
+
+/** Rows from the top, four bytes for each pixel. */
 export async function shoot(
   { renderer, stage, plants, pipeline, camera, effects }: Studio,
   { width, height, transparent }: ShotSize,
-  before: () => void,
-  after: () => void,
+  { before, after, watch }: Steps,
 ): Promise<Uint8ClampedArray<ArrayBuffer>> {
   const pixels = new Uint8ClampedArray(width * height * 4);
   const one = width <= TILE && height <= TILE;
@@ -95,6 +101,7 @@ export async function shoot(
           const from = ((th - 1 - margin - row) * tw + margin) * 4;
           pixels.set(read.subarray(from, from + cw * 4), ((y + row) * width + x) * 4);
         }
+        watch(Math.min(1, (y * width + (x + cw) * ch) / (width * height)));
         // The page breathes between tiles.
         if (!one)
           await new Promise((resolve) => {

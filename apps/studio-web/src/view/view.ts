@@ -116,7 +116,7 @@ export class PlantView {
     this.setLabel(label);
     this.element.append(canvas);
     this.stage.scene.add(this.holder);
-    this.holder.add(this.guides.group);
+    this.stage.scene.add(this.guides.group);
     this.rig = new Rig(canvas, {
       redraw: () => this.redraw(),
       taken: (turns) => this.taken(turns),
@@ -201,7 +201,7 @@ export class PlantView {
     camera.position.copy(this.rig.far.position).sub(this.rig.controls.target).setLength(distance).add(target);
     camera.lookAt(target);
     const { scene } = this.stage;
-    this.holder.visible = false;
+    this.holder.visible = this.guides.group.visible = false;
     this.stage.setFlat(false);
     this.stage.prepare(true, width / height, group);
     scene.add(group);
@@ -214,7 +214,7 @@ export class PlantView {
     canvas.getContext('2d')?.drawImage(this.renderer.domElement, 0, 0);
     scene.remove(group);
     for (const mesh of group.children) (mesh as THREE.Mesh).geometry.dispose();
-    this.holder.visible = true;
+    this.holder.visible = this.guides.group.visible = true;
     this.stage.setFlat(this.front);
     this.stage.touch();
     this.resize();
@@ -336,6 +336,9 @@ export class PlantView {
     const sunk = this.stage.covers && -min.y < SUNK * size.y;
     const up = sunk ? 0 : Math.max(0, -min.y * this.scale);
     this.holder.position.set(-x * this.scale, up, -z * this.scale);
+    // Beside the plants and not among them: it throws no shadow.
+    this.guides.group.scale.copy(this.holder.scale);
+    this.guides.group.position.copy(this.holder.position);
     this.stage.setMetre(this.scale);
     this.guides.setBox(box);
     if (this.follow) this.look(box, !this.rig.isLed);
@@ -615,12 +618,17 @@ export class PlantView {
   /** The plant keeps its size from now on, or fits the stage again. */
   hold(on: boolean): void {
     this.held = on;
-    if (!on) this.fitStage();
+    if (on) this.rig.glide(1);
+    else this.fitStage();
     this.redraw();
   }
 
-  /** The view as pixels of any size; `turn`: of the camera about the vertical, radians. */
-  async shot(size: ShotSize, turn = 0): Promise<Uint8ClampedArray<ArrayBuffer>> {
+  /** The view as pixels of any size; `turn`: of the camera about the vertical, radians; `watch`: sees how far it is, and may throw. */
+  async shot(
+    size: ShotSize,
+    turn = 0,
+    watch: (share: number) => void = () => {},
+  ): Promise<Uint8ClampedArray<ArrayBuffer>> {
     const pipeline = await this.needPipeline();
     const { clientWidth: w, clientHeight: h } = this.element;
     const camera = cameraFor(this.camera, size, w / Math.max(1, h), this.rig.controls.target, turn);
@@ -632,7 +640,8 @@ export class PlantView {
       this.guides.face(camera);
     };
     const after = (): void => stage.setBare(false);
-    const pixels = await shoot({ renderer, stage, plants, pipeline, camera, effects }, size, before, after);
+    const steps = { before, after, watch };
+    const pixels = await shoot({ renderer, stage, plants, pipeline, camera, effects }, size, steps);
     if (shadow !== SHADOW.fine) stage.sharpen(shadow);
     this.redraw();
     return pixels;
