@@ -1,4 +1,7 @@
-/** How the view shows the plants: stage, camera and guides, as the person set them. It belongs to the browser, not to the document. */
+/**
+ * How the view shows the plants: stage, camera and guides, as the person set them. It belongs to the browser, not to the
+ * document.
+ */
 import { setSetting, setting } from './store';
 import { t, tOf, type TextKey } from './text';
 import { el, note, popover } from './ui';

@@ -8,7 +8,7 @@ const NEAR_RINGS = 18;
 /** As far as the ground reaches, in heights of what stands on it. */
 const FAR = 60;
 /** See `haze`. */
-const HAZE_TONED = 2.4;
+const HAZE_TONED = 2.8;
 /** Of each ground, linear: what it throws back up. */
 export const ALBEDO: Record<GroundKind, THREE.Color> = {
   plain: new THREE.Color(0xdfe2cf),

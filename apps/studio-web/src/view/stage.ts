@@ -301,7 +301,10 @@ export class Stage {
     this.contact.update(this.renderer, this.scene, plants);
   }
 
-  /** Before each picture: whether it goes onto the screen as it is, and the shape that a picture behind it is cut to; `plants` stand on the ground. */
+  /**
+   * Before each picture: whether it goes onto the screen as it is, and the shape that a picture behind it is cut to.
+   * `plants` stand on the ground.
+   */
   prepare(onScreen: boolean, aspect: number, plants: THREE.Object3D): void {
     this.touchGround(plants);
     this.shared.encoded.value = onScreen ? 1 : 0;

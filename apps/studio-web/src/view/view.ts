@@ -58,6 +58,8 @@ export class PlantView {
   private readonly pace = new Pace();
   /** The machine turned out to be too slow for what it was thought fit for. */
   private weak = false;
+  /** See `isFine`; not known before the stage is set. */
+  private fine: boolean | undefined;
   /** The plant keeps its size, whatever it becomes. */
   private held = false;
   private handles: Handles | undefined;
@@ -555,29 +557,23 @@ export class PlantView {
 
   /** Whether surfaces are glossy, and corners dark. */
   private get isFine(): boolean {
-    const { quality } = this.stage.current;
-    return quality === 'fine' || (quality === 'auto' && !this.slow && !this.weak);
+    return this.fine ?? false;
   }
 
   setStage(setting: StageSetting): void {
-    const was = this.isFine;
+    const { quality, blur } = setting;
+    const fine = quality === 'fine' || (quality === 'auto' && !this.slow && !this.weak);
     const covered = this.stage.covers;
-    this.stage.set(
-      setting,
-      setting.quality === 'fine' || (setting.quality === 'auto' && !this.slow && !this.weak),
-    );
-    const fine = this.isFine;
-    if (fine !== was || this.first) this.refit(fine);
-    this.first = false;
-    if (fine || setting.blur > 0) void this.needPipeline();
+    this.stage.set(setting, fine);
+    if (fine !== this.fine) this.refit(fine);
+    if (fine || blur > 0) void this.needPipeline();
     if (this.stage.covers !== covered) this.fitStage();
     this.redraw();
   }
 
-  private first = true;
-
   /** Materials and shadows for another quality. */
   private refit(fine: boolean): void {
+    this.fine = fine;
     this.stage.sharpen(fine ? SHADOW.fine : SHADOW.fast);
     this.looks.setMatt(!fine);
     for (const plant of [...this.plants.values(), ...(this.guest ? [this.guest] : [])]) plant.relook();
@@ -623,7 +619,10 @@ export class PlantView {
     this.redraw();
   }
 
-  /** The view as pixels of any size; `turn`: of the camera about the vertical, radians; `watch`: sees how far it is, and may throw. */
+  /**
+   * The view as pixels of any size. `turn`: of the camera about the vertical, radians; `watch`: sees how far it is, and may
+   * throw.
+   */
   async shot(
     size: ShotSize,
     turn = 0,
