@@ -479,7 +479,7 @@ export const en = {
   'film.turn': 'once round the plant',
   'film.growth': 'growth or bloom',
   'film.format': 'File',
-  'film.sheet': 'sheet of frames (PNG)',
+  'film.sheet': 'sheet of frames',
   'film.width': 'Width, pixels',
   'film.height': 'Height, pixels',
   'film.seconds': 'Seconds',

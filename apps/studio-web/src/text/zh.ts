@@ -473,7 +473,7 @@ export const zh: Record<TextKey, string> = {
   'film.turn': '绕植物一周',
   'film.growth': '生长或开花',
   'film.format': '文件',
-  'film.sheet': '帧拼图（PNG）',
+  'film.sheet': '帧拼图',
   'film.width': '宽，像素',
   'film.height': '高，像素',
   'film.seconds': '秒数',

@@ -7,8 +7,8 @@ const RINGS = 40;
 const NEAR_RINGS = 18;
 /** As far as the ground reaches, in heights of what stands on it. */
 const FAR = 60;
-/** See `haze`. */
-const HAZE_TONED = 2.8;
+/** How bright the ground looks beside the horizon. */
+const GROUND_SHOWN = 0.38;
 /** Of each ground, linear: what it throws back up. */
 export const ALBEDO: Record<GroundKind, THREE.Color> = {
   plain: new THREE.Color(0xdfe2cf),
@@ -16,6 +16,15 @@ export const ALBEDO: Record<GroundKind, THREE.Color> = {
   soil: new THREE.Color(0x6b5440),
   none: new THREE.Color(0xb0b0a8),
 };
+
+/** The share of the horizon in a linear mixture that looks as a share of haze does where colours are mixed as shown. */
+function linearHaze(haze: number, horizon: number): number {
+  const ground = GROUND_SHOWN ** 2.2;
+  const mixed = (haze + GROUND_SHOWN * (1 - haze)) ** 2.2;
+  // What is brighter than white counts in full until nothing else is there.
+  const bright = THREE.MathUtils.lerp(Math.max(1, horizon), 1, haze ** 8);
+  return (mixed - ground) / (bright - ground);
+}
 
 /** The same numbers every time. */
 function draws(seed: number): () => number {
@@ -203,6 +212,7 @@ export class Ground {
   private readonly maps = new Map<string, THREE.CanvasTexture>();
   private readonly sheet: THREE.Mesh;
   private built = '';
+  private toned: number | undefined;
   /** How much is seen of each corner of the disc. */
   private readonly clear: Float32Array;
 
@@ -242,7 +252,6 @@ export class Ground {
     for (const material of [this.sheet.material].flat()) material.dispose();
     const of = { map, vertexColors: true, transparent: true };
     this.sheet.material = [this.look(of), this.look({ ...of, depthWrite: false })];
-    this.haze();
     if (this.tufts) {
       this.group.remove(this.tufts);
       this.tufts.geometry.dispose();
@@ -253,11 +262,18 @@ export class Ground {
     this.group.add(this.tufts);
   }
 
-  /** Colours that are toned after they are mixed need less haze for the same look. */
-  private haze(): void {
+  /**
+   * How bright the horizon is where colours are toned after they are mixed: then less haze has the same look. Nothing where
+   * they are mixed as they are shown.
+   */
+  setToned(horizon: number | undefined): void {
+    if (horizon === this.toned) return;
+    this.toned = horizon;
     const colors = this.sheet.geometry.getAttribute('color') as THREE.BufferAttribute;
-    for (let i = 0; i < colors.count; i += 1)
-      colors.setW(i, 1 - (1 - this.clear[i]!) ** (this.fine ? HAZE_TONED : 1));
+    for (let i = 0; i < colors.count; i += 1) {
+      const haze = 1 - this.clear[i]!;
+      colors.setW(i, 1 - (horizon === undefined ? haze : linearHaze(haze, horizon)));
+    }
     colors.needsUpdate = true;
   }
 

@@ -31,6 +31,12 @@ void main() {
   gl_FragColor = vec4(mix(horizon, zenith, pow(h, 0.6)), 1.0);
 }`;
 
+// Nothing is brighter than white, and keeps its hue: haze and fog mix with the sky alike on the screen and in pictures.
+const BELOW_WHITE = `
+float top = max( texColor.r, max( texColor.g, texColor.b ) );
+if ( top > 0.6 ) texColor *= ( 0.6 + 0.36 * ( 1.0 - exp( ( 0.6 - top ) / 0.36 ) ) ) / top;
+gl_FragColor = vec4( texColor, 1.0 );`;
+
 /** Linear radiances. */
 const OVERCAST = { zenith: [0.7, 0.74, 0.79], horizon: [0.56, 0.6, 0.63] } as const;
 const NIGHT = { zenith: [0.008, 0.016, 0.05], horizon: [0.036, 0.062, 0.12] } as const;
@@ -67,6 +73,10 @@ function skyScene(setting: StageSetting, light: Light): THREE.Scene {
   if (light.sun[1] > -0.2) {
     const sky = new Sky();
     sky.scale.setScalar(100);
+    sky.material.fragmentShader = sky.material.fragmentShader.replace(
+      'gl_FragColor = vec4( texColor, 1.0 );',
+      BELOW_WHITE,
+    );
     const set = (name: string, value: unknown): void => {
       sky.material.uniforms[name]!.value = value;
     };
@@ -97,6 +107,7 @@ function read(
   target: THREE.WebGLCubeRenderTarget,
   faces: readonly number[],
   places: readonly (readonly [number, number])[],
+  most: number,
 ): THREE.Color {
   const sum = new THREE.Color(0, 0, 0);
   const pixel = new Uint16Array(4);
@@ -104,7 +115,7 @@ function read(
     for (const [x, y] of places) {
       const at = (share: number): number => Math.min(target.width - 1, Math.floor(share * target.width));
       renderer.readRenderTargetPixels(target, at(x), at(y), 1, 1, pixel, face);
-      const part = (i: number): number => Math.min(1.5, THREE.DataUtils.fromHalfFloat(pixel[i]!));
+      const part = (i: number): number => Math.min(most, THREE.DataUtils.fromHalfFloat(pixel[i]!));
       sum.add(new THREE.Color(part(0), part(1), part(2)));
     }
   return sum.multiplyScalar(1 / (faces.length * places.length));
@@ -167,6 +178,7 @@ export function bake(
       [0.5, 0.5],
       [0.85, 0.5],
     ],
+    2,
   );
   const top = read(
     renderer,
@@ -179,6 +191,7 @@ export function bake(
       [0.7, 0.7],
       [0.5, 0.5],
     ],
+    1.5,
   );
   // A sky as blue as it looks would dye every leaf: the eye takes most of that away.
   const zenith = paler(top);

@@ -308,6 +308,8 @@ export class Stage {
   prepare(onScreen: boolean, aspect: number, plants: THREE.Object3D): void {
     this.touchGround(plants);
     this.shared.encoded.value = onScreen ? 1 : 0;
+    const { g } = this.baked?.horizon ?? { g: 1 };
+    this.ground.setToned(onScreen ? undefined : g * this.renderer.toneMappingExposure);
     // Black over colours that are toned later is weaker than over those that are shown.
     const black = (share: number): number => (onScreen ? share : 1 - (1 - share) ** 2.2);
     this.shadow.material.opacity = black(this.shade);
