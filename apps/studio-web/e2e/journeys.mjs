@@ -108,7 +108,7 @@ async function flower({ page, url, shot }) {
   const levels = await exported(page, 'glb', 3);
   assert.match(levels.name, /\.glb\.zip$/);
   assert.ok(levels.bytes.includes('plant_LOD2.glb'), 'three levels of detail');
-  await page.keyboard.press('f');
+  await page.keyboard.press('d');
   await page.waitForTimeout(700);
   await shot('front');
   assert.equal(await page.locator('#b-front').getAttribute('aria-pressed'), 'true');

@@ -8,6 +8,7 @@ import { journeys } from './journeys.mjs';
 import { keeping } from './keeping.mjs';
 import { serve } from './server.mjs';
 import { shaping } from './shaping.mjs';
+import { staging } from './staging.mjs';
 
 const [browserPath, burgeon, out, folder = 'dist-test'] = process.argv.slice(2);
 rmSync(out, { recursive: true, force: true });
@@ -19,7 +20,7 @@ const browser = await chromium.launch({ executablePath: browserPath, args: FLAGS
 
 let failed = 0;
 const only = process.env.ONLY;
-for (const [name, journey, options] of [...journeys, ...keeping, ...shaping]) {
+for (const [name, journey, options] of [...journeys, ...keeping, ...shaping, ...staging]) {
   if (only && !name.includes(only)) continue;
   const context = await browser.newContext({
     viewport: { width: 1000, height: 640 },

@@ -4,7 +4,8 @@ import { Clipboard } from './clipboard';
 import type { Page } from './commands';
 import { Card } from './correct';
 import { Documents } from './documents';
-import { Files } from './files';
+import { Files, safe } from './files';
+import { openFilming } from './filming';
 import { openHelp } from './help';
 import type { Standing } from './keeper';
 import { listenForKeys } from './keyboard';
@@ -12,6 +13,7 @@ import { MakerPanel } from './makers';
 import { openPalette } from './palette';
 import { Panels } from './panels';
 import { SceneList } from './scene';
+import { Scenery } from './scenery';
 import { Session, type SessionEvents } from './session';
 import { Shaping } from './shaping';
 import { openShelf } from './shelf';
@@ -41,6 +43,7 @@ export class App implements Page {
   readonly shaping: Shaping | undefined;
   readonly modes: ViewModes;
   readonly documents = this.makeDocuments();
+  readonly scenery: Scenery;
   readonly files = this.makeFiles();
   readonly clipboard = new Clipboard(this.session.engine, this.sheet, {
     run: (c) => this.session.draw(c),
@@ -71,6 +74,11 @@ export class App implements Page {
     }
     this.modes = new ViewModes(this.session.engine, this.view, () => this.show.switches());
     this.panels = new Panels(this);
+    this.scenery = new Scenery(
+      this.view,
+      (name) => this.show.parts.buttons.get(name)!,
+      (accept, act) => this.files.pickFile(accept, act),
+    );
     this.show = new Show(this, this.build());
     this.showAll();
   }
@@ -381,6 +389,13 @@ export class App implements Page {
       rename: (name) => this.session.run({ scene: { rename: name } }),
       failed: (why) => note(t('note.refused', { why: whyNot(why) }), 'bad'),
     });
+  }
+
+  openFilming(): void {
+    const { session, view } = this;
+    if (view && !session.isBare)
+      openFilming({ session, view, name: () => safe(session.state?.name ?? t('app.untitled')) });
+    else note(t(view ? 'note.nothing' : 'note.nowebgl'), 'bad');
   }
 
   openPalette(): void {

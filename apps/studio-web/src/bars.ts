@@ -231,7 +231,10 @@ function viewTools(buttons: Buttons, page: Page): HTMLElement {
     small('wire', 'wire'),
     small('skeleton', 'skeleton'),
     small('stats', 'stats'),
-    small('picture', 'picture'),
+    el('hr'),
+    small('stage', 'sun'),
+    small('camera', 'camera'),
+    small('film', 'picture'),
   );
 }
 

@@ -6,12 +6,16 @@ import type { Clipboard } from './clipboard';
 import type { Documents } from './documents';
 import type { Files } from './files';
 import type { Panels } from './panels';
+import type { Scenery } from './scenery';
 import type { Session } from './session';
 import type { Shaping } from './shaping';
 import type { Sheet, Tool } from './sheet/sheet';
 import type { TextKey } from './text';
 import type { Theme } from './theme';
 import { CLIMB_KEYS, SHAPE_TOOLS, SHEET_TOOLS } from './tools';
+import { SIDES } from './view/camera';
+import { GUIDES } from './view/guides';
+import { PRESETS } from './view/moods';
 import type { PlantView } from './view/view';
 import type { ViewModes } from './viewmode';
 
@@ -24,6 +28,7 @@ export interface Page {
   readonly shaping: Shaping | undefined;
   readonly modes: ViewModes;
   readonly documents: Documents;
+  readonly scenery: Scenery;
   readonly files: Files;
   readonly clipboard: Clipboard;
   readonly panels: Panels;
@@ -34,6 +39,7 @@ export interface Page {
   toggleStats(): void;
   switchLanguage(): void;
   openShelf(): void;
+  openFilming(): void;
   openPalette(): void;
   openHelp(): void;
   startTour(): void;
@@ -100,7 +106,8 @@ const TABLE = [
   { id: 'mirror', label: 'tool.mirror', keys: 'M', run: (p) => p.toggleMirror() },
   { id: 'photo', label: 'tool.photo', keys: 'U', run: (p) => p.panels.openPhoto() },
   { id: 'fit', label: 'tool.fit', keys: '0', run: (p) => p.sheet.fit() },
-  { id: 'front', label: 'view.front', keys: 'F', run: (p) => p.view?.setFront(!p.view.isFront) },
+  { id: 'front', label: 'view.front', keys: 'D', run: (p) => p.view?.setFront(!p.view.isFront) },
+  { id: 'focus', label: 'view.focus', keys: 'F', run: (p) => p.view?.focus() },
   { id: 'frame', label: 'view.frame', keys: 'Shift+0', run: (p) => p.view?.frameNow() },
   { id: 'wire', label: 'view.wire', keys: 'W', run: (p) => p.modes.toggle('wire') },
   { id: 'skeleton', label: 'view.skeleton', keys: 'K', run: (p) => p.modes.toggle('skeleton') },
@@ -156,6 +163,28 @@ const TABLE = [
     },
   },
   { id: 'stats', label: 'view.stats', keys: 'I', run: (p) => p.toggleStats() },
+  { id: 'stage', label: 'stage.title', keys: 'T', run: (p) => p.scenery.openStage() },
+  ...PRESETS.map((preset) => ({
+    id: `stage-${preset}` as const,
+    label: `stage.of.${preset}` as const,
+    run: (p: Page) => p.scenery.preset(preset),
+  })),
+  { id: 'camera', label: 'camera.title', keys: 'C', run: (p) => p.scenery.openCamera() },
+  ...SIDES.map((side) => ({
+    id: `side-${side}` as const,
+    label: `side.of.${side}` as const,
+    run: (p: Page) => p.scenery.side(side),
+  })),
+  { id: 'camera-keep', label: 'camera.keep', run: (p) => p.scenery.keepCamera() },
+  { id: 'walk', label: 'walk.walk', keys: 'N', run: (p) => p.scenery.walk('walk') },
+  { id: 'fly', label: 'walk.fly', keys: 'Shift+N', run: (p) => p.scenery.walk('fly') },
+  ...GUIDES.map((guide) => ({
+    id: `guide-${guide}` as const,
+    label: `guide.${guide}` as const,
+    ...(guide === 'figure' ? { keys: 'H' } : {}),
+    run: (p: Page) => p.scenery.toggle(guide),
+  })),
+  { id: 'film', label: 'film.title', keys: 'O', run: (p) => p.openFilming() },
   { id: 'picture', label: 'export.png', run: (p) => void p.files.picture() },
   {
     id: 'all',
@@ -239,6 +268,10 @@ const KEY_ROWS: readonly [CommandId[], string, TextKey][] = [
   [['dice'], '', 'key.dice'],
   [['grid'], '', 'variations.title'],
   [['front'], '', 'key.front'],
+  [['focus', 'frame'], ' · ', 'key.focus'],
+  [['stage', 'camera', 'film'], ' · ', 'key.stage'],
+  [['walk', 'fly'], ' · ', 'key.walk'],
+  [['guide-figure'], '', 'guide.figure'],
   [['wire', 'skeleton'], ' · ', 'key.modes'],
   [['stats'], '', 'view.stats'],
   [['shape'], '', 'key.shape'],

@@ -276,7 +276,7 @@ export class Files {
 }
 
 /** A file name of the plant's name. */
-function safe(name: string): string {
+export function safe(name: string): string {
   return (
     name
       .replace(/[\\/:*?"<>|\u0000-\u001f]+/g, '-')

@@ -56,6 +56,8 @@ const PATHS = {
   skeleton: 'M12 21V10M12 14l-5-5M12 10l4.500-5M7 9V5M7 9H3.500M16.500 5h3M12 17l5-4.500',
   stats: 'M5 20V11M10 20V5M15 20v-7M20 20V8M3 20h18.500',
   picture: 'M4 8h3.500l1.500-2.500h6L16.500 8H20v11H4zM12 10.500a3 3 0 1 1 0 6a3 3 0 0 1 0-6z',
+  sun: 'M12 8a4 4 0 1 1 0 8a4 4 0 0 1 0-8zM12 2.500v2.500M12 19v2.500M2.500 12H5M19 12h2.500M5.300 5.300L7 7M17 17l1.700 1.700M5.300 18.700L7 17M17 7l1.700-1.700',
+  camera: 'M12 3.500l7.500 4.300v8.400L12 20.500l-7.500-4.300V7.800zM12 9a3 3 0 1 1 0 6a3 3 0 0 1 0-6z',
   share: 'M14 5h5v5M19 5l-8 8M10 6H6a1 1 0 0 0-1 1v11a1 1 0 0 0 1 1h11a1 1 0 0 0 1-1v-4',
   commands: 'M9 9H7a2 2 0 1 1 2-2v10a2 2 0 1 1-2-2h10a2 2 0 1 1-2 2V7a2 2 0 1 1 2 2z',
   scene: 'M4 18h16M7 18v-5m0 0a3 3 0 1 1 0-6a3 3 0 0 1 0 6zM16.5 18v-8m0 0l-2.500-2.500m2.500 2.500l2.500-3',
@@ -173,9 +175,17 @@ export function popover(anchor: HTMLElement, content: HTMLElement, label: string
     content,
   );
   document.body.append(p);
-  const box = anchor.getBoundingClientRect();
-  p.style.top = `${box.bottom + 6}px`;
-  p.style.left = `${Math.max(8, Math.min(box.left, innerWidth - p.offsetWidth - 8))}px`;
+  // Below the button, or beside it where there is no room below; its content may change.
+  const place = (): void => {
+    const box = anchor.getBoundingClientRect();
+    const [w, h] = [p.offsetWidth, p.offsetHeight];
+    const below = box.bottom + 6 + h <= innerHeight - 8;
+    const left = below || box.left - w - 8 < 8 ? box.left : box.left - w - 8;
+    p.style.top = `${below ? box.bottom + 6 : Math.max(8, innerHeight - h - 8)}px`;
+    p.style.left = `${Math.max(8, Math.min(left, innerWidth - w - 8))}px`;
+  };
+  place();
+  new ResizeObserver(place).observe(p);
   anchor.setAttribute('aria-expanded', 'true');
   p.querySelector<HTMLElement>('button, input, select')?.focus();
   const away = (e: Event): void => {

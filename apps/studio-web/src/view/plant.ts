@@ -10,7 +10,14 @@ export class Looks {
   private wire = false;
 
   /** `matt`: without gloss, which costs a machine without a graphics card as much as all else. */
-  constructor(private readonly matt: boolean) {}
+  constructor(private matt: boolean) {}
+
+  /** Materials of the other kind from now on; plants have to take them. */
+  setMatt(matt: boolean): void {
+    this.matt = matt;
+    for (const m of this.materials.values()) m.dispose();
+    this.materials.clear();
+  }
 
   /** A plant of its own that shares textures and materials; the caller disposes its geometries. */
   build({ view, parts, textures }: Sent): THREE.Group {
@@ -130,6 +137,32 @@ export class PlantMeshes {
     for (const mesh of old.values()) {
       mesh.geometry.dispose();
       this.group.remove(mesh);
+    }
+  }
+
+  /** The box around it and what it grows around, metres of the scene; empty where it is not seen. */
+  box(): THREE.Box3 {
+    const { place, obstacles, view } = this;
+    const box = new THREE.Box3();
+    if (!view || !place.visible) return box;
+    place.updateMatrix();
+    for (const mesh of obstacles.children as THREE.Mesh[]) {
+      mesh.updateMatrix();
+      mesh.geometry.computeBoundingBox();
+      if (mesh.geometry.boundingBox)
+        box.union(mesh.geometry.boundingBox.clone().applyMatrix4(mesh.matrix).applyMatrix4(place.matrix));
+    }
+    const own = new THREE.Box3(new THREE.Vector3(...view.min), new THREE.Vector3(...view.max));
+    if (view.parts.length > 0) box.union(own.applyMatrix4(place.matrix));
+    return box;
+  }
+
+  /** Takes its materials anew. */
+  relook(): void {
+    for (const mesh of this.group.children as THREE.Mesh[]) {
+      const part = this.view?.parts.find((p) => p.name === mesh.name);
+      const look = part && this.view?.materials[part.material];
+      if (look) mesh.material = this.looks.material(look, mesh.geometry.hasAttribute('color'));
     }
   }
 

@@ -1,13 +1,20 @@
 /** The right side: the plant in three dimensions, turned by hand, or from the front exactly as it was drawn. */
 import * as THREE from 'three';
-import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { texturesOf, type Sent } from '../protocol';
 import type { PlantState, PlantView as Seen, SceneView, ShapePointer, ShapeReach } from '../wire';
 import type { Gizmo } from '../scene';
 import type { Box } from '../sheet/geometry';
+import { onScreen, pointerOf, reachOf } from './aim';
+import { Rig, type Side } from './camera';
 import type { Handles } from './gizmo';
+import { type Guide, Guides } from './guides';
+import type { StageSetting } from './moods';
 import { Looks, PlantMeshes } from './plant';
+import type { Effects, Pipeline } from './post';
+import { drawnBySoftware, Pace } from './quality';
+import { cameraFor, type ShotSize, shoot } from './shot';
 import { Stage } from './stage';
+import type { WalkMode } from './walk';
 
 /** Colours of axes by order: 0, 1, 2, 3 and more; each shows on light and dark sky. */
 const ORDERS = [0x8a4b14, 0xc0600f, 0x1f8a55, 0x2079c0, 0x8a4fb5].map((c) => new THREE.Color(c));
@@ -23,6 +30,12 @@ const CLICK = 5;
 const SLOW_MS = 300;
 /** Its pixels for each of the screen's: at rest, and while pictures follow one another. */
 const GRAIN = { rest: 0.75, moving: 0.45 } as const;
+/** Edge of the shadow map, pixels. */
+const SHADOW = { fast: 512, fine: 2048 } as const;
+/** Eyes of a walker, metres, and between which heights of the stage they stay. */
+const EYES = { m: 1.65, low: 0.03, high: 1.4 } as const;
+/** So much of a plant may be in the ground before it is raised onto it, where the ground hides what is in it. */
+const SUNK = 0.06;
 
 export class PlantView {
   readonly element = document.createElement('div');
@@ -38,9 +51,17 @@ export class PlantView {
   private readonly holder = new THREE.Group();
   private bones: THREE.LineSegments | undefined;
   private readonly boneLook = new THREE.LineBasicMaterial({ vertexColors: true, toneMapped: false });
-  private readonly far = new THREE.PerspectiveCamera(32, 1, 0.01, 200);
   private readonly flat = new THREE.OrthographicCamera(-1, 1, 1, -1, -50, 50);
-  private readonly controls: OrbitControls;
+  readonly rig: Rig;
+  private readonly guides = new Guides();
+  private pipeline: Pipeline | undefined;
+  private readonly pace = new Pace();
+  /** The machine turned out to be too slow for what it was thought fit for. */
+  private weak = false;
+  /** See `isFine`; not known before the stage is set. */
+  private fine: boolean | undefined;
+  /** The plant keeps its size, whatever it becomes. */
+  private held = false;
   private handles: Handles | undefined;
   private gizmo: Gizmo | undefined;
   private dragging = false;
@@ -67,12 +88,12 @@ export class PlantView {
   /** Pixels at the foot that something else covers. */
   private low = 0;
   private readonly caster = new THREE.Raycaster();
-  private wish: { target: THREE.Vector3; distance: number } | undefined;
   /** A plant was clicked. */
   onPick: (plant: number) => void = () => {};
   /** A picture was drawn: what lies over it may have to move. */
   onDraw: () => void = () => {};
   onFrontChange: (front: boolean) => void = () => {};
+  onWalk: (mode: WalkMode | undefined) => void = () => {};
   onContext: (lost: boolean) => void = () => {};
   onPlaceBegin: () => void = () => {};
   onPlace: (plant: number, position: [number, number, number], yaw: number, scale: number) => void = () => {};
@@ -89,7 +110,7 @@ export class PlantView {
     this.renderer.shadowMap.type = THREE.PCFShadowMap;
     this.renderer.toneMapping = THREE.NeutralToneMapping;
     this.renderer.toneMappingExposure = 1.08;
-    this.stage = new Stage(this.slow ? 512 : 2048);
+    this.stage = new Stage(this.slow ? SHADOW.fast : SHADOW.fine, this.renderer, () => this.redraw());
     this.element.className = 'view';
     const canvas = this.renderer.domElement;
     canvas.tabIndex = 0;
@@ -97,22 +118,22 @@ export class PlantView {
     this.setLabel(label);
     this.element.append(canvas);
     this.stage.scene.add(this.holder);
-    this.far.position.set(1.25, 0.95, 2.6);
-    this.controls = new OrbitControls(this.far, canvas);
-    this.controls.enableDamping = true;
-    this.controls.dampingFactor = 0.12;
-    this.controls.minDistance = 0.1;
-    this.controls.maxDistance = 12;
-    this.controls.maxPolarAngle = Math.PI * 0.53;
-    this.controls.target.set(0, 0.48, 0);
-    this.controls.addEventListener('change', () => this.redraw());
+    this.stage.scene.add(this.guides.group);
+    this.rig = new Rig(canvas, {
+      redraw: () => this.redraw(),
+      taken: (turns) => this.taken(turns),
+      eyes: () => ({
+        height: Math.min(EYES.high, Math.max(EYES.low, EYES.m * this.scale)),
+        metre: this.scale,
+      }),
+      walked: (mode) => this.onWalk(mode),
+    });
     canvas.addEventListener('pointerdown', (e) => {
       if (!this.hands) this.taken(e.button === 0);
       else if (e.button !== 0) this.taken(e.button === 2);
     });
     this.listenForClicks(canvas);
     canvas.addEventListener('wheel', () => this.taken(false), { passive: true });
-    canvas.addEventListener('keydown', (e) => this.key(e));
     canvas.addEventListener('webglcontextlost', (e) => {
       e.preventDefault();
       this.onContext(true);
@@ -157,7 +178,7 @@ export class PlantView {
       (this.chosen?.place ?? this.holder).add(this.bones);
     }
     this.stand();
-    this.renderer.shadowMap.needsUpdate = true;
+    this.stage.touch();
     this.redraw();
   }
 
@@ -169,7 +190,7 @@ export class PlantView {
     const scale = 1 / Math.max(size.x, size.y, size.z, 1e-9);
     group.scale.setScalar(scale);
     group.position.y = Math.max(0, -min.y * scale);
-    const camera = new THREE.PerspectiveCamera(this.far.fov, width / height, 0.01, 200);
+    const camera = new THREE.PerspectiveCamera(this.rig.far.fov, width / height, 0.01, 200);
     const target = min
       .clone()
       .add(max)
@@ -179,11 +200,12 @@ export class PlantView {
       (size.length() * scale * 0.48) /
       Math.sin(THREE.MathUtils.degToRad(camera.fov / 2)) /
       Math.min(1, width / height);
-    camera.position.copy(this.far.position).sub(this.controls.target).setLength(distance).add(target);
+    camera.position.copy(this.rig.far.position).sub(this.rig.controls.target).setLength(distance).add(target);
     camera.lookAt(target);
     const { scene } = this.stage;
-    this.holder.visible = false;
+    this.holder.visible = this.guides.group.visible = false;
     this.stage.setFlat(false);
+    this.stage.prepare(true, width / height, group);
     scene.add(group);
     this.renderer.setPixelRatio(1);
     this.renderer.setSize(width, height, false);
@@ -194,9 +216,9 @@ export class PlantView {
     canvas.getContext('2d')?.drawImage(this.renderer.domElement, 0, 0);
     scene.remove(group);
     for (const mesh of group.children) (mesh as THREE.Mesh).geometry.dispose();
-    this.holder.visible = true;
+    this.holder.visible = this.guides.group.visible = true;
     this.stage.setFlat(this.front);
-    this.renderer.shadowMap.needsUpdate = true;
+    this.stage.touch();
     this.resize();
     this.render();
     return canvas;
@@ -250,7 +272,7 @@ export class PlantView {
     this.stand();
     this.fitStage();
     this.showHandles();
-    this.renderer.shadowMap.needsUpdate = true;
+    this.stage.touch();
     this.lay();
     this.redraw();
   }
@@ -264,7 +286,7 @@ export class PlantView {
     this.stand();
     this.fitStage();
     this.showHandles();
-    this.renderer.shadowMap.needsUpdate = true;
+    this.stage.touch();
     this.lay();
     this.redraw();
   }
@@ -288,28 +310,17 @@ export class PlantView {
   /** The box around all that is seen, metres. */
   private bounds(): THREE.Box3 {
     const box = new THREE.Box3();
-    const add = ({ place, obstacles, view }: PlantMeshes): void => {
-      if (!view || !place.visible) return;
-      place.updateMatrix();
-      for (const mesh of obstacles.children as THREE.Mesh[]) {
-        mesh.updateMatrix();
-        mesh.geometry.computeBoundingBox();
-        if (mesh.geometry.boundingBox)
-          box.union(mesh.geometry.boundingBox.clone().applyMatrix4(mesh.matrix).applyMatrix4(place.matrix));
-      }
-      const own = new THREE.Box3(new THREE.Vector3(...view.min), new THREE.Vector3(...view.max));
-      if (view.parts.length > 0) box.union(own.applyMatrix4(place.matrix));
-    };
-    if (this.guest) add(this.guest);
-    else for (const plant of this.plants.values()) add(plant);
+    if (this.guest) box.union(this.guest.box());
+    else for (const plant of this.plants.values()) box.union(plant.box());
     return box;
   }
 
   /** Brings all that is seen to the size of the stage. */
   private fitStage(): void {
     // Under a hand that works on it a plant keeps its size.
-    if (this.dragging || (this.hands && this.fitted === this.current)) return;
-    const { min, max } = this.bounds();
+    if (this.dragging || this.held || (this.hands && this.fitted === this.current)) return;
+    const box = this.bounds();
+    const { min, max } = box;
     const size = max.clone().sub(min);
     const largest = Math.max(size.x, size.y, size.z);
     if (!(largest > 0)) return;
@@ -323,9 +334,16 @@ export class PlantView {
       : this.front || this.guest
         ? [0, 0]
         : this.only();
-    // Roots below the ground are shown: the ground sinks no plant.
-    this.holder.position.set(-x * this.scale, Math.max(0, -min.y * this.scale), -z * this.scale);
-    if (this.follow) this.frameAll(min, max, this.wish === undefined);
+    // Roots below the ground are shown: the ground sinks no plant. But the tip of a leaf may be in the grass.
+    const sunk = this.stage.covers && -min.y < SUNK * size.y;
+    const up = sunk ? 0 : Math.max(0, -min.y * this.scale);
+    this.holder.position.set(-x * this.scale, up, -z * this.scale);
+    // Beside the plants and not among them: it throws no shadow.
+    this.guides.group.scale.copy(this.holder.scale);
+    this.guides.group.position.copy(this.holder.position);
+    this.stage.setMetre(this.scale);
+    this.guides.setBox(box);
+    if (this.follow) this.look(box, !this.rig.isLed);
   }
 
   private only(): [number, number] {
@@ -337,16 +355,16 @@ export class PlantView {
     this.gizmo = mode;
     if (mode && !this.handles) {
       const { Handles } = await import('./gizmo');
-      this.handles ??= new Handles(this.far, this.renderer.domElement, this.stage.scene, {
+      this.handles ??= new Handles(this.rig.far, this.renderer.domElement, this.stage.scene, {
         begin: () => {
           this.dragging = true;
-          this.controls.enabled = false;
+          this.rig.controls.enabled = false;
           this.onPlaceBegin();
         },
         moved: () => this.moved(),
         end: () => {
           this.dragging = false;
-          this.controls.enabled = true;
+          this.rig.controls.enabled = true;
           this.onPlaceEnd();
         },
         redraw: () => this.redraw(),
@@ -388,7 +406,7 @@ export class PlantView {
       Math.round(THREE.MathUtils.radToDeg(yaw) * 10) / 10,
       round(this.gizmo === 'scale' ? place.scale.x : scale),
     );
-    this.renderer.shadowMap.needsUpdate = true;
+    this.stage.touch();
     this.redraw();
   }
 
@@ -422,7 +440,7 @@ export class PlantView {
   }
 
   private get camera(): THREE.PerspectiveCamera | THREE.OrthographicCamera {
-    return this.front && this.seen?.front ? this.flat : this.far;
+    return this.front && this.seen?.front ? this.flat : this.rig.far;
   }
 
   private aim(x: number, y: number): void {
@@ -440,66 +458,28 @@ export class PlantView {
     const place = this.chosen?.place;
     if (!place) return undefined;
     this.aim(x, y);
-    place.updateWorldMatrix(true, false);
-    const plantFromWorld = place.matrixWorld.clone().invert();
-    const way = (v: THREE.Vector3): [number, number, number] =>
-      v.clone().transformDirection(plantFromWorld).toArray();
-    const { origin, direction } = this.caster.ray;
-    return {
-      origin: origin.clone().applyMatrix4(plantFromWorld).toArray(),
-      direction: way(direction),
-      forward: way(this.camera.getWorldDirection(new THREE.Vector3())),
-      up: way(new THREE.Vector3(0, 1, 0).applyQuaternion(this.camera.quaternion)),
-      pressure,
-    };
+    return pointerOf(this.caster.ray, this.camera, place, pressure);
   }
 
   /** So many pixels, in metres of the chosen plant. */
   reach(pixels: number): Omit<ShapeReach, 'bearers'> {
-    const size = (this.chosen?.place.getWorldScale(new THREE.Vector3()).x ?? 1) || 1;
-    const share = pixels / Math.max(1, this.element.clientHeight);
-    const { camera } = this;
-    if (camera instanceof THREE.OrthographicCamera)
-      return { metres: (share * (camera.top - camera.bottom)) / size, per_metre: 0 };
-    return { metres: 0, per_metre: 2 * Math.tan(THREE.MathUtils.degToRad(camera.fov / 2)) * share };
+    return reachOf(this.camera, this.chosen?.place, pixels / Math.max(1, this.element.clientHeight));
   }
 
   /** Points of the chosen plant (x, y, z, radius) on the screen: x, y and width, pixels; width 0 behind the eye. */
   project(points: Float32Array): Float32Array {
-    const place = this.chosen?.place;
-    const out = new Float32Array((points.length / 4) * 3);
-    if (!place) return out;
-    const { camera } = this;
-    camera.updateMatrixWorld();
-    place.updateWorldMatrix(true, false);
     const { clientWidth: w, clientHeight: h } = this.element;
-    const size = place.getWorldScale(new THREE.Vector3()).x;
-    const eye = camera.matrixWorldInverse;
-    const v = new THREE.Vector3();
-    for (let i = 0, o = 0; i < points.length; i += 4, o += 3) {
-      v.set(points[i]!, points[i + 1]!, points[i + 2]!)
-        .applyMatrix4(place.matrixWorld)
-        .applyMatrix4(eye);
-      const depth = -v.z;
-      v.applyMatrix4(camera.projectionMatrix);
-      const wide =
-        camera instanceof THREE.OrthographicCamera
-          ? (points[i + 3]! * size * h) / (camera.top - camera.bottom)
-          : (points[i + 3]! * size * h) /
-            (2 * Math.tan(THREE.MathUtils.degToRad(camera.fov / 2)) * Math.max(1e-6, depth));
-      out.set([((v.x + 1) / 2) * w, ((1 - v.y) / 2) * h, depth > 0 ? 2 * wide : 0], o);
-    }
-    return out;
+    return onScreen(this.camera, this.chosen?.place, w, h, points);
   }
 
   /** With a tool in the hand the second button or two fingers turn the view, and it keeps its size. */
   setHands(on: boolean): void {
     if (on === this.hands) return;
     this.hands = on;
-    this.controls.mouseButtons = on
+    this.rig.controls.mouseButtons = on
       ? { LEFT: null, MIDDLE: THREE.MOUSE.PAN, RIGHT: THREE.MOUSE.ROTATE }
       : { LEFT: THREE.MOUSE.ROTATE, MIDDLE: THREE.MOUSE.DOLLY, RIGHT: THREE.MOUSE.PAN };
-    this.controls.touches = on
+    this.rig.controls.touches = on
       ? { ONE: null, TWO: THREE.TOUCH.DOLLY_ROTATE }
       : { ONE: THREE.TOUCH.ROTATE, TWO: THREE.TOUCH.DOLLY_PAN };
     // The tools' strip lies over the foot of the view.
@@ -513,7 +493,7 @@ export class PlantView {
 
   /** The wheel is the tool's for now, or it zooms. */
   setZoom(on: boolean): void {
-    this.controls.enableZoom = on;
+    this.rig.controls.enableZoom = on;
   }
 
   /** Pixels on the left that a list covers: the plant is shown beside it. */
@@ -532,14 +512,138 @@ export class PlantView {
     this.follow = true;
     this.fitted = null;
     this.setFront(false);
+    this.rig.stopWalking();
     this.fitStage();
     this.frameNowBox();
     this.redraw();
   }
 
   private frameNowBox(): void {
-    const { min, max } = this.bounds();
-    if (!this.bounds().isEmpty()) this.frameAll(min, max, false);
+    this.look(this.bounds(), false);
+  }
+
+  /** Leads the camera to a box of metres. */
+  private look(box: THREE.Box3, now: boolean): void {
+    if (box.isEmpty()) return;
+    const seen = this.guides.any && !this.front ? this.guides.extend(box) : box;
+    const { clientWidth: w, clientHeight: h } = this.element;
+    const free = Math.max(1, h - this.low);
+    const across = Math.min(1, (w - this.inset) / free) * (free / Math.max(1, h));
+    const world = new THREE.Box3(
+      seen.min.clone().multiplyScalar(this.scale).add(this.holder.position),
+      seen.max.clone().multiplyScalar(this.scale).add(this.holder.position),
+    );
+    this.rig.frame(world, across, now);
+  }
+
+  /** Goes round to a side of what is shown. */
+  seeSide(side: Side): void {
+    this.setFront(false);
+    this.rig.side(side);
+  }
+
+  /** Comes near to the plant that is chosen. */
+  focus(): void {
+    const { chosen } = this;
+    if (!chosen?.view || chosen.view.parts.length === 0) return;
+    this.setFront(false);
+    this.rig.stopWalking();
+    this.follow = false;
+    this.look(chosen.box(), false);
+    this.redraw();
+  }
+
+  // Stage --------------------------------------------------------------------------------------------------------
+
+  /** Whether surfaces are glossy, and corners dark. */
+  private get isFine(): boolean {
+    return this.fine ?? false;
+  }
+
+  setStage(setting: StageSetting): void {
+    const { quality, blur } = setting;
+    const fine = quality === 'fine' || (quality === 'auto' && !this.slow && !this.weak);
+    const covered = this.stage.covers;
+    this.stage.set(setting, fine);
+    if (fine !== this.fine) this.refit(fine);
+    if (fine || blur > 0) void this.needPipeline();
+    if (this.stage.covers !== covered) this.fitStage();
+    this.redraw();
+  }
+
+  /** Materials and shadows for another quality. */
+  private refit(fine: boolean): void {
+    this.fine = fine;
+    this.stage.sharpen(fine ? SHADOW.fine : SHADOW.fast);
+    this.looks.setMatt(!fine);
+    for (const plant of [...this.plants.values(), ...(this.guest ? [this.guest] : [])]) plant.relook();
+    this.element.dataset['quality'] = fine ? 'fine' : 'fast';
+  }
+
+  setPicture(image: TexImageSource | undefined): void {
+    this.stage.setPicture(image);
+  }
+
+  setGuide(guide: Guide, on: boolean): void {
+    this.guides.set(guide, on);
+    if (this.follow) this.frameNowBox();
+    this.redraw();
+  }
+
+  isGuided(guide: Guide): boolean {
+    return this.guides.isShown(guide);
+  }
+
+  private async needPipeline(): Promise<Pipeline> {
+    if (this.pipeline) return this.pipeline;
+    const { Pipeline } = await import('./post');
+    this.pipeline ??= new Pipeline(this.renderer);
+    this.redraw();
+    return this.pipeline;
+  }
+
+  private get effects(): Omit<Effects, 'transparent' | 'zoom'> {
+    const { far, controls } = this.rig;
+    return {
+      occlusion: this.isFine,
+      blur: this.front ? 0 : this.stage.current.blur,
+      focus: far.position.distanceTo(controls.target),
+    };
+  }
+
+  /** The plant keeps its size from now on, or fits the stage again. */
+  hold(on: boolean): void {
+    this.held = on;
+    if (on) this.rig.glide(1);
+    else this.fitStage();
+    this.redraw();
+  }
+
+  /**
+   * The view as pixels of any size. `turn`: of the camera about the vertical, radians; `watch`: sees how far it is, and may
+   * throw.
+   */
+  async shot(
+    size: ShotSize,
+    turn = 0,
+    watch: (share: number) => void = () => {},
+  ): Promise<Uint8ClampedArray<ArrayBuffer>> {
+    const pipeline = await this.needPipeline();
+    const { clientWidth: w, clientHeight: h } = this.element;
+    const camera = cameraFor(this.camera, size, w / Math.max(1, h), this.rig.controls.target, turn);
+    const { renderer, stage, effects, holder: plants } = this;
+    const shadow = stage.shadowSize;
+    const before = (): void => {
+      stage.sharpen(SHADOW.fine);
+      if (size.transparent) stage.setBare(true);
+      this.guides.face(camera);
+    };
+    const after = (): void => stage.setBare(false);
+    const steps = { before, after, watch };
+    const pixels = await shoot({ renderer, stage, plants, pipeline, camera, effects }, size, steps);
+    if (shadow !== SHADOW.fine) stage.sharpen(shadow);
+    this.redraw();
+    return pixels;
   }
 
   /** The front view shows the same part of the plane as the sheet. */
@@ -577,76 +681,19 @@ export class PlantView {
     });
   }
 
-  private frameAll(min: THREE.Vector3, max: THREE.Vector3, now: boolean): void {
-    const s = this.scale;
-    const up = this.holder.position.y;
-    const target = min
-      .clone()
-      .add(max)
-      .multiplyScalar(s / 2)
-      .add(this.holder.position);
-    target.y += up - this.holder.position.y;
-    if (max.equals(min)) return;
-    const radius = max.clone().sub(min).length() * s * 0.5;
-    const angle = THREE.MathUtils.degToRad(this.far.fov / 2);
-    const { clientWidth: w, clientHeight: h } = this.element;
-    const free = Math.max(1, h - this.low);
-    const across = Math.min(1, (w - this.inset) / free) * (free / Math.max(1, h));
-    const distance = (radius / Math.sin(angle) / across) * 0.98;
-    this.wish = { target, distance };
-    if (now) {
-      this.glide(1);
-    }
-  }
-
-  /** Moves the camera a share of the way to where it should be; true when it is there. */
-  private glide(share: number): boolean {
-    if (!this.wish) return true;
-    const { target, distance } = this.wish;
-    const arm = this.far.position.clone().sub(this.controls.target);
-    const length = arm.length() + (distance - arm.length()) * share;
-    this.controls.target.lerp(target, share);
-    this.far.position.copy(this.controls.target).add(arm.setLength(length));
-    return Math.abs(length - distance) < 1e-3 && this.controls.target.distanceTo(target) < 1e-3;
-  }
-
   /** A hand took the camera: it is no longer moved by itself, and turning leaves the front view. */
   private taken(turns: boolean): void {
     if (this.front && turns) this.setFront(false);
-    this.wish = undefined;
+    this.rig.leave();
     if (!turns) this.follow = false;
-  }
-
-  private key(e: KeyboardEvent): void {
-    const turn: Record<string, [number, number]> = {
-      ArrowLeft: [-0.12, 0],
-      ArrowRight: [0.12, 0],
-      ArrowUp: [0, -0.1],
-      ArrowDown: [0, 0.1],
-    };
-    const by = turn[e.key];
-    const zoom = e.key === '+' || e.key === '=' ? 0.88 : e.key === '-' ? 1.14 : 0;
-    if (!by && !zoom) return;
-    e.preventDefault();
-    e.stopPropagation();
-    this.taken(by !== undefined);
-    const arm = new THREE.Spherical().setFromVector3(this.far.position.clone().sub(this.controls.target));
-    if (by) {
-      arm.theta += by[0];
-      arm.phi = Math.min(this.controls.maxPolarAngle, Math.max(0.05, arm.phi + by[1]));
-    } else {
-      arm.radius = Math.min(12, Math.max(0.1, arm.radius * zoom));
-    }
-    this.far.position.setFromSpherical(arm).add(this.controls.target);
-    this.redraw();
   }
 
   private lay(): void {
     const { clientWidth: w, clientHeight: h } = this.element;
-    this.far.aspect = w / Math.max(1, h);
-    if (this.inset > 0 || this.low > 0) this.far.setViewOffset(w, h, -this.inset / 2, this.low / 2, w, h);
-    else this.far.clearViewOffset();
-    this.far.updateProjectionMatrix();
+    this.rig.far.aspect = w / Math.max(1, h);
+    if (this.inset > 0 || this.low > 0) this.rig.far.setViewOffset(w, h, -this.inset / 2, this.low / 2, w, h);
+    else this.rig.far.clearViewOffset();
+    this.rig.far.updateProjectionMatrix();
     const front = this.seen?.front;
     if (!front || !this.sheetSeen) return;
     const k = front.metres_per_unit * this.scale;
@@ -658,7 +705,7 @@ export class PlantView {
       ((seen.bottom + seen.top) / 2 - front.y) * k + up,
     ];
     const half = ((seen.top - seen.bottom) / 2) * k;
-    const wide = half * this.far.aspect;
+    const wide = half * this.rig.far.aspect;
     [this.flat.left, this.flat.right, this.flat.bottom, this.flat.top] = [
       cx - wide,
       cx + wide,
@@ -681,7 +728,7 @@ export class PlantView {
 
   private redraw(): void {
     if (this.frame) return;
-    if (this.wish === undefined) this.last = performance.now();
+    if (!this.rig.isLed) this.last = performance.now();
     // Drawing without a graphics card takes the whole processor: the pen goes before the picture.
     const wait = this.slow ? SLOW_MS - (performance.now() - this.rendered) : 0;
     if (wait > 0) {
@@ -695,9 +742,9 @@ export class PlantView {
     this.frame = requestAnimationFrame(() => {
       this.frame = 0;
       const now = performance.now();
-      const there = this.glide(1 - Math.exp(-Math.min(now - this.last, 400) / 120));
+      const there = this.rig.glide(1 - Math.exp(-Math.min(now - this.last, 400) / 120));
       this.last = now;
-      this.controls.update();
+      this.rig.update();
       if (this.slow) this.spare(now);
       this.render();
       this.rendered = performance.now();
@@ -725,17 +772,25 @@ export class PlantView {
   }
 
   private render(): void {
-    this.renderer.render(this.stage.scene, this.camera);
+    const { camera, pipeline } = this;
+    this.guides.face(camera);
+    const through = pipeline && (this.isFine || (this.stage.current.blur > 0 && !this.front));
+    this.stage.prepare(!through, this.rig.far.aspect, this.holder);
+    if (through) {
+      const { x, y } = this.renderer.getDrawingBufferSize(new THREE.Vector2());
+      const effects = { ...this.effects, transparent: false, zoom: 1 };
+      pipeline.render(this.stage.scene, camera, x, y, null, effects);
+      if (!this.slow && !this.weak && this.pace.drew(performance.now())) this.tire();
+    } else {
+      this.renderer.render(this.stage.scene, camera);
+    }
+    this.element.dataset['eye'] = JSON.stringify(this.rig.pose);
     this.onDraw();
   }
-}
 
-/** Without a graphics card everything is drawn by the processor: then less is asked of it. Throws without WebGL 2. */
-function drawnBySoftware(): boolean {
-  const gl = document.createElement('canvas').getContext('webgl2');
-  if (!gl) throw new Error('no WebGL 2');
-  const info = gl.getExtension('WEBGL_debug_renderer_info');
-  const name = String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
-  gl.getExtension('WEBGL_lose_context')?.loseContext();
-  return /swiftshader|llvmpipe|software|basic render/i.test(name);
+  /** A machine that cannot draw so fast is asked for less, unless a person wants it so. */
+  private tire(): void {
+    this.weak = true;
+    if (this.stage.current.quality === 'auto') this.setStage(this.stage.current);
+  }
 }

@@ -1,0 +1,409 @@
+// Plants shown: the stage, the camera, pictures and films.
+import assert from 'node:assert/strict';
+import { readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { add, begin, count, data, sample, until } from './journeys.mjs';
+
+/** Mean red, green, blue (0 to 255) and smallest alpha of a part of a picture file; shares of its width and height. */
+async function mean(page, bytes, [x0, y0, x1, y1] = [0, 0, 1, 1]) {
+  return page.evaluate(
+    async ([base64, a, b, c, d]) => {
+      const raw = Uint8Array.from(atob(base64), (ch) => ch.charCodeAt(0));
+      const image = await createImageBitmap(new Blob([raw]));
+      const canvas = new OffscreenCanvas(image.width, image.height);
+      const context = canvas.getContext('2d');
+      context.drawImage(image, 0, 0);
+      const [w, h] = [image.width, image.height];
+      const box = [a * w, b * h, Math.max(1, (c - a) * w), Math.max(1, (d - b) * h)].map(Math.floor);
+      const { data: p } = context.getImageData(...box);
+      const sum = [0, 0, 0];
+      let alpha = 255;
+      for (let i = 0; i < p.length; i += 4) {
+        for (let k = 0; k < 3; k += 1) sum[k] += p[i + k];
+        alpha = Math.min(alpha, p[i + 3]);
+      }
+      return { rgb: sum.map((s) => (4 * s) / p.length), alpha, width: w, height: h };
+    },
+    [bytes.toString('base64'), x0, y0, x1, y1],
+  );
+}
+
+const seen = (page, part) =>
+  page
+    .locator('.view canvas')
+    .screenshot()
+    .then((b) => mean(page, b, part));
+const luma = ([r, g, b]) => 0.2126 * r + 0.7152 * g + 0.0722 * b;
+const apart = (a, b) => Math.hypot(...a.map((x, i) => x - b[i]));
+
+/** Waits until the camera rests. */
+async function rest(page) {
+  let last = '';
+  for (let k = 0; k < 60; k += 1) {
+    const now = await page.locator('.view').getAttribute('data-eye');
+    if (now === last) return JSON.parse(now);
+    last = now;
+    await page.waitForTimeout(700);
+  }
+  throw new Error('the camera does not come to rest');
+}
+
+async function palette(page, id) {
+  await page.keyboard.press('Control+k');
+  await page.locator('.palette input').waitFor();
+  await page.click(`#p-${id}`);
+}
+
+async function stage({ page, url, shot }) {
+  await begin(page, url);
+  await sample(page);
+  const preset = (name) => page.click(`[data-preset-stage=${name}]`);
+  await page.keyboard.press('t');
+  await page.locator('[data-preset-stage=studio][aria-pressed=true]').waitFor();
+  // The panel lies over the view: it is closed while the view is looked at.
+  const look = async (part) => {
+    await page.keyboard.press('Escape');
+    const { rgb } = await seen(page, part);
+    await page.keyboard.press('t');
+    await page.locator('.scenery').waitFor();
+    return rgb;
+  };
+  const [all, sky, foot] = [
+    [0.1, 0.15, 0.85, 0.98],
+    [0.4, 0.01, 0.8, 0.05],
+    [0.1, 0.92, 0.85, 0.98],
+  ];
+  const looks = {};
+  for (const name of ['studio', 'noon', 'golden', 'overcast', 'night']) {
+    await preset(name);
+    await page.locator(`[data-preset-stage=${name}][aria-pressed=true]`).waitFor();
+    await page.waitForTimeout(2500);
+    looks[name] = {};
+    for (const [part, box] of Object.entries({ all, sky, foot })) looks[name][part] = await look(box);
+    await page.keyboard.press('Escape');
+    await shot(`stage-${name}`);
+    await page.keyboard.press('t');
+  }
+  const names = Object.keys(looks);
+  for (const a of names)
+    for (const b of names)
+      if (a < b) assert.ok(apart(looks[a].all, looks[b].all) > 6, `${a} and ${b} look alike`);
+  const { studio, noon, golden, overcast, night } = looks;
+  assert.ok(luma(night.all) < 0.5 * luma(noon.all), 'night is darker than noon');
+  assert.ok(luma(night.all) > 8, 'night can be read');
+  assert.ok(noon.sky[2] > noon.sky[0] + 10, 'the sky at noon is blue');
+  assert.ok(golden.foot[0] / golden.foot[2] > noon.foot[0] / noon.foot[2], 'golden light is warm');
+  assert.ok(Math.max(...overcast.sky) - Math.min(...overcast.sky) < 22, 'clouds are grey');
+  for (const { foot: f } of [noon, golden, overcast]) assert.ok(f[1] > f[2] + 8, `grass is green: ${f}`);
+  assert.ok(studio.foot[1] - studio.foot[2] < 40, 'the studio has no grass');
+  // By hand: soil, a colour, a picture.
+  await preset('noon');
+  await page.selectOption('[data-stage=ground]', 'soil');
+  await page.waitForTimeout(1500);
+  const soil = await look(foot);
+  assert.ok(soil[0] > soil[1] && soil[1] > soil[2], `soil is brown: ${soil}`);
+  await shot('stage-soil');
+  await page.selectOption('[data-stage=background]', 'colour');
+  await page.locator('[data-stage=colour]').fill('#3366cc');
+  await page.selectOption('[data-stage=ground]', 'none');
+  await page.waitForTimeout(1200);
+  const painted = await look(sky);
+  assert.ok(apart(painted, [0x33, 0x66, 0xcc]) < 4, `the colour behind is the one chosen: ${painted}`);
+  await page.selectOption('[data-stage=background]', 'picture');
+  const chooser = page.waitForEvent('filechooser');
+  await page.click('.scenery .link');
+  const red = Buffer.from(
+    'iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mP8z8DwHwAFBQIAX8jx0gAAAABJRU5ErkJggg==',
+    'base64',
+  );
+  await (await chooser).setFiles({ name: 'red.png', mimeType: 'image/png', buffer: red });
+  await page.waitForTimeout(1500);
+  const behind = await look(sky);
+  assert.ok(behind[0] > 180 && behind[1] < 60, `a picture stands behind: ${behind}`);
+  // Another quality: more is drawn, and it is told.
+  assert.equal(await page.locator('.view').getAttribute('data-quality'), 'fast', 'no graphics card here');
+  await page.selectOption('[data-stage=quality]', 'fine');
+  await page.locator('.view[data-quality=fine]').waitFor();
+  await page.waitForTimeout(4000);
+  const fine = await look(sky);
+  assert.ok(apart(fine, behind) < 6, `the picture keeps its colours: ${fine}`);
+  await page.selectOption('[data-stage=quality]', 'auto');
+  await page.reload();
+  await page.waitForFunction(() => document.body.dataset.ready === 'true');
+  await page.waitForTimeout(2500);
+  const again = (await seen(page, sky)).rgb;
+  assert.ok(apart(again, behind) < 6, `the stage is remembered: ${again}`);
+}
+
+/** Where a point of the world is on the screen, pixels from the middle, for the camera as the page tells it. */
+function frameOf({ position, target, lens }, height) {
+  const sub = (a, b) => a.map((x, i) => x - b[i]);
+  const dot = (a, b) => a.reduce((s, x, i) => s + x * b[i], 0);
+  const unit = (a) => a.map((x) => x / Math.hypot(...a));
+  const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+  const ahead = unit(sub(target, position));
+  const right = unit(cross(ahead, [0, 1, 0]));
+  const up = cross(right, ahead);
+  const k = height / 2 / Math.tan((lens * Math.PI) / 360);
+  return {
+    to: (p) => {
+      const v = sub(p, position);
+      return [(k * dot(v, right)) / dot(v, ahead), (-k * dot(v, up)) / dot(v, ahead)];
+    },
+    at: (x, y) => {
+      const depth = Math.hypot(...sub(target, position));
+      return position.map((p, i) => p + depth * (ahead[i] + (x / k) * right[i] - (y / k) * up[i]));
+    },
+  };
+}
+
+async function camera({ page, url, shot }) {
+  await begin(page, url);
+  await sample(page);
+  await rest(page);
+  const box = await page.locator('.view').boundingBox();
+  const [dx, dy] = [70, -110];
+  const before = await rest(page);
+  await page.mouse.move(box.x + box.width / 2 + dx, box.y + box.height / 2 + dy);
+  const point = frameOf(before, box.height).at(dx, dy);
+  for (let k = 0; k < 4; k += 1) {
+    await page.mouse.wheel(0, -240);
+    await page.waitForTimeout(120);
+  }
+  const near = await rest(page);
+  const size = ({ position, target }) => Math.hypot(...position.map((p, i) => p - target[i]));
+  assert.ok(size(near) < 0.8 * size(before), 'the wheel came nearer');
+  const [x, y] = frameOf(near, box.height).to(point);
+  assert.ok(Math.hypot(x - dx, y - dy) < 2.5, `the point stays under the pointer: ${x}, ${y}`);
+  // Nobody is lost: however far it is dragged, the plants are near.
+  for (let k = 0; k < 12; k += 1) {
+    await page.mouse.down({ button: 'right' });
+    await page.mouse.move(box.x + 30, box.y + 300, { steps: 3 });
+    await page.mouse.up({ button: 'right' });
+    await page.mouse.move(box.x + box.width - 90, box.y + 300);
+  }
+  const far = await rest(page);
+  assert.ok(Math.hypot(far.target[0], far.target[1] - 0.48, far.target[2]) < 3.01, `${far.target}`);
+  await page.keyboard.press('f');
+  const focused = await rest(page);
+  assert.ok(Math.abs(focused.target[0]) < 0.3 && Math.abs(focused.target[2]) < 0.3, 'F comes back');
+  for (const [side, axis, sign] of [
+    ['left', 0, -1],
+    ['right', 0, 1],
+    ['back', 2, -1],
+    ['top', 1, 1],
+    ['bottom', 1, -1],
+    ['front', 2, 1],
+  ]) {
+    await palette(page, `side-${side}`);
+    const { position, target } = await rest(page);
+    const arm = position.map((p, i) => p - target[i]);
+    assert.ok(sign * arm[axis] > 0.95 * Math.hypot(...arm), `${side}: ${arm}`);
+  }
+  // The lens: another angle, the same size.
+  await page.keyboard.press('c');
+  const wide = await rest(page);
+  const lens = page.locator('[data-stage="camera.lens"]');
+  await lens.evaluate((e) => {
+    e.value = '60';
+    e.dispatchEvent(new Event('input', { bubbles: true }));
+  });
+  const narrow = await rest(page);
+  const seenHeight = (e) => size(e) * Math.tan((e.lens * Math.PI) / 360);
+  assert.equal(narrow.lens, 60);
+  assert.ok(Math.abs(seenHeight(narrow) / seenHeight(wide) - 1) < 0.02, 'what is looked at keeps its size');
+  // A camera that is kept, also over a new start of the page.
+  await page.click('[data-camera=keep]');
+  const kept = await rest(page);
+  await page.click('[data-side=left]');
+  await rest(page);
+  await page.click('[data-camera="1"]');
+  assert.deepEqual(await rest(page), kept);
+  await page.click('[data-guide=figure]');
+  await page.click('[data-guide=staff]');
+  await page.click('[data-guide=grid]');
+  await page.keyboard.press('Escape');
+  await palette(page, 'frame');
+  await rest(page);
+  await shot('guides');
+  await page.reload();
+  await page.waitForFunction(() => document.body.dataset.ready === 'true');
+  await page.waitForTimeout(1500);
+  await page.keyboard.press('c');
+  assert.equal(await page.locator('[data-guide=figure]').getAttribute('aria-pressed'), 'true');
+  await page.click('[data-camera="1"]');
+  assert.deepEqual((await rest(page)).position, kept.position, 'kept in the browser');
+  await page.keyboard.press('Escape');
+  // On foot.
+  await page.keyboard.press('n');
+  await page.waitForFunction(() => document.body.dataset.walk === 'walk');
+  const from = await rest(page);
+  await page.keyboard.down('w');
+  await page.waitForTimeout(1500);
+  await page.keyboard.up('w');
+  const to = await rest(page);
+  assert.ok(size({ position: from.position, target: to.position }) > 0.1, 'W walks');
+  assert.equal(to.position[1], from.position[1], 'on the ground');
+  assert.equal(await page.locator('#b-wire').getAttribute('aria-pressed'), 'false', 'W is the walker’s');
+  await page.keyboard.press('Escape');
+  await page.waitForFunction(() => document.body.dataset.walk === '');
+  await palette(page, 'frame');
+  await rest(page);
+}
+
+/** Fills the dialogue for pictures and films, and starts. */
+async function film(page, wanted) {
+  await page.keyboard.press('o');
+  await page.locator('[data-film=shot]').waitFor();
+  for (const [key, value] of Object.entries(wanted)) {
+    const field = page.locator(`[data-film=${key}]`);
+    if (typeof value === 'boolean') await field.setChecked(value);
+    else if (typeof value === 'number') await field.fill(String(value));
+    else await field.selectOption(value);
+  }
+  await page.click('#b-film-go');
+}
+
+async function filmed(page, wanted) {
+  const [download] = await Promise.all([page.waitForEvent('download'), film(page, wanted)]);
+  await page.locator('dialog').waitFor({ state: 'detached' });
+  return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
+}
+
+async function picture({ page, url, out }) {
+  await begin(page, url);
+  await sample(page);
+  await page.waitForTimeout(1500);
+  const { name, bytes } = await filmed(page, {
+    shot: 'picture',
+    width: 3000,
+    height: 2000,
+    transparent: true,
+  });
+  assert.match(name, /\.png$/);
+  const corner = await mean(page, bytes, [0, 0, 0.02, 0.02]);
+  assert.deepEqual([corner.width, corner.height], [3000, 2000]);
+  assert.equal(corner.alpha, 0, 'the corner is clear');
+  const stem = await mean(page, bytes, [0.3, 0.05, 0.7, 0.95]);
+  assert.ok(
+    stem.rgb.some((c) => c > 4),
+    'the plant is there',
+  );
+  const solid = await filmed(page, { shot: 'picture', width: 700, height: 1900, transparent: false });
+  const opaque = await mean(page, solid.bytes);
+  assert.deepEqual([opaque.width, opaque.height, opaque.alpha], [700, 1900, 255]);
+  // What the screen shows and what a picture of its shape holds have the same colours.
+  const { width, height } = await page.locator('.view').boundingBox();
+  const size = { width: Math.round(width), height: Math.round(height) };
+  for (const preset of ['studio', 'noon']) {
+    await palette(page, `stage-${preset}`);
+    await page.waitForTimeout(3000);
+    const same = await filmed(page, { shot: 'picture', ...size, transparent: false });
+    writeFileSync(join(out, `picture-${preset}.png`), same.bytes);
+    for (const part of [
+      [0.3, 0, 0.6, 0.04],
+      [0.1, 0.52, 0.3, 0.6],
+      [0.3, 0.9, 0.6, 0.98],
+      [0.35, 0.3, 0.65, 0.7],
+    ]) {
+      const [kept, shown] = [(await mean(page, same.bytes, part)).rgb, (await seen(page, part)).rgb];
+      assert.ok(apart(kept, shown) < 14, `${preset} ${part}: ${kept} as ${shown}`);
+    }
+  }
+  writeFileSync(join(out, 'picture-clear.png'), bytes);
+}
+
+/** How long a film is and whether its frames differ, as a player sees it. */
+async function played(context, bytes, type) {
+  const player = await context.newPage();
+  try {
+    return await player.evaluate(
+      async ([base64, mime]) => {
+        const raw = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+        const video = document.createElement('video');
+        video.muted = true;
+        video.src = URL.createObjectURL(new Blob([raw], { type: mime }));
+        const on = (name) =>
+          new Promise((resolve, reject) => {
+            video.addEventListener(name, resolve, { once: true });
+            video.addEventListener('error', () => reject(new Error(video.error?.message)), { once: true });
+          });
+        await on('loadeddata');
+        const canvas = new OffscreenCanvas(video.videoWidth, video.videoHeight);
+        const context = canvas.getContext('2d', { willReadFrequently: true });
+        const look = async (time) => {
+          video.currentTime = time;
+          await on('seeked');
+          context.drawImage(video, 0, 0);
+          return context.getImageData(0, 0, canvas.width, canvas.height).data;
+        };
+        const first = await look(0.01);
+        const later = await look(video.duration / 4);
+        let differ = 0;
+        for (let i = 0; i < first.length; i += 4) if (Math.abs(first[i] - later[i]) > 24) differ += 1;
+        return { duration: video.duration, width: video.videoWidth, height: video.videoHeight, differ };
+      },
+      [bytes.toString('base64'), type],
+    );
+  } finally {
+    await player.close();
+  }
+}
+
+async function films({ page, url, context }) {
+  await begin(page, url);
+  await add(page, 'flower');
+  await until(page, 'triangles', ['above', 200], 'a lily');
+  await page.waitForTimeout(1200);
+  const digest = await data(page, 'digest');
+  const undo = await page.locator('#b-undo').getAttribute('title');
+  for (const [format, type] of [
+    ['webm', 'video/webm'],
+    ['mp4', 'video/mp4'],
+  ]) {
+    const wanted = { shot: 'turn', format, width: 320, height: 240, seconds: 2, fps: 6 };
+    const { name, bytes } = await filmed(page, wanted);
+    assert.ok(name.endsWith(`.${format}`), name);
+    const film = await played(context, bytes, type);
+    assert.deepEqual([film.width, film.height], [320, 240]);
+    assert.ok(Math.abs(film.duration - 2) < 0.2, `${format} lasts ${film.duration} s`);
+    assert.ok(film.differ > 100, `${format}: the camera goes round (${film.differ})`);
+  }
+  const sheet = await filmed(page, {
+    shot: 'growth',
+    format: 'sheet',
+    width: 160,
+    height: 200,
+    seconds: 1,
+    fps: 6,
+    transparent: true,
+  });
+  assert.match(sheet.name, /-3x2\.png$/);
+  const [bud, open] = [
+    await mean(page, sheet.bytes, [0, 0, 1 / 3, 0.5]),
+    await mean(page, sheet.bytes, [0, 0.5, 1 / 3, 1]),
+  ];
+  assert.deepEqual([bud.width, bud.height, bud.alpha], [480, 400, 0]);
+  assert.ok(apart(bud.rgb, open.rgb) > 2, 'the flower opens');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, digest);
+  assert.equal(await page.locator('#b-undo').getAttribute('title'), undo, 'no step of undo is left');
+  // Stopped: nothing is written, and the plant is as it was.
+  const files = [];
+  page.on('download', (d) => files.push(d.suggestedFilename()));
+  await film(page, { shot: 'growth', format: 'webm', width: 320, height: 240, seconds: 30, fps: 25 });
+  await page.waitForFunction(() => (document.querySelector('.filming progress')?.value ?? 0) > 0);
+  await page.click('#b-film-stop');
+  await page.locator('.note', { hasText: 'Nothing was written' }).waitFor();
+  await page.waitForFunction((d) => document.body.dataset.digest === d, digest);
+  await page.waitForTimeout(800);
+  assert.deepEqual(files, []);
+  assert.equal(await page.locator('#b-undo').getAttribute('title'), undo);
+  assert.equal(await count(page, 'plants'), 1);
+}
+
+export const staging = [
+  ['the stage: presets, ground, background, quality', stage],
+  ['the camera: to the pointer, sides, lens, kept, on foot', camera],
+  ['a picture of any size, with transparency', picture],
+  ['films: round the plant, opening, stopped', films],
+];
