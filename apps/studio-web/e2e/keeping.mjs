@@ -28,7 +28,7 @@ async function another(context, url) {
 /** The list of documents, as it is shown: what each row says. */
 async function shelf(page) {
   await page.locator('.sheet').focus();
-  await page.keyboard.press('d');
+  await page.keyboard.press('Shift+O');
   await page.locator('dialog.shelf-dialog .shelf-open').first().waitFor();
   return page.locator('dialog .shelf:not(.shelf-gone .shelf) .shelf-open b').allTextContents();
 }
@@ -154,7 +154,7 @@ async function mute({ page, url, context }) {
 async function list({ page, url, shot }) {
   await begin(page, url);
   await page.locator('.sheet').focus();
-  await page.keyboard.press('d');
+  await page.keyboard.press('Shift+O');
   await page.locator('dialog', { hasText: 'Nothing is here yet' }).waitFor();
   await page.keyboard.press('Escape');
   await sample(page);

@@ -64,7 +64,7 @@ describe('the sheet of keys', () => {
     expect(rows).toEqual([
       'P B L E V',
       'Ctrl+Z · Ctrl+Shift+Z',
-      'D',
+      'Shift+O',
       'Ctrl+O · Ctrl+S · Ctrl+E',
       'Ctrl+C · Ctrl+X · Ctrl+V · Ctrl+D',
       'Ctrl+A',
