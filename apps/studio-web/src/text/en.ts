@@ -609,6 +609,7 @@ export const en = {
   'field.obstacles': 'obstacles',
   'field.occupancy': 'occupied radius',
   'field.opening_days': 'days to full bloom',
+  'field.parameters': 'parameters of side veins',
   'field.perception': 'perception radius',
   'field.petals': 'petals',
   'field.pipe_exponent': 'pipe exponent',
@@ -756,6 +757,8 @@ export const en = {
   'word.height_m': 'height, m',
   'word.point': 'point',
   'word.normal': 'normal',
+  'word.own': 'own',
+  'word.shared': 'of the blade',
 } as const;
 
 export type TextKey = keyof typeof en;

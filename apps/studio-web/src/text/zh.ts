@@ -603,6 +603,7 @@ export const zh: Record<TextKey, string> = {
   'field.obstacles': '障碍物',
   'field.occupancy': '占据半径',
   'field.opening_days': '盛开所需天数',
+  'field.parameters': '侧脉参数',
   'field.perception': '感知半径',
   'field.petals': '花瓣数',
   'field.pipe_exponent': '管道指数',
@@ -750,4 +751,6 @@ export const zh: Record<TextKey, string> = {
   'word.height_m': '高度，米',
   'word.point': '点',
   'word.normal': '法向',
+  'word.own': '自身',
+  'word.shared': '与叶面相同',
 };
