@@ -13,7 +13,7 @@ export const zhHelp: Readonly<Record<string, string>> = {
   'flower.stalk_m': '花柄的长度，米，0 至 5；默认随种类。',
   'flower.wilting_days': '从盛开到凋谢的天数，0.1 至 40；默认随种类。',
   // Measured leaves
-  leaf: '如何由测量的标记点做出叶片。',
+  leaf: '如何由测量的标记点做出叶片（Wang 等，2011）。',
   'leaf.caps': '叶脉末端是否为圆头；默认否。',
   'leaf.curl': '绕中脉卷曲：-1（叶缘在下方相接）至 1（在上方相接），0 为实测形态，默认 0。',
   'leaf.length_m': '叶脉图以像素为单位时中脉的长度，米，0.002 至 10，默认 0.1。',
