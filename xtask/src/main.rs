@@ -3,15 +3,18 @@
 
 mod ablation;
 mod circles;
+mod contact_sheet;
 mod flowers;
 mod gallery;
 mod golden;
 mod habits;
 mod layers;
+mod made_drawings;
 mod made_strokes;
 mod native;
 mod pixels;
 mod quickdraw;
+mod read_drawings;
 mod scenes;
 mod shell;
 mod species;
@@ -41,6 +44,7 @@ cargo xtask COMMAND
   habits         checks licences and versions of dependencies, spelling, and that the crates could be published
   layers         checks that each crate uses only what ARCHITECTURE.md allows, and no modules in a circle
   train-strokes  trains the stroke classifier from its table, and says what it and each rule are worth (docs/strokes.md)
+  read-drawings  reads drawings of people and made ones: kinds, numbers of plants, contact sheets (--part, --sheets)
   test-web       the WASM, validator and Studio part of `test` alone
   test-studio    the Studio part of `test` alone
   bench-web      measures the Studio in a browser: pen, undo, opening, memory, first paint, transfer
@@ -61,6 +65,7 @@ fn main() -> ExitCode {
         Some("habits") => habits::check(),
         Some("layers") => layers::check().and_then(|()| circles::check()),
         Some("train-strokes") => train_strokes::run(rest),
+        Some("read-drawings") => read_drawings::run(rest),
         Some("studio") => web::setup().and_then(|tools| studio::open(&tools, rest)),
         Some("build-web") => web::setup().and_then(|tools| studio::build(&tools, true)),
         Some("test-web") => {

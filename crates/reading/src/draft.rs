@@ -13,8 +13,8 @@ use crate::branches::{Forest, Hints, Line};
 use crate::contour::crown_outline;
 use crate::near::bounds;
 use crate::{
-    Attachment, BladeReading, DiscReading, FlowerReading, FruitReading, OrganWord, Reading, RegionKind,
-    RegionReading, StrokeReading, blade, rings,
+    Attachment, BladeReading, DiscReading, FlowerReading, FruitReading, Kind, OrganWord, PlantReading,
+    Reading, RegionKind, RegionReading, StrokeReading, blade, rings,
 };
 
 /// Regions beyond this number are left out: nobody draws so many crowns, and each is led to by an axis.
@@ -76,6 +76,10 @@ pub(crate) struct Draft<'a> {
     pub(crate) sides: Vec<(usize, Vec<DVec2>)>,
     /// What is left of those strokes.
     pub(crate) loops: BTreeMap<usize, Vec<DVec2>>,
+    /// Strokes whose class follows from the whole drawing: later rules leave it.
+    pub(crate) settled: Vec<bool>,
+    /// Outlines that make up one crown.
+    pub(crate) united: Vec<usize>,
     /// Lines that were drawn in one go, there and back: the pieces of each such stroke.
     pub(crate) legs: BTreeMap<usize, Vec<Vec<DVec2>>>,
 }
@@ -88,6 +92,8 @@ impl<'a> Draft<'a> {
             ink,
             class: said.iter().map(|c| c.class).collect(),
             rule: vec![None; said.len()],
+            settled: vec![false; said.len()],
+            united: Vec::new(),
             said,
             organ: vec![OrganWord::Ignored; ink.strokes.len()],
             lines: Vec::new(),
@@ -391,7 +397,20 @@ impl<'a> Draft<'a> {
         });
         strokes.extend(skipped);
         base::sort_by_key(&mut strokes, |s| s.index);
-        Reading { strokes, axes: self.forest.axes, flowers, leaves, regions, fruits, thorns, woody }
+        let mut reading = Reading {
+            strokes,
+            axes: self.forest.axes,
+            flowers,
+            leaves,
+            regions,
+            fruits,
+            thorns,
+            woody,
+            plants: Vec::new(),
+        };
+        let strokes = self.ink.strokes.iter().map(|s| s.index).collect();
+        reading.plants.push(PlantReading { strokes, kind: Kind::of(&reading) });
+        reading
     }
 
     /// Length of the longest line or axis.

@@ -4,7 +4,7 @@ use base::Report;
 use ink::{Classified, Ink, Source};
 
 use crate::draft::Draft;
-use crate::{Reading, attach, flowers, outlines, rules, veins};
+use crate::{Reading, attach, flowers, outlines, rules, several, veins};
 
 /// Understands a drawing.
 ///
@@ -30,6 +30,15 @@ pub fn read(ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
 
 /// As [`read`], with some [rules](crate::RULES) switched off by their names: for measuring what each is worth.
 pub fn read_without(off: &[&str], ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
+    if ink.is_several() {
+        several::read_each(off, ink, classes, report)
+    } else {
+        one(off, ink, classes, report)
+    }
+}
+
+/// Understands one plant.
+pub(crate) fn one(off: &[&str], ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
     let mut draft = Draft::new(ink, classes);
     for (k, said) in draft.said.iter_mut().enumerate() {
         if matches!(said.source, Source::Rule(name) if off.contains(&name)) {

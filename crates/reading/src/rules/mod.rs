@@ -11,10 +11,12 @@ mod grass;
 mod leaves;
 mod pots;
 mod trees;
+mod whole_flower;
+mod whole_tree;
 
 use geom::contains;
 use glam::DVec2;
-use ink::{InkStroke, LONE_LINE, StrokeClass, StrokeMode};
+use ink::{COMMON_GROUND, InkStroke, LONE_LINE, StrokeClass, StrokeMode};
 
 use crate::blade::nearest_on_ring;
 use crate::draft::Draft;
@@ -40,11 +42,20 @@ struct Findings {
     legs: Vec<(usize, [Vec<DVec2>; 2])>,
     /// Two of the lines are surely the sides of a trunk.
     trunk: bool,
+    /// Strokes whose class no later rule changes: it follows from the whole drawing.
+    settled: Vec<usize>,
+    /// Outlines that make up one crown.
+    united: Vec<usize>,
 }
 
 impl Findings {
     fn set(&mut self, stroke: usize, class: StrokeClass) {
         self.classes.push((stroke, class));
+    }
+
+    fn settle(&mut self, stroke: usize, class: StrokeClass) {
+        self.set(stroke, class);
+        self.settled.push(stroke);
     }
 }
 
@@ -73,6 +84,24 @@ pub const RULES: &[Rule] = &[
         1,
         |_| Findings::default(), // `ink::classify` applies it, because a preview keeps its class
         "A line by itself is a stem: crowns and trunks are recognised by what stands around them.",
+    ),
+    rule(
+        COMMON_GROUND,
+        ANY,
+        |_| Findings::default(), // `ink::classify` applies it, because it judges each plant by itself
+        "A low, flat line on which several plants stand is their ground.",
+    ),
+    rule(
+        "whole-flower",
+        MANY,
+        whole_flower::whole_flower,
+        "Outlines alike all round a ring, or one lobed outline round it, are petals round a disc.",
+    ),
+    rule(
+        "whole-tree",
+        FEW,
+        whole_tree::whole_tree,
+        "Something round over something narrow that stands is a crown on its trunk, however and in which order they are drawn.",
     ),
     rule(
         "lone-leaf",
@@ -190,6 +219,8 @@ pub(crate) fn apply(draft: &mut Draft<'_>, off: &[&str]) {
         }
         draft.legs.extend(found.legs.into_iter().map(|(stroke, legs)| (stroke, legs.into())));
         draft.trunk |= found.trunk;
+        found.settled.iter().for_each(|&k| draft.settled[k] = true);
+        draft.united.extend(found.united);
     }
 }
 
@@ -227,7 +258,7 @@ fn share_inside(points: &[DVec2], stride: usize, outline: &[DVec2]) -> f64 {
 
 /// A rule may change it: its class is not sure.
 fn unsure(draft: &Draft<'_>, k: usize) -> bool {
-    !draft.said[k].is_sure() && draft.ink.strokes[k].mode == StrokeMode::Parts
+    !draft.settled[k] && !draft.said[k].is_sure() && draft.ink.strokes[k].mode == StrokeMode::Parts
 }
 
 /// Highest point first, lowest point last.
