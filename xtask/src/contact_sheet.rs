@@ -46,6 +46,7 @@ pub(crate) struct Cell<'a> {
 }
 
 /// Writes the page. A picture that is not there stays grey.
+#[expect(clippy::cast_possible_truncation, reason = "a colour")]
 pub(crate) fn write(cells: &[Cell<'_>], to: &Path) -> Outcome {
     let rows = cells.len().div_ceil(COLUMNS).max(1);
     let (width, height) = (2 * COLUMNS * SIDE, rows * SIDE);
@@ -76,6 +77,7 @@ pub(crate) fn write(cells: &[Cell<'_>], to: &Path) -> Outcome {
 }
 
 /// The lines of a drawing, framed: strokes go from dark blue to orange in the order in which they were drawn.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "places on a page, and colours")]
 fn sketch(drawing: &Drawing, frame: Frame) -> Vec<[u8; 3]> {
     let count = drawing.strokes.len().max(2) - 1;
     let lines = drawing.strokes.iter().enumerate().map(|(k, stroke)| {
@@ -128,6 +130,7 @@ fn read(reading: &Reading) -> Vec<[u8; 3]> {
     plot(&lines)
 }
 
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "places on a page, and colours")]
 fn plot(lines: &[(Vec<DVec2>, [u8; 3], usize)]) -> Vec<[u8; 3]> {
     let mut page = vec![[255_u8; 3]; SIDE * SIDE];
     let points = lines.iter().flat_map(|l| &l.0);

@@ -25,6 +25,9 @@ pub(crate) struct Shown {
 
 type Lines = Vec<Vec<DVec2>>;
 
+/// Makes one plant.
+type Making = fn(&mut Stream) -> (Lines, Kind);
+
 /// All of them; the same in every call with the same `salt`: the choose part has one, the test part another.
 pub(crate) fn shown(salt: u64) -> Vec<Shown> {
     let mut all = Vec::new();
@@ -39,7 +42,7 @@ pub(crate) fn shown(salt: u64) -> Vec<Shown> {
     for (number, (set, trunk, first)) in TREE_WAYS.into_iter().enumerate() {
         for k in 0..TREES {
             let r = &mut stream(10 + number as u64, k);
-            let crown = CROWNS[k as usize % CROWNS.len()];
+            let crown = CROWNS[usize::try_from(k).unwrap_or(0) % CROWNS.len()];
             all.push(Shown { set, lines: tree(r, trunk, crown, first), plants: vec![Kind::Tree] });
         }
     }
@@ -91,6 +94,7 @@ fn hand(r: &mut Stream, corners: &[DVec2]) -> Vec<DVec2> {
     for w in corners.windows(2) {
         let across = (w[1] - w[0]).perp();
         let bow = r.range(-0.05, 0.05);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 28")]
         let n = 4 + (24.0 * w[0].distance(w[1]) / whole) as u32;
         for k in 0..=n {
             let t = f64::from(k) / f64::from(n);
@@ -102,7 +106,7 @@ fn hand(r: &mut Stream, corners: &[DVec2]) -> Vec<DVec2> {
 }
 
 /// A wobbly ring with half axes `size`; not quite closed.
-fn ring(r: &mut Stream, centre: DVec2, size: DVec2, bumps: u32, depth: f64) -> Vec<DVec2> {
+fn ring(r: &mut Stream, centre: DVec2, size: DVec2, bumps: usize, depth: f64) -> Vec<DVec2> {
     let (from, phase) = (r.range(0.0, TAU), r.range(0.0, TAU));
     let way = if r.chance(0.5) { 1.0 } else { -1.0 };
     let gap = r.range(-0.05, 0.04);
@@ -110,8 +114,8 @@ fn ring(r: &mut Stream, centre: DVec2, size: DVec2, bumps: u32, depth: f64) -> V
     let wobble = r.range(0.0, 0.05);
     (0..=n)
         .map(|k| {
-            let a = from + way * (1.0 - gap) * TAU * f64::from(k) / f64::from(n);
-            let lobe = if bumps > 0 { ops::sin(0.5 * f64::from(bumps) * a + phase).abs() } else { 1.0 };
+            let a = from + way * (1.0 - gap) * TAU * k as f64 / n as f64;
+            let lobe = if bumps > 0 { ops::sin(0.5 * bumps as f64 * a + phase).abs() } else { 1.0 };
             let radius = 1.0 - depth * (1.0 - lobe) + wobble * ops::sin(2.0 * a + phase);
             centre + direction(a) * size * radius + DVec2::new(r.normal(), r.normal()) * (0.006 * size.x)
         })
@@ -153,7 +157,7 @@ fn flower(r: &mut Stream) -> (Lines, Kind) {
             }
         }
         // All petals in one stroke round the disc.
-        1 => head.push(ring(r, centre, DVec2::splat(size + disc), petals as u32, 0.42)),
+        1 => head.push(ring(r, centre, DVec2::splat(size + disc), petals, 0.42)),
         // Round petals that touch the disc.
         _ => {
             let first = r.range(0.0, TAU);
@@ -217,7 +221,7 @@ fn bush(r: &mut Stream) -> (Lines, Kind) {
     let phase = r.range(0.0, TAU);
     let cloud: Vec<DVec2> = (0..=n)
         .map(|k| {
-            let a = TAU / 2.0 * f64::from(k) / f64::from(n);
+            let a = TAU / 2.0 * k as f64 / n as f64;
             let lobe = 0.8 + 0.2 * ops::sin(bumps * a + phase).abs();
             direction(a) * size * 2.0_f64.sqrt() * lobe
         })
@@ -270,7 +274,7 @@ fn tree(r: &mut Stream, trunk: Trunk, crown: Crown, trunk_first: bool) -> Lines 
     };
     let green: Lines = match crown {
         Crown::Cloud => {
-            let bumps = 7 + r.below(6) as u32;
+            let bumps = 7 + r.below(6);
             vec![ring(r, centre, size, bumps, 0.16)]
         }
         Crown::Circle => vec![ring(r, centre, size, 0, 0.0)],
@@ -352,9 +356,9 @@ pub(crate) fn side_by_side(r: &mut Stream, drawings: Vec<Lines>) -> Lines {
 }
 
 /// Two to six plants of a kind; of any kind where that is `None`.
-fn row(set: &'static str, r: &mut Stream, kind: Kind, make: fn(&mut Stream) -> (Lines, Kind)) -> Shown {
+fn row(set: &'static str, r: &mut Stream, kind: Kind, make: Making) -> Shown {
     let n = 2 + r.below(5);
-    let any: [fn(&mut Stream) -> (Lines, Kind); 4] = [flower, leafy, lollipop, bush];
+    let any: [Making; 4] = [flower, leafy, lollipop, bush];
     let made: Vec<(Lines, Kind)> =
         (0..n).map(|_| if kind == Kind::None { any[r.below(4)](r) } else { make(r) }).collect();
     let (drawings, plants) = made.into_iter().unzip();

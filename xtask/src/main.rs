@@ -20,6 +20,7 @@ mod shell;
 mod species;
 mod studio;
 mod toolchain;
+mod train_kinds;
 mod train_strokes;
 mod web;
 mod workshop;
@@ -45,6 +46,7 @@ cargo xtask COMMAND
   layers         checks that each crate uses only what ARCHITECTURE.md allows, and no modules in a circle
   train-strokes  trains the stroke classifier from its table, and says what it and each rule are worth (docs/strokes.md)
   read-drawings  reads drawings of people and made ones: kinds, numbers of plants, contact sheets (--part, --sheets)
+  train-kinds    learns which kind of plant explains a whole drawing best (docs/strokes.md)
   test-web       the WASM, validator and Studio part of `test` alone
   test-studio    the Studio part of `test` alone
   bench-web      measures the Studio in a browser: pen, undo, opening, memory, first paint, transfer
@@ -64,6 +66,7 @@ fn main() -> ExitCode {
         Some("types") => types(),
         Some("habits") => habits::check(),
         Some("layers") => layers::check().and_then(|()| circles::check()),
+        Some("train-kinds") => train_kinds::run(rest),
         Some("train-strokes") => train_strokes::run(rest),
         Some("read-drawings") => read_drawings::run(rest),
         Some("studio") => web::setup().and_then(|tools| studio::open(&tools, rest)),

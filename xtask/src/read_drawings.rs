@@ -26,7 +26,7 @@ const SIDE_BY_SIDE: u64 = 60;
 
 /// A part of the drawings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Part {
+pub(crate) enum Part {
     Train,
     Choose,
     Test,
@@ -200,6 +200,15 @@ fn people(folder: &Path, part: Part) -> Outcome<Vec<Case>> {
         }
     }
     Ok(cases)
+}
+
+/// Drawings of a part whose plants are known, with the kinds of these from left to right. Trees by hand are not among them:
+/// nothing is learnt from those.
+pub(crate) fn labelled(folder: &Path, part: Part) -> Outcome<Vec<(Drawing, Vec<Kind>)>> {
+    let people = people(folder, part)?.into_iter();
+    let known = people.filter(|c| c.set != "garden" && c.set != "by hand tree");
+    let known = known.map(|c| (c.drawing, c.right.into_iter().take(1).collect()));
+    Ok(known.chain(made(part).into_iter().map(|c| (c.drawing, c.kinds))).collect())
 }
 
 /// Categories of which a drawing may show several plants.
@@ -395,7 +404,13 @@ fn sheet(set: &str, drawings: &[(Case, Judged)], pictures: bool) -> Outcome {
                 format!("{}={}:{}({:.2},{})", s.index, s.class.word(), s.organ.word(), s.confidence, s.source)
             })
             .collect();
-        let kinds: Vec<&str> = j.reading.plants.iter().map(|p| p.kind.word()).collect();
+        let plants = j.reading.plants.iter();
+        let kinds: Vec<String> = plants
+            .map(|p| {
+                let scores = p.readings.iter().map(|r| format!("{} {:.2}", r.kind.word(), r.score));
+                scores.collect::<Vec<_>>().join("|")
+            })
+            .collect();
         let _ = writeln!(notes, "{k:3} {} {} [{}]", case.drawing.name, kinds.join(","), strokes.join(" "));
     }
     fs::write(folder.join(format!("{name}.txt")), notes).map_err(|e| fault(&folder, &e))?;

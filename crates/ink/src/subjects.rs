@@ -45,7 +45,7 @@ impl Subjects {
     }
 }
 
-/// Takes a drawing apart into its plants. Linear in points up to 600 strokes; beyond, it is one plant.
+/// Takes a drawing apart into its plants. Linear in points up to 600 strokes and 160 groups; beyond, it is one plant.
 pub(crate) fn subjects(strokes: &[InkStroke]) -> Subjects {
     let count = strokes.len();
     if !(2..=MOST_STROKES).contains(&count) {
@@ -84,6 +84,8 @@ struct Line {
     closed: bool,
     /// It is rather straight.
     straight: bool,
+    /// It is a thin blade that stands, drawn as an outline.
+    slender: bool,
     length: f64,
 }
 
@@ -185,21 +187,35 @@ impl Sheet {
 
     /// Joins what belongs together, the nearest first.
     fn gather(&self, groups: &mut Vec<Group>) {
-        while groups.len() > 1 {
+        let cost = |a: &Group, b: &Group| self.belongs(a, b).unwrap_or(f64::INFINITY);
+        // Row a holds what it costs to join a with each earlier group.
+        let mut costs: Vec<Vec<f64>> =
+            (0..groups.len()).map(|a| (0..a).map(|b| cost(&groups[a], &groups[b])).collect()).collect();
+        loop {
             let mut best: Option<(f64, usize, usize)> = None;
-            for a in 0..groups.len() {
-                for b in a + 1..groups.len() {
-                    if let Some(cost) = self.belongs(&groups[a], &groups[b])
-                        && best.is_none_or(|(c, ..)| cost < c)
-                    {
-                        best = Some((cost, a, b));
+            for (a, row) in costs.iter().enumerate() {
+                for (b, &c) in row.iter().enumerate() {
+                    if c.is_finite() && best.is_none_or(|(least, ..)| c < least) {
+                        best = Some((c, a, b));
                     }
                 }
             }
+            // The later group goes, the earlier one grows.
             let Some((_, a, b)) = best else { break };
-            let other = groups.swap_remove(b);
-            let strokes = [core::mem::take(&mut groups[a].strokes), other.strokes].concat();
-            groups[a] = self.group(strokes);
+            let other = groups.remove(a);
+            costs.remove(a);
+            costs[a..].iter_mut().for_each(|row| {
+                row.remove(a);
+            });
+            let strokes = [core::mem::take(&mut groups[b].strokes), other.strokes].concat();
+            groups[b] = self.group(strokes);
+            for k in 0..groups.len() {
+                match k.cmp(&b) {
+                    core::cmp::Ordering::Less => costs[b][k] = cost(&groups[b], &groups[k]),
+                    core::cmp::Ordering::Greater => costs[k][b] = cost(&groups[k], &groups[b]),
+                    core::cmp::Ordering::Equal => {}
+                }
+            }
         }
         self.tufts(groups);
     }
@@ -296,8 +312,9 @@ impl Sheet {
     /// Nothing but single lines that stand beside one another, or one or two lines.
     fn bare(&self, group: &Group) -> bool {
         let lines = || group.strokes.iter().map(|&k| &self.lines[k]);
-        let rooted = |l: &Line| l.straight && l.lo.y < group.lo.y + 0.4 * group.height();
-        lines().all(|l| !l.closed) && (group.strokes.len() <= 2 || lines().all(rooted))
+        let rooted = |l: &Line| (l.straight || l.slender) && l.lo.y < group.lo.y + 0.4 * group.height();
+        (group.strokes.len() <= 2 && lines().all(|l| !l.closed))
+            || lines().all(|l| rooted(l) && (!l.closed || l.slender))
     }
 
     /// The least distance of two groups, if it is below `most`.
@@ -353,12 +370,14 @@ impl Line {
         let (wide, tall) = (hi.x - lo.x, hi.y - lo.y);
         let arch = a.y.max(b.y) < lo.y + 0.3 * tall && (a.x - b.x).abs() > 0.6 * tall.max(0.5 * wide);
         let full = area > FULL * square || (arch && area > ARCHED * square);
+        let slender = tall > 1.5 * wide && area < 0.16 * lo.distance_squared(hi);
         let straight = ends > 0.8 * stroke.length;
         Self {
             lo,
             hi,
             points,
             straight,
+            slender,
             length: stroke.length,
             closed: (ends < CLOSED * stroke.length || full) && area > 1e-9,
         }
@@ -411,4 +430,62 @@ impl Sets {
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
 fn steps(x: f64) -> u32 {
     x.ceil().clamp(1.0, 1000.0) as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec2;
+
+    use crate::{Drawing, clean};
+
+    fn subjects(lines: &[Vec<DVec2>]) -> Vec<Vec<usize>> {
+        clean(&Drawing::from_polylines("row", lines), &mut base::Report::default()).subjects.plants
+    }
+
+    fn line(a: (f64, f64), b: (f64, f64)) -> Vec<DVec2> {
+        let (a, b) = (DVec2::from(a), DVec2::from(b));
+        (0..=20).map(|i| a.lerp(b, f64::from(i) / 20.0)).collect()
+    }
+
+    fn ring(x: f64, y: f64, r: f64) -> Vec<DVec2> {
+        (0..=40)
+            .map(|i| base::ops::sin_cos(base::ops::TAU * f64::from(i) / 40.0))
+            .map(|(s, c)| DVec2::new(x + r * c, y + r * s))
+            .collect()
+    }
+
+    #[test]
+    fn what_stands_beside_one_another_on_a_ground_is_several_plants() {
+        let mut lines = vec![line((-1.0, 0.0), (9.0, 0.1))];
+        for k in 0..4 {
+            let x = 2.5 * f64::from(k);
+            lines.extend([line((x, 0.0), (x, 2.0)), ring(x, 3.0, 0.9)]);
+        }
+        assert_eq!(subjects(&lines), [[1, 2], [3, 4], [5, 6], [7, 8]]);
+        // In any order, and a crown that does not touch its trunk.
+        lines.reverse();
+        lines[0] = ring(7.5, 3.1, 0.9);
+        assert_eq!(subjects(&lines), [[6, 7], [4, 5], [2, 3], [0, 1]]);
+    }
+
+    #[test]
+    fn lines_alone_are_grass_and_a_crown_over_two_lines_is_one_tree() {
+        let grass: Vec<Vec<DVec2>> =
+            (0..9).map(|k| line((f64::from(k), 0.0), (f64::from(k) + 0.2, 1.5))).collect();
+        assert_eq!(subjects(&grass).len(), 1);
+        let tree = [line((-0.3, 0.0), (-0.3, 2.0)), line((0.3, 0.0), (0.3, 2.0)), ring(0.0, 3.2, 1.0)];
+        assert_eq!(subjects(&tree).len(), 1);
+    }
+
+    #[test]
+    fn any_number_of_strokes_anywhere() {
+        let many: Vec<Vec<DVec2>> =
+            (0..700).map(|k| ring(f64::from(k % 30), f64::from(k / 30), 0.3)).collect();
+        for n in [0, 1, 2, 3, 100, 170, 700] {
+            let found = subjects(&many[..n]);
+            assert_eq!(found.iter().map(Vec::len).sum::<usize>(), n);
+        }
+        let alike = vec![line((0.0, 0.0), (1.0, 1.0)); 500];
+        assert_eq!(subjects(&alike).len(), 1);
+    }
 }

@@ -13,8 +13,8 @@ use crate::branches::{Forest, Hints, Line};
 use crate::contour::crown_outline;
 use crate::near::bounds;
 use crate::{
-    Attachment, BladeReading, DiscReading, FlowerReading, FruitReading, Kind, OrganWord, PlantReading,
-    Reading, RegionKind, RegionReading, StrokeReading, blade, rings,
+    Attachment, BladeReading, DiscReading, FlowerReading, FruitReading, OrganWord, Reading, RegionKind,
+    RegionReading, StrokeReading, blade, rings,
 };
 
 /// Regions beyond this number are left out: nobody draws so many crowns, and each is led to by an axis.
@@ -397,7 +397,7 @@ impl<'a> Draft<'a> {
         });
         strokes.extend(skipped);
         base::sort_by_key(&mut strokes, |s| s.index);
-        let mut reading = Reading {
+        Reading {
             strokes,
             axes: self.forest.axes,
             flowers,
@@ -407,10 +407,7 @@ impl<'a> Draft<'a> {
             thorns,
             woody,
             plants: Vec::new(),
-        };
-        let strokes = self.ink.strokes.iter().map(|s| s.index).collect();
-        reading.plants.push(PlantReading { strokes, kind: Kind::of(&reading) });
-        reading
+        }
     }
 
     /// Length of the longest line or axis.

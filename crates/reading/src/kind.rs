@@ -91,6 +91,17 @@ impl Kind {
         Self::ALL.into_iter().find(|k| k.word() == word)
     }
 
+    /// They are built alike: a conifer is a tree, and a root or pod a body as a fruit is.
+    pub fn is_like(self, other: Self) -> bool {
+        let group = |k| match k {
+            Self::Conifer => Self::Tree,
+            Self::Vegetable => Self::Fruit,
+            Self::Flowers => Self::Flower,
+            other => other,
+        };
+        group(self) == group(other)
+    }
+
     /// What the parts of a reading are together: nothing is asked but what will be built. A drawing of several plants
     /// has the kind of all of them taken for one.
     ///
@@ -114,22 +125,24 @@ impl Kind {
         if fruit_area > crown_area.max(leaf_area).max(petal_area) && body.is_none() {
             return Self::Fruit;
         }
-        if let Some(body) = body.filter(|_| bare && (leaf_area <= 0.0 || !reading.thorns.is_empty())) {
+        if body.is_some() && bare && (leaf_area <= 0.0 || !reading.thorns.is_empty()) {
             let branches = reading.axes.iter().filter(|a| !drawn_thick(a) && a.bearer.is_some()).count();
             let open = reading.woody && branches > 0;
-            let _ = body;
             return if open { Self::Tree } else { Self::Cactus };
-        }
-        if potted {
-            return Self::HousePlant;
-        }
-        if flowers > 0 && petal_area > crown_area {
-            return if flowers == 1 { Self::Flower } else { Self::Flowers };
         }
         let largest = |a: &&RegionReading, b: &&RegionReading| {
             signed_area(&a.outline).total_cmp(&signed_area(&b.outline))
         };
-        if let Some(crown) = reading.regions.iter().max_by(largest) {
+        let crown = reading.regions.iter().max_by(largest);
+        // A tree is no house plant, whatever stands at its foot.
+        let tree = crown.map(|c| of_crown(reading, c)).filter(|k| k.is_like(Self::Tree) && body.is_some());
+        if potted {
+            return tree.unwrap_or(Self::HousePlant);
+        }
+        if flowers > 0 && petal_area > crown_area {
+            return if flowers == 1 { Self::Flower } else { Self::Flowers };
+        }
+        if let Some(crown) = crown {
             return of_crown(reading, crown);
         }
         if let Some(body) = body {

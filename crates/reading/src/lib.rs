@@ -12,7 +12,7 @@
 //! | `flowers` | which blades are petals of one flower | 4.1 |
 //! | `branches` | the hierarchy of axes | 4.2 |
 //! | `attach` | what bears what | beyond |
-//! | `kind` | what the parts are together | beyond |
+//! | `kind`, `kinds` | what the parts are together, and which kind explains the drawing best | beyond |
 //! | `rows`, `validate` | the result, and what every reading guarantees | |
 
 mod attach;
@@ -24,6 +24,7 @@ mod corolla;
 mod draft;
 mod flowers;
 mod kind;
+mod kinds;
 mod near;
 mod outlines;
 mod read;
@@ -37,10 +38,11 @@ mod validate;
 mod veins;
 
 pub use kind::Kind;
-pub use read::{read, read_without};
+pub use kinds::{Scored, kind_feature_names, kind_features};
+pub use read::{kind_row, read, read_as, read_without};
 pub use rows::{
     Attachment, AxisReading, BladeReading, DiscReading, FlowerReading, FruitReading, OrganWord, PlantReading,
     Reading, RegionKind, RegionReading, StrokeReading,
 };
-pub use rules::{RULES, Rule};
+pub use rules::{READ_AS, RULES, Rule};
 pub use validate::ReadingFault;

@@ -7,7 +7,7 @@ use ink::{Source, StrokeClass};
 use plant::AxisKind;
 use serde::{Deserialize, Serialize};
 
-use crate::Kind;
+use crate::{Kind, Scored};
 
 /// What became of one stroke. The words of the command line's contract.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -222,6 +222,10 @@ pub struct Reading {
 pub struct PlantReading {
     /// Its strokes, by their indices in the drawing, ascending.
     pub strokes: Vec<u32>,
+    /// Its height in the drawing, ink units.
+    pub height: f64,
     /// What it was read as.
     pub kind: Kind,
+    /// What it may be, at most three: what it was read as first, then the others, the best first.
+    pub readings: Vec<Scored>,
 }

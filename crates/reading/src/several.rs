@@ -4,10 +4,16 @@ use base::Report;
 use glam::DVec2;
 use ink::{Classified, Ink, InkMap, Source, StrokeClass};
 
-use crate::{Attachment, BladeReading, OrganWord, Reading, StrokeReading, read};
+use crate::read::{self, Asked};
+use crate::{Attachment, BladeReading, OrganWord, Reading, StrokeReading};
 
 /// Reads every plant of a drawing, from left to right.
-pub(crate) fn read_each(off: &[&str], ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
+pub(crate) fn read_each(
+    asked: &Asked<'_>,
+    ink: &Ink,
+    classes: &[Classified],
+    report: &mut Report,
+) -> Reading {
     let mut all = Reading::default();
     let class = |row: usize| classes.get(row).copied().unwrap_or_default();
     // What the user says is no ground belongs to the plant that it was drawn with.
@@ -21,7 +27,7 @@ pub(crate) fn read_each(off: &[&str], ink: &Ink, classes: &[Classified], report:
         }
         let part = ink.part(&rows);
         let own: Vec<Classified> = rows.iter().map(|&row| class(row)).collect();
-        let reading = read::one(off, &part, &own, report);
+        let reading = read::one(asked, &part, &own, report);
         let back = Back { whole: ink.map, part: part.map };
         back.add(&mut all, reading);
     }
@@ -110,6 +116,7 @@ impl Back {
             self.line(points);
             self.bearer(bearer, first);
         }
+        one.plants.iter_mut().for_each(|p| p.height *= self.scale());
         all.strokes.append(&mut one.strokes);
         all.axes.append(&mut one.axes);
         all.flowers.append(&mut one.flowers);

@@ -7,7 +7,7 @@ use proptest::prelude::*;
 
 use ink::{Classified, Drawing, Source, StrokeClass, StrokeMode, clean};
 
-use crate::{Kind, RULES, Reading, RegionKind, read, read_without};
+use crate::{Kind, RULES, Reading, RegionKind, read, read_as, read_without};
 
 fn line(from: (f64, f64), to: (f64, f64)) -> Vec<DVec2> {
     let (a, b) = (DVec2::from(from), DVec2::from(to));
@@ -680,6 +680,39 @@ fn round_petals_about_a_disc_are_a_flower() {
     let r = read(&ink, &ink::classify(&ink, &base::Run::plain()), &mut Report::default());
     assert_eq!((r.flowers.len(), r.flowers.first().map(|f| f.petals.len())), (1, Some(5)), "{:?}", r.strokes);
     assert_eq!((r.plants[0].kind, r.regions.len()), (Kind::Flower, 0));
+}
+
+#[test]
+fn the_line_at_the_foot_of_a_bush_is_no_fruit() {
+    let bush: Vec<DVec2> = (0..=40)
+        .map(|i| ops::PI * f64::from(i) / 40.0)
+        .map(|a| DVec2::new(5.0 * ops::cos(a), 3.0 * ops::sin(a)))
+        .collect();
+    let foot = path(&[(-5.0, 0.0), (0.0, 0.2), (5.0, 0.0)]);
+    let r = guessed(&[(StrokeClass::Crown, bush.clone()), (StrokeClass::Fruit, foot)]);
+    assert_eq!((r.fruits.len(), r.strokes[1].class, r.regions.len()), (0, StrokeClass::Ground, 1));
+    let stalk = line((0.0, 0.0), (0.2, -2.0));
+    let r = guessed(&[(StrokeClass::Crown, bush), (StrokeClass::Fruit, stalk)]);
+    assert_eq!((r.fruits.len(), r.strokes[1].class), (0, StrokeClass::Axis));
+}
+
+#[test]
+fn the_user_may_take_a_drawing_for_another_kind() {
+    let lines = &trees()[6];
+    let ink = clean(&Drawing::from_polylines("tree", lines), &mut Report::default());
+    let classes = ink::classify(&ink, &base::Run::plain());
+    for kind in Kind::ALL {
+        let r = read_as(Some(kind), &ink, &classes, &mut Report::default());
+        assert_eq!((r.validate().count(), r.plants[0].kind), (0, kind));
+    }
+    let r = read_as(Some(Kind::Fruit), &ink, &classes, &mut Report::default());
+    assert_eq!((r.fruits.len(), r.regions.len()), (1, 0), "{:?}", r.strokes);
+    assert_eq!(r.strokes[0].source, Source::Rule(crate::READ_AS));
+    // The scores fall, and what was read comes first.
+    let r = read(&ink, &classes, &mut Report::default());
+    let readings = &r.plants[0].readings;
+    assert_eq!((readings.len(), readings[0].kind), (3, r.plants[0].kind));
+    assert!(readings.windows(2).all(|w| w[0].score >= w[1].score), "{readings:?}");
 }
 
 #[test]

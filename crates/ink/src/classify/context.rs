@@ -61,7 +61,7 @@ pub(super) fn features_again(
 /// What the strokes of a drawing measure on their own, kept for the next look at it: a stroke that is drawn leaves the
 /// others as they are, unless it widens the drawing. Changes no result.
 #[derive(Clone, Debug, Default)]
-pub struct KeptMeasures(Vec<(Vec<DVec2>, Shape, StrokeFeatures)>, BTreeMap<usize, KeptMeasures>);
+pub struct KeptMeasures(Vec<(Vec<DVec2>, Shape, StrokeFeatures)>, BTreeMap<usize, Self>);
 
 impl KeptMeasures {
     /// Those of one plant of several, which is known by its first stroke.

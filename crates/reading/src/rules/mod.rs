@@ -7,6 +7,7 @@
 //! Numbers are in ink units (the drawing's diagonal is 1) or shares of something that the rule names. They were chosen by
 //! looking at drawings by the public; the named ones are shared by several tests or say what a line is.
 
+mod as_kind;
 mod grass;
 mod leaves;
 mod pots;
@@ -20,6 +21,11 @@ use ink::{COMMON_GROUND, InkStroke, LONE_LINE, StrokeClass, StrokeMode};
 
 use crate::blade::nearest_on_ring;
 use crate::draft::Draft;
+
+pub(crate) use as_kind::take_for;
+
+/// The rule of the kind that a plant is taken for.
+pub const READ_AS: &str = "read-as";
 
 /// Something that the whole drawing says about the class of a stroke.
 #[derive(Clone, Copy, Debug)]
@@ -90,6 +96,12 @@ pub const RULES: &[Rule] = &[
         ANY,
         |_| Findings::default(), // `ink::classify` applies it, because it judges each plant by itself
         "A low, flat line on which several plants stand is their ground.",
+    ),
+    rule(
+        READ_AS,
+        MANY,
+        |_| Findings::default(), // `read` applies it, because it compares whole readings
+        "What a stroke is follows from the kind of plant that explains the whole drawing best, or that was asked for.",
     ),
     rule(
         "whole-flower",
@@ -169,6 +181,12 @@ pub const RULES: &[Rule] = &[
         trees::outline_goes_on,
         "A line that begins where the only outline of a body ends goes on with it.",
     ),
+    rule(
+        "line-is-no-fruit",
+        MANY,
+        trees::line_is_no_fruit,
+        "A line that encloses nothing is no fruit: along the foot of a crown it is the ground, elsewhere a stalk.",
+    ),
     rule("fruit-in-a-crown", MANY, trees::fruit_in_crown, "A small ring inside a crown is a fruit."),
     rule(
         "pot",
@@ -213,15 +231,20 @@ pub(crate) fn apply(draft: &mut Draft<'_>, off: &[&str]) {
     let count = draft.class.len();
     for rule in RULES.iter().filter(|r| count <= r.most_strokes && !off.contains(&r.name)) {
         let found = (rule.applies)(draft);
-        for (stroke, class) in found.classes {
-            draft.class[stroke] = class;
-            draft.rule[stroke] = Some(rule.name);
-        }
-        draft.legs.extend(found.legs.into_iter().map(|(stroke, legs)| (stroke, legs.into())));
-        draft.trunk |= found.trunk;
-        found.settled.iter().for_each(|&k| draft.settled[k] = true);
-        draft.united.extend(found.united);
+        take(draft, found, rule.name);
     }
+}
+
+/// Puts into the draft what a rule found.
+fn take(draft: &mut Draft<'_>, found: Findings, name: &'static str) {
+    for (stroke, class) in found.classes {
+        draft.class[stroke] = class;
+        draft.rule[stroke] = Some(name);
+    }
+    draft.legs.extend(found.legs.into_iter().map(|(stroke, legs)| (stroke, legs.into())));
+    draft.trunk |= found.trunk;
+    found.settled.iter().for_each(|&k| draft.settled[k] = true);
+    draft.united.extend(found.united);
 }
 
 /// Ends farther apart than this share of the length: a line that is rather straight, as in [`ink::LONE_LINE`].

@@ -163,7 +163,7 @@ fn crown(draft: &Draft<'_>, green: &[Part], wood: Wood) -> Option<Green> {
     }
     // Everything else lies in it.
     let stray = |p: &&Part| share_inside(&draft.ink.strokes[p.stroke].points, 3, &hull) < 0.8;
-    if small.iter().any(|p| stray(p)) {
+    if small.iter().any(stray) {
         return None;
     }
     let (lo, hi) = bounds(&hull)?;
