@@ -3,20 +3,24 @@
 
 mod ablation;
 mod circles;
+mod contact_sheet;
 mod flowers;
 mod gallery;
 mod golden;
 mod habits;
 mod layers;
+mod made_drawings;
 mod made_strokes;
 mod native;
 mod pixels;
 mod quickdraw;
+mod read_drawings;
 mod scenes;
 mod shell;
 mod species;
 mod studio;
 mod toolchain;
+mod train_kinds;
 mod train_strokes;
 mod web;
 mod workshop;
@@ -41,6 +45,8 @@ cargo xtask COMMAND
   habits         checks licences and versions of dependencies, spelling, and that the crates could be published
   layers         checks that each crate uses only what ARCHITECTURE.md allows, and no modules in a circle
   train-strokes  trains the stroke classifier from its table, and says what it and each rule are worth (docs/strokes.md)
+  read-drawings  reads drawings of people and made ones: kinds, numbers of plants, contact sheets (--part, --sheets)
+  train-kinds    learns which kind of plant explains a whole drawing best (docs/strokes.md)
   test-web       the WASM, validator and Studio part of `test` alone
   test-studio    the Studio part of `test` alone
   bench-web      measures the Studio in a browser: pen, undo, opening, memory, first paint, transfer
@@ -60,7 +66,9 @@ fn main() -> ExitCode {
         Some("types") => types(),
         Some("habits") => habits::check(),
         Some("layers") => layers::check().and_then(|()| circles::check()),
+        Some("train-kinds") => train_kinds::run(rest),
         Some("train-strokes") => train_strokes::run(rest),
+        Some("read-drawings") => read_drawings::run(rest),
         Some("studio") => web::setup().and_then(|tools| studio::open(&tools, rest)),
         Some("build-web") => web::setup().and_then(|tools| studio::build(&tools, true)),
         Some("test-web") => {

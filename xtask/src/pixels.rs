@@ -52,12 +52,21 @@ pub(crate) fn tiled(rows: &[Vec<PathBuf>], to: &Path) -> Outcome {
             }
         }
     }
+    write(&pixels, width, height, to)
+}
+
+/// Writes colours without transparency, row by row from the top.
+pub(crate) fn write_rgb(pixels: &[[u8; 3]], width: usize, height: usize, to: &Path) -> Outcome {
+    write(pixels.as_flattened(), width, height, to)
+}
+
+fn write(pixels: &[u8], width: usize, height: usize, to: &Path) -> Outcome {
     let fault = |e: &dyn std::fmt::Display| format!("{}: {e}", to.display());
     let out = File::create(to).map_err(|e| fault(&e))?;
     let mut encoder = png::Encoder::new(std::io::BufWriter::new(out), length(width), length(height));
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_compression(png::Compression::High);
     let mut writer = encoder.write_header().map_err(|e| fault(&e))?;
-    writer.write_image_data(&pixels).map_err(|e| fault(&e))?;
+    writer.write_image_data(pixels).map_err(|e| fault(&e))?;
     writer.finish().map_err(|e| fault(&e))
 }

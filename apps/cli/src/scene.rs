@@ -28,10 +28,11 @@ pub(crate) fn of_file(path: &Path) -> Outcome<Option<Document>> {
 }
 
 /// Options that a scene's plants have settings for.
-const OF_ONE_DRAWING: [&str; 18] = [
+const OF_ONE_DRAWING: [&str; 19] = [
     "seed",
     "spec",
     "classes",
+    "read_as",
     "height",
     "branch_depth",
     "leaf_depth",

@@ -560,6 +560,7 @@ fn read_spec(path: &Path) -> Outcome<SketchSpec> {
 }
 
 fn set_sketch(spec: &mut SketchSpec, args: &ReadingArgs) {
+    spec.read_as = args.read_as.or(spec.read_as);
     spec.height_m = args.height.or(spec.height_m);
     spec.branch_depth = args.branch_depth.map_or(spec.branch_depth, Into::into);
     spec.leaf_depth = args.leaf_depth.map_or(spec.leaf_depth, Into::into);

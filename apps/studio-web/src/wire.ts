@@ -613,6 +613,8 @@ export type ItemReport = {
   output: string;
   /** Of a plant with axes: what a botanist would measure on it. */
   plant?: Json;
+  /** Of a drawing: what it may show, at most three: what it was read as first, then the others, the best first. */
+  readings?: ReadingReport[];
   /** Every stroke and what became of it. */
   strokes: StrokeReport[];
   /** Times of the stages. */
@@ -620,6 +622,37 @@ export type ItemReport = {
   /** What was not as the user might expect. */
   warnings: string[];
 };
+
+/** What a drawing can show. */
+export type Kind =
+  | /** A flower on its stem, or its head alone. */
+  "flower"
+  | /** Several flowers of one plant, or a row of them. */
+  "flowers"
+  | /** A stem with leaves. */
+  "stem"
+  | /** A tree: a trunk and a crown, or bare branches. */
+  "tree"
+  | /** A tree with a pointed crown. */
+  "conifer"
+  | /** Fronds at the top of a trunk. */
+  "palm"
+  | /** A crown on the ground. */
+  "bush"
+  | /** A thick body with arms or thorns. */
+  "cactus"
+  | /** Blades from the ground. */
+  "grass"
+  | /** One leaf. */
+  "leaf"
+  | /** A fruit. */
+  "fruit"
+  | /** A plant in a pot. */
+  "house_plant"
+  | /** A root, tuber, pod or bulb. */
+  "vegetable"
+  | /** Nothing that was recognised. */
+  "none";
 
 /** [`AxisKind`] as it is written. */
 export type KindWord =
@@ -1110,6 +1143,16 @@ export type PlantView = {
   stages: string[];
 };
 
+/** One interpretation of a whole drawing. */
+export type ReadingReport = {
+  /** The kind of plant; of several plants of different kinds that of the largest. */
+  kind: Kind;
+  /** How many plants it would show. */
+  plants: number;
+  /** How well it explains the drawing among all kinds, 0 to 1; of several plants their mean. */
+  score: number;
+};
+
 /** Why something was not done, for a shell: words for people in English, and what another language needs for its own. */
 export type Refusal = {
   /** Those of the fields that are refusals themselves. */
@@ -1350,6 +1393,10 @@ export type SketchSpec = {
   phototropism: number;
   /** Pipe model exponent t of Eq 6, 1.8 to 3. */
   pipe_exponent: number | null;
+  /** What every plant of the drawing is taken for, whatever it looks like. */
+  read_as: 
+    | Kind
+    | null;
   /** Bending of blades. */
   relief: ReliefSpec;
   /** Thinning along an axis. */

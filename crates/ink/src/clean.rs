@@ -5,7 +5,8 @@
 use base::{Report, ops};
 use glam::DVec2;
 
-use crate::{Drawing, StrokeMode};
+use crate::subjects::subjects;
+use crate::{Drawing, StrokeMode, Subjects};
 
 /// Even step of resampled strokes, a share of the drawing's diagonal: the line width of a felt pen on a sheet.
 pub(crate) const STEP: f64 = 0.005;
@@ -91,6 +92,46 @@ pub struct Ink {
     pub skipped: Vec<u32>,
     /// How ink coordinates were made from the drawing's.
     pub map: InkMap,
+    /// Which strokes are of one plant.
+    pub subjects: Subjects,
+}
+
+impl Ink {
+    /// Some of the strokes, by their rows, as if they were the whole drawing: their box has diagonal 1.
+    ///
+    /// They keep their indices. Rows that are not there are left out; where the strokes have no extent, nothing is left.
+    pub fn part(&self, rows: &[usize]) -> Self {
+        let chosen: Vec<&InkStroke> = rows.iter().filter_map(|&k| self.strokes.get(k)).collect();
+        let points = chosen.iter().flat_map(|s| &s.raw);
+        let (lo, hi) =
+            points.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
+        let scale = 1.0 / ops::hypot(hi.x - lo.x, hi.y - lo.y);
+        if !(lo.is_finite() && scale.is_finite() && scale > 0.0) {
+            return Self::default();
+        }
+        let to_part = InkMap { origin: lo, scale };
+        let map = InkMap { origin: self.map.to_drawing(lo), scale: self.map.scale * scale };
+        let mut strokes: Vec<InkStroke> = chosen
+            .into_iter()
+            .map(|s| InkStroke {
+                index: s.index,
+                raw: s.raw.iter().map(|&p| to_part.to_ink(p)).collect(),
+                times_ms: s.times_ms.clone(),
+                pressure: s.pressure,
+                mode: s.mode,
+                color: s.color,
+                ..InkStroke::default()
+            })
+            .collect();
+        even(&mut strokes);
+        let plants = vec![(0..strokes.len()).collect()];
+        Self { strokes, map, subjects: Subjects { plants, ..Subjects::default() }, ..Self::default() }
+    }
+
+    /// The drawing shows several plants.
+    pub fn is_several(&self) -> bool {
+        self.subjects.plants.len() > 1
+    }
 }
 
 /// Cleans a drawing: He and Cheng (2021), section 3, Eq 1.
@@ -136,18 +177,27 @@ pub fn clean(drawing: &Drawing, report: &mut Report) -> Ink {
             ..InkStroke::default()
         });
     }
-    let total: f64 = ink.strokes.iter().map(|s| s.length).sum();
-    let step = STEP.max(total / MAX_POINTS);
-    for stroke in &mut ink.strokes {
-        stroke.step = step.min(stroke.length / MIN_STEPS);
-        stroke.points = smooth(&resample(&stroke.raw, stroke.length, stroke.step), stroke.step);
-        stroke.length = length(&stroke.points);
-    }
+    even(&mut ink.strokes);
+    ink.subjects = subjects(&ink.strokes);
     notes.tell(report);
     if ink.strokes.is_empty() {
         report.warn("empty-drawing", "the drawing has no stroke that can be used: draw a line or an outline");
     }
     ink
+}
+
+/// Resamples and smooths strokes of which `raw` is known.
+fn even(strokes: &mut [InkStroke]) {
+    for stroke in strokes.iter_mut() {
+        stroke.length = length(&stroke.raw);
+    }
+    let total: f64 = strokes.iter().map(|s| s.length).sum();
+    let step = STEP.max(total / MAX_POINTS);
+    for stroke in strokes {
+        stroke.step = step.min(stroke.length / MIN_STEPS);
+        stroke.points = smooth(&resample(&stroke.raw, stroke.length, stroke.step), stroke.step);
+        stroke.length = length(&stroke.points);
+    }
 }
 
 /// Sample numbers that can be used, for each stroke: finite, and no strays.

@@ -6,6 +6,7 @@
 //! |---|---|---|
 //! | strokes as they were drawn | `drawing` | |
 //! | resample, smooth, normalise | `clean` | section 3, Eq 1 |
+//! | which strokes are of one plant | `subjects` | |
 //! | what a stroke can be, and what each one is | `class`, `classify` | section 4.1 |
 //!
 //! The feature `training` adds what trains the classifier; programs that make plants do without it.
@@ -14,11 +15,12 @@ mod class;
 mod classify;
 mod clean;
 mod drawing;
+mod subjects;
 
 pub use class::StrokeClass;
 pub use classify::{
-    Classified, KeptMeasures, LONE_LINE, ModelError, Source, StrokeFeatures, classify, classify_again,
-    features,
+    COMMON_GROUND, Classified, KeptMeasures, LONE_LINE, ModelError, Source, StrokeFeatures, classify,
+    classify_again, features,
 };
 #[cfg(any(test, feature = "training"))]
 pub use classify::{
@@ -27,3 +29,4 @@ pub use classify::{
 };
 pub use clean::{Ink, InkMap, InkStroke, clean};
 pub use drawing::{Drawing, InkSample, Stroke, StrokeMode};
+pub use subjects::Subjects;

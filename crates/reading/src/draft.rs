@@ -76,6 +76,10 @@ pub(crate) struct Draft<'a> {
     pub(crate) sides: Vec<(usize, Vec<DVec2>)>,
     /// What is left of those strokes.
     pub(crate) loops: BTreeMap<usize, Vec<DVec2>>,
+    /// Strokes whose class follows from the whole drawing: later rules leave it.
+    pub(crate) settled: Vec<bool>,
+    /// Outlines that make up one crown.
+    pub(crate) united: Vec<usize>,
     /// Lines that were drawn in one go, there and back: the pieces of each such stroke.
     pub(crate) legs: BTreeMap<usize, Vec<Vec<DVec2>>>,
 }
@@ -88,6 +92,8 @@ impl<'a> Draft<'a> {
             ink,
             class: said.iter().map(|c| c.class).collect(),
             rule: vec![None; said.len()],
+            settled: vec![false; said.len()],
+            united: Vec::new(),
             said,
             organ: vec![OrganWord::Ignored; ink.strokes.len()],
             lines: Vec::new(),
@@ -391,7 +397,17 @@ impl<'a> Draft<'a> {
         });
         strokes.extend(skipped);
         base::sort_by_key(&mut strokes, |s| s.index);
-        Reading { strokes, axes: self.forest.axes, flowers, leaves, regions, fruits, thorns, woody }
+        Reading {
+            strokes,
+            axes: self.forest.axes,
+            flowers,
+            leaves,
+            regions,
+            fruits,
+            thorns,
+            woody,
+            plants: Vec::new(),
+        }
     }
 
     /// Length of the longest line or axis.

@@ -4,6 +4,7 @@
 //!
 //! | module | reads | paper |
 //! |---|---|---|
+//! | `several` | each plant of a drawing by itself | beyond |
 //! | `read`, `draft` | the order of the steps, and the drawing half understood | |
 //! | `rules` | classes that the whole drawing contradicts | beyond |
 //! | `outlines`, `contour`, `rings`, `body` | trunks, cactus bodies and crowns drawn as outlines | beyond |
@@ -11,6 +12,7 @@
 //! | `flowers` | which blades are petals of one flower | 4.1 |
 //! | `branches` | the hierarchy of axes | 4.2 |
 //! | `attach` | what bears what | beyond |
+//! | `kind`, `kinds` | what the parts are together, and which kind explains the drawing best | beyond |
 //! | `rows`, `validate` | the result, and what every reading guarantees | |
 
 mod attach;
@@ -21,21 +23,26 @@ mod contour;
 mod corolla;
 mod draft;
 mod flowers;
+mod kind;
+mod kinds;
 mod near;
 mod outlines;
 mod read;
 mod rings;
 mod rows;
 mod rules;
+mod several;
 #[cfg(test)]
 mod tests;
 mod validate;
 mod veins;
 
-pub use read::{read, read_without};
+pub use kind::Kind;
+pub use kinds::{Scored, kind_feature_names, kind_features};
+pub use read::{kind_row, read, read_as, read_without};
 pub use rows::{
-    Attachment, AxisReading, BladeReading, DiscReading, FlowerReading, FruitReading, OrganWord, Reading,
-    RegionKind, RegionReading, StrokeReading,
+    Attachment, AxisReading, BladeReading, DiscReading, FlowerReading, FruitReading, OrganWord, PlantReading,
+    Reading, RegionKind, RegionReading, StrokeReading,
 };
-pub use rules::{RULES, Rule};
+pub use rules::{READ_AS, RULES, Rule};
 pub use validate::ReadingFault;

@@ -1,6 +1,6 @@
 //! Trunks and crowns drawn as outlines (product A12).
 
-use base::Report;
+use base::{Report, ops};
 use geom::{centroid, contains, convex_hull, distance_to_polyline, polyline_length, signed_area};
 use glam::DVec2;
 use ink::StrokeClass;
@@ -139,8 +139,14 @@ fn arm_base(forest: &Forest, ring: &Ring, later: bool) -> Option<(Attachment, DV
 
 /// Reads crown contours into regions; a trunk that was drawn in the same stroke is cut off and read as a body.
 pub(crate) fn crowns(draft: &mut Draft<'_>, report: &mut Report) {
-    let strokes = draft.of_class(StrokeClass::Crown);
+    let mut strokes = draft.of_class(StrokeClass::Crown);
     let loops = std::mem::take(&mut draft.loops);
+    let united = std::mem::take(&mut draft.united);
+    if let Some(outline) = union(draft, &united) {
+        strokes.retain(|k| !united.contains(k));
+        united.iter().for_each(|&k| draft.organ[k] = OrganWord::LeafContour);
+        draft.add_region(outline, RegionKind::Crown, united[0]);
+    }
     let points: Vec<&[DVec2]> = strokes
         .iter()
         .map(|k| loops.get(k).map_or(draft.ink.strokes[*k].points.as_slice(), Vec::as_slice))
@@ -179,6 +185,33 @@ pub(crate) fn crowns(draft: &mut Draft<'_>, report: &mut Report) {
             format!("{left_out} of the drawing's crown outlines were left out: {MOST_REGIONS} are read"),
         );
     }
+}
+
+/// The outline around several that overlap, as it is seen from their middle.
+fn union(draft: &Draft<'_>, strokes: &[usize]) -> Option<Vec<DVec2>> {
+    const RAYS: u32 = 180;
+    let rings: Vec<Vec<DVec2>> =
+        strokes.iter().filter_map(|&k| crown_outline(&draft.ink.strokes[k].points)).collect();
+    let centre = centroid(&convex_hull(&rings.concat()));
+    if rings.len() < 2 {
+        return None;
+    }
+    let outline: Vec<DVec2> = (0..RAYS)
+        .filter_map(|i| {
+            let (s, c) = ops::sin_cos(ops::TAU * f64::from(i) / f64::from(RAYS));
+            let way = DVec2::new(c, s);
+            let hits = rings.iter().flat_map(|ring| {
+                ring.iter().enumerate().filter_map(|(k, &a)| {
+                    let (a, b) = (a - centre, ring[(k + 1) % ring.len()] - centre);
+                    let (u, v) = (way.perp_dot(a), way.perp_dot(b));
+                    ((u > 0.0) != (v > 0.0)).then(|| way.dot(a.lerp(b, u / (u - v))))
+                })
+            });
+            let far = hits.fold(0.0, f64::max);
+            (far > 0.0).then(|| centre + way * far)
+        })
+        .collect();
+    geom::simple_outline(&outline)
 }
 
 /// Finds, leads or adds the axes that run into each region; what comes back is one list of rows per region.

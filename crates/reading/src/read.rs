@@ -4,7 +4,9 @@ use base::Report;
 use ink::{Classified, Ink, Source};
 
 use crate::draft::Draft;
-use crate::{Reading, attach, flowers, outlines, rules, veins};
+use crate::{
+    Kind, PlantReading, READ_AS, Reading, Scored, attach, flowers, kinds, outlines, rules, several, veins,
+};
 
 /// Understands a drawing.
 ///
@@ -28,14 +30,124 @@ pub fn read(ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
     read_without(&[], ink, classes, report)
 }
 
+/// As [`read`], taking every plant of the drawing for one kind, whatever it looks like.
+pub fn read_as(kind: Option<Kind>, ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
+    whole(&Asked { kind, off: &[] }, ink, classes, report)
+}
+
 /// As [`read`], with some [rules](crate::RULES) switched off by their names: for measuring what each is worth.
 pub fn read_without(off: &[&str], ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
+    whole(&Asked { kind: None, off }, ink, classes, report)
+}
+
+/// What a drawing of one plant measures, for the model of kinds: [`kind_features`](crate::kind_features) of its first
+/// reading.
+pub fn kind_row(ink: &Ink, classes: &[Classified]) -> Vec<f64> {
+    let first = attempt(&[], None, ink, classes, &mut Report::default());
+    kinds::kind_features(ink, classes, &first)
+}
+
+/// How a drawing is to be read.
+pub(crate) struct Asked<'a> {
+    /// The kind that every plant is taken for.
+    kind: Option<Kind>,
+    /// Rules that are switched off.
+    off: &'a [&'a str],
+}
+
+fn whole(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
+    if ink.is_several() {
+        several::read_each(asked, ink, classes, report)
+    } else {
+        one(asked, ink, classes, report)
+    }
+}
+
+/// Another kind is tried if it explains the drawing at least so well, and so many times as well as what was read first.
+const SURE: f64 = 0.6;
+const BETTER: f64 = 4.0;
+/// As [`SURE`] of fruits and roots: a tool for plants is given trees more often than potatoes.
+const SURE_BODY: f64 = 0.95;
+/// In the scores that are told, what was read first weighs so many times as much as the model says: it was built.
+const BUILT: f64 = 6.0;
+/// A drawing of more strokes is read once: nobody draws one plant with so many and means another kind.
+const MOST_STROKES: usize = 200;
+/// Readings that are told.
+const TOLD: usize = 3;
+
+/// Understands one plant: of the interpretations of the whole drawing the one that explains it best.
+pub(crate) fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
+    let mut said = Report::default();
+    let mut reading = attempt(asked.off, None, ink, classes, &mut said);
+    let mut kind = Kind::of(&reading);
+    let mut scores = kinds::scores(&kinds::kind_features(ink, classes, &reading));
+    let built = kind;
+    let group = |scores: &[Scored], kind: Kind| -> f64 {
+        scores.iter().filter(|s| s.kind.is_like(kind)).map(|s| s.score).sum()
+    };
+    let free = !asked.off.contains(&READ_AS) && ink.strokes.len() <= MOST_STROKES;
+    let guessed = classes.iter().all(|c| c.source != Source::User);
+    let likelier = |s: &&Scored| {
+        let (own, sure) =
+            (group(&scores, s.kind), if s.kind.is_like(Kind::Fruit) { SURE_BODY } else { SURE });
+        !s.kind.is_like(built) && own > sure && own > BETTER * group(&scores, built)
+    };
+    let other = scores.iter().find(likelier).copied();
+    if let Some(wanted) = asked.kind {
+        (said, kind) = (Report::default(), wanted);
+        reading = attempt(asked.off, asked.kind, ink, classes, &mut said);
+    } else if let Some(other) = other.filter(|_| free && guessed) {
+        let mut again = Report::default();
+        let tried = attempt(asked.off, Some(other.kind), ink, classes, &mut again);
+        // Only what can be built of the drawing explains it.
+        if other.kind.is_like(Kind::of(&tried)) {
+            (reading, said, kind) = (tried, again, other.kind);
+        }
+    }
+    scores.iter_mut().filter(|s| s.kind.is_like(built)).for_each(|s| s.score *= BUILT);
+    report.warnings.append(&mut said.warnings);
+    let readings = readings(kind, &scores);
+    let strokes = ink.strokes.iter().map(|s| s.index).collect();
+    let ends = ink.strokes.iter().flat_map(|s| &s.points).map(|p| p.y);
+    let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)));
+    reading.plants = vec![PlantReading { strokes, height: (high - low).max(0.0), kind, readings }];
+    reading
+}
+
+/// What a plant was read as, and the best of the others; one of each that are built alike. What could not be built, or is
+/// not what the user asked for, explains the drawing no better than what was.
+fn readings(kind: Kind, scores: &[Scored]) -> Vec<Scored> {
+    let total: f64 = scores.iter().map(|s| s.score).sum::<f64>().max(f64::MIN_POSITIVE);
+    let group = |k: Kind| scores.iter().filter(|s| s.kind.is_like(k)).map(|s| s.score).sum::<f64>() / total;
+    let own = Scored { kind, score: group(kind) };
+    let mut found: Vec<Scored> = vec![own];
+    for s in scores {
+        if !found.iter().any(|f| f.kind.is_like(s.kind)) {
+            found.push(Scored { kind: s.kind, score: group(s.kind).min(own.score) });
+        }
+    }
+    base::sort_by(&mut found[1..], |a, b| b.score.total_cmp(&a.score).then(a.kind.cmp(&b.kind)));
+    found.truncate(TOLD);
+    found
+}
+
+/// One reading of one plant, taken for a kind or for whatever its strokes say.
+fn attempt(
+    off: &[&str],
+    kind: Option<Kind>,
+    ink: &Ink,
+    classes: &[Classified],
+    report: &mut Report,
+) -> Reading {
     let mut draft = Draft::new(ink, classes);
     for (k, said) in draft.said.iter_mut().enumerate() {
         if matches!(said.source, Source::Rule(name) if off.contains(&name)) {
             *said = Classified::by_shares(said.shares);
             draft.class[k] = said.class;
         }
+    }
+    if let Some(kind) = kind {
+        rules::take_for(&mut draft, kind);
     }
     rules::apply(&mut draft, off);
     draft.contours();

@@ -7,6 +7,8 @@ use ink::{Source, StrokeClass};
 use plant::AxisKind;
 use serde::{Deserialize, Serialize};
 
+use crate::{Kind, Scored};
+
 /// What became of one stroke. The words of the command line's contract.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -211,4 +213,19 @@ pub struct Reading {
     pub thorns: Vec<(Vec<DVec2>, Option<Attachment>, Option<u32>)>,
     /// It is a woody plant (trunk outline, crown, several orders of branches) rather than a herb.
     pub woody: bool,
+    /// The plants that the drawing shows, from left to right.
+    pub plants: Vec<PlantReading>,
+}
+
+/// One plant of a drawing.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PlantReading {
+    /// Its strokes, by their indices in the drawing, ascending.
+    pub strokes: Vec<u32>,
+    /// Its height in the drawing, ink units.
+    pub height: f64,
+    /// What it was read as.
+    pub kind: Kind,
+    /// What it may be, at most three: what it was read as first, then the others, the best first.
+    pub readings: Vec<Scored>,
 }

@@ -7,7 +7,7 @@ use proptest::prelude::*;
 
 use ink::{Classified, Drawing, Source, StrokeClass, StrokeMode, clean};
 
-use crate::{RULES, Reading, RegionKind, read, read_without};
+use crate::{Kind, RULES, Reading, RegionKind, read, read_as, read_without};
 
 fn line(from: (f64, f64), to: (f64, f64)) -> Vec<DVec2> {
     let (a, b) = (DVec2::from(from), DVec2::from(to));
@@ -521,7 +521,9 @@ fn regions_with_and_without(rule: &str, strokes: &[(StrokeClass, Vec<DVec2>)]) -
     let lines: Vec<Vec<DVec2>> = strokes.iter().map(|s| s.1.clone()).collect();
     let ink = clean(&Drawing::from_polylines("tree", &lines), &mut Report::default());
     let classes: Vec<Classified> = strokes.iter().map(|s| perhaps(s.0, 0.5)).collect();
-    [&[][..], &[rule]].map(|off| read_without(off, &ink, &classes, &mut Report::default()).regions.len())
+    // The rule about whole trees would see them, too.
+    [&["whole-tree"][..], &["whole-tree", rule]]
+        .map(|off| read_without(off, &ink, &classes, &mut Report::default()).regions.len())
 }
 
 #[test]
@@ -588,6 +590,129 @@ fn a_line_by_itself_is_the_classifiers_where_its_rule_is_off() {
     assert_eq!((on.class, on.source), (StrokeClass::Axis, Source::Rule(ink::LONE_LINE)));
     let off = read_without(&[ink::LONE_LINE], &ink, &classes, &mut Report::default()).strokes[0];
     assert_eq!((off.class, off.source), (Classified::by_shares(classes[0].shares).class, Source::Classifier));
+}
+
+/// A crown of bumps, and its trunk drawn in four ways.
+fn trees() -> Vec<Vec<Vec<DVec2>>> {
+    let crown: Vec<DVec2> = (0..=90)
+        .map(|i| ops::TAU * f64::from(i) / 90.0)
+        .map(|a| (a, 3.0 + 0.3 * ops::sin(4.0 * a).abs()))
+        .map(|(a, r)| DVec2::new(5.0 + r * ops::cos(a), 8.0 + r * ops::sin(a)))
+        .collect();
+    let open = path(&[(4.5, 5.3), (4.4, 0.0), (5.6, 0.0), (5.5, 5.3)]);
+    let closed = [open.clone(), path(&[(5.5, 5.3), (4.5, 5.3)])].concat();
+    let two = vec![line((4.5, 5.3), (4.4, 0.0)), line((5.6, 0.0), (5.5, 5.3))];
+    let trunks = [two, vec![closed], vec![open], vec![line((5.0, 0.0), (5.0, 5.2))]];
+    trunks
+        .into_iter()
+        .flat_map(|trunk| {
+            let crown_last = [trunk.clone(), vec![crown.clone()]].concat();
+            let crown_first = [vec![crown.clone()], trunk].concat();
+            [crown_last, crown_first]
+        })
+        .collect()
+}
+
+#[test]
+fn a_tree_is_a_tree_however_and_in_which_order_it_is_drawn() {
+    for lines in trees() {
+        let ink = clean(&Drawing::from_polylines("tree", &lines), &mut Report::default());
+        let classes = ink::classify(&ink, &base::Run::plain());
+        let r = read(&ink, &classes, &mut Report::default());
+        assert_eq!(r.plants.iter().map(|p| p.kind).collect::<Vec<_>>(), [Kind::Tree], "{:?}", r.strokes);
+        let standing = r.axes.iter().filter(|a| a.bearer.is_none()).count();
+        assert_eq!((r.regions.len(), standing, r.fruits.len(), r.leaves.len()), (1, 1, 0, 0));
+        assert_eq!(r.validate().count(), 0);
+    }
+}
+
+#[test]
+fn a_line_added_later_takes_nothing_that_was_understood() {
+    for mut lines in trees() {
+        lines.push(line((3.5, 8.5), (4.2, 9.0)));
+        lines.push(line((5.8, 7.0), (6.6, 7.4)));
+        let ink = clean(&Drawing::from_polylines("tree", &lines), &mut Report::default());
+        let classes = ink::classify(&ink, &base::Run::plain());
+        let r = read(&ink, &classes, &mut Report::default());
+        assert_eq!((r.plants[0].kind, r.regions.len()), (Kind::Tree, 1), "{:?}", r.strokes);
+    }
+}
+
+#[test]
+fn each_of_several_plants_is_read_by_itself_and_stays_where_it_was_drawn() {
+    let all = trees();
+    let mut lines: Vec<Vec<DVec2>> = Vec::new();
+    for (k, (x, scale)) in [(0, (0.0, 1.0)), (3, (9.0, 0.6)), (6, (16.0, 1.2))] {
+        let to = |p: &DVec2| *p * scale + DVec2::new(x, 0.0);
+        lines.extend(all[k].iter().map(|l| l.iter().map(to).collect::<Vec<_>>()));
+    }
+    lines.insert(2, line((-2.0, -0.05), (28.0, 0.05)));
+    let ink = clean(&Drawing::from_polylines("trees", &lines), &mut Report::default());
+    assert_eq!((ink.subjects.plants.len(), &ink.subjects.ground[..]), (3, &[2][..]));
+    let classes = ink::classify(&ink, &base::Run::plain());
+    let r = read(&ink, &classes, &mut Report::default());
+    assert_eq!(r.validate().count(), 0);
+    assert_eq!(r.strokes.len(), lines.len());
+    assert_eq!(r.strokes[2].class, StrokeClass::Ground);
+    assert_eq!(r.plants.iter().map(|p| p.kind).collect::<Vec<_>>(), [Kind::Tree; 3]);
+    assert_eq!((r.regions.len(), r.axes.iter().filter(|a| a.bearer.is_none()).count()), (3, 3));
+    // Each crown lies where it was drawn.
+    for region in &r.regions {
+        let stroke = &ink.strokes[region.source.expect("drawn") as usize].points;
+        let mean = |points: &[DVec2]| points.iter().sum::<DVec2>() / points.len() as f64;
+        assert!(mean(stroke).distance(mean(&region.outline)) < 0.01);
+    }
+    // A class that the user set holds in its plant.
+    let mut set = classes;
+    set[0] = Classified::by_user(StrokeClass::Fruit);
+    let r = read(&ink, &set, &mut Report::default());
+    assert_eq!(r.strokes[0].class, StrokeClass::Fruit);
+}
+
+#[test]
+fn round_petals_about_a_disc_are_a_flower() {
+    let mut lines = vec![circle((5.0, 8.0), 0.7), line((5.0, 0.0), (5.0, 6.0))];
+    lines.extend((0..5).map(|k| ops::sin_cos(ops::TAU * f64::from(k) / 5.0)).map(|(s, c)| {
+        let way = DVec2::new(c, s) * 1.7 + DVec2::new(5.0, 8.0);
+        circle((way.x, way.y), 0.95)
+    }));
+    let ink = clean(&Drawing::from_polylines("flower", &lines), &mut Report::default());
+    let r = read(&ink, &ink::classify(&ink, &base::Run::plain()), &mut Report::default());
+    assert_eq!((r.flowers.len(), r.flowers.first().map(|f| f.petals.len())), (1, Some(5)), "{:?}", r.strokes);
+    assert_eq!((r.plants[0].kind, r.regions.len()), (Kind::Flower, 0));
+}
+
+#[test]
+fn the_line_at_the_foot_of_a_bush_is_no_fruit() {
+    let bush: Vec<DVec2> = (0..=40)
+        .map(|i| ops::PI * f64::from(i) / 40.0)
+        .map(|a| DVec2::new(5.0 * ops::cos(a), 3.0 * ops::sin(a)))
+        .collect();
+    let foot = path(&[(-5.0, 0.0), (0.0, 0.2), (5.0, 0.0)]);
+    let r = guessed(&[(StrokeClass::Crown, bush.clone()), (StrokeClass::Fruit, foot)]);
+    assert_eq!((r.fruits.len(), r.strokes[1].class, r.regions.len()), (0, StrokeClass::Ground, 1));
+    let stalk = line((0.0, 0.0), (0.2, -2.0));
+    let r = guessed(&[(StrokeClass::Crown, bush), (StrokeClass::Fruit, stalk)]);
+    assert_eq!((r.fruits.len(), r.strokes[1].class), (0, StrokeClass::Axis));
+}
+
+#[test]
+fn the_user_may_take_a_drawing_for_another_kind() {
+    let lines = &trees()[6];
+    let ink = clean(&Drawing::from_polylines("tree", lines), &mut Report::default());
+    let classes = ink::classify(&ink, &base::Run::plain());
+    for kind in Kind::ALL {
+        let r = read_as(Some(kind), &ink, &classes, &mut Report::default());
+        assert_eq!((r.validate().count(), r.plants[0].kind), (0, kind));
+    }
+    let r = read_as(Some(Kind::Fruit), &ink, &classes, &mut Report::default());
+    assert_eq!((r.fruits.len(), r.regions.len()), (1, 0), "{:?}", r.strokes);
+    assert_eq!(r.strokes[0].source, Source::Rule(crate::READ_AS));
+    // The scores fall, and what was read comes first.
+    let r = read(&ink, &classes, &mut Report::default());
+    let readings = &r.plants[0].readings;
+    assert_eq!((readings.len(), readings[0].kind), (3, r.plants[0].kind));
+    assert!(readings.windows(2).all(|w| w[0].score >= w[1].score), "{readings:?}");
 }
 
 #[test]

@@ -358,7 +358,8 @@ fn pipes(
     let woody = reading.woody;
     let height = plant.nodes.position.iter().map(|p| p.y).fold(0.0, f64::max);
     // Trees: a fortieth of the height. Herbs: a ninetieth. A longer axis than the plant is tall counts itself.
-    let slender = if woody { 1.0 / 40.0 } else { 1.0 / 90.0 };
+    // A herb beside a tree stays one.
+    let slender = |kind| if woody && kind != AxisKind::Stem { 1.0 / 40.0 } else { 1.0 / 90.0 };
     let mut ground = Vec::new();
     for (i, axis) in plant.axes.iter().enumerate().filter(|(_, a)| a.bearer.is_none()) {
         let id = AxisId::new(i);
@@ -368,7 +369,7 @@ fn pipes(
         } else {
             length.max(0.5 * height.min(2.0 * length))
         };
-        ground.push((id, size * slender));
+        ground.push((id, size * slender(axis.kind)));
     }
     let mut drawn = Vec::new();
     for (plan, id) in plans.rows.iter().zip(ids) {

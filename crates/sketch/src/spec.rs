@@ -1,5 +1,6 @@
 //! What can be asked of the sketch maker.
 
+use reading::Kind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -125,6 +126,8 @@ impl Default for ReliefSpec {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct SketchSpec {
+    /// What every plant of the drawing is taken for, whatever it looks like. `None`: what explains it best.
+    pub read_as: Option<Kind>,
     /// Height of the plant in metres, above 0. `None`: 8 m for a tree, 0.5 m for a herb.
     #[schemars(range(min = 0.001, max = 1000.0), extend("x-unit" = "m"))]
     pub height_m: Option<f64>,

@@ -11,13 +11,13 @@ use glam::DVec2;
 use ink::{Classified, Drawing, Ink, KeptMeasures};
 use mesh::{Model, Texture};
 use plant::Plant;
-use reading::Reading;
+use reading::{Kind, Reading};
 use sketch::{Built, KeptBodies, SketchSpec};
 use skin::{KeptShapes, SkinSpec, Traced};
 
 use crate::made::Made;
 use crate::make::{ClassOverrides, MakeError, SketchOptions};
-use crate::report::{Counts, FidelityReport, ItemReport, StrokeReport, TimingsMs};
+use crate::report::{Counts, FidelityReport, ItemReport, ReadingReport, StrokeReport, TimingsMs};
 use crate::shaping::{EditReport, Shaper};
 use crate::template::LeafTemplate;
 
@@ -53,7 +53,7 @@ pub struct Evaluator {
     /// Measures of the strokes of the last drawing.
     measures: KeptMeasures,
     strokes: Option<Kept<Drawing, (Ink, Vec<Classified>)>>,
-    reading: Option<Kept<ClassOverrides, Reading>>,
+    reading: Option<Kept<ReadFrom, Reading>>,
     /// Bodies of the contours of the last plant.
     bodies: KeptBodies,
     plant: Option<Kept<PlantFrom, (Built, FidelityReport)>>,
@@ -74,6 +74,9 @@ pub struct Evaluator {
 
 /// What a plant is made from, besides its reading: the name goes into the plant.
 type PlantFrom = (SketchSpec, Seed, String, Option<LeafTemplate>);
+
+/// What a reading is made from, besides ink and classes.
+type ReadFrom = (ClassOverrides, Option<Kind>);
 
 /// An edited plant and the edits.
 #[derive(Clone, Debug)]
@@ -147,7 +150,7 @@ impl Evaluator {
             self.strokes =
                 Some(Self::keep(&mut self.done, &mut stages, drawing.clone(), (ink, classes), report));
         }
-        self.read(&options.classes, &mut stages, run)?;
+        self.read(&options.classes, options.spec.read_as, &mut stages, run)?;
         self.build(options, seed, &drawing.name, &mut stages, run)?;
         self.shape(options, &mut stages, run)?;
         let mut photo = options.photo.clone().filter(|p| p.place.paint);
@@ -188,11 +191,12 @@ impl Evaluator {
     fn read(
         &mut self,
         wanted: &ClassOverrides,
+        read_as: Option<Kind>,
         stages: &mut Vec<Stage>,
         run: &Run<'_>,
     ) -> Result<(), MakeError> {
         let Some(strokes) = &self.strokes else { return Ok(()) };
-        if self.reading.as_ref().is_some_and(|k| k.from == *wanted) {
+        if self.reading.as_ref().is_some_and(|k| k.from.0 == *wanted && k.from.1 == read_as) {
             return Ok(());
         }
         let (ink, classes) = &strokes.value;
@@ -203,10 +207,11 @@ impl Evaluator {
             }
         }
         let mut report = Report::default();
-        let reading = report.stage("structure", run.clock, |r| reading::read(ink, &classes, r));
+        let reading = report.stage("structure", run.clock, |r| reading::read_as(read_as, ink, &classes, r));
         run.cancel.check()?;
         self.plant = None;
-        self.reading = Some(Self::keep(&mut self.done, stages, wanted.clone(), reading, report));
+        let from = (wanted.clone(), read_as);
+        self.reading = Some(Self::keep(&mut self.done, stages, from, reading, report));
         Ok(())
     }
 
@@ -356,6 +361,7 @@ impl Evaluator {
             counts,
             timings_ms: TimingsMs::from_report(&report),
             fidelity: plant.value.1,
+            readings: ReadingReport::of(&reading.value),
             digest: if self.preview || self.looking { String::new() } else { shown.digest_hex() },
             warnings,
             edits: told.to_vec(),

@@ -49,7 +49,7 @@ pub use motion::{cloud_model, motion_model};
 pub use opening::{OpenedPlant, OpeningError, OpeningPlant};
 pub use report::{
     Counts, FaceCounts, FidelityReport, GrowthReport, InputReport, ItemReport, LeafFit, LeafReport,
-    REPORT_SCHEMA, RunReport, ScanReport, StrokeReport, TimingsMs,
+    REPORT_SCHEMA, ReadingReport, RunReport, ScanReport, StrokeReport, TimingsMs,
 };
 pub use scanned::make_leaf_from_scan;
 pub use scene::{

@@ -1,7 +1,10 @@
 //! The JSON report: a contract with other programs. Fields are never renamed or removed.
 
+use std::collections::BTreeMap;
+
 use base::Report;
 use plant::{AxisKind, OrganKind, Plant};
+use reading::{Kind, Reading};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -79,6 +82,9 @@ pub struct ItemReport {
     pub fidelity: FidelityReport,
     /// Fingerprint of the plant: independent of platform and threads.
     pub digest: String,
+    /// Of a drawing: what it may show, at most three: what it was read as first, then the others, the best first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub readings: Vec<ReadingReport>,
     /// What was not as the user might expect.
     pub warnings: Vec<String>,
     /// Of a plant with axes: what a botanist would measure on it.
@@ -98,6 +104,45 @@ pub struct ItemReport {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(with = "Vec<serde_json::Value>")]
     pub branches: Vec<crate::BranchRow>,
+}
+
+/// One interpretation of a whole drawing.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ReadingReport {
+    /// The kind of plant; of several plants of different kinds that of the largest.
+    pub kind: Kind,
+    /// How many plants it would show.
+    pub plants: u64,
+    /// How well it explains the drawing among all kinds, 0 to 1; of several plants their mean.
+    pub score: f64,
+}
+
+impl ReadingReport {
+    /// Most readings that are told.
+    const MOST: usize = 3;
+
+    /// What a drawing was read as, and what else it may be.
+    pub fn of(reading: &Reading) -> Vec<Self> {
+        let plants = reading.plants.len() as u64;
+        if let [one] = &reading.plants[..] {
+            return one.readings.iter().map(|r| Self { kind: r.kind, plants, score: r.score }).collect();
+        }
+        let count = reading.plants.len().max(1) as f64;
+        let mut sums: BTreeMap<Kind, f64> = BTreeMap::new();
+        for r in reading.plants.iter().flat_map(|p| &p.readings) {
+            *sums.entry(r.kind).or_default() += r.score / count;
+        }
+        let largest = reading.plants.iter().reduce(|a, b| if b.height > a.height { b } else { a });
+        let Some(kind) = largest.map(|p| p.kind) else { return Vec::new() };
+        let own = |k: Kind| if k == Kind::Flower { Kind::Flowers } else { k };
+        let mean = reading.plants.iter().filter_map(|p| p.readings.first()).map(|r| r.score).sum::<f64>();
+        let mut found = vec![Self { kind: own(kind), plants, score: mean / count }];
+        let mut others: Vec<(Kind, f64)> = sums.into_iter().filter(|(k, _)| !k.is_like(kind)).collect();
+        others.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        found.extend(others.into_iter().map(|(k, score)| Self { kind: own(k), plants, score }));
+        found.truncate(Self::MOST);
+        found
+    }
 }
 
 /// One stroke.

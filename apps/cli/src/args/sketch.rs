@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use burgeon::reading::Kind;
 use burgeon::sketch::{BranchDepth, LeafDepth, SketchSpec};
 use burgeon::skin::{PetalColor, SkinSpec};
 use clap::{Args, ValueEnum};
@@ -76,6 +77,10 @@ pub(crate) struct ReadingArgs {
     /// published, signed keeps left and right [default: drawn].
     #[arg(long, value_enum, value_name = "MODE")]
     pub(crate) leaf_depth: Option<LeafDepthWord>,
+    /// Take every plant of the drawing for one kind: flower, flowers, stem, tree, conifer, palm, bush, cactus, grass,
+    /// leaf, fruit, `house_plant` or vegetable [default: what explains the drawing best; the report lists up to three].
+    #[arg(long = "as", value_name = "KIND", value_parser = kind)]
+    pub(crate) read_as: Option<Kind>,
     /// Set what strokes are: a CSV or JSON file, see the end of this help.
     #[arg(long, value_name = "FILE")]
     pub(crate) classes: Option<PathBuf>,
@@ -105,6 +110,15 @@ pub(crate) struct ReadingArgs {
     /// All settings of the sketch maker as JSON (what is missing keeps its default); options above win over it.
     #[arg(long, value_name = "FILE.json")]
     pub(crate) spec: Option<PathBuf>,
+}
+
+/// A kind of plant by its word.
+fn kind(word: &str) -> Result<Kind, String> {
+    let known = || Kind::ALL.into_iter().filter(|k| *k != Kind::None);
+    known().find(|k| k.word() == word).ok_or_else(|| {
+        let words: Vec<&str> = known().map(Kind::word).collect();
+        format!("must be one of {}", words.join(", "))
+    })
 }
 
 /// How the plant is meshed and coloured.

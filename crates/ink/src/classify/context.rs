@@ -61,9 +61,14 @@ pub(super) fn features_again(
 /// What the strokes of a drawing measure on their own, kept for the next look at it: a stroke that is drawn leaves the
 /// others as they are, unless it widens the drawing. Changes no result.
 #[derive(Clone, Debug, Default)]
-pub struct KeptMeasures(Vec<(Vec<DVec2>, Shape, StrokeFeatures)>);
+pub struct KeptMeasures(Vec<(Vec<DVec2>, Shape, StrokeFeatures)>, BTreeMap<usize, Self>);
 
 impl KeptMeasures {
+    /// Those of one plant of several, which is known by its first stroke.
+    pub(super) fn of_plant(&mut self, rows: &[usize]) -> &mut Self {
+        self.1.entry(rows.first().copied().unwrap_or_default()).or_default()
+    }
+
     /// The stroke in this place, if it was there before.
     fn take(&mut self, i: usize, points: &[DVec2]) -> Option<(Shape, StrokeFeatures)> {
         let (_, shape, row) = self.0.get_mut(i).filter(|k| k.0 == points)?;

@@ -39,6 +39,9 @@ pub const LONE_LINE: &str = "lone-line";
 /// End gap over length of a stroke that is nearly straight: a half circle has 0.64.
 const LONE_GAP: f64 = 0.7;
 
+/// Applied here, too: what several plants stand on is their ground.
+pub const COMMON_GROUND: &str = "common-ground";
+
 /// The models in the repository.
 fn trained() -> Option<&'static StrokeModels> {
     static MODELS: OnceLock<Option<StrokeModels>> = OnceLock::new();
@@ -90,6 +93,9 @@ fn judge(
     kept: &mut KeptMeasures,
     run: &Run<'_>,
 ) -> Vec<Classified> {
+    if ink.is_several() {
+        return judge_each(models, ink, known, kept, run);
+    }
     let unknown = |i: usize| known.get(i).is_none_or(Option::is_none);
     let rows = context::features_again(ink, unknown, kept, run);
     let decide = |i: usize| {
@@ -104,6 +110,38 @@ fn judge(
         return vec![Classified { class: StrokeClass::Axis, confidence: 1.0, source, ..decide(0) }];
     }
     map_indexed(run.executor, rows.len(), |i| known.get(i).copied().flatten().unwrap_or_else(|| decide(i)))
+}
+
+/// Every plant of a drawing by itself: what stands beside it says nothing about its strokes.
+fn judge_each(
+    models: Option<&StrokeModels>,
+    ink: &Ink,
+    known: &[Option<Classified>],
+    kept: &mut KeptMeasures,
+    run: &Run<'_>,
+) -> Vec<Classified> {
+    if run.cancel.check().is_err() {
+        return vec![Classified::default(); ink.strokes.len()];
+    }
+    let ground = Classified {
+        class: StrokeClass::Ground,
+        confidence: 0.5,
+        source: Source::Rule(COMMON_GROUND),
+        shares: StrokeClass::ALL.map(|c| if c == StrokeClass::Ground { 0.5 } else { 0.0 }),
+    };
+    let mut found: Vec<Classified> =
+        (0..ink.strokes.len()).map(|i| known.get(i).copied().flatten().unwrap_or(ground)).collect();
+    for rows in &ink.subjects.plants {
+        let part = ink.part(rows);
+        let own: Vec<Option<Classified>> = rows.iter().map(|&i| known.get(i).copied().flatten()).collect();
+        let judged = judge(models, &part, &own, kept.of_plant(rows), run);
+        for (&row, class) in rows.iter().zip(judged) {
+            if let Some(slot) = found.get_mut(row) {
+                *slot = class;
+            }
+        }
+    }
+    found
 }
 
 #[cfg(test)]

@@ -7,17 +7,25 @@
 //! Numbers are in ink units (the drawing's diagonal is 1) or shares of something that the rule names. They were chosen by
 //! looking at drawings by the public; the named ones are shared by several tests or say what a line is.
 
+mod as_kind;
 mod grass;
 mod leaves;
 mod pots;
 mod trees;
+mod whole_flower;
+mod whole_tree;
 
 use geom::contains;
 use glam::DVec2;
-use ink::{InkStroke, LONE_LINE, StrokeClass, StrokeMode};
+use ink::{COMMON_GROUND, InkStroke, LONE_LINE, StrokeClass, StrokeMode};
 
 use crate::blade::nearest_on_ring;
 use crate::draft::Draft;
+
+pub(crate) use as_kind::take_for;
+
+/// The rule of the kind that a plant is taken for.
+pub const READ_AS: &str = "read-as";
 
 /// Something that the whole drawing says about the class of a stroke.
 #[derive(Clone, Copy, Debug)]
@@ -40,11 +48,20 @@ struct Findings {
     legs: Vec<(usize, [Vec<DVec2>; 2])>,
     /// Two of the lines are surely the sides of a trunk.
     trunk: bool,
+    /// Strokes whose class no later rule changes: it follows from the whole drawing.
+    settled: Vec<usize>,
+    /// Outlines that make up one crown.
+    united: Vec<usize>,
 }
 
 impl Findings {
     fn set(&mut self, stroke: usize, class: StrokeClass) {
         self.classes.push((stroke, class));
+    }
+
+    fn settle(&mut self, stroke: usize, class: StrokeClass) {
+        self.set(stroke, class);
+        self.settled.push(stroke);
     }
 }
 
@@ -73,6 +90,30 @@ pub const RULES: &[Rule] = &[
         1,
         |_| Findings::default(), // `ink::classify` applies it, because a preview keeps its class
         "A line by itself is a stem: crowns and trunks are recognised by what stands around them.",
+    ),
+    rule(
+        COMMON_GROUND,
+        ANY,
+        |_| Findings::default(), // `ink::classify` applies it, because it judges each plant by itself
+        "A low, flat line on which several plants stand is their ground.",
+    ),
+    rule(
+        READ_AS,
+        MANY,
+        |_| Findings::default(), // `read` applies it, because it compares whole readings
+        "What a stroke is follows from the kind of plant that explains the whole drawing best, or that was asked for.",
+    ),
+    rule(
+        "whole-flower",
+        MANY,
+        whole_flower::whole_flower,
+        "Outlines alike all round a ring, or one lobed outline round it, are petals round a disc.",
+    ),
+    rule(
+        "whole-tree",
+        FEW,
+        whole_tree::whole_tree,
+        "Something round over something narrow that stands is a crown on its trunk, however and in which order they are drawn.",
     ),
     rule(
         "lone-leaf",
@@ -140,6 +181,12 @@ pub const RULES: &[Rule] = &[
         trees::outline_goes_on,
         "A line that begins where the only outline of a body ends goes on with it.",
     ),
+    rule(
+        "line-is-no-fruit",
+        MANY,
+        trees::line_is_no_fruit,
+        "A line that encloses nothing is no fruit: along the foot of a crown it is the ground, elsewhere a stalk.",
+    ),
     rule("fruit-in-a-crown", MANY, trees::fruit_in_crown, "A small ring inside a crown is a fruit."),
     rule(
         "pot",
@@ -184,13 +231,20 @@ pub(crate) fn apply(draft: &mut Draft<'_>, off: &[&str]) {
     let count = draft.class.len();
     for rule in RULES.iter().filter(|r| count <= r.most_strokes && !off.contains(&r.name)) {
         let found = (rule.applies)(draft);
-        for (stroke, class) in found.classes {
-            draft.class[stroke] = class;
-            draft.rule[stroke] = Some(rule.name);
-        }
-        draft.legs.extend(found.legs.into_iter().map(|(stroke, legs)| (stroke, legs.into())));
-        draft.trunk |= found.trunk;
+        take(draft, found, rule.name);
     }
+}
+
+/// Puts into the draft what a rule found.
+fn take(draft: &mut Draft<'_>, found: Findings, name: &'static str) {
+    for (stroke, class) in found.classes {
+        draft.class[stroke] = class;
+        draft.rule[stroke] = Some(name);
+    }
+    draft.legs.extend(found.legs.into_iter().map(|(stroke, legs)| (stroke, legs.into())));
+    draft.trunk |= found.trunk;
+    found.settled.iter().for_each(|&k| draft.settled[k] = true);
+    draft.united.extend(found.united);
 }
 
 /// Ends farther apart than this share of the length: a line that is rather straight, as in [`ink::LONE_LINE`].
@@ -227,7 +281,7 @@ fn share_inside(points: &[DVec2], stride: usize, outline: &[DVec2]) -> f64 {
 
 /// A rule may change it: its class is not sure.
 fn unsure(draft: &Draft<'_>, k: usize) -> bool {
-    !draft.said[k].is_sure() && draft.ink.strokes[k].mode == StrokeMode::Parts
+    !draft.settled[k] && !draft.said[k].is_sure() && draft.ink.strokes[k].mode == StrokeMode::Parts
 }
 
 /// Highest point first, lowest point last.

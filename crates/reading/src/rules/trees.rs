@@ -26,6 +26,10 @@ const FEWEST_FRONDS: usize = 7;
 const IN_CROWN: f64 = 0.9;
 /// Of a ring, the shorter side of its box over the longer one at least.
 const ROUND: f64 = 0.6;
+/// Ends farther apart than this share of the length: a line, however shaky.
+const LINE: f64 = 0.6;
+/// As [`LINE`], of a stalk: a slice of a fruit is an arc.
+const STRAIGHT_LINE: f64 = 0.85;
 /// A fruit covers less than this share of its crown.
 const SMALL: f64 = 0.03;
 
@@ -330,6 +334,30 @@ pub(super) fn fruit_in_crown(draft: &Draft<'_>) -> Findings {
         let round = (hi.x - lo.x).min(hi.y - lo.y) > ROUND * (hi.x - lo.x).max(hi.y - lo.y);
         if openness(s) < CLOSED && round && signed_area(&hull) < SMALL * signed_area(crown) {
             found.set(k, Fruit);
+        }
+    }
+    found
+}
+
+/// A line that encloses nothing is no fruit: along the foot of a crown it is the ground, elsewhere a stalk.
+pub(super) fn line_is_no_fruit(draft: &Draft<'_>) -> Findings {
+    use StrokeClass::{Axis, Crown, Fruit, Ground};
+    let mut found = Findings::default();
+    let crowns: Vec<(DVec2, DVec2)> =
+        draft.of_class(Crown).into_iter().filter_map(|k| bounds(&draft.ink.strokes[k].points)).collect();
+    for k in draft.of_class(Fruit) {
+        let s = &draft.ink.strokes[k];
+        let Some((lo, hi)) = bounds(&s.points).filter(|_| unsure(draft, k) && openness(s) > LINE) else {
+            continue;
+        };
+        let flat = hi.y - lo.y < 0.3 * (hi.x - lo.x);
+        let foot = crowns
+            .iter()
+            .any(|(l, h)| lo.midpoint(hi).y < l.y + 0.2 * (h.y - l.y) && hi.x > l.x && lo.x < h.x);
+        if flat && foot {
+            found.set(k, Ground);
+        } else if openness(s) > STRAIGHT_LINE {
+            found.set(k, Axis);
         }
     }
     found

@@ -1,0 +1,203 @@
+//! How well each kind of plant explains a whole drawing: `ink + classes + first reading -> share of each kind`.
+//!
+//! A linear model over numbers of the whole drawing, with a softmax over the kinds. Its coefficients are data
+//! (`data/kinds.csv`), learnt by `cargo xtask train-kinds` from drawings of people and made ones of the part to learn
+//! from. `docs/strokes.md` says how, and how good it is.
+
+use std::sync::OnceLock;
+
+use base::ops;
+use geom::{contains, convex_hull, signed_area};
+use glam::DVec2;
+use ink::{Classified, Ink, StrokeClass};
+
+use crate::near::bounds;
+use crate::{Kind, Reading};
+
+/// Numbers of a drawing.
+pub(crate) const COUNT: usize = 1 + Kind::ALL.len() + 2 * StrokeClass::ALL.len() + SHAPE.len();
+/// Names of the numbers that say how the whole looks.
+const SHAPE: [&str; 20] = [
+    "strokes",
+    "wide",
+    "filled",
+    "ink",
+    "closed",
+    "largest",
+    "largest-high",
+    "largest-round",
+    "largest-full",
+    "held",
+    "low-ink",
+    "high-ink",
+    "low-wide",
+    "high-wide",
+    "middle-wide",
+    "upright-lines",
+    "level-lines",
+    "loops",
+    "feet",
+    "straight",
+];
+
+/// One interpretation of a plant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scored {
+    /// What it would be.
+    pub kind: Kind,
+    /// How well it explains the drawing, among all kinds: 0 to 1.
+    pub score: f64,
+}
+
+/// Names of the numbers of [`kind_features`], in their order.
+pub fn kind_feature_names() -> Vec<String> {
+    let built = Kind::ALL.iter().map(|k| format!("built-{}", k.word()));
+    let sums = StrokeClass::ALL.iter().map(|c| format!("sum-{}", c.word()));
+    let lengths = StrokeClass::ALL.iter().map(|c| format!("length-{}", c.word()));
+    let shape = SHAPE.iter().map(|s| (*s).to_owned());
+    core::iter::once("one".to_owned()).chain(built).chain(sums).chain(lengths).chain(shape).collect()
+}
+
+/// What is measured of one plant, each about 0 to 1; independent of the order and direction of strokes, of left and right
+/// and of the size of the sheet. Linear in points.
+pub fn kind_features(ink: &Ink, classes: &[Classified], first: &Reading) -> Vec<f64> {
+    let mut row = vec![1.0];
+    let built = Kind::of(first);
+    row.extend(Kind::ALL.iter().map(|&k| f64::from(u8::from(k == built))));
+    let total: f64 = ink.strokes.iter().map(|s| s.length).sum::<f64>().max(1e-9);
+    let share = |k: usize, class: StrokeClass| classes.get(k).map_or(0.0, |c| c.shares[class.place()]);
+    for class in StrokeClass::ALL {
+        let sum: f64 = (0..ink.strokes.len()).map(|k| share(k, class)).sum();
+        row.push(ops::ln(1.0 + sum) / 2.0);
+    }
+    for class in StrokeClass::ALL {
+        let sum: f64 = ink.strokes.iter().enumerate().map(|(k, s)| share(k, class) * s.length).sum();
+        row.push(sum / total);
+    }
+    row.extend(shape(ink, total));
+    debug_assert_eq!(row.len(), COUNT, "one number for each name");
+    row
+}
+
+/// How the whole looks.
+fn shape(ink: &Ink, total: f64) -> [f64; SHAPE.len()] {
+    let points = || ink.strokes.iter().flat_map(|s| s.points.iter().copied());
+    let all: Vec<DVec2> = points().collect();
+    let Some((lo, hi)) = bounds(&all) else { return [0.0; SHAPE.len()] };
+    let (wide, tall) = ((hi.x - lo.x).max(1e-6), (hi.y - lo.y).max(1e-6));
+    let count = all.len().max(1) as f64;
+    let hull = convex_hull(&all);
+    let hull_area = if hull.len() > 2 { signed_area(&hull) } else { 0.0 };
+    let open = |k: usize| {
+        let s = &ink.strokes[k];
+        s.points[0].distance(s.points[s.points.len() - 1]) / s.length.max(1e-9)
+    };
+    let n = ink.strokes.len();
+    let closed: Vec<usize> = (0..n).filter(|&k| open(k) < 0.25).collect();
+    let area_of = |k: usize| {
+        let hull = convex_hull(&ink.strokes[k].points);
+        if hull.len() > 2 { signed_area(&hull) } else { 0.0 }
+    };
+    let largest = (0..n).map(|k| (area_of(k), k)).max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
+    let (area, k) = largest.unwrap_or_default();
+    let ring = &ink.strokes[k].points;
+    let (l, h) = bounds(ring).unwrap_or_default();
+    let own = convex_hull(ring);
+    let inside = all.iter().filter(|p| own.len() > 2 && contains(&own, **p)).count() as f64 / count;
+    let full = geom::simple_outline(ring).map_or(0.0, |o| signed_area(&o)) / area.max(1e-9);
+    let part = |from: f64, to: f64| -> (f64, f64) {
+        let band: Vec<DVec2> =
+            points().filter(|p| p.y >= lo.y + from * tall && p.y <= lo.y + to * tall).collect();
+        let across = bounds(&band).map_or(0.0, |(a, b)| b.x - a.x);
+        (band.len() as f64 / count, across / wide)
+    };
+    let (low, middle, high) = (part(0.0, 0.2), part(0.4, 0.6), part(0.8, 1.0));
+    let lines: Vec<usize> = (0..n).filter(|&k| open(k) > 0.8).collect();
+    let run = |k: usize| {
+        let s = &ink.strokes[k].points;
+        (s[s.len() - 1] - s[0]).abs()
+    };
+    let length = |list: &[usize]| list.iter().map(|&k| ink.strokes[k].length).sum::<f64>() / total;
+    let upright: Vec<usize> = lines.iter().copied().filter(|&k| run(k).y > 2.0 * run(k).x).collect();
+    let level: Vec<usize> = lines.iter().copied().filter(|&k| run(k).x > 2.0 * run(k).y).collect();
+    let foot = |s: &ink::InkStroke| s.points.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+    let feet = ink.strokes.iter().filter(|s| foot(s) < lo.y + 0.1 * tall).count() as f64;
+    let log = |x: f64| ops::ln(1.0 + x) / 4.0;
+    [
+        log(n as f64),
+        wide / (wide + tall),
+        hull_area / (wide * tall),
+        log(total),
+        length(&closed),
+        area / hull_area.max(1e-9),
+        (l.midpoint(h).y - lo.y) / tall,
+        (h.x - l.x).min(h.y - l.y) / (h.x - l.x).max(h.y - l.y).max(1e-9),
+        full.min(1.0),
+        inside,
+        low.0,
+        high.0,
+        low.1,
+        high.1,
+        middle.1,
+        length(&upright),
+        length(&level),
+        log(closed.len() as f64),
+        log(feet),
+        length(&lines),
+    ]
+}
+
+/// The model: one row of coefficients for each kind.
+struct Model(Vec<(Kind, Vec<f64>)>);
+
+impl Model {
+    fn parse(text: &str) -> Option<Self> {
+        let mut lines = text.lines().filter(|l| !l.starts_with('#'));
+        let kinds: Option<Vec<Kind>> = lines.next()?.split(',').skip(1).map(Kind::from_word).collect();
+        let mut rows: Vec<(Kind, Vec<f64>)> = kinds?.into_iter().map(|k| (k, Vec::new())).collect();
+        for (line, name) in lines.zip(kind_feature_names()) {
+            let mut cells = line.split(',');
+            if cells.next()? != name {
+                return None;
+            }
+            for (row, cell) in rows.iter_mut().zip(cells) {
+                row.1.push(cell.parse().ok()?);
+            }
+        }
+        rows.iter().all(|r| r.1.len() == COUNT).then_some(Self(rows))
+    }
+}
+
+fn trained() -> Option<&'static Model> {
+    static MODEL: OnceLock<Option<Model>> = OnceLock::new();
+    MODEL.get_or_init(|| Model::parse(include_str!("../data/kinds.csv"))).as_ref()
+}
+
+/// Every kind with its share, the best first.
+pub(crate) fn scores(row: &[f64]) -> Vec<Scored> {
+    let Some(model) = trained() else { return Vec::new() };
+    let sums: Vec<f64> =
+        model.0.iter().map(|(_, c)| c.iter().zip(row).map(|(c, x)| c * x).sum::<f64>()).collect();
+    let most = sums.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let powers: Vec<f64> = sums.iter().map(|s| ops::exp(s - most)).collect();
+    let total: f64 = powers.iter().sum();
+    let mut found: Vec<Scored> =
+        model.0.iter().zip(powers).map(|((kind, _), p)| Scored { kind: *kind, score: p / total }).collect();
+    base::sort_by(&mut found, |a, b| b.score.total_cmp(&a.score).then(a.kind.cmp(&b.kind)));
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_committed_model_belongs_to_the_features() {
+        let model = trained().expect("data/kinds.csv is of other features: run `cargo xtask train-kinds`");
+        assert_eq!(kind_feature_names().len(), COUNT);
+        assert!(model.0.iter().flat_map(|r| &r.1).all(|c| c.is_finite()));
+        let row = kind_features(&Ink::default(), &[], &Reading::default());
+        let sum: f64 = scores(&row).iter().map(|s| s.score).sum();
+        assert!((sum - 1.0).abs() < 1e-9);
+    }
+}

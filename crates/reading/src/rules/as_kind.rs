@@ -1,0 +1,263 @@
+//! A drawing taken for one kind of plant: what each stroke is then.
+//!
+//! The kind decides, not the classifier: it came from the whole drawing, or the user asked for it. Classes that the user
+//! set stay.
+
+use geom::{contains, convex_hull, signed_area};
+use glam::DVec2;
+use ink::StrokeClass;
+
+use super::{openness, share_inside, unsure, whole_flower, whole_tree};
+use crate::corolla::dips;
+use crate::draft::Draft;
+use crate::near::bounds;
+use crate::{Kind, READ_AS};
+
+/// Ends nearer than this share of the length: an outline.
+const SHUT: f64 = 0.35;
+/// Feet within this share of the height stand on the ground.
+const FOOT: f64 = 0.15;
+
+struct Part {
+    stroke: usize,
+    lo: DVec2,
+    hi: DVec2,
+    area: f64,
+    hull: Vec<DVec2>,
+    open: f64,
+}
+
+impl Part {
+    fn wide(&self) -> f64 {
+        self.hi.x - self.lo.x
+    }
+
+    fn tall(&self) -> f64 {
+        self.hi.y - self.lo.y
+    }
+
+    fn is_line(&self) -> bool {
+        self.open > 0.7
+    }
+
+    fn is_level(&self) -> bool {
+        self.is_line() && self.tall() < 0.25 * self.wide()
+    }
+}
+
+/// Gives the strokes the classes that they have in a plant of a kind.
+pub(crate) fn take_for(draft: &mut Draft<'_>, kind: Kind) {
+    let parts: Vec<Part> = (0..draft.class.len()).filter_map(|k| part(draft, k)).collect();
+    let Some((low, high)) = parts.iter().map(|p| (p.lo, p.hi)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+    else {
+        return;
+    };
+    let box_ = (low, high);
+    let classes = match kind {
+        Kind::Tree | Kind::Conifer | Kind::Bush => {
+            let whole = whole_tree::whole_tree(draft);
+            if kind != Kind::Bush && !whole.settled.is_empty() {
+                super::take(draft, whole, READ_AS);
+                return;
+            }
+            tree(draft, &parts, box_, kind)
+        }
+        Kind::Palm => palm(draft, &parts, box_),
+        Kind::Flower | Kind::Flowers => {
+            let whole = whole_flower::whole_flower(draft);
+            if !whole.settled.is_empty() {
+                super::take(draft, whole, READ_AS);
+            }
+            herb(draft, &parts, true)
+        }
+        Kind::Stem => herb(draft, &parts, false),
+        Kind::Cactus => cactus(draft, &parts, box_),
+        Kind::Grass => grass(draft, &parts),
+        Kind::Leaf => leaf(draft, &parts),
+        Kind::Fruit | Kind::Vegetable => fruit(draft, &parts),
+        Kind::HousePlant => pot(&parts, box_),
+        Kind::None => Vec::new(),
+    };
+    for (stroke, class) in classes {
+        if unsure(draft, stroke) {
+            draft.class[stroke] = class;
+            draft.rule[stroke] = Some(READ_AS);
+            draft.settled[stroke] = true;
+        }
+    }
+}
+
+fn part(draft: &Draft<'_>, stroke: usize) -> Option<Part> {
+    let s = &draft.ink.strokes[stroke];
+    let (lo, hi) = bounds(&s.points)?;
+    let hull = convex_hull(&s.points);
+    let area = if hull.len() > 2 { signed_area(&hull) } else { 0.0 };
+    Some(Part { stroke, lo, hi, area, hull, open: openness(s) })
+}
+
+type Classes = Vec<(usize, StrokeClass)>;
+
+/// What stands and is narrow is wood.
+fn is_wood(p: &Part, (low, high): (DVec2, DVec2)) -> bool {
+    let tall = high.y - low.y;
+    p.lo.y < low.y + FOOT * tall && p.wide() < 1.2 * p.tall() && p.wide() < 0.55 * (high.x - low.x)
+}
+
+/// A line is an axis; two lines, or anything that has an inside, are a trunk.
+fn wood(parts: &[&Part]) -> Classes {
+    let lines = parts.iter().filter(|p| p.is_line()).count();
+    parts
+        .iter()
+        .map(|p| {
+            let outline = !p.is_line() || lines == 2;
+            (p.stroke, if outline { StrokeClass::TrunkOutline } else { StrokeClass::Axis })
+        })
+        .collect()
+}
+
+fn tree(draft: &Draft<'_>, parts: &[Part], all: (DVec2, DVec2), kind: Kind) -> Classes {
+    let trunk: Vec<&Part> = parts.iter().filter(|p| kind != Kind::Bush && is_wood(p, all)).collect();
+    let green: Vec<&Part> = parts.iter().filter(|p| kind == Kind::Bush || !is_wood(p, all)).collect();
+    let largest = green.iter().map(|p| p.area).fold(0.0, f64::max);
+    let mut found = wood(&trunk);
+    let main: Vec<&&Part> = green.iter().filter(|p| p.area > 0.12 * largest && !p.is_level()).collect();
+    let around: Vec<DVec2> = main.iter().flat_map(|p| p.hull.iter().copied()).collect();
+    let hull = convex_hull(&around);
+    for p in &green {
+        let inside = share_inside(&draft.ink.strokes[p.stroke].points, 3, &hull) > 0.8;
+        let class = if p.is_level() && p.lo.y < all.0.y + FOOT {
+            StrokeClass::Ground
+        } else if p.area > 0.12 * largest {
+            StrokeClass::Crown
+        } else if inside && p.open < SHUT && p.area < 0.05 * largest {
+            StrokeClass::Fruit
+        } else if inside && p.is_line() {
+            StrokeClass::Axis
+        } else {
+            StrokeClass::Scribble
+        };
+        found.push((p.stroke, class));
+    }
+    found
+}
+
+fn palm(draft: &Draft<'_>, parts: &[Part], all: (DVec2, DVec2)) -> Classes {
+    let (trunk, fronds): (Vec<&Part>, Vec<&Part>) = parts.iter().partition(|p| is_wood(p, all));
+    let mut found = wood(&trunk);
+    for p in fronds {
+        let points = &draft.ink.strokes[p.stroke].points;
+        let middle = p.lo.midpoint(p.hi);
+        let away: Vec<f64> = points.iter().map(|q| q.distance(middle)).collect();
+        let reach = away.iter().copied().fold(0.0, f64::max);
+        let class = if p.is_level() && p.hi.y < all.0.y + 0.2 {
+            StrokeClass::Ground
+        } else if dips(&away, 0.2 * reach).len() > 4 {
+            StrokeClass::Corolla
+        } else if p.open < SHUT {
+            StrokeClass::Blade
+        } else {
+            StrokeClass::Axis
+        };
+        found.push((p.stroke, class));
+    }
+    found
+}
+
+/// Stems and blades.
+fn herb(draft: &Draft<'_>, parts: &[Part], flower: bool) -> Classes {
+    use StrokeClass::{Axis, Blade, Corolla, Crown, Fruit, TrunkOutline, Vein};
+    let class = |p: &Part| match draft.class[p.stroke] {
+        TrunkOutline | Vein if p.open > SHUT => Some(Axis),
+        Crown if flower => Some(Corolla),
+        TrunkOutline | Crown | Fruit => Some(Blade),
+        Corolla if !flower => Some(Blade),
+        _ => None,
+    };
+    parts.iter().filter_map(|p| Some((p.stroke, class(p)?))).collect()
+}
+
+fn cactus(draft: &Draft<'_>, parts: &[Part], (low, high): (DVec2, DVec2)) -> Classes {
+    let size = low.distance(high);
+    let class = |p: &Part| {
+        let pot = draft.said[p.stroke].shares[StrokeClass::Pot.place()] > 0.3;
+        if pot || (p.is_level() && p.lo.y < low.y + 0.1) {
+            return None;
+        }
+        let large = p.lo.distance(p.hi) > 0.25 * size;
+        Some(if large { StrokeClass::TrunkOutline } else { StrokeClass::Axis })
+    };
+    parts.iter().filter_map(|p| Some((p.stroke, class(p)?))).collect()
+}
+
+fn grass(draft: &Draft<'_>, parts: &[Part]) -> Classes {
+    let class = |p: &Part| {
+        let s = &draft.ink.strokes[p.stroke];
+        let heights: Vec<f64> = s.points.iter().map(|q| q.y).collect();
+        if p.is_level() && dips(&heights, 0.3 * p.tall()).len() < 4 {
+            StrokeClass::Ground
+        } else if dips(&heights, 0.3 * p.tall()).len() >= 4 {
+            StrokeClass::Corolla
+        } else if p.open < SHUT {
+            StrokeClass::Blade
+        } else {
+            StrokeClass::Axis
+        }
+    };
+    parts.iter().map(|p| (p.stroke, class(p))).collect()
+}
+
+fn leaf(draft: &Draft<'_>, parts: &[Part]) -> Classes {
+    let largest = parts.iter().map(|p| p.area).fold(0.0, f64::max);
+    let Some(blade) = parts.iter().find(|p| p.area >= largest) else { return Vec::new() };
+    let class = |p: &Part| {
+        if p.stroke == blade.stroke {
+            StrokeClass::Blade
+        } else if share_inside(&draft.ink.strokes[p.stroke].points, 3, &blade.hull) > 0.6 {
+            StrokeClass::Vein
+        } else if p.area > 0.4 * largest {
+            StrokeClass::Blade
+        } else {
+            StrokeClass::Axis
+        }
+    };
+    parts.iter().map(|p| (p.stroke, class(p))).collect()
+}
+
+/// The largest outline is the body, and so are others as large beside it; what lies in it is its skin.
+fn fruit(draft: &Draft<'_>, parts: &[Part]) -> Classes {
+    let largest = parts.iter().map(|p| p.area).fold(0.0, f64::max);
+    let bodies: Vec<&Part> =
+        parts.iter().filter(|p| p.area > 0.25 * largest && (p.open < 0.5 || p.area >= largest)).collect();
+    let body = |p: &Part| bodies.iter().any(|b| b.stroke == p.stroke);
+    let within = |p: &Part| {
+        bodies.iter().any(|b| {
+            b.stroke != p.stroke
+                && b.area > p.area
+                && share_inside(&draft.ink.strokes[p.stroke].points, 3, &b.hull) > 0.7
+                && contains(&b.hull, p.lo.midpoint(p.hi))
+        })
+    };
+    let class = |p: &Part| {
+        if within(p) {
+            StrokeClass::Other
+        } else if body(p) {
+            StrokeClass::Fruit
+        } else if p.open < SHUT {
+            StrokeClass::Blade
+        } else {
+            StrokeClass::Axis
+        }
+    };
+    parts.iter().map(|p| (p.stroke, class(p))).collect()
+}
+
+/// The lowest thing that is wide and has an inside.
+fn pot(parts: &[Part], (low, high): (DVec2, DVec2)) -> Classes {
+    let tall = high.y - low.y;
+    let found = parts
+        .iter()
+        .filter(|p| p.lo.y < low.y + 0.06 * tall && p.hi.y < low.y + 0.65 * tall && p.wide() > 0.4 * p.tall())
+        .filter(|p| p.area > 0.4 * p.wide() * p.tall())
+        .max_by(|a, b| a.area.total_cmp(&b.area));
+    found.map(|p| (p.stroke, StrokeClass::Pot)).into_iter().collect()
+}

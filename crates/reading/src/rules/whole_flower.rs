@@ -1,0 +1,174 @@
+//! The rule about a whole flower: outlines all round a ring, or one lobed outline round it.
+//!
+//! As in the rule about a whole tree, only shapes and places count.
+
+use base::ops;
+use geom::{contains, convex_hull, signed_area, simple_outline};
+use glam::DVec2;
+use ink::StrokeClass;
+
+use super::{Findings, openness, unsure};
+use crate::corolla::dips;
+use crate::draft::Draft;
+use crate::near::bounds;
+
+/// Petals round a disc at least.
+const FEWEST: usize = 4;
+/// Between two neighbouring petals at most this angle, radians.
+const WIDEST: f64 = 2.2;
+/// The pen meant to close an outline whose ends are nearer than this share of its length.
+const SHUT: f64 = 0.24;
+/// More outlines are no flower in a few strokes: each is compared with each.
+const MOST: usize = 80;
+
+struct Loop {
+    stroke: usize,
+    hull: Vec<DVec2>,
+    middle: DVec2,
+    /// Radius of a circle of its area.
+    radius: f64,
+    round: bool,
+}
+
+/// Petals round a disc, each an outline or all in one go.
+pub(super) fn whole_flower(draft: &Draft<'_>) -> Findings {
+    let mut found = Findings::default();
+    let loops: Vec<Loop> =
+        (0..draft.class.len()).filter(|&k| unsure(draft, k)).filter_map(|k| loop_of(draft, k)).collect();
+    if loops.len() > MOST {
+        return found;
+    }
+    let mut taken = vec![false; loops.len()];
+    let mut flowers = 0;
+    while let Some((disc, petals)) = best(draft, &loops, &taken) {
+        for &p in &petals {
+            taken[p] = true;
+            found.settle(loops[p].stroke, StrokeClass::Blade);
+        }
+        taken[disc] = true;
+        found.settle(loops[disc].stroke, StrokeClass::Disc);
+        flowers += 1;
+    }
+    for (corolla, disc) in lobed(draft, &loops, &taken) {
+        (taken[corolla], taken[disc]) = (true, true);
+        found.settle(loops[corolla].stroke, StrokeClass::Corolla);
+        found.settle(loops[disc].stroke, StrokeClass::Disc);
+        flowers += 1;
+    }
+    if flowers == 0 {
+        return found;
+    }
+    // What bears them is a stem, and what the stem bears are leaves.
+    let sides: Vec<usize> = (0..draft.class.len())
+        .filter(|&k| draft.class[k] == StrokeClass::TrunkOutline && unsure(draft, k))
+        .filter(|&k| openness(&draft.ink.strokes[k]) > 0.7)
+        .collect();
+    if let [stem] = sides[..] {
+        found.settle(stem, StrokeClass::Axis);
+    }
+    found
+}
+
+fn loop_of(draft: &Draft<'_>, k: usize) -> Option<Loop> {
+    let s = &draft.ink.strokes[k];
+    if openness(s) > SHUT {
+        return None;
+    }
+    let hull = convex_hull(&s.points);
+    let (lo, hi) = bounds(&s.points).filter(|_| hull.len() > 2)?;
+    let area = signed_area(&hull);
+    // Not a scribble.
+    if area < 1e-5 || s.length * s.length > 60.0 * area {
+        return None;
+    }
+    let (wide, tall) = (hi.x - lo.x, hi.y - lo.y);
+    Some(Loop {
+        stroke: k,
+        middle: geom::centroid(&hull),
+        radius: (area / ops::PI).sqrt(),
+        round: wide.min(tall) > 0.6 * wide.max(tall),
+        hull,
+    })
+}
+
+/// The free ring with the most petals round it.
+fn best(draft: &Draft<'_>, loops: &[Loop], taken: &[bool]) -> Option<(usize, Vec<usize>)> {
+    let free: Vec<usize> = (0..loops.len()).filter(|&i| !taken[i]).collect();
+    let rings = free.iter().copied().filter(|&d| loops[d].round);
+    let found = rings.filter_map(|d| petals_of(draft, loops, &free, d).map(|p| (d, p)));
+    found.max_by(|a, b| {
+        let far = |d: usize| loops[d].radius;
+        a.1.len().cmp(&b.1.len()).then(far(b.0).total_cmp(&far(a.0)))
+    })
+}
+
+/// What stands round a ring, if it is petals.
+fn petals_of(draft: &Draft<'_>, loops: &[Loop], free: &[usize], d: usize) -> Option<Vec<usize>> {
+    let disc = &loops[d];
+    let near = |l: &Loop| {
+        let points = &draft.ink.strokes[l.stroke].points;
+        points.iter().map(|p| p.distance(disc.middle)).fold(f64::INFINITY, f64::min)
+    };
+    let petals: Vec<usize> = free
+        .iter()
+        .copied()
+        .filter(|&i| i != d && !contains(&loops[i].hull, disc.middle))
+        .filter(|&i| {
+            let l = &loops[i];
+            let (way, gap) = (l.middle.distance(disc.middle), near(l));
+            way > 0.8 * disc.radius && gap < 1.5 * disc.radius + 0.1 * l.radius && gap > 0.2 * disc.radius
+        })
+        .collect();
+    if petals.len() < FEWEST {
+        return None;
+    }
+    let mut sizes: Vec<f64> = petals.iter().map(|&i| loops[i].radius).collect();
+    sizes.sort_by(f64::total_cmp);
+    let usual = sizes[sizes.len() / 2];
+    let alike = |i: &usize| loops[*i].radius > 0.5 * usual && loops[*i].radius < 2.0 * usual;
+    let petals: Vec<usize> = petals.into_iter().filter(alike).collect();
+    let mut angles: Vec<f64> =
+        petals.iter().map(|&i| loops[i].middle - disc.middle).map(|v| ops::atan2(v.y, v.x)).collect();
+    angles.sort_by(f64::total_cmp);
+    let around = angles.first().zip(angles.last()).map_or(ops::TAU, |(a, b)| a + ops::TAU - b);
+    let widest = angles.windows(2).map(|w| w[1] - w[0]).fold(around, f64::max);
+    // A disc is no larger than its petals are long; berries have berries behind them.
+    let behind = free.iter().any(|&i| {
+        let l = &loops[i];
+        let touches = |p: &usize| loops[*p].middle.distance(l.middle) < 1.15 * (loops[*p].radius + l.radius);
+        let beyond = petals.iter().any(|p| {
+            touches(p)
+                && l.middle.distance(disc.middle) > loops[*p].middle.distance(disc.middle) + 0.5 * usual
+        });
+        i != d
+            && !petals.contains(&i)
+            && l.radius > 0.6 * usual
+            && l.radius < 1.6 * usual
+            && l.round
+            && beyond
+    });
+    let fits = petals.len() >= FEWEST && widest < WIDEST && disc.radius < 2.5 * usual && !behind;
+    fits.then_some(petals)
+}
+
+/// One lobed outline, with one ring in its middle.
+fn lobed(draft: &Draft<'_>, loops: &[Loop], taken: &[bool]) -> Vec<(usize, usize)> {
+    let mut found = Vec::new();
+    for (i, outer) in loops.iter().enumerate().filter(|(i, _)| !taken[*i]) {
+        let inside: Vec<usize> = (0..loops.len())
+            .filter(|&j| j != i && contains(&outer.hull, loops[j].middle) && loops[j].radius < outer.radius)
+            .collect();
+        let [d] = inside[..] else { continue };
+        let disc = &loops[d];
+        let central = disc.middle.distance(outer.middle) < 0.25 * outer.radius;
+        let sized = disc.radius > 0.1 * outer.radius && disc.radius < 0.7 * outer.radius;
+        let points = &draft.ink.strokes[outer.stroke].points;
+        let away: Vec<f64> = points.iter().map(|q| q.distance(disc.middle)).collect();
+        let reach = away.iter().copied().fold(0.0, f64::max);
+        let lobes = dips(&away, 0.12 * reach).len();
+        if central && sized && disc.round && lobes > FEWEST && simple_outline(points).is_some() {
+            found.push((i, d));
+        }
+    }
+    found
+}

@@ -1,0 +1,288 @@
+//! The rule about a whole tree: something round over something narrow that stands.
+//!
+//! It looks at shapes and places only, so neither the order of drawing nor what the classifier says of one stroke decides.
+
+use geom::{contains, convex_hull, crossing_points, signed_area};
+use glam::DVec2;
+use ink::StrokeClass;
+
+use super::{Findings, openness, outside, share_inside, unsure};
+use crate::corolla::dips;
+use crate::draft::Draft;
+use crate::near::bounds;
+
+/// A trunk is narrower than this share of its crown.
+const NARROW: f64 = 0.6;
+/// At least this share of the tree's height is bare trunk.
+const BARE: f64 = 0.1;
+/// A trunk's top is no farther from its crown than this.
+const REACH: f64 = 0.08;
+/// Feet within this share of the height of the lowest point stand on the ground.
+const FOOT: f64 = 0.12;
+/// The pen meant to close an outline whose ends are nearer than this share of its length.
+const SHUT: f64 = 0.24;
+/// A crown drawn as an outline fills this share of its hull.
+const FULL: f64 = 0.6;
+/// Crossings of a line at least, all over the place, before it is a scribble.
+const TANGLED: usize = 8;
+/// A scribble is this many times as long as the hull around it.
+const LONG: f64 = 1.9;
+
+struct Part {
+    stroke: usize,
+    lo: DVec2,
+    hi: DVec2,
+    hull: Vec<DVec2>,
+    open: f64,
+}
+
+impl Part {
+    fn width(&self) -> f64 {
+        self.hi.x - self.lo.x
+    }
+
+    fn height(&self) -> f64 {
+        self.hi.y - self.lo.y
+    }
+
+    fn area(&self) -> f64 {
+        if self.hull.len() > 2 { signed_area(&self.hull) } else { 0.0 }
+    }
+
+    fn middle(&self) -> DVec2 {
+        self.lo.midpoint(self.hi)
+    }
+}
+
+/// How a trunk was drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Wood {
+    Line,
+    TwoLines,
+    Outline,
+}
+
+/// One crown over one trunk, each drawn in any way and order.
+pub(super) fn whole_tree(draft: &Draft<'_>) -> Findings {
+    let mut found = Findings::default();
+    let all: Vec<usize> = (0..draft.class.len()).collect();
+    if !all.iter().all(|&k| unsure(draft, k)) {
+        return found;
+    }
+    let parts: Vec<Part> = all
+        .iter()
+        .filter_map(|&k| {
+            let s = &draft.ink.strokes[k];
+            let (lo, hi) = bounds(&s.points)?;
+            Some(Part { stroke: k, lo, hi, hull: convex_hull(&s.points), open: openness(s) })
+        })
+        .collect();
+    // The line of the ground is neither.
+    let (ground, parts): (Vec<Part>, Vec<Part>) = parts
+        .into_iter()
+        .partition(|p| p.open > 0.6 && p.height() < 0.2 * p.width() && p.hi.y < 0.3 && p.width() > 0.15);
+    let Some((low, high)) = parts.iter().map(|p| (p.lo, p.hi)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+    else {
+        return found;
+    };
+    let tall = high.y - low.y;
+    let stands = |p: &Part| p.lo.y < low.y + FOOT * tall && p.width() < 1.2 * p.height();
+    let (wood, green): (Vec<Part>, Vec<Part>) = parts.into_iter().partition(stands);
+    let Some(kind) = trunk(draft, &wood) else { return found };
+    let Some(crown) = crown(draft, &green, kind) else { return found };
+    let wood_box = wood.iter().map(|p| (p.lo, p.hi)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+    let (Some((foot, top)), Some((lo, hi))) = (wood_box, bounds(&crown.hull)) else { return found };
+    let (wide, height) = (hi.x - lo.x, hi.y - lo.y);
+    let tip = DVec2::new(foot.midpoint(top).x, top.y);
+    let fits = top.x - foot.x < NARROW * wide
+        && lo.y - foot.y > BARE * tall
+        && height > 0.2 * tall
+        && outside(&crown.hull, tip) < REACH
+        && top.y < lo.y + 0.75 * height
+        && (tip.x - lo.midpoint(hi).x).abs() < 0.4 * wide
+        // A head that is small for its stalk is a flower's or a fruit's.
+        && wide > 0.22 * tall;
+    if !fits || (kind == Wood::Line && leaf_on_a_stalk(draft, &crown, &wood[0], (lo, hi))) {
+        return found;
+    }
+    for p in &wood {
+        found
+            .settle(p.stroke, if kind == Wood::Line { StrokeClass::Axis } else { StrokeClass::TrunkOutline });
+    }
+    for &k in &crown.strokes {
+        found.settle(k, StrokeClass::Crown);
+    }
+    for p in &ground {
+        found.settle(p.stroke, StrokeClass::Ground);
+    }
+    found.trunk = kind == Wood::TwoLines;
+    if crown.strokes.len() > 1 {
+        found.united = crown.strokes;
+    }
+    found
+}
+
+/// What stands is one trunk: a line, two lines side by side, or one outline that is higher than wide.
+fn trunk(draft: &Draft<'_>, wood: &[Part]) -> Option<Wood> {
+    let line = |p: &Part| p.open > 0.75 && p.width() < 0.45 * p.height();
+    match wood {
+        [one] if line(one) => Some(Wood::Line),
+        [one] => {
+            let s = &draft.ink.strokes[one.stroke];
+            let (a, b) = (s.points[0], s.points[s.points.len() - 1]);
+            // Closed, open above or open below; not open to one side.
+            let level = (a.y - b.y).abs() < 0.35 * one.height();
+            let narrow = one.width() < 0.8 * one.height() && one.area() > 0.55 * one.width() * one.height();
+            (narrow && (one.open < SHUT || level)).then_some(Wood::Outline)
+        }
+        [a, b] if line(a) && line(b) => {
+            let alike = a.height().min(b.height()) > 0.5 * a.height().max(b.height());
+            let apart = (a.middle().x - b.middle().x).abs();
+            (alike && apart > 0.015 && apart < 1.1 * a.height().min(b.height())).then_some(Wood::TwoLines)
+        }
+        _ => None,
+    }
+}
+
+/// A crown: its strokes, and the hull around them.
+struct Green {
+    strokes: Vec<usize>,
+    hull: Vec<DVec2>,
+    /// Lines and rings inside it.
+    inner: Vec<usize>,
+    scribble: bool,
+}
+
+fn crown(draft: &Draft<'_>, green: &[Part], wood: Wood) -> Option<Green> {
+    let largest = green.iter().map(Part::area).fold(0.0, f64::max);
+    let (main, small): (Vec<&Part>, Vec<&Part>) = green.iter().partition(|p| p.area() > 0.2 * largest);
+    let points: Vec<DVec2> = main.iter().flat_map(|p| p.hull.iter().copied()).collect();
+    let hull = convex_hull(&points);
+    if hull.len() < 3 || largest < 0.01 {
+        return None;
+    }
+    // Everything else lies in it.
+    let stray = |p: &&Part| share_inside(&draft.ink.strokes[p.stroke].points, 3, &hull) < 0.8;
+    if small.iter().any(stray) {
+        return None;
+    }
+    let (lo, hi) = bounds(&hull)?;
+    let (wide, tall) = (hi.x - lo.x, hi.y - lo.y);
+    if wide < 0.4 * tall || tall < 0.25 * wide {
+        return None;
+    }
+    let rings: Vec<&&Part> = small.iter().filter(|p| p.open < SHUT && p.area() > 1e-4).collect();
+    // One ring in the very middle is the disc of a flower.
+    let centre = geom::centroid(&hull);
+    let central = |p: &&&Part| p.middle().distance(centre) < 0.15 * wide.max(tall);
+    if rings.len() < 3 && rings.iter().any(central) {
+        return None;
+    }
+    let inner: Vec<usize> = small.iter().map(|p| p.stroke).collect();
+    let strokes: Vec<usize> = main.iter().map(|p| p.stroke).collect();
+    let scribble = match &main[..] {
+        [one] if one.open < SHUT && outlined(draft, one) => {
+            // Petals in one go stand far out, with deep hollows between them.
+            if petals(draft, one, wood) {
+                return None;
+            }
+            false
+        }
+        [one] if tangled(draft, one) => true,
+        [_] => return None,
+        lobes => {
+            if !lobes_of_a_crown(draft, lobes, &hull) {
+                return None;
+            }
+            false
+        }
+    };
+    Some(Green { strokes, hull, inner, scribble })
+}
+
+/// One outline that fills its hull.
+fn outlined(draft: &Draft<'_>, p: &Part) -> bool {
+    let points = &draft.ink.strokes[p.stroke].points;
+    geom::simple_outline(points).is_some_and(|o| signed_area(&o) > FULL * p.area())
+        && draft.ink.strokes[p.stroke].length < LONG * perimeter(&p.hull)
+}
+
+fn perimeter(hull: &[DVec2]) -> f64 {
+    let last = hull.last().zip(hull.first()).map_or(0.0, |(a, b)| a.distance(*b));
+    geom::polyline_length(hull) + last
+}
+
+/// Few deep, even hollows over a single line: petals.
+fn petals(draft: &Draft<'_>, p: &Part, wood: Wood) -> bool {
+    let points = &draft.ink.strokes[p.stroke].points;
+    let centre = geom::centroid(&p.hull);
+    let away: Vec<f64> = points.iter().map(|q| q.distance(centre)).collect();
+    let reach = away.iter().copied().fold(0.0, f64::max);
+    let cuts = dips(&away, 0.27 * reach).len();
+    wood == Wood::Line && cuts >= 4
+}
+
+/// A line round and round all over the place.
+fn tangled(draft: &Draft<'_>, p: &Part) -> bool {
+    let s = &draft.ink.strokes[p.stroke];
+    if s.length < LONG * perimeter(&p.hull) {
+        return false;
+    }
+    let crossings = crossing_points(&s.points, 400);
+    let middle = p.middle();
+    let wide = crossings.iter().filter(|q| q.distance(middle) > 0.12 * p.lo.distance(p.hi)).count();
+    let sideways: Vec<f64> = s.points.iter().map(|q| q.x).collect();
+    let to_and_fro = dips(&sideways, 0.4 * p.width()).len() >= 6;
+    (crossings.len() > TANGLED || to_and_fro) && 2 * wide >= crossings.len()
+}
+
+/// Several round outlines that overlap and make up one crown, rather than petals round a middle.
+fn lobes_of_a_crown(draft: &Draft<'_>, lobes: &[&Part], hull: &[DVec2]) -> bool {
+    let round = |p: &&&Part| {
+        p.open < 0.5 && p.width().min(p.height()) > 0.5 * p.width().max(p.height()) && p.hull.len() > 2
+    };
+    if !lobes.iter().all(|p| round(&p)) || lobes.len() > 9 {
+        return false;
+    }
+    let touches = |a: &Part, b: &Part| {
+        let points = &draft.ink.strokes[a.stroke].points;
+        points.iter().step_by(3).any(|&q| contains(&b.hull, q) || outside(&b.hull, q) < 0.02)
+    };
+    let mut joined = vec![false; lobes.len()];
+    joined[0] = true;
+    for _ in 0..lobes.len() {
+        for i in 0..lobes.len() {
+            if !joined[i] && (0..lobes.len()).any(|j| joined[j] && touches(lobes[i], lobes[j])) {
+                joined[i] = true;
+            }
+        }
+    }
+    if !joined.iter().all(|j| *j) {
+        return false;
+    }
+    // Petals stand round a middle that none of them covers, alike and alike far from it.
+    let centre = geom::centroid(hull);
+    let covered = lobes.iter().filter(|p| contains(&p.hull, centre)).count();
+    let far: Vec<f64> = lobes.iter().map(|p| p.middle().distance(centre)).collect();
+    let (near, most) = far.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), &d| (a.min(d), b.max(d)));
+    lobes.len() < 4 || covered > 0 || near < 0.6 * most
+}
+
+/// An outline on a single line is a leaf if it is long or pointed, or if the line runs on through it.
+fn leaf_on_a_stalk(draft: &Draft<'_>, crown: &Green, line: &Part, (lo, hi): (DVec2, DVec2)) -> bool {
+    if crown.scribble || crown.strokes.len() > 1 {
+        return false;
+    }
+    let (wide, tall) = (hi.x - lo.x, hi.y - lo.y);
+    let points = &draft.ink.strokes[crown.strokes[0]].points;
+    let centre = geom::centroid(&crown.hull);
+    let away: Vec<f64> = points.iter().map(|q| q.distance(centre)).collect();
+    let reach = away.iter().copied().fold(0.0, f64::max);
+    let cloudy = dips(&away, 0.04 * reach).len() >= 7;
+    let through = line.hi.y > lo.y + 0.5 * tall;
+    let veined = crown.inner.iter().any(|&k| {
+        let s = &draft.ink.strokes[k];
+        openness(s) > 0.8 && s.length > 0.4 * tall
+    });
+    (!cloudy && (through || veined || tall > 1.45 * wide)) || (through && veined)
+}

@@ -1,0 +1,461 @@
+//! `cargo xtask read-drawings`: how drawings of people, and made ones, are read: by kind of plant and by number.
+//!
+//! What is counted is what was built of a drawing ([`Kind::of`]), never what a classifier says of itself. Drawings are
+//! told apart in three parts: one to learn from, one to choose by, and one that is looked at once, at the end.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use base::{Draw, Report, Run, Seed};
+use glam::DVec2;
+use ink::Drawing;
+use reading::{Kind, OrganWord, Reading};
+use serde_json::{Value, json};
+
+use crate::contact_sheet::{self, Cell, Frame};
+use crate::made_drawings::{self, side_by_side};
+use crate::quickdraw::{drawing_of, json_lines, text_of};
+use crate::shell::{Outcome, built_burgeon, burgeon, command, repository, say};
+
+const USAGE: &str = "usage: cargo xtask read-drawings [SKETCHES FOLDER] [--part train|choose] [--sheets | --pictures] [--test]";
+
+/// Sets of real drawings side by side.
+const SIDE_BY_SIDE: u64 = 60;
+
+/// A part of the drawings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Part {
+    Train,
+    Choose,
+    Test,
+}
+
+impl Part {
+    /// The part of a drawing: by its key, or by the person who drew it.
+    fn of(line: &Value) -> Option<Self> {
+        if let Some(person) = line.get("person").and_then(Value::as_u64) {
+            return Some(if person.is_multiple_of(2) { Self::Choose } else { Self::Test });
+        }
+        match text_of(line, "key_id").parse::<u64>().ok()? % 5 {
+            2 => Some(Self::Train),
+            3 => Some(Self::Choose),
+            4 => Some(Self::Test),
+            _ => None,
+        }
+    }
+}
+
+/// What a category's drawings are rightly read as, and what a person would accept.
+const CATEGORIES: [(&str, &[Kind], &[Kind]); 30] = {
+    use Kind::{
+        Bush, Cactus, Conifer, Flower, Flowers, Fruit, Grass, HousePlant, Leaf, Palm, Stem, Tree, Vegetable,
+    };
+    [
+        ("tree", &[Tree, Conifer], &[Palm, Bush]),
+        ("bush", &[Bush], &[Tree, Grass]),
+        ("palm tree", &[Palm], &[Tree]),
+        ("cactus", &[Cactus], &[]),
+        ("flower", &[Flower, Flowers], &[HousePlant]),
+        ("grass", &[Grass], &[Bush, Stem]),
+        ("leaf", &[Leaf], &[Stem]),
+        ("house plant", &[HousePlant], &[Flower, Flowers, Stem]),
+        ("broccoli", &[Vegetable], &[Tree, Bush]),
+        ("garden", &[Flower, Flowers, Grass, Stem, Tree, Bush, HousePlant, Vegetable], &[]),
+        ("apple", &[Fruit], &[Vegetable]),
+        ("pear", &[Fruit], &[Vegetable]),
+        ("banana", &[Fruit], &[Vegetable]),
+        ("blackberry", &[Fruit], &[Vegetable]),
+        ("blueberry", &[Fruit], &[Vegetable]),
+        ("grapes", &[Fruit], &[Vegetable]),
+        ("pineapple", &[Fruit], &[Vegetable]),
+        ("strawberry", &[Fruit], &[Vegetable]),
+        ("watermelon", &[Fruit], &[Vegetable]),
+        ("asparagus", &[Vegetable], &[Stem, Fruit, Cactus]),
+        ("carrot", &[Vegetable], &[Fruit]),
+        ("mushroom", &[Vegetable], &[Fruit, Tree]),
+        ("onion", &[Vegetable], &[Fruit]),
+        ("peas", &[Vegetable], &[Fruit]),
+        ("potato", &[Vegetable], &[Fruit]),
+        ("string bean", &[Vegetable], &[Fruit, Leaf]),
+        ("spg apple", &[Fruit], &[Vegetable]),
+        ("spg cactus", &[Cactus], &[]),
+        ("spg pineapple", &[Fruit], &[Vegetable]),
+        ("by hand tree", &[Tree, Conifer], &[Palm, Bush]),
+    ]
+};
+
+/// One drawing and what would be right.
+struct Case {
+    set: String,
+    drawing: Drawing,
+    right: Vec<Kind>,
+    acceptable: Vec<Kind>,
+    /// Plants in it, where that is known.
+    plants: Option<usize>,
+    /// Of a made drawing: the kinds of its plants, from left to right.
+    kinds: Vec<Kind>,
+}
+
+/// How one drawing was read.
+struct Judged {
+    reading: Reading,
+    kind: Kind,
+    plants: usize,
+    verdict: Frame,
+    number: bool,
+}
+
+/// Reads drawings by kind and number. With `--sheets`, writes contact sheets into `out/read`: each drawing beside what was
+/// read in it; with `--pictures`, beside the plant that the command makes of it.
+///
+/// # Errors
+/// A sentence: a wrong option, or a file that cannot be read.
+pub(crate) fn run(args: &[String]) -> Outcome {
+    let mut folder = repository().join("../shared/data/sketches");
+    let (mut part, mut sheets, mut pictures) = (Part::Choose, false, false);
+    let mut wanted = args.iter();
+    while let Some(arg) = wanted.next() {
+        match arg.as_str() {
+            "--test" => part = Part::Test,
+            "--sheets" => sheets = true,
+            "--pictures" => (sheets, pictures) = (true, true),
+            "--part" => {
+                part = match wanted.next().map(String::as_str) {
+                    Some("train") => Part::Train,
+                    Some("choose") => Part::Choose,
+                    Some("test") => {
+                        return Err("the test part is looked at once, at the end: say --test".to_owned());
+                    }
+                    _ => return Err(USAGE.to_owned()),
+                }
+            }
+            other if other.starts_with('-') => return Err(USAGE.to_owned()),
+            other => folder = PathBuf::from(other),
+        }
+    }
+    if !folder.is_dir() {
+        say(&format!("skipped: drawings of people, because {} is not here", folder.display()));
+    }
+    let mut cases = people(&folder, part)?;
+    let together = together(&cases, part);
+    cases.extend(together);
+    cases.extend(made(part));
+    let mut rows: BTreeMap<String, Vec<(Case, Judged)>> = BTreeMap::new();
+    for case in cases {
+        let reading = read(&case.drawing);
+        let judged = judge(&case, reading);
+        rows.entry(case.set.clone()).or_default().push((case, judged));
+    }
+    say(&table(&rows));
+    if sheets {
+        if pictures {
+            built_burgeon()?;
+        }
+        for (set, drawings) in &mut rows {
+            // What went wrong comes first.
+            drawings.sort_by_key(|(_, j)| (j.number, core::cmp::Reverse(j.verdict)));
+            sheet(set, drawings, pictures)?;
+        }
+        say("contact sheets: out/read");
+    }
+    Ok(())
+}
+
+fn read(drawing: &Drawing) -> Reading {
+    let ink = ink::clean(drawing, &mut Report::default());
+    let classes = ink::classify(&ink, &Run::plain());
+    reading::read(&ink, &classes, &mut Report::default())
+}
+
+/// The drawings of people of one part.
+fn people(folder: &Path, part: Part) -> Outcome<Vec<Case>> {
+    let mut cases = Vec::new();
+    for (sub, prefix) in
+        [("quickdraw", ""), ("quickdraw_more", ""), ("spg", "spg "), ("trees_by_hand", "by hand ")]
+    {
+        let Ok(entries) = fs::read_dir(folder.join(sub)) else { continue };
+        let mut files: Vec<PathBuf> = entries.flatten().map(|f| f.path()).collect();
+        files.retain(|f| f.extension().is_some_and(|e| e == "ndjson"));
+        files.sort();
+        for file in files {
+            let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+            let set = format!("{prefix}{stem}");
+            let Some((_, right, acceptable)) = CATEGORIES.iter().find(|c| c.0 == set) else {
+                say(&format!("skipped: {set}, because nobody said what it shows"));
+                continue;
+            };
+            let every = if sub == "spg" { 4 } else { 1 };
+            let lines = json_lines(&file)?;
+            let own = lines.iter().filter(|l| Part::of(l) == Some(part)).step_by(every);
+            cases.extend(own.map(|line| Case {
+                set: set.clone(),
+                drawing: drawing_of(line),
+                right: right.to_vec(),
+                acceptable: acceptable.to_vec(),
+                plants: (!MANY.contains(&&*set)).then_some(1),
+                kinds: Vec::new(),
+            }));
+        }
+    }
+    Ok(cases)
+}
+
+/// Drawings of a part whose plants are known, with the kinds of these from left to right. Trees by hand are not among them:
+/// nothing is learnt from those.
+pub(crate) fn labelled(folder: &Path, part: Part) -> Outcome<Vec<(Drawing, Vec<Kind>)>> {
+    let people = people(folder, part)?.into_iter();
+    let known = people.filter(|c| c.set != "garden" && c.set != "by hand tree");
+    let known = known.map(|c| (c.drawing, c.right.into_iter().take(1).collect()));
+    Ok(known.chain(made(part).into_iter().map(|c| (c.drawing, c.kinds))).collect())
+}
+
+/// Categories of which a drawing may show several plants.
+const MANY: [&str; 7] = ["garden", "asparagus", "blackberry", "blueberry", "string bean", "mushroom", "peas"];
+/// Categories that stand on a ground, one plant a drawing.
+const STANDING: [&str; 7] = ["tree", "palm tree", "cactus", "flower", "bush", "house plant", "by hand tree"];
+/// Others that may lie or stand among them.
+const AMONG: [&str; 3] = ["apple", "carrot", "peas"];
+
+/// Drawings of people side by side: two to six plants, now and then with something else among them.
+fn together(cases: &[Case], part: Part) -> Vec<Case> {
+    let of = |sets: &[&str]| -> Vec<&Case> {
+        cases.iter().filter(|c| sets.contains(&&*c.set) && c.drawing.strokes.len() < 40).collect()
+    };
+    let (standing, among) = (of(&STANDING), of(&AMONG));
+    if standing.is_empty() {
+        return Vec::new();
+    }
+    let seed = Seed::new(77 + part as u64);
+    let mut found = Vec::new();
+    for k in 0..SIDE_BY_SIDE {
+        let r = &mut seed.child(k).stream(Draw::Template);
+        let n = 2 + r.below(5);
+        let mut chosen: Vec<&Case> = (0..n).map(|_| standing[r.below(standing.len())]).collect();
+        if n > 2 && !among.is_empty() && r.chance(0.25) {
+            chosen[r.below(n)] = among[r.below(among.len())];
+        }
+        let lines = chosen.iter().map(|c| unit(&c.drawing)).collect();
+        found.push(Case {
+            set: "people's drawings side by side".to_owned(),
+            drawing: Drawing::from_polylines(format!("together-{k}"), &side_by_side(r, lines)),
+            right: Vec::new(),
+            acceptable: Vec::new(),
+            plants: Some(n),
+            kinds: Vec::new(),
+        });
+    }
+    found
+}
+
+/// The lines of a drawing, 1 high.
+fn unit(drawing: &Drawing) -> Vec<Vec<DVec2>> {
+    let lines: Vec<Vec<DVec2>> =
+        drawing.strokes.iter().map(|s| s.samples.iter().map(|p| p.at).collect()).collect();
+    let all = lines.iter().flatten();
+    let (lo, hi) =
+        all.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), &p: &DVec2| (lo.min(p), hi.max(p)));
+    let scale = 1.0 / (hi.y - lo.y).max(0.6 * (hi.x - lo.x)).max(1e-9);
+    lines.into_iter().map(|l| l.into_iter().map(|p| (p - lo) * scale).collect()).collect()
+}
+
+fn made(part: Part) -> Vec<Case> {
+    let salt = part as u64 + 1;
+    let cases = (0_u32..).zip(made_drawings::shown(salt)).map(|(k, shown)| Case {
+        set: shown.set.to_owned(),
+        drawing: Drawing::from_polylines(format!("made-{k}"), &shown.lines),
+        right: if shown.plants.len() == 1 { vec![Kind::Tree] } else { Vec::new() },
+        acceptable: Vec::new(),
+        plants: Some(shown.plants.len()),
+        kinds: shown.plants,
+    });
+    cases.collect()
+}
+
+fn judge(case: &Case, reading: Reading) -> Judged {
+    let plants = reading.plants.len();
+    let number = case.plants.is_none_or(|n| n == plants && built(case, &reading));
+    let kind = match &reading.plants[..] {
+        [one] => one.kind,
+        _ => Kind::of(&reading),
+    };
+    let verdict = if !case.kinds.is_empty() && case.kinds.len() > 1 {
+        let found: Vec<Kind> = reading.plants.iter().map(|p| p.kind).collect();
+        let alike = found.iter().zip(&case.kinds).filter(|(a, b)| same(**a, **b)).count();
+        if !number {
+            Frame::Wrong
+        } else if alike == case.kinds.len() {
+            Frame::Right
+        } else {
+            Frame::Acceptable
+        }
+    } else if case.right.is_empty() {
+        if number { Frame::Right } else { Frame::Wrong }
+    } else if number && case.right.contains(&kind) && (case.kinds.is_empty() || whole_tree(&reading)) {
+        Frame::Right
+    } else if case.right.contains(&kind) || case.acceptable.contains(&kind) {
+        Frame::Acceptable
+    } else {
+        Frame::Wrong
+    };
+    Judged { kind, plants, verdict, number, reading }
+}
+
+fn same(found: Kind, meant: Kind) -> bool {
+    let group = |k| if k == Kind::Conifer { Kind::Tree } else { k };
+    group(found) == group(meant)
+}
+
+/// What was built has that many plants, too: flowers, crowns or stems, by what was drawn.
+fn built(case: &Case, reading: &Reading) -> bool {
+    let meant = |k: Kind| case.kinds.iter().filter(|&&m| m == k).count();
+    if case.kinds.iter().any(|k| ![Kind::Flower, Kind::Tree, Kind::Stem, Kind::Bush].contains(k)) {
+        return true;
+    }
+    let flowers = reading.flowers.iter().filter(|f| f.petals.len() >= 3).count();
+    let standing = reading.axes.iter().filter(|a| a.bearer.is_none()).count();
+    let lobes = case.kinds.len() == 1;
+    match case.kinds.len() {
+        0 => true,
+        n if meant(Kind::Flower) == n => flowers == n && standing == n,
+        n if meant(Kind::Tree) == n => (lobes || reading.regions.len() == n) && standing == n && flowers == 0,
+        n if meant(Kind::Stem) == n => standing == n && flowers == 0,
+        _ => flowers == meant(Kind::Flower),
+    }
+}
+
+/// Nothing of a tree of one trunk and one crown was taken for something else.
+fn whole_tree(reading: &Reading) -> bool {
+    use OrganWord::{Branch, LeafContour, Trunk};
+    let parts = reading.strokes.iter().all(|s| [Branch, LeafContour, Trunk].contains(&s.organ));
+    let axes = reading.axes.iter().filter(|a| a.bearer.is_none()).count();
+    parts && axes == 1 && reading.leaves.is_empty() && reading.fruits.is_empty() && reading.flowers.is_empty()
+}
+
+fn table(rows: &BTreeMap<String, Vec<(Case, Judged)>>) -> String {
+    let mut out = String::new();
+    let _ = writeln!(
+        out,
+        "{:34} {:>4} {:>6} {:>6} {:>6} {:>7}  found",
+        "drawings", "all", "right", "accept", "wrong", "number"
+    );
+    let mut sum = [[0_usize; 5]; 3];
+    for (set, list) in rows {
+        let count = |f: Frame| list.iter().filter(|(_, j)| j.verdict == f).count();
+        let counts = [
+            list.len(),
+            count(Frame::Right),
+            count(Frame::Acceptable),
+            count(Frame::Wrong),
+            list.iter().filter(|(_, j)| j.number).count(),
+        ];
+        let group = match list.first() {
+            Some((c, _)) if c.kinds.len() == 1 => 2,
+            Some((c, _)) if c.right.is_empty() => 1,
+            _ => 0,
+        };
+        sum[group].iter_mut().zip(counts).for_each(|(s, c)| *s += c);
+        let mut found: BTreeMap<String, usize> = BTreeMap::new();
+        for (case, j) in list {
+            let word = if case.right.is_empty() {
+                format!("{}/{}", j.plants, case.plants.unwrap_or(0))
+            } else if j.plants == 1 {
+                j.kind.word().to_owned()
+            } else {
+                format!("{} x{}", j.kind.word(), j.plants)
+            };
+            *found.entry(word).or_default() += 1;
+        }
+        let mut found: Vec<(usize, String)> = found.into_iter().map(|(k, n)| (n, k)).collect();
+        found.sort_by(|a, b| b.0.cmp(&a.0).then(a.1.cmp(&b.1)));
+        let words: Vec<String> = found.iter().map(|(n, k)| format!("{k} {n}")).collect();
+        let [all, right, accept, wrong, number] = counts;
+        let _ = writeln!(
+            out,
+            "{set:34} {all:>4} {right:>6} {accept:>6} {wrong:>6} {number:>7}  {}",
+            words.join(", ")
+        );
+    }
+    for (name, [all, right, accept, wrong, number]) in
+        ["one drawing", "several plants", "made trees"].iter().zip(sum)
+    {
+        let _ = writeln!(
+            out,
+            "{:34} {all:>4} {right:>6} {accept:>6} {wrong:>6} {number:>7}",
+            format!("= {name}")
+        );
+    }
+    out
+}
+
+/// A page of the drawings of a set.
+fn sheet(set: &str, drawings: &[(Case, Judged)], pictures: bool) -> Outcome {
+    const MOST: usize = 48;
+    let name: String = set.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect();
+    let folder = repository().join("out/read");
+    let fault = |p: &Path, e: &dyn std::fmt::Display| format!("{}: {e}", p.display());
+    fs::create_dir_all(&folder).map_err(|e| fault(&folder, &e))?;
+    let shown = &drawings[..drawings.len().min(MOST)];
+    let mut notes = String::new();
+    for (k, (case, j)) in drawings.iter().enumerate() {
+        let strokes: Vec<String> = (j.reading.strokes.iter())
+            .map(|s| {
+                format!("{}={}:{}({:.2},{})", s.index, s.class.word(), s.organ.word(), s.confidence, s.source)
+            })
+            .collect();
+        let plants = j.reading.plants.iter();
+        let kinds: Vec<String> = plants
+            .map(|p| {
+                let scores = p.readings.iter().map(|r| format!("{} {:.2}", r.kind.word(), r.score));
+                scores.collect::<Vec<_>>().join("|")
+            })
+            .collect();
+        let _ = writeln!(notes, "{k:3} {} {} [{}]", case.drawing.name, kinds.join(","), strokes.join(" "));
+    }
+    fs::write(folder.join(format!("{name}.txt")), notes).map_err(|e| fault(&folder, &e))?;
+    let plants = pictures.then(|| made_pictures(&folder.join(&name), shown)).transpose()?;
+    let cells: Vec<Cell<'_>> = shown
+        .iter()
+        .enumerate()
+        .map(|(k, (case, j))| Cell {
+            drawing: &case.drawing,
+            reading: &j.reading,
+            picture: plants.as_ref().map(|p| p.join(format!("d{k:03}.png"))),
+            frame: j.verdict,
+        })
+        .collect();
+    contact_sheet::write(&cells, &folder.join(format!("{name}.png")))
+}
+
+/// Makes the plants of drawings with the command, as anybody would; the folder of their pictures.
+fn made_pictures(folder: &Path, drawings: &[(Case, Judged)]) -> Outcome<PathBuf> {
+    let fault = |p: &Path, e: &dyn std::fmt::Display| format!("{}: {e}", p.display());
+    if folder.exists() {
+        fs::remove_dir_all(folder).map_err(|e| fault(folder, &e))?;
+    }
+    fs::create_dir_all(folder).map_err(|e| fault(folder, &e))?;
+    let mut lines = String::new();
+    for (k, (case, _)) in drawings.iter().enumerate() {
+        let strokes: Vec<Value> = case
+            .drawing
+            .strokes
+            .iter()
+            .map(|s| {
+                let column =
+                    |get: fn(DVec2) -> f64| s.samples.iter().map(|p| get(p.at)).collect::<Vec<f64>>();
+                json!([column(|p| p.x), column(|p| -p.y)])
+            })
+            .collect();
+        let _ = writeln!(lines, "{}", json!({"key_id": format!("d{k:03}"), "drawing": strokes}));
+    }
+    let input = folder.join("drawings.ndjson");
+    fs::write(&input, lines).map_err(|e| fault(&input, &e))?;
+    let pictures = folder.join("png");
+    let text = |p: &Path| p.to_string_lossy().into_owned();
+    command(
+        burgeon("release"),
+        &["sketch", &text(&input), "--png", &text(&pictures), "--size", "240x240", "--quiet"],
+    )?;
+    Ok(pictures)
+}
