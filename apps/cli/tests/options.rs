@@ -34,6 +34,7 @@ const VALUES: &[(&str, &str)] = &[
     ("edits", "edits.json"),
     ("end", "start.xyz"),
     ("end-day", "30"),
+    ("as", "fruit"),
     ("flip-flowers", "0"),
     ("format", "obj"),
     ("frames", "3"),

@@ -178,7 +178,8 @@ pub fn clean(drawing: &Drawing, report: &mut Report) -> Ink {
         });
     }
     even(&mut ink.strokes);
-    ink.subjects = subjects(&ink.strokes);
+    let lines: Vec<(&[DVec2], f64)> = ink.strokes.iter().map(|s| (&*s.points, s.length)).collect();
+    ink.subjects = subjects(&lines);
     notes.tell(report);
     if ink.strokes.is_empty() {
         report.warn("empty-drawing", "the drawing has no stroke that can be used: draw a line or an outline");

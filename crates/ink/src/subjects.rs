@@ -10,8 +10,6 @@
 use geom::{convex_hull, signed_area};
 use glam::DVec2;
 
-use crate::InkStroke;
-
 /// A drawing of more strokes is one plant: nobody draws a row of plants with so many.
 const MOST_STROKES: usize = 600;
 /// More groups of strokes that touch are no few plants.
@@ -46,7 +44,9 @@ impl Subjects {
 }
 
 /// Takes a drawing apart into its plants. Linear in points up to 600 strokes and 160 groups; beyond, it is one plant.
-pub(crate) fn subjects(strokes: &[InkStroke]) -> Subjects {
+///
+/// `strokes`: points and length of each.
+pub(crate) fn subjects(strokes: &[(&[DVec2], f64)]) -> Subjects {
     let count = strokes.len();
     if !(2..=MOST_STROKES).contains(&count) {
         return Subjects::one(count);
@@ -114,8 +114,8 @@ struct Sheet {
 }
 
 impl Sheet {
-    fn new(strokes: &[InkStroke]) -> Self {
-        let lines: Vec<Line> = strokes.iter().map(Line::new).collect();
+    fn new(strokes: &[(&[DVec2], f64)]) -> Self {
+        let lines: Vec<Line> = strokes.iter().map(|(points, length)| Line::new(points, *length)).collect();
         let (lo, hi) = lines
             .iter()
             .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), l| (lo.min(l.lo), hi.max(l.hi)));
@@ -353,33 +353,31 @@ impl Sheet {
 }
 
 impl Line {
-    fn new(stroke: &InkStroke) -> Self {
-        let stride = stroke.points.len().div_ceil(48).max(1);
-        let mut points: Vec<DVec2> = stroke.points.iter().step_by(stride).copied().collect();
-        points.extend(stroke.points.last());
-        let (lo, hi) = stroke
-            .points
-            .iter()
-            .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
-        let ends = stroke.points[0].distance(stroke.points[stroke.points.len() - 1]);
+    fn new(drawn: &[DVec2], length: f64) -> Self {
+        let stride = drawn.len().div_ceil(48).max(1);
+        let mut points: Vec<DVec2> = drawn.iter().step_by(stride).copied().collect();
+        points.extend(drawn.last());
+        let (lo, hi) =
+            drawn.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
+        let ends = drawn[0].distance(drawn[drawn.len() - 1]);
         let hull = convex_hull(&points);
         let area = if hull.len() > 2 { signed_area(&hull) } else { 0.0 };
-        let square = stroke.length * stroke.length;
+        let square = length * length;
         // The outline of a bush stands on both its ends.
-        let (a, b) = (stroke.points[0], stroke.points[stroke.points.len() - 1]);
+        let (a, b) = (drawn[0], drawn[drawn.len() - 1]);
         let (wide, tall) = (hi.x - lo.x, hi.y - lo.y);
         let arch = a.y.max(b.y) < lo.y + 0.3 * tall && (a.x - b.x).abs() > 0.6 * tall.max(0.5 * wide);
         let full = area > FULL * square || (arch && area > ARCHED * square);
         let slender = tall > 1.5 * wide && area < 0.16 * lo.distance_squared(hi);
-        let straight = ends > 0.8 * stroke.length;
+        let straight = ends > 0.8 * length;
         Self {
             lo,
             hi,
             points,
             straight,
             slender,
-            length: stroke.length,
-            closed: (ends < CLOSED * stroke.length || full) && area > 1e-9,
+            length,
+            closed: (ends < CLOSED * length || full) && area > 1e-9,
         }
     }
 }

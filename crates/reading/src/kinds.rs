@@ -12,7 +12,7 @@ use glam::DVec2;
 use ink::{Classified, Ink, StrokeClass};
 
 use crate::near::bounds;
-use crate::{Kind, Reading};
+use crate::{Kind, Reading, Scored};
 
 /// Numbers of a drawing.
 pub(crate) const COUNT: usize = 1 + Kind::ALL.len() + 2 * StrokeClass::ALL.len() + SHAPE.len();
@@ -39,15 +39,6 @@ const SHAPE: [&str; 20] = [
     "feet",
     "straight",
 ];
-
-/// One interpretation of a plant.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scored {
-    /// What it would be.
-    pub kind: Kind,
-    /// How well it explains the drawing, among all kinds: 0 to 1.
-    pub score: f64,
-}
 
 /// Names of the numbers of [`kind_features`], in their order.
 pub fn kind_feature_names() -> Vec<String> {

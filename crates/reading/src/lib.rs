@@ -12,13 +12,14 @@
 //! | `flowers` | which blades are petals of one flower | 4.1 |
 //! | `branches` | the hierarchy of axes | 4.2 |
 //! | `attach` | what bears what | beyond |
-//! | `kind`, `kinds` | what the parts are together, and which kind explains the drawing best | beyond |
+//! | `kind`, `built`, `kinds` | what the parts are together, and which kind explains the drawing best | beyond |
 //! | `rows`, `validate` | the result, and what every reading guarantees | |
 
 mod attach;
 mod blade;
 mod body;
 mod branches;
+mod built;
 mod contour;
 mod corolla;
 mod draft;
@@ -37,8 +38,8 @@ mod tests;
 mod validate;
 mod veins;
 
-pub use kind::Kind;
-pub use kinds::{Scored, kind_feature_names, kind_features};
+pub use kind::{Kind, Scored};
+pub use kinds::{kind_feature_names, kind_features};
 pub use read::{kind_row, read, read_as, read_without};
 pub use rows::{
     Attachment, AxisReading, BladeReading, DiscReading, FlowerReading, FruitReading, OrganWord, PlantReading,

@@ -48,7 +48,7 @@ pub fn kind_row(ink: &Ink, classes: &[Classified]) -> Vec<f64> {
 }
 
 /// How a drawing is to be read.
-pub(crate) struct Asked<'a> {
+struct Asked<'a> {
     /// The kind that every plant is taken for.
     kind: Option<Kind>,
     /// Rules that are switched off.
@@ -57,7 +57,7 @@ pub(crate) struct Asked<'a> {
 
 fn whole(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
     if ink.is_several() {
-        several::read_each(asked, ink, classes, report)
+        several::read_each(ink, classes, |part, own| one(asked, part, own, report))
     } else {
         one(asked, ink, classes, report)
     }
@@ -76,7 +76,7 @@ const MOST_STROKES: usize = 200;
 const TOLD: usize = 3;
 
 /// Understands one plant: of the interpretations of the whole drawing the one that explains it best.
-pub(crate) fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
+fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
     let mut said = Report::default();
     let mut reading = attempt(asked.off, None, ink, classes, &mut said);
     let mut kind = Kind::of(&reading);

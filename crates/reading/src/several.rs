@@ -1,18 +1,15 @@
 //! Drawings of several plants: each is read by itself, and put back where it was drawn.
 
-use base::Report;
 use glam::DVec2;
 use ink::{Classified, Ink, InkMap, Source, StrokeClass};
 
-use crate::read::{self, Asked};
 use crate::{Attachment, BladeReading, OrganWord, Reading, StrokeReading};
 
 /// Reads every plant of a drawing, from left to right.
 pub(crate) fn read_each(
-    asked: &Asked<'_>,
     ink: &Ink,
     classes: &[Classified],
-    report: &mut Report,
+    mut one: impl FnMut(&Ink, &[Classified]) -> Reading,
 ) -> Reading {
     let mut all = Reading::default();
     let class = |row: usize| classes.get(row).copied().unwrap_or_default();
@@ -27,7 +24,7 @@ pub(crate) fn read_each(
         }
         let part = ink.part(&rows);
         let own: Vec<Classified> = rows.iter().map(|&row| class(row)).collect();
-        let reading = read::one(asked, &part, &own, report);
+        let reading = one(&part, &own);
         let back = Back { whole: ink.map, part: part.map };
         back.add(&mut all, reading);
     }

@@ -1,0 +1,134 @@
+//! What kind of plant a drawing shows, by what was read in it.
+
+use geom::{polyline_length, signed_area};
+use glam::DVec2;
+use ink::StrokeClass;
+use plant::AxisKind;
+
+use crate::near::bounds;
+use crate::{AxisReading, Kind, OrganWord, Reading, RegionReading};
+
+impl Kind {
+    /// What the parts of a reading are together: nothing is asked but what will be built. A drawing of several plants
+    /// has the kind of all of them taken for one.
+    ///
+    /// ```
+    /// use reading::{Kind, Reading};
+    /// assert_eq!(Kind::of(&Reading::default()), Kind::None);
+    /// assert_eq!(Kind::from_word("tree"), Some(Kind::Tree));
+    /// ```
+    pub fn of(reading: &Reading) -> Self {
+        let petals = |f: &crate::FlowerReading| f.petals.len() >= 3;
+        let flowers = reading.flowers.iter().filter(|f| petals(f)).count();
+        let petal_area: f64 =
+            reading.flowers.iter().flat_map(|f| &f.petals).map(|p| signed_area(&p.outline)).sum();
+        let leaf_area: f64 = reading.leaves.iter().map(|l| signed_area(&l.outline)).sum();
+        let crown_area: f64 = reading.regions.iter().map(|r| signed_area(&r.outline)).sum();
+        let fruit_area: f64 = reading.fruits.iter().map(|f| signed_area(&f.outline)).sum();
+        let potted = reading.strokes.iter().any(|s| s.class == StrokeClass::Pot);
+        let body = reading.axes.iter().find(|a| a.bearer.is_none() && !a.half_width.is_empty());
+        let bare = reading.regions.is_empty() && flowers == 0;
+        // Fruits in a crown are its fruits.
+        if fruit_area > crown_area.max(leaf_area).max(petal_area) && body.is_none() {
+            return Self::Fruit;
+        }
+        if body.is_some() && bare && (leaf_area <= 0.0 || !reading.thorns.is_empty()) {
+            let branches = reading.axes.iter().filter(|a| !drawn_thick(a) && a.bearer.is_some()).count();
+            let open = reading.woody && branches > 0;
+            return if open { Self::Tree } else { Self::Cactus };
+        }
+        let largest = |a: &&RegionReading, b: &&RegionReading| {
+            signed_area(&a.outline).total_cmp(&signed_area(&b.outline))
+        };
+        let crown = reading.regions.iter().max_by(largest);
+        // A tree is no house plant, whatever stands at its foot.
+        let tree = crown.map(|c| of_crown(reading, c)).filter(|k| k.is_like(Self::Tree) && body.is_some());
+        if potted {
+            return tree.unwrap_or(Self::HousePlant);
+        }
+        if flowers > 0 && petal_area > crown_area {
+            return if flowers == 1 { Self::Flower } else { Self::Flowers };
+        }
+        if let Some(crown) = crown {
+            return of_crown(reading, crown);
+        }
+        if let Some(body) = body {
+            return of_body(reading, body);
+        }
+        of_blades(reading, leaf_area)
+    }
+}
+
+fn drawn_thick(axis: &AxisReading) -> bool {
+    !axis.half_width.is_empty()
+}
+
+/// A crown over a trunk is a tree; one on the ground a bush.
+fn of_crown(reading: &Reading, crown: &RegionReading) -> Kind {
+    let crowns = reading.regions.iter().filter_map(|r| bounds(&r.outline));
+    let all = crowns.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+    let Some((low, high)) = all else { return Kind::None };
+    let height = high.y - low.y;
+    let foot = reading
+        .axes
+        .iter()
+        .filter(|a| a.bearer.is_none() && a.kind != AxisKind::Root)
+        .filter_map(|a| a.points.first())
+        .map(|p| p.y)
+        .fold(f64::INFINITY, f64::min);
+    if low.y - foot < 0.1 * height {
+        return Kind::Bush;
+    }
+    if pointed(&crown.outline) { Kind::Conifer } else { Kind::Tree }
+}
+
+/// Much narrower above than below, and higher than wide.
+pub(crate) fn pointed(outline: &[DVec2]) -> bool {
+    let Some((low, high)) = bounds(outline) else { return false };
+    let height = high.y - low.y;
+    let mean = |from: f64, to: f64| {
+        let row = |i: i32| low.y + (from + (to - from) * f64::from(i) / 5.0) * height;
+        (0..6).map(|i| crate::contour::width_at(outline, row(i))).sum::<f64>() / 6.0
+    };
+    height > 0.9 * (high.x - low.x) && mean(0.74, 0.92) < 0.45 * mean(0.08, 0.35)
+}
+
+/// A trunk without a crown: leaves at its top are fronds.
+fn of_body(reading: &Reading, body: &AxisReading) -> Kind {
+    let Some((&foot, &top)) = body.points.first().zip(body.points.last()) else { return Kind::None };
+    let high = |l: &&crate::BladeReading| l.root.distance(top) < 0.45 * foot.distance(top);
+    let fronds = reading.leaves.iter().filter(high).count();
+    if fronds >= 3 && 3 * fronds >= 2 * reading.leaves.len() { Kind::Palm } else { Kind::Tree }
+}
+
+/// Leaves and stems only.
+fn of_blades(reading: &Reading, leaf_area: f64) -> Kind {
+    let axes: Vec<&AxisReading> = reading.axes.iter().filter(|a| a.kind != AxisKind::Root).collect();
+    let largest = reading.leaves.iter().map(|l| signed_area(&l.outline)).fold(0.0, f64::max);
+    match (reading.leaves.len(), axes.len()) {
+        (0, 0) => Kind::None,
+        (0, _) if reading.woody => Kind::Tree,
+        (0, _) => Kind::Stem,
+        (_, n) if largest > 0.75 * leaf_area && n <= 2 => {
+            let longest = axes.iter().map(|a| polyline_length(&a.points)).fold(0.0, f64::max);
+            let size = reading
+                .leaves
+                .iter()
+                .filter_map(|l| bounds(&l.outline))
+                .map(|(a, b)| a.distance(b))
+                .fold(0.0, f64::max);
+            if longest < size { Kind::Leaf } else { Kind::Stem }
+        }
+        (n, _) => {
+            // Blades of grass are rooted on the ground, side by side.
+            let low = reading.leaves.iter().map(|l| l.root.y).fold(f64::INFINITY, f64::min);
+            let high =
+                reading.leaves.iter().flat_map(|l| &l.outline).map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
+            let rooted =
+                |l: &&crate::BladeReading| l.root.y < low + 0.35 * (high - low) && l.bearer.is_none();
+            let ground = reading.leaves.iter().filter(rooted).count();
+            let stems = reading.strokes.iter().filter(|s| s.organ == OrganWord::Branch).count();
+            if n >= 3 && 4 * ground >= 3 * n && stems <= n { Kind::Grass } else { Kind::Stem }
+        }
+    }
+}
