@@ -1,6 +1,6 @@
 /**
  * The documents that this browser keeps. Of each there is the project file as it was last written whole, and what was
- * asked of it since then: a request is one row, written when it is made, so that a crash loses nothing that was done.
+ * asked of it since then: a request is one row, written when it is made, so that a crash loses nothing that was saved.
  *
  * Who works on a document owns it, and writes the rows of its journal one after the other. Who takes it over writes the
  * next one: what the old owner still has on its way finds its row taken, and nothing of it is written.
@@ -194,8 +194,8 @@ export function take(id: string, owner?: string): Promise<Kept | undefined> {
 }
 
 /**
- * Writes what was asked, in rows that nobody has written yet. All is on its way when this returns: what was done is kept
- * even if the page ends at once.
+ * Writes what was asked, in rows that nobody has written yet. All is on its way when this returns. Not guaranteed: that
+ * it is kept if the page ends while another change of these stores, such as `portray`, is still being written.
  *
  * Relaxed: with the system, not yet on the disk. Who waits for the disk has the next rows wait too, and a page that ends
  * takes with it what waits. What is written strictly at the next rest brings these rows to the disk as well.
