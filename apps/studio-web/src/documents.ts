@@ -192,7 +192,7 @@ export class Documents {
   /** The document that is here has another name. */
   async named(name: string): Promise<void> {
     const { mine } = this.keeper;
-    if (mine) await portray(mine, name);
+    if (mine) await portray(mine, { name, time: Date.now() });
   }
 
   // The small picture --------------------------------------------------------------------------------------------
@@ -210,8 +210,9 @@ export class Documents {
     if (!this.stale || !mine || (standing !== 'saved' && standing !== 'saving')) return;
     this.stale = false;
     const name = this.events.name();
+    const { changed } = this.keeper;
     const picture = await small(this.events.picture()).catch(() => '');
-    await portray(mine, name, picture).catch(() => undefined);
+    await portray(mine, changed > 0 ? { name, time: changed } : { name }, picture).catch(() => undefined);
   }
 }
 

@@ -1,6 +1,7 @@
 import { beforeEach, describe, expect, it, vi } from 'vitest';
 import { Keeper, type Standing } from './keeper';
-import type { Entry, Row } from './library';
+import { corrected, type Entry, type Mine, type Written } from './library';
+import type * as Library from './library';
 import type { Request } from './protocol';
 
 /** Stands for the storage: what it holds, and whether it takes anything. */
@@ -11,23 +12,23 @@ const disk = vi.hoisted(() => ({
   appends: 0,
 }));
 
-vi.mock('./library', () => {
-  class TakenError extends Error {}
+vi.mock('./library', async (original) => {
+  const { corrected, TakenError } = await original<typeof Library>();
   const write = async (act: () => void): Promise<void> => {
     if (disk.full) throw disk.full;
     act();
   };
   return {
+    corrected,
     TakenError,
-    append: (_: Entry, rows: Row[]) => {
+    append: (_: Mine, rows: Written[]) => {
       disk.appends += 1;
       return write(() => {
         if (rows.some((row) => disk.rows.has(row.seq))) throw new TakenError();
         for (const { seq, request } of rows) disk.rows.set(seq, request);
       });
     },
-    mend: (_: Entry, { seq, request }: Row) => write(() => disk.rows.set(seq, request)),
-    strike: (_: Entry, seq: number) => write(() => disk.rows.delete(seq)),
+    create: () => write(() => undefined),
     writeWhole: (_: Entry, whole: Uint8Array, seq: number) =>
       write(() => {
         disk.whole = new TextDecoder().decode(whole);
@@ -39,7 +40,10 @@ vi.mock('./library', () => {
 const STROKE = { kind: 'stroke', mode: 'parts', samples: new Float64Array(4) } as const;
 const stroke = (): Request => ({ ...STROKE });
 const undo = (): Request => ({ kind: 'undo' });
-const kinds = (): string[] => [...disk.rows.values()].map((r) => (r as Request).kind);
+const kinds = (): string[] => {
+  const written = [...disk.rows].map(([seq, request]) => ({ seq, request: request as Request }));
+  return corrected(written).map((row) => row.request.kind);
+};
 const settle = async (): Promise<void> => {
   for (let i = 0; i < 20; i += 1) await Promise.resolve();
 };
@@ -123,6 +127,21 @@ describe('what is asked', () => {
     k.record(undo());
     await settle();
     expect(kinds()).toEqual(['undo']);
+  });
+
+  it('is written again where it bears more than before', async () => {
+    const k = keeper();
+    const open = { kind: 'action', action: 'new', x: 0, y: 0 } as unknown as Request & { placed?: number };
+    k.record(open);
+    k.record(undo());
+    await settle();
+    open.placed = 3;
+    k.again(open);
+    await settle();
+    const written = [...disk.rows].map(([seq, request]) => ({ seq, request: request as Request }));
+    expect(corrected(written).map((row) => row.seq)).toEqual([1, 2]);
+    expect(corrected(written)[0]!.request).toEqual(open);
+    expect(corrected(written.slice(1)), 'what is in the whole file is not asked again').toHaveLength(1);
   });
 });
 

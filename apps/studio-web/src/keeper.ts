@@ -5,7 +5,16 @@
  * stays short; and where the journal has a hole, because the storage took something not, or because a step was undone
  * that it does not hold.
  */
-import { append, type Entry, mend, type Mine, type Row, strike, TakenError, writeWhole } from './library';
+import {
+  append,
+  create,
+  type Entry,
+  type Mine,
+  type Row,
+  TakenError,
+  writeWhole,
+  type Written,
+} from './library';
 import type { Request } from './protocol';
 
 /** What is true of the document now. */
@@ -44,13 +53,15 @@ const ENDS: ReadonlySet<Request['kind']> = new Set(['commit', 'abandon', 'undo',
 export class Keeper {
   /** The document, if there is anything of it. */
   mine: Mine | undefined;
+  /** When something was asked of it last; 0 if nothing was since it is here. */
+  changed = 0;
   private mode: 'readonly' | 'opening' | undefined = 'opening';
   private seq = 0;
   private readonly seqs = new WeakMap<Request, number>();
   /** What an open gesture has asked so far. */
   private held: Request[] = [];
   private gesture = false;
-  private batch: Row[] = [];
+  private batch: Written[] = [];
   private readonly writes = new Set<Promise<void>>();
   /** In the journal. */
   private count = 0;
@@ -80,6 +91,7 @@ export class Keeper {
   open(id: string | undefined, rows: readonly Row[], mode?: 'readonly'): void {
     this.mine = id === undefined ? undefined : { id, owner: this.owner };
     this.mode = mode;
+    this.changed = 0;
     this.seq = rows.at(-1)?.seq ?? 0;
     this.count = rows.length;
     this.size = rows.reduce((sum, row) => sum + sizeOf(row.request), 0);
@@ -133,9 +145,15 @@ export class Keeper {
     if (!this.mine) {
       this.mine = { id: newId(), owner: this.owner };
       this.events.created(this.mine.id);
+      this.track(create(this.entry(this.mine)));
     }
+    this.changed = Date.now();
     if (this.failed || (this.cut && (kind === 'undo' || kind === 'redo'))) this.wanted = this.hole = true;
-    else for (const each of [...done, request]) this.enqueue(each);
+    else
+      for (const each of [...done, request]) {
+        this.enqueue(each, sizeOf(each));
+        this.seqs.set(each, this.seq);
+      }
     if (this.count > MANY || this.size > LARGE) this.wanted = true;
     this.tell();
     // What failed is tried again now and then, not with every stroke.
@@ -143,27 +161,28 @@ export class Keeper {
     else this.pump();
   }
 
-  /** It was refused: who does all again need not ask it. */
+  /** It was refused, and need not be asked again when the document is opened. */
   forget(request: Request): void {
     this.held = this.held.filter((r) => r !== request);
     const seq = this.seqs.get(request);
-    if (seq === undefined || !this.mine || this.mode) return;
+    if (seq === undefined || !this.mine || this.mode || this.failed) return;
+    const waiting = this.batch.length;
     this.batch = this.batch.filter((row) => row.seq !== seq);
-    this.track(strike(this.mine, seq));
+    if (this.batch.length === waiting) this.enqueue({ kind: 'struck', seq }, 0);
   }
 
   /** It bears something now that it did not when it was asked. */
   again(request: Request): void {
     const seq = this.seqs.get(request);
     if (seq === undefined || !this.mine || this.mode || this.failed) return;
-    this.track(mend(this.mine, { seq, request }));
+    if (!this.batch.some((row) => row.seq === seq))
+      this.enqueue({ kind: 'mended', seq, request }, sizeOf(request));
   }
 
-  private enqueue(request: Request): void {
+  private enqueue(request: Written['request'], size: number): void {
     this.seq += 1;
     this.count += 1;
-    this.size += sizeOf(request);
-    this.seqs.set(request, this.seq);
+    this.size += size;
     // What is asked in one go, such as a stroke and its mirror image, is written in one go.
     if (this.batch.length === 0) queueMicrotask(() => this.flush());
     this.batch.push({ seq: this.seq, request });
@@ -172,7 +191,7 @@ export class Keeper {
   private flush(): void {
     const rows = this.batch;
     this.batch = [];
-    if (rows.length > 0 && this.mine) this.track(append(this.entry(this.mine), rows));
+    if (rows.length > 0 && this.mine) this.track(append(this.mine, rows));
   }
 
   private entry({ id, owner }: Mine): Entry {

@@ -1,16 +1,19 @@
 /**
  * The documents that this browser keeps. Of each there is the project file as it was last written whole, and what was
- * asked of it since then: a request is one row, written when it is made, so that a crash loses nothing that was saved.
+ * asked of it since then: a request is one row of a journal, written when it is made.
  *
- * Who works on a document owns it, and writes the rows of its journal one after the other. Who takes it over writes the
- * next one: what the old owner still has on its way finds its row taken, and nothing of it is written.
+ * The journal is only ever appended to, and no transaction holds it while it waits for a page or for the disk: a row is
+ * with the browser as soon as it is written, so that a page that dies takes at most what it was just handing over.
+ * Everything else about a document (its entry in the list, its picture, the whole file) has transactions of its own.
+ *
+ * The tab that works on a document owns it, and writes the rows of its journal one after the other. The tab that takes
+ * it over writes the next one: what the old owner still has on its way finds its row taken, and none of it is written.
  */
 import type { Request } from './protocol';
 
 const NAME = 'burgeon';
 /** 1: one project under the key `last`. */
 const VERSION = 2;
-const STORES = ['documents', 'pictures', 'wholes', 'journal'] as const;
 /** Deleted documents are kept so long. */
 const GRACE_MS = 30 * 24 * 3600 * 1000;
 
@@ -38,6 +41,19 @@ export interface Kept {
 export interface Row {
   seq: number;
   request: Request;
+}
+
+/** A row of the journal that says something of an earlier one. */
+export type Correction =
+  /** It was refused: it is not asked again. */
+  | { kind: 'struck'; seq: number }
+  /** It bears more than when it was written. */
+  | { kind: 'mended'; seq: number; request: Request };
+
+/** What a row of the journal holds. */
+export interface Written {
+  seq: number;
+  request: Request | Correction;
 }
 
 /** Which document, and who says that it is his. */
@@ -91,22 +107,28 @@ function upgrade(request: IDBOpenDBRequest, from: number): void {
   };
 }
 
-type Stores = { [name in (typeof STORES)[number]]: IDBObjectStore };
+type Store = 'documents' | 'pictures' | 'wholes' | 'journal';
+type Stores<S extends Store> = { [name in S]: IDBObjectStore };
 type Refuse = (why: Error) => void;
 
-/**
- * All or nothing of what `act` asks for; the answer is read when it is done. `commit`: nothing more is asked for, and
- * the browser need not come back to this page to end it.
- */
-async function transact<T>(
+interface Manner {
+  /** `strict`: it is on the disk, and so is all that was written before it; else it is with the system. */
+  durability?: 'strict' | 'relaxed';
+  /** More is asked for when an answer is there. Else all is asked for at once, and this page need not live to see it. */
+  rounds?: true;
+}
+
+/** All or nothing of what `act` asks of these stores; the answer is read when it is done. */
+async function transact<S extends Store, T>(
+  names: readonly S[],
   mode: IDBTransactionMode,
-  act: (stores: Stores, refuse: Refuse, commit: () => void) => () => T,
-  durability: 'strict' | 'relaxed' = 'strict',
+  act: (stores: Stores<S>, refuse: Refuse) => () => T,
+  { durability = 'relaxed', rounds }: Manner = {},
 ): Promise<T> {
   const db = await opened();
   return new Promise<T>((resolve, reject) => {
-    const transaction = db.transaction(STORES, mode, { durability });
-    const stores = Object.fromEntries(STORES.map((s) => [s, transaction.objectStore(s)])) as Stores;
+    const transaction = db.transaction(names, mode, { durability });
+    const stores = Object.fromEntries(names.map((s) => [s, transaction.objectStore(s)])) as Stores<S>;
     let why: Error | undefined;
     let answer: (() => T) | undefined;
     const refuse = (e: Error): void => {
@@ -116,7 +138,8 @@ async function transact<T>(
     transaction.oncomplete = () => resolve(answer!());
     transaction.onabort = () => reject(why ?? transaction.error ?? new Error('aborted'));
     try {
-      answer = act(stores, refuse, () => transaction.commit());
+      answer = act(stores, refuse);
+      if (!rounds) transaction.commit();
     } catch (e) {
       refuse(e as Error);
     }
@@ -124,50 +147,206 @@ async function transact<T>(
 }
 
 const nothing = (): void => undefined;
+const ROUNDS: Manner = { rounds: true };
 /** The rows of a document in the journal, up to one of them. */
 const rowsOf = (id: string, to = Infinity): IDBKeyRange => IDBKeyRange.bound([id, 0], [id, to]);
-const seqOf = (key: IDBValidKey | undefined): number => (key as [string, number] | undefined)?.[1] ?? 0;
+
+// Entries of the list ----------------------------------------------------------------------------------------------
 
 /** A change of a document that is still its owner's. `fresh`: what is there before the first change. */
-function owned(
+function owned<S extends Store>(
   { id, owner }: Mine,
-  change: (entry: Entry, stores: Stores) => void,
-  fresh?: Entry,
+  others: readonly S[],
+  change: (entry: Entry, stores: Stores<S>) => void,
+  { fresh, durability = 'relaxed' }: { fresh?: Entry } & Pick<Manner, 'durability'> = {},
 ): Promise<void> {
-  return transact('readwrite', (stores, refuse) => {
-    const get = stores.documents.get(id);
+  return transact(
+    ['documents', ...others],
+    'readwrite',
+    (stores, refuse) => {
+      const get = stores.documents.get(id);
+      get.onsuccess = () => {
+        const entry = (get.result as Entry | undefined) ?? fresh;
+        if (entry?.owner !== owner) {
+          refuse(new TakenError('taken'));
+          return;
+        }
+        change(entry, stores);
+        stores.documents.put(entry);
+      };
+      return nothing;
+    },
+    { ...ROUNDS, durability },
+  );
+}
+
+/** A change of an entry, whoever works on its document; the entry as it is then, if it is there. */
+function changed(id: string, change: Partial<Entry>): Promise<Entry | undefined> {
+  const act = ({ documents: d }: Stores<'documents'>): (() => Entry | undefined) => {
+    const get = d.get(id);
+    let entry: Entry | undefined;
     get.onsuccess = () => {
-      const entry = (get.result as Entry | undefined) ?? fresh;
-      if (entry?.owner !== owner) {
-        refuse(new TakenError('taken'));
-        return;
-      }
-      change(entry, stores);
-      stores.documents.put(entry);
+      entry = get.result && { ...(get.result as Entry), ...change };
+      if (entry) d.put(entry);
     };
-    return nothing;
-  });
+    return () => entry;
+  };
+  return transact(['documents'], 'readwrite', act, ROUNDS);
 }
 
 /** Every document with its small picture (a data URL), the latest first; those that were deleted long ago go now. */
 export async function documents(): Promise<(Entry & { picture: string })[]> {
-  const all = await transact('readonly', ({ documents: d, pictures }) => {
+  const all = await transact(['documents', 'pictures'], 'readonly', ({ documents: d, pictures }) => {
     const [entries, keys, urls] = [d.getAll(), pictures.getAllKeys(), pictures.getAll()];
     return () => {
       const seen = new Map(keys.result.map((key, i) => [key, urls.result[i] as string]));
       return (entries.result as Entry[]).map((e) => ({ ...e, picture: seen.get(e.id) ?? '' }));
     };
   });
+  const lost = await withoutEntry(new Set(all.map((e) => e.id)));
+  all.push(...lost.map((e) => ({ ...e, picture: '' })));
   const gone = all.filter((e) => e.deleted > 0 && Date.now() - e.deleted > GRACE_MS);
   if (gone.length > 0)
-    await transact('readwrite', ({ documents: d, pictures, wholes, journal }) => {
+    await transact(['documents', 'pictures', 'wholes', 'journal'], 'readwrite', (stores) => {
       for (const { id } of gone) {
-        for (const store of [d, pictures, wholes]) store.delete(id);
-        journal.delete(rowsOf(id));
+        for (const store of [stores.documents, stores.pictures, stores.wholes]) store.delete(id);
+        stores.journal.delete(rowsOf(id));
       }
       return nothing;
     });
   return all.filter((e) => !gone.includes(e)).sort((x, y) => y.time - x.time);
+}
+
+/** Gives an entry to each document that has rows but none: its page died before the entry was written. */
+async function withoutEntry(known: ReadonlySet<string>): Promise<Entry[]> {
+  const keys = await transact(['journal'], 'readonly', ({ journal }) => {
+    const all = journal.getAllKeys();
+    return () => all.result as [string, number][];
+  });
+  const ids = new Set(keys.map(([id]) => id).filter((id) => !known.has(id)));
+  const made = [...ids].map((id) => ({ id, name: '', time: Date.now(), deleted: 0, owner: '' }));
+  // Where the page lives, it writes an entry of its own: this one is not put over it.
+  const added = made.map((entry) =>
+    create(entry, 'add')
+      .then(() => entry)
+      .catch(nothing),
+  );
+  return (await Promise.all(added)).filter((entry) => entry !== undefined);
+}
+
+/** The entry of a new document. */
+export function create(entry: Entry, how: 'put' | 'add' = 'put'): Promise<void> {
+  return transact(['documents'], 'readwrite', ({ documents: d }) => {
+    d[how](entry);
+    return nothing;
+  });
+}
+
+/** What the list shows of a document that its owner works on: its name, when it was changed, and a small picture. */
+export async function portray(
+  mine: Mine,
+  shown: Partial<Pick<Entry, 'name' | 'time'>>,
+  picture?: string,
+): Promise<void> {
+  await owned(mine, [], (entry) => Object.assign(entry, shown));
+  if (picture !== undefined)
+    await transact(['pictures'], 'readwrite', ({ pictures }) => {
+      pictures.put(picture, mine.id);
+      return nothing;
+    });
+}
+
+/** Deletes a document, or brings it back. It goes for good when its time is over. */
+export async function setDeleted(id: string, on: boolean): Promise<void> {
+  await changed(id, { deleted: on ? Date.now() : 0 });
+}
+
+/** Names a document that nobody works on: as if it had been asked last. */
+export async function rename(id: string, name: string): Promise<void> {
+  if (!(await changed(id, { name }))) return;
+  const stored = await read(id);
+  await write(id, [{ seq: stored.last + 1, request: naming(name) }]);
+}
+
+const naming = (name: string): Request => ({ kind: 'command', command: { scene: { rename: name } } });
+
+/** A copy under another number and name. */
+export async function copy(id: string, to: string, name: string): Promise<void> {
+  const [stored, picture, entry] = await Promise.all([
+    read(id),
+    transact(['pictures'], 'readonly', ({ pictures }) => {
+      const get = pictures.get(id);
+      return () => get.result as string | undefined;
+    }),
+    changed(id, {}),
+  ]);
+  if (!entry) return;
+  await transact(['documents', 'pictures', 'wholes', 'journal'], 'readwrite', (stores) => {
+    stores.documents.put({ ...entry, id: to, name, time: Date.now(), owner: '', deleted: 0 });
+    if (picture !== undefined) stores.pictures.put(picture, to);
+    if (stored.whole) stores.wholes.put(stored.whole, to);
+    for (const { seq, request } of stored.written) stores.journal.put(request, [to, seq]);
+    stores.journal.put(naming(name), [to, stored.last + 1]);
+    return nothing;
+  });
+}
+
+// Contents ---------------------------------------------------------------------------------------------------------
+
+/** The whole file, and the last row that is in it. */
+interface Whole {
+  bytes: Uint8Array;
+  seq: number;
+}
+
+interface Stored {
+  whole: Whole | undefined;
+  /** What is not in the whole file. */
+  written: Written[];
+  /** The number of the last row. */
+  last: number;
+}
+
+/** The rows are read first: what is cut off meanwhile, since it was written whole, is in the whole file read then. */
+async function read(id: string): Promise<Stored> {
+  const rows = await transact(['journal'], 'readonly', ({ journal }) => {
+    const [keys, all] = [journal.getAllKeys(rowsOf(id)), journal.getAll(rowsOf(id))];
+    return () =>
+      (keys.result as [string, number][]).map(([, seq], i) => ({
+        seq,
+        request: all.result[i] as Written['request'],
+      }));
+  });
+  const found = await transact(['wholes'], 'readonly', ({ wholes }) => {
+    const get = wholes.get(id);
+    return () => get.result as Whole | Uint8Array | undefined;
+  });
+  // Once the bytes alone stood there, and no row that is in them stayed.
+  const whole = found instanceof Uint8Array ? { bytes: found, seq: 0 } : found;
+  const inWhole = whole?.seq ?? 0;
+  const last = Math.max(inWhole, rows.at(-1)?.seq ?? 0);
+  return { whole, written: rows.filter((row) => row.seq > inWhole), last };
+}
+
+/** The requests of a journal as they were corrected later. */
+export function corrected(written: readonly Written[]): Row[] {
+  const rows = new Map<number, Row>();
+  for (const { seq, request } of written) {
+    if (request.kind === 'struck') rows.delete(request.seq);
+    else if (request.kind !== 'mended') rows.set(seq, { seq, request });
+    else if (rows.has(request.seq)) rows.set(request.seq, { seq: request.seq, request: request.request });
+  }
+  return [...rows.values()];
+}
+
+/** Rows that nobody has written yet. They are on their way when the base is open, and wait for no other document. */
+function write(id: string, rows: readonly Written[]): Promise<void> {
+  return transact(['journal'], 'readwrite', ({ journal }) => {
+    for (const { seq, request } of rows) journal.add(request, [id, seq]);
+    return nothing;
+  }).catch((e: Error) => {
+    throw e.name === 'ConstraintError' ? new TakenError('taken') : e;
+  });
 }
 
 /**
@@ -175,120 +354,42 @@ export async function documents(): Promise<(Entry & { picture: string })[]> {
  *
  * The last row of what an owner gets is its own: it says nothing but that the row is taken.
  */
-export function take(id: string, owner?: string): Promise<Kept | undefined> {
-  return transact(owner === undefined ? 'readonly' : 'readwrite', ({ documents: d, wholes, journal }) => {
-    const [entry, whole] = [d.get(id), wholes.get(id)];
-    const [keys, requests] = [journal.getAllKeys(rowsOf(id)), journal.getAll(rowsOf(id))];
-    const rows = (): Row[] =>
-      keys.result.map((key, i) => ({ seq: seqOf(key), request: requests.result[i] as Request }));
-    let mine: Row[] = [];
-    requests.onsuccess = () => {
-      if (owner === undefined || !entry.result) return;
-      const taken: Row = { seq: seqOf(keys.result.at(-1)) + 1, request: { kind: 'abandon' } };
-      mine = [taken];
-      d.put({ ...entry.result, owner });
-      journal.put(taken.request, [id, taken.seq]);
-    };
-    return () => entry.result && { entry: entry.result, whole: whole.result, rows: [...rows(), ...mine] };
-  });
+export async function take(id: string, owner?: string): Promise<Kept | undefined> {
+  const entry = await changed(id, owner === undefined ? {} : { owner });
+  if (!entry) return undefined;
+  for (;;) {
+    const { whole, written, last } = await read(id);
+    const kept = { entry, whole: whole?.bytes, rows: corrected(written) };
+    if (owner === undefined) return kept;
+    const taken: Row = { seq: last + 1, request: { kind: 'abandon' } };
+    try {
+      await write(id, [taken]);
+      return { ...kept, rows: [...kept.rows, taken] };
+    } catch (e) {
+      // The old owner wrote something meanwhile: that belongs to it, too.
+      if (!(e instanceof TakenError)) throw e;
+    }
+  }
 }
 
 /**
- * Writes what was asked, in rows that nobody has written yet. All is on its way when this returns. Not guaranteed: that
- * it is kept if the page ends while another change of these stores, such as `portray`, is still being written.
- *
- * Relaxed: with the system, not yet on the disk. Who waits for the disk has the next rows wait too, and a page that ends
- * takes with it what waits. What is written strictly at the next rest brings these rows to the disk as well.
+ * Writes what was asked. Relaxed: with the system, not yet on the disk. Waiting for the disk would have the next rows
+ * wait too, and a page that ends takes with it what waits. What is written strictly brings these rows to the disk as
+ * well.
  */
-export function append(entry: Entry, rows: readonly Row[]): Promise<void> {
-  return transact(
-    'readwrite',
-    ({ documents: d, journal }, _, commit) => {
-      for (const { seq, request } of rows) journal.add(request, [entry.id, seq]);
-      d.put({ ...entry, time: Date.now() });
-      commit();
-      return nothing;
-    },
-    'relaxed',
-  ).catch((e: Error) => {
-    throw e.name === 'ConstraintError' ? new TakenError('taken') : e;
-  });
-}
-
-/** Writes a row again that bears more than it did. */
-export function mend(mine: Mine, { seq, request }: Row): Promise<void> {
-  return owned(mine, ({ id }, { journal }) => journal.put(request, [id, seq]));
-}
-
-/** Forgets a request that was refused. */
-export function strike(mine: Mine, seq: number): Promise<void> {
-  return owned(mine, ({ id }, { journal }) => journal.delete([id, seq]));
+export function append({ id }: Mine, rows: readonly Written[]): Promise<void> {
+  return write(id, rows);
 }
 
 /** Writes the document whole; what was asked before, up to `seq`, is in it. */
-export function writeWhole(fresh: Entry, whole: Uint8Array, seq: number): Promise<void> {
-  const change = (entry: Entry, { wholes, journal }: Stores): void => {
+export async function writeWhole(fresh: Entry, bytes: Uint8Array, seq: number): Promise<void> {
+  const change = (entry: Entry, { wholes }: Stores<'documents' | 'wholes'>): void => {
     entry.time = Date.now();
-    wholes.put(whole, entry.id);
-    journal.delete(rowsOf(entry.id, seq));
+    wholes.put({ bytes, seq } satisfies Whole, entry.id);
   };
-  return owned(fresh, change, fresh);
-}
-
-/** What the list shows of a document that its owner works on: its name and a small picture. */
-export function portray(mine: Mine, name: string, picture?: string): Promise<void> {
-  const change = (entry: Entry, { pictures }: Stores): void => {
-    entry.name = name;
-    if (picture !== undefined) pictures.put(picture, entry.id);
-  };
-  return owned(mine, change);
-}
-
-const naming = (name: string): Request => ({ kind: 'command', command: { scene: { rename: name } } });
-
-/** Names a document that nobody works on: as if it had been asked last. */
-export function rename(id: string, name: string): Promise<void> {
-  return transact('readwrite', ({ documents: d, journal }) => {
-    const [entry, last] = [d.get(id), journal.openKeyCursor(rowsOf(id), 'prev')];
-    last.onsuccess = () => {
-      if (!entry.result) return;
-      d.put({ ...entry.result, name });
-      journal.put(naming(name), [id, seqOf(last.result?.key) + 1]);
-    };
-    return nothing;
-  });
-}
-
-/** A copy under another number and name. */
-export function copy(id: string, to: string, name: string): Promise<void> {
-  return transact('readwrite', ({ documents: d, pictures, wholes, journal }) => {
-    const [entry, picture, whole] = [d.get(id), pictures.get(id), wholes.get(id)];
-    const rows = journal.openCursor(rowsOf(id));
-    let last = 0;
-    rows.onsuccess = () => {
-      const row = rows.result;
-      if (row) {
-        last = seqOf(row.key);
-        journal.put(row.value, [to, last]);
-        row.continue();
-      } else if (entry.result) {
-        d.put({ ...entry.result, id: to, name, time: Date.now(), owner: '', deleted: 0 });
-        if (picture.result) pictures.put(picture.result, to);
-        if (whole.result) wholes.put(whole.result, to);
-        journal.put(naming(name), [to, last + 1]);
-      }
-    };
-    return nothing;
-  });
-}
-
-/** Deletes a document, or brings it back. It goes for good when its time is over. */
-export function setDeleted(id: string, on: boolean): Promise<void> {
-  return transact('readwrite', ({ documents: d }) => {
-    const entry = d.get(id);
-    entry.onsuccess = () => {
-      if (entry.result) d.put({ ...entry.result, deleted: on ? Date.now() : 0 });
-    };
+  await owned(fresh, ['wholes'], change, { fresh, durability: 'strict' });
+  await transact(['journal'], 'readwrite', ({ journal }) => {
+    journal.delete(rowsOf(fresh.id, seq));
     return nothing;
   });
 }

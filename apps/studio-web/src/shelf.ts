@@ -47,7 +47,8 @@ export async function openShelf(page: ShelfEvents): Promise<void> {
 
   const fill = async (): Promise<void> => {
     await here.keeper.settled();
-    const [all, open] = await Promise.all([documents(), held()]);
+    const [found, open] = await Promise.all([documents(), held()]);
+    const all = found.map((e) => ({ ...e, name: e.name || t('app.untitled') }));
     const [kept, deleted] = [all.filter((e) => e.deleted === 0), all.filter((e) => e.deleted > 0)];
     list.replaceChildren(...kept.map((e) => row(e, open.has(e.id) && e.id !== here.current)));
     if (kept.length === 0) list.append(el('li', { class: 'muted' }, t('documents.none')));
