@@ -47,7 +47,9 @@ pub use colonize::{ColonizeSpec, Colonized, Fate, colonize, colonize_from, regro
 pub use competition::{Competed, CompetitionSpec, Cycle, compete};
 pub use envelope::{Envelope, Region};
 pub use error::{GrowthError, LsystemError, MeshFault};
-pub use guided::{BrushStroke, Guided, GuidedSpec, StartBud, guide, guide_from};
+pub use guided::{
+    BrushStroke, Growing, GrowthStep, Guided, GuidedChange, GuidedSpec, StartBud, guide, guide_from,
+};
 pub use leaves::{FoliageSpec, LeafCount, add_leaves};
 pub use look::{Bark, BladeForm, BladeSpec, BlossomSpec, Look};
 pub use lsystem::{LeafMark, Lsystem, LsystemTree, OAK_RULES, grow_lsystem};

@@ -17,7 +17,7 @@ use crate::colonize::{grow_bole, plant_roots};
 use crate::{GrowthError, JointId, Obstacles, Skeleton};
 use room::Room;
 
-pub use self::spec::{BrushStroke, GuidedSpec};
+pub use self::spec::{BrushStroke, GuidedChange, GuidedSpec};
 
 /// A bud that growth starts from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,16 +72,7 @@ pub fn guide(
     run: &Run<'_>,
     report: &mut Report,
 ) -> Result<Guided, GrowthError> {
-    let mut skeleton = plant_roots(roots, obstacles, run)?;
-    let room = Room::new(spec, roots.to_vec(), obstacles, &run.budget)?;
-    spec.check()?;
-    let mut buds = Vec::new();
-    for root in 0..skeleton.len() {
-        let top =
-            grow_bole(&mut skeleton, JointId::new(root), room.foot(), spec.internode_m, obstacles, run)?;
-        buds.push(StartBud { joint: top, heading: DVec3::Y, wakes: 0 });
-    }
-    grow(skeleton, &buds, &room, spec, seed, run, report)
+    Growing::plant(roots, obstacles, spec, seed, run)?.through(run, report)
 }
 
 /// As [`guide`], from wood that is there already: only `buds` grow, in the order given; earlier ones count as older.
@@ -99,51 +90,7 @@ pub fn guide_from(
     run: &Run<'_>,
     report: &mut Report,
 ) -> Result<Guided, GrowthError> {
-    if skeleton.is_empty() {
-        return Err(GrowthError::NoRoots);
-    }
-    let roots = skeleton.position.iter().zip(&skeleton.parent).filter(|(_, p)| p.is_none());
-    let room = Room::new(spec, roots.map(|(p, _)| *p).collect(), obstacles, &run.budget)?;
-    grow(skeleton, buds, &room, spec, seed, run, report)
-}
-
-fn grow(
-    skeleton: Skeleton,
-    buds: &[StartBud],
-    room: &Room<'_>,
-    spec: &GuidedSpec,
-    seed: Seed,
-    run: &Run<'_>,
-    report: &mut Report,
-) -> Result<Guided, GrowthError> {
-    let numbers = spec.check()?;
-    let started = run.clock.now_ms();
-    let mut stand = Stand::new(skeleton, buds, room, spec, &numbers, seed);
-    let mut grew = 0;
-    for round in 0..spec.rounds {
-        run.cancel.check()?;
-        if stand.skeleton.len() >= spec.max_joints as usize {
-            let n = stand.skeleton.len();
-            report.warn(
-                "growth-stopped",
-                format!("growth stopped in round {round} at {n} joints, the most allowed"),
-            );
-            break;
-        }
-        run.budget.check(
-            Counted::Joints,
-            stand.skeleton.len() as u64,
-            "lower rounds, alpha or max_joints, or make internode_m longer",
-        )?;
-        if !stand.round(round, run)? {
-            break;
-        }
-        grew = round + 1;
-    }
-    stand.shed();
-    report.book("grow", run.clock.now_ms() - started);
-    debug_assert_eq!(stand.skeleton.validate().next(), None, "a grown skeleton is sound");
-    Ok(Guided { skeleton: stand.skeleton, markers: stand.markers_made, died: stand.died, rounds: grew })
+    Growing::from_wood(skeleton, buds, obstacles, spec, seed, run)?.through(run, report)
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -185,17 +132,58 @@ struct Look {
 /// Buds of one job of a parallel map.
 const GROUP: usize = 32;
 
-struct Stand<'a> {
+/// What a round left.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GrowthStep {
+    /// Buds that may grow on.
+    Goes,
+    /// No living bud.
+    Ended,
+    /// As many joints as are allowed; nothing was grown.
+    Full,
+}
+
+/// Guided growth that can be looked at after every round, and go on with other numbers.
+///
+/// What was changed, and when, is part of the [record](Growing::record): grown from it, the tree is the same one.
+///
+/// ```
+/// use base::{Report, Run, Seed};
+/// use glam::DVec3;
+/// use growth::{Growing, GuidedChange, GuidedSpec, Obstacles, guide};
+/// let (spec, none, run, seed) = (GuidedSpec::default(), Obstacles::none(), Run::plain(), Seed::new(1));
+/// let mut growing = Growing::plant(&[DVec3::ZERO], &none, &spec, seed, &run)?;
+/// for round in 0..8 {
+///     if round == 4 {
+///         growing.change(GuidedChange { branch_angle_deg: Some(80.0), ..GuidedChange::default() }, &run)?;
+///     }
+///     growing.step(&run)?;
+/// }
+/// let record = growing.record();
+/// let tree = growing.finish();
+/// assert_eq!(tree, guide(&[DVec3::ZERO], &none, &record, seed, &run, &mut Report::default())?);
+/// # Ok::<(), growth::GrowthError>(())
+/// ```
+#[derive(Debug)]
+pub struct Growing<'a> {
     skeleton: Skeleton,
     /// Whether each joint continues the axis of its parent.
     is_main: Vec<bool>,
     /// Joints that were there before.
     given: usize,
     buds: Vec<Bud>,
-    room: &'a Room<'a>,
-    spec: &'a GuidedSpec,
-    numbers: &'a Numbers,
+    room: Room<'a>,
+    /// As it is asked at first.
+    asked: GuidedSpec,
+    /// With the changes so far.
+    spec: GuidedSpec,
+    numbers: Numbers,
     seed: Seed,
+    /// The next round.
+    round: u32,
+    grew: u32,
+    /// The next change of those that were asked at first.
+    next_change: usize,
     markers_made: usize,
     died: usize,
     /// Markers that buds have looked at.
@@ -210,13 +198,59 @@ fn place_key(p: DVec3) -> u64 {
     p.x.to_bits() ^ p.y.to_bits().rotate_left(21) ^ p.z.to_bits().rotate_left(42)
 }
 
-impl<'a> Stand<'a> {
+impl<'a> Growing<'a> {
+    /// A tree at each root; they compete.
+    ///
+    /// # Errors
+    /// [`GrowthError`]: numbers out of range, no roots, a root in an obstacle, cancelled.
+    pub fn plant(
+        roots: &[DVec3],
+        obstacles: &'a Obstacles,
+        spec: &GuidedSpec,
+        seed: Seed,
+        run: &Run<'_>,
+    ) -> Result<Self, GrowthError> {
+        let mut skeleton = plant_roots(roots, obstacles, run)?;
+        let room = Room::new(spec, roots.to_vec(), obstacles, &run.budget)?;
+        let numbers = spec.check()?;
+        let mut buds = Vec::new();
+        for root in 0..skeleton.len() {
+            let root = JointId::new(root);
+            let top = grow_bole(&mut skeleton, root, room.foot(), spec.internode_m, obstacles, run)?;
+            buds.push(StartBud { joint: top, heading: DVec3::Y, wakes: 0 });
+        }
+        Ok(Self::new(skeleton, &buds, room, spec, numbers, seed))
+    }
+
+    /// From wood that is there already: only `buds` grow, in the order given; earlier ones count as older.
+    ///
+    /// An `envelope` is relative to the skeleton's roots. Buds of joints that are not there are left out.
+    ///
+    /// # Errors
+    /// As [`Growing::plant`].
+    pub fn from_wood(
+        skeleton: Skeleton,
+        buds: &[StartBud],
+        obstacles: &'a Obstacles,
+        spec: &GuidedSpec,
+        seed: Seed,
+        run: &Run<'_>,
+    ) -> Result<Self, GrowthError> {
+        if skeleton.is_empty() {
+            return Err(GrowthError::NoRoots);
+        }
+        let roots = skeleton.position.iter().zip(&skeleton.parent).filter(|(_, p)| p.is_none());
+        let room = Room::new(spec, roots.map(|(p, _)| *p).collect(), obstacles, &run.budget)?;
+        let numbers = spec.check()?;
+        Ok(Self::new(skeleton, buds, room, spec, numbers, seed))
+    }
+
     fn new(
         skeleton: Skeleton,
         buds: &[StartBud],
-        room: &'a Room<'a>,
-        spec: &'a GuidedSpec,
-        numbers: &'a Numbers,
+        room: Room<'a>,
+        spec: &GuidedSpec,
+        numbers: Numbers,
         seed: Seed,
     ) -> Self {
         let given = skeleton.len();
@@ -248,17 +282,119 @@ impl<'a> Stand<'a> {
             buds,
             skeleton,
             room,
-            spec,
+            asked: spec.clone(),
+            spec: spec.clone(),
             numbers,
             seed,
+            round: 0,
+            grew: 0,
+            next_change: 0,
             markers_made: 0,
             died: 0,
             looks: AtomicU64::new(0),
         }
     }
 
+    /// All rounds that are asked.
+    fn through(mut self, run: &Run<'_>, report: &mut Report) -> Result<Guided, GrowthError> {
+        let started = run.clock.now_ms();
+        while self.round < self.asked.rounds {
+            match self.step(run)? {
+                GrowthStep::Goes => {}
+                GrowthStep::Ended => break,
+                GrowthStep::Full => {
+                    let (round, n) = (self.round, self.skeleton.len());
+                    report.warn(
+                        "growth-stopped",
+                        format!("growth stopped in round {round} at {n} joints, the most allowed"),
+                    );
+                    break;
+                }
+            }
+        }
+        let grown = self.finish();
+        report.book("grow", run.clock.now_ms() - started);
+        Ok(grown)
+    }
+
+    /// Other numbers from the next round on, in the place of those that were asked at first for later rounds.
+    ///
+    /// # Errors
+    /// [`GrowthError`]: numbers out of range; all is as it was then.
+    pub fn change(&mut self, change: GuidedChange, run: &Run<'_>) -> Result<(), GrowthError> {
+        let change = GuidedChange { round: self.round, ..change };
+        self.apply(&change, run)?;
+        self.asked.changes.truncate(self.next_change);
+        self.asked.changes.push(change);
+        self.next_change += 1;
+        Ok(())
+    }
+
+    fn apply(&mut self, change: &GuidedChange, run: &Run<'_>) -> Result<(), GrowthError> {
+        let spec = change.applied(&self.spec);
+        let numbers = spec.check()?;
+        if change.strokes.is_some() {
+            self.room.set_strokes(&spec.strokes, &run.budget)?;
+        }
+        (self.spec, self.numbers) = (spec, numbers);
+        Ok(())
+    }
+
+    /// Grows one round, however many were asked.
+    ///
+    /// Guaranteed: wood that is there does not change, new joints come after it; the same bits for any thread count.
+    /// Cost: living buds x markers x their neighbours.
+    ///
+    /// # Errors
+    /// [`GrowthError`]: cancelled, or over budget. What was grown before stays.
+    pub fn step(&mut self, run: &Run<'_>) -> Result<GrowthStep, GrowthError> {
+        run.cancel.check()?;
+        if self.skeleton.len() >= self.spec.max_joints as usize {
+            return Ok(GrowthStep::Full);
+        }
+        run.budget.check(
+            Counted::Joints,
+            self.skeleton.len() as u64,
+            "lower rounds, alpha or max_joints, or make internode_m longer",
+        )?;
+        while let Some(change) = self.asked.changes.get(self.next_change).filter(|c| c.round <= self.round) {
+            self.apply(&change.clone(), run)?;
+            self.next_change += 1;
+        }
+        let goes = self.grow(self.round, run)?;
+        self.round += 1;
+        if goes {
+            self.grew = self.round;
+        }
+        Ok(if goes { GrowthStep::Goes } else { GrowthStep::Ended })
+    }
+
+    /// The wood so far, with the twigs that [`finish`](Self::finish) sheds.
+    pub const fn skeleton(&self) -> &Skeleton {
+        &self.skeleton
+    }
+
+    /// Rounds so far.
+    pub const fn rounds(&self) -> u32 {
+        self.round
+    }
+
+    /// What grows the tree as it is now: what was asked, the changes until now, and as many rounds as were grown.
+    pub fn record(&self) -> GuidedSpec {
+        let changes = self.asked.changes.iter().filter(|c| c.round < self.round).cloned().collect();
+        GuidedSpec { rounds: self.round, changes, ..self.asked.clone() }
+    }
+
+    /// Sheds and ends.
+    pub fn finish(mut self) -> Guided {
+        self.shed();
+        debug_assert_eq!(self.skeleton.validate().next(), None, "a grown skeleton is sound");
+        let Self { skeleton, markers_made: markers, died, grew: rounds, .. } = self;
+        Guided { skeleton, markers, died, rounds }
+    }
+
     /// One round; whether any bud is left that may still grow.
-    fn round(&mut self, round: u32, run: &Run<'_>) -> Result<bool, GrowthError> {
+    fn grow(&mut self, round: u32, run: &Run<'_>) -> Result<bool, GrowthError> {
         let awake: Vec<u32> = (0_u32..)
             .zip(&self.buds)
             .filter(|(_, b)| b.life == Life::Alive && b.wakes <= round)
@@ -317,7 +453,7 @@ impl<'a> Stand<'a> {
 
     /// N markers in a bud's cone, but for those that find no room.
     fn markers_of(&self, b: usize, round: u32, near: &mut Vec<usize>) -> Vec<Marker> {
-        let (bud, spec) = (&self.buds[b], self.spec);
+        let (bud, spec) = (&self.buds[b], &self.spec);
         let at = self.skeleton.position[bud.joint as usize];
         let (lo, hi) = (spec.near * spec.internode_m, spec.far * spec.internode_m);
         let (mean, sigma) = (0.5 * (lo + hi), 0.25 * (hi - lo).max(1e-12));
@@ -353,7 +489,7 @@ impl<'a> Stand<'a> {
         grid: &KdTree,
         near: &mut Vec<usize>,
     ) -> Look {
-        let (bud, spec) = (&self.buds[b as usize], self.spec);
+        let (bud, spec) = (&self.buds[b as usize], &self.spec);
         let at = self.skeleton.position[bud.joint as usize];
         let n = own.len();
         if n == 0 {

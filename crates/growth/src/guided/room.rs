@@ -110,6 +110,16 @@ impl<'a> Room<'a> {
         Ok(Self { region, tubes: Tubes::new(&spec.strokes, budget)?, obstacles })
     }
 
+    /// Other strokes in the place of those that guide.
+    pub(super) fn set_strokes(
+        &mut self,
+        strokes: &[BrushStroke],
+        budget: &Budget,
+    ) -> Result<(), GrowthError> {
+        self.tubes = Tubes::new(strokes, budget)?;
+        Ok(())
+    }
+
     /// What guides a marker at a point; `None` where none may be. Without strokes, weight 1 and no direction.
     pub(super) fn at(&self, p: DVec3, near: &mut Vec<usize>) -> Option<Guide> {
         if let Some((region, roots)) = &self.region

@@ -83,6 +83,62 @@ pub struct GuidedSpec {
     /// Most joints, default 1 million.
     #[schemars(range(min = 1, max = 2_147_483_648_u64))]
     pub max_joints: u32,
+    /// Other numbers from some round on, in ascending order of rounds: the record of a hand that turned them while the
+    /// tree grew. Default none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub changes: Vec<GuidedChange>,
+}
+
+/// Numbers of [`GuidedSpec`] that change while a tree grows; what is left out stays as it was.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct GuidedChange {
+    /// The first round that has them, from 0, at most 1000.
+    #[schemars(range(min = 0, max = 1000))]
+    pub round: u32,
+    /// Vigour per unit of free space, above 0 and at most 100.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1e-6, max = 100.0))]
+    pub alpha: Option<f64>,
+    /// Share of the main axis at a fork (apical control), 0 to 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub lambda: Option<f64>,
+    /// Between a shoot and the buds at its side, 0 to 180 degrees.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0, max = 180.0), extend("x-unit" = "deg"))]
+    pub branch_angle_deg: Option<f64>,
+    /// How strongly others' markers push away, 0 to 10.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0, max = 10.0))]
+    pub repulsion: Option<f64>,
+    /// Markers of one bud in one round, 4 to 10000.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 4, max = 10000))]
+    pub markers: Option<u32>,
+    /// Weight and light.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tropisms: Option<Vec<Tropism>>,
+    /// All strokes that guide from then on.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub strokes: Option<Vec<BrushStroke>>,
+}
+
+impl GuidedChange {
+    /// The numbers after it.
+    pub(super) fn applied(&self, spec: &GuidedSpec) -> GuidedSpec {
+        let Self { round: _, alpha, lambda, branch_angle_deg, repulsion, markers, tropisms, strokes } = self;
+        GuidedSpec {
+            alpha: alpha.unwrap_or(spec.alpha),
+            lambda: lambda.unwrap_or(spec.lambda),
+            branch_angle_deg: branch_angle_deg.unwrap_or(spec.branch_angle_deg),
+            repulsion: repulsion.unwrap_or(spec.repulsion),
+            markers: markers.unwrap_or(spec.markers),
+            tropisms: tropisms.as_ref().unwrap_or(&spec.tropisms).clone(),
+            strokes: strokes.as_ref().unwrap_or(&spec.strokes).clone(),
+            ..spec.clone()
+        }
+    }
 }
 
 spec::schemas!(GuidedSpec);
@@ -108,6 +164,7 @@ impl Default for GuidedSpec {
             most_per_shoot: 3,
             shed_up_to: 1,
             max_joints: 1_000_000,
+            changes: Vec::new(),
         }
     }
 }
@@ -146,6 +203,7 @@ impl GuidedSpec {
 }
 
 /// What follows from checked numbers.
+#[derive(Debug)]
 pub(super) struct Numbers {
     pub(super) phyllotaxis: Phyllotaxis,
     pub(super) pull: DVec3,
@@ -154,6 +212,23 @@ pub(super) struct Numbers {
 impl GuidedSpec {
     pub(super) fn check(&self) -> Result<Numbers, GrowthError> {
         spec::check(self)?;
+        let numbers = self.check_now()?;
+        let mut later = Self { changes: Vec::new(), ..self.clone() };
+        let mut round = 0;
+        for change in &self.changes {
+            if change.round < round {
+                let range = "in ascending order";
+                return Err(GrowthError::Field { field: "changes.round", range, value: change.round.into() });
+            }
+            round = change.round;
+            later = change.applied(&later);
+            later.check_now()?;
+        }
+        Ok(numbers)
+    }
+
+    /// What ranges do not say, of the numbers of one round.
+    fn check_now(&self) -> Result<Numbers, GrowthError> {
         within("far", self.far, self.near, 100.0, "above `near` and at most 100 internodes")?;
         for stroke in &self.strokes {
             let points = stroke.points.len();

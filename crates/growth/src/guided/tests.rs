@@ -125,3 +125,90 @@ fn buds_that_all_look_at_one_another_are_refused() {
     let Err(GrowthError::OverBudget(over)) = got else { panic!("refused") };
     assert!(matches!(over.what, Counted::Looks | Counted::Points), "{over}");
 }
+
+/// Rounds by hand, with these changes, each before its round.
+fn by_hand(rounds: u32, changes: &[GuidedChange]) -> (GuidedSpec, Guided) {
+    let (none, run) = (Obstacles::none(), Run::plain());
+    let mut growing =
+        Growing::plant(&[DVec3::ZERO], &none, &GuidedSpec::default(), Seed::new(3), &run).expect("sound");
+    for round in 0..rounds {
+        for change in changes.iter().filter(|c| c.round == round) {
+            growing.change(change.clone(), &run).expect("sound");
+        }
+        let before = growing.skeleton().clone();
+        growing.step(&run).expect("sound");
+        let after = growing.skeleton();
+        assert_eq!(after.position[..before.len()], before.position, "wood stays where it is");
+    }
+    (growing.record(), growing.finish())
+}
+
+#[test]
+fn a_record_grows_the_same_tree() {
+    let line: Vec<DVec3> = (0..9).map(|i| DVec3::new(0.3 * f64::from(i), 1.5, 0.0)).collect();
+    let stroke = BrushStroke { points: line, radius_m: vec![0.6], pull: 1.0 };
+    let changes = [
+        GuidedChange { round: 2, branch_angle_deg: Some(85.0), ..GuidedChange::default() },
+        GuidedChange { round: 5, alpha: Some(4.0), lambda: Some(0.4), ..GuidedChange::default() },
+        GuidedChange { round: 5, markers: Some(20), repulsion: Some(0.0), ..GuidedChange::default() },
+        GuidedChange {
+            round: 7,
+            tropisms: Some(Vec::new()),
+            strokes: Some(vec![stroke]),
+            ..GuidedChange::default()
+        },
+    ];
+    let again = |spec: &GuidedSpec| {
+        let (none, run) = (Obstacles::none(), Run::plain());
+        guide(&[DVec3::ZERO], &none, spec, Seed::new(3), &run, &mut Report::default()).expect("sound")
+    };
+    let mut grown = Vec::new();
+    for count in 0..=changes.len() {
+        let (record, tree) = by_hand(10, &changes[..count]);
+        assert_eq!((record.rounds, record.changes.len()), (10, count));
+        let text = serde_json::to_string(&record).expect("written");
+        assert_eq!(serde_json::from_str::<GuidedSpec>(&text).expect("read"), record);
+        assert_eq!(again(&record), tree);
+        assert!(!grown.contains(&tree), "each change shows: {count}");
+        grown.push(tree);
+    }
+    // Held before its end, a record has nothing of what was to come.
+    let spec = GuidedSpec { rounds: 10, changes: changes.to_vec(), ..GuidedSpec::default() };
+    let (none, run) = (Obstacles::none(), Run::plain());
+    let mut growing = Growing::plant(&[DVec3::ZERO], &none, &spec, Seed::new(3), &run).expect("sound");
+    for _ in 0..4 {
+        growing.step(&run).expect("sound");
+    }
+    assert_eq!(growing.record(), by_hand(4, &changes).0);
+    // A hand that turns a number earlier takes the place of what was asked for later.
+    let turned = GuidedChange { alpha: Some(1.0), ..GuidedChange::default() };
+    growing.change(turned, &run).expect("sound");
+    while growing.rounds() < 10 {
+        growing.step(&run).expect("sound");
+    }
+    let record = growing.record();
+    assert_eq!(record.changes.iter().map(|c| c.round).collect::<Vec<_>>(), [2, 4]);
+    assert_eq!(again(&record), growing.finish());
+}
+
+#[test]
+fn a_change_that_is_wrong_changes_nothing() {
+    let (none, run) = (Obstacles::none(), Run::plain());
+    let spec = GuidedSpec::default();
+    let mut growing = Growing::plant(&[DVec3::ZERO], &none, &spec, Seed::new(3), &run).expect("sound");
+    growing.step(&run).expect("sound");
+    let bad_stroke = BrushStroke { points: vec![DVec3::NAN; 2], radius_m: vec![0.6], pull: 1.0 };
+    for bad in [
+        GuidedChange { alpha: Some(-1.0), ..GuidedChange::default() },
+        GuidedChange { markers: Some(0), ..GuidedChange::default() },
+        GuidedChange { strokes: Some(vec![bad_stroke]), ..GuidedChange::default() },
+    ] {
+        assert!(growing.change(bad.clone(), &run).is_err());
+        let spec = GuidedSpec { changes: vec![GuidedChange { round: 1, ..bad }], ..GuidedSpec::default() };
+        assert!(Growing::plant(&[DVec3::ZERO], &none, &spec, Seed::new(3), &run).is_err());
+    }
+    assert_eq!(growing.record(), GuidedSpec { rounds: 1, ..spec });
+    let back = |round| GuidedChange { round, ..GuidedChange::default() };
+    let spec = GuidedSpec { changes: vec![back(3), back(1)], ..GuidedSpec::default() };
+    assert!(Growing::plant(&[DVec3::ZERO], &none, &spec, Seed::new(3), &run).is_err());
+}
