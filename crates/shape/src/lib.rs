@@ -15,6 +15,7 @@
 //! | `sketch_branch`, `fill`, `leaves` | drawn and brushed branches; regrowth and silhouettes; leaves |
 //! | `mask` | an outline as markers in space |
 //! | `pick` | which branch a ray means |
+//! | `thumb` | turns and leans from a touchpad or stick |
 //! | `tool` | gestures of a hand as state machines |
 //! | `outcome` | done, or why not, in plain words |
 
@@ -32,6 +33,7 @@ mod outcome;
 mod pick;
 mod pipes;
 mod sketch_branch;
+mod thumb;
 mod tool;
 
 pub use apply::{Applied, Context, Shaping, apply};
@@ -39,4 +41,5 @@ pub use edit::{Destination, EDITS_SCHEMA, EditsFile, HandEdit, LeafRegion, MOST_
 pub use key::{AxisKey, Found, KindWord, Mark};
 pub use outcome::{Changed, Outcome, Why};
 pub use pick::{Pick, Ray, Reach, pick};
+pub use thumb::{Thumb, lean_of_thumb};
 pub use tool::{Input, Pointer, Response, Tool, ToolKind};

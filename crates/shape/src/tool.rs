@@ -3,8 +3,8 @@
 //! `Input (rays) -> Tool -> Response { preview, commit }`
 
 use base::ops::PI;
-use glam::{DVec2, DVec3};
-use plant::{AxisId, Plant};
+use glam::{DQuat, DVec2, DVec3};
+use plant::{AxisId, AxisKind, Plant};
 
 use crate::edit::{Destination, HandEdit, LeafRegion, Turn, ViewPlane};
 use crate::key::AxisKey;
@@ -14,9 +14,10 @@ use crate::pick::{Pick, Ray, Reach, nearest, pick};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ToolKind {
-    /// Drag a branch around its base, in the plane that faces the viewer.
+    /// Drag a branch around its base: in the plane that faces the viewer, or wherever the tip of a controller goes.
     Rotate,
-    /// Drag a branch along its bearer; what stands on the ground, over the ground.
+    /// Drag a branch along its bearer, or with the tip of a controller to whatever bears it then; what stands on the
+    /// ground, over the ground.
     Move,
     /// Click a branch: it is cut where it was clicked, or all of it.
     Prune {
@@ -136,6 +137,9 @@ enum State {
         about: DVec3,
         last: Option<DVec3>,
         angle: f64,
+        /// Where a tracked tip took hold, from the pivot, and how it turned the branch since.
+        tip: Option<DVec3>,
+        swing: DQuat,
     },
     Sliding {
         pick: Pick,
@@ -232,8 +236,9 @@ impl Tool {
             (ToolKind::Rotate, Some((pick, key))) => {
                 let pivot = plant.axis_points(pick.axis)[0];
                 let about = -p.forward.normalize_or(DVec3::NEG_Z);
-                let last = hand(p, pivot, about);
-                State::Turning { pick, key, pivot, about, last, angle: 0.0 }
+                let tip = p.tip.map(|t| t - pivot).filter(|t| t.is_finite());
+                let last = hand(p, pivot, about).filter(|_| tip.is_none());
+                State::Turning { pick, key, pivot, about, last, angle: 0.0, tip, swing: DQuat::IDENTITY }
             }
             (ToolKind::Move, Some((pick, key))) => {
                 let on = plant.axis(pick.axis).bearer.map(|n| plant.nodes.axis[n.index()]);
@@ -302,7 +307,14 @@ impl Tool {
             State::Idle => {
                 return Response { picked: pick(plant, &p.ray, self.reach), ..Response::default() };
             }
-            State::Turning { pick, pivot, about, last, angle, .. } => {
+            State::Turning { pick, pivot, tip: Some(from), swing, .. } => {
+                let length = geom::polyline_length3(plant.axis_points(pick.axis));
+                let to = p.tip.map(|t| t - *pivot).filter(|t| t.is_finite() && t.length() > DEAD * length);
+                if let (Some(a), Some(b)) = (from.try_normalize(), to.and_then(DVec3::try_normalize)) {
+                    *swing = DQuat::from_rotation_arc(a, b);
+                }
+            }
+            State::Turning { pick, pivot, about, last, angle, tip: None, .. } => {
                 let length = geom::polyline_length3(plant.axis_points(pick.axis));
                 let now = hand(p, *pivot, *about).filter(|b| b.length() > DEAD * length);
                 if let (Some(a), Some(b)) = (*last, now) {
@@ -311,13 +323,14 @@ impl Tool {
                 }
                 *last = now.or(*last);
             }
-            State::Sliding { bearer, grabbed, start, to, .. } => {
-                *to = match bearer {
-                    Some((key, axis)) => {
+            State::Sliding { pick, bearer, grabbed, start, to, .. } => {
+                *to = match (bearer, p.tip) {
+                    (Some(_), Some(tip)) => wood_near(plant, tip, pick.axis).or_else(|| to.take()),
+                    (Some((key, axis)), None) => {
                         let at = (share_under(plant, *axis, p) + *grabbed).clamp(0.0, 1.0);
                         Some(Destination::Place { axis: key.clone(), at })
                     }
-                    None => on_ground(p, *start).map(|q| Destination::ByM((q - *start).with_y(0.0))),
+                    (None, _) => on_ground(p, *start).map(|q| Destination::ByM((q - *start).with_y(0.0))),
                 };
             }
             State::Clicking { .. } => {}
@@ -363,8 +376,8 @@ impl Tool {
         let seed = self.seed;
         match &self.state {
             State::Idle => None,
-            State::Turning { key, about, angle, .. } => {
-                let turn = Turn { about: *about, degrees: angle * (180.0 / PI) };
+            State::Turning { key, about, angle, swing, .. } => {
+                let turn = turn_of(*about, *angle, *swing);
                 (turn.degrees.abs() >= LEAST_TURN_DEG).then(|| HandEdit::Rotate { axis: key.clone(), turn })
             }
             State::Sliding { key, to, .. } => Some(HandEdit::Move { axis: key.clone(), to: to.clone()? }),
@@ -427,6 +440,19 @@ impl Stroking {
     }
 }
 
+/// A swing, and then a turn about an axis (radians), as one turn.
+fn turn_of(about: DVec3, angle: f64, swing: DQuat) -> Turn {
+    if swing == DQuat::IDENTITY {
+        return Turn { about, degrees: angle * (180.0 / PI) };
+    }
+    let (s, c) = base::ops::sin_cos(0.5 * angle);
+    let q = DQuat::from_vec4((about.normalize_or(DVec3::Y) * s).extend(c)) * swing;
+    let q = if q.w < 0.0 { -q } else { q };
+    let axis = q.xyz();
+    let degrees = 2.0 * base::ops::atan2(axis.length(), q.w) * (180.0 / PI);
+    Turn { about: axis.normalize_or(about), degrees }
+}
+
 /// The pointer in the plane of a rotation, from its pivot.
 fn hand(p: &Pointer, pivot: DVec3, about: DVec3) -> Option<DVec3> {
     let at = p.tip.or_else(|| p.ray.meets(pivot, about))?;
@@ -436,6 +462,32 @@ fn hand(p: &Pointer, pivot: DVec3, about: DVec3) -> Option<DVec3> {
 
 fn on_ground(p: &Pointer, start: DVec3) -> Option<DVec3> {
     p.tip.or_else(|| p.ray.meets(start, DVec3::Y))
+}
+
+/// The place on a shoot nearest to a point, on none that `but` bears or is.
+fn wood_near(plant: &Plant, at: DVec3, but: AxisId) -> Option<Destination> {
+    let borne = |mut axis: AxisId| {
+        // No further than there are axes: a sound plant has no circle.
+        for _ in &plant.axes {
+            if axis == but {
+                return true;
+            }
+            let Some(bearer) = plant.axis(axis).bearer else { return false };
+            axis = plant.nodes.axis[bearer.index()];
+        }
+        false
+    };
+    let shoots = plant.axes.iter().enumerate();
+    let shoots = shoots.filter(|(_, a)| !matches!(a.kind, AxisKind::Petiole | AxisKind::Root));
+    let (axis, _, share) = shoots
+        .map(|(i, _)| AxisId::new(i))
+        .filter(|axis| at.is_finite() && !borne(*axis))
+        .map(|axis| {
+            let (gap, share) = geom::nearest_on_polyline3(plant.axis_points(axis), at);
+            (axis, gap, share)
+        })
+        .reduce(|a, b| if b.1 < a.1 { b } else { a })?;
+    Some(Destination::Place { axis: AxisKey::of(plant, axis)?, at: share })
 }
 
 fn leaned(normal: DVec3, right: DVec3, by: f64) -> DVec3 {

@@ -121,6 +121,50 @@ fn a_thumbstick_rotates_exactly_and_a_slip_does_nothing() {
 }
 
 #[test]
+fn a_branch_follows_a_controller_out_of_the_plane() {
+    let plant = tree();
+    let base = DVec3::Y * 2.0;
+    let start = DVec3::new(1.6, 2.0, 0.0);
+    let mut tool = Tool::new(ToolKind::Rotate);
+    for to in [DVec3::new(0.0, 3.0, 1.0), DVec3::new(-1.6, 2.0, 0.0), DVec3::new(1.2, 2.3, -1.0)] {
+        let way = [start, start.lerp(to, 0.5) + DVec3::Z * 0.1, to].map(controller);
+        let edit = drag(&mut tool, &plant, &way).commit.expect("rotated");
+        let end = *after(&plant, edit).axis_points(AxisId::new(1)).last().expect("some");
+        let wanted = base + (to - base).normalize() * 2.0;
+        assert!(end.distance(wanted) < 1e-6, "{to}: {end}, not {wanted}");
+    }
+    // A thumb turns it further about the view direction, by exactly so much.
+    tool.handle(&plant, &Input::Down(controller(start)));
+    let up = DVec3::new(0.0, 2.0, 1.6);
+    tool.handle(&plant, &Input::Move(controller(up)));
+    tool.handle(&plant, &Input::Twist(90.0_f64.to_radians()));
+    let edit = tool.handle(&plant, &Input::Up(controller(up))).commit.expect("rotated");
+    let turned = after(&plant, edit);
+    let end = *turned.axis_points(AxisId::new(1)).last().expect("some");
+    assert!(end.distance(base + DVec3::Z * 2.0) < 1e-6, "the view direction: {end}");
+    let twig = turned.axis_points(AxisId::new(2));
+    let along = (twig[8] - twig[0]).normalize();
+    assert!(along.distance(DVec3::NEG_X) < 1e-6, "upwards before, to the left now: {along}");
+}
+
+#[test]
+fn a_controller_drops_a_branch_on_the_wood_that_is_nearest() {
+    let plant = tree();
+    let twig = DVec3::new(1.0, 2.6, 0.0);
+    let drop = |to: DVec3| {
+        let way = [twig, twig.lerp(to, 0.5), to].map(controller);
+        let edit = drag(&mut Tool::new(ToolKind::Move), &plant, &way).commit.expect("moved");
+        let moved = after(&plant, edit);
+        let bearer = moved.axis(AxisId::new(2)).bearer.expect("borne");
+        (moved.nodes.axis[bearer.index()].index(), moved.nodes.position[bearer.index()])
+    };
+    let (bearer, at) = drop(DVec3::new(0.1, 1.0, 0.2));
+    assert!(bearer == 0 && at.distance(DVec3::Y) < 0.3, "{bearer} {at}");
+    let (bearer, at) = drop(DVec3::new(1.9, 2.1, -0.1));
+    assert!(bearer == 1 && at.distance(DVec3::new(1.9, 2.0, 0.0)) < 0.3, "{bearer} {at}");
+}
+
+#[test]
 fn a_branch_slides_along_its_bearer_and_a_stem_over_the_ground() {
     let plant = tree();
     let way = [mouse(1.0, 2.0), mouse(0.9, 2.5), mouse(0.8, 3.0)];

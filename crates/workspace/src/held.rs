@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use burgeon::document::PlantId;
 use burgeon::plant::Plant;
-use burgeon::shape::{HandEdit, Tool};
+use burgeon::shape::{HandEdit, Thumb, Tool};
 
 /// A gesture that is going on, or was and waits for its command.
 #[derive(Clone, Debug)]
@@ -17,4 +17,8 @@ pub(crate) struct Held {
     pub(crate) large: bool,
     /// What letting go would make, or made: shown until the command comes.
     pub(crate) preview: Option<Arc<HandEdit>>,
+    /// The thumb on its pad or stick.
+    pub(crate) thumb: Thumb,
+    /// How far the drawing plane leans by it, radians.
+    pub(crate) lean: f64,
 }

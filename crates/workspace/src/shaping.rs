@@ -6,9 +6,11 @@ use std::sync::Arc;
 
 use burgeon::document::{CommandError, Document, Editor, PlantId, ShapeCommand};
 use burgeon::geom;
-use burgeon::glam::DVec3;
+use burgeon::glam::{DVec2, DVec3};
 use burgeon::plant::{AxisId, AxisKind, Plant};
-use burgeon::shape::{self, AxisKey, HandEdit, Input, Pick, Pointer, Ray, Reach, Tool, ToolKind};
+use burgeon::shape::{
+    self, AxisKey, HandEdit, Input, Pick, Pointer, Ray, Reach, Thumb, Tool, ToolKind, lean_of_thumb,
+};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -99,13 +101,16 @@ pub struct ShapePointer {
     pub up: [f64; 3],
     /// 0 to 1.
     pub pressure: f64,
+    /// Where the tip of a tracked controller is: it works there, and not on a plane.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tip: Option<[f64; 3]>,
 }
 
 impl From<ShapePointer> for Pointer {
     fn from(p: ShapePointer) -> Self {
         let v = DVec3::from_array;
         let ray = Ray { origin: v(p.origin), direction: v(p.direction) };
-        Self { ray, forward: v(p.forward), up: v(p.up), pressure: p.pressure, tip: None }
+        Self { ray, forward: v(p.forward), up: v(p.up), pressure: p.pressure, tip: p.tip.map(v) }
     }
 }
 
@@ -123,6 +128,9 @@ pub enum ShapeInput {
     Cancel,
     /// It turned what it holds, degrees.
     Twist(f64),
+    /// A thumb on its touchpad or stick, whose rim is 1, x to the right and y up; none: it was lifted. A branch that is
+    /// held turns with it; a plane that is drawn on leans by its distance from the centre.
+    Thumb(Option<[f64; 2]>),
     /// It changed its brush.
     Brush {
         /// How thick it is, metres.
@@ -176,6 +184,8 @@ pub struct ShapeAnswer {
     pub busy: bool,
     /// What is shown of the plant is out of date.
     pub again: bool,
+    /// How far the branch that is held was turned, degrees.
+    pub turned_deg: Option<f64>,
 }
 
 impl Workspace {
@@ -205,7 +215,8 @@ impl Workspace {
             let edits = self.editor.document().plant(id).map_or(0, |p| p.settings().edits.len());
             let tool = Tool::new(kind).with(reach, edits as u64 + 1);
             let large = self.scene.get(id).is_some_and(|p| p.item.counts.triangles > COARSE_ABOVE);
-            self.held = Some(Held { tool, plant: id, before: plant, large, preview: None });
+            let (thumb, lean) = (Thumb::default(), 0.0);
+            self.held = Some(Held { tool, plant: id, before: plant, large, preview: None, thumb, lean });
         }
         let Some(held) = &mut self.held else { return Err(WorkspaceError::Internal("no tool")) };
         let (tool, plant) = (&mut held.tool, &held.before);
@@ -214,6 +225,17 @@ impl Workspace {
             ShapeInput::Up(at) => tool.handle(plant, &Input::Up(at.into())),
             ShapeInput::Cancel => tool.handle(plant, &Input::Cancel),
             ShapeInput::Twist(degrees) => tool.handle(plant, &Input::Twist(degrees * DEGREE)),
+            ShapeInput::Thumb(at) => {
+                let at = at.map(DVec2::from_array);
+                let turn = held.thumb.turn(at);
+                let by = if matches!(tool.kind(), ToolKind::Sketch { .. }) {
+                    let lean = at.map_or(0.0, lean_of_thumb);
+                    lean - core::mem::replace(&mut held.lean, lean)
+                } else {
+                    turn
+                };
+                tool.handle(plant, &Input::Twist(by))
+            }
             ShapeInput::Brush { radius_m, density } => tool.handle(plant, &Input::Brush(radius_m, density)),
             ShapeInput::Move(moves) => {
                 let moves = moves.into_iter().map(|p| tool.handle(plant, &Input::Move(p.into())));
@@ -227,7 +249,11 @@ impl Workspace {
         if !busy && now.is_none() {
             self.held = None;
         }
-        Ok(ShapeAnswer { picked, commit: said.commit, busy, again: now != had })
+        let turned_deg = match now.as_deref() {
+            Some(HandEdit::Rotate { turn, .. }) => Some(turn.degrees),
+            _ => None,
+        };
+        Ok(ShapeAnswer { picked, commit: said.commit, busy, again: now != had, turned_deg })
     }
 
     /// Only looks what is under the pointer.
