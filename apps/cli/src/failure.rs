@@ -25,6 +25,11 @@ impl Failure {
         Self::Bad(format!("{}: {}", shown(path), burgeon::brief(&what.to_string())))
     }
 
+    /// The same of bad input, with the file that it came from.
+    pub(crate) fn of(self, path: &Path) -> Self {
+        if let Self::Bad(line) = self { Self::at(path, line) } else { self }
+    }
+
     /// The operating system refused.
     pub(crate) fn io(path: &Path, doing: &str, error: &std::io::Error) -> Self {
         let reason = match error.kind() {

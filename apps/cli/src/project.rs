@@ -136,9 +136,9 @@ pub(crate) fn make(
     Ok((made.plant.ok_or_else(none)?.clone(), made.model.clone(), lods, made.item.clone()))
 }
 
-/// Writes a project.
-pub(crate) fn save(outputs: &mut Outputs, path: &Path, document: &Document) -> Outcome {
+/// Writes a project, which `option` asks for.
+pub(crate) fn save(outputs: &mut Outputs, option: &'static str, path: &Path, document: &Document) -> Outcome {
     let bytes = document::write_project(document, burgeon::VERSION)
         .map_err(|e| Failure::Bug(format!("the project cannot be written: {e}")))?;
-    outputs.write("--save", path, |file| Ok(file.write_all(&bytes)?))
+    outputs.write(option, path, |file| Ok(file.write_all(&bytes)?))
 }

@@ -28,8 +28,9 @@ pub(crate) fn of_file(path: &Path) -> Outcome<Option<Document>> {
 }
 
 /// Options that a scene's plants have settings for.
-const OF_ONE_DRAWING: [&str; 19] = [
+const OF_ONE_DRAWING: [&str; 20] = [
     "seed",
+    "split",
     "spec",
     "classes",
     "read_as",

@@ -69,7 +69,7 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
         edits::some_done(path, &item, asked)?;
     }
     if let Some((path, document)) = args.save.as_ref().zip(edited) {
-        project::save(&mut outputs, path, &document)?;
+        project::save(&mut outputs, "--save", path, &document)?;
     }
     item.warnings.splice(0..0, told.warnings.iter().map(ToString::to_string));
     if args.common.reports() {

@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use burgeon::document::DocumentPlant;
+use burgeon::document::{CommandError, Document, DocumentPlant, Editor, PlantCommand, SketchCommand};
 use burgeon::formats::{DrawingError, Drawings, PngCache, ReadDrawing, read_drawings};
 use burgeon::sketch::SketchSpec;
 use burgeon::skin::SkinSpec;
 use burgeon::{
-    ItemReport, LeafTemplate, Made, MakeError, Run, RunReport, Seed, SketchOptions, make_from_sketch,
+    ItemReport, LeafTemplate, Made, MakeError, Run, RunReport, Seed, SketchOptions, SplitError,
+    make_from_sketch,
 };
 
 use crate::args::{PlantFormat, ReadingArgs, Seen, SketchArgs, SurfaceArgs};
@@ -19,7 +20,7 @@ use crate::failure::{Failure, Outcome};
 use crate::files::{self, Goal, Kind};
 use crate::machine::{Machine, Progress};
 use crate::output::Outputs;
-use crate::{names, output, picture, say};
+use crate::{names, output, picture, project, say};
 
 pub(crate) fn sketch(args: &SketchArgs) -> Outcome {
     let machine = Machine::new(&args.common);
@@ -49,6 +50,9 @@ fn check_used(args: &SketchArgs, batch: bool) -> Outcome {
         Some(path) => Some(files::plant_writable(path)?),
         None => None,
     };
+    given.only_if(!batch, &["split"], "one drawing", "several make several plants anyway")?;
+    let leaf = "a project keeps no leaf of another file";
+    given.only_if(args.split.is_none(), &["leaf_template"], "models and pictures", leaf)?;
     given.check_picture(args.png.is_some(), &args.picture)?;
     given.check_surface(Seen::new(format, args.png.as_ref(), &args.common))?;
     given.check_axes(args.qsm.is_some() || format.is_some_and(|f| !f.fixed_axes()))
@@ -145,6 +149,7 @@ impl<'a> Job<'a> {
             ("-o", self.args.output.as_ref()),
             ("--png", self.args.png.as_ref()),
             ("--qsm", self.args.qsm.as_ref()),
+            ("--split", self.args.split.as_ref()),
             ("--report", self.args.common.report.as_ref()),
         ];
         let mut outputs = Outputs::new(&outputs, &self.inputs())?;
@@ -171,11 +176,12 @@ impl<'a> Job<'a> {
             qsm: self.args.qsm.clone(),
             of_many: false,
         };
+        if let Some(path) = &self.args.split {
+            let document = self.split(&read, &machine.run()).map_err(|failure| failure.of(input))?;
+            project::save(&mut outputs, "--split", path, &document)?;
+        }
         let clocked = (machine, [read_ms, machine.whole_ms()], &machine.run());
-        let made = self.made(&read, &machine.run()).map_err(|failure| match failure {
-            Failure::Bad(line) => Failure::at(input, line),
-            other => other,
-        })?;
+        let made = self.made(&read, &machine.run()).map_err(|failure| failure.of(input))?;
         let mut item = self.write(made, &read, &target, clocked, &mut PngCache::new(), &mut outputs)?;
         item.timings_ms.total = machine.whole_ms();
         report.ok = 1;
@@ -214,6 +220,35 @@ impl<'a> Job<'a> {
             MakeError::Cancelled(_) => Failure::Cancelled,
             other => Failure::Bad(other.to_string()),
         })
+    }
+
+    /// The drawing as a document in which each of its plants is one.
+    fn split(&self, input: &Input, run: &Run<'_>) -> Outcome<Document> {
+        let SketchOptions { spec, skin, classes, photo, .. } = self.options(input);
+        let document = Document::from_drawing(&input.read.drawing);
+        let [plant] = document.plants() else { return Err(Failure::Bug("a drawing is one plant".into())) };
+        let (id, ids) = (plant.id(), plant.strokes().iter().map(|s| s.id).collect::<Vec<_>>());
+        let mut commands = vec![
+            SketchCommand::SetSketch(Box::new(spec)).of(id),
+            SketchCommand::SetSkin(skin).of(id),
+            PlantCommand::SetSeed(self.seed(input.project.as_deref())).of(id),
+        ];
+        commands.extend(photo.map(|p| SketchCommand::SetPhoto(Box::new(p)).of(id)));
+        let said = classes.iter().filter_map(|(&row, &class)| Some((*ids.get(row as usize)?, class)));
+        commands
+            .extend(said.map(|(stroke, class)| SketchCommand::SetClass(vec![stroke], Some(class)).of(id)));
+        let mut editor = Editor::new(document);
+        for command in commands {
+            match editor.run(command) {
+                Ok(()) | Err(CommandError::Nothing(_)) => {}
+                Err(e) => return Err(Failure::Bad(e.to_string())),
+            }
+        }
+        burgeon::split(&mut editor, id, run).map_err(|e| match e {
+            SplitError::Make(MakeError::Cancelled(_)) => Failure::Cancelled,
+            other => Failure::Bad(other.to_string()),
+        })?;
+        Ok(editor.document().clone())
     }
 
     /// Writes a plant's files, which are not yet in place.

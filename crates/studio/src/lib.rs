@@ -30,6 +30,7 @@ mod scanned;
 mod scene;
 mod shaping;
 mod shoot;
+mod split;
 mod template;
 mod trees;
 mod venation;
@@ -58,6 +59,7 @@ pub use scene::{
 };
 pub use shaping::{BranchRow, EditReport, branch_rows, edits_schema, edits_template};
 pub use shoot::{ShootSpec, make_shoot};
+pub use split::{SplitError, split};
 pub use template::{LeafTemplate, TemplateError};
 
 pub use trees::{

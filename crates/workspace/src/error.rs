@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use burgeon::document::{ArchiveError, CommandError, PhotoError, ProjectError};
 use burgeon::formats::{DrawingError, ModelError, WriteError};
-use burgeon::{Coded, SceneError, Stopped, Told, TreeError};
+use burgeon::{Coded, SceneError, SplitError, Stopped, Told, TreeError};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -79,6 +79,9 @@ pub enum WorkspaceError {
     /// The plant cannot be made.
     #[error(transparent)]
     Scene(#[from] SceneError),
+    /// The drawing stays one plant.
+    #[error(transparent)]
+    Split(#[from] SplitError),
     /// The picture is no photograph that is taken.
     #[error(transparent)]
     Photo(#[from] PhotoError),
@@ -134,6 +137,7 @@ burgeon::coded!(WorkspaceError {
     Self::Model(e) => e, ModelError;
     Self::Tree(e) => e, TreeError;
     Self::Scene(e) => e, SceneError;
+    Self::Split(e) => e, SplitError;
     Self::Photo(e) => e, PhotoError;
     Self::Write(e) => e, WriteError;
     Self::Archive(e) => e, ArchiveError;

@@ -11,7 +11,7 @@ use burgeon::formats::{self, DrawingFormat, read_drawings};
 use burgeon::glam::DVec2;
 use burgeon::ink::{Drawing, Stroke};
 use burgeon::mesh::Model;
-use burgeon::{Evaluator, ItemReport, Preset, SceneEvaluator, tree_settings};
+use burgeon::{Evaluator, ItemReport, Preset, Run, SceneEvaluator, tree_settings};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -49,6 +49,11 @@ pub enum Action {
         plant: PlantId,
         /// The key of the preset.
         key: String,
+    },
+    /// Puts the plants that a drawing shows in its place, each a drawing of its own.
+    Split {
+        /// The drawing.
+        plant: PlantId,
     },
 }
 
@@ -200,6 +205,13 @@ impl Workspace {
             Action::Preset { plant, key } => {
                 let document::TreeSettings { preset, spec, .. } = preset(key)?;
                 self.run(document::TreeCommand::SetSpec(preset, spec).of(*plant))
+            }
+            Action::Split { plant } => {
+                self.let_go();
+                burgeon::split(&mut self.editor, *plant, &Run::plain())?;
+                self.current = self.editor.document().plants().last().map(DocumentPlant::id);
+                (self.guest, self.draft) = (None, None);
+                Ok(())
             }
         }
     }

@@ -22,7 +22,7 @@ pub(crate) struct SketchArgs {
     pub(crate) inputs: Vec<PathBuf>,
     /// The model: .glb, .obj, .ply, .stl or .usda; or the plant's structure: .mtg (multiscale tree graph). For
     /// several drawings a folder, which is created and gets one file each.
-    #[arg(long, short, value_name = "OUT", required_unless_present_any = ["png", "qsm", "report", "json"])]
+    #[arg(long, short, value_name = "OUT", required_unless_present_any = ["png", "qsm", "split", "report", "json"])]
     pub(crate) output: Option<PathBuf>,
     /// Format of the files in a folder.
     #[arg(long, value_enum, default_value_t = PlantFormatWord::Glb)]
@@ -30,6 +30,9 @@ pub(crate) struct SketchArgs {
     /// Also write the branches as cylinders, one a row, as `TreeQSM` has them. For several drawings a folder.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) qsm: Option<PathBuf>,
+    /// Also write a project in which every plant of the drawing is a plant of its own, where it was drawn.
+    #[arg(long, value_name = "FILE.burgeon")]
+    pub(crate) split: Option<PathBuf>,
     /// Also make a picture. For several drawings a folder, which is created and gets one picture each.
     #[arg(long, value_name = "FILE.png")]
     pub(crate) png: Option<PathBuf>,
@@ -53,6 +56,7 @@ const SKETCH_EXAMPLES: &str = "Examples:
   burgeon sketch daisy.svg -o daisy.glb --png daisy.png
   burgeon sketch trees.ndjson -o trees/ --format obj --png trees/
   burgeon sketch oak.svg -o oak.mtg --qsm oak.csv               structure for programs of the field
+  burgeon sketch bed.svg --split bed.burgeon                    a row of flowers: each a plant of its own
   burgeon sketch daisy.svg --report daisy.json                  what was each stroke taken for?
   burgeon sketch daisy.svg -o daisy.glb --classes daisy.json    ... corrected in that file
 
