@@ -27,6 +27,7 @@ import { endTour, firstRun, tour } from './tour';
 import { note } from './ui';
 import { PlantView } from './view/view';
 import { ViewModes } from './viewmode';
+import { Door, type Mode } from './vr/door';
 import type { SketchState } from './wire';
 
 /** The sheet of a plant that is not drawn. */
@@ -42,6 +43,7 @@ export class App implements Page {
   readonly view: PlantView | undefined;
   readonly shaping: Shaping | undefined;
   readonly modes: ViewModes;
+  readonly door: Door;
   readonly documents = this.makeDocuments();
   readonly scenery: Scenery;
   readonly files = this.makeFiles();
@@ -79,6 +81,7 @@ export class App implements Page {
       (name) => this.show.parts.buttons.get(name)!,
       (accept, act) => this.files.pickFile(accept, act),
     );
+    this.door = this.makeDoor();
     this.show = new Show(this, this.build());
     this.showAll();
   }
@@ -242,6 +245,7 @@ export class App implements Page {
       run: (c) => this.session.run(c),
       select: (plant) => this.session.select(plant),
       add: (maker) => void this.panels.add(maker),
+      split: (plant) => this.session.act({ split: { plant } }),
       gizmo: (mode) => void this.view?.setGizmo(mode),
     });
   }
@@ -318,6 +322,24 @@ export class App implements Page {
       refused: (why) => note(t('note.refused', { why }), 'bad'),
       changed: () => this.show.shaping(),
     });
+  }
+
+  private makeDoor(): Door {
+    const { session } = this;
+    const events = {
+      undo: () => session.ask({ kind: 'undo' }),
+      redo: () => session.ask({ kind: 'redo' }),
+      changed: (on: boolean) => {
+        document.body.dataset['headset'] = on ? 'on' : 'off';
+        this.show.shaping();
+      },
+    };
+    return new Door(this.view, this.shaping, events, () => this.show.headset());
+  }
+
+  /** Goes into the headset, or comes out of it. */
+  immerse(mode: Mode): void {
+    this.door.pass(mode).catch((e: Error) => note(t('note.headset', { why: e.message }), 'bad'));
   }
 
   // The page -----------------------------------------------------------------------------------------------------

@@ -235,6 +235,7 @@ function viewTools(buttons: Buttons, page: Page): HTMLElement {
     small('stage', 'sun'),
     small('camera', 'camera'),
     small('film', 'picture'),
+    small('headset', 'headset'),
   );
 }
 

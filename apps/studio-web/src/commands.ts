@@ -18,6 +18,7 @@ import { GUIDES } from './view/guides';
 import { PRESETS } from './view/moods';
 import type { PlantView } from './view/view';
 import type { ViewModes } from './viewmode';
+import type { Door, Mode } from './vr/door';
 
 /** The parts of the page that commands work on. */
 export interface Page {
@@ -29,12 +30,14 @@ export interface Page {
   readonly modes: ViewModes;
   readonly documents: Documents;
   readonly scenery: Scenery;
+  readonly door: Door;
   readonly files: Files;
   readonly clipboard: Clipboard;
   readonly panels: Panels;
   readonly theme: Theme;
   setTool(tool: Tool): void;
   choose(strokes: number[]): void;
+  immerse(mode: Mode): void;
   toggleMirror(): void;
   toggleStats(): void;
   switchLanguage(): void;
@@ -175,6 +178,18 @@ const TABLE = [
     label: `side.of.${side}` as const,
     run: (p: Page) => p.scenery.side(side),
   })),
+  {
+    id: 'headset',
+    label: 'vr.enter',
+    when: (p) => p.door.modes.includes('immersive-vr'),
+    run: (p) => p.immerse('immersive-vr'),
+  },
+  {
+    id: 'pass-through',
+    label: 'vr.enter.through',
+    when: (p) => p.door.modes.includes('immersive-ar'),
+    run: (p) => p.immerse('immersive-ar'),
+  },
   { id: 'camera-keep', label: 'camera.keep', run: (p) => p.scenery.keepCamera() },
   { id: 'walk', label: 'walk.walk', keys: 'N', run: (p) => p.scenery.walk('walk') },
   { id: 'fly', label: 'walk.fly', keys: 'Shift+N', run: (p) => p.scenery.walk('fly') },
@@ -210,6 +225,15 @@ const TABLE = [
   },
   { id: 'duplicate', label: 'act.duplicate', keys: 'Ctrl+D', run: (p) => p.clipboard.duplicate() },
   { id: 'clear', label: 'act.clear', run: (p) => p.session.draw('clear') },
+  {
+    id: 'split',
+    label: 'act.split',
+    when: (p) => p.session.drawn !== null,
+    run: (p) => {
+      const { plant } = p.session;
+      if (plant) p.session.act({ split: { plant: plant.id } });
+    },
+  },
   {
     id: 'remove',
     keys: 'Del',

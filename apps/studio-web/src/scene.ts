@@ -9,6 +9,8 @@ export interface SceneEvents {
   run(command: Command): void;
   select(plant: number): void;
   add(maker: MakerWord): void;
+  /** Puts the plants of a drawing in its place. */
+  split(plant: number): void;
   gizmo(mode: Gizmo | undefined): void;
 }
 
@@ -193,6 +195,7 @@ export class SceneList {
         { class: 'menu' },
         item('scene.rename', () => this.rename(p)),
         item('scene.duplicate', () => this.events.run({ scene: { duplicate: [p.id, [ASIDE, 0, 0]] } })),
+        ...(p.maker === 'sketch' ? [item('scene.split', () => this.events.split(p.id))] : []),
         item('scene.delete', () => this.events.run({ scene: { remove: [p.id] } }), 'danger'),
       ),
       p.name,

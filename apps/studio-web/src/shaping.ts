@@ -11,6 +11,7 @@ import type {
   ShapeCommand,
   ShapeInput,
   ShapePointer,
+  ShapeReach,
 } from './wire';
 import { number, t, tOf, type TextKey } from './text';
 import { CLIMB_KEYS, SHAPE_TOOLS, type ShapeTool } from './tools';
@@ -26,6 +27,9 @@ export interface ShapingEvents {
   /** The tool was taken up or laid down. */
   changed(): void;
 }
+
+/** How far beside a branch a hand in space means it, metres of the plant. */
+export type SpaceReach = Omit<ShapeReach, 'bearers'>;
 
 /** How the pointer of a tool leaves a trace. */
 const TRACES: Partial<Record<ShapeTool, 'line' | 'brush' | 'outline'>> = {
@@ -48,6 +52,8 @@ const NEAR_TOUCH = 22;
 /** A step of the wheel, while a branch or a plane is held. */
 const TWIST_DEG = 5;
 const STILL = 5;
+/** Stands for the pointer of a hand in space. */
+const IN_SPACE = -1;
 /** A view of this width, pixels, has room for the list beside a plant. */
 const ROOMY = 600;
 
@@ -102,6 +108,13 @@ export class Shaping {
   private hover: ShapePointer | undefined;
   private clicked: ShapePointer | undefined;
   private pointerId: number | undefined;
+  /** A hand in space: how far it reaches, and the tool of its gesture, if that is not the chosen one. */
+  private space: SpaceReach | undefined;
+  private once: ShapeTool | undefined;
+  private thumbed = false;
+  /** The branch that is meant: its course and that of all that it bears, if one is. */
+  onLight: (points: Float32Array | undefined) => void = () => {};
+  onHeard: (answer: ShapeAnswer) => void = () => {};
   private from: [number, number] = [0, 0];
   private at: [number, number] | undefined;
   private distance: number | undefined;
@@ -502,7 +515,8 @@ export class Shaping {
 
   private wire(): HeldTool {
     const { settings: s, radius: radius_m } = this;
-    switch (this.tool) {
+    const word = this.once ?? this.tool;
+    switch (word) {
       case undefined:
         return 'pick';
       case 'prune':
@@ -516,8 +530,49 @@ export class Shaping {
       case 'leaves':
         return { leaves: { radius_m, keep: s.more ? 2 : 0.25 } };
       default:
-        return this.tool;
+        return word;
     }
+  }
+
+  // A hand in space -----------------------------------------------------------------------------------------------
+
+  /** Begins a gesture, with another tool than the chosen one if that is said; whether it did. */
+  begin(at: ShapePointer, reach: SpaceReach, tool?: ShapeTool): boolean {
+    if (!this.tool || this.isBusy || !this.isPossible) return false;
+    [this.pointerId, this.space, this.once] = [IN_SPACE, reach, tool];
+    this.moves = [];
+    void this.send({ down: at });
+    return true;
+  }
+
+  follow(at: ShapePointer): void {
+    if (this.pointerId !== IN_SPACE) return;
+    this.moves.push(at);
+    void this.pump();
+  }
+
+  /** The thumb on its stick, which turns what is held; undefined: it lets go of it. */
+  thumb(at: [number, number] | undefined): void {
+    if (this.pointerId !== IN_SPACE || (at === undefined && !this.thumbed)) return;
+    this.thumbed = at !== undefined;
+    void this.send({ thumb: at ?? null });
+  }
+
+  async end(at: ShapePointer): Promise<void> {
+    if (this.pointerId === IN_SPACE) await this.finish(at);
+  }
+
+  /** Between gestures: what would be taken. */
+  hoverAt(at: ShapePointer, reach: SpaceReach): void {
+    if (!this.tool || this.isBusy || this.inFlight) return;
+    this.space = reach;
+    this.moves = [at];
+    void this.pump();
+  }
+
+  /** How large the brush is, in words. */
+  get brushText(): string {
+    return `${t('shape.radius')} ${Math.round(this.radius * 100) / 100} m`;
   }
 
   // Gestures -----------------------------------------------------------------------------------------------------
@@ -592,10 +647,23 @@ export class Shaping {
     if (!this.isBusy || e.pointerId !== this.pointerId) return;
     const at = this.pointer(e);
     const still = Math.hypot(e.clientX - this.from[0], e.clientY - this.from[1]) <= STILL;
+    if (!at) {
+      this.release();
+      return;
+    }
+    void this.finish(at, (answer) => {
+      if (!still || answer.commit || answer.picked) return;
+      const plant = this.view.plantAt(e.clientX, e.clientY);
+      if (plant !== undefined && plant !== this.plant?.id) this.events.select(plant);
+    });
+  }
+
+  /** Lets go, and asks for the edit that this makes; `then`: what else follows from the answer. */
+  private finish(at: ShapePointer, then: (answer: ShapeAnswer) => void = () => {}): Promise<unknown> {
     if (this.moves.length > 0) void this.send({ move: this.moves.splice(0) });
+    const answered = this.send({ up: at });
     this.release();
-    if (!at) return;
-    this.line = this.send({ up: at })
+    this.line = answered
       .then((answer) => {
         if (!this.isBusy) this.overlay.end();
         if (!answer) return;
@@ -605,16 +673,14 @@ export class Shaping {
           this.clicked = at;
           this.showStrip();
         }
-        if (still && !answer.commit && !answer.picked) {
-          const plant = this.view.plantAt(e.clientX, e.clientY);
-          if (plant !== undefined && plant !== this.plant?.id) this.events.select(plant);
-        }
+        then(answer);
       })
       .catch((e: unknown) => this.events.refused(String(e)));
+    return this.line;
   }
 
   private release(): void {
-    this.pointerId = undefined;
+    this.pointerId = this.space = this.once = undefined;
     this.movedAt = 0;
     this.view.setZoom(true);
   }
@@ -651,7 +717,10 @@ export class Shaping {
 
   /** One after another: the edit of a gesture is asked for before the next gesture begins, however long the core takes. */
   private send(input: ShapeInput): Promise<ShapeAnswer | undefined> {
-    const reach = { ...this.view.reach(this.near), bearers: CLIMBS.has(this.tool) ? this.bearers : 0 };
+    const reach = {
+      ...(this.space ?? this.view.reach(this.near)),
+      bearers: CLIMBS.has(this.once ?? this.tool) ? this.bearers : 0,
+    };
     const request: Request = { kind: 'shape', tool: this.wire(), reach, input };
     const answered = this.line.then(() => this.ask(request));
     this.line = answered;
@@ -662,6 +731,7 @@ export class Shaping {
     try {
       const answer = await this.events.ask<ShapeAnswer>(request);
       this.heard(answer);
+      this.onHeard(answer);
       return answer;
     } catch (e) {
       if (this.isBusy) {
@@ -699,11 +769,14 @@ export class Shaping {
     this.lit = axis;
     if (axis === undefined) {
       this.overlay.setBranch(undefined);
+      this.onLight(undefined);
       return;
     }
     this.events.ask<Float32Array>({ kind: 'branch', axis }).then(
       (points) => {
-        if (this.lit === axis) this.overlay.setBranch(points);
+        if (this.lit !== axis) return;
+        this.overlay.setBranch(points);
+        this.onLight(points);
       },
       () => undefined,
     );

@@ -13,6 +13,7 @@ import { number, t, tOf } from './text';
 import type { Theme } from './theme';
 import { el, icon, relabel } from './ui';
 import type { ViewModes } from './viewmode';
+import type { Door } from './vr/door';
 import type { DocumentState } from './wire';
 
 /** A flash of work shorter than this only disturbs. */
@@ -27,6 +28,7 @@ export interface Shown {
   readonly list: SceneList;
   readonly shaping: Shaping | undefined;
   readonly modes: ViewModes;
+  readonly door: Door;
   readonly theme: Theme;
 }
 
@@ -98,6 +100,7 @@ export class Show {
     const { buttons, stats } = this.parts;
     const { plant } = session;
     const locked = plant?.locked ?? false;
+    this.headset();
     this.press('wire', modes.mode === 'wire');
     this.press('skeleton', modes.mode === 'skeleton');
     this.press('stats', this.statsOn);
@@ -119,6 +122,16 @@ export class Show {
     this.press('shape', shaping.isOn);
     this.parts.buttons.get('shape')!.disabled = !shaping.isPossible && !shaping.isOn;
     document.body.dataset['shape'] = shaping.word ?? '';
+    this.shown.door.renewed();
+  }
+
+  /** The way into a headset is shown where there is one. */
+  headset(): void {
+    const { modes } = this.shown.door;
+    // Without a view there is no button.
+    const b = this.parts.buttons.get('headset');
+    if (b) b.hidden = !modes.includes('immersive-vr');
+    document.body.dataset['headsets'] = modes.join(' ');
   }
 
   emptySheet(): void {

@@ -103,6 +103,9 @@ export const CODES = {
   "spline-radius": ["point"],
   "spline-ragged": ["points", "columns"],
   "spline-too-few": ["needed", "given"],
+  "split-edited": ["name"],
+  "split-no-drawing": [],
+  "split-one-plant": ["name"],
   "step-too-long": ["step_m", "space_m"],
   "too-far": [],
   "too-many-edits": ["most"],
@@ -138,6 +141,13 @@ export type Action =
       /** The key of the preset. */
       key: string;
       /** The tree. */
+      plant: PlantId;
+    };
+  }
+  | /** Puts the plants that a drawing shows in its place, each a drawing of its own. */
+  {
+    split: {
+      /** The drawing. */
       plant: PlantId;
     };
   };
@@ -1245,6 +1255,8 @@ export type ShapeAnswer = {
   picked: 
     | Picked
     | null;
+  /** How far the branch that is held was turned, degrees. */
+  turned_deg: number | null;
 };
 
 /** What can be asked of the edits by hand of a plant. */
@@ -1286,6 +1298,10 @@ export type ShapeInput =
   {
     twist: number;
   }
+  | /** A thumb on its touchpad or stick, whose rim is 1, x to the right and y up; none: it was lifted. */
+  {
+    thumb: [number, number] | null;
+  }
   | /** It changed its brush. */
   {
     brush: {
@@ -1306,6 +1322,8 @@ export type ShapePointer = {
   origin: [number, number, number];
   /** 0 to 1. */
   pressure: number;
+  /** Where the tip of a tracked controller is: it works there, and not on a plane. */
+  tip?: [number, number, number] | null;
   /** Upwards in the view. */
   up: [number, number, number];
 };

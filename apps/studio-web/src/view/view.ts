@@ -82,6 +82,8 @@ export class PlantView {
   private rendered = 0;
   /** A tool is in the hand: the first button is the tool's, the second turns the view. */
   private hands = false;
+  /** A headset shows the scene. */
+  private immersing = false;
   /** Pixels on the left that something else covers. */
   private inset = 0;
   private wanted = 0;
@@ -466,6 +468,78 @@ export class PlantView {
     return reachOf(this.camera, this.chosen?.place, pixels / Math.max(1, this.element.clientHeight));
   }
 
+  // Headset ------------------------------------------------------------------------------------------------------
+
+  /** What a headset is to know of the stage: a metre of the plants, and half of their breadth, in its units. */
+  get immersed(): { metre: number; reach: number } {
+    const size = this.bounds().getSize(new THREE.Vector3());
+    return { metre: this.scale, reach: (Math.max(0, size.x, size.z) * this.scale) / 2 };
+  }
+
+  /** Metres of the chosen plant for each unit of the stage. */
+  get metresPerUnit(): number {
+    return 1 / (this.chosen?.place.getWorldScale(new THREE.Vector3()).x || 1);
+  }
+
+  /** The tip of a controller and where it points, both on the stage, in the coordinates of the chosen plant. */
+  pointerInSpace(tip: THREE.Vector3, direction: THREE.Vector3, pressure: number): ShapePointer | undefined {
+    const place = this.chosen?.place;
+    if (!place) return undefined;
+    const at = pointerOf(new THREE.Ray(tip, direction), this.rig.far, place, pressure);
+    return { ...at, tip: at.origin };
+  }
+
+  /** Lays something whose coordinates are those of the chosen plant onto it. */
+  lieOnPlant(thing: THREE.Object3D): void {
+    this.chosen?.place.add(thing);
+  }
+
+  /**
+   * Gives its pictures to a headset, until its session ends: of the same scene, from `rig`, with `things` in it. `frame`
+   * is called before each picture. `through`: the room is seen behind the plants.
+   */
+  async immerse(
+    session: XRSession,
+    floor: 'local-floor' | 'local',
+    rig: THREE.Group,
+    through: boolean,
+    { things, frame }: { things: THREE.Object3D[]; frame: (f: XRFrame, space: XRReferenceSpace) => void },
+  ): Promise<void> {
+    const { renderer, stage } = this;
+    const { far } = this.rig;
+    this.setFront(false);
+    this.rig.stopWalking();
+    const [place, turn, lens] = [far.position.clone(), far.quaternion.clone(), far.fov];
+    const { xr } = renderer;
+    const left = (): void => {
+      renderer.setAnimationLoop(null);
+      xr.enabled = false;
+      this.immersing = false;
+      rig.remove(far);
+      for (const thing of [rig, ...things]) thing.removeFromParent();
+      far.position.copy(place);
+      far.quaternion.copy(turn);
+      far.fov = lens;
+      stage.setBare(false);
+      this.resize();
+    };
+    session.addEventListener('end', left);
+    this.immersing = true;
+    xr.enabled = true;
+    xr.setReferenceSpaceType(floor);
+    far.clearViewOffset();
+    rig.add(far);
+    stage.scene.add(rig, ...things);
+    stage.setBare(through);
+    await xr.setSession(session);
+    renderer.setAnimationLoop((_, f) => {
+      const space = xr.getReferenceSpace();
+      if (f && space) frame(f, space);
+      stage.prepare(true, far.aspect, this.holder);
+      renderer.render(stage.scene, far);
+    });
+  }
+
   /** Points of the chosen plant (x, y, z, radius) on the screen: x, y and width, pixels; width 0 behind the eye. */
   project(points: Float32Array): Float32Array {
     const { clientWidth: w, clientHeight: h } = this.element;
@@ -718,7 +792,7 @@ export class PlantView {
 
   private resize(): void {
     const { clientWidth: w, clientHeight: h } = this.element;
-    if (w === 0 || h === 0) return;
+    if (w === 0 || h === 0 || this.immersing) return;
     this.renderer.setPixelRatio(this.slow ? this.grain : Math.min(2, devicePixelRatio || 1));
     this.renderer.setSize(w, h, false);
     this.lay();
@@ -727,7 +801,8 @@ export class PlantView {
   }
 
   private redraw(): void {
-    if (this.frame) return;
+    // A headset asks for its pictures itself.
+    if (this.frame || this.immersing) return;
     if (!this.rig.isLed) this.last = performance.now();
     // Drawing without a graphics card takes the whole processor: the pen goes before the picture.
     const wait = this.slow ? SLOW_MS - (performance.now() - this.rendered) : 0;
@@ -772,6 +847,7 @@ export class PlantView {
   }
 
   private render(): void {
+    if (this.immersing) return;
     const { camera, pipeline } = this;
     this.guides.face(camera);
     const through = pipeline && (this.isFine || (this.stage.current.blur > 0 && !this.front));

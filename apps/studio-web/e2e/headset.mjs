@@ -1,0 +1,224 @@
+// A headset and its controllers, emulated in the page (iwer): in, shape, out again; what was done stays.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { begin, changed, data, drop, until } from './journeys.mjs';
+
+const BUSH = 'name = "bush"\n[method]\nkind = "competition"\npoints = 260\nlifespan = 2\n';
+const IWER = readFileSync(new URL('../node_modules/iwer/build/iwer.min.js', import.meta.url), 'utf8');
+const WIDE = { viewport: { width: 1360, height: 760 } };
+
+/** Puts a headset onto the page before it loads. */
+async function wear(page, model) {
+  await page.addInitScript(IWER);
+  await page.addInitScript((name) => {
+    window.device = new globalThis.IWER.XRDevice(globalThis.IWER[name]);
+    window.device.installRuntime({ forceInstall: true });
+    window.device.position.set(0, 1.6, 0);
+  }, model);
+}
+
+const state = async (page) => JSON.parse((await data(page, 'vr')) || '{}');
+
+/** Puts a controller somewhere; `aim`: towards a place, else straight ahead. */
+const hand = (page, side, [x, y, z], aim) =>
+  page.evaluate(
+    ([s, p, to]) => {
+      const { position, quaternion } = window.device.controllers[s];
+      position.set(...p);
+      const [dx, dy, dz] = to ? to.map((v, i) => v - p[i]) : [0, 0, -1];
+      const length = Math.hypot(dx, dy, dz);
+      // The shortest turn from straight ahead (-z).
+      const q = [dy, -dx, 0, length - dz];
+      const n = Math.hypot(...q) || 1;
+      quaternion.set(q[0] / n, q[1] / n, q[2] / n, q[3] / n);
+    },
+    [side, [x, y, z], aim],
+  );
+
+const press = (page, side, button, value) =>
+  page.evaluate(([s, b, v]) => window.device.controllers[s].updateButtonValue(b, v), [side, button, value]);
+
+const stick = (page, side, x, y) =>
+  page.evaluate(
+    ([s, u, v]) => {
+      window.device.controllers[s].updateAxis('thumbstick', 'x-axis', u);
+      window.device.controllers[s].updateAxis('thumbstick', 'y-axis', -v);
+    },
+    [side, x, y],
+  );
+
+/** As long as some pictures take. */
+async function frames(page, count = 4) {
+  const { frames: from = 0 } = await state(page);
+  await page.waitForFunction(
+    (n) => JSON.parse(document.body.dataset.vr || '{"frames":0}').frames >= n,
+    from + Math.max(16, count),
+  );
+}
+
+async function click(page, side, button) {
+  await press(page, side, button, 1);
+  await frames(page);
+  await press(page, side, button, 0);
+  await frames(page);
+}
+
+async function enter(page, url, model = 'metaQuest3') {
+  await wear(page, model);
+  await begin(page, url);
+  await drop(page, 'bush.toml', BUSH);
+  await until(page, 'triangles', ['above', 1000], 'a bush has grown');
+  const digest = await data(page, 'digest');
+  await page.locator('#b-headset').click();
+  await page.waitForFunction(() => document.body.dataset.headset === 'on');
+  await frames(page);
+  return digest;
+}
+
+/** Points a controller at a branch that is not the trunk, from before the plant. */
+async function find(page, side) {
+  for (let k = 0; k < 80; k += 1) {
+    const at = [0.35 * Math.sin(k * 2.4), 0.35 + 0.009 * k, -0.15];
+    await hand(page, side, at);
+    await frames(page);
+    const picked = await data(page, 'picked');
+    if (picked !== '' && picked !== '0') return at;
+  }
+  throw new Error('no branch before the controller');
+}
+
+/** Presses a key of the wrist, which the other hand holds before the eyes. */
+async function key(page, word, side = 'right') {
+  const other = side === 'right' ? 'left' : 'right';
+  await hand(page, other, [0, 1.25, -0.35]);
+  await frames(page);
+  const place = await page.evaluate((w) => JSON.parse(document.body.dataset.wrist ?? '{}')[w], word);
+  assert.ok(place, `a key ${word}`);
+  await hand(page, side, [place[0], place[1] + 0.02, place[2] + 0.25], place);
+  await frames(page);
+  await click(page, side, 'trigger');
+  await hand(page, other, [-0.6, 0.9, 0.3]);
+}
+
+async function shape({ page, url, shot }) {
+  const plain = await enter(page, url);
+  const before = await state(page);
+  assert.ok(before.tracked && before.size > 0, 'the controllers are there');
+  await shot('headset-in');
+  // A branch is held, and the thumb turns it by exactly a quarter.
+  await key(page, 'rotate');
+  assert.equal((await state(page)).tool, 'rotate');
+  const at = await find(page, 'right');
+  await press(page, 'right', 'trigger', 1);
+  await frames(page);
+  assert.ok((await state(page)).working, 'a gesture is going on');
+  for (let k = 0; k <= 6; k += 1) {
+    await stick(page, 'right', Math.cos((k * Math.PI) / 12), Math.sin((k * Math.PI) / 12));
+    await frames(page);
+  }
+  await page.waitForFunction(() => JSON.parse(document.body.dataset.vr).said === '90.0°');
+  await shot('headset-turned');
+  await stick(page, 'right', 0, 0);
+  await press(page, 'right', 'trigger', 0);
+  await until(page, 'edits', ['is', 1], 'one edit');
+  const turned = await changed(page, plain, 'a branch was turned');
+  // A branch drawn in the air.
+  await key(page, 'sketch');
+  await hand(page, 'right', at);
+  await frames(page);
+  await press(page, 'right', 'trigger', 1);
+  await frames(page);
+  for (let k = 1; k <= 12; k += 1) {
+    await hand(page, 'right', [at[0] + 0.02 * k, at[1] + 0.015 * k, at[2] - 0.2 * Math.sin(k / 6)]);
+    await frames(page);
+  }
+  await shot('headset-drawn');
+  await press(page, 'right', 'trigger', 0);
+  await until(page, 'edits', ['is', 2], 'a second edit');
+  await until(page, 'done', ['is', 2], 'both were done');
+  const drawn = await changed(page, turned, 'a branch was drawn');
+  // B takes back, twice: the first plant. A does it again.
+  for (const digest of [turned, plain]) {
+    await click(page, 'right', 'b-button');
+    await page.waitForFunction((d) => document.body.dataset.digest === d, digest);
+  }
+  for (const digest of [turned, drawn]) {
+    await click(page, 'right', 'a-button');
+    await page.waitForFunction((d) => document.body.dataset.digest === d, digest);
+  }
+  // Out by the wrist: the page shows the same plant, and keeps it.
+  await key(page, 'leave');
+  await page.waitForFunction(() => document.body.dataset.headset === 'off');
+  assert.equal(await data(page, 'digest'), drawn);
+  await page.waitForTimeout(700);
+  await shot('headset-out');
+  await page.waitForFunction(() => document.body.dataset.kept === 'saved');
+  await page.reload();
+  await page.waitForFunction((d) => document.body.dataset.digest === d, drawn);
+}
+
+/** Where one stands: grips, sticks, true size; the left hand; a session that ends in the middle. */
+async function stand({ page, url }) {
+  const plain = await enter(page, url);
+  const near = await state(page);
+  await key(page, 'scale');
+  const large = await state(page);
+  assert.ok(Math.abs(large.size / near.size - 1) > 0.1, `another size: ${near.size}, ${large.size}`);
+  await key(page, 'scale');
+  assert.ok(Math.abs((await state(page)).size - near.size) < 1e-9);
+  // Both grips: hands that part make the scene twice as large; the person half.
+  for (const [side, x] of [
+    ['left', -0.2],
+    ['right', 0.2],
+  ]) {
+    await hand(page, side, [x, 1.1, -0.4]);
+    await frames(page);
+    await press(page, side, 'squeeze', 1);
+  }
+  await frames(page);
+  for (let k = 1; k <= 10; k += 1) {
+    await hand(page, 'left', [-0.2 - 0.02 * k, 1.1, -0.4]);
+    await hand(page, 'right', [0.2 + 0.02 * k, 1.1, -0.4]);
+    await frames(page, 1);
+  }
+  const half = await state(page);
+  assert.ok(Math.abs(half.size / near.size - 0.5) < 0.02, `half the size: ${near.size}, ${half.size}`);
+  for (const side of ['left', 'right']) await press(page, side, 'squeeze', 0);
+  await frames(page);
+  // The other stick turns by 30 degrees, and goes where it points.
+  await stick(page, 'left', 1, 0);
+  await frames(page);
+  await stick(page, 'left', 0, 0);
+  await frames(page);
+  assert.ok(Math.abs(Math.abs((await state(page)).turn) - 30) < 0.1, `turned: ${(await state(page)).turn}`);
+  const from = (await state(page)).at;
+  await hand(page, 'left', [-0.2, 1.2, -0.3], [-0.2, 1.0, -1.3]);
+  await stick(page, 'left', 0, 1);
+  await frames(page);
+  await stick(page, 'left', 0, 0);
+  await frames(page);
+  const to = (await state(page)).at;
+  assert.ok(Math.hypot(to[0] - from[0], to[2] - from[2]) > 0.2, 'elsewhere');
+  assert.equal(await data(page, 'digest'), plain, 'walking changes no plant');
+  // The left hand works, and the session ends while it holds a branch: what was done so far is kept.
+  await key(page, 'scale');
+  await key(page, 'scale');
+  await key(page, 'left');
+  await key(page, 'rotate', 'left');
+  await find(page, 'left');
+  await press(page, 'left', 'trigger', 1);
+  await frames(page);
+  for (const x of [0.2, 0.6, 1]) {
+    await stick(page, 'left', x, 1);
+    await frames(page);
+  }
+  await page.evaluate(() => window.device.activeSession.end());
+  await page.waitForFunction(() => document.body.dataset.headset === 'off');
+  await until(page, 'edits', ['is', 1], 'the edit is kept');
+  await changed(page, plain, 'the branch stays turned');
+}
+
+export const headset = [
+  ['headset: turn, draw, undo, leave', shape, WIDE],
+  ['headset: size, place, left hand, an early end', stand, WIDE],
+];

@@ -1,0 +1,125 @@
+/** A tracked controller: where it is, and what its buttons say, by component and not by number. */
+import * as THREE from 'three';
+
+export type Part = 'trigger' | 'grip' | 'lower' | 'upper' | 'stick';
+
+/** Where `xr-standard` has its buttons. */
+const STANDARD = { trigger: 0, grip: 1, pad: 2, stick: 3 } as const;
+/** Of these families of profiles the buttons above the stick (A and X, B and Y) stand here. */
+const FACE: readonly (readonly [RegExp, { lower: number; upper?: number }])[] = [
+  [
+    /^(oculus-touch|meta-quest-touch|pico-|hp-mixed-reality|vive-focus-3|generic-trigger-squeeze-thumbstick)/,
+    { lower: 4, upper: 5 },
+  ],
+  [/^valve-index/, { lower: 4 }],
+];
+/** A button of which no touch is known counts as pressed from here on. */
+const PRESSED = 0.5;
+/** Further between two frames, metres, nobody moves a hand: the tracker jumped. */
+const JUMP = 0.4;
+/** A jump that lasts for so many frames is the new place. */
+const SETTLED = 5;
+/** The tip of a controller before the place that it points from, metres. */
+const TIP = 0.03;
+
+/** The number of a button, if the controller has it. */
+export function indexOf(part: Part, profiles: readonly string[]): number | undefined {
+  if (part === 'trigger' || part === 'grip' || part === 'stick') return STANDARD[part];
+  const family = profiles.map((p) => FACE.find(([pattern]) => pattern.test(p))).find((f) => f !== undefined);
+  return family?.[1][part];
+}
+
+/** Tells a hand's way from jumps of its tracker. */
+export class Track {
+  private last: THREE.Vector3 | undefined;
+  private strange = 0;
+
+  /** `lost`: nothing is known of it now; `jumped`: it is somewhere else all of a sudden, and stays there. */
+  read(at: THREE.Vector3 | undefined): 'here' | 'lost' | 'jumped' {
+    if (!at || !Number.isFinite(at.x + at.y + at.z)) return 'lost';
+    const jumps = this.last !== undefined && this.last.distanceTo(at) > JUMP;
+    this.strange = jumps ? this.strange + 1 : 0;
+    if (jumps && this.strange < SETTLED) return 'lost';
+    this.last = (this.last ?? new THREE.Vector3()).copy(at);
+    this.strange = 0;
+    return jumps ? 'jumped' : 'here';
+  }
+}
+
+/** One controller, or a hand that pinches. Places are in the person's own space, metres. */
+export class Controller {
+  /** Where it is and where it points, of the last frame in which that was known. */
+  readonly aim = new THREE.Matrix4();
+  readonly grip = new THREE.Matrix4();
+  readonly tip = new THREE.Vector3();
+  readonly direction = new THREE.Vector3();
+  tracked = false;
+  jumped = false;
+  private readonly track = new Track();
+  private readonly was = new Map<Part, boolean>();
+  private readonly now = new Map<Part, boolean>();
+
+  constructor(readonly source: XRInputSource) {}
+
+  get handedness(): XRHandedness {
+    return this.source.handedness;
+  }
+
+  read(frame: XRFrame, space: XRReferenceSpace): void {
+    const aim = frame.getPose(this.source.targetRaySpace, space);
+    const grip = this.source.gripSpace ? frame.getPose(this.source.gripSpace, space) : aim;
+    if (aim) scratch.fromArray(aim.transform.matrix);
+    const state = this.track.read(aim ? place.setFromMatrixPosition(scratch) : undefined);
+    this.tracked = state !== 'lost';
+    this.jumped = state === 'jumped';
+    if (this.tracked) {
+      this.aim.copy(scratch);
+      this.grip.copy(grip ? scratch.fromArray(grip.transform.matrix) : this.aim);
+      this.direction.setFromMatrixColumn(this.aim, 2).normalize().negate();
+      this.tip.setFromMatrixPosition(this.aim).addScaledVector(this.direction, TIP);
+    }
+    for (const part of PARTS) {
+      this.was.set(part, this.now.get(part) ?? false);
+      this.now.set(part, this.value(part) >= PRESSED);
+    }
+  }
+
+  /** How far it is pressed, 0 to 1. */
+  value(part: Part): number {
+    const index = indexOf(part, this.source.profiles);
+    const button = index === undefined ? undefined : this.source.gamepad?.buttons[index];
+    return button ? Math.max(button.value, button.pressed ? PRESSED : 0) : 0;
+  }
+
+  holds(part: Part): boolean {
+    return this.now.get(part) ?? false;
+  }
+
+  pressed(part: Part): boolean {
+    return this.holds(part) && !this.was.get(part);
+  }
+
+  released(part: Part): boolean {
+    return !this.holds(part) && (this.was.get(part) ?? false);
+  }
+
+  /** The stick, or the touchpad under a thumb; y is up. */
+  get thumb(): readonly [number, number] {
+    const axes = this.source.gamepad?.axes ?? [];
+    const [x, y] =
+      axes.length >= 4 && (axes[2] || axes[3]) ? [axes[2]!, axes[3]!] : [axes[0] ?? 0, axes[1] ?? 0];
+    return [x, -y];
+  }
+
+  /** A tick that the hand feels, where the controller can. */
+  pulse(strength: number, ms: number): void {
+    const actuator = this.source.gamepad?.hapticActuators?.[0] as
+      | { pulse?(strength: number, ms: number): Promise<unknown> }
+      | undefined;
+    void actuator?.pulse?.(strength, ms)?.catch(() => undefined);
+  }
+}
+
+const PARTS: readonly Part[] = ['trigger', 'grip', 'lower', 'upper', 'stick'];
+const scratch = new THREE.Matrix4();
+const place = new THREE.Vector3();

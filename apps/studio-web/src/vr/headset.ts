@@ -1,0 +1,462 @@
+/**
+ * The scene in a headset: hands with tracked controllers do what the pointer does on the page, with the same tools,
+ * settings and history. What a tool does is the core's.
+ */
+import * as THREE from 'three';
+import type { Shaping, SpaceReach } from '../shaping';
+import { setSetting, setting } from '../store';
+import { t, type TextKey } from '../text';
+import { SHAPE_TOOLS, type ShapeTool } from '../tools';
+import type { PlantView } from '../view/view';
+import type { ShapePointer } from '../wire';
+import { Controller } from './controller';
+import { SNAP, World } from './world';
+import { type Key, Wrist } from './wrist';
+
+export type Mode = 'immersive-vr' | 'immersive-ar';
+
+export interface HeadsetEvents {
+  undo(): void;
+  redo(): void;
+  /** It was entered, or left. */
+  changed(on: boolean): void;
+}
+
+/** Within so far of a controller's tip, metres of the person, wood is meant that it does not touch. */
+const NEAR_M = 0.035;
+/** And so much more with each metre along its ray. */
+const NEAR_PER_M = 0.02;
+/** A stick further out than this means something. */
+const OUT = 0.6;
+/** A brush grows or shrinks by this in a frame with the stick all the way out. */
+const BRUSH = 1.02;
+/** Points of a trace. */
+const TRACE = 4096;
+/** So long the picture is dark when one goes elsewhere, ms. */
+const BLINK_MS = 110;
+/** A step of the seat, metres. */
+const SEAT_M = 0.1;
+/** Eyes above the floor where the device does not know the floor. */
+const EYES_M = 1.5;
+const DRAWS: ReadonlySet<ShapeTool> = new Set<ShapeTool>(['sketch', 'brush', 'silhouette', 'leaves']);
+
+export class Headset {
+  private session: XRSession | undefined;
+  private readonly world = new World();
+  private readonly wrist = new Wrist();
+  private readonly controllers = new Map<XRInputSource, Controller>();
+  private readonly pointerLine = line(2, 0xffffff);
+  private readonly trace = line(TRACE, 0x9be07a);
+  private readonly lit = new THREE.LineSegments(
+    new THREE.BufferGeometry(),
+    new THREE.LineBasicMaterial({ color: 0xffd34d, depthTest: false, toneMapped: false }),
+  );
+  private readonly tips = [0, 1].map(() => new THREE.Mesh(new THREE.SphereGeometry(0.006, 12, 8), white()));
+  private readonly ring = new THREE.Mesh(
+    new THREE.RingGeometry(0.16, 0.2, 40).rotateX(-Math.PI / 2),
+    white(),
+  );
+  private readonly dark = new THREE.Mesh(
+    new THREE.SphereGeometry(0.08, 8, 6),
+    new THREE.MeshBasicMaterial({ color: 0, side: THREE.BackSide, depthTest: false }),
+  );
+  private darkUntil = 0;
+  private trueScale = false;
+  private leftHanded = setting('vr.left') === 'yes';
+  private seat = Number(setting('vr.seat')) || 0;
+  private raised = 0;
+  /** The controller whose gesture is going on, and where it was last. */
+  private working: { hand: Controller; by: 'trigger' | 'grip'; last: ShapePointer } | undefined;
+  private aiming = false;
+  private turned = false;
+  private drawn = 0;
+  private frames = 0;
+
+  constructor(
+    private readonly view: PlantView,
+    private readonly shaping: Shaping,
+    private readonly events: HeadsetEvents,
+  ) {
+    const { rig } = this.world;
+    for (const thing of [this.wrist.board, this.pointerLine, ...this.tips, this.dark]) rig.add(thing);
+    for (const thing of [this.pointerLine, this.trace, this.lit]) thing.frustumCulled = false;
+    this.lit.renderOrder = this.trace.renderOrder = 9;
+    this.dark.renderOrder = 20;
+    this.dark.visible = this.ring.visible = false;
+  }
+
+  get isOn(): boolean {
+    return this.session !== undefined;
+  }
+
+  /** Puts the scene before the person's eyes. */
+  async enter(mode: Mode): Promise<void> {
+    const { xr } = navigator as { xr?: XRSystem };
+    if (!xr || this.session) return;
+    const session = await xr.requestSession(mode, {
+      optionalFeatures: ['local-floor', 'hand-tracking'],
+    });
+    this.session = session;
+    session.addEventListener('end', () => this.left());
+    session.addEventListener('inputsourceschange', (e) => {
+      for (const source of e.removed) this.gone(source);
+      for (const source of e.added) this.come(source);
+    });
+    session.addEventListener('visibilitychange', () => {
+      // The headset was taken off, or its menu is open: nothing is held on to.
+      if (session.visibilityState !== 'visible') this.finish();
+    });
+    for (const source of session.inputSources) this.come(source);
+    this.shaping.onLight = (points) => this.light(points);
+    this.shaping.onHeard = (answer) => this.heard(answer.turned_deg);
+    const floor = await session.requestReferenceSpace('local-floor').then(
+      () => true,
+      () => false,
+    );
+    this.raised = floor ? 0 : EYES_M;
+    if (!this.shaping.isOn) this.shaping.toggle();
+    this.stand();
+    this.wrist.say(t('vr.hello'));
+    this.showKeys();
+    await this.view.immerse(
+      session,
+      floor ? 'local-floor' : 'local',
+      this.world.rig,
+      mode === 'immersive-ar',
+      {
+        things: [this.trace, this.lit, this.ring],
+        frame: (frame, space) => this.frame(frame, space),
+      },
+    );
+    this.events.changed(true);
+  }
+
+  async leave(): Promise<void> {
+    this.finish();
+    await this.session?.end();
+  }
+
+  /** The plant that is shaped, its meshes or its edits are others now. */
+  renewed(): void {
+    if (this.isOn) this.showKeys();
+  }
+
+  private left(): void {
+    this.finish();
+    this.session = undefined;
+    this.controllers.clear();
+    this.light(undefined);
+    this.shaping.onLight = this.shaping.onHeard = () => {};
+    this.events.changed(false);
+  }
+
+  private come(source: XRInputSource): void {
+    if (source.targetRayMode === 'tracked-pointer') this.controllers.set(source, new Controller(source));
+  }
+
+  private gone(source: XRInputSource): void {
+    if (this.working?.hand.source === source) this.finish();
+    this.controllers.delete(source);
+  }
+
+  private stand(): void {
+    const { metre, reach } = this.view.immersed;
+    this.world.stand(this.trueScale, metre, reach, this.raised + this.seat);
+  }
+
+  // Every frame: nothing is made here that lasts ------------------------------------------------------------------
+
+  private frame(frame: XRFrame, space: XRReferenceSpace): void {
+    this.frames += 1;
+    const pose = frame.getViewerPose(space);
+    if (pose) head.setFromMatrixPosition(matrix.fromArray(pose.transform.matrix));
+    let [tool, menu]: (Controller | undefined)[] = [];
+    for (const hand of this.controllers.values()) {
+      hand.read(frame, space);
+      if (hand.handedness === (this.leftHanded ? 'right' : 'left')) menu = hand;
+      else tool = hand;
+    }
+    // One controller alone works.
+    if (!tool) [tool, menu] = [menu, undefined];
+    this.show(tool, menu);
+    if (tool && menu && tool.holds('grip') && menu.holds('grip')) this.cancelGrip();
+    this.moveWorld(tool, menu);
+    if (menu) this.walk(menu);
+    if (tool) this.work(tool);
+    this.dark.visible = performance.now() < this.darkUntil;
+    this.dark.position.copy(head);
+    this.report(tool);
+  }
+
+  private show(tool: Controller | undefined, menu: Controller | undefined): void {
+    this.wrist.board.visible = menu?.tracked ?? false;
+    if (menu?.tracked) this.wrist.follow(menu.grip);
+    [tool, menu].forEach((hand, i) => {
+      const tip = this.tips[i]!;
+      tip.visible = hand?.tracked ?? false;
+      if (hand) tip.position.copy(hand.tip);
+    });
+  }
+
+  /** The other hand's grip moves the scene, both turn and scale it. */
+  private moveWorld(tool: Controller | undefined, menu: Controller | undefined): void {
+    const both = menu?.holds('grip') && tool?.holds('grip') && !this.working;
+    this.world.grasp(both ? [tool!.tip, menu!.tip] : menu?.holds('grip') && menu.tracked ? [menu.tip] : []);
+  }
+
+  /** The other hand's stick: forward goes where it points, sideways turns. */
+  private walk(menu: Controller): void {
+    const [x, y] = menu.thumb;
+    if (y > OUT && menu.tracked) this.aiming = true;
+    if (this.aiming) {
+      this.world.toScene(menu.tip, from);
+      way.copy(menu.direction).applyQuaternion(this.world.rig.quaternion);
+      const to = this.world.landing(from, way, landing);
+      this.ring.visible = to !== undefined;
+      if (to) {
+        this.ring.position.copy(to);
+        this.ring.scale.setScalar(this.world.size);
+      }
+      if (y < OUT / 2) {
+        if (to) this.blink(() => this.world.go(to, head));
+        this.aiming = this.ring.visible = false;
+      }
+    } else if (Math.abs(x) > OUT && !this.turned) {
+      this.blink(() => this.world.turn(x > 0 ? -SNAP : SNAP, head));
+      this.turned = true;
+    }
+    if (Math.abs(x) < OUT / 2) this.turned = false;
+  }
+
+  private blink(act: () => void): void {
+    act();
+    this.darkUntil = performance.now() + BLINK_MS;
+  }
+
+  private work(hand: Controller): void {
+    const { shaping } = this;
+    const board = this.working ? undefined : this.wrist.meet(hand.tip, hand.direction);
+    this.wrist.point(board?.key);
+    this.pointTo(hand, board?.distance);
+    if (hand.pressed('upper')) this.events.undo();
+    if (hand.pressed('lower')) this.events.redo();
+    if (board) {
+      if (hand.pressed('trigger') && board.key) {
+        hand.pulse(0.5, 20);
+        board.key.act();
+        this.showKeys();
+      }
+      return;
+    }
+    const { working } = this;
+    if (working && working.hand !== hand) {
+      this.finish();
+      return;
+    }
+    const at = hand.tracked ? this.pointer(hand) : undefined;
+    if (!working) {
+      const by = hand.pressed('trigger') ? 'trigger' : hand.pressed('grip') ? 'grip' : undefined;
+      if (at && by) this.begin(hand, by, at);
+      else if (at && this.frames % 3 === 0) shaping.hoverAt(at, this.reach());
+      this.size(hand);
+      return;
+    }
+    if (hand.jumped || hand.released(working.by)) {
+      this.finish(hand.jumped ? undefined : at);
+      return;
+    }
+    if (!at) return;
+    working.last = at;
+    shaping.follow(at);
+    this.draw(hand.tip);
+    const [x, y] = hand.thumb;
+    shaping.thumb(x === 0 && y === 0 ? undefined : [x, y]);
+  }
+
+  private begin(hand: Controller, by: 'trigger' | 'grip', at: ShapePointer): void {
+    // What the grip takes is turned, whatever tool is chosen.
+    const tool = by === 'grip' ? 'rotate' : undefined;
+    if (!this.shaping.begin(at, this.reach(), tool)) {
+      this.wrist.say(t('vr.nothing'));
+      return;
+    }
+    hand.pulse(0.7, 30);
+    this.working = { hand, by, last: at };
+    this.drawn = 0;
+    const word = tool ?? this.shaping.word;
+    this.trace.visible = word !== undefined && DRAWS.has(word);
+    this.draw(hand.tip);
+  }
+
+  /** The gesture ends where the hand is, or was last. */
+  private finish(at?: ShapePointer): void {
+    const { working } = this;
+    if (!working) return;
+    this.working = undefined;
+    this.trace.visible = false;
+    working.hand.pulse(0.9, 40);
+    void this.shaping.end(at ?? working.last);
+  }
+
+  /** Both grips mean the scene. */
+  private cancelGrip(): void {
+    if (this.working?.by !== 'grip') return;
+    this.working = undefined;
+    this.shaping.cancel();
+  }
+
+  /** The stick makes a brush larger or smaller. */
+  private size(hand: Controller): void {
+    const [, y] = hand.thumb;
+    if (Math.abs(y) > OUT && this.shaping.resize(BRUSH ** Math.sign(y)))
+      this.wrist.say(this.shaping.brushText);
+  }
+
+  private pointer(hand: Controller): ShapePointer | undefined {
+    this.world.toScene(hand.tip, from);
+    way.copy(hand.direction).applyQuaternion(this.world.rig.quaternion);
+    const pressure = hand.holds('trigger') ? hand.value('trigger') : 1;
+    return this.view.pointerInSpace(from, way, pressure);
+  }
+
+  private reach(): SpaceReach {
+    return { metres: NEAR_M * this.world.size * this.view.metresPerUnit, per_metre: NEAR_PER_M };
+  }
+
+  private pointTo(hand: Controller, distance: number | undefined): void {
+    const { pointerLine: drawn } = this;
+    drawn.visible = hand.tracked && !this.trace.visible;
+    const place = drawn.geometry.getAttribute('position') as THREE.BufferAttribute;
+    place.setXYZ(0, ...(hand.tip.toArray() as [number, number, number]));
+    from.copy(hand.tip).addScaledVector(hand.direction, distance ?? 0.35);
+    place.setXYZ(1, from.x, from.y, from.z);
+    place.needsUpdate = true;
+  }
+
+  private draw(tip: THREE.Vector3): void {
+    if (!this.trace.visible || this.drawn >= TRACE) return;
+    this.world.toScene(tip, from);
+    const place = this.trace.geometry.getAttribute('position') as THREE.BufferAttribute;
+    place.setXYZ(this.drawn, from.x, from.y, from.z);
+    place.needsUpdate = true;
+    this.drawn += 1;
+    this.trace.geometry.setDrawRange(0, this.drawn);
+  }
+
+  /** What tests and support see of it. */
+  private report(tool: Controller | undefined): void {
+    if (this.frames % 15 !== 1) return;
+    const { position, quaternion, scale } = this.world.rig;
+    const state = {
+      frames: this.frames,
+      size: scale.x,
+      at: position.toArray(),
+      working: this.working !== undefined,
+      tool: this.shaping.word,
+      turn: THREE.MathUtils.radToDeg(2 * Math.atan2(quaternion.y, quaternion.w)),
+      tracked: tool?.tracked ?? false,
+      said: this.wrist.text,
+    };
+    document.body.dataset['vr'] = JSON.stringify(state);
+    document.body.dataset['wrist'] = JSON.stringify(this.wrist.places());
+  }
+
+  // What is told --------------------------------------------------------------------------------------------------
+
+  private heard(degrees: number | null | undefined): void {
+    if (typeof degrees === 'number') this.wrist.say(`${degrees.toFixed(1)}°`);
+  }
+
+  /** Lights the branch that is meant. */
+  private light(points: Float32Array | undefined): void {
+    const { geometry } = this.lit;
+    this.lit.visible = points !== undefined && points.length > 0;
+    if (!points) return;
+    const n = points.length / 4;
+    const places = new Float32Array(3 * n);
+    for (let i = 0; i < n; i += 1) places.set(points.subarray(4 * i, 4 * i + 3), 3 * i);
+    geometry.setAttribute('position', new THREE.BufferAttribute(places, 3));
+    this.view.lieOnPlant(this.lit);
+  }
+
+  private showKeys(): void {
+    const { shaping } = this;
+    const tool = ([word]: readonly [ShapeTool, string]): Key => ({
+      id: word,
+      label: t(`shape.${word}` as TextKey),
+      wide: 2,
+      on: shaping.word === word,
+      act: () => {
+        shaping.take(word);
+        this.wrist.say(t(`shape.${word}` as TextKey));
+      },
+    });
+    const key = (id: string, wide: number, act: () => void, on = false): Key => ({
+      id,
+      label: t(`vr.${id}` as TextKey),
+      wide,
+      on,
+      act,
+    });
+    const tools = SHAPE_TOOLS.map(tool);
+    this.wrist.set([
+      tools.slice(0, 3),
+      tools.slice(3, 6),
+      tools.slice(6, 9),
+      [key('undo', 3, this.events.undo), key('redo', 3, this.events.redo)],
+      [key('smaller', 3, () => this.brush(1 / 1.25)), key('larger', 3, () => this.brush(1.25))],
+      [
+        key(
+          'scale',
+          3,
+          () => {
+            this.trueScale = !this.trueScale;
+            this.blink(() => this.stand());
+          },
+          this.trueScale,
+        ),
+        key(
+          'left',
+          3,
+          () => {
+            this.leftHanded = !this.leftHanded;
+            setSetting('vr.left', this.leftHanded ? 'yes' : 'no');
+          },
+          this.leftHanded,
+        ),
+      ],
+      [
+        key('lower', 2, () => this.sit(-SEAT_M)),
+        key('higher', 2, () => this.sit(SEAT_M)),
+        key('leave', 2, () => void this.leave()),
+      ],
+    ]);
+  }
+
+  private brush(by: number): void {
+    if (this.shaping.resize(by)) this.wrist.say(this.shaping.brushText);
+  }
+
+  private sit(by: number): void {
+    const seat = THREE.MathUtils.clamp(this.seat + by, -1, 1.5);
+    this.world.raise(seat - this.seat);
+    this.seat = seat;
+    setSetting('vr.seat', String(seat));
+  }
+}
+
+function white(): THREE.MeshBasicMaterial {
+  return new THREE.MeshBasicMaterial({ color: 0xffffff, toneMapped: false });
+}
+
+function line(points: number, color: number): THREE.Line<THREE.BufferGeometry, THREE.LineBasicMaterial> {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(3 * points), 3));
+  return new THREE.Line(geometry, new THREE.LineBasicMaterial({ color, toneMapped: false }));
+}
+
+const head = new THREE.Vector3(0, 1.6, 0);
+const from = new THREE.Vector3();
+const way = new THREE.Vector3();
+const landing = new THREE.Vector3();
+const matrix = new THREE.Matrix4();
