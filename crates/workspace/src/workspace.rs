@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 use crate::held::Held;
 use crate::kept::Kept;
 use crate::view::{Outcome, Textures};
-use crate::{DocumentState, WorkspaceError};
+use crate::{DocumentState, Scatter, WorkspaceError};
 
 /// Room between a new plant and the others, metres: as wide as the crown of a tree, or a hand.
 const TREE_ROOM: f64 = 4.0;
@@ -50,6 +50,10 @@ pub enum Action {
         /// The key of the preset.
         key: String,
     },
+    /// Looks at the scene again, not at a model.
+    CloseModel,
+    /// Copies of a plant in many places.
+    Scatter(Scatter),
 }
 
 /// Who makes a new plant.
@@ -201,6 +205,11 @@ impl Workspace {
                 let document::TreeSettings { preset, spec, .. } = preset(key)?;
                 self.run(document::TreeCommand::SetSpec(preset, spec).of(*plant))
             }
+            Action::CloseModel => {
+                self.guest = None;
+                Ok(())
+            }
+            Action::Scatter(wanted) => self.scatter(wanted),
         }
     }
 
@@ -407,7 +416,7 @@ impl Workspace {
     }
 
     /// The document changed, or another plant is looked at: what was held is let go.
-    fn let_go(&mut self) {
+    pub(crate) fn let_go(&mut self) {
         self.held = None;
     }
 }
