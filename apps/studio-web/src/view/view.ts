@@ -334,7 +334,9 @@ export class PlantView {
     this.showHandles();
     this.stage.touch();
     this.lay();
-    this.redraw();
+    // A plant that is not there yet comes in a moment: one picture of a large scene can take the processor seconds.
+    const whole = states.every(({ id }) => this.plants.has(id));
+    if (whole || !this.slow) this.redraw();
   }
 
   private stand(): void {
