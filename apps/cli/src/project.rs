@@ -133,7 +133,7 @@ pub(crate) fn make(
     let levels = (1..=surface.lods).map(|level| scene.at_level(chosen, document, level, &machine.run()));
     let lods = levels.collect::<Result<_, _>>().map_err(failed)?;
     let made = scene.get(id).ok_or_else(none)?;
-    Ok((made.plant.ok_or_else(none)?.clone(), made.model.clone(), lods, made.item.clone()))
+    Ok((made.plant.ok_or_else(none)?.clone(), made.model.clone(), lods, made.report()))
 }
 
 /// Writes a project, which `option` asks for.

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use burgeon::document::{Document, DocumentPlant};
-use burgeon::formats::PngCache;
-use burgeon::{RunReport, SceneEvaluator, scene_model};
+use burgeon::formats::{ModelFormat, PngCache, write_glb_scene};
+use burgeon::mesh::Standing;
+use burgeon::{RunReport, SceneEvaluator, scene_model, standing};
 
 use crate::args::{PlantFormat, Seen, SketchArgs};
 use crate::failure::{Failure, Outcome};
@@ -89,10 +90,11 @@ pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine:
         made.map_err(|e| {
             if e.is_cancelled() { Failure::Cancelled } else { Failure::at(path, format_args!("{name}: {e}")) }
         })?;
-        report.items.extend(scene.get(plant.id()).map(|p| p.item.clone()));
+        report.items.extend(scene.get(plant.id()).map(|p| p.report()));
     }
-    let models = seen.iter().filter_map(|p| Some((p.settings().placement, scene.get(p.id())?.model)));
-    let model = scene_model(document.name(), models);
+    let plants = seen.iter().filter_map(|p| Some(standing(p, scene.get(p.id())?.model)));
+    let plants: Vec<Standing<'_>> = plants.collect();
+    let model = scene_model(document.name(), &plants);
     let structure = || {
         let [only] = seen.as_slice() else {
             return Err(Failure::at(path, "holds several plants; a structure (MTG, QSM) is of one"));
@@ -107,7 +109,13 @@ pub(crate) fn make(args: &SketchArgs, path: &Path, document: &Document, machine:
         let nothing = burgeon::plant::Plant::default();
         let plant = if matches!(format, PlantFormat::Mtg) { structure()? } else { &nothing };
         let goal = Goal::new("-o", out);
-        files::write_plant(&mut outputs, goal, (plant, &model), format, &args.axes, &mut PngCache::new())?;
+        let mut cache = PngCache::new();
+        if matches!(format, PlantFormat::Model(ModelFormat::Glb)) {
+            // What stands there several times is written once.
+            outputs.write("-o", out, |to| write_glb_scene(document.name(), &plants, &mut cache, to))?;
+        } else {
+            files::write_plant(&mut outputs, goal, (plant, &model), format, &args.axes, &mut cache)?;
+        }
         for item in &mut report.items {
             item.output = out.display().to_string();
         }

@@ -165,7 +165,7 @@ for (const sketch of ['a', 'b', 'c', 'd', 'e', 'f', 'g', 'h']) {
   const triangles = await page.evaluate(() => Number(document.body.dataset.triangles));
   row(`${species}: from its picture to meshes (${triangles} triangles)`, ms(grown));
   const box = await page.locator('.view').boundingBox();
-  await page.keyboard.press('s');
+  await page.keyboard.press('Shift+S');
   await page.keyboard.press('2');
   await page.waitForTimeout(2000);
   let place;

@@ -197,12 +197,12 @@ async function habits({ page, url, shot }) {
   await page.keyboard.press('i');
   await page.click('#b-lock');
   await page.locator('#b-lock[aria-pressed=true]').waitFor();
-  await page.keyboard.press('r');
+  await page.keyboard.press('Shift+R');
   await page.locator('.note', { hasText: 'locked' }).waitFor();
   assert.equal(await page.locator('#b-grid').isDisabled(), true);
   await page.click('#b-lock');
   await page.locator('#b-lock[aria-pressed=false]').waitFor();
-  await page.keyboard.press('g');
+  await page.keyboard.press('Shift+G');
   await page.locator('.variations[data-full=true]').waitFor();
   assert.equal(await page.locator('.variations canvas').count(), 9);
   await shot('variations');
@@ -401,7 +401,7 @@ async function reload({ page, url }) {
   const n = (await sample(page)) + 1;
   await draw(page, line(100, 400, 120, 250, 6));
   await until(page, 'strokes', ['is', n], 'a stroke was drawn');
-  await page.keyboard.press('r');
+  await page.keyboard.press('Shift+R');
   await page.waitForFunction(() => /Saved/.test(document.querySelector('#b-kept').textContent));
   await page.waitForTimeout(900);
   const digest = await data(page, 'digest');

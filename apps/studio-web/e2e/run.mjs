@@ -4,6 +4,7 @@ import { mkdirSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 import { chromium } from 'playwright-core';
 import { FLAGS } from './flags.mjs';
+import { grove } from './grove.mjs';
 import { headset } from './headset.mjs';
 import { journeys } from './journeys.mjs';
 import { keeping } from './keeping.mjs';
@@ -21,7 +22,7 @@ const browser = await chromium.launch({ executablePath: browserPath, args: FLAGS
 
 let failed = 0;
 const only = process.env.ONLY;
-for (const [name, journey, options] of [...journeys, ...keeping, ...shaping, ...staging, ...headset]) {
+for (const [name, journey, options] of [...journeys, ...keeping, ...shaping, ...staging, ...grove, ...headset]) {
   if (only && !name.includes(only)) continue;
   const context = await browser.newContext({
     viewport: { width: 1000, height: 640 },

@@ -9,7 +9,7 @@ async function bush(page, url, tool) {
   await begin(page, url);
   await drop(page, 'bush.toml', BUSH);
   await until(page, 'triangles', ['above', 1000], 'a bush has grown');
-  await page.keyboard.press('s');
+  await page.keyboard.press('Shift+S');
   await page.locator('.strip').waitFor();
   await page.keyboard.press(String(tool));
   await page.waitForTimeout(900);
@@ -34,6 +34,12 @@ async function branch(page, from = 4, trunk = false) {
   throw new Error('no branch under the pointer');
 }
 
+/** Opens the list of what was done by hand. */
+async function unfold(page) {
+  await page.locator('.edits .fold').click();
+  await page.locator('.edits .fold[aria-expanded=true]').waitFor();
+}
+
 const WIDE = { viewport: { width: 1360, height: 760 } };
 
 const CENTRE = async (page) => {
@@ -54,6 +60,7 @@ async function prune({ page, url, shot }) {
   const pruned = await changed(page, plain, 'pruned');
   await page.waitForTimeout(900);
   await shot('shape-prune');
+  await unfold(page);
   assert.match(await page.locator('.edits li').textContent(), /Pruned−\d+ branches/);
   assert.match(await page.locator('#b-undo').getAttribute('title'), /prune/);
   // Left out, done again, removed; each is a step.
@@ -126,6 +133,7 @@ async function bearer({ page, url, shot }) {
   await page.waitForFunction((bears) => document.body.dataset.bears === String(bears), bough[1]);
   await page.keyboard.press('Delete');
   await changed(page, plain, 'the bough is gone');
+  await unfold(page);
   const removed = Number(/−(\d+)/.exec(await page.locator('.edits li').textContent())[1]);
   assert.ok(removed >= bough[1], `${removed} branches are gone, it bore ${bough[1]}`);
   await shot('shape-bearer-pruned');
@@ -187,6 +195,7 @@ async function draw({ page, url, shot }) {
   await changed(page, plain, 'it bears a new branch');
   await page.waitForTimeout(800);
   await shot('shape-sketch');
+  await unfold(page);
   assert.match(await page.locator('.edits li').textContent(), /Drawn branch\+\d+ branches/);
 }
 
@@ -240,10 +249,11 @@ async function seeds({ page, url, shot }) {
   await until(page, 'done', ['is', 1], 'pruned');
   let digest = await changed(page, plain, 'pruned');
   for (let tries = 0; tries < 24 && (await count(page, 'undone')) === 0; tries += 1) {
-    await page.keyboard.press('r');
+    await page.keyboard.press('Shift+R');
     digest = await changed(page, digest, 'another seed');
   }
   assert.equal(await count(page, 'undone'), 1, 'a seed without such a branch');
+  await unfold(page);
   assert.match(await page.locator('.edits .is-bad').textContent(), /not done: the branch is gone/);
   await page.waitForTimeout(700);
   await shot('shape-gone');
@@ -300,7 +310,7 @@ async function drawn({ page, url, shot }) {
   await begin(page, url);
   await sample(page);
   const plain = await data(page, 'digest');
-  await page.keyboard.press('s');
+  await page.keyboard.press('Shift+S');
   await page.locator('.strip').waitFor();
   const at = await branch(page, 0, true);
   await page.keyboard.press('2');

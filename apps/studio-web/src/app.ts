@@ -12,7 +12,8 @@ import { listenForKeys } from './keyboard';
 import { MakerPanel } from './makers';
 import { openPalette } from './palette';
 import { Panels } from './panels';
-import { SceneList } from './scene';
+import { GroundPen } from './scattering';
+import { type Gizmo, SceneList } from './scene';
 import { Scenery } from './scenery';
 import { Session, type SessionEvents } from './session';
 import { Shaping } from './shaping';
@@ -28,7 +29,7 @@ import { note } from './ui';
 import { PlantView } from './view/view';
 import { ViewModes } from './viewmode';
 import { Door, type Mode } from './vr/door';
-import type { SketchState } from './wire';
+import type { Command, SketchState } from './wire';
 
 /** The sheet of a plant that is not drawn. */
 const NO_DRAWING = { strokes: [], photo: null };
@@ -42,6 +43,7 @@ export class App implements Page {
   /** Both are there, or neither is. */
   readonly view: PlantView | undefined;
   readonly shaping: Shaping | undefined;
+  readonly pen: GroundPen | undefined;
   readonly modes: ViewModes;
   readonly door: Door;
   readonly documents = this.makeDocuments();
@@ -60,6 +62,8 @@ export class App implements Page {
   readonly panels: Panels;
   private readonly show: Show;
   private tool: Tool = 'parts';
+  /** To which the gizmo is bound. */
+  private axis: 'x' | 'z' | undefined;
   private started = false;
   private toldOfStorage = false;
   /** Where the photograph lay when a drag began. */
@@ -71,6 +75,15 @@ export class App implements Page {
     try {
       this.view = this.makeView();
       this.shaping = this.makeShaping(this.view);
+      this.pen = new GroundPen(
+        this.view,
+        (ground) => {
+          const { plant } = this.session;
+          const how = this.list.scattering;
+          if (plant) this.session.act({ scatter: { plant: plant.id, ground, ...how } });
+        },
+        () => this.list.scattered(),
+      );
     } catch {
       note(t('note.nowebgl'), 'bad');
     }
@@ -246,8 +259,27 @@ export class App implements Page {
       select: (plant) => this.session.select(plant),
       add: (maker) => void this.panels.add(maker),
       split: (plant) => this.session.act({ split: { plant } }),
-      gizmo: (mode) => void this.view?.setGizmo(mode),
+      gizmo: (mode) => {
+        if (mode) this.shaping?.take(undefined);
+        void this.view?.setGizmo(mode);
+      },
+      snap: (on) => this.view?.setSnap(on),
+      width: (plant) => this.view?.widthOf(plant) ?? 0,
+      scatter: (wish) => {
+        this.shaping?.take(undefined);
+        if (wish) this.view?.setFront(false);
+        this.pen?.take(wish);
+        if (wish) note(t(`scatter.${wish.pattern}.hint`));
+      },
+      together: (name, commands) => this.together(name, commands),
     });
+  }
+
+  /** Several commands as one step of undo. */
+  private together(name: string, commands: readonly Command[]): void {
+    this.session.begin(name);
+    for (const command of commands) this.session.run(command);
+    this.session.commit();
   }
 
   private makeDocuments(): Documents {
@@ -320,6 +352,7 @@ export class App implements Page {
       ask: (request) => session.engine.ask(request),
       select: (plant) => session.select(plant),
       refused: (why) => note(t('note.refused', { why }), 'bad'),
+      say: (what) => note(what),
       changed: () => this.show.shaping(),
     });
   }
@@ -365,6 +398,27 @@ export class App implements Page {
 
   catalogueCame(): void {
     this.show.document();
+  }
+
+  get gizmo(): Gizmo | undefined {
+    return this.list.gizmo;
+  }
+
+  place(gizmo: Gizmo | undefined): void {
+    this.list.take(gizmo === this.list.gizmo ? undefined : gizmo);
+  }
+
+  bind(axis: 'x' | 'z'): void {
+    this.axis = this.axis === axis ? undefined : axis;
+    this.view?.setAxis(this.axis);
+  }
+
+  get scatters(): boolean {
+    return this.pen?.isOn ?? false;
+  }
+
+  stopScattering(): void {
+    this.pen?.take(undefined);
   }
 
   setTool(tool: Tool): void {

@@ -30,8 +30,9 @@ export interface Parts {
   stats: HTMLElement;
   /** Over an empty view. */
   grows: HTMLElement;
-  /** Which model is viewed instead of the plant. */
+  /** Which model is viewed instead of the plant, and how to close it. */
   model: HTMLElement;
+  modelName: HTMLElement;
   counts: HTMLElement;
   busy: HTMLElement;
   busyText: HTMLElement;
@@ -40,6 +41,9 @@ export interface Parts {
   /** Why the document may only be looked at. */
   readonly: HTMLElement;
 }
+
+/** Percent that the sheet may have of the page. */
+const SPLIT = { least: 20, most: 80 } as const;
 
 /** Puts the page into `host`. */
 export function buildPage(host: HTMLElement, page: Page, pieces: Pieces): Parts {
@@ -61,7 +65,8 @@ export function buildPage(host: HTMLElement, page: Page, pieces: Pieces): Parts 
     maker: pieces.panel,
     stats: named('statsbox', 'div', { class: 'statsbox' }),
     grows: named('grows', 'p', { class: 'grows' }, t('view.empty')),
-    model: named('looking', 'p', { class: 'looking' }),
+    model: lookingLine(page),
+    modelName: named('looking-name', 'span', {}),
     counts: named('counts', 'span', { class: 'counts' }),
     busy: named('busy', 'span', { class: 'busy' }),
     busyText: named('busytext', 'span', {}, t('status.loading')),
@@ -70,6 +75,7 @@ export function buildPage(host: HTMLElement, page: Page, pieces: Pieces): Parts 
   };
   pieces.panel.id = 'b-maker';
   parts.model.hidden = true;
+  parts.model.prepend(parts.modelName);
   host.replaceChildren(
     topBar(buttons, page, parts.name),
     parts.readonly,
@@ -141,6 +147,22 @@ function readonlyLine(page: Page): HTMLElement {
   );
   line.hidden = true;
   return line;
+}
+
+/** Over the view, while a model is viewed instead of the plants. */
+function lookingLine(page: Page): HTMLElement {
+  const close = () => page.session.act('close-model');
+  return named(
+    'looking',
+    'p',
+    { class: 'looking' },
+    named(
+      'looking-close',
+      'button',
+      { type: 'button', class: 'chip', onclick: close },
+      t('view.model.close'),
+    ),
+  );
 }
 
 function nameField(page: Page): HTMLInputElement {
@@ -269,10 +291,16 @@ function leftSide(page: Page, pieces: Pieces, parts: Parts): HTMLElement {
 }
 
 function rightSide(buttons: Buttons, page: Page, pieces: Pieces, parts: Parts): HTMLElement {
-  const { view, shaping } = page;
+  const { view, shaping, pen } = page;
   const shown =
     view && shaping
-      ? [view.element, shaping.overlay.element, viewTools(buttons, page), shaping.element]
+      ? [
+          view.element,
+          shaping.overlay.element,
+          ...(pen ? [pen.element] : []),
+          viewTools(buttons, page),
+          shaping.element,
+        ]
       : [el('p', { class: 'nogl' }, t('note.nowebgl'))];
   // The scene and the edits by hand, in the view's corner.
   const column = el('div', { class: 'column' }, pieces.list, ...(shaping ? [shaping.list] : []));
@@ -292,11 +320,18 @@ function sides(left: HTMLElement, right: HTMLElement): HTMLElement {
     class: 'split',
     role: 'separator',
     'aria-orientation': 'vertical',
+    'aria-label': t('split.label'),
+    'aria-valuemin': String(SPLIT.least),
+    'aria-valuemax': String(SPLIT.most),
+    'aria-valuenow': '50',
     tabindex: '0',
   });
   const body = el('main', {}, left, split, right);
-  const to = (share: number): void =>
-    body.style.setProperty('--left', `${Math.min(80, Math.max(20, share))}%`);
+  const to = (share: number): void => {
+    const within = Math.min(SPLIT.most, Math.max(SPLIT.least, share));
+    body.style.setProperty('--left', `${within}%`);
+    split.setAttribute('aria-valuenow', String(Math.round(within)));
+  };
   split.addEventListener('pointerdown', (e) => split.setPointerCapture(e.pointerId));
   split.addEventListener('pointermove', (e) => {
     if (!split.hasPointerCapture(e.pointerId)) return;

@@ -72,18 +72,21 @@ describe('the sheet of keys', () => {
       '← ↑ → ↓',
       'M',
       'U',
-      'R',
-      'G',
+      'Shift+R',
+      'Shift+G',
       'D',
       'F · Shift+0',
       'T · C · O',
       'N · Shift+N',
       'H',
+      'G · R · S',
+      'X · Z',
       'W · K',
       'I',
-      'S',
+      'Shift+S',
       '1 – 9',
       'Q · Shift+Q',
+      ', · .',
       '[ ]',
       'Ctrl+K',
       '?',
@@ -96,7 +99,9 @@ describe('a key', () => {
 
   it('means its command, whatever the case', () => {
     const page = pageWith();
-    for (const key of ['r', 'R', 'Shift+R']) expect(idFor(page, key)).toBe('dice');
+    for (const key of ['Shift+r', 'Shift+R']) expect(idFor(page, key)).toBe('dice');
+    for (const key of ['r', 'R']) expect(idFor(pageWith({ view: {} }), key)).toBe('place-turn');
+    expect(idFor(pageWith({ view: {}, gizmo: 'translate' }), 'x')).toBe('place-x');
     expect(idFor(page, 'Ctrl+z')).toBe('undo');
     expect(idFor(page, 'Ctrl+Shift+Z')).toBe('redo');
     expect(idFor(page, 'Ctrl+y')).toBe('redo');
@@ -128,7 +133,7 @@ describe('a key', () => {
   it('is left to the browser where it would do nothing', () => {
     vi.stubGlobal('getSelection', () => null);
     vi.stubGlobal('document', { activeElement: null });
-    for (const key of ['Ctrl+c', 'Ctrl+x', 'Delete', 'ArrowLeft', 's'])
+    for (const key of ['Ctrl+c', 'Ctrl+x', 'Delete', 'ArrowLeft', 's', 'Shift+S'])
       expect(idFor(pageWith(), key)).toBeUndefined();
     const selected = pageWith({ sheet: { selected: [3], element: null, unitsPerPixel: 2 } });
     expect(idFor(selected, 'Ctrl+c')).toBe('copy');

@@ -6,6 +6,8 @@ import type { Clipboard } from './clipboard';
 import type { Documents } from './documents';
 import type { Files } from './files';
 import type { Panels } from './panels';
+import type { GroundPen } from './scattering';
+import type { Gizmo } from './scene';
 import type { Scenery } from './scenery';
 import type { Session } from './session';
 import type { Shaping } from './shaping';
@@ -27,6 +29,8 @@ export interface Page {
   /** The view and its tools: none without WebGL 2. */
   readonly view: PlantView | undefined;
   readonly shaping: Shaping | undefined;
+  /** What draws on the ground. */
+  readonly pen: GroundPen | undefined;
   readonly modes: ViewModes;
   readonly documents: Documents;
   readonly scenery: Scenery;
@@ -35,6 +39,14 @@ export interface Page {
   readonly clipboard: Clipboard;
   readonly panels: Panels;
   readonly theme: Theme;
+  /** Which gizmo the chosen plant has, if any. */
+  readonly gizmo: Gizmo | undefined;
+  /** Takes a gizmo, or lays it down if it is that one. */
+  place(gizmo: Gizmo | undefined): void;
+  /** Binds the gizmo to an axis, or no longer if it is that one. */
+  bind(axis: 'x' | 'z'): void;
+  readonly scatters: boolean;
+  stopScattering(): void;
   setTool(tool: Tool): void;
   choose(strokes: number[]): void;
   immerse(mode: Mode): void;
@@ -63,6 +75,8 @@ export interface PageCommand {
 
 const hasSelection = (p: Page): boolean => p.sheet.selected.length > 0;
 const isPicking = (p: Page): boolean => p.shaping?.word === 'pick';
+const hasView = (p: Page): boolean => p.view !== undefined;
+const isMoving = (p: Page): boolean => p.gizmo === 'translate';
 const isBrushing = (p: Page): boolean => p.shaping?.word === 'brush' || p.shaping?.word === 'leaves';
 /** How much the brackets change a brush. */
 const BRUSH_STEP = 1.15;
@@ -79,6 +93,13 @@ const ARROWS = [
 function nudge(page: Page, x: number, y: number): void {
   const step = NUDGE * page.sheet.unitsPerPixel;
   page.session.draw({ 'move-strokes': [page.sheet.selected, [x * step, y * step]] });
+}
+
+/** Lays down what is in the hand, or else lets go what is selected. */
+function leave(page: Page): void {
+  if (page.scatters) page.stopScattering();
+  else if (page.gizmo) page.place(undefined);
+  else page.sheet.select([]);
 }
 
 function selectNext(page: Page, by: 1 | -1): void {
@@ -102,9 +123,9 @@ const TABLE = [
   { id: 'save', label: 'menu.save', keys: 'Ctrl+S', run: (p) => void p.files.save() },
   { id: 'export', label: 'menu.export', keys: 'Ctrl+E', run: (p) => p.files.chooseExport() },
   { id: 'share', label: 'menu.share', run: (p) => void p.files.share() },
-  { id: 'dice', label: 'dice', keys: 'R', run: (p) => p.panels.roll() },
+  { id: 'dice', label: 'dice', keys: 'Shift+R', run: (p) => p.panels.roll() },
   { id: 'lock', label: 'lock', run: (p) => p.panels.toggleLock() },
-  { id: 'grid', label: 'variations.title', keys: 'G', run: (p) => p.panels.openVariations() },
+  { id: 'grid', label: 'variations.title', keys: 'Shift+G', run: (p) => p.panels.openVariations() },
   { id: 'settings', label: 'menu.settings', run: (p) => p.panels.openSettings() },
   { id: 'mirror', label: 'tool.mirror', keys: 'M', run: (p) => p.toggleMirror() },
   { id: 'photo', label: 'tool.photo', keys: 'U', run: (p) => p.panels.openPhoto() },
@@ -117,10 +138,15 @@ const TABLE = [
   {
     id: 'shape',
     label: 'shape.title',
-    keys: 'S',
+    keys: 'Shift+S',
     when: (p) => p.shaping !== undefined,
     run: (p) => p.shaping?.toggle(),
   },
+  { id: 'place-move', label: 'place.translate', keys: 'G', when: hasView, run: (p) => p.place('translate') },
+  { id: 'place-turn', label: 'place.rotate', keys: 'R', when: hasView, run: (p) => p.place('rotate') },
+  { id: 'place-size', label: 'place.scale', keys: 'S', when: hasView, run: (p) => p.place('scale') },
+  { id: 'place-x', keys: 'X', when: isMoving, run: (p) => p.bind('x') },
+  { id: 'place-z', keys: 'Z', when: isMoving, run: (p) => p.bind('z') },
   ...SHAPE_TOOLS.map(([word, keys]) => ({
     id: `shape-${word}` as const,
     label: `shape.${word}` as const,
@@ -141,6 +167,14 @@ const TABLE = [
     keys: CLIMB_KEYS.down,
     shaping: true,
     run: (p) => p.shaping?.climb(-1),
+  },
+  { id: 'shape-next', keys: '.', shaping: true, when: isPicking, run: (p) => p.shaping?.walk('next') },
+  {
+    id: 'shape-previous',
+    keys: ',',
+    shaping: true,
+    when: isPicking,
+    run: (p) => p.shaping?.walk('previous'),
   },
   {
     id: 'shape-smaller',
@@ -240,7 +274,7 @@ const TABLE = [
     when: hasSelection,
     run: (p) => p.session.draw({ 'remove-strokes': p.sheet.selected }),
   },
-  { id: 'select-none', keys: 'Esc', run: (p) => p.sheet.select([]) },
+  { id: 'select-none', keys: 'Esc', run: leave },
   { id: 'select-previous', keys: '[', run: (p) => selectNext(p, -1) },
   { id: 'select-next', keys: ']', run: (p) => selectNext(p, 1) },
   ...ARROWS.flatMap(([arrow, x, y]) =>
@@ -296,11 +330,14 @@ const KEY_ROWS: readonly [CommandId[], string, TextKey][] = [
   [['stage', 'camera', 'film'], ' · ', 'key.stage'],
   [['walk', 'fly'], ' · ', 'key.walk'],
   [['guide-figure'], '', 'guide.figure'],
+  [['place-move', 'place-turn', 'place-size'], ' · ', 'key.place'],
+  [['place-x', 'place-z'], ' · ', 'key.place.axis'],
   [['wire', 'skeleton'], ' · ', 'key.modes'],
   [['stats'], '', 'view.stats'],
   [['shape'], '', 'key.shape'],
   [['shape-pick', 'shape-leaves'], ' – ', 'key.shape.tools'],
   [['shape-up', 'shape-down'], ' · ', 'key.shape.up'],
+  [['shape-previous', 'shape-next'], ' · ', 'key.shape.walk'],
   [['shape-smaller', 'shape-larger'], ' ', 'key.shape.size'],
   [['palette'], '', 'palette.title'],
   [['help'], '', 'key.help'],

@@ -61,13 +61,14 @@ export class Files {
     });
     host.addEventListener('drop', (e) => {
       over(false)(e);
-      const file = e.dataTransfer?.files[0];
-      if (file) void this.openFile(file);
+      void this.openAll([...(e.dataTransfer?.files ?? [])]);
     });
   }
 
   choose(accept = ACCEPT): void {
-    this.pickFile(accept, (file) => void this.openFile(file));
+    const input = el('input', { type: 'file', accept, multiple: '' });
+    input.addEventListener('change', () => void this.openAll([...(input.files ?? [])]));
+    input.click();
   }
 
   pickFile(accept: string, act: (file: File) => void): void {
@@ -77,6 +78,11 @@ export class Files {
       if (file) act(file);
     });
     input.click();
+  }
+
+  /** One after another, in the order in which they were given: a file that cannot be read keeps none from coming in. */
+  async openAll(files: readonly File[]): Promise<void> {
+    for (const file of files) await this.openFile(file);
   }
 
   async openFile(file: File): Promise<void> {

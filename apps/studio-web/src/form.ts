@@ -59,34 +59,119 @@ const tip = (s: Schema): string => helpOf(s['x-help'], s.description);
 
 const round = (x: number): number => Number(x.toPrecision(4));
 
+/** The value at a JSON pointer. */
+function valueAt(fields: Json | undefined, path: string): Json | undefined {
+  let at = fields;
+  for (const key of path.split('/').slice(1)) at = isFields(at) ? at[key] : undefined;
+  return at;
+}
+
+/** A form with fewer rows is seen as a whole. */
+const FEW = 8;
+
 export class Form {
   readonly element = el('div', { class: 'form' });
+  private readonly rows = el('div', { class: 'form' });
+  private readonly search = this.searchRow();
   private open = new Set<string>();
+  private query = '';
+  private values: Fields = {};
+  /** What matters first, by pointers, and the order of the rest. */
+  private order: { main: readonly string[]; rest: readonly string[] } = { main: [], rest: [] };
 
+  /** `origin`: the values to which fields can be reset; of those that it has not, the schema's. */
   constructor(
     private readonly root: Schema,
     private readonly events: FormEvents,
     private readonly hidden: ReadonlySet<string> = new Set(),
-  ) {}
+    private readonly origin: () => Fields | undefined = () => undefined,
+  ) {
+    this.element.append(this.rows);
+  }
 
-  /** Shows these values; what has the focus keeps it. */
-  show(values: Fields, first: readonly string[] = []): void {
+  /** Shows these values; what has the focus keeps it. `main`: rows that come before the others, which are folded. */
+  show(values: Fields, main: readonly string[] = [], rest: readonly string[] = []): void {
+    [this.values, this.order] = [values, { main, rest }];
     const focused =
-      (this.element.contains(document.activeElement)
+      (this.rows.contains(document.activeElement)
         ? document.activeElement?.getAttribute('data-path')
         : null) ?? null;
-    const properties = this.root.properties ?? {};
-    const names = [...first, ...Object.keys(properties).filter((k) => !first.includes(k))];
-    const rows = names.flatMap((name) =>
-      this.hidden.has(name) || !properties[name]
-        ? []
-        : this.field(name, properties[name], values[name], `/${name}`),
-    );
-    this.element.replaceChildren(...rows);
+    this.rows.replaceChildren(...this.shown());
     if (focused !== null)
-      this.element
+      this.rows
         .querySelector<HTMLElement>(`[data-path="${CSS.escape(focused)}"]`)
         ?.focus({ preventScroll: true });
+    if (this.rows.querySelectorAll('.f-row').length > FEW && !this.search.isConnected)
+      this.element.prepend(this.search);
+  }
+
+  private shown(): HTMLElement[] {
+    const properties = this.root.properties ?? {};
+    const { main, rest } = this.order;
+    const names = [...rest, ...Object.keys(properties).filter((k) => !rest.includes(k))];
+    const all = el(
+      'div',
+      { class: 'form' },
+      ...names.flatMap((name) =>
+        this.hidden.has(name) || !properties[name]
+          ? []
+          : this.field(name, properties[name], this.values[name], `/${name}`),
+      ),
+    );
+    const rows = [...all.querySelectorAll<HTMLElement>('.f-row')];
+    // A row that leaves its group says of what it is.
+    const lifted = (row: HTMLElement): HTMLElement => {
+      const group = row.closest('details')?.querySelector('summary')?.textContent;
+      if (group) row.firstElementChild?.prepend(`${group} · `);
+      return row;
+    };
+    if (this.query !== '') {
+      const found = rows.filter((row) =>
+        (row.firstElementChild?.textContent ?? '').toLowerCase().includes(this.query),
+      );
+      return found.length > 0 ? found.map(lifted) : [el('p', { class: 'muted' }, t('form.none'))];
+    }
+    const first = main.flatMap(
+      (path) =>
+        rows.find((row) =>
+          [...row.querySelectorAll('[data-path]')].some((x) => x.matches(`[data-path="${path}"]`)),
+        ) ?? [],
+    );
+    if (first.length === 0) return [...all.children] as HTMLElement[];
+    const top = el('div', { class: 'form' }, ...first.map(lifted));
+    return [top, this.fold('', t('form.all'), '', [...all.children] as HTMLElement[])];
+  }
+
+  private searchRow(): HTMLElement {
+    const box = el('input', {
+      type: 'search',
+      class: 'field',
+      placeholder: t('form.search'),
+      'aria-label': t('form.search'),
+      oninput: () => {
+        this.query = box.value.trim().toLowerCase();
+        this.rows.replaceChildren(...this.shown());
+      },
+    });
+    return el('div', { class: 'f-search' }, box);
+  }
+
+  /** Rows that are folded until a person opens them, which is remembered under a path. */
+  private fold(path: string, title: string, help: string, content: HTMLElement[]): HTMLDetailsElement {
+    const details = el(
+      'details',
+      {
+        class: 'f-group',
+        ontoggle: () => {
+          if (details.open) this.open.add(path);
+          else this.open.delete(path);
+        },
+      },
+      el('summary', { title: help, 'data-path': path }, title),
+      ...content,
+    );
+    details.open = this.open.has(path);
+    return details;
   }
 
   private field(name: string, schema: Schema, value: Json | undefined, path: string): HTMLElement[] {
@@ -111,10 +196,31 @@ export class Form {
     return [];
   }
 
-  private row(name: string, s: Schema, ...content: HTMLElement[]): HTMLElement {
+  /** `path`: of a value that can be reset. */
+  private row(name: string, s: Schema, path: string | undefined, ...content: HTMLElement[]): HTMLElement {
     const unit = unitOf(s['x-unit'] ?? '');
     const label = fieldName(name) + (unit ? ` (${unit})` : '');
-    return el('label', { class: 'f-row', title: tip(s) }, el('span', {}, label), ...content);
+    const reset = path === undefined ? [] : this.resetOf(name, s, path);
+    return el('label', { class: 'f-row', title: tip(s) }, el('span', {}, label, ...reset), ...content);
+  }
+
+  /** A button where the value is another than it was at first. */
+  private resetOf(name: string, s: Schema, path: string): HTMLElement[] {
+    const first = valueAt(this.origin(), path) ?? s.default;
+    const now = valueAt(this.values, path);
+    if (first === undefined || now === undefined || JSON.stringify(first) === JSON.stringify(now)) return [];
+    const act = (e: Event): void => {
+      e.preventDefault();
+      this.events.set(path, first);
+    };
+    const label = t('form.reset', { name: fieldName(name) });
+    return [
+      el(
+        'button',
+        { type: 'button', class: 'f-reset', title: label, 'aria-label': label, onclick: act },
+        '↺',
+      ),
+    ];
   }
 
   private number(
@@ -169,7 +275,7 @@ export class Form {
       onchange: () => this.events.done(),
     });
     slider.value = String(Math.round(to(Math.min(high, Math.max(low, at))) * Number(slider.max)));
-    return this.row(name, s, slider, box);
+    return this.row(name, s, path, slider, box);
   }
 
   private check(name: string, s: Schema, on: boolean, path: string): HTMLElement {
@@ -179,7 +285,7 @@ export class Form {
       onchange: () => this.events.set(path, box.checked),
     });
     box.checked = on;
-    return this.row(name, s, box);
+    return this.row(name, s, path, box);
   }
 
   private colour(
@@ -194,7 +300,7 @@ export class Form {
       onchange: () => this.events.set(path, box.value),
     });
     box.value = value ?? '#808080';
-    if (!s.nullable) return this.row(name, s, box);
+    if (!s.nullable) return this.row(name, s, path, box);
     const use = el('input', {
       type: 'checkbox',
       'aria-label': fieldName(name),
@@ -202,7 +308,7 @@ export class Form {
     });
     use.checked = value !== null;
     box.disabled = value === null;
-    return this.row(name, s, el('span', { class: 'f-pair' }, use, box));
+    return this.row(name, s, path, el('span', { class: 'f-pair' }, use, box));
   }
 
   private choice(
@@ -221,7 +327,7 @@ export class Form {
     for (const word of choices)
       select.append(el('option', { value: word, title: meant(word) }, wordOf(word)));
     select.value = now === null ? '' : String(now);
-    return this.row(name, s, select);
+    return this.row(name, s, path, select);
   }
 
   private triple(name: string, s: Schema, now: number[], path: string): HTMLElement {
@@ -243,7 +349,7 @@ export class Form {
       box.value = String(round(x));
       return box;
     });
-    return this.row(name, s, el('span', { class: 'f-triple' }, ...boxes));
+    return this.row(name, s, path, el('span', { class: 'f-triple' }, ...boxes));
   }
 
   private group(
@@ -258,21 +364,7 @@ export class Form {
     const rows = Object.keys(properties).flatMap((key) =>
       key === skip ? [] : this.field(key, properties[key]!, now[key], `${path}/${key}`),
     );
-    const details = el(
-      'details',
-      {
-        class: 'f-group',
-        ontoggle: () => {
-          if (details.open) this.open.add(path);
-          else this.open.delete(path);
-        },
-      },
-      el('summary', { title: tip(s), 'data-path': path }, fieldName(name)),
-      ...extra,
-      ...rows,
-    );
-    details.open = this.open.has(path);
-    return details;
+    return this.fold(path, fieldName(name), tip(s), [...extra, ...rows]);
   }
 
   /** One of several forms, told apart by a tag. Forms whose fields have no sensible start are not offered. */
@@ -309,7 +401,7 @@ export class Form {
     select.value = wordFor(current);
     const text = (s: Schema): Schema =>
       s.description === undefined ? {} : { description: s.description, 'x-help': s['x-help'] ?? '' };
-    const kind = this.row(tag, text(current), select);
+    const kind = this.row(tag, text(current), undefined, select);
     return this.group(name, { ...current, ...text(s) }, now, path, [kind], tag);
   }
 }

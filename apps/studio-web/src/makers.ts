@@ -13,13 +13,14 @@ import type {
 } from './wire';
 import { named, type Schema } from './schema';
 import { helpOf, t, wordOf } from './text';
+import { leafSample } from './samples';
 import { button, el, icon } from './ui';
 
 export interface Catalogue {
   tree: Schema;
   leaf: Schema;
   flower: Schema;
-  trees: { key: string; species: string; about: string }[];
+  trees: { key: string; species: string; about: string; spec: Fields }[];
   flowers: string[];
 }
 
@@ -39,13 +40,10 @@ declare const PRESET_PICTURES: readonly string[];
 
 /** Pictures of species; the name alone where there is none. */
 function thumbnail(key: string, label: string): HTMLElement {
-  const picture = el(
-    'span',
-    { class: 'thumb' },
-    el('span', { class: 'thumb-none', 'aria-hidden': 'true' }, icon('tree')),
-  );
-  if (PRESET_PICTURES.includes(key))
-    picture.append(el('img', { src: `./presets/${key}.png`, alt: '', loading: 'lazy' }));
+  const shown = PRESET_PICTURES.includes(key)
+    ? el('img', { src: `./presets/${key}.png`, alt: '', loading: 'lazy' })
+    : el('span', { class: 'thumb-none', 'aria-hidden': 'true' }, icon('tree'));
+  const picture = el('span', { class: 'thumb' }, shown);
   return el('span', { class: 'thumb-cell' }, picture, el('span', {}, label));
 }
 
@@ -73,6 +71,13 @@ export function gallery(
   }
   return grid;
 }
+
+/** What matters first of each maker, beside what the head has. */
+const MAIN: Partial<Record<PlantState['maker'], readonly string[]>> = {
+  tree: ['/bare', '/leaves/length_m', '/look/leaf_color', '/look/bark_color', '/wood/trunk_radius_m'],
+  leaf: ['/surface', '/length_m', '/curl', '/wilt', '/texture'],
+};
+const TREE_ORDER = ['leaves', 'blade', 'look', 'method', 'wood', 'clearance_m'];
 
 /** A shape that did not come by then will not. */
 const PATIENCE_MS = 4000;
@@ -141,6 +146,7 @@ export class MakerPanel {
           done: () => this.done(),
         },
         new Set(hidden),
+        () => catalogue.trees.find(({ key }) => key === this.plant?.tree?.preset)?.spec,
       );
       this.element.replaceChildren(this.head, this.form.element);
       this.element.scrollTop = 0;
@@ -161,10 +167,7 @@ export class MakerPanel {
         .querySelector<HTMLElement>(`[data-path="${CSS.escape(focused)}"]`)
         ?.focus({ preventScroll: true });
     const values = plant.tree?.spec ?? plant.leaf?.settings ?? plant.flower?.settings ?? {};
-    this.form?.show(
-      values,
-      plant.maker === 'tree' ? ['bare', 'leaves', 'blade', 'look', 'method', 'wood', 'clearance_m'] : [],
-    );
+    this.form?.show(values, MAIN[plant.maker] ?? [], plant.maker === 'tree' ? TREE_ORDER : []);
   }
 
   /** One field of what the maker is asked for. */
@@ -415,10 +418,24 @@ export class MakerPanel {
             },
             t(empty ? 'leaf.choose' : 'leaf.other'),
           ),
+          ...(empty ? [this.sampleButton(id)] : []),
         ),
         edit,
       ),
     ];
+  }
+
+  /** A leaf to begin with: its table can be changed then. */
+  private sampleButton(id: number): HTMLElement {
+    const take = async (): Promise<void> => {
+      const text = await leafSample();
+      this.events.run({ leaf: [id, { 'set-data': { name: 'sample.csv', text } }] });
+    };
+    return el(
+      'button',
+      { type: 'button', class: 'chip', id: 'b-leaf-sample', onclick: () => void take() },
+      t('leaf.sample'),
+    );
   }
 
   // Flowers ------------------------------------------------------------------------------------------------------

@@ -81,7 +81,8 @@ export interface StrokePoints {
 /** A plant as it travels. */
 export interface Sent {
   view: PlantView;
-  parts: PartArrays[];
+  /** None where the page has them already: the plant is a copy. */
+  parts: PartArrays[] | null;
   textures: TexturePixels[];
   /** Corners of obstacles that are meshes. */
   obstacles: (Float32Array | null)[];

@@ -25,3 +25,8 @@ export const SAMPLES: readonly Sample[] = WANTED.flatMap((path) => {
   const url = FILES[`../../../fixtures/sketches/${path}.svg`];
   return url ? [{ name: path.split('/').at(-1)!, url }] : [];
 });
+
+/** The table of a measured leaf to start from. Loaded when it is first asked for. */
+export async function leafSample(): Promise<string> {
+  return (await import('../../../fixtures/leaves/leaf1.csv?raw')).default;
+}

@@ -12,6 +12,7 @@ import type {
   ShapeInput,
   ShapePointer,
   ShapeReach,
+  ShapeStep,
 } from './wire';
 import { number, t, tOf, type TextKey } from './text';
 import { CLIMB_KEYS, SHAPE_TOOLS, type ShapeTool } from './tools';
@@ -23,6 +24,8 @@ export interface ShapingEvents {
   run(command: Command): void;
   ask<T>(request: Request): Promise<T>;
   refused(why: string): void;
+  /** Tells what a gesture came to, where the plant does not show it. */
+  say(what: string): void;
   select(plant: number): void;
   /** The tool was taken up or laid down. */
   changed(): void;
@@ -54,8 +57,6 @@ const TWIST_DEG = 5;
 const STILL = 5;
 /** Stands for the pointer of a hand in space. */
 const IN_SPACE = -1;
-/** A view of this width, pixels, has room for the list beside a plant. */
-const ROOMY = 600;
 
 /** The step of undo that an edit makes is called by the same word. */
 const EDIT_ICONS: Record<string, IconName> = {
@@ -88,14 +89,13 @@ export class Shaping {
   private last: ShapeTool = 'rotate';
   private plant: PlantState | undefined;
   private seen: Seen | undefined;
+  /** Of each tool that has any: none takes over what another was set to. */
   private settings = {
-    whole: false,
-    twigs: 1,
-    tilt_deg: 0,
-    share: 0.07,
-    density: 1,
-    trim: true,
-    more: false,
+    prune: { whole: false },
+    sketch: { twigs: 1, tilt_deg: 0 },
+    brush: { share: 0.07, density: 1 },
+    silhouette: { density: 1, trim: true },
+    leaves: { share: 0.07, more: false },
   };
   /** The branch that was clicked with the pointing tool. */
   private chosen: ShapeAnswer['picked'] = null;
@@ -180,9 +180,9 @@ export class Shaping {
   take(tool: ShapeTool | undefined): void {
     if (tool && !this.isPossible) return;
     if (this.isBusy) this.cancel();
+    if (tool !== this.tool) this.bearers = 0;
     this.tool = tool;
     if (tool) this.last = tool;
-    else this.bearers = 0;
     this.chosen = null;
     this.light(undefined);
     this.overlay.setRing(undefined);
@@ -240,7 +240,7 @@ export class Shaping {
       b.setAttribute('aria-pressed', String(word === this.tool));
       bar.append(b);
     }
-    this.element.replaceChildren(el('div', { class: 'options' }, ...this.options()), bar);
+    this.element.replaceChildren(el('div', { class: 'options', role: 'status' }, ...this.options()), bar);
     if (focused) document.getElementById(focused)?.focus();
   }
 
@@ -300,16 +300,16 @@ export class Shaping {
       return el('label', {}, el('span', {}, t(key)), input, output);
     };
     const plain = (x: number): string => String(Math.round(x * 100) / 100);
-    const radius = (): HTMLElement =>
+    const radius = (of: { share: number }): HTMLElement =>
       slider(
         'shape.radius',
         Math.log(0.01),
         Math.log(0.4),
         0.01,
-        Math.log(s.share),
+        Math.log(of.share),
         () => `${plain(this.radius)} m`,
         (x) => {
-          s.share = Math.exp(x);
+          of.share = Math.exp(x);
           this.tellBrush();
         },
       );
@@ -328,9 +328,9 @@ export class Shaping {
               ['part', 'shape.prune.part'],
               ['whole', 'shape.prune.whole'],
             ],
-            s.whole ? 'whole' : 'part',
+            s.prune.whole ? 'whole' : 'part',
             (w) => {
-              s.whole = w === 'whole';
+              s.prune.whole = w === 'whole';
             },
           ),
           this.climbBox(),
@@ -339,36 +339,36 @@ export class Shaping {
         return [hint('shape.regrow.hint'), this.climbBox()];
       case 'sketch':
         return [
-          slider('shape.twigs', 0, 4, 0.25, s.twigs, plain, (x) => {
-            s.twigs = x;
+          slider('shape.twigs', 0, 4, 0.25, s.sketch.twigs, plain, (x) => {
+            s.sketch.twigs = x;
           }),
           slider(
             'shape.tilt',
             -75,
             75,
             5,
-            s.tilt_deg,
+            s.sketch.tilt_deg,
             (x) => `${plain(x)}°`,
             (x) => {
-              s.tilt_deg = x;
+              s.sketch.tilt_deg = x;
             },
           ),
         ];
       case 'brush':
         return [
-          radius(),
-          slider('shape.density', 0.25, 4, 0.25, s.density, plain, (x) => {
-            s.density = x;
+          radius(s.brush),
+          slider('shape.density', 0.25, 4, 0.25, s.brush.density, plain, (x) => {
+            s.brush.density = x;
             this.tellBrush();
           }),
         ];
       case 'silhouette':
         return [
-          slider('shape.density', 0.25, 4, 0.25, s.density, plain, (x) => {
-            s.density = x;
+          slider('shape.density', 0.25, 4, 0.25, s.silhouette.density, plain, (x) => {
+            s.silhouette.density = x;
           }),
-          chips('shape.silhouette', [['trim', 'shape.trim']], s.trim ? 'trim' : '', () => {
-            s.trim = !s.trim;
+          chips('shape.silhouette', [['trim', 'shape.trim']], s.silhouette.trim ? 'trim' : '', () => {
+            s.silhouette.trim = !s.silhouette.trim;
           }),
         ];
       case 'leaves':
@@ -379,12 +379,12 @@ export class Shaping {
               ['fewer', 'shape.leaves.fewer'],
               ['more', 'shape.leaves.more'],
             ],
-            s.more ? 'more' : 'fewer',
+            s.leaves.more ? 'more' : 'fewer',
             (w) => {
-              s.more = w === 'more';
+              s.leaves.more = w === 'more';
             },
           ),
-          radius(),
+          radius(s.leaves),
         ];
       default:
         return [];
@@ -402,15 +402,7 @@ export class Shaping {
       );
     const axis = p.key;
     return [
-      el(
-        'span',
-        {},
-        t('shape.branch', {
-          order: p.order,
-          length: String(Math.round(p.length_m * 100) / 100),
-          count: number(p.bears),
-        }),
-      ),
+      el('span', {}, t('shape.branch', branchWords(p))),
       ...(axis
         ? [
             act('shape.prune', 'b-prune-chosen', 'prune', { add: { op: 'prune', axis, at: 0 } }),
@@ -453,6 +445,10 @@ export class Shaping {
 
   /** Means what bears the branch that was meant, or goes back towards the twig. */
   climb(by: 1 | -1): void {
+    if (this.chosen && !this.clicked) {
+      this.walk(by > 0 ? 'bearer' : 'borne');
+      return;
+    }
     if (!CLIMBS.has(this.tool) || this.isBusy || (by > 0 ? this.top : this.bearers === 0)) return;
     this.bearers += by;
     const at = this.chosen ? this.clicked : this.hover;
@@ -467,6 +463,19 @@ export class Shaping {
     this.line = this.send({ up: at }).then((answer) => {
       if (!answer?.picked || this.tool !== 'pick') return;
       this.chosen = answer.picked;
+      this.showStrip();
+    });
+  }
+
+  /** From branch to branch by keys: the pointing tool chooses without a pointer. */
+  walk(to: ShapeStep): void {
+    if (this.tool !== 'pick' || this.isBusy) return;
+    const from = this.chosen?.axis ?? null;
+    this.line = this.send({ walk: { from, to } }).then((answer) => {
+      if (!answer?.picked || this.tool !== 'pick') return;
+      this.chosen = answer.picked;
+      this.clicked = undefined;
+      this.bearers = 0;
       this.showStrip();
     });
   }
@@ -490,8 +499,13 @@ export class Shaping {
     return Math.max(1e-3, ...max.map((x, i) => x - min[i]!));
   }
 
+  /** The brush in the hand, or that which was last there. */
+  private get brush(): { share: number } {
+    return this.settings[this.tool === 'leaves' ? 'leaves' : 'brush'];
+  }
+
   private get radius(): number {
-    return this.settings.share * this.size;
+    return this.brush.share * this.size;
   }
 
   private get brushes(): boolean {
@@ -501,7 +515,7 @@ export class Shaping {
   /** `[` and `]`: the brush smaller or larger; false if the tool is no brush. */
   resize(by: number): boolean {
     if (!this.brushes) return false;
-    this.settings.share = Math.min(0.4, Math.max(0.01, this.settings.share * by));
+    this.brush.share = Math.min(0.4, Math.max(0.01, this.brush.share * by));
     this.tellBrush();
     this.showStrip();
     this.showRing();
@@ -510,7 +524,7 @@ export class Shaping {
 
   private tellBrush(): void {
     if (this.isBusy && this.tool === 'brush')
-      void this.send({ brush: { radius_m: this.radius, density: this.settings.density } });
+      void this.send({ brush: { radius_m: this.radius, density: this.settings.brush.density } });
   }
 
   private wire(): HeldTool {
@@ -520,15 +534,15 @@ export class Shaping {
       case undefined:
         return 'pick';
       case 'prune':
-        return { prune: { whole: s.whole } };
+        return { prune: { ...s.prune } };
       case 'sketch':
-        return { sketch: { twigs: s.twigs, tilt_deg: s.tilt_deg } };
+        return { sketch: { ...s.sketch } };
       case 'brush':
-        return { brush: { radius_m, density: s.density } };
+        return { brush: { radius_m, density: s.brush.density } };
       case 'silhouette':
-        return { silhouette: { density: s.density, trim: s.trim } };
+        return { silhouette: { ...s.silhouette } };
       case 'leaves':
-        return { leaves: { radius_m, keep: s.more ? 2 : 0.25 } };
+        return { leaves: { radius_m, keep: s.leaves.more ? 2 : 0.25 } };
       default:
         return word;
     }
@@ -668,6 +682,7 @@ export class Shaping {
         if (!this.isBusy) this.overlay.end();
         if (!answer) return;
         if (answer.commit) this.edit({ add: answer.commit });
+        else if (!still && this.tool === 'sketch') this.events.say(t('shape.sketch.sky'));
         if (this.tool === 'pick') {
           this.chosen = answer.picked;
           this.clicked = at;
@@ -854,8 +869,8 @@ export class Shaping {
       this.edit({ remove: edits.map((_, row) => row) }),
     );
     all.setAttribute('data-key', 'all');
-    // In a narrow view the list would lie over the plant.
-    const folded = this.folds ?? this.view.element.clientWidth < ROOMY;
+    // Open, it would lie over the plants: that is a person's wish.
+    const folded = this.folds ?? true;
     const fold = el(
       'button',
       {
@@ -892,6 +907,15 @@ export class Shaping {
         .querySelector<HTMLElement>(`[data-key="${CSS.escape(focused)}"]`)
         ?.focus({ preventScroll: true });
   }
+}
+
+/** What is said of a branch. */
+function branchWords(p: NonNullable<ShapeAnswer['picked']>): Record<string, string | number> {
+  return {
+    order: p.order,
+    length: String(Math.round(p.length_m * 100) / 100),
+    count: number(p.bears),
+  };
 }
 
 /** What became of an edit, in the person's language. */

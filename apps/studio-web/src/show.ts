@@ -140,9 +140,9 @@ export class Show {
 
   /** The name of the model that is viewed instead of the plant, if one is. */
   model(name: string | undefined): void {
-    const line = this.parts.model;
-    line.hidden = name === undefined;
-    line.textContent = name === undefined ? '' : t('view.model', { name });
+    const { model, modelName } = this.parts;
+    model.hidden = name === undefined;
+    modelName.textContent = name === undefined ? '' : t('view.model', { name });
   }
 
   // The plant ----------------------------------------------------------------------------------------------------
@@ -164,6 +164,7 @@ export class Show {
     dataset['triangles'] = String(counts?.triangles ?? 0);
     dataset['flowers'] = String(counts?.flowers ?? 0);
     dataset['parts'] = String(seen?.parts.length ?? 0);
+    dataset['meshes'] = String(new Set(session.scene?.plants.map((p) => p.mesh)).size);
     dataset['digest'] = seen?.item?.digest ?? '';
     dataset['revision'] = String(session.scene?.revision ?? 0);
     sheet.reselect();

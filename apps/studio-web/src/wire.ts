@@ -69,6 +69,7 @@ export const CODES = {
   "nothing-made": [],
   "nothing-to-do": [],
   "nothing-to-shape": [],
+  "nowhere-to-stand": [],
   "obstacle": ["name", "why"],
   "obstacle-file": [],
   "obstacle-not-finite": [],
@@ -150,6 +151,12 @@ export type Action =
       /** The drawing. */
       plant: PlantId;
     };
+  }
+  | /** Looks at the scene again, not at a model. */
+  "close-model"
+  | /** Copies of a plant in many places. */
+  {
+    scatter: Scatter;
   };
 
 /** Names one axis of a plant. */
@@ -427,6 +434,26 @@ export type Front = {
   /** Where the plant's origin lies in the drawing, y up. */
   y: number;
 };
+
+/** Places on the ground: x and z, metres. */
+export type Ground =
+  | /** In a row along a line. */
+  {
+    line: [number, number][];
+  }
+  | /** All over a closed outline. */
+  {
+    area: [number, number][];
+  }
+  | /** All over what a brush covers. */
+  {
+    brush: {
+      /** Its way. */
+      path: [number, number][];
+      /** Its radius, metres. */
+      radius_m: number;
+    };
+  };
 
 /** The part of a report about growth. */
 export type GrowthReport = {
@@ -1143,6 +1170,8 @@ export type PlantView = {
   materials: MaterialView[];
   /** Upper corner of its bounds, metres. */
   max: [number, number, number];
+  /** The name of its meshes: plants that have the same share them. */
+  mesh: number | null;
   /** Lower corner of its bounds, metres. */
   min: [number, number, number];
   /** What it grows around. */
@@ -1212,6 +1241,20 @@ export type ScanReport = {
   stalk_mm: number | null;
   /** Greatest width across the midrib, millimetres. */
   width_mm: number;
+};
+
+/** Copies of a plant, and where they are to stand. */
+export type Scatter = {
+  /** Where. */
+  ground: Ground;
+  /** How many different plants the copies are, each with a seed of its own; 0 for copies that are all alike. */
+  kinds: number;
+  /** The plant. */
+  plant: PlantId;
+  /** Least distance between any two plants, metres; 0.001 to 10,000. */
+  spacing_m: number;
+  /** How much sizes differ: copies are up to this share smaller or larger; 0 to 0.9. */
+  vary: number;
 };
 
 /** What can be asked of the scene. */
@@ -1302,6 +1345,15 @@ export type ShapeInput =
   {
     thumb: [number, number] | null;
   }
+  | /** It goes from branch to branch by keys, without a pointer. */
+  {
+    walk: {
+      /** The branch that is meant now; none begins with what stands on the ground. */
+      from: number | null;
+      /** Where to. */
+      to: ShapeStep;
+    };
+  }
   | /** It changed its brush. */
   {
     brush: {
@@ -1337,6 +1389,17 @@ export type ShapeReach = {
   /** More with each metre of distance. */
   per_metre: number;
 };
+
+/** From one branch to another. */
+export type ShapeStep =
+  | /** The next that the same branch bears; after the last the first. */
+  "next"
+  | /** The one before. */
+  "previous"
+  | /** What bears it. */
+  "bearer"
+  | /** The first that it bears. */
+  "borne";
 
 /** What can be asked of a sketch. */
 export type SketchCommand =

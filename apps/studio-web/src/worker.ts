@@ -10,6 +10,8 @@ let stop: Int32Array | null = null;
 let stale = false;
 let scheduled = false;
 const sent = new Set<number>();
+/** Names of the meshes that the page has. */
+let had = new Set<number>();
 
 let toldShare = 0;
 // Looked at by the evaluation between its steps; it says how far it is.
@@ -73,6 +75,7 @@ function answer(s: StudioSession, request: Request): unknown {
       return s.save();
     case 'load':
       sent.clear();
+      had.clear();
       s.close();
       return replay(s, request.journal);
     case 'paste':
@@ -144,14 +147,16 @@ const QUIET: ReadonlySet<Request['kind']> = new Set([
 
 /** The columns of what the session shows, and textures that the page does not have. */
 function pack(s: StudioSession, view: PlantView): Sent {
-  const { id } = view;
-  const parts: PartArrays[] = view.parts.map((_, i) => ({
+  const { id, mesh } = view;
+  const columns = (_: unknown, i: number): PartArrays => ({
     positions: s.positions(id, i),
     normals: s.normals(id, i),
     uvs: s.uvs(id, i),
     colors: s.colors(id, i),
     indices: s.indices(id, i),
-  }));
+  });
+  const parts = mesh !== null && had.has(mesh) ? null : view.parts.map(columns);
+  if (mesh !== null) had.add(mesh);
   const obstacles = view.obstacles.map(({ shape }, row) => (shape === 'mesh' ? s.obstacle(id, row) : null));
   const textures: TexturePixels[] = [];
   for (const { texture } of view.materials) {
@@ -167,7 +172,7 @@ function pack(s: StudioSession, view: PlantView): Sent {
 function buffers({ parts, textures, obstacles }: Sent): Transferable[] {
   return [
     ...obstacles.flatMap((o) => (o ? [o.buffer] : [])),
-    ...parts.flatMap((p) => Object.values(p).map((c: Float32Array | Uint32Array) => c.buffer)),
+    ...(parts ?? []).flatMap((p) => Object.values(p).map((c: Float32Array | Uint32Array) => c.buffer)),
     ...textures.map((x) => x.pixels.buffer),
   ];
 }
@@ -185,6 +190,7 @@ function evaluate(): void {
     const shown = texturesOf(all);
     for (const number of sent) if (!shown.has(number)) sent.delete(number);
     const fresh = all.filter((p) => p.fresh).map((p) => pack(s, p));
+    had = new Set(all.flatMap(({ mesh }) => (mesh === null ? [] : [mesh])));
     tell({ kind: 'view', view, fresh }, fresh.flatMap(buffers));
   } catch (e) {
     if (e instanceof WebAssembly.RuntimeError || e instanceof RangeError) fault(e);

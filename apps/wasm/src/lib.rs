@@ -165,7 +165,7 @@ pub fn scene_report(bytes: &[u8]) -> Result<String, JsError> {
     let mut items: Vec<ItemReport> = Vec::new();
     for plant in document.plants() {
         scene.update(plant.id(), &document, &Run::plain())?;
-        items.extend(scene.get(plant.id()).map(|p| p.item.clone()));
+        items.extend(scene.get(plant.id()).map(|p| p.report()));
     }
     Ok(serde_json::to_string(&items)?)
 }
@@ -179,9 +179,11 @@ pub fn scene_report(bytes: &[u8]) -> Result<String, JsError> {
 pub fn studio_schema() -> Result<String, JsError> {
     let presets: Vec<_> = burgeon::PRESETS
         .iter()
+        .filter(|p| p.same_as.is_none())
         .filter_map(|p| {
             let spec = p.spec().ok()?;
-            Some(serde_json::json!({ "key": p.key, "species": spec.species, "about": spec.about }))
+            let fields = burgeon::spec::to_json(&spec);
+            Some(serde_json::json!({ "key": p.key, "species": spec.species, "about": spec.about, "spec": fields }))
         })
         .collect();
     Ok(serde_json::to_string(&serde_json::json!({

@@ -40,6 +40,8 @@ pub enum Draw {
     Test = 14,
     /// Phase of a branch or organ in the wind.
     Wind = 15,
+    /// Where copies of a plant stand, how they are turned and how large they are.
+    Scatter = 16,
 }
 
 /// A 64-bit seed from which independent streams and child seeds are derived.

@@ -8,6 +8,9 @@ use rawzip::{CompressionMethod, ZipArchive, ZipArchiveWriter};
 /// Most entries of an archive that are looked at.
 const MAX_ENTRIES: usize = 256;
 
+/// From this size on an entry is packed fast: a model as text takes seconds otherwise.
+const FAST_FROM: usize = 2 << 20;
+
 /// Why a zip file could not be read or written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -58,7 +61,9 @@ pub fn pack(files: &[(String, Vec<u8>)]) -> Result<Vec<u8>, ArchiveError> {
     for (name, bytes) in files {
         let (mut entry, config) =
             archive.new_file(name).compression_method(CompressionMethod::DEFLATE).start()?;
-        let encoder = flate2::write::DeflateEncoder::new(&mut entry, flate2::Compression::default());
+        let large = bytes.len() > FAST_FROM;
+        let effort = if large { flate2::Compression::fast() } else { flate2::Compression::default() };
+        let encoder = flate2::write::DeflateEncoder::new(&mut entry, effort);
         let mut writer = config.wrap(encoder);
         writer.write_all(bytes)?;
         let (encoder, descriptor) = writer.finish()?;

@@ -3,8 +3,8 @@
 
 use std::sync::Arc;
 
-use formats::{PngCache, write_glb, write_glb_with};
-use mesh::{AlphaMode, Material, MaterialId, MaterialKind, Model, Part, Texture, TriMesh};
+use formats::{PngCache, write_glb, write_glb_scene, write_glb_with};
+use mesh::{AlphaMode, Material, MaterialId, MaterialKind, Model, Part, Standing, Texture, TriMesh};
 
 /// A grid of `n` by `n` squares with every column filled.
 fn grid(n: u32) -> TriMesh {
@@ -120,4 +120,56 @@ fn samples_for_the_validator() {
         write_glb(&model, &mut glb).expect("writes");
         std::fs::write(dir.join(format!("{name}.glb")), glb).expect("saves");
     }
+}
+
+#[test]
+fn a_model_that_stands_in_a_scene_several_times_is_written_once() {
+    let (oak, elm) = (model(8), Model { name: "elm".into(), ..model(4) });
+    let turn = glam::DQuat::from_xyzw(0.0, 0.6, 0.0, 0.8);
+    let far = Standing {
+        position: glam::DVec3::new(3.0, 0.0, -2.0),
+        turn,
+        scale: 2.0,
+        ..Standing::home("b", &oak)
+    };
+    let plants = [Standing::home("a", &oak), far, Standing::home("c", &elm)];
+    let mut glb = Vec::new();
+    write_glb_scene("grove", &plants, &mut PngCache::new(), &mut glb).expect("writes");
+    let j = json_of(&glb);
+    let many = |key: &str| j[key].as_array().map_or(0, Vec::len);
+    assert_eq!((many("meshes"), many("images"), many("nodes")), (6, 1, 1 + 3 + 9));
+    let named = |name: &str| {
+        let nodes = j["nodes"].as_array().expect("nodes");
+        nodes.iter().find(|n| n["name"] == name).expect("there").clone()
+    };
+    assert_eq!(named("grove")["children"].as_array().map(Vec::len), Some(3));
+    assert_eq!(named("b")["translation"], serde_json::json!([3.0, 0.0, -2.0]));
+    assert_eq!(named("b")["rotation"], serde_json::json!([0.0, 0.6, 0.0, 0.8]));
+    assert_eq!(named("b")["scale"], serde_json::json!([2.0, 2.0, 2.0]));
+    let meshes = |name: &str| -> Vec<serde_json::Value> {
+        let children = named(name)["children"].as_array().expect("parts").clone();
+        children.iter().map(|c| j["nodes"][c.as_u64().expect("a row") as usize]["mesh"].clone()).collect()
+    };
+    assert_eq!(meshes("a"), meshes("b"));
+    assert!(meshes("c").iter().all(|m| !meshes("a").contains(m)));
+    // Each material is that of its own model.
+    let mut report = base::Report::default();
+    let spec = formats::ExportSpec::default();
+    let read = formats::ModelFormat::Glb;
+    let back =
+        formats::read_model(&glb[..], read, "x", &spec, &formats::no_files, &mut report).expect("reads");
+    let triangles = |m: &Model| m.triangle_count();
+    assert_eq!(triangles(&back), 2 * triangles(&oak) + triangles(&elm));
+    let corner = far.turn * (glam::DVec3::new(1.0, 1.0, 0.1) * far.scale) + far.position;
+    let near = |p: &[f32; 3]| glam::DVec3::from(p.map(f64::from)).distance(corner) < 1e-5;
+    assert!(back.parts.iter().any(|p| p.mesh.positions.iter().any(near)), "the copy is where it stands");
+}
+
+#[test]
+fn one_plant_that_stands_where_it_was_made_is_written_as_its_model() {
+    let oak = model(8);
+    let (mut scene, mut plain) = (Vec::new(), Vec::new());
+    write_glb_scene("oak", &[Standing::home("a", &oak)], &mut PngCache::new(), &mut scene).expect("writes");
+    write_glb(&oak, &mut plain).expect("writes");
+    assert!(scene == plain);
 }

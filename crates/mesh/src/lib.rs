@@ -10,4 +10,4 @@ mod trimesh;
 
 pub use cloud::PointCloud;
 pub use material::{AlphaMode, Material, MaterialId, MaterialKind, Texture};
-pub use trimesh::{Bounds, Fault, Model, Part, TriMesh};
+pub use trimesh::{Bounds, Fault, Model, Part, Standing, TriMesh};

@@ -1,7 +1,7 @@
 //! Columns of vertices and triangles.
 
 use base::{Digest, Digestible};
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 use crate::{Material, MaterialId};
 
@@ -57,6 +57,35 @@ pub struct Model {
     pub materials: Vec<Material>,
     /// What was taken off all positions so that they fit in single precision; metres, +Y up. Files keep it as a note.
     pub offset_m: Option<DVec3>,
+}
+
+/// A model that stands in a scene: scaled, turned, then moved. Several may be the same model: copies.
+#[derive(Clone, Copy, Debug)]
+pub struct Standing<'a> {
+    /// Its name in the scene.
+    pub name: &'a str,
+    /// What stands there.
+    pub model: &'a Model,
+    /// Where its origin stands, metres.
+    pub position: DVec3,
+    /// How it is turned.
+    pub turn: DQuat,
+    /// Its size.
+    pub scale: f64,
+}
+
+impl<'a> Standing<'a> {
+    /// A model as it was made.
+    pub fn home(name: &'a str, model: &'a Model) -> Self {
+        Self { name, model, position: DVec3::ZERO, turn: DQuat::IDENTITY, scale: 1.0 }
+    }
+
+    /// Whether it stands as it was made.
+    pub fn is_home(&self) -> bool {
+        self.position == DVec3::ZERO
+            && self.turn == DQuat::IDENTITY
+            && self.scale.to_bits() == 1.0_f64.to_bits()
+    }
 }
 
 /// An axis-aligned box in metres; empty when `min > max`.

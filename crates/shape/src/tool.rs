@@ -146,7 +146,9 @@ enum State {
         key: AxisKey,
         bearer: Option<(AxisKey, AxisId)>,
         grabbed: f64,
-        start: DVec3,
+        foot: DVec3,
+        /// The pointer as it went down.
+        from: Box<Pointer>,
         to: Option<Destination>,
     },
     Clicking {
@@ -243,11 +245,10 @@ impl Tool {
             (ToolKind::Move, Some((pick, key))) => {
                 let on = plant.axis(pick.axis).bearer.map(|n| plant.nodes.axis[n.index()]);
                 let bearer = on.and_then(|axis| Some((AxisKey::of(plant, axis)?, axis)));
-                let start = plant.axis_points(pick.axis)[0];
-                let share = on.map_or(0.0, |axis| share_of(plant, axis, start));
+                let foot = plant.axis_points(pick.axis)[0];
+                let share = on.map_or(0.0, |axis| share_of(plant, axis, foot));
                 let grabbed = on.map_or(0.0, |axis| share - share_under(plant, axis, p));
-                let start = if on.is_some() { start } else { on_ground(p, start).unwrap_or(start) };
-                State::Sliding { pick, key, bearer, grabbed, start, to: None }
+                State::Sliding { pick, key, bearer, grabbed, foot, from: Box::new(*p), to: None }
             }
             (ToolKind::Prune { .. } | ToolKind::Regrow, Some((pick, key))) => State::Clicking { pick, key },
             (ToolKind::Rotate | ToolKind::Move | ToolKind::Prune { .. } | ToolKind::Regrow, None) => {
@@ -323,15 +324,17 @@ impl Tool {
                 }
                 *last = now.or(*last);
             }
-            State::Sliding { pick, bearer, grabbed, start, to, .. } => {
-                *to = match (bearer, p.tip) {
-                    (Some(_), Some(tip)) => wood_near(plant, tip, pick.axis).or_else(|| to.take()),
+            State::Sliding { pick, bearer, grabbed, foot, from, to, .. } => {
+                let now = match (bearer, p.tip) {
+                    (Some(_), Some(tip)) => wood_near(plant, tip, pick.axis),
                     (Some((key, axis)), None) => {
                         let at = (share_under(plant, *axis, p) + *grabbed).clamp(0.0, 1.0);
                         Some(Destination::Place { axis: key.clone(), at })
                     }
-                    (None, _) => on_ground(p, *start).map(|q| Destination::ByM((q - *start).with_y(0.0))),
+                    (None, _) => over_ground(from, p, *foot).map(Destination::ByM),
                 };
+                // Above the horizon there is no ground: it stays where it was last.
+                *to = now.or_else(|| to.take());
             }
             State::Clicking { .. } => {}
             State::Stroking(stroke) => stroke.add(p, radius),
@@ -460,8 +463,22 @@ fn hand(p: &Pointer, pivot: DVec3, about: DVec3) -> Option<DVec3> {
     (flat.is_finite() && flat.length() > 0.0).then_some(flat)
 }
 
-fn on_ground(p: &Pointer, start: DVec3) -> Option<DVec3> {
-    p.tip.or_else(|| p.ray.meets(start, DVec3::Y))
+/// How far the foot of a stem goes over the ground when it moves as the pointer does: wherever along the stem the pointer
+/// went down, the foot keeps its distance from it on the screen. None where that is above the horizon.
+fn over_ground(from: &Pointer, now: &Pointer, foot: DVec3) -> Option<DVec3> {
+    if let Some((a, b)) = from.tip.zip(now.tip) {
+        return Some((b - a).with_y(0.0));
+    }
+    let [before, after] = [from, now].map(|p| p.ray.direction.try_normalize());
+    let (before, after) = before.zip(after)?;
+    let turned = base::turn::between(before, after) * (foot - from.ray.origin);
+    let seen = now.ray.origin + turned;
+    // Rays of a front view are parallel and begin in a plane; those of an eye begin in it.
+    let eye = from.ray.origin.distance(now.ray.origin) <= 1e-9 * turned.length();
+    let ray = Ray { origin: now.ray.origin, direction: turned };
+    let ray = if eye { ray } else { Ray { origin: seen - after * turned.length(), direction: after } };
+    let at = ray.meets(foot, DVec3::Y)?;
+    Some((at - foot).with_y(0.0))
 }
 
 /// The place on a shoot nearest to a point, on none that `but` bears or is.

@@ -185,6 +185,35 @@ fn a_branch_slides_along_its_bearer_and_a_stem_over_the_ground() {
 }
 
 #[test]
+fn a_stem_follows_the_pointer_wherever_it_is_grabbed() {
+    let plant = tree();
+    // From 6 m up and 10 m away; the same way on the screen, from the foot and from high up.
+    let eye = DVec3::new(0.0, 6.0, 10.0);
+    let at = |p: DVec3| Pointer {
+        ray: Ray { origin: eye, direction: p - eye },
+        forward: DVec3::new(0.0, -0.5, -1.0).normalize(),
+        ..mouse(0.0, 0.0)
+    };
+    let moved = |from: DVec3, to: DVec3| {
+        let edit = drag(&mut Tool::new(ToolKind::Move), &plant, &[at(from), at(from.lerp(to, 0.5)), at(to)]);
+        let Some(HandEdit::Move { to: Destination::ByM(by), .. }) = edit.commit else { panic!("{edit:?}") };
+        by
+    };
+    let foot = moved(DVec3::ZERO, DVec3::new(1.0, 0.0, 0.5));
+    assert!(foot.distance(DVec3::new(1.0, 0.0, 0.5)) < 1e-9, "{foot}");
+    let high = DVec3::new(0.0, 1.5, 0.0);
+    let along = moved(high, high + DVec3::X);
+    // A metre across at 11 m from the eye is 1.02 m across at the foot; before, it was 1.3 m.
+    assert!((along.x - 1.0).abs() < 0.1 && along.z.abs() < 0.2, "{along}");
+    // Beyond the horizon it stays where it was last seen over the ground.
+    let near = high + DVec3::X;
+    let way = [at(high), at(near), at(DVec3::new(0.0, 30.0, -10.0))];
+    let up = drag(&mut Tool::new(ToolKind::Move), &plant, &way).commit;
+    assert_eq!(up, drag(&mut Tool::new(ToolKind::Move), &plant, &[at(high), at(near)]).commit);
+    assert!(up.is_some());
+}
+
+#[test]
 fn a_click_prunes_or_regrows_and_escape_does_neither() {
     let plant = tree();
     let click = |kind| {

@@ -36,9 +36,9 @@ mod trees;
 mod venation;
 
 pub use base::{
-    Angle, Budget, CancelToken, Cancelled, Clock, Code, Coded, Counted, Digest, Executor, NoClock,
-    OverBudget, Report, Run, Seed, Serial, Stopped, Told, Unit, UpAxis, Warning, brief, grouped, map_indexed,
-    quoted,
+    Angle, Budget, CancelToken, Cancelled, Clock, Code, Coded, Counted, Digest, Draw, Executor, NoClock,
+    OverBudget, Report, Run, Seed, Serial, Stopped, Stream, Told, Unit, UpAxis, Warning, brief, grouped,
+    map_indexed, quoted,
 };
 pub use evaluate::{Evaluator, FrontView, make_from_sketch};
 pub use flowers::{FlowerOptions, make_flower};
@@ -54,7 +54,7 @@ pub use report::{
 };
 pub use scanned::make_leaf_from_scan;
 pub use scene::{
-    SceneError, SceneEvaluator, ScenePlant, flower_schema, leaf_marks, leaf_schema, scene_model,
+    SceneError, SceneEvaluator, ScenePlant, flower_schema, leaf_marks, leaf_schema, scene_model, standing,
     tree_settings, tree_spec,
 };
 pub use shaping::{BranchRow, EditReport, branch_rows, edits_schema, edits_template};

@@ -2,21 +2,21 @@
 //!
 //! `Document -> SceneEvaluator (an evaluator a plant) -> models, reports | scene_model -> one model`
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use base::{Cancelled, OverBudget, Report, Run, Seed, Stopped};
 use bloom::FlowerSettings;
 use document::{
-    Document, DocumentPlant, Editor, FlowerMaker, LeafData, LeafMaker, Maker, Placement, PlantEdit, PlantId,
+    Document, DocumentPlant, Editor, FlowerMaker, LeafData, LeafMaker, Maker, PlantEdit, PlantId, Settings,
     SketchCommand, SketchSettings, TreeSettings,
 };
 use formats::{LeafFileError, MarksAxes, read_marks, read_vein_graph};
 use glam::{DQuat, DVec3};
 use growth::TreeSpec;
-use ink::Drawing;
+use ink::{Stroke, StrokeClass};
 use leaf::{FullMarks, LeafSpec, ThicknessRule};
-use mesh::{MaterialId, Model};
+use mesh::{MaterialId, Model, Standing};
 use plant::Plant;
 use skin::SkinSpec;
 use spec::Spec;
@@ -141,24 +141,32 @@ base::coded!(SceneError {
 /// What was made of one plant.
 #[derive(Clone, Copy, Debug)]
 pub struct ScenePlant<'a> {
-    /// The entry of the report.
-    pub item: &'a ItemReport,
+    name: &'a str,
+    item: &'a ItemReport,
     /// The meshes, in the plant's own coordinates.
     pub model: &'a Model,
     /// The plant; none after an update that was stopped on the way.
     pub plant: Option<&'a Plant>,
     /// How a drawing lies in the front view.
     pub front: Option<FrontView>,
-    /// Grows whenever the model changes.
+    /// The name of the model within the evaluator: copies that share one have the same number, others never.
     pub revision: u64,
     /// What the last update did again.
     pub stages: &'a [&'static str],
 }
 
+impl ScenePlant<'_> {
+    /// The entry of the report.
+    pub fn report(&self) -> ItemReport {
+        ItemReport { name: self.name.to_owned(), ..self.item.clone() }
+    }
+}
+
 /// Makes the plants of a document that changes; each keeps what its last change did not touch.
 ///
 /// Guaranteed: the same result as from a fresh evaluator; after an error the last result of the plant stays. Where a
-/// plant stands, its name's place in lists and whether it is hidden do not make it anew.
+/// plant stands, its name's place in lists and whether it is hidden do not make it anew. Plants of the same maker, seed
+/// and edits are made once and share the result until one of them changes; a tree's name is no matter for it.
 ///
 /// ```
 /// use burgeon::document::{Editor, FlowerMaker, Maker, NewPlant, SceneCommand, Settings};
@@ -176,22 +184,62 @@ pub struct ScenePlant<'a> {
 pub struct SceneEvaluator {
     wind: bool,
     looking: bool,
-    plants: BTreeMap<PlantId, Made>,
+    plants: BTreeMap<PlantId, Kept>,
+    /// The last number that was given to a model.
+    revision: u64,
 }
 
-/// What a result was made from.
-type MadeFrom = (Maker, Seed, String, Option<LeafTemplate>, Vec<PlantEdit>);
+/// What is kept of one plant.
+#[derive(Clone, Debug, Default)]
+struct Kept {
+    name: String,
+    /// Shared with copies.
+    made: Arc<Made>,
+    /// What the last update did again.
+    done: Vec<&'static str>,
+}
+
+/// What a result is made from.
+#[derive(Clone, Debug, PartialEq)]
+struct MadeFrom {
+    maker: Maker,
+    seed: Seed,
+    /// Goes into plants and models of all but trees, which are named by their spec.
+    name: String,
+    leaf: Option<LeafTemplate>,
+    edits: Vec<PlantEdit>,
+    strokes: Vec<(Arc<Stroke>, Option<StrokeClass>)>,
+    wind: bool,
+}
+
+impl MadeFrom {
+    fn of(plant: &DocumentPlant, leaf: Option<LeafTemplate>, wind: bool) -> Self {
+        let settings = plant.settings();
+        let grown = matches!(settings.maker, Maker::Tree(_));
+        Self {
+            maker: settings.maker.clone(),
+            seed: settings.seed,
+            name: if grown { String::new() } else { settings.name.clone() },
+            leaf,
+            edits: settings.edits.clone(),
+            strokes: plant.strokes().iter().map(|s| (Arc::clone(&s.stroke), s.class)).collect(),
+            wind,
+        }
+    }
+}
 
 /// The last result of a plant.
 #[derive(Clone, Debug, Default)]
 struct Made {
     /// The word of who made it.
     maker: &'static str,
-    /// What the result was made from.
+    /// What the result was made from; none after an update that was stopped half-way.
     from: Option<MadeFrom>,
     sketch: Evaluator,
     tree: TreeEvaluator,
     opening: Option<OpeningPlant>,
+    /// The day to which a sketch's flowers were opened last.
+    day: Option<f64>,
     item: ItemReport,
     /// Of leaves and flowers, and of sketches whose flowers open.
     model: Option<Model>,
@@ -201,17 +249,12 @@ struct Made {
     skin: SkinSpec,
     lent: Option<LeafTemplate>,
     revision: u64,
-    done: Vec<&'static str>,
 }
 
 impl SceneEvaluator {
     /// Whether models say how wind moves them, from the next update on. Default: no.
     pub fn set_wind(&mut self, wind: bool) {
-        if self.wind != wind {
-            self.wind = wind;
-            // Only the surface is made again: what is below it keeps its own account of what it was made from.
-            self.plants.values_mut().for_each(|made| made.from = None);
-        }
+        self.wind = wind;
     }
 
     /// Whether updates are looks while a hand is at work: reports of trees and drawings then have no digest, which is a
@@ -226,56 +269,42 @@ impl SceneEvaluator {
     /// [`SceneError`]; a plant that is not in the document is left as it was.
     pub fn update(&mut self, id: PlantId, document: &Document, run: &Run<'_>) -> Result<(), SceneError> {
         let Some(plant) = document.plant(id) else { return Ok(()) };
-        self.update_drawn(plant, plant.drawing(), document, run)
-    }
-
-    /// As [`SceneEvaluator::update`], of a sketch with this drawing in the place of its own.
-    ///
-    /// # Errors
-    /// [`SceneError`].
-    pub fn update_drawn(
-        &mut self,
-        plant: &DocumentPlant,
-        drawing: Drawing,
-        document: &Document,
-        run: &Run<'_>,
-    ) -> Result<(), SceneError> {
         let settings = plant.settings();
         let leaf = match settings.maker.leaf() {
             Some(lender) => self.template(lender, document, run)?,
             None => None,
         };
-        let (wind, looking) = (self.wind, self.looking);
-        let made = self.plants.entry(plant.id()).or_default();
-        if made.maker != settings.maker.word() {
-            // Of a document in which this number was another plant's.
-            *made = Made { maker: settings.maker.word(), revision: made.revision, ..Made::default() };
-        }
-        (made.sketch.looking, made.tree.looking) = (looking, looking);
-        if let Maker::Sketch(s) = &settings.maker {
-            let mut options = SketchOptions { leaf, ..SketchOptions::of_plant(plant) };
-            options.skin.wind = wind;
-            return made.sketched(s, &drawing, &options, settings.seed, run);
-        }
-        let same = |k: &MadeFrom| {
-            (&k.0, k.1, &k.2, &k.3, &k.4)
-                == (&settings.maker, settings.seed, &settings.name, &leaf, &settings.edits)
-        };
-        made.done.clear();
-        if made.from.as_ref().is_some_and(same) && (looking || !made.item.digest.is_empty()) {
+        let (looking, next) = (self.looking, self.revision + 1);
+        let from = MadeFrom::of(plant, leaf, self.wind);
+        let is_it =
+            |k: &Kept| k.made.from.as_ref() == Some(&from) && (looking || !k.made.item.digest.is_empty());
+        let own = self.plants.get(&id).is_some_and(is_it);
+        let same = if own { None } else { self.plants.values().find(|k| is_it(k)) };
+        let same = same.map(|k| Arc::clone(&k.made));
+        let kept = self.plants.entry(id).or_default();
+        kept.name.clone_from(&settings.name);
+        kept.done.clear();
+        if let Some(same) = same {
+            kept.made = same;
             return Ok(());
         }
-        // Until it has succeeded: an update that is stopped half-way is no result, not even of what was before.
-        made.from = None;
-        let (name, seed) = (settings.name.as_str(), settings.seed);
-        match &settings.maker {
-            Maker::Tree(t) => made.grown((name, wind), t, leaf.as_ref(), &settings.edits, seed, run)?,
-            Maker::Leaf(l) => made.measured((name, wind), l, seed, run)?,
-            Maker::Flower(f) => made.flowered((name, wind), f, &settings.edits, seed, run)?,
-            _ => {}
+        if own {
+            return Ok(());
         }
-        made.revision += 1;
-        made.from = Some((settings.maker.clone(), seed, settings.name.clone(), leaf, settings.edits.clone()));
+        let made = Arc::make_mut(&mut kept.made);
+        if made.maker != settings.maker.word() {
+            // Of a document in which this number was another plant's.
+            *made = Made { maker: settings.maker.word(), ..Made::default() };
+        }
+        (made.sketch.looking, made.tree.looking) = (looking, looking);
+        // Until it has succeeded: an update that is stopped half-way is no result, not even of what was before.
+        let before = made.from.take();
+        kept.done = made.update(plant, from, before.is_none(), run)?;
+        // A drawing in which nothing changed but how its photograph shows keeps its model.
+        if !kept.done.is_empty() {
+            made.revision = next;
+            self.revision = next;
+        }
         Ok(())
     }
 
@@ -290,13 +319,14 @@ impl SceneEvaluator {
         let none = || SceneError::Lender(plant.settings().name.clone());
         // A lender bears its own leaf, so this goes one level down.
         self.update(lender, document, run).map_err(|e| if e.is_bare() { none() } else { e })?;
-        let Some(made) = self.plants.get_mut(&lender) else { return Ok(None) };
+        let Some(kept) = self.plants.get_mut(&lender) else { return Ok(None) };
+        let made = &mut kept.made;
         let lent = match &plant.settings().maker {
             Maker::Leaf(l) if made.lent.is_none() => {
                 let (marks, options) = leaf_input(l)?;
                 let lent = LeafTemplate::of_marks(&marks, &options, plant.settings().seed, run)?;
-                made.lent = Some(lent);
-                made.lent.clone()
+                Arc::make_mut(made).lent = Some(lent.clone());
+                Some(lent)
             }
             Maker::Leaf(_) => made.lent.clone(),
             // As it was drawn: a hand may have taken all leaves away.
@@ -305,11 +335,11 @@ impl SceneEvaluator {
         lent.map(Some).ok_or_else(none)
     }
 
-    /// A copy of what is kept of plants and of those whose leaves they bear, to try something with.
+    /// What is kept of plants and of those whose leaves they bear, to try something with.
     pub fn aside<'a>(&self, plants: impl IntoIterator<Item = &'a DocumentPlant>) -> Self {
         let wanted = plants.into_iter().flat_map(|p| [Some(p.id()), p.settings().maker.leaf()]);
         let kept = wanted.flatten().filter_map(|id| Some((id, self.plants.get(&id)?.clone())));
-        Self { wind: self.wind, looking: self.looking, plants: kept.collect() }
+        Self { plants: kept.collect(), ..*self }
     }
 
     /// Forgets a plant: it is made from the beginning when it is asked for again.
@@ -318,26 +348,31 @@ impl SceneEvaluator {
     }
 
     /// The plants of which something is kept, and about how many bytes: meshes, textures, and the plant in the stages in
-    /// which it is kept for the next change.
+    /// which it is kept for the next change. What copies share counts for the first of them.
     pub fn kept(&self) -> impl Iterator<Item = (PlantId, usize)> + '_ {
-        self.plants.iter().map(|(&id, made)| (id, made.bytes()))
+        let mut counted = BTreeSet::new();
+        self.plants.iter().map(move |(&id, kept)| {
+            let first = counted.insert(Arc::as_ptr(&kept.made));
+            (id, if first { kept.made.bytes() } else { 0 })
+        })
     }
 
     /// What makes the plant, of a sketch.
     pub fn evaluator(&self, id: PlantId) -> Option<&Evaluator> {
-        self.plants.get(&id).map(|made| &made.sketch)
+        self.plants.get(&id).map(|kept| &kept.made.sketch)
     }
 
     /// The last result of a plant.
     pub fn get(&self, id: PlantId) -> Option<ScenePlant<'_>> {
-        let made = self.plants.get(&id)?;
+        let Kept { name, made, done } = self.plants.get(&id)?;
         Some(ScenePlant {
+            name,
             item: &made.item,
             model: made.model.as_ref().or_else(|| made.sketch.model()).or_else(|| made.tree.model())?,
             plant: made.plant.as_ref().or_else(|| made.sketch.plant()).or_else(|| made.tree.plant()),
             front: made.sketch.front(),
             revision: made.revision,
-            stages: &made.done,
+            stages: done,
         })
     }
 
@@ -355,7 +390,7 @@ impl SceneEvaluator {
         run: &Run<'_>,
     ) -> Result<Model, SceneError> {
         let name = || SceneError::NotMade(plant.settings().name.clone());
-        let made = self.plants.get(&plant.id()).ok_or_else(name)?;
+        let made = &self.plants.get(&plant.id()).ok_or_else(name)?.made;
         let shown = self.get(plant.id()).ok_or_else(name)?;
         match &plant.settings().maker {
             _ if level == 0 => Ok(shown.model.clone()),
@@ -382,7 +417,7 @@ impl SceneEvaluator {
     /// The days of a plant whose flowers open: bud to full bloom, and from there to wilted.
     pub fn days(&self, id: PlantId, document: &Document) -> Option<[f64; 2]> {
         match &document.plant(id)?.settings().maker {
-            Maker::Sketch(_) => self.plants.get(&id)?.opening.as_ref().map(|o| o.days),
+            Maker::Sketch(_) => self.plants.get(&id)?.made.opening.as_ref().map(|o| o.days),
             Maker::Flower(f) => Some(f.settings.spec()?.days()),
             _ => None,
         }
@@ -403,106 +438,116 @@ impl Made {
             + STAGES * plants.into_iter().flatten().map(plant).sum::<usize>()
     }
 
+    /// Makes the plant; what of it was done again. `anew`: the last update was stopped, or there was none.
+    fn update(
+        &mut self,
+        plant: &DocumentPlant,
+        from: MadeFrom,
+        anew: bool,
+        run: &Run<'_>,
+    ) -> Result<Vec<&'static str>, SceneError> {
+        let done = match &from.maker {
+            Maker::Sketch(s) => self.sketched(plant, s, &from, anew, run)?,
+            Maker::Tree(t) => self.grown(t, &from, run)?,
+            Maker::Leaf(l) => self.measured(l, &from, run)?,
+            Maker::Flower(f) => self.flowered(f, &from, run)?,
+            _ => Vec::new(),
+        };
+        self.from = Some(from);
+        Ok(done)
+    }
+
     fn sketched(
         &mut self,
+        plant: &DocumentPlant,
         settings: &SketchSettings,
-        drawing: &Drawing,
-        options: &SketchOptions,
-        seed: Seed,
+        from: &MadeFrom,
+        anew: bool,
         run: &Run<'_>,
-    ) -> Result<(), SceneError> {
-        let item = self.sketch.update(drawing, options, seed, run)?;
-        self.done = self.sketch.stages_done().to_vec();
-        let changed = !self.done.is_empty();
-        let before = self.from.take();
+    ) -> Result<Vec<&'static str>, SceneError> {
+        let mut options = SketchOptions { leaf: from.leaf.clone(), ..SketchOptions::of_plant(plant) };
+        options.skin.wind = from.wind;
+        let drawing = plant.drawing();
+        let item = self.sketch.update(&drawing, &options, from.seed, run)?;
+        let mut done = self.sketch.stages_done().to_vec();
+        let changed = !done.is_empty();
         if changed {
             self.opening = None;
         }
         // Times are those of the last change that touched the plant.
-        if changed || before.is_none() || self.item.digest.is_empty() {
+        if changed || anew || self.item.digest.is_empty() {
             self.item = item;
         }
-        let day_before = before.and_then(|b| if let Maker::Sketch(s) = b.0 { Some(s.day) } else { None });
-        let day_changed = day_before.is_none_or(|d| d != settings.day);
+        let opened = anew || self.day != settings.day;
         match (settings.day, self.sketch.plant(), self.sketch.model()) {
             (Some(day), Some(plant), Some(model)) => {
                 if self.opening.is_none() {
                     let made = (plant, model, &self.item);
                     self.opening = Some(OpeningPlant::of_made(&drawing.name, made, &options.skin)?);
                 }
-                if let Some(opening) = self.opening.as_mut().filter(|_| changed || day_changed) {
-                    let open = opening.at(day, &opening.law(), seed, run)?;
+                if let Some(opening) = self.opening.as_mut().filter(|_| changed || opened) {
+                    let open = opening.at(day, &opening.law(), from.seed, run)?;
                     (self.plant, self.model) = (Some(open.plant), Some(open.model));
                 }
             }
             _ => (self.plant, self.model, self.opening) = (None, None, None),
         }
-        if changed || day_changed {
-            self.revision += 1;
+        self.day = settings.day;
+        if opened && !changed {
+            done.push("mesh");
         }
-        let kept = SketchSettings { day: settings.day, ..SketchSettings::default() };
-        self.from = Some((Maker::Sketch(Box::new(kept)), seed, String::new(), None, Vec::new()));
-        Ok(())
+        Ok(done)
     }
 
     fn grown(
         &mut self,
-        (name, wind): (&str, bool),
         tree: &TreeSettings,
-        leaf: Option<&LeafTemplate>,
-        edits: &[PlantEdit],
-        seed: Seed,
+        from: &MadeFrom,
         run: &Run<'_>,
-    ) -> Result<(), SceneError> {
-        let spec = TreeSpec { name: name.into(), ..tree_spec(tree) };
+    ) -> Result<Vec<&'static str>, SceneError> {
         let options = TreeOptions {
-            skin: SkinSpec { wind, ..tree.skin.clone() },
-            leaf: leaf.cloned(),
-            edits: edits.to_vec(),
+            skin: SkinSpec { wind: from.wind, ..tree.skin.clone() },
+            leaf: from.leaf.clone(),
+            edits: from.edits.clone(),
             ..TreeOptions::default()
         };
-        self.item = self.tree.update(&spec, seed, &options, run)?;
-        self.done = self.tree.stages_done().to_vec();
-        Ok(())
+        self.item = self.tree.update(&tree_spec(tree), from.seed, &options, run)?;
+        Ok(self.tree.stages_done().to_vec())
     }
 
     fn measured(
         &mut self,
-        (name, wind): (&str, bool),
         leaf: &LeafMaker,
-        seed: Seed,
+        from: &MadeFrom,
         run: &Run<'_>,
-    ) -> Result<(), SceneError> {
+    ) -> Result<Vec<&'static str>, SceneError> {
         let (marks, mut options) = leaf_input(leaf)?;
-        options.skin.wind = wind;
-        let made = make_leaf_of(name, &marks, &options, seed, run, Report::default())?;
-        self.take(made);
+        options.skin.wind = from.wind;
+        let made = make_leaf_of(&from.name, &marks, &options, from.seed, run, Report::default())?;
         self.lent = None;
-        Ok(())
+        Ok(self.take(made))
     }
 
     fn flowered(
         &mut self,
-        (name, wind): (&str, bool),
         flower: &FlowerMaker,
-        edits: &[PlantEdit],
-        seed: Seed,
+        from: &MadeFrom,
         run: &Run<'_>,
-    ) -> Result<(), SceneError> {
+    ) -> Result<Vec<&'static str>, SceneError> {
         let spec =
             flower.settings.spec().ok_or_else(|| SceneError::Species(flower.settings.species.clone()))?;
         let law = flower.law.as_ref().map_or_else(|| spec.own_law(), |l| (**l).clone());
-        let mut options = FlowerOptions { edits: edits.to_vec(), ..FlowerOptions::default() };
-        options.skin.wind = wind;
-        let made = make_flower(name, &spec, (flower.settings.day, &law), &options, seed, run)?;
-        self.take(made);
-        Ok(())
+        let mut options = FlowerOptions { edits: from.edits.clone(), ..FlowerOptions::default() };
+        options.skin.wind = from.wind;
+        let day = (flower.settings.day, &law);
+        let made = make_flower(&from.name, &spec, day, &options, from.seed, run)?;
+        Ok(self.take(made))
     }
 
-    fn take(&mut self, made: MadePlant) {
+    fn take(&mut self, made: MadePlant) -> Vec<&'static str> {
         let MadePlant { plant, model, skin, item } = made;
         (self.item, self.model, self.plant, self.skin) = (item, Some(model), Some(plant), skin);
-        self.done.push("mesh");
+        vec!["mesh"]
     }
 }
 
@@ -574,37 +619,42 @@ pub fn leaf_marks(
     Ok((read.marks, read.thickness))
 }
 
+/// A plant of a scene where it stands.
+pub fn standing<'a>(plant: &'a DocumentPlant, model: &'a Model) -> Standing<'a> {
+    let Settings { name, placement, .. } = plant.settings();
+    let (s, c) = base::ops::sin_cos(0.5 * placement.yaw_deg * (base::ops::PI / 180.0));
+    let turn = DQuat::from_xyzw(0.0, s, 0.0, c);
+    Standing { name, model, position: placement.position, turn, scale: placement.scale }
+}
+
 /// The models of a scene as one, each where it stands. Parts carry the name of their plant where there are several.
 ///
 /// Guaranteed: the model itself, bit for bit, of one plant that stands at the origin.
-pub fn scene_model<'a>(name: &str, plants: impl IntoIterator<Item = (Placement, &'a Model)>) -> Model {
-    let plants: Vec<(Placement, &Model)> = plants.into_iter().collect();
-    if let [(placement, model)] = plants.as_slice()
-        && *placement == Placement::default()
+pub fn scene_model(name: &str, plants: &[Standing<'_>]) -> Model {
+    if let [only] = plants
+        && only.is_home()
     {
-        return Model { name: name.into(), ..(*model).clone() };
+        return Model { name: name.into(), ..only.model.clone() };
     }
     let mut whole = Model { name: name.into(), ..Model::default() };
-    for (k, (placement, model)) in plants.iter().enumerate() {
+    for (k, plant) in plants.iter().enumerate() {
         let first = whole.materials.len();
         let own = |what: &str| {
-            if plants.len() > 1 { format!("{}-{}-{what}", k + 1, model.name) } else { what.to_owned() }
+            if plants.len() > 1 { format!("{}-{}-{what}", k + 1, plant.name) } else { what.to_owned() }
         };
-        whole.materials.extend(model.materials.iter().map(|m| {
+        whole.materials.extend(plant.model.materials.iter().map(|m| {
             let mut m = m.clone();
             m.name = own(&m.name);
             m
         }));
-        let (s, c) = base::ops::sin_cos(0.5 * placement.yaw_deg * (base::ops::PI / 180.0));
-        let turn = DQuat::from_xyzw(0.0, s, 0.0, c);
-        for part in &model.parts {
+        for part in &plant.model.parts {
             let mut part = part.clone();
             for p in part.mesh.positions.iter_mut().chain(&mut part.mesh.pivots) {
-                let at = turn * (DVec3::from_array(p.map(f64::from)) * placement.scale) + placement.position;
+                let at = plant.turn * (DVec3::from_array(p.map(f64::from)) * plant.scale) + plant.position;
                 *p = at.as_vec3().to_array();
             }
             for n in &mut part.mesh.normals {
-                *n = (turn * DVec3::from_array(n.map(f64::from))).as_vec3().to_array();
+                *n = (plant.turn * DVec3::from_array(n.map(f64::from))).as_vec3().to_array();
             }
             part.name = own(&part.name);
             part.material = MaterialId::new(first + part.material.index());

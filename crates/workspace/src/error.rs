@@ -58,6 +58,9 @@ pub enum WorkspaceError {
     /// The tool needs a plant.
     #[error("there is no plant to shape yet")]
     NothingToShape,
+    /// No copy has room where it was asked for.
+    #[error("no copy has room there: make the place larger or the spacing smaller")]
+    NowhereToStand,
     /// The document refused.
     #[error(transparent)]
     Command(#[from] CommandError),
@@ -126,6 +129,7 @@ burgeon::coded!(WorkspaceError {
     Self::NothingMade => "nothing-made" {},
     Self::Format(format) => "no-such-export" { format },
     Self::NothingToShape => "nothing-to-shape" {},
+    Self::NowhereToStand => "nowhere-to-stand" {},
     Self::Law(why) => "law" { why },
     Self::Cancelled => "cancelled" {},
     Self::Message(why) => "message" { why },

@@ -88,6 +88,7 @@ impl Workspace {
             let mut seen =
                 model.map_or_else(|| PlantView::empty(id), |m| PlantView::of(id, m, &mut textures));
             seen.fresh = previewed || model.is_none() || self.meshes.get(&id) != Some(&revision);
+            seen.mesh = revision;
             seen.item = self.item(id);
             seen.stages = if previewed {
                 self.preview.as_ref().map_or_else(Vec::new, |e| e.stages_done().to_vec())
@@ -123,7 +124,7 @@ impl Workspace {
         if self.previewed && self.current() == Some(id) {
             return self.preview_item.clone();
         }
-        self.scene.get(id).map(|p| p.item.clone())
+        self.scene.get(id).map(|p| p.report())
     }
 
     /// What is shown of a plant.
@@ -257,17 +258,16 @@ impl Workspace {
         for &id in &shown {
             self.kept.shown.insert(id, self.kept.now);
         }
-        let mut total = self.kept_bytes();
         let last = |id| self.kept.shown.get(&id).copied().unwrap_or(0);
         let aside = self.scene.kept().filter(|(id, _)| !shown.contains(id));
-        let mut aside: Vec<(u64, PlantId, usize)> = aside.map(|(id, bytes)| (last(id), id, bytes)).collect();
+        let mut aside: Vec<(u64, PlantId)> = aside.map(|(id, _)| (last(id), id)).collect();
         aside.sort_unstable();
-        for (_, id, bytes) in aside {
-            if total <= self.kept.limit {
+        for (_, id) in aside {
+            // Counted anew: what a copy shares stays as long as the copy.
+            if self.kept_bytes() <= self.kept.limit {
                 break;
             }
             self.scene.forget(id);
-            total -= bytes;
         }
         let kept: BTreeSet<PlantId> = self.scene.kept().map(|(id, _)| id).collect();
         self.kept.shown.retain(|id, _| kept.contains(id));

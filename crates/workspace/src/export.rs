@@ -1,10 +1,10 @@
 //! Exports: the scene or one plant, in every format that the command line writes.
 
 use burgeon::document::{self, Document, DocumentPlant, PlantId};
-use burgeon::formats::{self, ExportSpec, ModelFormat, obj_files, usd_files};
-use burgeon::mesh::Model;
+use burgeon::formats::{self, ExportSpec, ModelFormat, PngCache, obj_files, usd_files};
+use burgeon::mesh::{Model, Standing};
 use burgeon::plant::Plant;
-use burgeon::{Report, Run, SceneEvaluator, Unit, UpAxis, scene_model};
+use burgeon::{Report, Run, SceneEvaluator, Unit, UpAxis, scene_model, standing};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -180,21 +180,54 @@ fn export(
         }
         _ => {}
     }
-    let (model, spec) = (model?, wanted.spec());
+    let (format, spec) = (model?, wanted.spec());
     let levels = wanted.levels.clamp(1, 4);
     let mut files = Vec::new();
     for level in 0..levels {
-        let mut models = Vec::new();
+        // Copies that share a model share its coarser copies, too.
+        let mut models: Vec<(u64, Model)> = Vec::new();
+        let mut rows = Vec::with_capacity(made.len());
         for plant in &made {
-            let placement =
-                if only.is_some() { document::Placement::default() } else { plant.settings().placement };
-            models.push((placement, scene.at_level(plant, document, level, run)?));
+            let revision = scene.get(plant.id()).map_or(0, |p| p.revision);
+            let known = models.iter().position(|(r, _)| *r == revision);
+            rows.push(known.unwrap_or(models.len()));
+            if known.is_none() {
+                models.push((revision, scene.at_level(plant, document, level, run)?));
+            }
         }
-        let whole = scene_model(document.name(), models.iter().map(|(at, m)| (*at, m)));
+        let standing: Vec<Standing<'_>> = made
+            .iter()
+            .zip(&rows)
+            .filter_map(|(plant, &row)| {
+                let model = &models.get(row)?.1;
+                let home = only.is_some();
+                Some(if home {
+                    Standing::home(&plant.settings().name, model)
+                } else {
+                    standing(plant, model)
+                })
+            })
+            .collect();
         let stem = if levels == 1 { "plant".into() } else { format!("plant_LOD{level}") };
-        files.extend(written(&whole, model, &stem, &spec)?);
+        files.extend(scene_files(document.name(), &standing, format, &stem, &spec)?);
     }
     Ok(files)
+}
+
+/// The files of a scene. Binary glTF has each model once, however often it stands there; others have room for one model.
+fn scene_files(
+    name: &str,
+    plants: &[Standing<'_>],
+    format: ModelFormat,
+    stem: &str,
+    spec: &ExportSpec,
+) -> Result<Vec<NamedFile>, WorkspaceError> {
+    if format == ModelFormat::Glb {
+        let mut out = Vec::new();
+        formats::write_glb_scene(name, plants, &mut PngCache::new(), &mut out)?;
+        return Ok(vec![(format!("{stem}.glb"), out)]);
+    }
+    written(&scene_model(name, plants), format, stem, spec)
 }
 
 /// A file a plant.

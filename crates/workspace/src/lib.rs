@@ -22,6 +22,7 @@ mod export;
 mod files;
 mod held;
 mod kept;
+mod scatter;
 mod shaping;
 mod state;
 mod view;
@@ -34,7 +35,8 @@ pub use error::{Refusal, WorkspaceError};
 pub use export::{ExportFormat, ExportRequest, LengthUnit, NamedFile, Up, packed};
 pub use files::{FileKind, Opened};
 pub use kept::{KEPT_BYTES, SHOWN_BYTES};
-pub use shaping::{HeldTool, Picked, ShapeAnswer, ShapeInput, ShapePointer, ShapeReach};
+pub use scatter::{Ground, Scatter};
+pub use shaping::{HeldTool, Picked, ShapeAnswer, ShapeInput, ShapePointer, ShapeReach, ShapeStep};
 pub use state::{
     DocumentState, EditState, FlowerState, LeafState, MakerWord, NamedShape, ObstacleView, PhotoState,
     PlantState, SketchState, StrokeState, TreeState,

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use burgeon::document::{CommandError, Document, Editor, PlantId, ShapeCommand};
 use burgeon::geom;
 use burgeon::glam::{DVec2, DVec3};
-use burgeon::plant::{AxisId, AxisKind, Plant};
+use burgeon::plant::{Axis, AxisId, AxisKind, Plant};
 use burgeon::shape::{
     self, AxisKey, HandEdit, Input, Pick, Pointer, Ray, Reach, Thumb, Tool, ToolKind, lean_of_thumb,
 };
@@ -131,6 +131,13 @@ pub enum ShapeInput {
     /// A thumb on its touchpad or stick, whose rim is 1, x to the right and y up; none: it was lifted. A branch that is
     /// held turns with it; a plane that is drawn on leans by its distance from the centre.
     Thumb(Option<[f64; 2]>),
+    /// It goes from branch to branch by keys, without a pointer.
+    Walk {
+        /// The branch that is meant now; none begins with what stands on the ground.
+        from: Option<u32>,
+        /// Where to.
+        to: ShapeStep,
+    },
     /// It changed its brush.
     Brush {
         /// How thick it is, metres.
@@ -138,6 +145,20 @@ pub enum ShapeInput {
         /// How many branches it makes.
         density: f64,
     },
+}
+
+/// From one branch to another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ShapeStep {
+    /// The next that the same branch bears; after the last the first.
+    Next,
+    /// The one before.
+    Previous,
+    /// What bears it.
+    Bearer,
+    /// The first that it bears.
+    Borne,
 }
 
 /// How far beside a branch it is still meant: `metres + per_metre * distance`.
@@ -203,6 +224,10 @@ impl Workspace {
         let ShapeReach { metres, per_metre, bearers } = reach;
         let reach = Reach { metres, per_metre, bearers };
         let id = self.must()?;
+        if let ShapeInput::Walk { from, to } = input {
+            let plant = self.shown_plant(id).ok_or(WorkspaceError::NothingToShape)?;
+            return Ok(ShapeAnswer { picked: walked(plant, from, to), ..ShapeAnswer::default() });
+        }
         let Some(kind) = tool.kind() else { return Ok(self.point(id, reach, &input)) };
         let had = self.preview_edit(id).cloned();
         let going = self.held.as_ref().is_some_and(|h| h.tool.is_busy() && h.plant == id);
@@ -214,7 +239,7 @@ impl Workspace {
             let plant = self.shown_plant(id).ok_or(WorkspaceError::NothingToShape)?.clone();
             let edits = self.editor.document().plant(id).map_or(0, |p| p.settings().edits.len());
             let tool = Tool::new(kind).with(reach, edits as u64 + 1);
-            let large = self.scene.get(id).is_some_and(|p| p.item.counts.triangles > COARSE_ABOVE);
+            let large = self.scene.get(id).is_some_and(|p| p.model.triangle_count() as u64 > COARSE_ABOVE);
             let (thumb, lean) = (Thumb::default(), 0.0);
             self.held = Some(Held { tool, plant: id, before: plant, large, preview: None, thumb, lean });
         }
@@ -223,7 +248,7 @@ impl Workspace {
         let said = match input {
             ShapeInput::Down(at) => tool.handle(plant, &Input::Down(at.into())),
             ShapeInput::Up(at) => tool.handle(plant, &Input::Up(at.into())),
-            ShapeInput::Cancel => tool.handle(plant, &Input::Cancel),
+            ShapeInput::Cancel | ShapeInput::Walk { .. } => tool.handle(plant, &Input::Cancel),
             ShapeInput::Twist(degrees) => tool.handle(plant, &Input::Twist(degrees * DEGREE)),
             ShapeInput::Thumb(at) => {
                 let at = at.map(DVec2::from_array);
@@ -322,6 +347,32 @@ impl Workspace {
         }
         Some((id, aside.document().clone()))
     }
+}
+
+/// The branch at the end of a step.
+fn walked(plant: &Plant, from: Option<u32>, to: ShapeStep) -> Option<Picked> {
+    let woody = |a: &Axis| !matches!(a.kind, AxisKind::Petiole | AxisKind::Root);
+    let bearer = |a: &Axis| Some(*plant.nodes.axis.get(a.bearer?.index())?);
+    let from = from.map(|f| f as usize).filter(|&f| plant.axes.get(f).is_some_and(woody));
+    let borne_by = |by: Option<AxisId>| -> Vec<usize> {
+        let axes = plant.axes.iter().enumerate();
+        axes.filter(|(_, a)| woody(a) && bearer(a) == by).map(|(row, _)| row).collect()
+    };
+    let row = match (from, to) {
+        (None, _) => *borne_by(None).first()?,
+        (Some(from), ShapeStep::Bearer) => bearer(&plant.axes[from]).map_or(from, AxisId::index),
+        (Some(from), ShapeStep::Borne) => borne_by(Some(AxisId::new(from))).first().copied().unwrap_or(from),
+        (Some(from), _) => {
+            let beside = borne_by(bearer(&plant.axes[from]));
+            let at = beside.iter().position(|&row| row == from)?;
+            let step = if to == ShapeStep::Next { 1 } else { beside.len() - 1 };
+            beside[(at + step) % beside.len()]
+        }
+    };
+    let axis = AxisId::new(row);
+    let points = plant.axis_points(axis);
+    let point = *points.get(points.len() / 2)?;
+    picked(plant, Pick { axis, at: 0.5, point, distance_m: 0.0 }, true)
 }
 
 /// Which axes are this one or are borne by it.

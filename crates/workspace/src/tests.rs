@@ -1,13 +1,18 @@
 //! The workspace as a page uses it: commands and answers as JSON.
 
-use burgeon::document::{Command, Document, PlantCommand, PlantId, SceneCommand, SketchCommand, StrokeId};
-use burgeon::glam::DVec2;
+use burgeon::document::{
+    self, Command, Document, PlantCommand, PlantId, SceneCommand, SketchCommand, StrokeId,
+};
+use burgeon::glam::{DVec2, DVec3};
 use burgeon::ink::{InkSample, Stroke, StrokeMode};
 use burgeon::{Budget, Run, Seed, SketchOptions, formats};
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::{Action, Column, ExportFormat, ExportRequest, GUEST, Workspace, WorkspaceError, packed};
+use crate::{
+    Action, Column, ExportFormat, ExportRequest, GUEST, Ground, HeldTool, NewMaker, Scatter, ShapeInput,
+    ShapeReach, ShapeStep, Workspace, WorkspaceError, packed,
+};
 
 fn line(points: &[(f64, f64)]) -> Stroke {
     let samples =
@@ -558,7 +563,7 @@ fn edits_survive_a_file_and_say_when_their_branch_is_gone() {
 
 #[test]
 fn plants_that_are_added_again_stand_where_they_stood() {
-    let lily = Action::Add { name: "lily".into(), maker: crate::NewMaker::Flower("lily".into()) };
+    let lily = Action::Add { name: "lily".into(), maker: NewMaker::Flower("lily".into()) };
     let mut s = Workspace::default();
     let mut places = Vec::new();
     for _ in 0..3 {
@@ -582,14 +587,20 @@ fn plants_that_are_added_again_stand_where_they_stood() {
 
 #[test]
 fn a_scene_that_is_full_says_so_and_goes_on() {
-    let lily = Action::Add { name: "lily".into(), maker: crate::NewMaker::Flower("lily".into()) };
+    let lily = Action::Add { name: "lily".into(), maker: NewMaker::Flower("lily".into()) };
     let mut s = Workspace::default();
-    s.act(&lily).unwrap();
+    // Plants that are alike would share their memory.
+    let other = |s: &mut Workspace, seed| {
+        s.act(&lily).unwrap();
+        let id = s.current().unwrap();
+        s.run(PlantCommand::SetSeed(Seed::new(seed)).of(id)).unwrap();
+    };
+    other(&mut s, 2);
     s.evaluate(&run()).unwrap();
     s.show_at_most(s.kept_bytes());
-    s.act(&lily).unwrap();
+    other(&mut s, 3);
     assert!(s.evaluate(&run()).unwrap().plants[1].error.is_none(), "the last that has room");
-    s.act(&lily).unwrap();
+    other(&mut s, 4);
     let view = s.evaluate(&run()).unwrap();
     assert_eq!(view.plants[2].error.as_ref().map(|e| e.code.as_str()), Some("scene-full"));
     assert!(view.plants[2].parts.is_empty());
@@ -602,4 +613,132 @@ fn a_scene_that_is_full_says_so_and_goes_on() {
     s.evaluate(&run()).unwrap();
     let view = s.evaluate(&run()).unwrap();
     assert!(view.plants[2].error.is_none() && !view.plants[2].parts.is_empty());
+}
+
+/// A scene of one flower and the number of its plants' models.
+fn flower() -> Workspace {
+    let mut s = Workspace::default();
+    s.act(&Action::Add { name: "a lily".into(), maker: NewMaker::Flower("lily".into()) }).unwrap();
+    s
+}
+
+fn meshes(s: &mut Workspace) -> Vec<u64> {
+    let view = s.evaluate(&run()).unwrap();
+    view.plants.iter().filter_map(|p| p.mesh).collect()
+}
+
+#[test]
+fn copies_share_meshes_in_the_view_and_in_binary_gltf() {
+    let mut s = flower();
+    let id = s.current().unwrap();
+    let alone = s.file(ExportFormat::Glb).len();
+    for k in 1..4 {
+        s.run(SceneCommand::Duplicate(id, DVec3::X * f64::from(k))).unwrap();
+    }
+    let four = meshes(&mut s);
+    assert!(four.len() == 4 && four.iter().all(|m| *m == four[0]), "{four:?}");
+    let whole = ExportRequest { whole: true, ..ExportRequest::default() };
+    let file = s.exported(&whole);
+    assert!(file.len() < alone + 4000, "{} bytes of four, {alone} of one", file.len());
+    let mut other = Workspace::default();
+    other.open("four.glb", &file, 0, false).unwrap();
+    let seen = look(&mut other);
+    assert!((seen["max"][0].as_f64().unwrap() - seen["min"][0].as_f64().unwrap()) > 3.0, "they stand apart");
+    // Another seed is another plant; the others stay as they are.
+    let last = s.current().unwrap();
+    s.run(PlantCommand::SetSeed(Seed::new(5)).of(last)).unwrap();
+    let three = meshes(&mut s);
+    assert!(three[..3].iter().all(|m| *m == four[0]) && three[3] != four[0], "{three:?}");
+}
+
+#[test]
+fn copies_are_scattered_at_their_spacing_as_one_step() {
+    let outline = vec![[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]];
+    let path = vec![[-4.0, 3.0], [4.0, 3.0]];
+    let grounds = [
+        (Ground::Line(vec![[1.0, 0.0], [1.0, 4.0], [5.0, 4.0]]), 9..=9),
+        (Ground::Area(outline), 40..=115),
+        (Ground::Brush { path, radius_m: 1.0 }, 8..=22),
+    ];
+    for (ground, count) in grounds {
+        let mut s = flower();
+        let plant = s.current().unwrap();
+        let wanted = Scatter { plant, ground: ground.clone(), spacing_m: 1.0, kinds: 3, vary: 0.2 };
+        let action: Action =
+            serde_json::from_value(serde_json::json!({ "scatter": wanted })).expect("as the page asks");
+        s.act(&action).unwrap();
+        let plants = s.document().plants();
+        let copies = &plants[1..];
+        assert!(count.contains(&copies.len()), "{} of {ground:?}", copies.len());
+        let at = |p: &document::DocumentPlant| p.settings().placement.position;
+        for (k, p) in plants.iter().enumerate() {
+            assert!(plants[..k].iter().all(|q| at(p).distance(at(q)) > 0.998), "too near");
+            assert!((0.8..=1.2).contains(&p.settings().placement.scale));
+        }
+        match &ground {
+            Ground::Brush { .. } => {
+                assert!(copies.iter().all(|p| (at(p).z - 3.0).abs() <= 1.0 && at(p).x.abs() <= 5.0));
+            }
+            _ => assert!(copies.iter().all(|p| at(p).min_element() >= 0.0 && at(p).max_element() <= 10.0)),
+        }
+        let seeds: std::collections::BTreeSet<_> = copies.iter().map(|p| p.settings().seed).collect();
+        assert_eq!(seeds.len(), 3, "kinds");
+        let again = {
+            let mut t = flower();
+            t.act(&action).unwrap();
+            t.document().plants() == s.document().plants()
+        };
+        assert!(again, "the same places for the same request");
+        assert_eq!(s.undo(), Some("scatter"));
+        assert_eq!(s.document().plants().len(), 1);
+    }
+    let mut s = flower();
+    let plant = s.current().unwrap();
+    let wanted = Scatter { plant, ground: Ground::Area(vec![]), spacing_m: 1.0, kinds: 0, vary: 0.0 };
+    assert!(matches!(s.act(&Action::Scatter(wanted)), Err(WorkspaceError::NowhereToStand)));
+    let all = vec![[-500.0, -500.0], [500.0, -500.0], [500.0, 500.0]];
+    let wanted = Scatter { plant, ground: Ground::Area(all), spacing_m: 0.5, kinds: 0, vary: 0.0 };
+    s.act(&Action::Scatter(wanted)).unwrap();
+    assert_eq!(s.document().plants().len(), 200, "as many as a scene holds");
+}
+
+#[test]
+fn branches_are_walked_by_keys() {
+    let mut s = Workspace::default();
+    let bush = "name = \"bush\"\n[method]\nkind = \"competition\"\npoints = 100\nlifespan = 1\n";
+    s.open("bush.toml", bush.as_bytes(), 0, false).unwrap();
+    s.evaluate(&run()).unwrap();
+    let mut walk = |from: Option<u32>, to: ShapeStep| {
+        let input = ShapeInput::Walk { from, to };
+        s.shape(HeldTool::Pick, ShapeReach::default(), input).unwrap().picked.unwrap()
+    };
+    let stem = walk(None, ShapeStep::Next);
+    assert!(stem.stands && stem.key.is_some());
+    let first = walk(Some(stem.axis), ShapeStep::Borne);
+    assert!(first.axis != stem.axis && first.order == stem.order + 1);
+    assert_eq!(walk(Some(first.axis), ShapeStep::Bearer), stem);
+    // Round all that the stem bears, and back.
+    let mut seen = vec![first.axis];
+    loop {
+        let next = walk(seen.last().copied(), ShapeStep::Next).axis;
+        if next == first.axis {
+            break;
+        }
+        assert!(!seen.contains(&next));
+        seen.push(next);
+    }
+    assert!(seen.len() > 1, "{seen:?}");
+    assert_eq!(walk(Some(first.axis), ShapeStep::Previous).axis, seen[seen.len() - 1]);
+}
+
+#[test]
+fn a_model_that_is_looked_at_is_closed_and_the_scene_is_there_again() {
+    let mut s = flower();
+    let file = s.file(ExportFormat::Glb);
+    s.evaluate(&run()).unwrap();
+    s.open("x.glb", &file, 0, false).unwrap();
+    assert!(s.evaluate(&run()).unwrap().guest.is_some());
+    s.act(&Action::CloseModel).unwrap();
+    let view = s.evaluate(&run()).unwrap();
+    assert!(view.guest.is_none() && !view.plants[0].parts.is_empty());
 }

@@ -49,6 +49,8 @@ pub struct PlantView {
     pub id: PlantId,
     /// Its meshes are others than those of the last view.
     pub fresh: bool,
+    /// The name of its meshes: plants that have the same share them. None for what is only a look.
+    pub mesh: Option<u64>,
     /// Why it could not be made; what was made before stays.
     pub error: Option<Refusal>,
     /// The entry of the report.
@@ -165,6 +167,7 @@ impl PlantView {
         Self {
             id,
             fresh: true,
+            mesh: None,
             error: None,
             item: None,
             stages: Vec::new(),

@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 use crate::held::Held;
 use crate::kept::Kept;
 use crate::view::{Outcome, Textures};
-use crate::{DocumentState, WorkspaceError};
+use crate::{DocumentState, Scatter, WorkspaceError};
 
 /// Room between a new plant and the others, metres: as wide as the crown of a tree, or a hand.
 const TREE_ROOM: f64 = 4.0;
@@ -55,6 +55,10 @@ pub enum Action {
         /// The drawing.
         plant: PlantId,
     },
+    /// Looks at the scene again, not at a model.
+    CloseModel,
+    /// Copies of a plant in many places.
+    Scatter(Scatter),
 }
 
 /// Who makes a new plant.
@@ -213,6 +217,11 @@ impl Workspace {
                 (self.guest, self.draft) = (None, None);
                 Ok(())
             }
+            Action::CloseModel => {
+                self.guest = None;
+                Ok(())
+            }
+            Action::Scatter(wanted) => self.scatter(wanted),
         }
     }
 
@@ -419,7 +428,7 @@ impl Workspace {
     }
 
     /// The document changed, or another plant is looked at: what was held is let go.
-    fn let_go(&mut self) {
+    pub(crate) fn let_go(&mut self) {
         self.held = None;
     }
 }

@@ -16,6 +16,7 @@ export const zhErrors: Record<keyof typeof CODES, string> = {
   'no-surface': '模型里没有表面',
   'nothing-made': '还没有植物：至少画一条线，或添加树、叶或花',
   'no-such-export': '模型不能写成 {format}',
+  'nowhere-to-stand': '那里放不下任何副本：请扩大范围或减小间距',
   'nothing-to-shape': '还没有可修整的植物',
   law: '无法读取生长规律：{why}',
   cancelled: '已停止',

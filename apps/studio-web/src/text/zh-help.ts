@@ -305,8 +305,6 @@ export const zhHelp: Readonly<Record<string, string>> = {
   'preset.terminalia': '论文中的小叶榄仁：枝条平展成层，叶聚生如莲座',
   'preset.chinese-fir': '论文中的杉木：瘦长圆锥形，枝条微垂',
   'preset.oak': '宽阔的夏栎，经三个生命周期竞争空间长成',
-  'preset.oak-colonization': '同一株栎，用空间殖民算法，供 burgeon compare oak 比较',
-  'preset.oak-lsystem': '同一株栎，用 L 系统，供 burgeon compare oak 比较',
   'preset.birch': '垂枝桦：树皮白色，基部深色，小枝纤细下垂',
   'preset.lime': '椴树：树冠浓密圆整，叶心形',
   'preset.maple': '秋天的槭树：树冠浓密卵形，叶掌状',

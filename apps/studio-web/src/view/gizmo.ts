@@ -11,6 +11,8 @@ export interface GizmoEvents {
 
 export class Handles {
   private readonly controls: TransformControls;
+  private mode: 'translate' | 'rotate' | 'scale' = 'translate';
+  private axis: 'x' | 'z' | undefined;
 
   constructor(
     camera: Camera,
@@ -36,10 +38,20 @@ export class Handles {
     this.controls.setMode(mode);
     // On the ground: moved along it, turned about the vertical, sized as a whole.
     this.controls.setSpace(mode === 'translate' ? 'world' : 'local');
-    this.controls.showX = this.controls.showZ = mode !== 'rotate';
-    this.controls.showY = mode !== 'translate';
+    this.mode = mode;
+    this.only(this.axis);
     this.controls.attach(object);
     this.scene.add(helper);
+  }
+
+  /** Only one axis of the ground can be moved along, or both. */
+  only(axis: 'x' | 'z' | undefined): void {
+    this.axis = axis;
+    const { controls, mode } = this;
+    const bound = mode === 'translate' ? axis : undefined;
+    controls.showX = mode !== 'rotate' && bound !== 'z';
+    controls.showZ = mode !== 'rotate' && bound !== 'x';
+    controls.showY = mode !== 'translate';
   }
 
   setCamera(camera: Camera): void {

@@ -24,7 +24,7 @@ export class Looks {
     for (const t of textures) this.addTexture(t);
     const group = new THREE.Group();
     view.parts.forEach(({ material }, i) => {
-      const [columns, look] = [parts[i], view.materials[material]];
+      const [columns, look] = [parts?.[i], view.materials[material]];
       if (!columns || !look) return;
       const mesh = new THREE.Mesh(new THREE.BufferGeometry(), this.material(look, columns.colors.length > 0));
       fill(mesh.geometry, columns);
@@ -104,6 +104,26 @@ export class Looks {
   }
 }
 
+/** The columns of a plant's meshes on the graphics card, by the names of the parts; copies share them. */
+export type Shapes = Map<string, THREE.BufferGeometry>;
+
+/** Puts columns into shapes, in the place of what they were. */
+export function fillShapes(shapes: Shapes, view: PlantView, parts: PartArrays[]): void {
+  const names = new Set(view.parts.map((p) => p.name));
+  for (const [name, geometry] of shapes) {
+    if (names.has(name)) continue;
+    geometry.dispose();
+    shapes.delete(name);
+  }
+  view.parts.forEach(({ name }, i) => {
+    const columns = parts[i];
+    if (!columns) return;
+    const geometry = shapes.get(name) ?? new THREE.BufferGeometry();
+    shapes.set(name, geometry);
+    fill(geometry, columns);
+  });
+}
+
 /** One plant: its meshes within a group that stands where the plant stands. */
 export class PlantMeshes {
   /** Where it stands. */
@@ -111,33 +131,33 @@ export class PlantMeshes {
   readonly group = new THREE.Group();
   readonly obstacles = new THREE.Group();
   view: PlantView | undefined;
+  shapes: Shapes = new Map();
 
   constructor(private readonly looks: Looks) {
     this.place.add(this.group, this.obstacles);
   }
 
-  update(view: PlantView, parts: PartArrays[]): void {
+  /** Shows these shapes with the materials of the view. */
+  update(view: PlantView, shapes: Shapes): void {
+    this.shapes = shapes;
     const old = new Map(this.group.children.map((m) => [m.name, m as THREE.Mesh]));
-    view.parts.forEach(({ name, material }, i) => {
-      const columns = parts[i];
+    for (const { name, material } of view.parts) {
+      const geometry = shapes.get(name);
       const look = view.materials[material];
-      if (!columns || !look) return;
+      if (!geometry || !look) continue;
       let mesh = old.get(name);
       old.delete(name);
       if (!mesh) {
-        mesh = new THREE.Mesh(new THREE.BufferGeometry());
+        mesh = new THREE.Mesh();
         mesh.name = name;
         mesh.castShadow = true;
         mesh.receiveShadow = true;
         this.group.add(mesh);
       }
-      fill(mesh.geometry, columns);
-      mesh.material = this.looks.material(look, columns.colors.length > 0);
-    });
-    for (const mesh of old.values()) {
-      mesh.geometry.dispose();
-      this.group.remove(mesh);
+      mesh.geometry = geometry;
+      mesh.material = this.looks.material(look, geometry.hasAttribute('color'));
     }
+    for (const mesh of old.values()) this.group.remove(mesh);
   }
 
   /** The box around it and what it grows around, metres of the scene; empty where it is not seen. */
@@ -178,9 +198,9 @@ export class PlantMeshes {
     });
   }
 
+  /** Takes it out of the view. Its shapes may be those of copies: they stay. */
   dispose(): void {
-    for (const mesh of [...this.group.children, ...this.obstacles.children])
-      (mesh as THREE.Mesh).geometry.dispose();
+    for (const mesh of this.obstacles.children) (mesh as THREE.Mesh).geometry.dispose();
     this.place.removeFromParent();
   }
 }

@@ -9,6 +9,8 @@ import type { Baked } from './sky';
 const RADIUS = 6;
 /** As far as shadows fall. */
 const SHADED = 2.4;
+/** What lies no further than this from the middle of the stage throws a shadow, unless it is told to reach further. */
+const SHADING = 1.1;
 
 // Colours are mixed at the corners, in many rows: without a graphics card each pixel costs as much as a corner.
 const SRGB = `
@@ -204,7 +206,8 @@ export class Stage {
     this.sun.shadow.bias = -0.0004;
     this.sun.shadow.normalBias = 0.004;
     const box = this.sun.shadow.camera;
-    [box.left, box.right, box.bottom, box.top, box.near, box.far] = [-1.1, 1.1, -1.1, 1.1, 0.5, 8];
+    [box.left, box.right, box.bottom, box.top] = [-SHADING, SHADING, -SHADING, SHADING];
+    [box.near, box.far] = [0.5, 8];
     this.scene.add(this.backdrop, this.sky, this.plain, this.ground.group, this.shadow);
     this.scene.add(this.sun, this.sun.target, this.fill);
   }
@@ -267,6 +270,17 @@ export class Stage {
   touch(): void {
     this.renderer.shadowMap.needsUpdate = true;
     this.touched = true;
+  }
+
+  /** Plants up to this far from the middle keep their shadows: a hand may move them off the stage. */
+  shadeUpTo(distance: number): void {
+    const reach = Math.max(SHADING, Math.min(4 * SHADING, distance));
+    const box = this.sun.shadow.camera;
+    if (Math.abs(box.right - reach) < 0.05 * reach) return;
+    [box.left, box.right, box.bottom, box.top] = [-reach, reach, -reach, reach];
+    box.updateProjectionMatrix();
+    this.shadow.scale.setScalar(reach / SHADING);
+    this.touch();
   }
 
   /** A sharper shadow, for pictures that are kept. */

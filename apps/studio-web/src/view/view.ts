@@ -9,7 +9,7 @@ import { Rig, type Side } from './camera';
 import type { Handles } from './gizmo';
 import { type Guide, Guides } from './guides';
 import type { StageSetting } from './moods';
-import { Looks, PlantMeshes } from './plant';
+import { fillShapes, Looks, PlantMeshes, type Shapes } from './plant';
 import type { Effects, Pipeline } from './post';
 import { drawnBySoftware, Pace } from './quality';
 import { cameraFor, type ShotSize, shoot } from './shot';
@@ -34,6 +34,10 @@ const GRAIN = { rest: 0.75, moving: 0.45 } as const;
 const SHADOW = { fast: 512, fine: 2048 } as const;
 /** Eyes of a walker, metres, and between which heights of the stage they stay. */
 const EYES = { m: 1.65, low: 0.03, high: 1.4 } as const;
+/** Further away, in sizes of the stage, a ray that glances over the ground says nothing. */
+const FAR = 60;
+/** What a gizmo snaps to: metres, degrees, sizes. */
+const SNAP = { m: 0.25, deg: 15, size: 0.1 } as const;
 /** So much of a plant may be in the ground before it is raised onto it, where the ground hides what is in it. */
 const SUNK = 0.06;
 
@@ -43,6 +47,8 @@ export class PlantView {
   private readonly stage: Stage;
   private readonly looks: Looks;
   private readonly plants = new Map<number, PlantMeshes>();
+  /** What copies share, by the name that the core gives to the meshes. */
+  private shapes = new Map<number, Shapes>();
   /** A model that is viewed instead of the scene. */
   private guest: PlantMeshes | undefined;
   private states: PlantState[] = [];
@@ -64,6 +70,9 @@ export class PlantView {
   private held = false;
   private handles: Handles | undefined;
   private gizmo: Gizmo | undefined;
+  /** Gizmos go by steps; while Shift is held, the other way. */
+  private snaps = false;
+  private shifted = false;
   private dragging = false;
   private boned = false;
   private scale = 1;
@@ -135,6 +144,11 @@ export class PlantView {
       else if (e.button !== 0) this.taken(e.button === 2);
     });
     this.listenForClicks(canvas);
+    const shift = (e: PointerEvent): void => {
+      this.shifted = e.shiftKey;
+    };
+    canvas.addEventListener('pointerdown', shift, { capture: true });
+    canvas.addEventListener('pointermove', shift, { capture: true });
     canvas.addEventListener('wheel', () => this.taken(false), { passive: true });
     canvas.addEventListener('webglcontextlost', (e) => {
       e.preventDefault();
@@ -231,8 +245,10 @@ export class PlantView {
     this.redraw();
   }
 
+  /** A new worker names textures and meshes anew. */
   forget(): void {
     this.looks.forget();
+    this.shapes.clear();
   }
 
   private get chosen(): PlantMeshes | undefined {
@@ -248,13 +264,14 @@ export class PlantView {
     this.looks.keep(texturesOf(view.guest ? [view.guest, ...view.plants] : view.plants));
     for (const { textures } of fresh) for (const texture of textures) this.looks.addTexture(texture);
     const meshes = new Map(fresh.map((sent) => [sent.view.id, sent]));
+    const before = new Set(this.all.map((p) => p.shapes));
     const take = (known: PlantMeshes | undefined, seen: Seen): PlantMeshes => {
       const plant = known ?? new PlantMeshes(this.looks);
       if (!known) this.holder.add(plant.place);
       plant.view = seen;
       const sent = meshes.get(seen.id);
       if (sent) {
-        plant.update(seen, sent.parts);
+        plant.update(seen, this.shapesFor(plant, sent, view));
         plant.setObstacles(seen.obstacles, sent.obstacles);
       }
       return plant;
@@ -271,12 +288,41 @@ export class PlantView {
       this.plants.delete(id);
     }
     for (const seen of view.plants) this.plants.set(seen.id, take(this.plants.get(seen.id), seen));
+    this.sweep(before, view);
     this.stand();
     this.fitStage();
     this.showHandles();
     this.stage.touch();
     this.lay();
     this.redraw();
+  }
+
+  private get all(): PlantMeshes[] {
+    return [...this.plants.values(), ...(this.guest ? [this.guest] : [])];
+  }
+
+  /** What a plant is shown with: shapes that are there already, or its own with what was sent. */
+  private shapesFor(plant: PlantMeshes, { view: { mesh }, view, parts }: Sent, scene: SceneView): Shapes {
+    const known = mesh === null ? undefined : this.shapes.get(mesh);
+    if (!parts) return known ?? new Map();
+    // What a copy is shown with, or will be, is not written over.
+    const names = new Set(scene.plants.filter((p) => p.id !== view.id).map((p) => p.mesh));
+    const wanted = [...this.shapes].some(([name, s]) => s === plant.shapes && names.has(name));
+    const shared = this.all.some((p) => p !== plant && p.shapes === plant.shapes);
+    const shapes: Shapes = wanted || shared ? new Map() : plant.shapes;
+    fillShapes(shapes, view, parts);
+    for (const [name, s] of this.shapes) if (s === shapes) this.shapes.delete(name);
+    if (mesh !== null) this.shapes.set(mesh, shapes);
+    return shapes;
+  }
+
+  /** Gives back what nothing shows any more. */
+  private sweep(before: ReadonlySet<Shapes>, { plants }: SceneView): void {
+    const shown = new Set(this.all.map((p) => p.shapes));
+    for (const shapes of before)
+      if (!shown.has(shapes)) for (const geometry of shapes.values()) geometry.dispose();
+    const names = new Set(plants.map((p) => p.mesh));
+    for (const name of this.shapes.keys()) if (!names.has(name)) this.shapes.delete(name);
   }
 
   /** Where the plants stand, which are hidden, which is chosen. */
@@ -290,7 +336,9 @@ export class PlantView {
     this.showHandles();
     this.stage.touch();
     this.lay();
-    this.redraw();
+    // A plant that is not there yet comes in a moment: one picture of a large scene can take the processor seconds.
+    const whole = states.every(({ id }) => this.plants.has(id));
+    if (whole || !this.slow) this.redraw();
   }
 
   private stand(): void {
@@ -319,6 +367,7 @@ export class PlantView {
 
   /** Brings all that is seen to the size of the stage. */
   private fitStage(): void {
+    this.shadeAll();
     // Under a hand that works on it a plant keeps its size.
     if (this.dragging || this.held || (this.hands && this.fitted === this.current)) return;
     const box = this.bounds();
@@ -345,7 +394,18 @@ export class PlantView {
     this.guides.group.position.copy(this.holder.position);
     this.stage.setMetre(this.scale);
     this.guides.setBox(box);
+    this.shadeAll();
     if (this.follow) this.look(box, !this.rig.isLed);
+  }
+
+  /** Whatever was moved off the stage keeps its shadow. */
+  private shadeAll(): void {
+    const { min, max } = this.bounds();
+    if (min.x > max.x) return;
+    const { x, z } = this.holder.position;
+    const far = (low: number, high: number, at: number): number =>
+      Math.max(Math.abs(low * this.scale + at), Math.abs(high * this.scale + at));
+    this.stage.shadeUpTo(Math.hypot(far(min.x, max.x, x), far(min.z, max.z, z)));
   }
 
   private only(): [number, number] {
@@ -377,6 +437,16 @@ export class PlantView {
     this.redraw();
   }
 
+  setSnap(on: boolean): void {
+    this.snaps = on;
+  }
+
+  /** The gizmo goes along one axis only, or along all of them again. */
+  setAxis(axis: 'x' | 'z' | undefined): void {
+    this.handles?.only(axis);
+    this.redraw();
+  }
+
   private showHandles(): void {
     if (this.dragging) return;
     const plant = this.front || this.guest ? undefined : this.chosen;
@@ -400,12 +470,22 @@ export class PlantView {
       const to = parts.reduce((a, b) => (Math.abs(b - was) > Math.abs(a - was) ? b : a));
       place.scale.setScalar(Math.min(1000, Math.max(0.001, Math.abs(to))));
     }
-    const yaw = new THREE.Euler().setFromQuaternion(place.quaternion, 'YXZ').y;
+    let yaw = THREE.MathUtils.radToDeg(new THREE.Euler().setFromQuaternion(place.quaternion, 'YXZ').y);
+    if (this.snaps !== this.shifted) {
+      const to = (x: number, step: number): number => Math.round(x / step) * step;
+      const { x, y, z } = place.position;
+      if (this.gizmo === 'translate') place.position.set(to(x, SNAP.m), y, to(z, SNAP.m));
+      if (this.gizmo === 'rotate') {
+        yaw = to(yaw, SNAP.deg);
+        place.rotation.set(0, THREE.MathUtils.degToRad(yaw), 0);
+      }
+      if (this.gizmo === 'scale') place.scale.setScalar(Math.max(SNAP.size, to(place.scale.x, SNAP.size)));
+    }
     const round = (x: number): number => Math.round(x * 1000) / 1000;
     this.onPlace(
       this.current,
       [round(place.position.x), round(place.position.y), round(place.position.z)],
-      Math.round(THREE.MathUtils.radToDeg(yaw) * 10) / 10,
+      Math.round(yaw * 10) / 10,
       round(this.gizmo === 'scale' ? place.scale.x : scale),
     );
     this.stage.touch();
@@ -453,6 +533,36 @@ export class PlantView {
       new THREE.Vector2(((x - box.left) / box.width) * 2 - 1, 1 - ((y - box.top) / box.height) * 2),
       camera,
     );
+  }
+
+  /** The place of the ground under a point of the screen: x and z, metres of the scene; none at or above the horizon. */
+  groundAt(x: number, y: number): [number, number] | undefined {
+    this.aim(x, y);
+    const { position } = this.holder;
+    const ground = new THREE.Plane(new THREE.Vector3(0, 1, 0), -position.y);
+    const at = this.caster.ray.intersectPlane(ground, new THREE.Vector3());
+    if (!at || at.distanceTo(this.rig.far.position) > FAR) return undefined;
+    const round = (v: number): number => Math.round((v / this.scale) * 1000) / 1000;
+    return [round(at.x - position.x), round(at.z - position.z)];
+  }
+
+  /** So many metres on the ground under a point of the screen, in pixels. */
+  groundPixels(x: number, y: number, metres: number): number {
+    const share = this.reach(1);
+    this.aim(x, y);
+    const ground = new THREE.Plane(new THREE.Vector3(0, 1, 0), -this.holder.position.y);
+    const at = this.caster.ray.intersectPlane(ground, new THREE.Vector3());
+    if (!at) return 0;
+    const far = this.camera.position.distanceTo(at) / this.scale;
+    return metres / Math.max(1e-9, share.metres + share.per_metre * far);
+  }
+
+  /** The crown of a plant seen from above, metres: how wide it is where it is widest; 0 before it is made. */
+  widthOf(plant: number): number {
+    const seen = this.plants.get(plant)?.view;
+    const scale = this.states.find((s) => s.id === plant)?.scale ?? 1;
+    if (!seen || seen.parts.length === 0) return 0;
+    return Math.max(seen.max[0] - seen.min[0], seen.max[2] - seen.min[2]) * scale;
   }
 
   /** A point of the screen as a ray in the coordinates of the chosen plant. */
@@ -650,7 +760,7 @@ export class PlantView {
     this.fine = fine;
     this.stage.sharpen(fine ? SHADOW.fine : SHADOW.fast);
     this.looks.setMatt(!fine);
-    for (const plant of [...this.plants.values(), ...(this.guest ? [this.guest] : [])]) plant.relook();
+    for (const plant of this.all) plant.relook();
     this.element.dataset['quality'] = fine ? 'fine' : 'fast';
   }
 

@@ -3,7 +3,8 @@
 use std::io::Write;
 use std::sync::Arc;
 
-use mesh::{AlphaMode, Model, TriMesh};
+use glam::{DQuat, DVec3};
+use mesh::{AlphaMode, Model, Standing, TriMesh};
 use serde_json::json;
 
 use super::gltf::{
@@ -85,50 +86,56 @@ pub fn write_glb_morph(model: &Model, morph: &Morph<'_>, out: impl Write) -> Res
     write(model, morph, &mut PngCache::new(), out)
 }
 
-fn write(
-    model: &Model,
-    morph: &Morph<'_>,
+/// Writes a scene as a GLB: one root node of this name, under it a node a plant that says where it stands, under that a
+/// node a part. A model that stands in several places is written once, and all of its places name its meshes; so do equal
+/// textures. The parts of a model that stands alone where it was made are those of the root, as in [`write_glb`].
+///
+/// Guaranteed: as [`write_glb`]. `_PIVOT` is in the coordinates of the plant's own node.
+///
+/// # Errors
+/// As [`write_glb`].
+pub fn write_glb_scene(
+    name: &str,
+    plants: &[Standing<'_>],
     cache: &mut PngCache,
-    mut out: impl Write,
+    out: impl Write,
 ) -> Result<(), WriteError> {
+    let mut models: Vec<&Model> = Vec::new();
+    for plant in plants {
+        if !models.iter().any(|m| core::ptr::eq(*m, plant.model)) {
+            check(plant.model)?;
+            models.push(plant.model);
+        }
+    }
+    let mut w = Writer::new(models.iter().map(|m| room(m)).sum());
+    let mut written = Vec::with_capacity(models.len());
+    for model in &models {
+        let first = w.materials(model, cache)?;
+        written.push(w.meshes(model, first, &Morph::default())?);
+    }
+    w.root(name);
+    let alone = matches!(plants, [only] if only.is_home());
+    for plant in plants {
+        let row = models.iter().position(|m| core::ptr::eq(*m, plant.model));
+        let meshes = row.and_then(|row| written.get(row)).map_or(&[][..], |m| &m[..]);
+        let at = if alone { 0 } else { w.place(plant)? };
+        w.hang(at, meshes)?;
+    }
+    w.finish(out)
+}
+
+fn write(model: &Model, morph: &Morph<'_>, cache: &mut PngCache, out: impl Write) -> Result<(), WriteError> {
     check(model)?;
-    let mut w = Writer { root: Root::default(), bin: Vec::with_capacity(room(model)) };
-    w.root.asset = Asset {
-        version: "2.0".into(),
-        generator: Some(concat!("Burgeon ", env!("CARGO_PKG_VERSION")).into()),
-        extras: Some(json!({ "unit": "metre", "up": "+Y" })),
-    };
+    let mut w = Writer::new(room(model));
     if let (Some(extras), Some(offset)) = (&mut w.root.asset.extras, model.offset_m) {
         extras["offset_m"] = json!(offset.to_array());
     }
-    w.materials(model, cache)?;
-    w.nodes(model, morph)?;
+    let first = w.materials(model, cache)?;
+    let meshes = w.meshes(model, first, morph)?;
+    w.root(&model.name);
+    w.hang(0, &meshes)?;
     w.animation(model, morph)?;
-    if !w.bin.is_empty() {
-        w.root.buffers.push(Buffer { byte_length: w.bin.len() as u64, uri: None });
-    }
-    let mut text = serde_json::to_vec(&w.root).map_err(|e| WriteError::Io(e.into()))?;
-    text.resize(text.len().next_multiple_of(4), b' ');
-    let bin = if w.bin.is_empty() { 0 } else { 8 + w.bin.len() };
-    let total = 12 + 8 + text.len() + bin;
-    let word = |n: usize| {
-        u32::try_from(n)
-            .map(u32::to_le_bytes)
-            .ok()
-            .ok_or(WriteError::TooLarge { what: "the model", format: "GLB (4 GiB)" })
-    };
-    out.write_all(b"glTF")?;
-    out.write_all(&2_u32.to_le_bytes())?;
-    out.write_all(&word(total)?)?;
-    out.write_all(&word(text.len())?)?;
-    out.write_all(b"JSON")?;
-    out.write_all(&text)?;
-    if !w.bin.is_empty() {
-        out.write_all(&word(w.bin.len())?)?;
-        out.write_all(b"BIN\0")?;
-        out.write_all(&w.bin)?;
-    }
-    Ok(())
+    w.finish(out)
 }
 
 fn room(model: &Model) -> usize {
@@ -142,9 +149,53 @@ fn row(n: usize) -> Result<u32, WriteError> {
 struct Writer {
     root: Root,
     bin: Vec<u8>,
+    /// The texture of each image.
+    images: Vec<Arc<mesh::Texture>>,
 }
 
 impl Writer {
+    fn new(room: usize) -> Self {
+        let asset = Asset {
+            version: "2.0".into(),
+            generator: Some(concat!("Burgeon ", env!("CARGO_PKG_VERSION")).into()),
+            extras: Some(json!({ "unit": "metre", "up": "+Y" })),
+        };
+        let root = Root { asset, ..Root::default() };
+        Self { root, bin: Vec::with_capacity(room), images: Vec::new() }
+    }
+
+    fn finish(mut self, mut out: impl Write) -> Result<(), WriteError> {
+        if !self.bin.is_empty() {
+            self.root.buffers.push(Buffer { byte_length: self.bin.len() as u64, uri: None });
+        }
+        if !self.images.is_empty() {
+            let sampler = Sampler { mag_filter: Some(LINEAR), min_filter: Some(LINEAR_MIPMAP_LINEAR) };
+            self.root.samplers.push(sampler);
+        }
+        let mut text = serde_json::to_vec(&self.root).map_err(|e| WriteError::Io(e.into()))?;
+        text.resize(text.len().next_multiple_of(4), b' ');
+        let bin = if self.bin.is_empty() { 0 } else { 8 + self.bin.len() };
+        let total = 12 + 8 + text.len() + bin;
+        let word = |n: usize| {
+            u32::try_from(n)
+                .map(u32::to_le_bytes)
+                .ok()
+                .ok_or(WriteError::TooLarge { what: "the model", format: "GLB (4 GiB)" })
+        };
+        out.write_all(b"glTF")?;
+        out.write_all(&2_u32.to_le_bytes())?;
+        out.write_all(&word(total)?)?;
+        out.write_all(&word(text.len())?)?;
+        out.write_all(b"JSON")?;
+        out.write_all(&text)?;
+        if !self.bin.is_empty() {
+            out.write_all(&word(self.bin.len())?)?;
+            out.write_all(b"BIN\0")?;
+            out.write_all(&self.bin)?;
+        }
+        Ok(())
+    }
+
     /// Makes a buffer view of what `fill` appends.
     fn view(&mut self, target: Option<u32>, fill: impl FnOnce(&mut Vec<u8>)) -> Result<u32, WriteError> {
         let start = self.bin.len();
@@ -202,13 +253,14 @@ impl Writer {
         row(self.root.accessors.len() - 1)
     }
 
-    fn materials(&mut self, model: &Model, cache: &mut PngCache) -> Result<(), WriteError> {
-        let mut images: Vec<Arc<mesh::Texture>> = Vec::new();
+    /// The row of the model's first material.
+    fn materials(&mut self, model: &Model, cache: &mut PngCache) -> Result<u32, WriteError> {
+        let first = row(self.root.materials.len())?;
         for material in &model.materials {
             let texture = match &material.texture {
                 None => None,
                 Some(texture) => {
-                    let known = images.iter().position(|t| Arc::ptr_eq(t, texture) || t == texture);
+                    let known = self.images.iter().position(|t| Arc::ptr_eq(t, texture) || t == texture);
                     let index = match known {
                         Some(index) => index,
                         None => {
@@ -224,8 +276,8 @@ impl Writer {
                                 sampler: Some(0),
                                 source: Some(row(self.root.images.len() - 1)?),
                             });
-                            images.push(Arc::clone(texture));
-                            images.len() - 1
+                            self.images.push(Arc::clone(texture));
+                            self.images.len() - 1
                         }
                     };
                     Some(TextureInfo { index: row(index)? })
@@ -248,12 +300,7 @@ impl Writer {
                 })),
             });
         }
-        if !images.is_empty() {
-            self.root
-                .samplers
-                .push(Sampler { mag_filter: Some(LINEAR), min_filter: Some(LINEAR_MIPMAP_LINEAR) });
-        }
-        Ok(())
+        Ok(first)
     }
 
     /// What a key adds to positions, normals and, if `colored`, to vertex colours.
@@ -317,10 +364,45 @@ impl Writer {
         row(self.root.accessors.len() - 1)
     }
 
-    fn nodes(&mut self, model: &Model, morph: &Morph<'_>) -> Result<(), WriteError> {
-        let name = if model.name.is_empty() { "model" } else { &model.name };
+    /// The node under which all others are, and the scene that shows it.
+    fn root(&mut self, name: &str) {
+        let name = if name.is_empty() { "model" } else { name };
         self.root.nodes.push(Node { name: Some(name.to_owned()), ..Node::default() });
-        let mut children = Vec::new();
+        self.root.scenes.push(Scene { name: Some(name.to_owned()), nodes: vec![0] });
+        self.root.scene = Some(0);
+    }
+
+    /// A node under the root that stands where the plant does.
+    fn place(&mut self, plant: &Standing<'_>) -> Result<u32, WriteError> {
+        let moved = plant.position != DVec3::ZERO;
+        let turned = plant.turn != DQuat::IDENTITY;
+        let sized = plant.scale.to_bits() != 1.0_f64.to_bits();
+        let at = row(self.root.nodes.len())?;
+        self.root.nodes.push(Node {
+            name: Some(plant.name.to_owned()),
+            translation: moved.then(|| plant.position.to_array()),
+            rotation: turned.then(|| plant.turn.to_array()),
+            scale: sized.then_some([plant.scale; 3]),
+            ..Node::default()
+        });
+        self.root.nodes[0].children.push(at);
+        Ok(at)
+    }
+
+    /// A node a mesh, under a node.
+    fn hang(&mut self, under: u32, meshes: &[u32]) -> Result<(), WriteError> {
+        for &mesh in meshes {
+            let name = self.root.meshes[mesh as usize].name.clone();
+            let at = row(self.root.nodes.len())?;
+            self.root.nodes.push(Node { name, mesh: Some(mesh), ..Node::default() });
+            self.root.nodes[under as usize].children.push(at);
+        }
+        Ok(())
+    }
+
+    /// The meshes of a model, by their rows; `first` is the row of its first material.
+    fn meshes(&mut self, model: &Model, first: u32, morph: &Morph<'_>) -> Result<Vec<u32>, WriteError> {
+        let mut meshes = Vec::new();
         for (index, part) in model.parts.iter().enumerate().filter(|(_, p)| !p.mesh.positions.is_empty()) {
             let mesh = &part.mesh;
             let normals: Vec<[f32; 3]> = mesh.normals.iter().map(|&n| unit(n)).collect();
@@ -360,7 +442,7 @@ impl Writer {
                 targets,
                 attributes,
                 indices: if points { None } else { Some(self.indices(mesh)?) },
-                material: Some(part.material.raw()),
+                material: Some(first + part.material.raw()),
                 mode: points.then_some(POINTS),
                 extensions: None,
             };
@@ -369,17 +451,9 @@ impl Writer {
                 primitives: vec![primitive],
                 weights,
             });
-            self.root.nodes.push(Node {
-                name: Some(part.name.clone()),
-                mesh: Some(row(self.root.meshes.len() - 1)?),
-                ..Node::default()
-            });
-            children.push(row(self.root.nodes.len() - 1)?);
+            meshes.push(row(self.root.meshes.len() - 1)?);
         }
-        self.root.nodes[0].children = children;
-        self.root.scenes.push(Scene { name: Some(name.to_owned()), nodes: vec![0] });
-        self.root.scene = Some(0);
-        Ok(())
+        Ok(meshes)
     }
 }
 

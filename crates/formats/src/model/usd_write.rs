@@ -27,6 +27,7 @@ pub struct UsdFiles {
 /// its siblings; a part is one `Mesh` (`Points` without triangles) without subdivision, with normals, `primvars:st`,
 /// `primvars:displayColor` and, where the model has them, `primvars:wind` and `primvars:pivot`; a material is one
 /// `UsdPreviewSurface`, cut out at one half where its texture has holes; the same model gives the same bytes.
+/// Positions are written to a millionth of the largest, texture coordinates to five places, all else at vertices to four.
 /// Not guaranteed: that vertex colours tint textures, for which `UsdPreviewSurface` has no node: they are in
 /// `displayColor`, and colour materials without a texture. Kind and translucency are custom data of the material.
 ///
@@ -200,12 +201,14 @@ fn prim(
     } else {
         write!(out, "        int[] faceVertexCounts = [")?;
         for i in 0..mesh.triangles.len() {
-            out.extend_from_slice(if i == 0 { b"3" } else { b", 3" });
+            out.extend_from_slice(if i == 0 { b"3" } else { b",3" });
         }
         write!(out, "]\n        int[] faceVertexIndices = [")?;
-        for (i, [a, b, c]) in mesh.triangles.iter().enumerate() {
-            let comma = if i == 0 { "" } else { ", " };
-            write!(out, "{comma}{a}, {b}, {c}")?;
+        for (i, &corner) in mesh.triangles.iter().flatten().enumerate() {
+            if i > 0 {
+                out.push(b',');
+            }
+            digits(out, u64::from(corner), 1);
         }
         writeln!(out, "]")?;
     }
@@ -226,8 +229,8 @@ fn columns(
     spec: &ExportSpec,
 ) -> Result<(), WriteError> {
     let normals: Vec<[f32; 3]> = mesh.normals.iter().map(|&n| spec.direction(unit(n))).collect();
-    column(out, "normal3f[] normals", &normals)?;
-    column(out, "point3f[] points", points)?;
+    column(out, "normal3f[] normals", &normals, Fineness::Places(4))?;
+    column(out, "point3f[] points", points, Fineness::Share)?;
     let product = |c: &[f32; 3]| [0, 1, 2].map(|k| share(c[k]) * look.shown[k]);
     if mesh.colors.is_empty() {
         write!(out, "        color3f[] primvars:displayColor = [")?;
@@ -235,32 +238,112 @@ fn columns(
         writeln!(out, "] (\n            interpolation = \"constant\"\n        )")?;
     } else {
         let colors: Vec<[f32; 3]> = mesh.colors.iter().map(product).collect();
-        column(out, "color3f[] primvars:displayColor", &colors)?;
+        column(out, "color3f[] primvars:displayColor", &colors, Fineness::Places(4))?;
     }
     let pivots: Vec<[f32; 3]> = mesh.pivots.iter().map(|&p| spec.point(p)).collect();
-    column(out, "point3f[] primvars:pivot", &pivots)?;
+    column(out, "point3f[] primvars:pivot", &pivots, Fineness::Share)?;
     // USD's t points up.
     let finite = |x: f32| if x.is_finite() { x } else { 0.0 };
     let st: Vec<[f32; 2]> = mesh.uvs.iter().map(|uv| [finite(uv[0]), 1.0 - finite(uv[1])]).collect();
-    column(out, "texCoord2f[] primvars:st", &st)?;
-    column(out, "float4[] primvars:wind", &mesh.wind)
+    column(out, "texCoord2f[] primvars:st", &st, Fineness::Places(5))?;
+    column(out, "float4[] primvars:wind", &mesh.wind, Fineness::Places(4))
+}
+
+/// How finely the numbers of a column are written: text of all digits of a large tree is twice as long and takes four
+/// times as long.
+#[derive(Clone, Copy)]
+enum Fineness {
+    /// So many places after the point.
+    Places(u32),
+    /// To a millionth of the largest of them: a hundredth of a millimetre in a tree of 20 m.
+    Share,
+}
+
+impl Fineness {
+    fn places<const N: usize>(self, rows: &[[f32; N]]) -> u32 {
+        match self {
+            Self::Places(places) => places,
+            Self::Share => {
+                let largest = rows.iter().flatten().fold(0.0_f64, |m, x| m.max(f64::from(x.abs())));
+                let (mut places, mut step) = (0, 1.0);
+                while step > 1e-6 * largest && places < 12 {
+                    places += 1;
+                    step *= 0.1;
+                }
+                places
+            }
+        }
+    }
 }
 
 /// A value at each vertex; nothing where there is none.
-fn column<const N: usize>(out: &mut Vec<u8>, what: &str, rows: &[[f32; N]]) -> Result<(), WriteError> {
+fn column<const N: usize>(
+    out: &mut Vec<u8>,
+    what: &str,
+    rows: &[[f32; N]],
+    fineness: Fineness,
+) -> Result<(), WriteError> {
     if rows.is_empty() {
         return Ok(());
     }
+    let places = fineness.places(rows);
     write!(out, "        {what} = [")?;
     for (i, r) in rows.iter().enumerate() {
-        if i > 0 {
-            out.extend_from_slice(b", ");
+        out.extend_from_slice(if i > 0 { b",(" } else { b"(" });
+        for (k, &x) in r.iter().enumerate() {
+            if k > 0 {
+                out.push(b',');
+            }
+            fixed(out, x, places)?;
         }
-        row(out, r)?;
+        out.push(b')');
     }
     let vertex = " (\n            interpolation = \"vertex\"\n        )";
     // Points are at vertices by their nature.
     Ok(writeln!(out, "]{}", if what.ends_with("points") { "" } else { vertex })?)
+}
+
+/// A number with at most so many places after the point (12 at most), without zeros at the end.
+fn fixed(out: &mut Vec<u8>, x: f32, places: u32) -> Result<(), WriteError> {
+    let whole = 10_u64.pow(places);
+    #[expect(clippy::cast_precision_loss, reason = "a power of ten below 2^53")]
+    let scaled = (f64::from(x) * whole as f64).round();
+    if scaled.abs() > 9e15 || !scaled.is_finite() {
+        return Ok(write!(out, "{x}")?);
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number below 2^53")]
+    let magnitude = scaled.abs() as u64;
+    if magnitude == 0 {
+        out.push(b'0');
+        return Ok(());
+    }
+    if scaled < 0.0 {
+        out.push(b'-');
+    }
+    let (above, mut below, mut width) = (magnitude / whole, magnitude % whole, places);
+    digits(out, above, 1);
+    if below > 0 {
+        while below.is_multiple_of(10) {
+            below /= 10;
+            width -= 1;
+        }
+        out.push(b'.');
+        digits(out, below, width as usize);
+    }
+    Ok(())
+}
+
+/// A whole number with at least so many digits (20 at most).
+fn digits(out: &mut Vec<u8>, mut n: u64, least: usize) {
+    let mut text = [b'0'; 20];
+    let mut at = text.len();
+    while n > 0 {
+        at -= 1;
+        let digit = (n % 10) as u8;
+        text[at] = b'0' + digit;
+        n /= 10;
+    }
+    out.extend_from_slice(&text[at.min(text.len() - least)..]);
 }
 
 fn row<const N: usize>(out: &mut Vec<u8>, values: &[f32; N]) -> Result<(), WriteError> {
@@ -345,6 +428,24 @@ mod tests {
         let got = ["leaf-2", "leaf 2", "2 leaves", "\u{82b1}", "", "leaf_2"].map(|n| names.fresh(n, "part"));
         assert_eq!(got, ["leaf_2", "leaf_2_2", "_2_leaves", "part", "part_2", "leaf_2_3"]);
         assert_eq!(Quoted("a \"b\" \\ c\nd").to_string(), "\"a \\\"b\\\" \\\\ c d\"");
+    }
+
+    #[test]
+    fn numbers_have_the_places_that_they_need() {
+        let text = |x: f32, places: u32| {
+            let mut out = Vec::new();
+            fixed(&mut out, x, places).unwrap();
+            String::from_utf8(out).unwrap()
+        };
+        let got = [0.0, -0.0, 1.0, -1.5, 0.25, -0.00004, 0.00006, 12.3456, 1e9, 100.0].map(|x| text(x, 4));
+        assert_eq!(got, ["0", "0", "1", "-1.5", "0.25", "0", "0.0001", "12.3456", "1000000000", "100"]);
+        assert_eq!(text(0.050_002, 5), "0.05", "zeros within stay");
+        assert_eq!(text(0.003, 6), "0.003");
+        assert_eq!(text(3e20, 4), "300000000000000000000");
+        assert_eq!([Fineness::Share.places(&[[20.0_f32]]), Fineness::Share.places(&[[0.05_f32]])], [5, 8]);
+        let mut out = Vec::new();
+        [0, 7, 10, u64::MAX].iter().for_each(|&n| digits(&mut out, n, 1));
+        assert_eq!(out, b"071018446744073709551615");
     }
 
     #[test]

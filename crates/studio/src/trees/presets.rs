@@ -10,14 +10,19 @@ pub struct Preset {
     pub key: &'static str,
     /// Its file.
     pub toml: &'static str,
+    /// The preset that is the same tree, grown by another method: lists of species show that one only.
+    pub same_as: Option<&'static str>,
 }
 
 macro_rules! presets {
-    ($($key:literal),* $(,)?) => {
+    (@same) => { None };
+    (@same $key:literal) => { Some($key) };
+    ($($key:literal $(is $same:literal)?),* $(,)?) => {
         /// Every preset, those of Yang et al. (2019) first.
         pub const PRESETS: &[Preset] = &[$(Preset {
             key: $key,
             toml: include_str!(concat!("../../presets/", $key, ".toml")),
+            same_as: presets!(@same $($same)?),
         }),*];
     };
 }
@@ -27,8 +32,8 @@ presets![
     "terminalia",
     "chinese-fir",
     "oak",
-    "oak-colonization",
-    "oak-lsystem",
+    "oak-colonization" is "oak",
+    "oak-lsystem" is "oak",
     "birch",
     "lime",
     "maple",

@@ -229,7 +229,7 @@ fn a_look_has_no_digest_and_what_follows_it_has() {
         let mut digest = |editor: &Editor, looking: bool| {
             scene.set_looking(looking);
             scene.update(plant, editor.document(), &Run::plain()).expect("sound");
-            scene.get(plant).expect("made").item.digest.clone()
+            scene.get(plant).expect("made").report().digest
         };
         let whole = digest(&editor, false);
         editor.run(ShapeCommand::Add(edit.clone().into()).of(plant)).expect("sound");
@@ -240,6 +240,63 @@ fn a_look_has_no_digest_and_what_follows_it_has() {
         assert_eq!(digest(&editor, true), "");
         assert_eq!(digest(&editor, false), whole);
     }
+}
+
+#[test]
+fn copies_share_one_result_until_one_of_them_changes() {
+    use document::{Editor, Maker, NewPlant, PlantCommand, SceneCommand, Settings};
+
+    let mut editor = Editor::default();
+    let line: Vec<DVec2> = (0..9).map(|i| DVec2::new(0.0, f64::from(i))).collect();
+    let bush = "name = \"bush\"\n[method]\nkind = \"competition\"\npoints = 100\nlifespan = 1\n";
+    let spec = read_tree_spec(bush, &|_| None).expect("sound");
+    let tree = Maker::Tree(Box::new(crate::tree_settings(&spec, None)));
+    let flower = Maker::Flower(Box::default());
+    for (maker, strokes) in [
+        (tree, vec![]),
+        (flower, vec![]),
+        (Maker::Sketch(Box::default()), vec![document::NewStroke::line(&line)]),
+    ] {
+        let settings = Settings { maker, ..Settings::default() };
+        editor.run(SceneCommand::Add(Box::new(NewPlant { settings, strokes }))).expect("sound");
+        let first = editor.document().plants().last().expect("added").id();
+        editor.run(SceneCommand::Duplicate(first, DVec3::X)).expect("sound");
+        let copy = editor.document().plants().last().expect("copied").id();
+        let mut scene = crate::SceneEvaluator::default();
+        let mut update = |id, editor: &Editor| {
+            scene.update(id, editor.document(), &Run::plain()).expect("sound");
+            let made = scene.get(id).expect("made");
+            let bytes: usize = scene.kept().map(|(_, bytes)| bytes).sum();
+            (made.model as *const Model, made.revision, made.report(), made.stages.len(), bytes)
+        };
+        let one = update(first, &editor);
+        let two = update(copy, &editor);
+        assert_eq!((one.0, one.1, one.4), (two.0, two.1, two.4), "one model, one number, the same memory");
+        assert_eq!((one.2.digest, two.3), (two.2.digest, 0), "and nothing was made");
+        editor.run(PlantCommand::SetSeed(Seed::new(77)).of(copy)).expect("sound");
+        let other = update(copy, &editor);
+        let same = update(first, &editor);
+        assert!(other.1 != one.1 && other.0 != one.0, "another plant by now");
+        assert_eq!((same.1, same.3), (one.1, 0), "the first one is as it was");
+        editor.undo();
+        assert_eq!(update(copy, &editor).1, one.1, "and shared again");
+    }
+}
+
+#[test]
+fn the_name_of_a_tree_is_no_reason_to_grow_it() {
+    use document::{Editor, Maker, NewPlant, PlantCommand, SceneCommand, Settings};
+
+    let mut editor = Editor::default();
+    let settings = Settings { maker: Maker::Tree(Box::default()), ..Settings::default() };
+    editor.run(SceneCommand::Add(Box::new(NewPlant { settings, strokes: vec![] }))).expect("sound");
+    let tree = editor.document().plants()[1].id();
+    let mut scene = crate::SceneEvaluator::default();
+    scene.update(tree, editor.document(), &Run::plain()).expect("sound");
+    editor.run(PlantCommand::Rename("an elder".into()).of(tree)).expect("sound");
+    scene.update(tree, editor.document(), &Run::plain()).expect("sound");
+    let made = scene.get(tree).expect("made");
+    assert_eq!((made.report().name.as_str(), made.stages.len()), ("an elder", 0));
 }
 
 #[test]

@@ -1,0 +1,298 @@
+// Many plants in one scene: copies, gizmos by keys, what is drawn on the ground, and what anybody can use.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { add, begin, changed, count, data, drop, exported, sample, until } from './journeys.mjs';
+
+const BUSH = 'name = "bush"\n[method]\nkind = "competition"\npoints = 260\nlifespan = 2\n';
+const WIDE = { viewport: { width: 1360, height: 760 } };
+const AXE = readFileSync(new URL('../node_modules/axe-core/axe.min.js', import.meta.url), 'utf8');
+
+async function bush(page, url) {
+  await begin(page, url);
+  await drop(page, 'bush.toml', BUSH);
+  await until(page, 'triangles', ['above', 1000], 'a bush has grown');
+  await page.waitForTimeout(900);
+}
+
+const field = (page, key) => page.locator(`[data-key=${key}]`).inputValue().then(Number);
+const middle = async (page) => {
+  const box = await page.locator('.view').boundingBox();
+  return { x: box.x + box.width / 2, y: box.y + box.height / 2, box };
+};
+
+/** A copy is there at once, shares its meshes, and is written once. */
+async function copies({ page, url, shot }) {
+  await bush(page, url);
+  await page.click('.scene .fold');
+  const alone = (await exported(page, 'glb')).bytes.length;
+  for (let k = 2; k <= 4; k += 1) {
+    await page.locator('[data-plant=tree]').last().click();
+    await page.click('[id^=b-more-] >> nth=-1');
+    const before = await count(page, 'revision');
+    const began = Date.now();
+    await page.click('.menu >> text=Duplicate');
+    await until(page, 'revision', ['above', before], 'it is seen');
+    const ms = Date.now() - began;
+    assert.ok(ms < 3000, `copy ${k} came after ${ms} ms`);
+    await until(page, 'plants', ['is', k], 'a copy');
+  }
+  await page.waitForTimeout(1200);
+  assert.equal(await count(page, 'meshes'), 1, 'all of them share one plant');
+  await shot('grove-copies');
+  const four = (await exported(page, 'glb')).bytes.length;
+  assert.ok(four < alone + 5000, `${four} bytes of four, ${alone} of one`);
+  // Another seed is another plant, and the others stay as they are.
+  const digest = await data(page, 'digest');
+  await page.keyboard.press('Shift+R');
+  await changed(page, digest, 'another seed');
+  assert.equal(await count(page, 'meshes'), 2);
+  await page.keyboard.press('Control+z');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, digest);
+  await until(page, 'meshes', ['is', 1], 'shared again');
+}
+
+/** Move, turn and size by keys, with steps and along an axis. */
+async function gizmos({ page, url, shot }) {
+  await bush(page, url);
+  await page.click('.scene .fold');
+  const pressed = (mode) => page.locator(`[data-gizmo=${mode}]`).getAttribute('aria-pressed');
+  for (const [key, mode] of [
+    ['g', 'translate'],
+    ['r', 'rotate'],
+    ['s', 'scale'],
+  ]) {
+    await page.keyboard.press(key);
+    assert.equal(await pressed(mode), 'true', key);
+  }
+  assert.equal(await count(page, 'plants'), 1, 'no dice were rolled');
+  await page.keyboard.press('Escape');
+  assert.equal(await pressed('scale'), 'false');
+  await page.click('[data-key=snap]');
+  await page.keyboard.press('g');
+  await page.waitForTimeout(900);
+  // The handle along x, wherever it is: the gizmo answers by a cursor of its own, so what moves the plant is found.
+  const { x, y, box } = await middle(page);
+  let moved = false;
+  for (let k = 0; k < 60 && !moved; k += 1) {
+    const [px, py] = [x + 30 + 3 * (k % 20), y + box.height * (0.1 + 0.06 * Math.floor(k / 20))];
+    await page.mouse.move(px, py);
+    await page.mouse.down();
+    await page.mouse.move(px + 60, py, { steps: 4 });
+    await page.mouse.up();
+    await page.waitForTimeout(60);
+    moved = (await field(page, 'nx')) !== 0 || (await field(page, 'nz')) !== 0;
+  }
+  assert.ok(moved, 'the handle moves the plant');
+  await page.waitForTimeout(600);
+  await shot('grove-gizmo');
+  for (const key of ['nx', 'nz']) {
+    const at = await field(page, key);
+    assert.ok(Math.abs(at / 0.25 - Math.round(at / 0.25)) < 1e-6, `${key} is ${at}`);
+  }
+  assert.match(await page.locator('#b-undo').getAttribute('title'), /place/);
+}
+
+/** Copies along a line on the ground; they are a group. */
+async function scatter({ page, url, shot }) {
+  await bush(page, url);
+  await page.click('.scene .fold');
+  const spacing = await field(page, 'nspacing');
+  assert.ok(spacing > 0.1, `the crown is ${spacing} m wide`);
+  const { x, box } = await middle(page);
+  const floor = box.y + box.height * 0.86;
+  await page.click('[data-scatter=line]');
+  await page.mouse.move(x - 150, floor);
+  await page.mouse.down();
+  await page.mouse.move(x + 260, floor, { steps: 12 });
+  await page.waitForTimeout(300);
+  await shot('grove-line-held');
+  await page.mouse.up();
+  await until(page, 'plants', ['above', 2], 'copies stand along the line');
+  const many = await count(page, 'plants');
+  await until(page, 'meshes', ['above', 1], 'seeds of their own');
+  assert.ok((await count(page, 'meshes')) <= 4, 'three kinds and the first');
+  await page.locator('.plant.group').waitFor();
+  assert.match(await page.locator('.plant.group').textContent(), new RegExp(`bush × ${many}`));
+  await page.waitForTimeout(1500);
+  await shot('grove-line');
+  await page.click('[data-key="getree bush"]');
+  await page.locator('li.is-hidden').first().waitFor();
+  await page.keyboard.press('Control+z');
+  await page.locator('li.is-hidden').first().waitFor({ state: 'detached' });
+  await page.keyboard.press('Control+z');
+  await until(page, 'plants', ['is', 1], 'one step of undo takes all copies back');
+  await page.click('[data-scatter=area]');
+  const ring = Array.from({ length: 25 }, (_, k) => [
+    x + 210 * Math.cos(k / 4),
+    floor - 40 + 55 * Math.sin(k / 4),
+  ]);
+  await page.mouse.move(...ring[0]);
+  await page.mouse.down();
+  for (const at of ring) await page.mouse.move(...at);
+  await page.mouse.up();
+  await until(page, 'plants', ['above', 2], 'copies fill the area');
+  await page.waitForTimeout(2500);
+  await shot('grove-area');
+}
+
+/** Files that come together, and a model that is only looked at. */
+async function files({ page, url, shot }) {
+  await begin(page, url);
+  await sample(page);
+  const glb = await exported(page, 'glb');
+  const toml = BUSH.replace('"bush"', '"other"');
+  await page.evaluate(
+    ([a, b]) => {
+      const transfer = new DataTransfer();
+      transfer.items.add(new File([a], 'bush.toml'));
+      transfer.items.add(new File([b], 'other.toml'));
+      document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true }));
+    },
+    [BUSH, toml],
+  );
+  await until(page, 'plants', ['is', 3], 'both files came in');
+  const chooser = page.waitForEvent('filechooser');
+  await page.click('#b-open');
+  await (await chooser).setFiles({ name: 'looked.glb', mimeType: 'model/gltf-binary', buffer: glb.bytes });
+  await page.locator('#b-looking-close').waitFor();
+  assert.match(await page.locator('#b-looking').textContent(), /sample/);
+  await page.waitForTimeout(600);
+  await shot('grove-looking');
+  await page.click('#b-looking-close');
+  await page.locator('#b-looking').waitFor({ state: 'hidden' });
+  assert.equal(await count(page, 'plants'), 3, 'the scene is as it was');
+}
+
+/** What a tool was set to is its own; branches by keys; a line from the sky. */
+async function tools({ page, url, shot }) {
+  await bush(page, url);
+  await page.keyboard.press('Shift+S');
+  await page.locator('.strip').waitFor();
+  await page.keyboard.press('2');
+  await page.keyboard.press('q');
+  assert.match(await page.locator('#b-shape-up').textContent(), /\+1$/);
+  await page.keyboard.press('3');
+  assert.doesNotMatch(await page.locator('#b-shape-up').textContent(), /\+/, 'Bearer +1 stays with its tool');
+  // By keys alone: the trunk, what it bears, the next one, and back.
+  await page.keyboard.press('1');
+  const { x, y, box } = await middle(page);
+  await page.mouse.move(box.x + 4, box.y + 4);
+  const picked = async (key, test) => {
+    const before = await page.locator('.options').textContent();
+    await page.keyboard.press(key);
+    if (test !== 'same')
+      await page.waitForFunction((b) => document.querySelector('.options').textContent !== b, before);
+    return data(page, 'picked');
+  };
+  const trunk = await picked('.');
+  const bough = await picked('Shift+Q');
+  assert.notEqual(bough, trunk);
+  await page.keyboard.press('.');
+  await page.waitForFunction((b) => document.body.dataset.picked !== b, bough);
+  await shot('grove-keys');
+  await page.keyboard.press('Delete');
+  await until(page, 'done', ['is', 1], 'pruned without a pointer');
+  const plain = await data(page, 'digest');
+  assert.equal(await page.locator('.edits ol').count(), 0, 'the list of edits is folded');
+  // A branch from nowhere says so.
+  await page.keyboard.press('6');
+  await page.mouse.move(box.x + box.width * 0.9, y - box.height * 0.35);
+  await page.mouse.down();
+  await page.mouse.move(x + box.width * 0.3, y - box.height * 0.42, { steps: 6 });
+  await page.mouse.up();
+  await page.locator('.note', { hasText: 'begins on wood' }).waitFor();
+  assert.equal(await data(page, 'digest'), plain);
+}
+
+/** The panel: what matters first, the rest folded, search, and one value as it was. */
+async function panel({ page, url, shot }) {
+  await begin(page, url);
+  await page.click('#b-add');
+  await page.click('[data-add=tree]');
+  const species = await page
+    .locator('dialog [data-preset]')
+    .evaluateAll((all) => all.map((e) => e.dataset.preset));
+  assert.ok(species.includes('oak') && !species.some((key) => key.startsWith('oak-')), species.join());
+  assert.equal(
+    await page.locator('dialog .thumb:has(img) svg').count(),
+    0,
+    'no placeholder behind a picture',
+  );
+  await page.click('dialog [data-preset=hazel]');
+  await until(page, 'triangles', ['above', 1000], 'a hazel');
+  const plain = await data(page, 'digest');
+  const shown = () => page.locator('.form .f-row:visible').count();
+  assert.equal(await shown(), 5, 'five settings at first');
+  await page.waitForTimeout(500);
+  await shot('grove-panel');
+  const length = page.locator('input[data-path="/leaves/length_m"]');
+  const was = await length.inputValue();
+  await length.fill(String(2 * Number(was)));
+  await length.press('Enter');
+  const longer = await changed(page, plain, 'longer leaves');
+  await page.locator('.f-row', { has: length }).locator('.f-reset').click();
+  await changed(page, longer, 'as it was');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
+  assert.equal(await length.inputValue(), was);
+  await page.locator('.f-search input').fill('light');
+  await page.locator('.f-row:visible', { hasText: /light/i }).first().waitFor();
+  const found = await page.locator('.form .f-row:visible').allTextContents();
+  assert.ok(found.length > 0 && found.every((row) => /light/i.test(row)), found.join(' | '));
+  await shot('grove-search');
+  await page.locator('.f-search input').fill('');
+  await page.waitForFunction(() => document.querySelectorAll('.form details').length > 2);
+  assert.equal(await shown(), 5);
+  await add(page, 'leaf');
+  await page.click('#b-leaf-sample');
+  await page.waitForFunction(() => document.body.dataset.current === 'leaf');
+  await until(page, 'triangles', ['above', 500], 'a leaf from the sample');
+  await page.waitForTimeout(900);
+  await shot('grove-leaf-sample');
+}
+
+/** Nothing critical or serious, in what is seen first, with panels and dialogs. */
+async function anybody({ page, url }) {
+  await begin(page, url);
+  // The policy of the page allows no text to become code: the driver brings it in.
+  const cdp = await page.context().newCDPSession(page);
+  const look = async (where) => {
+    await page.waitForTimeout(400);
+    await cdp.send('Runtime.evaluate', { expression: AXE });
+    const { result, exceptionDetails } = await cdp.send('Runtime.evaluate', {
+      expression:
+        "axe.run(document, { resultTypes: ['violations'] }).then((r) => JSON.stringify(r.violations.map((v) => " +
+        '({ id: v.id, impact: v.impact, nodes: v.nodes.map((n) => n.html.slice(0, 160)).slice(0, 4) }))))',
+      awaitPromise: true,
+      returnByValue: true,
+    });
+    assert.ok(!exceptionDetails, JSON.stringify(exceptionDetails));
+    const bad = JSON.parse(result.value).filter((v) => v.impact === 'critical' || v.impact === 'serious');
+    assert.deepEqual(bad, [], `${where}: ${JSON.stringify(bad, null, 1)}`);
+  };
+  await look('an empty page');
+  await sample(page);
+  await look('a drawing');
+  await add(page, 'tree', 'hazel');
+  await until(page, 'triangles', ['above', 1000], 'a hazel');
+  await look('a tree and its panel');
+  await page.keyboard.press('Shift+S');
+  await page.locator('.strip').waitFor();
+  await look('tools');
+  await page.keyboard.press('Escape');
+  for (const id of ['export', 'help', 'documents', 'stage', 'camera', 'film']) {
+    await page.click(`#b-${id}`);
+    await look(id);
+    await page.keyboard.press('Escape');
+    await page.waitForTimeout(200);
+  }
+}
+
+export const grove = [
+  ['grove: copies share one plant', copies, WIDE],
+  ['grove: gizmos by keys', gizmos, WIDE],
+  ['grove: copies along a line and in an area', scatter, WIDE],
+  ['grove: several files, and a model that is closed', files, WIDE],
+  ['grove: tools keep to themselves', tools, WIDE],
+  ['grove: panels for people', panel, WIDE],
+  ['grove: anybody can use it', anybody, WIDE],
+];
