@@ -16,6 +16,7 @@
 //!
 //! It reads no clock and opens no file: what computes takes a [`burgeon::Run`], files come and go as bytes.
 
+mod copies;
 mod error;
 mod evaluate;
 mod export;

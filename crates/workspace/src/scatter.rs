@@ -1,13 +1,11 @@
-//! Copies of a plant in many places: along a line, in an area, under a brush.
+//! Where copies of a plant stand: along a line, in an area, under a brush.
 
-use burgeon::document::{CommandError, DocumentPlant, Placement, PlantCommand, PlantId, SceneCommand};
+use burgeon::Stream;
+use burgeon::document::PlantId;
 use burgeon::geom;
-use burgeon::glam::{DVec2, DVec3};
-use burgeon::{Draw, Stream};
+use burgeon::glam::DVec2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::{Workspace, WorkspaceError};
 
 /// Copies of a plant, and where they are to stand.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -47,77 +45,8 @@ const MISSES: usize = 400;
 /// As many places as a scene may have plants.
 const MOST: usize = 200;
 
-impl Workspace {
-    /// Copies a plant to many places, as one step of undo. Places beside the plants that are there are left out, and so
-    /// are those for which a scene has no room.
-    ///
-    /// # Errors
-    /// [`WorkspaceError`]: that plant is not there, or no copy has room.
-    pub(crate) fn scatter(&mut self, wanted: &Scatter) -> Result<(), WorkspaceError> {
-        self.let_go();
-        let document = self.editor.document();
-        let plant = document.plant(wanted.plant).ok_or(WorkspaceError::PlantGone)?;
-        let Placement { position, scale, .. } = plant.settings().placement;
-        let seed = plant.settings().seed;
-        let taken: Vec<DVec2> = document
-            .plants()
-            .iter()
-            .map(|p| p.settings().placement.position)
-            .map(|p| DVec2::new(p.x, p.z))
-            .collect();
-        // Another scattering of the same plant falls otherwise.
-        let mut stream =
-            seed.child(u64::from(wanted.plant.0)).child(taken.len() as u64).stream(Draw::Scatter);
-        let spacing = if wanted.spacing_m.is_finite() { wanted.spacing_m.clamp(1e-3, 1e4) } else { 1.0 };
-        let vary = if wanted.vary.is_finite() { wanted.vary.clamp(0.0, 0.9) } else { 0.0 };
-        let places = places(&wanted.ground, spacing, &taken, &mut stream);
-        if places.is_empty() {
-            return Err(WorkspaceError::NowhereToStand);
-        }
-        self.editor.begin_gesture("scatter")?;
-        for (k, at) in places.into_iter().enumerate() {
-            let place = Placement {
-                position: DVec3::new(at.x, position.y, at.y),
-                yaw_deg: (stream.range(0.0, 3600.0)).round() / 10.0,
-                scale: (scale * stream.range(1.0 - vary, 1.0 + vary) * 1000.0).round() / 1000.0,
-            };
-            let kind = stream.below(wanted.kinds.max(1) as usize) as u64;
-            let own = (wanted.kinds > 0).then(|| seed.child(kind + 1));
-            match self.copy_to(wanted.plant, place, own.map(PlantCommand::SetSeed)) {
-                Ok(()) => {}
-                // The scene is full: those before it stand.
-                Err(CommandError::Full(_)) if k > 0 => break,
-                Err(e) => {
-                    self.editor.cancel_gesture();
-                    return Err(e.into());
-                }
-            }
-        }
-        self.editor.commit();
-        self.guest = None;
-        Ok(())
-    }
-
-    fn copy_to(
-        &mut self,
-        plant: PlantId,
-        place: Placement,
-        seed: Option<PlantCommand>,
-    ) -> Result<(), CommandError> {
-        self.editor.run(SceneCommand::Duplicate(plant, DVec3::ZERO))?;
-        let Some(copy) = self.editor.document().plants().last().map(DocumentPlant::id) else { return Ok(()) };
-        for command in [Some(PlantCommand::Place(place)), seed].into_iter().flatten().map(|c| c.of(copy)) {
-            match self.editor.run(command) {
-                Ok(()) | Err(CommandError::Nothing(_)) => {}
-                Err(e) => return Err(e),
-            }
-        }
-        Ok(())
-    }
-}
-
 /// Places with at least `spacing` between them and from those that are taken.
-fn places(ground: &Ground, spacing: f64, taken: &[DVec2], stream: &mut Stream) -> Vec<DVec2> {
+pub(crate) fn places(ground: &Ground, spacing: f64, taken: &[DVec2], stream: &mut Stream) -> Vec<DVec2> {
     let finite = |points: &[[f64; 2]]| -> Vec<DVec2> {
         points.iter().map(|&p| DVec2::from(p)).filter(|p| p.abs().max_element() <= 1e5).collect()
     };

@@ -1,0 +1,77 @@
+//! Copies of a plant in many places, as one step of undo.
+
+use burgeon::Draw;
+use burgeon::document::{CommandError, DocumentPlant, Placement, PlantCommand, PlantId, SceneCommand};
+use burgeon::glam::{DVec2, DVec3};
+
+use crate::scatter::places;
+use crate::{Scatter, Workspace, WorkspaceError};
+
+impl Workspace {
+    /// Copies a plant to many places, as one step of undo. Places beside the plants that are there are left out, and so
+    /// are those for which a scene has no room.
+    ///
+    /// # Errors
+    /// [`WorkspaceError`]: that plant is not there, or no copy has room.
+    pub(crate) fn scatter(&mut self, wanted: &Scatter) -> Result<(), WorkspaceError> {
+        self.let_go();
+        let document = self.editor.document();
+        let plant = document.plant(wanted.plant).ok_or(WorkspaceError::PlantGone)?;
+        let Placement { position, scale, .. } = plant.settings().placement;
+        let seed = plant.settings().seed;
+        let taken: Vec<DVec2> = document
+            .plants()
+            .iter()
+            .map(|p| p.settings().placement.position)
+            .map(|p| DVec2::new(p.x, p.z))
+            .collect();
+        // Another scattering of the same plant falls otherwise.
+        let mut stream =
+            seed.child(u64::from(wanted.plant.0)).child(taken.len() as u64).stream(Draw::Scatter);
+        let spacing = if wanted.spacing_m.is_finite() { wanted.spacing_m.clamp(1e-3, 1e4) } else { 1.0 };
+        let vary = if wanted.vary.is_finite() { wanted.vary.clamp(0.0, 0.9) } else { 0.0 };
+        let places = places(&wanted.ground, spacing, &taken, &mut stream);
+        if places.is_empty() {
+            return Err(WorkspaceError::NowhereToStand);
+        }
+        self.editor.begin_gesture("scatter")?;
+        for (k, at) in places.into_iter().enumerate() {
+            let place = Placement {
+                position: DVec3::new(at.x, position.y, at.y),
+                yaw_deg: (stream.range(0.0, 3600.0)).round() / 10.0,
+                scale: (scale * stream.range(1.0 - vary, 1.0 + vary) * 1000.0).round() / 1000.0,
+            };
+            let kind = stream.below(wanted.kinds.max(1) as usize) as u64;
+            let own = (wanted.kinds > 0).then(|| seed.child(kind + 1));
+            match self.copy_to(wanted.plant, place, own.map(PlantCommand::SetSeed)) {
+                Ok(()) => {}
+                // The scene is full: those before it stand.
+                Err(CommandError::Full(_)) if k > 0 => break,
+                Err(e) => {
+                    self.editor.cancel_gesture();
+                    return Err(e.into());
+                }
+            }
+        }
+        self.editor.commit();
+        self.guest = None;
+        Ok(())
+    }
+
+    fn copy_to(
+        &mut self,
+        plant: PlantId,
+        place: Placement,
+        seed: Option<PlantCommand>,
+    ) -> Result<(), CommandError> {
+        self.editor.run(SceneCommand::Duplicate(plant, DVec3::ZERO))?;
+        let Some(copy) = self.editor.document().plants().last().map(DocumentPlant::id) else { return Ok(()) };
+        for command in [Some(PlantCommand::Place(place)), seed].into_iter().flatten().map(|c| c.of(copy)) {
+            match self.editor.run(command) {
+                Ok(()) | Err(CommandError::Nothing(_)) => {}
+                Err(e) => return Err(e),
+            }
+        }
+        Ok(())
+    }
+}
