@@ -85,7 +85,7 @@ pub struct GuidedSpec {
     pub max_joints: u32,
 }
 
-spec::schemas!(GuidedSpec);
+spec::schemas!(GuidedSpec => crate::TreeSpec, "/$defs/Method/oneOf/4");
 
 impl Default for GuidedSpec {
     fn default() -> Self {
