@@ -4,13 +4,13 @@ import type { Request } from './protocol';
 import type {
   Command,
   EditReport,
-  HeldTool,
   PlantState,
   PlantView as Seen,
   ShapeAnswer,
   ShapeCommand,
   ShapeInput,
   ShapePointer,
+  ToolKind,
 } from './wire';
 import { number, t, tOf, type TextKey } from './text';
 import { CLIMB_KEYS, SHAPE_TOOLS, type ShapeTool } from './tools';
@@ -500,7 +500,7 @@ export class Shaping {
       void this.send({ brush: { radius_m: this.radius, density: this.settings.density } });
   }
 
-  private wire(): HeldTool {
+  private wire(): ToolKind {
     const { settings: s, radius: radius_m } = this;
     switch (this.tool) {
       case undefined:

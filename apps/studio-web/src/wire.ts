@@ -533,60 +533,6 @@ export type HandEdit =
     seed: number;
   };
 
-/** A tool in the hand, with its settings. */
-export type HeldTool =
-  | /** Points only. */
-  "pick"
-  | /** See [`ToolKind::Rotate`]. */
-  "rotate"
-  | /** See [`ToolKind::Move`]. */
-  "move"
-  | /** See [`ToolKind::Prune`]. */
-  {
-    prune: {
-      /** The whole branch, not from the place that was picked. */
-      whole: boolean;
-    };
-  }
-  | /** See [`ToolKind::Regrow`]. */
-  "regrow"
-  | /** See [`ToolKind::Sketch`]. */
-  {
-    sketch: {
-      /** Out of the plane of view, degrees. */
-      tilt_deg: number;
-      /** How many twigs it bears. */
-      twigs: number;
-    };
-  }
-  | /** See [`ToolKind::Brush`]. */
-  {
-    brush: {
-      /** How many branches it makes. */
-      density: number;
-      /** How thick it is. */
-      radius_m: number;
-    };
-  }
-  | /** See [`ToolKind::Silhouette`]. */
-  {
-    silhouette: {
-      /** How many branches it makes. */
-      density: number;
-      /** Cut what is outside. */
-      trim: boolean;
-    };
-  }
-  | /** See [`ToolKind::Leaves`]. */
-  {
-    leaves: {
-      /** Share of the leaves that stay. */
-      keep: number;
-      /** How thick it is. */
-      radius_m: number;
-    };
-  };
-
 /** One plant. */
 export type ItemReport = {
   /** Of `shape --list`: the branches that were asked for. */
@@ -1598,6 +1544,60 @@ export type TreeCommand =
       | PlantId
       | null;
   };
+/** What a tool does, with its settings. */
+export type ToolKind =
+  | /** Point at a branch: it makes no edit. */
+  "pick"
+  | /** Drag a branch around its base, in the plane that faces the viewer. */
+  "rotate"
+  | /** Drag a branch along its bearer; what stands on the ground, over the ground. */
+  "move"
+  | /** Click a branch: it is cut where it was clicked, or all of it. */
+  {
+    prune: {
+      /** All of it. */
+      whole: boolean;
+    };
+  }
+  | /** Click a branch: another one grows in its place. */
+  "regrow"
+  | /** Draw a branch from another one. */
+  {
+    sketch: {
+      /** How far the drawing plane leans back from the viewer, degrees; 0 faces the viewer. */
+      tilt_deg: number;
+      /** Twigs on it, 0 to 4. */
+      twigs: number;
+    };
+  }
+  | /** Brush, and branches grow along the stroke. */
+  {
+    brush: {
+      /** 0.1 to 10. */
+      density: number;
+      /** Radius at full pressure, metres, above 0. */
+      radius_m: number;
+    };
+  }
+  | /** Draw an outline around what is to be filled. */
+  {
+    silhouette: {
+      /** 0.1 to 10. */
+      density: number;
+      /** Cut off what leaves it. */
+      trim: boolean;
+    };
+  }
+  | /** Brush over leaves. */
+  {
+    leaves: {
+      /** Share that stays, 0 to 4. */
+      keep: number;
+      /** Radius, metres, above 0. */
+      radius_m: number;
+    };
+  };
+
 
 /** What a tree is grown from. */
 export type TreeState = {

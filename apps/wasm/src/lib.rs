@@ -10,10 +10,10 @@
 mod checks;
 mod host;
 
-use burgeon::{Seed, bloom};
 use burgeon::document::{PlantId, StrokeId};
 use burgeon::glam::DVec2;
 use burgeon::ink::{InkSample, Stroke, StrokeMode};
+use burgeon::{Seed, bloom};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use wasm_bindgen::prelude::*;

@@ -34,7 +34,7 @@ pub use error::{Refusal, WorkspaceError};
 pub use export::{ExportFormat, ExportRequest, LengthUnit, NamedFile, Up, packed};
 pub use files::{FileKind, Opened};
 pub use kept::{KEPT_BYTES, SHOWN_BYTES};
-pub use shaping::{HeldTool, Picked, ShapeAnswer, ShapeInput, ShapePointer, ShapeReach};
+pub use shaping::{Picked, ShapeAnswer, ShapeInput, ShapePointer, ShapeReach};
 pub use state::{
     DocumentState, EditState, FlowerState, LeafState, MakerWord, NamedShape, ObstacleView, PhotoState,
     PlantState, SketchState, StrokeState, TreeState,
