@@ -32,7 +32,11 @@ export const CODES = {
   "leaf-surface": ["why"],
   "leaf-veins": ["why"],
   "lender-without-leaf": ["name"],
-  "lsystem": ["why"],
+  "lsystem-line": ["line", "why"],
+  "lsystem-no-axiom": [],
+  "lsystem-no-match": ["there", "rules"],
+  "lsystem-not-finite": ["rule", "line"],
+  "lsystem-too-large": ["rule", "line", "step", "made", "most"],
   "marks-few": ["rows"],
   "marks-not-finite": ["row", "mark"],
   "marks-one-point": ["row"],
@@ -90,12 +94,40 @@ export const CODES = {
   "project-version": ["found"],
   "root-far": ["root"],
   "root-in-obstacle": ["root", "obstacle"],
+  "rule-call": ["name", "numbers"],
+  "rule-chance": ["value"],
+  "rule-ends": [],
+  "rule-left-over": ["text"],
+  "rule-no-arrow": ["text"],
+  "rule-no-module": ["mark"],
+  "rule-no-name": ["name"],
+  "rule-no-number": ["text"],
+  "rule-no-operand": ["mark"],
+  "rule-no-predecessor": [],
+  "rule-no-setting": ["name"],
+  "rule-no-statement": [],
+  "rule-not-called": ["name"],
+  "rule-not-closed": ["mark"],
+  "rule-not-finite": ["text"],
+  "rule-not-opened": [],
+  "rule-not-rewritten": ["text"],
+  "rule-parameters": ["names", "most"],
+  "rule-range": ["name", "least", "most", "value"],
+  "rule-too-deep": ["most"],
+  "rule-tropism-direction": [],
+  "rule-tropism-numbers": [],
+  "rule-tropism-strength": [],
+  "rule-unknown": ["name"],
   "scan-surface": ["why"],
   "scan-too-few": ["points"],
   "scan-too-many": ["points", "most"],
   "scene-full": ["mb"],
+  "spec-choice": ["path", "name", "choices"],
+  "spec-missing": ["path", "name"],
   "spec-pointer": ["path"],
+  "spec-syntax": ["line", "why"],
   "spec-text": ["path", "why"],
+  "spec-unknown": ["path", "name"],
   "spline-degree": ["degree"],
   "spline-knots": [],
   "spline-not-finite": ["point"],
@@ -1512,38 +1544,6 @@ export type TimingsMs = {
   write: number;
 };
 
-/** What can be asked of a tree. */
-export type TreeCommand =
-  | /** Takes another spec, such as that of a preset. */
-  {
-    'set-spec': [string | null, Json];
-  }
-  | /** Sets one field of the spec, named by a JSON pointer such as `/method/points`. */
-  {
-    'set-field': [string, Json];
-  }
-  | /** Adds an obstacle after the others. */
-  {
-    'add-obstacle': NamedObstacle;
-  }
-  | /** Replaces the obstacle of a row. */
-  {
-    'set-obstacle': [number, NamedObstacle];
-  }
-  | /** Takes the obstacle of a row away. */
-  {
-    'remove-obstacle': number;
-  }
-  | /** Sets how it is meshed. */
-  {
-    'set-skin': SkinSpec;
-  }
-  | /** Bears the leaf of another plant, or its own again. */
-  {
-    'set-leaf': 
-      | PlantId
-      | null;
-  };
 /** What a tool does, with its settings. */
 export type ToolKind =
   | /** Point at a branch: it makes no edit. */
@@ -1598,6 +1598,38 @@ export type ToolKind =
     };
   };
 
+/** What can be asked of a tree. */
+export type TreeCommand =
+  | /** Takes another spec, such as that of a preset. */
+  {
+    'set-spec': [string | null, Json];
+  }
+  | /** Sets one field of the spec, named by a JSON pointer such as `/method/points`. */
+  {
+    'set-field': [string, Json];
+  }
+  | /** Adds an obstacle after the others. */
+  {
+    'add-obstacle': NamedObstacle;
+  }
+  | /** Replaces the obstacle of a row. */
+  {
+    'set-obstacle': [number, NamedObstacle];
+  }
+  | /** Takes the obstacle of a row away. */
+  {
+    'remove-obstacle': number;
+  }
+  | /** Sets how it is meshed. */
+  {
+    'set-skin': SkinSpec;
+  }
+  | /** Bears the leaf of another plant, or its own again. */
+  {
+    'set-leaf': 
+      | PlantId
+      | null;
+  };
 
 /** What a tree is grown from. */
 export type TreeState = {
