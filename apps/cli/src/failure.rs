@@ -25,6 +25,14 @@ impl Failure {
         Self::Bad(format!("{}: {}", shown(path), burgeon::brief(&what.to_string())))
     }
 
+    /// What is wrong with scans, laws or flowers of a file.
+    pub(crate) fn bloom(path: &Path) -> impl Fn(burgeon::bloom::BloomError) -> Self + '_ {
+        move |e| match e {
+            burgeon::bloom::BloomError::Cancelled => Self::Cancelled,
+            e => Self::at(path, e),
+        }
+    }
+
     /// The operating system refused.
     pub(crate) fn io(path: &Path, doing: &str, error: &std::io::Error) -> Self {
         let reason = match error.kind() {
