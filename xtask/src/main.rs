@@ -41,7 +41,7 @@ cargo xtask COMMAND
   gallery        makes every fixture drawing and writes docs/gallery.md and docs/table1.md
   species        grows every preset and scene of docs/trees.md and docs/shaping.md, and the Studio's small pictures
   flowers        makes the pictures of docs/bloom.md and of the venations in docs/leaves.md
-  types          writes the TypeScript types of what travels between the page and the core
+  types          writes the schemas of specs and the TypeScript types of what travels between page and core
   habits         checks licences and versions of dependencies, spelling, and that the crates could be published
   layers         checks that each crate uses only what ARCHITECTURE.md allows, and no modules in a circle
   train-strokes  trains the stroke classifier from its table, and says what it and each rule are worth (docs/strokes.md)
@@ -128,12 +128,14 @@ Next: draw your own (docs/drawings.md) and give it to the same command.");
     studio::open(&web::setup()?, &[sample])
 }
 
-/// The test that compares the TypeScript types writes them, too.
+/// The tests that compare schemas and TypeScript types write them, too.
 fn types() -> Outcome {
-    let mut c =
-        shell::prepare(shell::cargo_path(), &["test", "--package", "burgeon-workspace", "--test", "wire"]);
-    c.env("BURGEON_WRITE_TYPES", "1");
-    shell::finish(c)
+    for (package, test) in [("burgeon", "schemas"), ("burgeon-workspace", "wire")] {
+        let mut c = shell::prepare(shell::cargo_path(), &["test", "--package", package, "--test", test]);
+        c.env("BURGEON_WRITE_TYPES", "1");
+        shell::finish(c)?;
+    }
+    Ok(())
 }
 
 /// Everything that must be green.

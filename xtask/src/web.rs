@@ -93,6 +93,8 @@ pub(crate) fn build_wasm(tools: &Tools, release: bool) -> Outcome<PathBuf> {
     let mut args = vec!["build", "--package", "burgeon-wasm", "--target", TARGET];
     if release {
         args.push("--profile=web");
+    } else {
+        args.push("--features=checks");
     }
     say(&format!("$ cargo {}", args.join(" ")));
     let mut c = tools.cargo.command(&args);

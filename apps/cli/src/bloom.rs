@@ -1,10 +1,8 @@
-//! `burgeon bloom`: growth laws from scans, shapes at any day, whole flowers that open.
+//! `burgeon bloom run`: shapes at any day, whole flowers that open.
 
 use std::path::{Path, PathBuf};
 
-use burgeon::bloom::{
-    self, FlowerSpec, GrowthLaw, LawSpec, Motion, MotionSpec, Quantity, RegisterSpec, ShapeError,
-};
+use burgeon::bloom::{self, FlowerSpec, GrowthLaw, Motion, MotionSpec, RegisterSpec, ShapeError};
 use burgeon::document::PlantEdit;
 use burgeon::formats::{ExportSpec, ModelFormat, Morph, PngCache, write_cloud_ply, write_glb_morph};
 use burgeon::glam::DVec3;
@@ -16,42 +14,14 @@ use burgeon::{
 };
 use serde::Serialize;
 
-use crate::args::{AxesArgs, BloomCommand, BloomRunArgs, FitArgs, PictureArgs, PlantFormat};
+use crate::args::{AxesArgs, BloomCommand, BloomRunArgs, PictureArgs, PlantFormat};
 use crate::failure::{Failure, Outcome};
 use crate::files::Goal;
 use crate::machine::Machine;
 use crate::output::Outputs;
 use crate::petals::{drawing, is_drawing, petal_form};
 use crate::stages::{self, Loaded};
-use crate::{edits, files, inputs, names, picture, report, say};
-
-/// A law as the report tells it, lengths in metres.
-#[derive(Debug, Serialize)]
-struct LawReport {
-    organ: String,
-    region: usize,
-    axis: Quantity,
-    #[serde(rename = "K")]
-    k: f64,
-    p0: f64,
-    r: f64,
-    offset: f64,
-    standard_errors: Option<[f64; 3]>,
-    r2: f64,
-    r2_adjusted: Option<f64>,
-    loo_rmse: Option<f64>,
-    /// On a bound of the search: the series determines no logistic.
-    on_bound: bool,
-}
-
-/// What `fit` adds to the report.
-#[derive(Debug, Serialize)]
-struct FitReport {
-    #[serde(flatten)]
-    run: RunReport,
-    laws: Vec<LawReport>,
-    stages: Vec<stages::Told>,
-}
+use crate::{edits, files, fit, inputs, names, picture, report, say};
 
 /// Distances in millimetres: measured to reconstructed, and back.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -116,118 +86,9 @@ struct MotionReport {
 
 pub(crate) fn bloom(command: &BloomCommand) -> Outcome {
     match command {
-        BloomCommand::Fit(args) => fit(args),
+        BloomCommand::Fit(args) => fit::fit(args),
         BloomCommand::Run(args) => run(args),
     }
-}
-
-fn bad(path: &Path) -> impl Fn(bloom::BloomError) -> Failure + '_ {
-    move |e| match e {
-        bloom::BloomError::Cancelled => Failure::Cancelled,
-        e => Failure::at(path, e),
-    }
-}
-
-fn fit(args: &FitArgs) -> Outcome {
-    let machine = Machine::new(&args.common);
-    let outputs = [
-        ("-o", Some(&args.output)),
-        ("--plot", args.plot.as_ref()),
-        ("--report", args.common.report.as_ref()),
-    ];
-    let mut outputs = Outputs::new(&outputs, &[&args.input])?;
-    let axes = files::axes(args.axes.up, args.axes.unit);
-    let (loaded, read_ms) = machine.timed(|| {
-        machine.with_progress("scans", |_| stages::load(&args.input, &axes, Seed::new(args.seed), &machine))
-    });
-    let loaded = loaded?;
-    outputs.check()?;
-    let spec = LawSpec { regions: args.regions as usize, ..LawSpec::default() };
-    let (law, fit_ms) = machine.timed(|| bloom::fit_stages(&loaded.name, &loaded.stages, &spec));
-    let law = law.map_err(bad(&args.input))?;
-    if law.laws.is_empty() {
-        return Err(Failure::at(
-            &args.input,
-            "no organ is there on 3 days; label organs by hand (organ = \"leaf-1\") or add stages",
-        ));
-    }
-    let text = serde_json::to_string_pretty(&law)
-        .map_err(|e| Failure::Bug(format!("the law cannot be written as JSON: {e}")))?;
-    let (written, write_ms) = machine.timed(|| {
-        outputs.write("-o", &args.output, |out| Ok(writeln!(out, "{text}")?))?;
-        match &args.plot {
-            Some(plot) => {
-                let svg = bloom::plot_svg(&law);
-                outputs.write("--plot", plot, |out| Ok(out.write_all(svg.as_bytes())?))
-            }
-            None => Ok(()),
-        }
-    });
-    written?;
-    let mut run = head("bloom fit", args.seed, &args.input.display().to_string(), &law.name, &args.output);
-    run.input.offset_m = loaded.origin.told(&loaded.axes);
-    if let Some(item) = run.items.first_mut() {
-        item.timings_ms.structure = fit_ms;
-        item.timings_ms.add_io(read_ms, write_ms);
-        item.timings_ms.total = machine.whole_ms();
-        item.warnings.clone_from(&loaded.warnings);
-    }
-    let laws = law.laws.iter().map(|l| LawReport {
-        organ: l.organ.clone(),
-        region: l.region,
-        axis: l.axis,
-        k: l.law.k,
-        p0: l.law.p0,
-        r: l.law.r,
-        offset: l.law.offset,
-        standard_errors: l.standard_errors,
-        r2: l.r2,
-        r2_adjusted: l.r2_adjusted,
-        loo_rmse: l.loo_rmse,
-        on_bound: l.law.on_bound(law.span_days),
-    });
-    let report = FitReport { run, laws: laws.collect(), stages: loaded.told };
-    report::finish(&report, &args.common, outputs)?;
-    if !machine.quiet {
-        loaded.warnings.iter().for_each(|w| say::warning(w));
-        report.stages.iter().for_each(|t| say::line(&t.line()));
-        tell_laws(&law);
-        say::line(&format!("{}: {} laws", args.output.display(), law.laws.len()));
-    }
-    Ok(())
-}
-
-fn tell_laws(law: &GrowthLaw) {
-    for l in &law.laws {
-        say::line(&format!(
-            "{} region {} {}: K {:.3} mm, p0 {:.3} mm, r {:.4} a day, R2 {:.3}{}{}",
-            l.organ,
-            l.region,
-            l.axis.word(),
-            l.law.k * 1e3,
-            l.law.p0 * 1e3,
-            l.law.r,
-            l.r2,
-            l.loo_rmse.map_or(String::new(), |e| format!(", leave-one-out {:.3} mm", e * 1e3)),
-            if l.law.on_bound(law.span_days) {
-                " (on a bound: these days determine no logistic)"
-            } else {
-                ""
-            }
-        ));
-    }
-}
-
-fn head(command: &str, seed: u64, input: &str, name: &str, output: &Path) -> RunReport {
-    let mut run = RunReport::new(command, seed);
-    run.input.path = input.to_owned();
-    run.items.push(burgeon::ItemReport {
-        name: name.to_owned(),
-        output: output.display().to_string(),
-        ..burgeon::ItemReport::default()
-    });
-    run.ok = 1;
-    run
 }
 
 fn read_law(path: &Path) -> Outcome<GrowthLaw> {
@@ -339,13 +200,13 @@ fn run(args: &BloomRunArgs) -> Outcome {
     let (motion, fit_ms) = machine.timed(|| {
         machine.with_progress("registration", |_| Motion::new(&loaded.stages, law, spec, &compute))
     });
-    let motion = motion.map_err(bad(start))?;
+    let motion = motion.map_err(Failure::bloom(start))?;
     let mut error = None;
     if let (Some(scan), Some(day)) = (&args.compare, args.day) {
         // As the stages are: their file may say unit and up axis.
         let measured = stages::read_points(scan, &mut loaded, options.clean, Seed::new(args.seed), &machine)?;
-        let shape = motion.at(day - first_day, &compute).map_err(bad(scan))?;
-        let e = ErrorReport::from(bloom::compare(&measured, &shape, &compute).map_err(bad(scan))?);
+        let shape = motion.at(day - first_day, &compute).map_err(Failure::bloom(scan))?;
+        let e = ErrorReport::from(bloom::compare(&measured, &shape, &compute).map_err(Failure::bloom(scan))?);
         if e.mean_mm.max(e.back_mean_mm) > 500.0 * extent(&shape) {
             loaded.warnings.push(format!(
                 "{}: is half the plant's size away from it; is its unit that of the stages?",
@@ -359,7 +220,7 @@ fn run(args: &BloomRunArgs) -> Outcome {
         days: [first_day, last_day],
         best: last_day,
         shape: Box::new(|day| {
-            let points = motion.at(day - first_day, &compute).map_err(bad(start))?;
+            let points = motion.at(day - first_day, &compute).map_err(Failure::bloom(start))?;
             // What single precision holds, squares included.
             if !points.iter().all(|p| p.abs().max_element() <= 1e15) {
                 let line =
@@ -373,7 +234,7 @@ fn run(args: &BloomRunArgs) -> Outcome {
     };
     let (written, write_ms) = machine.timed(|| write_show(args, &mut show, &axes, &mut outputs, &machine));
     let written = written?;
-    let mut head = head("bloom run", args.seed, &args.start, &loaded.name, &args.output);
+    let mut head = report::of_one("bloom run", args.seed, &args.start, &loaded.name, &args.output);
     head.input.offset_m = loaded.origin.told(&loaded.axes);
     head.items[0].warnings.clone_from(&loaded.warnings);
     let residuals = motion.residuals.iter().map(|(organ, from, to, e)| ResidualReport {
@@ -577,7 +438,7 @@ fn drawn_flower(
     }
     let law = law.unwrap_or_else(|| plant.law());
     let axes = files::axes(args.axes.up, args.axes.unit);
-    let mut head = head("bloom run", args.seed, &args.start, &plant.name, &args.output);
+    let mut head = report::of_one("bloom run", args.seed, &args.start, &plant.name, &args.output);
     head.items[0].warnings.clone_from(&plant.item.warnings);
     head.items[0].edits.clone_from(&plant.item.edits);
     let mut show = Show {
@@ -636,7 +497,7 @@ fn flower(
         Stopped::Cancelled(_) => Failure::Cancelled,
         Stopped::OverBudget(much) => Failure::at(Path::new(&args.start), much),
     };
-    let mut head = head("bloom run", args.seed, &args.start, &spec.name, &args.output);
+    let mut head = report::of_one("bloom run", args.seed, &args.start, &spec.name, &args.output);
     if let Some(edits) = &args.edits {
         let day = (spec.opening_days, &law);
         let made = make_flower(&spec.name, &spec, day, &options, seed, &machine.run()).map_err(failed)?;

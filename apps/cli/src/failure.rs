@@ -30,6 +30,14 @@ impl Failure {
         if let Self::Bad(line) = self { Self::at(path, line) } else { self }
     }
 
+    /// What is wrong with scans, laws or flowers of a file.
+    pub(crate) fn bloom(path: &Path) -> impl Fn(burgeon::bloom::BloomError) -> Self + '_ {
+        move |e| match e {
+            burgeon::bloom::BloomError::Cancelled => Self::Cancelled,
+            e => Self::at(path, e),
+        }
+    }
+
     /// The operating system refused.
     pub(crate) fn io(path: &Path, doing: &str, error: &std::io::Error) -> Self {
         let reason = match error.kind() {

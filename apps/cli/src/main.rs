@@ -9,6 +9,7 @@ mod draft;
 mod edits;
 mod failure;
 mod files;
+mod fit;
 mod grow;
 mod info;
 mod inputs;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use burgeon::ItemReport;
+use burgeon::{ItemReport, RunReport};
 use serde::Serialize;
 
 use crate::args::CommonArgs;
@@ -43,4 +43,17 @@ pub(crate) fn summary(item: &ItemReport, png: Option<&Path>) -> String {
     let made: Vec<String> = made.into_iter().flatten().filter(|s| !s.is_empty()).collect();
     let made = if made.is_empty() { item.name.clone() } else { made.join(", ") };
     format!("{made}: {}; {:.0} ms", parts.collect::<Vec<_>>().join(", "), item.timings_ms.total)
+}
+
+/// The report of a command that makes one thing.
+pub(crate) fn of_one(command: &str, seed: u64, input: &str, name: &str, output: &Path) -> RunReport {
+    let mut run = RunReport::new(command, seed);
+    run.input.path = input.to_owned();
+    run.items.push(ItemReport {
+        name: name.to_owned(),
+        output: output.display().to_string(),
+        ..ItemReport::default()
+    });
+    run.ok = 1;
+    run
 }

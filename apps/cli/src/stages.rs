@@ -274,10 +274,6 @@ fn box_of(points: &[DVec3]) -> DVec3 {
     (high - low).max(DVec3::ZERO)
 }
 
-fn bad(path: &Path) -> impl Fn(bloom::BloomError) -> Failure + '_ {
-    move |e| Failure::at(path, e)
-}
-
 /// Stages of a file.
 pub(crate) fn load(path: &Path, axes: &ExportSpec, seed: Seed, machine: &Machine) -> Outcome<Loaded> {
     let text = files::read_text(path)?;
@@ -348,16 +344,16 @@ fn add_entry(
     let spec = SegmentSpec { foot: entry.base.map(near), ..SegmentSpec::default() };
     let mut found = match (&entry.organ, entry.seed) {
         (Some(name), Some(at)) => {
-            let mut one = bloom::organ_at(&points, near(at), &spec).map_err(bad(&scan))?;
+            let mut one = bloom::organ_at(&points, near(at), &spec).map_err(Failure::bloom(&scan))?;
             one.name.clone_from(name);
             vec![one]
         }
-        (None, Some(at)) => vec![bloom::organ_at(&points, near(at), &spec).map_err(bad(&scan))?],
-        (Some(name), None) => vec![bloom::single_organ(&points, name, &spec).map_err(bad(&scan))?],
+        (None, Some(at)) => vec![bloom::organ_at(&points, near(at), &spec).map_err(Failure::bloom(&scan))?],
+        (Some(name), None) => vec![bloom::single_organ(&points, name, &spec).map_err(Failure::bloom(&scan))?],
         (None, None) if file.split == Split::None || mesh.is_some() => {
-            vec![bloom::single_organ(&points, "organ", &spec).map_err(bad(&scan))?]
+            vec![bloom::single_organ(&points, "organ", &spec).map_err(Failure::bloom(&scan))?]
         }
-        (None, None) => bloom::organs(&points, &spec).map_err(bad(&scan))?,
+        (None, None) => bloom::organs(&points, &spec).map_err(Failure::bloom(&scan))?,
     };
     if let (Some(base), [one]) = (entry.base.map(near), &mut found[..]) {
         one.base = base;
@@ -470,9 +466,9 @@ pub(crate) fn load_pair(
         // A model with faces is one organ, and then so is its partner.
         split &= mesh.is_none();
         let organs = if split {
-            bloom::organs(&points, &spec).map_err(bad(path))?
+            bloom::organs(&points, &spec).map_err(Failure::bloom(path))?
         } else {
-            vec![bloom::single_organ(&points, "organ", &spec).map_err(bad(path))?]
+            vec![bloom::single_organ(&points, "organ", &spec).map_err(Failure::bloom(path))?]
         };
         told.organs =
             organs.iter().map(|o| OrganTold { name: o.name.clone(), points: o.points.len() }).collect();
@@ -489,7 +485,7 @@ pub(crate) fn load_pair(
             .push("one shape is a single organ and the other is not: both are taken as one organ".into());
         for stage in &mut out.stages {
             let all: Vec<DVec3> = stage.organs.iter().flat_map(|o| o.points.iter().copied()).collect();
-            stage.organs = vec![bloom::single_organ(&all, "organ", &spec).map_err(bad(first))?];
+            stage.organs = vec![bloom::single_organ(&all, "organ", &spec).map_err(Failure::bloom(first))?];
         }
         split = false;
     }

@@ -4,13 +4,13 @@ import type {
   Command,
   DocumentState,
   ExportRequest,
-  HeldTool,
   PlantView,
   Refusal,
   SceneView,
   ShapeInput,
   ShapeReach,
   StrokeMode,
+  ToolKind,
 } from './wire';
 
 /** Where a plant was put that a request added: who does the same again puts it there, without growing the others. */
@@ -46,7 +46,7 @@ export type Request =
   | { kind: 'skeleton' }
   | { kind: 'share' }
   /** A tool that shapes the chosen plant: what it would do is shown, what it did comes back as an edit. */
-  | { kind: 'shape'; tool: HeldTool; reach: ShapeReach; input: ShapeInput }
+  | { kind: 'shape'; tool: ToolKind; reach: ShapeReach; input: ShapeInput }
   /** The branch of a pick with all that it bears. */
   | { kind: 'branch'; axis: number }
   | { kind: 'draft'; mode: StrokeMode; samples: Float64Array }

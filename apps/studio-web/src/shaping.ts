@@ -4,7 +4,6 @@ import type { Request } from './protocol';
 import type {
   Command,
   EditReport,
-  HeldTool,
   PlantState,
   PlantView as Seen,
   ShapeAnswer,
@@ -13,6 +12,7 @@ import type {
   ShapePointer,
   ShapeReach,
   ShapeStep,
+  ToolKind,
 } from './wire';
 import { number, t, tOf, type TextKey } from './text';
 import { CLIMB_KEYS, SHAPE_TOOLS, type ShapeTool } from './tools';
@@ -527,7 +527,7 @@ export class Shaping {
       void this.send({ brush: { radius_m: this.radius, density: this.settings.brush.density } });
   }
 
-  private wire(): HeldTool {
+  private wire(): ToolKind {
     const { settings: s, radius: radius_m } = this;
     const word = this.once ?? this.tool;
     switch (word) {

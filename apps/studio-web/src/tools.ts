@@ -1,6 +1,6 @@
 /** The tools that a hand can hold, on the sheet and in the view, each with the key that takes it up. */
 import type { Tool } from './sheet/sheet';
-import type { HeldTool } from './wire';
+import type { ToolKind } from './wire';
 
 export const SHEET_TOOLS: readonly [Tool, string][] = [
   ['parts', 'P'],
@@ -12,7 +12,7 @@ export const SHEET_TOOLS: readonly [Tool, string][] = [
 
 type WordOf<T> = T extends string ? T : keyof T & string;
 /** A tool of the view by its word alone, without what it is set to. */
-export type ShapeTool = WordOf<HeldTool>;
+export type ShapeTool = WordOf<ToolKind>;
 
 export const SHAPE_TOOLS: readonly [ShapeTool, string][] = [
   ['pick', '1'],

@@ -32,7 +32,11 @@ export const CODES = {
   "leaf-surface": ["why"],
   "leaf-veins": ["why"],
   "lender-without-leaf": ["name"],
-  "lsystem": ["why"],
+  "lsystem-line": ["line", "why"],
+  "lsystem-no-axiom": [],
+  "lsystem-no-match": ["there", "rules"],
+  "lsystem-not-finite": ["rule", "line"],
+  "lsystem-too-large": ["rule", "line", "step", "made", "most"],
   "marks-few": ["rows"],
   "marks-not-finite": ["row", "mark"],
   "marks-one-point": ["row"],
@@ -91,12 +95,40 @@ export const CODES = {
   "project-version": ["found"],
   "root-far": ["root"],
   "root-in-obstacle": ["root", "obstacle"],
+  "rule-call": ["name", "numbers"],
+  "rule-chance": ["value"],
+  "rule-ends": [],
+  "rule-left-over": ["text"],
+  "rule-no-arrow": ["text"],
+  "rule-no-module": ["mark"],
+  "rule-no-name": ["name"],
+  "rule-no-number": ["text"],
+  "rule-no-operand": ["mark"],
+  "rule-no-predecessor": [],
+  "rule-no-setting": ["name"],
+  "rule-no-statement": [],
+  "rule-not-called": ["name"],
+  "rule-not-closed": ["mark"],
+  "rule-not-finite": ["text"],
+  "rule-not-opened": [],
+  "rule-not-rewritten": ["text"],
+  "rule-parameters": ["names", "most"],
+  "rule-range": ["name", "least", "most", "value"],
+  "rule-too-deep": ["most"],
+  "rule-tropism-direction": [],
+  "rule-tropism-numbers": [],
+  "rule-tropism-strength": [],
+  "rule-unknown": ["name"],
   "scan-surface": ["why"],
   "scan-too-few": ["points"],
   "scan-too-many": ["points", "most"],
   "scene-full": ["mb"],
+  "spec-choice": ["path", "name", "choices"],
+  "spec-missing": ["path", "name"],
   "spec-pointer": ["path"],
+  "spec-syntax": ["line", "why"],
   "spec-text": ["path", "why"],
+  "spec-unknown": ["path", "name"],
   "spline-degree": ["degree"],
   "spline-knots": [],
   "spline-not-finite": ["point"],
@@ -568,60 +600,6 @@ export type HandEdit =
     region: LeafRegion;
     /** Another number, other leaves. */
     seed: number;
-  };
-
-/** A tool in the hand, with its settings. */
-export type HeldTool =
-  | /** Points only. */
-  "pick"
-  | /** See [`ToolKind::Rotate`]. */
-  "rotate"
-  | /** See [`ToolKind::Move`]. */
-  "move"
-  | /** See [`ToolKind::Prune`]. */
-  {
-    prune: {
-      /** The whole branch, not from the place that was picked. */
-      whole: boolean;
-    };
-  }
-  | /** See [`ToolKind::Regrow`]. */
-  "regrow"
-  | /** See [`ToolKind::Sketch`]. */
-  {
-    sketch: {
-      /** Out of the plane of view, degrees. */
-      tilt_deg: number;
-      /** How many twigs it bears. */
-      twigs: number;
-    };
-  }
-  | /** See [`ToolKind::Brush`]. */
-  {
-    brush: {
-      /** How many branches it makes. */
-      density: number;
-      /** How thick it is. */
-      radius_m: number;
-    };
-  }
-  | /** See [`ToolKind::Silhouette`]. */
-  {
-    silhouette: {
-      /** How many branches it makes. */
-      density: number;
-      /** Cut what is outside. */
-      trim: boolean;
-    };
-  }
-  | /** See [`ToolKind::Leaves`]. */
-  {
-    leaves: {
-      /** Share of the leaves that stay. */
-      keep: number;
-      /** How thick it is. */
-      radius_m: number;
-    };
   };
 
 /** One plant. */
@@ -1646,6 +1624,60 @@ export type TimingsMs = {
   /** Writing the model. */
   write: number;
 };
+
+/** What a tool does, with its settings. */
+export type ToolKind =
+  | /** Point at a branch: it makes no edit. */
+  "pick"
+  | /** Drag a branch around its base, in the plane that faces the viewer. */
+  "rotate"
+  | /** Drag a branch along its bearer; what stands on the ground, over the ground. */
+  "move"
+  | /** Click a branch: it is cut where it was clicked, or all of it. */
+  {
+    prune: {
+      /** All of it. */
+      whole: boolean;
+    };
+  }
+  | /** Click a branch: another one grows in its place. */
+  "regrow"
+  | /** Draw a branch from another one. */
+  {
+    sketch: {
+      /** How far the drawing plane leans back from the viewer, degrees; 0 faces the viewer. */
+      tilt_deg: number;
+      /** Twigs on it, 0 to 4. */
+      twigs: number;
+    };
+  }
+  | /** Brush, and branches grow along the stroke. */
+  {
+    brush: {
+      /** 0.1 to 10. */
+      density: number;
+      /** Radius at full pressure, metres, above 0. */
+      radius_m: number;
+    };
+  }
+  | /** Draw an outline around what is to be filled. */
+  {
+    silhouette: {
+      /** 0.1 to 10. */
+      density: number;
+      /** Cut off what leaves it. */
+      trim: boolean;
+    };
+  }
+  | /** Brush over leaves. */
+  {
+    leaves: {
+      /** Share that stays, 0 to 4. */
+      keep: number;
+      /** Radius, metres, above 0. */
+      radius_m: number;
+    };
+  };
 
 /** What can be asked of a tree. */
 export type TreeCommand =

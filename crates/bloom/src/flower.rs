@@ -208,7 +208,7 @@ pub struct FlowerSpec {
     pub mesh: PetalMesh,
 }
 
-spec::schemas!(FlowerSpec);
+spec::schemas!(FlowerSpec = include_str!("../schemas/flower.json"));
 
 /// The stamens of a flower.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -53,7 +53,7 @@ pub struct FlowerSettings {
     pub nod_deg: Option<f64>,
 }
 
-spec::schemas!(FlowerSettings);
+spec::schemas!(FlowerSettings = include_str!("../schemas/settings.json"));
 
 impl Default for FlowerSettings {
     fn default() -> Self {

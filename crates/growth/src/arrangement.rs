@@ -38,7 +38,7 @@ pub enum Arrangement {
     },
 }
 
-spec::schemas!(Arrangement);
+spec::schemas!(Arrangement => crate::TreeSpec, "/$defs/Arrangement");
 
 impl Default for Arrangement {
     fn default() -> Self {

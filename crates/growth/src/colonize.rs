@@ -39,7 +39,7 @@ pub struct ColonizeSpec {
     pub max_joints: u32,
 }
 
-spec::schemas!(ColonizeSpec);
+spec::schemas!(ColonizeSpec => crate::TreeSpec, "/$defs/ColonizeSpec");
 
 impl Default for ColonizeSpec {
     fn default() -> Self {

@@ -66,7 +66,7 @@ pub struct CompetitionSpec {
     pub max_joints: u32,
 }
 
-spec::schemas!(CompetitionSpec);
+spec::schemas!(CompetitionSpec => crate::TreeSpec, "/$defs/Method/oneOf/2");
 
 impl Default for CompetitionSpec {
     fn default() -> Self {

@@ -19,7 +19,7 @@ pub enum Envelope {
     /// A ball.
     Sphere {
         /// Its middle.
-        #[schemars(with = "[f64; 3]", extend("x-unit" = "m"))]
+        #[schemars(with = "[f64; 3]", inner(range(min = -1e6, max = 1e6)), extend("x-unit" = "m"))]
         centre: DVec3,
         /// Above 0.
         #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
@@ -28,16 +28,16 @@ pub enum Envelope {
     /// A ball stretched along the axes.
     Ellipsoid {
         /// Its middle.
-        #[schemars(with = "[f64; 3]", extend("x-unit" = "m"))]
+        #[schemars(with = "[f64; 3]", inner(range(min = -1e6, max = 1e6)), extend("x-unit" = "m"))]
         centre: DVec3,
         /// Half its extents, each above 0.
-        #[schemars(with = "[f64; 3]", extend("x-unit" = "m"))]
+        #[schemars(with = "[f64; 3]", inner(range(min = 1e-6, max = 1e6)), extend("x-unit" = "m"))]
         radii_m: DVec3,
     },
     /// An upright cone, its point up.
     Cone {
         /// Middle of its base.
-        #[schemars(with = "[f64; 3]", extend("x-unit" = "m"))]
+        #[schemars(with = "[f64; 3]", inner(range(min = -1e6, max = 1e6)), extend("x-unit" = "m"))]
         base: DVec3,
         /// Radius of its base, above 0.
         #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
@@ -49,7 +49,7 @@ pub enum Envelope {
     /// An upright cylinder.
     Cylinder {
         /// Middle of its base.
-        #[schemars(with = "[f64; 3]", extend("x-unit" = "m"))]
+        #[schemars(with = "[f64; 3]", inner(range(min = -1e6, max = 1e6)), extend("x-unit" = "m"))]
         base: DVec3,
         /// Above 0.
         #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
@@ -61,7 +61,7 @@ pub enum Envelope {
     /// A surface of revolution about the vertical through `base`.
     Revolution {
         /// Where the heights of the profile start.
-        #[schemars(with = "[f64; 3]", extend("x-unit" = "m"))]
+        #[schemars(with = "[f64; 3]", inner(range(min = -1e6, max = 1e6)), extend("x-unit" = "m"))]
         base: DVec3,
         /// `(radius, height)`, at least 2 points, heights rising, radii 0 or more.
         #[schemars(with = "Vec<[f64; 2]>", extend("x-unit" = "m"))]
@@ -70,7 +70,7 @@ pub enum Envelope {
     /// A closed outline drawn in the plane z = `centre_z`; across the plane each height is as deep as it is wide.
     Outline {
         /// At least 3 points.
-        #[schemars(with = "Vec<[f64; 2]>", extend("x-unit" = "m"))]
+        #[schemars(with = "Vec<[f64; 2]>", inner(inner(range(min = -1e6, max = 1e6))), extend("x-unit" = "m"))]
         polygon: Vec<DVec2>,
         /// The plane of the drawing.
         #[schemars(range(min = -1000000.0, max = 1e6), extend("x-unit" = "m"))]
@@ -98,7 +98,7 @@ pub enum Envelope {
     },
 }
 
-spec::schemas!(Envelope);
+spec::schemas!(Envelope => crate::TreeSpec, "/$defs/Envelope");
 
 impl Default for Envelope {
     /// The crown of a young broadleaf tree: a ball of 2 m radius, its middle 4 m above the ground.
@@ -143,44 +143,22 @@ impl Envelope {
     /// [`GrowthError::Range`] for numbers out of range, [`GrowthError::Field`] for points and outlines that are none, [`GrowthError::Mesh`] for a mesh without volume.
     pub fn prepare(&self) -> Result<Region, GrowthError> {
         spec::check(self)?;
-        let place = |field, p: DVec3| {
-            if usable(p) {
-                Ok(p)
-            } else {
-                let value = p.to_array().into_iter().find(|c| c.abs() > FAR_M || !c.is_finite());
-                Err(GrowthError::Field {
-                    field,
-                    range: "a finite point within 1e6 m",
-                    value: value.unwrap_or(f64::NAN),
-                })
-            }
-        };
         let form = match self {
-            Self::Sphere { centre, radius_m } => {
-                Form::Ellipsoid(place("envelope.centre", *centre)?, DVec3::splat(*radius_m))
-            }
-            Self::Ellipsoid { centre, radii_m } => {
-                for r in radii_m.to_array() {
-                    within("envelope.radii_m", r, 1e-6, FAR_M, "above 0 and at most 1e6 m")?;
-                }
-                Form::Ellipsoid(place("envelope.centre", *centre)?, *radii_m)
-            }
+            Self::Sphere { centre, radius_m } => Form::Ellipsoid(*centre, DVec3::splat(*radius_m)),
+            Self::Ellipsoid { centre, radii_m } => Form::Ellipsoid(*centre, *radii_m),
             Self::Cone { base, radius_m, height_m } => {
                 let (r, h) = (*radius_m, *height_m);
-                Form::Revolution(place("envelope.base", *base)?, vec![DVec2::new(r, 0.0), DVec2::new(0.0, h)])
+                Form::Revolution(*base, vec![DVec2::new(r, 0.0), DVec2::new(0.0, h)])
             }
             Self::Cylinder { base, radius_m, height_m } => {
                 let (r, h) = (*radius_m, *height_m);
-                Form::Revolution(place("envelope.base", *base)?, vec![DVec2::new(r, 0.0), DVec2::new(r, h)])
+                Form::Revolution(*base, vec![DVec2::new(r, 0.0), DVec2::new(r, h)])
             }
             Self::Revolution { base, profile } => {
                 check_profile(profile)?;
-                Form::Revolution(place("envelope.base", *base)?, profile.clone())
+                Form::Revolution(*base, profile.clone())
             }
             Self::Outline { polygon, centre_z_m, depth } => {
-                for p in polygon {
-                    place("envelope.polygon", p.extend(0.0))?;
-                }
                 // Each point scattered looks at each point of the outline.
                 within("points of envelope.polygon", polygon.len() as f64, 3.0, 1e4, "3 to 10,000")?;
                 if polygon.len() < 3 || geom::signed_area(polygon).abs() < 1e-9 {

@@ -138,8 +138,8 @@ pub enum LsystemError {
     Syntax {
         /// From 1.
         line: usize,
-        /// What was expected.
-        why: String,
+        /// What is wrong with it.
+        why: RuleFault,
     },
     /// There is no axiom.
     #[error("there is no axiom: a line `axiom = ...` is needed")]
@@ -163,14 +163,16 @@ pub enum LsystemError {
     },
     /// No rule ever had a module to rewrite.
     #[error(
-        "nothing grew: no rule matches a module in any step. There is {there}; the rules are for {rules}. A rule \
-         matches a module of its name with as many numbers as it has parameters, where its `if` holds"
+        "nothing grew: no rule matches a module in any step. There is {}; the rules are for {}. A rule \
+         matches a module of its name with as many numbers as it has parameters, where its `if` holds",
+        listed(there),
+        listed(rules)
     )]
     NoMatch {
         /// The modules that were left, with their counts of numbers.
-        there: String,
+        there: Vec<(char, usize)>,
         /// What the rules are for.
-        rules: String,
+        rules: Vec<(char, usize)>,
     },
     /// A number of a module is not finite.
     #[error("the rule `{rule}` in line {line} gives a number that is not finite")]
@@ -180,6 +182,122 @@ pub enum LsystemError {
         /// Its line, from 1; 0 for the axiom.
         line: usize,
     },
+}
+
+/// What is wrong with a line of an L-system. Texts that it quotes are cut ([`base::quoted`]).
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RuleFault {
+    /// It says nothing that is known.
+    #[error("neither a setting (name = value) nor a rule (A -> B)")]
+    NoStatement,
+    /// There is no such setting.
+    #[error("`{0}` is no setting; constants are written `let {0} = ...`")]
+    NoSetting(String),
+    /// A constant cannot be called so.
+    #[error("`{0}` is no name")]
+    NoName(String),
+    /// A setting is out of its range.
+    #[error("{name} must be {least} to {most}, not {value}")]
+    Range {
+        /// The setting.
+        name: &'static str,
+        /// The least.
+        least: f64,
+        /// The most.
+        most: f64,
+        /// The value given.
+        value: f64,
+    },
+    /// The tropism has another number of numbers.
+    #[error("tropism needs four numbers: x y z strength")]
+    TropismNumbers,
+    /// The tropism points nowhere.
+    #[error("tropism needs a direction with a length")]
+    TropismDirection,
+    /// The tropism's strength is not finite.
+    #[error("the strength of tropism is no finite number")]
+    TropismStrength,
+    /// More text than belongs there.
+    #[error("`{0}` is left over")]
+    LeftOver(String),
+    /// It has no finite value.
+    #[error("`{0}` is no finite number")]
+    NotFinite(String),
+    /// Nothing stands before the arrow.
+    #[error("a rule needs a module before ->")]
+    NoPredecessor,
+    /// Brackets and marks of the grammar stay as they are.
+    #[error("`{0}` is no module that can be rewritten")]
+    NotRewritten(String),
+    /// Something that was opened is not closed.
+    #[error("a {0} is missing")]
+    NotClosed(char),
+    /// Something is closed that was not opened.
+    #[error("a ] without its [")]
+    NotOpened,
+    /// Parameters are no names, or too many.
+    #[error("`{names}`: up to {most} names were expected")]
+    Parameters {
+        /// What stands there.
+        names: String,
+        /// The most.
+        most: usize,
+    },
+    /// Something else stands before the arrow.
+    #[error("`{0}`: `if`, `prob` or -> was expected")]
+    NoArrow(String),
+    /// A chance below 0, or beyond all use.
+    #[error("prob must be 0 or more, not {0}")]
+    Chance(f64),
+    /// A character that is no module.
+    #[error("`{0}` is no module")]
+    NoModule(char),
+    /// Too many parentheses and operators inside one another.
+    #[error("nested more than {0} deep")]
+    TooDeep(usize),
+    /// Digits and dots that are no number.
+    #[error("`{0}` is no number")]
+    NoNumber(String),
+    /// An expression goes on with something else.
+    #[error("a number or name was expected, not `{0}`")]
+    NoOperand(char),
+    /// An expression ends too early.
+    #[error("a number or name was expected, not the end")]
+    Ends,
+    /// A name that nobody gave.
+    #[error("`{0}` is no parameter, constant or function")]
+    Unknown(String),
+    /// A function without parentheses.
+    #[error("`{0}` is a function: it needs ( and )")]
+    NotCalled(&'static str),
+    /// A function with another number of numbers.
+    #[error("`{name}` needs {numbers} number{} and a )", if *numbers == 1 { "" } else { "s" })]
+    Call {
+        /// The function.
+        name: &'static str,
+        /// How many numbers it takes.
+        numbers: usize,
+    },
+}
+
+/// Modules as a sentence names them.
+fn listed(modules: &[(char, usize)]) -> String {
+    let one = |(symbol, numbers): &(char, usize)| match numbers {
+        0 => format!("{symbol} with no number"),
+        1 => format!("{symbol} with 1 number"),
+        _ => format!("{symbol} with {numbers} numbers"),
+    };
+    modules.iter().map(one).collect::<Vec<_>>().join(", ")
+}
+
+/// Modules in no language: `A, B(_, _)`.
+fn signatures(modules: &[(char, usize)]) -> String {
+    let one = |(symbol, numbers): &(char, usize)| match numbers {
+        0 => symbol.to_string(),
+        n => format!("{symbol}({})", vec!["_"; *n].join(", ")),
+    };
+    modules.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
 impl LsystemError {
@@ -210,10 +328,10 @@ base::coded!(GrowthError {
     Self::Obstacle { name, fault, .. } => "obstacle" { name, why = fault => GrowthError },
     Self::Nothing { why } => "nothing-grew" { why },
     Self::Mesh(why) => "mesh" { why => MeshFault },
-    Self::Lsystem(why) => "lsystem" { why },
     Self::NoRoom { found, wanted, .. } => "no-room" { found, wanted },
 } wraps {
     Self::Range(e) => e, spec::RangeFault;
+    Self::Lsystem(e) => e, LsystemError;
     Self::Cancelled(e) => e, Cancelled;
     Self::OverBudget(e) => e, base::OverBudget;
 });
@@ -222,4 +340,39 @@ base::coded!(MeshFault {
     Self::Empty => "mesh-empty" {},
     Self::Index { triangle, vertex, vertices } => "mesh-index" { triangle, vertex, vertices },
     Self::Vertex { vertex } => "mesh-vertex" { vertex },
+});
+
+base::coded!(LsystemError {
+    Self::Syntax { line, why } => "lsystem-line" { line, why => RuleFault },
+    Self::NoAxiom => "lsystem-no-axiom" {},
+    Self::TooLarge { rule, line, step, made, most } => "lsystem-too-large" { rule, line, step, made, most },
+    Self::NoMatch { there, rules } => "lsystem-no-match" { there = signatures(there), rules = signatures(rules) },
+    Self::NotFinite { rule, line } => "lsystem-not-finite" { rule, line },
+});
+
+base::coded!(RuleFault {
+    Self::NoStatement => "rule-no-statement" {},
+    Self::NoSetting(name) => "rule-no-setting" { name },
+    Self::NoName(name) => "rule-no-name" { name },
+    Self::Range { name, least, most, value } => "rule-range" { name, least, most, value },
+    Self::TropismNumbers => "rule-tropism-numbers" {},
+    Self::TropismDirection => "rule-tropism-direction" {},
+    Self::TropismStrength => "rule-tropism-strength" {},
+    Self::LeftOver(text) => "rule-left-over" { text },
+    Self::NotFinite(text) => "rule-not-finite" { text },
+    Self::NoPredecessor => "rule-no-predecessor" {},
+    Self::NotRewritten(text) => "rule-not-rewritten" { text },
+    Self::NotClosed(mark) => "rule-not-closed" { mark },
+    Self::NotOpened => "rule-not-opened" {},
+    Self::Parameters { names, most } => "rule-parameters" { names, most },
+    Self::NoArrow(text) => "rule-no-arrow" { text },
+    Self::Chance(value) => "rule-chance" { value },
+    Self::NoModule(mark) => "rule-no-module" { mark },
+    Self::TooDeep(most) => "rule-too-deep" { most },
+    Self::NoNumber(text) => "rule-no-number" { text },
+    Self::NoOperand(mark) => "rule-no-operand" { mark },
+    Self::Ends => "rule-ends" {},
+    Self::Unknown(name) => "rule-unknown" { name },
+    Self::NotCalled(name) => "rule-not-called" { name },
+    Self::Call { name, numbers } => "rule-call" { name, numbers },
 });

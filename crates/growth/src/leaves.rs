@@ -66,7 +66,7 @@ pub struct FoliageSpec {
     pub max_leaves: u32,
 }
 
-spec::schemas!(FoliageSpec);
+spec::schemas!(FoliageSpec => crate::TreeSpec, "/$defs/FoliageSpec");
 
 impl Default for FoliageSpec {
     fn default() -> Self {

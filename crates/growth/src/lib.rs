@@ -46,7 +46,7 @@ pub use arrangement::Arrangement;
 pub use colonize::{ColonizeSpec, Colonized, Fate, colonize, colonize_from, regrow};
 pub use competition::{Competed, CompetitionSpec, Cycle, compete};
 pub use envelope::{Envelope, Region};
-pub use error::{GrowthError, LsystemError, MeshFault};
+pub use error::{GrowthError, LsystemError, MeshFault, RuleFault};
 pub use guided::{
     BrushStroke, Growing, GrowthStep, Guided, GuidedChange, GuidedSpec, StartBud, guide, guide_from,
 };

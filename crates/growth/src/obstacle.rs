@@ -18,16 +18,16 @@ pub enum Obstacle {
     /// A box along the axes.
     Box {
         /// Lower corner.
-        #[schemars(with = "[f64; 3]", extend("x-unit" = "m"))]
+        #[schemars(with = "[f64; 3]", inner(range(min = -1e6, max = 1e6)), extend("x-unit" = "m"))]
         min: DVec3,
         /// Upper corner, above the lower one in each coordinate.
-        #[schemars(with = "[f64; 3]", extend("x-unit" = "m"))]
+        #[schemars(with = "[f64; 3]", inner(range(min = -1e6, max = 1e6)), extend("x-unit" = "m"))]
         max: DVec3,
     },
     /// A ball.
     Sphere {
         /// Its middle.
-        #[schemars(with = "[f64; 3]", extend("x-unit" = "m"))]
+        #[schemars(with = "[f64; 3]", inner(range(min = -1e6, max = 1e6)), extend("x-unit" = "m"))]
         centre: DVec3,
         /// Above 0.
         #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
@@ -36,7 +36,7 @@ pub enum Obstacle {
     /// An upright cylinder.
     Cylinder {
         /// Middle of its base.
-        #[schemars(with = "[f64; 3]", extend("x-unit" = "m"))]
+        #[schemars(with = "[f64; 3]", inner(range(min = -1e6, max = 1e6)), extend("x-unit" = "m"))]
         base: DVec3,
         /// Above 0.
         #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
@@ -48,7 +48,7 @@ pub enum Obstacle {
     /// Everything behind a plane: a wall, a slope.
     Plane {
         /// Any point of the plane.
-        #[schemars(with = "[f64; 3]", extend("x-unit" = "m"))]
+        #[schemars(with = "[f64; 3]", inner(range(min = -1e6, max = 1e6)), extend("x-unit" = "m"))]
         point: DVec3,
         /// Away from the solid side; any length above 0.
         #[schemars(with = "[f64; 3]")]
@@ -64,7 +64,7 @@ pub enum Obstacle {
     },
 }
 
-spec::schemas!(Obstacle);
+spec::schemas!(Obstacle => crate::TreeSpec, "/$defs/Obstacle");
 
 /// Obstacles made ready to be asked.
 ///
@@ -248,28 +248,21 @@ impl Obstacles {
 impl Body {
     fn new(o: &Obstacle) -> Result<Self, GrowthError> {
         spec::check(o)?;
-        let place = |field, p: DVec3| {
-            let value = p.to_array().into_iter().find(|c| c.abs() > FAR_M || !c.is_finite());
-            let range = "a finite point within 1e6 m";
-            value.map_or(Ok(p), |value| Err(GrowthError::Field { field, range, value }))
-        };
         Ok(match o {
             Obstacle::Box { min, max } => {
-                let size = place("max", *max)? - place("min", *min)?;
+                let size = *max - *min;
                 for x in size.to_array() {
                     within("max - min", x, 1e-6, FAR_M, "above 0 and at most 1e6 m in each coordinate")?;
                 }
                 Self::Box(*min, *max)
             }
-            Obstacle::Sphere { centre, radius_m } => Self::Sphere(place("centre", *centre)?, *radius_m),
-            Obstacle::Cylinder { base, radius_m, height_m } => {
-                Self::Cylinder(place("base", *base)?, *radius_m, *height_m)
-            }
+            Obstacle::Sphere { centre, radius_m } => Self::Sphere(*centre, *radius_m),
+            Obstacle::Cylinder { base, radius_m, height_m } => Self::Cylinder(*base, *radius_m, *height_m),
             Obstacle::Plane { point, normal } => {
                 let unit = if usable(*normal) { normal.try_normalize() } else { None };
                 let range = "a direction with a length";
                 let fault = GrowthError::Field { field: "normal", range, value: normal.length() };
-                Self::Plane(place("point", *point)?, unit.ok_or(fault)?)
+                Self::Plane(*point, unit.ok_or(fault)?)
             }
             Obstacle::Mesh { vertices, triangles } => Self::Mesh(Solid::new(vertices, triangles)?),
         })

@@ -100,7 +100,7 @@ pub struct TreeSpec {
     pub look: Look,
 }
 
-spec::schemas!(TreeSpec);
+spec::schemas!(TreeSpec = include_str!("../schemas/tree.json"));
 
 impl Default for TreeSpec {
     fn default() -> Self {

@@ -26,7 +26,7 @@ pub struct Tropism {
     pub strength: f64,
 }
 
-spec::schemas!(Tropism);
+spec::schemas!(Tropism => crate::TreeSpec, "/$defs/Tropism");
 
 impl Tropism {
     /// A gentle pull to the light.

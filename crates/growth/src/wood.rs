@@ -43,7 +43,7 @@ pub struct WoodSpec {
     pub thin_out: f64,
 }
 
-spec::schemas!(WoodSpec);
+spec::schemas!(WoodSpec => crate::TreeSpec, "/$defs/WoodSpec");
 
 impl Default for WoodSpec {
     fn default() -> Self {

@@ -113,7 +113,7 @@ pub struct LeafSpec {
     pub length_m: f64,
 }
 
-spec::schemas!(LeafSpec);
+spec::schemas!(LeafSpec = include_str!("../schemas/leaf.json"));
 
 impl Default for LeafSpec {
     fn default() -> Self {

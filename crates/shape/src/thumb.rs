@@ -95,7 +95,7 @@ mod tests {
     proptest! {
         #[test]
         fn a_step_is_the_angle_between_its_ends(
-            from in 0.0..6.28_f64, by in -3.0..3.0_f64, r in DEAD..1.0, s in DEAD..1.0,
+            from in 0.0..2.0 * PI, by in -3.0..3.0_f64, r in DEAD..1.0, s in DEAD..1.0,
         ) {
             let mut thumb = Thumb::default();
             thumb.turn(Some(on_rim(from, r * 1.001)));

@@ -5,15 +5,20 @@
 use base::ops::PI;
 use glam::{DQuat, DVec2, DVec3};
 use plant::{AxisId, AxisKind, Plant};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use crate::edit::{Destination, HandEdit, LeafRegion, Turn, ViewPlane};
 use crate::key::AxisKey;
 use crate::pick::{Pick, Ray, Reach, nearest, pick};
 
-/// What a tool does, with its settings.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// What a tool does, with its settings. Lengths in metres of the plant.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
 #[non_exhaustive]
 pub enum ToolKind {
+    /// Point at a branch: it makes no edit.
+    Pick,
     /// Drag a branch around its base: in the plane that faces the viewer, or wherever the tip of a controller goes.
     Rotate,
     /// Drag a branch along its bearer, or with the tip of a controller to whatever bears it then; what stands on the
@@ -30,8 +35,8 @@ pub enum ToolKind {
     Sketch {
         /// Twigs on it, 0 to 4.
         twigs: f64,
-        /// How far the drawing plane leans back from the viewer, radians; 0 faces the viewer.
-        tilt: f64,
+        /// How far the drawing plane leans back from the viewer, degrees; 0 faces the viewer.
+        tilt_deg: f64,
     },
     /// Brush, and branches grow along the stroke.
     Brush {
@@ -170,6 +175,10 @@ struct Stroking {
     radius_m: Vec<f64>,
 }
 
+/// Radians of a degree.
+const DEGREE: f64 = PI / 180.0;
+/// Beyond this, a drawing plane is seen almost from its edge.
+const MOST_LEAN_DEG: f64 = 80.0;
 /// A drag of less than this many degrees is a slip of the hand, not a rotation.
 const LEAST_TURN_DEG: f64 = 0.2;
 /// Nearer to the pivot than this share of the branch, a drag says nothing about an angle (the VR paper's dead zone).
@@ -235,6 +244,7 @@ impl Tool {
         let picked = pick(plant, ray, self.reach);
         let named = picked.and_then(|k| Some((k, AxisKey::of(plant, k.axis)?)));
         self.state = match (self.kind, named) {
+            (ToolKind::Pick, _) => State::Idle,
             (ToolKind::Rotate, Some((pick, key))) => {
                 let pivot = plant.axis_points(pick.axis)[0];
                 let about = -p.forward.normalize_or(DVec3::NEG_Z);
@@ -274,7 +284,7 @@ impl Tool {
         }
         let normal = -p.forward.try_normalize()?;
         let right = p.forward.cross(p.up).try_normalize().unwrap_or_else(|| normal.any_orthonormal_vector());
-        let tilt = if let ToolKind::Sketch { tilt, .. } = self.kind { tilt } else { 0.0 };
+        let tilt = if let ToolKind::Sketch { tilt_deg, .. } = self.kind { tilt_deg * DEGREE } else { 0.0 };
         let lasso = matches!(self.kind, ToolKind::Silhouette { .. });
         let through = named.as_ref().filter(|_| !lasso).map_or((lo + hi) * 0.5, |(k, _)| k.point);
         let (pick, bearer) = named.unzip();
@@ -312,7 +322,7 @@ impl Tool {
                 let length = geom::polyline_length3(plant.axis_points(pick.axis));
                 let to = p.tip.map(|t| t - *pivot).filter(|t| t.is_finite() && t.length() > DEAD * length);
                 if let (Some(a), Some(b)) = (from.try_normalize(), to.and_then(DVec3::try_normalize)) {
-                    *swing = DQuat::from_rotation_arc(a, b);
+                    *swing = base::turn::between(a, b);
                 }
             }
             State::Turning { pick, pivot, about, last, angle, tip: None, .. } => {
@@ -357,8 +367,8 @@ impl Tool {
             }
             _ => {}
         }
-        if let (State::Idle, ToolKind::Sketch { tilt, .. }) = (&self.state, &mut self.kind) {
-            *tilt = (*tilt + by).clamp(-1.4, 1.4);
+        if let (State::Idle, ToolKind::Sketch { tilt_deg, .. }) = (&self.state, &mut self.kind) {
+            *tilt_deg = (*tilt_deg + by / DEGREE).clamp(-MOST_LEAN_DEG, MOST_LEAN_DEG);
         }
         self.edit().map_or_else(Response::default, |e| Response { preview: Some(e), ..Response::default() })
     }
@@ -448,8 +458,7 @@ fn turn_of(about: DVec3, angle: f64, swing: DQuat) -> Turn {
     if swing == DQuat::IDENTITY {
         return Turn { about, degrees: angle * (180.0 / PI) };
     }
-    let (s, c) = base::ops::sin_cos(0.5 * angle);
-    let q = DQuat::from_vec4((about.normalize_or(DVec3::Y) * s).extend(c)) * swing;
+    let q = base::turn::about(about.normalize_or(DVec3::Y), angle) * swing;
     let q = if q.w < 0.0 { -q } else { q };
     let axis = q.xyz();
     let degrees = 2.0 * base::ops::atan2(axis.length(), q.w) * (180.0 / PI);

@@ -228,7 +228,7 @@ fn a_click_prunes_or_regrows_and_escape_does_neither() {
     assert_eq!(after(&plant, all).axes.len(), 1);
     assert!(matches!(click(ToolKind::Regrow), Some(HandEdit::Regrow { seed: 1, .. })));
     for kind in
-        [ToolKind::Regrow, ToolKind::Rotate, ToolKind::Move, ToolKind::Sketch { twigs: 1.0, tilt: 0.0 }]
+        [ToolKind::Regrow, ToolKind::Rotate, ToolKind::Move, ToolKind::Sketch { twigs: 1.0, tilt_deg: 0.0 }]
     {
         let mut tool = Tool::new(kind);
         tool.handle(&plant, &Input::Down(mouse(1.6, 2.0)));
@@ -247,9 +247,10 @@ fn a_branch_is_drawn_on_a_plane_that_faces_the_viewer_or_leans() {
     let plant = tree();
     let way: Vec<Pointer> =
         (0..=10).map(|i| mouse(-0.15 * f64::from(i), 3.0 + 0.08 * f64::from(i))).collect();
-    let draw = |tilt: f64| {
-        let edit =
-            drag(&mut Tool::new(ToolKind::Sketch { twigs: 0.0, tilt }), &plant, &way).commit.expect("drawn");
+    let draw = |tilt_deg: f64| {
+        let edit = drag(&mut Tool::new(ToolKind::Sketch { twigs: 0.0, tilt_deg }), &plant, &way)
+            .commit
+            .expect("drawn");
         let HandEdit::SketchBranch { points, at, bearer, .. } = edit.clone() else { panic!("{edit:?}") };
         assert!(
             (at.unwrap_or(0.0) - 0.75).abs() < 0.01 && bearer.find(&plant).map(|f| f.axis.index()) == Ok(0)
@@ -259,11 +260,11 @@ fn a_branch_is_drawn_on_a_plane_that_faces_the_viewer_or_leans() {
     };
     let flat = draw(0.0);
     assert!(flat.len() > 8 && flat.iter().all(|p| p.z.abs() < 1e-9), "{flat:?}");
-    let leaning = draw(0.6);
+    let leaning = draw(35.0);
     let depth = leaning.last().map_or(0.0, |p| p.z);
     assert!(depth < -0.3, "up on the screen goes away from the viewer: {depth}");
     // Leaning the plane while drawing leaves what is drawn where it is.
-    let mut tool = Tool::new(ToolKind::Sketch { twigs: 0.0, tilt: 0.0 });
+    let mut tool = Tool::new(ToolKind::Sketch { twigs: 0.0, tilt_deg: 0.0 });
     tool.handle(&plant, &Input::Down(way[0]));
     way[1..6].iter().for_each(|p| drop(tool.handle(&plant, &Input::Move(*p))));
     tool.handle(&plant, &Input::Twist(0.6));
@@ -279,7 +280,7 @@ fn a_controller_draws_in_space_with_the_same_tool() {
     let plant = tree();
     let way: Vec<Pointer> =
         (0..=10).map(|i| controller(DVec3::new(-0.1 * f64::from(i), 3.0, 0.12 * f64::from(i)))).collect();
-    let edit = drag(&mut Tool::new(ToolKind::Sketch { twigs: 0.0, tilt: 0.0 }), &plant, &way).commit;
+    let edit = drag(&mut Tool::new(ToolKind::Sketch { twigs: 0.0, tilt_deg: 0.0 }), &plant, &way).commit;
     let Some(HandEdit::SketchBranch { points, .. }) = edit else { panic!("{edit:?}") };
     assert_eq!(points.last(), Some(&DVec3::new(-1.0, 3.0, 1.2)));
 }
@@ -352,7 +353,7 @@ fn no_input_is_a_fault() {
         ToolKind::Move,
         ToolKind::Prune { whole: true },
         ToolKind::Regrow,
-        ToolKind::Sketch { twigs: f64::NAN, tilt: f64::NAN },
+        ToolKind::Sketch { twigs: f64::NAN, tilt_deg: f64::NAN },
         ToolKind::Brush { radius_m: -1.0, density: f64::NAN },
         ToolKind::Silhouette { density: 0.0, trim: true },
         ToolKind::Leaves { radius_m: f64::NAN, keep: -2.0 },

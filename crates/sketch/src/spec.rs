@@ -154,4 +154,4 @@ pub struct SketchSpec {
     pub gravity: f64,
 }
 
-spec::schemas!(SketchSpec);
+spec::schemas!(SketchSpec = include_str!("../schemas/sketch.json"));

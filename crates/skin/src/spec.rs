@@ -45,7 +45,7 @@ pub struct SkinSpec {
     pub seed: Seed,
 }
 
-spec::schemas!(SkinSpec);
+spec::schemas!(SkinSpec = include_str!("../schemas/skin.json"));
 
 impl Default for SkinSpec {
     fn default() -> Self {

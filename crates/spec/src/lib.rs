@@ -25,7 +25,7 @@ pub use colour::Colour;
 pub use located::{Entry, Kind, Node, TextFault};
 pub use range::{RangeFault, check, range};
 pub use read::{SpecFault, from_json, from_toml, line_at, set, to_json};
-pub use schema::{Spec, made_schema};
+pub use schema::{Spec, kept_schema, made_schema};
 
 #[doc(hidden)]
 pub use {schemars, serde_json};

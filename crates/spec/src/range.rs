@@ -72,7 +72,7 @@ fn short(x: f64) -> String {
 /// [`RangeFault`] with the path, the value and the range.
 pub fn check<T: Spec>(value: &T) -> Result<(), RangeFault> {
     let root = T::schema();
-    let look = Look { root, at: Some(root), trail: &Trail::Root, tag: None };
+    let look = Look { root, at: root.pointer(T::PART), trail: &Trail::Root, tag: None };
     // Nothing else can stop the writer: it takes whatever serde writes.
     value.serialize(look).map(|_| ()).or_else(|Stop(fault)| fault.map_or(Ok(()), |f| Err(*f)))
 }
@@ -93,7 +93,7 @@ pub fn check<T: Spec>(value: &T) -> Result<(), RangeFault> {
 pub fn range<T: Spec>(path: &str) -> Option<[f64; 2]> {
     let root = T::schema();
     let field = |at, name| found(root, at, &|s: &'static Value| s.get("properties")?.get(name));
-    let at = path.split('.').try_fold(root, field)?;
+    let at = path.split('.').try_fold(root.pointer(T::PART)?, field)?;
     let limit = |name| found(root, at, &|s| s.get(name)?.as_f64());
     Some([limit("minimum")?, limit("maximum")?])
 }

@@ -32,10 +32,50 @@ pub enum SpecFault {
 }
 
 base::coded!(SpecFault {
-    Self::Text { path, message, .. } => "spec-text" { path, why = message },
     Self::Pointer(path) => "spec-pointer" { path },
 } wraps {
+    Self::Text { line, path, message } => &Slip::of(*line, path, message), Slip<'_>;
     Self::Range { fault, .. } => fault, RangeFault;
+});
+
+/// What a reader says of a text, so that every language has its own words for the common slips.
+enum Slip<'a> {
+    Unknown { path: &'a str, name: &'a str },
+    Missing { path: &'a str, name: &'a str },
+    Choice { path: &'a str, name: &'a str, choices: String },
+    Syntax { line: usize, why: &'a str },
+    Other { path: &'a str, why: &'a str },
+}
+
+impl<'a> Slip<'a> {
+    /// `why`: a message of serde's, which names fields and variants in backticks, or one of TOML's.
+    fn of(line: Option<usize>, path: &'a str, why: &'a str) -> Self {
+        let quoted = |what: &str| {
+            let mut names = why.strip_prefix(what)?.split('`').skip(1).step_by(2);
+            Some((names.next()?, names.collect::<Vec<_>>().join(", ")))
+        };
+        if let Some((name, _)) = quoted("unknown field") {
+            return Self::Unknown { path, name };
+        }
+        if let Some((name, _)) = quoted("missing field") {
+            return Self::Missing { path, name };
+        }
+        if let Some((name, choices)) = quoted("unknown variant") {
+            return Self::Choice { path, name, choices };
+        }
+        match line {
+            Some(line) if path.is_empty() && !why.starts_with("invalid") => Self::Syntax { line, why },
+            _ => Self::Other { path, why },
+        }
+    }
+}
+
+base::coded!(Slip<'_> {
+    Self::Unknown { path, name } => "spec-unknown" { path, name },
+    Self::Missing { path, name } => "spec-missing" { path, name },
+    Self::Choice { path, name, choices } => "spec-choice" { path, name, choices },
+    Self::Syntax { line, why } => "spec-syntax" { line, why },
+    Self::Other { path, why } => "spec-text" { path, why },
 });
 
 fn on(line: Option<usize>) -> String {
@@ -133,4 +173,54 @@ pub fn set<T: Spec>(spec: &T, pointer: &str, value: Value) -> Result<T, SpecFaul
     let spec = from_json(&all)?;
     check(&spec)?;
     Ok(spec)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use base::Coded as _;
+
+    #[derive(Clone, Debug, PartialEq, schemars::JsonSchema, serde::Serialize, serde::Deserialize)]
+    #[serde(deny_unknown_fields)]
+    struct Bed {
+        width_m: f64,
+        soil: Soil,
+    }
+
+    #[derive(Clone, Debug, PartialEq, schemars::JsonSchema, serde::Serialize, serde::Deserialize)]
+    #[serde(rename_all = "kebab-case")]
+    enum Soil {
+        Sand,
+        Loam,
+    }
+
+    crate::schemas!(Bed);
+
+    #[test]
+    fn common_slips_have_codes_of_their_own() {
+        for (text, code, fields) in [
+            (
+                "width_m = 1\nsoil = \"loam\"\ndepth = 1",
+                "spec-unknown",
+                vec![("name", "depth"), ("path", "")],
+            ),
+            ("width_m = 1", "spec-missing", vec![("name", "soil"), ("path", "")]),
+            (
+                "width_m = 1\nsoil = \"clay\"",
+                "spec-choice",
+                vec![("choices", "sand, loam"), ("name", "clay"), ("path", "soil")],
+            ),
+        ] {
+            let told = from_toml::<Bed>(text).expect_err("not sound").told();
+            assert_eq!(
+                (told.code, told.fields.iter().map(|(k, v)| (*k, v.as_str())).collect::<Vec<_>>()),
+                (code, fields),
+                "{text}"
+            );
+        }
+        let told = from_toml::<Bed>("width_m = 1\nsoil = ").expect_err("no TOML").told();
+        assert_eq!((told.code, told.fields["line"].as_str()), ("spec-syntax", "2"));
+        let told = from_toml::<Bed>("width_m = true\nsoil = \"loam\"").expect_err("no number").told();
+        assert_eq!((told.code, told.fields["path"].as_str()), ("spec-text", "width_m"));
+    }
 }

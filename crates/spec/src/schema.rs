@@ -7,11 +7,22 @@ use serde_json::Value;
 
 /// A maker's spec, or a part of one that is checked by itself. [`schemas!`](crate::schemas) implements it.
 pub trait Spec: JsonSchema + Serialize + DeserializeOwned {
+    /// Where its schema stands in [`schema`](Self::schema), as a JSON pointer; empty for the whole.
+    const PART: &'static str = "";
+
     /// Its JSON Schema, with meaning, unit (`x-unit`), range and default of each field. Made at the first call.
     fn schema() -> &'static Value;
 }
 
 /// Implements [`Spec`] for types that derive `JsonSchema`, `Serialize` and `Deserialize`.
+///
+/// | form | where the schema comes from |
+/// |---|---|
+/// | `schemas!(Pot)` | derived when it is first wanted |
+/// | `schemas!(TreeSpec = include_str!("../schemas/tree.json"))` | a file: a browser downloads no code that derives it |
+/// | `schemas!(WoodSpec => TreeSpec, "/$defs/WoodSpec")` | a part of that of another spec |
+///
+/// `cargo xtask types` writes the files; a test of the facade compares files and parts with what is derived.
 ///
 /// ```
 /// use spec::Spec;
@@ -26,6 +37,23 @@ pub trait Spec: JsonSchema + Serialize + DeserializeOwned {
 /// ```
 #[macro_export]
 macro_rules! schemas {
+    ($spec:ty = $text:expr) => {
+        impl $crate::Spec for $spec {
+            fn schema() -> &'static $crate::serde_json::Value {
+                static KEPT: std::sync::OnceLock<$crate::serde_json::Value> = std::sync::OnceLock::new();
+                KEPT.get_or_init(|| $crate::kept_schema($text))
+            }
+        }
+    };
+    ($spec:ty => $whole:ty, $part:literal) => {
+        impl $crate::Spec for $spec {
+            const PART: &'static str = $part;
+
+            fn schema() -> &'static $crate::serde_json::Value {
+                <$whole as $crate::Spec>::schema()
+            }
+        }
+    };
     ($($spec:ty),* $(,)?) => {$(
         impl $crate::Spec for $spec {
             fn schema() -> &'static $crate::serde_json::Value {
@@ -34,6 +62,13 @@ macro_rules! schemas {
             }
         }
     )*};
+}
+
+/// The schema in a file that comes with the program.
+pub fn kept_schema(text: &str) -> Value {
+    let read = serde_json::from_str(text);
+    debug_assert!(read.is_ok(), "{read:?}");
+    read.unwrap_or_default()
 }
 
 /// The schema of a type, made anew.

@@ -37,7 +37,7 @@ pub use export::{ExportFormat, ExportRequest, LengthUnit, NamedFile, Up, packed}
 pub use files::{FileKind, Opened};
 pub use kept::{KEPT_BYTES, SHOWN_BYTES};
 pub use scatter::{Ground, Scatter};
-pub use shaping::{HeldTool, Picked, ShapeAnswer, ShapeInput, ShapePointer, ShapeReach, ShapeStep};
+pub use shaping::{Picked, ShapeAnswer, ShapeInput, ShapePointer, ShapeReach, ShapeStep};
 pub use state::{
     DocumentState, EditState, FlowerState, LeafState, MakerWord, NamedShape, ObstacleView, PhotoState,
     PlantState, SketchState, StrokeState, TreeState,

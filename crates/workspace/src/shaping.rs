@@ -23,70 +23,6 @@ const COARSE_ABOVE: u64 = 40_000;
 /// Radians of a degree.
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
-/// A tool in the hand, with its settings. Lengths in metres of the plant.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case", deny_unknown_fields)]
-pub enum HeldTool {
-    /// Points only.
-    Pick,
-    /// See [`ToolKind::Rotate`].
-    Rotate,
-    /// See [`ToolKind::Move`].
-    Move,
-    /// See [`ToolKind::Prune`].
-    Prune {
-        /// The whole branch, not from the place that was picked.
-        whole: bool,
-    },
-    /// See [`ToolKind::Regrow`].
-    Regrow,
-    /// See [`ToolKind::Sketch`].
-    Sketch {
-        /// How many twigs it bears.
-        twigs: f64,
-        /// Out of the plane of view, degrees.
-        tilt_deg: f64,
-    },
-    /// See [`ToolKind::Brush`].
-    Brush {
-        /// How thick it is.
-        radius_m: f64,
-        /// How many branches it makes.
-        density: f64,
-    },
-    /// See [`ToolKind::Silhouette`].
-    Silhouette {
-        /// How many branches it makes.
-        density: f64,
-        /// Cut what is outside.
-        trim: bool,
-    },
-    /// See [`ToolKind::Leaves`].
-    Leaves {
-        /// How thick it is.
-        radius_m: f64,
-        /// Share of the leaves that stay.
-        keep: f64,
-    },
-}
-
-impl HeldTool {
-    /// None for the tool that only points.
-    fn kind(self) -> Option<ToolKind> {
-        Some(match self {
-            Self::Pick => return None,
-            Self::Rotate => ToolKind::Rotate,
-            Self::Move => ToolKind::Move,
-            Self::Prune { whole } => ToolKind::Prune { whole },
-            Self::Regrow => ToolKind::Regrow,
-            Self::Sketch { twigs, tilt_deg } => ToolKind::Sketch { twigs, tilt: tilt_deg * DEGREE },
-            Self::Brush { radius_m, density } => ToolKind::Brush { radius_m, density },
-            Self::Silhouette { density, trim } => ToolKind::Silhouette { density, trim },
-            Self::Leaves { radius_m, keep } => ToolKind::Leaves { radius_m, keep },
-        })
-    }
-}
-
 /// A pointer in the plant's own coordinates, metres; unit vectors.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -217,7 +153,7 @@ impl Workspace {
     /// [`WorkspaceError`]: when there is no plant.
     pub fn shape(
         &mut self,
-        tool: HeldTool,
+        tool: ToolKind,
         reach: ShapeReach,
         input: ShapeInput,
     ) -> Result<ShapeAnswer, WorkspaceError> {
@@ -228,7 +164,9 @@ impl Workspace {
             let plant = self.shown_plant(id).ok_or(WorkspaceError::NothingToShape)?;
             return Ok(ShapeAnswer { picked: walked(plant, from, to), ..ShapeAnswer::default() });
         }
-        let Some(kind) = tool.kind() else { return Ok(self.point(id, reach, &input)) };
+        if tool == ToolKind::Pick {
+            return Ok(self.point(id, reach, &input));
+        }
         let had = self.preview_edit(id).cloned();
         let going = self.held.as_ref().is_some_and(|h| h.tool.is_busy() && h.plant == id);
         if !going {
@@ -238,7 +176,7 @@ impl Workspace {
             }
             let plant = self.shown_plant(id).ok_or(WorkspaceError::NothingToShape)?.clone();
             let edits = self.editor.document().plant(id).map_or(0, |p| p.settings().edits.len());
-            let tool = Tool::new(kind).with(reach, edits as u64 + 1);
+            let tool = Tool::new(tool).with(reach, edits as u64 + 1);
             let large = self.scene.get(id).is_some_and(|p| p.model.triangle_count() as u64 > COARSE_ABOVE);
             let (thumb, lean) = (Thumb::default(), 0.0);
             self.held = Some(Held { tool, plant: id, before: plant, large, preview: None, thumb, lean });

@@ -5,13 +5,14 @@ use burgeon::document::{
 };
 use burgeon::glam::{DVec2, DVec3};
 use burgeon::ink::{InkSample, Stroke, StrokeMode};
+use burgeon::shape::ToolKind;
 use burgeon::{Budget, Run, Seed, SketchOptions, formats};
 use serde::Serialize;
 use serde_json::Value;
 
 use crate::{
-    Action, Column, ExportFormat, ExportRequest, GUEST, Ground, HeldTool, NewMaker, Scatter, ShapeInput,
-    ShapeReach, ShapeStep, Workspace, WorkspaceError, packed,
+    Action, Column, ExportFormat, ExportRequest, GUEST, Ground, NewMaker, Scatter, ShapeInput, ShapeReach,
+    ShapeStep, Workspace, WorkspaceError, packed,
 };
 
 fn line(points: &[(f64, f64)]) -> Stroke {
@@ -710,7 +711,7 @@ fn branches_are_walked_by_keys() {
     s.evaluate(&run()).unwrap();
     let mut walk = |from: Option<u32>, to: ShapeStep| {
         let input = ShapeInput::Walk { from, to };
-        s.shape(HeldTool::Pick, ShapeReach::default(), input).unwrap().picked.unwrap()
+        s.shape(ToolKind::Pick, ShapeReach::default(), input).unwrap().picked.unwrap()
     };
     let stem = walk(None, ShapeStep::Next);
     assert!(stem.stands && stem.key.is_some());

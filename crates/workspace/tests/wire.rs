@@ -6,12 +6,13 @@ use std::fmt::Write as _;
 
 use burgeon::Coded;
 use burgeon::document::Command;
+use burgeon::shape::ToolKind;
 use schemars::JsonSchema;
 use schemars::generate::{SchemaGenerator, SchemaSettings};
 use serde_json::{Map, Value};
 use workspace::{
-    Action, DocumentState, ExportRequest, HeldTool, Opened, Refusal, SceneView, ShapeAnswer, ShapeInput,
-    ShapeReach, WorkspaceError,
+    Action, DocumentState, ExportRequest, Opened, Refusal, SceneView, ShapeAnswer, ShapeInput, ShapeReach,
+    WorkspaceError,
 };
 
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../apps/studio-web/src/wire.ts");
@@ -46,7 +47,7 @@ fn types() -> String {
     add::<SceneView>(&mut all);
     add::<Opened>(&mut all);
     add::<ExportRequest>(&mut all);
-    add::<HeldTool>(&mut all);
+    add::<ToolKind>(&mut all);
     add::<ShapeReach>(&mut all);
     add::<ShapeInput>(&mut all);
     add::<ShapeAnswer>(&mut all);

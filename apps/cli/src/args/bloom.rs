@@ -54,7 +54,7 @@ pub(crate) struct FitArgs {
     /// Parts of each organ from base to tip, 1 to 20.
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=20))]
     pub(crate) regions: u32,
-    /// Number that the search for the ground follows from.
+    /// Seed of the search for the ground.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
     #[command(flatten)]
@@ -88,8 +88,8 @@ pub(crate) struct BloomRunArgs {
     /// Last shape: a scan or a model.
     #[arg(long, value_name = "END")]
     pub(crate) end: Option<PathBuf>,
-    /// Form of the petals of a whole flower: marks of a petal (.csv), a model of one, or a drawing whose first petal
-    /// or leaf it is.
+    /// Shape of the petals of a whole flower: marks of a petal (.csv), a model of one, or a drawing whose first petal
+    /// or leaf is used.
     #[arg(long, value_name = "FILE")]
     pub(crate) petal: Option<PathBuf>,
     /// Edits by hand on a whole flower or a drawing, a JSON file; `burgeon shape --template` prints one.
@@ -120,7 +120,7 @@ pub(crate) struct BloomRunArgs {
     /// Do not split scans into organs: each is one organ. Models with faces are never split.
     #[arg(long)]
     pub(crate) whole: bool,
-    /// Do not take stray points and the ground out of scans.
+    /// Leave stray points and the ground in scans.
     #[arg(long)]
     pub(crate) no_clean: bool,
     /// Control points move on straight lines, as published, instead of turning with their organ.
@@ -143,13 +143,13 @@ pub(crate) struct BloomRunArgs {
     /// Also make a picture of the shape at --day; without it of the last shape (for a flower, of full bloom).
     #[arg(long, value_name = "FILE.png")]
     pub(crate) png: Option<PathBuf>,
-    /// Number that all chance follows from.
+    /// Seed of all random choices.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
     /// Size of the picture in pixels, each 1 to 8192.
     #[arg(long, value_name = "WxH", default_value = "1024x768", value_parser = size)]
     pub(crate) size: (u32, u32),
-    /// From where the picture is taken.
+    /// Viewpoint of the picture.
     #[arg(long, value_enum, default_value_t = ViewWord::ThreeQuarter)]
     pub(crate) view: ViewWord,
     #[command(flatten)]

@@ -29,7 +29,7 @@ pub(crate) struct CompareArgs {
     /// Fineness of the meshes, 0.1 to 8.
     #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = |s: &str| ranged(s, 0.1, 8.0))]
     pub(crate) detail: f64,
-    /// Number that all chance follows from.
+    /// Seed of all random choices.
     #[arg(long, value_name = "N", default_value_t = 1, allow_hyphen_values = true, value_parser = seed)]
     pub(crate) seed: u64,
     #[command(flatten)]

@@ -22,7 +22,7 @@ pub(crate) struct RenderArgs {
     /// The picture: .png.
     #[arg(long, short, value_name = "PNG")]
     pub(crate) output: PathBuf,
-    /// Number that the pattern of the lights follows from.
+    /// Seed of the pattern of the lights.
     #[arg(long, value_name = "N", default_value_t = 1, allow_hyphen_values = true, value_parser = seed)]
     pub(crate) seed: u64,
     #[command(flatten)]
@@ -59,7 +59,7 @@ pub(crate) struct ConvertArgs {
     /// Also make a picture of a model.
     #[arg(long, value_name = "FILE.png")]
     pub(crate) png: Option<PathBuf>,
-    /// Number that the pattern of the picture's lights follows from.
+    /// Seed of the pattern of the picture's lights.
     #[arg(long, value_name = "N", default_value_t = 1, allow_hyphen_values = true, value_parser = seed)]
     pub(crate) seed: u64,
     #[command(flatten)]

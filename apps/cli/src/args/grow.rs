@@ -27,7 +27,7 @@ pub(crate) struct GrowArgs {
     /// Also make a picture.
     #[arg(long, value_name = "FILE.png")]
     pub(crate) png: Option<PathBuf>,
-    /// Number that all chance follows from.
+    /// Seed of all random choices.
     #[arg(long, value_name = "N", default_value_t = 1, allow_hyphen_values = true, value_parser = seed)]
     pub(crate) seed: u64,
     #[command(flatten)]
@@ -58,7 +58,7 @@ const GROW_EXAMPLES: &str = "Examples:
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Growth")]
 pub(crate) struct GrowthArgs {
-    /// Grow by this method: where PRESET or SPEC.toml uses another one, with that method's own defaults in the same
+    /// Grow by this method; where PRESET or SPEC.toml uses another one, with this method's own defaults in the same
     /// envelope [default: the preset's].
     #[arg(long, value_enum)]
     pub(crate) method: Option<MethodWord>,

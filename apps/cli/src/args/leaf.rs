@@ -34,7 +34,7 @@ pub(crate) struct LeafArgs {
     /// --venation [default: 0.1 palmate, 0.3 parallel].
     #[arg(long, value_name = "METRES", value_parser = |s: &str| of::<LeafSpec>(s, "length_m"))]
     pub(crate) length: Option<f64>,
-    /// A leaf of such veins from a few numbers, without DATA: --veins, --length, --depth.
+    /// Make a leaf with these veins from a few numbers, without DATA: --veins, --length, --depth.
     #[arg(long, value_enum, conflicts_with_all = ["inputs", "template", "scan", "plant", "days"])]
     pub(crate) venation: Option<VenationWord>,
     /// Chief veins of --venation, an odd number: 3 to 11 palmate, 3 to 31 parallel [default: 5, 9].
@@ -68,7 +68,7 @@ pub(crate) struct LeafArgs {
     /// Also make a picture.
     #[arg(long, value_name = "FILE.png")]
     pub(crate) png: Option<PathBuf>,
-    /// Number that all chance follows from.
+    /// Seed of all random choices.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
     #[command(flatten)]
@@ -117,7 +117,7 @@ pub(crate) struct ShapeArgs {
     /// Surface of the blade.
     #[arg(long, value_enum, default_value_t = SurfaceWord::Interpolate)]
     pub(crate) surface: SurfaceWord,
-    /// Rings of the veins: circles across the vein as published, or the exact surface of its balls.
+    /// Rings of the veins: circles across the vein as published, or the exact envelope of its balls.
     #[arg(long, value_enum, default_value_t = RingsWord::Plain)]
     pub(crate) rings: RingsWord,
     /// What a measured thickness is [default: what the file says, else diameter].
@@ -167,7 +167,7 @@ pub(crate) struct LookArgs {
     pub(crate) day: Option<f64>,
 }
 
-/// A whole plant of the leaves.
+/// A whole plant of these leaves.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Plant")]
 pub(crate) struct PlantArgs {
@@ -180,7 +180,7 @@ pub(crate) struct PlantArgs {
     /// Height of the plant's stem in metres, 0.01 to 1000.
     #[arg(long, value_name = "METRES", default_value_t = 1.0, value_parser = |s: &str| ranged(s, 0.01, 1000.0))]
     pub(crate) height: f64,
-    /// Angle between successive leaves in degrees, -360 to 360; 8 degrees of chance come to it.
+    /// Angle between successive leaves in degrees, -360 to 360, with a standard deviation of 8 degrees.
     #[arg(long, value_name = "DEGREES", default_value_t = 137.0, allow_hyphen_values = true,
           value_parser = |s: &str| ranged(s, -360.0, 360.0))]
     pub(crate) azimuth: f64,

@@ -28,7 +28,7 @@ pub(crate) use sketch::{ReadingArgs, SketchArgs, SurfaceArgs};
 
 use clap::{Parser, Subcommand};
 
-/// Three-dimensional plants out of what people can draw.
+/// Turns drawings into three-dimensional plants.
 ///
 /// Exit status: 0 on success, 2 for bad usage or bad input (one line on stderr says what, where and what to do),
 /// 1 for a bug of burgeon, 130 after Ctrl-C or another request to end (drawings of a batch that were finished by then
@@ -86,7 +86,7 @@ pub(crate) enum Command {
     /// Models: .glb, .gltf, .obj, .ply and .stl to .glb, .obj, .ply, .stl or .usda. Drawings: .svg, .inkml,
     /// .ndjson and .json to .json. A drawing becomes a model with `burgeon sketch`.
     Convert(ConvertArgs),
-    /// Say what is in a model or a drawing
+    /// Describe a model, a drawing or a project
     ///
     /// Counts, bounds, units, parts and materials, and what is wrong with it.
     Info(InfoArgs),

@@ -33,7 +33,7 @@ pub(crate) struct ShapeArgs {
     /// Also make a picture.
     #[arg(long, value_name = "FILE.png")]
     pub(crate) png: Option<PathBuf>,
-    /// Number that all chance of the plant follows from; edits have their own. Default 1, or the project's.
+    /// Seed of all random choices of the plant; edits have their own. Default 1, or the project's.
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = seed)]
     pub(crate) seed: Option<u64>,
     /// Print the branches up to this order (0 is the trunk) with the paths that name them, after the edits if any.

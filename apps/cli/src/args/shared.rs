@@ -17,7 +17,7 @@ pub(crate) struct CommonArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
     pub(crate) threads: Option<u16>,
     /// How many times the usual limits of docs/limits.md may be exceeded, 1 to 1000: memory, points, joints, leaves,
-    /// triangles and the like. What is more is refused.
+    /// triangles and the like. Anything larger is refused.
     #[arg(long, value_name = "X", default_value_t = 1.0, allow_hyphen_values = true,
           value_parser = |s: &str| ranged(s, 1.0, 1000.0))]
     pub(crate) budget: f64,
@@ -83,13 +83,13 @@ pub(crate) struct PictureArgs {
     /// Size of the picture in pixels, each 1 to 8192.
     #[arg(long, value_name = "WxH", default_value = "1024x768", value_parser = size)]
     pub(crate) size: (u32, u32),
-    /// From where: front is orthographic and shows what was drawn; turntable is a sheet of views all around.
+    /// Viewpoint: front is orthographic and shows what was drawn; turntable is a sheet of views all around.
     #[arg(long, value_enum, default_value_t = ViewWord::ThreeQuarter)]
     pub(crate) view: ViewWord,
     /// Views of a turntable, 1 to 64.
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=64))]
     pub(crate) frames: u32,
-    /// What is behind: sky, transparent, white or a colour as #rrggbb.
+    /// Background: sky, transparent, white or a colour as #rrggbb.
     #[arg(long, value_name = "sky|transparent|white|#rrggbb", default_value = "sky", value_parser = background)]
     pub(crate) background: Background,
     /// Leave out the shadow on the ground.

@@ -36,7 +36,7 @@ pub(crate) struct SketchArgs {
     /// Also make a picture. For several drawings a folder, which is created and gets one picture each.
     #[arg(long, value_name = "FILE.png")]
     pub(crate) png: Option<PathBuf>,
-    /// Number that all chance follows from; another number gives another plant of the same drawing
+    /// Seed of all random choices; another seed gives another plant of the same drawing
     /// [default: 1, or the project's].
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = seed)]
     pub(crate) seed: Option<u64>,
@@ -81,8 +81,8 @@ pub(crate) struct ReadingArgs {
     /// published, signed keeps left and right [default: drawn].
     #[arg(long, value_enum, value_name = "MODE")]
     pub(crate) leaf_depth: Option<LeafDepthWord>,
-    /// Take every plant of the drawing for one kind: flower, flowers, stem, tree, conifer, palm, bush, cactus, grass,
-    /// leaf, fruit, `house_plant` or vegetable [default: what explains the drawing best; the report lists up to three].
+    /// Read every plant of the drawing as one kind: flower, flowers, stem, tree, conifer, palm, bush, cactus, grass,
+    /// leaf, fruit, `house_plant` or vegetable [default: the best explanation; the report lists up to three].
     #[arg(long = "as", value_name = "KIND", value_parser = kind)]
     pub(crate) read_as: Option<Kind>,
     /// Set what strokes are: a CSV or JSON file, see the end of this help.
@@ -97,7 +97,7 @@ pub(crate) struct ReadingArgs {
     /// Direction of grown twigs, -1 (weeping) to 1 (upright) [default: 0.1].
     #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| of::<SketchSpec>(s, "fill.tropism"))]
     pub(crate) tropism: Option<f64>,
-    /// Exponent of the pipe model, 1.8 to 3: higher makes branches below forks thinner
+    /// Exponent of the pipe model, 1.8 to 3: a higher exponent makes branches below forks thinner
     /// [default: 2 for a tree, 2.5 for a herb].
     #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = |s: &str| of::<SketchSpec>(s, "pipe_exponent"))]
     pub(crate) pipe_exponent: Option<f64>,

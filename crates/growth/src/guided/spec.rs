@@ -141,7 +141,7 @@ impl GuidedChange {
     }
 }
 
-spec::schemas!(GuidedSpec);
+spec::schemas!(GuidedSpec => crate::TreeSpec, "/$defs/Method/oneOf/4");
 
 impl Default for GuidedSpec {
     fn default() -> Self {

@@ -108,24 +108,16 @@ pub(super) fn derive(
 }
 
 fn no_match(system: &Lsystem, modules: &Modules) -> LsystemError {
-    let with = |symbol: u8, n: usize| {
-        let numbers = match n {
-            0 => "no number".to_owned(),
-            1 => "1 number".to_owned(),
-            _ => format!("{n} numbers"),
-        };
-        format!("{} with {numbers}", char::from(symbol))
-    };
     let list = |kinds: &mut dyn Iterator<Item = (u8, usize)>| {
-        let mut told: Vec<String> = Vec::new();
-        for (symbol, n) in kinds {
-            let text = with(symbol, n);
+        let mut named: Vec<(char, usize)> = Vec::new();
+        for (symbol, numbers) in kinds {
+            let kind = (char::from(symbol), numbers);
             // Brackets are never rewritten; of many kinds the first ones say enough.
-            if !b"[]".contains(&symbol) && told.len() < 6 && !told.contains(&text) {
-                told.push(text);
+            if !b"[]".contains(&symbol) && named.len() < 6 && !named.contains(&kind) {
+                named.push(kind);
             }
         }
-        told.join(", ")
+        named
     };
     LsystemError::NoMatch {
         there: list(&mut modules.iter().map(|(symbol, numbers)| (symbol, numbers.len()))),

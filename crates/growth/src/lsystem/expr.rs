@@ -3,6 +3,8 @@
 use base::ops;
 use base::{Draw, Seed};
 
+use crate::error::RuleFault;
+
 /// Parentheses and operators inside one another beyond this are a slip or an attack.
 const DEEPEST: usize = 64;
 
@@ -140,7 +142,7 @@ impl<'a> Reader<'a> {
     }
 
     /// One expression, up to a character that cannot belong to it.
-    pub(super) fn expression(&mut self) -> Result<Expression, String> {
+    pub(super) fn expression(&mut self) -> Result<Expression, RuleFault> {
         self.code.clear();
         self.level(0)?;
         Ok(Expression(core::mem::take(&mut self.code)))
@@ -160,7 +162,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Operators by rising binding: or, and, comparisons, sums, products; powers bind to the right.
-    fn level(&mut self, level: usize) -> Result<(), String> {
+    fn level(&mut self, level: usize) -> Result<(), RuleFault> {
         const LEVELS: [&[(&str, Binary)]; 5] = [
             &[("||", Binary::Or)],
             &[("&&", Binary::And)],
@@ -189,7 +191,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn power(&mut self) -> Result<(), String> {
+    fn power(&mut self) -> Result<(), RuleFault> {
         self.unary()?;
         if self.take("^") {
             self.deeper()?;
@@ -200,12 +202,12 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    fn deeper(&mut self) -> Result<(), String> {
+    fn deeper(&mut self) -> Result<(), RuleFault> {
         self.depth += 1;
-        if self.depth > DEEPEST { Err(format!("nested more than {DEEPEST} deep")) } else { Ok(()) }
+        if self.depth > DEEPEST { Err(RuleFault::TooDeep(DEEPEST)) } else { Ok(()) }
     }
 
-    fn unary(&mut self) -> Result<(), String> {
+    fn unary(&mut self) -> Result<(), RuleFault> {
         let sign = if self.take("-") {
             Some(Op::Negate)
         } else if self.take("!") {
@@ -224,7 +226,7 @@ impl<'a> Reader<'a> {
             self.deeper()?;
             self.level(0)?;
             self.depth -= 1;
-            return if self.take(")") { Ok(()) } else { Err("a ) is missing".into()) };
+            return if self.take(")") { Ok(()) } else { Err(RuleFault::NotClosed(')')) };
         }
         self.skip_space();
         let rest = &self.text[self.at..];
@@ -239,7 +241,8 @@ impl<'a> Reader<'a> {
                 number += if digits > 0 { 1 + sign + digits } else { 0 };
             }
             let text = core::str::from_utf8(&rest[..number]).unwrap_or_default();
-            let value = text.parse().map_err(|e: core::num::ParseFloatError| format!("`{text}`: {e}"))?;
+            let no_number = |_: core::num::ParseFloatError| RuleFault::NoNumber(base::quoted(text));
+            let value = text.parse().map_err(no_number)?;
             self.code.push(Op::Number(value));
             self.at += number;
             return Ok(());
@@ -247,14 +250,13 @@ impl<'a> Reader<'a> {
         let letters = word(|c| c.is_ascii_alphanumeric() || *c == b'_');
         let name = core::str::from_utf8(&rest[..letters]).unwrap_or_default().to_owned();
         if name.is_empty() {
-            let found = rest.first().map_or("the end".into(), |c| format!("`{}`", char::from(*c)));
-            return Err(format!("a number or name was expected, not {found}"));
+            return Err(rest.first().map_or(RuleFault::Ends, |c| RuleFault::NoOperand(char::from(*c))));
         }
         self.at += letters;
         self.name(&name)
     }
 
-    fn name(&mut self, name: &str) -> Result<(), String> {
+    fn name(&mut self, name: &str) -> Result<(), RuleFault> {
         if let Some(i) = self.parameters.iter().position(|p| p == name) {
             self.code.push(Op::Parameter(i));
             return Ok(());
@@ -263,22 +265,23 @@ impl<'a> Reader<'a> {
             self.code.push(Op::Number(*value));
             return Ok(());
         }
-        let Some((_, function, arity)) = Function::ALL.into_iter().find(|(n, ..)| *n == name) else {
-            return Err(format!("`{name}` is no parameter, constant or function"));
+        let Some((name, function, numbers)) = Function::ALL.into_iter().find(|(n, ..)| *n == name) else {
+            return Err(RuleFault::Unknown(base::quoted(name)));
         };
+        let call = RuleFault::Call { name, numbers };
         if !self.take("(") {
-            return Err(format!("`{name}` is a function: it needs ( and )"));
+            return Err(RuleFault::NotCalled(name));
         }
         self.deeper()?;
-        for i in 0..arity {
+        for i in 0..numbers {
             if i > 0 && !self.take(",") {
-                return Err(format!("`{name}` needs {arity} numbers"));
+                return Err(call);
             }
             self.level(0)?;
         }
         self.depth -= 1;
         if !self.take(")") {
-            return Err(format!("`{name}` needs {arity} numbers and a )"));
+            return Err(call);
         }
         self.code.push(Op::Call(function));
         Ok(())
@@ -292,7 +295,7 @@ mod tests {
     fn value(text: &str) -> Result<f64, String> {
         let (parameters, constants) = (["x".to_owned()], [("k".to_owned(), 5.0)]);
         let mut reader = Reader::new(text, &parameters, &constants);
-        let e = reader.expression()?;
+        let e = reader.expression().map_err(|e| e.to_string())?;
         reader.skip_space();
         if reader.at < text.len() {
             return Err(format!("rest: {}", &text[reader.at..]));

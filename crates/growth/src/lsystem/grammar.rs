@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::expr::{Expression, Reader};
-use crate::error::LsystemError;
+use crate::error::{LsystemError, RuleFault};
 
 /// Parameters of one module: more are a slip.
 const MOST_PARAMETERS: usize = 8;
@@ -83,7 +83,7 @@ impl Lsystem {
             if line.is_empty() {
                 continue;
             }
-            let fault = |why: String| LsystemError::Syntax { line: number + 1, why: base::brief(&why) };
+            let fault = |why| LsystemError::Syntax { line: number + 1, why };
             if let Some((left, right)) = line.split_once("->") {
                 let rule =
                     read_rule(left.trim(), right.trim(), line, number + 1, &constants).map_err(fault)?;
@@ -91,7 +91,7 @@ impl Lsystem {
             } else if let Some((name, value)) = line.split_once('=') {
                 system.set(name.trim(), value.trim(), &mut constants).map_err(fault)?;
             } else {
-                return Err(fault("neither a setting (name = value) nor a rule (A -> B)".into()));
+                return Err(fault(RuleFault::NoStatement));
             }
         }
         if system.axiom.is_empty() {
@@ -100,41 +100,45 @@ impl Lsystem {
         Ok(system)
     }
 
-    fn set(&mut self, name: &str, value: &str, constants: &mut Vec<(String, f64)>) -> Result<(), String> {
-        let number = |lo: f64, hi: f64| {
-            let x = evaluate(value, constants)?;
-            if (lo..=hi).contains(&x) { Ok(x) } else { Err(format!("{name} must be {lo} to {hi}, not {x}")) }
+    fn set(&mut self, name: &str, value: &str, constants: &mut Vec<(String, f64)>) -> Result<(), RuleFault> {
+        let number = |name, least: f64, most: f64| {
+            let value = evaluate(value, constants)?;
+            if (least..=most).contains(&value) {
+                Ok(value)
+            } else {
+                Err(RuleFault::Range { name, least, most, value })
+            }
         };
         match name {
             "axiom" => self.axiom = read_modules(value, &[], constants)?,
             "steps" => {
-                let n = number(0.0, 100.0)?;
+                let n = number("steps", 0.0, 100.0)?;
                 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 100")]
                 let n = n as u32;
                 self.steps = n;
             }
-            "angle" => self.angle_deg = number(-360.0, 360.0)?,
-            "length" => self.length_m = number(0.0, 1e4)?,
-            "width" => self.width_m = number(0.0, 100.0)?,
+            "angle" => self.angle_deg = number("angle", -360.0, 360.0)?,
+            "length" => self.length_m = number("length", 0.0, 1e4)?,
+            "width" => self.width_m = number("width", 0.0, 100.0)?,
             "tropism" => {
                 let c: Vec<f64> =
                     value.split_whitespace().map(|w| evaluate(w, constants)).collect::<Result<_, _>>()?;
                 let &[x, y, z, strength] = c.as_slice() else {
-                    return Err("tropism needs four numbers: x y z strength".into());
+                    return Err(RuleFault::TropismNumbers);
                 };
                 let direction = DVec3::new(x, y, z).try_normalize();
-                self.tropism = (direction.ok_or("tropism needs a direction with a length")?, strength);
+                self.tropism = (direction.ok_or(RuleFault::TropismDirection)?, strength);
                 if !strength.is_finite() {
-                    return Err("the strength of tropism is no finite number".into());
+                    return Err(RuleFault::TropismStrength);
                 }
             }
             _ => {
                 let Some(name) = name.strip_prefix("let ").map(str::trim) else {
-                    return Err(format!("`{name}` is no setting; constants are written `let {name} = ...`"));
+                    return Err(RuleFault::NoSetting(base::quoted(name)));
                 };
                 let word = |c: char| c.is_ascii_alphanumeric() || c == '_';
                 if !name.starts_with(|c: char| c.is_ascii_alphabetic()) || !name.chars().all(word) {
-                    return Err(format!("`{name}` is no name"));
+                    return Err(RuleFault::NoName(base::quoted(name)));
                 }
                 let x = evaluate(value, constants)?;
                 constants.push((name.to_owned(), x));
@@ -145,15 +149,15 @@ impl Lsystem {
 }
 
 /// A constant expression.
-fn evaluate(text: &str, constants: &[(String, f64)]) -> Result<f64, String> {
+fn evaluate(text: &str, constants: &[(String, f64)]) -> Result<f64, RuleFault> {
     let mut reader = Reader::new(text, &[], constants);
     let e = reader.expression()?;
     reader.skip_space();
     if reader.at < text.len() {
-        return Err(format!("`{}` is left over", &text[reader.at..]));
+        return Err(RuleFault::LeftOver(base::quoted(&text[reader.at..])));
     }
     let x = e.value(&[], base::Seed::new(0), &mut Vec::new());
-    if x.is_finite() { Ok(x) } else { Err(format!("`{text}` is no finite number")) }
+    if x.is_finite() { Ok(x) } else { Err(RuleFault::NotFinite(base::quoted(text))) }
 }
 
 fn read_rule(
@@ -162,15 +166,15 @@ fn read_rule(
     text: &str,
     line: usize,
     constants: &[(String, f64)],
-) -> Result<Rule, String> {
-    let symbol = *left.as_bytes().first().ok_or("a rule needs a module before ->")?;
+) -> Result<Rule, RuleFault> {
+    let symbol = *left.as_bytes().first().ok_or(RuleFault::NoPredecessor)?;
     if !symbol.is_ascii_graphic() || RESERVED.contains(&symbol) {
-        return Err(format!("`{left}` is no module that can be rewritten"));
+        return Err(RuleFault::NotRewritten(base::quoted(left)));
     }
     let mut rest = left[1..].trim_start();
     let mut parameters = Vec::new();
     if let Some(inner) = rest.strip_prefix('(') {
-        let (names, after) = inner.split_once(')').ok_or("a ) is missing")?;
+        let (names, after) = inner.split_once(')').ok_or(RuleFault::NotClosed(')'))?;
         parameters = names.split(',').map(|n| n.trim().to_owned()).collect();
         rest = after.trim_start();
         let word = |n: &String| {
@@ -178,7 +182,7 @@ fn read_rule(
                 && n.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
         };
         if !parameters.iter().all(word) || parameters.len() > MOST_PARAMETERS {
-            return Err(format!("`{names}`: up to {MOST_PARAMETERS} names were expected"));
+            return Err(RuleFault::Parameters { names: base::quoted(names), most: MOST_PARAMETERS });
         }
     }
     let mut condition = None;
@@ -188,17 +192,17 @@ fn read_rule(
         condition = Some(reader.expression()?);
         reader.skip_space();
         if reader.at < test.len() {
-            return Err(format!("`{}` is left over after the condition", &test[reader.at..]));
+            return Err(RuleFault::LeftOver(base::quoted(&test[reader.at..])));
         }
         rest = chance;
     } else if let Some(after) = rest.strip_prefix("prob ") {
         rest = after;
     } else if !rest.is_empty() {
-        return Err(format!("`{rest}`: `if`, `prob` or -> was expected"));
+        return Err(RuleFault::NoArrow(base::quoted(rest)));
     }
     let chance = if rest.is_empty() { 1.0 } else { evaluate(rest, constants)? };
     if !(0.0..=1e6).contains(&chance) {
-        return Err(format!("prob must be 0 or more, not {chance}"));
+        return Err(RuleFault::Chance(chance));
     }
     let successor = read_modules(right, &parameters, constants)?;
     Ok(Rule { text: base::quoted(text), line, symbol, arity: parameters.len(), condition, chance, successor })
@@ -208,7 +212,7 @@ fn read_modules(
     text: &str,
     parameters: &[String],
     constants: &[(String, f64)],
-) -> Result<Vec<Written>, String> {
+) -> Result<Vec<Written>, RuleFault> {
     let mut modules = Vec::new();
     let mut reader = Reader::new(text, parameters, constants);
     let mut open = 0_usize;
@@ -216,12 +220,12 @@ fn read_modules(
         reader.skip_space();
         let Some(&symbol) = text.as_bytes().get(reader.at) else { break };
         if !symbol.is_ascii_graphic() || b"(),;".contains(&symbol) {
-            return Err(format!("`{}` is no module", char::from(symbol)));
+            return Err(RuleFault::NoModule(char::from(symbol)));
         }
         reader.at += 1;
         match symbol {
             b'[' => open += 1,
-            b']' => open = open.checked_sub(1).ok_or("a ] without its [")?,
+            b']' => open = open.checked_sub(1).ok_or(RuleFault::NotOpened)?,
             _ => {}
         }
         let mut arguments = Vec::new();
@@ -234,11 +238,11 @@ fn read_modules(
                     break;
                 }
                 if !reader.take(",") || arguments.len() >= MOST_PARAMETERS {
-                    return Err(format!("`{}`: a ) is missing", char::from(symbol)));
+                    return Err(RuleFault::NotClosed(')'));
                 }
             }
         }
         modules.push(Written { symbol, arguments });
     }
-    if open > 0 { Err("a ] is missing".into()) } else { Ok(modules) }
+    if open > 0 { Err(RuleFault::NotClosed(']')) } else { Ok(modules) }
 }

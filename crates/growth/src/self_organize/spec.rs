@@ -148,7 +148,7 @@ pub struct SelfOrganizingSpec {
     pub max_joints: u32,
 }
 
-spec::schemas!(SelfOrganizingSpec);
+spec::schemas!(SelfOrganizingSpec => crate::TreeSpec, "/$defs/Method/oneOf/3");
 
 impl Default for SelfOrganizingSpec {
     fn default() -> Self {

@@ -48,6 +48,7 @@ impl TreeError {
                 }
                 let place = all.get(obstacle).map(|o| match &*fault {
                     GrowthError::Field { field, .. } => o.field(field).map_or(o.at, |f| f.at),
+                    GrowthError::Range(range) => o.at_path(&range.path).map_or(o.at, |f| f.at),
                     _ => o.at,
                 });
                 let error = GrowthError::Obstacle { obstacle, name, fault };
