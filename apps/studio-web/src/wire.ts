@@ -1629,9 +1629,9 @@ export type TimingsMs = {
 export type ToolKind =
   | /** Point at a branch: it makes no edit. */
   "pick"
-  | /** Drag a branch around its base, in the plane that faces the viewer. */
+  | /** Drag a branch around its base: in the plane that faces the viewer, or wherever the tip of a controller goes. */
   "rotate"
-  | /** Drag a branch along its bearer; what stands on the ground, over the ground. */
+  | /** Drag a branch along its bearer, or with the tip of a controller to whatever bears it then; what stands on the ground, over the ground. */
   "move"
   | /** Click a branch: it is cut where it was clicked, or all of it. */
   {
