@@ -22,7 +22,14 @@ const browser = await chromium.launch({ executablePath: browserPath, args: FLAGS
 
 let failed = 0;
 const only = process.env.ONLY;
-for (const [name, journey, options] of [...journeys, ...keeping, ...shaping, ...staging, ...grove, ...headset]) {
+for (const [name, journey, options] of [
+  ...journeys,
+  ...keeping,
+  ...shaping,
+  ...staging,
+  ...grove,
+  ...headset,
+]) {
   if (only && !name.includes(only)) continue;
   const context = await browser.newContext({
     viewport: { width: 1000, height: 640 },

@@ -666,7 +666,9 @@ export class Shaping {
       return;
     }
     void this.finish(at, (answer) => {
-      if (!still || answer.commit || answer.picked) return;
+      if (answer.commit) return;
+      if (!still && this.tool === 'sketch') this.events.say(t('shape.sketch.sky'));
+      if (!still || answer.picked) return;
       const plant = this.view.plantAt(e.clientX, e.clientY);
       if (plant !== undefined && plant !== this.plant?.id) this.events.select(plant);
     });
@@ -682,7 +684,6 @@ export class Shaping {
         if (!this.isBusy) this.overlay.end();
         if (!answer) return;
         if (answer.commit) this.edit({ add: answer.commit });
-        else if (!still && this.tool === 'sketch') this.events.say(t('shape.sketch.sky'));
         if (this.tool === 'pick') {
           this.chosen = answer.picked;
           this.clicked = at;

@@ -690,6 +690,8 @@ export const en = {
   'field.step_m': 'step',
   'field.steps': 'distances and pulls',
   'field.strength': 'strength',
+  'field.changes': 'changes while it grows',
+  'field.round': 'from round',
   'field.strokes': 'strokes',
   'field.subdivisions': 'subdivisions',
   'field.surface': 'surface',

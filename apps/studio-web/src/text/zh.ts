@@ -684,6 +684,8 @@ export const zh: Record<TextKey, string> = {
   'field.step_m': '步长',
   'field.steps': '距离与牵引',
   'field.strength': '强度',
+  'field.changes': '生长中的改变',
+  'field.round': '从第几轮起',
   'field.strokes': '笔画',
   'field.subdivisions': '细分',
   'field.surface': '曲面',
