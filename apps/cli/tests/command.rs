@@ -61,9 +61,10 @@ fn sketch_writes_model_picture_and_report() {
     for key in ["read", "preprocess", "classify", "structure", "depth", "mesh", "write", "total"] {
         assert!(item["timings_ms"][key].as_f64().unwrap() >= 0.0, "{key}");
     }
-    for key in ["reprojection_mean", "reprojection_p95"] {
+    for key in ["reprojection_mean", "reprojection_p95", "excess_mean", "excess_p95", "compared"] {
         assert!(item["fidelity"][key].is_f64(), "{key}");
     }
+    assert!(item["fidelity"]["overlap"].is_null(), "nothing grows in a contour");
     assert!(item["digest"].as_str().unwrap().chars().all(|c| c.is_ascii_hexdigit()));
     assert!(item["warnings"].is_array());
 }

@@ -3,6 +3,10 @@ import type { PlantState, PlantView } from './wire';
 import { number, t, type TextKey } from './text';
 import { el } from './ui';
 
+/** A share in percent; a dash where there was nothing to measure. */
+const percent = (share: number | null, digits: number): string =>
+  share === null ? '–' : `${(share * 100).toFixed(digits)} %`;
+
 export function statsTable(state: PlantState | undefined, view: PlantView | undefined): HTMLElement {
   const table = el('dl', { class: 'stats' });
   const row = (key: TextKey, value: string): void => {
@@ -28,8 +32,12 @@ export function statsTable(state: PlantState | undefined, view: PlantView | unde
     row('stats.vertices', number(c.vertices));
     row('stats.triangles', number(c.triangles));
     row('stats.parts', number(view.parts.length));
-    const error = item.fidelity.reprojection_mean;
-    if (error !== null) row('stats.error', `${(error * 100).toFixed(2)} %`);
+    if (state?.maker === 'sketch') {
+      const { reprojection_mean, excess_mean, overlap } = item.fidelity;
+      row('stats.error', percent(reprojection_mean, 2));
+      row('stats.excess', percent(excess_mean, 2));
+      row('stats.overlap', percent(overlap, 0));
+    }
     row('stats.time', `${item.timings_ms.total.toFixed(1)} ms`);
     row('stats.seed', state?.seed ?? '');
     row('stats.digest', item.digest.slice(0, 8));

@@ -385,11 +385,19 @@ export type FaceCounts = {
   vertices: number;
 };
 
-/** Reprojection error of axes, petals and `drawn` leaves against the drawing, as shares of its diagonal; none where no stroke was compared. */
+/** The model's front view against the drawing, measured both ways; distances are shares of the drawing's diagonal. Null: nothing of that sort to compare. */
 export type FidelityReport = {
-  /** Mean distance. */
+  /** The share of the drawing's ink that was measured, by length, 0 to 1: strokes that were left out were not. */
+  compared: number | null;
+  /** Mean distance from the model's axes and outlines to the ink: what the model shows and nobody drew. */
+  excess_mean: number | null;
+  /** 95 % of the model's axes and outlines are nearer than this. */
+  excess_p95: number | null;
+  /** The area that filled contours (crowns, clusters) share with what grew in them, over the area of either, 0 to 1. */
+  overlap: number | null;
+  /** Mean distance from the drawn lines to the model's lines and outlines. */
   reprojection_mean: number | null;
-  /** 95th percentile. */
+  /** 95 % of the drawn lines are nearer than this. */
   reprojection_p95: number | null;
 };
 

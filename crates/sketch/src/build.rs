@@ -12,7 +12,7 @@ use crate::depth::{
     Bearing, LocalBlade, Part, Plans, Scene, bend_by_light_and_weight, blade_key, branch_depths, coloured,
     leaf_shape, place_flower, place_fruit, place_leaf, place_thorn,
 };
-use crate::fill::{FillContext, KeptBodies, fill};
+use crate::fill::{FillContext, GrownContour, KeptBodies, fill};
 use crate::front::Front;
 use crate::{PlantMap, SketchSpec};
 
@@ -23,6 +23,8 @@ pub struct Built {
     pub plant: Plant,
     /// From the drawing's ink to the plant's metres.
     pub map: PlantMap,
+    /// What grew in the drawing's contours.
+    pub grown: Vec<GrownContour>,
 }
 
 /// Builds the plant of a reading.
@@ -127,7 +129,7 @@ pub fn build_again(
         woody: reading.woody,
         coloured: scene.coloured,
     };
-    fill(&mut plant, reading, &ctx, kept, run, report)?;
+    let grown = fill(&mut plant, reading, &ctx, kept, run, report)?;
     run.cancel.check()?;
 
     let started = run.clock.now_ms();
@@ -137,7 +139,7 @@ pub fn build_again(
     name_bodies(&mut plant);
     report.book("depth", run.clock.now_ms() - started);
     debug_assert_eq!(plant.validate().next(), None, "a built plant is sound");
-    Ok(Built { plant, map })
+    Ok(Built { plant, map, grown })
 }
 
 /// What was read as a fruit and is a good part of its plant is a body: a cactus pad is, an apple is not.

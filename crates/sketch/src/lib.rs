@@ -21,6 +21,6 @@ mod template;
 pub use self::spec::{BranchDepth, FillSpec, LeafDepth, ReliefSpec, SketchSpec, TaperSpec};
 pub use build::{Built, build, build_again};
 pub use fidelity::{Fidelity, StrokeFidelity, fidelity};
-pub use fill::KeptBodies;
+pub use fill::{GrownContour, KeptBodies};
 pub use map::PlantMap;
 pub use template::LeafForm;

@@ -234,12 +234,8 @@ impl Evaluator {
         let kept = &mut self.bodies;
         let mut built = sketch::build_again(&reading.value, spec, seed, kept, run, &mut report)?; // books `depth` itself
         let wanted = !self.preview;
-        let fidelity =
-            wanted.then(|| sketch::fidelity(&built, &reading.value, &strokes.value.0, run)).flatten();
-        let fidelity = fidelity.map_or_else(FidelityReport::default, |f| FidelityReport {
-            reprojection_mean: Some(f.reprojection_mean),
-            reprojection_p95: Some(f.reprojection_p95),
-        });
+        let fidelity = wanted.then(|| sketch::fidelity(&built, &reading.value, &strokes.value.0, run).into());
+        let fidelity = fidelity.unwrap_or_default();
         run.cancel.check()?;
         // After the measure against the drawing: the user's leaf is not what was drawn.
         if let Some(leaf) = leaf {

@@ -246,14 +246,39 @@ impl TimingsMs {
     }
 }
 
-/// Reprojection error of axes, petals and `drawn` leaves against the drawing, as shares of its diagonal; none where no stroke
-/// was compared.
+/// The model's front view against the drawing, measured both ways; distances are shares of the drawing's diagonal. Null:
+/// nothing of that sort to compare.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FidelityReport {
-    /// Mean distance.
+    /// Mean distance from the drawn lines to the model's lines and outlines.
     pub reprojection_mean: Option<f64>,
-    /// 95th percentile.
+    /// 95 % of the drawn lines are nearer than this.
     pub reprojection_p95: Option<f64>,
+    /// Mean distance from the model's axes and outlines to the ink: what the model shows and nobody drew.
+    #[serde(default)]
+    pub excess_mean: Option<f64>,
+    /// 95 % of the model's axes and outlines are nearer than this.
+    #[serde(default)]
+    pub excess_p95: Option<f64>,
+    /// The area that filled contours (crowns, clusters) share with what grew in them, over the area of either, 0 to 1.
+    #[serde(default)]
+    pub overlap: Option<f64>,
+    /// The share of the drawing's ink that was measured, by length, 0 to 1: strokes that were left out were not.
+    #[serde(default)]
+    pub compared: Option<f64>,
+}
+
+impl From<sketch::Fidelity> for FidelityReport {
+    fn from(f: sketch::Fidelity) -> Self {
+        Self {
+            reprojection_mean: f.reprojection_mean,
+            reprojection_p95: f.reprojection_p95,
+            excess_mean: f.excess_mean,
+            excess_p95: f.excess_p95,
+            overlap: f.overlap,
+            compared: Some(f.compared),
+        }
+    }
 }
 
 /// The part of a report about a leaf.

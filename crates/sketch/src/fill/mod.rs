@@ -19,6 +19,7 @@ mod scatter;
 mod twigs;
 mod volume;
 
+use core::ops::Range;
 use std::collections::BTreeMap;
 
 use base::{Cancelled, Draw, Report, Run, Seed};
@@ -59,7 +60,21 @@ pub(crate) struct FillContext<'a> {
     pub(crate) coloured: bool,
 }
 
-/// Fills every region of the reading with twigs and leaves, borne by the plant's axes.
+/// What grew in one contour.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GrownContour {
+    /// What it was filled with.
+    pub kind: RegionKind,
+    /// The part of the contour that was filled, metres: of a tree drawn in one line, that above its trunk.
+    pub outline: Vec<DVec2>,
+    /// The plant's axes that grew in it.
+    pub axes: Range<usize>,
+    /// The plant's organs that grew in it.
+    pub organs: Range<usize>,
+}
+
+/// Fills every region of the reading with twigs and leaves, borne by the plant's axes. Returns what grew, in the
+/// order of the regions.
 ///
 /// Guaranteed: nodes and leaf roots inside a contour stay inside it as seen from the front; radii of the new
 /// axes are 0 until they are set when the whole plant stands; the same input gives the same plant.
@@ -76,7 +91,8 @@ pub(crate) fn fill(
     kept: &mut KeptBodies,
     run: &Run<'_>,
     report: &mut Report,
-) -> Result<(), Cancelled> {
+) -> Result<Vec<GrownContour>, Cancelled> {
+    let mut grown = Vec::with_capacity(reading.regions.len());
     let mut bodies = KeptBodies::default();
     let mut forms: Vec<(LeafForm, ShapeId)> = Vec::new();
     let drawn = foliage::measured(plant, ctx.templates);
@@ -110,7 +126,7 @@ pub(crate) fn fill(
         let seed = ctx.seed.child(bearer).child(rank);
         lay(plant, &mut volume, &bearers, region.kind);
         let spec = tame(ctx.spec.fill);
-        let first = plant.organs.len();
+        let (first_axis, first) = (plant.axes.len(), plant.organs.len());
         let mut look = Look { forms: &mut forms, drawn: &drawn, natural, share, seed, spec };
         let (axes, leaves) = match region.kind {
             RegionKind::Twigs => {
@@ -140,12 +156,18 @@ pub(crate) fn fill(
                 organ.paint = Paint::Drawn([0, 1, 2].map(|i| varied[i] * light[i]));
             }
         }
+        grown.push(GrownContour {
+            kind: region.kind,
+            outline: volume.outline().to_vec(),
+            axes: first_axis..plant.axes.len(),
+            organs: first..plant.organs.len(),
+        });
         if axes + leaves == 0 {
             report.warn("contour-empty", format!("nothing could grow in contour {}", row + 1));
         }
     }
     *kept = bodies;
-    Ok(())
+    Ok(grown)
 }
 
 /// The bodies of a drawing's contours, for the next time that the same drawing is built: those of contours that did not

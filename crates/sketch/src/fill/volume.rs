@@ -107,6 +107,11 @@ impl Volume {
         Some(volume)
     }
 
+    /// The contour.
+    pub(super) fn outline(&self) -> &[DVec2] {
+        &self.outline
+    }
+
     /// Lower corner of the contour's box.
     pub(super) fn low(&self) -> DVec2 {
         self.lo + DVec2::splat(self.cell)
