@@ -1,13 +1,21 @@
 //! The reported fidelity against an oracle that looks at pictures: the model's meshes, seen from the front, as masks of
 //! pixels, and the ink as a mask of pixels.
 
+#![expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::cast_precision_loss,
+    clippy::print_stdout,
+    reason = "pixels of a small picture; what they measure is told"
+)]
+
 use std::path::{Path, PathBuf};
 
 use burgeon::formats::{DrawingFormat, read_drawings};
 use burgeon::geom::{self, KdTree2};
 use burgeon::glam::DVec2;
 use burgeon::ink::{self, Drawing, Ink};
-use burgeon::plant::{AxisId, Organ, Plant};
+use burgeon::plant::{AxisId, Organ, OrganKind, Plant, ShapeId};
 use burgeon::reading::{self, OrganWord, Reading};
 use burgeon::sketch::{self, Built, Fidelity, SketchSpec};
 use burgeon::{Report, Run, Seed, skin};
@@ -185,16 +193,10 @@ impl Case {
         for (_, organ) in plant.organs.iter().enumerate().filter(|(i, _)| !grown_organ(*i)) {
             let alone = Plant {
                 shapes: vec![plant.shapes[organ.shape.index()].clone()],
-                organs: vec![Organ {
-                    shape: burgeon::plant::ShapeId::new(0),
-                    bearer: None,
-                    flower: None,
-                    ..organ.clone()
-                }],
+                organs: vec![Organ { shape: ShapeId::new(0), bearer: None, flower: None, ..organ.clone() }],
                 ..Plant::default()
             };
-            let detail =
-                matches!(organ.kind, burgeon::plant::OrganKind::Stamen | burgeon::plant::OrganKind::Pistil);
+            let detail = matches!(organ.kind, OrganKind::Stamen | OrganKind::Pistil);
             masks.push((self.mask(&alone), !detail));
         }
         masks

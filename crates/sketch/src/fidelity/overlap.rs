@@ -108,7 +108,7 @@ impl Grid {
         let low = ring.iter().fold(DVec2::INFINITY, |a, &p| a.min(p));
         let high = ring.iter().fold(DVec2::NEG_INFINITY, |a, &p| a.max(p));
         // Below two cells its margin is all of it.
-        if !((high - low).min_element() > 2.0 * self.cell) {
+        if (high - low).min_element() <= 2.0 * self.cell {
             return;
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "casts saturate")]
