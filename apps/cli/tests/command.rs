@@ -454,8 +454,11 @@ fn a_scene_is_made_whole() {
     assert_eq!(names, ["drawn", "bush", "lily"], "the hidden leaf is left out");
     assert!(items.iter().all(|i| i["digest"].as_str().is_some_and(|d| d.len() > 8)), "{items:?}");
     assert!(items[1]["growth"]["nodes"].as_u64().unwrap() > 50);
-    let whole = good(&dir, &["info", "garden.glb"]);
-    assert!(whole.contains("3-lily-"), "{whole}");
+    let whole = fs::read(dir.join("garden.glb")).unwrap();
+    let whole = String::from_utf8_lossy(&whole);
+    for plant in ["drawn", "bush", "lily"] {
+        assert!(whole.contains(&format!(r#""name":"{plant}""#)), "a node for {plant}");
+    }
     let info = good(&dir, &["info", "garden.burgeon"]);
     assert!(info.contains("bush: tree, seed 3") && info.contains("15 strokes"), "{info}");
     assert!(bad(&dir, &["convert", "garden.burgeon", "-o", "x.json"]).contains("scene of 4 plants"));

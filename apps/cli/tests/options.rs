@@ -78,6 +78,7 @@ const VALUES: &[(&str, &str)] = &[
     ("sides", "5"),
     ("size", "30x20"),
     ("spec", "spec.json"),
+    ("split", "parts.burgeon"),
     ("start-day", "0.2"),
     ("step", "0.05"),
     ("subdivisions", "3"),

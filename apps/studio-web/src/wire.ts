@@ -385,7 +385,7 @@ export type FaceCounts = {
   vertices: number;
 };
 
-/** The model's front view against the drawing, measured both ways; distances are shares of the drawing's diagonal. Null: nothing of that sort to compare. */
+/** The model's front view against the drawing, measured both ways; distances are shares of the drawing's diagonal. */
 export type FidelityReport = {
   /** The share of the drawing's ink that was measured, by length, 0 to 1: strokes that were left out were not. */
   compared: number | null;
