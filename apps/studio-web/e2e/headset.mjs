@@ -5,7 +5,7 @@ import { begin, changed, data, drop, until } from './journeys.mjs';
 
 const BUSH = 'name = "bush"\n[method]\nkind = "competition"\npoints = 260\nlifespan = 2\n';
 const IWER = readFileSync(new URL('../node_modules/iwer/build/iwer.min.js', import.meta.url), 'utf8');
-const WIDE = { viewport: { width: 1360, height: 760 } };
+const WIDE = { viewport: { width: 700, height: 420 } };
 
 /** Puts a headset onto the page before it loads. */
 async function wear(page, model) {
@@ -52,7 +52,7 @@ async function frames(page, count = 4) {
   const { frames: from = 0 } = await state(page);
   await page.waitForFunction(
     (n) => JSON.parse(document.body.dataset.vr || '{"frames":0}').frames >= n,
-    from + Math.max(16, count),
+    from + Math.max(5, count),
   );
 }
 

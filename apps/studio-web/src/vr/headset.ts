@@ -345,7 +345,7 @@ export class Headset {
 
   /** What tests and support see of it. */
   private report(tool: Controller | undefined): void {
-    if (this.frames % 15 !== 1) return;
+    if (this.frames % 4 !== 1) return;
     const { position, quaternion, scale } = this.world.rig;
     const state = {
       frames: this.frames,
@@ -383,7 +383,7 @@ export class Headset {
     const { shaping } = this;
     const tool = ([word]: readonly [ShapeTool, string]): Key => ({
       id: word,
-      label: t(`shape.${word}` as TextKey),
+      label: t(`vr.tool.${word}` as TextKey),
       wide: 2,
       on: shaping.word === word,
       act: () => {

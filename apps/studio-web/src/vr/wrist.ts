@@ -55,7 +55,8 @@ export class Wrist {
   constructor() {
     this.texture.colorSpace = THREE.SRGBColorSpace;
     this.texture.anisotropy = 4;
-    const look = new THREE.MeshBasicMaterial({ map: this.texture, toneMapped: false });
+    // Drawn with what is transparent, after the ground.
+    const look = new THREE.MeshBasicMaterial({ map: this.texture, toneMapped: false, transparent: true });
     this.board = new THREE.Mesh(new THREE.PlaneGeometry(1, 1), look);
     this.board.matrixAutoUpdate = false;
     // Not behind a leaf that hangs there.
