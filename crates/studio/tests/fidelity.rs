@@ -83,6 +83,14 @@ impl Mask {
         (SIDE..self.0.len()).filter(|&i| self.0[i] && !inner(i)).map(centre).collect()
     }
 
+    /// Set pixels with none that is not among three to each side.
+    fn inner(&self) -> Self {
+        let reach = 3 * (SIDE + 1);
+        let square = |i: usize| (0..7).flat_map(move |y| (0..7).map(move |x| i + y * SIDE + x - reach));
+        let inner = |i: usize| self.0[i] && square(i).all(|k| self.0[k]);
+        Self((0..self.0.len()).map(|i| i >= reach && i + reach < self.0.len() && inner(i)).collect())
+    }
+
     /// Whether each pixel is within `radius` of a set one.
     fn grown(&self, radius: f64) -> Self {
         let tree = KdTree2::new(&self.points());
@@ -132,8 +140,7 @@ impl Case {
         let mut within = Mask::new();
         for (mask, outline) in self.shown() {
             let rim = mask.rim();
-            let inner = mask.inverse().grown(SAME).inverse();
-            within.add(&inner);
+            within.add(&mask.inner());
             if outline {
                 outlines.extend(rim.iter().copied());
             }
