@@ -139,7 +139,8 @@ async function transact<S extends Store, T>(
     transaction.onabort = () => reject(why ?? transaction.error ?? new Error('aborted'));
     try {
       answer = act(stores, refuse);
-      if (!rounds) transaction.commit();
+      // What is read may be large, and come after the transaction is said to be complete.
+      if (!rounds && mode === 'readwrite') transaction.commit();
     } catch (e) {
       refuse(e as Error);
     }
