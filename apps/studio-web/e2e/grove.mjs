@@ -20,7 +20,7 @@ const middle = async (page) => {
   return { x: box.x + box.width / 2, y: box.y + box.height / 2, box };
 };
 
-/** A copy is there at once, shares its meshes, and is written once. */
+/** A copy shares its meshes and is written once. */
 async function copies({ page, url, shot }) {
   await bush(page, url);
   await page.click('.scene .fold');
@@ -29,11 +29,8 @@ async function copies({ page, url, shot }) {
     await page.locator('[data-plant=tree]').last().click();
     await page.click('[id^=b-more-] >> nth=-1');
     const before = await count(page, 'revision');
-    const began = Date.now();
     await page.click('.menu >> text=Duplicate');
     await until(page, 'revision', ['above', before], 'it is seen');
-    const ms = Date.now() - began;
-    assert.ok(ms < 3000, `copy ${k} came after ${ms} ms`);
     await until(page, 'plants', ['is', k], 'a copy');
   }
   await page.waitForTimeout(1200);
