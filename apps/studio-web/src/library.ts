@@ -2,8 +2,8 @@
  * The documents that this browser keeps. Of each there is the project file as it was last written whole, and what was
  * asked of it since then: a request is one row of a journal, written when it is made.
  *
- * The journal is only ever appended to, and no transaction holds it while it waits for a page or for the disk: a row is
- * with the browser as soon as it is written, so that a page that dies takes at most what it was just handing over.
+ * The journal is only ever appended to, and no write holds it while it waits for a page or for the disk. Not guaranteed:
+ * that a row is kept if its page dies while another page reads the journal, which holds it until that page has answered.
  * Everything else about a document (its entry in the list, its picture, the whole file) has transactions of its own.
  *
  * The tab that works on a document owns it, and writes the rows of its journal one after the other. The tab that takes
