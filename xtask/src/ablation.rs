@@ -149,7 +149,7 @@ impl Score {
     }
 }
 
-/// Something else would grow: who decided a class is no matter.
+/// Something else would grow. What decided a class does not matter.
 fn differs(a: &Reading, b: &Reading) -> bool {
     let plain = |r: &Reading| Reading { strokes: Vec::new(), ..r.clone() };
     let same = a.strokes.iter().zip(&b.strokes).all(|(a, b)| (a.class, a.organ) == (b.class, b.organ));

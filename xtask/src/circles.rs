@@ -38,7 +38,7 @@ fn parse(path: &Path) -> Outcome<syn::File> {
     syn::parse_file(&text).map_err(|e| format!("{}: {e}", path.display()))
 }
 
-/// Who uses whom among the modules that a crate's root declares. Tests may use what they like.
+/// Which module uses which, among those that a crate's root declares. Tests may use what they like.
 fn uses(root: &Path) -> Outcome<Uses> {
     let file = parse(root)?;
     let folder = root.parent().unwrap_or(Path::new("."));

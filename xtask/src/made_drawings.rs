@@ -1,6 +1,9 @@
 //! Drawings made by us of which we know what they show: rows of plants, trees drawn in every way, small scenes.
 //!
-//! `cargo xtask read-drawings` reads them. They test the reading and train nothing.
+//! `cargo xtask read-drawings` reads them. Others, with another salt, are among those that `cargo xtask train-kinds` learns
+//! from.
+
+pub(crate) mod kinds;
 
 use std::f64::consts::TAU;
 
@@ -315,6 +318,32 @@ fn scribble(r: &mut Stream, centre: DVec2, size: DVec2) -> Vec<DVec2> {
         points.extend((0..12).map(|i| f64::from(i) / 12.0).map(|t| a.lerp(w[1], t).lerp(w[1].lerp(b, t), t)));
     }
     points
+}
+
+/// A drawing as another hand might have drawn it: a little turned, stretched and slanted, now and then without one of
+/// its strokes, in another order; `copy` tells the variations apart.
+pub(crate) fn varied(drawing: &ink::Drawing, copy: u64) -> ink::Drawing {
+    let r = &mut Seed::new(copy).child(hash(&drawing.name)).stream(Draw::Template);
+    let (s, c) = ops::sin_cos(r.range(-8.0, 8.0) * TAU / 360.0);
+    let stretch = r.range(0.85, 1.18);
+    let slant = r.range(-0.08, 0.08);
+    let mut strokes = drawing.strokes.clone();
+    if strokes.len() > 4 && r.chance(0.4) {
+        strokes.remove(r.below(drawing.strokes.len()));
+    }
+    for k in (1..strokes.len()).rev() {
+        strokes.swap(k, r.below(k + 1));
+    }
+    for p in strokes.iter_mut().flat_map(|s| &mut s.samples) {
+        let q = DVec2::new(p.at.x * stretch + p.at.y * slant, p.at.y);
+        p.at = DVec2::new(c * q.x - s * q.y, s * q.x + c * q.y);
+    }
+    ink::Drawing { name: drawing.name.clone(), strokes }
+}
+
+/// A number for a name.
+fn hash(name: &str) -> u64 {
+    name.bytes().fold(7, |h, b| h.wrapping_mul(31).wrapping_add(u64::from(b)))
 }
 
 fn moved(lines: Lines, scale: f64, to: DVec2) -> Lines {

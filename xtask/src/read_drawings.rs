@@ -139,16 +139,31 @@ pub(crate) fn run(args: &[String]) -> Outcome {
         say(&format!("skipped: drawings of people, because {} is not here", folder.display()));
     }
     let mut cases = people(&folder, part)?;
-    let together = together(&cases, part);
+    let together = together(&cases, part, SIDE_BY_SIDE);
     cases.extend(together);
     cases.extend(made(part));
     let mut rows: BTreeMap<String, Vec<(Case, Judged)>> = BTreeMap::new();
+    // Called no plant: drawings by people, all others.
+    let mut called = [0_usize; 2];
     for case in cases {
-        let reading = read(&case.drawing);
+        let (reading, unlike) = read(&case.drawing);
+        let people = case.kinds.is_empty() && !case.right.is_empty();
+        called[usize::from(!people)] += usize::from(unlike);
         let judged = judge(&case, reading);
         rows.entry(case.set.clone()).or_default().push((case, judged));
     }
     say(&table(&rows));
+    let things = made_drawings::kinds::of_kinds(part as u64 + 1, MADE_TO_TEST).into_iter();
+    let things: Vec<_> = things.filter(|(_, kind, _)| *kind == Kind::None).collect();
+    let known =
+        things.iter().filter(|(word, _, lines)| read(&Drawing::from_polylines(*word, lines)).1).count();
+    say(&format!(
+        "called no plant: {} drawings by people, {} others, {known} of {} made ones that are none\n",
+        called[0],
+        called[1],
+        things.len()
+    ));
+    say(&format!("our own drawings: {}\n", own_drawings()?.join(", ")));
     if sheets {
         if pictures {
             built_burgeon()?;
@@ -163,10 +178,36 @@ pub(crate) fn run(args: &[String]) -> Outcome {
     Ok(())
 }
 
-fn read(drawing: &Drawing) -> Reading {
+/// What the drawings of `fixtures` are read as.
+fn own_drawings() -> Outcome<Vec<String>> {
+    let mut found = Vec::new();
+    for folder in ["table1", "gallery"] {
+        let folder = repository().join("fixtures/sketches").join(folder);
+        let entries = fs::read_dir(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+        let mut files: Vec<PathBuf> = entries.flatten().map(|f| f.path()).collect();
+        files.retain(|f| f.extension().is_some_and(|e| e == "svg"));
+        files.sort();
+        for file in files {
+            let bytes = fs::read(&file).map_err(|e| format!("{}: {e}", file.display()))?;
+            let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            for item in formats::read_drawings(bytes.as_slice(), formats::DrawingFormat::Svg, &name) {
+                let drawing = item.map_err(|e| format!("{name}: {e}"))?;
+                let (reading, unlike) = read(&drawing.drawing);
+                let kinds: Vec<&str> = reading.plants.iter().map(|p| p.kind.word()).collect();
+                found.push(format!("{name} {}{}", kinds.join("+"), if unlike { " (no plant)" } else { "" }));
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// What was read, and whether it was called no plant.
+fn read(drawing: &Drawing) -> (Reading, bool) {
+    let mut report = Report::default();
     let ink = ink::clean(drawing, &mut Report::default());
     let classes = ink::classify(&ink, &Run::plain());
-    reading::read(&ink, &classes, &mut Report::default())
+    let reading = reading::read(&ink, &classes, &mut report);
+    (reading, report.warnings.iter().any(|w| w.code == reading::UNLIKE_A_PLANT))
 }
 
 /// The drawings of people of one part.
@@ -186,7 +227,7 @@ fn people(folder: &Path, part: Part) -> Outcome<Vec<Case>> {
                 say(&format!("skipped: {set}, because nobody said what it shows"));
                 continue;
             };
-            let every = if sub == "spg" { 4 } else { 1 };
+            let every = if sub == "spg" && part != Part::Train { 4 } else { 1 };
             let lines = json_lines(&file)?;
             let own = lines.iter().filter(|l| Part::of(l) == Some(part)).step_by(every);
             cases.extend(own.map(|line| Case {
@@ -202,14 +243,61 @@ fn people(folder: &Path, part: Part) -> Outcome<Vec<Case>> {
     Ok(cases)
 }
 
-/// Drawings of a part whose plants are known, with the kinds of these from left to right. Trees by hand are not among them:
-/// nothing is learnt from those.
-pub(crate) fn labelled(folder: &Path, part: Part) -> Outcome<Vec<(Drawing, Vec<Kind>)>> {
-    let people = people(folder, part)?.into_iter();
-    let known = people.filter(|c| c.set != "garden" && c.set != "by hand tree");
-    let known = known.map(|c| (c.drawing, c.right.into_iter().take(1).collect()));
-    Ok(known.chain(made(part).into_iter().map(|c| (c.drawing, c.kinds))).collect())
+/// A drawing whose plants are known.
+pub(crate) struct Labelled {
+    pub(crate) drawing: Drawing,
+    /// From left to right.
+    pub(crate) kinds: Vec<Kind>,
+    pub(crate) origin: Origin,
 }
+
+/// Where a labelled drawing comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Origin {
+    /// "Quick, Draw!".
+    Public,
+    /// The SPG set: three categories, of which there are many drawings.
+    Spg,
+    /// Rows of plants and trees of one trunk and one crown.
+    Rows,
+    /// Drawings by people, put side by side; what their plants are is learnt elsewhere.
+    Together,
+    /// One plant of any kind, or none.
+    Kinds,
+}
+
+/// Drawings of a part whose plants are known. Trees by hand are not among them: nothing is learnt from those.
+pub(crate) fn labelled(folder: &Path, part: Part) -> Outcome<Vec<Labelled>> {
+    let people = people(folder, part)?.into_iter();
+    let people: Vec<Case> = people.collect();
+    let sets = if part == Part::Train { 4 * SIDE_BY_SIDE } else { SIDE_BY_SIDE };
+    let together = together(&people, part, sets).into_iter().map(|c| Labelled {
+        drawing: c.drawing,
+        kinds: vec![Kind::None; c.plants.unwrap_or(0)],
+        origin: Origin::Together,
+    });
+    let together: Vec<Labelled> = together.collect();
+    let known = people.into_iter().filter(|c| c.set != "garden" && c.set != "by hand tree");
+    let known = known.map(|c| Labelled {
+        origin: if c.set.starts_with("spg") { Origin::Spg } else { Origin::Public },
+        kinds: c.right.into_iter().take(1).collect(),
+        drawing: c.drawing,
+    });
+    let rows =
+        made(part).into_iter().map(|c| Labelled { drawing: c.drawing, kinds: c.kinds, origin: Origin::Rows });
+    let each = if part == Part::Train { MADE_TO_LEARN } else { MADE_TO_TEST };
+    let kinds = made_drawings::kinds::of_kinds(part as u64 + 1, each).into_iter().enumerate();
+    let kinds = kinds.map(|(k, (word, kind, lines))| Labelled {
+        drawing: Drawing::from_polylines(format!("made {word} {k}"), &lines),
+        kinds: vec![kind],
+        origin: Origin::Kinds,
+    });
+    Ok(known.chain(together).chain(rows).chain(kinds).collect())
+}
+
+/// Made drawings of each way to draw a kind.
+const MADE_TO_LEARN: u64 = 40;
+const MADE_TO_TEST: u64 = 12;
 
 /// Categories of which a drawing may show several plants.
 const MANY: [&str; 7] = ["garden", "asparagus", "blackberry", "blueberry", "string bean", "mushroom", "peas"];
@@ -219,7 +307,7 @@ const STANDING: [&str; 7] = ["tree", "palm tree", "cactus", "flower", "bush", "h
 const AMONG: [&str; 3] = ["apple", "carrot", "peas"];
 
 /// Drawings of people side by side: two to six plants, now and then with something else among them.
-fn together(cases: &[Case], part: Part) -> Vec<Case> {
+fn together(cases: &[Case], part: Part, sets: u64) -> Vec<Case> {
     let of = |sets: &[&str]| -> Vec<&Case> {
         cases.iter().filter(|c| sets.contains(&&*c.set) && c.drawing.strokes.len() < 40).collect()
     };
@@ -229,7 +317,7 @@ fn together(cases: &[Case], part: Part) -> Vec<Case> {
     }
     let seed = Seed::new(77 + part as u64);
     let mut found = Vec::new();
-    for k in 0..SIDE_BY_SIDE {
+    for k in 0..sets {
         let r = &mut seed.child(k).stream(Draw::Template);
         let n = 2 + r.below(5);
         let mut chosen: Vec<&Case> = (0..n).map(|_| standing[r.below(standing.len())]).collect();

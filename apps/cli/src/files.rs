@@ -383,7 +383,7 @@ impl<'a> Goal<'a> {
         self.path.with_file_name(name)
     }
 
-    /// In words, who asks for a file that the model's own names.
+    /// In words, what refers to a file that the model's own names.
     fn materials(&self) -> String {
         format!("the materials of {}", self.by)
     }

@@ -86,7 +86,7 @@ struct Drawings {
     points: usize,
     failed: usize,
     first: Vec<DrawingSummary>,
-    /// Of a project: who makes what.
+    /// Of a project: its plants and their makers.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     plants: Vec<PlantInfo>,
     warnings: Vec<String>,

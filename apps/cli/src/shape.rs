@@ -20,7 +20,7 @@ use crate::machine::Machine;
 use crate::output::Outputs;
 use crate::{bloom, edits, files, grow, inputs, levels, picture, project, report, say};
 
-/// A plant with its meshes, whoever made it.
+/// A plant of any maker, with its meshes.
 struct Shaped {
     plant: Plant,
     model: Model,

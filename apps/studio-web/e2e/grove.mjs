@@ -1,7 +1,7 @@
 // Many plants in one scene: copies, gizmos by keys, what is drawn on the ground, and what anybody can use.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
-import { add, begin, changed, count, data, drop, exported, sample, until } from './journeys.mjs';
+import { add, begin, changed, count, data, drop, exported, sample, settled, until } from './journeys.mjs';
 
 const BUSH = 'name = "bush"\n[method]\nkind = "competition"\npoints = 260\nlifespan = 2\n';
 const WIDE = { viewport: { width: 1360, height: 760 } };
@@ -39,7 +39,7 @@ async function copies({ page, url, shot }) {
   const four = (await exported(page, 'glb')).bytes.length;
   assert.ok(four < alone + 5000, `${four} bytes of four, ${alone} of one`);
   // Another seed is another plant, and the others stay as they are.
-  const digest = await data(page, 'digest');
+  const digest = await settled(page);
   await page.keyboard.press('Shift+R');
   await changed(page, digest, 'another seed');
   assert.equal(await count(page, 'meshes'), 2);
@@ -95,6 +95,9 @@ async function scatter({ page, url, shot }) {
   await page.click('.scene .fold');
   const spacing = await field(page, 'nspacing');
   assert.ok(spacing > 0.1, `the crown is ${spacing} m wide`);
+  // Half a crown apart, so that several have room on what this window shows.
+  await page.fill('[data-key=nspacing]', String(spacing / 2));
+  await page.locator('[data-key=nspacing]').blur();
   const { x, box } = await middle(page);
   const floor = box.y + box.height * 0.86;
   await page.click('[data-scatter=line]');
@@ -189,11 +192,11 @@ async function tools({ page, url, shot }) {
   await shot('grove-keys');
   await page.keyboard.press('Delete');
   await until(page, 'done', ['is', 1], 'pruned without a pointer');
-  const plain = await data(page, 'digest');
+  const plain = await settled(page);
   assert.equal(await page.locator('.edits ol').count(), 0, 'the list of edits is folded');
   // A branch from nowhere says so.
   await page.keyboard.press('6');
-  await page.mouse.move(box.x + box.width * 0.9, y - box.height * 0.35);
+  await page.mouse.move(box.x + box.width * 0.84, y - box.height * 0.35);
   await page.mouse.down();
   await page.mouse.move(x + box.width * 0.3, y - box.height * 0.42, { steps: 6 });
   await page.mouse.up();
@@ -217,7 +220,7 @@ async function panel({ page, url, shot }) {
   );
   await page.click('dialog [data-preset=hazel]');
   await until(page, 'triangles', ['above', 1000], 'a hazel');
-  const plain = await data(page, 'digest');
+  const plain = await settled(page);
   const shown = () => page.locator('.form .f-row:visible').count();
   assert.equal(await shown(), 5, 'five settings at first');
   await page.waitForTimeout(500);

@@ -1,7 +1,7 @@
 // A headset and its controllers, emulated in the page (iwer): in, shape, out again; what was done stays.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
-import { begin, changed, data, drop, until } from './journeys.mjs';
+import { begin, changed, data, drop, settled, until } from './journeys.mjs';
 
 const BUSH = 'name = "bush"\n[method]\nkind = "competition"\npoints = 260\nlifespan = 2\n';
 const IWER = readFileSync(new URL('../node_modules/iwer/build/iwer.min.js', import.meta.url), 'utf8');
@@ -68,7 +68,7 @@ async function enter(page, url, model = 'metaQuest3') {
   await begin(page, url);
   await drop(page, 'bush.toml', BUSH);
   await until(page, 'triangles', ['above', 1000], 'a bush has grown');
-  const digest = await data(page, 'digest');
+  const digest = await settled(page);
   await page.locator('#b-headset').click();
   await page.waitForFunction(() => document.body.dataset.headset === 'on');
   await frames(page);
@@ -88,7 +88,7 @@ async function find(page, side) {
 }
 
 /** Presses a key of the wrist, which the other hand holds before the eyes. */
-async function key(page, word, side = 'right') {
+async function key(page, word, side = 'right', { last = false } = {}) {
   const other = side === 'right' ? 'left' : 'right';
   await hand(page, other, [0, 1.25, -0.35]);
   await frames(page);
@@ -96,6 +96,11 @@ async function key(page, word, side = 'right') {
   assert.ok(place, `a key ${word}`);
   await hand(page, side, [place[0], place[1] + 0.02, place[2] + 0.25], place);
   await frames(page);
+  // Out of the headset there are no frames to wait for.
+  if (last) {
+    await press(page, side, 'trigger', 1);
+    return;
+  }
   await click(page, side, 'trigger');
   await hand(page, other, [-0.6, 0.9, 0.3]);
 }
@@ -147,7 +152,7 @@ async function shape({ page, url, shot }) {
     await page.waitForFunction((d) => document.body.dataset.digest === d, digest);
   }
   // Out by the wrist: the page shows the same plant, and keeps it.
-  await key(page, 'leave');
+  await key(page, 'leave', 'right', { last: true });
   await page.waitForFunction(() => document.body.dataset.headset === 'off');
   assert.equal(await data(page, 'digest'), drawn);
   await page.waitForTimeout(700);
@@ -155,6 +160,26 @@ async function shape({ page, url, shot }) {
   await page.waitForFunction(() => document.body.dataset.kept === 'saved');
   await page.reload();
   await page.waitForFunction((d) => document.body.dataset.digest === d, drawn);
+}
+
+/** A shoot grows while the trigger is held, with more vigour by the stick. */
+async function grow({ page, url, shot }) {
+  const plain = await enter(page, url);
+  await key(page, 'grow');
+  assert.equal((await state(page)).tool, 'grow');
+  await find(page, 'right');
+  await press(page, 'right', 'trigger', 1);
+  const first = await changed(page, plain, 'it grows');
+  await stick(page, 'right', 0, 1);
+  await page.waitForFunction(() => JSON.parse(document.body.dataset.vr).said.includes('Vigour'));
+  await changed(page, first, 'it grows on');
+  await stick(page, 'right', 0, 0);
+  await shot('headset-growing');
+  await press(page, 'right', 'trigger', 0);
+  await until(page, 'edits', ['is', 1], 'one edit');
+  await until(page, 'done', ['is', 1], 'it was done');
+  await click(page, 'right', 'b-button');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
 }
 
 /** Where one stands: grips, sticks, true size; the left hand; a session that ends in the middle. */
@@ -220,5 +245,6 @@ async function stand({ page, url }) {
 
 export const headset = [
   ['headset: turn, draw, undo, leave', shape, WIDE],
+  ['headset: a shoot grows', grow, WIDE],
   ['headset: size, place, left hand, an early end', stand, WIDE],
 ];

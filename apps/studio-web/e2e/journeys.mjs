@@ -20,6 +20,15 @@ export async function begin(page, url) {
   await page.waitForFunction(() => document.body.dataset.ready === 'true');
 }
 
+/** Waits until what is seen is the whole document, and says its digest. */
+export async function settled(page) {
+  await page.waitForFunction(() => {
+    const { wanted, revision, digest } = document.body.dataset;
+    return wanted === revision && digest !== '';
+  });
+  return data(page, 'digest');
+}
+
 /** Moves the mouse along points of the sheet (pixels from its upper left corner) with the button down. */
 export async function draw(page, points) {
   const box = await page.locator('.sheet').boundingBox();
@@ -37,7 +46,7 @@ export const line = (x0, y0, x1, y1, bow = 0, n = 7) =>
   });
 
 /** A petal or leaf as a nearly closed outline from its root. */
-function blade(x, y, angle, length, half) {
+export function blade(x, y, angle, length, half) {
   const [c, s] = [Math.cos(angle), Math.sin(angle)];
   return Array.from({ length: 13 }, (_, i) => {
     const a = (i / 12) * Math.PI * 2;
@@ -46,7 +55,7 @@ function blade(x, y, angle, length, half) {
   });
 }
 
-async function drawFlower(page) {
+export async function drawFlower(page) {
   const strokes = [
     line(250, 540, 250, 245, 8),
     ...[0, 1, 2, 3, 4].map((k) => blade(250, 210, -Math.PI / 2 + (k * 2 * Math.PI) / 5, 95, 28)),
@@ -167,7 +176,7 @@ async function undo({ page, url }) {
 async function habits({ page, url, shot }) {
   await begin(page, url);
   const n = await sample(page);
-  const digest = await data(page, 'digest');
+  const digest = await settled(page);
   await page.locator('.sheet').focus();
   await page.keyboard.press('Control+a');
   await page.keyboard.press('Control+d');
@@ -404,7 +413,7 @@ async function reload({ page, url }) {
   await page.keyboard.press('Shift+R');
   await page.waitForFunction(() => /Saved/.test(document.querySelector('#b-kept').textContent));
   await page.waitForTimeout(900);
-  const digest = await data(page, 'digest');
+  const digest = await settled(page);
   await page.reload();
   await until(page, 'strokes', ['is', n], 'the drawing is recovered');
   await page
@@ -432,7 +441,7 @@ async function chinese({ page, url, shot }) {
 async function correct({ page, url, shot }) {
   await begin(page, `${url}?open=opened%2Ftulip.svg`);
   await until(page, 'triangles', ['above', 0], 'the file named on the command line is open');
-  const before = await data(page, 'digest');
+  const before = await settled(page);
   await page.locator('.sheet').focus();
   await page.keyboard.press(']');
   await page.locator('.card').waitFor();
@@ -448,7 +457,7 @@ async function correct({ page, url, shot }) {
 async function fault({ page, url, troubles }) {
   await begin(page, url);
   const n = await sample(page);
-  const digest = await data(page, 'digest');
+  const digest = await settled(page);
   const [worker] = page.workers();
   await worker
     .evaluate(() => {
@@ -469,7 +478,7 @@ async function fault({ page, url, troubles }) {
 async function refuse({ page, url }) {
   await begin(page, url);
   await sample(page);
-  const digest = await data(page, 'digest');
+  const digest = await settled(page);
   for (const [name, text] of [
     ['broken.svg', '<svg'],
     ['broken.burgeon', 'PK\x03\x04'],
@@ -498,7 +507,7 @@ async function keyboard({ page, url }) {
   await page.locator('[data-sample=sample]').focus();
   await page.keyboard.press('Enter');
   await until(page, 'triangles', ['above', 0], 'a sample by keyboard');
-  const before = await data(page, 'digest');
+  const before = await settled(page);
   await page.locator('.sheet').focus();
   await page.keyboard.press('[');
   await page.keyboard.press('Delete');
@@ -519,7 +528,8 @@ async function touch({ page, url, shot, context }) {
       type,
       touchPoints: points.map(([x, y], id) => ({ x: box.x + x, y: box.y + y, id })),
     });
-  const path = line(box.width / 2, box.height - 40, box.width / 2, 60, 12);
+  // The tools lie along the lower edge of an upright sheet.
+  const path = line(box.width / 2, box.height - 100, box.width / 2, 60, 12);
   await send('touchStart', [path[0]]);
   for (const p of path.slice(1)) await send('touchMove', [p]);
   await send('touchEnd', []);
@@ -594,7 +604,7 @@ async function tree({ page, url, shot }) {
   await page.click('dialog [data-preset=hazel]');
   await until(page, 'triangles', ['above', 1000], 'a hazel has grown');
   assert.equal(await count(page, 'plants'), 1, 'the blank sheet gave way');
-  let digest = await data(page, 'digest');
+  let digest = await settled(page);
   const plain = digest;
   await page.click('[data-obstacle=ball]');
   digest = await changed(page, digest, 'a ball in its way');
@@ -629,12 +639,52 @@ async function tree({ page, url, shot }) {
   await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
 }
 
+/** A tree that was changed is kept as a preset, comes back by a click, and travels as a file. */
+async function own({ page, url, shot }) {
+  await begin(page, url);
+  await add(page, 'tree', 'hazel');
+  await until(page, 'triangles', ['above', 1000], 'a hazel has grown');
+  const plain = await settled(page);
+  await slide(page, 'keep', 0.3);
+  const mine = await changed(page, plain, 'fewer leaves');
+  await page.click('#b-own-keep');
+  await page.locator('dialog .field').fill('Thin hazel');
+  await page.keyboard.press('Enter');
+  await page.locator('[data-own="Thin hazel"]').waitFor();
+  await page.click('.maker [data-preset=birch]');
+  const birch = await changed(page, mine, 'a birch');
+  await page.waitForTimeout(800);
+  await shot('own-preset');
+  await page.click('[data-own="Thin hazel"]');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, mine);
+  assert.notEqual(birch, mine);
+  const [download] = await Promise.all([
+    page.waitForEvent('download'),
+    page.locator('.own .icon').first().click(),
+  ]);
+  assert.equal(download.suggestedFilename(), 'Thin hazel.toml');
+  const text = readFileSync(await download.path(), 'utf8');
+  // After a reload it is there, and can be dropped and brought back.
+  await page.waitForFunction(() => document.body.dataset.kept === 'saved');
+  await page.reload();
+  await page.waitForFunction((d) => document.body.dataset.digest === d, mine);
+  await page.locator('.own .icon').nth(1).click();
+  await page.waitForFunction(() => !document.querySelector('[data-own]'));
+  await page.locator('.note button', { hasText: 'Undo' }).click();
+  await page.locator('[data-own="Thin hazel"]').waitFor();
+  // Another person opens the file.
+  await page.click('#b-fresh');
+  await until(page, 'triangles', ['is', 0], 'a new document');
+  await drop(page, 'thin.toml', text);
+  await page.waitForFunction((d) => document.body.dataset.digest === d, mine);
+}
+
 async function leaf({ page, url, shot }) {
   await begin(page, url);
   await drop(page, 'tobacco.csv', readFileSync('../../fixtures/leaves/leaf1.csv', 'utf8'));
   await until(page, 'triangles', ['above', 500], 'a leaf from marks');
   assert.equal(await data(page, 'current'), 'leaf');
-  let digest = await data(page, 'digest');
+  let digest = await settled(page);
   for (const surface of ['bezier', 'nurbs', 'approximate']) {
     await page.selectOption('[data-path="/surface"]', surface);
     digest = await changed(page, digest, surface);
@@ -652,7 +702,7 @@ async function bloom({ page, url, shot }) {
   await begin(page, url);
   await add(page, 'flower');
   await until(page, 'triangles', ['above', 200], 'a lily');
-  let digest = await data(page, 'digest');
+  let digest = await settled(page);
   await page.click('[data-flower=rose]');
   digest = await changed(page, digest, 'a rose');
   await slide(page, 'day', 0);
@@ -664,7 +714,7 @@ async function bloom({ page, url, shot }) {
   await shot('bloom');
   await page.waitForFunction(() => /Play/.test(document.querySelector('.play')?.textContent ?? ''));
   assert.equal(await page.locator('.note.bad').count(), 0, 'nothing was refused');
-  digest = await data(page, 'digest');
+  digest = await settled(page);
   await page.keyboard.press('Control+z');
   await changed(page, digest, 'the whole play is one step');
 }
@@ -704,7 +754,7 @@ async function garden({ page, url, shot }) {
   assert.ok(glb.bytes.length > one.bytes.length, 'the scene has more than the plant');
   const [project] = await Promise.all([page.waitForEvent('download'), page.click('#b-save')]);
   const path = await project.path();
-  const digest = await data(page, 'digest');
+  const digest = await settled(page);
   await page.click('#b-fresh');
   await until(page, 'plants', ['is', 1], 'a new scene');
   const chooser = page.waitForEvent('filechooser');
@@ -780,6 +830,7 @@ export const journeys = [
     { viewport: { width: 600, height: 800 }, hasTouch: true, isMobile: false },
   ],
   ['a tree with an obstacle', tree],
+  ["a preset of one's own", own],
   ['a leaf from marks', leaf],
   ['a flower that opens: play', bloom],
   ['a drawn flower that opens', opens],

@@ -11,6 +11,7 @@ import { keeping } from './keeping.mjs';
 import { serve } from './server.mjs';
 import { shaping } from './shaping.mjs';
 import { staging } from './staging.mjs';
+import { strokes } from './strokes.mjs';
 
 const [browserPath, burgeon, out, folder = 'dist-test'] = process.argv.slice(2);
 rmSync(out, { recursive: true, force: true });
@@ -22,7 +23,7 @@ const browser = await chromium.launch({ executablePath: browserPath, args: FLAGS
 
 let failed = 0;
 const only = process.env.ONLY;
-const all = [...journeys, ...keeping, ...shaping, ...staging, ...grove];
+const all = [...journeys, ...keeping, ...strokes, ...shaping, ...staging, ...grove];
 // Two pictures a frame: minutes without a graphics card, so only when they are asked for.
 if (only?.startsWith('headset')) all.push(...headset);
 for (const [name, journey, options] of all) {

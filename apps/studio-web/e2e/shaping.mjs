@@ -1,6 +1,6 @@
 // Hands on plants in the view: prune, turn, draw, brush; what survives and what says that it did not.
 import assert from 'node:assert/strict';
-import { add, begin, changed, count, data, drop, exported, sample, until } from './journeys.mjs';
+import { add, begin, changed, count, data, drop, exported, sample, settled, until } from './journeys.mjs';
 
 const BUSH = 'name = "bush"\n[method]\nkind = "competition"\npoints = 260\nlifespan = 2\n';
 
@@ -273,7 +273,7 @@ async function kept({ page, url, troubles }) {
   await page.mouse.click(at.x, at.y);
   await until(page, 'done', ['is', 1], 'pruned');
   await page.waitForTimeout(500);
-  const digest = await data(page, 'digest');
+  const digest = await settled(page);
   const [project] = await Promise.all([page.waitForEvent('download'), page.click('#b-save')]);
   const path = await project.path();
   await page.waitForFunction(() => /Saved/.test(document.querySelector('#b-kept').textContent));
@@ -309,7 +309,7 @@ async function kept({ page, url, troubles }) {
 async function drawn({ page, url, shot }) {
   await begin(page, url);
   await sample(page);
-  const plain = await data(page, 'digest');
+  const plain = await settled(page);
   await page.keyboard.press('Shift+S');
   await page.locator('.strip').waitFor();
   const at = await branch(page, 0, true);
@@ -366,12 +366,49 @@ async function fingers({ page, url, context, shot }) {
   await shot('shape-tablet');
 }
 
+/** What is held grows on while nothing moves, and faster with the wheel; letting go keeps it. */
+async function grow({ page, url, shot }) {
+  const plain = await bush(page, url, 1);
+  const at = await branch(page);
+  await page.keyboard.press('0');
+  await page.mouse.move(at.x, at.y);
+  await page.mouse.down();
+  const seen = [plain];
+  for (let k = 0; k < 5; k += 1) {
+    seen.push(await changed(page, seen.at(-1), 'it grows'));
+    if (k === 2) await page.mouse.wheel(0, -100);
+  }
+  assert.equal(new Set(seen).size, seen.length, 'another plant each time');
+  await shot('shape-growing');
+  await page.mouse.up();
+  await until(page, 'edits', ['is', 1], 'one edit');
+  await until(page, 'done', ['is', 1], 'it was done');
+  const grown = await changed(page, plain, 'grown');
+  await page.waitForTimeout(800);
+  await shot('shape-grown');
+  assert.match(await page.locator('#b-undo').getAttribute('title'), /growth/);
+  // Nothing grows on after that, and one undo takes all of it back.
+  assert.equal(await data(page, 'digest'), grown);
+  await page.keyboard.press('Control+z');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
+  // On the ground beside it, and Escape.
+  const box = await page.locator('.view').boundingBox();
+  await page.mouse.move(box.x + box.width * 0.78, box.y + box.height * 0.66);
+  await page.mouse.down();
+  await changed(page, plain, 'a stem grows');
+  await page.keyboard.press('Escape');
+  await page.mouse.up();
+  await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
+  await until(page, 'edits', ['is', 0], 'nothing was kept');
+}
+
 export const shaping = [
   ['shape: prune a branch and undo', prune, WIDE],
   ['shape: what bears a twig', bearer, WIDE],
   ['shape: turn a branch', rotate, WIDE],
   ['shape: draw a branch', draw, WIDE],
   ['shape: brush, leaves, outline', brush, WIDE],
+  ['shape: it grows while it is held', grow, WIDE],
   ['shape: another seed says what is gone', seeds, WIDE],
   ['shape: saved, reloaded, recovered', kept, WIDE],
   ['shape: a drawing, and a click on a plant', drawn, WIDE],

@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { add, begin, count, data, sample, until } from './journeys.mjs';
+import { add, begin, count, data, sample, settled, until } from './journeys.mjs';
 
 /** Mean red, green, blue (0 to 255) and smallest alpha of a part of a picture file; shares of its width and height. */
 async function mean(page, bytes, [x0, y0, x1, y1] = [0, 0, 1, 1]) {
@@ -355,7 +355,7 @@ async function films({ page, url, context }) {
   await add(page, 'flower');
   await until(page, 'triangles', ['above', 200], 'a lily');
   await page.waitForTimeout(1200);
-  const digest = await data(page, 'digest');
+  const digest = await settled(page);
   const undo = await page.locator('#b-undo').getAttribute('title');
   for (const [format, type] of [
     ['webm', 'video/webm'],

@@ -12,6 +12,7 @@ import { listenForKeys } from './keyboard';
 import { MakerPanel } from './makers';
 import { openPalette } from './palette';
 import { Panels } from './panels';
+import { Readings } from './readings';
 import { GroundPen } from './scattering';
 import { type Gizmo, SceneList } from './scene';
 import { Scenery } from './scenery';
@@ -29,7 +30,7 @@ import { note } from './ui';
 import { PlantView } from './view/view';
 import { ViewModes } from './viewmode';
 import { Door, type Mode } from './vr/door';
-import type { Command, SketchState } from './wire';
+import type { Command } from './wire';
 
 /** The sheet of a plant that is not drawn. */
 const NO_DRAWING = { strokes: [], photo: null };
@@ -59,6 +60,7 @@ export class App implements Page {
     this.view?.setDark(dark);
     this.show.view();
   });
+  readonly readings = new Readings(this.session);
   readonly panels: Panels;
   private readonly show: Show;
   private tool: Tool = 'parts';
@@ -66,8 +68,6 @@ export class App implements Page {
   private axis: 'x' | 'z' | undefined;
   private started = false;
   private toldOfStorage = false;
-  /** Where the photograph lay when a drag began. */
-  private photoFrom: SketchState['photo'] = null;
   /** Why each plant could not be made, as it was said last. */
   private readonly said = new Map<number, string | null>();
 
@@ -135,7 +135,7 @@ export class App implements Page {
         const { session, sheet } = this;
         const { drawn, state } = session;
         sheet.setState(drawn ?? NO_DRAWING, fresh);
-        if (other) sheet.setOrgans(session.organs);
+        if (other) sheet.setOrgans(session.organs, this.readings.doubtful);
         if (state) this.view?.setPlaces(state.plants, state.current);
         if (other && drawn) sheet.fit();
         if (photo)
@@ -150,7 +150,7 @@ export class App implements Page {
         const { session } = this;
         this.view?.update(view, fresh);
         session.draftShown();
-        this.sheet.setOrgans(session.organs);
+        this.sheet.setOrgans(session.organs, this.readings.doubtful);
         this.panel.follow();
         if (fresh.some((f) => f.view.id === session.state?.current)) this.shaping?.renewed();
         for (const { id, error } of view.plants) this.sayOnce(id, error && tell(error));
@@ -215,23 +215,16 @@ export class App implements Page {
         this.show.emptySheet();
       },
       erase: (ids) => this.session.draw({ 'remove-strokes': ids }),
-      moveBegin: () => this.session.begin('move'),
-      moveTo: (ids, x, y) => this.session.stageDrawn({ 'move-strokes': [ids, [x, y]] }),
-      moveEnd: (keep) => this.session.end(keep),
-      selected: (ids, anchor) => {
+      begin: (name) => this.session.begin(name),
+      change: (command) => this.session.stageDrawn(command),
+      end: (keep) => this.session.end(keep),
+      selected: (ids, frame) => {
         const { drawn, seen } = this.session;
-        if (ids.length > 0 && anchor && drawn) this.card.show(ids, anchor, drawn, seen, this.theme.isDark);
+        const { isDark } = this.theme;
+        const { pressed } = this.sheet;
+        if (ids.length > 0 && frame && drawn) this.card.show(ids, { frame, pressed }, drawn, seen, isDark);
         else this.card.hide();
       },
-      photoBegin: () => {
-        this.photoFrom = this.session.drawn?.photo ?? null;
-        this.session.begin('photo');
-      },
-      photoMove: (dx, dy) => {
-        const place = this.photoFrom?.place;
-        if (place) this.session.stageDrawn({ 'place-photo': { ...place, x: place.x + dx, y: place.y + dy } });
-      },
-      photoEnd: (keep) => this.session.end(keep),
       viewport: () => {
         this.view?.setSheetSeen(this.sheet.seen());
         this.sheet.reselect();
@@ -250,6 +243,7 @@ export class App implements Page {
       choose: (accept, act) => this.files.pickFile(accept, act),
       obstacle: (file) => void this.panels.addObstacle(file),
       open: (file) => void this.files.openFile(file),
+      renew: () => this.show.document(),
     });
   }
 
@@ -447,16 +441,18 @@ export class App implements Page {
 
   switchLanguage(): void {
     const to = currentLanguage() === 'en' ? 'zh' : 'en';
-    setLanguage(to);
-    setSetting('language', to);
-    this.sheet.setLabel(t('sheet.label'));
-    this.view?.setLabel(t('view.label'));
-    this.shaping?.take(this.shaping.word);
-    this.sheet.select([]);
-    this.panel.reset();
-    this.show.parts = this.build();
-    this.show.parts.busy.hidden = this.started;
-    this.showAll();
+    const refused = (e: Error): void => note(t('note.refused', { why: e.message }), 'bad');
+    setLanguage(to).then(() => {
+      setSetting('language', to);
+      this.sheet.setLabel(t('sheet.label'));
+      this.view?.setLabel(t('view.label'));
+      this.shaping?.take(this.shaping.word);
+      this.sheet.select([]);
+      this.panel.reset();
+      this.show.parts = this.build();
+      this.show.parts.busy.hidden = this.started;
+      this.showAll();
+    }, refused);
   }
 
   openShelf(): void {

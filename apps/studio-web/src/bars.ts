@@ -1,5 +1,6 @@
 /** The page: its bars, its two sides and what lies over them. Made anew for another language; nothing is decided here. */
 import { type CommandId, commandOf, keyOf, type Page } from './commands';
+import { isLearnt, learn } from './learnt';
 import { t, type TextKey } from './text';
 import { SHEET_TOOLS } from './tools';
 import { button, el, icon, type IconName } from './ui';
@@ -12,6 +13,9 @@ export interface Pieces {
 }
 
 type Child = HTMLElement | string;
+/** What has a short name, for the bars beside sheet and view. */
+type ToolCommand = CommandId &
+  (TextKey extends infer K ? (K extends `short.${infer id}` ? id : never) : never);
 /** Buttons by their names, which stand in their ids. */
 export type Buttons = Map<string, HTMLButtonElement>;
 
@@ -114,6 +118,17 @@ function labelOf({ command, label }: ButtonSpec): string {
 function iconButton(buttons: Buttons, page: Page, spec: ButtonSpec): HTMLButtonElement {
   const act = () => commandOf(spec.command).run(page);
   return keepButton(buttons, spec, button(spec.icon, labelOf(spec), act, keyOf(spec.command)));
+}
+
+/** A tool: an icon, and below it its short name until it was used. */
+function toolButton(buttons: Buttons, page: Page, command: ToolCommand, of: IconName): HTMLButtonElement {
+  const b = iconButton(buttons, page, { command, icon: of });
+  b.addEventListener('click', () => learn(command));
+  if (!isLearnt(command))
+    b.append(
+      el('span', { class: 'caption', 'data-learn': command, 'aria-hidden': 'true' }, t(`short.${command}`)),
+    );
+  return b;
 }
 
 /** A button with its name beside the icon. */
@@ -229,7 +244,7 @@ function topBar(buttons: Buttons, page: Page, name: HTMLInputElement): HTMLEleme
 }
 
 function sheetTools(buttons: Buttons, page: Page): HTMLElement {
-  const small = (command: CommandId & IconName) => iconButton(buttons, page, { command, icon: command });
+  const small = (command: ToolCommand & IconName) => toolButton(buttons, page, command, command);
   return el(
     'div',
     { class: 'tools', role: 'toolbar', 'aria-orientation': 'vertical' },
@@ -242,7 +257,7 @@ function sheetTools(buttons: Buttons, page: Page): HTMLElement {
 }
 
 function viewTools(buttons: Buttons, page: Page): HTMLElement {
-  const small = (command: CommandId, icon: IconName) => iconButton(buttons, page, { command, icon });
+  const small = (command: ToolCommand, of: IconName) => toolButton(buttons, page, command, of);
   return el(
     'div',
     { class: 'tools right-tools', role: 'toolbar' },

@@ -1,7 +1,7 @@
 import { afterEach, describe, expect, it, vi } from 'vitest';
-import { COMMANDS, keyOf, keySheet, type Page } from './commands';
+import { type CommandId, commandOf, COMMANDS, keyOf, keySheet, type Page } from './commands';
 import { commandFor, type Pressed } from './keyboard';
-import { en } from './text/en';
+import { en, type TextKey } from './text/en';
 import { zh } from './text/zh';
 
 /** A page on which nothing is selected, without a view unless one is given. */
@@ -23,6 +23,16 @@ function press(written: string): Pressed {
 }
 
 const idFor = (page: Page, written: string): string | undefined => commandFor(page, press(written))?.id;
+
+describe('the short name under a tool', () => {
+  it('is part of its name: who speaks to a computer says what stands there', () => {
+    for (const key of Object.keys(en).filter((k) => k.startsWith('short.')) as TextKey[]) {
+      const { label } = commandOf(key.slice('short.'.length) as CommandId);
+      expect(zh[label!], key).toContain(zh[key]);
+      expect(en[label!], key).toMatch(new RegExp(`\\b${en[key]}\\b`, 'i'));
+    }
+  });
+});
 
 describe('the table of commands', () => {
   it('names each command once', () => {
@@ -62,7 +72,7 @@ describe('the sheet of keys', () => {
   it('reads as it is written for people', () => {
     const rows = keySheet().map(({ keys }) => keys);
     expect(rows).toEqual([
-      'P B L E V',
+      'P B L E Shift+E V A',
       'Ctrl+Z · Ctrl+Shift+Z',
       'Shift+O',
       'Ctrl+O · Ctrl+S · Ctrl+E',

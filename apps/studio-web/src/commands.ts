@@ -82,6 +82,8 @@ const isBrushing = (p: Page): boolean => p.shaping?.word === 'brush' || p.shapin
 const BRUSH_STEP = 1.15;
 /** How far an arrow moves strokes, pixels; with Shift five times as far. */
 const NUDGE = 5;
+/** How far a command turns strokes, degrees. */
+const TURN_DEG = 15;
 
 const ARROWS = [
   ['←', -1, 0],
@@ -93,6 +95,14 @@ const ARROWS = [
 function nudge(page: Page, x: number, y: number): void {
   const step = NUDGE * page.sheet.unitsPerPixel;
   page.session.draw({ 'move-strokes': [page.sheet.selected, [x * step, y * step]] });
+}
+
+/** Turns what is selected about its middle; `across`: -1 for its mirror image. */
+function turn(page: Page, angle_deg: number, across: 1 | -1): void {
+  const box = page.sheet.selectedBox();
+  if (!box) return;
+  const about: [number, number] = [(box.left + box.right) / 2, (box.bottom + box.top) / 2];
+  page.session.draw({ 'turn-strokes': [page.sheet.selected, { about, angle_deg, scale: [across, 1] }] });
 }
 
 /** Lays down what is in the hand, or else lets go what is selected. */
@@ -258,6 +268,30 @@ const TABLE = [
     run: (p) => void p.clipboard.pasteText(''),
   },
   { id: 'duplicate', label: 'act.duplicate', keys: 'Ctrl+D', run: (p) => p.clipboard.duplicate() },
+  {
+    id: 'smooth',
+    label: 'act.smooth',
+    when: hasSelection,
+    run: (p) => p.session.draw({ 'smooth-strokes': p.sheet.selected }),
+  },
+  {
+    id: 'join',
+    label: 'act.join',
+    when: (p) => p.sheet.selected.length > 1,
+    run: (p) => p.session.draw({ 'join-strokes': p.sheet.selected }),
+  },
+  ...(
+    [
+      ['flip', 0, -1],
+      ['turn-left', TURN_DEG, 1],
+      ['turn-right', -TURN_DEG, 1],
+    ] as const
+  ).map(([id, angle, across]) => ({
+    id,
+    label: `act.${id}` as const,
+    when: hasSelection,
+    run: (p: Page) => turn(p, angle, across),
+  })),
   { id: 'clear', label: 'act.clear', run: (p) => p.session.draw('clear') },
   {
     id: 'split',

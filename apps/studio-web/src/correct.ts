@@ -1,7 +1,8 @@
 /** The card beside a selected stroke: what it was understood as, and one click to say what it is. */
 import { inkOf } from './colours';
+import type { Frame } from './sheet/frame';
 import type { PlantView, SketchCommand, SketchState, StrokeClass } from './wire';
-import { t, tOf } from './text';
+import { t, type TextKey, tOf } from './text';
 import { el } from './ui';
 
 const CLASSES: readonly StrokeClass[] = [
@@ -33,6 +34,10 @@ const LOOKS: Record<StrokeClass, string> = {
   scribble: 'ignored',
   other: 'ignored',
 };
+/** Beside what is selected; the edge of the sheet; the room of the tools. Pixels. */
+const GAP = 14;
+const EDGE = 10;
+const TOOLS = 88;
 const MODES = ['parts', 'branch-contour', 'leaf-contour'] as const;
 
 export class Card {
@@ -48,7 +53,7 @@ export class Card {
 
   show(
     ids: number[],
-    anchor: { x: number; y: number },
+    { frame, pressed }: { frame: Frame; pressed: [number, number] | undefined },
     state: SketchState,
     view: PlantView | undefined,
     dark: boolean,
@@ -102,34 +107,82 @@ export class Card {
     const modes = el('div', { class: 'chips' }, el('span', { class: 'muted' }, t('correct.mode')));
     for (const m of MODES)
       modes.append(chip(tOf('correct.mode', m), undefined, mode === m, { 'set-mode': [ids, m] }));
-    const title = chosen.length === 1 ? t('correct.title') : t('correct.many', { count: chosen.length });
-    const erase = el(
-      'button',
-      { type: 'button', class: 'chip danger', onclick: () => this.run({ 'remove-strokes': ids }) },
-      t('correct.erase'),
+    const act = (key: TextKey, command: SketchCommand, kind = ''): HTMLElement =>
+      el('button', { type: 'button', class: `chip${kind}`, onclick: () => this.run(command) }, t(key));
+    const all = chosen.map((s) => s.id);
+    const acts = el('div', { class: 'chips' }, act('correct.smooth', { 'smooth-strokes': all }));
+    if (all.length === 1 && pressed) acts.append(act('correct.cut', { 'cut-strokes': [all, pressed] }));
+    if (all.length > 1) acts.append(act('correct.join', { 'join-strokes': all }));
+    acts.append(
+      this.colour(
+        all,
+        same((s) => hexOf(s.color)),
+        chosen.some((s) => s.color !== null),
+      ),
+      act('correct.erase', { 'remove-strokes': all }, ' danger'),
     );
+    const title = chosen.length === 1 ? t('correct.title') : t('correct.many', { count: chosen.length });
     this.element.setAttribute('aria-label', title);
     const content: HTMLElement[] = [el('strong', {}, title)];
     if (was) content.push(el('span', { class: 'muted' }, was));
     const fills = set === null || set === undefined;
     const buttons = (): HTMLButtonElement[] => [...this.element.querySelectorAll('button')];
     const focused = buttons().indexOf(document.activeElement as HTMLButtonElement);
-    this.element.replaceChildren(...content, chips, ...(fills ? [modes] : []), erase);
+    this.element.replaceChildren(...content, chips, ...(fills ? [modes] : []), acts);
     this.element.hidden = false;
     // The same button stays under the keys although it is another element.
     if (focused >= 0) buttons()[focused]?.focus();
-    this.place(anchor);
+    this.place(frame);
   }
 
-  private place(anchor: { x: number; y: number }): void {
+  /** The colour of what is made of these strokes; "automatic" takes it away. */
+  private colour(ids: number[], now: string | undefined, any: boolean): HTMLElement {
+    const field = el('input', {
+      type: 'color',
+      value: now ?? '#7a9a3a',
+      'aria-label': t('correct.colour'),
+      onchange: () => this.run({ 'set-color': [ids, bytesOf(field.value)] }),
+    });
+    const label = el('label', { class: 'chip', title: t('correct.colour') }, field, t('correct.colour'));
+    if (!any) return label;
+    const clear = el(
+      'button',
+      { type: 'button', class: 'chip', onclick: () => this.run({ 'set-color': [ids, null] }) },
+      t('correct.colour.none'),
+    );
+    return el('span', { class: 'chips' }, label, clear);
+  }
+
+  /** Beside what is selected, with its handles; where there is no room, along the edge of the sheet that is farther. */
+  private place({ left, right, top, bottom }: Frame): void {
     const host = this.element.parentElement;
     if (!host) return;
-    const { offsetWidth: w, offsetHeight: h } = this.element;
-    const x = anchor.x + 22 + w > host.clientWidth ? host.clientWidth - w - 10 : anchor.x + 22;
-    const y = Math.min(Math.max(10, anchor.y - h / 2), host.clientHeight - h - 10);
-    this.element.style.left = `${Math.max(64, x)}px`;
-    this.element.style.top = `${Math.max(10, y)}px`;
+    const { style, classList } = this.element;
+    // Tools along the lower edge, as on a phone, leave the sides free.
+    const low = host.querySelector<HTMLElement>('.tools');
+    const under = low && low.offsetWidth > low.offsetHeight ? low.offsetHeight : 0;
+    const least = under > 0 ? EDGE : TOOLS;
+    const { clientWidth, clientHeight } = host;
+    classList.remove('along');
+    const w = this.element.offsetWidth;
+    const beside = [right + GAP, left - GAP - w].find((x) => x >= least && x + w <= clientWidth - EDGE);
+    classList.toggle('along', beside === undefined);
+    const h = this.element.offsetHeight;
+    const middle = (top + bottom) / 2;
+    const highest = clientHeight - h - EDGE - under;
+    const y = beside === undefined ? (middle < clientHeight / 2 ? highest : EDGE) : middle - h / 2;
+    style.left = `${beside ?? least}px`;
+    style.top = `${Math.max(EDGE, Math.min(y, highest))}px`;
   }
+}
+
+/** A colour as the browser writes it; empty if there is none. */
+function hexOf(color: readonly number[] | null): string | undefined {
+  return color ? `#${color.map((byte) => byte.toString(16).padStart(2, '0')).join('')}` : undefined;
+}
+
+function bytesOf(hex: string): [number, number, number] {
+  return [1, 3, 5].map((at) => Number.parseInt(hex.slice(at, at + 2), 16)) as [number, number, number];
 }
 
 export function dot(organ: string, dark: boolean): HTMLElement {

@@ -58,7 +58,7 @@ export class Documents {
     this.channel?.addEventListener('message', ({ data }) => {
       if (data === this.id && this.id !== undefined && this.keeper.standing !== 'readonly') this.lose();
     });
-    // Who had it may have gone.
+    // The tab that had it may have gone.
     document.addEventListener('visibilitychange', () => {
       if (document.hidden) void this.portray();
       else void this.retry();
@@ -162,7 +162,7 @@ export class Documents {
     await this.keeper.close('opening');
     const lost = (): void => this.lose();
     const free = held ?? (await hold(id, { wait: SOON_MS, lost }));
-    // Where there are no locks, whoever has it hears of it.
+    // Where there are no locks, the tab that has it hears of it.
     if (free && !navigator.locks) this.channel?.postMessage(id);
     let kept: Kept | undefined;
     try {

@@ -2,9 +2,9 @@
  * The documents that this browser keeps. Of each there is the project file as it was last written whole, and what was
  * asked of it since then: a request is one row of a journal, written when it is made.
  *
- * The journal is only ever appended to, and no write holds it while it waits for a page or for the disk. Not guaranteed:
- * that a row is kept if its page dies while another page reads the journal, which holds it until that page has answered.
- * Everything else about a document (its entry in the list, its picture, the whole file) has transactions of its own.
+ * The journal is only ever appended to, and nothing holds it while it waits for a page or for the disk: what is asked of
+ * it is asked in one go, whether it is written or read. Everything else about a document (its entry in the list, its
+ * picture, the whole file) has transactions of its own.
  *
  * The tab that works on a document owns it, and writes the rows of its journal one after the other. The tab that takes
  * it over writes the next one: what the old owner still has on its way finds its row taken, and none of it is written.
@@ -118,33 +118,51 @@ interface Manner {
   rounds?: true;
 }
 
-/** All or nothing of what `act` asks of these stores; the answer is read when it is done. */
-async function transact<S extends Store, T>(
+const storesOf = <S extends Store>(names: readonly S[], transaction: IDBTransaction): Stores<S> =>
+  Object.fromEntries(names.map((s) => [s, transaction.objectStore(s)])) as Stores<S>;
+
+/** All or nothing of what `act` asks of these stores. */
+async function transact<S extends Store>(
   names: readonly S[],
-  mode: IDBTransactionMode,
-  act: (stores: Stores<S>, refuse: Refuse) => () => T,
+  act: (stores: Stores<S>, refuse: Refuse) => void,
   { durability = 'relaxed', rounds }: Manner = {},
-): Promise<T> {
+): Promise<void> {
   const db = await opened();
-  return new Promise<T>((resolve, reject) => {
-    const transaction = db.transaction(names, mode, { durability });
-    const stores = Object.fromEntries(names.map((s) => [s, transaction.objectStore(s)])) as Stores<S>;
+  return new Promise((resolve, reject) => {
+    const transaction = db.transaction(names, 'readwrite', { durability });
     let why: Error | undefined;
-    let answer: (() => T) | undefined;
     const refuse = (e: Error): void => {
       why = e;
       transaction.abort();
     };
-    transaction.oncomplete = () => resolve(answer!());
+    transaction.oncomplete = () => resolve();
     transaction.onabort = () => reject(why ?? transaction.error ?? new Error('aborted'));
     try {
-      answer = act(stores, refuse);
-      // What is read may be large, and come after the transaction is said to be complete.
-      if (!rounds && mode === 'readwrite') transaction.commit();
+      act(storesOf(names, transaction), refuse);
+      if (!rounds) transaction.commit();
     } catch (e) {
       refuse(e as Error);
     }
   });
+}
+
+/** What is asked for of these stores, all at one moment. No other page waits until this one has heard the answer. */
+async function look<S extends Store, T extends unknown[]>(
+  names: readonly S[],
+  ask: (stores: Stores<S>) => [...{ [place in keyof T]: IDBRequest<T[place]> }],
+): Promise<T> {
+  const transaction = (await opened()).transaction(names, 'readonly');
+  const requests = ask(storesOf(names, transaction));
+  // A large answer comes after the transaction is said to be complete: each request is waited for by itself.
+  const answers = requests.map(
+    (request) =>
+      new Promise((resolve, reject) => {
+        request.onsuccess = () => resolve(request.result);
+        request.onerror = () => reject(request.error ?? new Error('aborted'));
+      }),
+  );
+  transaction.commit();
+  return (await Promise.all(answers)) as T;
 }
 
 const nothing = (): void => undefined;
@@ -163,7 +181,6 @@ function owned<S extends Store>(
 ): Promise<void> {
   return transact(
     ['documents', ...others],
-    'readwrite',
     (stores, refuse) => {
       const get = stores.documents.get(id);
       get.onsuccess = () => {
@@ -175,55 +192,55 @@ function owned<S extends Store>(
         change(entry, stores);
         stores.documents.put(entry);
       };
-      return nothing;
     },
     { ...ROUNDS, durability },
   );
 }
 
-/** A change of an entry, whoever works on its document; the entry as it is then, if it is there. */
-function changed(id: string, change: Partial<Entry>): Promise<Entry | undefined> {
-  const act = ({ documents: d }: Stores<'documents'>): (() => Entry | undefined) => {
+/** A change of an entry, no matter which tab works on its document; the entry as it is then, if it is there. */
+async function changed(id: string, change: Partial<Entry>): Promise<Entry | undefined> {
+  let entry: Entry | undefined;
+  const act = ({ documents: d }: Stores<'documents'>): void => {
     const get = d.get(id);
-    let entry: Entry | undefined;
     get.onsuccess = () => {
       entry = get.result && { ...(get.result as Entry), ...change };
       if (entry) d.put(entry);
     };
-    return () => entry;
   };
-  return transact(['documents'], 'readwrite', act, ROUNDS);
+  await transact(['documents'], act, ROUNDS);
+  return entry;
+}
+
+async function entryOf(id: string): Promise<Entry | undefined> {
+  const [entry] = await look(['documents'], (stores) => [stores.documents.get(id)]);
+  return entry as Entry | undefined;
 }
 
 /** Every document with its small picture (a data URL), the latest first; those that were deleted long ago go now. */
 export async function documents(): Promise<(Entry & { picture: string })[]> {
-  const all = await transact(['documents', 'pictures'], 'readonly', ({ documents: d, pictures }) => {
-    const [entries, keys, urls] = [d.getAll(), pictures.getAllKeys(), pictures.getAll()];
-    return () => {
-      const seen = new Map(keys.result.map((key, i) => [key, urls.result[i] as string]));
-      return (entries.result as Entry[]).map((e) => ({ ...e, picture: seen.get(e.id) ?? '' }));
-    };
-  });
+  const [entries, keys, urls] = (await look(['documents', 'pictures'], ({ documents: d, pictures }) => [
+    d.getAll(),
+    pictures.getAllKeys(),
+    pictures.getAll(),
+  ])) as [Entry[], string[], string[]];
+  const seen = new Map(keys.map((key, i) => [key, urls[i]]));
+  const all = entries.map((e) => ({ ...e, picture: seen.get(e.id) ?? '' }));
   const lost = await withoutEntry(new Set(all.map((e) => e.id)));
   all.push(...lost.map((e) => ({ ...e, picture: '' })));
   const gone = all.filter((e) => e.deleted > 0 && Date.now() - e.deleted > GRACE_MS);
   if (gone.length > 0)
-    await transact(['documents', 'pictures', 'wholes', 'journal'], 'readwrite', (stores) => {
+    await transact(['documents', 'pictures', 'wholes', 'journal'], (stores) => {
       for (const { id } of gone) {
         for (const store of [stores.documents, stores.pictures, stores.wholes]) store.delete(id);
         stores.journal.delete(rowsOf(id));
       }
-      return nothing;
     });
   return all.filter((e) => !gone.includes(e)).sort((x, y) => y.time - x.time);
 }
 
 /** Gives an entry to each document that has rows but none: its page died before the entry was written. */
 async function withoutEntry(known: ReadonlySet<string>): Promise<Entry[]> {
-  const keys = await transact(['journal'], 'readonly', ({ journal }) => {
-    const all = journal.getAllKeys();
-    return () => all.result as [string, number][];
-  });
+  const [keys] = (await look(['journal'], ({ journal }) => [journal.getAllKeys()])) as [[string, number][]];
   const ids = new Set(keys.map(([id]) => id).filter((id) => !known.has(id)));
   const made = [...ids].map((id) => ({ id, name: '', time: Date.now(), deleted: 0, owner: '' }));
   // Where the page lives, it writes an entry of its own: this one is not put over it.
@@ -237,9 +254,8 @@ async function withoutEntry(known: ReadonlySet<string>): Promise<Entry[]> {
 
 /** The entry of a new document. */
 export function create(entry: Entry, how: 'put' | 'add' = 'put'): Promise<void> {
-  return transact(['documents'], 'readwrite', ({ documents: d }) => {
+  return transact(['documents'], ({ documents: d }) => {
     d[how](entry);
-    return nothing;
   });
 }
 
@@ -251,9 +267,8 @@ export async function portray(
 ): Promise<void> {
   await owned(mine, [], (entry) => Object.assign(entry, shown));
   if (picture !== undefined)
-    await transact(['pictures'], 'readwrite', ({ pictures }) => {
+    await transact(['pictures'], ({ pictures }) => {
       pictures.put(picture, mine.id);
-      return nothing;
     });
 }
 
@@ -273,22 +288,18 @@ const naming = (name: string): Request => ({ kind: 'command', command: { scene: 
 
 /** A copy under another number and name. */
 export async function copy(id: string, to: string, name: string): Promise<void> {
-  const [stored, picture, entry] = await Promise.all([
+  const [stored, [picture], entry] = await Promise.all([
     read(id),
-    transact(['pictures'], 'readonly', ({ pictures }) => {
-      const get = pictures.get(id);
-      return () => get.result as string | undefined;
-    }),
-    changed(id, {}),
+    look(['pictures'], ({ pictures }) => [pictures.get(id)]),
+    entryOf(id),
   ]);
   if (!entry) return;
-  await transact(['documents', 'pictures', 'wholes', 'journal'], 'readwrite', (stores) => {
+  await transact(['documents', 'pictures', 'wholes', 'journal'], (stores) => {
     stores.documents.put({ ...entry, id: to, name, time: Date.now(), owner: '', deleted: 0 });
     if (picture !== undefined) stores.pictures.put(picture, to);
     if (stored.whole) stores.wholes.put(stored.whole, to);
     for (const { seq, request } of stored.written) stores.journal.put(request, [to, seq]);
     stores.journal.put(naming(name), [to, stored.last + 1]);
-    return nothing;
   });
 }
 
@@ -310,18 +321,14 @@ interface Stored {
 
 /** The rows are read first: what is cut off meanwhile, since it was written whole, is in the whole file read then. */
 async function read(id: string): Promise<Stored> {
-  const rows = await transact(['journal'], 'readonly', ({ journal }) => {
-    const [keys, all] = [journal.getAllKeys(rowsOf(id)), journal.getAll(rowsOf(id))];
-    return () =>
-      (keys.result as [string, number][]).map(([, seq], i) => ({
-        seq,
-        request: all.result[i] as Written['request'],
-      }));
-  });
-  const found = await transact(['wholes'], 'readonly', ({ wholes }) => {
-    const get = wholes.get(id);
-    return () => get.result as Whole | Uint8Array | undefined;
-  });
+  const [keys, requests] = (await look(['journal'], ({ journal }) => [
+    journal.getAllKeys(rowsOf(id)),
+    journal.getAll(rowsOf(id)),
+  ])) as [[string, number][], Written['request'][]];
+  const rows = keys.map(([, seq], i) => ({ seq, request: requests[i]! }));
+  const [found] = (await look(['wholes'], ({ wholes }) => [wholes.get(id)])) as [
+    Whole | Uint8Array | undefined,
+  ];
   // Once the bytes alone stood there, and no row that is in them stayed.
   const whole = found instanceof Uint8Array ? { bytes: found, seq: 0 } : found;
   const inWhole = whole?.seq ?? 0;
@@ -342,9 +349,8 @@ export function corrected(written: readonly Written[]): Row[] {
 
 /** Rows that nobody has written yet. They are on their way when the base is open, and wait for no other document. */
 function write(id: string, rows: readonly Written[]): Promise<void> {
-  return transact(['journal'], 'readwrite', ({ journal }) => {
+  return transact(['journal'], ({ journal }) => {
     for (const { seq, request } of rows) journal.add(request, [id, seq]);
-    return nothing;
   }).catch((e: Error) => {
     throw e.name === 'ConstraintError' ? new TakenError('taken') : e;
   });
@@ -356,7 +362,7 @@ function write(id: string, rows: readonly Written[]): Promise<void> {
  * The last row of what an owner gets is its own: it says nothing but that the row is taken.
  */
 export async function take(id: string, owner?: string): Promise<Kept | undefined> {
-  const entry = await changed(id, owner === undefined ? {} : { owner });
+  const entry = await (owner === undefined ? entryOf(id) : changed(id, { owner }));
   if (!entry) return undefined;
   for (;;) {
     const { whole, written, last } = await read(id);
@@ -389,8 +395,7 @@ export async function writeWhole(fresh: Entry, bytes: Uint8Array, seq: number): 
     wholes.put({ bytes, seq } satisfies Whole, entry.id);
   };
   await owned(fresh, ['wholes'], change, { fresh, durability: 'strict' });
-  await transact(['journal'], 'readwrite', ({ journal }) => {
+  await transact(['journal'], ({ journal }) => {
     journal.delete(rowsOf(fresh.id, seq));
-    return nothing;
   });
 }

@@ -14,7 +14,9 @@ import type {
 import { named, type Schema } from './schema';
 import { helpOf, t, wordOf } from './text';
 import { leafSample } from './samples';
-import { button, el, icon } from './ui';
+import { safe } from './files';
+import { asToml, dropPreset, keepPreset, ownPresets } from './own';
+import { askName, button, download, el, icon, note } from './ui';
 
 export interface Catalogue {
   tree: Schema;
@@ -33,6 +35,8 @@ export interface MakerEvents {
   choose(accept: string, act: (file: File) => void): void;
   obstacle(file: File): void;
   open(file: File): void;
+  /** What is not of the document changed: the panel is shown again. */
+  renew(): void;
 }
 
 /** The species whose pictures lie in `public/presets`. */
@@ -251,7 +255,7 @@ export class MakerPanel {
       tree: [plant.id, { 'set-field': ['/age', x >= most ? null : x] }],
     }));
     if (age === null) ages.querySelector('output')!.textContent = t('tree.age.full');
-    const shown = `${plant.id} ${tree.preset}`;
+    const shown = `${plant.id} ${tree.preset} ${ownPresets().map((p) => p.name)}`;
     // Kept while it shows the same: it has a place to which it was scrolled.
     if (this.species?.key !== shown) {
       this.species = {
@@ -259,6 +263,7 @@ export class MakerPanel {
         element: this.section(
           t('tree.species'),
           gallery(catalogue, tree.preset, (key) => this.events.act({ preset: { plant: plant.id, key } })),
+          this.own(),
         ),
       };
     }
@@ -274,6 +279,56 @@ export class MakerPanel {
       ),
       this.obstacles(tree),
     ];
+  }
+
+  /** Presets of the person's own: taken by a click, given away as a file, dropped. */
+  private own(): HTMLElement {
+    const renew = (): void => {
+      this.species = undefined;
+      this.events.renew();
+    };
+    const keep = (): void => {
+      const { plant } = this;
+      const spec = plant?.tree?.spec;
+      if (!plant || !spec) return;
+      askName(t('own.keep'), t('own.name'), plant.name, (name) => {
+        if (keepPreset(name, spec)) renew();
+        else note(t('own.full'), 'bad');
+      });
+    };
+    const chips = ownPresets().map((preset) => {
+      const { name, spec } = preset;
+      const take = el(
+        'button',
+        {
+          type: 'button',
+          class: 'chip',
+          'data-own': name,
+          onclick: () => this.treeRun({ 'set-spec': [null, spec] }),
+        },
+        name,
+      );
+      const give = button('export', t('own.give', { name }), () => {
+        const saved = asToml(preset).then((text) => download(`${safe(name)}.toml`, text, 'application/toml'));
+        saved.catch((e: Error) => note(t('note.refused', { why: e.message }), 'bad'));
+      });
+      const drop = button('close', t('own.drop', { name }), () => {
+        dropPreset(name);
+        renew();
+        const back = (): void => {
+          keepPreset(name, spec);
+          renew();
+        };
+        note(t('own.dropped', { name }), 'good', { label: t('undo'), act: back });
+      });
+      return el('span', { class: 'own' }, take, give, drop);
+    });
+    const more = el(
+      'button',
+      { type: 'button', class: 'chip', id: 'b-own-keep', onclick: keep },
+      t('own.keep'),
+    );
+    return el('div', { class: 'chips' }, ...chips, more);
   }
 
   private treeRun(command: TreeCommand): void {

@@ -13,7 +13,7 @@ import type {
   ToolKind,
 } from './wire';
 
-/** Where a plant was put that a request added: who does the same again puts it there, without growing the others. */
+/** Where a request put the plant that it added: a replay puts it there again, without growing the others. */
 interface Placing {
   placed?: number;
 }

@@ -1,7 +1,7 @@
 /** The list of the scene's plants: choose, name, hide, copy, delete, place; and the way to add another. */
 import type { Command, DocumentState, MakerWord, PlantState, SceneView } from './wire';
 import { t, tell, type TextKey } from './text';
-import { button, closePopover, dialog, el, icon, popover } from './ui';
+import { askName, button, closePopover, el, icon, popover } from './ui';
 
 export type Gizmo = 'translate' | 'rotate' | 'scale';
 
@@ -251,31 +251,11 @@ export class SceneList {
 
   /** The plants of a group have one name. */
   private rename(plants: readonly PlantState[]): void {
-    const field = el('input', { class: 'field', maxlength: '200', 'aria-label': t('scene.name') });
-    field.value = plants[0]!.name;
-    const form = el(
-      'form',
-      {
-        onsubmit: (e) => {
-          e.preventDefault();
-          d.close();
-          const name = field.value.trim();
-          if (!name) return;
-          const commands = plants.map((p): Command => ({ plant: [p.id, { rename: name }] }));
-          if (commands.length === 1) this.events.run(commands[0]!);
-          else this.events.together('rename', commands);
-        },
-      },
-      field,
-      el(
-        'div',
-        { class: 'row' },
-        el('span', { class: 'space' }),
-        el('button', { type: 'submit', class: 'primary' }, t('scene.rename')),
-      ),
-    );
-    const d = dialog(t('scene.rename'), form);
-    field.select();
+    askName(t('scene.rename'), t('scene.name'), plants[0]!.name, (name) => {
+      const commands = plants.map((p): Command => ({ plant: [p.id, { rename: name }] }));
+      if (commands.length === 1) this.events.run(commands[0]!);
+      else this.events.together('rename', commands);
+    });
   }
 
   openAdd(anchor: HTMLElement): void {

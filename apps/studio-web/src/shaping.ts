@@ -4,6 +4,7 @@ import type { Request } from './protocol';
 import type {
   Command,
   EditReport,
+  Growth,
   PlantState,
   PlantView as Seen,
   ShapeAnswer,
@@ -68,6 +69,7 @@ const EDIT_ICONS: Record<string, IconName> = {
   brush: 'brush',
   silhouette: 'silhouette',
   'leaf-density': 'leaf',
+  grow: 'tree',
 };
 const TOOL_ICONS: Record<ShapeTool, IconName> = {
   pick: 'select',
@@ -79,7 +81,17 @@ const TOOL_ICONS: Record<ShapeTool, IconName> = {
   brush: 'brush',
   silhouette: 'silhouette',
   leaves: 'leaf',
+  grow: 'tree',
 };
+/** Between two rounds of what grows while it is held, ms. */
+const ROUND_MS = 130;
+/** Within these its numbers are set by hand. */
+const GROWTH = {
+  vigour: [0.5, 8],
+  apical: [0, 1],
+  angle_deg: [15, 110],
+  lift: [-0.6, 0.6],
+} as const satisfies Record<keyof Growth, readonly [number, number]>;
 
 export class Shaping {
   readonly element = el('div', { class: 'shaping' });
@@ -96,7 +108,12 @@ export class Shaping {
     brush: { share: 0.07, density: 1 },
     silhouette: { density: 1, trim: true },
     leaves: { share: 0.07, more: false },
+    grow: { vigour: 2, apical: 0.54, angle_deg: 55, lift: 0.12 } as Growth,
   };
+  /** Has what is held grow on. */
+  private growing = 0;
+  /** Its numbers were turned since the last round. */
+  private turned = false;
   /** The branch that was clicked with the pointing tool. */
   private chosen: ShapeAnswer['picked'] = null;
   private lit: number | undefined;
@@ -371,6 +388,21 @@ export class Shaping {
             s.silhouette.trim = !s.silhouette.trim;
           }),
         ];
+      case 'grow': {
+        const number = (of: keyof Growth, step: number): HTMLElement => {
+          const [low, high] = GROWTH[of];
+          return slider(`shape.grow.${of}`, low, high, step, s.grow[of], plain, (x) => {
+            s.grow[of] = x;
+          });
+        };
+        return [
+          hint('shape.grow.hint'),
+          number('vigour', 0.1),
+          number('apical', 0.02),
+          number('angle_deg', 5),
+          number('lift', 0.02),
+        ];
+      }
       case 'leaves':
         return [
           chips(
@@ -541,6 +573,8 @@ export class Shaping {
         return { brush: { radius_m, density: s.brush.density } };
       case 'silhouette':
         return { silhouette: { ...s.silhouette } };
+      case 'grow':
+        return { grow: { ...s.grow } };
       case 'leaves':
         return { leaves: { radius_m, keep: s.leaves.more ? 2 : 0.25 } };
       default:
@@ -556,7 +590,43 @@ export class Shaping {
     [this.pointerId, this.space, this.once] = [IN_SPACE, reach, tool];
     this.moves = [];
     void this.send({ down: at });
+    this.beat();
     return true;
+  }
+
+  /** While something grows in the hand: more or less vigour (a factor), other angles (degrees more); whether it does. */
+  turnGrowth(vigour: number, angle: number): boolean {
+    if (this.tool !== 'grow') return false;
+    const { grow } = this.settings;
+    const within = (of: keyof Growth, x: number): number =>
+      Math.min(GROWTH[of][1], Math.max(GROWTH[of][0], x));
+    grow.vigour = within('vigour', grow.vigour * vigour);
+    grow.angle_deg = within('angle_deg', grow.angle_deg + angle);
+    this.turned = true;
+    return true;
+  }
+
+  /** The numbers of growth that a hand turns, in words. */
+  get growthText(): string {
+    const { vigour, angle_deg } = this.settings.grow;
+    return `${t('shape.grow.vigour')} ${vigour.toFixed(1)} · ${Math.round(angle_deg)}°`;
+  }
+
+  /** What is held grows by itself, a round after the other, as fast as it can be shown. */
+  private beat(): void {
+    if ((this.once ?? this.tool) !== 'grow') return;
+    let waiting = false;
+    this.turned = false;
+    this.growing = window.setInterval(() => {
+      if (waiting) return;
+      waiting = true;
+      // Only the latest numbers are told, and with the next round.
+      if (this.turned) void this.send({ grow: { ...this.settings.grow } });
+      this.turned = false;
+      void this.send('round').finally(() => {
+        waiting = false;
+      });
+    }, ROUND_MS);
   }
 
   follow(at: ShapePointer): void {
@@ -624,6 +694,7 @@ export class Shaping {
       this.overlay.draw();
     }
     void this.send({ down: at });
+    this.beat();
   }
 
   private moved(e: PointerEvent): void {
@@ -696,6 +767,7 @@ export class Shaping {
   }
 
   private release(): void {
+    clearInterval(this.growing);
     this.pointerId = this.space = this.once = undefined;
     this.movedAt = 0;
     this.view.setZoom(true);
@@ -723,11 +795,16 @@ export class Shaping {
     if (!this.tool) return;
     const up = e.deltaY < 0 || e.deltaX < 0;
     const brush = this.brushes && (this.isBusy || e.shiftKey);
+    const grows = this.isBusy && this.tool === 'grow';
     const twist = this.isBusy && (this.tool === 'rotate' || this.tool === 'sketch');
-    if (!brush && !twist) return;
+    if (!brush && !twist && !grows) return;
     e.preventDefault();
     e.stopImmediatePropagation();
-    if (brush) this.resize(up ? 1.12 : 1 / 1.12);
+    if (grows) {
+      const by = up ? 1 : -1;
+      this.turnGrowth(e.shiftKey ? 1 : 1.12 ** by, e.shiftKey ? TWIST_DEG * by : 0);
+      this.showStrip();
+    } else if (brush) this.resize(up ? 1.12 : 1 / 1.12);
     else void this.send({ twist: up ? TWIST_DEG : -TWIST_DEG });
   }
 

@@ -5,6 +5,7 @@ import { dot } from './correct';
 import type { Standing } from './keeper';
 import type { MakerPanel } from './makers';
 import type { SceneList } from './scene';
+import type { Readings } from './readings';
 import type { Session } from './session';
 import type { Shaping } from './shaping';
 import type { Sheet } from './sheet/sheet';
@@ -30,6 +31,7 @@ export interface Shown {
   readonly modes: ViewModes;
   readonly door: Door;
   readonly theme: Theme;
+  readonly readings: Readings;
 }
 
 export class Show {
@@ -63,6 +65,8 @@ export class Show {
     dataset['strokes'] = String(drawn?.strokes.length ?? 0);
     dataset['plants'] = String(state.plants.length);
     dataset['current'] = plant?.maker ?? '';
+    // What is wanted; `revision` is what is seen.
+    dataset['wanted'] = String(state.revision);
     parts.sheetTools.hidden = sheet.element.hidden = parts.legend.hidden = !drawn;
     parts.maker.hidden = !plant || drawn !== null;
     parts.noPlant.hidden = plant !== undefined;
@@ -183,18 +187,23 @@ export class Show {
         if (count) texts.push(t(`status.${kind}`, { count: number(count) }));
       }
       texts.push(t('status.time', { ms: number(Math.round(item.timings_ms.total)) }));
+      // What they say is shown by a pointer that rests there.
+      if (item.warnings.length > 0) texts.push(t('status.warnings', { count: number(item.warnings.length) }));
     }
     this.parts.counts.textContent = texts.join('  ·  ');
     this.parts.counts.title = (item?.warnings ?? []).join('\n');
   }
 
-  /** A drawn flower that opens: its day, and a button to play it. */
+  /** What a drawing is read as; of a drawn flower that opens, its day, and a button to play it. */
   private bloom(): void {
     const { session, panel } = this.shown;
     const { drawn } = session;
     const box = this.parts.bloom;
     const flowers = (session.seen?.item?.counts.flowers ?? 0) > 0;
-    box.hidden = !drawn || (!flowers && drawn.day === null);
+    const { readings } = this.shown;
+    readings.show();
+    const opening = drawn !== null && (flowers || drawn.day !== null);
+    box.hidden = !opening && readings.element.hidden;
     const held = box.contains(document.activeElement) && document.activeElement instanceof HTMLInputElement;
     if (box.hidden || !drawn || panel.isPlaying || held) return;
     const opens = drawn.day !== null;
@@ -210,7 +219,10 @@ export class Show {
       },
       t('bloom.opens'),
     );
-    box.replaceChildren(toggle, ...(opens ? [panel.dayRow(drawn.day!)] : []));
+    // The readings stay where they are: what is taken out and put back loses the keyboard.
+    if (readings.element.parentElement !== box) box.prepend(readings.element);
+    while (box.lastElementChild !== readings.element) box.lastElementChild!.remove();
+    box.append(...(opening ? [toggle] : []), ...(opens ? [panel.dayRow(drawn.day!)] : []));
   }
 
   // The work -----------------------------------------------------------------------------------------------------

@@ -7,7 +7,9 @@ export const SHEET_TOOLS: readonly [Tool, string][] = [
   ['branch-contour', 'B'],
   ['leaf-contour', 'L'],
   ['erase', 'E'],
+  ['rub', 'Shift+E'],
   ['select', 'V'],
+  ['pull', 'A'],
 ];
 
 type WordOf<T> = T extends string ? T : keyof T & string;
@@ -24,6 +26,7 @@ export const SHAPE_TOOLS: readonly [ShapeTool, string][] = [
   ['brush', '7'],
   ['silhouette', '8'],
   ['leaves', '9'],
+  ['grow', '0'],
 ];
 
 /** To what bears the branch that a tool points at, and back to the twig. */

@@ -27,6 +27,8 @@ const PATHS = {
   erase:
     'M9 19l-5-5a1.500 1.500 0 0 1 0-2l7.500-7.500a1.500 1.500 0 0 1 2 0l5.500 5.500a1.500 1.500 0 0 1 0 2L12 19zM7.500 8.500l7.500 7.500M9 19h11',
   select: 'M6 4l12 7-5.2 1.700L9.500 18z',
+  rub: 'M3 17c3-3 5-4 7-4M16 9c2-2 3.500-3 5-3.500M11 8.500l5 5-3 3a1.500 1.500 0 0 1-2 0l-3-3a1.500 1.500 0 0 1 0-2z',
+  pull: 'M3 19c4 0 5-9 9-9s5 9 9 9M12 10V3.500m0 0L9.500 6M12 3.500L14.500 6',
   fit: 'M4 9V5a1 1 0 0 1 1-1h4M15 4h4a1 1 0 0 1 1 1v4M20 15v4a1 1 0 0 1-1 1h-4M9 20H5a1 1 0 0 1-1-1v-4',
   undo: 'M9 7L4.500 11.500L9 16M5 11.500h9a5 5 0 0 1 0 10h-2',
   redo: 'M15 7l4.500 4.500L15 16M19 11.500h-9a5 5 0 0 0 0 10h2',
@@ -163,6 +165,22 @@ export function dialog(title: string, ...content: Child[]): HTMLDialogElement {
   document.body.append(d);
   d.showModal();
   return d;
+}
+
+/** Asks for a name, beginning with one; nothing happens where none is given. */
+export function askName(title: string, label: string, now: string, act: (name: string) => void): void {
+  const field = el('input', { class: 'field', maxlength: '200', 'aria-label': label });
+  field.value = now;
+  const submit = (e: Event): void => {
+    e.preventDefault();
+    d.close();
+    const name = field.value.trim();
+    if (name) act(name);
+  };
+  const go = el('button', { type: 'submit', class: 'primary' }, title);
+  const row = el('div', { class: 'row' }, el('span', { class: 'space' }), go);
+  const d = dialog(title, el('form', { onsubmit: submit }, field, row));
+  field.select();
 }
 
 /** A panel below a button; it closes when something else is used. */

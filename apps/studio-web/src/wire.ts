@@ -12,6 +12,8 @@ export const CODES = {
   "field-range": ["field", "range", "value"],
   "file-empty": [],
   "file-io": ["why"],
+  "file-item": ["item", "why"],
+  "file-line": ["line", "why"],
   "file-malformed": ["what"],
   "file-no-strokes": [],
   "file-not-utf8": ["after"],
@@ -26,6 +28,7 @@ export const CODES = {
   "graph-radii": ["nodes", "radii"],
   "graph-small": ["nodes"],
   "internal": ["why"],
+  "json-ends": [],
   "law": ["why"],
   "leaf-no-marks": [],
   "leaf-scan": ["why"],
@@ -68,6 +71,7 @@ export const CODES = {
   "no-surface": [],
   "no-tree": ["name"],
   "no-usable-stroke": [],
+  "not-json": [],
   "not-text": ["why"],
   "nothing-grew": ["why"],
   "nothing-made": [],
@@ -123,7 +127,11 @@ export const CODES = {
   "scan-too-few": ["points"],
   "scan-too-many": ["points", "most"],
   "scene-full": ["mb"],
+  "slip": ["why"],
+  "slip-at": ["line", "column", "what"],
   "spec-choice": ["path", "name", "choices"],
+  "spec-kind": ["path", "found", "value", "wanted"],
+  "spec-length": ["path", "found", "wanted"],
   "spec-missing": ["path", "name"],
   "spec-pointer": ["path"],
   "spec-syntax": ["line", "why"],
@@ -162,7 +170,7 @@ export type Action =
   | /** Adds a plant beside the others and chooses it. */
   {
     add: {
-      /** Who makes it. */
+      /** Its maker. */
       maker: NewMaker;
       /** What it is called. */
       name: string;
@@ -212,6 +220,16 @@ export type BranchDepth =
   "paper"
   | /** Riesz energy of the angles: siblings spread evenly (the sum cannot tell even from two clumps). */
   "riesz";
+
+/** A stroke of a brush in space: buds find room only inside it, and are drawn along it (the VR paper). */
+export type BrushStroke = {
+  /** Its course, metres, at least two points. */
+  points: [number, number, number][];
+  /** Pull along the stroke, `k_s`, 0 to 10; default 1. */
+  pull: number;
+  /** Radius, metres, above 0: one number, or one for each point. */
+  radius_m: number[];
+};
 
 /** What an edit changed. */
 export type Changed = {
@@ -495,6 +513,34 @@ export type Ground =
     };
   };
 
+/** Where a shoot begins that grows by itself. */
+export type GrowFrom =
+  | /** On a branch; at its tip, the branch goes on. */
+  {
+    branch: {
+      /** Where along it, as a share of its length. */
+      at: number;
+      /** The branch. */
+      axis: AxisKey;
+    };
+  }
+  | /** On the ground, metres: another stem of the plant. */
+  {
+    ground: [number, number, number];
+  };
+
+/** How a shoot grows by itself; every number may change while it does. */
+export type Growth = {
+  /** Between a shoot and the buds at its side, 0 to 180 degrees. */
+  angle_deg: number;
+  /** Apical control: the share of the main axis at a fork, 0 to 1. */
+  apical: number;
+  /** Pull to the light, or of the weight where it is negative, -10 to 10; free space pulls with 1. */
+  lift: number;
+  /** Vigour per unit of free space, above 0 and at most 100. */
+  vigour: number;
+};
+
 /** The part of a report about growth. */
 export type GrowthReport = {
   /** Attraction points or markers of all cycles. */
@@ -519,6 +565,26 @@ export type GrowthReport = {
   nodes: number;
   /** Of these, never reached. */
   unreachable: number;
+};
+
+/** Numbers of [`GuidedSpec`] that change while a tree grows; what is left out stays as it was. */
+export type GuidedChange = {
+  /** Vigour per unit of free space, above 0 and at most 100. */
+  alpha?: number | null;
+  /** Between a shoot and the buds at its side, 0 to 180 degrees. */
+  branch_angle_deg?: number | null;
+  /** Share of the main axis at a fork (apical control), 0 to 1. */
+  lambda?: number | null;
+  /** Markers of one bud in one round, 4 to 10000. */
+  markers?: number | null;
+  /** How strongly others' markers push away, 0 to 10. */
+  repulsion?: number | null;
+  /** The first round that has them, from 0, at most 1000. */
+  round: number;
+  /** All strokes that guide from then on. */
+  strokes?: BrushStroke[] | null;
+  /** Weight and light. */
+  tropisms?: Tropism[] | null;
 };
 
 /** One edit of a plant by hand. */
@@ -584,6 +650,20 @@ export type HandEdit =
     radius_m: number[];
     /** Another number, other branches. */
     seed: number;
+  }
+  | /** Lets a shoot grow by itself, for as many rounds as a hand held on (the VR paper). */
+  {
+    /** Numbers of growth from some round on, as a hand turned them meanwhile; what they leave out stays as it was, and is that of guided growth at first, with the angles of the plant. */
+    changes?: GuidedChange[];
+    /** Where it begins. */
+    from: GrowFrom;
+    op: "grow";
+    /** Rounds of growth. */
+    rounds: number;
+    /** Another number, other branches. */
+    seed: number;
+    /** The side on which it leaves its bearer; without, the upper one. */
+    towards?: [number, number, number] | null;
   }
   | /** Fills an outline that was drawn in a plane facing the viewer (the VR paper). */
   {
@@ -832,7 +912,7 @@ export type LengthUnit =
   | /** Millimetres. */
   "mm";
 
-/** Who makes a plant. */
+/** The maker of a plant. */
 export type MakerWord =
   | /** Drawn with a pen. */
   "sketch"
@@ -897,7 +977,7 @@ export type NamedShape = {
   shape: ObstacleView;
 };
 
-/** Who makes a new plant. */
+/** The maker of a new plant. */
 export type NewMaker =
   | /** An empty sheet. */
   "sketch"
@@ -1110,7 +1190,7 @@ export type PlantState = {
   lends: boolean;
   /** Dice leave its seed alone. */
   locked: boolean;
-  /** Who makes it. */
+  /** Its maker. */
   maker: MakerWord;
   /** Its name. */
   name: string;
@@ -1253,7 +1333,7 @@ export type SceneCommand =
   {
     duplicate: [PlantId, [number, number, number]];
   }
-  | /** Deletes plants; who bore their leaf bears its own again. */
+  | /** Deletes plants; a plant that bore the leaf of one bears its own again. */
   {
     remove: PlantId[];
   };
@@ -1340,6 +1420,12 @@ export type ShapeInput =
       to: ShapeStep;
     };
   }
+  | /** It holds on: what grows is a round older. */
+  "round"
+  | /** What grows has other numbers from now on. */
+  {
+    grow: Growth;
+  }
   | /** It changed its brush. */
   {
     brush: {
@@ -1400,6 +1486,30 @@ export type SketchCommand =
   | /** Moves strokes, in the drawing's unit, y up. */
   {
     'move-strokes': [StrokeId[], [number, number]];
+  }
+  | /** Turns and scales strokes about a point. */
+  {
+    'turn-strokes': [StrokeId[], StrokeTurn];
+  }
+  | /** Bends strokes by pulling at them. */
+  {
+    'pull-strokes': [StrokeId[], StrokePull];
+  }
+  | /** Smooths strokes once more. */
+  {
+    'smooth-strokes': StrokeId[];
+  }
+  | /** Cuts strokes in two at their point nearest to this one. */
+  {
+    'cut-strokes': [StrokeId[], [number, number]];
+  }
+  | /** Makes one stroke of several, in the place of the first. */
+  {
+    'join-strokes': StrokeId[];
+  }
+  | /** Erases what lies within a radius of a path, of all strokes. */
+  {
+    'rub-out': [[number, number][], number];
   }
   | /** Sets the class of strokes, or leaves it to the classifier again. */
   {
@@ -1547,6 +1657,16 @@ export type StrokeMode =
   | /** A contour to be filled with leaves. */
   "leaf-contour";
 
+/** A line bent by pulling at it. */
+export type StrokePull = {
+  /** Where it was taken hold of; the nearest point of the line counts. */
+  at: [number, number];
+  /** How far it was pulled. */
+  by: [number, number];
+  /** How far along the line the pull reaches, above 0. */
+  reach: number;
+};
+
 /** One stroke. */
 export type StrokeReport = {
   /** What it is. */
@@ -1573,6 +1693,16 @@ export type StrokeState = {
   id: StrokeId;
   /** In which mode it was drawn. */
   mode: StrokeMode;
+};
+
+/** Turned and scaled about a point. */
+export type StrokeTurn = {
+  /** What stays where it is, the drawing's unit. */
+  about: [number, number];
+  /** Counter-clockwise, degrees. */
+  angle_deg: number;
+  /** Factors of size along x and y before the turn; a negative one mirrors. */
+  scale: [number, number];
 };
 
 /** Surface of a measured blade (Wang et al. */
@@ -1668,6 +1798,10 @@ export type ToolKind =
       radius_m: number;
     };
   }
+  | /** Hold on a branch or on the ground, and a shoot grows by itself, round by round. */
+  {
+    grow: Growth;
+  }
   | /** Draw an outline around what is to be filled. */
   {
     silhouette: {
@@ -1734,6 +1868,14 @@ export type TreeState = {
   skin: SkinSpec;
   /** The spec, without obstacles. */
   spec: Record<string, Json>;
+};
+
+/** A pull in one direction: light from above, weight downwards, wind. */
+export type Tropism = {
+  /** Where to; any length above 0. */
+  direction: [number, number, number];
+  /** Relative to the pull of free space (which is 1), -10 to 10. */
+  strength: number;
 };
 
 /** A rotation about an axis. */

@@ -242,7 +242,7 @@ page.onmessage = ({ data }: MessageEvent<ToWorker>) => {
         ? buffers(value as Sent)
         : [];
     const quiet = QUIET.has(request.kind) || (request.kind === 'shape' && !(value as ShapeAnswer).again);
-    // The state first: who waits for the answer may look at it.
+    // The state first: what waits for the answer may look at it.
     if (!quiet && request.kind !== 'draft' && request.kind !== 'shape') tellState(session);
     tell({ kind: 'done', seq, value, placed: session.placed() }, bytes);
     if (!quiet) schedule();

@@ -76,7 +76,7 @@ fn to_json(value: &impl Serialize) -> Result<String, Refused> {
 }
 
 fn from_json<T: DeserializeOwned>(text: &str) -> Result<T, Refused> {
-    Ok(serde_json::from_str(text)?)
+    Ok(burgeon::spec::through_json::from_text(text)?)
 }
 
 /// `samples`: x, y (up), milliseconds, pressure of each point; NaN where not known.

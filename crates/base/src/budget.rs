@@ -125,7 +125,7 @@ impl Budget {
         self.scaled(what.limit())
     }
 
-    /// Memory in use at one time, bytes. Who owns the memory sees to it: the core cannot.
+    /// Memory in use at one time, bytes. The owner of the memory keeps to it: the core cannot.
     pub fn bytes(&self) -> u64 {
         self.scaled(BYTES)
     }

@@ -1,5 +1,6 @@
 //! Errors as a code with fields, so that programs can tell them apart and every language has its own words.
 
+use core::fmt::Display;
 use std::collections::BTreeMap;
 
 /// What an error is, and what its sentence is filled with.
@@ -11,6 +12,31 @@ pub struct Told {
     pub fields: BTreeMap<&'static str, String>,
     /// Those of the fields that are errors themselves.
     pub causes: BTreeMap<&'static str, Self>,
+}
+
+impl Told {
+    /// For [`crate::coded!`]. Here and not in the macro, so that there is one copy of it and not one for each error.
+    #[doc(hidden)]
+    pub fn new(code: &'static str, fields: &[(&'static str, &dyn Display)]) -> Self {
+        let fields = crate::map_of(fields.iter().map(|(name, value)| (*name, value.to_string())));
+        Self { code, fields, causes: BTreeMap::new() }
+    }
+
+    /// With one more of the fields that are errors themselves, if it is one.
+    #[doc(hidden)]
+    #[inline]
+    #[must_use]
+    pub fn with(self, cause: Option<(&'static str, Self)>) -> Self {
+        match cause {
+            Some((field, cause)) => self.because(field, cause),
+            None => self,
+        }
+    }
+
+    fn because(mut self, field: &'static str, cause: Self) -> Self {
+        self.causes.insert(field, cause);
+        self
+    }
 }
 
 /// A code, and the names of its fields.
@@ -81,18 +107,10 @@ macro_rules! coded {
 
             fn told(&self) -> $crate::Told {
                 match self {
-                    $($pattern => $crate::Told {
-                        code: $code,
-                        fields: [$((stringify!($field), $crate::coded!(@value $field $($value)?).to_string())),*]
-                            .into_iter()
-                            .collect(),
-                        causes: [None::<(&'static str, $crate::Told)>, $($crate::coded!(
-                            @cause $field [$($value)?] $($cause)?
-                        )),*]
-                            .into_iter()
-                            .flatten()
-                            .collect(),
-                    },)*
+                    $($pattern => $crate::Told::new(
+                        $code,
+                        &[$((stringify!($field), &$crate::coded!(@value $field $($value)?))),*],
+                    )$(.with($crate::coded!(@cause $field [$($value)?] $($cause)?)))*,)*
                     $($($wrap => $crate::Coded::told($inner),)*)?
                 }
             }

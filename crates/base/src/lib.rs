@@ -9,11 +9,12 @@
 //! | `seed` | [`Seed`], [`Draw`], [`Stream`]: randomness as a value |
 //! | `budget` | [`Budget`], [`OverBudget`]: how much may be made |
 //! | `coded` | [`Coded`], [`coded!`]: errors as codes with fields |
+//! | `slip` | [`Slip`]: what readers say of a text, as codes |
 //! | `task` | [`CancelToken`], [`Executor`], [`Run`]: how something is computed, never what |
 //! | `quote` | [`brief`], [`quoted`]: how much of somebody's words a message repeats |
 //! | `report` | [`Report`], [`Warning`]: what a computation wants to tell its user |
 //! | `digest` | [`Digest`]: a fingerprint of a result that does not depend on the machine |
-//! | `sort` | [`sort_by`], [`sort_by_key`]: sorting that is compiled once |
+//! | `sort` | [`sort_by`], [`sort_numbers`], [`map_of`]: sorting that is compiled once |
 //! | `srgb` | [`linear_of_srgb`], [`srgb_of_linear`] |
 //! | `units` | [`Unit`], [`UpAxis`], [`Angle`]: conversions at the door |
 //! | `ids` | [`define_id!`]: typed `u32` handles |
@@ -27,6 +28,7 @@ pub mod ops;
 mod quote;
 mod report;
 mod seed;
+mod slip;
 mod sort;
 mod srgb;
 mod task;
@@ -39,7 +41,8 @@ pub use digest::{Digest, Digestible};
 pub use quote::{brief, quoted};
 pub use report::{Report, Stage, Warning};
 pub use seed::{Draw, Seed, Stream};
-pub use sort::{sort_by, sort_by_key};
+pub use slip::Slip;
+pub use sort::{map_of, set_of, sort_by, sort_by_key, sort_numbers};
 pub use srgb::{linear_of_srgb, srgb_of_linear};
 pub use task::{CancelToken, Cancelled, Clock, Executor, NoClock, Run, Serial, Stopped, map_indexed};
 pub use units::{Angle, NotFinite, Tolerance, Unit, UpAxis};

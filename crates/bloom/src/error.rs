@@ -96,7 +96,7 @@ fn one_way(
     let paper = gaps.iter().map(|d| d.x + d.y + d.z).sum::<f64>() / (3.0 * n);
     let mean = lengths.iter().sum::<f64>() / n;
     let rms = (lengths.iter().map(|d| d * d).sum::<f64>() / n).sqrt();
-    lengths.sort_unstable_by(f64::total_cmp);
+    base::sort_numbers(&mut lengths);
     let last = lengths.len() - 1;
     let figures = Distances {
         paper,

@@ -7,7 +7,7 @@
 
 use base::{Budget, Counted, OverBudget, Seed, ops, turn};
 use glam::{DQuat, DVec2, DVec3};
-use plant::{Flower, FlowerId, OrganKind, Plant};
+use plant::{Flower, FlowerId, OrganKind, Plant, PlantPaint};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -317,6 +317,8 @@ impl Whorl {
     }
 }
 
+/// Of stalks, linear.
+const STALK: [f32; 3] = [0.16, 0.32, 0.07];
 /// Of a closed bud, linear.
 const BUD: [f32; 3] = [0.27, 0.40, 0.09];
 
@@ -372,7 +374,8 @@ impl FlowerSpec {
     /// Guaranteed: the same axes, organs and grids at every day; `validate()` finds nothing. `law` sets the pace by its
     /// size and region laws, whatever species it was fitted to (Huai, Yang and Cai 2019, figure 13).
     pub fn at(&self, day: f64, law: &GrowthLaw, seed: Seed) -> Plant {
-        let mut plant = Plant { name: self.name.clone(), ..Plant::default() };
+        let paint = PlantPaint { stem: Some(STALK), ..PlantPaint::default() };
+        let mut plant = Plant { name: self.name.clone(), paint, ..Plant::default() };
         self.add_to(&mut plant, &Seat::default(), day, law, seed);
         plant
     }

@@ -269,7 +269,7 @@ fn pairs(moved: &[DVec3], to: &[DVec3], grid: &KdTree, share: f64) -> Vec<(usize
     let mut out: Vec<(usize, DVec3, f64)> =
         there.chain(here).map(|(i, q)| (i, q, moved[i].distance(q))).collect();
     let mut gaps: Vec<f64> = out.iter().map(|p| p.2).collect();
-    gaps.sort_unstable_by(f64::total_cmp);
+    base::sort_numbers(&mut gaps);
     let width = (4.0 + 26.0 * (1.0 - share)) * gaps.get(gaps.len() / 2).copied().unwrap_or(1.0).max(1e-12);
     for p in &mut out {
         let r = p.2 / width;

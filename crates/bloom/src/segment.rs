@@ -303,7 +303,7 @@ impl Tree {
                 fork = branches(only);
             }
             let mut widths: Vec<f64> = chain.iter().map(|&p| self.spread[p]).collect();
-            widths.sort_unstable_by(f64::total_cmp);
+            base::sort_numbers(&mut widths);
             stem_width = stem_width.or(Some(widths[widths.len() / 2]));
             chain.iter().for_each(|&p| label[p] = 0);
             for b in fork {

@@ -192,7 +192,7 @@ fn plant_to_file(plant: &DocumentPlant, row: &dyn Fn(PlantId) -> Option<u32>) ->
 /// Reads a `.burgeon` file. The bytes may be hostile: sizes are bounded and nothing is believed unseen.
 ///
 /// Guaranteed: a document whose `validate()` is empty. Its plants and strokes are numbered from 0.
-/// Not guaranteed: that the numbers of a tree's spec or the marks of a leaf make one; whoever makes them says so.
+/// Not guaranteed: that the numbers of a tree's spec or the marks of a leaf make one; their makers report that.
 ///
 /// # Errors
 /// [`ProjectError`]: what is wrong, where, and what to do.
@@ -333,7 +333,7 @@ base::coded!(ProjectError {
     Self::Archive(why) => "project-archive" { why },
     Self::Missing(name) => "project-missing" { name },
     Self::Version { found } => "project-version" { found },
-    Self::Json { entry, source } => "project-json" { entry, why = source },
+    Self::Json { entry, source } => "project-json" { entry, why = &base::Slip::of(&source.to_string()) => base::Slip },
     Self::Stroke { row, what } => "project-stroke" { row, why = what },
     Self::Setting(why) => "project-setting" { why => SettingFault },
     Self::Scene(why) => "project-scene" { why },

@@ -45,6 +45,7 @@ pub(crate) struct PlantV4 {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct EditV4 {
+    #[serde(deserialize_with = "spec::through_json::read")]
     pub(crate) edit: HandEdit,
     #[serde(default, skip_serializing_if = "is_false")]
     pub(crate) off: bool,
@@ -108,7 +109,7 @@ pub(crate) enum MakerV3 {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SketchV3 {
-    #[serde(default)]
+    #[serde(default, deserialize_with = "spec::through_json::read")]
     pub(crate) sketch: SketchSpec,
     #[serde(default)]
     pub(crate) skin: SkinV1,
@@ -141,6 +142,7 @@ pub(crate) struct TreeV3 {
 #[serde(deny_unknown_fields)]
 pub(crate) struct ObstacleV3 {
     pub(crate) name: String,
+    #[serde(deserialize_with = "spec::through_json::read")]
     pub(crate) shape: Obstacle,
 }
 
@@ -150,16 +152,16 @@ pub(crate) struct LeafV3 {
     /// Name and text of the file of marks or veins.
     pub(crate) file: String,
     pub(crate) data: String,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "spec::through_json::read")]
     pub(crate) settings: leaf::LeafSpec,
 }
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct FlowerV3 {
-    #[serde(default)]
+    #[serde(default, deserialize_with = "spec::through_json::read")]
     pub(crate) settings: FlowerSettings,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "spec::through_json::read")]
     pub(crate) law: Option<GrowthLaw>,
 }
 
@@ -187,7 +189,7 @@ impl From<DocumentV2> for DocumentV3 {
 pub(crate) struct DocumentV2 {
     pub(crate) name: String,
     pub(crate) seed: u64,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "spec::through_json::read")]
     pub(crate) sketch: SketchSpec,
     #[serde(default)]
     pub(crate) skin: SkinV1,
@@ -208,7 +210,7 @@ impl From<DocumentV1> for DocumentV2 {
 pub(crate) struct DocumentV1 {
     pub(crate) name: String,
     pub(crate) seed: u64,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "spec::through_json::read")]
     pub(crate) sketch: SketchSpec,
     #[serde(default)]
     pub(crate) skin: SkinV1,

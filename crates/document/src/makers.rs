@@ -13,7 +13,7 @@ use skin::SkinSpec;
 use crate::fault::MAX_OBSTACLES;
 use crate::{Photo, PlantId, SettingFault};
 
-/// Who makes a plant, and of what. Strokes of a sketch lie beside it, in [`crate::DocumentPlant::strokes`].
+/// The maker of a plant, and what it is asked for. Strokes of a sketch lie beside it, in [`crate::DocumentPlant::strokes`].
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Maker {
@@ -100,7 +100,7 @@ impl SketchSettings {
     }
 }
 
-/// A tree that is grown. Whoever grows it says what is wrong with its spec.
+/// A tree that is grown. Its spec is checked when it is grown.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TreeSettings {
     /// The species that the spec came from.

@@ -65,7 +65,7 @@ pub struct Settings {
     pub hidden: bool,
     /// Where it stands.
     pub placement: Placement,
-    /// Who makes it, and of what.
+    /// Its maker, and what the maker is asked for.
     pub maker: Maker,
     /// Edits by hand, in the order in which they are done; of sketches and trees only, at most 1,000.
     pub edits: Vec<PlantEdit>,
@@ -156,7 +156,7 @@ impl DocumentPlant {
 
     /// Classes that the person set, by row of [`DocumentPlant::drawing`].
     pub fn classes(&self) -> BTreeMap<u32, StrokeClass> {
-        (0..).zip(&self.strokes).filter_map(|(row, s)| Some((row, s.class?))).collect()
+        base::map_of((0..).zip(&self.strokes).filter_map(|(row, s)| Some((row, s.class?))))
     }
 
     /// The row of a stroke.

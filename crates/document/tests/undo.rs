@@ -10,7 +10,7 @@ use document::{
 };
 use glam::{DVec2, DVec3};
 use growth::{Obstacle, TreeSpec};
-use ink::{Drawing, InkSample, Stroke, StrokeClass, StrokeMode};
+use ink::{Drawing, InkSample, Stroke, StrokeClass, StrokeMode, StrokePull, StrokeTurn};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use shape::{AxisKey, Destination, HandEdit, LeafRegion, Turn, ViewPlane};
@@ -46,6 +46,15 @@ fn sketch_command() -> impl Strategy<Value = SketchCommand> {
         4 => vec(stroke(), 0..3).prop_map(SketchCommand::AddStrokes),
         2 => ids().prop_map(SketchCommand::RemoveStrokes),
         2 => (ids(), point()).prop_map(|(ids, by)| SketchCommand::MoveStrokes(ids, by)),
+        1 => (ids(), point(), point(), -400.0..400.0f64).prop_map(|(ids, about, scale, angle_deg)| {
+            SketchCommand::TurnStrokes(ids, StrokeTurn { about, angle_deg, scale })
+        }),
+        1 => (ids(), point(), point(), -1.0..50.0f64)
+            .prop_map(|(ids, at, by, reach)| SketchCommand::PullStrokes(ids, StrokePull { at, by, reach })),
+        1 => ids().prop_map(SketchCommand::SmoothStrokes),
+        1 => (ids(), point()).prop_map(|(ids, at)| SketchCommand::CutStrokes(ids, at)),
+        1 => ids().prop_map(SketchCommand::JoinStrokes),
+        1 => (vec(point(), 0..4), -1.0..20.0f64).prop_map(|(path, radius)| SketchCommand::RubOut(path, radius)),
         1 => (ids(), class).prop_map(|(ids, class)| SketchCommand::SetClass(ids, class)),
         1 => ids().prop_map(|ids| SketchCommand::SetMode(ids, StrokeMode::LeafContour)),
         1 => (ids(), any::<[u8; 3]>()).prop_map(|(ids, color)| SketchCommand::SetColor(ids, Some(color))),
@@ -369,6 +378,44 @@ fn a_drag_is_one_step_and_a_drag_back_is_none() {
     editor.stage(SketchCommand::MoveStrokes(vec![id], DVec2::ZERO).of(PlantId(0))).unwrap();
     assert!(!editor.commit());
     assert_eq!(strokes(&editor)[0].stroke.samples[0].at, DVec2::X * 5.0);
+}
+
+#[test]
+fn what_is_cut_rubbed_and_joined_keeps_its_place_and_its_class() {
+    let mut editor = Editor::default();
+    let level = |y: f64| NewStroke::line(&[DVec2::new(0.0, y), DVec2::new(100.0, y)]);
+    let three = SketchCommand::AddStrokes(vec![level(0.0), level(50.0), level(100.0)]);
+    editor.run(three.of(PlantId(0))).unwrap();
+    editor.run(SketchCommand::SetClass(vec![StrokeId(1)], Some(StrokeClass::Vein)).of(PlantId(0))).unwrap();
+    let before = editor.document().clone();
+    let shown = |e: &Editor| -> Vec<(u32, f64, f64, bool)> {
+        let ends = |s: &document::DocumentStroke| {
+            let samples = &s.stroke.samples;
+            (s.id.0, samples[0].at.x, samples[samples.len() - 1].at.x, s.class == Some(StrokeClass::Vein))
+        };
+        strokes(e).iter().map(ends).collect()
+    };
+    editor.run(SketchCommand::CutStrokes(vec![StrokeId(1)], DVec2::new(30.0, 52.0)).of(PlantId(0))).unwrap();
+    let cut = [(0, 0.0, 100.0, false), (1, 0.0, 30.0, true), (3, 30.0, 100.0, true), (2, 0.0, 100.0, false)];
+    assert_eq!(shown(&editor), cut);
+    editor.run(SketchCommand::JoinStrokes(vec![StrokeId(3), StrokeId(1)]).of(PlantId(0))).unwrap();
+    assert_eq!(shown(&editor), [(0, 0.0, 100.0, false), (1, 0.0, 100.0, true), (2, 0.0, 100.0, false)]);
+    // The rubber crosses two of them, and takes the third away.
+    let path = vec![DVec2::new(40.0, -5.0), DVec2::new(40.0, 60.0)];
+    editor.run(SketchCommand::RubOut(path, 4.0).of(PlantId(0))).unwrap();
+    let numbers: Vec<u32> = shown(&editor).iter().map(|s| s.0).collect();
+    assert_eq!(numbers, [0, 4, 1, 5, 2]);
+    let all = vec![DVec2::new(-9.0, 100.0), DVec2::new(109.0, 100.0)];
+    editor.run(SketchCommand::RubOut(all, 4.0).of(PlantId(0))).unwrap();
+    assert_eq!(strokes(&editor).len(), 4);
+    for _ in 0..4 {
+        editor.undo();
+    }
+    assert_eq!(*editor.document(), before);
+    let none = editor.run(SketchCommand::RubOut(vec![DVec2::splat(-900.0)], 4.0).of(PlantId(0)));
+    assert!(matches!(none, Err(CommandError::Nothing(_))));
+    let one = editor.run(SketchCommand::JoinStrokes(vec![StrokeId(0)]).of(PlantId(0)));
+    assert!(matches!(one, Err(CommandError::Nothing(_))));
 }
 
 #[test]

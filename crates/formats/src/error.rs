@@ -3,7 +3,7 @@
 use core::fmt;
 use std::io;
 
-use base::Report;
+use base::{Report, Slip};
 
 use crate::kind::{CloudFormat, DrawingFormat, ModelFormat};
 
@@ -234,7 +234,7 @@ pub enum WriteError {
 
 base::coded!(FileFault {
     Self::Empty => "file-empty" {},
-    Self::Malformed { what, .. } => "file-malformed" { what },
+    Self::Malformed { what, .. } => "file-malformed" { what = &Slip::of(what) => Slip },
     Self::Truncated { inside } => "file-truncated" { inside },
     Self::Unsupported { what, .. } => "file-unsupported" { what },
     Self::TooMuch { what, limit, .. } => "file-too-much" { what, limit },
@@ -243,5 +243,20 @@ base::coded!(FileFault {
     Self::Io(why) => "file-io" { why },
 });
 base::coded!(WriteError { why => "write" { why } });
-base::coded!(DrawingError {} wraps { Self { fault, .. } => fault, FileFault });
-base::coded!(ModelError {} wraps { Self { fault, .. } => fault, FileFault });
+base::coded!(DrawingError {} wraps { Self { place, fault, .. } => &Placed { place, fault }, Placed<'_> });
+base::coded!(ModelError {} wraps { Self { place, fault, .. } => &Placed { place, fault }, Placed<'_> });
+
+/// A fault and where it is.
+pub(crate) struct Placed<'a> {
+    pub(crate) place: &'a Place,
+    pub(crate) fault: &'a FileFault,
+}
+
+base::coded!(Placed<'_> {
+    Self { place: Place::Line { line, .. } | Place::Element { line, .. }, fault } => "file-line" {
+        line, why = fault => FileFault
+    },
+    Self { place: Place::Item(item), fault } => "file-item" { item, why = fault => FileFault },
+} wraps {
+    Self { fault, .. } => *fault, FileFault;
+});

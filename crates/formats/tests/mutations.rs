@@ -2,7 +2,7 @@
 //!
 //! Seeded, so that a failure comes back; the fuzz targets in `fuzz/` go on from here without end.
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "test data are small numbers")]
-#![allow(clippy::print_stdout, reason = "how many mutants were read, for who asks with --nocapture")]
+#![allow(clippy::print_stdout, reason = "how many mutants were read, shown with --nocapture")]
 
 use std::time::{Duration, Instant};
 

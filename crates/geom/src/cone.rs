@@ -404,7 +404,7 @@ mod tests {
                     (flower_cone(DVec2::ZERO, &tips, true).unwrap().rho - rho).abs()
                 })
                 .collect();
-            errors.sort_by(f64::total_cmp);
+            base::sort_numbers(&mut errors);
             assert!(errors[150] < 0.045 && errors[285] < 0.25, "{n} {} {}", errors[150], errors[285]);
         }
     }

@@ -320,7 +320,7 @@ mod tests {
             tree.nearest_distances(p, &mut some);
             let all = if usable { brute_within(&points, p, f64::INFINITY) } else { vec![] };
             let mut all: Vec<f64> = all.into_iter().map(|i| Vector::distance(points[i], p)).collect();
-            all.sort_unstable_by(f64::total_cmp);
+            base::sort_numbers(&mut all);
             all.resize(7.max(all.len()), f64::INFINITY);
             prop_assert_eq!(&some[..], &all[..7]);
             let mut order: Vec<usize> = tree.order().collect();

@@ -68,16 +68,7 @@ fn meet(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Meeting {
 ///
 /// Sweeps along the longer side of the drawing. Cost: n log n for outlines, n^2 / 2 box tests at worst.
 fn meeting_boxes(segments: &[(DVec2, DVec2)], mut f: impl FnMut(usize, usize) -> bool) {
-    let (mut lo, mut hi) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-    for &(a, b) in segments {
-        (lo, hi) = (lo.min(a).min(b), hi.max(a).max(b));
-    }
-    let turned = (hi - lo).x < (hi - lo).y;
-    let flat = |p: DVec2| if turned { DVec2::new(p.y, p.x) } else { p };
-    let boxes: Vec<(DVec2, DVec2)> =
-        segments.iter().map(|&(a, b)| (flat(a.min(b)), flat(a.max(b)))).collect();
-    let mut order: Vec<usize> = (0..segments.len()).collect();
-    order.sort_by(|&i, &j| boxes[i].0.x.total_cmp(&boxes[j].0.x).then(i.cmp(&j)));
+    let (boxes, order) = boxes_in_order(segments);
     let mut open: Vec<usize> = Vec::new();
     for i in order {
         let (lo, hi) = boxes[i];
@@ -89,6 +80,21 @@ fn meeting_boxes(segments: &[(DVec2, DVec2)], mut f: impl FnMut(usize, usize) ->
         }
         open.push(i);
     }
+}
+
+/// The box around each segment, the longer side of all along x, and the order in which they begin.
+fn boxes_in_order(segments: &[(DVec2, DVec2)]) -> (Vec<(DVec2, DVec2)>, Vec<usize>) {
+    let (mut lo, mut hi) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+    for &(a, b) in segments {
+        (lo, hi) = (lo.min(a).min(b), hi.max(a).max(b));
+    }
+    let turned = (hi - lo).x < (hi - lo).y;
+    let flat = |p: DVec2| if turned { DVec2::new(p.y, p.x) } else { p };
+    let boxes: Vec<(DVec2, DVec2)> =
+        segments.iter().map(|&(a, b)| (flat(a.min(b)), flat(a.max(b)))).collect();
+    let mut order: Vec<usize> = (0..segments.len()).collect();
+    order.sort_by(|&i, &j| boxes[i].0.x.total_cmp(&boxes[j].0.x).then(i.cmp(&j)));
+    (boxes, order)
 }
 
 fn closed_segments(corners: &[DVec2]) -> Vec<(DVec2, DVec2)> {
@@ -282,7 +288,7 @@ fn tidy(segments: &mut Vec<(DVec2, DVec2)>) {
         }
     }
     segments.retain(|s| s.0 != s.1);
-    segments.sort_by(|s, t| order(s.0, t.0).then(order(s.1, t.1)));
+    base::sort_by(segments, |s, t| order(s.0, t.0).then(order(s.1, t.1)));
     segments.dedup();
 }
 
@@ -311,7 +317,7 @@ fn apply_cuts(segments: &[(DVec2, DVec2)], mut cuts: Vec<(usize, DVec2)>) -> Vec
 /// The largest simple polygon on the outer side of a connected net of segments that meet at their ends only.
 fn outer_polygon(net: Vec<(DVec2, DVec2)>) -> Vec<DVec2> {
     let mut knots: Vec<DVec2> = net.iter().flat_map(|&(a, b)| [a, b]).collect();
-    knots.sort_by(|&p, &q| order(p, q));
+    base::sort_by(&mut knots, |&p, &q| order(p, q));
     knots.dedup();
     let knot = |p: DVec2| knots.partition_point(|&q| order(q, p).is_lt());
     let mut neighbours: Vec<Vec<usize>> = vec![vec![]; knots.len()];

@@ -130,7 +130,7 @@ fn cross_section(polygon: &[DVec2], at: DVec2, across: DVec2) -> Option<(f64, f6
             hits.push((a + (b - a) * t - at).dot(across));
         }
     }
-    hits.sort_by(f64::total_cmp);
+    base::sort_numbers(&mut hits);
     let outside = |&(lo, hi): &(f64, f64)| lo.max(-hi).max(0.0);
     hits.chunks_exact(2).map(|w| (w[0], w[1])).min_by(|p, q| outside(p).total_cmp(&outside(q)))
 }

@@ -176,6 +176,16 @@ pub(crate) fn nearest_on_segment(a: DVec2, b: DVec2, p: DVec2) -> (f64, DVec2) {
     (t, if t >= 1.0 { b } else { a + along * t })
 }
 
+/// The distance of a point from the segment between `a` and `b`; no check of the numbers.
+///
+/// ```
+/// use glam::DVec2;
+/// assert_eq!(geom::distance_to_segment(DVec2::ZERO, DVec2::X, DVec2::new(3.0, 0.0)), 2.0);
+/// ```
+pub fn distance_to_segment(a: DVec2, b: DVec2, p: DVec2) -> f64 {
+    nearest_on_segment(a, b, p).1.distance(p)
+}
+
 /// The point of a line nearest to a given point.
 ///
 /// ```

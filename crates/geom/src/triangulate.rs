@@ -411,7 +411,7 @@ fn lattice_points(points: &[DVec2], count: usize, vein_edges: &[[usize; 2]], edg
     }
     let mut out = vec![];
     for (row, xs) in crossings.iter_mut().enumerate() {
-        xs.sort_by(f64::total_cmp);
+        base::sort_numbers(xs);
         for column in (0..columns).filter(|c| !struck[row * columns + c]) {
             let p = at(row, column);
             if xs.partition_point(|&x| x < p.x) % 2 == 1 {

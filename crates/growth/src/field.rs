@@ -442,7 +442,7 @@ fn layout(points: &[DVec3], good: &[u32], perception_m: f64) -> (DVec3, f64, [us
     let every = good.len() / 1000 + 1;
     for axis in 0..3 {
         let mut sample: Vec<f64> = good.iter().step_by(every).map(|&i| points[i as usize][axis]).collect();
-        sample.sort_unstable_by(f64::total_cmp);
+        base::sort_numbers(&mut sample);
         let (a, b) = (sample[sample.len() / 50], sample[sample.len() - 1 - sample.len() / 50]);
         let margin = 0.2 * (b - a);
         lo[axis] = lo[axis].max(a - margin);

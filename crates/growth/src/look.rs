@@ -1,6 +1,6 @@
 //! What a tree looks like: the form of its leaves, its flowers, its colours and bark.
 //!
-//! Only what is asked for: who meshes and paints a tree makes something of it. Growth itself reads none of it.
+//! Only what is asked for: meshing and painting read it, growth does not.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

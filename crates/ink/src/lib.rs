@@ -5,6 +5,7 @@
 //! | step | module | paper |
 //! |---|---|---|
 //! | strokes as they were drawn | `drawing` | |
+//! | turned, pulled, smoothed, cut, joined, rubbed out in part | `edit` | |
 //! | resample, smooth, normalise | `clean` | section 3, Eq 1 |
 //! | which strokes are of one plant | `subjects` | |
 //! | what a stroke can be, and what each one is | `class`, `classify` | section 4.1 |
@@ -15,6 +16,7 @@ mod class;
 mod classify;
 mod clean;
 mod drawing;
+mod edit;
 mod subjects;
 
 pub use class::StrokeClass;
@@ -29,4 +31,5 @@ pub use classify::{
 };
 pub use clean::{Ink, InkMap, InkStroke, clean};
 pub use drawing::{Drawing, InkSample, Stroke, StrokeMode};
+pub use edit::{StrokePull, StrokeTurn, cut, joined, rubbed, smoothed};
 pub use subjects::Subjects;

@@ -393,7 +393,7 @@ impl VeinGraph {
             // The midrib's thickness is the median over a fortieth of its length: single nodes are uneven.
             let within = midrib.iter().zip(&axis.lengths).filter(|(_, l)| (**l - s).abs() < 0.0125 * length);
             let mut radii: Vec<f64> = within.map(|(&k, _)| net.radius(k)).collect();
-            radii.sort_unstable_by(f64::total_cmp);
+            base::sort_numbers(&mut radii);
             radii.get(radii.len() / 2).map(|r| 2.0 * r)
         };
         let frame = Frame { origin: axis.points[0], up: upright(&axis) };
@@ -603,7 +603,7 @@ pub(crate) fn along(line: &[DVec2], s: f64) -> (DVec2, usize) {
 
 pub(crate) fn median_near(radii: &[f64], k: usize) -> f64 {
     let mut part: Vec<f64> = radii[k.saturating_sub(3)..(k + 4).min(radii.len())].to_vec();
-    part.sort_unstable_by(f64::total_cmp);
+    base::sort_numbers(&mut part);
     part.get(part.len() / 2).copied().unwrap_or(1e-5)
 }
 

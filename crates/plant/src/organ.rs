@@ -65,6 +65,15 @@ impl Paint {
     }
 }
 
+/// Colours of the surfaces that are no organs, as the plant's maker knows them. Linear RGB; none: as such surfaces are.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PlantPaint {
+    /// Green stems and stalks.
+    pub stem: Option<[f32; 3]>,
+    /// Veins of measured leaves.
+    pub veins: Option<[f32; 3]>,
+}
+
 /// The form of an organ in its own frame, in metres at scale 1.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -208,6 +217,16 @@ impl Digestible for Paint {
             }
             Self::Drawn(_) => {
                 d.add(&2_u8);
+            }
+        }
+    }
+}
+
+impl Digestible for PlantPaint {
+    fn digest(&self, d: &mut Digest) {
+        for (row, color) in (0_u8..).zip([self.stem, self.veins]) {
+            if let Some(color) = color {
+                d.add(&row).add(&color);
             }
         }
     }

@@ -6,7 +6,7 @@ use base::{Digest, Digestible};
 use glam::DVec3;
 
 use crate::ids::{AxisId, NodeId, ShapeId};
-use crate::{Flower, Organ, Shape};
+use crate::{Flower, Organ, PlantPaint, Shape};
 
 /// What an axis is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -88,6 +88,8 @@ pub struct Plant {
     pub flowers: Vec<Flower>,
     /// Organ shapes; many organs may share one.
     pub shapes: Vec<Shape>,
+    /// Colours of stems and veins.
+    pub paint: PlantPaint,
 }
 
 impl Plant {
@@ -128,6 +130,41 @@ impl Plant {
         &self.nodes.radius_m[r.start as usize..r.end as usize]
     }
 
+    /// Which axes are `top` or are borne by it, at first or at second hand; none where there is no such axis.
+    ///
+    /// Guaranteed: an end, in a plant that is not sound, too. Cost: linear.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use plant::{AxisId, AxisKind, NodeId, Plant};
+    /// let mut plant = Plant::default();
+    /// let stem = plant.add_axis(AxisKind::Stem, None, 1, &[DVec3::ZERO, DVec3::Y], None);
+    /// let branch = plant.add_axis(AxisKind::Branch, Some(NodeId::new(1)), 2, &[DVec3::Y, DVec3::ONE], None);
+    /// assert_eq!(plant.borne_by(stem), [true, true]);
+    /// assert_eq!(plant.borne_by(branch), [false, true]);
+    /// ```
+    pub fn borne_by(&self, top: AxisId) -> Vec<bool> {
+        let bearer = |i: usize| Some(self.nodes.axis.get(self.axes[i].bearer?.index())?.index());
+        let mut known: Vec<Option<bool>> = vec![None; self.axes.len()];
+        if let Some(top) = known.get_mut(top.index()) {
+            *top = Some(true);
+        }
+        for i in 0..self.axes.len() {
+            let (mut way, mut at) = (vec![i], bearer(i));
+            if known[i].is_some() {
+                continue;
+            }
+            // No longer than there are axes: a sound plant has no circle.
+            while let Some(b) = at.filter(|&b| known[b].is_none() && way.len() <= self.axes.len()) {
+                way.push(b);
+                at = bearer(b);
+            }
+            let is = at.and_then(|b| known[b]).unwrap_or(false);
+            way.into_iter().for_each(|w| known[w] = Some(is));
+        }
+        known.into_iter().map(|k| k == Some(true)).collect()
+    }
+
     /// Lowest and highest corner of the box around nodes and organs, roughly: of an organ its root and how far it
     /// reaches. What is not finite or absurdly far is left out; `None` for nothing at all.
     pub fn extent(&self) -> Option<(DVec3, DVec3)> {
@@ -164,6 +201,6 @@ impl Digestible for Plant {
             d.add(&a.nodes.start).add(&a.nodes.end).add(&a.source);
         }
         d.add(&self.nodes.position).add(&self.nodes.radius_m);
-        d.add(&self.organs).add(&self.flowers).add(&self.shapes);
+        d.add(&self.organs).add(&self.flowers).add(&self.shapes).add(&self.paint);
     }
 }

@@ -19,8 +19,9 @@ pub(crate) fn crown_outline(points: &[DVec2]) -> Option<Vec<DVec2>> {
     }
 }
 
-/// Splits an outline with a narrow lower part and a wide upper part at the neck: trunk and crown.
-pub(crate) fn neck(outline: &[DVec2]) -> Option<(Vec<DVec2>, Vec<DVec2>)> {
+/// Splits an outline with a narrow lower part and a wide upper part at the neck: trunk and crown. `known`: it is a tree,
+/// so that the neck may be less clear.
+pub(crate) fn neck(outline: &[DVec2], known: bool) -> Option<(Vec<DVec2>, Vec<DVec2>)> {
     const LEVELS: usize = 60;
     let (lo, hi) = bounds(outline)?;
     let height = hi.y - lo.y;
@@ -35,8 +36,9 @@ pub(crate) fn neck(outline: &[DVec2]) -> Option<(Vec<DVec2>, Vec<DVec2>)> {
     // The neck ends where the outline first becomes clearly wider than the trunk for good.
     let top = (0..=first_wide).rev().find(|&k| width[k] < 1.5 * median).map_or(first_wide, |k| k + 1);
     let (trunk_height, crown_height) = (y_of(top) - lo.y, hi.y - y_of(top));
-    let jump = width[(top + 3).min(LEVELS - 1)] > 1.7 * width[top.saturating_sub(3)];
-    let fits = median < 0.4 * widest
+    let (thin, wider) = if known { (0.6, 1.25) } else { (0.4, 1.7) };
+    let jump = width[(top + 3).min(LEVELS - 1)] > wider * width[top.saturating_sub(3)];
+    let fits = median < thin * widest
         && trunk_height > 0.8 * median
         && trunk_height > 0.12 * height
         && crown_height > 0.2 * height;
@@ -91,9 +93,12 @@ mod tests {
             p(0.1, 0.45),
             p(0.45, 0.4),
         ];
-        let (trunk, crown) = neck(&tree).expect("has a neck");
+        let (trunk, crown) = neck(&tree, false).expect("has a neck");
         assert!((signed_area(&trunk) - 0.04).abs() < 0.005, "{}", signed_area(&trunk));
         assert!(crown.iter().all(|q| q.y > 0.35), "{crown:?}");
-        assert!(neck(&[p(0.0, 0.0), p(1.0, 0.0), p(1.0, 1.0), p(0.0, 1.0)]).is_none(), "a box has no neck");
+        assert!(
+            neck(&[p(0.0, 0.0), p(1.0, 0.0), p(1.0, 1.0), p(0.0, 1.0)], true).is_none(),
+            "a box has no neck"
+        );
     }
 }

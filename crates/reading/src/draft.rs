@@ -13,7 +13,7 @@ use crate::branches::{Forest, Hints, Line};
 use crate::contour::crown_outline;
 use crate::near::bounds;
 use crate::{
-    Attachment, BladeReading, DiscReading, FlowerReading, FruitReading, OrganWord, Reading, RegionKind,
+    Attachment, BladeReading, DiscReading, FlowerReading, FruitReading, Kind, OrganWord, Reading, RegionKind,
     RegionReading, StrokeReading, blade, rings,
 };
 
@@ -51,6 +51,8 @@ impl RegionDraft {
 #[derive(Debug)]
 pub(crate) struct Draft<'a> {
     pub(crate) ink: &'a Ink,
+    /// What the whole is taken for, if that is known.
+    pub(crate) kind: Option<Kind>,
     pub(crate) class: Vec<StrokeClass>,
     /// What was said of each stroke before any rule.
     pub(crate) said: Vec<Classified>,
@@ -90,6 +92,7 @@ impl<'a> Draft<'a> {
             (0..ink.strokes.len()).map(|k| classes.get(k).copied().unwrap_or_default()).collect();
         Self {
             ink,
+            kind: None,
             class: said.iter().map(|c| c.class).collect(),
             rule: vec![None; said.len()],
             settled: vec![false; said.len()],
@@ -319,7 +322,7 @@ impl<'a> Draft<'a> {
         strokes.extend(nuts);
         strokes.sort_unstable();
         let mut fruits = Vec::new();
-        for k in strokes {
+        for k in self.joined_fruits(&mut strokes, &mut fruits) {
             let s = &self.ink.strokes[k];
             if let Some(outline) = geom::simple_outline(&s.points) {
                 self.organ[k] = OrganWord::Fruit;
@@ -327,6 +330,32 @@ impl<'a> Draft<'a> {
             }
         }
         fruits
+    }
+
+    /// Where the whole is a fruit or a root: outlines of it that were drawn in several lines. The other strokes are left.
+    fn joined_fruits(&mut self, strokes: &mut Vec<usize>, fruits: &mut Vec<FruitReading>) -> Vec<usize> {
+        let whole = self.kind.is_some_and(|k| k.is_like(Kind::Fruit));
+        let open = |k: &usize| {
+            let s = &self.ink.strokes[*k];
+            s.points[0].distance(s.points[s.points.len() - 1]) > 0.35 * s.length
+        };
+        if !whole {
+            return core::mem::take(strokes);
+        }
+        let (lines, mut rest): (Vec<usize>, Vec<usize>) = strokes.iter().partition(|k| open(k));
+        let points: Vec<&[DVec2]> = lines.iter().map(|&k| self.ink.strokes[k].points.as_slice()).collect();
+        for ring in rings::rings(&points) {
+            let outline = geom::simple_outline(&ring.points).filter(|_| ring.parts.len() > 1);
+            let Some(outline) = outline else {
+                rest.extend(ring.parts.iter().map(|&p| lines[p]));
+                continue;
+            };
+            ring.parts.iter().for_each(|&p| self.organ[lines[p]] = OrganWord::Fruit);
+            let s = &self.ink.strokes[lines[ring.parts[0]]];
+            fruits.push(FruitReading { outline, bearer: None, source: Some(s.index), color: s.color });
+        }
+        rest.sort_unstable();
+        rest
     }
 
     /// Where stems begin and end; `flowers`: their centres.

@@ -65,7 +65,7 @@ pub(crate) fn corollas(draft: &mut Draft<'_>, discs: &[(DiscReading, usize)]) {
         if draft.bodies.is_empty()
             && axes.is_empty()
             && let Some(outline) = geom::simple_outline(&points)
-            && let Some((trunk, top)) = neck(&outline)
+            && let Some((trunk, top)) = neck(&outline, false)
             && discs.is_empty()
             && slender(&trunk)
         {

@@ -12,10 +12,13 @@ use glam::DVec2;
 use ink::{Classified, Ink, StrokeClass};
 
 use crate::near::bounds;
-use crate::{Kind, Reading, Scored};
+use crate::{Kind, Reading, Scored, look};
 
 /// Numbers of a drawing.
-pub(crate) const COUNT: usize = 1 + Kind::ALL.len() + 2 * StrokeClass::ALL.len() + SHAPE.len();
+pub(crate) const COUNT: usize =
+    1 + Kind::ALL.len() + (2 + CLASS_BANDS) * StrokeClass::ALL.len() + SHAPE.len() + look::COUNT;
+/// Bands of the height for which the length of each stroke class is measured.
+const CLASS_BANDS: usize = 3;
 /// Names of the numbers that say how the whole looks.
 const SHAPE: [&str; 20] = [
     "strokes",
@@ -46,7 +49,20 @@ pub fn kind_feature_names() -> Vec<String> {
     let sums = StrokeClass::ALL.iter().map(|c| format!("sum-{}", c.word()));
     let lengths = StrokeClass::ALL.iter().map(|c| format!("length-{}", c.word()));
     let shape = SHAPE.iter().map(|s| (*s).to_owned());
-    core::iter::once("one".to_owned()).chain(built).chain(sums).chain(lengths).chain(shape).collect()
+    let classes = StrokeClass::ALL
+        .iter()
+        .flat_map(|c| (0..CLASS_BANDS).map(move |b| format!("length-{}-{b}", c.word())));
+    let look = look::GROUPS.iter().flat_map(|&(name, n)| {
+        (0..n).map(move |k| if n == 1 { name.to_owned() } else { format!("{name}-{k}") })
+    });
+    core::iter::once("one".to_owned())
+        .chain(built)
+        .chain(sums)
+        .chain(lengths)
+        .chain(shape)
+        .chain(classes)
+        .chain(look)
+        .collect()
 }
 
 /// What is measured of one plant, each about 0 to 1; independent of the order and direction of strokes, of left and right
@@ -66,8 +82,34 @@ pub fn kind_features(ink: &Ink, classes: &[Classified], first: &Reading) -> Vec<
         row.push(sum / total);
     }
     row.extend(shape(ink, total));
+    row.extend(class_bands(ink, &share, total));
+    row.extend(look::look(ink));
     debug_assert_eq!(row.len(), COUNT, "one number for each name");
     row
+}
+
+/// How much of each stroke class lies low, in the middle and high.
+fn class_bands(ink: &Ink, share: &dyn Fn(usize, StrokeClass) -> f64, total: f64) -> Vec<f64> {
+    let ends = ink.strokes.iter().flat_map(|s| &s.points).map(|p| p.y);
+    let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)));
+    let mut sums = vec![0.0; CLASS_BANDS * StrokeClass::ALL.len()];
+    for (k, s) in ink.strokes.iter().enumerate() {
+        let mut own = [0.0_f64; CLASS_BANDS];
+        for p in &s.points {
+            let at = (p.y - low) / (high - low).max(1e-9) * CLASS_BANDS as f64;
+            own[if at < 1.0 {
+                0
+            } else if at < 2.0 {
+                1
+            } else {
+                2
+            }] += s.length / s.points.len() as f64 / total;
+        }
+        for (sums, class) in sums.chunks_mut(CLASS_BANDS).zip(StrokeClass::ALL) {
+            sums.iter_mut().zip(own).for_each(|(sum, own)| *sum += own * share(k, class));
+        }
+    }
+    sums
 }
 
 /// How the whole looks.
@@ -138,24 +180,43 @@ fn shape(ink: &Ink, total: f64) -> [f64; SHAPE.len()] {
     ]
 }
 
-/// The model: one row of coefficients for each kind.
-struct Model(Vec<(Kind, Vec<f64>)>);
+/// The model: for each number its mean, its spread and a coefficient for each kind.
+struct Model {
+    /// What each column stands for; nothing for several plants side by side.
+    kinds: Vec<Option<Kind>>,
+    rows: Vec<ModelRow>,
+}
+
+struct ModelRow {
+    mean: f64,
+    spread: f64,
+    coefficients: Vec<f64>,
+}
+
+/// The word of the column for several plants.
+pub const SEVERAL: &str = "several";
+/// A number counts at most this many spreads from its mean: no single one decides.
+pub const KIND_FEATURE_LIMIT: f64 = 4.0;
 
 impl Model {
     fn parse(text: &str) -> Option<Self> {
         let mut lines = text.lines().filter(|l| !l.starts_with('#'));
-        let kinds: Option<Vec<Kind>> = lines.next()?.split(',').skip(1).map(Kind::from_word).collect();
-        let mut rows: Vec<(Kind, Vec<f64>)> = kinds?.into_iter().map(|k| (k, Vec::new())).collect();
+        let column = |word: &str| if word == SEVERAL { Some(None) } else { Kind::from_word(word).map(Some) };
+        let kinds: Option<Vec<Option<Kind>>> = lines.next()?.split(',').skip(3).map(column).collect();
+        let kinds = kinds?;
+        let mut rows = Vec::new();
         for (line, name) in lines.zip(kind_feature_names()) {
             let mut cells = line.split(',');
             if cells.next()? != name {
                 return None;
             }
-            for (row, cell) in rows.iter_mut().zip(cells) {
-                row.1.push(cell.parse().ok()?);
-            }
+            let numbers: Option<Vec<f64>> = cells.map(|c| c.parse().ok()).collect();
+            let [mean, spread, coefficients @ ..] = &numbers?[..] else { return None };
+            let coefficients = coefficients.to_vec();
+            let whole = coefficients.len() == kinds.len() && *spread > 0.0;
+            rows.push(whole.then_some(ModelRow { mean: *mean, spread: *spread, coefficients })?);
         }
-        rows.iter().all(|r| r.1.len() == COUNT).then_some(Self(rows))
+        (rows.len() == COUNT).then_some(Self { kinds, rows })
     }
 }
 
@@ -164,18 +225,39 @@ fn trained() -> Option<&'static Model> {
     MODEL.get_or_init(|| Model::parse(include_str!("../data/kinds.csv"))).as_ref()
 }
 
-/// Every kind with its share, the best first.
-pub(crate) fn scores(row: &[f64]) -> Vec<Scored> {
-    let Some(model) = trained() else { return Vec::new() };
-    let sums: Vec<f64> =
-        model.0.iter().map(|(_, c)| c.iter().zip(row).map(|(c, x)| c * x).sum::<f64>()).collect();
+/// How well a drawing is explained.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Shares {
+    /// Every kind with its share among all kinds, the best first.
+    pub(crate) kinds: Vec<Scored>,
+    /// The share of what is no plant, among all.
+    pub(crate) no_plant: f64,
+    /// The share of several plants, among all.
+    pub(crate) several: f64,
+}
+
+/// What the model says of a row of [`kind_features`].
+pub(crate) fn shares(row: &[f64]) -> Shares {
+    let Some(model) = trained() else { return Shares::default() };
+    let mut sums = vec![0.0; model.kinds.len()];
+    for (m, x) in model.rows.iter().zip(row) {
+        let z = ((x - m.mean) / m.spread).clamp(-KIND_FEATURE_LIMIT, KIND_FEATURE_LIMIT);
+        sums.iter_mut().zip(&m.coefficients).for_each(|(sum, c)| *sum += c * z);
+    }
     let most = sums.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let powers: Vec<f64> = sums.iter().map(|s| ops::exp(s - most)).collect();
     let total: f64 = powers.iter().sum();
-    let mut found: Vec<Scored> =
-        model.0.iter().zip(powers).map(|((kind, _), p)| Scored { kind: *kind, score: p / total }).collect();
-    base::sort_by(&mut found, |a, b| b.score.total_cmp(&a.score).then(a.kind.cmp(&b.kind)));
-    found
+    let of = |wanted: Option<Kind>| {
+        let own = model.kinds.iter().zip(&powers).filter(|(k, _)| **k == wanted);
+        own.map(|(_, p)| p).sum::<f64>() / total
+    };
+    let (no_plant, several) = (of(Some(Kind::None)), of(None));
+    let rest = (1.0 - no_plant - several).max(f64::MIN_POSITIVE);
+    let plants = model.kinds.iter().flatten().filter(|k| **k != Kind::None);
+    let mut kinds: Vec<Scored> =
+        plants.map(|&kind| Scored { kind, score: (of(Some(kind)) / rest).min(1.0) }).collect();
+    base::sort_by(&mut kinds, |a, b| b.score.total_cmp(&a.score).then(a.kind.cmp(&b.kind)));
+    Shares { kinds, no_plant, several }
 }
 
 #[cfg(test)]
@@ -186,9 +268,10 @@ mod tests {
     fn the_committed_model_belongs_to_the_features() {
         let model = trained().expect("data/kinds.csv is of other features: run `cargo xtask train-kinds`");
         assert_eq!(kind_feature_names().len(), COUNT);
-        assert!(model.0.iter().flat_map(|r| &r.1).all(|c| c.is_finite()));
+        assert!(model.rows.iter().flat_map(|r| &r.coefficients).all(|c| c.is_finite()));
         let row = kind_features(&Ink::default(), &[], &Reading::default());
-        let sum: f64 = scores(&row).iter().map(|s| s.score).sum();
+        assert!(row.iter().all(|x| x.is_finite()));
+        let sum: f64 = shares(&row).kinds.iter().map(|s| s.score).sum();
         assert!((sum - 1.0).abs() < 1e-9);
     }
 }

@@ -24,8 +24,10 @@ mod contour;
 mod corolla;
 mod draft;
 mod flowers;
+mod grid;
 mod kind;
 mod kinds;
+mod look;
 mod near;
 mod outlines;
 mod read;
@@ -39,8 +41,8 @@ mod validate;
 mod veins;
 
 pub use kind::{Kind, Scored};
-pub use kinds::{kind_feature_names, kind_features};
-pub use read::{kind_row, read, read_as, read_without};
+pub use kinds::{KIND_FEATURE_LIMIT, SEVERAL, kind_feature_names, kind_features};
+pub use read::{UNLIKE_A_PLANT, kind_row, read, read_as, read_without};
 pub use rows::{
     Attachment, AxisReading, BladeReading, DiscReading, FlowerReading, FruitReading, OrganWord, PlantReading,
     Reading, RegionKind, RegionReading, StrokeReading,

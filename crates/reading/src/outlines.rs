@@ -13,7 +13,7 @@ use crate::contour::{crown_outline, neck};
 use crate::draft::{Draft, MOST_REGIONS, RegionDraft};
 use crate::near::bounds;
 use crate::rings::{Ring, rings};
-use crate::{Attachment, OrganWord, RegionKind};
+use crate::{Attachment, Kind, OrganWord, RegionKind};
 
 /// More bodies than this are scribbles: the smaller ones become plain lines (keeps the work linear).
 const MOST_BODIES: usize = 100;
@@ -74,6 +74,13 @@ pub(crate) fn bodies(draft: &mut Draft<'_>) {
         if alone {
             plumb(&mut ring);
         }
+        // The trunk of a palm may be one line; it is as thick as it would be drawn.
+        if draft.kind == Some(Kind::Palm) && ring.parts.len() == 1 {
+            let line = points[ring.parts[0]];
+            if line[0].distance(line[line.len() - 1]) > 0.7 * polyline_length(line) {
+                ring = thick(line, ring.parts);
+            }
+        }
         let area = signed_area(&ring.points).abs();
         let drawn: f64 = ring.drawn().iter().map(|d| polyline_length(d)).sum();
         if area > THIN * drawn * drawn && found.len() < MOST_BODIES {
@@ -99,6 +106,21 @@ pub(crate) fn bodies(draft: &mut Draft<'_>) {
             draft.organ[strokes[part]] = OrganWord::Trunk;
         }
     }
+}
+
+/// A line as an outline that is open above, narrower there.
+fn thick(line: &[DVec2], parts: Vec<usize>) -> Ring {
+    let up: Vec<DVec2> =
+        if line[0].y < line[line.len() - 1].y { line.to_vec() } else { line.iter().rev().copied().collect() };
+    let n = up.len();
+    let side = |k: usize, s: f64| {
+        let along = up[(k + 1).min(n - 1)] - up[k.saturating_sub(1)];
+        let half = (0.05 - 0.02 * k as f64 / n as f64) * up[0].distance(up[n - 1]);
+        up[k] + along.normalize_or(DVec2::Y).perp() * (s * half)
+    };
+    let mut points: Vec<DVec2> = (0..n).map(|k| side(k, 1.0)).collect();
+    points.extend((0..n).rev().map(|k| side(k, -1.0)));
+    Ring { points, parts, gaps: vec![n - 1] }
 }
 
 /// An outline that was left off far above its foot goes straight down to it: half a body is no slanting one.
@@ -152,6 +174,7 @@ pub(crate) fn crowns(draft: &mut Draft<'_>, report: &mut Report) {
         .map(|k| loops.get(k).map_or(draft.ink.strokes[*k].points.as_slice(), Vec::as_slice))
         .collect();
     let mut left_out = 0;
+    let is_tree = draft.kind.is_some_and(|k| k.is_like(Kind::Tree)) && draft.bodies.is_empty();
     for ring in rings(&points) {
         let Some(mut outline) = crown_outline(&ring.points) else {
             for &part in &ring.parts {
@@ -161,7 +184,8 @@ pub(crate) fn crowns(draft: &mut Draft<'_>, report: &mut Report) {
         };
         let stroke = ring.parts.first().map_or(0, |&p| strokes[p]);
         if draft.bodies.len() < MOST_BODIES
-            && let Some((trunk, crown)) = neck(&outline)
+            && draft.kind != Some(Kind::Bush)
+            && let Some((trunk, crown)) = neck(&outline, is_tree)
         {
             let source = Some(draft.ink.strokes[stroke].index);
             let bottom = Ring { gaps: Vec::new(), parts: Vec::new(), points: trunk };

@@ -55,19 +55,65 @@ struct Asked<'a> {
     off: &'a [&'a str],
 }
 
-fn whole(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
-    if ink.is_several() {
-        several::read_each(ink, classes, |part, own| one(asked, part, own, report))
-    } else {
-        one(asked, ink, classes, report)
+impl Asked<'_> {
+    /// Whether the whole may decide what strokes are: no class was set by hand, and there are not too many.
+    fn is_free(&self, ink: &Ink, classes: &[Classified]) -> bool {
+        let guessed = classes.iter().all(|c| c.source != Source::User);
+        guessed && ink.strokes.len() <= MOST_STROKES && !self.off.contains(&READ_AS)
     }
 }
 
+/// A plant as its strokes say, and how well each kind explains it.
+struct First {
+    reading: Reading,
+    said: Report,
+    shares: kinds::Shares,
+}
+
+impl First {
+    fn of(asked: &Asked<'_>, ink: &Ink, classes: &[Classified]) -> Self {
+        let mut said = Report::default();
+        let reading = attempt(asked.off, None, ink, classes, &mut said);
+        let shares = kinds::shares(&kinds::kind_features(ink, classes, &reading));
+        Self { reading, said, shares }
+    }
+
+    /// Whether what lies apart is one plant all the same, because one kind explains all of it: berries, a pod with its
+    /// peas.
+    fn is_one(&self) -> bool {
+        self.shares.several < FEW_PLANTS && self.shares.kinds.first().is_some_and(|k| k.score > ALONE)
+    }
+}
+
+fn whole(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
+    if !ink.is_several() {
+        return one(asked, ink, classes, First::of(asked, ink, classes), report);
+    }
+    if asked.kind.is_none() && asked.is_free(ink, classes) {
+        let first = First::of(asked, ink, classes);
+        if first.is_one() {
+            return one(asked, ink, classes, first, report);
+        }
+    }
+    several::read_each(ink, classes, |part, own| one(asked, part, own, First::of(asked, part, own), report))
+}
+
+/// Several plants explain a drawing at most so well where it is read as one, and the kind of that one at least so well.
+const FEW_PLANTS: f64 = 0.1;
+const ALONE: f64 = 0.6;
 /// Another kind is tried if it explains the drawing at least so well, and so many times as well as what was read first.
-const SURE: f64 = 0.6;
-const BETTER: f64 = 4.0;
+const SURE: f64 = 0.5;
+const BETTER: f64 = 2.0;
+/// Strokes of which the classifier is so sure speak for what was read first: another kind must then explain the drawing
+/// this many times as well.
+const CLEAR: f64 = 0.55;
+const MUCH_BETTER: f64 = 20.0;
 /// As [`SURE`] of fruits and roots: a tool for plants is given trees more often than potatoes.
-const SURE_BODY: f64 = 0.95;
+const SURE_BODY: f64 = 0.6;
+/// What is no plant at least by this share gives a warning.
+const NO_PLANT: f64 = 0.6;
+/// The code of that warning.
+pub const UNLIKE_A_PLANT: &str = "unlike-a-plant";
 /// In the scores that are told, what was read first weighs so many times as much as the model says: it was built.
 const BUILT: f64 = 6.0;
 /// A drawing of more strokes is read once: nobody draws one plant with so many and means another kind.
@@ -76,27 +122,27 @@ const MOST_STROKES: usize = 200;
 const TOLD: usize = 3;
 
 /// Understands one plant: of the interpretations of the whole drawing the one that explains it best.
-fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], report: &mut Report) -> Reading {
-    let mut said = Report::default();
-    let mut reading = attempt(asked.off, None, ink, classes, &mut said);
+fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, report: &mut Report) -> Reading {
+    let First { mut reading, mut said, shares } = first;
     let mut kind = Kind::of(&reading);
-    let mut scores = kinds::scores(&kinds::kind_features(ink, classes, &reading));
+    let (mut scores, no_plant) = (shares.kinds, shares.no_plant);
     let built = kind;
     let group = |scores: &[Scored], kind: Kind| -> f64 {
         scores.iter().filter(|s| s.kind.is_like(kind)).map(|s| s.score).sum()
     };
-    let free = !asked.off.contains(&READ_AS) && ink.strokes.len() <= MOST_STROKES;
-    let guessed = classes.iter().all(|c| c.source != Source::User);
+    // Petals round a middle were no chance either.
+    let clear = sureness(ink, classes) > CLEAR || built.is_like(Kind::Flower);
+    let better = if clear { MUCH_BETTER } else { BETTER };
     let likelier = |s: &&Scored| {
         let (own, sure) =
             (group(&scores, s.kind), if s.kind.is_like(Kind::Fruit) { SURE_BODY } else { SURE });
-        !s.kind.is_like(built) && own > sure && own > BETTER * group(&scores, built)
+        !s.kind.is_like(built) && own > sure && own > better * group(&scores, built)
     };
     let other = scores.iter().find(likelier).copied();
     if let Some(wanted) = asked.kind {
         (said, kind) = (Report::default(), wanted);
         reading = attempt(asked.off, asked.kind, ink, classes, &mut said);
-    } else if let Some(other) = other.filter(|_| free && guessed) {
+    } else if let Some(other) = other.filter(|_| asked.is_free(ink, classes)) {
         let mut again = Report::default();
         let tried = attempt(asked.off, Some(other.kind), ink, classes, &mut again);
         // Only what can be built of the drawing explains it.
@@ -106,12 +152,23 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], report: &mut Report
     }
     scores.iter_mut().filter(|s| s.kind.is_like(built)).for_each(|s| s.score *= BUILT);
     report.warnings.append(&mut said.warnings);
+    if asked.kind.is_none() && no_plant > NO_PLANT {
+        report.warn(UNLIKE_A_PLANT, "this looks like no plant; made the best plant of it");
+    }
     let readings = readings(kind, &scores);
     let strokes = ink.strokes.iter().map(|s| s.index).collect();
     let ends = ink.strokes.iter().flat_map(|s| &s.points).map(|p| p.y);
     let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)));
     reading.plants = vec![PlantReading { strokes, height: (high - low).max(0.0), kind, readings }];
     reading
+}
+
+/// How sure the classifier is of the strokes of a drawing, the mean over their length: 0 to 1.
+fn sureness(ink: &Ink, classes: &[Classified]) -> f64 {
+    let rows = ink.strokes.iter().zip(classes);
+    let (sum, length) =
+        rows.fold((0.0, 0.0), |(sum, length), (s, c)| (sum + s.length * c.confidence, length + s.length));
+    if length > 0.0 { sum / length } else { 0.0 }
 }
 
 /// What a plant was read as, and the best of the others; one of each that are built alike. What could not be built, or is
@@ -131,6 +188,11 @@ fn readings(kind: Kind, scores: &[Scored]) -> Vec<Scored> {
     found
 }
 
+/// A plant that is taken for one of these has leaves where another may have petals.
+const fn bears_no_flower(kind: Kind) -> bool {
+    matches!(kind, Kind::Grass | Kind::Stem | Kind::Palm | Kind::Leaf)
+}
+
 /// One reading of one plant, taken for a kind or for whatever its strokes say.
 fn attempt(
     off: &[&str],
@@ -147,6 +209,7 @@ fn attempt(
         }
     }
     if let Some(kind) = kind {
+        draft.kind = Some(kind);
         rules::take_for(&mut draft, kind);
     }
     rules::apply(&mut draft, off);
@@ -156,6 +219,9 @@ fn attempt(
     outlines::bodies(&mut draft);
     outlines::crowns(&mut draft, report);
     draft.blades();
+    if draft.kind.is_some_and(bears_no_flower) {
+        draft.blades.iter_mut().for_each(|b| b.leaf = true);
+    }
     let discs = flowers::discs(&draft);
     flowers::corollas(&mut draft, &discs);
     outlines::scribbled_trunk(&mut draft);

@@ -7,7 +7,7 @@ use proptest::prelude::*;
 
 use ink::{Classified, Drawing, Source, StrokeClass, StrokeMode, clean};
 
-use crate::{Kind, RULES, Reading, RegionKind, read, read_as, read_without};
+use crate::{Kind, READ_AS, RULES, Reading, RegionKind, read, read_as, read_without};
 
 fn line(from: (f64, f64), to: (f64, f64)) -> Vec<DVec2> {
     let (a, b) = (DVec2::from(from), DVec2::from(to));
@@ -351,7 +351,7 @@ fn a_leaf_taken_for_a_body_is_seen_by_its_midrib_unless_the_user_says_so() {
     let ink = clean(&Drawing::from_polylines("leaf", &strokes), &mut Report::default());
     let body =
         |confidence| [StrokeClass::TrunkOutline, StrokeClass::Axis].map(|class| perhaps(class, confidence));
-    let guessed = read(&ink, &body(0.6), &mut Report::default());
+    let guessed = read_without(&[READ_AS], &ink, &body(0.6), &mut Report::default());
     assert_eq!((guessed.leaves.len(), guessed.strokes[0].class), (1, StrokeClass::Blade));
     let set = read(&ink, &body(1.0), &mut Report::default());
     assert_eq!((set.leaves.len(), set.strokes[0].class), (0, StrokeClass::TrunkOutline));
@@ -420,7 +420,8 @@ fn guessed(strokes: &[(StrokeClass, Vec<DVec2>)]) -> Reading {
     let ink = clean(&Drawing::from_polylines("guessed", &lines), &mut Report::default());
     let classes: Vec<Classified> =
         ink.strokes.iter().map(|s| perhaps(strokes[s.index as usize].0, 0.5)).collect();
-    read(&ink, &classes, &mut Report::default())
+    // The kind of the whole would see them, too.
+    read_without(&[READ_AS], &ink, &classes, &mut Report::default())
 }
 
 #[test]
@@ -521,8 +522,8 @@ fn regions_with_and_without(rule: &str, strokes: &[(StrokeClass, Vec<DVec2>)]) -
     let lines: Vec<Vec<DVec2>> = strokes.iter().map(|s| s.1.clone()).collect();
     let ink = clean(&Drawing::from_polylines("tree", &lines), &mut Report::default());
     let classes: Vec<Classified> = strokes.iter().map(|s| perhaps(s.0, 0.5)).collect();
-    // The rule about whole trees would see them, too.
-    [&["whole-tree"][..], &["whole-tree", rule]]
+    // The rule about whole trees and the kind of the whole would see them, too.
+    [&["whole-tree", READ_AS][..], &["whole-tree", READ_AS, rule]]
         .map(|off| read_without(off, &ink, &classes, &mut Report::default()).regions.len())
 }
 
@@ -568,12 +569,13 @@ fn a_class_says_what_decided_it_and_how_sure_it_is() {
     let classes = [body, said(StrokeClass::Vein, 0.5, StrokeClass::Axis)];
     let of = |r: &Reading| r.strokes.iter().map(|s| (s.class, s.source, s.confidence)).collect::<Vec<_>>();
     let line = |class, source| (class, source, 0.5);
-    let all = read(&ink, &classes, &mut Report::default());
+    let all = read_without(&[READ_AS], &ink, &classes, &mut Report::default());
     // The rule agrees about the line: the classifier's class is shown, and its share.
     let rule = (StrokeClass::Blade, Source::Rule("lone-leaf"), 0.25);
     assert_eq!(of(&all)[0], rule);
     assert_eq!(of(&all)[1].0, StrokeClass::Vein);
-    let off = read_without(&["lone-leaf", "tree-in-one-stroke"], &ink, &classes, &mut Report::default());
+    let off =
+        read_without(&[READ_AS, "lone-leaf", "tree-in-one-stroke"], &ink, &classes, &mut Report::default());
     assert_eq!(of(&off)[0], (StrokeClass::TrunkOutline, Source::Classifier, 0.75));
     let set = [Classified::by_user(StrokeClass::TrunkOutline), classes[1]];
     let set = read(&ink, &set, &mut Report::default());
@@ -707,7 +709,7 @@ fn the_user_may_take_a_drawing_for_another_kind() {
     }
     let r = read_as(Some(Kind::Fruit), &ink, &classes, &mut Report::default());
     assert_eq!((r.fruits.len(), r.regions.len()), (1, 0), "{:?}", r.strokes);
-    assert!(r.strokes.iter().any(|s| s.source == Source::Rule(crate::READ_AS)), "{:?}", r.strokes);
+    assert!(r.strokes.iter().any(|s| s.source == Source::Rule(READ_AS)), "{:?}", r.strokes);
     // The scores fall, and what was read comes first.
     let r = read(&ink, &classes, &mut Report::default());
     let readings = &r.plants[0].readings;
@@ -731,4 +733,67 @@ fn the_documented_rules_are_these() {
         let kebab = rule.name.chars().all(|c| c.is_ascii_lowercase() || c == '-');
         assert!(kebab && rule.why.ends_with('.'), "{} is a name, its reason a sentence", rule.name);
     }
+}
+
+/// Read as a person would have drawn it, and whether that was called no plant.
+fn drawn(lines: &[Vec<DVec2>]) -> (Reading, bool) {
+    let mut report = Report::default();
+    let ink = clean(&Drawing::from_polylines("drawn", lines), &mut report);
+    let classes = ink::classify(&ink, &base::Run::plain());
+    let r = read(&ink, &classes, &mut report);
+    (r, report.warnings.iter().any(|w| w.code == crate::UNLIKE_A_PLANT))
+}
+
+#[test]
+fn a_house_and_a_cat_are_unlike_a_plant_and_plants_are_not() {
+    let house = vec![
+        path(&[(0.0, 0.0), (0.0, 60.0), (90.0, 60.0), (90.0, 0.0), (0.0, 0.0)]),
+        path(&[(-6.0, 60.0), (45.0, 98.0), (96.0, 60.0)]),
+        path(&[(36.0, 0.0), (36.0, 32.0), (53.0, 32.0), (53.0, 0.0)]),
+        path(&[(10.0, 28.0), (10.0, 45.0), (25.0, 45.0), (25.0, 28.0), (10.0, 28.0)]),
+    ];
+    let mut cat = vec![circle((0.0, 0.0), 40.0), circle((-14.0, 9.0), 5.0), circle((14.0, 9.0), 5.0)];
+    for s in [-1.0, 1.0] {
+        cat.push(path(&[(s * 34.0, 22.0), (s * 33.0, 56.0), (s * 10.0, 39.0)]));
+        cat.push(line((s * 12.0, -6.0), (s * 52.0, 0.0)));
+        cat.push(line((s * 12.0, -11.0), (s * 50.0, -16.0)));
+    }
+    cat.push(path(&[(-12.0, -18.0), (0.0, -24.0), (12.0, -18.0)]));
+    for (what, lines) in [("house", house), ("cat", cat)] {
+        let (reading, warned) = drawn(&lines);
+        assert!(warned, "{what}: {:?}", reading.plants);
+        assert!(
+            !reading.axes.is_empty() || !reading.fruits.is_empty() || !reading.leaves.is_empty(),
+            "{what}"
+        );
+    }
+    let way = |k: i32| ops::sin_cos(ops::TAU * f64::from(k) / 6.0 + 0.3);
+    let round = |k: i32| circle((18.0 * way(k).1, 18.0 * way(k).0), 9.0);
+    let mut flower: Vec<Vec<DVec2>> = (0..6).map(round).collect();
+    flower.extend([circle((0.0, 0.0), 9.0), line((0.0, -28.0), (0.0, -80.0))]);
+    // Pointed petals that begin in the middle, under the disc that was drawn over them, on a bare stalk.
+    let mut daisy: Vec<Vec<DVec2>> =
+        (0..6).map(|k| leaf((0.0, 0.0), (30.0 * way(k).1, 30.0 * way(k).0), 14.0)).collect();
+    daisy.extend([circle((0.0, 0.0), 8.0), line((0.0, -24.0), (1.0, -120.0))]);
+    let leaf = vec![leaf((0.0, 0.0), (0.0, 80.0), 40.0), line((0.0, -20.0), (0.0, 74.0))];
+    let trees = trees().into_iter().map(|lines| (Kind::Tree, lines));
+    for (kind, lines) in trees.chain([(Kind::Flower, flower), (Kind::Flower, daisy), (Kind::Leaf, leaf)]) {
+        let (reading, warned) = drawn(&lines);
+        assert!(!warned, "{kind:?}: {:?}", reading.plants);
+        assert_eq!(reading.plants[0].kind, kind, "{:?}", reading.strokes);
+    }
+}
+
+#[test]
+fn rings_in_a_bunch_are_one_fruit_and_no_row_of_plants() {
+    let mut lines: Vec<Vec<DVec2>> = Vec::new();
+    for row in 0..4_u32 {
+        for k in 0..4 - row {
+            let x = f64::from(k) * 22.0 + f64::from(row) * 11.0;
+            lines.push(circle((x, -19.0 * f64::from(row)), 10.0));
+        }
+    }
+    lines.push(line((33.0, 10.0), (33.0, 34.0)));
+    let (reading, _) = drawn(&lines);
+    assert_eq!(reading.plants.iter().map(|p| p.kind).collect::<Vec<_>>(), [Kind::Fruit], "{reading:?}");
 }

@@ -13,7 +13,7 @@ use crate::edit::{Destination, HandEdit, Turn};
 use crate::key::AxisKey;
 use crate::outcome::{Changed, Outcome, Why};
 use crate::pipes::Pipes;
-use crate::{fill, leaves, sketch_branch};
+use crate::{fill, grow, leaves, sketch_branch};
 
 /// What edits need to know besides the plant. Not saved with them.
 #[derive(Clone, Debug, Default)]
@@ -76,8 +76,8 @@ pub fn apply(
 
 /// A plant while it is edited: edits may follow one another at any time.
 ///
-/// Guaranteed: the same plant as from [`apply`] with all edits at once, bit for bit. So who keeps one with all edits but
-/// the last pays for the last only.
+/// Guaranteed: the same plant as from [`apply`] with all edits at once, bit for bit. So a caller that keeps one with all
+/// edits but the last pays for the last only.
 ///
 /// ```
 /// use base::Run;
@@ -156,6 +156,11 @@ fn one(draft: &mut Draft, edit: &HandEdit, bench: &Bench<'_>) -> Result<Changed,
         HandEdit::Brush { bearer, points, radius_m, density, seed } => {
             let stroke = sketch_branch::Stroke { points, radius_m, density: *density };
             sketch_branch::brush(draft, bearer.as_ref(), &stroke, Seed::new(*seed), bench)
+        }
+        HandEdit::Grow { from, towards, rounds, changes, seed } => {
+            edit.check()?;
+            let wish = grow::Wish { from, towards: *towards, rounds: *rounds, changes };
+            grow::grow(draft, &wish, Seed::new(*seed), bench)
         }
         HandEdit::Silhouette { plane, outline, density, trim, seed } => {
             let wanted = fill::Outline { plane, outline, density: *density, trim: *trim };

@@ -3,7 +3,7 @@
 //! `Plant -> Draft -> edits -> Plant`
 
 use glam::{DQuat, DVec3};
-use plant::{AxisKind, Flower, FlowerId, NodeId, Organ, Plant, Shape};
+use plant::{AxisKind, Flower, FlowerId, NodeId, Organ, Plant, PlantPaint, Shape};
 
 /// A node of a branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,6 +79,7 @@ pub(crate) struct Draft {
     pub(crate) organs: Vec<Borne<Organ>>,
     pub(crate) flowers: Vec<Borne<Flower>>,
     pub(crate) shapes: Vec<Shape>,
+    paint: PlantPaint,
 }
 
 impl Draft {
@@ -114,6 +115,7 @@ impl Draft {
             organs,
             flowers,
             shapes: plant.shapes.clone(),
+            paint: plant.paint,
         }
     }
 
@@ -150,7 +152,8 @@ impl Draft {
     /// The plant of what is alive. Guaranteed: a clean `validate()` where the draft's numbers are finite.
     pub(crate) fn into_plant(self) -> Plant {
         let order = self.order();
-        let mut plant = Plant { name: self.name.clone(), shapes: self.shapes.clone(), ..Plant::default() };
+        let (name, shapes, paint) = (self.name.clone(), self.shapes.clone(), self.paint);
+        let mut plant = Plant { name, shapes, paint, ..Plant::default() };
         let mut start: Vec<Option<u32>> = vec![None; self.branches.len()];
         let node_of = |start: &[Option<u32>], at: At| {
             let first = start.get(at.branch).copied().flatten()?;

@@ -2,6 +2,7 @@
 
 use base::ops::PI;
 use glam::{DQuat, DVec2, DVec3};
+use growth::GuidedChange;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -89,6 +90,25 @@ pub enum HandEdit {
         #[serde(default)]
         seed: u64,
     },
+    /// Lets a shoot grow by itself, for as many rounds as a hand held on (the VR paper).
+    Grow {
+        /// Where it begins.
+        from: GrowFrom,
+        /// The side on which it leaves its bearer; without, the upper one.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(with = "Option<[f64; 3]>")]
+        towards: Option<DVec3>,
+        /// Rounds of growth.
+        #[schemars(range(min = 1, max = 300))]
+        rounds: u32,
+        /// Numbers of growth from some round on, as a hand turned them meanwhile; what they leave out stays as it was, and
+        /// is that of guided growth at first, with the angles of the plant. Without strokes, at most 301.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        changes: Vec<GuidedChange>,
+        /// Another number, other branches.
+        #[serde(default)]
+        seed: u64,
+    },
     /// Fills an outline that was drawn in a plane facing the viewer (the VR paper).
     Silhouette {
         /// The plane.
@@ -121,6 +141,24 @@ pub enum HandEdit {
     },
 }
 
+/// Where a shoot begins that grows by itself.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum GrowFrom {
+    /// On a branch; at its tip, the branch goes on.
+    Branch {
+        /// The branch.
+        axis: AxisKey,
+        /// Where along it, as a share of its length.
+        at: f64,
+    },
+    /// On the ground, metres: another stem of the plant.
+    Ground(#[schemars(with = "[f64; 3]")] DVec3),
+}
+
+/// Most rounds for which a shoot grows by itself.
+pub const MOST_ROUNDS: u32 = 300;
+
 /// Most points of a stroke or outline.
 pub const MOST_POINTS: usize = 20_000;
 
@@ -137,6 +175,7 @@ impl HandEdit {
             Self::Regrow { .. } => "regrow",
             Self::SketchBranch { .. } => "sketch-branch",
             Self::Brush { .. } => "brush",
+            Self::Grow { .. } => "grow",
             Self::Silhouette { .. } => "silhouette",
             Self::LeafDensity { .. } => "leaf-density",
         }
@@ -188,6 +227,21 @@ impl HandEdit {
                 short(radius_m.len())?;
                 radius_m.iter().try_for_each(|r| within("radius_m", *r, 0.0, FAR))?;
                 near("points", points)
+            }
+            Self::Grow { from, towards, rounds, changes, .. } => {
+                match from {
+                    GrowFrom::Branch { axis, at } => {
+                        axis.check()?;
+                        within("at", *at, 0.0, 1.0)?;
+                    }
+                    GrowFrom::Ground(foot) => near("ground", &[*foot])?,
+                }
+                near("towards", towards.as_slice())?;
+                within("rounds", f64::from(*rounds), 1.0, f64::from(MOST_ROUNDS))?;
+                within("changes", changes.len() as f64, 0.0, f64::from(MOST_ROUNDS + 1))?;
+                let rising = changes.windows(2).all(|w| w[0].round <= w[1].round);
+                let sound = rising && changes.iter().all(|c| c.strokes.is_none() && c.is_sound());
+                if sound { Ok(()) } else { Err(Why::BadNumber { field: "changes" }) }
             }
             Self::Silhouette { plane, outline, density, .. } => {
                 plane.axes()?;

@@ -54,6 +54,19 @@ impl Hosts {
     }
 }
 
+/// Where a bud sits that is to grow out of a node: beyond its bark, which the first piece leads out through. Along the
+/// bearer that would be far.
+pub(crate) fn out_of_bark(draft: &Draft, at: At, heading: DVec3) -> (Hosts, Skeleton, JointId) {
+    let branch = &draft.branches[at.branch];
+    let (start, along, thick) = (branch.points[at.node], branch.tangent(at.node), branch.radii[at.node]);
+    let mut hosts = Hosts { skeleton: Skeleton::default(), node: vec![at] };
+    let root = hosts.skeleton.push_root(start, 0);
+    let mut from = hosts.skeleton.clone();
+    let steep = (heading - along * heading.dot(along)).length().max(0.35);
+    let joint = from.push(start + heading * (thick / steep), root, 0);
+    (hosts, from, joint)
+}
+
 /// Grafts everything of `grown` beyond the joints of `hosts` onto the draft.
 ///
 /// `pipes`: what came and went before, as by a cut. Returns the new branches; radii below all of it are settled.

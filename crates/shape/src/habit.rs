@@ -1,4 +1,4 @@
-//! What new wood must be like to belong to a plant: learnt from the plant itself, whoever made it.
+//! What new wood must be like to belong to a plant: learnt from the plant itself, for the plants of every maker.
 //!
 //! `Draft -> thickness of tips, exponent, internodes, leaves`
 
@@ -129,7 +129,7 @@ fn leaf_habit(draft: &Draft) -> Option<LeafHabit> {
         let angle = ops::acos_clamped(o.what.frame.along.dot(branch.tangent(at.node)));
         angles.push(angle * (180.0 / ops::PI));
     }
-    thickest.sort_by(f64::total_cmp);
+    base::sort_numbers(&mut thickest);
     // Nine in ten leaves sit on wood that is thinner.
     let max_radius_m = thickest.get(thickest.len() * 9 / 10).copied().map_or(f64::INFINITY, |r| 1.2 * r);
     let bearing = draft.branches.iter().zip(&leafy).filter(|(_, n)| **n > 0);

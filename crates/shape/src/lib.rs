@@ -1,4 +1,4 @@
-//! Hand edits on any plant: rotate, move, prune, regrow, sketch, brush, fill a silhouette, thin leaves (the VR paper).
+//! Hand edits on any plant: rotate, move, prune, regrow, sketch, brush, grow, fill a silhouette, thin leaves (the VR paper).
 //!
 //! `Plant + [HandEdit] -> Plant + [Outcome]`
 //!
@@ -12,7 +12,7 @@
 //! | `habit` | what new wood must be like: learnt from the plant |
 //! | `pipes` | radii below what changed |
 //! | `graft` | what growth made, onto the plant |
-//! | `sketch_branch`, `fill`, `leaves` | drawn and brushed branches; regrowth and silhouettes; leaves |
+//! | `sketch_branch`, `grow`, `fill`, `leaves` | drawn and brushed branches; what grows while it is held; regrowth and silhouettes; leaves |
 //! | `mask` | an outline as markers in space |
 //! | `pick` | which branch a ray means |
 //! | `thumb` | turns and leans from a touchpad or stick |
@@ -25,6 +25,7 @@ mod draft;
 mod edit;
 mod fill;
 mod graft;
+mod grow;
 mod habit;
 mod key;
 mod leaves;
@@ -37,9 +38,12 @@ mod thumb;
 mod tool;
 
 pub use apply::{Applied, Context, Shaping, apply};
-pub use edit::{Destination, EDITS_SCHEMA, EditsFile, HandEdit, LeafRegion, MOST_POINTS, Turn, ViewPlane};
+pub use edit::{
+    Destination, EDITS_SCHEMA, EditsFile, GrowFrom, HandEdit, LeafRegion, MOST_POINTS, MOST_ROUNDS, Turn,
+    ViewPlane,
+};
 pub use key::{AxisKey, Found, KindWord, Mark};
 pub use outcome::{Changed, Outcome, Why};
 pub use pick::{Pick, Ray, Reach, pick};
 pub use thumb::{Thumb, lean_of_thumb};
-pub use tool::{Input, Pointer, Response, Tool, ToolKind};
+pub use tool::{Growth, Input, Pointer, Response, Tool, ToolKind};

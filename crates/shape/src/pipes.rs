@@ -8,7 +8,7 @@ use crate::draft::{At, Draft};
 
 /// The thickest that old wood becomes by what is grafted onto it: a tenth more, and one and a half tips.
 ///
-/// A twig may become a branch, a trunk stays what it was for the eye: who fills an outline means the crown. It rises with
+/// A twig may become a branch, a trunk stays what it was for the eye: filling an outline is about the crown. It rises with
 /// the radius, so that nothing becomes thicker than what bears it.
 fn most(old_m: f64, tip_m: f64) -> f64 {
     1.1 * old_m + 1.5 * tip_m

@@ -3,13 +3,13 @@
 use base::Seed;
 use base::ops::{self, PI, TAU};
 use glam::DVec3;
-use growth::{BrushStroke, GuidedSpec, Skeleton, StartBud, Tropism, guide_from};
+use growth::{BrushStroke, GuidedSpec, StartBud, Tropism, guide_from};
 use plant::AxisKind;
 
 use crate::bench::{Bench, Stop, unread};
 use crate::draft::{At, Branch, Draft};
 use crate::fill::joint_of;
-use crate::graft::{Hosts, graft_all};
+use crate::graft::{Hosts, graft_all, out_of_bark};
 use crate::habit::{Habit, kind_on, softened};
 use crate::key::AxisKey;
 use crate::leaves::dress;
@@ -107,7 +107,7 @@ fn lengths(line: &[DVec3]) -> Vec<f64> {
 }
 
 /// Two branches that are drawn alike must not have one key.
-fn own_seed(draft: &Draft, seed: Seed, place: DVec3) -> Seed {
+pub(crate) fn own_seed(draft: &Draft, seed: Seed, place: DVec3) -> Seed {
     let bits = place.x.to_bits() ^ place.y.to_bits().rotate_left(21) ^ place.z.to_bits().rotate_left(42);
     let mut own = seed.child(bits);
     while draft.branches.iter().any(|b| b.key == own.number()) {
@@ -263,13 +263,7 @@ pub(crate) fn brush(
         ..GuidedSpec::default()
     };
     let own = own_seed(draft, seed.child(BRUSH).child(draft.branches[host].key), start + heading);
-    let mut hosts = Hosts { skeleton: Skeleton::default(), node: vec![at] };
-    let joint = hosts.skeleton.push_root(start, 0);
-    // No bud inside the bearer: the first piece leads out through its bark. Along the bearer that would be far.
-    let (along, thick) = (draft.branches[host].tangent(node), draft.branches[host].radii[node]);
-    let steep = (heading - along * heading.dot(along)).length().max(0.35);
-    let mut from = hosts.skeleton.clone();
-    let out = from.push(start + heading * (thick / steep), joint, 0);
+    let (hosts, from, out) = out_of_bark(draft, at, heading);
     let bud = StartBud { joint: out, heading, wakes: 0 };
     let grown = guide_from(from, &[bud], bench.obstacles, &spec, own, bench.run, &mut unread())?;
     if grown.skeleton.len() < 4 {

@@ -4,11 +4,12 @@
 
 use base::ops::PI;
 use glam::{DQuat, DVec2, DVec3};
+use growth::{GuidedChange, GuidedSpec, Tropism};
 use plant::{AxisId, AxisKind, Plant};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::edit::{Destination, HandEdit, LeafRegion, Turn, ViewPlane};
+use crate::edit::{Destination, GrowFrom, HandEdit, LeafRegion, MOST_ROUNDS, Turn, ViewPlane};
 use crate::key::AxisKey;
 use crate::pick::{Pick, Ray, Reach, nearest, pick};
 
@@ -45,6 +46,8 @@ pub enum ToolKind {
         /// 0.1 to 10.
         density: f64,
     },
+    /// Hold on a branch or on the ground, and a shoot grows by itself, round by round.
+    Grow(Growth),
     /// Draw an outline around what is to be filled.
     Silhouette {
         /// 0.1 to 10.
@@ -59,6 +62,42 @@ pub enum ToolKind {
         /// Share that stays, 0 to 4.
         keep: f64,
     },
+}
+
+/// How a shoot grows by itself; every number may change while it does.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Growth {
+    /// Vigour per unit of free space, above 0 and at most 100.
+    pub vigour: f64,
+    /// Apical control: the share of the main axis at a fork, 0 to 1.
+    pub apical: f64,
+    /// Between a shoot and the buds at its side, 0 to 180 degrees.
+    pub angle_deg: f64,
+    /// Pull to the light, or of the weight where it is negative, -10 to 10; free space pulls with 1.
+    pub lift: f64,
+}
+
+impl Default for Growth {
+    fn default() -> Self {
+        let GuidedSpec { alpha, lambda, branch_angle_deg, tropisms, .. } = GuidedSpec::default();
+        let lift = tropisms.iter().map(|t| t.strength).sum();
+        Self { vigour: alpha, apical: lambda, angle_deg: branch_angle_deg, lift }
+    }
+}
+
+impl Growth {
+    /// As numbers of growth from a round on.
+    fn change_at(self, round: u32) -> GuidedChange {
+        GuidedChange {
+            round,
+            alpha: Some(self.vigour),
+            lambda: Some(self.apical),
+            branch_angle_deg: Some(self.angle_deg),
+            tropisms: Some(vec![Tropism { strength: self.lift, ..Tropism::UPWARDS }]),
+            ..GuidedChange::default()
+        }
+    }
 }
 
 /// A pointing device at one moment.
@@ -93,6 +132,10 @@ pub enum Input {
     Twist(f64),
     /// The brush changed while it is down: radius in metres, density.
     Brush(f64, f64),
+    /// What grows is a round older.
+    Round,
+    /// What grows has other numbers from this round on; numbers out of their ranges change nothing.
+    Grow(Growth),
 }
 
 /// What a tool says to an input.
@@ -160,6 +203,13 @@ enum State {
         pick: Pick,
         key: AxisKey,
     },
+    Growing {
+        pick: Option<Pick>,
+        from: GrowFrom,
+        towards: DVec3,
+        rounds: u32,
+        record: Vec<GuidedChange>,
+    },
     Stroking(Box<Stroking>),
 }
 
@@ -175,6 +225,8 @@ struct Stroking {
     radius_m: Vec<f64>,
 }
 
+/// Ground farther from the plant's origin than this is not meant, metres.
+const FARTHEST_M: f64 = 200.0;
 /// Radians of a degree.
 const DEGREE: f64 = PI / 180.0;
 /// Beyond this, a drawing plane is seen almost from its edge.
@@ -236,6 +288,28 @@ impl Tool {
                 }
                 self.preview()
             }
+            Input::Round => {
+                if let State::Growing { rounds, .. } = &mut self.state {
+                    *rounds = (*rounds + 1).min(MOST_ROUNDS);
+                }
+                self.preview()
+            }
+            Input::Grow(growth) => {
+                self.turn_numbers(*growth);
+                self.preview()
+            }
+        }
+    }
+
+    fn turn_numbers(&mut self, growth: Growth) {
+        let ToolKind::Grow(now) = &mut self.kind else { return };
+        if *now == growth || !growth.change_at(0).is_sound() {
+            return;
+        }
+        *now = growth;
+        if let State::Growing { rounds, record, .. } = &mut self.state {
+            record.retain(|c| c.round < *rounds);
+            record.push(growth.change_at(*rounds));
         }
     }
 
@@ -263,6 +337,21 @@ impl Tool {
             (ToolKind::Prune { .. } | ToolKind::Regrow, Some((pick, key))) => State::Clicking { pick, key },
             (ToolKind::Rotate | ToolKind::Move | ToolKind::Prune { .. } | ToolKind::Regrow, None) => {
                 State::Idle
+            }
+            (ToolKind::Grow(growth), named) => {
+                let from = match &named {
+                    Some((pick, key)) => Some(GrowFrom::Branch { axis: key.clone(), at: pick.at }),
+                    None => on_ground(p).map(GrowFrom::Ground),
+                };
+                let towards = if p.tip.is_some() { p.ray.direction } else { -p.forward };
+                let towards = towards.try_normalize().unwrap_or(DVec3::Y);
+                match from.filter(|_| growth.change_at(0).is_sound()) {
+                    Some(from) => {
+                        let (pick, record) = (named.map(|(pick, _)| pick), vec![growth.change_at(0)]);
+                        State::Growing { pick, from, towards, rounds: 1, record }
+                    }
+                    None => State::Idle,
+                }
             }
             (ToolKind::Sketch { .. }, None) => State::Idle,
             (_, named) => match self.stroke(plant, p, named) {
@@ -346,7 +435,7 @@ impl Tool {
                 // Above the horizon there is no ground: it stays where it was last.
                 *to = now.or_else(|| to.take());
             }
-            State::Clicking { .. } => {}
+            State::Clicking { .. } | State::Growing { .. } => {}
             State::Stroking(stroke) => stroke.add(p, radius),
         }
         self.preview()
@@ -379,6 +468,7 @@ impl Tool {
             State::Turning { pick, .. } | State::Sliding { pick, .. } | State::Clicking { pick, .. } => {
                 Some(*pick)
             }
+            State::Growing { pick, .. } => *pick,
             State::Stroking(s) => s.pick,
         };
         Response { preview: self.edit(), commit: None, picked }
@@ -398,6 +488,13 @@ impl Tool {
                 ToolKind::Regrow => HandEdit::Regrow { axis: key.clone(), seed },
                 ToolKind::Prune { whole: false } => HandEdit::Prune { axis: key.clone(), at: pick.at },
                 _ => HandEdit::Prune { axis: key.clone(), at: 0.0 },
+            }),
+            State::Growing { from, towards, rounds, record, .. } => Some(HandEdit::Grow {
+                from: from.clone(),
+                towards: Some(*towards),
+                rounds: *rounds,
+                changes: record.clone(),
+                seed,
             }),
             State::Stroking(s) => self.stroke_edit(s),
         }
@@ -490,24 +587,21 @@ fn over_ground(from: &Pointer, now: &Pointer, foot: DVec3) -> Option<DVec3> {
     Some((at - foot).with_y(0.0))
 }
 
+/// Where a pointer meets the ground, not too far away.
+fn on_ground(p: &Pointer) -> Option<DVec3> {
+    let at = p.ray.meets(DVec3::ZERO, DVec3::Y)?.with_y(0.0);
+    let ahead = (at - p.ray.origin).dot(p.ray.direction) > 0.0;
+    (ahead && at.is_finite() && at.length() < FARTHEST_M).then_some(at)
+}
+
 /// The place on a shoot nearest to a point, on none that `but` bears or is.
 fn wood_near(plant: &Plant, at: DVec3, but: AxisId) -> Option<Destination> {
-    let borne = |mut axis: AxisId| {
-        // No further than there are axes: a sound plant has no circle.
-        for _ in &plant.axes {
-            if axis == but {
-                return true;
-            }
-            let Some(bearer) = plant.axis(axis).bearer else { return false };
-            axis = plant.nodes.axis[bearer.index()];
-        }
-        false
-    };
+    let borne = plant.borne_by(but);
     let shoots = plant.axes.iter().enumerate();
     let shoots = shoots.filter(|(_, a)| !matches!(a.kind, AxisKind::Petiole | AxisKind::Root));
     let (axis, _, share) = shoots
         .map(|(i, _)| AxisId::new(i))
-        .filter(|axis| at.is_finite() && !borne(*axis))
+        .filter(|axis| at.is_finite() && !borne[axis.index()])
         .map(|axis| {
             let (gap, share) = geom::nearest_on_polyline3(plant.axis_points(axis), at);
             (axis, gap, share)

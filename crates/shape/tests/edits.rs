@@ -3,12 +3,14 @@
 use base::{Executor, NoClock, Report, Run, Seed};
 use glam::{DVec2, DVec3};
 use growth::{
-    CompetitionSpec, FoliageSpec, GuidedSpec, Method, OAK_RULES, SelfOrganizingSpec, TreeSpec, grow,
+    CompetitionSpec, FoliageSpec, GuidedChange, GuidedSpec, Method, OAK_RULES, SelfOrganizingSpec, TreeSpec,
+    grow,
 };
 use plant::{AxisId, AxisKind, NodeId, OrganKind, Plant};
 use proptest::prelude::*;
 use shape::{
-    Applied, AxisKey, Context, Destination, HandEdit, LeafRegion, Outcome, Turn, ViewPlane, Why, apply,
+    Applied, AxisKey, Context, Destination, GrowFrom, HandEdit, LeafRegion, Outcome, Turn, ViewPlane, Why,
+    apply,
 };
 
 fn method(kind: usize) -> Method {
@@ -135,6 +137,22 @@ fn edit() -> impl Strategy<Value = HandEdit> {
             points,
             radius_m: vec![r],
             density: 1.0,
+            seed: 1
+        }),
+        (key(), number.clone(), proptest::option::of(point()), 0_u32..12).prop_map(
+            |(axis, at, towards, rounds)| HandEdit::Grow {
+                from: GrowFrom::Branch { axis, at },
+                towards,
+                rounds,
+                changes: vec![GuidedChange { round: 2, alpha: Some(at), ..GuidedChange::default() }],
+                seed: 1,
+            }
+        ),
+        point().prop_map(|foot| HandEdit::Grow {
+            from: GrowFrom::Ground(foot),
+            towards: None,
+            rounds: 6,
+            changes: Vec::new(),
             seed: 1
         }),
         (outline, any::<bool>()).prop_map(|(outline, trim)| HandEdit::Silhouette {

@@ -4,7 +4,7 @@ use base::Run;
 use glam::DVec3;
 use plant::{AxisId, AxisKind, Plant};
 use shape::{
-    AxisKey, Context, Destination, HandEdit, Input, LeafRegion, Pointer, Ray, Reach, Response, Tool,
+    AxisKey, Context, Destination, Growth, HandEdit, Input, LeafRegion, Pointer, Ray, Reach, Response, Tool,
     ToolKind, apply, pick,
 };
 
@@ -374,4 +374,47 @@ fn no_input_is_a_fault() {
             }
         }
     }
+}
+
+#[test]
+fn what_is_held_grows_round_by_round_with_numbers_that_change() {
+    let plant = tree();
+    let mut tool = Tool::new(ToolKind::Grow(Growth::default()));
+    let wood = |p: &Plant| p.axes.len();
+    // On the limb, then on the ground beside the tree.
+    for (at, said) in [(mouse(1.5, 2.0), 2), (mouse(3.0, -0.6), 1)] {
+        let first = tool.handle(&plant, &Input::Down(at)).preview.expect("it grows at once");
+        assert!(matches!(first, HandEdit::Grow { rounds: 1, .. }));
+        let mut counts = vec![wood(&after(&plant, first))];
+        for round in 0..12 {
+            if round == 6 {
+                tool.handle(
+                    &plant,
+                    &Input::Grow(Growth { angle_deg: 85.0, vigour: 4.0, ..Growth::default() }),
+                );
+                tool.handle(&plant, &Input::Grow(Growth { vigour: -1.0, ..Growth::default() }));
+            }
+            let r = tool.handle(&plant, &Input::Round);
+            counts.push(wood(&after(&plant, r.preview.expect("still growing"))));
+        }
+        assert!(counts.windows(2).filter(|w| w[1] > w[0]).count() >= 4, "{counts:?}");
+        assert!(counts[12] > counts[0] + 8, "{counts:?}");
+        let edit = tool.handle(&plant, &Input::Up(at)).commit.expect("kept");
+        edit.check().expect("sound");
+        let HandEdit::Grow { rounds, changes, .. } = &edit else { panic!("{edit:?}") };
+        // The tool keeps the numbers that it was set to.
+        assert_eq!((*rounds, changes.len()), (13, said));
+        assert_eq!(changes[said - 1].round, if said == 2 { 7 } else { 0 });
+        assert_eq!(changes[said - 1].branch_angle_deg, Some(85.0));
+        // The record is the edit: read back, it is the same tree.
+        let text = serde_json::to_string(&edit).expect("JSON");
+        let again: HandEdit = serde_json::from_str(&text).expect("read back");
+        assert_eq!(after(&plant, again), after(&plant, edit));
+    }
+    // Nothing grows in the sky.
+    let up = Pointer {
+        ray: Ray { origin: DVec3::Z * 10.0, direction: DVec3::new(0.3, 1.0, 0.0) },
+        ..mouse(0.0, 0.0)
+    };
+    assert!(tool.handle(&plant, &Input::Down(up)).preview.is_none() && !tool.is_busy());
 }

@@ -99,7 +99,7 @@ pub fn build_again(
     let ids = add_axes(&mut plant, &plans, map);
     let blades = reading.leaves.iter().chain(reading.flowers.iter().flat_map(|f| &f.petals));
     let filled = reading.regions.iter().map(|r| r.color).chain(reading.fruits.iter().map(|f| f.color));
-    let colors = blades.map(|b| b.color).chain(filled).flatten();
+    let colors = blades.map(|b| b.color).chain(filled);
     let scene = Scene { spec, seed, map, plans: &plans, ids: &ids, coloured: coloured(colors) };
     let crowned = Crowned::new(reading);
     let leaves = leaf_shapes(&mut plant, &scene, reading);

@@ -204,7 +204,7 @@ mod tests {
         let blade = leaf(Relief { bend_b: 0.2, fold: 0.3, hollow: 0.1, ..Relief::default() });
         for wish in [32.0, 100.0, 300.0, 780.0] {
             let mesh = blade_mesh(&blade, wish);
-            let n = f64::from(crate::parts::index(mesh.triangles.len()));
+            let n = f64::from(crate::sleeve::index(mesh.triangles.len()));
             assert!((n / wish - 1.0).abs() < 0.3, "{n} for {wish}");
             assert_eq!(mesh.validate().count(), 0, "{wish}");
             let mut on_midrib = 0;

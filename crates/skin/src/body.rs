@@ -67,7 +67,7 @@ pub(crate) fn dome(radius: f64, height: f64, triangles: f64) -> TriMesh {
         out.vertex(DVec3::new(0.6 * radius * cos, 0.6 * radius * sin, -0.6 * depth), RECEPTACLE_AT);
     }
     let foot = out.vertex(DVec3::new(0.0, 0.0, -depth), RECEPTACLE_AT);
-    let (rim, cup) = (crate::parts::index(rim), crate::parts::index(cup));
+    let (rim, cup) = (crate::sleeve::index(rim), crate::sleeve::index(cup));
     for j in 0..sides {
         let next = (j + 1) % sides;
         out.0.triangles.push([rim + j, cup + j, rim + next]);
@@ -95,7 +95,7 @@ pub(crate) fn revolution(profile: &[DVec2], triangles: f64, ribs: u32) -> TriMes
     let mut out = Columns::default();
     let mut rows: Vec<u32> = Vec::with_capacity(line.len());
     for p in &line {
-        rows.push(crate::parts::index(out.0.positions.len()));
+        rows.push(crate::sleeve::index(out.0.positions.len()));
         for (j, &(cos, sin)) in (0_u32..).zip(&circle.0) {
             let u = f64::from(j) / f64::from(sides);
             let flute =
@@ -201,7 +201,7 @@ pub(crate) fn rod(path: &[DVec3], radii: &[f64]) -> TriMesh {
     #[expect(clippy::cast_precision_loss, reason = "a few rings")]
     let along = |i: usize| 1.0 - i as f64 / (rings - 1) as f64;
     for (i, (f, r)) in frames.iter().zip(radii).enumerate() {
-        first.push(crate::parts::index(out.0.positions.len()));
+        first.push(crate::sleeve::index(out.0.positions.len()));
         for (j, &(cos, sin)) in (0_u32..).zip(&circle.0) {
             let p = f.origin + (f.normal * cos + f.binormal * sin) * *r;
             out.vertex(p, (f64::from(j) / f64::from(SIDES), along(i)));
@@ -260,7 +260,7 @@ fn ball(centre: DVec3, axis: DVec3, radius: f64, sides: u32) -> TriMesh {
     let mut starts = Vec::new();
     for k in 0..=rows {
         let (sin, cos) = ops::sin_cos(ops::PI * f64::from(k) / f64::from(rows));
-        starts.push(crate::parts::index(out.0.positions.len()));
+        starts.push(crate::sleeve::index(out.0.positions.len()));
         // The poles' sine is not quite 0 in floating point; their copies must coincide.
         let sin = if k == 0 || k == rows { 0.0 } else { sin };
         for (j, &(c, s)) in (0_u32..).zip(&circle.0) {

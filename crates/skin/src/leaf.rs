@@ -64,7 +64,7 @@ pub(crate) fn spline_mesh(blade: &SplineBlade, spec: &LeafMeshSpec) -> ShapeMesh
         for j in 1..columns {
             let (a, b) = ((i - 1) * columns + j - 1, (i - 1) * columns + j);
             let [a, b, c, d] = [a, b, b + columns, a + columns];
-            let mut put = |t: [usize; 3]| mesh.triangles.push(t.map(crate::parts::index));
+            let mut put = |t: [usize; 3]| mesh.triangles.push(t.map(crate::sleeve::index));
             // Where a row is one place (tip, joint base) a cell has one triangle.
             if !one(a, b) {
                 put([a, b, c]);
@@ -116,7 +116,7 @@ pub(crate) fn sheet_mesh(sheet: &Sheet, spec: &LeafMeshSpec, detail: f64) -> Sha
         mesh.uvs.push(narrow2(thin.across[k % across.len()], 1.0 - thin.along[k / across.len()]));
     }
     out.blade_faces = across.len().saturating_sub(1) * along.len().saturating_sub(1);
-    mesh.triangles.extend(thin.triangles().map(|t| t.map(crate::parts::index)));
+    mesh.triangles.extend(thin.triangles().map(|t| t.map(crate::sleeve::index)));
     mesh.colors = thin.colors;
     // Cells without area stay: a bud has the triangles of the bloom.
     mesh.compute_normals();

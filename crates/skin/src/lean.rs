@@ -124,7 +124,7 @@ fn ears(points: &[DVec2], mut polygon: Vec<usize>, out: &mut Vec<[u32; 3]>) -> O
             let around: f64 = (0..n).map(|k| points[at(k)].distance_squared(points[at(k + 1)])).sum();
             return (area.abs() < 1e-9 * around).then_some(());
         };
-        out.push([at(k + n - 1), at(k), at(k + 1)].map(crate::parts::index));
+        out.push([at(k + n - 1), at(k), at(k + 1)].map(crate::sleeve::index));
         polygon.remove(k);
     }
     Some(())

@@ -27,6 +27,7 @@ mod leaf;
 mod lean;
 mod organs;
 mod parts;
+mod pictures;
 mod rings;
 mod sleeve;
 mod spec;
@@ -40,6 +41,7 @@ pub use self::spec::{LeafMeshSpec, PetalColor, SkinSpec};
 pub use blade::{BladeChart, blade_mesh};
 pub use leaf::ShapeMesh;
 pub use organs::KeptShapes;
+pub use pictures::Pictures;
 pub use texture::{LeafColours, vein_texture};
 pub use traced::Traced;
 pub use tube::{TubeSpec, tube};
@@ -89,7 +91,7 @@ use crate::spec::Budget;
 /// # Ok::<(), base::Stopped>(())
 /// ```
 pub fn skin(plant: &Plant, spec: &SkinSpec, run: &Run<'_>) -> Result<Model, Stopped> {
-    skin_again(plant, spec, None, None, run)
+    skin_again(plant, spec, Pictures::default(), None, run)
 }
 
 /// As [`skin()`], again for a plant that changed a little: shapes that stayed are not triangulated anew. Organs and axes
@@ -102,12 +104,12 @@ pub fn skin(plant: &Plant, spec: &SkinSpec, run: &Run<'_>) -> Result<Model, Stop
 pub fn skin_again(
     plant: &Plant,
     spec: &SkinSpec,
-    traced: Option<&Traced>,
+    pictures: Pictures<'_>,
     kept: Option<&mut KeptShapes>,
     run: &Run<'_>,
 ) -> Result<Model, Stopped> {
     run.cancel.check()?;
-    let budget = budget(plant, spec);
+    let (budget, traced) = (budget(plant, spec), pictures.traced);
     let slot = |surface| match surface {
         Surface::Bark => Slot::Bark,
         Surface::YoungBark => Slot::YoungBark,
@@ -121,7 +123,7 @@ pub fn skin_again(
     let wood = meshes.iter().map(|(_, m): &(Slot, mesh::TriMesh)| m.triangles.len()).sum();
     meshes.extend(organs::organs(plant, spec, &budget, (traced, wood), wind.as_ref(), kept, run)?);
     run.cancel.check()?;
-    Ok(parts::model(&plant.name, meshes, spec.textures.then_some(run.executor), traced.map(|t| &t.texture)))
+    Ok(parts::model(plant, meshes, spec.textures.then_some(run.executor), pictures))
 }
 
 /// What to do where there would be too many triangles.

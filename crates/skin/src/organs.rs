@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use base::{Cancelled, Counted, Draw, Run, Seed, Stopped, map_indexed};
+use base::{Cancelled, Counted, Draw, Run, Stopped, map_indexed};
 use mesh::TriMesh;
 use plant::{Organ, OrganKind, Plant, Shape, ShapeId};
 
@@ -297,24 +297,8 @@ impl Ground {
             .iter()
             .filter(|o| matches!(o.kind, OrganKind::Stamen | OrganKind::Pistil | OrganKind::Thorn))
             .count();
-        let mut key: Seed = spec.seed;
-        for b in plant.name.bytes() {
-            key = key.child(u64::from(b));
-        }
-        // Many rays round a disc are a daisy's or a sunflower's, which are never blue or red.
-        const RAYS: [PetalColor; 4] =
-            [PetalColor::Yellow, PetalColor::White, PetalColor::Orange, PetalColor::Yellow];
-        let of_kind = |kind| plant.organs.iter().filter(|o| o.kind == kind).count();
-        let rays =
-            of_kind(OrganKind::Disc) > 0 && of_kind(OrganKind::Petal) >= 9 * plant.flowers.len().max(1);
-        let mut tint = key.stream(Draw::Tint);
-        let chosen = if rays {
-            RAYS[tint.below(RAYS.len())]
-        } else {
-            PetalColor::ALL[tint.below(PetalColor::ALL.len())]
-        };
         Self {
-            petals: spec.petals.unwrap_or(chosen),
+            petals: PetalColor::of(plant, spec),
             fine_strands: strands <= 40,
             leaf: spec.leaf,
             steady: spec.steady_m.is_some(),
@@ -401,7 +385,7 @@ fn tint(organ: &Organ, slot: Slot, spec: &SkinSpec) -> [f32; 3] {
 
 /// Appends a moved and coloured copy of `local`.
 fn place(out: &mut TriMesh, local: &TriMesh, organ: &Organ, color: [f32; 3]) {
-    let first = crate::parts::index(out.positions.len());
+    let first = crate::sleeve::index(out.positions.len());
     let f = &organ.frame;
     out.positions.extend(local.positions.iter().map(|&p| narrow(f.place(wide(p), organ.scale))));
     out.normals.extend(local.normals.iter().map(|&n| narrow(f.rotate(wide(n)))));

@@ -4,17 +4,12 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use base::Executor;
-use mesh::{Material, MaterialId, MaterialKind, Model, Part, Texture, TriMesh};
-use plant::{Paint, Shape};
+use mesh::{Material, MaterialId, MaterialKind, Model, Part, TriMesh};
+use plant::{Paint, Plant, PlantPaint, Shape};
 
 use crate::PetalColor;
+use crate::pictures::Pictures;
 use crate::texture::Motif;
-
-/// A vertex count as the index of the next vertex.
-pub(crate) fn index(n: usize) -> u32 {
-    // Four billion vertices do not fit in memory: saturating keeps the arithmetic whole, validate() names it.
-    u32::try_from(n).unwrap_or(u32::MAX)
-}
 
 /// What a part of the model is made of; one part and one material each, in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -159,16 +154,7 @@ impl Slot {
             Self::Stem => [0.111, 0.223, 0.034],
             Self::Root => [0.27, 0.168, 0.092],
             Self::Leaf(Coat::Natural) | Self::Form(_, Coat::Natural) => [0.051, 0.149, 0.018],
-            Self::Petal(Coat::Natural, color) => match color {
-                PetalColor::Pink => [0.80, 0.33, 0.42],
-                PetalColor::White => [0.90, 0.91, 0.80],
-                PetalColor::Yellow => [0.93, 0.60, 0.03],
-                PetalColor::Violet => [0.26, 0.14, 0.50],
-                PetalColor::Red => [0.52, 0.02, 0.01],
-                PetalColor::Orange => [0.87, 0.26, 0.02],
-                PetalColor::Blue => [0.20, 0.29, 0.73],
-                PetalColor::Magenta => [0.55, 0.06, 0.23],
-            },
+            Self::Petal(Coat::Natural, color) => color.linear(),
             Self::Disc(Coat::Natural) => [0.55, 0.25, 0.02],
             Self::Fruit(Coat::Natural) => [0.56, 0.06, 0.02],
             Self::Body => [0.06, 0.16, 0.05],
@@ -186,15 +172,35 @@ impl Slot {
         }
     }
 
-    fn material(self, textures: Option<&dyn Executor>, photo: Option<&Arc<Texture>>) -> Material {
-        let kind = self.kind();
-        let color = if textures.is_some() && self.motif().is_some() { [1.0; 3] } else { self.plain_color() };
-        let mut m = Material::plain(self.names().1, kind, color);
+    /// Its colour as the plant's maker knows it.
+    const fn known_color(self, paint: &PlantPaint) -> Option<[f32; 3]> {
+        match self {
+            Self::Stem => paint.stem,
+            Self::Veins => paint.veins,
+            _ => None,
+        }
+    }
+
+    fn material(
+        self,
+        textures: Option<&dyn Executor>,
+        pictures: Pictures<'_>,
+        paint: &PlantPaint,
+    ) -> Material {
+        let (kind, known) = (self.kind(), self.known_color(paint));
+        let mut m = Material::plain(self.names().1, kind, [1.0; 3]);
         m.texture = match self {
-            Self::Traced(_) => photo.cloned(),
+            Self::Traced(_) => pictures.traced.map(|t| Arc::clone(&t.texture)),
+            Self::Form(form, _) => pictures.leaves.get(form as usize).cloned().flatten(),
+            _ if known.is_some() => None,
             _ => textures.zip(self.motif()).map(|(executor, motif)| motif.texture(executor)),
         };
+        if m.texture.is_none() {
+            m.base_color = known.unwrap_or_else(|| self.plain_color());
+        }
         (m.roughness, m.translucency) = match kind {
+            // Measured veins are solid.
+            _ if self == Self::Veins => (0.65, 0.0),
             MaterialKind::Leaf => (0.55, 0.4),
             MaterialKind::Petal => (0.65, 0.4),
             MaterialKind::Stem => (0.65, 0.0),
@@ -209,12 +215,12 @@ impl Slot {
 
 /// Gathers meshes by slot, in slot order; empty ones leave no part. Textures are painted on `textures`, if wanted.
 pub(crate) fn model(
-    name: &str,
+    plant: &Plant,
     mut meshes: Vec<(Slot, TriMesh)>,
     textures: Option<&dyn Executor>,
-    photo: Option<&Arc<Texture>>,
+    pictures: Pictures<'_>,
 ) -> Model {
-    let mut model = Model { name: name.to_owned(), ..Model::default() };
+    let mut model = Model { name: plant.name.clone(), ..Model::default() };
     meshes.retain(|(_, m)| !m.triangles.is_empty());
     // Stable: meshes of one slot keep their order.
     base::sort_by_key(&mut meshes, |(slot, _)| *slot);
@@ -228,7 +234,7 @@ pub(crate) fn model(
             _ => joined(these),
         };
         let material = MaterialId::new(model.materials.len());
-        model.materials.push(slot.material(textures, photo));
+        model.materials.push(slot.material(textures, pictures, &plant.paint));
         model.parts.push(Part { name: slot.names().0.into_owned(), material, mesh });
     }
     model

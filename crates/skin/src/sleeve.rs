@@ -6,6 +6,12 @@ use mesh::TriMesh;
 
 use crate::rings::Ring;
 
+/// A vertex count as the index of the next vertex.
+pub(crate) fn index(n: usize) -> u32 {
+    // Four billion vertices do not fit in memory: saturating keeps the arithmetic whole, validate() names it.
+    u32::try_from(n).unwrap_or(u32::MAX)
+}
+
 /// Cosines and sines of the corners of a regular polygon; the last repeats the first.
 #[derive(Debug)]
 pub(crate) struct Circle(pub Vec<(f64, f64)>);
@@ -98,7 +104,7 @@ impl<'a> Sleeve<'a> {
     }
 
     fn next(&self) -> u32 {
-        crate::parts::index(self.mesh.positions.len())
+        index(self.mesh.positions.len())
     }
 
     /// One row per ring.
@@ -124,7 +130,7 @@ impl<'a> Sleeve<'a> {
 
     fn join(&mut self, first: u32, centre: DVec3) {
         if let Some((a, _)) = self.last {
-            for j in 0..crate::parts::index(self.circle.sides()) {
+            for j in 0..index(self.circle.sides()) {
                 self.mesh.triangles.push([a + j, a + j + 1, first + j]);
                 self.mesh.triangles.push([a + j + 1, first + j + 1, first + j]);
             }
@@ -141,7 +147,7 @@ impl<'a> Sleeve<'a> {
             let p = ring.centre + ring.ray((cos, sin)) * ring.radius;
             self.vertex(p, normal, 0.5 + 0.5 * cos, 0.5 + 0.5 * sin);
         }
-        let n = crate::parts::index(circle.sides());
+        let n = index(circle.sides());
         for j in 0..n {
             self.mesh.triangles.push([apex, apex + 1 + (j + 1) % n, apex + 1 + j]);
         }
@@ -152,7 +158,7 @@ impl<'a> Sleeve<'a> {
     pub(crate) fn hidden_base(&mut self, apex: DVec3, normal: DVec3) {
         let Some((first, _)) = self.last else { return };
         let tip = self.vertex(apex, normal, 0.5 * self.repeats, self.v);
-        for j in 0..crate::parts::index(self.circle.sides()) {
+        for j in 0..index(self.circle.sides()) {
             self.mesh.triangles.push([tip, first + j + 1, first + j]);
         }
     }
@@ -179,7 +185,7 @@ impl<'a> Sleeve<'a> {
         self.advance(apex, end.radius);
         let Some((first, _)) = self.last else { return };
         // One apex vertex per side: a single one would smear the texture around the point.
-        for j in 0..crate::parts::index(self.circle.sides()) {
+        for j in 0..index(self.circle.sides()) {
             let tip = self.vertex(apex, end.tangent, du * (f64::from(j) + 0.5), self.v);
             self.mesh.triangles.push([first + j, first + j + 1, tip]);
         }

@@ -1,7 +1,8 @@
 //! What the caller may choose, and how triangles are shared out.
 
-use base::Seed;
+use base::{Draw, Seed};
 use geom::{BallTubeSpec, EndCap, RingRule};
+use plant::{OrganKind, Plant};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -158,6 +159,35 @@ impl PetalColor {
             Self::Blue => "blue",
             Self::Magenta => "magenta",
         }
+    }
+}
+
+impl PetalColor {
+    /// The mean of a petal of this colour, linear RGB.
+    pub const fn linear(self) -> [f32; 3] {
+        match self {
+            Self::Pink => [0.80, 0.33, 0.42],
+            Self::White => [0.90, 0.91, 0.80],
+            Self::Yellow => [0.93, 0.60, 0.03],
+            Self::Violet => [0.26, 0.14, 0.50],
+            Self::Red => [0.52, 0.02, 0.01],
+            Self::Orange => [0.87, 0.26, 0.02],
+            Self::Blue => [0.20, 0.29, 0.73],
+            Self::Magenta => [0.55, 0.06, 0.23],
+        }
+    }
+
+    /// The colour of the petals of a plant that have no colour of their own.
+    pub fn of(plant: &Plant, spec: &SkinSpec) -> Self {
+        // Many rays round a disc are a daisy's or a sunflower's, which are never blue or red.
+        const RAYS: [PetalColor; 4] =
+            [PetalColor::Yellow, PetalColor::White, PetalColor::Orange, PetalColor::Yellow];
+        let key = plant.name.bytes().fold(spec.seed, |key, b| key.child(u64::from(b)));
+        let of_kind = |kind| plant.organs.iter().filter(|o| o.kind == kind).count();
+        let rays =
+            of_kind(OrganKind::Disc) > 0 && of_kind(OrganKind::Petal) >= 9 * plant.flowers.len().max(1);
+        let among = if rays { &RAYS[..] } else { &Self::ALL };
+        spec.petals.unwrap_or_else(|| among[key.stream(Draw::Tint).below(among.len())])
     }
 }
 

@@ -318,6 +318,18 @@ struct Reader<'a> {
     node: &'a Node,
 }
 
+impl<'de> Reader<'de> {
+    fn list<V: Visitor<'de>>(self, all: &'de [Node], visitor: V) -> Result<V::Value, Error> {
+        let mut rest = Items { rest: all };
+        let value = visitor.visit_seq(&mut rest)?;
+        if rest.rest.is_empty() {
+            return Ok(value);
+        }
+        Err(Error::invalid_length(all.len(), &"fewer elements in array"))
+    }
+}
+
+// Each way in offers a visitor only what it may take: one that offered all would be code for all, for each type.
 impl<'de> Deserializer<'de> for Reader<'de> {
     type Error = Error;
 
@@ -329,15 +341,38 @@ impl<'de> Deserializer<'de> for Reader<'de> {
             Kind::Large(large) => visitor.visit_u64(*large),
             Kind::Number(number) => visitor.visit_f64(*number),
             Kind::Text(text) => visitor.visit_borrowed_str(text),
-            Kind::List(all) => {
-                let mut rest = Items { rest: all };
-                visitor.visit_seq(&mut rest).and_then(|value| {
-                    let all_read = rest.rest.is_empty();
-                    let too_long = || Error::invalid_length(all.len(), &"fewer elements in array");
-                    if all_read { Ok(value) } else { Err(too_long()) }
-                })
-            }
+            Kind::List(all) => self.list(all, visitor),
             Kind::Table(all) => visitor.visit_map(Entries { rest: all }),
+        }
+    }
+
+    fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        match &self.node.kind {
+            Kind::List(all) => self.list(all, visitor),
+            other => Err(Error::invalid_type(other.found(), &visitor)),
+        }
+    }
+
+    fn deserialize_tuple<V: Visitor<'de>>(self, _len: usize, visitor: V) -> Result<V::Value, Error> {
+        self.deserialize_seq(visitor)
+    }
+
+    fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        match &self.node.kind {
+            Kind::Table(all) => visitor.visit_map(Entries { rest: all }),
+            other => Err(Error::invalid_type(other.found(), &visitor)),
+        }
+    }
+
+    fn deserialize_struct<V: Visitor<'de>>(
+        self,
+        _name: &'static str,
+        _fields: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Error> {
+        match &self.node.kind {
+            Kind::List(all) => self.list(all, visitor),
+            _ => self.deserialize_map(visitor),
         }
     }
 
@@ -370,8 +405,8 @@ impl<'de> Deserializer<'de> for Reader<'de> {
     }
 
     serde::forward_to_deserialize_any! {
-        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf unit unit_struct seq tuple
-        tuple_struct map struct identifier ignored_any
+        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf unit unit_struct
+        tuple_struct identifier ignored_any
     }
 }
 

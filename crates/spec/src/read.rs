@@ -1,5 +1,6 @@
 //! Text or JSON -> a spec; one field of a spec.
 
+use base::Slip;
 use serde_json::Value;
 
 use crate::{Node, RangeFault, Spec, TextFault, check};
@@ -34,48 +35,8 @@ pub enum SpecFault {
 base::coded!(SpecFault {
     Self::Pointer(path) => "spec-pointer" { path },
 } wraps {
-    Self::Text { line, path, message } => &Slip::of(*line, path, message), Slip<'_>;
+    Self::Text { line, path, message } => &Slip::in_field(path, *line, message), Slip;
     Self::Range { fault, .. } => fault, RangeFault;
-});
-
-/// What a reader says of a text, so that every language has its own words for the common slips.
-enum Slip<'a> {
-    Unknown { path: &'a str, name: &'a str },
-    Missing { path: &'a str, name: &'a str },
-    Choice { path: &'a str, name: &'a str, choices: String },
-    Syntax { line: usize, why: &'a str },
-    Other { path: &'a str, why: &'a str },
-}
-
-impl<'a> Slip<'a> {
-    /// `why`: a message of serde's, which names fields and variants in backticks, or one of TOML's.
-    fn of(line: Option<usize>, path: &'a str, why: &'a str) -> Self {
-        let quoted = |what: &str| {
-            let mut names = why.strip_prefix(what)?.split('`').skip(1).step_by(2);
-            Some((names.next()?, names.collect::<Vec<_>>().join(", ")))
-        };
-        if let Some((name, _)) = quoted("unknown field") {
-            return Self::Unknown { path, name };
-        }
-        if let Some((name, _)) = quoted("missing field") {
-            return Self::Missing { path, name };
-        }
-        if let Some((name, choices)) = quoted("unknown variant") {
-            return Self::Choice { path, name, choices };
-        }
-        match line {
-            Some(line) if path.is_empty() && !why.starts_with("invalid") => Self::Syntax { line, why },
-            _ => Self::Other { path, why },
-        }
-    }
-}
-
-base::coded!(Slip<'_> {
-    Self::Unknown { path, name } => "spec-unknown" { path, name },
-    Self::Missing { path, name } => "spec-missing" { path, name },
-    Self::Choice { path, name, choices } => "spec-choice" { path, name, choices },
-    Self::Syntax { line, why } => "spec-syntax" { line, why },
-    Self::Other { path, why } => "spec-text" { path, why },
 });
 
 fn on(line: Option<usize>) -> String {
@@ -120,7 +81,7 @@ pub fn from_toml<T: Spec>(text: &str) -> Result<T, SpecFault> {
 }
 
 /// Reads a spec that is kept as JSON. Ranges are not looked at: a file of an earlier version opens whatever its numbers
-/// are, and who makes something of it says what is wrong.
+/// are, and its maker reports what is wrong.
 ///
 /// # Errors
 /// [`SpecFault::Text`] with the names of the fields that lead to what is wrong.
@@ -221,6 +182,6 @@ mod tests {
         let told = from_toml::<Bed>("width_m = 1\nsoil = ").expect_err("no TOML").told();
         assert_eq!((told.code, told.fields["line"].as_str()), ("spec-syntax", "2"));
         let told = from_toml::<Bed>("width_m = true\nsoil = \"loam\"").expect_err("no number").told();
-        assert_eq!((told.code, told.fields["path"].as_str()), ("spec-text", "width_m"));
+        assert_eq!((told.code, told.fields["path"].as_str()), ("spec-kind", "width_m"));
     }
 }

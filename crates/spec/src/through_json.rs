@@ -1,4 +1,5 @@
-//! A spec inside of something else that serde reads and writes: `#[serde(with = "spec::through_json")]`.
+//! A spec inside of something else that serde reads and writes: `#[serde(with = "spec::through_json")]`; anything else
+//! that is read from JSON: `#[serde(deserialize_with = "spec::through_json::read")]`, or [`from_text`].
 //!
 //! By way of a JSON value, so that a spec is read by one reader only: each further one would be a copy of the code that
 //! reads all its fields, which is a good part of what a browser downloads.
@@ -6,11 +7,11 @@
 use core::ops::Deref;
 use std::sync::Arc;
 
-use serde::de::Error as _;
+use serde::de::{DeserializeOwned, Error as _};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::Value;
 
-use crate::{Spec, from_json, to_json};
+use crate::{Node, Spec, TextFault, from_json, to_json};
 
 /// Writes a spec that is borrowed or shared.
 ///
@@ -26,4 +27,33 @@ pub fn serialize<P: Deref<Target: Spec>, S: Serializer>(spec: &P, to: S) -> Resu
 /// What is wrong, with the names of the fields that lead to it.
 pub fn deserialize<'de, T: Spec, D: Deserializer<'de>>(from: D) -> Result<Arc<T>, D::Error> {
     from_json(&Value::deserialize(from)?).map(Arc::new).map_err(D::Error::custom)
+}
+
+/// Reads anything.
+///
+/// # Errors
+/// What is wrong, with the names of the fields that lead to it.
+pub fn read<'de, T: DeserializeOwned, D: Deserializer<'de>>(from: D) -> Result<T, D::Error> {
+    Node::from_json(&Value::deserialize(from)?).read().map_err(|TextFault { path, message, .. }| {
+        if path.is_empty() {
+            D::Error::custom(message)
+        } else {
+            D::Error::custom(format!("{path}: {message}"))
+        }
+    })
+}
+
+/// Reads anything from JSON.
+///
+/// # Errors
+/// What is wrong, with the names of the fields that lead to it; for what is no JSON, with the place.
+///
+/// ```
+/// let pairs: Vec<(u8, bool)> = spec::through_json::from_text("[[1, true], [2, false]]")?;
+/// assert_eq!(pairs, [(1, true), (2, false)]);
+/// assert!(spec::through_json::from_text::<Vec<u8>>("[1, 2, 256]").is_err());
+/// # Ok::<(), spec::serde_json::Error>(())
+/// ```
+pub fn from_text<T: DeserializeOwned>(text: &str) -> Result<T, serde_json::Error> {
+    read(serde_json::from_str::<Value>(text)?)
 }

@@ -2,7 +2,6 @@
 //!
 //! `drawing -> ink, classes | + corrections -> reading | + spec, seed -> plant | + skin -> model`
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use base::{Cancelled, Counted, Report, Run, Seed, Stage, Warning};
@@ -13,7 +12,7 @@ use mesh::{Model, Texture};
 use plant::Plant;
 use reading::{Kind, Reading};
 use sketch::{Built, KeptBodies, SketchSpec};
-use skin::{KeptShapes, SkinSpec, Traced};
+use skin::{KeptShapes, Pictures, SkinSpec, Traced};
 
 use crate::made::Made;
 use crate::make::{ClassOverrides, MakeError, SketchOptions};
@@ -68,8 +67,19 @@ pub struct Evaluator {
     done: Vec<&'static str>,
     /// See [`Evaluator::previewing`].
     preview: bool,
+    /// Of a preview: what the drawing was taken for before this stroke, if it was taken for something.
+    taken: Option<Taken>,
     /// See [`crate::SceneEvaluator::set_looking`].
     pub(crate) looking: bool,
+}
+
+/// What a drawing of one plant was read as.
+#[derive(Clone, Copy, Debug)]
+enum Taken {
+    /// What its strokes say.
+    Strokes,
+    /// For a kind that explains the whole better.
+    For(Kind),
 }
 
 /// What a plant is made from, besides its reading: the name goes into the plant.
@@ -100,6 +110,13 @@ struct Kept<K, V> {
     warnings: Vec<Warning>,
 }
 
+/// The strokes of a drawing keep what they were understood as while another is drawn.
+fn taken(reading: &Reading) -> Option<Taken> {
+    let [plant] = &reading.plants[..] else { return None };
+    let again = |s: &reading::StrokeReading| s.source == ink::Source::Rule(reading::READ_AS);
+    Some(if reading.strokes.iter().any(again) { Taken::For(plant.kind) } else { Taken::Strokes })
+}
+
 impl Evaluator {
     /// An evaluator for a stroke that is still being drawn: faster, and no more than a look. Strokes keep the class that
     /// they had, and the report has neither fidelity nor digest. The guarantee above does not hold for it.
@@ -113,6 +130,7 @@ impl Evaluator {
         let same = other.strokes.as_ref().is_some_and(|k| k.from.strokes == drawing.strokes);
         if same {
             (self.strokes, self.reading) = (other.strokes.clone(), None);
+            self.taken = other.reading.as_ref().and_then(|r| taken(&r.value));
             (self.measures, self.bodies) = (other.measures.clone(), other.bodies.clone());
         }
         same
@@ -167,8 +185,7 @@ impl Evaluator {
         else {
             return Vec::new();
         };
-        let before: BTreeMap<u32, Classified> =
-            old.strokes.iter().map(|s| s.index).zip(classes.iter().copied()).collect();
+        let before = base::map_of(old.strokes.iter().map(|s| s.index).zip(classes.iter().copied()));
         let same = |row: u32| {
             let row = row as usize;
             from.strokes.get(row).is_some_and(|s| Some(s) == drawing.strokes.get(row))
@@ -207,7 +224,12 @@ impl Evaluator {
             }
         }
         let mut report = Report::default();
-        let reading = report.stage("structure", run.clock, |r| reading::read_as(read_as, ink, &classes, r));
+        let reading =
+            report.stage("structure", run.clock, |r| match self.taken.filter(|_| read_as.is_none()) {
+                Some(Taken::For(kind)) => reading::read_as(Some(kind), ink, &classes, r),
+                Some(Taken::Strokes) => reading::read_without(&[reading::READ_AS], ink, &classes, r),
+                None => reading::read_as(read_as, ink, &classes, r),
+            });
         run.cancel.check()?;
         self.plant = None;
         let from = (wanted.clone(), read_as);
@@ -293,8 +315,9 @@ impl Evaluator {
         let traced = photo.as_ref().and_then(|p| self.traced(p, &mut report));
         let mut shapes = core::mem::take(&mut self.shapes);
         let meshed = self.plant().map(|plant| {
+            let pictures = Pictures { traced: traced.as_ref(), ..Pictures::default() };
             let model = report.stage("mesh", run.clock, |_| {
-                skin::skin_again(plant, skin, traced.as_ref(), Some(&mut shapes), run)
+                skin::skin_again(plant, skin, pictures, Some(&mut shapes), run)
             });
             model.map(|model| Model { name: plant.name.clone(), ..model })
         });
@@ -328,7 +351,7 @@ impl Evaluator {
         let corner = place(photo.place.x, photo.place.y + photo.height());
         // A stroke that leaves the picture was not traced over it.
         let inside = |s: &ink::Stroke| s.samples.iter().all(|p| photo.covers(p.at.x, p.at.y));
-        let strokes = (0..).zip(&drawing.strokes).filter(|(_, s)| inside(s)).map(|(i, _)| i).collect();
+        let strokes = base::set_of((0..).zip(&drawing.strokes).filter(|(_, s)| inside(s)).map(|(i, _)| i));
         let size_m = (photo.place.width * front.metres_per_unit, photo.height() * front.metres_per_unit);
         Some(Traced { texture, strokes, corner_m: (corner.x, corner.y), size_m })
     }

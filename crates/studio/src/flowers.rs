@@ -41,11 +41,7 @@ pub fn make_flower(
     let steady_m = Some(spec.size_m());
     let skin = SkinSpec { textures: false, variation: 0.0, steady_m, ..options.skin.clone() };
     let model = report.stage("mesh", run.clock, |_| skin::skin(&plant, &skin, run));
-    let mut model = model?;
-    for stem in model.materials.iter_mut().filter(|m| m.name == "stem") {
-        stem.base_color = [0.16, 0.32, 0.07];
-    }
-    let mut made = MadePlant::new(plant, (model, skin), (edits, &options.edits), &report);
+    let mut made = MadePlant::new(plant, (model?, skin), (edits, &options.edits), &report);
     made.item.plant = Some(made.plant.measure());
     Ok(made)
 }

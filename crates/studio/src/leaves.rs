@@ -6,9 +6,9 @@ use base::{Cancelled, Counted, OverBudget, Report, Run, Seed, Stopped, ops};
 use document::PlantEdit;
 use geom::SplineError;
 use leaf::{FullMarks, Leaf, LeafPaint, LeafSpec, Marks, MarksError, RaysError, ScanError};
-use mesh::{Model, Texture, TriMesh};
-use plant::{Frame, NodeId, Organ, OrganKind, Paint, Plant, Shape, ShapeId, SplineBlade};
-use skin::{KeptShapes, LeafColours, LeafMeshSpec, ShapeMesh, SkinSpec};
+use mesh::{Texture, TriMesh};
+use plant::{Frame, NodeId, Organ, OrganKind, Paint, Plant, PlantPaint, Shape, ShapeId, SplineBlade};
+use skin::{KeptShapes, LeafColours, LeafMeshSpec, Pictures, ShapeMesh, SkinSpec};
 
 use crate::made::MadePlant;
 use crate::report::{FaceCounts, LeafFit, LeafReport};
@@ -64,6 +64,9 @@ impl From<Stopped> for LeafError {
         }
     }
 }
+
+/// The green of the stem, linear.
+const STEM: [f32; 3] = [0.18, 0.30, 0.07];
 
 /// What to do where a leaf would have too many triangles.
 pub(crate) const COARSER: &str = "lower subdivisions or sides, or make fewer leaves";
@@ -132,21 +135,23 @@ pub(crate) fn add_leaf(
 /// Edits by hand, meshes, and the report of a plant of measured leaves, and the mesh of its first leaf; `textures` are
 /// those of its forms.
 pub(crate) fn finish(
-    plant: Plant,
+    mut plant: Plant,
     textures: &[Option<Arc<Texture>>],
     options: &LeafOptions,
     run: &Run<'_>,
     report: &mut Report,
 ) -> Result<(MadePlant, ShapeMesh), LeafError> {
     debug_assert_eq!(plant.validate().next(), None, "a sound plant");
+    let veins = LeafColours::default().wilted(options.spec.wilt).vein.map(linear_of);
+    plant.paint = PlantPaint { stem: Some(STEM), veins: Some(veins) };
     let (plant, edits) = shaped(plant, &options.edits, run)?;
     let mut kept = KeptShapes::default();
     let skin = options.skin.clone();
     let spec = SkinSpec { leaf: options.mesh(), textures: false, variation: 0.0, ..skin };
-    let skinned =
-        report.stage("mesh", run.clock, |_| skin::skin_again(&plant, &spec, None, Some(&mut kept), run));
-    let mut model = skinned?;
-    dress(&mut model, textures, options.spec.wilt);
+    let pictures = Pictures { leaves: textures, ..Pictures::default() };
+    let model =
+        report.stage("mesh", run.clock, |_| skin::skin_again(&plant, &spec, pictures, Some(&mut kept), run));
+    let model = model?;
     let mesh = kept.get(ShapeId::new(0)).cloned().unwrap_or_default();
     if mesh.crossing > 0 {
         report.warn(
@@ -180,27 +185,6 @@ pub(crate) fn leaf_texture(
         let flat = leaf.blade().flat(options.spec.subdivisions as usize);
         Arc::new(skin::vein_texture(&flat, &colours, 768, seed, run.executor))
     })
-}
-
-/// Gives the surfaces of a plant of measured leaves what they are made of.
-fn dress(model: &mut Model, textures: &[Option<Arc<Texture>>], wilt: f64) {
-    let colours = LeafColours::default().wilted(wilt);
-    for material in &mut model.materials {
-        match material.name.as_str() {
-            "stem" => material.base_color = [0.18, 0.30, 0.07],
-            "leaf-veins" => {
-                material.base_color = colours.vein.map(linear_of);
-                // Open tubes are seen from inside at their ends.
-                (material.roughness, material.translucency, material.double_sided) = (0.65, 0.0, true);
-            }
-            leaf => {
-                let form = leaf.strip_prefix("leaf-").and_then(|k| k.parse::<usize>().ok()).unwrap_or(1);
-                material.texture = textures.get(form - 1).cloned().flatten();
-                material.base_color = [1.0; 3];
-                (material.roughness, material.translucency, material.double_sided) = (0.6, 0.35, true);
-            }
-        }
-    }
 }
 
 impl LeafOptions {

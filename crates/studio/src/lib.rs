@@ -37,8 +37,8 @@ mod venation;
 
 pub use base::{
     Angle, Budget, CancelToken, Cancelled, Clock, Code, Coded, Counted, Digest, Draw, Executor, NoClock,
-    OverBudget, Report, Run, Seed, Serial, Stopped, Stream, Told, Unit, UpAxis, Warning, brief, grouped,
-    map_indexed, quoted,
+    OverBudget, Report, Run, Seed, Serial, Slip, Stopped, Stream, Told, Unit, UpAxis, Warning, brief,
+    grouped, map_indexed, map_of, quoted, set_of, sort_by_key,
 };
 pub use evaluate::{Evaluator, FrontView, make_from_sketch};
 pub use flowers::{FlowerOptions, make_flower};

@@ -6,12 +6,11 @@ use base::{Run, Seed, Stopped};
 use bloom::{FlowerSpec, GrowthLaw, Insertion, PetalForm, PetalMesh, Seat, Stamens, Whorl};
 use glam::DVec3;
 use ink::Drawing;
-use mesh::{MaterialKind, Model};
-use plant::{Flower, FlowerId, Organ, OrganKind, Plant, Shape};
-use skin::{KeptShapes, SkinSpec};
+use mesh::Model;
+use plant::{Flower, FlowerId, Organ, OrganKind, Paint, Plant, Shape};
+use skin::{KeptShapes, PetalColor, Pictures, SkinSpec};
 
 use crate::evaluate::make_from_sketch;
-use crate::leaves::linear_of;
 use crate::made::coarse;
 use crate::make::{MakeError, SketchOptions};
 use crate::report::ItemReport;
@@ -75,19 +74,19 @@ impl OpeningPlant {
         run: &Run<'_>,
     ) -> Result<Self, OpeningError> {
         let made = make_from_sketch(drawing, options, seed, run)?;
-        Self::of_made(&drawing.name, (&made.plant, &made.model, &made.item), &options.skin)
+        Self::of_made(&drawing.name, (&made.plant, &made.item), &options.skin)
     }
 
-    /// As [`OpeningPlant::new`], of a plant that was made of a drawing already: plant, model, entry of the report.
+    /// As [`OpeningPlant::new`], of a plant that was made of a drawing already: plant and entry of the report.
     ///
     /// # Errors
     /// [`OpeningError`].
     pub fn of_made(
         name: &str,
-        (plant, model, item): (&Plant, &Model, &ItemReport),
+        (plant, item): (&Plant, &ItemReport),
         skin: &SkinSpec,
     ) -> Result<Self, OpeningError> {
-        let dye = petal_color(model);
+        let natural = PetalColor::of(plant, skin).linear();
         let mut rest = plant.clone();
         let flower_organs =
             |kind| matches!(kind, OrganKind::Petal | OrganKind::Disc | OrganKind::Stamen | OrganKind::Pistil);
@@ -95,7 +94,7 @@ impl OpeningPlant {
         for (k, flower) in plant.flowers.iter().enumerate() {
             let own = |o: &&Organ| o.flower.is_some_and(|f| f.index() == k);
             let organs: Vec<&Organ> = plant.organs.iter().filter(own).collect();
-            flowers.extend(placed(plant, (FlowerId::new(k), flower), &organs, dye));
+            flowers.extend(placed(plant, (FlowerId::new(k), flower), &organs, natural));
         }
         if flowers.is_empty() {
             return Err(OpeningError::NoFlowers(name.into()));
@@ -140,7 +139,7 @@ impl OpeningPlant {
             overlap = overlap.max(bloom::petal_overlap(&plant, Some(placed.flower)));
         }
         debug_assert_eq!(plant.validate().next(), None, "a sound plant");
-        let model = skin::skin_again(&plant, &self.steady(), None, Some(&mut self.kept), run)?;
+        let model = skin::skin_again(&plant, &self.steady(), Pictures::default(), Some(&mut self.kept), run)?;
         Ok(OpenedPlant { plant, model, overlap })
     }
 
@@ -168,26 +167,15 @@ pub struct OpenedPlant {
     pub overlap: f64,
 }
 
-/// The mean colour of the petals as they are seen: texture, base colour and tints together.
-fn petal_color(model: &Model) -> [f32; 3] {
-    let part = model.parts.iter().find(|p| model.material(p).kind == MaterialKind::Petal);
-    let Some(part) = part else { return [0.7, 0.3, 0.4] };
-    let material = model.material(part);
-    let mean = |colors: &mut dyn Iterator<Item = [f32; 3]>| {
-        let (mut sum, mut n) = ([0.0_f32; 3], 0.0_f32);
-        for c in colors {
-            sum = [0, 1, 2].map(|q| sum[q] + c[q]);
-            n += 1.0;
-        }
-        if n > 0.0 { sum.map(|s| s / n) } else { [1.0; 3] }
-    };
-    let tint = mean(&mut part.mesh.colors.iter().copied());
-    let texture = material.texture.as_ref().map_or([1.0; 3], |t| {
-        // A hundred pixels say it; bytes are sRGB.
-        let step = (t.pixels.len() / 400).max(1);
-        mean(&mut t.pixels.chunks_exact(4).step_by(step).map(|p| [0, 1, 2].map(|q| linear_of(p[q]))))
-    });
-    [0, 1, 2].map(|q| (tint[q] * texture[q] * material.base_color[q]).clamp(0.0, 1.0))
+/// The mean of what petals are painted; `natural`: what those are that have no colour of their own.
+fn dye<'a>(petals: impl Iterator<Item = &'a Paint>, natural: [f32; 3]) -> [f32; 3] {
+    let (mut sum, mut count) = ([0.0_f32; 3], 0.0_f32);
+    for paint in petals {
+        let base = if let Paint::Natural(_) = paint { natural } else { [1.0; 3] };
+        sum = [0, 1, 2].map(|k| sum[k] + base[k] * paint.rgb()[k]);
+        count += 1.0;
+    }
+    sum.map(|s| (s / count.max(1.0)).clamp(0.0, 1.0))
 }
 
 /// The flower as data; none without petals.
@@ -195,9 +183,10 @@ fn placed(
     plant: &Plant,
     (id, flower): (FlowerId, &Flower),
     organs: &[&Organ],
-    dye: [f32; 3],
+    natural: [f32; 3],
 ) -> Option<Placed> {
     let petals = organs.iter().filter(|o| o.kind == OrganKind::Petal);
+    let dye = dye(petals.clone().map(|o| &o.paint), natural);
     let mut blades: Vec<(f64, PetalForm, f64)> = petals
         .filter_map(|o| match plant.shapes.get(o.shape.index())? {
             Shape::Blade(b) => {

@@ -138,7 +138,7 @@ impl ReadingReport {
         let mean = reading.plants.iter().filter_map(|p| p.readings.first()).map(|r| r.score).sum::<f64>();
         let mut found = vec![Self { kind: own(kind), plants, score: mean / count }];
         let mut others: Vec<(Kind, f64)> = sums.into_iter().filter(|(k, _)| !k.is_like(kind)).collect();
-        others.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        base::sort_by(&mut others, |a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
         found.extend(others.into_iter().map(|(k, score)| Self { kind: own(k), plants, score }));
         found.truncate(Self::MOST);
         found
@@ -352,7 +352,7 @@ impl LeafFit {
     /// From distances in metres; a point is explained up to 2 mm.
     pub fn of(distances: &[f64]) -> Self {
         let mut sorted: Vec<f64> = distances.iter().map(|d| d * 1e3).collect();
-        sorted.sort_by(f64::total_cmp);
+        base::sort_numbers(&mut sorted);
         let n = sorted.len();
         let Some(&max) = sorted.last() else { return Self::default() };
         let square: f64 = sorted.iter().map(|d| d * d).sum();

@@ -231,7 +231,7 @@ impl MadeFrom {
 /// The last result of a plant.
 #[derive(Clone, Debug, Default)]
 struct Made {
-    /// The word of who made it.
+    /// The word of its maker.
     maker: &'static str,
     /// What the result was made from; none after an update that was stopped half-way.
     from: Option<MadeFrom>,
@@ -339,7 +339,7 @@ impl SceneEvaluator {
     pub fn aside<'a>(&self, plants: impl IntoIterator<Item = &'a DocumentPlant>) -> Self {
         let wanted = plants.into_iter().flat_map(|p| [Some(p.id()), p.settings().maker.leaf()]);
         let kept = wanted.flatten().filter_map(|id| Some((id, self.plants.get(&id)?.clone())));
-        Self { plants: kept.collect(), ..*self }
+        Self { plants: base::map_of(kept), ..*self }
     }
 
     /// Forgets a plant: it is made from the beginning when it is asked for again.
@@ -479,10 +479,10 @@ impl Made {
             self.item = item;
         }
         let opened = anew || self.day != settings.day;
-        match (settings.day, self.sketch.plant(), self.sketch.model()) {
-            (Some(day), Some(plant), Some(model)) => {
+        match (settings.day, self.sketch.plant()) {
+            (Some(day), Some(plant)) => {
                 if self.opening.is_none() {
-                    let made = (plant, model, &self.item);
+                    let made = (plant, &self.item);
                     self.opening = Some(OpeningPlant::of_made(&drawing.name, made, &options.skin)?);
                 }
                 if let Some(opening) = self.opening.as_mut().filter(|_| changed || opened) {

@@ -7,14 +7,13 @@ use document::{
 use glam::DVec3;
 use ink::Drawing;
 use reading::{PlantReading, Reading};
+use sketch::SketchSpec;
 
 use crate::evaluate::{Evaluator, FrontView};
 use crate::make::{MakeError, SketchOptions};
 
 /// The name of the step in the history.
 const STEP: &str = "split-plant";
-/// Heights that a sketch may have, metres.
-const HEIGHTS: core::ops::RangeInclusive<f64> = 0.001..=1000.0;
 
 /// Why a drawing stays one plant.
 #[derive(Debug, thiserror::Error)]
@@ -139,7 +138,9 @@ impl Whole<'_> {
         let (sin, cos) = ops::sin_cos(place.yaw_deg.to_radians());
         place.position += DVec3::new(at.x * cos, at.y, -at.x * sin) * place.scale;
         if let Maker::Sketch(sketch) = &mut settings.maker {
-            sketch.sketch.height_m = Some(height.clamp(*HEIGHTS.start(), *HEIGHTS.end()));
+            let heights = spec::range::<SketchSpec>("height_m");
+            debug_assert!(heights.is_some(), "the schema says how high a sketch may be");
+            sketch.sketch.height_m = Some(heights.map_or(height, |[least, most]| height.clamp(least, most)));
             sketch.sketch.flipped_flowers = self.flipped(part, &sketch.sketch.flipped_flowers);
         }
         Ok(NewPlant { settings, strokes })

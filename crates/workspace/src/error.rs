@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use burgeon::document::{ArchiveError, CommandError, PhotoError, ProjectError};
 use burgeon::formats::{DrawingError, ModelError, WriteError};
-use burgeon::{Coded, SceneError, SplitError, Stopped, Told, TreeError};
+use burgeon::{Coded, SceneError, Slip, SplitError, Stopped, Told, TreeError, map_of};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -130,9 +130,9 @@ burgeon::coded!(WorkspaceError {
     Self::Format(format) => "no-such-export" { format },
     Self::NothingToShape => "nothing-to-shape" {},
     Self::NowhereToStand => "nowhere-to-stand" {},
-    Self::Law(why) => "law" { why },
+    Self::Law(why) => "law" { why = &Slip::of(&why.to_string()) => Slip },
     Self::Cancelled => "cancelled" {},
-    Self::Message(why) => "message" { why },
+    Self::Message(why) => "message" { why = &Slip::of(why) => Slip },
     Self::Internal(why) => "internal" { why },
 } wraps {
     Self::Command(e) => e, CommandError;
@@ -170,8 +170,8 @@ impl Refusal {
     fn told(Told { code, fields, causes }: Told, message: String) -> Self {
         let sentence = |name| fields.get(name).cloned().unwrap_or_default();
         let causes = causes.into_iter().map(|(name, told)| (name.into(), Self::told(told, sentence(name))));
-        let causes = causes.collect();
-        let fields = fields.into_iter().map(|(name, value)| (name.into(), value)).collect();
+        let causes = map_of(causes);
+        let fields = map_of(fields.into_iter().map(|(name, value)| (name.into(), value)));
         Self { code: code.into(), fields, causes, message }
     }
 }

@@ -1,13 +1,13 @@
 //! What is shown: plants made again where something changed, their meshes as columns.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use burgeon::document::{self, DocumentPlant, Editor, Maker, PlantId};
 use burgeon::growth::Obstacle;
 use burgeon::ink::Drawing;
 use burgeon::mesh::Model;
 use burgeon::plant::{OrganKind, Shape};
-use burgeon::{Evaluator, ItemReport, MakeError, Run, SceneError, Seed, SketchOptions};
+use burgeon::{Evaluator, ItemReport, MakeError, Run, SceneError, Seed, SketchOptions, set_of, sort_by_key};
 
 use crate::view::{GUEST, Outcome, PREVIEW_DETAIL, coarser};
 use crate::{Column, ObstacleView, PlantView, Refusal, SceneView, Workspace, WorkspaceError};
@@ -252,8 +252,7 @@ impl Workspace {
     /// Forgets what is not shown until the rest fits. A plant that comes back is made again, with the same bits.
     pub(crate) fn make_room(&mut self) {
         let plants = self.editor.document().plants().iter();
-        let shown: BTreeSet<PlantId> =
-            plants.filter(|p| !p.settings().hidden).map(DocumentPlant::id).collect();
+        let shown = set_of(plants.filter(|p| !p.settings().hidden).map(DocumentPlant::id));
         self.kept.now += 1;
         for &id in &shown {
             self.kept.shown.insert(id, self.kept.now);
@@ -261,7 +260,7 @@ impl Workspace {
         let last = |id| self.kept.shown.get(&id).copied().unwrap_or(0);
         let aside = self.scene.kept().filter(|(id, _)| !shown.contains(id));
         let mut aside: Vec<(u64, PlantId)> = aside.map(|(id, _)| (last(id), id)).collect();
-        aside.sort_unstable();
+        sort_by_key(&mut aside, |row| *row);
         for (_, id) in aside {
             // Counted anew: what a copy shares stays as long as the copy.
             if self.kept_bytes() <= self.kept.limit {
@@ -269,7 +268,7 @@ impl Workspace {
             }
             self.scene.forget(id);
         }
-        let kept: BTreeSet<PlantId> = self.scene.kept().map(|(id, _)| id).collect();
+        let kept = set_of(self.scene.kept().map(|(id, _)| id));
         self.kept.shown.retain(|id, _| kept.contains(id));
         self.outcomes.retain(|id, _| kept.contains(id) || shown.contains(id));
     }

@@ -10,6 +10,7 @@ use burgeon::formats::{DrawingFormat, ExportSpec, ModelFormat, no_files, read_dr
 use burgeon::glam::DVec3;
 use burgeon::growth::Obstacle;
 use burgeon::ink::Drawing;
+use burgeon::spec::through_json;
 use burgeon::{LeafError, Report, SceneError, leaf_marks, read_tree_spec, tree_settings};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -88,7 +89,7 @@ impl Workspace {
             self.add_plant(&spec.name, Maker::Tree(Box::new(settings)))?;
             Ok(Opened::new(FileKind::Tree, spec.name))
         } else if is("json") && holds(b"burgeon.law/") {
-            let law = serde_json::from_slice(bytes).map_err(WorkspaceError::Law)?;
+            let law = through_json::from_text(core::str::from_utf8(bytes)?).map_err(WorkspaceError::Law)?;
             self.run(FlowerCommand::SetLaw(Some(Arc::new(law))).of(self.must()?))?;
             Ok(Opened::new(FileKind::Law, stem))
         } else if let Some(format) = model {
@@ -106,7 +107,7 @@ impl Workspace {
         }
     }
 
-    /// What the document leaves to who sends a command: that measurements make a leaf.
+    /// What the document leaves to the sender of a command: that measurements make a leaf.
     pub(crate) fn check(&self, command: &document::Command) -> Result<(), WorkspaceError> {
         match command {
             document::Command::Leaf(_, document::LeafCommand::SetData(data)) => check_marks(data),

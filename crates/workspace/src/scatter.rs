@@ -59,20 +59,10 @@ pub(crate) fn places(ground: &Ground, spacing: f64, taken: &[DVec2], stream: &mu
         Ground::Brush { path, radius_m } => {
             let (path, radius) =
                 (finite(path), if radius_m.is_finite() { radius_m.clamp(0.0, 1e5) } else { 0.0 });
-            let near = |p: DVec2| match path.as_slice() {
-                [] => false,
-                [only] => only.distance(p) <= radius,
-                _ => path.windows(2).any(|w| to_segment(p, w[0], w[1]) <= radius),
-            };
+            let near = |p| geom::distance_to_polyline(&path, p).is_some_and(|d| d <= radius);
             darts(&path, radius, spacing, taken, stream, near)
         }
     }
-}
-
-fn to_segment(p: DVec2, a: DVec2, b: DVec2) -> f64 {
-    let along = b - a;
-    let share = (p - a).dot(along) / along.length_squared().max(f64::MIN_POSITIVE);
-    p.distance(a + along * share.clamp(0.0, 1.0))
 }
 
 /// Every `spacing` metres along a line, from its start.

@@ -9,7 +9,7 @@ use burgeon::geom;
 use burgeon::glam::{DVec2, DVec3};
 use burgeon::plant::{Axis, AxisId, AxisKind, Plant};
 use burgeon::shape::{
-    self, AxisKey, HandEdit, Input, Pick, Pointer, Ray, Reach, Thumb, Tool, ToolKind, lean_of_thumb,
+    self, AxisKey, Growth, HandEdit, Input, Pick, Pointer, Ray, Reach, Thumb, Tool, ToolKind, lean_of_thumb,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -74,6 +74,10 @@ pub enum ShapeInput {
         /// Where to.
         to: ShapeStep,
     },
+    /// It holds on: what grows is a round older.
+    Round,
+    /// What grows has other numbers from now on.
+    Grow(Growth),
     /// It changed its brush.
     Brush {
         /// How thick it is, metres.
@@ -199,6 +203,8 @@ impl Workspace {
                 };
                 tool.handle(plant, &Input::Twist(by))
             }
+            ShapeInput::Round => tool.handle(plant, &Input::Round),
+            ShapeInput::Grow(growth) => tool.handle(plant, &Input::Grow(growth)),
             ShapeInput::Brush { radius_m, density } => tool.handle(plant, &Input::Brush(radius_m, density)),
             ShapeInput::Move(moves) => {
                 let moves = moves.into_iter().map(|p| tool.handle(plant, &Input::Move(p.into())));
@@ -249,7 +255,8 @@ impl Workspace {
         let plant = self.current().and_then(|id| self.shown_plant(id));
         let Some(plant) = plant.filter(|p| (axis as usize) < p.axes.len()) else { return Vec::new() };
         let mut out = Vec::new();
-        for (i, _) in borne(plant, axis as usize).into_iter().enumerate().filter(|(_, is)| *is) {
+        for (i, _) in plant.borne_by(AxisId::new(axis as usize)).into_iter().enumerate().filter(|(_, is)| *is)
+        {
             let id = AxisId::new(i);
             let (points, radii) = (plant.axis_points(id), plant.axis_radii(id));
             for k in 1..points.len().min(radii.len()) {
@@ -313,31 +320,10 @@ fn walked(plant: &Plant, from: Option<u32>, to: ShapeStep) -> Option<Picked> {
     picked(plant, Pick { axis, at: 0.5, point, distance_m: 0.0 }, true)
 }
 
-/// Which axes are this one or are borne by it.
-fn borne(plant: &Plant, top: usize) -> Vec<bool> {
-    let bearer = |i: usize| Some(plant.nodes.axis.get(plant.axes[i].bearer?.index())?.index());
-    let mut known: Vec<Option<bool>> = vec![None; plant.axes.len()];
-    known[top] = Some(true);
-    for i in 0..plant.axes.len() {
-        let (mut way, mut at) = (vec![i], bearer(i));
-        if known[i].is_some() {
-            continue;
-        }
-        // No longer than there are axes: a sound plant has no circle.
-        while let Some(b) = at.filter(|&b| known[b].is_none() && way.len() <= plant.axes.len()) {
-            way.push(b);
-            at = bearer(b);
-        }
-        let is = at.and_then(|b| known[b]).unwrap_or(false);
-        way.into_iter().for_each(|w| known[w] = Some(is));
-    }
-    known.into_iter().map(|k| k == Some(true)).collect()
-}
-
 /// What is told of a branch; `named`: with a name for edits.
 fn picked(plant: &Plant, pick: Pick, named: bool) -> Option<Picked> {
     let axis = u32::try_from(pick.axis.index()).ok()?;
-    let shoots = borne(plant, pick.axis.index());
+    let shoots = plant.borne_by(pick.axis);
     let shoots = shoots
         .iter()
         .zip(&plant.axes)

@@ -51,7 +51,7 @@ impl<'a> DocumentState<'a> {
 pub struct PlantState<'a> {
     /// Its name within the document.
     pub id: PlantId,
-    /// Who makes it.
+    /// Its maker.
     pub maker: MakerWord,
     /// Its name.
     pub name: &'a str,
@@ -81,7 +81,7 @@ pub struct PlantState<'a> {
     pub flower: Option<FlowerState<'a>>,
 }
 
-/// Who makes a plant.
+/// The maker of a plant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum MakerWord {

@@ -1,12 +1,11 @@
 //! What a shell shows of the plants: figures and names. Meshes are columns, asked for one by one.
 
-use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use burgeon::document::{Command, Document, Maker, PlantId, SketchCommand, TreeCommand};
 use burgeon::mesh::{AlphaMode, Model, Texture};
 use burgeon::skin::SkinSpec;
-use burgeon::{FrontView, ItemReport, SceneError};
+use burgeon::{FrontView, ItemReport, SceneError, set_of};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -146,7 +145,7 @@ impl Textures {
     /// Forgets all but those of these views.
     pub(crate) fn keep<'a>(&mut self, views: impl Iterator<Item = &'a PlantView>) {
         let seen = views.flat_map(|v| &v.materials).filter_map(|m| Some(m.texture?.number));
-        let seen: BTreeSet<u32> = seen.collect();
+        let seen = set_of(seen);
         self.rows.retain(|(number, _)| seen.contains(number));
     }
 

@@ -40,7 +40,7 @@ pub enum Action {
     Add {
         /// What it is called.
         name: String,
-        /// Who makes it.
+        /// Its maker.
         maker: NewMaker,
     },
     /// Makes a tree another species.
@@ -61,7 +61,7 @@ pub enum Action {
     Scatter(Scatter),
 }
 
-/// Who makes a new plant.
+/// The maker of a new plant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum NewMaker {
@@ -227,8 +227,8 @@ impl Workspace {
 
     /// Where the plants were put that the requests since the last call added: metres along x, of the last one.
     ///
-    /// How wide the others are is known only where they were grown. Who does the same again without growing them, as a
-    /// shell does after a fault, says so beforehand with [`Workspace::place_next`].
+    /// How wide the others are is known only where they were grown. A shell that repeats the requests without growing
+    /// them, as after a fault, names the place beforehand with [`Workspace::place_next`].
     pub fn placed(&mut self) -> Option<f64> {
         self.place_next = None;
         self.placed.take()

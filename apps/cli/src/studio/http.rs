@@ -45,8 +45,8 @@ impl Guests {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Lets one more in; where it is full somebody has to go: first who asked for nothing yet, the oldest first, then
-    /// who has not taken any of the answer for longest.
+    /// Lets one more in. Where it is full another is closed: first one that has asked for nothing yet, the oldest first,
+    /// then the one that has taken nothing of its answer for longest.
     fn admit(&self, stream: TcpStream, most: usize) -> u64 {
         let mut all = self.all();
         let (next, open) = &mut *all;

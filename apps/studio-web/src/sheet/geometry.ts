@@ -60,6 +60,16 @@ export function boxOf(points: Float64Array, step: number, box?: Box): Box | unde
   return b;
 }
 
+/** The box round both. */
+export function united(a: Box, b: Box): Box {
+  return {
+    left: Math.min(a.left, b.left),
+    right: Math.max(a.right, b.right),
+    bottom: Math.min(a.bottom, b.bottom),
+    top: Math.max(a.top, b.top),
+  };
+}
+
 /** Distance from a point to a polyline of rows of `step` numbers. */
 export function distance(points: Float64Array, step: number, x: number, y: number): number {
   let best = Infinity;

@@ -1,7 +1,8 @@
 /** The sheet: what was drawn, and the tools that change it. It knows nothing of plants. */
 import { inkOf } from '../colours';
 import type { StrokePoints } from '../protocol';
-import type { SketchState, PhotoState, StrokeMode } from '../wire';
+import type { PhotoState, SketchCommand, SketchState, StrokeMode } from '../wire';
+import { dragged, type Frame, frameOf, type Handle, HALF, handleAt, handlesOf } from './frame';
 import {
   boxOf,
   centreline,
@@ -10,13 +11,14 @@ import {
   outline,
   toDrawing,
   toScreen,
+  united,
   zoomed,
   type Box,
   type Viewport,
 } from './geometry';
 import { Pen } from './pen';
 
-export type Tool = StrokeMode | 'erase' | 'select';
+export type Tool = StrokeMode | 'erase' | 'rub' | 'select' | 'pull';
 
 export interface SheetEvents {
   /** `mirror`: the same stroke on the other side of the line of symmetry. */
@@ -24,15 +26,13 @@ export interface SheetEvents {
   draft(mode: StrokeMode, samples: Float64Array): void;
   undraft(): void;
   erase(ids: number[]): void;
-  moveBegin(): void;
-  moveTo(ids: number[], x: number, y: number): void;
-  moveEnd(keep: boolean): void;
-  selected(ids: number[], anchor: { x: number; y: number } | undefined): void;
+  /** A drag that changes strokes or the photograph: what it comes to replaces what it came to before. */
+  begin(name: string): void;
+  change(command: SketchCommand): void;
+  end(keep: boolean): void;
+  /** `frame`: round what is selected, pixels. */
+  selected(ids: number[], frame: Frame | undefined): void;
   viewport(): void;
-  photoBegin(): void;
-  /** By how far, in the drawing's unit, since the drag began. */
-  photoMove(x: number, y: number): void;
-  photoEnd(keep: boolean): void;
 }
 
 /** A line in pixels from the drawing's origin: filled within its outline, or stroked along it. */
@@ -47,6 +47,8 @@ interface Stroke {
   points: Float64Array;
   box: Box;
   organ: string | undefined;
+  /** It may be something else. */
+  doubtful: boolean;
   line: (Line & { scale: number }) | undefined;
 }
 
@@ -56,13 +58,22 @@ const INK = 2.6;
 /** How near a pointer must come to a stroke, in pixels: a fingertip is coarser. */
 const REACH = { mouse: 8, pen: 8, touch: 18 } as const;
 const reachOf = (type: string): number => REACH[type as keyof typeof REACH] ?? 8;
+/** How far along a line a pull at it reaches, pixels. */
+const PULL = 90;
+/** How strong a stroke is drawn that may be something else. */
+const DOUBT = 0.45;
+/** A drag begins when the pointer is so far from where it went down, pixels. */
+const SLIP = 4;
 
 type Act =
   | { kind: 'draw'; pen: Pen; mode: StrokeMode }
   | { kind: 'erase'; ids: Set<number> }
   | { kind: 'move'; from: [number, number]; moved: boolean }
+  | { kind: 'frame'; handle: Handle; box: Box; from: [number, number]; moved: boolean }
+  | { kind: 'pull'; id: number; from: [number, number]; moved: boolean }
+  | { kind: 'rub'; path: [number, number][]; radius: number }
   | { kind: 'band'; from: [number, number]; to: [number, number]; add: boolean }
-  | { kind: 'photo'; from: [number, number]; moved: boolean }
+  | { kind: 'photo'; place: PhotoState['place']; from: [number, number]; moved: boolean }
   | { kind: 'pan'; x: number; y: number };
 
 /**
@@ -109,6 +120,8 @@ export class Sheet {
   private pending: { pen: Pen; mode: StrokeMode } | undefined;
   private photo: PhotoState | null = null;
   private image: ImageBitmap | undefined;
+  /** Where a stroke was pressed last, in the drawing's unit. */
+  pressed: [number, number] | undefined;
   /** Drags move the photograph. */
   placing = false;
   /** The line of symmetry, if there is one: its x in the drawing. */
@@ -164,8 +177,10 @@ export class Sheet {
       const box = points && boxOf(points, 3);
       if (!points || !box) return [];
       const known = before.get(id);
+      // Where it was pressed is no place of what it is now.
+      if (known?.points !== points && this.selection.has(id)) this.pressed = undefined;
       const line = known?.points === points && known.mode === mode ? known.line : undefined;
-      return [{ id, mode, points, box, organ: known?.organ, line }];
+      return [{ id, mode, points, box, organ: known?.organ, doubtful: known?.doubtful ?? false, line }];
     });
     this.pending = undefined;
     const left = [...this.selection].filter((id) => there.has(id));
@@ -195,11 +210,11 @@ export class Sheet {
   }
 
   /** What each row of the document was understood as; a row beyond the document is the stroke being drawn. */
-  setOrgans(organs: Map<number, string>): void {
+  setOrgans(organs: Map<number, string>, doubtful: ReadonlySet<number>): void {
     let changed = false;
     this.strokes.forEach((s, row) => {
-      changed ||= s.organ !== organs.get(row);
-      s.organ = organs.get(row);
+      changed ||= s.organ !== organs.get(row) || s.doubtful !== doubtful.has(row);
+      [s.organ, s.doubtful] = [organs.get(row), doubtful.has(row)];
     });
     this.draftOrgan = organs.get(this.strokes.length);
     this.redraw(changed);
@@ -224,9 +239,13 @@ export class Sheet {
     return [...this.selection];
   }
 
-  select(ids: number[]): void {
+  /** `pressed`: where one of them was pressed, in the drawing's unit. */
+  select(ids: number[], pressed?: [number, number]): void {
+    const same = ids.length === this.selection.size && ids.every((id) => this.selection.has(id));
+    this.pressed = pressed ?? (same ? this.pressed : undefined);
     this.selection = new Set(ids);
-    this.events.selected(ids, this.anchor());
+    const box = this.selectedBox();
+    this.events.selected(ids, box && frameOf(this.view, box));
     this.redraw(false);
   }
 
@@ -314,14 +333,22 @@ export class Sheet {
       this.act = { kind: 'pan', x: at[0], y: at[1] };
     } else if (e.button === 2) {
       const hit = this.hit(at, reachOf(e.pointerType));
-      this.select(hit ? [hit.id] : []);
+      this.select(hit ? [hit.id] : [], toDrawing(this.view, at[0], at[1]));
     } else if (e.button === 5 || e.buttons === 32 || this.tool === 'erase') {
       this.act = { kind: 'erase', ids: new Set() };
       this.rub(at, reachOf(e.pointerType));
-    } else if (this.placing) {
-      this.act = { kind: 'photo', from: at, moved: false };
+    } else if (this.placing && this.photo) {
+      this.act = { kind: 'photo', place: this.photo.place, from: at, moved: false };
     } else if (this.tool === 'select') {
       this.grab(at, e);
+    } else if (this.tool === 'pull') {
+      const hit = this.hit(at, reachOf(e.pointerType));
+      if (hit) this.act = { kind: 'pull', id: hit.id, from: at, moved: false };
+    } else if (this.tool === 'rub') {
+      const radius = reachOf(e.pointerType) / this.view.scale;
+      this.act = { kind: 'rub', path: [toDrawing(this.view, at[0], at[1])], radius };
+      this.events.begin('rub');
+      this.rubAlong();
     } else {
       const pen = new Pen(this.steady);
       this.act = { kind: 'draw', pen, mode: this.tool };
@@ -331,7 +358,14 @@ export class Sheet {
   }
 
   private grab(at: [number, number], e: PointerEvent): void {
-    const hit = this.hit(at, reachOf(e.pointerType));
+    const reach = reachOf(e.pointerType);
+    const box = this.selectedBox();
+    const handle = box && handleAt(frameOf(this.view, box), at, reach);
+    if (box && handle) {
+      this.act = { kind: 'frame', handle, box, from: at, moved: false };
+      return;
+    }
+    const hit = this.hit(at, reach);
     if (!hit) {
       this.act = { kind: 'band', from: at, to: at, add: e.shiftKey };
       return;
@@ -343,7 +377,7 @@ export class Sheet {
       chosen.clear();
       chosen.add(hit.id);
     }
-    this.select([...chosen]);
+    this.select([...chosen], toDrawing(this.view, at[0], at[1]));
     this.act = { kind: 'move', from: at, moved: false };
   }
 
@@ -378,24 +412,26 @@ export class Sheet {
       case 'erase':
         this.rub(at, reachOf(e.pointerType));
         break;
-      case 'move': {
-        const [dx, dy] = [(at[0] - act.from[0]) / this.view.scale, (act.from[1] - at[1]) / this.view.scale];
-        if (!act.moved && Math.hypot(at[0] - act.from[0], at[1] - act.from[1]) < 4) return;
-        if (!act.moved) this.events.moveBegin();
+      case 'move':
+      case 'frame':
+      case 'pull':
+      case 'photo':
+        if (act.kind !== 'photo' && !act.moved && Math.hypot(at[0] - act.from[0], at[1] - act.from[1]) < SLIP)
+          return;
+        if (!act.moved) this.events.begin(act.kind === 'frame' ? 'turn' : act.kind);
         act.moved = true;
-        this.events.moveTo(this.selected, dx, dy);
+        this.events.change(this.changeOf(act, at, e.shiftKey));
+        break;
+      case 'rub': {
+        const p = toDrawing(this.view, at[0], at[1]);
+        const [x, y] = act.path.at(-1)!;
+        if (Math.hypot(p[0] - x, p[1] - y) < act.radius / 2) return;
+        act.path.push(p);
+        this.rubAlong();
         break;
       }
       case 'band':
         act.to = at;
-        break;
-      case 'photo':
-        if (!act.moved) this.events.photoBegin();
-        act.moved = true;
-        this.events.photoMove(
-          (at[0] - act.from[0]) / this.view.scale,
-          (act.from[1] - at[1]) / this.view.scale,
-        );
         break;
       case 'pan':
         this.view = { ...this.view, x: this.view.x + at[0] - act.x, y: this.view.y + at[1] - act.y };
@@ -404,6 +440,29 @@ export class Sheet {
         break;
     }
     this.redraw(false);
+  }
+
+  /** What a drag comes to with the pointer here. */
+  private changeOf(
+    act: Extract<Act, { moved: boolean }>,
+    at: [number, number],
+    held: boolean,
+  ): SketchCommand {
+    const [from, to] = [act.from, at].map(([x, y]) => toDrawing(this.view, x, y)) as [
+      [number, number],
+      [number, number],
+    ];
+    const by: [number, number] = [to[0] - from[0], to[1] - from[1]];
+    if (act.kind === 'photo')
+      return { 'place-photo': { ...act.place, x: act.place.x + by[0], y: act.place.y + by[1] } };
+    if (act.kind === 'move') return { 'move-strokes': [this.selected, by] };
+    if (act.kind === 'pull')
+      return { 'pull-strokes': [[act.id], { at: from, by, reach: PULL / this.view.scale }] };
+    return { 'turn-strokes': [this.selected, dragged(act.handle, act.box, from, to, held)] };
+  }
+
+  private rubAlong(): void {
+    if (this.act?.kind === 'rub') this.events.change({ 'rub-out': [this.act.path, this.act.radius] });
   }
 
   private up(e: PointerEvent, kept: boolean): void {
@@ -434,13 +493,16 @@ export class Sheet {
         if (act.ids.size > 0) this.events.erase([...act.ids]);
         break;
       case 'move':
-        if (act.moved) this.events.moveEnd(true);
+      case 'frame':
+      case 'pull':
+      case 'photo':
+        if (act.moved) this.events.end(true);
+        break;
+      case 'rub':
+        this.events.end(true);
         break;
       case 'band':
         this.band(act.from, act.to, act.add);
-        break;
-      case 'photo':
-        if (act.moved) this.events.photoEnd(true);
         break;
       case 'pan':
         break;
@@ -453,8 +515,7 @@ export class Sheet {
     const act = this.act;
     this.act = undefined;
     if (act?.kind === 'draw') this.events.undraft();
-    if (act?.kind === 'move' && act.moved) this.events.moveEnd(false);
-    if (act?.kind === 'photo' && act.moved) this.events.photoEnd(false);
+    if (act?.kind === 'rub' || (act && 'moved' in act && act.moved)) this.events.end(false);
     this.redraw(true);
   }
 
@@ -515,12 +576,10 @@ export class Sheet {
     }
   }
 
-  private anchor(): { x: number; y: number } | undefined {
-    const chosen = this.strokes.filter((s) => this.selection.has(s.id));
-    const box = chosen.reduce<Box | undefined>((b, s) => boxOf(s.points, 3, b), undefined);
-    if (!box) return undefined;
-    const [x, y] = toScreen(this.view, box.right, (box.bottom + box.top) / 2);
-    return { x, y };
+  /** Round what is selected, in the drawing's unit. */
+  selectedBox(): Box | undefined {
+    const [first, ...others] = this.strokes.filter((s) => this.selection.has(s.id)).map((s) => s.box);
+    return first && others.reduce(united, first);
   }
 
   // Drawing -----------------------------------------------------------------------------------------------------
@@ -568,7 +627,7 @@ export class Sheet {
     this.grid(c);
     const gone = this.act?.kind === 'erase' ? this.act.ids : undefined;
     for (const s of this.strokes) {
-      c.globalAlpha = gone?.has(s.id) ? 0.15 : 1;
+      c.globalAlpha = gone?.has(s.id) ? 0.15 : s.doubtful ? DOUBT : 1;
       this.ink(c, this.lineOf(s), s.mode, s.organ);
     }
     c.globalAlpha = 1;
@@ -588,6 +647,9 @@ export class Sheet {
       c.globalAlpha = 1;
       this.ink(c, this.lineOf(s), s.mode, s.organ);
     }
+    // While it is dragged, the strokes show what comes of it.
+    const box = this.tool === 'select' && !this.act ? this.selectedBox() : undefined;
+    if (box) this.drawFrame(c, box);
     if (live) {
       const { pen, mode } = live;
       const inked = (samples: Float64Array): void =>
@@ -611,6 +673,27 @@ export class Sheet {
         Math.abs(to[1] - from[1]),
       );
       c.setLineDash([]);
+    }
+  }
+
+  private drawFrame(c: CanvasRenderingContext2D, box: Box): void {
+    const frame = frameOf(this.view, box);
+    const handles = handlesOf(frame);
+    const [, x, y] = handles[0]!;
+    c.strokeStyle = this.accent();
+    c.lineWidth = 1;
+    c.strokeRect(frame.left, frame.top, frame.right - frame.left, frame.bottom - frame.top);
+    c.beginPath();
+    c.moveTo(x, frame.top);
+    c.lineTo(x, y);
+    c.stroke();
+    c.fillStyle = this.dark ? '#20261f' : '#ffffff';
+    for (const [handle, hx, hy] of handles) {
+      c.beginPath();
+      if (handle === 'turn') c.arc(hx, hy, HALF, 0, 2 * Math.PI);
+      else c.rect(hx - HALF, hy - HALF, 2 * HALF, 2 * HALF);
+      c.fill();
+      c.stroke();
     }
   }
 

@@ -15,12 +15,12 @@ describe('refusals', () => {
     }
   });
 
-  it('are told in the language of the page, else in English', () => {
+  it('are told in the language of the page, else in English', async () => {
     const refusal = { code: 'full', fields: { what: 'plants' }, message: 'the document is full' };
     expect(tell(refusal)).toBe('the document is full');
-    setLanguage('zh');
+    await setLanguage('zh');
     expect(tell(refusal)).toBe('文档里的植物已满，请新建一个');
     expect(tell({ ...refusal, code: 'new' })).toBe('the document is full');
-    setLanguage('en');
+    await setLanguage('en');
   });
 });

@@ -100,16 +100,16 @@ describe('what the core says', () => {
       for (const n of numbers(text)) expect(zhHelp[key], key).toContain(n);
   });
 
-  it('is asked for in the current language', () => {
+  it('is asked for in the current language', async () => {
     vi.stubGlobal('document', { documentElement: {} });
-    setLanguage('zh');
+    await setLanguage('zh');
     expect([
       fieldName('lambda'),
       wordOf('guided'),
       unitOf('m'),
       helpOf('tree.look', 'Colours and\nbark.\n\nMore.'),
     ]).toEqual(['顶端优势', '引导生长', '米', '颜色与树皮。']);
-    setLanguage('en');
+    await setLanguage('en');
     expect([
       helpOf('tree.look', 'What [`Lsystem::parse`] and [`x`](Self::x) read.'),
       unitOf('colour'),

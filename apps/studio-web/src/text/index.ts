@@ -1,19 +1,21 @@
 import { en, type TextKey } from './en';
 import type { Refusal } from '../wire';
-import { zh } from './zh';
-import { zhErrors, zhWords } from './zh-errors';
-import { zhHelp } from './zh-help';
 
 export type { TextKey };
 export type Language = 'en' | 'zh';
 
-const tables: Record<Language, Record<TextKey, string>> = { en, zh };
+/** The texts of the other language, once they were wanted. */
+let chinese: typeof import('./chinese') | undefined;
 let language: Language = 'en';
 
-export function setLanguage(to: Language): void {
+/** Goes over to a language; the first time its texts are fetched. English is always there. */
+export async function setLanguage(to: Language): Promise<void> {
+  if (to === 'zh') chinese ??= await import('./chinese');
   language = to;
   if (typeof document !== 'undefined') document.documentElement.lang = to === 'zh' ? 'zh-Hans' : 'en';
 }
+
+const other = (): typeof chinese => (language === 'zh' ? chinese : undefined);
 
 export function currentLanguage(): Language {
   return language;
@@ -21,17 +23,21 @@ export function currentLanguage(): Language {
 
 /** The text of a key in the current language, with `{name}` replaced. */
 export function t(key: TextKey, values: Record<string, string | number> = {}): string {
-  return tables[language][key].replace(/\{(\w+)\}/g, (whole, name: string) => String(values[name] ?? whole));
+  return (other()?.zh ?? en)[key].replace(/\{(\w+)\}/g, (whole, name: string) =>
+    String(values[name] ?? whole),
+  );
 }
 
 /** Why the core did not do something: its own English, or our text for its code. */
 export function tell({ code, fields, causes, message }: Refusal): string {
-  const text: string | undefined = language === 'zh' ? zhErrors[code as keyof typeof zhErrors] : undefined;
+  const texts = other();
+  const text: string | undefined = texts?.zhErrors[code as keyof typeof texts.zhErrors];
   const told = (name: string): string => {
     const cause = causes?.[name];
-    return cause ? tell(cause) : (zhWords[fields[name] ?? ''] ?? fields[name] ?? '');
+    return cause ? tell(cause) : (texts?.zhWords[fields[name] ?? ''] ?? fields[name] ?? '');
   };
-  return text?.replace(/\{(\w+)\}/g, (_, name: string) => told(name)) ?? message;
+  // A field that does not apply is empty.
+  return text?.replace(/\{(\w+)\}/g, (_, name: string) => told(name)).trim() ?? message;
 }
 
 /** The text of a key made of parts; the last part itself if there is no such key. */
@@ -76,5 +82,5 @@ export function plainHelp(text: string): string {
 
 /** What the core says of a field, a choice or a species, in the current language; `key` is its name (`schema.ts`). */
 export function helpOf(key: string | undefined, english = ''): string {
-  return (language === 'zh' && key !== undefined ? zhHelp[key] : undefined) ?? plainHelp(english);
+  return (key !== undefined ? other()?.zhHelp[key] : undefined) ?? plainHelp(english);
 }

@@ -1,7 +1,7 @@
 /**
  * What the core says in English about fields, choices and species, in Chinese. Keys are places in the core's schemas
- * (`schema.ts`), so that the English can be reworded: `help.test.ts` holds this table against the schemas. Whoever changes
- * what an English text says changes the Chinese too.
+ * (`schema.ts`), so that the English can be reworded: `help.test.ts` holds this table against the schemas. A change
+ * of what an English text says is a change of the Chinese, too.
  */
 export const zhHelp: Readonly<Record<string, string>> = {
   // Flowers

@@ -36,6 +36,8 @@ const TRACE = 4096;
 const BLINK_MS = 110;
 /** A step of the seat, metres. */
 const SEAT_M = 0.1;
+/** Between two reports to the page, ms: writing one takes memory and time. */
+const REPORT_MS = 100;
 /** Eyes above the floor where the device does not know the floor. */
 const EYES_M = 1.5;
 const DRAWS: ReadonlySet<ShapeTool> = new Set<ShapeTool>(['sketch', 'brush', 'silhouette', 'leaves']);
@@ -71,6 +73,7 @@ export class Headset {
   private turned = false;
   private drawn = 0;
   private frames = 0;
+  private reportAt = 0;
 
   constructor(
     private readonly view: PlantView,
@@ -270,7 +273,11 @@ export class Headset {
     shaping.follow(at);
     this.draw(hand.tip);
     const [x, y] = hand.thumb;
-    shaping.thumb(x === 0 && y === 0 ? undefined : [x, y]);
+    if (shaping.word !== 'grow' || working.by === 'grip')
+      shaping.thumb(x === 0 && y === 0 ? undefined : [x, y]);
+    // Up for more vigour, to the side for wider angles, while it grows.
+    else if (Math.hypot(x, y) > OUT && this.frames % 6 === 0 && shaping.turnGrowth(1.06 ** y, 3 * x))
+      this.wrist.say(shaping.growthText);
   }
 
   private begin(hand: Controller, by: 'trigger' | 'grip', at: ShapePointer): void {
@@ -345,7 +352,9 @@ export class Headset {
 
   /** What tests and support see of it. */
   private report(tool: Controller | undefined): void {
-    if (this.frames % 4 !== 1) return;
+    const now = performance.now();
+    if (now < this.reportAt) return;
+    this.reportAt = now + REPORT_MS;
     const { position, quaternion, scale } = this.world.rig;
     const state = {
       frames: this.frames,
@@ -403,6 +412,7 @@ export class Headset {
       tools.slice(0, 3),
       tools.slice(3, 6),
       tools.slice(6, 9),
+      tools.slice(9).map((one) => ({ ...one, wide: 6 })),
       [key('undo', 3, this.events.undo), key('redo', 3, this.events.redo)],
       [key('smaller', 3, () => this.brush(1 / 1.25)), key('larger', 3, () => this.brush(1.25))],
       [

@@ -104,7 +104,7 @@ fn named(new: NamedObstacle) -> NamedObstacle {
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum LeafCommand {
-    /// Takes other measurements. Who sends them has checked that they make a leaf.
+    /// Takes other measurements. The sender has checked that they make a leaf.
     SetData(LeafData),
     /// Sets how the leaf is made.
     Set(Box<leaf::LeafSpec>),

@@ -113,7 +113,7 @@ impl Command {
             Self::Scene(c) => c.decide(document),
             Self::Plant(id, c) => c.decide(plant(id, document)?).map(one),
             Self::Shape(id, c) => c.decide(plant(id, document)?).map(one),
-            Self::Sketch(id, c) => c.decide(plant(id, document)?, document).map(one),
+            Self::Sketch(id, c) => c.decide(plant(id, document)?, document),
             Self::Tree(id, c) => c.decide(plant(id, document)?, document).map(one),
             Self::Leaf(id, c) => c.decide(plant(id, document)?).map(one),
             Self::Flower(id, c) => c.decide(plant(id, document)?).map(one),
@@ -145,7 +145,7 @@ fn set(
 /// Whether a plant may bear the leaf of another.
 fn may_bear(plant: &DocumentPlant, leaf: Option<PlantId>, document: &Document) -> Result<(), CommandError> {
     let Some(lender) = leaf else { return Ok(()) };
-    // Who lends a leaf bears its own: so no plant waits for itself.
+    // A plant that lends its leaf bears its own: so no plant waits for itself.
     let lent = document.plants.iter().any(|p| p.settings.maker.leaf() == Some(plant.id));
     if lender == plant.id || lent || !document.lends_leaf(lender) {
         return Err(CommandError::NoLeaf);

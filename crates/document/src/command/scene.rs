@@ -31,7 +31,7 @@ pub enum SceneCommand {
     Add(Box<NewPlant>),
     /// Adds a moved copy of a plant after the others, metres.
     Duplicate(PlantId, #[schemars(with = "[f64; 3]")] DVec3),
-    /// Deletes plants; who bore their leaf bears its own again.
+    /// Deletes plants; a plant that bore the leaf of one bears its own again.
     Remove(Vec<PlantId>),
     /// Puts another document in the place of this one.
     #[serde(skip)]

@@ -42,6 +42,7 @@ impl ShapeCommand {
                 HandEdit::SketchBranch { .. } => "shape-sketch",
                 HandEdit::Brush { .. } => "shape-brush",
                 HandEdit::Silhouette { .. } => "shape-silhouette",
+                HandEdit::Grow { .. } => "shape-grow",
                 HandEdit::LeafDensity { .. } => "shape-leaves",
                 _ => "shape-change",
             },

@@ -1,10 +1,9 @@
 //! Commands of sketches: strokes and how they are understood.
 
-use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use glam::DVec2;
-use ink::{InkSample, Stroke, StrokeClass, StrokeMode};
+use ink::{InkSample, Stroke, StrokeClass, StrokeMode, StrokePull, StrokeTurn};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sketch::SketchSpec;
@@ -47,6 +46,18 @@ pub enum SketchCommand {
     RemoveStrokes(Vec<StrokeId>),
     /// Moves strokes, in the drawing's unit, y up.
     MoveStrokes(Vec<StrokeId>, #[schemars(with = "[f64; 2]")] DVec2),
+    /// Turns and scales strokes about a point.
+    TurnStrokes(Vec<StrokeId>, StrokeTurn),
+    /// Bends strokes by pulling at them.
+    PullStrokes(Vec<StrokeId>, StrokePull),
+    /// Smooths strokes once more.
+    SmoothStrokes(Vec<StrokeId>),
+    /// Cuts strokes in two at their point nearest to this one.
+    CutStrokes(Vec<StrokeId>, #[schemars(with = "[f64; 2]")] DVec2),
+    /// Makes one stroke of several, in the place of the first.
+    JoinStrokes(Vec<StrokeId>),
+    /// Erases what lies within a radius of a path, of all strokes.
+    RubOut(#[schemars(with = "Vec<[f64; 2]>")] Vec<DVec2>, f64),
     /// Sets the class of strokes, or leaves it to the classifier again.
     SetClass(Vec<StrokeId>, Option<StrokeClass>),
     /// Sets the mode of strokes.
@@ -84,6 +95,12 @@ impl SketchCommand {
             Self::Duplicate(..) => "duplicate",
             Self::RemoveStrokes(_) => "erase",
             Self::MoveStrokes(..) => "move",
+            Self::TurnStrokes(..) => "turn",
+            Self::PullStrokes(..) => "pull",
+            Self::SmoothStrokes(_) => "smooth",
+            Self::CutStrokes(..) => "cut",
+            Self::JoinStrokes(_) => "join",
+            Self::RubOut(..) => "rub",
             Self::SetClass(..) => "class",
             Self::SetMode(..) => "mode",
             Self::SetColor(..) => "color",
@@ -96,32 +113,39 @@ impl SketchCommand {
         }
     }
 
-    pub(super) fn decide(self, plant: &DocumentPlant, document: &Document) -> Result<Event, CommandError> {
+    pub(super) fn decide(
+        self,
+        plant: &DocumentPlant,
+        document: &Document,
+    ) -> Result<Vec<Event>, CommandError> {
         if plant.settings.sketch().is_none() {
             let found = plant.settings.maker.word();
             return Err(CommandError::OtherMaker { wanted: "sketch", found });
         }
-        match self {
+        let event = match self {
+            Self::CutStrokes(ids, at) => {
+                let cut = |s: &Stroke| ink::cut(s, at).map(Vec::from);
+                return replace(&rows(&ids, plant)?, plant, document, cut);
+            }
+            Self::JoinStrokes(ids) => return join(&rows(&ids, plant)?, plant, document),
+            Self::RubOut(path, radius) => {
+                let all: Vec<usize> = (0..plant.strokes.len()).collect();
+                return replace(&all, plant, document, |s| ink::rubbed(s, &path, radius));
+            }
             Self::AddStrokes(strokes) => add(strokes, plant, document),
             Self::Duplicate(ids, by) => duplicate(&ids, by, plant, document),
             Self::RemoveStrokes(ids) => remove(&rows(&ids, plant)?, plant),
             Self::Clear => remove(&(0..plant.strokes.len()).collect::<Vec<_>>(), plant),
-            Self::MoveStrokes(ids, by) => edit(&ids, plant, |s| {
-                s.stroke = Arc::new(moved(&s.stroke, by)?);
-                Ok(())
-            }),
+            Self::MoveStrokes(ids, by) => redraw(&ids, plant, |s| moved(s, by)),
+            Self::TurnStrokes(ids, turn) => redraw(&ids, plant, |s| turn.of(s)),
+            Self::PullStrokes(ids, pull) => redraw(&ids, plant, |s| pull.of(s)),
+            Self::SmoothStrokes(ids) => redraw(&ids, plant, ink::smoothed),
             Self::SetClass(ids, class) => edit(&ids, plant, |s| {
                 s.class = class;
                 Ok(())
             }),
-            Self::SetMode(ids, mode) => edit(&ids, plant, |s| {
-                s.stroke = Arc::new(Stroke { mode, ..Stroke::clone(&s.stroke) });
-                Ok(())
-            }),
-            Self::SetColor(ids, color) => edit(&ids, plant, |s| {
-                s.stroke = Arc::new(Stroke { color, ..Stroke::clone(&s.stroke) });
-                Ok(())
-            }),
+            Self::SetMode(ids, mode) => redraw(&ids, plant, |s| Stroke { mode, ..s.clone() }),
+            Self::SetColor(ids, color) => redraw(&ids, plant, |s| Stroke { color, ..s.clone() }),
             Self::SetSketch(sketch) => settings(plant, |s| s.sketch = *sketch),
             Self::SetSkin(skin) => settings(plant, |s| s.skin = SkinSpec { seed: s.skin.seed, ..skin }),
             Self::SetPhoto(photo) => settings(plant, |s| s.photo = Some(*photo)),
@@ -137,7 +161,8 @@ impl SketchCommand {
                 may_bear(plant, leaf, document)?;
                 settings(plant, |s| s.leaf = leaf)
             }
-        }
+        };
+        event.map(|event| vec![event])
     }
 }
 
@@ -166,15 +191,78 @@ fn add(strokes: Vec<NewStroke>, plant: &DocumentPlant, document: &Document) -> R
     Ok(Event::Added { plant: plant.id, rows, next_stroke: (document.next_stroke, next) })
 }
 
-fn moved(stroke: &Stroke, by: DVec2) -> Result<Stroke, CommandError> {
+fn moved(stroke: &Stroke, by: DVec2) -> Stroke {
     let mut stroke = stroke.clone();
-    for sample in &mut stroke.samples {
-        sample.at += by;
-        if !sample.at.is_finite() {
-            return Err(CommandError::TooFar);
+    stroke.samples.iter_mut().for_each(|s| s.at += by);
+    stroke
+}
+
+fn near(stroke: Stroke) -> Result<Stroke, CommandError> {
+    if stroke.samples.iter().all(|s| s.at.is_finite()) { Ok(stroke) } else { Err(CommandError::TooFar) }
+}
+
+/// Strokes that stay what they are, drawn otherwise.
+fn redraw(
+    ids: &[StrokeId],
+    plant: &DocumentPlant,
+    change: impl Fn(&Stroke) -> Stroke,
+) -> Result<Event, CommandError> {
+    edit(ids, plant, |s| {
+        s.stroke = Arc::new(near(change(&s.stroke))?);
+        Ok(())
+    })
+}
+
+/// Strokes in whose place others come: the first of them keeps number and class, the others have the class. `change`
+/// returns `None` for a stroke that stays as it is.
+fn replace(
+    rows: &[usize],
+    plant: &DocumentPlant,
+    document: &Document,
+    change: impl Fn(&Stroke) -> Option<Vec<Stroke>>,
+) -> Result<Vec<Event>, CommandError> {
+    let mut next = document.next_stroke;
+    let (mut gone, mut come) = (Vec::new(), Vec::new());
+    // How many more strokes there are before the row in hand than there were.
+    let mut more = 0;
+    for &row in rows {
+        let old = &plant.strokes[row];
+        let Some(pieces) = change(&old.stroke) else { continue };
+        let base = row + more - gone.len();
+        for (k, piece) in pieces.into_iter().enumerate() {
+            let id = if k == 0 { old.id } else { StrokeId(next) };
+            if k > 0 {
+                next = next.checked_add(1).ok_or(CommandError::Full("strokes"))?;
+            }
+            come.push((base + k, DocumentStroke { id, stroke: Arc::new(near(piece)?), class: old.class }));
+            more += 1;
         }
+        gone.push((row, old.clone()));
     }
-    Ok(stroke)
+    if gone.is_empty() {
+        return Err(CommandError::Nothing("no stroke is there"));
+    }
+    let mut events = vec![Event::Removed { plant: plant.id, rows: gone }];
+    if !come.is_empty() {
+        let next_stroke = (document.next_stroke, next);
+        events.push(Event::Added { plant: plant.id, rows: come, next_stroke });
+    }
+    Ok(events)
+}
+
+fn join(rows: &[usize], plant: &DocumentPlant, document: &Document) -> Result<Vec<Event>, CommandError> {
+    let strokes: Vec<&Stroke> = rows.iter().map(|&row| plant.strokes[row].stroke.as_ref()).collect();
+    let (Some(whole), [first, _, ..]) = (ink::joined(&strokes), rows) else {
+        return Err(CommandError::Nothing("choose two strokes or more to join"));
+    };
+    let old = &plant.strokes[*first];
+    let come = vec![(*first, DocumentStroke { stroke: Arc::new(near(whole)?), ..old.clone() })];
+    let gone = rows.iter().map(|&row| (row, plant.strokes[row].clone())).collect();
+    let next_stroke = (document.next_stroke, document.next_stroke);
+    Ok(vec![
+        Event::Removed { plant: plant.id, rows: gone },
+        Event::Added { plant: plant.id, rows: come, next_stroke },
+    ])
 }
 
 fn duplicate(
@@ -185,13 +273,13 @@ fn duplicate(
 ) -> Result<Event, CommandError> {
     let copies = rows(ids, plant)?.into_iter().map(|row| {
         let s = &plant.strokes[row];
-        Ok(NewStroke { stroke: moved(&s.stroke, by)?, class: s.class })
+        Ok(NewStroke { stroke: near(moved(&s.stroke, by))?, class: s.class })
     });
     add(copies.collect::<Result<_, CommandError>>()?, plant, document)
 }
 
 fn rows(ids: &[StrokeId], plant: &DocumentPlant) -> Result<Vec<usize>, CommandError> {
-    let wanted: BTreeSet<StrokeId> = ids.iter().copied().collect();
+    let wanted = base::set_of(ids.iter().copied());
     let found = plant.strokes.iter().enumerate().filter(|(_, s)| wanted.contains(&s.id));
     let found: Vec<usize> = found.map(|(row, _)| row).collect();
     if found.len() < wanted.len() {

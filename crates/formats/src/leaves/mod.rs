@@ -9,7 +9,7 @@ mod rays;
 use std::io::Read;
 
 use crate::drawing::text_of;
-use crate::error::{FileFault, Place};
+use crate::error::{FileFault, Place, Placed};
 
 pub use graph::{ReadGraph, read_vein_graph};
 pub use marks::{MarksAxes, ReadMarks, marks_template, read_marks, write_marks};
@@ -86,4 +86,4 @@ fn text(input: impl Read) -> Result<String, LeafFileError> {
     text_of(bytes).map_err(file)
 }
 
-base::coded!(LeafFileError {} wraps { Self { fault, .. } => fault, FileFault });
+base::coded!(LeafFileError {} wraps { Self { place, fault, .. } => &Placed { place, fault }, Placed<'_> });

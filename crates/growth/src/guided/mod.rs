@@ -175,7 +175,7 @@ pub struct Growing<'a> {
     room: Room<'a>,
     /// As it is asked at first.
     asked: GuidedSpec,
-    /// With the changes so far.
+    /// With the changes so far, and without a list of changes.
     spec: GuidedSpec,
     numbers: Numbers,
     seed: Seed,
@@ -198,6 +198,18 @@ fn place_key(p: DVec3) -> u64 {
     p.x.to_bits() ^ p.y.to_bits().rotate_left(21) ^ p.z.to_bits().rotate_left(42)
 }
 
+/// The room around the roots of a skeleton, and what follows from the numbers of a spec.
+fn room_of<'a>(
+    skeleton: &Skeleton,
+    obstacles: &'a Obstacles,
+    spec: &GuidedSpec,
+    run: &Run<'_>,
+) -> Result<(Room<'a>, Numbers), GrowthError> {
+    let roots = skeleton.position.iter().zip(&skeleton.parent).filter(|(_, p)| p.is_none());
+    let room = Room::new(spec, roots.map(|(p, _)| *p).collect(), obstacles, &run.budget)?;
+    Ok((room, spec.check()?))
+}
+
 impl<'a> Growing<'a> {
     /// A tree at each root; they compete.
     ///
@@ -211,8 +223,7 @@ impl<'a> Growing<'a> {
         run: &Run<'_>,
     ) -> Result<Self, GrowthError> {
         let mut skeleton = plant_roots(roots, obstacles, run)?;
-        let room = Room::new(spec, roots.to_vec(), obstacles, &run.budget)?;
-        let numbers = spec.check()?;
+        let (room, numbers) = room_of(&skeleton, obstacles, spec, run)?;
         let mut buds = Vec::new();
         for root in 0..skeleton.len() {
             let root = JointId::new(root);
@@ -239,9 +250,7 @@ impl<'a> Growing<'a> {
         if skeleton.is_empty() {
             return Err(GrowthError::NoRoots);
         }
-        let roots = skeleton.position.iter().zip(&skeleton.parent).filter(|(_, p)| p.is_none());
-        let room = Room::new(spec, roots.map(|(p, _)| *p).collect(), obstacles, &run.budget)?;
-        let numbers = spec.check()?;
+        let (room, numbers) = room_of(&skeleton, obstacles, spec, run)?;
         Ok(Self::new(skeleton, buds, room, spec, numbers, seed))
     }
 
@@ -283,7 +292,7 @@ impl<'a> Growing<'a> {
             skeleton,
             room,
             asked: spec.clone(),
-            spec: spec.clone(),
+            spec: GuidedSpec { changes: Vec::new(), ..spec.clone() },
             numbers,
             seed,
             round: 0,

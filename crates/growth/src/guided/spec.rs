@@ -125,6 +125,11 @@ pub struct GuidedChange {
 }
 
 impl GuidedChange {
+    /// Whether its numbers are within their ranges, beside the defaults of all others.
+    pub fn is_sound(&self) -> bool {
+        GuidedSpec { changes: vec![self.clone()], ..GuidedSpec::default() }.check().is_ok()
+    }
+
     /// The numbers after it.
     pub(super) fn applied(&self, spec: &GuidedSpec) -> GuidedSpec {
         let Self { round: _, alpha, lambda, branch_angle_deg, repulsion, markers, tropisms, strokes } = self;

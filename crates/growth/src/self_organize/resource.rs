@@ -1,4 +1,4 @@
-//! Who gets how much: the extended Borchert-Honda model and the priority model.
+//! How much each bud gets: the extended Borchert-Honda model and the priority model.
 //!
 //! `light of each bud -> summed towards the base -> vigour shared towards the tips`
 

@@ -226,7 +226,7 @@ impl Sample {
             near[6]
         });
         let mut sorted = sixth.clone();
-        sorted.sort_unstable_by(f64::total_cmp);
+        base::sort_numbers(&mut sorted);
         let (median, tenth) = (sorted[sorted.len() / 2], sorted[sorted.len() * 9 / 10]);
         // Four times: stalks are thinner covered than blades, and their points must stay. So many as a tenth are no
         // outliers: most points crowd in a part of the leaf then, and the others tell how wide the spacing is. On an
@@ -268,7 +268,7 @@ fn usual_box(points: &[DVec3]) -> Option<[DVec3; 2]> {
     places.dedup();
     let ends = |axis: fn(&DVec3) -> f64| {
         let mut x: Vec<f64> = places.iter().map(axis).collect();
-        x.sort_unstable_by(f64::total_cmp);
+        base::sort_numbers(&mut x);
         (x[x.len() / 200], x[x.len() - 1 - x.len() / 200])
     };
     if points.is_empty() {
@@ -415,7 +415,7 @@ fn surface_of(flat: &[DVec3], spacing: f64, smoothing: f64) -> Result<HeightFiel
     for _ in 0..4 {
         let off: Vec<f64> = flat.iter().map(|p| (p.z - field.height(p.x, p.y).0).abs()).collect();
         let mut sorted = off.clone();
-        sorted.sort_unstable_by(f64::total_cmp);
+        base::sort_numbers(&mut sorted);
         // 4.685 deviations, the deviation from the median (Huber 1981); not below rounding.
         let scale = (4.685 * 1.4826 * sorted[sorted.len() / 2]).max(1e-9);
         for (w, d) in weights.iter_mut().zip(&off) {
@@ -438,7 +438,7 @@ struct Lines {
 impl Lines {
     fn of(flat: &[DVec3], field: &HeightField, rows: usize, spacing: f64) -> Self {
         let mut ys: Vec<f64> = flat.iter().map(|p| p.y).collect();
-        ys.sort_unstable_by(f64::total_cmp);
+        base::sort_numbers(&mut ys);
         let (lo, hi) = (ys[0], ys[ys.len() - 1]);
         let y: Vec<f64> = (0..rows).map(|i| base::ops::lerp(lo, hi, i as f64 / (rows - 1) as f64)).collect();
         // A slab must hold some lines of the scanner.
@@ -454,7 +454,7 @@ impl Lines {
         let ends: Vec<Option<(f64, f64)>> = slabs
             .iter_mut()
             .map(|slab| {
-                slab.sort_unstable_by(f64::total_cmp);
+                base::sort_numbers(slab);
                 // The first and last in a hundred may be stray.
                 let cut = slab.len() / 100;
                 Some((*slab.get(cut)?, *slab.get(slab.len().checked_sub(1 + cut)?)?))
@@ -606,7 +606,7 @@ fn stalk_curve(stem: &[DVec3], base: DVec3) -> Option<BallBSpline> {
         line.windows(2).map(d).fold(f64::INFINITY, f64::min)
     };
     let mut radii: Vec<f64> = stem.iter().map(|&p| off(p)).collect();
-    radii.sort_unstable_by(f64::total_cmp);
+    base::sort_numbers(&mut radii);
     // The scanner sees the near half: its points lie about a radius from their mean line, strays farther.
     let radius = radii[radii.len() / 2].max(1e-6);
     let balls: Vec<Ball> = line.iter().map(|&p| Ball::new(p, radius)).collect();

@@ -75,7 +75,7 @@ pub(crate) fn take_for(draft: &mut Draft<'_>, kind: Kind) {
         Kind::Grass => grass(draft, &parts),
         Kind::Leaf => leaf(draft, &parts),
         Kind::Fruit | Kind::Vegetable => fruit(draft, &parts),
-        Kind::HousePlant => pot(&parts, box_),
+        Kind::HousePlant => house_plant(draft, &parts, box_),
         Kind::None => Vec::new(),
     };
     for (stroke, class) in classes {
@@ -144,6 +144,12 @@ fn tree(draft: &Draft<'_>, parts: &[Part], all: (DVec2, DVec2), kind: Kind) -> C
 fn palm(draft: &Draft<'_>, parts: &[Part], all: (DVec2, DVec2)) -> Classes {
     let (trunk, fronds): (Vec<&Part>, Vec<&Part>) = parts.iter().partition(|p| is_wood(p, all));
     let mut found = wood(&trunk);
+    // The longest of several lines is the trunk.
+    if !found.iter().any(|f| f.1 == StrokeClass::TrunkOutline) {
+        let longest = trunk.iter().max_by(|a, b| a.tall().total_cmp(&b.tall()).then(b.stroke.cmp(&a.stroke)));
+        found.retain(|f| longest.is_none_or(|l| l.stroke != f.0));
+        found.extend(longest.map(|l| (l.stroke, StrokeClass::TrunkOutline)));
+    }
     for p in fronds {
         let points = &draft.ink.strokes[p.stroke].points;
         let middle = p.lo.midpoint(p.hi);
@@ -226,8 +232,12 @@ fn leaf(draft: &Draft<'_>, parts: &[Part]) -> Classes {
 /// The largest outline is the body, and so are others as large beside it; what lies in it is its skin.
 fn fruit(draft: &Draft<'_>, parts: &[Part]) -> Classes {
     let largest = parts.iter().map(|p| p.area).fold(0.0, f64::max);
-    let bodies: Vec<&Part> =
-        parts.iter().filter(|p| p.area > 0.25 * largest && (p.open < 0.5 || p.area >= largest)).collect();
+    // Where nothing large is closed, lines are sides of the body.
+    let lines = !parts.iter().any(|p| p.open < 0.5 && p.area > 0.5 * largest);
+    let bodies: Vec<&Part> = parts
+        .iter()
+        .filter(|p| p.area > 0.25 * largest && (lines || p.open < 0.5 || p.area >= largest))
+        .collect();
     let body = |p: &Part| bodies.iter().any(|b| b.stroke == p.stroke);
     let within = |p: &Part| {
         bodies.iter().any(|b| {
@@ -249,6 +259,30 @@ fn fruit(draft: &Draft<'_>, parts: &[Part]) -> Classes {
         }
     };
     parts.iter().map(|p| (p.stroke, class(p))).collect()
+}
+
+/// What stands in the pot is no tree.
+fn house_plant(draft: &Draft<'_>, parts: &[Part], all: (DVec2, DVec2)) -> Classes {
+    let mut found = pot(parts, all);
+    if found.is_empty() {
+        found = pot_of_lines(parts, all);
+    }
+    let is_pot = |k: usize| found.iter().any(|f| f.0 == k) || draft.class[k] == StrokeClass::Pot;
+    let rest: Vec<(usize, StrokeClass)> =
+        herb(draft, parts, false).into_iter().filter(|&(k, _)| !is_pot(k)).collect();
+    found.extend(rest);
+    found
+}
+
+/// A pot that was drawn in several lines: what lies low, is not tall, and spans what is level there.
+fn pot_of_lines(parts: &[Part], (low, high): (DVec2, DVec2)) -> Classes {
+    let tall = high.y - low.y;
+    let bottom = |p: &&Part| p.hi.y < low.y + 0.5 * tall && p.lo.y < low.y + 0.45 * tall;
+    let lowest = |p: &&Part| p.lo.y < low.y + 0.08 * tall && p.wide() > 0.15 * (high.x - low.x);
+    if !parts.iter().filter(bottom).any(|p| lowest(&p)) {
+        return Vec::new();
+    }
+    parts.iter().filter(bottom).map(|p| (p.stroke, StrokeClass::Pot)).collect()
 }
 
 /// The lowest thing that is wide and has an inside.

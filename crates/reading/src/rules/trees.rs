@@ -48,7 +48,7 @@ pub(super) fn tree_in_one_stroke(draft: &Draft<'_>) -> Findings {
     for k in main {
         let points = &draft.ink.strokes[k].points;
         let Some(outline) = unsure(draft, k).then(|| simple_outline(points)).flatten() else { continue };
-        let head = neck(&outline).map(|n| n.1);
+        let head = neck(&outline, false).map(|n| n.1);
         if head.is_some_and(|h| signed_area(&h) > FULL * signed_area(&convex_hull(&h)))
             || closes_above_its_trunk(points, &outline)
         {

@@ -8,12 +8,15 @@ use glam::DVec2;
 use ink::StrokeClass;
 
 use super::{Findings, openness, unsure};
+use crate::Kind;
 use crate::corolla::dips;
 use crate::draft::Draft;
 use crate::near::bounds;
 
 /// Petals round a disc at least.
 const FEWEST: usize = 4;
+/// The middle of a petal that begins under the disc lies at least at this share of its farthest point.
+const UNDER: f64 = 0.4;
 /// Between two neighbouring petals at most this angle, radians.
 const WIDEST: f64 = 2.2;
 /// The pen meant to close an outline whose ends are nearer than this share of its length.
@@ -33,6 +36,9 @@ struct Loop {
 /// Petals round a disc, each an outline or all in one go.
 pub(super) fn whole_flower(draft: &Draft<'_>) -> Findings {
     let mut found = Findings::default();
+    if draft.kind.is_some_and(|kind| !kind.is_like(Kind::Flower)) {
+        return found;
+    }
     let loops: Vec<Loop> =
         (0..draft.class.len()).filter(|&k| unsure(draft, k)).filter_map(|k| loop_of(draft, k)).collect();
     if loops.len() > MOST {
@@ -105,18 +111,21 @@ fn best(draft: &Draft<'_>, loops: &[Loop], taken: &[bool]) -> Option<(usize, Vec
 /// What stands round a ring, if it is petals.
 fn petals_of(draft: &Draft<'_>, loops: &[Loop], free: &[usize], d: usize) -> Option<Vec<usize>> {
     let disc = &loops[d];
-    let near = |l: &Loop| {
-        let points = &draft.ink.strokes[l.stroke].points;
-        points.iter().map(|p| p.distance(disc.middle)).fold(f64::INFINITY, f64::min)
+    // How near to the disc's middle an outline comes, and how far from it.
+    let reach = |l: &Loop| {
+        let far = draft.ink.strokes[l.stroke].points.iter().map(|p| p.distance(disc.middle));
+        far.fold((f64::INFINITY, 0.0), |(least, most): (f64, f64), d| (least.min(d), most.max(d)))
     };
     let petals: Vec<usize> = free
         .iter()
         .copied()
-        .filter(|&i| i != d && !contains(&loops[i].hull, disc.middle))
         .filter(|&i| {
             let l = &loops[i];
-            let (way, gap) = (l.middle.distance(disc.middle), near(l));
-            way > 0.8 * disc.radius && gap < 1.5 * disc.radius + 0.1 * l.radius && gap > 0.2 * disc.radius
+            let (way, (gap, far)) = (l.middle.distance(disc.middle), reach(l));
+            // A petal begins beside the disc, or under it and then at its own end.
+            let beside = !contains(&l.hull, disc.middle) && gap > 0.2 * disc.radius;
+            let begins = beside || way > UNDER * far;
+            i != d && begins && way > 0.8 * disc.radius && gap < 1.5 * disc.radius + 0.1 * l.radius
         })
         .collect();
     if petals.len() < FEWEST {

@@ -7,6 +7,7 @@ use glam::DVec2;
 use ink::StrokeClass;
 
 use super::{Findings, openness, outside, share_inside, unsure};
+use crate::Kind;
 use crate::corolla::dips;
 use crate::draft::Draft;
 use crate::near::bounds;
@@ -66,7 +67,8 @@ enum Wood {
 pub(super) fn whole_tree(draft: &Draft<'_>) -> Findings {
     let mut found = Findings::default();
     let all: Vec<usize> = (0..draft.class.len()).collect();
-    if !all.iter().all(|&k| unsure(draft, k)) {
+    let other = draft.kind.is_some_and(|kind| !kind.is_like(Kind::Tree));
+    if other || !all.iter().all(|&k| unsure(draft, k)) {
         return found;
     }
     let parts: Vec<Part> = all

@@ -252,7 +252,7 @@ impl Line {
         let mut at: Vec<f64> = stations.iter().map(|s| s.clamp(0.0, length)).collect();
         at.push(0.0);
         at.push(length);
-        at.sort_by(f64::total_cmp);
+        base::sort_numbers(&mut at);
         let mut kept: Vec<f64> = vec![0.0];
         for a in at {
             if a - kept[kept.len() - 1] > same && (length - a > same || a >= length) {

@@ -80,7 +80,7 @@ pub(crate) fn place_flower(
     let facing = !u32::try_from(index).is_ok_and(|i| scene.spec.flipped_flowers.contains(&i));
     let corolla = corolla(scene, flower, at, facing);
     let mut whorls: Vec<u32> = flower.petals.iter().map(|p| p.whorl).collect();
-    whorls.sort_unstable();
+    base::sort_by_key(&mut whorls, |w| *w);
     whorls.dedup();
     plant.flowers.push(Flower {
         bearer,

@@ -112,11 +112,15 @@ impl Scene<'_> {
 }
 
 /// Whether a drawing was made with coloured pens: its organs have two different colours at least, one of which is
-/// no ink. A drawing in one colour tells the colour of the pen.
-pub(crate) fn coloured(mut colors: impl Iterator<Item = [u8; 3]> + Clone) -> bool {
+/// no ink. A drawing in one colour tells the colour of the pen; no colour beside one is another.
+pub(crate) fn coloured(mut colors: impl Iterator<Item = Option<[u8; 3]>> + Clone) -> bool {
     let Some(first) = colors.next() else { return false };
-    let other = colors.clone().any(|c| c.iter().zip(&first).any(|(a, b)| a.abs_diff(*b) > 24));
-    other && (is_coloured(first) || colors.any(is_coloured))
+    let differ = |c: Option<[u8; 3]>| match c.zip(first) {
+        Some((c, first)) => c.iter().zip(&first).any(|(a, b)| a.abs_diff(*b) > 24),
+        None => c != first,
+    };
+    let other = colors.clone().any(differ);
+    other && (first.is_some_and(is_coloured) || colors.flatten().any(is_coloured))
 }
 
 /// The linear light of a colour that something was drawn in; `None` for ink: black, grey or white.

@@ -59,18 +59,11 @@ impl Lines {
         self.tree.within(p, best + 0.5 * self.piece, near);
         for &i in &*near {
             for from in [i.checked_sub(1), Some(i)].into_iter().flatten().filter(|&k| self.joined[k]) {
-                best = best.min(to_piece(self.points[from], self.points[from + 1], p));
+                best = best.min(geom::distance_to_segment(self.points[from], self.points[from + 1], p));
             }
         }
         Some(best)
     }
-}
-
-fn to_piece(a: DVec2, b: DVec2, p: DVec2) -> f64 {
-    let (along, to) = (b - a, p - a);
-    let square = along.length_squared();
-    let t = if square > 0.0 { (to.dot(along) / square).clamp(0.0, 1.0) } else { 0.0 };
-    to.distance(along * t)
 }
 
 #[cfg(test)]

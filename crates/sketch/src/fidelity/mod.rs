@@ -150,8 +150,8 @@ impl Wanted {
         let outline =
             |g: &crate::GrownContour| g.outline.iter().map(|&p| built.map.ink_from_plant(p)).collect();
         Self {
-            left_out: turned.chain(ignored).collect(),
-            filled: filled.chain(reading.regions.iter().filter_map(|r| r.source)).collect(),
+            left_out: base::set_of(turned.chain(ignored)),
+            filled: base::set_of(filled.chain(reading.regions.iter().filter_map(|r| r.source))),
             contours: built.grown.iter().map(outline).collect(),
         }
     }

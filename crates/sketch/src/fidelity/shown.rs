@@ -2,8 +2,6 @@
 //!
 //! `Built + Reading -> ShownLine`
 
-use std::collections::BTreeSet;
-
 use base::ops;
 use glam::{DVec2, DVec3};
 use plant::{AxisId, Organ, OrganKind, Plant, Shape};
@@ -29,8 +27,8 @@ pub(super) fn shown_lines(built: &Built, reading: &Reading) -> Vec<ShownLine> {
     let seen = |p: DVec3| built.map.ink_from_plant(p.truncate());
     let grown_axis = |i: usize| built.grown.iter().any(|g| g.axes.contains(&i));
     let grown_organ = |i: usize| built.grown.iter().any(|g| g.organs.contains(&i));
-    let thick: BTreeSet<u32> =
-        reading.axes.iter().filter(|a| !a.half_width.is_empty()).filter_map(|a| a.source).collect();
+    let drawn_thick = reading.axes.iter().filter(|a| !a.half_width.is_empty());
+    let thick = base::set_of(drawn_thick.filter_map(|a| a.source));
     let mut lines = Vec::new();
     for (i, axis) in plant.axes.iter().enumerate().filter(|&(i, _)| !grown_axis(i)) {
         let id = AxisId::new(i);

@@ -381,7 +381,7 @@ impl Volume {
                     crossings.push(a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x));
                 }
             }
-            crossings.sort_by(f64::total_cmp);
+            base::sort_numbers(&mut crossings);
             for run in crossings.chunks_exact(2) {
                 let (centre, half) = (0.5 * (run[0] + run[1]), 0.5 * (run[1] - run[0]));
                 self.half_width = self.half_width.max(half);

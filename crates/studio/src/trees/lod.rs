@@ -42,6 +42,7 @@ pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) 
         name: plant.name.clone(),
         flowers: plant.flowers.clone(),
         shapes: plant.shapes.clone(),
+        paint: plant.paint,
         ..Plant::default()
     };
     // Where each node of the plant is in the copy: itself, or the node that bore its axis.

@@ -38,7 +38,7 @@ pub(super) fn centre_lines(candidates: &[Candidate<'_>], diagonal: f64) -> Vec<O
         .zip(&measured)
         .filter_map(|(c, r)| r.as_ref().filter(|r| sure(c, r)).map(|r| r.width))
         .collect();
-    widths.sort_by(f64::total_cmp);
+    base::sort_numbers(&mut widths);
     let pen = widths.get(widths.len() / 2).copied();
     let mut found: Vec<Option<Centre>> = candidates
         .iter()

@@ -1,0 +1,122 @@
+// Strokes that were drawn are changed: bent, scaled, turned, cut, joined, rubbed out, smoothed, coloured.
+import assert from 'node:assert/strict';
+import { begin, blade, changed, count, data, draw, drawFlower, line, settled, until } from './journeys.mjs';
+
+/** The middle of the knob over the frame round some points, and its lower right corner. */
+function handles(points) {
+  const [xs, ys] = [points.map(([x]) => x), points.map(([, y]) => y)];
+  const [left, right] = [Math.min(...xs), Math.max(...xs)];
+  return {
+    knob: [(left + right) / 2, Math.min(...ys) - 36],
+    corner: [right + 10, Math.max(...ys) + 10],
+  };
+}
+
+/** What undo would take back. */
+const step = (page, name) => page.locator(`#b-undo[title*="${name}"]`).waitFor();
+
+async function edit({ page, url, shot }) {
+  await begin(page, url);
+  const strokes = await drawFlower(page);
+  const plain = await settled(page);
+  const box = await page.locator('.sheet').boundingBox();
+  const at = ([x, y]) => [box.x + x, box.y + y];
+  // A petal is pulled longer at its tip.
+  await page.keyboard.press('a');
+  await draw(page, line(250, 122, 250, 82));
+  const bent = await changed(page, plain, 'bent');
+  await step(page, 'bend');
+  // A leaf is chosen, scaled by a corner and turned by the knob.
+  await page.keyboard.press('v');
+  const leaf = blade(255, 430, -0.6, 110, 25);
+  await page.mouse.click(...at(leaf[3]));
+  await page.locator('.card').waitFor();
+  await shot('strokes-frame');
+  const { corner } = handles(leaf);
+  await draw(page, line(corner[0], corner[1], corner[0] + 60, corner[1] + 40));
+  await step(page, 'turn or scale');
+  await changed(page, bent, 'scaled');
+  await page.keyboard.press('Control+z');
+  await step(page, 'bend');
+  const { knob } = handles(leaf);
+  await draw(page, line(knob[0], knob[1], knob[0] - 70, knob[1] + 20));
+  await step(page, 'turn or scale');
+  await changed(page, bent, 'turned');
+  await page.keyboard.press('Control+z');
+  await step(page, 'bend');
+  // It is cut where it was pressed, and made whole again.
+  await page.mouse.click(...at(leaf[3]));
+  await page.locator('.card .chip', { hasText: 'Cut here' }).click();
+  await until(page, 'strokes', ['is', strokes + 1], 'cut in two');
+  await page.keyboard.press('Escape');
+  await page.mouse.click(...at(leaf[2]));
+  await page.keyboard.down('Shift');
+  await page.mouse.click(...at(leaf[4]));
+  await page.keyboard.up('Shift');
+  await page.locator('.card .chip', { hasText: 'Join' }).click();
+  await until(page, 'strokes', ['is', strokes], 'joined');
+  // A rubber across the stem leaves two pieces.
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('Shift+E');
+  await draw(page, line(225, 350, 285, 352));
+  await until(page, 'strokes', ['is', strokes + 1], 'rubbed in two');
+  await step(page, 'rub out');
+  await shot('strokes-rubbed');
+  await page.keyboard.press('Control+z');
+  await until(page, 'strokes', ['is', strokes], 'the stem is whole');
+  // One petal in a colour of its own.
+  await page.keyboard.press('v');
+  const petal = blade(250, 210, -Math.PI / 2 + (2 * Math.PI) / 5, 95, 28);
+  await page.mouse.click(...at(petal[3]));
+  const before = await settled(page);
+  await page.locator('.card input[type=color]').evaluate((field) => {
+    field.value = '#d02040';
+    field.dispatchEvent(new Event('change', { bubbles: true }));
+  });
+  const red = await changed(page, before, 'coloured');
+  await page.waitForTimeout(800);
+  await shot('strokes-coloured');
+  await page.locator('.card .chip', { hasText: 'Smooth' }).click();
+  await changed(page, red, 'smoothed');
+  // All of it can be taken back.
+  for (const name of ['smooth', 'colour', 'join', 'cut', 'bend']) {
+    await step(page, name);
+    await page.keyboard.press('Control+z');
+  }
+  await step(page, 'draw');
+  await page.waitForFunction((digest) => document.body.dataset.digest === digest, plain);
+  assert.equal(await count(page, 'strokes'), strokes);
+}
+
+/** The whole is read as something else by one click, and a stroke that another one turned is turned back. */
+async function readings({ page, url, shot }) {
+  await begin(page, `${url}?open=opened%2Ftulip.svg`);
+  await until(page, 'triangles', ['above', 0], 'the file is open');
+  const plain = await settled(page);
+  const chips = page.locator('.readings .chip[data-reading]');
+  await chips.first().waitFor();
+  assert.equal(await chips.count(), 3, 'three readings');
+  assert.equal(await page.locator('.readings .chip[aria-pressed=true]').count(), 1);
+  assert.equal(
+    await page.locator('.readings .chip[data-reading=flower]').getAttribute('aria-pressed'),
+    'true',
+  );
+  await shot('readings');
+  const other = page.locator('.readings .chip[data-reading][aria-pressed=false]').first();
+  const kind = await other.getAttribute('data-reading');
+  await other.click();
+  const read = await changed(page, plain, `read as ${kind}`);
+  await page.locator(`.readings .chip[data-reading="${kind}"][aria-pressed=true]`).waitFor();
+  await shot('readings-other');
+  // The document remembers it.
+  await page.waitForFunction(() => document.body.dataset.kept === 'saved');
+  await page.reload();
+  await page.waitForFunction((d) => document.body.dataset.digest === d, read);
+  await page.locator('.readings .chip', { hasText: 'automatic' }).click();
+  await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
+}
+
+export const strokes = [
+  ['another reading of the whole', readings],
+  ['strokes are edited', edit],
+];

@@ -1,0 +1,138 @@
+//! A shoot that grows by itself while a hand holds on: the automatic growth of the VR paper.
+
+use base::Seed;
+use base::ops::{self, PI};
+use glam::DVec3;
+use growth::{GuidedChange, GuidedSpec, Skeleton, StartBud, guide_from};
+
+use crate::bench::{Bench, Stop, unread};
+use crate::draft::{At, Branch, Draft};
+use crate::edit::GrowFrom;
+use crate::graft::{Hosts, graft_all, out_of_bark};
+use crate::habit::Habit;
+use crate::leaves::dress;
+use crate::outcome::{Changed, Why};
+use crate::pipes::Pipes;
+use crate::sketch_branch::own_seed;
+
+const GROW: u64 = 0x6772_6f77;
+/// Nearer to its tip than this share of its length, a branch goes on.
+const TIP: f64 = 0.02;
+
+/// What was asked for.
+pub(crate) struct Wish<'a> {
+    pub(crate) from: &'a GrowFrom,
+    pub(crate) towards: Option<DVec3>,
+    pub(crate) rounds: u32,
+    pub(crate) changes: &'a [GuidedChange],
+}
+
+/// Cost: linear in the plant, and what grows.
+pub(crate) fn grow(
+    draft: &mut Draft,
+    wish: &Wish<'_>,
+    seed: Seed,
+    bench: &Bench<'_>,
+) -> Result<Changed, Stop> {
+    let habit = bench.habit(draft);
+    let spec = GuidedSpec {
+        rounds: wish.rounds,
+        internode_m: habit.internode_m.clamp(1e-4, 1e3),
+        near: 1.0,
+        far: 4.0,
+        branch_angle_deg: habit.angle_deg,
+        most_per_shoot: 2,
+        max_joints: 60_000,
+        changes: wish.changes.to_vec(),
+        ..GuidedSpec::default()
+    };
+    let start = match wish.from {
+        GrowFrom::Branch { axis, at } => {
+            let (host, by_likeness) = axis.find_in(draft)?;
+            on_wood(draft, host, *at, wish.towards, &habit, by_likeness)
+        }
+        GrowFrom::Ground(foot) => on_ground(draft, *foot, &habit, bench)?,
+    };
+    let own = own_seed(draft, seed.child(GROW), start.place);
+    if let Some(b) = start.stem {
+        draft.branches[b].key = own.number();
+    }
+    let bud = StartBud { joint: start.joint, heading: start.heading, wakes: 0 };
+    let grown = guide_from(start.from, &[bud], bench.obstacles, &spec, own, bench.run, &mut unread())?;
+    if grown.skeleton.len() < start.least {
+        return Err(Why::NothingGrew.into());
+    }
+    let made = graft_all(draft, &start.hosts, &grown.skeleton, &habit, Pipes::default(), own, bench)?;
+    dress(draft, &habit, bench)?;
+    let added = made.len() + usize::from(start.stem.is_some());
+    Ok(Changed { added, by_likeness: start.by_likeness, ..Changed::default() })
+}
+
+/// Where it begins.
+struct Start {
+    hosts: Hosts,
+    /// The hosts, and what is between them and the bud.
+    from: Skeleton,
+    joint: growth::JointId,
+    heading: DVec3,
+    place: DVec3,
+    /// Fewer joints are no growth.
+    least: usize,
+    /// A stem that was made for it.
+    stem: Option<usize>,
+    by_likeness: bool,
+}
+
+/// Out of the bark of a branch, at the angle that the plant's branches have; at its tip, on with it.
+fn on_wood(
+    draft: &mut Draft,
+    host: usize,
+    at: f64,
+    towards: Option<DVec3>,
+    habit: &Habit,
+    by_likeness: bool,
+) -> Start {
+    let tip = at > 1.0 - TIP;
+    let node = draft.node_at(host, if tip { 1.0 } else { at });
+    let branch = &draft.branches[host];
+    let (place, along) = (branch.points[node], branch.tangent(node));
+    let wanted = towards.filter(|t| t.is_finite()).unwrap_or(DVec3::Y);
+    let side = (wanted - along * wanted.dot(along)).try_normalize();
+    let side = side.unwrap_or_else(|| along.any_orthonormal_vector());
+    let (sin, cos) = ops::sin_cos(habit.angle_deg * (PI / 180.0));
+    let heading = if tip { along } else { along * cos + side * sin };
+    let (hosts, mut from, mut joint) = out_of_bark(draft, At { branch: host, node }, heading);
+    if tip {
+        // There is no bark before it.
+        (from, joint) = (hosts.skeleton.clone(), growth::JointId::new(0));
+    }
+    let least = from.len() + 1;
+    Start { hosts, from, joint, heading, place: place + heading, least, stem: None, by_likeness }
+}
+
+/// A new stem of one internode.
+fn on_ground(draft: &mut Draft, foot: DVec3, habit: &Habit, bench: &Bench<'_>) -> Result<Start, Stop> {
+    let first = foot + DVec3::Y * habit.internode_m;
+    if !bench.obstacles.free(foot) || !bench.obstacles.free(first) {
+        return Err(Why::NothingGrew.into());
+    }
+    let stems = draft.branches.iter().find(|b| b.alive && b.is_shoot() && b.bearer.is_none());
+    let kind = stems.ok_or(Why::NoBranches)?.kind;
+    let stem = draft.branches.len();
+    draft.branches.push(Branch {
+        kind,
+        key: 0,
+        source: None,
+        bearer: None,
+        points: vec![foot, first],
+        radii: vec![habit.tip_m; 2],
+        alive: true,
+        fresh: true,
+    });
+    let hosts = Hosts::of(draft, |i| i == stem);
+    let from = hosts.skeleton.clone();
+    let joint = growth::JointId::new(from.len() - 1);
+    let least = from.len() + 1;
+    let stem = Some(stem);
+    Ok(Start { hosts, from, joint, heading: DVec3::Y, place: first, least, stem, by_likeness: false })
+}
