@@ -72,7 +72,7 @@ pub(crate) fn test(tools: &Tools, tested: bool) -> Outcome {
     let mut c = prepare("node", &["xtask/node/organs.mjs"]);
     c.arg(out.join("wasm/burgeon_wasm.js")).arg(&organs).args([native::FRAMES, native::DETAIL]).args(&leaves);
     finish(c)?;
-    let project = repository().join("fixtures/projects/version-4.burgeon");
+    let project = repository().join("fixtures/projects/version-5.burgeon");
     let report = out.join("scene.json");
     let mut c = prepare(burgeon("debug"), &[]);
     c.args(["sketch", "--quiet"]).arg(&project).arg("-o").arg(out.join("native/scene.glb"));

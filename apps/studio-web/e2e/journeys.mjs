@@ -703,6 +703,24 @@ async function bloom({ page, url, shot }) {
   await add(page, 'flower');
   await until(page, 'triangles', ['above', 200], 'a lily');
   let digest = await settled(page);
+  // Its spec is the document's own: the petals of one ring in another colour, and a ring more.
+  const lily = digest;
+  const field = (path) => page.locator(`.maker [data-path="${path}"]`).first();
+  await field('/whorls/0/tip_color').evaluate((box) => {
+    box.value = '#2040d0';
+    box.dispatchEvent(new Event('change', { bubbles: true }));
+  });
+  digest = await changed(page, digest, 'blue petals');
+  await page.locator('.maker summary', { hasText: 'All settings' }).click();
+  await field('/whorls').click();
+  await field('/whorls+').click();
+  digest = await changed(page, digest, 'a ring more');
+  await shot('flower-own');
+  await page.keyboard.press('Control+z');
+  digest = await changed(page, digest, 'a ring less');
+  await page.keyboard.press('Control+z');
+  assert.equal(await changed(page, digest, 'its own colour'), lily);
+  digest = await settled(page);
   await page.click('[data-flower=rose]');
   digest = await changed(page, digest, 'a rose');
   await slide(page, 'day', 0);
@@ -717,6 +735,12 @@ async function bloom({ page, url, shot }) {
   digest = await settled(page);
   await page.keyboard.press('Control+z');
   await changed(page, digest, 'the whole play is one step');
+  // A flower of a file of one's own.
+  await drop(page, 'star.toml', 'name = "star"\nstalk_m = 0.1\n[[whorls]]\ncount = 5\nlength_m = 0.03');
+  await until(page, 'plants', ['is', 2], 'a flower from a file');
+  await page.waitForFunction(() => document.body.dataset.current === 'flower');
+  await settled(page);
+  assert.equal(await field('/whorls/0/count').inputValue(), '5');
 }
 
 async function opens({ page, url, shot }) {

@@ -28,3 +28,24 @@ export function inkOf(organ: string | undefined, dark: boolean): string {
 }
 
 export const ORGANS = Object.keys(INKS);
+
+/** A colour as the browser writes it, of shares of light (IEC 61966-2-1). */
+export function hexOfLinear(shares: readonly number[]): string {
+  const byte = (x: number): number =>
+    Math.round(255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055));
+  return `#${shares
+    .map((x) =>
+      byte(Math.min(1, Math.max(0, x)))
+        .toString(16)
+        .padStart(2, '0'),
+    )
+    .join('')}`;
+}
+
+/** Shares of light of a colour as the browser writes it. */
+export function linearOf(hex: string): number[] {
+  const share = (x: number): number => (x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4);
+  return [1, 3, 5].map((at) =>
+    Number(share(Number.parseInt(hex.slice(at, at + 2), 16) / 255).toPrecision(4)),
+  );
+}

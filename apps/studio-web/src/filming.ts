@@ -60,10 +60,7 @@ export function courseOf({ plant, seen }: Pick<Session, 'plant' | 'seen'>): Cour
   const { id } = plant;
   const [opening, wilting] = seen?.days ?? [6, 4];
   const day = (share: number): number => Math.round(share * (opening + wilting) * 100) / 100;
-  if (plant.flower) {
-    const { settings } = plant.flower;
-    return { step: 'day', at: (s) => ({ flower: [id, { set: { ...settings, day: day(s) } }] }) };
-  }
+  if (plant.flower) return { step: 'day', at: (s) => ({ flower: [id, { 'set-day': day(s) }] }) };
   if (plant.tree) {
     const age = plant.tree.spec['age'];
     const most = typeof age === 'number' ? age : (seen?.item?.growth?.iterations ?? 40);

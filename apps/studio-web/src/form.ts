@@ -4,6 +4,7 @@
  */
 import type { Json } from './wire';
 import type { Schema } from './schema';
+import { hexOfLinear, linearOf } from './colours';
 import { fieldName, helpOf, t, unitOf, wordOf } from './text';
 import { el } from './ui';
 
@@ -62,7 +63,8 @@ const round = (x: number): number => Number(x.toPrecision(4));
 /** The value at a JSON pointer. */
 function valueAt(fields: Json | undefined, path: string): Json | undefined {
   let at = fields;
-  for (const key of path.split('/').slice(1)) at = isFields(at) ? at[key] : undefined;
+  for (const key of path.split('/').slice(1))
+    at = isFields(at) ? at[key] : Array.isArray(at) ? at[Number(key)] : undefined;
   return at;
 }
 
@@ -185,6 +187,10 @@ export class Form {
     if (s.type === 'number' || s.type === 'integer')
       return [this.number(name, s, typeof now === 'number' ? now : null, path)];
     if (s['x-unit'] === 'colour') return [this.colour(name, s, typeof now === 'string' ? now : null, path)];
+    if (s['x-unit'] === 'linear-colour' && Array.isArray(now))
+      return [this.linear(name, s, now as number[], path)];
+    if (s.type === 'array' && Array.isArray(now) && now.length > 0 && now.every(isFields))
+      return [this.list(name, s, now, path)];
     if (
       s.type === 'array' &&
       Array.isArray(now) &&
@@ -199,7 +205,7 @@ export class Form {
   /** `path`: of a value that can be reset. */
   private row(name: string, s: Schema, path: string | undefined, ...content: HTMLElement[]): HTMLElement {
     const unit = unitOf(s['x-unit'] ?? '');
-    const label = fieldName(name) + (unit ? ` (${unit})` : '');
+    const label = fieldName(name, s['x-help']) + (unit ? ` (${unit})` : '');
     const reset = path === undefined ? [] : this.resetOf(name, s, path);
     return el('label', { class: 'f-row', title: tip(s) }, el('span', {}, label, ...reset), ...content);
   }
@@ -213,7 +219,7 @@ export class Form {
       e.preventDefault();
       this.events.set(path, first);
     };
-    const label = t('form.reset', { name: fieldName(name) });
+    const label = t('form.reset', { name: fieldName(name, s['x-help']) });
     return [
       el(
         'button',
@@ -251,7 +257,7 @@ export class Form {
       ...(most < Infinity ? { max: String(most) } : {}),
       step: whole ? '1' : 'any',
       'data-path': path,
-      'aria-label': fieldName(name),
+      'aria-label': fieldName(name, s['x-help']),
       onchange: () => {
         if (box.value === '' && s.nullable) this.events.set(path, null);
         else if (Number.isFinite(box.valueAsNumber))
@@ -266,7 +272,7 @@ export class Form {
       max: String(whole && !ratio ? Math.max(1, Math.min(STEPS, high - low)) : STEPS),
       step: '1',
       'data-path': `${path}#`,
-      'aria-label': fieldName(name),
+      'aria-label': fieldName(name, s['x-help']),
       oninput: () => {
         const x = from(Number(slider.value) / Number(slider.max));
         box.value = String(x);
@@ -303,12 +309,58 @@ export class Form {
     if (!s.nullable) return this.row(name, s, path, box);
     const use = el('input', {
       type: 'checkbox',
-      'aria-label': fieldName(name),
+      'aria-label': fieldName(name, s['x-help']),
       onchange: () => this.events.set(path, use.checked ? box.value : null),
     });
     use.checked = value !== null;
     box.disabled = value === null;
     return this.row(name, s, path, el('span', { class: 'f-pair' }, use, box));
+  }
+
+  /** Shares of red, green and blue light, as the colour that they look like. */
+  private linear(name: string, s: Schema, now: number[], path: string): HTMLElement {
+    const box = el('input', {
+      type: 'color',
+      'data-path': path,
+      onchange: () => this.events.set(path, linearOf(box.value)),
+    });
+    box.value = hexOfLinear(now);
+    return this.row(name, s, path, box);
+  }
+
+  /** Rows of the same kind: each folded, with a copy added at the end or one taken away. */
+  private list(name: string, s: Schema, now: Fields[], path: string): HTMLElement {
+    const item = plain(typeof s.items === 'object' ? s.items : {}, this.root);
+    const rows = now.map((fields, k) => {
+      const title = t('form.row', { name: fieldName(name), row: k + 1 });
+      const drop = el(
+        'button',
+        {
+          type: 'button',
+          class: 'chip',
+          onclick: () =>
+            this.events.set(
+              path,
+              now.filter((_, other) => other !== k),
+            ),
+        },
+        t('form.row.drop'),
+      );
+      const one = this.group(name, item, fields, `${path}/${k}`, now.length > 1 ? [drop] : []);
+      one.querySelector('summary')!.textContent = title;
+      return one;
+    });
+    const add = el(
+      'button',
+      {
+        type: 'button',
+        class: 'chip',
+        'data-path': `${path}+`,
+        onclick: () => this.events.set(path, [...now, now.at(-1)!]),
+      },
+      t('form.row.add'),
+    );
+    return this.fold(path, fieldName(name), tip(s), [...rows, add]);
   }
 
   private choice(

@@ -23,7 +23,7 @@ export interface Catalogue {
   leaf: Schema;
   flower: Schema;
   trees: { key: string; species: string; about: string; spec: Fields }[];
-  flowers: string[];
+  flowers: { key: string; spec: Fields }[];
 }
 
 export interface MakerEvents {
@@ -79,6 +79,7 @@ export function gallery(
 /** What matters first of each maker, beside what the head has. */
 const MAIN: Partial<Record<PlantState['maker'], readonly string[]>> = {
   tree: ['/bare', '/leaves/length_m', '/look/leaf_color', '/look/bark_color', '/wood/trunk_radius_m'],
+  flower: ['/whorls/0/count', '/whorls/0/tip_color', '/whorls/0/base_color', '/stalk_m', '/opening_days'],
   leaf: ['/surface', '/length_m', '/curl', '/wilt', '/texture'],
 };
 const TREE_ORDER = ['leaves', 'blade', 'look', 'method', 'wood', 'clearance_m'];
@@ -140,7 +141,7 @@ export class MakerPanel {
       const hidden = {
         tree: ['name', 'species', 'about', 'obstacles', 'roots'],
         leaf: [],
-        flower: ['species', 'day'],
+        flower: ['name'],
       }[maker];
       this.form = new Form(
         catalogue[maker],
@@ -150,7 +151,16 @@ export class MakerPanel {
           done: () => this.done(),
         },
         new Set(hidden),
-        () => catalogue.trees.find(({ key }) => key === this.plant?.tree?.preset)?.spec,
+        () => {
+          const { tree, flower } = this.plant ?? {};
+          const of = (all: { key: string; spec: Fields }[], preset: string | null): Fields | undefined =>
+            all.find(({ key }) => key === preset)?.spec;
+          return tree
+            ? of(catalogue.trees, tree.preset)
+            : flower
+              ? of(catalogue.flowers, flower.preset)
+              : undefined;
+        },
       );
       this.element.replaceChildren(this.head, this.form.element);
       this.element.scrollTop = 0;
@@ -170,7 +180,7 @@ export class MakerPanel {
       this.head
         .querySelector<HTMLElement>(`[data-path="${CSS.escape(focused)}"]`)
         ?.focus({ preventScroll: true });
-    const values = plant.tree?.spec ?? plant.leaf?.settings ?? plant.flower?.settings ?? {};
+    const values = plant.tree?.spec ?? plant.leaf?.settings ?? plant.flower?.spec ?? {};
     this.form?.show(values, MAIN[plant.maker] ?? [], plant.maker === 'tree' ? TREE_ORDER : []);
   }
 
@@ -182,8 +192,7 @@ export class MakerPanel {
   private command(plant: PlantState, path: string, value: Json): Command {
     const set = <T>(settings: T): T => ({ ...settings, [path.slice(1)]: value });
     if (plant.leaf) return { leaf: [plant.id, { set: set(plant.leaf.settings) }] };
-    if (plant.flower) return { flower: [plant.id, { set: set(plant.flower.settings) }] };
-    return { tree: [plant.id, { 'set-field': [path, value] }] };
+    return { [plant.flower ? 'flower' : 'tree']: [plant.id, { 'set-field': [path, value] }] } as Command;
   }
 
   private stage(command: Command): void {
@@ -496,9 +505,8 @@ export class MakerPanel {
   // Flowers ------------------------------------------------------------------------------------------------------
 
   private flower(id: number, flower: NonNullable<PlantState['flower']>, catalogue: Catalogue): HTMLElement[] {
-    const { settings } = flower;
     const chips = el('div', { class: 'chips', role: 'group', 'aria-label': t('flower.species') });
-    for (const word of catalogue.flowers) {
+    for (const { key: word } of catalogue.flowers) {
       chips.append(
         el(
           'button',
@@ -506,8 +514,8 @@ export class MakerPanel {
             type: 'button',
             class: 'chip',
             'data-flower': word,
-            'aria-pressed': String(settings['species'] === word),
-            onclick: () => this.events.run({ flower: [id, { set: { ...settings, species: word } }] }),
+            'aria-pressed': String(flower.preset === word),
+            onclick: () => this.events.act({ preset: { plant: id, key: word } }),
           },
           wordOf(word),
         ),
@@ -545,7 +553,7 @@ export class MakerPanel {
       );
     return [
       this.section(t('flower.species'), chips),
-      this.section(t('flower.day'), this.dayRow(Number(settings['day']))),
+      this.section(t('flower.day'), this.dayRow(flower.day)),
       this.section(t('flower.law'), law),
     ];
   }
@@ -568,9 +576,7 @@ export class MakerPanel {
 
   private dayCommand(day: number): Command {
     const { id, flower } = this.plant!;
-    return flower
-      ? { flower: [id, { set: { ...flower.settings, day } }] }
-      : { sketch: [id, { 'set-day': day }] };
+    return flower ? { flower: [id, { 'set-day': day }] } : { sketch: [id, { 'set-day': day }] };
   }
 
   private lastDay = -1;

@@ -176,12 +176,12 @@ export type Action =
       name: string;
     };
   }
-  | /** Makes a tree another species. */
+  | /** Makes a tree or a flower another species. */
   {
     preset: {
       /** The key of the preset. */
       key: string;
-      /** The tree. */
+      /** The plant. */
       plant: PlantId;
     };
   }
@@ -431,6 +431,8 @@ export type FileKind =
   "leaf"
   | /** A new tree. */
   "tree"
+  | /** A new flower that opens. */
+  "flower"
   | /** A growth law that went to the current flower. */
   "law";
 
@@ -450,37 +452,33 @@ export type FillSpec = {
 
 /** What can be asked of a flower. */
 export type FlowerCommand =
-  | /** Sets species, day and form. */
+  | /** Takes another spec, such as that of a species. */
   {
-    set: FlowerSettings;
+    'set-spec': [string | null, Json];
+  }
+  | /** Sets one field of the spec, named by a JSON pointer such as `/whorls/0/count`. */
+  {
+    'set-field': [string, Json];
+  }
+  | /** Shows it on a day. */
+  {
+    'set-day': number;
   }
   | /** Takes a fitted law, or the species' own pace again. */
   {
     'set-law': Json;
   };
 
-/** How a flower looks, and on which day. */
-export type FlowerSettings = {
-  /** Days since the bud: 0 is the bud, `opening_days` full bloom, then it wilts. */
-  day: number;
-  /** Angle by which the open flower nods, degrees, 0 to 90; default that of the species. */
-  nod_deg: number | null;
-  /** Days from bud to full bloom, 0.1 to 60; default those of the species. */
-  opening_days: number | null;
-  /** The species. */
-  species: string;
-  /** Length of the stalk, metres, 0 to 5; default that of the species. */
-  stalk_m: number | null;
-  /** Days from full bloom to wilted, 0.1 to 40; default those of the species. */
-  wilting_days: number | null;
-};
-
 /** Which flower, on which day. */
 export type FlowerState = {
+  /** Days since the bud. */
+  day: number;
   /** Name of the fitted law that sets its pace. */
   law: string | null;
-  /** Species, day and form. */
-  settings: FlowerSettings;
+  /** The species that the spec came from. */
+  preset: string | null;
+  /** The spec. */
+  spec: Record<string, Json>;
 };
 
 /** How a drawing lies in the front view of its plant. */

@@ -39,12 +39,17 @@ pub fn studio_schema() -> Result<String, JsError> {
             Some(serde_json::json!({ "key": p.key, "species": spec.species, "about": spec.about, "spec": fields }))
         })
         .collect();
+    let flowers = bloom::FlowerSpec::PRESETS.iter().filter_map(|key| {
+        let spec = burgeon::spec::to_json(&bloom::preset(key)?);
+        Some(serde_json::json!({ "key": key, "spec": spec }))
+    });
+    let flowers: Vec<_> = flowers.collect();
     Ok(serde_json::to_string(&serde_json::json!({
         "tree": burgeon::tree_schema(),
         "leaf": burgeon::leaf_schema(),
         "flower": burgeon::flower_schema(),
         "trees": presets,
-        "flowers": bloom::FlowerSpec::PRESETS,
+        "flowers": flowers,
     }))?)
 }
 

@@ -41,10 +41,10 @@ pub struct Whorl {
     /// Angle to the axis at base, middle and tip in the bud, degrees.
     #[schemars(inner(range(min = -180.0, max = 360.0)), extend("x-unit" = "deg"))]
     pub bud_deg: [f64; 3],
-    /// The same in full bloom.
+    /// Angle to the axis at base, middle and tip in full bloom, degrees.
     #[schemars(inner(range(min = -180.0, max = 360.0)), extend("x-unit" = "deg"))]
     pub open_deg: [f64; 3],
-    /// The same when wilted.
+    /// Angle to the axis at base, middle and tip when wilted, degrees.
     #[schemars(inner(range(min = -180.0, max = 360.0)), extend("x-unit" = "deg"))]
     pub wilted_deg: [f64; 3],
     /// Days that the whorl opens later than the first, as a share of the opening, 0 to 0.9, default 0.
@@ -57,10 +57,10 @@ pub struct Whorl {
     #[schemars(range(min = -1.0, max = 1.0), extend("x-unit" = "m"))]
     pub lean_m: f64,
     /// Linear colour at the base: shares of red, green and blue light.
-    #[schemars(inner(range(min = 0.0, max = 1.0)))]
+    #[schemars(inner(range(min = 0.0, max = 1.0)), extend("x-unit" = "linear-colour"))]
     pub base_color: [f32; 3],
     /// Linear colour at the tip.
-    #[schemars(inner(range(min = 0.0, max = 1.0)))]
+    #[schemars(inner(range(min = 0.0, max = 1.0)), extend("x-unit" = "linear-colour"))]
     pub tip_color: [f32; 3],
     /// How green the bud still is, 0 to 1, default 0.
     #[schemars(range(min = 0.0, max = 1.0))]

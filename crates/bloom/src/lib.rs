@@ -53,4 +53,4 @@ pub use overlap::{overlap_share, petal_overlap};
 pub use plot::plot_svg;
 pub use register::{RegisterSpec, Registration, register};
 pub use segment::{Organ, SegmentSpec, match_organs, organ_at, organs, single_organ};
-pub use species::{FlowerSettings, preset};
+pub use species::preset;

@@ -1,7 +1,4 @@
-//! The flowers that come with the program, and what people choose of them.
-
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+//! The flowers that come with the program.
 
 use crate::flower::FlowerSpec;
 
@@ -28,59 +25,6 @@ pub fn preset(name: &str) -> Option<FlowerSpec> {
     let spec = spec::from_toml(FILES[row]);
     debug_assert!(spec.is_ok(), "{name}: {spec:?}");
     spec.ok()
-}
-
-/// How a flower looks, and on which day.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct FlowerSettings {
-    /// The species.
-    pub species: String,
-    /// Days since the bud: 0 is the bud, `opening_days` full bloom, then it wilts. 0 to 100, default 4.
-    #[schemars(range(min = 0.0, max = 100.0), extend("x-unit" = "d"))]
-    pub day: f64,
-    /// Days from bud to full bloom, 0.1 to 60; default those of the species.
-    #[schemars(range(min = 0.1, max = 60.0), extend("x-unit" = "d"))]
-    pub opening_days: Option<f64>,
-    /// Days from full bloom to wilted, 0.1 to 40; default those of the species.
-    #[schemars(range(min = 0.1, max = 40.0), extend("x-unit" = "d"))]
-    pub wilting_days: Option<f64>,
-    /// Length of the stalk, metres, 0 to 5; default that of the species.
-    #[schemars(range(min = 0.0, max = 5.0), extend("x-unit" = "m"))]
-    pub stalk_m: Option<f64>,
-    /// Angle by which the open flower nods, degrees, 0 to 90; default that of the species.
-    #[schemars(range(min = 0.0, max = 90.0), extend("x-unit" = "deg"))]
-    pub nod_deg: Option<f64>,
-}
-
-spec::schemas!(FlowerSettings = include_str!("../schemas/settings.json"));
-
-impl Default for FlowerSettings {
-    fn default() -> Self {
-        let none = None;
-        Self {
-            species: "lily".into(),
-            day: 4.0,
-            opening_days: none,
-            wilting_days: none,
-            stalk_m: none,
-            nod_deg: none,
-        }
-    }
-}
-
-impl FlowerSettings {
-    /// The species with what was chosen in its place; none for a species that is not known.
-    pub fn spec(&self) -> Option<FlowerSpec> {
-        let own = preset(&self.species)?;
-        Some(FlowerSpec {
-            opening_days: self.opening_days.unwrap_or(own.opening_days),
-            wilting_days: self.wilting_days.unwrap_or(own.wilting_days),
-            stalk_m: self.stalk_m.unwrap_or(own.stalk_m),
-            nod_deg: self.nod_deg.unwrap_or(own.nod_deg),
-            ..own
-        })
-    }
 }
 
 #[cfg(test)]

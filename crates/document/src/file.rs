@@ -16,17 +16,17 @@ use spec::SpecFault;
 
 use crate::archive::{ArchiveError, pack, unpack};
 use crate::forms::{
-    DocumentV1, DocumentV2, DocumentV3, DocumentV4, EditV4, FlowerV3, LeafV3, MakerV3, ObstacleV3, PlantV4,
-    SketchV3, SkinV1, StrokeV1, TreeV3, from_file, to_file,
+    DocumentV1, DocumentV2, DocumentV3, DocumentV4, DocumentV5, EditV4, FlowerV5, LeafV3, MakerV5,
+    ObstacleV3, PlantV4, SketchV3, SkinV1, StrokeV1, TreeV3, from_file, to_file,
 };
 use crate::makers::{FlowerMaker, LeafData, LeafMaker, Maker, NamedObstacle, SketchSettings, TreeSettings};
 use crate::state::{MAX_PLANTS, Placement, PlantEdit, range_fault, shortened};
 use crate::{Document, DocumentPlant, DocumentStroke, Photo, PhotoError, PlantId, SettingFault, Settings};
 
 /// The form that this version writes, as `manifest.json` names it.
-pub const PROJECT_SCHEMA: &str = "project/4";
+pub const PROJECT_SCHEMA: &str = "project/5";
 /// Earlier forms that are read.
-const EARLIER: [&str; 3] = ["project/1", "project/2", "project/3"];
+const EARLIER: [&str; 4] = ["project/1", "project/2", "project/3", "project/4"];
 /// Largest project file that is read, and largest entry in it: 64 MiB and 256 MiB.
 pub const MAX_PROJECT_BYTES: usize = 64 << 20;
 const MAX_ENTRY_BYTES: usize = 256 << 20;
@@ -125,7 +125,7 @@ pub fn write_project(document: &Document, version: &str) -> Result<Vec<u8>, Proj
     let row =
         |id: PlantId| document.plants().iter().position(|p| p.id() == id).and_then(|r| u32::try_from(r).ok());
     let plants = document.plants().iter().map(|p| plant_to_file(p, &row)).collect();
-    let file = DocumentV4 { name: document.name().into(), plants };
+    let file = DocumentV5 { name: document.name().into(), plants };
     let manifest = Manifest { burgeon: PROJECT_SCHEMA.into(), made_by: version.into() };
     let json = |entry, source| ProjectError::Json { entry, source };
     let mut files = vec![
@@ -142,10 +142,10 @@ fn photo_name(row: usize) -> String {
     format!("photo-{row}.png")
 }
 
-fn plant_to_file(plant: &DocumentPlant, row: &dyn Fn(PlantId) -> Option<u32>) -> PlantV4 {
+fn plant_to_file(plant: &DocumentPlant, row: &dyn Fn(PlantId) -> Option<u32>) -> PlantV4<MakerV5> {
     let s = plant.settings();
     let maker = match &s.maker {
-        Maker::Sketch(k) => MakerV3::Sketch(SketchV3 {
+        Maker::Sketch(k) => MakerV5::Sketch(SketchV3 {
             sketch: k.sketch.clone(),
             skin: SkinV1::from(&k.skin),
             strokes: plant.strokes().iter().map(to_file).collect(),
@@ -153,7 +153,7 @@ fn plant_to_file(plant: &DocumentPlant, row: &dyn Fn(PlantId) -> Option<u32>) ->
             day: k.day,
             leaf: k.leaf.and_then(row),
         }),
-        Maker::Tree(t) => MakerV3::Tree(TreeV3 {
+        Maker::Tree(t) => MakerV5::Tree(TreeV3 {
             preset: t.preset.clone(),
             spec: spec_to_file(&t.spec),
             obstacles: t
@@ -164,13 +164,15 @@ fn plant_to_file(plant: &DocumentPlant, row: &dyn Fn(PlantId) -> Option<u32>) ->
             skin: SkinV1::from(&t.skin),
             leaf: t.leaf.and_then(row),
         }),
-        Maker::Leaf(l) => MakerV3::Leaf(LeafV3 {
+        Maker::Leaf(l) => MakerV5::Leaf(LeafV3 {
             file: l.data.name.clone(),
             data: (*l.data.text).into(),
             settings: l.settings.clone(),
         }),
-        Maker::Flower(f) => MakerV3::Flower(FlowerV3 {
-            settings: f.settings.clone(),
+        Maker::Flower(f) => MakerV5::Flower(FlowerV5 {
+            preset: f.preset.clone(),
+            spec: (*f.spec).clone(),
+            day: f.day,
             law: f.law.as_ref().map(|l| (**l).clone()),
         }),
     };
@@ -214,10 +216,12 @@ pub fn read_project(bytes: &[u8]) -> Result<Document, ProjectError> {
     // Every form is read by its own structs and then brought forward; each has a file in fixtures/projects.
     let second = |v1: DocumentV1| DocumentV2::from(v1);
     let third = |v2: DocumentV2| DocumentV3::from(v2);
-    let file: DocumentV4 = match form {
-        "project/1" => third(second(from_json(&document).map_err(json)?)).into(),
-        "project/2" => third(from_json(&document).map_err(json)?).into(),
-        "project/3" => from_json::<DocumentV3>(&document).map_err(json)?.into(),
+    let fifth = |v4: DocumentV4| DocumentV5::try_from(v4).map_err(ProjectError::Setting);
+    let file = match form {
+        "project/1" => fifth(third(second(from_json(&document).map_err(json)?)).into())?,
+        "project/2" => fifth(third(from_json(&document).map_err(json)?).into())?,
+        "project/3" => fifth(from_json::<DocumentV3>(&document).map_err(json)?.into())?,
+        "project/4" => fifth(from_json(&document).map_err(json)?)?,
         _ => from_json(&document).map_err(json)?,
     };
     drop(document);
@@ -235,14 +239,14 @@ fn from_json<'a, T: Deserialize<'a>>(bytes: &'a [u8]) -> Result<T, serde_json::E
 }
 
 fn checked(
-    file: DocumentV4,
+    file: DocumentV5,
     photo: impl Fn(usize) -> Result<Photo, ProjectError>,
 ) -> Result<Document, ProjectError> {
     if file.plants.len() > MAX_PLANTS {
         return Err(ProjectError::TooMuch { what: "plants", limit: MAX_PLANTS });
     }
     let strokes = || {
-        file.plants.iter().flat_map(|p| if let MakerV3::Sketch(s) = &p.maker { &s.strokes[..] } else { &[] })
+        file.plants.iter().flat_map(|p| if let MakerV5::Sketch(s) = &p.maker { &s.strokes[..] } else { &[] })
     };
     if strokes().count() > MAX_STROKES {
         return Err(ProjectError::TooMuch { what: "strokes", limit: MAX_STROKES });
@@ -255,14 +259,15 @@ fn checked(
     for (row, plant) in file.plants.into_iter().enumerate() {
         let PlantV4 { name, seed, locked, hidden, position, yaw_deg, scale, maker, edits } = plant;
         let (maker, strokes) = match maker {
-            MakerV3::Sketch(sketch) => from_sketch(sketch, row, &photo)?,
-            MakerV3::Tree(tree) => (from_tree(tree)?, Vec::new()),
-            MakerV3::Leaf(LeafV3 { file, data, settings }) => {
+            MakerV5::Sketch(sketch) => from_sketch(sketch, row, &photo)?,
+            MakerV5::Tree(tree) => (from_tree(tree)?, Vec::new()),
+            MakerV5::Leaf(LeafV3 { file, data, settings }) => {
                 let data = LeafData { name: shortened(&file), text: data.into() };
                 (Maker::Leaf(Box::new(LeafMaker { data, settings })), Vec::new())
             }
-            MakerV3::Flower(FlowerV3 { settings, law }) => {
-                (Maker::Flower(Box::new(FlowerMaker { settings, law: law.map(Arc::new) })), Vec::new())
+            MakerV5::Flower(FlowerV5 { preset, spec, day, law }) => {
+                let (preset, spec, law) = (preset.map(|p| shortened(&p)), Arc::new(spec), law.map(Arc::new));
+                (Maker::Flower(Box::new(FlowerMaker { preset, spec, day, law })), Vec::new())
             }
         };
         let settings = Settings {

@@ -1,6 +1,6 @@
 //! The structs of each form of `document.json`, and how a form becomes the next.
 
-use bloom::GrowthLaw;
+use bloom::{FlowerSpec, GrowthLaw};
 use glam::DVec2;
 use growth::Obstacle;
 use ink::{InkSample, Stroke, StrokeClass, StrokeMode};
@@ -10,19 +10,23 @@ use shape::HandEdit;
 use sketch::SketchSpec;
 use skin::{PetalColor, SkinSpec};
 
-use crate::{DocumentStroke, FlowerSettings, PhotoPlace, SettingFault};
+use crate::makers::{DEFAULT_DAY, DEFAULT_FLOWER};
+use crate::{DocumentStroke, PhotoPlace, SettingFault};
+
+/// Form 5: as form 4, with the whole spec of a flower.
+pub(crate) type DocumentV5 = DocumentV4<MakerV5>;
 
 /// Form 4: as form 3, and edits by hand.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct DocumentV4 {
+pub(crate) struct DocumentV4<M = MakerV3> {
     pub(crate) name: String,
-    pub(crate) plants: Vec<PlantV4>,
+    pub(crate) plants: Vec<PlantV4<M>>,
 }
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct PlantV4 {
+pub(crate) struct PlantV4<M> {
     pub(crate) name: String,
     pub(crate) seed: u64,
     #[serde(default, skip_serializing_if = "is_false")]
@@ -36,7 +40,7 @@ pub(crate) struct PlantV4 {
     pub(crate) yaw_deg: f64,
     #[serde(default = "one")]
     pub(crate) scale: f64,
-    pub(crate) maker: MakerV3,
+    pub(crate) maker: M,
     /// In the order in which they are done.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) edits: Vec<EditV4>,
@@ -49,6 +53,20 @@ pub(crate) struct EditV4 {
     pub(crate) edit: HandEdit,
     #[serde(default, skip_serializing_if = "is_false")]
     pub(crate) off: bool,
+}
+
+impl TryFrom<DocumentV4> for DocumentV5 {
+    /// A flower of an unknown species.
+    type Error = SettingFault;
+
+    fn try_from(v4: DocumentV4) -> Result<Self, SettingFault> {
+        let plants = v4.plants.into_iter().map(|p| {
+            let PlantV4 { name, seed, locked, hidden, position, yaw_deg, scale, maker, edits } = p;
+            let maker = maker.try_into()?;
+            Ok(PlantV4 { name, seed, locked, hidden, position, yaw_deg, scale, maker, edits })
+        });
+        Ok(Self { name: v4.name, plants: plants.collect::<Result<_, SettingFault>>()? })
+    }
 }
 
 impl From<DocumentV3> for DocumentV4 {
@@ -99,11 +117,33 @@ fn one() -> f64 {
 /// Tagged from outside: a tag inside would make the reader hold every point twice.
 #[derive(Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
+pub(crate) enum MakerV5 {
+    Sketch(SketchV3),
+    Tree(TreeV3),
+    Leaf(LeafV3),
+    Flower(FlowerV5),
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub(crate) enum MakerV3 {
     Sketch(SketchV3),
     Tree(TreeV3),
     Leaf(LeafV3),
     Flower(FlowerV3),
+}
+
+impl TryFrom<MakerV3> for MakerV5 {
+    type Error = SettingFault;
+
+    fn try_from(v3: MakerV3) -> Result<Self, SettingFault> {
+        Ok(match v3 {
+            MakerV3::Sketch(sketch) => Self::Sketch(sketch),
+            MakerV3::Tree(tree) => Self::Tree(tree),
+            MakerV3::Leaf(leaf) => Self::Leaf(leaf),
+            MakerV3::Flower(flower) => Self::Flower(flower.try_into()?),
+        })
+    }
 }
 
 #[derive(Serialize, Deserialize)]
@@ -158,11 +198,60 @@ pub(crate) struct LeafV3 {
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct FlowerV3 {
-    #[serde(default, deserialize_with = "spec::through_json::read")]
-    pub(crate) settings: FlowerSettings,
+pub(crate) struct FlowerV5 {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) preset: Option<String>,
+    #[serde(deserialize_with = "spec::through_json::read")]
+    pub(crate) spec: FlowerSpec,
+    pub(crate) day: f64,
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "spec::through_json::read")]
     pub(crate) law: Option<GrowthLaw>,
+}
+
+/// A species by name, and what was chosen otherwise.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct FlowerV3 {
+    #[serde(default, deserialize_with = "spec::through_json::read")]
+    settings: FlowerSettingsV3,
+    #[serde(default, deserialize_with = "spec::through_json::read")]
+    law: Option<GrowthLaw>,
+}
+
+#[derive(Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct FlowerSettingsV3 {
+    species: String,
+    day: f64,
+    opening_days: Option<f64>,
+    wilting_days: Option<f64>,
+    stalk_m: Option<f64>,
+    nod_deg: Option<f64>,
+}
+
+impl Default for FlowerSettingsV3 {
+    fn default() -> Self {
+        let (species, day) = (DEFAULT_FLOWER.into(), DEFAULT_DAY);
+        Self { species, day, opening_days: None, wilting_days: None, stalk_m: None, nod_deg: None }
+    }
+}
+
+impl TryFrom<FlowerV3> for FlowerV5 {
+    type Error = SettingFault;
+
+    fn try_from(v3: FlowerV3) -> Result<Self, SettingFault> {
+        let FlowerV3 { settings: old, law } = v3;
+        let unknown = || SettingFault::Flower { name: base::quoted(&old.species).to_string() };
+        let own = bloom::preset(&old.species).ok_or_else(unknown)?;
+        let spec = FlowerSpec {
+            opening_days: old.opening_days.unwrap_or(own.opening_days),
+            wilting_days: old.wilting_days.unwrap_or(own.wilting_days),
+            stalk_m: old.stalk_m.unwrap_or(own.stalk_m),
+            nod_deg: old.nod_deg.unwrap_or(own.nod_deg),
+            ..own
+        };
+        Ok(Self { preset: Some(old.species), spec, day: old.day, law })
+    }
 }
 
 impl From<DocumentV2> for DocumentV3 {

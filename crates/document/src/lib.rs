@@ -29,7 +29,6 @@ mod photo;
 mod state;
 
 pub use archive::{ArchiveError, pack};
-pub use bloom::FlowerSettings;
 pub use command::{
     Command, CommandError, FlowerCommand, LeafCommand, NewPlant, NewStroke, PlantCommand, SceneCommand,
     ShapeCommand, SketchCommand, TreeCommand,

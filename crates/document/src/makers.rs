@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use bloom::{FlowerSettings, FlowerSpec, GrowthLaw};
+use bloom::{FlowerSpec, GrowthLaw};
 use growth::{Obstacle, TreeSpec};
 use leaf::LeafSpec;
 use schemars::JsonSchema;
@@ -95,8 +95,8 @@ pub struct SketchSettings {
 impl SketchSettings {
     fn fault(&self) -> Option<SettingFault> {
         let photo = self.photo.as_ref().and_then(Photo::fault);
-        let day = || FlowerSettings { day: self.day.unwrap_or(0.0), ..FlowerSettings::default() };
-        fault(&self.sketch).or(photo).or_else(|| fault(&self.skin)).or_else(|| fault(&day()))
+        let day = || day_fault(self.day.unwrap_or(0.0));
+        fault(&self.sketch).or(photo).or_else(|| fault(&self.skin)).or_else(day)
     }
 }
 
@@ -163,27 +163,52 @@ impl Default for LeafData {
 }
 
 /// A flower that opens.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct FlowerMaker {
-    /// Species, day and form.
-    pub settings: FlowerSettings,
+    /// The species that the spec came from.
+    pub preset: Option<String>,
+    /// The spec. Default: that of a lily.
+    pub spec: Arc<FlowerSpec>,
+    /// Days since the bud: 0 is the bud, `opening_days` full bloom, then it wilts. 0 to 100, default 4.
+    pub day: f64,
     /// A fitted law that sets the pace; none takes the species' own.
     pub law: Option<Arc<GrowthLaw>>,
 }
 
-impl FlowerMaker {
-    fn fault(&self) -> Option<SettingFault> {
-        let law =
-            self.law.as_ref().and_then(|l| l.validate().next()).map(|f| SettingFault::Law(f.to_string()));
-        law.or_else(|| flower_fault(&self.settings))
+impl Default for FlowerMaker {
+    fn default() -> Self {
+        let spec = Arc::new(bloom::preset(DEFAULT_FLOWER).unwrap_or_default());
+        Self { preset: Some(DEFAULT_FLOWER.into()), spec, day: DEFAULT_DAY, law: None }
     }
 }
 
-fn flower_fault(settings: &FlowerSettings) -> Option<SettingFault> {
-    if !FlowerSpec::PRESETS.contains(&settings.species.as_str()) {
-        return Some(SettingFault::Flower { name: base::quoted(&settings.species).to_string() });
+impl FlowerMaker {
+    /// A flower that comes with the program, on the day of `default`; none for a species that is not known.
+    pub fn of_preset(name: &str) -> Option<Self> {
+        let spec = Arc::new(bloom::preset(name)?);
+        Some(Self { preset: Some(name.into()), spec, ..Self::default() })
     }
-    fault(settings)
+
+    fn fault(&self) -> Option<SettingFault> {
+        let law = || self.law.as_ref().and_then(|l| l.validate().next());
+        let law = || law().map(|f| SettingFault::Law(f.to_string()));
+        fault(&*self.spec).or_else(law).or_else(|| day_fault(self.day))
+    }
+}
+
+/// The flower of a new plant.
+pub(crate) const DEFAULT_FLOWER: &str = "lily";
+/// Its day, on which most species are half open.
+pub(crate) const DEFAULT_DAY: f64 = 4.0;
+/// The last day at which flowers are shown: the longest opening and wilting together.
+const LAST_DAY: f64 = 100.0;
+
+fn day_fault(day: f64) -> Option<SettingFault> {
+    let fault = || {
+        let (path, least, most) = ("day".into(), Some(0.0), Some(LAST_DAY));
+        SettingFault::Range(spec::RangeFault { path, value: day, least, most, above: None, unit: "d" })
+    };
+    (!(0.0..=LAST_DAY).contains(&day)).then(fault)
 }
 
 /// What is out of its range.

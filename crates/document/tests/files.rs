@@ -53,7 +53,7 @@ fn refusals_say_what_and_what_to_do() {
         (sample()[..sample().len() / 2].to_vec(), "not a whole zip"),
         (pack(&[("x.txt".into(), vec![1])]).unwrap(), "no \"manifest.json\""),
         (pack(&[("manifest.json".into(), V1.into())]).unwrap(), "no \"document.json\""),
-        (project(r#"{"burgeon":"project/5"}"#, "{}"), "take a newer Burgeon"),
+        (project(r#"{"burgeon":"project/6"}"#, "{}"), "take a newer Burgeon"),
         (
             project(
                 V2,
@@ -193,6 +193,18 @@ fn files_of_version_4_stay_readable() {
 }
 
 #[test]
+fn files_of_version_5_stay_readable() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/projects/version-5.burgeon");
+    let document = read_project(&std::fs::read(path).unwrap()).unwrap();
+    let [.., lily] = document.plants() else { panic!("{document:?}") };
+    let Maker::Flower(flower) = &lily.settings().maker else { panic!("{lily:?}") };
+    assert_eq!((flower.preset.as_deref(), flower.day, flower.spec.nod_deg), (Some("lily"), 3.25, 40.0));
+    assert_eq!((flower.spec.whorls[0].tip_color, flower.spec.whorls.len()), ([0.9, 0.2, 0.1], 3));
+    let again = read_project(&write_project(&document, "test").unwrap()).unwrap();
+    assert_eq!(again, document);
+}
+
+#[test]
 fn a_tree_a_leaf_and_a_flower_come_back() {
     let law = r#"{"schema":"burgeon.law/1","name":"x","first_day":0.0,"span_days":6.0,"regions":1,"laws":[{"organ":"any","region":0,"axis":"size","K":1.0,"p0":0.1,"r":0.9,"offset":0.0,"standard_errors":null,"r2":1.0,"r2_adjusted":null,"loo_rmse":null,"days":[],"values":[]}]}"#;
     let text = format!(
@@ -201,7 +213,7 @@ fn a_tree_a_leaf_and_a_flower_come_back() {
         {{"name":"tree","seed":3,"locked":true,"position":[1,0,-0.1],"yaw_deg":30.1,"scale":0.3,"maker":{{"tree":{{
             "preset":"oak","spec":{{"age":3,"clearance_m":0.1}},"leaf":0,
             "obstacles":[{{"name":"ball","shape":{{"shape":"sphere","centre":[0,1,0],"radius_m":0.5}}}}]}}}}}},
-        {{"name":"flower","seed":4,"hidden":true,"maker":{{"flower":{{"settings":{{"species":"rose","day":2.5}},"law":{law}}}}}}}
+        {{"name":"flower","seed":4,"hidden":true,"maker":{{"flower":{{"settings":{{"species":"rose","day":2.5,"stalk_m":0.4}},"law":{law}}}}}}}
         ]}}"#
     );
     let document = read_project(&project(V3, &text)).unwrap();
@@ -212,7 +224,11 @@ fn a_tree_a_leaf_and_a_flower_come_back() {
     let Maker::Tree(t) = &tree.settings().maker else { panic!("{tree:?}") };
     assert_eq!((t.obstacles.len(), t.leaf, tree.settings().locked), (1, Some(leaf.id()), true));
     let Maker::Flower(f) = &flower.settings().maker else { panic!("{flower:?}") };
-    assert!(f.law.is_some() && f.settings.species == "rose" && flower.settings().hidden);
+    let rose = bloom::preset("rose").unwrap();
+    assert!(f.law.is_some() && f.preset.as_deref() == Some("rose") && flower.settings().hidden);
+    assert_eq!((f.day, &*f.spec), (2.5, &bloom::FlowerSpec { stalk_m: 0.4, ..rose }));
+    let unknown = text.replace(r#""rose""#, r#""weed""#);
+    assert!(read_project(&project(V3, &unknown)).unwrap_err().to_string().contains("weed"));
     let again = read_project(&write_project(&document, "test").unwrap()).unwrap();
     assert_eq!(again, document);
 }

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use base::Seed;
 use document::{
-    Command, CommandError, Document, Editor, FlowerCommand, FlowerSettings, LeafCommand, LeafData, Maker,
-    NamedObstacle, NewPlant, NewStroke, Photo, PhotoPlace, Placement, PlantCommand, PlantId, SceneCommand,
-    Settings, ShapeCommand, SketchCommand, StrokeId, TreeCommand, read_project, write_project,
+    Command, CommandError, Document, Editor, FlowerCommand, LeafCommand, LeafData, Maker, NamedObstacle,
+    NewPlant, NewStroke, Photo, PhotoPlace, Placement, PlantCommand, PlantId, SceneCommand, Settings,
+    ShapeCommand, SketchCommand, StrokeId, TreeCommand, read_project, write_project,
 };
 use glam::{DVec2, DVec3};
 use growth::{Obstacle, TreeSpec};
@@ -118,15 +118,15 @@ fn leaf_command() -> impl Strategy<Value = LeafCommand> {
 }
 
 fn flower_command() -> impl Strategy<Value = FlowerCommand> {
-    let species = prop_oneof![Just("lily"), Just("rose"), Just("weed")];
+    let species = prop_oneof![Just("lily"), Just("rose")];
+    let field = prop_oneof![Just("/stalk_m"), Just("/whorls/0/length_m"), Just("/whorls/9/length_m")];
     prop_oneof![
-        (species, -1.0..110.0f64).prop_map(|(species, day)| {
-            FlowerCommand::Set(Box::new(FlowerSettings {
-                species: species.into(),
-                day,
-                ..FlowerSettings::default()
-            }))
+        species.prop_map(|name: &str| {
+            FlowerCommand::SetSpec(Some(name.into()), Arc::new(bloom::preset(name).expect("known")))
         }),
+        (field, -1.0..6.0f64)
+            .prop_map(|(field, x): (&str, f64)| FlowerCommand::SetField(field.into(), x.into())),
+        (-1.0..110.0f64).prop_map(FlowerCommand::SetDay),
         (-1.0..6.0f64).prop_map(|span| {
             FlowerCommand::SetLaw(Some(Arc::new(bloom::GrowthLaw::logistic("a", span, 0.9))))
         }),

@@ -12,6 +12,8 @@ base::define_id! {
 pub enum MaterialKind {
     /// Woody surface.
     Bark,
+    /// Woody surface of twigs.
+    YoungBark,
     /// Green stem of a herb.
     Stem,
     /// Leaf blade.
@@ -35,6 +37,7 @@ impl MaterialKind {
     pub const fn word(self) -> &'static str {
         match self {
             Self::Bark => "bark",
+            Self::YoungBark => "bark-young",
             Self::Stem => "stem",
             Self::Leaf => "leaf",
             Self::Petal => "petal",

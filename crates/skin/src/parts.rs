@@ -59,15 +59,19 @@ impl Coat {
 }
 
 impl Slot {
-    /// The same surface in the colours of a photograph.
+    /// The same surface in the colours of a photograph, which has branches and twigs as one.
     pub(crate) fn traced(self) -> Self {
-        Self::Traced(self.kind())
+        match self.kind() {
+            MaterialKind::YoungBark => Self::Traced(MaterialKind::Bark),
+            kind => Self::Traced(kind),
+        }
     }
 
     fn kind(self) -> MaterialKind {
         match self {
             Self::Traced(kind) => kind,
-            Self::Bark | Self::YoungBark => MaterialKind::Bark,
+            Self::Bark => MaterialKind::Bark,
+            Self::YoungBark => MaterialKind::YoungBark,
             Self::Stem | Self::Body | Self::Thorn => MaterialKind::Stem,
             Self::Root => MaterialKind::Root,
             Self::Leaf(_) | Self::Form(..) | Self::Veins => MaterialKind::Leaf,
@@ -103,7 +107,7 @@ impl Slot {
             Self::Thorn => ("thorns", "thorn".into()),
             Self::Traced(kind) => {
                 let part = match kind {
-                    MaterialKind::Bark => "branches-traced",
+                    MaterialKind::Bark | MaterialKind::YoungBark => "branches-traced",
                     MaterialKind::Stem => "stems-traced",
                     MaterialKind::Leaf => "leaves-traced",
                     MaterialKind::Petal => "petals-traced",

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use base::{Cancelled, OverBudget, Report, Run, Seed, Stopped};
-use bloom::FlowerSettings;
+use bloom::FlowerSpec;
 use document::{
     Document, DocumentPlant, Editor, FlowerMaker, LeafData, LeafMaker, Maker, PlantEdit, PlantId, Settings,
     SketchCommand, SketchSettings, TreeSettings,
@@ -58,9 +58,6 @@ pub enum SceneError {
         "the leaf has no measurements yet: drop a table of marks (.csv) or a vein graph (.json) on the page"
     )]
     NoMarks,
-    /// No such flower.
-    #[error("the flower {0:?} is unknown")]
-    Species(String),
     /// The plant whose leaf is borne has no leaf.
     #[error("the plant \"{0}\", whose leaf this one bears, has no leaf yet")]
     Lender(String),
@@ -123,7 +120,6 @@ impl From<LeafError> for SceneError {
 
 base::coded!(SceneError {
     Self::NoMarks => "leaf-no-marks" {},
-    Self::Species(name) => "no-species" { name },
     Self::Lender(name) => "lender-without-leaf" { name },
     Self::NotMade(name) => "plant-not-made" { name },
     Self::NoRoom(bytes) => "scene-full" { mb = bytes >> 20 },
@@ -418,7 +414,7 @@ impl SceneEvaluator {
     pub fn days(&self, id: PlantId, document: &Document) -> Option<[f64; 2]> {
         match &document.plant(id)?.settings().maker {
             Maker::Sketch(_) => self.plants.get(&id)?.made.opening.as_ref().map(|o| o.days),
-            Maker::Flower(f) => Some(f.settings.spec()?.days()),
+            Maker::Flower(f) => Some(f.spec.days()),
             _ => None,
         }
     }
@@ -534,13 +530,10 @@ impl Made {
         from: &MadeFrom,
         run: &Run<'_>,
     ) -> Result<Vec<&'static str>, SceneError> {
-        let spec =
-            flower.settings.spec().ok_or_else(|| SceneError::Species(flower.settings.species.clone()))?;
-        let law = flower.law.as_ref().map_or_else(|| spec.own_law(), |l| (**l).clone());
+        let law = flower.law.as_ref().map_or_else(|| flower.spec.own_law(), |l| (**l).clone());
         let mut options = FlowerOptions { edits: from.edits.clone(), ..FlowerOptions::default() };
         options.skin.wind = from.wind;
-        let day = (flower.settings.day, &law);
-        let made = make_flower(&from.name, &spec, day, &options, from.seed, run)?;
+        let made = make_flower(&from.name, &flower.spec, (flower.day, &law), &options, from.seed, run)?;
         Ok(self.take(made))
     }
 
@@ -581,10 +574,10 @@ pub fn leaf_schema() -> &'static serde_json::Value {
 /// The JSON Schema of what can be set of a flower.
 ///
 /// ```
-/// assert_eq!(burgeon::flower_schema()["properties"]["day"]["x-unit"], "d");
+/// assert_eq!(burgeon::flower_schema()["properties"]["opening_days"]["x-unit"], "d");
 /// ```
 pub fn flower_schema() -> &'static serde_json::Value {
-    FlowerSettings::schema()
+    FlowerSpec::schema()
 }
 
 /// The marks of a leaf of a document, and how it is made.

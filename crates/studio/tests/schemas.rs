@@ -34,7 +34,6 @@ fn the_schemas_that_are_kept_are_those_of_the_types() {
     let mut stale = Vec::new();
     compare::<growth::TreeSpec>("growth/schemas/tree.json", &mut stale);
     compare::<bloom::FlowerSpec>("bloom/schemas/flower.json", &mut stale);
-    compare::<bloom::FlowerSettings>("bloom/schemas/settings.json", &mut stale);
     compare::<leaf::LeafSpec>("leaf/schemas/leaf.json", &mut stale);
     compare::<sketch::SketchSpec>("sketch/schemas/sketch.json", &mut stale);
     compare::<skin::SkinSpec>("skin/schemas/skin.json", &mut stale);

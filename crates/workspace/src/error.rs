@@ -37,7 +37,7 @@ pub enum WorkspaceError {
     /// Nothing says what the file is.
     #[error(
         "this is no file that Burgeon reads: give a project (.burgeon), a drawing (.svg, .inkml, .ndjson, .json), marks \
-         of a leaf (.csv), a tree (.toml) or a model (.glb, .gltf, .obj, .ply, .stl)"
+         of a leaf (.csv), a tree or flower (.toml) or a model (.glb, .gltf, .obj, .ply, .stl)"
     )]
     UnknownFile,
     /// The bytes are not UTF-8.

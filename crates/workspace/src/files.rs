@@ -2,15 +2,16 @@
 
 use std::sync::Arc;
 
+use burgeon::bloom::FlowerSpec;
 use burgeon::document::{
-    self, Document, DocumentPlant, Editor, FlowerCommand, LeafData, LeafMaker, Maker, SceneCommand,
-    TreeCommand,
+    self, CommandError, Document, DocumentPlant, Editor, FlowerCommand, FlowerMaker, LeafData, LeafMaker,
+    Maker, SceneCommand, TreeCommand,
 };
 use burgeon::formats::{DrawingFormat, ExportSpec, ModelFormat, no_files, read_drawings, read_model};
 use burgeon::glam::DVec3;
 use burgeon::growth::Obstacle;
 use burgeon::ink::Drawing;
-use burgeon::spec::through_json;
+use burgeon::spec::{self, through_json};
 use burgeon::{LeafError, Report, SceneError, leaf_marks, read_tree_spec, tree_settings};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -31,6 +32,8 @@ pub enum FileKind {
     Leaf,
     /// A new tree.
     Tree,
+    /// A new flower that opens.
+    Flower,
     /// A growth law that went to the current flower.
     Law,
 }
@@ -84,7 +87,15 @@ impl Workspace {
         } else if is("csv") || (is("json") && holds(b"\"edges\"")) {
             self.open_leaf(stem, file_name, bytes)
         } else if is("toml") {
-            let spec = read_tree_spec(core::str::from_utf8(bytes)?, &|_| None)?;
+            let text = core::str::from_utf8(bytes)?;
+            if spec::Node::from_toml(text).is_ok_and(|tree| tree.field("whorls").is_some()) {
+                let spec: FlowerSpec = spec::from_toml(text).map_err(CommandError::from)?;
+                let name = spec.name.clone();
+                let flower = FlowerMaker { preset: None, spec: Arc::new(spec), ..FlowerMaker::default() };
+                self.add_plant(&name, Maker::Flower(Box::new(flower)))?;
+                return Ok(Opened::new(FileKind::Flower, name));
+            }
+            let spec = read_tree_spec(text, &|_| None)?;
             let settings = tree_settings(&spec, None);
             self.add_plant(&spec.name, Maker::Tree(Box::new(settings)))?;
             Ok(Opened::new(FileKind::Tree, spec.name))

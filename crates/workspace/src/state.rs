@@ -1,8 +1,7 @@
 //! What a shell shows of the document: everything but points, meshes and pictures.
 
-use burgeon::document::{
-    Document, DocumentPlant, Editor, FlowerSettings, Maker, PhotoPlace, PlantId, StrokeId,
-};
+use burgeon::bloom::FlowerSpec;
+use burgeon::document::{Document, DocumentPlant, Editor, Maker, PhotoPlace, PlantId, StrokeId};
 use burgeon::growth::{Obstacle, TreeSpec};
 use burgeon::ink::{StrokeClass, StrokeMode};
 use burgeon::sketch::SketchSpec;
@@ -209,8 +208,14 @@ pub struct LeafState<'a> {
 /// Which flower, on which day.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct FlowerState<'a> {
-    /// Species, day and form.
-    pub settings: &'a FlowerSettings,
+    /// The species that the spec came from.
+    pub preset: Option<&'a str>,
+    /// The spec.
+    #[schemars(with = "std::collections::BTreeMap<String, Value>")]
+    #[serde(serialize_with = "spec::through_json::serialize")]
+    pub spec: &'a FlowerSpec,
+    /// Days since the bud.
+    pub day: f64,
     /// Name of the fitted law that sets its pace.
     pub law: Option<&'a str>,
 }
@@ -273,8 +278,12 @@ impl<'a> PlantState<'a> {
             }
             Maker::Flower(f) => {
                 state.maker = MakerWord::Flower;
-                state.flower =
-                    Some(FlowerState { settings: &f.settings, law: f.law.as_ref().map(|l| l.name.as_str()) });
+                state.flower = Some(FlowerState {
+                    preset: f.preset.as_deref(),
+                    spec: &f.spec,
+                    day: f.day,
+                    law: f.law.as_ref().map(|l| l.name.as_str()),
+                });
             }
             _ => {}
         }

@@ -310,7 +310,7 @@ fn a_tree_a_leaf_and_a_flower_in_one_scene() {
     assert_eq!(made.len(), 3);
     assert!(made.iter().all(|(_, digest, error)| digest.len() > 8 && error.is_null()), "{made:?}");
     // Nothing is grown or sent again for a change elsewhere.
-    s.ask(r#"{"flower":[3,{"set":{"species":"rose","day":1.5}}]}"#).unwrap();
+    s.ask(r#"{"flower":[3,{"set-day":1.5}]}"#).unwrap();
     let view = json(&s.evaluate(&run()).unwrap());
     let fresh: Vec<bool> = (0..3).map(|k| view["plants"][k]["fresh"].as_bool().unwrap()).collect();
     assert_eq!(fresh, [false, false, true]);

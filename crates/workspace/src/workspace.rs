@@ -43,9 +43,9 @@ pub enum Action {
         /// Its maker.
         maker: NewMaker,
     },
-    /// Makes a tree another species.
+    /// Makes a tree or a flower another species.
     Preset {
-        /// The tree.
+        /// The plant.
         plant: PlantId,
         /// The key of the preset.
         key: String,
@@ -196,17 +196,18 @@ impl Workspace {
                     NewMaker::Sketch => Maker::default(),
                     NewMaker::Tree(key) => Maker::Tree(Box::new(preset(key)?)),
                     NewMaker::Leaf => Maker::Leaf(Box::default()),
-                    NewMaker::Flower(species) => {
-                        let mut flower = document::FlowerMaker::default();
-                        flower.settings.species.clone_from(species);
-                        Maker::Flower(Box::new(flower))
-                    }
+                    NewMaker::Flower(species) => Maker::Flower(Box::new(flower(species)?)),
                 };
                 self.add_plant(name, maker)?;
                 self.guest = None;
                 Ok(())
             }
             Action::Preset { plant, key } => {
+                let opens = |p: &DocumentPlant| matches!(p.settings().maker, Maker::Flower(_));
+                if self.editor.document().plant(*plant).is_some_and(opens) {
+                    let document::FlowerMaker { preset, spec, .. } = flower(key)?;
+                    return self.run(document::FlowerCommand::SetSpec(preset, spec).of(*plant));
+                }
                 let document::TreeSettings { preset, spec, .. } = preset(key)?;
                 self.run(document::TreeCommand::SetSpec(preset, spec).of(*plant))
             }
@@ -431,6 +432,12 @@ impl Workspace {
     pub(crate) fn let_go(&mut self) {
         self.held = None;
     }
+}
+
+fn flower(species: &str) -> Result<document::FlowerMaker, WorkspaceError> {
+    let unknown = || document::SettingFault::Flower { name: species.into() };
+    let flower = document::FlowerMaker::of_preset(species);
+    flower.ok_or_else(|| document::CommandError::OutOfRange(unknown()).into())
 }
 
 fn preset(key: &str) -> Result<document::TreeSettings, WorkspaceError> {

@@ -53,9 +53,10 @@ export function number(n: number): string {
 
 const human = (word: string): string => word.replace(/_(m|deg|years)$/, '').replaceAll(/[_-]/g, ' ');
 
-/** What a field of a schema is called. */
-export function fieldName(name: string): string {
-  const key = `field.${name}`;
+/** What a field of a schema is called: by its name, or with what it is of where that name means several things. */
+export function fieldName(name: string, help = ''): string {
+  const own = `field.${help.split('.').slice(-2).join('.')}`;
+  const key = own in en ? own : `field.${name}`;
   return key in en ? t(key as TextKey) : human(name);
 }
 

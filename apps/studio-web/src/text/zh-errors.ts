@@ -10,7 +10,7 @@ export const zhErrors: Record<keyof typeof CODES, string> = {
   'no-drawing': '文件里没有绘图',
   'no-usable-stroke': '文件里没有可用的笔画',
   'unknown-file':
-    '无法识别这个文件：请提供项目（.burgeon）、绘图（.svg、.inkml、.ndjson、.json）、叶片标记（.csv）、树（.toml）或模型（.glb、.gltf、.obj、.ply、.stl）',
+    '无法识别这个文件：请提供项目（.burgeon）、绘图（.svg、.inkml、.ndjson、.json）、叶片标记（.csv）、树或花（.toml）或模型（.glb、.gltf、.obj、.ply、.stl）',
   'not-text': '文件不是 UTF-8 文本，请另存为 UTF-8（{why}）',
   'obstacle-file': '障碍物是模型：请提供 .glb、.gltf、.obj、.ply 或 .stl 文件',
   'no-surface': '模型里没有表面',

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use bloom::GrowthLaw;
+use bloom::{FlowerSpec, GrowthLaw};
 use growth::TreeSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -13,7 +13,7 @@ use super::{Command, CommandError, may_bear, set};
 use crate::event::Event;
 use crate::makers::{FlowerMaker, LeafData, LeafMaker, Maker, NamedObstacle, TreeSettings};
 use crate::state::shortened;
-use crate::{Document, DocumentPlant, FlowerSettings, PlantId};
+use crate::{Document, DocumentPlant, PlantId};
 
 /// What can be asked of a tree.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -144,8 +144,17 @@ impl LeafCommand {
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum FlowerCommand {
-    /// Sets species, day and form.
-    Set(Box<FlowerSettings>),
+    /// Takes another spec, such as that of a species.
+    SetSpec(
+        Option<String>,
+        #[serde(with = "spec::through_json")]
+        #[schemars(with = "Value")]
+        Arc<FlowerSpec>,
+    ),
+    /// Sets one field of the spec, named by a JSON pointer such as `/whorls/0/count`.
+    SetField(String, Value),
+    /// Shows it on a day.
+    SetDay(f64),
     /// Takes a fitted law, or the species' own pace again.
     SetLaw(#[schemars(with = "Option<Value>")] Option<Arc<GrowthLaw>>),
 }
@@ -158,7 +167,9 @@ impl FlowerCommand {
 
     pub(super) fn name(&self) -> &'static str {
         match self {
-            Self::Set(_) => "flower",
+            Self::SetSpec(..) => "species",
+            Self::SetField(..) => "flower",
+            Self::SetDay(_) => "day",
             Self::SetLaw(_) => "law",
         }
     }
@@ -169,9 +180,14 @@ impl FlowerCommand {
             let Maker::Flower(flower) = &mut s.maker else {
                 return Err(CommandError::OtherMaker { wanted: "flower", found });
             };
-            let FlowerMaker { settings, law } = &mut **flower;
+            let FlowerMaker { preset, spec, day, law } = &mut **flower;
             match self {
-                Self::Set(new) => *settings = *new,
+                Self::SetSpec(name, new) => {
+                    spec::check(&*new).map_err(spec::SpecFault::from)?;
+                    (*preset, *spec) = (name.map(|n| shortened(&n)), new);
+                }
+                Self::SetField(path, value) => *spec = Arc::new(spec::set(&**spec, &path, value)?),
+                Self::SetDay(new) => *day = new,
                 Self::SetLaw(new) => *law = new,
             }
             Ok(())

@@ -30,26 +30,28 @@ pub(super) fn tint(look: &Look, plant: &mut Plant, pictured: bool, seed: Seed) {
 pub(super) fn paint(look: &Look, model: &mut Model, kept: &mut KeptBarks) {
     let known = core::mem::take(kept);
     // A slender tree has no part with old bark: then its stem is among the young ones.
-    let old = model.materials.iter().any(|m| m.name == "bark");
-    for material in model.materials.iter_mut().filter(|m| m.kind == MaterialKind::Bark) {
-        let twig = old && material.name == "bark-young";
+    let old = model.materials.iter().any(|m| m.kind == MaterialKind::Bark);
+    for material in &mut model.materials {
+        if !matches!(material.kind, MaterialKind::Bark | MaterialKind::YoungBark) {
+            continue;
+        }
+        let twig = old && material.kind == MaterialKind::YoungBark;
         let colour = if twig { look.twig_color } else { look.bark_color };
         repaint(look, material, colour, twig, &known, kept);
     }
     if let Some(foot) = look.foot_color {
-        let name = if old { "bark" } else { "bark-young" };
-        darken_foot(look, model, name, foot);
+        darken_foot(look, model, if old { MaterialKind::Bark } else { MaterialKind::YoungBark }, foot);
     }
 }
 
 /// Vertex colours that turn the bark of one material into the foot's, from `foot_height` downwards.
-fn darken_foot(look: &Look, model: &mut Model, name: &str, foot: Colour) {
+fn darken_foot(look: &Look, model: &mut Model, kind: MaterialKind, foot: Colour) {
     let bounds = model.bounds();
     let height = (bounds.max.y * look.foot_height).max(f64::MIN_POSITIVE);
     let patches = Lattice::new((16, 16), 41);
     let (bark, foot) = (look.bark_color.linear(), foot.linear());
     let ratio = [0, 1, 2].map(|i| (foot[i] / bark[i].max(1e-3)).clamp(0.0, 1.0));
-    let chosen: Vec<bool> = model.materials.iter().map(|m| m.name == name).collect();
+    let chosen: Vec<bool> = model.materials.iter().map(|m| m.kind == kind).collect();
     for part in &mut model.parts {
         if !chosen.get(part.material.index()).copied().unwrap_or(false) {
             continue;
