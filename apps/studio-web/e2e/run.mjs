@@ -9,6 +9,7 @@ import { headset } from './headset.mjs';
 import { journeys } from './journeys.mjs';
 import { keeping } from './keeping.mjs';
 import { serve } from './server.mjs';
+import { network } from './network.mjs';
 import { shaping } from './shaping.mjs';
 import { staging } from './staging.mjs';
 import { strokes } from './strokes.mjs';
@@ -23,7 +24,7 @@ const browser = await chromium.launch({ executablePath: browserPath, args: FLAGS
 
 let failed = 0;
 const only = process.env.ONLY;
-const all = [...journeys, ...keeping, ...strokes, ...shaping, ...staging, ...grove];
+const all = [...journeys, ...keeping, ...strokes, ...shaping, ...staging, ...grove, ...network];
 // Two pictures a frame: minutes without a graphics card, so only when they are asked for.
 if (only?.startsWith('headset')) all.push(...headset);
 for (const [name, journey, options] of all) {
@@ -38,12 +39,14 @@ for (const [name, journey, options] of all) {
   const page = await context.newPage();
   const troubles = [];
   const foreign = [];
+  // A journey may start a server of its own.
+  const own = [url];
   page.on('pageerror', (e) => troubles.push(`error in the page: ${e.message}`));
   page.on('console', (m) => {
     if (m.type() === 'error') troubles.push(`console: ${m.text()}`);
   });
   page.on('request', (r) => {
-    if (!/^(blob|data):/.test(r.url()) && !r.url().startsWith(url)) foreign.push(r.url());
+    if (!/^(blob|data):/.test(r.url()) && !own.some((o) => r.url().startsWith(o))) foreign.push(r.url());
   });
   page.setDefaultTimeout(60_000);
   const began = Date.now();
@@ -52,6 +55,9 @@ for (const [name, journey, options] of all) {
       page,
       context,
       url,
+      own,
+      burgeon,
+      folder,
       out,
       shot: (file, of = page) => of.screenshot({ path: join(out, `${file}.png`) }),
       troubles,

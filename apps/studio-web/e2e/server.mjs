@@ -2,7 +2,20 @@
 import { spawn } from 'node:child_process';
 
 export async function serve(burgeon, folder, ...files) {
-  const args = ['studio', '--no-open', '--port', '0', '--folder', folder, ...files];
+  const found = await said(burgeon, ['--folder', folder, ...files], /http:\/\/127\.0\.0\.1:\d+\//);
+  return found[0];
+}
+
+/** The server of the network, at this machine's own address: its address and the code that its terminal shows. */
+export async function serveNetwork(burgeon, folder, file) {
+  const shown = /Or open (https:\/\/127\.0\.0\.1:\d+\/) and give the code (\d{4} \d{4})/;
+  const [, url, code] = await said(burgeon, ['--folder', folder, '--lan=127.0.0.1', file], shown);
+  return { url, code };
+}
+
+/** Starts a server and waits until it says this. */
+async function said(burgeon, more, words) {
+  const args = ['studio', '--no-open', '--port', '0', ...more];
   const server = spawn(burgeon, args, { stdio: ['ignore', 'pipe', 'inherit'] });
   process.on('exit', () => server.kill());
   return new Promise((resolve, reject) => {
@@ -10,10 +23,10 @@ export async function serve(burgeon, folder, ...files) {
     const early = (code) => reject(new Error(`burgeon studio ended with ${code}`));
     server.stdout.on('data', (d) => {
       said += d;
-      const found = /http:\/\/127\.0\.0\.1:\d+\//.exec(said);
+      const found = words.exec(said);
       if (!found) return;
       server.removeListener('exit', early);
-      resolve(found[0]);
+      resolve(found);
     });
     server.on('error', reject);
     server.on('exit', early);

@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { add, begin, count, data, sample, settled, until } from './journeys.mjs';
+import { add, begin, count, sample, settled, until } from './journeys.mjs';
 
 /** Mean red, green, blue (0 to 255) and smallest alpha of a part of a picture file; shares of its width and height. */
 async function mean(page, bytes, [x0, y0, x1, y1] = [0, 0, 1, 1]) {

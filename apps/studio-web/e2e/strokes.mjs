@@ -1,6 +1,6 @@
 // Strokes that were drawn are changed: bent, scaled, turned, cut, joined, rubbed out, smoothed, coloured.
 import assert from 'node:assert/strict';
-import { begin, blade, changed, count, data, draw, drawFlower, line, settled, until } from './journeys.mjs';
+import { begin, blade, changed, count, draw, drawFlower, line, settled, until } from './journeys.mjs';
 
 /** The middle of the knob over the frame round some points, and its lower right corner. */
 function handles(points) {

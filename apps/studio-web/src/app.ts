@@ -31,6 +31,7 @@ import { PlantView } from './view/view';
 import { ViewModes } from './viewmode';
 import { Door, type Mode } from './vr/door';
 import type { Command } from './wire';
+import { Writing } from './writing';
 
 /** The sheet of a plant that is not drawn. */
 const NO_DRAWING = { strokes: [], photo: null };
@@ -48,6 +49,7 @@ export class App implements Page {
   readonly modes: ViewModes;
   readonly door: Door;
   readonly documents = this.makeDocuments();
+  private readonly writing = this.makeWriting();
   readonly scenery: Scenery;
   readonly files = this.makeFiles();
   readonly clipboard = new Clipboard(this.session.engine, this.sheet, {
@@ -118,6 +120,7 @@ export class App implements Page {
     this.started = true;
     void this.files.restore().finally(() => {
       const { session } = this;
+      this.writing.begun();
       document.body.dataset['readyAt'] = String(performance.now());
       document.body.dataset['ready'] = 'true';
       // The state may come a moment later; a scene that was restored is there by now.
@@ -144,6 +147,7 @@ export class App implements Page {
             () => undefined,
           );
         this.clipboard.select(drawn?.strokes ?? []);
+        if (state) this.writing.changed(state.revision);
         this.show.document();
       },
       view: (view, fresh) => {
@@ -308,6 +312,15 @@ export class App implements Page {
     this.view?.frameNow();
   }
 
+  private makeWriting(): Writing {
+    return new Writing(this.session.engine, {
+      document: () => this.documents.current,
+      revision: () => this.session.state?.revision ?? -1,
+      standing: (text) => this.show?.file(text),
+      left: (name) => note(t('file.left.note', { name }), 'bad'),
+    });
+  }
+
   private makeFiles(): Files {
     const { session } = this;
     return new Files(session.engine, this.documents, {
@@ -320,6 +333,7 @@ export class App implements Page {
       viewed: (name) => this.show.model(name),
       photo: (file) => this.panels.layPhoto(file),
       blank: () => this.isBlank,
+      offered: (name, version) => this.writing.opened(name, version),
     });
   }
 

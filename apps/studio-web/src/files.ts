@@ -37,6 +37,8 @@ export interface FilesEvents {
   photo(file: File): Promise<void>;
   /** Nothing is drawn or planted. */
   blank(): boolean;
+  /** The file with which the page was opened came in, of this version. */
+  offered(name: string, version: string | null): void;
 }
 
 export class Files {
@@ -158,11 +160,13 @@ export class Files {
     const d = dialog(t('dialog.samples'), list);
   }
 
-  private async openUrl(name: string, url: string): Promise<void> {
+  /** `offered`: the server may take it back. */
+  private async openUrl(name: string, url: string, offered = false): Promise<void> {
     try {
       const answer = await fetch(url);
       if (!answer.ok) throw new Error(`${answer.status}`);
       await this.open(name, new Uint8Array(await answer.arrayBuffer()));
+      if (offered) this.events.offered(name, answer.headers.get('ETag'));
     } catch (e) {
       note(t('note.unreadable', { name, why: (e as Error).message }), 'bad');
     }
@@ -260,7 +264,7 @@ export class Files {
     const restored = await documents.restore();
     if (offered) {
       await documents.fresh(true);
-      await this.openUrl(offered, `./opened/${encodeURIComponent(offered)}`);
+      await this.openUrl(offered, `./opened/${encodeURIComponent(offered)}`, true);
     } else if (shared) await this.openShared(shared);
     else if (restored && !this.events.blank()) note(t('note.restored'));
   }

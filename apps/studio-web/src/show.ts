@@ -36,6 +36,9 @@ export interface Shown {
 
 export class Show {
   private statsOn = false;
+  /** What is said of the file, and what is true of the saving. */
+  private written = '';
+  private stands: Standing = 'empty';
   private busyTimer = 0;
 
   constructor(
@@ -245,11 +248,17 @@ export class Show {
     this.parts.busy.hidden = true;
   }
 
+  /** What is true of the file that is written. */
+  file(text: string): void {
+    this.written = text;
+    this.standing(this.stands);
+  }
+
   /** What is true of the saving. */
   standing(now: Standing): void {
     const { kept, readonly } = this.parts;
     const failed = typeof now === 'object';
-    kept.textContent = failed
+    const said = failed
       ? t('status.failed', { why: whyNot(now.failed) })
       : {
           empty: '',
@@ -258,6 +267,8 @@ export class Show {
           saved: t('status.saved'),
           readonly: t('status.readonly'),
         }[now];
+    kept.textContent = [said, this.written].filter((text) => text !== '').join(' · ');
+    this.stands = now;
     kept.classList.toggle('bad', failed);
     readonly.hidden = now !== 'readonly';
     document.body.dataset['kept'] = failed ? 'failed' : now;

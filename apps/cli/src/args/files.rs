@@ -87,7 +87,8 @@ pub(crate) struct InfoArgs {
 #[command(after_long_help = "Examples:
   burgeon studio
   burgeon studio daisy.svg
-  burgeon studio --no-open --port 8080")]
+  burgeon studio --no-open --port 8080
+  burgeon studio rose.burgeon --lan                for a headset in the same network")]
 pub(crate) struct StudioArgs {
     /// A drawing, project or model to open.
     #[arg(value_name = "FILE")]
@@ -98,6 +99,11 @@ pub(crate) struct StudioArgs {
     /// Open no browser.
     #[arg(long)]
     pub(crate) no_open: bool,
+    /// Serve the network instead of this machine: https, and only browsers that have the link, the QR code or the code
+    /// that are shown, each of which works once. A project that is opened is written back to its file. ADDR: the address
+    /// of this machine in that network [default: that of the way out].
+    #[arg(long, value_name = "ADDR", num_args = 0..=1, require_equals = true, default_missing_value = "")]
+    pub(crate) lan: Option<String>,
     /// The folder of a built Studio [default: the one in the program].
     #[arg(long, value_name = "DIR")]
     pub(crate) folder: Option<PathBuf>,

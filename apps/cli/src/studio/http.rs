@@ -1,10 +1,11 @@
 //! Connections: one request each, bounded in size, time and number.
 
 use std::io::{ErrorKind, Read, Write};
-use std::net::{Shutdown, TcpListener, TcpStream};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::net::{IpAddr, Shutdown, TcpListener, TcpStream};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
+use super::gate::{Pace, Peers};
 use super::site::{Answer, Site, refusal};
 
 /// Longest request head in bytes.
@@ -24,7 +25,12 @@ pub(super) struct Limits {
 
 impl Limits {
     pub(super) const USUAL: Self = Self { connections: 64, patience: Duration::from_secs(5) };
+    /// A wireless network takes longer.
+    pub(super) const NETWORK: Self = Self { patience: Duration::from_secs(60), ..Self::USUAL };
 }
+
+/// Connections of one peer of the network: a page is some sixty files.
+const CONNECTIONS: Pace = Pace { at_once: 300.0, per_second: 50.0 };
 
 /// A peer that is connected.
 struct Guest {
@@ -76,19 +82,24 @@ impl Guests {
 /// Answers until the process ends.
 pub(super) fn serve(listener: &TcpListener, site: &Site, limits: Limits) {
     let guests = Guests::default();
+    let mut peers = Peers::default();
     std::thread::scope(|scope| {
         for stream in listener.incoming() {
-            let both = stream.and_then(|s| Ok((s.try_clone()?, s)));
-            let Ok((other, stream)) = both else {
+            let all = stream.and_then(|s| Ok((s.try_clone()?, s.peer_addr()?.ip(), s)));
+            let Ok((other, peer, stream)) = all else {
                 // Too many open files, for example: do not spin.
                 std::thread::sleep(Duration::from_millis(20));
                 continue;
             };
+            // Before it costs anything.
+            if site.network().is_some() && !peers.may(peer, CONNECTIONS, Instant::now()) {
+                continue;
+            }
             let id = guests.admit(other, limits.connections);
             let guests = &guests;
             let work = move || {
                 // A peer that went away or was too slow wants no answer.
-                let _ = converse(stream, site, Instant::now() + limits.patience, &|| guests.takes(id));
+                let _ = converse(stream, peer, site, Instant::now() + limits.patience, &|| guests.takes(id));
                 guests.leave(id);
             };
             if std::thread::Builder::new().spawn_scoped(scope, work).is_err() {
@@ -98,20 +109,75 @@ pub(super) fn serve(listener: &TcpListener, site: &Site, limits: Limits) {
     });
 }
 
-fn converse(mut stream: TcpStream, site: &Site, end: Instant, takes: &dyn Fn()) -> std::io::Result<()> {
+fn converse(
+    mut stream: TcpStream,
+    peer: IpAddr,
+    site: &Site,
+    end: Instant,
+    takes: &dyn Fn(),
+) -> std::io::Result<()> {
     stream.set_read_timeout(Some(GLANCE))?;
     stream.set_write_timeout(Some(GLANCE))?;
-    // Only this machine is bound to; this holds even where a system forwards ports.
-    if !stream.peer_addr()?.ip().is_loopback() {
-        return Ok(());
+    let Some(network) = site.network() else {
+        // Only this machine is bound to; this holds even where a system forwards ports.
+        if peer.is_loopback() {
+            talk(&mut stream, peer, site, end, takes)?;
+        }
+        return stream.shutdown(Shutdown::Write);
+    };
+    let mut first = [0];
+    while stream.peek(&mut first).map_or_else(|e| later(e, end).map(|()| true), |_| Ok(false))? {}
+    if first != TLS_HANDSHAKE {
+        send(&mut stream, &refusal(400, "write https:// before the address"), end, takes)?;
+        return stream.shutdown(Shutdown::Write);
     }
-    let answer = match head(&mut stream, end)? {
-        Head::Whole(head) => site.answer(&head),
+    let mut tls = rustls::ServerConnection::new(Arc::clone(&network.tls)).map_err(std::io::Error::other)?;
+    talk(&mut rustls::Stream::new(&mut tls, &mut stream), peer, site, end, takes)?;
+    tls.send_close_notify();
+    while tls.wants_write() {
+        if let Err(e) = tls.write_tls(&mut stream) {
+            later(e, end)?;
+        }
+    }
+    stream.shutdown(Shutdown::Write)
+}
+
+/// The first byte of a TLS connection.
+const TLS_HANDSHAKE: [u8; 1] = [0x16];
+
+/// One request and its answer.
+fn talk(
+    stream: &mut (impl Read + Write),
+    peer: IpAddr,
+    site: &Site,
+    end: Instant,
+    takes: &dyn Fn(),
+) -> std::io::Result<()> {
+    let answer = match head(stream, end)? {
+        Head::Whole(head, start) => match site.asked(&head, peer) {
+            Ok(asked) => site.answer(&head, &asked, &body(stream, start, asked.length, end)?, peer),
+            Err(refused) => refused,
+        },
         Head::TooLong(start) => refusal(431, "the request is too long").to(&start),
     };
     takes();
-    send(&mut stream, &answer, end, takes)?;
-    stream.shutdown(Shutdown::Write)
+    send(stream, &answer, end, takes)
+}
+
+/// The bytes after a head, of which some came with it.
+fn body(stream: &mut impl Read, mut body: Vec<u8>, length: usize, end: Instant) -> std::io::Result<Vec<u8>> {
+    body.truncate(length);
+    let mut chunk = vec![0; (1 << 16).min(length)];
+    while body.len() < length {
+        let most = chunk.len().min(length - body.len());
+        match stream.read(&mut chunk[..most]) {
+            Ok(0) => return Err(ErrorKind::UnexpectedEof.into()),
+            Ok(n) if Instant::now() < end => body.extend_from_slice(&chunk[..n]),
+            Ok(_) => return Err(ErrorKind::TimedOut.into()),
+            Err(e) => later(e, end)?,
+        }
+    }
+    Ok(body)
 }
 
 /// Whether to go on after an error of a stream with timeouts.
@@ -122,8 +188,8 @@ fn later(e: std::io::Error, end: Instant) -> std::io::Result<()> {
 
 #[derive(Debug, PartialEq, Eq)]
 enum Head {
-    /// The bytes before the empty line.
-    Whole(Vec<u8>),
+    /// The bytes before the empty line, and those that came after it.
+    Whole(Vec<u8>, Vec<u8>),
     /// No empty line within [`MAX_HEAD`].
     TooLong(Vec<u8>),
 }
@@ -146,8 +212,9 @@ fn head(stream: &mut impl Read, end: Instant) -> std::io::Result<Head> {
         let from = head.len().saturating_sub(3);
         head.extend_from_slice(&chunk[..n]);
         if let Some(at) = head[from..].windows(4).position(|w| w == b"\r\n\r\n") {
+            let rest = head.split_off(from + at + 4);
             head.truncate(from + at);
-            return Ok(Head::Whole(head));
+            return Ok(Head::Whole(head, rest));
         }
         if head.len() > MAX_HEAD {
             return Ok(Head::TooLong(head));
@@ -173,6 +240,10 @@ fn send(stream: &mut impl Write, answer: &Answer, end: Instant, takes: &dyn Fn()
             }
         }
     }
+    // What TLS still holds.
+    while let Err(e) = stream.flush() {
+        later(e, end)?;
+    }
     Ok(())
 }
 
@@ -187,7 +258,10 @@ mod tests {
     fn heads_are_cut_at_the_empty_line_and_bounded() {
         let end = Instant::now() + Duration::from_secs(60);
         let mut whole: &[u8] = b"GET / HTTP/1.1\r\nHost: x\r\n\r\nbody";
-        assert_eq!(head(&mut whole, end).unwrap(), Head::Whole(b"GET / HTTP/1.1\r\nHost: x".to_vec()));
+        assert_eq!(
+            head(&mut whole, end).unwrap(),
+            Head::Whole(b"GET / HTTP/1.1\r\nHost: x".to_vec(), b"body".to_vec())
+        );
         let long = vec![b'x'; MAX_HEAD + 4096];
         assert!(matches!(head(&mut long.as_slice(), end).unwrap(), Head::TooLong(_)));
         assert!(head(&mut &b"GET / HTTP/1.1\r\n"[..], end).is_err());
@@ -278,6 +352,263 @@ mod tests {
         assert!(got.len() < 8 << 20, "all {} bytes came", got.len());
         assert!(ended(silent, from) < Duration::from_secs(4));
         assert!(dripped.join().unwrap() < Duration::from_secs(4));
+    }
+
+    /// A client of the network: whom it speaks to is no matter here.
+    mod network {
+        use std::net::{IpAddr, SocketAddr, TcpListener, TcpStream};
+        use std::path::PathBuf;
+        use std::sync::{Arc, Mutex};
+
+        use super::super::super::gate::{Gate, Invitation};
+        use super::super::super::site::{Network, Page, Site};
+        use super::super::super::{http, lan};
+        use burgeon::document::{Document, write_project};
+        use rustls::client::danger::{HandshakeSignatureValid, ServerCertVerified, ServerCertVerifier};
+        use rustls::pki_types::{CertificateDer, ServerName, UnixTime};
+        use rustls::{ClientConfig, ClientConnection, DigitallySignedStruct, Error, SignatureScheme};
+        use std::io::{Read, Write};
+        use std::time::{Duration, Instant};
+
+        #[derive(Debug)]
+        struct Anybody;
+
+        impl ServerCertVerifier for Anybody {
+            fn verify_server_cert(
+                &self,
+                _: &CertificateDer<'_>,
+                _: &[CertificateDer<'_>],
+                _: &ServerName<'_>,
+                _: &[u8],
+                _: UnixTime,
+            ) -> Result<ServerCertVerified, Error> {
+                Ok(ServerCertVerified::assertion())
+            }
+
+            fn verify_tls12_signature(
+                &self,
+                _: &[u8],
+                _: &CertificateDer<'_>,
+                _: &DigitallySignedStruct,
+            ) -> Result<HandshakeSignatureValid, Error> {
+                Ok(HandshakeSignatureValid::assertion())
+            }
+
+            fn verify_tls13_signature(
+                &self,
+                _: &[u8],
+                _: &CertificateDer<'_>,
+                _: &DigitallySignedStruct,
+            ) -> Result<HandshakeSignatureValid, Error> {
+                Ok(HandshakeSignatureValid::assertion())
+            }
+
+            fn supported_verify_schemes(&self) -> Vec<SignatureScheme> {
+                rustls::crypto::ring::default_provider().signature_verification_algorithms.supported_schemes()
+            }
+        }
+
+        /// What the terminal showed, of all servers of these tests.
+        static SHOWN: Mutex<Vec<(String, Invitation)>> = Mutex::new(Vec::new());
+
+        fn shown(host: &str, invitation: &Invitation) {
+            SHOWN.lock().unwrap().push((host.to_owned(), invitation.clone()));
+        }
+
+        struct Served {
+            address: SocketAddr,
+            client: Arc<ClientConfig>,
+            project: PathBuf,
+        }
+
+        impl Served {
+            fn new(test: &str) -> Self {
+                let folder = std::env::temp_dir().join(format!("burgeon-lan-{test}-{}", std::process::id()));
+                std::fs::create_dir_all(&folder).unwrap();
+                std::fs::write(folder.join("index.html"), "<!doctype html>page").unwrap();
+                let project = folder.join("my rose.burgeon");
+                std::fs::write(&project, write_project(&Document::default(), "test").unwrap()).unwrap();
+                let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+                let address = listener.local_addr().unwrap();
+                let site = Site::new(Page::Folder(folder), address.port(), Some(project.clone())).unwrap();
+                let tls = lan::tls(IpAddr::from([127, 0, 0, 1])).unwrap();
+                let site =
+                    site.to_network(address.to_string(), Network::new(tls, Gate::new(lan::RANDOM), shown));
+                site.invite();
+                std::thread::spawn(move || http::serve(&listener, &site, http::Limits::NETWORK));
+                let provider = Arc::new(rustls::crypto::ring::default_provider());
+                let client = ClientConfig::builder_with_provider(provider)
+                    .with_safe_default_protocol_versions()
+                    .unwrap()
+                    .dangerous()
+                    .with_custom_certificate_verifier(Arc::new(Anybody))
+                    .with_no_client_auth();
+                Self { address, client: Arc::new(client), project }
+            }
+
+            /// What the terminal shows now.
+            fn invitation(&self) -> Invitation {
+                let host = self.address.to_string();
+                let all = SHOWN.lock().unwrap();
+                all.iter().rev().find(|(h, _)| *h == host).expect("shown").1.clone()
+            }
+
+            fn send(&self, head: &str, body: &[u8]) -> String {
+                let mut tcp = TcpStream::connect(self.address).unwrap();
+                tcp.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
+                let name = ServerName::try_from("127.0.0.1").unwrap();
+                let mut tls = ClientConnection::new(Arc::clone(&self.client), name).unwrap();
+                let mut stream = rustls::Stream::new(&mut tls, &mut tcp);
+                let mut all = Vec::new();
+                let sent = stream
+                    .write_all(head.as_bytes())
+                    .and_then(|()| stream.write_all(body))
+                    .and_then(|()| stream.flush());
+                if sent.is_ok() {
+                    let _ = stream.read_to_end(&mut all);
+                }
+                String::from_utf8_lossy(&all).into_owned()
+            }
+
+            fn ask(&self, line: &str, headers: &str, body: &[u8]) -> String {
+                let own = self.address;
+                let length = if body.is_empty() {
+                    String::new()
+                } else {
+                    format!("Content-Length: {}\r\n", body.len())
+                };
+                self.send(
+                    &format!(
+                        "{line} HTTP/1.1\r\nHost: {own}\r\nOrigin: https://{own}\r\n{length}{headers}\r\n"
+                    ),
+                    body,
+                )
+            }
+
+            /// What a browser keeps that comes in by the link.
+            fn enter(&self) -> String {
+                let answer = self.ask(&format!("GET /?key={}", self.invitation().key), "", b"");
+                assert!(
+                    answer.starts_with("HTTP/1.1 303")
+                        && answer.contains("/?open=opened%2Fmy%20rose.burgeon")
+                );
+                assert!(answer.contains("; Secure; HttpOnly; SameSite=Lax"), "{answer}");
+                let cookie = answer.split("Set-Cookie: ").nth(1).unwrap().split(';').next().unwrap();
+                format!("Cookie: {cookie}\r\n")
+            }
+        }
+
+        fn etag(answer: &str) -> String {
+            answer.split("ETag: ").nth(1).unwrap().split("\r\n").next().unwrap().to_owned()
+        }
+
+        #[test]
+        fn nothing_is_given_without_the_link_or_the_code() {
+            let served = Served::new("door");
+            let first = served.invitation();
+            for (line, status, words) in [
+                ("GET /", "401", "name=code"),
+                ("GET /assets/a-1.js", "401", "come in by"),
+                ("GET /opened/my%20rose.burgeon", "401", "come in by"),
+                ("GET /?key=0123456789abcdef0123456789abcdef", "401", "used already"),
+                ("GET /?key=", "401", "used already"),
+                ("PUT /opened/my%20rose.burgeon", "401", "come in by"),
+            ] {
+                for cookie in
+                    ["", "Cookie: burgeon=\r\n", "Cookie: burgeon=0123456789abcdef0123456789abcdef\r\n"]
+                {
+                    let answer = served.ask(line, cookie, b"");
+                    assert!(
+                        answer.starts_with(&format!("HTTP/1.1 {status}")) && answer.contains(words),
+                        "{line}: {answer}"
+                    );
+                    assert!(!answer.contains("page"), "{line}");
+                }
+            }
+            let cookie = served.enter();
+            assert!(served.ask("GET /", &cookie, b"").ends_with("page"));
+            // The link is used up; the next one is shown, with another code.
+            assert!(served.ask(&format!("GET /?key={}", first.key), "", b"").starts_with("HTTP/1.1 401"));
+            let code = served.invitation().code.unwrap();
+            assert_ne!(Some(&code), first.code.as_ref());
+            let given = format!("code={}+{}", &code[..4], &code[4..]);
+            assert!(served.ask("POST /enter", "", b"code=1").contains("not the code"));
+            assert!(served.ask("POST /enter", "", given.as_bytes()).starts_with("HTTP/1.1 303"));
+            // Another name for this address, and another page.
+            let foreign = format!("GET / HTTP/1.1\r\nHost: evil.example\r\n{cookie}\r\n");
+            assert!(served.send(&foreign, b"").starts_with("HTTP/1.1 421"));
+            let own = served.address;
+            let other =
+                format!("GET / HTTP/1.1\r\nHost: {own}\r\nOrigin: https://evil.example\r\n{cookie}\r\n");
+            assert!(served.send(&other, b"").starts_with("HTTP/1.1 403"));
+            // Without TLS nothing but what to do.
+            let mut plain = TcpStream::connect(own).unwrap();
+            plain.write_all(format!("GET / HTTP/1.1\r\nHost: {own}\r\n{cookie}\r\n").as_bytes()).unwrap();
+            let mut all = String::new();
+            let _ = plain.read_to_string(&mut all);
+            assert!(all.starts_with("HTTP/1.1 400") && all.contains("https://"), "{all}");
+        }
+
+        #[test]
+        fn a_project_is_written_back_whole_and_over_the_version_that_is_known() {
+            let served = Served::new("save");
+            let cookie = served.enter();
+            let path = "/opened/my%20rose.burgeon";
+            let read = served.ask(&format!("GET {path}"), &cookie, b"");
+            let known = |version: &str| format!("{cookie}If-Match: {version}\r\n");
+            let first = etag(&read);
+            let mut other = document_of("another name");
+            let put = |headers: &str, body: &[u8]| served.ask(&format!("PUT {path}"), headers, body);
+            assert!(put(&cookie, &other).starts_with("HTTP/1.1 412"), "a version must be known");
+            assert!(put(&known(&first), b"PK nonsense").starts_with("HTTP/1.1 422"));
+            let saved = put(&known(&first), &other);
+            assert!(saved.starts_with("HTTP/1.1 204"), "{saved}");
+            assert_eq!(std::fs::read(&served.project).unwrap(), other);
+            // What was known before is not the file any more, until it is read again.
+            other = document_of("a third name");
+            assert!(put(&known(&first), &other).starts_with("HTTP/1.1 412"));
+            assert!(put(&known(&etag(&saved)), &other).starts_with("HTTP/1.1 204"));
+            // The desktop wrote meanwhile: that is kept.
+            let desktop = document_of("the desktop's");
+            std::fs::write(&served.project, &desktop).unwrap();
+            assert!(put(&known(&first), &other).starts_with("HTTP/1.1 412"));
+            assert_eq!(std::fs::read(&served.project).unwrap(), desktop);
+            let folder = served.project.parent().unwrap();
+            let left =
+                std::fs::read_dir(folder).unwrap().filter_map(|f| f.unwrap().file_name().into_string().ok());
+            assert!(left.into_iter().all(|name| !name.ends_with(".part")), "no draft is left");
+        }
+
+        fn document_of(name: &str) -> Vec<u8> {
+            let mut editor = burgeon::document::Editor::default();
+            editor.run(burgeon::document::SceneCommand::Rename(name.into())).unwrap();
+            write_project(editor.document(), "test").unwrap()
+        }
+
+        #[test]
+        fn a_thousand_requests_of_a_stranger_keep_nobody_who_is_in_from_working() {
+            let served = Served::new("flood");
+            let cookie = served.enter();
+            let from = Instant::now();
+            let answered = std::thread::scope(|scope| {
+                let many: Vec<_> = (0..4)
+                    .map(|_| {
+                        scope.spawn(|| {
+                            (0..250)
+                                .filter(|_| served.ask("GET /", "", b"").starts_with("HTTP/1.1 401"))
+                                .count()
+                        })
+                    })
+                    .collect();
+                many.into_iter().map(|t| t.join().unwrap()).sum::<usize>()
+            });
+            // So many at once, and ten a second after that.
+            let most = 61.0 + 10.0 * from.elapsed().as_secs_f64();
+            assert!((answered as f64) < most, "{answered} of 1000 were answered");
+            // As soon as there is room for one more of this peer.
+            std::thread::sleep(Duration::from_secs(1));
+            assert!(served.ask("GET /", &cookie, b"").ends_with("page"), "after {:?}", from.elapsed());
+        }
     }
 
     #[test]

@@ -1,10 +1,13 @@
-//! `burgeon studio`: serves the Studio to this machine's own browser, and to nobody else.
+//! `burgeon studio`: serves the Studio to this machine's own browser, and to nobody else; with `--lan` to browsers of the
+//! network that were let in.
 
+mod gate;
 mod http;
+mod lan;
 mod request;
 mod site;
 
-use std::net::{Ipv4Addr, TcpListener};
+use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -12,7 +15,8 @@ use crate::args::StudioArgs;
 use crate::failure::{Failure, Outcome};
 use crate::files::{self, Kind};
 use crate::say;
-use site::{Files, Page, Site};
+use gate::Gate;
+use site::{Files, Network, Page, Site};
 
 /// The page as it was when the program was built; empty where it had not been built then.
 const PAGE: Files = include!(concat!(env!("OUT_DIR"), "/page.rs"));
@@ -25,9 +29,13 @@ const NEXT: u16 = 8;
 pub(crate) fn studio(args: &StudioArgs) -> Outcome {
     let page = page(args.folder.as_deref(), PAGE)?;
     let opened = args.file.as_deref().map(checked).transpose()?;
-    let listener = listen(args.port)?;
+    let address = args.lan.as_deref().map(lan::address).transpose()?;
+    let listener = listen(address.unwrap_or(Ipv4Addr::LOCALHOST.into()), args.port)?;
     let port = listener.local_addr().map_err(|e| Failure::Bad(format!("no address: {e}")))?.port();
     let site = Site::new(page, port, opened.clone())?;
+    if let Some(address) = address {
+        return to_network(&listener, address, site, opened.as_deref());
+    }
     let mut url = format!("http://127.0.0.1:{port}/");
     if let Some(name) = opened.as_deref().and_then(Path::file_name) {
         url += &format!("?open=opened%2F{}", site::escaped(&name.to_string_lossy()));
@@ -41,6 +49,31 @@ pub(crate) fn studio(args: &StudioArgs) -> Outcome {
     Ok(())
 }
 
+/// Serves the network until the process ends.
+fn to_network(listener: &TcpListener, address: IpAddr, site: Site, opened: Option<&Path>) -> Outcome {
+    let own = listener.local_addr().map_err(|e| Failure::Bad(format!("no address: {e}")))?;
+    let host = SocketAddr::new(address, own.port()).to_string();
+    let network = Network::new(lan::tls(address)?, Gate::new(lan::RANDOM), lan::invite);
+    let site = site.to_network(host.clone(), network);
+    say::line(&format!("The Studio is at https://{host}/ for the browsers of your network that you let in."));
+    say::line(
+        "Browsers warn that they do not know the certificate: this program made it just now, for this address.",
+    );
+    say::line("Choose \"Advanced\" and go on.");
+    match opened {
+        Some(path) if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("burgeon")) => {
+            say::line(&format!("What they change is written to {}.", path.display()));
+        }
+        _ => say::line(
+            "What they do stays in their browser; open a .burgeon project to have it written to a file.",
+        ),
+    }
+    say::line("Stop it with Ctrl-C.");
+    site.invite();
+    http::serve(listener, &site, http::Limits::NETWORK);
+    Ok(())
+}
+
 /// The file to open must be one that is read; the page then says what is wrong inside.
 fn checked(path: &Path) -> Outcome<PathBuf> {
     match files::open(path)?.1 {
@@ -50,14 +83,14 @@ fn checked(path: &Path) -> Outcome<PathBuf> {
     }
 }
 
-fn listen(asked: Option<u16>) -> Outcome<TcpListener> {
-    let bind = |port: u16| TcpListener::bind((Ipv4Addr::LOCALHOST, port));
+fn listen(address: IpAddr, asked: Option<u16>) -> Outcome<TcpListener> {
+    let bind = |port: u16| TcpListener::bind((address, port));
     if let Some(port) = asked {
         let advice = "choose another with --port";
         return bind(port).map_err(|e| Failure::Bad(format!("port {port} cannot be used ({e}); {advice}")));
     }
     let found = (PORT..=PORT + NEXT).chain([0]).find_map(|port| bind(port).ok());
-    found.ok_or_else(|| Failure::Bad("no port of 127.0.0.1 can be used".into()))
+    found.ok_or_else(|| Failure::Bad(format!("no port of {address} can be used")))
 }
 
 /// The page that is served: of the folder that is named, else the one in the program.

@@ -1,6 +1,6 @@
 //! What a request asks for, and whether it may: a pure function of its head, tested and fuzzed without a network.
 //!
-//! `bytes of the head, our own addresses -> the file that is asked for | why it is refused`
+//! `bytes of the head, our own addresses -> what is asked for | why it is refused`
 //!
 //! Uses nothing but the standard library: the fuzz target `request` takes this file as it is.
 
@@ -14,13 +14,57 @@ pub(crate) enum Target {
     File(String),
     /// The file that the Studio was opened with, by its name.
     Opened(String),
+    /// The door at which a code is given; of a server of the network only.
+    Door,
 }
 
-/// What a request with this head (up to and without the empty line) asks for. `hosts`: our own, with the port.
+/// What is done with it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Method {
+    /// GET or HEAD.
+    Read,
+    /// POST, at the door.
+    Enter,
+    /// PUT, of the file that was opened.
+    Save,
+}
+
+/// A request that is not refused.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Asked {
+    pub(crate) method: Method,
+    pub(crate) target: Target,
+    /// Bytes that follow the head.
+    pub(crate) length: usize,
+    /// What the browser was given when it came in.
+    pub(crate) cookie: Option<String>,
+    /// The key of a link.
+    pub(crate) key: Option<String>,
+    /// The version of the file that is to be replaced.
+    pub(crate) known: Option<String>,
+}
+
+/// What a server answers to.
+#[derive(Clone, Debug)]
+pub(crate) struct Addresses {
+    /// `http` of this machine alone, `https` of its network.
+    pub(crate) scheme: &'static str,
+    /// Our own hosts, with the port.
+    pub(crate) hosts: Vec<String>,
+    /// Most bytes that are taken in; 0 for a server that takes nothing.
+    pub(crate) takes: usize,
+}
+
+/// The name under which a browser keeps that it came in.
+pub(crate) const COOKIE: &str = "burgeon";
+/// Longest code with its name that is given at the door.
+const DOOR_BYTES: usize = 64;
+
+/// What a request with this head (up to and without the empty line) asks for.
 ///
 /// # Errors
 /// The status and the words of the refusal.
-pub(crate) fn asked(head: &[u8], hosts: &[String]) -> Result<Target, (u16, &'static str)> {
+pub(crate) fn asked(head: &[u8], own: &Addresses) -> Result<Asked, (u16, &'static str)> {
     let text = str::from_utf8(head).ok().filter(|t| !t.contains('\0'));
     let mut lines = text.ok_or((400, "the request is no text"))?.split("\r\n");
     let mut words = lines.next().unwrap_or_default().split(' ');
@@ -33,6 +77,7 @@ pub(crate) fn asked(head: &[u8], hosts: &[String]) -> Result<Target, (u16, &'sta
         return Err((505, "only HTTP/1.1 is spoken here"));
     }
     let (mut host, mut origin, mut site, mut mode) = (None, None, None, None);
+    let (mut length, mut cookies, mut known) = (None, None, None);
     for line in lines {
         let (name, value) = line.split_once(':').ok_or((400, "a header is broken"))?;
         let value = value.trim();
@@ -41,7 +86,12 @@ pub(crate) fn asked(head: &[u8], hosts: &[String]) -> Result<Target, (u16, &'sta
             "origin" => &mut origin,
             "sec-fetch-site" => &mut site,
             "sec-fetch-mode" => &mut mode,
-            "content-length" if value != "0" => return Err((413, "nothing is taken in here")),
+            "content-length" if own.takes == 0 && value != "0" => {
+                return Err((413, "nothing is taken in here"));
+            }
+            "content-length" => &mut length,
+            "cookie" => &mut cookies,
+            "if-match" => &mut known,
             "transfer-encoding" | "upgrade" => return Err((413, "nothing is taken in here")),
             _ => continue,
         };
@@ -50,27 +100,47 @@ pub(crate) fn asked(head: &[u8], hosts: &[String]) -> Result<Target, (u16, &'sta
         }
     }
     // Another name for this address would let a foreign page speak to us (DNS rebinding).
-    let ours = |h: &str| hosts.iter().any(|own| own == h);
+    let ours = |h: &str| own.hosts.iter().any(|own| own == h);
     if !host.is_some_and(ours) {
         return Err((421, "this is the Studio of another address"));
     }
-    let own_origin = |o: &str| o.strip_prefix("http://").is_some_and(ours);
+    let own_origin =
+        |o: &str| o.strip_prefix(own.scheme).and_then(|o| o.strip_prefix("://")).is_some_and(ours);
     let foreign = site.is_some_and(|s| matches!(s, "cross-site" | "same-site")) && mode != Some("navigate");
     if foreign || origin.is_some_and(|o| !own_origin(o)) {
         return Err((403, "another page may not ask here"));
     }
-    if !matches!(method, "GET" | "HEAD") {
-        return Err((405, "files are only read here"));
+    let target_is = target_of(target, own.takes > 0);
+    let (method, most) = match (method, &target_is) {
+        ("GET" | "HEAD", _) => (Method::Read, 0),
+        ("POST", Some(Target::Door)) => (Method::Enter, DOOR_BYTES),
+        // A change comes from our own page, which says so.
+        ("PUT", Some(Target::Opened(_))) if own.takes > 0 && origin.is_some() => (Method::Save, own.takes),
+        _ => return Err((405, "files are only read here")),
+    };
+    let length =
+        length.map_or(Some(0), |l| l.parse::<usize>().ok().filter(|_| l.bytes().all(|b| b.is_ascii_digit())));
+    let length = length.ok_or((400, "the length is no number"))?;
+    if length > most {
+        return Err((413, "more than is taken in here"));
     }
-    target_of(target).ok_or((404, NO_FILE))
+    let target_is = target_is.ok_or((404, NO_FILE))?;
+    let pairs = cookies.unwrap_or_default().split(';').filter_map(|pair| pair.trim().split_once('='));
+    let cookie = pairs.filter(|(name, _)| *name == COOKIE).map(|(_, value)| value.to_owned()).next();
+    let query = target.split_once('?').map_or("", |(_, query)| query).split('#').next().unwrap_or_default();
+    let key = query.split('&').find_map(|pair| pair.strip_prefix("key=")).map(str::to_owned);
+    Ok(Asked { method, target: target_is, length, cookie, key, known: known.map(str::to_owned) })
 }
 
 /// What a target names.
-fn target_of(target: &str) -> Option<Target> {
+fn target_of(target: &str, door: bool) -> Option<Target> {
     let path = target.split(['?', '#']).next()?.strip_prefix('/')?;
     let path = unescaped(path)?;
     if let Some(name) = path.strip_prefix("opened/") {
         return Some(Target::Opened(name.into()));
+    }
+    if door && path == "enter" {
+        return Some(Target::Door);
     }
     let path = if path.is_empty() { "index.html" } else { &path };
     let plain = |part: &str| {
@@ -103,22 +173,24 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn hosts() -> [String; 2] {
-        ["127.0.0.1:7734", "localhost:7734"].map(String::from)
+    fn hosts() -> Addresses {
+        let hosts = ["127.0.0.1:7734", "localhost:7734"].map(String::from).to_vec();
+        Addresses { scheme: "http", hosts, takes: 0 }
     }
 
     /// What must hold of any head that is not refused, told by reading it in another way.
     fn sound(head: &[u8]) {
-        let Ok(target) = asked(head, &hosts()) else { return };
+        let Ok(Asked { target, method, length, .. }) = asked(head, &hosts()) else { return };
+        assert!(method == Method::Read && length == 0 && target != Target::Door);
         let text = String::from_utf8(head.to_vec()).expect("text").to_lowercase();
         let given = |name: &str| -> Vec<String> {
             let of = text.split("\r\n").skip(1).filter_map(|l| l.strip_prefix(name)?.strip_prefix(':'));
             of.map(|v| v.trim().to_owned()).collect()
         };
         assert!(text.starts_with("get /") || text.starts_with("head /"), "{text}");
-        assert!(matches!(given("host").as_slice(), [own] if hosts().contains(own)), "{text}");
+        assert!(matches!(given("host").as_slice(), [own] if hosts().hosts.contains(own)), "{text}");
         for origin in given("origin") {
-            assert!(hosts().iter().any(|own| origin == format!("http://{own}")), "{text}");
+            assert!(hosts().hosts.iter().any(|own| origin == format!("http://{own}")), "{text}");
         }
         assert!(given("transfer-encoding").is_empty() && given("content-length").iter().all(|l| l == "0"));
         if let Target::File(path) = target {
@@ -171,6 +243,37 @@ mod tests {
         let head =
             b"GET /assets/a-1.js?v=2 HTTP/1.1\r\nHost: localhost:7734\r\nOrigin: http://localhost:7734";
         sound(head);
-        assert_eq!(asked(head, &hosts()), Ok(Target::File("assets/a-1.js".into())));
+        let plain = asked(head, &hosts()).map(|a| (a.method, a.target));
+        assert_eq!(plain, Ok((Method::Read, Target::File("assets/a-1.js".into()))));
+    }
+
+    #[test]
+    fn a_server_of_the_network_takes_codes_and_the_file_that_was_opened_and_no_more() {
+        let own = Addresses { scheme: "https", hosts: vec!["192.0.2.7:7734".into()], takes: 1000 };
+        let ask = |line: &str, headers: &str| {
+            asked(format!("{line} HTTP/1.1\r\nHost: 192.0.2.7:7734{headers}").as_bytes(), &own)
+        };
+        let ours = "\r\nOrigin: https://192.0.2.7:7734";
+        let link = ask("GET /?open=opened%2Fa.burgeon&key=abc", "\r\nCookie: a=b; burgeon=xyz").unwrap();
+        assert_eq!((link.key.as_deref(), link.cookie.as_deref()), (Some("abc"), Some("xyz")));
+        let door = ask("POST /enter", &format!("{ours}\r\nContent-Length: 13")).unwrap();
+        assert_eq!((door.method, door.target, door.length), (Method::Enter, Target::Door, 13));
+        let saved = format!("{ours}\r\nContent-Length: 1000\r\nIf-Match: \"1\"");
+        let saved = ask("PUT /opened/a.burgeon", &saved).unwrap();
+        assert_eq!((saved.method, saved.length, saved.known.as_deref()), (Method::Save, 1000, Some("\"1\"")));
+        for (line, headers, status) in [
+            ("PUT /opened/a.burgeon", "\r\nContent-Length: 5".to_owned(), 405),
+            ("PUT /opened/a.burgeon", format!("{ours}\r\nContent-Length: 1001"), 413),
+            ("PUT /opened/a.burgeon", format!("{ours}\r\nContent-Length: +5"), 400),
+            ("PUT /opened/a.burgeon", format!("{ours}\r\nContent-Length: 5\r\nContent-Length: 6"), 400),
+            ("PUT /index.html", format!("{ours}\r\nContent-Length: 5"), 405),
+            ("POST /enter", format!("{ours}\r\nContent-Length: 65"), 413),
+            ("POST /enter", "\r\nOrigin: https://evil.example\r\nContent-Length: 13".into(), 403),
+            ("POST /enter", "\r\nOrigin: http://192.0.2.7:7734\r\nContent-Length: 13".into(), 403),
+            ("GET /", "\r\nContent-Length: 5".into(), 413),
+            ("POST /", ours.into(), 405),
+        ] {
+            assert_eq!(ask(line, &headers).map_err(|e| e.0), Err(status), "{line}{headers}");
+        }
     }
 }

@@ -1,11 +1,22 @@
-//! What is answered to a request: the files of the page, and the file that the Studio was opened with.
+//! What is answered to a request: the files of the page, and the file that the Studio was opened with. To the network
+//! only to browsers that came in, and a project that was opened is written back.
 //!
 //! `request -> the file, if it is one of the page -> status, headers, bytes`
 
 use std::borrow::Cow;
+use std::io::Write as _;
+use std::net::IpAddr;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
 
-use super::request::{NO_FILE, Target, asked};
+use burgeon::document::{MAX_PROJECT_BYTES, read_project};
+use rustls::ServerConfig;
+use sha2::{Digest as _, Sha256};
+
+use super::gate::{Entry, Gate, Invitation, Pace, Peers};
+use super::request::{Addresses, Asked, COOKIE, Method, NO_FILE, Target, asked};
+use crate::draft::Draft;
 use crate::failure::{Failure, Outcome};
 
 /// Nothing but the page's own files; WebAssembly may be compiled, data of the page may be shown as pictures.
@@ -42,12 +53,46 @@ pub(crate) enum Page {
     Inside(Files),
 }
 
+/// What strangers may ask for, and how often codes may be tried.
+const STRANGERS: Pace = Pace { at_once: 60.0, per_second: 10.0 };
+const TRIES: Pace = Pace { at_once: 5.0, per_second: 0.5 };
+
 /// A page that is served on one port of this machine.
 #[derive(Debug)]
 pub(crate) struct Site {
     page: Page,
-    hosts: [String; 2],
+    own: Addresses,
     opened: Option<PathBuf>,
+    network: Option<Network>,
+}
+
+/// What a server of the network has besides.
+#[derive(Debug)]
+pub(crate) struct Network {
+    pub(crate) tls: Arc<ServerConfig>,
+    door: Mutex<Door>,
+    /// One change of the file at a time.
+    writing: Mutex<()>,
+    /// Says how the next browser comes in.
+    invite: fn(&str, &Invitation),
+}
+
+#[derive(Debug)]
+struct Door {
+    gate: Gate,
+    strangers: Peers,
+    tries: Peers,
+}
+
+impl Network {
+    pub(crate) fn new(tls: Arc<ServerConfig>, gate: Gate, invite: fn(&str, &Invitation)) -> Self {
+        let door = Door { gate, strangers: Peers::default(), tries: Peers::default() };
+        Self { tls, door: Mutex::new(door), writing: Mutex::default(), invite }
+    }
+
+    fn door(&self) -> MutexGuard<'_, Door> {
+        self.door.lock().unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
 /// Status line, headers with the empty line, and the body (none for HEAD).
@@ -74,24 +119,159 @@ impl Site {
             }
             inside @ Page::Inside(_) => inside,
         };
-        Ok(Self { page, hosts: ["127.0.0.1", "localhost"].map(|h| format!("{h}:{port}")), opened })
+        let hosts = ["127.0.0.1", "localhost"].map(|h| format!("{h}:{port}")).to_vec();
+        Ok(Self { page, own: Addresses { scheme: "http", hosts, takes: 0 }, opened, network: None })
     }
 
-    /// The answer to a request whose head (up to and without the empty line) is `head`.
-    pub(crate) fn answer(&self, head: &[u8]) -> Answer {
-        let answer = match asked(head, &self.hosts) {
-            Ok(target) => self.file(&target).unwrap_or_else(|| refusal(404, NO_FILE)),
-            Err((status, why)) => refusal(status, why),
+    /// The same page for the network, under this host and no other.
+    pub(crate) fn to_network(self, host: String, network: Network) -> Self {
+        let own = Addresses { scheme: "https", hosts: vec![host], takes: MAX_PROJECT_BYTES };
+        Self { own, network: Some(network), ..self }
+    }
+
+    pub(crate) fn network(&self) -> Option<&Network> {
+        self.network.as_ref()
+    }
+
+    /// Says how the next browser comes in.
+    pub(crate) fn invite(&self) {
+        if let Some(network) = &self.network {
+            (network.invite)(&self.own.hosts[0], network.door().gate.invitation());
+        }
+    }
+
+    /// What a request with this head asks for, or the answer that refuses it before its body is read.
+    pub(crate) fn asked(&self, head: &[u8], peer: IpAddr) -> Result<Asked, Answer> {
+        let asked = asked(head, &self.own).map_err(|(status, why)| refusal(status, why).to(head))?;
+        self.admit(&asked, peer).map_or(Ok(asked), |answer| Err(answer.to(head)))
+    }
+
+    /// The answer to a request that may be answered, whose body was read.
+    pub(crate) fn answer(&self, head: &[u8], asked: &Asked, body: &[u8], peer: IpAddr) -> Answer {
+        let answer = match asked.method {
+            Method::Enter => self.enter(body, peer),
+            Method::Save => self.save(asked, body),
+            Method::Read => self.file(&asked.target).unwrap_or_else(|| refusal(404, NO_FILE)),
         };
         answer.to(head)
     }
 
+    /// What a stranger is told; nothing to a browser that is in.
+    fn admit(&self, asked: &Asked, peer: IpAddr) -> Option<Answer> {
+        let mut door = self.network.as_ref()?.door();
+        if asked.cookie.as_deref().is_some_and(|c| door.gate.knows(c)) {
+            return None;
+        }
+        if !door.strangers.may(peer, STRANGERS, Instant::now()) {
+            return Some(refusal(429, "too many requests; wait a little"));
+        }
+        if let Some(key) = asked.key.as_deref().filter(|_| asked.method == Method::Read) {
+            if let Entry::In(cookie) = door.gate.by_key(key) {
+                drop(door);
+                return Some(self.welcome(&cookie, peer));
+            }
+            return Some(doorway(
+                "This link was used already, or is another one. Take the one that the terminal shows now.",
+            ));
+        }
+        match (asked.method, &asked.target) {
+            (Method::Enter, _) => None,
+            (Method::Read, Target::Door) => Some(doorway("")),
+            (Method::Read, Target::File(path)) if path == "index.html" => Some(doorway("")),
+            _ => Some(refusal(401, "come in by the link or the code that the terminal shows")),
+        }
+    }
+
+    /// The answer to a code.
+    fn enter(&self, body: &[u8], peer: IpAddr) -> Answer {
+        let Some(network) = &self.network else { return refusal(404, NO_FILE) };
+        let mut door = network.door();
+        if !door.tries.may(peer, TRIES, Instant::now()) {
+            return refusal(429, "too many tries; wait a minute");
+        }
+        let code = str::from_utf8(body).ok().and_then(|text| text.strip_prefix("code="));
+        let entry = code.map_or(Entry::Wrong, |code| door.gate.by_code(code));
+        drop(door);
+        match entry {
+            Entry::In(cookie) => self.welcome(&cookie, peer),
+            Entry::Wrong => doorway("This is not the code that the terminal shows now."),
+            Entry::Renewed => {
+                self.invite();
+                doorway("This is not the code, and the code is another one now: look at the terminal.")
+            }
+        }
+    }
+
+    /// A browser is in: it keeps a cookie and goes to the page.
+    fn welcome(&self, cookie: &str, peer: IpAddr) -> Answer {
+        crate::say::line(&format!("A browser at {peer} is in."));
+        self.invite();
+        let open = self.opened.as_deref().and_then(Path::file_name);
+        let to =
+            open.map_or("/".into(), |name| format!("/?open=opened%2F{}", escaped(&name.to_string_lossy())));
+        let head = format!(
+            "HTTP/1.1 303 In\r\nLocation: {to}\r\nSet-Cookie: {COOKIE}={cookie}; Path=/; Secure; HttpOnly; SameSite=Lax\r\n\
+             Content-Length: 0\r\nCache-Control: no-store\r\nContent-Security-Policy: default-src 'none'\r\n{ALWAYS}\r\n"
+        );
+        Answer { status: 303, head, body: Cow::default() }
+    }
+
+    /// The file that was opened, if it has that name.
+    fn is_opened(&self, name: &str) -> Option<&Path> {
+        self.opened.as_deref().filter(|o| o.file_name().is_some_and(|n| n == name))
+    }
+
+    /// Writes the project that was opened anew: whole or not at all, and only over the version that the browser knows.
+    fn save(&self, asked: &Asked, body: &[u8]) -> Answer {
+        let Target::Opened(name) = &asked.target else { return refusal(404, NO_FILE) };
+        let (Some(network), Some(path)) = (&self.network, self.is_opened(name).filter(|p| is_project(p)))
+        else {
+            return refusal(404, "there is no project that is written here");
+        };
+        if let Err(e) = read_project(body) {
+            return refusal(422, &e.to_string());
+        }
+        let _one = network.writing.lock().unwrap_or_else(PoisonError::into_inner);
+        let now = std::fs::read(path).map_or(String::new(), |bytes| version(&bytes));
+        if asked.known.as_ref() != Some(&now) {
+            let mut answer = refusal(412, "the file was changed by another program since it was opened here");
+            // A page that was closed while it wrote knows its own work by this.
+            answer.head = answer.head.replace("Cache-Control:", &format!("ETag: {now}\r\nCache-Control:"));
+            return answer;
+        }
+        let folder = path.parent().unwrap_or(Path::new("."));
+        let written = Draft::create(folder).and_then(|(mut draft, mut file)| {
+            file.write_all(body)?;
+            file.sync_all()?;
+            drop(file);
+            draft.put(path)
+        });
+        match written {
+            Ok(()) => {
+                let head = format!(
+                    "HTTP/1.1 204 Saved\r\nETag: {}\r\nCache-Control: no-store\r\n{ALWAYS}\r\n",
+                    version(body)
+                );
+                Answer { status: 204, head, body: Cow::default() }
+            }
+            Err(e) => refusal(507, &format!("the file cannot be written: {e}")),
+        }
+    }
+
     fn file(&self, target: &Target) -> Option<Answer> {
         match target {
+            Target::Door => Some(doorway("")),
             Target::Opened(name) => {
-                let opened =
-                    self.opened.as_ref().filter(|o| o.file_name().is_some_and(|n| n == name.as_str()))?;
-                Some(given("application/octet-stream", false, std::fs::read(opened).ok()?.into()))
+                let path = self.is_opened(name)?;
+                let bytes = std::fs::read(path).ok()?;
+                let mut answer = given("application/octet-stream", false, Cow::default());
+                // Only a version that is known can be replaced.
+                let version = (self.network.is_some() && is_project(path)).then(|| version(&bytes));
+                let more = version.map_or(String::new(), |v| format!("ETag: {v}\r\n"));
+                answer.head = answer
+                    .head
+                    .replace("Content-Length: 0\r\n", &format!("Content-Length: {}\r\n{more}", bytes.len()));
+                Some(Answer { body: bytes.into(), ..answer })
             }
             Target::File(path) => {
                 let extension = Path::new(path).extension()?.to_str()?;
@@ -123,6 +303,38 @@ fn given(kind: &str, forever: bool, body: Cow<'static, [u8]>) -> Answer {
         body.len()
     );
     Answer { status: 200, head, body }
+}
+
+fn is_project(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("burgeon"))
+}
+
+/// What a browser knows a file by: the SHA-256 of its bytes.
+fn version(bytes: &[u8]) -> String {
+    let digits: String = Sha256::digest(bytes).iter().map(|b| format!("{b:02x}")).collect();
+    format!("\"{digits}\"")
+}
+
+/// The page at which a code is given.
+fn doorway(why: &str) -> Answer {
+    let body = format!(
+        "<!doctype html><html lang=en><meta charset=utf-8><meta name=viewport content=\"width=device-width\">\
+         <title>Burgeon Studio</title><style>body{{font:1.3rem system-ui;margin:15vh auto;max-width:22rem;padding:1rem}}\
+         input,button{{font:inherit;padding:.6em;width:100%;box-sizing:border-box;margin:.4em 0}}</style>\
+         <h1>Burgeon Studio</h1><p role=alert>{why}</p><form method=post action=/enter>\
+         <label>The code that the terminal shows · 终端显示的代码\
+         <input name=code inputmode=numeric autocomplete=off autofocus maxlength=12></label>\
+         <button>Come in · 进入</button></form></html>\n"
+    );
+    let head = format!(
+        "HTTP/1.1 401 Code\r\nContent-Type: text/html; charset=utf-8\r\nContent-Length: {}\r\nCache-Control: no-store\r\n\
+         Content-Security-Policy: default-src 'none'; style-src 'unsafe-inline'; form-action 'self'; \
+         frame-ancestors 'none'; base-uri 'none'\r\n{}\r\n",
+        body.len(),
+        // Without a referrer a form's origin would be "null".
+        ALWAYS.replace("no-referrer", "same-origin")
+    );
+    Answer { status: 401, head, body: body.into_bytes().into() }
 }
 
 /// An answer that gives nothing but a reason.
@@ -174,8 +386,17 @@ mod tests {
         (Site::new(Page::Folder(root), 7734, Some(base.join("my rose.svg"))).unwrap(), base)
     }
 
+    /// The answer to a head without a body.
+    fn plain(site: &Site, head: &[u8]) -> Answer {
+        let peer = IpAddr::from([127, 0, 0, 1]);
+        match site.asked(head, peer) {
+            Ok(asked) => site.answer(head, &asked, b"", peer),
+            Err(answer) => answer,
+        }
+    }
+
     fn get(site: &Site, line: &str, headers: &str) -> Answer {
-        site.answer(format!("{line}\r\nHost: 127.0.0.1:7734{headers}").as_bytes())
+        plain(site, format!("{line}\r\nHost: 127.0.0.1:7734{headers}").as_bytes())
     }
 
     #[test]
@@ -232,7 +453,7 @@ mod tests {
             assert_eq!(get(&inside, line, ""), get(&folder, line, ""), "{line}");
         }
         assert_eq!(get(&inside, "GET / HTTP/1.1", "\r\nOrigin: http://evil.example").status, 403);
-        assert_eq!(inside.answer(b"GET / HTTP/1.1\r\nHost: evil.example").status, 421);
+        assert_eq!(plain(&inside, b"GET / HTTP/1.1\r\nHost: evil.example").status, 421);
         fs::remove_dir_all(base).unwrap();
     }
 
@@ -275,11 +496,11 @@ mod tests {
         for host in
             ["evil.example", "127.0.0.1", "127.0.0.1:80", "127.0.0.1:7734.evil.example", "[::1]:7734", ""]
         {
-            let answer = site.answer(format!("GET / HTTP/1.1\r\nHost: {host}").as_bytes());
+            let answer = plain(&site, format!("GET / HTTP/1.1\r\nHost: {host}").as_bytes());
             assert_eq!(answer.status, 421, "{host}");
         }
-        assert_eq!(site.answer(b"GET / HTTP/1.1").status, 421);
-        assert_eq!(site.answer(b"\xff\xfe").status, 400);
+        assert_eq!(plain(&site, b"GET / HTTP/1.1").status, 421);
+        assert_eq!(plain(&site, b"\xff\xfe").status, 400);
         // A link from elsewhere may bring a person here.
         let link = get(&site, "GET / HTTP/1.1", "\r\nSec-Fetch-Site: cross-site\r\nSec-Fetch-Mode: navigate");
         assert_eq!(link.status, 200);
@@ -301,12 +522,12 @@ mod tests {
         ) {
             let (site, base) = site("fuzz");
             let mut head = format!("GET {target} HTTP/1.1\r\nHost: 127.0.0.1:7734").into_bytes();
-            let answer = site.answer(&head);
+            let answer = plain(&site, &head);
             prop_assert!(!answer.body.windows(6).any(|w| w == b"secret"));
             head.extend(&junk);
-            let answer = site.answer(&head);
+            let answer = plain(&site, &head);
             prop_assert!(!answer.body.windows(6).any(|w| w == b"secret"));
-            site.answer(&junk);
+            plain(&site, &junk);
             let _ = fs::remove_dir_all(base);
         }
     }

@@ -187,6 +187,12 @@ export const en = {
   'status.saving': 'Saving…',
   'status.saved': 'Saved in this browser',
   'status.failed': 'Not saved: {why}',
+  'file.written': 'Written to {name}',
+  'file.writing': 'Writing to {name}…',
+  'file.left': '{name} was changed elsewhere',
+  'file.away': '{name} is out of reach',
+  'file.left.note':
+    '{name} was changed by another program, so it is not written to from here any more. Your work is in this browser; save it as a file to keep both.',
   'status.readonly': 'Read only',
   'failed.full': 'the browser’s storage is full',
   'failed.shut': 'this browser keeps nothing, as in private mode',

@@ -1,0 +1,232 @@
+//! Who may come in from the network: a link and a code that work once, and what a browser was given for them.
+//!
+//! Guaranteed: without the key of the link, the code, or what was given for one of them, nothing is said but that it is
+//! needed; each works once; guesses are few. Nothing here reads a clock or a random number: both are given.
+
+use std::collections::BTreeMap;
+use std::net::IpAddr;
+use std::time::{Duration, Instant};
+
+/// Digits of a code.
+const DIGITS: usize = 8;
+/// Wrong codes until a new one is shown, and until codes are no longer taken.
+const WRONG: u32 = 5;
+const MOST_WRONG: u32 = 25;
+/// Browsers that are in at one time; the first goes when one more comes.
+const BROWSERS: usize = 16;
+
+/// Random bytes.
+pub(crate) type Random = fn(&mut [u8]);
+
+/// The key of a link, and a code: one is enough.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Invitation {
+    /// 32 hexadecimal digits.
+    pub(crate) key: String,
+    /// 8 digits; nothing once too many wrong ones were given.
+    pub(crate) code: Option<String>,
+}
+
+/// What became of a try to come in.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Entry {
+    /// In, with what the browser keeps; the next browser needs another invitation.
+    In(String),
+    /// The code is another.
+    Wrong,
+    /// The code is another, and was given too often: there is a new one, or none any more.
+    Renewed,
+}
+
+/// The state of the door.
+#[derive(Debug)]
+pub(crate) struct Gate {
+    random: Random,
+    invitation: Invitation,
+    wrong: u32,
+    browsers: Vec<String>,
+}
+
+impl Gate {
+    pub(crate) fn new(random: Random) -> Self {
+        let invitation = Invitation { key: String::new(), code: None };
+        let mut gate = Self { random, invitation, wrong: 0, browsers: Vec::new() };
+        gate.renew();
+        gate
+    }
+
+    /// What lets the next browser in.
+    pub(crate) fn invitation(&self) -> &Invitation {
+        &self.invitation
+    }
+
+    /// Whether a browser is in.
+    pub(crate) fn knows(&self, cookie: &str) -> bool {
+        self.browsers.iter().fold(false, |found, own| found | same(own, cookie))
+    }
+
+    /// With the key of the link.
+    pub(crate) fn by_key(&mut self, key: &str) -> Entry {
+        if same(&self.invitation.key, key) { self.enter() } else { Entry::Wrong }
+    }
+
+    /// With the code; spaces and dashes in it are no matter.
+    pub(crate) fn by_code(&mut self, code: &str) -> Entry {
+        let digits: String = code.chars().filter(|c| !matches!(c, ' ' | '-' | '+')).collect();
+        let right = self.invitation.code.as_ref().is_some_and(|own| same(own, &digits));
+        if right {
+            return self.enter();
+        }
+        self.wrong += 1;
+        if self.invitation.code.is_none() || !self.wrong.is_multiple_of(WRONG) {
+            return Entry::Wrong;
+        }
+        self.renew();
+        Entry::Renewed
+    }
+
+    fn enter(&mut self) -> Entry {
+        let own = self.secret();
+        if self.browsers.len() >= BROWSERS {
+            self.browsers.remove(0);
+        }
+        self.browsers.push(own.clone());
+        self.renew();
+        Entry::In(own)
+    }
+
+    fn renew(&mut self) {
+        let mut bytes = [0; 8];
+        (self.random)(&mut bytes);
+        // 2^64 is so far above 10^8 that no code is likelier than another by more than one part in 10^11.
+        let code = format!("{:0DIGITS$}", u64::from_le_bytes(bytes) % 10_u64.pow(8));
+        self.invitation = Invitation { key: self.secret(), code: (self.wrong < MOST_WRONG).then_some(code) };
+    }
+
+    fn secret(&self) -> String {
+        let mut bytes = [0; 16];
+        (self.random)(&mut bytes);
+        format!("{:032x}", u128::from_le_bytes(bytes))
+    }
+}
+
+/// Whether two secrets are the same, in a time that does not say where they differ.
+fn same(own: &str, given: &str) -> bool {
+    let differ = own.bytes().zip(given.bytes()).fold(0, |all, (a, b)| all | (a ^ b));
+    own.len() == given.len() && differ == 0
+}
+
+/// How often something may happen: so many at once, and so many a second after that.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pace {
+    pub(crate) at_once: f64,
+    pub(crate) per_second: f64,
+}
+
+/// What is left of a [`Pace`] at a moment.
+#[derive(Clone, Copy, Debug)]
+struct Left {
+    count: f64,
+    at: Instant,
+}
+
+/// Counts what each peer does. Cost: bounded, however many peers there are.
+#[derive(Debug, Default)]
+pub(crate) struct Peers(BTreeMap<IpAddr, Left>);
+
+impl Peers {
+    /// Most peers that are told apart; when more come all begin anew.
+    const MOST: usize = 1024;
+
+    /// Whether a peer may do one more.
+    pub(crate) fn may(&mut self, peer: IpAddr, pace: Pace, now: Instant) -> bool {
+        if self.0.len() >= Self::MOST && !self.0.contains_key(&peer) {
+            self.0.clear();
+        }
+        let left = self.0.entry(peer).or_insert(Left { count: pace.at_once, at: now });
+        let since = now.checked_duration_since(left.at).unwrap_or(Duration::ZERO);
+        left.count = (left.count + since.as_secs_f64() * pace.per_second).min(pace.at_once);
+        left.at = now;
+        let may = left.count >= 1.0;
+        left.count -= f64::from(u8::from(may));
+        may
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::{AtomicU64, Ordering};
+
+    /// Bytes that are never the same twice.
+    fn counted(bytes: &mut [u8]) {
+        static NEXT: AtomicU64 = AtomicU64::new(1);
+        let n = NEXT.fetch_add(0x9E37_79B9_7F4A_7C15, Ordering::Relaxed);
+        bytes.iter_mut().enumerate().for_each(|(k, b)| *b = n.rotate_left(8 * (k as u32 % 8)) as u8);
+    }
+
+    #[test]
+    fn a_link_and_a_code_work_once_each() {
+        let mut gate = Gate::new(counted);
+        let Invitation { key, code } = gate.invitation().clone();
+        let code = code.expect("a code");
+        assert!(key.len() == 32 && code.len() == 8 && code.bytes().all(|b| b.is_ascii_digit()));
+        assert!(!gate.knows("") && !gate.knows(&key));
+        let Entry::In(first) = gate.by_key(&key) else { panic!("the link is right") };
+        assert!(gate.knows(&first) && !gate.knows(&first[1..]));
+        assert_eq!(
+            (gate.by_key(&key), gate.by_code(&code)),
+            (Entry::Wrong, Entry::Wrong),
+            "both are used up"
+        );
+        let next = gate.invitation().code.clone().expect("a new code");
+        let spaced = format!("{} {}", &next[..4], &next[4..]);
+        assert!(matches!(gate.by_code(&spaced), Entry::In(_)));
+        assert!(gate.knows(&first), "the first stays in");
+    }
+
+    #[test]
+    fn codes_cannot_be_guessed() {
+        let mut gate = Gate::new(counted);
+        let mut shown = Vec::new();
+        for k in 0..1000 {
+            shown.extend(gate.invitation().code.clone());
+            let renewed = gate.by_code("00000000x") == Entry::Renewed;
+            assert_eq!(renewed, k < 25 && k % 5 == 4, "{k}");
+        }
+        shown.dedup();
+        assert_eq!((shown.len(), gate.invitation().code.as_ref()), (5, None));
+        assert_eq!(gate.by_code(""), Entry::Wrong);
+        let key = gate.invitation().key.clone();
+        assert!(matches!(gate.by_key(&key), Entry::In(_)), "the link still works");
+        assert_eq!(gate.invitation().code, None, "and no code comes back");
+    }
+
+    #[test]
+    fn the_oldest_browser_goes_when_many_come() {
+        let mut gate = Gate::new(counted);
+        let came: Vec<String> = (0..20)
+            .map(|_| {
+                let key = gate.invitation().key.clone();
+                let Entry::In(own) = gate.by_key(&key) else { panic!("the link is right") };
+                own
+            })
+            .collect();
+        assert!(came[..4].iter().all(|c| !gate.knows(c)) && came[4..].iter().all(|c| gate.knows(c)));
+    }
+
+    #[test]
+    fn peers_are_slowed_down_one_by_one() {
+        let (mut peers, from) = (Peers::default(), Instant::now());
+        let pace = Pace { at_once: 10.0, per_second: 2.0 };
+        let peer = |k: u32| IpAddr::from(k.to_be_bytes());
+        let passed = |peers: &mut Peers, k, at| (0..1000).filter(|_| peers.may(peer(k), pace, at)).count();
+        assert_eq!(passed(&mut peers, 1, from), 10);
+        assert_eq!(passed(&mut peers, 2, from), 10, "another is not to blame");
+        assert_eq!(passed(&mut peers, 1, from + Duration::from_secs(3)), 6);
+        for k in 0..5000 {
+            peers.may(peer(k), pace, from);
+        }
+        assert!(peers.0.len() <= Peers::MOST);
+    }
+}
