@@ -281,6 +281,53 @@ fn light_modes_lay_leaves_flat() {
 }
 
 #[test]
+fn a_disc_that_nobody_drew_fills_the_ring_of_the_roots() {
+    for ring in [0.2, 0.3, 0.4] {
+        let mut flower = daisy(v(0.5, 0.5), 8, 0.2, 0);
+        flower.disc = None;
+        for (k, petal) in (0..).zip(&mut flower.petals) {
+            let d = around(k, 8, 0.3);
+            *petal = blade(v(0.5, 0.5) + d * (0.2 * ring), v(0.5, 0.5) + d * 0.2, 0.3, k);
+        }
+        let built = made(&Reading { flowers: vec![flower], ..Reading::default() }, &SketchSpec::default());
+        let disc = built.plant.organs.iter().find(|o| o.kind == OrganKind::Disc).expect("a disc");
+        let Shape::Dome { radius_m, .. } = built.plant.shapes[disc.shape.index()] else { panic!("a dome") };
+        let drawn = 0.2 * ring * built.map.metres_per_ink;
+        assert!((radius_m / drawn - 1.0).abs() < 0.02, "{radius_m} m in a ring of {drawn} m");
+    }
+}
+
+#[test]
+fn a_petal_that_goes_leaves_the_colours_of_the_flower() {
+    for disc in [true, false] {
+        let mut reading = herb();
+        reading.flowers[0] = daisy(v(0.30, 0.62), 10, 0.16, 10);
+        reading.flowers[0].bearer = Some(Attachment { axis: 0, at: 0.61 });
+        if !disc {
+            reading.flowers[0].disc = None;
+        }
+        let all = made(&reading, &SketchSpec::default()).plant;
+        let known: std::collections::BTreeMap<u64, Paint> =
+            all.organs.iter().map(|o| (o.key, o.paint)).collect();
+        for gone in 0..10 {
+            let mut fewer = reading.clone();
+            fewer.flowers[0].petals.remove(gone);
+            let plant = made(&fewer, &SketchSpec::default()).plant;
+            assert_eq!(plant.organs.len() + 1, all.organs.len());
+            for o in &plant.organs {
+                assert_eq!(
+                    known.get(&o.key),
+                    Some(&o.paint),
+                    "{:?} {:?} without petal {gone}",
+                    o.kind,
+                    o.source
+                );
+            }
+        }
+    }
+}
+
+#[test]
 fn signed_leaves_fill_all_round_their_stem() {
     // Stems upright, leaning and level, with leaves of any slope on both sides.
     for lean in [0.0, 0.7, 1.5] {
