@@ -103,9 +103,9 @@ fn neighbours(spokes: &[Spoke]) -> Vec<Vec<usize>> {
         let mut next = 0;
         while let Some(&i) = group.get(next) {
             next += 1;
-            for j in 0..n {
-                if group_of[j].is_none() && near(i, j) {
-                    group_of[j] = Some(groups.len());
+            for (j, of) in group_of.iter_mut().enumerate() {
+                if of.is_none() && near(i, j) {
+                    *of = Some(groups.len());
                     group.push(j);
                 }
             }
