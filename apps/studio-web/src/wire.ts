@@ -446,6 +446,10 @@ export type FillSpec = {
   density: number;
   /** Memory of the last direction, `k_m`. */
   memory: number;
+  /** Named coefficients. */
+  set?: 
+    | PullSet
+    | null;
   /** Pull against gravity on grown twigs, -1 (weeping) to 1 (upright), default 0.1. */
   tropism: number;
 };
@@ -1245,6 +1249,17 @@ export type PlantView = {
   /** What was done again. */
   stages: string[];
 };
+
+/** The coefficients of Eq 2 by the names of Fig 2 (He and Cheng 2021): the more the contour pulls, the wider twigs stand off from their bearer. */
+export type PullSet =
+  | /** Fig 2a: 0.45, 0.45, 0.1. */
+  "fig2a"
+  | /** Fig 2b: 0.55, 0.35, 0.1. */
+  "fig2b"
+  | /** Fig 2c with the sum that a and b have: 0.65, 0.25, 0.1. */
+  "fig2c"
+  | /** Fig 2c as printed, very likely by mistake: 0.65, 0.35, 0.1. */
+  "fig2c-printed";
 
 /** One interpretation of a whole drawing. */
 export type ReadingReport = {

@@ -34,6 +34,7 @@ mod polyline;
 mod spline;
 mod triangulate;
 mod vector;
+mod wheel;
 
 pub use cluster::mean_shift;
 pub use cone::{Cone, FlowerCone, Sheet, flower_cone};
@@ -57,3 +58,4 @@ pub use spline::{
     SplineError, SplineSurface, SurfacePoint, Tube, Weights, chord_parameters, subdivided,
 };
 pub use triangulate::{TriangulateError, Triangulation, triangulate_blade};
+pub use wheel::{Spoke, Wheel, wheels};

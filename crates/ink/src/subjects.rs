@@ -2,12 +2,12 @@
 //!
 //! `clean strokes -> Subjects`
 //!
-//! What touches belongs together, and so does what stands above one another, what is enclosed, and what is near
-//! relative to its size. What stands beside one another on the ground, each with something of its own, are several
-//! plants. Lines by themselves are no plants: they are grass, or belong to the plant beside them. Distances are shares
-//! of the sizes of what they lie between, so neither the sheet nor the order of drawing matters.
+//! What touches belongs together, and so do petals all round one place, what stands above one another, what is enclosed,
+//! and what is near relative to its size. What stands beside one another on the ground, each with something of its own,
+//! are several plants. Lines by themselves are no plants: they are grass, or belong to the plant beside them. Distances
+//! are shares of the sizes of what they lie between, so neither the sheet nor the order of drawing matters.
 
-use geom::{convex_hull, signed_area};
+use geom::{Spoke, convex_hull, signed_area, wheels};
 use glam::DVec2;
 
 /// A drawing of more strokes is one plant: nobody draws a row of plants with so many.
@@ -171,11 +171,29 @@ impl Sheet {
                 }
             }
         }
+        self.petals(&mut sets);
         let mut groups: std::collections::BTreeMap<usize, Vec<usize>> = std::collections::BTreeMap::new();
         for k in (0..self.lines.len()).filter(|k| !ground.contains(k)) {
             groups.entry(sets.top(k)).or_default().push(k);
         }
         groups.into_values().map(|strokes| self.group(strokes)).collect()
+    }
+
+    /// Joins outlines that point away from one place all round it: petals, whether or not they touch.
+    fn petals(&self, sets: &mut Sets) {
+        let closed: Vec<usize> = (0..self.lines.len()).filter(|&k| self.lines[k].closed).collect();
+        let spoke = |&k: &usize| {
+            let line = &self.lines[k];
+            let ends = line.points.first().zip(line.points.last()).map(|(a, b)| a.midpoint(*b));
+            #[expect(clippy::cast_precision_loss, reason = "a few dozen points")]
+            let middle = line.points.iter().sum::<DVec2>() / line.points.len().max(1) as f64;
+            Spoke { gap: ends.unwrap_or(middle), middle, size: line.lo.distance(line.hi) }
+        };
+        for wheel in wheels(&closed.iter().map(spoke).collect::<Vec<_>>()) {
+            for pair in wheel.spokes.windows(2) {
+                sets.join(closed[pair[0]], closed[pair[1]]);
+            }
+        }
     }
 
     fn group(&self, strokes: Vec<usize>) -> Group {

@@ -105,6 +105,31 @@ impl Sheetlet {
         Some(lens)
     }
 
+    /// From a closed line that comes back the way it went: a lens round the middle of both ways, as narrow as a blade may
+    /// be. `None` where its ends do not meet.
+    pub(crate) fn edge_on(line: &[DVec2], stroke: usize) -> Option<Self> {
+        let (first, last) = (*line.first()?, *line.last()?);
+        let root = first.midpoint(last);
+        let far = |&a: &usize, &b: &usize| {
+            line[a].distance_squared(root).total_cmp(&line[b].distance_squared(root))
+        };
+        let turn = (0..line.len()).max_by(far)?;
+        let long = line[turn].distance(root);
+        if first.distance(last) > 0.1 * long {
+            return None;
+        }
+        let evenly = |way: &[DVec2]| resample(way, geom::polyline_length(way) / 16.0);
+        let back: Vec<DVec2> = line[turn..].iter().rev().copied().collect();
+        let (out, back) = (evenly(&line[..=turn]), evenly(&back));
+        let spine: Vec<DVec2> = out.iter().zip(&back).map(|(a, b)| a.midpoint(*b)).collect();
+        Some(Self {
+            root: None,
+            gap: root,
+            gap_width: first.distance(last),
+            ..Self::lens(&spine, stroke, 0.015 * long)?
+        })
+    }
+
     /// The point of the outline nearest to `p`, and its distance.
     pub(crate) fn nearest(&self, p: DVec2) -> (DVec2, f64) {
         nearest_on_ring(&self.outline, p)

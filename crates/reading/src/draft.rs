@@ -180,6 +180,28 @@ impl<'a> Draft<'a> {
         if low.is_finite() { low } else { 0.0 }
     }
 
+    /// Outlines that enclose nothing, because they come back the way they went: petals seen from their edge where two
+    /// others begin where they do, else lines.
+    fn edge_on(&mut self, thin: Vec<usize>) {
+        for k in thin {
+            let points = &self.ink.strokes[k].points;
+            let root = points[0].midpoint(points[points.len() - 1]);
+            let beside = |b: &&Sheetlet| b.gap.distance(root) < 0.25 * b.size;
+            let petal = if self.blades.iter().filter(beside).take(2).count() == 2 {
+                Sheetlet::edge_on(points, k)
+            } else {
+                None
+            };
+            match petal {
+                Some(blade) => {
+                    self.organ[k] = OrganWord::Leaf;
+                    self.blades.push(blade);
+                }
+                None => self.line_of(k, OrganWord::Branch),
+            }
+        }
+    }
+
     /// Blade strokes to outlines; half outlines are joined, stalks become lines.
     pub(crate) fn blades(&mut self) {
         let ink = self.ink;
@@ -189,7 +211,7 @@ impl<'a> Draft<'a> {
             s.points[0].distance(s.points[s.points.len() - 1]) / s.length
         };
         // Closed by itself, with or without a stalk; or so open that it may be one side of a leaf.
-        let mut open = Vec::new();
+        let (mut open, mut thin) = (Vec::new(), Vec::new());
         for k in strokes {
             if let Some(blade) = Sheetlet::with_rib(&ink.strokes[k].points, k) {
                 self.organ[k] = OrganWord::Leaf;
@@ -205,9 +227,10 @@ impl<'a> Draft<'a> {
                 let source = Some(ink.strokes[k].index);
                 self.lines.extend(stalks.into_iter().map(|points| Line { points, source }));
             } else {
-                self.line_of(k, OrganWord::Branch);
+                thin.push(k);
             }
         }
+        self.edge_on(thin);
         let points: Vec<&[DVec2]> = open.iter().map(|&k| ink.strokes[k].points.as_slice()).collect();
         let mut single = Vec::new();
         for ring in rings::rings(&points) {

@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use base::ops;
-use geom::{contains, mean_shift, polyline_length};
+use geom::{Spoke, contains, mean_shift, polyline_length, wheels};
 use glam::DVec2;
 use ink::StrokeClass;
 
@@ -184,6 +184,7 @@ pub(crate) fn gather(
     let usual = median(draft.blades.iter().map(|b| b.size)).unwrap_or(0.1);
 
     by_disc(draft, discs, &mut flowers, &mut roots, &mut taken);
+    on_rings(draft, usual, (bearers, discs), &mut flowers, &mut roots, &mut taken);
     // Petals begin and end at the centre: the pen's own gap tells before anything that happens to touch.
     let free: Vec<usize> = (0..n).filter(|&i| !taken[i] && !draft.blades[i].leaf).collect();
     let gaps: Vec<DVec2> = free.iter().map(|&i| draft.blades[i].gap).collect();
@@ -246,6 +247,52 @@ fn by_disc(
             roots[i] = Some(p);
             taken[i] = true;
         }
+    }
+}
+
+/// Petals that begin on a ring instead of in one place.
+fn on_rings(
+    draft: &Draft<'_>,
+    usual: f64,
+    (bearers, discs): (&Bearers, &[(DiscReading, usize)]),
+    flowers: &mut Vec<FlowerDraft>,
+    roots: &mut [Option<DVec2>],
+    taken: &mut [bool],
+) {
+    let free: Vec<usize> = (0..draft.blades.len())
+        .filter(|&i| !taken[i] && roots[i].is_none() && !draft.blades[i].leaf)
+        .collect();
+    if free.len() > MOST_ROOTS {
+        return;
+    }
+    let spoke = |&i: &usize| {
+        let b = &draft.blades[i];
+        Spoke { gap: b.gap, middle: b.middle, size: b.size }
+    };
+    for wheel in wheels(&free.iter().map(spoke).collect::<Vec<_>>()) {
+        let centre = wheel.centre;
+        let rooted = |&row: &usize| {
+            let b = &draft.blades[free[row]];
+            // A petal may have been begun at its tip.
+            let at_root = b.gap.distance(centre) < b.middle.distance(centre);
+            (free[row], if at_root { b.gap } else { b.nearest(centre).0 })
+        };
+        let rooted: Vec<(usize, DVec2)> = wheel.spokes.iter().map(rooted).collect();
+        // Roots in one place are the paper's.
+        let wide = rooted.iter().any(|(_, root)| root.distance(centre) > BANDWIDTH * usual);
+        if !wide
+            || bears_fronds(draft, centre, usual)
+            || bearers.leads_up(centre, usual, discs)
+            || bearers.stand(centre, 0.2 * usual) == Stand::Body
+        {
+            continue;
+        }
+        for &(i, root) in &rooted {
+            taken[i] = true;
+            roots[i] = Some(root);
+        }
+        let petals = rooted.into_iter().map(|(i, _)| i).collect();
+        flowers.push(FlowerDraft { centre, petals, ..FlowerDraft::default() });
     }
 }
 

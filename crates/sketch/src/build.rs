@@ -126,6 +126,7 @@ pub fn build_again(
         map,
         axis_of_reading: &ids,
         templates: &templates,
+        height_m: height_m(reading, spec),
         woody: reading.woody,
         coloured: scene.coloured,
     };
@@ -193,9 +194,13 @@ fn plant_map(reading: &Reading, spec: &SketchSpec) -> PlantMap {
     // A plant that lies flat on the ground line has its breadth instead of a height.
     let extent = if tall > 1e-3 { tall } else { (high - low).max_element() };
     let extent = if extent > 1e-6 { extent } else { 1.0 };
+    PlantMap { metres_per_ink: height_m(reading, spec) / extent, origin_ink }
+}
+
+/// Height of the plant, metres: what was asked for, else 8 m of a tree and 0.5 m of a herb.
+fn height_m(reading: &Reading, spec: &SketchSpec) -> f64 {
     let usual = if reading.woody { 8.0 } else { 0.5 };
-    let height = spec.height_m.filter(|h| h.is_finite() && (1e-6..1e6).contains(h)).unwrap_or(usual);
-    PlantMap { metres_per_ink: height / extent, origin_ink }
+    spec.height_m.filter(|h| h.is_finite() && (1e-6..1e6).contains(h)).unwrap_or(usual)
 }
 
 fn add_axes(plant: &mut Plant, plans: &Plans, map: PlantMap) -> Vec<Option<AxisId>> {

@@ -18,7 +18,7 @@ mod map;
 mod spec;
 mod template;
 
-pub use self::spec::{BranchDepth, FillSpec, LeafDepth, ReliefSpec, SketchSpec, TaperSpec};
+pub use self::spec::{BranchDepth, FillSpec, LeafDepth, PullSet, ReliefSpec, SketchSpec, TaperSpec};
 pub use build::{Built, build, build_again};
 pub use fidelity::{Fidelity, StrokeFidelity, fidelity};
 pub use fill::{GrownContour, KeptBodies};

@@ -28,10 +28,43 @@ pub enum LeafDepth {
     Drawn,
 }
 
+/// The coefficients of Eq 2 by the names of Fig 2 (He and Cheng 2021): the more the contour pulls, the wider twigs stand
+/// off from their bearer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum PullSet {
+    /// Fig 2a: 0.45, 0.45, 0.1.
+    Fig2a,
+    /// Fig 2b: 0.55, 0.35, 0.1.
+    Fig2b,
+    /// Fig 2c with the sum that a and b have: 0.65, 0.25, 0.1.
+    Fig2c,
+    /// Fig 2c as printed, very likely by mistake: 0.65, 0.35, 0.1.
+    Fig2cPrinted,
+}
+
+impl PullSet {
+    /// Every set.
+    pub const ALL: [Self; 4] = [Self::Fig2a, Self::Fig2b, Self::Fig2c, Self::Fig2cPrinted];
+
+    /// `contour_pull`, `bearer_pull` and `memory`.
+    pub const fn coefficients(self) -> [f64; 3] {
+        match self {
+            Self::Fig2a => [0.45, 0.45, 0.1],
+            Self::Fig2b => [0.55, 0.35, 0.1],
+            Self::Fig2c => [0.65, 0.25, 0.1],
+            Self::Fig2cPrinted => [0.65, 0.35, 0.1],
+        }
+    }
+}
+
 /// Eq 2: growth of twigs and midribs inside a contour.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct FillSpec {
+    /// Named coefficients. Where they are given, `contour_pull`, `bearer_pull` and `memory` do not count.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub set: Option<PullSet>,
     /// Attraction by the contour, `k_p`. 0 to 1, default 0.55 (Fig 2b of the paper).
     #[schemars(range(min = 0.0, max = 1.0))]
     pub contour_pull: f64,
@@ -51,7 +84,8 @@ pub struct FillSpec {
 
 impl Default for FillSpec {
     fn default() -> Self {
-        Self { contour_pull: 0.55, bearer_pull: 0.35, memory: 0.1, density: 1.0, tropism: 0.1 }
+        let [contour_pull, bearer_pull, memory] = PullSet::Fig2b.coefficients();
+        Self { set: None, contour_pull, bearer_pull, memory, density: 1.0, tropism: 0.1 }
     }
 }
 

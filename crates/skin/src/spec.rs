@@ -179,13 +179,19 @@ impl PetalColor {
 
     /// The colour of the petals of a plant that have no colour of their own.
     pub fn of(plant: &Plant, spec: &SkinSpec) -> Self {
-        // Many rays round a disc are a daisy's or a sunflower's, which are never blue or red.
+        // Rays round a disc are a daisy's or a sunflower's, which are never blue or red. Of what was drawn, the disc
+        // says so and not the number of petals: one petal more or less would change the colour of all.
         const RAYS: [PetalColor; 4] =
             [PetalColor::Yellow, PetalColor::White, PetalColor::Orange, PetalColor::Yellow];
         let key = plant.name.bytes().fold(spec.seed, |key, b| key.child(u64::from(b)));
-        let of_kind = |kind| plant.organs.iter().filter(|o| o.kind == kind).count();
-        let rays =
-            of_kind(OrganKind::Disc) > 0 && of_kind(OrganKind::Petal) >= 9 * plant.flowers.len().max(1);
+        let of_kind = |kind| plant.organs.iter().filter(move |o| o.kind == kind);
+        let drawn = of_kind(OrganKind::Petal).any(|o| o.source.is_some());
+        let rays = if drawn {
+            of_kind(OrganKind::Disc).any(|o| o.source.is_some())
+        } else {
+            of_kind(OrganKind::Disc).next().is_some()
+                && of_kind(OrganKind::Petal).count() >= 9 * plant.flowers.len().max(1)
+        };
         let among = if rays { &RAYS[..] } else { &Self::ALL };
         spec.petals.unwrap_or_else(|| among[key.stream(Draw::Tint).below(among.len())])
     }
@@ -293,4 +299,58 @@ pub(crate) fn whole(x: f64) -> u32 {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to u32's range")]
     let n = x.clamp(0.0, 4e9) as u32;
     n
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+    use plant::{Flower, FlowerId, Frame, Organ, Paint, Shape};
+
+    /// A flower with petals, and with a disc that was drawn or not.
+    fn flower(petals: u32, disc: Option<u32>) -> Plant {
+        let mut plant = Plant { name: "daisy".to_owned(), ..Plant::default() };
+        plant.flowers.push(Flower {
+            bearer: None,
+            centre: DVec3::ZERO,
+            axis: DVec3::Z,
+            half_angle: 1.0,
+            whorls: 1,
+        });
+        let shape = plant.add_shape(Shape::Dome { radius_m: 0.01, height_m: 0.004 });
+        let frame = Frame { origin: DVec3::ZERO, right: DVec3::X, along: DVec3::Y, normal: DVec3::Z };
+        let mut add = |kind, source| {
+            let (flower, paint) = (Some(FlowerId::new(0)), Paint::default());
+            plant.organs.push(Organ {
+                kind,
+                bearer: None,
+                flower,
+                shape,
+                frame,
+                scale: 1.0,
+                paint,
+                key: 0,
+                source,
+            });
+        };
+        (0..petals).for_each(|k| add(OrganKind::Petal, Some(k)));
+        add(OrganKind::Disc, disc);
+        plant
+    }
+
+    #[test]
+    fn one_petal_more_or_less_recolours_no_flower() {
+        for seed in 1..=12 {
+            let spec = SkinSpec { seed: Seed::new(seed), ..SkinSpec::default() };
+            for disc in [None, Some(99)] {
+                let color = PetalColor::of(&flower(3, disc), &spec);
+                for petals in 4..20 {
+                    let other = PetalColor::of(&flower(petals, disc), &spec);
+                    assert_eq!(other, color, "{petals} petals, seed {seed}");
+                }
+                let daisy = !matches!(color, PetalColor::Blue | PetalColor::Red);
+                assert!(daisy || disc.is_none(), "a daisy is not {}", color.word());
+            }
+        }
+    }
 }

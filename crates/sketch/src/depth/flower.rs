@@ -32,6 +32,8 @@ struct Corolla {
     petal: f64,
     /// Mean distance of tips from the middle.
     reach: f64,
+    /// Mean distance of roots from the middle.
+    rim: f64,
     facing: f64,
 }
 
@@ -73,8 +75,8 @@ pub(crate) fn place_flower(
     if let Some((_, given)) = seat {
         at.z = given.z;
     }
-    let source = flower.petals.iter().find_map(|p| p.source).or(flower.disc.and_then(|d| d.source));
-    let key = key_of(Part::Flower, source, index as u64, bearing.map_or(0, |b| b.key));
+    // Not by the stroke of a petal: the flower stays the same without it.
+    let key = key_of(Part::Flower, None, index as u64, bearing.map_or(0, |b| b.key));
     let link = key_of(Part::Link, None, 0, key);
     let bearer = scene.stalk(plant, bearing.as_ref(), flower.centre, at, AxisKind::Stem, link);
     let facing = !u32::try_from(index).is_ok_and(|i| scene.spec.flipped_flowers.contains(&i));
@@ -133,6 +135,7 @@ fn corolla(scene: &Scene<'_>, flower: &FlowerReading, at: DVec3, facing: bool) -
         fit,
         petal,
         reach: reach.max(1e-12),
+        rim: 0.0,
         facing: if fit.cone.axis.z < 0.0 { -1.0 } else { 1.0 },
     };
     // The ring of the roots, not the apex, sits on the stem: so the disc does.
@@ -140,6 +143,7 @@ fn corolla(scene: &Scene<'_>, flower: &FlowerReading, at: DVec3, facing: bool) -
     let back = fit.cone.axis.z * rim * corolla.cot();
     fit.cone.apex = centre.extend(at.z - back);
     corolla.fit = fit;
+    corolla.rim = rim;
     corolla
 }
 
@@ -285,7 +289,9 @@ impl Organs<'_, '_> {
         let s = self.scene.map.metres_per_ink;
         let open = cone.axis.z.abs() > 0.35;
         let drawn = flower.disc.filter(|d| usable(d.centre) && d.radius.is_finite() && d.radius > 0.0);
-        let radius = drawn.map_or(0.18 * corolla.petal, |d| (d.radius * s).min(1e6 * s));
+        // Petals that begin on a ring leave room for as large a disc.
+        let usual = (0.18 * corolla.petal).max(corolla.rim);
+        let radius = drawn.map_or(usual, |d| (d.radius * s).min(1e6 * s));
         let middle = drawn.map_or(corolla.centre, |d| corolla.centre + (d.centre - flower.centre) * s);
         // As high as the petals stand at its rim, or they would cover it.
         let rim = radius * corolla.cot().min(1.5);

@@ -138,7 +138,12 @@ pub(crate) fn place_leaf(
             let bearer_along = bearing.map_or(DVec2::Y, |b| b.along);
             let mut s = scene.seed.child(key).stream(Draw::LeafAngle);
             let disturbed = DVec2::new(s.range(-DISTURBED, DISTURBED), s.range(-DISTURBED, DISTURBED));
-            light_frame(seat, local.along, bearer_along, disturbed, mode == LeafDepth::Signed)
+            let turned = match mode {
+                LeafDepth::Signed if s.chance(0.5) => Turned::ToFront,
+                LeafDepth::Signed => Turned::ToBack,
+                _ => Turned::AsPrinted,
+            };
+            light_frame(seat, local.along, bearer_along, disturbed, turned)
         }
     };
     plant.organs.push(Organ {
@@ -154,20 +159,29 @@ pub(crate) fn place_leaf(
     });
 }
 
+/// Where the light prior turns a leaf.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Turned {
+    /// Every leaf to +X and on towards -Z.
+    AsPrinted,
+    /// Left leaves stay left, and go on away from the viewer, or towards him: the drawing does not say.
+    ToBack,
+    ToFront,
+}
+
 /// The light prior: the blade turns about its axis until it stands on edge, then to the horizontal (but for the
 /// first disturbance), then about the plumb line by `phi * pi^(-|cos phi|)` plus the second.
 ///
-/// `va`, `vb`: unit directions of leaf and bearer in the drawing. Paper mode turns every leaf to +X and on towards
-/// -Z, as printed; signed mode keeps left leaves left (docs/papers.md).
-fn light_frame(origin: DVec3, va: DVec2, vb: DVec2, disturbed: DVec2, signed: bool) -> Frame {
+/// `va`, `vb`: unit directions of leaf and bearer in the drawing (docs/papers.md).
+fn light_frame(origin: DVec3, va: DVec2, vb: DVec2, disturbed: DVec2, turned: Turned) -> Frame {
     let phi = ops::acos_clamped(va.dot(vb));
     let turn = phi * ops::powf(ops::PI, -ops::cos(phi).abs()) + disturbed.y;
     let (lift, level) = ops::sin_cos(disturbed.x);
-    let (azimuth, out) = if signed {
-        let side = if vb.perp_dot(va) < 0.0 { -1.0 } else { 1.0 };
-        (side * turn, if va.x < 0.0 { -1.0 } else { 1.0 })
-    } else {
-        (turn, 1.0)
+    let out = if va.x < 0.0 && turned != Turned::AsPrinted { -1.0 } else { 1.0 };
+    let azimuth = match turned {
+        Turned::AsPrinted => turn,
+        Turned::ToBack => out * turn,
+        Turned::ToFront => -out * turn,
     };
     let (s, c) = ops::sin_cos(azimuth);
     let about_y = |v: DVec3| DVec3::new(c * v.x + s * v.z, v.y, c * v.z - s * v.x);
@@ -187,7 +201,7 @@ mod tests {
             [(0.0, 0.0), (45.0, 20.0), (60.0, 33.9), (90.0, 90.0), (135.0, 60.1), (180.0, 57.3)]
         {
             let (s, c) = ops::sin_cos(f64::to_radians(phi));
-            let f = light_frame(DVec3::ZERO, DVec2::new(s, c), DVec2::Y, DVec2::ZERO, false);
+            let f = light_frame(DVec3::ZERO, DVec2::new(s, c), DVec2::Y, DVec2::ZERO, Turned::AsPrinted);
             let got = ops::atan2(-f.along.z, f.along.x).to_degrees();
             assert!((got - want).abs() < 0.06, "{phi}: {got}");
             assert!(f.normal.distance(DVec3::Y) < 1e-12, "horizontal, upper side up");
@@ -198,14 +212,15 @@ mod tests {
     #[test]
     fn signed_mode_keeps_left_leaves_left() {
         for (va, vb) in [(DVec2::new(-0.8, 0.6), DVec2::Y), (DVec2::new(0.8, 0.6), DVec2::Y)] {
-            let f = light_frame(DVec3::ZERO, va, vb, DVec2::new(0.3, -0.2), true);
+            let f = light_frame(DVec3::ZERO, va, vb, DVec2::new(0.3, -0.2), Turned::ToBack);
             assert!(f.along.x * va.x > 0.0, "{va}");
-            let mirrored = light_frame(DVec3::ZERO, DVec2::new(-va.x, va.y), vb, DVec2::new(0.3, -0.2), true);
+            let other = DVec2::new(-va.x, va.y);
+            let mirrored = light_frame(DVec3::ZERO, other, vb, DVec2::new(0.3, -0.2), Turned::ToBack);
             assert!(
                 (f.along.x + mirrored.along.x).abs() < 1e-12 && (f.along.z - mirrored.along.z).abs() < 1e-12
             );
         }
-        let left = light_frame(DVec3::ZERO, DVec2::new(-0.8, 0.6), DVec2::Y, DVec2::ZERO, false);
+        let left = light_frame(DVec3::ZERO, DVec2::new(-0.8, 0.6), DVec2::Y, DVec2::ZERO, Turned::AsPrinted);
         assert!(left.along.x > 0.0, "as printed, the left leaf lands on the right");
     }
 

@@ -3,7 +3,7 @@
 //! He and Cheng (2021), Eq 2: `p' = p + r (k_p v_p + k_b v_b + k_m v_m)`, all three directions unit vectors.
 
 use base::Stream;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use plant::{AxisId, AxisKind, NodeId, Plant};
 
 use super::volume::Volume;
@@ -94,6 +94,71 @@ pub(super) fn grow_toward(
             return;
         };
         p = q;
+    }
+}
+
+/// The contour of a region, turned about one place of a bearer: what draws a twig that starts there.
+///
+/// The drawing shows the contour in its plane only. A twig that leaves its bearer towards the viewer is drawn by the
+/// same contour, turned about the bearer to where the twig stands.
+#[derive(Clone, Debug)]
+pub(super) struct Turned(Vec<DVec3>);
+
+impl Turned {
+    /// The attraction points `rim` on the side of `out`, a unit vector across the bearer, and not behind the place: the
+    /// nearest of those behind would pull against the bearer, and the twig would curl up. All points where none is there.
+    pub(super) fn new(rim: &[DVec2], (from, bearer): (DVec3, DVec3), out: DVec3) -> Self {
+        let along = bearer.truncate().try_normalize().unwrap_or(DVec2::Y);
+        let right = if out.truncate().perp_dot(along) < 0.0 { -1.0 } else { 1.0 };
+        let turned = |q: &DVec2| {
+            let way = *q - from.truncate();
+            let (ahead, aside) = (way.dot(along), way.perp_dot(along) * right);
+            // Samples lie a few degrees apart: level with the place there need not be one.
+            (aside > 0.0 && ahead > -0.06 * aside).then(|| from + (along * ahead).extend(0.0) + out * aside)
+        };
+        let points: Vec<DVec3> = rim.iter().filter_map(turned).collect();
+        if points.is_empty() { Self(rim.iter().map(|q| q.extend(from.z)).collect()) } else { Self(points) }
+    }
+
+    /// The attraction point nearest to `p`.
+    fn nearest(&self, p: DVec3) -> Option<DVec3> {
+        self.0.iter().copied().min_by(|a, b| a.distance_squared(p).total_cmp(&b.distance_squared(p)))
+    }
+}
+
+/// Grows from `from` by Eq 2 as it is meant in the paper: at each step towards the attraction point of the contour that
+/// is nearest then, until the contour is `near`. `out` starts with `from`.
+///
+/// As there, the bearer pulls all the way. Every step is `step` long: the paper's rate r over the length of the sum.
+pub(super) fn grow_to_contour(
+    volume: &Volume,
+    spec: &FillSpec,
+    (from, bearer): (DVec3, DVec3),
+    contour: &Turned,
+    (step, near): (f64, f64),
+    wobble: &mut Stream,
+    out: &mut Vec<DVec3>,
+) {
+    out.clear();
+    out.push(from);
+    let (mut p, mut last) = (from, bearer);
+    // Three times across the body: what is longer runs along the contour.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded by min")]
+    let steps = (6.0 * volume.inradius.max(volume.half_width) / step.max(1e-12)).ceil().min(200.0) as usize;
+    for _ in 0..steps {
+        let Some(to) = contour.nearest(p).map(|q| q - p) else { return };
+        let left = to.length();
+        if left < near {
+            return;
+        }
+        let noise = DVec3::new(wobble.normal(), wobble.normal(), wobble.normal()) * 0.05;
+        let sum = eq2(spec, to / left, bearer, last) + DVec3::Y * spec.tropism + noise;
+        last = sum.try_normalize().unwrap_or(to / left);
+        let Some(q) = push_inside(volume, p, p + last * step, out) else { return };
+        p = q;
+        if volume.contains_xy(p.truncate()) && volume.inset(p) < 0.5 * near {
+            return;
+        }
     }
 }
 

@@ -134,7 +134,6 @@ pub(super) fn leaves_for(area: f64, length: f64, layers: f64) -> usize {
     count_of(layers * area / (0.25 * length * length), 3, MOST_LEAVES)
 }
 
-/// Length of a default leaf for a contour that is filled with leaves: some 30 of them.
-pub(super) fn default_length(volume: &Volume) -> f64 {
-    0.27 * volume.area.sqrt().min(3.0 * volume.inradius)
-}
+/// Length of a leaf that nobody drew over the height of its plant. The twelve leaf contours of our drawings for Table 1
+/// enclose 0.087 of the plant's squared height on average: leaves of this length number 35 there.
+pub(super) const DEFAULT_LENGTH: f64 = 0.08;

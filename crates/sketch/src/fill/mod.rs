@@ -27,7 +27,7 @@ use glam::{DVec2, DVec3};
 use plant::{AxisId, AxisKind, Paint, Phyllotaxis, Plant, Shape, ShapeId};
 
 use crate::depth::drawn_light;
-use crate::{FillSpec, LeafForm, PlantMap, SketchSpec};
+use crate::{FillSpec, LeafForm, PlantMap, PullSet, SketchSpec};
 use crown::{Crown, Habit};
 use foliage::Foliage;
 use leaves::Leaves;
@@ -54,6 +54,8 @@ pub(crate) struct FillContext<'a> {
     pub(crate) axis_of_reading: &'a [Option<AxisId>],
     /// Blade shapes of the drawn leaves, in their order.
     pub(crate) templates: &'a [ShapeId],
+    /// Height of the drawn plant, metres: twigs and leaves that nobody drew are a share of it.
+    pub(crate) height_m: f64,
     /// A tree rather than a herb.
     pub(crate) woody: bool,
     /// Drawn with coloured pens: leaves take the colour of their contour.
@@ -127,11 +129,14 @@ pub(crate) fn fill(
         lay(plant, &mut volume, &bearers, region.kind);
         let spec = tame(ctx.spec.fill);
         let (first_axis, first) = (plant.axes.len(), plant.organs.len());
-        let mut look = Look { forms: &mut forms, drawn: &drawn, natural, share, seed, spec };
+        let height_m = ctx.height_m;
+        let mut look = Look { forms: &mut forms, drawn: &drawn, natural, share, seed, spec, height_m };
         let (axes, leaves) = match region.kind {
             RegionKind::Twigs => {
                 let kind = if ctx.woody { AxisKind::Twig } else { AxisKind::Stem };
-                let twigs = Twigs { volume: &volume, spec, seed, bearers: &bearers, kind, salt: rank };
+                let wanted = twigs::twigs_for(volume.area, height_m, spec.density);
+                let twigs =
+                    Twigs { volume: &volume, spec, seed, bearers: &bearers, kind, wanted, salt: rank };
                 (twigs.grow(plant, &mut Vec::new()), 0)
             }
             RegionKind::Leaves => {
@@ -258,10 +263,14 @@ fn lay(plant: &Plant, volume: &mut Volume, bearers: &[AxisId], kind: RegionKind)
 fn tame(spec: FillSpec) -> FillSpec {
     let d = FillSpec::default();
     let fix = |x: f64, lo: f64, hi: f64, or: f64| if x.is_finite() { x.clamp(lo, hi) } else { or };
+    let named = spec.set.map(PullSet::coefficients);
+    let [contour_pull, bearer_pull, memory] =
+        named.unwrap_or([spec.contour_pull, spec.bearer_pull, spec.memory]);
     FillSpec {
-        contour_pull: fix(spec.contour_pull, 0.0, 1.0, d.contour_pull),
-        bearer_pull: fix(spec.bearer_pull, 0.0, 1.0, d.bearer_pull),
-        memory: fix(spec.memory, 0.0, 1.0, d.memory),
+        set: None,
+        contour_pull: fix(contour_pull, 0.0, 1.0, d.contour_pull),
+        bearer_pull: fix(bearer_pull, 0.0, 1.0, d.bearer_pull),
+        memory: fix(memory, 0.0, 1.0, d.memory),
         density: fix(spec.density, 0.1, 10.0, d.density),
         tropism: fix(spec.tropism, -1.0, 1.0, d.tropism),
     }
@@ -277,6 +286,7 @@ struct Look<'a> {
     share: usize,
     seed: Seed,
     spec: FillSpec,
+    height_m: f64,
 }
 
 impl Look<'_> {
@@ -325,7 +335,7 @@ impl Look<'_> {
     fn of_cluster(&mut self, plant: &mut Plant, volume: &Volume) -> (Foliage, usize) {
         let mut shapes = self.drawn.to_vec();
         let room = 1.6 * volume.inradius;
-        let length = self.natural.map_or_else(|| leaves::default_length(volume), |l| l.min(room));
+        let length = self.natural.unwrap_or(leaves::DEFAULT_LENGTH * self.height_m).min(room);
         if shapes.is_empty() {
             shapes.push(self.form(plant, LeafForm::Ovate));
         }

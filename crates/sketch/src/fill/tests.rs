@@ -60,6 +60,23 @@ pub(super) struct Made {
 }
 
 pub(super) fn grown(outline: Vec<DVec2>, kind: RegionKind, lines: &[Vec<DVec2>], spec: &SketchSpec) -> Made {
+    grown_again(outline, kind, lines, spec, (1, None))
+}
+
+fn leaf_of(length: f64) -> Shape {
+    let mut blade = LeafForm::Ovate.blade();
+    blade.outline.iter_mut().chain(&mut blade.midrib).for_each(|p| *p *= length);
+    Shape::Blade(blade)
+}
+
+/// As [`grown`], with another seed, and with a drawn leaf of some length in metres.
+fn grown_again(
+    outline: Vec<DVec2>,
+    kind: RegionKind,
+    lines: &[Vec<DVec2>],
+    spec: &SketchSpec,
+    (seed, leaf): (u64, Option<f64>),
+) -> Made {
     let map = PlantMap { metres_per_ink: 8.0, origin_ink: DVec2::new(0.5, 0.0) };
     let mut plant = Plant::default();
     let mut axes = Vec::new();
@@ -92,12 +109,14 @@ pub(super) fn grown(outline: Vec<DVec2>, kind: RegionKind, lines: &[Vec<DVec2>],
     let metres: Vec<DVec2> = outline.iter().map(|&p| map.plant_from_ink(p)).collect();
     let bearers = (0..lines.len()).collect();
     reading.regions.push(RegionReading { outline, kind, bearers, source: None, color: None });
+    let templates: Vec<ShapeId> = leaf.map(|length| plant.add_shape(leaf_of(length))).into_iter().collect();
     let ctx = FillContext {
         spec,
-        seed: Seed::new(1),
+        seed: Seed::new(seed),
         map,
         axis_of_reading: &axes,
-        templates: &[],
+        templates: &templates,
+        height_m: 8.0,
         woody: true,
         coloured: false,
     };
@@ -211,6 +230,7 @@ fn more_density_gives_more_twigs_and_leaves() {
 #[test]
 fn numbers_out_of_range_are_tamed() {
     let fill = FillSpec {
+        set: None,
         contour_pull: f64::NAN,
         bearer_pull: -3.0,
         memory: 1e300,
@@ -281,6 +301,102 @@ fn the_three_coefficient_sets_of_the_paper_bend_twigs_to_the_contour_more_and_mo
     };
     let rises = [mean_rise(0.45, 0.45), mean_rise(0.55, 0.35), mean_rise(0.65, 0.25)];
     assert!(rises[0] > rises[1] && rises[1] > rises[2], "{rises:?}");
+}
+
+/// An oval round a stem, `size` times as large as the largest that finds room.
+fn oval(size: f64) -> Vec<DVec2> {
+    let at = |i| {
+        let (s, c) = sin_cos(TAU * f64::from(i) / 60.0);
+        DVec2::new(0.5 + 0.4 * size * c, 0.55 + 0.4 * size * s)
+    };
+    (0..60).map(at).collect()
+}
+
+#[test]
+fn a_contour_of_four_times_the_area_holds_four_times_as_many() {
+    let stem = [line((0.5, 0.0), (0.5, 0.9), 90)];
+    for seed in 1..=12 {
+        for kind in [RegionKind::Twigs, RegionKind::Leaves] {
+            let count = |size: f64| {
+                let made = grown_again(oval(size), kind, &stem, &SketchSpec::default(), (seed, None));
+                check_inside(&made, "oval");
+                if kind == RegionKind::Twigs {
+                    made.plant.axes.len() - made.drawn
+                } else {
+                    made.plant.organs.len()
+                }
+            };
+            let counts = [0.25, 0.5, 1.0].map(count);
+            for pair in counts.windows(2) {
+                let ratio = pair[1] as f64 / pair[0] as f64;
+                assert!((2.4..6.0).contains(&ratio), "{kind:?}, seed {seed}: {counts:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn smaller_leaves_are_more_leaves() {
+    let stem = [line((0.5, 0.0), (0.5, 0.9), 90)];
+    for seed in 1..=12 {
+        let count = |length: f64| {
+            let leaf = (seed, Some(length));
+            let made = grown_again(oval(0.6), RegionKind::Leaves, &stem, &SketchSpec::default(), leaf);
+            made.plant.organs.len()
+        };
+        let counts = [0.8, 0.4, 0.2].map(count);
+        let more = |w: &[usize]| (2.4..6.0).contains(&(w[1] as f64 / w[0] as f64));
+        assert!(counts.windows(2).all(more), "seed {seed}: {counts:?}");
+    }
+}
+
+#[test]
+fn a_twig_grows_to_the_nearest_point_of_the_contour() {
+    // A tall box: from any place of a stem in its middle the nearest point of the contour is level with it, at its side.
+    let tall: Vec<DVec2> =
+        [(0.3, 0.1), (0.7, 0.1), (0.7, 0.95), (0.3, 0.95)].map(|(x, y)| DVec2::new(x, y)).to_vec();
+    for (contour_pull, bearer_pull, rise) in [(1.0, 0.0, 0.0), (0.5, 0.5, 1.0), (0.65, 0.25, 0.25 / 0.65)] {
+        let fill = FillSpec { contour_pull, bearer_pull, memory: 0.0, tropism: 0.0, ..FillSpec::default() };
+        let spec = SketchSpec { fill, ..SketchSpec::default() };
+        let stem = [line((0.5, 0.0), (0.5, 0.94), 94)];
+        for seed in 1..=12 {
+            let made = grown_again(tall.clone(), RegionKind::Twigs, &stem, &spec, (seed, None));
+            let mut seen = 0;
+            for axis in made.plant.axes[made.drawn..].iter().filter(|a| a.order == 1) {
+                let p = &made.plant.nodes.position[axis.nodes.start as usize..axis.nodes.end as usize];
+                // The ends of the box are as near as its sides there; what has turned to the viewer seems steep.
+                let way = p[p.len() - 1] - p[0];
+                if p[0].y < 2.4 || p[p.len() - 1].y > 6.0 || way.z.abs() > 0.3 * way.x.abs() {
+                    continue;
+                }
+                seen += 1;
+                let slope = way.y / way.x.abs();
+                assert!((slope - rise).abs() < 0.2 + 0.25 * rise, "seed {seed}: {slope} for {rise}");
+                // It ends near the side of the contour.
+                let end = p[p.len() - 1].x.abs();
+                assert!((1.2..1.6).contains(&end), "seed {seed}: ends {end} m off the middle");
+            }
+            assert!(contour_pull < 1.0 || seen > 0, "seed {seed}");
+        }
+    }
+}
+
+#[test]
+fn named_sets_are_the_coefficients_of_the_paper() {
+    let stem = [line((0.5, 0.0), (0.5, 0.9), 90)];
+    let digest = |fill: FillSpec| {
+        let spec = SketchSpec { fill, ..SketchSpec::default() };
+        grown(oval(0.6), RegionKind::Twigs, &stem, &spec).plant.digest_hex()
+    };
+    let mut seen = Vec::new();
+    for set in PullSet::ALL {
+        let [contour_pull, bearer_pull, memory] = set.coefficients();
+        let named = digest(FillSpec { set: Some(set), ..FillSpec::default() });
+        let numbers = FillSpec { contour_pull, bearer_pull, memory, ..FillSpec::default() };
+        assert_eq!(named, digest(numbers), "{set:?}");
+        assert!(!seen.contains(&named), "{set:?} is like another");
+        seen.push(named);
+    }
 }
 
 proptest! {

@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use plant::{AxisId, AxisKind, Phyllotaxis, Plant};
 
 use super::crown::{MOST_TWIGS, count_of};
-use super::grow::{Site, add_axis, add_sites, attach, grow_toward};
+use super::grow::{Site, Turned, add_axis, add_sites, attach, grow_to_contour, grow_toward};
 use super::scatter::{scatter_front, scatter_rim};
 use super::volume::Volume;
 use crate::FillSpec;
@@ -21,12 +21,28 @@ pub(super) struct Twigs<'a> {
     pub(super) seed: Seed,
     pub(super) bearers: &'a [AxisId],
     pub(super) kind: AxisKind,
+    /// Twigs wanted.
+    pub(super) wanted: usize,
     /// Which contour of its bearer this is.
     pub(super) salt: u64,
 }
 
-// Table 1 of the paper: sketch (a) grows 45 twigs in four contours, sketch (f) 11 in one.
-const TWIGS: f64 = 11.0;
+/// Room of one twig, as the edge of a square over the height of its plant. Table 1 of the paper: sketch (a) grows 45
+/// twigs in four contours, sketch (f) 11 in one. In our drawings of them these enclose 0.303 and 0.085 of the plant's
+/// squared height: a twig for each 1/144.
+const ROOM: f64 = 1.0 / 12.0;
+
+/// Attraction points on a contour: 2.6 degrees of a circle apart.
+const ATTRACTORS: usize = 140;
+/// How near to the contour a twig ends, over the radius of the contour's greatest inscribed circle.
+const NEAR: f64 = 0.1;
+
+/// Twigs that fill a contour of some area, square metres, of a plant of some height, metres.
+pub(super) fn twigs_for(area: f64, height_m: f64, density: f64) -> usize {
+    let room = ROOM * height_m;
+    // Who draws a contour means a cluster.
+    count_of(density * area / (room * room), 4, MOST_TWIGS)
+}
 
 impl Twigs<'_> {
     /// Grows the twigs; returns how many. `sites` gets the places on bearers and twigs inside the contour.
@@ -41,7 +57,7 @@ impl Twigs<'_> {
         if sites.is_empty() {
             return 0;
         }
-        let wanted = count_of(TWIGS * self.spec.density, 2, MOST_TWIGS);
+        let wanted = self.wanted;
         let mut wobble = self.seed.stream(Draw::TwigPlace);
         let mut points = Vec::new();
         self.leaders(plant, sites, &mut wobble, &mut points);
@@ -49,17 +65,15 @@ impl Twigs<'_> {
         // Three in five from the bearers: crowns of young trees branch about once more.
         let first = count_of(0.62 * (wanted as f64), 1, MOST_TWIGS).saturating_sub(leaders).max(1);
         let starts = spaced(plant, sites, first);
+        let rim = v.rim(ATTRACTORS);
         let spiral = Phyllotaxis::default();
         let turn = self.seed.stream(Draw::Phyllotaxis).range(0.0, ops::TAU);
         for (rank, &i) in starts.iter().enumerate() {
             let azimuth = turn + spiral.azimuth(u32::try_from(rank).unwrap_or(u32::MAX), 0);
             let from = sites[i];
-            // Low ones stand off, those near the tip go on with their bearer.
-            let insertion = ops::lerp(1.0, 0.65, rank as f64 / first as f64);
-            let target = self.aim(from, azimuth, insertion);
-            self.shoot(plant, &mut sites[i], target, &mut wobble, &mut points).into_iter().for_each(|axis| {
+            if let Some(axis) = self.twig(plant, &mut sites[i], azimuth, &rim, &mut wobble, &mut points) {
                 add_sites(plant, axis, 1, from.path, sites);
-            });
+            }
         }
         let mut stream = self.seed.stream(Draw::Attractors);
         let margin = (0.1 * v.inradius).max(v.cell());
@@ -127,17 +141,28 @@ impl Twigs<'_> {
         }
     }
 
-    /// Where a twig from `from` goes: near the contour on the side that an azimuth about its bearer tells.
-    fn aim(&self, from: Site, azimuth: f64, insertion: f64) -> DVec3 {
+    /// One twig by Eq 2 to the contour, on the side that an azimuth about its bearer tells.
+    fn twig(
+        &self,
+        plant: &mut Plant,
+        site: &mut Site,
+        azimuth: f64,
+        rim: &[DVec2],
+        wobble: &mut base::Stream,
+        points: &mut Vec<DVec3>,
+    ) -> Option<AxisId> {
         let v = self.volume;
-        let across = from.tangent.cross(DVec3::Z).try_normalize().unwrap_or(DVec3::X);
-        let front = across.cross(from.tangent);
-        let ((sa, ca), (si, ci)) = (sin_cos(azimuth), sin_cos(insertion));
+        let across = site.tangent.cross(DVec3::Z).try_normalize().unwrap_or(DVec3::X);
+        let front = across.cross(site.tangent);
+        let (sa, ca) = sin_cos(azimuth);
         // Rather in the drawing's plane than towards the viewer: that is where the contour was drawn.
-        let side = (across * ca + front * (0.65 * sa)).normalize_or_zero();
-        let direction = from.tangent * ci + side * si;
-        let room = v.ray(from.at, direction, 2.6 * v.inradius);
-        from.at + direction * (0.92 * room)
+        let out = (across * ca + front * (0.65 * sa)).try_normalize().unwrap_or(across);
+        let contour = Turned::new(rim, (site.at, site.tangent), out);
+        let step = 0.12 * v.inradius;
+        let near = NEAR * v.inradius;
+        grow_to_contour(v, &self.spec, (site.at, site.tangent), &contour, (step, near), wobble, points);
+        let long = points.last().is_some_and(|end| end.distance(site.at) > 2.0 * step);
+        if long { add_axis(plant, site, self.kind, points) } else { None }
     }
 
     /// One twig by Eq 2, unless it would be no more than a bud.

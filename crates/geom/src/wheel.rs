@@ -1,0 +1,175 @@
+//! Outlines that point away from one place all round it.
+//!
+//! `spokes -> wheels`
+//!
+//! Mean shift on roots finds petals that begin in one place. Where they begin on a ring about a middle that nobody drew,
+//! no bandwidth that is a share of a petal fits: a wide one takes leaves for petals, a narrow one tears the ring. So the
+//! drawing says how far a petal looks for its neighbours, and all must point away from one place.
+
+use base::ops;
+use glam::DVec2;
+
+use crate::vector::Vector;
+
+/// Fewer petals could stand on a ring by chance: two pairs of leaves do.
+const FEWEST: usize = 5;
+/// Neighbours on a ring are this many times as far apart as the second nearest is, at most: 1 if they are even.
+const UNEVEN: f64 = 1.5;
+/// Cosine of the angle between neighbours, at least: of five petals it is 72 degrees, here 100.
+const APART: f64 = -0.17;
+/// A petal's own line passes the middle at most this share of its size aside: 11 degrees from its tip.
+const ASIDE: f64 = 0.2;
+/// The ring's radius over a petal's size, at most: a wider one is a wreath.
+const WIDEST: f64 = 0.8;
+/// The widest gap between petals, radians: a fifth of a turn and a half.
+const GAP: f64 = 1.9;
+
+/// An outline that may be a petal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spoke {
+    /// Where the pen began and ended: at its root or at its tip.
+    pub gap: DVec2,
+    /// Its middle.
+    pub middle: DVec2,
+    /// Its longest diameter.
+    pub size: f64,
+}
+
+/// A ring of petals.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wheel {
+    /// Where their lines meet.
+    pub centre: DVec2,
+    /// Rows of the spokes, ascending.
+    pub spokes: Vec<usize>,
+}
+
+/// The wheels among spokes: 5 or more neighbours that point away from one place, with no gap wider than 109 degrees,
+/// that begin no farther from it than 0.8 of their size. A spoke is of one wheel at most; what is not finite is of none.
+///
+/// Cost: pairs of spokes.
+///
+/// ```
+/// use glam::DVec2;
+/// let spoke = |k: u32| {
+///     let way = DVec2::from_angle(f64::from(k) * std::f64::consts::TAU / 8.0);
+///     geom::Spoke { gap: way * 0.3, middle: way * 0.6, size: 0.7 }
+/// };
+/// let spokes: Vec<_> = (0..8).map(spoke).collect();
+/// let wheels = geom::wheels(&spokes);
+/// assert_eq!(wheels.len(), 1);
+/// assert!(wheels[0].spokes.len() == 8 && wheels[0].centre.length() < 1e-9);
+/// assert!(geom::wheels(&spokes[..4]).is_empty());
+/// ```
+pub fn wheels(spokes: &[Spoke]) -> Vec<Wheel> {
+    if spokes.len() < FEWEST {
+        return Vec::new();
+    }
+    let groups = neighbours(spokes).into_iter().filter(|group| group.len() >= FEWEST);
+    groups.filter_map(|group| wheel(spokes, group)).collect()
+}
+
+/// Groups of outlines that are neighbours: on a ring each has one on either side, so the second nearest tells how far, and
+/// points nearly where they do. Petals of two flowers that touch point at one another.
+fn neighbours(spokes: &[Spoke]) -> Vec<Vec<usize>> {
+    let sound = |s: &Spoke| s.gap.usable() && s.middle.usable() && s.size.is_finite();
+    let sound: Vec<usize> = (0..spokes.len()).filter(|&i| sound(&spokes[i])).collect();
+    let n = sound.len();
+    let apart = |i: usize, j: usize| Vector::distance(spokes[sound[i]].middle, spokes[sound[j]].middle);
+    let second: Vec<f64> = (0..n)
+        .map(|i| {
+            let (mut first, mut second) = (f64::INFINITY, f64::INFINITY);
+            for d in (0..n).filter(|&j| j != i).map(|j| apart(i, j)) {
+                if d < first {
+                    (first, second) = (d, first);
+                } else {
+                    second = second.min(d);
+                }
+            }
+            second
+        })
+        .collect();
+    let way: Vec<DVec2> = sound.iter().map(|&i| along(&spokes[i]).unwrap_or_default()).collect();
+    let near =
+        |i: usize, j: usize| way[i].dot(way[j]) > APART && apart(i, j) <= UNEVEN * second[i].min(second[j]);
+    let mut group_of: Vec<Option<usize>> = vec![None; n];
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for start in 0..n {
+        if group_of[start].is_some() {
+            continue;
+        }
+        group_of[start] = Some(groups.len());
+        let mut group = vec![start];
+        let mut next = 0;
+        while let Some(&i) = group.get(next) {
+            next += 1;
+            for (j, of) in group_of.iter_mut().enumerate() {
+                if of.is_none() && near(i, j) {
+                    *of = Some(groups.len());
+                    group.push(j);
+                }
+            }
+        }
+        group.sort_unstable();
+        groups.push(group.into_iter().map(|i| sound[i]).collect());
+    }
+    groups
+}
+
+/// The wheel that a group is, but for a quarter of it that is something else.
+fn wheel(spokes: &[Spoke], mut group: Vec<usize>) -> Option<Wheel> {
+    let whole = group.len();
+    let mut centre = meeting(spokes, &group)?;
+    for _ in 0..3 {
+        let before = group.len();
+        group.retain(|&i| {
+            let b = &spokes[i];
+            along(b).is_some_and(|d| (b.middle - centre).perp_dot(d).abs() < ASIDE * b.size)
+        });
+        if group.len() < FEWEST || group.len() * 4 < whole * 3 {
+            return None;
+        }
+        if group.len() == before {
+            break;
+        }
+        centre = meeting(spokes, &group)?;
+    }
+    let rooted = |&i: &usize| {
+        let s = &spokes[i];
+        let (out, begun) = (s.middle.distance(centre), s.gap.distance(centre));
+        // A petal that was begun at its tip has its root as far on the other side of its middle.
+        let foot = if begun < out { begun } else { (2.0 * out - begun).max(0.0) };
+        foot < WIDEST * s.size && foot + 0.2 * s.size < out
+    };
+    if !group.iter().all(rooted) {
+        return None;
+    }
+    let mut angles: Vec<f64> =
+        group.iter().map(|&i| spokes[i].middle - centre).map(|v| ops::atan2(v.y, v.x)).collect();
+    base::sort_numbers(&mut angles);
+    let last = angles.first()? + ops::TAU - angles.last()?;
+    let widest = angles.windows(2).map(|w| w[1] - w[0]).fold(last, f64::max);
+    (widest < GAP).then_some(Wheel { centre, spokes: group })
+}
+
+/// The direction of an outline, from where it was begun, or towards it.
+fn along(spoke: &Spoke) -> Option<DVec2> {
+    (spoke.middle - spoke.gap).try_normalize()
+}
+
+/// The place that all lines pass nearest by (least squares); `None` where they are alike.
+fn meeting(spokes: &[Spoke], group: &[usize]) -> Option<DVec2> {
+    let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+    let mut right = DVec2::ZERO;
+    for &i in group {
+        let Some(across) = along(&spokes[i]).map(DVec2::perp) else { continue };
+        xx += across.x * across.x;
+        xy += across.x * across.y;
+        yy += across.y * across.y;
+        right += across * across.dot(spokes[i].middle);
+    }
+    let det = xx * yy - xy * xy;
+    // Of n lines all round it is n^2 / 4.
+    (det > 1e-3 * (xx + yy) * (xx + yy))
+        .then(|| DVec2::new((yy * right.x - xy * right.y) / det, (xx * right.y - xy * right.x) / det))
+}
