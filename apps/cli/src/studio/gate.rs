@@ -162,7 +162,7 @@ mod tests {
     fn counted(bytes: &mut [u8]) {
         static NEXT: AtomicU64 = AtomicU64::new(1);
         let n = NEXT.fetch_add(0x9E37_79B9_7F4A_7C15, Ordering::Relaxed);
-        bytes.iter_mut().enumerate().for_each(|(k, b)| *b = n.rotate_left(8 * (k as u32 % 8)) as u8);
+        bytes.iter_mut().zip(n.to_le_bytes().into_iter().cycle()).for_each(|(b, next)| *b = next);
     }
 
     #[test]

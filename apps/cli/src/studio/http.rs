@@ -433,7 +433,7 @@ mod tests {
                 let site = Site::new(Page::Folder(folder), address.port(), Some(project.clone())).unwrap();
                 let tls = lan::tls(IpAddr::from([127, 0, 0, 1])).unwrap();
                 let site =
-                    site.to_network(address.to_string(), Network::new(tls, Gate::new(lan::RANDOM), shown));
+                    site.in_network(address.to_string(), Network::new(tls, Gate::new(lan::RANDOM), shown));
                 site.invite();
                 std::thread::spawn(move || http::serve(&listener, &site, http::Limits::NETWORK));
                 let provider = Arc::new(rustls::crypto::ring::default_provider());

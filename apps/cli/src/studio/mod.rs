@@ -34,7 +34,7 @@ pub(crate) fn studio(args: &StudioArgs) -> Outcome {
     let port = listener.local_addr().map_err(|e| Failure::Bad(format!("no address: {e}")))?.port();
     let site = Site::new(page, port, opened.clone())?;
     if let Some(address) = address {
-        return to_network(&listener, address, site, opened.as_deref());
+        return serve_network(&listener, address, site, opened.as_deref());
     }
     let mut url = format!("http://127.0.0.1:{port}/");
     if let Some(name) = opened.as_deref().and_then(Path::file_name) {
@@ -50,11 +50,11 @@ pub(crate) fn studio(args: &StudioArgs) -> Outcome {
 }
 
 /// Serves the network until the process ends.
-fn to_network(listener: &TcpListener, address: IpAddr, site: Site, opened: Option<&Path>) -> Outcome {
+fn serve_network(listener: &TcpListener, address: IpAddr, site: Site, opened: Option<&Path>) -> Outcome {
     let own = listener.local_addr().map_err(|e| Failure::Bad(format!("no address: {e}")))?;
     let host = SocketAddr::new(address, own.port()).to_string();
     let network = Network::new(lan::tls(address)?, Gate::new(lan::RANDOM), lan::invite);
-    let site = site.to_network(host.clone(), network);
+    let site = site.in_network(host.clone(), network);
     say::line(&format!("The Studio is at https://{host}/ for the browsers of your network that you let in."));
     say::line(
         "Browsers warn that they do not know the certificate: this program made it just now, for this address.",

@@ -124,7 +124,7 @@ impl Site {
     }
 
     /// The same page for the network, under this host and no other.
-    pub(crate) fn to_network(self, host: String, network: Network) -> Self {
+    pub(crate) fn in_network(self, host: String, network: Network) -> Self {
         let own = Addresses { scheme: "https", hosts: vec![host], takes: MAX_PROJECT_BYTES };
         Self { own, network: Some(network), ..self }
     }
