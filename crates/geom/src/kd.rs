@@ -269,6 +269,11 @@ impl KdTree2 {
         self.0.nearest(p.extend(0.0), max)
     }
 
+    /// [`KdTree::nearest_distances`] in the plane.
+    pub fn nearest_distances(&self, p: DVec2, out: &mut [f64]) {
+        self.0.nearest_distances(p.extend(0.0), out);
+    }
+
     /// As [`KdTree::within`].
     pub fn within(&self, p: DVec2, r: f64, out: &mut Vec<usize>) {
         self.0.within(p.extend(0.0), r, out);
