@@ -2,7 +2,8 @@
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { add, begin, count, data, sample, settled, until } from './journeys.mjs';
+import { inflateRawSync } from 'node:zlib';
+import { add, begin, count, exported, sample, settled, until } from './journeys.mjs';
 
 /** Mean red, green, blue (0 to 255) and smallest alpha of a part of a picture file; shares of its width and height. */
 async function mean(page, bytes, [x0, y0, x1, y1] = [0, 0, 1, 1]) {
@@ -401,7 +402,208 @@ async function films({ page, url, context }) {
   assert.equal(await count(page, 'plants'), 1);
 }
 
+/** What a binary glTF file holds: triangles, vertices and meshes that are drawn; bytes of its meshes. */
+function heldBy(glb) {
+  const length = glb.readUInt32LE(12);
+  const file = JSON.parse(glb.subarray(20, 20 + length).toString());
+  const held = { triangles: 0, vertices: 0, draws: 0, bytes: 0 };
+  for (const { mesh } of file.nodes.filter((n) => n.mesh !== undefined)) {
+    const [{ attributes, indices }] = file.meshes[mesh].primitives;
+    held.triangles += file.accessors[indices].count / 3;
+    held.vertices += file.accessors[attributes.POSITION].count;
+    held.draws += 1;
+  }
+  for (const { target, byteLength } of file.bufferViews) if (target) held.bytes += byteLength;
+  return held;
+}
+
+/** A file of a zip, by its name. */
+function unzipped(zip, name) {
+  const end = zip.lastIndexOf('PK\x05\x06', undefined, 'latin1');
+  for (let at = zip.readUInt32LE(end + 16); zip.readUInt32LE(at) === 0x02014b50; ) {
+    const [nameLength, extra, comment] = [28, 30, 32].map((k) => zip.readUInt16LE(at + k));
+    if (zip.subarray(at + 46, at + 46 + nameLength).toString() === name) {
+      const local = zip.readUInt32LE(at + 42);
+      const from = local + 30 + zip.readUInt16LE(local + 26) + zip.readUInt16LE(local + 28);
+      const bytes = zip.subarray(from, from + zip.readUInt32LE(at + 20));
+      return zip.readUInt16LE(at + 10) === 0 ? bytes : inflateRawSync(bytes);
+    }
+    at += 46 + nameLength + extra + comment;
+  }
+  throw new Error(`no ${name} in the zip`);
+}
+
+/** Waits until what is asked for is seen, and says the figures. */
+async function lookedAt(page) {
+  await page.waitForFunction(() => {
+    const { wanted, shown } = document.querySelector('#b-exportview').dataset;
+    const { dataset } = document.body;
+    return wanted === shown && dataset.wanted === dataset.revision;
+  });
+  return page.evaluate(() => {
+    const of = (row) =>
+      Object.fromEntries(
+        [...row.querySelectorAll('[data-figure]')].map((c) => [c.dataset.figure, Number(c.dataset.value)]),
+      );
+    const rows = [...document.querySelectorAll('#b-exportview tr[data-part]')];
+    const { seen } = document.querySelector('#b-exportview').dataset;
+    const file = document.querySelector('#b-exportview [data-figure=file]').dataset.value;
+    return {
+      parts: Object.fromEntries(rows.map((r) => [r.dataset.part, of(r)])),
+      seen: Number(seen),
+      file: Number(file),
+    };
+  });
+}
+
+async function slide(page, key, value) {
+  await page.locator(`[data-exported=${key}]`).evaluate((e, v) => {
+    e.value = v;
+    e.dispatchEvent(new Event('input', { bubbles: true }));
+  }, String(value));
+}
+
+/** How far the pictures of two moments are apart, of a part of the view. */
+async function sways(page, part) {
+  const a = await page.locator('.view canvas').screenshot();
+  await page.waitForTimeout(1300);
+  const b = await page.locator('.view canvas').screenshot();
+  return page.evaluate(
+    async ([first, second, [x0, y0, x1, y1]]) => {
+      const pixels = async (base64) => {
+        const raw = Uint8Array.from(atob(base64), (ch) => ch.charCodeAt(0));
+        const image = await createImageBitmap(new Blob([raw]));
+        const canvas = new OffscreenCanvas(image.width, image.height);
+        const context = canvas.getContext('2d');
+        context.drawImage(image, 0, 0);
+        const [w, h] = [image.width, image.height];
+        return context.getImageData(...[x0 * w, y0 * h, (x1 - x0) * w, (y1 - y0) * h].map(Math.floor)).data;
+      };
+      const [p, q] = [await pixels(first), await pixels(second)];
+      let differ = 0;
+      for (let i = 0; i < p.length; i += 4)
+        if (Math.abs(p[i] - q[i]) + Math.abs(p[i + 1] - q[i + 1]) > 40) differ += 1;
+      return differ;
+    },
+    [a.toString('base64'), b.toString('base64'), part],
+  );
+}
+
+async function preview({ page, url, shot }) {
+  await begin(page, url);
+  await sample(page);
+  await settled(page);
+  await palette(page, 'export-view');
+  await page.locator('#b-exportview').waitFor();
+  // As it is shown: the figures are those of the file.
+  const whole = await lookedAt(page);
+  const glb = await exported(page, 'glb', 1, undefined, false);
+  const { bytes: geometry, ...counts } = heldBy(glb.bytes);
+  const { triangles, vertices, draws, bytes } = whole.parts.all;
+  assert.deepEqual({ triangles, vertices, draws, bytes }, { ...counts, bytes: geometry });
+  assert.equal(whole.file, glb.bytes.length, 'the size of the file was counted');
+  assert.equal(whole.seen, triangles, 'the view shows what is counted');
+  assert.ok(whole.parts.petal.triangles > 0 && whole.parts.leaf.triangles > 0, JSON.stringify(whole.parts));
+  // Still, then in the wind.
+  await rest(page);
+  const [crown, foot] = [
+    [0.1, 0.1, 0.85, 0.7],
+    [0.1, 0.88, 0.85, 1],
+  ];
+  assert.equal(await sways(page, crown), 0, 'nothing moves without wind');
+  await slide(page, 'wind', 1);
+  const windy = await lookedAt(page);
+  assert.ok(windy.file > whole.file, 'wind takes room in the file');
+  await page.waitForTimeout(1200);
+  assert.ok((await sways(page, crown)) > 300, 'the flower sways');
+  assert.ok((await sways(page, foot)) < 60, 'its foot stands');
+  await shot('export-wind');
+  const blown = await exported(page, 'glb', 1, undefined, true);
+  assert.equal(windy.parts.all.bytes, heldBy(blown.bytes).bytes, 'what wind takes is counted');
+  // Coarser: fewer triangles are shown and told, and the file of that level holds as many.
+  await slide(page, 'level', 2);
+  const coarse = await lookedAt(page);
+  assert.ok(coarse.seen < 0.6 * windy.seen, `${coarse.seen} of ${windy.seen} triangles`);
+  assert.equal(coarse.seen, coarse.parts.all.triangles);
+  const levels = await exported(page, 'glb', 3, undefined, true);
+  const level = unzipped(levels.bytes, 'plant_LOD2.glb');
+  assert.equal(coarse.parts.all.triangles, heldBy(level).triangles);
+  assert.equal(coarse.file, level.length);
+  // Formats without wind say so; a zip is counted as one.
+  await page.selectOption('[data-exported=format]', 'obj');
+  await slide(page, 'level', 0);
+  const obj = await lookedAt(page);
+  assert.equal(await page.locator('[data-exported=wind]').isDisabled(), true);
+  const zip = await exported(page, 'obj', 1);
+  assert.equal(obj.file, zip.bytes.length);
+  assert.equal(obj.parts.all.triangles, triangles);
+  await page.selectOption('[data-exported=format]', 'glb');
+  await page.click('#b-exportview-close');
+  await page.locator('#b-exportview').waitFor({ state: 'detached' });
+  await page.waitForTimeout(800);
+  assert.equal(await sways(page, crown), 0, 'the plant itself stands still');
+}
+
+async function scene({ page, url, shot }) {
+  await page.emulateMedia({ reducedMotion: 'reduce' });
+  await begin(page, url);
+  await add(page, 'tree', 'hazel');
+  await settled(page);
+  const one = await count(page, 'triangles');
+  await palette(page, 'export-view');
+  const alone = await lookedAt(page);
+  assert.equal(alone.parts.all.triangles, one);
+  // The age is that of the tree's own panel, one step of undo.
+  const age = page.locator('#b-exportview [data-path=age]');
+  await age.evaluate((e) => {
+    e.value = '3';
+    e.dispatchEvent(new Event('input', { bubbles: true }));
+    e.dispatchEvent(new Event('change', { bubbles: true }));
+  });
+  await page.waitForFunction((n) => Number(document.body.dataset.triangles) < n, one);
+  await settled(page);
+  const young = await lookedAt(page);
+  assert.equal(young.parts.all.triangles, await count(page, 'triangles'));
+  await page.click('#b-undo');
+  await page.waitForFunction((n) => Number(document.body.dataset.triangles) === n, one);
+  await lookedAt(page);
+  assert.equal(await age.count(), 1, 'the age is still lent');
+  // Less motion: the tree leans and does not sway.
+  await slide(page, 'wind', 0);
+  await lookedAt(page);
+  await rest(page);
+  const still = await page.locator('.view canvas').screenshot();
+  await slide(page, 'wind', 1);
+  await lookedAt(page);
+  await page.waitForTimeout(1500);
+  assert.equal(await sways(page, [0.1, 0.1, 0.85, 0.9]), 0, 'less motion was asked for');
+  const leans = await page.locator('.view canvas').screenshot();
+  assert.ok(!leans.equals(still), 'it leans');
+  await shot('export-calm');
+  await page.click('#b-exportview-close');
+  assert.equal(await page.locator('#b-maker [data-path=age]').count(), 1, 'the age is back');
+  // Copies are drawn twice and written once.
+  await page.click('.scene .fold');
+  await page.click('[id^=b-more-]');
+  await page.click('.menu >> text=Duplicate');
+  await until(page, 'plants', ['is', 2], 'a copy');
+  await settled(page);
+  await palette(page, 'export-view');
+  await page.selectOption('[data-exported=what]', 'scene');
+  await slide(page, 'wind', 0);
+  const two = await lookedAt(page);
+  assert.deepEqual([two.seen, two.parts.all.triangles], [2 * one, 2 * one]);
+  assert.equal(two.parts.all.draws, 2 * alone.parts.all.draws);
+  assert.equal(two.parts.all.bytes, alone.parts.all.bytes, 'its geometry is there once');
+  assert.ok(two.file < alone.file + 4000, `${two.file} bytes of two, ${alone.file} of one`);
+  const file = await exported(page, 'glb', 1, 'scene', false);
+  assert.equal(two.file, file.bytes.length);
+  await shot('export-copies');
+}
+
 export const staging = [
+  ['an export is seen before it is written: levels, wind, figures', preview],
+  ['an export of a tree is seen at its age, and stands still for whom it should', scene],
   ['the stage: presets, ground, background, quality', stage],
   ['the camera: to the pointer, sides, lens, kept, on foot', camera],
   ['a picture of any size, with transparency', picture],

@@ -272,6 +272,7 @@ function viewTools(buttons: Buttons, page: Page): HTMLElement {
     small('stage', 'sun'),
     small('camera', 'camera'),
     small('film', 'picture'),
+    small('export-view', 'preview'),
     small('headset', 'headset'),
   );
 }

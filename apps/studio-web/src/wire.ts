@@ -395,6 +395,34 @@ export type ExportRequest = {
   wind: boolean;
 };
 
+/** What an export would write of one level of detail. */
+export type ExportView = {
+  /** Meshes that a program draws to show all of it. */
+  draws: number;
+  /** Bytes of the file with this level alone, or of its zip: it was written and counted. */
+  file_bytes: number;
+  /** The level; 0 is the finest. */
+  level: number;
+  /** Its meshes; copies share theirs. */
+  models: PlantView[];
+  /** What it holds, by what it is of. */
+  parts: PartFigures[];
+  /** Which of them each plant is. */
+  plants: ExportedPlant[];
+  /** Their bytes as PNG. */
+  texture_bytes: number;
+  /** Textures in it or beside it. */
+  textures: number;
+};
+
+/** A plant of an export. */
+export type ExportedPlant = {
+  /** Row of its meshes in [`ExportView::models`]. */
+  model: number;
+  /** Its name within the document, or [`GUEST`]. */
+  plant: PlantId;
+};
+
 /** Vertices and faces of a mesh. */
 export type FaceCounts = {
   /** Faces. */
@@ -1059,6 +1087,20 @@ export type Opened = {
   names: string[];
   /** What is odd about it. */
   warnings: string[];
+};
+
+/** Figures of all meshes of one kind. */
+export type PartFigures = {
+  /** Bytes of columns and corners, as binary glTF and graphics cards hold them; of copies in binary glTF once. */
+  bytes: number;
+  /** Meshes that a program draws, those of copies as often as they stand there; 0 where the file is a single mesh. */
+  draws: number;
+  /** What they are of: bark, leaf, petal, ... */
+  kind: string;
+  /** Triangles, those of copies as often as they stand there. */
+  triangles: number;
+  /** Vertices, those of copies as often as they stand there. */
+  vertices: number;
 };
 
 /** One mesh. */

@@ -143,14 +143,8 @@ impl Workspace {
 
     /// A column of a mesh of the last view; empty for what is not there.
     pub fn column(&self, plant: PlantId, part: usize, column: Column) -> &[f32] {
-        let Some(part) = self.model(plant).and_then(|m| m.parts.get(part)) else { return &[] };
-        let mesh = &part.mesh;
-        match column {
-            Column::Positions => mesh.positions.as_flattened(),
-            Column::Normals => mesh.normals.as_flattened(),
-            Column::Uvs => mesh.uvs.as_flattened(),
-            Column::Colors => mesh.colors.as_flattened(),
-        }
+        let part = self.model(plant).and_then(|m| m.parts.get(part));
+        part.map_or(&[], |p| column.of(&p.mesh))
     }
 
     /// Three indices a triangle of a mesh of the last view.

@@ -41,6 +41,17 @@ const SNAP = { m: 0.25, deg: 15, size: 0.1 } as const;
 /** So much of a plant may be in the ground before it is raised onto it, where the ground hides what is in it. */
 const SUNK = 0.06;
 
+/** Meshes in the place of the plants, by the plants' names. */
+export interface StandIn {
+  readonly groups: ReadonlyMap<number, THREE.Group>;
+  /** It is drawn again and again. */
+  readonly moves: boolean;
+  tick(seconds: number): void;
+  /** Takes its materials anew. */
+  relook(): void;
+  dispose(): void;
+}
+
 export class PlantView {
   readonly element = document.createElement('div');
   private readonly renderer: THREE.WebGLRenderer;
@@ -51,6 +62,7 @@ export class PlantView {
   private shapes = new Map<number, Shapes>();
   /** A model that is viewed instead of the scene. */
   private guest: PlantMeshes | undefined;
+  private standIn: StandIn | undefined;
   private states: PlantState[] = [];
   private current: number | null = null;
   /** Holds what is shown of the plant, at the size of the stage. */
@@ -242,11 +254,13 @@ export class PlantView {
 
   setWire(wire: boolean): void {
     this.looks.setWire(wire);
+    this.standIn?.relook();
     this.redraw();
   }
 
   /** A new worker names textures and meshes anew. */
   forget(): void {
+    this.setStandIn(undefined);
     this.looks.forget();
     this.shapes.clear();
   }
@@ -341,13 +355,38 @@ export class PlantView {
     if (whole || !this.slow) this.redraw();
   }
 
+  /** What stands in the place of plants from now on; none shows the plants again. It is given what they look like. */
+  setStandIn(make: ((looks: Looks) => StandIn) | undefined): void {
+    this.standIn?.dispose();
+    this.standIn = make?.(this.looks);
+    if (this.guest) {
+      const other = this.standIn?.groups.get(this.guest.view?.id ?? -1);
+      if (other) this.guest.place.add(other);
+      this.guest.group.visible = !other;
+    }
+    this.stand();
+    this.stage.touch();
+    this.redraw();
+  }
+
+  /** The stand-in is another than it was. */
+  stir(): void {
+    this.stage.touch();
+    this.redraw();
+  }
+
   private stand(): void {
     const alone = this.front || this.guest !== undefined;
     for (const [id, plant] of this.plants) {
       const state = this.states.find((s) => s.id === id);
       const mine = id === this.current;
       plant.place.visible = this.guest === undefined && (mine || !alone) && !(state?.hidden ?? false);
-      plant.group.visible = !(this.boned && mine);
+      const other = this.standIn?.groups.get(id);
+      if (other) {
+        plant.place.add(other);
+        other.visible = !(this.boned && mine);
+      }
+      plant.group.visible = !(this.boned && mine) && !other;
       if (!state || (this.dragging && mine)) continue;
       // The front view is the drawing, wherever the plant stands.
       const [x, y, z] = this.front ? [0, 0, 0] : state.position;
@@ -761,6 +800,7 @@ export class PlantView {
     this.stage.sharpen(fine ? SHADOW.fine : SHADOW.fast);
     this.looks.setMatt(!fine);
     for (const plant of this.all) plant.relook();
+    this.standIn?.relook();
     this.element.dataset['quality'] = fine ? 'fine' : 'fast';
   }
 
@@ -933,7 +973,7 @@ export class PlantView {
       if (this.slow) this.spare(now);
       this.render();
       this.rendered = performance.now();
-      if (!there) this.redraw();
+      if (!there || this.standIn?.moves) this.redraw();
     });
   }
 
@@ -960,6 +1000,9 @@ export class PlantView {
     if (this.immersing) return;
     const { camera, pipeline } = this;
     this.guides.face(camera);
+    this.standIn?.tick(performance.now() / 1000);
+    // Shadows that move with it are for a graphics card.
+    if (this.standIn?.moves && !this.slow) this.renderer.shadowMap.needsUpdate = true;
     const through = pipeline && (this.isFine || (this.stage.current.blur > 0 && !this.front));
     this.stage.prepare(!through, this.rig.far.aspect, this.holder);
     if (through) {
