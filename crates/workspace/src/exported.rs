@@ -1,13 +1,14 @@
 //! An export that is looked at before it is written: its meshes at one level of detail, and figures that were counted.
 
+use burgeon::Run;
 use burgeon::document::PlantId;
-use burgeon::formats::{ModelFormat, PngCache};
+use burgeon::formats::ModelFormat;
 use burgeon::mesh::{Model, TriMesh};
-use burgeon::{Run, SceneEvaluator};
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::export::{Level, MOST_LEVELS, chosen, made, packed, scene_files, written};
+use crate::looked::Looked;
 use crate::view::GUEST;
 use crate::{Column, ExportRequest, PlantView, Workspace, WorkspaceError};
 
@@ -54,15 +55,6 @@ pub struct ExportedPlant {
     pub plant: PlantId,
     /// Row of its meshes in [`ExportView::models`].
     pub model: usize,
-}
-
-/// What is kept of an export that is looked at.
-#[derive(Debug, Default)]
-pub(crate) struct Looked {
-    /// With wind, of the document at this revision: another level is not skinned twice.
-    blown: Option<(u64, SceneEvaluator)>,
-    models: Vec<Model>,
-    pngs: PngCache,
 }
 
 impl Workspace {

@@ -25,6 +25,7 @@ mod exported;
 mod files;
 mod held;
 mod kept;
+mod looked;
 mod scatter;
 mod shaping;
 mod state;

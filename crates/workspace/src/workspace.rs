@@ -15,9 +15,9 @@ use burgeon::{Evaluator, ItemReport, Preset, Run, SceneEvaluator, tree_settings}
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::exported::Looked;
 use crate::held::Held;
 use crate::kept::Kept;
+use crate::looked::Looked;
 use crate::view::{Outcome, Textures};
 use crate::{DocumentState, Scatter, WorkspaceError};
 
