@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { inflateRawSync } from 'node:zlib';
-import { add, begin, count, exported, sample, settled, until } from './journeys.mjs';
+import { add, begin, count, data, exported, sample, settled, until } from './journeys.mjs';
 
 /** Mean red, green, blue (0 to 255) and smallest alpha of a part of a picture file; shares of its width and height. */
 async function mean(page, bytes, [x0, y0, x1, y1] = [0, 0, 1, 1]) {
@@ -601,7 +601,144 @@ async function scene({ page, url, shot }) {
   await shot('export-copies');
 }
 
+/** A point of the view over which the pointer becomes this cursor; none if there is none. */
+async function under(page, cursor) {
+  const box = await page.locator('.view canvas').boundingBox();
+  for (let k = 0; k < 260; k += 1) {
+    const [x, y] = [
+      box.x + box.width * (0.12 + (0.7 * (k % 20)) / 20),
+      box.y + box.height * (0.2 + (0.7 * Math.floor(k / 20)) / 13),
+    ];
+    await page.mouse.move(x, y);
+    const now = await page.locator('.view canvas').evaluate((e) => e.style.cursor);
+    if (now === cursor) return [x, y];
+  }
+  return undefined;
+}
+
+/** Obstacles are dragged, and the tree grows when they are let go. */
+async function obstacles({ page, url, shot }) {
+  await begin(page, url);
+  await add(page, 'tree', 'hazel');
+  await settled(page);
+  await page.click('[data-obstacle=ball]');
+  await page.locator('[data-path=o0centre0]').waitFor();
+  // At the edge of the crown, so that most of it has no leaf before it.
+  for (const [path, value] of [
+    ['o0centre0', '1.9'],
+    ['o0centre1', '1.2'],
+  ]) {
+    await page.locator(`[data-path=${path}]`).fill(value);
+    await page.locator(`[data-path=${path}]`).press('Enter');
+    await page.waitForFunction(
+      ([p, v]) => document.querySelector(`[data-path=${p}]`)?.value === v,
+      [path, value],
+    );
+    await settled(page);
+  }
+  await rest(page);
+  const before = await settled(page);
+  const centre = () =>
+    page.evaluate(() =>
+      [0, 1, 2].map((i) => Number(document.querySelector(`[data-path=o0centre${i}]`).value)),
+    );
+  const grip = await under(page, 'grab');
+  assert.ok(grip, 'the ball can be taken');
+  const [x, y] = grip;
+  const eye = await page.locator('.view').getAttribute('data-eye');
+  const drag = async (dx, dy) => {
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + dx, y + dy, { steps: 5 });
+    await page.waitForTimeout(900);
+  };
+  // Escape takes it back.
+  await drag(60, 0);
+  await shot('obstacle-dragged');
+  await page.keyboard.press('Escape');
+  await page.mouse.up();
+  assert.deepEqual(await centre(), [1.9, 1.2, 0], 'nothing was done');
+  assert.equal(await data(page, 'digest'), before);
+  // Along the ground: the tree grows anew when it is let go, and not before.
+  await drag(110, 0);
+  assert.equal(await data(page, 'digest'), before, 'while it is dragged the tree stays');
+  const now = JSON.parse(await page.locator('.view').getAttribute('data-eye'));
+  assert.ok(apart(now.position, JSON.parse(eye).position) < 0.002, 'and the camera');
+  await page.mouse.up();
+  await page.waitForFunction((d) => document.body.dataset.digest !== d, before);
+  const after = await settled(page);
+  const [cx, cy] = await centre();
+  assert.ok(cx > 2.3, `it went to the right: ${cx}`);
+  assert.equal(cy, 1.2, 'along the ground');
+  assert.notEqual(after, before, 'it is out of the way');
+  assert.match(await page.locator('#b-undo').getAttribute('title'), /move an obstacle/);
+  await shot('obstacle-let-go');
+  await page.click('#b-undo');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, before);
+  assert.deepEqual(await centre(), [1.9, 1.2, 0], 'one step takes it back');
+  // With Shift, up.
+  await rest(page);
+  const again = await under(page, 'grab');
+  await page.mouse.move(...again);
+  await page.keyboard.down('Shift');
+  await page.mouse.down();
+  await page.mouse.move(again[0] + 4, again[1] - 60, { steps: 5 });
+  await page.mouse.up();
+  await page.keyboard.up('Shift');
+  await page.waitForFunction(() => Number(document.querySelector('[data-path=o0centre1]').value) > 1.3);
+  const up = await centre();
+  assert.deepEqual([up[0], up[2]], [1.9, 0], 'straight up');
+}
+
+/** A plant whose place is locked stays there. */
+async function fixed({ page, url, shot }) {
+  await begin(page, url);
+  await add(page, 'flower');
+  await settled(page);
+  await page.click('.scene .fold');
+  const place = () =>
+    page.evaluate(() => ['nx', 'nz'].map((k) => document.querySelector(`[data-key=${k}]`).value));
+  await page.keyboard.press('g');
+  await page.click('#b-fix');
+  await page.locator('#b-fix[aria-pressed=true]').waitFor();
+  await shot('place-locked');
+  for (const key of ['nx', 'nz', 'nyaw', 'nscale'])
+    assert.equal(await page.locator(`[data-key=${key}]`).isDisabled(), true, key);
+  assert.equal(await page.locator('[data-gizmo=translate]').isDisabled(), true);
+  const [was, undo] = [await place(), await page.locator('#b-undo').getAttribute('title')];
+  assert.match(undo, /lock the place/);
+  await rest(page);
+  const box = await page.locator('.view canvas').boundingBox();
+  const pull = async () => {
+    for (let k = 0; k < 60; k += 1) {
+      const [px, py] = [
+        box.x + box.width * 0.5 + 30 + 3 * (k % 20),
+        box.y + box.height * (0.6 + 0.06 * Math.floor(k / 20)),
+      ];
+      await page.mouse.move(px, py);
+      await page.mouse.down();
+      await page.mouse.move(px + 60, py, { steps: 2 });
+      await page.mouse.up();
+      await page.mouse.move(px + 60, py);
+    }
+  };
+  await pull();
+  assert.deepEqual(await place(), was, 'the gizmo is gone');
+  assert.equal(await page.locator('#b-undo').getAttribute('title'), undo);
+  // It is kept, and can be unlocked.
+  await page.reload();
+  await page.waitForFunction(() => document.body.dataset.ready === 'true');
+  await settled(page);
+  await page.click('.scene .fold');
+  assert.equal(await page.locator('#b-fix').getAttribute('aria-pressed'), 'true', 'it is kept');
+  await page.click('#b-fix');
+  await page.locator('#b-fix[aria-pressed=false]').waitFor();
+  assert.equal(await page.locator('[data-key=nx]').isDisabled(), false);
+}
+
 export const staging = [
+  ['an obstacle is dragged and the tree grows when it is let go', obstacles],
+  ['a plant whose place is locked stays', fixed],
   ['an export is seen before it is written: levels, wind, figures', preview],
   ['an export of a tree is seen at its age, and stands still for whom it should', scene],
   ['the stage: presets, ground, background, quality', stage],

@@ -339,6 +339,7 @@ export class App implements Page {
     view.onPlace = (plant, position, yaw_deg, scale) =>
       session.stage({ plant: [plant, { place: { position, yaw_deg, scale } }] });
     view.onPlaceEnd = () => session.commit();
+    view.onObstacle = (plant, row, by) => session.run({ tree: [plant, { 'move-obstacle': [row, by] }] });
     view.onPick = (plant) => session.select(plant);
     view.onContext = (lost) => {
       if (lost) note(t('note.context'), 'bad');

@@ -86,6 +86,7 @@ export const CODES = {
   "photo-not-png": [],
   "photo-too-far": [],
   "photo-too-large": [],
+  "place-locked": [],
   "place-too-far": [],
   "plant-gone": [],
   "plant-not-made": ["name"],
@@ -1207,6 +1208,10 @@ export type PlantCommand =
   | /** Sets where it stands. */
   {
     place: Placement;
+  }
+  | /** Keeps it where it stands, or no longer. */
+  {
+    fix: boolean;
   };
 
 /** Names one plant for as long as the document lives. */
@@ -1216,6 +1221,8 @@ export type PlantId = number;
 export type PlantState = {
   /** Edits by hand, in the order in which they are done. */
   edits: EditState[];
+  /** Whether it stays where it stands. */
+  fixed: boolean;
   /** Of a flower. */
   flower: 
     | FlowerState
@@ -1288,6 +1295,8 @@ export type PlantView = {
   parts: PartView[];
   /** What was done again. */
   stages: string[];
+  /** What was not as one might expect of it. */
+  warnings: WarningView[];
 };
 
 /** One interpretation of a whole drawing. */
@@ -1881,6 +1890,10 @@ export type TreeCommand =
   {
     'set-obstacle': [number, NamedObstacle];
   }
+  | /** Moves the obstacle of a row by so many metres, in the coordinates of the tree. */
+  {
+    'move-obstacle': [number, [number, number, number]];
+  }
   | /** Takes the obstacle of a row away. */
   {
     'remove-obstacle': number;
@@ -1950,4 +1963,12 @@ export type ViewPlane = {
   right: [number, number, number];
   /** Upwards as the viewer sees it; made to stand at a right angle to `right`. */
   up: [number, number, number];
+};
+
+/** What was not as one might expect. */
+export type WarningView = {
+  /** A word that stays, such as `unlike-a-plant`. */
+  code: string;
+  /** A sentence in English. */
+  message: string;
 };

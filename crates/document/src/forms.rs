@@ -28,6 +28,8 @@ pub(crate) struct PlantV4 {
     #[serde(default, skip_serializing_if = "is_false")]
     pub(crate) locked: bool,
     #[serde(default, skip_serializing_if = "is_false")]
+    pub(crate) fixed: bool,
+    #[serde(default, skip_serializing_if = "is_false")]
     pub(crate) hidden: bool,
     /// Metres.
     #[serde(default)]
@@ -55,7 +57,8 @@ impl From<DocumentV3> for DocumentV4 {
     fn from(v3: DocumentV3) -> Self {
         let plants = v3.plants.into_iter().map(|p| {
             let PlantV3 { name, seed, locked, hidden, position, yaw_deg, scale, maker } = p;
-            PlantV4 { name, seed, locked, hidden, position, yaw_deg, scale, maker, edits: Vec::new() }
+            let (fixed, edits) = (false, Vec::new());
+            PlantV4 { name, seed, locked, fixed, hidden, position, yaw_deg, scale, maker, edits }
         });
         Self { name: v3.name, plants: plants.collect() }
     }

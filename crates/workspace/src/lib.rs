@@ -46,5 +46,7 @@ pub use state::{
     DocumentState, EditState, FlowerState, LeafState, MakerWord, NamedShape, ObstacleView, PhotoState,
     PlantState, SketchState, StrokeState, TreeState,
 };
-pub use view::{Column, Front, GUEST, MaterialView, PartView, PlantView, SceneView, TextureView};
+pub use view::{
+    Column, Front, GUEST, MaterialView, PartView, PlantView, SceneView, TextureView, WarningView,
+};
 pub use workspace::{Action, NewMaker, Workspace};

@@ -71,6 +71,8 @@ pub struct PlantView {
     pub error: Option<Refusal>,
     /// The entry of the report.
     pub item: Option<ItemReport>,
+    /// What was not as one might expect of it.
+    pub warnings: Vec<WarningView>,
     /// What was done again.
     pub stages: Vec<&'static str>,
     /// How a drawing lies in the front view.
@@ -104,6 +106,15 @@ impl From<FrontView> for Front {
     fn from(front: FrontView) -> Self {
         Self { metres_per_unit: front.metres_per_unit, x: front.origin.x, y: front.origin.y }
     }
+}
+
+/// What was not as one might expect.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct WarningView {
+    /// A word that stays, such as `unlike-a-plant`.
+    pub code: &'static str,
+    /// A sentence in English.
+    pub message: String,
 }
 
 /// One mesh.
@@ -186,6 +197,7 @@ impl PlantView {
             mesh: None,
             error: None,
             item: None,
+            warnings: Vec::new(),
             stages: Vec::new(),
             front: None,
             days: None,

@@ -28,6 +28,7 @@ export const zhErrors: Record<keyof typeof CODES, string> = {
   'other-maker': '这株植物是{found}，不是{wanted}',
   'no-leaf-to-lend': '那株植物没有可借的叶：请选择测得的叶或草图',
   'no-photo': '绘图下没有照片',
+  'place-locked': '这株植物的位置已锁定：请先解锁，再移动、旋转或缩放',
   'nothing-to-do': '没有可做的改动',
   'too-far': '笔画不能移得那么远',
   full: '文档里的{what}已满，请新建一个',

@@ -9,6 +9,7 @@ import { Rig, type Side } from './camera';
 import type { Handles } from './gizmo';
 import { type Guide, Guides } from './guides';
 import type { StageSetting } from './moods';
+import { dragObstacles } from './obstacles';
 import { fillShapes, Looks, PlantMeshes, type Shapes } from './plant';
 import type { Effects, Pipeline } from './post';
 import { drawnBySoftware, Pace } from './quality';
@@ -121,6 +122,7 @@ export class PlantView {
   onPlaceBegin: () => void = () => {};
   onPlace: (plant: number, position: [number, number, number], yaw: number, scale: number) => void = () => {};
   onPlaceEnd: () => void = () => {};
+  onObstacle: (plant: number, row: number, by: [number, number, number]) => void = () => {};
 
   /** Throws where the browser has no WebGL 2. */
   constructor(label: string) {
@@ -138,6 +140,26 @@ export class PlantView {
     const canvas = this.renderer.domElement;
     canvas.tabIndex = 0;
     canvas.setAttribute('role', 'img');
+    // Before the camera: what takes an obstacle turns no view.
+    dragObstacles(canvas, {
+      at: (x, y) => this.obstacleAt(x, y),
+      over: (x, y) => this.obstacleUnder(x, y) !== undefined,
+      ray: (x, y) => {
+        this.aim(x, y);
+        return this.caster.ray;
+      },
+      hold: (on) => {
+        this.dragging = on;
+        if (!on) this.fitStage();
+      },
+      redraw: () => {
+        this.stage.touch();
+        this.redraw();
+      },
+      moved: (row, by) => {
+        if (this.current !== null) this.onObstacle(this.current, row, by);
+      },
+    });
     this.setLabel(label);
     this.element.append(canvas);
     this.stage.scene.add(this.holder);
@@ -488,7 +510,8 @@ export class PlantView {
 
   private showHandles(): void {
     if (this.dragging) return;
-    const plant = this.front || this.guest ? undefined : this.chosen;
+    const fixed = this.states.find((s) => s.id === this.current)?.fixed ?? false;
+    const plant = this.front || this.guest || fixed ? undefined : this.chosen;
     this.handles?.show(plant?.place.visible ? plant.place : undefined, this.gizmo);
   }
 
@@ -558,6 +581,31 @@ export class PlantView {
       if (hit && (!best || hit.distance < best.distance)) best = { id, distance: hit.distance };
     }
     return best?.id;
+  }
+
+  /** The obstacle of the chosen plant under a point of the screen. */
+  private obstacleUnder(x: number, y: number): THREE.Intersection | undefined {
+    const { chosen } = this;
+    if (this.hands || this.guest || this.front || this.rig.walking || !chosen?.place.visible)
+      return undefined;
+    if (this.dragging || this.handles?.isUnderPointer || chosen.obstacles.children.length === 0)
+      return undefined;
+    this.aim(x, y);
+    chosen.place.updateWorldMatrix(true, true);
+    return this.caster.intersectObject(chosen.obstacles, true)[0];
+  }
+
+  /** The same, if nothing of the plant lies before it. */
+  private obstacleAt(
+    x: number,
+    y: number,
+  ): { mesh: THREE.Mesh; place: THREE.Object3D; point: THREE.Vector3 } | undefined {
+    const hit = this.obstacleUnder(x, y);
+    const { chosen } = this;
+    if (!hit || !chosen) return undefined;
+    const before = this.caster.intersectObject(chosen.group, true)[0];
+    if (before && before.distance < hit.distance) return undefined;
+    return { mesh: hit.object as THREE.Mesh, place: chosen.place, point: hit.point.clone() };
   }
 
   private get camera(): THREE.PerspectiveCamera | THREE.OrthographicCamera {
