@@ -736,7 +736,40 @@ async function fixed({ page, url, shot }) {
   assert.equal(await page.locator('[data-key=nx]').isDisabled(), false);
 }
 
+/** What is to note of a plant is read by one click, in both languages. */
+async function warnings({ page, url, shot }) {
+  await begin(page, url);
+  await add(page, 'tree', 'hazel');
+  const digest = await settled(page);
+  assert.equal(await page.locator('#b-warnings').isVisible(), false, 'there is nothing to note');
+  // A wall without a back: what is inside of it can only be guessed.
+  const wall = 'v 1 0 -1\nv 1 3 -1\nv 1 3 1\nv 1 0 1\nf 1 2 3 4\n';
+  const chooser = page.waitForEvent('filechooser');
+  await page.click('[data-obstacle=file]');
+  await (await chooser).setFiles({ name: 'wall.obj', mimeType: 'model/obj', buffer: Buffer.from(wall) });
+  await page.waitForFunction((d) => document.body.dataset.digest !== d, digest);
+  await settled(page);
+  await page.locator('#b-warnings').click();
+  const first = page.locator('.warnings li').first();
+  const english = await first.textContent();
+  assert.match(english, /\w+ \w+ \w+/);
+  const box = await page.locator('.popover').boundingBox();
+  const foot = await page.locator('#b-warnings').boundingBox();
+  assert.ok(box.y + box.height <= foot.y, 'it stands above what was clicked');
+  await shot('warnings');
+  await page.keyboard.press('Escape');
+  await palette(page, 'language');
+  await page.waitForFunction(() => document.documentElement.lang === 'zh-Hans');
+  await page.locator('#b-warnings').click();
+  const chinese = await first.locator('span').first().textContent();
+  assert.match(chinese, /[\u4e00-\u9fff]{4}/);
+  assert.doesNotMatch(chinese, /[a-z]{4}/);
+  assert.equal(await first.locator('.muted').textContent(), english, 'the words of the core follow');
+  await shot('warnings-zh');
+}
+
 export const staging = [
+  ['warnings are read by one click', warnings],
   ['an obstacle is dragged and the tree grows when it is let go', obstacles],
   ['a plant whose place is locked stays', fixed],
   ['an export is seen before it is written: levels, wind, figures', preview],

@@ -501,6 +501,10 @@ export class App implements Page {
       });
   }
 
+  openWarnings(): void {
+    this.show.openWarnings();
+  }
+
   openPalette(): void {
     openPalette(this);
   }

@@ -56,6 +56,7 @@ export interface Page {
   openShelf(): void;
   openFilming(): void;
   openPreview(): void;
+  openWarnings(): void;
   openPalette(): void;
   openHelp(): void;
   startTour(): void;
@@ -210,6 +211,12 @@ const TABLE = [
     run: (p) => {
       if (!p.shaping?.cancel()) p.shaping?.take(undefined);
     },
+  },
+  {
+    id: 'warnings',
+    label: 'warnings.open',
+    when: (p) => (p.session.seen?.warnings.length ?? 0) > 0,
+    run: (p) => p.openWarnings(),
   },
   { id: 'stats', label: 'view.stats', keys: 'I', run: (p) => p.toggleStats() },
   { id: 'stage', label: 'stage.title', keys: 'T', run: (p) => p.scenery.openStage() },

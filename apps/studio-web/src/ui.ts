@@ -202,8 +202,12 @@ export function popover(anchor: HTMLElement, content: HTMLElement, label: string
     const box = anchor.getBoundingClientRect();
     const [w, h] = [p.offsetWidth, p.offsetHeight];
     const below = box.bottom + 6 + h <= innerHeight - 8;
-    const left = below || box.left - w - 8 < 8 ? box.left : box.left - w - 8;
-    p.style.top = `${below ? box.bottom + 6 : Math.max(8, innerHeight - h - 8)}px`;
+    const beside = !below && box.left - w - 8 >= 8;
+    // At the foot of the page it stands above its button.
+    const foot = !below && !beside && box.top - h - 6 >= 8;
+    const left = beside ? box.left - w - 8 : box.left;
+    const top = below ? box.bottom + 6 : foot ? box.top - h - 6 : Math.max(8, innerHeight - h - 8);
+    p.style.top = `${top}px`;
     p.style.left = `${Math.max(8, Math.min(left, innerWidth - w - 8))}px`;
   };
   place();

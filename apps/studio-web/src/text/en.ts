@@ -184,6 +184,8 @@ export const en = {
   'status.branches': 'Branches {count}',
   'status.triangles': 'Triangles {count}',
   'status.warnings': '⚠ {count} to note',
+  'warnings.title': 'Warnings of this plant: {count}',
+  'warnings.open': 'Warnings of this plant',
   'status.time': '{ms} ms',
   'status.saving': 'Saving…',
   'status.saved': 'Saved in this browser',

@@ -185,6 +185,8 @@ export const zh: Record<TextKey, string> = {
   'status.branches': '{count} 根枝',
   'status.triangles': '{count} 个三角形',
   'status.warnings': '⚠ {count} 条提示',
+  'warnings.title': '这株植物的提示：{count} 条',
+  'warnings.open': '查看这株植物的提示',
   'status.time': '{ms} 毫秒',
   'status.saving': '正在保存…',
   'status.saved': '已存于此浏览器',
