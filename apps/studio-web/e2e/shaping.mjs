@@ -429,7 +429,7 @@ async function sky({ page, url, shot }) {
       assert.equal(over, '', 'it began in the sky');
       break;
     }
-    assert.match(await page.locator('.note').first().textContent(), /No wood is near/);
+    assert.match(await page.locator('.note').first().textContent(), /none is near/);
     told += 1;
   }
   assert.ok(told > 0, 'far away it says why not');

@@ -488,7 +488,7 @@ export const en = {
   'shape.leaves': 'Leaves: fewer or more',
   'shape.pick.hint': 'Click a branch. The right button or two fingers turn the view.',
   'shape.rotate.hint': 'Drag a branch about its base; the wheel turns by 5°.',
-  'shape.sketch.sky': 'No wood is near: start the line on a branch or the trunk, or beside it.',
+  'shape.sketch.sky': 'A branch begins on wood, and none is near: start the line on a branch or beside it.',
   'shape.move.hint': 'Drag a branch along what bears it; a stem, over the ground.',
   'shape.regrow.hint': 'Click a branch: another grows in its room.',
   'shape.branch': 'Branch of order {order} · {length} m · bears {count}',

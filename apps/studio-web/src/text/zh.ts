@@ -481,7 +481,7 @@ export const zh: Record<TextKey, string> = {
   'shape.leaves': '增减叶子',
   'shape.pick.hint': '点击枝条查看它承载的部分。右键或双指旋转视图。',
   'shape.rotate.hint': '拖动枝条绕基部转动；滚轮每格转 5°。',
-  'shape.sketch.sky': '附近没有木质部分：请在树枝或树干上，或在它旁边起笔。',
+  'shape.sketch.sky': '枝条从木质部分开始，而附近没有：请在树枝或树干上，或在它旁边起笔。',
   'shape.move.hint': '沿母枝拖动枝条；主干则沿地面移动。',
   'shape.regrow.hint': '点击枝条：原处另长一枝。',
   'shape.branch': '{order} 级枝 · {length} 米 · 承载 {count} 枝',
