@@ -402,11 +402,50 @@ async function grow({ page, url, shot }) {
   await until(page, 'edits', ['is', 0], 'nothing was kept');
 }
 
+/** From the empty sky a branch begins at the wood beside it; too far away it is said why nothing happens. */
+async function sky({ page, url, shot }) {
+  const plain = await bush(page, url, 6);
+  const at = await branch(page);
+  await page.keyboard.press('6');
+  const box = await page.locator('.view').boundingBox();
+  const edge = box.x + box.width - 90;
+  let told = 0;
+  // From far beside the bush towards it: the first line that makes a branch began in the sky.
+  for (let x = edge; x > at.x; x -= 25) {
+    await page.mouse.move(x, at.y);
+    await page.mouse.move(x + 1, at.y);
+    await page.waitForTimeout(200);
+    const over = await data(page, 'picked');
+    await page.evaluate(() => {
+      for (const note of document.querySelectorAll('.note')) note.remove();
+    });
+    await page.mouse.down();
+    for (let k = 1; k <= 10; k += 1) await page.mouse.move(x + 5 * k, at.y - 8 * k);
+    await page.mouse.up();
+    await page.waitForFunction(
+      () => document.body.dataset.edits === '1' || document.querySelector('.note') !== null,
+    );
+    if ((await count(page, 'edits')) === 1) {
+      assert.equal(over, '', 'it began in the sky');
+      break;
+    }
+    assert.match(await page.locator('.note').first().textContent(), /none is near/);
+    told += 1;
+  }
+  assert.ok(told > 0, 'far away it says why not');
+  await until(page, 'edits', ['is', 1], 'a drawn branch');
+  await until(page, 'done', ['is', 1], 'done');
+  await changed(page, plain, 'it bears a new branch');
+  await page.waitForTimeout(800);
+  await shot('shape-sky');
+}
+
 export const shaping = [
   ['shape: prune a branch and undo', prune, WIDE],
   ['shape: what bears a twig', bearer, WIDE],
   ['shape: turn a branch', rotate, WIDE],
   ['shape: draw a branch', draw, WIDE],
+  ['shape: a branch from the sky', sky, WIDE],
   ['shape: brush, leaves, outline', brush, WIDE],
   ['shape: it grows while it is held', grow, WIDE],
   ['shape: another seed says what is gone', seeds, WIDE],

@@ -2,7 +2,8 @@
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { add, begin, count, sample, settled, until } from './journeys.mjs';
+import { inflateRawSync } from 'node:zlib';
+import { add, begin, count, data, exported, sample, settled, until } from './journeys.mjs';
 
 /** Mean red, green, blue (0 to 255) and smallest alpha of a part of a picture file; shares of its width and height. */
 async function mean(page, bytes, [x0, y0, x1, y1] = [0, 0, 1, 1]) {
@@ -401,7 +402,378 @@ async function films({ page, url, context }) {
   assert.equal(await count(page, 'plants'), 1);
 }
 
+/** What a binary glTF file holds: triangles, vertices and meshes that are drawn; bytes of its meshes. */
+function heldBy(glb) {
+  const length = glb.readUInt32LE(12);
+  const file = JSON.parse(glb.subarray(20, 20 + length).toString());
+  const held = { triangles: 0, vertices: 0, draws: 0, bytes: 0 };
+  for (const { mesh } of file.nodes.filter((n) => n.mesh !== undefined)) {
+    const [{ attributes, indices }] = file.meshes[mesh].primitives;
+    held.triangles += file.accessors[indices].count / 3;
+    held.vertices += file.accessors[attributes.POSITION].count;
+    held.draws += 1;
+  }
+  for (const { target, byteLength } of file.bufferViews) if (target) held.bytes += byteLength;
+  return held;
+}
+
+/** A file of a zip, by its name. */
+function unzipped(zip, name) {
+  const end = zip.lastIndexOf('PK\x05\x06', undefined, 'latin1');
+  for (let at = zip.readUInt32LE(end + 16); zip.readUInt32LE(at) === 0x02014b50; ) {
+    const [nameLength, extra, comment] = [28, 30, 32].map((k) => zip.readUInt16LE(at + k));
+    if (zip.subarray(at + 46, at + 46 + nameLength).toString() === name) {
+      const local = zip.readUInt32LE(at + 42);
+      const from = local + 30 + zip.readUInt16LE(local + 26) + zip.readUInt16LE(local + 28);
+      const bytes = zip.subarray(from, from + zip.readUInt32LE(at + 20));
+      return zip.readUInt16LE(at + 10) === 0 ? bytes : inflateRawSync(bytes);
+    }
+    at += 46 + nameLength + extra + comment;
+  }
+  throw new Error(`no ${name} in the zip`);
+}
+
+/** Waits until what is asked for is seen, and says the figures. */
+async function lookedAt(page) {
+  await page.waitForFunction(() => {
+    const { wanted, shown } = document.querySelector('#b-exportview').dataset;
+    const { dataset } = document.body;
+    return wanted === shown && dataset.wanted === dataset.revision;
+  });
+  return page.evaluate(() => {
+    const of = (row) =>
+      Object.fromEntries(
+        [...row.querySelectorAll('[data-figure]')].map((c) => [c.dataset.figure, Number(c.dataset.value)]),
+      );
+    const rows = [...document.querySelectorAll('#b-exportview tr[data-part]')];
+    const { seen } = document.querySelector('#b-exportview').dataset;
+    const file = document.querySelector('#b-exportview [data-figure=file]').dataset.value;
+    return {
+      parts: Object.fromEntries(rows.map((r) => [r.dataset.part, of(r)])),
+      seen: Number(seen),
+      file: Number(file),
+    };
+  });
+}
+
+async function slide(page, key, value) {
+  await page.locator(`[data-exported=${key}]`).evaluate((e, v) => {
+    e.value = v;
+    e.dispatchEvent(new Event('input', { bubbles: true }));
+  }, String(value));
+}
+
+/** How far the pictures of two moments are apart, of a part of the view. */
+async function sways(page, part) {
+  const a = await page.locator('.view canvas').screenshot();
+  await page.waitForTimeout(1300);
+  const b = await page.locator('.view canvas').screenshot();
+  return page.evaluate(
+    async ([first, second, [x0, y0, x1, y1]]) => {
+      const pixels = async (base64) => {
+        const raw = Uint8Array.from(atob(base64), (ch) => ch.charCodeAt(0));
+        const image = await createImageBitmap(new Blob([raw]));
+        const canvas = new OffscreenCanvas(image.width, image.height);
+        const context = canvas.getContext('2d');
+        context.drawImage(image, 0, 0);
+        const [w, h] = [image.width, image.height];
+        return context.getImageData(...[x0 * w, y0 * h, (x1 - x0) * w, (y1 - y0) * h].map(Math.floor)).data;
+      };
+      const [p, q] = [await pixels(first), await pixels(second)];
+      let differ = 0;
+      for (let i = 0; i < p.length; i += 4)
+        if (Math.abs(p[i] - q[i]) + Math.abs(p[i + 1] - q[i + 1]) > 40) differ += 1;
+      return differ;
+    },
+    [a.toString('base64'), b.toString('base64'), part],
+  );
+}
+
+async function preview({ page, url, shot }) {
+  await begin(page, url);
+  await sample(page);
+  await settled(page);
+  await palette(page, 'export-view');
+  await page.locator('#b-exportview').waitFor();
+  // As it is shown: the figures are those of the file.
+  const whole = await lookedAt(page);
+  const glb = await exported(page, 'glb', 1, undefined, false);
+  const { bytes: geometry, ...counts } = heldBy(glb.bytes);
+  const { triangles, vertices, draws, bytes } = whole.parts.all;
+  assert.deepEqual({ triangles, vertices, draws, bytes }, { ...counts, bytes: geometry });
+  assert.equal(whole.file, glb.bytes.length, 'the size of the file was counted');
+  assert.equal(whole.seen, triangles, 'the view shows what is counted');
+  assert.ok(whole.parts.petal.triangles > 0 && whole.parts.leaf.triangles > 0, JSON.stringify(whole.parts));
+  // Still, then in the wind.
+  await rest(page);
+  const [crown, foot] = [
+    [0.1, 0.1, 0.85, 0.7],
+    [0.1, 0.88, 0.85, 1],
+  ];
+  assert.equal(await sways(page, crown), 0, 'nothing moves without wind');
+  await slide(page, 'wind', 1);
+  const windy = await lookedAt(page);
+  assert.ok(windy.file > whole.file, 'wind takes room in the file');
+  await page.waitForTimeout(1200);
+  assert.ok((await sways(page, crown)) > 300, 'the flower sways');
+  assert.ok((await sways(page, foot)) < 60, 'its foot stands');
+  await shot('export-wind');
+  const blown = await exported(page, 'glb', 1, undefined, true);
+  assert.equal(windy.parts.all.bytes, heldBy(blown.bytes).bytes, 'what wind takes is counted');
+  // Coarser: fewer triangles are shown and told, and the file of that level holds as many.
+  await slide(page, 'level', 2);
+  const coarse = await lookedAt(page);
+  assert.ok(coarse.seen < 0.6 * windy.seen, `${coarse.seen} of ${windy.seen} triangles`);
+  assert.equal(coarse.seen, coarse.parts.all.triangles);
+  const levels = await exported(page, 'glb', 3, undefined, true);
+  const level = unzipped(levels.bytes, 'plant_LOD2.glb');
+  assert.equal(coarse.parts.all.triangles, heldBy(level).triangles);
+  assert.equal(coarse.file, level.length);
+  // Formats without wind say so; a zip is counted as one.
+  await page.selectOption('[data-exported=format]', 'obj');
+  await slide(page, 'level', 0);
+  const obj = await lookedAt(page);
+  assert.equal(await page.locator('[data-exported=wind]').isDisabled(), true);
+  const zip = await exported(page, 'obj', 1);
+  assert.equal(obj.file, zip.bytes.length);
+  assert.equal(obj.parts.all.triangles, triangles);
+  await page.selectOption('[data-exported=format]', 'glb');
+  await page.click('#b-exportview-close');
+  await page.locator('#b-exportview').waitFor({ state: 'detached' });
+  await page.waitForTimeout(800);
+  assert.equal(await sways(page, crown), 0, 'the plant itself stands still');
+}
+
+async function scene({ page, url, shot }) {
+  await page.emulateMedia({ reducedMotion: 'reduce' });
+  await begin(page, url);
+  await add(page, 'tree', 'hazel');
+  await settled(page);
+  const one = await count(page, 'triangles');
+  await palette(page, 'export-view');
+  const alone = await lookedAt(page);
+  assert.equal(alone.parts.all.triangles, one);
+  // The age is that of the tree's own panel, one step of undo.
+  const age = page.locator('#b-exportview [data-path=age]');
+  await age.evaluate((e) => {
+    e.value = '3';
+    e.dispatchEvent(new Event('input', { bubbles: true }));
+    e.dispatchEvent(new Event('change', { bubbles: true }));
+  });
+  await page.waitForFunction((n) => Number(document.body.dataset.triangles) < n, one);
+  await settled(page);
+  const young = await lookedAt(page);
+  assert.equal(young.parts.all.triangles, await count(page, 'triangles'));
+  await page.click('#b-undo');
+  await page.waitForFunction((n) => Number(document.body.dataset.triangles) === n, one);
+  await lookedAt(page);
+  assert.equal(await age.count(), 1, 'the age is still lent');
+  // Less motion: the tree leans and does not sway.
+  await slide(page, 'wind', 0);
+  await lookedAt(page);
+  await rest(page);
+  const still = await page.locator('.view canvas').screenshot();
+  await slide(page, 'wind', 1);
+  await lookedAt(page);
+  await page.waitForTimeout(1500);
+  assert.equal(await sways(page, [0.1, 0.1, 0.85, 0.9]), 0, 'less motion was asked for');
+  const leans = await page.locator('.view canvas').screenshot();
+  assert.ok(!leans.equals(still), 'it leans');
+  await shot('export-calm');
+  await page.click('#b-exportview-close');
+  assert.equal(await page.locator('#b-maker [data-path=age]').count(), 1, 'the age is back');
+  // Copies are drawn twice and written once.
+  await page.click('.scene .fold');
+  await page.click('[id^=b-more-]');
+  await page.click('.menu >> text=Duplicate');
+  await until(page, 'plants', ['is', 2], 'a copy');
+  await settled(page);
+  await palette(page, 'export-view');
+  await page.selectOption('[data-exported=what]', 'scene');
+  await slide(page, 'wind', 0);
+  const two = await lookedAt(page);
+  assert.deepEqual([two.seen, two.parts.all.triangles], [2 * one, 2 * one]);
+  assert.equal(two.parts.all.draws, 2 * alone.parts.all.draws);
+  assert.equal(two.parts.all.bytes, alone.parts.all.bytes, 'its geometry is there once');
+  assert.ok(two.file < alone.file + 4000, `${two.file} bytes of two, ${alone.file} of one`);
+  const file = await exported(page, 'glb', 1, 'scene', false);
+  assert.equal(two.file, file.bytes.length);
+  await shot('export-copies');
+}
+
+/** A point of the view over which the pointer becomes this cursor; none if there is none. */
+async function under(page, cursor) {
+  const box = await page.locator('.view canvas').boundingBox();
+  for (let k = 0; k < 260; k += 1) {
+    const [x, y] = [
+      box.x + box.width * (0.12 + (0.7 * (k % 20)) / 20),
+      box.y + box.height * (0.2 + (0.7 * Math.floor(k / 20)) / 13),
+    ];
+    await page.mouse.move(x, y);
+    const now = await page.locator('.view canvas').evaluate((e) => e.style.cursor);
+    if (now === cursor) return [x, y];
+  }
+  return undefined;
+}
+
+/** Obstacles are dragged, and the tree grows when they are let go. */
+async function obstacles({ page, url, shot }) {
+  await begin(page, url);
+  await add(page, 'tree', 'hazel');
+  await settled(page);
+  await page.click('[data-obstacle=ball]');
+  await page.locator('[data-path=o0centre0]').waitFor();
+  // At the edge of the crown, so that most of it has no leaf before it.
+  for (const [path, value] of [
+    ['o0centre0', '1.9'],
+    ['o0centre1', '1.2'],
+  ]) {
+    await page.locator(`[data-path=${path}]`).fill(value);
+    await page.locator(`[data-path=${path}]`).press('Enter');
+    await page.waitForFunction(
+      ([p, v]) => document.querySelector(`[data-path=${p}]`)?.value === v,
+      [path, value],
+    );
+    await settled(page);
+  }
+  await rest(page);
+  const before = await settled(page);
+  const centre = () =>
+    page.evaluate(() =>
+      [0, 1, 2].map((i) => Number(document.querySelector(`[data-path=o0centre${i}]`).value)),
+    );
+  const grip = await under(page, 'grab');
+  assert.ok(grip, 'the ball can be taken');
+  const [x, y] = grip;
+  const eye = await page.locator('.view').getAttribute('data-eye');
+  const drag = async (dx, dy) => {
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + dx, y + dy, { steps: 5 });
+    await page.waitForTimeout(900);
+  };
+  // Escape takes it back.
+  await drag(60, 0);
+  await shot('obstacle-dragged');
+  await page.keyboard.press('Escape');
+  await page.mouse.up();
+  assert.deepEqual(await centre(), [1.9, 1.2, 0], 'nothing was done');
+  assert.equal(await data(page, 'digest'), before);
+  // Along the ground: the tree grows anew when it is let go, and not before.
+  await drag(110, 0);
+  assert.equal(await data(page, 'digest'), before, 'while it is dragged the tree stays');
+  const now = JSON.parse(await page.locator('.view').getAttribute('data-eye'));
+  assert.ok(apart(now.position, JSON.parse(eye).position) < 0.002, 'and the camera');
+  await page.mouse.up();
+  await page.waitForFunction((d) => document.body.dataset.digest !== d, before);
+  const after = await settled(page);
+  const [cx, cy] = await centre();
+  assert.ok(cx > 2.3, `it went to the right: ${cx}`);
+  assert.equal(cy, 1.2, 'along the ground');
+  assert.notEqual(after, before, 'it is out of the way');
+  assert.match(await page.locator('#b-undo').getAttribute('title'), /move an obstacle/);
+  await shot('obstacle-let-go');
+  await page.click('#b-undo');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, before);
+  assert.deepEqual(await centre(), [1.9, 1.2, 0], 'one step takes it back');
+  // With Shift, up.
+  await rest(page);
+  const again = await under(page, 'grab');
+  await page.mouse.move(...again);
+  await page.keyboard.down('Shift');
+  await page.mouse.down();
+  await page.mouse.move(again[0] + 4, again[1] - 60, { steps: 5 });
+  await page.mouse.up();
+  await page.keyboard.up('Shift');
+  await page.waitForFunction(() => Number(document.querySelector('[data-path=o0centre1]').value) > 1.3);
+  const up = await centre();
+  assert.deepEqual([up[0], up[2]], [1.9, 0], 'straight up');
+}
+
+/** A plant whose place is locked stays there. */
+async function fixed({ page, url, shot }) {
+  await begin(page, url);
+  await add(page, 'flower');
+  await settled(page);
+  await page.click('.scene .fold');
+  const place = () =>
+    page.evaluate(() => ['nx', 'nz'].map((k) => document.querySelector(`[data-key=${k}]`).value));
+  await page.keyboard.press('g');
+  await page.click('#b-fix');
+  await page.locator('#b-fix[aria-pressed=true]').waitFor();
+  await shot('place-locked');
+  for (const key of ['nx', 'nz', 'nyaw', 'nscale'])
+    assert.equal(await page.locator(`[data-key=${key}]`).isDisabled(), true, key);
+  assert.equal(await page.locator('[data-gizmo=translate]').isDisabled(), true);
+  const [was, undo] = [await place(), await page.locator('#b-undo').getAttribute('title')];
+  assert.match(undo, /lock the place/);
+  await rest(page);
+  const box = await page.locator('.view canvas').boundingBox();
+  const pull = async () => {
+    for (let k = 0; k < 60; k += 1) {
+      const [px, py] = [
+        box.x + box.width * 0.5 + 30 + 3 * (k % 20),
+        box.y + box.height * (0.6 + 0.06 * Math.floor(k / 20)),
+      ];
+      await page.mouse.move(px, py);
+      await page.mouse.down();
+      await page.mouse.move(px + 60, py, { steps: 2 });
+      await page.mouse.up();
+      await page.mouse.move(px + 60, py);
+    }
+  };
+  await pull();
+  assert.deepEqual(await place(), was, 'the gizmo is gone');
+  assert.equal(await page.locator('#b-undo').getAttribute('title'), undo);
+  // It is kept, and can be unlocked.
+  await page.reload();
+  await page.waitForFunction(() => document.body.dataset.ready === 'true');
+  await settled(page);
+  await page.click('.scene .fold');
+  assert.equal(await page.locator('#b-fix').getAttribute('aria-pressed'), 'true', 'it is kept');
+  await page.click('#b-fix');
+  await page.locator('#b-fix[aria-pressed=false]').waitFor();
+  assert.equal(await page.locator('[data-key=nx]').isDisabled(), false);
+}
+
+/** What is to note of a plant is read by one click, in both languages. */
+async function warnings({ page, url, shot }) {
+  await begin(page, url);
+  await add(page, 'tree', 'hazel');
+  const digest = await settled(page);
+  assert.equal(await page.locator('#b-warnings').isVisible(), false, 'there is nothing to note');
+  // A wall without a back: what is inside of it can only be guessed.
+  const wall = 'v 1 0 -1\nv 1 3 -1\nv 1 3 1\nv 1 0 1\nf 1 2 3 4\n';
+  const chooser = page.waitForEvent('filechooser');
+  await page.click('[data-obstacle=file]');
+  await (await chooser).setFiles({ name: 'wall.obj', mimeType: 'model/obj', buffer: Buffer.from(wall) });
+  await page.waitForFunction((d) => document.body.dataset.digest !== d, digest);
+  await settled(page);
+  await page.locator('#b-warnings').click();
+  const first = page.locator('.warnings li').first();
+  const english = await first.textContent();
+  assert.match(english, /\w+ \w+ \w+/);
+  const box = await page.locator('.popover').boundingBox();
+  const foot = await page.locator('#b-warnings').boundingBox();
+  assert.ok(box.y + box.height <= foot.y, 'it stands above what was clicked');
+  await shot('warnings');
+  await page.keyboard.press('Escape');
+  await palette(page, 'language');
+  await page.waitForFunction(() => document.documentElement.lang === 'zh-Hans');
+  await page.locator('#b-warnings').click();
+  const chinese = await first.locator('span').first().textContent();
+  assert.match(chinese, /[\u4e00-\u9fff]{4}/);
+  assert.doesNotMatch(chinese, /[a-z]{4}/);
+  assert.equal(await first.locator('.muted').textContent(), english, 'the words of the core follow');
+  await shot('warnings-zh');
+}
+
 export const staging = [
+  ['warnings are read by one click', warnings],
+  ['an obstacle is dragged and the tree grows when it is let go', obstacles],
+  ['a plant whose place is locked stays', fixed],
+  ['an export is seen before it is written: levels, wind, figures', preview],
+  ['an export of a tree is seen at its age, and stands still for whom it should', scene],
   ['the stage: presets, ground, background, quality', stage],
   ['the camera: to the pointer, sides, lens, kept, on foot', camera],
   ['a picture of any size, with transparency', picture],

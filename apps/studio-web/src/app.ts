@@ -4,6 +4,7 @@ import { Clipboard } from './clipboard';
 import type { Page } from './commands';
 import { Card } from './correct';
 import { Documents } from './documents';
+import type { ExportPreview } from './exportview';
 import { Files, safe } from './files';
 import { openFilming } from './filming';
 import { openHelp } from './help';
@@ -65,6 +66,8 @@ export class App implements Page {
   readonly readings = new Readings(this.session);
   readonly panels: Panels;
   private readonly show: Show;
+  /** The export that is seen before it is written. */
+  private preview: ExportPreview | undefined;
   private tool: Tool = 'parts';
   /** To which the gizmo is bound. */
   private axis: 'x' | 'z' | undefined;
@@ -149,6 +152,7 @@ export class App implements Page {
         this.clipboard.select(drawn?.strokes ?? []);
         if (state) this.writing.changed(state.revision);
         this.show.document();
+        this.preview?.follow();
       },
       view: (view, fresh) => {
         const { session } = this;
@@ -161,6 +165,8 @@ export class App implements Page {
         this.show.idle();
         this.show.view();
         this.modes.refresh();
+        this.preview?.follow();
+        this.preview?.changed();
         if (fresh.length > 0) this.documents.seen();
       },
       refused: (request, why) => {
@@ -332,6 +338,7 @@ export class App implements Page {
       kind: () => session.plant?.maker ?? 'sketch',
       viewed: (name) => this.show.model(name),
       photo: (file) => this.panels.layPhoto(file),
+      look: () => this.openPreview(),
       blank: () => this.isBlank,
       offered: (name, version) => this.writing.opened(name, version),
     });
@@ -346,6 +353,7 @@ export class App implements Page {
     view.onPlace = (plant, position, yaw_deg, scale) =>
       session.stage({ plant: [plant, { place: { position, yaw_deg, scale } }] });
     view.onPlaceEnd = () => session.commit();
+    view.onObstacle = (plant, row, by) => session.run({ tree: [plant, { 'move-obstacle': [row, by] }] });
     view.onPick = (plant) => session.select(plant);
     view.onContext = (lost) => {
       if (lost) note(t('note.context'), 'bad');
@@ -462,6 +470,7 @@ export class App implements Page {
       this.view?.setLabel(t('view.label'));
       this.shaping?.take(this.shaping.word);
       this.sheet.select([]);
+      this.preview?.close();
       this.panel.reset();
       this.show.parts = this.build();
       this.show.parts.busy.hidden = this.started;
@@ -482,6 +491,32 @@ export class App implements Page {
     if (view && !session.isBare)
       openFilming({ session, view, name: () => safe(session.state?.name ?? t('app.untitled')) });
     else note(t(view ? 'note.nothing' : 'note.nowebgl'), 'bad');
+  }
+
+  openPreview(): void {
+    const { session, view } = this;
+    if (this.preview) this.preview.close();
+    else if (!view || session.isBare) note(t(view ? 'note.nothing' : 'note.nowebgl'), 'bad');
+    else
+      void import('./exportview').then(({ ExportPreview }) => {
+        const host = this.show.parts.sheetTools.parentElement!;
+        this.preview ??= new ExportPreview({
+          session,
+          view,
+          host,
+          write: () => this.files.chooseExport(),
+          closed: () => {
+            this.preview = undefined;
+            this.show.press('export-view', false);
+            this.show.document();
+          },
+        });
+        this.show.press('export-view', true);
+      });
+  }
+
+  openWarnings(): void {
+    this.show.openWarnings();
   }
 
   openPalette(): void {

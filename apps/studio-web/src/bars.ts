@@ -38,6 +38,8 @@ export interface Parts {
   model: HTMLElement;
   modelName: HTMLElement;
   counts: HTMLElement;
+  /** How many warnings the plant has. */
+  warned: HTMLButtonElement;
   busy: HTMLElement;
   busyText: HTMLElement;
   /** What is true of the saving. */
@@ -72,6 +74,12 @@ export function buildPage(host: HTMLElement, page: Page, pieces: Pieces): Parts 
     model: lookingLine(page),
     modelName: named('looking-name', 'span', {}),
     counts: named('counts', 'span', { class: 'counts' }),
+    warned: named('warnings', 'button', {
+      type: 'button',
+      class: 'link',
+      hidden: '',
+      onclick: () => page.openWarnings(),
+    }),
     busy: named('busy', 'span', { class: 'busy' }),
     busyText: named('busytext', 'span', {}, t('status.loading')),
     kept: named('kept', 'span', { class: 'muted' }),
@@ -272,6 +280,7 @@ function viewTools(buttons: Buttons, page: Page): HTMLElement {
     small('stage', 'sun'),
     small('camera', 'camera'),
     small('film', 'picture'),
+    small('export-view', 'preview'),
     small('headset', 'headset'),
   );
 }
@@ -322,11 +331,11 @@ function rightSide(buttons: Buttons, page: Page, pieces: Pieces, parts: Parts): 
   return el('section', { class: 'right' }, ...shown, parts.stats, column, parts.grows, parts.model);
 }
 
-function footer(page: Page, { counts, busy, busyText, kept }: Parts): HTMLElement {
+function footer(page: Page, { counts, warned, busy, busyText, kept }: Parts): HTMLElement {
   const stop = () => page.session.engine.interrupt();
   const cancel = el('button', { type: 'button', class: 'link', onclick: stop }, t('status.cancel'));
   busy.append(el('i'), busyText, cancel);
-  return el('footer', { class: 'foot' }, counts, space(), busy, kept);
+  return el('footer', { class: 'foot' }, counts, warned, space(), busy, kept);
 }
 
 /** The sheet and the view with a bar between them, which is dragged or moved with the arrow keys. */

@@ -55,6 +55,8 @@ export interface Page {
   switchLanguage(): void;
   openShelf(): void;
   openFilming(): void;
+  openPreview(): void;
+  openWarnings(): void;
   openPalette(): void;
   openHelp(): void;
   startTour(): void;
@@ -132,6 +134,7 @@ const TABLE = [
   { id: 'samples', label: 'menu.samples', run: (p) => p.files.samples() },
   { id: 'save', label: 'menu.save', keys: 'Ctrl+S', run: (p) => void p.files.save() },
   { id: 'export', label: 'menu.export', keys: 'Ctrl+E', run: (p) => p.files.chooseExport() },
+  { id: 'export-view', label: 'exported.title', when: hasView, run: (p) => p.openPreview() },
   { id: 'share', label: 'menu.share', run: (p) => void p.files.share() },
   { id: 'dice', label: 'dice', keys: 'Shift+R', run: (p) => p.panels.roll() },
   { id: 'lock', label: 'lock', run: (p) => p.panels.toggleLock() },
@@ -208,6 +211,12 @@ const TABLE = [
     run: (p) => {
       if (!p.shaping?.cancel()) p.shaping?.take(undefined);
     },
+  },
+  {
+    id: 'warnings',
+    label: 'warnings.open',
+    when: (p) => (p.session.seen?.warnings.length ?? 0) > 0,
+    run: (p) => p.openWarnings(),
   },
   { id: 'stats', label: 'view.stats', keys: 'I', run: (p) => p.toggleStats() },
   { id: 'stage', label: 'stage.title', keys: 'T', run: (p) => p.scenery.openStage() },

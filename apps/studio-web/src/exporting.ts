@@ -9,7 +9,8 @@ const FORMATS: readonly Target[] = ['glb', 'usda', 'obj', 'ply', 'stl', 'mtg', '
 /** Formats with levels of detail. */
 export const LEVELS: ReadonlySet<Target> = new Set(['glb', 'usda', 'obj', 'ply', 'stl']);
 const AXES: ReadonlySet<Target> = new Set(['usda', 'obj', 'ply', 'stl', 'mtg', 'qsm']);
-const WIND: ReadonlySet<Target> = new Set(['glb', 'usda']);
+/** Formats with room for wind. */
+export const WIND: ReadonlySet<Target> = new Set(['glb', 'usda']);
 const NAMES: Partial<Record<Target, string>> = { qsm: 'CSV', usda: 'USD' };
 
 let last: { format: Target; options: ExportOptions } = {
@@ -17,11 +18,20 @@ let last: { format: Target; options: ExportOptions } = {
   options: { levels: 1, up: 'y', unit: 'm', whole: false, wind: false },
 };
 
+/** What was chosen last; the preview of the export and its dialogue share it. */
+export function optionsOf(): typeof last {
+  if (!LEVELS.has(last.format)) last.format = 'glb';
+  return last;
+}
+
+export const nameOf = (format: Target): string => NAMES[format] ?? format.toUpperCase();
+
 /** `several`: there is a scene to choose; `kind`: the maker of the plant that is chosen. */
 export function openExport(
   several: boolean,
   kind: MakerWord,
   act: (format: Target, options: ExportOptions) => void,
+  look: () => void,
 ): void {
   const choice = <T extends string>(
     text: TextKey,
@@ -103,7 +113,7 @@ export function openExport(
     blown,
   );
   const show = (): void => {
-    levels.hidden = !LEVELS.has(format);
+    levels.hidden = see.hidden = !LEVELS.has(format);
     up.hidden = unit.hidden = !AXES.has(format);
     wind.hidden = !WIND.has(format);
   };
@@ -125,11 +135,26 @@ export function openExport(
         'label',
         { class: 'format' },
         radio,
-        el('b', {}, NAMES[f] ?? f.toUpperCase()),
+        el('b', {}, nameOf(f)),
         el('span', { class: 'muted' }, t(`export.${f}`)),
       ),
     );
   }
+  // First the view, then the file.
+  const see = el(
+    'button',
+    {
+      type: 'button',
+      class: 'link',
+      id: 'b-export-look',
+      onclick: () => {
+        last = { format, options };
+        d.close();
+        look();
+      },
+    },
+    t('exported.title'),
+  );
   const go = el('button', { type: 'submit', class: 'primary', id: 'b-export-go' }, t('menu.export'));
   const form = el(
     'form',
@@ -149,7 +174,7 @@ export function openExport(
     up,
     unit,
     el('p', { class: 'muted' }, t('export.note')),
-    el('div', { class: 'row' }, el('span', { class: 'space' }), go),
+    el('div', { class: 'row' }, see, el('span', { class: 'space' }), go),
   );
   const d = dialog(t('export.title'), form);
   show();

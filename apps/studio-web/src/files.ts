@@ -35,6 +35,8 @@ export interface FilesEvents {
   kind(): MakerWord;
   /** A picture was given: it goes under the drawing. */
   photo(file: File): Promise<void>;
+  /** The export is to be seen before it is written. */
+  look(): void;
   /** Nothing is drawn or planted. */
   blank(): boolean;
   /** The file with which the page was opened came in, of this version. */
@@ -219,6 +221,7 @@ export class Files {
       this.events.several(),
       this.events.kind(),
       (format, options) => void this.exportAs(format, options),
+      () => this.events.look(),
     );
   }
 

@@ -4,6 +4,7 @@ import type {
   Command,
   DocumentState,
   ExportRequest,
+  ExportView,
   PlantView,
   Refusal,
   SceneView,
@@ -51,7 +52,11 @@ export type Request =
   | { kind: 'branch'; axis: number }
   | { kind: 'draft'; mode: StrokeMode; samples: Float64Array }
   | { kind: 'save' }
-  | { kind: 'export'; request: ExportRequest };
+  | { kind: 'export'; request: ExportRequest }
+  /** What an export would write of one level of detail, to be seen: `SentExport`. */
+  | { kind: 'look'; request: ExportRequest; level: number }
+  /** It is no longer looked at. */
+  | { kind: 'unlook' };
 
 export type ToWorker =
   | { kind: 'start'; wasm: string; stop: Int32Array | null; journal: readonly Request[]; hold: boolean }
@@ -86,6 +91,20 @@ export interface Sent {
   textures: TexturePixels[];
   /** Corners of obstacles that are meshes. */
   obstacles: (Float32Array | null)[];
+}
+
+/** The meshes of an export: how wind moves each vertex, too, where it is written. */
+export interface ExportedArrays extends PartArrays {
+  wind: Float32Array;
+  pivots: Float32Array;
+}
+
+/** An export as it travels. */
+export interface SentExport {
+  view: ExportView;
+  /** Those of each model. */
+  models: ExportedArrays[][];
+  textures: TexturePixels[];
 }
 
 export type FromWorker =

@@ -308,13 +308,20 @@ export class SceneList {
       b.setAttribute('data-gizmo', name);
       b.setAttribute('data-key', `g${name}`);
       b.setAttribute('aria-pressed', String(this.mode === name));
+      b.disabled = p.fixed;
       return b;
     };
     const place = (change: Partial<Pick<PlantState, 'position' | 'yaw_deg' | 'scale'>>): void => {
       const { position, yaw_deg, scale } = { ...p, ...change };
       this.events.run({ plant: [p.id, { place: { position, yaw_deg, scale } }] });
     };
-    const box = (label: string, key: string, value: number, act: (x: number) => void): HTMLElement => {
+    const box = (
+      label: string,
+      key: string,
+      value: number,
+      act: (x: number) => void,
+      off = false,
+    ): HTMLElement => {
       const input = el('input', {
         type: 'number',
         step: key === 'yaw' ? '5' : '0.1',
@@ -325,20 +332,29 @@ export class SceneList {
         },
       });
       input.value = String(Math.round(value * 1000) / 1000);
+      input.disabled = off;
       return el('label', {}, el('span', {}, label), input);
     };
     const [x, y, z] = p.position;
     return el(
       'div',
       { class: 'placing' },
-      el('div', { class: 'chips' }, mode('translate'), mode('rotate'), mode('scale'), this.snapChip()),
+      el(
+        'div',
+        { class: 'chips' },
+        mode('translate'),
+        mode('rotate'),
+        mode('scale'),
+        this.snapChip(),
+        this.fixButton(p),
+      ),
       el(
         'div',
         { class: 'numbers' },
-        box(t('place.x'), 'x', x, (v) => place({ position: [v, y, z] })),
-        box(t('place.z'), 'z', z, (v) => place({ position: [x, y, v] })),
-        box(t('place.yaw'), 'yaw', p.yaw_deg, (v) => place({ yaw_deg: v })),
-        box(t('place.scale.short'), 'scale', p.scale, (v) => place({ scale: v })),
+        box(t('place.x'), 'x', x, (v) => place({ position: [v, y, z] }), p.fixed),
+        box(t('place.z'), 'z', z, (v) => place({ position: [x, y, v] }), p.fixed),
+        box(t('place.yaw'), 'yaw', p.yaw_deg, (v) => place({ yaw_deg: v }), p.fixed),
+        box(t('place.scale.short'), 'scale', p.scale, (v) => place({ scale: v }), p.fixed),
       ),
       el('span', { class: 'muted' }, t('scatter.title')),
       el('div', { class: 'chips' }, ...PATTERNS.map((pattern) => this.patternChip(p, pattern))),
@@ -353,6 +369,19 @@ export class SceneList {
         }),
       ),
     );
+  }
+
+  /** Its place is kept, whatever is dragged. */
+  private fixButton(p: PlantState): HTMLElement {
+    const text = t(p.fixed ? 'place.free' : 'place.fix');
+    const b = button(p.fixed ? 'lock' : 'unlock', text, () => {
+      if (!p.fixed) this.take(undefined);
+      this.events.run({ plant: [p.id, { fix: !p.fixed }] });
+    });
+    b.id = 'b-fix';
+    b.setAttribute('data-key', 'fix');
+    b.setAttribute('aria-pressed', String(p.fixed));
+    return b;
   }
 
   private snapChip(): HTMLElement {

@@ -10,12 +10,12 @@ import type { Session } from './session';
 import type { Shaping } from './shaping';
 import type { Sheet } from './sheet/sheet';
 import { statsTable } from './stats';
-import { number, t, tOf } from './text';
+import { number, t, tOf, warning } from './text';
 import type { Theme } from './theme';
-import { el, icon, relabel } from './ui';
+import { el, icon, popover, relabel } from './ui';
 import type { ViewModes } from './viewmode';
 import type { Door } from './vr/door';
-import type { DocumentState } from './wire';
+import type { DocumentState, WarningView } from './wire';
 
 /** A flash of work shorter than this only disturbs. */
 const MOMENT_MS = 200;
@@ -190,11 +190,34 @@ export class Show {
         if (count) texts.push(t(`status.${kind}`, { count: number(count) }));
       }
       texts.push(t('status.time', { ms: number(Math.round(item.timings_ms.total)) }));
-      // What they say is shown by a pointer that rests there.
-      if (item.warnings.length > 0) texts.push(t('status.warnings', { count: number(item.warnings.length) }));
     }
     this.parts.counts.textContent = texts.join('  ·  ');
-    this.parts.counts.title = (item?.warnings ?? []).join('\n');
+    this.warnings(session.seen?.warnings ?? []);
+  }
+
+  /** How many warnings the plant has; a click shows what they say. */
+  private warnings(all: readonly WarningView[]): void {
+    const { warned } = this.parts;
+    warned.hidden = all.length === 0;
+    warned.textContent = t('status.warnings', { count: number(all.length) });
+    relabel(warned, t('warnings.title', { count: number(all.length) }));
+  }
+
+  openWarnings(): void {
+    const { seen } = this.shown.session;
+    const rows = (seen?.warnings ?? []).map((w) => {
+      const { text, own } = warning(w);
+      return el(
+        'li',
+        { 'data-warning': w.code },
+        el('span', {}, text),
+        ...(own ? [el('span', { class: 'muted', lang: 'en' }, own)] : []),
+      );
+    });
+    if (rows.length === 0) return;
+    const title = t('warnings.title', { count: number(rows.length) });
+    const list = el('div', { class: 'warnings', tabindex: '-1' }, el('b', {}, title), el('ul', {}, ...rows));
+    popover(this.parts.warned, list, title);
   }
 
   /** What a drawing is read as; of a drawn flower that opens, its day, and a button to play it. */

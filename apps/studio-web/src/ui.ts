@@ -62,6 +62,8 @@ const PATHS = {
   headset:
     'M4 8h16a1.500 1.500 0 0 1 1.500 1.500v6a1.500 1.500 0 0 1-1.500 1.500h-4.500l-2.300-2.600a1.600 1.600 0 0 0-2.400 0L8.500 17H4a1.500 1.500 0 0 1-1.500-1.500v-6A1.500 1.500 0 0 1 4 8z',
   camera: 'M12 3.500l7.500 4.300v8.400L12 20.500l-7.500-4.300V7.800zM12 9a3 3 0 1 1 0 6a3 3 0 0 1 0-6z',
+  preview:
+    'M4 9V5a1 1 0 0 1 1-1h4M15 4h4a1 1 0 0 1 1 1v4M20 15v4a1 1 0 0 1-1 1h-4M9 20H5a1 1 0 0 1-1-1v-4M6.500 12c2-3 3.700-4 5.500-4s3.500 1 5.500 4c-2 3-3.700 4-5.500 4s-3.500-1-5.500-4zM12 10.500a1.500 1.500 0 1 1 0 3a1.500 1.500 0 0 1 0-3z',
   share: 'M14 5h5v5M19 5l-8 8M10 6H6a1 1 0 0 0-1 1v11a1 1 0 0 0 1 1h11a1 1 0 0 0 1-1v-4',
   commands: 'M9 9H7a2 2 0 1 1 2-2v10a2 2 0 1 1-2-2h10a2 2 0 1 1-2 2V7a2 2 0 1 1 2 2z',
   scene: 'M4 18h16M7 18v-5m0 0a3 3 0 1 1 0-6a3 3 0 0 1 0 6zM16.5 18v-8m0 0l-2.500-2.500m2.500 2.500l2.500-3',
@@ -200,8 +202,12 @@ export function popover(anchor: HTMLElement, content: HTMLElement, label: string
     const box = anchor.getBoundingClientRect();
     const [w, h] = [p.offsetWidth, p.offsetHeight];
     const below = box.bottom + 6 + h <= innerHeight - 8;
-    const left = below || box.left - w - 8 < 8 ? box.left : box.left - w - 8;
-    p.style.top = `${below ? box.bottom + 6 : Math.max(8, innerHeight - h - 8)}px`;
+    const beside = !below && box.left - w - 8 >= 8;
+    // At the foot of the page it stands above its button.
+    const foot = !below && !beside && box.top - h - 6 >= 8;
+    const left = beside ? box.left - w - 8 : box.left;
+    const top = below ? box.bottom + 6 : foot ? box.top - h - 6 : Math.max(8, innerHeight - h - 8);
+    p.style.top = `${top}px`;
     p.style.left = `${Math.max(8, Math.min(left, innerWidth - w - 8))}px`;
   };
   place();

@@ -86,6 +86,7 @@ export const CODES = {
   "photo-not-png": [],
   "photo-too-far": [],
   "photo-too-large": [],
+  "place-locked": [],
   "place-too-far": [],
   "plant-gone": [],
   "plant-not-made": ["name"],
@@ -393,6 +394,34 @@ export type ExportRequest = {
   whole: boolean;
   /** How wind moves drawings and trees, where the format has room for it. */
   wind: boolean;
+};
+
+/** What an export would write of one level of detail. */
+export type ExportView = {
+  /** Meshes that a program draws to show all of it. */
+  draws: number;
+  /** Bytes of the file with this level alone, or of its zip: it was written and counted. */
+  file_bytes: number;
+  /** The level; 0 is the finest. */
+  level: number;
+  /** Its meshes; copies share theirs. */
+  models: PlantView[];
+  /** What it holds, by what it is of. */
+  parts: PartFigures[];
+  /** Which of them each plant is. */
+  plants: ExportedPlant[];
+  /** Their bytes as PNG. */
+  texture_bytes: number;
+  /** Textures in it or beside it. */
+  textures: number;
+};
+
+/** A plant of an export. */
+export type ExportedPlant = {
+  /** Row of its meshes in [`ExportView::models`]. */
+  model: number;
+  /** Its name within the document, or [`GUEST`]. */
+  plant: PlantId;
 };
 
 /** Vertices and faces of a mesh. */
@@ -1063,6 +1092,20 @@ export type Opened = {
   warnings: string[];
 };
 
+/** Figures of all meshes of one kind. */
+export type PartFigures = {
+  /** Bytes of columns and corners, as binary glTF and graphics cards hold them; of copies in binary glTF once. */
+  bytes: number;
+  /** Meshes that a program draws, those of copies as often as they stand there; 0 where the file is a single mesh. */
+  draws: number;
+  /** What they are of: bark, leaf, petal, ... */
+  kind: string;
+  /** Triangles, those of copies as often as they stand there. */
+  triangles: number;
+  /** Vertices, those of copies as often as they stand there. */
+  vertices: number;
+};
+
 /** One mesh. */
 export type PartView = {
   /** Row of its material. */
@@ -1167,6 +1210,10 @@ export type PlantCommand =
   | /** Sets where it stands. */
   {
     place: Placement;
+  }
+  | /** Keeps it where it stands, or no longer. */
+  {
+    fix: boolean;
   };
 
 /** Names one plant for as long as the document lives. */
@@ -1176,6 +1223,8 @@ export type PlantId = number;
 export type PlantState = {
   /** Edits by hand, in the order in which they are done. */
   edits: EditState[];
+  /** Whether it stays where it stands. */
+  fixed: boolean;
   /** Of a flower. */
   flower: 
     | FlowerState
@@ -1248,6 +1297,8 @@ export type PlantView = {
   parts: PartView[];
   /** What was done again. */
   stages: string[];
+  /** What was not as one might expect of it. */
+  warnings: WarningView[];
 };
 
 /** The coefficients of Eq 2 by the names of Fig 2 (He and Cheng 2021): the more the contour pulls, the wider twigs stand off from their bearer. */
@@ -1852,6 +1903,10 @@ export type TreeCommand =
   {
     'set-obstacle': [number, NamedObstacle];
   }
+  | /** Moves the obstacle of a row by so many metres, in the coordinates of the tree. */
+  {
+    'move-obstacle': [number, [number, number, number]];
+  }
   | /** Takes the obstacle of a row away. */
   {
     'remove-obstacle': number;
@@ -1921,4 +1976,12 @@ export type ViewPlane = {
   right: [number, number, number];
   /** Upwards as the viewer sees it; made to stand at a right angle to `right`. */
   up: [number, number, number];
+};
+
+/** What was not as one might expect. */
+export type WarningView = {
+  /** A word that stays, such as `unlike-a-plant`. */
+  code: string;
+  /** A sentence in English. */
+  message: string;
 };

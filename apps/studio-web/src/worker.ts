@@ -1,8 +1,17 @@
 /** The worker: owns the session, answers requests in order, and grows the plant when nothing else is to do. */
 import init, { studio_schema as studioSchema, StudioSession } from './wasm/burgeon_wasm.js';
 import { texturesOf } from './protocol';
-import type { FromWorker, PartArrays, Request, Sent, TexturePixels, ToWorker } from './protocol';
-import type { PlantView, Refusal, SceneView, ShapeAnswer } from './wire';
+import type {
+  ExportedArrays,
+  FromWorker,
+  PartArrays,
+  Request,
+  Sent,
+  SentExport,
+  TexturePixels,
+  ToWorker,
+} from './protocol';
+import type { ExportRequest, ExportView, PlantView, Refusal, SceneView, ShapeAnswer } from './wire';
 
 const page = self as unknown as DedicatedWorkerGlobalScope;
 let session: StudioSession | undefined;
@@ -96,6 +105,10 @@ function answer(s: StudioSession, request: Request): unknown {
       return s.share();
     case 'export':
       return s.export(JSON.stringify(request.request));
+    case 'look':
+      return look(s, request.request, request.level);
+    case 'unlook':
+      return s.end_look();
     case 'variant': {
       const view: PlantView = JSON.parse(s.variant(request.seed, request.detail));
       try {
@@ -136,6 +149,8 @@ function tellState(s: StudioSession): void {
 const QUIET: ReadonlySet<Request['kind']> = new Set([
   'save',
   'export',
+  'look',
+  'unlook',
   'begin',
   'copy',
   'variant',
@@ -144,6 +159,32 @@ const QUIET: ReadonlySet<Request['kind']> = new Set([
   'schema',
   'branch',
 ]);
+
+/** Textures of these materials that the page does not have. */
+function unsent(s: StudioSession, { materials }: PlantView): TexturePixels[] {
+  const textures: TexturePixels[] = [];
+  for (const { texture } of materials) {
+    if (texture && !sent.has(texture.number)) {
+      sent.add(texture.number);
+      textures.push({ ...texture, pixels: s.texture(texture.number) });
+    }
+  }
+  return textures;
+}
+
+/** The columns of an export, which is written and counted. */
+function look(s: StudioSession, request: ExportRequest, level: number): SentExport {
+  const view: ExportView = JSON.parse(s.look_at_export(JSON.stringify(request), level));
+  const models = view.models.map(({ parts }, model) =>
+    parts.map((_, part): ExportedArrays => {
+      const [positions, normals, uvs, colors, wind, pivots] = [0, 1, 2, 3, 4, 5].map((c) =>
+        s.exported_column(model, part, c),
+      ) as [Float32Array, Float32Array, Float32Array, Float32Array, Float32Array, Float32Array];
+      return { positions, normals, uvs, colors, wind, pivots, indices: s.exported_indices(model, part) };
+    }),
+  );
+  return { view, models, textures: view.models.flatMap((m) => unsent(s, m)) };
+}
 
 /** The columns of what the session shows, and textures that the page does not have. */
 function pack(s: StudioSession, view: PlantView): Sent {
@@ -158,23 +199,27 @@ function pack(s: StudioSession, view: PlantView): Sent {
   const parts = mesh !== null && had.has(mesh) ? null : view.parts.map(columns);
   if (mesh !== null) had.add(mesh);
   const obstacles = view.obstacles.map(({ shape }, row) => (shape === 'mesh' ? s.obstacle(id, row) : null));
-  const textures: TexturePixels[] = [];
-  for (const { texture } of view.materials) {
-    if (texture && !sent.has(texture.number)) {
-      sent.add(texture.number);
-      const pixels = s.texture(texture.number);
-      textures.push({ ...texture, pixels });
-    }
-  }
-  return { view, parts, textures, obstacles };
+  return { view, parts, textures: unsent(s, view), obstacles };
 }
+
+const columnsOf = (parts: readonly PartArrays[]): Transferable[] =>
+  parts.flatMap((p) => Object.values(p).map((c: Float32Array | Uint32Array) => c.buffer));
 
 function buffers({ parts, textures, obstacles }: Sent): Transferable[] {
   return [
     ...obstacles.flatMap((o) => (o ? [o.buffer] : [])),
-    ...(parts ?? []).flatMap((p) => Object.values(p).map((c: Float32Array | Uint32Array) => c.buffer)),
+    ...columnsOf(parts ?? []),
     ...textures.map((x) => x.pixels.buffer),
   ];
+}
+
+/** What of an answer is given away and not copied. */
+function given(kind: Request['kind'], value: unknown): Transferable[] {
+  if (ArrayBuffer.isView(value)) return [value.buffer as ArrayBuffer];
+  if (kind === 'variant') return buffers(value as Sent);
+  if (kind !== 'look') return [];
+  const { models, textures } = value as SentExport;
+  return [...models.flatMap(columnsOf), ...textures.map((x) => x.pixels.buffer)];
 }
 
 function evaluate(): void {
@@ -236,15 +281,10 @@ page.onmessage = ({ data }: MessageEvent<ToWorker>) => {
   }
   try {
     const value = answer(session, request);
-    const bytes = ArrayBuffer.isView(value)
-      ? [value.buffer]
-      : request.kind === 'variant'
-        ? buffers(value as Sent)
-        : [];
     const quiet = QUIET.has(request.kind) || (request.kind === 'shape' && !(value as ShapeAnswer).again);
     // The state first: what waits for the answer may look at it.
     if (!quiet && request.kind !== 'draft' && request.kind !== 'shape') tellState(session);
-    tell({ kind: 'done', seq, value, placed: session.placed() }, bytes);
+    tell({ kind: 'done', seq, value, placed: session.placed() }, given(request.kind, value));
     if (!quiet) schedule();
   } catch (e) {
     tell({ kind: 'refused', seq, why: refusal(e) });

@@ -377,4 +377,31 @@ impl StudioSession {
         let request: ExportRequest = from_json(request)?;
         Ok(packed(request.format, page_run(|run| self.0.export(&request, run))?)?)
     }
+
+    /// See [`Workspace::look_at_export`]: `ExportRequest` in, `ExportView` out, both JSON.
+    ///
+    /// # Errors
+    /// When there is nothing to export.
+    pub fn look_at_export(&mut self, request: &str, level: u32) -> Result<String, Refused> {
+        let request: ExportRequest = from_json(request)?;
+        to_json(&page_run(|run| self.0.look_at_export(&request, level, run))?)
+    }
+
+    /// A column of the export that is looked at: 0 positions, 1 normals, 2 texture coordinates, 3 colours, 4 wind,
+    /// 5 pivots.
+    pub fn exported_column(&self, model: usize, part: usize, column: usize) -> Vec<f32> {
+        use Column::{Colors, Normals, Pivots, Positions, Uvs, Wind};
+        let column = [Positions, Normals, Uvs, Colors, Wind, Pivots].get(column);
+        column.map_or_else(Vec::new, |&c| self.0.exported_column(model, part, c).to_vec())
+    }
+
+    /// Three indices a triangle of the export that is looked at.
+    pub fn exported_indices(&self, model: usize, part: usize) -> Vec<u32> {
+        self.0.exported_indices(model, part).to_vec()
+    }
+
+    /// See [`Workspace::end_look`].
+    pub fn end_look(&mut self) {
+        self.0.end_look();
+    }
 }

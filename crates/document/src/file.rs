@@ -182,6 +182,7 @@ fn plant_to_file(plant: &DocumentPlant, row: &dyn Fn(PlantId) -> Option<u32>) ->
         name: s.name.clone(),
         seed: s.seed.number(),
         locked: s.locked,
+        fixed: s.fixed,
         hidden: s.hidden,
         position: position.to_array(),
         yaw_deg,
@@ -257,7 +258,7 @@ fn checked(
     let mut document =
         Document { name: shortened(&file.name), plants: Vec::new(), next_stroke: 0, next_plant: 0 };
     for (row, plant) in file.plants.into_iter().enumerate() {
-        let PlantV4 { name, seed, locked, hidden, position, yaw_deg, scale, maker, edits } = plant;
+        let PlantV4 { name, seed, locked, fixed, hidden, position, yaw_deg, scale, maker, edits } = plant;
         let (maker, strokes) = match maker {
             MakerV5::Sketch(sketch) => from_sketch(sketch, row, &photo)?,
             MakerV5::Tree(tree) => (from_tree(tree)?, Vec::new()),
@@ -274,6 +275,7 @@ fn checked(
             name: shortened(&name),
             seed: Seed::new(seed),
             locked,
+            fixed,
             hidden,
             placement: Placement { position: DVec3::from_array(position), yaw_deg, scale },
             maker,

@@ -13,7 +13,7 @@ use skin::{PetalColor, SkinSpec};
 use crate::makers::{DEFAULT_DAY, DEFAULT_FLOWER};
 use crate::{DocumentStroke, PhotoPlace, SettingFault};
 
-/// Form 5: as form 4, with the whole spec of a flower.
+/// Form 5: as form 4, with the whole spec of a flower, and plants that stay where they stand.
 pub(crate) type DocumentV5 = DocumentV4<MakerV5>;
 
 /// Form 4: as form 3, and edits by hand.
@@ -31,6 +31,8 @@ pub(crate) struct PlantV4<M> {
     pub(crate) seed: u64,
     #[serde(default, skip_serializing_if = "is_false")]
     pub(crate) locked: bool,
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub(crate) fixed: bool,
     #[serde(default, skip_serializing_if = "is_false")]
     pub(crate) hidden: bool,
     /// Metres.
@@ -61,9 +63,9 @@ impl TryFrom<DocumentV4> for DocumentV5 {
 
     fn try_from(v4: DocumentV4) -> Result<Self, SettingFault> {
         let plants = v4.plants.into_iter().map(|p| {
-            let PlantV4 { name, seed, locked, hidden, position, yaw_deg, scale, maker, edits } = p;
+            let PlantV4 { name, seed, locked, fixed, hidden, position, yaw_deg, scale, maker, edits } = p;
             let maker = maker.try_into()?;
-            Ok(PlantV4 { name, seed, locked, hidden, position, yaw_deg, scale, maker, edits })
+            Ok(PlantV4 { name, seed, locked, fixed, hidden, position, yaw_deg, scale, maker, edits })
         });
         Ok(Self { name: v4.name, plants: plants.collect::<Result<_, SettingFault>>()? })
     }
@@ -73,7 +75,8 @@ impl From<DocumentV3> for DocumentV4 {
     fn from(v3: DocumentV3) -> Self {
         let plants = v3.plants.into_iter().map(|p| {
             let PlantV3 { name, seed, locked, hidden, position, yaw_deg, scale, maker } = p;
-            PlantV4 { name, seed, locked, hidden, position, yaw_deg, scale, maker, edits: Vec::new() }
+            let (fixed, edits) = (false, Vec::new());
+            PlantV4 { name, seed, locked, fixed, hidden, position, yaw_deg, scale, maker, edits }
         });
         Self { name: v3.name, plants: plants.collect() }
     }

@@ -61,6 +61,8 @@ pub struct Settings {
     pub seed: Seed,
     /// Whether dice leave the seed alone. Default false.
     pub locked: bool,
+    /// Whether it stays where it stands. Default false.
+    pub fixed: bool,
     /// Whether it is left out of the view and of exports of the scene. Default false.
     pub hidden: bool,
     /// Where it stands.
@@ -92,6 +94,7 @@ impl Default for Settings {
             name: "plant".into(),
             seed: Seed::default(),
             locked: false,
+            fixed: false,
             hidden: false,
             placement: Placement::default(),
             maker: Maker::default(),

@@ -64,6 +64,22 @@ pub enum Obstacle {
     },
 }
 
+impl Obstacle {
+    /// The same elsewhere.
+    #[must_use]
+    pub fn moved(&self, by: DVec3) -> Self {
+        let mut new = self.clone();
+        match &mut new {
+            Self::Box { min, max } => (*min, *max) = (*min + by, *max + by),
+            Self::Sphere { centre, .. } => *centre += by,
+            Self::Cylinder { base, .. } => *base += by,
+            Self::Plane { point, .. } => *point += by,
+            Self::Mesh { vertices, .. } => vertices.iter_mut().for_each(|v| *v += by),
+        }
+        new
+    }
+}
+
 spec::schemas!(Obstacle => crate::TreeSpec, "/$defs/Obstacle");
 
 /// Obstacles made ready to be asked.

@@ -233,6 +233,8 @@ const DEGREE: f64 = PI / 180.0;
 const MOST_LEAN_DEG: f64 = 80.0;
 /// A drag of less than this many degrees is a slip of the hand, not a rotation.
 const LEAST_TURN_DEG: f64 = 0.2;
+/// So many times the usual reach beside all wood a drawn branch may begin: 63 pixels with a mouse.
+const BESIDE: f64 = 7.0;
 /// Nearer to the pivot than this share of the branch, a drag says nothing about an angle (the VR paper's dead zone).
 const DEAD: f64 = 0.05;
 
@@ -315,7 +317,13 @@ impl Tool {
 
     fn down(&mut self, plant: &Plant, p: &Pointer) -> Response {
         let ray = &p.ray;
-        let picked = pick(plant, ray, self.reach);
+        let near = pick(plant, ray, self.reach);
+        let picked = near.or_else(|| {
+            // A branch that is begun in the sky grows from the wood beside it.
+            let Reach { metres, per_metre, bearers } = self.reach;
+            let far = Reach { metres: BESIDE * metres, per_metre: BESIDE * per_metre, bearers };
+            matches!(self.kind, ToolKind::Sketch { .. }).then(|| pick(plant, ray, far)).flatten()
+        });
         let named = picked.and_then(|k| Some((k, AxisKey::of(plant, k.axis)?)));
         self.state = match (self.kind, named) {
             (ToolKind::Pick, _) => State::Idle,

@@ -276,6 +276,25 @@ fn a_branch_is_drawn_on_a_plane_that_faces_the_viewer_or_leans() {
 }
 
 #[test]
+fn a_branch_that_is_begun_in_the_sky_grows_from_the_wood_beside_it() {
+    let plant = tree();
+    let drawn = |x: f64| {
+        let way: Vec<Pointer> =
+            (0..=10).map(|i| mouse(x - 0.1 * f64::from(i), 3.0 + 0.03 * f64::from(i))).collect();
+        drag(&mut Tool::new(ToolKind::Sketch { twigs: 0.0, tilt_deg: 0.0 }), &plant, &way).commit
+    };
+    let edit = drawn(-0.6).expect("the trunk is near");
+    let HandEdit::SketchBranch { points, at, bearer, .. } = &edit else { panic!("{edit:?}") };
+    assert!((at.unwrap_or(0.0) - 0.75).abs() < 0.03 && bearer.find(&plant).map(|f| f.axis.index()) == Ok(0));
+    assert!((points[0].x + 0.6).abs() < 0.01, "what was drawn stays as it was drawn");
+    let with = after(&plant, edit);
+    let new = with.axes.iter().find(|a| !plant.axes.iter().any(|b| b.key == a.key)).expect("a branch");
+    let foot = with.nodes.position[new.nodes.start as usize];
+    assert!(foot.x.abs() < 0.05 && (foot.y - 3.0).abs() < 0.1, "it begins on the trunk: {foot}");
+    assert_eq!(drawn(-3.0), None, "too far from all wood");
+}
+
+#[test]
 fn a_controller_draws_in_space_with_the_same_tool() {
     let plant = tree();
     let way: Vec<Pointer> =

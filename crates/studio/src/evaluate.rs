@@ -368,7 +368,7 @@ impl Evaluator {
             report.warnings.extend_from_slice(warnings);
         }
         let (told, edits) = self.shaped.as_ref().map_or((&[][..], &[][..]), |s| (&s.told, &s.edits));
-        let mut warnings: Vec<String> = report.warnings.iter().map(ToString::to_string).collect();
+        let mut warnings = report.warnings.clone();
         warnings.extend(told.iter().filter_map(|t| t.warning(edits)));
         let mut counts = Counts::of_plant(shown);
         counts.vertices = model.value.vertex_count() as u64;
@@ -382,10 +382,10 @@ impl Evaluator {
             fidelity: plant.value.1,
             readings: ReadingReport::of(&reading.value),
             digest: if self.preview || self.looking { String::new() } else { shown.digest_hex() },
-            warnings,
             edits: told.to_vec(),
             ..ItemReport::default()
         }
+        .warning(warnings)
     }
 
     /// The stages that the last update did again, by their names in reports.

@@ -55,7 +55,7 @@ impl MadePlant {
     ) -> Self {
         let mut digest = Digest::new();
         digest.add(&model);
-        let mut warnings: Vec<String> = report.warnings.iter().map(ToString::to_string).collect();
+        let mut warnings = report.warnings.clone();
         warnings.extend(edits.iter().filter_map(|e| e.warning(asked)));
         let item = ItemReport {
             name: plant.name.clone(),
@@ -66,10 +66,10 @@ impl MadePlant {
             },
             timings_ms: TimingsMs::from_report(report),
             digest: digest.hex(),
-            warnings,
             edits,
             ..ItemReport::default()
-        };
+        }
+        .warning(warnings);
         Self { plant, model, skin, item }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use base::Report;
+use base::{Report, Warning};
 use plant::{AxisKind, OrganKind, Plant};
 use reading::{Kind, Reading};
 use schemars::JsonSchema;
@@ -87,6 +87,9 @@ pub struct ItemReport {
     pub readings: Vec<ReadingReport>,
     /// What was not as the user might expect.
     pub warnings: Vec<String>,
+    /// The same with their codes, for shells that say them in another language.
+    #[serde(skip)]
+    pub told: Vec<Warning>,
     /// Of a plant with axes: what a botanist would measure on it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<serde_json::Value>")]
@@ -104,6 +107,13 @@ pub struct ItemReport {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(with = "Vec<serde_json::Value>")]
     pub branches: Vec<crate::BranchRow>,
+}
+
+impl ItemReport {
+    /// With these warnings.
+    pub(crate) fn warning(self, told: Vec<Warning>) -> Self {
+        Self { warnings: told.iter().map(ToString::to_string).collect(), told, ..self }
+    }
 }
 
 /// One interpretation of a whole drawing.

@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use base::{Cancelled, Counted, Run, Stopped};
+use base::{Cancelled, Counted, Run, Stopped, Warning};
 use document::PlantEdit;
 use glam::DVec3;
 use plant::{AxisId, Plant};
@@ -38,9 +38,10 @@ impl EditReport {
     }
 
     /// What a person is told of an edit that was not done.
-    pub(crate) fn warning(&self, edits: &[PlantEdit]) -> Option<String> {
+    pub(crate) fn warning(&self, edits: &[PlantEdit]) -> Option<Warning> {
         let word = edits.get(self.index).map_or("edit", |e| e.edit.word());
-        (!self.done).then(|| format!("edit {} by hand ({word}): {}", self.index, self.said))
+        let message = || format!("edit {} by hand ({word}): {}", self.index, self.said);
+        (!self.done).then(|| Warning { code: "edit-not-done", message: message() })
     }
 }
 

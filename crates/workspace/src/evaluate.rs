@@ -10,7 +10,7 @@ use burgeon::plant::{OrganKind, Shape};
 use burgeon::{Evaluator, ItemReport, MakeError, Run, SceneError, Seed, SketchOptions, set_of, sort_by_key};
 
 use crate::view::{GUEST, Outcome, PREVIEW_DETAIL, coarser};
-use crate::{Column, ObstacleView, PlantView, Refusal, SceneView, Workspace, WorkspaceError};
+use crate::{Column, ObstacleView, PlantView, Refusal, SceneView, WarningView, Workspace, WorkspaceError};
 
 impl Workspace {
     /// Brings every plant that is shown up to date. While a stroke is drawn only the current one, coarser.
@@ -90,6 +90,8 @@ impl Workspace {
             seen.fresh = previewed || model.is_none() || self.meshes.get(&id) != Some(&revision);
             seen.mesh = revision;
             seen.item = self.item(id);
+            let told = seen.item.iter().flat_map(|i| &i.told);
+            seen.warnings = told.map(|w| WarningView { code: w.code, message: w.message.clone() }).collect();
             seen.stages = if previewed {
                 self.preview.as_ref().map_or_else(Vec::new, |e| e.stages_done().to_vec())
             } else {
@@ -143,14 +145,8 @@ impl Workspace {
 
     /// A column of a mesh of the last view; empty for what is not there.
     pub fn column(&self, plant: PlantId, part: usize, column: Column) -> &[f32] {
-        let Some(part) = self.model(plant).and_then(|m| m.parts.get(part)) else { return &[] };
-        let mesh = &part.mesh;
-        match column {
-            Column::Positions => mesh.positions.as_flattened(),
-            Column::Normals => mesh.normals.as_flattened(),
-            Column::Uvs => mesh.uvs.as_flattened(),
-            Column::Colors => mesh.colors.as_flattened(),
-        }
+        let part = self.model(plant).and_then(|m| m.parts.get(part));
+        part.map_or(&[], |p| column.of(&p.mesh))
     }
 
     /// Three indices a triangle of a mesh of the last view.

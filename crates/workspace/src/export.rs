@@ -10,6 +10,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Workspace, WorkspaceError};
 
+/// Levels of detail that an export may have.
+pub(crate) const MOST_LEVELS: u32 = 4;
+
 /// A name and the bytes under it.
 pub type NamedFile = (String, Vec<u8>);
 
@@ -37,7 +40,7 @@ pub enum ExportFormat {
 }
 
 impl ExportFormat {
-    fn model(self) -> Result<ModelFormat, WorkspaceError> {
+    pub(crate) fn model(self) -> Result<ModelFormat, WorkspaceError> {
         Ok(match self {
             Self::Glb => ModelFormat::Glb,
             Self::Usda => ModelFormat::Usda,
@@ -99,7 +102,12 @@ pub enum LengthUnit {
 }
 
 impl ExportRequest {
-    fn spec(&self) -> ExportSpec {
+    /// Whether what is written says how wind moves it.
+    pub(crate) fn blown(&self) -> bool {
+        self.wind && self.format.model().is_ok_and(ModelFormat::carries_wind)
+    }
+
+    pub(crate) fn spec(&self) -> ExportSpec {
         let up = match self.up {
             Up::Y => UpAxis::Y,
             Up::Z => UpAxis::Z,
@@ -146,30 +154,16 @@ fn export(
     wanted: &ExportRequest,
     run: &Run<'_>,
 ) -> Result<Vec<NamedFile>, WorkspaceError> {
-    let model = wanted.format.model();
-    let wind = wanted.wind && model.as_ref().is_ok_and(|f| f.carries_wind());
-    let chosen = |p: &&DocumentPlant| only.map_or(!p.settings().hidden, |id| p.id() == id);
     let mut aside;
-    let scene = if wind {
+    let scene = if wanted.blown() {
         // What is shown stays without: its meshes would be half as large again.
-        aside = scene.aside(document.plants().iter().filter(chosen));
+        aside = scene.aside(document.plants().iter().filter(chosen(only)));
         aside.set_wind(true);
         &mut aside
     } else {
         scene
     };
-    let mut made = Vec::new();
-    for plant in document.plants().iter().filter(chosen) {
-        match scene.update(plant.id(), document, run) {
-            Ok(()) => made.push(plant),
-            Err(e) if e.is_bare() && only.is_none() => {}
-            Err(e) if e.is_cancelled() => return Err(WorkspaceError::Cancelled),
-            Err(e) => return Err(e.into()),
-        }
-    }
-    if made.is_empty() {
-        return Err(WorkspaceError::NothingMade);
-    }
+    let made = made(scene, document, only, run)?;
     let structures = made.iter().map(|p| (p.id(), scene.get(p.id()).and_then(|made| made.plant)));
     match wanted.format {
         ExportFormat::Mtg => {
@@ -180,51 +174,96 @@ fn export(
         }
         _ => {}
     }
-    let (format, spec) = (model?, wanted.spec());
-    let levels = wanted.levels.clamp(1, 4);
+    let (format, spec) = (wanted.format.model()?, wanted.spec());
+    let levels = wanted.levels.clamp(1, MOST_LEVELS);
     let mut files = Vec::new();
     for level in 0..levels {
-        // Copies that share a model share its coarser copies, too.
-        let mut models: Vec<(u64, Model)> = Vec::new();
-        let mut rows = Vec::with_capacity(made.len());
-        for plant in &made {
-            let revision = scene.get(plant.id()).map_or(0, |p| p.revision);
-            let known = models.iter().position(|(r, _)| *r == revision);
-            rows.push(known.unwrap_or(models.len()));
-            if known.is_none() {
-                models.push((revision, scene.at_level(plant, document, level, run)?));
-            }
-        }
-        let standing: Vec<Standing<'_>> = made
-            .iter()
-            .zip(&rows)
-            .filter_map(|(plant, &row)| {
-                let model = &models.get(row)?.1;
-                let home = only.is_some();
-                Some(if home {
-                    Standing::home(&plant.settings().name, model)
-                } else {
-                    standing(plant, model)
-                })
-            })
-            .collect();
+        let at = Level::of(scene, document, &made, level, run)?;
         let stem = if levels == 1 { "plant".into() } else { format!("plant_LOD{level}") };
-        files.extend(scene_files(document.name(), &standing, format, &stem, &spec)?);
+        let standing = at.standing(&made, only.is_some());
+        files.extend(scene_files(document.name(), &standing, format, &stem, &spec, &mut PngCache::new())?);
     }
     Ok(files)
 }
 
+/// Which plants are written: all that are not hidden, or one.
+pub(crate) fn chosen(only: Option<PlantId>) -> impl Fn(&&DocumentPlant) -> bool {
+    move |p| only.map_or(!p.settings().hidden, |id| p.id() == id)
+}
+
+/// Brings what is written up to date; plants that there is nothing of yet are left out of a scene.
+pub(crate) fn made<'a>(
+    scene: &mut SceneEvaluator,
+    document: &'a Document,
+    only: Option<PlantId>,
+    run: &Run<'_>,
+) -> Result<Vec<&'a DocumentPlant>, WorkspaceError> {
+    let mut made = Vec::new();
+    for plant in document.plants().iter().filter(chosen(only)) {
+        match scene.update(plant.id(), document, run) {
+            Ok(()) => made.push(plant),
+            Err(e) if e.is_bare() && only.is_none() => {}
+            Err(e) if e.is_cancelled() => return Err(WorkspaceError::Cancelled),
+            Err(e) => return Err(e.into()),
+        }
+    }
+    if made.is_empty() { Err(WorkspaceError::NothingMade) } else { Ok(made) }
+}
+
+/// The models of a level of detail. Copies that share a model share its coarser copies, too.
+#[derive(Debug, Default)]
+pub(crate) struct Level {
+    pub(crate) models: Vec<Model>,
+    /// The row of each plant's model.
+    pub(crate) rows: Vec<usize>,
+}
+
+impl Level {
+    /// Level 0 is the finest.
+    pub(crate) fn of(
+        scene: &SceneEvaluator,
+        document: &Document,
+        plants: &[&DocumentPlant],
+        level: u32,
+        run: &Run<'_>,
+    ) -> Result<Self, WorkspaceError> {
+        let mut revisions: Vec<u64> = Vec::new();
+        let mut at = Self::default();
+        for plant in plants {
+            let revision = scene.get(plant.id()).map_or(0, |p| p.revision);
+            let known = revisions.iter().position(|r| *r == revision);
+            at.rows.push(known.unwrap_or(at.models.len()));
+            if known.is_none() {
+                revisions.push(revision);
+                at.models.push(scene.at_level(plant, document, level, run)?);
+            }
+        }
+        Ok(at)
+    }
+
+    /// Each plant where it stands, or one where it was made.
+    pub(crate) fn standing<'a>(&'a self, plants: &[&'a DocumentPlant], home: bool) -> Vec<Standing<'a>> {
+        let rows = plants.iter().zip(&self.rows);
+        let stands = rows.filter_map(|(plant, &row)| {
+            let model = self.models.get(row)?;
+            Some(if home { Standing::home(&plant.settings().name, model) } else { standing(plant, model) })
+        });
+        stands.collect()
+    }
+}
+
 /// The files of a scene. Binary glTF has each model once, however often it stands there; others have room for one model.
-fn scene_files(
+pub(crate) fn scene_files(
     name: &str,
     plants: &[Standing<'_>],
     format: ModelFormat,
     stem: &str,
     spec: &ExportSpec,
+    cache: &mut PngCache,
 ) -> Result<Vec<NamedFile>, WorkspaceError> {
     if format == ModelFormat::Glb {
         let mut out = Vec::new();
-        formats::write_glb_scene(name, plants, &mut PngCache::new(), &mut out)?;
+        formats::write_glb_scene(name, plants, cache, &mut out)?;
         return Ok(vec![(format!("{stem}.glb"), out)]);
     }
     written(&scene_model(name, plants), format, stem, spec)
@@ -259,7 +298,7 @@ pub fn packed(format: ExportFormat, mut files: Vec<NamedFile>) -> Result<Vec<u8>
 }
 
 /// The files of a model.
-fn written(
+pub(crate) fn written(
     model: &Model,
     format: ModelFormat,
     stem: &str,

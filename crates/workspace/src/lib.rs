@@ -7,6 +7,7 @@
 //! | `workspace` | [`Workspace`]: the document with its history, the plant that is chosen, the draft |
 //! | `files` | files in and out |
 //! | `export` | models and structures as files |
+//! | `exported` | exports that are looked at before they are written |
 //! | `evaluate` | plants made and shown, meshes as columns |
 //! | `kept` | how long results are kept |
 //! | `shaping` | tools that shape a plant by hand |
@@ -20,9 +21,11 @@ mod copies;
 mod error;
 mod evaluate;
 mod export;
+mod exported;
 mod files;
 mod held;
 mod kept;
+mod looked;
 mod scatter;
 mod shaping;
 mod state;
@@ -34,6 +37,7 @@ mod tests;
 
 pub use error::{Refusal, WorkspaceError};
 pub use export::{ExportFormat, ExportRequest, LengthUnit, NamedFile, Up, packed};
+pub use exported::{ExportView, ExportedPlant, PartFigures};
 pub use files::{FileKind, Opened};
 pub use kept::{KEPT_BYTES, SHOWN_BYTES};
 pub use scatter::{Ground, Scatter};
@@ -42,5 +46,7 @@ pub use state::{
     DocumentState, EditState, FlowerState, LeafState, MakerWord, NamedShape, ObstacleView, PhotoState,
     PlantState, SketchState, StrokeState, TreeState,
 };
-pub use view::{Column, Front, GUEST, MaterialView, PartView, PlantView, SceneView, TextureView};
+pub use view::{
+    Column, Front, GUEST, MaterialView, PartView, PlantView, SceneView, TextureView, WarningView,
+};
 pub use workspace::{Action, NewMaker, Workspace};

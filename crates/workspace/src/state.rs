@@ -58,6 +58,8 @@ pub struct PlantState<'a> {
     pub seed: String,
     /// Dice leave its seed alone.
     pub locked: bool,
+    /// Whether it stays where it stands.
+    pub fixed: bool,
     /// It is left out of the view.
     pub hidden: bool,
     /// Metres.
@@ -229,6 +231,7 @@ impl<'a> PlantState<'a> {
             name: &s.name,
             seed: s.seed.number().to_string(),
             locked: s.locked,
+            fixed: s.fixed,
             hidden: s.hidden,
             position: s.placement.position.to_array(),
             yaw_deg: s.placement.yaw_deg,

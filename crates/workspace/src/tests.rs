@@ -1,7 +1,7 @@
 //! The workspace as a page uses it: commands and answers as JSON.
 
 use burgeon::document::{
-    self, Command, Document, PlantCommand, PlantId, SceneCommand, SketchCommand, StrokeId,
+    self, Command, Document, Placement, PlantCommand, PlantId, SceneCommand, SketchCommand, StrokeId,
 };
 use burgeon::glam::{DVec2, DVec3};
 use burgeon::ink::{InkSample, Stroke, StrokeMode};
@@ -11,8 +11,8 @@ use serde::Serialize;
 use serde_json::Value;
 
 use crate::{
-    Action, Column, ExportFormat, ExportRequest, GUEST, Ground, NewMaker, Scatter, ShapeInput, ShapeReach,
-    ShapeStep, Workspace, WorkspaceError, packed,
+    Action, Column, ExportFormat, ExportRequest, GUEST, Ground, NewMaker, Refusal, Scatter, ShapeInput,
+    ShapeReach, ShapeStep, Workspace, WorkspaceError, packed,
 };
 
 fn line(points: &[(f64, f64)]) -> Stroke {
@@ -614,6 +614,60 @@ fn a_scene_that_is_full_says_so_and_goes_on() {
     s.evaluate(&run()).unwrap();
     let view = s.evaluate(&run()).unwrap();
     assert!(view.plants[2].error.is_none() && !view.plants[2].parts.is_empty());
+}
+
+#[test]
+fn a_plant_whose_place_is_locked_stays_where_it_is() {
+    let mut s = flower();
+    let id = s.current().unwrap();
+    s.run(PlantCommand::Fix(true).of(id)).unwrap();
+    let there = Placement { position: DVec3::X, ..Placement::default() };
+    let why = s.run(PlantCommand::Place(there).of(id)).unwrap_err();
+    assert_eq!(Refusal::of(&why).code, "place-locked");
+    assert_eq!(s.document().plants()[0].settings().placement, Placement::default());
+    // It is kept with the project; a copy is free to go.
+    s.run(SceneCommand::Duplicate(id, DVec3::Z)).unwrap();
+    let mut other = Workspace::default();
+    other.open("two.burgeon", &s.save().unwrap(), 0, true).unwrap();
+    let fixed: Vec<bool> = other.document().plants().iter().map(|p| p.settings().fixed).collect();
+    assert_eq!(fixed, [true, false]);
+    s.run(PlantCommand::Fix(false).of(id)).unwrap();
+    s.run(PlantCommand::Place(there).of(id)).unwrap();
+    assert_eq!(s.undo(), Some("place"));
+    assert_eq!(s.undo(), Some("fix"));
+}
+
+#[test]
+fn an_obstacle_is_moved_as_one_step() {
+    let mut s = Workspace::default();
+    s.open("bush.toml", BUSH.as_bytes(), 0, false).unwrap();
+    s.ask(r#"{"tree":[1,{"add-obstacle":{"name":"ball","shape":{"shape":"sphere","centre":[0,3,0],"radius_m":1}}}]}"#)
+        .unwrap();
+    let before = scene(&mut s);
+    s.ask(r#"{"tree":[1,{"move-obstacle":[0,[2,-1,0.5]]}]}"#).unwrap();
+    let state = json(&s.state());
+    assert_eq!(state["plants"][0]["tree"]["obstacles"][0]["shape"]["centre"], json(&[2.0, 2.0, 0.5]));
+    assert_ne!(scene(&mut s)[0].1, before[0].1, "the tree grows otherwise");
+    for refused in ["[1,[1,0,0]]", "[0,[1e9,0,0]]", "[0,[0,0,0]]"] {
+        assert!(s.ask(&format!(r#"{{"tree":[1,{{"move-obstacle":{refused}}}]}}"#)).is_err(), "{refused}");
+    }
+    assert_eq!(s.undo(), Some("move-obstacle"));
+    assert_eq!(scene(&mut s), before);
+}
+
+#[test]
+fn warnings_are_told_with_their_codes() {
+    let mut s = Workspace::default();
+    let scribble: Vec<(f64, f64)> =
+        (0..400).map(|k| (f64::from(k * 37 % 101), f64::from(k * 61 % 97))).collect();
+    s.add_stroke(line(&scribble)).unwrap();
+    let view = s.evaluate(&run()).unwrap();
+    let warned = view.plants.iter().flat_map(|p| &p.warnings).map(|w| w.code).collect::<Vec<_>>();
+    assert!(!warned.is_empty() && warned.iter().all(|c| !c.is_empty()), "{warned:?}");
+    for plant in &view.plants {
+        let messages: Vec<&String> = plant.warnings.iter().map(|w| &w.message).collect();
+        assert_eq!(messages, plant.item.iter().flat_map(|i| &i.warnings).collect::<Vec<_>>());
+    }
 }
 
 /// A scene of one flower and the number of its plants' models.

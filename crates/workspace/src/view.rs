@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use burgeon::document::{Command, Document, Maker, PlantId, SketchCommand, TreeCommand};
-use burgeon::mesh::{AlphaMode, Model, Texture};
+use burgeon::mesh::{AlphaMode, Model, Texture, TriMesh};
 use burgeon::skin::SkinSpec;
 use burgeon::{FrontView, ItemReport, SceneError, set_of};
 use schemars::JsonSchema;
@@ -28,6 +28,23 @@ pub enum Column {
     Uvs,
     /// Three floats a vertex, linear; may be empty.
     Colors,
+    /// Four floats a vertex, each 0 to 1: sway of the plant, sway of the limb, flutter, phase; mostly empty.
+    Wind,
+    /// Three floats a vertex, metres: about what wind turns it; mostly empty.
+    Pivots,
+}
+
+impl Column {
+    pub(crate) fn of(self, mesh: &TriMesh) -> &[f32] {
+        match self {
+            Self::Positions => mesh.positions.as_flattened(),
+            Self::Normals => mesh.normals.as_flattened(),
+            Self::Uvs => mesh.uvs.as_flattened(),
+            Self::Colors => mesh.colors.as_flattened(),
+            Self::Wind => mesh.wind.as_flattened(),
+            Self::Pivots => mesh.pivots.as_flattened(),
+        }
+    }
 }
 
 /// Every plant of a scene, as it was made last.
@@ -54,6 +71,8 @@ pub struct PlantView {
     pub error: Option<Refusal>,
     /// The entry of the report.
     pub item: Option<ItemReport>,
+    /// What was not as one might expect of it.
+    pub warnings: Vec<WarningView>,
     /// What was done again.
     pub stages: Vec<&'static str>,
     /// How a drawing lies in the front view.
@@ -87,6 +106,15 @@ impl From<FrontView> for Front {
     fn from(front: FrontView) -> Self {
         Self { metres_per_unit: front.metres_per_unit, x: front.origin.x, y: front.origin.y }
     }
+}
+
+/// What was not as one might expect.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct WarningView {
+    /// A word that stays, such as `unlike-a-plant`.
+    pub code: &'static str,
+    /// A sentence in English.
+    pub message: String,
 }
 
 /// One mesh.
@@ -169,6 +197,7 @@ impl PlantView {
             mesh: None,
             error: None,
             item: None,
+            warnings: Vec::new(),
             stages: Vec::new(),
             front: None,
             days: None,

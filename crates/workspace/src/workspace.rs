@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::held::Held;
 use crate::kept::Kept;
+use crate::looked::Looked;
 use crate::view::{Outcome, Textures};
 use crate::{DocumentState, Scatter, WorkspaceError};
 
@@ -107,6 +108,8 @@ pub struct Workspace {
     pub(crate) guest: Option<Model>,
     /// Another plant of the same description, looked at for a moment.
     pub(crate) variant: Option<Model>,
+    /// An export that is looked at before it is written.
+    pub(crate) looked: Option<Looked>,
     /// What came of each plant at the last evaluation.
     pub(crate) outcomes: BTreeMap<PlantId, Outcome>,
     /// What each plant's meshes were made of in the last view: a revision, or a look.

@@ -11,8 +11,8 @@ use schemars::JsonSchema;
 use schemars::generate::{SchemaGenerator, SchemaSettings};
 use serde_json::{Map, Value};
 use workspace::{
-    Action, DocumentState, ExportRequest, Opened, Refusal, SceneView, ShapeAnswer, ShapeInput, ShapeReach,
-    WorkspaceError,
+    Action, DocumentState, ExportRequest, ExportView, Opened, Refusal, SceneView, ShapeAnswer, ShapeInput,
+    ShapeReach, WorkspaceError,
 };
 
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../apps/studio-web/src/wire.ts");
@@ -47,6 +47,7 @@ fn types() -> String {
     add::<SceneView>(&mut all);
     add::<Opened>(&mut all);
     add::<ExportRequest>(&mut all);
+    add::<ExportView>(&mut all);
     add::<ToolKind>(&mut all);
     add::<ShapeReach>(&mut all);
     add::<ShapeInput>(&mut all);

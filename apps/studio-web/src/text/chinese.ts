@@ -1,4 +1,4 @@
 /** All that is Chinese: one file, which is fetched when somebody reads it. */
 export { zh } from './zh';
-export { zhErrors, zhWords } from './zh-errors';
+export { zhErrors, zhWarnings, zhWords } from './zh-errors';
 export { zhHelp } from './zh-help';

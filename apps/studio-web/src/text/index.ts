@@ -1,5 +1,5 @@
 import { en, type TextKey } from './en';
-import type { Refusal } from '../wire';
+import type { Refusal, WarningView } from '../wire';
 
 export type { TextKey };
 export type Language = 'en' | 'zh';
@@ -38,6 +38,12 @@ export function tell({ code, fields, causes, message }: Refusal): string {
   };
   // A field that does not apply is empty.
   return text?.replace(/\{(\w+)\}/g, (_, name: string) => told(name)).trim() ?? message;
+}
+
+/** What was not as one might expect of a plant: our text for its code, if there is one, and what the core says. */
+export function warning({ code, message }: WarningView): { text: string; own?: string } {
+  const text = other()?.zhWarnings[code];
+  return text === undefined ? { text: message } : { text, own: message };
 }
 
 /** The text of a key made of parts; the last part itself if there is no such key. */

@@ -54,6 +54,11 @@ export class Handles {
     controls.showY = mode !== 'translate';
   }
 
+  /** A handle is under the pointer. */
+  get isUnderPointer(): boolean {
+    return this.controls.object !== undefined && this.controls.axis !== null;
+  }
+
   setCamera(camera: Camera): void {
     this.controls.camera = camera;
   }

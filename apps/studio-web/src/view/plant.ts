@@ -193,6 +193,7 @@ export class PlantMeshes {
     shapes.forEach((shape, row) => {
       const mesh = solid(shape, corners[row] ?? null);
       if (!mesh) return;
+      mesh.userData['row'] = row;
       mesh.castShadow = mesh.receiveShadow = true;
       this.obstacles.add(mesh);
     });

@@ -9,6 +9,7 @@ import { Rig, type Side } from './camera';
 import type { Handles } from './gizmo';
 import { type Guide, Guides } from './guides';
 import type { StageSetting } from './moods';
+import { dragObstacles } from './obstacles';
 import { fillShapes, Looks, PlantMeshes, type Shapes } from './plant';
 import type { Effects, Pipeline } from './post';
 import { drawnBySoftware, Pace } from './quality';
@@ -41,6 +42,17 @@ const SNAP = { m: 0.25, deg: 15, size: 0.1 } as const;
 /** So much of a plant may be in the ground before it is raised onto it, where the ground hides what is in it. */
 const SUNK = 0.06;
 
+/** Meshes in the place of the plants, by the plants' names. */
+export interface StandIn {
+  readonly groups: ReadonlyMap<number, THREE.Group>;
+  /** It is drawn again and again. */
+  readonly moves: boolean;
+  tick(seconds: number): void;
+  /** Takes its materials anew. */
+  relook(): void;
+  dispose(): void;
+}
+
 export class PlantView {
   readonly element = document.createElement('div');
   private readonly renderer: THREE.WebGLRenderer;
@@ -51,6 +63,7 @@ export class PlantView {
   private shapes = new Map<number, Shapes>();
   /** A model that is viewed instead of the scene. */
   private guest: PlantMeshes | undefined;
+  private standIn: StandIn | undefined;
   private states: PlantState[] = [];
   private current: number | null = null;
   /** Holds what is shown of the plant, at the size of the stage. */
@@ -109,6 +122,7 @@ export class PlantView {
   onPlaceBegin: () => void = () => {};
   onPlace: (plant: number, position: [number, number, number], yaw: number, scale: number) => void = () => {};
   onPlaceEnd: () => void = () => {};
+  onObstacle: (plant: number, row: number, by: [number, number, number]) => void = () => {};
 
   /** Throws where the browser has no WebGL 2. */
   constructor(label: string) {
@@ -126,6 +140,26 @@ export class PlantView {
     const canvas = this.renderer.domElement;
     canvas.tabIndex = 0;
     canvas.setAttribute('role', 'img');
+    // Before the camera: what takes an obstacle turns no view.
+    dragObstacles(canvas, {
+      at: (x, y) => this.obstacleAt(x, y),
+      over: (x, y) => this.obstacleUnder(x, y) !== undefined,
+      ray: (x, y) => {
+        this.aim(x, y);
+        return this.caster.ray;
+      },
+      hold: (on) => {
+        this.dragging = on;
+        if (!on) this.fitStage();
+      },
+      redraw: () => {
+        this.stage.touch();
+        this.redraw();
+      },
+      moved: (row, by) => {
+        if (this.current !== null) this.onObstacle(this.current, row, by);
+      },
+    });
     this.setLabel(label);
     this.element.append(canvas);
     this.stage.scene.add(this.holder);
@@ -242,11 +276,13 @@ export class PlantView {
 
   setWire(wire: boolean): void {
     this.looks.setWire(wire);
+    this.standIn?.relook();
     this.redraw();
   }
 
   /** A new worker names textures and meshes anew. */
   forget(): void {
+    this.setStandIn(undefined);
     this.looks.forget();
     this.shapes.clear();
   }
@@ -341,13 +377,38 @@ export class PlantView {
     if (whole || !this.slow) this.redraw();
   }
 
+  /** What stands in the place of plants from now on; none shows the plants again. It is given what they look like. */
+  setStandIn(make: ((looks: Looks) => StandIn) | undefined): void {
+    this.standIn?.dispose();
+    this.standIn = make?.(this.looks);
+    if (this.guest) {
+      const other = this.standIn?.groups.get(this.guest.view?.id ?? -1);
+      if (other) this.guest.place.add(other);
+      this.guest.group.visible = !other;
+    }
+    this.stand();
+    this.stage.touch();
+    this.redraw();
+  }
+
+  /** The stand-in is another than it was. */
+  stir(): void {
+    this.stage.touch();
+    this.redraw();
+  }
+
   private stand(): void {
     const alone = this.front || this.guest !== undefined;
     for (const [id, plant] of this.plants) {
       const state = this.states.find((s) => s.id === id);
       const mine = id === this.current;
       plant.place.visible = this.guest === undefined && (mine || !alone) && !(state?.hidden ?? false);
-      plant.group.visible = !(this.boned && mine);
+      const other = this.standIn?.groups.get(id);
+      if (other) {
+        plant.place.add(other);
+        other.visible = !(this.boned && mine);
+      }
+      plant.group.visible = !(this.boned && mine) && !other;
       if (!state || (this.dragging && mine)) continue;
       // The front view is the drawing, wherever the plant stands.
       const [x, y, z] = this.front ? [0, 0, 0] : state.position;
@@ -449,7 +510,8 @@ export class PlantView {
 
   private showHandles(): void {
     if (this.dragging) return;
-    const plant = this.front || this.guest ? undefined : this.chosen;
+    const fixed = this.states.find((s) => s.id === this.current)?.fixed ?? false;
+    const plant = this.front || this.guest || fixed ? undefined : this.chosen;
     this.handles?.show(plant?.place.visible ? plant.place : undefined, this.gizmo);
   }
 
@@ -519,6 +581,31 @@ export class PlantView {
       if (hit && (!best || hit.distance < best.distance)) best = { id, distance: hit.distance };
     }
     return best?.id;
+  }
+
+  /** The obstacle of the chosen plant under a point of the screen. */
+  private obstacleUnder(x: number, y: number): THREE.Intersection | undefined {
+    const { chosen } = this;
+    if (this.hands || this.guest || this.front || this.rig.walking || !chosen?.place.visible)
+      return undefined;
+    if (this.dragging || this.handles?.isUnderPointer || chosen.obstacles.children.length === 0)
+      return undefined;
+    this.aim(x, y);
+    chosen.place.updateWorldMatrix(true, true);
+    return this.caster.intersectObject(chosen.obstacles, true)[0];
+  }
+
+  /** The same, if nothing of the plant lies before it. */
+  private obstacleAt(
+    x: number,
+    y: number,
+  ): { mesh: THREE.Mesh; place: THREE.Object3D; point: THREE.Vector3 } | undefined {
+    const hit = this.obstacleUnder(x, y);
+    const { chosen } = this;
+    if (!hit || !chosen) return undefined;
+    const before = this.caster.intersectObject(chosen.group, true)[0];
+    if (before && before.distance < hit.distance) return undefined;
+    return { mesh: hit.object as THREE.Mesh, place: chosen.place, point: hit.point.clone() };
   }
 
   private get camera(): THREE.PerspectiveCamera | THREE.OrthographicCamera {
@@ -761,6 +848,7 @@ export class PlantView {
     this.stage.sharpen(fine ? SHADOW.fine : SHADOW.fast);
     this.looks.setMatt(!fine);
     for (const plant of this.all) plant.relook();
+    this.standIn?.relook();
     this.element.dataset['quality'] = fine ? 'fine' : 'fast';
   }
 
@@ -933,7 +1021,7 @@ export class PlantView {
       if (this.slow) this.spare(now);
       this.render();
       this.rendered = performance.now();
-      if (!there) this.redraw();
+      if (!there || this.standIn?.moves) this.redraw();
     });
   }
 
@@ -960,6 +1048,9 @@ export class PlantView {
     if (this.immersing) return;
     const { camera, pipeline } = this;
     this.guides.face(camera);
+    this.standIn?.tick(performance.now() / 1000);
+    // Shadows that move with it are for a graphics card.
+    if (this.standIn?.moves && !this.slow) this.renderer.shadowMap.needsUpdate = true;
     const through = pipeline && (this.isFine || (this.stage.current.blur > 0 && !this.front));
     this.stage.prepare(!through, this.rig.far.aspect, this.holder);
     if (through) {

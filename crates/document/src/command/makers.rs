@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use bloom::{FlowerSpec, GrowthLaw};
+use glam::DVec3;
 use growth::TreeSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -13,7 +14,7 @@ use super::{Command, CommandError, may_bear, set};
 use crate::event::Event;
 use crate::makers::{FlowerMaker, LeafData, LeafMaker, Maker, NamedObstacle, TreeSettings};
 use crate::state::shortened;
-use crate::{Document, DocumentPlant, PlantId};
+use crate::{Document, DocumentPlant, PlantId, SettingFault};
 
 /// What can be asked of a tree.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -33,6 +34,8 @@ pub enum TreeCommand {
     AddObstacle(NamedObstacle),
     /// Replaces the obstacle of a row.
     SetObstacle(usize, NamedObstacle),
+    /// Moves the obstacle of a row by so many metres, in the coordinates of the tree.
+    MoveObstacle(usize, #[schemars(with = "[f64; 3]")] DVec3),
     /// Takes the obstacle of a row away.
     RemoveObstacle(usize),
     /// Sets how it is meshed.
@@ -52,6 +55,7 @@ impl TreeCommand {
             Self::SetSpec(..) => "species",
             Self::SetField(..) => "tree",
             Self::AddObstacle(_) | Self::SetObstacle(..) | Self::RemoveObstacle(_) => "obstacle",
+            Self::MoveObstacle(..) => "move-obstacle",
             Self::SetSkin(_) => "skin",
             Self::SetLeaf(_) => "leaf-of",
         }
@@ -82,6 +86,13 @@ impl TreeCommand {
             }
             Self::AddObstacle(new) => tree.obstacles.push(named(new)),
             Self::SetObstacle(row, new) => *tree.obstacles.get_mut(row).ok_or(gone)? = named(new),
+            Self::MoveObstacle(row, by) => {
+                let obstacle = tree.obstacles.get_mut(row).ok_or(gone)?;
+                if !by.is_finite() || by.abs().max_element() > 1e5 {
+                    return Err(CommandError::OutOfRange(SettingFault::Place));
+                }
+                obstacle.shape = Arc::new(obstacle.shape.moved(by));
+            }
             Self::RemoveObstacle(row) => {
                 if row >= tree.obstacles.len() {
                     return Err(gone);

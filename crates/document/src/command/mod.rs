@@ -72,6 +72,9 @@ pub enum CommandError {
     /// A photograph is to be moved and there is none.
     #[error("there is no photograph under the drawing")]
     NoPhoto,
+    /// It is to stand elsewhere and was told to stay.
+    #[error("the place of the plant is locked; unlock it to move, turn or size it")]
+    Fixed,
     /// Nothing would change.
     #[error("nothing to do: {0}")]
     Nothing(&'static str),
@@ -159,6 +162,7 @@ base::coded!(CommandError {
     Self::OtherMaker { wanted, found } => "other-maker" { wanted, found },
     Self::NoLeaf => "no-leaf-to-lend" {},
     Self::NoPhoto => "no-photo" {},
+    Self::Fixed => "place-locked" {},
     Self::Nothing(_) => "nothing-to-do" {},
     Self::TooFar => "too-far" {},
     Self::Full(what) => "full" { what },

@@ -63,6 +63,7 @@ impl SceneCommand {
                 let DocumentPlant { settings, strokes, .. } = plant(id, document)?.clone();
                 let mut new = NewPlant { settings, strokes: Vec::new() };
                 new.settings.placement.position += by;
+                new.settings.fixed = false;
                 let strokes = strokes.into_iter();
                 new.strokes =
                     strokes.map(|s| NewStroke { stroke: (*s.stroke).clone(), class: s.class }).collect();
@@ -157,6 +158,8 @@ pub enum PlantCommand {
     Hide(bool),
     /// Sets where it stands.
     Place(Placement),
+    /// Keeps it where it stands, or no longer. A copy is free to go.
+    Fix(bool),
 }
 
 impl PlantCommand {
@@ -172,6 +175,7 @@ impl PlantCommand {
             Self::Lock(_) => "lock",
             Self::Hide(_) => "hide",
             Self::Place(_) => "place",
+            Self::Fix(_) => "fix",
         }
     }
 
@@ -185,7 +189,9 @@ impl PlantCommand {
                 Self::SetSeed(seed) => s.seed = seed,
                 Self::Lock(on) => s.locked = on,
                 Self::Hide(on) => s.hidden = on,
+                Self::Place(_) if s.fixed => return Err(CommandError::Fixed),
                 Self::Place(placement) => s.placement = placement,
+                Self::Fix(on) => s.fixed = on,
             }
             Ok(())
         })

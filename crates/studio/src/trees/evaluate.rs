@@ -223,7 +223,7 @@ impl TreeEvaluator {
         let given = matches!(spec.method, Method::Points { .. });
         let many = 2 * growth.unreachable > growth.attractors;
         let told = raw.warnings.iter().filter(|w| given || many || w.code != "attractors-unreached");
-        let mut warnings: Vec<String> = told.map(ToString::to_string).collect();
+        let mut warnings: Vec<Warning> = told.cloned().collect();
         let edits = self.shaped.as_ref();
         warnings.extend(edits.into_iter().flat_map(|s| s.told.iter().filter_map(|t| t.warning(&s.edits))));
         ItemReport {
@@ -235,11 +235,11 @@ impl TreeEvaluator {
             },
             timings_ms: TimingsMs::from_report(report),
             digest: if self.looking { String::new() } else { plant.digest_hex() },
-            warnings,
             growth: Some(growth),
             edits: edits.map_or_else(Vec::new, |s| s.told.clone()),
             ..ItemReport::default()
         }
+        .warning(warnings)
     }
 
     /// The stages that the last update did again: `structure`, `depth`, `shape`, `mesh`.

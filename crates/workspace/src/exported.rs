@@ -1,0 +1,314 @@
+//! An export that is looked at before it is written: its meshes at one level of detail, and figures that were counted.
+
+use burgeon::Run;
+use burgeon::document::PlantId;
+use burgeon::formats::ModelFormat;
+use burgeon::mesh::{Model, TriMesh};
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::export::{Level, MOST_LEVELS, chosen, made, packed, scene_files, written};
+use crate::looked::Looked;
+use crate::view::GUEST;
+use crate::{Column, ExportRequest, PlantView, Workspace, WorkspaceError};
+
+/// What an export would write of one level of detail.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct ExportView {
+    /// The level; 0 is the finest.
+    pub level: u32,
+    /// Bytes of the file with this level alone, or of its zip: it was written and counted.
+    pub file_bytes: u64,
+    /// Textures in it or beside it.
+    pub textures: u32,
+    /// Their bytes as PNG.
+    pub texture_bytes: u64,
+    /// Meshes that a program draws to show all of it.
+    pub draws: u32,
+    /// What it holds, by what it is of.
+    pub parts: Vec<PartFigures>,
+    /// Its meshes; copies share theirs. See [`Workspace::exported_column`].
+    pub models: Vec<PlantView>,
+    /// Which of them each plant is.
+    pub plants: Vec<ExportedPlant>,
+}
+
+/// Figures of all meshes of one kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct PartFigures {
+    /// What they are of: bark, leaf, petal, ...
+    pub kind: &'static str,
+    /// Triangles, those of copies as often as they stand there.
+    pub triangles: u64,
+    /// Vertices, those of copies as often as they stand there.
+    pub vertices: u64,
+    /// Meshes that a program draws, those of copies as often as they stand there; 0 where the file is a single mesh.
+    pub draws: u32,
+    /// Bytes of columns and corners, as binary glTF and graphics cards hold them; of copies in binary glTF once.
+    pub bytes: u64,
+}
+
+/// A plant of an export.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct ExportedPlant {
+    /// Its name within the document, or [`GUEST`].
+    pub plant: PlantId,
+    /// Row of its meshes in [`ExportView::models`].
+    pub model: usize,
+}
+
+impl Workspace {
+    /// What [`Workspace::export`] would write of one level (0 to 3), to be seen and counted. `wanted.levels` is not read.
+    /// Its meshes stay until the next look or [`Workspace::end_look`].
+    ///
+    /// # Cost
+    /// That of the export: the file is written, counted and thrown away.
+    ///
+    /// # Errors
+    /// As [`Workspace::export`]; [`WorkspaceError::Format`] for a format that holds no models.
+    pub fn look_at_export(
+        &mut self,
+        wanted: &ExportRequest,
+        level: u32,
+        run: &Run<'_>,
+    ) -> Result<ExportView, WorkspaceError> {
+        let (format, spec) = (wanted.format.model()?, wanted.spec());
+        let mut looked = std::mem::take(&mut self.looked).unwrap_or_default();
+        looked.models.clear();
+        let level = level.min(MOST_LEVELS - 1);
+        if let Some(model) = &self.guest {
+            let files = written(model, format, "plant", &spec)?;
+            let bytes = packed(wanted.format, files)?.len();
+            looked.models.push(model.clone());
+            return self.counted(looked, (0, bytes), format, &[(GUEST, 0)]);
+        }
+        let only = if wanted.whole { None } else { Some(self.must()?) };
+        let document = self.editor.document();
+        let scene = if wanted.blown() {
+            let now = self.editor.revision();
+            if looked.blown.as_ref().is_none_or(|(then, _)| *then != now) {
+                let mut aside = self.scene.aside(document.plants().iter().filter(chosen(only)));
+                aside.set_wind(true);
+                looked.blown = Some((now, aside));
+            }
+            looked.blown.as_mut().map_or(&mut self.scene, |(_, aside)| aside)
+        } else {
+            looked.blown = None;
+            &mut self.scene
+        };
+        let plants = made(scene, document, only, run)?;
+        let at = Level::of(scene, document, &plants, level, run)?;
+        let standing = at.standing(&plants, only.is_some());
+        let files = scene_files(document.name(), &standing, format, "plant", &spec, &mut looked.pngs)?;
+        let bytes = packed(wanted.format, files)?.len();
+        let rows: Vec<_> = plants.iter().zip(&at.rows).map(|(p, &row)| (p.id(), row)).collect();
+        looked.models = at.models;
+        self.counted(looked, (level, bytes), format, &rows)
+    }
+
+    /// The figures, and the views of the models that were looked at.
+    fn counted(
+        &mut self,
+        mut looked: Looked,
+        (level, file): (u32, usize),
+        format: ModelFormat,
+        rows: &[(PlantId, usize)],
+    ) -> Result<ExportView, WorkspaceError> {
+        let mut textures = Vec::new();
+        let models = looked.models.iter().flat_map(|m| &m.materials);
+        for texture in models.filter_map(|m| m.texture.as_ref()).filter(|_| !is_single(format)) {
+            if !textures.contains(&texture) {
+                textures.push(texture);
+            }
+        }
+        let mut texture_bytes = 0;
+        for texture in &textures {
+            texture_bytes += looked.pngs.png(texture)?.len() as u64;
+        }
+        let count = u32::try_from(textures.len()).unwrap_or(u32::MAX);
+        let (parts, draws) = figures(&looked.models, rows, format);
+        let models = looked.models.iter().map(|m| PlantView::of(GUEST, m, &mut self.textures)).collect();
+        self.looked = Some(looked);
+        Ok(ExportView {
+            level,
+            file_bytes: file as u64,
+            textures: count,
+            texture_bytes,
+            draws,
+            parts,
+            models,
+            plants: rows.iter().map(|&(plant, model)| ExportedPlant { plant, model }).collect(),
+        })
+    }
+
+    /// A column of a mesh of the last look at an export; empty for what is not there.
+    pub fn exported_column(&self, model: usize, part: usize, column: Column) -> &[f32] {
+        let model = self.looked.as_ref().and_then(|l| l.models.get(model));
+        model.and_then(|m| m.parts.get(part)).map_or(&[], |p| column.of(&p.mesh))
+    }
+
+    /// Three indices a triangle of a mesh of the last look at an export.
+    pub fn exported_indices(&self, model: usize, part: usize) -> &[u32] {
+        let model = self.looked.as_ref().and_then(|l| l.models.get(model));
+        model.and_then(|m| m.parts.get(part)).map_or(&[], |p| p.mesh.triangles.as_flattened())
+    }
+
+    /// Forgets the export that was looked at.
+    pub fn end_look(&mut self) {
+        self.looked = None;
+    }
+}
+
+/// One mesh holds all, without textures.
+fn is_single(format: ModelFormat) -> bool {
+    matches!(format, ModelFormat::Ply | ModelFormat::Stl)
+}
+
+/// Figures by kind, in the order of the parts, and how many meshes are drawn.
+fn figures(models: &[Model], rows: &[(PlantId, usize)], format: ModelFormat) -> (Vec<PartFigures>, u32) {
+    let single = is_single(format);
+    let mut all: Vec<PartFigures> = Vec::new();
+    for (k, model) in models.iter().enumerate() {
+        let places = rows.iter().filter(|(_, row)| *row == k).count() as u64;
+        for part in model.parts.iter().filter(|p| !p.mesh.positions.is_empty()) {
+            let kind = model.materials.get(part.material.index()).map_or("other", |m| m.kind.word());
+            let row = all.iter().position(|p| p.kind == kind).unwrap_or_else(|| {
+                all.push(PartFigures { kind, triangles: 0, vertices: 0, draws: 0, bytes: 0 });
+                all.len() - 1
+            });
+            let (mesh, figures) = (&part.mesh, &mut all[row]);
+            let triangles = mesh.triangles.len() as u64;
+            // An STL repeats each corner.
+            let vertices =
+                if format == ModelFormat::Stl { 3 * triangles } else { mesh.positions.len() as u64 };
+            figures.triangles += places * triangles;
+            figures.vertices += places * vertices;
+            figures.bytes += bytes(mesh) * if format == ModelFormat::Glb { 1 } else { places };
+            if !single {
+                figures.draws += u32::try_from(places).unwrap_or(u32::MAX);
+            }
+        }
+    }
+    let draws = if single { 1 } else { all.iter().map(|p| p.draws).sum() };
+    (all, draws)
+}
+
+/// What a mesh takes in binary glTF.
+fn bytes(mesh: &TriMesh) -> u64 {
+    let floats = 3 * mesh.positions.len()
+        + 3 * mesh.normals.len()
+        + 2 * mesh.uvs.len()
+        + 3 * mesh.colors.len()
+        + 4 * mesh.wind.len()
+        + 3 * mesh.pivots.len();
+    let corner = if mesh.positions.len() < 65_536 { 2 } else { 4 };
+    (4 * floats + 3 * corner * mesh.triangles.len()) as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use burgeon::document::{PlantCommand, SceneCommand};
+    use burgeon::glam::DVec3;
+    use serde_json::Value;
+
+    use super::*;
+    use crate::{ExportFormat, NewMaker};
+
+    /// The JSON of a binary glTF file.
+    fn gltf(glb: &[u8]) -> Value {
+        let length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
+        serde_json::from_slice(&glb[20..20 + length]).unwrap()
+    }
+
+    /// What a binary glTF file holds: triangles and meshes that are drawn, bytes of meshes, textures and their bytes.
+    fn held(glb: &[u8]) -> [u64; 5] {
+        let file = gltf(glb);
+        let rows = |key: &str| file[key].as_array().cloned().unwrap_or_default();
+        let (accessors, views, meshes) = (rows("accessors"), rows("bufferViews"), rows("meshes"));
+        let at = |list: &[Value], row: &Value| list[usize::try_from(row.as_u64().unwrap()).unwrap()].clone();
+        let (mut triangles, mut draws) = (0, 0);
+        for node in rows("nodes").iter().filter(|n| !n["mesh"].is_null()) {
+            let primitive = at(&meshes, &node["mesh"])["primitives"][0].clone();
+            triangles += at(&accessors, &primitive["indices"])["count"].as_u64().unwrap() / 3;
+            draws += 1;
+        }
+        let length = |view: &Value| view["byteLength"].as_u64().unwrap();
+        let columns = views.iter().filter(|v| !v["target"].is_null()).map(length).sum();
+        let pictures = views.iter().filter(|v| v["target"].is_null()).map(length).sum();
+        [triangles, draws, columns, rows("images").len() as u64, pictures]
+    }
+
+    fn told(view: &ExportView) -> [u64; 5] {
+        let sum = |f: fn(&PartFigures) -> u64| view.parts.iter().map(f).sum::<u64>();
+        [sum(|p| p.triangles), view.draws.into(), sum(|p| p.bytes), view.textures.into(), view.texture_bytes]
+    }
+
+    #[test]
+    fn the_figures_are_those_of_the_file() {
+        let mut s = Workspace::default();
+        let bush = "name = \"bush\"\n[method]\nkind = \"competition\"\npoints = 200\nlifespan = 1\n";
+        s.open("bush.toml", bush.as_bytes(), 0, false).unwrap();
+        let bush = s.current().unwrap();
+        for k in 1..3 {
+            s.run(SceneCommand::Duplicate(bush, DVec3::X * f64::from(k))).unwrap();
+        }
+        let maker = NewMaker::Flower("lily".into());
+        s.act(&crate::Action::Add { name: "a lily".into(), maker }).unwrap();
+        let mut before = [u64::MAX; 5];
+        for (wind, level) in [(false, 0), (true, 0), (true, 1), (true, 2)] {
+            let wanted = ExportRequest { whole: true, wind, levels: level + 1, ..ExportRequest::default() };
+            let view = s.look_at_export(&wanted, level, &Run::plain()).unwrap();
+            let files = s.export(&wanted, &Run::plain()).unwrap();
+            let (_, file) = &files[level as usize];
+            assert_eq!(told(&view), held(file), "wind {wind}, level {level}");
+            assert_eq!(view.file_bytes, file.len() as u64);
+            assert_eq!((view.models.len(), view.plants.len()), (2, 4), "copies share their meshes");
+            let (positions, blown) = (
+                s.exported_column(0, 0, Column::Positions).len(),
+                s.exported_column(0, 0, Column::Wind).len(),
+            );
+            assert!(positions > 0 && blown == if wind { positions / 3 * 4 } else { 0 });
+            assert!(!s.exported_indices(0, 0).is_empty());
+            let now = told(&view);
+            if level > 0 {
+                assert!(now[0] < before[0], "a level has fewer triangles: {now:?}");
+            }
+            before = now;
+        }
+        s.end_look();
+        assert!(s.exported_column(0, 0, Column::Positions).is_empty());
+        // Hidden plants are not written; one plant alone is.
+        s.run(PlantCommand::Hide(true).of(bush)).unwrap();
+        let all = ExportRequest { whole: true, ..ExportRequest::default() };
+        assert_eq!(s.look_at_export(&all, 0, &Run::plain()).unwrap().plants.len(), 3);
+        let one = s.look_at_export(&ExportRequest::default(), 0, &Run::plain()).unwrap();
+        assert_eq!(one.plants.len(), 1);
+    }
+
+    #[test]
+    fn each_format_is_counted_as_it_is() {
+        let mut s = Workspace::default();
+        let maker = NewMaker::Flower("lily".into());
+        s.act(&crate::Action::Add { name: "a lily".into(), maker }).unwrap();
+        let lily = s.current().unwrap();
+        s.run(SceneCommand::Duplicate(lily, DVec3::X)).unwrap();
+        let mut look = |format, wind| {
+            let wanted = ExportRequest { format, wind, whole: true, ..ExportRequest::default() };
+            let view = s.look_at_export(&wanted, 0, &Run::plain()).unwrap();
+            let saved = packed(format, s.export(&wanted, &Run::plain()).unwrap()).unwrap();
+            assert_eq!(view.file_bytes, saved.len() as u64, "{format:?}");
+            view
+        };
+        let glb = look(ExportFormat::Glb, false);
+        let obj = look(ExportFormat::Obj, true);
+        let [ply, stl] = [ExportFormat::Ply, ExportFormat::Stl].map(|f| look(f, true));
+        assert_eq!((obj.draws, obj.textures), (glb.draws, glb.textures));
+        assert_eq!(told(&obj)[2], 2 * told(&glb)[2], "others hold a copy twice, and no wind");
+        assert_eq!((ply.draws, ply.textures, stl.draws), (1, 0, 1));
+        let vertices = |v: &ExportView| v.parts.iter().map(|p| p.vertices).sum::<u64>();
+        assert_eq!(vertices(&stl), 3 * told(&stl)[0]);
+        assert_eq!(vertices(&ply), vertices(&glb));
+        let mtg = ExportRequest { format: ExportFormat::Mtg, ..ExportRequest::default() };
+        assert!(matches!(s.look_at_export(&mtg, 0, &Run::plain()), Err(WorkspaceError::Format("mtg"))));
+    }
+}
