@@ -47,7 +47,10 @@ fn spread() -> Plant {
 }
 
 fn is_wood(model: &Model, part: &mesh::Part) -> bool {
-    matches!(model.material(part).kind, MaterialKind::Bark | MaterialKind::Stem | MaterialKind::Root)
+    matches!(
+        model.material(part).kind,
+        MaterialKind::Bark | MaterialKind::YoungBark | MaterialKind::Stem | MaterialKind::Root
+    )
 }
 
 #[test]

@@ -279,11 +279,12 @@ impl Names {
 
 /// The kind that a word or a name such as `leaf-2` stands for.
 pub(crate) fn kind_of(name: &str) -> MaterialKind {
-    use MaterialKind::{Bark, Disc, Fruit, Leaf, Other, Petal, Root, Stamen, Stem};
+    use MaterialKind::{Bark, Disc, Fruit, Leaf, Other, Petal, Root, Stamen, Stem, YoungBark};
     let lower = name.to_ascii_lowercase();
-    let word = lower.split(|c: char| !c.is_ascii_alphabetic()).next().unwrap_or_default();
-    [Bark, Stem, Leaf, Petal, Disc, Fruit, Root, Stamen]
-        .into_iter()
-        .find(|k| k.word() == word)
-        .unwrap_or(Other)
+    let begins = |kind: &MaterialKind| {
+        let rest = lower.strip_prefix(kind.word());
+        rest.is_some_and(|rest| !rest.starts_with(|c: char| c.is_ascii_alphabetic()))
+    };
+    // The longer word first.
+    [YoungBark, Bark, Stem, Leaf, Petal, Disc, Fruit, Root, Stamen].into_iter().find(begins).unwrap_or(Other)
 }
