@@ -436,9 +436,10 @@ function unzipped(zip, name) {
 /** Waits until what is asked for is seen, and says the figures. */
 async function lookedAt(page) {
   await page.waitForFunction(() => {
-    const { wanted, shown } = document.querySelector('#b-exportview').dataset;
+    const panel = document.querySelector('#b-exportview')?.dataset;
     const { dataset } = document.body;
-    return wanted === shown && dataset.wanted === dataset.revision;
+    const seen = panel?.shown !== undefined && panel.wanted === panel.shown;
+    return seen && dataset.wanted === dataset.revision;
   });
   return page.evaluate(() => {
     const of = (row) =>

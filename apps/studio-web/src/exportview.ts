@@ -174,6 +174,8 @@ export class ExportPreview {
   /** The plants were made again. */
   changed(): void {
     clearTimeout(this.timer);
+    // What is shown is old from now on.
+    this.element.dataset['wanted'] = String(this.wanted + 1);
     this.timer = window.setTimeout(() => this.ask(), REST_MS);
   }
 
