@@ -4,7 +4,7 @@ use core::fmt::Write as _;
 
 use libsvm_rs::{KernelType, SvmNode, SvmParameterBuilder, SvmProblem, SvmType};
 
-use crate::classify::packed::MAGIC;
+use crate::classify::packed::{GRAIN, MAGIC};
 use crate::classify::svm::{LANES, ModelError, Scale, Svm, fault, numbers};
 
 /// C-SVC with a radial kernel, one class against one.
@@ -46,7 +46,8 @@ impl RbfLearner {
 }
 
 impl Svm {
-    /// Reads LIBSVM's text form of an RBF classifier for rows of `columns` numbers.
+    /// Reads LIBSVM's text form of an RBF classifier for rows of `columns` numbers, rounded as it is packed: the
+    /// machine that is tested is the one that programs carry.
     ///
     /// # Errors
     /// [`ModelError`] with the line.
@@ -87,7 +88,8 @@ impl Svm {
             if coefficients.len() < classes - 1 {
                 return Err(fault(line, "too few coefficients"));
             }
-            svm.coefficients.extend(coefficients);
+            #[expect(clippy::cast_possible_truncation, reason = "as packed: f32")]
+            svm.coefficients.extend(coefficients.iter().map(|&c| f64::from(c as f32)));
             let row = svm.vectors.len();
             svm.vectors.resize(row + svm.stride, 0.0);
             for word in words {
@@ -96,7 +98,7 @@ impl Svm {
                 let value: f32 = value.parse().map_err(|_e| fault(line, "not a number"))?;
                 let slot = index.checked_sub(1).filter(|&k| k < columns);
                 let slot = slot.ok_or_else(|| fault(line, format!("no column {index}")))?;
-                svm.vectors[row + slot] = value;
+                svm.vectors[row + slot] = f32::from(steps(value)) * GRAIN;
             }
         }
         let mut end = 0;
@@ -110,6 +112,12 @@ impl Svm {
         svm.square();
         Ok(svm)
     }
+}
+
+/// A number of a vector in whole [`GRAIN`]s; scaled features lie within 5.
+#[expect(clippy::cast_possible_truncation, reason = "a cast to i16 stops at its ends")]
+fn steps(value: f32) -> i16 {
+    (value / GRAIN).round() as i16
 }
 
 impl Scale {
@@ -155,10 +163,11 @@ pub(in crate::classify) fn pack(svm: &Svm, columns: usize) -> Result<Vec<u8>, Mo
     bytes.extend(svm.rho.iter().flat_map(|r| r.to_le_bytes()));
     for k in 0..classes - 1 {
         let column = svm.coefficients.iter().skip(k).step_by(classes - 1);
-        bytes.extend(column.flat_map(|c| c.to_le_bytes()));
+        #[expect(clippy::cast_possible_truncation, reason = "they were read as f32")]
+        bytes.extend(column.flat_map(|&c| (c as f32).to_le_bytes()));
     }
     for k in 0..columns {
-        bytes.extend(svm.vectors.iter().skip(k).step_by(svm.stride).flat_map(|v| v.to_le_bytes()));
+        bytes.extend(svm.vectors.iter().skip(k).step_by(svm.stride).flat_map(|&v| steps(v).to_le_bytes()));
     }
     Ok(bytes)
 }
