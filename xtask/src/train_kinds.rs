@@ -68,23 +68,37 @@ struct Row {
 /// Mean and spread of each number.
 struct Scale(Vec<(f64, f64)>);
 
-/// Learns from the train part, says how good that is on the part to choose by, and writes `crates/reading/data/kinds.csv`.
+/// Learns the model of kinds and writes `crates/reading/data/kinds.csv`.
+///
+/// With `--half`, from the part to learn from alone, and says how good that is on the part to choose by: all choices are
+/// made with this one. Without, from both: drawings are what the model lacks, and the end is in neither.
 ///
 /// # Errors
 /// A sentence: a file that cannot be read or written.
 pub(crate) fn run(args: &[String]) -> Outcome {
-    let folder = args.first().map_or_else(|| repository().join("../shared/data/sketches"), PathBuf::from);
+    let half = args.iter().any(|a| a == "--half");
+    let folder = args.iter().find(|a| !a.starts_with('-'));
+    let folder = folder.map_or_else(|| repository().join("../shared/data/sketches"), PathBuf::from);
     if !folder.is_dir() {
         say(&format!("skipped: {} is not here", folder.display()));
         return Ok(());
     }
-    let mut train = rows(&labelled(&folder, Part::Train)?, VARIATIONS);
-    let mut choose = rows(&labelled(&folder, Part::Choose)?, 0);
-    let scale = Scale::of(&train);
-    train.iter_mut().chain(&mut choose).for_each(|r| scale.apply(&mut r.features));
-    let coefficients = descend(&train);
-    for (name, rows) in [("train", &train), ("choose", &choose)] {
-        say(&format!("{name}: {}", told(rows, &coefficients)));
+    let mut drawings = labelled(&folder, Part::Train)?;
+    let choose = labelled(&folder, Part::Choose)?;
+    let mut held_out = Vec::new();
+    if half {
+        held_out = rows(&choose, 0);
+    } else {
+        // Made drawings are as many as one likes, and enough already.
+        drawings.extend(choose.into_iter().filter(|d| matches!(d.origin, Origin::Public | Origin::Spg)));
+    }
+    let mut learnt = rows(&drawings, VARIATIONS);
+    let scale = Scale::of(&learnt);
+    learnt.iter_mut().chain(&mut held_out).for_each(|r| scale.apply(&mut r.features));
+    let coefficients = descend(&learnt);
+    say(&format!("learnt from: {}", told(&learnt, &coefficients)));
+    if half {
+        say(&format!("held out: {}", told(&held_out, &coefficients)));
     }
     let mut text = String::from(
         "# Written by cargo xtask train-kinds from drawings of \"Quick, Draw!\" (Google, CC BY 4.0), SPG and made ones.\n\

@@ -226,7 +226,7 @@ fn attempt(
     flowers::corollas(&mut draft, &discs);
     outlines::scribbled_trunk(&mut draft);
     draft.scribbled_crowns(report);
-    let veins = veins::collect(&mut draft);
+    let veins = veins::collect(&mut draft, off);
     draft.trim_at_pots();
     draft.last_resort(&discs, report);
     let thorns = outlines::thorns(&mut draft);

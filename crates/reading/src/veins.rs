@@ -8,6 +8,7 @@ use crate::OrganWord;
 use crate::branches::Line;
 use crate::draft::Draft;
 use crate::near::Boxes;
+use crate::rules::unsure;
 
 /// Samples of a line that are tested.
 const SAMPLES: usize = 24;
@@ -15,18 +16,39 @@ const SAMPLES: usize = 24;
 /// The veins of each blade: line and stroke.
 pub(crate) type Veins = Vec<Vec<Vec<DVec2>>>;
 
+/// The rule that what a line is follows from where it lies.
+pub(crate) const VEINS_IN_BLADES: &str = "veins-in-blades";
+/// What is surely a vein lies in its blade at least by this share of its length, and what is surely a stem by that.
+const VEIN_INSIDE: f64 = 0.25;
+const STEM_INSIDE: f64 = 0.9;
+/// What is so surely a vein is one, though no blade was found around it.
+const SURE_VEIN: f64 = 0.8;
+
 /// Takes the lines that lie inside blades out of the draft's vein and axis strokes.
 ///
 /// A vein that runs on beyond its blade is its stalk out there.
-pub(crate) fn collect(draft: &mut Draft<'_>) -> Veins {
+pub(crate) fn collect(draft: &mut Draft<'_>, off: &[&str]) -> Veins {
+    use StrokeClass::{Axis, Vein};
     let boxes = Boxes::new(draft.blades.iter().map(|b| b.outline.as_slice()));
     let mut veins: Veins = draft.blades.iter_mut().map(|b| b.rib.take().into_iter().collect()).collect();
-    for class in [StrokeClass::Vein, StrokeClass::Axis] {
-        // A line called an axis must lie in the blade as a whole.
-        let share = if class == StrokeClass::Vein { 0.25 } else { 0.9 };
-        for k in draft.of_class(class) {
+    for (class, strokes) in [Vein, Axis].map(|class| (class, draft.of_class(class))) {
+        for k in strokes {
             let points = draft.ink.strokes[k].points.clone();
-            match host(draft, &boxes, &points, share) {
+            let decides = unsure(draft, k) && !off.contains(&VEINS_IN_BLADES);
+            let vein = match draft.said[k].shares {
+                // Of what the classifier thinks of lines.
+                s if decides && s[Vein.place()] + s[Axis.place()] > 0.0 => {
+                    s[Vein.place()] / (s[Vein.place()] + s[Axis.place()])
+                }
+                _ => f64::from(u8::from(class == Vein)),
+            };
+            let host = host(draft, &boxes, &points, STEM_INSIDE + (VEIN_INSIDE - STEM_INSIDE) * vein);
+            let built = if host.is_some() || vein > SURE_VEIN { Vein } else { Axis };
+            if decides && built != class {
+                draft.class[k] = built;
+                draft.rule[k] = Some(VEINS_IN_BLADES);
+            }
+            match host {
                 Some(blade) => {
                     draft.organ[k] = OrganWord::Vein;
                     let (inner, outer) = part(&points, &draft.blades[blade].outline);

@@ -38,7 +38,8 @@ pub(super) fn unpack(mut bytes: &[u8], columns: usize) -> Result<Svm, ModelError
     let rho = numbers(from, classes.saturating_mul(classes - 1) / 2, f64::from_le_bytes)?;
     let coefficients =
         numbers(from, vectors.saturating_mul(classes - 1), |b| f64::from(f32::from_le_bytes(b)))?;
-    let values = numbers(from, vectors.saturating_mul(columns), |b| f32::from(i16::from_le_bytes(b)) * GRAIN)?;
+    let values =
+        numbers(from, vectors.saturating_mul(columns), |b| f32::from(i16::from_le_bytes(b)) * GRAIN)?;
     if !from.is_empty() {
         return Err(fault("more bytes than the machine has"));
     }

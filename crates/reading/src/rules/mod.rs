@@ -9,10 +9,10 @@
 
 mod as_kind;
 mod grass;
-mod leaves;
 mod pots;
 mod trees;
 mod whole_flower;
+mod whole_leaf;
 mod whole_tree;
 
 use geom::contains;
@@ -21,6 +21,7 @@ use ink::{COMMON_GROUND, InkStroke, LONE_LINE, StrokeClass, StrokeMode};
 
 use crate::blade::nearest_on_ring;
 use crate::draft::Draft;
+use crate::veins::VEINS_IN_BLADES;
 
 pub(crate) use as_kind::take_for;
 
@@ -116,22 +117,10 @@ pub const RULES: &[Rule] = &[
         "Something round over something narrow that stands is a crown on its trunk, however and in which order they are drawn.",
     ),
     rule(
-        "lone-leaf",
-        ANY,
-        leaves::lone_leaf,
-        "The largest outline of a drawing without crown or petals, with a line along its middle, is a leaf with its midrib.",
-    ),
-    rule(
-        "leaf-with-midrib",
+        "whole-leaf",
         SOME,
-        leaves::leaf_with_its_midrib,
-        "Margin and midrib drawn in one go, with veins across, are a leaf and not a body with thorns.",
-    ),
-    rule(
-        "halves-of-a-leaf",
-        SOME,
-        leaves::halves_of_a_leaf,
-        "One or two lines that close around drawn veins are a leaf, not the sides of a trunk.",
+        whole_leaf::whole_leaf,
+        "An outline that holds nothing but a line along its middle, and lines that leave that one, is a leaf with its veins.",
     ),
     rule(
         "tree-in-one-stroke",
@@ -140,46 +129,16 @@ pub const RULES: &[Rule] = &[
         "An outline with a narrow foot and a full head is a tree in one stroke; a cactus has hollows between its arms.",
     ),
     rule(
-        "palm-in-one-stroke",
-        3,
-        trees::palm_in_one_stroke,
-        "An outline with many deep hollows around its upper part is a palm in one stroke; a cactus has two arms.",
-    ),
-    rule(
-        "stems-of-leaves",
-        MANY,
-        leaves::stems,
-        "Lines that spread from one place, each to a leaf of its own, are stems and not the sides of a trunk.",
-    ),
-    rule(
         "sides-of-a-trunk",
         MANY,
         trees::trunk_lines,
         "Two lines side by side that carry a crown, or a fan of fronds, are the sides of a trunk.",
     ),
     rule(
-        "crown-with-a-side",
-        MANY,
-        trees::crown_with_a_side,
-        "A line that runs around a crown and then down, beside a line for the other side, is crown and trunk.",
-    ),
-    rule(
         "crown-on-a-trunk",
         MANY,
         trees::crown_on_trunk,
         "The largest closed outline is a crown where the tops of a trunk reach it from below, however smooth it is.",
-    ),
-    rule(
-        "scribbled-crown",
-        MANY,
-        trees::scribbled_crown,
-        "A large scribble at the top of a trunk is its crown.",
-    ),
-    rule(
-        "outline-goes-on",
-        SOME,
-        trees::outline_goes_on,
-        "A line that begins where the only outline of a body ends goes on with it.",
     ),
     rule(
         "line-is-no-fruit",
@@ -193,18 +152,6 @@ pub const RULES: &[Rule] = &[
         MANY,
         pots::pots,
         "A box at the bottom with a flat top on which the plant stands is its pot.",
-    ),
-    rule(
-        "loop-in-a-pot",
-        MANY,
-        leaves::loops_in_pots,
-        "A stem in a pot that ends in a loop is a leaf on its stalk.",
-    ),
-    rule(
-        "tangle",
-        ANY,
-        grass::tangles,
-        "A line that crosses itself all over the place is a scribble: petals cross in the middle.",
     ),
     rule(
         "zigzag",
@@ -223,6 +170,12 @@ pub const RULES: &[Rule] = &[
         ANY,
         grass::grass,
         "Several single lines and nothing that a trunk could carry are stalks of grass.",
+    ),
+    rule(
+        VEINS_IN_BLADES,
+        ANY,
+        |_| Findings::default(), // `veins::collect` applies it, because it must know where the blades end
+        "A line in a blade is a vein, and one that lies in no blade is a stem.",
     ),
 ];
 
@@ -255,8 +208,6 @@ const CLOSED: f64 = 0.2;
 const MOUTH: f64 = 0.35;
 /// Of a closed outline with a stalk, the share of the length that the loop has at least.
 const STALK: f64 = 0.35;
-/// As [`STALK`], where the loop is a crown and what hangs from it one side of a trunk.
-const SIDE: f64 = 0.75;
 /// A trunk's top is at most this far from its crown.
 const REACH: f64 = 0.07;
 
@@ -280,7 +231,7 @@ fn share_inside(points: &[DVec2], stride: usize, outline: &[DVec2]) -> f64 {
 }
 
 /// A rule may change it: its class is not sure.
-fn unsure(draft: &Draft<'_>, k: usize) -> bool {
+pub(crate) fn unsure(draft: &Draft<'_>, k: usize) -> bool {
     !draft.settled[k] && !draft.said[k].is_sure() && draft.ink.strokes[k].mode == StrokeMode::Parts
 }
 

@@ -1,13 +1,11 @@
 //! Rules about trees: trunks, crowns, and what lies in a crown.
 
-use geom::{convex_hull, polyline_length, signed_area, simple_outline};
+use geom::{convex_hull, signed_area, simple_outline};
 use glam::DVec2;
 use ink::StrokeClass;
 
-use super::{CLOSED, Findings, REACH, SIDE, any, openness, outside, share_inside, standing, unsure, upright};
-use crate::blade::split_stalks;
+use super::{CLOSED, Findings, REACH, any, openness, outside, share_inside, standing, unsure, upright};
 use crate::contour::{crown_outline, neck};
-use crate::corolla::dips;
 use crate::draft::Draft;
 use crate::near::bounds;
 use crate::rings::rings;
@@ -20,8 +18,6 @@ const ALIKE: f64 = 0.55;
 const NARROW: f64 = 0.7;
 /// A crown covers at least this area.
 const CROWN_AREA: f64 = 0.02;
-/// Hollows of a palm at least; a cactus has two arms.
-const FEWEST_FRONDS: usize = 7;
 /// A fruit in a crown lies there with this share of its points.
 const IN_CROWN: f64 = 0.9;
 /// Of a ring, the shorter side of its box over the longer one at least.
@@ -66,28 +62,6 @@ fn closes_above_its_trunk(points: &[DVec2], outline: &[DVec2]) -> bool {
         h.x - l.x < 0.4 * (hi.x - lo.x) && lo.y - l.y > 0.2 * (all.1.y - all.0.y) && h.x - l.x > 0.02
     });
     hangs && signed_area(outline) > 0.6 * signed_area(&convex_hull(outline))
-}
-
-/// An outline with many deep hollows round its upper part is a palm in one stroke; a cactus has two arms.
-pub(super) fn palm_in_one_stroke(draft: &Draft<'_>) -> Findings {
-    use StrokeClass::{Corolla, TrunkOutline};
-    let mut found = Findings::default();
-    for k in draft.of_class(TrunkOutline) {
-        let points = &draft.ink.strokes[k].points;
-        let (hull, Some((lo, hi))) = (convex_hull(points), bounds(points)) else { continue };
-        let upper: Vec<DVec2> = points.iter().copied().filter(|p| p.y > lo.y + 0.4 * (hi.y - lo.y)).collect();
-        if !unsure(draft, k) || hull.len() < 3 || upper.is_empty() {
-            continue;
-        }
-        let middle = geom::centroid(&upper);
-        let away: Vec<f64> = points.iter().map(|p| p.distance(middle)).collect();
-        let reach = away.iter().copied().fold(0.0, f64::max);
-        let hollow = simple_outline(points).is_none_or(|o| signed_area(&o) < 0.6 * signed_area(&hull));
-        if hollow && dips(&away, 0.13 * reach).len() >= FEWEST_FRONDS {
-            found.set(k, Corolla);
-        }
-    }
-    found
 }
 
 /// Two single lines side by side that carry a crown, or a fan of fronds, are the sides of a trunk.
@@ -153,39 +127,6 @@ pub(super) fn trunk_lines(draft: &Draft<'_>) -> Findings {
         found.set(b, StrokeClass::TrunkOutline);
     }
     found.trunk = sides.is_some();
-    found
-}
-
-/// A line that runs round a crown and then down one side of the trunk, beside a line for its other side.
-pub(super) fn crown_with_a_side(draft: &Draft<'_>) -> Findings {
-    use StrokeClass::{Blade, Corolla, Crown, Pot, TrunkOutline, Vein};
-    let mut found = Findings::default();
-    if any(draft, &[Blade, Corolla, Crown, Pot, Vein]) {
-        return found;
-    }
-    let sides = standing(draft, TrunkOutline);
-    let round = draft.of_class(TrunkOutline).into_iter().find(|&k| {
-        let (round, ends) = split_stalks(&draft.ink.strokes[k].points, SIDE);
-        let (Some(outline), [end]) = (simple_outline(&round), &ends[..]) else { return false };
-        let Some((lo, hi)) = bounds(&outline) else { return false };
-        let (free, at) = (end[0], end[end.len() - 1]);
-        let down = at.y - free.y > 0.06 && free.distance(at) > 0.75 * polyline_length(end);
-        let beside = sides.iter().any(|(j, top, foot)| {
-            *j != k
-                && outside(&outline, *top) < REACH
-                && foot.y < lo.y
-                && top.distance(at) < NARROW * (hi.x - lo.x)
-                && top.distance(at) > 0.02
-        });
-        unsure(draft, k)
-            && down
-            && beside
-            && free.y < lo.y + 0.02
-            && signed_area(&outline) > 0.8 * signed_area(&convex_hull(&round))
-    });
-    if let Some(k) = round {
-        found.set(k, Crown);
-    }
     found
 }
 
@@ -256,63 +197,6 @@ fn closed_outlines(draft: &Draft<'_>) -> Vec<(f64, Vec<usize>, Vec<DVec2>)> {
         if let Some(outline) = simple_outline(&ring.points).filter(|_| ring.gaps.iter().all(meets)) {
             found.push((signed_area(&outline), ring.parts.iter().map(|&p| open[p]).collect(), outline));
         }
-    }
-    found
-}
-
-/// A large scribble at the top of a trunk is its crown.
-pub(super) fn scribbled_crown(draft: &Draft<'_>) -> Findings {
-    use StrokeClass::{Blade, Corolla, Crown, Scribble, TrunkOutline};
-    let mut found = Findings::default();
-    let sides = standing(draft, TrunkOutline);
-    let crown = draft
-        .of_class(Crown)
-        .iter()
-        .map(|&k| signed_area(&convex_hull(&draft.ink.strokes[k].points)))
-        .sum::<f64>();
-    for k in draft.of_class(Scribble) {
-        let hull = convex_hull(&draft.ink.strokes[k].points);
-        if signed_area(&hull) < 2.0 * crown {
-            continue;
-        }
-        let Some((lo, hi)) = bounds(&hull).filter(|_| hull.len() > 2 && unsure(draft, k)) else { continue };
-        // A leaf or petals elsewhere: no tree. Over the scribble they are pieces of it.
-        let elsewhere = [Blade, Corolla].into_iter().flat_map(|c| draft.of_class(c)).any(|j| {
-            bounds(&draft.ink.strokes[j].points).is_some_and(|(l, h)| outside(&hull, l.midpoint(h)) > REACH)
-        });
-        if elsewhere {
-            continue;
-        }
-        let feet = sides.iter().filter(|s| s.2.y < lo.y && outside(&hull, s.1) < 2.0 * REACH);
-        let reach =
-            feet.clone().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, r), s| (l.min(s.1.x), r.max(s.1.x)));
-        if feet.count() >= 1 && hi.x - lo.x > 1.2 * (reach.1 - reach.0) && signed_area(&hull) > CROWN_AREA {
-            found.set(k, Crown);
-        }
-    }
-    found
-}
-
-/// A short line that begins where the only outline of a body ends goes on with it.
-pub(super) fn outline_goes_on(draft: &Draft<'_>) -> Findings {
-    use StrokeClass::{Axis, Crown, TrunkOutline};
-    let mut found = Findings::default();
-    let ink = draft.ink;
-    let [body] = draft.of_class(TrunkOutline)[..] else { return found };
-    let body = &ink.strokes[body];
-    if draft.class.contains(&Crown) || openness(body) < CLOSED {
-        return found;
-    }
-    let ends = [body.points[0], body.points[body.points.len() - 1]];
-    let piece = draft.of_class(Axis).into_iter().find(|&k| {
-        let s = &ink.strokes[k].points;
-        let (a, b) = (s[0], s[s.len() - 1]);
-        let begins = |p: DVec2| ends.iter().any(|e| e.distance(p) < 0.02);
-        let leaves = |p: DVec2| body.points.iter().all(|q| q.distance(p) > 0.05);
-        unsure(draft, k) && ((begins(a) && leaves(b)) || (begins(b) && leaves(a)))
-    });
-    if let Some(k) = piece {
-        found.set(k, TrunkOutline);
     }
     found
 }
