@@ -38,7 +38,12 @@ impl Part {
         if let Some(person) = line.get("person").and_then(Value::as_u64) {
             return Some(if person.is_multiple_of(2) { Self::Choose } else { Self::Test });
         }
-        match text_of(line, "key_id").parse::<u64>().ok()? % 5 {
+        Self::of_key(text_of(line, "key_id"))
+    }
+
+    /// The part of a drawing of "Quick, Draw!".
+    pub(crate) fn of_key(key: &str) -> Option<Self> {
+        match key.parse::<u64>().ok()? % 5 {
             2 => Some(Self::Train),
             3 => Some(Self::Choose),
             4 => Some(Self::Test),
@@ -296,7 +301,7 @@ pub(crate) fn labelled(folder: &Path, part: Part) -> Outcome<Vec<Labelled>> {
 }
 
 /// Made drawings of each way to draw a kind.
-const MADE_TO_LEARN: u64 = 40;
+const MADE_TO_LEARN: u64 = 120;
 const MADE_TO_TEST: u64 = 12;
 
 /// Categories of which a drawing may show several plants.

@@ -162,9 +162,8 @@ fn veins(draft: &Draft<'_>, margin: &Margin) -> Option<Vec<usize>> {
         return None;
     }
     // It begins at the midrib, or crosses it.
-    let leaves = |k: usize| {
-        draft.ink.strokes[k].points.iter().any(|&p| distance(rib, p) < TOUCH * margin.size)
-    };
+    let leaves =
+        |k: usize| draft.ink.strokes[k].points.iter().any(|&p| distance(rib, p) < TOUCH * margin.size);
     let branching = side.iter().filter(|&&k| leaves(k)).count();
     let (a, b) = far_ends(rib);
     let lengthwise = (b - a).normalize_or_zero().dot(pca.major).abs() > LENGTHWISE;

@@ -16,6 +16,8 @@ use super::scatter::{scatter, scatter_front, scatter_rim};
 use super::volume::Volume;
 use crate::FillSpec;
 
+/// Leaves that a twig of a crown bears, with its share of those on the branches.
+const LEAVES_A_TWIG: f64 = 9.5;
 /// Most twigs of one region.
 pub(super) const MOST_TWIGS: usize = 4_000;
 
@@ -254,7 +256,7 @@ impl Crown<'_> {
     /// Twigs of the third level, on the shell of the body, and the leaves.
     fn twigs(&self, plant: &mut Plant, sites: &mut [Site], branches: &[AxisId], placed: &mut usize) {
         let v = self.volume;
-        let n = count_of(self.leaves as f64 / 6.5, 24, MOST_TWIGS);
+        let n = count_of(self.leaves as f64 / LEAVES_A_TWIG, 24, MOST_TWIGS);
         self.fill_shell(plant, sites, n, placed);
         for &axis in branches {
             dress(plant, v, &self.foliage, axis, 0.5, placed);

@@ -38,6 +38,16 @@ use volume::{Inflation, Volume, above};
 /// Most leaves that grow in all contours of a drawing together; a fair share of them in each.
 pub(crate) const MOST_GROWN: usize = 200_000;
 
+/// Leaves of a crown that nobody drew leaves for, and sprays of a conifer's, metres: of a tree; smaller crowns have smaller
+/// ones.
+const NATURAL_LEAF: f64 = 0.12;
+const NATURAL_SPRAY: f64 = 0.35;
+/// Area of a crown's leaves over that of its shadow, the mean of its three projections: a narrow crown has light from the
+/// side. Broad-leaved trees have 3 to 6.
+const LEAF_AREA_INDEX: f64 = 5.0;
+/// So many leaves a crown of density 1 at most; they are larger where it would have more.
+const MOST_CROWN: usize = 8_000;
+
 /// Axes of a plant at which contours are left empty: a million nodes or more, a gigabyte of meshes.
 const MOST_AXES: usize = 250_000;
 
@@ -303,8 +313,8 @@ impl Look<'_> {
         // Diameter of the circle with the contour's area.
         let diameter = (volume.area * 4.0 / base::ops::PI).sqrt();
         let conifer = habit == Habit::Excurrent;
-        // 1/11: fewer and larger leaves than a real tree's read as foliage at the size of a drawing.
-        let mut length = diameter / if conifer { 8.5 } else { 11.0 };
+        let (natural, coarse) = if conifer { (NATURAL_SPRAY, 8.5) } else { (NATURAL_LEAF, 11.0) };
+        let mut length = natural.min(diameter / coarse);
         let mut shapes = self.drawn.to_vec();
         if let Some(natural) = self.natural {
             length = natural.clamp(diameter / 40.0, diameter / 6.0);
@@ -316,8 +326,11 @@ impl Look<'_> {
             let form = FORMS[self.seed.stream(Draw::Template).below(FORMS.len())];
             shapes.push(self.form(plant, form));
         }
-        let leaves =
-            leaves::leaves_for(volume.area, length, if conifer { 2.15 } else { 3.2 } * self.spec.density);
+        // Half the square of its length is a leaf's area.
+        let shadow = (base::ops::PI * volume.half_width * volume.half_width + 2.0 * volume.area) / 3.0;
+        let area = LEAF_AREA_INDEX * shadow;
+        length = length.max((area / (0.5 * MOST_CROWN as f64)).sqrt());
+        let leaves = leaves::leaves_for(area, length, 0.5 * self.spec.density);
         let middle = 0.5 * (volume.low() + volume.high());
         let core = DVec2::new(middle.x, volume.low().y + 0.35 * volume.height());
         let foliage = Foliage {
