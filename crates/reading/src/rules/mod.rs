@@ -10,6 +10,7 @@
 mod as_kind;
 mod grass;
 mod pots;
+mod stems;
 mod trees;
 mod whole_flower;
 mod whole_leaf;
@@ -127,6 +128,12 @@ pub const RULES: &[Rule] = &[
         FEW,
         trees::tree_in_one_stroke,
         "An outline with a narrow foot and a full head is a tree in one stroke; a cactus has hollows between its arms.",
+    ),
+    rule(
+        "stems-of-leaves",
+        MANY,
+        stems::stems,
+        "Lines that spread from one place, each to a leaf of its own, are stems and not the sides of a trunk.",
     ),
     rule(
         "sides-of-a-trunk",
