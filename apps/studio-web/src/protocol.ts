@@ -118,6 +118,8 @@ export type FromWorker =
   /** The share of an evaluation that is done. */
   | { kind: 'progress'; share: number }
   | { kind: 'failed'; why: Refusal }
+  /** Large trees that are still being made, much coarser: looks, in no view. */
+  | { kind: 'coarse'; fresh: Sent[] }
   | { kind: 'fault'; why: string };
 
 /** Numbers of the textures that these plants are shown with. */

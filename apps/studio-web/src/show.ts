@@ -177,6 +177,12 @@ export class Show {
     sheet.reselect();
   }
 
+  /** Large trees are seen, much coarser, before they are whole. */
+  coarse(): void {
+    this.parts.grows.hidden = true;
+    document.body.dataset['coarse'] = String(Number(document.body.dataset['coarse'] ?? 0) + 1);
+  }
+
   /** The figures at the foot of the page. */
   private counts(): void {
     const { session } = this.shown;

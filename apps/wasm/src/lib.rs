@@ -323,6 +323,14 @@ impl StudioSession {
         samples.iter().flat_map(|p| [p.at.x, p.at.y, p.pressure.unwrap_or(f64::NAN)]).collect()
     }
 
+    /// Large trees that are going to be grown, much coarser: an array of `PlantView` as JSON. See [`Workspace::look`].
+    ///
+    /// # Errors
+    /// `cancelled`.
+    pub fn look(&mut self) -> Result<String, Refused> {
+        to_json(&page_run(|run| self.0.look(run))?)
+    }
+
     /// Brings the plants up to date: `SceneView` as JSON.
     ///
     /// # Errors

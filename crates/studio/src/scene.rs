@@ -222,6 +222,15 @@ impl MadeFrom {
             wind,
         }
     }
+
+    fn tree_options(&self, tree: &TreeSettings) -> TreeOptions {
+        TreeOptions {
+            skin: SkinSpec { wind: self.wind, ..tree.skin.clone() },
+            leaf: self.leaf.clone(),
+            edits: self.edits.clone(),
+            ..TreeOptions::default()
+        }
+    }
 }
 
 /// The last result of a plant.
@@ -247,6 +256,23 @@ struct Made {
     revision: u64,
 }
 
+impl Kept {
+    /// What a plant is made with, and whether it was left half-way the last time.
+    ///
+    /// Until an update has succeeded it is no result, not even of what was before.
+    fn begin(&mut self, plant: &DocumentPlant, looking: bool) -> (&mut Made, bool) {
+        let word = plant.settings().maker.word();
+        let made = Arc::make_mut(&mut self.made);
+        if made.maker != word {
+            // Of a document in which this number was another plant's.
+            *made = Made { maker: word, ..Made::default() };
+        }
+        (made.sketch.looking, made.tree.looking) = (looking, looking);
+        let before = made.from.take();
+        (made, before.is_none())
+    }
+}
+
 impl SceneEvaluator {
     /// Whether models say how wind moves them, from the next update on. Default: no.
     pub fn set_wind(&mut self, wind: bool) {
@@ -265,12 +291,50 @@ impl SceneEvaluator {
     /// [`SceneError`]; a plant that is not in the document is left as it was.
     pub fn update(&mut self, id: PlantId, document: &Document, run: &Run<'_>) -> Result<(), SceneError> {
         let Some(plant) = document.plant(id) else { return Ok(()) };
-        let settings = plant.settings();
+        let Some(from) = self.wanted(plant, document, run)? else { return Ok(()) };
+        let (next, kept) = (self.revision + 1, self.plants.entry(id).or_default());
+        let (made, anew) = kept.begin(plant, self.looking);
+        let done = made.update(plant, from, anew, run)?;
+        // A drawing in which nothing changed but how its photograph shows keeps its model.
+        if !done.is_empty() {
+            made.revision = next;
+            self.revision = next;
+        }
+        kept.done = done;
+        Ok(())
+    }
+
+    /// A much coarser model, without textures, of what [`Self::update`] will make of a plant: of large trees that have to be
+    /// grown, because the whole takes a while. It is no result: nothing but the page ever sees it.
+    ///
+    /// # Errors
+    /// [`SceneError`]; there is none of a plant that is not in the document.
+    pub fn look(
+        &mut self,
+        id: PlantId,
+        document: &Document,
+        run: &Run<'_>,
+    ) -> Result<Option<Model>, SceneError> {
+        let Some(plant) = document.plant(id) else { return Ok(None) };
+        let Maker::Tree(tree) = &plant.settings().maker else { return Ok(None) };
+        let Some(from) = self.wanted(plant, document, run)? else { return Ok(None) };
+        let (made, _) = self.plants.entry(id).or_default().begin(plant, self.looking);
+        Ok(made.tree.look(&tree_spec(tree), from.seed, &from.tree_options(tree), run)?)
+    }
+
+    /// What a plant is to be made from; none where it is made, of itself or of one like it.
+    fn wanted(
+        &mut self,
+        plant: &DocumentPlant,
+        document: &Document,
+        run: &Run<'_>,
+    ) -> Result<Option<MadeFrom>, SceneError> {
+        let (id, settings) = (plant.id(), plant.settings());
         let leaf = match settings.maker.leaf() {
             Some(lender) => self.template(lender, document, run)?,
             None => None,
         };
-        let (looking, next) = (self.looking, self.revision + 1);
+        let looking = self.looking;
         let from = MadeFrom::of(plant, leaf, self.wind);
         let is_it =
             |k: &Kept| k.made.from.as_ref() == Some(&from) && (looking || !k.made.item.digest.is_empty());
@@ -280,28 +344,11 @@ impl SceneEvaluator {
         let kept = self.plants.entry(id).or_default();
         kept.name.clone_from(&settings.name);
         kept.done.clear();
+        let known = own || same.is_some();
         if let Some(same) = same {
             kept.made = same;
-            return Ok(());
         }
-        if own {
-            return Ok(());
-        }
-        let made = Arc::make_mut(&mut kept.made);
-        if made.maker != settings.maker.word() {
-            // Of a document in which this number was another plant's.
-            *made = Made { maker: settings.maker.word(), ..Made::default() };
-        }
-        (made.sketch.looking, made.tree.looking) = (looking, looking);
-        // Until it has succeeded: an update that is stopped half-way is no result, not even of what was before.
-        let before = made.from.take();
-        kept.done = made.update(plant, from, before.is_none(), run)?;
-        // A drawing in which nothing changed but how its photograph shows keeps its model.
-        if !kept.done.is_empty() {
-            made.revision = next;
-            self.revision = next;
-        }
-        Ok(())
+        Ok((!known).then_some(from))
     }
 
     /// The leaf that a plant lends.
@@ -501,13 +548,7 @@ impl Made {
         from: &MadeFrom,
         run: &Run<'_>,
     ) -> Result<Vec<&'static str>, SceneError> {
-        let options = TreeOptions {
-            skin: SkinSpec { wind: from.wind, ..tree.skin.clone() },
-            leaf: from.leaf.clone(),
-            edits: from.edits.clone(),
-            ..TreeOptions::default()
-        };
-        self.item = self.tree.update(&tree_spec(tree), from.seed, &options, run)?;
+        self.item = self.tree.update(&tree_spec(tree), from.seed, &from.tree_options(tree), run)?;
         Ok(self.tree.stages_done().to_vec())
     }
 

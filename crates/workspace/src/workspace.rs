@@ -108,6 +108,8 @@ pub struct Workspace {
     pub(crate) guest: Option<Model>,
     /// Another plant of the same description, looked at for a moment.
     pub(crate) variant: Option<Model>,
+    /// Trees that are still being made, much coarser.
+    pub(crate) coarse: BTreeMap<PlantId, Model>,
     /// An export that is looked at before it is written.
     pub(crate) looked: Option<Looked>,
     /// What came of each plant at the last evaluation.
