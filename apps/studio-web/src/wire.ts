@@ -1757,6 +1757,10 @@ export type StrokeState = {
   id: StrokeId;
   /** In which mode it was drawn. */
   mode: StrokeMode;
+  /** What it was shown as, clearly, when the last stroke was drawn. */
+  shown: 
+    | StrokeClass
+    | null;
 };
 
 /** Turned and scaled about a point. */

@@ -60,7 +60,7 @@ function answer(s: StudioSession, request: Request): unknown {
     case 'open':
       return JSON.parse(s.open(request.name, request.bytes, request.row, request.fresh));
     case 'stroke':
-      return s.add_stroke(request.mode, request.samples);
+      return s.add_stroke(request.mode, request.samples, JSON.stringify(request.shown ?? []));
     case 'select':
       return s.select(request.plant);
     case 'obstacle':

@@ -163,12 +163,12 @@ impl StudioSession {
     }
 
     /// Adds a stroke and returns its number. `samples`: x, y (up), milliseconds, pressure of each point; NaN where
-    /// not known.
+    /// not known. `shown`: pairs of a stroke and its class or null as JSON, see [`Workspace::add_stroke`].
     ///
     /// # Errors
     /// When no point is finite, or the mode is unknown.
-    pub fn add_stroke(&mut self, mode: &str, samples: &[f64]) -> Result<u32, Refused> {
-        Ok(self.0.add_stroke(stroke(mode, samples)?)?.0)
+    pub fn add_stroke(&mut self, mode: &str, samples: &[f64], shown: &str) -> Result<u32, Refused> {
+        Ok(self.0.add_stroke(stroke(mode, samples)?, from_json(shown)?)?.0)
     }
 
     /// Shows a stroke that is still being drawn; an empty one takes it away.

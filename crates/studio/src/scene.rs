@@ -204,7 +204,7 @@ struct MadeFrom {
     name: String,
     leaf: Option<LeafTemplate>,
     edits: Vec<PlantEdit>,
-    strokes: Vec<(Arc<Stroke>, Option<StrokeClass>)>,
+    strokes: Vec<(Arc<Stroke>, [Option<StrokeClass>; 2])>,
     wind: bool,
 }
 
@@ -218,7 +218,7 @@ impl MadeFrom {
             name: if grown { String::new() } else { settings.name.clone() },
             leaf,
             edits: settings.edits.clone(),
-            strokes: plant.strokes().iter().map(|s| (Arc::clone(&s.stroke), s.class)).collect(),
+            strokes: plant.strokes().iter().map(|s| (Arc::clone(&s.stroke), [s.class, s.shown])).collect(),
             wind,
         }
     }
