@@ -128,7 +128,7 @@ impl Workspace {
             seen.mesh = revision;
             seen.item = self.item(id);
             let told = seen.item.iter().flat_map(|i| &i.told);
-            seen.warnings = told.map(|w| WarningView { code: w.code, message: w.message.clone() }).collect();
+            seen.warnings = told.map(WarningView::from).collect();
             seen.stages = if previewed {
                 self.preview.as_ref().map_or_else(Vec::new, |e| e.stages_done().to_vec())
             } else {
