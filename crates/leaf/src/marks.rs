@@ -100,7 +100,7 @@ pub enum MarksError {
 
 /// Thickness of a midrib at its base over its length, and at its tip over that at its base, where none was measured.
 /// Our own numbers, those of the leaves in `fixtures/leaves`.
-const MIDRIB_SHARE: [f64; 2] = [0.018, 0.08];
+pub(crate) const MIDRIB_SHARE: [f64; 2] = [0.018, 0.08];
 
 impl Marks {
     /// The length of the midrib by the chords of its marks, from the last row to the tip.

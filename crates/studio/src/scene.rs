@@ -53,11 +53,6 @@ pub enum SceneError {
     /// The marks make no leaf.
     #[error(transparent)]
     Leaf(LeafError),
-    /// The leaf has no marks yet.
-    #[error(
-        "the leaf has no measurements yet: drop a table of marks (.csv) or a vein graph (.json) on the page"
-    )]
-    NoMarks,
     /// The plant whose leaf is borne has no leaf.
     #[error("the plant \"{0}\", whose leaf this one bears, has no leaf yet")]
     Lender(String),
@@ -91,9 +86,9 @@ impl SceneError {
         )
     }
 
-    /// Whether there is nothing to be made yet: an empty sheet, a leaf without marks.
+    /// Whether there is nothing to be made yet: an empty sheet.
     pub fn is_bare(&self) -> bool {
-        matches!(self, Self::NoMarks | Self::Sketch(MakeError::NoStrokes { .. }))
+        matches!(self, Self::Sketch(MakeError::NoStrokes { .. }))
     }
 }
 
@@ -119,7 +114,6 @@ impl From<LeafError> for SceneError {
 }
 
 base::coded!(SceneError {
-    Self::NoMarks => "leaf-no-marks" {},
     Self::Lender(name) => "lender-without-leaf" { name },
     Self::NotMade(name) => "plant-not-made" { name },
     Self::NoRoom(bytes) => "scene-full" { mb = bytes >> 20 },
@@ -624,30 +618,30 @@ pub fn flower_schema() -> &'static serde_json::Value {
 /// The marks of a leaf of a document, and how it is made.
 fn leaf_input(leaf: &LeafMaker) -> Result<(FullMarks, LeafOptions), SceneError> {
     let LeafMaker { data, settings } = leaf;
-    let (marks, in_file) = leaf_marks(data, settings.length_m)?;
+    let (marks, in_file) = leaf_marks(data, settings)?;
     let full = marks.complete(&mut Report::default()).map_err(LeafError::from)?;
     let spec = LeafSpec { thickness: settings.thickness.or(in_file), ..settings.clone() };
     Ok((full, LeafOptions { spec, ..LeafOptions::default() }))
 }
 
-/// The marks in a file of a leaf, and what its thickness is if it says so. `length_m`: of a vein graph in pixels.
+/// The marks in a file of a leaf, and what its thickness is if it says so; without a text those of the form that is set.
 ///
 /// # Errors
-/// [`SceneError`]: what is wrong with it; [`SceneError::NoMarks`] for no text.
+/// [`SceneError`]: what is wrong with it.
 pub fn leaf_marks(
     data: &LeafData,
-    length_m: f64,
+    settings: &LeafSpec,
 ) -> Result<(leaf::Marks, Option<ThicknessRule>), SceneError> {
     let text = data.text.trim_start();
     if text.is_empty() {
-        return Err(SceneError::NoMarks);
+        return Ok((settings.form.marks(), Some(ThicknessRule::Diameter)));
     }
     if text.starts_with('{') {
         let read = read_vein_graph(data.text.as_bytes())?;
         let marks = read.graph.marks(&mut Report::default())?;
         let length = marks.length();
         let in_pixels = read.unit.is_none() && length > 0.0;
-        return Ok((if in_pixels { marks.scaled(length_m / length) } else { marks }, None));
+        return Ok((if in_pixels { marks.scaled(settings.length_m / length) } else { marks }, None));
     }
     let read = read_marks(data.text.as_bytes(), &data.name, MarksAxes::default())?;
     Ok((read.marks, read.thickness))

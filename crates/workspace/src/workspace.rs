@@ -70,7 +70,7 @@ pub enum NewMaker {
     Sketch,
     /// A tree of this preset.
     Tree(String),
-    /// A leaf that waits for its marks.
+    /// A leaf of a few numbers, until it is given marks.
     Leaf,
     /// A flower of this species.
     Flower(String),
