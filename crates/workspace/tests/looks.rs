@@ -6,7 +6,9 @@ use workspace::{Action, Column, NewMaker, Workspace};
 
 fn oak() -> Workspace {
     let mut workspace = Workspace::default();
-    workspace.act(&Action::Add { name: "oak".into(), maker: NewMaker::Tree("oak".into()) }).expect("a preset");
+    workspace
+        .act(&Action::Add { name: "oak".into(), maker: NewMaker::Tree("oak".into()) })
+        .expect("a preset");
     workspace
 }
 
