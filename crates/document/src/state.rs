@@ -12,7 +12,7 @@ use shape::HandEdit;
 
 use crate::fault::MAX_EDITS;
 use crate::ids::{PlantId, StrokeId};
-use crate::{Maker, NewStroke, Photo, SettingFault, SketchSettings};
+use crate::{Maker, Photo, SettingFault, SketchSettings};
 
 /// One stroke of a sketch.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,13 +26,6 @@ pub struct DocumentStroke {
     /// What the person was shown it as, clearly, when the last stroke was drawn: it is not read as something else without
     /// clear evidence. `None` for what came from a file of strokes.
     pub shown: Option<StrokeClass>,
-}
-
-impl DocumentStroke {
-    /// It for another plant.
-    pub fn copy(&self) -> NewStroke {
-        NewStroke { stroke: Stroke::clone(&self.stroke), class: self.class, shown: self.shown }
-    }
 }
 
 /// Where a plant stands: scaled, turned about the vertical, then moved.

@@ -6,7 +6,6 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::marks::{MARKS_A_ROW, MIDRIB_SHARE, MarkRow, Marks};
-use crate::spec::LeafSpec;
 
 /// The form of a leaf with one midrib, where nothing was measured.
 ///
@@ -40,8 +39,6 @@ pub struct LeafForm {
     #[schemars(range(min = -60.0, max = 60.0), extend("x-unit" = "deg"))]
     pub fold_deg: f64,
 }
-
-spec::schemas!(LeafForm => LeafSpec, "/$defs/LeafForm");
 
 impl Default for LeafForm {
     fn default() -> Self {
@@ -144,7 +141,7 @@ mod tests {
     use base::Report;
 
     use super::*;
-    use crate::Leaf;
+    use crate::{Leaf, LeafSpec};
 
     #[test]
     fn every_form_makes_a_leaf_of_its_size() {

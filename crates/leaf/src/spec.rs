@@ -117,6 +117,7 @@ pub struct LeafSpec {
 }
 
 spec::schemas!(LeafSpec = include_str!("../schemas/leaf.json"));
+spec::schemas!(LeafForm => LeafSpec, "/$defs/LeafForm");
 
 impl Default for LeafSpec {
     fn default() -> Self {

@@ -149,7 +149,11 @@ impl Whole<'_> {
     /// The strokes of a part in the order in which they were drawn.
     fn strokes(&self, part: usize) -> Vec<NewStroke> {
         let own = &self.reading.plants[part].strokes;
-        (0..).zip(self.plant.strokes()).filter(|(row, _)| own.contains(row)).map(|(_, s)| s.copy()).collect()
+        (0..)
+            .zip(self.plant.strokes())
+            .filter(|(row, _)| own.contains(row))
+            .map(|(_, s)| NewStroke::from(s))
+            .collect()
     }
 
     /// The flowers of a part that face away, by their numbers within it.

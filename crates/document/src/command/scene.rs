@@ -64,7 +64,7 @@ impl SceneCommand {
                 let mut new = NewPlant { settings, strokes: Vec::new() };
                 new.settings.placement.position += by;
                 new.settings.fixed = false;
-                new.strokes = strokes.iter().map(DocumentStroke::copy).collect();
+                new.strokes = strokes.iter().map(NewStroke::from).collect();
                 add(new, document).map(|e| vec![e])
             }
             Self::Remove(ids) => remove(&ids, document),

@@ -26,6 +26,13 @@ pub struct NewStroke {
     pub shown: Option<StrokeClass>,
 }
 
+impl From<&DocumentStroke> for NewStroke {
+    /// It for another plant.
+    fn from(s: &DocumentStroke) -> Self {
+        Self { stroke: Stroke::clone(&s.stroke), class: s.class, shown: s.shown }
+    }
+}
+
 impl NewStroke {
     /// A bare line in `parts` mode.
     pub fn line(points: &[DVec2]) -> Self {
