@@ -216,7 +216,7 @@ fn labelled<'a>(rows: &'a [StrokeRow], sketches: &Path) -> Result<Vec<Sheet<'a>>
 }
 
 /// The repository's own drawings.
-fn fixtures_of(folder: &Path) -> Result<Vec<Drawing>, String> {
+pub(crate) fn fixtures_of(folder: &Path) -> Result<Vec<Drawing>, String> {
     let mut files = vec![folder.join("sample.svg")];
     for part in ["gallery", "table1"] {
         let folder = folder.join(part);

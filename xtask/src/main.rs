@@ -15,6 +15,7 @@ mod native;
 mod pixels;
 mod quickdraw;
 mod read_drawings;
+mod read_in_turn;
 mod scenes;
 mod shell;
 mod species;
@@ -46,6 +47,7 @@ cargo xtask COMMAND
   layers         checks that each crate uses only what ARCHITECTURE.md allows, and no modules in a circle
   train-strokes  trains the stroke classifier from its table, and says what it and each rule are worth (docs/strokes.md)
   read-drawings  reads drawings of people and made ones: kinds, numbers of plants, contact sheets (--part, --sheets)
+  read-in-turn   draws drawings stroke by stroke in several orders: how often strokes become something else (docs/strokes.md)
   train-kinds    learns which kind of plant explains a whole drawing best (docs/strokes.md)
   test-web       the WASM, validator and Studio part of `test` alone
   test-studio    the Studio part of `test` alone
@@ -69,6 +71,7 @@ fn main() -> ExitCode {
         Some("train-kinds") => train_kinds::run(rest),
         Some("train-strokes") => train_strokes::run(rest),
         Some("read-drawings") => read_drawings::run(rest),
+        Some("read-in-turn") => read_in_turn::run(rest),
         Some("studio") => web::setup().and_then(|tools| studio::open(&tools, rest)),
         Some("build-web") => web::setup().and_then(|tools| studio::build(&tools, true)),
         Some("test-web") => {

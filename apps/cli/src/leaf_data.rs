@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use burgeon::formats::{LeafFile, MarksAxes, ReadGraph, ReadMarks, ReadProfiles, ReadRays, read_leaf_file};
-use burgeon::leaf::{Marks, Rays, ThicknessRule};
+use burgeon::leaf::{LeafForm, Marks, Rays, ThicknessRule};
 use burgeon::{LeafError, LeafOptions, LeafTemplate, Report, Seed, Unit, UpAxis, Warning};
 
 use crate::args::Given;
@@ -71,6 +71,9 @@ fn axes_of(args: &AxesArgs) -> MarksAxes {
 impl Asked<'_> {
     fn read(&self, path: &Path, input: files::Input) -> Outcome<ReadLeaf> {
         let name = files::stem(path);
+        if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) {
+            return self.form(path, name, input);
+        }
         let read = read_leaf_file(input, &name, self.axes);
         let read = read.map_err(|e| Failure::at(path, e))?;
         if !matches!(read, LeafFile::Graph(_)) {
@@ -86,6 +89,17 @@ impl Asked<'_> {
             LeafFile::Profiles(read) => self.profile(path, read),
             _ => Err(Failure::Bug("a file of a leaf is of a new kind".into())),
         }
+    }
+
+    /// A leaf of numbers.
+    fn form(&self, path: &Path, name: String, mut input: files::Input) -> Outcome<ReadLeaf> {
+        let others = ["graph", "length", "number", "thickness", "up", "unit"];
+        self.given.refuse(&others, "measured leaves", "a form says its own numbers")?;
+        let mut text = String::new();
+        input.read_to_string(&mut text).map_err(|e| Failure::io(path, "read", &e))?;
+        let form: LeafForm = burgeon::spec::from_toml(&text).map_err(|e| Failure::at(path, e))?;
+        let thickness = Some(ThicknessRule::Diameter);
+        Ok(ReadLeaf { name, form: Form::Rows(form.marks()), thickness, warnings: Vec::new() })
     }
 
     fn marks(&self, path: &Path, read: ReadMarks) -> Outcome<ReadLeaf> {

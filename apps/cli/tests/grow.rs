@@ -192,7 +192,7 @@ fn obstacles_are_grown_around() {
     assert_eq!(item["warnings"].as_array().unwrap().len(), 0, "{item}");
     assert!(item["counts"]["leaves"].as_u64() > Some(50));
     let told = bad(&at, &["grow", "bush.toml", "--obstacle", "wall.obj", "--root", "1,1,0", "-o", "x.glb"]);
-    assert!(told.contains("root 0 stands inside obstacle 0"), "{told}");
+    assert!(told.contains("root 1 stands inside obstacle 1"), "{told}");
     assert!(!at.join("x.glb").exists());
 }
 
@@ -303,11 +303,11 @@ fn inverted_and_empty_obstacles_are_named() {
     fs::write(at.join("inverted.obj"), inverted.collect::<String>()).unwrap();
     let around = |name: &str| item(&at, &["bush.toml", "--obstacle", name]);
     let (right, wrong) = (around("wall.obj"), around("inverted.obj"));
-    assert!(wrong["warnings"][0].as_str().unwrap().contains("obstacle 0 look inwards"), "{wrong}");
+    assert!(wrong["warnings"][0].as_str().unwrap().contains("obstacle 1 look inwards"), "{wrong}");
     assert_eq!((&wrong["growth"], &wrong["digest"]), (&right["growth"], &right["digest"]));
     let told =
         bad(&at, &["grow", "bush.toml", "--obstacle", "inverted.obj", "--root", "1,1,0", "-o", "x.glb"]);
-    assert!(told.contains("root 0 stands inside obstacle 0") && told.contains("move"), "{told}");
+    assert!(told.contains("root 1 stands inside obstacle 1") && told.contains("move"), "{told}");
     fs::write(at.join("points.obj"), "v 0 0 0\nv 1 0 0\n").unwrap();
     let told = bad(&at, &["grow", "bush.toml", "--obstacle", "points.obj", "-o", "x.glb"]);
     assert!(told.contains("points.obj") && told.contains("no faces"), "{told}");

@@ -214,7 +214,7 @@ fn faults_name_their_field_their_line_and_not_three_megabytes() {
                 .into(),
             "line 7: a ] is missing",
         ),
-        ("[[obstacles]]\nshape = \"mesh\"\nfile = \"flat.obj\"\n".into(), "line 1: obstacle 0 (flat.obj): "),
+        ("[[obstacles]]\nshape = \"mesh\"\nfile = \"flat.obj\"\n".into(), "line 1: obstacle 1 (flat.obj): "),
         (
             "[[obstacles]]\nshape = \"cylinder\"\nbase = [9, 0, 0]\nradius_m = 1\nheight_m = 0\n".into(),
             "line 5: obstacles[0].height_m must be 1e-6 to 1,000,000 m, not 0",

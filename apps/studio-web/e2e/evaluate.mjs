@@ -45,7 +45,7 @@ for (const name of 'abcdefgh') {
   }
   const wholes = [];
   for (let i = 0; i < 5; i += 1) {
-    session.add_stroke('parts', Float64Array.from(samples));
+    session.add_stroke('parts', Float64Array.from(samples), '[]');
     wholes.push(timed());
     session.undo();
     session.evaluate();
@@ -62,13 +62,14 @@ console.log(
 );
 for (const preset of ['umbrella-pine', 'hazel', 'oak']) {
   const [grown, moves, wholes] = [[], [], []];
-  let [triangles, box] = [0, undefined];
+  let [triangles, box, plant] = [0, undefined, 0];
   for (let round = 0; round < 3; round += 1) {
     const session = new StudioSession();
     const timed = () => {
       const start = performance.now();
       const { id, parts, item, min, max } = JSON.parse(session.evaluate()).plants.at(-1);
       box = { min, max };
+      plant = id;
       parts.forEach((_, p) => {
         for (const column of ['positions', 'normals', 'uvs', 'colors', 'indices']) session[column](id, p);
       });
@@ -110,7 +111,7 @@ for (const preset of ['umbrella-pine', 'hazel', 'oak']) {
       moves.push(asked + timed());
     }
     const { commit } = hand('rotate', { up: at(place[0] + 0.4, place[1] - 0.6) });
-    session.run(JSON.stringify({ shape: [id, { add: commit }] }));
+    session.run(JSON.stringify({ shape: [plant, { add: commit }] }));
     wholes.push(timed());
     triangles = whole;
     session.free();

@@ -243,8 +243,16 @@ async function panel({ page, url, shot }) {
   await page.waitForFunction(() => document.querySelectorAll('.form details').length > 2);
   assert.equal(await shown(), 5);
   await add(page, 'leaf');
-  await page.click('#b-leaf-sample');
   await page.waitForFunction(() => document.body.dataset.current === 'leaf');
+  const made = await settled(page);
+  await shot('grove-leaf-numbers');
+  const lobes = page.locator('input[data-path="/form/lobes"]');
+  await lobes.fill('0.5');
+  await lobes.press('Enter');
+  const lobed = await changed(page, made, 'lobes');
+  await shot('grove-leaf-lobes');
+  await page.click('#b-leaf-sample');
+  await changed(page, lobed, 'a leaf from the sample');
   await until(page, 'triangles', ['above', 500], 'a leaf from the sample');
   await page.waitForTimeout(900);
   await shot('grove-leaf-sample');
@@ -287,7 +295,25 @@ async function anybody({ page, url }) {
   }
 }
 
+/** A large tree is seen before it is whole, and what is seen at the end is the whole. */
+async function seen({ page, url, shot }) {
+  await begin(page, url);
+  await add(page, 'tree', 'oak');
+  await until(page, 'coarse', ['above', 0], 'a coarse oak');
+  const oak = await settled(page);
+  await until(page, 'triangles', ['above', 300_000], 'the whole oak');
+  await shot('grove-oak');
+  const looks = await data(page, 'coarse');
+  await add(page, 'tree', 'maple');
+  const maple = await changed(page, oak, 'a maple');
+  assert.ok(Number(await data(page, 'coarse')) > Number(looks), 'a coarse maple');
+  await page.keyboard.press('Control+z');
+  await changed(page, maple, 'the oak again');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, oak);
+}
+
 export const grove = [
+  ['grove: a large tree is seen before it is whole', seen, WIDE],
   ['grove: copies share one plant', copies, WIDE],
   ['grove: gizmos by keys', gizmos, WIDE],
   ['grove: copies along a line and in an area', scatter, WIDE],

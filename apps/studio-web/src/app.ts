@@ -173,6 +173,10 @@ export class App implements Page {
         if (request.kind === 'stroke') this.sheet.dropPending();
         if (why !== 'restarted') note(t('note.refused', { why }), 'bad');
       },
+      coarse: (fresh) => {
+        this.view?.coarse(fresh);
+        this.show.coarse();
+      },
       busy: () => this.show.busy(),
       progress: (share) => this.show.progress(share),
       failed: (why) => {

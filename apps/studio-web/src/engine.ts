@@ -11,6 +11,8 @@ export interface EngineEvents {
   ready(): void;
   state(state: DocumentState, fresh: StrokePoints[], photo: Uint8Array<ArrayBuffer> | null): void;
   view(view: SceneView, fresh: Sent[]): void;
+  /** Large trees that are still being made, much coarser. */
+  coarse(fresh: Sent[]): void;
   busy(): void;
   /** The share that is done of what is grown, 0 to 1. */
   progress(share: number): void;
@@ -150,6 +152,9 @@ export class Engine {
         this.growing = false;
         this.faults = 0;
         this.events.view(message.view, message.fresh);
+        break;
+      case 'coarse':
+        this.events.coarse(message.fresh);
         break;
       case 'busy':
         this.growing = true;

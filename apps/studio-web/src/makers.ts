@@ -76,12 +76,22 @@ export function gallery(
   return grid;
 }
 
+/** Settings with another value at the end of a way into them. */
+function withField<T extends object>(settings: T, [key, ...rest]: string[], value: Json): T {
+  const inner = (settings as Record<string, unknown>)[key!];
+  return { ...settings, [key!]: rest.length > 0 ? withField(inner as object, rest, value) : value };
+}
+
 /** What matters first of each maker, beside what the head has. */
 const MAIN: Partial<Record<PlantState['maker'], readonly string[]>> = {
   tree: ['/bare', '/leaves/length_m', '/look/leaf_color', '/look/bark_color', '/wood/trunk_radius_m'],
   flower: ['/whorls/0/count', '/whorls/0/tip_color', '/whorls/0/base_color', '/stalk_m', '/opening_days'],
-  leaf: ['/surface', '/length_m', '/curl', '/wilt', '/texture'],
+  leaf: ['/surface', '/curl', '/wilt', '/texture'],
 };
+/** Of a leaf that is made of numbers. */
+const LEAF_FORM = ['length_m', 'width', 'widest', 'veins', 'vein_angle_deg', 'lobes', 'fold_deg'].map(
+  (field) => `/form/${field}`,
+);
 const TREE_ORDER = ['leaves', 'blade', 'look', 'method', 'wood', 'clearance_m'];
 
 /** A shape that did not come by then will not. */
@@ -181,7 +191,8 @@ export class MakerPanel {
         .querySelector<HTMLElement>(`[data-path="${CSS.escape(focused)}"]`)
         ?.focus({ preventScroll: true });
     const values = plant.tree?.spec ?? plant.leaf?.settings ?? plant.flower?.spec ?? {};
-    this.form?.show(values, MAIN[plant.maker] ?? [], plant.maker === 'tree' ? TREE_ORDER : []);
+    const main = plant.leaf?.text === '' ? LEAF_FORM : (MAIN[plant.maker] ?? []);
+    this.form?.show(values, main, plant.maker === 'tree' ? TREE_ORDER : []);
   }
 
   /** One field of what the maker is asked for. */
@@ -190,8 +201,8 @@ export class MakerPanel {
   }
 
   private command(plant: PlantState, path: string, value: Json): Command {
-    const set = <T>(settings: T): T => ({ ...settings, [path.slice(1)]: value });
-    if (plant.leaf) return { leaf: [plant.id, { set: set(plant.leaf.settings) }] };
+    if (plant.leaf)
+      return { leaf: [plant.id, { set: withField(plant.leaf.settings, path.split('/').slice(1), value) }] };
     return { [plant.flower ? 'flower' : 'tree']: [plant.id, { 'set-field': [path, value] }] } as Command;
   }
 

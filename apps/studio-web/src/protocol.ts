@@ -10,6 +10,7 @@ import type {
   SceneView,
   ShapeInput,
   ShapeReach,
+  StrokeClass,
   StrokeMode,
   ToolKind,
 } from './wire';
@@ -19,10 +20,13 @@ interface Placing {
   placed?: number;
 }
 
+/** What a stroke was clearly shown as when another was drawn; nothing where that was not clear. */
+export type Shown = [stroke: number, as: StrokeClass | null];
+
 /** What the page asks. Those that change the document are kept in the page's journal. */
 export type Request =
   | ({ kind: 'open'; name: string; bytes: Uint8Array; row: number; fresh: boolean } & Placing)
-  | { kind: 'stroke'; mode: StrokeMode; samples: Float64Array }
+  | { kind: 'stroke'; mode: StrokeMode; samples: Float64Array; shown?: Shown[] }
   | { kind: 'command'; command: Command }
   /** What is more than one command. */
   | ({ kind: 'action'; action: Action } & Placing)
@@ -114,6 +118,8 @@ export type FromWorker =
   | { kind: 'state'; state: DocumentState; fresh: StrokePoints[]; photo: Uint8Array<ArrayBuffer> | null }
   /** `fresh`: the plants whose meshes changed. */
   | { kind: 'view'; view: SceneView; fresh: Sent[] }
+  /** Large trees that are still being made, much coarser: looks, in no view. */
+  | { kind: 'coarse'; fresh: Sent[] }
   | { kind: 'busy' }
   /** The share of an evaluation that is done. */
   | { kind: 'progress'; share: number }

@@ -2,14 +2,14 @@
  * What the whole drawing was read as, and what else it may show: each one click away. And which strokes the last one
  * turned into something else, with one click that says what they were.
  */
-import type { Session } from './session';
+import { DOUBTFUL, type Session } from './session';
 import { number, t, tOf } from './text';
 import { type Seen, type Turned, turnedBy } from './turned';
 import { el } from './ui';
 import type { Kind, StrokeClass } from './wire';
 
-/** Below this share the reading of a stroke is shown to be doubtful. */
-const DOUBTFUL = 0.3;
+/** What decided the class of a stroke that may be doubted: a rule knows why, a person knows. */
+const GUESSES = ['classifier', 'rule:as-shown'];
 
 export class Readings {
   readonly element = el('div', { class: 'readings', role: 'group' });
@@ -24,7 +24,7 @@ export class Readings {
   /** The rows of strokes of which the classifier is hardly sure. */
   get doubtful(): Set<number> {
     const doubt = (this.session.seen?.item?.strokes ?? []).filter(
-      (s) => s.source === 'classifier' && s.organ !== 'ignored' && s.confidence < DOUBTFUL,
+      (s) => GUESSES.includes(s.source ?? '') && s.organ !== 'ignored' && s.confidence < DOUBTFUL,
     );
     return new Set(doubt.map((s) => s.index));
   }

@@ -38,7 +38,18 @@ const documentAt = (current: number): DocumentState =>
   ({ current, plants: [0, 1].map((id) => ({ id, sketch: { strokes: [] } })) }) as unknown as DocumentState;
 
 function sessionWith(events: Partial<SessionEvents> = {}): Session {
-  const names = ['ready', 'state', 'view', 'busy', 'progress', 'failed', 'fault', 'dead', 'refused'];
+  const names = [
+    'ready',
+    'state',
+    'view',
+    'coarse',
+    'busy',
+    'progress',
+    'failed',
+    'fault',
+    'dead',
+    'refused',
+  ];
   const quiet = Object.fromEntries(names.map((name) => [name, () => {}]));
   return new Session({ ...quiet, ...events } as SessionEvents);
 }

@@ -1,7 +1,7 @@
 /** The document as the worker last reported it, what is asked of it, and the stroke under the pen. */
 import { Engine, type EngineEvents } from './engine';
 import { measured } from './measure';
-import type { Request } from './protocol';
+import type { Request, Shown } from './protocol';
 import type {
   Action,
   Command,
@@ -11,8 +11,12 @@ import type {
   SceneView,
   SketchCommand,
   SketchState,
+  StrokeClass,
   StrokeMode,
 } from './wire';
+
+/** Below this share the reading of a stroke is shown to be doubtful. */
+export const DOUBTFUL = 0.3;
 
 export interface SessionEvents extends Omit<EngineEvents, 'state'> {
   /** The document changed; `other`: another plant than before is on the left side. */
@@ -139,11 +143,25 @@ export class Session {
     this.draft = undefined;
     this.drafted = false;
     if (mirror) this.begin('draw');
-    this.ask({ kind: 'stroke', mode, samples });
+    const shown = this.shown();
+    this.ask({ kind: 'stroke', mode, samples, ...(shown.length > 0 ? { shown } : {}) });
     if (mirror) {
       this.ask({ kind: 'stroke', mode, samples: mirror });
       this.commit();
     }
+  }
+
+  /** What the strokes of the sheet are clearly shown as, where that is news. Nothing while what is seen is older. */
+  private shown(): Shown[] {
+    const { drawn, scene, seen, state } = this;
+    if (!drawn || scene?.revision !== state?.revision) return [];
+    const rows = new Map((seen?.item?.strokes ?? []).map((s) => [s.index, s]));
+    return drawn.strokes.flatMap(({ id, class: own, shown }, row): Shown[] => {
+      const is = rows.get(row);
+      if (!is || own !== null) return [];
+      const now = is.confidence < DOUBTFUL ? null : (is.class as StrokeClass);
+      return now === shown ? [] : [[id, now]];
+    });
   }
 
   /** The stroke under the pen, as it is now. */

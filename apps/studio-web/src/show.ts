@@ -177,6 +177,12 @@ export class Show {
     sheet.reselect();
   }
 
+  /** Large trees are seen, much coarser, before they are whole. */
+  coarse(): void {
+    this.parts.grows.hidden = true;
+    document.body.dataset['coarse'] = String(Number(document.body.dataset['coarse'] ?? 0) + 1);
+  }
+
   /** The figures at the foot of the page. */
   private counts(): void {
     const { session } = this.shown;
@@ -205,15 +211,7 @@ export class Show {
 
   openWarnings(): void {
     const { seen } = this.shown.session;
-    const rows = (seen?.warnings ?? []).map((w) => {
-      const { text, own } = warning(w);
-      return el(
-        'li',
-        { 'data-warning': w.code },
-        el('span', {}, text),
-        ...(own ? [el('span', { class: 'muted', lang: 'en' }, own)] : []),
-      );
-    });
+    const rows = (seen?.warnings ?? []).map((w) => el('li', { 'data-warning': w.code }, warning(w)));
     if (rows.length === 0) return;
     const title = t('warnings.title', { count: number(rows.length) });
     const list = el('div', { class: 'warnings', tabindex: '-1' }, el('b', {}, title), el('ul', {}, ...rows));

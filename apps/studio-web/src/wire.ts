@@ -30,7 +30,6 @@ export const CODES = {
   "internal": ["why"],
   "json-ends": [],
   "law": ["why"],
-  "leaf-no-marks": [],
   "leaf-scan": ["why"],
   "leaf-surface": ["why"],
   "leaf-veins": ["why"],
@@ -839,6 +838,24 @@ export type LeafFit = {
   rms_mm: number;
 };
 
+/** The form of a leaf with one midrib, where nothing was measured. */
+export type LeafForm = {
+  /** How far both halves are raised along the midrib, degrees, -60 to 60, default 10. */
+  fold_deg: number;
+  /** Length of the midrib, metres, 0.002 to 10, default 0.1. */
+  length_m: number;
+  /** How far the margin goes in between the side veins, as a share of the half width: 0 (entire) to 0.8 (deep lobes), default 0. */
+  lobes: number;
+  /** Angle between side veins and midrib, degrees, 15 to 85, default 50. */
+  vein_angle_deg: number;
+  /** Pairs of side veins, 2 to 30, default 8. */
+  veins: number;
+  /** Where it is widest: 0.1 near the base to 0.9 near the tip, default 0.4. */
+  widest: number;
+  /** Greatest width over length, 0.02 to 2, default 0.5. */
+  width: number;
+};
+
 /** What colours a measured blade. */
 export type LeafPaint =
   | /** Painted by the distance from the veins. */
@@ -898,6 +915,8 @@ export type LeafSpec = {
   caps: boolean;
   /** Roll about the midrib: -1 (margins meet below) to 1 (above), 0 as measured, default 0. */
   curl: number;
+  /** The form of the leaf where nothing was measured. */
+  form: LeafForm;
   /** Length of the midrib for a vein graph in pixels, metres, 0.002 to 10, default 0.1. */
   length_m: number;
   /** A vein along the margin too; default false. */
@@ -1016,7 +1035,7 @@ export type NewMaker =
   {
     tree: string;
   }
-  | /** A leaf that waits for its marks. */
+  | /** A leaf of a few numbers, until it is given marks. */
   "leaf"
   | /** A flower of this species. */
   {
@@ -1757,6 +1776,10 @@ export type StrokeState = {
   id: StrokeId;
   /** In which mode it was drawn. */
   mode: StrokeMode;
+  /** What it was shown as, clearly, when the last stroke was drawn. */
+  shown: 
+    | StrokeClass
+    | null;
 };
 
 /** Turned and scaled about a point. */
@@ -1982,6 +2005,8 @@ export type ViewPlane = {
 export type WarningView = {
   /** A word that stays, such as `unlike-a-plant`. */
   code: string;
+  /** Numbers and names in it. */
+  fields: Record<string, string>;
   /** A sentence in English. */
   message: string;
 };

@@ -23,11 +23,16 @@ const sent = new Set<number>();
 let had = new Set<number>();
 
 let toldShare = 0;
+/** The share that was told when the coarse look was there: what follows is the rest. */
+let lookShare = 0;
+/** Large trees of this state were looked at. */
+let looked = false;
 // Looked at by the evaluation between its steps; it says how far it is.
 (globalThis as { burgeonStop?: (share: number) => boolean }).burgeonStop = (share) => {
-  if (share > toldShare + 0.01) {
-    toldShare = share;
-    tell({ kind: 'progress', share });
+  const whole = lookShare + (1 - lookShare) * share;
+  if (share > 0 && whole > toldShare + 0.01) {
+    toldShare = whole;
+    tell({ kind: 'progress', share: whole });
   }
   return stop !== null && Atomics.load(stop, 0) !== 0;
 };
@@ -55,7 +60,7 @@ function answer(s: StudioSession, request: Request): unknown {
     case 'open':
       return JSON.parse(s.open(request.name, request.bytes, request.row, request.fresh));
     case 'stroke':
-      return s.add_stroke(request.mode, request.samples);
+      return s.add_stroke(request.mode, request.samples, JSON.stringify(request.shown ?? []));
     case 'select':
       return s.select(request.plant);
     case 'obstacle':
@@ -106,7 +111,7 @@ function answer(s: StudioSession, request: Request): unknown {
     case 'export':
       return s.export(JSON.stringify(request.request));
     case 'look':
-      return look(s, request.request, request.level);
+      return lookAtExport(s, request.request, request.level);
     case 'unlook':
       return s.end_look();
     case 'variant': {
@@ -173,7 +178,7 @@ function unsent(s: StudioSession, { materials }: PlantView): TexturePixels[] {
 }
 
 /** The columns of an export, which is written and counted. */
-function look(s: StudioSession, request: ExportRequest, level: number): SentExport {
+function lookAtExport(s: StudioSession, request: ExportRequest, level: number): SentExport {
   const view: ExportView = JSON.parse(s.look_at_export(JSON.stringify(request), level));
   const models = view.models.map(({ parts }, model) =>
     parts.map((_, part): ExportedArrays => {
@@ -222,12 +227,27 @@ function given(kind: Request['kind'], value: unknown): Transferable[] {
   return [...models.flatMap(columnsOf), ...textures.map((x) => x.pixels.buffer)];
 }
 
+/** Large trees, much coarser, before they are whole: whether there are any. Requests that come meanwhile go first. */
+function look(s: StudioSession): boolean {
+  looked = true;
+  [toldShare, lookShare] = [0, 0];
+  const views: PlantView[] = JSON.parse(s.look());
+  lookShare = toldShare;
+  const fresh = views.map((view) => pack(s, view));
+  if (fresh.length > 0) tell({ kind: 'coarse', fresh }, fresh.flatMap(buffers));
+  return fresh.length > 0;
+}
+
 function evaluate(): void {
   scheduled = false;
   if (!session || !stale) return;
-  stale = false;
-  toldShare = 0;
   try {
+    if (!looked && look(session)) {
+      scheduled = true;
+      setTimeout(evaluate, 0);
+      return;
+    }
+    stale = false;
     const view: SceneView = JSON.parse(session.evaluate());
     const s = session;
     const all = view.guest ? [view.guest, ...view.plants] : view.plants;
@@ -250,6 +270,7 @@ function evaluate(): void {
 /** Requests that wait already go first: only the latest state is grown. */
 function schedule(): void {
   stale = true;
+  looked = false;
   if (!scheduled) {
     scheduled = true;
     setTimeout(evaluate, 0);

@@ -163,12 +163,12 @@ impl StudioSession {
     }
 
     /// Adds a stroke and returns its number. `samples`: x, y (up), milliseconds, pressure of each point; NaN where
-    /// not known.
+    /// not known. `shown`: pairs of a stroke and its class or null as JSON, see [`Workspace::add_stroke`].
     ///
     /// # Errors
     /// When no point is finite, or the mode is unknown.
-    pub fn add_stroke(&mut self, mode: &str, samples: &[f64]) -> Result<u32, Refused> {
-        Ok(self.0.add_stroke(stroke(mode, samples)?)?.0)
+    pub fn add_stroke(&mut self, mode: &str, samples: &[f64], shown: &str) -> Result<u32, Refused> {
+        Ok(self.0.add_stroke(stroke(mode, samples)?, from_json(shown)?)?.0)
     }
 
     /// Shows a stroke that is still being drawn; an empty one takes it away.
@@ -321,6 +321,14 @@ impl StudioSession {
     pub fn stroke_points(&self, id: u32) -> Vec<f64> {
         let samples = self.0.stroke(StrokeId(id)).map_or(&[][..], |s| &s.samples);
         samples.iter().flat_map(|p| [p.at.x, p.at.y, p.pressure.unwrap_or(f64::NAN)]).collect()
+    }
+
+    /// Large trees that are going to be grown, much coarser: an array of `PlantView` as JSON. See [`Workspace::look`].
+    ///
+    /// # Errors
+    /// `cancelled`.
+    pub fn look(&mut self) -> Result<String, Refused> {
+        to_json(&page_run(|run| self.0.look(run))?)
     }
 
     /// Brings the plants up to date: `SceneView` as JSON.

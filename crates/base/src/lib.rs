@@ -10,7 +10,7 @@
 //! | `budget` | [`Budget`], [`OverBudget`]: how much may be made |
 //! | `coded` | [`Coded`], [`coded!`]: errors as codes with fields |
 //! | `slip` | [`Slip`]: what readers say of a text, as codes |
-//! | `task` | [`CancelToken`], [`Executor`], [`Run`]: how something is computed, never what |
+//! | `task` | [`CancelToken`], [`Executor`], [`Run`], [`Telling`]: how something is computed, never what |
 //! | `quote` | [`brief`], [`quoted`]: how much of somebody's words a message repeats |
 //! | `report` | [`Report`], [`Warning`]: what a computation wants to tell its user |
 //! | `digest` | [`Digest`]: a fingerprint of a result that does not depend on the machine |
@@ -44,5 +44,7 @@ pub use seed::{Draw, Seed, Stream};
 pub use slip::Slip;
 pub use sort::{map_of, set_of, sort_by, sort_by_key, sort_numbers};
 pub use srgb::{linear_of_srgb, srgb_of_linear};
-pub use task::{CancelToken, Cancelled, Clock, Executor, NoClock, Run, Serial, Stopped, map_indexed};
+pub use task::{
+    CancelToken, Cancelled, Clock, Executor, NoClock, Run, Serial, Stopped, Telling, map_indexed,
+};
 pub use units::{Angle, NotFinite, Tolerance, Unit, UpAxis};

@@ -1,6 +1,6 @@
 //! What a computation wants to tell its user beside its result.
 
-use core::fmt;
+use core::fmt::{self, Display};
 
 use crate::Clock;
 
@@ -11,9 +11,11 @@ pub struct Warning {
     pub code: &'static str,
     /// A sentence for people: what, where, what was done.
     pub message: String,
+    /// Numbers and names in that sentence, for other languages; see [`crate::warn!`].
+    pub fields: Vec<(&'static str, String)>,
 }
 
-impl fmt::Display for Warning {
+impl Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.message)
     }
@@ -44,10 +46,42 @@ pub struct Report {
     pub stages: Vec<Stage>,
 }
 
+/// Warns in a sentence whose numbers and names are fields, so that every language has its own words around them.
+///
+/// Every field stands in the sentence by its name.
+///
+/// ```
+/// let mut report = base::Report::default();
+/// let rows = [1, 2];
+/// base::warn!(report, "rock-open", { rock = 1, edges = rows.len() }, "rock {rock} has {edges} open edges");
+/// let warning = &report.warnings[0];
+/// assert_eq!(warning.message, "rock 1 has 2 open edges");
+/// assert_eq!(warning.fields, [("rock", "1".to_owned()), ("edges", "2".to_owned())]);
+/// ```
+#[macro_export]
+macro_rules! warn {
+    ($report:expr, $code:expr, { $($field:ident = $value:expr),+ $(,)? }, $text:literal) => {{
+        $(let $field = &$value;)+
+        $report.warn_of($code, &[$((stringify!($field), $field)),+], format!($text));
+    }};
+}
+
 impl Report {
     /// Adds a warning.
     pub fn warn(&mut self, code: &'static str, message: impl Into<String>) {
-        self.warnings.push(Warning { code, message: crate::brief(&message.into()) });
+        self.warn_of(code, &[], message);
+    }
+
+    /// As [`Report::warn`], with numbers and names for other languages. For [`crate::warn!`], which takes them from the
+    /// sentence itself.
+    pub fn warn_of(
+        &mut self,
+        code: &'static str,
+        fields: &[(&'static str, &dyn Display)],
+        message: impl Into<String>,
+    ) {
+        let fields = fields.iter().map(|(name, value)| (*name, value.to_string())).collect();
+        self.warnings.push(Warning { code, message: crate::brief(&message.into()), fields });
     }
 
     /// Runs `f` and books its time under `name`.

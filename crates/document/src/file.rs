@@ -286,9 +286,9 @@ fn checked(
         }
         let mut kept = Vec::with_capacity(strokes.len());
         for (row, stroke) in strokes.into_iter().enumerate() {
-            let class = stroke.class;
+            let (class, shown) = (stroke.class, stroke.shown);
             let stroke = from_file(stroke).map_err(|what| ProjectError::Stroke { row, what })?;
-            kept.push(DocumentStroke { id: document.give_stroke(), stroke: Arc::new(stroke), class });
+            kept.push(DocumentStroke { id: document.give_stroke(), stroke: Arc::new(stroke), class, shown });
         }
         document.plants.push(DocumentPlant { id: PlantId(document.next_plant), settings, strokes: kept });
         document.next_plant += 1;

@@ -345,6 +345,9 @@ pub(crate) struct StrokeV1 {
     pub(crate) mode: StrokeMode,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) class: Option<StrokeClass>,
+    /// What it was shown as when the last stroke was drawn.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) shown: Option<StrokeClass>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) color: Option<[u8; 3]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -383,6 +386,7 @@ pub(crate) fn to_file(s: &DocumentStroke) -> StrokeV1 {
     StrokeV1 {
         mode: s.stroke.mode,
         class: s.class,
+        shown: s.shown,
         color: s.stroke.color,
         id: s.stroke.id.clone(),
         x: samples.iter().map(|p| p.at.x).collect(),

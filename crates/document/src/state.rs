@@ -23,6 +23,9 @@ pub struct DocumentStroke {
     pub stroke: Arc<Stroke>,
     /// The class that the person set; `None` leaves it to the classifier.
     pub class: Option<StrokeClass>,
+    /// What the person was shown it as, clearly, when the last stroke was drawn: it is not read as something else without
+    /// clear evidence. `None` for what came from a file of strokes.
+    pub shown: Option<StrokeClass>,
 }
 
 /// Where a plant stands: scaled, turned about the vertical, then moved.
@@ -162,6 +165,11 @@ impl DocumentPlant {
         base::map_of((0..).zip(&self.strokes).filter_map(|(row, s)| Some((row, s.class?))))
     }
 
+    /// What strokes were shown as when the last one was drawn, by row of [`DocumentPlant::drawing`].
+    pub fn shown(&self) -> BTreeMap<u32, StrokeClass> {
+        base::map_of((0..).zip(&self.strokes).filter_map(|(row, s)| Some((row, s.shown?))))
+    }
+
     /// The row of a stroke.
     pub fn row(&self, id: StrokeId) -> Option<usize> {
         self.strokes.iter().position(|s| s.id == id)
@@ -266,7 +274,7 @@ impl Document {
         for stroke in &drawing.strokes {
             if let Some(stroke) = sound(stroke.clone()) {
                 let id = document.give_stroke();
-                strokes.push(DocumentStroke { id, stroke: Arc::new(stroke), class: None });
+                strokes.push(DocumentStroke { id, stroke: Arc::new(stroke), class: None, shown: None });
             }
         }
         if let Some(plant) = document.plants.first_mut() {

@@ -31,7 +31,7 @@ fn stroke() -> impl Strategy<Value = NewStroke> {
     (vec(sample, 0..12), 0..3usize, proptest::option::of(any::<[u8; 3]>())).prop_map(
         |(samples, mode, color)| {
             let mode = [StrokeMode::Parts, StrokeMode::BranchContour, StrokeMode::LeafContour][mode];
-            NewStroke { stroke: Stroke { samples, mode, color, id: None }, class: None }
+            NewStroke { stroke: Stroke { samples, mode, color, id: None }, ..NewStroke::default() }
         },
     )
 }

@@ -96,20 +96,22 @@ impl ColonizeSpec {
         spec::check(self)?;
         let (kill, mut attraction) = (self.kill_m, self.attraction_m);
         if kill > attraction {
-            report.warn(
+            base::warn!(
+                report,
                 "attraction-raised",
-                format!(
-                    "attraction distance {attraction} m is below the kill distance: {kill} m was used for both"
-                ),
+                { attraction = attraction, kill = kill },
+                "attraction distance {attraction} m is below the kill distance: {kill} m was used for both"
             );
             attraction = kill;
         }
         let step = self.step_m.unwrap_or(0.5 * kill);
         let pull = Tropism::sum(&self.tropisms)?;
         if step > 2.0 * kill {
-            report.warn(
+            base::warn!(
+                report,
                 "step-long",
-                format!("steps of {step} m can pass points by, which are consumed within {kill} m only"),
+                { step = step, kill = kill },
+                "steps of {step} m can pass points by, which are consumed within {kill} m only"
             );
         }
         Ok(Steps {
@@ -346,17 +348,29 @@ fn tell(fates: &[Fate], report: &mut Report) {
     let n = fates.len();
     let lost = count(|f| *f == Fate::Unreached);
     if lost > 0 {
-        report.warn("attractors-unreached", format!("{lost} of {n} attraction points could not be reached"));
+        base::warn!(
+            report,
+            "attractors-unreached",
+            { count = lost, all = n },
+            "{count} of {all} attraction points could not be reached"
+        );
     }
     let buried = count(|f| matches!(f, Fate::Buried(_)));
     if buried > 0 {
-        report.warn("attractors-buried", format!("{buried} of {n} attraction points lie in obstacles"));
+        base::warn!(
+            report,
+            "attractors-buried",
+            { count = buried, all = n },
+            "{count} of {all} attraction points lie in obstacles"
+        );
     }
     let bad = count(|f| *f == Fate::Unusable);
     if bad > 0 {
-        report.warn(
+        base::warn!(
+            report,
             "attractors-unusable",
-            format!("{bad} of {n} attraction points are no finite points within 1e6 m"),
+            { count = bad, all = n },
+            "{count} of {all} attraction points are no finite points within 1e6 m"
         );
     }
 }
@@ -522,7 +536,12 @@ impl Colony<'_> {
             run.cancel.reached(part.1 - (part.1 - part.0) * (self.field.alive() as f64 / all));
             if self.skeleton.len() >= self.steps.most {
                 let n = self.skeleton.len();
-                report.warn("growth-stopped", format!("growth stopped at {n} joints, the most allowed"));
+                base::warn!(
+                    report,
+                    "growth-stopped",
+                    { joints = n },
+                    "growth stopped at {joints} joints, the most allowed"
+                );
                 break;
             }
             run.budget.check(

@@ -2,7 +2,7 @@
 //!
 //! `envelope -> N points -> skeleton -> K joints x M points -> finer skeleton -> ...` (Yang et al. 2019, section 3.1)
 
-use base::{Counted, Draw, Report, Run, Seed};
+use base::{Counted, Draw, Report, Run, Seed, Warning};
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -283,7 +283,7 @@ pub fn compete(
         for w in told.warnings {
             // The last cycles' warnings about the numbers are the first one's.
             if !report.warnings.iter().any(|old| old.code == w.code && old.message == w.message) {
-                report.warn(w.code, format!("cycle {}: {}", cycle + 1, w.message));
+                report.warnings.push(Warning { message: format!("cycle {}: {}", cycle + 1, w.message), ..w });
             }
         }
         for s in told.stages {

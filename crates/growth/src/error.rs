@@ -40,13 +40,13 @@ pub enum GrowthError {
     #[error("nothing to grow from: no roots were given")]
     NoRoots,
     /// A root is not a finite point.
-    #[error("root {root} is not a finite point within 1e6 m of the origin")]
+    #[error("root {} is not a finite point within 1e6 m of the origin", .root + 1)]
     Root {
         /// Its index.
         root: usize,
     },
     /// A root stands in an obstacle.
-    #[error("root {root} stands inside obstacle {obstacle}; move one of them")]
+    #[error("root {} stands inside obstacle {}; move one of them", .root + 1, .obstacle + 1)]
     RootInObstacle {
         /// Index of the root.
         root: usize,
@@ -54,7 +54,7 @@ pub enum GrowthError {
         obstacle: usize,
     },
     /// Something is wrong with an obstacle.
-    #[error("obstacle {obstacle} ({name}): {fault}")]
+    #[error("obstacle {} ({name}): {fault}", .obstacle + 1)]
     Obstacle {
         /// Its index.
         obstacle: usize,
@@ -323,8 +323,8 @@ base::coded!(GrowthError {
     Self::StepTooLong { step_m, space_m } => "step-too-long" { step_m, space_m },
     Self::Field { field, range, value } => "field-range" { field, range, value },
     Self::NoRoots => "no-roots" {},
-    Self::Root { root } => "root-far" { root },
-    Self::RootInObstacle { root, obstacle } => "root-in-obstacle" { root, obstacle },
+    Self::Root { root } => "root-far" { root = root + 1 },
+    Self::RootInObstacle { root, obstacle } => "root-in-obstacle" { root = root + 1, obstacle = obstacle + 1 },
     Self::Obstacle { name, fault, .. } => "obstacle" { name, why = fault => GrowthError },
     Self::Nothing { why } => "nothing-grew" { why },
     Self::Mesh(why) => "mesh" { why => MeshFault },

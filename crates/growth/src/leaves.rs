@@ -206,9 +206,11 @@ pub fn add_leaves(
         }
     }
     if all.len() >= spec.max_leaves as usize {
-        report.warn(
+        base::warn!(
+            report,
             "leaves-stopped",
-            format!("no more than {} places for leaves were considered", spec.max_leaves),
+            { most = spec.max_leaves },
+            "no more than {most} places for leaves were considered"
         );
     }
     let placed = all.len();

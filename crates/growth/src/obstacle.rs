@@ -465,7 +465,7 @@ mod tests {
         ];
         for o in bad {
             let text = Obstacles::new(&[all()[0].clone(), o.clone()], 0.0).expect_err("refused").to_string();
-            assert!(text.starts_with(&format!("obstacle 1 (a {}): ", o.shape())), "{text}");
+            assert!(text.starts_with(&format!("obstacle 2 (a {}): ", o.shape())), "{text}");
         }
         assert!(Obstacles::new(&[], f64::NAN).is_err());
     }

@@ -113,12 +113,12 @@ fn tell_moved_feet(skeleton: &Skeleton, wood: &Wood, report: &mut Report) {
         let aside = wood.plant.nodes.position[node.index()].distance(skeleton.position[j]);
         if aside > 1e-6 {
             let root = skeleton.tree[j];
-            report.warn(
+            base::warn!(
+                report,
                 "foot-moved",
-                format!(
-                    "an obstacle leaves the trunk on root {root} no room: its foot stands {aside:.2} m aside, as far \
-                     as the trunk is thick"
-                ),
+                { root = root + 1, aside = format_args!("{aside:.2}") },
+                "an obstacle leaves the trunk on root {root} no room: its foot stands {aside} m aside, as far as the trunk \
+                 is thick"
             );
         }
     }

@@ -366,10 +366,15 @@ fn tell(
     words: impl Fn(u32, usize) -> String,
 ) {
     for &(index, n) in notes.iter().take(TOLD) {
-        report.warn(code, words(index, n));
+        report.warn_of(code, &[("stroke", &index), ("count", &n)], words(index, n));
     }
     if notes.len() > TOLD {
-        report.warn(code, format!("and {} more strokes likewise", notes.len() - TOLD));
+        base::warn!(
+            report,
+            "strokes-likewise",
+            { count = notes.len() - TOLD },
+            "and {count} more strokes likewise"
+        );
     }
 }
 

@@ -133,11 +133,12 @@ impl<'a> Net<'a> {
             return Err(GraphError::TooSmall(best.len()));
         }
         if best.len() < n {
-            let message = format!(
-                "{} of {n} nodes hang together with no vein of the leaf and were left out",
-                n - best.len()
+            base::warn!(
+                report,
+                "nodes-apart",
+                { count = n - best.len(), all = n },
+                "{count} of {all} nodes hang together with no vein of the leaf and were left out"
             );
-            report.warn("nodes-apart", message);
         }
         best.sort_unstable();
         Ok(Self { graph, near, members: best })
@@ -384,10 +385,12 @@ impl VeinGraph {
             return Err(GraphError::OneSided);
         }
         if lone > 0 {
-            let message = format!(
-                "{lone} side veins have no partner on the other side: there a straight vein to the margin was taken"
+            base::warn!(
+                report,
+                "veins-unpaired",
+                { count = lone },
+                "{count} side veins have no partner on the other side: there a straight vein to the margin was taken"
             );
-            report.warn("veins-unpaired", message);
         }
         let near = |s: f64| {
             // The midrib's thickness is the median over a fortieth of its length: single nodes are uneven.

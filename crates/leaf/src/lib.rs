@@ -5,6 +5,7 @@
 //! | module | owns |
 //! |---|---|
 //! | `marks` | [`Marks`]: what was measured, what is missing, the paper's rule for missing thickness |
+//! | `form` | [`LeafForm`]: a few numbers -> marks |
 //! | `graph` | [`VeinGraph`]: a network of veins with radii -> marks |
 //! | `palmate` | a network whose chief veins start together -> rays |
 //! | `blade` | [`Leaf`]: the four surfaces, veins that lie on them |
@@ -18,6 +19,7 @@
 //! Lengths are metres. A leaf knows nothing of the plant that bears it; its triangles are `skin`'s to make.
 
 mod blade;
+mod form;
 mod graph;
 mod growth;
 mod lobes;
@@ -30,6 +32,7 @@ mod scan;
 mod spec;
 
 pub use blade::Leaf;
+pub use form::LeafForm;
 pub use graph::{GraphError, VeinGraph};
 pub use growth::{LeafGrowth, StagesError};
 pub use marks::{FullMarks, FullRow, MARKS_A_ROW, MarkRow, Marks, MarksError};

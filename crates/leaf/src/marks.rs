@@ -100,7 +100,7 @@ pub enum MarksError {
 
 /// Thickness of a midrib at its base over its length, and at its tip over that at its base, where none was measured.
 /// Our own numbers, those of the leaves in `fixtures/leaves`.
-const MIDRIB_SHARE: [f64; 2] = [0.018, 0.08];
+pub(crate) const MIDRIB_SHARE: [f64; 2] = [0.018, 0.08];
 
 impl Marks {
     /// The length of the midrib by the chords of its marks, from the last row to the tip.
@@ -205,7 +205,7 @@ impl Marks {
         let midrib: Vec<Option<f64>> = self.rows.iter().map(|r| r.midrib).collect();
         let midrib = spread(&places, &midrib).unwrap_or_else(|| {
             report.warn(
-                "thickness-guessed",
+                "midrib-guessed",
                 "no row has a thickness of the midrib: 1.8 % of its length at the base was taken, thinner to the tip",
             );
             let length = self.length();
@@ -235,7 +235,7 @@ impl Marks {
             (Some(right), Some(left)) => (right, left),
             _ => {
                 report.warn(
-                    "thickness-guessed",
+                    "margin-guessed",
                     "the margin has no thickness anywhere: 2.6 % of the mean thickness of the veins was taken",
                 );
                 (guess(), guess())

@@ -4,6 +4,7 @@ use geom::RingRule;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::form::LeafForm;
 use crate::pose::Pose;
 
 /// Surface of a measured blade (Wang et al. 2011, section 2.2).
@@ -108,12 +109,15 @@ pub struct LeafSpec {
     pub caps: bool,
     /// A vein along the margin too; default false.
     pub margin_vein: bool,
+    /// The form of the leaf where nothing was measured.
+    pub form: LeafForm,
     /// Length of the midrib for a vein graph in pixels, metres, 0.002 to 10, default 0.1.
     #[schemars(range(min = 0.002, max = 10.0), extend("x-unit" = "m"))]
     pub length_m: f64,
 }
 
 spec::schemas!(LeafSpec = include_str!("../schemas/leaf.json"));
+spec::schemas!(LeafForm => LeafSpec, "/$defs/LeafForm");
 
 impl Default for LeafSpec {
     fn default() -> Self {
@@ -132,6 +136,7 @@ impl Default for LeafSpec {
             sides: 10,
             caps: false,
             margin_vein: false,
+            form: LeafForm::default(),
             length_m: 0.1,
         }
     }

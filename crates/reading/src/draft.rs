@@ -278,7 +278,12 @@ impl<'a> Draft<'a> {
         self.organ[k] = OrganWord::LeafContour;
         self.add_region(outline, RegionKind::Crown, k);
         let index = self.ink.strokes[k].index;
-        report.warn("scribble", format!("stroke {index} is a scribble and was read as a crown of leaves"));
+        base::warn!(
+            report,
+            "scribble",
+            { stroke = index },
+            "stroke {stroke} is a scribble and was read as a crown of leaves"
+        );
         true
     }
 
@@ -308,8 +313,12 @@ impl<'a> Draft<'a> {
         let straight = s.points[0].distance(s.points[s.points.len() - 1]) > 0.7 * s.length;
         if straight || !self.crown_from(k, report) {
             self.line_of(k, OrganWord::Branch);
-            report
-                .warn("scribble", format!("stroke {} was read as a stem, for want of a better one", s.index));
+            base::warn!(
+                report,
+                "scribble-stem",
+                { stroke = s.index },
+                "stroke {stroke} was read as a stem, for want of a better one"
+            );
         }
     }
 

@@ -13,6 +13,7 @@
 //! | `branches` | the hierarchy of axes | 4.2 |
 //! | `attach` | what bears what | beyond |
 //! | `kind`, `built`, `kinds` | what the parts are together, and which kind explains the drawing best | beyond |
+//! | `inertia` | what was shown keeps its class, unless the whole clearly says otherwise | beyond |
 //! | `rows`, `validate` | the result, and what every reading guarantees | |
 
 mod attach;
@@ -25,6 +26,7 @@ mod corolla;
 mod draft;
 mod flowers;
 mod grid;
+mod inertia;
 mod kind;
 mod kinds;
 mod look;
@@ -40,6 +42,7 @@ mod tests;
 mod validate;
 mod veins;
 
+pub use inertia::AS_SHOWN;
 pub use kind::{Kind, Scored};
 pub use kinds::{KIND_FEATURE_LIMIT, SEVERAL, kind_feature_names, kind_features};
 pub use read::{UNLIKE_A_PLANT, kind_row, read, read_as, read_without};

@@ -204,9 +204,11 @@ pub(crate) fn crowns(draft: &mut Draft<'_>, report: &mut Report) {
         draft.add_region(outline, RegionKind::Crown, stroke);
     }
     if left_out > 0 {
-        report.warn(
-            "stroke-skipped",
-            format!("{left_out} of the drawing's crown outlines were left out: {MOST_REGIONS} are read"),
+        base::warn!(
+            report,
+            "crowns-skipped",
+            { count = left_out, most = MOST_REGIONS },
+            "{count} of the drawing's crown outlines were left out: {most} are read"
         );
     }
 }

@@ -5,7 +5,8 @@ use ink::{Classified, Ink, Source};
 
 use crate::draft::Draft;
 use crate::{
-    Kind, PlantReading, READ_AS, Reading, Scored, attach, flowers, kinds, outlines, rules, several, veins,
+    Kind, PlantReading, READ_AS, Reading, Scored, attach, flowers, inertia, kinds, outlines, rules, several,
+    veins,
 };
 
 /// Understands a drawing.
@@ -125,6 +126,8 @@ const TOLD: usize = 3;
 fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, report: &mut Report) -> Reading {
     let First { mut reading, mut said, shares } = first;
     let mut kind = Kind::of(&reading);
+    // What it is taken for beyond what its strokes say.
+    let mut taken = None;
     let (mut scores, no_plant) = (shares.kinds, shares.no_plant);
     let built = kind;
     let group = |scores: &[Scored], kind: Kind| -> f64 {
@@ -147,7 +150,18 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
         let tried = attempt(asked.off, Some(other.kind), ink, classes, &mut again);
         // Only what can be built of the drawing explains it.
         if other.kind.is_like(Kind::of(&tried)) {
-            (reading, said, kind) = (tried, again, other.kind);
+            (reading, said, kind, taken) = (tried, again, other.kind, Some(other.kind));
+        }
+    }
+    if asked.kind.is_none()
+        && let Some(shown) = inertia::as_shown(ink, classes, &reading)
+    {
+        let mut again = Report::default();
+        let mut tried = attempt(asked.off, taken, ink, &shown, &mut again);
+        let was = Kind::of(&tried);
+        if !inertia::is_clear(ink, classes, (&reading, kind), was, &scores) {
+            inertia::tell(&mut tried, ink, classes);
+            (reading, said, kind) = (tried, again, was);
         }
     }
     scores.iter_mut().filter(|s| s.kind.is_like(built)).for_each(|s| s.score *= BUILT);

@@ -443,7 +443,7 @@ fn thousands_of_strokes_of_any_class() {
 fn a_fruit_or_a_contour_drawn_as_a_line_is_still_a_plant() {
     let (r, report) = reading(&[(StrokeClass::Fruit, line((0.0, 2.0), (1.0, 1.0)))]);
     assert_eq!((r.axes.len(), r.fruits.len()), (1, 0));
-    assert!(report.warnings.iter().any(|w| w.code == "scribble"), "{report:?}");
+    assert!(report.warnings.iter().any(|w| w.code == "scribble-stem"), "{report:?}");
     let mut drawing = Drawing::from_polylines("c", &[line((0.0, 0.0), (1.0, 1.0))]);
     drawing.strokes[0].mode = StrokeMode::LeafContour;
     let ink = clean(&drawing, &mut Report::default());

@@ -83,9 +83,11 @@ pub fn build_again(
     run.cancel.check()?;
     if let Some(flip) = spec.flipped_flowers.iter().find(|&&i| i as usize >= reading.flowers.len()) {
         let flowers = reading.flowers.len();
-        report.warn(
+        base::warn!(
+            report,
             "no-such-flower",
-            format!("flower {flip} is to be flipped, but there are {flowers} flowers, numbered from 0"),
+            { flower = flip, count = flowers },
+            "flower {flower} is to be flipped, but there are {count} flowers, numbered from 0"
         );
     }
     let started = run.clock.now_ms();

@@ -2,12 +2,13 @@
 //!
 //! `drawing -> ink, classes | + corrections -> reading | + spec, seed -> plant | + skin -> model`
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use base::{Cancelled, Counted, Report, Run, Seed, Stage, Warning};
 use document::{Photo, PlantEdit};
 use glam::DVec2;
-use ink::{Classified, Drawing, Ink, KeptMeasures};
+use ink::{Classified, Drawing, Ink, KeptMeasures, StrokeClass};
 use mesh::{Model, Texture};
 use plant::Plant;
 use reading::{Kind, Reading};
@@ -86,7 +87,7 @@ enum Taken {
 type PlantFrom = (SketchSpec, Seed, String, Option<LeafTemplate>);
 
 /// What a reading is made from, besides ink and classes.
-type ReadFrom = (ClassOverrides, Option<Kind>);
+type ReadFrom = (ClassOverrides, BTreeMap<u32, StrokeClass>, Option<Kind>);
 
 /// An edited plant and the edits.
 #[derive(Clone, Debug)]
@@ -168,7 +169,7 @@ impl Evaluator {
             self.strokes =
                 Some(Self::keep(&mut self.done, &mut stages, drawing.clone(), (ink, classes), report));
         }
-        self.read(&options.classes, options.spec.read_as, &mut stages, run)?;
+        self.read(options, &mut stages, run)?;
         self.build(options, seed, &drawing.name, &mut stages, run)?;
         self.shape(options, &mut stages, run)?;
         let mut photo = options.photo.clone().filter(|p| p.place.paint);
@@ -207,18 +208,21 @@ impl Evaluator {
 
     fn read(
         &mut self,
-        wanted: &ClassOverrides,
-        read_as: Option<Kind>,
+        options: &SketchOptions,
         stages: &mut Vec<Stage>,
         run: &Run<'_>,
     ) -> Result<(), MakeError> {
         let Some(strokes) = &self.strokes else { return Ok(()) };
-        if self.reading.as_ref().is_some_and(|k| k.from.0 == *wanted && k.from.1 == read_as) {
+        let SketchOptions { classes: wanted, shown, spec: SketchSpec { read_as, .. }, .. } = options;
+        let from = (wanted.clone(), shown.clone(), *read_as);
+        if self.reading.as_ref().is_some_and(|k| k.from == from) {
             return Ok(());
         }
+        let read_as = *read_as;
         let (ink, classes) = &strokes.value;
         let mut classes = classes.clone();
         for (stroke, class) in ink.strokes.iter().zip(&mut classes) {
+            class.shown = shown.get(&stroke.index).copied();
             if let Some(&wanted) = wanted.get(&stroke.index) {
                 *class = Classified::by_user(wanted);
             }
@@ -232,7 +236,6 @@ impl Evaluator {
             });
         run.cancel.check()?;
         self.plant = None;
-        let from = (wanted.clone(), read_as);
         self.reading = Some(Self::keep(&mut self.done, stages, from, reading, report));
         Ok(())
     }
@@ -503,7 +506,7 @@ mod tests {
         o.edits.clear();
         assert_eq!(step(&mut e, &d, &o, 2), ["shape", "mesh"]);
         assert_eq!(e.plant(), e.drawn());
-        o.classes.insert(1, ink::StrokeClass::Axis);
+        o.classes.insert(1, StrokeClass::Axis);
         assert_eq!(step(&mut e, &d, &o, 2), all[2..]);
         d.strokes.pop();
         o.classes.clear();

@@ -154,18 +154,19 @@ pub(crate) fn finish(
     let model = model?;
     let mesh = kept.get(ShapeId::new(0)).cloned().unwrap_or_default();
     if mesh.crossing > 0 {
-        report.warn(
+        base::warn!(
+            report,
             "vein-crossing",
-            format!(
-                "{} rings of veins are thicker than their vein bends: they cut themselves",
-                mesh.crossing
-            ),
+            { count = mesh.crossing },
+            "{count} rings of veins are thicker than their vein bends: they cut themselves"
         );
     }
     if mesh.swallowed > 0 {
-        report.warn(
+        base::warn!(
+            report,
             "ring-swallowed",
-            format!("{} rings lie inside their neighbours' balls and were drawn to a point", mesh.swallowed),
+            { count = mesh.swallowed },
+            "{count} rings lie inside their neighbours' balls and were drawn to a point"
         );
     }
     Ok((MadePlant::new(plant, (model, spec), (edits, &options.edits), report), mesh))

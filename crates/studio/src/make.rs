@@ -22,6 +22,9 @@ pub struct SketchOptions {
     pub skin: SkinSpec,
     /// Classes that the user set.
     pub classes: ClassOverrides,
+    /// What strokes were shown as while the drawing grew, by stroke index: not given up without clear evidence. Empty for
+    /// a drawing without such a history.
+    pub shown: BTreeMap<u32, StrokeClass>,
     /// A photograph under the drawing, whose colours traced organs take.
     pub photo: Option<Photo>,
     /// The leaf that the plant bears instead of the drawn or built-in ones.
@@ -40,6 +43,7 @@ impl SketchOptions {
             spec: sketch.sketch.clone(),
             skin: SkinSpec { seed: settings.seed, ..sketch.skin.clone() },
             classes: plant.classes(),
+            shown: plant.shown(),
             photo: sketch.photo.clone(),
             leaf: None,
             edits: settings.edits.clone(),

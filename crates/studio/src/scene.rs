@@ -53,11 +53,6 @@ pub enum SceneError {
     /// The marks make no leaf.
     #[error(transparent)]
     Leaf(LeafError),
-    /// The leaf has no marks yet.
-    #[error(
-        "the leaf has no measurements yet: drop a table of marks (.csv) or a vein graph (.json) on the page"
-    )]
-    NoMarks,
     /// The plant whose leaf is borne has no leaf.
     #[error("the plant \"{0}\", whose leaf this one bears, has no leaf yet")]
     Lender(String),
@@ -91,9 +86,9 @@ impl SceneError {
         )
     }
 
-    /// Whether there is nothing to be made yet: an empty sheet, a leaf without marks.
+    /// Whether there is nothing to be made yet: an empty sheet.
     pub fn is_bare(&self) -> bool {
-        matches!(self, Self::NoMarks | Self::Sketch(MakeError::NoStrokes { .. }))
+        matches!(self, Self::Sketch(MakeError::NoStrokes { .. }))
     }
 }
 
@@ -119,7 +114,6 @@ impl From<LeafError> for SceneError {
 }
 
 base::coded!(SceneError {
-    Self::NoMarks => "leaf-no-marks" {},
     Self::Lender(name) => "lender-without-leaf" { name },
     Self::NotMade(name) => "plant-not-made" { name },
     Self::NoRoom(bytes) => "scene-full" { mb = bytes >> 20 },
@@ -204,7 +198,7 @@ struct MadeFrom {
     name: String,
     leaf: Option<LeafTemplate>,
     edits: Vec<PlantEdit>,
-    strokes: Vec<(Arc<Stroke>, Option<StrokeClass>)>,
+    strokes: Vec<(Arc<Stroke>, [Option<StrokeClass>; 2])>,
     wind: bool,
 }
 
@@ -218,8 +212,17 @@ impl MadeFrom {
             name: if grown { String::new() } else { settings.name.clone() },
             leaf,
             edits: settings.edits.clone(),
-            strokes: plant.strokes().iter().map(|s| (Arc::clone(&s.stroke), s.class)).collect(),
+            strokes: plant.strokes().iter().map(|s| (Arc::clone(&s.stroke), [s.class, s.shown])).collect(),
             wind,
+        }
+    }
+
+    fn tree_options(&self, tree: &TreeSettings) -> TreeOptions {
+        TreeOptions {
+            skin: SkinSpec { wind: self.wind, ..tree.skin.clone() },
+            leaf: self.leaf.clone(),
+            edits: self.edits.clone(),
+            ..TreeOptions::default()
         }
     }
 }
@@ -247,6 +250,23 @@ struct Made {
     revision: u64,
 }
 
+impl Kept {
+    /// What a plant is made with, and whether it was left half-way the last time.
+    ///
+    /// Until an update has succeeded it is no result, not even of what was before.
+    fn begin(&mut self, plant: &DocumentPlant, looking: bool) -> (&mut Made, bool) {
+        let word = plant.settings().maker.word();
+        let made = Arc::make_mut(&mut self.made);
+        if made.maker != word {
+            // Of a document in which this number was another plant's.
+            *made = Made { maker: word, ..Made::default() };
+        }
+        (made.sketch.looking, made.tree.looking) = (looking, looking);
+        let before = made.from.take();
+        (made, before.is_none())
+    }
+}
+
 impl SceneEvaluator {
     /// Whether models say how wind moves them, from the next update on. Default: no.
     pub fn set_wind(&mut self, wind: bool) {
@@ -265,12 +285,50 @@ impl SceneEvaluator {
     /// [`SceneError`]; a plant that is not in the document is left as it was.
     pub fn update(&mut self, id: PlantId, document: &Document, run: &Run<'_>) -> Result<(), SceneError> {
         let Some(plant) = document.plant(id) else { return Ok(()) };
-        let settings = plant.settings();
+        let Some(from) = self.wanted(plant, document, run)? else { return Ok(()) };
+        let (next, kept) = (self.revision + 1, self.plants.entry(id).or_default());
+        let (made, anew) = kept.begin(plant, self.looking);
+        let done = made.update(plant, from, anew, run)?;
+        // A drawing in which nothing changed but how its photograph shows keeps its model.
+        if !done.is_empty() {
+            made.revision = next;
+            self.revision = next;
+        }
+        kept.done = done;
+        Ok(())
+    }
+
+    /// A much coarser model, without textures, of what [`Self::update`] will make of a plant: of large trees that have to be
+    /// grown, because the whole takes a while. It is no result: nothing but the page ever sees it.
+    ///
+    /// # Errors
+    /// [`SceneError`]; there is none of a plant that is not in the document.
+    pub fn look(
+        &mut self,
+        id: PlantId,
+        document: &Document,
+        run: &Run<'_>,
+    ) -> Result<Option<Model>, SceneError> {
+        let Some(plant) = document.plant(id) else { return Ok(None) };
+        let Maker::Tree(tree) = &plant.settings().maker else { return Ok(None) };
+        let Some(from) = self.wanted(plant, document, run)? else { return Ok(None) };
+        let (made, _) = self.plants.entry(id).or_default().begin(plant, self.looking);
+        Ok(made.tree.look(&tree_spec(tree), from.seed, &from.tree_options(tree), run)?)
+    }
+
+    /// What a plant is to be made from; none where it is made, of itself or of one like it.
+    fn wanted(
+        &mut self,
+        plant: &DocumentPlant,
+        document: &Document,
+        run: &Run<'_>,
+    ) -> Result<Option<MadeFrom>, SceneError> {
+        let (id, settings) = (plant.id(), plant.settings());
         let leaf = match settings.maker.leaf() {
             Some(lender) => self.template(lender, document, run)?,
             None => None,
         };
-        let (looking, next) = (self.looking, self.revision + 1);
+        let looking = self.looking;
         let from = MadeFrom::of(plant, leaf, self.wind);
         let is_it =
             |k: &Kept| k.made.from.as_ref() == Some(&from) && (looking || !k.made.item.digest.is_empty());
@@ -280,28 +338,11 @@ impl SceneEvaluator {
         let kept = self.plants.entry(id).or_default();
         kept.name.clone_from(&settings.name);
         kept.done.clear();
+        let known = own || same.is_some();
         if let Some(same) = same {
             kept.made = same;
-            return Ok(());
         }
-        if own {
-            return Ok(());
-        }
-        let made = Arc::make_mut(&mut kept.made);
-        if made.maker != settings.maker.word() {
-            // Of a document in which this number was another plant's.
-            *made = Made { maker: settings.maker.word(), ..Made::default() };
-        }
-        (made.sketch.looking, made.tree.looking) = (looking, looking);
-        // Until it has succeeded: an update that is stopped half-way is no result, not even of what was before.
-        let before = made.from.take();
-        kept.done = made.update(plant, from, before.is_none(), run)?;
-        // A drawing in which nothing changed but how its photograph shows keeps its model.
-        if !kept.done.is_empty() {
-            made.revision = next;
-            self.revision = next;
-        }
-        Ok(())
+        Ok((!known).then_some(from))
     }
 
     /// The leaf that a plant lends.
@@ -501,13 +542,7 @@ impl Made {
         from: &MadeFrom,
         run: &Run<'_>,
     ) -> Result<Vec<&'static str>, SceneError> {
-        let options = TreeOptions {
-            skin: SkinSpec { wind: from.wind, ..tree.skin.clone() },
-            leaf: from.leaf.clone(),
-            edits: from.edits.clone(),
-            ..TreeOptions::default()
-        };
-        self.item = self.tree.update(&tree_spec(tree), from.seed, &options, run)?;
+        self.item = self.tree.update(&tree_spec(tree), from.seed, &from.tree_options(tree), run)?;
         Ok(self.tree.stages_done().to_vec())
     }
 
@@ -583,30 +618,30 @@ pub fn flower_schema() -> &'static serde_json::Value {
 /// The marks of a leaf of a document, and how it is made.
 fn leaf_input(leaf: &LeafMaker) -> Result<(FullMarks, LeafOptions), SceneError> {
     let LeafMaker { data, settings } = leaf;
-    let (marks, in_file) = leaf_marks(data, settings.length_m)?;
+    let (marks, in_file) = leaf_marks(data, settings)?;
     let full = marks.complete(&mut Report::default()).map_err(LeafError::from)?;
     let spec = LeafSpec { thickness: settings.thickness.or(in_file), ..settings.clone() };
     Ok((full, LeafOptions { spec, ..LeafOptions::default() }))
 }
 
-/// The marks in a file of a leaf, and what its thickness is if it says so. `length_m`: of a vein graph in pixels.
+/// The marks in a file of a leaf, and what its thickness is if it says so; without a text those of the form that is set.
 ///
 /// # Errors
-/// [`SceneError`]: what is wrong with it; [`SceneError::NoMarks`] for no text.
+/// [`SceneError`]: what is wrong with it.
 pub fn leaf_marks(
     data: &LeafData,
-    length_m: f64,
+    settings: &LeafSpec,
 ) -> Result<(leaf::Marks, Option<ThicknessRule>), SceneError> {
     let text = data.text.trim_start();
     if text.is_empty() {
-        return Err(SceneError::NoMarks);
+        return Ok((settings.form.marks(), Some(ThicknessRule::Diameter)));
     }
     if text.starts_with('{') {
         let read = read_vein_graph(data.text.as_bytes())?;
         let marks = read.graph.marks(&mut Report::default())?;
         let length = marks.length();
         let in_pixels = read.unit.is_none() && length > 0.0;
-        return Ok((if in_pixels { marks.scaled(length_m / length) } else { marks }, None));
+        return Ok((if in_pixels { marks.scaled(settings.length_m / length) } else { marks }, None));
     }
     let read = read_marks(data.text.as_bytes(), &data.name, MarksAxes::default())?;
     Ok((read.marks, read.thickness))

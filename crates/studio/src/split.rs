@@ -152,7 +152,7 @@ impl Whole<'_> {
         (0..)
             .zip(self.plant.strokes())
             .filter(|(row, _)| own.contains(row))
-            .map(|(_, s)| NewStroke { stroke: (*s.stroke).clone(), class: s.class })
+            .map(|(_, s)| NewStroke::from(s))
             .collect()
     }
 

@@ -12,6 +12,9 @@ use burgeon::{Evaluator, ItemReport, MakeError, Run, SceneError, Seed, SketchOpt
 use crate::view::{GUEST, Outcome, PREVIEW_DETAIL, coarser};
 use crate::{Column, ObstacleView, PlantView, Refusal, SceneView, WarningView, Workspace, WorkspaceError};
 
+/// Most trees that are looked at before they are made: of a wood the first are enough to see that it comes.
+const LOOKS: usize = 8;
+
 impl Workspace {
     /// Brings every plant that is shown up to date. While a stroke is drawn only the current one, coarser.
     ///
@@ -22,6 +25,7 @@ impl Workspace {
     /// [`WorkspaceError::Cancelled`]; what was made before it stays.
     pub fn evaluate(&mut self, run: &Run<'_>) -> Result<SceneView, WorkspaceError> {
         self.previewed = false;
+        self.coarse.clear();
         let current = self.current();
         let drawn = self.draft.is_some();
         let gesture = self.with_gesture();
@@ -69,6 +73,39 @@ impl Workspace {
         Ok(self.view())
     }
 
+    /// Trees that [`Workspace::evaluate`] is going to grow, much coarser, if they are large: they are seen long before the
+    /// whole is there. Their columns can be asked for until the next evaluation, which grows nothing again.
+    ///
+    /// They are in no document, file or report. Empty while a hand draws or shapes, which has previews of its own.
+    ///
+    /// # Errors
+    /// [`WorkspaceError::Cancelled`]. What else is wrong with a plant, [`Workspace::evaluate`] says.
+    pub fn look(&mut self, run: &Run<'_>) -> Result<Vec<PlantView>, WorkspaceError> {
+        self.coarse.clear();
+        if self.guest.is_some() || self.draft.is_some() || self.held.is_some() {
+            return Ok(Vec::new());
+        }
+        let mut views = Vec::new();
+        let document = self.editor.document();
+        for plant in document.plants().iter().filter(|p| !p.settings().hidden) {
+            let id = plant.id();
+            let full = self.scene.get(id).is_none() && self.kept_bytes() > self.kept.most;
+            if full || views.len() == LOOKS {
+                continue;
+            }
+            let model = match self.scene.look(id, document, run) {
+                Ok(Some(model)) => model,
+                Err(e) if e.is_cancelled() => return Err(WorkspaceError::Cancelled),
+                Ok(None) | Err(_) => continue,
+            };
+            views.push(PlantView::of(id, &model, &mut self.textures));
+            self.coarse.insert(id, model);
+            // What comes next is new to the shell.
+            self.meshes.insert(id, None);
+        }
+        Ok(views)
+    }
+
     fn view(&mut self) -> SceneView {
         let mut view = SceneView { revision: self.editor.revision(), guest: None, plants: Vec::new() };
         let mut textures = std::mem::take(&mut self.textures);
@@ -91,7 +128,7 @@ impl Workspace {
             seen.mesh = revision;
             seen.item = self.item(id);
             let told = seen.item.iter().flat_map(|i| &i.told);
-            seen.warnings = told.map(|w| WarningView { code: w.code, message: w.message.clone() }).collect();
+            seen.warnings = told.map(WarningView::from).collect();
             seen.stages = if previewed {
                 self.preview.as_ref().map_or_else(Vec::new, |e| e.stages_done().to_vec())
             } else {
@@ -133,6 +170,9 @@ impl Workspace {
     pub(crate) fn model(&self, id: PlantId) -> Option<&Model> {
         if id == GUEST {
             return self.variant.as_ref().or(self.guest.as_ref());
+        }
+        if let Some(coarse) = self.coarse.get(&id) {
+            return Some(coarse);
         }
         if matches!(self.outcomes.get(&id), None | Some(Outcome::Bare)) {
             return None;

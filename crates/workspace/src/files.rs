@@ -11,6 +11,7 @@ use burgeon::formats::{DrawingFormat, ExportSpec, ModelFormat, no_files, read_dr
 use burgeon::glam::DVec3;
 use burgeon::growth::Obstacle;
 use burgeon::ink::Drawing;
+use burgeon::leaf::LeafSpec;
 use burgeon::spec::{self, through_json};
 use burgeon::{LeafError, Report, SceneError, leaf_marks, read_tree_spec, tree_settings};
 use schemars::JsonSchema;
@@ -208,7 +209,7 @@ impl Workspace {
 
 /// Whether measurements make a leaf.
 fn check_marks(data: &LeafData) -> Result<(), WorkspaceError> {
-    let (marks, _) = leaf_marks(data, 0.1)?;
+    let (marks, _) = leaf_marks(data, &LeafSpec::default())?;
     marks.complete(&mut Report::default()).map_err(|e| SceneError::from(LeafError::from(e)))?;
     Ok(())
 }

@@ -131,6 +131,8 @@ pub struct StrokeState {
     pub mode: StrokeMode,
     /// The class that the person set.
     pub class: Option<StrokeClass>,
+    /// What it was shown as, clearly, when the last stroke was drawn.
+    pub shown: Option<StrokeClass>,
     /// Its own colour.
     pub color: Option<[u8; 3]>,
 }
@@ -249,6 +251,7 @@ impl<'a> PlantState<'a> {
                     id: s.id,
                     mode: s.stroke.mode,
                     class: s.class,
+                    shown: s.shown,
                     color: s.stroke.color,
                 });
                 let photo = k.photo.as_ref();

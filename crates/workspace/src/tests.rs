@@ -69,7 +69,7 @@ fn sample() -> Vec<u8> {
 fn a_stroke_becomes_a_plant_and_undo_takes_it_back() {
     let mut s = Workspace::default();
     assert_eq!(look(&mut s)["item"], Value::Null);
-    let id = s.add_stroke(stem()).unwrap();
+    let id = s.add_stroke(stem(), Vec::new()).unwrap();
     assert_eq!(s.fresh_strokes(), [id]);
     assert!(s.fresh_strokes().is_empty());
     assert_eq!(s.stroke_points(id).len(), 40);
@@ -170,7 +170,7 @@ fn looks_at_a_draft_keep_what_the_whole_drawing_was_understood_as() {
             let now = said(&look(&mut s));
             assert_eq!(now[..before.len()], before, "{id:?}");
         }
-        s.add_stroke(line(&rows)).unwrap();
+        s.add_stroke(line(&rows), Vec::new()).unwrap();
         let now = said(&look(&mut s));
         changes += usize::from(now[..before.len()] != before[..]);
         before = now;
@@ -181,7 +181,7 @@ fn looks_at_a_draft_keep_what_the_whole_drawing_was_understood_as() {
 #[test]
 fn a_drag_is_staged_and_a_draft_leaves_no_trace() {
     let mut s = Workspace::default();
-    let id = s.add_stroke(stem()).unwrap();
+    let id = s.add_stroke(stem(), Vec::new()).unwrap();
     s.begin("move").unwrap();
     s.stage(SketchCommand::MoveStrokes(vec![id], DVec2::new(5.0, 1.0)).of(PlantId(0))).unwrap();
     s.stage(SketchCommand::MoveStrokes(vec![id], DVec2::new(50.0, 0.0)).of(PlantId(0))).unwrap();
@@ -660,7 +660,7 @@ fn warnings_are_told_with_their_codes() {
     let mut s = Workspace::default();
     let scribble: Vec<(f64, f64)> =
         (0..400).map(|k| (f64::from(k * 37 % 101), f64::from(k * 61 % 97))).collect();
-    s.add_stroke(line(&scribble)).unwrap();
+    s.add_stroke(line(&scribble), Vec::new()).unwrap();
     let view = s.evaluate(&run()).unwrap();
     let warned = view.plants.iter().flat_map(|p| &p.warnings).map(|w| w.code).collect::<Vec<_>>();
     assert!(!warned.is_empty() && warned.iter().all(|c| !c.is_empty()), "{warned:?}");

@@ -1,11 +1,12 @@
 //! What a shell shows of the plants: figures and names. Meshes are columns, asked for one by one.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use burgeon::document::{Command, Document, Maker, PlantId, SketchCommand, TreeCommand};
 use burgeon::mesh::{AlphaMode, Model, Texture, TriMesh};
 use burgeon::skin::SkinSpec;
-use burgeon::{FrontView, ItemReport, SceneError, set_of};
+use burgeon::{FrontView, ItemReport, SceneError, Warning, map_of, set_of};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -115,6 +116,15 @@ pub struct WarningView {
     pub code: &'static str,
     /// A sentence in English.
     pub message: String,
+    /// Numbers and names in it.
+    pub fields: BTreeMap<&'static str, String>,
+}
+
+impl From<&Warning> for WarningView {
+    fn from(warning: &Warning) -> Self {
+        let Warning { code, message, fields } = warning;
+        Self { code, message: message.clone(), fields: map_of(fields.iter().cloned()) }
+    }
 }
 
 /// One mesh.

@@ -9,7 +9,7 @@ use burgeon::document::{
 };
 use burgeon::formats::{self, DrawingFormat, read_drawings};
 use burgeon::glam::DVec2;
-use burgeon::ink::{Drawing, Stroke};
+use burgeon::ink::{Drawing, Stroke, StrokeClass};
 use burgeon::mesh::Model;
 use burgeon::{Evaluator, ItemReport, Preset, Run, SceneEvaluator, tree_settings};
 use schemars::JsonSchema;
@@ -70,7 +70,7 @@ pub enum NewMaker {
     Sketch,
     /// A tree of this preset.
     Tree(String),
-    /// A leaf that waits for its marks.
+    /// A leaf of a few numbers, until it is given marks.
     Leaf,
     /// A flower of this species.
     Flower(String),
@@ -108,6 +108,8 @@ pub struct Workspace {
     pub(crate) guest: Option<Model>,
     /// Another plant of the same description, looked at for a moment.
     pub(crate) variant: Option<Model>,
+    /// Trees that are still being made, much coarser.
+    pub(crate) coarse: BTreeMap<PlantId, Model>,
     /// An export that is looked at before it is written.
     pub(crate) looked: Option<Looked>,
     /// What came of each plant at the last evaluation.
@@ -286,15 +288,21 @@ impl Workspace {
         Ok(())
     }
 
-    /// Adds a stroke to the current drawing and returns its number.
+    /// Adds a stroke to the current drawing and returns its number. `shown`: what its strokes were shown as when this one
+    /// was drawn, where that is news; nothing for those of which it was not clear. They are not read as something else
+    /// without clear evidence ([`SketchCommand::Draw`]).
     ///
     /// # Errors
     /// [`WorkspaceError`]: no point is finite, or the plant is no drawing.
-    pub fn add_stroke(&mut self, stroke: Stroke) -> Result<StrokeId, WorkspaceError> {
+    pub fn add_stroke(
+        &mut self,
+        stroke: Stroke,
+        shown: Vec<(StrokeId, Option<StrokeClass>)>,
+    ) -> Result<StrokeId, WorkspaceError> {
         self.draft = None;
         self.guest = None;
         let id = self.must()?;
-        self.editor.run(SketchCommand::AddStrokes(vec![NewStroke { stroke, class: None }]).of(id))?;
+        self.editor.run(SketchCommand::Draw(stroke, shown).of(id))?;
         let last = self.editor.document().plant(id).and_then(|p| p.strokes().last());
         last.map(|s| s.id).ok_or(WorkspaceError::Internal("no stroke"))
     }
@@ -366,7 +374,7 @@ impl Workspace {
         }
         let id = self.must()?;
         let before = self.current_plant().map_or(0, |p| p.strokes().len());
-        let new = strokes.into_iter().map(|stroke| NewStroke { stroke, class: None }).collect();
+        let new = strokes.into_iter().map(|stroke| NewStroke { stroke, ..NewStroke::default() }).collect();
         self.editor.run(SketchCommand::AddStrokes(new).of(id))?;
         self.guest = None;
         let strokes = self.current_plant().map_or(&[][..], DocumentPlant::strokes);

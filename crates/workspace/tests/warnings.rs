@@ -7,11 +7,20 @@ const CRATES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
 const TEXTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../apps/studio-web/src/text/zh-errors.ts");
 /// Those that make plants. What readers of files warn of is told when a file is opened, in the core's words.
 const MAKERS: [&str; 7] = ["bloom", "growth", "ink", "leaf", "reading", "sketch", "studio"];
-/// Given to `warn` by a name.
-const NAMED: [&str; 4] = ["unlike-a-plant", "edit-not-done", "sample-skipped", "stray-skipped"];
+/// Told in other ways than by a call of `warn` with the code in it.
+const NAMED: [(&str, &[&str]); 5] = [
+    ("unlike-a-plant", &[]),
+    ("edit-not-done", &["edit", "word"]),
+    ("sample-skipped", &["stroke", "count"]),
+    ("stray-skipped", &["stroke", "count"]),
+    ("growth-too-much", &["year", "years", "joints", "next", "most"]),
+];
 
-/// The codes that stand first in a call of `warn`, before the tests of a file.
-fn codes(folder: &Path, found: &mut Vec<String>) {
+/// A code and the fields that go with it.
+type Found = (String, Vec<String>);
+
+/// What stands in calls of `warn`, before the tests of a file.
+fn codes(folder: &Path, found: &mut Vec<Found>) {
     for entry in fs::read_dir(folder).expect("a folder of the workspace") {
         let path = entry.expect("an entry").path();
         if path.is_dir() {
@@ -21,7 +30,14 @@ fn codes(folder: &Path, found: &mut Vec<String>) {
             let code = text.split("#[cfg(test)]").next().unwrap_or_default();
             for call in code.split(".warn(").skip(1) {
                 let code = call.trim_start().strip_prefix('"').and_then(|rest| rest.split('"').next());
-                found.extend(code.map(ToOwned::to_owned));
+                found.extend(code.map(|code| (code.to_owned(), Vec::new())));
+            }
+            for call in code.split("base::warn!(").skip(1) {
+                let (code, rest) =
+                    call.split('"').nth(1).zip(call.split_once('{')).expect("a code and fields");
+                let fields = rest.1.split_once('}').expect("fields").0.split(',');
+                let names = fields.filter_map(|f| Some(f.split_once('=')?.0.trim().to_owned()));
+                found.push((code.to_owned(), names.collect()));
             }
         }
     }
@@ -29,7 +45,8 @@ fn codes(folder: &Path, found: &mut Vec<String>) {
 
 #[test]
 fn each_warning_of_a_plant_has_a_chinese_text() {
-    let mut found: Vec<String> = NAMED.map(Into::into).into();
+    let named = NAMED.map(|(code, fields)| (code.to_owned(), fields.iter().map(|&f| f.to_owned()).collect()));
+    let mut found: Vec<Found> = named.into();
     for name in MAKERS {
         codes(&Path::new(CRATES).join(name).join("src"), &mut found);
     }
@@ -38,9 +55,14 @@ fn each_warning_of_a_plant_has_a_chinese_text() {
     assert!(found.len() > 20, "{found:?}");
     let texts = fs::read_to_string(TEXTS).expect("the texts of the page");
     let texts = texts.split("zhWarnings").nth(1).expect("texts of warnings");
-    let missing: Vec<_> = found
-        .iter()
-        .filter(|c| !texts.contains(&format!("  {c}: ")) && !texts.contains(&format!("'{c}': ")))
-        .collect();
-    assert!(missing.is_empty(), "no Chinese text for {missing:?}");
+    for (code, fields) in found {
+        let starts = [format!("  {code}:"), format!("'{code}':")];
+        let text = starts.iter().find_map(|start| texts.split_once(start.as_str()));
+        let text = text.and_then(|(_, rest)| rest.split('\'').nth(1));
+        let text = text.unwrap_or_else(|| panic!("no Chinese text for {code}"));
+        // Growth stops by several rules, each with its own number.
+        for field in fields.iter().filter(|f| *f != "round") {
+            assert!(text.contains(&format!("{{{field}}}")), "{code}: {field} is not in \"{text}\"");
+        }
+    }
 }

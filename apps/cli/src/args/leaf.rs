@@ -14,8 +14,8 @@ pub(crate) struct LeafArgs {
     /// First: clap takes the values of the others away as it reads them.
     #[command(flatten)]
     pub(crate) given: Given,
-    /// Marks or chief veins of a leaf (.csv), its vein graph or its profile (.json); several for --days and --plant. `-`
-    /// reads any of them from standard input.
+    /// Marks or chief veins of a leaf (.csv), its vein graph or its profile (.json), or the numbers of a leaf that was not
+    /// measured (.toml); several for --days and --plant. `-` reads any but the last from standard input.
     #[arg(value_name = "DATA")]
     pub(crate) inputs: Vec<PathBuf>,
     /// The model: .glb, .obj, .ply, .stl or .usda; or the structure: .mtg. With --template the file to fill in.

@@ -40,10 +40,14 @@ export function tell({ code, fields, causes, message }: Refusal): string {
   return text?.replace(/\{(\w+)\}/g, (_, name: string) => told(name)).trim() ?? message;
 }
 
-/** What was not as one might expect of a plant: our text for its code, if there is one, and what the core says. */
-export function warning({ code, message }: WarningView): { text: string; own?: string } {
-  const text = other()?.zhWarnings[code];
-  return text === undefined ? { text: message } : { text, own: message };
+/** What was not as one might expect of a plant: our text for its code with the numbers of the core's, or the core's own. */
+export function warning({ code, fields, message }: WarningView): string {
+  const texts = other();
+  const told = (name: string): string => {
+    const value = fields[name] ?? '';
+    return texts?.zhWords[value] ?? value;
+  };
+  return texts?.zhWarnings[code]?.replace(/\{(\w+)\}/g, (_, name: string) => told(name)) ?? message;
 }
 
 /** The text of a key made of parts; the last part itself if there is no such key. */

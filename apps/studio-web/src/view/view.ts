@@ -333,6 +333,28 @@ export class PlantView {
     this.redraw();
   }
 
+  /** Shows plants much coarser until they are whole: with shapes of their own, which the next view replaces. */
+  coarse(fresh: Sent[]): void {
+    const before = new Set(this.all.map((p) => p.shapes));
+    for (const sent of fresh) {
+      const { id } = sent.view;
+      const plant = this.plants.get(id) ?? new PlantMeshes(this.looks);
+      this.plants.set(id, plant);
+      this.holder.add(plant.place);
+      plant.view = { ...sent.view, obstacles: plant.view?.obstacles ?? [] };
+      const shapes: Shapes = new Map();
+      fillShapes(shapes, sent.view, sent.parts ?? []);
+      plant.update(plant.view, shapes);
+    }
+    const plants = this.all.flatMap((p) => (p.view ? [p.view] : []));
+    this.sweep(before, { revision: 0, guest: null, plants });
+    this.stand();
+    this.fitStage();
+    this.stage.touch();
+    this.lay();
+    this.redraw();
+  }
+
   private get all(): PlantMeshes[] {
     return [...this.plants.values(), ...(this.guest ? [this.guest] : [])];
   }

@@ -64,9 +64,7 @@ impl SceneCommand {
                 let mut new = NewPlant { settings, strokes: Vec::new() };
                 new.settings.placement.position += by;
                 new.settings.fixed = false;
-                let strokes = strokes.into_iter();
-                new.strokes =
-                    strokes.map(|s| NewStroke { stroke: (*s.stroke).clone(), class: s.class }).collect();
+                new.strokes = strokes.iter().map(NewStroke::from).collect();
                 add(new, document).map(|e| vec![e])
             }
             Self::Remove(ids) => remove(&ids, document),
@@ -98,7 +96,12 @@ fn add(mut new: NewPlant, document: &Document) -> Result<Event, CommandError> {
     if new.settings.sketch().is_some() {
         for s in new.strokes {
             let Some(stroke) = sound(s.stroke) else { continue };
-            strokes.push(DocumentStroke { id: StrokeId(next), stroke: stroke.into(), class: s.class });
+            strokes.push(DocumentStroke {
+                id: StrokeId(next),
+                stroke: stroke.into(),
+                class: s.class,
+                shown: s.shown,
+            });
             next = next.checked_add(1).ok_or(CommandError::Full("strokes"))?;
         }
     }

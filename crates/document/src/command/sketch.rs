@@ -22,13 +22,22 @@ pub struct NewStroke {
     pub stroke: Stroke,
     /// The class, if the person set it.
     pub class: Option<StrokeClass>,
+    /// What the person was shown it as; of strokes that are copied with all others.
+    pub shown: Option<StrokeClass>,
+}
+
+impl From<&DocumentStroke> for NewStroke {
+    /// It for another plant.
+    fn from(s: &DocumentStroke) -> Self {
+        Self { stroke: Stroke::clone(&s.stroke), class: s.class, shown: s.shown }
+    }
 }
 
 impl NewStroke {
     /// A bare line in `parts` mode.
     pub fn line(points: &[DVec2]) -> Self {
         let samples = points.iter().map(|&p| InkSample::from(p)).collect();
-        Self { stroke: Stroke { samples, ..Stroke::default() }, class: None }
+        Self { stroke: Stroke { samples, ..Stroke::default() }, ..Self::default() }
     }
 }
 
@@ -40,6 +49,10 @@ pub enum SketchCommand {
     /// Adds strokes after the others. Points that are not finite are left out.
     #[serde(skip)]
     AddStrokes(Vec<NewStroke>),
+    /// Adds a stroke that was drawn, and keeps what strokes were shown as when it was drawn: a class, or nothing for those
+    /// of which that was not clear. Others keep what they have.
+    #[serde(skip)]
+    Draw(Stroke, Vec<(StrokeId, Option<StrokeClass>)>),
     /// Adds moved copies of strokes after the others, with what was said of them.
     Duplicate(Vec<StrokeId>, #[schemars(with = "[f64; 2]")] DVec2),
     /// Erases strokes.
@@ -91,7 +104,7 @@ impl SketchCommand {
 
     pub(super) fn name(&self) -> &'static str {
         match self {
-            Self::AddStrokes(_) => "draw",
+            Self::AddStrokes(_) | Self::Draw(..) => "draw",
             Self::Duplicate(..) => "duplicate",
             Self::RemoveStrokes(_) => "erase",
             Self::MoveStrokes(..) => "move",
@@ -132,6 +145,17 @@ impl SketchCommand {
                 let all: Vec<usize> = (0..plant.strokes.len()).collect();
                 return replace(&all, plant, document, |s| ink::rubbed(s, &path, radius));
             }
+            Self::Draw(stroke, shown) => {
+                let added = add(vec![NewStroke { stroke, ..NewStroke::default() }], plant, document)?;
+                let shown = base::map_of(shown);
+                let ids: Vec<StrokeId> =
+                    shown.keys().copied().filter(|id| plant.row(*id).is_some()).collect();
+                let kept = edit(&ids, plant, |s| {
+                    s.shown = shown.get(&s.id).copied().flatten();
+                    Ok(())
+                });
+                return Ok(kept.into_iter().chain([added]).collect());
+            }
             Self::AddStrokes(strokes) => add(strokes, plant, document),
             Self::Duplicate(ids, by) => duplicate(&ids, by, plant, document),
             Self::RemoveStrokes(ids) => remove(&rows(&ids, plant)?, plant),
@@ -141,7 +165,7 @@ impl SketchCommand {
             Self::PullStrokes(ids, pull) => redraw(&ids, plant, |s| pull.of(s)),
             Self::SmoothStrokes(ids) => redraw(&ids, plant, ink::smoothed),
             Self::SetClass(ids, class) => edit(&ids, plant, |s| {
-                s.class = class;
+                (s.class, s.shown) = (class, None);
                 Ok(())
             }),
             Self::SetMode(ids, mode) => redraw(&ids, plant, |s| Stroke { mode, ..s.clone() }),
@@ -183,7 +207,7 @@ fn add(strokes: Vec<NewStroke>, plant: &DocumentPlant, document: &Document) -> R
         let id = StrokeId(next);
         next = next.checked_add(1).ok_or(CommandError::Full("strokes"))?;
         let row = plant.strokes.len() + rows.len();
-        rows.push((row, DocumentStroke { id, stroke: Arc::new(stroke), class: new.class }));
+        rows.push((row, DocumentStroke { id, stroke: Arc::new(stroke), class: new.class, shown: new.shown }));
     }
     if rows.is_empty() {
         return Err(CommandError::Nothing("the stroke has no point"));
@@ -234,7 +258,8 @@ fn replace(
             if k > 0 {
                 next = next.checked_add(1).ok_or(CommandError::Full("strokes"))?;
             }
-            come.push((base + k, DocumentStroke { id, stroke: Arc::new(near(piece)?), class: old.class }));
+            let stroke = Arc::new(near(piece)?);
+            come.push((base + k, DocumentStroke { id, stroke, class: old.class, shown: None }));
             more += 1;
         }
         gone.push((row, old.clone()));
@@ -256,7 +281,7 @@ fn join(rows: &[usize], plant: &DocumentPlant, document: &Document) -> Result<Ve
         return Err(CommandError::Nothing("choose two strokes or more to join"));
     };
     let old = &plant.strokes[*first];
-    let come = vec![(*first, DocumentStroke { stroke: Arc::new(near(whole)?), ..old.clone() })];
+    let come = vec![(*first, DocumentStroke { stroke: Arc::new(near(whole)?), shown: None, ..old.clone() })];
     let gone = rows.iter().map(|&row| (row, plant.strokes[row].clone())).collect();
     let next_stroke = (document.next_stroke, document.next_stroke);
     Ok(vec![
@@ -273,7 +298,7 @@ fn duplicate(
 ) -> Result<Event, CommandError> {
     let copies = rows(ids, plant)?.into_iter().map(|row| {
         let s = &plant.strokes[row];
-        Ok(NewStroke { stroke: near(moved(&s.stroke, by))?, class: s.class })
+        Ok(NewStroke { stroke: near(moved(&s.stroke, by))?, class: s.class, shown: None })
     });
     add(copies.collect::<Result<_, CommandError>>()?, plant, document)
 }

@@ -81,7 +81,7 @@ pub fn read_vein_graph(input: impl Read) -> Result<ReadGraph, LeafFileError> {
     if graph.edges.len() < before {
         let message =
             format!("{} edges join a node with itself and were left out", before - graph.edges.len());
-        warnings.push(Warning { code: "edge-loop", message });
+        warnings.push(Warning { code: "edge-loop", message, fields: Vec::new() });
     }
     Ok(ReadGraph { graph, unit, warnings })
 }

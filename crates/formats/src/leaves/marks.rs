@@ -116,6 +116,7 @@ pub fn read_marks(input: impl Read, name: &str, axes: MarksAxes) -> Result<ReadM
                 "row {row}, mark {mark} lies {times:.0} times as far from its neighbours as marks do here: was it entered \
                  wrongly?"
             ),
+            fields: Vec::new(),
         });
     }
     let length = out.marks.length();
@@ -126,6 +127,7 @@ pub fn read_marks(input: impl Read, name: &str, axes: MarksAxes) -> Result<ReadM
             message: format!(
                 "the leaf is {length:.4} m long: is the unit right? Say `# unit: mm` in the file or --unit mm"
             ),
+            fields: Vec::new(),
         });
     }
     Ok(out)
@@ -287,7 +289,11 @@ fn gather(entries: &BTreeMap<(usize, usize), Entry>, out: &mut ReadMarks) -> Res
         (tip, Some(row)) => {
             if tip.is_some() {
                 let message = "row 1 repeats the tip and was left out; rows are numbered from the next one";
-                out.warnings.push(Warning { code: "tip-repeated", message: message.into() });
+                out.warnings.push(Warning {
+                    code: "tip-repeated",
+                    message: message.into(),
+                    fields: Vec::new(),
+                });
             }
             out.marks.tip = row.points[0];
             out.marks.tip_thickness = tip.and_then(|t| t.midrib.or(t.thickness)).or(row.midrib);

@@ -313,9 +313,11 @@ impl<'a> Growing<'a> {
                 GrowthStep::Ended => break,
                 GrowthStep::Full => {
                     let (round, n) = (self.round, self.skeleton.len());
-                    report.warn(
+                    base::warn!(
+                        report,
                         "growth-stopped",
-                        format!("growth stopped in round {round} at {n} joints, the most allowed"),
+                        { round = round, joints = n },
+                        "growth stopped in round {round} at {joints} joints, the most allowed"
                     );
                     break;
                 }

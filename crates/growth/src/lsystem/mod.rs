@@ -86,7 +86,12 @@ pub fn grow_lsystem(
         #[expect(clippy::cast_possible_truncation, reason = "fewer roots than joints")]
         let number = root as u32;
         if !turtle::draw(system, &modules, at, number, &mut tree.skeleton, &mut tree.leaves) {
-            report.warn("turtle-lost", format!("tree {root} left the world (1e6 m) and was cut off there"));
+            base::warn!(
+                report,
+                "turtle-lost",
+                { tree = root + 1 },
+                "tree {tree} left the world (1e6 m) and was cut off there"
+            );
         }
     }
     report.book("grow", run.clock.now_ms() - started);

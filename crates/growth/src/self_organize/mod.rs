@@ -8,6 +8,8 @@ mod shadow;
 mod space;
 mod spec;
 
+use core::fmt::Display;
+
 use base::ops::{self, PI};
 use base::{Budget, Counted, Draw, OverBudget, Report, Run, Seed};
 use glam::DVec3;
@@ -39,7 +41,7 @@ pub struct SelfOrganized {
 ///
 /// Guaranteed: it ends; a clean `validate()`; no joint in an obstacle; radii that never fell; the tree of year n does
 /// not depend on how many years follow. Where there is too little shade trees multiply from year to year: growth then
-/// ends, with the warning `growth-stopped`, before the year that would exceed `max_joints`. Cost: linear in the
+/// ends, with the warning `growth-too-much`, before the year that would exceed `max_joints`. Cost: linear in the
 /// internodes of each year.
 ///
 /// # Errors
@@ -113,7 +115,15 @@ pub fn self_organize(
     for year in 0..spec.years {
         run.cancel.check()?;
         if let Some(next) = forest.year(year, run)? {
-            report.warn("growth-stopped", too_much(spec, year, forest.grove.len(), next));
+            let (joints, years) = (forest.grove.len(), spec.years);
+            let fields: [(&'static str, &dyn Display); 5] = [
+                ("year", &year),
+                ("years", &years),
+                ("joints", &joints),
+                ("next", &next),
+                ("most", &spec.max_joints),
+            ];
+            report.warn_of("growth-too-much", &fields, too_much(spec, year, joints, next));
             break;
         }
         // Later years have more to do.

@@ -184,7 +184,7 @@ fn weak_shade_does_not_run_away() {
     };
     let weak = Light::Shadow { voxel_m: None, a: 0.04, b: 2.2, layers: 4, full: 2.0 };
     let (tree, report) = grow(weak.clone(), 40, 2.0);
-    let told = &report.warnings.iter().find(|w| w.code == "growth-stopped").expect("it stops").message;
+    let told = &report.warnings.iter().find(|w| w.code == "growth-too-much").expect("it stops").message;
     let n = tree.skeleton.len();
     assert!((2_000..=20_000).contains(&n), "{n}");
     for word in

@@ -128,6 +128,7 @@ fn judge_each(
         confidence: 0.5,
         source: Source::Rule(COMMON_GROUND),
         shares: StrokeClass::ALL.map(|c| if c == StrokeClass::Ground { 0.5 } else { 0.0 }),
+        shown: None,
     };
     let mut found: Vec<Classified> =
         (0..ink.strokes.len()).map(|i| known.get(i).copied().flatten().unwrap_or(ground)).collect();

@@ -42,6 +42,8 @@ pub struct Classified {
     pub source: Source,
     /// The classifier's share of every class, in the order of [`StrokeClass::ALL`]; zeros where it was not asked.
     pub shares: [f64; StrokeClass::ALL.len()],
+    /// What a person was shown it as while the drawing grew: reading departs from it only for clear evidence.
+    pub shown: Option<StrokeClass>,
 }
 
 impl Classified {

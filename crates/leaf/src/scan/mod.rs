@@ -157,7 +157,12 @@ pub fn fit_scan(
     let distances: Vec<f64> = measured.iter().flatten().filter(|(_, stray)| !stray).map(|m| m.0).collect();
     let outliers = all.len() - distances.len();
     if outliers > 0 {
-        report.warn("outliers", format!("{outliers} points far from their neighbours were left out"));
+        base::warn!(
+            report,
+            "outliers",
+            { count = outliers },
+            "{count} points far from their neighbours were left out"
+        );
     }
     let cloud = KdTree::new(kept);
     let covered = grid.iter().filter(|&&p| cloud.nearest(p, spec.explained_m).is_some()).count();

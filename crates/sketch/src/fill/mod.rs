@@ -115,18 +115,22 @@ pub(crate) fn fill(
         run.cancel.check()?;
         if plant.axes.len() > MOST_AXES {
             let left = reading.regions.len() - row;
-            report.warn(
+            base::warn!(
+                report,
                 "contours-beyond-limit",
-                format!(
-                    "the plant has {} axes: {left} contours were left empty; draw several plants",
-                    plant.axes.len()
-                ),
+                { axes = plant.axes.len(), count = left },
+                "the plant has {axes} axes: {count} contours were left empty; draw several plants"
             );
             break;
         }
         let outline: Vec<DVec2> = region.outline.iter().map(|&p| ctx.map.plant_from_ink(p)).collect();
         let Some(mut volume) = kept.take(outline, region.kind, &mut bodies) else {
-            report.warn("contour-empty", format!("contour {} encloses nothing and was left empty", row + 1));
+            base::warn!(
+                report,
+                "contour-flat",
+                { contour = row + 1 },
+                "contour {contour} encloses nothing and was left empty"
+            );
             continue;
         };
         let bearers = bearers(plant, region, ctx, &volume);
@@ -178,7 +182,12 @@ pub(crate) fn fill(
             organs: first..plant.organs.len(),
         });
         if axes + leaves == 0 {
-            report.warn("contour-empty", format!("nothing could grow in contour {}", row + 1));
+            base::warn!(
+                report,
+                "contour-empty",
+                { contour = row + 1 },
+                "nothing could grow in contour {contour}"
+            );
         }
     }
     *kept = bodies;

@@ -2,7 +2,7 @@
 //!
 //! `spec, seed -> grown | + look -> dressed | + edits -> shaped | + skin -> model`
 
-use base::{Report, Run, Seed, Stopped, Warning};
+use base::{Report, Run, Seed, Stopped, Telling, Warning};
 use document::PlantEdit;
 use growth::{BlossomSpec, Grown, Look, Method, TreeSpec};
 use mesh::Model;
@@ -46,6 +46,8 @@ pub struct TreeEvaluator {
     stale: bool,
     /// Bark of the last model.
     barks: KeptBarks,
+    /// Times of what a look made already, of the update that follows it.
+    begun: Report,
     done: Vec<&'static str>,
     /// See [`crate::SceneEvaluator::set_looking`].
     pub(crate) looking: bool,
@@ -73,6 +75,12 @@ struct Shaped {
     told: Vec<EditReport>,
 }
 
+/// A tree of no more nodes and organs needs no coarse look: the whole is there as soon.
+const SMALL: usize = 4_000;
+/// How coarse a look is: a quarter of the leaves, which cover as much, and the longer half of the axes. With an eighth,
+/// crowns of small leaves are bare.
+const LOOK_LEVEL: u32 = 2;
+
 /// What a model is made from, besides its plant.
 type Skinned = (SkinSpec, Look, Option<LeafTemplate>);
 
@@ -88,18 +96,54 @@ impl TreeEvaluator {
         options: &TreeOptions,
         run: &Run<'_>,
     ) -> Result<ItemReport, TreeError> {
-        self.done.clear();
-        let mut report = Report::default();
-        let obstacles = self.grow(spec, seed, options, &mut report, run)?;
-        self.dress(spec, &obstacles, seed, options);
-        let start = run.clock.now_ms();
-        self.shape(&obstacles, options, run)?;
-        report.book("depth", run.clock.now_ms() - start);
+        let (mut report, obstacles) = self.shaped(spec, seed, options, run)?;
         if self.mesh(spec, seed, options, &mut report, run)? {
             let model = self.model().filter(|_| !self.looking);
             self.inside = model.and_then(|m| Inside::of(m, &obstacles));
         }
         Ok(self.item(spec, &report))
+    }
+
+    /// A much coarser model of what [`Self::update`] will make, without textures, if that is a large tree that was not
+    /// grown yet: it is there long before the whole. The update that follows grows nothing again.
+    ///
+    /// # Errors
+    /// [`TreeError`]: whatever is wrong with the spec, or cancelled.
+    pub fn look(
+        &mut self,
+        spec: &TreeSpec,
+        seed: Seed,
+        options: &TreeOptions,
+        run: &Run<'_>,
+    ) -> Result<Option<Model>, TreeError> {
+        let (report, obstacles) = self.shaped(spec, seed, options, run)?;
+        self.begun = report;
+        let plant = self.plant().filter(|p| p.organs.len() + p.nodes.position.len() > SMALL);
+        let Some(plant) = plant.filter(|_| self.done.contains(&"structure")) else { return Ok(None) };
+        let (mut plant, skin) = coarser(plant, &skin_spec(seed, options), LOOK_LEVEL);
+        keep_out(&mut plant, LOOK_LEVEL, &obstacles);
+        let from = (SkinSpec { textures: false, ..skin }, spec.look.clone(), None);
+        Ok(Some(skinned(&plant, &from, &mut KeptBarks::default(), run)?))
+    }
+
+    /// Everything but the meshes.
+    fn shaped(
+        &mut self,
+        spec: &TreeSpec,
+        seed: Seed,
+        options: &TreeOptions,
+        run: &Run<'_>,
+    ) -> Result<(Report, growth::Obstacles), TreeError> {
+        let mut report = core::mem::take(&mut self.begun);
+        if report.stages.is_empty() {
+            self.done.clear();
+        }
+        let obstacles = self.grow(spec, seed, options, &mut report, run)?;
+        self.dress(spec, &obstacles, seed, options);
+        let start = run.clock.now_ms();
+        self.shape(&obstacles, options, run)?;
+        report.book("depth", run.clock.now_ms() - start);
+        Ok((report, obstacles))
     }
 
     fn grow(
@@ -190,7 +234,9 @@ impl TreeEvaluator {
         }
         let mut barks = core::mem::take(&mut self.barks);
         let Some(plant) = self.plant() else { return Ok(false) };
-        let model = report.stage("mesh", run.clock, |_| skinned(plant, &from, &mut barks, run));
+        // What growth told is done.
+        let telling = Telling::from(run.cancel.share().unwrap_or(0.0), run);
+        let model = report.stage("mesh", run.clock, |_| skinned(plant, &from, &mut barks, &telling.run()));
         self.barks = barks;
         let model = model?;
         (self.model, self.stale) = (Some((from, model)), false);
@@ -280,7 +326,7 @@ fn skinned(
     run: &Run<'_>,
 ) -> Result<Model, Stopped> {
     let mut model = skin::skin(plant, skin, run)?;
-    paint(look, &mut model, barks);
+    paint(look, &mut model, barks, run);
     if let Some(leaf) = leaf {
         leaf.dress(&mut model);
     }

@@ -241,7 +241,7 @@ mod tests {
             ("[method]\nkind = \"competition\"\nkill_m = nan\n".into(), "line 3: method.kill_m must"),
             ("[[obstacles]]\nshape = \"sphere\"\ncentre = [9, 0, 0]\nradius_m = 1\n[[obstacles]]\nshape = \"sphere\"\ncentre = [9, 0, 0]\nradius_m = 0\n".into(),
              "line 8: obstacles[1].radius_m must be 1e-6 to 1,000,000 m, not 0"),
-            ("[[obstacles]]\nshape = \"mesh\"\nfile = \"rock.obj\"\n".into(), "line 1: obstacle 0 (rock.obj): mesh: it has no triangle"),
+            ("[[obstacles]]\nshape = \"mesh\"\nfile = \"rock.obj\"\n".into(), "line 1: obstacle 1 (rock.obj): mesh: it has no triangle"),
         ] {
             let told = told(&text);
             assert!(told.contains(want), "{text}: {told}");

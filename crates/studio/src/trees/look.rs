@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use base::ops::{self, TAU};
-use base::{Draw, Seed};
+use base::{Draw, Executor, Run, Seed, map_indexed};
 use growth::{Bark, Look};
 use mesh::{Material, MaterialKind, Model, Texture};
 use plant::{OrganKind, Paint, Plant};
@@ -27,7 +27,7 @@ pub(super) fn tint(look: &Look, plant: &mut Plant, pictured: bool, seed: Seed) {
 }
 
 /// Repaints the bark of a model, with what is kept where it is the same.
-pub(super) fn paint(look: &Look, model: &mut Model, kept: &mut KeptBarks) {
+pub(super) fn paint(look: &Look, model: &mut Model, kept: &mut KeptBarks, run: &Run<'_>) {
     let known = core::mem::take(kept);
     // A slender tree has no part with old bark: then its stem is among the young ones.
     let old = model.materials.iter().any(|m| m.kind == MaterialKind::Bark);
@@ -37,7 +37,7 @@ pub(super) fn paint(look: &Look, model: &mut Model, kept: &mut KeptBarks) {
         }
         let twig = old && material.kind == MaterialKind::YoungBark;
         let colour = if twig { look.twig_color } else { look.bark_color };
-        repaint(look, material, colour, twig, &known, kept);
+        repaint(look, material, (colour, twig), (&known, kept), run.executor);
     }
     if let Some(foot) = look.foot_color {
         darken_foot(look, model, if old { MaterialKind::Bark } else { MaterialKind::YoungBark }, foot);
@@ -73,10 +73,9 @@ fn darken_foot(look: &Look, model: &mut Model, kind: MaterialKind, foot: Colour)
 fn repaint(
     look: &Look,
     material: &mut Material,
-    colour: Colour,
-    twig: bool,
-    known: &KeptBarks,
-    kept: &mut KeptBarks,
+    (colour, twig): (Colour, bool),
+    (known, kept): (&KeptBarks, &mut KeptBarks),
+    executor: &dyn Executor,
 ) {
     let Some(old) = &material.texture else {
         #[expect(clippy::cast_possible_truncation, reason = "a colour")]
@@ -87,7 +86,7 @@ fn repaint(
     let from = Painted { bark: look.bark, colour, twig, old: Arc::clone(old) };
     let texture = match known.0.iter().find(|(k, _)| k.same(&from)) {
         Some((_, texture)) => Arc::clone(texture),
-        None => Arc::new(from.paint()),
+        None => Arc::new(from.paint(executor)),
     };
     kept.0.push((from, Arc::clone(&texture)));
     material.texture = Some(texture);
@@ -113,17 +112,17 @@ impl Painted {
         form(self) == form(other) && Arc::ptr_eq(&self.old, &other.old)
     }
 
-    fn paint(&self) -> Texture {
+    fn paint(&self, executor: &dyn Executor) -> Texture {
         let (old, colour) = (&self.old, self.colour);
         match self.bark {
             // Twigs have the same bark on every kind but one: a bamboo's are canes too.
-            Bark::Cane => painted(cane(colour)),
+            Bark::Cane => painted(executor, cane(colour)),
             _ if self.twig => recoloured(old, colour, 0.7),
             Bark::Furrowed => recoloured(old, colour, 1.0),
             Bark::Smooth => recoloured(old, colour, 0.35),
-            Bark::Plated => painted(plated(colour)),
-            Bark::Birch => painted(birch(colour)),
-            Bark::Ringed => painted(ringed(colour)),
+            Bark::Plated => painted(executor, plated(colour)),
+            Bark::Birch => painted(executor, birch(colour)),
+            Bark::Ringed => painted(executor, ringed(colour)),
         }
     }
 }
@@ -146,14 +145,14 @@ fn recoloured(old: &Texture, colour: Colour, contrast: f64) -> Texture {
 const SIDE: u32 = 256;
 
 /// A square texture; `paint` gives sRGB at u and v, both 0 to 1, and repeats in both.
-fn painted(paint: impl Fn(f64, f64) -> [f64; 3]) -> Texture {
-    let at = |i: u32| (f64::from(i) + 0.5) / f64::from(SIDE);
-    let rows = (0..SIDE).flat_map(|j| (0..SIDE).map(move |i| (i, j)));
-    let pixels = rows.flat_map(|(i, j)| {
-        let [r, g, b] = paint(at(i), at(j)).map(byte);
-        [r, g, b, 255]
+fn painted(executor: &dyn Executor, paint: impl Fn(f64, f64) -> [f64; 3] + Sync) -> Texture {
+    let at = |i: usize| (i as f64 + 0.5) / f64::from(SIDE);
+    let side = SIDE as usize;
+    let rows = map_indexed(executor, side, |j| -> Vec<u8> {
+        let pixels = (0..side).map(|i| paint(at(i), at(j)).map(byte));
+        pixels.flat_map(|[r, g, b]| [r, g, b, 255]).collect()
     });
-    Texture { width: SIDE, height: SIDE, pixels: pixels.collect() }
+    Texture { width: SIDE, height: SIDE, pixels: rows.concat() }
 }
 
 fn byte(x: f64) -> u8 {
@@ -284,10 +283,10 @@ mod tests {
     #[test]
     fn barks_have_their_mean_colour_and_repeat() {
         let colour = Colour([0x80, 0x70, 0x60]);
-        let paints: [&dyn Fn(f64, f64) -> [f64; 3]; 4] =
+        let paints: [&(dyn Fn(f64, f64) -> [f64; 3] + Sync); 4] =
             [&birch(colour), &plated(colour), &ringed(colour), &cane(colour)];
         for (i, paint) in paints.into_iter().enumerate() {
-            let t = painted(paint);
+            let t = painted(&base::Serial, paint);
             let red = t.pixels.chunks_exact(4).map(|p| f64::from(p[0])).sum::<f64>();
             let red = red / f64::from(SIDE * SIDE);
             assert!((80.0..150.0).contains(&red), "{i}: {red}");

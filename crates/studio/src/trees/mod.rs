@@ -223,17 +223,19 @@ fn look_at_meshes(obstacles: &[Obstacle], report: &mut Report) {
         let Obstacle::Mesh { vertices, triangles } = obstacle else { continue };
         let open = growth::open_edges(vertices, triangles);
         if open > 0 {
-            report.warn(
+            base::warn!(
+                report,
                 "obstacle-open",
-                format!(
-                    "obstacle {i} is an open mesh ({open} edges have one face only): what is inside was found by its \
-                     winding number, so growth may enter through large holes"
-                ),
+                { obstacle = i + 1, edges = open },
+                "obstacle {obstacle} is an open mesh ({edges} edges have one face only): what is inside was found by its \
+                 winding number, so growth may enter through large holes"
             );
         } else if growth::signed_volume(vertices, triangles) < 0.0 {
-            report.warn(
+            base::warn!(
+                report,
                 "obstacle-inverted",
-                format!("the faces of obstacle {i} look inwards; its inside was taken as solid all the same"),
+                { obstacle = i + 1 },
+                "the faces of obstacle {obstacle} look inwards; its inside was taken as solid all the same"
             );
         }
     }
