@@ -1,0 +1,209 @@
+/** The pen that strokes are drawn with, and the layers that they lie on. */
+import type { Session } from './session';
+import { t } from './text';
+import { askName, button, el } from './ui';
+import type { Layer, PenStyle } from './wire';
+
+/** Pixels of the widest pen. */
+const WIDEST = 24;
+/** The pen that every sheet has, pixels: its place on the slider is the left end. */
+const LEAST = 0.5;
+
+/** The pen as it is held: its width is in pixels of the screen at the time of drawing. */
+export interface Held {
+  color: string | null;
+  width: number | null;
+  layer: string | null;
+}
+
+const bytes = (hex: string): [number, number, number] =>
+  [1, 3, 5].map((at) => Number.parseInt(hex.slice(at, at + 2), 16)) as [number, number, number];
+
+/** What a stroke is drawn with; `unit`: units of the drawing to a pixel. Nothing for the pen that every sheet has. */
+export function penOf({ color, width, layer }: Held, unit: number): PenStyle | undefined {
+  if (color === null && width === null && layer === null) return undefined;
+  return {
+    color: color === null ? null : bytes(color),
+    width: width === null ? null : Number((width * unit).toPrecision(4)),
+    layer,
+  };
+}
+
+export interface LayersEvents {
+  session: Session;
+  /** The strokes that are chosen on the sheet. */
+  chosen(): number[];
+  held: Held;
+  /** The pen was changed. */
+  changed(): void;
+}
+
+/** The panel of the pen. */
+export function penPanel({ held, changed }: LayersEvents): HTMLElement {
+  const panel = el('div', { class: 'settings' });
+  const shown = el('output', {});
+  const width = el('input', {
+    type: 'range',
+    min: '0',
+    max: String(WIDEST),
+    step: '0.5',
+    id: 'b-pen-width',
+    oninput: () => {
+      held.width = Number(width.value) < LEAST ? null : Number(width.value);
+      show();
+      changed();
+    },
+  });
+  const color = el('input', {
+    type: 'color',
+    id: 'b-pen-colour',
+    onchange: () => {
+      held.color = color.value;
+      show();
+      changed();
+    },
+  });
+  const clear = el(
+    'button',
+    {
+      type: 'button',
+      class: 'chip',
+      onclick: () => {
+        held.color = null;
+        show();
+        changed();
+      },
+    },
+    t('correct.colour.none'),
+  );
+  const show = (): void => {
+    shown.textContent = held.width === null ? t('pen.width.auto') : `${held.width} px`;
+    width.value = String(held.width ?? 0);
+    color.value = held.color ?? '#7a9a3a';
+    color.classList.toggle('unset', held.color === null);
+    clear.hidden = held.color === null;
+  };
+  show();
+  panel.append(
+    el('label', {}, el('span', {}, t('pen.width')), width, shown),
+    el('label', {}, el('span', {}, t('pen.colour')), color, el('span')),
+    el('div', { class: 'chips' }, clear),
+    el('p', { class: 'muted' }, t('pen.hint')),
+  );
+  return panel;
+}
+
+/** The panel of layers, the uppermost first. */
+export class LayersPanel {
+  readonly element = el('div', { class: 'settings layers' });
+
+  constructor(private readonly events: LayersEvents) {
+    this.show();
+  }
+
+  show(): void {
+    const { session, held, chosen, changed } = this.events;
+    const layers = session.drawn?.layers ?? [];
+    const focused = this.element.contains(document.activeElement)
+      ? document.activeElement?.getAttribute('data-key')
+      : null;
+    const take = (name: string | null): void => {
+      held.layer = name;
+      changed();
+      this.show();
+    };
+    const row = (name: string | null, label: string, ...more: HTMLElement[]): HTMLElement => {
+      const count = session.drawn?.strokes.filter((s) => s.layer === name).length ?? 0;
+      const pick = el(
+        'button',
+        {
+          type: 'button',
+          class: 'chip layer',
+          'data-layer': name ?? '',
+          'data-key': `take ${name ?? ''}`,
+          'aria-pressed': String(held.layer === name),
+          title: t('layer.take'),
+          onclick: () => take(name),
+        },
+        el('span', {}, label),
+        el('span', { class: 'muted' }, String(count)),
+      );
+      return el('li', {}, pick, ...more);
+    };
+    const rows = layers.map((layer, at) =>
+      row(layer.name, layer.name, ...this.tools(layer, at, layers.length)),
+    );
+    const add = el(
+      'button',
+      {
+        type: 'button',
+        class: 'chip',
+        id: 'b-layer-add',
+        'data-key': 'add',
+        onclick: () =>
+          askName(t('layer.add'), t('layer.name'), this.freshName(layers), (name) => {
+            session.draw({ 'add-layer': name });
+            held.layer = name;
+            changed();
+          }),
+      },
+      t('layer.add'),
+    );
+    const put = el(
+      'button',
+      {
+        type: 'button',
+        class: 'chip',
+        id: 'b-layer-put',
+        'data-key': 'put',
+        onclick: () => session.draw({ 'put-on': [chosen(), held.layer] }),
+      },
+      t('layer.put', { name: held.layer ?? t('layer.sheet') }),
+    );
+    put.hidden = chosen().length === 0;
+    this.element.replaceChildren(
+      el('ul', { class: 'layer-rows' }, ...rows.reverse(), row(null, t('layer.sheet'))),
+      el('div', { class: 'chips' }, add, put),
+    );
+    if (focused) this.element.querySelector<HTMLElement>(`[data-key="${CSS.escape(focused)}"]`)?.focus();
+  }
+
+  private freshName(layers: readonly Layer[]): string {
+    const taken = new Set(layers.map((l) => l.name));
+    let k = layers.length + 1;
+    while (taken.has(t('layer.nth', { n: String(k) }))) k += 1;
+    return t('layer.nth', { n: String(k) });
+  }
+
+  private tools(layer: Layer, at: number, count: number): HTMLElement[] {
+    const { session, held } = this.events;
+    const set = (change: Partial<Layer>): void =>
+      session.draw({ 'set-layer': [at, { ...layer, ...change }] });
+    const { name } = layer;
+    const eye = button(
+      layer.hidden ? 'hidden' : 'eye',
+      t(layer.hidden ? 'layer.show' : 'layer.hide', { name }),
+      () => set({ hidden: !layer.hidden }),
+    );
+    const lock = button(
+      layer.locked ? 'lock' : 'unlock',
+      t(layer.locked ? 'layer.unlock' : 'layer.lock', { name }),
+      () => set({ locked: !layer.locked }),
+    );
+    const up = button('up', t('layer.up', { name }), () => session.draw({ 'move-layer': [at, at + 1] }));
+    up.disabled = at + 1 >= count;
+    const rename = button('parts', t('layer.rename', { name }), () =>
+      askName(t('layer.rename.title'), t('layer.name'), name, (to) => {
+        if (held.layer === name) held.layer = to;
+        set({ name: to });
+      }),
+    );
+    const drop = button('bin', t('layer.remove', { name }), () => {
+      if (held.layer === name) held.layer = null;
+      session.draw({ 'remove-layer': at });
+    });
+    const tools = { eye, lock, up, rename, drop };
+    for (const [key, b] of Object.entries(tools)) b.setAttribute('data-key', `${key} ${name}`);
+    return Object.values(tools);
+  }
+}
