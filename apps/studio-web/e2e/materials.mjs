@@ -155,7 +155,7 @@ async function layers({ page, url, shot }) {
   // A new stroke goes there.
   await page.keyboard.press('Escape');
   await page.keyboard.press('p');
-  await draw(page, blade(252, 350, 0.4, 90, 20));
+  await draw(page, blade(252, 310, 0.3, 90, 18));
   await until(page, 'strokes', ['is', strokes + 1], 'a leaf on its layer');
   const more = await changed(page, plain, 'with one leaf more');
   // Hidden, it is no part of the plant; locked, it stays as it is.
@@ -166,7 +166,26 @@ async function layers({ page, url, shot }) {
   await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
   assert.equal(await count(page, 'flowers'), petals);
   await shot('layers-hidden');
-  // Saved and opened again, and as SVG.
+  await page.click('.layers [data-key="eye leaves"]');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, more);
+  await page.click('.layers [data-key="lock leaves"]');
+  await page.waitForFunction(() => document.body.dataset.layers === 'leaves locked');
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('e');
+  await draw(page, line(310, 318, 312, 346));
+  // What is erased next is all that was: the locked leaf was not.
+  await draw(page, line(230, 520, 270, 515));
+  await until(page, 'strokes', ['is', strokes], 'the stem is erased, the leaf is not');
+  await page.keyboard.press('Control+z');
+  await until(page, 'strokes', ['is', strokes + 1], 'the stem is back');
+  await page.keyboard.press('Control+z');
+  await page.waitForFunction(() => document.body.dataset.layers === 'leaves');
+  // By the palette: the layer in use is hidden. Saved and opened again, and as SVG.
+  await page.keyboard.press('Control+k');
+  await page.keyboard.type('hide or show the layer');
+  await page.keyboard.press('Enter');
+  await page.waitForFunction(() => document.body.dataset.layers === 'leaves hidden');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
   const svg = (await exported(page, 'svg')).bytes.toString();
   assert.match(svg, /inkscape:groupmode="layer" inkscape:label="leaves" style="display:none"/);
   await page.waitForFunction(() => document.body.dataset.kept === 'saved');
@@ -176,20 +195,6 @@ async function layers({ page, url, shot }) {
   await page.keyboard.press('Shift+L');
   await page.click('.layers [data-key="eye leaves"]');
   await page.waitForFunction((d) => document.body.dataset.digest === d, more);
-  await page.click('.layers [data-key="lock leaves"]');
-  await page.waitForFunction(() => document.body.dataset.layers === 'leaves locked');
-  await page.keyboard.press('Escape');
-  await page.keyboard.press('e');
-  const box = await page.locator('.sheet').boundingBox();
-  const tip = blade(252, 350, 0.4, 90, 20)[6];
-  await page.mouse.click(box.x + tip[0], box.y + tip[1]);
-  // What is erased next is all that was: the locked leaf was not.
-  await draw(page, line(230, 540, 270, 535));
-  await until(page, 'strokes', ['is', strokes], 'the stem is erased, the leaf is not');
-  await page.keyboard.press('Control+z');
-  await until(page, 'strokes', ['is', strokes + 1], 'the stem is back');
-  await page.keyboard.press('Control+z');
-  await page.waitForFunction(() => document.body.dataset.layers === 'leaves');
 }
 
 export const materialJourneys = [

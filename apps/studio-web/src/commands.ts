@@ -375,6 +375,8 @@ const KEY_ROWS: readonly [CommandId[], string, TextKey][] = [
   [ARROWS.map(([arrow]) => `nudge-${arrow}-1` as const), ' ', 'key.nudge'],
   [['mirror'], '', 'tool.mirror'],
   [['photo'], '', 'tool.photo'],
+  [['layers'], '', 'tool.layers'],
+  [['materials'], '', 'material.title'],
   [['dice'], '', 'key.dice'],
   [['grid'], '', 'variations.title'],
   [['front'], '', 'key.front'],

@@ -8,6 +8,7 @@ import { el, note } from './ui';
 import type { Json, OrganMaterial, Wearer } from './wire';
 
 const WEARERS: readonly Wearer[] = ['leaf', 'petal', 'sepal'];
+const ORDER = ['pattern', 'color', 'second', 'amount', 'roughness'];
 /** Pixels of a petal that shows a material. */
 const SWATCH = [44, 60] as const;
 /** Longest side of a picture that organs wear, pixels. */
@@ -22,6 +23,10 @@ export interface MaterialsEvents {
 }
 
 type Target = Wearer | 'strokes';
+
+/** The same for the same material, whatever the order of its fields. */
+const keyOf = (material: OrganMaterial | null): string =>
+  material ? JSON.stringify(material, Object.keys(material).sort()) : '';
 
 /** What a person opened the panel for last. */
 let last: Target = 'petal';
@@ -93,9 +98,9 @@ export class MaterialsPanel {
     if (this.dragging) return;
     const now = this.worn();
     this.own.hidden = now === null;
-    if (now) this.form.show(now as unknown as Fields);
+    if (now) this.form.show(now as unknown as Fields, [], ORDER);
     for (const b of this.library.children)
-      b.setAttribute('aria-pressed', String(b.getAttribute('data-worn') === JSON.stringify(now)));
+      b.setAttribute('aria-pressed', String(b.getAttribute('data-worn') === keyOf(now)));
   }
 
   private worn(): OrganMaterial | null {
@@ -132,7 +137,7 @@ export class MaterialsPanel {
         type: 'button',
         class: 'swatch',
         'data-material': key,
-        'data-worn': JSON.stringify(material),
+        'data-worn': keyOf(material),
         onclick: () => this.wear(material),
       },
       canvas,

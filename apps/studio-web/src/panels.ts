@@ -1,7 +1,8 @@
 /** The dialogs and panels that the page opens for a plant, and the plants and pictures that come of them. */
 import type { Files } from './files';
-import { type Held, LayersPanel, type LayersEvents, penOf, penPanel } from './layers';
+import type { LayersEvents } from './layers';
 import { type Catalogue, catalogueOf, gallery } from './makers';
+import { type Held, penOf } from './pen';
 import { asPng, photoPanel, placed } from './photo';
 import type { Session } from './session';
 import { type SettingsEvents, settingsPanel } from './settings';
@@ -71,13 +72,15 @@ export class Panels {
     return { session, held: this.held, chosen: () => sheet.selected, changed };
   }
 
-  openPen(): void {
+  async openPen(): Promise<void> {
     if (!this.page.session.drawn) return;
+    const { penPanel } = await import('./layers');
     popover(this.page.anchor('pen'), penPanel(this.events()), t('tool.pen'));
   }
 
-  openLayers(): void {
+  async openLayers(): Promise<void> {
     if (!this.page.session.drawn) return;
+    const { LayersPanel } = await import('./layers');
     const panel = new LayersPanel(this.events());
     this.shown = panel;
     popover(this.page.anchor('layers'), panel.element, t('tool.layers'));

@@ -330,8 +330,8 @@ mod tests {
 
     #[test]
     fn the_library_is_within_its_ranges() {
-        for (name, material) in MATERIALS {
-            assert!(spec::check(&material).is_ok(), "{name}");
+        for (name, material) in &MATERIALS {
+            assert!(spec::check(material).is_ok(), "{name}");
         }
     }
 }

@@ -287,8 +287,10 @@ export class Sheet {
     return [...this.selection];
   }
 
-  /** `pressed`: where one of them was pressed, in the drawing's unit. */
-  select(ids: number[], pressed?: [number, number]): void {
+  /** All of these but what lies on layers that are hidden or locked; `pressed`: where one of them was pressed, in the drawing's unit. */
+  select(wanted: number[], pressed?: [number, number]): void {
+    const closed = new Set(this.strokes.filter((s) => !s.free).map((s) => s.id));
+    const ids = wanted.filter((id) => !closed.has(id));
     const same = ids.length === this.selection.size && ids.every((id) => this.selection.has(id));
     this.pressed = pressed ?? (same ? this.pressed : undefined);
     this.selection = new Set(ids);
