@@ -132,9 +132,12 @@ async function pen({ page, url, shot }) {
   await page.keyboard.press('v');
   const box = await page.locator('.sheet').boundingBox();
   await page.mouse.click(box.x + 254, box.y + 400);
-  await page.locator('.card input[type=range]').fill('0');
+  await page.click('#b-pen');
+  await page.locator('#b-pen-width').fill('0');
   await page.locator('#b-undo[title*="width"]').waitFor();
   assert.equal(await settled(page), wide);
+  await page.keyboard.press('Escape');
+  await page.locator('.sheet').focus();
   await page.keyboard.press('Control+z');
   await page.locator('#b-undo[title*="draw"]').waitFor();
 }

@@ -43,7 +43,6 @@ export class App implements Page {
   private readonly card = new Card(
     (command) => this.session.draw(command),
     () => void this.panels.openMaterials(),
-    () => this.sheet.unitsPerPixel,
   );
   readonly panel = this.makerPanel();
   readonly list = this.sceneList();

@@ -43,11 +43,10 @@ const MODES = ['parts', 'branch-contour', 'leaf-contour'] as const;
 export class Card {
   readonly element = el('div', { class: 'card', role: 'group' });
 
-  /** `wear`: opens the materials; `unit`: units of the drawing to a pixel. */
+  /** `wear`: opens the materials. */
   constructor(
     private readonly run: (command: SketchCommand) => void,
     private readonly wear: () => void,
-    private readonly unit: () => number,
   ) {
     this.hide();
   }
@@ -124,13 +123,7 @@ export class Card {
         same((s) => hexOf(s.color)),
         chosen.some((s) => s.color !== null),
       ),
-      this.width(all, same((s) => s.width) ?? null),
       el('button', { type: 'button', class: 'chip', onclick: () => this.wear() }, t('material.title')),
-      ...this.layers(
-        all,
-        same((s) => s.layer),
-        state,
-      ),
       act('correct.erase', { 'remove-strokes': all }, ' danger'),
     );
     const title = chosen.length === 1 ? t('correct.title') : t('correct.many', { count: chosen.length });
@@ -145,40 +138,6 @@ export class Card {
     // The same button stays under the keys although it is another element.
     if (focused >= 0) buttons()[focused]?.focus();
     this.place(frame);
-  }
-
-  /** How wide the pen is, in pixels of now; the left end takes it away. */
-  private width(ids: number[], now: number | null): HTMLElement {
-    const field = el('input', {
-      type: 'range',
-      min: '0',
-      max: '24',
-      step: '0.5',
-      'aria-label': t('pen.width'),
-      onchange: () => {
-        const wide = Number(field.value);
-        this.run({ 'set-width': [ids, wide > 0 ? Number((wide * this.unit()).toPrecision(4)) : null] });
-      },
-    });
-    field.value = String(now === null ? 0 : now / this.unit());
-    return el('label', { class: 'chip', title: t('pen.width') }, t('correct.width'), field);
-  }
-
-  /** The layer that they lie on, where there is one to choose. */
-  private layers(ids: number[], now: string | null | undefined, { layers }: SketchState): HTMLElement[] {
-    if (layers.length === 0) return [];
-    const open = layers.filter((l) => !l.hidden && !l.locked);
-    const select = el(
-      'select',
-      {
-        'aria-label': t('tool.layers'),
-        onchange: () => this.run({ 'put-on': [ids, select.value === '' ? null : select.value] }),
-      },
-      el('option', { value: '' }, t('layer.sheet')),
-      ...open.map((l) => el('option', { value: l.name }, l.name)),
-    );
-    select.value = now ?? '';
-    return [el('label', { class: 'chip' }, select)];
   }
 
   /** The colour of what is made of these strokes; "automatic" takes it away. */

@@ -2,7 +2,7 @@
 import type { Session } from './session';
 import { t } from './text';
 import { askName, button, el } from './ui';
-import type { Held } from './pen';
+import { bytes, type Held, hex } from './pen';
 import type { Layer } from './wire';
 
 /** Pixels of the widest pen. */
@@ -15,14 +15,25 @@ export interface LayersEvents {
   /** The strokes that are chosen on the sheet. */
   chosen(): number[];
   held: Held;
+  /** Units of the drawing to a pixel. */
+  unit(): number;
   /** The pen was changed. */
   changed(): void;
 }
 
-/** The panel of the pen. */
-export function penPanel({ held, changed }: LayersEvents): HTMLElement {
+/** The panel of the pen: of the strokes that come, or, while some are chosen, of these. */
+export function penPanel({ session, chosen, held, unit, changed }: LayersEvents): HTMLElement {
   const panel = el('div', { class: 'settings' });
+  const strokes = chosen();
+  const first = session.drawn?.strokes.find((s) => strokes.includes(s.id));
+  const now: Omit<Held, 'layer'> = first
+    ? {
+        color: first.color ? hex(first.color) : null,
+        width: first.width === null ? null : Number((first.width / unit()).toPrecision(3)),
+      }
+    : held;
   const shown = el('output', {});
+  const wide = (): number | null => (Number(width.value) < LEAST ? null : Number(width.value));
   const width = el('input', {
     type: 'range',
     min: '0',
@@ -30,42 +41,38 @@ export function penPanel({ held, changed }: LayersEvents): HTMLElement {
     step: '0.5',
     id: 'b-pen-width',
     oninput: () => {
-      held.width = Number(width.value) < LEAST ? null : Number(width.value);
+      now.width = wide();
       show();
-      changed();
+      if (!first) changed();
     },
-  });
-  const color = el('input', {
-    type: 'color',
-    id: 'b-pen-colour',
     onchange: () => {
-      held.color = color.value;
-      show();
-      changed();
+      const px = wide();
+      const units = px === null ? null : Number((px * unit()).toPrecision(4));
+      if (first) session.draw({ 'set-width': [strokes, units] });
     },
   });
+  const setColor = (to: string | null): void => {
+    now.color = to;
+    show();
+    if (first) session.draw({ 'set-color': [strokes, to === null ? null : bytes(to)] });
+    else changed();
+  };
+  const color = el('input', { type: 'color', id: 'b-pen-colour', onchange: () => setColor(color.value) });
   const clear = el(
     'button',
-    {
-      type: 'button',
-      class: 'chip',
-      onclick: () => {
-        held.color = null;
-        show();
-        changed();
-      },
-    },
+    { type: 'button', class: 'chip', onclick: () => setColor(null) },
     t('correct.colour.none'),
   );
   const show = (): void => {
-    shown.textContent = held.width === null ? t('pen.width.auto') : `${held.width} px`;
-    width.value = String(held.width ?? 0);
-    color.value = held.color ?? '#7a9a3a';
-    color.classList.toggle('unset', held.color === null);
-    clear.hidden = held.color === null;
+    shown.textContent = now.width === null ? t('pen.width.auto') : `${now.width} px`;
+    width.value = String(now.width ?? 0);
+    color.value = now.color ?? '#7a9a3a';
+    color.classList.toggle('unset', now.color === null);
+    clear.hidden = now.color === null;
   };
   show();
   panel.append(
+    el('p', { class: 'muted' }, t(first ? 'pen.of.chosen' : 'pen.of.next')),
     el('label', {}, el('span', {}, t('pen.width')), width, shown),
     el('label', {}, el('span', {}, t('pen.colour')), color, el('span')),
     el('div', { class: 'chips' }, clear),

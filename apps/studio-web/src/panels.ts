@@ -69,7 +69,8 @@ export class Panels {
       if (this.held.color !== null) sheet.setOwnColours(true);
       sheet.setPen(this.held);
     };
-    return { session, held: this.held, chosen: () => sheet.selected, changed };
+    const unit = (): number => sheet.unitsPerPixel;
+    return { session, held: this.held, chosen: () => sheet.selected, unit, changed };
   }
 
   async openPen(): Promise<void> {

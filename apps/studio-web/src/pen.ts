@@ -8,8 +8,11 @@ export interface Held {
   layer: string | null;
 }
 
-const bytes = (hex: string): [number, number, number] =>
+export const bytes = (hex: string): [number, number, number] =>
   [1, 3, 5].map((at) => Number.parseInt(hex.slice(at, at + 2), 16)) as [number, number, number];
+
+export const hex = (color: readonly number[]): string =>
+  `#${color.map((byte) => byte.toString(16).padStart(2, '0')).join('')}`;
 
 /** What a stroke is drawn with; `unit`: units of the drawing to a pixel. Nothing for the pen that every sheet has. */
 export function penOf({ color, width, layer }: Held, unit: number): PenStyle | undefined {

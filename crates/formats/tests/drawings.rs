@@ -245,12 +245,12 @@ fn nested_use_ends_soon() {
 #[test]
 fn svg_keeps_layers_widths_and_points() {
     let layer = |name: &str, hidden, locked| Layer { name: name.into(), hidden, locked };
-    let stroke = |k: u32, layer: Option<&str>, hidden| Stroke {
+    let stroke = |k: u8, layer: Option<&str>, hidden| Stroke {
         samples: (0..5)
             .map(|i| DVec2::new(f64::from(i * k) / 7.0, 0.1 * f64::from(i * i)))
             .map(Into::into)
             .collect(),
-        color: Some([1, 2, k as u8]),
+        color: Some([1, 2, k]),
         width: (k == 2).then_some(0.75),
         layer: layer.map(Into::into),
         hidden,

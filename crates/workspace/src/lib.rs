@@ -44,7 +44,7 @@ pub use scatter::{Ground, Scatter};
 pub use shaping::{Picked, ShapeAnswer, ShapeInput, ShapePointer, ShapeReach, ShapeStep};
 pub use state::{
     DocumentState, EditState, FlowerState, LeafState, MakerWord, NamedShape, ObstacleView, PenStyle,
-    PhotoState, PlantState, SketchState, StrokeState, TreeState,
+    PhotoState, PlantState, SketchState, StrokeState, TreeState, WearState,
 };
 pub use view::{
     Column, Front, GUEST, MaterialView, PartView, PlantView, SceneView, TextureView, WarningView,
