@@ -338,7 +338,7 @@ pub(crate) fn varied(drawing: &ink::Drawing, copy: u64) -> ink::Drawing {
         let q = DVec2::new(p.at.x * stretch + p.at.y * slant, p.at.y);
         p.at = DVec2::new(c * q.x - s * q.y, s * q.x + c * q.y);
     }
-    ink::Drawing { name: drawing.name.clone(), strokes }
+    ink::Drawing { name: drawing.name.clone(), strokes, ..ink::Drawing::default() }
 }
 
 /// A number for a name.

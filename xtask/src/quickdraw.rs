@@ -31,7 +31,7 @@ pub(crate) fn drawing_of(line: &Value) -> Drawing {
         Stroke { samples, ..Stroke::default() }
     };
     let name = text_of(line, "key_id").to_owned();
-    Drawing { name, strokes: list(line.get("drawing")).iter().map(stroke).collect() }
+    Drawing { name, strokes: list(line.get("drawing")).iter().map(stroke).collect(), ..Drawing::default() }
 }
 
 pub(crate) fn json_lines(path: &Path) -> Result<Vec<Value>, String> {

@@ -54,14 +54,14 @@ fn draw(
 ) {
     let nothing = BTreeMap::new();
     let strokes = order.iter().map(|&k| drawing.strokes[k].clone()).collect();
-    let afresh = read(&Drawing { name: drawing.name.clone(), strokes }, &nothing);
+    let afresh = read(&Drawing { name: drawing.name.clone(), strokes, ..Drawing::default() }, &nothing);
     let ends = base::map_of(afresh.strokes.iter().map(|s| (s.index, s.class)));
     let mut shown = BTreeMap::new();
     let mut organs = BTreeMap::new();
     let mut held = BTreeMap::new();
     for n in 1..=order.len() {
         let strokes = order[..n].iter().map(|&k| drawing.strokes[k].clone()).collect();
-        let sofar = Drawing { name: drawing.name.clone(), strokes };
+        let sofar = Drawing { name: drawing.name.clone(), strokes, ..Drawing::default() };
         let reading = read(&sofar, if keeps { &held } else { &nothing });
         for s in &reading.strokes {
             let turned = shown.get(&s.index).filter(|&&c| c != s.class);

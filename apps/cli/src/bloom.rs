@@ -18,6 +18,7 @@ use crate::args::{AxesArgs, BloomCommand, BloomRunArgs, PictureArgs, PlantFormat
 use crate::failure::{Failure, Outcome};
 use crate::files::Goal;
 use crate::machine::Machine;
+use crate::materials::Materials;
 use crate::output::Outputs;
 use crate::petals::{drawing, is_drawing, petal_form};
 use crate::stages::{self, Loaded};
@@ -424,6 +425,9 @@ fn drawn_flower(
         (read?, ms)
     };
     options.skin.wind = args.wind;
+    if let Some(path) = &args.materials {
+        options.skin.worn = Materials::read(path)?.worn();
+    }
     let asked = hand_edits(args)?;
     let count = asked.len();
     options.edits.extend(asked);
@@ -493,6 +497,9 @@ fn flower(
     let seed = Seed::new(args.seed);
     let mut options = FlowerOptions { edits: hand_edits(args)?, ..FlowerOptions::default() };
     options.skin.wind = args.wind;
+    if let Some(path) = &args.materials {
+        options.skin.worn = Materials::read(path)?.worn();
+    }
     let failed = |stopped| match stopped {
         Stopped::Cancelled(_) => Failure::Cancelled,
         Stopped::OverBudget(much) => Failure::at(Path::new(&args.start), much),

@@ -2,7 +2,7 @@
 
 use burgeon::formats::{
     CloudFormat, DrawingFormat, ExportSpec, ModelFormat, PngCache, ReadDrawing, read_drawings,
-    write_cloud_ply, write_drawing,
+    write_cloud_ply, write_drawing, write_svg,
 };
 use burgeon::mesh::PointCloud;
 use burgeon::{ItemReport, Report, RunReport};
@@ -28,7 +28,8 @@ pub(crate) fn convert(args: &ConvertArgs) -> Outcome {
         Opened::Other(input, kind) => (input, kind),
     };
     check_used(args, kind)?;
-    let to_drawing = files::extension(&args.output).is_some_and(|e| e.eq_ignore_ascii_case("json"));
+    let is = |wanted: &str| files::extension(&args.output).is_some_and(|e| e.eq_ignore_ascii_case(wanted));
+    let to_drawing = is("json") || is("svg");
     let mut item = match (kind, to_drawing) {
         (Kind::Drawing(format), true) => drawing(args, input, format, &mut outputs, &machine)?,
         (Kind::Project, true) => project(args, input, &mut outputs, &machine)?,
@@ -36,19 +37,19 @@ pub(crate) fn convert(args: &ConvertArgs) -> Outcome {
         (Kind::Drawing(_), false) => {
             return Err(Failure::at(
                 &args.input,
-                "is a drawing: it converts to .json only; `burgeon sketch` makes a model of it",
+                "is a drawing: it converts to .json and .svg; `burgeon sketch` makes a model of it",
             ));
         }
         (Kind::Project, false) => {
             return Err(Failure::at(
                 &args.input,
-                "is a project: it converts to .json only; `burgeon sketch` makes a model of it",
+                "is a project: it converts to .json and .svg; `burgeon sketch` makes a model of it",
             ));
         }
         (Kind::Model(_), true) => {
             return Err(Failure::at(
                 &args.output,
-                "a model converts to .glb, .obj, .ply, .stl or .usda, not to .json",
+                "a model converts to .glb, .obj, .ply, .stl or .usda, not to a drawing",
             ));
         }
     };
@@ -262,7 +263,7 @@ fn drawing(
     if drawings.next().is_some() {
         return Err(Failure::at(
             &args.input,
-            "holds several drawings, a .json file holds one; split the file by lines",
+            "holds several drawings, a .json or .svg file holds one; split the file by lines",
         ));
     }
     write(args, &first, read_ms, outputs, machine)
@@ -275,8 +276,12 @@ fn write(
     outputs: &mut Outputs,
     machine: &Machine,
 ) -> Outcome<ItemReport> {
-    let (written, write_ms) =
-        machine.timed(|| outputs.write("-o", &args.output, |out| write_drawing(&first.drawing, out)));
+    let svg = files::extension(&args.output).is_some_and(|e| e.eq_ignore_ascii_case("svg"));
+    let (written, write_ms) = machine.timed(|| {
+        outputs.write("-o", &args.output, |out| {
+            if svg { write_svg(&first.drawing, out) } else { write_drawing(&first.drawing, out) }
+        })
+    });
     written?;
     let mut item = ItemReport {
         name: first.drawing.name.clone(),

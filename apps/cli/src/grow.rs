@@ -9,6 +9,7 @@ use burgeon::growth::{
     SelfOrganizingSpec,
 };
 use burgeon::mesh::Model;
+use burgeon::skin::SkinSpec;
 use burgeon::{
     ItemReport, LeafTemplate, MadeTree, NamedMesh, Preset, Report, RunReport, Seed, TreeError, TreeOptions,
     TreeSpec, make_tree, method_word, read_tree_spec,
@@ -17,6 +18,7 @@ use burgeon::{
 use crate::args::{GrowArgs, MethodWord, PlantFormat, PointsArgs, Seen};
 use crate::failure::{Failure, Outcome};
 use crate::machine::Machine;
+use crate::materials::Materials;
 use crate::origin::Origin;
 use crate::output::Outputs;
 use crate::{files, inputs, levels, picture, report, say};
@@ -30,7 +32,7 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
         ("--report", args.common.report.as_ref()),
     ];
     let inputs = args.what.iter().chain(&args.growth.obstacle).chain(&args.points.attractors);
-    let inputs = inputs.chain(&args.growth.leaf_template);
+    let inputs = inputs.chain(&args.growth.leaf_template).chain(&args.surface.skin.materials);
     let mut outputs = Outputs::new(&outputs, &inputs.collect::<Vec<_>>())?;
     let plan = |path| files::plan_plant(&mut outputs, path, args.surface.lods);
     let format = args.output.as_deref().map(plan).transpose()?;
@@ -45,10 +47,11 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     let leaves = ["leaf_keep", "leaf_template"];
     args.given.only_if(!spec.bare, &leaves, "trees with leaves", "this one is bare")?;
     let leaf = leaf_of(args, &mut spec, &machine)?;
+    let materials = args.surface.skin.materials.as_deref().map(Materials::read).transpose()?;
     outputs.check()?;
     let seed = Seed::new(args.seed);
     let options = TreeOptions {
-        skin: args.surface.skin.spec(),
+        skin: SkinSpec { worn: materials.unwrap_or_default().worn(), ..args.surface.skin.spec() },
         leaf,
         lods: if matches!(format, Some(PlantFormat::Model(_))) { args.surface.lods } else { 0 },
         ..TreeOptions::default()

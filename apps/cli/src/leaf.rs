@@ -19,6 +19,7 @@ use crate::args::{
 use crate::failure::{Failure, Outcome};
 use crate::leaf_data::{self, Form, ReadLeaf};
 use crate::machine::Machine;
+use crate::materials::Materials;
 use crate::origin::Origin;
 use crate::output::Outputs;
 use crate::{edits, files, inputs, levels, picture, report, say};
@@ -255,7 +256,9 @@ fn options(args: &LeafArgs, in_file: Option<ThicknessRule>) -> Outcome<LeafOptio
     };
     let side_veins =
         args.side_veins.unwrap_or(if args.venation == Some(VenationWord::Palmate) { 4 } else { 0 });
-    let skin = SkinSpec { wind: args.wind, ..SkinSpec::default() };
+    let materials = args.materials.as_deref().map(Materials::read).transpose()?;
+    let worn = materials.unwrap_or_default().worn();
+    let skin = SkinSpec { wind: args.wind, worn, ..SkinSpec::default() };
     let edits = args.edits.as_deref().map(edits::read).transpose()?.unwrap_or_default();
     Ok(LeafOptions { spec, skin, picture, side_veins, edits })
 }

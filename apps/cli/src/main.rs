@@ -17,6 +17,7 @@ mod leaf;
 mod leaf_data;
 mod levels;
 mod machine;
+mod materials;
 mod memory;
 mod names;
 mod origin;

@@ -29,7 +29,7 @@ pub(crate) fn of_file(path: &Path) -> Outcome<Option<Document>> {
 }
 
 /// Options that a scene's plants have settings for.
-const OF_ONE_DRAWING: [&str; 20] = [
+const OF_ONE_DRAWING: [&str; 21] = [
     "seed",
     "split",
     "spec",
@@ -48,6 +48,7 @@ const OF_ONE_DRAWING: [&str; 20] = [
     "detail",
     "sides",
     "no_textures",
+    "materials",
     "petals",
     "variation",
 ];

@@ -8,6 +8,7 @@ use burgeon::formats::read_drawings;
 use burgeon::glam::DVec3;
 use burgeon::mesh::Model;
 use burgeon::plant::Plant;
+use burgeon::skin::SkinSpec;
 use burgeon::{
     BranchRow, FlowerOptions, ItemReport, MadePlant, MadeTree, Preset, Report, RunReport, Seed, Stopped,
     TreeError, TreeOptions, branch_rows, edits_schema, edits_template, make_flower, make_tree,
@@ -17,6 +18,7 @@ use crate::args::{PlantFormat, Seen, ShapeArgs};
 use crate::failure::{Failure, Outcome};
 use crate::files::Kind;
 use crate::machine::Machine;
+use crate::materials::Materials;
 use crate::output::Outputs;
 use crate::{bloom, edits, files, grow, inputs, levels, picture, project, report, say};
 
@@ -153,7 +155,7 @@ fn make(
             Some((input, _)) => grow::spec_of(what, &files::text_of(what, input)?, told)?,
             None => grow::read_spec(what, told)?,
         };
-        let skin = args.surface.skin.spec();
+        let skin = skin_of(args)?;
         let options = TreeOptions { skin, lods: args.surface.lods, edits, ..TreeOptions::default() };
         let made = make_tree(&spec, seed, &options, &machine.run()).map_err(|e| match e {
             TreeError::Cancelled(_) => Failure::Cancelled,
@@ -192,9 +194,19 @@ fn make(
     };
     let document = project::edited(what, document, id, edits)?;
     let asked = project::asked(what, &document, id, args.seed, &args.surface)?;
+    let asked = match &args.surface.skin.materials {
+        Some(path) => Materials::read(path)?.on(asked, id)?,
+        None => asked,
+    };
     let (plant, model, lods, item) = project::make(what, &asked, id, &args.surface, machine)?;
     let seed = asked.plant(id).map_or(seed, |p| p.settings().seed);
     Ok(Shaped { plant, model, lods, item, seed, edited: Some(document) })
+}
+
+fn skin_of(args: &ShapeArgs) -> Outcome<SkinSpec> {
+    let skin = &args.surface.skin;
+    let materials = skin.materials.as_deref().map(Materials::read).transpose()?;
+    Ok(SkinSpec { worn: materials.unwrap_or_default().worn(), ..skin.spec() })
 }
 
 /// A flower in full bloom.
@@ -208,7 +220,7 @@ fn flower(
     no_project(args, what)?;
     args.given.refuse(&["no_textures"], "trees and drawings", "a flower has the colours of its species")?;
     let seed = Seed::new(args.seed.unwrap_or(1));
-    let options = FlowerOptions { skin: args.surface.skin.spec(), edits };
+    let options = FlowerOptions { skin: skin_of(args)?, edits };
     let run = machine.run();
     let failed = |stopped| match stopped {
         Stopped::Cancelled(_) => Failure::Cancelled,

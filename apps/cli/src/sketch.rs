@@ -19,6 +19,7 @@ use crate::classes::Classes;
 use crate::failure::{Failure, Outcome};
 use crate::files::{self, Goal, Kind};
 use crate::machine::{Machine, Progress};
+use crate::materials::Materials;
 use crate::output::Outputs;
 use crate::{names, output, picture, project, say};
 
@@ -66,6 +67,8 @@ struct Job<'a> {
     classes: Classes,
     /// From --leaf-template.
     leaf: Option<LeafTemplate>,
+    /// From --materials.
+    materials: Option<Materials>,
 }
 
 impl<'a> Job<'a> {
@@ -76,7 +79,8 @@ impl<'a> Job<'a> {
         let leaf = template
             .map(|p| crate::leaf_data::template_of(p, args.seed.unwrap_or(1), machine))
             .transpose()?;
-        Ok(Self { args, spec, classes, leaf })
+        let materials = args.surface.skin.materials.as_deref().map(Materials::read).transpose()?;
+        Ok(Self { args, spec, classes, leaf, materials })
     }
 
     /// The outputs are folders, rather than files.
@@ -125,6 +129,9 @@ impl<'a> Job<'a> {
         options.skin.seed = self.seed(input.project.as_deref());
         options.classes.extend(self.classes.of_drawing(&input.read.drawing.name));
         options.leaf.clone_from(&self.leaf);
+        if let Some(materials) = &self.materials {
+            options.skin.worn = materials.worn();
+        }
         options
     }
 
@@ -209,7 +216,8 @@ impl<'a> Job<'a> {
     /// Every file that options name.
     fn inputs(&self) -> Vec<&PathBuf> {
         let reading = &self.args.reading;
-        let settings = [&reading.spec, &reading.classes, &reading.leaf_template];
+        let surface = &self.args.surface.skin.materials;
+        let settings = [&reading.spec, &reading.classes, &reading.leaf_template, surface];
         self.args.inputs.iter().chain(settings.into_iter().flatten()).collect()
     }
 
@@ -225,7 +233,11 @@ impl<'a> Job<'a> {
     /// The drawing as a document in which each of its plants is one.
     fn split(&self, input: &Input, run: &Run<'_>) -> Outcome<Document> {
         let SketchOptions { spec, skin, classes, photo, .. } = self.options(input);
-        let document = Document::from_drawing(&input.read.drawing);
+        // A project has what its strokes and organs wear, its layers and its pictures.
+        let mut document = Document::from_drawing(&input.read.drawing);
+        if let Some(project) = input.project.as_deref() {
+            document.dress(project);
+        }
         let [plant] = document.plants() else { return Err(Failure::Bug("a drawing is one plant".into())) };
         let (id, ids) = (plant.id(), plant.strokes().iter().map(|s| s.id).collect::<Vec<_>>());
         let mut commands = vec![
@@ -237,7 +249,10 @@ impl<'a> Job<'a> {
         let said = classes.iter().filter_map(|(&row, &class)| Some((*ids.get(row as usize)?, class)));
         commands
             .extend(said.map(|(stroke, class)| SketchCommand::SetClass(vec![stroke], Some(class)).of(id)));
-        let mut editor = Editor::new(document);
+        let mut editor = Editor::new(match &self.materials {
+            Some(materials) => materials.on(document, id)?,
+            None => document,
+        });
         for command in commands {
             match editor.run(command) {
                 Ok(()) | Err(CommandError::Nothing(_)) => {}

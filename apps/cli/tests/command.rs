@@ -410,6 +410,41 @@ fn a_project_brings_its_settings_and_options_win_over_them() {
     assert!(!dir.join("e.glb").exists());
 }
 
+#[test]
+fn organs_wear_what_a_file_of_materials_says() {
+    let dir = folder("materials");
+    let drawing = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/sketches/gallery/lily.svg");
+    let png = [&b"\x89PNG\r\n\x1a\n"[..], b"not really"].concat();
+    fs::write(dir.join("broken.png"), png).unwrap();
+    fs::write(dir.join("m.toml"), "[petal]\npattern = \"picotee\"\nroughness = 0.25\n").unwrap();
+    good(&dir, &["sketch", drawing, "-o", "a.glb", "--materials", "m.toml"]);
+    let info = good(&dir, &["info", "a.glb"]);
+    assert!(info.contains("petal-picotee-1") && !info.contains("petal-pink"), "{info}");
+    // The picture of a model is a picture too.
+    good(&dir, &["sketch", drawing, "--png", "petal.png", "--size", "64x64"]);
+    let strokes = "[[strokes]]\nstrokes = [0, 1, 2, 3, 4, 5]\nmaterial = { pattern = \"picture\", picture = \"petal.png\" }\n";
+    fs::write(dir.join("s.toml"), strokes).unwrap();
+    good(&dir, &["sketch", drawing, "-o", "b.usda", "--materials", "s.toml"]);
+    assert!(fs::read_to_string(dir.join("b.usda")).unwrap().contains("picture"));
+    fs::write(dir.join("l.json"), r##"{"leaf": {"pattern": "variegated", "color": "#305020"}}"##).unwrap();
+    good(&dir, &["leaf", "--venation", "palmate", "-o", "c.glb", "--materials", "l.json"]);
+    assert!(good(&dir, &["info", "c.glb"]).contains("leaf-variegated-1"));
+    good(&dir, &["bloom", "run", "rose", "--day", "5", "-o", "d.glb", "--materials", "m.toml"]);
+    assert!(good(&dir, &["info", "d.glb"]).contains("petal-picotee-1"));
+    for (text, words) in [
+        ("[petal]\npattern = \"spots\"", "spots"),
+        ("[petal]\namount = 3", "petal.amount"),
+        ("[petal]\npattern = \"picture\"", "without a picture"),
+        ("[petal]\npicture = \"petal.png\"", "pattern = \"picture\""),
+        ("[petal]\npattern = \"picture\"\npicture = \"broken.png\"", "no PNG or JPEG"),
+        ("[petal]\npattern = \"picture\"\npicture = \"none.png\"", "none.png"),
+    ] {
+        fs::write(dir.join("x.toml"), text).unwrap();
+        let said = bad(&dir, &["sketch", drawing, "-o", "x.glb", "--materials", "x.toml"]);
+        assert!(said.contains(words), "{said}");
+    }
+}
+
 /// Drawings whose strokes are understood only together: a smooth crown on a trunk, a pot, fronds, a rosette.
 #[test]
 fn the_gallery_is_understood() {

@@ -40,12 +40,12 @@ for (const name of 'abcdefgh') {
   for (let i = 0; i < 40; i += 1) {
     samples.push(at(0.5 + 0.006 * i, 0), at(0.5 + 0.008 * i, 1), 16 * i, 0.5);
     if (i < 5) continue;
-    session.draft('parts', Float64Array.from(samples));
+    session.draft('parts', Float64Array.from(samples), '');
     looks.push(timed());
   }
   const wholes = [];
   for (let i = 0; i < 5; i += 1) {
-    session.add_stroke('parts', Float64Array.from(samples), '[]');
+    session.add_stroke('parts', Float64Array.from(samples), '', '[]');
     wholes.push(timed());
     session.undo();
     session.evaluate();

@@ -8,6 +8,7 @@ import { grove } from './grove.mjs';
 import { headset } from './headset.mjs';
 import { journeys } from './journeys.mjs';
 import { keeping } from './keeping.mjs';
+import { materialJourneys } from './materials.mjs';
 import { serve } from './server.mjs';
 import { network } from './network.mjs';
 import { shaping } from './shaping.mjs';
@@ -24,7 +25,16 @@ const browser = await chromium.launch({ executablePath: browserPath, args: FLAGS
 
 let failed = 0;
 const only = process.env.ONLY;
-const all = [...journeys, ...keeping, ...strokes, ...shaping, ...staging, ...grove, ...network];
+const all = [
+  ...journeys,
+  ...keeping,
+  ...strokes,
+  ...materialJourneys,
+  ...shaping,
+  ...staging,
+  ...grove,
+  ...network,
+];
 // Two pictures a frame: minutes without a graphics card, so only when they are asked for.
 if (only?.startsWith('headset')) all.push(...headset);
 for (const [name, journey, options] of all) {

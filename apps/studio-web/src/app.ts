@@ -35,12 +35,15 @@ import type { Command } from './wire';
 import { Writing } from './writing';
 
 /** The sheet of a plant that is not drawn. */
-const NO_DRAWING = { strokes: [], photo: null };
+const NO_DRAWING = { strokes: [], layers: [], photo: null };
 
 export class App implements Page {
   readonly session = new Session(this.sessionEvents());
   readonly sheet = new Sheet(this.sheetEvents(), t('sheet.label'));
-  private readonly card = new Card((command) => this.session.draw(command));
+  private readonly card = new Card(
+    (command) => this.session.draw(command),
+    () => void this.panels.openMaterials(),
+  );
   readonly panel = this.makerPanel();
   readonly list = this.sceneList();
   /** Both are there, or neither is. */
@@ -149,6 +152,7 @@ export class App implements Page {
             (image) => sheet.setImage(image),
             () => undefined,
           );
+        this.panels.renew();
         this.clipboard.select(drawn?.strokes ?? []);
         if (state) this.writing.changed(state.revision);
         this.show.document();
@@ -412,7 +416,7 @@ export class App implements Page {
     this.theme.apply();
   }
 
-  anchor(name: 'photo' | 'settings'): HTMLElement {
+  anchor(name: 'photo' | 'settings' | 'materials' | 'pen' | 'layers'): HTMLElement {
     return this.show.parts.buttons.get(name)!;
   }
 

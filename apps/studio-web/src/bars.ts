@@ -226,6 +226,7 @@ function topBar(buttons: Buttons, page: Page, name: HTMLInputElement): HTMLEleme
       small({ command: 'lock', icon: 'unlock' }),
       small({ command: 'grid', icon: 'grid' }),
       small({ command: 'settings', icon: 'settings' }),
+      small({ command: 'materials', icon: 'materials' }),
     ),
     space(),
     group(
@@ -259,6 +260,8 @@ function sheetTools(buttons: Buttons, page: Page): HTMLElement {
     ...SHEET_TOOLS.map(([tool]) => small(tool)),
     el('hr'),
     small('mirror'),
+    small('pen'),
+    small('layers'),
     small('photo'),
     small('fit'),
   );

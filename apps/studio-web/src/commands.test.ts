@@ -82,6 +82,8 @@ describe('the sheet of keys', () => {
       '← ↑ → ↓',
       'M',
       'U',
+      'Shift+L',
+      'Shift+M',
       'Shift+R',
       'Shift+G',
       'D',

@@ -76,6 +76,8 @@ export interface PageCommand {
 }
 
 const hasSelection = (p: Page): boolean => p.sheet.selected.length > 0;
+const hasSheet = (p: Page): boolean => p.session.drawn !== null;
+const hasLayer = (p: Page): boolean => p.panels.heldLayer !== undefined;
 const isPicking = (p: Page): boolean => p.shaping?.word === 'pick';
 const hasView = (p: Page): boolean => p.view !== undefined;
 const isMoving = (p: Page): boolean => p.gizmo === 'translate';
@@ -140,6 +142,13 @@ const TABLE = [
   { id: 'lock', label: 'lock', run: (p) => p.panels.toggleLock() },
   { id: 'grid', label: 'variations.title', keys: 'Shift+G', run: (p) => p.panels.openVariations() },
   { id: 'settings', label: 'menu.settings', run: (p) => p.panels.openSettings() },
+  { id: 'materials', label: 'material.title', keys: 'Shift+M', run: (p) => void p.panels.openMaterials() },
+  { id: 'pen', label: 'tool.pen', run: (p) => void p.panels.openPen() },
+  { id: 'layers', label: 'tool.layers', keys: 'Shift+L', run: (p) => void p.panels.openLayers() },
+  { id: 'layer-add', label: 'layer.add', when: hasSheet, run: (p) => p.panels.addLayer() },
+  { id: 'layer-put', label: 'layer.put.chosen', when: hasSelection, run: (p) => p.panels.putOnLayer() },
+  { id: 'layer-hide', label: 'layer.hide.held', when: hasLayer, run: (p) => p.panels.setHeldLayer('hidden') },
+  { id: 'layer-lock', label: 'layer.lock.held', when: hasLayer, run: (p) => p.panels.setHeldLayer('locked') },
   { id: 'mirror', label: 'tool.mirror', keys: 'M', run: (p) => p.toggleMirror() },
   { id: 'photo', label: 'tool.photo', keys: 'U', run: (p) => p.panels.openPhoto() },
   { id: 'fit', label: 'tool.fit', keys: '0', run: (p) => p.sheet.fit() },
@@ -366,6 +375,8 @@ const KEY_ROWS: readonly [CommandId[], string, TextKey][] = [
   [ARROWS.map(([arrow]) => `nudge-${arrow}-1` as const), ' ', 'key.nudge'],
   [['mirror'], '', 'tool.mirror'],
   [['photo'], '', 'tool.photo'],
+  [['layers'], '', 'tool.layers'],
+  [['materials'], '', 'material.title'],
   [['dice'], '', 'key.dice'],
   [['grid'], '', 'variations.title'],
   [['front'], '', 'key.front'],

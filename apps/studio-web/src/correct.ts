@@ -43,7 +43,11 @@ const MODES = ['parts', 'branch-contour', 'leaf-contour'] as const;
 export class Card {
   readonly element = el('div', { class: 'card', role: 'group' });
 
-  constructor(private readonly run: (command: SketchCommand) => void) {
+  /** `wear`: opens the materials. */
+  constructor(
+    private readonly run: (command: SketchCommand) => void,
+    private readonly wear: () => void,
+  ) {
     this.hide();
   }
 
@@ -119,6 +123,7 @@ export class Card {
         same((s) => hexOf(s.color)),
         chosen.some((s) => s.color !== null),
       ),
+      el('button', { type: 'button', class: 'chip', onclick: () => this.wear() }, t('material.title')),
       act('correct.erase', { 'remove-strokes': all }, ' danger'),
     );
     const title = chosen.length === 1 ? t('correct.title') : t('correct.many', { count: chosen.length });

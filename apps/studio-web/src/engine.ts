@@ -39,6 +39,7 @@ const CHANGES: ReadonlySet<Request['kind']> = new Set([
   'stroke',
   'paste',
   'photo',
+  'wear',
   'command',
   'action',
   'begin',

@@ -5,7 +5,7 @@ import { dialog, el } from './ui';
 
 export type Target = ExportFormat | 'png';
 export type ExportOptions = Omit<ExportRequest, 'format'>;
-const FORMATS: readonly Target[] = ['glb', 'usda', 'obj', 'ply', 'stl', 'mtg', 'qsm', 'png', 'json'];
+const FORMATS: readonly Target[] = ['glb', 'usda', 'obj', 'ply', 'stl', 'mtg', 'qsm', 'png', 'svg', 'json'];
 /** Formats with levels of detail. */
 export const LEVELS: ReadonlySet<Target> = new Set(['glb', 'usda', 'obj', 'ply', 'stl']);
 const AXES: ReadonlySet<Target> = new Set(['usda', 'obj', 'ply', 'stl', 'mtg', 'qsm']);
@@ -46,7 +46,7 @@ export function openExport(
   };
   let { format, options } = last;
   options = { ...options, whole: several };
-  const formats = FORMATS.filter((f) => f !== 'json' || kind === 'sketch');
+  const formats = FORMATS.filter((f) => (f !== 'json' && f !== 'svg') || kind === 'sketch');
   if (!formats.includes(format)) format = 'glb';
   const what = choice(
     'export.what',

@@ -7,6 +7,7 @@ import type {
   DocumentState,
   Json,
   Obstacle,
+  OrganMaterial,
   PlantState,
   PlantView,
   TreeCommand,
@@ -22,6 +23,8 @@ export interface Catalogue {
   tree: Schema;
   leaf: Schema;
   flower: Schema;
+  material: Schema;
+  materials: { key: string; material: OrganMaterial }[];
   trees: { key: string; species: string; about: string; spec: Fields }[];
   flowers: { key: string; spec: Fields }[];
 }
@@ -638,6 +641,6 @@ export class MakerPanel {
 
 export async function catalogueOf(engine: Engine): Promise<Catalogue> {
   const all = JSON.parse(await engine.ask<string>({ kind: 'schema' })) as Catalogue;
-  for (const maker of ['tree', 'leaf', 'flower'] as const) named(all[maker], maker);
+  for (const maker of ['tree', 'leaf', 'flower', 'material'] as const) named(all[maker], maker);
   return all;
 }

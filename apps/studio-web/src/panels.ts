@@ -1,16 +1,18 @@
 /** The dialogs and panels that the page opens for a plant, and the plants and pictures that come of them. */
 import type { Files } from './files';
+import type { LayersEvents } from './layers';
 import { type Catalogue, catalogueOf, gallery } from './makers';
+import { type Held, penOf } from './pen';
 import { asPng, photoPanel, placed } from './photo';
 import type { Session } from './session';
 import { type SettingsEvents, settingsPanel } from './settings';
 import type { Sheet } from './sheet/sheet';
 import { setSetting, setting } from './store';
 import { t, tOf, type TextKey } from './text';
-import { closePopover, dialog, note, popover } from './ui';
+import { askName, closePopover, dialog, note, popover } from './ui';
 import { openVariations } from './variations';
 import type { PlantView } from './view/view';
-import type { MakerWord, NewMaker, SketchState } from './wire';
+import type { Layer, MakerWord, NewMaker, PenStyle, SketchState } from './wire';
 
 /** Size of a picture in the grid of variations. */
 const PICTURE_SIZE = [200, 190] as const;
@@ -23,7 +25,7 @@ export interface PanelsPage {
   readonly files: Files;
   readonly view: PlantView | undefined;
   /** The button below which a panel opens. */
-  anchor(name: 'photo' | 'settings'): HTMLElement;
+  anchor(name: 'photo' | 'settings' | 'materials' | 'pen' | 'layers'): HTMLElement;
   catalogueCame(): void;
 }
 
@@ -33,8 +35,92 @@ export class Panels {
   /** Strength of the stabiliser of the pen, 0 to 3. */
   private steady = Math.min(3, Math.max(0, Number(setting('steady') ?? 1) || 0));
 
+  /** The pen that strokes are drawn with. */
+  private readonly held: Held = { color: null, width: null, layer: null };
+  /** What is shown again when the document changes. */
+  private shown: { show(): void; element: HTMLElement } | undefined;
+
   constructor(private readonly page: PanelsPage) {
     page.sheet.steady = this.steady;
+    page.session.pen = () => this.pen();
+  }
+
+  /** The layer that is held, with its row; nothing while strokes go to the sheet itself. */
+  get heldLayer(): { layer: Layer; row: number } | undefined {
+    const layers = this.page.session.drawn?.layers ?? [];
+    const row = layers.findIndex((l) => l.name === this.held.layer);
+    return row < 0 ? undefined : { layer: layers[row]!, row };
+  }
+
+  private pen(): PenStyle | undefined {
+    // A layer that is gone is none.
+    const layer = this.heldLayer?.layer.name ?? null;
+    return penOf({ ...this.held, layer }, this.page.sheet.unitsPerPixel);
+  }
+
+  /** The document or what is chosen changed. */
+  renew(): void {
+    if (this.shown?.element.isConnected) this.shown.show();
+  }
+
+  private events(): LayersEvents {
+    const { session, sheet } = this.page;
+    const changed = (): void => {
+      if (this.held.color !== null) sheet.setOwnColours(true);
+      sheet.setPen(this.held);
+    };
+    const unit = (): number => sheet.unitsPerPixel;
+    return { session, held: this.held, chosen: () => sheet.selected, unit, changed };
+  }
+
+  async openPen(): Promise<void> {
+    if (!this.page.session.drawn) return;
+    const { penPanel } = await import('./layers');
+    popover(this.page.anchor('pen'), penPanel(this.events()), t('tool.pen'));
+  }
+
+  async openLayers(): Promise<void> {
+    if (!this.page.session.drawn) return;
+    const { LayersPanel } = await import('./layers');
+    const panel = new LayersPanel(this.events());
+    this.shown = panel;
+    popover(this.page.anchor('layers'), panel.element, t('tool.layers'));
+  }
+
+  addLayer(): void {
+    const { session } = this.page;
+    askName(t('layer.add'), t('layer.name'), '', (name) => {
+      session.draw({ 'add-layer': name });
+      this.held.layer = name;
+    });
+  }
+
+  putOnLayer(): void {
+    const { session, sheet } = this.page;
+    session.draw({ 'put-on': [sheet.selected, this.heldLayer?.layer.name ?? null] });
+  }
+
+  /** Hides or locks the layer that is held, or shows and unlocks it. */
+  setHeldLayer(what: 'hidden' | 'locked'): void {
+    const held = this.heldLayer;
+    if (held)
+      this.page.session.draw({ 'set-layer': [held.row, { ...held.layer, [what]: !held.layer[what] }] });
+  }
+
+  async openMaterials(): Promise<void> {
+    const { session, sheet, files } = this.page;
+    await this.loadCatalogue();
+    const { catalogue } = this;
+    if (!session.plant || !catalogue) return;
+    const { MaterialsPanel } = await import('./materials');
+    const panel = new MaterialsPanel({
+      session,
+      catalogue,
+      chosen: () => sheet.selected,
+      choose: (accept, act) => files.pickFile(accept, act),
+    });
+    this.shown = panel;
+    popover(this.page.anchor('materials'), panel.element, t('material.title'));
   }
 
   async loadCatalogue(): Promise<void> {

@@ -13,9 +13,9 @@ export function isPhoto(file: File): boolean {
 }
 
 /** Any picture that the browser reads, as PNG of a bounded size. PNG is decoded alike everywhere. */
-export async function asPng(file: Blob): Promise<{ png: Uint8Array; aspect: number }> {
+export async function asPng(file: Blob, side = MAX_SIDE): Promise<{ png: Uint8Array; aspect: number }> {
   const image = await createImageBitmap(file);
-  const scale = Math.min(1, MAX_SIDE / Math.max(image.width, image.height));
+  const scale = Math.min(1, side / Math.max(image.width, image.height));
   const canvas = document.createElement('canvas');
   canvas.width = Math.max(1, Math.round(image.width * scale));
   canvas.height = Math.max(1, Math.round(image.height * scale));

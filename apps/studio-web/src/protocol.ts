@@ -5,6 +5,8 @@ import type {
   DocumentState,
   ExportRequest,
   ExportView,
+  OrganMaterial,
+  PenStyle,
   PlantView,
   Refusal,
   SceneView,
@@ -13,6 +15,7 @@ import type {
   StrokeClass,
   StrokeMode,
   ToolKind,
+  Wearer,
 } from './wire';
 
 /** Where a request put the plant that it added: a replay puts it there again, without growing the others. */
@@ -26,7 +29,7 @@ export type Shown = [stroke: number, as: StrokeClass | null];
 /** What the page asks. Those that change the document are kept in the page's journal. */
 export type Request =
   | ({ kind: 'open'; name: string; bytes: Uint8Array; row: number; fresh: boolean } & Placing)
-  | { kind: 'stroke'; mode: StrokeMode; samples: Float64Array; shown?: Shown[] }
+  | { kind: 'stroke'; mode: StrokeMode; samples: Float64Array; pen?: PenStyle; shown?: Shown[] }
   | { kind: 'command'; command: Command }
   /** What is more than one command. */
   | ({ kind: 'action'; action: Action } & Placing)
@@ -46,6 +49,10 @@ export type Request =
   | { kind: 'load'; journal: readonly Request[] }
   | { kind: 'paste'; text: string; x: number; y: number }
   | { kind: 'photo'; png: Uint8Array; x: number; y: number; width: number }
+  /** A material with a picture (PNG) for strokes, or without any for all organs of a kind. */
+  | { kind: 'wear'; wearer: Wearer; strokes: number[]; material: OrganMaterial; png: Uint8Array }
+  /** RGBA pixels of a petal in a material. */
+  | { kind: 'swatch'; material: OrganMaterial; width: number; height: number }
   | { kind: 'copy'; ids: number[] }
   | { kind: 'variant'; seed: string; detail: number }
   | { kind: 'skeleton' }
@@ -54,7 +61,7 @@ export type Request =
   | { kind: 'shape'; tool: ToolKind; reach: ShapeReach; input: ShapeInput }
   /** The branch of a pick with all that it bears. */
   | { kind: 'branch'; axis: number }
-  | { kind: 'draft'; mode: StrokeMode; samples: Float64Array }
+  | { kind: 'draft'; mode: StrokeMode; samples: Float64Array; pen?: PenStyle }
   | { kind: 'save' }
   | { kind: 'export'; request: ExportRequest }
   /** What an export would write of one level of detail, to be seen: `SentExport`. */

@@ -6,6 +6,7 @@ import type {
   Action,
   Command,
   DocumentState,
+  PenStyle,
   PlantState,
   PlantView as Seen,
   SceneView,
@@ -34,7 +35,9 @@ export class Session {
   state: DocumentState | undefined;
   scene: SceneView | undefined;
   private shownPlant: number | null | undefined;
-  private draft: { mode: StrokeMode; samples: Float64Array } | undefined;
+  private draft: { mode: StrokeMode; samples: Float64Array; pen?: PenStyle } | undefined;
+  /** What strokes are drawn with; nothing for the pen that every sheet has. */
+  pen: () => PenStyle | undefined = () => undefined;
   private drafted = false;
   /** When the draft that is grown now was sent. */
   private draftAt = 0;
@@ -142,11 +145,12 @@ export class Session {
   stroke(mode: StrokeMode, samples: Float64Array, mirror: Float64Array | undefined): void {
     this.draft = undefined;
     this.drafted = false;
+    const pen = this.pen();
     if (mirror) this.begin('draw');
     const shown = this.shown();
-    this.ask({ kind: 'stroke', mode, samples, ...(shown.length > 0 ? { shown } : {}) });
+    this.ask({ kind: 'stroke', mode, samples, ...(pen && { pen }), ...(shown.length > 0 && { shown }) });
     if (mirror) {
-      this.ask({ kind: 'stroke', mode, samples: mirror });
+      this.ask({ kind: 'stroke', mode, samples: mirror, ...(pen && { pen }) });
       this.commit();
     }
   }
@@ -166,7 +170,8 @@ export class Session {
 
   /** The stroke under the pen, as it is now. */
   setDraft(mode: StrokeMode, samples: Float64Array): void {
-    this.draft = { mode, samples };
+    const pen = this.pen();
+    this.draft = { mode, samples, ...(pen && { pen }) };
     if (!this.engine.growing) this.sendDraft();
   }
 

@@ -74,6 +74,10 @@ export class Show {
     parts.maker.hidden = !plant || drawn !== null;
     parts.noPlant.hidden = plant !== undefined;
     parts.buttons.get('settings')!.disabled = !drawn;
+    parts.buttons.get('materials')!.disabled = !plant;
+    dataset['layers'] = (drawn?.layers ?? [])
+      .map((l) => `${l.name}${l.hidden ? ' hidden' : ''}${l.locked ? ' locked' : ''}`)
+      .join(', ');
     this.pieces(state);
     this.switches();
     document.title = `${state.name} · ${t('app.title')}`;
@@ -171,6 +175,7 @@ export class Show {
     dataset['triangles'] = String(counts?.triangles ?? 0);
     dataset['flowers'] = String(counts?.flowers ?? 0);
     dataset['parts'] = String(seen?.parts.length ?? 0);
+    dataset['materials'] = (seen?.materials ?? []).map((m) => m.name).join(' ');
     dataset['meshes'] = String(new Set(session.scene?.plants.map((p) => p.mesh)).size);
     dataset['digest'] = seen?.item?.digest ?? '';
     dataset['revision'] = String(session.scene?.revision ?? 0);

@@ -30,6 +30,9 @@ export const CODES = {
   "internal": ["why"],
   "json-ends": [],
   "law": ["why"],
+  "layer-closed": ["layer"],
+  "layer-name": [],
+  "leaf-no-marks": [],
   "leaf-scan": ["why"],
   "leaf-surface": ["why"],
   "leaf-veins": ["why"],
@@ -58,6 +61,7 @@ export const CODES = {
   "no-leaves": [],
   "no-petal-colour": ["word", "known"],
   "no-photo": [],
+  "no-picture": [],
   "no-plant": [],
   "no-room": ["found", "wanted"],
   "no-roots": [],
@@ -85,6 +89,8 @@ export const CODES = {
   "photo-not-png": [],
   "photo-too-far": [],
   "photo-too-large": [],
+  "picture-not-png": [],
+  "picture-too-large": [],
   "place-locked": [],
   "place-too-far": [],
   "plant-gone": [],
@@ -150,7 +156,9 @@ export const CODES = {
   "step-too-long": ["step_m", "space_m"],
   "too-far": [],
   "too-many-edits": ["most"],
+  "too-many-layers": ["most"],
   "too-many-obstacles": ["most"],
+  "too-many-pictures": ["most"],
   "tree-file": ["file"],
   "tree-line": ["line", "why"],
   "unknown-file": [],
@@ -246,6 +254,9 @@ export type Changed = {
   /** Branches taken away. */
   removed: number;
 };
+
+/** An sRGB colour, written `#rrggbb`. */
+export type Colour = string;
 
 /** What can be asked of a document: of the scene, of any plant, or of a plant of one maker. */
 export type Command =
@@ -377,7 +388,9 @@ export type ExportFormat =
   | /** The structure of each plant as a table of cylinders. */
   "qsm"
   | /** The current drawing in our JSON. */
-  "json";
+  "json"
+  | /** The current drawing as SVG, with its layers. */
+  "svg";
 
 /** What is exported, and how it is written. */
 export type ExportRequest = {
@@ -798,6 +811,16 @@ export type KindWord =
   | /** Below ground. */
   "root";
 
+/** A layer of a drawing. */
+export type Layer = {
+  /** What lies on it is not seen and not part of the plant. */
+  hidden: boolean;
+  /** What lies on it stays as it is. */
+  locked: boolean;
+  /** Its name, unique in the drawing, 1 to 200 characters. */
+  name: string;
+};
+
 /** What can be asked of a measured leaf. */
 export type LeafCommand =
   | /** Takes other measurements. */
@@ -836,24 +859,6 @@ export type LeafFit = {
   p95_mm: number;
   /** Root of the mean square. */
   rms_mm: number;
-};
-
-/** The form of a leaf with one midrib, where nothing was measured. */
-export type LeafForm = {
-  /** How far both halves are raised along the midrib, degrees, -60 to 60, default 10. */
-  fold_deg: number;
-  /** Length of the midrib, metres, 0.002 to 10, default 0.1. */
-  length_m: number;
-  /** How far the margin goes in between the side veins, as a share of the half width: 0 (entire) to 0.8 (deep lobes), default 0. */
-  lobes: number;
-  /** Angle between side veins and midrib, degrees, 15 to 85, default 50. */
-  vein_angle_deg: number;
-  /** Pairs of side veins, 2 to 30, default 8. */
-  veins: number;
-  /** Where it is widest: 0.1 near the base to 0.9 near the tip, default 0.4. */
-  widest: number;
-  /** Greatest width over length, 0.02 to 2, default 0.5. */
-  width: number;
 };
 
 /** What colours a measured blade. */
@@ -915,8 +920,6 @@ export type LeafSpec = {
   caps: boolean;
   /** Roll about the midrib: -1 (margins meet below) to 1 (above), 0 as measured, default 0. */
   curl: number;
-  /** The form of the leaf where nothing was measured. */
-  form: LeafForm;
   /** Length of the midrib for a vein graph in pixels, metres, 0.002 to 10, default 0.1. */
   length_m: number;
   /** A vein along the margin too; default false. */
@@ -1035,7 +1038,7 @@ export type NewMaker =
   {
     tree: string;
   }
-  | /** A leaf of a few numbers, until it is given marks. */
+  | /** A leaf that waits for its marks. */
   "leaf"
   | /** A flower of this species. */
   {
@@ -1111,6 +1114,22 @@ export type Opened = {
   warnings: string[];
 };
 
+/** A material of leaves, petals or sepals. */
+export type OrganMaterial = {
+  /** How much there is of the second colour, 0 to 1, default 0.5. */
+  amount: number;
+  /** The first colour; that of most of the organ. */
+  color: Colour;
+  /** What is painted on it. */
+  pattern: Pattern;
+  /** Of the pattern `picture`: which. */
+  picture: string | null;
+  /** 0 is as glossy as wet leaves, 1 as matt as velvet; default 0.6. */
+  roughness: number;
+  /** The second colour: of veins, streaks, spots, the margin, the root. */
+  second: Colour;
+};
+
 /** Figures of all meshes of one kind. */
 export type PartFigures = {
   /** Bytes of columns and corners, as binary glTF and graphics cards hold them; of copies in binary glTF once. */
@@ -1131,6 +1150,35 @@ export type PartView = {
   material: number;
   /** Its name in files. */
   name: string;
+};
+
+/** What is painted on an organ. */
+export type Pattern =
+  | /** One colour. */
+  "plain"
+  | /** From the second colour at the root to the first at the tip. */
+  "shaded"
+  | /** Midrib and side veins in the second colour. */
+  "veined"
+  | /** Lines of the second colour that fan out from the throat. */
+  "streaked"
+  | /** Spots of the second colour, more of them towards the throat. */
+  "speckled"
+  | /** A margin of the second colour (picotee). */
+  "picotee"
+  | /** An uneven margin of the second colour that runs into the first (variegated leaf). */
+  "variegated"
+  | /** A picture, upright from root to tip. */
+  "picture";
+
+/** The pen that a stroke is drawn with; what is left out is that of every sheet. */
+export type PenStyle = {
+  /** The colour of what is drawn, sRGB. */
+  color: [number, number, number] | null;
+  /** The name of the layer. */
+  layer: string | null;
+  /** In the drawing's unit, above 0. */
+  width: number | null;
 };
 
 /** Natural petal colours. */
@@ -1233,6 +1281,12 @@ export type PlantCommand =
   | /** Keeps it where it stands, or no longer. */
   {
     fix: boolean;
+  }
+  | /** Gives the organs of a kind a material, or takes it away. */
+  {
+    wear: [Wearer, 
+      | OrganMaterial
+      | null];
   };
 
 /** Names one plant for as long as the document lives. */
@@ -1278,6 +1332,8 @@ export type PlantState = {
   tree: 
     | TreeState
     | null;
+  /** The materials of its leaves, petals and sepals. */
+  wear: WearState;
   /** Turn about +Y, degrees. */
   yaw_deg: number;
 };
@@ -1608,7 +1664,37 @@ export type SketchCommand =
   {
     'set-color': [StrokeId[], [number, number, number] | null];
   }
-  | /** Erases every stroke. */
+  | /** Sets how wide the pen of strokes is, in the drawing's unit, or takes it away. */
+  {
+    'set-width': [StrokeId[], number | null];
+  }
+  | /** Gives what is read from strokes a material, or takes it away. */
+  {
+    'set-material': [StrokeId[], 
+      | OrganMaterial
+      | null];
+  }
+  | /** Adds a layer of this name above the others. */
+  {
+    'add-layer': string;
+  }
+  | /** Renames, hides or locks the layer of a row, from below. */
+  {
+    'set-layer': [number, Layer];
+  }
+  | /** Moves the layer of a row to another row. */
+  {
+    'move-layer': [number, number];
+  }
+  | /** Takes the layer of a row away; its strokes go to the sheet itself. */
+  {
+    'remove-layer': number;
+  }
+  | /** Puts strokes on a layer, by its name, or on the sheet itself. */
+  {
+    'put-on': [StrokeId[], string | null];
+  }
+  | /** Erases every stroke, but those on layers that are hidden or locked. */
   "clear"
   | /** Sets how the drawing is understood. */
   {
@@ -1667,6 +1753,8 @@ export type SketchSpec = {
 export type SketchState = {
   /** The day at which its flowers are shown. */
   day: number | null;
+  /** Its layers from below upwards. */
+  layers: Layer[];
   /** The plant whose leaf it bears. */
   leaf: 
     | PlantId
@@ -1774,12 +1862,16 @@ export type StrokeState = {
   color: [number, number, number] | null;
   /** Its name within the document. */
   id: StrokeId;
+  /** The name of its layer; none for the sheet itself. */
+  layer: string | null;
+  /** Its own material. */
+  material: 
+    | OrganMaterial
+    | null;
   /** In which mode it was drawn. */
   mode: StrokeMode;
-  /** What it was shown as, clearly, when the last stroke was drawn. */
-  shown: 
-    | StrokeClass
-    | null;
+  /** Its own width, in the drawing's unit. */
+  width: number | null;
 };
 
 /** Turned and scaled about a point. */
@@ -2005,8 +2097,31 @@ export type ViewPlane = {
 export type WarningView = {
   /** A word that stays, such as `unlike-a-plant`. */
   code: string;
-  /** Numbers and names in it. */
-  fields: Record<string, string>;
   /** A sentence in English. */
   message: string;
 };
+
+/** The materials that a person gave to kinds of organs. */
+export type WearState = {
+  /** Of all leaves. */
+  leaf: 
+    | OrganMaterial
+    | null;
+  /** Of all petals. */
+  petal: 
+    | OrganMaterial
+    | null;
+  /** Of all sepals and bracts. */
+  sepal: 
+    | OrganMaterial
+    | null;
+};
+
+/** The organs that can wear a material. */
+export type Wearer =
+  | /** Leaves. */
+  "leaf"
+  | /** Petals. */
+  "petal"
+  | /** Sepals and bracts. */
+  "sepal";

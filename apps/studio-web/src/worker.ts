@@ -11,7 +11,7 @@ import type {
   TexturePixels,
   ToWorker,
 } from './protocol';
-import type { ExportRequest, ExportView, PlantView, Refusal, SceneView, ShapeAnswer } from './wire';
+import type { ExportRequest, ExportView, PenStyle, PlantView, Refusal, SceneView, ShapeAnswer } from './wire';
 
 const page = self as unknown as DedicatedWorkerGlobalScope;
 let session: StudioSession | undefined;
@@ -55,12 +55,15 @@ function fault(e: unknown): void {
   tell({ kind: 'fault', why: words(e) });
 }
 
+/** The pen of a stroke as the core reads it. */
+const penOf = ({ pen }: { pen?: PenStyle }): string => (pen ? JSON.stringify(pen) : '');
+
 function answer(s: StudioSession, request: Request): unknown {
   switch (request.kind) {
     case 'open':
       return JSON.parse(s.open(request.name, request.bytes, request.row, request.fresh));
     case 'stroke':
-      return s.add_stroke(request.mode, request.samples, JSON.stringify(request.shown ?? []));
+      return s.add_stroke(request.mode, request.samples, penOf(request), JSON.stringify(request.shown ?? []));
     case 'select':
       return s.select(request.plant);
     case 'obstacle':
@@ -84,7 +87,7 @@ function answer(s: StudioSession, request: Request): unknown {
     case 'redo':
       return s.redo();
     case 'draft':
-      return s.draft(request.mode, request.samples);
+      return s.draft(request.mode, request.samples, penOf(request));
     case 'save':
       return s.save();
     case 'load':
@@ -96,6 +99,15 @@ function answer(s: StudioSession, request: Request): unknown {
       return s.paste(request.text, request.x, request.y);
     case 'photo':
       return s.place_photo(request.png, request.x, request.y, request.width);
+    case 'wear':
+      return s.wear_picture(
+        JSON.stringify(request.wearer),
+        Uint32Array.from(request.strokes),
+        JSON.stringify(request.material),
+        request.png,
+      );
+    case 'swatch':
+      return s.swatch(JSON.stringify(request.material), request.width, request.height);
     case 'copy':
       return s.copy(Uint32Array.from(request.ids));
     case 'skeleton':
@@ -158,6 +170,7 @@ const QUIET: ReadonlySet<Request['kind']> = new Set([
   'unlook',
   'begin',
   'copy',
+  'swatch',
   'variant',
   'skeleton',
   'share',

@@ -13,11 +13,12 @@ mod host;
 use burgeon::document::{PlantId, StrokeId};
 use burgeon::glam::DVec2;
 use burgeon::ink::{InkSample, Stroke, StrokeMode};
+use burgeon::skin::OrganMaterial;
 use burgeon::{Seed, bloom};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use wasm_bindgen::prelude::*;
-use workspace::{Column, ExportRequest, Refusal, Workspace, WorkspaceError, packed};
+use workspace::{Column, ExportRequest, PenStyle, Refusal, Workspace, WorkspaceError, packed};
 
 #[cfg(any(feature = "checks", test))]
 pub use crate::checks::*;
@@ -44,10 +45,15 @@ pub fn studio_schema() -> Result<String, JsError> {
         Some(serde_json::json!({ "key": key, "spec": spec }))
     });
     let flowers: Vec<_> = flowers.collect();
+    let materials = burgeon::skin::MATERIALS.iter();
+    let materials: Vec<_> =
+        materials.map(|(key, m)| serde_json::json!({ "key": key, "material": m })).collect();
     Ok(serde_json::to_string(&serde_json::json!({
         "tree": burgeon::tree_schema(),
         "leaf": burgeon::leaf_schema(),
         "flower": burgeon::flower_schema(),
+        "material": burgeon::material_schema(),
+        "materials": materials,
         "trees": presets,
         "flowers": flowers,
     }))?)
@@ -85,7 +91,10 @@ fn from_json<T: DeserializeOwned>(text: &str) -> Result<T, Refused> {
 }
 
 /// `samples`: x, y (up), milliseconds, pressure of each point; NaN where not known.
-fn stroke(mode: &str, samples: &[f64]) -> Result<Stroke, Refused> {
+///
+/// `pen`: `PenStyle` as JSON; empty for the pen of every sheet.
+fn stroke(mode: &str, samples: &[f64], pen: &str) -> Result<Stroke, Refused> {
+    let PenStyle { color, width, layer } = if pen.is_empty() { PenStyle::default() } else { from_json(pen)? };
     let mode: StrokeMode = from_json(&to_json(&mode)?)?;
     let known = |x: f64| x.is_finite().then_some(x);
     let samples = samples.chunks_exact(4).filter(|p| p[0].is_finite() && p[1].is_finite());
@@ -94,7 +103,8 @@ fn stroke(mode: &str, samples: &[f64]) -> Result<Stroke, Refused> {
         time_ms: known(p[2]),
         pressure: known(p[3]),
     });
-    Ok(Stroke { samples: samples.collect(), mode, ..Stroke::default() })
+    let layer = layer.map(Into::into);
+    Ok(Stroke { samples: samples.collect(), mode, color, width, layer, ..Stroke::default() })
 }
 
 fn numbers(ids: Vec<StrokeId>) -> Vec<u32> {
@@ -163,20 +173,27 @@ impl StudioSession {
     }
 
     /// Adds a stroke and returns its number. `samples`: x, y (up), milliseconds, pressure of each point; NaN where
-    /// not known. `shown`: pairs of a stroke and its class or null as JSON, see [`Workspace::add_stroke`].
+    /// not known; `pen`: a `PenStyle` as JSON, or empty; `shown`: pairs of a stroke and its class or null as JSON, see
+    /// [`Workspace::add_stroke`].
     ///
     /// # Errors
-    /// When no point is finite, or the mode is unknown.
-    pub fn add_stroke(&mut self, mode: &str, samples: &[f64], shown: &str) -> Result<u32, Refused> {
-        Ok(self.0.add_stroke(stroke(mode, samples)?, from_json(shown)?)?.0)
+    /// When no point is finite, the mode is unknown, or the layer is hidden or locked.
+    pub fn add_stroke(
+        &mut self,
+        mode: &str,
+        samples: &[f64],
+        pen: &str,
+        shown: &str,
+    ) -> Result<u32, Refused> {
+        Ok(self.0.add_stroke(stroke(mode, samples, pen)?, from_json(shown)?)?.0)
     }
 
     /// Shows a stroke that is still being drawn; an empty one takes it away.
     ///
     /// # Errors
     /// When the mode is unknown.
-    pub fn draft(&mut self, mode: &str, samples: &[f64]) -> Result<(), Refused> {
-        self.0.draft(stroke(mode, samples)?);
+    pub fn draft(&mut self, mode: &str, samples: &[f64], pen: &str) -> Result<(), Refused> {
+        self.0.draft(stroke(mode, samples, pen)?);
         Ok(())
     }
 
@@ -219,6 +236,30 @@ impl StudioSession {
     /// When it is no PNG or too large.
     pub fn place_photo(&mut self, png: &[u8], x: f64, y: f64, width: f64) -> Result<(), Refused> {
         Ok(self.0.place_photo(png, DVec2::new(x, y), width)?)
+    }
+
+    /// See [`Workspace::wear_picture`]: `Wearer` and `OrganMaterial` as JSON, and a PNG.
+    ///
+    /// # Errors
+    /// When it is no PNG or too large.
+    pub fn wear_picture(
+        &mut self,
+        wearer: &str,
+        strokes: &[u32],
+        material: &str,
+        png: &[u8],
+    ) -> Result<(), Refused> {
+        let strokes = strokes.iter().copied().map(StrokeId).collect();
+        Ok(self.0.wear_picture((from_json(wearer)?, strokes), from_json(material)?, png)?)
+    }
+
+    /// RGBA bytes of a petal in a material (`OrganMaterial` as JSON).
+    ///
+    /// # Errors
+    /// When the material cannot be read.
+    pub fn swatch(&self, material: &str, width: u32, height: u32) -> Result<Vec<u8>, Refused> {
+        let material: OrganMaterial = from_json(material)?;
+        Ok(burgeon::skin::swatch(&material, width.min(512), height.min(512), &burgeon::Serial).pixels)
     }
 
     /// The photograph's file if the page has another one, else empty.

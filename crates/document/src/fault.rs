@@ -3,8 +3,12 @@
 use bloom::FlowerSpec;
 use spec::RangeFault;
 
+use crate::picture::MAX_PICTURES;
+
 /// Most obstacles of a tree.
 pub(crate) const MAX_OBSTACLES: usize = 64;
+/// Most layers of a drawing.
+pub(crate) const MAX_LAYERS: usize = 100;
 /// Most edits by hand of a plant.
 pub(crate) const MAX_EDITS: usize = 1000;
 
@@ -27,6 +31,18 @@ pub enum SettingFault {
     /// A photograph that cannot be seen.
     #[error("the photograph lies out of reach; put it nearer and make it larger")]
     Photo,
+    /// A material whose picture is not there.
+    #[error("the picture of a material is not there; choose one")]
+    Picture,
+    /// More pictures than a plant may have.
+    #[error("a plant has at most {MAX_PICTURES} pictures; use one of them again")]
+    Pictures,
+    /// A layer without a name, or two of one name.
+    #[error("each layer of a drawing has a name of its own")]
+    LayerName,
+    /// More layers than a drawing may have.
+    #[error("a drawing has at most {MAX_LAYERS} layers; join some")]
+    Layers,
     /// No such flower.
     #[error("the flower {name:?} is unknown; use one of {}", FlowerSpec::PRESETS.join(", "))]
     Flower {
@@ -68,6 +84,10 @@ base::coded!(SettingFault {
     Self::Obstacle => "obstacle-not-finite" {},
     Self::Place => "place-too-far" {},
     Self::Photo => "photo-too-far" {},
+    Self::Picture => "no-picture" {},
+    Self::Pictures => "too-many-pictures" { most = MAX_PICTURES },
+    Self::LayerName => "layer-name" {},
+    Self::Layers => "too-many-layers" { most = MAX_LAYERS },
     Self::Flower { name } => "no-species" { name },
     Self::Law(why) => "law" { why },
     Self::Petals { word, known } => "no-petal-colour" { word, known },

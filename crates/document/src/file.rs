@@ -12,21 +12,26 @@ use serde::de::Error as _;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use shape::HandEdit;
+use skin::Wear;
 use spec::SpecFault;
 
 use crate::archive::{ArchiveError, pack, unpack};
 use crate::forms::{
-    DocumentV1, DocumentV2, DocumentV3, DocumentV4, DocumentV5, EditV4, FlowerV5, LeafV3, MakerV5,
-    ObstacleV3, PlantV4, SketchV3, SkinV1, StrokeV1, TreeV3, from_file, to_file,
+    DocumentV1, DocumentV2, DocumentV3, DocumentV4, DocumentV5, DocumentV6, EditV4, FlowerV5, LeafV3,
+    MakerV5, ObstacleV3, PlantV4, SketchV3, SkinV1, StrokeV1, TreeV3, from_file, to_file,
 };
 use crate::makers::{FlowerMaker, LeafData, LeafMaker, Maker, NamedObstacle, SketchSettings, TreeSettings};
+use crate::picture::MAX_PICTURES;
 use crate::state::{MAX_PLANTS, Placement, PlantEdit, range_fault, shortened};
-use crate::{Document, DocumentPlant, DocumentStroke, Photo, PhotoError, PlantId, SettingFault, Settings};
+use crate::{
+    Document, DocumentPlant, DocumentStroke, Photo, PhotoError, Picture, PictureError, Pictures, PlantId,
+    SettingFault, Settings,
+};
 
 /// The form that this version writes, as `manifest.json` names it.
-pub const PROJECT_SCHEMA: &str = "project/5";
+pub const PROJECT_SCHEMA: &str = "project/6";
 /// Earlier forms that are read.
-const EARLIER: [&str; 4] = ["project/1", "project/2", "project/3", "project/4"];
+const EARLIER: [&str; 5] = ["project/1", "project/2", "project/3", "project/4", "project/5"];
 /// Largest project file that is read, and largest entry in it: 64 MiB and 256 MiB.
 pub const MAX_PROJECT_BYTES: usize = 64 << 20;
 const MAX_ENTRY_BYTES: usize = 256 << 20;
@@ -86,6 +91,9 @@ pub enum ProjectError {
     /// The photograph cannot be used.
     #[error("project file, photograph: {0}")]
     Photo(#[from] PhotoError),
+    /// A picture of a material cannot be used.
+    #[error("project file: {0}")]
+    Picture(#[from] PictureError),
     /// Beyond the bounds that keep hostile files harmless.
     #[error("project file: more than {limit} {what}; split the drawing")]
     TooMuch {
@@ -125,7 +133,7 @@ pub fn write_project(document: &Document, version: &str) -> Result<Vec<u8>, Proj
     let row =
         |id: PlantId| document.plants().iter().position(|p| p.id() == id).and_then(|r| u32::try_from(r).ok());
     let plants = document.plants().iter().map(|p| plant_to_file(p, &row)).collect();
-    let file = DocumentV5 { name: document.name().into(), plants };
+    let file = DocumentV6 { name: document.name().into(), plants };
     let manifest = Manifest { burgeon: PROJECT_SCHEMA.into(), made_by: version.into() };
     let json = |entry, source| ProjectError::Json { entry, source };
     let mut files = vec![
@@ -135,11 +143,18 @@ pub fn write_project(document: &Document, version: &str) -> Result<Vec<u8>, Proj
     for (row, plant) in document.plants().iter().enumerate() {
         files.extend(plant.settings().photo().map(|p| (photo_name(row), p.png().to_vec())));
     }
+    // Plants that wear the same picture share it.
+    let pictures = base::map_of(document.plants().iter().flat_map(|p| &p.settings().pictures));
+    files.extend(pictures.into_iter().map(|(name, picture)| (picture_name(name), picture.png().to_vec())));
     Ok(pack(&files)?)
 }
 
 fn photo_name(row: usize) -> String {
     format!("photo-{row}.png")
+}
+
+fn picture_name(name: &str) -> String {
+    format!("picture-{name}.png")
 }
 
 fn plant_to_file(plant: &DocumentPlant, row: &dyn Fn(PlantId) -> Option<u32>) -> PlantV4<MakerV5> {
@@ -149,6 +164,7 @@ fn plant_to_file(plant: &DocumentPlant, row: &dyn Fn(PlantId) -> Option<u32>) ->
             sketch: k.sketch.clone(),
             skin: SkinV1::from(&k.skin),
             strokes: plant.strokes().iter().map(to_file).collect(),
+            layers: k.layers.clone(),
             photo: k.photo.as_ref().map(|p| p.place),
             day: k.day,
             leaf: k.leaf.and_then(row),
@@ -187,6 +203,8 @@ fn plant_to_file(plant: &DocumentPlant, row: &dyn Fn(PlantId) -> Option<u32>) ->
         position: position.to_array(),
         yaw_deg,
         scale,
+        wear: s.wear.clone(),
+        pictures: s.pictures.keys().cloned().collect(),
         maker,
         edits: edits.collect(),
     }
@@ -227,11 +245,31 @@ pub fn read_project(bytes: &[u8]) -> Result<Document, ProjectError> {
     };
     drop(document);
     let earlier = matches!(form, "project/1" | "project/2");
-    checked(file, |row| {
-        let name = if earlier { PHOTO.to_owned() } else { photo_name(row) };
+    let entry = |name: String| {
         let png = unpack(bytes, &[&name], MAX_ENTRY_BYTES)?.remove(&name);
-        Ok(Photo::new(png.ok_or(ProjectError::Missing(name))?.into())?)
-    })
+        png.ok_or(ProjectError::Missing(name))
+    };
+    let photo = |row| {
+        let png = entry(if earlier { PHOTO.to_owned() } else { photo_name(row) })?;
+        Ok(Photo::new(png.into())?)
+    };
+    let mut had = Pictures::new();
+    let mut pictures = |names: Vec<String>| {
+        if names.len() > MAX_PICTURES {
+            return Err(ProjectError::Setting(SettingFault::Pictures));
+        }
+        let mut own = Pictures::new();
+        for name in names {
+            let picture = match had.get(&name) {
+                Some(picture) => picture.clone(),
+                None => Picture::new(entry(picture_name(&name))?.into())?,
+            };
+            had.insert(name.clone(), picture.clone());
+            own.insert(name, picture);
+        }
+        Ok(own)
+    };
+    checked(file, photo, &mut pictures)
 }
 
 /// As text, because commands are read from text: reading from bytes would be all the same code once more.
@@ -240,8 +278,9 @@ fn from_json<'a, T: Deserialize<'a>>(bytes: &'a [u8]) -> Result<T, serde_json::E
 }
 
 fn checked(
-    file: DocumentV5,
+    file: DocumentV6,
     photo: impl Fn(usize) -> Result<Photo, ProjectError>,
+    pictures_of: &mut dyn FnMut(Vec<String>) -> Result<Pictures, ProjectError>,
 ) -> Result<Document, ProjectError> {
     if file.plants.len() > MAX_PLANTS {
         return Err(ProjectError::TooMuch { what: "plants", limit: MAX_PLANTS });
@@ -258,7 +297,20 @@ fn checked(
     let mut document =
         Document { name: shortened(&file.name), plants: Vec::new(), next_stroke: 0, next_plant: 0 };
     for (row, plant) in file.plants.into_iter().enumerate() {
-        let PlantV4 { name, seed, locked, fixed, hidden, position, yaw_deg, scale, maker, edits } = plant;
+        let PlantV4 {
+            name,
+            seed,
+            locked,
+            fixed,
+            hidden,
+            position,
+            yaw_deg,
+            scale,
+            wear,
+            pictures,
+            maker,
+            edits,
+        } = plant;
         let (maker, strokes) = match maker {
             MakerV5::Sketch(sketch) => from_sketch(sketch, row, &photo)?,
             MakerV5::Tree(tree) => (from_tree(tree)?, Vec::new()),
@@ -278,6 +330,8 @@ fn checked(
             fixed,
             hidden,
             placement: Placement { position: DVec3::from_array(position), yaw_deg, scale },
+            wear: Wear { strokes: Vec::new(), ..wear },
+            pictures: pictures_of(pictures)?,
             maker,
             edits: edits.into_iter().map(|e| PlantEdit { edit: Arc::new(e.edit), off: e.off }).collect(),
         };
@@ -287,8 +341,15 @@ fn checked(
         let mut kept = Vec::with_capacity(strokes.len());
         for (row, stroke) in strokes.into_iter().enumerate() {
             let (class, shown) = (stroke.class, stroke.shown);
+            let material = stroke.material.clone().map(Arc::new);
             let stroke = from_file(stroke).map_err(|what| ProjectError::Stroke { row, what })?;
-            kept.push(DocumentStroke { id: document.give_stroke(), stroke: Arc::new(stroke), class, shown });
+            kept.push(DocumentStroke {
+                id: document.give_stroke(),
+                stroke: Arc::new(stroke),
+                class,
+                shown,
+                material,
+            });
         }
         document.plants.push(DocumentPlant { id: PlantId(document.next_plant), settings, strokes: kept });
         document.next_plant += 1;
@@ -303,13 +364,13 @@ fn from_sketch(
     row: usize,
     photo: &impl Fn(usize) -> Result<Photo, ProjectError>,
 ) -> Result<(Maker, Vec<StrokeV1>), ProjectError> {
-    let SketchV3 { sketch, skin, strokes, photo: lies, day, leaf } = sketch;
+    let SketchV3 { sketch, skin, strokes, layers, photo: lies, day, leaf } = sketch;
     let photo = match lies {
         Some(place) => Some(Photo { place, ..photo(row)? }),
         None => None,
     };
     let skin = skin.spec().map_err(ProjectError::Setting)?;
-    let settings = SketchSettings { sketch, skin, photo, day, leaf: leaf.map(PlantId) };
+    let settings = SketchSettings { sketch, skin, layers, photo, day, leaf: leaf.map(PlantId) };
     Ok((Maker::Sketch(Box::new(settings)), strokes))
 }
 
@@ -348,4 +409,5 @@ base::coded!(ProjectError {
 } wraps {
     Self::Tree(e) => e, SpecFault;
     Self::Photo(e) => e, PhotoError;
+    Self::Picture(e) => e, PictureError;
 });

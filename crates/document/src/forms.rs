@@ -1,17 +1,24 @@
 //! The structs of each form of `document.json`, and how a form becomes the next.
 
+use std::sync::Arc;
+
 use bloom::{FlowerSpec, GrowthLaw};
 use glam::DVec2;
 use growth::Obstacle;
-use ink::{InkSample, Stroke, StrokeClass, StrokeMode};
+use ink::{InkSample, Layer, Stroke, StrokeClass, StrokeMode};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use shape::HandEdit;
 use sketch::SketchSpec;
-use skin::{PetalColor, SkinSpec};
+use skin::{OrganMaterial, PetalColor, SkinSpec, Wear};
 
 use crate::makers::{DEFAULT_DAY, DEFAULT_FLOWER};
+use crate::state::is_width;
 use crate::{DocumentStroke, PhotoPlace, SettingFault};
+
+/// Form 6: as form 5, with materials of organs, layers, and widths of the pen. All of these may be left out, so the structs
+/// of form 5 have them too.
+pub(crate) type DocumentV6 = DocumentV5;
 
 /// Form 5: as form 4, with the whole spec of a flower, and plants that stay where they stand.
 pub(crate) type DocumentV5 = DocumentV4<MakerV5>;
@@ -42,6 +49,12 @@ pub(crate) struct PlantV4<M> {
     pub(crate) yaw_deg: f64,
     #[serde(default = "one")]
     pub(crate) scale: f64,
+    /// From form 6 on; of strokes, see [`StrokeV1::material`].
+    #[serde(default, skip_serializing_if = "is_bare", deserialize_with = "spec::through_json::read")]
+    pub(crate) wear: Wear,
+    /// The names of its pictures `picture-NAME.png`; from form 6 on.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) pictures: Vec<String>,
     pub(crate) maker: M,
     /// In the order in which they are done.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -63,9 +76,35 @@ impl TryFrom<DocumentV4> for DocumentV5 {
 
     fn try_from(v4: DocumentV4) -> Result<Self, SettingFault> {
         let plants = v4.plants.into_iter().map(|p| {
-            let PlantV4 { name, seed, locked, fixed, hidden, position, yaw_deg, scale, maker, edits } = p;
+            let PlantV4 {
+                name,
+                seed,
+                locked,
+                fixed,
+                hidden,
+                position,
+                yaw_deg,
+                scale,
+                wear,
+                pictures,
+                maker,
+                edits,
+            } = p;
             let maker = maker.try_into()?;
-            Ok(PlantV4 { name, seed, locked, fixed, hidden, position, yaw_deg, scale, maker, edits })
+            Ok(PlantV4 {
+                name,
+                seed,
+                locked,
+                fixed,
+                hidden,
+                position,
+                yaw_deg,
+                scale,
+                wear,
+                pictures,
+                maker,
+                edits,
+            })
         });
         Ok(Self { name: v4.name, plants: plants.collect::<Result<_, SettingFault>>()? })
     }
@@ -75,8 +114,21 @@ impl From<DocumentV3> for DocumentV4 {
     fn from(v3: DocumentV3) -> Self {
         let plants = v3.plants.into_iter().map(|p| {
             let PlantV3 { name, seed, locked, hidden, position, yaw_deg, scale, maker } = p;
-            let (fixed, edits) = (false, Vec::new());
-            PlantV4 { name, seed, locked, fixed, hidden, position, yaw_deg, scale, maker, edits }
+            let (fixed, edits, wear, pictures) = (false, Vec::new(), Wear::default(), Vec::new());
+            PlantV4 {
+                name,
+                seed,
+                locked,
+                fixed,
+                hidden,
+                position,
+                yaw_deg,
+                scale,
+                wear,
+                pictures,
+                maker,
+                edits,
+            }
         });
         Self { name: v3.name, plants: plants.collect() }
     }
@@ -111,6 +163,10 @@ pub(crate) struct PlantV3 {
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde's signature")]
 fn is_false(b: &bool) -> bool {
     !b
+}
+
+fn is_bare(wear: &Wear) -> bool {
+    *wear == Wear::default()
 }
 
 fn one() -> f64 {
@@ -157,6 +213,9 @@ pub(crate) struct SketchV3 {
     #[serde(default)]
     pub(crate) skin: SkinV1,
     pub(crate) strokes: Vec<StrokeV1>,
+    /// From below upwards; from form 6 on.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) layers: Vec<Layer>,
     /// How `photo-ROW.png` lies under the drawing, with ROW the plant's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) photo: Option<PhotoPlace>,
@@ -260,7 +319,15 @@ impl TryFrom<FlowerV3> for FlowerV5 {
 impl From<DocumentV2> for DocumentV3 {
     fn from(v2: DocumentV2) -> Self {
         let DocumentV2 { name, seed, sketch, skin, strokes, photo } = v2;
-        let maker = MakerV3::Sketch(SketchV3 { sketch, skin, strokes, photo, day: None, leaf: None });
+        let maker = MakerV3::Sketch(SketchV3 {
+            sketch,
+            skin,
+            strokes,
+            layers: Vec::new(),
+            photo,
+            day: None,
+            leaf: None,
+        });
         let plant = PlantV3 {
             name: name.clone(),
             seed,
@@ -350,6 +417,15 @@ pub(crate) struct StrokeV1 {
     pub(crate) shown: Option<StrokeClass>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) color: Option<[u8; 3]>,
+    /// From form 6 on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) width: Option<f64>,
+    /// Name of its layer; from form 6 on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) layer: Option<Arc<str>>,
+    /// From form 6 on.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "spec::through_json::read")]
+    pub(crate) material: Option<OrganMaterial>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) id: Option<String>,
     pub(crate) x: Vec<f64>,
@@ -388,6 +464,9 @@ pub(crate) fn to_file(s: &DocumentStroke) -> StrokeV1 {
         class: s.class,
         shown: s.shown,
         color: s.stroke.color,
+        width: s.stroke.width,
+        layer: s.stroke.layer.clone(),
+        material: s.material.as_deref().cloned(),
         id: s.stroke.id.clone(),
         x: samples.iter().map(|p| p.at.x).collect(),
         y: samples.iter().map(|p| p.at.y).collect(),
@@ -415,5 +494,16 @@ pub(crate) fn from_file(s: StrokeV1) -> Result<Stroke, &'static str> {
     if samples.iter().any(|p| !p.at.is_finite()) {
         return Err("a point is not finite; the file is damaged");
     }
-    Ok(Stroke { samples, mode: s.mode, color: s.color, id: s.id })
+    if s.width.is_some_and(|w| !is_width(w)) {
+        return Err("its width is none; the file is damaged");
+    }
+    Ok(Stroke {
+        samples,
+        mode: s.mode,
+        color: s.color,
+        width: s.width,
+        layer: s.layer,
+        hidden: false,
+        id: s.id,
+    })
 }

@@ -4,13 +4,15 @@ use std::sync::Arc;
 
 use bloom::{FlowerSpec, GrowthLaw};
 use growth::{Obstacle, TreeSpec};
+use ink::Layer;
 use leaf::LeafSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sketch::SketchSpec;
 use skin::SkinSpec;
 
-use crate::fault::MAX_OBSTACLES;
+use crate::fault::{MAX_LAYERS, MAX_OBSTACLES};
+use crate::state::shortened;
 use crate::{Photo, PlantId, SettingFault};
 
 /// The maker of a plant, and what it is asked for. Strokes of a sketch lie beside it, in [`crate::DocumentPlant::strokes`].
@@ -84,6 +86,8 @@ pub struct SketchSettings {
     pub sketch: SketchSpec,
     /// How the plant is meshed and coloured. Its `seed` is not saved: it always follows the plant's.
     pub skin: SkinSpec,
+    /// Its layers from below upwards, at most 100; strokes name theirs.
+    pub layers: Vec<Layer>,
     /// What lies under the drawing.
     pub photo: Option<Photo>,
     /// The day at which its flowers are shown, 0 (bud) to 100; none shows them as they are drawn.
@@ -96,8 +100,19 @@ impl SketchSettings {
     fn fault(&self) -> Option<SettingFault> {
         let photo = self.photo.as_ref().and_then(Photo::fault);
         let day = || day_fault(self.day.unwrap_or(0.0));
-        fault(&self.sketch).or(photo).or_else(|| fault(&self.skin)).or_else(day)
+        let layers = || layers_fault(&self.layers);
+        fault(&self.sketch).or_else(layers).or(photo).or_else(|| fault(&self.skin)).or_else(day)
     }
+}
+
+fn layers_fault(layers: &[Layer]) -> Option<SettingFault> {
+    if layers.len() > MAX_LAYERS {
+        return Some(SettingFault::Layers);
+    }
+    let names = base::set_of(layers.iter().map(|l| &l.name));
+    let sound = |l: &Layer| !l.name.trim().is_empty() && *shortened(&l.name) == *l.name;
+    let named = names.len() == layers.len() && layers.iter().all(sound);
+    (!named).then_some(SettingFault::LayerName)
 }
 
 /// A tree that is grown. Its spec is checked when it is grown.

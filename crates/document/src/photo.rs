@@ -64,6 +64,14 @@ pub enum PhotoError {
     TooLarge,
 }
 
+/// Pixels across and down, each above 0, as the header of a PNG says; `None` for what is none.
+pub(crate) fn png_size(png: &[u8]) -> Option<(u32, u32)> {
+    let header = png.get(..24).filter(|h| h.starts_with(b"\x89PNG\r\n\x1a\n") && &h[12..16] == b"IHDR")?;
+    let number = |at: usize| u32::from_be_bytes([header[at], header[at + 1], header[at + 2], header[at + 3]]);
+    let size = (number(16), number(20));
+    (size.0 > 0 && size.1 > 0).then_some(size)
+}
+
 impl Photo {
     /// A photograph whose left lower corner is at the origin, one unit wide, half strong, that paints.
     ///
@@ -76,14 +84,7 @@ impl Photo {
     /// assert!(document::Photo::new(b"GIF89a".as_slice().into()).is_err());
     /// ```
     pub fn new(png: Arc<[u8]>) -> Result<Self, PhotoError> {
-        let header = png.get(..24).filter(|h| h.starts_with(b"\x89PNG\r\n\x1a\n") && &h[12..16] == b"IHDR");
-        let header = header.ok_or(PhotoError::NotPng)?;
-        let number =
-            |at: usize| u32::from_be_bytes([header[at], header[at + 1], header[at + 2], header[at + 3]]);
-        let size = (number(16), number(20));
-        if size.0 == 0 || size.1 == 0 {
-            return Err(PhotoError::NotPng);
-        }
+        let size = png_size(&png).ok_or(PhotoError::NotPng)?;
         if size.0.max(size.1) > MAX_SIDE || png.len() > MAX_PHOTO_BYTES {
             return Err(PhotoError::TooLarge);
         }

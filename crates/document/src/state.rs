@@ -5,14 +5,16 @@ use std::sync::Arc;
 
 use base::Seed;
 use glam::{DVec2, DVec3};
-use ink::{Drawing, Stroke, StrokeClass};
+use ink::{Drawing, Layer, Stroke, StrokeClass};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use shape::HandEdit;
+use skin::{OrganMaterial, Pattern, StrokeWear, Wear};
 
 use crate::fault::MAX_EDITS;
 use crate::ids::{PlantId, StrokeId};
-use crate::{Maker, Photo, SettingFault, SketchSettings};
+use crate::picture::{MAX_PICTURES, material_fault};
+use crate::{Maker, Photo, Pictures, SettingFault, SketchSettings};
 
 /// One stroke of a sketch.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,6 +28,8 @@ pub struct DocumentStroke {
     /// What the person was shown it as, clearly, when the last stroke was drawn: it is not read as something else without
     /// clear evidence. `None` for what came from a file of strokes.
     pub shown: Option<StrokeClass>,
+    /// The material of the leaves and petals that are read from it; `None` leaves it to their plant.
+    pub material: Option<Arc<OrganMaterial>>,
 }
 
 /// Where a plant stands: scaled, turned about the vertical, then moved.
@@ -70,6 +74,10 @@ pub struct Settings {
     pub hidden: bool,
     /// Where it stands.
     pub placement: Placement,
+    /// The materials of its organs by their kinds; `strokes` is empty, as strokes have theirs with them.
+    pub wear: Wear,
+    /// The pictures that its materials name, at most 16.
+    pub pictures: Pictures,
     /// Its maker, and what the maker is asked for.
     pub maker: Maker,
     /// Edits by hand, in the order in which they are done; of sketches and trees only, at most 1,000.
@@ -100,6 +108,8 @@ impl Default for Settings {
             fixed: false,
             hidden: false,
             placement: Placement::default(),
+            wear: Wear::default(),
+            pictures: Pictures::new(),
             maker: Maker::default(),
             edits: Vec::new(),
         }
@@ -117,6 +127,21 @@ impl Settings {
         let fault = |(row, e): (usize, &PlantEdit)| Some((row, e.edit.check().err()?));
         let (row, why) = self.edits.iter().enumerate().find_map(fault)?;
         Some(SettingFault::Edit { row, why: why.to_string() })
+    }
+
+    /// Forgets pictures that no material names; `strokes`: the materials of strokes.
+    pub(crate) fn keep_pictures<'a>(&mut self, strokes: impl Iterator<Item = &'a OrganMaterial>) {
+        let named = |m: &OrganMaterial| m.picture.clone();
+        let worn = self.wear.materials().filter_map(named).chain(strokes.filter_map(named));
+        let worn = base::set_of(worn);
+        self.pictures.retain(|name, _| worn.contains(name));
+    }
+
+    fn wear_fault(&self) -> Option<SettingFault> {
+        if self.pictures.len() > MAX_PICTURES {
+            return Some(SettingFault::Pictures);
+        }
+        self.wear.materials().find_map(|m| material_fault(m, &self.pictures))
     }
 
     /// The settings of a sketch; `None` for other makers.
@@ -156,8 +181,37 @@ impl DocumentPlant {
 
     /// The strokes as the sketch maker takes them; row `i` is `strokes()[i]`. Cost: a copy of every point.
     pub fn drawing(&self) -> Drawing {
-        let strokes = self.strokes.iter().map(|s| Stroke::clone(&s.stroke)).collect();
-        Drawing { name: self.settings.name.clone(), strokes }
+        let hidden = |s: &DocumentStroke| self.layer_of(s).is_some_and(|l| l.hidden);
+        let stroke = |s| Stroke { hidden: hidden(s), ..Stroke::clone(&s.stroke) };
+        let strokes = self.strokes.iter().map(stroke).collect();
+        Drawing { name: self.settings.name.clone(), strokes, layers: self.layers().to_vec() }
+    }
+
+    /// The layers of a sketch from below upwards; none for other makers.
+    pub fn layers(&self) -> &[Layer] {
+        self.settings.sketch().map_or(&[], |s| &s.layers)
+    }
+
+    /// The layer of a stroke; `None` for the sheet itself.
+    pub fn layer_of(&self, stroke: &DocumentStroke) -> Option<&Layer> {
+        let name = stroke.stroke.layer.as_ref()?;
+        self.layers().iter().find(|l| l.name == *name)
+    }
+
+    /// Which organs wear which material: kinds, and strokes by row of [`DocumentPlant::drawing`].
+    pub fn wear(&self) -> Wear {
+        let mut wear = Wear { strokes: Vec::new(), ..self.settings.wear.clone() };
+        for (row, s) in (0..).zip(&self.strokes) {
+            let Some(material) = &s.material else { continue };
+            match wear.strokes.iter_mut().find(|w| w.material == **material) {
+                Some(same) => same.strokes.push(row),
+                None => {
+                    let material = OrganMaterial::clone(material);
+                    wear.strokes.push(StrokeWear { strokes: vec![row], material });
+                }
+            }
+        }
+        wear
     }
 
     /// Classes that the person set, by row of [`DocumentPlant::drawing`].
@@ -173,6 +227,19 @@ impl DocumentPlant {
     /// The row of a stroke.
     pub fn row(&self, id: StrokeId) -> Option<usize> {
         self.strokes.iter().position(|s| s.id == id)
+    }
+
+    /// Materials without their pictures.
+    fn leave_pictures(&mut self) {
+        let plain = |m: &mut OrganMaterial| {
+            if m.picture.take().is_some() {
+                m.pattern = Pattern::Plain;
+            }
+        };
+        let Settings { wear, pictures, .. } = &mut self.settings;
+        pictures.clear();
+        [&mut wear.leaf, &mut wear.petal, &mut wear.sepal].into_iter().flatten().for_each(plain);
+        self.strokes.iter_mut().filter_map(|s| s.material.as_mut()).for_each(|m| plain(Arc::make_mut(m)));
     }
 
     fn round(&mut self) {
@@ -244,6 +311,9 @@ pub enum DocumentFault {
     /// A point is NaN or infinite, or there is no point.
     #[error("stroke {} has no point or one that is not finite", .0.0)]
     NotFinite(StrokeId),
+    /// A stroke lies on a layer that is not there.
+    #[error("stroke {} lies on a layer that is not there", .0.0)]
+    Layer(StrokeId),
     /// Strokes where no sketch is.
     #[error("plant {} has strokes but is no sketch", .0.0)]
     Strokes(PlantId),
@@ -274,14 +344,30 @@ impl Document {
         for stroke in &drawing.strokes {
             if let Some(stroke) = sound(stroke.clone()) {
                 let id = document.give_stroke();
-                strokes.push(DocumentStroke { id, stroke: Arc::new(stroke), class: None, shown: None });
+                let stroke = Arc::new(stroke);
+                strokes.push(DocumentStroke { id, stroke, class: None, shown: None, material: None });
             }
         }
         if let Some(plant) = document.plants.first_mut() {
             plant.settings.name = shortened(&drawing.name);
+            if let Maker::Sketch(sketch) = &mut plant.settings.maker {
+                sketch.layers.clone_from(&drawing.layers);
+            }
             plant.strokes = strokes;
         }
         document
+    }
+
+    /// Gives the first sketch what a plant with the same strokes wears: materials, pictures, layers.
+    pub fn dress(&mut self, like: &DocumentPlant) {
+        let Some(plant) = self.plants.first_mut().filter(|p| p.strokes.len() == like.strokes.len()) else {
+            return;
+        };
+        plant.settings.wear.clone_from(&like.settings.wear);
+        plant.settings.pictures.clone_from(&like.settings.pictures);
+        for (own, other) in plant.strokes.iter_mut().zip(&like.strokes) {
+            own.material.clone_from(&other.material);
+        }
     }
 
     /// Name of the scene, for its file. At most 200 characters.
@@ -322,7 +408,7 @@ impl Document {
     }
 
     /// A smaller document that looks the same: points on a grid of at most 1/10,000 of the drawing's diagonal, without
-    /// their times; without photographs. For links, not for files.
+    /// their times; without photographs and pictures, for which materials are plain. For links, not for files.
     pub fn compact(&self) -> Self {
         let mut document = self.clone();
         for plant in &mut document.plants {
@@ -330,6 +416,7 @@ impl Document {
             if let Maker::Sketch(s) = &mut plant.settings.maker {
                 s.photo = None;
             }
+            plant.leave_pictures();
         }
         document
     }
@@ -350,6 +437,13 @@ impl Document {
             let odd = (!finite).then_some(DocumentFault::NotFinite(s.id));
             [same, future, odd].into_iter().flatten()
         });
+        let look = self.plants.iter().flat_map(|p| {
+            let layer = |s: &&DocumentStroke| s.stroke.layer.is_some() && p.layer_of(s).is_none();
+            let layer = p.strokes.iter().find(layer).map(|s| DocumentFault::Layer(s.id));
+            let mut worn = p.strokes.iter().filter_map(|s| s.material.as_ref());
+            let fault = worn.find_map(|m| material_fault(m, &p.settings.pictures));
+            [layer, fault.map(DocumentFault::Setting)].into_iter().flatten()
+        });
         let mut known = BTreeSet::new();
         let plants = self.plants.iter().flat_map(move |p| {
             let taken = !known.insert(p.id) || p.id.0 >= self.next_plant;
@@ -367,7 +461,7 @@ impl Document {
         });
         let name = too_long(&self.name).then_some(DocumentFault::Name);
         let many = (self.plants.len() > MAX_PLANTS).then_some(DocumentFault::Plants);
-        strokes.chain(plants).chain(name).chain(many)
+        strokes.chain(look).chain(plants).chain(name).chain(many)
     }
 }
 
@@ -380,17 +474,31 @@ pub(crate) fn shortened(name: &str) -> String {
     name.chars().map(|c| if c.is_control() { ' ' } else { c }).take(NAME_LENGTH).collect()
 }
 
-/// The stroke with finite points only; `None` if there is none. Unknown times and pressures stay unknown.
+/// The stroke with finite points only; `None` if there is none. Unknown times and pressures stay unknown. Whether it is
+/// seen is its layer's matter.
 pub(crate) fn sound(mut stroke: Stroke) -> Option<Stroke> {
     stroke.samples.retain(|p| p.at.is_finite());
     for p in &mut stroke.samples {
         p.time_ms = p.time_ms.filter(|t| t.is_finite());
         p.pressure = p.pressure.filter(|t| t.is_finite());
     }
+    stroke.width = stroke.width.filter(|&w| is_width(w));
+    stroke.hidden = false;
     (!stroke.samples.is_empty()).then_some(stroke)
+}
+
+/// Whether a pen can be so wide, in the drawing's unit.
+pub(crate) fn is_width(width: f64) -> bool {
+    (1e-9..=1e9).contains(&width)
 }
 
 /// The first setting that is out of its range, `None` if all are sound.
 pub fn range_fault(settings: &Settings) -> Option<SettingFault> {
-    settings.maker.fault().or_else(|| settings.placement.fault()).or_else(|| settings.edits_fault())
+    let wear = || settings.wear_fault();
+    settings
+        .maker
+        .fault()
+        .or_else(wear)
+        .or_else(|| settings.placement.fault())
+        .or_else(|| settings.edits_fault())
 }

@@ -44,6 +44,32 @@ fn edited(maker: &str, edit: &str) -> Vec<u8> {
     project(V4, &format!(r#"{{"name":"a","plants":[{plant}]}}"#))
 }
 
+/// A material whose picture is not in the file, and layers of one name.
+#[test]
+fn materials_and_layers_that_do_not_hold_together_are_refused() {
+    let v6 = r#"{"burgeon":"project/6"}"#;
+    let plant = |more: &str, sketch: &str| {
+        let strokes = r#"[{"x":[0,1],"y":[0,1],"layer":"a"}]"#;
+        let maker = format!(r#"{{"sketch":{{"strokes":{strokes}{sketch}}}}}"#);
+        let plant = format!(r#"{{"name":"a","seed":1{more},"maker":{maker}}}"#);
+        project(v6, &format!(r#"{{"name":"a","plants":[{plant}]}}"#))
+    };
+    let sound = r#","layers":[{"name":"a"}]"#;
+    assert!(read_project(&plant("", sound)).is_ok());
+    let worn = |picture: &str| format!(r#","wear":{{"leaf":{{"pattern":"picture"{picture}}}}}"#);
+    for (more, sketch, words) in [
+        (String::new(), "", "a layer that is not there"),
+        (String::new(), r#","layers":[{"name":"a"},{"name":"a"}]"#, "a name of its own"),
+        (worn(""), sound, "the picture of a material is not there"),
+        (worn(r#","picture":"x""#), sound, "the picture of a material is not there"),
+        (r#","pictures":["x"]"#.into(), sound, "picture-x.png"),
+        (r#","wear":{"leaf":{"amount":7}}"#.into(), sound, "amount"),
+    ] {
+        let said = refusal(&plant(&more, sketch));
+        assert!(said.contains(words), "{said}");
+    }
+}
+
 #[test]
 fn refusals_say_what_and_what_to_do() {
     assert!(is_project(&sample()));
@@ -53,7 +79,7 @@ fn refusals_say_what_and_what_to_do() {
         (sample()[..sample().len() / 2].to_vec(), "not a whole zip"),
         (pack(&[("x.txt".into(), vec![1])]).unwrap(), "no \"manifest.json\""),
         (pack(&[("manifest.json".into(), V1.into())]).unwrap(), "no \"document.json\""),
-        (project(r#"{"burgeon":"project/6"}"#, "{}"), "take a newer Burgeon"),
+        (project(r#"{"burgeon":"project/7"}"#, "{}"), "take a newer Burgeon"),
         (
             project(
                 V2,
@@ -200,6 +226,26 @@ fn files_of_version_5_stay_readable() {
     let Maker::Flower(flower) = &lily.settings().maker else { panic!("{lily:?}") };
     assert_eq!((flower.preset.as_deref(), flower.day, flower.spec.nod_deg), (Some("lily"), 3.25, 40.0));
     assert_eq!((flower.spec.whorls[0].tip_color, flower.spec.whorls.len()), ([0.9, 0.2, 0.1], 3));
+    let again = read_project(&write_project(&document, "test").unwrap()).unwrap();
+    assert_eq!(again, document);
+}
+
+/// A drawing with layers, a wide pen, materials of a kind and of a stroke, and a picture.
+#[test]
+fn files_of_version_6_stay_readable() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/projects/version-6.burgeon");
+    let document = read_project(&std::fs::read(path).unwrap()).unwrap();
+    let plant = only(&document);
+    let names: Vec<_> = plant.layers().iter().map(|l| (&*l.name, l.hidden, l.locked)).collect();
+    assert_eq!(names, [("stem", false, true), ("petals", false, false), ("notes", true, false)]);
+    let on = |name: &str| plant.strokes().iter().filter(|s| s.stroke.layer.as_deref() == Some(name)).count();
+    assert_eq!((on("petals"), on("notes")), (2, 1));
+    assert_eq!(plant.strokes()[0].stroke.width, Some(2.5));
+    let wear = plant.wear();
+    assert_eq!(wear.petal.as_ref().map(|m| m.pattern), Some(skin::Pattern::Picotee));
+    assert_eq!((wear.strokes.len(), wear.strokes[0].material.pattern), (1, skin::Pattern::Picture));
+    let picture = wear.strokes[0].material.picture.as_ref().unwrap();
+    assert_eq!(&plant.settings().pictures[picture].name(), picture);
     let again = read_project(&write_project(&document, "test").unwrap()).unwrap();
     assert_eq!(again, document);
 }

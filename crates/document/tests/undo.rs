@@ -5,17 +5,17 @@ use std::sync::Arc;
 use base::Seed;
 use document::{
     Command, CommandError, Document, Editor, FlowerCommand, LeafCommand, LeafData, Maker, NamedObstacle,
-    NewPlant, NewStroke, Photo, PhotoPlace, Placement, PlantCommand, PlantId, SceneCommand, Settings,
-    ShapeCommand, SketchCommand, StrokeId, TreeCommand, read_project, write_project,
+    NewPlant, NewStroke, Photo, PhotoPlace, Picture, Placement, PlantCommand, PlantId, SceneCommand,
+    Settings, ShapeCommand, SketchCommand, StrokeId, TreeCommand, read_project, write_project,
 };
 use glam::{DVec2, DVec3};
 use growth::{Obstacle, TreeSpec};
-use ink::{Drawing, InkSample, Stroke, StrokeClass, StrokeMode, StrokePull, StrokeTurn};
+use ink::{Drawing, InkSample, Layer, Stroke, StrokeClass, StrokeMode, StrokePull, StrokeTurn};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use shape::{AxisKey, Destination, HandEdit, LeafRegion, Turn, ViewPlane};
 use sketch::SketchSpec;
-use skin::SkinSpec;
+use skin::{OrganMaterial, Pattern, SkinSpec, Wearer};
 
 fn point() -> impl Strategy<Value = DVec2> {
     let number = prop_oneof![
@@ -31,9 +31,39 @@ fn stroke() -> impl Strategy<Value = NewStroke> {
     (vec(sample, 0..12), 0..3usize, proptest::option::of(any::<[u8; 3]>())).prop_map(
         |(samples, mode, color)| {
             let mode = [StrokeMode::Parts, StrokeMode::BranchContour, StrokeMode::LeafContour][mode];
-            NewStroke { stroke: Stroke { samples, mode, color, id: None }, ..NewStroke::default() }
+            NewStroke { stroke: Stroke { samples, mode, color, ..Stroke::default() }, ..NewStroke::default() }
         },
     )
+}
+
+/// Some of them name a picture that may not be there.
+fn material() -> impl Strategy<Value = Option<OrganMaterial>> {
+    let made = (0..Pattern::ALL.len(), -0.2..1.2f64, any::<bool>()).prop_map(|(pattern, amount, there)| {
+        let pattern = Pattern::ALL[pattern];
+        let name = if there { picture().name() } else { "none".into() };
+        let picture = (pattern == Pattern::Picture).then_some(name);
+        OrganMaterial { pattern, amount, picture, ..OrganMaterial::default() }
+    });
+    proptest::option::of(made)
+}
+
+fn picture() -> Picture {
+    let png = [&b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x02\0\0\0\x03"[..], &[7; 9]].concat();
+    Picture::new(png.into()).expect("a PNG header")
+}
+
+fn layer_command() -> impl Strategy<Value = SketchCommand> {
+    let ids = || vec((0..12u32).prop_map(StrokeId), 0..4);
+    let name = || prop_oneof![Just("petals"), Just("stem"), Just(" ")].prop_map(str::to_owned);
+    let layer = (name(), any::<bool>(), any::<bool>());
+    let layer = layer.prop_map(|(name, hidden, locked)| Layer { name: name.into(), hidden, locked });
+    prop_oneof![
+        3 => name().prop_map(SketchCommand::AddLayer),
+        2 => (0..3usize, layer).prop_map(|(row, layer)| SketchCommand::SetLayer(row, layer)),
+        1 => (0..3usize, 0..3usize).prop_map(|(from, to)| SketchCommand::MoveLayer(from, to)),
+        1 => (0..3usize).prop_map(SketchCommand::RemoveLayer),
+        3 => (ids(), proptest::option::of(name())).prop_map(|(ids, name)| SketchCommand::PutOn(ids, name)),
+    ]
 }
 
 /// Most plants of a test have a number below this.
@@ -68,6 +98,9 @@ fn sketch_command() -> impl Strategy<Value = SketchCommand> {
             })
         }),
         1 => Just(SketchCommand::Clear),
+        1 => (ids(), proptest::option::of(-1.0..9.0f64)).prop_map(|(ids, w)| SketchCommand::SetWidth(ids, w)),
+        1 => (ids(), material()).prop_map(|(ids, m)| SketchCommand::SetMaterial(ids, m)),
+        3 => layer_command(),
         1 => (-1.0..12.0f64).prop_map(|density| {
             let mut spec = SketchSpec::default();
             spec.fill.density = density;
@@ -135,6 +168,8 @@ fn flower_command() -> impl Strategy<Value = FlowerCommand> {
 
 fn plant_command() -> impl Strategy<Value = PlantCommand> {
     prop_oneof![
+        (0..3usize, material()).prop_map(|(w, m)| PlantCommand::Wear(Wearer::ALL[w], m)),
+        Just(PlantCommand::AddPicture(picture())),
         ".{0,300}".prop_map(PlantCommand::Rename),
         any::<u64>().prop_map(|n| PlantCommand::SetSeed(Seed::new(n))),
         any::<bool>().prop_map(PlantCommand::Lock),

@@ -18,7 +18,7 @@ mod plant;
 mod summary;
 
 pub use cloud::{MAX_CLOUD_BYTES, read_cloud, write_cloud_ply};
-pub use drawing::{Drawings, MAX_DRAWING_BYTES, ReadDrawing, read_drawings, write_drawing};
+pub use drawing::{Drawings, MAX_DRAWING_BYTES, ReadDrawing, read_drawings, write_drawing, write_svg};
 pub use error::{CloudError, DrawingError, FileFault, ModelError, Place, WriteError};
 pub use kind::{CloudFormat, DrawingFormat, ModelFormat};
 pub use leaves::{

@@ -1,8 +1,10 @@
 //! Readers of drawings on whole files: real ones, large ones, wrong ones.
 
-use formats::{DrawingError, DrawingFormat, DrawingSummary, ReadDrawing, read_drawings, write_drawing};
+use formats::{
+    DrawingError, DrawingFormat, DrawingSummary, ReadDrawing, read_drawings, write_drawing, write_svg,
+};
 use glam::DVec2;
-use ink::{Drawing, InkSample, Stroke, StrokeMode};
+use ink::{Drawing, InkSample, Layer, Stroke, StrokeMode};
 
 fn all(bytes: &[u8], format: DrawingFormat) -> Vec<Result<ReadDrawing, DrawingError>> {
     read_drawings(bytes, format, "file").collect()
@@ -44,6 +46,9 @@ fn json_round_trip_keeps_everything() {
                 ],
                 mode: StrokeMode::LeafContour,
                 color: Some([1, 171, 255]),
+                width: Some(2.5),
+                layer: Some("petals & co".into()),
+                hidden: true,
                 id: Some("s<1>".into()),
             },
             Stroke {
@@ -53,6 +58,7 @@ fn json_round_trip_keeps_everything() {
             },
             Stroke { samples: vec![], ..Stroke::default() },
         ],
+        layers: vec![Layer { name: "petals & co".into(), hidden: true, locked: true }],
     };
     let mut bytes = Vec::new();
     write_drawing(&drawing, &mut bytes).expect("writes");
@@ -234,4 +240,66 @@ fn nested_use_ends_soon() {
     let message = error((text + "</svg>").as_bytes(), DrawingFormat::Svg);
     assert!(message.contains("after expanding `use`"), "{message}");
     assert!(start.elapsed().as_secs() < 5, "{:?}", start.elapsed());
+}
+
+#[test]
+fn svg_keeps_layers_widths_and_points() {
+    let layer = |name: &str, hidden, locked| Layer { name: name.into(), hidden, locked };
+    let stroke = |k: u8, layer: Option<&str>, hidden| Stroke {
+        samples: (0..5)
+            .map(|i| DVec2::new(f64::from(i * k) / 7.0, 0.1 * f64::from(i * i)))
+            .map(Into::into)
+            .collect(),
+        color: Some([1, 2, k]),
+        width: (k == 2).then_some(0.75),
+        layer: layer.map(Into::into),
+        hidden,
+        mode: if k == 3 { StrokeMode::LeafContour } else { StrokeMode::Parts },
+        id: Some(format!("s{k}")),
+    };
+    let drawing = Drawing {
+        name: "a < b".into(),
+        // On the sheet, then from below upwards; what is hidden last.
+        strokes: vec![
+            stroke(1, None, false),
+            stroke(2, Some("leaf contour \"A\""), false),
+            stroke(3, Some("top"), false),
+            stroke(4, Some("notes"), true),
+        ],
+        layers: vec![
+            layer("leaf contour \"A\"", false, true),
+            layer("notes", true, false),
+            layer("top", false, false),
+            layer("empty", false, false),
+        ],
+    };
+    let mut bytes = Vec::new();
+    write_svg(&drawing, &mut bytes).expect("writes");
+    let read = all(&bytes, DrawingFormat::Svg).remove(0).expect("reads");
+    assert_eq!((read.drawing.strokes, read.drawing.layers), (drawing.strokes, drawing.layers));
+    assert!(String::from_utf8_lossy(&bytes).contains("inkscape:groupmode=\"layer\""));
+}
+
+#[test]
+fn what_is_hidden_changes_no_number_of_what_is_seen() {
+    let file = |first: &str| {
+        format!(
+            "<svg xmlns='http://www.w3.org/2000/svg' xmlns:i='http://www.inkscape.org/namespaces/inkscape' \
+             stroke='black'>{first}<g i:groupmode='layer' i:label='A' transform='scale(2)'>\
+             <path stroke-width='3' d='M0 0L30 40'/></g></svg>"
+        )
+    };
+    let hidden = "<g i:groupmode='layer' i:label='A' style='display:none'><path d='M0 0L1e6 5'/></g>";
+    let plain = all(file("").as_bytes(), DrawingFormat::Svg).remove(0).expect("reads").drawing;
+    let read = all(file(hidden).as_bytes(), DrawingFormat::Svg).remove(0).expect("reads").drawing;
+    let [seen, unseen] = &read.strokes[..] else { panic!("{read:?}") };
+    assert_eq!((&seen.samples, seen.width), (&plain.strokes[0].samples, Some(6.0)));
+    assert_eq!(
+        (seen.layer.as_deref(), unseen.layer.as_deref()),
+        (Some("A 2"), Some("A")),
+        "names of their own"
+    );
+    assert!(unseen.hidden && !seen.hidden && read.layers[0].hidden);
+    let ink = |d: &Drawing| ink::clean(d, &mut base::Report::default());
+    assert_eq!(ink(&read).strokes, ink(&plain).strokes, "and it is no part of the plant");
 }

@@ -138,7 +138,7 @@ impl Ink {
 ///
 /// Guaranteed: every coordinate is finite and within \[0, 1\]; the number of points is bounded by 400,000 plus
 /// 18 for each stroke. Samples that are not finite, strays that blow the box up a thousandfold and strokes
-/// without length are left out with a warning that names the stroke. Linear in samples.
+/// without length are left out with a warning that names the stroke; hidden strokes without one. Linear in samples.
 ///
 /// ```
 /// use glam::DVec2;
@@ -158,6 +158,9 @@ pub fn clean(drawing: &Drawing, report: &mut Report) -> Ink {
         } else {
             Vec::new()
         };
+        if stroke.hidden {
+            continue;
+        }
         let length = length(&raw);
         if length < 1e-9 {
             notes.skipped.push((index, raw.len()));
@@ -206,6 +209,10 @@ fn usable_samples(drawing: &Drawing, notes: &mut Notes) -> Vec<Vec<usize>> {
     let finite = |p: DVec2| p.x.abs() <= LARGEST && p.y.abs() <= LARGEST;
     let mut kept: Vec<Vec<usize>> = Vec::with_capacity(drawing.strokes.len());
     for (index, stroke) in (0_u32..).zip(&drawing.strokes) {
+        if stroke.hidden {
+            kept.push(Vec::new());
+            continue;
+        }
         let good: Vec<usize> = (0..stroke.samples.len()).filter(|&k| finite(stroke.samples[k].at)).collect();
         if good.len() < stroke.samples.len() {
             notes.broken.push((index, stroke.samples.len() - good.len()));
@@ -463,6 +470,7 @@ mod tests {
     fn a_hundred_thousand_strokes_stay_bounded() {
         let d = Drawing {
             name: String::new(),
+            layers: Vec::new(),
             strokes: (0..100_000)
                 .map(|i| {
                     let x = f64::from(i);

@@ -1,5 +1,7 @@
 //! What the pen left on the sheet.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -45,6 +47,13 @@ pub struct Stroke {
     pub mode: StrokeMode,
     /// Its colour as sRGB, if the file has one.
     pub color: Option<[u8; 3]>,
+    /// How wide the pen is, in the drawing's unit, above 0; `None` for the pen that every sheet has. It says how the line
+    /// looks, and nothing of the plant: how thick wood is follows from what it bears.
+    pub width: Option<f64>,
+    /// The name of its layer in [`Drawing::layers`]; `None` for the sheet itself, which lies below all layers.
+    pub layer: Option<Arc<str>>,
+    /// Its layer is hidden: it is not part of the plant.
+    pub hidden: bool,
     /// Its name in the file (an SVG id), for messages.
     pub id: Option<String>,
 }
@@ -62,6 +71,22 @@ pub struct Drawing {
     pub name: String,
     /// The strokes.
     pub strokes: Vec<Stroke>,
+    /// The layers from below upwards, each with a name of its own.
+    pub layers: Vec<Layer>,
+}
+
+/// A layer of a drawing.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Layer {
+    /// Its name, unique in the drawing, 1 to 200 characters.
+    pub name: Arc<str>,
+    /// What lies on it is not seen and not part of the plant. Default false.
+    #[serde(default)]
+    pub hidden: bool,
+    /// What lies on it stays as it is. Default false.
+    #[serde(default)]
+    pub locked: bool,
 }
 
 impl Drawing {
@@ -71,6 +96,6 @@ impl Drawing {
             .iter()
             .map(|line| Stroke { samples: line.iter().map(|&p| p.into()).collect(), ..Stroke::default() })
             .collect();
-        Self { name: name.into(), strokes }
+        Self { name: name.into(), strokes, layers: Vec::new() }
     }
 }

@@ -30,6 +30,6 @@ pub use classify::{
     held_out_strokes, read_stroke_table, train_strokes, write_stroke_table,
 };
 pub use clean::{Ink, InkMap, InkStroke, clean};
-pub use drawing::{Drawing, InkSample, Stroke, StrokeMode};
+pub use drawing::{Drawing, InkSample, Layer, Stroke, StrokeMode};
 pub use edit::{StrokePull, StrokeTurn, cut, joined, rubbed, smoothed};
 pub use subjects::Subjects;

@@ -15,6 +15,7 @@
 //! | `blade`, `lean`, `body`, `organs` | [`blade_mesh`], [`BladeChart`]; leaves of a crowd; discs, fruits, strands; placed copies |
 //! | `leaf` | [`ShapeMesh`]: leaves of measured veins, sheets |
 //! | `traced` | [`Traced`]: organs in the colours of a photograph |
+//! | `material`, `margin` | [`OrganMaterial`], [`Wear`]: materials that a person chose; how far from the margin a place is |
 //! | `wind` | weights and pivots for wind |
 //! | `texture`, `parts` | painted textures, materials, parts |
 
@@ -25,6 +26,8 @@ mod body;
 mod fork;
 mod leaf;
 mod lean;
+mod margin;
+mod material;
 mod organs;
 mod parts;
 mod pictures;
@@ -40,9 +43,10 @@ mod wind;
 pub use self::spec::{LeafMeshSpec, PetalColor, SkinSpec};
 pub use blade::{BladeChart, blade_mesh};
 pub use leaf::ShapeMesh;
+pub use material::{Cloth, MATERIALS, OrganMaterial, Pattern, StrokeWear, Wear, Wearer, Worn};
 pub use organs::KeptShapes;
 pub use pictures::Pictures;
-pub use texture::{LeafColours, vein_texture};
+pub use texture::{LeafColours, swatch, vein_texture};
 pub use traced::Traced;
 pub use tube::{TubeSpec, tube};
 
@@ -60,7 +64,8 @@ use crate::spec::Budget;
 /// ([`Model::validate`] is clean); every tube closed; wood is drawn where the plant has it, to 0.07 % of the plant's
 /// size and within its own radius (both over [`SkinSpec::detail`]); the same bits for any executor. One part per kind of surface, in the order bark, stems, roots, leaves, veins, petals, discs, fruits,
 /// stamens, thorns; kinds that do not occur leave no part. Organs have vertex colours: their paint, varied by
-/// seed and key. On one that is tinted or drawn a texture without a hue of its own is used.
+/// seed and key. On one that is tinted or drawn a texture without a hue of its own is used. What wears a material
+/// ([`SkinSpec::worn`]) has its colours, varied in the same way, and parts of its own after all others.
 /// With [`SkinSpec::wind`] every vertex also has four numbers, each 0 to 1, and a pivot: sway of the whole plant (0 on
 /// the ground, 1 at the top, by the square of the height); sway of its limb, a branch of a main axis with all that
 /// hangs on it (0 at the limb's foot, growing with the square of the way along the wood over
@@ -123,7 +128,7 @@ pub fn skin_again(
     let wood = meshes.iter().map(|(_, m): &(Slot, mesh::TriMesh)| m.triangles.len()).sum();
     meshes.extend(organs::organs(plant, spec, &budget, (traced, wood), wind.as_ref(), kept, run)?);
     run.cancel.check()?;
-    Ok(parts::model(plant, meshes, spec.textures.then_some(run.executor), pictures))
+    Ok(parts::model(plant, meshes, spec, pictures, run.executor))
 }
 
 /// What to do where there would be too many triangles.

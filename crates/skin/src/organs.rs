@@ -11,6 +11,8 @@ use crate::blade::blade_mesh;
 use crate::body::{dome, prism, revolution, rod, strand};
 use crate::leaf::{ShapeMesh, sheet_mesh, spline_mesh};
 use crate::lean::lean_mesh;
+use crate::margin::from_margin;
+use crate::material::{Pattern, Wearer};
 use crate::parts::{Coat, Slot};
 use crate::sleeve::{narrow, wide};
 use crate::spec::{Budget, PetalColor, SkinSpec};
@@ -49,6 +51,7 @@ pub(crate) fn organs(
         kept.replace(&plant.shapes, &made);
     }
     let shapes: Vec<Arc<ShapeMesh>> = made.into_iter().map(|(_, mesh)| mesh).collect();
+    let margins = margins(plant, spec, &shapes, run)?;
     let flutters: Vec<[Vec<f32>; 2]> = match wind {
         Some(_) => {
             let both = |(s, m): (&Shape, &Arc<ShapeMesh>)| [&m.surface, &m.veins].map(|m| flutter(s, m));
@@ -66,7 +69,11 @@ pub(crate) fn organs(
             Shape::Spline(ref blade) => Slot::Form(blade.form, Coat::of(o.paint, shape)),
             _ => ground.slot(o, shape),
         };
-        let slot = if of_photo(o).is_some() { slot.traced() } else { slot };
+        let slot = match spec.worn.of(o) {
+            Some((wearer, row)) => Slot::Worn(wearer, row),
+            None if of_photo(o).is_some() => slot.traced(),
+            None => slot,
+        };
         [(slot, i, Layer::Surface), (Slot::Veins, i, Layer::Veins)]
     };
     let organs = plant.organs.iter().enumerate();
@@ -94,12 +101,22 @@ pub(crate) fn organs(
             let &(slot, i, layer) = copied;
             let organ = &plant.organs[i];
             let first = mesh.positions.len();
-            let photo = of_photo(organ);
+            let photo = if let Slot::Traced(_) = slot { of_photo(organ) } else { None };
             let color =
                 if photo.is_some() || slot == Slot::Veins { [1.0; 3] } else { tint(organ, slot, spec) };
             place(&mut mesh, mesh_of(copied), organ, color);
             if let Some(photo) = photo {
                 photo.organ(&mut mesh, first);
+            }
+            if let Slot::Worn(_, row) = slot {
+                // Not the colours that the shape has for itself.
+                mesh.colors[first..].fill(color);
+                let margin = &margins[organ.shape.index()];
+                if spec.worn.cloths[row].material.pattern.follows_margin() && !margin.is_empty() {
+                    for (uv, &inner) in mesh.uvs[first..].iter_mut().zip(margin) {
+                        uv[0] = inner;
+                    }
+                }
             }
             if let Some(wind) = wind {
                 wind.organ(&mut mesh, first, organ, &flutters[organ.shape.index()][layer as usize]);
@@ -108,6 +125,27 @@ pub(crate) fn organs(
         Ok((members[0].0, mesh))
     });
     Ok(meshes.into_iter().collect::<Result<_, Cancelled>>()?)
+}
+
+/// How far from the margin each vertex of a shape is, for shapes that wear a pattern of the margin; empty for others.
+fn margins(
+    plant: &Plant,
+    spec: &SkinSpec,
+    shapes: &[Arc<ShapeMesh>],
+    run: &Run<'_>,
+) -> Result<Vec<Vec<f32>>, Stopped> {
+    let mut wanted = vec![false; shapes.len()];
+    for organ in &plant.organs {
+        let worn = spec.worn.of(organ).map(|(_, row)| spec.worn.cloths[row].material.pattern);
+        if let Some(wanted) = wanted.get_mut(organ.shape.index()) {
+            *wanted |= worn.is_some_and(Pattern::follows_margin);
+        }
+    }
+    let made = map_indexed(run.executor, shapes.len(), |i| {
+        run.cancel.check()?;
+        Ok(if wanted[i] { from_margin(&plant.shapes[i], &shapes[i].surface) } else { Vec::new() })
+    });
+    Ok(made.into_iter().collect::<Result<_, Cancelled>>()?)
 }
 
 // Triangles of a crown's leaf, as a share of what its margin would need to be seen from near by: 8 for a plain leaf,
@@ -364,7 +402,7 @@ fn tint(organ: &Organ, slot: Slot, spec: &SkinSpec) -> [f32; 3] {
     let strength = spec.variation.clamp(0.0, 1.0);
     // Leaves of one plant differ more than its petals do.
     let (light, warm) = match slot {
-        Slot::Leaf(_) => (0.26 * light, 0.24 * (warm - 0.5)),
+        Slot::Leaf(_) | Slot::Worn(Wearer::Leaf, _) => (0.26 * light, 0.24 * (warm - 0.5)),
         _ => (0.12 * light, 0.08 * (warm - 0.5)),
     };
     let [light, warm] = [light, warm].map(|x| x * strength);
@@ -373,7 +411,8 @@ fn tint(organ: &Organ, slot: Slot, spec: &SkinSpec) -> [f32; 3] {
         OrganKind::Pistil if slot == Slot::Stamen(Coat::Natural) => [0.62, 0.86, 0.42],
         _ => [1.0; 3],
     };
-    let paint = organ.paint.rgb();
+    // A material is itself; only the variation of its plant is on it.
+    let paint = if let Slot::Worn(..) = slot { [1.0; 3] } else { organ.paint.rgb() };
     let hue = [1.0 + warm.min(0.0), 1.0, 1.0 - 0.9 * warm.abs()];
     [0, 1, 2].map(|i| {
         let given = if paint[i].is_finite() { f64::from(paint[i]) } else { 1.0 };

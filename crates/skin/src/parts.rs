@@ -4,12 +4,12 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use base::Executor;
-use mesh::{Material, MaterialId, MaterialKind, Model, Part, TriMesh};
+use mesh::{AlphaMode, Material, MaterialId, MaterialKind, Model, Part, Texture, TriMesh};
 use plant::{Paint, Plant, PlantPaint, Shape};
 
-use crate::PetalColor;
 use crate::pictures::Pictures;
-use crate::texture::Motif;
+use crate::texture::{Motif, paint_material, painted_material};
+use crate::{Cloth, PetalColor, SkinSpec, Wearer, Worn};
 
 /// What a part of the model is made of; one part and one material each, in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -33,6 +33,8 @@ pub(crate) enum Slot {
     Thorn,
     /// In the colours of the photograph that it was traced over.
     Traced(MaterialKind),
+    /// In a material that a person chose: a row of [`crate::Worn::cloths`].
+    Worn(Wearer, usize),
 }
 
 /// Where the colour of a surface comes from.
@@ -70,6 +72,8 @@ impl Slot {
     fn kind(self) -> MaterialKind {
         match self {
             Self::Traced(kind) => kind,
+            Self::Worn(Wearer::Leaf, _) => MaterialKind::Leaf,
+            Self::Worn(Wearer::Petal | Wearer::Sepal, _) => MaterialKind::Petal,
             Self::Bark => MaterialKind::Bark,
             Self::YoungBark => MaterialKind::YoungBark,
             Self::Stem | Self::Body | Self::Thorn => MaterialKind::Stem,
@@ -83,8 +87,13 @@ impl Slot {
     }
 
     /// Names of the part and of its material.
-    fn names(self) -> (Cow<'static, str>, String) {
+    fn names(self, worn: &Worn) -> (Cow<'static, str>, String) {
         let (part, material) = match self {
+            Self::Worn(wearer, row) => {
+                let material = worn.name(wearer, row);
+                let rest = material.strip_prefix(wearer.word()).unwrap_or_default();
+                return (format!("{}{rest}", wearer.words()).into(), material);
+            }
             Self::Form(0, _) => ("leaves", "leaf".into()),
             Self::Form(k, _) => return (format!("leaves-{}", k + 1).into(), format!("leaf-{}", k + 1)),
             Self::Veins => ("veins", "leaf-veins".into()),
@@ -126,7 +135,7 @@ impl Slot {
     /// What its texture shows; none for what has no texture of its own.
     fn motif(self) -> Option<Motif> {
         Some(match self {
-            Self::Form(..) | Self::Veins | Self::Sepal(_) => return None,
+            Self::Form(..) | Self::Veins | Self::Sepal(_) | Self::Worn(..) => return None,
             Self::Stamen(coat) if coat != Coat::Natural => return None,
             Self::Leaf(Coat::Own) | Self::Petal(Coat::Own, _) => return None,
             // Florets of a disc are organs of their own.
@@ -172,6 +181,7 @@ impl Slot {
             | Self::Stamen(_)
             | Self::Disc(_)
             | Self::Fruit(_)
+            | Self::Worn(..)
             | Self::Traced(_) => [1.0; 3],
         }
     }
@@ -187,12 +197,22 @@ impl Slot {
 
     fn material(
         self,
-        textures: Option<&dyn Executor>,
+        spec: &SkinSpec,
         pictures: Pictures<'_>,
         paint: &PlantPaint,
+        executor: &dyn Executor,
     ) -> Material {
+        let textures = spec.textures.then_some(executor);
         let (kind, known) = (self.kind(), self.known_color(paint));
-        let mut m = Material::plain(self.names().1, kind, [1.0; 3]);
+        let mut m = Material::plain(self.names(&spec.worn).1, kind, [1.0; 3]);
+        m.double_sided = matches!(kind, MaterialKind::Leaf | MaterialKind::Petal);
+        if let Self::Worn(_, row) = self {
+            let painted = spec.textures || spec.worn.always;
+            if let Some(cloth) = spec.worn.cloths.get(row) {
+                cloth.dress(&mut m, painted, executor);
+            }
+            return m;
+        }
         m.texture = match self {
             Self::Traced(_) => pictures.traced.map(|t| Arc::clone(&t.texture)),
             Self::Form(form, _) => pictures.leaves.get(form as usize).cloned().flatten(),
@@ -212,17 +232,48 @@ impl Slot {
             MaterialKind::Stamen | MaterialKind::Disc => (0.8, 0.0),
             _ => (0.95, 0.0),
         };
-        m.double_sided = matches!(kind, MaterialKind::Leaf | MaterialKind::Petal);
         m
     }
 }
 
-/// Gathers meshes by slot, in slot order; empty ones leave no part. Textures are painted on `textures`, if wanted.
+impl Cloth {
+    /// Puts it on a material of a blade; without `painted` in its mean colour.
+    fn dress(&self, m: &mut Material, painted: bool, executor: &dyn Executor) {
+        #[expect(clippy::cast_possible_truncation, reason = "0 to 1")]
+        let roughness = self.material.roughness.clamp(0.0, 1.0) as f32;
+        // Of gloss and velvet alike light comes through a blade.
+        (m.roughness, m.translucency) = (roughness, 0.4);
+        let picture = self.picture.as_ref();
+        if painted {
+            let own = || painted_material(&self.material, executor);
+            m.texture = Some(picture.map_or_else(own, Arc::clone));
+            let holes = picture.is_some_and(|t| t.pixels.chunks_exact(4).any(|p| p[3] < 128));
+            m.alpha = if holes { AlphaMode::Mask } else { AlphaMode::Opaque };
+        } else {
+            let small = || Arc::new(paint_material(&self.material, (16, 32), executor));
+            m.base_color = mean(&picture.map_or_else(small, Arc::clone));
+        }
+    }
+}
+
+/// The mean of what is seen of a texture, linear.
+fn mean(texture: &Texture) -> [f32; 3] {
+    let seen = || texture.pixels.chunks_exact(4).filter(|p| p[3] >= 128);
+    // The curve of each byte once.
+    let light: Vec<f64> = (0..=255_u8).map(|b| base::linear_of_srgb(f64::from(b) / 255.0)).collect();
+    #[expect(clippy::cast_precision_loss, reason = "counts far below 2^52")]
+    let count = seen().count().max(1) as f64;
+    #[expect(clippy::cast_possible_truncation, reason = "a colour")]
+    [0, 1, 2].map(|k| (seen().map(|p| light[usize::from(p[k])]).sum::<f64>() / count) as f32)
+}
+
+/// Gathers meshes by slot, in slot order; empty ones leave no part. Textures are painted on `executor`, if wanted.
 pub(crate) fn model(
     plant: &Plant,
     mut meshes: Vec<(Slot, TriMesh)>,
-    textures: Option<&dyn Executor>,
+    spec: &SkinSpec,
     pictures: Pictures<'_>,
+    executor: &dyn Executor,
 ) -> Model {
     let mut model = Model { name: plant.name.clone(), ..Model::default() };
     meshes.retain(|(_, m)| !m.triangles.is_empty());
@@ -238,8 +289,8 @@ pub(crate) fn model(
             _ => joined(these),
         };
         let material = MaterialId::new(model.materials.len());
-        model.materials.push(slot.material(textures, pictures, &plant.paint));
-        model.parts.push(Part { name: slot.names().0.into_owned(), material, mesh });
+        model.materials.push(slot.material(spec, pictures, &plant.paint, executor));
+        model.parts.push(Part { name: slot.names(&spec.worn).0.into_owned(), material, mesh });
     }
     model
 }

@@ -6,6 +6,8 @@ use plant::{OrganKind, Plant};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::Worn;
+
 /// How a plant is given its surface. Saved with the document.
 ///
 /// ```
@@ -41,6 +43,9 @@ pub struct SkinSpec {
     /// Of a plant that changes from day to day its size in full bloom, metres: fineness is relative to that and not
     /// to the day's, so that triangles are the same at every day. Default none.
     pub steady_m: Option<f64>,
+    /// Materials that a person gave to organs. Saved with the plant, not here. Default none.
+    #[serde(skip)]
+    pub worn: Worn,
     /// What the variation and the choice of colours are drawn from, and the phases of the wind.
     #[serde(skip)]
     pub seed: Seed,
@@ -59,6 +64,7 @@ impl Default for SkinSpec {
             variation: 1.0,
             wind: false,
             steady_m: None,
+            worn: Worn::default(),
             seed: Seed::default(),
         }
     }

@@ -328,7 +328,7 @@ impl Evaluator {
         let (Some(model), Some(made)) = (meshed, &self.plant) else { return Ok(()) };
         let mut model = model?;
         if let Some(leaf) = &made.from.3 {
-            leaf.dress(&mut model);
+            leaf.dress(&mut model, &skin.worn);
         }
         self.model = Some(Self::keep(&mut self.done, stages, (skin.clone(), photo), model, report));
         Ok(())

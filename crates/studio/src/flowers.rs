@@ -11,7 +11,7 @@ use crate::shaping::shaped;
 /// What is asked of a flower beside its species and day.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FlowerOptions {
-    /// How it is meshed: `detail`, `wind`. Its colours are those of the species.
+    /// How it is meshed: `detail`, `wind`, `worn`. Its other colours are those of the species.
     pub skin: SkinSpec,
     /// Edits by hand, done on the plant in this order.
     pub edits: Vec<PlantEdit>,
@@ -39,7 +39,8 @@ pub fn make_flower(
     run.cancel.check()?;
     debug_assert_eq!(plant.validate().next(), None, "a sound plant");
     let steady_m = Some(spec.size_m());
-    let skin = SkinSpec { textures: false, variation: 0.0, steady_m, ..options.skin.clone() };
+    let worn = options.skin.worn.clone().always(options.skin.textures);
+    let skin = SkinSpec { textures: false, variation: 0.0, steady_m, worn, ..options.skin.clone() };
     let model = report.stage("mesh", run.clock, |_| skin::skin(&plant, &skin, run));
     let mut made = MadePlant::new(plant, (model?, skin), (edits, &options.edits), &report);
     made.item.plant = Some(made.plant.measure());

@@ -19,7 +19,7 @@ use crate::shaping::shaped;
 pub struct LeafOptions {
     /// Surface, veins, resolution, curl, wilt, colour.
     pub spec: LeafSpec,
-    /// How the plant is meshed: `detail`, `wind`. What the spec says of the blade is taken from there.
+    /// How the plant is meshed: `detail`, `wind`, `worn`. What the spec says of the blade is taken from there.
     pub skin: SkinSpec,
     /// A picture of the pressed leaf in the place of the spec's colour, cropped to its box, tip at the top.
     pub picture: Option<Arc<Texture>>,
@@ -147,7 +147,8 @@ pub(crate) fn finish(
     let (plant, edits) = shaped(plant, &options.edits, run)?;
     let mut kept = KeptShapes::default();
     let skin = options.skin.clone();
-    let spec = SkinSpec { leaf: options.mesh(), textures: false, variation: 0.0, ..skin };
+    let worn = skin.worn.clone().always(skin.textures);
+    let spec = SkinSpec { leaf: options.mesh(), textures: false, variation: 0.0, worn, ..skin };
     let pictures = Pictures { leaves: textures, ..Pictures::default() };
     let model =
         report.stage("mesh", run.clock, |_| skin::skin_again(&plant, &spec, pictures, Some(&mut kept), run));

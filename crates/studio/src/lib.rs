@@ -45,7 +45,7 @@ pub use flowers::{FlowerOptions, make_flower};
 pub use leaf_blade::leaf_blade;
 pub use leaves::{LeafError, LeafOptions, make_leaf, make_leaf_of};
 pub use made::{Made, MadePlant};
-pub use make::{ClassOverrides, MakeError, SketchOptions};
+pub use make::{ClassOverrides, MakeError, SketchOptions, worn};
 pub use motion::{cloud_model, motion_model};
 pub use opening::{OpenedPlant, OpeningError, OpeningPlant};
 pub use report::{
@@ -54,8 +54,8 @@ pub use report::{
 };
 pub use scanned::make_leaf_from_scan;
 pub use scene::{
-    SceneError, SceneEvaluator, ScenePlant, flower_schema, leaf_marks, leaf_schema, scene_model, standing,
-    tree_settings, tree_spec,
+    SceneError, SceneEvaluator, ScenePlant, flower_schema, leaf_marks, leaf_schema, material_schema,
+    scene_model, standing, tree_settings, tree_spec,
 };
 pub use shaping::{BranchRow, EditReport, branch_rows, edits_schema, edits_template};
 pub use shoot::{ShootSpec, make_shoot};

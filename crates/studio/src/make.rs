@@ -6,7 +6,7 @@ use base::{Cancelled, OverBudget, Stopped};
 use document::{DocumentPlant, Photo, PlantEdit};
 use ink::StrokeClass;
 use sketch::SketchSpec;
-use skin::SkinSpec;
+use skin::{SkinSpec, Worn};
 
 use crate::template::LeafTemplate;
 
@@ -41,7 +41,7 @@ impl SketchOptions {
         let Some(sketch) = settings.sketch() else { return Self::default() };
         Self {
             spec: sketch.sketch.clone(),
-            skin: SkinSpec { seed: settings.seed, ..sketch.skin.clone() },
+            skin: SkinSpec { seed: settings.seed, worn: worn(plant), ..sketch.skin.clone() },
             classes: plant.classes(),
             shown: plant.shown(),
             photo: sketch.photo.clone(),
@@ -49,6 +49,13 @@ impl SketchOptions {
             edits: settings.edits.clone(),
         }
     }
+}
+
+/// The materials that the organs of a plant of a document wear, with the pixels of their pictures. A picture that does not
+/// decode is left out: what wears it is plain.
+pub fn worn(plant: &DocumentPlant) -> Worn {
+    let pictures = &plant.settings().pictures;
+    plant.wear().worn(|name| pictures.get(name)?.texture(formats::read_picture))
 }
 
 /// Why nothing was made.

@@ -38,6 +38,8 @@ struct Placed {
     spec: FlowerSpec,
     flower: FlowerId,
     seat: Seat,
+    /// The stroke whose material its petals wear: that of most of the drawn ones.
+    worn: Option<u32>,
 }
 
 /// Why no flower opens.
@@ -94,7 +96,8 @@ impl OpeningPlant {
         for (k, flower) in plant.flowers.iter().enumerate() {
             let own = |o: &&Organ| o.flower.is_some_and(|f| f.index() == k);
             let organs: Vec<&Organ> = plant.organs.iter().filter(own).collect();
-            flowers.extend(placed(plant, (FlowerId::new(k), flower), &organs, natural));
+            let flower = placed(plant, (FlowerId::new(k), flower), &organs, natural);
+            flowers.extend(flower.map(|f| Placed { worn: most_worn(&organs, skin), ..f }));
         }
         if flowers.is_empty() {
             return Err(OpeningError::NoFlowers(name.into()));
@@ -135,7 +138,10 @@ impl OpeningPlant {
             if let Some(open) = plant.flowers.pop() {
                 plant.flowers[placed.flower.index()] = open;
             }
-            plant.organs[first..].iter_mut().for_each(|o| o.flower = Some(placed.flower));
+            for organ in &mut plant.organs[first..] {
+                organ.flower = Some(placed.flower);
+                organ.source = placed.worn.filter(|_| organ.kind == OrganKind::Petal);
+            }
             overlap = overlap.max(bloom::petal_overlap(&plant, Some(placed.flower)));
         }
         debug_assert_eq!(plant.validate().next(), None, "a sound plant");
@@ -176,6 +182,15 @@ fn dye<'a>(petals: impl Iterator<Item = &'a Paint>, natural: [f32; 3]) -> [f32; 
         count += 1.0;
     }
     sum.map(|s| (s / count.max(1.0)).clamp(0.0, 1.0))
+}
+
+/// The first stroke of those whose material most petals of a flower wear; none if most wear none of a stroke.
+fn most_worn(organs: &[&Organ], skin: &SkinSpec) -> Option<u32> {
+    let petals = || organs.iter().filter(|o| o.kind == OrganKind::Petal);
+    let row = |o: &Organ| o.source.and_then(|s| skin.worn.strokes.get(&s)).copied();
+    let same = |of: &Organ| petals().filter(|o| row(o) == row(of)).count();
+    let (of, _) = petals().map(|o| (o, same(o))).reduce(|best, o| if o.1 > best.1 { o } else { best })?;
+    row(of).and(of.source)
 }
 
 /// The flower as data; none without petals.
@@ -262,7 +277,7 @@ fn placed(
     // Off the end of the stem, which would show through the disc.
     let centre = flower.centre + axis * (0.3 * disc);
     let seat = Seat { centre, turn: base::turn::between(DVec3::Y, axis), bearer: flower.bearer };
-    Some(Placed { spec, flower: id, seat })
+    Some(Placed { spec, flower: id, seat, worn: None })
 }
 
 base::coded!(OpeningError {

@@ -18,14 +18,14 @@ use ink::{Stroke, StrokeClass};
 use leaf::{FullMarks, LeafSpec, ThicknessRule};
 use mesh::{MaterialId, Model, Standing};
 use plant::Plant;
-use skin::SkinSpec;
+use skin::{OrganMaterial, SkinSpec, Worn};
 use spec::Spec;
 
 use crate::evaluate::{Evaluator, FrontView};
 use crate::flowers::{FlowerOptions, make_flower};
 use crate::leaves::{LeafError, LeafOptions, make_leaf_of};
 use crate::made::{MadePlant, coarse};
-use crate::make::{MakeError, SketchOptions};
+use crate::make::{MakeError, SketchOptions, worn};
 use crate::opening::{OpeningError, OpeningPlant};
 use crate::report::ItemReport;
 use crate::template::LeafTemplate;
@@ -199,6 +199,9 @@ struct MadeFrom {
     leaf: Option<LeafTemplate>,
     edits: Vec<PlantEdit>,
     strokes: Vec<(Arc<Stroke>, [Option<StrokeClass>; 2])>,
+    /// Names of layers that are hidden.
+    hidden: Vec<Arc<str>>,
+    worn: Worn,
     wind: bool,
 }
 
@@ -213,13 +216,15 @@ impl MadeFrom {
             leaf,
             edits: settings.edits.clone(),
             strokes: plant.strokes().iter().map(|s| (Arc::clone(&s.stroke), [s.class, s.shown])).collect(),
+            hidden: plant.layers().iter().filter(|l| l.hidden).map(|l| Arc::clone(&l.name)).collect(),
+            worn: worn(plant),
             wind,
         }
     }
 
     fn tree_options(&self, tree: &TreeSettings) -> TreeOptions {
         TreeOptions {
-            skin: SkinSpec { wind: self.wind, ..tree.skin.clone() },
+            skin: SkinSpec { wind: self.wind, worn: self.worn.clone(), ..tree.skin.clone() },
             leaf: self.leaf.clone(),
             edits: self.edits.clone(),
             ..TreeOptions::default()
@@ -553,7 +558,7 @@ impl Made {
         run: &Run<'_>,
     ) -> Result<Vec<&'static str>, SceneError> {
         let (marks, mut options) = leaf_input(leaf)?;
-        options.skin.wind = from.wind;
+        (options.skin.wind, options.skin.worn) = (from.wind, from.worn.clone());
         let made = make_leaf_of(&from.name, &marks, &options, from.seed, run, Report::default())?;
         self.lent = None;
         Ok(self.take(made))
@@ -567,7 +572,7 @@ impl Made {
     ) -> Result<Vec<&'static str>, SceneError> {
         let law = flower.law.as_ref().map_or_else(|| flower.spec.own_law(), |l| (**l).clone());
         let mut options = FlowerOptions { edits: from.edits.clone(), ..FlowerOptions::default() };
-        options.skin.wind = from.wind;
+        (options.skin.wind, options.skin.worn) = (from.wind, from.worn.clone());
         let made = make_flower(&from.name, &flower.spec, (flower.day, &law), &options, from.seed, run)?;
         Ok(self.take(made))
     }
@@ -604,6 +609,20 @@ pub fn tree_settings(spec: &TreeSpec, preset: Option<&str>) -> TreeSettings {
 /// The JSON Schema of what can be set of a measured leaf.
 pub fn leaf_schema() -> &'static serde_json::Value {
     LeafSpec::schema()
+}
+
+/// The JSON Schema of a material of leaves, petals or sepals.
+pub fn material_schema() -> &'static serde_json::Value {
+    static PART: std::sync::OnceLock<serde_json::Value> = std::sync::OnceLock::new();
+    PART.get_or_init(|| {
+        // What it refers to lies beside it in the schema of a file of materials.
+        let mut part = OrganMaterial::schema().pointer(OrganMaterial::PART).cloned().unwrap_or_default();
+        part["$defs"] = OrganMaterial::schema()["$defs"].clone();
+        if let Some(parts) = part["$defs"].as_object_mut() {
+            parts.retain(|name, _| name != "OrganMaterial" && name != "StrokeWear");
+        }
+        part
+    })
 }
 
 /// The JSON Schema of what can be set of a flower.

@@ -127,6 +127,7 @@ impl Whole<'_> {
         let drawing = Drawing {
             name: settings.name.clone(),
             strokes: strokes.iter().map(|s| s.stroke.clone()).collect(),
+            layers: Vec::new(),
         };
         let classes = (0..).zip(&strokes).filter_map(|(row, s)| Some((row, s.class?))).collect();
         let (_, front) =
@@ -152,7 +153,7 @@ impl Whole<'_> {
         (0..)
             .zip(self.plant.strokes())
             .filter(|(row, _)| own.contains(row))
-            .map(|(_, s)| NewStroke::from(s))
+            .map(|(_, s)| NewStroke::of(s))
             .collect()
     }
 

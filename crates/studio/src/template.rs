@@ -8,7 +8,7 @@ use glam::{DMat3, DVec2, DVec3};
 use leaf::{FullMarks, Leaf, LeafPaint, Rays};
 use mesh::{MaterialKind, Model, Texture, TriMesh};
 use plant::{Blade, FlatLeaf, Lift, OrganKind, Plant, Relief, Shape};
-use skin::LeafColours;
+use skin::{LeafColours, Worn};
 
 use crate::leaf_blade::leaf_blade;
 use crate::leaves::{LeafError, LeafOptions};
@@ -199,10 +199,10 @@ impl LeafTemplate {
     }
 
     /// Puts the template's picture on the leaves of a skinned plant, if it has one.
-    pub fn dress(&self, model: &mut Model) {
+    pub fn dress(&self, model: &mut Model, worn: &Worn) {
         let Some(texture) = &self.texture else { return };
         for material in model.materials.iter_mut().filter(|m| m.kind == MaterialKind::Leaf) {
-            if material.texture.is_some() {
+            if material.texture.is_some() && !worn.is_worn(&material.name) {
                 material.texture = Some(texture.clone());
             }
         }

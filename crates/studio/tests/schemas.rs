@@ -37,6 +37,7 @@ fn the_schemas_that_are_kept_are_those_of_the_types() {
     compare::<leaf::LeafSpec>("leaf/schemas/leaf.json", &mut stale);
     compare::<sketch::SketchSpec>("sketch/schemas/sketch.json", &mut stale);
     compare::<skin::SkinSpec>("skin/schemas/skin.json", &mut stale);
+    compare::<skin::Wear>("skin/schemas/materials.json", &mut stale);
     assert!(stale.is_empty(), "stale, run `cargo xtask types`: {stale:?}");
 }
 
@@ -58,6 +59,7 @@ fn part<T: Spec>() {
 
 #[test]
 fn parts_have_the_schemas_of_their_types() {
+    part::<skin::OrganMaterial>();
     part::<growth::Arrangement>();
     part::<growth::ColonizeSpec>();
     part::<growth::CompetitionSpec>();

@@ -3,7 +3,7 @@
 use core::fmt::Display;
 use std::collections::BTreeMap;
 
-use burgeon::document::{ArchiveError, CommandError, PhotoError, ProjectError};
+use burgeon::document::{ArchiveError, CommandError, PhotoError, PictureError, ProjectError};
 use burgeon::formats::{DrawingError, ModelError, WriteError};
 use burgeon::{Coded, SceneError, Slip, SplitError, Stopped, Told, TreeError, map_of};
 use schemars::JsonSchema;
@@ -88,6 +88,9 @@ pub enum WorkspaceError {
     /// The picture is no photograph that is taken.
     #[error(transparent)]
     Photo(#[from] PhotoError),
+    /// The picture is none that organs can wear.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
     /// A file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
@@ -143,6 +146,7 @@ burgeon::coded!(WorkspaceError {
     Self::Scene(e) => e, SceneError;
     Self::Split(e) => e, SplitError;
     Self::Photo(e) => e, PhotoError;
+    Self::Picture(e) => e, PictureError;
     Self::Write(e) => e, WriteError;
     Self::Archive(e) => e, ArchiveError;
 });

@@ -37,6 +37,8 @@ pub enum ExportFormat {
     Qsm,
     /// The current drawing in our JSON.
     Json,
+    /// The current drawing as SVG, with its layers.
+    Svg,
 }
 
 impl ExportFormat {
@@ -50,6 +52,7 @@ impl ExportFormat {
             Self::Mtg => return Err(WorkspaceError::Format("mtg")),
             Self::Qsm => return Err(WorkspaceError::Format("qsm")),
             Self::Json => return Err(WorkspaceError::Format("json")),
+            Self::Svg => return Err(WorkspaceError::Format("svg")),
         })
     }
 }
@@ -132,10 +135,14 @@ impl Workspace {
         wanted: &ExportRequest,
         run: &Run<'_>,
     ) -> Result<Vec<NamedFile>, WorkspaceError> {
-        if wanted.format == ExportFormat::Json {
-            let plant = self.current_plant().ok_or(WorkspaceError::NoDrawing)?;
+        if let ExportFormat::Json | ExportFormat::Svg = wanted.format {
+            let drawing = self.current_plant().ok_or(WorkspaceError::NoDrawing)?.drawing();
             let mut out = Vec::new();
-            formats::write_drawing(&plant.drawing(), &mut out)?;
+            if wanted.format == ExportFormat::Svg {
+                formats::write_svg(&drawing, &mut out)?;
+                return Ok(vec![("drawing.svg".into(), out)]);
+            }
+            formats::write_drawing(&drawing, &mut out)?;
             return Ok(vec![("drawing.json".into(), out)]);
         }
         if let Some(model) = &self.guest {

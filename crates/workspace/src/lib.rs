@@ -43,8 +43,8 @@ pub use kept::{KEPT_BYTES, SHOWN_BYTES};
 pub use scatter::{Ground, Scatter};
 pub use shaping::{Picked, ShapeAnswer, ShapeInput, ShapePointer, ShapeReach, ShapeStep};
 pub use state::{
-    DocumentState, EditState, FlowerState, LeafState, MakerWord, NamedShape, ObstacleView, PhotoState,
-    PlantState, SketchState, StrokeState, TreeState,
+    DocumentState, EditState, FlowerState, LeafState, MakerWord, NamedShape, ObstacleView, PenStyle,
+    PhotoState, PlantState, SketchState, StrokeState, TreeState, WearState,
 };
 pub use view::{
     Column, Front, GUEST, MaterialView, PartView, PlantView, SceneView, TextureView, WarningView,

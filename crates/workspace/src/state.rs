@@ -3,12 +3,12 @@
 use burgeon::bloom::FlowerSpec;
 use burgeon::document::{Document, DocumentPlant, Editor, Maker, PhotoPlace, PlantId, StrokeId};
 use burgeon::growth::{Obstacle, TreeSpec};
-use burgeon::ink::{StrokeClass, StrokeMode};
+use burgeon::ink::{Layer, StrokeClass, StrokeMode};
 use burgeon::sketch::SketchSpec;
-use burgeon::skin::SkinSpec;
+use burgeon::skin::{OrganMaterial, SkinSpec};
 use burgeon::spec;
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 /// A document with its history, as lists and panels show it.
@@ -70,6 +70,8 @@ pub struct PlantState<'a> {
     pub scale: f64,
     /// Whether others may bear its leaf.
     pub lends: bool,
+    /// The materials of its leaves, petals and sepals.
+    pub wear: WearState<'a>,
     /// Edits by hand, in the order in which they are done.
     pub edits: Vec<EditState>,
     /// Of a drawing.
@@ -80,6 +82,17 @@ pub struct PlantState<'a> {
     pub leaf: Option<LeafState<'a>>,
     /// Of a flower.
     pub flower: Option<FlowerState<'a>>,
+}
+
+/// The materials that a person gave to kinds of organs.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct WearState<'a> {
+    /// Of all leaves.
+    pub leaf: Option<&'a OrganMaterial>,
+    /// Of all petals.
+    pub petal: Option<&'a OrganMaterial>,
+    /// Of all sepals and bracts.
+    pub sepal: Option<&'a OrganMaterial>,
 }
 
 /// The maker of a plant.
@@ -113,7 +126,9 @@ pub struct SketchState<'a> {
     /// How it is meshed.
     pub skin: &'a SkinSpec,
     /// Its strokes in the order in which they were drawn.
-    pub strokes: Vec<StrokeState>,
+    pub strokes: Vec<StrokeState<'a>>,
+    /// Its layers from below upwards.
+    pub layers: &'a [Layer],
     /// What lies under it.
     pub photo: Option<PhotoState>,
     /// The day at which its flowers are shown.
@@ -123,8 +138,8 @@ pub struct SketchState<'a> {
 }
 
 /// A stroke without its points.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
-pub struct StrokeState {
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct StrokeState<'a> {
     /// Its name within the document.
     pub id: StrokeId,
     /// In which mode it was drawn.
@@ -135,6 +150,12 @@ pub struct StrokeState {
     pub shown: Option<StrokeClass>,
     /// Its own colour.
     pub color: Option<[u8; 3]>,
+    /// Its own width, in the drawing's unit.
+    pub width: Option<f64>,
+    /// The name of its layer; none for the sheet itself.
+    pub layer: Option<&'a str>,
+    /// Its own material.
+    pub material: Option<&'a OrganMaterial>,
 }
 
 /// How a photograph lies, and its size.
@@ -239,6 +260,11 @@ impl<'a> PlantState<'a> {
             yaw_deg: s.placement.yaw_deg,
             scale: s.placement.scale,
             lends: document.lends_leaf(plant.id()),
+            wear: WearState {
+                leaf: s.wear.leaf.as_ref(),
+                petal: s.wear.petal.as_ref(),
+                sepal: s.wear.sepal.as_ref(),
+            },
             edits: s.edits.iter().map(|e| EditState { op: e.edit.word(), off: e.off }).collect(),
             sketch: None,
             tree: None,
@@ -253,12 +279,16 @@ impl<'a> PlantState<'a> {
                     class: s.class,
                     shown: s.shown,
                     color: s.stroke.color,
+                    width: s.stroke.width,
+                    layer: s.stroke.layer.as_deref(),
+                    material: s.material.as_deref(),
                 });
                 let photo = k.photo.as_ref();
                 state.sketch = Some(SketchState {
                     sketch: &k.sketch,
                     skin: &k.skin,
                     strokes: strokes.collect(),
+                    layers: &k.layers,
                     photo: photo.map(|p| PhotoState { place: p.place, height: p.height(), pixels: p.size() }),
                     day: k.day,
                     leaf: k.leaf,
@@ -295,4 +325,16 @@ impl<'a> PlantState<'a> {
         }
         state
     }
+}
+
+/// The pen that a stroke is drawn with; what is left out is that of every sheet.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct PenStyle {
+    /// The colour of what is drawn, sRGB.
+    pub color: Option<[u8; 3]>,
+    /// In the drawing's unit, above 0.
+    pub width: Option<f64>,
+    /// The name of the layer.
+    pub layer: Option<String>,
 }

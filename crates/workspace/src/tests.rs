@@ -6,6 +6,7 @@ use burgeon::document::{
 use burgeon::glam::{DVec2, DVec3};
 use burgeon::ink::{InkSample, Stroke, StrokeMode};
 use burgeon::shape::ToolKind;
+use burgeon::skin::{OrganMaterial, Wearer};
 use burgeon::{Budget, Run, Seed, SketchOptions, formats};
 use serde::Serialize;
 use serde_json::Value;
@@ -205,6 +206,134 @@ fn photo() -> Vec<u8> {
     png
 }
 
+fn names(view: &Value) -> Vec<String> {
+    view["parts"].as_array().unwrap().iter().map(|p| p["name"].as_str().unwrap().to_owned()).collect()
+}
+
+#[test]
+fn organs_wear_materials_by_kind_and_by_stroke_and_files_keep_them() {
+    let mut s = Workspace::default();
+    s.open("sample.svg", &sample(), 0, true).unwrap();
+    let plain = look(&mut s);
+    s.ask(r##"{"plant":[0,{"wear":["petal",{"pattern":"picotee","color":"#ffffff","second":"#c02050"}]}]}"##)
+        .unwrap();
+    let worn = look(&mut s);
+    assert_eq!(worn["item"]["digest"], plain["item"]["digest"], "the plant is the same");
+    assert_eq!(worn["stages"], json(&["mesh"]), "only the surface is made again");
+    assert!(names(&worn).contains(&"petals-picotee-1".to_owned()), "{:?}", names(&worn));
+    // One petal wears a picture.
+    let strokes = plain["item"]["strokes"].as_array().unwrap();
+    let petal = strokes.iter().find(|s| s["organ"] == "petal").unwrap()["index"].as_u64().unwrap();
+    let id = StrokeId(u32::try_from(petal).unwrap());
+    let material = OrganMaterial { roughness: 0.25, ..OrganMaterial::default() };
+    assert!(s.wear_picture((Wearer::Petal, vec![id]), material.clone(), b"GIF").is_err());
+    let steps = json(&s.state())["steps"].clone();
+    s.wear_picture((Wearer::Petal, vec![id]), material, &photo()).unwrap();
+    assert_eq!(json(&s.state())["steps"], steps.as_u64().unwrap() + 1, "one step");
+    let pictured = look(&mut s);
+    let parts = names(&pictured);
+    assert!(
+        parts.iter().any(|n| n == "petals-picture-2") && parts.iter().any(|n| n == "petals-picotee-1"),
+        "{parts:?}"
+    );
+    let rough = pictured["materials"].as_array().unwrap().iter().find(|m| m["name"] == "petal-picture-2");
+    let rough = rough.unwrap();
+    assert_eq!((&rough["roughness"], &rough["texture"]["width"]), (&json(&0.25_f32), &json(&8)));
+    let mut other = Workspace::default();
+    other.open("p.burgeon", &s.save().unwrap(), 0, true).unwrap();
+    assert_eq!(look(&mut other)["parts"], pictured["parts"]);
+    assert_eq!(other.file(ExportFormat::Glb), s.file(ExportFormat::Glb));
+    assert_eq!(other.document().plants()[0].wear(), s.document().plants()[0].wear());
+    // A link has no room for pictures.
+    other.open("l.burgeon", &s.share().unwrap(), 0, true).unwrap();
+    assert!(names(&look(&mut other)).contains(&"petals-plain-2".to_owned()));
+    // What is taken off leaves nothing behind.
+    s.ask(&format!(r#"{{"sketch":[0,{{"set-material":[[{petal}],null]}}]}}"#)).unwrap();
+    assert!(s.document().plants()[0].settings().pictures.is_empty());
+    for _ in 0..3 {
+        assert_eq!(s.undo(), Some("material"));
+    }
+    assert_eq!(names(&look(&mut s)), names(&plain));
+    // A day at which petals are others than the drawn ones.
+    s.ask(&format!(
+        r#"{{"sketch":[0,{{"set-material":[{:?},{{"pattern":"speckled"}}]}}]}}"#,
+        (0..15).collect::<Vec<_>>()
+    ))
+    .unwrap();
+    s.ask(r#"{"sketch":[0,{"set-day":3}]}"#).unwrap();
+    assert!(names(&look(&mut s)).contains(&"petals-speckled-1".to_owned()));
+}
+
+#[test]
+fn trees_flowers_and_measured_leaves_wear_materials_too() {
+    for (maker, wearer, part) in [
+        (NewMaker::Tree("birch".into()), "leaf", "leaves-streaked-1"),
+        (NewMaker::Flower("lily".into()), "petal", "petals-streaked-1"),
+    ] {
+        let mut s = Workspace::default();
+        s.act(&Action::Add { name: "a".into(), maker }).unwrap();
+        let id = s.current().unwrap().0;
+        s.ask(&format!(r#"{{"plant":[{id},{{"wear":["{wearer}",{{"pattern":"streaked"}}]}}]}}"#)).unwrap();
+        let view = look(&mut s);
+        assert!(names(&view).contains(&part.to_owned()), "{:?}", names(&view));
+        let glb = s.file(ExportFormat::Glb);
+        assert!(String::from_utf8_lossy(&glb).contains(&format!("{wearer}-streaked-1")));
+    }
+}
+
+#[test]
+fn layers_hide_lock_and_travel() {
+    let mut s = Workspace::default();
+    s.open("sample.svg", &sample(), 0, true).unwrap();
+    let plain = look(&mut s);
+    let petal = plain["item"]["strokes"].as_array().unwrap().iter().find(|s| s["organ"] == "petal").unwrap();
+    let petal = petal["index"].as_u64().unwrap();
+    s.ask(r#"{"sketch":[0,{"add-layer":"notes"}]}"#).unwrap();
+    s.ask(r#"{"sketch":[0,{"add-layer":"notes"}]}"#).unwrap_err();
+    s.ask(&format!(r#"{{"sketch":[0,{{"put-on":[[{petal}],"notes"]}}]}}"#)).unwrap();
+    assert_eq!(look(&mut s)["item"]["digest"], plain["item"]["digest"]);
+    s.ask(r#"{"sketch":[0,{"set-layer":[0,{"name":"aside","hidden":true}]}]}"#).unwrap();
+    let hidden = look(&mut s);
+    assert_eq!(
+        hidden["item"]["counts"]["petals"].as_u64().unwrap() + 1,
+        plain["item"]["counts"]["petals"].as_u64().unwrap()
+    );
+    assert!(s.ask(&format!(r#"{{"sketch":[0,{{"remove-strokes":[{petal}]}}]}}"#)).is_err(), "out of reach");
+    let strokes = s.document().plants()[0].strokes().len();
+    s.ask(r#"{"sketch":[0,"clear"]}"#).unwrap();
+    assert_eq!((s.document().plants()[0].strokes().len(), s.undo()), (1, Some("clear")));
+    // Files keep them; of an SVG the hidden one comes last.
+    let svg = s.file(ExportFormat::Svg);
+    let mut other = Workspace::default();
+    other.open("p.burgeon", &s.save().unwrap(), 0, true).unwrap();
+    assert_eq!(look(&mut other)["item"]["digest"], hidden["item"]["digest"]);
+    other.open("d.svg", &svg, 0, true).unwrap();
+    let plant = &other.document().plants()[0];
+    assert_eq!((plant.strokes().len(), plant.layers()), (strokes, s.document().plants()[0].layers()));
+    assert_eq!(plant.strokes()[strokes - 1].stroke.layer.as_deref(), Some("aside"));
+    // A new stroke on it is refused, one on the sheet is not; without the layer its strokes are back.
+    let on = Stroke { layer: Some("aside".into()), width: Some(3.0), ..stem() };
+    assert!(s.add_stroke(on.clone()).is_err());
+    s.ask(r#"{"sketch":[0,{"remove-layer":0}]}"#).unwrap();
+    assert_eq!(look(&mut s)["item"]["digest"], plain["item"]["digest"]);
+    let id = s.add_stroke(on).unwrap();
+    assert_eq!((s.stroke(id).unwrap().layer.as_ref(), s.stroke(id).unwrap().width), (None, Some(3.0)));
+}
+
+#[test]
+fn the_width_of_a_pen_is_no_matter_for_the_plant() {
+    let mut s = Workspace::default();
+    s.open("sample.svg", &sample(), 0, true).unwrap();
+    let before = look(&mut s);
+    s.ask(r#"{"sketch":[0,{"set-width":[[0,1,2],9.5]}]}"#).unwrap();
+    assert_eq!(look(&mut s)["item"]["digest"], before["item"]["digest"]);
+    assert!(s.ask(r#"{"sketch":[0,{"set-width":[[0],-1]}]}"#).is_err());
+    assert_eq!(
+        (json(&s.state())["plants"][0]["sketch"]["strokes"][1]["width"].as_f64(), s.undo()),
+        (Some(9.5), Some("width"))
+    );
+}
+
 #[test]
 fn traced_organs_take_the_photograph_and_others_do_not() {
     let mut s = Workspace::default();
@@ -216,9 +345,6 @@ fn traced_organs_take_the_photograph_and_others_do_not() {
     let traced = look(&mut s);
     assert_eq!(traced["item"]["digest"], plain["item"]["digest"], "the plant is the same");
     assert_eq!(traced["stages"].as_array().unwrap().len(), 1, "only the surface is made again");
-    let names = |v: &Value| -> Vec<String> {
-        v["parts"].as_array().unwrap().iter().map(|p| p["name"].as_str().unwrap().to_owned()).collect()
-    };
     assert!(names(&traced).contains(&"petals-traced".to_owned()), "{:?}", names(&traced));
     let part = names(&traced).iter().position(|n| n == "petals-traced").unwrap();
     let uvs = s.column(PlantId(0), part, Column::Uvs);

@@ -4,13 +4,14 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use burgeon::document::{
-    self, Document, DocumentPlant, Editor, Maker, NewPlant, NewStroke, Photo, PhotoPlace, PlantId,
-    SceneCommand, Settings, SketchCommand, StrokeId,
+    self, Document, DocumentPlant, Editor, Maker, NewPlant, NewStroke, Photo, PhotoPlace, Picture,
+    PlantCommand, PlantId, SceneCommand, Settings, SketchCommand, StrokeId,
 };
 use burgeon::formats::{self, DrawingFormat, read_drawings};
 use burgeon::glam::DVec2;
 use burgeon::ink::{Drawing, Stroke, StrokeClass};
 use burgeon::mesh::Model;
+use burgeon::skin::{OrganMaterial, Pattern, Wearer};
 use burgeon::{Evaluator, ItemReport, Preset, Run, SceneEvaluator, tree_settings};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -356,7 +357,8 @@ impl Workspace {
             return Err(WorkspaceError::NoStroke);
         }
         let mut out = Vec::new();
-        let drawing = Drawing { name: plant.settings().name.clone(), strokes };
+        let drawing =
+            Drawing { name: plant.settings().name.clone(), strokes, layers: plant.layers().to_vec() };
         formats::write_drawing(&drawing, &mut out)?;
         Ok(out)
     }
@@ -389,6 +391,39 @@ impl Workspace {
         let mut photo = Photo::new(png.into())?;
         photo.place = PhotoPlace { x: at.x, y: at.y, width, ..photo.place };
         Ok(self.editor.run(SketchCommand::SetPhoto(Box::new(photo)).of(self.must()?))?)
+    }
+
+    /// Gives organs of the current plant a material with a picture (PNG): those that are read from `strokes`, or, without
+    /// any, all of a kind. One step of undo.
+    ///
+    /// # Errors
+    /// [`WorkspaceError::Picture`] when it is no PNG or too large; [`WorkspaceError::Command`].
+    pub fn wear_picture(
+        &mut self,
+        (wearer, strokes): (Wearer, Vec<StrokeId>),
+        material: OrganMaterial,
+        png: &[u8],
+    ) -> Result<(), WorkspaceError> {
+        let picture = Picture::new(png.into())?;
+        let id = self.must()?;
+        let worn =
+            Some(OrganMaterial { pattern: Pattern::Picture, picture: Some(picture.name()), ..material });
+        let known = self.current_plant().is_some_and(|p| p.settings().pictures.contains_key(&picture.name()));
+        let add = (!known).then(|| PlantCommand::AddPicture(picture).of(id));
+        let wear = match strokes.is_empty() {
+            true => PlantCommand::Wear(wearer, worn).of(id),
+            false => SketchCommand::SetMaterial(strokes, worn).of(id),
+        };
+        self.let_go();
+        self.editor.begin_gesture("material")?;
+        let done = add.map_or(Ok(()), |add| self.editor.run(add)).and_then(|()| self.editor.run(wear));
+        if let Err(e) = done {
+            self.editor.cancel_gesture();
+            return Err(e.into());
+        }
+        self.editor.commit();
+        self.guest = None;
+        Ok(())
     }
 
     /// The photograph's file if the shell has another one; it counts as had from now on.

@@ -7,12 +7,13 @@ use std::fmt::Write as _;
 use burgeon::Coded;
 use burgeon::document::Command;
 use burgeon::shape::ToolKind;
+use burgeon::skin::OrganMaterial;
 use schemars::JsonSchema;
 use schemars::generate::{SchemaGenerator, SchemaSettings};
 use serde_json::{Map, Value};
 use workspace::{
-    Action, DocumentState, ExportRequest, ExportView, Opened, Refusal, SceneView, ShapeAnswer, ShapeInput,
-    ShapeReach, WorkspaceError,
+    Action, DocumentState, ExportRequest, ExportView, Opened, PenStyle, Refusal, SceneView, ShapeAnswer,
+    ShapeInput, ShapeReach, WorkspaceError,
 };
 
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../apps/studio-web/src/wire.ts");
@@ -47,6 +48,8 @@ fn types() -> String {
     add::<SceneView>(&mut all);
     add::<Opened>(&mut all);
     add::<ExportRequest>(&mut all);
+    add::<PenStyle>(&mut all);
+    add::<OrganMaterial>(&mut all);
     add::<ExportView>(&mut all);
     add::<ToolKind>(&mut all);
     add::<ShapeReach>(&mut all);

@@ -129,6 +129,10 @@ pub(crate) struct BloomRunArgs {
     /// Seconds of an animation, above 0 to 600.
     #[arg(long, value_name = "S", default_value_t = 6.0, value_parser = |s: &str| ranged(s, 0.01, 600.0))]
     pub(crate) seconds: f64,
+    /// Materials of leaves, petals, sepals and single strokes, a TOML or JSON file (docs/materials.md): colours, patterns,
+    /// pictures.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) materials: Option<PathBuf>,
     /// Also write how wind moves each vertex of a whole flower or a drawing, for shaders: attributes _WIND and _PIVOT
     /// of .glb, primvars of .usda.
     #[arg(long)]

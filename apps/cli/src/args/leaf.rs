@@ -56,6 +56,10 @@ pub(crate) struct LeafArgs {
     /// Also write the leaf as marks, such as those found in a scan or grown between stages.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) marks: Option<PathBuf>,
+    /// Materials of leaves, petals, sepals and single strokes, a TOML or JSON file (docs/materials.md): colours, patterns,
+    /// pictures.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) materials: Option<PathBuf>,
     /// Also write how wind moves each vertex, for shaders: attributes _WIND and _PIVOT of .glb, primvars of .usda.
     #[arg(long)]
     pub(crate) wind: bool,

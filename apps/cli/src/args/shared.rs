@@ -53,6 +53,10 @@ pub(crate) struct SkinArgs {
     /// Plain colours instead of textures.
     #[arg(long)]
     pub(crate) no_textures: bool,
+    /// Materials of leaves, petals, sepals and single strokes, a TOML or JSON file (docs/materials.md): colours, patterns,
+    /// pictures.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) materials: Option<PathBuf>,
     /// Also write how wind moves each vertex, for shaders: attributes _WIND and _PIVOT of .glb, primvars of .usda
     /// (docs/exports.md).
     #[arg(long)]

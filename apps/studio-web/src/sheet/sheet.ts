@@ -39,6 +39,8 @@ export interface SheetEvents {
 interface Line {
   path: Path2D;
   filled: boolean;
+  /** Pixels. */
+  wide: number;
 }
 
 interface Stroke {
@@ -49,11 +51,20 @@ interface Stroke {
   organ: string | undefined;
   /** It may be something else. */
   doubtful: boolean;
+  /** Of its pen, where it is not that of the sheet: CSS, units of the drawing. */
+  color: string | undefined;
+  width: number | undefined;
+  /** Its layer is not hidden; it is neither hidden nor locked. */
+  seen: boolean;
+  free: boolean;
   line: (Line & { scale: number }) | undefined;
 }
 
 /** Width of a line, pixels, at half the pressure of a pen, or without any. */
 const INK = 2.6;
+
+/** A thinner line is not seen. */
+const LEAST_INK = 0.8;
 
 /** How near a pointer must come to a stroke, in pixels: a fingertip is coarser. */
 const REACH = { mouse: 8, pen: 8, touch: 18 } as const;
@@ -80,7 +91,7 @@ type Act =
  * The line through rows of `step` numbers: x and y first, the pressure last. With `pressed` its width follows the
  * pressure, where the device told one.
  */
-function lineThrough(points: Float64Array, step: number, scale: number, pressed: boolean): Line {
+function lineThrough(points: Float64Array, step: number, scale: number, pressed: boolean, wide = INK): Line {
   const path = new Path2D();
   const n = Math.floor(points.length / step);
   const rows = new Float64Array(3 * n);
@@ -90,12 +101,12 @@ function lineThrough(points: Float64Array, step: number, scale: number, pressed:
     told ||= Number.isFinite(pressure);
     rows[3 * i] = points[step * i]! * scale;
     rows[3 * i + 1] = -points[step * i + 1]! * scale;
-    rows[3 * i + 2] = 0.5 * INK * (Number.isFinite(pressure) ? 0.4 + 1.3 * pressure : 1);
+    rows[3 * i + 2] = 0.5 * wide * (Number.isFinite(pressure) ? 0.4 + 1.3 * pressure : 1);
   }
   const filled = pressed && told;
   if (filled) outline(path, rows);
   else centreline(path, rows);
-  return { path, filled };
+  return { path, filled, wide };
 }
 
 export class Sheet {
@@ -103,6 +114,10 @@ export class Sheet {
   private readonly base = document.createElement('canvas');
   private readonly top = document.createElement('canvas');
   private strokes: Stroke[] = [];
+  /** What is seen of them, from below upwards. */
+  private order: Stroke[] = [];
+  private ownColours = false;
+  private pen: { color: string | null; width: number | null } = { color: null, width: null };
   private points = new Map<number, Float64Array>();
   private selection = new Set<number>();
   private view: Viewport = { scale: 1, x: 0, y: 0 };
@@ -165,25 +180,47 @@ export class Sheet {
 
   // What is shown -----------------------------------------------------------------------------------------------
 
-  setState(state: Pick<SketchState, 'strokes' | 'photo'>, fresh: StrokePoints[]): void {
+  setState(state: Pick<SketchState, 'strokes' | 'photo' | 'layers'>, fresh: StrokePoints[]): void {
     this.photo = state.photo;
     if (!state.photo) this.placing = false;
     for (const { id, points } of fresh) this.points.set(id, points);
     const before = new Map(this.strokes.map((s) => [s.id, s]));
     const there = new Set(state.strokes.map((s) => s.id));
     for (const id of [...this.points.keys()]) if (!there.has(id)) this.points.delete(id);
-    this.strokes = state.strokes.flatMap(({ id, mode }) => {
+    const layers = new Map(state.layers.map((l, row) => [l.name, { ...l, row }]));
+    const rows = new Map<number, number>();
+    this.strokes = state.strokes.flatMap(({ id, mode, color, width, layer }) => {
       const points = this.points.get(id);
       const box = points && boxOf(points, 3);
       if (!points || !box) return [];
       const known = before.get(id);
       // Where it was pressed is no place of what it is now.
       if (known?.points !== points && this.selection.has(id)) this.pressed = undefined;
-      const line = known?.points === points && known.mode === mode ? known.line : undefined;
-      return [{ id, mode, points, box, organ: known?.organ, doubtful: known?.doubtful ?? false, line }];
+      const same = known?.points === points && known.mode === mode && known.width === (width ?? undefined);
+      const line = same ? known.line : undefined;
+      const on = layer === null ? undefined : layers.get(layer);
+      rows.set(id, on?.row ?? -1);
+      const seen = !on?.hidden;
+      return [
+        {
+          id,
+          mode,
+          points,
+          box,
+          organ: known?.organ,
+          doubtful: known?.doubtful ?? false,
+          color: color ? `rgb(${color.join(' ')})` : undefined,
+          width: width ?? undefined,
+          seen,
+          free: seen && !on?.locked,
+          line,
+        },
+      ];
     });
+    this.order = this.strokes.filter((s) => s.seen).sort((a, b) => rows.get(a.id)! - rows.get(b.id)!);
+    const free = new Set(this.strokes.filter((s) => s.free).map((s) => s.id));
     this.pending = undefined;
-    const left = [...this.selection].filter((id) => there.has(id));
+    const left = [...this.selection].filter((id) => free.has(id));
     if (left.length !== this.selection.size) this.select(left);
     this.redraw(true);
   }
@@ -192,6 +229,17 @@ export class Sheet {
     this.image?.close();
     this.image = image;
     this.redraw(true);
+  }
+
+  /** Shows lines in the colours of their pens, and not of what they were understood as. */
+  setOwnColours(on: boolean): void {
+    this.ownColours = on;
+    this.redraw(true);
+  }
+
+  /** The pen that is held: colour, and width in pixels. */
+  setPen(pen: { color: string | null; width: number | null }): void {
+    this.pen = pen;
   }
 
   setAxis(axis: number | undefined): void {
@@ -239,8 +287,10 @@ export class Sheet {
     return [...this.selection];
   }
 
-  /** `pressed`: where one of them was pressed, in the drawing's unit. */
-  select(ids: number[], pressed?: [number, number]): void {
+  /** All of these but what lies on layers that are hidden or locked; `pressed`: where one of them was pressed, in the drawing's unit. */
+  select(wanted: number[], pressed?: [number, number]): void {
+    const closed = new Set(this.strokes.filter((s) => !s.free).map((s) => s.id));
+    const ids = wanted.filter((id) => !closed.has(id));
     const same = ids.length === this.selection.size && ids.every((id) => this.selection.has(id));
     this.pressed = pressed ?? (same ? this.pressed : undefined);
     this.selection = new Set(ids);
@@ -256,11 +306,12 @@ export class Sheet {
 
   /** Selects the stroke after (or before) the selected one. */
   selectNext(step: number): void {
-    const n = this.strokes.length;
+    const free = this.strokes.filter((s) => s.free);
+    const n = free.length;
     if (n === 0) return;
-    const now = this.strokes.findIndex((s) => this.selection.has(s.id));
+    const now = free.findIndex((s) => this.selection.has(s.id));
     const next = now < 0 ? (step > 0 ? 0 : n - 1) : (now + step + n) % n;
-    this.select([this.strokes[next]!.id]);
+    this.select([free[next]!.id]);
   }
 
   /** One unit of the drawing per this many screen pixels. */
@@ -289,7 +340,7 @@ export class Sheet {
           top: p.place.y + p.height,
         }
       : undefined;
-    const box = this.strokes.reduce<Box | undefined>((b, s) => boxOf(s.points, 3, b), under);
+    const box = this.order.reduce<Box | undefined>((b, s) => boxOf(s.points, 3, b), under);
     const { clientWidth: w, clientHeight: h } = this.element;
     this.view = box ? fitted(box, w, h) : { scale: 1, x: w / 2, y: h * 0.85 };
     this.redraw(true);
@@ -523,7 +574,7 @@ export class Sheet {
     const [x0, y0] = toDrawing(this.view, Math.min(from[0], to[0]), Math.max(from[1], to[1]));
     const [x1, y1] = toDrawing(this.view, Math.max(from[0], to[0]), Math.min(from[1], to[1]));
     const inside = this.strokes.filter(
-      (s) => s.box.left >= x0 && s.box.right <= x1 && s.box.bottom >= y0 && s.box.top <= y1,
+      (s) => s.free && s.box.left >= x0 && s.box.right <= x1 && s.box.bottom >= y0 && s.box.top <= y1,
     );
     this.select([...(add ? this.selection : []), ...inside.map((s) => s.id)]);
   }
@@ -557,7 +608,8 @@ export class Sheet {
     const r = reach / this.view.scale;
     let best: Stroke | undefined;
     let least = r;
-    for (const s of this.strokes) {
+    for (const s of this.order) {
+      if (!s.free) continue;
       const b = s.box;
       if (x < b.left - r || x > b.right + r || y < b.bottom - r || y > b.top + r) continue;
       const d = distance(s.points, 3, x, y);
@@ -626,9 +678,9 @@ export class Sheet {
     this.under(c);
     this.grid(c);
     const gone = this.act?.kind === 'erase' ? this.act.ids : undefined;
-    for (const s of this.strokes) {
+    for (const s of this.order) {
       c.globalAlpha = gone?.has(s.id) ? 0.15 : s.doubtful ? DOUBT : 1;
-      this.ink(c, this.lineOf(s), s.mode, s.organ);
+      this.ink(c, this.lineOf(s), s.mode, s.organ, s.color);
     }
     c.globalAlpha = 1;
   }
@@ -643,9 +695,9 @@ export class Sheet {
     for (const s of this.strokes) {
       if (!this.selection.has(s.id)) continue;
       c.globalAlpha = 0.3;
-      this.draw(c, lineThrough(s.points, 3, this.view.scale, false), this.accent(), 11);
+      this.draw(c, lineThrough(s.points, 3, this.view.scale, false), this.accent(), 8 + this.lineOf(s).wide);
       c.globalAlpha = 1;
-      this.ink(c, this.lineOf(s), s.mode, s.organ);
+      this.ink(c, this.lineOf(s), s.mode, s.organ, s.color);
     }
     // While it is dragged, the strokes show what comes of it.
     const box = this.tool === 'select' && !this.act ? this.selectedBox() : undefined;
@@ -653,7 +705,13 @@ export class Sheet {
     if (live) {
       const { pen, mode } = live;
       const inked = (samples: Float64Array): void =>
-        this.ink(c, lineThrough(samples, 4, this.view.scale, mode === 'parts'), mode, this.draftOrgan);
+        this.ink(
+          c,
+          lineThrough(samples, 4, this.view.scale, mode === 'parts', this.pen.width ?? INK),
+          mode,
+          this.draftOrgan,
+          this.pen.color ?? undefined,
+        );
       inked(pen.samples);
       const { axis } = this;
       if (axis !== undefined && pen.beside(axis)) {
@@ -744,11 +802,18 @@ export class Sheet {
     }
   }
 
-  private ink(c: CanvasRenderingContext2D, line: Line, mode: StrokeMode, organ?: string): void {
+  private ink(
+    c: CanvasRenderingContext2D,
+    line: Line,
+    mode: StrokeMode,
+    organ?: string,
+    color?: string,
+  ): void {
     const fallback =
       mode === 'branch-contour' ? 'twig_contour' : mode === 'leaf-contour' ? 'leaf_contour' : undefined;
     if (mode !== 'parts') c.setLineDash([9, 7]);
-    this.draw(c, line, inkOf(organ ?? fallback, this.dark), INK);
+    const own = this.ownColours ? color : undefined;
+    this.draw(c, line, own ?? inkOf(organ ?? fallback, this.dark), line.wide);
     c.setLineDash([]);
   }
 
@@ -765,10 +830,18 @@ export class Sheet {
     c.translate(-this.view.x, -this.view.y);
   }
 
+  /** Pixels; a wide pen is as wide as it is in the drawing, but never so thin that it is not seen. */
+  private wideOf(s: Stroke): number {
+    return s.width === undefined ? INK : Math.max(LEAST_INK, s.width * this.view.scale);
+  }
+
   /** The line of a stroke at the sheet's scale; made again only when that changes. */
   private lineOf(s: Stroke): Line {
     if (s.line?.scale !== this.view.scale)
-      s.line = { ...lineThrough(s.points, 3, this.view.scale, s.mode === 'parts'), scale: this.view.scale };
+      s.line = {
+        ...lineThrough(s.points, 3, this.view.scale, s.mode === 'parts', this.wideOf(s)),
+        scale: this.view.scale,
+      };
     return s.line;
   }
 }

@@ -52,19 +52,21 @@ function gather(s: Schema | Schema[] | unknown): void {
 
 beforeAll(() => {
   initSync({ module: readFileSync(new URL('../wasm/burgeon_wasm_bg.wasm', import.meta.url)) });
-  const { tree, leaf, flower, trees, flowers } = JSON.parse(studio_schema()) as {
+  const { tree, leaf, flower, material, trees, flowers, materials } = JSON.parse(studio_schema()) as {
     tree: Schema;
     leaf: Schema;
     flower: Schema;
+    material: Schema;
+    materials: { key: string }[];
     trees: Species[];
     flowers: { key: string }[];
   };
-  gather([named(tree, 'tree'), named(leaf, 'leaf'), named(flower, 'flower')]);
+  gather([named(tree, 'tree'), named(leaf, 'leaf'), named(flower, 'flower'), named(material, 'material')]);
   for (const { key, about } of trees) {
     said.words.add(key);
     said.texts.set(`preset.${key}`, plainHelp(about));
   }
-  for (const { key } of flowers) said.words.add(key);
+  for (const { key } of [...flowers, ...materials]) said.words.add(key);
   expect(said.fields.size).toBeGreaterThan(100);
   expect(said.texts.size).toBeGreaterThan(200);
 });

@@ -4,6 +4,26 @@
  * of what an English text says is a change of the Chinese, too.
  */
 export const zhHelp: Readonly<Record<string, string>> = {
+  // Materials
+  material: '叶片、花瓣或萼片的材质。',
+  'material.amount': '第二种颜色有多少，0 至 1，默认 0.5。',
+  'material.color': '第一种颜色，即大部分表面的颜色。图片以自身的颜色显示。',
+  'material.pattern': '画在上面的图案。',
+  'material.picture':
+    '图案为 picture 时用哪张图片。在材质文件中是旁边 PNG 或 JPEG 的路径；在文档中是保存它的名称。',
+  'material.roughness': '0 像湿润的叶子一样有光泽，1 像丝绒一样无光；默认 0.6。',
+  'material.second': '第二种颜色：叶脉、条纹、斑点、边缘或基部的颜色。',
+  'material.Colour': 'sRGB 颜色，写作 #rrggbb。',
+  'material.Pattern': '画在器官上的图案。',
+  'material.Pattern.plain': '一种颜色。',
+  'material.Pattern.shaded': '从基部的第二种颜色渐变到尖端的第一种颜色。',
+  'material.Pattern.veined': '中脉和侧脉用第二种颜色。',
+  'material.Pattern.streaked': '第二种颜色的线条从喉部散开。',
+  'material.Pattern.speckled': '第二种颜色的斑点，越靠近喉部越多。',
+  'material.Pattern.picotee': '第二种颜色的镶边（picotee）。',
+  'material.Pattern.variegated': '第二种颜色的边缘不规则地渗入第一种颜色（花叶）。',
+  'material.Pattern.picture': '一张图片，从基部到尖端正立。',
+
   // Flowers
   flower: '会开的花。保存为 TOML；程序自带的种类就是这样的文件（preset）。',
   'flower.Insertion': '一轮花瓣着生的位置。',

@@ -75,6 +75,9 @@ pub enum CommandError {
     /// It is to stand elsewhere and was told to stay.
     #[error("the place of the plant is locked; unlock it to move, turn or size it")]
     Fixed,
+    /// It lies on a layer that is hidden or locked.
+    #[error("the layer {0:?} is hidden or locked; show and unlock it first")]
+    Locked(String),
     /// Nothing would change.
     #[error("nothing to do: {0}")]
     Nothing(&'static str),
@@ -163,6 +166,7 @@ base::coded!(CommandError {
     Self::NoLeaf => "no-leaf-to-lend" {},
     Self::NoPhoto => "no-photo" {},
     Self::Fixed => "place-locked" {},
+    Self::Locked(layer) => "layer-closed" { layer },
     Self::Nothing(_) => "nothing-to-do" {},
     Self::TooFar => "too-far" {},
     Self::Full(what) => "full" { what },

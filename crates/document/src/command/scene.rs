@@ -4,11 +4,12 @@ use base::Seed;
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use skin::{OrganMaterial, Wearer};
 
 use super::{Command, CommandError, NewStroke, plant, set};
 use crate::event::Event;
 use crate::state::{MAX_PLANTS, NAME_LENGTH, Placement, Settings, range_fault, shortened, sound};
-use crate::{Document, DocumentPlant, DocumentStroke, PlantId, StrokeId};
+use crate::{Document, DocumentPlant, DocumentStroke, Picture, PlantId, StrokeId};
 
 /// A plant that is to come in.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -64,7 +65,7 @@ impl SceneCommand {
                 let mut new = NewPlant { settings, strokes: Vec::new() };
                 new.settings.placement.position += by;
                 new.settings.fixed = false;
-                new.strokes = strokes.iter().map(NewStroke::from).collect();
+                new.strokes = strokes.iter().map(NewStroke::of).collect();
                 add(new, document).map(|e| vec![e])
             }
             Self::Remove(ids) => remove(&ids, document),
@@ -95,12 +96,14 @@ fn add(mut new: NewPlant, document: &Document) -> Result<Event, CommandError> {
     let mut strokes = Vec::new();
     if new.settings.sketch().is_some() {
         for s in new.strokes {
-            let Some(stroke) = sound(s.stroke) else { continue };
+            let Some(stroke) = sound(s.stroke.clone()) else { continue };
+            let NewStroke { class, shown, material, .. } = s;
             strokes.push(DocumentStroke {
                 id: StrokeId(next),
                 stroke: stroke.into(),
-                class: s.class,
-                shown: s.shown,
+                class,
+                shown,
+                material,
             });
             next = next.checked_add(1).ok_or(CommandError::Full("strokes"))?;
         }
@@ -163,6 +166,11 @@ pub enum PlantCommand {
     Place(Placement),
     /// Keeps it where it stands, or no longer. A copy is free to go.
     Fix(bool),
+    /// Gives the organs of a kind a material, or takes it away. A picture that it names is one of the plant's.
+    Wear(Wearer, Option<OrganMaterial>),
+    /// Takes in a picture that materials may name.
+    #[serde(skip)]
+    AddPicture(Picture),
 }
 
 impl PlantCommand {
@@ -179,12 +187,21 @@ impl PlantCommand {
             Self::Hide(_) => "hide",
             Self::Place(_) => "place",
             Self::Fix(_) => "fix",
+            Self::Wear(..) | Self::AddPicture(_) => "material",
         }
     }
 
     pub(super) fn decide(self, plant: &DocumentPlant) -> Result<Event, CommandError> {
         set(plant, |s| {
             match self {
+                Self::Wear(wearer, material) => {
+                    s.wear.set(wearer, material);
+                    let worn = plant.strokes.iter().filter_map(|s| s.material.as_deref());
+                    s.keep_pictures(worn);
+                }
+                Self::AddPicture(picture) => {
+                    s.pictures.insert(picture.name(), picture);
+                }
                 Self::Rename(name) => {
                     s.name = shortened(name.trim());
                     debug_assert!(s.name.chars().count() <= NAME_LENGTH, "shortened");

@@ -3,16 +3,17 @@
 use std::sync::Arc;
 
 use glam::DVec2;
-use ink::{InkSample, Stroke, StrokeClass, StrokeMode, StrokePull, StrokeTurn};
+use ink::{InkSample, Layer, Stroke, StrokeClass, StrokeMode, StrokePull, StrokeTurn};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sketch::SketchSpec;
-use skin::SkinSpec;
+use skin::{OrganMaterial, SkinSpec};
 
 use super::{Command, CommandError, may_bear, set};
 use crate::event::Event;
 use crate::makers::{Maker, SketchSettings};
-use crate::state::sound;
+use crate::picture::material_fault;
+use crate::state::{is_width, shortened, sound};
 use crate::{Document, DocumentPlant, DocumentStroke, Photo, PhotoPlace, PlantId, StrokeId};
 
 /// A stroke that is to be added.
@@ -24,13 +25,8 @@ pub struct NewStroke {
     pub class: Option<StrokeClass>,
     /// What the person was shown it as; of strokes that are copied with all others.
     pub shown: Option<StrokeClass>,
-}
-
-impl From<&DocumentStroke> for NewStroke {
-    /// It for another plant.
-    fn from(s: &DocumentStroke) -> Self {
-        Self { stroke: Stroke::clone(&s.stroke), class: s.class, shown: s.shown }
-    }
+    /// The material, if the person chose one.
+    pub material: Option<Arc<OrganMaterial>>,
 }
 
 impl NewStroke {
@@ -38,6 +34,12 @@ impl NewStroke {
     pub fn line(points: &[DVec2]) -> Self {
         let samples = points.iter().map(|&p| InkSample::from(p)).collect();
         Self { stroke: Stroke { samples, ..Stroke::default() }, ..Self::default() }
+    }
+
+    /// A copy of a stroke for another plant, with what was said of it.
+    pub fn of(stroke: &DocumentStroke) -> Self {
+        let DocumentStroke { stroke, class, shown, material, .. } = stroke;
+        Self { stroke: Stroke::clone(stroke), class: *class, shown: *shown, material: material.clone() }
     }
 }
 
@@ -77,7 +79,21 @@ pub enum SketchCommand {
     SetMode(Vec<StrokeId>, StrokeMode),
     /// Gives strokes a colour, or takes it away.
     SetColor(Vec<StrokeId>, Option<[u8; 3]>),
-    /// Erases every stroke.
+    /// Sets how wide the pen of strokes is, in the drawing's unit, or takes it away.
+    SetWidth(Vec<StrokeId>, Option<f64>),
+    /// Gives what is read from strokes a material, or takes it away. A picture that it names is one of the plant's.
+    SetMaterial(Vec<StrokeId>, Option<OrganMaterial>),
+    /// Adds a layer of this name above the others.
+    AddLayer(String),
+    /// Renames, hides or locks the layer of a row, from below. Its strokes stay on it.
+    SetLayer(usize, Layer),
+    /// Moves the layer of a row to another row.
+    MoveLayer(usize, usize),
+    /// Takes the layer of a row away; its strokes go to the sheet itself.
+    RemoveLayer(usize),
+    /// Puts strokes on a layer, by its name, or on the sheet itself.
+    PutOn(Vec<StrokeId>, Option<String>),
+    /// Erases every stroke, but those on layers that are hidden or locked.
     Clear,
     /// Sets how the drawing is understood.
     SetSketch(Box<SketchSpec>),
@@ -117,6 +133,10 @@ impl SketchCommand {
             Self::SetClass(..) => "class",
             Self::SetMode(..) => "mode",
             Self::SetColor(..) => "color",
+            Self::SetWidth(..) => "width",
+            Self::SetMaterial(..) => "material",
+            Self::AddLayer(_) | Self::SetLayer(..) | Self::MoveLayer(..) | Self::RemoveLayer(_) => "layer",
+            Self::PutOn(..) => "put-on",
             Self::Clear => "clear",
             Self::SetSketch(_) => "sketch",
             Self::SetSkin(_) => "skin",
@@ -142,8 +162,7 @@ impl SketchCommand {
             }
             Self::JoinStrokes(ids) => return join(&rows(&ids, plant)?, plant, document),
             Self::RubOut(path, radius) => {
-                let all: Vec<usize> = (0..plant.strokes.len()).collect();
-                return replace(&all, plant, document, |s| ink::rubbed(s, &path, radius));
+                return replace(&within_reach(plant), plant, document, |s| ink::rubbed(s, &path, radius));
             }
             Self::Draw(stroke, shown) => {
                 let added = add(vec![NewStroke { stroke, ..NewStroke::default() }], plant, document)?;
@@ -159,7 +178,7 @@ impl SketchCommand {
             Self::AddStrokes(strokes) => add(strokes, plant, document),
             Self::Duplicate(ids, by) => duplicate(&ids, by, plant, document),
             Self::RemoveStrokes(ids) => remove(&rows(&ids, plant)?, plant),
-            Self::Clear => remove(&(0..plant.strokes.len()).collect::<Vec<_>>(), plant),
+            Self::Clear => remove(&within_reach(plant), plant),
             Self::MoveStrokes(ids, by) => redraw(&ids, plant, |s| moved(s, by)),
             Self::TurnStrokes(ids, turn) => redraw(&ids, plant, |s| turn.of(s)),
             Self::PullStrokes(ids, pull) => redraw(&ids, plant, |s| pull.of(s)),
@@ -170,6 +189,33 @@ impl SketchCommand {
             }),
             Self::SetMode(ids, mode) => redraw(&ids, plant, |s| Stroke { mode, ..s.clone() }),
             Self::SetColor(ids, color) => redraw(&ids, plant, |s| Stroke { color, ..s.clone() }),
+            Self::SetWidth(_, Some(width)) if !is_width(width) => return Err(CommandError::TooFar),
+            Self::SetWidth(ids, width) => redraw(&ids, plant, |s| Stroke { width, ..s.clone() }),
+            Self::SetMaterial(ids, material) => return wear(&ids, material, plant),
+            Self::AddLayer(name) => {
+                let layer = Layer { name: shortened(name.trim()).into(), ..Layer::default() };
+                settings(plant, |s| s.layers.push(layer))
+            }
+            Self::SetLayer(row, layer) => return set_layer(row, layer, plant),
+            Self::MoveLayer(from, to) => {
+                let rows = plant.layers().len();
+                if from >= rows || to >= rows {
+                    return Err(NO_LAYER);
+                }
+                settings(plant, |s| {
+                    let layer = s.layers.remove(from);
+                    s.layers.insert(to, layer);
+                })
+            }
+            Self::RemoveLayer(row) => return remove_layer(row, plant),
+            Self::PutOn(ids, name) => {
+                let name = name.map(Arc::from);
+                let to = name.as_ref().map(|n| plant.layers().iter().find(|l| l.name == *n).ok_or(NO_LAYER));
+                if let Some(layer) = to.transpose()? {
+                    open_to_hand(Some(layer))?;
+                }
+                redraw(&ids, plant, |s| Stroke { layer: name.clone(), ..s.clone() })
+            }
             Self::SetSketch(sketch) => settings(plant, |s| s.sketch = *sketch),
             Self::SetSkin(skin) => settings(plant, |s| s.skin = SkinSpec { seed: s.skin.seed, ..skin }),
             Self::SetPhoto(photo) => settings(plant, |s| s.photo = Some(*photo)),
@@ -202,12 +248,17 @@ fn settings(plant: &DocumentPlant, change: impl FnOnce(&mut SketchSettings)) -> 
 fn add(strokes: Vec<NewStroke>, plant: &DocumentPlant, document: &Document) -> Result<Event, CommandError> {
     let mut next = document.next_stroke;
     let mut rows = Vec::with_capacity(strokes.len());
-    for new in strokes {
-        let Some(stroke) = sound(new.stroke) else { continue };
+    for NewStroke { stroke, class, shown, material } in strokes {
+        let Some(mut stroke) = sound(stroke) else { continue };
+        // A layer of another drawing is none of this one's.
+        let layer = stroke.layer.take();
+        let layer = layer.and_then(|name| plant.layers().iter().find(|l| l.name == name));
+        open_to_hand(layer)?;
+        stroke.layer = layer.map(|l| Arc::clone(&l.name));
         let id = StrokeId(next);
         next = next.checked_add(1).ok_or(CommandError::Full("strokes"))?;
         let row = plant.strokes.len() + rows.len();
-        rows.push((row, DocumentStroke { id, stroke: Arc::new(stroke), class: new.class, shown: new.shown }));
+        rows.push((row, DocumentStroke { id, stroke: Arc::new(stroke), class, shown, material }));
     }
     if rows.is_empty() {
         return Err(CommandError::Nothing("the stroke has no point"));
@@ -259,7 +310,7 @@ fn replace(
                 next = next.checked_add(1).ok_or(CommandError::Full("strokes"))?;
             }
             let stroke = Arc::new(near(piece)?);
-            come.push((base + k, DocumentStroke { id, stroke, class: old.class, shown: None }));
+            come.push((base + k, DocumentStroke { id, stroke, shown: None, ..old.clone() }));
             more += 1;
         }
         gone.push((row, old.clone()));
@@ -298,7 +349,7 @@ fn duplicate(
 ) -> Result<Event, CommandError> {
     let copies = rows(ids, plant)?.into_iter().map(|row| {
         let s = &plant.strokes[row];
-        Ok(NewStroke { stroke: near(moved(&s.stroke, by))?, class: s.class, shown: None })
+        Ok(NewStroke { stroke: near(moved(&s.stroke, by))?, shown: None, ..NewStroke::of(s) })
     });
     add(copies.collect::<Result<_, CommandError>>()?, plant, document)
 }
@@ -311,7 +362,78 @@ fn rows(ids: &[StrokeId], plant: &DocumentPlant) -> Result<Vec<usize>, CommandEr
         let missing = wanted.into_iter().find(|&id| plant.row(id).is_none());
         return Err(missing.map_or(CommandError::Nothing("no stroke"), CommandError::NoSuchStroke));
     }
+    found.iter().try_for_each(|&row| open_to_hand(plant.layer_of(&plant.strokes[row])))?;
     Ok(found)
+}
+
+/// Rows of strokes that are neither hidden nor locked.
+fn within_reach(plant: &DocumentPlant) -> Vec<usize> {
+    let open = |&row: &usize| open_to_hand(plant.layer_of(&plant.strokes[row])).is_ok();
+    (0..plant.strokes.len()).filter(open).collect()
+}
+
+/// Whether what lies on a layer may be changed.
+fn open_to_hand(layer: Option<&Layer>) -> Result<(), CommandError> {
+    match layer.filter(|l| l.hidden || l.locked) {
+        Some(layer) => Err(CommandError::Locked(layer.name.to_string())),
+        None => Ok(()),
+    }
+}
+
+const NO_LAYER: CommandError = CommandError::Nothing("the layer is not there any more");
+
+/// Strokes of a layer, put on another.
+fn relayered(from: &Arc<str>, to: Option<&Arc<str>>, plant: &DocumentPlant) -> Option<Event> {
+    let on = plant.strokes.iter().enumerate().filter(|(_, s)| s.stroke.layer.as_ref() == Some(from));
+    let rows: Vec<_> = on
+        .map(|(row, before)| {
+            let stroke = Stroke { layer: to.cloned(), ..Stroke::clone(&before.stroke) };
+            (row, before.clone(), DocumentStroke { stroke: Arc::new(stroke), ..before.clone() })
+        })
+        .collect();
+    (!rows.is_empty()).then_some(Event::Edited { plant: plant.id, rows })
+}
+
+fn set_layer(row: usize, layer: Layer, plant: &DocumentPlant) -> Result<Vec<Event>, CommandError> {
+    let before = plant.layers().get(row).ok_or(NO_LAYER)?;
+    let after = Layer { name: shortened(layer.name.trim()).into(), ..layer };
+    let moved = (before.name != after.name).then(|| relayered(&before.name, Some(&after.name), plant));
+    let set = settings(plant, |s| s.layers[row] = after)?;
+    Ok(core::iter::once(set).chain(moved.flatten()).collect())
+}
+
+fn remove_layer(row: usize, plant: &DocumentPlant) -> Result<Vec<Event>, CommandError> {
+    let gone = plant.layers().get(row).ok_or(NO_LAYER)?;
+    let moved = relayered(&gone.name, None, plant);
+    let set = settings(plant, |s| {
+        s.layers.remove(row);
+    })?;
+    Ok(moved.into_iter().chain([set]).collect())
+}
+
+/// Strokes with another material, and the plant without pictures that nothing wears any more.
+fn wear(
+    ids: &[StrokeId],
+    material: Option<OrganMaterial>,
+    plant: &DocumentPlant,
+) -> Result<Vec<Event>, CommandError> {
+    if let Some(fault) = material.as_ref().and_then(|m| material_fault(m, &plant.settings.pictures)) {
+        return Err(CommandError::OutOfRange(fault));
+    }
+    let material = material.map(Arc::new);
+    let edited = edit(ids, plant, |s| {
+        s.material.clone_from(&material);
+        Ok(())
+    })?;
+    let others = plant.strokes.iter().filter(|s| !ids.contains(&s.id)).filter_map(|s| s.material.as_deref());
+    let mut after = plant.settings.clone();
+    after.keep_pictures(others.chain(material.as_deref()));
+    let mut events = vec![edited];
+    if after != plant.settings {
+        let (before, after) = (Box::new(plant.settings.clone()), Box::new(after));
+        events.push(Event::Set { plant: plant.id, before, after });
+    }
+    Ok(events)
 }
 
 fn remove(rows: &[usize], plant: &DocumentPlant) -> Result<Event, CommandError> {

@@ -92,7 +92,7 @@ pub(super) fn read(text: &str, name: &str, report: &mut Report) -> Result<Drawin
     }
     let title = root.children().find(|n| is_annotation(*n, "name")).and_then(|n| n.text());
     let name = title.map_or(name, str::trim);
-    Ok(Drawing { name: name.to_owned(), strokes: reader.strokes })
+    Ok(Drawing { name: name.to_owned(), strokes: reader.strokes, ..Drawing::default() })
 }
 
 fn is_annotation(node: Node<'_, '_>, kind: &str) -> bool {
@@ -226,7 +226,7 @@ impl<'a> Reader<'a> {
             }
             None => {
                 let id = id(node).map(str::to_owned);
-                self.strokes.push(Stroke { samples, mode, color: context.color, id });
+                self.strokes.push(Stroke { samples, mode, color: context.color, id, ..Stroke::default() });
                 self.strokes.len() - 1
             }
         };

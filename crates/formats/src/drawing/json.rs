@@ -1,10 +1,11 @@
 //! Our own `drawing/1` JSON, read and written; described in `docs/drawings.md`.
 
 use std::io::Write;
+use std::sync::Arc;
 
 use base::Report;
 use glam::DVec2;
-use ink::{Drawing, InkSample, Stroke, StrokeMode};
+use ink::{Drawing, InkSample, Layer, Stroke, StrokeMode};
 use serde::{Deserialize, Serialize};
 
 use super::{mode::mode_in, parse_color};
@@ -20,6 +21,8 @@ struct File {
     name: String,
     #[serde(default)]
     y: Up,
+    #[serde(default)]
+    layers: Vec<Layer>,
     strokes: Vec<FileStroke>,
 }
 
@@ -39,6 +42,10 @@ struct FileStroke {
     mode: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     color: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    width: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    layer: Option<Arc<str>>,
     /// `x, y`, then time in ms and pressure where known; `null` for an unknown time before a known pressure.
     points: Vec<Vec<Option<f64>>>,
 }
@@ -95,11 +102,20 @@ pub(super) fn read_at(
         }
     }
     let mut strokes = Vec::with_capacity(file.strokes.len());
+    let mut layers = file.layers;
     for (i, stroke) in file.strokes.into_iter().enumerate() {
-        strokes.push(read_stroke(stroke, i, file.y, format, report)?);
+        let mut stroke = read_stroke(stroke, i, file.y, format, report)?;
+        // A layer that is not told of is seen.
+        if let Some(name) = &stroke.layer
+            && !layers.iter().any(|l| l.name == *name)
+        {
+            layers.push(Layer { name: Arc::clone(name), ..Layer::default() });
+        }
+        stroke.hidden = layers.iter().any(|l| l.hidden && Some(&l.name) == stroke.layer.as_ref());
+        strokes.push(stroke);
     }
     let name = if file.name.is_empty() { name.to_owned() } else { file.name };
-    Ok(Drawing { name, strokes })
+    Ok(Drawing { name, strokes, layers })
 }
 
 fn read_stroke(
@@ -140,7 +156,8 @@ fn read_stroke(
             pressure: p.get(3).copied().flatten(),
         });
     }
-    Ok(Stroke { samples, mode, color, id: stroke.id })
+    let width = stroke.width.filter(|w| w.is_finite() && *w > 0.0);
+    Ok(Stroke { samples, mode, color, width, layer: stroke.layer, hidden: false, id: stroke.id })
 }
 
 /// Writes a drawing as `drawing/1` JSON, y up, one stroke a line.
@@ -163,7 +180,12 @@ pub fn write_drawing(drawing: &Drawing, mut out: impl Write) -> Result<(), Write
     let json = |e: serde_json::Error| WriteError::Io(e.into());
     write!(out, "{{\"burgeon\":\"{SCHEMA}\",\"name\":")?;
     serde_json::to_writer(&mut out, &drawing.name).map_err(json)?;
-    out.write_all(b",\"y\":\"up\",\"strokes\":[")?;
+    out.write_all(b",\"y\":\"up\"")?;
+    if !drawing.layers.is_empty() {
+        out.write_all(b",\"layers\":")?;
+        serde_json::to_writer(&mut out, &drawing.layers).map_err(json)?;
+    }
+    out.write_all(b",\"strokes\":[")?;
     for (i, stroke) in drawing.strokes.iter().enumerate() {
         out.write_all(if i == 0 { b"\n" } else { b",\n" })?;
         let points = stroke.samples.iter().filter(|s| s.at.is_finite()).map(|s| {
@@ -184,6 +206,8 @@ pub fn write_drawing(drawing: &Drawing, mut out: impl Write) -> Result<(), Write
             id: stroke.id.clone(),
             mode: Some(mode.to_owned()),
             color: stroke.color.map(|[r, g, b]| format!("#{r:02x}{g:02x}{b:02x}")),
+            width: stroke.width,
+            layer: stroke.layer.clone(),
             points: points.collect(),
         };
         serde_json::to_writer(&mut out, &line).map_err(json)?;

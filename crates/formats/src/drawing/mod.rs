@@ -15,6 +15,7 @@ use ink::Drawing;
 use crate::error::{DrawingError, FileFault, Place};
 use crate::kind::DrawingFormat;
 pub use json::write_drawing;
+pub use svg::write_svg;
 
 /// Largest file (or line of a file with a drawing a line) that is read whole: 64 MiB.
 pub const MAX_DRAWING_BYTES: u64 = 64 << 20;
@@ -102,7 +103,7 @@ fn read_one(input: impl Read, format: DrawingFormat, name: &str) -> Result<ReadD
         DrawingFormat::Json => json::read(&text, name, &mut report)?,
         DrawingFormat::Ndjson => quickdraw::read_line(&text, 1, name, &mut report)?,
     };
-    if drawing.strokes.is_empty() {
+    if drawing.strokes.iter().all(|s| s.hidden) {
         return Err(file(FileFault::no_strokes(&report)));
     }
     Ok(ReadDrawing { drawing, warnings: report.warnings })

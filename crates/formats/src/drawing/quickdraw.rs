@@ -150,7 +150,7 @@ pub(super) fn read_line(
             DrawingError::new(FORMAT, place, FileFault::malformed(what, advice))
         })?);
     }
-    Ok(Drawing { name, strokes })
+    Ok(Drawing { name, strokes, ..Drawing::default() })
 }
 
 fn stroke(rows: &[Vec<f64>]) -> Result<Stroke, String> {

@@ -7,9 +7,9 @@ use base::ops;
 
 /// The colours of a leaf.
 pub(super) struct LeafInks {
-    dark: Paint,
-    light: Paint,
-    vein: Paint,
+    pub(super) dark: Paint,
+    pub(super) light: Paint,
+    pub(super) vein: Paint,
 }
 
 pub(super) const GREEN: LeafInks =

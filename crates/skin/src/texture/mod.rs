@@ -3,6 +3,7 @@
 mod blades;
 mod bodies;
 mod noise;
+mod patterns;
 mod tubes;
 mod veins;
 
@@ -13,9 +14,11 @@ use mesh::Texture;
 
 use crate::PetalColor;
 
+pub use patterns::swatch;
 pub use veins::{LeafColours, vein_texture};
 
 pub(crate) use bodies::{DISC_RADIUS, RECEPTACLE_AT};
+pub(crate) use patterns::{paint as paint_material, painted as painted_material};
 
 /// Height of the florets over the dome of a disc at a place of its unit circle, about -1 to 1.
 pub(crate) fn unevenness(x: f64, y: f64) -> f64 {

@@ -328,7 +328,7 @@ fn skinned(
     let mut model = skin::skin(plant, skin, run)?;
     paint(look, &mut model, barks, run);
     if let Some(leaf) = leaf {
-        leaf.dress(&mut model);
+        leaf.dress(&mut model, &skin.worn);
     }
     Ok(model)
 }

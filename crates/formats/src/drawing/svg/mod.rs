@@ -6,12 +6,16 @@
 mod path;
 mod ribbon;
 mod style;
+mod write;
+
+pub use write::write_svg;
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use base::Report;
 use glam::{DAffine2, DVec2};
-use ink::{Drawing, InkSample, Stroke};
+use ink::{Drawing, InkSample, Layer, Stroke};
 use roxmltree::{Node, NodeId};
 
 use self::path::SubPath;
@@ -39,13 +43,19 @@ struct Shape {
     paths: Vec<SubPath>,
     style: Style,
     id: Option<String>,
+    /// In the file's coordinates.
+    width: Option<f64>,
 }
+
+/// More layers than that are one with the sheet.
+const MAX_LAYERS: usize = 100;
 
 struct Reader<'a> {
     by_id: BTreeMap<&'a str, NodeId>,
     sheet: Sheet,
     viewport: DVec2,
     shapes: Vec<Shape>,
+    layers: Vec<Layer>,
     elements: usize,
     pieces: usize,
     work: usize,
@@ -76,6 +86,7 @@ pub(super) fn read(text: &str, name: &str, report: &mut Report) -> Result<Drawin
         sheet,
         viewport: viewport(root),
         shapes: Vec::new(),
+        layers: Vec::new(),
         elements: 0,
         pieces: 0,
         work: 0,
@@ -88,7 +99,11 @@ pub(super) fn read(text: &str, name: &str, report: &mut Report) -> Result<Drawin
     let title = title.map(str::trim).filter(|t| !t.is_empty());
     // A file's stem names it better than a title that every export of a program shares.
     let name = if name.is_empty() { title.unwrap_or_default() } else { name };
-    Ok(Drawing { name: name.to_owned(), strokes: strokes(&reader.shapes, report) })
+    // What is hidden comes last: numbers of strokes, and all that follows from them, are as if it were not there.
+    let (hidden, seen): (Vec<Shape>, Vec<Shape>) = reader.shapes.into_iter().partition(|s| s.style.hidden);
+    let mut all = strokes(&seen, &reader.layers, report);
+    all.extend(strokes(&hidden, &reader.layers, &mut Report::default()));
+    Ok(Drawing { name: name.to_owned(), strokes: all, layers: reader.layers })
 }
 
 #[derive(Clone, Copy, Default)]
@@ -131,7 +146,15 @@ impl<'a> Reader<'a> {
         if depth.uses > MAX_USE {
             return Err(limit("the nesting of `use`", MAX_USE));
         }
-        let style = inherited.of(node, &self.sheet);
+        let mut style = inherited.of(node, &self.sheet);
+        let seen = style.displayed && style.visible;
+        if is_layer(node) {
+            style.layer = self.layer(node, inherited.hidden || !seen).or(style.layer);
+            if !seen && style.layer.is_some() {
+                self.leave_out("hidden layer");
+                (style.hidden, style.displayed, style.visible) = (true, true, true);
+            }
+        }
         if !style.displayed {
             self.leave_out("hidden");
             return Ok(());
@@ -169,6 +192,28 @@ impl<'a> Reader<'a> {
             _ => self.shape(node, style, here),
         }
         Ok(())
+    }
+
+    /// The row of a layer: new, with a name that no other has. `None` where there are too many.
+    fn layer(&mut self, node: Node<'_, '_>, hidden: bool) -> Option<usize> {
+        if self.layers.len() >= MAX_LAYERS {
+            return None;
+        }
+        let of = |name: &str| node.attributes().find(|a| a.name() == name).map(|a| a.value());
+        let said = of("label").or(of("id")).unwrap_or_default();
+        let plain: String = said.chars().map(|c| if c.is_control() { ' ' } else { c }).take(180).collect();
+        let plain = if plain.trim().is_empty() { "layer".to_owned() } else { plain.trim().to_owned() };
+        let taken = |name: &str| self.layers.iter().any(|l| &*l.name == name);
+        let mut name = plain.clone();
+        for k in 2..=MAX_LAYERS {
+            if !taken(&name) {
+                break;
+            }
+            name = format!("{plain} {k}");
+        }
+        let locked = of("insensitive") == Some("true");
+        self.layers.push(Layer { name: name.into(), hidden, locked });
+        Some(self.layers.len() - 1)
     }
 
     fn own_transform(&mut self, node: Node<'_, '_>) -> DAffine2 {
@@ -225,7 +270,10 @@ impl<'a> Reader<'a> {
             self.pieces += path.pieces.len() + 1;
         }
         let id = node.attribute("id").map(str::to_owned);
-        self.shapes.push(Shape { paths, style, id });
+        let scale = here.matrix2.determinant().abs().sqrt();
+        let painted = style.stroke != Paint::None;
+        let width = style.width.map(|w| w * scale).filter(|w| painted && w.is_finite() && *w > 0.0);
+        self.shapes.push(Shape { paths, style, id, width });
     }
 
     fn rect(&mut self, node: Node<'_, '_>, style: Style) -> Vec<SubPath> {
@@ -286,6 +334,12 @@ impl<'a> Reader<'a> {
     }
 }
 
+/// Whether an element is a layer of Inkscape's.
+fn is_layer(node: Node<'_, '_>) -> bool {
+    node.tag_name().name() == "g"
+        && node.attributes().any(|a| a.name() == "groupmode" && a.value() == "layer")
+}
+
 /// A length in user units; percents of `whole`.
 fn length(text: &str, whole: f64) -> f64 {
     let text = text.trim();
@@ -338,7 +392,7 @@ fn nested_viewport(node: Node<'_, '_>) -> DAffine2 {
     shift * DAffine2::from_scale(DVec2::splat(scale)) * DAffine2::from_translation(DVec2::new(-x, -y))
 }
 
-fn strokes(shapes: &[Shape], report: &mut Report) -> Vec<Stroke> {
+fn strokes(shapes: &[Shape], layers: &[Layer], report: &mut Report) -> Vec<Stroke> {
     let (mut min, mut max) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
     let points = shapes.iter().flat_map(|s| &s.paths).flat_map(SubPath::control_points);
     for p in points.filter(|p| p.is_finite()) {
@@ -363,8 +417,16 @@ fn strokes(shapes: &[Shape], report: &mut Report) -> Vec<Stroke> {
     let mut reduced = 0_usize;
     for ((shape, lines), centre) in shapes.iter().zip(flat).zip(centre_lines) {
         let color = shape.style.stroke.color().or_else(|| shape.style.fill.color());
-        let stroke =
-            |samples: Vec<InkSample>| Stroke { samples, mode: shape.style.mode, color, id: shape.id.clone() };
+        let layer = shape.style.layer.and_then(|row| layers.get(row));
+        let stroke = |samples: Vec<InkSample>| Stroke {
+            samples,
+            mode: shape.style.mode,
+            color,
+            width: shape.width,
+            layer: layer.map(|l| Arc::clone(&l.name)),
+            hidden: shape.style.hidden,
+            id: shape.id.clone(),
+        };
         if let Some(line) = centre {
             reduced += 1;
             let samples = line.into_iter().map(|(at, pressure)| InkSample {

@@ -35,6 +35,12 @@ pub(super) struct Style {
     /// Not inherited, but hides everything below.
     pub(super) displayed: bool,
     pub(super) mode: StrokeMode,
+    /// As attributes and `style` say it, in the units of the element; sheets of style are not asked.
+    pub(super) width: Option<f64>,
+    /// Row of the layer.
+    pub(super) layer: Option<usize>,
+    /// On a layer that is hidden.
+    pub(super) hidden: bool,
 }
 
 impl Default for Style {
@@ -47,6 +53,9 @@ impl Default for Style {
             visible: true,
             displayed: true,
             mode: StrokeMode::Parts,
+            width: None,
+            layer: None,
+            hidden: false,
         }
     }
 }
@@ -56,7 +65,7 @@ impl Style {
     pub(super) fn of(self, node: Node<'_, '_>, sheet: &Sheet) -> Self {
         let mut style = Self { displayed: true, ..self };
         // `color` first: the others may refer to it.
-        for name in ["color", "stroke", "fill", "visibility", "display"] {
+        for name in ["color", "stroke", "fill", "visibility", "display", "stroke-width"] {
             if let Some(value) = node.attribute(name) {
                 style.set(name, value);
             }
@@ -85,6 +94,10 @@ impl Style {
             }
             "visibility" => self.visible = !matches!(value, "hidden" | "collapse"),
             "display" => self.displayed = value != "none",
+            "stroke-width" => {
+                // Of a percentage of the sheet nobody draws.
+                self.width = Some(super::length(value, 0.0)).filter(|w| w.is_finite() && *w > 0.0);
+            }
             _ => {}
         }
     }

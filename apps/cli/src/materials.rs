@@ -1,0 +1,118 @@
+//! Files of materials for leaves, petals and sepals.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use burgeon::document::{
+    Command, CommandError, Document, DocumentPlant, Editor, Picture, PlantCommand, PlantId, SketchCommand,
+};
+use burgeon::formats::{read_picture, write_png};
+use burgeon::mesh::Texture;
+use burgeon::skin::{OrganMaterial, Pattern, Wear, Wearer, Worn};
+
+use crate::failure::{Failure, Outcome};
+use crate::{files, inputs};
+
+/// What a file of materials asks for, with the pixels of its pictures by their paths.
+#[derive(Debug, Default)]
+pub(crate) struct Materials {
+    wear: Wear,
+    pictures: BTreeMap<String, Arc<Texture>>,
+}
+
+impl Materials {
+    /// Reads a file of materials (.toml or .json) and the pictures beside it.
+    pub(crate) fn read(path: &Path) -> Outcome<Self> {
+        let text = files::read_text(path)?;
+        let json = files::extension(path).is_some_and(|e| e.eq_ignore_ascii_case("json"));
+        let wear: Wear = if json {
+            let value = serde_json::from_str(&text)
+                .map_err(|e| Failure::at(path, format_args!("is not a file of materials: {e}")))?;
+            burgeon::spec::from_json(&value)
+        } else {
+            burgeon::spec::from_toml(&text)
+        }
+        .map_err(|e| Failure::at(path, e))?;
+        let mut pictures = BTreeMap::new();
+        for material in wear.materials() {
+            let OrganMaterial { pattern, picture, .. } = material;
+            match (pattern, picture) {
+                (Pattern::Picture, Some(name)) if !pictures.contains_key(name) => {
+                    pictures.insert(name.clone(), picture_beside(path, name)?);
+                }
+                (Pattern::Picture, Some(_)) => {}
+                (Pattern::Picture, None) => {
+                    let line = "has a material of the pattern picture without a picture; name one: picture = \"petal.png\"";
+                    return Err(Failure::at(path, line));
+                }
+                (_, Some(name)) => {
+                    let line = format_args!(
+                        "names the picture \"{name}\" in a material of the pattern {}; write pattern = \"picture\"",
+                        pattern.word()
+                    );
+                    return Err(Failure::at(path, line));
+                }
+                (_, None) => {}
+            }
+        }
+        Ok(Self { wear, pictures })
+    }
+
+    /// As a plant is meshed with it.
+    pub(crate) fn worn(&self) -> Worn {
+        self.wear.worn(|name| self.pictures.get(name).cloned())
+    }
+
+    /// A document whose plant wears it; what it wore before is taken off.
+    pub(crate) fn on(&self, document: Document, id: PlantId) -> Outcome<Document> {
+        let mut editor = Editor::new(document);
+        let mut names = BTreeMap::new();
+        for (name, texture) in &self.pictures {
+            let mut png = Vec::new();
+            write_png(texture.width, texture.height, &texture.pixels, &mut png)
+                .map_err(|e| Failure::Bug(e.to_string()))?;
+            let picture = Picture::new(png.into()).map_err(|e| Failure::Bad(format!("{name}: {e}")))?;
+            names.insert(name.clone(), picture.name());
+            run(&mut editor, PlantCommand::AddPicture(picture).of(id))?;
+        }
+        let kept = |m: &OrganMaterial| {
+            let picture = m.picture.as_ref().and_then(|name| names.get(name).cloned());
+            OrganMaterial { picture, ..m.clone() }
+        };
+        let ids: Vec<_> = editor
+            .document()
+            .plant(id)
+            .map_or(&[][..], DocumentPlant::strokes)
+            .iter()
+            .map(|s| s.id)
+            .collect();
+        if !ids.is_empty() {
+            run(&mut editor, SketchCommand::SetMaterial(ids.clone(), None).of(id))?;
+        }
+        // Pictures that nothing wears are forgotten: strokes put them on first.
+        for wear in &self.wear.strokes {
+            let strokes = wear.strokes.iter().filter_map(|&row| ids.get(row as usize).copied()).collect();
+            run(&mut editor, SketchCommand::SetMaterial(strokes, Some(kept(&wear.material))).of(id))?;
+        }
+        for wearer in Wearer::ALL {
+            run(&mut editor, PlantCommand::Wear(wearer, self.wear.of(wearer).map(kept)).of(id))?;
+        }
+        Ok(editor.document().clone())
+    }
+}
+
+/// What is so already is no fault.
+fn run(editor: &mut Editor, command: Command) -> Outcome {
+    match editor.run(command) {
+        Ok(()) | Err(CommandError::Nothing(_)) => Ok(()),
+        Err(e) => Err(Failure::Bad(e.to_string())),
+    }
+}
+
+fn picture_beside(path: &Path, name: &str) -> Outcome<Arc<Texture>> {
+    let path = path.parent().unwrap_or(Path::new("")).join(name);
+    let bytes = inputs::bytes(&path).map_err(|e| Failure::io(&path, "read", &e))?;
+    let picture = read_picture(&bytes);
+    picture.map(Arc::new).ok_or_else(|| Failure::at(&path, "is no PNG or JPEG picture that can be read"))
+}

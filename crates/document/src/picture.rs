@@ -1,0 +1,105 @@
+//! Pictures that organs wear.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, OnceLock};
+
+use base::Digest;
+use mesh::Texture;
+use skin::{OrganMaterial, Pattern};
+
+use crate::SettingFault;
+use crate::photo::png_size;
+
+/// Most bytes and longest side of a picture: 8 MiB, 2,048 pixels.
+const MAX_PICTURE_BYTES: usize = 8 << 20;
+const MAX_SIDE: u32 = 2048;
+/// Most pictures of one plant.
+pub(crate) const MAX_PICTURES: usize = 16;
+
+/// A picture that organs wear.
+///
+/// It is held as PNG: what every platform decodes to the same pixels. Two pictures are equal if their files are.
+#[derive(Clone)]
+pub struct Picture {
+    png: Arc<[u8]>,
+    decoded: Arc<OnceLock<Option<Arc<Texture>>>>,
+}
+
+impl PartialEq for Picture {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.png, &other.png) || self.png == other.png
+    }
+}
+
+impl std::fmt::Debug for Picture {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Picture {{ {} bytes }}", self.png.len())
+    }
+}
+
+/// Why a picture was not taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PictureError {
+    /// Not the first bytes of a PNG.
+    #[error("the picture is no PNG; save it as PNG")]
+    NotPng,
+    /// Beyond the bounds.
+    #[error("the picture has more than {MAX_SIDE} pixels a side or 8 MB; make it smaller")]
+    TooLarge,
+}
+
+impl Picture {
+    /// A picture from the bytes of a PNG.
+    ///
+    /// Guaranteed: its size is believed from the header and bounded. Not guaranteed: that its pixels decode.
+    ///
+    /// # Errors
+    /// [`PictureError`] for what is no PNG or is too large.
+    ///
+    /// ```
+    /// assert!(document::Picture::new(b"GIF89a".as_slice().into()).is_err());
+    /// ```
+    pub fn new(png: Arc<[u8]>) -> Result<Self, PictureError> {
+        let (width, height) = png_size(&png).ok_or(PictureError::NotPng)?;
+        if width.max(height) > MAX_SIDE || png.len() > MAX_PICTURE_BYTES {
+            return Err(PictureError::TooLarge);
+        }
+        Ok(Self { png, decoded: Arc::default() })
+    }
+
+    /// Its bytes.
+    pub fn png(&self) -> &Arc<[u8]> {
+        &self.png
+    }
+
+    /// The name under which it is kept: the same for the same bytes.
+    pub fn name(&self) -> String {
+        let mut digest = Digest::new();
+        digest.bytes(&self.png);
+        digest.hex().chars().take(16).collect()
+    }
+
+    /// Its pixels, decoded by `decode` at the first call; `None` if they do not decode.
+    pub fn texture(&self, decode: impl FnOnce(&[u8]) -> Option<Texture>) -> Option<Arc<Texture>> {
+        self.decoded.get_or_init(|| decode(&self.png).map(Arc::new)).clone()
+    }
+}
+
+/// Pictures by their names.
+pub type Pictures = BTreeMap<String, Picture>;
+
+/// What is wrong with a material of a plant that has these pictures.
+pub(crate) fn material_fault(material: &OrganMaterial, pictures: &Pictures) -> Option<SettingFault> {
+    if let Err(fault) = spec::check(material) {
+        return Some(SettingFault::Range(fault));
+    }
+    let named = material.picture.as_deref();
+    let there = named.map_or(material.pattern != Pattern::Picture, |name| pictures.contains_key(name));
+    (!there).then_some(SettingFault::Picture)
+}
+
+base::coded!(PictureError {
+    Self::NotPng => "picture-not-png" {},
+    Self::TooLarge => "picture-too-large" {},
+});
