@@ -42,6 +42,7 @@ pub use edit::{
     Destination, EDITS_SCHEMA, EditsFile, GrowFrom, HandEdit, LeafRegion, MOST_POINTS, MOST_ROUNDS, Turn,
     ViewPlane,
 };
+pub use grow::KeptGrowth;
 pub use key::{AxisKey, Found, KindWord, Mark};
 pub use outcome::{Changed, Outcome, Why};
 pub use pick::{Pick, Ray, Reach, pick};

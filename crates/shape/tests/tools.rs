@@ -1,11 +1,13 @@
 //! Scripted gestures: what a hand does with each tool.
 
-use base::Run;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use base::{Executor, Run};
 use glam::DVec3;
 use plant::{AxisId, AxisKind, Plant};
 use shape::{
-    AxisKey, Context, Destination, Growth, HandEdit, Input, LeafRegion, Pointer, Ray, Reach, Response, Tool,
-    ToolKind, apply, pick,
+    AxisKey, Context, Destination, GrowFrom, Growth, HandEdit, Input, KeptGrowth, LeafRegion, Pointer, Ray,
+    Reach, Response, Shaping, Tool, ToolKind, apply, pick,
 };
 
 /// A trunk of 4 m with a limb to the right at 2 m, which bears one of its own.
@@ -436,4 +438,61 @@ fn what_is_held_grows_round_by_round_with_numbers_that_change() {
         ..mouse(0.0, 0.0)
     };
     assert!(tool.handle(&plant, &Input::Down(up)).preview.is_none() && !tool.is_busy());
+}
+
+/// Counts what it is asked to run: two jobs a round of growth.
+#[derive(Default)]
+struct Counting(AtomicUsize);
+
+impl Executor for Counting {
+    fn for_each(&self, n: usize, job: &(dyn Fn(usize) + Sync)) {
+        self.0.fetch_add(1, Ordering::Relaxed);
+        (0..n).for_each(job);
+    }
+}
+
+#[test]
+fn what_is_held_grows_on_from_where_it_is() {
+    let plant = tree();
+    let counting = Counting::default();
+    let run = Run { executor: &counting, ..Run::plain() };
+    let mut kept = KeptGrowth::default();
+    let mut push = |edit: &HandEdit| {
+        let before = counting.0.load(Ordering::Relaxed);
+        let mut shaping = Shaping::new(&plant);
+        let outcome = shaping.push_again(edit, &Context::default(), &mut kept, &run).expect("not cancelled");
+        assert!(outcome.is_done(), "{outcome}");
+        assert_eq!(shaping.into_plant(), after(&plant, edit.clone()), "as from its start");
+        (counting.0.load(Ordering::Relaxed) - before, kept.rounds())
+    };
+    for down in [mouse(1.5, 2.0), mouse(3.0, -0.6)] {
+        let mut tool = Tool::new(ToolKind::Grow(Growth { vigour: 1.2, ..Growth::default() }));
+        tool.handle(&plant, &Input::Down(down));
+        let mut most = 0;
+        for round in 2..13 {
+            if round % 6 == 0 {
+                let vigour = 1.2 + 0.02 * f64::from(round);
+                tool.handle(&plant, &Input::Grow(Growth { vigour, ..Growth::default() }));
+            }
+            let edit = tool.handle(&plant, &Input::Round).preview.expect("it grows");
+            let (jobs, rounds) = push(&edit);
+            assert_eq!(rounds, round);
+            most = if round > 2 { most.max(jobs) } else { most };
+        }
+        assert!(most < 20, "a round is one round of growth: {most}");
+        // The edit that is kept is the preview that was seen last: nothing grows anew.
+        let edit = tool.handle(&plant, &Input::Up(down)).commit.expect("kept");
+        assert!(push(&edit).0 < most);
+        // What was held on to for a shorter time, and what grows elsewhere, begins anew.
+        let HandEdit::Grow { from, towards, changes, seed, .. } = edit.clone() else { panic!() };
+        let early = changes.into_iter().filter(|c| c.round < 5).collect::<Vec<_>>();
+        let short =
+            |seed, from: GrowFrom| HandEdit::Grow { from, towards, rounds: 5, changes: early.clone(), seed };
+        push(&short(seed, from.clone()));
+        push(&short(seed + 1, from));
+        push(&edit);
+    }
+    // Another edit lets go of it.
+    let cut = HandEdit::Prune { axis: AxisKey::Path(vec![0, 0]), at: 0.0 };
+    assert_eq!(push(&cut).1, 0);
 }
