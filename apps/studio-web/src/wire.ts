@@ -98,6 +98,9 @@ export const CODES = {
   "project-stroke": ["row", "why"],
   "project-too-much": ["what", "limit"],
   "project-version": ["found"],
+  "record": ["why"],
+  "record-form": ["form"],
+  "record-long": ["most"],
   "root-far": ["root"],
   "root-in-obstacle": ["root", "obstacle"],
   "rule-call": ["name", "numbers"],
@@ -230,6 +233,18 @@ export type BrushStroke = {
   pull: number;
   /** Radius, metres, above 0: one number, or one for each point. */
   radius_m: number[];
+};
+
+/** How a branch and what it bears is moved: `p -> to + turn (p - from)`, metres of the plant. */
+export type CarriedPose = {
+  /** Where it began. */
+  from: [number, number, number];
+  /** The name of the meshes of which [`Workspace::held_rows`] are. */
+  mesh: number;
+  /** Where it begins now. */
+  to: [number, number, number];
+  /** A unit quaternion: x, y, z, w. */
+  turn: [number, number, number, number];
 };
 
 /** What an edit changed. */
@@ -564,6 +579,8 @@ export type GrowFrom =
 export type Growth = {
   /** Between a shoot and the buds at its side, 0 to 180 degrees. */
   angle_deg: number;
+  /** How strongly shoots keep apart, 0 to 10. */
+  apart: number;
   /** Apical control: the share of the main axis at a fork, 0 to 1. */
   apical: number;
   /** Pull to the light, or of the weight where it is negative, -10 to 10; free space pulls with 1. */
@@ -1420,6 +1437,10 @@ export type ShapeAnswer = {
   again: boolean;
   /** A gesture is going on. */
   busy: boolean;
+  /** How what is held is moved: what is shown of it is to be moved, and is not made again before the hand lets go. */
+  carried: 
+    | CarriedPose
+    | null;
   /** The edit of a gesture that ended: to be asked for as a command. */
   commit: 
     | HandEdit
@@ -1427,6 +1448,10 @@ export type ShapeAnswer = {
   /** The branch that is meant. */
   picked: 
     | Picked
+    | null;
+  /** The plane that was placed. */
+  plane: 
+    | ViewPlane
     | null;
   /** How far the branch that is held was turned, degrees. */
   turned_deg: number | null;
@@ -1483,6 +1508,10 @@ export type ShapeInput =
       /** Where to. */
       to: ShapeStep;
     };
+  }
+  | /** A plane is placed: through its tip (without one, its origin), facing it. */
+  {
+    plane: ShapePointer;
   }
   | /** It holds on: what grows is a round older. */
   "round"
@@ -1871,6 +1900,10 @@ export type ToolKind =
     silhouette: {
       /** 0.1 to 10. */
       density: number;
+      /** Where it is drawn, if that was placed in space; without, it faces the viewer and lies in the plant's middle. */
+      plane?: 
+        | ViewPlane
+        | null;
       /** Cut off what leaves it. */
       trim: boolean;
     };
