@@ -65,6 +65,29 @@ const stick = (page, side, x, y) =>
     [side, x, y],
   );
 
+/** Moves a controller there as a hand does: what is further away at once is a tracker that jumped. */
+async function glide(page, side, from, to, aim) {
+  const steps = Math.ceil(Math.hypot(...to.map((x, i) => x - from[i])) / 0.2);
+  for (let k = 1; k <= steps; k += 1) {
+    await hand(
+      page,
+      side,
+      to.map((x, i) => from[i] + ((x - from[i]) * k) / steps),
+      k === steps ? aim : undefined,
+    );
+    await frames(page, 1);
+  }
+}
+
+/** A picture of the board at the wrist, with the head bowed to it. */
+async function shotOfBoard(page, shot, name, side = 'left') {
+  await page.evaluate(() => window.device.quaternion.set(Math.sin(-0.3), 0, 0, Math.cos(-0.3)));
+  await hand(page, side, [0, 1.25, -0.35]);
+  await frames(page);
+  await shot(name);
+  await page.evaluate(() => window.device.quaternion.set(0, 0, 0, 1));
+}
+
 /** As long as some pictures take. */
 async function frames(page, count = 4) {
   const { frames: from = 0 } = await state(page);
@@ -185,7 +208,7 @@ async function grow({ page, url, shot }) {
   const plain = await enter(page, url);
   await key(page, 'grow');
   assert.equal((await state(page)).tool, 'grow');
-  await find(page, 'right');
+  const at = await find(page, 'right');
   await press(page, 'right', 'trigger', 1);
   const first = await changed(page, plain, 'it grows');
   await stick(page, 'right', 0, 1);
@@ -196,11 +219,11 @@ async function grow({ page, url, shot }) {
   await hand(page, 'left', [0, 1.25, -0.35]);
   await page.waitForFunction(() => JSON.parse(document.body.dataset.wrist ?? '{}')['apical+']);
   const apical = await page.evaluate(() => JSON.parse(document.body.dataset.wrist)['apical+']);
-  await hand(page, 'right', [apical[0], apical[1] + 0.02, apical[2] + 0.25], apical);
+  await glide(page, 'right', at, [apical[0], apical[1] + 0.02, apical[2] + 0.25], apical);
   await frames(page);
   await click(page, 'right', 'a-button');
   await page.waitForFunction(() => JSON.parse(document.body.dataset.vr).said.includes('Apical control 0.58'));
-  await shot('headset-growing');
+  await shotOfBoard(page, shot, 'headset-growing');
   await press(page, 'right', 'trigger', 0);
   await until(page, 'edits', ['is', 1], 'one edit');
   await until(page, 'done', ['is', 1], 'it was done');
@@ -342,6 +365,8 @@ async function hands({ page, url, shot }) {
     page.evaluate(([s, p]) => window.device.hands[s].position.set(...p), [side, [x, y, z]]);
   const pinch = (value) => page.evaluate((v) => window.device.hands.right.updatePinchValue(v), value);
   await place('left', [-0.6, 0.9, 0.3]);
+  // Fingers that nearly pinch: what they point at is what they take.
+  await pinch(0.7);
   let at;
   for (let k = 0; k < 80; k += 1) {
     at = [0.35 * Math.sin(k * 2.4), 0.35 + 0.009 * k, -0.15];
@@ -370,8 +395,9 @@ async function wrist({ page, url, shot }) {
   assert.equal((await state(page)).step, 'turn');
   const labels = (await state(page)).labels;
   assert.ok(labels > 0, 'parts have labels');
+  await shotOfBoard(page, shot, 'headset-tools');
   await key(page, 'more');
-  await shot('headset-more');
+  await shotOfBoard(page, shot, 'headset-more');
   await key(page, 'dice');
   const other = await changed(page, plain, 'another seed');
   await key(page, 'next');
@@ -387,7 +413,7 @@ async function wrist({ page, url, shot }) {
 /** A headset that does not know the floor, and loses track in the middle of a stroke. */
 async function astray({ page, url }) {
   const plain = await enter(page, url, 'floorless');
-  await key(page, 'rotate');
+  assert.equal((await state(page)).tool, 'rotate');
   const at = await find(page, 'right');
   await press(page, 'right', 'trigger', 1);
   await frames(page);

@@ -431,6 +431,11 @@ impl Growing {
         &self.skeleton
     }
 
+    /// Buds that may grow on. Cost: linear in all buds there were.
+    pub fn living(&self) -> usize {
+        self.buds.iter().filter(|b| b.life == Life::Alive).count()
+    }
+
     /// Rounds so far.
     pub const fn rounds(&self) -> u32 {
         self.round
