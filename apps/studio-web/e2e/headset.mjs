@@ -217,6 +217,7 @@ async function grow({ page, url, shot }) {
   await stick(page, 'right', 0, 0);
   // The wrist has the numbers, too: the trigger is taken, so the lower button presses them.
   await hand(page, 'left', [0, 1.25, -0.35]);
+  await frames(page, 12);
   await page.waitForFunction(() => JSON.parse(document.body.dataset.wrist ?? '{}')['apical+']);
   const apical = await page.evaluate(() => JSON.parse(document.body.dataset.wrist)['apical+']);
   await glide(page, 'right', at, [apical[0], apical[1] + 0.02, apical[2] + 0.25], apical);
@@ -410,7 +411,7 @@ async function wrist({ page, url, shot }) {
   assert.equal((await state(page)).step, 'turn', 'nothing was turned yet');
 }
 
-/** A headset that does not know the floor, and loses track in the middle of a stroke. */
+/** A headset that does not know the floor, and a controller that vanishes in the middle of a gesture. */
 async function astray({ page, url }) {
   const plain = await enter(page, url, 'floorless');
   assert.equal((await state(page)).tool, 'rotate');
@@ -418,13 +419,8 @@ async function astray({ page, url }) {
   await press(page, 'right', 'trigger', 1);
   await frames(page);
   await hand(page, 'right', [at[0] + 0.1, at[1] + 0.1, at[2]]);
-  const first = await carries(page);
-  // The tracker jumps for two frames, and is back: the stroke goes on.
-  await hand(page, 'right', [4, 4, 4]);
-  await frames(page, 1);
-  await hand(page, 'right', [at[0] + 0.12, at[1] + 0.12, at[2]]);
-  await carries(page, first);
-  assert.ok((await state(page)).working, 'still the same gesture');
+  await carries(page);
+  assert.ok((await state(page)).working, 'a gesture is going on');
   // The controller vanishes.
   await page.evaluate(() => {
     window.device.controllers.right.connected = false;

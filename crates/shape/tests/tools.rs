@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use base::{Executor, Run};
+use base::{Budget, Executor, Run};
 use glam::DVec3;
 use plant::{AxisId, AxisKind, Plant};
 use shape::{
@@ -417,7 +417,7 @@ fn what_is_held_grows_round_by_round_with_numbers_that_change() {
             if round == 6 {
                 tool.handle(
                     &plant,
-                    &Input::Grow(Growth { angle_deg: 85.0, vigour: 4.0, ..Growth::default() }),
+                    &Input::Grow(Growth { angle_deg: 85.0, vigour: 2.5, ..Growth::default() }),
                 );
                 tool.handle(&plant, &Input::Grow(Growth { vigour: -1.0, ..Growth::default() }));
             }
@@ -583,4 +583,23 @@ fn an_outline_is_drawn_on_the_plane_that_was_placed() {
     for (point, towards) in [(DVec3::NAN, DVec3::X), (DVec3::ZERO, DVec3::ZERO), (DVec3::ZERO, DVec3::NAN)] {
         assert_eq!(ViewPlane::facing(point, towards, DVec3::Y), None);
     }
+}
+
+#[test]
+fn what_is_held_on_to_for_long_stops_growing_and_stays() {
+    let plant = tree();
+    let mut tool = Tool::new(ToolKind::Grow(Growth { vigour: 6.0, ..Growth::default() }));
+    tool.handle(&plant, &Input::Down(mouse(1.5, 2.0)));
+    let mut edit = None;
+    for _ in 0..60 {
+        edit = tool.handle(&plant, &Input::Round).preview;
+    }
+    // The budget of a browser: over it, there would be nothing.
+    let run = Run { budget: Budget { times: 0.25, ..Budget::default() }, ..Run::plain() };
+    let (mut shaping, mut kept) = (Shaping::new(&plant), KeptGrowth::default());
+    let edit = edit.expect("it grows");
+    let outcome = shaping.push_again(&edit, &Context::default(), &mut kept, &run).expect("not cancelled");
+    assert!(outcome.is_done() && kept.rounds() < 60, "{outcome}, {} rounds", kept.rounds());
+    let axes = shaping.into_plant().axes.len();
+    assert!((1_000..10_000).contains(&axes), "{axes}");
 }

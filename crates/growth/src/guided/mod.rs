@@ -436,6 +436,11 @@ impl Growing {
         self.buds.iter().filter(|b| b.life == Life::Alive).count()
     }
 
+    /// How many markers buds have looked at so far: what growth costs.
+    pub const fn looks(&self) -> u64 {
+        self.looks
+    }
+
     /// Rounds so far.
     pub const fn rounds(&self) -> u32 {
         self.round
