@@ -138,7 +138,7 @@ fn hands() {
             for k in 0..200 {
                 let to = held + DVec3::new(0.0, 0.004, 0.002) * f64::from(k);
                 tool.handle(&plant, &Input::Move(at(to)));
-                assert!(tool.carried(&plant).is_some() || kind == ToolKind::Move);
+                assert!(tool.carried(&plant).is_some() || kind == ToolKind::Move, "it is in the hand");
             }
         });
         println!("  {name:8} {:8.3}", ms / 200.0);

@@ -1,10 +1,10 @@
 /** Hands on a plant in the view: tools, their settings, gestures, and the list of what was done. What a tool does is the core's. */
+import { EditList } from './edits';
 import { measured } from './measure';
 import type { Request } from './protocol';
 import type {
   CarriedPose,
   Command,
-  EditReport,
   Growth,
   PlantState,
   PlantView as Seen,
@@ -17,7 +17,7 @@ import type {
   ToolKind,
   ViewPlane,
 } from './wire';
-import { number, t, tOf, type TextKey } from './text';
+import { number, t, type TextKey } from './text';
 import { CLIMB_KEYS, SHAPE_TOOLS, type ShapeTool } from './tools';
 import { button, el, icon, type IconName } from './ui';
 import { Overlay } from './view/overlay';
@@ -61,18 +61,6 @@ const STILL = 5;
 /** Stands for the pointer of a hand in space. */
 const IN_SPACE = -1;
 
-/** The step of undo that an edit makes is called by the same word. */
-const EDIT_ICONS: Record<string, IconName> = {
-  rotate: 'rotate',
-  move: 'slide',
-  prune: 'prune',
-  regrow: 'regrow',
-  'sketch-branch': 'branch',
-  brush: 'brush',
-  silhouette: 'silhouette',
-  'leaf-density': 'leaf',
-  grow: 'tree',
-};
 const TOOL_ICONS: Record<ShapeTool, IconName> = {
   pick: 'select',
   rotate: 'rotate',
@@ -106,8 +94,8 @@ const GROWTH = {
 
 export class Shaping {
   readonly element = el('div', { class: 'shaping' });
-  readonly list = el('section', { class: 'edits' });
   readonly overlay: Overlay;
+  readonly edits = new EditList((command) => this.edit(command));
   private tool: ShapeTool | undefined;
   private last: ShapeTool = 'rotate';
   private plant: PlantState | undefined;
@@ -158,8 +146,6 @@ export class Shaping {
   private inFlight = false;
   /** What the core is asked and what follows from its answers, in order. Never fails. */
   private line: Promise<unknown> = Promise.resolve();
-  /** Whether the list of edits is folded, as the person set it. */
-  private folds: boolean | undefined;
 
   constructor(
     private readonly view: PlantView,
@@ -243,7 +229,7 @@ export class Shaping {
       }
     }
     this.showStrip();
-    this.showList();
+    this.edits.show(plant, seen);
   }
 
   /** New meshes are there: numbers of branches may have changed. */
@@ -960,96 +946,6 @@ export class Shaping {
       this.brushes && this.at ? { x: this.at[0], y: this.at[1], r: this.pixels } : undefined,
     );
   }
-
-  // What was done ------------------------------------------------------------------------------------------------
-
-  private showList(): void {
-    const { plant } = this;
-    const edits = plant?.edits ?? [];
-    this.list.hidden = edits.length === 0;
-    const reports = new Map((this.seen?.item?.edits ?? []).map((r) => [r.index, r]));
-    const undone = edits.filter((e, row) => !e.off && reports.get(row)?.done === false).length;
-    document.body.dataset['edits'] = String(edits.length);
-    document.body.dataset['undone'] = String(undone);
-    document.body.dataset['done'] = String([...reports.values()].filter((r) => r.done).length);
-    if (this.list.hidden) {
-      this.list.replaceChildren();
-      return;
-    }
-    const focused = this.list.contains(document.activeElement)
-      ? document.activeElement?.getAttribute('data-key')
-      : null;
-    const rows = edits.map(({ op, off }, row) => {
-      const report = reports.get(row);
-      const bad = !off && report?.done === false;
-      const name = tOf('edit', op);
-      const what = el(
-        'span',
-        { class: 'what' },
-        el('span', {}, name),
-        el('span', { class: bad ? 'bad' : 'muted' }, off ? t('edit.off') : report ? said(report) : ''),
-      );
-      const eye = button(off ? 'hidden' : 'eye', t(off ? 'edit.show' : 'edit.hide', { name }), () =>
-        this.edit({ leave: [row, !off] }),
-      );
-      eye.setAttribute('data-key', `eye${row}`);
-      const gone = button('close', t('edit.remove', { name }), () => this.edit({ remove: [row] }));
-      gone.setAttribute('data-key', `gone${row}`);
-      return el(
-        'li',
-        {
-          class: `${off ? 'is-off' : ''} ${bad ? 'is-bad' : ''}`,
-          'data-edit': op,
-          title: report && !off ? `${name}: ${said(report)}` : name,
-        },
-        icon(bad ? 'warning' : (EDIT_ICONS[op] ?? 'branch')),
-        what,
-        eye,
-        gone,
-      );
-    });
-    const all = button('close', t('edit.remove.all'), () =>
-      this.edit({ remove: edits.map((_, row) => row) }),
-    );
-    all.setAttribute('data-key', 'all');
-    // Open, it would lie over the plants: that is a person's wish.
-    const folded = this.folds ?? true;
-    const fold = el(
-      'button',
-      {
-        type: 'button',
-        class: 'fold',
-        'data-key': 'fold',
-        'aria-expanded': String(!folded),
-        onclick: () => {
-          this.folds = !folded;
-          this.showList();
-        },
-      },
-      icon('shape'),
-      t('edit.title'),
-      el('span', { class: 'muted' }, String(edits.length)),
-      ...(undone > 0
-        ? [
-            el(
-              'span',
-              { class: 'bad', title: t('edit.undone.count', { count: undone }) },
-              icon('warning'),
-              String(undone),
-            ),
-          ]
-        : []),
-    );
-    this.list.classList.toggle('folded', folded);
-    this.list.replaceChildren(
-      el('div', { class: 'edits-head' }, fold, ...(folded ? [] : [all])),
-      ...(folded ? [] : [el('ol', {}, ...rows)]),
-    );
-    if (focused)
-      this.list
-        .querySelector<HTMLElement>(`[data-key="${CSS.escape(focused)}"]`)
-        ?.focus({ preventScroll: true });
-  }
 }
 
 /** What is said of a branch. */
@@ -1059,15 +955,4 @@ function branchWords(p: NonNullable<ShapeAnswer['picked']>): Record<string, stri
     length: String(Math.round(p.length_m * 100) / 100),
     count: number(p.bears),
   };
-}
-
-/** What became of an edit, in the person's language. */
-function said(r: EditReport): string {
-  if (!r.done) return t('edit.undone', { why: tOf('why', r.code) });
-  const parts = (['moved', 'removed', 'added', 'leaves_removed', 'leaves_added'] as const)
-    .filter((k) => r.changed[k] > 0)
-    .map((k) => t(`edit.${k}`, { count: number(r.changed[k]) }));
-  if (parts.length === 0) parts.push(t('edit.nothing'));
-  if (r.changed.by_likeness) parts.push(t('edit.by_likeness'));
-  return parts.join(' · ');
 }

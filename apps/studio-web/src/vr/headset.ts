@@ -184,6 +184,7 @@ export class Headset {
     this.shaping.onLight = this.shaping.onHeard = this.shaping.onPlane = () => {};
     this.sheet.removeFromParent();
     for (const labels of this.labels) labels.dispose();
+    this.labels = [];
     this.events.changed(false);
   }
 
@@ -563,6 +564,7 @@ export class Headset {
           () => {
             this.leftHanded = !this.leftHanded;
             setSetting('vr.left', this.leftHanded ? 'yes' : 'no');
+            this.label();
           },
           this.leftHanded,
         ),
@@ -587,9 +589,10 @@ export class Headset {
     };
     const texts = (parts: readonly Part[], hand: string): Partial<Record<Part, string>> =>
       Object.fromEntries(parts.map((part) => [part, t(`vr.label.${hand}.${part}` as TextKey)]));
+    for (const labels of this.labels) labels.dispose();
     this.labels = [
       new Labels(texts(['trigger', 'grip', 'upper', 'stick'], 'work'), used, 'work', learn),
-      new Labels(texts(['grip', 'stick'], 'other'), used, 'other', learn),
+      new Labels(texts(['grip', 'stick'], 'other'), used, 'other', learn, this.leftHanded ? 0.17 : -0.17),
     ];
     this.world.rig.add(...this.labels.map((l) => l.group));
   }
@@ -607,7 +610,6 @@ export class Headset {
   private startLesson(): void {
     this.lesson.again();
     setSetting('vr.used', '');
-    for (const labels of this.labels) labels.dispose();
     this.label();
     this.tellStep();
   }

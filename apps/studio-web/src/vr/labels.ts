@@ -26,18 +26,21 @@ export class Labels {
   readonly group = new THREE.Group();
   private labels: Label[] = [];
 
-  /** `texts`: of the parts that have labels; those in `used` have none any more. */
+  /** `texts`: of the parts that have labels; those in `used` have none any more. `aside`: metres beside the other hand. */
   constructor(
     texts: Partial<Record<Part, string>>,
     used: ReadonlySet<string>,
-    private readonly name: string,
+    private readonly name: 'work' | 'other',
     private readonly onUsed: (name: string) => void,
+    aside = 0,
   ) {
     for (const [part, text] of Object.entries(texts) as [Part, string][]) {
       const at = PLACES[part];
       if (!at || used.has(`${name}.${part}`)) continue;
       const sprite = new THREE.Sprite(written(text));
-      sprite.position.set(...at);
+      // The board stands over the other hand: its labels are beside it, one under the other.
+      if (name === 'other') sprite.position.set(aside, 0.03 - 0.03 * this.labels.length, 0);
+      else sprite.position.set(...at);
       sprite.scale.set(...SIZE, 1);
       sprite.renderOrder = 11;
       this.group.add(sprite);
