@@ -11,7 +11,25 @@ const WIDE = { viewport: { width: 700, height: 420 } };
 async function wear(page, model) {
   await page.addInitScript(IWER);
   await page.addInitScript((name) => {
-    window.device = new globalThis.IWER.XRDevice(globalThis.IWER[name]);
+    // What iwer does not describe: the same buttons under the names of Pico's controllers, and no floor.
+    const quest = globalThis.IWER.metaQuest3;
+    const own = {
+      pico4Ultra: {
+        ...quest,
+        name: 'Pico 4 Ultra',
+        controllerConfig: {
+          ...quest.controllerConfig,
+          profileId: 'pico-4u',
+          fallbackProfileIds: ['generic-trigger-squeeze-thumbstick'],
+        },
+      },
+      floorless: {
+        ...quest,
+        name: 'without a floor',
+        supportedFeatures: quest.supportedFeatures.filter((f) => !f.endsWith('-floor')),
+      },
+    };
+    window.device = new globalThis.IWER.XRDevice(own[name] ?? globalThis.IWER[name]);
     window.device.installRuntime({ forceInstall: true });
     window.device.position.set(0, 1.6, 0);
   }, model);
@@ -46,6 +64,29 @@ const stick = (page, side, x, y) =>
     },
     [side, x, y],
   );
+
+/** Moves a controller there as a hand does: what is further away at once is a tracker that jumped. */
+async function glide(page, side, from, to, aim) {
+  const steps = Math.ceil(Math.hypot(...to.map((x, i) => x - from[i])) / 0.2);
+  for (let k = 1; k <= steps; k += 1) {
+    await hand(
+      page,
+      side,
+      to.map((x, i) => from[i] + ((x - from[i]) * k) / steps),
+      k === steps ? aim : undefined,
+    );
+    await frames(page, 1);
+  }
+}
+
+/** A picture of the board at the wrist, with the head bowed to it. */
+async function shotOfBoard(page, shot, name, side = 'left') {
+  await page.evaluate(() => window.device.quaternion.set(Math.sin(-0.3), 0, 0, Math.cos(-0.3)));
+  await hand(page, side, [0, 1.25, -0.35]);
+  await frames(page);
+  await shot(name);
+  await page.evaluate(() => window.device.quaternion.set(0, 0, 0, 1));
+}
 
 /** As long as some pictures take. */
 async function frames(page, count = 4) {
@@ -167,14 +208,23 @@ async function grow({ page, url, shot }) {
   const plain = await enter(page, url);
   await key(page, 'grow');
   assert.equal((await state(page)).tool, 'grow');
-  await find(page, 'right');
+  const at = await find(page, 'right');
   await press(page, 'right', 'trigger', 1);
   const first = await changed(page, plain, 'it grows');
   await stick(page, 'right', 0, 1);
   await page.waitForFunction(() => JSON.parse(document.body.dataset.vr).said.includes('Vigour'));
   await changed(page, first, 'it grows on');
   await stick(page, 'right', 0, 0);
-  await shot('headset-growing');
+  // The wrist has the numbers, too: the trigger is taken, so the lower button presses them.
+  await hand(page, 'left', [0, 1.25, -0.35]);
+  await frames(page, 12);
+  await page.waitForFunction(() => JSON.parse(document.body.dataset.wrist ?? '{}')['apical+']);
+  const apical = await page.evaluate(() => JSON.parse(document.body.dataset.wrist)['apical+']);
+  await glide(page, 'right', at, [apical[0], apical[1] + 0.02, apical[2] + 0.25], apical);
+  await frames(page);
+  await click(page, 'right', 'a-button');
+  await page.waitForFunction(() => JSON.parse(document.body.dataset.vr).said.includes('Apical control 0.58'));
+  await shotOfBoard(page, shot, 'headset-growing');
   await press(page, 'right', 'trigger', 0);
   await until(page, 'edits', ['is', 1], 'one edit');
   await until(page, 'done', ['is', 1], 'it was done');
@@ -243,8 +293,150 @@ async function stand({ page, url }) {
   await changed(page, plain, 'the branch stays turned');
 }
 
+/** What is carried, once it is elsewhere than before. */
+async function carries(page, before = '') {
+  await page.waitForFunction((was) => !['', was].includes(document.body.dataset.carried ?? ''), before);
+  return data(page, 'carried');
+}
+
+/** On a Pico, left-handed: a branch goes with the hand by as much as the hand turns, and the plant after it. */
+async function pico({ page, url, shot }) {
+  const plain = await enter(page, url, 'pico4Ultra');
+  await key(page, 'left');
+  await key(page, 'rotate', 'left');
+  const at = await find(page, 'left');
+  await press(page, 'left', 'squeeze', 1);
+  await frames(page);
+  await hand(page, 'left', [at[0] + 0.05, at[1] + 0.02, at[2]]);
+  const first = await carries(page);
+  await hand(page, 'left', [at[0] + 0.15, at[1] + 0.1, at[2] + 0.08]);
+  await carries(page, first);
+  assert.equal(await data(page, 'digest'), plain, 'nothing is made again while it is held');
+  await shot('headset-carried');
+  await press(page, 'left', 'squeeze', 0);
+  await until(page, 'edits', ['is', 1], 'one edit');
+  await changed(page, plain, 'it was turned');
+  await click(page, 'left', 'y-button');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
+}
+
+/** A plane that is placed in space, and an outline on it. */
+async function plane({ page, url, shot }) {
+  const plain = await enter(page, url);
+  await key(page, 'silhouette');
+  // The grip sets the plane before the plant, turned a little.
+  await hand(page, 'right', [0.05, 1.0, -0.3], [0.35, 0.95, -1.3]);
+  await frames(page);
+  await press(page, 'right', 'squeeze', 1);
+  await page.waitForFunction(() => JSON.parse(document.body.dataset.vr).plane);
+  await press(page, 'right', 'squeeze', 0);
+  await frames(page);
+  await shot('headset-plane');
+  const ring = (k) => [0.05 + 0.2 * Math.cos(k / 4), 1.0 + 0.2 * Math.sin(k / 4), -0.45];
+  await hand(page, 'right', ring(0));
+  await frames(page);
+  await press(page, 'right', 'trigger', 1);
+  await frames(page);
+  for (let k = 1; k <= 25; k += 1) {
+    await hand(page, 'right', ring(k));
+    await frames(page, 1);
+  }
+  await shot('headset-outline');
+  await press(page, 'right', 'trigger', 0);
+  await until(page, 'edits', ['is', 1], 'one edit');
+  await changed(page, plain, 'it was filled');
+  await key(page, 'more');
+  await key(page, 'plane');
+  await page.waitForFunction(() => !JSON.parse(document.body.dataset.vr).plane);
+}
+
+/** Hands without controllers: a pinch is the trigger; one that is lost for good has let go. */
+async function hands({ page, url, shot }) {
+  await wear(page, 'metaQuest3');
+  await begin(page, url);
+  await drop(page, 'bush.toml', BUSH);
+  await until(page, 'triangles', ['above', 1000], 'a bush has grown');
+  const plain = await settled(page);
+  await page.evaluate(() => {
+    window.device.primaryInputMode = 'hand';
+  });
+  await page.locator('#b-headset').click();
+  await page.waitForFunction(() => JSON.parse(document.body.dataset.vr || '{}').hand);
+  const place = (side, [x, y, z]) =>
+    page.evaluate(([s, p]) => window.device.hands[s].position.set(...p), [side, [x, y, z]]);
+  const pinch = (value) => page.evaluate((v) => window.device.hands.right.updatePinchValue(v), value);
+  await place('left', [-0.6, 0.9, 0.3]);
+  // Fingers that nearly pinch: what they point at is what they take.
+  await pinch(0.7);
+  let at;
+  for (let k = 0; k < 80; k += 1) {
+    at = [0.35 * Math.sin(k * 2.4), 0.35 + 0.009 * k, -0.15];
+    await place('right', at);
+    await frames(page);
+    const picked = await data(page, 'picked');
+    if (picked !== '' && picked !== '0') break;
+  }
+  await pinch(1);
+  await page.waitForFunction(() => JSON.parse(document.body.dataset.vr).working);
+  await place('right', [at[0] + 0.12, at[1] + 0.12, at[2]]);
+  await carries(page);
+  await shot('headset-hand');
+  // It is not seen any more, and comes back open.
+  await page.evaluate(() => {
+    window.device.hands.right.connected = false;
+  });
+  await page.waitForFunction(() => !JSON.parse(document.body.dataset.vr).working);
+  await until(page, 'edits', ['is', 1], 'what was done is kept');
+  await changed(page, plain, 'it stays turned');
+}
+
+/** The wrist: another species, a copy, another seed, and back again; first steps are told until they are done. */
+async function wrist({ page, url, shot }) {
+  const plain = await enter(page, url);
+  assert.equal((await state(page)).step, 'turn');
+  const labels = (await state(page)).labels;
+  assert.ok(labels > 0, 'parts have labels');
+  await shotOfBoard(page, shot, 'headset-tools');
+  await key(page, 'more');
+  await shotOfBoard(page, shot, 'headset-more');
+  await key(page, 'dice');
+  const other = await changed(page, plain, 'another seed');
+  await key(page, 'next');
+  await changed(page, other, 'another species');
+  await key(page, 'copy');
+  await until(page, 'plants', ['is', 2], 'a copy beside it');
+  for (let k = 0; k < 3; k += 1) await click(page, 'right', 'b-button');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
+  assert.ok((await state(page)).labels < labels, 'what was used needs no label');
+  assert.equal((await state(page)).step, 'turn', 'nothing was turned yet');
+}
+
+/** A headset that does not know the floor, and a controller that vanishes in the middle of a gesture. */
+async function astray({ page, url }) {
+  const plain = await enter(page, url, 'floorless');
+  assert.equal((await state(page)).tool, 'rotate');
+  const at = await find(page, 'right');
+  await press(page, 'right', 'trigger', 1);
+  await frames(page);
+  await hand(page, 'right', [at[0] + 0.1, at[1] + 0.1, at[2]]);
+  await carries(page);
+  assert.ok((await state(page)).working, 'a gesture is going on');
+  // The controller vanishes.
+  await page.evaluate(() => {
+    window.device.controllers.right.connected = false;
+  });
+  await page.waitForFunction(() => !JSON.parse(document.body.dataset.vr).working);
+  await until(page, 'edits', ['is', 1], 'what was done is kept');
+  await changed(page, plain, 'the branch stays turned');
+}
+
 export const headset = [
   ['headset: turn, draw, undo, leave', shape, WIDE],
   ['headset: a shoot grows', grow, WIDE],
   ['headset: size, place, left hand, an early end', stand, WIDE],
+  ['headset: a Pico, left-handed, a branch in the hand', pico, WIDE],
+  ['headset: an outline on a plane in space', plane, WIDE],
+  ['headset: hands without controllers', hands, WIDE],
+  ['headset: the wrist', wrist, WIDE],
+  ['headset: astray', astray, WIDE],
 ];

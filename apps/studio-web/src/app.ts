@@ -1,6 +1,7 @@
 /** Joins the pieces of the page: what one of them says, another does. No rule about plants is here. */
 import { buildPage, type Parts } from './bars';
 import { Clipboard } from './clipboard';
+import { type CommandId, commandOf } from './commands';
 import type { Page } from './commands';
 import { Card } from './correct';
 import { Documents } from './documents';
@@ -175,6 +176,7 @@ export class App implements Page {
       },
       refused: (request, why) => {
         if (request.kind === 'stroke') this.sheet.dropPending();
+        this.view?.putBack();
         if (why !== 'restarted') note(t('note.refused', { why }), 'bad');
       },
       coarse: (fresh) => {
@@ -386,6 +388,14 @@ export class App implements Page {
     const events = {
       undo: () => session.ask({ kind: 'undo' }),
       redo: () => session.ask({ kind: 'redo' }),
+      species: (by: 1 | -1) => this.panels.nextSpecies(by),
+      copy: () => {
+        const { plant } = session;
+        if (!plant) return;
+        const aside = this.view?.widthOf(plant.id) || 1;
+        session.run({ scene: { duplicate: [plant.id, [Math.round(aside * 100) / 100, 0, 0]] } });
+      },
+      run: (id: CommandId) => commandOf(id).run(this),
       changed: (on: boolean) => {
         document.body.dataset['headset'] = on ? 'on' : 'off';
         this.show.shaping();

@@ -330,7 +330,7 @@ function rightSide(buttons: Buttons, page: Page, pieces: Pieces, parts: Parts): 
         ]
       : [el('p', { class: 'nogl' }, t('note.nowebgl'))];
   // The scene and the edits by hand, in the view's corner.
-  const column = el('div', { class: 'column' }, pieces.list, ...(shaping ? [shaping.list] : []));
+  const column = el('div', { class: 'column' }, pieces.list, ...(shaping ? [shaping.edits.element] : []));
   return el('section', { class: 'right' }, ...shown, parts.stats, column, parts.grows, parts.model);
 }
 

@@ -8,7 +8,7 @@ import type { Session } from './session';
 import { type SettingsEvents, settingsPanel } from './settings';
 import type { Sheet } from './sheet/sheet';
 import { setSetting, setting } from './store';
-import { t, tOf, type TextKey } from './text';
+import { t, tOf, type TextKey, wordOf } from './text';
 import { askName, closePopover, dialog, note, popover } from './ui';
 import { openVariations } from './variations';
 import type { PlantView } from './view/view';
@@ -127,6 +127,22 @@ export class Panels {
     if (this.catalogue) return;
     this.catalogue = await catalogueOf(this.page.session.engine).catch(() => undefined);
     this.page.catalogueCame();
+  }
+
+  /** Makes the plant the next species, or the one before; what it is then. Drawings and leaves are of none. */
+  async nextSpecies(by: 1 | -1): Promise<string | undefined> {
+    const { session } = this.page;
+    await this.loadCatalogue();
+    const { plant } = session;
+    const now = plant?.tree ?? plant?.flower;
+    if (!plant || !now || !this.catalogue) return undefined;
+    const keys = (plant.tree ? this.catalogue.trees : this.catalogue.flowers).map(({ key }) => key);
+    // A plant of its own kind comes before the first.
+    const at = keys.indexOf(now.preset ?? '');
+    const key = keys[(Math.max(at, by > 0 ? -1 : 0) + by + keys.length) % keys.length];
+    if (key === undefined) return undefined;
+    session.act({ preset: { plant: plant.id, key } });
+    return wordOf(key);
   }
 
   /** A plant of a maker: trees ask for their species first. */

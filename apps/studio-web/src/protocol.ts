@@ -61,6 +61,8 @@ export type Request =
   | { kind: 'shape'; tool: ToolKind; reach: ShapeReach; input: ShapeInput }
   /** The branch of a pick with all that it bears. */
   | { kind: 'branch'; axis: number }
+  /** Triangles of the meshes that the hand carries: part, first, and the one after the last, of each range. */
+  | { kind: 'held' }
   | { kind: 'draft'; mode: StrokeMode; samples: Float64Array; pen?: PenStyle }
   | { kind: 'save' }
   | { kind: 'export'; request: ExportRequest }

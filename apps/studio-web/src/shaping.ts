@@ -1,9 +1,10 @@
 /** Hands on a plant in the view: tools, their settings, gestures, and the list of what was done. What a tool does is the core's. */
+import { EditList } from './edits';
 import { measured } from './measure';
 import type { Request } from './protocol';
 import type {
+  CarriedPose,
   Command,
-  EditReport,
   Growth,
   PlantState,
   PlantView as Seen,
@@ -14,8 +15,9 @@ import type {
   ShapeReach,
   ShapeStep,
   ToolKind,
+  ViewPlane,
 } from './wire';
-import { number, t, tOf, type TextKey } from './text';
+import { number, t, type TextKey } from './text';
 import { CLIMB_KEYS, SHAPE_TOOLS, type ShapeTool } from './tools';
 import { button, el, icon, type IconName } from './ui';
 import { Overlay } from './view/overlay';
@@ -59,18 +61,6 @@ const STILL = 5;
 /** Stands for the pointer of a hand in space. */
 const IN_SPACE = -1;
 
-/** The step of undo that an edit makes is called by the same word. */
-const EDIT_ICONS: Record<string, IconName> = {
-  rotate: 'rotate',
-  move: 'slide',
-  prune: 'prune',
-  regrow: 'regrow',
-  'sketch-branch': 'branch',
-  brush: 'brush',
-  silhouette: 'silhouette',
-  'leaf-density': 'leaf',
-  grow: 'tree',
-};
 const TOOL_ICONS: Record<ShapeTool, IconName> = {
   pick: 'select',
   rotate: 'rotate',
@@ -83,6 +73,14 @@ const TOOL_ICONS: Record<ShapeTool, IconName> = {
   leaves: 'leaf',
   grow: 'tree',
 };
+/** One step of a number, by a key of the wrist or a notch of the wheel; of the vigour, the share of it. */
+const GROWTH_STEPS: Record<keyof Growth, number> = {
+  vigour: 0.12,
+  apical: 0.04,
+  angle_deg: 5,
+  lift: 0.04,
+  apart: 0.2,
+};
 /** Between two rounds of what grows while it is held, ms. */
 const ROUND_MS = 130;
 /** Within these its numbers are set by hand. */
@@ -91,12 +89,13 @@ const GROWTH = {
   apical: [0, 1],
   angle_deg: [15, 110],
   lift: [-0.6, 0.6],
+  apart: [0, 4],
 } as const satisfies Record<keyof Growth, readonly [number, number]>;
 
 export class Shaping {
   readonly element = el('div', { class: 'shaping' });
-  readonly list = el('section', { class: 'edits' });
   readonly overlay: Overlay;
+  readonly edits = new EditList((command) => this.edit(command));
   private tool: ShapeTool | undefined;
   private last: ShapeTool = 'rotate';
   private plant: PlantState | undefined;
@@ -106,9 +105,9 @@ export class Shaping {
     prune: { whole: false },
     sketch: { twigs: 1, tilt_deg: 0 },
     brush: { share: 0.07, density: 1 },
-    silhouette: { density: 1, trim: true },
+    silhouette: { density: 1, trim: true } as { density: number; trim: boolean; plane?: ViewPlane },
     leaves: { share: 0.07, more: false },
-    grow: { vigour: 2, apical: 0.54, angle_deg: 55, lift: 0.12 } as Growth,
+    grow: { vigour: 2, apical: 0.54, angle_deg: 55, lift: 0.12, apart: 1 } as Growth,
   };
   /** Has what is held grow on. */
   private growing = 0;
@@ -117,6 +116,9 @@ export class Shaping {
   /** The branch that was clicked with the pointing tool. */
   private chosen: ShapeAnswer['picked'] = null;
   private lit: number | undefined;
+  /** Where what is held is carried, and the meshes of which it was asked what that is. */
+  private carried: CarriedPose | undefined;
+  private carryAsked: number | undefined;
   /** Not what the pointer meets is meant but what bears it, so many branches up. */
   private bearers = 0;
   /** Nothing bears what was meant last. */
@@ -132,6 +134,8 @@ export class Shaping {
   /** The branch that is meant: its course and that of all that it bears, if one is. */
   onLight: (points: Float32Array | undefined) => void = () => {};
   onHeard: (answer: ShapeAnswer) => void = () => {};
+  /** The plane of outlines was placed or taken away; how large the plant is, metres. */
+  onPlane: (plane: ViewPlane | undefined, size: number) => void = () => {};
   private from: [number, number] = [0, 0];
   private at: [number, number] | undefined;
   private distance: number | undefined;
@@ -142,8 +146,6 @@ export class Shaping {
   private inFlight = false;
   /** What the core is asked and what follows from its answers, in order. Never fails. */
   private line: Promise<unknown> = Promise.resolve();
-  /** Whether the list of edits is folded, as the person set it. */
-  private folds: boolean | undefined;
 
   constructor(
     private readonly view: PlantView,
@@ -227,7 +229,7 @@ export class Shaping {
       }
     }
     this.showStrip();
-    this.showList();
+    this.edits.show(plant, seen);
   }
 
   /** New meshes are there: numbers of branches may have changed. */
@@ -401,6 +403,7 @@ export class Shaping {
           number('apical', 0.02),
           number('angle_deg', 5),
           number('lift', 0.02),
+          number('apart', 0.1),
         ];
       }
       case 'leaves':
@@ -594,22 +597,41 @@ export class Shaping {
     return true;
   }
 
-  /** While something grows in the hand: more or less vigour (a factor), other angles (degrees more); whether it does. */
-  turnGrowth(vigour: number, angle: number): boolean {
-    if (this.tool !== 'grow') return false;
-    const { grow } = this.settings;
-    const within = (of: keyof Growth, x: number): number =>
-      Math.min(GROWTH[of][1], Math.max(GROWTH[of][0], x));
-    grow.vigour = within('vigour', grow.vigour * vigour);
-    grow.angle_deg = within('angle_deg', grow.angle_deg + angle);
-    this.turned = true;
-    return true;
+  /** Whether something grows in the hand. */
+  get isGrowing(): boolean {
+    return this.isBusy && this.growing !== 0;
   }
 
-  /** The numbers of growth that a hand turns, in words. */
-  get growthText(): string {
-    const { vigour, angle_deg } = this.settings.grow;
-    return `${t('shape.grow.vigour')} ${vigour.toFixed(1)} · ${Math.round(angle_deg)}°`;
+  /** A number of growth more or less, by so many of its steps; it counts at once, also while something grows. */
+  turnGrowth(of: keyof Growth, steps: number): void {
+    const { grow } = this.settings;
+    const [[low, high], step] = [GROWTH[of], GROWTH_STEPS[of]];
+    // Vigour by shares: it counts by how many times more.
+    const to = of === 'vigour' ? grow[of] * (1 + step) ** steps : grow[of] + step * steps;
+    grow[of] = Math.min(high, Math.max(low, to));
+    this.turned = true;
+  }
+
+  /** Numbers of growth in words. */
+  growthText(...of: (keyof Growth)[]): string {
+    const { grow } = this.settings;
+    const shown = (key: keyof Growth): string =>
+      key === 'angle_deg' ? `${Math.round(grow[key])}°` : String(Math.round(grow[key] * 100) / 100);
+    return of.map((key) => `${t(`shape.grow.${key}`)} ${shown(key)}`).join(' · ');
+  }
+
+  /** The plane on which outlines are drawn, if one was placed. */
+  get plane(): ViewPlane | undefined {
+    return this.settings.silhouette.plane;
+  }
+
+  /** Places the plane on which outlines are drawn where a hand is, facing it; undefined: outlines face the eyes again. */
+  async placePlane(at: ShapePointer | undefined): Promise<void> {
+    const answer = at && (await this.send({ plane: at }));
+    if (at && !answer?.plane) return;
+    const { density, trim } = this.settings.silhouette;
+    this.settings.silhouette = { density, trim, ...(answer?.plane ? { plane: answer.plane } : {}) };
+    this.onPlane(answer?.plane ?? undefined, this.size);
   }
 
   /** What is held grows by itself, a round after the other, as fast as it can be shown. */
@@ -768,7 +790,8 @@ export class Shaping {
 
   private release(): void {
     clearInterval(this.growing);
-    this.pointerId = this.space = this.once = undefined;
+    this.growing = 0;
+    this.pointerId = this.space = this.once = this.carryAsked = undefined;
     this.movedAt = 0;
     this.view.setZoom(true);
   }
@@ -801,8 +824,7 @@ export class Shaping {
     e.preventDefault();
     e.stopImmediatePropagation();
     if (grows) {
-      const by = up ? 1 : -1;
-      this.turnGrowth(e.shiftKey ? 1 : 1.12 ** by, e.shiftKey ? TWIST_DEG * by : 0);
+      this.turnGrowth(e.shiftKey ? 'angle_deg' : 'vigour', up ? 1 : -1);
       this.showStrip();
     } else if (brush) this.resize(up ? 1.12 : 1 / 1.12);
     else void this.send({ twist: up ? TWIST_DEG : -TWIST_DEG });
@@ -836,7 +858,8 @@ export class Shaping {
     }
   }
 
-  private heard({ picked, busy, commit }: ShapeAnswer): void {
+  private heard({ picked, busy, commit, carried }: ShapeAnswer): void {
+    this.carry(carried, commit !== null);
     this.top = picked?.stands ?? false;
     if (picked) {
       const eye = this.at && this.view.element.getBoundingClientRect();
@@ -854,6 +877,34 @@ export class Shaping {
         ? undefined
         : (picked?.axis ?? (this.tool === 'pick' ? this.chosen?.axis : undefined)),
     );
+  }
+
+  /** Moves what the hand carries as it is seen; what it let go stays there until it is meshed again. */
+  private carry(pose: CarriedPose | null, done: boolean): void {
+    this.carried = pose ?? undefined;
+    document.body.dataset['carried'] = pose ? pose.to.concat(pose.turn).join(' ') : '';
+    if (!pose) {
+      if (!done) this.view.putBack();
+      return;
+    }
+    if (this.view.carried === pose.mesh) this.pose(pose);
+    else if (this.carryAsked !== pose.mesh) {
+      this.carryAsked = pose.mesh;
+      this.events.ask<Uint32Array>({ kind: 'held' }).then(
+        (rows) => {
+          if (this.carried?.mesh !== pose.mesh) return;
+          this.view.carry(pose.mesh, rows);
+          this.pose(this.carried);
+        },
+        () => undefined,
+      );
+    }
+  }
+
+  private pose(pose: CarriedPose): void {
+    this.view.pose(pose);
+    if (this.movedAt > 0) measured('shape', this.movedAt);
+    this.movedAt = 0;
   }
 
   /** Lights the branch that is meant, with all that it bears. */
@@ -895,96 +946,6 @@ export class Shaping {
       this.brushes && this.at ? { x: this.at[0], y: this.at[1], r: this.pixels } : undefined,
     );
   }
-
-  // What was done ------------------------------------------------------------------------------------------------
-
-  private showList(): void {
-    const { plant } = this;
-    const edits = plant?.edits ?? [];
-    this.list.hidden = edits.length === 0;
-    const reports = new Map((this.seen?.item?.edits ?? []).map((r) => [r.index, r]));
-    const undone = edits.filter((e, row) => !e.off && reports.get(row)?.done === false).length;
-    document.body.dataset['edits'] = String(edits.length);
-    document.body.dataset['undone'] = String(undone);
-    document.body.dataset['done'] = String([...reports.values()].filter((r) => r.done).length);
-    if (this.list.hidden) {
-      this.list.replaceChildren();
-      return;
-    }
-    const focused = this.list.contains(document.activeElement)
-      ? document.activeElement?.getAttribute('data-key')
-      : null;
-    const rows = edits.map(({ op, off }, row) => {
-      const report = reports.get(row);
-      const bad = !off && report?.done === false;
-      const name = tOf('edit', op);
-      const what = el(
-        'span',
-        { class: 'what' },
-        el('span', {}, name),
-        el('span', { class: bad ? 'bad' : 'muted' }, off ? t('edit.off') : report ? said(report) : ''),
-      );
-      const eye = button(off ? 'hidden' : 'eye', t(off ? 'edit.show' : 'edit.hide', { name }), () =>
-        this.edit({ leave: [row, !off] }),
-      );
-      eye.setAttribute('data-key', `eye${row}`);
-      const gone = button('close', t('edit.remove', { name }), () => this.edit({ remove: [row] }));
-      gone.setAttribute('data-key', `gone${row}`);
-      return el(
-        'li',
-        {
-          class: `${off ? 'is-off' : ''} ${bad ? 'is-bad' : ''}`,
-          'data-edit': op,
-          title: report && !off ? `${name}: ${said(report)}` : name,
-        },
-        icon(bad ? 'warning' : (EDIT_ICONS[op] ?? 'branch')),
-        what,
-        eye,
-        gone,
-      );
-    });
-    const all = button('close', t('edit.remove.all'), () =>
-      this.edit({ remove: edits.map((_, row) => row) }),
-    );
-    all.setAttribute('data-key', 'all');
-    // Open, it would lie over the plants: that is a person's wish.
-    const folded = this.folds ?? true;
-    const fold = el(
-      'button',
-      {
-        type: 'button',
-        class: 'fold',
-        'data-key': 'fold',
-        'aria-expanded': String(!folded),
-        onclick: () => {
-          this.folds = !folded;
-          this.showList();
-        },
-      },
-      icon('shape'),
-      t('edit.title'),
-      el('span', { class: 'muted' }, String(edits.length)),
-      ...(undone > 0
-        ? [
-            el(
-              'span',
-              { class: 'bad', title: t('edit.undone.count', { count: undone }) },
-              icon('warning'),
-              String(undone),
-            ),
-          ]
-        : []),
-    );
-    this.list.classList.toggle('folded', folded);
-    this.list.replaceChildren(
-      el('div', { class: 'edits-head' }, fold, ...(folded ? [] : [all])),
-      ...(folded ? [] : [el('ol', {}, ...rows)]),
-    );
-    if (focused)
-      this.list
-        .querySelector<HTMLElement>(`[data-key="${CSS.escape(focused)}"]`)
-        ?.focus({ preventScroll: true });
-  }
 }
 
 /** What is said of a branch. */
@@ -994,15 +955,4 @@ function branchWords(p: NonNullable<ShapeAnswer['picked']>): Record<string, stri
     length: String(Math.round(p.length_m * 100) / 100),
     count: number(p.bears),
   };
-}
-
-/** What became of an edit, in the person's language. */
-function said(r: EditReport): string {
-  if (!r.done) return t('edit.undone', { why: tOf('why', r.code) });
-  const parts = (['moved', 'removed', 'added', 'leaves_removed', 'leaves_added'] as const)
-    .filter((k) => r.changed[k] > 0)
-    .map((k) => t(`edit.${k}`, { count: number(r.changed[k]) }));
-  if (parts.length === 0) parts.push(t('edit.nothing'));
-  if (r.changed.by_likeness) parts.push(t('edit.by_likeness'));
-  return parts.join(' · ');
 }

@@ -32,7 +32,6 @@ export const CODES = {
   "law": ["why"],
   "layer-closed": ["layer"],
   "layer-name": [],
-  "leaf-no-marks": [],
   "leaf-scan": ["why"],
   "leaf-surface": ["why"],
   "leaf-veins": ["why"],
@@ -103,6 +102,9 @@ export const CODES = {
   "project-stroke": ["row", "why"],
   "project-too-much": ["what", "limit"],
   "project-version": ["found"],
+  "record": ["why"],
+  "record-form": ["form"],
+  "record-long": ["most"],
   "root-far": ["root"],
   "root-in-obstacle": ["root", "obstacle"],
   "rule-call": ["name", "numbers"],
@@ -237,6 +239,18 @@ export type BrushStroke = {
   pull: number;
   /** Radius, metres, above 0: one number, or one for each point. */
   radius_m: number[];
+};
+
+/** How a branch and what it bears is moved: `p -> to + turn (p - from)`, metres of the plant. */
+export type CarriedPose = {
+  /** Where it began. */
+  from: [number, number, number];
+  /** The name of the meshes of which [`Workspace::held_rows`] are. */
+  mesh: number;
+  /** Where it begins now. */
+  to: [number, number, number];
+  /** A unit quaternion: x, y, z, w. */
+  turn: [number, number, number, number];
 };
 
 /** What an edit changed. */
@@ -576,6 +590,8 @@ export type GrowFrom =
 export type Growth = {
   /** Between a shoot and the buds at its side, 0 to 180 degrees. */
   angle_deg: number;
+  /** How strongly shoots keep apart, 0 to 10. */
+  apart: number;
   /** Apical control: the share of the main axis at a fork, 0 to 1. */
   apical: number;
   /** Pull to the light, or of the weight where it is negative, -10 to 10; free space pulls with 1. */
@@ -861,6 +877,24 @@ export type LeafFit = {
   rms_mm: number;
 };
 
+/** The form of a leaf with one midrib, where nothing was measured. */
+export type LeafForm = {
+  /** How far both halves are raised along the midrib, degrees, -60 to 60, default 10. */
+  fold_deg: number;
+  /** Length of the midrib, metres, 0.002 to 10, default 0.1. */
+  length_m: number;
+  /** How far the margin goes in between the side veins, as a share of the half width: 0 (entire) to 0.8 (deep lobes), default 0. */
+  lobes: number;
+  /** Angle between side veins and midrib, degrees, 15 to 85, default 50. */
+  vein_angle_deg: number;
+  /** Pairs of side veins, 2 to 30, default 8. */
+  veins: number;
+  /** Where it is widest: 0.1 near the base to 0.9 near the tip, default 0.4. */
+  widest: number;
+  /** Greatest width over length, 0.02 to 2, default 0.5. */
+  width: number;
+};
+
 /** What colours a measured blade. */
 export type LeafPaint =
   | /** Painted by the distance from the veins. */
@@ -920,6 +954,8 @@ export type LeafSpec = {
   caps: boolean;
   /** Roll about the midrib: -1 (margins meet below) to 1 (above), 0 as measured, default 0. */
   curl: number;
+  /** The form of the leaf where nothing was measured. */
+  form: LeafForm;
   /** Length of the midrib for a vein graph in pixels, metres, 0.002 to 10, default 0.1. */
   length_m: number;
   /** A vein along the margin too; default false. */
@@ -1038,7 +1074,7 @@ export type NewMaker =
   {
     tree: string;
   }
-  | /** A leaf that waits for its marks. */
+  | /** A leaf of a few numbers, until it is given marks. */
   "leaf"
   | /** A flower of this species. */
   {
@@ -1495,6 +1531,10 @@ export type ShapeAnswer = {
   again: boolean;
   /** A gesture is going on. */
   busy: boolean;
+  /** How what is held is moved: what is shown of it is to be moved, and is not made again before the hand lets go. */
+  carried: 
+    | CarriedPose
+    | null;
   /** The edit of a gesture that ended: to be asked for as a command. */
   commit: 
     | HandEdit
@@ -1502,6 +1542,10 @@ export type ShapeAnswer = {
   /** The branch that is meant. */
   picked: 
     | Picked
+    | null;
+  /** The plane that was placed. */
+  plane: 
+    | ViewPlane
     | null;
   /** How far the branch that is held was turned, degrees. */
   turned_deg: number | null;
@@ -1558,6 +1602,10 @@ export type ShapeInput =
       /** Where to. */
       to: ShapeStep;
     };
+  }
+  | /** A plane is placed: through its tip (without one, its origin), facing it. */
+  {
+    plane: ShapePointer;
   }
   | /** It holds on: what grows is a round older. */
   "round"
@@ -1870,6 +1918,10 @@ export type StrokeState = {
     | null;
   /** In which mode it was drawn. */
   mode: StrokeMode;
+  /** What it was shown as, clearly, when the last stroke was drawn. */
+  shown: 
+    | StrokeClass
+    | null;
   /** Its own width, in the drawing's unit. */
   width: number | null;
 };
@@ -1986,6 +2038,10 @@ export type ToolKind =
     silhouette: {
       /** 0.1 to 10. */
       density: number;
+      /** Where it is drawn, if that was placed in space; without, it faces the viewer and lies in the plant's middle. */
+      plane?: 
+        | ViewPlane
+        | null;
       /** Cut off what leaves it. */
       trim: boolean;
     };
@@ -2097,6 +2153,8 @@ export type ViewPlane = {
 export type WarningView = {
   /** A word that stays, such as `unlike-a-plant`. */
   code: string;
+  /** Numbers and names in it. */
+  fields: Record<string, string>;
   /** A sentence in English. */
   message: string;
 };

@@ -118,6 +118,8 @@ function answer(s: StudioSession, request: Request): unknown {
       );
     case 'branch':
       return s.branch(request.axis);
+    case 'held':
+      return s.held_rows();
     case 'share':
       return s.share();
     case 'export':
@@ -176,6 +178,7 @@ const QUIET: ReadonlySet<Request['kind']> = new Set([
   'share',
   'schema',
   'branch',
+  'held',
 ]);
 
 /** Textures of these materials that the page does not have. */

@@ -301,6 +301,11 @@ impl StudioSession {
         self.0.branch(axis)
     }
 
+    /// Triangles of the meshes that a hand carries: part, first, and the one after the last, of each range.
+    pub fn held_rows(&self) -> Vec<u32> {
+        self.0.held_rows().to_vec()
+    }
+
     /// A small `.burgeon` file for a link: rounded, without times and photograph.
     ///
     /// # Errors

@@ -2,6 +2,8 @@
 //!
 //! `Obstacle -> Obstacles -> steer, blocks, inside`
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use plant::Frame;
 use schemars::JsonSchema;
@@ -82,7 +84,7 @@ impl Obstacle {
 
 spec::schemas!(Obstacle => crate::TreeSpec, "/$defs/Obstacle");
 
-/// Obstacles made ready to be asked.
+/// Obstacles made ready to be asked. A clone shares them.
 ///
 /// ```
 /// use glam::DVec3;
@@ -96,7 +98,7 @@ spec::schemas!(Obstacle => crate::TreeSpec, "/$defs/Obstacle");
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Obstacles {
-    bodies: Vec<Body>,
+    bodies: Arc<[Body]>,
     clearance_m: f64,
 }
 
@@ -152,12 +154,12 @@ impl Obstacles {
             let name = format!("a {}", o.shape());
             Body::new(o).map_err(|fault| GrowthError::Obstacle { obstacle, name, fault: Box::new(fault) })
         };
-        let bodies = obstacles.iter().enumerate().map(body).collect::<Result<_, _>>()?;
+        let bodies = obstacles.iter().enumerate().map(body).collect::<Result<Arc<[_]>, _>>()?;
         Ok(Self { bodies, clearance_m })
     }
 
     /// Whether there are none.
-    pub const fn is_empty(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         self.bodies.is_empty()
     }
 

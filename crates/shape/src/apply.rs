@@ -10,6 +10,7 @@ use plant::{OrganKind, Plant};
 use crate::bench::{Bench, Stop};
 use crate::draft::{At, Draft};
 use crate::edit::{Destination, HandEdit, Turn};
+use crate::grow::KeptGrowth;
 use crate::key::AxisKey;
 use crate::outcome::{Changed, Outcome, Why};
 use crate::pipes::Pipes;
@@ -108,11 +109,30 @@ impl Shaping {
     /// # Errors
     /// [`Cancelled`]: nothing was changed.
     pub fn push(&mut self, edit: &HandEdit, context: &Context, run: &Run<'_>) -> Result<Outcome, Cancelled> {
+        self.push_again(edit, context, &mut KeptGrowth::default(), run)
+    }
+
+    /// As [`push`](Self::push), again and again for what a hand holds: what grew at the last call is not grown again.
+    /// `kept`: of this plant and context, as it was left by the last call; it holds nothing after an edit by which
+    /// nothing grows on.
+    ///
+    /// # Errors
+    /// [`Cancelled`]: nothing was changed.
+    pub fn push_again(
+        &mut self,
+        edit: &HandEdit,
+        context: &Context,
+        kept: &mut KeptGrowth,
+        run: &Run<'_>,
+    ) -> Result<Outcome, Cancelled> {
         run.cancel.check()?;
         let bench = Bench { obstacles: &context.obstacles, exponent: context.pipe_exponent, run };
         let mut next = self.draft.clone();
         let before = leaf_count(&next);
-        match one(&mut next, edit, &bench) {
+        if !matches!(edit, HandEdit::Grow { .. }) {
+            *kept = KeptGrowth::default();
+        }
+        match one(&mut next, edit, kept, &bench) {
             Ok(mut changed) => {
                 let after = leaf_count(&next);
                 if changed.leaves_added == 0 {
@@ -140,7 +160,12 @@ fn leaf_count(draft: &Draft) -> usize {
     draft.organs.iter().filter(|o| o.alive && o.what.kind == OrganKind::Leaf).count()
 }
 
-fn one(draft: &mut Draft, edit: &HandEdit, bench: &Bench<'_>) -> Result<Changed, Stop> {
+fn one(
+    draft: &mut Draft,
+    edit: &HandEdit,
+    kept: &mut KeptGrowth,
+    bench: &Bench<'_>,
+) -> Result<Changed, Stop> {
     if !draft.branches.iter().any(|b| b.alive) {
         return Err(Why::NoBranches.into());
     }
@@ -160,7 +185,7 @@ fn one(draft: &mut Draft, edit: &HandEdit, bench: &Bench<'_>) -> Result<Changed,
         HandEdit::Grow { from, towards, rounds, changes, seed } => {
             edit.check()?;
             let wish = grow::Wish { from, towards: *towards, rounds: *rounds, changes };
-            grow::grow(draft, &wish, Seed::new(*seed), bench)
+            grow::grow(draft, &wish, Seed::new(*seed), kept, bench)
         }
         HandEdit::Silhouette { plane, outline, density, trim, seed } => {
             let wanted = fill::Outline { plane, outline, density: *density, trim: *trim };

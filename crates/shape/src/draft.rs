@@ -5,6 +5,8 @@
 use glam::{DQuat, DVec3};
 use plant::{AxisKind, Flower, FlowerId, NodeId, Organ, Plant, PlantPaint, Shape};
 
+use crate::carry::{self, Seat};
+
 /// A node of a branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct At {
@@ -29,15 +31,7 @@ pub(crate) struct Branch {
 impl Branch {
     /// Arc length at every node.
     pub(crate) fn lengths(&self) -> Vec<f64> {
-        let mut sum = 0.0;
-        let mut at = Vec::with_capacity(self.points.len());
-        for (i, p) in self.points.iter().enumerate() {
-            if i > 0 {
-                sum += p.distance(self.points[i - 1]);
-            }
-            at.push(sum);
-        }
-        at
+        carry::lengths(&self.points)
     }
 
     pub(crate) fn length(&self) -> f64 {
@@ -46,15 +40,12 @@ impl Branch {
 
     /// From base to tip, or any direction of a branch that ends where it starts.
     pub(crate) fn direction(&self) -> DVec3 {
-        let (Some(a), Some(b)) = (self.points.first(), self.points.last()) else { return DVec3::Y };
-        (*b - *a).try_normalize().unwrap_or(DVec3::Y)
+        carry::direction(&self.points)
     }
 
     /// Unit tangent at a node.
     pub(crate) fn tangent(&self, node: usize) -> DVec3 {
-        let last = self.points.len().saturating_sub(1);
-        let (a, b) = (node.saturating_sub(1).min(last), (node + 1).min(last));
-        (self.points[b] - self.points[a]).try_normalize().unwrap_or_else(|| self.direction())
+        carry::tangent(&self.points, node)
     }
 
     /// Bears twigs, rather than being a leaf's stalk or a root.
@@ -293,21 +284,12 @@ impl Draft {
 
     /// The node at a share of a branch's length, put in if there is none; one within a hundredth of the length is used.
     pub(crate) fn node_at(&mut self, b: usize, share: f64) -> usize {
-        let lengths = self.branches[b].lengths();
-        let whole = lengths.last().copied().unwrap_or(0.0);
-        let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 };
-        let s = share * whole;
-        let near = |i: &usize| (lengths[*i] - s).abs() <= 0.01 * whole;
-        let nearest = (0..lengths.len())
-            .min_by(|&i, &j| (lengths[i] - s).abs().total_cmp(&(lengths[j] - s).abs()))
-            .filter(near);
-        if let Some(node) = nearest {
-            return node;
-        }
-        let i = lengths.partition_point(|&l| l < s).clamp(1, lengths.len().saturating_sub(1).max(1));
+        let (i, t) = match Seat::of(&self.branches[b].points, share) {
+            Seat::Node(node) => return node,
+            Seat::Before(i, t) => (i, t),
+        };
         let branch = &mut self.branches[b];
-        let (Some(&p), Some(&q)) = (branch.points.get(i - 1), branch.points.get(i)) else { return 0 };
-        let t = ((s - lengths[i - 1]) / (lengths[i] - lengths[i - 1]).max(1e-300)).clamp(0.0, 1.0);
+        let (p, q) = (branch.points[i - 1], branch.points[i]);
         let (r, r2) = (branch.radii[i - 1], branch.radii[i]);
         branch.points.insert(i, p.lerp(q, t));
         branch.radii.insert(i, r + (r2 - r) * t);

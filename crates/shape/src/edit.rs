@@ -365,6 +365,26 @@ impl Default for ViewPlane {
 }
 
 impl ViewPlane {
+    /// Through a point, seen from where `towards` goes, upright as `up` says; any lengths above 0.
+    ///
+    /// `up` along `towards` says nothing: then any direction across is upright. `None` for numbers that are not finite, or no
+    /// direction.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use shape::ViewPlane;
+    /// let plane = ViewPlane::facing(DVec3::ONE, DVec3::X * 2.0, DVec3::Y).expect("a direction");
+    /// assert_eq!((plane.origin, plane.right, plane.up), (DVec3::ONE, DVec3::NEG_Z, DVec3::Y));
+    /// ```
+    pub fn facing(point: DVec3, towards: DVec3, up: DVec3) -> Option<Self> {
+        let towards = towards.try_normalize().filter(|_| point.is_finite())?;
+        let right = up.cross(towards);
+        let right =
+            if right.is_finite() && right.length() > 1e-3 * up.length() { right } else { DVec3::ZERO };
+        let right = right.try_normalize().unwrap_or_else(|| towards.any_orthonormal_vector());
+        Some(Self { origin: point, right, up: towards.cross(right) })
+    }
+
     /// `right`, `up` and the direction to the viewer, orthonormal.
     ///
     /// # Errors

@@ -3,9 +3,9 @@
 use base::Seed;
 use base::ops::{self, PI};
 use glam::DVec3;
-use growth::{GuidedChange, GuidedSpec, Skeleton, StartBud, guide_from};
+use growth::{Growing, GrowthStep, Guided, GuidedChange, GuidedSpec, Skeleton, StartBud};
 
-use crate::bench::{Bench, Stop, unread};
+use crate::bench::{Bench, Stop};
 use crate::draft::{At, Branch, Draft};
 use crate::edit::GrowFrom;
 use crate::graft::{Hosts, graft_all, out_of_bark};
@@ -16,6 +16,9 @@ use crate::pipes::Pipes;
 use crate::sketch_branch::own_seed;
 
 const GROW: u64 = 0x6772_6f77;
+/// A shoot in the hand stops growing when its buds have looked at so many markers: half of what a browser may take, since a
+/// shoot that was over the budget would be none at all. Some 15,000 joints, or 3,000 branches.
+const MOST_LOOKS: u64 = 12_000_000;
 /// Nearer to its tip than this share of its length, a branch goes on.
 const TIP: f64 = 0.02;
 
@@ -27,11 +30,64 @@ pub(crate) struct Wish<'a> {
     pub(crate) changes: &'a [GuidedChange],
 }
 
-/// Cost: linear in the plant, and what grows.
+/// What grows while a hand holds on, kept from one round to the next: more rounds of the same cost these rounds only.
+///
+/// It belongs to one plant with what it grows around; what else differs is found out.
+#[derive(Clone, Debug, Default)]
+pub struct KeptGrowth(Option<Box<Sprout>>);
+
+/// What grew last, and where it began.
+#[derive(Clone, Debug)]
+struct Sprout {
+    from: Skeleton,
+    bud: StartBud,
+    seed: Seed,
+    growing: Growing,
+}
+
+impl KeptGrowth {
+    /// Rounds that are kept; 0 where nothing is.
+    pub fn rounds(&self) -> u32 {
+        self.0.as_ref().map_or(0, |s| s.growing.rounds())
+    }
+
+    /// The same tree as grown from its start; what was grown before is not grown again.
+    fn grow(
+        &mut self,
+        (from, bud): (Skeleton, StartBud),
+        spec: &GuidedSpec,
+        seed: Seed,
+        bench: &Bench<'_>,
+    ) -> Result<Guided, Stop> {
+        let mut kept = self.0.take().filter(|s| (&s.from, s.bud, s.seed) == (&from, bud, seed));
+        let goes_on = match &mut kept {
+            Some(kept) => kept.growing.goes_on_as(spec)?,
+            None => false,
+        };
+        let mut sprout = match kept.filter(|_| goes_on) {
+            Some(kept) => kept,
+            None => {
+                let growing =
+                    Growing::from_wood(from.clone(), &[bud], bench.obstacles, spec, seed, bench.run)?;
+                Box::new(Sprout { from, bud, seed, growing })
+            }
+        };
+        let growing = &mut sprout.growing;
+        while growing.rounds() < spec.rounds && growing.looks() < MOST_LOOKS {
+            if growing.step(bench.run)? != GrowthStep::Goes {
+                break;
+            }
+        }
+        Ok(self.0.insert(sprout).growing.finish())
+    }
+}
+
+/// Cost: linear in the plant, and what grows beyond what is kept.
 pub(crate) fn grow(
     draft: &mut Draft,
     wish: &Wish<'_>,
     seed: Seed,
+    kept: &mut KeptGrowth,
     bench: &Bench<'_>,
 ) -> Result<Changed, Stop> {
     let habit = bench.habit(draft);
@@ -58,7 +114,7 @@ pub(crate) fn grow(
         draft.branches[b].key = own.number();
     }
     let bud = StartBud { joint: start.joint, heading: start.heading, wakes: 0 };
-    let grown = guide_from(start.from, &[bud], bench.obstacles, &spec, own, bench.run, &mut unread())?;
+    let grown = kept.grow((start.from, bud), &spec, own, bench)?;
     if grown.skeleton.len() < start.least {
         return Err(Why::NothingGrew.into());
     }

@@ -7,6 +7,7 @@
 //! | `edit` | the edits as plain data |
 //! | `key` | names of branches that survive a change |
 //! | `apply` | one edit after another; rotate, move, prune |
+//! | `carry` | how a branch in the hand goes, with all that it bears |
 //! | `bench` | what every edit is given, and why one stops |
 //! | `draft` | the plant in pieces while it is edited |
 //! | `habit` | what new wood must be like: learnt from the plant |
@@ -21,6 +22,7 @@
 
 mod apply;
 mod bench;
+mod carry;
 mod draft;
 mod edit;
 mod fill;
@@ -38,10 +40,12 @@ mod thumb;
 mod tool;
 
 pub use apply::{Applied, Context, Shaping, apply};
+pub use carry::Carried;
 pub use edit::{
     Destination, EDITS_SCHEMA, EditsFile, GrowFrom, HandEdit, LeafRegion, MOST_POINTS, MOST_ROUNDS, Turn,
     ViewPlane,
 };
+pub use grow::KeptGrowth;
 pub use key::{AxisKey, Found, KindWord, Mark};
 pub use outcome::{Changed, Outcome, Why};
 pub use pick::{Pick, Ray, Reach, pick};

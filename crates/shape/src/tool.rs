@@ -9,6 +9,7 @@ use plant::{AxisId, AxisKind, Plant};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::carry::Carried;
 use crate::edit::{Destination, GrowFrom, HandEdit, LeafRegion, MOST_ROUNDS, Turn, ViewPlane};
 use crate::key::AxisKey;
 use crate::pick::{Pick, Ray, Reach, nearest, pick};
@@ -54,6 +55,9 @@ pub enum ToolKind {
         density: f64,
         /// Cut off what leaves it.
         trim: bool,
+        /// Where it is drawn, if that was placed in space; without, it faces the viewer and lies in the plant's middle.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        plane: Option<ViewPlane>,
     },
     /// Brush over leaves.
     Leaves {
@@ -76,13 +80,15 @@ pub struct Growth {
     pub angle_deg: f64,
     /// Pull to the light, or of the weight where it is negative, -10 to 10; free space pulls with 1.
     pub lift: f64,
+    /// How strongly shoots keep apart, 0 to 10.
+    pub apart: f64,
 }
 
 impl Default for Growth {
     fn default() -> Self {
-        let GuidedSpec { alpha, lambda, branch_angle_deg, tropisms, .. } = GuidedSpec::default();
+        let GuidedSpec { alpha, lambda, branch_angle_deg, tropisms, repulsion, .. } = GuidedSpec::default();
         let lift = tropisms.iter().map(|t| t.strength).sum();
-        Self { vigour: alpha, apical: lambda, angle_deg: branch_angle_deg, lift }
+        Self { vigour: alpha, apical: lambda, angle_deg: branch_angle_deg, lift, apart: repulsion }
     }
 }
 
@@ -94,6 +100,7 @@ impl Growth {
             alpha: Some(self.vigour),
             lambda: Some(self.apical),
             branch_angle_deg: Some(self.angle_deg),
+            repulsion: Some(self.apart),
             tropisms: Some(vec![Tropism { strength: self.lift, ..Tropism::UPWARDS }]),
             ..GuidedChange::default()
         }
@@ -197,7 +204,7 @@ enum State {
         foot: DVec3,
         /// The pointer as it went down.
         from: Box<Pointer>,
-        to: Option<Destination>,
+        to: Option<Goal>,
     },
     Clicking {
         pick: Pick,
@@ -213,6 +220,15 @@ enum State {
     Stroking(Box<Stroking>),
 }
 
+/// Where a branch is slid to.
+#[derive(Clone, Copy, Debug)]
+enum Goal {
+    /// A place of an axis, as a share of its length.
+    Wood(AxisId, f64),
+    /// So far over the ground, metres.
+    Ground(DVec3),
+}
+
 #[derive(Clone, Debug)]
 struct Stroking {
     pick: Option<Pick>,
@@ -220,6 +236,8 @@ struct Stroking {
     through: DVec3,
     right: DVec3,
     normal: DVec3,
+    /// A tip draws on the plane before it, not in space.
+    on_plane: bool,
     spacing: f64,
     points: Vec<DVec3>,
     radius_m: Vec<f64>,
@@ -262,6 +280,34 @@ impl Tool {
         !matches!(self.state, State::Idle)
     }
 
+    /// Whether a gesture is going on that moves a branch as one with all that it bears.
+    pub const fn carries(&self) -> bool {
+        matches!(self.state, State::Turning { .. } | State::Sliding { .. })
+    }
+
+    /// How the branch in the hand is carried, where the edit so far does nothing but that; `plant`: as for
+    /// [`handle`](Self::handle).
+    ///
+    /// Guaranteed: every node of the branch and of what it bears is where the edit puts it, to 1e-9 of the plant's size.
+    /// Cost: linear in the branch's bearer, old and new.
+    pub fn carried(&self, plant: &Plant) -> Option<Carried> {
+        match &self.state {
+            State::Turning { pick, pivot, about, angle, swing, .. } => {
+                let turn = turn_of(*about, *angle, *swing).quat().ok()?;
+                Some(Carried { axis: pick.axis, from: *pivot, to: *pivot, turn })
+            }
+            State::Sliding { pick, foot, to, .. } => match to {
+                Some(Goal::Wood(host, share)) => Carried::onto(plant, pick.axis, *host, *share),
+                Some(Goal::Ground(by)) => {
+                    let turn = DQuat::IDENTITY;
+                    Some(Carried { axis: pick.axis, from: *foot, to: *foot + *by, turn })
+                }
+                None => None,
+            },
+            _ => None,
+        }
+    }
+
     /// Takes one input. `plant`: as it was when the gesture began, without its preview.
     ///
     /// Guaranteed: no input panics; a commit only on [`Input::Up`]; after `Up` and `Cancel` it holds nothing. Cost:
@@ -282,23 +328,23 @@ impl Tool {
                 self.state = State::Idle;
                 Response::default()
             }
-            Input::Twist(by) => self.twist(*by),
+            Input::Twist(by) => self.twist(plant, *by),
             Input::Brush(radius, wanted) => {
                 if let ToolKind::Brush { radius_m, density } = &mut self.kind {
                     *radius_m = if *radius > 0.0 && radius.is_finite() { *radius } else { *radius_m };
                     *density = if wanted.is_finite() { wanted.clamp(0.1, 10.0) } else { *density };
                 }
-                self.preview()
+                self.preview(plant)
             }
             Input::Round => {
                 if let State::Growing { rounds, .. } = &mut self.state {
                     *rounds = (*rounds + 1).min(MOST_ROUNDS);
                 }
-                self.preview()
+                self.preview(plant)
             }
             Input::Grow(growth) => {
                 self.turn_numbers(*growth);
-                self.preview()
+                self.preview(plant)
             }
         }
     }
@@ -367,7 +413,7 @@ impl Tool {
                 None => State::Idle,
             },
         };
-        Response { picked, ..self.preview() }
+        Response { picked, ..self.preview(plant) }
     }
 
     /// The plane of a stroke: through what was picked, else through the plant's middle.
@@ -384,13 +430,21 @@ impl Tool {
         let tilt = if let ToolKind::Sketch { tilt_deg, .. } = self.kind { tilt_deg * DEGREE } else { 0.0 };
         let lasso = matches!(self.kind, ToolKind::Silhouette { .. });
         let through = named.as_ref().filter(|_| !lasso).map_or((lo + hi) * 0.5, |(k, _)| k.point);
+        let (through, right, normal) = match self.kind {
+            ToolKind::Silhouette { plane: Some(plane), .. } => {
+                let [right, _, towards] = plane.axes().ok()?;
+                (plane.origin, right, towards)
+            }
+            _ => (through, right, leaned(normal, right, tilt)),
+        };
         let (pick, bearer) = named.unzip();
         let mut stroke = Stroking {
             pick,
             bearer,
             through,
             right,
-            normal: leaned(normal, right, tilt),
+            normal,
+            on_plane: lasso,
             spacing: 0.004 * size.max(1e-9),
             points: Vec::new(),
             radius_m: Vec::new(),
@@ -434,22 +488,22 @@ impl Tool {
             State::Sliding { pick, bearer, grabbed, foot, from, to, .. } => {
                 let now = match (bearer, p.tip) {
                     (Some(_), Some(tip)) => wood_near(plant, tip, pick.axis),
-                    (Some((key, axis)), None) => {
+                    (Some((_, axis)), None) => {
                         let at = (share_under(plant, *axis, p) + *grabbed).clamp(0.0, 1.0);
-                        Some(Destination::Place { axis: key.clone(), at })
+                        Some(Goal::Wood(*axis, at))
                     }
-                    (None, _) => over_ground(from, p, *foot).map(Destination::ByM),
+                    (None, _) => over_ground(from, p, *foot).map(Goal::Ground),
                 };
                 // Above the horizon there is no ground: it stays where it was last.
-                *to = now.or_else(|| to.take());
+                *to = now.or(*to);
             }
             State::Clicking { .. } | State::Growing { .. } => {}
             State::Stroking(stroke) => stroke.add(p, radius),
         }
-        self.preview()
+        self.preview(plant)
     }
 
-    fn twist(&mut self, by: f64) -> Response {
+    fn twist(&mut self, plant: &Plant, by: f64) -> Response {
         if !by.is_finite() {
             return Response::default();
         }
@@ -467,10 +521,11 @@ impl Tool {
         if let (State::Idle, ToolKind::Sketch { tilt_deg, .. }) = (&self.state, &mut self.kind) {
             *tilt_deg = (*tilt_deg + by / DEGREE).clamp(-MOST_LEAN_DEG, MOST_LEAN_DEG);
         }
-        self.edit().map_or_else(Response::default, |e| Response { preview: Some(e), ..Response::default() })
+        self.edit(plant)
+            .map_or_else(Response::default, |e| Response { preview: Some(e), ..Response::default() })
     }
 
-    fn preview(&self) -> Response {
+    fn preview(&self, plant: &Plant) -> Response {
         let picked = match &self.state {
             State::Idle => None,
             State::Turning { pick, .. } | State::Sliding { pick, .. } | State::Clicking { pick, .. } => {
@@ -479,11 +534,11 @@ impl Tool {
             State::Growing { pick, .. } => *pick,
             State::Stroking(s) => s.pick,
         };
-        Response { preview: self.edit(), commit: None, picked }
+        Response { preview: self.edit(plant), commit: None, picked }
     }
 
     /// The edit that the gesture makes so far.
-    fn edit(&self) -> Option<HandEdit> {
+    fn edit(&self, plant: &Plant) -> Option<HandEdit> {
         let seed = self.seed;
         match &self.state {
             State::Idle => None,
@@ -491,7 +546,17 @@ impl Tool {
                 let turn = turn_of(*about, *angle, *swing);
                 (turn.degrees.abs() >= LEAST_TURN_DEG).then(|| HandEdit::Rotate { axis: key.clone(), turn })
             }
-            State::Sliding { key, to, .. } => Some(HandEdit::Move { axis: key.clone(), to: to.clone()? }),
+            State::Sliding { key, bearer, to, .. } => {
+                let to = match (*to)? {
+                    Goal::Ground(by) => Destination::ByM(by),
+                    Goal::Wood(on, at) => {
+                        let known =
+                            bearer.as_ref().filter(|(_, axis)| *axis == on).map(|(key, _)| key.clone());
+                        Destination::Place { axis: known.or_else(|| AxisKey::of(plant, on))?, at }
+                    }
+                };
+                Some(HandEdit::Move { axis: key.clone(), to })
+            }
             State::Clicking { pick, key } => Some(match self.kind {
                 ToolKind::Regrow => HandEdit::Regrow { axis: key.clone(), seed },
                 ToolKind::Prune { whole: false } => HandEdit::Prune { axis: key.clone(), at: pick.at },
@@ -530,7 +595,7 @@ impl Tool {
                 let (bearer, radius_m) = (s.bearer.clone(), s.radius_m.clone());
                 HandEdit::Brush { bearer, points, radius_m, density, seed }
             }
-            ToolKind::Silhouette { density, trim } => {
+            ToolKind::Silhouette { density, trim, .. } => {
                 let plane = ViewPlane { origin: s.through, right: s.right, up: s.normal.cross(s.right) };
                 let flat = |q: &DVec3| {
                     DVec2::new((*q - plane.origin).dot(plane.right), (*q - plane.origin).dot(plane.up))
@@ -549,7 +614,10 @@ impl Tool {
 
 impl Stroking {
     fn add(&mut self, p: &Pointer, radius_m: f64) {
-        let at = p.tip.filter(|t| t.is_finite()).or_else(|| p.ray.meets(self.through, self.normal));
+        let fall =
+            |t: DVec3| if self.on_plane { t - self.normal * (t - self.through).dot(self.normal) } else { t };
+        let tip = p.tip.filter(|t| t.is_finite()).map(fall);
+        let at = tip.or_else(|| p.ray.meets(self.through, self.normal));
         let Some(at) = at.filter(|a| a.is_finite()) else { return };
         if self.points.last().is_none_or(|last| last.distance(at) >= self.spacing) {
             self.points.push(at);
@@ -603,7 +671,7 @@ fn on_ground(p: &Pointer) -> Option<DVec3> {
 }
 
 /// The place on a shoot nearest to a point, on none that `but` bears or is.
-fn wood_near(plant: &Plant, at: DVec3, but: AxisId) -> Option<Destination> {
+fn wood_near(plant: &Plant, at: DVec3, but: AxisId) -> Option<Goal> {
     let borne = plant.borne_by(but);
     let shoots = plant.axes.iter().enumerate();
     let shoots = shoots.filter(|(_, a)| !matches!(a.kind, AxisKind::Petiole | AxisKind::Root));
@@ -615,7 +683,7 @@ fn wood_near(plant: &Plant, at: DVec3, but: AxisId) -> Option<Destination> {
             (axis, gap, share)
         })
         .reduce(|a, b| if b.1 < a.1 { b } else { a })?;
-    Some(Destination::Place { axis: AxisKey::of(plant, axis)?, at: share })
+    Some(Goal::Wood(axis, share))
 }
 
 fn leaned(normal: DVec3, right: DVec3, by: f64) -> DVec3 {

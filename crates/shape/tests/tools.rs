@@ -1,11 +1,13 @@
 //! Scripted gestures: what a hand does with each tool.
 
-use base::Run;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use base::{Budget, Executor, Run};
 use glam::DVec3;
 use plant::{AxisId, AxisKind, Plant};
 use shape::{
-    AxisKey, Context, Destination, Growth, HandEdit, Input, LeafRegion, Pointer, Ray, Reach, Response, Tool,
-    ToolKind, apply, pick,
+    AxisKey, Context, Destination, GrowFrom, Growth, HandEdit, Input, KeptGrowth, LeafRegion, Pointer, Ray,
+    Reach, Response, Shaping, Tool, ToolKind, ViewPlane, apply, pick,
 };
 
 /// A trunk of 4 m with a limb to the right at 2 m, which bears one of its own.
@@ -333,7 +335,9 @@ fn a_lasso_becomes_a_silhouette_in_the_viewers_plane() {
             mouse(1.8 * c, 3.5 + 1.4 * s)
         })
         .collect();
-    let edit = drag(&mut Tool::new(ToolKind::Silhouette { density: 0.5, trim: false }), &plant, &ring).commit;
+    let edit =
+        drag(&mut Tool::new(ToolKind::Silhouette { density: 0.5, trim: false, plane: None }), &plant, &ring)
+            .commit;
     let edit = edit.expect("drawn");
     let HandEdit::Silhouette { plane, outline, .. } = &edit else { panic!("{edit:?}") };
     assert!(plane.right == DVec3::X && plane.up == DVec3::Y && outline.len() > 20);
@@ -374,7 +378,11 @@ fn no_input_is_a_fault() {
         ToolKind::Regrow,
         ToolKind::Sketch { twigs: f64::NAN, tilt_deg: f64::NAN },
         ToolKind::Brush { radius_m: -1.0, density: f64::NAN },
-        ToolKind::Silhouette { density: 0.0, trim: true },
+        ToolKind::Silhouette {
+            density: 0.0,
+            trim: true,
+            plane: Some(ViewPlane { right: DVec3::NAN, ..ViewPlane::default() }),
+        },
         ToolKind::Leaves { radius_m: f64::NAN, keep: -2.0 },
     ] {
         for plant in [&plant, &Plant::default()] {
@@ -409,7 +417,7 @@ fn what_is_held_grows_round_by_round_with_numbers_that_change() {
             if round == 6 {
                 tool.handle(
                     &plant,
-                    &Input::Grow(Growth { angle_deg: 85.0, vigour: 4.0, ..Growth::default() }),
+                    &Input::Grow(Growth { angle_deg: 85.0, vigour: 2.5, ..Growth::default() }),
                 );
                 tool.handle(&plant, &Input::Grow(Growth { vigour: -1.0, ..Growth::default() }));
             }
@@ -436,4 +444,162 @@ fn what_is_held_grows_round_by_round_with_numbers_that_change() {
         ..mouse(0.0, 0.0)
     };
     assert!(tool.handle(&plant, &Input::Down(up)).preview.is_none() && !tool.is_busy());
+}
+
+/// Counts what it is asked to run: two jobs a round of growth.
+#[derive(Default)]
+struct Counting(AtomicUsize);
+
+impl Executor for Counting {
+    fn for_each(&self, n: usize, job: &(dyn Fn(usize) + Sync)) {
+        self.0.fetch_add(1, Ordering::Relaxed);
+        (0..n).for_each(job);
+    }
+}
+
+#[test]
+fn what_is_held_grows_on_from_where_it_is() {
+    let plant = tree();
+    let counting = Counting::default();
+    let run = Run { executor: &counting, ..Run::plain() };
+    let mut kept = KeptGrowth::default();
+    let mut push = |edit: &HandEdit| {
+        let before = counting.0.load(Ordering::Relaxed);
+        let mut shaping = Shaping::new(&plant);
+        let outcome = shaping.push_again(edit, &Context::default(), &mut kept, &run).expect("not cancelled");
+        assert!(outcome.is_done(), "{outcome}");
+        assert_eq!(shaping.into_plant(), after(&plant, edit.clone()), "as from its start");
+        (counting.0.load(Ordering::Relaxed) - before, kept.rounds())
+    };
+    for down in [mouse(1.5, 2.0), mouse(3.0, -0.6)] {
+        let mut tool = Tool::new(ToolKind::Grow(Growth { vigour: 1.2, ..Growth::default() }));
+        tool.handle(&plant, &Input::Down(down));
+        let mut most = 0;
+        for round in 2..13 {
+            if round % 6 == 0 {
+                let vigour = 1.2 + 0.02 * f64::from(round);
+                tool.handle(&plant, &Input::Grow(Growth { vigour, ..Growth::default() }));
+            }
+            let edit = tool.handle(&plant, &Input::Round).preview.expect("it grows");
+            let (jobs, rounds) = push(&edit);
+            assert_eq!(rounds, round);
+            most = if round > 2 { most.max(jobs) } else { most };
+        }
+        assert!(most < 20, "a round is one round of growth: {most}");
+        // The edit that is kept is the preview that was seen last: nothing grows anew.
+        let edit = tool.handle(&plant, &Input::Up(down)).commit.expect("kept");
+        assert!(push(&edit).0 < most);
+        // What was held on to for a shorter time, and what grows elsewhere, begins anew.
+        let HandEdit::Grow { from, towards, changes, seed, .. } = edit.clone() else { panic!() };
+        let early = changes.into_iter().filter(|c| c.round < 5).collect::<Vec<_>>();
+        let short =
+            |seed, from: GrowFrom| HandEdit::Grow { from, towards, rounds: 5, changes: early.clone(), seed };
+        push(&short(seed, from.clone()));
+        push(&short(seed + 1, from));
+        push(&edit);
+    }
+    // Another edit lets go of it.
+    let cut = HandEdit::Prune { axis: AxisKey::Path(vec![0, 0]), at: 0.0 };
+    assert_eq!(push(&cut).1, 0);
+}
+
+#[test]
+fn what_is_carried_is_where_the_edit_puts_it() {
+    let plant = tree();
+    let twig = DVec3::new(1.0, 2.6, 0.0);
+    let places = [DVec3::new(0.1, 1.0, 0.2), DVec3::new(1.9, 2.1, -0.1), DVec3::new(0.1, 3.71, 0.3)];
+    let cases = places.iter().flat_map(|to| {
+        [
+            (ToolKind::Rotate, [controller(twig), controller(*to)]),
+            (ToolKind::Move, [controller(twig), controller(*to)]),
+            (ToolKind::Rotate, [mouse(1.6, 2.0), mouse(to.x, to.y)]),
+            (ToolKind::Move, [mouse(1.6, 2.0), mouse(0.4 * to.x, to.y + 0.13)]),
+            (ToolKind::Move, [mouse(0.0, 0.9), mouse(0.4, 0.7)]),
+        ]
+    });
+    for (kind, [from, to]) in cases {
+        let mut tool = Tool::new(kind);
+        tool.handle(&plant, &Input::Down(from));
+        let edit = tool.handle(&plant, &Input::Move(to)).preview;
+        let Some(edit) = edit else { continue };
+        let carried = tool.carried(&plant).expect("it is in the hand");
+        let moved = after(&plant, edit);
+        let borne = plant.borne_by(carried.axis);
+        for (row, borne) in borne.iter().enumerate().filter(|(row, _)| *row != carried.axis.index()) {
+            // A new node on what bears the branch is no matter here: it is not borne.
+            let (was, now) = (plant.axis_points(AxisId::new(row)), moved.axis_points(AxisId::new(row)));
+            for (p, q) in was.iter().zip(now).filter(|_| *borne) {
+                assert!(carried.place(*p).distance(*q) < 1e-9, "{kind:?} {p} {q}");
+            }
+        }
+        let (was, now) = (plant.axis_points(carried.axis), moved.axis_points(carried.axis));
+        assert!(was.iter().zip(now).all(|(p, q)| carried.place(*p).distance(*q) < 1e-9), "{kind:?}");
+        assert!(tool.handle(&plant, &Input::Up(to)).commit.is_some() && tool.carried(&plant).is_none());
+    }
+    // A brush, and a hand that holds nothing, carry nothing.
+    let mut tool = Tool::new(ToolKind::Leaves { radius_m: 0.1, keep: 0.5 });
+    tool.handle(&plant, &Input::Down(mouse(1.0, 2.0)));
+    assert_eq!(tool.carried(&plant), None);
+}
+
+#[test]
+fn an_outline_is_drawn_on_the_plane_that_was_placed() {
+    let plant = tree();
+    // Beside the plant, leaning back, turned a third of the way round; a tip that shakes before and behind it.
+    let towards = DVec3::new(0.8, 0.3, 0.5);
+    let plane = ViewPlane::facing(DVec3::new(0.3, 3.2, 0.1), towards, DVec3::Y).expect("a direction");
+    let [right, up, normal] = plane.axes().expect("orthonormal");
+    assert!(normal.distance(towards.normalize()) < 1e-12 && up.y > 0.9);
+    let ring = |hand: &dyn Fn(f64, DVec3) -> Pointer| -> Vec<Pointer> {
+        let at = |i: u32| {
+            let (s, c) = base::ops::sin_cos(f64::from(i) * base::ops::TAU / 32.0);
+            hand(f64::from(i % 3) - 1.0, plane.origin + right * (1.2 * c) + up * (1.2 * s))
+        };
+        (0..32).map(at).collect()
+    };
+    let kind = ToolKind::Silhouette { density: 0.5, trim: false, plane: Some(plane) };
+    let eye = DVec3::new(3.0, 4.0, 9.0);
+    for way in [
+        ring(&|off, p| controller(p + normal * (0.2 * off))),
+        ring(&|_, p| Pointer { ray: Ray { origin: eye, direction: p - eye }, ..mouse(0.0, 0.0) }),
+    ] {
+        let edit = drag(&mut Tool::new(kind), &plant, &way).commit.expect("drawn");
+        let HandEdit::Silhouette { plane: drawn, outline, .. } = &edit else { panic!("{edit:?}") };
+        assert!(drawn.origin == plane.origin && drawn.right.distance(right) < 1e-12);
+        assert!(outline.iter().all(|p| (p.length() - 1.2).abs() < 1e-9), "{outline:?}");
+        let grown = after(&plant, edit);
+        let new = grown.axes.iter().enumerate().filter(|(_, a)| !plant.axes.iter().any(|b| b.key == a.key));
+        let tips: Vec<DVec3> =
+            new.filter_map(|(row, _)| grown.axis_points(AxisId::new(row)).last().copied()).collect();
+        let outside = tips.iter().filter(|p| {
+            let d = **p - plane.origin;
+            (d - normal * d.dot(normal)).length() > 1.5
+        });
+        assert!(tips.len() > 10 && outside.count() * 20 < tips.len(), "{} tips", tips.len());
+    }
+    // What a hand that points along the vertical places is upright somehow, and no direction is no plane.
+    let flat = ViewPlane::facing(DVec3::ZERO, DVec3::Y, DVec3::Y).expect("a direction");
+    assert!(flat.axes().is_ok());
+    for (point, towards) in [(DVec3::NAN, DVec3::X), (DVec3::ZERO, DVec3::ZERO), (DVec3::ZERO, DVec3::NAN)] {
+        assert_eq!(ViewPlane::facing(point, towards, DVec3::Y), None);
+    }
+}
+
+#[test]
+fn what_is_held_on_to_for_long_stops_growing_and_stays() {
+    let plant = tree();
+    let mut tool = Tool::new(ToolKind::Grow(Growth { vigour: 6.0, ..Growth::default() }));
+    tool.handle(&plant, &Input::Down(mouse(1.5, 2.0)));
+    let mut edit = None;
+    for _ in 0..60 {
+        edit = tool.handle(&plant, &Input::Round).preview;
+    }
+    // The budget of a browser: over it, there would be nothing.
+    let run = Run { budget: Budget { times: 0.25, ..Budget::default() }, ..Run::plain() };
+    let (mut shaping, mut kept) = (Shaping::new(&plant), KeptGrowth::default());
+    let edit = edit.expect("it grows");
+    let outcome = shaping.push_again(&edit, &Context::default(), &mut kept, &run).expect("not cancelled");
+    assert!(outcome.is_done() && kept.rounds() < 60, "{outcome}, {} rounds", kept.rounds());
+    let axes = shaping.into_plant().axes.len();
+    assert!((1_000..10_000).contains(&axes), "{axes}");
 }

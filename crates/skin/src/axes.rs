@@ -51,6 +51,8 @@ struct Chain {
 pub(crate) struct Tube {
     pub surface: Surface,
     pub traced: bool,
+    /// The axes that it is of, in order.
+    pub axes: Vec<AxisId>,
     pub mesh: TriMesh,
 }
 
@@ -174,7 +176,7 @@ pub(crate) fn tubes<'p>(
         if let Some(traced) = traced {
             traced.tube(&mut mesh, spine);
         }
-        Some(Tube { surface, traced: traced.is_some(), mesh })
+        Some(Tube { surface, traced: traced.is_some(), axes: chain.axes.clone(), mesh })
     })?;
     Ok((tubes.into_iter().flatten().collect(), wind))
 }

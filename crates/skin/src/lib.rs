@@ -13,6 +13,7 @@
 //! | `spine`, `rings`, `sleeve`, `tube` | smooth centre lines, cross-sections, their triangles, [`tube`] |
 //! | `fork`, `axes` | fillets at forks; which axes are one tube |
 //! | `blade`, `lean`, `body`, `organs` | [`blade_mesh`], [`BladeChart`]; leaves of a crowd; discs, fruits, strands; placed copies |
+//! | `layout` | [`Layout`]: what of a plant lies where in its parts |
 //! | `leaf` | [`ShapeMesh`]: leaves of measured veins, sheets |
 //! | `traced` | [`Traced`]: organs in the colours of a photograph |
 //! | `material`, `margin` | [`OrganMaterial`], [`Wear`]: materials that a person chose; how far from the margin a place is |
@@ -24,6 +25,7 @@ mod axes;
 mod blade;
 mod body;
 mod fork;
+mod layout;
 mod leaf;
 mod lean;
 mod margin;
@@ -42,6 +44,7 @@ mod wind;
 
 pub use self::spec::{LeafMeshSpec, PetalColor, SkinSpec};
 pub use blade::{BladeChart, blade_mesh};
+pub use layout::Layout;
 pub use leaf::ShapeMesh;
 pub use material::{Cloth, MATERIALS, OrganMaterial, Pattern, StrokeWear, Wear, Wearer, Worn};
 pub use organs::KeptShapes;
@@ -55,6 +58,7 @@ use mesh::Model;
 use plant::{AxisKind, Plant};
 
 use crate::axes::Surface;
+use crate::layout::Piece;
 use crate::parts::Slot;
 use crate::spec::Budget;
 
@@ -113,6 +117,20 @@ pub fn skin_again(
     kept: Option<&mut KeptShapes>,
     run: &Run<'_>,
 ) -> Result<Model, Stopped> {
+    Ok(skin_laid_out(plant, spec, pictures, kept, run)?.0)
+}
+
+/// As [`skin_again`], also with what lies where in the parts.
+///
+/// # Errors
+/// [`Stopped`] when the caller's token says so, or when there would be more triangles than the budget allows.
+pub fn skin_laid_out(
+    plant: &Plant,
+    spec: &SkinSpec,
+    pictures: Pictures<'_>,
+    kept: Option<&mut KeptShapes>,
+    run: &Run<'_>,
+) -> Result<(Model, Layout), Stopped> {
     run.cancel.check()?;
     let (budget, traced) = (budget(plant, spec), pictures.traced);
     let slot = |surface| match surface {
@@ -124,8 +142,12 @@ pub fn skin_again(
     };
     let (tubes, wind) = axes::tubes(plant, spec, &budget, traced, run)?;
     let slot_of = |t: &axes::Tube| if t.traced { slot(t.surface).traced() } else { slot(t.surface) };
-    let mut meshes: Vec<_> = tubes.into_iter().map(|t| (slot_of(&t), t.mesh)).collect();
-    let wood = meshes.iter().map(|(_, m): &(Slot, mesh::TriMesh)| m.triangles.len()).sum();
+    let mut meshes: Vec<_> = tubes
+        .into_iter()
+        .map(|t| (slot_of(&t), vec![Piece::tube(&t.axes, t.mesh.triangles.len())], t.mesh))
+        .map(|(slot, pieces, mesh)| (slot, mesh, pieces))
+        .collect();
+    let wood = meshes.iter().map(|(_, m, _): &(Slot, mesh::TriMesh, _)| m.triangles.len()).sum();
     meshes.extend(organs::organs(plant, spec, &budget, (traced, wood), wind.as_ref(), kept, run)?);
     run.cancel.check()?;
     Ok(parts::model(plant, meshes, spec, pictures, run.executor))

@@ -9,6 +9,7 @@ use plant::{Organ, OrganKind, Plant, Shape, ShapeId};
 use crate::LeafMeshSpec;
 use crate::blade::blade_mesh;
 use crate::body::{dome, prism, revolution, rod, strand};
+use crate::layout::Piece;
 use crate::leaf::{ShapeMesh, sheet_mesh, spline_mesh};
 use crate::lean::lean_mesh;
 use crate::margin::from_margin;
@@ -34,7 +35,7 @@ pub(crate) fn organs(
     wind: Option<&Wind<'_>>,
     kept: Option<&mut KeptShapes>,
     run: &Run<'_>,
-) -> Result<Vec<(Slot, TriMesh)>, Stopped> {
+) -> Result<Vec<(Slot, TriMesh, Vec<Piece>)>, Stopped> {
     let uses = uses(plant);
     let ground = Ground::new(plant, spec);
     let of_photo = |o: &Organ| traced.filter(|t| t.has(o.source));
@@ -122,7 +123,8 @@ pub(crate) fn organs(
                 wind.organ(&mut mesh, first, organ, &flutters[organ.shape.index()][layer as usize]);
             }
         }
-        Ok((members[0].0, mesh))
+        let pieces = members.iter().map(|c| Piece::organ(c.1, mesh_of(c).triangles.len()));
+        Ok((members[0].0, mesh, pieces.collect()))
     });
     Ok(meshes.into_iter().collect::<Result<_, Cancelled>>()?)
 }

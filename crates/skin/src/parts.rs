@@ -7,6 +7,7 @@ use base::Executor;
 use mesh::{AlphaMode, Material, MaterialId, MaterialKind, Model, Part, Texture, TriMesh};
 use plant::{Paint, Plant, PlantPaint, Shape};
 
+use crate::layout::{Layout, Piece};
 use crate::pictures::Pictures;
 use crate::texture::{Motif, paint_material, painted_material};
 use crate::{Cloth, PetalColor, SkinSpec, Wearer, Worn};
@@ -267,21 +268,23 @@ fn mean(texture: &Texture) -> [f32; 3] {
     [0, 1, 2].map(|k| (seen().map(|p| light[usize::from(p[k])]).sum::<f64>() / count) as f32)
 }
 
-/// Gathers meshes by slot, in slot order; empty ones leave no part. Textures are painted on `executor`, if wanted.
+/// Gathers meshes by slot, in slot order; empty ones leave no part. Textures are painted on `executor`, if wanted. Also
+/// what lies where in the parts.
 pub(crate) fn model(
     plant: &Plant,
-    mut meshes: Vec<(Slot, TriMesh)>,
+    mut meshes: Vec<(Slot, TriMesh, Vec<Piece>)>,
     spec: &SkinSpec,
     pictures: Pictures<'_>,
     executor: &dyn Executor,
-) -> Model {
+) -> (Model, Layout) {
     let mut model = Model { name: plant.name.clone(), ..Model::default() };
-    meshes.retain(|(_, m)| !m.triangles.is_empty());
+    let mut layout = Layout::default();
+    meshes.retain(|(_, m, _)| !m.triangles.is_empty());
     // Stable: meshes of one slot keep their order.
-    base::sort_by_key(&mut meshes, |(slot, _)| *slot);
+    base::sort_by_key(&mut meshes, |(slot, ..)| *slot);
     let mut rest = meshes.as_slice();
-    while let Some(&(slot, ref first)) = rest.first() {
-        let n = rest.iter().take_while(|(s, _)| *s == slot).count();
+    while let Some(&(slot, ref first, _)) = rest.first() {
+        let n = rest.iter().take_while(|(s, ..)| *s == slot).count();
         let (these, after) = rest.split_at(n);
         rest = after;
         let mesh = match these {
@@ -290,26 +293,27 @@ pub(crate) fn model(
         };
         let material = MaterialId::new(model.materials.len());
         model.materials.push(slot.material(spec, pictures, &plant.paint, executor));
+        layout.push(these.iter().flat_map(|(_, _, pieces)| pieces));
         model.parts.push(Part { name: slot.names(&spec.worn).0.into_owned(), material, mesh });
     }
-    model
+    (model, layout)
 }
 
-fn joined(meshes: &[(Slot, TriMesh)]) -> TriMesh {
+fn joined(meshes: &[(Slot, TriMesh, Vec<Piece>)]) -> TriMesh {
     let mut all = TriMesh::default();
     let (vertices, triangles) =
-        meshes.iter().fold((0, 0), |(v, t), (_, m)| (v + m.positions.len(), t + m.triangles.len()));
+        meshes.iter().fold((0, 0), |(v, t), (_, m, _)| (v + m.positions.len(), t + m.triangles.len()));
     all.positions.reserve_exact(vertices);
     all.normals.reserve_exact(vertices);
     all.uvs.reserve_exact(vertices);
     // A body may be tube or organ: tubes have no tint, so beside tinted meshes they are white.
-    let tinted = meshes.iter().any(|(_, m)| !m.colors.is_empty());
+    let tinted = meshes.iter().any(|(_, m, _)| !m.colors.is_empty());
     all.colors.reserve_exact(if tinted { vertices } else { 0 });
     all.triangles.reserve_exact(triangles);
-    let blown = meshes.iter().any(|(_, m)| !m.wind.is_empty());
+    let blown = meshes.iter().any(|(_, m, _)| !m.wind.is_empty());
     all.wind.reserve_exact(if blown { vertices } else { 0 });
     all.pivots.reserve_exact(if blown { vertices } else { 0 });
-    for (_, m) in meshes {
+    for (_, m, _) in meshes {
         all.append(m);
         if tinted {
             all.colors.resize(all.positions.len(), [1.0; 3]);

@@ -13,7 +13,7 @@ use mesh::{Model, Texture};
 use plant::Plant;
 use reading::{Kind, Reading};
 use sketch::{Built, KeptBodies, SketchSpec};
-use skin::{KeptShapes, Pictures, SkinSpec, Traced};
+use skin::{KeptShapes, Layout, Pictures, SkinSpec, Traced};
 
 use crate::made::Made;
 use crate::make::{ClassOverrides, MakeError, SketchOptions};
@@ -61,6 +61,8 @@ pub struct Evaluator {
     /// The plant with its edits by hand; none where there are none.
     shaped: Option<Shaped>,
     model: Option<Kept<ModelFrom, Model>>,
+    /// What lies where in the model.
+    layout: Layout,
     /// Leaves and petals of the last model.
     shapes: KeptShapes,
     /// The photograph that was decoded last.
@@ -320,13 +322,14 @@ impl Evaluator {
         let meshed = self.plant().map(|plant| {
             let pictures = Pictures { traced: traced.as_ref(), ..Pictures::default() };
             let model = report.stage("mesh", run.clock, |_| {
-                skin::skin_again(plant, skin, pictures, Some(&mut shapes), run)
+                skin::skin_laid_out(plant, skin, pictures, Some(&mut shapes), run)
             });
-            model.map(|model| Model { name: plant.name.clone(), ..model })
+            model.map(|(model, layout)| (Model { name: plant.name.clone(), ..model }, layout))
         });
         self.shapes = shapes;
         let (Some(model), Some(made)) = (meshed, &self.plant) else { return Ok(()) };
-        let mut model = model?;
+        let (mut model, layout) = model?;
+        self.layout = layout;
         if let Some(leaf) = &made.from.3 {
             leaf.dress(&mut model, &skin.worn);
         }
@@ -399,6 +402,11 @@ impl Evaluator {
     /// The model of the last update that succeeded so far.
     pub fn model(&self) -> Option<&Model> {
         Some(&self.model.as_ref()?.value)
+    }
+
+    /// What lies where in the model of the last update; none before one.
+    pub(crate) fn layout(&self) -> Option<&Layout> {
+        self.model.as_ref().map(|_| &self.layout)
     }
 
     /// The plant of the last update that succeeded so far, with its edits by hand.

@@ -18,7 +18,7 @@ use ink::{Stroke, StrokeClass};
 use leaf::{FullMarks, LeafSpec, ThicknessRule};
 use mesh::{MaterialId, Model, Standing};
 use plant::Plant;
-use skin::{OrganMaterial, SkinSpec, Worn};
+use skin::{Layout, OrganMaterial, SkinSpec, Worn};
 use spec::Spec;
 
 use crate::evaluate::{Evaluator, FrontView};
@@ -137,6 +137,8 @@ pub struct ScenePlant<'a> {
     pub model: &'a Model,
     /// The plant; none after an update that was stopped on the way.
     pub plant: Option<&'a Plant>,
+    /// What of the plant lies where in the model, for plants of which a branch can be moved alone.
+    pub layout: Option<&'a Layout>,
     /// How a drawing lies in the front view.
     pub front: Option<FrontView>,
     /// The name of the model within the evaluator: copies that share one have the same number, others never.
@@ -412,6 +414,11 @@ impl SceneEvaluator {
             item: &made.item,
             model: made.model.as_ref().or_else(|| made.sketch.model()).or_else(|| made.tree.model())?,
             plant: made.plant.as_ref().or_else(|| made.sketch.plant()).or_else(|| made.tree.plant()),
+            layout: if made.model.is_some() {
+                None
+            } else {
+                made.sketch.layout().or_else(|| made.tree.layout())
+            },
             front: made.sketch.front(),
             revision: made.revision,
             stages: done,

@@ -10,7 +10,7 @@ use glam::DVec3;
 use plant::{AxisId, Plant};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use shape::{AxisKey, Changed, Context, HandEdit, Outcome, Shaping};
+use shape::{AxisKey, Changed, Context, HandEdit, KeptGrowth, Outcome, Shaping};
 
 /// What became of one edit.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -51,6 +51,8 @@ impl EditReport {
 pub(crate) struct Shaper {
     /// All edits but the last of the list that was done last, and the plant after them.
     before: Option<Begun>,
+    /// What the last edit let grow: a hand may still hold on to it.
+    growing: KeptGrowth,
 }
 
 #[derive(Clone, Debug)]
@@ -62,7 +64,17 @@ struct Begun {
 
 impl Begun {
     fn push(&mut self, edit: &Arc<HandEdit>, context: &Context, run: &Run<'_>) -> Result<(), Cancelled> {
-        self.outcomes.push(self.shaping.push(edit, context, run)?);
+        self.push_again(edit, context, &mut KeptGrowth::default(), run)
+    }
+
+    fn push_again(
+        &mut self,
+        edit: &Arc<HandEdit>,
+        context: &Context,
+        growing: &mut KeptGrowth,
+        run: &Run<'_>,
+    ) -> Result<(), Cancelled> {
+        self.outcomes.push(self.shaping.push_again(edit, context, growing, run)?);
         self.edits.push(Arc::clone(edit));
         Ok(())
     }
@@ -71,7 +83,7 @@ impl Begun {
 impl Shaper {
     /// Another plant is to be edited.
     pub(crate) fn forget(&mut self) {
-        self.before = None;
+        *self = Self::default();
     }
 
     /// The plant with those edits that are not left out. `plant`: the same as at the last call, unless it was forgotten.
@@ -94,7 +106,7 @@ impl Shaper {
         }
         let mut whole = self.before.insert(begun).clone();
         for edit in &on[upto..] {
-            whole.push(edit, context, run)?;
+            whole.push_again(edit, context, &mut self.growing, run)?;
         }
         let reports = rows.iter().zip(&whole.outcomes).map(|(&row, o)| EditReport::of(row, o)).collect();
         Ok((whole.shaping.into_plant(), reports))

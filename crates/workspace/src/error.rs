@@ -79,6 +79,18 @@ pub enum WorkspaceError {
     /// The growth law cannot be read.
     #[error("the growth law: {0}")]
     Law(#[source] serde_json::Error),
+    /// The record of gestures cannot be read.
+    #[error("the record of gestures: {0}")]
+    Record(#[source] serde_json::Error),
+    /// The record of gestures is of another form.
+    #[error("the record of gestures is of another form: {0:?}")]
+    RecordForm(String),
+    /// The record of gestures is too long.
+    #[error("the record of gestures is too long: at most {most} steps")]
+    RecordLong {
+        /// Most steps.
+        most: usize,
+    },
     /// The plant cannot be made.
     #[error(transparent)]
     Scene(#[from] SceneError),
@@ -134,6 +146,9 @@ burgeon::coded!(WorkspaceError {
     Self::NothingToShape => "nothing-to-shape" {},
     Self::NowhereToStand => "nowhere-to-stand" {},
     Self::Law(why) => "law" { why = &Slip::of(&why.to_string()) => Slip },
+    Self::Record(why) => "record" { why = &Slip::of(&why.to_string()) => Slip },
+    Self::RecordForm(form) => "record-form" { form },
+    Self::RecordLong { most } => "record-long" { most },
     Self::Cancelled => "cancelled" {},
     Self::Message(why) => "message" { why = &Slip::of(why) => Slip },
     Self::Internal(why) => "internal" { why },

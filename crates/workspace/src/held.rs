@@ -21,4 +21,15 @@ pub(crate) struct Held {
     pub(crate) thumb: Thumb,
     /// How far the drawing plane leans by it, radians.
     pub(crate) lean: f64,
+    /// What of the meshes it carries, where it moves them and makes none.
+    pub(crate) rows: Option<Rows>,
+}
+
+/// Triangles that a hand carries.
+#[derive(Clone, Debug)]
+pub(crate) struct Rows {
+    /// The name of the meshes.
+    pub(crate) mesh: u64,
+    /// Part, first triangle, and the one after the last, of each range.
+    pub(crate) ranges: Vec<[u32; 3]>,
 }

@@ -10,6 +10,7 @@
 //! | `exported` | exports that are looked at before they are written |
 //! | `evaluate` | plants made and shown, meshes as columns |
 //! | `kept` | how long results are kept |
+//! | `record` | what hands did, as a file, and again |
 //! | `shaping` | tools that shape a plant by hand |
 //! | `state` | what a shell shows of the document |
 //! | `view` | what a shell shows of the plants |
@@ -26,6 +27,7 @@ mod files;
 mod held;
 mod kept;
 mod looked;
+mod record;
 mod scatter;
 mod shaping;
 mod state;
@@ -40,8 +42,9 @@ pub use export::{ExportFormat, ExportRequest, LengthUnit, NamedFile, Up, packed}
 pub use exported::{ExportView, ExportedPlant, PartFigures};
 pub use files::{FileKind, Opened};
 pub use kept::{KEPT_BYTES, SHOWN_BYTES};
+pub use record::{GESTURES_SCHEMA, GestureRecord, GestureStep, MOST_STEPS};
 pub use scatter::{Ground, Scatter};
-pub use shaping::{Picked, ShapeAnswer, ShapeInput, ShapePointer, ShapeReach, ShapeStep};
+pub use shaping::{CarriedPose, Picked, ShapeAnswer, ShapeInput, ShapePointer, ShapeReach, ShapeStep};
 pub use state::{
     DocumentState, EditState, FlowerState, LeafState, MakerWord, NamedShape, ObstacleView, PenStyle,
     PhotoState, PlantState, SketchState, StrokeState, TreeState, WearState,

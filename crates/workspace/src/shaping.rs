@@ -9,12 +9,13 @@ use burgeon::geom;
 use burgeon::glam::{DVec2, DVec3};
 use burgeon::plant::{Axis, AxisId, AxisKind, Plant};
 use burgeon::shape::{
-    self, AxisKey, Growth, HandEdit, Input, Pick, Pointer, Ray, Reach, Thumb, Tool, ToolKind, lean_of_thumb,
+    self, AxisKey, Growth, HandEdit, Input, Pick, Pointer, Ray, Reach, Thumb, Tool, ToolKind, ViewPlane,
+    lean_of_thumb,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::held::Held;
+use crate::held::{Held, Rows};
 use crate::view::{PREVIEW_DETAIL, coarser};
 use crate::{Workspace, WorkspaceError};
 
@@ -74,6 +75,8 @@ pub enum ShapeInput {
         /// Where to.
         to: ShapeStep,
     },
+    /// A plane is placed: through its tip (without one, its origin), facing it.
+    Plane(ShapePointer),
     /// It holds on: what grows is a round older.
     Round,
     /// What grows has other numbers from now on.
@@ -147,6 +150,23 @@ pub struct ShapeAnswer {
     pub again: bool,
     /// How far the branch that is held was turned, degrees.
     pub turned_deg: Option<f64>,
+    /// The plane that was placed.
+    pub plane: Option<ViewPlane>,
+    /// How what is held is moved: what is shown of it is to be moved, and is not made again before the hand lets go.
+    pub carried: Option<CarriedPose>,
+}
+
+/// How a branch and what it bears is moved: `p -> to + turn (p - from)`, metres of the plant.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct CarriedPose {
+    /// The name of the meshes of which [`Workspace::held_rows`] are.
+    pub mesh: u64,
+    /// Where it began.
+    pub from: [f64; 3],
+    /// Where it begins now.
+    pub to: [f64; 3],
+    /// A unit quaternion: x, y, z, w.
+    pub turn: [f64; 4],
 }
 
 impl Workspace {
@@ -168,6 +188,11 @@ impl Workspace {
             let plant = self.shown_plant(id).ok_or(WorkspaceError::NothingToShape)?;
             return Ok(ShapeAnswer { picked: walked(plant, from, to), ..ShapeAnswer::default() });
         }
+        if let ShapeInput::Plane(at) = input {
+            let p = Pointer::from(at);
+            let plane = ViewPlane::facing(p.tip.unwrap_or(p.ray.origin), -p.ray.direction, p.up);
+            return Ok(ShapeAnswer { plane, ..ShapeAnswer::default() });
+        }
         if tool == ToolKind::Pick {
             return Ok(self.point(id, reach, &input));
         }
@@ -183,14 +208,18 @@ impl Workspace {
             let tool = Tool::new(tool).with(reach, edits as u64 + 1);
             let large = self.scene.get(id).is_some_and(|p| p.model.triangle_count() as u64 > COARSE_ABOVE);
             let (thumb, lean) = (Thumb::default(), 0.0);
-            self.held = Some(Held { tool, plant: id, before: plant, large, preview: None, thumb, lean });
+            let rows = None;
+            self.held =
+                Some(Held { tool, plant: id, before: plant, large, preview: None, thumb, lean, rows });
         }
         let Some(held) = &mut self.held else { return Err(WorkspaceError::Internal("no tool")) };
         let (tool, plant) = (&mut held.tool, &held.before);
         let said = match input {
             ShapeInput::Down(at) => tool.handle(plant, &Input::Down(at.into())),
             ShapeInput::Up(at) => tool.handle(plant, &Input::Up(at.into())),
-            ShapeInput::Cancel | ShapeInput::Walk { .. } => tool.handle(plant, &Input::Cancel),
+            ShapeInput::Cancel | ShapeInput::Walk { .. } | ShapeInput::Plane(_) => {
+                tool.handle(plant, &Input::Cancel)
+            }
             ShapeInput::Twist(degrees) => tool.handle(plant, &Input::Twist(degrees * DEGREE)),
             ShapeInput::Thumb(at) => {
                 let at = at.map(DVec2::from_array);
@@ -212,9 +241,30 @@ impl Workspace {
             }
         };
         let busy = tool.is_busy();
+        if !going && let Some(pick) = said.picked.filter(|_| tool.carries()) {
+            held.rows = self.scene.get(id).and_then(|made| {
+                // Another gesture's preview may be what is shown.
+                let shown = made.layout.filter(|_| had.is_none())?.branch(plant, pick.axis)?;
+                let parts = (0_u32..).zip(shown);
+                let ranges =
+                    parts.flat_map(|(part, rows)| rows.into_iter().map(move |r| [part, r.start, r.end]));
+                Some(Rows { mesh: made.revision, ranges: ranges.collect() })
+            });
+        }
         let picked = said.picked.and_then(|k| picked(plant, k, false));
         held.preview = said.preview.or_else(|| said.commit.clone()).map(Arc::new);
         let now = held.preview.clone();
+        // Meshes that were made meanwhile are not moved: what is held is made again then.
+        let shown = self.scene.get(id).map(|made| made.revision);
+        held.rows = held.rows.take().filter(|rows| shown == Some(rows.mesh));
+        let carried =
+            held.rows.as_ref().filter(|_| busy).zip(tool.carried(plant)).map(|(rows, c)| CarriedPose {
+                mesh: rows.mesh,
+                from: c.from.to_array(),
+                to: c.to.to_array(),
+                turn: c.turn.to_array(),
+            });
+        let again = now != had && held.rows.is_none();
         if !busy && now.is_none() {
             self.held = None;
         }
@@ -222,7 +272,7 @@ impl Workspace {
             Some(HandEdit::Rotate { turn, .. }) => Some(turn.degrees),
             _ => None,
         };
-        Ok(ShapeAnswer { picked, commit: said.commit, busy, again: now != had, turned_deg })
+        Ok(ShapeAnswer { picked, commit: said.commit, busy, again, turned_deg, carried, plane: None })
     }
 
     /// Only looks what is under the pointer.
@@ -270,6 +320,12 @@ impl Workspace {
         out
     }
 
+    /// What of the current plant's meshes a hand carries: part, first triangle, and the one after the last, of each range;
+    /// ranges of a part ascend and lie apart. Empty where nothing is carried.
+    pub fn held_rows(&self) -> &[u32] {
+        self.held.as_ref().and_then(|h| h.rows.as_ref()).map_or(&[], |rows| rows.ranges.as_flattened())
+    }
+
     /// The edit of the gesture that is shown of a plant.
     fn preview_edit(&self, id: PlantId) -> Option<&Arc<HandEdit>> {
         self.held.as_ref().filter(|h| h.plant == id)?.preview.as_ref()
@@ -278,6 +334,10 @@ impl Workspace {
     /// The document with the edit of the gesture in it, coarser where that is faster; none where nothing is held.
     pub(crate) fn with_gesture(&self) -> Option<(PlantId, Document)> {
         let id = self.current()?;
+        // What is carried is moved by the shell.
+        if self.held.as_ref().is_some_and(|h| h.rows.is_some()) {
+            return None;
+        }
         let edit = self.preview_edit(id)?;
         let mut aside = Editor::new(self.editor.document().clone());
         aside.run(ShapeCommand::Add(Arc::clone(edit)).of(id)).ok()?;

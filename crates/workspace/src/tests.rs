@@ -16,6 +16,8 @@ use crate::{
     ShapeReach, ShapeStep, Workspace, WorkspaceError, packed,
 };
 
+mod hands;
+
 fn line(points: &[(f64, f64)]) -> Stroke {
     let samples =
         points.iter().map(|&(x, y)| InkSample { at: DVec2::new(x, y), time_ms: None, pressure: Some(0.5) });
@@ -313,10 +315,10 @@ fn layers_hide_lock_and_travel() {
     assert_eq!(plant.strokes()[strokes - 1].stroke.layer.as_deref(), Some("aside"));
     // A new stroke on it is refused, one on the sheet is not; without the layer its strokes are back.
     let on = Stroke { layer: Some("aside".into()), width: Some(3.0), ..stem() };
-    assert!(s.add_stroke(on.clone()).is_err());
+    assert!(s.add_stroke(on.clone(), Vec::new()).is_err());
     s.ask(r#"{"sketch":[0,{"remove-layer":0}]}"#).unwrap();
     assert_eq!(look(&mut s)["item"]["digest"], plain["item"]["digest"]);
-    let id = s.add_stroke(on).unwrap();
+    let id = s.add_stroke(on, Vec::new()).unwrap();
     assert_eq!((s.stroke(id).unwrap().layer.as_ref(), s.stroke(id).unwrap().width), (None, Some(3.0)));
 }
 
@@ -600,47 +602,6 @@ fn an_impossible_tree_is_an_error_on_the_page_and_the_last_one_stays() {
     assert!(!s.scene.get(PlantId(1)).unwrap().model.parts.is_empty());
     s.undo();
     assert_eq!(scene(&mut s), before);
-}
-
-#[test]
-fn a_gesture_is_shown_and_is_one_step_when_it_is_asked_for() {
-    let (mut s, (x, y)) = bush();
-    let before = look(&mut s);
-    let still = s.skeleton();
-    let looked = hand(&mut s, r#""pick""#, &format!(r#"{{"down":{}}}"#, at(x, y)));
-    assert!(looked["picked"]["key"]["mark"].is_object(), "{looked}");
-    let axis = u32::try_from(looked["picked"]["axis"].as_u64().unwrap()).unwrap();
-    let lines = s.branch(axis);
-    assert!(!lines.is_empty() && lines.len() % 8 == 0 && s.branch(u32::MAX).is_empty());
-    // The trunk bears everything.
-    assert!(s.branch(0).len() >= lines.len());
-
-    let rotate = r#""rotate""#;
-    let down = hand(&mut s, rotate, &format!(r#"{{"down":{}}}"#, at(x, y)));
-    assert_eq!((&down["busy"], &down["again"]), (&Value::Bool(true), &Value::Bool(false)));
-    let held = hand(&mut s, rotate, &format!(r#"{{"move":[{}]}}"#, at(x, y + 0.4)));
-    assert_eq!((&held["busy"], &held["again"]), (&Value::Bool(true), &Value::Bool(true)), "{held}");
-    // A large plant has no digest while it is in the hand.
-    assert_eq!(look(&mut s)["item"]["digest"], "");
-    let shown = s.skeleton();
-    assert_ne!(shown, still, "a look at what would be");
-    assert_eq!(json(&s.state())["plants"][0]["edits"], Value::Array(vec![]));
-    let up = hand(&mut s, rotate, &format!(r#"{{"up":{}}}"#, at(x, y + 0.4)));
-    look(&mut s);
-    assert_eq!(s.skeleton(), shown, "shown until it is asked for");
-    s.ask(&format!(r#"{{"shape":[1,{{"add":{}}}]}}"#, up["commit"])).unwrap();
-    let after = look(&mut s);
-    assert_eq!(s.skeleton(), shown, "and the same then");
-    assert!(after["item"]["digest"].as_str().is_some_and(|d| d.len() == 32));
-    assert_eq!(after["item"]["edits"][0]["done"], true);
-    assert_eq!(s.undo(), Some("shape-rotate"));
-    assert_eq!(look(&mut s)["item"]["digest"], before["item"]["digest"]);
-    // Escape leaves nothing behind.
-    gesture(&mut s, rotate, (50.0, 50.0), (51.0, 50.0));
-    hand(&mut s, rotate, &format!(r#"{{"down":{}}}"#, at(x, y)));
-    hand(&mut s, rotate, &format!(r#"{{"move":[{}]}}"#, at(x, y + 0.5)));
-    assert_eq!(hand(&mut s, rotate, r#""cancel""#)["again"], true);
-    assert_eq!(look(&mut s)["item"]["digest"], before["item"]["digest"]);
 }
 
 #[test]

@@ -1,7 +1,8 @@
 /** The plant as three.js meshes, updated in place where only numbers changed. */
 import * as THREE from 'three';
 import type { PartArrays, Sent, TexturePixels } from '../protocol';
-import type { MaterialView, ObstacleView, PlantView } from '../wire';
+import type { CarriedPose, MaterialView, ObstacleView, PlantView } from '../wire';
+import { Carrying, type HeldRows } from './carry';
 
 /** Textures and materials of all plants. */
 export class Looks {
@@ -133,12 +134,40 @@ export class PlantMeshes {
   view: PlantView | undefined;
   shapes: Shapes = new Map();
 
+  private carrying: Carrying | undefined;
+
   constructor(private readonly looks: Looks) {
     this.place.add(this.group, this.obstacles);
   }
 
+  /** The name of the meshes of which a hand carries something. */
+  get carried(): number | undefined {
+    return this.carrying?.number;
+  }
+
+  /** A hand carries some of its triangles from now on, if it still has the meshes that are meant. */
+  carry(mesh: number, rows: HeldRows): void {
+    this.putBack();
+    if (this.view?.mesh !== mesh || rows.length === 0) return;
+    const meshes = this.view.parts.map(
+      ({ name }) => this.group.children.find((m) => m.name === name) as THREE.Mesh | undefined,
+    );
+    this.carrying = new Carrying(mesh, this.group, meshes, rows);
+  }
+
+  pose(pose: CarriedPose): void {
+    this.carrying?.pose(pose);
+  }
+
+  /** What was carried is where it was. */
+  putBack(): void {
+    this.carrying?.end();
+    this.carrying = undefined;
+  }
+
   /** Shows these shapes with the materials of the view. */
   update(view: PlantView, shapes: Shapes): void {
+    this.putBack();
     this.shapes = shapes;
     const old = new Map(this.group.children.map((m) => [m.name, m as THREE.Mesh]));
     for (const { name, material } of view.parts) {

@@ -1,7 +1,15 @@
 /** The right side: the plant in three dimensions, turned by hand, or from the front exactly as it was drawn. */
 import * as THREE from 'three';
 import { texturesOf, type Sent } from '../protocol';
-import type { PlantState, PlantView as Seen, SceneView, ShapePointer, ShapeReach } from '../wire';
+import type {
+  CarriedPose,
+  PlantState,
+  PlantView as Seen,
+  SceneView,
+  ShapePointer,
+  ShapeReach,
+} from '../wire';
+import type { HeldRows } from './carry';
 import type { Gizmo } from '../scene';
 import type { Box } from '../sheet/geometry';
 import { onScreen, pointerOf, reachOf } from './aim';
@@ -685,6 +693,28 @@ export class PlantView {
   /** So many pixels, in metres of the chosen plant. */
   reach(pixels: number): Omit<ShapeReach, 'bearers'> {
     return reachOf(this.camera, this.chosen?.place, pixels / Math.max(1, this.element.clientHeight));
+  }
+
+  /** The name of the meshes of which a hand carries something. */
+  get carried(): number | undefined {
+    return this.chosen?.carried;
+  }
+
+  /** A hand carries some triangles of the chosen plant: they go where `pose` says, and nothing is meshed. */
+  carry(mesh: number, rows: HeldRows): void {
+    this.chosen?.carry(mesh, rows);
+  }
+
+  pose(pose: CarriedPose): void {
+    this.chosen?.pose(pose);
+    this.stage.touch();
+    this.redraw();
+  }
+
+  /** What was carried is where it was. */
+  putBack(): void {
+    for (const plant of this.all) plant.putBack();
+    this.redraw();
   }
 
   // Headset ------------------------------------------------------------------------------------------------------

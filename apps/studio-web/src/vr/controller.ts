@@ -29,6 +29,20 @@ export function indexOf(part: Part, profiles: readonly string[]): number | undef
   return family?.[1][part];
 }
 
+/** Fingers that are nearer than this, metres, pinch; that are further apart than this do not. */
+const PINCH = [0.018, 0.032] as const;
+
+/** Tells from the gap between two fingertips whether they pinch. */
+export class Pinch {
+  closed = false;
+
+  /** `gap`: metres; undefined where it is not known: then they do what they did. */
+  read(gap: number | undefined): boolean {
+    if (gap !== undefined && Number.isFinite(gap)) this.closed = gap < PINCH[this.closed ? 1 : 0];
+    return this.closed;
+  }
+}
+
 /** Tells a hand's way from jumps of its tracker. */
 export class Track {
   private last: THREE.Vector3 | undefined;
@@ -56,6 +70,8 @@ export class Controller {
   tracked = false;
   jumped = false;
   private readonly track = new Track();
+  /** Thumb and forefinger are the trigger, thumb and middle finger the grip. */
+  private readonly pinches = { trigger: new Pinch(), grip: new Pinch() };
   private readonly was = new Map<Part, boolean>();
   private readonly now = new Map<Part, boolean>();
 
@@ -78,14 +94,35 @@ export class Controller {
       this.direction.setFromMatrixColumn(this.aim, 2).normalize().negate();
       this.tip.setFromMatrixPosition(this.aim).addScaledVector(this.direction, TIP);
     }
+    if (this.source.hand) this.readFingers(frame, space, this.source.hand);
     for (const part of PARTS) {
       this.was.set(part, this.now.get(part) ?? false);
       this.now.set(part, this.value(part) >= PRESSED);
     }
   }
 
+  /** Whether it is a hand without a controller. */
+  get isHand(): boolean {
+    return this.source.hand !== undefined && this.source.hand !== null;
+  }
+
+  private readFingers(frame: XRFrame, space: XRReferenceSpace, hand: XRHand): void {
+    // What is not seen does not let go.
+    if (!this.tracked) return;
+    const thumb = tipOf(frame, space, hand, 'thumb-tip', THUMB);
+    const fore = tipOf(frame, space, hand, 'index-finger-tip', FORE);
+    const middle = tipOf(frame, space, hand, 'middle-finger-tip', MIDDLE);
+    this.pinches.trigger.read(thumb && fore ? thumb.distanceTo(fore) : undefined);
+    // The middle finger comes along when the forefinger pinches.
+    const other = thumb && middle ? thumb.distanceTo(middle) : undefined;
+    if (this.pinches.trigger.closed) this.pinches.grip.closed = false;
+    else this.pinches.grip.read(other);
+    if (thumb && fore) this.tip.addVectors(thumb, fore).multiplyScalar(0.5);
+  }
+
   /** How far it is pressed, 0 to 1. */
   value(part: Part): number {
+    if (this.isHand) return (part === 'trigger' || part === 'grip') && this.pinches[part].closed ? 1 : 0;
     const index = indexOf(part, this.source.profiles);
     const button = index === undefined ? undefined : this.source.gamepad?.buttons[index];
     return button ? Math.max(button.value, button.pressed ? PRESSED : 0) : 0;
@@ -120,6 +157,20 @@ export class Controller {
   }
 }
 
+/** Where a fingertip is, if that is seen. */
+function tipOf(
+  frame: XRFrame,
+  space: XRReferenceSpace,
+  hand: XRHand,
+  name: XRHandJoint,
+  out: THREE.Vector3,
+): THREE.Vector3 | undefined {
+  const joint = hand.get(name);
+  const at = joint && frame.getJointPose?.(joint, space)?.transform.position;
+  return at ? out.set(at.x, at.y, at.z) : undefined;
+}
+
+const [THUMB, FORE, MIDDLE] = [new THREE.Vector3(), new THREE.Vector3(), new THREE.Vector3()] as const;
 const PARTS: readonly Part[] = ['trigger', 'grip', 'lower', 'upper', 'stick'];
 const scratch = new THREE.Matrix4();
 const place = new THREE.Vector3();

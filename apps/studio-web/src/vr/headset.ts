@@ -8,8 +8,10 @@ import { setSetting, setting } from '../store';
 import { t, type TextKey } from '../text';
 import { SHAPE_TOOLS, type ShapeTool } from '../tools';
 import type { PlantView } from '../view/view';
-import type { ShapePointer } from '../wire';
-import { Controller } from './controller';
+import type { Growth, ShapePointer, ViewPlane } from '../wire';
+import { Controller, type Part } from './controller';
+import { Labels } from './labels';
+import { Lesson } from './lesson';
 import { SNAP, World } from './world';
 import { type Key, Wrist } from './wrist';
 
@@ -18,6 +20,11 @@ export type Mode = 'immersive-vr' | 'immersive-ar';
 export interface HeadsetEvents {
   undo(): void;
   redo(): void;
+  /** Makes the plant another species, the next or the one before; what it is now, if it has any. */
+  species(by: 1 | -1): Promise<string | undefined>;
+  /** Another plant like the chosen one, beside it. */
+  copy(): void;
+  run(command: 'dice' | 'guide-grid' | 'guide-staff' | 'save'): void;
   /** It was entered, or left. */
   changed(on: boolean): void;
 }
@@ -40,6 +47,15 @@ const SEAT_M = 0.1;
 const REPORT_MS = 100;
 /** Eyes above the floor where the device does not know the floor. */
 const EYES_M = 1.5;
+/** A hand that is not seen for so long, ms, has let go. */
+const LOST_MS = 1000;
+/** What the stick turns while something grows: upwards, sideways. A click on it takes the next pair. */
+const TURNS = [
+  ['vigour', 'angle_deg'],
+  ['apical', 'lift'],
+  ['apart', 'angle_deg'],
+] as const satisfies readonly (readonly [keyof Growth, keyof Growth])[];
+const GROWTH_KEYS = ['vigour', 'apical', 'angle_deg', 'lift', 'apart'] as const;
 const DRAWS: ReadonlySet<ShapeTool> = new Set<ShapeTool>(['sketch', 'brush', 'silhouette', 'leaves']);
 
 export class Headset {
@@ -74,6 +90,17 @@ export class Headset {
   private drawn = 0;
   private frames = 0;
   private reportAt = 0;
+  /** The pair of numbers that the stick turns. */
+  private pair = 0;
+  /** Which keys the wrist has. */
+  private page: 'tools' | 'more' = 'tools';
+  private lostAt = 0;
+  private readonly lesson = new Lesson(Number(setting('vr.lesson')) || 0, (done) =>
+    setSetting('vr.lesson', String(done)),
+  );
+  private labels: Labels[] = [];
+  /** The plane on which outlines are drawn. */
+  private readonly sheet = new THREE.GridHelper(1, 12, 0x9be07a, 0x9be07a);
 
   constructor(
     private readonly view: PlantView,
@@ -86,6 +113,9 @@ export class Headset {
     this.lit.renderOrder = this.trace.renderOrder = 9;
     this.dark.renderOrder = 20;
     this.dark.visible = this.ring.visible = false;
+    this.sheet.matrixAutoUpdate = false;
+    (this.sheet.material as THREE.Material).transparent = true;
+    (this.sheet.material as THREE.Material).opacity = 0.45;
   }
 
   get isOn(): boolean {
@@ -112,6 +142,8 @@ export class Headset {
     for (const source of session.inputSources) this.come(source);
     this.shaping.onLight = (points) => this.light(points);
     this.shaping.onHeard = (answer) => this.heard(answer.turned_deg);
+    this.shaping.onPlane = (plane, size) => this.showPlane(plane, size);
+    this.label();
     const floor = await session.requestReferenceSpace('local-floor').then(
       () => true,
       () => false,
@@ -119,7 +151,7 @@ export class Headset {
     this.raised = floor ? 0 : EYES_M;
     if (!this.shaping.isOn) this.shaping.toggle();
     this.stand();
-    this.wrist.say(t('vr.hello'));
+    this.tellStep();
     this.showKeys();
     await this.view.immerse(
       session,
@@ -149,7 +181,10 @@ export class Headset {
     this.session = undefined;
     this.controllers.clear();
     this.light(undefined);
-    this.shaping.onLight = this.shaping.onHeard = () => {};
+    this.shaping.onLight = this.shaping.onHeard = this.shaping.onPlane = () => {};
+    this.sheet.removeFromParent();
+    for (const labels of this.labels) labels.dispose();
+    this.labels = [];
     this.events.changed(false);
   }
 
@@ -198,6 +233,7 @@ export class Headset {
       const tip = this.tips[i]!;
       tip.visible = hand?.tracked ?? false;
       if (hand) tip.position.copy(hand.tip);
+      this.labels[i]?.follow(hand);
     });
   }
 
@@ -241,8 +277,13 @@ export class Headset {
     const board = this.working ? undefined : this.wrist.meet(hand.tip, hand.direction);
     this.wrist.point(board?.key);
     this.pointTo(hand, board?.distance);
-    if (hand.pressed('upper')) this.events.undo();
-    if (hand.pressed('lower')) this.events.redo();
+    if (!this.shaping.isGrowing) {
+      if (hand.pressed('upper')) {
+        this.events.undo();
+        this.did('undo');
+      }
+      if (hand.pressed('lower')) this.events.redo();
+    }
     if (board) {
       if (hand.pressed('trigger') && board.key) {
         hand.pulse(0.5, 20);
@@ -257,6 +298,12 @@ export class Headset {
       return;
     }
     const at = hand.tracked ? this.pointer(hand) : undefined;
+    if (!working && shaping.word === 'silhouette' && hand.holds('grip')) {
+      // The plane goes with the hand until the grip is let go.
+      if (at && this.frames % 3 === 0) void shaping.placePlane(at);
+      if (hand.pressed('grip')) this.wrist.say(t('vr.plane.hint'));
+      return;
+    }
     if (!working) {
       const by = hand.pressed('trigger') ? 'trigger' : hand.pressed('grip') ? 'grip' : undefined;
       if (at && by) this.begin(hand, by, at);
@@ -268,16 +315,40 @@ export class Headset {
       this.finish(hand.jumped ? undefined : at);
       return;
     }
-    if (!at) return;
+    if (!at) {
+      // A controller says itself when its trigger is let go; fingers that are not seen never do.
+      if (this.lostAt === 0) this.lostAt = performance.now();
+      if (hand.isHand && performance.now() - this.lostAt > LOST_MS) this.finish();
+      return;
+    }
+    this.lostAt = 0;
     working.last = at;
     shaping.follow(at);
     this.draw(hand.tip);
     const [x, y] = hand.thumb;
     if (shaping.word !== 'grow' || working.by === 'grip')
       shaping.thumb(x === 0 && y === 0 ? undefined : [x, y]);
-    // Up for more vigour, to the side for wider angles, while it grows.
-    else if (Math.hypot(x, y) > OUT && this.frames % 6 === 0 && shaping.turnGrowth(1.06 ** y, 3 * x))
-      this.wrist.say(shaping.growthText);
+    else this.turnNumbers(hand, x, y);
+  }
+
+  /** While it grows: the stick turns two numbers, a click on it takes the next two, and the wrist has all. */
+  private turnNumbers(hand: Controller, x: number, y: number): void {
+    const { shaping } = this;
+    if (hand.pressed('stick')) this.pair = (this.pair + 1) % TURNS.length;
+    const [up, aside] = TURNS[this.pair]!;
+    if (Math.hypot(x, y) > OUT && this.frames % 6 === 0) {
+      if (Math.abs(y) > OUT / 2) shaping.turnGrowth(up, y / 2);
+      if (Math.abs(x) > OUT / 2) shaping.turnGrowth(aside, x / 2);
+    } else if (!hand.pressed('stick')) {
+      const meant = this.wrist.meet(hand.tip, hand.direction)?.key;
+      this.wrist.point(meant);
+      // The trigger is taken: the lower button presses keys.
+      if (!meant || !hand.pressed('lower')) return;
+      hand.pulse(0.5, 20);
+      meant.act();
+      return;
+    }
+    this.wrist.say(shaping.growthText(up, aside));
   }
 
   private begin(hand: Controller, by: 'trigger' | 'grip', at: ShapePointer): void {
@@ -291,6 +362,9 @@ export class Headset {
     this.working = { hand, by, last: at };
     this.drawn = 0;
     const word = tool ?? this.shaping.word;
+    if (word === 'grow') this.showKeys();
+    if (word === 'rotate') this.did('turn');
+    else if (word !== 'pick') this.did('draw');
     this.trace.visible = word !== undefined && DRAWS.has(word);
     this.draw(hand.tip);
   }
@@ -301,8 +375,10 @@ export class Headset {
     if (!working) return;
     this.working = undefined;
     this.trace.visible = false;
+    this.lostAt = 0;
     working.hand.pulse(0.9, 40);
     void this.shaping.end(at ?? working.last);
+    this.showKeys();
   }
 
   /** Both grips mean the scene. */
@@ -365,6 +441,10 @@ export class Headset {
       turn: THREE.MathUtils.radToDeg(2 * Math.atan2(quaternion.y, quaternion.w)),
       tracked: tool?.tracked ?? false,
       said: this.wrist.text,
+      labels: this.labels.reduce((sum, l) => sum + l.shown, 0),
+      step: this.lesson.step ?? '',
+      plane: this.shaping.plane !== undefined,
+      hand: tool?.isHand ?? false,
     };
     document.body.dataset['vr'] = JSON.stringify(state);
     document.body.dataset['wrist'] = JSON.stringify(this.wrist.places());
@@ -407,14 +487,67 @@ export class Headset {
       on,
       act,
     });
+    const growth = GROWTH_KEYS.map((of) =>
+      ([-1, 1] as const).map(
+        (by): Key => ({
+          id: `${of}${by < 0 ? '-' : '+'}`,
+          label: `${t(`shape.grow.${of}`)} ${by < 0 ? '−' : '+'}`,
+          wide: 3,
+          act: () => {
+            shaping.turnGrowth(of, by);
+            this.wrist.say(shaping.growthText(of));
+          },
+        }),
+      ),
+    );
+    if (shaping.isGrowing) {
+      this.wrist.set(growth);
+      return;
+    }
+    const turn = key(
+      'more',
+      6,
+      () => {
+        this.page = this.page === 'more' ? 'tools' : 'more';
+      },
+      this.page === 'more',
+    );
+    if (this.page === 'more') {
+      const species = (by: 1 | -1) => () => {
+        void this.events.species(by).then((name) => this.wrist.say(name ?? t('vr.species.none')));
+      };
+      this.wrist.set([
+        [key('before', 3, species(-1)), key('next', 3, species(1))],
+        [key('dice', 3, () => this.events.run('dice')), key('copy', 3, this.events.copy)],
+        [
+          key('grid', 3, () => this.events.run('guide-grid')),
+          key('staff', 3, () => this.events.run('guide-staff')),
+        ],
+        [
+          key('plane', 3, () => void shaping.placePlane(undefined), shaping.plane !== undefined),
+          key('save', 3, () => this.events.run('save')),
+        ],
+        [key('lesson', 6, () => this.startLesson())],
+        [turn],
+      ]);
+      return;
+    }
     const tools = SHAPE_TOOLS.map(tool);
     this.wrist.set([
       tools.slice(0, 3),
       tools.slice(3, 6),
       tools.slice(6, 9),
       tools.slice(9).map((one) => ({ ...one, wide: 6 })),
-      [key('undo', 3, this.events.undo), key('redo', 3, this.events.redo)],
-      [key('smaller', 3, () => this.brush(1 / 1.25)), key('larger', 3, () => this.brush(1.25))],
+      [
+        key('undo', 3, () => {
+          this.events.undo();
+          this.did('undo');
+        }),
+        key('redo', 3, this.events.redo),
+      ],
+      ...(shaping.word === 'grow'
+        ? growth
+        : [[key('smaller', 3, () => this.brush(1 / 1.25)), key('larger', 3, () => this.brush(1.25))]]),
       [
         key(
           'scale',
@@ -431,6 +564,7 @@ export class Headset {
           () => {
             this.leftHanded = !this.leftHanded;
             setSetting('vr.left', this.leftHanded ? 'yes' : 'no');
+            this.label();
           },
           this.leftHanded,
         ),
@@ -440,7 +574,60 @@ export class Headset {
         key('higher', 2, () => this.sit(SEAT_M)),
         key('leave', 2, () => void this.leave()),
       ],
+      [turn],
     ]);
+  }
+
+  // The first minute ----------------------------------------------------------------------------------------------
+
+  /** What each part does, beside it, until it was used. */
+  private label(): void {
+    const used = new Set((setting('vr.used') ?? '').split(' '));
+    const learn = (name: string): void => {
+      used.add(name);
+      setSetting('vr.used', [...used].filter((n) => n !== '').join(' '));
+    };
+    const texts = (parts: readonly Part[], hand: string): Partial<Record<Part, string>> =>
+      Object.fromEntries(parts.map((part) => [part, t(`vr.label.${hand}.${part}` as TextKey)]));
+    for (const labels of this.labels) labels.dispose();
+    this.labels = [
+      new Labels(texts(['trigger', 'grip', 'upper', 'stick'], 'work'), used, 'work', learn),
+      new Labels(texts(['grip', 'stick'], 'other'), used, 'other', learn, this.leftHanded ? 0.17 : -0.17),
+    ];
+    this.world.rig.add(...this.labels.map((l) => l.group));
+  }
+
+  private did(what: 'turn' | 'draw' | 'undo'): void {
+    if (this.lesson.did(what)) this.tellStep();
+  }
+
+  /** What is to be done first; who has done it all is told what trigger and grip are. */
+  private tellStep(): void {
+    const { step } = this.lesson;
+    this.wrist.say(t(step ? `vr.lesson.${step}` : 'vr.hello'));
+  }
+
+  private startLesson(): void {
+    this.lesson.again();
+    setSetting('vr.used', '');
+    this.label();
+    this.tellStep();
+  }
+
+  /** A grid where outlines are drawn. */
+  private showPlane(plane: ViewPlane | undefined, size: number): void {
+    this.sheet.removeFromParent();
+    this.showKeys();
+    if (!plane) return;
+    // A grid lies in x and z, and looks along y.
+    const [right, up] = [from.fromArray(plane.right), way.fromArray(plane.up)];
+    landing.crossVectors(right, up);
+    this.sheet.matrix
+      .makeBasis(right, landing, up.negate())
+      .scale(scale.setScalar(1.6 * size))
+      .setPosition(...plane.origin);
+    this.view.lieOnPlant(this.sheet);
+    this.sheet.matrixWorldNeedsUpdate = true;
   }
 
   private brush(by: number): void {
@@ -470,3 +657,4 @@ const from = new THREE.Vector3();
 const way = new THREE.Vector3();
 const landing = new THREE.Vector3();
 const matrix = new THREE.Matrix4();
+const scale = new THREE.Vector3();

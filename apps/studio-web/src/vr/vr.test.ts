@@ -1,6 +1,7 @@
 import * as THREE from 'three';
 import { describe, expect, it } from 'vitest';
-import { indexOf, Track } from './controller';
+import { Controller, indexOf, Pinch, Track } from './controller';
+import { Lesson } from './lesson';
 import { World } from './world';
 import { layOut } from './wrist';
 
@@ -27,6 +28,81 @@ describe('a controller', () => {
     const far = Array.from({ length: 6 }, () => track.read(v(3, 1, 0)));
     expect(far).toEqual(['lost', 'lost', 'lost', 'lost', 'jumped', 'here']);
   });
+});
+
+/** A hand of which the tips of three fingers are seen, or nothing; `gaps` of the thumb to the others. */
+function fingers(): { hand: Controller; see(at: THREE.Vector3 | undefined, gaps?: [number, number]): void } {
+  const names = ['thumb-tip', 'index-finger-tip', 'middle-finger-tip'] as const;
+  let places: (THREE.Vector3 | undefined)[] = [];
+  const joints = new Map(names.map((name) => [name, { name }]));
+  const pose = (p: THREE.Vector3 | undefined) =>
+    p && { transform: { position: p, matrix: new THREE.Matrix4().setPosition(p).toArray() } };
+  const frame = {
+    getPose: () => pose(places[0]),
+    getJointPose: ({ name }: { name: (typeof names)[number] }) => pose(places[names.indexOf(name)]),
+  } as unknown as XRFrame;
+  const source = { hand: joints, profiles: ['generic-hand'], targetRaySpace: {}, handedness: 'right' };
+  const hand = new Controller(source as unknown as XRInputSource);
+  return {
+    hand,
+    see(at, [fore, middle] = [0.1, 0.1]) {
+      places = at ? [at, v(at.x + fore, at.y, at.z), v(at.x, at.y + middle, at.z)] : [];
+      hand.read(frame, {} as XRReferenceSpace);
+    },
+  };
+}
+
+describe('a hand without a controller', () => {
+  it('pinches when the gap closes, and lets go further apart', () => {
+    const pinch = new Pinch();
+    const said = [0.05, 0.02, 0.017, 0.025, 0.031, undefined, Number.NaN, 0.04, 0.02].map((g) =>
+      pinch.read(g),
+    );
+    expect(said).toEqual([false, false, true, true, true, true, true, false, false]);
+  });
+
+  it('has its forefinger for a trigger and its middle finger for a grip, never both', () => {
+    const { hand, see } = fingers();
+    const at = v(0, 1, 0);
+    see(at);
+    expect([hand.isHand, hand.holds('trigger'), hand.holds('grip')]).toEqual([true, false, false]);
+    see(at, [0.01, 0.01]);
+    expect([hand.pressed('trigger'), hand.holds('grip')]).toEqual([true, false]);
+    // It draws between the fingertips.
+    expect(hand.tip.toArray()).toEqual([0.005, 1, 0]);
+    see(at);
+    expect(hand.released('trigger')).toBe(true);
+    see(at, [0.1, 0.01]);
+    expect([hand.holds('trigger'), hand.pressed('grip')]).toEqual([false, true]);
+  });
+
+  it('that is lost while it pinches keeps pinching, and jumps where it comes back elsewhere', () => {
+    const { hand, see } = fingers();
+    see(v(0, 1, 0), [0.01, 0.1]);
+    for (let k = 0; k < 30; k += 1) {
+      see(undefined);
+      expect([hand.tracked, hand.holds('trigger'), hand.released('trigger')]).toEqual([false, true, false]);
+    }
+    see(v(0.02, 1, 0), [0.01, 0.1]);
+    expect([hand.tracked, hand.jumped, hand.holds('trigger')]).toEqual([true, false, true]);
+    // Open again, but elsewhere: where it was last counts.
+    const states = Array.from({ length: 6 }, () => {
+      see(v(2, 1, 0));
+      return hand.jumped ? 'jumped' : hand.tracked ? 'here' : 'lost';
+    });
+    expect(states).toEqual(['lost', 'lost', 'lost', 'lost', 'jumped', 'here']);
+  });
+});
+
+it('the first steps are told one after another, and kept', () => {
+  const kept: number[] = [];
+  const lesson = new Lesson(0, (n) => kept.push(n));
+  expect([lesson.did('undo'), lesson.did('turn'), lesson.step]).toEqual([false, true, 'draw']);
+  expect([lesson.did('draw'), lesson.did('undo'), lesson.step]).toEqual([true, true, undefined]);
+  lesson.again();
+  expect([kept, lesson.step, new Lesson(3, () => undefined).step]).toEqual([[1, 2, 3, 0], 'turn', undefined]);
+  // What a browser kept of another version is no fault.
+  expect(new Lesson(Number.NaN, () => undefined).step).toBeUndefined();
 });
 
 describe('the world', () => {

@@ -164,15 +164,15 @@ pub enum GrowthStep {
 /// assert_eq!(tree, guide(&[DVec3::ZERO], &none, &record, seed, &run, &mut Report::default())?);
 /// # Ok::<(), growth::GrowthError>(())
 /// ```
-#[derive(Debug)]
-pub struct Growing<'a> {
+#[derive(Clone, Debug)]
+pub struct Growing {
     skeleton: Skeleton,
     /// Whether each joint continues the axis of its parent.
     is_main: Vec<bool>,
     /// Joints that were there before.
     given: usize,
     buds: Vec<Bud>,
-    room: Room<'a>,
+    room: Room,
     /// As it is asked at first.
     asked: GuidedSpec,
     /// With the changes so far, and without a list of changes.
@@ -187,7 +187,7 @@ pub struct Growing<'a> {
     markers_made: usize,
     died: usize,
     /// Markers that buds have looked at.
-    looks: AtomicU64,
+    looks: u64,
 }
 
 /// What to do where buds look at too many markers.
@@ -199,25 +199,25 @@ fn place_key(p: DVec3) -> u64 {
 }
 
 /// The room around the roots of a skeleton, and what follows from the numbers of a spec.
-fn room_of<'a>(
+fn room_of(
     skeleton: &Skeleton,
-    obstacles: &'a Obstacles,
+    obstacles: &Obstacles,
     spec: &GuidedSpec,
     run: &Run<'_>,
-) -> Result<(Room<'a>, Numbers), GrowthError> {
+) -> Result<(Room, Numbers), GrowthError> {
     let roots = skeleton.position.iter().zip(&skeleton.parent).filter(|(_, p)| p.is_none());
     let room = Room::new(spec, roots.map(|(p, _)| *p).collect(), obstacles, &run.budget)?;
     Ok((room, spec.check()?))
 }
 
-impl<'a> Growing<'a> {
+impl Growing {
     /// A tree at each root; they compete.
     ///
     /// # Errors
     /// [`GrowthError`]: numbers out of range, no roots, a root in an obstacle, cancelled.
     pub fn plant(
         roots: &[DVec3],
-        obstacles: &'a Obstacles,
+        obstacles: &Obstacles,
         spec: &GuidedSpec,
         seed: Seed,
         run: &Run<'_>,
@@ -242,7 +242,7 @@ impl<'a> Growing<'a> {
     pub fn from_wood(
         skeleton: Skeleton,
         buds: &[StartBud],
-        obstacles: &'a Obstacles,
+        obstacles: &Obstacles,
         spec: &GuidedSpec,
         seed: Seed,
         run: &Run<'_>,
@@ -257,7 +257,7 @@ impl<'a> Growing<'a> {
     fn new(
         skeleton: Skeleton,
         buds: &[StartBud],
-        room: Room<'a>,
+        room: Room,
         spec: &GuidedSpec,
         numbers: Numbers,
         seed: Seed,
@@ -300,13 +300,26 @@ impl<'a> Growing<'a> {
             next_change: 0,
             markers_made: 0,
             died: 0,
-            looks: AtomicU64::new(0),
+            looks: 0,
         }
     }
 
     /// All rounds that are asked.
     fn through(mut self, run: &Run<'_>, report: &mut Report) -> Result<Guided, GrowthError> {
         let started = run.clock.now_ms();
+        self.go_on(run, report)?;
+        let grown = self.finish();
+        report.book("grow", run.clock.now_ms() - started);
+        Ok(grown)
+    }
+
+    /// Grows the rounds that are asked and not grown yet, or until nothing grows any more.
+    ///
+    /// Guaranteed: the same tree, however many steps and calls led there.
+    ///
+    /// # Errors
+    /// As [`Growing::step`].
+    pub fn go_on(&mut self, run: &Run<'_>, report: &mut Report) -> Result<(), GrowthError> {
         while self.round < self.asked.rounds {
             match self.step(run)? {
                 GrowthStep::Goes => {}
@@ -323,9 +336,44 @@ impl<'a> Growing<'a> {
                 }
             }
         }
-        let grown = self.finish();
-        report.book("grow", run.clock.now_ms() - started);
-        Ok(grown)
+        Ok(())
+    }
+
+    /// Takes another request in the place of the one that was asked, where what has grown so far is what that asks, too:
+    /// the same but for its rounds, no fewer than were grown, and for changes in rounds that are still to come. Whether it
+    /// did; if not, all is as it was.
+    ///
+    /// # Errors
+    /// [`GrowthError`]: numbers out of range.
+    ///
+    /// ```
+    /// use base::{Report, Run, Seed};
+    /// use glam::DVec3;
+    /// use growth::{Growing, GuidedChange, GuidedSpec, Obstacles, guide};
+    /// let (none, run, seed) = (Obstacles::none(), Run::plain(), Seed::new(1));
+    /// let mut spec = GuidedSpec { rounds: 5, ..GuidedSpec::default() };
+    /// let mut growing = Growing::plant(&[DVec3::ZERO], &none, &spec, seed, &run)?;
+    /// growing.go_on(&run, &mut Report::default())?;
+    /// spec.rounds = 8;
+    /// spec.changes.push(GuidedChange { round: 6, alpha: Some(4.0), ..GuidedChange::default() });
+    /// assert!(growing.goes_on_as(&spec)?);
+    /// growing.go_on(&run, &mut Report::default())?;
+    /// let whole = guide(&[DVec3::ZERO], &none, &spec, seed, &run, &mut Report::default())?;
+    /// assert_eq!(growing.finish(), whole);
+    /// # Ok::<(), growth::GrowthError>(())
+    /// ```
+    pub fn goes_on_as(&mut self, spec: &GuidedSpec) -> Result<bool, GrowthError> {
+        let plain = |s: &GuidedSpec| GuidedSpec { rounds: 0, changes: Vec::new(), ..s.clone() };
+        let past = self.next_change;
+        let same = self.round <= spec.rounds
+            && spec.changes.get(..past) == Some(&self.asked.changes[..past])
+            && spec.changes.get(past).is_none_or(|next| next.round >= self.round)
+            && plain(spec) == plain(&self.asked);
+        if same {
+            spec.check()?;
+            self.asked = spec.clone();
+        }
+        Ok(same)
     }
 
     /// Other numbers from the next round on, in the place of those that were asked at first for later rounds.
@@ -385,6 +433,16 @@ impl<'a> Growing<'a> {
         &self.skeleton
     }
 
+    /// Buds that may grow on. Cost: linear in all buds there were.
+    pub fn living(&self) -> usize {
+        self.buds.iter().filter(|b| b.life == Life::Alive).count()
+    }
+
+    /// How many markers buds have looked at so far: what growth costs.
+    pub const fn looks(&self) -> u64 {
+        self.looks
+    }
+
     /// Rounds so far.
     pub const fn rounds(&self) -> u32 {
         self.round
@@ -396,12 +454,11 @@ impl<'a> Growing<'a> {
         GuidedSpec { rounds: self.round, changes, ..self.asked.clone() }
     }
 
-    /// Sheds and ends.
-    pub fn finish(mut self) -> Guided {
-        self.shed();
-        debug_assert_eq!(self.skeleton.validate().next(), None, "a grown skeleton is sound");
-        let Self { skeleton, markers_made: markers, died, grew: rounds, .. } = self;
-        Guided { skeleton, markers, died, rounds }
+    /// The tree as it is now, without the twigs that are shed at the end. It may grow on.
+    pub fn finish(&self) -> Guided {
+        let skeleton = self.shed();
+        debug_assert_eq!(skeleton.validate().next(), None, "a grown skeleton is sound");
+        Guided { skeleton, markers: self.markers_made, died: self.died, rounds: self.grew }
     }
 
     /// One round; whether any bud is left that may still grow.
@@ -430,17 +487,17 @@ impl<'a> Growing<'a> {
             owner.resize(owner.len() + own.len(), bud);
             markers.extend(own);
         }
-        self.markers_made += markers.len();
         run.cancel.check()?;
         let places: Vec<DVec3> = markers.iter().map(|m| m.at).collect();
         let grid = KdTree::new(&places);
+        let looked = AtomicU64::new(self.looks);
         let looks = map_indexed(run.executor, groups, |g| {
             let mut near = Vec::new();
             let of = of_group(g).iter().zip(g * GROUP..);
             of.map(|(&b, k)| {
                 let look = self.look(b, &markers, &owner, rows[k].clone(), &grid, &mut near);
                 // Told to the others at once: one round of many buds in one place could take minutes.
-                let all = self.looks.fetch_add(near.len() as u64, Ordering::Relaxed) + near.len() as u64;
+                let all = looked.fetch_add(near.len() as u64, Ordering::Relaxed) + near.len() as u64;
                 let most = run.budget.limit(Counted::Looks);
                 run.budget.check(Counted::Looks, all.min(most.saturating_add(1)), TOO_CROWDED)?;
                 Ok(look)
@@ -450,6 +507,8 @@ impl<'a> Growing<'a> {
         run.cancel.check()?;
         let looks: Vec<Vec<Look>> = looks.into_iter().collect::<Result<_, OverBudget>>()?;
         let looks: Vec<Look> = looks.into_iter().flatten().collect();
+        self.looks = looked.into_inner();
+        self.markers_made += markers.len();
         let vigour = self.share(&awake, &looks);
         for ((&b, look), v) in awake.iter().zip(&looks).zip(vigour) {
             if look.dies {
@@ -646,12 +705,12 @@ impl<'a> Growing<'a> {
         }
     }
 
-    /// Takes short twigs away that have stopped, and then what has become a short twig, until none is left.
-    fn shed(&mut self) {
+    /// Without short twigs that have stopped, and then without what has become a short twig, until none is left.
+    fn shed(&self) -> Skeleton {
         let most = self.spec.shed_up_to as usize;
         let n = self.skeleton.len();
         if most == 0 || n == self.given {
-            return;
+            return self.skeleton.clone();
         }
         let (mut size, mut alive) = (vec![1_usize; n], vec![false; n]);
         for b in self.buds.iter().filter(|b| b.life == Life::Alive && b.terminal) {
@@ -668,7 +727,7 @@ impl<'a> Growing<'a> {
                 alive[p] |= alive[j];
             }
         }
-        self.skeleton = self.skeleton.keep(|j| stays[j]);
+        self.skeleton.keep(|j| stays[j])
     }
 }
 

@@ -19,7 +19,7 @@ struct Piece {
 }
 
 /// Strokes cut into pieces no longer than their radius, found by a grid.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Tubes {
     pieces: Vec<Piece>,
     grid: KdTree,
@@ -27,11 +27,11 @@ struct Tubes {
 }
 
 /// The room of a run.
-#[derive(Debug)]
-pub(super) struct Room<'a> {
+#[derive(Clone, Debug)]
+pub(super) struct Room {
     region: Option<(Region, Vec<DVec3>)>,
     tubes: Option<Tubes>,
-    obstacles: &'a Obstacles,
+    obstacles: Obstacles,
 }
 
 /// What a stroke adds to a marker in it.
@@ -99,15 +99,15 @@ impl Tubes {
     }
 }
 
-impl<'a> Room<'a> {
+impl Room {
     pub(super) fn new(
         spec: &GuidedSpec,
         roots: Vec<DVec3>,
-        obstacles: &'a Obstacles,
+        obstacles: &Obstacles,
         budget: &Budget,
     ) -> Result<Self, GrowthError> {
         let region = spec.envelope.as_ref().map(|e| e.prepare()).transpose()?.map(|r| (r, roots));
-        Ok(Self { region, tubes: Tubes::new(&spec.strokes, budget)?, obstacles })
+        Ok(Self { region, tubes: Tubes::new(&spec.strokes, budget)?, obstacles: obstacles.clone() })
     }
 
     /// Other strokes in the place of those that guide.
@@ -137,8 +137,8 @@ impl<'a> Room<'a> {
     }
 
     /// What growth goes around.
-    pub(super) const fn obstacles(&self) -> &'a Obstacles {
-        self.obstacles
+    pub(super) const fn obstacles(&self) -> &Obstacles {
+        &self.obstacles
     }
 
     /// Whether strokes guide.

@@ -208,7 +208,7 @@ impl GuidedSpec {
 }
 
 /// What follows from checked numbers.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Numbers {
     pub(super) phyllotaxis: Phyllotaxis,
     pub(super) pull: DVec3,

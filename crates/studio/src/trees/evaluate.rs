@@ -7,7 +7,7 @@ use document::PlantEdit;
 use growth::{BlossomSpec, Grown, Look, Method, TreeSpec};
 use mesh::Model;
 use plant::{Blade, Plant};
-use skin::SkinSpec;
+use skin::{Layout, Pictures, SkinSpec};
 
 use super::blossom::add_blossom;
 use super::look::{KeptBarks, paint, tint};
@@ -40,6 +40,8 @@ pub struct TreeEvaluator {
     shaper: Shaper,
     shaped: Option<Shaped>,
     model: Option<(Skinned, Model)>,
+    /// What lies where in the model.
+    layout: Layout,
     /// What of the model lies in obstacles.
     inside: Option<Inside>,
     /// The model is of a plant that is no more: shown until there is another, in case an update is stopped.
@@ -123,7 +125,7 @@ impl TreeEvaluator {
         let (mut plant, skin) = coarser(plant, &skin_spec(seed, options), LOOK_LEVEL);
         keep_out(&mut plant, LOOK_LEVEL, &obstacles);
         let from = (SkinSpec { textures: false, ..skin }, spec.look.clone(), None);
-        Ok(Some(skinned(&plant, &from, &mut KeptBarks::default(), run)?))
+        Ok(Some(skinned(&plant, &from, &mut KeptBarks::default(), run)?.0))
     }
 
     /// Everything but the meshes.
@@ -238,8 +240,8 @@ impl TreeEvaluator {
         let telling = Telling::from(run.cancel.share().unwrap_or(0.0), run);
         let model = report.stage("mesh", run.clock, |_| skinned(plant, &from, &mut barks, &telling.run()));
         self.barks = barks;
-        let model = model?;
-        (self.model, self.stale) = (Some((from, model)), false);
+        let (model, layout) = model?;
+        (self.model, self.layout, self.stale) = (Some((from, model)), layout, false);
         self.done.push("mesh");
         Ok(true)
     }
@@ -257,7 +259,7 @@ impl TreeEvaluator {
         let (mut plant, skin) = coarser(plant, fine, level);
         keep_out(&mut plant, level, &obstacles);
         let mut barks = self.barks.clone();
-        Ok(Some(skinned(&plant, &(skin, look.clone(), leaf.clone()), &mut barks, run)?))
+        Ok(Some(skinned(&plant, &(skin, look.clone(), leaf.clone()), &mut barks, run)?.0))
     }
 
     fn item(&self, spec: &TreeSpec, report: &Report) -> ItemReport {
@@ -304,6 +306,11 @@ impl TreeEvaluator {
         self.model.as_ref().map(|(_, m)| m)
     }
 
+    /// What lies where in the model of the last update; none where that is of another plant by now.
+    pub(crate) fn layout(&self) -> Option<&Layout> {
+        self.model.as_ref().filter(|_| !self.stale).map(|_| &self.layout)
+    }
+
     /// What was grown, as the hand left it, and its model; the evaluator is empty then.
     pub(super) fn take(&mut self) -> Option<(Grown, Model)> {
         let Self { dressed, shaped, model, .. } = std::mem::take(self);
@@ -324,11 +331,11 @@ fn skinned(
     (skin, look, leaf): &Skinned,
     barks: &mut KeptBarks,
     run: &Run<'_>,
-) -> Result<Model, Stopped> {
-    let mut model = skin::skin(plant, skin, run)?;
+) -> Result<(Model, Layout), Stopped> {
+    let (mut model, layout) = skin::skin_laid_out(plant, skin, Pictures::default(), None, run)?;
     paint(look, &mut model, barks, run);
     if let Some(leaf) = leaf {
         leaf.dress(&mut model, &skin.worn);
     }
-    Ok(model)
+    Ok((model, layout))
 }

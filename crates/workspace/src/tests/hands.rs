@@ -1,0 +1,203 @@
+//! Hands on plants: what is carried, what is kept of a gesture, and records of gestures.
+
+use burgeon::glam::{DQuat, DVec3};
+use burgeon::plant::AxisId;
+
+use super::*;
+use crate::{GESTURES_SCHEMA, GestureRecord, GestureStep, ShapePointer};
+
+/// Nodes of a branch and of all that it bears.
+fn nodes_of(s: &Workspace, axis: u32) -> Vec<[f64; 3]> {
+    let plant = s.scene.get(PlantId(1)).unwrap().plant.unwrap();
+    let borne = plant.borne_by(AxisId::new(axis as usize));
+    let rows = borne.iter().enumerate().filter(|(_, is)| **is).map(|(row, _)| row);
+    rows.flat_map(|row| plant.axis_points(AxisId::new(row))).map(|p| p.to_array()).collect()
+}
+
+/// Those nodes where a pose carries them.
+fn foreseen(s: &Workspace, axis: u32, pose: &Value) -> Vec<[f64; 3]> {
+    let of = |key: &str| -> Vec<f64> {
+        pose[key].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+    };
+    let v = |key: &str| DVec3::from_slice(&of(key));
+    let (from, to, turn) = (v("from"), v("to"), DQuat::from_slice(&of("turn")));
+    let place = |p: [f64; 3]| (to + turn * (DVec3::from_array(p) - from)).to_array();
+    nodes_of(s, axis).into_iter().map(place).collect()
+}
+
+#[test]
+fn what_a_hand_carries_are_the_triangles_of_the_branch_and_of_what_it_bears() {
+    for file in ["bush", "drawing"] {
+        let mut s = bush().0;
+        if file == "drawing" {
+            s = Workspace::default();
+            s.open("tulip.svg", include_bytes!("../../../../fixtures/sketches/gallery/tulip.svg"), 0, false)
+                .unwrap();
+            s.evaluate(&run()).unwrap();
+        }
+        let plant = s.scene.get(s.current().unwrap()).unwrap().plant.unwrap().clone();
+        let size = s.scene.get(s.current().unwrap()).unwrap().model.bounds().size().length();
+        let mut carried = 0;
+        for axis in 0..plant.axes.len().min(60) {
+            let id = AxisId::new(axis);
+            let scene = s.scene.get(s.current().unwrap()).unwrap();
+            let Some(rows) = scene.layout.unwrap().branch(&plant, id) else { continue };
+            let borne = plant.borne_by(id);
+            let of = |a: usize| plant.axis_points(AxisId::new(a)).to_vec();
+            let all: Vec<_> = (0..plant.axes.len()).flat_map(of).collect();
+            let own: Vec<_> = (0..plant.axes.len()).filter(|a| borne[*a]).flat_map(of).collect();
+            assert_eq!(rows.len(), scene.model.parts.len());
+            for (part, rows) in scene.model.parts.iter().zip(&rows) {
+                for t in rows.iter().flat_map(|r| &part.mesh.triangles[r.start as usize..r.end as usize]) {
+                    let p = part.mesh.position(t[0]);
+                    let near = |of: &[DVec3]| of.iter().map(|q| q.distance(p)).fold(f64::INFINITY, f64::min);
+                    // Leaves may hang beside other wood; what is wood does not.
+                    let more = if part.name == "leaves" { 0.2 } else { 0.02 };
+                    let (to_own, to_any) = (near(&own), near(&all));
+                    assert!(to_own < to_any + more * size, "{file} {axis} {}: {to_own} {to_any}", part.name);
+                    carried += 1;
+                }
+            }
+            // What stands on the ground with all that it bears is everything.
+            if plant.axes.iter().filter(|a| a.bearer.is_none()).count() == 1 && axis == 0 {
+                let all: usize = rows.iter().flatten().map(|r| r.len()).sum();
+                assert_eq!(all, scene.model.triangle_count(), "{file}");
+            }
+        }
+        assert!(carried > 100, "{file}: {carried}");
+    }
+}
+
+#[test]
+fn a_gesture_is_shown_and_is_one_step_when_it_is_asked_for() {
+    let (mut s, (x, y)) = bush();
+    let before = look(&mut s);
+    let still = s.skeleton();
+    let looked = hand(&mut s, r#""pick""#, &format!(r#"{{"down":{}}}"#, at(x, y)));
+    assert!(looked["picked"]["key"]["mark"].is_object(), "{looked}");
+    let axis = u32::try_from(looked["picked"]["axis"].as_u64().unwrap()).unwrap();
+    let lines = s.branch(axis);
+    assert!(!lines.is_empty() && lines.len() % 8 == 0 && s.branch(u32::MAX).is_empty());
+    // The trunk bears everything.
+    assert!(s.branch(0).len() >= lines.len());
+
+    let rotate = r#""rotate""#;
+    let down = hand(&mut s, rotate, &format!(r#"{{"down":{}}}"#, at(x, y)));
+    assert_eq!((&down["busy"], &down["again"]), (&Value::Bool(true), &Value::Bool(false)));
+    let held = hand(&mut s, rotate, &format!(r#"{{"move":[{}]}}"#, at(x, y + 0.4)));
+    // What is carried is moved as it is seen, and nothing is made again.
+    assert_eq!((&held["busy"], &held["again"]), (&Value::Bool(true), &Value::Bool(false)), "{held}");
+    assert_eq!(look(&mut s)["fresh"], false);
+    assert_eq!(held["carried"]["mesh"], before["mesh"]);
+    let foresaw = foreseen(&s, axis, &held["carried"]);
+    assert_eq!(json(&s.state())["plants"][0]["edits"], Value::Array(vec![]));
+    let up = hand(&mut s, rotate, &format!(r#"{{"up":{}}}"#, at(x, y + 0.4)));
+    assert_eq!((&up["again"], &up["carried"]), (&Value::Bool(false), &Value::Null));
+    assert_eq!(look(&mut s)["fresh"], false, "moved until it is asked for");
+    s.ask(&format!(r#"{{"shape":[1,{{"add":{}}}]}}"#, up["commit"])).unwrap();
+    assert!(s.held_rows().is_empty());
+    let after = look(&mut s);
+    assert_ne!(s.skeleton(), still);
+    let turned: Vec<[f64; 3]> = nodes_of(&s, axis);
+    let off =
+        |(a, b): (&[f64; 3], &[f64; 3])| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let worst = turned.iter().zip(&foresaw).map(off).fold(0.0, f64::max);
+    assert!(turned.len() == foresaw.len() && worst < 1e-9, "as it was carried: {worst}");
+    assert!(after["item"]["digest"].as_str().is_some_and(|d| d.len() == 32));
+    assert_eq!(after["item"]["edits"][0]["done"], true);
+    assert_eq!(s.undo(), Some("shape-rotate"));
+    assert_eq!(look(&mut s)["item"]["digest"], before["item"]["digest"]);
+    // Escape leaves nothing behind.
+    gesture(&mut s, rotate, (50.0, 50.0), (51.0, 50.0));
+    hand(&mut s, rotate, &format!(r#"{{"down":{}}}"#, at(x, y)));
+    hand(&mut s, rotate, &format!(r#"{{"move":[{}]}}"#, at(x, y + 0.5)));
+    let let_go = hand(&mut s, rotate, r#""cancel""#);
+    assert_eq!((&let_go["again"], &let_go["carried"]), (&Value::Bool(false), &Value::Null));
+    assert_eq!(look(&mut s)["item"]["digest"], before["item"]["digest"]);
+}
+
+/// A branch is turned, one drawn in the air, one grown for six rounds with more vigour on the way, and one gesture has no end.
+fn recorded(x: f64, y: f64) -> String {
+    let step = |tool: &str, input: &str| format!(r#"{{"tool":{tool},"reach":{REACH},"input":{input}}}"#);
+    let tip = |x: f64, y: f64, z: f64| {
+        at(x, y).replace(r#""pressure":1"#, &format!(r#""pressure":1,"tip":[{x},{y},{z}]"#))
+    };
+    let grow =
+        |vigour: f64| format!(r#"{{"vigour":{vigour},"apical":0.5,"angle_deg":50,"lift":0.1,"apart":1}}"#);
+    let tool = format!(r#"{{"grow":{}}}"#, grow(1.5));
+    let draw = r#"{"sketch":{"twigs":1,"tilt_deg":0}}"#;
+    let mut steps = vec![
+        step(r#""rotate""#, &format!(r#"{{"down":{}}}"#, at(x, y))),
+        step(r#""rotate""#, r#"{"twist":30}"#),
+        step(r#""rotate""#, &format!(r#"{{"up":{}}}"#, at(x, y))),
+        step(draw, &format!(r#"{{"down":{}}}"#, tip(0.0, 1.2, 0.0))),
+        step(draw, &format!(r#"{{"move":[{},{}]}}"#, tip(0.3, 1.5, 0.2), tip(0.6, 1.9, 0.3))),
+        step(draw, &format!(r#"{{"up":{}}}"#, tip(0.9, 2.1, 0.2))),
+        step(&tool, &format!(r#"{{"down":{}}}"#, at(0.0, 1.0))),
+    ];
+    steps.extend((0..3).map(|_| step(&tool, r#""round""#)));
+    steps.push(step(&tool, &format!(r#"{{"grow":{}}}"#, grow(2.5))));
+    steps.extend((0..3).map(|_| step(&tool, r#""round""#)));
+    steps.push(step(&tool, &format!(r#"{{"up":{}}}"#, at(0.0, 1.0))));
+    steps.push(step(draw, &format!(r#"{{"down":{}}}"#, tip(0.0, 1.2, 0.0))));
+    format!(r#"{{"schema":"{GESTURES_SCHEMA}","steps":[{}]}}"#, steps.join(","))
+}
+
+#[test]
+fn a_record_of_gestures_makes_the_same_plant_again() {
+    let (mut first, (x, y)) = bush();
+    let text = recorded(x, y);
+    let record = GestureRecord::read(text.as_bytes()).unwrap();
+    assert_eq!(first.replay(&record, &run()).unwrap(), 3);
+    let done = look(&mut first)["item"].clone();
+    let told: Vec<bool> =
+        done["edits"].as_array().unwrap().iter().map(|e| e["done"].as_bool().unwrap()).collect();
+    assert_eq!(told, [true; 3]);
+    let again = serde_json::to_string(&record).unwrap();
+    let (mut second, _) = bush();
+    assert_eq!(second.replay(&GestureRecord::read(again.as_bytes()).unwrap(), &run()).unwrap(), 3);
+    assert_eq!(look(&mut second)["item"]["digest"], done["digest"]);
+    // Each is a step of undo, and all undone is the first plant.
+    for _ in 0..3 {
+        assert!(second.undo().is_some());
+    }
+    assert_eq!(look(&mut second)["item"]["digest"], look(&mut bush().0)["item"]["digest"]);
+}
+
+#[test]
+fn a_record_that_is_cut_off_or_hostile_says_so() {
+    let (s, (x, y)) = bush();
+    drop(s);
+    let text = recorded(x, y);
+    let code = |bytes: &[u8]| Refusal::of(&GestureRecord::read(bytes).unwrap_err()).code;
+    for share in 1..40 {
+        assert_eq!(code(&text.as_bytes()[..text.len() * share / 40]), "record");
+    }
+    assert_eq!(code(text.replace("gestures/1", "gestures/9").as_bytes()), "record-form");
+    assert_eq!(code(text.replace("\"twist\":30", "\"twist\":1e999").as_bytes()), "record");
+    assert_eq!(code(text.replace("\"reach\"", "\"reach\":{},\"more\"").as_bytes()), "record");
+    assert_eq!(code(&vec![b'['; 1 << 16]), "record");
+    let far = at(1.0, 1.0);
+    let many = vec![far.as_str(); 20_001].join(",");
+    let long = format!(
+        r#"{{"schema":"{GESTURES_SCHEMA}","steps":[{{"tool":"rotate","reach":{REACH},"input":{{"move":[{many}]}}}}]}}"#
+    );
+    assert_eq!(code(long.as_bytes()), "record-long");
+    // Steps in any order, with any numbers, are no fault of the tools.
+    let (mut s, _) = bush();
+    let mut record = GestureRecord::read(text.as_bytes()).unwrap();
+    record.steps.reverse();
+    let wild = record.steps.iter().map(|step| {
+        let input = match step.input.clone() {
+            ShapeInput::Down(p) => ShapeInput::Down(ShapePointer { direction: [0.0; 3], ..p }),
+            ShapeInput::Up(p) => ShapeInput::Up(ShapePointer { tip: Some([1e300; 3]), ..p }),
+            other => other,
+        };
+        GestureStep { input, ..step.clone() }
+    });
+    let wild = GestureRecord { steps: wild.collect(), ..record.clone() };
+    for record in [record, wild] {
+        s.replay(&record, &run()).unwrap();
+        assert!(look(&mut s)["error"].is_null());
+    }
+}
