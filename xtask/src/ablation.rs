@@ -122,8 +122,8 @@ pub(crate) fn block(rows: &[StrokeRow], sketches: &Path, fixtures: &Path) -> Res
         "Measured with classifiers that have not seen the drawing, and with all rules, over {DEALINGS} random splits. \
          Correct: {} of\n{} clear strokes of the public, {} of {} doubtful ones (the labeller was unsure, or they are \
          two things at once),\nand {} of {} parts labelled by others. The macro F1 is {:.4}.\n\n\
-         Of drawings that the model of kinds has not seen either (the part that is looked at once): {} of {} clear strokes, \
-         macro F1 of\nthe same classes {:.4}.\n\n\
+         Of drawings that the model of kinds has not seen either (those for the end): {} of {} clear strokes; the macro \
+         F1 of\nthe same classes is {:.4}.\n\n\
          The table shows how these figures change without each rule, and how many of {} fixtures and {} other drawings \
          are\nthen read differently.\n\n\
          | rule | why | clear | doubtful | parts | macro F1 | fixtures | others |\n\
