@@ -8,7 +8,7 @@ use crate::OrganWord;
 use crate::branches::Line;
 use crate::draft::Draft;
 use crate::near::Boxes;
-use crate::rules::unsure;
+use crate::rules::{VEINS_IN_BLADES, unsure};
 
 /// Samples of a line that are tested.
 const SAMPLES: usize = 24;
@@ -16,8 +16,6 @@ const SAMPLES: usize = 24;
 /// The veins of each blade: line and stroke.
 pub(crate) type Veins = Vec<Vec<Vec<DVec2>>>;
 
-/// The rule that what a line is follows from where it lies.
-pub(crate) const VEINS_IN_BLADES: &str = "veins-in-blades";
 /// What is surely a vein lies in its blade at least by this share of its length, and what is surely a stem by that.
 const VEIN_INSIDE: f64 = 0.25;
 const STEM_INSIDE: f64 = 0.9;

@@ -22,12 +22,13 @@ use ink::{COMMON_GROUND, InkStroke, LONE_LINE, StrokeClass, StrokeMode};
 
 use crate::blade::nearest_on_ring;
 use crate::draft::Draft;
-use crate::veins::VEINS_IN_BLADES;
 
 pub(crate) use as_kind::take_for;
 
 /// The rule of the kind that a plant is taken for.
 pub const READ_AS: &str = "read-as";
+/// The rule that what a line is follows from where it lies.
+pub(crate) const VEINS_IN_BLADES: &str = "veins-in-blades";
 
 /// Something that the whole drawing says about the class of a stroke.
 #[derive(Clone, Copy, Debug)]
