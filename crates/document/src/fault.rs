@@ -3,10 +3,10 @@
 use bloom::FlowerSpec;
 use spec::RangeFault;
 
-use crate::picture::MAX_PICTURES;
-
 /// Most obstacles of a tree.
 pub(crate) const MAX_OBSTACLES: usize = 64;
+/// Most pictures of one plant.
+pub(crate) const MAX_PICTURES: usize = 16;
 /// Most layers of a drawing.
 pub(crate) const MAX_LAYERS: usize = 100;
 /// Most edits by hand of a plant.

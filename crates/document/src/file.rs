@@ -16,13 +16,14 @@ use skin::Wear;
 use spec::SpecFault;
 
 use crate::archive::{ArchiveError, pack, unpack};
+use crate::fault::MAX_PICTURES;
 use crate::forms::{
     DocumentV1, DocumentV2, DocumentV3, DocumentV4, DocumentV5, DocumentV6, EditV4, FlowerV5, LeafV3,
     MakerV5, ObstacleV3, PlantV4, SketchV3, SkinV1, StrokeV1, TreeV3, from_file, to_file,
 };
 use crate::makers::{FlowerMaker, LeafData, LeafMaker, Maker, NamedObstacle, SketchSettings, TreeSettings};
-use crate::picture::MAX_PICTURES;
-use crate::state::{MAX_PLANTS, Placement, PlantEdit, range_fault, shortened};
+use crate::names::shortened;
+use crate::state::{MAX_PLANTS, Placement, PlantEdit, range_fault};
 use crate::{
     Document, DocumentPlant, DocumentStroke, Photo, PhotoError, Picture, PictureError, Pictures, PlantId,
     SettingFault, Settings,

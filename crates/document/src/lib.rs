@@ -25,6 +25,7 @@ mod file;
 mod forms;
 mod ids;
 mod makers;
+mod names;
 mod photo;
 mod picture;
 mod state;

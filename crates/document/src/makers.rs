@@ -12,7 +12,7 @@ use sketch::SketchSpec;
 use skin::SkinSpec;
 
 use crate::fault::{MAX_LAYERS, MAX_OBSTACLES};
-use crate::state::shortened;
+use crate::names::shortened;
 use crate::{Photo, PlantId, SettingFault};
 
 /// The maker of a plant, and what it is asked for. Strokes of a sketch lie beside it, in [`crate::DocumentPlant::strokes`].

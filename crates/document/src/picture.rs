@@ -13,8 +13,6 @@ use crate::photo::png_size;
 /// Most bytes and longest side of a picture: 8 MiB, 2,048 pixels.
 const MAX_PICTURE_BYTES: usize = 8 << 20;
 const MAX_SIDE: u32 = 2048;
-/// Most pictures of one plant.
-pub(crate) const MAX_PICTURES: usize = 16;
 
 /// A picture that organs wear.
 ///

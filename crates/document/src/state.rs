@@ -11,9 +11,10 @@ use serde::{Deserialize, Serialize};
 use shape::HandEdit;
 use skin::{OrganMaterial, Pattern, StrokeWear, Wear};
 
-use crate::fault::MAX_EDITS;
+use crate::fault::{MAX_EDITS, MAX_PICTURES};
 use crate::ids::{PlantId, StrokeId};
-use crate::picture::{MAX_PICTURES, material_fault};
+use crate::names::{NAME_LENGTH, shortened, too_long};
+use crate::picture::material_fault;
 use crate::{Maker, Photo, Pictures, SettingFault, SketchSettings};
 
 /// One stroke of a sketch.
@@ -331,8 +332,6 @@ pub enum DocumentFault {
     Setting(#[from] SettingFault),
 }
 
-/// Longest name of a plant, in characters.
-pub(crate) const NAME_LENGTH: usize = 200;
 /// Most plants of a scene.
 pub(crate) const MAX_PLANTS: usize = 200;
 
@@ -463,15 +462,6 @@ impl Document {
         let many = (self.plants.len() > MAX_PLANTS).then_some(DocumentFault::Plants);
         strokes.chain(look).chain(plants).chain(name).chain(many)
     }
-}
-
-fn too_long(name: &str) -> bool {
-    name.chars().count() > NAME_LENGTH
-}
-
-/// A name cut to its greatest length, without line breaks.
-pub(crate) fn shortened(name: &str) -> String {
-    name.chars().map(|c| if c.is_control() { ' ' } else { c }).take(NAME_LENGTH).collect()
 }
 
 /// The stroke with finite points only; `None` if there is none. Unknown times and pressures stay unknown. Whether it is

@@ -13,7 +13,7 @@ use skin::SkinSpec;
 use super::{Command, CommandError, may_bear, set};
 use crate::event::Event;
 use crate::makers::{FlowerMaker, LeafData, LeafMaker, Maker, NamedObstacle, TreeSettings};
-use crate::state::shortened;
+use crate::names::shortened;
 use crate::{Document, DocumentPlant, PlantId, SettingFault};
 
 /// What can be asked of a tree.

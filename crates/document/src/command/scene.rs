@@ -8,7 +8,8 @@ use skin::{OrganMaterial, Wearer};
 
 use super::{Command, CommandError, NewStroke, plant, set};
 use crate::event::Event;
-use crate::state::{MAX_PLANTS, NAME_LENGTH, Placement, Settings, range_fault, shortened, sound};
+use crate::names::{NAME_LENGTH, shortened};
+use crate::state::{MAX_PLANTS, Placement, Settings, range_fault, sound};
 use crate::{Document, DocumentPlant, DocumentStroke, Picture, PlantId, StrokeId};
 
 /// A plant that is to come in.

@@ -12,8 +12,9 @@ use skin::{OrganMaterial, SkinSpec};
 use super::{Command, CommandError, may_bear, set};
 use crate::event::Event;
 use crate::makers::{Maker, SketchSettings};
+use crate::names::shortened;
 use crate::picture::material_fault;
-use crate::state::{is_width, shortened, sound};
+use crate::state::{is_width, sound};
 use crate::{Document, DocumentPlant, DocumentStroke, Photo, PhotoPlace, PlantId, StrokeId};
 
 /// A stroke that is to be added.
