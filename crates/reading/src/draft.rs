@@ -257,6 +257,17 @@ impl<'a> Draft<'a> {
         }
     }
 
+    /// Blades drawn in green are leaves where others, or a corolla, were drawn in another colour.
+    pub(crate) fn green_leaves(&mut self) {
+        let green = |k: usize| self.ink.strokes[k].color.is_some_and(is_green);
+        let corollas = self.of_class(StrokeClass::Corolla);
+        if self.blades.iter().map(|b| b.stroke).chain(corollas).all(green) {
+            return;
+        }
+        let leaves: Vec<bool> = self.blades.iter().map(|b| green(b.stroke)).collect();
+        self.blades.iter_mut().zip(leaves).for_each(|(b, green)| b.leaf |= green);
+    }
+
     /// Large scribbles are the crown where nothing else could be one.
     pub(crate) fn scribbled_crowns(&mut self, report: &mut Report) {
         if !self.regions.is_empty() || !self.blades.is_empty() || (!self.bodies.is_empty() && !self.open_top)
@@ -476,4 +487,9 @@ impl<'a> Draft<'a> {
         let lines = self.lines.iter().map(|l| polyline_length(&l.points));
         lines.chain((0..self.forest.axes.len()).map(|r| self.forest.length(r))).fold(0.0, f64::max)
     }
+}
+
+/// Green before all, and neither grey nor nearly black.
+fn is_green([r, g, b]: [u8; 3]) -> bool {
+    g.saturating_sub(r.max(b)) > 15
 }

@@ -229,7 +229,7 @@ fn by_disc(
     if discs.is_empty() {
         return;
     }
-    for (i, blade) in draft.blades.iter().enumerate() {
+    for (i, blade) in draft.blades.iter().enumerate().filter(|(_, b)| !b.leaf) {
         let mut best: Option<(f64, usize, DVec2)> = None;
         index.visit(blade.middle, blade.size.min(0.5) + 0.15, |e, _| {
             let disc = &discs[e.owner].0;
@@ -402,7 +402,7 @@ fn adopt(
         }
     }
     for (i, blade) in draft.blades.iter().enumerate() {
-        if taken[i] || roots[i].is_some() {
+        if taken[i] || blade.leaf || roots[i].is_some() {
             continue;
         }
         let mut best: Option<(f64, usize, DVec2)> = None;

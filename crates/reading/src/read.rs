@@ -4,6 +4,7 @@ use base::Report;
 use ink::{Classified, Ink, Source};
 
 use crate::draft::Draft;
+use crate::rules::GREEN_LEAVES;
 use crate::{
     Kind, PlantReading, READ_AS, Reading, Scored, attach, flowers, inertia, kinds, outlines, rules, several,
     veins,
@@ -235,6 +236,9 @@ fn attempt(
     draft.blades();
     if draft.kind.is_some_and(bears_no_flower) {
         draft.blades.iter_mut().for_each(|b| b.leaf = true);
+    }
+    if !off.contains(&GREEN_LEAVES) {
+        draft.green_leaves();
     }
     let discs = flowers::discs(&draft);
     flowers::corollas(&mut draft, &discs);

@@ -537,6 +537,38 @@ fn read_whole(name: &str, lines: &[Vec<DVec2>]) -> Reading {
 }
 
 #[test]
+fn green_beside_petals_of_another_colour_is_a_leaf() {
+    let mut lines = vec![circle((5.0, 8.0), 0.8)];
+    lines.extend(petals((5.0, 8.0), 8, 3.0));
+    lines.push(line((5.0, 7.2), (5.0, 0.0)));
+    let mut drawing = Drawing::from_polylines("flower", &lines);
+    let of = |drawing: &Drawing, off: &[&str]| {
+        let ink = clean(drawing, &mut Report::default());
+        let class = |k: u32| match k {
+            0 => StrokeClass::Disc,
+            9 => StrokeClass::Axis,
+            _ => StrokeClass::Blade,
+        };
+        let classes: Vec<Classified> = ink.strokes.iter().map(|s| perhaps(class(s.index), 0.9)).collect();
+        let r = read_without(off, &ink, &classes, &mut Report::default());
+        (r.flowers.iter().map(|f| f.petals.len()).sum::<usize>(), r.leaves.len())
+    };
+    let paint = |drawing: &mut Drawing, petal: [u8; 3], two: [u8; 3]| {
+        for (k, s) in drawing.strokes.iter_mut().enumerate() {
+            s.color = Some(if k == 3 || k == 7 { two } else { petal });
+        }
+    };
+    paint(&mut drawing, [200, 30, 60], [40, 150, 50]);
+    assert_eq!(of(&drawing, &[]), (6, 2));
+    assert_eq!(of(&drawing, &["green-leaves"]), (8, 0));
+    // Where all are green, or none is, colours say nothing.
+    paint(&mut drawing, [40, 150, 50], [90, 180, 60]);
+    assert_eq!(of(&drawing, &[]), (8, 0));
+    paint(&mut drawing, [200, 30, 60], [230, 200, 40]);
+    assert_eq!(of(&drawing, &[]), (8, 0));
+}
+
+#[test]
 fn a_tuft_of_grass_in_strokes_down_and_up_again_is_no_crown() {
     let v = |x: f64| path(&[(x - 1.0, 4.0), (x, 0.0), (x + 1.2, 4.0)]);
     let r = guessed(&[

@@ -29,6 +29,8 @@ pub(crate) use as_kind::take_for;
 pub const READ_AS: &str = "read-as";
 /// The rule that what a line is follows from where it lies.
 pub(crate) const VEINS_IN_BLADES: &str = "veins-in-blades";
+/// The rule that petals and leaves are told apart by their colours.
+pub(crate) const GREEN_LEAVES: &str = "green-leaves";
 
 /// Something that the whole drawing says about the class of a stroke.
 #[derive(Clone, Copy, Debug)]
@@ -184,6 +186,12 @@ pub const RULES: &[Rule] = &[
         ANY,
         |_| Findings::default(), // `veins::collect` applies it, because it must know where the blades end
         "A line in a blade is a vein, and one that lies in no blade is a stem.",
+    ),
+    rule(
+        GREEN_LEAVES,
+        ANY,
+        |_| Findings::default(), // `Draft::green_leaves` applies it, because it is about blades that are closed
+        "What is green beside petals of another colour is a leaf, however it stands round their middle.",
     ),
 ];
 
