@@ -537,6 +537,27 @@ fn read_whole(name: &str, lines: &[Vec<DVec2>]) -> Reading {
 }
 
 #[test]
+fn lines_below_a_long_level_line_are_roots() {
+    let mut lines = vec![
+        line((0.0, 5.0), (10.0, 5.05)),
+        line((5.0, 5.0), (5.1, 0.5)),
+        path(&[(5.0, 4.0), (3.5, 2.5)]),
+        path(&[(5.0, 3.0), (6.8, 1.5)]),
+        line((5.0, 5.0), (5.0, 9.0)),
+        leaf((5.0, 7.0), (3.0, 9.0), 0.8),
+        leaf((5.0, 7.5), (7.0, 9.4), 0.8),
+    ];
+    let r = read_whole("root", &lines);
+    assert_eq!(r.strokes[0].class, StrokeClass::Ground, "{:?}", r.strokes);
+    let roots = r.axes.iter().filter(|a| a.kind == AxisKind::Root).count();
+    assert_eq!((roots, r.leaves.len()), (3, 2), "{:?}", r.strokes);
+    // A level twig with an apple that hangs from it is none.
+    lines.truncate(1);
+    lines.extend([line((5.0, 5.0), (5.0, 4.0)), circle((5.0, 2.5), 1.5), line((3.0, 5.0), (3.2, 7.0))]);
+    assert_ne!(read_whole("twig", &lines).strokes[0].class, StrokeClass::Ground);
+}
+
+#[test]
 fn green_beside_petals_of_another_colour_is_a_leaf() {
     let mut lines = vec![circle((5.0, 8.0), 0.8)];
     lines.extend(petals((5.0, 8.0), 8, 3.0));

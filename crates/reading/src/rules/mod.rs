@@ -127,6 +127,12 @@ pub const RULES: &[Rule] = &[
         "An outline that holds nothing but a line along its middle, and lines that leave that one, is a leaf with its veins.",
     ),
     rule(
+        "ground-over-roots",
+        SOME,
+        pots::ground_over_roots,
+        "A long level line on which a plant stands, with nothing but lines below, is the ground over its roots.",
+    ),
+    rule(
         "tree-in-one-stroke",
         FEW,
         trees::tree_in_one_stroke,

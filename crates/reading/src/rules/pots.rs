@@ -1,10 +1,10 @@
-//! The rule about pots.
+//! Rules about what a plant stands in or on: its pot, and the ground over its roots.
 
 use geom::{polyline_length, signed_area, simple_outline};
 use glam::DVec2;
 use ink::StrokeClass;
 
-use super::{Findings, any, unsure};
+use super::{Findings, any, openness, unsure, upright};
 use crate::contour::width_at;
 use crate::draft::Draft;
 use crate::near::bounds;
@@ -17,6 +17,11 @@ const TALL: core::ops::Range<f64> = 0.25..2.0;
 const RIM: f64 = 0.8;
 /// Share of a pot's width that the foot of what stands in it has at most.
 const FOOT: f64 = 0.9;
+/// The ground is a line whose ends are this far apart as a share of its length, and this share of what it bears wide.
+const LEVEL: f64 = 0.95;
+const WIDE: f64 = 0.6;
+/// What begins at the ground begins this near to it.
+const NEAR: f64 = 0.025;
 
 /// A box at the bottom with a flat top on which the plant stands is its pot.
 pub(super) fn pots(draft: &Draft<'_>) -> Findings {
@@ -80,4 +85,39 @@ pub(super) fn pots(draft: &Draft<'_>) -> Findings {
 
 fn contained(inner: (DVec2, DVec2), outer: (DVec2, DVec2)) -> bool {
     inner.0.cmpge(outer.0 - DVec2::splat(0.01)).all() && inner.1.cmple(outer.1 + DVec2::splat(0.01)).all()
+}
+
+/// A long level line on which the plant stands, with nothing but lines below it, is the ground, and what is below are roots.
+pub(super) fn ground_over_roots(draft: &Draft<'_>) -> Findings {
+    let mut found = Findings::default();
+    let strokes = &draft.ink.strokes;
+    let boxes: Vec<(DVec2, DVec2)> = strokes.iter().filter_map(|s| bounds(&s.points)).collect();
+    if boxes.len() != strokes.len() || draft.class.contains(&StrokeClass::Ground) {
+        return found;
+    }
+    for (k, s) in strokes.iter().enumerate() {
+        let (lo, hi) = boxes[k];
+        let level = openness(s) > LEVEL && hi.y - lo.y < 0.08 * (hi.x - lo.x);
+        let others = || boxes.iter().enumerate().filter(|(j, _)| *j != k);
+        let reach = others().map(|(_, b)| *b).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+        let wide = reach.is_some_and(|(l, h)| hi.x - lo.x > WIDE * (h.x - l.x));
+        if !unsure(draft, k) || !level || !wide {
+            continue;
+        }
+        let y = lo.y.midpoint(hi.y);
+        let below: Vec<usize> =
+            others().filter(|(_, b)| b.1.y < y + NEAR && b.0.y < y - NEAR).map(|(j, _)| j).collect();
+        let lines = below.iter().all(|&j| openness(&strokes[j]) > 0.5 && unsure(draft, j));
+        let stands = others().any(|(j, b)| {
+            b.1.y > y + 4.0 * NEAR && b.0.y < y + NEAR && upright(draft, j) && b.0.x > lo.x && b.1.x < hi.x
+        });
+        // Roots hang from the ground or from one another: what lies apart is something else.
+        let hangs = below.iter().any(|&j| boxes[j].1.y > y - NEAR);
+        if lines && stands && hangs {
+            found.settle(k, StrokeClass::Ground);
+            below.into_iter().for_each(|j| found.settle(j, StrokeClass::Axis));
+            break;
+        }
+    }
+    found
 }
