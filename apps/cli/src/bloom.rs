@@ -177,7 +177,7 @@ fn run(args: &BloomRunArgs) -> Outcome {
     if is_drawing(start) {
         return drawn_flower(args, start, law, outputs, &machine);
     }
-    let plants = ["wind", "edits", "lods"];
+    let plants = ["wind", "edits", "lods", "materials"];
     args.given.refuse(&plants, &format!("{flowers} and drawings"), &format!("{} is none", args.start))?;
     if files::extension(&args.output).is_some() {
         // Of scans only surfaces are known, no structure.

@@ -160,7 +160,7 @@ const MESH: [&str; 6] = ["subdivisions", "sides", "rings", "caps", "margin_vein"
 /// What surface the blade is.
 const SURFACE: [&str; 3] = ["surface", "parameters", "vein_weight"];
 /// How the leaf is bent and painted.
-const LOOK: [&str; 3] = ["curl", "wilt", "texture"];
+const LOOK: [&str; 4] = ["curl", "wilt", "texture", "materials"];
 /// A whole plant, and what only that has.
 const PLANT: [&str; 5] = ["plant", "leaves", "height", "azimuth", "edits"];
 /// What else only a leaf has that is made.

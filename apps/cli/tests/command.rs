@@ -450,15 +450,15 @@ fn organs_wear_what_a_file_of_materials_says() {
 fn the_gallery_is_understood() {
     // Least and most of: flowers, petals, leaves, branches.
     const KNOWN: [(&str, [(u64, u64); 4]); 9] = [
-        ("apple-tree", [(0, 0), (0, 0), (300, 3000), (50, 400)]),
+        ("apple-tree", [(0, 0), (0, 0), (300, 12_000), (50, 1_200)]),
         ("cactus", [(0, 0), (0, 0), (0, 0), (3, 3)]),
         ("dandelion", [(1, 1), (9, 16), (4, 4), (1, 9)]),
         ("grass", [(0, 0), (0, 0), (0, 9), (0, 9)]),
         ("house-plant", [(0, 0), (0, 0), (5, 5), (5, 8)]),
         ("maple", [(0, 0), (0, 0), (1, 1), (0, 1)]),
         ("palm", [(0, 0), (0, 0), (8, 8), (1, 1)]),
-        ("pine", [(0, 0), (0, 0), (300, 3000), (50, 400)]),
-        ("poplar", [(0, 0), (0, 0), (300, 3000), (50, 400)]),
+        ("pine", [(0, 0), (0, 0), (300, 12_000), (50, 1_200)]),
+        ("poplar", [(0, 0), (0, 0), (300, 12_000), (50, 1_200)]),
     ];
     let dir = folder("gallery");
     for (name, ranges) in KNOWN {

@@ -55,6 +55,7 @@ const VALUES: &[(&str, &str)] = &[
     ("list", "1"),
     ("lods", "1"),
     ("marks", "found.csv"),
+    ("materials", "materials.toml"),
     ("method", "guided"),
     ("number", "2"),
     ("obstacle", "box.obj"),
@@ -159,6 +160,8 @@ fn inputs(dir: &Path) {
     write("rose.svg", &FLOWER.replace("</svg>", contour));
     write("classes.csv", "1,axis\n");
     write("spec.json", r#"{"height_m": 2}"#);
+    let shaded = "pattern = \"shaded\"\ncolor = \"#aa3355\"";
+    write("materials.toml", &format!("[leaf]\n{shaded}\n[petal]\n{shaded}\n"));
     write("small.toml", SMALL);
     write("bare.toml", &format!("bare = true\n{SMALL}"));
     write("light.toml", "name = \"light\"\n[method]\nkind = \"self-organizing\"\nyears = 3\n");

@@ -225,7 +225,7 @@ fn faults_name_their_field_their_line_and_not_three_megabytes() {
         assert!(told.contains(want), "{want}: {told}");
     }
     let told = bad(&at, &["grow", "oak", "--obstacle", "box.obj", "--obstacle", "flat.obj", "-o", "out.glb"]);
-    assert!(told.contains("obstacle 1 (flat.obj): "), "{told}");
+    assert!(told.contains("obstacle 2 (flat.obj): "), "{told}");
     let long = "x".repeat(3_000_000);
     for (name, text) in [
         ("long.toml", format!("[method]\nkind = \"{long}\"\n")),

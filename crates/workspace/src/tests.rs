@@ -745,9 +745,16 @@ fn an_obstacle_is_moved_as_one_step() {
 #[test]
 fn warnings_are_told_with_their_codes() {
     let mut s = Workspace::default();
-    let scribble: Vec<(f64, f64)> =
-        (0..400).map(|k| (f64::from(k * 37 % 101), f64::from(k * 61 % 97))).collect();
-    s.add_stroke(line(&scribble), Vec::new()).unwrap();
+    // A house is no plant.
+    let house: [&[(f64, f64)]; 4] = [
+        &[(0.0, 0.0), (0.0, 60.0), (100.0, 60.0), (100.0, 0.0), (0.0, 0.0)],
+        &[(-8.0, 60.0), (50.0, 110.0), (108.0, 60.0)],
+        &[(40.0, 0.0), (40.0, 35.0), (60.0, 35.0), (60.0, 0.0)],
+        &[(12.0, 25.0), (12.0, 45.0), (30.0, 45.0), (30.0, 25.0), (12.0, 25.0)],
+    ];
+    for wall in house {
+        s.add_stroke(line(wall), Vec::new()).unwrap();
+    }
     let view = s.evaluate(&run()).unwrap();
     let warned = view.plants.iter().flat_map(|p| &p.warnings).map(|w| w.code).collect::<Vec<_>>();
     assert!(!warned.is_empty() && warned.iter().all(|c| !c.is_empty()), "{warned:?}");

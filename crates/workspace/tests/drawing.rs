@@ -28,7 +28,7 @@ fn gallery() -> Vec<Drawing> {
             .expect("a drawing of our own")
             .drawing
     };
-    files.into_iter().map(read).filter(|d| d.strokes.len() < 20).collect()
+    files.into_iter().map(read).filter(|d| d.strokes.len() < 40).collect()
 }
 
 fn digest(workspace: &mut Workspace) -> String {
@@ -41,11 +41,11 @@ fn strokes(workspace: &mut Workspace) -> Vec<StrokeReport> {
     view.plants[0].item.as_ref().map_or_else(Vec::new, |i| i.strokes.clone())
 }
 
-/// Draws as with a page that keeps what it shows, or not: the requests, how often a stroke that was there became another,
-/// and how many were kept as shown.
+/// Draws as with a page that keeps what it shows, or not: the requests, how often a stroke that was there became what it is
+/// not when the drawing is done, and how many were kept as shown.
 fn draw(drawing: &Drawing, keeps: bool) -> (Workspace, Vec<(Stroke, Shown)>, [usize; 2]) {
     let (mut workspace, mut asked) = (Workspace::default(), Vec::new());
-    let (mut before, mut counts) = (BTreeMap::new(), [0, 0]);
+    let (mut before, mut became, mut kept) = (BTreeMap::new(), Vec::new(), 0);
     for stroke in &drawing.strokes {
         let seen = strokes(&mut workspace);
         let shown: Shown = seen
@@ -59,12 +59,14 @@ fn draw(drawing: &Drawing, keeps: bool) -> (Workspace, Vec<(Stroke, Shown)>, [us
         workspace.add_stroke(stroke.clone(), shown.clone()).expect("a drawing of our own");
         asked.push((stroke.clone(), shown));
         for s in strokes(&mut workspace) {
-            counts[1] += usize::from(s.source == "rule:as-shown");
-            counts[0] +=
-                usize::from(before.insert(s.index, s.class.clone()).is_some_and(|was| was != s.class));
+            kept += usize::from(s.source == "rule:as-shown");
+            if before.insert(s.index, s.class.clone()).is_some_and(|was| was != s.class) {
+                became.push((s.index, s.class));
+            }
         }
     }
-    (workspace, asked, counts)
+    let away = became.iter().filter(|(index, class)| before.get(index) != Some(class)).count();
+    (workspace, asked, [away, kept])
 }
 
 /// What a stroke was shown as stays without need for another, in the document, in its file and when it is done again.

@@ -170,6 +170,12 @@ pub const RULES: &[Rule] = &[
         "A box at the bottom with a flat top on which the plant stands is its pot.",
     ),
     rule(
+        "tangle",
+        ANY,
+        grass::tangles,
+        "A line that crosses itself all over the place is a scribble: petals cross in the middle.",
+    ),
+    rule(
         "zigzag",
         FEW,
         grass::zigzags,
