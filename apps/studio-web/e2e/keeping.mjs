@@ -225,8 +225,10 @@ async function palette({ page, url }) {
   await begin(page, url);
   const n = await sample(page);
   await page.keyboard.press('Control+k');
-  await page.locator('.palette input').fill('layer');
+  await page.locator('.palette input').fill('zlayer');
   await page.locator('.palette .muted', { hasText: 'Nothing is called that' }).waitFor();
+  await page.locator('.palette input').fill('layer');
+  await page.locator('.palette .muted').waitFor({ state: 'detached' });
   await page.keyboard.press('Enter');
   await page.keyboard.press('Escape');
   assert.equal(await count(page, 'strokes'), n);
