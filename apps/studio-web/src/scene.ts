@@ -1,7 +1,7 @@
 /** The list of the scene's plants: choose, name, hide, copy, delete, place; and the way to add another. */
 import type { Command, DocumentState, MakerWord, PlantState, SceneView } from './wire';
 import { t, tell, type TextKey } from './text';
-import { askName, button, closePopover, el, icon, popover } from './ui';
+import { askName, button, closePopover, el, icon, popover, relabel } from './ui';
 
 export type Gizmo = 'translate' | 'rotate' | 'scale';
 
@@ -54,7 +54,15 @@ export class SceneList {
   private current: PlantState | undefined;
   private again: () => void = () => {};
 
-  constructor(private readonly events: SceneEvents) {}
+  private readonly fold = el('button', { type: 'button', class: 'fold', 'data-key': 'fold' });
+  private readonly adder = button('plus', t('scene.add'), () => this.openAdd(this.adder));
+  private readonly head = el('div', { class: 'scene-head' }, this.fold, this.adder);
+
+  constructor(private readonly events: SceneEvents) {
+    this.adder.id = 'b-add';
+    this.adder.setAttribute('data-key', 'add');
+    this.element.append(this.head);
+  }
 
   /** Takes a gizmo, or lays it down. */
   take(mode: Gizmo | undefined): void {
@@ -91,33 +99,27 @@ export class SceneList {
     const rows = this.rows(state, view);
     const folded = this.folds ?? state.plants.length === 1;
     this.element.classList.toggle('folded', folded);
-    const fold = el(
-      'button',
-      {
-        type: 'button',
-        class: 'fold',
-        'data-key': 'fold',
-        'aria-expanded': String(!folded),
-        onclick: () => {
-          this.folds = !folded;
-          this.show(state, view);
-        },
-      },
+    // The head stays what it is: a button that is replaced between press and release is not clicked.
+    this.fold.setAttribute('aria-expanded', String(!folded));
+    this.fold.onclick = () => {
+      this.folds = !folded;
+      this.show(state, view);
+    };
+    this.fold.replaceChildren(
       icon('scene'),
       t('scene.title'),
       el('span', { class: 'muted' }, String(state.plants.length)),
     );
-    const add = button('plus', t('scene.add'), () => this.openAdd(add));
-    add.id = 'b-add';
-    add.setAttribute('data-key', 'add');
-    const content: HTMLElement[] = [el('div', { class: 'scene-head' }, fold, add)];
+    relabel(this.adder, t('scene.add'));
+    const content: HTMLElement[] = [];
     if (!folded) {
       content.push(el('ul', { class: 'plants' }, ...rows));
       const { current } = this;
       if (current && (state.plants.length > 1 || current.maker !== 'sketch'))
         content.push(this.placing(current));
     }
-    this.element.replaceChildren(...content);
+    while (this.head.nextSibling) this.head.nextSibling.remove();
+    this.element.append(...content);
     if (focused)
       this.element
         .querySelector<HTMLElement>(`[data-key="${CSS.escape(focused)}"]`)
