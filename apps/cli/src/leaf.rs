@@ -147,7 +147,7 @@ fn check_used(args: &LeafArgs) -> Outcome {
         given.refuse(&["side_veins"], "lobed leaves", "parallel veins have none between them")?;
     }
     if args.scan {
-        let others = ["thickness", "side_veins", "graph", "length", "number"];
+        let others = ["thickness", "side_veins", "graph", "length", "number", "materials"];
         for options in [&MESH[..], &SURFACE, &LOOK, &others] {
             given.refuse(options, "leaves of marks and veins", "--scan makes the surface that it finds")?;
         }
@@ -160,12 +160,13 @@ const MESH: [&str; 6] = ["subdivisions", "sides", "rings", "caps", "margin_vein"
 /// What surface the blade is.
 const SURFACE: [&str; 3] = ["surface", "parameters", "vein_weight"];
 /// How the leaf is bent and painted.
-const LOOK: [&str; 4] = ["curl", "wilt", "texture", "materials"];
+const LOOK: [&str; 3] = ["curl", "wilt", "texture"];
 /// A whole plant, and what only that has.
 const PLANT: [&str; 5] = ["plant", "leaves", "height", "azimuth", "edits"];
 /// What else only a leaf has that is made.
-const MADE: [&str; 13] = [
+const MADE: [&str; 14] = [
     "lods",
+    "materials",
     "number",
     "length",
     "thickness",
