@@ -91,7 +91,7 @@ function inPage(id) {
 
 const sums = { pages: 0, browsers: 0, strokes: 0, loading: 0, unsaved: 0 };
 const wrong = [];
-const hands = Array.from({ length: HANDS }, () => ({ id: '', done: 0, saved: 0 }));
+const hands = Array.from({ length: HANDS }, () => ({ id: '', done: 0, saved: 0, end: '' }));
 const pause = (ms) =>
   new Promise((r) => {
     setTimeout(r, ms);
@@ -117,7 +117,9 @@ async function check(hand) {
   if (hand.id === '') return;
   const found = await hand.page.evaluate(() => Number(document.body.dataset.strokes));
   if (found < Math.max(hand.saved, hand.done - 1))
-    wrong.push(`${found} strokes of ${hand.done}, of which ${hand.saved} were called saved (${hand.id})`);
+    wrong.push(
+      `${found} strokes of ${hand.done}, of which ${hand.saved} were called saved (${hand.id}, ${hand.end})`,
+    );
   sums.unsaved += Math.max(hand.done - found, 0);
   [hand.done, hand.saved] = [found, found];
 }
@@ -141,6 +143,7 @@ for (let round = 0; sums.pages + sums.browsers * HANDS < kills; round += 1) {
     const { early, at, gap } = plans[i];
     hand.page = await context.newPage();
     const opening = open(hand);
+    const end = `${whole ? 'the whole browser' : 'the page'} killed ${early ? 'while it opened' : `after ${at.toFixed(0)} ms`}`;
     if (early) {
       await Promise.race([pause(at), opening]);
       sums.loading += 1;
@@ -151,6 +154,7 @@ for (let round = 0; sums.pages + sums.browsers * HANDS < kills; round += 1) {
       await hand.page.evaluate((g) => window.draw(g), gap);
       await pause(at);
     }
+    hand.end = end;
     if (whole) return;
     const cdp = await context.newCDPSession(hand.page);
     await Promise.race([cdp.send('Page.crash').catch(() => {}), pause(500)]);
