@@ -76,10 +76,14 @@ impl Score {
         self.confusion[class].iter().sum()
     }
 
-    /// Of the classes with enough clear strokes.
-    fn macro_f1(&self) -> f64 {
+    /// The classes with enough clear strokes.
+    fn counted(&self) -> Vec<usize> {
         let enough = |k: &usize| u64::from(self.labelled(*k)) >= FEW_CLEAR as u64 * DEALINGS;
-        self.mean_f1(&(0..StrokeClass::ALL.len()).filter(enough).collect::<Vec<_>>())
+        (0..StrokeClass::ALL.len()).filter(enough).collect()
+    }
+
+    fn macro_f1(&self) -> f64 {
+        self.mean_f1(&self.counted())
     }
 
     fn mean_f1(&self, classes: &[usize]) -> f64 {
@@ -112,9 +116,6 @@ pub(crate) fn block(rows: &[StrokeRow], sketches: &Path, fixtures: &Path) -> Res
     let (end, rest): (Vec<Sheet<'_>>, Vec<Sheet<'_>>) = labelled.into_iter().partition(Sheet::is_of_the_end);
     let last = Score::of(&end, &[]);
     let labelled: Vec<Sheet<'_>> = end.into_iter().chain(rest).collect();
-    let counted: Vec<usize> = (0..StrokeClass::ALL.len())
-        .filter(|&k| u64::from(all.labelled(k)) >= FEW_CLEAR as u64 * DEALINGS)
-        .collect();
     let strokes = labelled.iter().flat_map(|s| &s.rows);
     let count =
         |source, clear| strokes.clone().filter(|r| r.source == source && r.is_clear() == clear).count();
@@ -137,7 +138,7 @@ pub(crate) fn block(rows: &[StrokeRow], sketches: &Path, fixtures: &Path) -> Res
         all.macro_f1(),
         last.right(),
         (0..StrokeClass::ALL.len()).map(|k| last.labelled(k)).sum::<u32>(),
-        last.mean_f1(&counted),
+        last.mean_f1(&all.counted()),
         fixtures.len(),
         others.len(),
     );

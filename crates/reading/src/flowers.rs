@@ -180,13 +180,14 @@ pub(crate) fn gather(
     let n = draft.blades.len();
     let mut flowers: Vec<FlowerDraft> = Vec::new();
     let mut roots: Vec<Option<DVec2>> = draft.blades.iter().map(|b| b.root).collect();
-    let mut taken = vec![false; n];
+    // Of no flower: what is surely a leaf, too.
+    let mut taken: Vec<bool> = draft.blades.iter().map(|b| b.leaf).collect();
     let usual = median(draft.blades.iter().map(|b| b.size)).unwrap_or(0.1);
 
     by_disc(draft, discs, &mut flowers, &mut roots, &mut taken);
     on_rings(draft, usual, (bearers, discs), &mut flowers, &mut roots, &mut taken);
     // Petals begin and end at the centre: the pen's own gap tells before anything that happens to touch.
-    let free: Vec<usize> = (0..n).filter(|&i| !taken[i] && !draft.blades[i].leaf).collect();
+    let free: Vec<usize> = (0..n).filter(|&i| !taken[i]).collect();
     let gaps: Vec<DVec2> = free.iter().map(|&i| draft.blades[i].gap).collect();
     for members in clusters(&gaps, BANDWIDTH * usual) {
         let members: Vec<usize> = members.into_iter().map(|m| free[m]).collect();
@@ -229,7 +230,10 @@ fn by_disc(
     if discs.is_empty() {
         return;
     }
-    for (i, blade) in draft.blades.iter().enumerate().filter(|(_, b)| !b.leaf) {
+    for (i, blade) in draft.blades.iter().enumerate() {
+        if taken[i] {
+            continue;
+        }
         let mut best: Option<(f64, usize, DVec2)> = None;
         index.visit(blade.middle, blade.size.min(0.5) + 0.15, |e, _| {
             let disc = &discs[e.owner].0;
@@ -259,9 +263,7 @@ fn on_rings(
     roots: &mut [Option<DVec2>],
     taken: &mut [bool],
 ) {
-    let free: Vec<usize> = (0..draft.blades.len())
-        .filter(|&i| !taken[i] && roots[i].is_none() && !draft.blades[i].leaf)
-        .collect();
+    let free: Vec<usize> = (0..draft.blades.len()).filter(|&i| !taken[i] && roots[i].is_none()).collect();
     if free.len() > MOST_ROOTS {
         return;
     }
@@ -353,9 +355,7 @@ fn rosettes(
     roots: &mut [Option<DVec2>],
     taken: &mut [bool],
 ) {
-    let free: Vec<usize> = (0..draft.blades.len())
-        .filter(|&i| !taken[i] && roots[i].is_none() && !draft.blades[i].leaf)
-        .collect();
+    let free: Vec<usize> = (0..draft.blades.len()).filter(|&i| !taken[i] && roots[i].is_none()).collect();
     if free.len() < 3 || free.len() > MOST_ROOTS {
         return;
     }
@@ -402,7 +402,7 @@ fn adopt(
         }
     }
     for (i, blade) in draft.blades.iter().enumerate() {
-        if taken[i] || blade.leaf || roots[i].is_some() {
+        if taken[i] || roots[i].is_some() {
             continue;
         }
         let mut best: Option<(f64, usize, DVec2)> = None;
