@@ -63,7 +63,7 @@ pub(crate) fn crosses_ray(a: DVec2, b: DVec2, p: DVec2) -> bool {
 fn hull_indices(points: &[DVec2]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).filter(|&i| points[i].usable()).collect();
     let key = |i: usize| (points[i].x + 0.0, points[i].y + 0.0); // + 0.0: no negative zero
-    order.sort_by(|&a, &b| {
+    base::sort_by(&mut order, |&a, &b| {
         let (p, q) = (key(a), key(b));
         p.0.total_cmp(&q.0).then(p.1.total_cmp(&q.1)).then(a.cmp(&b))
     });
