@@ -280,6 +280,10 @@ async function anybody({ page, url }) {
   await look('an empty page');
   await sample(page);
   await look('a drawing');
+  await page.keyboard.press('Shift+L');
+  await page.locator('.layers [aria-pressed="true"]').first().waitFor();
+  await look('layers');
+  await page.keyboard.press('Escape');
   await add(page, 'tree', 'hazel');
   await until(page, 'triangles', ['above', 1000], 'a hazel');
   await look('a tree and its panel');

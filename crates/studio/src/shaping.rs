@@ -41,7 +41,8 @@ impl EditReport {
     pub(crate) fn warning(&self, edits: &[PlantEdit]) -> Option<Warning> {
         let word = edits.get(self.index).map_or("edit", |e| e.edit.word());
         let message = || format!("edit {} by hand ({word}): {}", self.index, self.said);
-        let fields = || vec![("edit", self.index.to_string()), ("word", word.to_owned())];
+        let why = || ("why", self.code.clone());
+        let fields = || vec![("edit", self.index.to_string()), ("word", word.to_owned()), why()];
         (!self.done).then(|| Warning { code: "edit-not-done", message: message(), fields: fields() })
     }
 }

@@ -10,7 +10,7 @@ const MAKERS: [&str; 7] = ["bloom", "growth", "ink", "leaf", "reading", "sketch"
 /// Told in other ways than by a call of `warn` with the code in it.
 const NAMED: [(&str, &[&str]); 5] = [
     ("unlike-a-plant", &[]),
-    ("edit-not-done", &["edit", "word"]),
+    ("edit-not-done", &["edit", "word", "why"]),
     ("sample-skipped", &["stroke", "count"]),
     ("stray-skipped", &["stroke", "count"]),
     ("growth-too-much", &["year", "years", "joints", "next", "most"]),

@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import { CODES } from '../wire';
-import { setLanguage, tell } from './index';
+import { setLanguage, tell, warning } from './index';
 import { zhErrors } from './zh-errors';
 
 const placeholders = (text: string): string[] => [...text.matchAll(/\{(\w+)\}/g)].map((m) => m[1]!);
@@ -22,5 +22,13 @@ describe('refusals', () => {
     expect(tell(refusal)).toBe('文档里的植物已满，请新建一个');
     expect(tell({ ...refusal, code: 'new' })).toBe('the document is full');
     await setLanguage('en');
+  });
+
+  it('of edits say in words which edit and why', async () => {
+    const told = { code: 'edit-not-done', fields: { edit: '0', word: 'prune', why: 'branch-gone' } };
+    await setLanguage('zh');
+    expect(warning({ ...told, message: '' })).toBe('手工修改 0（修剪）没有做：枝条已不存在');
+    await setLanguage('en');
+    expect(warning({ ...told, message: 'edit 0' })).toBe('edit 0');
   });
 });

@@ -45,7 +45,9 @@ export function warning({ code, fields, message }: WarningView): string {
   const texts = other();
   const told = (name: string): string => {
     const value = fields[name] ?? '';
-    return texts?.zhWords[value] ?? value;
+    // What an edit by hand is called, and why it was not done.
+    const group = { word: 'edit', why: 'why' }[name];
+    return texts?.zhWords[value] ?? (group ? tOf(group, value) : value);
   };
   return texts?.zhWarnings[code]?.replace(/\{(\w+)\}/g, (_, name: string) => told(name)) ?? message;
 }

@@ -217,7 +217,7 @@ export const zhWarnings: Record<string, string> = {
   'no-such-flower': '要翻转的花 {flower} 不存在：共有 {count} 朵，从 0 数起',
   'no-leaves': '这株植物没有叶片可以换成所选的叶形',
   photo: '无法读取照片，或照片没有用上',
-  'edit-not-done': '手工修整 {edit}（{word}）没有做',
+  'edit-not-done': '手工修改 {edit}（{word}）没有做：{why}',
   'attraction-raised': '吸引距离 {attraction} 米小于消除距离：两者都用了 {kill} 米',
   'step-long': '生长步长 {step} 米太长，可能越过吸引点：{kill} 米以内的点才会消除',
   'attractors-unusable': '{all} 个吸引点里有 {count} 个不是可用的数字，或离得太远',
