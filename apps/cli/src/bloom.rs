@@ -14,7 +14,7 @@ use burgeon::{
 };
 use serde::Serialize;
 
-use crate::args::{AxesArgs, BloomCommand, BloomRunArgs, PictureArgs, PlantFormat};
+use crate::args::{AxesArgs, BloomCommand, BloomRunArgs, FrameWord, PictureArgs, PlantFormat};
 use crate::failure::{Failure, Outcome};
 use crate::files::Goal;
 use crate::machine::Machine;
@@ -22,7 +22,7 @@ use crate::materials::Materials;
 use crate::output::Outputs;
 use crate::petals::{drawing, is_drawing, petal_form};
 use crate::stages::{self, Loaded};
-use crate::{edits, files, fit, inputs, names, picture, report, say};
+use crate::{edits, files, fit, inputs, names, picture, poses, report, say};
 
 /// Distances in millimetres: measured to reconstructed, and back.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -77,6 +77,11 @@ struct MotionReport {
     lattice: Option<[usize; 3]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<ErrorReport>,
+    /// The error after the best rigid move of the shape onto the scan.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    aligned: Option<ErrorReport>,
+    /// How plant and organs moved between scans.
+    poses: Vec<poses::Told>,
     /// What the registration of each organ left.
     residuals: Vec<ResidualReport>,
     /// Share of petal triangles that cross another petal, at each frame of a flower.
@@ -192,43 +197,69 @@ fn run(args: &BloomRunArgs) -> Outcome {
     outputs.check()?;
     let first_day = loaded.stages.first().map_or(0.0, |s| s.day);
     let last_day = loaded.stages.last().map_or(0.0, |s| s.day);
-    let law = law.unwrap_or_else(|| straight_law(last_day - first_day));
+    let law = law.unwrap_or_else(|| GrowthLaw::even(first_day, last_day));
     let spec = MotionSpec {
         register: RegisterSpec { counts: args.lattice, ..RegisterSpec::default() },
         straight: args.straight,
     };
     let compute = machine.run();
-    let (motion, fit_ms) = machine.timed(|| {
-        machine.with_progress("registration", |_| Motion::new(&loaded.stages, law, spec, &compute))
+    let (made, fit_ms) = machine.timed(|| {
+        machine.with_progress("registration", |_| {
+            let settled = bloom::settle(&loaded.stages, &spec.register, &compute)?;
+            // A cloud of one day has no vertices to keep: it holds the points of both scans round it.
+            let motion = match args.day {
+                Some(_) if loaded.mesh.is_none() => None,
+                _ => Some(Motion::new(&settled.stages, law.clone(), spec, &compute)?),
+            };
+            Ok((settled, motion))
+        })
     });
-    let motion = motion.map_err(Failure::bloom(start))?;
-    let mut error = None;
+    let (settled, motion) = made.map_err(Failure::bloom(start))?;
+    let shape = |day: f64, frame: FrameWord| -> Outcome<Organs> {
+        let mut organs = match &motion {
+            Some(motion) => {
+                let points = motion.at(day - first_day, &compute).map_err(Failure::bloom(start))?;
+                Organs { rows: motion.organs.clone(), points }
+            }
+            None => Organs::of(settled.day(&law, &spec, day, &compute).map_err(Failure::bloom(start))?),
+        };
+        if frame == FrameWord::Scanner {
+            let pose = settled.pose(day);
+            organs.points.iter_mut().for_each(|p| *p = pose.apply(*p));
+        }
+        Ok(organs)
+    };
+    let (mut error, mut aligned) = (None, None);
     if let (Some(scan), Some(day)) = (&args.compare, args.day) {
         // As the stages are: their file may say unit and up axis.
         let measured = stages::read_points(scan, &mut loaded, options.clean, Seed::new(args.seed), &machine)?;
-        let shape = motion.at(day - first_day, &compute).map_err(Failure::bloom(scan))?;
-        let e = ErrorReport::from(bloom::compare(&measured, &shape, &compute).map_err(Failure::bloom(scan))?);
+        let shape = shape(day, FrameWord::Scanner)?.points;
+        let against = |shape: &[DVec3]| bloom::compare(&measured, shape, &compute).map(ErrorReport::from);
+        let e = against(&shape).map_err(Failure::bloom(scan))?;
         if e.mean_mm.max(e.back_mean_mm) > 500.0 * extent(&shape) {
             loaded.warnings.push(format!(
                 "{}: is half the plant's size away from it; is its unit that of the stages?",
                 scan.display()
             ));
         }
+        let pose = bloom::best_move(&shape, &measured, &compute).map_err(Failure::bloom(scan))?;
+        let moved: Vec<DVec3> = shape.iter().map(|&p| pose.apply(p)).collect();
         error = Some(e);
+        aligned = Some(against(&moved).map_err(Failure::bloom(scan))?);
     }
     let mut show = Show {
         name: loaded.name.clone(),
         days: [first_day, last_day],
         best: last_day,
         shape: Box::new(|day| {
-            let points = motion.at(day - first_day, &compute).map_err(Failure::bloom(start))?;
+            let Organs { rows, points } = shape(day, args.frame)?;
             // What single precision holds, squares included.
             if !points.iter().all(|p| p.abs().max_element() <= 1e15) {
                 let line =
                     format!("on day {day} the shape has no finite size; choose a day nearer to the stages");
                 return Err(Failure::at(start, line));
             }
-            let model = burgeon::motion_model(&loaded.name, loaded.mesh.as_ref(), &motion, &points);
+            let model = burgeon::motion_model(&loaded.name, loaded.mesh.as_ref(), &rows, &points);
             let model = Model { offset_m: loaded.origin.offset_m, ..model };
             Ok(Shown { plant: None, model, lods: Vec::new(), overlap: None })
         }),
@@ -238,7 +269,7 @@ fn run(args: &BloomRunArgs) -> Outcome {
     let mut head = report::of_one("bloom run", args.seed, &args.start, &loaded.name, &args.output);
     head.input.offset_m = loaded.origin.told(&loaded.axes);
     head.items[0].warnings.clone_from(&loaded.warnings);
-    let residuals = motion.residuals.iter().map(|(organ, from, to, e)| ResidualReport {
+    let residuals = motion.iter().flat_map(|m| &m.residuals).map(|(organ, from, to, e)| ResidualReport {
         organ: organ.clone(),
         from_day: from + first_day,
         to_day: to + first_day,
@@ -249,6 +280,8 @@ fn run(args: &BloomRunArgs) -> Outcome {
         head,
         residuals,
         error,
+        aligned,
+        poses: settled.steps.iter().map(poses::Told::from).collect(),
         stages: loaded.told.clone(),
         lattice: Some(args.lattice),
         times: [read_ms, fit_ms, write_ms],
@@ -261,9 +294,18 @@ struct Told {
     head: RunReport,
     residuals: Vec<ResidualReport>,
     error: Option<ErrorReport>,
+    aligned: Option<ErrorReport>,
+    poses: Vec<poses::Told>,
     stages: Vec<stages::Told>,
     lattice: Option<[usize; 3]>,
     times: [f64; 3],
+}
+
+impl Told {
+    fn of_flower(head: RunReport, times: [f64; 3]) -> Self {
+        let (residuals, poses, stages) = (vec![], vec![], vec![]);
+        Self { head, residuals, error: None, aligned: None, poses, stages, lattice: None, times }
+    }
 }
 
 fn tell(
@@ -285,6 +327,8 @@ fn tell(
         day: args.day,
         lattice: told.lattice,
         error: told.error,
+        aligned: told.aligned,
+        poses: told.poses,
         residuals: told.residuals,
         overlap: written.overlap,
         stages: told.stages,
@@ -308,6 +352,13 @@ fn tell(
                 e.back_max_mm
             ));
         }
+        if let Some(e) = &report.aligned {
+            say::line(&format!(
+                "after the best rigid move: scan to model {:.3} mm mean, model to scan {:.3}",
+                e.mean_mm, e.back_mean_mm
+            ));
+        }
+        report.poses.iter().flat_map(poses::Told::lines).for_each(|l| say::line(&l));
         let frames = say::counted(u64::from(report.frames), "shape", "shapes");
         let points = say::counted(item.counts.vertices, "point", "points");
         say::line(&format!(
@@ -319,18 +370,29 @@ fn tell(
     Ok(())
 }
 
+/// Points of a day, and the rows of each organ.
+struct Organs {
+    rows: Vec<(String, core::ops::Range<usize>)>,
+    points: Vec<DVec3>,
+}
+
+impl Organs {
+    fn of(organs: Vec<(String, Vec<DVec3>)>) -> Self {
+        let mut out = Self { rows: Vec::new(), points: Vec::new() };
+        for (name, points) in organs {
+            let start = out.points.len();
+            out.points.extend(points);
+            out.rows.push((name, start..out.points.len()));
+        }
+        out
+    }
+}
+
 /// The largest side of the box round some points.
 fn extent(points: &[DVec3]) -> f64 {
     let none = [DVec3::INFINITY, DVec3::NEG_INFINITY];
     let [low, high] = points.iter().fold(none, |[a, b], &p| [a.min(p), b.max(p)]);
     (high - low).max_element()
-}
-
-fn straight_law(span: f64) -> GrowthLaw {
-    let mut law = GrowthLaw::logistic("straight", span.max(1e-9), 1.0);
-    // A law without say: the pace is a straight line.
-    law.laws.iter_mut().for_each(|l| l.r2 = 0.0);
-    law
 }
 
 fn load_shapes(
@@ -398,7 +460,8 @@ fn check_used(args: &BloomRunArgs) -> Outcome {
 /// Fails on options of scans.
 fn no_scans(args: &BloomRunArgs, name: &str) -> Outcome {
     let given = &args.given;
-    let options = ["end", "compare", "lattice", "straight", "whole", "no_clean", "start_day", "end_day"];
+    let options =
+        ["end", "compare", "lattice", "straight", "frame", "whole", "no_clean", "start_day", "end_day"];
     given.refuse(&options, "scans and models", &format!("{name} is a whole flower"))?;
     let folder = files::extension(&args.output).is_none();
     let written =
@@ -459,7 +522,7 @@ fn drawn_flower(
     let (written, write_ms) = machine.timed(|| write_show(args, &mut show, &axes, &mut outputs, machine));
     let written = written?;
     let times = [read_ms, made_ms, write_ms];
-    let told = Told { head, residuals: vec![], error: None, stages: vec![], lattice: None, times };
+    let told = Told::of_flower(head, times);
     tell(args, machine, told, written, outputs)
 }
 
@@ -528,7 +591,7 @@ fn flower(
     let (written, write_ms) = machine.timed(|| write_show(args, &mut show, &axes, &mut outputs, machine));
     let written = written?;
     let times = [0.0, 0.0, write_ms];
-    let told = Told { head, residuals: vec![], error: None, stages: vec![], lattice: None, times };
+    let told = Told::of_flower(head, times);
     tell(args, machine, told, written, outputs)
 }
 
