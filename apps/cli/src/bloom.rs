@@ -2,14 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use burgeon::bloom::{self, FlowerSpec, GrowthLaw, Motion, MotionSpec, RegisterSpec, ShapeError};
+use burgeon::bloom::{
+    self, BloomError, FlowerSpec, GrowthLaw, Motion, MotionSpec, RegisterSpec, Settled, ShapeError,
+};
 use burgeon::document::PlantEdit;
 use burgeon::formats::{ExportSpec, ModelFormat, Morph, PngCache, write_cloud_ply, write_glb_morph};
 use burgeon::glam::DVec3;
 use burgeon::mesh::{Model, PointCloud};
 use burgeon::plant::{Measures, Plant};
 use burgeon::{
-    Counts, Digest, FlowerOptions, MakeError, OpeningError, OpeningPlant, RunReport, Seed, Stopped,
+    Counts, Digest, FlowerOptions, MakeError, OpeningError, OpeningPlant, Run, RunReport, Seed, Stopped,
     make_flower,
 };
 use serde::Serialize;
@@ -198,61 +200,25 @@ fn run(args: &BloomRunArgs) -> Outcome {
     let first_day = loaded.stages.first().map_or(0.0, |s| s.day);
     let last_day = loaded.stages.last().map_or(0.0, |s| s.day);
     let law = law.unwrap_or_else(|| GrowthLaw::even(first_day, last_day));
-    let spec = MotionSpec {
-        register: RegisterSpec { counts: args.lattice, ..RegisterSpec::default() },
-        straight: args.straight,
-    };
     let compute = machine.run();
-    let (made, fit_ms) = machine.timed(|| {
-        machine.with_progress("registration", |_| {
-            let settled = bloom::settle(&loaded.stages, &spec.register, &compute)?;
-            // A cloud of one day has no vertices to keep: it holds the points of both scans round it.
-            let motion = match args.day {
-                Some(_) if loaded.mesh.is_none() => None,
-                _ => Some(Motion::new(&settled.stages, law.clone(), spec, &compute)?),
-            };
-            Ok((settled, motion))
-        })
-    });
-    let (settled, motion) = made.map_err(Failure::bloom(start))?;
-    let shape = |day: f64, frame: FrameWord| -> Outcome<Organs> {
-        let mut organs = match &motion {
-            Some(motion) => {
-                let points = motion.at(day - first_day, &compute).map_err(Failure::bloom(start))?;
-                Organs { rows: motion.organs.clone(), points }
-            }
-            None => Organs::of(settled.day(&law, &spec, day, &compute).map_err(Failure::bloom(start))?),
-        };
-        if frame == FrameWord::Scanner {
-            let pose = settled.pose(day);
-            organs.points.iter_mut().for_each(|p| *p = pose.apply(*p));
-        }
-        Ok(organs)
-    };
-    let (mut error, mut aligned) = (None, None);
-    if let (Some(scan), Some(day)) = (&args.compare, args.day) {
-        // As the stages are: their file may say unit and up axis.
-        let measured = stages::read_points(scan, &mut loaded, options.clean, Seed::new(args.seed), &machine)?;
-        let shape = shape(day, FrameWord::Scanner)?.points;
-        let against = |shape: &[DVec3]| bloom::compare(&measured, shape, &compute).map(ErrorReport::from);
-        let e = against(&shape).map_err(Failure::bloom(scan))?;
-        if e.mean_mm.max(e.back_mean_mm) > 500.0 * extent(&shape) {
-            loaded.warnings.push(format!(
-                "{}: is half the plant's size away from it; is its unit that of the stages?",
-                scan.display()
-            ));
-        }
-        let pose = bloom::best_move(&shape, &measured, &compute).map_err(Failure::bloom(scan))?;
-        let moved: Vec<DVec3> = shape.iter().map(|&p| pose.apply(p)).collect();
-        error = Some(e);
-        aligned = Some(against(&moved).map_err(Failure::bloom(scan))?);
-    }
+    let (made, fit_ms) =
+        machine.timed(|| machine.with_progress("registration", |_| Scans::new(args, &loaded, law, &compute)));
+    let made = made.map_err(Failure::bloom(start))?;
+    let told_apart = made.settled.steps.iter().any(|s| s.organs.len() > 1);
+    let users = "plants of which two organs or more are there on two days";
+    args.given.only_if(
+        told_apart,
+        &["frame"],
+        users,
+        "here nothing tells the plant's motion from the organ's",
+    )?;
+    let errors = compared(args, &made, &mut loaded, options, &machine)?;
     let mut show = Show {
         name: loaded.name.clone(),
         days: [first_day, last_day],
         best: last_day,
         shape: Box::new(|day| {
-            let Organs { rows, points } = shape(day, args.frame)?;
+            let Organs { rows, points } = made.shape(day, args.frame)?;
             // What single precision holds, squares included.
             if !points.iter().all(|p| p.abs().max_element() <= 1e15) {
                 let line =
@@ -269,24 +235,108 @@ fn run(args: &BloomRunArgs) -> Outcome {
     let mut head = report::of_one("bloom run", args.seed, &args.start, &loaded.name, &args.output);
     head.input.offset_m = loaded.origin.told(&loaded.axes);
     head.items[0].warnings.clone_from(&loaded.warnings);
-    let residuals = motion.iter().flat_map(|m| &m.residuals).map(|(organ, from, to, e)| ResidualReport {
-        organ: organ.clone(),
-        from_day: from + first_day,
-        to_day: to + first_day,
-        error: ErrorReport::from(*e),
-    });
-    let residuals = residuals.collect();
+    head.items[0].warnings.extend(no_pace(args, &made.law));
     let told = Told {
         head,
-        residuals,
-        error,
-        aligned,
-        poses: settled.steps.iter().map(poses::Told::from).collect(),
+        residuals: made.residuals(),
+        error: errors.map(|e| e.0),
+        aligned: errors.map(|e| e.1),
+        poses: made.settled.steps.iter().map(poses::Told::from).collect(),
         stages: loaded.told.clone(),
         lattice: Some(args.lattice),
         times: [read_ms, fit_ms, write_ms],
     };
     tell(args, &machine, told, written, outputs)
+}
+
+/// Scans on their way from day to day.
+struct Scans<'a> {
+    start: &'a Path,
+    compute: &'a Run<'a>,
+    settled: Settled,
+    /// None for one day of clouds.
+    motion: Option<Motion>,
+    law: GrowthLaw,
+    spec: MotionSpec,
+    first_day: f64,
+}
+
+impl<'a> Scans<'a> {
+    fn new(
+        args: &'a BloomRunArgs,
+        loaded: &Loaded,
+        law: GrowthLaw,
+        compute: &'a Run<'a>,
+    ) -> Result<Self, BloomError> {
+        let spec = MotionSpec {
+            register: RegisterSpec { counts: args.lattice, ..RegisterSpec::default() },
+            straight: args.straight,
+        };
+        let settled = bloom::settle(&loaded.stages, &spec.register, compute)?;
+        // A cloud of one day has no vertices to keep: it holds the points of both scans round it.
+        let motion = match args.day {
+            Some(_) if loaded.mesh.is_none() => None,
+            _ => Some(Motion::new(&settled.stages, law.clone(), spec, compute)?),
+        };
+        let first_day = loaded.stages.first().map_or(0.0, |s| s.day);
+        Ok(Self { start: Path::new(&args.start), compute, settled, motion, law, spec, first_day })
+    }
+
+    fn shape(&self, day: f64, frame: FrameWord) -> Outcome<Organs> {
+        let failed = Failure::bloom(self.start);
+        let mut organs = match &self.motion {
+            Some(motion) => {
+                let points = motion.at(day - self.first_day, self.compute).map_err(failed)?;
+                Organs { rows: motion.organs.clone(), points }
+            }
+            None => Organs::of(self.settled.day(&self.law, &self.spec, day, self.compute).map_err(failed)?),
+        };
+        if frame == FrameWord::Scanner {
+            let pose = self.settled.pose(day);
+            organs.points.iter_mut().for_each(|p| *p = pose.apply(*p));
+        }
+        Ok(organs)
+    }
+
+    /// What each registration left.
+    fn residuals(&self) -> Vec<ResidualReport> {
+        let of_motion = self.motion.iter().flat_map(|m| &m.residuals);
+        let of_motion =
+            of_motion.map(|(organ, from, to, e)| (organ, from + self.first_day, to + self.first_day, e));
+        let of_steps = self.settled.steps.iter().filter(|_| self.motion.is_none());
+        let of_steps =
+            of_steps.flat_map(|s| s.organs.iter().map(|o| (&o.organ, s.from_day, s.to_day, &o.residual)));
+        let told = of_motion.chain(of_steps).map(|(organ, from_day, to_day, e)| {
+            let (organ, error) = (organ.clone(), ErrorReport::from(*e));
+            ResidualReport { organ, from_day, to_day, error }
+        });
+        told.collect()
+    }
+}
+
+/// The error against the scan of --compare: as the shape stands, and after its best rigid move.
+fn compared(
+    args: &BloomRunArgs,
+    made: &Scans<'_>,
+    loaded: &mut Loaded,
+    options: stages::Options,
+    machine: &Machine,
+) -> Outcome<Option<(ErrorReport, ErrorReport)>> {
+    let (Some(scan), Some(day)) = (&args.compare, args.day) else { return Ok(None) };
+    // As the stages are: their file may say unit and up axis.
+    let measured = stages::read_points(scan, loaded, options.clean, Seed::new(args.seed), machine)?;
+    let shape = made.shape(day, FrameWord::Scanner)?.points;
+    let against = |shape: &[DVec3]| bloom::compare(&measured, shape, made.compute).map(ErrorReport::from);
+    let error = against(&shape).map_err(Failure::bloom(scan))?;
+    if error.mean_mm.max(error.back_mean_mm) > 500.0 * extent(&shape) {
+        loaded.warnings.push(format!(
+            "{}: is half the plant's size away from it; is its unit that of the stages?",
+            scan.display()
+        ));
+    }
+    let pose = bloom::best_move(&shape, &measured, made.compute).map_err(Failure::bloom(scan))?;
+    let moved: Vec<DVec3> = shape.iter().map(|&p| pose.apply(p)).collect();
+    Ok(Some((error, against(&moved).map_err(Failure::bloom(scan))?)))
 }
 
 /// Everything that the report of `run` is made of, beside what was written.
@@ -386,6 +436,15 @@ impl Organs {
         }
         out
     }
+}
+
+/// What is said of a law that sets no pace.
+fn no_pace(args: &BloomRunArgs, law: &GrowthLaw) -> Option<String> {
+    let path = args.law.as_ref().filter(|_| !law.sets_pace())?;
+    Some(format!(
+        "{}: its stages determine no law that moves: everything goes at an even pace",
+        path.display()
+    ))
 }
 
 /// The largest side of the box round some points.
@@ -507,6 +566,7 @@ fn drawn_flower(
     let axes = files::axes(args.axes.up, args.axes.unit);
     let mut head = report::of_one("bloom run", args.seed, &args.start, &plant.name, &args.output);
     head.items[0].warnings.clone_from(&plant.item.warnings);
+    head.items[0].warnings.extend(no_pace(args, &law));
     head.items[0].edits.clone_from(&plant.item.edits);
     let mut show = Show {
         name: files::stem(path),
@@ -568,6 +628,7 @@ fn flower(
         Stopped::OverBudget(much) => Failure::at(Path::new(&args.start), much),
     };
     let mut head = report::of_one("bloom run", args.seed, &args.start, &spec.name, &args.output);
+    head.items[0].warnings.extend(no_pace(args, &law));
     if let Some(edits) = &args.edits {
         let day = (spec.opening_days, &law);
         let made = make_flower(&spec.name, &spec, day, &options, seed, &machine.run()).map_err(failed)?;

@@ -34,14 +34,13 @@ struct OrganTold {
 
 impl From<&OrganStep> for OrganTold {
     fn from(o: &OrganStep) -> Self {
-        let [residual_mm, back_residual_mm] = o.residual_m.map(|d| d * 1e3);
         Self {
             organ: o.organ.clone(),
             pose: Turn::from(&o.pose),
             scale: o.scale,
             shape_mm: o.shape_m * 1e3,
-            residual_mm,
-            back_residual_mm,
+            residual_mm: o.residual.to_model.mean * 1e3,
+            back_residual_mm: o.residual.to_scan.mean * 1e3,
         }
     }
 }

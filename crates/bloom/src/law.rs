@@ -200,6 +200,12 @@ impl GrowthLaw {
         if weights > 0.0 { sum / weights } else { self.progress(organ, Quantity::Size, along, from, to, day) }
     }
 
+    /// Something in it sets a pace: a law that its stages determine and that moves.
+    pub fn sets_pace(&self) -> bool {
+        let (first, last) = (0.0, self.span_days);
+        self.laws.iter().any(|l| l.pace(first, last, 0.5 * last).is_some())
+    }
+
     /// The organ whose laws an organ follows: its own; else those of the first organ with a law that is determined.
     fn followed<'a>(&'a self, organ: &'a str) -> &'a str {
         if self.laws.iter().any(|l| l.organ == organ) {

@@ -5,7 +5,9 @@ use geom::best_rotation;
 use glam::{DQuat, DVec3};
 
 use crate::thin::{extent, thin};
-use crate::{BloomError, GrowthLaw, Motion, MotionSpec, Organ, RegisterSpec, Stage, Weights, register};
+use crate::{
+    BloomError, GrowthLaw, Motion, MotionSpec, Organ, RegisterSpec, ShapeError, Stage, Weights, register,
+};
 
 /// A turn about a place and a shift: `p -> to + turn * (p - from)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,7 +59,7 @@ impl RigidMotion {
 
     /// The turn about the vertical and the shift that bring points nearest to their partners: how a pot moves, which stands
     /// upright on every day.
-    fn upright(pairs: &[(DVec3, DVec3)], from: DVec3) -> Self {
+    fn upright(pairs: &[Places], from: DVec3) -> Self {
         let n = pairs.len().max(1) as f64;
         let a = pairs.iter().map(|p| p.0).sum::<DVec3>() / n;
         let b = pairs.iter().map(|p| p.1).sum::<DVec3>() / n;
@@ -71,7 +73,7 @@ impl RigidMotion {
     }
 
     /// The motion that brings points nearest to their partners (least squares; Horn 1987), about the place `from`.
-    fn of_pairs(pairs: &[(DVec3, DVec3)], from: DVec3) -> Self {
+    pub(crate) fn of_pairs(pairs: &[Places], from: DVec3) -> Self {
         let n = pairs.len().max(1) as f64;
         let a = pairs.iter().map(|p| p.0).sum::<DVec3>() / n;
         let b = pairs.iter().map(|p| p.1).sum::<DVec3>() / n;
@@ -91,8 +93,8 @@ pub struct OrganStep {
     pub scale: f64,
     /// Growth in shape: mean distance that motion and size leave, metres.
     pub shape_m: f64,
-    /// Mean distances that the registration leaves, from the later scan to the organ carried there and back, metres.
-    pub residual_m: [f64; 2],
+    /// What the registration leaves between the later scan and the organ carried there.
+    pub residual: ShapeError,
 }
 
 /// What happened between two scans that follow one another.
@@ -124,6 +126,12 @@ pub struct Settled {
     poses: Vec<RigidMotion>,
 }
 
+/// Where a point is on one day and on the next.
+type Places = (DVec3, DVec3);
+
+/// The organs of a day, each with its points.
+type Organs = Vec<(String, Vec<DVec3>)>;
+
 /// Points of an organ that pose is estimated from: more change no figure that is printed.
 const SAMPLE: usize = 1500;
 
@@ -139,22 +147,21 @@ pub fn settle(stages: &[Stage], spec: &RegisterSpec, run: &Run<'_>) -> Result<Se
     let mut out = Settled::unmoved(stages);
     for k in 1..stages.len() {
         let (a, b) = (&stages[k - 1], &stages[k]);
-        let mut found: Vec<(&Organ, Vec<(DVec3, DVec3)>, [f64; 2])> = Vec::new();
+        let mut found: Vec<(&Organ, Vec<Places>, ShapeError)> = Vec::new();
         for organ in &a.organs {
             let Some(next) = b.organs.iter().find(|o| o.name == organ.name) else { continue };
+            let fit = register(&organ.points, organ.base, &next.points, next.base, spec, run)?;
             let rows = thin(&organ.points, SAMPLE);
             let points: Vec<DVec3> = rows.into_iter().map(|i| organ.points[i as usize]).collect();
-            let fit = register(&points, organ.base, &next.points, next.base, spec, run)?;
             let moved = Weights::new(&fit.obb, spec.counts, &points)?.apply(&fit.last, run)?;
-            let left = [fit.residual.to_model.mean, fit.residual.to_scan.mean];
-            found.push((organ, points.into_iter().zip(moved).collect(), left));
+            found.push((organ, points.into_iter().zip(moved).collect(), fit.residual));
         }
         let foot = a.organs.first().map_or(DVec3::ZERO, |o| o.base);
-        let all: Vec<(DVec3, DVec3)> = found.iter().flat_map(|f| f.1.iter().copied()).collect();
+        let all: Vec<Places> = found.iter().flat_map(|f| f.1.iter().copied()).collect();
         let plant = if found.len() < 2 { RigidMotion::REST } else { RigidMotion::upright(&all, foot) };
         let back = plant.inverse();
         let organs = found.iter().map(|(organ, pairs, left)| {
-            let pairs: Vec<(DVec3, DVec3)> = pairs.iter().map(|&(p, q)| (p, back.apply(q))).collect();
+            let pairs: Vec<Places> = pairs.iter().map(|&(p, q)| (p, back.apply(q))).collect();
             organ_step(organ, &pairs, *left)
         });
         let names = |of: &Stage, other: &Stage| {
@@ -184,9 +191,9 @@ pub fn settle(stages: &[Stage], spec: &RegisterSpec, run: &Run<'_>) -> Result<Se
     Ok(out)
 }
 
-fn organ_step(organ: &Organ, pairs: &[(DVec3, DVec3)], residual_m: [f64; 2]) -> OrganStep {
+fn organ_step(organ: &Organ, pairs: &[Places], residual: ShapeError) -> OrganStep {
     let mut pose = RigidMotion::of_pairs(pairs, organ.base);
-    if let Some(along) = crate::register::rod(pairs) {
+    if let Some(along) = register::rod(pairs) {
         // Of a stem nothing shows how far it rolls.
         pose.turn = base::turn::between(along, (pose.turn * along).normalize_or(along));
     }
@@ -197,7 +204,7 @@ fn organ_step(organ: &Organ, pairs: &[(DVec3, DVec3)], residual_m: [f64; 2]) -> 
     let square: f64 = pairs.iter().map(|p| p.0.distance_squared(a)).sum();
     let scale = if square > 0.0 && dot > 0.0 { dot / square } else { 1.0 };
     let left = pairs.iter().map(|&(p, q)| (pose.turn * (p - a) * scale).distance(q - b));
-    OrganStep { organ: organ.name.clone(), pose, scale, shape_m: left.sum::<f64>() / n, residual_m }
+    OrganStep { organ: organ.name.clone(), pose, scale, shape_m: left.sum::<f64>() / n, residual }
 }
 
 impl Settled {
@@ -242,11 +249,11 @@ impl Settled {
         spec: &MotionSpec,
         day: f64,
         run: &Run<'_>,
-    ) -> Result<Vec<(String, Vec<DVec3>)>, BloomError> {
+    ) -> Result<Organs, BloomError> {
         let [i, j] = self.round(day);
         let (a, b) = (&self.stages[i], &self.stages[j]);
         let begin = self.stages.first().map_or(0.0, |s| s.day);
-        let carried = |first: &Stage, last: &Stage| -> Result<Vec<(String, Vec<DVec3>)>, BloomError> {
+        let carried = |first: &Stage, last: &Stage| -> Result<Organs, BloomError> {
             let pair = [first.clone(), last.clone()];
             let motion = Motion::since(first.day - begin, &pair, law.clone(), *spec, run)?;
             let points = motion.at(day - first.day, run)?;

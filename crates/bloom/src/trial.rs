@@ -128,8 +128,8 @@ fn trial(
     Ok(Trial { day, extrapolated, law: determined, rows })
 }
 
-/// The points of the nearer of the two days round `day`, on straight lines to their places on the other day after the best
-/// rigid move of that one; of an end day those of the nearest day, moved on as far.
+/// The points of the nearer of the two days round `day`, on straight lines to their places on the other day after the rigid
+/// move of that one which brings all places nearest to where they were; of an end day those of the nearest day, moved on as far.
 fn straight(
     rest: &[Stage],
     [i, j]: [usize; 2],
@@ -140,69 +140,110 @@ fn straight(
     let nearer = (day - rest[i].day).abs() <= (day - rest[j].day).abs();
     let (near, far) = if nearer { (&rest[i], &rest[j]) } else { (&rest[j], &rest[i]) };
     let share = (day - near.day) / (far.day - near.day);
-    let moved = best_move(&all(far), &all(near), run)?;
+    let mut fits = Vec::new();
+    let mut pairs = Vec::new();
+    for organ in &near.organs {
+        let Some(other) = far.organs.iter().find(|o| o.name == organ.name) else { continue };
+        let fit = register(&organ.points, organ.base, &other.points, other.base, spec, run)?;
+        let weights = Weights::new(&fit.obb, spec.counts, &organ.points)?;
+        let there = weights.apply(&fit.last, run)?;
+        pairs.extend(organ.points.iter().copied().zip(there));
+        fits.push((&organ.name, fit, weights));
+    }
+    let back = RigidMotion::of_pairs(&pairs, DVec3::ZERO).inverse();
     let mut out = Vec::new();
     for organ in &near.organs {
-        let Some(other) = far.organs.iter().find(|o| o.name == organ.name) else {
+        let Some((_, fit, weights)) = fits.iter().find(|f| *f.0 == organ.name) else {
             out.extend(&organ.points);
             continue;
         };
-        let places: Vec<DVec3> = other.points.iter().map(|&p| moved.apply(p)).collect();
-        let fit = register(&organ.points, organ.base, &places, moved.apply(other.base), spec, run)?;
-        let weights = Weights::new(&fit.obb, spec.counts, &organ.points)?;
-        let points = fit.first.points.iter().zip(&fit.last.points).map(|(p, q)| p.lerp(*q, share)).collect();
+        let ends = fit.first.points.iter().zip(&fit.last.points);
+        let points = ends.map(|(p, q)| p.lerp(back.apply(*q), share)).collect();
         out.extend(weights.apply(&Lattice { counts: spec.counts, points }, run)?);
     }
     Ok(out)
 }
 
-/// Points of each shape that the best rigid move is sought with.
-const SAMPLE: usize = 3000;
+/// Points of each shape that the best rigid move is sought with: first, and at the end.
+const SAMPLES: [usize; 2] = [800, 3000];
 
 /// The rigid motion of `shape` that brings the two nearest to one another: least mean distance both ways of those that
-/// iterated nearest points reach from seven turns about the vertical, weighted by 1 over the distance so that what the other
+/// iterated nearest points reach from no motion and from seven turns about the vertical, weighted by 1 over the distance so that what the other
 /// shape has not does not pull.
 ///
 /// # Errors
 /// [`BloomError::TooFew`] if a shape has no finite point, [`BloomError::Cancelled`].
 pub fn best_move(shape: &[DVec3], scan: &[DVec3], run: &Run<'_>) -> Result<RigidMotion, BloomError> {
-    let pick = |points: &[DVec3]| -> Vec<DVec3> {
-        // By rank: a sample has the density of what it is of, as the mean distance does.
-        let finite = || points.iter().copied().filter(|p| p.is_finite());
-        finite().step_by(finite().count().div_ceil(SAMPLE).max(1)).collect()
-    };
-    let (from, to) = (pick(shape), pick(scan));
-    for (what, points) in [("the model", &from), ("the scan", &to)] {
-        if points.is_empty() {
+    for (what, points) in [("the model", shape), ("the scan", scan)] {
+        if !points.iter().any(|p| p.is_finite()) {
             return Err(BloomError::TooFew { what: what.into(), is: 0, wanted: 1 });
         }
     }
-    let middle = |points: &[DVec3]| points.iter().sum::<DVec3>() / points.len() as f64;
-    let (a, b) = (middle(&from), middle(&to));
-    let tree = KdTree::new(&to);
-    let size = (to.iter().map(|p| p.distance_squared(b)).sum::<f64>() / to.len() as f64).sqrt();
-    // Below a hundredth of the size a distance is the spacing of the points.
-    let floor = 0.005 * size.max(1e-12);
-    let starts: Vec<f64> = (-3..=3).map(|k| f64::from(k) * base::ops::PI / 9.0).collect();
-    let found = base::map_indexed(run.executor, starts.len(), |k| {
-        let mut moved = RigidMotion { from: a, to: b, turn: base::turn::about(DVec3::Y, starts[k]) };
+    let few = Pair::new(shape, scan, SAMPLES[0]);
+    let turned = (-3..=3).map(|k| {
+        let turn = base::turn::about(DVec3::Y, f64::from(k) * base::ops::PI / 9.0);
+        RigidMotion { from: few.middles[0], to: few.middles[1], turn }
+    });
+    let starts: Vec<RigidMotion> = turned.chain([RigidMotion::REST]).collect();
+    let mut found = base::map_indexed(run.executor, starts.len(), |k| few.descend(starts[k]));
+    run.cancel.check()?;
+    base::sort_by(&mut found, |x, y| x.0.total_cmp(&y.0));
+    // Of starts that are nearly as good the small sample cannot say which is best.
+    found.truncate(3);
+    let all = Pair::new(shape, scan, SAMPLES[1]);
+    let ends = base::map_indexed(run.executor, found.len(), |k| all.descend(found[k].1));
+    run.cancel.check()?;
+    let best = ends.into_iter().min_by(|x, y| x.0.total_cmp(&y.0));
+    Ok(best.map_or(RigidMotion::REST, |b| b.1))
+}
+
+/// Samples of two shapes.
+struct Pair {
+    from: Vec<DVec3>,
+    to: Vec<DVec3>,
+    middles: [DVec3; 2],
+    tree: KdTree,
+    /// Root mean square distance of the second from its middle.
+    size: f64,
+}
+
+impl Pair {
+    fn new(shape: &[DVec3], scan: &[DVec3], sample: usize) -> Self {
+        // By rank: a sample has the density of what it is of, as the mean distance does.
+        let pick = |points: &[DVec3]| -> Vec<DVec3> {
+            let finite = || points.iter().copied().filter(|p| p.is_finite());
+            finite().step_by(finite().count().div_ceil(sample).max(1)).collect()
+        };
+        let middle = |points: &[DVec3]| points.iter().sum::<DVec3>() / points.len().max(1) as f64;
+        let (from, to) = (pick(shape), pick(scan));
+        let middles = [middle(&from), middle(&to)];
+        let square: f64 = to.iter().map(|p| p.distance_squared(middles[1])).sum();
+        let size = (square / to.len().max(1) as f64).sqrt();
+        Self { tree: KdTree::new(&to), from, to, middles, size }
+    }
+
+    /// Iterated nearest points both ways: the mean distances there and back, added, and the motion.
+    fn descend(&self, mut moved: RigidMotion) -> (f64, RigidMotion) {
+        // Below half a hundredth of the size a distance is the spacing of the points.
+        let floor = 0.005 * self.size.max(1e-12);
         let mut gap = f64::INFINITY;
         for _ in 0..60 {
-            let places: Vec<DVec3> = from.iter().map(|&p| moved.apply(p)).collect();
+            let places: Vec<DVec3> = self.from.iter().map(|&p| moved.apply(p)).collect();
             let back = KdTree::new(&places);
-            let there =
-                places.iter().enumerate().filter_map(|(i, p)| Some((i, tree.nearest(*p, f64::INFINITY)?)));
-            let here = to.iter().enumerate().filter_map(|(j, q)| Some((back.nearest(*q, f64::INFINITY)?, j)));
-            let (mut pairs, mut sums) = (Vec::with_capacity(from.len() + to.len()), [0.0; 2]);
-            for (way, list) in [there.collect::<Vec<_>>(), here.collect()].into_iter().enumerate() {
+            let there = places.iter().enumerate();
+            let there = there.filter_map(|(i, p)| Some((i, self.tree.nearest(*p, f64::INFINITY)?)));
+            let here = self.to.iter().enumerate();
+            let here = here.filter_map(|(j, q)| Some((back.nearest(*q, f64::INFINITY)?, j)));
+            let mut pairs = Vec::with_capacity(self.from.len() + self.to.len());
+            gap = 0.0;
+            for list in [there.collect::<Vec<(usize, usize)>>(), here.collect()] {
                 for &(i, j) in &list {
-                    let d = places[i].distance(to[j]);
-                    sums[way] += d / list.len() as f64;
+                    let d = places[i].distance(self.to[j]);
+                    gap += d / list.len() as f64;
                     // Both ways weigh alike, however many points a shape has.
-                    pairs.push((from[i], to[j], 1.0 / ((d + floor) * list.len() as f64)));
+                    pairs.push((self.from[i], self.to[j], 1.0 / ((d + floor) * list.len() as f64)));
                 }
             }
-            gap = sums[0] + sums[1];
             let total: f64 = pairs.iter().map(|p| p.2).sum();
             let a = pairs.iter().map(|p| p.0 * p.2).sum::<DVec3>() / total;
             let b = pairs.iter().map(|p| p.1 * p.2).sum::<DVec3>() / total;
@@ -211,13 +252,10 @@ pub fn best_move(shape: &[DVec3], scan: &[DVec3], run: &Run<'_>) -> Result<Rigid
             let step = next.apply(moved.from).distance(moved.apply(moved.from));
             let turned = 1.0 - next.turn.dot(moved.turn).abs();
             moved = next;
-            if step < 1e-6 * size && turned < 1e-13 {
+            if step < 1e-6 * self.size && turned < 1e-13 {
                 break;
             }
         }
         (gap, moved)
-    });
-    run.cancel.check()?;
-    let best = found.into_iter().min_by(|x, y| x.0.total_cmp(&y.0));
-    Ok(best.map_or(RigidMotion::REST, |b| b.1))
+    }
 }
