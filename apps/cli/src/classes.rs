@@ -136,7 +136,9 @@ impl Classes {
     pub(crate) fn of_drawing(&self, name: &str) -> ClassOverrides {
         let mut out = self.any.clone();
         if let Some(named) = self.named.get(name) {
-            out.extend(named);
+            for (&stroke, &class) in named {
+                out.insert(stroke, class);
+            }
             if let Ok(mut used) = self.used.lock() {
                 used.insert(name.to_owned());
             }

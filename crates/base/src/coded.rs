@@ -18,8 +18,9 @@ impl Told {
     /// For [`crate::coded!`]. Here and not in the macro, so that there is one copy of it and not one for each error.
     #[doc(hidden)]
     pub fn new(code: &'static str, fields: &[(&'static str, &dyn Display)]) -> Self {
-        let fields = crate::map_of(fields.iter().map(|(name, value)| (*name, value.to_string())));
-        Self { code, fields, causes: BTreeMap::new() }
+        let mut told = Self { code, fields: BTreeMap::new(), causes: BTreeMap::new() };
+        told.fields.extend(fields.iter().map(|(name, value)| (*name, value.to_string())));
+        told
     }
 
     /// With one more of the fields that are errors themselves, if it is one.

@@ -38,11 +38,12 @@ mod units;
 pub use budget::{Budget, Counted, OverBudget, grouped};
 pub use coded::{Code, Coded, Told};
 pub use digest::{Digest, Digestible};
+pub use litemap::LiteMap;
 pub use quote::{brief, quoted};
 pub use report::{Report, Stage, Warning};
 pub use seed::{Draw, Seed, Stream};
 pub use slip::Slip;
-pub use sort::{map_of, set_of, sort_by, sort_by_key, sort_numbers};
+pub use sort::{Set, map_of, set_of, sort_by, sort_by_key, sort_numbers};
 pub use srgb::{linear_of_srgb, srgb_of_linear};
 pub use task::{
     CancelToken, Cancelled, Clock, Executor, NoClock, Run, Serial, Stopped, Telling, map_indexed,

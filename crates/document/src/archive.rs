@@ -1,6 +1,6 @@
 //! Zip files: written whole, read with bounds.
 
-use std::collections::BTreeMap;
+use base::LiteMap;
 use std::io::{Read as _, Write as _};
 
 use rawzip::{CompressionMethod, ZipArchive, ZipArchiveWriter};
@@ -79,9 +79,9 @@ pub(crate) fn unpack(
     bytes: &[u8],
     names: &[&str],
     limit: usize,
-) -> Result<BTreeMap<String, Vec<u8>>, ArchiveError> {
+) -> Result<LiteMap<String, Vec<u8>>, ArchiveError> {
     let archive = ZipArchive::from_slice(bytes)?;
-    let mut found = BTreeMap::new();
+    let mut found = LiteMap::new();
     let mut entries = archive.entries();
     let mut count = 0;
     while let Some(entry) = entries.next_entry()? {

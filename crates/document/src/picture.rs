@@ -1,6 +1,6 @@
 //! Pictures that organs wear.
 
-use std::collections::BTreeMap;
+use base::LiteMap;
 use std::sync::{Arc, OnceLock};
 
 use base::Digest;
@@ -85,7 +85,7 @@ impl Picture {
 }
 
 /// Pictures by their names.
-pub type Pictures = BTreeMap<String, Picture>;
+pub type Pictures = LiteMap<String, Picture>;
 
 /// What is wrong with a material of a plant that has these pictures.
 pub(crate) fn material_fault(material: &OrganMaterial, pictures: &Pictures) -> Option<SettingFault> {

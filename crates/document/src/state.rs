@@ -1,6 +1,6 @@
 //! The document: a scene of plants, each with its maker's description.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use base::Seed;
@@ -135,7 +135,7 @@ impl Settings {
         let named = |m: &OrganMaterial| m.picture.clone();
         let worn = self.wear.materials().filter_map(named).chain(strokes.filter_map(named));
         let worn = base::set_of(worn);
-        self.pictures.retain(|name, _| worn.contains(name));
+        self.pictures.retain(|name, _| worn.contains_key(name));
     }
 
     fn wear_fault(&self) -> Option<SettingFault> {
@@ -216,12 +216,12 @@ impl DocumentPlant {
     }
 
     /// Classes that the person set, by row of [`DocumentPlant::drawing`].
-    pub fn classes(&self) -> BTreeMap<u32, StrokeClass> {
+    pub fn classes(&self) -> base::LiteMap<u32, StrokeClass> {
         base::map_of((0..).zip(&self.strokes).filter_map(|(row, s)| Some((row, s.class?))))
     }
 
     /// What strokes were shown as when the last one was drawn, by row of [`DocumentPlant::drawing`].
-    pub fn shown(&self) -> BTreeMap<u32, StrokeClass> {
+    pub fn shown(&self) -> base::LiteMap<u32, StrokeClass> {
         base::map_of((0..).zip(&self.strokes).filter_map(|(row, s)| Some((row, s.shown?))))
     }
 

@@ -1,6 +1,6 @@
 //! The convex hull of points in space.
 
-use std::collections::BTreeMap;
+use base::LiteMap;
 
 use crate::vector::Vector;
 use glam::DVec3;
@@ -216,7 +216,7 @@ impl<'a> Quickhull<'a> {
         self.visible.clear();
         self.visible.push(from);
         self.seen[from] = self.round;
-        let mut edges: BTreeMap<usize, (usize, usize)> = BTreeMap::new();
+        let mut edges: LiteMap<usize, (usize, usize)> = LiteMap::new();
         let mut simple = true;
         let mut next = 0;
         while let Some(&face) = self.visible.get(next) {

@@ -93,7 +93,7 @@ fn boxes_in_order(segments: &[(DVec2, DVec2)]) -> (Vec<(DVec2, DVec2)>, Vec<usiz
     let boxes: Vec<(DVec2, DVec2)> =
         segments.iter().map(|&(a, b)| (flat(a.min(b)), flat(a.max(b)))).collect();
     let mut order: Vec<usize> = (0..segments.len()).collect();
-    order.sort_by(|&i, &j| boxes[i].0.x.total_cmp(&boxes[j].0.x).then(i.cmp(&j)));
+    base::sort_by(&mut order, |&i, &j| boxes[i].0.x.total_cmp(&boxes[j].0.x).then(i.cmp(&j)));
     (boxes, order)
 }
 

@@ -46,7 +46,35 @@ pub fn centroid(polygon: &[DVec2]) -> DVec2 {
 ///
 /// False if `p` is not usable. Cost: linear.
 pub fn contains(polygon: &[DVec2], p: DVec2) -> bool {
-    p.usable() && edges(polygon).filter(|&(a, b)| crosses_ray(a, b, p)).count() % 2 == 1
+    let Some(mut a) = polygon.iter().copied().rfind(|p| p.usable()) else { return false };
+    let mut inside = false;
+    for b in polygon.iter().copied().filter(|p| p.usable()) {
+        inside ^= crosses_ray(a, b, p);
+        a = b;
+    }
+    inside && p.usable()
+}
+
+/// [`contains`] for points of one height.
+///
+/// Cost: linear in the corners, and for each point in the edges that cross this height.
+///
+/// ```
+/// use glam::dvec2;
+/// let triangle = [dvec2(0.0, 0.0), dvec2(4.0, 0.0), dvec2(0.0, 4.0)];
+/// let inside: Vec<bool> = geom::contains_along(&triangle, 1.0, [-1.0, 1.0, 2.0, 3.5]).collect();
+/// assert_eq!(inside, [false, true, true, false]);
+/// ```
+pub fn contains_along<X: IntoIterator<Item = f64>>(
+    polygon: &[DVec2],
+    y: f64,
+    xs: X,
+) -> impl Iterator<Item = bool> + use<X> {
+    let crossing: Vec<(DVec2, DVec2)> = edges(polygon).filter(|(a, b)| (a.y > y) != (b.y > y)).collect();
+    xs.into_iter().map(move |x| {
+        let p = DVec2::new(x, y);
+        p.usable() && crossing.iter().filter(|&&(a, b)| crosses_ray(a, b, p)).count() % 2 == 1
+    })
 }
 
 /// Whether the ray from `p` to the right crosses the edge; half open in y, so a corner counts once.
@@ -63,6 +91,7 @@ pub(crate) fn crosses_ray(a: DVec2, b: DVec2, p: DVec2) -> bool {
 fn hull_indices(points: &[DVec2]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).filter(|&i| points[i].usable()).collect();
     let key = |i: usize| (points[i].x + 0.0, points[i].y + 0.0); // + 0.0: no negative zero
+    // The standard library's own sort: it is what takes the time here.
     order.sort_by(|&a, &b| {
         let (p, q) = (key(a), key(b));
         p.0.total_cmp(&q.0).then(p.1.total_cmp(&q.1)).then(a.cmp(&b))
@@ -210,6 +239,28 @@ mod tests {
         let diamond = [DVec2::X, DVec2::Y, -DVec2::X, -DVec2::Y];
         assert!(contains(&diamond, DVec2::ZERO) && !contains(&diamond, DVec2::new(-2.0, 0.0)));
         assert!(!contains(&diamond, DVec2::new(-2.0, 1.0)) && !contains(&diamond, DVec2::NAN));
+    }
+
+    #[test]
+    fn a_row_of_points_lies_where_each_of_them_does() {
+        // A star that crosses itself, with a corner that cannot be used and corners on the row.
+        let mut star: Vec<DVec2> = (0..7)
+            .map(|k| {
+                let (s, c) = ops::sin_cos(f64::from(3 * k) * ops::TAU / 7.0);
+                DVec2::new(c, s)
+            })
+            .collect();
+        star.insert(3, DVec2::NAN);
+        let mut both = [0, 0];
+        for y in (-12..=12).map(|k| 0.1 * f64::from(k)).chain([star[1].y, f64::NAN]) {
+            let xs = (-12..=12).map(|k| 0.1 * f64::from(k)).chain([star[1].x, f64::INFINITY]);
+            for (x, inside) in xs.clone().zip(contains_along(&star, y, xs)) {
+                assert_eq!(inside, contains(&star, DVec2::new(x, y)), "{x} {y}");
+                both[usize::from(inside)] += 1;
+            }
+        }
+        assert!(both[0] > 100 && both[1] > 100, "{both:?}");
+        assert!(contains_along(&[], 0.0, [0.0]).eq([false]));
     }
 
     #[test]

@@ -243,7 +243,7 @@ fn sealed(triangles: &[[DVec3; 3]]) -> bool {
             }
         }
     }
-    edges.sort_unstable();
+    base::sort_by(&mut edges, Ord::cmp);
     edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).all(|same| same.iter().map(|e| e.2).sum::<i32>() == 0)
 }
 

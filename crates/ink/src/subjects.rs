@@ -172,11 +172,11 @@ impl Sheet {
             }
         }
         self.petals(&mut sets);
-        let mut groups: std::collections::BTreeMap<usize, Vec<usize>> = std::collections::BTreeMap::new();
+        let mut groups: base::LiteMap<usize, Vec<usize>> = base::LiteMap::new();
         for k in (0..self.lines.len()).filter(|k| !ground.contains(k)) {
             groups.entry(sets.top(k)).or_default().push(k);
         }
-        groups.into_values().map(|strokes| self.group(strokes)).collect()
+        groups.into_iter().map(|(_, strokes)| self.group(strokes)).collect()
     }
 
     /// Joins outlines that point away from one place all round it: petals, whether or not they touch.

@@ -253,8 +253,7 @@ impl Forest {
     ) {
         while !frontier.is_empty() {
             // Of the lines of the last level each new line is borne by the nearest.
-            let mut best: std::collections::BTreeMap<usize, (f64, bool, usize)> =
-                std::collections::BTreeMap::new();
+            let mut best: base::LiteMap<usize, (f64, bool, usize)> = base::LiteMap::new();
             for &i in frontier.iter() {
                 for c in &contacts[i] {
                     if !done[c.line] && best.get(&c.line).is_none_or(|b| c.distance < b.0) {
@@ -263,8 +262,7 @@ impl Forest {
                 }
             }
             let mut next = Vec::new();
-            let mut below: std::collections::BTreeMap<usize, Vec<(usize, bool)>> =
-                std::collections::BTreeMap::new();
+            let mut below: base::LiteMap<usize, Vec<(usize, bool)>> = base::LiteMap::new();
             for (j, (_, last, i)) in best {
                 done[j] = true;
                 let Some(row) = row_of[i] else { continue };

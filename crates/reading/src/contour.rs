@@ -31,7 +31,7 @@ pub(crate) fn neck(outline: &[DVec2], known: bool) -> Option<(Vec<DVec2>, Vec<DV
     let widest = width.iter().copied().fold(0.0, f64::max);
     let first_wide = width.iter().position(|w| *w > 0.5 * widest)?;
     let mut below: Vec<f64> = width[..first_wide].to_vec();
-    below.sort_by(f64::total_cmp);
+    base::sort_numbers(&mut below);
     let median = below.get(below.len() / 2).copied()?;
     // The neck ends where the outline first becomes clearly wider than the trunk for good.
     let top = (0..=first_wide).rev().find(|&k| width[k] < 1.5 * median).map_or(first_wide, |k| k + 1);
@@ -72,7 +72,7 @@ pub(crate) fn width_at(outline: &[DVec2], y: f64) -> f64 {
             ((a.y > y) != (b.y > y)).then(|| a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y))
         })
         .collect();
-    xs.sort_by(f64::total_cmp);
+    base::sort_numbers(&mut xs);
     xs.chunks_exact(2).map(|w| w[1] - w[0]).sum()
 }
 

@@ -1,6 +1,6 @@
 //! The drawing half understood, and the small steps that belong to no other module.
 
-use std::collections::BTreeMap;
+use base::LiteMap;
 
 use base::Report;
 use geom::{contains, convex_hull, polyline_length, signed_area};
@@ -77,13 +77,13 @@ pub(crate) struct Draft<'a> {
     /// Sides of trunks that were drawn in one go with a crown, and the crown's stroke.
     pub(crate) sides: Vec<(usize, Vec<DVec2>)>,
     /// What is left of those strokes.
-    pub(crate) loops: BTreeMap<usize, Vec<DVec2>>,
+    pub(crate) loops: LiteMap<usize, Vec<DVec2>>,
     /// Strokes whose class follows from the whole drawing: later rules leave it.
     pub(crate) settled: Vec<bool>,
     /// Outlines that make up one crown.
     pub(crate) united: Vec<usize>,
     /// Lines that were drawn in one go, there and back: the pieces of each such stroke.
-    pub(crate) legs: BTreeMap<usize, Vec<Vec<DVec2>>>,
+    pub(crate) legs: LiteMap<usize, Vec<Vec<DVec2>>>,
 }
 
 impl<'a> Draft<'a> {
@@ -109,8 +109,8 @@ impl<'a> Draft<'a> {
             led: Vec::new(),
             soil: Vec::new(),
             sides: Vec::new(),
-            loops: BTreeMap::new(),
-            legs: BTreeMap::new(),
+            loops: LiteMap::new(),
+            legs: LiteMap::new(),
         }
     }
 

@@ -6,6 +6,8 @@
 
 use std::collections::BTreeMap;
 
+use base::LiteMap;
+
 use base::ops;
 use geom::{Spoke, contains, mean_shift, polyline_length, wheels};
 use glam::DVec2;
@@ -321,7 +323,7 @@ fn is_flower(
     let centre = mean(members.iter().map(|&i| draft.blades[i].gap));
     let mut angles: Vec<f64> =
         members.iter().map(|&i| draft.blades[i].middle - centre).map(|v| ops::atan2(v.y, v.x)).collect();
-    angles.sort_by(f64::total_cmp);
+    base::sort_numbers(&mut angles);
     if bears_fronds(draft, centre, usual) || bearers.leads_up(centre, usual, discs) {
         return false;
     }
@@ -374,7 +376,7 @@ fn rosettes(
             && !matches!(bearers.stand(centre, 0.2 * usual), Stand::Along | Stand::Body);
         let mut angles: Vec<f64> =
             members.iter().map(|&i| draft.blades[i].middle - centre).map(|v| ops::atan2(v.y, v.x)).collect();
-        angles.sort_by(f64::total_cmp);
+        base::sort_numbers(&mut angles);
         let even = angles.windows(2).all(|w| w[1] - w[0] < 2.2)
             && angles.first().zip(angles.last()).is_some_and(|(a, b)| a + ops::TAU - b < 2.2);
         if close && even {
@@ -542,7 +544,7 @@ pub(crate) fn whorls(draft: &Draft<'_>, flower: &FlowerDraft, roots: &[DVec2]) -
 
 /// Clusters of at least 3 points that lie within `bandwidth` of one another.
 fn clusters(points: &[DVec2], bandwidth: f64) -> Vec<Vec<usize>> {
-    let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    let mut groups: LiteMap<usize, Vec<usize>> = LiteMap::new();
     if points.len() <= MOST_ROOTS {
         for (i, c) in mean_shift(points, bandwidth).into_iter().enumerate() {
             groups.entry(c).or_default().push(i);
@@ -557,7 +559,7 @@ fn clusters(points: &[DVec2], bandwidth: f64) -> Vec<Vec<usize>> {
         }
         groups = cells.into_values().enumerate().collect();
     }
-    groups.into_values().filter(|g| g.len() > 2).collect()
+    groups.into_iter().map(|(_, g)| g).filter(|g| g.len() > 2).collect()
 }
 
 fn mean(points: impl Iterator<Item = DVec2>) -> DVec2 {
@@ -567,6 +569,6 @@ fn mean(points: impl Iterator<Item = DVec2>) -> DVec2 {
 
 fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
     let mut values: Vec<f64> = values.collect();
-    values.sort_by(f64::total_cmp);
+    base::sort_numbers(&mut values);
     values.get(values.len() / 2).copied()
 }

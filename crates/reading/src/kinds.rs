@@ -136,7 +136,8 @@ fn shape(ink: &Ink, total: f64) -> [f64; SHAPE.len()] {
     let ring = &ink.strokes[k].points;
     let (l, h) = bounds(ring).unwrap_or_default();
     let own = convex_hull(ring);
-    let inside = all.iter().filter(|p| own.len() > 2 && contains(&own, **p)).count() as f64 / count;
+    let within = |p: &DVec2| p.cmpge(l).all() && p.cmple(h).all() && contains(&own, *p);
+    let inside = all.iter().filter(|p| own.len() > 2 && within(p)).count() as f64 / count;
     let full = geom::simple_outline(ring).map_or(0.0, |o| signed_area(&o)) / area.max(1e-9);
     let part = |from: f64, to: f64| -> (f64, f64) {
         let band: Vec<DVec2> =

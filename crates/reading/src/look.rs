@@ -430,7 +430,8 @@ fn strokes(frame: &Frame<'_>, row: &mut Vec<f64>) {
             line_length += l;
         }
     }
-    sorted.sort_by(|a, b| b.total_cmp(a));
+    base::sort_numbers(&mut sorted);
+    sorted.reverse();
     row.extend(open.map(log));
     row.extend(lengths.map(log));
     row.extend([0, 1].map(|k| sorted.get(k).copied().unwrap_or_default()));

@@ -171,8 +171,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let start = std::time::Instant::now();
         let picture = render(&model, &PictureSpec { view, background, ..PictureSpec::default() }, &run)?;
         eprintln!("{name}: {} triangles in {:.2?}", model.triangle_count(), start.elapsed());
-        let path = folder.join(format!("{name}.png"));
-        image::save_buffer(path, &picture.pixels, picture.width, picture.height, image::ColorType::Rgba8)?;
+        let file = std::fs::File::create(folder.join(format!("{name}.png")))?;
+        let mut png = png::Encoder::new(file, picture.width, picture.height);
+        png.set_color(png::ColorType::Rgba);
+        png.write_header()?.write_image_data(&picture.pixels)?;
     }
     Ok(())
 }

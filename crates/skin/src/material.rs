@@ -1,6 +1,6 @@
 //! Materials that a person gives to leaves, petals and sepals, in the place of what the plant would have.
 
-use std::collections::BTreeMap;
+use base::LiteMap;
 use std::sync::Arc;
 
 use mesh::Texture;
@@ -260,7 +260,7 @@ pub struct Worn {
     /// Rows of `cloths`, by [`Wearer::ALL`].
     pub kinds: [Option<usize>; 3],
     /// Rows of `cloths`, by the stroke that an organ was read from; before those of kinds.
-    pub strokes: BTreeMap<u32, usize>,
+    pub strokes: LiteMap<u32, usize>,
     /// They are painted also where no other surface has a texture ([`crate::SkinSpec::textures`]).
     pub always: bool,
 }

@@ -1,7 +1,6 @@
 //! Organs that were traced over a photograph take its pixels: their texture coordinates are their place in the front
 //! view, which is where they were drawn.
 
-use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -21,7 +20,7 @@ pub struct Traced {
     /// Its pixels.
     pub texture: Arc<Texture>,
     /// Strokes that were traced over it, by index in the drawing.
-    pub strokes: BTreeSet<u32>,
+    pub strokes: base::Set<u32>,
     /// Left and upper edge of the picture, metres in the plant's plane z = 0.
     pub corner_m: (f64, f64),
     /// Its width and height, metres, above 0.
@@ -31,7 +30,7 @@ pub struct Traced {
 impl Traced {
     /// Whether what was read from a stroke was traced.
     pub(crate) fn has(&self, source: Option<u32>) -> bool {
-        source.is_some_and(|s| self.strokes.contains(&s))
+        source.is_some_and(|s| self.strokes.contains_key(&s))
     }
 
     fn uv(&self, p: DVec3) -> [f32; 2] {

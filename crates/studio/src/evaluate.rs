@@ -2,7 +2,7 @@
 //!
 //! `drawing -> ink, classes | + corrections -> reading | + spec, seed -> plant | + skin -> model`
 
-use std::collections::BTreeMap;
+use base::LiteMap;
 use std::sync::Arc;
 
 use base::{Cancelled, Counted, Report, Run, Seed, Stage, Warning};
@@ -89,7 +89,7 @@ enum Taken {
 type PlantFrom = (SketchSpec, Seed, String, Option<LeafTemplate>);
 
 /// What a reading is made from, besides ink and classes.
-type ReadFrom = (ClassOverrides, BTreeMap<u32, StrokeClass>, Option<Kind>);
+type ReadFrom = (ClassOverrides, LiteMap<u32, StrokeClass>, Option<Kind>);
 
 /// An edited plant and the edits.
 #[derive(Clone, Debug)]
@@ -153,7 +153,7 @@ impl Evaluator {
         self.done.clear();
         let count = drawing.strokes.len();
         run.budget.check(Counted::Strokes, count as u64, "draw with fewer strokes or in several drawings")?;
-        if let Some((&index, _)) = options.classes.range(u32::try_from(count).unwrap_or(u32::MAX)..).next() {
+        if let Some(&index) = options.classes.keys().find(|&&index| index as usize >= count) {
             return Err(MakeError::NoSuchStroke { name: drawing.name.clone(), index, strokes: count });
         }
         let mut stages = Vec::new();

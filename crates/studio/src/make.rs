@@ -1,6 +1,6 @@
 //! From a drawing to everything that is made of it.
 
-use std::collections::BTreeMap;
+use base::LiteMap;
 
 use base::{Cancelled, OverBudget, Stopped};
 use document::{DocumentPlant, Photo, PlantEdit};
@@ -11,7 +11,7 @@ use skin::{SkinSpec, Worn};
 use crate::template::LeafTemplate;
 
 /// Classes that the user set, by stroke index in the drawing.
-pub type ClassOverrides = BTreeMap<u32, StrokeClass>;
+pub type ClassOverrides = LiteMap<u32, StrokeClass>;
 
 /// What is asked of a sketch: saved with the document.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -24,7 +24,7 @@ pub struct SketchOptions {
     pub classes: ClassOverrides,
     /// What strokes were shown as while the drawing grew, by stroke index: not given up without clear evidence. Empty for
     /// a drawing without such a history.
-    pub shown: BTreeMap<u32, StrokeClass>,
+    pub shown: LiteMap<u32, StrokeClass>,
     /// A photograph under the drawing, whose colours traced organs take.
     pub photo: Option<Photo>,
     /// The leaf that the plant bears instead of the drawn or built-in ones.

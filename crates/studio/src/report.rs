@@ -1,6 +1,6 @@
 //! The JSON report: a contract with other programs. Fields are never renamed or removed.
 
-use std::collections::BTreeMap;
+use base::LiteMap;
 
 use base::{Report, Warning};
 use plant::{AxisKind, OrganKind, Plant};
@@ -138,7 +138,7 @@ impl ReadingReport {
             return one.readings.iter().map(|r| Self { kind: r.kind, plants, score: r.score }).collect();
         }
         let count = reading.plants.len().max(1) as f64;
-        let mut sums: BTreeMap<Kind, f64> = BTreeMap::new();
+        let mut sums: LiteMap<Kind, f64> = LiteMap::new();
         for r in reading.plants.iter().flat_map(|p| &p.readings) {
             *sums.entry(r.kind).or_default() += r.score / count;
         }

@@ -2,7 +2,7 @@
 //!
 //! `Document -> SceneEvaluator (an evaluator a plant) -> models, reports | scene_model -> one model`
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use base::{Cancelled, OverBudget, Report, Run, Seed, Stopped};
@@ -176,7 +176,7 @@ impl ScenePlant<'_> {
 pub struct SceneEvaluator {
     wind: bool,
     looking: bool,
-    plants: BTreeMap<PlantId, Kept>,
+    plants: base::LiteMap<PlantId, Kept>,
     /// The last number that was given to a model.
     revision: u64,
 }

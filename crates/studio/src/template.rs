@@ -166,7 +166,7 @@ impl LeafTemplate {
                 *used = true;
             }
         }
-        let mut now: BTreeMap<usize, plant::ShapeId> = BTreeMap::new();
+        let mut now: base::LiteMap<usize, plant::ShapeId> = base::LiteMap::new();
         let mut count = 0;
         for k in 0..plant.organs.len() {
             let shape = plant.organs[k].shape;

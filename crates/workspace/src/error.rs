@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use burgeon::document::{ArchiveError, CommandError, PhotoError, PictureError, ProjectError};
 use burgeon::formats::{DrawingError, ModelError, WriteError};
-use burgeon::{Coded, SceneError, Slip, SplitError, Stopped, Told, TreeError, map_of};
+use burgeon::{Coded, SceneError, Slip, SplitError, Stopped, Told, TreeError};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -180,6 +180,13 @@ pub struct Refusal {
     pub message: String,
 }
 
+/// Not collected, which would sort them first.
+fn in_order<V>(rows: impl Iterator<Item = (String, V)>) -> BTreeMap<String, V> {
+    let mut map = BTreeMap::new();
+    map.extend(rows);
+    map
+}
+
 impl Refusal {
     /// Of any error with a code.
     pub fn of(error: &(impl Coded + Display)) -> Self {
@@ -189,8 +196,8 @@ impl Refusal {
     fn told(Told { code, fields, causes }: Told, message: String) -> Self {
         let sentence = |name| fields.get(name).cloned().unwrap_or_default();
         let causes = causes.into_iter().map(|(name, told)| (name.into(), Self::told(told, sentence(name))));
-        let causes = map_of(causes);
-        let fields = map_of(fields.into_iter().map(|(name, value)| (name.into(), value)));
+        let causes = in_order(causes);
+        let fields = in_order(fields.into_iter().map(|(name, value)| (name.into(), value)));
         Self { code: code.into(), fields, causes, message }
     }
 }

@@ -1,13 +1,13 @@
 //! What is shown: plants made again where something changed, their meshes as columns.
 
-use std::collections::BTreeMap;
-
 use burgeon::document::{self, DocumentPlant, Editor, Maker, PlantId};
 use burgeon::growth::Obstacle;
 use burgeon::ink::Drawing;
 use burgeon::mesh::Model;
 use burgeon::plant::{OrganKind, Shape};
-use burgeon::{Evaluator, ItemReport, MakeError, Run, SceneError, Seed, SketchOptions, set_of, sort_by_key};
+use burgeon::{
+    Evaluator, ItemReport, LiteMap, MakeError, Run, SceneError, Seed, SketchOptions, set_of, sort_by_key,
+};
 
 use crate::view::{GUEST, Outcome, PREVIEW_DETAIL, coarser};
 use crate::{Column, ObstacleView, PlantView, Refusal, SceneView, WarningView, Workspace, WorkspaceError};
@@ -109,7 +109,7 @@ impl Workspace {
     fn view(&mut self) -> SceneView {
         let mut view = SceneView { revision: self.editor.revision(), guest: None, plants: Vec::new() };
         let mut textures = std::mem::take(&mut self.textures);
-        let mut given = BTreeMap::new();
+        let mut given = LiteMap::new();
         if let Some(model) = &self.guest {
             let mut seen = PlantView::of(GUEST, model, &mut textures);
             seen.fresh = true;
@@ -290,11 +290,11 @@ impl Workspace {
         let plants = self.editor.document().plants().iter();
         let shown = set_of(plants.filter(|p| !p.settings().hidden).map(DocumentPlant::id));
         self.kept.now += 1;
-        for &id in &shown {
+        for &id in shown.keys() {
             self.kept.shown.insert(id, self.kept.now);
         }
         let last = |id| self.kept.shown.get(&id).copied().unwrap_or(0);
-        let aside = self.scene.kept().filter(|(id, _)| !shown.contains(id));
+        let aside = self.scene.kept().filter(|(id, _)| !shown.contains_key(id));
         let mut aside: Vec<(u64, PlantId)> = aside.map(|(id, _)| (last(id), id)).collect();
         sort_by_key(&mut aside, |row| *row);
         for (_, id) in aside {
@@ -305,8 +305,8 @@ impl Workspace {
             self.scene.forget(id);
         }
         let kept = set_of(self.scene.kept().map(|(id, _)| id));
-        self.kept.shown.retain(|id, _| kept.contains(id));
-        self.outcomes.retain(|id, _| kept.contains(id) || shown.contains(id));
+        self.kept.shown.retain(|id, _| kept.contains_key(id));
+        self.outcomes.retain(|id, _| kept.contains_key(id) || shown.contains_key(id));
     }
 }
 

@@ -1,7 +1,6 @@
 //! How long results are kept: as long as there is room. Those that were not shown for longest go first.
 
-use std::collections::BTreeMap;
-
+use burgeon::LiteMap;
 use burgeon::document::PlantId;
 
 /// How much is kept unless [`crate::Workspace::keep_at_most`] says otherwise: 256 MiB, a quarter of what a tab may ask for.
@@ -17,7 +16,7 @@ pub(crate) struct Kept {
     pub(crate) limit: usize,
     pub(crate) most: usize,
     pub(crate) now: u64,
-    pub(crate) shown: BTreeMap<PlantId, u64>,
+    pub(crate) shown: LiteMap<PlantId, u64>,
 }
 
 impl Default for Kept {
@@ -28,6 +27,6 @@ impl Default for Kept {
 
 impl Kept {
     pub(crate) fn at_most(limit: usize) -> Self {
-        Self { limit, most: SHOWN_BYTES, now: 0, shown: BTreeMap::new() }
+        Self { limit, most: SHOWN_BYTES, now: 0, shown: LiteMap::new() }
     }
 }

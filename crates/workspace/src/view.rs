@@ -6,7 +6,7 @@ use std::sync::Arc;
 use burgeon::document::{Command, Document, Maker, PlantId, SketchCommand, TreeCommand};
 use burgeon::mesh::{AlphaMode, Model, Texture, TriMesh};
 use burgeon::skin::SkinSpec;
-use burgeon::{FrontView, ItemReport, SceneError, Warning, map_of, set_of};
+use burgeon::{FrontView, ItemReport, SceneError, Warning, set_of};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -123,7 +123,9 @@ pub struct WarningView {
 impl From<&Warning> for WarningView {
     fn from(warning: &Warning) -> Self {
         let Warning { code, message, fields } = warning;
-        Self { code, message: message.clone(), fields: map_of(fields.iter().cloned()) }
+        let mut warning = Self { code, message: message.clone(), fields: BTreeMap::new() };
+        warning.fields.extend(fields.iter().cloned());
+        warning
     }
 }
 
@@ -184,7 +186,7 @@ impl Textures {
     pub(crate) fn keep<'a>(&mut self, views: impl Iterator<Item = &'a PlantView>) {
         let seen = views.flat_map(|v| &v.materials).filter_map(|m| Some(m.texture?.number));
         let seen = set_of(seen);
-        self.rows.retain(|(number, _)| seen.contains(number));
+        self.rows.retain(|(number, _)| seen.contains_key(number));
     }
 
     fn number_of(&mut self, texture: &Arc<Texture>) -> u32 {

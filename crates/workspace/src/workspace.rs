@@ -12,7 +12,7 @@ use burgeon::glam::DVec2;
 use burgeon::ink::{Drawing, Stroke, StrokeClass};
 use burgeon::mesh::Model;
 use burgeon::skin::{OrganMaterial, Pattern, Wearer};
-use burgeon::{Evaluator, ItemReport, Preset, Run, SceneEvaluator, tree_settings};
+use burgeon::{Evaluator, ItemReport, LiteMap, Preset, Run, SceneEvaluator, tree_settings};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -110,13 +110,13 @@ pub struct Workspace {
     /// Another plant of the same description, looked at for a moment.
     pub(crate) variant: Option<Model>,
     /// Trees that are still being made, much coarser.
-    pub(crate) coarse: BTreeMap<PlantId, Model>,
+    pub(crate) coarse: LiteMap<PlantId, Model>,
     /// An export that is looked at before it is written.
     pub(crate) looked: Option<Looked>,
     /// What came of each plant at the last evaluation.
-    pub(crate) outcomes: BTreeMap<PlantId, Outcome>,
+    pub(crate) outcomes: LiteMap<PlantId, Outcome>,
     /// What each plant's meshes were made of in the last view: a revision, or a look.
-    pub(crate) meshes: BTreeMap<PlantId, Option<u64>>,
+    pub(crate) meshes: LiteMap<PlantId, Option<u64>>,
     pub(crate) kept: Kept,
     /// Points that the shell has. Holding them keeps their addresses from being used again.
     given: BTreeMap<StrokeId, Arc<Stroke>>,

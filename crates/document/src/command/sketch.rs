@@ -1,5 +1,6 @@
 //! Commands of sketches: strokes and how they are understood.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use glam::DVec2;
@@ -356,7 +357,8 @@ fn duplicate(
 }
 
 fn rows(ids: &[StrokeId], plant: &DocumentPlant) -> Result<Vec<usize>, CommandError> {
-    let wanted = base::set_of(ids.iter().copied());
+    let mut wanted = BTreeSet::new();
+    wanted.extend(ids.iter().copied());
     let found = plant.strokes.iter().enumerate().filter(|(_, s)| wanted.contains(&s.id));
     let found: Vec<usize> = found.map(|(row, _)| row).collect();
     if found.len() < wanted.len() {

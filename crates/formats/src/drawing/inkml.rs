@@ -3,6 +3,8 @@
 
 use std::collections::BTreeMap;
 
+use base::LiteMap;
+
 use base::Report;
 use glam::DVec2;
 use ink::{Drawing, InkSample, Stroke, StrokeMode};
@@ -55,9 +57,9 @@ struct Context {
 }
 
 struct Reader<'a> {
-    contexts: BTreeMap<&'a str, Context>,
-    layouts: BTreeMap<&'a str, Layout>,
-    brushes: BTreeMap<&'a str, Option<[u8; 3]>>,
+    contexts: LiteMap<&'a str, Context>,
+    layouts: LiteMap<&'a str, Layout>,
+    brushes: LiteMap<&'a str, Option<[u8; 3]>>,
     /// What plain `<context>` elements in the body set for the traces after them.
     current: Context,
     strokes: Vec<Stroke>,
@@ -74,9 +76,9 @@ pub(super) fn read(text: &str, name: &str, report: &mut Report) -> Result<Drawin
         return Err(DrawingError::new(FORMAT, xml::place(root), fault));
     }
     let mut reader = Reader {
-        contexts: BTreeMap::new(),
-        layouts: BTreeMap::new(),
-        brushes: BTreeMap::new(),
+        contexts: LiteMap::new(),
+        layouts: LiteMap::new(),
+        brushes: LiteMap::new(),
         current: Context::default(),
         strokes: Vec::new(),
         by_id: BTreeMap::new(),

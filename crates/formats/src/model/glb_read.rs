@@ -48,7 +48,10 @@ pub(super) fn read(
     if json.iter().filter(|b| matches!(b, b'{' | b'[')).count() > MAX_OBJECTS {
         return Err(too_much("the number of objects", MAX_OBJECTS));
     }
-    let root: Root = serde_json::from_slice(json).map_err(|e| {
+    // As text, as all JSON is read here: a reader of bytes would be a second copy of all that reads.
+    let json = core::str::from_utf8(json)
+        .map_err(|e| file(FileFault::malformed(format!("the JSON part: {e}"), "export the model again")))?;
+    let root: Root = serde_json::from_str(json).map_err(|e| {
         let place = Place::Line { line: e.line() as u64, column: Some(e.column() as u64) };
         let fault = if e.is_eof() {
             FileFault::Truncated { inside: "the JSON part".into() }

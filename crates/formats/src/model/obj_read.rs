@@ -1,6 +1,6 @@
 //! Wavefront OBJ with its material file -> Model.
 
-use std::collections::BTreeMap;
+use base::LiteMap;
 use std::sync::Arc;
 
 use base::Report;
@@ -22,8 +22,8 @@ struct Reader {
     uvs: Vec<[f32; 2]>,
     normals: Vec<[f32; 3]>,
     materials: Vec<Material>,
-    by_name: BTreeMap<String, MaterialId>,
-    groups: BTreeMap<(String, MaterialId), usize>,
+    by_name: LiteMap<String, MaterialId>,
+    groups: LiteMap<(String, MaterialId), usize>,
     faces: Vec<(String, MaterialId, Vec<[Corner; 3]>)>,
     object: Option<String>,
     group: Option<String>,
@@ -192,7 +192,7 @@ impl Reader {
             return report.warn("obj-material-file", message);
         };
         let text = String::from_utf8_lossy(&bytes);
-        let mut textures: BTreeMap<String, Option<Arc<Texture>>> = BTreeMap::new();
+        let mut textures: LiteMap<String, Option<Arc<Texture>>> = LiteMap::new();
         let mut material: Option<Material> = None;
         for line in text.lines() {
             let (key, rest) = line.trim().split_once(char::is_whitespace).unwrap_or((line.trim(), ""));

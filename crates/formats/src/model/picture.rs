@@ -3,16 +3,19 @@
 use std::io::{Cursor, Write};
 use std::sync::Arc;
 
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{ExtendedColorType, ImageEncoder, ImageFormat, ImageReader, Limits};
 use mesh::Texture;
+use png::{BitDepth, ColorType, Compression, Filter, Limits, Transformations};
+use zune_jpeg::JpegDecoder;
+use zune_jpeg::zune_core::bytestream::ZCursor;
+use zune_jpeg::zune_core::colorspace::ColorSpace;
+use zune_jpeg::zune_core::options::DecoderOptions;
 
 use crate::error::WriteError;
 
 /// Widest and highest picture that is read.
 const MAX_SIDE: u32 = 8_192;
 /// Memory for one picture that is read.
-const MAX_PICTURE_BYTES: u64 = 512 << 20;
+const MAX_PICTURE_BYTES: usize = 512 << 20;
 
 /// Writes RGBA pixels (rows from the top, sRGB, `4 * width * height` bytes) as a PNG.
 ///
@@ -32,34 +35,67 @@ pub fn write_png(width: u32, height: u32, pixels: &[u8], out: impl Write) -> Res
     if width == 0 || height == 0 || pixels.len() as u64 != 4 * u64::from(width) * u64::from(height) {
         return Err(fault());
     }
-    let opaque = pixels.chunks_exact(4).all(|p| p[3] == 255);
-    let encoder = PngEncoder::new_with_quality(out, CompressionType::Fast, FilterType::Adaptive);
-    let written = if opaque {
-        let rgb: Vec<u8> = pixels.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
-        encoder.write_image(&rgb, width, height, ExtendedColorType::Rgb8)
+    let rgb: Vec<u8>;
+    let (color, bytes) = if pixels.chunks_exact(4).all(|p| p[3] == 255) {
+        rgb = pixels.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
+        (ColorType::Rgb, rgb.as_slice())
     } else {
-        encoder.write_image(pixels, width, height, ExtendedColorType::Rgba8)
+        (ColorType::Rgba, pixels)
     };
-    written.map_err(|e| match e {
-        image::ImageError::IoError(e) => WriteError::Io(e),
-        other => WriteError::Io(std::io::Error::other(other)),
-    })
+    let mut encoder = png::Encoder::new(out, width, height);
+    encoder.set_color(color);
+    encoder.set_depth(BitDepth::Eight);
+    encoder.set_compression(Compression::Fast);
+    encoder.set_filter(Filter::Adaptive);
+    let written = encoder.write_header().and_then(|mut writer| writer.write_image_data(bytes));
+    written.map_err(|e| WriteError::Io(e.into()))
 }
 
 /// Reads a PNG or JPEG within bounds. `None` if it is neither, broken, or too large.
+///
+/// Of a PNG with 16 bits the upper eight are taken.
 pub fn read_picture(bytes: &[u8]) -> Option<Texture> {
-    let format = image::guess_format(bytes).ok()?;
-    if !matches!(format, ImageFormat::Png | ImageFormat::Jpeg) {
+    if bytes.starts_with(b"\x89PNG\r\n\x1a\n") { read_png(bytes) } else { read_jpeg(bytes) }
+}
+
+fn read_png(bytes: &[u8]) -> Option<Texture> {
+    let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), Limits { bytes: MAX_PICTURE_BYTES });
+    decoder.set_transformations(Transformations::normalize_to_color8());
+    let mut reader = decoder.read_info().ok()?;
+    let (width, height) = reader.info().size();
+    if width.max(height) > MAX_SIDE {
         return None;
     }
-    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
-    let mut limits = Limits::default();
-    limits.max_image_width = Some(MAX_SIDE);
-    limits.max_image_height = Some(MAX_SIDE);
-    limits.max_alloc = Some(MAX_PICTURE_BYTES);
-    reader.limits(limits);
-    let picture = reader.decode().ok()?.into_rgba8();
-    Some(Texture { width: picture.width(), height: picture.height(), pixels: picture.into_raw() })
+    let mut read = vec![0; reader.output_buffer_size().filter(|&size| size <= MAX_PICTURE_BYTES)?];
+    let color = reader.next_frame(&mut read).ok()?.color_type;
+    let pixels = match color {
+        ColorType::Grayscale => read.iter().flat_map(|&l| [l, l, l, 255]).collect(),
+        ColorType::GrayscaleAlpha => read.chunks_exact(2).flat_map(|p| [p[0], p[0], p[0], p[1]]).collect(),
+        ColorType::Rgb => opaque(&read),
+        ColorType::Rgba => read,
+        ColorType::Indexed => return None,
+    };
+    Some(Texture { width, height, pixels })
+}
+
+fn read_jpeg(bytes: &[u8]) -> Option<Texture> {
+    let side = MAX_SIDE as usize;
+    let options = DecoderOptions::default().set_strict_mode(false).set_max_width(side).set_max_height(side);
+    let options = options.jpeg_set_out_colorspace(ColorSpace::RGB);
+    let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
+    let pixels = opaque(&decoder.decode().ok()?);
+    let (width, height) = decoder.dimensions()?;
+    let sized = width.checked_mul(height)?.checked_mul(4) == Some(pixels.len());
+    sized.then_some(Texture {
+        width: u32::try_from(width).ok()?,
+        height: u32::try_from(height).ok()?,
+        pixels,
+    })
+}
+
+/// RGB as RGBA.
+fn opaque(rgb: &[u8]) -> Vec<u8> {
+    rgb.chunks_exact(3).flat_map(|p| [p[0], p[1], p[2], 255]).collect()
 }
 
 /// Encoded textures, so that writing a model again (or another with the same textures) does not encode them
@@ -106,4 +142,60 @@ pub(super) fn linear(srgb: f32) -> f32 {
 #[expect(clippy::cast_possible_truncation, reason = "colours are f32 by design")]
 fn narrow(x: f64) -> f32 {
     x as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn png(color: ColorType, depth: BitDepth, palette: Option<&[u8]>, bytes: &[u8]) -> Texture {
+        let mut out = Vec::new();
+        let mut encoder = png::Encoder::new(&mut out, 2, 1);
+        encoder.set_color(color);
+        encoder.set_depth(depth);
+        if let Some(palette) = palette {
+            encoder.set_palette(palette);
+        }
+        encoder.write_header().unwrap().write_image_data(bytes).unwrap();
+        read_picture(&out).unwrap()
+    }
+
+    #[test]
+    fn every_kind_of_png_is_read() {
+        use BitDepth::{Eight, One, Sixteen};
+        let of = |color, depth, bytes: &[u8]| png(color, depth, None, bytes).pixels;
+        assert_eq!(of(ColorType::Grayscale, Eight, &[7, 9]), [7, 7, 7, 255, 9, 9, 9, 255]);
+        assert_eq!(of(ColorType::Grayscale, One, &[0b0100_0000]), [0, 0, 0, 255, 255, 255, 255, 255]);
+        assert_eq!(of(ColorType::GrayscaleAlpha, Eight, &[7, 1, 9, 2]), [7, 7, 7, 1, 9, 9, 9, 2]);
+        assert_eq!(of(ColorType::Rgb, Eight, &[1, 2, 3, 4, 5, 6]), [1, 2, 3, 255, 4, 5, 6, 255]);
+        assert_eq!(of(ColorType::Grayscale, Sixteen, &[7, 200, 9, 0]), [7, 7, 7, 255, 9, 9, 9, 255]);
+        let indexed = png(ColorType::Indexed, One, Some(&[1, 2, 3, 4, 5, 6]), &[0b0100_0000]);
+        assert_eq!((indexed.width, indexed.height), (2, 1));
+        assert_eq!(indexed.pixels, [1, 2, 3, 255, 4, 5, 6, 255]);
+    }
+
+    #[test]
+    fn every_kind_of_jpeg_is_read() {
+        let near = |p: &[u8], want: [u8; 3]| {
+            p[3] == 255 && p.iter().zip(want).all(|(&have, want)| have.abs_diff(want) <= 3)
+        };
+        let (red, green) = ([200, 40, 40], [30, 160, 60]);
+        let (dark, light) = ([88; 3], [110; 3]);
+        for (bytes, left, right) in [
+            (include_bytes!("../../tests/pictures/halves.jpg").as_slice(), red, green),
+            (include_bytes!("../../tests/pictures/halves-progressive.jpg"), red, green),
+            (include_bytes!("../../tests/pictures/halves-cmyk.jpg"), red, green),
+            (include_bytes!("../../tests/pictures/halves-grey.jpg"), dark, light),
+        ] {
+            let picture = read_picture(bytes).unwrap();
+            assert_eq!((picture.width, picture.height, picture.pixels.len()), (16, 16, 1024));
+            let pixel = |x: usize, y: usize| &picture.pixels[4 * (16 * y + x)..][..4];
+            assert!(near(pixel(2, 2), left), "{:?} is not {left:?}", pixel(2, 2));
+            assert!(near(pixel(13, 8), right), "{:?} is not {right:?}", pixel(13, 8));
+            // Cut off anywhere it is none, or one of that size; never a panic.
+            for end in 0..bytes.len() {
+                assert!(read_picture(&bytes[..end]).is_none_or(|p| p.pixels.len() == 1024));
+            }
+        }
+    }
 }

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use base::LiteMap;
+
 use base::{Executor, Run, map_indexed, ops};
 use geom::convex_hull;
 use glam::DVec2;
@@ -61,7 +63,7 @@ pub(super) fn features_again(
 /// What the strokes of a drawing measure on their own, kept for the next look at it: a stroke that is drawn leaves the
 /// others as they are, unless it widens the drawing. Changes no result.
 #[derive(Clone, Debug, Default)]
-pub struct KeptMeasures(Vec<(Vec<DVec2>, Shape, StrokeFeatures)>, BTreeMap<usize, Self>);
+pub struct KeptMeasures(Vec<(Vec<DVec2>, Shape, StrokeFeatures)>, LiteMap<usize, Self>);
 
 impl KeptMeasures {
     /// Those of one plant of several, which is known by its first stroke.
@@ -611,7 +613,7 @@ fn part_inside(s: &Shape, region: &Region, o: &Shape) -> f64 {
 /// Share of the strokes that are shorter, for each.
 fn ranks(shapes: &[Shape]) -> Vec<f64> {
     let mut sorted: Vec<f64> = shapes.iter().map(|s| s.length).collect();
-    sorted.sort_by(f64::total_cmp);
+    base::sort_numbers(&mut sorted);
     let others = to_f64(shapes.len().saturating_sub(1));
     shapes.iter().map(|s| share(to_f64(sorted.partition_point(|&l| l < s.length)), others)).collect()
 }

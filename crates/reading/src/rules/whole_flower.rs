@@ -132,13 +132,13 @@ fn petals_of(draft: &Draft<'_>, loops: &[Loop], free: &[usize], d: usize) -> Opt
         return None;
     }
     let mut sizes: Vec<f64> = petals.iter().map(|&i| loops[i].radius).collect();
-    sizes.sort_by(f64::total_cmp);
+    base::sort_numbers(&mut sizes);
     let usual = sizes[sizes.len() / 2];
     let alike = |i: &usize| loops[*i].radius > 0.5 * usual && loops[*i].radius < 2.0 * usual;
     let petals: Vec<usize> = petals.into_iter().filter(alike).collect();
     let mut angles: Vec<f64> =
         petals.iter().map(|&i| loops[i].middle - disc.middle).map(|v| ops::atan2(v.y, v.x)).collect();
-    angles.sort_by(f64::total_cmp);
+    base::sort_numbers(&mut angles);
     let around = angles.first().zip(angles.last()).map_or(ops::TAU, |(a, b)| a + ops::TAU - b);
     let widest = angles.windows(2).map(|w| w[1] - w[0]).fold(around, f64::max);
     // A disc is no larger than its petals are long; berries have berries behind them.

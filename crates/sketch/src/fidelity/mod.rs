@@ -6,8 +6,6 @@ mod lines;
 mod overlap;
 mod shown;
 
-use std::collections::BTreeSet;
-
 use base::{Run, map_indexed};
 use geom::{contains, distance_to_polyline, resample};
 use glam::DVec2;
@@ -88,7 +86,7 @@ pub fn fidelity(built: &Built, reading: &Reading, ink: &Ink, run: &Run<'_>) -> F
     let model = Lines::new(shown.iter().map(|l| &l.points[..]));
     let wanted = Wanted::new(built, reading);
     let strokes: Vec<&InkStroke> =
-        ink.strokes.iter().filter(|s| !wanted.left_out.contains(&s.index)).collect();
+        ink.strokes.iter().filter(|s| !wanted.left_out.contains_key(&s.index)).collect();
     let total: f64 = ink.strokes.iter().map(|s| s.length).sum();
     let step = STEP.max(total / MOST);
     let measured = map_indexed(run.executor, strokes.len(), |i| {
@@ -134,9 +132,9 @@ pub fn fidelity(built: &Built, reading: &Reading, ink: &Ink, run: &Run<'_>) -> F
 /// Which ink is compared with what.
 struct Wanted {
     /// Strokes of which nothing is measured.
-    left_out: BTreeSet<u32>,
+    left_out: base::Set<u32>,
     /// Strokes that are, or have, a contour.
-    filled: BTreeSet<u32>,
+    filled: base::Set<u32>,
     /// What was filled, in ink.
     contours: Vec<Vec<DVec2>>,
 }
@@ -163,7 +161,7 @@ impl Wanted {
             let seam = first.zip(last).and_then(|(a, b)| distance_to_polyline(&[a, b], p));
             contains(c, p) || seam.into_iter().chain(distance_to_polyline(c, p)).any(|d| d < ON)
         };
-        self.filled.contains(&stroke) && self.contours.iter().any(near)
+        self.filled.contains_key(&stroke) && self.contours.iter().any(near)
     }
 }
 

@@ -2,8 +2,10 @@
 //!
 //! `contour + twigs and leaves -> cells of both, of either`
 
+use core::ops::Range;
+
 use base::map_indexed;
-use geom::contains;
+use geom::contains_along;
 use glam::{DVec2, DVec3};
 use plant::{AxisId, Plant, Shape};
 use reading::RegionKind;
@@ -56,6 +58,12 @@ impl Grid {
         let count = |extent: f64| ((extent + 2.0 * margin) / cell).ceil() as usize + 1;
         let (nx, ny) = (count(high.x - low.x), count(high.y - low.y));
         Some(Self { low: low - margin, cell, nx, ny, covered: vec![false; nx * ny] })
+    }
+
+    /// Whether the middles of cells of one row lie in a polygon.
+    fn within(&self, ring: &[DVec2], cells: Range<usize>) -> Vec<bool> {
+        let y = self.centre(cells.start).y;
+        contains_along(ring, y, cells.map(|i| self.centre(i).x)).collect()
     }
 
     fn centre(&self, i: usize) -> DVec2 {
@@ -115,19 +123,17 @@ impl Grid {
         let cell = |p: DVec2| (p.x.max(0.0) as usize, p.y.max(0.0) as usize);
         let (first, last) = (cell((low - self.low) / self.cell), cell((high - self.low) / self.cell));
         for y in first.1..=last.1.min(self.ny - 1) {
-            for x in first.0..=last.0.min(self.nx - 1) {
-                let i = y * self.nx + x;
-                if !self.covered[i] && contains(ring, self.centre(i)) {
-                    self.covered[i] = true;
-                }
+            let cells = y * self.nx + first.0..y * self.nx + last.0.min(self.nx - 1) + 1;
+            for (i, inside) in cells.clone().zip(self.within(ring, cells)) {
+                self.covered[i] |= inside;
             }
         }
     }
 
     /// The area in both and in either, square metres.
     fn shared(&self, grown: &GrownContour) -> (f64, f64) {
-        let inside: Vec<bool> =
-            (0..self.covered.len()).map(|i| contains(&grown.outline, self.centre(i))).collect();
+        let row = |y| self.within(&grown.outline, y * self.nx..(y + 1) * self.nx);
+        let inside: Vec<bool> = (0..self.ny).flat_map(row).collect();
         let inradius = self.distances(&inside.iter().map(|i| !i).collect::<Vec<_>>());
         let inradius = inradius.into_iter().fold(0.0, f64::max);
         let bridged = inradius * if grown.kind == RegionKind::Twigs { 0.5 } else { 0.125 };
@@ -151,34 +157,34 @@ impl Grid {
     /// Distance of each cell to the nearest that is set, in cells (chamfer, two sweeps: exact to 8 %).
     fn distances(&self, set: &[bool]) -> Vec<f64> {
         const ACROSS: f64 = core::f64::consts::SQRT_2;
-        let (nx, ny) = (self.nx, self.ny);
-        let mut d: Vec<f64> = set.iter().map(|&s| if s { 0.0 } else { f64::INFINITY }).collect();
-        for i in 0..d.len() {
-            let (x, y) = (i % nx, i / nx);
-            let mut best = d[i];
-            if x > 0 {
-                best = best.min(d[i - 1] + 1.0);
+        // With a margin of cells that are far from everything, so that every cell has eight neighbours.
+        let wide = self.nx + 2;
+        let mut d = vec![f64::INFINITY; wide * (self.ny + 2)];
+        for (row, set) in d.chunks_exact_mut(wide).skip(1).zip(set.chunks_exact(self.nx)) {
+            for (d, &set) in row[1..].iter_mut().zip(set) {
+                *d = if set { 0.0 } else { f64::INFINITY };
             }
-            if y > 0 {
-                best = best.min(d[i - nx] + 1.0);
-                best = if x > 0 { best.min(d[i - nx - 1] + ACROSS) } else { best };
-                best = if x + 1 < nx { best.min(d[i - nx + 1] + ACROSS) } else { best };
-            }
-            d[i] = best;
         }
-        for i in (0..d.len()).rev() {
-            let (x, y) = (i % nx, i / nx);
-            let mut best = d[i];
-            if x + 1 < nx {
-                best = best.min(d[i + 1] + 1.0);
+        for y in 1..=self.ny {
+            let (above, row) = d[(y - 1) * wide..(y + 1) * wide].split_at_mut(wide);
+            for x in 1..=self.nx {
+                let side = (row[x - 1] + 1.0).min(above[x] + 1.0);
+                let across = (above[x - 1] + ACROSS).min(above[x + 1] + ACROSS);
+                row[x] = row[x].min(side).min(across);
             }
-            if y + 1 < ny {
-                best = best.min(d[i + nx] + 1.0);
-                best = if x > 0 { best.min(d[i + nx - 1] + ACROSS) } else { best };
-                best = if x + 1 < nx { best.min(d[i + nx + 1] + ACROSS) } else { best };
-            }
-            d[i] = best;
         }
-        d
+        for y in (1..=self.ny).rev() {
+            let (row, below) = d[y * wide..(y + 2) * wide].split_at_mut(wide);
+            for x in (1..=self.nx).rev() {
+                let side = (row[x + 1] + 1.0).min(below[x] + 1.0);
+                let across = (below[x - 1] + ACROSS).min(below[x + 1] + ACROSS);
+                row[x] = row[x].min(side).min(across);
+            }
+        }
+        let mut inner = Vec::with_capacity(self.nx * self.ny);
+        for row in d.chunks_exact(wide).skip(1).take(self.ny) {
+            inner.extend_from_slice(&row[1..=self.nx]);
+        }
+        inner
     }
 }

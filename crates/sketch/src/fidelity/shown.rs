@@ -33,7 +33,7 @@ pub(super) fn shown_lines(built: &Built, reading: &Reading) -> Vec<ShownLine> {
     for (i, axis) in plant.axes.iter().enumerate().filter(|&(i, _)| !grown_axis(i)) {
         let id = AxisId::new(i);
         let middle: Vec<DVec2> = plant.axis_points(id).iter().map(|&p| seen(p)).collect();
-        let drawn_thick = axis.source.is_some_and(|s| thick.contains(&s));
+        let drawn_thick = axis.source.is_some_and(|s| thick.contains_key(&s));
         let points =
             if drawn_thick { edges(&middle, plant.axis_radii(id), built.map.metres_per_ink) } else { middle };
         lines.push(ShownLine { points, outline: true });

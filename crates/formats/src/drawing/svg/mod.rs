@@ -11,6 +11,8 @@ mod write;
 pub use write::write_svg;
 
 use std::collections::BTreeMap;
+
+use base::LiteMap;
 use std::sync::Arc;
 
 use base::Report;
@@ -59,7 +61,7 @@ struct Reader<'a> {
     elements: usize,
     pieces: usize,
     work: usize,
-    left_out: BTreeMap<&'static str, usize>,
+    left_out: LiteMap<&'static str, usize>,
     broken: Vec<String>,
 }
 
@@ -90,7 +92,7 @@ pub(super) fn read(text: &str, name: &str, report: &mut Report) -> Result<Drawin
         elements: 0,
         pieces: 0,
         work: 0,
-        left_out: BTreeMap::new(),
+        left_out: LiteMap::new(),
         broken: Vec::new(),
     };
     reader.walk(root, Style::default(), DAffine2::IDENTITY, Depth::default())?;

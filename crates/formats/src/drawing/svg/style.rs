@@ -1,6 +1,6 @@
 //! Presentation of an SVG element: attributes, `style="..."`, and the simple selectors of `<style>` sheets.
 
-use std::collections::BTreeMap;
+use base::LiteMap;
 
 use ink::StrokeMode;
 use roxmltree::Node;
@@ -127,7 +127,7 @@ fn declarations(text: &str) -> impl Iterator<Item = (&str, &str)> {
 #[derive(Debug, Default)]
 pub(super) struct Sheet {
     /// Selector -> the properties that concern us; a later value replaces an earlier one.
-    rules: BTreeMap<String, BTreeMap<String, String>>,
+    rules: LiteMap<String, LiteMap<String, String>>,
     /// Selectors that were not understood.
     pub(super) ignored: usize,
 }
