@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use burgeon::bloom::{
-    self, BloomError, FlowerSpec, GrowthLaw, Motion, MotionSpec, RegisterSpec, Settled, ShapeError,
+    self, BloomError, FlowerSpec, GrowthLaw, Motion, MotionSpec, RegisterSpec, RigidMotion, Settled,
+    ShapeError,
 };
 use burgeon::document::PlantEdit;
 use burgeon::formats::{ExportSpec, ModelFormat, Morph, PngCache, write_cloud_ply, write_glb_morph};
@@ -291,8 +292,8 @@ impl<'a> Scans<'a> {
             }
             None => Organs::of(self.settled.day(&self.law, &self.spec, day, self.compute).map_err(failed)?),
         };
-        if frame == FrameWord::Scanner {
-            let pose = self.settled.pose(day);
+        let pose = self.settled.pose(day);
+        if frame == FrameWord::Scanner && pose != RigidMotion::REST {
             organs.points.iter_mut().for_each(|p| *p = pose.apply(*p));
         }
         Ok(organs)

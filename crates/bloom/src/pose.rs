@@ -181,6 +181,10 @@ pub fn settle(stages: &[Stage], spec: &RegisterSpec, run: &Run<'_>) -> Result<Se
         let origin = before.inverse().apply(plant.from);
         out.poses[k] =
             RigidMotion { from: origin, to: plant.to, turn: (plant.turn * before.turn).normalize() };
+        if out.poses[k] == RigidMotion::REST {
+            // The same bits.
+            continue;
+        }
         let settle = out.poses[k].inverse();
         for organ in &mut out.stages[k].organs {
             organ.points.iter_mut().for_each(|p| *p = settle.apply(*p));
