@@ -1,5 +1,5 @@
 //! Series of known truth: petals of our own flowers that open by known laws, measured with noise.
-#![expect(clippy::unwrap_used, clippy::print_stdout, reason = "tests; what they measure is told")]
+#![expect(clippy::unwrap_used, clippy::panic, reason = "tests")]
 
 use base::{Draw, Run, Seed};
 use bloom::{Form, GrowthLaw, LawSpec, Logistic, MotionSpec, Organ, Quantity, RegionLaw, Rival, Stage};
@@ -50,7 +50,7 @@ fn a_flower_that_opens_by_a_law_gives_its_pace_back() {
         let mut worst = 0.0_f64;
         for k in 1..10 {
             let day = last * f64::from(k) / 10.0;
-            let want = law.progress("petal", bloom::Quantity::Size, 0.5, 0.0, last, day);
+            let want = law.progress("petal", Quantity::Size, 0.5, 0.0, last, day);
             worst = worst.max((got.pace_at("petal-1", 0.5, 0.0, last, day) - want).abs());
         }
         println!(
