@@ -332,7 +332,7 @@ fn add_veins(points: &mut Vec<DVec2>, count: usize, veins: &[Vec<DVec2>], edge: 
             before = here;
         }
     }
-    edges.sort_unstable();
+    base::sort_by(&mut edges, Ord::cmp);
     edges.dedup();
     edges
 }

@@ -557,7 +557,7 @@ fn clusters(points: &[DVec2], bandwidth: f64) -> Vec<Vec<usize>> {
             let key = |v: f64| (v / bandwidth.max(1e-4)).floor() as i64;
             cells.entry((key(p.x), key(p.y))).or_default().push(i);
         }
-        groups = cells.into_values().enumerate().collect();
+        return cells.into_values().filter(|g| g.len() > 2).collect();
     }
     groups.into_iter().map(|(_, g)| g).filter(|g| g.len() > 2).collect()
 }

@@ -237,7 +237,9 @@ impl Wear {
         }
         for StrokeWear { strokes, material } in &self.strokes {
             let row = worn.row(material, &mut picture);
-            worn.strokes.extend(strokes.iter().map(|&s| (s, row)));
+            for &stroke in strokes {
+                worn.strokes.insert(stroke, row);
+            }
         }
         worn
     }

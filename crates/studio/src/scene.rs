@@ -2,7 +2,6 @@
 //!
 //! `Document -> SceneEvaluator (an evaluator a plant) -> models, reports | scene_model -> one model`
 
-use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use base::{Cancelled, OverBudget, Report, Run, Seed, Stopped};
@@ -394,9 +393,9 @@ impl SceneEvaluator {
     /// The plants of which something is kept, and about how many bytes: meshes, textures, and the plant in the stages in
     /// which it is kept for the next change. What copies share counts for the first of them.
     pub fn kept(&self) -> impl Iterator<Item = (PlantId, usize)> + '_ {
-        let mut counted = BTreeSet::new();
+        let mut counted = base::Set::new();
         self.plants.iter().map(move |(&id, kept)| {
-            let first = counted.insert(Arc::as_ptr(&kept.made));
+            let first = counted.insert(Arc::as_ptr(&kept.made), ()).is_none();
             (id, if first { kept.made.bytes() } else { 0 })
         })
     }

@@ -129,7 +129,7 @@ impl Whole<'_> {
             strokes: strokes.iter().map(|s| s.stroke.clone()).collect(),
             layers: Vec::new(),
         };
-        let classes = (0..).zip(&strokes).filter_map(|(row, s)| Some((row, s.class?))).collect();
+        let classes = base::map_of((0..).zip(&strokes).filter_map(|(row, s)| Some((row, s.class?))));
         let (_, front) =
             looked_at(&drawing, &SketchOptions { classes, ..self.options.clone() }, self.plant, run)?;
         // One metre of it is so much of the whole.

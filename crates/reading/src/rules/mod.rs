@@ -222,7 +222,9 @@ fn take(draft: &mut Draft<'_>, found: Findings, name: &'static str) {
         draft.class[stroke] = class;
         draft.rule[stroke] = Some(name);
     }
-    draft.legs.extend(found.legs.into_iter().map(|(stroke, legs)| (stroke, legs.into())));
+    for (stroke, legs) in found.legs {
+        draft.legs.insert(stroke, legs.into());
+    }
     draft.trunk |= found.trunk;
     found.settled.iter().for_each(|&k| draft.settled[k] = true);
     draft.united.extend(found.united);

@@ -157,7 +157,10 @@ impl Sheet {
                         .skip(1)
                         .all(|b| b.is_ascii_alphanumeric() || matches!(b, b'-' | b'_'));
                 if plain && self.rules.len() < MAX_RULES {
-                    self.rules.entry(selector.to_owned()).or_default().extend(wanted.iter().cloned());
+                    let rule = self.rules.entry(selector.to_owned()).or_default();
+                    for (name, value) in &wanted {
+                        rule.insert(name.clone(), value.clone());
+                    }
                 } else {
                     self.ignored += 1;
                 }
