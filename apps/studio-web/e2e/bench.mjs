@@ -169,7 +169,7 @@ for (const species of wanted('first') ? ['oak', 'birch', 'spruce'] : []) {
     for (;;) {
       const made = dataset.current === 'tree' && Number(dataset.triangles) > 0;
       if (Number.isNaN(seen) && (made || Number(dataset.coarse ?? 0) > 0)) seen = performance.now() - start;
-      if (made && dataset.done === '1') return [seen, performance.now() - start];
+      if (made && dataset.revision === dataset.wanted) return [seen, performance.now() - start];
       await new Promise((r) => {
         setTimeout(r, 2);
       });
@@ -307,7 +307,7 @@ if (wanted('many')) {
         document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true }));
         const { dataset } = document.body;
         let sheet = NaN;
-        while (!(dataset.done === '1' && Number(dataset.triangles) > 0)) {
+        while (!(dataset.revision === dataset.wanted && Number(dataset.triangles) > 0)) {
           if (Number.isNaN(sheet) && Number(dataset.strokes) > 4000) sheet = performance.now() - start;
           await new Promise((r) => {
             setTimeout(r, 5);
@@ -340,7 +340,7 @@ if (wanted('many')) {
               }),
             );
           const { dataset } = document.body;
-          const before = dataset.digest;
+          const before = dataset.strokes;
           const [x, y] = [box.left + box.width * (0.3 + 0.1 * stroke), box.top + box.height * 0.5];
           send('pointerdown', x, y);
           for (let i = 1; i <= 12; i += 1) {
@@ -351,7 +351,7 @@ if (wanted('many')) {
           }
           const start = performance.now();
           send('pointerup', x + 12, y - 36);
-          while (!(dataset.done === '1' && dataset.digest !== before))
+          while (!(dataset.revision === dataset.wanted && dataset.strokes !== before))
             await new Promise((r) => {
               setTimeout(r, 2);
             });
