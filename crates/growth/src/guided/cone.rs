@@ -104,7 +104,9 @@ impl Cone {
                 weight: ops::exp(-0.5 * x * x),
             }
         };
-        let pool = (0..POOL.max(markers)).map(sample).collect();
+        // Its first ones once more at its end: those of a bud follow one another.
+        let mut pool: Vec<Sample> = (0..POOL.max(markers)).map(sample).collect();
+        pool.extend_from_within(..markers);
         // As large as a marker's share, so that a marker meets in its cell those that are in its way. But a cone must
         // be two cells wide and deep, or cells would reach out of it.
         let volume = TAU / 3.0 * (1.0 - cos_half) * (far3 - near3) / f64::from(spec.markers);
@@ -128,7 +130,7 @@ impl Cone {
         let (mut batch, mut near) = (Batch::default(), Vec::new());
         for stand in stands {
             let mut stream = stand.key.stream(Draw::Attractors);
-            let first = stream.below(self.pool.len());
+            let first = stream.below(self.pool.len() - self.markers);
             let (sin, cos) = ops::sin_cos(TAU * stream.uniform());
             let across = stand.heading.cross(stand.side);
             let (side, across) = (stand.side * cos + across * sin, across * cos - stand.side * sin);
@@ -147,9 +149,8 @@ impl Cone {
     }
 
     /// The samples of a bud.
-    fn samples(&self, first: usize) -> impl Iterator<Item = &Sample> {
-        let (start, end) = self.pool.split_at(first);
-        end.iter().chain(start).take(self.markers)
+    fn samples(&self, first: usize) -> core::slice::Iter<'_, Sample> {
+        self.pool[first..first + self.markers].iter()
     }
 
     /// What the markers of each bud sum up to, beside those of all others. The earlier a bud, the older.
@@ -157,30 +158,22 @@ impl Cone {
     /// Markers of others in a bud's cone are found by its own: these are spread evenly over its room, so that the sum
     /// over them of what their cells hold estimates that over the cone. Cost: linear in markers.
     pub(super) fn sums(&self, grid: &Grid, batches: &mut [Batch], headings: &[DVec3]) -> Vec<Sums> {
-        let mut sums = vec![Sums::default(); headings.len()];
+        let mut sums = Vec::with_capacity(headings.len());
         let mut held = vec![Held::default(); grid.number(batches)];
-        let turned = |batch: &Batch, k: usize| batch.turned[k];
-        let mut bud = 0;
         for batch in &*batches {
-            for k in 0..batch.turned.len() {
-                let (own, older) = (self.own(batch, k), self.meet(batch, k, &mut held));
-                sums[bud] = Sums { older: older.1, push: older.0, ..own };
-                bud += 1;
-            }
+            sums.extend((0..batch.turned.len()).map(|k| self.meet(batch, k, &mut held)));
         }
         held.fill(Held::default());
-        for batch in batches.iter().rev() {
-            for k in (0..batch.turned.len()).rev() {
-                bud -= 1;
-                let (sum, (_, side, across)) = (&mut sums[bud], turned(batch, k));
-                let push = sum.push + self.meet(batch, k, &mut held).0;
-                let world = |v: DVec3| headings[bud] * v.x + side * v.y + across * v.z;
-                sum.push = world(push) * self.share;
-                sum.older *= self.share;
-                sum.pull = world(sum.pull);
-                for (g, _) in self.guides(batch, k) {
-                    sum.pull += g.along * g.weight;
-                }
+        let all = batches.iter().flat_map(|batch| (0..batch.turned.len()).map(move |k| (batch, k)));
+        let all: Vec<_> = all.zip(headings).collect();
+        for (sum, ((batch, k), heading)) in sums.iter_mut().zip(all).rev() {
+            let (_, side, across) = batch.turned[k];
+            let world = |v: DVec3| heading * v.x + side * v.y + across * v.z;
+            sum.push = world(sum.push + self.meet(batch, k, &mut held).push) * self.share;
+            sum.older *= self.share;
+            sum.pull = world(sum.pull);
+            for (g, _) in self.guides(batch, k) {
+                sum.pull += g.along * g.weight;
             }
         }
         sums
@@ -193,43 +186,47 @@ impl Cone {
     }
 
     /// A bud's markers that have room: way in its frame, weight, cell.
-    fn placed<'a>(&'a self, batch: &'a Batch, k: usize) -> impl Iterator<Item = (DVec3, f64, usize)> + 'a {
+    #[inline]
+    fn placed(&self, batch: &Batch, k: usize, mut f: impl FnMut(DVec3, f64, usize)) {
         let of = k * self.markers..(k + 1) * self.markers;
-        let guides = batch.guides.get(of.clone());
-        let cells = self.samples(batch.turned[k].0).zip(&batch.cells[of]).enumerate();
-        cells.filter(|(_, (_, c))| **c != NOWHERE).map(move |(i, (s, c))| {
-            #[expect(clippy::cast_possible_truncation, reason = "a place of a vector")]
-            let cell = *c as usize;
-            (s.way, guides.map_or(s.weight, |g| g[i].weight), cell)
-        })
+        let places = self.samples(batch.turned[k].0).zip(&batch.cells[of.clone()]);
+        #[expect(clippy::cast_possible_truncation, reason = "a place of a vector")]
+        match batch.guides.get(of) {
+            Some(guides) => {
+                for ((s, &c), g) in places.zip(guides).filter(|((_, c), _)| **c != NOWHERE) {
+                    f(s.way, g.weight, c as usize);
+                }
+            }
+            None => {
+                for (s, &c) in places.filter(|(_, c)| **c != NOWHERE) {
+                    f(s.way, s.weight, c as usize);
+                }
+            }
+        }
     }
 
-    fn own(&self, batch: &Batch, k: usize) -> Sums {
-        self.placed(batch, k).fold(Sums::default(), |sum, (way, weight, _)| Sums {
-            own: sum.own + 1,
-            whole: sum.whole + weight,
-            pull: sum.pull + way * weight,
-            ..sum
-        })
-    }
-
-    /// What a bud's markers meet in their cells: weighted ways, in its frame, and how many; then they are held, too.
-    fn meet(&self, batch: &Batch, k: usize, held: &mut [Held]) -> (DVec3, f64) {
-        let met = self.placed(batch, k).fold((DVec3::ZERO, 0.0), |(push, met), (way, _, cell)| {
-            (push + way * held[cell].weight, met + held[cell].count)
+    /// What a bud's own markers are, and what they meet in their cells, in its frame; then they are held, too.
+    fn meet(&self, batch: &Batch, k: usize, held: &mut [Held]) -> Sums {
+        let mut sums = Sums::default();
+        self.placed(batch, k, |way, weight, cell| {
+            sums.own += 1;
+            sums.whole += weight;
+            sums.pull += way * weight;
+            sums.push += way * held[cell].weight;
+            sums.older += held[cell].count;
         });
-        for (_, weight, cell) in self.placed(batch, k) {
+        self.placed(batch, k, |_, weight, cell| {
             held[cell].count += 1.0;
             held[cell].weight += weight;
-        }
-        met
+        });
+        sums
     }
 }
 
 impl Grid {
     fn cell(&self, p: DVec3) -> u64 {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
-        let [x, y, z] = ((p - self.from) * self.per_m).to_array().map(|n| n as u64);
+        let [x, y, z] = ((p - self.from) * self.per_m).to_array().map(|n| n as i64 as u64);
         let [nx, ny, _] = self.cells;
         x.wrapping_add(nx.wrapping_mul(y.wrapping_add(ny.wrapping_mul(z)))) & (NOWHERE >> 1)
     }
@@ -249,5 +246,84 @@ impl Grid {
             *cell = met.partition_point(|m| m < cell) as u64;
         }
         met.len()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Obstacles;
+    use base::{Budget, Stream};
+
+    /// What the markers of each bud sum up to, by looking at all of all others.
+    fn brute(cone: &Cone, spec: &GuidedSpec, stands: &[Stand], batch: &Batch) -> Vec<(DVec3, f64)> {
+        let cos_half = ops::cos(spec.half_angle_deg * (PI / 180.0));
+        let near = spec.near * spec.internode_m;
+        let placed = |k: usize| {
+            let (_, side, across) = batch.turned[k];
+            cone.samples(batch.turned[k].0).map(move |s| {
+                let way = stands[k].heading * s.way.x + side * s.way.y + across * s.way.z;
+                (stands[k].at + way * s.distance, s.weight)
+            })
+        };
+        let of = |a: usize| {
+            let (mut push, mut older) = (DVec3::ZERO, 0.0);
+            for b in (0..stands.len()).filter(|b| *b != a) {
+                for (p, weight) in placed(b) {
+                    let d = p - stands[a].at;
+                    let far = d.length();
+                    if far >= near && far <= cone.far && d.dot(stands[a].heading) >= cos_half * far {
+                        push += d / far * weight;
+                        older += if b < a { 1.0 } else { 0.0 };
+                    }
+                }
+            }
+            (push, older)
+        };
+        (0..stands.len()).map(of).collect()
+    }
+
+    fn ball(stream: &mut Stream, radius: f64) -> DVec3 {
+        let way = DVec3::new(stream.normal(), stream.normal(), stream.normal()).normalize_or(DVec3::Y);
+        way * radius * ops::cbrt(stream.uniform())
+    }
+
+    #[test]
+    fn cells_estimate_what_is_in_the_cone() {
+        for (markers, half_angle_deg) in
+            [(12, 45.0), (30, 45.0), (60, 45.0), (60, 20.0), (60, 120.0), (1300, 45.0)]
+        {
+            let spec = GuidedSpec { markers, half_angle_deg, ..GuidedSpec::default() };
+            let room =
+                Room::new(&spec, vec![DVec3::ZERO], &Obstacles::none(), &Budget::default()).expect("room");
+            let cone = Cone::new(&spec, Seed::new(1));
+            let mut stream = Seed::new(2).stream(Draw::Test);
+            let n = 150;
+            let stands: Vec<Stand> = (0..n)
+                .map(|k| {
+                    let heading = ball(&mut stream, 1.0).normalize_or(DVec3::Y);
+                    let side = heading.any_orthonormal_vector();
+                    Stand { at: ball(&mut stream, 2.0), heading, side, key: Seed::new(3).child(k) }
+                })
+                .collect();
+            let grid = cone.grid(stands.iter().map(|s| s.at));
+            let mut batches = [cone.markers(stands.iter().copied(), &grid, &room)];
+            let headings: Vec<DVec3> = stands.iter().map(|s| s.heading).collect();
+            let sums = cone.sums(&grid, &mut batches, &headings);
+            let truth = brute(&cone, &spec, &stands, &batches[0]);
+            // The sum of differences by the sum of what is there; by chance, as many as there are markers decide.
+            let share = |differ: f64, there: f64| differ / there;
+            let there = truth.iter().map(|t| t.1).sum::<f64>();
+            let bias = share(sums.iter().map(|s| s.older).sum::<f64>() - there, there);
+            let off = share(sums.iter().zip(&truth).map(|(s, t)| (s.older - t.1).abs()).sum(), there);
+            let pushed = truth.iter().map(|t| t.0.length()).sum();
+            let away = share(sums.iter().zip(&truth).map(|(s, t)| s.push.distance(t.0)).sum(), pushed);
+            let chance = 1.0 / f64::from(markers).sqrt();
+            assert!(bias.abs() < 0.05, "{markers} in {half_angle_deg}: {bias}");
+            assert!(off < 0.02 + 1.5 * chance, "{markers} in {half_angle_deg}: {off}");
+            // All around a bud, others push from all sides, and little is left.
+            let most = if half_angle_deg > 90.0 { 4.0 } else { 2.0 };
+            assert!(away < 0.02 + most * chance, "{markers} in {half_angle_deg}: {away}");
+        }
     }
 }
