@@ -2,19 +2,22 @@
 
 use std::path::{Path, PathBuf};
 
-use burgeon::bloom::{self, FlowerSpec, GrowthLaw, Motion, MotionSpec, RegisterSpec, ShapeError};
+use burgeon::bloom::{
+    self, BloomError, FlowerSpec, GrowthLaw, Motion, MotionSpec, RegisterSpec, RigidMotion, Settled,
+    ShapeError,
+};
 use burgeon::document::PlantEdit;
 use burgeon::formats::{ExportSpec, ModelFormat, Morph, PngCache, write_cloud_ply, write_glb_morph};
 use burgeon::glam::DVec3;
 use burgeon::mesh::{Model, PointCloud};
 use burgeon::plant::{Measures, Plant};
 use burgeon::{
-    Counts, Digest, FlowerOptions, MakeError, OpeningError, OpeningPlant, RunReport, Seed, Stopped,
+    Counts, Digest, FlowerOptions, MakeError, OpeningError, OpeningPlant, Run, RunReport, Seed, Stopped,
     make_flower,
 };
 use serde::Serialize;
 
-use crate::args::{AxesArgs, BloomCommand, BloomRunArgs, PictureArgs, PlantFormat};
+use crate::args::{AxesArgs, BloomCommand, BloomRunArgs, FrameWord, PictureArgs, PlantFormat};
 use crate::failure::{Failure, Outcome};
 use crate::files::Goal;
 use crate::machine::Machine;
@@ -22,7 +25,7 @@ use crate::materials::Materials;
 use crate::output::Outputs;
 use crate::petals::{drawing, is_drawing, petal_form};
 use crate::stages::{self, Loaded};
-use crate::{edits, files, fit, inputs, names, picture, report, say};
+use crate::{edits, files, fit, inputs, names, picture, poses, report, say};
 
 /// Distances in millimetres: measured to reconstructed, and back.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -77,6 +80,11 @@ struct MotionReport {
     lattice: Option<[usize; 3]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<ErrorReport>,
+    /// The error after the best rigid move of the shape onto the scan.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    aligned: Option<ErrorReport>,
+    /// How plant and organs moved between scans.
+    poses: Vec<poses::Told>,
     /// What the registration of each organ left.
     residuals: Vec<ResidualReport>,
     /// Share of petal triangles that cross another petal, at each frame of a flower.
@@ -192,43 +200,33 @@ fn run(args: &BloomRunArgs) -> Outcome {
     outputs.check()?;
     let first_day = loaded.stages.first().map_or(0.0, |s| s.day);
     let last_day = loaded.stages.last().map_or(0.0, |s| s.day);
-    let law = law.unwrap_or_else(|| straight_law(last_day - first_day));
-    let spec = MotionSpec {
-        register: RegisterSpec { counts: args.lattice, ..RegisterSpec::default() },
-        straight: args.straight,
-    };
+    let law = law.unwrap_or_else(|| GrowthLaw::even(first_day, last_day));
     let compute = machine.run();
-    let (motion, fit_ms) = machine.timed(|| {
-        machine.with_progress("registration", |_| Motion::new(&loaded.stages, law, spec, &compute))
-    });
-    let motion = motion.map_err(Failure::bloom(start))?;
-    let mut error = None;
-    if let (Some(scan), Some(day)) = (&args.compare, args.day) {
-        // As the stages are: their file may say unit and up axis.
-        let measured = stages::read_points(scan, &mut loaded, options.clean, Seed::new(args.seed), &machine)?;
-        let shape = motion.at(day - first_day, &compute).map_err(Failure::bloom(scan))?;
-        let e = ErrorReport::from(bloom::compare(&measured, &shape, &compute).map_err(Failure::bloom(scan))?);
-        if e.mean_mm.max(e.back_mean_mm) > 500.0 * extent(&shape) {
-            loaded.warnings.push(format!(
-                "{}: is half the plant's size away from it; is its unit that of the stages?",
-                scan.display()
-            ));
-        }
-        error = Some(e);
-    }
+    let (made, fit_ms) =
+        machine.timed(|| machine.with_progress("registration", |_| Scans::new(args, &loaded, law, &compute)));
+    let made = made.map_err(Failure::bloom(start))?;
+    let told_apart = made.settled.steps.iter().any(|s| s.organs.len() > 1);
+    let users = "plants of which two organs or more are there on two days";
+    args.given.only_if(
+        told_apart,
+        &["frame"],
+        users,
+        "here nothing tells the plant's motion from the organ's",
+    )?;
+    let errors = compared(args, &made, &mut loaded, options, &machine)?;
     let mut show = Show {
         name: loaded.name.clone(),
         days: [first_day, last_day],
         best: last_day,
         shape: Box::new(|day| {
-            let points = motion.at(day - first_day, &compute).map_err(Failure::bloom(start))?;
+            let Organs { rows, points } = made.shape(day, args.frame)?;
             // What single precision holds, squares included.
             if !points.iter().all(|p| p.abs().max_element() <= 1e15) {
                 let line =
                     format!("on day {day} the shape has no finite size; choose a day nearer to the stages");
                 return Err(Failure::at(start, line));
             }
-            let model = burgeon::motion_model(&loaded.name, loaded.mesh.as_ref(), &motion, &points);
+            let model = burgeon::motion_model(&loaded.name, loaded.mesh.as_ref(), &rows, &points);
             let model = Model { offset_m: loaded.origin.offset_m, ..model };
             Ok(Shown { plant: None, model, lods: Vec::new(), overlap: None })
         }),
@@ -238,17 +236,13 @@ fn run(args: &BloomRunArgs) -> Outcome {
     let mut head = report::of_one("bloom run", args.seed, &args.start, &loaded.name, &args.output);
     head.input.offset_m = loaded.origin.told(&loaded.axes);
     head.items[0].warnings.clone_from(&loaded.warnings);
-    let residuals = motion.residuals.iter().map(|(organ, from, to, e)| ResidualReport {
-        organ: organ.clone(),
-        from_day: from + first_day,
-        to_day: to + first_day,
-        error: ErrorReport::from(*e),
-    });
-    let residuals = residuals.collect();
+    head.items[0].warnings.extend(no_pace(args, &made.law));
     let told = Told {
         head,
-        residuals,
-        error,
+        residuals: made.residuals(),
+        error: errors.map(|e| e.0),
+        aligned: errors.map(|e| e.1),
+        poses: made.settled.steps.iter().map(poses::Told::from).collect(),
         stages: loaded.told.clone(),
         lattice: Some(args.lattice),
         times: [read_ms, fit_ms, write_ms],
@@ -256,14 +250,113 @@ fn run(args: &BloomRunArgs) -> Outcome {
     tell(args, &machine, told, written, outputs)
 }
 
+/// Scans on their way from day to day.
+struct Scans<'a> {
+    start: &'a Path,
+    compute: &'a Run<'a>,
+    settled: Settled,
+    /// None for one day of clouds.
+    motion: Option<Motion>,
+    law: GrowthLaw,
+    spec: MotionSpec,
+    first_day: f64,
+}
+
+impl<'a> Scans<'a> {
+    fn new(
+        args: &'a BloomRunArgs,
+        loaded: &Loaded,
+        law: GrowthLaw,
+        compute: &'a Run<'a>,
+    ) -> Result<Self, BloomError> {
+        let spec = MotionSpec {
+            register: RegisterSpec { counts: args.lattice, ..RegisterSpec::default() },
+            straight: args.straight,
+        };
+        let settled = bloom::settle(&loaded.stages, &spec.register, compute)?;
+        // A cloud of one day has no vertices to keep: it holds the points of both scans round it.
+        let motion = match args.day {
+            Some(_) if loaded.mesh.is_none() => None,
+            _ => Some(Motion::new(&settled.stages, law.clone(), spec, compute)?),
+        };
+        let first_day = loaded.stages.first().map_or(0.0, |s| s.day);
+        Ok(Self { start: Path::new(&args.start), compute, settled, motion, law, spec, first_day })
+    }
+
+    fn shape(&self, day: f64, frame: FrameWord) -> Outcome<Organs> {
+        let failed = Failure::bloom(self.start);
+        let mut organs = match &self.motion {
+            Some(motion) => {
+                let points = motion.at(day - self.first_day, self.compute).map_err(failed)?;
+                Organs { rows: motion.organs.clone(), points }
+            }
+            None => Organs::of(self.settled.day(&self.law, &self.spec, day, self.compute).map_err(failed)?),
+        };
+        let pose = self.settled.pose(day);
+        if frame == FrameWord::Scanner && pose != RigidMotion::REST {
+            organs.points.iter_mut().for_each(|p| *p = pose.apply(*p));
+        }
+        Ok(organs)
+    }
+
+    /// What each registration left.
+    fn residuals(&self) -> Vec<ResidualReport> {
+        let of_motion = self.motion.iter().flat_map(|m| &m.residuals);
+        let of_motion =
+            of_motion.map(|(organ, from, to, e)| (organ, from + self.first_day, to + self.first_day, e));
+        let of_steps = self.settled.steps.iter().filter(|_| self.motion.is_none());
+        let of_steps =
+            of_steps.flat_map(|s| s.organs.iter().map(|o| (&o.organ, s.from_day, s.to_day, &o.residual)));
+        let told = of_motion.chain(of_steps).map(|(organ, from_day, to_day, e)| {
+            let (organ, error) = (organ.clone(), ErrorReport::from(*e));
+            ResidualReport { organ, from_day, to_day, error }
+        });
+        told.collect()
+    }
+}
+
+/// The error against the scan of --compare: as the shape stands, and after its best rigid move.
+fn compared(
+    args: &BloomRunArgs,
+    made: &Scans<'_>,
+    loaded: &mut Loaded,
+    options: stages::Options,
+    machine: &Machine,
+) -> Outcome<Option<(ErrorReport, ErrorReport)>> {
+    let (Some(scan), Some(day)) = (&args.compare, args.day) else { return Ok(None) };
+    // As the stages are: their file may say unit and up axis.
+    let measured = stages::read_points(scan, loaded, options.clean, Seed::new(args.seed), machine)?;
+    let shape = made.shape(day, FrameWord::Scanner)?.points;
+    let against = |shape: &[DVec3]| bloom::compare(&measured, shape, made.compute).map(ErrorReport::from);
+    let error = against(&shape).map_err(Failure::bloom(scan))?;
+    if error.mean_mm.max(error.back_mean_mm) > 500.0 * extent(&shape) {
+        loaded.warnings.push(format!(
+            "{}: is half the plant's size away from it; is its unit that of the stages?",
+            scan.display()
+        ));
+    }
+    let pose = bloom::best_move(&shape, &measured, made.compute).map_err(Failure::bloom(scan))?;
+    let moved: Vec<DVec3> = shape.iter().map(|&p| pose.apply(p)).collect();
+    Ok(Some((error, against(&moved).map_err(Failure::bloom(scan))?)))
+}
+
 /// Everything that the report of `run` is made of, beside what was written.
 struct Told {
     head: RunReport,
     residuals: Vec<ResidualReport>,
     error: Option<ErrorReport>,
+    aligned: Option<ErrorReport>,
+    poses: Vec<poses::Told>,
     stages: Vec<stages::Told>,
     lattice: Option<[usize; 3]>,
     times: [f64; 3],
+}
+
+impl Told {
+    fn of_flower(head: RunReport, times: [f64; 3]) -> Self {
+        let (residuals, poses, stages) = (vec![], vec![], vec![]);
+        Self { head, residuals, error: None, aligned: None, poses, stages, lattice: None, times }
+    }
 }
 
 fn tell(
@@ -285,6 +378,8 @@ fn tell(
         day: args.day,
         lattice: told.lattice,
         error: told.error,
+        aligned: told.aligned,
+        poses: told.poses,
         residuals: told.residuals,
         overlap: written.overlap,
         stages: told.stages,
@@ -308,6 +403,13 @@ fn tell(
                 e.back_max_mm
             ));
         }
+        if let Some(e) = &report.aligned {
+            say::line(&format!(
+                "after the best rigid move: scan to model {:.3} mm mean, model to scan {:.3}",
+                e.mean_mm, e.back_mean_mm
+            ));
+        }
+        report.poses.iter().flat_map(poses::Told::lines).for_each(|l| say::line(&l));
         let frames = say::counted(u64::from(report.frames), "shape", "shapes");
         let points = say::counted(item.counts.vertices, "point", "points");
         say::line(&format!(
@@ -319,18 +421,38 @@ fn tell(
     Ok(())
 }
 
+/// Points of a day, and the rows of each organ.
+struct Organs {
+    rows: Vec<(String, core::ops::Range<usize>)>,
+    points: Vec<DVec3>,
+}
+
+impl Organs {
+    fn of(organs: Vec<(String, Vec<DVec3>)>) -> Self {
+        let mut out = Self { rows: Vec::new(), points: Vec::new() };
+        for (name, points) in organs {
+            let start = out.points.len();
+            out.points.extend(points);
+            out.rows.push((name, start..out.points.len()));
+        }
+        out
+    }
+}
+
+/// What is said of a law that sets no pace.
+fn no_pace(args: &BloomRunArgs, law: &GrowthLaw) -> Option<String> {
+    let path = args.law.as_ref().filter(|_| !law.sets_pace())?;
+    Some(format!(
+        "{}: its stages determine no law that moves: everything goes at an even pace",
+        path.display()
+    ))
+}
+
 /// The largest side of the box round some points.
 fn extent(points: &[DVec3]) -> f64 {
     let none = [DVec3::INFINITY, DVec3::NEG_INFINITY];
     let [low, high] = points.iter().fold(none, |[a, b], &p| [a.min(p), b.max(p)]);
     (high - low).max_element()
-}
-
-fn straight_law(span: f64) -> GrowthLaw {
-    let mut law = GrowthLaw::logistic("straight", span.max(1e-9), 1.0);
-    // A law without say: the pace is a straight line.
-    law.laws.iter_mut().for_each(|l| l.r2 = 0.0);
-    law
 }
 
 fn load_shapes(
@@ -398,7 +520,8 @@ fn check_used(args: &BloomRunArgs) -> Outcome {
 /// Fails on options of scans.
 fn no_scans(args: &BloomRunArgs, name: &str) -> Outcome {
     let given = &args.given;
-    let options = ["end", "compare", "lattice", "straight", "whole", "no_clean", "start_day", "end_day"];
+    let options =
+        ["end", "compare", "lattice", "straight", "frame", "whole", "no_clean", "start_day", "end_day"];
     given.refuse(&options, "scans and models", &format!("{name} is a whole flower"))?;
     let folder = files::extension(&args.output).is_none();
     let written =
@@ -444,6 +567,7 @@ fn drawn_flower(
     let axes = files::axes(args.axes.up, args.axes.unit);
     let mut head = report::of_one("bloom run", args.seed, &args.start, &plant.name, &args.output);
     head.items[0].warnings.clone_from(&plant.item.warnings);
+    head.items[0].warnings.extend(no_pace(args, &law));
     head.items[0].edits.clone_from(&plant.item.edits);
     let mut show = Show {
         name: files::stem(path),
@@ -459,7 +583,7 @@ fn drawn_flower(
     let (written, write_ms) = machine.timed(|| write_show(args, &mut show, &axes, &mut outputs, machine));
     let written = written?;
     let times = [read_ms, made_ms, write_ms];
-    let told = Told { head, residuals: vec![], error: None, stages: vec![], lattice: None, times };
+    let told = Told::of_flower(head, times);
     tell(args, machine, told, written, outputs)
 }
 
@@ -505,6 +629,7 @@ fn flower(
         Stopped::OverBudget(much) => Failure::at(Path::new(&args.start), much),
     };
     let mut head = report::of_one("bloom run", args.seed, &args.start, &spec.name, &args.output);
+    head.items[0].warnings.extend(no_pace(args, &law));
     if let Some(edits) = &args.edits {
         let day = (spec.opening_days, &law);
         let made = make_flower(&spec.name, &spec, day, &options, seed, &machine.run()).map_err(failed)?;
@@ -528,7 +653,7 @@ fn flower(
     let (written, write_ms) = machine.timed(|| write_show(args, &mut show, &axes, &mut outputs, machine));
     let written = written?;
     let times = [0.0, 0.0, write_ms];
-    let told = Told { head, residuals: vec![], error: None, stages: vec![], lattice: None, times };
+    let told = Told::of_flower(head, times);
     tell(args, machine, told, written, outputs)
 }
 

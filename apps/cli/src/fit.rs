@@ -1,6 +1,8 @@
-//! `burgeon bloom fit`: growth laws from scans of several days.
+//! `burgeon bloom fit`: growth laws from scans of several days, or from a growth table.
 
-use burgeon::bloom::{self, GrowthLaw, LawSpec, Quantity};
+use burgeon::bloom::{self, Form, GrowthLaw, LawSpec, Offset, Quantity, RegionLaw, Rival, Series, Trial};
+use burgeon::bloom::{MotionSpec, RegisterSpec, ShapeError};
+use burgeon::formats::read_growth;
 use burgeon::{RunReport, Seed};
 use serde::Serialize;
 
@@ -8,8 +10,7 @@ use crate::args::FitArgs;
 use crate::failure::{Failure, Outcome};
 use crate::machine::Machine;
 use crate::output::Outputs;
-use crate::stages;
-use crate::{files, report, say};
+use crate::{files, poses, report, say, stages};
 
 /// A law as the report tells it, lengths in metres.
 #[derive(Debug, Serialize)]
@@ -17,6 +18,9 @@ struct LawReport {
     organ: String,
     region: usize,
     axis: Quantity,
+    form: Form,
+    /// The days determine it; else it is a straight line, or the nearest logistic, and drives nothing.
+    determined: bool,
     #[serde(rename = "K")]
     k: f64,
     p0: f64,
@@ -26,8 +30,75 @@ struct LawReport {
     r2: f64,
     r2_adjusted: Option<f64>,
     loo_rmse: Option<f64>,
+    /// Leave-one-out error of a straight line.
+    straight_rmse: Option<f64>,
     /// On a bound of the search: the series determines no logistic.
     on_bound: bool,
+}
+
+impl LawReport {
+    fn new(l: &RegionLaw, span: f64) -> Self {
+        Self {
+            organ: l.organ.clone(),
+            region: l.region,
+            axis: l.axis,
+            form: l.form,
+            determined: l.is_determined(),
+            k: l.law.k,
+            p0: l.law.p0,
+            r: l.law.r,
+            offset: l.law.offset,
+            standard_errors: l.standard_errors,
+            r2: l.r2,
+            r2_adjusted: l.r2_adjusted,
+            loo_rmse: l.loo_rmse,
+            straight_rmse: l.straight_rmse,
+            on_bound: l.form == Form::Logistic && l.law.on_bound(span),
+        }
+    }
+}
+
+/// Mean distances from the scan that was left out to what was made of the others, and back.
+#[derive(Debug, Serialize)]
+struct Distance {
+    mean_mm: f64,
+    back_mean_mm: f64,
+}
+
+impl From<&ShapeError> for Distance {
+    fn from(e: &ShapeError) -> Self {
+        Self { mean_mm: e.to_model.mean * 1e3, back_mean_mm: e.to_scan.mean * 1e3 }
+    }
+}
+
+#[derive(Debug, Serialize)]
+struct RivalReport {
+    way: &'static str,
+    /// After the best rigid move.
+    aligned: Distance,
+    /// In the coordinates of the scanner.
+    scanner: Distance,
+}
+
+/// A day that was left out.
+#[derive(Debug, Serialize)]
+struct TrialReport {
+    day: f64,
+    extrapolated: bool,
+    /// The other days determine a law.
+    law: bool,
+    ways: Vec<RivalReport>,
+}
+
+impl From<&Trial> for TrialReport {
+    fn from(t: &Trial) -> Self {
+        let ways = t.rows.iter().map(|r| RivalReport {
+            way: r.rival.word(),
+            aligned: Distance::from(&r.aligned),
+            scanner: Distance::from(&r.scanner),
+        });
+        Self { day: t.day, extrapolated: t.extrapolated, law: t.law, ways: ways.collect() }
+    }
 }
 
 /// What `fit` adds to the report.
@@ -37,6 +108,22 @@ struct FitReport {
     run: RunReport,
     laws: Vec<LawReport>,
     stages: Vec<stages::Told>,
+    /// How plant and organs moved between scans.
+    poses: Vec<poses::Told>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    leave_one_out: Option<Vec<TrialReport>>,
+}
+
+/// What was read and fitted.
+struct Fitted {
+    law: GrowthLaw,
+    warnings: Vec<String>,
+    stages: Vec<stages::Told>,
+    poses: Vec<poses::Told>,
+    trials: Option<Vec<Trial>>,
+    offset_m: Option<[f64; 3]>,
+    read_ms: f64,
+    fit_ms: f64,
 }
 
 pub(crate) fn fit(args: &FitArgs) -> Outcome {
@@ -47,28 +134,16 @@ pub(crate) fn fit(args: &FitArgs) -> Outcome {
         ("--report", args.common.report.as_ref()),
     ];
     let mut outputs = Outputs::new(&outputs, &[&args.input])?;
-    let axes = files::axes(args.axes.up, args.axes.unit);
-    let (loaded, read_ms) = machine.timed(|| {
-        machine.with_progress("scans", |_| stages::load(&args.input, &axes, Seed::new(args.seed), &machine))
-    });
-    let loaded = loaded?;
-    outputs.check()?;
-    let spec = LawSpec { regions: args.regions as usize, ..LawSpec::default() };
-    let (law, fit_ms) = machine.timed(|| bloom::fit_stages(&loaded.name, &loaded.stages, &spec));
-    let law = law.map_err(Failure::bloom(&args.input))?;
-    if law.laws.is_empty() {
-        return Err(Failure::at(
-            &args.input,
-            "no organ is there on 3 days; label organs by hand (organ = \"leaf-1\") or add stages",
-        ));
-    }
-    let text = serde_json::to_string_pretty(&law)
+    let table = files::extension(&args.input).is_some_and(|e| e.eq_ignore_ascii_case("csv"));
+    let fitted = if table { of_table(args, &machine)? } else { of_scans(args, &mut outputs, &machine)? };
+    let law = &fitted.law;
+    let text = serde_json::to_string_pretty(law)
         .map_err(|e| Failure::Bug(format!("the law cannot be written as JSON: {e}")))?;
     let (written, write_ms) = machine.timed(|| {
         outputs.write("-o", &args.output, |out| Ok(writeln!(out, "{text}")?))?;
         match &args.plot {
             Some(plot) => {
-                let svg = bloom::plot_svg(&law);
+                let svg = bloom::plot_svg(law);
                 outputs.write("--plot", plot, |out| Ok(out.write_all(svg.as_bytes())?))
             }
             None => Ok(()),
@@ -77,55 +152,160 @@ pub(crate) fn fit(args: &FitArgs) -> Outcome {
     written?;
     let mut run =
         report::of_one("bloom fit", args.seed, &args.input.display().to_string(), &law.name, &args.output);
-    run.input.offset_m = loaded.origin.told(&loaded.axes);
+    run.input.offset_m = fitted.offset_m;
     if let Some(item) = run.items.first_mut() {
-        item.timings_ms.structure = fit_ms;
-        item.timings_ms.add_io(read_ms, write_ms);
+        item.timings_ms.structure = fitted.fit_ms;
+        item.timings_ms.add_io(fitted.read_ms, write_ms);
         item.timings_ms.total = machine.whole_ms();
-        item.warnings.clone_from(&loaded.warnings);
+        item.warnings.clone_from(&fitted.warnings);
     }
-    let laws = law.laws.iter().map(|l| LawReport {
-        organ: l.organ.clone(),
-        region: l.region,
-        axis: l.axis,
-        k: l.law.k,
-        p0: l.law.p0,
-        r: l.law.r,
-        offset: l.law.offset,
-        standard_errors: l.standard_errors,
-        r2: l.r2,
-        r2_adjusted: l.r2_adjusted,
-        loo_rmse: l.loo_rmse,
-        on_bound: l.law.on_bound(law.span_days),
-    });
-    let report = FitReport { run, laws: laws.collect(), stages: loaded.told };
+    let report = FitReport {
+        run,
+        laws: law.laws.iter().map(|l| LawReport::new(l, law.span_days)).collect(),
+        stages: fitted.stages,
+        poses: fitted.poses,
+        leave_one_out: fitted.trials.as_ref().map(|t| t.iter().map(TrialReport::from).collect()),
+    };
     report::finish(&report, &args.common, outputs)?;
     if !machine.quiet {
-        loaded.warnings.iter().for_each(|w| say::warning(w));
+        fitted.warnings.iter().for_each(|w| say::warning(w));
         report.stages.iter().for_each(|t| say::line(&t.line()));
-        tell_laws(&law);
+        report.poses.iter().flat_map(poses::Told::lines).for_each(|l| say::line(&l));
+        tell_laws(law);
+        fitted.trials.iter().flatten().for_each(tell_trial);
         say::line(&format!("{}: {} laws", args.output.display(), law.laws.len()));
     }
     Ok(())
 }
 
+fn of_scans(args: &FitArgs, outputs: &mut Outputs, machine: &Machine) -> Outcome<Fitted> {
+    let axes = files::axes(args.axes.up, args.axes.unit);
+    let (loaded, read_ms) = machine.timed(|| {
+        machine.with_progress("scans", |_| stages::load(&args.input, &axes, Seed::new(args.seed), machine))
+    });
+    let loaded = loaded?;
+    outputs.check()?;
+    let spec = LawSpec { regions: args.regions as usize, ..LawSpec::default() };
+    let compute = machine.run();
+    let (made, fit_ms) = machine.timed(|| {
+        machine.with_progress("registration", |_| {
+            let settled = bloom::settle(&loaded.stages, &RegisterSpec::default(), &compute)?;
+            let law = bloom::fit_stages(&loaded.name, &settled.stages, &spec)?;
+            Ok((settled, law))
+        })
+    });
+    let (settled, law) = made.map_err(Failure::bloom(&args.input))?;
+    if law.laws.is_empty() {
+        return Err(Failure::at(
+            &args.input,
+            "no organ is there on 3 days; label organs by hand (organ = \"leaf-1\") or add stages",
+        ));
+    }
+    let trials = args.leave_one_out.then(|| {
+        machine.with_progress("leave one out", |_| {
+            bloom::leave_one_out(&loaded.stages, &spec, &MotionSpec::default(), &compute)
+        })
+    });
+    Ok(Fitted {
+        law,
+        warnings: loaded.warnings,
+        offset_m: loaded.origin.told(&loaded.axes),
+        stages: loaded.told,
+        poses: settled.steps.iter().map(poses::Told::from).collect(),
+        trials: trials.transpose().map_err(Failure::bloom(&args.input))?,
+        read_ms,
+        fit_ms,
+    })
+}
+
+/// Laws of a growth table: one for each organ of each plant.
+fn of_table(args: &FitArgs, machine: &Machine) -> Outcome<Fitted> {
+    let given = &args.given;
+    let this = "a growth table has neither parts nor shapes";
+    given.refuse(&["regions", "leave_one_out", "seed", "up"], "scans", this)?;
+    let (read, read_ms) = machine.timed(|| {
+        let input = files::open_bytes(&args.input)?;
+        read_growth(input, args.axes.unit.into()).map_err(|e| Failure::at(&args.input, e))
+    });
+    let read = read?;
+    let mut series: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
+    for row in read.rows {
+        let name = match (row.organ.is_empty(), row.plant.is_empty()) {
+            (true, true) => "plant".to_owned(),
+            (false, true) => row.organ,
+            // The number last: what is before it is the kind.
+            (true, false) => format!("plant {}", row.plant),
+            (false, false) => format!("plant {}: {}", row.plant, row.organ),
+        };
+        match series.iter_mut().find(|s| s.0 == name) {
+            Some(known) => known.1.push((row.day, row.size)),
+            None => series.push((name, vec![(row.day, row.size)])),
+        }
+    }
+    let mut warnings: Vec<String> = read.warnings.iter().map(ToString::to_string).collect();
+    let mut able = Vec::new();
+    for (name, mut rows) in series {
+        rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+        if let Some(twice) = rows.windows(2).find(|w| w[0].0 >= w[1].0) {
+            let line = format!(
+                "{name} has two sizes on day {}; give one, or a column plant that tells them apart",
+                twice[0].0
+            );
+            return Err(Failure::at(&args.input, line));
+        }
+        if rows.len() < 3 {
+            warnings.push(format!(
+                "{name} has {}: a law needs 3",
+                say::counted(rows.len() as u64, "size", "sizes")
+            ));
+        }
+        let (days, values) = rows.into_iter().unzip();
+        able.push((name, Series { days, values }));
+    }
+    let (law, fit_ms) = machine.timed(|| bloom::fit_sizes(&files::stem(&args.input), &able, Offset::Auto));
+    let law = law.map_err(|e| Failure::at(&args.input, e))?;
+    let (stages, poses) = (vec![], vec![]);
+    Ok(Fitted { law, warnings, stages, poses, trials: None, offset_m: None, read_ms, fit_ms })
+}
+
 fn tell_laws(law: &GrowthLaw) {
     for l in &law.laws {
-        say::line(&format!(
-            "{} region {} {}: K {:.3} mm, p0 {:.3} mm, r {:.4} a day, R2 {:.3}{}{}",
-            l.organ,
-            l.region,
-            l.axis.word(),
-            l.law.k * 1e3,
-            l.law.p0 * 1e3,
-            l.law.r,
-            l.r2,
-            l.loo_rmse.map_or(String::new(), |e| format!(", leave-one-out {:.3} mm", e * 1e3)),
-            if l.law.on_bound(law.span_days) {
-                " (on a bound: these days determine no logistic)"
-            } else {
-                ""
-            }
-        ));
+        let mm = |x: f64| format!("{:.3} mm", x * 1e3);
+        let se = |k: usize, unit: f64| {
+            l.standard_errors.map_or(String::new(), |e| format!(" ± {:.3}", e[k] * unit))
+        };
+        let loo = l.loo_rmse.map_or(String::new(), |e| format!(", leave-one-out {}", mm(e)));
+        let what = format!("{} region {} {}", l.organ, l.region, l.axis.word());
+        if l.is_determined() {
+            say::line(&format!(
+                "{what}: {}, K {:.3}{} mm, p0 {:.3}{} mm, r {:.4}{} a day, R2 {:.3}{loo}, of a straight line {}",
+                l.form.word(),
+                l.law.k * 1e3,
+                se(0, 1e3),
+                l.law.p0 * 1e3,
+                se(1, 1e3),
+                l.law.r,
+                se(2, 1.0),
+                l.r2,
+                l.straight_rmse.map_or("none".into(), mm)
+            ));
+        } else {
+            let change = (l.value(law.span_days) - l.value(0.0)) * 1e3;
+            say::line(&format!(
+                "{what}: these days determine no law; {:.3} mm and {change:+.3} mm by the last day{loo}",
+                l.value(0.0) * 1e3
+            ));
+        }
+    }
+}
+
+fn tell_trial(t: &Trial) {
+    let end = if t.extrapolated { ", an end day: extrapolated" } else { "" };
+    let law = if t.law { "" } else { "; the other days determine no law" };
+    say::line(&format!("day {} left out{end}{law}; mean mm, scan to model / model to scan:", t.day));
+    for (rival, row) in Rival::ALL.iter().zip(&t.rows) {
+        let pair = |e: &ShapeError| format!("{:.2} / {:.2}", e.to_model.mean * 1e3, e.to_scan.mean * 1e3);
+        let (aligned, scanner) = (pair(&row.aligned), pair(&row.scanner));
+        say::line(&format!("  {:<23} aligned {aligned}, as it stands {scanner}", rival.word()));
     }
 }

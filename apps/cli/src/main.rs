@@ -24,6 +24,7 @@ mod origin;
 mod output;
 mod petals;
 mod picture;
+mod poses;
 mod presets;
 mod project;
 mod report;

@@ -232,6 +232,149 @@ fn hostile_scans_are_told_in_one_line() {
     assert!(!dir.join("law").exists(), "nothing is half-written");
 }
 
+/// Sine and cosine of the angle whose half has this tangent.
+fn sin_cos(half: f64) -> (f64, f64) {
+    (2.0 * half / (1.0 + half * half), (1.0 - half * half) / (1.0 + half * half))
+}
+
+/// A seedling in mm, +Y up: a stem and two leaves of `length`, turned about the stem by the angle whose half has the tangent
+/// `turn`, and moved along x by `shift`.
+fn seedling(length: f64, turn: f64, shift: f64) -> String {
+    let mut points: Vec<[f64; 3]> = Vec::new();
+    for i in 0..60 {
+        for j in 0..12_usize {
+            // Twelve places round the stem, from the tangents of half of their angles.
+            let (sin, cos) =
+                sin_cos([0.0, 0.27, 0.58, 1.0, 1.73, 3.73, 1e9, -3.73, -1.73, -1.0, -0.58, -0.27][j]);
+            points.push([1.2 * cos, 0.5 * f64::from(i), 1.2 * sin]);
+        }
+    }
+    for (azimuth, longer) in [(0.1, 1.0), (8.0, 0.8)] {
+        let (sin, cos) = sin_cos(azimuth);
+        for i in 0..70 {
+            for j in 0..21 {
+                let (v, u) = (f64::from(i) / 69.0, f64::from(j) / 10.0 - 1.0);
+                let bulge = 1.0 - (v - 0.6) * (v - 0.6) / 0.16;
+                let half = if v < 0.2 { 0.8 } else { 6.0 * bulge.max(0.0).sqrt() + 0.5 };
+                let (out, across) = (length * longer * v, u * half);
+                points.push([out * cos - across * sin, 30.0 + 0.2 * out, out * sin + across * cos]);
+            }
+        }
+    }
+    let (sin, cos) = sin_cos(turn);
+    let mut text = String::new();
+    for [x, y, z] in points {
+        text += &format!("{:.4} {y:.4} {:.4}\n", x * cos + z * sin + shift, z * cos - x * sin);
+    }
+    text
+}
+
+#[test]
+fn the_turn_of_a_pot_is_told_and_each_day_is_left_out() {
+    let dir = folder("bloom_pose");
+    let mut stages = String::from("name = \"made\"\nunit = \"mm\"\n");
+    for (k, (day, length, turn, shift)) in
+        [(0, 24.0, 0.0, 0.0), (2, 30.0, 0.25, 7.0), (4, 33.0, 0.25, 7.0), (8, 36.0, 0.1, 3.0)]
+            .iter()
+            .enumerate()
+    {
+        fs::write(dir.join(format!("s{k}.xyz")), seedling(*length, *turn, *shift)).unwrap();
+        stages += &format!("[[stage]]\nfile = \"s{k}.xyz\"\nday = {day}\n");
+    }
+    fs::write(dir.join("stages.toml"), &stages).unwrap();
+    good(&dir, &["bloom", "fit", "stages.toml", "-o", "law.json", "--leave-one-out", "--report", "fit.json"]);
+    let fit = json(&dir.join("fit.json"));
+    let plant = &fit["poses"][0]["plant"];
+    assert!((plant["turn_deg"].as_f64().unwrap() - 28.07).abs() < 2.0, "{plant}");
+    assert!((plant["move_mm"].as_f64().unwrap() - 7.0).abs() < 1.5, "{plant}");
+    let still = &fit["poses"][1]["plant"];
+    assert!(still["turn_deg"].as_f64().unwrap() < 2.0 && still["move_mm"].as_f64().unwrap() < 1.5, "{still}");
+    for organ in fit["poses"][1]["organs"].as_array().unwrap() {
+        assert!(organ["turn_deg"].as_f64().unwrap() < 6.0, "no organ turned by itself: {organ}");
+        let leaf = organ["organ"] != "stem";
+        let scale = organ["scale"].as_f64().unwrap();
+        assert!(!leaf || scale > 1.02, "leaves grew: {organ}");
+    }
+    let trials = fit["leave_one_out"].as_array().unwrap();
+    assert_eq!(
+        (trials.len(), &trials[0]["extrapolated"], &trials[1]["extrapolated"]),
+        (4, &true.into(), &false.into())
+    );
+    let mean = |way: usize| {
+        let of = |t: &Value, key: &str| t["ways"][way]["aligned"][key].as_f64().unwrap();
+        trials[1..3].iter().map(|t| of(t, "mean_mm") + of(t, "back_mean_mm")).sum::<f64>()
+    };
+    assert_eq!(trials[1]["ways"][2]["way"], "nearest day");
+    assert!(mean(0) < mean(2), "{} {}", mean(0), mean(2));
+    // In the frame of the plant it stands as on the first day; in the scanner's as on its own.
+    let run = [
+        "bloom",
+        "run",
+        "stages.toml",
+        "--law",
+        "law.json",
+        "--day",
+        "2",
+        "-o",
+        "d.ply",
+        "--report",
+        "r.json",
+    ];
+    let error = |more: &[&str]| {
+        good(&dir, &[&run[..], more].concat());
+        json(&dir.join("r.json"))["items"][0]["digest"].clone()
+    };
+    assert_ne!(error(&[]), error(&["--frame", "plant"]));
+    good(&dir, &[&run[..], &["--compare", "s1.xyz", "--unit", "mm"]].concat());
+    let report = json(&dir.join("r.json"));
+    let [as_it_stands, aligned] = ["error", "aligned"].map(|k| report[k]["mean_mm"].as_f64().unwrap());
+    assert!(as_it_stands < 0.5 && aligned <= as_it_stands + 0.05, "{as_it_stands} {aligned}");
+    let pair =
+        ["bloom", "run", "s0.xyz", "--end", "s1.xyz", "--whole", "--unit", "mm", "-o", "x.ply", "--day", "1"];
+    bad(&dir, &[&pair[..], &["--frame", "plant"]].concat(), "--frame is for plants");
+}
+
+#[test]
+fn a_growth_table_gives_laws_with_errors() {
+    let dir = folder("bloom_table");
+    let mut text = String::from("# unit: mm\nday;size;organ;plant\n");
+    for (index, (plant, k)) in (0..).zip([("a", 40.0), ("b", 55.0), ("c", 47.0)]) {
+        for day in [0, 2, 4, 7, 10, 14] {
+            let wobble = 1.0 + 0.01 * f64::from((day * 7 + index * 13) % 5 - 2);
+            let truth = burgeon::bloom::Logistic { k, p0: 0.1 * k, r: 0.5, offset: 0.0 };
+            let size = wobble * truth.value(f64::from(day));
+            text +=
+                &format!("{day};{:.3};leaf-1;{plant}\n", size).replace('.', ",").replace("leaf,", "leaf-");
+        }
+    }
+    fs::write(dir.join("t.csv"), &text).unwrap();
+    good(&dir, &["bloom", "fit", "t.csv", "-o", "law.json", "--report", "r.json", "--plot", "p.svg"]);
+    let laws = json(&dir.join("r.json"))["laws"].as_array().unwrap().clone();
+    assert_eq!(laws.len(), 3);
+    for (law, k) in laws.iter().zip([0.040, 0.055, 0.047]) {
+        assert!(law["determined"] == true && law["form"] == "logistic", "{law}");
+        let [got, se] = [law["K"].as_f64().unwrap(), law["standard_errors"][0].as_f64().unwrap()];
+        assert!((got - k).abs() < 3.0 * se && se < 0.002, "{law}");
+        assert!((law["r"].as_f64().unwrap() - 0.5).abs() < 0.05, "{law}");
+    }
+    good(&dir, &["bloom", "run", "lily", "--law", "law.json", "-o", "lily.glb", "--day", "3"]);
+    let fit = |text: &str, want: &str| {
+        fs::write(dir.join("bad.csv"), text).unwrap();
+        bad(&dir, &["bloom", "fit", "bad.csv", "-o", "x.json"], want);
+    };
+    fit("day,size\n1,2\n2,3\n", "2 stages cannot determine");
+    fit("day,size\n1,2\n1,3\n3,4\n", "two sizes on day 1");
+    fit("day,size\n1,2\nx,3\n", "line 3");
+    bad(&dir, &["bloom", "fit", "t.csv", "-o", "x.json", "--leave-one-out"], "--leave-one-out is for scans");
+    // What three values of one plant cannot determine is said.
+    fs::write(dir.join("few.csv"), "day,size\n1,2\n2,3\n3,3.5\n").unwrap();
+    good(&dir, &["bloom", "fit", "few.csv", "-o", "few.json", "--report", "few.r.json"]);
+    assert_eq!(json(&dir.join("few.r.json"))["laws"][0]["determined"], false);
+    let out = burgeon(&dir, &["bloom", "run", "rose", "--law", "few.json", "--day", "3", "-o", "rose.glb"]);
+    assert!(out.status.success());
+    assert!(String::from_utf8_lossy(&out.stderr).contains("at an even pace"), "{out:?}");
+}
+
 #[test]
 fn odd_stages_are_taken_with_a_warning() {
     let dir = folder("bloom_odd");

@@ -37,6 +37,7 @@ const VALUES: &[(&str, &str)] = &[
     ("as", "fruit"),
     ("flip-flowers", "0"),
     ("format", "obj"),
+    ("frame", "plant"),
     ("frames", "3"),
     ("graph", "palmate"),
     ("gravity", "0.9"),
@@ -119,6 +120,7 @@ const USES: &[&[&str]] = &[
     &["leaf", "graph.json", "-o", "o.glb", "--texture", "plain"],
     &["leaf", "leaf.csv", "--plant", "-o", "o.glb", "--texture", "plain"],
     &["leaf", "leaf.csv", "--plant", "-o", "o.mtg", "--texture", "plain"],
+    &["bloom", "fit", "growth.csv", "-o", "o.json"],
     &["bloom", "run", "tulip", "-o", "o.glb", "--day", "2"],
     &["bloom", "run", "rose.svg", "-o", "o.obj"],
     &["bloom", "run", "rose", "-o", "o.mtg"],
@@ -159,6 +161,7 @@ fn inputs(dir: &Path) {
     let contour = r##"<path id="branch-contour" fill="none" stroke="#000" d="M101 270C130 262 160 262 176 274C160 286 130 284 101 272"/></svg>"##;
     write("rose.svg", &FLOWER.replace("</svg>", contour));
     write("classes.csv", "1,axis\n");
+    write("growth.csv", "day,size\n0,1\n1,2\n2,3.5\n4,5\n6,5.5\n");
     write("spec.json", r#"{"height_m": 2}"#);
     let shaded = "pattern = \"shaded\"\ncolor = \"#aa3355\"";
     write("materials.toml", &format!("[leaf]\n{shaded}\n[petal]\n{shaded}\n"));

@@ -131,7 +131,7 @@ pub fn motion_digest(first: &[u8], middle: &[u8], last: &[u8], frames: u32) -> R
     for k in 0..frames.max(2) {
         let day = 2.0 * (f64::from(k) / f64::from(frames.max(2) - 1));
         let points = motion.at(day, &run)?;
-        digest.add(&burgeon::motion_model("stages", None, &motion, &points));
+        digest.add(&burgeon::motion_model("stages", None, &motion.organs, &points));
     }
     Ok(digest.hex())
 }

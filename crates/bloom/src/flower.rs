@@ -281,11 +281,10 @@ impl Whorl {
         let [opening, wilting] = [spec.opening_days, spec.wilting_days].map(|d| d.max(1e-6));
         // The law's own time is stretched to the opening; a whorl with a delay starts later and ends with the others.
         let share = ((day / opening - self.delay) / (1.0 - self.delay.clamp(0.0, 0.9))).clamp(0.0, 1.0);
-        let at = |along: f64, axis| {
-            law.progress("petal", axis, along, 0.0, law.span_days, share * law.span_days).clamp(0.0, 1.0)
-        };
-        let g = [0.15, 0.5, 0.85].map(|along| at(along, Quantity::Size).max(0.0));
-        let size = at(0.5, Quantity::Size);
+        let (span, now) = (law.span_days, share * law.span_days);
+        // Each part of a petal opens as its region moves; without laws of regions, as the organ grows.
+        let g = [0.15, 0.5, 0.85].map(|along| law.pace_at("petal", along, 0.0, span, now).clamp(0.0, 1.0));
+        let size = law.progress("petal", Quantity::Size, 0.5, 0.0, span, now).clamp(0.0, 1.0);
         let wilt = ops::smoothstep(0.0, 1.0, ((day - opening) / wilting).clamp(0.0, 1.0));
         let open = blend3(self.bud_deg, self.open_deg, g);
         let young = if self.sepal { [0.82, 0.8] } else { [0.62, 0.55] };

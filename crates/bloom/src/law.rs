@@ -3,7 +3,10 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use crate::{BloomError, Fit, FitError, Logistic, Offset, Organ, fit_law, fit_logistic};
+use crate::{
+    BloomError, Choice, Fit, FitError, Form, Logistic, Offset, Organ, Series, SharedFit, choose, fit_law,
+    fit_logistic, fit_shared,
+};
 
 /// The value of [`GrowthLaw::schema`].
 pub const LAW_SCHEMA: &str = "burgeon.law/1";
@@ -46,9 +49,21 @@ pub struct RegionLaw {
     pub region: usize,
     /// What of it.
     pub axis: Quantity,
-    /// K, p0, r and the constant under the curve; metres and days since the first stage.
+    /// The curve that K, p0, r and the offset are of. Default logistic.
+    #[serde(default)]
+    pub form: Form,
+    /// K, p0, r and the constant under the curve; metres and days since the first stage. Of a straight line K is the value
+    /// on the last day and r the change a day.
     #[serde(flatten)]
     pub law: Logistic,
+    /// The stages determine the law: it predicts stages that are left out better than a straight line. What is not
+    /// determined drives nothing. A file without this word: determined unless there are 3 values, which leave no degree of
+    /// freedom.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub determined: Option<bool>,
+    /// Leave-one-out error of the straight line, metres.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub straight_rmse: Option<f64>,
     /// Standard errors of K, p0 and r.
     pub standard_errors: Option<[f64; 3]>,
     /// Coefficient of determination.
@@ -95,7 +110,10 @@ impl GrowthLaw {
             organ: "any".into(),
             region: 0,
             axis: Quantity::Size,
+            form: Form::Logistic,
             law,
+            determined: None,
+            straight_rmse: None,
             standard_errors: None,
             r2: 1.0,
             r2_adjusted: None,
@@ -113,6 +131,14 @@ impl GrowthLaw {
         }
     }
 
+    /// No law: everything goes at an even pace from the first to the last day.
+    pub fn even(first_day: f64, last_day: f64) -> Self {
+        let mut law = Self::logistic("even", (last_day - first_day).max(1e-9), 1.0);
+        law.first_day = first_day;
+        law.laws.iter_mut().for_each(|l| l.determined = Some(false));
+        law
+    }
+
     /// Everything that makes a law read from a file useless: other schema, no law, numbers that are not finite.
     pub fn validate(&self) -> impl Iterator<Item = LawFault> + '_ {
         let head = (self.schema != LAW_SCHEMA).then(|| LawFault::Schema(self.schema.clone()));
@@ -121,8 +147,8 @@ impl GrowthLaw {
             let l = row.law;
             let finite = [l.k, l.p0, l.r, l.offset].iter().all(|x| x.is_finite());
             let sound = finite
-                && l.value(0.0).is_finite()
-                && l.value(self.span_days).is_finite()
+                && row.value(0.0).is_finite()
+                && row.value(self.span_days).is_finite()
                 && row.days.len() == row.values.len();
             (!sound).then_some(LawFault::Row(i))
         });
@@ -140,9 +166,8 @@ impl GrowthLaw {
     /// that of the other organs, then a straight line. An organ that the law does not know follows the first one
     /// that it knows: so a law moves to another species. Days are since the first stage.
     pub fn progress(&self, organ: &str, axis: Quantity, along: f64, from: f64, to: f64, day: f64) -> f64 {
-        let straight = if to > from { (day - from) / (to - from) } else { 1.0 };
-        let known = self.laws.iter().any(|l| l.organ == organ);
-        let organ = if known { organ } else { self.laws.first().map_or("", |l| l.organ.as_str()) };
+        let straight = even_pace(from, to, day);
+        let organ = self.followed(organ);
         let regions = self.regions.max(1);
         let at = (along.clamp(0.0, 1.0) * regions as f64 - 0.5).clamp(0.0, (regions - 1) as f64);
         let low = at.floor();
@@ -162,27 +187,32 @@ impl GrowthLaw {
     /// [`progress`](Self::progress) of all three coordinates at once, each weighing as much as it moves: the pace
     /// of a place in a frame that turns with its organ.
     pub fn pace_at(&self, organ: &str, along: f64, from: f64, to: f64, day: f64) -> f64 {
-        let known = self.laws.iter().any(|l| l.organ == organ);
-        let name = if known { organ } else { self.laws.first().map_or("", |l| l.organ.as_str()) };
+        let name = self.followed(organ);
         let (mut sum, mut weights) = (0.0, 0.0);
         for axis in Quantity::AXES {
-            let rows = self.laws.iter().filter(|l| l.organ == name && l.axis == axis);
-            let way: f64 = rows.map(|l| (l.law.value(to) - l.law.value(from)).abs()).sum();
+            let rows = self.laws.iter().filter(|l| l.organ == name && l.axis == axis && l.is_determined());
+            let way: f64 = rows.map(|l| (l.value(to) - l.value(from)).abs()).sum();
             if way.is_finite() {
                 sum += way * self.progress(organ, axis, along, from, to, day);
                 weights += way;
             }
         }
-        let law = if weights > 0.0 {
-            sum / weights
-        } else {
-            self.progress(organ, Quantity::Size, along, from, to, day)
-        };
-        // Three stages leave no degree of freedom: what they say of the pace is half believed, the other half is a
-        // straight line.
-        let determined = self.laws.iter().any(|l| l.days.len() != 3);
-        let straight = if to > from { (day - from) / (to - from) } else { 1.0 };
-        if determined { law } else { 0.5 * (law + straight) }
+        if weights > 0.0 { sum / weights } else { self.progress(organ, Quantity::Size, along, from, to, day) }
+    }
+
+    /// Something in it sets a pace: a law that its stages determine and that moves.
+    pub fn sets_pace(&self) -> bool {
+        let (first, last) = (0.0, self.span_days);
+        self.laws.iter().any(|l| l.pace(first, last, 0.5 * last).is_some())
+    }
+
+    /// The organ whose laws an organ follows: its own; else those of the first organ with a law that is determined.
+    fn followed<'a>(&'a self, organ: &'a str) -> &'a str {
+        if self.laws.iter().any(|l| l.organ == organ) {
+            return organ;
+        }
+        let able = self.laws.iter().find(|l| l.is_determined() && l.r2 > 0.5);
+        able.or_else(|| self.laws.first()).map_or("", |l| l.organ.as_str())
     }
 
     fn pace(&self, organ: &str, region: usize, axis: Quantity, from: f64, to: f64, day: f64) -> Option<f64> {
@@ -198,9 +228,36 @@ impl GrowthLaw {
     }
 }
 
+/// The share of the time from `from` to `to` that is over; 0 before and 1 after, as nothing says how it goes on.
+fn even_pace(from: f64, to: f64, day: f64) -> f64 {
+    let share = (day - from) / (to - from);
+    if share.is_finite() { share.clamp(0.0, 1.0) } else { 1.0 }
+}
+
 impl RegionLaw {
+    /// The value on a day since the first stage.
+    pub fn value(&self, day: f64) -> f64 {
+        let l = self.law;
+        match self.form {
+            Form::Logistic => l.value(day),
+            Form::Gompertz => {
+                l.offset + l.k * base::ops::exp(base::ops::ln(l.p0 / l.k) * base::ops::exp(-l.r * day))
+            }
+            Form::Monomolecular => l.offset + l.k - (l.k - l.p0) * base::ops::exp(-l.r * day),
+            Form::Straight => l.offset + l.p0 + l.r * day,
+        }
+    }
+
+    /// The stages determine the law.
+    pub fn is_determined(&self) -> bool {
+        self.determined.unwrap_or(self.days.len() != 3)
+    }
+
     fn pace(&self, from: f64, to: f64, day: f64) -> Option<f64> {
-        let (a, b, x) = (self.law.value(from), self.law.value(to), self.law.value(day));
+        if !self.is_determined() {
+            return None;
+        }
+        let (a, b, x) = (self.value(from), self.value(to), self.value(day));
         let level = self.values.iter().map(|v| v.abs()).fold(a.abs().max(b.abs()), f64::max);
         // 3 % of its level: less is noise of the scan; and a law that does not follow its values is none.
         let moves = (b - a).abs() > 0.03 * level && self.r2 > 0.5;
@@ -272,7 +329,7 @@ pub fn fit_stages(name: &str, stages: &[Stage], spec: &LawSpec) -> Result<Growth
         }
     }
     let regions = spec.regions.clamp(1, 20);
-    let mut laws = Vec::new();
+    let mut rows: Vec<Measured> = Vec::new();
     for name in names {
         let there: Vec<(f64, &Organ)> = stages
             .iter()
@@ -282,23 +339,86 @@ pub fn fit_stages(name: &str, stages: &[Stage], spec: &LawSpec) -> Result<Growth
             continue;
         }
         let days: Vec<f64> = there.iter().map(|t| t.0).collect();
-        let sizes: Vec<f64> = there
-            .iter()
-            .map(|(_, o)| {
-                o.points.iter().map(|p| p.distance(o.base)).sum::<f64>() / o.points.len().max(1) as f64
-            })
-            .collect();
-        laws.push(row(name, 0, Quantity::Size, &days, sizes, spec.offset)?);
+        let size = |o: &Organ| {
+            o.points.iter().map(|p| p.distance(o.base)).sum::<f64>() / o.points.len().max(1) as f64
+        };
+        let mut add = |region, axis, values| {
+            let series = Series { days: days.clone(), values };
+            rows.push(Measured { organ: name.to_owned(), region, axis, series });
+        };
+        add(0, Quantity::Size, there.iter().map(|(_, o)| size(o)).collect());
         let means: Vec<Vec<DVec3>> = there.iter().map(|(_, o)| region_means(o, regions)).collect();
         for region in 0..regions {
             for (k, axis) in Quantity::AXES.into_iter().enumerate() {
-                let values: Vec<f64> = means.iter().map(|m| m[region][k]).collect();
-                laws.push(row(name, region + 1, axis, &days, values, spec.offset)?);
+                add(region + 1, axis, means.iter().map(|m| m[region][k]).collect());
             }
         }
     }
     let span_days = stages[stages.len() - 1].day - first_day;
+    let laws = fit_rows(rows, span_days, spec.offset)?;
     Ok(GrowthLaw { schema: LAW_SCHEMA.into(), name: name.to_owned(), first_day, span_days, regions, laws })
+}
+
+/// Fits a law to each series of sizes: days, increasing strictly, with values in metres. Series of one kind share what
+/// they determine together (`leaf-1` and `leaf-2` are leaves; `tree 3` is a tree).
+///
+/// # Errors
+/// [`FitError`], as [`fit_logistic`], with fewer than 3 days in every series; a series of fewer is left out.
+pub fn fit_sizes(name: &str, series: &[(String, Series)], offset: Offset) -> Result<GrowthLaw, FitError> {
+    let able = || series.iter().filter(|s| s.1.days.len() >= 3);
+    let Some(first_day) = able().map(|s| s.1.days[0]).reduce(f64::min) else {
+        let most = series.iter().map(|s| s.1.days.len()).max().unwrap_or(0);
+        return Err(FitError::TooFew { got: most });
+    };
+    let last = able().filter_map(|s| s.1.days.last()).fold(first_day, |a, &b| a.max(b));
+    let rows = able().map(|(organ, series)| Measured {
+        organ: organ.clone(),
+        region: 0,
+        axis: Quantity::Size,
+        series: Series {
+            days: series.days.iter().map(|d| d - first_day).collect(),
+            values: series.values.clone(),
+        },
+    });
+    let laws = fit_rows(rows.collect(), last - first_day, offset)?;
+    let (schema, name) = (LAW_SCHEMA.into(), name.to_owned());
+    Ok(GrowthLaw { schema, name, first_day, span_days: last - first_day, regions: 1, laws })
+}
+
+/// The kind of an organ: its name without number, plant and what marks it as new (`new-leaf-4` is a `leaf`, and so is
+/// `plant 3: leaf-2`).
+fn kind_of(organ: &str) -> &str {
+    let organ = organ.rsplit(": ").next().unwrap_or(organ);
+    let name = organ.strip_prefix("new-").unwrap_or(organ);
+    name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches(['-', '_', ' '])
+}
+
+/// One series before its law is known.
+#[derive(Clone, Debug)]
+pub(crate) struct Measured {
+    pub(crate) organ: String,
+    pub(crate) region: usize,
+    pub(crate) axis: Quantity,
+    pub(crate) series: Series,
+}
+
+/// Laws of all series, in their order. Those of one kind of organ and one axis share rate and time; where no shared law
+/// is determined, a series of 5 values or more may determine one of its own.
+pub(crate) fn fit_rows(rows: Vec<Measured>, span: f64, offset: Offset) -> Result<Vec<RegionLaw>, FitError> {
+    let group = |r: &Measured| (kind_of(&r.organ).to_owned(), r.axis);
+    let mut groups: Vec<(String, Quantity)> = rows.iter().map(group).collect();
+    base::sort_by(&mut groups, |a, b| a.cmp(b));
+    groups.dedup();
+    let mut laws: Vec<Option<RegionLaw>> = vec![None; rows.len()];
+    for key in groups {
+        let mine: Vec<usize> = (0..rows.len()).filter(|&i| group(&rows[i]) == key).collect();
+        let series: Vec<Series> = mine.iter().map(|&i| rows[i].series.clone()).collect();
+        let choice = choose(&series);
+        for (k, &i) in mine.iter().enumerate() {
+            laws[i] = Some(row(&rows[i], choice.as_ref().map(|c| (c, k)), span, offset)?);
+        }
+    }
+    Ok(laws.into_iter().flatten().collect())
 }
 
 /// Mean place of each region from the base; of an empty region that of the one before.
@@ -316,28 +436,67 @@ fn region_means(organ: &Organ, regions: usize) -> Vec<DVec3> {
         .collect()
 }
 
+/// The law of one series: of its own where its days determine that better than what its kind shares.
 fn row(
-    organ: &str,
-    region: usize,
-    axis: Quantity,
-    days: &[f64],
-    values: Vec<f64>,
+    of: &Measured,
+    choice: Option<(&Choice, usize)>,
+    span: f64,
     offset: Offset,
 ) -> Result<RegionLaw, FitError> {
-    let fit: Fit =
-        if days.len() > 3 { fit_logistic(days, &values, offset)? } else { fit_law(days, &values, offset)? };
-    Ok(RegionLaw {
-        organ: organ.to_owned(),
-        region,
-        axis,
+    let Series { days, values } = &of.series;
+    let n = values.len();
+    let fit: Fit = if n > 3 { fit_logistic(days, values, offset)? } else { fit_law(days, values, offset)? };
+    let mut out = RegionLaw {
+        organ: of.organ.clone(),
+        region: of.region,
+        axis: of.axis,
+        form: Form::Logistic,
         law: fit.law,
+        determined: Some(false),
+        straight_rmse: None,
         standard_errors: fit.standard_errors,
         r2: fit.r2,
         r2_adjusted: fit.r2_adjusted,
         loo_rmse: fit.loo_rmse,
-        days: days.to_vec(),
-        values,
-    })
+        days: days.clone(),
+        values: values.clone(),
+    };
+    let Some((choice, k)) = choice else { return Ok(out) };
+    let rms = |fit: &SharedFit, k: usize| {
+        let rows: Vec<f64> = fit.left_out[k].iter().flatten().copied().collect();
+        (!rows.is_empty()).then(|| (rows.iter().map(|e| e * e).sum::<f64>() / rows.len() as f64).sqrt())
+    };
+    let line = fit_shared(Form::Straight, true, core::slice::from_ref(&of.series));
+    out.straight_rmse = line.as_ref().and_then(|l| rms(l, 0));
+    let shared = rms(&choice.fit, k);
+    // Its own logistic, with errors, must be nearer than both.
+    let own = fit.standard_errors.is_some() && !fit.law.on_bound(span) && n >= 4;
+    let least = shared.into_iter().chain(out.straight_rmse).fold(f64::INFINITY, f64::min);
+    if own && fit.loo_rmse.is_some_and(|e| e < least || e <= 1e-9 * values[n - 1].abs()) {
+        out.determined = Some(true);
+        return Ok(out);
+    }
+    let at = |day: f64| choice.fit.value(k, day);
+    let [_, b] = choice.fit.linear[k];
+    let (form, r) = (choice.fit.form, choice.fit.r);
+    out.form = form;
+    out.law = match form {
+        Form::Straight => Logistic { k: at(span), p0: at(0.0), r: b, offset: 0.0 },
+        _ => {
+            let [k_final, p0] = choice.fit.states(k);
+            Logistic { k: k_final, p0, r, offset: at(0.0) - p0 }
+        }
+    };
+    let mean = values.iter().sum::<f64>() / n as f64;
+    let sst: f64 = values.iter().map(|v| (v - mean) * (v - mean)).sum();
+    let sse: f64 = days.iter().zip(values).map(|(&d, v)| (at(d) - v) * (at(d) - v)).sum();
+    out.r2 = if sst > 0.0 { 1.0 - sse / sst } else { 1.0 };
+    out.r2_adjusted = None;
+    out.loo_rmse = shared;
+    out.determined = Some(choice.determined);
+    let errors = choice.fit.errors.as_ref().filter(|_| choice.determined);
+    out.standard_errors = errors.map(|(states, both)| [states[k][0], states[k][1], both[0]]);
+    Ok(out)
 }
 
 #[cfg(test)]

@@ -60,6 +60,8 @@ pub struct Motion {
     tracks: Vec<Track>,
     points: usize,
     law: GrowthLaw,
+    /// Day of the first stage in the count of the law.
+    start: f64,
     spec: MotionSpec,
     /// Name of the organ of each row, by range.
     pub organs: Vec<(String, core::ops::Range<usize>)>,
@@ -92,13 +94,28 @@ impl Motion {
         spec: MotionSpec,
         run: &Run<'_>,
     ) -> Result<Self, BloomError> {
+        Self::since(0.0, stages, law, spec, run)
+    }
+
+    /// [`new`](Self::new) for stages of which the first is at day `start` of the law. Two stages may run backwards.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub(crate) fn since(
+        start: f64,
+        stages: &[Stage],
+        law: GrowthLaw,
+        spec: MotionSpec,
+        run: &Run<'_>,
+    ) -> Result<Self, BloomError> {
         let [first, later @ ..] = stages else {
             return Err(BloomError::TooFew { what: "the series".into(), is: 0, wanted: 2 });
         };
         if later.is_empty() {
             return Err(BloomError::TooFew { what: "the series of stages".into(), is: 1, wanted: 2 });
         }
-        let mut motion = Self { tracks: vec![], points: 0, law, spec, organs: vec![], residuals: vec![] };
+        let mut motion =
+            Self { tracks: vec![], points: 0, law, start, spec, organs: vec![], residuals: vec![] };
         for organ in &first.organs {
             motion.track(stages, 0, organ, run)?;
         }
@@ -190,7 +207,14 @@ impl Motion {
                         1.0
                     } else {
                         self.law
-                            .progress(&track.name, Quantity::Size, 0.5, b.from, b.to, day)
+                            .progress(
+                                &track.name,
+                                Quantity::Size,
+                                0.5,
+                                b.from + self.start,
+                                b.to + self.start,
+                                day + self.start,
+                            )
                             .clamp(0.02, 1.0)
                     };
                     let place = match b.bearer {
@@ -206,7 +230,7 @@ impl Motion {
                     let segment =
                         track.segments.iter().find(|s| day <= s.to).or_else(|| track.segments.last());
                     if let Some(segment) = segment {
-                        let lattice = segment.lattice(&track.name, day, &self.law, self.spec.straight);
+                        let lattice = segment.lattice(&track.name, day, self);
                         segment.weights.apply_with(&lattice, &mut out[track.rows.clone()], run)?;
                     }
                 }
@@ -240,9 +264,11 @@ fn places(fit: &Registration, points: &[DVec3], way: &[f64]) -> Vec<f64> {
 }
 
 impl Segment {
-    fn lattice(&self, organ: &str, day: f64, law: &GrowthLaw, straight: bool) -> Lattice {
+    fn lattice(&self, organ: &str, day: f64, motion: &Motion) -> Lattice {
+        let (law, straight) = (&motion.law, motion.spec.straight);
+        let [from, to, day] = [self.from, self.to, day].map(|d| d + motion.start);
         let (first, last) = (&self.fit.first.points, &self.fit.last.points);
-        let g = |axis, along: f64| law.progress(organ, axis, along, self.from, self.to, day);
+        let g = |axis, along: f64| law.progress(organ, axis, along, from, to, day);
         // The way is the same for many control points: one answer a place.
         let mut known: Vec<(f64, DVec3)> = Vec::new();
         let mut pace = |along: f64| {
@@ -252,7 +278,7 @@ impl Segment {
             let v = if straight {
                 DVec3::new(g(Quantity::X, along), g(Quantity::Y, along), g(Quantity::Z, along))
             } else {
-                DVec3::splat(law.pace_at(organ, along, self.from, self.to, day))
+                DVec3::splat(law.pace_at(organ, along, from, to, day))
             };
             known.push((along, v));
             v

@@ -23,7 +23,7 @@ pub fn plot_svg(law: &GrowthLaw) -> String {
         s,
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {w} {h}\" width=\"{w}\" height=\"{h}\" \
          font-family=\"sans-serif\" font-size=\"11\">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n\
-         <text x=\"12\" y=\"22\" font-size=\"15\">{}: logistic growth laws (mm by day)</text>\n",
+         <text x=\"12\" y=\"22\" font-size=\"15\">{}: growth laws (mm by day)</text>\n",
         escaped(&law.name)
     );
     for (i, row) in law.laws.iter().enumerate() {
@@ -43,7 +43,7 @@ fn panel(s: &mut String, law: &GrowthLaw, row: &RegionLaw, x0: f64, y0: f64) {
     let curve: Vec<(f64, f64)> = (0..=60)
         .map(|k| {
             let day = law.span_days * f64::from(k) / 60.0;
-            (day, row.law.value(day) * 1e3)
+            (day, row.value(day) * 1e3)
         })
         .filter(|p| p.1.is_finite())
         .collect();

@@ -108,6 +108,24 @@ struct Rigid {
     to: DVec3,
     turn: DQuat,
     scale: f64,
+    /// The direction of a rod: it does not roll, as nothing shows how far.
+    rod: Option<DVec3>,
+}
+
+/// Below this ratio of the second to the first spread of its points an organ is a rod.
+const ROD: f64 = 0.2;
+
+/// Spread of the points across their longest direction as a share of that along it.
+fn slimness(points: &[DVec3]) -> f64 {
+    geom::pca3(points).map_or(1.0, |(_, _, [first, second, _])| (second.max(0.0) / first.max(1e-300)).sqrt())
+}
+
+/// The direction of an organ that is a rod before and after.
+pub(crate) fn rod(pairs: &[(DVec3, DVec3)]) -> Option<DVec3> {
+    let before: Vec<DVec3> = pairs.iter().map(|p| p.0).collect();
+    let after: Vec<DVec3> = pairs.iter().map(|p| p.1).collect();
+    let thin = slimness(&before) < ROD && slimness(&after) < ROD;
+    thin.then(|| geom::pca3(&before)).flatten().map(|(_, axes, _)| axes[0])
 }
 
 impl Rigid {
@@ -140,10 +158,11 @@ fn align(
     // The least turn of one direction onto the other, then rolls about it: a petal cannot say its upper side by
     // its direction alone.
     let least = base::turn::between(a, b);
+    let rod = (slimness(from) < ROD && slimness(to) < ROD).then_some(a);
     let mut best: Option<(f64, Rigid)> = None;
-    for k in 0..8 {
+    for k in 0..if rod.is_some() { 1 } else { 8 } {
         let roll = base::turn::about(b, base::ops::TAU * f64::from(k) / 8.0);
-        let mut rigid = Rigid { from: from_base, to: to_base, turn: roll * least, scale };
+        let mut rigid = Rigid { from: from_base, to: to_base, turn: roll * least, scale, rod };
         for _ in 0..12 {
             rigid = improved(&rigid, &small_from, &small_to, &grid);
         }
@@ -156,7 +175,7 @@ fn align(
             best = Some((score, rigid));
         }
     }
-    let start = Rigid { from: from_base, to: to_base, turn: least, scale };
+    let start = Rigid { from: from_base, to: to_base, turn: least, scale, rod };
     let mut rigid = best.map_or(start, |(_, r)| r);
     let grid = KdTree::new(to);
     for _ in 0..10 {
@@ -180,6 +199,10 @@ fn improved(rigid: &Rigid, from: &[DVec3], to: &[DVec3], grid: &KdTree) -> Rigid
         }
     }
     let turn = best_rotation(pairs.iter().copied());
+    let turn = match rigid.rod {
+        Some(a) => base::turn::between(a, (turn * a).normalize_or(a)),
+        None => turn,
+    };
     let dot: f64 = pairs.iter().map(|(a, b)| (turn * *a).dot(*b)).sum();
     let square: f64 = pairs.iter().map(|(a, _)| a.length_squared()).sum();
     let scale = dot / square;

@@ -382,7 +382,8 @@ fn cut(points: &[DVec3], ways: &Ways, mine: impl Fn(usize) -> bool) -> Organ {
 /// Pairs of organs that are the same at two days: rows of `a` and of `b`, each at most once.
 ///
 /// The stem is the stem. A leaf is the one whose direction has turned least (at most 80 degrees), lengths and
-/// shares of the points deciding between near ones. As pots are turned and stems twist, all leaves may turn
+/// shares of the points deciding between near ones. One that has turned far and is of another size, too, is no partner:
+/// an organ that appears or goes is left alone. As pots are turned and stems twist, all leaves may turn
 /// together about `up` by up to 60 degrees, at a price.
 pub fn match_organs(a: &[Organ], b: &[Organ], up: DVec3) -> Vec<(usize, usize)> {
     let up = up.try_normalize().unwrap_or(DVec3::Y);
@@ -420,8 +421,9 @@ fn match_turned(a: &[Organ], b: &[Organ], up: DVec3, angle: f64) -> (f64, Vec<(u
                 let angle = base::ops::acos_clamped((turn * direction(x)).dot(direction(y)));
                 let growth = base::ops::ln(size(y) / size(x)).abs();
                 let share = (y.points.len().max(1) as f64 / all_b) / (x.points.len().max(1) as f64 / all_a);
-                if angle < 1.4 {
-                    costs.push((angle + 0.4 * growth + 0.2 * base::ops::ln(share).abs(), i, j));
+                let cost = angle + 0.4 * growth + 0.2 * base::ops::ln(share).abs();
+                if cost < 1.4 {
+                    costs.push((cost, i, j));
                 }
             }
         }

@@ -22,9 +22,9 @@ pub use drawing::{Drawings, MAX_DRAWING_BYTES, ReadDrawing, read_drawings, write
 pub use error::{CloudError, DrawingError, FileFault, ModelError, Place, WriteError};
 pub use kind::{CloudFormat, DrawingFormat, ModelFormat};
 pub use leaves::{
-    LeafFile, LeafFileError, MAX_LEAF_BYTES, MarksAxes, ReadGraph, ReadMarks, ReadProfile, ReadProfiles,
-    ReadRays, is_rays, marks_template, read_leaf_file, read_marks, read_profiles, read_rays, read_vein_graph,
-    write_marks, write_rays,
+    GrowthEntry, LeafFile, LeafFileError, MAX_LEAF_BYTES, MarksAxes, ReadGraph, ReadGrowth, ReadMarks,
+    ReadProfile, ReadProfiles, ReadRays, is_rays, marks_template, read_growth, read_leaf_file, read_marks,
+    read_profiles, read_rays, read_vein_graph, write_marks, write_rays,
 };
 pub use model::{
     ExportSpec, FileStems, MAX_MODEL_BYTES, Morph, ObjFiles, PngCache, Resolver, UsdFiles, file_name,

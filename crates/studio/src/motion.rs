@@ -1,16 +1,22 @@
 //! Points -> models: an organ's motion at a day, a scan.
 
-use bloom::Motion;
+use core::ops::Range;
+
 use glam::DVec3;
 use mesh::{Material, MaterialId, MaterialKind, Model, Part, PointCloud, TriMesh};
 
-/// The model of the `points` of a day: a part an organ.
+/// The model of the `points` of a day: a part an organ, of those that `organs` says are its rows.
 ///
 /// With `faces` a mesh of as many vertices keeps its triangles, texture coordinates and colours; without, parts are
 /// clouds of points.
-pub fn motion_model(name: &str, faces: Option<&TriMesh>, motion: &Motion, points: &[DVec3]) -> Model {
+pub fn motion_model(
+    name: &str,
+    faces: Option<&TriMesh>,
+    organs: &[(String, Range<usize>)],
+    points: &[DVec3],
+) -> Model {
     let mut model = Model { name: name.to_owned(), ..Model::default() };
-    for (organ, rows) in &motion.organs {
+    for (organ, rows) in organs {
         let mut mesh = TriMesh::default();
         for p in points.get(rows.clone()).unwrap_or_default() {
             mesh.push(*p);

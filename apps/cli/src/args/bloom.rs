@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Subcommand};
+use clap::{Args, Subcommand, ValueEnum};
 
 use super::given::Given;
 use super::shared::{AxesArgs, CommonArgs, ViewWord, ranged, size};
@@ -10,10 +10,12 @@ use super::shared::{AxesArgs, CommonArgs, ViewWord, ranged, size};
 /// The two commands.
 #[derive(Debug, Subcommand)]
 pub(crate) enum BloomCommand {
-    /// Fit growth laws to scans of several days
+    /// Fit growth laws to scans of several days, or to a growth table
     ///
-    /// Reads the scans that a stages file names, cleans them, splits them into organs and regions, and fits a
-    /// logistic law f(x) = K / (1 + (K / p0 - 1) exp(-r x)) to the means of x, y and z of each region.
+    /// Reads the scans that a stages file names, cleans them, splits them into organs and regions, takes the motion of the
+    /// plant between scans off, and fits logistic, Gompertz and monomolecular laws to the means of x, y and z of each region.
+    /// Organs of one kind share rate and time. A law that predicts left-out values no better than straight lines is not
+    /// determined, and says so.
     Fit(Box<FitArgs>),
     /// Make a plant's shape at any day, or the animation of all days
     ///
@@ -39,11 +41,18 @@ pub(crate) enum BloomCommand {
   # base = [x, y, z]     # where the organ is attached
   # crop = [[x, y, z], [x, y, z]]
 
+Growth table (CSV): day,size[,organ][,plant], one line a measurement; sizes in --unit, or in that of a line `# unit: mm`.
+
 Examples:
-  burgeon bloom fit stages.toml -o tomato.law.json --plot tomato.svg")]
+  burgeon bloom fit stages.toml -o tomato.law.json --plot tomato.svg
+  burgeon bloom fit stages.toml -o tomato.law.json --leave-one-out     how far the model is from each day left out
+  burgeon bloom fit lengths.csv -o leaves.law.json --unit mm")]
 pub(crate) struct FitArgs {
-    /// The stages file.
-    #[arg(value_name = "STAGES.toml")]
+    /// First: clap takes the values of the others away as it reads them.
+    #[command(flatten)]
+    pub(crate) given: Given,
+    /// The stages file, or a growth table (.csv).
+    #[arg(value_name = "STAGES.toml|TABLE.csv")]
     pub(crate) input: PathBuf,
     /// The law: .json.
     #[arg(long, short, value_name = "LAW.json")]
@@ -54,6 +63,9 @@ pub(crate) struct FitArgs {
     /// Parts of each organ from base to tip, 1 to 20.
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=20))]
     pub(crate) regions: u32,
+    /// Leave each stage out in turn, and print how far the model, no law, the nearest day and straight lines are from it.
+    #[arg(long)]
+    pub(crate) leave_one_out: bool,
     /// Seed of the search for the ground.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
@@ -117,6 +129,10 @@ pub(crate) struct BloomRunArgs {
     /// y and z (the paper's error) and Euclidean distances both ways, in millimetres.
     #[arg(long, value_name = "SCAN", requires = "day")]
     pub(crate) compare: Option<PathBuf>,
+    /// Coordinates of the result: of the scanner, in which the plant is moved and turned as it was between scans, or of the
+    /// plant, as it stood in the first scan.
+    #[arg(long, value_enum, default_value_t = FrameWord::Scanner)]
+    pub(crate) frame: FrameWord,
     /// Do not split scans into organs: each is one organ. Models with faces are never split.
     #[arg(long)]
     pub(crate) whole: bool,
@@ -160,6 +176,15 @@ pub(crate) struct BloomRunArgs {
     pub(crate) axes: AxesArgs,
     #[command(flatten)]
     pub(crate) common: CommonArgs,
+}
+
+/// Coordinates of a result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum FrameWord {
+    /// Of the scanner
+    Scanner,
+    /// Of the plant
+    Plant,
 }
 
 fn lattice(text: &str) -> Result<[usize; 3], String> {

@@ -2,6 +2,7 @@
 
 mod fields;
 mod graph;
+mod growth;
 mod marks;
 mod profiles;
 mod rays;
@@ -12,6 +13,7 @@ use crate::drawing::text_of;
 use crate::error::{FileFault, Place, Placed};
 
 pub use graph::{ReadGraph, read_vein_graph};
+pub use growth::{GrowthEntry, ReadGrowth, read_growth};
 pub use marks::{MarksAxes, ReadMarks, marks_template, read_marks, write_marks};
 pub use profiles::{ReadProfile, ReadProfiles, read_profiles};
 pub use rays::{ReadRays, is_rays, read_rays, write_rays};

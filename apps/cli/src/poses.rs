@@ -1,0 +1,96 @@
+//! How plant and organs moved between scans, as reports and people are told.
+
+use burgeon::bloom::{OrganStep, PoseStep, RigidMotion};
+use serde::Serialize;
+
+/// A turn about an axis and a shift of the place that it is about.
+#[derive(Debug, Serialize)]
+struct Turn {
+    turn_deg: f64,
+    /// Unit axis of the turn, +Y up.
+    axis: [f64; 3],
+    move_mm: f64,
+}
+
+impl From<&RigidMotion> for Turn {
+    fn from(m: &RigidMotion) -> Self {
+        Self { turn_deg: m.angle().to_degrees(), axis: m.axis().to_array(), move_mm: m.shift() * 1e3 }
+    }
+}
+
+#[derive(Debug, Serialize)]
+struct OrganTold {
+    organ: String,
+    /// About its joint, in the frame of the plant.
+    #[serde(flatten)]
+    pose: Turn,
+    /// Growth in size, 1 for none.
+    scale: f64,
+    /// Growth in shape: what motion and size leave.
+    shape_mm: f64,
+    residual_mm: f64,
+    back_residual_mm: f64,
+}
+
+impl From<&OrganStep> for OrganTold {
+    fn from(o: &OrganStep) -> Self {
+        Self {
+            organ: o.organ.clone(),
+            pose: Turn::from(&o.pose),
+            scale: o.scale,
+            shape_mm: o.shape_m * 1e3,
+            residual_mm: o.residual.to_model.mean * 1e3,
+            back_residual_mm: o.residual.to_scan.mean * 1e3,
+        }
+    }
+}
+
+/// What happened from one scan to the next.
+#[derive(Debug, Serialize)]
+pub(crate) struct Told {
+    from_day: f64,
+    to_day: f64,
+    /// Of the whole plant about its foot; none where fewer than two organs are on both days.
+    plant: Option<Turn>,
+    organs: Vec<OrganTold>,
+    appeared: Vec<String>,
+    vanished: Vec<String>,
+}
+
+impl From<&PoseStep> for Told {
+    fn from(s: &PoseStep) -> Self {
+        Self {
+            from_day: s.from_day,
+            to_day: s.to_day,
+            plant: (s.organs.len() > 1).then(|| Turn::from(&s.plant)),
+            organs: s.organs.iter().map(OrganTold::from).collect(),
+            appeared: s.appeared.clone(),
+            vanished: s.vanished.clone(),
+        }
+    }
+}
+
+impl Told {
+    /// Lines for people: one for the plant, one an organ.
+    pub(crate) fn lines(&self) -> Vec<String> {
+        let mut head = format!("day {} to {}", self.from_day, self.to_day);
+        if let Some(p) = &self.plant {
+            head += &format!(
+                ": the plant turned by {:.1} degrees, its foot moved {:.1} mm",
+                p.turn_deg, p.move_mm
+            );
+        }
+        for (what, names) in [("new", &self.appeared), ("gone", &self.vanished)] {
+            if !names.is_empty() {
+                head += &format!("; {what}: {}", names.join(", "));
+            }
+        }
+        let organ = |o: &OrganTold| {
+            format!(
+                "  {}: turned by {:.1} degrees, joint moved {:.1} mm, size x {:.3}, shape changed by {:.2} mm",
+                o.organ, o.pose.turn_deg, o.pose.move_mm, o.scale, o.shape_mm
+            )
+        };
+        core::iter::once(head).chain(self.organs.iter().map(organ)).collect()
+    }
+}

@@ -1,0 +1,302 @@
+//! Scans of several days -> how the plant and its organs moved between them, apart from how they grew.
+
+use base::Run;
+use geom::best_rotation;
+use glam::{DQuat, DVec3};
+
+use crate::thin::{extent, thin};
+use crate::{
+    BloomError, GrowthLaw, Motion, MotionSpec, Organ, RegisterSpec, ShapeError, Stage, Weights, register,
+};
+
+/// A turn about a place and a shift: `p -> to + turn * (p - from)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RigidMotion {
+    /// The place that the turn is about: for a plant its foot, for an organ where it sits on its bearer. Metres.
+    pub from: DVec3,
+    /// Where that place goes.
+    pub to: DVec3,
+    /// The turn.
+    pub turn: DQuat,
+}
+
+impl RigidMotion {
+    /// None.
+    pub const REST: Self = Self { from: DVec3::ZERO, to: DVec3::ZERO, turn: DQuat::IDENTITY };
+
+    /// The moved point.
+    pub fn apply(&self, p: DVec3) -> DVec3 {
+        self.to + self.turn * (p - self.from)
+    }
+
+    /// The motion back.
+    #[must_use]
+    pub fn inverse(&self) -> Self {
+        Self { from: self.to, to: self.from, turn: self.turn.inverse() }
+    }
+
+    /// A share of the motion: none at 0, all of it at 1, the turn the shorter way round.
+    #[must_use]
+    pub fn part(&self, share: f64) -> Self {
+        Self { from: self.from, to: self.from.lerp(self.to, share), turn: base::turn::part(self.turn, share) }
+    }
+
+    /// The angle of the turn, 0 to pi.
+    pub fn angle(&self) -> f64 {
+        2.0 * base::ops::acos_clamped(self.turn.w.abs())
+    }
+
+    /// The unit axis of the turn; +Y where there is none.
+    pub fn axis(&self) -> DVec3 {
+        let axis = DVec3::new(self.turn.x, self.turn.y, self.turn.z);
+        (if self.turn.w < 0.0 { -axis } else { axis }).try_normalize().unwrap_or(DVec3::Y)
+    }
+
+    /// How far the place of the turn goes, metres.
+    pub fn shift(&self) -> f64 {
+        self.from.distance(self.to)
+    }
+
+    /// The turn about the vertical and the shift that bring points nearest to their partners: how a pot moves, which stands
+    /// upright on every day.
+    fn upright(pairs: &[Places], from: DVec3) -> Self {
+        let n = pairs.len().max(1) as f64;
+        let a = pairs.iter().map(|p| p.0).sum::<DVec3>() / n;
+        let b = pairs.iter().map(|p| p.1).sum::<DVec3>() / n;
+        let (mut sin, mut cos) = (0.0, 0.0);
+        for (p, q) in pairs.iter().map(|&(p, q)| (p - a, q - b)) {
+            sin += p.z * q.x - p.x * q.z;
+            cos += p.x * q.x + p.z * q.z;
+        }
+        let turn = base::turn::about(DVec3::Y, base::ops::atan2(sin, cos));
+        Self { from, to: b + turn * (from - a), turn }
+    }
+
+    /// The motion that brings points nearest to their partners (least squares; Horn 1987), about the place `from`.
+    pub(crate) fn of_pairs(pairs: &[Places], from: DVec3) -> Self {
+        let n = pairs.len().max(1) as f64;
+        let a = pairs.iter().map(|p| p.0).sum::<DVec3>() / n;
+        let b = pairs.iter().map(|p| p.1).sum::<DVec3>() / n;
+        let turn = best_rotation(pairs.iter().map(|&(p, q)| (p - a, q - b)));
+        Self { from, to: b + turn * (from - a), turn }
+    }
+}
+
+/// How one organ changed from one scan to the next.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OrganStep {
+    /// Its name.
+    pub organ: String,
+    /// Its motion about its joint, in the frame of the plant.
+    pub pose: RigidMotion,
+    /// Growth in size: the factor of all its lengths, 1 for none.
+    pub scale: f64,
+    /// Growth in shape: mean distance that motion and size leave, metres.
+    pub shape_m: f64,
+    /// What the registration leaves between the later scan and the organ carried there.
+    pub residual: ShapeError,
+}
+
+/// What happened between two scans that follow one another.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PoseStep {
+    /// Day of the earlier scan.
+    pub from_day: f64,
+    /// Day of the later one.
+    pub to_day: f64,
+    /// Motion of the whole plant about its foot, in the coordinates of the scanner; at rest where fewer than two organs are
+    /// on both days, as then nothing tells the plant's motion from the organ's.
+    pub plant: RigidMotion,
+    /// Every organ that is there on both days.
+    pub organs: Vec<OrganStep>,
+    /// Organs that are there on the later day only.
+    pub appeared: Vec<String>,
+    /// Organs that are there on the earlier day only.
+    pub vanished: Vec<String>,
+}
+
+/// Scans in the frame of the plant, and the pose of the plant on each day.
+#[derive(Clone, Debug)]
+pub struct Settled {
+    /// The stages in the frame of the plant: that of the first scan.
+    pub stages: Vec<Stage>,
+    /// What happened from each stage to the next.
+    pub steps: Vec<PoseStep>,
+    /// From the plant's frame to the scanner's, one a stage.
+    poses: Vec<RigidMotion>,
+}
+
+/// Where a point is on one day and on the next.
+type Places = (DVec3, DVec3);
+
+/// The organs of a day, each with its points.
+type Organs = Vec<(String, Vec<DVec3>)>;
+
+/// Points of an organ that pose is estimated from: more change no figure that is printed.
+const SAMPLE: usize = 1500;
+
+/// Takes the motion of the whole plant between scans off: what is left is articulation and growth.
+///
+/// Organs of the same name are registered from day to day. The rigid motion that brings the carried points nearest to
+/// their places, all organs together, is the plant's; the same for one organ alone, in the plant's frame, is the organ's.
+/// Cost: a registration for each organ and step.
+///
+/// # Errors
+/// [`BloomError::TooFew`] for an organ below 8 points, [`BloomError::Cancelled`].
+pub fn settle(stages: &[Stage], spec: &RegisterSpec, run: &Run<'_>) -> Result<Settled, BloomError> {
+    let mut out = Settled::unmoved(stages);
+    for k in 1..stages.len() {
+        let (a, b) = (&stages[k - 1], &stages[k]);
+        let mut found: Vec<(&Organ, Vec<Places>, ShapeError)> = Vec::new();
+        for organ in &a.organs {
+            let Some(next) = b.organs.iter().find(|o| o.name == organ.name) else { continue };
+            let fit = register(&organ.points, organ.base, &next.points, next.base, spec, run)?;
+            let rows = thin(&organ.points, SAMPLE);
+            let points: Vec<DVec3> = rows.into_iter().map(|i| organ.points[i as usize]).collect();
+            let moved = Weights::new(&fit.obb, spec.counts, &points)?.apply(&fit.last, run)?;
+            found.push((organ, points.into_iter().zip(moved).collect(), fit.residual));
+        }
+        let foot = a.organs.first().map_or(DVec3::ZERO, |o| o.base);
+        let all: Vec<Places> = found.iter().flat_map(|f| f.1.iter().copied()).collect();
+        let plant = if found.len() < 2 { RigidMotion::REST } else { RigidMotion::upright(&all, foot) };
+        let back = plant.inverse();
+        let organs = found.iter().map(|(organ, pairs, left)| {
+            let pairs: Vec<Places> = pairs.iter().map(|&(p, q)| (p, back.apply(q))).collect();
+            organ_step(organ, &pairs, *left)
+        });
+        let names = |of: &Stage, other: &Stage| {
+            let lost = of.organs.iter().filter(|o| other.organs.iter().all(|p| p.name != o.name));
+            lost.map(|o| o.name.clone()).collect::<Vec<String>>()
+        };
+        out.steps.push(PoseStep {
+            from_day: a.day,
+            to_day: b.day,
+            plant,
+            organs: organs.collect(),
+            appeared: names(b, a),
+            vanished: names(a, b),
+        });
+        let before = out.poses[k - 1];
+        // First to the scanner's frame on the day before, then on.
+        let origin = before.inverse().apply(plant.from);
+        out.poses[k] =
+            RigidMotion { from: origin, to: plant.to, turn: (plant.turn * before.turn).normalize() };
+        if out.poses[k] == RigidMotion::REST {
+            // The same bits.
+            continue;
+        }
+        let settle = out.poses[k].inverse();
+        for organ in &mut out.stages[k].organs {
+            organ.points.iter_mut().for_each(|p| *p = settle.apply(*p));
+            organ.base = settle.apply(organ.base);
+            organ.tip = settle.apply(organ.tip);
+        }
+    }
+    Ok(out)
+}
+
+fn organ_step(organ: &Organ, pairs: &[Places], residual: ShapeError) -> OrganStep {
+    let mut pose = RigidMotion::of_pairs(pairs, organ.base);
+    if let Some(along) = register::rod(pairs) {
+        // Of a stem nothing shows how far it rolls.
+        pose.turn = base::turn::between(along, (pose.turn * along).normalize_or(along));
+    }
+    let n = pairs.len().max(1) as f64;
+    let a = pairs.iter().map(|p| p.0).sum::<DVec3>() / n;
+    let b = pairs.iter().map(|p| p.1).sum::<DVec3>() / n;
+    let dot: f64 = pairs.iter().map(|&(p, q)| (pose.turn * (p - a)).dot(q - b)).sum();
+    let square: f64 = pairs.iter().map(|p| p.0.distance_squared(a)).sum();
+    let scale = if square > 0.0 && dot > 0.0 { dot / square } else { 1.0 };
+    let left = pairs.iter().map(|&(p, q)| (pose.turn * (p - a) * scale).distance(q - b));
+    OrganStep { organ: organ.name.clone(), pose, scale, shape_m: left.sum::<f64>() / n, residual }
+}
+
+impl Settled {
+    /// Scans whose pose is not taken apart.
+    pub(crate) fn unmoved(stages: &[Stage]) -> Self {
+        Self { stages: stages.to_vec(), steps: vec![], poses: vec![RigidMotion::REST; stages.len()] }
+    }
+
+    /// From the plant's frame to the scanner's on a day in the count of the stages: between two scans a share of the motion
+    /// from one to the next, as much as of the time; before the first and after the last as on that day, as nothing
+    /// tells how a pot is turned next.
+    pub fn pose(&self, day: f64) -> RigidMotion {
+        let Some(k) = self.steps.iter().position(|s| day <= s.to_day) else {
+            return self.poses.last().copied().unwrap_or(RigidMotion::REST);
+        };
+        let step = &self.steps[k];
+        let share = ((day - step.from_day) / (step.to_day - step.from_day)).clamp(0.0, 1.0);
+        let (before, on) = (self.poses[k], step.plant.part(share));
+        let origin = before.inverse().apply(on.from);
+        RigidMotion { from: origin, to: on.to, turn: (on.turn * before.turn).normalize() }
+    }
+
+    /// The two stages round a day; for a day before or after all the two nearest.
+    pub fn round(&self, day: f64) -> [usize; 2] {
+        let last = self.stages.len().saturating_sub(1);
+        let next = self.stages.iter().position(|s| day <= s.day).unwrap_or(last).clamp(1.min(last), last);
+        [next.saturating_sub(1), next]
+    }
+
+    /// The organs on a day in the count of the stages, in the frame of the plant: the points of both scans round the
+    /// day, each carried there. Both are measurements of the same organs: together they show what one scan missed.
+    ///
+    /// An organ that is new in the later scan grows out of the older ones, its points no denser than they were scanned.
+    /// Before the first and after the last scan the points of the nearest one go on as far as the law says; at rest where
+    /// it determines nothing.
+    ///
+    /// # Errors
+    /// As [`Motion::new`].
+    pub fn day(
+        &self,
+        law: &GrowthLaw,
+        spec: &MotionSpec,
+        day: f64,
+        run: &Run<'_>,
+    ) -> Result<Organs, BloomError> {
+        let [i, j] = self.round(day);
+        let (a, b) = (&self.stages[i], &self.stages[j]);
+        let begin = self.stages.first().map_or(0.0, |s| s.day);
+        let carried = |first: &Stage, last: &Stage| -> Result<Organs, BloomError> {
+            let pair = [first.clone(), last.clone()];
+            let motion = Motion::since(first.day - begin, &pair, law.clone(), *spec, run)?;
+            let points = motion.at(day - first.day, run)?;
+            Ok(motion
+                .organs
+                .iter()
+                .map(|(name, rows)| (name.clone(), points[rows.clone()].to_vec()))
+                .collect())
+        };
+        let has = |s: &Stage, name: &str| s.organs.iter().any(|o| o.name == name);
+        if day > b.day {
+            return carried(b, a);
+        }
+        let mut out = carried(a, b)?;
+        // Before its first scan nothing is known of a new organ.
+        out.retain(|o| day > a.day || has(a, &o.0));
+        if day < a.day {
+            return Ok(out);
+        }
+        for (name, points) in &mut out {
+            if let Some(whole) = b.organs.iter().find(|o| o.name == *name && !has(a, name)) {
+                *points = as_dense(points, &whole.points);
+            }
+        }
+        let mut shared = b.clone();
+        shared.organs.retain(|o| has(a, &o.name));
+        for (name, points) in carried(&shared, a)? {
+            if let Some(organ) = out.iter_mut().find(|o| o.0 == name && has(b, &name)) {
+                organ.1.extend(points);
+            }
+        }
+        Ok(out)
+    }
+}
+
+/// A smaller copy of an organ with its points a unit of area: as many as the square of its size allows.
+fn as_dense(small: &[DVec3], whole: &[DVec3]) -> Vec<DVec3> {
+    let share = (extent(small) / extent(whole).max(1e-12)).clamp(0.0, 1.0);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to the number of points")]
+    let step = (1.0 / (share * share).max(1e-9)).min(small.len() as f64).max(1.0) as usize;
+    small.iter().copied().step_by(step).collect()
+}
