@@ -16,9 +16,9 @@ use crate::pipes::Pipes;
 use crate::sketch_branch::own_seed;
 
 const GROW: u64 = 0x6772_6f77;
-/// A shoot in the hand stops growing when its buds have looked at so many markers: half of what a browser may take, since a
-/// shoot that was over the budget would be none at all. Some 15,000 joints, or 3,000 branches.
-const MOST_LOOKS: u64 = 12_000_000;
+/// A shoot in the hand stops growing when its buds have looked at so many markers: a larger one would be too slow in the
+/// hand, and a shoot that was over the budget would be none at all. Some 15,000 joints, or 3,000 branches.
+const MOST_LOOKS: u64 = 1_600_000;
 /// Nearer to its tip than this share of its length, a branch goes on.
 const TIP: f64 = 0.02;
 

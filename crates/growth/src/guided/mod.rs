@@ -2,19 +2,18 @@
 //!
 //! `buds -> (markers in their cones -> directions, free space -> vigour -> shoots) x rounds -> Skeleton` (the VR paper)
 
+mod cone;
 mod room;
 mod spec;
 
-use core::sync::atomic::{AtomicU64, Ordering};
-
-use base::ops::{self, PI, TAU};
-use base::{Counted, Draw, OverBudget, Report, Run, Seed, map_indexed};
-use geom::KdTree;
+use base::ops::{self, PI};
+use base::{Counted, Draw, Report, Run, Seed, map_indexed};
 use glam::DVec3;
 
 use self::spec::Numbers;
 use crate::colonize::{grow_bole, plant_roots};
 use crate::{GrowthError, JointId, Obstacles, Skeleton};
+use cone::{Cone, Stand, Sums};
 use room::Room;
 
 pub use self::spec::{BrushStroke, GuidedChange, GuidedSpec};
@@ -50,7 +49,7 @@ pub struct Guided {
 /// stroke: `V = sum w_i v_i + sum w_i k_s t_i - k_r sum w_j u_j + k_g W g`. A bud dies when buds older than it have
 /// more markers in its cone than itself, or when V is shorter than a tenth of W. Vigour is shared as in Palubicki et
 /// al. 2009, section 4.2, free space standing for light. Guaranteed: it ends; a clean `validate()`; no joint in an
-/// obstacle; the same bits for any thread count. Cost: buds x markers x neighbours of each round.
+/// obstacle; the same bits for any thread count. Cost: buds x markers of each round.
 ///
 /// # Errors
 /// [`GrowthError`]: numbers out of range, no roots, a root in an obstacle, cancelled.
@@ -113,14 +112,6 @@ struct Bud {
     life: Life,
 }
 
-/// A marker: where it is, what it weighs, whose it is.
-#[derive(Clone, Copy, Debug)]
-struct Marker {
-    at: DVec3,
-    weight: f64,
-    along: DVec3,
-}
-
 /// What a bud saw in a round.
 #[derive(Clone, Copy, Debug, Default)]
 struct Look {
@@ -178,6 +169,7 @@ pub struct Growing {
     /// With the changes so far, and without a list of changes.
     spec: GuidedSpec,
     numbers: Numbers,
+    cone: Cone,
     seed: Seed,
     /// The next round.
     round: u32,
@@ -186,13 +178,10 @@ pub struct Growing {
     next_change: usize,
     markers_made: usize,
     died: usize,
-    /// Markers that buds have looked at.
-    looks: u64,
 }
 
 /// What to do where buds look at too many markers.
-const TOO_CROWDED: &str =
-    "lower far, markers or rounds, or raise half_angle_deg or repulsion so that more buds die";
+const TOO_MANY: &str = "lower markers, rounds or alpha, or give fewer roots";
 
 fn place_key(p: DVec3) -> u64 {
     p.x.to_bits() ^ p.y.to_bits().rotate_left(21) ^ p.z.to_bits().rotate_left(42)
@@ -294,13 +283,13 @@ impl Growing {
             asked: spec.clone(),
             spec: GuidedSpec { changes: Vec::new(), ..spec.clone() },
             numbers,
+            cone: Cone::new(spec, seed),
             seed,
             round: 0,
             grew: 0,
             next_change: 0,
             markers_made: 0,
             died: 0,
-            looks: 0,
         }
     }
 
@@ -395,6 +384,9 @@ impl Growing {
         if change.strokes.is_some() {
             self.room.set_strokes(&spec.strokes, &run.budget)?;
         }
+        if change.markers.is_some() {
+            self.cone = Cone::new(&spec, self.seed);
+        }
         (self.spec, self.numbers) = (spec, numbers);
         Ok(())
     }
@@ -402,7 +394,7 @@ impl Growing {
     /// Grows one round, however many were asked.
     ///
     /// Guaranteed: wood that is there does not change, new joints come after it; the same bits for any thread count.
-    /// Cost: living buds x markers x their neighbours.
+    /// Cost: living buds x markers, and linear in joints.
     ///
     /// # Errors
     /// [`GrowthError`]: cancelled, or over budget. What was grown before stays.
@@ -438,9 +430,9 @@ impl Growing {
         self.buds.iter().filter(|b| b.life == Life::Alive).count()
     }
 
-    /// How many markers buds have looked at so far: what growth costs.
+    /// At how many markers buds have looked so far: what growth costs.
     pub const fn looks(&self) -> u64 {
-        self.looks
+        self.markers_made as u64
     }
 
     /// Rounds so far.
@@ -473,42 +465,24 @@ impl Growing {
             return Ok(waiting);
         }
         let all = u64::from(self.spec.markers) * awake.len() as u64;
-        run.budget.check(Counted::Points, all, "lower markers, rounds or alpha, or give fewer roots")?;
+        run.budget.check(Counted::Points, all, TOO_MANY)?;
+        run.budget.check(Counted::Looks, self.looks() + all, TOO_MANY)?;
+        let stand = |&b: &u32| {
+            let bud = &self.buds[b as usize];
+            let at = self.skeleton.position[bud.joint as usize];
+            Stand { at, heading: bud.heading, side: bud.side, key: bud.key.child(u64::from(round)) }
+        };
+        let grid = self.cone.grid(awake.iter().map(|b| stand(b).at));
         let groups = awake.len().div_ceil(GROUP);
-        let of_group = |g: usize| &awake[g * GROUP..awake.len().min((g + 1) * GROUP)];
-        let made = map_indexed(run.executor, groups, |g| {
-            let mut near = Vec::new();
-            of_group(g).iter().map(|&b| self.markers_of(b as usize, round, &mut near)).collect::<Vec<_>>()
-        });
-        let (mut markers, mut owner) = (Vec::new(), Vec::new());
-        let mut rows = Vec::with_capacity(awake.len());
-        for (own, &bud) in made.into_iter().flatten().zip(&awake) {
-            rows.push(markers.len()..markers.len() + own.len());
-            owner.resize(owner.len() + own.len(), bud);
-            markers.extend(own);
-        }
-        run.cancel.check()?;
-        let places: Vec<DVec3> = markers.iter().map(|m| m.at).collect();
-        let grid = KdTree::new(&places);
-        let looked = AtomicU64::new(self.looks);
-        let looks = map_indexed(run.executor, groups, |g| {
-            let mut near = Vec::new();
-            let of = of_group(g).iter().zip(g * GROUP..);
-            of.map(|(&b, k)| {
-                let look = self.look(b, &markers, &owner, rows[k].clone(), &grid, &mut near);
-                // Told to the others at once: one round of many buds in one place could take minutes.
-                let all = looked.fetch_add(near.len() as u64, Ordering::Relaxed) + near.len() as u64;
-                let most = run.budget.limit(Counted::Looks);
-                run.budget.check(Counted::Looks, all.min(most.saturating_add(1)), TOO_CROWDED)?;
-                Ok(look)
-            })
-            .collect::<Result<Vec<_>, OverBudget>>()
+        let mut batches = map_indexed(run.executor, groups, |g| {
+            let of = &awake[g * GROUP..awake.len().min((g + 1) * GROUP)];
+            self.cone.markers(of.iter().map(stand), &grid, &self.room)
         });
         run.cancel.check()?;
-        let looks: Vec<Vec<Look>> = looks.into_iter().collect::<Result<_, OverBudget>>()?;
-        let looks: Vec<Look> = looks.into_iter().flatten().collect();
-        self.looks = looked.into_inner();
-        self.markers_made += markers.len();
+        let headings: Vec<DVec3> = awake.iter().map(|&b| self.buds[b as usize].heading).collect();
+        let sums = self.cone.sums(&grid, &mut batches, &headings);
+        self.markers_made += sums.iter().map(|s| s.own).sum::<usize>();
+        let looks: Vec<Look> = sums.iter().zip(&headings).map(|(s, h)| self.look(s, *h)).collect();
         let vigour = self.share(&awake, &looks);
         for ((&b, look), v) in awake.iter().zip(&looks).zip(vigour) {
             if look.dies {
@@ -521,79 +495,22 @@ impl Growing {
         Ok(waiting || self.buds.iter().any(|b| b.life == Life::Alive))
     }
 
-    /// N markers in a bud's cone, but for those that find no room.
-    fn markers_of(&self, b: usize, round: u32, near: &mut Vec<usize>) -> Vec<Marker> {
-        let (bud, spec) = (&self.buds[b], &self.spec);
-        let at = self.skeleton.position[bud.joint as usize];
-        let (lo, hi) = (spec.near * spec.internode_m, spec.far * spec.internode_m);
-        let (mean, sigma) = (0.5 * (lo + hi), 0.25 * (hi - lo).max(1e-12));
-        let cos_half = ops::cos(spec.half_angle_deg * (PI / 180.0));
-        let across = bud.heading.cross(bud.side);
-        let (lo3, hi3) = (lo * lo * lo, hi * hi * hi);
-        let mut stream = bud.key.child(u64::from(round)).stream(Draw::Attractors);
-        let mut own = Vec::with_capacity(spec.markers as usize);
-        for _ in 0..spec.markers {
-            let c = stream.range(cos_half, 1.0);
-            let (s, around) = ((1.0 - c * c).max(0.0).sqrt(), ops::sin_cos(TAU * stream.uniform()));
-            let d = ops::cbrt(ops::lerp(lo3, hi3, stream.uniform()));
-            let p = at + (bud.heading * c + (bud.side * around.1 + across * around.0) * s) * d;
-            let Some(guide) = self.room.at(p, near) else { continue };
-            let weight = if self.room.is_guided() {
-                guide.weight
-            } else {
-                let x = (d - mean) / sigma;
-                ops::exp(-0.5 * x * x)
-            };
-            own.push(Marker { at: p, weight, along: guide.along });
-        }
-        own
-    }
-
     /// Direction and free space of a bud.
-    fn look(
-        &self,
-        b: u32,
-        markers: &[Marker],
-        owner: &[u32],
-        own: core::ops::Range<usize>,
-        grid: &KdTree,
-        near: &mut Vec<usize>,
-    ) -> Look {
-        let (bud, spec) = (&self.buds[b as usize], &self.spec);
-        let at = self.skeleton.position[bud.joint as usize];
-        let n = own.len();
-        if n == 0 {
+    fn look(&self, sums: &Sums, heading: DVec3) -> Look {
+        if sums.own == 0 {
             return Look { dies: true, ..Look::default() };
         }
-        let (mut sum, mut whole) = (DVec3::ZERO, 0.0);
-        for m in &markers[own] {
-            let v = (m.at - at).normalize_or_zero();
-            sum += (v + m.along) * m.weight;
-            whole += m.weight;
-        }
-        let (lo, hi) = (spec.near * spec.internode_m, spec.far * spec.internode_m);
-        let cos_half = ops::cos(spec.half_angle_deg * (PI / 180.0));
-        grid.within(at, hi, near);
-        let (mut push, mut older) = (DVec3::ZERO, 0_usize);
-        for &j in near.iter().filter(|&&j| owner[j] != b) {
-            let d = markers[j].at - at;
-            let length = d.length();
-            if length < lo || d.dot(bud.heading) < cos_half * length {
-                continue;
-            }
-            push += d / length.max(1e-300) * markers[j].weight;
-            older += usize::from(owner[j] < b);
-        }
-        let v = sum - push * spec.repulsion + self.numbers.pull * whole;
+        let spec = &self.spec;
+        let v = sums.pull - sums.push * spec.repulsion + self.numbers.pull * sums.whole;
         // Half of the markers in a wall is half of the room.
-        let room = n as f64 / f64::from(spec.markers);
-        let crowd = older as f64 / n as f64;
+        let room = sums.own as f64 / f64::from(spec.markers);
+        let crowd = sums.older / sums.own as f64;
         // Guided, markers fill the tube only, however narrow: what counts is whom it is shared with.
         let room = if self.room.is_guided() { room.sqrt() } else { room };
         Look {
-            direction: v.normalize_or(bud.heading),
+            direction: v.normalize_or(heading),
             free: (1.0 - crowd).max(0.0) * room,
-            dies: crowd > 1.0 || v.length() < 0.1 * whole,
+            dies: crowd > 1.0 || v.length() < 0.1 * sums.whole,
         }
     }
 
