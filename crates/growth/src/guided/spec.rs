@@ -200,7 +200,7 @@ impl GuidedSpec {
             rounds: rounds as u32,
             alpha: 4.0,
             lambda: 0.56,
-            markers: 30,
+            markers: 60,
             tropisms: vec![Tropism { strength: 0.2, ..Tropism::UPWARDS }],
             ..plain
         }
