@@ -66,7 +66,7 @@ pub struct Trial {
 /// Below 3 stages there is nothing to leave out: the answer is empty. Cost: some registrations of each organ a day.
 ///
 /// # Errors
-/// As [`settle`] and [`Motion::new`].
+/// As [`settle`] and [`crate::Motion::new`].
 pub fn leave_one_out(
     stages: &[Stage],
     law: &LawSpec,
