@@ -5,6 +5,7 @@
 
 use crate::polyline::{point_at, polyline_length, tangent_at};
 use crate::vector::{Vector, distinct_closed};
+use core::cmp::Ordering;
 use glam::DVec2;
 
 /// The usable edges of a polygon.
@@ -89,13 +90,16 @@ pub(crate) fn crosses_ray(a: DVec2, b: DVec2, p: DVec2) -> bool {
 
 /// Indices of the hull's corners, counter-clockwise from the leftmost lowest; repeated places once.
 fn hull_indices(points: &[DVec2]) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..points.len()).filter(|&i| points[i].usable()).collect();
-    let key = |i: usize| (points[i].x + 0.0, points[i].y + 0.0); // + 0.0: no negative zero
-    // The standard library's own sort: it is what takes the time here.
-    order.sort_by(|&a, &b| {
-        let (p, q) = (key(a), key(b));
-        p.0.total_cmp(&q.0).then(p.1.total_cmp(&q.1)).then(a.cmp(&b))
+    #[expect(clippy::cast_possible_truncation, reason = "no more points than u32 counts")]
+    let usable: Vec<u32> = (0..points.len() as u32).filter(|&i| points[i as usize].usable()).collect();
+    let at = |k: u32| points[usable[k as usize] as usize];
+    let order = base::sorted_order(usable.len(), &mut |a, b| {
+        let (p, q) = (at(a), at(b));
+        // Usable points are finite: the comparison is never undecided.
+        let by_number = |p: f64, q: f64| p.partial_cmp(&q).unwrap_or(Ordering::Equal);
+        by_number(p.x, q.x).then_with(|| by_number(p.y, q.y)).then(a.cmp(&b))
     });
+    let mut order: Vec<usize> = order.into_iter().map(|k| usable[k as usize] as usize).collect();
     order.dedup_by(|b, a| points[*a] == points[*b]);
     if order.len() < 3 {
         return order;
