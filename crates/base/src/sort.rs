@@ -94,7 +94,7 @@ pub fn sort_by_key<T, K: Ord>(rows: &mut [T], mut key: impl FnMut(&T) -> K) {
 /// little more than n.
 ///
 /// ```
-/// let heights = [1.5, 0.5, 1.0];
+/// let heights = [1.5_f64, 0.5, 1.0];
 /// let order = base::sorted_order(3, &mut |a, b| heights[a as usize].total_cmp(&heights[b as usize]));
 /// assert_eq!(order, [1, 2, 0]);
 /// ```
