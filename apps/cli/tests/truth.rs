@@ -63,10 +63,15 @@ fn no_vertex_that_is_written_lies_in_an_obstacle() {
         }
     }
     // Leaves of coarser copies are larger.
-    good(&at, &["grow", "oak", "--obstacle", "wall.obj", "-o", "far.obj", "--lods", "2", "--no-textures"]);
-    for name in ["far-lod1.obj", "far-lod2.obj"] {
-        let all = depths(&at.join(name), wall.0, wall.1);
-        assert_eq!(all.iter().filter(|d| **d > 0.001).count(), 0, "{name}");
+    for preset in ["oak", "alder", "pine"] {
+        good(
+            &at,
+            &["grow", preset, "--obstacle", "wall.obj", "-o", "far.obj", "--lods", "3", "--no-textures"],
+        );
+        for name in ["far-lod1.obj", "far-lod2.obj", "far-lod3.obj"] {
+            let all = depths(&at.join(name), wall.0, wall.1);
+            assert_eq!(all.iter().filter(|d| **d > 0.001).count(), 0, "{preset} {name}");
+        }
     }
 }
 

@@ -63,7 +63,7 @@ mod tests {
             let law = spec.own_law();
             let width = |day: f64| {
                 let flower = spec.at(day, &law, Seed::new(1));
-                let corners: Vec<_> = flower.shapes.iter().map(plant::Shape::corners).collect();
+                let corners: Vec<_> = flower.shapes.iter().map(|s| s.corners(1.0)).collect();
                 let across = flower
                     .organs
                     .iter()

@@ -24,6 +24,11 @@ pub struct FoliageSpec {
     /// Between two nodes of a shoot, metres, above 0, default 0.06.
     #[schemars(range(min = 0.0001, max = 1000.0), extend("x-unit" = "m"))]
     pub spacing_m: f64,
+    /// How far leaves are gathered towards the tip of their shoot, 0 (evenly, the default) to 0.95: the nodes at its tip
+    /// are `1 - gather` times as far from each other as [`spacing_m`](Self::spacing_m), those at its foot `1 + gather`
+    /// times.
+    #[schemars(range(min = 0.0, max = 0.95))]
+    pub gather: f64,
     /// Length of a blade, metres, above 0, default 0.09.
     #[schemars(range(min = 0.0001, max = 100.0), extend("x-unit" = "m"))]
     pub length_m: f64,
@@ -73,6 +78,7 @@ impl Default for FoliageSpec {
         Self {
             arrangement: Arrangement::default(),
             spacing_m: 0.06,
+            gather: 0.0,
             length_m: 0.09,
             width: 0.5,
             size_variation: 0.1,
@@ -216,7 +222,7 @@ pub fn add_leaves(
     let placed = all.len();
     if !obstacles.is_empty() {
         let shape = Shape::Blade(blade.clone());
-        let corners = shape.corners();
+        let corners: Vec<_> = [1.0, plant::DRAWN_WIDER].into_iter().flat_map(|w| shape.corners(w)).collect();
         all.retain(|c| obstacles.admit(&c.frame(), c.scale, &corners));
     }
     let buried = placed - all.len();
@@ -297,15 +303,47 @@ fn on_shoots(
     Ok(all)
 }
 
-/// No less than the places on an axis.
-fn room(plant: &Plant, id: AxisId, spec: &FoliageSpec, phyllotaxis: Phyllotaxis) -> usize {
+/// Length of an axis that is thin enough for leaves, or a little more.
+fn leafy(plant: &Plant, id: AxisId, spec: &FoliageSpec) -> f64 {
     let (points, radii) = (plant.axis_points(id), plant.axis_radii(id));
     let pieces = points.windows(2).zip(radii.windows(2));
     let thin = pieces.filter(|(_, r)| r[0].min(r[1]) <= spec.max_radius_m);
-    let length: f64 = thin.map(|(p, _)| p[0].distance(p[1])).sum();
+    thin.map(|(p, _)| p[0].distance(p[1])).sum()
+}
+
+/// No less than the places on an axis.
+fn room(plant: &Plant, id: AxisId, spec: &FoliageSpec, phyllotaxis: Phyllotaxis) -> usize {
+    let g = spec.gather;
+    let more = if g > 0.0 { ops::ln((1.0 + g) / (1.0 - g)) / (2.0 * g) } else { 1.0 };
+    let nodes = leafy(plant, id, spec) / spec.spacing_m * more;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, and is bounded")]
-    let room = ((length / spec.spacing_m + 1.0) * f64::from(phyllotaxis.per_node())) as usize;
+    let room = ((nodes + 1.0) * f64::from(phyllotaxis.per_node())) as usize;
     room
+}
+
+/// How far it is from a node to the next one down the shoot.
+///
+/// `d(k)`, the node's distance from the tip, solves `dd/dk = spacing (1 - gather + 2 gather d / length)`.
+struct Internodes {
+    growth: f64,
+    first: f64,
+}
+
+impl Internodes {
+    fn new(spec: &FoliageSpec, length: f64) -> Self {
+        if spec.gather <= 0.0 || length <= 0.0 {
+            return Self { growth: 0.0, first: spec.spacing_m };
+        }
+        let twice = 2.0 * spec.gather;
+        let growth = ops::exp(twice * spec.spacing_m / length) - 1.0;
+        // A shoot shorter than an internode has one node, wherever the next would be.
+        let growth = growth.min(1e6);
+        Self { growth, first: growth * length * (1.0 - spec.gather) / twice }
+    }
+
+    fn after(&self, from_tip: f64) -> f64 {
+        self.first + self.growth * from_tip
+    }
 }
 
 /// Places on the thin part of one axis, from its tip down, so that the tip always has its leaf.
@@ -323,7 +361,8 @@ fn on_axis(
     let frames = geom::rotation_minimising_frames(points, None);
     let own = seed.child(axis.key);
     let offset = ops::TAU * own.stream(Draw::Phyllotaxis).uniform();
-    let (mut number, mut until_next) = (0_u32, 0.0);
+    let internodes = Internodes::new(spec, leafy(plant, id, spec));
+    let (mut number, mut until_next, mut from_tip) = (0_u32, 0.0, 0.0);
     for i in (1..points.len()).rev() {
         let (from, to) = (points[i], points[i - 1]);
         let length = from.distance(to);
@@ -346,7 +385,9 @@ fn on_axis(
                 places.push(leaf(spec, at, frame.tangent, out, scale, key, NodeId::new(node)));
             }
             number += 1;
-            until_next += spec.spacing_m;
+            let next = internodes.after(from_tip);
+            until_next += next;
+            from_tip += next;
         }
         until_next -= length;
     }
@@ -501,7 +542,7 @@ mod tests {
         let (plant, count) = dressed(&FoliageSpec::default(), &obstacles);
         assert!(count.buried > 50, "{count:?}");
         for o in &plant.organs {
-            for corner in plant.shapes[o.shape.index()].corners() {
+            for corner in plant.shapes[o.shape.index()].corners(1.0) {
                 assert!(obstacles.inside(o.frame.place(corner, o.scale)).is_none());
             }
         }

@@ -37,6 +37,8 @@ pub enum BladeForm {
     Tuft,
     /// A short shoot with needles on both sides: fir, spruce, yew.
     Spray,
+    /// The end of a shoot in long needles, a third of its length, that lean forward: pine.
+    Brush,
 }
 
 /// A leaf's form.
@@ -61,7 +63,7 @@ pub struct BladeSpec {
 
 impl BladeForm {
     /// Every form.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Ovate,
         Self::Elliptic,
         Self::Obovate,
@@ -75,6 +77,7 @@ impl BladeForm {
         Self::Needle,
         Self::Tuft,
         Self::Spray,
+        Self::Brush,
     ];
 }
 

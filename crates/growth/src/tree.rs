@@ -331,7 +331,7 @@ mod tests {
                 assert!(free && all.depth(*p + DVec3::X * *r * 0.9) <= 0.0, "{}: {p} {r}", spec.name);
             }
             for o in &got.plant.organs {
-                let corners = got.plant.shapes[o.shape.index()].corners();
+                let corners = got.plant.shapes[o.shape.index()].corners(1.0);
                 let deepest =
                     corners.iter().map(|c| all.depth(o.frame.place(*c, o.scale))).fold(0.0, f64::max);
                 assert!(deepest <= 0.0, "{}: {deepest}", spec.name);

@@ -24,7 +24,7 @@ pub use flat::FlatLeaf;
 pub use frame::Frame;
 pub use ids::{AxisId, FlowerId, NodeId, OrganId, ShapeId};
 pub use measure::{Measures, OrderMeasures, RadiusExponent, Strahler};
-pub use organ::{Flower, Organ, OrganKind, Paint, PlantPaint, Shape};
+pub use organ::{DRAWN_WIDER, Flower, Organ, OrganKind, Paint, PlantPaint, Shape};
 pub use phyllotaxis::{Divergence, Phyllotaxis};
 pub use pipe::{PipeModel, Taper, pipe_radii};
 pub use relief::BladeSurface;

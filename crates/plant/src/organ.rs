@@ -107,6 +107,9 @@ pub enum Shape {
     },
 }
 
+/// How much wider than its outline a blade is drawn, at most, to have its area in few triangles.
+pub const DRAWN_WIDER: f64 = 1.5;
+
 impl Shape {
     /// How far it reaches from its root, metres at scale 1.
     pub fn reach(&self) -> f64 {
@@ -133,8 +136,8 @@ impl Shape {
     }
 
     /// Points that its surface lies between, in its own frame at scale 1: a blade's margin, midrib and veins as they are
-    /// bent; of a body the corners of the boxes around its parts.
-    pub fn corners(&self) -> Vec<DVec3> {
+    /// bent, `wider` times as wide; of a body the corners of the boxes around its parts.
+    pub fn corners(&self, wider: f64) -> Vec<DVec3> {
         let around = |p: DVec3, r: f64| {
             (0..8).map(move |i: u32| {
                 let side = |bit: u32| if i & bit == 0 { -r } else { r };
@@ -144,8 +147,8 @@ impl Shape {
         match self {
             Self::Blade(blade) => {
                 let veins = blade.veins.iter().flatten();
-                let plane: Vec<DVec2> =
-                    blade.outline.iter().chain(&blade.midrib).chain(veins).copied().collect();
+                let plane = blade.outline.iter().chain(&blade.midrib).chain(veins);
+                let plane: Vec<DVec2> = plane.map(|p| DVec2::new(p.x * wider, p.y)).collect();
                 blade.surface().points(&plane)
             }
             Self::Dome { radius_m, height_m } => around(DVec3::ZERO, 1.0)

@@ -128,10 +128,16 @@ pub(crate) fn tubes<'p>(
         let woods: Vec<Wood<'_>> = (0..chains.len()).map(wood).collect();
         Wind::new(plant, spec.seed, &crate::bounds(plant), &woods, places.clone())
     });
+    let mut bears = vec![false; chains.len()];
+    for (host, _) in hosts.iter().flatten() {
+        bears[*host] = true;
+    }
     let lines = grouped(run, chains.len(), |i| {
         let spine = spines[i].as_ref()?;
         let least = wind.as_ref().map_or(0.0, |w| w.rows(i, spine));
-        let ends = Ends::of(rows(budget, &chains[i], spine.length()).max(least), sides[i]);
+        let rows = rows(budget, &chains[i], spine.length()).max(least);
+        let bare = budget.unseen(spine.stoutest()) && !bears[i];
+        let ends = if bare { Ends::bare(rows) } else { Ends::of(rows, sides[i]) };
         let reach = reaches[i];
         let (line, first) = drawn(spine, reach.as_ref(), ends.rings, |radius| budget.tolerance(radius));
         Some(Line { line, first, reach, ends })
@@ -223,6 +229,11 @@ struct Ends {
 }
 
 impl Ends {
+    /// Of a last twig that is thinner than what can be seen: as few rows as its course takes.
+    fn bare(rows: f64) -> Self {
+        Self { steps: 0, rings: (rows - 2.0).max(2.0), tip: 0 }
+    }
+
     /// Shares out the rows of a tube with so many sides.
     fn of(rows: f64, sides: u32) -> Self {
         // A thick tube's tip is large enough to show its corners.

@@ -9,13 +9,18 @@ use plant::Blade;
 use crate::blade::BladeChart;
 use crate::sleeve::{drop_flat, narrow2};
 
-/// A blade in at most about `triangles` triangles, 2 to 60, folded along its midrib.
+/// How much wider than its outline a blade of a coarser copy is drawn, at most: far enough for a kite that stands for a
+/// spray of needles. Others are at most [`plant::DRAWN_WIDER`].
+pub(crate) const COPIED_WIDER: f64 = 6.0;
+
+/// A blade in at most about `triangles` triangles, 2 to 60, folded along its midrib; widened so that it has the area that
+/// its outline has, up to `widest` times.
 ///
 /// Guaranteed: root and tip stay, and of the other corners those that enclose most area with their neighbours
 /// (Visvalingam and Whyatt 1993), so lobes and needles outlive smooth curves; texture as on finer blades. `None` where
 /// the outline crosses itself, or its tip cannot be told: then finer meshing has to find a way. Cost: quadratic in the
 /// corners of the outline.
-pub(crate) fn lean_mesh(blade: &Blade, triangles: f64) -> Option<TriMesh> {
+pub(crate) fn lean_mesh(blade: &Blade, triangles: f64, widest: f64) -> Option<TriMesh> {
     let outline = &blade.outline;
     if outline.len() < 4 || outline.len() > 400 || outline.iter().any(|p| !p.is_finite()) {
         return None;
@@ -28,6 +33,9 @@ pub(crate) fn lean_mesh(blade: &Blade, triangles: f64) -> Option<TriMesh> {
     let sides = crate::spec::whole(pairs - f64::from(u8::from(bent))).max(1) as usize;
     let (kept, tip) = corners(outline, tip, 2 * sides + 2);
     let mut points: Vec<DVec2> = kept.iter().map(|&i| outline[i]).collect();
+    // What the lost corners enclosed is made up for in width: a crown of such leaves is as full as it was.
+    let lost = geom::signed_area(outline) / geom::signed_area(&points).max(f64::MIN_POSITIVE);
+    let wider = DVec2::new(lost.clamp(1.0, widest), 1.0);
     if tip == 0 || geom::signed_area(&points) <= 0.0 || geom::self_crossings(&points) > 0 {
         return None;
     }
@@ -45,7 +53,7 @@ pub(crate) fn lean_mesh(blade: &Blade, triangles: f64) -> Option<TriMesh> {
     let chart = BladeChart::new(blade);
     let surface = blade.surface();
     for &p in &points {
-        let lifted = surface.point(p);
+        let lifted = surface.point(p * wider);
         mesh.push(if lifted.is_finite() { lifted } else { p.extend(0.0) });
         let uv = chart.uv(p);
         mesh.uvs.push(narrow2(uv.x, uv.y));
@@ -155,11 +163,11 @@ mod tests {
     fn lobes_outlive_curves_and_nothing_of_the_area_is_lost() {
         let star = blade(&[(0.3, 0.05), (0.12, 0.25), (0.4, 0.4), (0.14, 0.55), (0.3, 0.8), (0.29, 0.81)]);
         for (wish, at_most) in [(4.0, 4), (8.0, 8), (12.0, 12), (40.0, 14)] {
-            let mesh = lean_mesh(&star, wish).expect("a simple outline");
+            let mesh = lean_mesh(&star, wish, COPIED_WIDER).expect("a simple outline");
             assert_eq!(mesh.validate().next(), None, "{wish}");
             assert!(mesh.triangles.len() <= at_most && mesh.triangles.len() + 2 >= at_most, "{wish}");
         }
-        let mesh = lean_mesh(&star, 12.0).expect("a simple outline");
+        let mesh = lean_mesh(&star, 12.0, COPIED_WIDER).expect("a simple outline");
         let flat = |i: u32| {
             DVec2::new(f64::from(mesh.positions[i as usize][0]), f64::from(mesh.positions[i as usize][1]))
         };
@@ -174,10 +182,11 @@ mod tests {
 
     #[test]
     fn the_smallest_blade_is_two_triangles() {
-        let mesh = lean_mesh(&blade(&[(0.2, 0.3), (0.3, 0.5), (0.1, 0.9)]), 2.0).expect("simple");
+        let mesh =
+            lean_mesh(&blade(&[(0.2, 0.3), (0.3, 0.5), (0.1, 0.9)]), 2.0, COPIED_WIDER).expect("simple");
         assert_eq!(mesh.triangles.len(), 2);
         assert!(
-            lean_mesh(&blade(&[(0.2, 0.9), (-0.2, 0.5), (0.2, 0.1)]), 8.0).is_none(),
+            lean_mesh(&blade(&[(0.2, 0.9), (-0.2, 0.5), (0.2, 0.1)]), 8.0, COPIED_WIDER).is_none(),
             "it crosses itself"
         );
     }

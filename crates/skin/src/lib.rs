@@ -54,6 +54,7 @@ pub use traced::Traced;
 pub use tube::{TubeSpec, tube};
 
 use base::{Run, Stopped};
+use glam::DVec3;
 use mesh::Model;
 use plant::{AxisKind, Plant};
 
@@ -153,6 +154,11 @@ pub fn skin_laid_out(
     Ok(parts::model(plant, meshes, spec, pictures, run.executor))
 }
 
+/// The vertices of each shape of a plant as [`skin()`] draws it, at scale 1; none of a shape that nothing uses.
+pub fn drawn_shapes(plant: &Plant, spec: &SkinSpec) -> Vec<Vec<DVec3>> {
+    organs::vertices(plant, spec, &budget(plant, spec))
+}
+
 /// What to do where there would be too many triangles.
 pub(crate) const FEWER: &str = "lower the detail (or sides), or make fewer branches or leaves";
 
@@ -169,7 +175,8 @@ fn budget(plant: &Plant, spec: &SkinSpec) -> Budget {
     }
     let size = spec.steady_m.unwrap_or_else(|| bounds.size().length());
     let mean = if counted > 0 { length / f64::from(counted) } else { 1.0 };
-    Budget::new(spec.detail, size, mean, counted as usize, plant.organs.len())
+    let [axes, organs] = spec.crowd.unwrap_or([counted as usize, plant.organs.len()]);
+    Budget::new(spec.detail, size, mean, axes, organs)
 }
 
 /// The box around nodes and organs.

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use base::{Cancelled, Counted, Draw, Run, Stopped, map_indexed};
+use glam::DVec3;
 use mesh::TriMesh;
 use plant::{Organ, OrganKind, Plant, Shape, ShapeId};
 
@@ -11,7 +12,7 @@ use crate::blade::blade_mesh;
 use crate::body::{dome, prism, revolution, rod, strand};
 use crate::layout::Piece;
 use crate::leaf::{ShapeMesh, sheet_mesh, spline_mesh};
-use crate::lean::lean_mesh;
+use crate::lean::{COPIED_WIDER, lean_mesh};
 use crate::margin::from_margin;
 use crate::material::{Pattern, Wearer};
 use crate::parts::{Coat, Slot};
@@ -129,6 +130,17 @@ pub(crate) fn organs(
     Ok(meshes.into_iter().collect::<Result<_, Cancelled>>()?)
 }
 
+/// The vertices of each shape as it is drawn at scale 1; none of one that nothing uses.
+pub(crate) fn vertices(plant: &Plant, spec: &SkinSpec, budget: &Budget) -> Vec<Vec<DVec3>> {
+    let ground = Ground::new(plant, spec);
+    let drawn = |(shape, used): (&Shape, Option<Use>)| {
+        let mesh = used.map(|used| ground.wish(shape, used, budget).mesh(shape));
+        let places = mesh.iter().flat_map(|m| &m.surface.positions);
+        places.map(|p| DVec3::from(p.map(f64::from))).collect()
+    };
+    plant.shapes.iter().zip(uses(plant)).map(drawn).collect()
+}
+
 /// How far from the margin each vertex of a shape is, for shapes that wear a pattern of the margin; empty for others.
 fn margins(
     plant: &Plant,
@@ -150,13 +162,9 @@ fn margins(
     Ok(made.into_iter().collect::<Result<_, Cancelled>>()?)
 }
 
-// Triangles of a crown's leaf, as a share of what its margin would need to be seen from near by: 8 for a plain leaf,
-// 12 for an oak's, 22 for a bundle of needles.
-const LEAN: f64 = 0.55;
-
 /// A blade with few triangles; none where so many are wished for that corners alone cannot use them.
-fn lean(blade: &plant::Blade, wish: f64) -> Option<TriMesh> {
-    (wish <= 60.0).then(|| lean_mesh(blade, wish)).flatten()
+fn lean(blade: &plant::Blade, wish: f64, widest: f64) -> Option<TriMesh> {
+    (wish <= 60.0).then(|| lean_mesh(blade, wish, widest)).flatten()
 }
 
 fn sound(organ: &Organ) -> bool {
@@ -217,8 +225,8 @@ fn groups(order: &[Copied], vertices: impl Fn(&Copied) -> usize) -> Vec<core::op
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Wish {
     Nothing,
-    /// A leaf of a crown.
-    Lean(f64),
+    /// A leaf of a crown, widened so many times at most.
+    Lean(f64, f64),
     Sheet(f64),
     Dome(f64),
     /// With at least so many sides.
@@ -240,9 +248,8 @@ impl Wish {
     fn nearly(self, other: Self) -> bool {
         let near = |a: f64, b: f64| (a - b).abs() < 0.1 * a.max(b);
         match (self, other) {
-            (Self::Lean(a), Self::Lean(b))
-            | (Self::Sheet(a), Self::Sheet(b))
-            | (Self::Dome(a), Self::Dome(b)) => near(a, b),
+            (Self::Lean(a, m), Self::Lean(b, n)) => m == n && near(a, b),
+            (Self::Sheet(a), Self::Sheet(b)) | (Self::Dome(a), Self::Dome(b)) => near(a, b),
             (Self::Revolution(a, m), Self::Revolution(b, n)) => m == n && near(a, b),
             _ => self == other,
         }
@@ -252,7 +259,9 @@ impl Wish {
         match (self, shape) {
             (Self::Spline(spec), Shape::Spline(blade)) => return spline_mesh(blade, &spec),
             (Self::Grid(spec, detail), Shape::Sheet(sheet)) => return sheet_mesh(sheet, &spec, detail),
-            (Self::Lean(n), Shape::Blade(blade)) => lean(blade, n).unwrap_or_else(|| blade_mesh(blade, n)),
+            (Self::Lean(n, widest), Shape::Blade(blade)) => {
+                lean(blade, n, widest).unwrap_or_else(|| blade_mesh(blade, n))
+            }
             (Self::Sheet(n), Shape::Blade(blade)) => blade_mesh(blade, n),
             (Self::Dome(n), Shape::Dome { radius_m, height_m }) => dome(*radius_m, *height_m, n),
             (Self::Revolution(n, sides), Shape::Revolution { profile }) => revolution(profile, n, sides),
@@ -328,6 +337,8 @@ struct Ground {
     leaf: LeafMeshSpec,
     /// The same triangles at every day.
     steady: bool,
+    /// Of a coarser copy.
+    copy: bool,
 }
 
 impl Ground {
@@ -342,6 +353,7 @@ impl Ground {
             fine_strands: strands <= 40,
             leaf: spec.leaf,
             steady: spec.steady_m.is_some(),
+            copy: spec.crowd.is_some(),
         }
     }
 
@@ -355,7 +367,10 @@ impl Ground {
                 let around = crate::blade::closed_length(&blade.outline);
                 let least = (4.0 * around / area.max(f64::MIN_POSITIVE).sqrt()).clamp(14.0, 40.0);
                 if budget.crown() {
-                    return Wish::Lean(LEAN * least * budget.detail);
+                    return Wish::Lean(
+                        budget.lean_triangles(least),
+                        if self.copy { COPIED_WIDER } else { plant::DRAWN_WIDER },
+                    );
                 }
                 Wish::Sheet(triangles(area).max(least * budget.detail.min(1.0)))
             }

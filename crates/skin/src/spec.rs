@@ -43,6 +43,10 @@ pub struct SkinSpec {
     /// Of a plant that changes from day to day its size in full bloom, metres: fineness is relative to that and not
     /// to the day's, so that triangles are the same at every day. Default none.
     pub steady_m: Option<f64>,
+    /// Of a coarser copy, the axes (without leaf stalks) and organs of the whole plant: what is left does not become
+    /// finer because there is less of it. Not saved. Default none: those of the plant itself.
+    #[serde(skip)]
+    pub crowd: Option<[usize; 2]>,
     /// Materials that a person gave to organs. Saved with the plant, not here. Default none.
     #[serde(skip)]
     pub worn: Worn,
@@ -64,6 +68,7 @@ impl Default for SkinSpec {
             variation: 1.0,
             wind: false,
             steady_m: None,
+            crowd: None,
             worn: Worn::default(),
             seed: Seed::default(),
         }
@@ -230,11 +235,22 @@ const TOLERANCE: f64 = 7e-4;
 // From so many axes or blades on, a plant is a tree in leaf rather than a drawing: twigs and leaves are a crowd.
 const CROWN_AXES: f64 = 150.0;
 const CROWN_BLADES: f64 = 1500.0;
+// Triangles of a crown's leaf, as a share of what its margin would need.
+const LEAN: f64 = 0.55;
+// From so many blades on, each has fewer triangles: small leaves are many, and are seen from farther away.
+const MANY_BLADES: f64 = 16_000.0;
 
 impl Budget {
     /// Whether blades are so many that each gets no more triangles than its form needs.
     pub(crate) fn crown(&self) -> bool {
         self.blades > CROWN_BLADES
+    }
+
+    /// Triangles of a crown's leaf whose margin would need `least` to be seen from near by.
+    ///
+    /// 8 for a plain leaf, 12 for an oak's, 22 for a bundle of needles; down to a quarter of that where there are very many.
+    pub(crate) fn lean_triangles(&self, least: f64) -> f64 {
+        LEAN * least * (MANY_BLADES / self.blades).sqrt().clamp(0.25, 1.0) * self.detail
     }
 
     pub(crate) fn new(detail: f64, size: f64, axis_length: f64, axes: usize, blades: usize) -> Self {
@@ -262,6 +278,11 @@ impl Budget {
         let share = (ALL_RINGS / self.axes).min(RINGS);
         let relative = (length / self.axis_length).clamp(0.0, 16.0).sqrt();
         (share * relative * self.detail).clamp(4.0, 600.0)
+    }
+
+    /// Whether a twig of a crown is so thin that its ends cannot be seen where the whole plant is.
+    pub(crate) fn unseen(&self, radius: f64) -> bool {
+        self.axes > CROWN_AXES && radius * self.detail < 0.7 * TOLERANCE * self.size
     }
 
     /// How far wood as it is drawn may depart from the plant's where its radius is `radius`, metres: 0.07 % of the

@@ -93,7 +93,7 @@ fn margin(shape: &Shape) -> Vec<DVec3> {
         Shape::Revolution { profile } => {
             profile.iter().flat_map(|p| ring(p.x, |x, z| DVec3::new(x, p.y, z))).collect()
         }
-        Shape::Spline(_) | Shape::Sheet(_) => shape.corners(),
+        Shape::Spline(_) | Shape::Sheet(_) => shape.corners(1.0),
         Shape::Strand { path, .. } => path.clone(),
     }
 }

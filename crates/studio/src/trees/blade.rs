@@ -59,6 +59,7 @@ fn form_blade(form: BladeForm) -> Blade {
             vec![DVec2::new(0.02, 0.1), DVec2::new(0.024, 0.5), DVec2::new(0.015, 0.85)],
             Relief { fold: 0.3, ..Relief::default() },
         ),
+        BladeForm::Brush => own(brush(), Relief { fold: 0.5, bend_b: -0.06, ..Relief::default() }),
         BladeForm::Tuft => own(tuft(), Relief { fold: 0.35, bend_b: 0.05, ..Relief::default() }),
     }
 }
@@ -120,6 +121,22 @@ fn tuft() -> Vec<DVec2> {
     }
     right
 }
+
+/// Five needles a side, each from its place on the shoot, and one at the end, which is the tip.
+fn brush() -> Vec<DVec2> {
+    let mut right = Vec::with_capacity(11);
+    for i in 0..5 {
+        let v = 0.06 + 0.125 * f64::from(i);
+        let (s, c) = ops::sin_cos((58.0 - 7.0 * f64::from(i)) * (PI / 180.0));
+        right.push(DVec2::new(0.014, v));
+        right.push(DVec2::new(0.014 + BRUSH_NEEDLE * s, v + 0.03 + BRUSH_NEEDLE * c));
+    }
+    right.push(DVec2::new(0.014, 0.7));
+    right
+}
+
+/// Length of a needle over that of the brush.
+const BRUSH_NEEDLE: f64 = 0.34;
 
 #[cfg(test)]
 mod tests {

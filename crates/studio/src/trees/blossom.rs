@@ -38,7 +38,8 @@ pub(super) fn add_blossom(spec: &BlossomSpec, plant: &mut Plant, obstacles: &Obs
         disc: push(plant, Shape::Blade(disc(0.15 * spec.diameter_m))),
         stalk: push(plant, stalk(STALK * spec.diameter_m)),
     };
-    let corners: Vec<Vec<DVec3>> = plant.shapes.iter().map(Shape::corners).collect();
+    let both = |s: &Shape| [1.0, plant::DRAWN_WIDER].into_iter().flat_map(|w| s.corners(w)).collect();
+    let corners: Vec<Vec<DVec3>> = plant.shapes.iter().map(both).collect();
     for place in &places {
         let (organs, flowers) = (plant.organs.len(), plant.flowers.len());
         add_flower(spec, plant, place, &shapes, seed);

@@ -122,10 +122,10 @@ impl TreeEvaluator {
         self.begun = report;
         let plant = self.plant().filter(|p| p.organs.len() + p.nodes.position.len() > SMALL);
         let Some(plant) = plant.filter(|_| self.done.contains(&"structure")) else { return Ok(None) };
-        let (mut plant, skin) = coarser(plant, &skin_spec(seed, options), LOOK_LEVEL);
-        keep_out(&mut plant, LOOK_LEVEL, &obstacles);
+        let (mut copy, skin) = coarser(plant, &skin_spec(seed, options), LOOK_LEVEL);
+        keep_out(&mut copy, &skin, plant, LOOK_LEVEL, &obstacles);
         let from = (SkinSpec { textures: false, ..skin }, spec.look.clone(), None);
-        Ok(Some(skinned(&plant, &from, &mut KeptBarks::default(), run)?.0))
+        Ok(Some(skinned(&copy, &from, &mut KeptBarks::default(), run)?.0))
     }
 
     /// Everything but the meshes.
@@ -256,10 +256,10 @@ impl TreeEvaluator {
         };
         let (spec, (fine, look, leaf)) = (&raw.from.0, from);
         let obstacles = growth::Obstacles::new(&spec.obstacles, spec.clearance_m)?;
-        let (mut plant, skin) = coarser(plant, fine, level);
-        keep_out(&mut plant, level, &obstacles);
+        let (mut copy, skin) = coarser(plant, fine, level);
+        keep_out(&mut copy, &skin, plant, level, &obstacles);
         let mut barks = self.barks.clone();
-        Ok(Some(skinned(&plant, &(skin, look.clone(), leaf.clone()), &mut barks, run)?.0))
+        Ok(Some(skinned(&copy, &(skin, look.clone(), leaf.clone()), &mut barks, run)?.0))
     }
 
     fn item(&self, spec: &TreeSpec, report: &Report) -> ItemReport {

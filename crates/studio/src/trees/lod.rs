@@ -1,31 +1,63 @@
 //! Coarser copies of a tree, for far away.
 
 use growth::Obstacles;
-use plant::{NodeId, OrganKind, Plant};
+use plant::{AxisKind, FlowerId, NodeId, OrganKind, Plant};
 use skin::SkinSpec;
 
-/// How much larger leaves are: the square root of the share that is gone keeps the area that they cover.
-fn larger(level: u32) -> f64 {
-    f64::from(1_u32 << level.min(6)).sqrt()
+/// Fewer axes, leaves or flowers than this are not thinned: each of them is seen.
+const FEW_AXES: usize = 100;
+const FEW_LEAVES: usize = 300;
+const FEW_FLOWERS: usize = 120;
+
+/// How often so many things can be halved, `level` times at most, before fewer than `few` are left.
+fn halvings(count: usize, few: usize, level: u32) -> u32 {
+    (count / few).checked_ilog2().unwrap_or(0).min(level)
 }
 
-/// Gives leaves of a coarser copy that would enter an obstacle their own size again, in which they grew beside it.
-pub(super) fn keep_out(copy: &mut Plant, level: u32, obstacles: &Obstacles) {
+/// How often the leaves of a plant are halved.
+fn leaf_halvings(plant: &Plant, level: u32) -> u32 {
+    let leaves = plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf).count();
+    halvings(leaves, FEW_LEAVES, level.min(6))
+}
+
+/// Whether a leaf or flower with this key outlives so many halvings. Mixed: of keys that differ little, too, one in two
+/// stays.
+fn stays(key: u64, halvings: u32) -> bool {
+    base::Seed::new(key).child(0).number().is_multiple_of(1 << halvings)
+}
+
+/// How much larger leaves are after so many halvings than on `plant`: those that stay cover what all did.
+fn larger(plant: &Plant, halvings: u32) -> f64 {
+    let (mut all, mut kept) = (0.0, 0.0);
+    for leaf in plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf && o.scale.is_finite()) {
+        let area = leaf.scale * leaf.scale;
+        all += area;
+        kept += if stays(leaf.key, halvings) { area } else { 0.0 };
+    }
+    if kept > 0.0 { (all / kept).sqrt().min(f64::from(1_u32 << halvings)) } else { 1.0 }
+}
+
+/// Gives leaves of a coarser copy of `plant` that may enter an obstacle their own size again, in which they grew beside
+/// it; or, where they are drawn too wide for that too, a smaller one.
+pub(super) fn keep_out(copy: &mut Plant, skin: &SkinSpec, plant: &Plant, level: u32, obstacles: &Obstacles) {
     if obstacles.is_empty() {
         return;
     }
-    let corners: Vec<_> = copy.shapes.iter().map(plant::Shape::corners).collect();
+    let larger = larger(plant, leaf_halvings(plant, level));
+    let drawn = skin::drawn_shapes(copy, skin);
     for organ in copy.organs.iter_mut().filter(|o| o.kind == OrganKind::Leaf) {
-        if !obstacles.admit(&organ.frame, organ.scale, &corners[organ.shape.index()]) {
-            organ.scale /= larger(level);
+        for smaller in [larger, 4.0, 4.0] {
+            if !obstacles.admit(&organ.frame, organ.scale, &drawn[organ.shape.index()]) {
+                organ.scale /= smaller;
+            }
         }
     }
 }
 
 /// A copy of `plant` for level `level` (1 to 6; 0 is the plant itself), and how to skin it.
 ///
-/// Each level leaves out a half of the leaves, and from level 2 on the shorter half of the axes, with what they bear.
-/// Leaves that stay grow so that together they cover as much; those of axes that are gone sit on what bore the axes.
+/// Each level leaves out the shorter half of the axes, a half of the leaves and a half of the flowers, as long as there
+/// are many. Leaves and flowers that stay grow so that together they cover as much; those of axes that are gone sit on what bore the axes.
 /// Which leaves stay follows from their keys: every level's are among those of the one before. Sides and rings
 /// become fewer. Cost: n log n in axes.
 pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) {
@@ -36,11 +68,10 @@ pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) 
     };
     let mut lengths: Vec<f64> = plant.axes.iter().map(length).collect();
     base::sort_by(&mut lengths, |a, b| b.total_cmp(a));
-    let kept_axes = lengths.len() >> level.saturating_sub(1);
-    let least = if level < 2 { 0.0 } else { lengths.get(kept_axes).copied().unwrap_or(0.0) };
+    let kept_axes = lengths.len() >> halvings(lengths.len(), FEW_AXES, level);
+    let least = lengths.get(kept_axes).copied().unwrap_or(0.0);
     let mut copy = Plant {
         name: plant.name.clone(),
-        flowers: plant.flowers.clone(),
         shapes: plant.shapes.clone(),
         paint: plant.paint,
         ..Plant::default()
@@ -64,19 +95,42 @@ pub fn coarser(plant: &Plant, skin: &SkinSpec, level: u32) -> (Plant, SkinSpec) 
             moved[old] = Some(new);
         }
     }
-    let share = 1_u32 << level;
-    let larger = larger(level);
+    let now = |bearer: Option<NodeId>| bearer.and_then(|b| moved.get(b.index()).copied().flatten());
+    let flower_halvings = halvings(plant.flowers.len(), FEW_FLOWERS, level);
+    let mut flowers: Vec<Option<FlowerId>> = Vec::with_capacity(plant.flowers.len());
+    for (flower, key) in plant.flowers.iter().zip(0..) {
+        let id = stays(key, flower_halvings).then_some(FlowerId::new(copy.flowers.len()));
+        flowers.push(id);
+        if id.is_some() {
+            copy.flowers.push(plant::Flower { bearer: now(flower.bearer), ..flower.clone() });
+        }
+    }
+    let fewer_flowers = (plant.flowers.len() as f64 / copy.flowers.len().max(1) as f64).sqrt();
+    let leaf_halvings = leaf_halvings(plant, level);
+    let larger = larger(plant, leaf_halvings);
     for organ in &plant.organs {
+        let flower = organ.flower.map(|f| flowers.get(f.index()).copied().flatten());
         let leaf = organ.kind == OrganKind::Leaf;
-        // Mixed: of keys that differ little, too, one in two stays.
-        if leaf && !base::Seed::new(organ.key).child(0).number().is_multiple_of(u64::from(share)) {
+        if flower == Some(None) || (leaf && !stays(organ.key, leaf_halvings)) {
             continue;
         }
-        let bearer = organ.bearer.and_then(|b| moved.get(b.index()).copied().flatten());
-        let scale = if leaf { organ.scale * larger } else { organ.scale };
-        copy.organs.push(plant::Organ { bearer, scale, ..organ.clone() });
+        // A stalk stays as it is: it leads to the middle of its flower.
+        let larger = match organ.kind {
+            OrganKind::Leaf => larger,
+            OrganKind::Pedicel => 1.0,
+            _ if flower.is_some() => fewer_flowers,
+            _ => 1.0,
+        };
+        copy.organs.push(plant::Organ {
+            bearer: now(organ.bearer),
+            flower: flower.flatten(),
+            scale: organ.scale * larger,
+            ..organ.clone()
+        });
     }
-    let fine = 1.0 / f64::from(share);
+    let fine = 1.0 / f64::from(1_u32 << level);
+    let axes = plant.axes.iter().filter(|a| a.kind != AxisKind::Petiole).count();
+    let crowd = skin.crowd.unwrap_or([axes, plant.organs.len()]);
     let sides = skin.sides.saturating_sub(2 * level).max(3);
-    (copy, SkinSpec { detail: skin.detail * fine, sides, ..skin.clone() })
+    (copy, SkinSpec { detail: skin.detail * fine, sides, crowd: Some(crowd), ..skin.clone() })
 }

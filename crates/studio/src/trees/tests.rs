@@ -81,6 +81,80 @@ fn levels_of_detail_become_coarser_and_stay_sound() {
     }
 }
 
+/// Lengths of leaves, or of a pine's needles, in cm, as floras state them for leaves of normal shoots. B: Bean, Trees and
+/// Shrubs Hardy in the British Isles. S: Stace, New Flora of the British Isles. F: Flora of China. The blade without its
+/// stalk; of compound leaves the whole leaf.
+const LEAVES_CM: [(&str, f64, f64); 13] = [
+    ("oak", 6.0, 14.0), // B, S: Quercus robur
+    ("oak-colonization", 6.0, 14.0),
+    ("oak-lsystem", 6.0, 14.0),
+    ("lime", 3.0, 9.0),       // S: Tilia cordata
+    ("birch", 3.0, 7.0),      // S: Betula pendula
+    ("alder", 3.0, 10.5),     // S: Alnus glutinosa
+    ("hazel", 5.0, 12.0),     // S: Corylus avellana
+    ("maple", 7.0, 18.0),     // B: Acer platanoides
+    ("poplar", 5.0, 10.0),    // S: Populus nigra
+    ("willow", 8.0, 17.0),    // B, F: Salix babylonica
+    ("cherry", 5.0, 15.0),    // B: Prunus serrulata
+    ("bamboo", 10.0, 30.0),   // F: Bambusa vulgaris
+    ("terminalia", 3.0, 8.0), // Terminalia mantaly
+];
+
+#[test]
+fn leaves_as_made_have_the_size_of_their_species() {
+    for (key, least, most) in LEAVES_CM {
+        let made = plain(&young(key));
+        let lengths: Vec<f64> = (made.grown.plant.organs.iter())
+            .filter(|o| o.kind == plant::OrganKind::Leaf)
+            .map(|o| match &made.grown.plant.shapes[o.shape.index()] {
+                plant::Shape::Blade(blade) => 100.0 * o.scale * blade.length(),
+                other => panic!("{key}: {other:?}"),
+            })
+            .collect();
+        let within = lengths.iter().filter(|&&l| (least..=most).contains(&l)).count();
+        let share = within as f64 / lengths.len() as f64;
+        assert!(share > 0.95 && lengths.len() > 100, "{key}: {share} of {} leaves", lengths.len());
+    }
+    // Needles: a third of a brush. S: Pinus sylvestris 2 to 8 cm; B: Pinus pinea 10 to 20 cm.
+    for (key, least, most) in [("pine", 2.0, 8.0), ("umbrella-pine", 8.0, 20.0)] {
+        let spec = young(key);
+        let blade = tree_blade(&spec.blade);
+        let gap = |a: &DVec2, b: &DVec2| a.distance(*b);
+        let needle = blade.outline.windows(2).map(|w| gap(&w[0], &w[1])).fold(0.0, f64::max);
+        let length = 100.0 * needle * spec.leaves.length_m / blade.length();
+        assert!((least..most).contains(&length), "{key}: needles of {length} cm");
+    }
+}
+
+/// Area of what hangs in the crown, m2, and triangles.
+fn weight(model: &Model) -> (f64, usize) {
+    let crown = model.parts.iter().filter(|p| ["leaves", "petals", "discs"].contains(&p.name.as_str()));
+    let area = |m: &mesh::TriMesh| -> f64 {
+        let at = |i: u32| DVec3::from(m.positions[i as usize].map(f64::from));
+        m.triangles.iter().map(|&[a, b, c]| 0.5 * (at(b) - at(a)).cross(at(c) - at(a)).length()).sum()
+    };
+    (crown.map(|p| area(&p.mesh)).sum(), model.triangle_count())
+}
+
+#[test]
+fn every_species_gets_lighter_level_by_level_and_keeps_its_leaves() {
+    for preset in PRESETS {
+        let spec = young(preset.key);
+        let options = TreeOptions { lods: 3, ..TreeOptions::default() };
+        let made = make_tree(&spec, Seed::new(3), &options, &Run::plain()).expect("sound");
+        let (whole, mut last) = weight(&made.model);
+        for (level, lod) in (1..).zip(&made.lods) {
+            let (area, n) = weight(lod);
+            // Few fronds, blades of grass or limbs are not made fewer: such a level is light as it is.
+            let few = last < 8_000 && n <= last;
+            assert!(n < last * 7 / 10 || few, "{}, level {level}: {n} triangles after {last}", preset.key);
+            last = n;
+            let kept = if whole > 0.0 { area / whole } else { 1.0 };
+            assert!((0.75..1.3).contains(&kept), "{}, level {level}: {kept} of the leaf area", preset.key);
+        }
+    }
+}
+
 #[test]
 fn a_tree_is_scaled_to_a_height() {
     let options = TreeOptions { height_m: Some(3.0), ..TreeOptions::default() };
