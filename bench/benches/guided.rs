@@ -163,6 +163,7 @@ fn hands() {
         rounds,
         changes: Vec::new(),
         seed: 1,
+        mirror: None,
     };
     println!("\na shoot that grows in the hand, on an oak of {} axes: ms a round", tree.plant.axes.len());
     println!("  round      kept  from its start");

@@ -37,7 +37,9 @@ pub(crate) fn read(path: &Path) -> Outcome<Vec<PlantEdit>> {
 /// The place along a branch that an edit names.
 fn along(edit: &HandEdit) -> Option<f64> {
     match edit {
-        HandEdit::Prune { at, .. } | HandEdit::Move { to: Destination::Place { at, .. }, .. } => Some(*at),
+        HandEdit::Prune { at, .. }
+        | HandEdit::Move { to: Destination::Place { at, .. }, .. }
+        | HandEdit::Copy { to: Destination::Place { at, .. }, .. } => Some(*at),
         HandEdit::SketchBranch { at, .. } => *at,
         _ => None,
     }

@@ -430,6 +430,146 @@ async function astray({ page, url }) {
   await changed(page, plain, 'the branch stays turned');
 }
 
+/** Runs a hand over some places, with the trigger held; `last`: what is done before it lets go. */
+async function stroke(page, places, last = async () => {}) {
+  await hand(page, 'right', places[0]);
+  await frames(page);
+  await press(page, 'right', 'trigger', 1);
+  await frames(page);
+  for (const place of places.slice(1)) {
+    await hand(page, 'right', place);
+    await frames(page, 1);
+  }
+  await last();
+  await press(page, 'right', 'trigger', 0);
+  await frames(page);
+}
+
+/** From a place, so many steps of the same length. */
+const way = ([x, y, z], [dx, dy, dz], count) =>
+  Array.from({ length: count + 1 }, (_, k) => [x + dx * k, y + dy * k, z + dz * k]);
+
+/** A copy of a branch, both sides of a mirror, fewer leaves, a cut; and all of it back: the first plant. */
+async function both({ page, url, shot }) {
+  const plain = await enter(page, url);
+  await key(page, 'copy');
+  assert.equal((await state(page)).tool, 'copy');
+  let at = await find(page, 'right');
+  const digests = [plain];
+  const done = async (count, what) => {
+    await until(page, 'edits', ['is', count], what);
+    await until(page, 'done', ['is', count], `${what}: done`);
+    digests.push(await changed(page, digests.at(-1), what));
+  };
+  await stroke(page, way(at, [0.01, -0.03, -0.03], 10), async () => {
+    await changed(page, plain, 'the copy is seen before it is let go');
+    await shot('headset-copy');
+  });
+  await done(1, 'a copy');
+  // The mirror stands between the hands: what is drawn on the right is made on the left.
+  await key(page, 'mirror');
+  await page.waitForFunction(() => (document.body.dataset.mirror ?? '') !== '');
+  const normal = (await data(page, 'mirror')).split(' ').map(Number);
+  assert.ok(Math.abs(Math.abs(normal[0]) - 1) < 0.2 && normal[1] === 0, `across the view: ${normal}`);
+  await key(page, 'sketch');
+  at = await find(page, 'right');
+  await stroke(page, way(at, [0.03, 0.015, 0], 12), () => shot('headset-mirror-drawing'));
+  await done(2, 'a branch and its image');
+  await shot('headset-mirror');
+  // Grown on both sides, with its age and density to be read beside the hand.
+  await key(page, 'grow');
+  at = await find(page, 'right');
+  await press(page, 'right', 'trigger', 1);
+  await page.waitForFunction(() =>
+    /Age \d+ · \d+ branches · \d/.test(JSON.parse(document.body.dataset.vr).read),
+  );
+  await shot('headset-readout');
+  await press(page, 'right', 'trigger', 0);
+  await done(3, 'growth on both sides');
+  await page.waitForFunction(() => JSON.parse(document.body.dataset.vr).read === '');
+  await key(page, 'mirror');
+  await page.waitForFunction(() => document.body.dataset.mirror === '');
+  // Leaves go, and then a branch.
+  await key(page, 'leaves');
+  for (let k = 0; k < 3; k += 1) await key(page, 'larger');
+  await stroke(page, way([-0.2, 1, -0.6], [0.04, 0.02, -0.01], 12));
+  await done(4, 'fewer leaves');
+  await key(page, 'prune');
+  await find(page, 'right');
+  await click(page, 'right', 'trigger');
+  await done(5, 'a cut');
+  for (const digest of digests.slice(0, -1).reverse()) {
+    await click(page, 'right', 'b-button');
+    await page.waitForFunction((d) => document.body.dataset.digest === d, digest);
+  }
+  assert.equal(await data(page, 'digest'), plain, 'the first plant again');
+}
+
+/** Plants, things in the way, a model of it all: without leaving. */
+async function scene({ page, url, shot }) {
+  const plain = await enter(page, url);
+  await key(page, 'scene');
+  assert.ok((await state(page)).said.includes('1 of 1'), (await state(page)).said);
+  await shotOfBoard(page, shot, 'headset-scene');
+  // A ball in the way: the tree grows around it.
+  await key(page, 'ball');
+  await stroke(page, way([0.1, 1.15, -0.75], [0.015, 0, 0], 8), () => shot('headset-ball'));
+  const around = await changed(page, plain, 'it grows around a ball');
+  await key(page, 'clear');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
+  await click(page, 'right', 'b-button');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, around);
+  // Another plant, which is worked on; and back to the first.
+  await key(page, 'plant.add');
+  await until(page, 'plants', ['is', 2], 'a second plant');
+  await settled(page);
+  await key(page, 'plant.before');
+  assert.ok((await state(page)).said.includes('1 of 2'), (await state(page)).said);
+  await key(page, 'plant.next');
+  assert.ok((await state(page)).said.includes('2 of 2'), (await state(page)).said);
+  await shot('headset-plants');
+  const [file] = await Promise.all([page.waitForEvent('download'), key(page, 'glb')]);
+  assert.ok(file.suggestedFilename().endsWith('.glb'), file.suggestedFilename());
+  const bytes = readFileSync(await file.path());
+  assert.equal(bytes.toString('latin1', 0, 4), 'glTF');
+  assert.equal(bytes.readUInt32LE(8), bytes.length, 'the whole of it');
+  await page.waitForFunction(() => JSON.parse(document.body.dataset.vr).said.startsWith('Exported'));
+}
+
+/** In the middle of a stroke the tracker is lost and comes back; then the session ends. */
+async function lost({ page, url }) {
+  const plain = await enter(page, url);
+  await key(page, 'sketch');
+  const at = await find(page, 'right');
+  const line = way(at, [0.02, 0.015, 0], 12);
+  await stroke(page, line.slice(0, 6), async () => {
+    await hand(page, 'right', [Number.NaN, 0, 0]);
+    await page.waitForFunction(() => !JSON.parse(document.body.dataset.vr).tracked);
+    assert.ok((await state(page)).working, 'the stroke waits');
+    for (const place of line.slice(6)) {
+      await hand(page, 'right', place);
+      await frames(page, 1);
+    }
+    assert.ok((await state(page)).working, 'it goes on');
+  });
+  await until(page, 'edits', ['is', 1], 'one stroke, one edit');
+  await until(page, 'done', ['is', 1], 'it was done');
+  const drawn = await changed(page, plain, 'a branch was drawn');
+  await hand(page, 'right', at);
+  await frames(page);
+  await press(page, 'right', 'trigger', 1);
+  await frames(page);
+  for (const place of way(at, [-0.02, 0.02, 0.01], 8)) {
+    await hand(page, 'right', place);
+    await frames(page, 1);
+  }
+  await page.evaluate(() => window.device.activeSession.end());
+  await page.waitForFunction(() => document.body.dataset.headset === 'off');
+  await until(page, 'edits', ['is', 2], 'what was drawn so far is kept');
+  await until(page, 'done', ['is', 2], 'it was done');
+  await changed(page, drawn, 'the second branch stands');
+}
+
 export const headset = [
   ['headset: turn, draw, undo, leave', shape, WIDE],
   ['headset: a shoot grows', grow, WIDE],
@@ -439,4 +579,7 @@ export const headset = [
   ['headset: hands without controllers', hands, WIDE],
   ['headset: the wrist', wrist, WIDE],
   ['headset: astray', astray, WIDE],
+  ['headset: copy, both sides, leaves, a cut, all back', both, WIDE],
+  ['headset: plants, things in the way, a model', scene, WIDE],
+  ['headset: lost in a stroke', lost, WIDE],
 ];

@@ -24,7 +24,7 @@ import { openShelf } from './shelf';
 import { Sheet, type SheetEvents, type Tool } from './sheet/sheet';
 import { Show, whyNot } from './show';
 import { setSetting } from './store';
-import { currentLanguage, setLanguage, t, tell } from './text';
+import { currentLanguage, setLanguage, t, tell, tOf } from './text';
 import { Theme } from './theme';
 import { SHEET_TOOLS } from './tools';
 import { endTour, firstRun, tour } from './tour';
@@ -32,7 +32,7 @@ import { note } from './ui';
 import { PlantView } from './view/view';
 import { ViewModes } from './viewmode';
 import { Door, type Mode } from './vr/door';
-import type { Command } from './wire';
+import type { Command, Obstacle } from './wire';
 import { Writing } from './writing';
 
 /** The sheet of a plant that is not drawn. */
@@ -396,6 +396,31 @@ export class App implements Page {
         session.run({ scene: { duplicate: [plant.id, [Math.round(aside * 100) / 100, 0, 0]] } });
       },
       run: (id: CommandId) => commandOf(id).run(this),
+      model: () => void this.files.model(),
+      select: (by: -1 | 0 | 1) => {
+        const { state, plant } = session;
+        const plants = state?.plants ?? [];
+        const row = plants.findIndex((p) => p.id === plant?.id);
+        const to = plants[(row + by + plants.length) % plants.length];
+        if (row < 0 || !to) return undefined;
+        if (by !== 0) session.select(to.id);
+        return { name: to.name, number: plants.indexOf(to) + 1, count: plants.length };
+      },
+      add: () => {
+        const key = session.plant?.tree?.preset ?? 'oak';
+        session.act({ add: { name: tOf('word', key), maker: { tree: key } } });
+      },
+      obstacles: () => session.plant?.tree?.obstacles.length,
+      obstruct: (shape: Obstacle) => {
+        const { plant } = session;
+        const name = t(shape.shape === 'box' ? 'tree.obstacle.box' : 'tree.obstacle.ball');
+        if (plant?.tree) session.run({ tree: [plant.id, { 'add-obstacle': { name, shape } }] });
+      },
+      clear: () => {
+        const { plant } = session;
+        const last = (plant?.tree?.obstacles.length ?? 0) - 1;
+        if (plant && last >= 0) session.run({ tree: [plant.id, { 'remove-obstacle': last }] });
+      },
       changed: (on: boolean) => {
         document.body.dataset['headset'] = on ? 'on' : 'off';
         this.show.shaping();

@@ -7,6 +7,7 @@ import type { EditReport, PlantState, PlantView as Seen, ShapeCommand } from './
 const EDIT_ICONS: Record<string, IconName> = {
   rotate: 'rotate',
   move: 'slide',
+  copy: 'copy',
   prune: 'prune',
   regrow: 'regrow',
   'sketch-branch': 'branch',
@@ -114,9 +115,9 @@ export class EditList {
 /** What became of an edit, in the person's language. */
 function said(r: EditReport): string {
   if (!r.done) return t('edit.undone', { why: tOf('why', r.code) });
-  const parts = (['moved', 'removed', 'added', 'leaves_removed', 'leaves_added'] as const)
-    .filter((k) => r.changed[k] > 0)
-    .map((k) => t(`edit.${k}`, { count: number(r.changed[k]) }));
+  const parts = (['moved', 'removed', 'added', 'leaves_removed', 'leaves_added', 'alone'] as const)
+    .filter((k) => (r.changed[k] ?? 0) > 0)
+    .map((k) => t(`edit.${k}`, { count: number(r.changed[k]!) }));
   if (parts.length === 0) parts.push(t('edit.nothing'));
   if (r.changed.by_likeness) parts.push(t('edit.by_likeness'));
   return parts.join(' · ');

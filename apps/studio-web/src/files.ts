@@ -216,6 +216,11 @@ export class Files {
     await this.exportAs('png', { levels: 1, up: 'y', unit: 'm', whole: true, wind: false });
   }
 
+  /** The whole scene as a model, without questions. */
+  async model(): Promise<void> {
+    await this.exportAs('glb', { levels: 1, up: 'y', unit: 'm', whole: this.events.several(), wind: false });
+  }
+
   chooseExport(): void {
     openExport(
       this.events.several(),

@@ -6,6 +6,7 @@ import type {
   CarriedPose,
   Command,
   Growth,
+  Mirror,
   PlantState,
   PlantView as Seen,
   ShapeAnswer,
@@ -35,7 +36,7 @@ export interface ShapingEvents {
 }
 
 /** How far beside a branch a hand in space means it, metres of the plant. */
-export type SpaceReach = Omit<ShapeReach, 'bearers'>;
+export type SpaceReach = Pick<ShapeReach, 'metres' | 'per_metre'>;
 
 /** How the pointer of a tool leaves a trace. */
 const TRACES: Partial<Record<ShapeTool, 'line' | 'brush' | 'outline'>> = {
@@ -49,6 +50,7 @@ const CLIMBS: ReadonlySet<ShapeTool | undefined> = new Set<ShapeTool>([
   'pick',
   'rotate',
   'move',
+  'copy',
   'prune',
   'regrow',
 ]);
@@ -65,6 +67,7 @@ const TOOL_ICONS: Record<ShapeTool, IconName> = {
   pick: 'select',
   rotate: 'rotate',
   move: 'slide',
+  copy: 'copy',
   prune: 'prune',
   regrow: 'regrow',
   sketch: 'branch',
@@ -109,6 +112,8 @@ export class Shaping {
     leaves: { share: 0.07, more: false },
     grow: { vigour: 2, apical: 0.54, angle_deg: 55, lift: 0.12, apart: 1 } as Growth,
   };
+  /** The plane of symmetry, in the coordinates of the plant. */
+  private sides: Mirror | undefined;
   /** Has what is held grow on. */
   private growing = 0;
   /** Its numbers were turned since the last round. */
@@ -206,6 +211,7 @@ export class Shaping {
     this.light(undefined);
     this.overlay.setRing(undefined);
     this.view.setHands(tool !== undefined);
+    if (this.sides) void this.view.setMirror(tool && this.sides, this.size);
     if (tool) this.view.element.dataset['shape'] = tool;
     else delete this.view.element.dataset['shape'];
     this.show(this.plant, this.seen);
@@ -215,6 +221,7 @@ export class Shaping {
   /** The plant that is worked on, as it is now. */
   show(plant: PlantState | undefined, seen: Seen | undefined): void {
     if (plant?.id !== this.plant?.id) {
+      this.setSides(undefined);
       this.chosen = null;
       this.bearers = 0;
       this.light(undefined);
@@ -318,6 +325,10 @@ export class Shaping {
       input.value = String(value);
       return el('label', {}, el('span', {}, t(key)), input, output);
     };
+    const sides = (): HTMLElement =>
+      chips('shape.mirror', [['mirror', 'shape.mirror']], this.sides ? 'mirror' : '', () => {
+        void this.mirror(this.sides ? undefined : this.pointerAtMiddle()).then(() => this.showStrip());
+      });
     const plain = (x: number): string => String(Math.round(x * 100) / 100);
     const radius = (of: { share: number }): HTMLElement =>
       slider(
@@ -354,6 +365,8 @@ export class Shaping {
           ),
           this.climbBox(),
         ];
+      case 'copy':
+        return [hint('shape.copy.hint'), this.climbBox()];
       case 'regrow':
         return [hint('shape.regrow.hint'), this.climbBox()];
       case 'sketch':
@@ -372,6 +385,7 @@ export class Shaping {
               s.sketch.tilt_deg = x;
             },
           ),
+          sides(),
         ];
       case 'brush':
         return [
@@ -380,6 +394,7 @@ export class Shaping {
             s.brush.density = x;
             this.tellBrush();
           }),
+          sides(),
         ];
       case 'silhouette':
         return [
@@ -397,13 +412,16 @@ export class Shaping {
             s.grow[of] = x;
           });
         };
+        const grown = hint('shape.grow.hint');
+        grown.id = 'grown';
         return [
-          hint('shape.grow.hint'),
+          grown,
           number('vigour', 0.1),
           number('apical', 0.02),
           number('angle_deg', 5),
           number('lift', 0.02),
           number('apart', 0.1),
+          sides(),
         ];
       }
       case 'leaves':
@@ -634,6 +652,23 @@ export class Shaping {
     this.onPlane(answer?.plane ?? undefined, this.size);
   }
 
+  /** Whether there is a plane of symmetry. */
+  get isMirrored(): boolean {
+    return this.sides !== undefined;
+  }
+
+  /** A plane of symmetry between the hands of somebody who looks from there; undefined: none any more. */
+  async mirror(at: ShapePointer | undefined): Promise<void> {
+    this.setSides((at && (await this.send({ mirror: at }))?.mirror) ?? undefined);
+  }
+
+  private setSides(sides: Mirror | undefined): void {
+    if (!sides && !this.sides) return;
+    this.sides = sides;
+    document.body.dataset['mirror'] = sides ? sides.normal.join(' ') : '';
+    void this.view.setMirror(sides, this.size);
+  }
+
   /** What is held grows by itself, a round after the other, as fast as it can be shown. */
   private beat(): void {
     if ((this.once ?? this.tool) !== 'grow') return;
@@ -835,6 +870,7 @@ export class Shaping {
     const reach = {
       ...(this.space ?? this.view.reach(this.near)),
       bearers: CLIMBS.has(this.once ?? this.tool) ? this.bearers : 0,
+      ...(this.sides ? { mirror: this.sides } : {}),
     };
     const request: Request = { kind: 'shape', tool: this.wire(), reach, input };
     const answered = this.line.then(() => this.ask(request));
@@ -858,8 +894,10 @@ export class Shaping {
     }
   }
 
-  private heard({ picked, busy, commit, carried }: ShapeAnswer): void {
+  private heard({ picked, busy, commit, carried, grown }: ShapeAnswer): void {
     this.carry(carried, commit !== null);
+    const line = grown && document.getElementById('grown');
+    if (line) line.textContent = grownText(grown);
     this.top = picked?.stands ?? false;
     if (picked) {
       const eye = this.at && this.view.element.getBoundingClientRect();
@@ -936,9 +974,13 @@ export class Shaping {
   /** How far the plant's middle is away, metres. */
   private middle(): number {
     const { min, max } = this.seen ?? { min: [0, 0, 0], max: [1, 1, 1] };
-    const box = this.view.element.getBoundingClientRect();
-    const at = this.view.pointer(box.left + box.width / 2, box.top + box.height / 2, 1);
+    const at = this.pointerAtMiddle();
     return at ? Math.hypot(...min.map((x, i) => (x + max[i]!) / 2 - at.origin[i]!)) : this.size;
+  }
+
+  private pointerAtMiddle(): ShapePointer | undefined {
+    const box = this.view.element.getBoundingClientRect();
+    return this.view.pointer(box.left + box.width / 2, box.top + box.height / 2, 1);
   }
 
   private showRing(): void {
@@ -946,6 +988,12 @@ export class Shaping {
       this.brushes && this.at ? { x: this.at[0], y: this.at[1], r: this.pixels } : undefined,
     );
   }
+}
+
+/** How old and how dense it is what grows in the hand. */
+export function grownText({ rounds, branches, per_metre }: NonNullable<ShapeAnswer['grown']>): string {
+  const density = per_metre === null ? '–' : per_metre.toFixed(1);
+  return t('shape.grown', { rounds, branches: number(branches), density });
 }
 
 /** What is said of a branch. */

@@ -20,6 +20,7 @@ export const SHAPE_TOOLS: readonly [ShapeTool, string][] = [
   ['pick', '1'],
   ['rotate', '2'],
   ['move', '3'],
+  ['copy', '-'],
   ['prune', '4'],
   ['regrow', '5'],
   ['sketch', '6'],

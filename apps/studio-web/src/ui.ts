@@ -128,12 +128,20 @@ export function relabel(b: HTMLElement, label: string, key = ''): void {
 
 const notes = el('div', { class: 'notes', role: 'status', 'aria-live': 'polite' });
 
+let listener: ((text: string) => void) | undefined;
+
+/** Where the page itself is not seen, somebody else says what it notes; undefined: nobody any more. */
+export function hearNotes(say: ((text: string) => void) | undefined): void {
+  listener = say;
+}
+
 /** A line at the foot of the page; bad news stay longer and are told at once. */
 export function note(
   text: string,
   tone: 'good' | 'bad' = 'good',
   action?: { label: string; act: () => void },
 ): void {
+  listener?.(text);
   if (!notes.isConnected) document.body.append(notes);
   for (const other of notes.children) if (other.getAttribute('data-text') === text) other.remove();
   const line = el('div', { class: `note ${tone}`, 'data-text': text }, el('span', {}, text));

@@ -257,6 +257,8 @@ export type CarriedPose = {
 export type Changed = {
   /** Branches added. */
   added: number;
+  /** Branches that a mirror plane has on one side only: nothing bears them on the other, or an obstacle stands there. */
+  alone?: number;
   /** The branch was found by its likeness: its own key had changed. */
   by_likeness: boolean;
   /** Leaves added. */
@@ -586,6 +588,16 @@ export type GrowFrom =
     ground: [number, number, number];
   };
 
+/** What grew since a hand holds on, both sides of a plane of symmetry together. */
+export type Grown = {
+  /** Branches, those shown last. */
+  branches: number;
+  /** Its density: branches for each metre of new wood; none before any grew. */
+  per_metre: number | null;
+  /** Its age: rounds of growth. */
+  rounds: number;
+};
+
 /** How a shoot grows by itself; every number may change while it does. */
 export type Growth = {
   /** Between a shoot and the buds at its side, 0 to 180 degrees. */
@@ -664,6 +676,14 @@ export type HandEdit =
     /** Where to. */
     to: Destination;
   }
+  | /** Sets a copy of a branch, with all that it bears, elsewhere; the branch itself stays. */
+  {
+    /** The branch. */
+    axis: AxisKey;
+    op: "copy";
+    /** Where to; also onto the branch itself or onto what it bears. */
+    to: Destination;
+  }
   | /** Cuts a branch off, with all that it bears beyond the cut. */
   {
     /** Where along it, as a share of its length; 0 (the default) takes all of it. */
@@ -686,6 +706,10 @@ export type HandEdit =
     at?: number | null;
     /** The branch that it grows from. */
     bearer: AxisKey;
+    /** Makes it on the other side of a plane, too. */
+    mirror?: 
+      | Mirror
+      | null;
     op: "sketch-branch";
     /** Its course, metres, at least two points; it is joined to its bearer. */
     points: [number, number, number][];
@@ -702,6 +726,10 @@ export type HandEdit =
       | null;
     /** How densely it fills, 0.1 to 10: more markers, more branches; default 1. */
     density: number;
+    /** Makes it on the other side of a plane, too. */
+    mirror?: 
+      | Mirror
+      | null;
     op: "brush";
     /** The stroke, metres, at least two points. */
     points: [number, number, number][];
@@ -716,6 +744,10 @@ export type HandEdit =
     changes?: GuidedChange[];
     /** Where it begins. */
     from: GrowFrom;
+    /** Makes it on the other side of a plane, too. */
+    mirror?: 
+      | Mirror
+      | null;
     op: "grow";
     /** Rounds of growth. */
     rounds: number;
@@ -1048,6 +1080,14 @@ export type MaterialView = {
   translucency: number;
   /** Seen from both sides. */
   two_sided: boolean;
+};
+
+/** A plane of symmetry: what is made on one side is made on the other. */
+export type Mirror = {
+  /** Across it, of any length above 0. */
+  normal: [number, number, number];
+  /** A point of it, metres. */
+  point: [number, number, number];
 };
 
 /** An obstacle with the name under which a person knows it. */
@@ -1539,6 +1579,14 @@ export type ShapeAnswer = {
   commit: 
     | HandEdit
     | null;
+  /** What grows in the hand, as far as it is shown. */
+  grown: 
+    | Grown
+    | null;
+  /** The plane of symmetry that was placed. */
+  mirror: 
+    | Mirror
+    | null;
   /** The branch that is meant. */
   picked: 
     | Picked
@@ -1607,6 +1655,10 @@ export type ShapeInput =
   {
     plane: ShapePointer;
   }
+  | /** A plane of symmetry is placed: upright through the foot of the plant's longest stem, between the viewer's hands. */
+  {
+    mirror: ShapePointer;
+  }
   | /** It holds on: what grows is a round older. */
   "round"
   | /** What grows has other numbers from now on. */
@@ -1639,12 +1691,16 @@ export type ShapePointer = {
   up: [number, number, number];
 };
 
-/** How far beside a branch it is still meant: `metres + per_metre * distance`. */
+/** How a hand reaches: how far beside a branch it is still meant, `metres + per_metre * distance`, and where it works a second time. */
 export type ShapeReach = {
   /** Not the branch but what bears it, so many up. */
   bearers: number;
   /** Close by. */
   metres: number;
+  /** A plane of symmetry: what is drawn, brushed or grown on one side is made on the other. */
+  mirror?: 
+    | Mirror
+    | null;
   /** More with each metre of distance. */
   per_metre: number;
 };
@@ -2002,6 +2058,8 @@ export type ToolKind =
   "rotate"
   | /** Drag a branch along its bearer, or with the tip of a controller to whatever bears it then; what stands on the ground, over the ground. */
   "move"
+  | /** Drag a copy of a branch to whatever bears it then; of what stands on the ground, over the ground. */
+  "copy"
   | /** Click a branch: it is cut where it was clicked, or all of it. */
   {
     prune: {

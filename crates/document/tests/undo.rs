@@ -199,10 +199,10 @@ fn hand_edit() -> BoxedStrategy<HandEdit> {
         (axis(), number.clone()).prop_map(|(axis, at)| HandEdit::Prune { axis, at }),
         (axis(), seed).prop_map(|(axis, seed)| HandEdit::Regrow { axis, seed }),
         (axis(), points(), number.clone()).prop_map(|(bearer, points, twigs)| {
-            HandEdit::SketchBranch { bearer, at: None, points, twigs, seed: 1 }
+            HandEdit::SketchBranch { bearer, at: None, points, twigs, seed: 1, mirror: None }
         }),
         (points(), vec(number.clone(), 0..3), number.clone()).prop_map(|(points, radius_m, density)| {
-            HandEdit::Brush { bearer: None, points, radius_m, density, seed: 2 }
+            HandEdit::Brush { bearer: None, points, radius_m, density, seed: 2, mirror: None }
         }),
         (vec(point(), 0..5), number.clone(), seed).prop_map(|(outline, density, seed)| {
             HandEdit::Silhouette { plane: ViewPlane::default(), outline, density, trim: true, seed }
@@ -487,6 +487,7 @@ fn edits_by_hand_are_steps_with_names_and_are_checked_at_the_door() {
         radius_m: vec![1.0],
         density: 1.0,
         seed: 1,
+        mirror: None,
     };
     assert!(editor.run(ShapeCommand::Add(Arc::new(long)).of(id)).is_err());
     editor.run(ShapeCommand::Remove(vec![0]).of(id)).unwrap();

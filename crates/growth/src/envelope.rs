@@ -262,6 +262,35 @@ impl Region {
         }
     }
 
+    /// Whether a ball surely lies in the envelope; some that do are not known to.
+    pub(crate) fn contains_ball(&self, p: DVec3, radius: f64) -> bool {
+        // Points on the surface may go either way.
+        let radius = radius * (1.0 + 1e-9);
+        if !((p - radius).cmpge(self.lo).all() && (p + radius).cmple(self.hi).all()) {
+            return false;
+        }
+        match &self.form {
+            Form::Ellipsoid(centre, radii) => {
+                ((p - *centre) / *radii).length() + radius / radii.min_element() <= 1.0
+            }
+            Form::Revolution(base, profile) => {
+                // As wide as the ball at every height of it: at its ends, and where the profile bends between them.
+                let q = p - *base;
+                let wide = DVec2::new(q.x, q.z).length() + radius;
+                let inside = |y: f64, r: f64| (y - q.y).abs() > radius || r >= wide;
+                let fits = |w: &[DVec2]| {
+                    let (a, b) = (w[0], w[1]);
+                    let at = |y: f64| a.x + (b.x - a.x) * ((y - a.y) / (b.y - a.y));
+                    let mut ends =
+                        [q.y - radius, q.y + radius].into_iter().filter(|y| a.y <= *y && *y <= b.y);
+                    inside(a.y, a.x) && inside(b.y, b.x) && ends.all(|y| at(y) >= wide)
+                };
+                profile.windows(2).all(fits)
+            }
+            Form::Outline(..) | Form::Mesh(_) | Form::Points(..) => false,
+        }
+    }
+
     /// Lower and upper corner of the box around the envelope.
     pub const fn bounds(&self) -> (DVec3, DVec3) {
         (self.lo, self.hi)
@@ -357,6 +386,41 @@ mod tests {
         });
         let size = hi - lo;
         size.x * size.y * size.z * hits.count() as f64 / f64::from(n)
+    }
+
+    #[test]
+    fn what_is_said_to_hold_a_ball_holds_all_of_it() {
+        let at = DVec3::new(3.0, 5.0, -2.0);
+        let waisted = [(0.2, 0.0), (1.0, 0.6), (0.3, 1.4), (0.9, 1.9), (0.9, 2.4), (0.0, 3.0)];
+        let forms = [
+            Envelope::Sphere { centre: at, radius_m: 1.0 },
+            Envelope::Ellipsoid { centre: at, radii_m: DVec3::new(1.0, 2.0, 0.6) },
+            Envelope::Cone { base: at, radius_m: 1.0, height_m: 3.0 },
+            Envelope::Cylinder { base: at, radius_m: 2.0, height_m: 1.0 },
+            Envelope::Revolution { base: at, profile: waisted.map(|(x, y)| DVec2::new(x, y)).to_vec() },
+        ];
+        let mut s = Seed::new(3).stream(Draw::Test);
+        for e in forms {
+            let region = e.prepare().expect("sound");
+            let (lo, hi) = region.bounds();
+            let (mut said, mut held) = (0, 0);
+            for _ in 0..4000 {
+                let p = lo + (hi - lo) * DVec3::new(s.uniform(), s.uniform(), s.uniform());
+                let radius = 0.4 * s.uniform();
+                let mut near = (0..60).map(|_| {
+                    let way = DVec3::new(s.normal(), s.normal(), s.normal()).normalize_or(DVec3::Y);
+                    p + way * radius
+                });
+                let holds = near.all(|q| region.contains(q));
+                held += u32::from(holds);
+                if region.contains_ball(p, radius) {
+                    said += 1;
+                    assert!(holds && region.contains(p), "{e:?}: {radius} about {p}");
+                }
+            }
+            // Most of those that do are known to.
+            assert!(said * 2 > held && said > 100, "{e:?}: {said} of {held}");
+        }
     }
 
     #[test]

@@ -14,7 +14,7 @@ use crate::grow::KeptGrowth;
 use crate::key::AxisKey;
 use crate::outcome::{Changed, Outcome, Why};
 use crate::pipes::Pipes;
-use crate::{fill, grow, leaves, sketch_branch};
+use crate::{fill, grow, leaves, sketch_branch, twin};
 
 /// What edits need to know besides the plant. Not saved with them.
 #[derive(Clone, Debug, Default)]
@@ -169,20 +169,36 @@ fn one(
     if !draft.branches.iter().any(|b| b.alive) {
         return Err(Why::NoBranches.into());
     }
+    let old = draft.branches.len();
+    let mut changed = one_side(draft, edit, kept, bench)?;
+    if let Some(mirror) = edit.mirror() {
+        twin::complete(draft, mirror, old, &mut changed, bench)?;
+    }
+    Ok(changed)
+}
+
+/// What is done without its mirror.
+fn one_side(
+    draft: &mut Draft,
+    edit: &HandEdit,
+    kept: &mut KeptGrowth,
+    bench: &Bench<'_>,
+) -> Result<Changed, Stop> {
     match edit {
         HandEdit::Rotate { axis, turn } => rotate(draft, axis, *turn),
         HandEdit::Move { axis, to } => shift(draft, axis, to, bench),
+        HandEdit::Copy { axis, to } => twin::copy(draft, axis, to, bench),
         HandEdit::Prune { axis, at } => prune(draft, axis, *at, bench),
         HandEdit::Regrow { axis, seed } => fill::regrow(draft, axis, Seed::new(*seed), bench),
-        HandEdit::SketchBranch { bearer, at, points, twigs, seed } => {
+        HandEdit::SketchBranch { bearer, at, points, twigs, seed, mirror: _ } => {
             let drawn = sketch_branch::Drawn { bearer, at: *at, points, twigs: *twigs };
             sketch_branch::add(draft, &drawn, Seed::new(*seed), bench)
         }
-        HandEdit::Brush { bearer, points, radius_m, density, seed } => {
+        HandEdit::Brush { bearer, points, radius_m, density, seed, mirror: _ } => {
             let stroke = sketch_branch::Stroke { points, radius_m, density: *density };
             sketch_branch::brush(draft, bearer.as_ref(), &stroke, Seed::new(*seed), bench)
         }
-        HandEdit::Grow { from, towards, rounds, changes, seed } => {
+        HandEdit::Grow { from, towards, rounds, changes, seed, mirror: _ } => {
             edit.check()?;
             let wish = grow::Wish { from, towards: *towards, rounds: *rounds, changes };
             grow::grow(draft, &wish, Seed::new(*seed), kept, bench)
@@ -210,46 +226,80 @@ fn count(what: &[bool]) -> usize {
     what.iter().filter(|w| **w).count()
 }
 
-fn shift(draft: &mut Draft, axis: &AxisKey, to: &Destination, bench: &Bench<'_>) -> Result<Changed, Stop> {
-    let (b, by_likeness) = axis.find_in(draft)?;
-    let base = draft.branches[b].points.first().copied().unwrap_or(DVec3::ZERO);
+/// Where a branch is taken.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Goal {
+    /// Onto a branch, at a share of its length.
+    Wood(usize, f64),
+    /// By a vector, metres: what stands on the ground.
+    Ground(DVec3),
+}
+
+/// Where a destination takes a branch of the plant as it is.
+pub(crate) fn goal(draft: &Draft, b: usize, to: &Destination) -> Result<Goal, Why> {
     let bearer = draft.branches[b].bearer;
-    let (host, share) = match to {
+    match to {
         Destination::SlideM(by) => {
             let at = bearer.ok_or(Why::NoBearer)?;
             let whole = draft.branches[at.branch].length();
-            let by =
-                if by.is_finite() { *by } else { return Err(Why::BadNumber { field: "slide-m" }.into()) };
-            (at.branch, draft.share_of_bearer(b) + if whole > 0.0 { by / whole } else { 0.0 })
+            let by = if by.is_finite() { *by } else { return Err(Why::BadNumber { field: "slide-m" }) };
+            let share = draft.share_of_bearer(b) + if whole > 0.0 { by / whole } else { 0.0 };
+            Ok(Goal::Wood(at.branch, share))
         }
         Destination::Place { axis, at } => {
-            let share = if at.is_finite() { *at } else { return Err(Why::BadNumber { field: "at" }.into()) };
-            (axis.find_in(draft)?.0, share)
+            let share = if at.is_finite() { *at } else { return Err(Why::BadNumber { field: "at" }) };
+            Ok(Goal::Wood(axis.find_in(draft)?.0, share))
         }
         Destination::ByM(by) => {
             if !by.is_finite() || by.length() > 1e6 {
-                return Err(Why::BadNumber { field: "by-m" }.into());
+                return Err(Why::BadNumber { field: "by-m" });
             }
-            let what = draft.subtree(b);
-            let Some(at) = bearer else {
-                draft.carry(&what, base, base + *by, DQuat::IDENTITY);
-                return Ok(Changed { moved: count(&what), by_likeness, ..Changed::default() });
-            };
-            (at.branch, geom::nearest_on_polyline3(&draft.branches[at.branch].points, base + *by).1)
+            let base = draft.branches[b].points.first().copied().unwrap_or(DVec3::ZERO);
+            Ok(bearer.map_or(Goal::Ground(*by), |at| {
+                let share = geom::nearest_on_polyline3(&draft.branches[at.branch].points, base + *by).1;
+                Goal::Wood(at.branch, share)
+            }))
         }
-    };
-    let what = draft.subtree(b);
-    if what.get(host) == Some(&true) {
-        return Err(Why::OntoItself.into());
     }
-    let exponent = bench.habit(draft).exponent;
+}
+
+/// A place on wood for a branch, and how it is turned to keep its angle to what bears it.
+pub(crate) struct Seated {
+    pub(crate) at: At,
+    pub(crate) target: DVec3,
+    pub(crate) turn: DQuat,
+}
+
+/// Makes a node for it where there is none.
+pub(crate) fn onto(draft: &mut Draft, b: usize, host: usize, share: f64) -> Seated {
     let node = draft.node_at(host, share.clamp(0.0, 1.0));
     // Read after the new node: it may have moved the old one on.
     let old = draft.branches[b].bearer;
     let before = old.map_or(DVec3::Y, |at| draft.branches[at.branch].tangent(at.node));
-    let new = At { branch: host, node };
     let (target, after) = (draft.branches[host].points[node], draft.branches[host].tangent(node));
-    draft.carry(&what, base, target, base::turn::between(before, after).normalize());
+    let turn = base::turn::between(before, after).normalize();
+    Seated { at: At { branch: host, node }, target, turn }
+}
+
+fn shift(draft: &mut Draft, axis: &AxisKey, to: &Destination, bench: &Bench<'_>) -> Result<Changed, Stop> {
+    let (b, by_likeness) = axis.find_in(draft)?;
+    let base = draft.branches[b].points.first().copied().unwrap_or(DVec3::ZERO);
+    let what = draft.subtree(b);
+    let done = Changed { moved: count(&what), by_likeness, ..Changed::default() };
+    let (host, share) = match goal(draft, b, to)? {
+        Goal::Wood(host, share) => (host, share),
+        Goal::Ground(by) => {
+            draft.carry(&what, base, base + by, DQuat::IDENTITY);
+            return Ok(done);
+        }
+    };
+    if what.get(host) == Some(&true) {
+        return Err(Why::OntoItself.into());
+    }
+    let exponent = bench.habit(draft).exponent;
+    let Seated { at: new, target, turn } = onto(draft, b, host, share);
+    let old = draft.branches[b].bearer;
+    draft.carry(&what, base, target, turn);
     draft.branches[b].bearer = Some(new);
     let radius = draft.branches[b].radii.first().copied().unwrap_or(0.0);
     let mut pipes = Pipes::default();
@@ -257,7 +307,7 @@ fn shift(draft: &mut Draft, axis: &AxisKey, to: &Destination, bench: &Bench<'_>)
     pipes.book(Some(new), radius, 1.0, exponent);
     let tip = radius.min(draft.branches[host].radii.last().copied().unwrap_or(radius));
     pipes.settle(draft, exponent, tip);
-    Ok(Changed { moved: count(&what), by_likeness, ..Changed::default() })
+    Ok(done)
 }
 
 fn prune(draft: &mut Draft, axis: &AxisKey, at: f64, bench: &Bench<'_>) -> Result<Changed, Stop> {

@@ -3,6 +3,7 @@
 use base::ops::PI;
 use glam::{DQuat, DVec2, DVec3};
 use growth::GuidedChange;
+use plant::{AxisId, AxisKind, Plant};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -34,6 +35,14 @@ pub enum HandEdit {
         /// The branch.
         axis: AxisKey,
         /// Where to.
+        to: Destination,
+    },
+    /// Sets a copy of a branch, with all that it bears, elsewhere; the branch itself stays. The copy is made as thin as what
+    /// bears it then.
+    Copy {
+        /// The branch.
+        axis: AxisKey,
+        /// Where to; also onto the branch itself or onto what it bears.
         to: Destination,
     },
     /// Cuts a branch off, with all that it bears beyond the cut.
@@ -70,6 +79,9 @@ pub enum HandEdit {
         /// Another number, other twigs.
         #[serde(default)]
         seed: u64,
+        /// Makes it on the other side of a plane, too. Default none.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        mirror: Option<Mirror>,
     },
     /// Lets branches grow along a stroke of a brush (the VR paper).
     Brush {
@@ -89,6 +101,9 @@ pub enum HandEdit {
         /// Another number, other branches.
         #[serde(default)]
         seed: u64,
+        /// Makes it on the other side of a plane, too. Default none.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        mirror: Option<Mirror>,
     },
     /// Lets a shoot grow by itself, for as many rounds as a hand held on (the VR paper).
     Grow {
@@ -108,6 +123,9 @@ pub enum HandEdit {
         /// Another number, other branches.
         #[serde(default)]
         seed: u64,
+        /// Makes it on the other side of a plane, too. Default none.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        mirror: Option<Mirror>,
     },
     /// Fills an outline that was drawn in a plane facing the viewer (the VR paper).
     Silhouette {
@@ -171,6 +189,7 @@ impl HandEdit {
         match self {
             Self::Rotate { .. } => "rotate",
             Self::Move { .. } => "move",
+            Self::Copy { .. } => "copy",
             Self::Prune { .. } => "prune",
             Self::Regrow { .. } => "regrow",
             Self::SketchBranch { .. } => "sketch-branch",
@@ -178,6 +197,16 @@ impl HandEdit {
             Self::Grow { .. } => "grow",
             Self::Silhouette { .. } => "silhouette",
             Self::LeafDensity { .. } => "leaf-density",
+        }
+    }
+
+    /// The plane on whose other side it is made, too.
+    pub(crate) const fn mirror(&self) -> Option<Mirror> {
+        match self {
+            Self::SketchBranch { mirror, .. } | Self::Brush { mirror, .. } | Self::Grow { mirror, .. } => {
+                *mirror
+            }
+            _ => None,
         }
     }
 
@@ -194,12 +223,16 @@ impl HandEdit {
     /// assert!(cut(0.5).check().is_ok() && cut(f64::NAN).check().is_err() && cut(1.5).check().is_err());
     /// ```
     pub fn check(&self) -> Result<(), Why> {
+        if let Some(mirror) = self.mirror() {
+            mirror.axes()?;
+            near("mirror", &[mirror.point])?;
+        }
         match self {
             Self::Rotate { axis, turn } => {
                 axis.check()?;
                 turn.quat().map(|_| ())
             }
-            Self::Move { axis, to } => {
+            Self::Move { axis, to } | Self::Copy { axis, to } => {
                 axis.check()?;
                 match to {
                     Destination::SlideM(by) => within("slide-m", *by, -FAR, FAR),
@@ -395,6 +428,52 @@ impl ViewPlane {
         let right = self.right.try_normalize().filter(|_| usable).ok_or(fault)?;
         let towards = right.cross(self.up).try_normalize().ok_or(fault)?;
         Ok([right, towards.cross(right), towards])
+    }
+}
+
+/// A plane of symmetry: what is made on one side is made on the other.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Mirror {
+    /// A point of it, metres.
+    #[schemars(with = "[f64; 3]", extend("x-unit" = "m"))]
+    pub point: DVec3,
+    /// Across it, of any length above 0.
+    #[schemars(with = "[f64; 3]")]
+    pub normal: DVec3,
+}
+
+impl Mirror {
+    /// Upright through the foot of a plant's longest stem, so that one hand of a viewer is on either side: `right` points
+    /// to the viewer's right.
+    ///
+    /// `None` for a plant without a stem, or a `right` without a level part.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use plant::{AxisKind, Plant};
+    /// use shape::Mirror;
+    /// let mut p = Plant::default();
+    /// p.add_axis(AxisKind::Branch, None, 1, &[DVec3::X, DVec3::X + DVec3::Y], None);
+    /// let mirror = Mirror::between_hands(&p, DVec3::new(0.0, 0.5, -2.0)).ok_or("a stem")?;
+    /// assert_eq!((mirror.point, mirror.normal), (DVec3::X, DVec3::NEG_Z));
+    /// # Ok::<(), &str>(())
+    /// ```
+    pub fn between_hands(plant: &Plant, right: DVec3) -> Option<Self> {
+        let normal = right.with_y(0.0).try_normalize()?;
+        let stems = plant.axes.iter().enumerate().filter(|(_, a)| a.bearer.is_none());
+        let stems = stems.filter(|(_, a)| !matches!(a.kind, AxisKind::Petiole | AxisKind::Root));
+        let lines = stems.map(|(i, _)| plant.axis_points(AxisId::new(i)));
+        let long = lines.map(|line| (geom::polyline_length3(line), line));
+        let (_, line) = long.reduce(|a, b| if b.0 > a.0 { b } else { a })?;
+        let point = *line.first().filter(|p| p.is_finite())?;
+        Some(Self { point, normal })
+    }
+
+    /// A point of it, and the unit vector across it.
+    pub(crate) fn axes(&self) -> Result<(DVec3, DVec3), Why> {
+        let normal = self.normal.try_normalize().filter(|n| n.is_finite() && self.point.is_finite());
+        Ok((self.point, normal.ok_or(Why::BadNumber { field: "mirror" })?))
     }
 }
 

@@ -1,4 +1,4 @@
-//! Hand edits on any plant: rotate, move, prune, regrow, sketch, brush, grow, fill a silhouette, thin leaves (the VR paper).
+//! Hand edits on any plant: rotate, move, copy, prune, regrow, sketch, brush, grow, fill a silhouette, thin leaves (the VR paper).
 //!
 //! `Plant + [HandEdit] -> Plant + [Outcome]`
 //!
@@ -14,6 +14,7 @@
 //! | `pipes` | radii below what changed |
 //! | `graft` | what growth made, onto the plant |
 //! | `sketch_branch`, `grow`, `fill`, `leaves` | drawn and brushed branches; what grows while it is held; regrowth and silhouettes; leaves |
+//! | `twin` | a branch a second time: copies, and the other side of a plane of symmetry |
 //! | `mask` | an outline as markers in space |
 //! | `pick` | which branch a ray means |
 //! | `thumb` | turns and leans from a touchpad or stick |
@@ -38,12 +39,13 @@ mod pipes;
 mod sketch_branch;
 mod thumb;
 mod tool;
+mod twin;
 
 pub use apply::{Applied, Context, Shaping, apply};
 pub use carry::Carried;
 pub use edit::{
-    Destination, EDITS_SCHEMA, EditsFile, GrowFrom, HandEdit, LeafRegion, MOST_POINTS, MOST_ROUNDS, Turn,
-    ViewPlane,
+    Destination, EDITS_SCHEMA, EditsFile, GrowFrom, HandEdit, LeafRegion, MOST_POINTS, MOST_ROUNDS, Mirror,
+    Turn, ViewPlane,
 };
 pub use grow::KeptGrowth;
 pub use key::{AxisKey, Found, KindWord, Mark};

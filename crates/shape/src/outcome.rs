@@ -65,6 +65,12 @@ pub enum Why {
     /// The plant has no branch at all.
     #[error("the plant has no branch")]
     NoBranches,
+    /// A copy would make the plant too large.
+    #[error("the plant would have more than {most} nodes and leaves")]
+    TooLarge {
+        /// The most there may be.
+        most: usize,
+    },
     /// The edit would make the plant too large.
     #[error("the plant would have more than {most} branches")]
     TooMany {
@@ -91,6 +97,7 @@ impl Why {
             Self::NoLeaves => "no-leaves",
             Self::NoBranches => "no-branches",
             Self::TooMany { .. } => "too-many",
+            Self::TooLarge { .. } => "too-large",
         }
     }
 }
@@ -109,8 +116,16 @@ pub struct Changed {
     pub leaves_removed: usize,
     /// Leaves added.
     pub leaves_added: usize,
+    /// Branches that a mirror plane has on one side only: nothing bears them on the other, or an obstacle stands there.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub alone: usize,
     /// The branch was found by its likeness: its own key had changed.
     pub by_likeness: bool,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+const fn is_zero(count: &usize) -> bool {
+    *count == 0
 }
 
 /// What became of one edit.
@@ -141,6 +156,7 @@ impl fmt::Display for Outcome {
             (c.added, "grown", "branch", "branches"),
             (c.leaves_removed, "taken away", "leaf", "leaves"),
             (c.leaves_added, "added", "leaf", "leaves"),
+            (c.alone, "on one side only", "branch", "branches"),
         ];
         let parts: Vec<String> = said
             .iter()

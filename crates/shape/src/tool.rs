@@ -10,7 +10,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::carry::Carried;
-use crate::edit::{Destination, GrowFrom, HandEdit, LeafRegion, MOST_ROUNDS, Turn, ViewPlane};
+use crate::edit::{Destination, GrowFrom, HandEdit, LeafRegion, MOST_ROUNDS, Mirror, Turn, ViewPlane};
 use crate::key::AxisKey;
 use crate::pick::{Pick, Ray, Reach, nearest, pick};
 
@@ -26,6 +26,8 @@ pub enum ToolKind {
     /// Drag a branch along its bearer, or with the tip of a controller to whatever bears it then; what stands on the
     /// ground, over the ground.
     Move,
+    /// Drag a copy of a branch to whatever bears it then; of what stands on the ground, over the ground.
+    Copy,
     /// Click a branch: it is cut where it was clicked, or all of it.
     Prune {
         /// All of it.
@@ -177,6 +179,8 @@ pub struct Response {
 pub struct Tool {
     kind: ToolKind,
     reach: Reach,
+    /// On whose other side it works, too.
+    mirror: Option<Mirror>,
     /// The seed of the next edit that lets something grow.
     seed: u64,
     state: State,
@@ -259,7 +263,7 @@ const DEAD: f64 = 0.05;
 impl Tool {
     /// A tool that holds nothing.
     pub fn new(kind: ToolKind) -> Self {
-        Self { kind, reach: Reach::default(), seed: 1, state: State::Idle }
+        Self { kind, reach: Reach::default(), mirror: None, seed: 1, state: State::Idle }
     }
 
     /// With another tolerance, and the seed of the next growth (each edit takes the next one).
@@ -267,6 +271,13 @@ impl Tool {
     pub const fn with(mut self, reach: Reach, seed: u64) -> Self {
         self.reach = reach;
         self.seed = seed;
+        self
+    }
+
+    /// What it draws, brushes or lets grow is made on the other side of a plane, too.
+    #[must_use]
+    pub const fn mirrored(mut self, mirror: Option<Mirror>) -> Self {
+        self.mirror = mirror;
         self
     }
 
@@ -282,7 +293,8 @@ impl Tool {
 
     /// Whether a gesture is going on that moves a branch as one with all that it bears.
     pub const fn carries(&self) -> bool {
-        matches!(self.state, State::Turning { .. } | State::Sliding { .. })
+        !matches!(self.kind, ToolKind::Copy)
+            && matches!(self.state, State::Turning { .. } | State::Sliding { .. })
     }
 
     /// How the branch in the hand is carried, where the edit so far does nothing but that; `plant`: as for
@@ -292,6 +304,7 @@ impl Tool {
     /// Cost: linear in the branch's bearer, old and new.
     pub fn carried(&self, plant: &Plant) -> Option<Carried> {
         match &self.state {
+            _ if !self.carries() => None,
             State::Turning { pick, pivot, about, angle, swing, .. } => {
                 let turn = turn_of(*about, *angle, *swing).quat().ok()?;
                 Some(Carried { axis: pick.axis, from: *pivot, to: *pivot, turn })
@@ -380,7 +393,7 @@ impl Tool {
                 let last = hand(p, pivot, about).filter(|_| tip.is_none());
                 State::Turning { pick, key, pivot, about, last, angle: 0.0, tip, swing: DQuat::IDENTITY }
             }
-            (ToolKind::Move, Some((pick, key))) => {
+            (ToolKind::Move | ToolKind::Copy, Some((pick, key))) => {
                 let on = plant.axis(pick.axis).bearer.map(|n| plant.nodes.axis[n.index()]);
                 let bearer = on.and_then(|axis| Some((AxisKey::of(plant, axis)?, axis)));
                 let foot = plant.axis_points(pick.axis)[0];
@@ -389,9 +402,14 @@ impl Tool {
                 State::Sliding { pick, key, bearer, grabbed, foot, from: Box::new(*p), to: None }
             }
             (ToolKind::Prune { .. } | ToolKind::Regrow, Some((pick, key))) => State::Clicking { pick, key },
-            (ToolKind::Rotate | ToolKind::Move | ToolKind::Prune { .. } | ToolKind::Regrow, None) => {
-                State::Idle
-            }
+            (
+                ToolKind::Rotate
+                | ToolKind::Move
+                | ToolKind::Copy
+                | ToolKind::Prune { .. }
+                | ToolKind::Regrow,
+                None,
+            ) => State::Idle,
             (ToolKind::Grow(growth), named) => {
                 let from = match &named {
                     Some((pick, key)) => Some(GrowFrom::Branch { axis: key.clone(), at: pick.at }),
@@ -487,7 +505,11 @@ impl Tool {
             }
             State::Sliding { pick, bearer, grabbed, foot, from, to, .. } => {
                 let now = match (bearer, p.tip) {
+                    _ if matches!(self.kind, ToolKind::Copy) && is_still(plant, pick.axis, from, p) => None,
                     (Some(_), Some(tip)) => wood_near(plant, tip, pick.axis),
+                    (Some(_), None) if matches!(self.kind, ToolKind::Copy) => {
+                        wood_under(plant, &p.ray, Reach { bearers: 0, ..self.reach }, pick.axis)
+                    }
                     (Some((_, axis)), None) => {
                         let at = (share_under(plant, *axis, p) + *grabbed).clamp(0.0, 1.0);
                         Some(Goal::Wood(*axis, at))
@@ -555,7 +577,11 @@ impl Tool {
                         Destination::Place { axis: known.or_else(|| AxisKey::of(plant, on))?, at }
                     }
                 };
-                Some(HandEdit::Move { axis: key.clone(), to })
+                let axis = key.clone();
+                Some(match self.kind {
+                    ToolKind::Copy => HandEdit::Copy { axis, to },
+                    _ => HandEdit::Move { axis, to },
+                })
             }
             State::Clicking { pick, key } => Some(match self.kind {
                 ToolKind::Regrow => HandEdit::Regrow { axis: key.clone(), seed },
@@ -568,6 +594,7 @@ impl Tool {
                 rounds: *rounds,
                 changes: record.clone(),
                 seed,
+                mirror: self.mirror,
             }),
             State::Stroking(s) => self.stroke_edit(s),
         }
@@ -590,10 +617,11 @@ impl Tool {
                 points,
                 twigs,
                 seed,
+                mirror: self.mirror,
             },
             ToolKind::Brush { density, .. } => {
                 let (bearer, radius_m) = (s.bearer.clone(), s.radius_m.clone());
-                HandEdit::Brush { bearer, points, radius_m, density, seed }
+                HandEdit::Brush { bearer, points, radius_m, density, seed, mirror: self.mirror }
             }
             ToolKind::Silhouette { density, trim, .. } => {
                 let plane = ViewPlane { origin: s.through, right: s.right, up: s.normal.cross(s.right) };
@@ -668,6 +696,23 @@ fn on_ground(p: &Pointer) -> Option<DVec3> {
     let at = p.ray.meets(DVec3::ZERO, DVec3::Y)?.with_y(0.0);
     let ahead = (at - p.ray.origin).dot(p.ray.direction) > 0.0;
     (ahead && at.is_finite() && at.length() < FARTHEST_M).then_some(at)
+}
+
+/// Whether a pointer is about where it went down: a copy that lies in its own branch is a slip of the hand.
+fn is_still(plant: &Plant, axis: AxisId, from: &Pointer, now: &Pointer) -> bool {
+    let least = DEAD * geom::polyline_length3(plant.axis_points(axis));
+    match (from.tip, now.tip) {
+        (Some(a), Some(b)) => a.distance(b) < least,
+        _ => from.ray == now.ray,
+    }
+}
+
+/// The place on a shoot that a ray means, on none that `but` bears or is.
+fn wood_under(plant: &Plant, ray: &Ray, reach: Reach, but: AxisId) -> Option<Goal> {
+    let pick = pick(plant, ray, reach)?;
+    let kind = plant.axis(pick.axis).kind;
+    let other = !plant.borne_by(but)[pick.axis.index()];
+    (other && !matches!(kind, AxisKind::Petiole | AxisKind::Root)).then_some(Goal::Wood(pick.axis, pick.at))
 }
 
 /// The place on a shoot nearest to a point, on none that `but` bears or is.

@@ -9,8 +9,8 @@ use growth::{
 use plant::{AxisId, AxisKind, NodeId, OrganKind, Plant};
 use proptest::prelude::*;
 use shape::{
-    Applied, AxisKey, Context, Destination, GrowFrom, HandEdit, LeafRegion, Outcome, Turn, ViewPlane, Why,
-    apply,
+    Applied, AxisKey, Context, Destination, GrowFrom, HandEdit, LeafRegion, Mirror, Outcome, Turn, ViewPlane,
+    Why, apply,
 };
 
 fn method(kind: usize) -> Method {
@@ -106,6 +106,10 @@ fn line() -> impl Strategy<Value = Vec<DVec3>> {
     prop::collection::vec(point(), 0..6)
 }
 
+fn mirror() -> impl Strategy<Value = Option<Mirror>> {
+    proptest::option::of((point(), point()).prop_map(|(point, normal)| Mirror { point, normal }))
+}
+
 fn edit() -> impl Strategy<Value = HandEdit> {
     let number = prop_oneof![8 => -1.0..6.0, 1 => Just(f64::NAN), 1 => Just(0.0), 1 => Just(1.0)];
     let turn = (point(), -400.0..400.0).prop_map(|(about, degrees)| Turn { about, degrees });
@@ -122,38 +126,38 @@ fn edit() -> impl Strategy<Value = HandEdit> {
     let outline = prop::collection::vec((-3.0..3.0, 0.0..8.0).prop_map(|(x, y)| DVec2::new(x, y)), 0..7);
     prop_oneof![
         (key(), turn).prop_map(|(axis, turn)| HandEdit::Rotate { axis, turn }),
-        (key(), to).prop_map(|(axis, to)| HandEdit::Move { axis, to }),
+        (key(), to.clone()).prop_map(|(axis, to)| HandEdit::Move { axis, to }),
+        (key(), to).prop_map(|(axis, to)| HandEdit::Copy { axis, to }),
         (key(), number.clone()).prop_map(|(axis, at)| HandEdit::Prune { axis, at }),
         (key(), 0_u64..9).prop_map(|(axis, seed)| HandEdit::Regrow { axis, seed }),
-        (key(), line(), number.clone()).prop_map(|(bearer, points, twigs)| HandEdit::SketchBranch {
-            bearer,
-            at: None,
-            points,
-            twigs,
-            seed: 1
+        (key(), line(), number.clone(), mirror()).prop_map(|(bearer, points, twigs, mirror)| {
+            HandEdit::SketchBranch { bearer, at: None, points, twigs, seed: 1, mirror }
         }),
-        (line(), 0.05..0.8).prop_map(|(points, r)| HandEdit::Brush {
+        (line(), 0.05..0.8, mirror()).prop_map(|(points, r, mirror)| HandEdit::Brush {
             bearer: None,
             points,
             radius_m: vec![r],
             density: 1.0,
-            seed: 1
+            seed: 1,
+            mirror
         }),
-        (key(), number.clone(), proptest::option::of(point()), 0_u32..12).prop_map(
-            |(axis, at, towards, rounds)| HandEdit::Grow {
+        (key(), number.clone(), proptest::option::of(point()), 0_u32..12, mirror()).prop_map(
+            |(axis, at, towards, rounds, mirror)| HandEdit::Grow {
                 from: GrowFrom::Branch { axis, at },
                 towards,
                 rounds,
                 changes: vec![GuidedChange { round: 2, alpha: Some(at), ..GuidedChange::default() }],
                 seed: 1,
+                mirror,
             }
         ),
-        point().prop_map(|foot| HandEdit::Grow {
+        (point(), mirror()).prop_map(|(foot, mirror)| HandEdit::Grow {
             from: GrowFrom::Ground(foot),
             towards: None,
             rounds: 6,
             changes: Vec::new(),
-            seed: 1
+            seed: 1,
+            mirror
         }),
         (outline, any::<bool>()).prop_map(|(outline, trim)| HandEdit::Silhouette {
             plane: ViewPlane::default(),
@@ -288,8 +292,14 @@ fn sketched_and_brushed_branches_grow_with_twigs_and_leaves() {
     let plant = tree(0, 1);
     let line: Vec<DVec3> =
         (0..12).map(|i| DVec3::new(0.2 * f64::from(i), 2.0 + 0.1 * f64::from(i), 0.0)).collect();
-    let draw =
-        |twigs| HandEdit::SketchBranch { bearer: path(&[0]), at: None, points: line.clone(), twigs, seed: 1 };
+    let draw = |twigs| HandEdit::SketchBranch {
+        bearer: path(&[0]),
+        at: None,
+        points: line.clone(),
+        twigs,
+        seed: 1,
+        mirror: None,
+    };
     let (bare, twigged) = (done(&plant, &[draw(0.0)]), done(&plant, &[draw(1.0)]));
     let added = |a: &Applied| match a.outcomes[0] {
         Outcome::Done(c) => (c.added, c.leaves_added),
@@ -299,7 +309,14 @@ fn sketched_and_brushed_branches_grow_with_twigs_and_leaves() {
     assert!(added(&twigged).0 > 6 && added(&twigged).1 > added(&bare).1, "{:?}", added(&twigged));
     let foot = |a: &Applied| a.plant.nodes.radius_m[0];
     assert!(foot(&twigged) > foot(&bare) && foot(&bare) > plant.nodes.radius_m[0]);
-    let brush = HandEdit::Brush { bearer: None, points: line, radius_m: vec![0.35], density: 1.0, seed: 1 };
+    let brush = HandEdit::Brush {
+        bearer: None,
+        points: line,
+        radius_m: vec![0.35],
+        density: 1.0,
+        seed: 1,
+        mirror: None,
+    };
     let brushed = done(&plant, &[brush]);
     assert!(added(&brushed).0 > 4 && added(&brushed).1 > 10, "{:?}", added(&brushed));
     let reach =
@@ -468,8 +485,14 @@ fn a_brush_that_begins_in_the_bark_begins_at_the_surface() {
     let outside =
         (1..12).map(|i| start + DVec3::new(0.1 + 0.18 * f64::from(i), 0.25 + 0.1 * f64::from(i), 0.0));
     let points: Vec<DVec3> = inside.chain(outside).collect();
-    let brush =
-        |points| HandEdit::Brush { bearer: None, points, radius_m: vec![0.35], density: 1.0, seed: 1 };
+    let brush = |points| HandEdit::Brush {
+        bearer: None,
+        points,
+        radius_m: vec![0.35],
+        density: 1.0,
+        seed: 1,
+        mirror: None,
+    };
     let brushed = done(&plant, &[brush(points.clone())]);
     let old = plant.axes.len();
     let [.., grown] = [&plant, &brushed.plant];
@@ -493,4 +516,208 @@ fn a_brush_that_begins_in_the_bark_begins_at_the_surface() {
     // A stroke that never comes out grows nothing.
     let hidden = brush(points[..6].to_vec());
     assert_eq!(done(&plant, &[hidden]).outcomes[0], Outcome::NotDone(Why::NothingGrew));
+}
+
+#[test]
+fn a_copy_is_the_branch_again_with_all_that_it_bears() {
+    for kind in 0..6 {
+        let plant = plant_of(kind, 3);
+        let paths = AxisKey::paths(&plant);
+        // A flower has a stem alone: it is copied over the ground.
+        let limb = paths.iter().find(|(_, p)| p.len() == 2);
+        let (limb, path_of) = limb.unwrap_or(&paths[0]);
+        assert!(kind == 5 || path_of.len() == 2, "a limb on plant {kind}");
+        let to = match path_of.len() {
+            1 => Destination::ByM(DVec3::X),
+            _ => Destination::Place { axis: path(&[0]), at: 0.85 },
+        };
+        let copy = HandEdit::Copy { axis: AxisKey::Path(path_of.clone()), to };
+        let a = done(&plant, core::slice::from_ref(&copy));
+        assert!(a.outcomes[0].is_done(), "plant {kind}: {}", a.outcomes[0]);
+        let inside = plant.borne_by(*limb);
+        let borne = inside.iter().filter(|i| **i).count();
+        assert_eq!(a.plant.axes.len(), plant.axes.len() + borne, "plant {kind}");
+        let count = |p: &Plant| p.organs.len() + p.flowers.len();
+        let on = |n: &Option<NodeId>| n.is_some_and(|n| inside[plant.nodes.axis[n.index()].index()]);
+        let organs = plant.organs.iter().filter(|o| on(&o.bearer)).count();
+        let flowers = plant.flowers.iter().filter(|f| on(&f.bearer)).count();
+        assert!(
+            (organs > 0) == (kind != 4) && (flowers > 0) == (kind == 5),
+            "plant {kind}: {organs} {flowers}"
+        );
+        assert_eq!(count(&a.plant), count(&plant) + organs + flowers, "plant {kind}");
+        // All keys are other keys, and the copy is as long and as crooked as the branch.
+        let mut keys: Vec<u64> = a.plant.axes.iter().map(|x| x.key).collect();
+        keys.sort_unstable();
+        let before = plant.axes.len() - {
+            let mut old: Vec<u64> = plant.axes.iter().map(|x| x.key).collect();
+            old.sort_unstable();
+            old.dedup();
+            old.len()
+        };
+        keys.dedup();
+        assert!(a.plant.axes.len() - keys.len() <= 2 * before, "plant {kind}: new keys");
+        let old = plant.axis_points(*limb);
+        let chords = |line: &[DVec3]| -> Vec<f64> { line.iter().map(|p| p.distance(line[0])).collect() };
+        let twin = a.plant.axes.iter().enumerate().skip(1).find(|&(i, x)| {
+            let line = a.plant.axis_points(AxisId::new(i));
+            !plant.axes.iter().any(|y| y.key == x.key)
+                && line.len() == old.len()
+                && chords(line).iter().zip(chords(old)).all(|(a, b)| (a - b).abs() < 1e-9 * (1.0 + b))
+        });
+        assert!(twin.is_some(), "plant {kind}: a branch of the same form");
+        // What is not below the copy has not moved by a bit.
+        let leaf = |p: &Plant| p.organs.iter().take(5).map(|o| o.frame).collect::<Vec<_>>();
+        assert_eq!(leaf(&a.plant), leaf(&plant), "plant {kind}");
+        // The same copy twice: two branches with keys of their own.
+        let twice = done(&plant, &[copy.clone(), copy]);
+        assert_eq!(twice.plant.axes.len(), plant.axes.len() + 2 * borne, "plant {kind}");
+    }
+}
+
+#[test]
+fn copies_of_copies_end_before_memory_does() {
+    let mut plant = Plant::default();
+    let line: Vec<DVec3> = (0..50_000).map(|i| DVec3::Y * (1e-4 * f64::from(i))).collect();
+    plant.add_axis(AxisKind::Branch, None, 1, &line, None);
+    let double = HandEdit::Copy { axis: path(&[0]), to: Destination::Place { axis: path(&[0]), at: 1.0 } };
+    let a = done(&plant, &vec![double; 9]);
+    let made = a.outcomes.iter().filter(|o| o.is_done()).count();
+    assert!((5..9).contains(&made), "{made}");
+    assert_eq!(a.outcomes[8], Outcome::NotDone(Why::TooLarge { most: 4_000_000 }));
+    assert!(a.plant.nodes.position.len() <= 4_000_000);
+}
+
+/// A trunk with a limb on either side of the plane x = 0, and leaves on them.
+fn even() -> Plant {
+    let tree = tree(0, 1);
+    let mut p = Plant { shapes: tree.shapes.clone(), ..Plant::default() };
+    let line =
+        |a: DVec3, b: DVec3| -> Vec<DVec3> { (0..=8).map(|i| a.lerp(b, f64::from(i) / 8.0)).collect() };
+    let trunk = p.add_axis(AxisKind::Branch, None, 1, &line(DVec3::ZERO, DVec3::Y * 4.0), None);
+    for (key, side) in [(2, 1.0), (3, -1.0)] {
+        let fork = p.axis(trunk).node_ids().nth(4);
+        let tip = DVec3::new(2.0 * side, 2.6, 0.0);
+        let limb = p.add_axis(AxisKind::Branch, fork, key, &line(DVec3::Y * 2.0, tip), None);
+        for (k, node) in p.axis(limb).node_ids().enumerate().skip(2) {
+            let leaf = tree.organs.iter().find(|o| o.kind == OrganKind::Leaf).expect("a leaf").clone();
+            let origin = p.nodes.position[node.index()];
+            let frame = plant::Frame::looking(origin, DVec3::new(side, 1.0, 0.2), DVec3::Y);
+            p.organs.push(plant::Organ { bearer: Some(node), frame, key: 40 * key + k as u64, ..leaf });
+        }
+    }
+    p.nodes.radius_m.iter_mut().for_each(|r| *r = 0.02);
+    assert_eq!(p.validate().next(), None);
+    p
+}
+
+#[test]
+fn what_is_made_on_one_side_of_a_mirror_is_made_on_the_other() {
+    let plant = even();
+    let mirror = Some(Mirror { point: DVec3::ZERO, normal: DVec3::X * 3.0 });
+    let points: Vec<DVec3> = (0..9)
+        .map(|i| DVec3::new(1.0 + 0.08 * f64::from(i), 2.3 + 0.15 * f64::from(i), 0.05 * f64::from(i)))
+        .collect();
+    let right = path(&[0, 0]);
+    let grow = |from| HandEdit::Grow { from, towards: None, rounds: 9, changes: Vec::new(), seed: 3, mirror };
+    let edits = [
+        HandEdit::SketchBranch {
+            bearer: right.clone(),
+            at: Some(0.5),
+            points: points.clone(),
+            twigs: 1.0,
+            seed: 1,
+            mirror,
+        },
+        HandEdit::Brush {
+            bearer: Some(right.clone()),
+            points,
+            radius_m: vec![0.3],
+            density: 1.0,
+            seed: 1,
+            mirror,
+        },
+        grow(GrowFrom::Branch { axis: right, at: 0.75 }),
+        grow(GrowFrom::Ground(DVec3::new(1.5, 0.0, 0.5))),
+    ];
+    let image = |p: &DVec3| DVec3::new(-p.x, p.y, p.z);
+    for edit in edits {
+        let word = edit.word();
+        let a = done(&plant, core::slice::from_ref(&edit));
+        let Outcome::Done(c) = a.outcomes[0] else { panic!("{word}: {}", a.outcomes[0]) };
+        assert_eq!(c.alone, 0, "{word}");
+        assert!(c.added >= 4 && c.leaves_added > 8, "{word}: {c:?}");
+        // Every node and every leaf has its image, to a nanometre.
+        let has = |of: &[DVec3], p: DVec3| of.iter().any(|q| q.distance(p) < 1e-9);
+        let nodes = &a.plant.nodes.position;
+        let lone = nodes.iter().find(|p| !has(nodes, image(p)));
+        assert_eq!(lone, None, "{word}");
+        let leaves: Vec<DVec3> = a.plant.organs.iter().map(|o| o.frame.origin).collect();
+        let tips: Vec<DVec3> = a.plant.organs.iter().map(|o| o.frame.origin + o.frame.along).collect();
+        assert!(leaves.iter().all(|p| has(&leaves, image(p))), "{word}");
+        assert!(tips.iter().all(|p| has(&tips, image(p))), "{word}");
+        // One side alone is the same as without a mirror.
+        let mut plain = edit;
+        match &mut plain {
+            HandEdit::SketchBranch { mirror, .. }
+            | HandEdit::Brush { mirror, .. }
+            | HandEdit::Grow { mirror, .. } => *mirror = None,
+            _ => panic!("{word}"),
+        }
+        let one = done(&plant, &[plain]).plant;
+        assert_eq!(2 * (one.axes.len() - plant.axes.len()), a.plant.axes.len() - plant.axes.len(), "{word}");
+        assert!(one.nodes.position.iter().all(|p| nodes.contains(p)), "{word}");
+    }
+}
+
+#[test]
+fn a_mirror_says_what_has_no_other_side() {
+    // Nothing on the left: what is drawn far out on the right stays alone.
+    let whole = even();
+    let bare = done(&whole, &[HandEdit::Prune { axis: path(&[0, 1]), at: 0.0 }]).plant;
+    let mirror = Some(Mirror { point: DVec3::ZERO, normal: DVec3::X });
+    let points: Vec<DVec3> =
+        (0..6).map(|i| DVec3::new(1.5, 2.5 + 0.1 * f64::from(i), 0.1 * f64::from(i))).collect();
+    let draw =
+        HandEdit::SketchBranch { bearer: path(&[0, 0]), at: Some(0.75), points, twigs: 0.0, seed: 1, mirror };
+    let a = done(&bare, core::slice::from_ref(&draw));
+    let Outcome::Done(c) = a.outcomes[0] else { panic!("{}", a.outcomes[0]) };
+    assert_eq!((c.added, c.alone), (1, 1));
+    assert!(a.outcomes[0].to_string().contains("1 branch on one side only"), "{}", a.outcomes[0]);
+    // A wall on the left: the image ends before it.
+    let at = DVec3::new(-1.5, 3.4, 0.0);
+    let wall = growth::Obstacle::Box { min: at - DVec3::splat(0.6), max: at + DVec3::splat(0.6) };
+    let obstacles = growth::Obstacles::new(&[wall], 0.0).expect("sound");
+    let context = Context { obstacles: obstacles.clone(), ..Context::default() };
+    let a = apply(&whole, &[draw], &context, &Run::plain()).expect("not cancelled");
+    assert_eq!(a.plant.validate().next(), None);
+    let new = &a.plant.nodes.position[whole.nodes.position.len()..];
+    assert!(new.iter().any(|p| p.x < -1.0) && new.iter().all(|p| obstacles.free(*p)), "{new:?}");
+    let length = |side: f64| {
+        let lines = a.plant.axes.iter().enumerate().skip(3).map(|(i, _)| a.plant.axis_points(AxisId::new(i)));
+        lines.filter(|l| l[1].x * side > 0.0).map(geom::polyline_length3).sum::<f64>()
+    };
+    assert!(length(-1.0) < 0.9 * length(1.0), "{} {}", length(-1.0), length(1.0));
+    // A stem on the plane is its own image.
+    let stem = HandEdit::Grow {
+        from: GrowFrom::Ground(DVec3::new(0.0, 0.0, 1.0)),
+        towards: None,
+        rounds: 4,
+        changes: Vec::new(),
+        seed: 1,
+        mirror,
+    };
+    let stems = |p: &Plant| p.axes.iter().filter(|a| a.bearer.is_none()).count();
+    assert_eq!(stems(&done(&whole, &[stem]).plant), 2);
+    let Some(bad) = mirror.map(|m| Mirror { normal: DVec3::ZERO, ..m }) else { panic!() };
+    let refused = HandEdit::Grow {
+        from: GrowFrom::Ground(DVec3::X),
+        towards: None,
+        rounds: 4,
+        changes: Vec::new(),
+        seed: 1,
+        mirror: Some(bad),
+    };
+    assert_eq!(refused.check(), Err(Why::BadNumber { field: "mirror" }));
+    assert_eq!(done(&whole, &[refused]).outcomes[0], Outcome::NotDone(Why::BadNumber { field: "mirror" }));
 }

@@ -6,8 +6,8 @@ use base::{Budget, Executor, Run};
 use glam::DVec3;
 use plant::{AxisId, AxisKind, Plant};
 use shape::{
-    AxisKey, Context, Destination, GrowFrom, Growth, HandEdit, Input, KeptGrowth, LeafRegion, Pointer, Ray,
-    Reach, Response, Shaping, Tool, ToolKind, ViewPlane, apply, pick,
+    AxisKey, Context, Destination, GrowFrom, Growth, HandEdit, Input, KeptGrowth, LeafRegion, Mirror,
+    Pointer, Ray, Reach, Response, Shaping, Tool, ToolKind, ViewPlane, apply, pick,
 };
 
 /// A trunk of 4 m with a limb to the right at 2 m, which bears one of its own.
@@ -374,6 +374,7 @@ fn no_input_is_a_fault() {
     for kind in [
         ToolKind::Rotate,
         ToolKind::Move,
+        ToolKind::Copy,
         ToolKind::Prune { whole: true },
         ToolKind::Regrow,
         ToolKind::Sketch { twigs: f64::NAN, tilt_deg: f64::NAN },
@@ -490,10 +491,16 @@ fn what_is_held_grows_on_from_where_it_is() {
         let edit = tool.handle(&plant, &Input::Up(down)).commit.expect("kept");
         assert!(push(&edit).0 < most);
         // What was held on to for a shorter time, and what grows elsewhere, begins anew.
-        let HandEdit::Grow { from, towards, changes, seed, .. } = edit.clone() else { panic!() };
+        let HandEdit::Grow { from, towards, changes, seed, mirror, .. } = edit.clone() else { panic!() };
         let early = changes.into_iter().filter(|c| c.round < 5).collect::<Vec<_>>();
-        let short =
-            |seed, from: GrowFrom| HandEdit::Grow { from, towards, rounds: 5, changes: early.clone(), seed };
+        let short = |seed, from: GrowFrom| HandEdit::Grow {
+            from,
+            towards,
+            rounds: 5,
+            changes: early.clone(),
+            seed,
+            mirror,
+        };
         push(&short(seed, from.clone()));
         push(&short(seed + 1, from));
         push(&edit);
@@ -602,4 +609,62 @@ fn what_is_held_on_to_for_long_stops_growing_and_stays() {
     assert!(outcome.is_done() && kept.rounds() < 60, "{outcome}, {} rounds", kept.rounds());
     let axes = shaping.into_plant().axes.len();
     assert!((1_000..10_000).contains(&axes), "{axes}");
+}
+
+#[test]
+fn a_copy_is_dropped_on_the_wood_that_is_meant_and_the_branch_stays() {
+    let plant = tree();
+    let twig = DVec3::new(1.0, 2.6, 0.0);
+    let host_of_copy = |edit: HandEdit| {
+        assert!(matches!(edit, HandEdit::Copy { .. }), "{edit:?}");
+        let copied = after(&plant, edit);
+        assert_eq!(copied.axes.len(), 4, "one more");
+        assert_eq!(copied.axis_points(AxisId::new(2)), plant.axis_points(AxisId::new(2)), "it stays");
+        let bearer = copied.axis(AxisId::new(3)).bearer.expect("borne");
+        (copied.nodes.axis[bearer.index()].index(), copied.nodes.position[bearer.index()])
+    };
+    // By the tip of a controller, and with a mouse: onto the trunk.
+    let way = [twig, DVec3::new(0.5, 2.0, 0.1), DVec3::new(0.05, 1.0, 0.1)].map(controller);
+    let mut tool = Tool::new(ToolKind::Copy);
+    let (bearer, at) = host_of_copy(drag(&mut tool, &plant, &way).commit.expect("copied"));
+    assert!(bearer == 0 && at.distance(DVec3::Y) < 0.3, "{bearer} {at}");
+    let way = [mouse(1.0, 2.6), mouse(0.5, 2.5), mouse(0.0, 3.0)];
+    let (bearer, at) = host_of_copy(drag(&mut tool, &plant, &way).commit.expect("copied"));
+    assert!(bearer == 0 && at.distance(DVec3::Y * 3.0) < 0.1, "{bearer} {at}");
+    // A click, or a hand that hardly moved, copies nothing; nothing is carried in place of the branch.
+    assert!(drag(&mut tool, &plant, &[mouse(1.0, 2.6), mouse(1.0, 2.6)]).commit.is_none());
+    let near = [twig, twig + DVec3::X * 0.01].map(controller);
+    assert!(drag(&mut tool, &plant, &near).commit.is_none());
+    tool.handle(&plant, &Input::Down(way[0]));
+    tool.handle(&plant, &Input::Move(way[2]));
+    assert!(tool.is_busy() && !tool.carries() && tool.carried(&plant).is_none());
+    tool.handle(&plant, &Input::Cancel);
+    // A stem is copied over the ground.
+    let way = [mouse(0.0, 1.0), mouse(0.8, 1.0), mouse(1.5, 1.0)];
+    let edit = drag(&mut tool, &plant, &way).commit.expect("copied");
+    let two = after(&plant, edit);
+    assert_eq!(two.axes.iter().filter(|a| a.bearer.is_none()).count(), 2);
+    assert_eq!(two.axes.len(), 6);
+}
+
+#[test]
+fn a_mirror_stands_between_the_hands_and_is_in_the_edit() {
+    let plant = tree();
+    let mirror = Mirror::between_hands(&plant, DVec3::new(3.0, 1.0, 0.0)).expect("a stem");
+    assert_eq!((mirror.point, mirror.normal), (DVec3::ZERO, DVec3::X));
+    assert!(Mirror::between_hands(&plant, DVec3::Y).is_none());
+    assert!(Mirror::between_hands(&plant, DVec3::NAN).is_none());
+    assert!(Mirror::between_hands(&Plant::default(), DVec3::X).is_none());
+    let mut tool = Tool::new(ToolKind::Sketch { twigs: 0.0, tilt_deg: 0.0 }).mirrored(Some(mirror));
+    let way = [DVec3::new(0.02, 3.0, 0.0), DVec3::new(0.5, 3.3, 0.3), DVec3::new(1.0, 3.4, 0.5)];
+    let edit = drag(&mut tool, &plant, &way.map(controller)).commit.expect("drawn");
+    let text = serde_json::to_string(&edit).expect("JSON");
+    assert_eq!(serde_json::from_str::<HandEdit>(&text).expect("read back"), edit);
+    let both = after(&plant, edit);
+    assert_eq!(both.axes.len(), 5);
+    let (one, other) = (both.axis_points(AxisId::new(3)), both.axis_points(AxisId::new(4)));
+    assert_eq!(one.len(), other.len());
+    for (p, q) in one.iter().zip(other) {
+        assert!(q.distance(DVec3::new(-p.x, p.y, p.z)) < 1e-9, "{p} {q}");
+    }
 }

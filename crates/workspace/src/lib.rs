@@ -44,7 +44,7 @@ pub use files::{FileKind, Opened};
 pub use kept::{KEPT_BYTES, SHOWN_BYTES};
 pub use record::{GESTURES_SCHEMA, GestureRecord, GestureStep, MOST_STEPS};
 pub use scatter::{Ground, Scatter};
-pub use shaping::{CarriedPose, Picked, ShapeAnswer, ShapeInput, ShapePointer, ShapeReach, ShapeStep};
+pub use shaping::{CarriedPose, Grown, Picked, ShapeAnswer, ShapeInput, ShapePointer, ShapeReach, ShapeStep};
 pub use state::{
     DocumentState, EditState, FlowerState, LeafState, MakerWord, NamedShape, ObstacleView, PenStyle,
     PhotoState, PlantState, SketchState, StrokeState, TreeState, WearState,

@@ -9,8 +9,8 @@ use burgeon::geom;
 use burgeon::glam::{DVec2, DVec3};
 use burgeon::plant::{Axis, AxisId, AxisKind, Plant};
 use burgeon::shape::{
-    self, AxisKey, Growth, HandEdit, Input, Pick, Pointer, Ray, Reach, Thumb, Tool, ToolKind, ViewPlane,
-    lean_of_thumb,
+    self, AxisKey, Growth, HandEdit, Input, Mirror, Pick, Pointer, Ray, Reach, Thumb, Tool, ToolKind,
+    ViewPlane, lean_of_thumb,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -77,6 +77,8 @@ pub enum ShapeInput {
     },
     /// A plane is placed: through its tip (without one, its origin), facing it.
     Plane(ShapePointer),
+    /// A plane of symmetry is placed: upright through the foot of the plant's longest stem, between the viewer's hands.
+    Mirror(ShapePointer),
     /// It holds on: what grows is a round older.
     Round,
     /// What grows has other numbers from now on.
@@ -104,7 +106,8 @@ pub enum ShapeStep {
     Borne,
 }
 
-/// How far beside a branch it is still meant: `metres + per_metre * distance`.
+/// How a hand reaches: how far beside a branch it is still meant, `metres + per_metre * distance`, and where it works a
+/// second time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ShapeReach {
@@ -114,6 +117,9 @@ pub struct ShapeReach {
     pub per_metre: f64,
     /// Not the branch but what bears it, so many up.
     pub bearers: u32,
+    /// A plane of symmetry: what is drawn, brushed or grown on one side is made on the other.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mirror: Option<Mirror>,
 }
 
 /// The branch that is meant.
@@ -152,8 +158,40 @@ pub struct ShapeAnswer {
     pub turned_deg: Option<f64>,
     /// The plane that was placed.
     pub plane: Option<ViewPlane>,
+    /// The plane of symmetry that was placed.
+    pub mirror: Option<Mirror>,
+    /// What grows in the hand, as far as it is shown.
+    pub grown: Option<Grown>,
     /// How what is held is moved: what is shown of it is to be moved, and is not made again before the hand lets go.
     pub carried: Option<CarriedPose>,
+}
+
+/// What grew since a hand holds on, both sides of a plane of symmetry together.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct Grown {
+    /// Its age: rounds of growth.
+    pub rounds: u32,
+    /// Branches, those shown last.
+    pub branches: usize,
+    /// Its density: branches for each metre of new wood; none before any grew.
+    pub per_metre: Option<f64>,
+}
+
+impl Grown {
+    /// `shown`: the plant with what grew, which may be of a round or two before.
+    fn of(before: &Plant, shown: Option<&Plant>, rounds: u32) -> Self {
+        let wood = |plant: &Plant| {
+            let shoots = plant.axes.iter().enumerate();
+            let shoots = shoots.filter(|(_, a)| !matches!(a.kind, AxisKind::Petiole | AxisKind::Root));
+            shoots.fold((0, 0.0), |(count, length), (i, _)| {
+                (count + 1, length + geom::polyline_length3(plant.axis_points(AxisId::new(i))))
+            })
+        };
+        let (had, now) = (wood(before), shown.map_or((0, 0.0), wood));
+        let (branches, length): (usize, f64) = (usize::saturating_sub(now.0, had.0), now.1 - had.1);
+        let per_metre = (branches > 0 && length > 0.0).then(|| branches as f64 / length);
+        Self { rounds, branches, per_metre }
+    }
 }
 
 /// How a branch and what it bears is moved: `p -> to + turn (p - from)`, metres of the plant.
@@ -181,7 +219,7 @@ impl Workspace {
         reach: ShapeReach,
         input: ShapeInput,
     ) -> Result<ShapeAnswer, WorkspaceError> {
-        let ShapeReach { metres, per_metre, bearers } = reach;
+        let ShapeReach { metres, per_metre, bearers, mirror } = reach;
         let reach = Reach { metres, per_metre, bearers };
         let id = self.must()?;
         if let ShapeInput::Walk { from, to } = input {
@@ -192,6 +230,12 @@ impl Workspace {
             let p = Pointer::from(at);
             let plane = ViewPlane::facing(p.tip.unwrap_or(p.ray.origin), -p.ray.direction, p.up);
             return Ok(ShapeAnswer { plane, ..ShapeAnswer::default() });
+        }
+        if let ShapeInput::Mirror(at) = input {
+            let p = Pointer::from(at);
+            let plant = self.shown_plant(id).ok_or(WorkspaceError::NothingToShape)?;
+            let mirror = Mirror::between_hands(plant, p.forward.cross(p.up));
+            return Ok(ShapeAnswer { mirror, ..ShapeAnswer::default() });
         }
         if tool == ToolKind::Pick {
             return Ok(self.point(id, reach, &input));
@@ -205,7 +249,7 @@ impl Workspace {
             }
             let plant = self.shown_plant(id).ok_or(WorkspaceError::NothingToShape)?.clone();
             let edits = self.editor.document().plant(id).map_or(0, |p| p.settings().edits.len());
-            let tool = Tool::new(tool).with(reach, edits as u64 + 1);
+            let tool = Tool::new(tool).with(reach, edits as u64 + 1).mirrored(mirror);
             let large = self.scene.get(id).is_some_and(|p| p.model.triangle_count() as u64 > COARSE_ABOVE);
             let (thumb, lean) = (Thumb::default(), 0.0);
             let rows = None;
@@ -217,7 +261,7 @@ impl Workspace {
         let said = match input {
             ShapeInput::Down(at) => tool.handle(plant, &Input::Down(at.into())),
             ShapeInput::Up(at) => tool.handle(plant, &Input::Up(at.into())),
-            ShapeInput::Cancel | ShapeInput::Walk { .. } | ShapeInput::Plane(_) => {
+            ShapeInput::Cancel | ShapeInput::Walk { .. } | ShapeInput::Plane(_) | ShapeInput::Mirror(_) => {
                 tool.handle(plant, &Input::Cancel)
             }
             ShapeInput::Twist(degrees) => tool.handle(plant, &Input::Twist(degrees * DEGREE)),
@@ -272,7 +316,16 @@ impl Workspace {
             Some(HandEdit::Rotate { turn, .. }) => Some(turn.degrees),
             _ => None,
         };
-        Ok(ShapeAnswer { picked, commit: said.commit, busy, again, turned_deg, carried, plane: None })
+        let grown = match now.as_deref() {
+            Some(HandEdit::Grow { rounds, .. }) if busy => {
+                let before = self.held.as_ref().map(|h| &h.before);
+                let shown = self.scene.get(id).and_then(|made| made.plant);
+                before.map(|before| Grown::of(before, shown, *rounds))
+            }
+            _ => None,
+        };
+        let commit = said.commit;
+        Ok(ShapeAnswer { picked, commit, busy, again, turned_deg, carried, grown, ..ShapeAnswer::default() })
     }
 
     /// Only looks what is under the pointer.

@@ -1,8 +1,10 @@
 /** The right side: the plant in three dimensions, turned by hand, or from the front exactly as it was drawn. */
 import * as THREE from 'three';
 import { texturesOf, type Sent } from '../protocol';
+import type { MirrorPlane } from './mirror';
 import type {
   CarriedPose,
+  Mirror,
   PlantState,
   PlantView as Seen,
   SceneView,
@@ -77,6 +79,8 @@ export class PlantView {
   /** Holds what is shown of the plant, at the size of the stage. */
   private readonly holder = new THREE.Group();
   private bones: THREE.LineSegments | undefined;
+  private mirror: MirrorPlane | undefined;
+  private wantedMirror: Mirror | undefined;
   private readonly boneLook = new THREE.LineBasicMaterial({ vertexColors: true, toneMapped: false });
   private readonly flat = new THREE.OrthographicCamera(-1, 1, 1, -1, -50, 50);
   readonly rig: Rig;
@@ -736,6 +740,17 @@ export class PlantView {
     if (!place) return undefined;
     const at = pointerOf(new THREE.Ray(tip, direction), this.rig.far, place, pressure);
     return { ...at, tip: at.origin };
+  }
+
+  /** Shows a plane of symmetry of the chosen plant, `size` metres wide; undefined: none any more. */
+  async setMirror(mirror: Mirror | undefined, size: number): Promise<void> {
+    this.wantedMirror = mirror;
+    if (mirror) this.mirror ??= new (await import('./mirror')).MirrorPlane();
+    // Another wish may have come while it loaded.
+    const wanted = this.wantedMirror;
+    this.mirror?.mesh.removeFromParent();
+    if (wanted && this.mirror) this.lieOnPlant(this.mirror.place(wanted, size));
+    this.redraw();
   }
 
   /** Lays something whose coordinates are those of the chosen plant onto it. */

@@ -3,15 +3,17 @@
  * settings and history. What a tool does is the core's.
  */
 import * as THREE from 'three';
-import type { Shaping, SpaceReach } from '../shaping';
+import { grownText, type Shaping, type SpaceReach } from '../shaping';
 import { setSetting, setting } from '../store';
 import { t, type TextKey } from '../text';
 import { SHAPE_TOOLS, type ShapeTool } from '../tools';
+import { hearNotes } from '../ui';
 import type { PlantView } from '../view/view';
-import type { Growth, ShapePointer, ViewPlane } from '../wire';
+import type { Growth, Obstacle, ShapeAnswer, ShapePointer, ViewPlane } from '../wire';
 import { Controller, type Part } from './controller';
-import { Labels } from './labels';
+import { Labels, Readout } from './labels';
 import { Lesson } from './lesson';
+import { Placing } from './placing';
 import { SNAP, World } from './world';
 import { type Key, Wrist } from './wrist';
 
@@ -25,6 +27,17 @@ export interface HeadsetEvents {
   /** Another plant like the chosen one, beside it. */
   copy(): void;
   run(command: 'dice' | 'guide-grid' | 'guide-staff' | 'save'): void;
+  /** Writes the scene as a model. */
+  model(): void;
+  /** Works on the next plant, the one before, or (0) this one; which it is then. */
+  select(by: -1 | 0 | 1): { name: string; number: number; count: number } | undefined;
+  /** Another plant of the same kind beside the others; it is worked on. */
+  add(): void;
+  /** How many obstacles the chosen plant has; undefined where it can have none. */
+  obstacles(): number | undefined;
+  obstruct(shape: Obstacle): void;
+  /** Takes the last obstacle away. */
+  clear(): void;
   /** It was entered, or left. */
   changed(on: boolean): void;
 }
@@ -93,7 +106,9 @@ export class Headset {
   /** The pair of numbers that the stick turns. */
   private pair = 0;
   /** Which keys the wrist has. */
-  private page: 'tools' | 'more' = 'tools';
+  private page: 'tools' | 'more' | 'scene' = 'tools';
+  private readonly readout = new Readout();
+  private readonly placing = new Placing();
   private lostAt = 0;
   private readonly lesson = new Lesson(Number(setting('vr.lesson')) || 0, (done) =>
     setSetting('vr.lesson', String(done)),
@@ -108,7 +123,8 @@ export class Headset {
     private readonly events: HeadsetEvents,
   ) {
     const { rig } = this.world;
-    for (const thing of [this.wrist.board, this.pointerLine, ...this.tips, this.dark]) rig.add(thing);
+    for (const thing of [this.wrist.board, this.pointerLine, ...this.tips, this.dark, this.readout.sprite])
+      rig.add(thing);
     for (const thing of [this.pointerLine, this.trace, this.lit]) thing.frustumCulled = false;
     this.lit.renderOrder = this.trace.renderOrder = 9;
     this.dark.renderOrder = 20;
@@ -141,7 +157,9 @@ export class Headset {
     });
     for (const source of session.inputSources) this.come(source);
     this.shaping.onLight = (points) => this.light(points);
-    this.shaping.onHeard = (answer) => this.heard(answer.turned_deg);
+    this.shaping.onHeard = (answer) => this.heard(answer);
+    // What the page notes is not seen in here.
+    hearNotes((text) => this.wrist.say(text));
     this.shaping.onPlane = (plane, size) => this.showPlane(plane, size);
     this.label();
     const floor = await session.requestReferenceSpace('local-floor').then(
@@ -182,6 +200,9 @@ export class Headset {
     this.controllers.clear();
     this.light(undefined);
     this.shaping.onLight = this.shaping.onHeard = this.shaping.onPlane = () => {};
+    hearNotes(undefined);
+    this.placing.put(undefined);
+    this.readout.say(undefined);
     this.sheet.removeFromParent();
     for (const labels of this.labels) labels.dispose();
     this.labels = [];
@@ -229,6 +250,7 @@ export class Headset {
   private show(tool: Controller | undefined, menu: Controller | undefined): void {
     this.wrist.board.visible = menu?.tracked ?? false;
     if (menu?.tracked) this.wrist.follow(menu.grip);
+    this.readout.follow(tool);
     [tool, menu].forEach((hand, i) => {
       const tip = this.tips[i]!;
       tip.visible = hand?.tracked ?? false;
@@ -274,7 +296,8 @@ export class Headset {
 
   private work(hand: Controller): void {
     const { shaping } = this;
-    const board = this.working ? undefined : this.wrist.meet(hand.tip, hand.direction);
+    const busy = this.working !== undefined || this.placing.isDrawn;
+    const board = busy ? undefined : this.wrist.meet(hand.tip, hand.direction);
     this.wrist.point(board?.key);
     this.pointTo(hand, board?.distance);
     if (!this.shaping.isGrowing) {
@@ -287,7 +310,7 @@ export class Headset {
     if (board) {
       if (hand.pressed('trigger') && board.key) {
         hand.pulse(0.5, 20);
-        board.key.act();
+        board.key.act(hand);
         this.showKeys();
       }
       return;
@@ -298,6 +321,10 @@ export class Headset {
       return;
     }
     const at = hand.tracked ? this.pointer(hand) : undefined;
+    if (!working && this.placing.isOn) {
+      this.obstruct(hand, at);
+      return;
+    }
     if (!working && shaping.word === 'silhouette' && hand.holds('grip')) {
       // The plane goes with the hand until the grip is let go.
       if (at && this.frames % 3 === 0) void shaping.placePlane(at);
@@ -345,7 +372,7 @@ export class Headset {
       // The trigger is taken: the lower button presses keys.
       if (!meant || !hand.pressed('lower')) return;
       hand.pulse(0.5, 20);
-      meant.act();
+      meant.act(hand);
       return;
     }
     this.wrist.say(shaping.growthText(up, aside));
@@ -378,6 +405,25 @@ export class Headset {
     this.lostAt = 0;
     working.hand.pulse(0.9, 40);
     void this.shaping.end(at ?? working.last);
+    this.showKeys();
+  }
+
+  /** An obstacle is drawn out with the trigger; the grip lays it down. */
+  private obstruct(hand: Controller, at: ShapePointer | undefined): void {
+    const { placing } = this;
+    if (hand.pressed('grip')) placing.put(undefined);
+    else if (hand.released('trigger')) {
+      const shape = placing.end(3 * this.reach().metres);
+      if (!shape) return;
+      hand.pulse(0.9, 40);
+      this.events.obstruct(shape);
+    } else if (at) {
+      if (hand.pressed('trigger')) {
+        hand.pulse(0.7, 30);
+        this.view.lieOnPlant(placing.begin(at.origin));
+      } else placing.follow(at.origin);
+      return;
+    } else return;
     this.showKeys();
   }
 
@@ -444,6 +490,8 @@ export class Headset {
       labels: this.labels.reduce((sum, l) => sum + l.shown, 0),
       step: this.lesson.step ?? '',
       plane: this.shaping.plane !== undefined,
+      read: this.readout.text,
+      page: this.page,
       hand: tool?.isHand ?? false,
     };
     document.body.dataset['vr'] = JSON.stringify(state);
@@ -452,8 +500,28 @@ export class Headset {
 
   // What is told --------------------------------------------------------------------------------------------------
 
-  private heard(degrees: number | null | undefined): void {
-    if (typeof degrees === 'number') this.wrist.say(`${degrees.toFixed(1)}°`);
+  private heard({ turned_deg: degrees, grown, busy }: ShapeAnswer): void {
+    if (degrees !== null) this.wrist.say(`${degrees.toFixed(1)}°`);
+    this.readout.say(grown && busy ? grownText(grown) : undefined);
+  }
+
+  /** Which plant is worked on. */
+  private tellPlant(by: -1 | 0 | 1): void {
+    const plant = this.events.select(by);
+    if (plant) this.wrist.say(t('vr.plant.is', plant));
+  }
+
+  /** A switch: the sides are those of who looks now. */
+  private async mirror(at: ShapePointer | undefined): Promise<void> {
+    await this.shaping.mirror(this.shaping.isMirrored ? undefined : at);
+    this.wrist.say(t(this.shaping.isMirrored ? 'vr.mirror.on' : 'vr.mirror.off'));
+    this.showKeys();
+  }
+
+  private place(kind: 'ball' | 'box'): void {
+    const could = this.events.obstacles() !== undefined;
+    this.placing.put(could && this.placing.kind !== kind ? kind : undefined);
+    this.wrist.say(t(could ? 'vr.place' : 'vr.place.tree'));
   }
 
   /** Lights the branch that is meant. */
@@ -480,7 +548,7 @@ export class Headset {
         this.wrist.say(t(`shape.${word}` as TextKey));
       },
     });
-    const key = (id: string, wide: number, act: () => void, on = false): Key => ({
+    const key = (id: string, wide: number, act: Key['act'], on = false): Key => ({
       id,
       label: t(`vr.${id}` as TextKey),
       wide,
@@ -506,29 +574,57 @@ export class Headset {
     }
     const turn = key(
       'more',
-      6,
+      3,
       () => {
         this.page = this.page === 'more' ? 'tools' : 'more';
       },
       this.page === 'more',
     );
+    const scene = key(
+      'scene',
+      3,
+      () => {
+        this.page = this.page === 'scene' ? 'tools' : 'scene';
+        this.tellPlant(0);
+      },
+      this.page === 'scene',
+    );
+    if (this.page === 'scene') {
+      const { placing } = this;
+      this.wrist.set([
+        [key('plant.before', 3, () => this.tellPlant(-1)), key('plant.next', 3, () => this.tellPlant(1))],
+        [key('plant.add', 3, this.events.add), key('copy', 3, this.events.copy)],
+        [
+          key('ball', 3, () => this.place('ball'), placing.kind === 'ball'),
+          key('box', 3, () => this.place('box'), placing.kind === 'box'),
+        ],
+        [
+          key('clear', 6, () => {
+            if (this.events.obstacles()) this.events.clear();
+            else this.wrist.say(t('vr.place.none'));
+          }),
+        ],
+        [key('save', 3, () => this.events.run('save')), key('glb', 3, this.events.model)],
+        [turn, scene],
+      ]);
+      return;
+    }
     if (this.page === 'more') {
       const species = (by: 1 | -1) => () => {
         void this.events.species(by).then((name) => this.wrist.say(name ?? t('vr.species.none')));
       };
       this.wrist.set([
         [key('before', 3, species(-1)), key('next', 3, species(1))],
-        [key('dice', 3, () => this.events.run('dice')), key('copy', 3, this.events.copy)],
+        [key('dice', 6, () => this.events.run('dice'))],
         [
           key('grid', 3, () => this.events.run('guide-grid')),
           key('staff', 3, () => this.events.run('guide-staff')),
         ],
         [
           key('plane', 3, () => void shaping.placePlane(undefined), shaping.plane !== undefined),
-          key('save', 3, () => this.events.run('save')),
+          key('lesson', 3, () => this.startLesson()),
         ],
-        [key('lesson', 6, () => this.startLesson())],
-        [turn],
+        [turn, scene],
       ]);
       return;
     }
@@ -537,13 +633,14 @@ export class Headset {
       tools.slice(0, 3),
       tools.slice(3, 6),
       tools.slice(6, 9),
-      tools.slice(9).map((one) => ({ ...one, wide: 6 })),
+      tools.slice(9).map((one) => ({ ...one, wide: 3 })),
       [
-        key('undo', 3, () => {
+        key('undo', 2, () => {
           this.events.undo();
           this.did('undo');
         }),
-        key('redo', 3, this.events.redo),
+        key('redo', 2, this.events.redo),
+        key('mirror', 2, (hand) => void this.mirror(this.pointer(hand)), shaping.isMirrored),
       ],
       ...(shaping.word === 'grow'
         ? growth
@@ -574,7 +671,7 @@ export class Headset {
         key('higher', 2, () => this.sit(SEAT_M)),
         key('leave', 2, () => void this.leave()),
       ],
-      [turn],
+      [turn, scene],
     ]);
   }
 

@@ -84,8 +84,45 @@ export class Labels {
   }
 }
 
+/** What grows in the hand, in numbers beside it. */
+export class Readout {
+  private readonly canvas = document.createElement('canvas');
+  readonly sprite = new THREE.Sprite(spriteOf(this.canvas));
+  private said: string | undefined;
+
+  constructor() {
+    this.sprite.scale.set(2 * SIZE[0], 2 * SIZE[1], 1);
+    this.sprite.renderOrder = 11;
+    this.sprite.visible = false;
+  }
+
+  /** Undefined: nothing is to be read. */
+  say(text: string | undefined): void {
+    if (text === this.said) return;
+    this.said = text;
+    if (text === undefined) return;
+    write(this.canvas, text);
+    this.sprite.material.map!.needsUpdate = true;
+  }
+
+  get text(): string {
+    return this.said ?? '';
+  }
+
+  /** Every frame: above the hand that works, or its fingers. */
+  follow(hand: Controller | undefined): void {
+    this.sprite.visible = this.said !== undefined && (hand?.tracked ?? false);
+    if (hand) this.sprite.position.copy(hand.tip).setY(hand.tip.y + 0.06);
+  }
+}
+
 function written(text: string): THREE.SpriteMaterial {
   const canvas = document.createElement('canvas');
+  write(canvas, text);
+  return spriteOf(canvas);
+}
+
+function write(canvas: HTMLCanvasElement, text: string): void {
   [canvas.width, canvas.height] = PIXELS;
   const pen = canvas.getContext('2d');
   if (pen) {
@@ -102,6 +139,9 @@ function written(text: string): THREE.SpriteMaterial {
     }
     pen.fillText(text, PIXELS[0] / 2, PIXELS[1] / 2, PIXELS[0] - 60);
   }
+}
+
+function spriteOf(canvas: HTMLCanvasElement): THREE.SpriteMaterial {
   const map = new THREE.CanvasTexture(canvas);
   map.colorSpace = THREE.SRGBColorSpace;
   return new THREE.SpriteMaterial({ map, transparent: true, depthTest: false, toneMapped: false });

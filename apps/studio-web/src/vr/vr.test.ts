@@ -2,6 +2,7 @@ import * as THREE from 'three';
 import { describe, expect, it } from 'vitest';
 import { Controller, indexOf, Pinch, Track } from './controller';
 import { Lesson } from './lesson';
+import { obstacleOf } from './placing';
 import { World } from './world';
 import { layOut } from './wrist';
 
@@ -27,6 +28,30 @@ describe('a controller', () => {
     expect(track.read(v(0.1, 1, 0)), 'one frame astray').toBe('here');
     const far = Array.from({ length: 6 }, () => track.read(v(3, 1, 0)));
     expect(far).toEqual(['lost', 'lost', 'lost', 'lost', 'jumped', 'here']);
+  });
+});
+
+describe('an obstacle that is drawn out', () => {
+  it('is a ball about its middle or a box between corners, whichever way the hand goes', () => {
+    expect(obstacleOf('ball', [1, 2, 3], [1, 2, 3.5], 0.1)).toEqual({
+      shape: 'sphere',
+      centre: [1, 2, 3],
+      radius_m: 0.5,
+    });
+    const box = { shape: 'box', min: [0, 0, 0], max: [1, 2, 3] };
+    expect(obstacleOf('box', [0, 2, 0], [1, 0, 3], 0.1)).toEqual(box);
+    expect(obstacleOf('box', [1, 0, 3], [0, 2, 0], 0.1)).toEqual(box);
+  });
+
+  it('has a size of its own where the hand stays, and is nowhere flat', () => {
+    expect(obstacleOf('ball', [0, 1, 0], [0, 1, 0.01], 0.2)).toMatchObject({ radius_m: 0.2 });
+    expect(obstacleOf('box', [0, 1, 0], [0, 1, 0], 0.2)).toEqual({
+      shape: 'box',
+      min: [-0.1, 0.9, -0.1],
+      max: [0.1, 1.1, 0.1],
+    });
+    const flat = obstacleOf('box', [0, 1, 0], [2, 1, 0], 0.2);
+    expect(flat).toEqual({ shape: 'box', min: [0, 0.95, -0.05], max: [2, 1.05, 0.05] });
   });
 });
 

@@ -1,5 +1,6 @@
 /** A board at the wrist of the hand that does not work: tools, undo, how large one is. Pressed with the other hand. */
 import * as THREE from 'three';
+import type { Controller } from './controller';
 
 export interface Key {
   readonly id: string;
@@ -7,7 +8,8 @@ export interface Key {
   /** Columns that it takes of `COLUMNS`. */
   readonly wide: number;
   readonly on?: boolean;
-  readonly act: () => void;
+  /** `hand`: that which presses it. */
+  readonly act: (hand: Controller) => void;
 }
 
 const COLUMNS = 6;

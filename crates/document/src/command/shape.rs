@@ -37,6 +37,7 @@ impl ShapeCommand {
             Self::Add(edit) => match &**edit {
                 HandEdit::Rotate { .. } => "shape-rotate",
                 HandEdit::Move { .. } => "shape-move",
+                HandEdit::Copy { .. } => "shape-copy",
                 HandEdit::Prune { .. } => "shape-prune",
                 HandEdit::Regrow { .. } => "shape-regrow",
                 HandEdit::SketchBranch { .. } => "shape-sketch",

@@ -13,12 +13,17 @@ use super::room::{Guide, Room};
 const POOL: usize = 4096;
 /// The cell of a marker that found no room.
 const NOWHERE: u64 = u64::MAX;
+/// 2^52: numbers from here to its double are whole.
+const WHOLE: f64 = 4_503_599_627_370_496.0;
+/// A tile of the grid is 4 cells long, wide and high: so many bits number those in it.
+const TILE: u32 = 6;
 
 /// A marker in the frame of a bud: its heading, side and across.
 #[derive(Clone, Copy, Debug)]
 struct Sample {
     way: DVec3,
-    distance: f64,
+    /// As far along its way as it is.
+    place: DVec3,
     weight: f64,
 }
 
@@ -49,7 +54,7 @@ pub(super) struct Stand {
 pub(super) struct Grid {
     from: DVec3,
     per_m: f64,
-    cells: [u64; 3],
+    tiles: [u64; 3],
 }
 
 /// The markers of some buds.
@@ -98,11 +103,8 @@ impl Cone {
             let (s, around) = ((1.0 - c * c).max(0.0).sqrt(), ops::sin_cos(TAU * stream.uniform()));
             let distance = ops::cbrt(ops::lerp(near3, far3, stream.uniform()));
             let x = (distance - mean) / sigma;
-            Sample {
-                way: DVec3::new(c, s * around.1, s * around.0),
-                distance,
-                weight: ops::exp(-0.5 * x * x),
-            }
+            let way = DVec3::new(c, s * around.1, s * around.0);
+            Sample { way, place: way * distance, weight: ops::exp(-0.5 * x * x) }
         };
         // Its first ones once more at its end: those of a bud follow one another.
         let mut pool: Vec<Sample> = (0..POOL.max(markers)).map(sample).collect();
@@ -121,8 +123,8 @@ impl Cone {
         let (lo, hi) = places.fold(none, |(lo, hi), p| (lo.min(p), hi.max(p)));
         let (from, per_m) = (lo - self.far - self.cell, 1.0 / self.cell);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
-        let cells = ((hi + self.far - from) * per_m).to_array().map(|n| n as u64 + 2);
-        Grid { from, per_m, cells }
+        let tiles = ((hi + self.far - from) * per_m).to_array().map(|n| (n as u64 >> 2) + 2);
+        Grid { from, per_m, tiles }
     }
 
     /// The markers of buds, but for those that find no room.
@@ -135,9 +137,14 @@ impl Cone {
             let across = stand.heading.cross(stand.side);
             let (side, across) = (stand.side * cos + across * sin, across * cos - stand.side * sin);
             batch.turned.push((first, side, across));
-            batch.cells.extend(self.samples(first).map(|s| {
-                let way = stand.heading * s.way.x + side * s.way.y + across * s.way.z;
-                let p = stand.at + way * s.distance;
+            let samples = self.samples(first);
+            if room.is_open(stand.at, self.far) {
+                let of = grid.turned(stand.at, [stand.heading, side, across]);
+                batch.cells.extend(samples.map(|s| of.cell(s.place)));
+                continue;
+            }
+            batch.cells.extend(samples.map(|s| {
+                let p = stand.at + stand.heading * s.place.x + side * s.place.y + across * s.place.z;
                 let guide = room.at(p, &mut near);
                 if room.is_guided() {
                     batch.guides.push(guide.unwrap_or(Guide { weight: 0.0, along: DVec3::ZERO }));
@@ -159,17 +166,19 @@ impl Cone {
     /// over them of what their cells hold estimates that over the cone. Cost: linear in markers.
     pub(super) fn sums(&self, grid: &Grid, batches: &mut [Batch], headings: &[DVec3]) -> Vec<Sums> {
         let mut sums = Vec::with_capacity(headings.len());
-        let mut held = vec![Held::default(); grid.number(batches)];
+        let cells = grid.number(batches);
+        let mut held = vec![Held::default(); cells];
         for batch in &*batches {
             sums.extend((0..batch.turned.len()).map(|k| self.meet(batch, k, &mut held)));
         }
-        held.fill(Held::default());
+        drop(held);
+        let mut held = vec![0.0; cells];
         let all = batches.iter().flat_map(|batch| (0..batch.turned.len()).map(move |k| (batch, k)));
         let all: Vec<_> = all.zip(headings).collect();
         for (sum, ((batch, k), heading)) in sums.iter_mut().zip(all).rev() {
             let (_, side, across) = batch.turned[k];
             let world = |v: DVec3| heading * v.x + side * v.y + across * v.z;
-            sum.push = world(sum.push + self.meet(batch, k, &mut held).push) * self.share;
+            sum.push = world(sum.push + self.meet_younger(batch, k, &mut held)) * self.share;
             sum.older *= self.share;
             sum.pull = world(sum.pull);
             for (g, _) in self.guides(batch, k) {
@@ -221,31 +230,79 @@ impl Cone {
         });
         sums
     }
+
+    /// How what its markers meet pushes a bud, in its frame; then they are held, too.
+    fn meet_younger(&self, batch: &Batch, k: usize, held: &mut [f64]) -> DVec3 {
+        let mut push = DVec3::ZERO;
+        self.placed(batch, k, |way, _, cell| push += way * held[cell]);
+        self.placed(batch, k, |_, weight, cell| held[cell] += weight);
+        push
+    }
+}
+
+/// A bud's frame in a grid, in cells.
+struct Turned<'a> {
+    grid: &'a Grid,
+    at: DVec3,
+    frame: [DVec3; 3],
+}
+
+impl Turned<'_> {
+    fn cell(&self, p: DVec3) -> u64 {
+        let [heading, side, across] = self.frame;
+        self.grid.at(self.at + heading * p.x + side * p.y + across * p.z)
+    }
 }
 
 impl Grid {
+    /// The tile of a place, and the cell in it.
     fn cell(&self, p: DVec3) -> u64 {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
-        let [x, y, z] = ((p - self.from) * self.per_m).to_array().map(|n| n as i64 as u64);
-        let [nx, ny, _] = self.cells;
-        x.wrapping_add(nx.wrapping_mul(y.wrapping_add(ny.wrapping_mul(z)))) & (NOWHERE >> 1)
+        self.at((p - self.from) * self.per_m - 0.5)
     }
 
-    /// Numbers the cells of markers from 0 where most of the grid is empty; how many cells there are then.
+    /// The same for many places about a bud, given in its frame.
+    fn turned(&self, at: DVec3, frame: [DVec3; 3]) -> Turned<'_> {
+        Turned { grid: self, at: (at - self.from) * self.per_m - 0.5, frame: frame.map(|v| v * self.per_m) }
+    }
+
+    /// Of half a cell before a place, in cells.
+    fn at(&self, place: DVec3) -> u64 {
+        // The nearest whole numbers, as the last bits of a number that has no room for others: far faster than a cast.
+        let [x, y, z] = (place + WHOLE).to_array().map(|n| n.to_bits() & (NOWHERE >> 12));
+        let [nx, ny, _] = self.tiles;
+        let inner = (x & 3) | (y & 3) << 2 | (z & 3) << 4;
+        let [x, y, z] = [x >> 2, y >> 2, z >> 2];
+        let tile = x.wrapping_add(nx.wrapping_mul(y.wrapping_add(ny.wrapping_mul(z))));
+        (tile << TILE | inner) & (NOWHERE >> 1)
+    }
+
+    /// Numbers the tiles in which markers lie from 0, in the order in which buds come to them: most of the grid is empty,
+    /// and what buds beside one another look at lies together. How many cells there are then.
     fn number(&self, batches: &mut [Batch]) -> usize {
         let markers: usize = batches.iter().map(|b| b.cells.len()).sum();
-        let all = self.cells.iter().try_fold(1_u64, |n, &side| n.checked_mul(side));
-        if let Some(all) = all.and_then(|n| usize::try_from(n).ok()).filter(|&n| n <= 8 * markers + 65_536) {
-            return all;
+        let all = self.tiles.iter().try_fold(1_u64, |n, &side| n.checked_mul(side));
+        let all = all.and_then(|n| usize::try_from(n).ok()).filter(|&n| n <= markers + 65_536);
+        let cells = || batches.iter().flat_map(|b| &b.cells).filter(|c| **c != NOWHERE);
+        // A grid that is nearly empty, as of trees far apart: only its tiles that are met.
+        let mut met: Vec<u64> = Vec::new();
+        if all.is_none() {
+            met = cells().map(|c| c >> TILE).collect();
+            met.sort_unstable();
+            met.dedup();
         }
-        let mut met: Vec<u64> =
-            batches.iter().flat_map(|b| &b.cells).copied().filter(|c| *c != NOWHERE).collect();
-        met.sort_unstable();
-        met.dedup();
+        let mut numbers = vec![u32::MAX; all.unwrap_or(met.len())];
+        let mut next = 0;
         for cell in batches.iter_mut().flat_map(|b| &mut b.cells).filter(|c| **c != NOWHERE) {
-            *cell = met.partition_point(|m| m < cell) as u64;
+            let tile = *cell >> TILE;
+            let row = if all.is_some() { tile as usize } else { met.partition_point(|m| *m < tile) };
+            let Some(number) = numbers.get_mut(row) else { continue };
+            if *number == u32::MAX {
+                *number = next;
+                next += 1;
+            }
+            *cell = u64::from(*number) << TILE | (*cell & ((1 << TILE) - 1));
         }
-        met.len()
+        (next as usize) << TILE
     }
 }
 
@@ -262,8 +319,8 @@ mod tests {
         let placed = |k: usize| {
             let (_, side, across) = batch.turned[k];
             cone.samples(batch.turned[k].0).map(move |s| {
-                let way = stands[k].heading * s.way.x + side * s.way.y + across * s.way.z;
-                (stands[k].at + way * s.distance, s.weight)
+                let turned = stands[k].heading * s.place.x + side * s.place.y + across * s.place.z;
+                (stands[k].at + turned, s.weight)
             })
         };
         let of = |a: usize| {

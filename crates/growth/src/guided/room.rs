@@ -136,6 +136,16 @@ impl Room {
         }
     }
 
+    /// Whether a marker may be anywhere in a ball, and nothing guides it there; false where that is not sure.
+    pub(super) fn is_open(&self, p: DVec3, radius: f64) -> bool {
+        self.tubes.is_none()
+            && self.obstacles.is_empty()
+            && self
+                .region
+                .as_ref()
+                .is_none_or(|(region, roots)| roots.iter().any(|r| region.contains_ball(p - *r, radius)))
+    }
+
     /// What growth goes around.
     pub(super) const fn obstacles(&self) -> &Obstacles {
         &self.obstacles

@@ -201,3 +201,84 @@ fn a_record_that_is_cut_off_or_hostile_says_so() {
         assert!(look(&mut s)["error"].is_null());
     }
 }
+
+#[test]
+fn a_copy_and_both_sides_of_a_mirror_are_done_again_from_a_record() {
+    let (mut first, (x, y)) = bush();
+    let plain = look(&mut first)["item"]["digest"].clone();
+    // Between the hands of somebody who looks along -z.
+    let placed = hand(&mut first, r#""rotate""#, &format!(r#"{{"mirror":{}}}"#, at(x, y)));
+    let mirror = placed["mirror"].to_string();
+    assert_eq!(placed["mirror"]["normal"], serde_json::json!([1.0, 0.0, 0.0]), "{placed}");
+    let both = REACH.replace('}', &format!(r#","mirror":{mirror}}}"#));
+    let tip = |x: f64, y: f64, z: f64| {
+        at(x, y).replace(r#""pressure":1"#, &format!(r#""pressure":1,"tip":[{x},{y},{z}]"#))
+    };
+    let step = |tool: &str, reach: &str, input: &str| {
+        format!(r#"{{"tool":{tool},"reach":{reach},"input":{input}}}"#)
+    };
+    let draw = r#"{"sketch":{"twigs":1,"tilt_deg":0}}"#;
+    let copy = r#""copy""#;
+    let steps = [
+        step(copy, REACH, &format!(r#"{{"down":{}}}"#, at(x, y))),
+        step(copy, REACH, &format!(r#"{{"move":[{}]}}"#, tip(0.1, 0.9, 0.1))),
+        step(copy, REACH, &format!(r#"{{"up":{}}}"#, tip(0.0, 0.8, 0.0))),
+        step(draw, &both, &format!(r#"{{"down":{}}}"#, tip(0.0, 1.2, 0.0))),
+        step(draw, &both, &format!(r#"{{"move":[{}]}}"#, tip(0.4, 1.5, 0.2))),
+        step(draw, &both, &format!(r#"{{"up":{}}}"#, tip(0.9, 1.9, 0.3))),
+    ];
+    let record = format!(r#"{{"schema":"{GESTURES_SCHEMA}","steps":[{}]}}"#, steps.join(","));
+    let record = GestureRecord::read(record.as_bytes()).unwrap();
+    assert_eq!(first.replay(&record, &run()).unwrap(), 2);
+    let done = look(&mut first)["item"].clone();
+    let told: Vec<&str> =
+        done["edits"].as_array().unwrap().iter().map(|e| e["said"].as_str().unwrap()).collect();
+    assert!(told.iter().all(|said| said.contains("grown")), "{told:?}");
+    let (mut second, _) = bush();
+    assert_eq!(second.replay(&record, &run()).unwrap(), 2);
+    assert_eq!(look(&mut second)["item"]["digest"], done["digest"]);
+    for _ in 0..2 {
+        assert!(second.undo().is_some());
+    }
+    assert_eq!(look(&mut second)["item"]["digest"], plain);
+    // A mirror that is none is refused, and changes nothing.
+    let flat = GestureRecord {
+        steps: record.steps[3..]
+            .iter()
+            .map(|s| {
+                let mirror = s.reach.mirror.map(|m| burgeon::shape::Mirror { normal: DVec3::ZERO, ..m });
+                GestureStep { reach: crate::ShapeReach { mirror, ..s.reach }, ..s.clone() }
+            })
+            .collect(),
+        ..record.clone()
+    };
+    assert!(second.replay(&flat, &run()).is_err());
+    second.let_go();
+    assert_eq!(look(&mut second)["item"]["digest"], plain);
+}
+
+#[test]
+fn what_grows_in_the_hand_says_how_old_and_how_dense_it_is() {
+    let (mut s, _) = bush();
+    let tool = r#"{"grow":{"vigour":2,"apical":0.54,"angle_deg":55,"lift":0.12,"apart":1}}"#;
+    let first = hand(&mut s, tool, &format!(r#"{{"down":{}}}"#, at(0.0, 1.0)));
+    assert_eq!((&first["grown"]["rounds"], &first["grown"]["branches"]), (&1.into(), &0.into()));
+    assert_eq!(first["grown"]["per_metre"], Value::Null);
+    let mut told = Vec::new();
+    for round in 2..12 {
+        look(&mut s);
+        let answer = hand(&mut s, tool, r#""round""#);
+        assert_eq!(answer["grown"]["rounds"], round);
+        told.push(answer["grown"]["branches"].as_u64().unwrap());
+    }
+    look(&mut s);
+    let last = hand(&mut s, tool, r#""round""#)["grown"].clone();
+    assert!(told.windows(2).all(|w| w[1] >= w[0]) && told[9] > 5, "{told:?}");
+    let density = last["per_metre"].as_f64().unwrap();
+    assert!((0.2..50.0).contains(&density), "{density}");
+    let up = hand(&mut s, tool, &format!(r#"{{"up":{}}}"#, at(0.0, 1.0)));
+    assert_eq!(up["grown"], Value::Null);
+    s.ask(&format!(r#"{{"shape":[1,{{"add":{}}}]}}"#, up["commit"])).unwrap();
+    let added = look(&mut s)["item"]["edits"][0]["changed"]["added"].as_u64().unwrap();
+    assert!(added >= last["branches"].as_u64().unwrap(), "{added} {last}");
+}
