@@ -14,7 +14,9 @@ use burgeon_bench::{Stopwatch, table1};
 
 fn main() {
     let sketch = table1("a");
-    for (name, drawing) in [("blades, lines and rings", grid(4990)), ("sketch a, again and again", again(&sketch))] {
+    for (name, drawing) in
+        [("blades, lines and rings", grid(4990)), ("sketch a, again and again", again(&sketch))]
+    {
         println!("{name}: {} strokes", drawing.strokes.len());
         println!("              ms  preprocess  classify  structure  depth  mesh  triangles");
         let (mut evaluator, mut drawing) = (Evaluator::default(), drawing);
@@ -23,7 +25,8 @@ fn main() {
             drawing.strokes.push(line(&drawing, 0.3 + 0.1 * f64::from(k)));
             let item = step("one more", &mut evaluator, &drawing);
             let mut fresh = Evaluator::default();
-            let anew = fresh.update(&drawing, &SketchOptions::default(), Seed::new(1), &Run::plain()).unwrap();
+            let anew =
+                fresh.update(&drawing, &SketchOptions::default(), Seed::new(1), &Run::plain()).unwrap();
             assert!(item.digest == anew.digest && item.strokes == anew.strokes);
             assert!(evaluator.model() == fresh.model() && evaluator.plant() == fresh.plant());
         }
@@ -47,7 +50,8 @@ fn step(what: &str, evaluator: &mut Evaluator, drawing: &Drawing) -> ItemReport 
 /// A short line within the drawing.
 fn line(drawing: &Drawing, across: f64) -> Stroke {
     let places = || drawing.strokes.iter().flat_map(|s| &s.samples).map(|s| s.at);
-    let (low, high) = (places().fold(DVec2::INFINITY, DVec2::min), places().fold(DVec2::NEG_INFINITY, DVec2::max));
+    let (low, high) =
+        (places().fold(DVec2::INFINITY, DVec2::min), places().fold(DVec2::NEG_INFINITY, DVec2::max));
     let from = low + (high - low) * DVec2::new(across, 0.5);
     let step = 0.002 * (high - low).length();
     let points = (0..12).map(|i| from + step * f64::from(i) * DVec2::new(0.3, 1.0));

@@ -711,7 +711,8 @@ fn ranks(shapes: &[Arc<Shape>]) -> Vec<f64> {
 
 /// Where a stroke is looked up.
 fn places(s: &Shape) -> [(f64, f64); 3] {
-    [s.first(), s.points[s.points.len() / 2], s.last()].map(|p| ((p.x * CELLS).floor(), (p.y * CELLS).floor()))
+    [s.first(), s.points[s.points.len() / 2], s.last()]
+        .map(|p| ((p.x * CELLS).floor(), (p.y * CELLS).floor()))
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "ink coordinates lie in [0, 1]; `as` saturates")]
@@ -740,12 +741,7 @@ fn grid(shapes: &[Arc<Shape>]) -> Grid {
 /// For each stroke the others that it is compared with, ascending: all of them in a sketch, else the longest of
 /// the drawing and a bounded number of neighbours. Those of strokes of which neither they nor their cells changed are
 /// taken over.
-fn companions(
-    shapes: &[Arc<Shape>],
-    same: &[bool],
-    whole: &Whole,
-    kept: &KeptMeasures,
-) -> Vec<Arc<[usize]>> {
+fn companions(shapes: &[Arc<Shape>], same: &[bool], whole: &Whole, kept: &KeptMeasures) -> Vec<Arc<[usize]>> {
     let n = shapes.len();
     if n <= COMPANIONS + 1 {
         return (0..n).map(|i| (0..n).filter(|&j| j != i).collect()).collect();
