@@ -530,7 +530,12 @@ fn no_scans(args: &BloomRunArgs, name: &str) -> Outcome {
     // An animation moves its vertices itself.
     let film =
         args.day.is_none() && files::extension(&args.output).is_some_and(|e| e.eq_ignore_ascii_case("glb"));
-    given.only_if(wind && !film, &["wind"], "models of one day as .glb (--day) or .usda", "none is made")?;
+    given.only_if(
+        wind && !film,
+        &["wind"],
+        "models of one day as .glb (--day), .usda or .usdz",
+        "none is made",
+    )?;
     given.check_axes(!written.fixed_axes())
 }
 

@@ -49,7 +49,7 @@ pub(crate) fn convert(args: &ConvertArgs) -> Outcome {
         (Kind::Model(_), true) => {
             return Err(Failure::at(
                 &args.output,
-                "a model converts to .glb, .obj, .ply, .stl or .usda, not to a drawing",
+                "a model converts to .glb, .obj, .ply, .stl, .usda or .usdz, not to a drawing",
             ));
         }
     };

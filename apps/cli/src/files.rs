@@ -347,7 +347,7 @@ pub(crate) fn writable(path: &Path) -> Outcome<ModelFormat> {
         Some(format) => Ok(format),
         None => Err(Failure::at(
             path,
-            "models are written as .glb, .obj, .ply, .stl or .usda; end the name with one of them",
+            "models are written as .glb, .obj, .ply, .stl, .usda or .usdz; end the name with one of them",
         )),
     }
 }
@@ -359,7 +359,7 @@ pub(crate) fn plant_writable(path: &Path) -> Outcome<PlantFormat> {
         Some(PlantFormat::Model(_)) => writable(path).map(PlantFormat::Model),
         None => Err(Failure::at(
             path,
-            "plants are written as .glb, .obj, .ply, .stl, .usda or .mtg; end the name with one of them",
+            "plants are written as .glb, .obj, .ply, .stl, .usda, .usdz or .mtg; end the name with one of them",
         )),
     }
 }

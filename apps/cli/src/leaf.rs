@@ -66,7 +66,7 @@ pub(crate) fn leaf(args: &LeafArgs) -> Outcome {
     let blown = matches!(format, Some(PlantFormat::Model(format)) if format.carries_wind());
     let meshed = matches!(format, Some(PlantFormat::Model(_)));
     args.given.only_if(meshed, &["lods"], "models", "none is made")?;
-    args.given.only_if(blown, &["wind"], "models as .glb or .usda", "none is made")?;
+    args.given.only_if(blown, &["wind"], "models as .glb, .usda or .usdz", "none is made")?;
     let Product { mut made, marks, offset_m } =
         if args.scan { scan(args, &machine)? } else { make(args, &machine)? };
     machine.cancel.check()?;

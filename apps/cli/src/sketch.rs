@@ -90,7 +90,13 @@ impl<'a> Job<'a> {
         let picture = |e: &str| e.eq_ignore_ascii_case("png");
         let table = |e: &str| e.eq_ignore_ascii_case("csv");
         let output = self.args.output.as_deref().map(|p| {
-            names_folder(p, "-o", model, "plants are written as .glb, .obj, .ply, .stl, .usda or .mtg", many)
+            names_folder(
+                p,
+                "-o",
+                model,
+                "plants are written as .glb, .obj, .ply, .stl, .usda, .usdz or .mtg",
+                many,
+            )
         });
         let png = self
             .args

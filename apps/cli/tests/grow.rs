@@ -402,9 +402,15 @@ fn leaves_age_seed_and_threads_do_what_they_say() {
     assert_eq!(fs::read(at.join("kept.glb")).unwrap(), fs::read(at.join("wind.glb")).unwrap());
     for out in ["wind.obj", "wind.mtg"] {
         let told = bad(&at, &["grow", "bush.toml", "-o", out, "--wind"]);
-        assert!(told.contains("--wind is for models as .glb or .usda"), "{out}: {told}");
+        assert!(told.contains("--wind is for models as .glb, .usda or .usdz"), "{out}: {told}");
     }
     good(&at, &["grow", "bush.toml", "-o", "wind.usda", "--wind"]);
+    // One file, in which the same layer lies as it is.
+    good(&at, &["grow", "bush.toml", "-o", "wind.usdz", "--wind"]);
+    let text = fs::read_to_string(at.join("wind.usdz").with_extension("usda")).unwrap();
+    let whole = fs::read(at.join("wind.usdz")).unwrap();
+    let layer = text.replace("wind-", "model-");
+    assert_eq!(&whole[64..64 + layer.len()], layer.as_bytes());
     assert!(fs::read_to_string(at.join("wind.usda")).unwrap().contains("float4[] primvars:wind"));
     // Another method in the same envelope.
     let other = item(&at, &["bush.toml", "--method", "colonization"]);

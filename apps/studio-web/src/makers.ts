@@ -393,6 +393,18 @@ export class MakerPanel {
                 el('span', { class: 'f-triple' }, ...boxes),
               );
             });
+      const called = el('input', {
+        class: 'f-name',
+        'aria-label': t('tree.obstacle.name'),
+        'data-obstacle-name': row,
+        maxlength: 200,
+        onchange: () => {
+          const wanted = called.value.trim();
+          if (wanted !== '' && wanted !== name) this.treeRun({ 'rename-obstacle': [row, wanted] });
+          else called.value = name;
+        },
+      });
+      called.value = name;
       list.append(
         el(
           'li',
@@ -400,14 +412,20 @@ export class MakerPanel {
           el(
             'div',
             { class: 'f-pair' },
-            el('b', {}, name),
-            el('span', { class: 'space' }),
+            called,
             button('close', t('tree.obstacle.off', { name }), () => this.treeRun({ 'remove-obstacle': row })),
           ),
           ...fields,
         ),
       );
     });
+    const taken = new Set(tree.obstacles.map((o) => o.name));
+    const another = (name: string): string => {
+      for (let n = 1; ; n += 1) {
+        const next = n === 1 ? name : `${name} ${n}`;
+        if (!taken.has(next)) return next;
+      }
+    };
     const add = (name: string, shape: Obstacle, key: 'box' | 'ball'): HTMLElement =>
       el(
         'button',
@@ -415,7 +433,7 @@ export class MakerPanel {
           type: 'button',
           class: 'chip',
           'data-obstacle': key,
-          onclick: () => this.treeRun({ 'add-obstacle': { name, shape } }),
+          onclick: () => this.treeRun({ 'add-obstacle': { name: another(name), shape } }),
         },
         name,
       );

@@ -106,7 +106,7 @@ export const CODES = {
   "record-form": ["form"],
   "record-long": ["most"],
   "root-far": ["root"],
-  "root-in-obstacle": ["root", "obstacle"],
+  "root-in-obstacle": ["root", "obstacle", "name"],
   "rule-call": ["name", "numbers"],
   "rule-chance": ["value"],
   "rule-ends": [],
@@ -2135,6 +2135,10 @@ export type TreeCommand =
   | /** Moves the obstacle of a row by so many metres, in the coordinates of the tree. */
   {
     'move-obstacle': [number, [number, number, number]];
+  }
+  | /** Names the obstacle of a row. */
+  {
+    'rename-obstacle': [number, string];
   }
   | /** Takes the obstacle of a row away. */
   {

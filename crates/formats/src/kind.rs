@@ -129,11 +129,14 @@ pub enum ModelFormat {
     Stl,
     /// Universal Scene Description as text, with textures beside it; written only.
     Usda,
+    /// Universal Scene Description as text, with its textures in one file; written only.
+    Usdz,
 }
 
 impl ModelFormat {
     /// Every format.
-    pub const ALL: [Self; 6] = [Self::Glb, Self::Gltf, Self::Obj, Self::Ply, Self::Stl, Self::Usda];
+    pub const ALL: [Self; 7] =
+        [Self::Glb, Self::Gltf, Self::Obj, Self::Ply, Self::Stl, Self::Usda, Self::Usdz];
 
     /// The name for messages.
     pub const fn word(self) -> &'static str {
@@ -143,7 +146,7 @@ impl ModelFormat {
             Self::Obj => "OBJ",
             Self::Ply => "PLY",
             Self::Stl => "STL",
-            Self::Usda => "USD",
+            Self::Usda | Self::Usdz => "USD",
         }
     }
 
@@ -161,6 +164,7 @@ impl ModelFormat {
             "ply" => Some(Self::Ply),
             "stl" => Some(Self::Stl),
             "usda" => Some(Self::Usda),
+            "usdz" => Some(Self::Usdz),
             _ => None,
         }
     }
@@ -195,6 +199,6 @@ impl ModelFormat {
 
     /// Files of this format have room for how wind moves each vertex.
     pub const fn carries_wind(self) -> bool {
-        matches!(self, Self::Glb | Self::Gltf | Self::Usda)
+        matches!(self, Self::Glb | Self::Gltf | Self::Usda | Self::Usdz)
     }
 }

@@ -175,7 +175,8 @@ pub(crate) fn plant_roots(
             return Err(GrowthError::Root { root });
         }
         if let Some(obstacle) = obstacles.inside(at) {
-            return Err(GrowthError::RootInObstacle { root, obstacle });
+            let name = obstacles.name(obstacle);
+            return Err(GrowthError::RootInObstacle { root, obstacle, name });
         }
         #[expect(clippy::cast_possible_truncation, reason = "fewer roots than joints")]
         skeleton.push_root(at, root as u32);

@@ -156,7 +156,10 @@ fn roots_in_obstacles_and_bad_numbers_are_refused() {
         colonize(roots, &[DVec3::Y], &rock, spec, &run, &mut Report::default()).err()
     };
     let spec = ColonizeSpec::default();
-    assert_eq!(go(&[DVec3::ZERO], &spec), Some(GrowthError::RootInObstacle { root: 0, obstacle: 0 }));
+    assert_eq!(
+        go(&[DVec3::ZERO], &spec),
+        Some(GrowthError::RootInObstacle { root: 0, obstacle: 0, name: "a sphere".into() })
+    );
     assert_eq!(go(&[], &spec), Some(GrowthError::NoRoots));
     assert_eq!(go(&[DVec3::NAN], &spec), Some(GrowthError::Root { root: 0 }));
     for bad in [f64::NAN, 0.0, -1.0, f64::INFINITY] {

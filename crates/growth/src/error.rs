@@ -46,19 +46,21 @@ pub enum GrowthError {
         root: usize,
     },
     /// A root stands in an obstacle.
-    #[error("root {} stands inside obstacle {}; move one of them", .root + 1, .obstacle + 1)]
+    #[error("root {} stands inside obstacle {} ({name}); move one of them", .root + 1, .obstacle + 1)]
     RootInObstacle {
         /// Index of the root.
         root: usize,
         /// Index of the obstacle.
         obstacle: usize,
+        /// The word of its shape, or what it is called.
+        name: String,
     },
     /// Something is wrong with an obstacle.
     #[error("obstacle {} ({name}): {fault}", .obstacle + 1)]
     Obstacle {
         /// Its index.
         obstacle: usize,
-        /// The word of its shape, or its file.
+        /// The word of its shape, its file, or what it is called.
         name: String,
         /// What is wrong.
         fault: Box<Self>,
@@ -324,7 +326,7 @@ base::coded!(GrowthError {
     Self::Field { field, range, value } => "field-range" { field, range, value },
     Self::NoRoots => "no-roots" {},
     Self::Root { root } => "root-far" { root = root + 1 },
-    Self::RootInObstacle { root, obstacle } => "root-in-obstacle" { root = root + 1, obstacle = obstacle + 1 },
+    Self::RootInObstacle { root, obstacle, name } => "root-in-obstacle" { root = root + 1, obstacle = obstacle + 1, name },
     Self::Obstacle { name, fault, .. } => "obstacle" { name, why = fault => GrowthError },
     Self::Nothing { why } => "nothing-grew" { why },
     Self::Mesh(why) => "mesh" { why => MeshFault },

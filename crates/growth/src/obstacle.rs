@@ -137,6 +137,10 @@ impl Obstacle {
     }
 }
 
+fn called(shape: &str) -> String {
+    format!("a {shape}")
+}
+
 impl Obstacles {
     /// Nothing in the way.
     pub fn none() -> Self {
@@ -151,11 +155,22 @@ impl Obstacles {
     pub fn new(obstacles: &[Obstacle], clearance_m: f64) -> Result<Self, GrowthError> {
         within("obstacles.clearance_m", clearance_m, 0.0, FAR_M, "0 to 1e6 m")?;
         let body = |(obstacle, o): (usize, &Obstacle)| {
-            let name = format!("a {}", o.shape());
+            let name = called(o.shape());
             Body::new(o).map_err(|fault| GrowthError::Obstacle { obstacle, name, fault: Box::new(fault) })
         };
         let bodies = obstacles.iter().enumerate().map(body).collect::<Result<Arc<[_]>, _>>()?;
         Ok(Self { bodies, clearance_m })
+    }
+
+    /// The word of the shape of one of them.
+    pub(crate) fn name(&self, obstacle: usize) -> String {
+        called(match self.bodies.get(obstacle) {
+            Some(Body::Box(..)) => "box",
+            Some(Body::Sphere(..)) => "sphere",
+            Some(Body::Cylinder(..)) => "cylinder",
+            Some(Body::Plane(..)) => "plane",
+            Some(Body::Mesh(_)) | None => "mesh",
+        })
     }
 
     /// Whether there are none.

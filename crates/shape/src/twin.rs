@@ -210,10 +210,7 @@ impl Draft {
         let follow = |at: Option<At>| {
             at.map(|at| At { branch: rows.get(at.branch).copied().flatten().unwrap_or(at.branch), ..at })
         };
-        for b in 0..rows.len() {
-            if rows[b].is_none() {
-                continue;
-            }
+        for (b, _) in rows.iter().enumerate().filter(|(_, row)| row.is_some()) {
             let mut branch = self.branches[b].clone();
             branch.key = own.child(branch.key).number();
             branch.source = None;

@@ -228,6 +228,7 @@ impl MadeFrom {
             skin: SkinSpec { wind: self.wind, worn: self.worn.clone(), ..tree.skin.clone() },
             leaf: self.leaf.clone(),
             edits: self.edits.clone(),
+            obstacles: tree.obstacles.iter().map(|o| o.name.clone()).collect(),
             ..TreeOptions::default()
         }
     }

@@ -222,20 +222,8 @@ impl Workspace {
         let ShapeReach { metres, per_metre, bearers, mirror } = reach;
         let reach = Reach { metres, per_metre, bearers };
         let id = self.must()?;
-        if let ShapeInput::Walk { from, to } = input {
-            let plant = self.shown_plant(id).ok_or(WorkspaceError::NothingToShape)?;
-            return Ok(ShapeAnswer { picked: walked(plant, from, to), ..ShapeAnswer::default() });
-        }
-        if let ShapeInput::Plane(at) = input {
-            let p = Pointer::from(at);
-            let plane = ViewPlane::facing(p.tip.unwrap_or(p.ray.origin), -p.ray.direction, p.up);
-            return Ok(ShapeAnswer { plane, ..ShapeAnswer::default() });
-        }
-        if let ShapeInput::Mirror(at) = input {
-            let p = Pointer::from(at);
-            let plant = self.shown_plant(id).ok_or(WorkspaceError::NothingToShape)?;
-            let mirror = Mirror::between_hands(plant, p.forward.cross(p.up));
-            return Ok(ShapeAnswer { mirror, ..ShapeAnswer::default() });
+        if let Some(answer) = self.aside(id, &input)? {
+            return Ok(answer);
         }
         if tool == ToolKind::Pick {
             return Ok(self.point(id, reach, &input));
@@ -326,6 +314,25 @@ impl Workspace {
         };
         let commit = said.commit;
         Ok(ShapeAnswer { picked, commit, busy, again, turned_deg, carried, grown, ..ShapeAnswer::default() })
+    }
+
+    /// The answer to what no tool is needed for.
+    fn aside(&self, id: PlantId, input: &ShapeInput) -> Result<Option<ShapeAnswer>, WorkspaceError> {
+        let plant = || self.shown_plant(id).ok_or(WorkspaceError::NothingToShape);
+        let none = ShapeAnswer::default();
+        Ok(Some(match input {
+            ShapeInput::Walk { from, to } => ShapeAnswer { picked: walked(plant()?, *from, *to), ..none },
+            ShapeInput::Plane(at) => {
+                let p = Pointer::from(*at);
+                let plane = ViewPlane::facing(p.tip.unwrap_or(p.ray.origin), -p.ray.direction, p.up);
+                ShapeAnswer { plane, ..none }
+            }
+            ShapeInput::Mirror(at) => {
+                let p = Pointer::from(*at);
+                ShapeAnswer { mirror: Mirror::between_hands(plant()?, p.forward.cross(p.up)), ..none }
+            }
+            _ => return Ok(None),
+        }))
     }
 
     /// Only looks what is under the pointer.

@@ -725,6 +725,32 @@ fn a_plant_whose_place_is_locked_stays_where_it_is() {
 }
 
 #[test]
+fn an_obstacle_has_a_name_by_which_messages_call_it() {
+    let mut s = Workspace::default();
+    s.add_tree("oak-lsystem").unwrap();
+    let ball =
+        |y: f64| format!(r#"{{"name":"ball","shape":{{"shape":"sphere","centre":[0,{y},0],"radius_m":1}}}}"#);
+    s.ask(&format!(r#"{{"tree":[1,{{"add-obstacle":{}}}]}}"#, ball(30.0))).unwrap();
+    s.ask(r#"{"tree":[1,{"rename-obstacle":[0,"Grandmother's wall"]}]}"#).unwrap();
+    assert_eq!(to_json(&s.state())["plants"][0]["tree"]["obstacles"][0]["name"], "Grandmother's wall");
+    assert!(s.ask(r#"{"tree":[1,{"rename-obstacle":[7,"nothing"]}]}"#).is_err());
+    // An open mesh: what is said of it follows its name.
+    let open = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+                element face 1\nproperty list uchar int vertex_indices\nend_header\n5 0 0\n6 0 0\n5 1 0\n3 0 1 2\n";
+    s.add_obstacle("sheet.ply", open.as_bytes()).unwrap();
+    let said = |s: &mut Workspace| {
+        let view = s.evaluate(&Run::plain()).unwrap();
+        let warnings = view.plants[0].warnings.iter();
+        warnings.filter(|w| w.code == "obstacle-open").map(|w| w.message.clone()).collect::<Vec<_>>()
+    };
+    assert!(said(&mut s)[0].starts_with("obstacle sheet is an open mesh"));
+    s.ask(r#"{"tree":[1,{"rename-obstacle":[1,"roof"]}]}"#).unwrap();
+    assert!(said(&mut s)[0].starts_with("obstacle roof is an open mesh"));
+    assert_eq!(s.undo(), Some("rename"));
+    assert!(said(&mut s)[0].starts_with("obstacle sheet "));
+}
+
+#[test]
 fn an_obstacle_is_moved_as_one_step() {
     let mut s = Workspace::default();
     s.open("bush.toml", BUSH.as_bytes(), 0, false).unwrap();

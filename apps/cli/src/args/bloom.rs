@@ -93,7 +93,7 @@ pub(crate) struct BloomRunArgs {
     /// your own (.toml); or a drawing.
     #[arg(value_name = "START")]
     pub(crate) start: String,
-    /// The result: .glb (animation, or one shape with --day), .ply, .obj, .stl or .usda (one shape), .mtg (the structure of a
+    /// The result: .glb (animation, or one shape with --day), .ply, .obj, .stl, .usda or .usdz (one shape), .mtg (the structure of a
     /// flower or drawing), or a folder (a file a frame).
     #[arg(long, short, value_name = "OUT")]
     pub(crate) output: PathBuf,
@@ -150,7 +150,7 @@ pub(crate) struct BloomRunArgs {
     #[arg(long, value_name = "FILE")]
     pub(crate) materials: Option<PathBuf>,
     /// Also write how wind moves each vertex of a whole flower or a drawing, for shaders: attributes _WIND and _PIVOT
-    /// of .glb, primvars of .usda.
+    /// of .glb, primvars of .usda and .usdz.
     #[arg(long)]
     pub(crate) wind: bool,
     /// Coarser copies of one shape of a whole flower or a drawing (--day, or .obj, .usda, ...) to write beside it

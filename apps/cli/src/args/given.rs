@@ -66,7 +66,7 @@ impl Given {
         let counted = seen.model.is_some() || seen.picture || seen.report;
         self.only_if(counted, &["detail", "sides"], "models, pictures and reports", "none is made")?;
         let wind = seen.model.is_some_and(ModelFormat::carries_wind);
-        self.only_if(wind, &["wind"], "models as .glb or .usda", "none is made")?;
+        self.only_if(wind, &["wind"], "models as .glb, .usda or .usdz", "none is made")?;
         self.only_if(seen.model.is_some(), &["lods"], "models", "none is made")
     }
 }

@@ -18,7 +18,7 @@ pub(crate) struct LeafArgs {
     /// measured (.toml); several for --days and --plant. `-` reads any but the last from standard input.
     #[arg(value_name = "DATA")]
     pub(crate) inputs: Vec<PathBuf>,
-    /// The model: .glb, .obj, .ply, .stl or .usda; or the structure: .mtg. With --template the file to fill in.
+    /// The model: .glb, .obj, .ply, .stl, .usda or .usdz; or the structure: .mtg. With --template the file to fill in.
     #[arg(long, short, value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
     /// Write a file of marks to fill in, with instructions, to -o or to standard output.
@@ -60,7 +60,7 @@ pub(crate) struct LeafArgs {
     /// pictures.
     #[arg(long, value_name = "FILE")]
     pub(crate) materials: Option<PathBuf>,
-    /// Also write how wind moves each vertex, for shaders: attributes _WIND and _PIVOT of .glb, primvars of .usda.
+    /// Also write how wind moves each vertex, for shaders: attributes _WIND and _PIVOT of .glb, primvars of .usda and .usdz.
     #[arg(long)]
     pub(crate) wind: bool,
     /// Coarser copies to write beside the model (OUT-lod1, OUT-lod2, ...), 0 to 6.

@@ -83,7 +83,7 @@ pub(crate) enum Command {
     Render(RenderArgs),
     /// Convert a model or a drawing to another format
     ///
-    /// Models: .glb, .gltf, .obj, .ply and .stl to .glb, .obj, .ply, .stl or .usda. Drawings: .svg, .inkml,
+    /// Models: .glb, .gltf, .obj, .ply and .stl to .glb, .obj, .ply, .stl, .usda or .usdz. Drawings: .svg, .inkml,
     /// .ndjson and .json to .json. A drawing becomes a model with `burgeon sketch`.
     Convert(ConvertArgs),
     /// Describe a model, a drawing or a project

@@ -57,7 +57,7 @@ pub(crate) struct SkinArgs {
     /// pictures.
     #[arg(long, value_name = "FILE")]
     pub(crate) materials: Option<PathBuf>,
-    /// Also write how wind moves each vertex, for shaders: attributes _WIND and _PIVOT of .glb, primvars of .usda
+    /// Also write how wind moves each vertex, for shaders: attributes _WIND and _PIVOT of .glb, primvars of .usda and .usdz
     /// (docs/exports.md).
     #[arg(long)]
     pub(crate) wind: bool,
@@ -201,6 +201,8 @@ pub(crate) enum FormatWord {
     Ply,
     /// Universal Scene Description as text, with textures beside it
     Usda,
+    /// Universal Scene Description with its textures in one file
+    Usdz,
 }
 
 impl FormatWord {
@@ -210,6 +212,7 @@ impl FormatWord {
             Self::Obj => ModelFormat::Obj,
             Self::Ply => ModelFormat::Ply,
             Self::Usda => ModelFormat::Usda,
+            Self::Usdz => ModelFormat::Usdz,
         }
     }
 
@@ -219,6 +222,7 @@ impl FormatWord {
             Self::Obj => "obj",
             Self::Ply => "ply",
             Self::Usda => "usda",
+            Self::Usdz => "usdz",
         }
     }
 }
@@ -234,6 +238,8 @@ pub(crate) enum PlantFormatWord {
     Ply,
     /// Universal Scene Description as text, with textures beside it
     Usda,
+    /// Universal Scene Description with its textures in one file
+    Usdz,
     /// Multiscale tree graph: axes, nodes and organs as text
     Mtg,
 }
@@ -245,6 +251,7 @@ impl PlantFormatWord {
             Self::Obj => PlantFormat::Model(ModelFormat::Obj),
             Self::Ply => PlantFormat::Model(ModelFormat::Ply),
             Self::Usda => PlantFormat::Model(ModelFormat::Usda),
+            Self::Usdz => PlantFormat::Model(ModelFormat::Usdz),
             Self::Mtg => PlantFormat::Mtg,
         }
     }
@@ -255,6 +262,7 @@ impl PlantFormatWord {
             Self::Obj => "obj",
             Self::Ply => "ply",
             Self::Usda => "usda",
+            Self::Usdz => "usdz",
             Self::Mtg => "mtg",
         }
     }

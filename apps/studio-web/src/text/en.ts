@@ -473,6 +473,7 @@ export const en = {
   'tree.obstacle.ball': 'Ball',
   'tree.obstacle.file': 'Model file…',
   'tree.obstacle.off': 'Take {name} away',
+  'tree.obstacle.name': 'Name of the obstacle',
   'leaf.data': 'Measurements',
   'leaf.none':
     'Made of the numbers under “form”. To make it of measurements, drop a table of marks (.csv) or a vein graph (.json) on the page.',

@@ -69,7 +69,7 @@ export const zhErrors: Record<keyof typeof CODES, string> = {
   'field-range': '{field} 必须是 {range}，而不是 {value}',
   'no-roots': '没有根，无从生长',
   'root-far': '根 {root} 离原点太远或不是有限的点',
-  'root-in-obstacle': '根 {root} 在障碍物 {obstacle} 里，请移开其中一个',
+  'root-in-obstacle': '根 {root} 在障碍物“{name}”里，请移开其中一个',
   obstacle: '障碍物 {name}：{why}',
   'nothing-grew': '什么也没有长出来：{why}',
   mesh: '网格：{why}',

@@ -466,6 +466,7 @@ export const zh: Record<TextKey, string> = {
   'tree.obstacle.ball': '球',
   'tree.obstacle.file': '模型文件…',
   'tree.obstacle.off': '移除{name}',
+  'tree.obstacle.name': '障碍物的名称',
   'leaf.data': '测量数据',
   'leaf.none': '现在由“形状”下的数字生成。要用测量数据，请把标记点表（.csv）或叶脉图（.json）拖到页面上。',
   'leaf.choose': '选择文件',

@@ -36,6 +36,8 @@ pub enum TreeCommand {
     SetObstacle(usize, NamedObstacle),
     /// Moves the obstacle of a row by so many metres, in the coordinates of the tree.
     MoveObstacle(usize, #[schemars(with = "[f64; 3]")] DVec3),
+    /// Names the obstacle of a row.
+    RenameObstacle(usize, String),
     /// Takes the obstacle of a row away.
     RemoveObstacle(usize),
     /// Sets how it is meshed.
@@ -56,6 +58,7 @@ impl TreeCommand {
             Self::SetField(..) => "tree",
             Self::AddObstacle(_) | Self::SetObstacle(..) | Self::RemoveObstacle(_) => "obstacle",
             Self::MoveObstacle(..) => "move-obstacle",
+            Self::RenameObstacle(..) => "rename",
             Self::SetSkin(_) => "skin",
             Self::SetLeaf(_) => "leaf-of",
         }
@@ -92,6 +95,9 @@ impl TreeCommand {
                     return Err(CommandError::OutOfRange(SettingFault::Place));
                 }
                 obstacle.shape = Arc::new(obstacle.shape.moved(by));
+            }
+            Self::RenameObstacle(row, name) => {
+                tree.obstacles.get_mut(row).ok_or(gone)?.name = shortened(&name)
             }
             Self::RemoveObstacle(row) => {
                 if row >= tree.obstacles.len() {

@@ -12,6 +12,7 @@ pub(crate) mod ply_read;
 mod ply_write;
 mod stl;
 mod usd_write;
+mod usdz;
 
 use std::io::{Read, Write};
 use std::sync::Arc;
@@ -87,7 +88,7 @@ pub fn read_model(
         ModelFormat::Obj => obj_read::read(&bytes, name, resolve, report)?,
         ModelFormat::Ply => ply_read::read(&bytes, name, report)?,
         ModelFormat::Stl => stl::read(&bytes, name, report)?,
-        ModelFormat::Usda => {
+        ModelFormat::Usda | ModelFormat::Usdz => {
             return Err(file(FileFault::unsupported(
                 "reading USD",
                 "USD is written only; open it in a program for scenes, or use the .glb of the same model",
@@ -131,6 +132,7 @@ pub fn write_model(
         ModelFormat::Ply => write_ply(model, spec, out),
         ModelFormat::Stl => write_stl(model, spec, out),
         ModelFormat::Usda => Ok(out.write_all(&usd_files(model, "model", spec)?.usda)?),
+        ModelFormat::Usdz => usdz::write_usdz(&usd_files(model, "model", spec)?, "model", out),
     }
 }
 

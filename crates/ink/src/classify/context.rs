@@ -1,6 +1,7 @@
 //! What a stroke means among the others: `Ink -> Vec<StrokeFeatures>`.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use base::LiteMap;
 
@@ -55,60 +56,104 @@ pub(super) fn features_again(
 ) -> Vec<StrokeFeatures> {
     let wanted: Vec<bool> = (0..ink.strokes.len()).map(wanted).collect();
     let scene = Scene::new(ink, &wanted, kept, run.executor);
-    let rows = scene.rows(&wanted, run);
-    kept.keep(ink, scene);
-    rows
+    let rows = scene.rows(&wanted, kept, run);
+    kept.keep(ink, scene, &rows);
+    if run.cancel.check().is_err() {
+        *kept = KeptMeasures::default();
+    }
+    rows.finished
 }
 
-/// What the strokes of a drawing measure on their own, kept for the next look at it: a stroke that is drawn leaves the
-/// others as they are, unless it widens the drawing. Changes no result.
+/// What the strokes of a drawing measure, on their own and among the others, kept for the next look at it: a stroke that
+/// is drawn leaves most of the others as they are, unless it widens the drawing. Changes no result.
 #[derive(Clone, Debug, Default)]
-pub struct KeptMeasures(Vec<(Vec<DVec2>, Shape, StrokeFeatures)>, LiteMap<usize, Self>);
+pub struct KeptMeasures {
+    strokes: Arc<Vec<KeptStroke>>,
+    whole: Whole,
+    /// Those of one plant of several, which is known by its first stroke.
+    plants: LiteMap<usize, Self>,
+}
+
+/// A stroke as it was measured.
+#[derive(Clone, Debug)]
+struct KeptStroke {
+    points: Arc<[DVec2]>,
+    shape: Arc<Shape>,
+    /// What it measures on its own.
+    own: StrokeFeatures,
+    companions: Arc<[usize]>,
+    told: Told,
+    /// What it measures among the others, without [`Scene::whole`]; none where it was not asked.
+    row: Option<StrokeFeatures>,
+}
+
+/// What a stroke is compared with besides its companions.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Whole {
+    size: DVec2,
+    body: Body,
+    /// See [`Scene::amid`]; none of few strokes, where it differs from stroke to stroke.
+    amid: Option<Region>,
+    /// The longest strokes.
+    longest: Vec<usize>,
+    grid: Grid,
+}
+
+/// Strokes in each cell.
+type Grid = BTreeMap<(i64, i64), Vec<usize>>;
 
 impl KeptMeasures {
-    /// Those of one plant of several, which is known by its first stroke.
     pub(super) fn of_plant(&mut self, rows: &[usize]) -> &mut Self {
-        self.1.entry(rows.first().copied().unwrap_or_default()).or_default()
+        self.plants.entry(rows.first().copied().unwrap_or_default()).or_default()
     }
 
-    /// The stroke in this place, if it was there before.
-    fn take(&mut self, i: usize, points: &[DVec2]) -> Option<(Shape, StrokeFeatures)> {
-        let (_, shape, row) = self.0.get_mut(i).filter(|k| k.0 == points)?;
-        Some((core::mem::take(shape), *row))
-    }
-
-    fn keep(&mut self, ink: &Ink, scene: Scene) {
-        self.0.clear();
-        // What is enclosed depends on the others where there are more.
-        if ink.strokes.len() <= MOST_REGIONS {
-            let points = ink.strokes.iter().map(|s| s.points.clone());
-            self.0.extend(points.zip(scene.shapes).zip(scene.rows).map(|((p, s), r)| (p, s, r)));
+    fn keep(&mut self, ink: &Ink, scene: Scene, rows: &Rows) {
+        let (mut strokes, old) = (Vec::with_capacity(ink.strokes.len()), core::mem::take(&mut self.strokes));
+        let columns = scene.shapes.into_iter().zip(scene.rows).zip(scene.companions);
+        for (i, (((shape, own), companions), stroke)) in columns.zip(&ink.strokes).enumerate() {
+            let points = match old.get(i).filter(|k| *k.points == *stroke.points) {
+                Some(known) => Arc::clone(&known.points),
+                None => stroke.points.as_slice().into(),
+            };
+            let (told, row) = (rows.told[i], rows.among[i]);
+            strokes.push(KeptStroke { points, shape, own, companions, told, row });
         }
+        (self.strokes, self.whole) = (Arc::new(strokes), scene.whole);
     }
 }
 
 /// With how many others each stroke is compared.
 #[cfg(test)]
 pub(super) fn companion_counts(ink: &Ink) -> Vec<usize> {
-    let scene = Scene::new(ink, &vec![true; ink.strokes.len()], &mut KeptMeasures::default(), &base::Serial);
-    scene.companions.iter().map(Vec::len).collect()
+    let scene = Scene::new(ink, &vec![true; ink.strokes.len()], &KeptMeasures::default(), &base::Serial);
+    scene.companions.iter().map(|c| c.len()).collect()
 }
 
 struct Scene {
-    shapes: Vec<Shape>,
+    shapes: Vec<Arc<Shape>>,
+    /// Of those, which are as they were kept.
+    same: Vec<bool>,
     rows: Vec<StrokeFeatures>,
-    companions: Vec<Vec<usize>>,
-    size: DVec2,
+    companions: Vec<Arc<[usize]>>,
     ink: f64,
     longest: f64,
-    body: Body,
+    whole: Whole,
     /// What the hull of all the other strokes encloses, for each stroke that is wanted; in a drawing of very many that
     /// of all strokes.
     amid: Vec<Region>,
 }
 
+/// The rows of a scene.
+struct Rows {
+    /// In the order of the strokes.
+    finished: Vec<StrokeFeatures>,
+    /// Before what is the same on every row; none of strokes that were not asked.
+    among: Vec<Option<StrokeFeatures>>,
+    told: Vec<Told>,
+}
+
 /// The largest region that one stroke, or two whose ends meet, enclose.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 struct Body {
     region: Region,
     members: [usize; 2],
@@ -118,6 +163,7 @@ struct Body {
 }
 
 /// What the others and the whole drawing need to know of a stroke.
+#[derive(Clone, Copy, Debug)]
 struct Told {
     corners: f64,
     gap: f64,
@@ -125,6 +171,13 @@ struct Told {
     pair: f64,
     /// Strokes inside it.
     held: f64,
+}
+
+impl Told {
+    /// What other strokes need to know.
+    fn to_others(self) -> [f64; 3] {
+        [self.corners, self.gap, self.pair]
+    }
 }
 
 /// The strokes nearest to the two ends.
@@ -184,47 +237,72 @@ fn distance_to(s: &Shape, p: DVec2, reach: f64) -> (f64, usize) {
 }
 
 impl Scene {
-    fn new(ink: &Ink, wanted: &[bool], kept: &mut KeptMeasures, executor: &dyn Executor) -> Self {
+    fn new(ink: &Ink, wanted: &[bool], kept: &KeptMeasures, executor: &dyn Executor) -> Self {
         let n = ink.strokes.len();
-        let mut known: Vec<Option<(Shape, StrokeFeatures)>> = Vec::new();
-        if n <= MOST_REGIONS {
-            known.extend(ink.strokes.iter().enumerate().map(|(i, s)| kept.take(i, &s.points)));
-        }
-        known.resize_with(n, || None);
+        let known = |i: usize| kept.strokes.get(i).filter(|k| *k.points == *ink.strokes[i].points);
+        let known: Vec<Option<&KeptStroke>> = (0..n).map(known).collect();
         let fresh: Vec<usize> = (0..n).filter(|&i| known[i].is_none()).collect();
         let measured = map_indexed(executor, fresh.len(), |k| shape(&ink.strokes[fresh[k]].points));
-        for (i, (shape, row)) in fresh.into_iter().zip(measured) {
-            known[i] = Some((shape, row));
-        }
-        let (mut shapes, rows): (Vec<Shape>, Vec<StrokeFeatures>) = known.into_iter().flatten().unzip();
-        enclose(&mut shapes);
+        let mut measured = measured.into_iter().map(|(shape, own)| (Arc::new(shape), own));
+        let all = known.iter().filter_map(|k| match k {
+            Some(k) => Some((Arc::clone(&k.shape), k.own)),
+            None => measured.next(),
+        });
+        let (mut shapes, rows): (Vec<Arc<Shape>>, Vec<StrokeFeatures>) = all.unzip();
+        let order = by_length(&shapes);
+        enclose(&mut shapes, &order);
+        let same = |(k, s): (&Option<&KeptStroke>, _)| k.is_some_and(|k| Arc::ptr_eq(&k.shape, s));
+        let same: Vec<bool> = known.iter().zip(&shapes).map(same).collect();
         let low = shapes.iter().fold(DVec2::INFINITY, |a, s| a.min(s.min));
         let high = shapes.iter().fold(DVec2::NEG_INFINITY, |a, s| a.max(s.max));
         let size = if shapes.is_empty() { DVec2::ONE } else { (high - low).max(DVec2::splat(1e-6)) };
         let total = shapes.iter().map(|s| s.length).sum();
         let longest = shapes.iter().fold(0.0_f64, |a, s| a.max(s.length));
-        let companions = companions(&shapes);
-        let body = body(&shapes);
         let amid = amid(&shapes, wanted);
-        Self { shapes, rows, companions, size, ink: total, longest, body, amid }
+        let whole = Whole {
+            size,
+            body: body(&shapes, &order),
+            amid: if n > COMPANIONS + 1 { amid.first().cloned() } else { None },
+            longest: order.iter().copied().take(LONGEST).collect(),
+            grid: if n > COMPANIONS + 1 { grid(&shapes) } else { Grid::new() },
+        };
+        let companions = companions(&shapes, &same, &whole, kept);
+        Self { shapes, same, rows, companions, ink: total, longest, whole, amid }
     }
 
-    fn rows(&self, wanted: &[bool], run: &Run<'_>) -> Vec<StrokeFeatures> {
+    fn rows(&self, wanted: &[bool], kept: &KeptMeasures, run: &Run<'_>) -> Rows {
         let ranks = ranks(&self.shapes);
-        let alone = map_indexed(run.executor, wanted.len(), |i| {
-            let mut f = self.rows[i];
-            if run.cancel.check().is_err() {
-                return (Told { corners: f.corners, gap: f.gap, pair: 0.0, held: 0.0 }, f);
-            }
-            self.place(i, ranks[i], &mut f);
-            let upright = f.upright > 0.6 && f.length > 0.2;
-            let even = if upright || wanted[i] { self.partner(i, &mut f) } else { 0.0 };
-            let pair = if upright { even } else { 0.0 };
-            (Told { corners: f.corners, gap: f.gap, pair, held: 0.0 }, f)
+        // Strokes of which neither they nor any of their companions changed.
+        let settled = |i: usize| {
+            let known = kept.strokes.get(i).filter(|k| self.same[i] && k.row.is_some())?;
+            let same = Arc::ptr_eq(&known.companions, &self.companions[i]);
+            (same && self.companions[i].iter().all(|&j| self.same[j])).then_some(known)
+        };
+        let settled: Vec<Option<&KeptStroke>> = (0..wanted.len()).map(settled).collect();
+        let alone = map_indexed(run.executor, wanted.len(), |i| match settled[i] {
+            Some(known) => (known.told, self.rows[i]),
+            None => self.alone(i, ranks[i], wanted[i], run),
         });
         let (mut told, mut rows): (Vec<Told>, Vec<StrokeFeatures>) = alone.into_iter().unzip();
+        let framed = {
+            let (Whole { size, body, amid, .. }, was) = (&self.whole, &kept.whole);
+            amid.is_some() && (size, body, amid) == (&was.size, &was.body, &was.amid)
+        };
+        let heard = |j: usize| {
+            let was = kept.strokes.get(j).map(|k| k.told.to_others());
+            was == Some(told[j].to_others())
+        };
+        let heard: Vec<bool> = (0..told.len()).map(heard).collect();
         let among = map_indexed(run.executor, rows.len(), |i| {
-            let mut f = rows[i];
+            let still = |_: &&KeptStroke| framed && self.companions[i].iter().all(|&j| heard[j]);
+            if let Some(known) = settled[i].filter(still)
+                && let Some(mut f) = known.row
+            {
+                self.place(i, ranks[i], &mut f);
+                return (known.told.held, f);
+            }
+            let mut f =
+                if settled[i].is_some() { self.alone(i, ranks[i], wanted[i], run).1 } else { rows[i] };
             if run.cancel.check().is_err() {
                 return (0.0, f);
             }
@@ -240,8 +318,22 @@ impl Scene {
         for ((told, row), (held, f)) in told.iter_mut().zip(&mut rows).zip(among) {
             (told.held, *row) = (held, f);
         }
+        let among = rows.iter().zip(wanted).map(|(row, &wanted)| wanted.then_some(*row)).collect();
         self.whole(&told, &mut rows);
-        rows.into_iter().map(StrokeFeatures::tamed).collect()
+        Rows { finished: rows.into_iter().map(StrokeFeatures::tamed).collect(), among, told }
+    }
+
+    /// What a stroke is without regard to what was found of others.
+    fn alone(&self, i: usize, rank: f64, wanted: bool, run: &Run<'_>) -> (Told, StrokeFeatures) {
+        let mut f = self.rows[i];
+        if run.cancel.check().is_err() {
+            return (Told { corners: f.corners, gap: f.gap, pair: 0.0, held: 0.0 }, f);
+        }
+        self.place(i, rank, &mut f);
+        let upright = f.upright > 0.6 && f.length > 0.2;
+        let even = if upright || wanted { self.partner(i, &mut f) } else { 0.0 };
+        let pair = if upright { even } else { 0.0 };
+        (Told { corners: f.corners, gap: f.gap, pair, held: 0.0 }, f)
     }
 
     /// Size, place and order in the drawing.
@@ -249,10 +341,10 @@ impl Scene {
         let s = &self.shapes[i];
         let n = self.shapes.len();
         f.length = s.length;
-        f.width = s.size().x / self.size.x;
-        f.height = s.size().y / self.size.y;
-        f.bottom = s.min.y / self.size.y;
-        f.ends_apart = (s.first().x - s.last().x).abs() / self.size.x;
+        f.width = s.size().x / self.whole.size.x;
+        f.height = s.size().y / self.whole.size.y;
+        f.bottom = s.min.y / self.whole.size.y;
+        f.ends_apart = (s.first().x - s.last().x).abs() / self.whole.size.x;
         f.order = share(to_f64(i), to_f64(n.saturating_sub(1)));
         f.first = if i == 0 { 1.0 } else { 0.0 };
         f.rank = rank;
@@ -282,7 +374,7 @@ impl Scene {
         let s = &self.shapes[i];
         let margin = DVec2::splat(0.1);
         let mut company = 0.0;
-        for &j in &self.companions[i] {
+        for &j in &*self.companions[i] {
             let o = &self.shapes[j];
             if o.min.cmpge(s.min - margin).all() && o.max.cmple(s.max + margin).all() {
                 company += 1.0;
@@ -294,9 +386,9 @@ impl Scene {
     /// The most telling strokes above and below its middle.
     fn around(&self, i: usize, told: &[Told], f: &mut StrokeFeatures) {
         let s = &self.shapes[i];
-        for &j in &self.companions[i] {
+        for &j in &*self.companions[i] {
             let o = &self.shapes[j];
-            let wide = o.size().x / self.size.x;
+            let wide = o.size().x / self.whole.size.x;
             if o.middle.y > s.middle.y {
                 f.round_above = f.round_above.max(o.round);
                 f.wide_above = f.wide_above.max(wide);
@@ -320,7 +412,7 @@ impl Scene {
     /// What holds it.
     fn holding(&self, i: usize, told: &[Told], f: &mut StrokeFeatures) {
         let s = &self.shapes[i];
-        for &j in &self.companions[i] {
+        for &j in &*self.companions[i] {
             let o = &self.shapes[j];
             if o.hull_area > 0.02 * o.length * o.length && o.length > s.length {
                 let held = part_inside(s, &o.hull_region, o);
@@ -337,8 +429,8 @@ impl Scene {
                 }
             }
         }
-        f.is_body = if self.body.members.contains(&i) { 1.0 } else { 0.0 };
-        f.in_body = share_inside(s, &self.body.region);
+        f.is_body = if self.whole.body.members.contains(&i) { 1.0 } else { 0.0 };
+        f.in_body = share_inside(s, &self.whole.body.region);
         f.amid = self.amid.get(i).or(self.amid.first()).map_or(0.0, |region| share_inside(s, region));
     }
 
@@ -349,7 +441,7 @@ impl Scene {
         let mut best = Meeting { low: (LOOSE, usize::MAX), high: (LOOSE, usize::MAX) };
         let (mut at_low, mut at_high) = (0, 0);
         let (mut guests, mut stems) = (0.0, 0.0);
-        for &j in &self.companions[i] {
+        for &j in &*self.companions[i] {
             let o = &self.shapes[j];
             let d = distance_to(o, low, best.low.0.max(TOUCH));
             let at_one = d.0 < TOUCH;
@@ -408,7 +500,7 @@ impl Scene {
             return best;
         }
         let station = |o: &Shape, k: usize| o.points[k * (o.points.len() - 1) / (STATIONS - 1)];
-        for &j in &self.companions[i] {
+        for &j in &*self.companions[i] {
             let o = &self.shapes[j];
             if o.length < 0.5 * s.length || s.length < 0.5 * o.length {
                 continue;
@@ -443,10 +535,10 @@ impl Scene {
         if rows.is_empty() {
             return;
         }
-        let box_area = self.size.x * self.size.y;
+        let box_area = self.whole.size.x * self.whole.size.y;
         let mean = |g: &dyn Fn(&StrokeFeatures) -> f64| rows.iter().map(g).sum::<f64>() / n;
         let most = |g: &dyn Fn(&StrokeFeatures) -> f64| rows.iter().map(g).fold(0.0_f64, f64::max);
-        let body_size = self.body.max - self.body.min;
+        let body_size = self.whole.body.max - self.whole.body.min;
         // The lowest of the strokes that span a fifth of the drawing: the pot, if there is one.
         let base = rows
             .iter()
@@ -456,7 +548,7 @@ impl Scene {
             .unwrap_or_default();
         let d = StrokeFeatures {
             d_strokes: ops::ln(n) / 4.0,
-            d_tall: self.size.y / (self.size.x + self.size.y),
+            d_tall: self.whole.size.y / (self.whole.size.x + self.whole.size.y),
             d_ink: log1(self.ink),
             d_round: to_f64(self.shapes.iter().filter(|s| s.encloses()).count()) / n,
             d_largest: self.shapes.iter().fold(0.0_f64, |a, s| a.max(s.area)) / box_area,
@@ -468,8 +560,8 @@ impl Scene {
             d_base_round: base.round,
             d_base_opening: base.opening,
             d_body_area: share(body_size.x * body_size.y, box_area),
-            d_body_solid: self.body.solid,
-            d_body_bottom: self.body.min.y / self.size.y,
+            d_body_solid: self.whole.body.solid,
+            d_body_bottom: self.whole.body.min.y / self.whole.size.y,
             ..StrokeFeatures::default()
         };
         for f in rows {
@@ -497,14 +589,14 @@ impl Scene {
             .shapes
             .iter()
             .flat_map(|s| &s.points)
-            .filter(|p| p.y >= low * self.size.y && p.y <= high * self.size.y)
+            .filter(|p| p.y >= low * self.whole.size.y && p.y <= high * self.whole.size.y)
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), p| (a.min(p.x), b.max(p.x)));
-        (b - a).max(0.0) / self.size.x
+        (b - a).max(0.0) / self.whole.size.x
     }
 }
 
 /// See [`Scene::amid`].
-fn amid(shapes: &[Shape], wanted: &[bool]) -> Vec<Region> {
+fn amid(shapes: &[Arc<Shape>], wanted: &[bool]) -> Vec<Region> {
     let both = |a: &[DVec2], b: &[DVec2]| convex_hull(&[a, b].concat());
     if shapes.len() > COMPANIONS + 1 {
         let all: Vec<DVec2> = shapes.iter().flat_map(|s| s.hull.iter().copied()).collect();
@@ -532,28 +624,27 @@ fn amid(shapes: &[Shape], wanted: &[bool]) -> Vec<Region> {
 }
 
 /// Fills in what the shapes enclose: of the longest ones only, so that very many strokes fit into memory.
-fn enclose(shapes: &mut [Shape]) {
-    for &i in by_length(shapes).iter().take(MOST_REGIONS) {
-        let Some(s) = shapes.get_mut(i) else { continue };
-        if !core::mem::replace(&mut s.enclosed, true) {
-            s.enclose();
+fn enclose(shapes: &mut [Arc<Shape>], order: &[usize]) {
+    for (rank, &i) in order.iter().enumerate() {
+        let wanted = rank < MOST_REGIONS;
+        if let Some(s) = shapes.get_mut(i).filter(|s| s.enclosed != wanted) {
+            Arc::make_mut(s).enclose(wanted);
         }
     }
 }
 
 /// Numbers of the strokes, longest first.
-fn by_length(shapes: &[Shape]) -> Vec<usize> {
+fn by_length(shapes: &[Arc<Shape>]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..shapes.len()).collect();
     base::sort_by(&mut order, |&a, &b| shapes[b].length.total_cmp(&shapes[a].length).then(a.cmp(&b)));
     order
 }
 
 /// The body of a drawing: see [`Body`].
-fn body(shapes: &[Shape]) -> Body {
+fn body(shapes: &[Arc<Shape>], order: &[usize]) -> Body {
     // Joined ends may be this far apart: a seventh of the drawing's diagonal.
     const JOIN: f64 = 0.15;
-    let mut big = by_length(shapes);
-    big.truncate(6);
+    let big = &order[..order.len().min(6)];
     let mut best = (0.0, Body::default());
     let mut offer = |outline: Vec<DVec2>, members: [usize; 2]| {
         let area = signed_area(&outline).abs();
@@ -565,7 +656,7 @@ fn body(shapes: &[Shape]) -> Body {
             best = (area, Body { region: Region::new(&outline), members, min, max, solid });
         }
     };
-    for &a in &big {
+    for &a in big {
         if shapes[a].encloses() {
             offer(shapes[a].points.iter().copied().step_by(2).collect(), [a, a]);
         }
@@ -611,59 +702,83 @@ fn part_inside(s: &Shape, region: &Region, o: &Shape) -> f64 {
 }
 
 /// Share of the strokes that are shorter, for each.
-fn ranks(shapes: &[Shape]) -> Vec<f64> {
+fn ranks(shapes: &[Arc<Shape>]) -> Vec<f64> {
     let mut sorted: Vec<f64> = shapes.iter().map(|s| s.length).collect();
     base::sort_numbers(&mut sorted);
     let others = to_f64(shapes.len().saturating_sub(1));
     shapes.iter().map(|s| share(to_f64(sorted.partition_point(|&l| l < s.length)), others)).collect()
 }
 
-/// For each stroke the others that it is compared with, ascending: all of them in a sketch, else the longest of
-/// the drawing and a bounded number of neighbours.
-fn companions(shapes: &[Shape]) -> Vec<Vec<usize>> {
-    let n = shapes.len();
-    if n <= COMPANIONS + 1 {
-        return (0..n).map(|i| (0..n).filter(|&j| j != i).collect()).collect();
-    }
-    let longest = by_length(shapes);
-    let cell = |p: DVec2| ((p.x * CELLS).floor(), (p.y * CELLS).floor());
-    #[expect(clippy::cast_possible_truncation, reason = "ink coordinates lie in [0, 1]; `as` saturates")]
-    let key = |x: f64, y: f64| (x as i64, y as i64);
-    let places = |s: &Shape| [s.first(), s.points[s.points.len() / 2], s.last()];
-    let mut grid: BTreeMap<(i64, i64), Vec<usize>> = BTreeMap::new();
+/// Where a stroke is looked up.
+fn places(s: &Shape) -> [(f64, f64); 3] {
+    [s.first(), s.points[s.points.len() / 2], s.last()]
+        .map(|p| ((p.x * CELLS).floor(), (p.y * CELLS).floor()))
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "ink coordinates lie in [0, 1]; `as` saturates")]
+fn key(x: f64, y: f64) -> (i64, i64) {
+    (x as i64, y as i64)
+}
+
+/// The cells at a place and around it.
+fn cells((x, y): (f64, f64)) -> impl Iterator<Item = (i64, i64)> {
+    [0.0, -1.0, 1.0].into_iter().flat_map(move |dy| [0.0, -1.0, 1.0].map(|dx| key(x + dx, y + dy)))
+}
+
+fn grid(shapes: &[Arc<Shape>]) -> Grid {
+    let mut grid = Grid::new();
     for (i, s) in shapes.iter().enumerate() {
-        for p in places(s) {
-            let (x, y) = cell(p);
+        for (x, y) in places(s) {
             let slot = grid.entry(key(x, y)).or_default();
             if slot.len() < PER_CELL && slot.last() != Some(&i) {
                 slot.push(i);
             }
         }
     }
-    (0..n)
-        .map(|i| {
-            let mut near: Vec<usize> = Vec::new();
-            for p in places(&shapes[i]) {
-                let (x, y) = cell(p);
-                for dy in [0.0, -1.0, 1.0] {
-                    for dx in [0.0, -1.0, 1.0] {
-                        near.extend(grid.get(&key(x + dx, y + dy)).into_iter().flatten());
-                    }
-                }
-            }
-            near.sort_unstable();
-            near.dedup();
-            base::sort_by(&mut near, |&a, &b| {
-                let far = |j: usize| shapes[j].middle.distance_squared(shapes[i].middle);
-                far(a).total_cmp(&far(b)).then(a.cmp(&b))
-            });
-            near.retain(|&j| j != i);
-            near.truncate(COMPANIONS - LONGEST);
-            near.extend(longest.iter().take(LONGEST).filter(|&&j| j != i));
-            near.extend([i.wrapping_sub(1), i + 1].into_iter().filter(|&j| j < n));
-            near.sort_unstable();
-            near.dedup();
-            near
-        })
-        .collect()
+    grid
+}
+
+/// For each stroke the others that it is compared with, ascending: all of them in a sketch, else the longest of
+/// the drawing and a bounded number of neighbours. Those of strokes of which neither they nor their cells changed are
+/// taken over.
+fn companions(shapes: &[Arc<Shape>], same: &[bool], whole: &Whole, kept: &KeptMeasures) -> Vec<Arc<[usize]>> {
+    let n = shapes.len();
+    if n <= COMPANIONS + 1 {
+        return (0..n).map(|i| (0..n).filter(|&j| j != i).collect()).collect();
+    }
+    let Whole { grid, longest, .. } = whole;
+    let lasting = |cell: &(i64, i64), slot: &Vec<usize>| {
+        kept.whole.grid.get(cell) == Some(slot) && slot.iter().all(|&j| same[j])
+    };
+    let changed = grid.iter().filter(|(cell, slot)| !lasting(cell, slot)).map(|(cell, _)| *cell);
+    let gone = kept.whole.grid.keys().filter(|cell| !grid.contains_key(cell)).copied();
+    let changed = base::set_of(changed.chain(gone));
+    let before = kept.strokes.len();
+    let known = |i: usize| {
+        let known = kept.strokes.get(i).filter(|_| same[i] && kept.whole.longest == *longest)?;
+        // The last has one more behind it now.
+        let last = (i + 1 < n) == (i + 1 < before);
+        let lasts = last && places(&shapes[i]).into_iter().flat_map(cells).all(|c| !changed.contains_key(&c));
+        lasts.then(|| Arc::clone(&known.companions))
+    };
+    let anew = |i: usize| {
+        let mut near: Vec<usize> = Vec::new();
+        for cell in places(&shapes[i]).into_iter().flat_map(cells) {
+            near.extend(grid.get(&cell).into_iter().flatten());
+        }
+        near.sort_unstable();
+        near.dedup();
+        base::sort_by(&mut near, |&a, &b| {
+            let far = |j: usize| shapes[j].middle.distance_squared(shapes[i].middle);
+            far(a).total_cmp(&far(b)).then(a.cmp(&b))
+        });
+        near.retain(|&j| j != i);
+        near.truncate(COMPANIONS - LONGEST);
+        near.extend(longest.iter().filter(|&&j| j != i));
+        near.extend([i.wrapping_sub(1), i + 1].into_iter().filter(|&j| j < n));
+        near.sort_unstable();
+        near.dedup();
+        near.into()
+    };
+    (0..n).map(|i| known(i).unwrap_or_else(|| anew(i))).collect()
 }

@@ -220,8 +220,13 @@ pub(super) struct Shape {
 }
 
 impl Shape {
-    /// Makes its regions.
-    pub(super) fn enclose(&mut self) {
+    /// Makes its regions, or forgets them.
+    pub(super) fn enclose(&mut self, wanted: bool) {
+        self.enclosed = wanted;
+        if !wanted {
+            (self.region, self.hull_region) = (Region::default(), Region::default());
+            return;
+        }
         if self.round > 0.1 {
             self.region = Region::new(&self.points.iter().copied().step_by(2).collect::<Vec<_>>());
         }

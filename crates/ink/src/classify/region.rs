@@ -6,7 +6,7 @@ use glam::DVec2;
 const BANDS: usize = 16;
 
 /// The inside of a polygon by the even-odd rule, edges sorted by height so that a question looks at few of them.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Region {
     low: f64,
     bands_per_height: f64,

@@ -230,6 +230,46 @@ fn a_second_look_measures_what_a_first_one_does() {
 }
 
 #[test]
+fn a_second_look_at_many_strokes_measures_what_a_first_one_does() {
+    let mut stream = Seed::new(6).stream(Draw::Test);
+    let mut made = |n: usize, far: f64| {
+        let root = DVec2::new(stream.range(0.1, 0.9), stream.range(0.1, 0.9));
+        let tip = root + DVec2::new(stream.range(-far, far), stream.range(-far, far));
+        let upright = root + DVec2::new(stream.range(-0.01, 0.01), 0.3);
+        let points = match n % 4 {
+            0 => vec![root, (root + tip) * 0.51, tip],
+            // Stems side by side.
+            3 => (0..9).map(|k| root.lerp(upright, f64::from(k) / 8.0)).collect(),
+            1 => (0..9).map(|k| root.lerp(tip, f64::from(k) / 8.0)).collect(),
+            _ => petal(root, tip, 0.3 * far, &mut stream),
+        };
+        InkStroke { points, ..InkStroke::default() }
+    };
+    // A frame, so that what is drawn within leaves the whole as it is.
+    let frame = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y, DVec2::ZERO];
+    let mut ink = Ink::default();
+    ink.strokes.push(InkStroke { points: frame.to_vec(), ..InkStroke::default() });
+    ink.strokes.extend((0..150).map(|n| made(n, 0.05)));
+    let mut kept = KeptMeasures::default();
+    for n in 0..90 {
+        let at = (37 * n) % ink.strokes.len();
+        match n % 6 {
+            0 => drop(ink.strokes.remove(at)),
+            1 => ink.strokes[at] = made(n, 0.05),
+            2 => ink.strokes.push(made(n, 0.6)),
+            3 => ink.strokes.insert(at, made(n, 0.05)),
+            _ => ink.strokes.push(made(n, 0.02)),
+        }
+        let wanted = |i: usize| (i + n) % 5 != 0;
+        let again = context::features_again(&ink, wanted, &mut kept, &Run::plain());
+        let fresh = features(&ink, &Run::plain());
+        for (i, (a, b)) in again.iter().zip(&fresh).enumerate().filter(|(i, _)| wanted(*i)) {
+            assert_eq!(a.values().map(f64::to_bits), b.values().map(f64::to_bits), "stroke {i}, step {n}");
+        }
+    }
+}
+
+#[test]
 fn a_cancelled_run_judges_nothing() {
     let line = |x: f64| (0..9).map(|i| DVec2::new(x, f64::from(i))).collect::<Vec<_>>();
     let ink = clean(&Drawing::from_polylines("stems", &[line(0.0), line(5.0)]), &mut Report::default());

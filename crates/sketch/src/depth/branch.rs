@@ -189,9 +189,14 @@ pub(crate) fn most_entropy(children: &[Child], mode: BranchDepth) -> Vec<f64> {
         angles / pairs.max(1.0) + ops::exp(-(children[i].lengthening(at) - free).max(0.0)) / count
     };
     let mut step = 12.0 * (ops::PI / 180.0);
+    // Tried at this step, and none of those that it sees has moved since: it would stay where it is.
+    let mut settled = vec![false; n];
     for _ in 0..SWEEPS {
         let mut moved = false;
         for i in 0..n {
+            if core::mem::replace(&mut settled[i], true) {
+                continue;
+            }
             let mut best = (score(i, dir[i], phi[i], &dir), phi[i], dir[i]);
             for to in [phi[i] - step, phi[i] + step] {
                 let to = to.clamp(-MOST, MOST);
@@ -202,10 +207,14 @@ pub(crate) fn most_entropy(children: &[Child], mode: BranchDepth) -> Vec<f64> {
                     moved = true;
                 }
             }
-            (phi[i], dir[i]) = (best.1, best.2);
+            if best.1.to_bits() != phi[i].to_bits() {
+                (phi[i], dir[i]) = (best.1, best.2);
+                settled[i.saturating_sub(SEEN)..(i + SEEN + 1).min(n)].fill(false);
+            }
         }
         if !moved {
             step *= 0.5;
+            settled.fill(false);
             if step < 0.5 * (ops::PI / 180.0) {
                 break;
             }

@@ -16,6 +16,7 @@ pub(super) struct Lines {
     points: Vec<DVec2>,
     /// Whether a piece runs from this point to the next.
     joined: Vec<bool>,
+    /// No piece is longer.
     piece: f64,
     tree: KdTree2,
 }
@@ -47,8 +48,12 @@ impl Lines {
                 *end = false;
             }
         }
+        // Where lines are short, so are their pieces, and fewer of them are near enough.
+        let pieces = points.windows(2).zip(&joined).filter(|(_, joined)| **joined);
+        let longest = pieces.map(|(w, _)| w[0].distance(w[1])).fold(0.0, f64::max);
         let tree = KdTree2::new(&points);
-        Self { points, joined, piece, tree }
+        // A little more than the longest: a length is right to its last bit but one.
+        Self { points, joined, piece: piece.min(1.001 * longest), tree }
     }
 
     /// The distance of a point to the nearest line; `None` where there is no line. `near`: scratch.

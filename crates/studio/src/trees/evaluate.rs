@@ -11,7 +11,7 @@ use skin::{Layout, Pictures, SkinSpec};
 
 use super::blossom::add_blossom;
 use super::look::{KeptBarks, paint, tint};
-use super::{Inside, TreeError, TreeOptions, coarser, keep_out, look_at_meshes, scale_to_height, tree_blade};
+use super::{Inside, OddMesh, TreeError, TreeOptions, coarser, keep_out, scale_to_height, tree_blade};
 use crate::report::{Counts, GrowthReport, ItemReport, TimingsMs};
 use crate::shaping::{EditReport, Shaper};
 use crate::template::LeafTemplate;
@@ -60,6 +60,7 @@ pub struct TreeEvaluator {
 struct Raw {
     from: (TreeSpec, Blade, Seed),
     grown: Grown,
+    odd: Vec<OddMesh>,
     warnings: Vec<Warning>,
 }
 
@@ -103,7 +104,7 @@ impl TreeEvaluator {
             let model = self.model().filter(|_| !self.looking);
             self.inside = model.and_then(|m| Inside::of(m, &obstacles));
         }
-        Ok(self.item(spec, &report))
+        Ok(self.item(spec, options, &report))
     }
 
     /// A much coarser model of what [`Self::update`] will make, without textures, if that is a large tree that was not
@@ -140,7 +141,8 @@ impl TreeEvaluator {
         if report.stages.is_empty() {
             self.done.clear();
         }
-        let obstacles = self.grow(spec, seed, options, &mut report, run)?;
+        let grown = self.grow(spec, seed, options, &mut report, run);
+        let obstacles = grown.map_err(|e| e.naming(&options.obstacles))?;
         self.dress(spec, &obstacles, seed, options);
         let start = run.clock.now_ms();
         self.shape(&obstacles, options, run)?;
@@ -168,14 +170,14 @@ impl TreeEvaluator {
             return Ok(obstacles);
         }
         let mut told = Report::default();
-        look_at_meshes(&spec.obstacles, &mut told);
+        let odd = spec.obstacles.iter().enumerate().filter_map(|(i, o)| OddMesh::of(i, o)).collect();
         let grown = growth::grow(spec, Some(blade.clone()), seed, run, &mut told)?;
         for stage in &told.stages {
             report.book(if stage.name == "grow" { "structure" } else { "depth" }, stage.ms);
         }
         (self.dressed, self.shaped, self.stale) = (None, None, true);
         self.done.extend(["structure", "depth"]);
-        self.grown = Some(Raw { from: (spec.clone(), blade, seed), grown, warnings: told.warnings });
+        self.grown = Some(Raw { from: (spec.clone(), blade, seed), grown, odd, warnings: told.warnings });
         Ok(obstacles)
     }
 
@@ -262,7 +264,7 @@ impl TreeEvaluator {
         Ok(Some(skinned(&copy, &(skin, look.clone(), leaf.clone()), &mut barks, run)?.0))
     }
 
-    fn item(&self, spec: &TreeSpec, report: &Report) -> ItemReport {
+    fn item(&self, spec: &TreeSpec, options: &TreeOptions, report: &Report) -> ItemReport {
         let (Some(raw), Some(plant), Some((_, model))) = (&self.grown, self.plant(), &self.model) else {
             return ItemReport::default(); // update fills all of them before it comes here
         };
@@ -271,7 +273,10 @@ impl TreeEvaluator {
         let given = matches!(spec.method, Method::Points { .. });
         let many = 2 * growth.unreachable > growth.attractors;
         let told = raw.warnings.iter().filter(|w| given || many || w.code != "attractors-unreached");
-        let mut warnings: Vec<Warning> = told.cloned().collect();
+        let mut odd = Report::default();
+        raw.odd.iter().for_each(|mesh| mesh.tell(&options.obstacles, &mut odd));
+        let mut warnings: Vec<Warning> = odd.warnings;
+        warnings.extend(told.cloned());
         let edits = self.shaped.as_ref();
         warnings.extend(edits.into_iter().flat_map(|s| s.told.iter().filter_map(|t| t.warning(&s.edits))));
         ItemReport {

@@ -58,6 +58,8 @@ pub struct TreeOptions {
     pub lods: u32,
     /// Edits by hand, done on the grown tree in this order.
     pub edits: Vec<PlantEdit>,
+    /// What the obstacles of the spec are called in messages, in their order; those without a name have their number.
+    pub obstacles: Vec<String>,
 }
 
 /// A tree with its meshes and its entry of the report.
@@ -217,27 +219,56 @@ pub fn make_tree(
     Ok(MadeTree { grown, model, lods, item })
 }
 
-/// Warns of obstacles that do not bound a volume; they are borne all the same.
-fn look_at_meshes(obstacles: &[Obstacle], report: &mut Report) {
-    for (i, obstacle) in obstacles.iter().enumerate() {
-        let Obstacle::Mesh { vertices, triangles } = obstacle else { continue };
+/// An obstacle that does not bound a volume; it is borne all the same.
+#[derive(Clone, Copy, Debug)]
+struct OddMesh {
+    obstacle: usize,
+    /// Edges with one face only; 0 where the faces look inwards.
+    open: usize,
+}
+
+impl OddMesh {
+    fn of(obstacle: usize, shape: &Obstacle) -> Option<Self> {
+        let Obstacle::Mesh { vertices, triangles } = shape else { return None };
         let open = growth::open_edges(vertices, triangles);
+        (open > 0 || growth::signed_volume(vertices, triangles) < 0.0).then_some(Self { obstacle, open })
+    }
+
+    /// `names`: of all obstacles, as far as they have any.
+    fn tell(self, names: &[String], report: &mut Report) {
+        let name = names.get(self.obstacle).filter(|n| !n.is_empty());
+        let obstacle = name.cloned().unwrap_or_else(|| (self.obstacle + 1).to_string());
+        let open = self.open;
         if open > 0 {
             base::warn!(
                 report,
                 "obstacle-open",
-                { obstacle = i + 1, edges = open },
+                { obstacle = obstacle, edges = open },
                 "obstacle {obstacle} is an open mesh ({edges} edges have one face only): what is inside was found by its \
                  winding number, so growth may enter through large holes"
             );
-        } else if growth::signed_volume(vertices, triangles) < 0.0 {
+        } else {
             base::warn!(
                 report,
                 "obstacle-inverted",
-                { obstacle = i + 1 },
+                { obstacle = obstacle },
                 "the faces of obstacle {obstacle} look inwards; its inside was taken as solid all the same"
             );
         }
+    }
+}
+
+impl TreeError {
+    /// The same error, with what the obstacles are called.
+    fn naming(self, names: &[String]) -> Self {
+        let Self::Growth(mut error) = self else { return self };
+        if let GrowthError::Obstacle { obstacle, name, .. }
+        | GrowthError::RootInObstacle { obstacle, name, .. } = &mut error
+            && let Some(called) = names.get(*obstacle).filter(|n| !n.is_empty())
+        {
+            name.clone_from(called);
+        }
+        Self::Growth(error)
     }
 }
 
