@@ -7,7 +7,7 @@
     reason = "a benchmark without its input is worth nothing"
 )]
 
-use base::direction;
+use base::turn::direction;
 use burgeon::glam::DVec2;
 use burgeon::ink::{Drawing, Stroke};
 use burgeon::{CancelToken, Clock, Evaluator, ItemReport, Run, Seed, SketchOptions};
@@ -77,8 +77,8 @@ fn grid(count: u32) -> Drawing {
             let (size, turn) = (5.0 + 4.0 * random(), direction(6.3 * random()));
             let point = |t: f64| match s % 3 {
                 0 => DVec2::new(t - 0.5, 0.05 * direction(6.0 * t).y),
-                1 => direction(6.28 * t) * DVec2::new(0.5, 0.2),
-                _ => 0.4 * direction(6.28 * t),
+                1 => direction(6.25 * t) * DVec2::new(0.5, 0.2),
+                _ => 0.4 * direction(6.25 * t),
             };
             (0..40).map(|i| place + size * turn.rotate(point(f64::from(i) / 39.0))).collect()
         })

@@ -396,8 +396,8 @@ export class MakerPanel {
       const called = el('input', {
         class: 'f-name',
         'aria-label': t('tree.obstacle.name'),
-        'data-obstacle-name': row,
-        maxlength: 200,
+        'data-obstacle-name': String(row),
+        maxlength: '200',
         onchange: () => {
           const wanted = called.value.trim();
           if (wanted !== '' && wanted !== name) this.treeRun({ 'rename-obstacle': [row, wanted] });

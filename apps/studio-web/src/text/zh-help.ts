@@ -234,7 +234,8 @@ export const zhHelp: Readonly<Record<string, string>> = {
   'tree.FoliageSpec.shade_fall': '阴影逐层衰减的倍数（式 5 的 b），大于 1，默认 1.8。',
   'tree.FoliageSpec.shade_layers': '叶片之下受遮荫的层数，1 至 32，默认 6。',
   'tree.FoliageSpec.size_variation': '叶长的标准差占叶长的比例，0 至 0.5，默认 0.1。',
-  'tree.FoliageSpec.gather': '叶向枝顶聚集的程度，0（均匀，默认）至 0.95：枝顶的节距为 spacing_m 的 1 - gather 倍，枝基的为 1 + gather 倍。',
+  'tree.FoliageSpec.gather':
+    '叶向枝顶聚集的程度，0（均匀，默认）至 0.95：枝顶的节距为 spacing_m 的 1 - gather 倍，枝基的为 1 + gather 倍。',
   'tree.FoliageSpec.spacing_m': '枝条上相邻两节的距离，米，大于 0，默认 0.06。',
   'tree.FoliageSpec.voxel_m': '体素的边长，米；默认为叶长的两倍。',
   'tree.FoliageSpec.width': '所选叶形的宽长比，0.01 至 3，默认 0.5。',
