@@ -727,12 +727,12 @@ fn a_plant_whose_place_is_locked_stays_where_it_is() {
 #[test]
 fn an_obstacle_has_a_name_by_which_messages_call_it() {
     let mut s = Workspace::default();
-    s.add_tree("oak-lsystem").unwrap();
+    s.open("bush.toml", BUSH.as_bytes(), 0, false).unwrap();
     let ball =
         |y: f64| format!(r#"{{"name":"ball","shape":{{"shape":"sphere","centre":[0,{y},0],"radius_m":1}}}}"#);
     s.ask(&format!(r#"{{"tree":[1,{{"add-obstacle":{}}}]}}"#, ball(30.0))).unwrap();
     s.ask(r#"{"tree":[1,{"rename-obstacle":[0,"Grandmother's wall"]}]}"#).unwrap();
-    assert_eq!(to_json(&s.state())["plants"][0]["tree"]["obstacles"][0]["name"], "Grandmother's wall");
+    assert_eq!(json(&s.state())["plants"][0]["tree"]["obstacles"][0]["name"], "Grandmother's wall");
     assert!(s.ask(r#"{"tree":[1,{"rename-obstacle":[7,"nothing"]}]}"#).is_err());
     // An open mesh: what is said of it follows its name.
     let open = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
