@@ -43,7 +43,7 @@ pub use quote::{brief, quoted};
 pub use report::{Report, Stage, Warning};
 pub use seed::{Draw, Seed, Stream};
 pub use slip::Slip;
-pub use sort::{Set, map_of, set_of, sort_by, sort_by_key, sort_numbers, sorted_order};
+pub use sort::{Set, first_of, map_of, set_of, sort_by, sort_by_key, sort_numbers, sorted_order};
 pub use srgb::{linear_of_srgb, srgb_of_linear};
 pub use task::{
     CancelToken, Cancelled, Clock, Executor, NoClock, Run, Serial, Stopped, Telling, map_indexed,

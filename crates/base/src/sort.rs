@@ -58,6 +58,13 @@ pub fn sort_numbers(numbers: &mut [f64]) {
     numbers.sort_unstable_by(f64::total_cmp);
 }
 
+/// Puts the first `n` of rows in an order before the others, each part in some order, the last of the first in its place.
+///
+/// As `select_nth_unstable_by`, one routine for all. `n`: 1 to the number of rows.
+pub fn first_of(rows: &mut [usize], n: usize, compare: &mut dyn FnMut(&usize, &usize) -> Ordering) {
+    rows.select_nth_unstable_by(n - 1, compare);
+}
+
 /// A set as a map without values.
 pub type Set<K> = LiteMap<K, ()>;
 

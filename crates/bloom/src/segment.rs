@@ -437,7 +437,7 @@ fn match_turned(a: &[Organ], b: &[Organ], up: DVec3, angle: f64) -> (f64, Vec<(u
         }
     }
     sum += (a.len().min(b.len()) - out.len().min(a.len().min(b.len()))) as f64;
-    out.sort_unstable();
+    base::sort_by_key(&mut out, |&pair| pair);
     (sum, out)
 }
 

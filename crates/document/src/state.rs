@@ -443,9 +443,9 @@ impl Document {
             let fault = worn.find_map(|m| material_fault(m, &p.settings.pictures));
             [layer, fault.map(DocumentFault::Setting)].into_iter().flatten()
         });
-        let mut known = BTreeSet::new();
+        let mut known = base::Set::new();
         let plants = self.plants.iter().flat_map(move |p| {
-            let taken = !known.insert(p.id) || p.id.0 >= self.next_plant;
+            let taken = known.insert(p.id, ()).is_some() || p.id.0 >= self.next_plant;
             let strokes = !p.strokes.is_empty() && p.settings.sketch().is_none();
             let leaf = p.settings.maker.leaf().is_some_and(|l| l == p.id || !self.lends_leaf(l));
             [

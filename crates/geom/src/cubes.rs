@@ -35,7 +35,7 @@ pub fn cubes(points: &[DVec3], cell: f64) -> Vec<([i32; 3], u32)> {
             let number = |[z, y, x]: [i32; 3]| (z as u64 * wide + y as u64) * long + x as u64;
             by_digits(&mut keyed, whole, number);
         }
-        _ => keyed.sort_unstable(),
+        _ => base::sort_by_key(&mut keyed, |&row| row),
     }
     keyed
 }

@@ -445,7 +445,7 @@ fn brightest(all: &[Candidate], light: &[f64], spec: &FoliageSpec) -> Vec<bool> 
         light[*b].total_cmp(&light[*a]).then(all[*a].key.cmp(&all[*b].key)).then(a.cmp(b))
     };
     if wanted < rows.len() && wanted > 0 {
-        rows.select_nth_unstable_by(wanted - 1, order);
+        base::first_of(&mut rows, wanted, &mut |a, b| order(a, b));
     }
     for &r in rows.iter().take(wanted) {
         keeps[r] = light[r].max(0.0) >= spec.min_light;

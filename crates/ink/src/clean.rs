@@ -271,7 +271,8 @@ fn quantile(values: &mut [f64], q: f64) -> f64 {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "q is within 0 and 1")]
     #[expect(clippy::cast_precision_loss, reason = "a rank need not be exact beyond 2^53 samples")]
     let rank = ((values.len() - 1) as f64 * q) as usize;
-    *values.select_nth_unstable_by(rank, f64::total_cmp).1
+    base::sort_numbers(values);
+    values[rank]
 }
 
 /// Even steps of at most `step` along a polyline of length `length`, both ends kept.

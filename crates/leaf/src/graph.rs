@@ -476,7 +476,7 @@ fn paired(right: &[Side], left: &[Side], length: f64) -> Vec<(usize, usize)> {
             pairs.push((i, j));
         }
     }
-    pairs.sort_unstable();
+    base::sort_by_key(&mut pairs, |&pair| pair);
     pairs
 }
 

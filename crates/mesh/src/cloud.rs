@@ -45,7 +45,8 @@ impl PointCloud {
             let mut x: Vec<f64> = points.iter().map(axis).collect();
             let half = x.len() / 2;
             // The median: stray points and zeros for missing ones do not move it.
-            if x.is_empty() { 0.0 } else { x.select_nth_unstable_by(half, f64::total_cmp).1.round() }
+            base::sort_numbers(&mut x);
+            x.get(half).map_or(0.0, |x| x.round())
         };
         let middle = DVec3::new(middle(|p| p.x), middle(|p| p.y), middle(|p| p.z));
         (middle.abs().max_element() >= 1000.0 && middle.is_finite()).then_some(middle)

@@ -45,7 +45,8 @@ fn median(mut values: Vec<f64>, or: f64) -> f64 {
         return or;
     }
     let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+    base::sort_numbers(&mut values);
+    values[middle]
 }
 
 impl Habit {

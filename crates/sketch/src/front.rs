@@ -61,7 +61,8 @@ impl<'a> Front<'a> {
             let size = bounds.max - bounds.min;
             let side = usize::from(size.y > size.x);
             let half = part.len() / 2;
-            part.select_nth_unstable_by(half, |&a, &b| self.points[a][side].total_cmp(&self.points[b][side]));
+            let order = |&a: &usize, &b: &usize| self.points[a][side].total_cmp(&self.points[b][side]);
+            base::first_of(part, half + 1, &mut { order });
             self.divide(from, from + half);
             let second = self.divide(from + half, to);
             self.boxes[this].second = second;

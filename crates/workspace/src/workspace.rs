@@ -1,6 +1,5 @@
 //! The document that is worked on: plants, strokes, commands, gestures, undo.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use burgeon::document::{
@@ -119,7 +118,7 @@ pub struct Workspace {
     pub(crate) meshes: LiteMap<PlantId, Option<u64>>,
     pub(crate) kept: Kept,
     /// Points that the shell has. Holding them keeps their addresses from being used again.
-    given: BTreeMap<StrokeId, Arc<Stroke>>,
+    given: LiteMap<StrokeId, Arc<Stroke>>,
     pub(crate) textures: Textures,
     /// A tool that shapes a plant.
     pub(crate) held: Option<Held>,
@@ -456,7 +455,7 @@ impl Workspace {
     /// Strokes of the current drawing whose points the shell does not have yet; they count as had from now on.
     pub fn fresh_strokes(&mut self) -> Vec<StrokeId> {
         let mut fresh = Vec::new();
-        let mut given = BTreeMap::new();
+        let mut given = LiteMap::new();
         let plant = self.current().and_then(|id| self.editor.document().plant(id));
         for s in plant.map_or(&[][..], DocumentPlant::strokes) {
             if !self.given.get(&s.id).is_some_and(|old| Arc::ptr_eq(old, &s.stroke)) {

@@ -270,7 +270,7 @@ impl Reader {
     /// Distinct corners in the order of their numbers, which is the order of our own files.
     fn mesh(&self, faces: &[[Corner; 3]]) -> TriMesh {
         let mut corners: Vec<Corner> = faces.iter().flatten().copied().collect();
-        corners.sort_unstable();
+        base::sort_by_key(&mut corners, |&corner| corner);
         corners.dedup();
         let mut mesh = TriMesh {
             positions: corners.iter().map(|c| self.positions[c[0] as usize]).collect(),

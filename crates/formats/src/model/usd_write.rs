@@ -1,6 +1,6 @@
 //! Model -> USD as text, and its textures.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::fmt;
 use std::io::Write as _;
 
@@ -373,15 +373,15 @@ fn shown(m: &Material) -> [f32; 3] {
 
 /// Identifiers that are each used once.
 #[derive(Default)]
-struct Identifiers(BTreeSet<String>);
+struct Identifiers(BTreeMap<String, usize>);
 
 impl Identifiers {
     fn fresh(&mut self, wanted: &str, otherwise: &str) -> String {
         let wanted = identifier(wanted, otherwise);
         let numbered = (2_usize..).map(|n| format!("{wanted}_{n}"));
-        let name = core::iter::once(wanted.clone()).chain(numbered).find(|n| !self.0.contains(n));
+        let name = core::iter::once(wanted.clone()).chain(numbered).find(|n| !self.0.contains_key(n));
         let name = name.unwrap_or(wanted);
-        self.0.insert(name.clone());
+        self.0.insert(name.clone(), 1);
         name
     }
 }

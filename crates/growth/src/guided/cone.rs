@@ -287,7 +287,7 @@ impl Grid {
         let mut met: Vec<u64> = Vec::new();
         if all.is_none() {
             met = cells().map(|c| c >> TILE).collect();
-            met.sort_unstable();
+            base::sort_by_key(&mut met, |&tile| tile);
             met.dedup();
         }
         let mut numbers = vec![u32::MAX; all.unwrap_or(met.len())];

@@ -99,7 +99,7 @@ impl Flow {
             }
         }
         if matches!(sharing, Sharing::Rank { .. }) {
-            self.fed.sort_unstable_by_key(|f| (f.joint, f.bud));
+            base::sort_by_key(&mut self.fed, |f| (f.joint, f.bud));
         }
     }
 

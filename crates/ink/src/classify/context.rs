@@ -1,6 +1,5 @@
 //! What a stroke means among the others: `Ink -> Vec<StrokeFeatures>`.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use base::LiteMap;
@@ -100,7 +99,7 @@ struct Whole {
 }
 
 /// Strokes in each cell.
-type Grid = BTreeMap<(i64, i64), Vec<usize>>;
+type Grid = LiteMap<(i64, i64), Vec<usize>>;
 
 impl KeptMeasures {
     pub(super) fn of_plant(&mut self, rows: &[usize]) -> &mut Self {

@@ -269,7 +269,7 @@ fn usual_box(points: &[DVec3]) -> Option<[DVec3; 2]> {
     let mut places = points.to_vec();
     let order =
         |a: &DVec3, b: &DVec3| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(a.z.total_cmp(&b.z));
-    places.sort_unstable_by(order);
+    base::sort_by(&mut places, order);
     places.dedup();
     let ends = |axis: fn(&DVec3) -> f64| {
         let mut x: Vec<f64> = places.iter().map(axis).collect();

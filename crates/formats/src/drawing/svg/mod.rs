@@ -10,8 +10,6 @@ mod write;
 
 pub use write::write_svg;
 
-use std::collections::BTreeMap;
-
 use base::LiteMap;
 use std::sync::Arc;
 
@@ -53,7 +51,8 @@ struct Shape {
 const MAX_LAYERS: usize = 100;
 
 struct Reader<'a> {
-    by_id: BTreeMap<&'a str, NodeId>,
+    /// In the order of ids; of one that several have, the first.
+    by_id: Vec<(&'a str, NodeId)>,
     sheet: Sheet,
     viewport: DVec2,
     shapes: Vec<Shape>,
@@ -74,15 +73,16 @@ pub(super) fn read(text: &str, name: &str, report: &mut Report) -> Result<Drawin
         return Err(DrawingError::new(FORMAT, xml::place(root), fault));
     }
     let mut sheet = Sheet::default();
-    let mut by_id = BTreeMap::new();
+    let mut by_id = Vec::new();
     for node in root.descendants().filter(Node::is_element) {
         if let Some(id) = node.attribute("id") {
-            by_id.entry(id).or_insert(node.id());
+            by_id.push((id, node.id()));
         }
         if node.tag_name().name() == "style" {
             node.children().filter_map(|n| n.text()).for_each(|css| sheet.add(css));
         }
     }
+    base::sort_by(&mut by_id, |a, b| a.0.cmp(b.0));
     let mut reader = Reader {
         by_id,
         sheet,
@@ -173,8 +173,11 @@ impl<'a> Reader<'a> {
             "use" => {
                 let shift = DAffine2::from_translation(DVec2::new(self.x(node, "x"), self.y(node, "y")));
                 let href = node.attributes().find(|a| a.name() == "href").map_or("", |a| a.value());
-                let target = href.strip_prefix('#').and_then(|id| self.by_id.get(id)).copied();
-                let Some(target) = target.and_then(|id| node.document().get_node(id)) else {
+                let place = |id| {
+                    self.by_id.get(self.by_id.partition_point(|row| row.0 < id)).filter(|row| row.0 == id)
+                };
+                let target = href.strip_prefix('#').and_then(place);
+                let Some(target) = target.and_then(|&(_, id)| node.document().get_node(id)) else {
                     self.leave_out("use of something that is not in the file");
                     return Ok(());
                 };
