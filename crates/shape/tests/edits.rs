@@ -607,7 +607,7 @@ fn even() -> Plant {
         }
     }
     p.nodes.radius_m.iter_mut().for_each(|r| *r = 0.02);
-    assert_eq!(p.validate().next(), None);
+    assert_eq!(p.validate().next(), None, "sound");
     p
 }
 

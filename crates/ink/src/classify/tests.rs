@@ -260,7 +260,7 @@ fn a_second_look_at_many_strokes_measures_what_a_first_one_does() {
             3 => ink.strokes.insert(at, made(n, 0.05)),
             _ => ink.strokes.push(made(n, 0.02)),
         }
-        let wanted = |i: usize| (i + n) % 5 != 0;
+        let wanted = |i: usize| !(i + n).is_multiple_of(5);
         let again = context::features_again(&ink, wanted, &mut kept, &Run::plain());
         let fresh = features(&ink, &Run::plain());
         for (i, (a, b)) in again.iter().zip(&fresh).enumerate().filter(|(i, _)| wanted(*i)) {

@@ -4,7 +4,7 @@ use burgeon::glam::{DQuat, DVec3};
 use burgeon::plant::AxisId;
 
 use super::*;
-use crate::{GESTURES_SCHEMA, GestureRecord, GestureStep, ShapePointer};
+use crate::{GESTURES_SCHEMA, GestureRecord, GestureStep, ShapePointer, ShapeReach};
 
 /// Nodes of a branch and of all that it bears.
 fn nodes_of(s: &Workspace, axis: u32) -> Vec<[f64; 3]> {
@@ -247,7 +247,7 @@ fn a_copy_and_both_sides_of_a_mirror_are_done_again_from_a_record() {
             .iter()
             .map(|s| {
                 let mirror = s.reach.mirror.map(|m| burgeon::shape::Mirror { normal: DVec3::ZERO, ..m });
-                GestureStep { reach: crate::ShapeReach { mirror, ..s.reach }, ..s.clone() }
+                GestureStep { reach: ShapeReach { mirror, ..s.reach }, ..s.clone() }
             })
             .collect(),
         ..record.clone()
