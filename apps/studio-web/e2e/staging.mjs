@@ -624,6 +624,21 @@ async function obstacles({ page, url, shot }) {
   await settled(page);
   await page.click('[data-obstacle=ball]');
   await page.locator('[data-path=o0centre0]').waitFor();
+  // It has a name of its own, and so has the next.
+  const name = page.locator('[data-obstacle-name="0"]');
+  await name.fill('Old well');
+  await name.press('Enter');
+  await settled(page);
+  await page.click('[data-obstacle=ball]');
+  await page.locator('[data-obstacle-name="1"]').waitFor();
+  const names = await page.locator('[data-obstacle-name]').evaluateAll((all) => all.map((n) => n.value));
+  assert.equal(names[0], 'Old well');
+  assert.notEqual(names[1], names[0]);
+  await settled(page);
+  await page.keyboard.press('Escape');
+  await page.click('#b-undo');
+  await page.locator('[data-obstacle-name="1"]').waitFor({ state: 'detached' });
+  await settled(page);
   // At the edge of the crown, so that most of it has no leaf before it.
   for (const [path, value] of [
     ['o0centre0', '1.9'],
