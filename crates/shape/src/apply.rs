@@ -8,12 +8,13 @@ use growth::Obstacles;
 use plant::{OrganKind, Plant};
 
 use crate::bench::{Bench, Stop};
-use crate::draft::{At, Draft};
+use crate::draft::Draft;
 use crate::edit::{Destination, HandEdit, Turn};
 use crate::grow::KeptGrowth;
 use crate::key::AxisKey;
 use crate::outcome::{Changed, Outcome, Why};
 use crate::pipes::Pipes;
+use crate::seat::{Goal, Seat, goal, onto};
 use crate::{fill, grow, leaves, sketch_branch, twin};
 
 /// What edits need to know besides the plant. Not saved with them.
@@ -226,61 +227,6 @@ fn count(what: &[bool]) -> usize {
     what.iter().filter(|w| **w).count()
 }
 
-/// Where a branch is taken.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Goal {
-    /// Onto a branch, at a share of its length.
-    Wood(usize, f64),
-    /// By a vector, metres: what stands on the ground.
-    Ground(DVec3),
-}
-
-/// Where a destination takes a branch of the plant as it is.
-pub(crate) fn goal(draft: &Draft, b: usize, to: &Destination) -> Result<Goal, Why> {
-    let bearer = draft.branches[b].bearer;
-    match to {
-        Destination::SlideM(by) => {
-            let at = bearer.ok_or(Why::NoBearer)?;
-            let whole = draft.branches[at.branch].length();
-            let by = if by.is_finite() { *by } else { return Err(Why::BadNumber { field: "slide-m" }) };
-            let share = draft.share_of_bearer(b) + if whole > 0.0 { by / whole } else { 0.0 };
-            Ok(Goal::Wood(at.branch, share))
-        }
-        Destination::Place { axis, at } => {
-            let share = if at.is_finite() { *at } else { return Err(Why::BadNumber { field: "at" }) };
-            Ok(Goal::Wood(axis.find_in(draft)?.0, share))
-        }
-        Destination::ByM(by) => {
-            if !by.is_finite() || by.length() > 1e6 {
-                return Err(Why::BadNumber { field: "by-m" });
-            }
-            let base = draft.branches[b].points.first().copied().unwrap_or(DVec3::ZERO);
-            Ok(bearer.map_or(Goal::Ground(*by), |at| {
-                let share = geom::nearest_on_polyline3(&draft.branches[at.branch].points, base + *by).1;
-                Goal::Wood(at.branch, share)
-            }))
-        }
-    }
-}
-
-/// A place on wood for a branch, and how it is turned to keep its angle to what bears it.
-pub(crate) struct Seated {
-    pub(crate) at: At,
-    pub(crate) target: DVec3,
-    pub(crate) turn: DQuat,
-}
-
-/// Makes a node for it where there is none.
-pub(crate) fn onto(draft: &mut Draft, b: usize, host: usize, share: f64) -> Seated {
-    let node = draft.node_at(host, share.clamp(0.0, 1.0));
-    // Read after the new node: it may have moved the old one on.
-    let old = draft.branches[b].bearer;
-    let before = old.map_or(DVec3::Y, |at| draft.branches[at.branch].tangent(at.node));
-    let (target, after) = (draft.branches[host].points[node], draft.branches[host].tangent(node));
-    let turn = base::turn::between(before, after).normalize();
-    Seated { at: At { branch: host, node }, target, turn }
-}
-
 fn shift(draft: &mut Draft, axis: &AxisKey, to: &Destination, bench: &Bench<'_>) -> Result<Changed, Stop> {
     let (b, by_likeness) = axis.find_in(draft)?;
     let base = draft.branches[b].points.first().copied().unwrap_or(DVec3::ZERO);
@@ -297,7 +243,7 @@ fn shift(draft: &mut Draft, axis: &AxisKey, to: &Destination, bench: &Bench<'_>)
         return Err(Why::OntoItself.into());
     }
     let exponent = bench.habit(draft).exponent;
-    let Seated { at: new, target, turn } = onto(draft, b, host, share);
+    let Seat { at: new, target, turn } = onto(draft, b, host, share);
     let old = draft.branches[b].bearer;
     draft.carry(&what, base, target, turn);
     draft.branches[b].bearer = Some(new);

@@ -14,6 +14,7 @@
 //! | `pipes` | radii below what changed |
 //! | `graft` | what growth made, onto the plant |
 //! | `sketch_branch`, `grow`, `fill`, `leaves` | drawn and brushed branches; what grows while it is held; regrowth and silhouettes; leaves |
+//! | `seat` | where a branch that is moved or copied comes to sit |
 //! | `twin` | a branch a second time: copies, and the other side of a plane of symmetry |
 //! | `mask` | an outline as markers in space |
 //! | `pick` | which branch a ray means |
@@ -36,6 +37,7 @@ mod mask;
 mod outcome;
 mod pick;
 mod pipes;
+mod seat;
 mod sketch_branch;
 mod thumb;
 mod tool;

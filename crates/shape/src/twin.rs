@@ -6,13 +6,13 @@ use base::Seed;
 use glam::{DQuat, DVec3};
 use plant::{FlowerId, Frame};
 
-use crate::apply::{Goal, goal, onto};
 use crate::bench::{Bench, MOST_AXES, Stop};
 use crate::draft::{At, Draft};
 use crate::edit::{Destination, Mirror};
 use crate::key::AxisKey;
 use crate::outcome::{Changed, Why};
 use crate::pipes::{Pipes, fit};
+use crate::seat::{Goal, goal, onto};
 use crate::sketch_branch::own_seed;
 
 const COPY: u64 = 0x636f_7079;
