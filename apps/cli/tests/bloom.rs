@@ -1,33 +1,18 @@
 //! `burgeon bloom` as other programs call it.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
+mod tools;
+
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::Path;
 
 use serde_json::Value;
+use tools::{burgeon, folder, good, json};
 
-fn folder(test: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
-    let _ = fs::remove_dir_all(&path);
-    fs::create_dir_all(&path).unwrap();
-    path
-}
-
-fn burgeon(folder: &Path, args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_burgeon")).args(args).current_dir(folder).output().unwrap()
-}
-
-fn good(folder: &Path, args: &[&str]) {
-    let out = burgeon(folder, args);
-    assert!(out.status.success(), "{args:?}: {}", String::from_utf8_lossy(&out.stderr));
-}
-
+/// Refused in a line that holds `want`.
 fn bad(folder: &Path, args: &[&str], want: &str) {
-    let out = burgeon(folder, args);
-    let text = String::from_utf8_lossy(&out.stderr).into_owned();
-    assert_eq!(out.status.code(), Some(2), "{args:?}: {text}");
-    assert!(text.lines().count() == 1 && text.contains(want), "{text:?} should say {want:?}");
+    let text = tools::bad(folder, args);
+    assert!(text.contains(want), "{text:?} should say {want:?}");
 }
 
 /// A leaf of `length` mm that rises by `rise`, as text.
@@ -41,10 +26,6 @@ fn leaf(length: f64, rise: f64) -> String {
         }
     }
     text
-}
-
-fn json(path: &Path) -> Value {
-    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
 }
 
 #[test]

@@ -1,43 +1,20 @@
 //! `burgeon grow`, `presets` and `compare` as other programs call them, with good and bad input.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
+mod tools;
+
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::Path;
+use std::process::Command;
 
 use serde_json::Value;
-
-fn folder(test: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
-    let _ = fs::remove_dir_all(&path);
-    fs::create_dir_all(&path).unwrap();
-    path
-}
-
-fn burgeon(folder: &Path, args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_burgeon")).args(args).current_dir(folder).output().unwrap()
-}
-
-fn good(folder: &Path, args: &[&str]) -> (String, String) {
-    let out = burgeon(folder, args);
-    let told = String::from_utf8(out.stderr).unwrap();
-    assert_eq!(out.status.code(), Some(0), "{args:?}: {told}");
-    (String::from_utf8(out.stdout).unwrap(), told)
-}
+use tools::{bad, folder, good};
 
 fn item(folder: &Path, args: &[&str]) -> Value {
     let all = [&["grow"], args, &["--json"]].concat();
-    let report: Value = serde_json::from_str(&good(folder, &all).0).unwrap();
+    let report: Value = serde_json::from_str(&good(folder, &all)).unwrap();
     assert_eq!((report["command"].as_str(), report["ok"].as_u64()), (Some("grow"), Some(1)), "{args:?}");
     report["items"][0].clone()
-}
-
-fn bad(folder: &Path, args: &[&str]) -> String {
-    let out = burgeon(folder, args);
-    let text = String::from_utf8(out.stderr).unwrap();
-    assert_eq!(out.status.code(), Some(2), "{args:?}: {text}");
-    assert_eq!(text.lines().count(), 1, "one line, not {text:?}");
-    text
 }
 
 /// Points on a lattice of 0.25 m from 1 to 3 m above the ground.
@@ -351,7 +328,7 @@ fn guided_growth_is_compared_with_its_baseline() {
     let at = folder("grow-compare-guided");
     let args = ["compare", "guided", "--json", "--png", "two.png", "--size", "80x90", "--supersample", "1"];
     let report: Value =
-        serde_json::from_str(&good(&at, &[&args[..], &["--detail", "0.2"]].concat()).0).unwrap();
+        serde_json::from_str(&good(&at, &[&args[..], &["--detail", "0.2"]].concat())).unwrap();
     let rows = report["rows"].as_array().unwrap();
     assert_eq!(
         rows.iter().map(|r| r["method"].as_str().unwrap()).collect::<Vec<_>>(),
@@ -386,7 +363,7 @@ fn leaves_age_seed_and_threads_do_what_they_say() {
     assert!(nodes(&["--age", "6"]) < nodes(&[]));
     // Levels of detail stand beside the model, each smaller.
     let args = ["grow", "bush.toml", "-o", "bush.glb", "--lods", "2", "--json"];
-    let report: Value = serde_json::from_str(&good(&at, &args).0).unwrap();
+    let report: Value = serde_json::from_str(&good(&at, &args)).unwrap();
     let triangles = |i: usize| report["items"][i]["counts"]["triangles"].as_u64().unwrap();
     assert!(triangles(1) < triangles(0) && triangles(2) < triangles(1));
     assert_eq!(report["items"][2]["output"], "bush-lod2.glb");
@@ -394,7 +371,7 @@ fn leaves_age_seed_and_threads_do_what_they_say() {
     // Wind goes where there is room for it, on every level; elsewhere it is told that it does not.
     good(&at, &["grow", "bush.toml", "-o", "wind.glb", "--wind", "--lods", "1", "-q"]);
     let blown = |file: &str| {
-        let info: Value = serde_json::from_str(&good(&at, &["info", file, "--json"]).0).unwrap();
+        let info: Value = serde_json::from_str(&good(&at, &["info", file, "--json"])).unwrap();
         info["model"]["parts"].as_array().unwrap().iter().all(|p| p["wind"] == true)
     };
     assert!(blown("wind.glb") && blown("wind-lod1.glb") && !blown("bush.glb"));
@@ -447,11 +424,11 @@ fn ctrl_c_leaves_nothing_behind() {
 #[test]
 fn presets_are_listed_shown_and_described() {
     let at = folder("grow-presets");
-    let (list, _) = good(&at, &["presets"]);
+    let list = good(&at, &["presets"]);
     for name in ["pine", "terminalia", "chinese-fir", "oak", "willow", "palm", "bamboo", "dead-oak"] {
         assert!(list.lines().any(|l| l.starts_with(name)), "{name} in {list}");
     }
-    let (toml, _) = good(&at, &["presets", "--show", "hazel"]);
+    let toml = good(&at, &["presets", "--show", "hazel"]);
     spec(&at, "mine.toml", &toml.replace("lifespan = 3", "lifespan = 1"));
     assert!(item(&at, &["mine.toml"])["counts"]["leaves"].as_u64() > Some(100));
     good(&at, &["presets", "--schema", "tree.schema.json"]);
@@ -473,7 +450,7 @@ fn a_leaf_of_your_own_is_borne() {
     let (own, given) =
         (digest(&["hazel", "-o", "a.glb"]), digest(&["hazel", "-o", "b.glb", "--leaf-template", &leaf]));
     assert_ne!(own, given);
-    let (toml, _) = good(&at, &["presets", "--show", "hazel"]);
+    let toml = good(&at, &["presets", "--show", "hazel"]);
     spec(&at, "mine.toml", &toml.replace("[blade]", "[blade]\nfile = \"leaf.csv\""));
     assert_eq!(digest(&["mine.toml", "-o", "c.glb"]), given, "a spec names its leaf beside itself");
     spec(&at, "lost.toml", &toml.replace("[blade]", "[blade]\nfile = \"none.csv\""));
@@ -499,7 +476,7 @@ fn oaks_are_compared_at_one_height() {
         "--detail",
         "0.3",
     ];
-    let report: Value = serde_json::from_str(&good(&at, &args).0).unwrap();
+    let report: Value = serde_json::from_str(&good(&at, &args)).unwrap();
     let rows = report["rows"].as_array().unwrap();
     assert_eq!(rows.len(), 3);
     for row in rows {

@@ -1,36 +1,12 @@
 //! `burgeon shape` as other programs call it: every edit on a species, a drawing and an L-system, and bad input.
 #![expect(clippy::unwrap_used, reason = "tests")]
 
+mod tools;
+
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 
 use serde_json::Value;
-
-fn folder(test: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
-    let _ = fs::remove_dir_all(&path);
-    fs::create_dir_all(&path).unwrap();
-    path
-}
-
-fn burgeon(folder: &Path, args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_burgeon")).args(args).current_dir(folder).output().unwrap()
-}
-
-fn good(folder: &Path, args: &[&str]) -> String {
-    let out = burgeon(folder, args);
-    assert_eq!(out.status.code(), Some(0), "{args:?}: {}", String::from_utf8_lossy(&out.stderr));
-    String::from_utf8(out.stdout).unwrap()
-}
-
-fn bad(folder: &Path, args: &[&str]) -> String {
-    let out = burgeon(folder, args);
-    let text = String::from_utf8(out.stderr).unwrap();
-    assert_eq!(out.status.code(), Some(2), "{args:?}: {text}");
-    assert_eq!(text.lines().count(), 1, "one line, not {text:?}");
-    text
-}
+use tools::{bad, folder, good};
 
 const EDITS: &str = r#"{"schema": "burgeon.edits/1", "edits": [
   {"op": "rotate", "axis": {"path": [0, 1]}, "turn": {"about": [0, 1, 0], "degrees": 40}},

@@ -258,6 +258,24 @@ async function panel({ page, url, shot }) {
   await shot('grove-leaf-sample');
 }
 
+/** The panel of a drawing is made of its schemas: a value changed, given back, and one among the folded rows. */
+async function settings({ page, url, shot }) {
+  await begin(page, url);
+  await sample(page);
+  const plain = await settled(page);
+  await page.click('#b-settings');
+  await page.locator('.popover [data-path="/skin/petals"]').first().selectOption('blue');
+  await page.locator('.popover .f-search input').fill('height');
+  const height = page.locator('.popover input[type=number][data-path="/height_m"]');
+  await height.fill('2');
+  await height.press('Enter');
+  const taller = await changed(page, plain, 'two metres');
+  await shot('drawing-settings');
+  await page.locator('.popover .f-row:has([data-path="/height_m"]) .f-reset').click();
+  await changed(page, taller, 'as tall as before');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
+}
+
 /** Nothing critical or serious, in what is seen first, with panels and dialogs. */
 async function anybody({ page, url }) {
   await begin(page, url);
@@ -324,5 +342,6 @@ export const grove = [
   ['grove: several files, and a model that is closed', files, WIDE],
   ['grove: tools keep to themselves', tools, WIDE],
   ['grove: panels for people', panel, WIDE],
+  ['grove: settings of a drawing', settings, WIDE],
   ['grove: anybody can use it', anybody, WIDE],
 ];

@@ -68,6 +68,12 @@ function valueAt(fields: Json | undefined, path: string): Json | undefined {
   return at;
 }
 
+/** A copy with another value at the end of a way into it. */
+export function withField<T extends object>(settings: T, [key, ...rest]: string[], value: Json): T {
+  const inner = (settings as Record<string, unknown>)[key!];
+  return { ...settings, [key!]: rest.length > 0 ? withField(inner as object, rest, value) : value };
+}
+
 /** A form with fewer rows is seen as a whole. */
 const FEW = 8;
 

@@ -1,6 +1,6 @@
 /** The left side of plants that are not drawn: species, age, obstacles; marks and surface; species and day. */
 import type { Engine } from './engine';
-import { Form, type Fields } from './form';
+import { Form, type Fields, withField } from './form';
 import type {
   Action,
   Command,
@@ -12,7 +12,7 @@ import type {
   PlantView,
   TreeCommand,
 } from './wire';
-import { named, type Schema } from './schema';
+import { drawingSchema, named, type Schema } from './schema';
 import { helpOf, t, wordOf } from './text';
 import { leafSample } from './samples';
 import { safe } from './files';
@@ -20,6 +20,8 @@ import { asToml, dropPreset, keepPreset, ownPresets } from './own';
 import { askName, button, download, el, icon, note } from './ui';
 
 export interface Catalogue {
+  /** Of a drawing, with its surface. */
+  drawing: Schema;
   tree: Schema;
   leaf: Schema;
   flower: Schema;
@@ -77,12 +79,6 @@ export function gallery(
     );
   }
   return grid;
-}
-
-/** Settings with another value at the end of a way into them. */
-function withField<T extends object>(settings: T, [key, ...rest]: string[], value: Json): T {
-  const inner = (settings as Record<string, unknown>)[key!];
-  return { ...settings, [key!]: rest.length > 0 ? withField(inner as object, rest, value) : value };
 }
 
 /** What matters first of each maker, beside what the head has. */
@@ -658,7 +654,11 @@ export class MakerPanel {
 }
 
 export async function catalogueOf(engine: Engine): Promise<Catalogue> {
-  const all = JSON.parse(await engine.ask<string>({ kind: 'schema' })) as Catalogue;
-  for (const maker of ['tree', 'leaf', 'flower', 'material'] as const) named(all[maker], maker);
-  return all;
+  const all = JSON.parse(await engine.ask<string>({ kind: 'schema' })) as Catalogue & {
+    sketch: Schema;
+    skin: Schema;
+  };
+  for (const maker of ['sketch', 'skin', 'tree', 'leaf', 'flower', 'material'] as const)
+    named(all[maker], maker);
+  return { ...all, drawing: drawingSchema(all.sketch, all.skin) };
 }

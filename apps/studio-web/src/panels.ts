@@ -5,14 +5,14 @@ import { type Catalogue, catalogueOf, gallery } from './makers';
 import { type Held, penOf } from './pen';
 import { asPng, photoPanel, placed } from './photo';
 import type { Session } from './session';
-import { type SettingsEvents, settingsPanel } from './settings';
+import { type SettingsEvents, SettingsPanel } from './settings';
 import type { Sheet } from './sheet/sheet';
 import { setSetting, setting } from './store';
 import { t, tOf, type TextKey, wordOf } from './text';
 import { askName, closePopover, dialog, note, popover } from './ui';
 import { openVariations } from './variations';
 import type { PlantView } from './view/view';
-import type { Layer, MakerWord, NewMaker, PenStyle, SketchState } from './wire';
+import type { Layer, MakerWord, NewMaker, PenStyle } from './wire';
 
 /** Size of a picture in the grid of variations. */
 const PICTURE_SIZE = [200, 190] as const;
@@ -204,14 +204,15 @@ export class Panels {
     popover(this.page.anchor('photo'), panel, t('tool.photo'));
   }
 
-  openSettings(): void {
+  async openSettings(): Promise<void> {
     const { session, sheet } = this.page;
+    await this.loadCatalogue();
     const first = session.drawn;
-    if (!first) return;
-    const now = (): SketchState => session.drawn ?? first;
+    if (!first || !this.catalogue) return;
     const lenders = (session.state?.plants ?? []).filter((p) => p.lends && p.id !== session.plant?.id);
-    const panel = settingsPanel(now, lenders, {
+    const panel = new SettingsPanel(this.catalogue.drawing, lenders, {
       ...this.drawing(),
+      now: () => session.drawn ?? first,
       steady: this.steady,
       setSteady: (strength) => {
         this.steady = strength;
@@ -219,7 +220,8 @@ export class Panels {
         setSetting('steady', String(strength));
       },
     });
-    popover(this.page.anchor('settings'), panel, t('menu.settings'));
+    this.shown = panel;
+    popover(this.page.anchor('settings'), panel.element, t('menu.settings'));
   }
 
   /** How a panel changes the drawing. */

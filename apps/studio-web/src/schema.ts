@@ -40,3 +40,19 @@ export function named(schema: Schema, path: string, root = path): Schema {
   if (typeof schema.items === 'object') named(schema.items, `${path}.items`, root);
   return schema;
 }
+
+/** What other panels ask for: what a drawing is read as, one flower, an animation. */
+const ELSEWHERE = ['read_as', 'flipped_flowers', 'steady_m'];
+
+/** The schema of a drawing with that of its surface as its field `skin`, without what other panels ask for. */
+export function drawingSchema(sketch: Schema, skin: Schema): Schema {
+  const { $defs, ...surface } = skin;
+  const shown = (fields: Record<string, Schema> = {}): Record<string, Schema> =>
+    Object.fromEntries(Object.entries(fields).filter(([name]) => !ELSEWHERE.includes(name)));
+  const { Kind: _, ...parts } = { ...sketch.$defs, ...$defs };
+  return {
+    ...sketch,
+    $defs: parts,
+    properties: { ...shown(sketch.properties), skin: { ...surface, properties: shown(skin.properties) } },
+  };
+}

@@ -1,7 +1,9 @@
-/** The plant's settings: a row for each, made from one table. A drag of a slider is one step of undo. */
-import type { PlantState, SketchCommand, SketchSpec, SketchState, SkinSpec } from './wire';
-import { t, tOf, type TextKey } from './text';
+/** The panel of a drawing: a form made of the schemas of drawing and surface, a lent leaf, and the pen. */
+import { Form, type Fields, withField } from './form';
+import type { Schema } from './schema';
+import { t, tOf } from './text';
 import { el } from './ui';
+import type { Json, PlantState, SketchCommand, SketchState } from './wire';
 
 export interface SettingsEvents {
   /** Asked of the drawing. */
@@ -9,174 +11,95 @@ export interface SettingsEvents {
   begin(name: string): void;
   stage(command: SketchCommand): void;
   commit(): void;
+  /** The drawing as it is. */
+  now(): SketchState;
   /** Strength of the stabiliser of the pen, 0 to 3. */
   steady: number;
   setSteady(strength: number): void;
 }
 
-interface Slider {
-  text: TextKey;
-  low: number;
-  high: number;
-  step: number;
-  get(s: SketchState): number;
-  set(s: SketchState, value: number): SketchCommand;
-}
-
-const sketch = (s: SketchState, change: Partial<SketchSpec>): SketchCommand => ({
-  'set-sketch': { ...s.sketch, ...change },
-});
-const skin = (s: SketchState, change: Partial<SkinSpec>): SketchCommand => ({
-  'set-skin': { ...s.skin, ...change },
-});
-const fill = (s: SketchState, change: Partial<SketchSpec['fill']>): SketchCommand =>
-  sketch(s, { fill: { ...s.sketch.fill, ...change } });
-
-const SLIDERS: readonly Slider[] = [
-  {
-    text: 'set.density',
-    low: 0.1,
-    high: 4,
-    step: 0.1,
-    get: (s) => s.sketch.fill.density,
-    set: (s, density) => fill(s, { density }),
-  },
-  {
-    text: 'set.tropism',
-    low: -1,
-    high: 1,
-    step: 0.05,
-    get: (s) => s.sketch.fill.tropism,
-    set: (s, tropism) => fill(s, { tropism }),
-  },
-  {
-    text: 'set.phototropism',
-    low: -1,
-    high: 1,
-    step: 0.05,
-    get: (s) => s.sketch.phototropism,
-    set: (s, phototropism) => sketch(s, { phototropism }),
-  },
-  {
-    text: 'set.gravity',
-    low: 0,
-    high: 1,
-    step: 0.05,
-    get: (s) => s.sketch.gravity,
-    set: (s, gravity) => sketch(s, { gravity }),
-  },
-  {
-    text: 'set.detail',
-    low: 0.2,
-    high: 3,
-    step: 0.1,
-    get: (s) => s.skin.detail,
-    set: (s, detail) => skin(s, { detail }),
-  },
-  {
-    text: 'set.variation',
-    low: 0,
-    high: 1,
-    step: 0.05,
-    get: (s) => s.skin.variation,
-    set: (s, variation) => skin(s, { variation }),
-  },
+/** What the panel shows first. */
+const MAIN = [
+  '/fill/density',
+  '/fill/tropism',
+  '/phototropism',
+  '/gravity',
+  '/skin/variation',
+  '/skin/petals',
+  '/leaf_depth',
+  '/branch_depth',
 ];
 
-const PETALS = ['pink', 'white', 'yellow', 'violet', 'red', 'orange', 'blue', 'magenta'] as const;
+export class SettingsPanel {
+  readonly element = el('div', { class: 'settings' });
+  private readonly form: Form;
+  private dragging = false;
 
-/** The panel for a document; `now` gives the latest state when something is changed. */
-export function settingsPanel(
-  now: () => SketchState,
-  lenders: PlantState[],
-  events: SettingsEvents,
-): HTMLElement {
-  const panel = el('div', { class: 'settings' });
-  for (const slider of SLIDERS) {
-    const value = slider.get(now());
-    const shown = el('output', {}, String(Math.round(value * 100) / 100));
-    let dragging = false;
-    const input = el('input', {
-      type: 'range',
-      min: String(slider.low),
-      max: String(slider.high),
-      step: String(slider.step),
-      oninput: () => {
-        const value = Number(input.value);
-        shown.textContent = String(value);
-        const command = slider.set(now(), value);
-        if (!dragging) events.begin('set-sketch' in (command as object) ? 'sketch' : 'skin');
-        dragging = true;
-        events.stage(command);
-      },
-      onchange: () => {
-        if (dragging) events.commit();
-        dragging = false;
+  constructor(
+    schema: Schema,
+    lenders: PlantState[],
+    private readonly events: SettingsEvents,
+  ) {
+    this.form = new Form(schema, {
+      set: (path, value) => events.run(this.command(path, value)),
+      stage: (path, value) => this.stage(this.command(path, value)),
+      done: () => {
+        if (this.dragging) events.commit();
+        this.dragging = false;
       },
     });
-    input.value = String(value);
-    panel.append(el('label', {}, el('span', {}, t(slider.text)), input, shown));
-  }
-  panel.append(
-    choice(
-      'set.petals',
-      ['auto', ...PETALS],
-      now().skin.petals ?? 'auto',
-      (word) => events.run(skin(now(), { petals: word === 'auto' ? null : (word as SkinSpec['petals']) })),
-      'petal',
-    ),
-    choice(
-      'set.leaf_depth',
-      ['drawn', 'signed', 'paper'],
-      now().sketch.leaf_depth,
-      (word) => events.run(sketch(now(), { leaf_depth: word as SketchSpec['leaf_depth'] })),
-      'set.leaf_depth',
-    ),
-    choice(
-      'set.branch_depth',
-      ['riesz', 'paper'],
-      now().sketch.branch_depth,
-      (word) => events.run(sketch(now(), { branch_depth: word as SketchSpec['branch_depth'] })),
-      'set.branch_depth',
-    ),
-  );
-  if (lenders.length > 0) {
-    const select = el(
-      'select',
-      {
-        onchange: () => events.run({ 'set-leaf': select.value === '' ? null : Number(select.value) }),
-      },
-      el('option', { value: '' }, t('tree.leaf.own')),
-      ...lenders.map((p) => el('option', { value: String(p.id) }, p.name)),
+    this.element.append(this.form.element);
+    if (lenders.length > 0)
+      this.element.append(
+        choice(
+          t('tree.leaf'),
+          [['', t('tree.leaf.own')], ...lenders.map((p): [string, string] => [String(p.id), p.name])],
+          String(events.now().leaf ?? ''),
+          (word) => events.run({ 'set-leaf': word === '' ? null : Number(word) }),
+        ),
+      );
+    this.element.append(
+      el('hr'),
+      choice(
+        t('set.steady'),
+        ['0', '1', '2', '3'].map((word) => [word, tOf('set.steady', word)]),
+        String(events.steady),
+        (word) => events.setSteady(Number(word)),
+      ),
     );
-    select.value = String(now().leaf ?? '');
-    panel.append(el('label', {}, el('span', {}, t('tree.leaf')), select));
+    this.show();
   }
-  panel.append(
-    el('hr'),
-    choice(
-      'set.steady',
-      ['0', '1', '2', '3'],
-      String(events.steady),
-      (word) => events.setSteady(Number(word)),
-      'set.steady',
-    ),
-  );
-  return panel;
+
+  /** Shows the drawing as it is; what is dragged keeps its element. */
+  show(): void {
+    if (this.dragging) return;
+    const { sketch, skin } = this.events.now();
+    this.form.show({ ...sketch, skin } as unknown as Fields, MAIN);
+  }
+
+  private command(path: string, value: Json): SketchCommand {
+    const { sketch, skin } = this.events.now();
+    const way = path.split('/').slice(1);
+    return way[0] === 'skin'
+      ? { 'set-skin': withField(skin, way.slice(1), value) }
+      : { 'set-sketch': withField(sketch, way, value) };
+  }
+
+  private stage(command: SketchCommand): void {
+    if (!this.dragging) this.events.begin('set-sketch' in (command as object) ? 'sketch' : 'skin');
+    this.dragging = true;
+    this.events.stage(command);
+  }
 }
 
 function choice(
-  text: TextKey,
-  words: readonly string[],
+  label: string,
+  words: [string, string][],
   value: string,
   act: (word: string) => void,
-  group: string,
 ): HTMLElement {
   const select = el('select', { onchange: () => act(select.value) });
-  for (const word of words) {
-    const label = word === 'auto' ? t('set.petals.auto') : tOf(group, word);
-    select.append(el('option', { value: word }, label));
-  }
+  for (const [word, text] of words) select.append(el('option', { value: word }, text));
   select.value = value;
-  return el('label', {}, el('span', {}, t(text)), select);
+  return el('label', { class: 'f-row' }, el('span', {}, label), select);
 }

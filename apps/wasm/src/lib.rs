@@ -49,6 +49,8 @@ pub fn studio_schema() -> Result<String, JsError> {
     let materials: Vec<_> =
         materials.map(|(key, m)| serde_json::json!({ "key": key, "material": m })).collect();
     Ok(serde_json::to_string(&serde_json::json!({
+        "sketch": burgeon::sketch_schema(),
+        "skin": burgeon::skin_schema(),
         "tree": burgeon::tree_schema(),
         "leaf": burgeon::leaf_schema(),
         "flower": burgeon::flower_schema(),

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use base::{Cancelled, Counted, OverBudget, Report, Run, Seed, Stopped, ops};
+use base::{Cancelled, Counted, OverBudget, Report, Run, Seed, Stopped};
 use document::PlantEdit;
 use geom::SplineError;
 use leaf::{FullMarks, Leaf, LeafPaint, LeafSpec, Marks, MarksError, RaysError, ScanError};
@@ -214,8 +214,7 @@ impl LeafOptions {
 
 #[expect(clippy::cast_possible_truncation, reason = "colours are f32 in materials")]
 pub(crate) fn linear_of(byte: u8) -> f32 {
-    // 2.2: close enough to sRGB's curve for a plain colour.
-    ops::powf(f64::from(byte) / 255.0, 2.2) as f32
+    base::linear_of_srgb(f64::from(byte) / 255.0) as f32
 }
 
 fn leaf_report(marks: &FullMarks, leaf: &Leaf, meshes: &ShapeMesh, options: &LeafOptions) -> LeafReport {

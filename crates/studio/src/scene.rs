@@ -17,6 +17,7 @@ use ink::{Stroke, StrokeClass};
 use leaf::{FullMarks, LeafSpec, ThicknessRule};
 use mesh::{MaterialId, Model, Standing};
 use plant::Plant;
+use sketch::SketchSpec;
 use skin::{Layout, OrganMaterial, SkinSpec, Worn};
 use spec::Spec;
 
@@ -616,6 +617,16 @@ pub fn tree_settings(spec: &TreeSpec, preset: Option<&str>) -> TreeSettings {
 /// The JSON Schema of what can be set of a measured leaf.
 pub fn leaf_schema() -> &'static serde_json::Value {
     LeafSpec::schema()
+}
+
+/// The JSON Schema of what can be set of a drawing.
+pub fn sketch_schema() -> &'static serde_json::Value {
+    SketchSpec::schema()
+}
+
+/// The JSON Schema of what can be set of the surface of a plant.
+pub fn skin_schema() -> &'static serde_json::Value {
+    SkinSpec::schema()
 }
 
 /// The JSON Schema of a material of leaves, petals or sepals.

@@ -1,6 +1,6 @@
 import { readFileSync } from 'node:fs';
 import { beforeAll, describe, expect, it, vi } from 'vitest';
-import { named, type Schema } from '../schema';
+import { drawingSchema, named, type Schema } from '../schema';
 import { initSync, studio_schema } from '../wasm/burgeon_wasm';
 import { en } from './en';
 import { fieldName, helpOf, plainHelp, setLanguage, unitOf, wordOf } from './index';
@@ -52,7 +52,11 @@ function gather(s: Schema | Schema[] | unknown): void {
 
 beforeAll(() => {
   initSync({ module: readFileSync(new URL('../wasm/burgeon_wasm_bg.wasm', import.meta.url)) });
-  const { tree, leaf, flower, material, trees, flowers, materials } = JSON.parse(studio_schema()) as {
+  const { sketch, skin, tree, leaf, flower, material, trees, flowers, materials } = JSON.parse(
+    studio_schema(),
+  ) as {
+    sketch: Schema;
+    skin: Schema;
     tree: Schema;
     leaf: Schema;
     flower: Schema;
@@ -61,7 +65,13 @@ beforeAll(() => {
     trees: Species[];
     flowers: { key: string }[];
   };
-  gather([named(tree, 'tree'), named(leaf, 'leaf'), named(flower, 'flower'), named(material, 'material')]);
+  gather([
+    drawingSchema(named(sketch, 'sketch'), named(skin, 'skin')),
+    named(tree, 'tree'),
+    named(leaf, 'leaf'),
+    named(flower, 'flower'),
+    named(material, 'material'),
+  ]);
   for (const { key, about } of trees) {
     said.words.add(key);
     said.texts.set(`preset.${key}`, plainHelp(about));
