@@ -205,13 +205,13 @@ pub(crate) fn leaf(
     asked.alone(py, &name, Maker::Leaf(Box::new(LeafMaker { data, settings })), wind)
 }
 
-/// Strokes of a drawing: the bytes of a file, or points.
+/// Strokes of a drawing: the bytes of a file and its extension, or points.
 #[derive(FromPyObject)]
-pub(crate) enum Ink {
-    #[pyo3(transparent)]
-    File(Vec<u8>),
-    #[pyo3(transparent)]
-    Strokes(Vec<Vec<[f64; 2]>>),
+pub(crate) struct Ink {
+    #[pyo3(item)]
+    file: Option<(Vec<u8>, String)>,
+    #[pyo3(item)]
+    lines: Vec<Vec<[f64; 2]>>,
 }
 
 /// The plant of a drawing.
@@ -219,15 +219,14 @@ pub(crate) enum Ink {
 pub(crate) fn sketch(
     py: Python<'_>,
     name: &str,
-    extension: &str,
     ink: Ink,
     asked: Asked<'_>,
     classes: Vec<(usize, String)>,
     day: Option<f64>,
 ) -> PyResult<RawPlant> {
-    let drawing = match ink {
-        Ink::File(bytes) => {
-            let format = DrawingFormat::from_extension(extension).or_else(|| DrawingFormat::sniff(&bytes));
+    let drawing = match ink.file {
+        Some((bytes, extension)) => {
+            let format = DrawingFormat::from_extension(&extension).or_else(|| DrawingFormat::sniff(&bytes));
             let format = format.ok_or_else(|| {
                 unusable(py, &format!("{name}: is no drawing (.svg, .inkml, .ndjson, .json)"))
             })?;
@@ -239,9 +238,9 @@ pub(crate) fn sketch(
             }
             drawing
         }
-        Ink::Strokes(lines) => {
-            let lines: Vec<Vec<DVec2>> =
-                lines.into_iter().map(|l| l.into_iter().map(DVec2::from_array).collect()).collect();
+        None => {
+            let lines = ink.lines.into_iter().map(|l| l.into_iter().map(DVec2::from_array).collect());
+            let lines: Vec<Vec<DVec2>> = lines.collect();
             Drawing::from_polylines(name, &lines)
         }
     };
