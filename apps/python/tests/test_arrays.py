@@ -123,11 +123,13 @@ def test_pictures_and_masks_show_the_same(small):
     masks = small.masks((160, 120))
     assert picture.shape == (120, 160, 4) and masks.part.shape == (120, 160)
     solid, seen = picture[..., 3] == 255, masks.part >= 0
-    assert seen.sum() > 200 and (seen[solid]).mean() > 0.97 and not seen[picture[..., 3] == 0].any()
+    assert seen.sum() > 200 and seen[solid].mean() > 0.99
+    # The middle of a pixel may meet a sliver that lies between the samples of the picture.
+    assert seen[picture[..., 3] == 0].sum() < 0.01 * seen.sum()
     assert np.isfinite(masks.depth[seen]).all() and np.isinf(masks.depth[~seen]).all()
     assert small._repr_png_().startswith(b"\x89PNG")
     html = small._repr_html_()
-    assert html.startswith("<iframe") and "http" not in html.replace("http://www.w3.org", "")
+    assert html.startswith("<iframe") and "http" not in html
 
 
 def test_files_are_those_of_the_model(small, tmp_path):

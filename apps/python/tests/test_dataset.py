@@ -3,7 +3,6 @@
 import hashlib
 import json
 import os
-import signal
 import threading
 import time
 
@@ -119,37 +118,40 @@ def test_a_full_disk_leaves_whole_shards_and_no_drafts(tmp_path, monkeypatch):
     assert "shard-00000.tar" in names and "shard-00001.tar" not in names and not [n for n in names if "draft" in n]
 
 
-def kill_a_child(folder, wanted):
-    """Kills a process that makes shards once there is one."""
-    psutil = pytest.importorskip("psutil")
-    killed = []
+class Killer(threading.Thread):
+    """Kills one process that makes shards as soon as there is one that works."""
 
-    def kill():
-        end = time.time() + 60
-        while time.time() < end and not killed:
-            for child in psutil.Process().children(recursive=True):
+    def __init__(self, word, least_s):
+        super().__init__()
+        self.psutil = pytest.importorskip("psutil")
+        self.word, self.least_s, self.killed = word, least_s, None
+        self.start()
+
+    def run(self):
+        end = time.time() + 120
+        while time.time() < end and self.killed is None:
+            for child in self.psutil.process_iter(["cmdline"]):
                 try:
-                    line = " ".join(child.cmdline())
-                    if wanted(line) and child.cpu_times().user > 0.3:
-                        os.kill(child.pid, signal.SIGKILL)
-                        killed.append(child.pid)
-                        return
-                except psutil.Error:
+                    line = " ".join(child.info["cmdline"] or [])
+                    if self.word in line and child.cpu_times().user > self.least_s:
+                        child.kill()
+                        self.killed = child.pid
+                        break
+                except self.psutil.Error:
                     pass
-            time.sleep(0.02)
-
-    thread = threading.Thread(target=kill)
-    thread.start()
-    return killed, thread
+            time.sleep(0.002)
 
 
-def test_processes_that_are_killed_are_replaced(made, tmp_path):
-    killed, thread = kill_a_child(tmp_path, lambda line: "spawn_main" in line)
-    how = {**HOW, "shard": 1}
-    want = dataset.generate("hazel", 8, tmp_path / "a", workers=1, **how)
-    got = dataset.generate("hazel", 8, tmp_path / "b", workers=2, **how)
-    thread.join()
-    assert got == want and killed
+# Plants that take a moment: so long that one is killed in the middle.
+LONG = dict(formats="glb", fields={"detail": 1.0}, shard=2, progress=False)
+
+
+def test_processes_that_are_killed_are_replaced(tmp_path):
+    want = dataset.generate("hazel", 8, tmp_path / "a", workers=1, **LONG)
+    killer = Killer("spawn_main", 0.3)
+    got = dataset.generate("hazel", 8, tmp_path / "b", workers=2, **LONG)
+    assert killer.killed, "no worker was killed"
+    assert got == want and sums(tmp_path / "a") == sums(tmp_path / "b")
 
 
 @pytest.mark.ray
@@ -159,40 +161,11 @@ def test_four_workers_of_ray_make_the_same_bytes(made, tmp_path):
     try:
         assert dataset.generate("hazel", 8, tmp_path / "ray", ray=True, **HOW) == made[1]
         assert sums(tmp_path / "ray") == sums(made[0])
-        # Longer shards, of which one is killed in the middle.
-        how = {**HOW, "shard": 2, "fields": {"detail": 0.4}}
-        want = dataset.generate("hazel", 8, tmp_path / "one", workers=1, **how)
-        killed = kill_ray_worker(ray)
-        assert dataset.generate("hazel", 8, tmp_path / "killed", ray=True, **how) == want
-        assert sums(tmp_path / "killed") == sums(tmp_path / "one")
-        assert killed(), "no worker was killed"
+        want = dataset.generate("hazel", 8, tmp_path / "one", workers=1, **LONG)
+        # Workers that Ray keeps have worked before: their name says when they make a shard.
+        killer = Killer("ray::make_shard", 0.0)
+        got = dataset.generate("hazel", 8, tmp_path / "killed", ray=True, **LONG)
+        assert killer.killed, "no worker was killed"
+        assert got == want and sums(tmp_path / "killed") == sums(tmp_path / "one")
     finally:
         ray.shutdown()
-
-
-def kill_ray_worker(ray):
-    psutil = pytest.importorskip("psutil")
-    done = []
-
-    def kill():
-        end = time.time() + 60
-        while time.time() < end and not done:
-            for child in psutil.process_iter(["cmdline"]):
-                try:
-                    if "ray::make_shard" in " ".join(child.info["cmdline"] or []):
-                        time.sleep(0.05)
-                        os.kill(child.pid, signal.SIGKILL)
-                        done.append(child.pid)
-                        return
-                except (psutil.Error, OSError):
-                    pass
-            time.sleep(0.005)
-
-    thread = threading.Thread(target=kill)
-    thread.start()
-
-    def killed():
-        thread.join()
-        return bool(done)
-
-    return killed
