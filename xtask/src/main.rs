@@ -53,6 +53,7 @@ cargo xtask COMMAND
   test-web       the WASM, validator and Studio part of `test` alone
   test-studio    the Studio part of `test` alone
   test-python    the Python part of `test` alone (docs/python.md)
+  archive        one file to download: the command with the Studio in it, manual pages, completions (target/archives)
   wheel          builds the Python package for this system, target/wheels
   bench-web      measures the Studio in a browser: pen, undo, opening, memory, first paint, transfer
   setup          installs the wasm32 target and the WASM tools only
@@ -82,6 +83,7 @@ fn main() -> ExitCode {
         }
         Some("test-studio") => web::setup().and_then(|tools| studio::test(&tools, false)),
         Some("bench-web") => web::setup().and_then(|tools| studio::bench(&tools)),
+        Some("archive") => archive::run(),
         Some("wheel") => python::wheel(),
         Some("test-python") => python::test(false),
         Some("setup") => web::setup().map(|_| ()),

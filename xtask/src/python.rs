@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use crate::shell::{Outcome, burgeon, command, debug_burgeon, finish, output, prepare, repository, say, target_dir};
+use crate::shell::{
+    Outcome, burgeon, command, debug_burgeon, finish, output, prepare, repository, say, target_dir,
+};
 use crate::toolchain::{apt_install, is_root_on_debian, shown};
 
 /// What builds the wheel.
@@ -27,8 +29,10 @@ pub(crate) fn wheel() -> Outcome {
 /// run.
 pub(crate) fn test(tested: bool) -> Outcome {
     let Some(python) = environment()? else {
-        say("skipped: the Python package, as there is no Python 3.9 or newer with its module venv; install python3 and \
-             python3-venv");
+        say(
+            "skipped: the Python package, as there is no Python 3.9 or newer with its module venv; install python3 and \
+             python3-venv",
+        );
         return Ok(());
     };
     debug_burgeon(tested)?;
@@ -114,7 +118,8 @@ fn build(python: &Path, options: &[&str]) -> Outcome<PathBuf> {
     }
     finish(c)?;
     let files = std::fs::read_dir(&out).map_err(|e| format!("{}: {e}", shown(&out)))?;
-    let wheel = files.filter_map(Result::ok).map(|e| e.path()).find(|p| p.extension().is_some_and(|e| e == "whl"));
+    let wheel =
+        files.filter_map(Result::ok).map(|e| e.path()).find(|p| p.extension().is_some_and(|e| e == "whl"));
     wheel.ok_or_else(|| format!("{}: maturin left no wheel", shown(&out)))
 }
 

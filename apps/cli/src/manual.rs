@@ -36,5 +36,7 @@ fn pages(command: &clap::Command, name: &str, folder: &Path, outputs: &mut Outpu
     let path = folder.join(format!("{name}.1"));
     outputs.write("FOLDER", &path, |mut out| page.render(&mut out).map_err(WriteError::from))?;
     let below = command.get_subcommands().filter(|c| !c.is_hide_set() && c.get_name() != "help");
-    below.map(|c| pages(c, &format!("{name}-{}", c.get_name()), folder, outputs)).try_fold(1, |sum, n| Ok(sum + n?))
+    below
+        .map(|c| pages(c, &format!("{name}-{}", c.get_name()), folder, outputs))
+        .try_fold(1, |sum, n| Ok(sum + n?))
 }

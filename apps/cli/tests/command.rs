@@ -519,6 +519,9 @@ fn shells_complete_every_command_and_each_has_its_manual_page() {
     assert!(burgeon(&folder, &["man", "pages"]).status.success(), "pages");
     let page = |name: &str| std::fs::read_to_string(folder.join("pages").join(name)).unwrap();
     assert!(page("burgeon.1").contains("burgeon\\-sketch"), "the first page names the others");
-    assert!(page("burgeon-sketch.1").contains(r"\-\-no\-textures"), "options stand on the page of their command");
+    assert!(
+        page("burgeon-sketch.1").contains(r"\-\-no\-textures"),
+        "options stand on the page of their command"
+    );
     assert!(page("burgeon-bloom-fit.1").starts_with(".ie"), "a page of groff");
 }

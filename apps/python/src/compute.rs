@@ -64,7 +64,11 @@ impl Clock for WallClock {
 }
 
 /// Computes without Python's lock; Ctrl-C stops it.
-pub(crate) fn compute<T: Send>(py: Python<'_>, budget: f64, work: impl FnOnce(&Run<'_>) -> T + Send) -> PyResult<T> {
+pub(crate) fn compute<T: Send>(
+    py: Python<'_>,
+    budget: f64,
+    work: impl FnOnce(&Run<'_>) -> T + Send,
+) -> PyResult<T> {
     let (token, clock) = (CancelToken::new(), WallClock(Instant::now()));
     let budget = Budget { times: budget, raise: Some("budget") };
     let threads = py.detach(Threads::of_process);

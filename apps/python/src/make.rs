@@ -73,7 +73,8 @@ impl Asked<'_> {
     fn alone(&self, py: Python<'_>, name: &str, maker: Maker, wind: bool) -> PyResult<RawPlant> {
         let settings = Settings { name: name.to_owned(), seed: self.seed(), maker, ..Settings::default() };
         let mut editor = Editor::new(Document::default());
-        let sheet: Vec<PlantId> = editor.document().plants().iter().map(burgeon::document::DocumentPlant::id).collect();
+        let sheet: Vec<PlantId> =
+            editor.document().plants().iter().map(burgeon::document::DocumentPlant::id).collect();
         let plant = NewPlant { settings, strokes: Vec::new() };
         let mut commands = vec![SceneCommand::Add(Box::new(plant)), SceneCommand::Rename(name.to_owned())];
         if !sheet.is_empty() {
@@ -285,7 +286,9 @@ pub(crate) fn open_project(py: Python<'_>, bytes: &[u8], budget: f64) -> PyResul
     let document = burgeon::document::read_project(bytes).map_err(|e| unusable(py, &e))?;
     let seen = document.plants().iter().filter(|p| !p.settings().hidden);
     let ids: Vec<PlantId> = seen.map(burgeon::document::DocumentPlant::id).collect();
-    ids.into_iter().map(|id| Held::make(py, SceneEvaluator::default(), document.clone(), id, budget)).collect()
+    ids.into_iter()
+        .map(|id| Held::make(py, SceneEvaluator::default(), document.clone(), id, budget))
+        .collect()
 }
 
 /// A growth law.

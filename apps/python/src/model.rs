@@ -161,7 +161,8 @@ impl RawModel {
     /// A column of a part, without a copy; empty where the model has none.
     fn column(&self, part: usize, name: &str) -> PyResult<Column> {
         let parts = &self.get().parts;
-        let none = || PyIndexError::new_err(format!("there is no part {part}: the model has {}", parts.len()));
+        let none =
+            || PyIndexError::new_err(format!("there is no part {part}: the model has {}", parts.len()));
         let mesh = &parts.get(part).ok_or_else(none)?.mesh;
         let owner = self.owner();
         Ok(match name {
@@ -217,7 +218,8 @@ impl RawModel {
     ) -> PyResult<Vec<(String, Bound<'py, PyBytes>)>> {
         let spec = axes(unit, up)?;
         let Some(format) = ModelFormat::from_extension(extension).filter(|f| *f != ModelFormat::Gltf) else {
-            let line = format!("models are written as .glb, .obj, .ply, .stl, .usda or .usdz, not .{extension}");
+            let line =
+                format!("models are written as .glb, .obj, .ply, .stl, .usda or .usdz, not .{extension}");
             return Err(PyValueError::new_err(line));
         };
         let files = py.detach(|| written(self.get(), format, extension, stem, &spec));
@@ -237,7 +239,8 @@ impl RawModel {
     /// What each pixel of a picture shows: part, triangle (-1 for nothing), distance (infinite for nothing).
     fn masks(&self, py: Python<'_>, look: Look) -> PyResult<(Column, Column, Column)> {
         let spec = look.spec()?;
-        let seen = compute(py, 1.0, |run| burgeon::render::hits(self.get(), std::slice::from_ref(&spec), run))?;
+        let seen =
+            compute(py, 1.0, |run| burgeon::render::hits(self.get(), std::slice::from_ref(&spec), run))?;
         let seen = seen.map_err(|e| crate::fault::refused(py, &e))?;
         let shape = [spec.height as usize, spec.width as usize];
         let count = shape[0] * shape[1];
@@ -288,7 +291,12 @@ fn written(
 
 /// RGBA bytes as a PNG.
 #[pyfunction]
-pub(crate) fn png<'py>(py: Python<'py>, width: u32, height: u32, pixels: &[u8]) -> PyResult<Bound<'py, PyBytes>> {
+pub(crate) fn png<'py>(
+    py: Python<'py>,
+    width: u32,
+    height: u32,
+    pixels: &[u8],
+) -> PyResult<Bound<'py, PyBytes>> {
     let mut bytes = Vec::new();
     let written = py.detach(|| burgeon::formats::write_png(width, height, pixels, &mut bytes));
     written.map_err(|e| unusable(py, &e))?;

@@ -261,8 +261,8 @@ impl RawPlant {
     /// The plant after more edits by hand: the list of edits of an edits file.
     fn shape(&self, py: Python<'_>, edits: &Bound<'_, PyAny>) -> PyResult<Self> {
         let edits = json_of(edits, "edits")?;
-        let edits: Vec<burgeon::shape::HandEdit> =
-            burgeon::spec::through_json::from_text(&edits.to_string()).map_err(|e| unusable(py, &format!("edits: {e}")))?;
+        let edits: Vec<burgeon::shape::HandEdit> = burgeon::spec::through_json::from_text(&edits.to_string())
+            .map_err(|e| unusable(py, &format!("edits: {e}")))?;
         for (k, edit) in edits.iter().enumerate() {
             edit.check().map_err(|why| unusable(py, &format!("edits[{k}] ({}): {why}", edit.word())))?;
         }

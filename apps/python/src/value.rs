@@ -27,7 +27,8 @@ fn of(value: &Bound<'_, PyAny>, path: &str, depth: usize) -> PyResult<Value> {
     if value.is_instance_of::<PyInt>() {
         let whole = value.extract::<i64>().map(Number::from);
         let whole = whole.or_else(|_| value.extract::<u64>().map(Number::from));
-        let much = |_| PyValueError::new_err(format!("{path} must be a whole number below 2^64, not {value}"));
+        let much =
+            |_| PyValueError::new_err(format!("{path} must be a whole number below 2^64, not {value}"));
         return whole.map(Value::Number).map_err(much);
     }
     if value.is_instance_of::<PyFloat>() {

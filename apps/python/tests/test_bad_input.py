@@ -184,7 +184,7 @@ WEIRD = st.recursive(
     max_leaves=12,
 )
 FIELDS = sorted(bg.schema("tree")["properties"])
-CALM = settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
+CALM = settings(max_examples=80, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
 REFUSED = (ValueError, TypeError, OverflowError, MemoryError)
 
 
@@ -262,9 +262,9 @@ def test_strided_and_foreign_arrays_are_read():
 
 
 def test_importing_is_quick():
-    """Without NumPy, which is imported when an array is first asked for."""
+    """Of the processor's time, as others may use it, too. Without NumPy, which is imported with the first array."""
     code = (
-        "import time; t = time.perf_counter(); import burgeon; t = time.perf_counter() - t\n"
+        "import time; t = time.process_time(); import burgeon; t = time.process_time() - t\n"
         "import sys; print(t if 'numpy' not in sys.modules else 'numpy')"
     )
     best = min(float(python(code)) for _ in range(5))

@@ -89,7 +89,9 @@ fn of_tile(scene: &Scene, bins: &Bins, camera: &Camera, view: &PictureSpec, tile
         let (eye, beam) = camera.ray(pixel);
         let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or(-beam);
         let normal = if normal.dot(beam) > 0.0 { -normal } else { normal };
-        let Some(&[part, triangle]) = scene.places.as_ref().and_then(|p| p.get(id as usize)) else { continue };
+        let Some(&[part, triangle]) = scene.places.as_ref().and_then(|p| p.get(id as usize)) else {
+            continue;
+        };
         let distance_m = (at - eye).dot(beam);
         hits.push(Hit { pixel: (y * width + x) as u32, part, triangle, at, normal, beam, distance_m });
     }

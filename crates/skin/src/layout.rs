@@ -71,9 +71,9 @@ impl Layout {
     pub fn owners(&self) -> impl Iterator<Item = impl Iterator<Item = (Owner<'_>, u32)>> {
         fn owner(p: &Piece) -> Owner<'_> {
             match &p.of {
-            Of::Axis(axis) => Owner::Axes(core::slice::from_ref(axis)),
-            Of::Chain(axes) => Owner::Axes(axes),
-            Of::Organ(row) => Owner::Organ(OrganId::new(*row as usize)),
+                Of::Axis(axis) => Owner::Axes(core::slice::from_ref(axis)),
+                Of::Chain(axes) => Owner::Axes(axes),
+                Of::Organ(row) => Owner::Organ(OrganId::new(*row as usize)),
             }
         }
         self.parts.iter().map(|pieces| pieces.iter().map(|p| (owner(p), p.triangles)))

@@ -47,10 +47,8 @@ impl SurveySpec {
     /// The views of all stations with beams `pixels` by `pixels`.
     fn views(&self, pixels: u32) -> Vec<PictureSpec> {
         let turn = base::ops::TAU / f64::from(self.stations);
-        let view = |k: u32| View::Orbit {
-            azimuth: turn * f64::from(k),
-            elevation: self.elevation_deg.to_radians(),
-        };
+        let view =
+            |k: u32| View::Orbit { azimuth: turn * f64::from(k), elevation: self.elevation_deg.to_radians() };
         let spec = |k| PictureSpec {
             width: pixels,
             height: pixels,
@@ -80,8 +78,8 @@ base::coded!(SurveyError {} wraps {
 
 /// What a point lies on, by the row that is its label.
 pub const PARTS: [&str; 17] = [
-    "branch", "twig", "stem", "petiole", "root", "leaf", "petal", "disc", "fruit", "stamen", "pistil", "thorn",
-    "pedicel", "sepal", "anther", "floret", "body",
+    "branch", "twig", "stem", "petiole", "root", "leaf", "petal", "disc", "fruit", "stamen", "pistil",
+    "thorn", "pedicel", "sepal", "anther", "floret", "body",
 ];
 
 /// The row of [`PARTS`] of an axis.
@@ -366,9 +364,12 @@ mod tests {
         let plain = SurveySpec { points: 2000, ..SurveySpec::default() };
         let still = scanned(&tree, &plain);
         let moved = scanned(&tree, &SurveySpec { noise_m: 0.02, ..plain });
-        let off: Vec<f64> = still.points.iter().zip(&moved.points).map(|(a, b)| {
-            DVec3::from_array(*a).distance(DVec3::from_array(*b))
-        }).collect();
+        let off: Vec<f64> = still
+            .points
+            .iter()
+            .zip(&moved.points)
+            .map(|(a, b)| DVec3::from_array(*a).distance(DVec3::from_array(*b)))
+            .collect();
         let rms = (off.iter().map(|x| x * x).sum::<f64>() / off.len() as f64).sqrt();
         assert!((rms - 0.02).abs() < 0.002, "{rms}");
         assert_eq!((still.part, still.organ), (moved.part, moved.organ));
