@@ -2,6 +2,7 @@
 //! Node needs nothing else.
 
 mod ablation;
+mod archive;
 mod circles;
 mod contact_sheet;
 mod flowers;

@@ -249,7 +249,7 @@ class Plant:
 
             parents = np.arange(-1, len(self.nodes) - 1, dtype=np.int32)
             parents[self.axes.first] = self.axes.bearer
-            parents.flags.writeable = False
+            parents.setflags(write=False)
             return parents
 
         return self._keep("parents", make)

@@ -17,7 +17,7 @@ def test_arrays_are_the_memory_of_the_core(small):
     for read in (lambda: part.vertices, lambda: part.faces, lambda: part.normals):
         first, again = read(), read()
         assert address(first) == address(again) and first is not again
-        assert not first.flags.writeable and not first.flags.owndata
+        assert not first.flags["W"] and not first.flags.owndata
     raw = small._raw
     for name in ("node_position", "node_radius", "node_axis"):
         assert address(np.asarray(raw.column(name))) == address(np.asarray(raw.column(name)))

@@ -30,7 +30,7 @@ def test_ranges_are_told_with_field_value_and_unit():
 
 def test_unknown_fields_say_which_is_meant():
     with pytest.raises(bg.SpecError, match="is `leaves` meant"):
-        bg.grow("oak", leafs={})
+        bg.grow("oak", leave={})
     with pytest.raises(bg.SpecError, match="leaf_keep` meant"):
         bg.grow("oak", leaves={"leaf_kept": 0.5})
     with pytest.raises(bg.SpecError, match="detail must be 0.1 to 8"):
@@ -213,7 +213,7 @@ def test_any_fields_make_a_plant_or_an_error(fields):
 )
 def test_any_arrays_make_a_drawing_or_an_error(strokes):
     for stroke in strokes:
-        stroke.flags.writeable = False
+        stroke.setflags(write=False)
     try:
         plant = bg.sketch(strokes, textures=False)
     except REFUSED as error:

@@ -91,7 +91,7 @@ def test_specs_of_files_go_along(tmp_path):
         ({"maker": "carve"}, "maker must be"),
         ({"vary": {"age": (5, 2)}}, "vary: age"),
         ({"vary": {"age": []}}, "no choices"),
-        ({"fields": {"leafs": 1}}, "unknown field"),
+        ({"fields": {"leave": 1}}, "unknown field"),
     ],
 )
 def test_bad_recipes_are_told_and_leave_no_shard(tmp_path, how, words):
