@@ -32,7 +32,16 @@ pub(crate) fn check() -> Outcome {
         finish(prepare(&typos, &["--format", "brief"]))?;
     }
     let mut package = vec!["package", "--workspace", "--no-verify", "--allow-dirty", "--quiet"];
-    package.extend(["--exclude", "burgeon-wasm", "--exclude", "burgeon-bench", "--exclude", "xtask"]);
+    package.extend([
+        "--exclude",
+        "burgeon-wasm",
+        "--exclude",
+        "burgeon-python",
+        "--exclude",
+        "burgeon-bench",
+        "--exclude",
+        "xtask",
+    ]);
     cargo(&package)
 }
 

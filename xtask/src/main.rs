@@ -2,6 +2,7 @@
 //! Node needs nothing else.
 
 mod ablation;
+mod archive;
 mod circles;
 mod contact_sheet;
 mod flowers;
@@ -13,6 +14,7 @@ mod made_drawings;
 mod made_strokes;
 mod native;
 mod pixels;
+mod python;
 mod quickdraw;
 mod read_drawings;
 mod read_in_turn;
@@ -37,7 +39,7 @@ cargo xtask COMMAND
                  Studio and opens it with the sample (not with --no-open, in CI, or where there is no screen)
   studio [FILE]  builds the Studio and opens it; options of `burgeon studio` may follow
   build-web      builds the Studio as a folder of static files, apps/studio-web/dist
-  test           sets up what the tests need and runs them all: native, WASM in Node, Khronos validator, Studio
+  test           sets up what the tests need and runs them all: native, WASM in Node, Khronos validator, Python, Studio
   bless WHY      writes fixtures/digests.json anew where plants are meant to change, and the reason into CHANGELOG.md
   gallery        makes every fixture drawing and writes docs/gallery.md and docs/table1.md
   species        grows every preset and scene of docs/trees.md and docs/shaping.md, and the Studio's small pictures
@@ -51,6 +53,9 @@ cargo xtask COMMAND
   train-kinds    learns which kind of plant explains a whole drawing best (docs/strokes.md)
   test-web       the WASM, validator and Studio part of `test` alone
   test-studio    the Studio part of `test` alone
+  test-python    the Python part of `test` alone (docs/python.md)
+  archive        one file to download: the command with the Studio in it, manual pages, completions (target/archives)
+  wheel          builds the Python package for this system, target/wheels
   bench-web      measures the Studio in a browser: pen, undo, opening, memory, first paint, transfer
   setup          installs the wasm32 target and the WASM tools only
 ";
@@ -79,6 +84,9 @@ fn main() -> ExitCode {
         }
         Some("test-studio") => web::setup().and_then(|tools| studio::test(&tools, false)),
         Some("bench-web") => web::setup().and_then(|tools| studio::bench(&tools)),
+        Some("archive") => archive::run(),
+        Some("wheel") => python::wheel(),
+        Some("test-python") => python::test(false),
         Some("setup") => web::setup().map(|_| ()),
         Some("help" | "-h" | "--help") | None => {
             say(HELP);
@@ -148,5 +156,6 @@ fn test() -> Outcome {
     // Built with the tests; the library as a program of its own uses it.
     cargo(&["run", "--quiet", "--package", "burgeon", "--example", "inventory"])?;
     web::test(&tools, true)?;
+    python::test(true)?;
     studio::test(&tools, true)
 }

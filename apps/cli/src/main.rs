@@ -17,6 +17,7 @@ mod leaf;
 mod leaf_data;
 mod levels;
 mod machine;
+mod manual;
 mod materials;
 mod memory;
 mod names;
@@ -67,6 +68,8 @@ fn main() -> ExitCode {
         Command::Info(args) => info::info(&args),
         Command::Bloom(command) => bloom::bloom(&command),
         Command::Studio(args) => studio::studio(&args),
+        Command::Completions(args) => manual::completions(&args),
+        Command::Man(args) => manual::man(&args),
     });
     match outcome {
         Ok(Ok(())) => ExitCode::SUCCESS,

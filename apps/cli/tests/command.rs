@@ -502,3 +502,26 @@ fn a_scene_is_made_whole() {
         bad(&dir, &["sketch", "garden.burgeon", "-o", "x.glb", "--seed", "2"]).contains("their own settings")
     );
 }
+
+#[test]
+fn shells_complete_every_command_and_each_has_its_manual_page() {
+    let folder = folder("manual");
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let out = burgeon(&folder, &["completions", shell]);
+        let script = String::from_utf8_lossy(&out.stdout).into_owned();
+        assert!(out.status.success(), "{shell}");
+        for word in ["sketch", "completions", "no-textures"] {
+            assert!(script.contains(word), "{shell} does not know {word}");
+        }
+    }
+    let out = burgeon(&folder, &["completions", "csh"]);
+    assert_eq!(out.status.code(), Some(2), "csh is no shell that is known");
+    assert!(burgeon(&folder, &["man", "pages"]).status.success(), "pages");
+    let page = |name: &str| std::fs::read_to_string(folder.join("pages").join(name)).unwrap();
+    assert!(page("burgeon.1").contains("burgeon\\-sketch"), "the first page names the others");
+    assert!(
+        page("burgeon-sketch.1").contains(r"\-\-no\-textures"),
+        "options stand on the page of their command"
+    );
+    assert!(page("burgeon-bloom-fit.1").starts_with(".ie"), "a page of groff");
+}

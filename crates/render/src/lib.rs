@@ -14,9 +14,11 @@
 //! | `texture` | sRGB tables, textures with halved copies |
 //! | `light` | directions, depth maps, light that reaches vertices and ground |
 //! | `raster` | which triangle each sample of a tile sees |
+//! | `hits` | [`Hit`]: what beams and pixels meet, with the triangle |
 //! | `shade` | colour of a fragment and of the background |
 
 mod camera;
+mod hits;
 mod light;
 mod picture;
 mod raster;
@@ -26,6 +28,7 @@ mod spec;
 mod texture;
 
 pub use camera::Camera;
+pub use hits::{Hit, hits};
 pub use picture::{Picture, contact_sheet};
 pub use spec::{Background, PictureSpec, View};
 

@@ -36,6 +36,8 @@ pub(crate) struct Scene {
     pub(crate) bounds: Bounds,
     /// Height of the ground.
     pub(crate) ground: f64,
+    /// The part and the row in it of each triangle, where somebody asks for them.
+    pub(crate) places: Option<Vec<[u32; 2]>>,
 }
 
 fn vec3(v: [f32; 3]) -> DVec3 {
@@ -44,16 +46,26 @@ fn vec3(v: [f32; 3]) -> DVec3 {
 
 impl Scene {
     pub(crate) fn new(model: &Model) -> Self {
+        Self::of(model, None)
+    }
+
+    /// With the part and the row of each triangle.
+    pub(crate) fn placed(model: &Model) -> Self {
+        Self::of(model, Some(Vec::with_capacity(model.triangle_count())))
+    }
+
+    fn of(model: &Model, places: Option<Vec<[u32; 2]>>) -> Self {
         let mut scene = Self {
             vertices: Vec::with_capacity(model.vertex_count()),
             triangles: Vec::with_capacity(model.triangle_count()),
             surfaces: surfaces(model),
             bounds: Bounds::EMPTY,
             ground: 0.0,
+            places,
         };
-        for part in &model.parts {
+        for (row, part) in (0_u32..).zip(&model.parts) {
             if part.material.index() < scene.surfaces.len() {
-                scene.add(&part.mesh, part.material.raw());
+                scene.add(&part.mesh, part.material.raw(), row);
             }
         }
         if !scene.bounds.is_empty() {
@@ -65,7 +77,7 @@ impl Scene {
         scene
     }
 
-    fn add(&mut self, mesh: &TriMesh, surface: u32) {
+    fn add(&mut self, mesh: &TriMesh, surface: u32, part: u32) {
         let Ok(first) = u32::try_from(self.vertices.len()) else { return };
         let count = mesh.positions.len();
         if u32::try_from(self.vertices.len() + count).is_err() {
@@ -91,8 +103,11 @@ impl Scene {
                 },
             }
         }));
-        for t in mesh.triangles.iter().filter(|t| sound(t)) {
+        for (row, t) in (0_u32..).zip(&mesh.triangles).filter(|(_, t)| sound(t)) {
             t.iter().for_each(|&i| self.bounds.include(vec3(mesh.positions[i as usize])));
+            if let Some(places) = &mut self.places {
+                places.push([part, row]);
+            }
             self.triangles.push(Triangle { corners: t.map(|i| i + first), surface });
         }
     }

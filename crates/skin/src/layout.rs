@@ -4,7 +4,7 @@
 
 use core::ops::Range;
 
-use plant::{AxisId, NodeId, Plant};
+use plant::{AxisId, NodeId, OrganId, Plant};
 
 /// Triangles of a part that belong together, in their order.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -57,7 +57,28 @@ pub struct Layout {
     parts: Vec<Vec<Piece>>,
 }
 
+/// What a run of triangles belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Owner<'a> {
+    /// One tube along these axes, each of which continues the one before.
+    Axes(&'a [AxisId]),
+    /// An organ.
+    Organ(OrganId),
+}
+
 impl Layout {
+    /// What the triangles of each part belong to, in their order: an owner, and how many of them it has.
+    pub fn owners(&self) -> impl Iterator<Item = impl Iterator<Item = (Owner<'_>, u32)>> {
+        fn owner(p: &Piece) -> Owner<'_> {
+            match &p.of {
+                Of::Axis(axis) => Owner::Axes(core::slice::from_ref(axis)),
+                Of::Chain(axes) => Owner::Axes(axes),
+                Of::Organ(row) => Owner::Organ(OrganId::new(*row as usize)),
+            }
+        }
+        self.parts.iter().map(|pieces| pieces.iter().map(|p| (owner(p), p.triangles)))
+    }
+
     pub(crate) fn push<'a>(&mut self, pieces: impl Iterator<Item = &'a Piece>) {
         self.parts.push(pieces.cloned().collect());
     }

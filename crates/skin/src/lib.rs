@@ -44,7 +44,7 @@ mod wind;
 
 pub use self::spec::{LeafMeshSpec, PetalColor, SkinSpec};
 pub use blade::{BladeChart, blade_mesh};
-pub use layout::Layout;
+pub use layout::{Layout, Owner};
 pub use leaf::ShapeMesh;
 pub use material::{Cloth, MATERIALS, OrganMaterial, Pattern, StrokeWear, Wear, Wearer, Worn};
 pub use organs::KeptShapes;

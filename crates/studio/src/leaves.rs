@@ -150,8 +150,8 @@ pub(crate) fn finish(
     let worn = skin.worn.clone().always(skin.textures);
     let spec = SkinSpec { leaf: options.mesh(), textures: false, variation: 0.0, worn, ..skin };
     let pictures = Pictures { leaves: textures, ..Pictures::default() };
-    let model =
-        report.stage("mesh", run.clock, |_| skin::skin_again(&plant, &spec, pictures, Some(&mut kept), run));
+    let model = report
+        .stage("mesh", run.clock, |_| skin::skin_laid_out(&plant, &spec, pictures, Some(&mut kept), run));
     let model = model?;
     let mesh = kept.get(ShapeId::new(0)).cloned().unwrap_or_default();
     if mesh.crossing > 0 {

@@ -31,6 +31,7 @@ mod scene;
 mod shaping;
 mod shoot;
 mod split;
+mod survey;
 mod template;
 mod trees;
 mod venation;
@@ -60,6 +61,9 @@ pub use scene::{
 pub use shaping::{BranchRow, EditReport, branch_rows, edits_schema, edits_template};
 pub use shoot::{ShootSpec, make_shoot};
 pub use split::{SplitError, split};
+pub use survey::{
+    NOTHING, PARTS, SurveyError, SurveySpec, Surveyed, part_of_axis, part_of_organ, survey, triangle_labels,
+};
 pub use template::{LeafTemplate, TemplateError};
 
 pub use trees::{

@@ -5,7 +5,7 @@ use document::PlantEdit;
 use mesh::Model;
 use plant::Plant;
 use reading::Reading;
-use skin::SkinSpec;
+use skin::{Layout, SkinSpec};
 
 use crate::report::{Counts, ItemReport, TimingsMs};
 use crate::shaping::EditReport;
@@ -30,6 +30,8 @@ pub struct MadePlant {
     pub plant: Plant,
     /// Its meshes and materials.
     pub model: Model,
+    /// What of the plant lies where in the model.
+    pub layout: Layout,
     /// How it was meshed.
     pub(crate) skin: SkinSpec,
     /// The report's entry; `output` and the times of reading and writing are the shell's to fill.
@@ -49,7 +51,7 @@ impl MadePlant {
     /// With an entry that tells counts, times, digest, warnings, and what became of the edits that were asked for.
     pub(crate) fn new(
         plant: Plant,
-        (model, skin): (Model, SkinSpec),
+        ((model, layout), skin): ((Model, Layout), SkinSpec),
         (edits, asked): (Vec<EditReport>, &[PlantEdit]),
         report: &Report,
     ) -> Self {
@@ -70,7 +72,7 @@ impl MadePlant {
             ..ItemReport::default()
         }
         .warning(warnings);
-        Self { plant, model, skin, item }
+        Self { plant, model, layout, skin, item }
     }
 }
 

@@ -8,7 +8,7 @@ use glam::DVec3;
 use ink::Drawing;
 use mesh::Model;
 use plant::{Flower, FlowerId, Organ, OrganKind, Paint, Plant, Shape};
-use skin::{KeptShapes, PetalColor, Pictures, SkinSpec};
+use skin::{KeptShapes, Layout, PetalColor, Pictures, SkinSpec};
 
 use crate::evaluate::make_from_sketch;
 use crate::made::coarse;
@@ -145,8 +145,9 @@ impl OpeningPlant {
             overlap = overlap.max(bloom::petal_overlap(&plant, Some(placed.flower)));
         }
         debug_assert_eq!(plant.validate().next(), None, "a sound plant");
-        let model = skin::skin_again(&plant, &self.steady(), Pictures::default(), Some(&mut self.kept), run)?;
-        Ok(OpenedPlant { plant, model, overlap })
+        let (steady, kept) = (self.steady(), Some(&mut self.kept));
+        let (model, layout) = skin::skin_laid_out(&plant, &steady, Pictures::default(), kept, run)?;
+        Ok(OpenedPlant { plant, model, layout, overlap })
     }
 
     /// A coarser copy of the meshes of one day, with the same materials: about half of the triangles a level.
@@ -169,6 +170,8 @@ pub struct OpenedPlant {
     pub plant: Plant,
     /// Its meshes.
     pub model: Model,
+    /// What of the plant lies where in the meshes.
+    pub layout: Layout,
     /// The greatest share of petal triangles of a flower that cross another petal.
     pub overlap: f64,
 }

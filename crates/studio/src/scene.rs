@@ -139,6 +139,8 @@ pub struct ScenePlant<'a> {
     pub plant: Option<&'a Plant>,
     /// What of the plant lies where in the model, for plants of which a branch can be moved alone.
     pub layout: Option<&'a Layout>,
+    /// What of the plant lies where in the model, of any plant.
+    pub owners: Option<&'a Layout>,
     /// How a drawing lies in the front view.
     pub front: Option<FrontView>,
     /// The name of the model within the evaluator: copies that share one have the same number, others never.
@@ -250,6 +252,8 @@ struct Made {
     item: ItemReport,
     /// Of leaves and flowers, and of sketches whose flowers open.
     model: Option<Model>,
+    /// What lies where in it.
+    layout: Option<Layout>,
     /// Of leaves, flowers and sketches whose flowers open.
     plant: Option<Plant>,
     /// How leaves and flowers are meshed.
@@ -420,6 +424,7 @@ impl SceneEvaluator {
             } else {
                 made.sketch.layout().or_else(|| made.tree.layout())
             },
+            owners: made.layout.as_ref().or_else(|| made.sketch.layout()).or_else(|| made.tree.layout()),
             front: made.sketch.front(),
             revision: made.revision,
             stages: done,
@@ -538,9 +543,10 @@ impl Made {
                 if let Some(opening) = self.opening.as_mut().filter(|_| changed || opened) {
                     let open = opening.at(day, &opening.law(), from.seed, run)?;
                     (self.plant, self.model) = (Some(open.plant), Some(open.model));
+                    self.layout = Some(open.layout);
                 }
             }
-            _ => (self.plant, self.model, self.opening) = (None, None, None),
+            _ => (self.plant, self.model, self.layout, self.opening) = (None, None, None, None),
         }
         self.day = settings.day;
         if opened && !changed {
@@ -586,8 +592,9 @@ impl Made {
     }
 
     fn take(&mut self, made: MadePlant) -> Vec<&'static str> {
-        let MadePlant { plant, model, skin, item } = made;
+        let MadePlant { plant, model, layout, skin, item } = made;
         (self.item, self.model, self.plant, self.skin) = (item, Some(model), Some(plant), skin);
+        self.layout = Some(layout);
         vec!["mesh"]
     }
 }

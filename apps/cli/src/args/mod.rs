@@ -26,7 +26,7 @@ pub(crate) use shared::{
 };
 pub(crate) use sketch::{ReadingArgs, SketchArgs, SurfaceArgs};
 
-use clap::{Parser, Subcommand};
+use clap::{Args, Parser, Subcommand};
 
 /// Turns drawings into three-dimensional plants.
 ///
@@ -98,4 +98,31 @@ pub(crate) enum Command {
     /// Serves the built Studio on 127.0.0.1, to this machine's own browser only, and opens it. Nothing is sent
     /// anywhere: plants are made in the browser.
     Studio(StudioArgs),
+    /// Print the completions of a shell
+    ///
+    /// For one session: `source <(burgeon completions bash)`. For good, put them where the shell looks for them.
+    #[command(after_long_help = "Examples:
+  burgeon completions bash > ~/.local/share/bash-completion/completions/burgeon
+  burgeon completions zsh > ~/.zfunc/_burgeon
+  burgeon completions fish > ~/.config/fish/completions/burgeon.fish")]
+    Completions(CompletionsArgs),
+    /// Write the manual pages, one for each command
+    ///
+    /// With `man -l FOLDER/burgeon-sketch.1` they are read where they lie; with a folder share/man/man1, by
+    /// `man burgeon-sketch`.
+    Man(ManArgs),
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct CompletionsArgs {
+    /// The shell.
+    #[arg(value_enum)]
+    pub(crate) shell: clap_complete::Shell,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct ManArgs {
+    /// A folder, which is created.
+    #[arg(value_name = "FOLDER")]
+    pub(crate) folder: std::path::PathBuf,
 }

@@ -1,0 +1,56 @@
+"""Three-dimensional plants: drawn, grown, measured, in flower.
+
+>>> import burgeon as bg
+>>> oak = bg.grow("oak", seed=2, age=6, detail=0.2)
+>>> oak.nodes.position.shape[1], oak.measures()["height_m"] > 0
+(3, True)
+
+``grow``, ``sketch``, ``leaf`` and ``bloom`` make a ``Plant``; its tables are NumPy arrays, ``plant.model`` its meshes,
+``plant.cloud()`` its points as a scanner sees them. ``burgeon.dataset`` makes thousands. Lengths are metres, +y is up;
+the same spec and seed give the same bits on every machine and as the command line.
+"""
+
+from __future__ import annotations
+
+from ._burgeon import VERSION as __version__
+from ._burgeon import set_threads
+from .errors import BudgetError, BurgeonError, SpecError
+from .law import Law
+from .makers import bloom, grow, leaf, open, presets, schema, sketch
+from .model import Cloud, Masks, Model, Part
+from .plant import PARTS, Axes, Nodes, Organs, Plant
+
+__all__ = [
+    "Axes",
+    "BudgetError",
+    "BurgeonError",
+    "Cloud",
+    "Law",
+    "Masks",
+    "Model",
+    "Nodes",
+    "Organs",
+    "PARTS",
+    "Part",
+    "Plant",
+    "SpecError",
+    "bloom",
+    "dataset",
+    "grow",
+    "leaf",
+    "open",
+    "presets",
+    "schema",
+    "set_threads",
+    "sketch",
+    "__version__",
+]
+
+
+def __getattr__(name: str):
+    # Not before it is used: it imports more.
+    if name == "dataset":
+        import importlib
+
+        return importlib.import_module(".dataset", __name__)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -1,0 +1,442 @@
+"""Data sets of plants: thousands of them in shards, on one process, several, or the machines of a Ray cluster.
+
+>>> import burgeon as bg
+>>> bg.dataset.generate("birch", 1000, "birches", formats=("cloud", "mtg"), vary={"age": (8, 30)})  # doctest: +SKIP
+
+A data set is a folder: ``shard-00000.tar`` and so on (WebDataset: the files of a plant share a stem), a ``.json`` beside
+each, ``manifest.json`` with the SHA-256 of all, ``croissant.json`` for tools that read data sets. The same recipe gives
+the same bytes wherever it runs. A run that was stopped is taken up again: only shards that are missing are made.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import os
+import random
+import sys
+import tarfile
+from typing import Any, Callable, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple
+
+from ._files import write_whole
+
+__all__ = ["FORMATS", "generate", "plant_seed", "read", "verify"]
+
+RECIPE = "burgeon.dataset/1"
+FORMATS = ("glb", "mtg", "qsm", "burgeon", "cloud", "picture")
+"""Meshes, structure, cylinders, project of the Studio, labelled cloud (``.cloud.npz``), picture with masks and depth
+(``.png``, ``.masks.npz``)."""
+
+
+def plant_seed(seed: int, index: int) -> int:
+    """The seed of a plant of a data set: by its number, whichever shard, process or machine makes it."""
+    return int.from_bytes(hashlib.sha256(f"{RECIPE}:{seed}:{index}".encode()).digest()[:8], "little")
+
+
+def generate(
+    spec: "str | Mapping[str, Any] | None",
+    n: int,
+    out: "str | os.PathLike[str]",
+    *,
+    maker: str = "grow",
+    seed: int = 1,
+    formats: "Sequence[str]" = ("glb",),
+    fields: "Optional[Mapping[str, Any]]" = None,
+    vary: "Optional[Mapping[str, Any]]" = None,
+    cloud: "Optional[Mapping[str, Any]]" = None,
+    picture: "Optional[Mapping[str, Any]]" = None,
+    shard: int = 100,
+    ray: bool = False,
+    workers: "Optional[int]" = None,
+    progress: bool = True,
+) -> "Dict[str, Any]":
+    """Makes ``n`` plants of different seeds; returns the manifest.
+
+    ``spec``, ``maker``: what ``burgeon.grow``, ``bloom`` or ``leaf`` take (a preset, a TOML file, a dict);
+    ``fields``: their keyword arguments, the same for all plants (``detail=0.3``, ``leaves={...}``);
+    ``vary``: arguments that differ: ``{"age": (8, 30)}`` is uniform between the two (whole if both are), a list is a
+    choice; ``cloud``: arguments of ``Plant.cloud``; ``picture``: of ``Plant.render``; ``formats``: of ``FORMATS``;
+    ``shard``: plants of each file; ``workers``: processes (1: this one; default as many as the machine has cores);
+    ``ray``: tasks of the Ray cluster that ``ray.init`` has joined, or of one on this machine. All its machines must see
+    the folder ``out``.
+
+    A worker that is killed is replaced. Ctrl-C, a full disk or an error leave whole shards only; the same call goes on.
+    Raises ValueError for a folder that holds another data set, and what the maker raises.
+    """
+    recipe = _recipe(spec, n, maker, seed, formats, fields, vary, cloud, picture, shard)
+    out = os.path.abspath(os.fspath(out))
+    os.makedirs(out, exist_ok=True)
+    _claim(out, recipe)
+    missing = [k for k in range(_count(recipe)) if not _is_made(out, recipe, k)]
+    bar = _Bar(_count(recipe), _count(recipe) - len(missing), progress)
+    run = _with_ray if ray else _here if (workers == 1 or len(missing) <= 1) else _with_processes
+    try:
+        for _ in run(recipe, out, missing, workers):
+            bar.step()
+    finally:
+        bar.end()
+    return _finish(out, recipe)
+
+
+def read(out: "str | os.PathLike[str]") -> "Iterator[Dict[str, Any]]":
+    """The plants of a data set in their order: ``seed``, ``fields``, ``digest``, ``measures``, and what its formats hold.
+
+    Clouds and masks as dicts of arrays, all else as bytes.
+    """
+    import numpy as np
+
+    with open(os.path.join(out, "manifest.json"), encoding="utf-8") as file:
+        manifest = json.load(file)
+    for entry in manifest["shards"]:
+        with tarfile.open(os.path.join(out, entry["file"])) as archive:
+            plant: "Dict[str, Any]" = {}
+            for member in archive:
+                stem, _, kind = member.name.partition(".")
+                if plant and plant["key"] != stem:
+                    yield plant
+                    plant = {}
+                plant.setdefault("key", stem)
+                handle = archive.extractfile(member)
+                data = handle.read() if handle else b""
+                if kind == "json":
+                    plant.update(json.loads(data))
+                elif kind.endswith("npz"):
+                    with np.load(io.BytesIO(data)) as arrays:
+                        plant[kind.split(".")[0]] = {name: arrays[name] for name in arrays.files}
+                else:
+                    plant[kind] = data
+            if plant:
+                yield plant
+
+
+def verify(out: "str | os.PathLike[str]") -> None:
+    """Reads every shard and compares its SHA-256 with the manifest's; raises ValueError with the names of those that differ."""
+    with open(os.path.join(out, "manifest.json"), encoding="utf-8") as file:
+        manifest = json.load(file)
+    bad = [e["file"] for e in manifest["shards"] if _sha256_of(os.path.join(out, e["file"])) != e["sha256"]]
+    if bad:
+        raise ValueError(f"{out}: not what the manifest says: {', '.join(bad)}; delete them and generate again")
+
+
+def _recipe(
+    spec: Any,
+    n: int,
+    maker: str,
+    seed: int,
+    formats: "Sequence[str]",
+    fields: "Optional[Mapping[str, Any]]",
+    vary: "Optional[Mapping[str, Any]]",
+    cloud: "Optional[Mapping[str, Any]]",
+    picture: "Optional[Mapping[str, Any]]",
+    shard: int,
+) -> "Dict[str, Any]":
+    """All that decides what the data set holds, checked: it goes into the manifest."""
+    from . import __version__
+
+    for name, value, least, most in (("n", n, 1, 10**9), ("shard", shard, 1, 10**6), ("seed", seed, 0, 2**64 - 1)):
+        if not isinstance(value, int) or isinstance(value, bool) or not least <= value <= most:
+            raise ValueError(f"{name} must be a whole number, {least} to {most}, not {value!r}")
+    if maker not in ("grow", "bloom", "leaf"):
+        raise ValueError(f"maker must be grow, bloom or leaf, not {maker!r}")
+    if isinstance(formats, str):
+        formats = (formats,)
+    unknown = [f for f in formats if f not in FORMATS]
+    if unknown or not formats:
+        raise ValueError(f"formats are {', '.join(FORMATS)}, not {unknown or 'none'}")
+    if isinstance(spec, (str, os.PathLike)) and os.fspath(spec).endswith(".toml"):
+        # A cluster's machines need not have the file.
+        spec = {"toml": _text(os.fspath(spec)), "file": os.path.basename(os.fspath(spec))}
+    ranges = {}
+    for name, range_ in (vary or {}).items():
+        range_ = list(range_) if isinstance(range_, tuple) else {"choice": list(range_)}
+        if isinstance(range_, list) and (len(range_) != 2 or not range_[0] <= range_[1]):
+            raise ValueError(f"vary: {name} must be (least, most) or a list of choices, not {tuple(range_)}")
+        if isinstance(range_, dict) and not range_["choice"]:
+            raise ValueError(f"vary: {name} has no choices")
+        ranges[name] = range_
+    recipe = {
+        "schema": RECIPE,
+        "burgeon": __version__,
+        "maker": maker,
+        "spec": spec,
+        "n": n,
+        "seed": seed,
+        "formats": sorted(set(formats), key=FORMATS.index),
+        "fields": dict(fields or {}),
+        "vary": ranges,
+        "cloud": dict(cloud or {}),
+        "picture": dict(picture or {}),
+        "shard": shard,
+    }
+    # As it comes back from a file: tuples are lists.
+    return json.loads(json.dumps(recipe, default=_plain))
+
+
+def _plain(value: Any) -> Any:
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise TypeError(f"a {type(value).__name__} cannot be part of a recipe")
+
+
+def _text(path: str) -> str:
+    with open(path, encoding="utf-8") as file:
+        return file.read()
+
+
+def _count(recipe: "Mapping[str, Any]") -> int:
+    return -(-recipe["n"] // recipe["shard"])
+
+
+def _name(k: int) -> str:
+    return f"shard-{k:05d}"
+
+
+def _json(value: Any) -> bytes:
+    return (json.dumps(value, indent=1, sort_keys=True) + "\n").encode()
+
+
+def _claim(out: str, recipe: "Mapping[str, Any]") -> None:
+    """The folder is this data set's, from now on."""
+    path = os.path.join(out, "recipe.json")
+    try:
+        with open(path, encoding="utf-8") as file:
+            there = json.load(file)
+    except FileNotFoundError:
+        if any(name.endswith(".tar") for name in os.listdir(out)):
+            raise ValueError(f"{out} holds shards of something else; choose another folder") from None
+        write_whole(out, [("recipe.json", _json(recipe))])
+        return
+    if there != recipe:
+        differ = [k for k in recipe if there.get(k) != recipe[k]]
+        raise ValueError(f"{out} holds another data set ({', '.join(differ)} differ); choose another folder or delete it")
+
+
+def _sha256_of(path: str) -> "Optional[str]":
+    digest = hashlib.sha256()
+    try:
+        with open(path, "rb") as file:
+            for block in iter(lambda: file.read(1 << 20), b""):
+                digest.update(block)
+    except FileNotFoundError:
+        return None
+    return digest.hexdigest()
+
+
+def _is_made(out: str, recipe: "Mapping[str, Any]", k: int) -> bool:
+    entry = _entry(out, k)
+    return entry is not None and _sha256_of(os.path.join(out, entry["file"])) == entry["sha256"]
+
+
+def _entry(out: str, k: int) -> "Optional[Dict[str, Any]]":
+    try:
+        with open(os.path.join(out, f"{_name(k)}.json"), encoding="utf-8") as file:
+            return json.load(file)
+    except (FileNotFoundError, ValueError):
+        return None
+
+
+def make_shard(recipe: "Mapping[str, Any]", out: str, k: int) -> int:
+    """Makes one shard and puts it in its place; whoever makes it, it has the same bytes."""
+    from . import set_threads
+
+    set_threads(1)
+    first = k * recipe["shard"]
+    last = min(first + recipe["shard"], recipe["n"])
+    tar, digests = io.BytesIO(), []
+    with tarfile.open(fileobj=tar, mode="w", format=tarfile.USTAR_FORMAT) as archive:
+        for index in range(first, last):
+            digest, files = make_plant(recipe, index)
+            digests.append(digest)
+            for extension, data in files:
+                entry = tarfile.TarInfo(f"{index:08d}.{extension}")
+                entry.size, entry.mode = len(data), 0o644
+                archive.addfile(entry, io.BytesIO(data))
+    data = tar.getvalue()
+    entry = {
+        "file": f"{_name(k)}.tar",
+        "first": first,
+        "plants": last - first,
+        "bytes": len(data),
+        "sha256": hashlib.sha256(data).hexdigest(),
+        "digests": digests,
+    }
+    # What says that the shard is there comes after it: the first of the list is renamed last.
+    write_whole(out, [(f"{_name(k)}.json", _json(entry)), (f"{_name(k)}.tar", data)])
+    return k
+
+
+def make_plant(recipe: "Mapping[str, Any]", index: int) -> "Tuple[str, List[Tuple[str, bytes]]]":
+    """One plant of a recipe: its digest, and its files by their extensions."""
+    import burgeon
+
+    seed = plant_seed(recipe["seed"], index)
+    drawn = {name: _drawn(range_, seed, name) for name, range_ in sorted(recipe["vary"].items())}
+    fields = {**recipe["fields"], **drawn}
+    make: "Callable[..., Any]" = getattr(burgeon, recipe["maker"])
+    plant = make(_spec(recipe["spec"]), seed=seed, **fields)
+    about = {"seed": seed, "index": index, "fields": drawn, "digest": plant.digest, "measures": plant.measures()}
+    files = [("json", _json(about))]
+    for kind in recipe["formats"]:
+        if kind == "cloud":
+            files.append(("cloud.npz", plant.cloud(**recipe["cloud"]).to_bytes()))
+        elif kind == "picture":
+            from ._npz import npz
+
+            how = dict(recipe["picture"])
+            size = how.pop("size", (512, 512))
+            size = tuple(size) if isinstance(size, list) else size
+            files.append(("png", plant.model.to_png(size, **how)))
+            files.append(("masks.npz", npz(plant.masks(size, **how)._asdict())))
+        else:
+            files.append(("qsm.csv" if kind == "qsm" else kind, plant.to_bytes(kind)))
+    return plant.digest, files
+
+
+def _spec(spec: Any) -> Any:
+    from .makers import SpecText
+
+    return SpecText(**spec) if isinstance(spec, dict) and set(spec) == {"toml", "file"} else spec
+
+
+def _drawn(range_: Any, seed: int, name: str) -> Any:
+    # Of all that Python draws, only `random()` of a seed in text is the same in every version.
+    share = random.Random(f"{seed}:{name}").random()
+    if isinstance(range_, dict):
+        choices = range_["choice"]
+        return choices[min(int(share * len(choices)), len(choices) - 1)]
+    low, high = range_
+    if isinstance(low, int) and isinstance(high, int):
+        return low + min(int(share * (high - low + 1)), high - low)
+    return low + share * (high - low)
+
+
+def _here(recipe: "Mapping[str, Any]", out: str, missing: "Iterable[int]", _: "Optional[int]") -> "Iterator[int]":
+    for k in missing:
+        yield make_shard(recipe, out, k)
+
+
+TRIES = 5
+"""How often a shard is tried whose worker was killed."""
+
+
+def _with_processes(
+    recipe: "Mapping[str, Any]", out: str, missing: "Iterable[int]", workers: "Optional[int]"
+) -> "Iterator[int]":
+    import multiprocessing
+    from concurrent.futures import ProcessPoolExecutor, as_completed
+    from concurrent.futures.process import BrokenProcessPool
+
+    left, tries = list(missing), 0
+    # Processes that are forked off would share locks of threads that they do not have.
+    context = multiprocessing.get_context("spawn")
+    while left:
+        done, failed = set(), False
+        with ProcessPoolExecutor(min(workers or os.cpu_count() or 1, len(left)), mp_context=context) as pool:
+            jobs = {pool.submit(make_shard, recipe, out, k): k for k in left}
+            try:
+                for job in as_completed(jobs):
+                    try:
+                        done.add(job.result())
+                    except BrokenProcessPool:
+                        failed = True
+                        continue
+                    yield jobs[job]
+            except BaseException:
+                pool.shutdown(wait=True, cancel_futures=True)
+                raise
+        # A worker was killed: its shard, and those that waited, go to new ones.
+        left = [k for k in left if k not in done]
+        tries = tries + 1 if failed and not done else 0
+        if tries >= TRIES:
+            raise RuntimeError(f"workers were killed {TRIES} times in a row; is there too little memory for {len(left)} shards?")
+
+
+def _with_ray(
+    recipe: "Mapping[str, Any]", out: str, missing: "Iterable[int]", workers: "Optional[int]"
+) -> "Iterator[int]":
+    try:
+        import ray
+    except ImportError as error:
+        raise ImportError("ray=True needs Ray: pip install 'burgeon[ray]' (or leave ray out: workers=N)") from error
+    if not ray.is_initialized():
+        ray.init(num_cpus=workers, include_dashboard=False, log_to_driver=False)
+    # A worker that is killed is replaced, and its shard made again.
+    task = ray.remote(num_cpus=1, max_retries=TRIES)(make_shard)
+    jobs = [task.remote(recipe, out, k) for k in missing]
+    try:
+        while jobs:
+            done, jobs = ray.wait(jobs)
+            for k in ray.get(done):
+                yield k
+    finally:
+        for job in jobs:
+            ray.cancel(job)
+
+
+def _finish(out: str, recipe: "Mapping[str, Any]") -> "Dict[str, Any]":
+    entries = [_entry(out, k) for k in range(_count(recipe))]
+    shards = [e for e in entries if e is not None]
+    if len(shards) != len(entries):
+        raise RuntimeError(f"{out}: shards are gone that were made a moment ago")
+    whole = hashlib.sha256("".join(d for e in shards for d in e["digests"]).encode()).hexdigest()
+    manifest = {"recipe": dict(recipe), "plants": recipe["n"], "digest": whole, "shards": shards}
+    files = [("manifest.json", _json(manifest)), ("croissant.json", _json(_croissant(recipe, shards)))]
+    write_whole(out, files)
+    return manifest
+
+
+def _croissant(recipe: "Mapping[str, Any]", shards: "Sequence[Mapping[str, Any]]") -> "Dict[str, Any]":
+    """The data set in the words of Croissant 1.0 (MLCommons)."""
+    spec = recipe["spec"] if isinstance(recipe["spec"], str) else "plants"
+    files = [
+        {
+            "@type": "cr:FileObject",
+            "@id": e["file"],
+            "name": e["file"],
+            "contentUrl": e["file"],
+            "contentSize": f"{e['bytes']} B",
+            "encodingFormat": "application/x-tar",
+            "sha256": e["sha256"],
+        }
+        for e in shards
+    ]
+    return {
+        "@context": {
+            "@language": "en",
+            "@vocab": "https://schema.org/",
+            "cr": "http://mlcommons.org/croissant/",
+            "dct": "http://purl.org/dc/terms/",
+            "sc": "https://schema.org/",
+            "conformsTo": "dct:conformsTo",
+        },
+        "@type": "sc:Dataset",
+        "conformsTo": "http://mlcommons.org/croissant/1.0",
+        "name": f"burgeon-{spec}-{recipe['n']}",
+        "description": f"{recipe['n']} plants ({spec}) made by Burgeon {recipe['burgeon']}; recipe.json says how.",
+        "version": "1.0.0",
+        "distribution": files,
+    }
+
+
+class _Bar:
+    """How far it is, on a terminal."""
+
+    def __init__(self, total: int, done: int, wanted: bool) -> None:
+        self.total, self.done = total, done
+        self.shown = wanted and sys.stderr.isatty()
+        self.show()
+
+    def step(self) -> None:
+        self.done += 1
+        self.show()
+
+    def show(self) -> None:
+        if self.shown:
+            full = 30 * self.done // max(self.total, 1)
+            line = f"\rshards [{'=' * full}{' ' * (30 - full)}] {self.done} of {self.total}"
+            print(line, end="", file=sys.stderr, flush=True)
+
+    def end(self) -> None:
+        if self.shown:
+            print(file=sys.stderr)

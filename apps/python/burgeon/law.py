@@ -1,0 +1,93 @@
+"""Growth laws."""
+
+from __future__ import annotations
+
+import json
+import os
+from typing import TYPE_CHECKING, Any, Dict, Mapping, Sequence
+
+from . import _burgeon
+from ._files import write_whole
+
+if TYPE_CHECKING:
+    import numpy as np
+
+__all__ = ["Law"]
+
+
+class Law:
+    """How organs grow from day to day (``burgeon bloom fit``)."""
+
+    __slots__ = ("_raw",)
+
+    def __init__(self, raw: Any) -> None:
+        self._raw = raw
+
+    @classmethod
+    def fit(cls, days: "Sequence[float]", sizes: "Sequence[float] | Mapping[str, Sequence[float]]", name: str = "plant") -> "Law":
+        """Fits a law to sizes.
+
+        ``days``: (n,), at least 3, increasing; ``sizes``: (n,), metres, or a dict of such by the names of organs. Those
+        of one kind (``leaf-1``, ``leaf-2``) share rate and time. Logistic, Gompertz, monomolecular or straight: what
+        predicts days that are left out best.
+        """
+        organs = sizes if isinstance(sizes, Mapping) else {name: sizes}
+        when = _numbers(days, "days")
+        if (when[1:] <= when[:-1]).any():
+            raise ValueError("days must increase from one to the next")
+        rows = []
+        for organ, values in organs.items():
+            row = _numbers(values, f"sizes of {organ}" if isinstance(sizes, Mapping) else "sizes")
+            if len(row) != len(when):
+                raise ValueError(f"sizes of {organ}: there are {len(row)} for {len(when)} days")
+            rows.append((str(organ), when.tolist(), row.tolist()))
+        return cls(_burgeon.RawLaw.fit(name, rows))
+
+    @classmethod
+    def read(cls, path: "str | os.PathLike[str]") -> "Law":
+        """A law that ``burgeon bloom fit`` or ``save`` wrote."""
+        with open(path, encoding="utf-8") as file:
+            return cls(_burgeon.RawLaw.read(file.read()))
+
+    def save(self, path: "str | os.PathLike[str]") -> None:
+        """Writes it as JSON, which ``burgeon bloom run --law`` reads, too."""
+        folder, name = os.path.split(os.fspath(path))
+        write_whole(folder, [(name, (json.dumps(self.to_dict(), indent=2) + "\n").encode())])
+
+    def to_dict(self) -> "Dict[str, Any]":
+        """All of it: for each organ ``form``, ``k``, ``p0``, ``r``, ``r2``, ``standard_errors``, ``loo_rmse``, ..."""
+        return json.loads(self._raw.json())
+
+    @property
+    def organs(self) -> "list[str]":
+        """Names of what has a law."""
+        return [law["organ"] for law in self.to_dict()["laws"]]
+
+    @property
+    def determined(self) -> "list[bool]":
+        """Whether the days determine the law of each organ; what is not determined sets no pace."""
+        return self._raw.determined()
+
+    def __call__(self, day: "float | Sequence[float]", organ: int = 0) -> "float | np.ndarray":
+        """The size on a day or on several, in the count of the days that were fitted, metres."""
+        import numpy as np
+
+        days = np.asarray(day, np.float64)
+        values = np.array(self._raw.values(organ, days.ravel().tolist())).reshape(days.shape)
+        return float(values) if days.ndim == 0 else values
+
+    def __repr__(self) -> str:
+        laws = ", ".join(f"{law['organ']}: {law['form']}" for law in self.to_dict()["laws"])
+        return f"<burgeon.Law {laws}>"
+
+
+def _numbers(values: Any, what: str) -> "np.ndarray":
+    import numpy as np
+
+    row = np.asarray(values)
+    if row.dtype.kind not in "fiu" or row.ndim != 1:
+        raise ValueError(f"{what} must be numbers of shape (n,), not {row.dtype} of shape {row.shape}")
+    row = row.astype(np.float64)
+    if not np.isfinite(row).all():
+        raise ValueError(f"{what} must be finite")
+    return row

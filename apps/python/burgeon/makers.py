@@ -1,0 +1,216 @@
+"""What is asked for -> plants. The same specs, ranges and defaults as the command line has."""
+
+from __future__ import annotations
+
+import json
+import os
+from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Tuple, Union
+
+from . import _burgeon
+from .law import Law
+from .plant import Plant
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    Strokes = Union[str, os.PathLike[str], Iterable[np.ndarray]]
+
+__all__ = ["bloom", "grow", "leaf", "open", "presets", "schema", "sketch"]
+
+
+class SpecText(NamedTuple):
+    """A TOML file that was read before."""
+
+    toml: str
+    file: str
+
+
+Spec = Union[str, "os.PathLike[str]", Mapping[str, Any], None]
+
+
+def _base(spec: Spec) -> "Tuple[Dict[str, Any], Dict[str, Any]]":
+    """Where a spec comes from, and the fields that it is given as."""
+    if spec is None:
+        return {"preset": None, "toml": None}, {}
+    if isinstance(spec, Mapping):
+        return {"preset": None, "toml": None}, dict(spec)
+    if isinstance(spec, SpecText):
+        return {"preset": None, "toml": (spec.toml, spec.file)}, {}
+    path = os.fspath(spec)
+    if isinstance(spec, str) and not path.endswith(".toml"):
+        return {"preset": path, "toml": None}, {}
+    return {"preset": None, "toml": (_text(path), path)}, {}
+
+
+def _text(path: str) -> str:
+    import builtins
+
+    with builtins.open(path, encoding="utf-8") as file:
+        return file.read()
+
+
+def _asked(
+    seed: int, budget: float, fields: "Mapping[str, Any]", skin: "Mapping[str, Any]"
+) -> "Dict[str, Any]":
+    if isinstance(seed, bool) or not hasattr(seed, "__index__") or not 0 <= seed < 2**64:
+        raise ValueError(f"seed must be a whole number, 0 to 2^64 - 1, not {seed!r}")
+    return {
+        "seed": int(seed),
+        "budget": float(budget),
+        "fields": dict(fields),
+        "skin": {name: value for name, value in skin.items() if value is not None},
+    }
+
+
+def grow(
+    spec: Spec = None,
+    *,
+    seed: int = 1,
+    detail: "Optional[float]" = None,
+    sides: "Optional[int]" = None,
+    textures: "Optional[bool]" = None,
+    wind: "Optional[bool]" = None,
+    budget: float = 1.0,
+    **fields: Any,
+) -> Plant:
+    """A tree (``burgeon grow``).
+
+    ``spec``: a species (``presets()[0]``), a TOML file, or a dict of fields; ``fields`` replace fields of it, tables by
+    tables: ``grow("oak", seed=2, age=30, leaves={"leaf_keep": 0.5})``. What fields there are, with ranges and units:
+    ``schema("tree")``, docs/trees.md.
+
+    ``detail``: fineness of the meshes, 0.1 to 8; ``sides``: of an ordinary branch, 3 to 24; ``textures``: False for
+    plain colours; ``wind``: with columns for wind; ``budget``: how many times the usual limits may be exceeded.
+    Ctrl-C stops it. Raises SpecError, BudgetError.
+    """
+    base, own = _base(spec)
+    skin = {"detail": detail, "sides": sides, "textures": textures, "wind": wind}
+    return Plant(_burgeon.grow(base, _asked(seed, budget, {**own, **fields}, skin)))
+
+
+def bloom(
+    spec: Spec = "lily",
+    day: "Optional[float]" = None,
+    *,
+    seed: int = 1,
+    law: "Optional[Law]" = None,
+    wind: "Optional[bool]" = None,
+    budget: float = 1.0,
+    **fields: Any,
+) -> Plant:
+    """A flower that opens, on a day (``burgeon bloom run``).
+
+    ``spec``: a flower (``presets()[1]``), a TOML file, or a dict; ``day``: 0 is the bud, default full bloom; ``law``: a
+    fitted law that sets the pace; ``fields``: ``schema("flower")``, docs/bloom.md.
+    """
+    base, own = _base(spec)
+    asked = _asked(seed, budget, {**own, **fields}, {"wind": wind})
+    return Plant(_burgeon.bloom(base, asked, day, None if law is None else law._raw))
+
+
+def leaf(
+    spec: Spec = None,
+    *,
+    seed: int = 1,
+    wind: "Optional[bool]" = None,
+    budget: float = 1.0,
+    **fields: Any,
+) -> Plant:
+    """A leaf (``burgeon leaf``): of measured marks (``.csv``), of a vein graph (``.json``), or of numbers.
+
+    ``fields``: ``schema("leaf")``, docs/leaves.md; of a leaf of numbers ``form={"length_m": 0.08, "lobes": 0.4}``.
+    """
+    file, toml, own = None, None, {}
+    if isinstance(spec, Mapping):
+        own = dict(spec)
+    elif isinstance(spec, SpecText):
+        toml = spec.toml
+    elif spec is not None:
+        path = os.fspath(spec)
+        if path.endswith(".toml"):
+            toml = _text(path)
+        else:
+            file = (os.path.splitext(os.path.basename(path))[0], _text(path))
+    return Plant(_burgeon.leaf(file, toml, _asked(seed, budget, {**own, **fields}, {"wind": wind})))
+
+
+def sketch(
+    strokes: "Strokes",
+    *,
+    seed: int = 1,
+    name: str = "drawing",
+    y_up: bool = True,
+    classes: "Optional[Mapping[int, str]]" = None,
+    day: "Optional[float]" = None,
+    detail: "Optional[float]" = None,
+    sides: "Optional[int]" = None,
+    textures: "Optional[bool]" = None,
+    variation: "Optional[float]" = None,
+    wind: "Optional[bool]" = None,
+    budget: float = 1.0,
+    **fields: Any,
+) -> Plant:
+    """The plant of a drawing (``burgeon sketch``).
+
+    ``strokes``: a file (``.svg``, ``.inkml``, ``.ndjson``, ``.json``), or the strokes in the order in which they were
+    drawn, each an array (points, 2) of x and y in any unit, y upwards (``y_up=False``: downwards, as on a screen).
+    ``classes``: what strokes are, by number (``{0: "axis"}``); ``day``: its flowers open, 0 to 100; ``fields``:
+    ``schema("sketch")``, such as ``height_m=0.3`` or ``read_as="tree"``.
+    """
+    asked = _asked(
+        seed,
+        budget,
+        fields,
+        {"detail": detail, "sides": sides, "textures": textures, "variation": variation, "wind": wind},
+    )
+    if isinstance(strokes, (str, os.PathLike)):
+        import builtins
+
+        path = os.fspath(strokes)
+        name, extension = os.path.splitext(os.path.basename(path))
+        with builtins.open(path, "rb") as file:
+            ink: "Dict[str, Any]" = {"file": (file.read(), extension[1:]), "lines": []}
+    else:
+        ink = {"file": None, "lines": _lines(strokes, y_up)}
+    return Plant(_burgeon.sketch(name, ink, asked, list((classes or {}).items()), day))
+
+
+def _lines(strokes: "Iterable[Any]", y_up: bool) -> "List[List[List[float]]]":
+    import numpy as np
+
+    lines = []
+    for k, stroke in enumerate(strokes):
+        points = np.asarray(stroke)
+        if points.dtype.kind not in "fiu":
+            raise TypeError(f"strokes[{k}] must be numbers, not {points.dtype}")
+        if points.ndim != 2 or points.shape[1] != 2:
+            raise ValueError(f"strokes[{k}] must be of shape (points, 2), not {points.shape}")
+        points = points.astype(np.float64)
+        if not np.isfinite(points).all():
+            row = int(np.argmin(np.isfinite(points).all(axis=1)))
+            raise ValueError(f"strokes[{k}][{row}] must be finite, not {points[row].tolist()}")
+        if not y_up:
+            points[:, 1] *= -1.0
+        lines.append(points.tolist())
+    return lines
+
+
+def open(path: "str | os.PathLike[str]", *, budget: float = 1.0) -> "List[Plant]":
+    """The plants of a project of the Studio (``.burgeon``) that are not hidden, each as it was made there."""
+    import builtins
+
+    with builtins.open(path, "rb") as file:
+        return [Plant(raw) for raw in _burgeon.open_project(file.read(), budget)]
+
+
+def schema(maker: str) -> "Dict[str, Any]":
+    """The JSON Schema of what a maker can be asked for: meaning, unit (``x-unit``), range and default of each field.
+
+    ``maker``: ``tree``, ``flower``, ``leaf``, ``sketch`` or ``skin``.
+    """
+    return json.loads(_burgeon.schema(maker))
+
+
+def presets() -> "Tuple[List[str], List[str]]":
+    """The words of the trees and of the flowers that come with the program."""
+    return _burgeon.presets()

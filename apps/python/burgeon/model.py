@@ -1,0 +1,342 @@
+"""Meshes, pictures and clouds."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any, Dict, List, NamedTuple, Optional, Sequence, Tuple
+
+from . import _burgeon
+from ._files import write_whole
+
+if TYPE_CHECKING:
+    import numpy as np
+
+__all__ = ["Cloud", "Masks", "Model", "Part"]
+
+
+def array(column: Any) -> "np.ndarray":
+    """What a column of the core holds, without a copy; read-only."""
+    import numpy as np
+
+    return np.asarray(column)
+
+
+class Part:
+    """One mesh of a model with one material. Its arrays look at the memory of the core: no copy, read-only.
+
+    An array keeps the memory it looks at; the plant and the model may go.
+    """
+
+    __slots__ = ("_raw", "_row", "name", "material")
+
+    def __init__(self, raw: Any, row: int, name: str, material: "Dict[str, Any]") -> None:
+        self._raw, self._row = raw, row
+        self.name = name
+        """Unique within the model, such as ``leaves``."""
+        self.material = material
+        """``name``, ``kind``, ``base_color`` (linear RGB), ``roughness``, ``double_sided``, ``cut_out`` and ``texture``."""
+
+    def _column(self, name: str) -> "np.ndarray":
+        return array(self._raw.column(self._row, name))
+
+    @property
+    def vertices(self) -> "np.ndarray":
+        """(n, 3) float32: metres, +y up."""
+        return self._column("positions")
+
+    @property
+    def faces(self) -> "np.ndarray":
+        """(m, 3) uint32: rows of ``vertices``, counter-clockwise from outside."""
+        return self._column("triangles")
+
+    @property
+    def normals(self) -> "np.ndarray":
+        """(n, 3) float32: unit vectors."""
+        return self._column("normals")
+
+    @property
+    def uvs(self) -> "np.ndarray":
+        """(n, 2) float32: texture coordinates, v down as in glTF; of no rows where the part has none."""
+        return self._column("uvs")
+
+    @property
+    def colors(self) -> "np.ndarray":
+        """(n, 3) float32: linear RGB, multiplied with the material's colour; of no rows where the part has none."""
+        return self._column("colors")
+
+    @property
+    def wind(self) -> "np.ndarray":
+        """(n, 4) float32, 0 to 1: sway of the plant, of the limb, flutter, phase; of no rows without ``wind=True``."""
+        return self._column("wind")
+
+    @property
+    def pivots(self) -> "np.ndarray":
+        """(n, 3) float32, metres: the points about which vertices turn in the wind; of no rows without ``wind=True``."""
+        return self._column("pivots")
+
+    @property
+    def texture(self) -> "Optional[np.ndarray]":
+        """(height, width, 4) uint8: sRGB and alpha, rows from the top; None without one."""
+        column = self.material["texture"]
+        return None if column is None else array(column)
+
+    def __repr__(self) -> str:
+        return f"<burgeon.Part {self.name!r}: {len(self.vertices):,} vertices, {len(self.faces):,} triangles>"
+
+
+class Masks(NamedTuple):
+    """What each pixel of a picture shows."""
+
+    part: "np.ndarray"
+    """(height, width) int32: row of ``burgeon.PARTS``; -1 for nothing."""
+    axis: "np.ndarray"
+    """(height, width) int32: row of ``plant.axes``; -1 for none."""
+    organ: "np.ndarray"
+    """(height, width) int32: row of ``plant.organs``; -1 for none."""
+    depth: "np.ndarray"
+    """(height, width) float32: metres from the eye; infinite for nothing."""
+
+
+class Cloud(NamedTuple):
+    """Points on a plant as a scanner sees them, and what each lies on."""
+
+    points: "np.ndarray"
+    """(n, 3) float64: metres, +y up."""
+    normals: "np.ndarray"
+    """(n, 3) float32: unit vectors, towards the scanner."""
+    part: "np.ndarray"
+    """(n,) uint8: row of ``burgeon.PARTS`` (``branch``, ``leaf``, ``petal``, ...)."""
+    axis: "np.ndarray"
+    """(n,) int32: row of ``plant.axes`` that the point lies on or that bears its organ; -1 for none."""
+    organ: "np.ndarray"
+    """(n,) int32: row of ``plant.organs``; -1 on wood."""
+    order: "np.ndarray"
+    """(n,) int32: branching order of the axis, 0 for the trunk."""
+    station: "np.ndarray"
+    """(n,) uint8: from which place of the scanner it was seen."""
+    distance: "np.ndarray"
+    """(n,) float32: metres from the scanner, without noise."""
+
+    def save(self, path: "str | os.PathLike[str]") -> None:
+        """Writes all columns to a ``.npz`` file (NumPy), whole or not at all."""
+        folder, name = os.path.split(os.fspath(path))
+        if not name.endswith(".npz"):
+            raise ValueError(f"clouds are written as .npz, not {name!r}")
+        write_whole(folder, [(name, self.to_bytes())])
+
+    def to_bytes(self) -> bytes:
+        """The ``.npz`` file of all columns, the same bytes for the same cloud."""
+        from ._npz import npz
+
+        return npz(self._asdict())
+
+
+Look = Dict[str, Any]
+
+
+def look(
+    size: "Tuple[int, int] | int" = (1024, 768),
+    view: str = "three-quarter",
+    azimuth: float = 31.5,
+    elevation: float = 12.0,
+    background: str = "sky",
+    shadow: bool = True,
+    supersample: int = 4,
+    seed: int = 1,
+) -> Look:
+    width, height = (size, size) if isinstance(size, int) else size
+    return {
+        "size": (width, height),
+        "view": view,
+        "azimuth": azimuth,
+        "elevation": elevation,
+        "background": background,
+        "shadow": shadow,
+        "supersample": supersample,
+        "seed": seed,
+    }
+
+
+class Model:
+    """Meshes and materials. Nothing changes it."""
+
+    __slots__ = ("_raw", "_parts")
+
+    def __init__(self, raw: Any) -> None:
+        self._raw = raw
+        self._parts: "Optional[List[Part]]" = None
+
+    @property
+    def name(self) -> str:
+        """Name of the plant."""
+        return self._raw.name
+
+    @property
+    def parts(self) -> "List[Part]":
+        """One mesh for each kind of surface: branches, leaves, petals and so on."""
+        if self._parts is None:
+            materials = self._raw.materials()
+            rows = enumerate(self._raw.parts())
+            self._parts = [Part(self._raw, k, name, materials[m]) for k, (name, m, _, _) in rows]
+        return self._parts
+
+    @property
+    def triangle_count(self) -> int:
+        """Triangles of all parts."""
+        return sum(part[3] for part in self._raw.parts())
+
+    @property
+    def digest(self) -> str:
+        """Fingerprint of meshes and materials: the same on every machine."""
+        return self._raw.digest()
+
+    def _joined(self, name: str, width: int, missing: float) -> "np.ndarray":
+        import numpy as np
+
+        columns = [getattr(p, name) for p in self.parts]
+        if len(columns) == 1 and len(columns[0]) == len(self.parts[0].vertices):
+            return columns[0]
+        rows = [
+            c if len(c) == len(p.vertices) else np.full((len(p.vertices), width), missing, np.float32)
+            for c, p in zip(columns, self.parts)
+        ]
+        return np.concatenate(rows) if rows else np.empty((0, width), np.float32)
+
+    @property
+    def vertices(self) -> "np.ndarray":
+        """(n, 3) float32, metres, of all parts: joined, which copies where there are several (``parts`` do not)."""
+        return self._joined("vertices", 3, 0.0)
+
+    @property
+    def normals(self) -> "np.ndarray":
+        """(n, 3) float32 of all parts."""
+        return self._joined("normals", 3, 0.0)
+
+    @property
+    def uvs(self) -> "np.ndarray":
+        """(n, 2) float32 of all parts; 0 where a part has none."""
+        return self._joined("uvs", 2, 0.0)
+
+    @property
+    def colors(self) -> "np.ndarray":
+        """(n, 3) float32 of all parts, linear RGB with the materials' colours in it; textures are not."""
+        import numpy as np
+
+        own = self._joined("colors", 3, 1.0)
+        if not self.parts:
+            return own
+        base = [np.broadcast_to(np.float32(p.material["base_color"]), p.vertices.shape) for p in self.parts]
+        return own * np.concatenate(base)
+
+    @property
+    def faces(self) -> "np.ndarray":
+        """(m, 3) uint32 of all parts: rows of ``vertices``."""
+        import numpy as np
+
+        if len(self.parts) == 1:
+            return self.parts[0].faces
+        faces, first = [np.empty((0, 3), np.uint32)], 0
+        for part in self.parts:
+            faces.append(part.faces + np.uint32(first))
+            first += len(part.vertices)
+        return np.concatenate(faces)
+
+    def to_trimesh(self) -> Any:
+        """A ``trimesh.Scene`` with one geometry for each part, with its texture.
+
+        Needs ``pip install trimesh`` (and Pillow for textures).
+        """
+        try:
+            import trimesh
+        except ImportError as error:
+            raise ImportError("to_trimesh() needs trimesh: pip install trimesh pillow") from error
+        import numpy as np
+
+        scene = trimesh.Scene()
+        for part in self.parts:
+            material = part.material
+            color = np.concatenate([_srgb(np.float32(material["base_color"])), [1.0]])
+            visual = None
+            if part.texture is not None and len(part.uvs):
+                from PIL import Image
+
+                uvs = np.array(part.uvs)
+                uvs[:, 1] = 1.0 - uvs[:, 1]
+                look = trimesh.visual.material.PBRMaterial(
+                    name=material["name"],
+                    baseColorFactor=np.uint8(255 * color),
+                    baseColorTexture=Image.fromarray(np.array(part.texture)),
+                    roughnessFactor=float(material["roughness"]),
+                    metallicFactor=0.0,
+                    doubleSided=bool(material["double_sided"]),
+                    alphaMode="MASK" if material["cut_out"] else "OPAQUE",
+                )
+                visual = trimesh.visual.TextureVisuals(uv=uvs, material=look)
+            mesh = trimesh.Trimesh(
+                vertices=np.array(part.vertices, np.float64),
+                faces=np.array(part.faces, np.int64),
+                vertex_normals=np.array(part.normals, np.float64),
+                visual=visual,
+                process=False,
+            )
+            if visual is None:
+                own = part.colors if len(part.colors) else np.ones((len(part.vertices), 3), np.float32)
+                rgb = _srgb(own * np.float32(material["base_color"]))
+                mesh.visual.vertex_colors = np.uint8(np.c_[255 * rgb, np.full(len(rgb), 255)])
+            scene.add_geometry(mesh, geom_name=part.name, node_name=part.name)
+        return scene
+
+    def save(self, path: "str | os.PathLike[str]", unit: str = "m", up: str = "y") -> None:
+        """Writes ``.glb``, ``.obj``, ``.ply``, ``.stl``, ``.usda`` or ``.usdz``, whole or not at all.
+
+        ``unit`` (m, cm, mm) and ``up`` (y, z) are for formats that do not fix them; glTF is in metres, +y up.
+        """
+        folder, name = os.path.split(os.fspath(path))
+        stem, extension = os.path.splitext(name)
+        write_whole(folder, self._raw.files(extension[1:].lower(), stem, unit, up))
+
+    def to_bytes(self, extension: str = "glb", unit: str = "m", up: str = "y") -> bytes:
+        """The file of a format, without files beside it."""
+        return bytes(self._raw.files(extension.lower().lstrip("."), "model", unit, up)[0][1])
+
+    def render(self, size: "Tuple[int, int] | int" = (1024, 768), **how: Any) -> "np.ndarray":
+        """A picture: (height, width, 4) uint8, sRGB and alpha, rows from the top.
+
+        ``view``: ``front``, ``three-quarter``, ``side``, ``top``, ``turntable`` or ``orbit`` (with ``azimuth`` and
+        ``elevation``, degrees); ``background``: ``sky``, ``transparent``, ``white`` or ``#rrggbb``; ``shadow``;
+        ``supersample``: 1 to 6. The same pixels as ``burgeon render`` makes.
+        """
+        return array(self._raw.render(look(size, **how)))
+
+    def to_png(self, size: "Tuple[int, int] | int" = (1024, 768), **how: Any) -> bytes:
+        """The same as a PNG file."""
+        pixels = self.render(size, **how)
+        height, width, _ = pixels.shape
+        return bytes(_burgeon.png(width, height, pixels.tobytes()))
+
+    def to_html(self, height: int = 480) -> str:
+        """A 3-D view as HTML that needs nothing else: drag to turn, wheel or pinch to come nearer."""
+        from ._view import page
+
+        return page(self, height)
+
+    def _repr_png_(self) -> bytes:
+        return self.to_png((640, 480))
+
+    def _repr_html_(self) -> str:
+        return self.to_html()
+
+    def __repr__(self) -> str:
+        return f"<burgeon.Model {self.name!r}: {len(self.parts)} parts, {self.triangle_count:,} triangles>"
+
+
+def _srgb(linear: "np.ndarray") -> "np.ndarray":
+    import numpy as np
+
+    linear = np.clip(linear, 0.0, 1.0)
+    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+
+
+def joined(columns: "Sequence[Any]") -> "List[np.ndarray]":
+    """Columns of the core as arrays."""
+    return [array(c) for c in columns]

@@ -1,0 +1,388 @@
+"""Plants: tables, measures, clouds, files, and other plants that follow from them."""
+
+from __future__ import annotations
+
+import json
+import os
+from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Optional, Tuple
+
+from . import _burgeon
+from ._files import write_whole
+from .model import Cloud, Masks, Model, array, look
+
+if TYPE_CHECKING:
+    import numpy as np
+
+__all__ = ["Axes", "Nodes", "Organs", "Plant"]
+
+
+class _Table:
+    """Columns of one length. They look at the memory of the core, which they keep; they are read-only."""
+
+    __slots__ = ("_raw", "_known")
+    _prefix = ""
+    _columns: "Tuple[str, ...]" = ()
+
+    def __init__(self, raw: Any) -> None:
+        self._raw = raw
+        self._known: "Dict[str, np.ndarray]" = {}
+
+    def _column(self, name: str) -> "np.ndarray":
+        if name not in self._known:
+            self._known[name] = array(self._raw.column(f"{self._prefix}_{name}"))
+        return self._known[name]
+
+    def to_dict(self) -> "Dict[str, np.ndarray]":
+        """All columns by name, for ``pandas.DataFrame`` and the like."""
+        out: "Dict[str, np.ndarray]" = {}
+        for name in self._columns:
+            column = self._column(name)
+            if column.ndim == 1:
+                out[name] = column
+            else:
+                out.update({f"{name}_{axis}": column[:, k] for k, axis in enumerate("xyz")})
+        return out
+
+    def __len__(self) -> int:
+        return len(self._column(self._columns[0]))
+
+    def __repr__(self) -> str:
+        return f"<burgeon.{type(self).__name__}: {len(self):,} rows of {', '.join(self._columns)}>"
+
+
+class Nodes(_Table):
+    """Where axes go: one row a node, those of an axis in a row, base first. Shown without a copy."""
+
+    __slots__ = ()
+    _prefix = "node"
+    _columns = ("position", "radius", "axis")
+
+    @property
+    def position(self) -> "np.ndarray":
+        """(n, 3) float64: metres, +y up, ground at y = 0."""
+        return self._column("position")
+
+    @property
+    def radius(self) -> "np.ndarray":
+        """(n,) float64: metres."""
+        return self._column("radius")
+
+    @property
+    def axis(self) -> "np.ndarray":
+        """(n,) uint32: row of ``plant.axes``."""
+        return self._column("axis")
+
+
+class Axes(_Table):
+    """Trunks, branches, stems, stalks, roots: one row each, after what bears it."""
+
+    __slots__ = ()
+    _prefix = "axis"
+    _columns = ("part", "order", "parent", "bearer", "first", "end", "stroke")
+
+    @property
+    def part(self) -> "np.ndarray":
+        """(n,) uint8: row of ``burgeon.PARTS``."""
+        return self._column("part")
+
+    @property
+    def order(self) -> "np.ndarray":
+        """(n,) uint32: 0 for axes that stand on the ground, one more with each branching."""
+        return self._column("order")
+
+    @property
+    def parent(self) -> "np.ndarray":
+        """(n,) int32: row of the axis that bears it; -1 for those on the ground."""
+        return self._column("parent")
+
+    @property
+    def bearer(self) -> "np.ndarray":
+        """(n,) int32: row of the node that bears it; -1 for those on the ground."""
+        return self._column("bearer")
+
+    @property
+    def first(self) -> "np.ndarray":
+        """(n,) uint32: row of its first node."""
+        return self._column("first")
+
+    @property
+    def end(self) -> "np.ndarray":
+        """(n,) uint32: the row after its last node."""
+        return self._column("end")
+
+    @property
+    def stroke(self) -> "np.ndarray":
+        """(n,) int32: the stroke that it was read from; -1 for what the program grew."""
+        return self._column("stroke")
+
+
+class Organs(_Table):
+    """Leaves, petals, fruits and so on: one row each."""
+
+    __slots__ = ()
+    _prefix = "organ"
+    _columns = ("part", "position", "along", "normal", "scale", "bearer", "flower", "shape", "stroke")
+
+    @property
+    def part(self) -> "np.ndarray":
+        """(n,) uint8: row of ``burgeon.PARTS``."""
+        return self._column("part")
+
+    @property
+    def position(self) -> "np.ndarray":
+        """(n, 3) float64: where it is rooted, metres."""
+        return self._column("position")
+
+    @property
+    def along(self) -> "np.ndarray":
+        """(n, 3) float64: unit vector from root to tip."""
+        return self._column("along")
+
+    @property
+    def normal(self) -> "np.ndarray":
+        """(n, 3) float64: unit vector of its upper side."""
+        return self._column("normal")
+
+    @property
+    def scale(self) -> "np.ndarray":
+        """(n,) float64: size relative to its shape."""
+        return self._column("scale")
+
+    @property
+    def bearer(self) -> "np.ndarray":
+        """(n,) int32: row of ``plant.nodes``; -1 for none."""
+        return self._column("bearer")
+
+    @property
+    def flower(self) -> "np.ndarray":
+        """(n,) int32: number of its flower; -1 for none."""
+        return self._column("flower")
+
+    @property
+    def shape(self) -> "np.ndarray":
+        """(n,) uint32: organs of one shape have one number."""
+        return self._column("shape")
+
+    @property
+    def stroke(self) -> "np.ndarray":
+        """(n,) int32: the stroke that it was read from; -1 for what the program placed."""
+        return self._column("stroke")
+
+
+class Plant:
+    """A plant of any maker. Nothing changes it: ``shape`` and ``at`` give others. Threads may share it."""
+
+    __slots__ = ("_raw", "_known")
+
+    def __init__(self, raw: Any) -> None:
+        self._raw = raw
+        self._known: "Dict[str, Any]" = {}
+
+    def _keep(self, name: str, make: Any) -> Any:
+        if name not in self._known:
+            self._known[name] = make()
+        return self._known[name]
+
+    @property
+    def name(self) -> str:
+        """Its name, for files and reports."""
+        return self._raw.name
+
+    @property
+    def seed(self) -> int:
+        """What all chance follows from."""
+        return self._raw.seed
+
+    @property
+    def maker(self) -> str:
+        """``sketch``, ``tree``, ``leaf`` or ``flower``."""
+        return self._raw.maker
+
+    @property
+    def digest(self) -> str:
+        """Its fingerprint: that of the command line's report, on every machine."""
+        return self._raw.digest
+
+    @property
+    def report(self) -> "Dict[str, Any]":
+        """Its entry of the command line's report: counts, times, warnings, what was understood."""
+        return self._keep("report", lambda: json.loads(self._raw.report()))
+
+    @property
+    def warnings(self) -> "List[str]":
+        """What a person should know of how it was made."""
+        return list(self.report.get("warnings", []))
+
+    @property
+    def spec(self) -> "Dict[str, Any]":
+        """All that its maker was asked for, defaults too."""
+        return json.loads(self._raw.spec())
+
+    def measures(self) -> "Dict[str, Any]":
+        """What can be measured, in SI units (docs/measures.md): ``height_m``, ``dbh_m``, ``leaf_area_m2`` and so on.
+
+        None stands for what this plant does not have, such as a diameter at breast height below 1.3 m.
+        """
+        return json.loads(self._raw.measures())
+
+    @property
+    def nodes(self) -> Nodes:
+        """Positions and radii of all axes."""
+        return self._keep("nodes", lambda: Nodes(self._raw))
+
+    @property
+    def axes(self) -> Axes:
+        """Trunk, branches, stems, roots."""
+        return self._keep("axes", lambda: Axes(self._raw))
+
+    @property
+    def organs(self) -> Organs:
+        """Leaves, petals, fruits."""
+        return self._keep("organs", lambda: Organs(self._raw))
+
+    @property
+    def parents(self) -> "np.ndarray":
+        """(nodes,) int32: the node before each node, or the one that bears its axis; -1 at the ground."""
+
+        def make() -> "np.ndarray":
+            import numpy as np
+
+            parents = np.arange(-1, len(self.nodes) - 1, dtype=np.int32)
+            parents[self.axes.first] = self.axes.bearer
+            parents.setflags(write=False)
+            return parents
+
+        return self._keep("parents", make)
+
+    @property
+    def model(self) -> Model:
+        """Its meshes and materials."""
+        return self._keep("model", lambda: Model(self._raw.model()))
+
+    def level(self, level: int) -> Model:
+        """Coarser meshes for far away, 1 to 6: about half of the triangles with each level."""
+        return self.model if level == 0 else Model(self._raw.level(level))
+
+    def labels(self) -> "List[np.ndarray]":
+        """Of each part of ``model`` what its triangles lie on: (triangles, 3) int32 of part, axis, organ.
+
+        Rows of ``burgeon.PARTS``, ``axes`` and ``organs``; -1 for none.
+        """
+        return [array(c) for c in self._raw.labels()]
+
+    def cloud(
+        self,
+        points: int = 20_000,
+        stations: int = 4,
+        elevation: float = 5.0,
+        noise: float = 0.0,
+        seed: "Optional[int]" = None,
+    ) -> Cloud:
+        """The plant as a scanner sees it: what a beam meets first is a point, what lies behind it is hidden.
+
+        ``points``: 1 to 5 million; ``stations``: places of the scanner, evenly around the plant, 1 to 64;
+        ``elevation``: how far above the horizon of its middle they stand, degrees, -80 to 80; ``noise``: standard
+        deviation of the distance, metres, 0 to 1; ``seed``: of the choice of points and of noise (the plant's).
+        """
+        columns = self._raw.survey(points, stations, elevation, noise, self.seed if seed is None else seed)
+        return Cloud(**{name: array(column) for name, column in columns.items()})
+
+    def masks(self, size: "Tuple[int, int] | int" = (1024, 768), **how: Any) -> Masks:
+        """What each pixel of ``render(size, **how)`` shows in its middle: part, axis, organ and depth."""
+        import numpy as np
+
+        parts, triangles, depth = map(array, self._raw.model().masks(look(size, **how)))
+        labels = self.labels()
+        first = np.cumsum([0] + [len(rows) for rows in labels])
+        rows = np.concatenate(labels + [np.full((1, 3), -1, np.int32)])
+        at = np.where(parts < 0, len(rows) - 1, first[np.maximum(parts, 0)] + triangles)
+        part, axis, organ = np.moveaxis(rows[at], -1, 0)
+        return Masks(part, axis, organ, depth)
+
+    def branches(self, order: int = 1) -> "List[Dict[str, Any]]":
+        """The branches up to an order: ``path`` (their name in edits), ``at``, ``base_m``, ``length_m``, ``radius_m``, ..."""
+        return json.loads(self._raw.branches(order))
+
+    def shape(self, edits: "str | os.PathLike[str] | Dict[str, Any] | Iterable[Dict[str, Any]]") -> "Plant":
+        """The plant after edits by hand: an edits file (``burgeon shape --template``), its content, or its list.
+
+        >>> short = oak.shape([{"op": "prune", "axis": {"path": [0, 0]}, "at": 0.5}])  # doctest: +SKIP
+        """
+        if isinstance(edits, (str, os.PathLike)):
+            with open(edits, encoding="utf-8") as file:
+                edits = json.load(file)
+        if isinstance(edits, dict):
+            edits = edits["edits"] if "edits" in edits else [edits]
+        return Plant(self._raw.shape(list(edits)))
+
+    def at(self, day: float) -> "Plant":
+        """The plant on another day, 0 (bud) to 100: of flowers, and of drawings whose flowers then open."""
+        return Plant(self._raw.at(day))
+
+    @property
+    def days(self) -> "Optional[Tuple[float, float]]":
+        """Days from bud to full bloom, and from there to wilted; None for what has no days."""
+        days = self._raw.days
+        return None if days is None else tuple(days)
+
+    def mtg(self, up: str = "z", unit: str = "m") -> Any:
+        """Its structure as ``openalea.mtg.MTG`` if that is installed, else as the text of an ``.mtg`` file.
+
+        As text with openalea.mtg installed: ``plant.to_bytes("mtg")``.
+        """
+        text = bytes(self._raw.structure("mtg", unit, up)).decode()
+        try:
+            from openalea.mtg.io import read_mtg
+        except ImportError:
+            return text
+        return read_mtg(text)
+
+    def to_bytes(self, extension: str, unit: str = "m", up: "Optional[str]" = None) -> bytes:
+        """The file of a format: models, ``mtg``, ``qsm`` (cylinders as a table), ``burgeon`` (a project of the Studio)."""
+        extension = extension.lower().lstrip(".")
+        if extension in ("mtg", "qsm"):
+            return bytes(self._raw.structure(extension, unit, up or "z"))
+        if extension == "burgeon":
+            return bytes(self._raw.project())
+        return self.model.to_bytes(extension, unit, up or "y")
+
+    def save(self, path: "str | os.PathLike[str]", unit: str = "m", up: "Optional[str]" = None) -> None:
+        """Writes a model (``.glb``, ``.obj``, ``.ply``, ``.stl``, ``.usda``, ``.usdz``), its structure (``.mtg``), its
+        cylinders (``.qsm.csv``), or a project of the Studio (``.burgeon``): whole or not at all."""
+        folder, name = os.path.split(os.fspath(path))
+        extension = os.path.splitext(name)[1][1:].lower()
+        if name.lower().endswith(".qsm.csv"):
+            extension = "qsm"
+        if extension in ("mtg", "qsm", "burgeon"):
+            write_whole(folder, [(name, self.to_bytes(extension, unit, up))])
+        else:
+            self.model.save(path, unit, up or "y")
+
+    def render(self, size: "Tuple[int, int] | int" = (1024, 768), **how: Any) -> "np.ndarray":
+        """A picture: see ``Model.render``."""
+        return self.model.render(size, **how)
+
+    def _repr_png_(self) -> bytes:
+        return self.model._repr_png_()
+
+    def _repr_html_(self) -> str:
+        return self.to_html()
+
+    def to_html(self, height: int = 480) -> str:
+        """A 3-D view as HTML that needs nothing else: see ``Model.to_html``; of a large plant with coarser meshes."""
+        from ._view import MOST_TRIANGLES
+
+        level = 0
+        while level < 6 and self.model.triangle_count > MOST_TRIANGLES << level:
+            level += 1
+        return self.level(level).to_html(height)
+
+    def __repr__(self) -> str:
+        return (
+            f"<burgeon.Plant {self.name!r} ({self.maker}, seed {self.seed}): {len(self.axes):,} axes, "
+            f"{len(self.organs):,} organs, {self.model.triangle_count:,} triangles>"
+        )
+
+
+PARTS: "Tuple[str, ...]" = tuple(_burgeon.PARTS)
+"""What a point, triangle, axis or organ is, by the number that is its ``part``."""

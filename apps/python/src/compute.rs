@@ -1,0 +1,112 @@
+//! Threads, Ctrl-C and limits: what the core leaves to its shell.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, sync_channel};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+use burgeon::{Budget, CancelToken, Clock, Executor, Run};
+use pyo3::prelude::*;
+use rayon::prelude::*;
+
+/// Threads to compute with; 0 for as many as the machine has.
+static THREADS: AtomicUsize = AtomicUsize::new(0);
+
+/// The pool, by process and number of threads: threads do not come along into a process that is forked off.
+static POOL: Mutex<Option<(u32, usize, Arc<rayon::ThreadPool>)>> = Mutex::new(None);
+
+/// Independent jobs on a number of threads.
+struct Threads(Option<Arc<rayon::ThreadPool>>);
+
+impl Threads {
+    fn of_process() -> Self {
+        let all = || std::thread::available_parallelism().map_or(1, usize::from);
+        let asked = THREADS.load(Ordering::Relaxed);
+        let count = if asked == 0 { all() } else { asked };
+        if count <= 1 {
+            return Self(None);
+        }
+        let own = (std::process::id(), count);
+        let Ok(mut pool) = POOL.lock() else { return Self(None) };
+        if let Some((process, threads, pool)) = &*pool
+            && (*process, *threads) == own
+        {
+            return Self(Some(Arc::clone(pool)));
+        }
+        // A pool of another process has no threads that could end: it is left alone.
+        if let Some((process, _, old)) = pool.take().filter(|p| p.0 != own.0) {
+            debug_assert_ne!(process, own.0, "another process's");
+            std::mem::forget(old);
+        }
+        let made = rayon::ThreadPoolBuilder::new().num_threads(count).build().ok().map(Arc::new);
+        *pool = made.clone().map(|made| (own.0, own.1, made));
+        Self(made)
+    }
+}
+
+impl Executor for Threads {
+    fn for_each(&self, n: usize, job: &(dyn Fn(usize) + Sync)) {
+        match &self.0 {
+            Some(pool) if n > 1 => {
+                pool.install(|| (0..n).into_par_iter().with_max_len(1).for_each(job));
+            }
+            _ => (0..n).for_each(job),
+        }
+    }
+}
+
+struct WallClock(Instant);
+
+impl Clock for WallClock {
+    fn now_ms(&self) -> f64 {
+        self.0.elapsed().as_secs_f64() * 1000.0
+    }
+}
+
+/// Computes without Python's lock; Ctrl-C stops it.
+pub(crate) fn compute<T: Send>(
+    py: Python<'_>,
+    budget: f64,
+    work: impl FnOnce(&Run<'_>) -> T + Send,
+) -> PyResult<T> {
+    let (token, clock) = (CancelToken::new(), WallClock(Instant::now()));
+    let budget = Budget { times: budget, raise: Some("budget") };
+    let threads = py.detach(Threads::of_process);
+    std::thread::scope(|scope| {
+        let (over, ended) = sync_channel::<()>(1);
+        let own = token.clone();
+        let thread = scope.spawn(move || {
+            // Told when it is dropped, by a panic, too.
+            let _over = over;
+            work(&Run { cancel: &own, executor: &threads, clock: &clock, budget })
+        });
+        let ended = Mutex::new(ended);
+        let wait = || ended.lock().map_or(Err(RecvTimeoutError::Disconnected), |e| e.recv_timeout(TICK));
+        while py.detach(wait) == Err(RecvTimeoutError::Timeout) {
+            if let Err(stop) = py.check_signals() {
+                token.cancel();
+                let _ = py.detach(|| thread.join().is_ok());
+                return Err(stop);
+            }
+        }
+        py.detach(|| thread.join()).map_err(|payload| {
+            let text = payload.downcast_ref::<&str>().map(|t| (*t).to_owned());
+            let text = text.or_else(|| payload.downcast_ref::<String>().cloned()).unwrap_or_default();
+            pyo3::exceptions::PyRuntimeError::new_err(format!("internal error, a bug in burgeon: {text}"))
+        })
+    })
+}
+
+/// How often Ctrl-C is looked for.
+const TICK: Duration = Duration::from_millis(20);
+
+/// Sets how many threads compute, 1 to 256; 0 for as many as the machine has. Results do not depend on it.
+#[pyfunction]
+pub(crate) fn set_threads(count: usize) -> PyResult<()> {
+    if count > 256 {
+        let line = format!("count must be 0 to 256, not {count}");
+        return Err(pyo3::exceptions::PyValueError::new_err(line));
+    }
+    THREADS.store(count, Ordering::Relaxed);
+    Ok(())
+}

@@ -1,0 +1,42 @@
+//! Burgeon for Python: parses, converts, calls. No algorithms.
+//!
+//! | module | owns |
+//! |---|---|
+//! | `make` | what is asked for -> a document of one plant -> the plant; growth laws |
+//! | `plant`, `model` | what was made: tables, meshes, clouds, files, pictures |
+//! | `column` | memory of ours that NumPy shows without a copy |
+//! | `value` | what people write in Python -> JSON |
+//! | `compute` | threads, Ctrl-C, limits |
+//! | `fault` | errors with codes -> exceptions |
+//!
+//! The package `burgeon` (apps/python/burgeon) is what people import; this is its private module.
+
+mod column;
+mod compute;
+mod fault;
+mod make;
+mod model;
+mod plant;
+mod value;
+
+/// The private module of the package `burgeon`.
+#[pyo3::pymodule]
+mod _burgeon {
+    #[pymodule_export]
+    use crate::column::Column;
+    #[pymodule_export]
+    use crate::compute::set_threads;
+    #[pymodule_export]
+    use crate::make::{RawLaw, bloom, grow, leaf, open_project, presets, schema, sketch};
+    #[pymodule_export]
+    use crate::model::{RawModel, png};
+    #[pymodule_export]
+    use crate::plant::RawPlant;
+
+    #[pymodule_export]
+    const VERSION: &str = burgeon::VERSION;
+
+    /// What a point or triangle can lie on, by the number that is its label.
+    #[pymodule_export]
+    const PARTS: [&str; 17] = burgeon::PARTS;
+}

@@ -1,0 +1,357 @@
+//! What is asked for in Python -> a document of one plant -> the plant.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use burgeon::bloom::{FlowerSpec, GrowthLaw, Offset, Series};
+use burgeon::document::{
+    Document, Editor, FlowerMaker, LeafData, LeafMaker, Maker, NewPlant, PlantId, SceneCommand, Settings,
+    SketchCommand,
+};
+use burgeon::formats::{CloudFormat, DrawingFormat, ExportSpec, ModelFormat};
+use burgeon::glam::{DVec2, DVec3};
+use burgeon::ink::{Drawing, StrokeClass};
+use burgeon::leaf::LeafSpec;
+use burgeon::sketch::SketchSpec;
+use burgeon::skin::SkinSpec;
+use burgeon::{NamedMesh, Preset, Report, SceneEvaluator, Seed, Spec, TreeSpec};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use serde_json::Value;
+
+use crate::fault::{refused, unusable};
+use crate::plant::{Held, RawPlant};
+use crate::value::{json_of, merge};
+
+/// What all makers are asked for.
+#[derive(FromPyObject)]
+pub(crate) struct Asked<'py> {
+    #[pyo3(item)]
+    seed: u64,
+    #[pyo3(item)]
+    budget: f64,
+    /// Fields of the maker's spec.
+    #[pyo3(item)]
+    fields: Bound<'py, PyDict>,
+    /// Fields of how it is meshed, and `wind`.
+    #[pyo3(item)]
+    skin: Bound<'py, PyDict>,
+}
+
+impl Asked<'_> {
+    /// A spec with the fields that are asked for in the place of its own.
+    fn spec<T: Spec>(&self, py: Python<'_>, base: &T) -> PyResult<T> {
+        if self.fields.is_empty() {
+            return Ok(burgeon::spec::from_json(&burgeon::spec::to_json(base)).map_err(|e| refused(py, &e))?);
+        }
+        put(py, base, json_of(self.fields.as_any(), "")?)
+    }
+
+    fn skin(&self, py: Python<'_>) -> PyResult<(SkinSpec, bool)> {
+        let mut fields = json_of(self.skin.as_any(), "")?;
+        let wind = fields.as_object_mut().and_then(|f| f.remove("wind"));
+        let skin = put(py, &SkinSpec::default(), fields)?;
+        match wind {
+            None => Ok((skin, false)),
+            Some(Value::Bool(wind)) => Ok((skin, wind)),
+            Some(other) => Err(PyValueError::new_err(format!("wind must be True or False, not {other}"))),
+        }
+    }
+
+    fn seed(&self) -> Seed {
+        Seed::new(self.seed)
+    }
+
+    fn made(&self, py: Python<'_>, document: Document, id: PlantId, wind: bool) -> PyResult<RawPlant> {
+        let mut scene = SceneEvaluator::default();
+        scene.set_wind(wind);
+        Held::make(py, scene, document, id, self.budget)
+    }
+
+    /// The only plant of a document.
+    fn alone(&self, py: Python<'_>, name: &str, maker: Maker, wind: bool) -> PyResult<RawPlant> {
+        let settings = Settings { name: name.to_owned(), seed: self.seed(), maker, ..Settings::default() };
+        let mut editor = Editor::new(Document::default());
+        let sheet: Vec<PlantId> =
+            editor.document().plants().iter().map(burgeon::document::DocumentPlant::id).collect();
+        let plant = NewPlant { settings, strokes: Vec::new() };
+        let mut commands = vec![SceneCommand::Add(Box::new(plant)), SceneCommand::Rename(name.to_owned())];
+        if !sheet.is_empty() {
+            commands.push(SceneCommand::Remove(sheet));
+        }
+        for command in commands {
+            match editor.run(command) {
+                Ok(()) | Err(burgeon::document::CommandError::Nothing(_)) => {}
+                Err(e) => return Err(refused(py, &e)),
+            }
+        }
+        let document = editor.document().clone();
+        let Some(id) = document.plants().last().map(burgeon::document::DocumentPlant::id) else {
+            return Err(unusable(py, &"internal error, a bug in burgeon: the plant is not in its document"));
+        };
+        self.made(py, document, id, wind)
+    }
+}
+
+/// A spec with some fields in the place of its own, all within their ranges.
+fn put<T: Spec>(py: Python<'_>, base: &T, fields: Value) -> PyResult<T> {
+    let mut all = burgeon::spec::to_json(base);
+    merge(&mut all, fields);
+    let spec = burgeon::spec::from_json::<T>(&all).map_err(|e| refused(py, &e))?;
+    burgeon::spec::check(&spec).map_err(|e| refused(py, &e))?;
+    Ok(spec)
+}
+
+/// Where a spec comes from: a preset by its word, the text of a file with the file's place, or fields alone.
+#[derive(FromPyObject)]
+pub(crate) struct Base {
+    #[pyo3(item)]
+    preset: Option<String>,
+    #[pyo3(item)]
+    toml: Option<(String, std::path::PathBuf)>,
+}
+
+/// A tree.
+#[pyfunction]
+pub(crate) fn grow(py: Python<'_>, base: Base, asked: Asked<'_>) -> PyResult<RawPlant> {
+    let (spec, preset) = match (&base.preset, &base.toml) {
+        (Some(word), _) => {
+            let preset = Preset::find(word).ok_or_else(|| {
+                let known = burgeon::PRESETS.iter().map(|p| p.key).collect::<Vec<_>>().join(", ");
+                unusable(py, &format!("there is no preset {word:?}; there are {known}"))
+            })?;
+            (preset.spec().map_err(|e| refused(py, &e))?, Some(preset.key))
+        }
+        (None, Some((text, path))) => {
+            let folder = path.parent().unwrap_or_else(|| Path::new(""));
+            let spec = burgeon::read_tree_spec(text, &|name| named_mesh(&folder.join(name)));
+            let spec = spec.map_err(|e| refused(py, &e.in_text(text)))?;
+            (spec, None)
+        }
+        (None, None) => (TreeSpec::default(), None),
+    };
+    let spec = asked.spec(py, &spec)?;
+    let (skin, wind) = asked.skin(py)?;
+    let name = spec.name.clone();
+    let mut tree = burgeon::tree_settings(&spec, preset);
+    tree.skin = skin;
+    asked.alone(py, &name, Maker::Tree(Box::new(tree)), wind)
+}
+
+/// A mesh or cloud that a spec names, in metres, +Y up.
+fn named_mesh(path: &Path) -> Option<NamedMesh> {
+    let extension = path.extension()?.to_str()?;
+    let bytes = std::fs::read(path).ok()?;
+    let (axes, mut report) = (ExportSpec::default(), Report::default());
+    let cloud = CloudFormat::from_extension(extension);
+    if let Some(format @ (CloudFormat::Xyz | CloudFormat::Pcd | CloudFormat::Las)) = cloud {
+        let cloud = burgeon::formats::read_cloud(&*bytes, format, &axes, &mut report).ok()?;
+        return Some((cloud.points, Vec::new()));
+    }
+    let format = ModelFormat::from_extension(extension)?;
+    let none = burgeon::formats::no_files;
+    let model = burgeon::formats::read_model(&*bytes, format, "obstacle", &axes, &none, &mut report).ok()?;
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    for part in &model.parts {
+        let first = u32::try_from(vertices.len()).unwrap_or(u32::MAX);
+        vertices.extend(part.mesh.positions.iter().map(|p| DVec3::from_array(p.map(f64::from))));
+        triangles.extend(part.mesh.triangles.iter().map(|t| t.map(|i| i.saturating_add(first))));
+    }
+    Some((vertices, triangles))
+}
+
+/// A flower at a day; none for full bloom.
+#[pyfunction]
+pub(crate) fn bloom(
+    py: Python<'_>,
+    base: Base,
+    asked: Asked<'_>,
+    day: Option<f64>,
+    law: Option<PyRef<'_, RawLaw>>,
+) -> PyResult<RawPlant> {
+    let known = || FlowerSpec::PRESETS.join(", ");
+    let spec = match (&base.preset, &base.toml) {
+        (Some(word), _) => {
+            let none = || unusable(py, &format!("there is no flower {word:?}; there are {}", known()));
+            burgeon::bloom::preset(word).ok_or_else(none)?
+        }
+        (None, Some((text, _))) => burgeon::spec::from_toml(text).map_err(|e| refused(py, &e))?,
+        (None, None) => FlowerSpec::default(),
+    };
+    let spec = asked.spec(py, &spec)?;
+    let (_, wind) = asked.skin(py)?;
+    let (name, day) = (spec.name.clone(), day.unwrap_or(spec.opening_days));
+    let law = law.map(|l| Arc::new(l.0.clone()));
+    let flower = FlowerMaker { preset: base.preset, spec: Arc::new(spec), day, law };
+    asked.alone(py, &name, Maker::Flower(Box::new(flower)), wind)
+}
+
+/// A leaf of numbers, or of a file of marks or veins: its name and text.
+#[pyfunction]
+pub(crate) fn leaf(
+    py: Python<'_>,
+    file: Option<(String, String)>,
+    toml: Option<String>,
+    asked: Asked<'_>,
+) -> PyResult<RawPlant> {
+    let base = match toml {
+        Some(text) => burgeon::spec::from_toml(&text).map_err(|e| refused(py, &e))?,
+        None => LeafSpec::default(),
+    };
+    let settings: LeafSpec = asked.spec(py, &base)?;
+    let (_, wind) = asked.skin(py)?;
+    let (name, text) = file.unwrap_or_else(|| ("leaf".into(), String::new()));
+    let data = LeafData { name: name.clone(), text: text.into() };
+    asked.alone(py, &name, Maker::Leaf(Box::new(LeafMaker { data, settings })), wind)
+}
+
+/// Strokes of a drawing: the bytes of a file and its extension, or points.
+#[derive(FromPyObject)]
+pub(crate) struct Ink {
+    #[pyo3(item)]
+    file: Option<(Vec<u8>, String)>,
+    #[pyo3(item)]
+    lines: Vec<Vec<[f64; 2]>>,
+}
+
+/// The plant of a drawing.
+#[pyfunction]
+pub(crate) fn sketch(
+    py: Python<'_>,
+    name: &str,
+    ink: Ink,
+    asked: Asked<'_>,
+    classes: Vec<(usize, String)>,
+    day: Option<f64>,
+) -> PyResult<RawPlant> {
+    let drawing = match ink.file {
+        Some((bytes, extension)) => {
+            let format = DrawingFormat::from_extension(&extension).or_else(|| DrawingFormat::sniff(&bytes));
+            let format = format.ok_or_else(|| {
+                unusable(py, &format!("{name}: is no drawing (.svg, .inkml, .ndjson, .json)"))
+            })?;
+            let mut read = burgeon::formats::read_drawings(&*bytes, format, name);
+            let first = read.next().ok_or_else(|| unusable(py, &format!("{name}: holds no drawing")))?;
+            let drawing = first.map_err(|e| unusable(py, &format!("{name}: {e}")))?.drawing;
+            if read.next().is_some() {
+                return Err(unusable(py, &format!("{name}: holds several drawings; give one")));
+            }
+            drawing
+        }
+        None => {
+            let lines = ink.lines.into_iter().map(|l| l.into_iter().map(DVec2::from_array).collect());
+            let lines: Vec<Vec<DVec2>> = lines.collect();
+            Drawing::from_polylines(name, &lines)
+        }
+    };
+    let mut document = Document::from_drawing(&drawing);
+    let Some(plant) = document.plants().first() else {
+        return Err(unusable(py, &"internal error, a bug in burgeon: a drawing is one plant"));
+    };
+    let (id, strokes) = (plant.id(), plant.strokes().iter().map(|s| s.id).collect::<Vec<_>>());
+    let spec = asked.spec(py, &SketchSpec::default())?;
+    let (skin, wind) = asked.skin(py)?;
+    let mut commands = vec![
+        SketchCommand::SetSketch(Box::new(spec)).of(id),
+        SketchCommand::SetSkin(skin).of(id),
+        burgeon::document::PlantCommand::SetSeed(asked.seed()).of(id),
+        SketchCommand::SetDay(day).of(id),
+    ];
+    for (row, word) in classes {
+        let count = strokes.len();
+        let stroke = strokes.get(row).ok_or_else(|| {
+            PyValueError::new_err(format!("classes: there is no stroke {row}; the drawing has {count}"))
+        })?;
+        let class = StrokeClass::from_word(&word).ok_or_else(|| {
+            let known = StrokeClass::ALL.map(StrokeClass::word).join(", ");
+            PyValueError::new_err(format!("classes[{row}]: {word:?} is no class; there are {known}"))
+        })?;
+        commands.push(SketchCommand::SetClass(vec![*stroke], Some(class)).of(id));
+    }
+    let mut editor = Editor::new(document);
+    for command in commands {
+        match editor.run(command) {
+            Ok(()) | Err(burgeon::document::CommandError::Nothing(_)) => {}
+            Err(e) => return Err(refused(py, &e)),
+        }
+    }
+    document = editor.document().clone();
+    asked.made(py, document, id, wind)
+}
+
+/// Every plant of a project of the Studio that is not hidden.
+#[pyfunction]
+pub(crate) fn open_project(py: Python<'_>, bytes: &[u8], budget: f64) -> PyResult<Vec<RawPlant>> {
+    let document = burgeon::document::read_project(bytes).map_err(|e| unusable(py, &e))?;
+    let seen = document.plants().iter().filter(|p| !p.settings().hidden);
+    let ids: Vec<PlantId> = seen.map(burgeon::document::DocumentPlant::id).collect();
+    ids.into_iter()
+        .map(|id| Held::make(py, SceneEvaluator::default(), document.clone(), id, budget))
+        .collect()
+}
+
+/// A growth law.
+#[pyclass(frozen, module = "burgeon._burgeon")]
+pub(crate) struct RawLaw(GrowthLaw);
+
+#[pymethods]
+impl RawLaw {
+    /// Fits a law to the sizes of each organ: name, days, sizes in metres.
+    #[staticmethod]
+    fn fit(py: Python<'_>, name: &str, organs: Vec<(String, Vec<f64>, Vec<f64>)>) -> PyResult<Self> {
+        let series = organs.into_iter().map(|(organ, days, values)| (organ, Series { days, values }));
+        let series: Vec<(String, Series)> = series.collect();
+        let law = py.detach(|| burgeon::bloom::fit_sizes(name, &series, Offset::Auto));
+        law.map(Self).map_err(|e| unusable(py, &e))
+    }
+
+    /// A law of a file of `burgeon bloom fit`.
+    #[staticmethod]
+    fn read(py: Python<'_>, text: &str) -> PyResult<Self> {
+        let law: GrowthLaw =
+            serde_json::from_str(text).map_err(|e| unusable(py, &format!("is no growth law: {e}")))?;
+        let fault = law.validate().next();
+        fault.map_or(Ok(Self(law)), |fault| Err(unusable(py, &format!("cannot be used: {fault}"))))
+    }
+
+    /// The law as its file has it.
+    fn json(&self) -> String {
+        serde_json::to_string(&self.0).unwrap_or_default()
+    }
+
+    /// Sizes of an organ on some days, in the count of those that were fitted, metres.
+    fn values(&self, organ: usize, days: Vec<f64>) -> PyResult<Vec<f64>> {
+        let count = self.0.laws.len();
+        let none = || PyValueError::new_err(format!("there is no organ {organ}; the law has {count}"));
+        let law = self.0.laws.get(organ).ok_or_else(none)?;
+        Ok(days.into_iter().map(|d| law.value(d - self.0.first_day)).collect())
+    }
+
+    /// Whether the days determine the law of each organ.
+    fn determined(&self) -> Vec<bool> {
+        self.0.laws.iter().map(burgeon::bloom::RegionLaw::is_determined).collect()
+    }
+}
+
+/// The schema of what a maker can be asked for, as JSON.
+#[pyfunction]
+pub(crate) fn schema(maker: &str) -> PyResult<String> {
+    Ok(match maker {
+        "tree" => burgeon::tree_schema().to_string(),
+        "flower" => burgeon::flower_schema().to_string(),
+        "leaf" => burgeon::leaf_schema().to_string(),
+        "sketch" => SketchSpec::schema().to_string(),
+        "skin" => SkinSpec::schema().to_string(),
+        other => {
+            let known = "tree, flower, leaf, sketch or skin";
+            return Err(PyValueError::new_err(format!("maker must be {known}, not {other:?}")));
+        }
+    })
+}
+
+/// The words of trees and of flowers that come with the program.
+#[pyfunction]
+pub(crate) fn presets() -> (Vec<&'static str>, Vec<&'static str>) {
+    (burgeon::PRESETS.iter().map(|p| p.key).collect(), FlowerSpec::PRESETS.to_vec())
+}

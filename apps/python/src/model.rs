@@ -1,0 +1,304 @@
+//! Meshes: their columns, files and pictures.
+
+use std::sync::Arc;
+
+use burgeon::formats::{ExportSpec, ModelFormat};
+use burgeon::mesh::Model;
+use burgeon::render::{Background, PictureSpec, View};
+use burgeon::{Digest, Report, Seed, Unit, UpAxis};
+use pyo3::exceptions::{PyIndexError, PyKeyError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+
+use crate::column::{Column, Owner};
+use crate::compute::compute;
+use crate::fault::unusable;
+use crate::plant::Held;
+
+/// Who keeps a model.
+#[derive(Clone)]
+enum Of {
+    Plant(Arc<Held>),
+    Own(Arc<Model>),
+}
+
+/// Meshes and materials, which nothing changes.
+#[pyclass(frozen, module = "burgeon._burgeon")]
+pub(crate) struct RawModel(Of);
+
+impl RawModel {
+    pub(crate) fn of_plant(plant: Arc<Held>) -> Self {
+        Self(Of::Plant(plant))
+    }
+
+    pub(crate) fn new(model: Model) -> Self {
+        Self(Of::Own(Arc::new(model)))
+    }
+
+    pub(crate) fn get(&self) -> &Model {
+        match &self.0 {
+            Of::Plant(plant) => plant.model(),
+            Of::Own(model) => model,
+        }
+    }
+
+    fn owner(&self) -> Owner {
+        match &self.0 {
+            Of::Plant(plant) => plant.clone(),
+            Of::Own(model) => model.clone(),
+        }
+    }
+}
+
+/// Unit and up axis of a file, by their words.
+pub(crate) fn axes(unit: &str, up: &str) -> PyResult<ExportSpec> {
+    let unit = match unit {
+        "m" => Unit::Metre,
+        "cm" => Unit::Centimetre,
+        "mm" => Unit::Millimetre,
+        other => return Err(PyValueError::new_err(format!("unit must be m, cm or mm, not {other:?}"))),
+    };
+    let up = match up {
+        "y" => UpAxis::Y,
+        "z" => UpAxis::Z,
+        other => return Err(PyValueError::new_err(format!("up must be y or z, not {other:?}"))),
+    };
+    Ok(ExportSpec { up, unit })
+}
+
+/// How a picture is taken, as Python asks for it.
+#[derive(FromPyObject)]
+pub(crate) struct Look {
+    #[pyo3(item)]
+    size: (u32, u32),
+    #[pyo3(item)]
+    view: String,
+    #[pyo3(item)]
+    azimuth: f64,
+    #[pyo3(item)]
+    elevation: f64,
+    #[pyo3(item)]
+    background: String,
+    #[pyo3(item)]
+    shadow: bool,
+    #[pyo3(item)]
+    supersample: u32,
+    #[pyo3(item)]
+    seed: u64,
+}
+
+impl Look {
+    fn spec(&self) -> PyResult<PictureSpec> {
+        let bad = |line: String| Err(PyValueError::new_err(line));
+        let (width, height) = self.size;
+        if !(1..=8192).contains(&width) || !(1..=8192).contains(&height) {
+            return bad(format!("size must be 1 to 8192 pixels each way, not {width} x {height}"));
+        }
+        if !(1..=6).contains(&self.supersample) {
+            return bad(format!("supersample must be 1 to 6, not {}", self.supersample));
+        }
+        let view = match self.view.as_str() {
+            "front" => View::Front,
+            "three-quarter" => View::ThreeQuarter,
+            "side" => View::Side,
+            "top" => View::Top,
+            "turntable" => View::Turntable { frames: 8 },
+            "orbit" => {
+                View::Orbit { azimuth: self.azimuth.to_radians(), elevation: self.elevation.to_radians() }
+            }
+            other => {
+                let views = "front, three-quarter, side, top, turntable or orbit";
+                return bad(format!("view must be {views}, not {other:?}"));
+            }
+        };
+        if !self.azimuth.is_finite() || !(-85.0..=85.0).contains(&self.elevation) {
+            return bad(format!("elevation must be -85 to 85 deg, not {}", self.elevation));
+        }
+        let background = match self.background.as_str() {
+            "sky" => Background::Sky,
+            "transparent" => Background::Transparent,
+            "white" => Background::Plain([255; 3]),
+            other => {
+                let parts = other.strip_prefix('#').filter(|h| h.len() == 6 && h.is_ascii());
+                let parts = parts.and_then(|h| u32::from_str_radix(h, 16).ok());
+                match parts {
+                    Some(rgb) => Background::Plain([16, 8, 0].map(|by| (rgb >> by & 0xff) as u8)),
+                    None => {
+                        let words = "sky, transparent, white or a colour as #rrggbb";
+                        return bad(format!("background must be {words}, not {other:?}"));
+                    }
+                }
+            }
+        };
+        Ok(PictureSpec {
+            width,
+            height,
+            view,
+            background,
+            ground_shadow: self.shadow,
+            supersample: self.supersample,
+            seed: Seed::new(self.seed),
+            ..PictureSpec::default()
+        })
+    }
+}
+
+#[pymethods]
+impl RawModel {
+    #[getter]
+    fn name(&self) -> &str {
+        &self.get().name
+    }
+
+    /// Of each part: name, row of its material, vertices, triangles.
+    fn parts(&self) -> Vec<(String, usize, usize, usize)> {
+        let part = |p: &burgeon::mesh::Part| {
+            (p.name.clone(), p.material.index(), p.mesh.positions.len(), p.mesh.triangles.len())
+        };
+        self.get().parts.iter().map(part).collect()
+    }
+
+    /// A column of a part, without a copy; empty where the model has none.
+    fn column(&self, part: usize, name: &str) -> PyResult<Column> {
+        let parts = &self.get().parts;
+        let none =
+            || PyIndexError::new_err(format!("there is no part {part}: the model has {}", parts.len()));
+        let mesh = &parts.get(part).ok_or_else(none)?.mesh;
+        let owner = self.owner();
+        Ok(match name {
+            "positions" => Column::of(owner, &mesh.positions),
+            "normals" => Column::of(owner, &mesh.normals),
+            "uvs" => Column::of(owner, &mesh.uvs),
+            "colors" => Column::of(owner, &mesh.colors),
+            "wind" => Column::of(owner, &mesh.wind),
+            "pivots" => Column::of(owner, &mesh.pivots),
+            "triangles" => Column::of(owner, &mesh.triangles),
+            other => return Err(PyKeyError::new_err(format!("a mesh has no column {other:?}"))),
+        })
+    }
+
+    /// Each material as a dict; its texture as (width, height, RGBA column) or None.
+    fn materials<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let material = |m: &burgeon::mesh::Material| {
+            let dict = PyDict::new(py);
+            dict.set_item("name", &m.name)?;
+            dict.set_item("kind", m.kind.word())?;
+            dict.set_item("base_color", m.base_color.to_vec())?;
+            dict.set_item("roughness", m.roughness)?;
+            dict.set_item("double_sided", m.double_sided)?;
+            dict.set_item("cut_out", m.alpha == burgeon::mesh::AlphaMode::Mask)?;
+            let texture = m.texture.as_ref().map(|t| {
+                let shape = [t.height as usize, t.width as usize, 4];
+                Column::of(t.clone(), &t.pixels).shaped(&shape)
+            });
+            dict.set_item("texture", texture.map(|t| Py::new(py, t)).transpose()?)?;
+            Ok(dict)
+        };
+        self.get().materials.iter().map(material).collect()
+    }
+
+    /// The fingerprint of meshes and materials.
+    fn digest(&self, py: Python<'_>) -> String {
+        py.detach(|| {
+            let mut digest = Digest::new();
+            digest.add(self.get());
+            digest.hex()
+        })
+    }
+
+    /// The files of a format by its extension: names and bytes, the model's own first.
+    #[pyo3(signature = (extension, stem, unit, up))]
+    fn files<'py>(
+        &self,
+        py: Python<'py>,
+        extension: &str,
+        stem: &str,
+        unit: &str,
+        up: &str,
+    ) -> PyResult<Vec<(String, Bound<'py, PyBytes>)>> {
+        let spec = axes(unit, up)?;
+        let Some(format) = ModelFormat::from_extension(extension).filter(|f| *f != ModelFormat::Gltf) else {
+            let line =
+                format!("models are written as .glb, .obj, .ply, .stl, .usda or .usdz, not .{extension}");
+            return Err(PyValueError::new_err(line));
+        };
+        let files = py.detach(|| written(self.get(), format, extension, stem, &spec));
+        let files = files.map_err(|e| unusable(py, &e))?;
+        Ok(files.into_iter().map(|(name, bytes)| (name, PyBytes::new(py, &bytes))).collect())
+    }
+
+    /// A picture: RGBA bytes, rows from the top.
+    fn render(&self, py: Python<'_>, look: Look) -> PyResult<Column> {
+        let spec = look.spec()?;
+        let drawn = compute(py, 1.0, |run| burgeon::render::render(self.get(), &spec, run))?;
+        let picture = drawn.map_err(|e| crate::fault::refused(py, &e))?;
+        let shape = [picture.height as usize, picture.width as usize, 4];
+        Ok(Column::new(picture.pixels).shaped(&shape))
+    }
+
+    /// What each pixel of a picture shows: part, triangle (-1 for nothing), distance (infinite for nothing).
+    fn masks(&self, py: Python<'_>, look: Look) -> PyResult<(Column, Column, Column)> {
+        let spec = look.spec()?;
+        let seen =
+            compute(py, 1.0, |run| burgeon::render::hits(self.get(), std::slice::from_ref(&spec), run))?;
+        let seen = seen.map_err(|e| crate::fault::refused(py, &e))?;
+        let shape = [spec.height as usize, spec.width as usize];
+        let count = shape[0] * shape[1];
+        let (mut parts, mut triangles) = (vec![-1_i32; count], vec![-1_i32; count]);
+        let mut distances = vec![f32::INFINITY; count];
+        for hit in seen.iter().flatten() {
+            let at = hit.pixel as usize;
+            parts[at] = i32::try_from(hit.part).unwrap_or(i32::MAX);
+            triangles[at] = i32::try_from(hit.triangle).unwrap_or(i32::MAX);
+            #[expect(clippy::cast_possible_truncation, reason = "a distance in a mesh of single precision")]
+            let distance = hit.distance_m as f32;
+            distances[at] = distance;
+        }
+        let [parts, triangles] = [parts, triangles].map(|c| Column::new(c).shaped(&shape));
+        Ok((parts, triangles, Column::new(distances).shaped(&shape)))
+    }
+}
+
+/// The files of a model: its own, then those that it names.
+fn written(
+    model: &Model,
+    format: ModelFormat,
+    extension: &str,
+    stem: &str,
+    spec: &ExportSpec,
+) -> Result<Vec<(String, Vec<u8>)>, burgeon::formats::WriteError> {
+    let name = format!("{stem}.{extension}");
+    match format {
+        ModelFormat::Obj => {
+            let files = burgeon::formats::obj_files(model, stem, spec)?;
+            let mut all = vec![(name, files.obj), (files.mtl_name, files.mtl)];
+            all.extend(files.textures);
+            Ok(all)
+        }
+        ModelFormat::Usda => {
+            let files = burgeon::formats::usd_files(model, stem, spec)?;
+            let mut all = vec![(name, files.usda)];
+            all.extend(files.textures);
+            Ok(all)
+        }
+        _ => {
+            let mut bytes = Vec::new();
+            burgeon::formats::write_model(model, format, spec, &mut bytes, &mut Report::default())?;
+            Ok(vec![(name, bytes)])
+        }
+    }
+}
+
+/// RGBA bytes as a PNG.
+#[pyfunction]
+pub(crate) fn png<'py>(
+    py: Python<'py>,
+    width: u32,
+    height: u32,
+    pixels: &[u8],
+) -> PyResult<Bound<'py, PyBytes>> {
+    let mut bytes = Vec::new();
+    let written = py.detach(|| burgeon::formats::write_png(width, height, pixels, &mut bytes));
+    written.map_err(|e| unusable(py, &e))?;
+    Ok(PyBytes::new(py, &bytes))
+}

@@ -1,0 +1,298 @@
+//! A plant that was made: its tables, its files, and other plants that follow from it.
+
+use std::sync::Arc;
+
+use burgeon::document::{Document, Editor, FlowerCommand, Maker, PlantId, SketchCommand};
+use burgeon::mesh::Model;
+use burgeon::plant::{Organ, Plant};
+use burgeon::skin::Layout;
+use burgeon::{SceneError, SceneEvaluator, ScenePlant, Seed, SurveySpec};
+use pyo3::exceptions::{PyKeyError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+
+use crate::column::{Column, Owner};
+use crate::compute::compute;
+use crate::fault::{refused, unusable};
+use crate::model::{RawModel, axes};
+use crate::value::json_of;
+
+/// A plant of a document and what was made of it. Nothing changes it: what follows from it is another.
+pub(crate) struct Held {
+    scene: SceneEvaluator,
+    document: Document,
+    id: PlantId,
+    budget: f64,
+}
+
+impl Held {
+    /// Makes the plant of a document.
+    pub(crate) fn make(
+        py: Python<'_>,
+        scene: SceneEvaluator,
+        document: Document,
+        id: PlantId,
+        budget: f64,
+    ) -> PyResult<RawPlant> {
+        if !(1.0..=1000.0).contains(&budget) {
+            return Err(PyValueError::new_err(format!("budget must be 1 to 1000, not {budget}")));
+        }
+        let mut held = Self { scene, document, id, budget };
+        let made = compute(py, budget, |run| held.scene.update(id, &held.document, run).map(|()| held))?;
+        let held = made.map_err(|e| refused(py, &e))?;
+        let there = held.scene.get(id).is_some_and(|p| p.plant.is_some() && p.owners.is_some());
+        if !there {
+            return Err(unusable(py, &"internal error, a bug in burgeon: no plant was made"));
+        }
+        Ok(RawPlant(Arc::new(held)))
+    }
+
+    fn shown(&self) -> Option<ScenePlant<'_>> {
+        self.scene.get(self.id)
+    }
+
+    pub(crate) fn model(&self) -> &Model {
+        static NONE: std::sync::OnceLock<Model> = std::sync::OnceLock::new();
+        self.shown().map_or_else(|| NONE.get_or_init(Model::default), |p| p.model)
+    }
+
+    fn plant(&self) -> &Plant {
+        static NONE: std::sync::OnceLock<Plant> = std::sync::OnceLock::new();
+        self.shown().and_then(|p| p.plant).unwrap_or_else(|| NONE.get_or_init(Plant::default))
+    }
+
+    fn layout(&self) -> &Layout {
+        static NONE: std::sync::OnceLock<Layout> = std::sync::OnceLock::new();
+        self.shown().and_then(|p| p.owners).unwrap_or_else(|| NONE.get_or_init(Layout::default))
+    }
+
+    fn seed(&self) -> Seed {
+        self.document.plant(self.id).map_or_else(Seed::default, |p| p.settings().seed)
+    }
+
+    fn maker(&self) -> Option<&Maker> {
+        Some(&self.document.plant(self.id)?.settings().maker)
+    }
+
+    /// The plant after more commands.
+    fn after(
+        &self,
+        py: Python<'_>,
+        commands: impl IntoIterator<Item = burgeon::document::Command>,
+    ) -> PyResult<RawPlant> {
+        let mut editor = Editor::new(self.document.clone());
+        for command in commands {
+            match editor.run(command) {
+                Ok(()) | Err(burgeon::document::CommandError::Nothing(_)) => {}
+                Err(e) => return Err(refused(py, &e)),
+            }
+        }
+        Self::make(py, self.scene.clone(), editor.document().clone(), self.id, self.budget)
+    }
+}
+
+/// A plant, which nothing changes.
+#[pyclass(frozen, module = "burgeon._burgeon")]
+pub(crate) struct RawPlant(Arc<Held>);
+
+fn of<T: Send + Sync + crate::column::Row>(values: impl Iterator<Item = T>) -> Column {
+    Column::new(values.collect())
+}
+
+fn handle(raw: Option<u32>) -> i32 {
+    raw.and_then(|r| i32::try_from(r).ok()).unwrap_or(burgeon::NOTHING)
+}
+
+#[pymethods]
+impl RawPlant {
+    #[getter]
+    fn name(&self) -> String {
+        self.0.document.plant(self.0.id).map_or_else(String::new, |p| p.settings().name.clone())
+    }
+
+    #[getter]
+    fn seed(&self) -> u64 {
+        self.0.seed().number()
+    }
+
+    #[getter]
+    fn maker(&self) -> &'static str {
+        self.0.maker().map_or("", Maker::word)
+    }
+
+    /// The entry of the report, as JSON.
+    fn report(&self) -> String {
+        let report = self.0.shown().map(|p| p.report());
+        report.and_then(|r| serde_json::to_string(&r).ok()).unwrap_or_default()
+    }
+
+    #[getter]
+    fn digest(&self) -> String {
+        self.0.shown().map_or_else(String::new, |p| p.report().digest)
+    }
+
+    /// All that can be measured, as JSON.
+    fn measures(&self, py: Python<'_>) -> String {
+        let held = &self.0;
+        py.detach(|| serde_json::to_string(&held.plant().measure()).unwrap_or_default())
+    }
+
+    /// What the maker was asked for, as JSON.
+    fn spec(&self) -> String {
+        let json = match self.0.maker() {
+            Some(Maker::Sketch(s)) => burgeon::spec::to_json(&s.sketch),
+            Some(Maker::Tree(t)) => burgeon::spec::to_json(&burgeon::tree_spec(t)),
+            Some(Maker::Leaf(l)) => burgeon::spec::to_json(&l.settings),
+            Some(Maker::Flower(f)) => burgeon::spec::to_json(&*f.spec),
+            _ => serde_json::Value::Null,
+        };
+        json.to_string()
+    }
+
+    /// A column of the tables; those of nodes without a copy.
+    fn column(&self, name: &str) -> PyResult<Column> {
+        let plant = self.0.plant();
+        let owner = || -> Owner { self.0.clone() };
+        let (axes, organs) = (&plant.axes, &plant.organs);
+        let vector = |f: fn(&Organ) -> burgeon::glam::DVec3| of(organs.iter().map(move |o| f(o).to_array()));
+        Ok(match name {
+            "node_position" => Column::of(owner(), &plant.nodes.position),
+            "node_radius" => Column::of(owner(), &plant.nodes.radius_m),
+            "node_axis" => Column::of(owner(), &plant.nodes.axis),
+            "axis_part" => of(axes.iter().map(|a| burgeon::part_of_axis(a.kind))),
+            "axis_bearer" => of(axes.iter().map(|a| handle(a.bearer.map(|n| n.raw())))),
+            "axis_parent" => {
+                let parent = |n: burgeon::plant::NodeId| plant.nodes.axis.get(n.index()).map(|a| a.raw());
+                of(axes.iter().map(|a| handle(a.bearer.and_then(parent))))
+            }
+            "axis_order" => of(axes.iter().map(|a| a.order)),
+            "axis_first" => of(axes.iter().map(|a| a.nodes.start)),
+            "axis_end" => of(axes.iter().map(|a| a.nodes.end)),
+            "axis_stroke" => of(axes.iter().map(|a| handle(a.source))),
+            "organ_part" => of(organs.iter().map(|o| burgeon::part_of_organ(o.kind))),
+            "organ_bearer" => of(organs.iter().map(|o| handle(o.bearer.map(|n| n.raw())))),
+            "organ_flower" => of(organs.iter().map(|o| handle(o.flower.map(|f| f.raw())))),
+            "organ_shape" => of(organs.iter().map(|o| o.shape.raw())),
+            "organ_scale" => of(organs.iter().map(|o| o.scale)),
+            "organ_position" => vector(|o| o.frame.origin),
+            "organ_along" => vector(|o| o.frame.along),
+            "organ_normal" => vector(|o| o.frame.normal),
+            "organ_stroke" => of(organs.iter().map(|o| handle(o.source))),
+            other => return Err(PyKeyError::new_err(format!("a plant has no column {other:?}"))),
+        })
+    }
+
+    /// The branches up to an order, as JSON, with the paths that name them in edits.
+    fn branches(&self, most_order: u32) -> String {
+        serde_json::to_string(&burgeon::branch_rows(self.0.plant(), most_order)).unwrap_or_default()
+    }
+
+    fn model(&self) -> RawModel {
+        RawModel::of_plant(Arc::clone(&self.0))
+    }
+
+    /// A coarser copy of the model.
+    fn level(&self, py: Python<'_>, level: u32) -> PyResult<RawModel> {
+        if level > 6 {
+            return Err(PyValueError::new_err(format!("level must be 0 to 6, not {level}")));
+        }
+        let held = &self.0;
+        let Some(plant) = held.document.plant(held.id) else { return Ok(self.model()) };
+        let made = compute(py, held.budget, |run| held.scene.at_level(plant, &held.document, level, run))?;
+        Ok(RawModel::new(made.map_err(|e: SceneError| refused(py, &e))?))
+    }
+
+    /// What the triangles of each part of the model lie on: part, axis, organ.
+    fn labels(&self, py: Python<'_>) -> Vec<Column> {
+        let held = &self.0;
+        let labels = py.detach(|| burgeon::triangle_labels(held.plant(), held.model(), held.layout()));
+        labels.into_iter().map(Column::new).collect()
+    }
+
+    /// Points as a scanner sees them.
+    fn survey<'py>(
+        &self,
+        py: Python<'py>,
+        points: u32,
+        stations: u32,
+        elevation_deg: f64,
+        noise_m: f64,
+        seed: u64,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let spec = SurveySpec { points, stations, elevation_deg, noise_m };
+        let held = &self.0;
+        let made = compute(py, held.budget, |run| {
+            let of = (held.plant(), held.model(), held.layout());
+            burgeon::survey(of, &spec, Seed::new(seed), run)
+        })?;
+        let cloud = made.map_err(|e| refused(py, &e))?;
+        let dict = PyDict::new(py);
+        let put = |name: &str, column: Column| dict.set_item(name, Py::new(py, column)?);
+        put("points", Column::new(cloud.points))?;
+        put("normals", Column::new(cloud.normals))?;
+        put("part", Column::new(cloud.part))?;
+        put("axis", Column::new(cloud.axis))?;
+        put("organ", Column::new(cloud.organ))?;
+        put("order", Column::new(cloud.order))?;
+        put("station", Column::new(cloud.station))?;
+        put("distance", Column::new(cloud.distance))?;
+        Ok(dict)
+    }
+
+    /// The structure as a file: `mtg` or `qsm`.
+    fn structure<'py>(
+        &self,
+        py: Python<'py>,
+        format: &str,
+        unit: &str,
+        up: &str,
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        let (spec, held) = (axes(unit, up)?, &self.0);
+        let mut bytes = Vec::new();
+        let written = match format {
+            "mtg" => py.detach(|| burgeon::formats::write_mtg(held.plant(), &spec, &mut bytes)),
+            "qsm" => py.detach(|| burgeon::formats::write_qsm(held.plant(), &spec, &mut bytes)),
+            other => return Err(PyValueError::new_err(format!("a structure is mtg or qsm, not {other:?}"))),
+        };
+        written.map_err(|e| unusable(py, &e))?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    /// The plant after more edits by hand: the list of edits of an edits file.
+    fn shape(&self, py: Python<'_>, edits: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let edits = json_of(edits, "edits")?;
+        let edits: Vec<burgeon::shape::HandEdit> = burgeon::spec::through_json::from_text(&edits.to_string())
+            .map_err(|e| unusable(py, &format!("edits: {e}")))?;
+        for (k, edit) in edits.iter().enumerate() {
+            edit.check().map_err(|why| unusable(py, &format!("edits[{k}] ({}): {why}", edit.word())))?;
+        }
+        let id = self.0.id;
+        self.0.after(py, edits.into_iter().map(|e| burgeon::document::ShapeCommand::Add(Arc::new(e)).of(id)))
+    }
+
+    /// The plant at a day: of flowers, and of drawings whose flowers open.
+    fn at(&self, py: Python<'_>, day: f64) -> PyResult<Self> {
+        let id = self.0.id;
+        let command = match self.0.maker() {
+            Some(Maker::Flower(_)) => FlowerCommand::SetDay(day).of(id),
+            Some(Maker::Sketch(_)) => SketchCommand::SetDay(Some(day)).of(id),
+            _ => {
+                let line = format!("a {} has no days: flowers have, and drawings of flowers", self.maker());
+                return Err(unusable(py, &line));
+            }
+        };
+        self.0.after(py, [command])
+    }
+
+    /// Days from bud to full bloom, and from there to wilted.
+    #[getter]
+    fn days(&self) -> Option<[f64; 2]> {
+        self.0.scene.days(self.0.id, &self.0.document)
+    }
+
+    /// The plant as a project of the Studio.
+    fn project<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let bytes = burgeon::document::write_project(&self.0.document, burgeon::VERSION);
+        Ok(PyBytes::new(py, &bytes.map_err(|e| unusable(py, &e))?))
+    }
+}

@@ -1,0 +1,87 @@
+//! What people write in Python -> JSON, which the readers of specs take.
+
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
+use serde_json::{Map, Number, Value};
+
+/// Deeper than any spec is nested; a list that holds itself ends here.
+const DEEPEST: usize = 32;
+
+/// A value as JSON; arrays and numbers of NumPy are taken for lists and numbers. `path`: what it is called in messages.
+pub(crate) fn json_of(value: &Bound<'_, PyAny>, path: &str) -> PyResult<Value> {
+    of(value, path, 0)
+}
+
+fn of(value: &Bound<'_, PyAny>, path: &str, depth: usize) -> PyResult<Value> {
+    if depth > DEEPEST {
+        return Err(PyValueError::new_err(format!("{path}: is nested more than {DEEPEST} deep")));
+    }
+    let child = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
+    if value.is_none() {
+        return Ok(Value::Null);
+    }
+    if let Ok(truth) = value.cast::<PyBool>() {
+        return Ok(Value::Bool(truth.is_true()));
+    }
+    if value.is_instance_of::<PyInt>() {
+        let whole = value.extract::<i64>().map(Number::from);
+        let whole = whole.or_else(|_| value.extract::<u64>().map(Number::from));
+        let much =
+            |_| PyValueError::new_err(format!("{path} must be a whole number below 2^64, not {value}"));
+        return whole.map(Value::Number).map_err(much);
+    }
+    if value.is_instance_of::<PyFloat>() {
+        let number: f64 = value.extract()?;
+        let none = || PyValueError::new_err(format!("{path} must be a finite number, not {number}"));
+        return Number::from_f64(number).map(Value::Number).ok_or_else(none);
+    }
+    if let Ok(text) = value.cast::<PyString>() {
+        return Ok(Value::String(text.extract::<String>()?));
+    }
+    if let Ok(table) = value.cast::<PyDict>() {
+        let mut fields = Map::new();
+        for (key, value) in table.iter() {
+            let Ok(name) = key.extract::<String>() else {
+                return Err(PyTypeError::new_err(format!("{path}: names of fields are text, not {key}")));
+            };
+            let value = of(&value, &child(&name), depth + 1)?;
+            fields.insert(name, value);
+        }
+        return Ok(Value::Object(fields));
+    }
+    if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
+        let rows = value.try_iter()?.enumerate();
+        let rows = rows.map(|(k, row)| of(&row?, &format!("{path}[{k}]"), depth + 1));
+        return Ok(Value::Array(rows.collect::<PyResult<_>>()?));
+    }
+    if value.hasattr("tolist")? {
+        let plain = value.call_method0("tolist")?;
+        return of(&plain, path, depth + 1);
+    }
+    let kind = value.get_type();
+    Err(PyTypeError::new_err(format!("{path}: a {} cannot be part of a spec", kind.name()?)))
+}
+
+/// Words by which forms are told apart: what belongs to one form does not fit another.
+const TAGS: [&str; 2] = ["kind", "shape"];
+
+/// Puts `fields` in the place of those of `into`, table by table; a table of another form replaces the one that is there.
+pub(crate) fn merge(into: &mut Value, fields: Value) {
+    match (into, fields) {
+        (Value::Object(old), Value::Object(new)) => {
+            let other = TAGS.iter().any(|t| new.get(*t).is_some_and(|tag| old.get(*t) != Some(tag)));
+            if other {
+                *old = new;
+                return;
+            }
+            for (name, value) in new {
+                match old.get_mut(&name) {
+                    Some(there) => merge(there, value),
+                    None => drop(old.insert(name, value)),
+                }
+            }
+        }
+        (into, fields) => *into = fields,
+    }
+}

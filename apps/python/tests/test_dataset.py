@@ -1,0 +1,171 @@
+"""Data sets: the same bytes on one process, on several, after some were killed; only what is missing is made again."""
+
+import hashlib
+import json
+import os
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import burgeon as bg
+from burgeon import dataset
+
+HOW = dict(
+    formats=("glb", "mtg", "cloud", "picture"),
+    fields={"detail": 0.1, "textures": False},
+    vary={"age": (2, 4), "leaves": [{"leaf_keep": 0.5}, {"leaf_keep": 1.0}]},
+    cloud={"points": 300, "noise": 0.002},
+    picture={"size": (64, 64), "supersample": 1},
+    shard=3,
+    progress=False,
+)
+
+
+def sums(folder):
+    names = sorted(n for n in os.listdir(folder) if n.endswith(".tar"))
+    return {n: hashlib.sha256((folder / n).read_bytes()).hexdigest() for n in names}
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    out = tmp_path_factory.mktemp("here")
+    return out, dataset.generate("hazel", 8, out, workers=1, **HOW)
+
+
+def test_a_data_set_holds_what_it_says(made):
+    out, manifest = made
+    assert manifest["plants"] == 8 and [e["plants"] for e in manifest["shards"]] == [3, 3, 2]
+    assert sums(out) == {e["file"]: e["sha256"] for e in manifest["shards"]}
+    dataset.verify(out)
+    plants = list(dataset.read(out))
+    assert len(plants) == 8 and len({p["digest"] for p in plants}) == 8
+    for k, plant in enumerate(plants):
+        assert plant["seed"] == dataset.plant_seed(1, k) and 2 <= plant["fields"]["age"] <= 4
+        again = bg.grow("hazel", seed=plant["seed"], detail=0.1, textures=False, **plant["fields"])
+        assert again.digest == plant["digest"] and again.measures() == plant["measures"]
+        assert again.to_bytes("glb") == plant["glb"] and again.to_bytes("mtg") == plant["mtg"]
+        assert plant["cloud"]["points"].shape == (300, 3) and plant["masks"]["part"].shape == (64, 64)
+        assert plant["png"].startswith(b"\x89PNG")
+    assert len({p["fields"]["age"] for p in plants}) > 1
+    croissant = json.loads((out / "croissant.json").read_text())
+    assert [f["sha256"] for f in croissant["distribution"]] == [e["sha256"] for e in manifest["shards"]]
+
+
+def test_several_processes_make_the_same_bytes(made, tmp_path):
+    assert dataset.generate("hazel", 8, tmp_path, workers=2, **HOW) == made[1]
+    assert sums(tmp_path) == sums(made[0])
+
+
+def test_only_what_is_missing_is_made_again(made, tmp_path):
+    dataset.generate("hazel", 8, tmp_path, workers=1, **HOW)
+    times = {n: os.stat(tmp_path / n).st_mtime_ns for n in os.listdir(tmp_path) if n.endswith(".tar")}
+    os.unlink(tmp_path / "shard-00001.tar")
+    (tmp_path / "shard-00002.tar").write_bytes(b"half a shard")
+    with pytest.raises(ValueError, match="shard-00001.tar, shard-00002.tar"):
+        dataset.verify(tmp_path)
+    assert dataset.generate("hazel", 8, tmp_path, workers=1, **HOW) == made[1]
+    assert sums(tmp_path) == sums(made[0])
+    assert os.stat(tmp_path / "shard-00000.tar").st_mtime_ns == times["shard-00000.tar"]
+
+
+def test_a_folder_holds_one_data_set(made):
+    with pytest.raises(ValueError, match=r"holds another data set \(n, seed differ\)"):
+        dataset.generate("hazel", 9, made[0], seed=2, **HOW)
+
+
+def test_specs_of_files_go_along(tmp_path):
+    (tmp_path / "mine.toml").write_text('name = "mine"\n[leaves]\nleaf_keep = 0.3\n')
+    how = dict(formats="mtg", fields={"detail": 0.1, "textures": False, "age": 3}, shard=1, progress=False)
+    made = dataset.generate(tmp_path / "mine.toml", 2, tmp_path / "out", workers=2, **how)
+    own = bg.grow(tmp_path / "mine.toml", seed=dataset.plant_seed(1, 1), **how["fields"])
+    assert made["shards"][1]["digests"] == [own.digest]
+
+
+@pytest.mark.parametrize(
+    "how, words",
+    [
+        ({"n": 0}, "n must be"),
+        ({"formats": ("docx",)}, "formats are"),
+        ({"maker": "carve"}, "maker must be"),
+        ({"vary": {"age": (5, 2)}}, "vary: age"),
+        ({"vary": {"age": []}}, "no choices"),
+        ({"fields": {"leave": 1}}, "unknown field"),
+    ],
+)
+def test_bad_recipes_are_told_and_leave_no_shard(tmp_path, how, words):
+    with pytest.raises(ValueError, match=words):
+        dataset.generate("hazel", **{"n": 1, "out": tmp_path, "workers": 1, "progress": False, **how})
+    assert not [n for n in os.listdir(tmp_path) if n.endswith(".tar") or "draft" in n]
+
+
+def test_a_full_disk_leaves_whole_shards_and_no_drafts(tmp_path, monkeypatch):
+    import burgeon._files as files
+
+    real, left = os.fsync, [3]
+
+    def full(handle):
+        left[0] -= 1
+        if left[0] < 0:
+            raise OSError(28, "No space left on device")
+        return real(handle)
+
+    monkeypatch.setattr(files.os, "fsync", full)
+    with pytest.raises(OSError, match="No space"):
+        dataset.generate("hazel", 8, tmp_path, workers=1, **HOW)
+    names = os.listdir(tmp_path)
+    assert "shard-00000.tar" in names and "shard-00001.tar" not in names and not [n for n in names if "draft" in n]
+
+
+class Killer(threading.Thread):
+    """Kills one process that makes shards as soon as there is one that works."""
+
+    def __init__(self, word, least_s):
+        super().__init__()
+        self.psutil = pytest.importorskip("psutil")
+        self.word, self.least_s, self.killed = word, least_s, None
+        self.start()
+
+    def run(self):
+        end = time.time() + 120
+        while time.time() < end and self.killed is None:
+            for child in self.psutil.process_iter(["cmdline"]):
+                try:
+                    line = " ".join(child.info["cmdline"] or [])
+                    if self.word in line and child.cpu_times().user > self.least_s:
+                        child.kill()
+                        self.killed = child.pid
+                        break
+                except self.psutil.Error:
+                    pass
+            time.sleep(0.002)
+
+
+# Plants that take a moment: so long that one is killed in the middle.
+LONG = dict(formats="glb", fields={"detail": 1.0}, shard=2, progress=False)
+
+
+def test_processes_that_are_killed_are_replaced(tmp_path):
+    want = dataset.generate("hazel", 8, tmp_path / "a", workers=1, **LONG)
+    killer = Killer("spawn_main", 0.3)
+    got = dataset.generate("hazel", 8, tmp_path / "b", workers=2, **LONG)
+    assert killer.killed, "no worker was killed"
+    assert got == want and sums(tmp_path / "a") == sums(tmp_path / "b")
+
+
+@pytest.mark.ray
+def test_four_workers_of_ray_make_the_same_bytes(made, tmp_path):
+    ray = pytest.importorskip("ray")
+    ray.init(num_cpus=4, include_dashboard=False, log_to_driver=False)
+    try:
+        assert dataset.generate("hazel", 8, tmp_path / "ray", ray=True, **HOW) == made[1]
+        assert sums(tmp_path / "ray") == sums(made[0])
+        want = dataset.generate("hazel", 8, tmp_path / "one", workers=1, **LONG)
+        # Workers that Ray keeps have worked before: their name says when they make a shard.
+        killer = Killer("ray::make_shard", 0.0)
+        got = dataset.generate("hazel", 8, tmp_path / "killed", ray=True, **LONG)
+        assert killer.killed, "no worker was killed"
+        assert got == want and sums(tmp_path / "killed") == sums(tmp_path / "one")
+    finally:
+        ray.shutdown()

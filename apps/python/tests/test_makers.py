@@ -1,0 +1,114 @@
+"""The same plants as the command line makes; what is asked for, checked by the same schemas."""
+
+import json
+
+import numpy as np
+import pytest
+
+import burgeon as bg
+
+TREES, FLOWERS = bg.presets()
+
+
+@pytest.mark.parametrize("word", TREES)
+def test_trees_are_those_of_the_command_line(cli, word):
+    assert bg.grow(word, seed=1, detail=0.1).digest == cli("grow", word, "--detail", "0.1", "--json")["digest"]
+
+
+@pytest.mark.parametrize("seed, age", [(2, 9), (77, 14)])
+def test_seeds_and_ages_are_those_of_the_command_line(cli, seed, age):
+    mine = bg.grow("oak", seed=seed, age=age, detail=0.1)
+    theirs = cli("grow", "oak", "--seed", seed, "--age", age, "--detail", "0.1", "--json")
+    assert mine.digest == theirs["digest"]
+    assert mine.report["counts"] == theirs["counts"]
+    assert mine.measures() == theirs["plant"]
+
+
+@pytest.mark.parametrize("word", FLOWERS)
+def test_flowers_are_those_of_the_command_line(cli, tmp_path, word):
+    out = tmp_path / "flower.glb"
+    theirs = cli("bloom", "run", word, "--day", 3, "-o", out)
+    mine = bg.bloom(word, 3.0)
+    assert mine.digest == theirs["digest"] == mine.model.digest
+    assert mine.to_bytes("glb") == out.read_bytes()
+
+
+def test_drawings_are_those_of_the_command_line(cli, root):
+    drawings = sorted((root / "fixtures/sketches").glob("**/*.svg"))
+    assert len(drawings) > 10
+    for path in drawings[::3]:
+        assert bg.sketch(path).digest == cli("sketch", path, "--json")["digest"], path.name
+    path = drawings[0]
+    assert bg.sketch(path, seed=9).digest == cli("sketch", path, "--seed", 9, "--json")["digest"]
+
+
+def test_leaves_are_those_of_the_command_line(cli, root):
+    for k in (1, 2, 3):
+        path = root / f"fixtures/leaves/leaf{k}.csv"
+        assert bg.leaf(path).digest == cli("leaf", path, "--json")["digest"]
+
+
+def test_a_spec_is_the_same_as_file_dict_and_keywords(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text('name = "mine"\nage = 5\n[leaves]\nleaf_keep = 0.5\n')
+    as_file = bg.grow(path, seed=4, detail=0.1)
+    as_dict = bg.grow({"name": "mine", "age": 5, "leaves": {"leaf_keep": 0.5}}, seed=4, detail=0.1)
+    as_words = bg.grow(None, seed=4, detail=0.1, name="mine", age=np.int64(5), leaves={"leaf_keep": np.float32(0.5)})
+    assert as_file.digest == as_dict.digest == as_words.digest
+    assert as_file.spec["leaves"]["leaf_keep"] == 0.5
+    assert as_file.digest != bg.grow(path, seed=5, detail=0.1).digest
+
+
+def test_strokes_are_a_drawing():
+    stem = np.c_[np.sin(np.linspace(0, 1, 40)) * 3, np.linspace(0, 60, 40)]
+    turn = np.linspace(0, 2 * np.pi, 30)
+    leaves = [np.c_[x + 8 * np.cos(turn), 30 + 4 * np.sin(turn)] for x in (-9, 11)]
+    plant = bg.sketch([stem, *leaves], seed=2)
+    assert plant.maker == "sketch" and len(plant.axes) >= 1
+    assert plant.digest == bg.sketch([s * [1, -1] for s in [stem, *leaves]], seed=2, y_up=False).digest
+    one = bg.sketch([stem, *leaves], classes={1: "leaf", 2: "leaf"})
+    assert sum(one.organs.part == bg.PARTS.index("leaf")) == 2
+
+
+def test_edits_by_hand_are_those_of_the_command_line(cli, shown, tmp_path):
+    tree = bg.grow("hazel", seed=3, age=4, detail=0.1)
+    path = tree.branches(1)[1]["path"]
+    edits = {"schema": "burgeon.edits/1", "edits": [{"op": "prune", "axis": {"path": path}, "at": 0.3}]}
+    spec, file = tmp_path / "hazel.toml", tmp_path / "edits.json"
+    spec.write_text("age = 4\n" + shown("hazel"))
+    file.write_text(json.dumps(edits))
+    cut = tree.shape(file)
+    assert cut.digest == tree.shape(edits).digest == tree.shape(edits["edits"]).digest != tree.digest
+    theirs = cli("shape", spec, "--seed", 3, "--detail", "0.1", "--edits", file, "--json")
+    assert cut.digest == theirs["digest"]
+    assert len(cut.nodes) < len(tree.nodes) and cut.report["edits"][0]["done"]
+
+
+def test_flowers_open_from_day_to_day():
+    rose = bg.bloom("rose", 0.0, seed=2)
+    opened = rose.at(rose.days[0])
+    assert opened.digest == bg.bloom("rose", seed=2).digest != rose.digest
+    assert opened.measures()["height_m"] > 0
+    with pytest.raises(bg.SpecError, match="day must be 0 to 100 d, not 200"):
+        rose.at(200.0)
+
+
+def test_a_law_is_fitted_and_sets_the_pace(tmp_path):
+    days = np.arange(0.0, 20.0, 2.0)
+    sizes = 0.2 / (1 + 19 * np.exp(-0.5 * days))
+    law = bg.Law.fit(days, sizes, name="petal")
+    assert law.determined == [True]
+    assert np.allclose(law(days), sizes, rtol=1e-3)
+    law.save(tmp_path / "petal.law.json")
+    again = bg.Law.read(tmp_path / "petal.law.json")
+    assert again.to_dict() == law.to_dict() and again(3) == law(3.0)
+    slow = bg.bloom("tulip", 2.0, law=law)
+    assert slow.digest != bg.bloom("tulip", 2.0).digest
+
+
+def test_projects_open_as_they_were_saved(tmp_path, root):
+    tree = bg.grow("birch", seed=6, age=8, detail=0.2)
+    tree.save(tmp_path / "birch.burgeon")
+    (again,) = bg.open(tmp_path / "birch.burgeon")
+    assert (again.digest, again.model.digest) == (tree.digest, tree.model.digest)
+    assert len(bg.open(root / "fixtures/projects/version-5.burgeon")) == 3

@@ -1,0 +1,385 @@
+//! A plant as a scanner sees it: points on its surface, each with what it lies on.
+//!
+//! `Model -> beams from stations around it -> hits -> a sample of them -> points with organ, axis, order`
+
+use base::{Cancelled, Draw, Run, Seed};
+use glam::DVec3;
+use mesh::Model;
+use plant::{AxisId, AxisKind, OrganKind, Plant};
+use render::{Hit, PictureSpec, View};
+use skin::{Layout, Owner};
+use spec::RangeFault;
+
+/// How a plant is scanned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurveySpec {
+    /// Points, 1 to 5 million. Fewer come back only where the beams do not meet the plant so often.
+    pub points: u32,
+    /// Places of the scanner, evenly around the plant, 1 to 64.
+    pub stations: u32,
+    /// How far above the horizon of the plant's middle the scanner stands, degrees, -80 to 80.
+    pub elevation_deg: f64,
+    /// Standard deviation of the distance along each beam, metres, 0 to 1.
+    pub noise_m: f64,
+}
+
+impl Default for SurveySpec {
+    fn default() -> Self {
+        Self { points: 20_000, stations: 4, elevation_deg: 5.0, noise_m: 0.0 }
+    }
+}
+
+impl SurveySpec {
+    fn check(&self) -> Result<(), RangeFault> {
+        let fields = [
+            ("points", f64::from(self.points), [1.0, 5e6], ""),
+            ("stations", f64::from(self.stations), [1.0, 64.0], ""),
+            ("elevation_deg", self.elevation_deg, [-80.0, 80.0], "deg"),
+            ("noise_m", self.noise_m, [0.0, 1.0], "m"),
+        ];
+        let out = fields.into_iter().find(|(_, value, [least, most], _)| !(*least..=*most).contains(value));
+        out.map_or(Ok(()), |(path, value, [least, most], unit)| {
+            let (least, most, above) = (Some(least), Some(most), None);
+            Err(RangeFault { path: path.into(), value, least, most, above, unit })
+        })
+    }
+
+    /// The views of all stations with beams `pixels` by `pixels`.
+    fn views(&self, pixels: u32) -> Vec<PictureSpec> {
+        let turn = base::ops::TAU / f64::from(self.stations);
+        let view =
+            |k: u32| View::Orbit { azimuth: turn * f64::from(k), elevation: self.elevation_deg.to_radians() };
+        let spec = |k| PictureSpec {
+            width: pixels,
+            height: pixels,
+            view: view(k),
+            margin: 0.01,
+            ..PictureSpec::default()
+        };
+        (0..self.stations).map(spec).collect()
+    }
+}
+
+/// Why there is no cloud.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SurveyError {
+    /// A number is out of its range.
+    #[error(transparent)]
+    Range(#[from] RangeFault),
+    /// The user asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+base::coded!(SurveyError {} wraps {
+    Self::Range(e) => e, RangeFault;
+    Self::Cancelled(e) => e, Cancelled;
+});
+
+/// What a point lies on, by the row that is its label.
+pub const PARTS: [&str; 17] = [
+    "branch", "twig", "stem", "petiole", "root", "leaf", "petal", "disc", "fruit", "stamen", "pistil",
+    "thorn", "pedicel", "sepal", "anther", "floret", "body",
+];
+
+/// The row of [`PARTS`] of an axis.
+pub const fn part_of_axis(kind: AxisKind) -> u8 {
+    match kind {
+        AxisKind::Branch => 0,
+        AxisKind::Twig => 1,
+        AxisKind::Stem => 2,
+        AxisKind::Petiole => 3,
+        _ => 4,
+    }
+}
+
+/// The row of [`PARTS`] of an organ.
+pub const fn part_of_organ(kind: OrganKind) -> u8 {
+    match kind {
+        OrganKind::Leaf => 5,
+        OrganKind::Petal => 6,
+        OrganKind::Disc => 7,
+        OrganKind::Fruit => 8,
+        OrganKind::Stamen => 9,
+        OrganKind::Pistil => 10,
+        OrganKind::Thorn => 11,
+        OrganKind::Pedicel => 12,
+        OrganKind::Sepal => 13,
+        OrganKind::Anther => 14,
+        OrganKind::Floret => 15,
+        _ => 16,
+    }
+}
+
+/// No axis, no organ.
+pub const NOTHING: i32 = -1;
+
+/// The columns of a cloud, all of one length.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Surveyed {
+    /// Metres, +Y up.
+    pub points: Vec<[f64; 3]>,
+    /// Unit vectors of the surface, towards the scanner.
+    pub normals: Vec<[f32; 3]>,
+    /// Row of [`PARTS`].
+    pub part: Vec<u8>,
+    /// Row of the plant's axes: that it lies on or, of an organ, that bears the organ; [`NOTHING`] for none.
+    pub axis: Vec<i32>,
+    /// Row of the plant's organs; [`NOTHING`] on axes.
+    pub organ: Vec<i32>,
+    /// Branching order of the axis; 0 for none.
+    pub order: Vec<i32>,
+    /// The place of the scanner, from 0.
+    pub station: Vec<u8>,
+    /// From the scanner, metres, without noise.
+    pub distance: Vec<f32>,
+}
+
+/// What each triangle of a model lies on: where the runs of each part end, and what they belong to.
+struct Owned<'a> {
+    plant: &'a Plant,
+    ends: Vec<Vec<(u32, Owner<'a>)>>,
+}
+
+/// What a place of a model is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Label {
+    part: u8,
+    axis: i32,
+    organ: i32,
+}
+
+impl<'a> Owned<'a> {
+    fn new(plant: &'a Plant, layout: &'a Layout) -> Self {
+        let ends = layout.owners().map(|owners| {
+            let mut end = 0;
+            let run = |(owner, count): (Owner<'a>, u32)| {
+                end += count;
+                (end, owner)
+            };
+            owners.map(run).collect()
+        });
+        Self { plant, ends: ends.collect() }
+    }
+
+    fn label(&self, part: u32, triangle: u32, at: DVec3) -> Option<Label> {
+        let ends = self.ends.get(part as usize)?;
+        let (_, owner) = ends.get(ends.partition_point(|(end, _)| *end <= triangle))?;
+        Some(match owner {
+            Owner::Axes(axes) => self.of_axis(self.nearest(axes, at)?),
+            Owner::Organ(organ) => {
+                let found = self.plant.organs.get(organ.index())?;
+                let bearer = found.bearer.and_then(|n| self.plant.nodes.axis.get(n.index()));
+                let axis = bearer.map_or(NOTHING, |a| row(a.index()));
+                Label { part: part_of_organ(found.kind), axis, organ: row(organ.index()) }
+            }
+        })
+    }
+
+    fn of_axis(&self, axis: AxisId) -> Label {
+        Label { part: part_of_axis(self.plant.axis(axis).kind), axis: row(axis.index()), organ: NOTHING }
+    }
+
+    /// Of axes that are one tube, that whose line passes nearest.
+    fn nearest(&self, axes: &[AxisId], at: DVec3) -> Option<AxisId> {
+        let [first, others @ ..] = axes else { return None };
+        if others.is_empty() {
+            return Some(*first);
+        }
+        let away = |axis: &AxisId| {
+            let lines = self.plant.axis_points(*axis).windows(2);
+            lines.map(|l| from_line(at, l[0], l[1])).fold(f64::INFINITY, f64::min)
+        };
+        axes.iter().map(|a| (away(a), *a)).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, axis)| axis)
+    }
+}
+
+fn from_line(at: DVec3, a: DVec3, b: DVec3) -> f64 {
+    let way = b - a;
+    let along = ((at - a).dot(way) / way.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+    at.distance_squared(a + way * along)
+}
+
+fn row(index: usize) -> i32 {
+    i32::try_from(index).unwrap_or(i32::MAX)
+}
+
+/// What the triangles of each part of a model lie on: rows of [`PARTS`], of the plant's axes and of its organs.
+///
+/// `layout`: of this model. A triangle of a tube along several axes has the axis that is nearest to its middle.
+pub fn triangle_labels(plant: &Plant, model: &Model, layout: &Layout) -> Vec<Vec<[i32; 3]>> {
+    let owned = Owned::new(plant, layout);
+    let of_part = |(row, part): (u32, &mesh::Part)| {
+        let triangles = (0_u32..).zip(&part.mesh.triangles);
+        let of_triangle = |(k, corners): (u32, &[u32; 3])| {
+            let corner = |i: u32| part.mesh.positions.get(i as usize).map_or(DVec3::ZERO, to_f64);
+            let middle = corners.iter().map(|&i| corner(i)).sum::<DVec3>() / 3.0;
+            let label = owned.label(row, k, middle);
+            label.map_or([NOTHING; 3], |l| [i32::from(l.part), l.axis, l.organ])
+        };
+        triangles.map(of_triangle).collect()
+    };
+    (0_u32..).zip(&model.parts).map(of_part).collect()
+}
+
+fn to_f64(p: &[f32; 3]) -> DVec3 {
+    DVec3::from_array(p.map(f64::from))
+}
+
+/// Scans a plant from stations around it: what a beam meets first is a point, what lies behind it is hidden.
+///
+/// Each station's beams are even over its view, so near and frontal surfaces get more points, as from a scanner. Of all
+/// that the beams meet, `points` are drawn by chance without putting any back.
+/// `layout`: of this model. Guaranteed: the same bits for any executor; points lie on the surface to the last bit but for
+/// the noise, which is along the beam. Not modelled: beams that meet two surfaces at once, and reflectance.
+///
+/// # Errors
+/// [`SurveyError`].
+pub fn survey(
+    (plant, model, layout): (&Plant, &Model, &Layout),
+    spec: &SurveySpec,
+    seed: Seed,
+    run: &Run<'_>,
+) -> Result<Surveyed, SurveyError> {
+    spec.check()?;
+    let wanted = spec.points as usize;
+    // A fifth of the beams meet a plant of a dense crown, fewer a thin one: then the grid becomes finer.
+    let beams = 6.0 * f64::from(spec.points) / f64::from(spec.stations);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 8192")]
+    let mut pixels = (beams.sqrt().ceil() as u32).clamp(64, MOST_PIXELS);
+    let hits = loop {
+        let seen = render::hits(model, &spec.views(pixels), run)?;
+        let count: usize = seen.iter().map(Vec::len).sum();
+        if count >= wanted || count == 0 || pixels >= MOST_PIXELS {
+            break seen;
+        }
+        // One step where the share of beams that meet it stays what it is.
+        let finer = (1.1 * wanted as f64 / count as f64).sqrt().clamp(1.1, 8.0);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 8 times 4096")]
+        let next = (f64::from(pixels) * finer).ceil() as u32;
+        pixels = next.min(MOST_PIXELS);
+    };
+    let all: Vec<(u8, Hit)> =
+        (0_u8..).zip(hits).flat_map(|(k, hits)| hits.into_iter().map(move |h| (k, h))).collect();
+    let chosen = sample(all.len(), wanted, seed);
+    let owned = Owned::new(plant, layout);
+    let mut noise = seed.child(1).stream(Draw::Sampling);
+    let mut out = Surveyed::default();
+    for i in chosen {
+        let (station, hit) = &all[i];
+        let Some(label) = owned.label(hit.part, hit.triangle, hit.at) else { continue };
+        let off = if spec.noise_m > 0.0 { spec.noise_m * noise.normal() } else { 0.0 };
+        let order = usize::try_from(label.axis).ok().and_then(|a| plant.axes.get(a)).map_or(0, |a| a.order);
+        out.points.push((hit.at + hit.beam * off).to_array());
+        out.normals.push(hit.normal.as_vec3().to_array());
+        out.part.push(label.part);
+        out.axis.push(label.axis);
+        out.organ.push(label.organ);
+        out.order.push(i32::try_from(order).unwrap_or(i32::MAX));
+        out.station.push(*station);
+        #[expect(clippy::cast_possible_truncation, reason = "a distance in a mesh of single precision")]
+        out.distance.push(hit.distance_m as f32);
+    }
+    Ok(out)
+}
+
+/// A finer grid of beams would have more pixels than a picture may.
+const MOST_PIXELS: u32 = 4096;
+
+/// `most` of the rows `0..all` by chance, ascending; all of them if there are no more.
+fn sample(all: usize, most: usize, seed: Seed) -> Vec<usize> {
+    let mut chance = seed.stream(Draw::Sampling);
+    let mut rows = Vec::with_capacity(most.min(all));
+    // Knuth's algorithm S: each row with the share that is still wanted of those that are left.
+    for row in 0..all {
+        let (left, wanted) = ((all - row) as f64, (most.min(all) - rows.len()) as f64);
+        if chance.uniform() * left < wanted {
+            rows.push(row);
+        }
+    }
+    rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{TreeEvaluator, TreeOptions, TreeSpec};
+
+    fn tree() -> TreeEvaluator {
+        let mut evaluator = TreeEvaluator::default();
+        let made =
+            evaluator.update(&TreeSpec::default(), Seed::new(3), &TreeOptions::default(), &Run::plain());
+        made.expect("a tree");
+        evaluator
+    }
+
+    fn scanned(evaluator: &TreeEvaluator, spec: &SurveySpec) -> Surveyed {
+        let of = (
+            evaluator.plant().expect("a plant"),
+            evaluator.model().expect("a model"),
+            evaluator.layout().expect("a layout"),
+        );
+        survey(of, spec, Seed::new(5), &Run::plain()).expect("a cloud")
+    }
+
+    #[test]
+    fn rows_are_drawn_without_putting_any_back() {
+        for (all, most) in [(0, 5), (5, 5), (3, 9), (1000, 10)] {
+            let rows = sample(all, most, Seed::new(2));
+            assert_eq!(rows.len(), all.min(most));
+            assert!(rows.windows(2).all(|w| w[0] < w[1]), "{rows:?}");
+        }
+    }
+
+    #[test]
+    fn points_of_an_axis_lie_within_its_radius_and_those_of_leaves_near_their_leaf() {
+        let tree = tree();
+        let plant = tree.plant().expect("a plant");
+        let cloud = scanned(&tree, &SurveySpec { points: 5000, ..SurveySpec::default() });
+        assert_eq!(cloud.points.len(), 5000);
+        let (mut on_axes, mut on_leaves) = (0, 0);
+        for (k, p) in cloud.points.iter().enumerate() {
+            let at = DVec3::from_array(*p);
+            if cloud.organ[k] == NOTHING {
+                on_axes += 1;
+                let axis = AxisId::new(cloud.axis[k] as usize);
+                let thick = plant.axis_radii(axis).iter().copied().fold(0.0, f64::max);
+                let away = plant.axis_points(axis).windows(2).map(|l| from_line(at, l[0], l[1]));
+                let away = away.fold(f64::INFINITY, f64::min).sqrt();
+                assert!(away <= 3.0 * thick + 0.03, "{away} m from an axis of {thick} m");
+            } else {
+                on_leaves += 1;
+                let organ = &plant.organs[cloud.organ[k] as usize];
+                let reach = organ.scale * plant.shapes[organ.shape.index()].reach();
+                assert!(at.distance(organ.frame.origin) <= 1.5 * reach + 1e-3);
+                assert_eq!(cloud.part[k], 5);
+            }
+        }
+        assert!(on_axes > 50 && on_leaves > 1000, "{on_axes} on axes, {on_leaves} on leaves");
+    }
+
+    #[test]
+    fn noise_moves_points_along_their_beams_only() {
+        let tree = tree();
+        let plain = SurveySpec { points: 2000, ..SurveySpec::default() };
+        let still = scanned(&tree, &plain);
+        let moved = scanned(&tree, &SurveySpec { noise_m: 0.02, ..plain });
+        let off: Vec<f64> = still
+            .points
+            .iter()
+            .zip(&moved.points)
+            .map(|(a, b)| DVec3::from_array(*a).distance(DVec3::from_array(*b)))
+            .collect();
+        let rms = (off.iter().map(|x| x * x).sum::<f64>() / off.len() as f64).sqrt();
+        assert!((rms - 0.02).abs() < 0.002, "{rms}");
+        assert_eq!((still.part, still.organ), (moved.part, moved.organ));
+    }
+
+    #[test]
+    fn what_is_out_of_range_is_refused_by_name() {
+        let bad = SurveySpec { stations: 0, ..SurveySpec::default() };
+        let fault = bad.check().expect_err("no station");
+        assert_eq!(fault.to_string(), "stations must be 1 to 64, not 0");
+        assert!(SurveySpec { noise_m: f64::NAN, ..SurveySpec::default() }.check().is_err());
+    }
+}

@@ -1,0 +1,133 @@
+//! The Python package: a virtual environment under `target`, the wheel, its tests.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use crate::shell::{
+    Outcome, burgeon, command, debug_burgeon, finish, output, prepare, repository, say, target_dir,
+};
+use crate::toolchain::{apt_install, is_root_on_debian, shown};
+
+/// What builds the wheel.
+const BUILD: &[&str] = &["maturin>=1.8,<2"];
+/// What the tests import.
+const TEST: &[&str] =
+    &["numpy", "pytest", "hypothesis", "trimesh", "pillow", "psutil", "matplotlib", "nbclient", "ipykernel"];
+/// What the step of its own imports: large, and not there for every Python.
+const RAY: &[&str] = &["ray>=2"];
+
+/// Builds the wheel for people: optimised, into `target/wheels`.
+pub(crate) fn wheel() -> Outcome {
+    let python = environment()?.ok_or("Python 3.9 or newer is missing: install it with its module venv")?;
+    install(&python, BUILD)?;
+    let wheel = build(&python, &["--release"])?;
+    say(&format!("{}: `pip install` takes it; it serves every Python from 3.9 on", shown(&wheel)));
+    Ok(())
+}
+
+/// Builds the wheel as the tests of the workspace built what it stands on, and runs its tests. `tested`: these have just
+/// run.
+pub(crate) fn test(tested: bool) -> Outcome {
+    let Some(python) = environment()? else {
+        say(
+            "skipped: the Python package, as there is no Python 3.9 or newer with its module venv; install python3 and \
+             python3-venv",
+        );
+        return Ok(());
+    };
+    debug_burgeon(tested)?;
+    let started = Instant::now();
+    install(&python, &[BUILD, TEST].concat())?;
+    let wheel = build(&python, &["--profile", "dev", "--features", "tested"])?;
+    say(&format!("$ pip install {}", shown(&wheel)));
+    let mut c = pip(&python, &["--force-reinstall", "--no-deps"]);
+    c.arg(&wheel);
+    finish(c)?;
+    pytest(&python, "not ray")?;
+    say(&format!("Python: {} s", started.elapsed().as_secs()));
+    // Large, and not for every system: a step of its own.
+    let started = Instant::now();
+    if let Err(e) = install(&python, RAY) {
+        say(&format!("skipped: Ray cannot be had here ({e})"));
+        return Ok(());
+    }
+    pytest(&python, "ray")?;
+    say(&format!("Python with Ray: {} s", started.elapsed().as_secs()));
+    Ok(())
+}
+
+fn package() -> PathBuf {
+    repository().join("apps/python")
+}
+
+/// The Python of a virtual environment of our own, made if it is not there; none without a Python to make it with.
+fn environment() -> Outcome<Option<PathBuf>> {
+    let folder = target_dir().join("python");
+    let python = folder.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
+    if output(prepare(&python, &["-c", "import pip"])).is_ok() {
+        return Ok(Some(python));
+    }
+    let found = || ["python3", "python"].into_iter().find(|p| output(prepare(p, &["-c", USABLE])).is_ok());
+    let mut maker = found();
+    if maker.is_none() && is_root_on_debian() {
+        command("apt-get", &["update", "-qq"])?;
+        apt_install(&["python3", "python3-venv"])?;
+        maker = found();
+    }
+    let Some(maker) = maker else { return Ok(None) };
+    say(&format!("$ {maker} -m venv {}", shown(&folder)));
+    let mut c = prepare(maker, &["-m", "venv", "--clear"]);
+    c.arg(&folder);
+    finish(c)?;
+    Ok(Some(python))
+}
+
+/// Ends well in a Python that serves.
+const USABLE: &str = "import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 9))";
+
+/// Packages, unless they were installed before.
+fn install(python: &Path, packages: &[&str]) -> Outcome {
+    let stamp = target_dir().join("python").join(format!("installed-{}", packages.len()));
+    let wanted = packages.join("\n");
+    if std::fs::read_to_string(&stamp).is_ok_and(|there| there == wanted) {
+        return Ok(());
+    }
+    say(&format!("$ pip install {}", packages.join(" ")));
+    let mut c = pip(python, &[]);
+    c.args(packages);
+    finish(c)?;
+    std::fs::write(&stamp, wanted).map_err(|e| format!("{}: {e}", shown(&stamp)))
+}
+
+fn pip(python: &Path, extra: &[&str]) -> std::process::Command {
+    let mut c = prepare(python, &["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]);
+    c.args(extra);
+    c
+}
+
+/// The wheel that maturin builds with these options.
+fn build(python: &Path, options: &[&str]) -> Outcome<PathBuf> {
+    let out = target_dir().join("wheels");
+    let _ = std::fs::remove_dir_all(&out);
+    say(&format!("$ maturin build {} (in apps/python)", options.join(" ")));
+    let mut c = prepare(python, &["-m", "maturin", "build", "--quiet", "--locked"]);
+    c.args(options).arg("--out").arg(&out).current_dir(package());
+    // Maturin looks for the environment that it is called in.
+    if let Some(folder) = python.parent().and_then(Path::parent) {
+        c.env("VIRTUAL_ENV", folder);
+    }
+    finish(c)?;
+    let files = std::fs::read_dir(&out).map_err(|e| format!("{}: {e}", shown(&out)))?;
+    let wheel =
+        files.filter_map(Result::ok).map(|e| e.path()).find(|p| p.extension().is_some_and(|e| e == "whl"));
+    wheel.ok_or_else(|| format!("{}: maturin left no wheel", shown(&out)))
+}
+
+fn pytest(python: &Path, marked: &str) -> Outcome {
+    say(&format!("$ pytest -m \"{marked}\" (in apps/python)"));
+    // From elsewhere: the installed package is tested, not the sources beside the tests.
+    let mut c = prepare(python, &["-m", "pytest", "-q", "-p", "no:cacheprovider", "-m", marked, "--rootdir"]);
+    c.arg(package()).arg(package().join("tests"));
+    c.env("BURGEON", burgeon("debug")).env("PYTHONDONTWRITEBYTECODE", "1");
+    finish(c)
+}
