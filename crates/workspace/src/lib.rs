@@ -42,7 +42,9 @@ pub use export::{ExportFormat, ExportRequest, LengthUnit, NamedFile, Up, packed}
 pub use exported::{ExportView, ExportedPlant, PartFigures};
 pub use files::{FileKind, Opened};
 pub use kept::{KEPT_BYTES, SHOWN_BYTES};
-pub use record::{GESTURES_SCHEMA, GestureRecord, GestureStep, MOST_STEPS};
+pub use record::{
+    GESTURES_SCHEMA, GestureDeed, GestureRecord, GestureStep, HandDeed, MOST_STEPS, Replayed,
+};
 pub use scatter::{Ground, Scatter};
 pub use shaping::{CarriedPose, Grown, Picked, ShapeAnswer, ShapeInput, ShapePointer, ShapeReach, ShapeStep};
 pub use state::{
