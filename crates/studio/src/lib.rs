@@ -54,7 +54,7 @@ pub use report::{
 };
 pub use scanned::make_leaf_from_scan;
 pub use scene::{
-    SceneError, SceneEvaluator, ScenePlant, flower_schema, leaf_marks, leaf_schema, material_schema,
+    PlantLevel, SceneError, SceneEvaluator, ScenePlant, flower_schema, leaf_marks, leaf_schema, material_schema,
     scene_model, standing, tree_settings, tree_spec,
 };
 pub use shaping::{BranchRow, EditReport, branch_rows, edits_schema, edits_template};

@@ -10,6 +10,7 @@
 //! | `exported` | exports that are looked at before they are written |
 //! | `evaluate` | plants made and shown, meshes as columns |
 //! | `kept` | how long results are kept |
+//! | `levels` | levels of detail for shells that draw little |
 //! | `record` | what hands did, as a file, and again |
 //! | `shaping` | tools that shape a plant by hand |
 //! | `state` | what a shell shows of the document |
@@ -26,6 +27,7 @@ mod exported;
 mod files;
 mod held;
 mod kept;
+mod levels;
 mod looked;
 mod record;
 mod scatter;

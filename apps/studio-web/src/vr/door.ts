@@ -2,6 +2,7 @@
 import type { Shaping } from '../shaping';
 import type { PlantView } from '../view/view';
 import type { Headset, HeadsetEvents, Mode } from './headset';
+import type { Recorder } from './recorder';
 
 export type { Mode };
 
@@ -22,6 +23,11 @@ export class Door {
     void this.look(xr);
     // A headset was plugged in, or out.
     xr.addEventListener('devicechange', () => void this.look(xr));
+  }
+
+  /** What writes down what hands do, once there is a headset. */
+  get recorder(): Recorder | undefined {
+    return this.headset?.recorder;
   }
 
   get isOn(): boolean {
