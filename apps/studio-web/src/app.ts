@@ -399,7 +399,8 @@ export class App implements Page {
       },
       run: (id: CommandId) => commandOf(id).run(this),
       model: (format: ExportFormat) => void this.files.model(format),
-      most: (triangles: number) => void session.engine.ask({ kind: 'most', triangles }).catch(() => undefined),
+      most: (triangles: number) =>
+        void session.engine.ask({ kind: 'most', triangles }).catch(() => undefined),
       project: () => session.engine.ask<Uint8Array>({ kind: 'save' }),
       seen: () => ({ plant: session.plant?.id, digest: session.seen?.item?.digest }),
       write: (record: GestureRecord) => {

@@ -3,7 +3,7 @@ import type { Shaping } from '../shaping';
 import { t, type TextKey } from '../text';
 import { SHAPE_TOOLS, type ShapeTool } from '../tools';
 import type { ExportFormat } from '../wire';
-import type { HeadsetEvents } from './headset';
+import type { HeadsetEvents } from './events';
 import type { ObstacleKind } from './placing';
 import type { Key } from './wrist';
 

@@ -1,7 +1,8 @@
 /** The way into a headset, where the browser has one. The rest is loaded only there. */
 import type { Shaping } from '../shaping';
 import type { PlantView } from '../view/view';
-import type { Headset, HeadsetEvents, Mode } from './headset';
+import type { HeadsetEvents, Mode } from './events';
+import type { Headset } from './headset';
 import type { Recorder } from './recorder';
 
 export type { Mode };

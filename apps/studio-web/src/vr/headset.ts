@@ -9,58 +9,16 @@ import { t, type TextKey } from '../text';
 import type { ShapeTool } from '../tools';
 import { hearNotes } from '../ui';
 import type { PlantView } from '../view/view';
-import type {
-  ExportFormat,
-  GestureRecord,
-  Growth,
-  Obstacle,
-  ShapeAnswer,
-  ShapePointer,
-  ViewPlane,
-} from '../wire';
+import type { Growth, ShapeAnswer, ShapePointer, ViewPlane } from '../wire';
 import { type Board, rowsOf } from './board';
 import { Controller, type Part } from './controller';
+import type { HeadsetEvents, Mode } from './events';
 import { Labels, Readout } from './labels';
 import { Lesson } from './lesson';
 import { Placing } from './placing';
 import { Recorder } from './recorder';
 import { SNAP, World } from './world';
 import { Wrist } from './wrist';
-
-export type Mode = 'immersive-vr' | 'immersive-ar';
-
-export interface HeadsetEvents {
-  undo(): void;
-  redo(): void;
-  /** Makes the plant another species, the next or the one before; what it is now, if it has any. */
-  species(by: 1 | -1): Promise<string | undefined>;
-  /** Another plant like the chosen one, beside it. */
-  copy(): void;
-  run(command: 'dice' | 'guide-grid' | 'guide-staff' | 'save'): void;
-  /** Writes the scene as a model. */
-  model(format: ExportFormat): void;
-  /** The document as a project file. */
-  project(): Promise<Uint8Array>;
-  /** The plant that is worked on, and the digest of what is seen of it. */
-  seen(): { plant: number | undefined; digest: string | undefined };
-  /** Hands a record to the browser. */
-  write(record: GestureRecord): void;
-  /** Moves an obstacle of the chosen plant, metres. */
-  shift(row: number, by: [number, number, number]): void;
-  /** Shows at most so many triangles of all plants, the largest coarser; 0: all. */
-  most(triangles: number): void;
-  /** Works on the next plant, the one before, or (0) this one; which it is then. */
-  select(by: -1 | 0 | 1): { name: string; number: number; count: number } | undefined;
-  /** Another plant of the same kind beside the others; it is worked on. */
-  add(): void;
-  /** How many obstacles the chosen plant has; undefined where it can have none. */
-  obstacles(): number | undefined;
-  obstruct(shape: Obstacle): void;
-  /** Takes the last obstacle away. */
-  clear(): void;
-  /** It was entered, or left. */
-  changed(on: boolean): void;
-}
 
 /** Within so far of a controller's tip, metres of the person, wood is meant that it does not touch. */
 const NEAR_M = 0.035;
@@ -133,7 +91,9 @@ export class Headset {
   private readonly placing = new Placing();
   readonly recorder = new Recorder();
   /** An obstacle in the hand: its row, where the hand took it, and what shows it. */
-  private carried: { row: number; from: ShapePointer; last: ShapePointer; thing: THREE.Object3D; stood: THREE.Vector3 } | undefined;
+  private carried:
+    | { row: number; from: ShapePointer; last: ShapePointer; thing: THREE.Object3D; stood: THREE.Vector3 }
+    | undefined;
   private lostAt = 0;
   private readonly lesson = new Lesson(Number(setting('vr.lesson')) || 0, (done) =>
     setSetting('vr.lesson', String(done)),

@@ -68,7 +68,8 @@ export function deedOf(request: Request, made: HandEdit | undefined): GestureDee
       const { command } = request;
       const shaped = 'shape' in command ? command.shape[1] : undefined;
       // The very edit that came back from the gesture: it is made anew when the record is.
-      if (made && shaped && typeof shaped === 'object' && 'add' in shaped && shaped.add === made) return 'keep';
+      if (made && shaped && typeof shaped === 'object' && 'add' in shaped && shaped.add === made)
+        return 'keep';
       return { command };
     }
     case 'action':
@@ -92,6 +93,7 @@ export function deedOf(request: Request, made: HandEdit | undefined): GestureDee
 /** In pieces: a call takes so many arguments only. */
 function base64(bytes: Uint8Array): string {
   let text = '';
-  for (let i = 0; i < bytes.length; i += 0x8000) text += String.fromCharCode(...bytes.subarray(i, i + 0x8000));
+  for (let i = 0; i < bytes.length; i += 0x8000)
+    text += String.fromCharCode(...bytes.subarray(i, i + 0x8000));
   return btoa(text);
 }

@@ -204,7 +204,14 @@ it('keys lie in rows', () => {
 });
 
 describe('a record', () => {
-  const at = { origin: [0, 0, 0], direction: [0, 0, -1], forward: [0, 0, -1], up: [0, 1, 0], pressure: 1, tip: null };
+  const at = {
+    origin: [0, 0, 0],
+    direction: [0, 0, -1],
+    forward: [0, 0, -1],
+    up: [0, 1, 0],
+    pressure: 1,
+    tip: null,
+  };
   const reach = { metres: 0.1, per_metre: 0.02, bearers: 0, mirror: null };
   const shape = (input: unknown): Request => ({ kind: 'shape', tool: 'rotate', reach, input }) as Request;
 
@@ -226,7 +233,12 @@ describe('a record', () => {
     recorder.did({ kind: 'save' }, null);
     recorder.did({ kind: 'select', plant: 2 }, null);
     const record = recorder.stop('d1');
-    expect(record).toMatchObject({ schema: 'burgeon.gestures/1', project: 'bm9uZQ==', plant: 3, digest: 'd1' });
+    expect(record).toMatchObject({
+      schema: 'burgeon.gestures/1',
+      project: 'bm9uZQ==',
+      plant: 3,
+      digest: 'd1',
+    });
     expect(record?.steps.map((s) => (typeof s.did === 'string' ? s.did : Object.keys(s.did)[0]))).toEqual([
       'hand',
       'seen',
@@ -250,6 +262,7 @@ it('an obstacle is taken where the hand is in it', () => {
   [wall, ball, box].forEach((mesh, row) => {
     mesh.userData['row'] = row;
   });
-  const row = (at: [number, number, number]): number | undefined => obstacleAround([wall, ball, box], at)?.row;
+  const row = (at: [number, number, number]): number | undefined =>
+    obstacleAround([wall, ball, box], at)?.row;
   expect([row([1.3, 0.2, 0]), row([1.4, 0.4, 0]), row([-0.4, 0.4, 0.4])]).toEqual([1, undefined, 2]);
 });

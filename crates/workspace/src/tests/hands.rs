@@ -315,3 +315,43 @@ fn what_grows_in_the_hand_says_how_old_and_how_dense_it_is() {
     let added = look(&mut s)["item"]["edits"][0]["changed"]["added"].as_u64().unwrap();
     assert!(added >= last["branches"].as_u64().unwrap(), "{added} {last}");
 }
+
+#[test]
+fn what_is_shown_stays_within_a_number_of_triangles_and_is_carried_as_it_is_shown() {
+    let (mut s, (x, y)) = bush();
+    let whole = look(&mut s);
+    let shown = |s: &Workspace, view: &Value| -> usize {
+        let parts = view["parts"].as_array().unwrap().len();
+        (0..parts).map(|part| s.indices(PlantId(1), part).len() / 3).sum()
+    };
+    let all = shown(&s, &whole);
+    s.set_most_triangles(Some(all as u64 / 2));
+    let fewer = look(&mut s);
+    assert!(fewer["fresh"] == true && fewer["mesh"] != whole["mesh"], "{} {}", fewer["fresh"], fewer["mesh"]);
+    let now = shown(&s, &fewer);
+    assert!(now <= all / 2 && now > all / 40, "{now} of {all}");
+    // The plant is the same one; what is shown again is not sent again.
+    assert_eq!(fewer["item"], whole["item"]);
+    let again = look(&mut s);
+    assert_eq!((&again["fresh"], &again["mesh"]), (&Value::Bool(false), &fewer["mesh"]));
+    // What the hand carries are triangles of what is shown.
+    let answer = hand(&mut s, r#""rotate""#, &format!(r#"{{"down":{}}}"#, at(x, y)));
+    let answer = match answer["carried"].is_null() {
+        true => hand(&mut s, r#""rotate""#, r#"{"twist":30}"#),
+        false => answer,
+    };
+    assert_eq!(answer["carried"]["mesh"], fewer["mesh"], "{answer}");
+    let rows: Vec<[u32; 3]> = s.held_rows().as_chunks().0.to_vec();
+    assert!(!rows.is_empty());
+    for [part, from, to] in rows {
+        assert!(from < to && to as usize <= s.indices(PlantId(1), part as usize).len() / 3);
+    }
+    // Seen where the hand is: as many triangles, others in their places.
+    let carried = s.seen().unwrap();
+    assert_eq!(carried.triangle_count(), now);
+    hand(&mut s, r#""rotate""#, r#""cancel""#);
+    assert_ne!(s.seen().unwrap(), carried);
+    s.set_most_triangles(None);
+    let back = look(&mut s);
+    assert_eq!((&back["mesh"], shown(&s, &back)), (&whole["mesh"], all));
+}
