@@ -1,6 +1,7 @@
 //! `burgeon compare oak|guided`: one oak by several methods, side by side.
 
 use burgeon::formats::{ExportSpec, ModelFormat};
+use burgeon::growth::Method;
 use burgeon::render::{Picture, View};
 use burgeon::skin::SkinSpec;
 use burgeon::{
@@ -10,6 +11,7 @@ use burgeon::{
 use serde::Serialize;
 
 use crate::args::{CompareArgs, CompareWord};
+use crate::curve::{self, Curve};
 use crate::failure::{Failure, Outcome};
 use crate::machine::Machine;
 use crate::output::Outputs;
@@ -18,11 +20,6 @@ use crate::{picture, report, say};
 impl CompareWord {
     /// The trees, not grown yet.
     fn trees(self) -> Outcome<Vec<Oak>> {
-        let preset = |key: &'static str| {
-            let preset =
-                Preset::find(key).ok_or_else(|| Failure::Bug(format!("preset {key}: is missing")))?;
-            preset.spec().map_err(|e| Failure::Bug(format!("preset {key}: {e}")))
-        };
         match self {
             Self::Oak => {
                 let trees = OAK_METHODS.iter().zip(PAPER_OAKS);
@@ -34,9 +31,7 @@ impl CompareWord {
             }
             Self::Guided => {
                 let oak = preset("oak")?;
-                let methods = guided_methods(&oak.method)
-                    .ok_or_else(|| Failure::Bug("preset oak: has no envelope".to_owned()))?;
-                let trees = GUIDED_METHODS.into_iter().zip(methods);
+                let trees = GUIDED_METHODS.into_iter().zip(compared()?);
                 let oak_by = |(name, method)| {
                     let spec = TreeSpec { method, ..oak.clone() };
                     Oak { method: name, key: "oak", spec, paper: None, leaves: 0 }
@@ -52,6 +47,17 @@ impl CompareWord {
             Self::Guided => GUIDED_NOTES,
         }
     }
+}
+
+fn preset(key: &'static str) -> Outcome<TreeSpec> {
+    let preset = Preset::find(key).ok_or_else(|| Failure::Bug(format!("preset {key}: is missing")))?;
+    preset.spec().map_err(|e| Failure::Bug(format!("preset {key}: {e}")))
+}
+
+/// Guided growth and its baseline in the crown of the oak.
+fn compared() -> Outcome<[Method; 2]> {
+    guided_methods(&preset("oak")?.method)
+        .ok_or_else(|| Failure::Bug("preset oak: has no envelope".to_owned()))
 }
 
 /// One method.
@@ -103,6 +109,9 @@ struct Comparison {
     version: &'static str,
     seed: u64,
     rows: Vec<Row>,
+    /// Growth alone, by rounds.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    curve: Option<Curve>,
     notes: &'static str,
 }
 
@@ -112,7 +121,8 @@ const NOTES: &str = "All three stand at one height with one number of leaves of 
 
 const GUIDED_NOTES: &str = "Both grow in the oak's envelope with internodes of one length, one perception, occupancy, angle, phyllotaxis, \
                             bias and number of rounds, stand at one height and keep one number of leaves. Guided growth makes \
-                            markers for each bud in each round, its baseline scatters as many to a volume once. The paper's \
+                            markers for each bud in each round, its baseline scatters as many to a volume once. The curve is \
+                            growth alone on one thread: at equal quality each has filled as much of the crown. The paper's \
                             own times are lost.";
 
 pub(crate) fn compare(args: &CompareArgs) -> Outcome {
@@ -156,11 +166,16 @@ pub(crate) fn compare(args: &CompareArgs) -> Outcome {
         version: burgeon::VERSION,
         seed: args.seed,
         rows,
+        curve: match args.what {
+            CompareWord::Oak => None,
+            CompareWord::Guided => Some(curve::curve(&compared()?, args.seed, &machine)?),
+        },
         notes: args.what.notes(),
     };
     report::finish(&comparison, &args.common, outputs)?;
     if !machine.quiet {
         table(&comparison.rows);
+        comparison.curve.iter().for_each(curve::table);
     }
     Ok(())
 }

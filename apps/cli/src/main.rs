@@ -5,6 +5,7 @@ mod bloom;
 mod classes;
 mod compare;
 mod convert;
+mod curve;
 mod draft;
 mod edits;
 mod failure;
@@ -28,6 +29,7 @@ mod picture;
 mod poses;
 mod presets;
 mod project;
+mod replay;
 mod report;
 mod say;
 mod scene;
@@ -61,6 +63,7 @@ fn main() -> ExitCode {
         Command::Leaf(args) => leaf::leaf(&args),
         Command::Grow(args) => grow::grow(&args),
         Command::Shape(args) => shape::shape(&args),
+        Command::Replay(args) => replay::replay(&args),
         Command::Presets(args) => presets::presets(&args),
         Command::Compare(args) => compare::compare(&args),
         Command::Render(args) => picture::render(&args),

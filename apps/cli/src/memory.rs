@@ -20,6 +20,8 @@ const STEP: isize = 256 << 10;
 static LIVE: AtomicIsize = AtomicIsize::new(0);
 /// Bytes that may be in use.
 static LIMIT: AtomicIsize = AtomicIsize::new(isize::MAX);
+/// Most bytes that were in use since this was set last.
+static PEAK: AtomicIsize = AtomicIsize::new(0);
 /// Whether the limit is what the machine has rather than what the budget allows.
 static OF_MACHINE: AtomicBool = AtomicBool::new(false);
 /// The program is ending for want of memory.
@@ -60,6 +62,14 @@ fn free_bytes() -> Option<u64> {
     Some(own.and_then(|t| t.trim().parse().ok()).map_or(machine, |own: u64| own.min(machine)))
 }
 
+/// What some work had in use at most beyond what was in use before, in steps of a quarter of a MiB.
+pub(crate) fn peak_of<T>(work: impl FnOnce() -> T) -> (T, u64) {
+    let before = LIVE.load(Ordering::Relaxed);
+    PEAK.store(before, Ordering::Relaxed);
+    let made = work();
+    (made, PEAK.load(Ordering::Relaxed).saturating_sub(before).max(0).unsigned_abs() as u64)
+}
+
 /// Adds to what is in use, or takes away (below 0).
 #[inline]
 fn count(bytes: isize) {
@@ -79,6 +89,7 @@ fn count(bytes: isize) {
 #[cold]
 fn tell(bytes: isize) {
     let live = LIVE.fetch_add(bytes, Ordering::Relaxed).wrapping_add(bytes);
+    PEAK.fetch_max(live, Ordering::Relaxed);
     if bytes > 0 && live > LIMIT.load(Ordering::Relaxed) {
         end(!OF_MACHINE.load(Ordering::Relaxed));
     }

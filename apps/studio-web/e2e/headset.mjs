@@ -1,5 +1,6 @@
 // A headset and its controllers, emulated in the page (iwer): in, shape, out again; what was done stays.
 import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { begin, changed, data, drop, settled, until } from './journeys.mjs';
 
@@ -431,17 +432,17 @@ async function astray({ page, url }) {
 }
 
 /** Runs a hand over some places, with the trigger held; `last`: what is done before it lets go. */
-async function stroke(page, places, last = async () => {}) {
-  await hand(page, 'right', places[0]);
+async function stroke(page, places, last = async () => {}, side = 'right', button = 'trigger') {
+  await hand(page, side, places[0]);
   await frames(page);
-  await press(page, 'right', 'trigger', 1);
+  await press(page, side, button, 1);
   await frames(page);
   for (const place of places.slice(1)) {
-    await hand(page, 'right', place);
+    await hand(page, side, place);
     await frames(page, 1);
   }
   await last();
-  await press(page, 'right', 'trigger', 0);
+  await press(page, side, button, 0);
   await frames(page);
 }
 
@@ -519,6 +520,17 @@ async function scene({ page, url, shot }) {
   await page.waitForFunction((d) => document.body.dataset.digest === d, plain);
   await click(page, 'right', 'b-button');
   await page.waitForFunction((d) => document.body.dataset.digest === d, around);
+  // The grip in it takes it along; it is one step.
+  await stroke(
+    page,
+    way([0.1, 1.15, -0.75], [-0.01, 0.005, 0], 8),
+    () => shot('headset-ball-held'),
+    'right',
+    'squeeze',
+  );
+  await changed(page, around, 'it grows around the ball where that stands now');
+  await click(page, 'right', 'b-button');
+  await page.waitForFunction((d) => document.body.dataset.digest === d, around);
   // Another plant, which is worked on; and back to the first.
   await key(page, 'plant.add');
   await until(page, 'plants', ['is', 2], 'a second plant');
@@ -528,7 +540,14 @@ async function scene({ page, url, shot }) {
   await key(page, 'plant.next');
   assert.ok((await state(page)).said.includes('2 of 2'), (await state(page)).said);
   await shot('headset-plants');
-  const [file] = await Promise.all([page.waitForEvent('download'), key(page, 'glb')]);
+  await key(page, 'export');
+  await shotOfBoard(page, shot, 'headset-export');
+  for (const format of ['usda', 'obj', 'ply', 'stl', 'mtg']) {
+    const [written] = await Promise.all([page.waitForEvent('download'), key(page, `export.${format}`)]);
+    assert.ok(written.suggestedFilename().includes(format), written.suggestedFilename());
+    assert.ok(readFileSync(await written.path()).length > 1000, `${format} has something in it`);
+  }
+  const [file] = await Promise.all([page.waitForEvent('download'), key(page, 'export.glb')]);
   assert.ok(file.suggestedFilename().endsWith('.glb'), file.suggestedFilename());
   const bytes = readFileSync(await file.path());
   assert.equal(bytes.toString('latin1', 0, 4), 'glTF');
@@ -570,7 +589,181 @@ async function lost({ page, url }) {
   await changed(page, drawn, 'the second branch stands');
 }
 
+/** A known turn: the angle between where the hand was and is, seen from the foot of what it holds. */
+function angleOf(record, carried) {
+  const hands = record.steps.map((s) => s.did.hand).filter((h) => h?.tool === 'rotate');
+  const began = hands.findLastIndex((h) => h.input.down);
+  const moves = hands.slice(began).flatMap((h) => h.input.move ?? []);
+  const [px, py, pz, x, y, z, w] = carried.split(' ').map(Number);
+  const from = ({ tip }) => [tip[0] - px, tip[1] - py, tip[2] - pz];
+  const [a, b] = [from(hands[began].input.down), from(moves.at(-1))];
+  const dot = a.reduce((sum, v, i) => sum + v * b[i], 0);
+  return [
+    Math.acos(dot / Math.hypot(...a) / Math.hypot(...b)),
+    2 * Math.atan2(Math.hypot(x, y, z), Math.abs(w)),
+  ];
+}
+
+/** Everything that a hand can do, one after another, written down and done again by the command; then all of it taken back. */
+const whole =
+  (model, side) =>
+  async ({ page, url, burgeon, out }) => {
+    const plain = await enter(page, url, model);
+    const undo = side === 'right' ? 'b-button' : 'y-button';
+    if (side === 'left') await key(page, 'left');
+    const at = (word) => key(page, word, side);
+    const digests = [plain];
+    const done = async (what) => {
+      const count = digests.length;
+      await until(page, 'edits', ['is', count], what);
+      await until(page, 'done', ['is', count], `${what}: done`);
+      digests.push(await changed(page, digests.at(-1), what));
+    };
+    await at('scene');
+    await at('record');
+    await page.waitForFunction(() => JSON.parse(document.body.dataset.vr).records);
+    await at('scene');
+    // Grown, with more vigour on the way.
+    await at('grow');
+    await find(page, side);
+    await press(page, side, 'trigger', 1);
+    const first = await changed(page, plain, 'it grows');
+    await stick(page, side, 0, 1);
+    await page.waitForFunction(() => JSON.parse(document.body.dataset.vr).said.includes('Vigour'));
+    await changed(page, first, 'it grows on');
+    await stick(page, side, 0, 0);
+    await press(page, side, 'trigger', 0);
+    await done('a shoot');
+    // Grabbed, and turned by what the hand does.
+    await at('rotate');
+    const held = await find(page, side);
+    let carried = '';
+    await stroke(
+      page,
+      way(held, [0.012, 0.008, 0.006], 10),
+      async () => {
+        await carries(page);
+        await frames(page, 6);
+        carried = await data(page, 'carried');
+      },
+      side,
+      'squeeze',
+    );
+    await done('a turn');
+    await at('sketch');
+    await stroke(page, way(await find(page, side), [0.02, 0.015, 0], 10), undefined, side);
+    await done('a branch in the air');
+    await at('brush');
+    await stroke(page, way(await find(page, side), [0.015, 0.02, 0], 10), undefined, side);
+    await done('a brush');
+    // A plane before the plant, and an outline on it.
+    await at('silhouette');
+    await hand(page, side, [0.05, 1.0, -0.3], [0.35, 0.95, -1.3]);
+    await frames(page);
+    await press(page, side, 'squeeze', 1);
+    await page.waitForFunction(() => JSON.parse(document.body.dataset.vr).plane);
+    await press(page, side, 'squeeze', 0);
+    const ring = (k) => [0.05 + 0.2 * Math.cos(k / 3), 1.0 + 0.2 * Math.sin(k / 3), -0.45];
+    await stroke(
+      page,
+      Array.from({ length: 19 }, (_, k) => ring(k)),
+      undefined,
+      side,
+    );
+    await done('an outline');
+    await at('leaves');
+    for (let k = 0; k < 3; k += 1) await at('larger');
+    await stroke(page, way([-0.2, 1, -0.6], [0.04, 0.02, -0.01], 12), undefined, side);
+    await done('fewer leaves');
+    await at('prune');
+    await find(page, side);
+    await click(page, side, 'trigger');
+    await done('a cut');
+    for (const digest of digests.slice(0, -1).reverse()) {
+      await click(page, side, undo);
+      await page.waitForFunction((d) => document.body.dataset.digest === d, digest);
+    }
+    assert.equal(await data(page, 'digest'), plain, 'the first plant again');
+    const redo = side === 'right' ? 'a-button' : 'x-button';
+    for (const digest of digests.slice(1)) {
+      await click(page, side, redo);
+      await page.waitForFunction((d) => document.body.dataset.digest === d, digest);
+    }
+    // The record is done again by the command, without page or headset: the same plant.
+    await at('scene');
+    const [file] = await Promise.all([page.waitForEvent('download'), at('record')]);
+    const path = `${out}/${model}-${side}.gestures.json`;
+    await file.saveAs(path);
+    const record = JSON.parse(readFileSync(path, 'utf8'));
+    const [asked, turned] = angleOf(record, carried);
+    assert.ok(asked > 0.1 && Math.abs(asked - turned) < 0.01, `turned by ${turned}, the hand by ${asked}`);
+    const again = JSON.parse(execFileSync(burgeon, ['replay', path, '--json'], { encoding: 'utf8' }));
+    assert.deepEqual([again.digest, again.same, again.edits], [digests.at(-1), true, 7]);
+    await at('scene');
+    await key(page, 'leave', side, { last: true });
+    await page.waitForFunction(() => document.body.dataset.headset === 'off');
+    assert.equal(await data(page, 'digest'), digests.at(-1));
+    await page.waitForFunction(() => document.body.dataset.kept === 'saved');
+    await page.reload();
+    await page.waitForFunction((d) => document.body.dataset.digest === d, digests.at(-1));
+  };
+
+/** A whole oak is drawn for both eyes within 300,000 triangles and 100 calls; out of the headset it is whole again. */
+async function levels({ page, url, shot }) {
+  await wear(page, 'metaQuest3');
+  await begin(page, url);
+  await drop(
+    page,
+    'oak.toml',
+    readFileSync(new URL('../../../crates/studio/presets/oak.toml', import.meta.url), 'utf8'),
+  );
+  await until(page, 'triangles', ['above', 150_000], 'an oak has grown');
+  const plain = await settled(page);
+  // Two pictures, as a headset has them: what is counted is both.
+  await page.evaluate(() => {
+    window.device.stereoEnabled = true;
+  });
+  await page.locator('#b-headset').click();
+  await page.waitForFunction(() => document.body.dataset.headset === 'on');
+  await page.waitForFunction(() => {
+    const { cost, frames: n } = JSON.parse(document.body.dataset.vr || '{}');
+    return n > 3 && cost.triangles > 10_000 && cost.triangles <= 300_000;
+  });
+  await frames(page);
+  const { cost, first } = await state(page);
+  console.log(
+    `        ${cost.triangles} triangles and ${cost.calls} calls for both eyes; first picture ${first} ms`,
+  );
+  assert.ok(cost.calls <= 100, `${cost.calls} calls`);
+  assert.equal(await data(page, 'digest'), plain, 'the plant is the same one');
+  await shot('headset-levels');
+  // A branch of what is shown is carried, and nothing is made again.
+  const at = await find(page, 'right');
+  await press(page, 'right', 'squeeze', 1);
+  await frames(page);
+  await hand(page, 'right', [at[0] + 0.05, at[1] + 0.02, at[2]]);
+  await carries(page);
+  await press(page, 'right', 'squeeze', 0);
+  await until(page, 'edits', ['is', 1], 'one edit');
+  await changed(page, plain, 'it was turned');
+}
+
+const SMALL = { viewport: { width: 420, height: 300 } };
+
+/** What CI runs of it: each within some tens of seconds. */
+export const core = [
+  [
+    'headset in short: all tools, a record, undo, reload (Quest 3, right)',
+    whole('metaQuest3', 'right'),
+    SMALL,
+  ],
+];
+
 export const headset = [
+  ['headset: all tools (Quest 3, left)', whole('metaQuest3', 'left'), SMALL],
+  ['headset: all tools (Pico 4 Ultra, right)', whole('pico4Ultra', 'right'), SMALL],
+  ['headset: all tools (Pico 4 Ultra, left)', whole('pico4Ultra', 'left'), SMALL],
+  ['headset: levels of detail', levels, WIDE],
   ['headset: turn, draw, undo, leave', shape, WIDE],
   ['headset: a shoot grows', grow, WIDE],
   ['headset: size, place, left hand, an early end', stand, WIDE],

@@ -28,11 +28,11 @@ import { currentLanguage, setLanguage, t, tell, tOf } from './text';
 import { Theme } from './theme';
 import { SHEET_TOOLS } from './tools';
 import { endTour, firstRun, tour } from './tour';
-import { note } from './ui';
+import { download, note } from './ui';
 import { PlantView } from './view/view';
 import { ViewModes } from './viewmode';
 import { Door, type Mode } from './vr/door';
-import type { Command, Obstacle } from './wire';
+import type { Command, ExportFormat, GestureRecord, Obstacle } from './wire';
 import { Writing } from './writing';
 
 /** The sheet of a plant that is not drawn. */
@@ -162,6 +162,7 @@ export class App implements Page {
       view: (view, fresh) => {
         const { session } = this;
         this.view?.update(view, fresh);
+        this.door.recorder?.seen();
         session.draftShown();
         this.sheet.setOrgans(session.organs, this.readings.doubtful);
         this.panel.follow();
@@ -203,6 +204,7 @@ export class App implements Page {
       asked: (request) => this.documents.keeper.record(request),
       vain: (request) => this.documents.keeper.forget(request),
       told: (request) => this.documents.keeper.again(request),
+      did: (request, value) => this.door.recorder?.did(request, value),
     };
   }
 
@@ -396,7 +398,20 @@ export class App implements Page {
         session.run({ scene: { duplicate: [plant.id, [Math.round(aside * 100) / 100, 0, 0]] } });
       },
       run: (id: CommandId) => commandOf(id).run(this),
-      model: () => void this.files.model(),
+      model: (format: ExportFormat) => void this.files.model(format),
+      most: (triangles: number) =>
+        void session.engine.ask({ kind: 'most', triangles }).catch(() => undefined),
+      project: () => session.engine.ask<Uint8Array>({ kind: 'save' }),
+      seen: () => ({ plant: session.plant?.id, digest: session.seen?.item?.digest }),
+      write: (record: GestureRecord) => {
+        const name = `${safe(session.state?.name ?? t('app.untitled'))}.gestures.json`;
+        download(name, JSON.stringify(record), 'application/json');
+        note(t('note.exported', { name }));
+      },
+      shift: (row: number, by: [number, number, number]) => {
+        const { plant } = session;
+        if (plant?.tree) session.run({ tree: [plant.id, { 'move-obstacle': [row, by] }] });
+      },
       select: (by: -1 | 0 | 1) => {
         const { state, plant } = session;
         const plants = state?.plants ?? [];

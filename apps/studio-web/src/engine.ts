@@ -30,6 +30,8 @@ export interface EngineEvents {
   vain(request: Request): void;
   /** It bears now where its plant was put. */
   told(request: Request): void;
+  /** The worker did it, and answered so: in the order of its work. */
+  did(request: Request, value: unknown): void;
 }
 
 const CHANGES: ReadonlySet<Request['kind']> = new Set([
@@ -132,7 +134,10 @@ export class Engine {
         break;
       case 'done': {
         const waiting = this.waiting.get(message.seq);
-        if (waiting) this.done(waiting.request, message.placed, message.value);
+        if (waiting) {
+          this.done(waiting.request, message.placed, message.value);
+          this.events.did(waiting.request, message.value);
+        }
         waiting?.resolve(message.value);
         this.waiting.delete(message.seq);
         break;

@@ -217,8 +217,8 @@ export class Files {
   }
 
   /** The whole scene as a model, without questions. */
-  async model(): Promise<void> {
-    await this.exportAs('glb', { levels: 1, up: 'y', unit: 'm', whole: this.events.several(), wind: false });
+  async model(format: Target = 'glb'): Promise<void> {
+    await this.exportAs(format, { levels: 1, up: 'y', unit: 'm', whole: this.events.several(), wind: false });
   }
 
   chooseExport(): void {

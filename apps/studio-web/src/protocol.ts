@@ -59,6 +59,8 @@ export type Request =
   | { kind: 'share' }
   /** A tool that shapes the chosen plant: what it would do is shown, what it did comes back as an edit. */
   | { kind: 'shape'; tool: ToolKind; reach: ShapeReach; input: ShapeInput }
+  /** Shows at most so many triangles of all plants, the largest coarser; 0: all. */
+  | { kind: 'most'; triangles: number }
   /** The branch of a pick with all that it bears. */
   | { kind: 'branch'; axis: number }
   /** Triangles of the meshes that the hand carries: part, first, and the one after the last, of each range. */

@@ -116,6 +116,8 @@ function answer(s: StudioSession, request: Request): unknown {
       return JSON.parse(
         s.shape(JSON.stringify(request.tool), JSON.stringify(request.reach), JSON.stringify(request.input)),
       );
+    case 'most':
+      return s.set_most_triangles(request.triangles);
     case 'branch':
       return s.branch(request.axis);
     case 'held':

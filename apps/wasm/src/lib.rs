@@ -290,6 +290,11 @@ impl StudioSession {
         self.0.skeleton()
     }
 
+    /// See [`Workspace::set_most_triangles`]; 0: all.
+    pub fn set_most_triangles(&mut self, most: u32) {
+        self.0.set_most_triangles((most > 0).then_some(most.into()));
+    }
+
     /// See [`Workspace::shape`]: `ToolKind`, `ShapeReach` and `ShapeInput` in, `ShapeAnswer` out, all JSON.
     ///
     /// # Errors

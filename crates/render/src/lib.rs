@@ -101,6 +101,30 @@ pub fn turntable(
         .collect()
 }
 
+/// A picture of each model, all by one camera that sees all of them; `spec.view` is no turntable, or is seen from the front.
+///
+/// # Errors
+/// [`Cancelled`] when the run was cancelled.
+///
+/// ```
+/// let spec = render::PictureSpec { width: 32, height: 24, ..Default::default() };
+/// let film = render::film(&[mesh::Model::default(), mesh::Model::default()], &spec, &base::Run::plain())?;
+/// assert_eq!(film.len(), 2);
+/// # Ok::<(), base::Cancelled>(())
+/// ```
+pub fn film(models: &[Model], spec: &PictureSpec, run: &Run<'_>) -> Result<Vec<Picture>, Cancelled> {
+    let view = if matches!(spec.view, View::Turntable { .. }) { View::Front } else { spec.view };
+    let spec = PictureSpec { view, ..spec.clone() }.clamped();
+    let scenes: Vec<Scene> = models.iter().map(Scene::new).collect();
+    let points: Vec<_> = scenes.iter().flat_map(Scene::points).collect();
+    let camera = Camera::framing(&points, &spec);
+    let shot = |scene: &Scene| {
+        let sky = Sky::new(scene, &spec, run)?;
+        shade::frame(scene, &sky, &spec, camera, run)
+    };
+    scenes.iter().map(shot).collect()
+}
+
 // The layout whose cells are nearest to 4:5 upright, which suits plants.
 fn columns_for(frames: u32, width: u32, height: u32) -> u32 {
     let frames = frames.max(1);

@@ -2,6 +2,7 @@
 //!
 //! `Document -> SceneEvaluator (an evaluator a plant) -> models, reports | scene_model -> one model`
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use base::{Cancelled, OverBudget, Report, Run, Seed, Stopped};
@@ -16,7 +17,7 @@ use growth::TreeSpec;
 use ink::{Stroke, StrokeClass};
 use leaf::{FullMarks, LeafSpec, ThicknessRule};
 use mesh::{MaterialId, Model, Standing};
-use plant::Plant;
+use plant::{AxisId, Plant};
 use sketch::SketchSpec;
 use skin::{Layout, OrganMaterial, SkinSpec, Worn};
 use spec::Spec;
@@ -147,6 +148,31 @@ pub struct ScenePlant<'a> {
     pub revision: u64,
     /// What the last update did again.
     pub stages: &'a [&'static str],
+}
+
+/// A plant at a level of detail.
+#[derive(Clone, Debug)]
+pub struct PlantLevel {
+    /// Its meshes.
+    pub model: Model,
+    /// The coarser plant, and what of it lies where in them.
+    laid_out: Option<(Plant, Layout)>,
+}
+
+impl PlantLevel {
+    /// The triangles of a branch of `plant`, which this is a level of, and of all that it bears, as
+    /// [`Layout::branch`] has them. None where that is not known, or the branch is too fine for the level.
+    pub fn branch(&self, plant: &Plant, axis: AxisId) -> Option<Vec<Vec<Range<u32>>>> {
+        let (coarse, layout) = self.laid_out.as_ref()?;
+        let wanted = plant.axes.get(axis.index())?;
+        let foot = plant.axis_points(axis).first()?;
+        let same = |row: &usize| {
+            let (id, own) = (AxisId::new(*row), &coarse.axes[*row]);
+            (own.key, own.kind) == (wanted.key, wanted.kind) && coarse.axis_points(id).first() == Some(foot)
+        };
+        let row = (0..coarse.axes.len()).find(same)?;
+        layout.branch(coarse, AxisId::new(row))
+    }
 }
 
 impl ScenePlant<'_> {
@@ -444,12 +470,30 @@ impl SceneEvaluator {
         level: u32,
         run: &Run<'_>,
     ) -> Result<Model, SceneError> {
+        Ok(self.level(plant, document, level, run)?.model)
+    }
+
+    /// As [`Self::at_level`], also with what lies where in the model, where that is known.
+    ///
+    /// # Errors
+    /// As [`Self::at_level`].
+    pub fn level(
+        &self,
+        plant: &DocumentPlant,
+        document: &Document,
+        level: u32,
+        run: &Run<'_>,
+    ) -> Result<PlantLevel, SceneError> {
+        let bare = |model| PlantLevel { model, laid_out: None };
         let name = || SceneError::NotMade(plant.settings().name.clone());
         let made = &self.plants.get(&plant.id()).ok_or_else(name)?.made;
         let shown = self.get(plant.id()).ok_or_else(name)?;
         match &plant.settings().maker {
-            _ if level == 0 => Ok(shown.model.clone()),
-            Maker::Tree(_) => made.tree.at_level(level, run)?.ok_or_else(name),
+            _ if level == 0 => Ok(bare(shown.model.clone())),
+            Maker::Tree(_) => {
+                let (model, laid_out) = made.tree.laid_out_at(level, run)?.ok_or_else(name)?;
+                Ok(PlantLevel { model, laid_out: Some(laid_out) })
+            }
             Maker::Sketch(sketch) => {
                 let mut skin = sketch.skin.clone();
                 for _ in 0..level {
@@ -459,13 +503,13 @@ impl SceneEvaluator {
                 let mut editor = Editor::new(document.clone());
                 // A mesh that is as coarse as it can be stays as it is.
                 if editor.run(SketchCommand::SetSkin(skin).of(plant.id())).is_err() {
-                    return Ok(shown.model.clone());
+                    return Ok(bare(shown.model.clone()));
                 }
                 let mut aside = self.aside([plant]);
                 aside.update(plant.id(), editor.document(), run)?;
-                aside.get(plant.id()).map(|made| made.model.clone()).ok_or_else(name)
+                aside.get(plant.id()).map(|made| bare(made.model.clone())).ok_or_else(name)
             }
-            _ => Ok(coarse(shown.plant.ok_or_else(name)?, &made.skin, shown.model, level, run)?),
+            _ => Ok(bare(coarse(shown.plant.ok_or_else(name)?, &made.skin, shown.model, level, run)?)),
         }
     }
 

@@ -91,6 +91,12 @@ pub enum WorkspaceError {
         /// Most steps.
         most: usize,
     },
+    /// The project in a record of gestures is no base64.
+    #[error("the project in the record of gestures is not in base64")]
+    RecordProject,
+    /// A record keeps an edit that no gesture made.
+    #[error("the record of gestures keeps an edit that none of its gestures made")]
+    RecordKeeps,
     /// The plant cannot be made.
     #[error(transparent)]
     Scene(#[from] SceneError),
@@ -149,6 +155,8 @@ burgeon::coded!(WorkspaceError {
     Self::Record(why) => "record" { why = &Slip::of(&why.to_string()) => Slip },
     Self::RecordForm(form) => "record-form" { form },
     Self::RecordLong { most } => "record-long" { most },
+    Self::RecordProject => "record-project" {},
+    Self::RecordKeeps => "record-keeps" {},
     Self::Cancelled => "cancelled" {},
     Self::Message(why) => "message" { why = &Slip::of(why) => Slip },
     Self::Internal(why) => "internal" { why },

@@ -70,6 +70,7 @@ impl Workspace {
             }
         }
         self.make_room();
+        self.make_levels(run);
         Ok(self.view())
     }
 
@@ -121,7 +122,7 @@ impl Workspace {
             let model = self.model(id);
             // None for what the page shows nothing of, or a look: whatever comes next is new to it.
             let shown = !previewed && model.is_some();
-            let revision = self.scene.get(id).map(|p| p.revision).filter(|_| shown);
+            let revision = self.scene.get(id).map(|p| self.levels.name(id, p.revision)).filter(|_| shown);
             let mut seen =
                 model.map_or_else(|| PlantView::empty(id), |m| PlantView::of(id, m, &mut textures));
             seen.fresh = previewed || model.is_none() || self.meshes.get(&id) != Some(&revision);
@@ -180,7 +181,7 @@ impl Workspace {
         if self.previewed && self.current() == Some(id) {
             return self.preview.as_ref()?.model();
         }
-        self.scene.get(id).map(|p| p.model)
+        self.levels.of(id).map(|l| &l.model).or_else(|| self.scene.get(id).map(|p| p.model))
     }
 
     /// A column of a mesh of the last view; empty for what is not there.

@@ -6,6 +6,8 @@ use burgeon::document::PlantId;
 use burgeon::plant::Plant;
 use burgeon::shape::{HandEdit, Thumb, Tool};
 
+use crate::CarriedPose;
+
 /// A gesture that is going on, or was and waits for its command.
 #[derive(Clone, Debug)]
 pub(crate) struct Held {
@@ -23,6 +25,8 @@ pub(crate) struct Held {
     pub(crate) lean: f64,
     /// What of the meshes it carries, where it moves them and makes none.
     pub(crate) rows: Option<Rows>,
+    /// And where it carried them last.
+    pub(crate) carried: Option<CarriedPose>,
 }
 
 /// Triangles that a hand carries.

@@ -10,6 +10,7 @@
 //! | `exported` | exports that are looked at before they are written |
 //! | `evaluate` | plants made and shown, meshes as columns |
 //! | `kept` | how long results are kept |
+//! | `levels` | levels of detail for shells that draw little |
 //! | `record` | what hands did, as a file, and again |
 //! | `shaping` | tools that shape a plant by hand |
 //! | `state` | what a shell shows of the document |
@@ -26,6 +27,7 @@ mod exported;
 mod files;
 mod held;
 mod kept;
+mod levels;
 mod looked;
 mod record;
 mod scatter;
@@ -42,7 +44,7 @@ pub use export::{ExportFormat, ExportRequest, LengthUnit, NamedFile, Up, packed}
 pub use exported::{ExportView, ExportedPlant, PartFigures};
 pub use files::{FileKind, Opened};
 pub use kept::{KEPT_BYTES, SHOWN_BYTES};
-pub use record::{GESTURES_SCHEMA, GestureRecord, GestureStep, MOST_STEPS};
+pub use record::{GESTURES_SCHEMA, GestureDeed, GestureRecord, GestureStep, HandDeed, MOST_STEPS, Replayed};
 pub use scatter::{Ground, Scatter};
 pub use shaping::{CarriedPose, Grown, Picked, ShapeAnswer, ShapeInput, ShapePointer, ShapeReach, ShapeStep};
 pub use state::{

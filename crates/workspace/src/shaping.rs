@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use burgeon::document::{CommandError, Document, Editor, PlantId, ShapeCommand};
 use burgeon::geom;
-use burgeon::glam::{DVec2, DVec3};
+use burgeon::glam::{DQuat, DVec2, DVec3};
+use burgeon::mesh::Model;
 use burgeon::plant::{Axis, AxisId, AxisKind, Plant};
 use burgeon::shape::{
     self, AxisKey, Growth, HandEdit, Input, Mirror, Pick, Pointer, Ray, Reach, Thumb, Tool, ToolKind,
@@ -240,9 +241,9 @@ impl Workspace {
             let tool = Tool::new(tool).with(reach, edits as u64 + 1).mirrored(mirror);
             let large = self.scene.get(id).is_some_and(|p| p.model.triangle_count() as u64 > COARSE_ABOVE);
             let (thumb, lean) = (Thumb::default(), 0.0);
-            let rows = None;
+            let (preview, rows, carried) = (None, None, None);
             self.held =
-                Some(Held { tool, plant: id, before: plant, large, preview: None, thumb, lean, rows });
+                Some(Held { tool, plant: id, before: plant, large, preview, thumb, lean, rows, carried });
         }
         let Some(held) = &mut self.held else { return Err(WorkspaceError::Internal("no tool")) };
         let (tool, plant) = (&mut held.tool, &held.before);
@@ -276,18 +277,22 @@ impl Workspace {
         if !going && let Some(pick) = said.picked.filter(|_| tool.carries()) {
             held.rows = self.scene.get(id).and_then(|made| {
                 // Another gesture's preview may be what is shown.
-                let shown = made.layout.filter(|_| had.is_none())?.branch(plant, pick.axis)?;
+                let layout = made.layout.filter(|_| had.is_none())?;
+                let shown = match self.levels.of(id) {
+                    Some(level) => level.branch(plant, pick.axis)?,
+                    None => layout.branch(plant, pick.axis)?,
+                };
                 let parts = (0_u32..).zip(shown);
                 let ranges =
                     parts.flat_map(|(part, rows)| rows.into_iter().map(move |r| [part, r.start, r.end]));
-                Some(Rows { mesh: made.revision, ranges: ranges.collect() })
+                Some(Rows { mesh: self.levels.name(id, made.revision), ranges: ranges.collect() })
             });
         }
         let picked = said.picked.and_then(|k| picked(plant, k, false));
         held.preview = said.preview.or_else(|| said.commit.clone()).map(Arc::new);
         let now = held.preview.clone();
         // Meshes that were made meanwhile are not moved: what is held is made again then.
-        let shown = self.scene.get(id).map(|made| made.revision);
+        let shown = self.scene.get(id).map(|made| self.levels.name(id, made.revision));
         held.rows = held.rows.take().filter(|rows| shown == Some(rows.mesh));
         let carried =
             held.rows.as_ref().filter(|_| busy).zip(tool.carried(plant)).map(|(rows, c)| CarriedPose {
@@ -296,6 +301,7 @@ impl Workspace {
                 to: c.to.to_array(),
                 turn: c.turn.to_array(),
             });
+        held.carried = carried;
         let again = now != had && held.rows.is_none();
         if !busy && now.is_none() {
             self.held = None;
@@ -384,6 +390,33 @@ impl Workspace {
     /// ranges of a part ascend and lie apart. Empty where nothing is carried.
     pub fn held_rows(&self) -> &[u32] {
         self.held.as_ref().and_then(|h| h.rows.as_ref()).map_or(&[], |rows| rows.ranges.as_flattened())
+    }
+
+    /// The current plant as it is seen: what a hand carries is where the hand is. A copy; none where nothing is made.
+    pub fn seen(&self) -> Option<Model> {
+        let mut model = self.model(self.current()?)?.clone();
+        let held = self.held.as_ref().and_then(|h| Some((h.rows.as_ref()?, h.carried?)));
+        let Some((rows, pose)) = held else { return Some(model) };
+        let v = DVec3::from_array;
+        let (from, to, turn) = (v(pose.from), v(pose.to), DQuat::from_array(pose.turn));
+        for (part, of) in (0_u32..).zip(&mut model.parts) {
+            let ranges = rows.ranges.iter().filter(|r| r[0] == part);
+            let triangles =
+                ranges.filter_map(|r| of.mesh.triangles.get(r[1] as usize..r[2] as usize)).flatten();
+            let mut vertices: Vec<u32> = triangles.flatten().copied().collect();
+            vertices.sort_unstable();
+            vertices.dedup();
+            for vertex in vertices {
+                if let Some(p) = of.mesh.positions.get_mut(vertex as usize) {
+                    let at = DVec3::from_array(p.map(f64::from));
+                    *p = (to + turn * (at - from)).as_vec3().to_array();
+                }
+                if let Some(n) = of.mesh.normals.get_mut(vertex as usize) {
+                    *n = (turn * DVec3::from_array(n.map(f64::from))).as_vec3().to_array();
+                }
+            }
+        }
+        Some(model)
     }
 
     /// The edit of the gesture that is shown of a plant.

@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::held::Held;
 use crate::kept::Kept;
+use crate::levels::Levels;
 use crate::looked::Looked;
 use crate::view::{Outcome, Textures};
 use crate::{DocumentState, Scatter, WorkspaceError};
@@ -117,6 +118,8 @@ pub struct Workspace {
     /// What each plant's meshes were made of in the last view: a revision, or a look.
     pub(crate) meshes: LiteMap<PlantId, Option<u64>>,
     pub(crate) kept: Kept,
+    /// What is shown coarser than it was made.
+    pub(crate) levels: Levels,
     /// Points that the shell has. Holding them keeps their addresses from being used again.
     given: LiteMap<StrokeId, Arc<Stroke>>,
     pub(crate) textures: Textures,

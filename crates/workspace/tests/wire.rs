@@ -12,8 +12,8 @@ use schemars::JsonSchema;
 use schemars::generate::{SchemaGenerator, SchemaSettings};
 use serde_json::{Map, Value};
 use workspace::{
-    Action, DocumentState, ExportRequest, ExportView, Opened, PenStyle, Refusal, SceneView, ShapeAnswer,
-    ShapeInput, ShapeReach, WorkspaceError,
+    Action, DocumentState, ExportRequest, ExportView, GestureRecord, Opened, PenStyle, Refusal, SceneView,
+    ShapeAnswer, ShapeInput, ShapeReach, WorkspaceError,
 };
 
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../apps/studio-web/src/wire.ts");
@@ -55,6 +55,7 @@ fn types() -> String {
     add::<ShapeReach>(&mut all);
     add::<ShapeInput>(&mut all);
     add::<ShapeAnswer>(&mut all);
+    add::<GestureRecord>(&mut all);
     add::<Refusal>(&mut all);
     let mut out = HEAD.to_owned();
     let mut codes = Vec::new();

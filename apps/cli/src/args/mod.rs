@@ -7,6 +7,7 @@ mod given;
 mod grow;
 mod leaf;
 mod presets;
+mod replay;
 mod shape;
 mod shared;
 mod sketch;
@@ -20,6 +21,7 @@ pub(crate) use leaf::{
     GraphWord, LeafArgs, ParametersWord, RingsWord, SurfaceWord, ThicknessWord, VenationWord,
 };
 pub(crate) use presets::PresetsArgs;
+pub(crate) use replay::ReplayArgs;
 pub(crate) use shape::ShapeArgs;
 pub(crate) use shared::{
     AxesArgs, CommonArgs, FormatWord, PictureArgs, PlantFormat, SkinArgs, UnitWord, UpWord,
@@ -70,6 +72,11 @@ pub(crate) enum Command {
     /// Works on a species, a spec, a drawing or a project. The edits stand in a JSON file; the rest of the plant stays
     /// as it is.
     Shape(Box<ShapeArgs>),
+    /// Do again what hands did in a headset: a record that the Studio wrote
+    ///
+    /// The same tools, without a hand: the document that the hands left, a picture of it, or an animated picture of all
+    /// that they did.
+    Replay(Box<ReplayArgs>),
     /// List the species that `burgeon grow` knows; show one as TOML; write the JSON Schema of specs
     Presets(PresetsArgs),
     /// Grow the same oak by three methods and compare them

@@ -133,3 +133,21 @@ export function dragObstacles(canvas: HTMLElement, events: ObstacleEvents): void
     { capture: true },
   );
 }
+
+/** The first of some obstacles in which a point lies (in the coordinates of their plant), and its row. Walls have no inside. */
+export function obstacleAround(
+  all: readonly THREE.Mesh[],
+  at: readonly [number, number, number],
+): { row: number; thing: THREE.Object3D } | undefined {
+  const point = new THREE.Vector3();
+  const thing = all.find((mesh) => {
+    const { geometry } = mesh;
+    if (geometry instanceof THREE.PlaneGeometry) return false;
+    mesh.updateMatrix();
+    point.set(...at).applyMatrix4(mesh.matrix.clone().invert());
+    if (geometry instanceof THREE.SphereGeometry) return point.length() <= geometry.parameters.radius;
+    geometry.computeBoundingBox();
+    return geometry.boundingBox?.containsPoint(point) ?? false;
+  });
+  return thing && { row: Number(thing.userData['row']), thing };
+}

@@ -19,7 +19,7 @@ import { Rig, type Side } from './camera';
 import type { Handles } from './gizmo';
 import { type Guide, Guides } from './guides';
 import type { StageSetting } from './moods';
-import { dragObstacles } from './obstacles';
+import { dragObstacles, obstacleAround } from './obstacles';
 import { fillShapes, Looks, PlantMeshes, type Shapes } from './plant';
 import type { Effects, Pipeline } from './post';
 import { drawnBySoftware, Pace } from './quality';
@@ -729,6 +729,12 @@ export class PlantView {
     return { metre: this.scale, reach: (Math.max(0, size.x, size.z) * this.scale) / 2 };
   }
 
+  /** Triangles and draw calls of the last picture, for both eyes where there are two. */
+  get cost(): { triangles: number; calls: number } {
+    const { triangles, calls } = this.renderer.info.render;
+    return { triangles, calls };
+  }
+
   /** Metres of the chosen plant for each unit of the stage. */
   get metresPerUnit(): number {
     return 1 / (this.chosen?.place.getWorldScale(new THREE.Vector3()).x || 1);
@@ -740,6 +746,11 @@ export class PlantView {
     if (!place) return undefined;
     const at = pointerOf(new THREE.Ray(tip, direction), this.rig.far, place, pressure);
     return { ...at, tip: at.origin };
+  }
+
+  /** What the chosen plant grows around, where a point (in its coordinates) lies in it. */
+  obstacleAround(at: readonly [number, number, number]): { row: number; thing: THREE.Object3D } | undefined {
+    return obstacleAround((this.chosen?.obstacles.children ?? []) as THREE.Mesh[], at);
   }
 
   /** Shows a plane of symmetry of the chosen plant, `size` metres wide; undefined: none any more. */

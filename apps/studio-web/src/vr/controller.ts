@@ -74,8 +74,14 @@ export class Controller {
   private readonly pinches = { trigger: new Pinch(), grip: new Pinch() };
   private readonly was = new Map<Part, boolean>();
   private readonly now = new Map<Part, boolean>();
+  /** The numbers of the buttons: they stay while the controller does. */
+  private readonly indices = new Map<Part, number | undefined>();
+  /** The stick, or the touchpad under a thumb; y is up. The same pair in every frame. */
+  readonly thumb: [number, number] = [0, 0];
 
-  constructor(readonly source: XRInputSource) {}
+  constructor(readonly source: XRInputSource) {
+    for (const part of PARTS) this.indices.set(part, indexOf(part, source.profiles));
+  }
 
   get handedness(): XRHandedness {
     return this.source.handedness;
@@ -95,6 +101,7 @@ export class Controller {
       this.tip.setFromMatrixPosition(this.aim).addScaledVector(this.direction, TIP);
     }
     if (this.source.hand) this.readFingers(frame, space, this.source.hand);
+    this.readThumb();
     for (const part of PARTS) {
       this.was.set(part, this.now.get(part) ?? false);
       this.now.set(part, this.value(part) >= PRESSED);
@@ -123,7 +130,7 @@ export class Controller {
   /** How far it is pressed, 0 to 1. */
   value(part: Part): number {
     if (this.isHand) return (part === 'trigger' || part === 'grip') && this.pinches[part].closed ? 1 : 0;
-    const index = indexOf(part, this.source.profiles);
+    const index = this.indices.get(part);
     const button = index === undefined ? undefined : this.source.gamepad?.buttons[index];
     return button ? Math.max(button.value, button.pressed ? PRESSED : 0) : 0;
   }
@@ -140,12 +147,12 @@ export class Controller {
     return !this.holds(part) && (this.was.get(part) ?? false);
   }
 
-  /** The stick, or the touchpad under a thumb; y is up. */
-  get thumb(): readonly [number, number] {
-    const axes = this.source.gamepad?.axes ?? [];
-    const [x, y] =
-      axes.length >= 4 && (axes[2] || axes[3]) ? [axes[2]!, axes[3]!] : [axes[0] ?? 0, axes[1] ?? 0];
-    return [x, -y];
+  private readThumb(): void {
+    const axes = this.source.gamepad?.axes;
+    // The touchpad's come first, the stick's after them.
+    const at = axes && axes.length >= 4 && (axes[2] || axes[3]) ? 2 : 0;
+    this.thumb[0] = axes?.[at] ?? 0;
+    this.thumb[1] = -(axes?.[at + 1] ?? 0);
   }
 
   /** A tick that the hand feels, where the controller can. */

@@ -1,7 +1,9 @@
 /** The way into a headset, where the browser has one. The rest is loaded only there. */
 import type { Shaping } from '../shaping';
 import type { PlantView } from '../view/view';
-import type { Headset, HeadsetEvents, Mode } from './headset';
+import type { HeadsetEvents, Mode } from './events';
+import type { Headset } from './headset';
+import type { Recorder } from './recorder';
 
 export type { Mode };
 
@@ -22,6 +24,11 @@ export class Door {
     void this.look(xr);
     // A headset was plugged in, or out.
     xr.addEventListener('devicechange', () => void this.look(xr));
+  }
+
+  /** What writes down what hands do, once there is a headset. */
+  get recorder(): Recorder | undefined {
+    return this.headset?.recorder;
   }
 
   get isOn(): boolean {

@@ -6,41 +6,19 @@ import * as THREE from 'three';
 import { grownText, type Shaping, type SpaceReach } from '../shaping';
 import { setSetting, setting } from '../store';
 import { t, type TextKey } from '../text';
-import { SHAPE_TOOLS, type ShapeTool } from '../tools';
+import type { ShapeTool } from '../tools';
 import { hearNotes } from '../ui';
 import type { PlantView } from '../view/view';
-import type { Growth, Obstacle, ShapeAnswer, ShapePointer, ViewPlane } from '../wire';
+import type { Growth, ShapeAnswer, ShapePointer, ViewPlane } from '../wire';
+import { type Board, rowsOf } from './board';
 import { Controller, type Part } from './controller';
+import type { HeadsetEvents, Mode } from './events';
 import { Labels, Readout } from './labels';
 import { Lesson } from './lesson';
 import { Placing } from './placing';
+import { Recorder } from './recorder';
 import { SNAP, World } from './world';
-import { type Key, Wrist } from './wrist';
-
-export type Mode = 'immersive-vr' | 'immersive-ar';
-
-export interface HeadsetEvents {
-  undo(): void;
-  redo(): void;
-  /** Makes the plant another species, the next or the one before; what it is now, if it has any. */
-  species(by: 1 | -1): Promise<string | undefined>;
-  /** Another plant like the chosen one, beside it. */
-  copy(): void;
-  run(command: 'dice' | 'guide-grid' | 'guide-staff' | 'save'): void;
-  /** Writes the scene as a model. */
-  model(): void;
-  /** Works on the next plant, the one before, or (0) this one; which it is then. */
-  select(by: -1 | 0 | 1): { name: string; number: number; count: number } | undefined;
-  /** Another plant of the same kind beside the others; it is worked on. */
-  add(): void;
-  /** How many obstacles the chosen plant has; undefined where it can have none. */
-  obstacles(): number | undefined;
-  obstruct(shape: Obstacle): void;
-  /** Takes the last obstacle away. */
-  clear(): void;
-  /** It was entered, or left. */
-  changed(on: boolean): void;
-}
+import { Wrist } from './wrist';
 
 /** Within so far of a controller's tip, metres of the person, wood is meant that it does not touch. */
 const NEAR_M = 0.035;
@@ -68,14 +46,16 @@ const TURNS = [
   ['apical', 'lift'],
   ['apart', 'angle_deg'],
 ] as const satisfies readonly (readonly [keyof Growth, keyof Growth])[];
-const GROWTH_KEYS = ['vigour', 'apical', 'angle_deg', 'lift', 'apart'] as const;
+/** Triangles of all plants, drawn for each eye; what else is seen has few. */
+const MOST_TRIANGLES = 140_000;
 const DRAWS: ReadonlySet<ShapeTool> = new Set<ShapeTool>(['sketch', 'brush', 'silhouette', 'leaves']);
 
 export class Headset {
   private session: XRSession | undefined;
   private readonly world = new World();
   private readonly wrist = new Wrist();
-  private readonly controllers = new Map<XRInputSource, Controller>();
+  private hands: Controller[] = [];
+  private readonly grasping: THREE.Vector3[] = [];
   private readonly pointerLine = line(2, 0xffffff);
   private readonly trace = line(TRACE, 0x9be07a);
   private readonly lit = new THREE.LineSegments(
@@ -102,13 +82,18 @@ export class Headset {
   private turned = false;
   private drawn = 0;
   private frames = 0;
+  /** From the wish to go in until the first picture was drawn. */
+  private firstMs = 0;
   private reportAt = 0;
   /** The pair of numbers that the stick turns. */
   private pair = 0;
-  /** Which keys the wrist has. */
-  private page: 'tools' | 'more' | 'scene' = 'tools';
   private readonly readout = new Readout();
   private readonly placing = new Placing();
+  readonly recorder = new Recorder();
+  /** An obstacle in the hand: its row, where the hand took it, and what shows it. */
+  private carried:
+    | { row: number; from: ShapePointer; last: ShapePointer; thing: THREE.Object3D; stood: THREE.Vector3 }
+    | undefined;
   private lostAt = 0;
   private readonly lesson = new Lesson(Number(setting('vr.lesson')) || 0, (done) =>
     setSetting('vr.lesson', String(done)),
@@ -116,6 +101,36 @@ export class Headset {
   private labels: Labels[] = [];
   /** The plane on which outlines are drawn. */
   private readonly sheet = new THREE.GridHelper(1, 12, 0x9be07a, 0x9be07a);
+
+  /** What the keys of the wrist show and do. */
+  private readonly board: Board = {
+    page: 'tools',
+    state: () => ({
+      placed: this.placing.kind,
+      isRecorded: this.recorder.isOn,
+      trueScale: this.trueScale,
+      leftHanded: this.leftHanded,
+    }),
+    say: (text) => this.wrist.say(text),
+    undone: () => this.did('undo'),
+    tellPlant: (by) => this.tellPlant(by),
+    place: (kind) => this.place(kind),
+    writeDown: () => void this.writeDown(),
+    mirror: (hand) => void this.mirror(this.pointer(hand)),
+    brush: (by) => this.brush(by),
+    resize: () => {
+      this.trueScale = !this.trueScale;
+      this.blink(() => this.stand());
+    },
+    swapHands: () => {
+      this.leftHanded = !this.leftHanded;
+      setSetting('vr.left', this.leftHanded ? 'yes' : 'no');
+      this.label();
+    },
+    sit: (by) => this.sit(by * SEAT_M),
+    leave: () => void this.leave(),
+    startLesson: () => this.startLesson(),
+  };
 
   constructor(
     private readonly view: PlantView,
@@ -142,6 +157,7 @@ export class Headset {
   async enter(mode: Mode): Promise<void> {
     const { xr } = navigator as { xr?: XRSystem };
     if (!xr || this.session) return;
+    const asked = performance.now();
     const session = await xr.requestSession(mode, {
       optionalFeatures: ['local-floor', 'hand-tracking'],
     });
@@ -167,6 +183,8 @@ export class Headset {
       () => false,
     );
     this.raised = floor ? 0 : EYES_M;
+    this.frames = 0;
+    this.events.most(MOST_TRIANGLES);
     if (!this.shaping.isOn) this.shaping.toggle();
     this.stand();
     this.tellStep();
@@ -178,7 +196,11 @@ export class Headset {
       mode === 'immersive-ar',
       {
         things: [this.trace, this.lit, this.ring],
-        frame: (frame, space) => this.frame(frame, space),
+        frame: (frame, space) => {
+          // Of the first picture: all of this is done before the next is begun.
+          if (this.frames === 1) this.firstMs = performance.now() - asked;
+          this.frame(frame, space);
+        },
       },
     );
     this.events.changed(true);
@@ -197,7 +219,8 @@ export class Headset {
   private left(): void {
     this.finish();
     this.session = undefined;
-    this.controllers.clear();
+    this.hands = [];
+    this.events.most(0);
     this.light(undefined);
     this.shaping.onLight = this.shaping.onHeard = this.shaping.onPlane = () => {};
     hearNotes(undefined);
@@ -210,12 +233,12 @@ export class Headset {
   }
 
   private come(source: XRInputSource): void {
-    if (source.targetRayMode === 'tracked-pointer') this.controllers.set(source, new Controller(source));
+    if (source.targetRayMode === 'tracked-pointer') this.hands.push(new Controller(source));
   }
 
   private gone(source: XRInputSource): void {
     if (this.working?.hand.source === source) this.finish();
-    this.controllers.delete(source);
+    this.hands = this.hands.filter((hand) => hand.source !== source);
   }
 
   private stand(): void {
@@ -229,14 +252,18 @@ export class Headset {
     this.frames += 1;
     const pose = frame.getViewerPose(space);
     if (pose) head.setFromMatrixPosition(matrix.fromArray(pose.transform.matrix));
-    let [tool, menu]: (Controller | undefined)[] = [];
-    for (const hand of this.controllers.values()) {
+    let tool: Controller | undefined;
+    let menu: Controller | undefined;
+    for (const hand of this.hands) {
       hand.read(frame, space);
       if (hand.handedness === (this.leftHanded ? 'right' : 'left')) menu = hand;
       else tool = hand;
     }
     // One controller alone works.
-    if (!tool) [tool, menu] = [menu, undefined];
+    if (!tool) {
+      tool = menu;
+      menu = undefined;
+    }
     this.show(tool, menu);
     if (tool && menu && tool.holds('grip') && menu.holds('grip')) this.cancelGrip();
     this.moveWorld(tool, menu);
@@ -251,23 +278,31 @@ export class Headset {
     this.wrist.board.visible = menu?.tracked ?? false;
     if (menu?.tracked) this.wrist.follow(menu.grip);
     this.readout.follow(tool);
-    [tool, menu].forEach((hand, i) => {
-      const tip = this.tips[i]!;
-      tip.visible = hand?.tracked ?? false;
-      if (hand) tip.position.copy(hand.tip);
-      this.labels[i]?.follow(hand);
-    });
+    this.mark(0, tool);
+    this.mark(1, menu);
+  }
+
+  private mark(i: 0 | 1, hand: Controller | undefined): void {
+    const tip = this.tips[i]!;
+    tip.visible = hand?.tracked ?? false;
+    if (hand) tip.position.copy(hand.tip);
+    this.labels[i]?.follow(hand);
   }
 
   /** The other hand's grip moves the scene, both turn and scale it. */
   private moveWorld(tool: Controller | undefined, menu: Controller | undefined): void {
-    const both = menu?.holds('grip') && tool?.holds('grip') && !this.working;
-    this.world.grasp(both ? [tool!.tip, menu!.tip] : menu?.holds('grip') && menu.tracked ? [menu.tip] : []);
+    const both = menu?.holds('grip') && tool?.holds('grip') && !this.working && !this.carried;
+    const { grasping } = this;
+    grasping.length = 0;
+    if (both) grasping.push(tool!.tip, menu!.tip);
+    else if (menu?.holds('grip') && menu.tracked) grasping.push(menu.tip);
+    this.world.grasp(grasping);
   }
 
   /** The other hand's stick: forward goes where it points, sideways turns. */
   private walk(menu: Controller): void {
-    const [x, y] = menu.thumb;
+    const x = menu.thumb[0];
+    const y = menu.thumb[1];
     if (y > OUT && menu.tracked) this.aiming = true;
     if (this.aiming) {
       this.world.toScene(menu.tip, from);
@@ -296,7 +331,7 @@ export class Headset {
 
   private work(hand: Controller): void {
     const { shaping } = this;
-    const busy = this.working !== undefined || this.placing.isDrawn;
+    const busy = this.working !== undefined || this.placing.isDrawn || this.carried !== undefined;
     const board = busy ? undefined : this.wrist.meet(hand.tip, hand.direction);
     this.wrist.point(board?.key);
     this.pointTo(hand, board?.distance);
@@ -321,6 +356,10 @@ export class Headset {
       return;
     }
     const at = hand.tracked ? this.pointer(hand) : undefined;
+    if (this.carried) {
+      this.carry(hand, at);
+      return;
+    }
     if (!working && this.placing.isOn) {
       this.obstruct(hand, at);
       return;
@@ -333,6 +372,7 @@ export class Headset {
     }
     if (!working) {
       const by = hand.pressed('trigger') ? 'trigger' : hand.pressed('grip') ? 'grip' : undefined;
+      if (at && by === 'grip' && this.takeObstacle(hand, at)) return;
       if (at && by) this.begin(hand, by, at);
       else if (at && this.frames % 3 === 0) shaping.hoverAt(at, this.reach());
       this.size(hand);
@@ -352,7 +392,8 @@ export class Headset {
     working.last = at;
     shaping.follow(at);
     this.draw(hand.tip);
-    const [x, y] = hand.thumb;
+    const x = hand.thumb[0];
+    const y = hand.thumb[1];
     if (shaping.word !== 'grow' || working.by === 'grip')
       shaping.thumb(x === 0 && y === 0 ? undefined : [x, y]);
     else this.turnNumbers(hand, x, y);
@@ -398,6 +439,7 @@ export class Headset {
 
   /** The gesture ends where the hand is, or was last. */
   private finish(at?: ShapePointer): void {
+    this.layDown();
     const { working } = this;
     if (!working) return;
     this.working = undefined;
@@ -427,6 +469,40 @@ export class Headset {
     this.showKeys();
   }
 
+  /** What stands in the way is taken by the grip in it; whether there is any. */
+  private takeObstacle(hand: Controller, at: ShapePointer): boolean {
+    const taken = at.tip && this.view.obstacleAround(at.tip);
+    if (!taken) return false;
+    hand.pulse(0.7, 30);
+    const { row, thing } = taken;
+    this.carried = { row, thing, stood: thing.position.clone(), from: at, last: at };
+    return true;
+  }
+
+  /** It goes with the hand until the grip is let go; it is not turned. */
+  private carry(hand: Controller, at: ShapePointer | undefined): void {
+    const { carried } = this;
+    if (!carried) return;
+    if (at && !hand.jumped) carried.last = at;
+    if (hand.holds('grip') && !hand.jumped) {
+      const { thing, stood, from: before, last } = carried;
+      thing.position.copy(stood).sub(from.fromArray(before.origin)).add(from.fromArray(last.origin));
+      return;
+    }
+    this.layDown();
+  }
+
+  /** What was carried stands where the hand was last. */
+  private layDown(): void {
+    const { carried } = this;
+    if (!carried) return;
+    this.carried = undefined;
+    const { row, from: before, last, thing, stood } = carried;
+    const by = last.origin.map((x, i) => Math.round((x - before.origin[i]!) * 1000) / 1000);
+    if (by.some((x) => x !== 0)) this.events.shift(row, by as [number, number, number]);
+    else thing.position.copy(stood);
+  }
+
   /** Both grips mean the scene. */
   private cancelGrip(): void {
     if (this.working?.by !== 'grip') return;
@@ -436,7 +512,7 @@ export class Headset {
 
   /** The stick makes a brush larger or smaller. */
   private size(hand: Controller): void {
-    const [, y] = hand.thumb;
+    const y = hand.thumb[1];
     if (Math.abs(y) > OUT && this.shaping.resize(BRUSH ** Math.sign(y)))
       this.wrist.say(this.shaping.brushText);
   }
@@ -456,7 +532,7 @@ export class Headset {
     const { pointerLine: drawn } = this;
     drawn.visible = hand.tracked && !this.trace.visible;
     const place = drawn.geometry.getAttribute('position') as THREE.BufferAttribute;
-    place.setXYZ(0, ...(hand.tip.toArray() as [number, number, number]));
+    place.setXYZ(0, hand.tip.x, hand.tip.y, hand.tip.z);
     from.copy(hand.tip).addScaledVector(hand.direction, distance ?? 0.35);
     place.setXYZ(1, from.x, from.y, from.z);
     place.needsUpdate = true;
@@ -491,8 +567,11 @@ export class Headset {
       step: this.lesson.step ?? '',
       plane: this.shaping.plane !== undefined,
       read: this.readout.text,
-      page: this.page,
+      page: this.board.page,
       hand: tool?.isHand ?? false,
+      first: Math.round(this.firstMs),
+      cost: this.view.cost,
+      records: this.recorder.isOn,
     };
     document.body.dataset['vr'] = JSON.stringify(state);
     document.body.dataset['wrist'] = JSON.stringify(this.wrist.places());
@@ -518,6 +597,20 @@ export class Headset {
     this.showKeys();
   }
 
+  /** Begins to write down what hands do, or ends it and hands the record to the browser. */
+  private async writeDown(): Promise<void> {
+    const { recorder, events } = this;
+    if (recorder.isOn) {
+      const record = recorder.stop(events.seen().digest);
+      if (record) events.write(record);
+    } else {
+      const { plant } = events.seen();
+      recorder.start(await events.project(), plant);
+      this.wrist.say(t('vr.record.on'));
+    }
+    this.showKeys();
+  }
+
   private place(kind: 'ball' | 'box'): void {
     const could = this.events.obstacles() !== undefined;
     this.placing.put(could && this.placing.kind !== kind ? kind : undefined);
@@ -537,142 +630,7 @@ export class Headset {
   }
 
   private showKeys(): void {
-    const { shaping } = this;
-    const tool = ([word]: readonly [ShapeTool, string]): Key => ({
-      id: word,
-      label: t(`vr.tool.${word}` as TextKey),
-      wide: 2,
-      on: shaping.word === word,
-      act: () => {
-        shaping.take(word);
-        this.wrist.say(t(`shape.${word}` as TextKey));
-      },
-    });
-    const key = (id: string, wide: number, act: Key['act'], on = false): Key => ({
-      id,
-      label: t(`vr.${id}` as TextKey),
-      wide,
-      on,
-      act,
-    });
-    const growth = GROWTH_KEYS.map((of) =>
-      ([-1, 1] as const).map(
-        (by): Key => ({
-          id: `${of}${by < 0 ? '-' : '+'}`,
-          label: `${t(`shape.grow.${of}`)} ${by < 0 ? '−' : '+'}`,
-          wide: 3,
-          act: () => {
-            shaping.turnGrowth(of, by);
-            this.wrist.say(shaping.growthText(of));
-          },
-        }),
-      ),
-    );
-    if (shaping.isGrowing) {
-      this.wrist.set(growth);
-      return;
-    }
-    const turn = key(
-      'more',
-      3,
-      () => {
-        this.page = this.page === 'more' ? 'tools' : 'more';
-      },
-      this.page === 'more',
-    );
-    const scene = key(
-      'scene',
-      3,
-      () => {
-        this.page = this.page === 'scene' ? 'tools' : 'scene';
-        this.tellPlant(0);
-      },
-      this.page === 'scene',
-    );
-    if (this.page === 'scene') {
-      const { placing } = this;
-      this.wrist.set([
-        [key('plant.before', 3, () => this.tellPlant(-1)), key('plant.next', 3, () => this.tellPlant(1))],
-        [key('plant.add', 3, this.events.add), key('copy', 3, this.events.copy)],
-        [
-          key('ball', 3, () => this.place('ball'), placing.kind === 'ball'),
-          key('box', 3, () => this.place('box'), placing.kind === 'box'),
-        ],
-        [
-          key('clear', 6, () => {
-            if (this.events.obstacles()) this.events.clear();
-            else this.wrist.say(t('vr.place.none'));
-          }),
-        ],
-        [key('save', 3, () => this.events.run('save')), key('glb', 3, this.events.model)],
-        [turn, scene],
-      ]);
-      return;
-    }
-    if (this.page === 'more') {
-      const species = (by: 1 | -1) => () => {
-        void this.events.species(by).then((name) => this.wrist.say(name ?? t('vr.species.none')));
-      };
-      this.wrist.set([
-        [key('before', 3, species(-1)), key('next', 3, species(1))],
-        [key('dice', 6, () => this.events.run('dice'))],
-        [
-          key('grid', 3, () => this.events.run('guide-grid')),
-          key('staff', 3, () => this.events.run('guide-staff')),
-        ],
-        [
-          key('plane', 3, () => void shaping.placePlane(undefined), shaping.plane !== undefined),
-          key('lesson', 3, () => this.startLesson()),
-        ],
-        [turn, scene],
-      ]);
-      return;
-    }
-    const tools = SHAPE_TOOLS.map(tool);
-    this.wrist.set([
-      tools.slice(0, 3),
-      tools.slice(3, 6),
-      tools.slice(6, 9),
-      tools.slice(9).map((one) => ({ ...one, wide: 3 })),
-      [
-        key('undo', 2, () => {
-          this.events.undo();
-          this.did('undo');
-        }),
-        key('redo', 2, this.events.redo),
-        key('mirror', 2, (hand) => void this.mirror(this.pointer(hand)), shaping.isMirrored),
-      ],
-      ...(shaping.word === 'grow'
-        ? growth
-        : [[key('smaller', 3, () => this.brush(1 / 1.25)), key('larger', 3, () => this.brush(1.25))]]),
-      [
-        key(
-          'scale',
-          3,
-          () => {
-            this.trueScale = !this.trueScale;
-            this.blink(() => this.stand());
-          },
-          this.trueScale,
-        ),
-        key(
-          'left',
-          3,
-          () => {
-            this.leftHanded = !this.leftHanded;
-            setSetting('vr.left', this.leftHanded ? 'yes' : 'no');
-            this.label();
-          },
-          this.leftHanded,
-        ),
-      ],
-      [
-        key('lower', 2, () => this.sit(-SEAT_M)),
-        key('higher', 2, () => this.sit(SEAT_M)),
-        key('leave', 2, () => void this.leave()),
-      ],
-      [turn, scene],
-    ]);
+    this.wrist.set(rowsOf(this.board, this.shaping, this.events));
   }
 
   // The first minute ----------------------------------------------------------------------------------------------

@@ -57,8 +57,8 @@ export class Labels {
     this.group.matrix.copy(hand.grip);
     this.group.matrixWorldNeedsUpdate = true;
     for (const label of this.labels) {
-      const [x, y] = hand.thumb;
-      const used = label.part === 'stick' ? Math.hypot(x, y) > 0.6 : hand.holds(label.part);
+      const { thumb } = hand;
+      const used = label.part === 'stick' ? Math.hypot(thumb[0], thumb[1]) > 0.6 : hand.holds(label.part);
       if (used && label.left === undefined) {
         label.left = FADE;
         this.onUsed(`${this.name}.${label.part}`);

@@ -1,8 +1,12 @@
 import * as THREE from 'three';
 import { describe, expect, it } from 'vitest';
+import type { Request } from '../protocol';
+import { obstacleAround } from '../view/obstacles';
+import type { HandEdit } from '../wire';
 import { Controller, indexOf, Pinch, Track } from './controller';
 import { Lesson } from './lesson';
 import { obstacleOf } from './placing';
+import { Recorder } from './recorder';
 import { World } from './world';
 import { layOut } from './wrist';
 
@@ -197,4 +201,68 @@ it('keys lie in rows', () => {
     ['b', 2, 0, 4],
     ['c', 0, 1, 3],
   ]);
+});
+
+describe('a record', () => {
+  const at = {
+    origin: [0, 0, 0],
+    direction: [0, 0, -1],
+    forward: [0, 0, -1],
+    up: [0, 1, 0],
+    pressure: 1,
+    tip: null,
+  };
+  const reach = { metres: 0.1, per_metre: 0.02, bearers: 0, mirror: null };
+  const shape = (input: unknown): Request => ({ kind: 'shape', tool: 'rotate', reach, input }) as Request;
+
+  it('has every request in the order in which the core did it', () => {
+    let now = 100;
+    const recorder = new Recorder(() => now);
+    const edit = { op: 'prune' } as unknown as HandEdit;
+    // Before it begins and after it ends nothing is written down.
+    recorder.did(shape({ down: at }), {});
+    recorder.start(new Uint8Array([110, 111, 110, 101]), 3);
+    now = 112.4;
+    recorder.did(shape({ down: at }), { commit: null });
+    recorder.seen();
+    recorder.did(shape({ up: at }), { commit: edit });
+    recorder.did({ kind: 'command', command: { shape: [3, { add: edit }] } }, null);
+    // The same edit by another hand is a command of its own.
+    recorder.did({ kind: 'command', command: { shape: [3, { add: edit }] } }, null);
+    recorder.did({ kind: 'undo' }, null);
+    recorder.did({ kind: 'save' }, null);
+    recorder.did({ kind: 'select', plant: 2 }, null);
+    const record = recorder.stop('d1');
+    expect(record).toMatchObject({
+      schema: 'burgeon.gestures/1',
+      project: 'bm9uZQ==',
+      plant: 3,
+      digest: 'd1',
+    });
+    expect(record?.steps.map((s) => (typeof s.did === 'string' ? s.did : Object.keys(s.did)[0]))).toEqual([
+      'hand',
+      'seen',
+      'hand',
+      'keep',
+      'command',
+      'undo',
+      'select',
+    ]);
+    expect(record?.steps[0]?.ms).toBe(12);
+    recorder.did({ kind: 'undo' }, null);
+    expect(recorder.stop('d2')).toBeUndefined();
+  });
+});
+
+it('an obstacle is taken where the hand is in it', () => {
+  const ball = new THREE.Mesh(new THREE.SphereGeometry(0.5));
+  ball.position.set(1, 0, 0);
+  const box = new THREE.Mesh(new THREE.BoxGeometry(1, 1, 1));
+  const wall = new THREE.Mesh(new THREE.PlaneGeometry(10, 10));
+  [wall, ball, box].forEach((mesh, row) => {
+    mesh.userData['row'] = row;
+  });
+  const row = (at: [number, number, number]): number | undefined =>
+    obstacleAround([wall, ball, box], at)?.row;
+  expect([row([1.3, 0.2, 0]), row([1.4, 0.4, 0]), row([-0.4, 0.4, 0.4])]).toEqual([1, undefined, 2]);
 });

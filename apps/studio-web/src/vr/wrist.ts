@@ -90,11 +90,8 @@ export class Wrist {
     this.board.matrixWorldNeedsUpdate = true;
   }
 
-  /** Where a ray of the person's space meets the board: the distance, and the key that it means. */
-  meet(
-    from: THREE.Vector3,
-    direction: THREE.Vector3,
-  ): { distance: number; key: Key | undefined } | undefined {
+  /** Where a ray of the person's space meets the board: the distance, and the key that it means. Good until the next call. */
+  meet(from: THREE.Vector3, direction: THREE.Vector3): Readonly<Met> | undefined {
     if (!this.board.visible) return undefined;
     inverse.copy(this.board.matrix).invert();
     at.copy(from).applyMatrix4(inverse);
@@ -102,11 +99,14 @@ export class Wrist {
     const t = -at.z / way.z;
     if (!(t >= 0 && Number.isFinite(t))) return undefined;
     at.addScaledVector(way, t);
-    const [u, v] = [at.x + 0.5, 0.5 - at.y];
+    const u = at.x + 0.5;
+    const v = 0.5 - at.y;
     if (u < 0 || u > 1 || v < 0 || v > 1) return undefined;
     const row = (v * this.canvas.height - PIXELS.head) / PIXELS.row;
-    const key = this.keys.find((k) => u >= k.x && u < k.x + k.w && row >= k.y && row < k.y + 1);
-    return { distance: t, key };
+    met.distance = t;
+    met.key = undefined;
+    for (const k of this.keys) if (u >= k.x && u < k.x + k.w && row >= k.y && row < k.y + 1) met.key = k;
+    return met;
   }
 
   /** What the line above the keys says. */
@@ -190,6 +190,12 @@ export class Wrist {
   }
 }
 
+interface Met {
+  distance: number;
+  key: Key | undefined;
+}
+
+const met: Met = { distance: 0, key: undefined };
 const size = new THREE.Vector3();
 const inverse = new THREE.Matrix4();
 const at = new THREE.Vector3();

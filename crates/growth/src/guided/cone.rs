@@ -11,26 +11,27 @@ use super::room::{Guide, Room};
 
 /// Markers of the pool, at least: each bud takes some that follow one another, from a place of its own.
 const POOL: usize = 4096;
-/// The cell of a marker that found no room.
+/// The cell of a marker that found no room, and its row among the cells that are met.
 const NOWHERE: u64 = u64::MAX;
+const NO_ROW: u32 = u32::MAX;
 /// 2^52: numbers from here to its double are whole.
 const WHOLE: f64 = 4_503_599_627_370_496.0;
 /// A tile of the grid is 4 cells long, wide and high: so many bits number those in it.
 const TILE: u32 = 6;
 
-/// A marker in the frame of a bud: its heading, side and across.
-#[derive(Clone, Copy, Debug)]
-struct Sample {
-    way: DVec3,
-    /// As far along its way as it is.
-    place: DVec3,
-    weight: f64,
+/// Markers in the frame of a bud: its heading, side and across. What is asked for at different times lies apart.
+#[derive(Clone, Debug, Default)]
+struct Pool {
+    way: Vec<DVec3>,
+    /// As far along its way as each is.
+    place: Vec<DVec3>,
+    weight: Vec<f64>,
 }
 
 /// The cone of perception, the same for all buds but for where it stands.
 #[derive(Clone, Debug)]
 pub(super) struct Cone {
-    pool: Vec<Sample>,
+    pool: Pool,
     /// Of one bud.
     markers: usize,
     far: f64,
@@ -62,8 +63,9 @@ pub(super) struct Grid {
 pub(super) struct Batch {
     /// For each bud: its first sample, side and across.
     turned: Vec<(usize, DVec3, DVec3)>,
-    /// The cells of the markers, bud by bud.
+    /// The cells of the markers, bud by bud, and their rows among those that are met.
     cells: Vec<u64>,
+    rows: Vec<u32>,
     /// What strokes add to each marker; none without strokes.
     guides: Vec<Guide>,
 }
@@ -90,6 +92,14 @@ struct Held {
     weight: f64,
 }
 
+/// Memory of one round, taken again by the next: a fresh one would cost as much as what is written to it.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Scratch {
+    tiles: Tiles,
+    held: Vec<Held>,
+    younger: Vec<f64>,
+}
+
 impl Cone {
     pub(super) fn new(spec: &GuidedSpec, seed: Seed) -> Self {
         let (near, far) = (spec.near * spec.internode_m, spec.far * spec.internode_m);
@@ -104,11 +114,16 @@ impl Cone {
             let distance = ops::cbrt(ops::lerp(near3, far3, stream.uniform()));
             let x = (distance - mean) / sigma;
             let way = DVec3::new(c, s * around.1, s * around.0);
-            Sample { way, place: way * distance, weight: ops::exp(-0.5 * x * x) }
+            (way, way * distance, ops::exp(-0.5 * x * x))
         };
+        let samples: Vec<_> = (0..POOL.max(markers)).map(sample).collect();
+        let mut pool = Pool::default();
         // Its first ones once more at its end: those of a bud follow one another.
-        let mut pool: Vec<Sample> = (0..POOL.max(markers)).map(sample).collect();
-        pool.extend_from_within(..markers);
+        for &(way, place, weight) in samples.iter().chain(&samples[..markers]) {
+            pool.way.push(way);
+            pool.place.push(place);
+            pool.weight.push(weight);
+        }
         // As large as a marker's share, so that a marker meets in its cell those that are in its way. But a cone must
         // be two cells wide and deep, or cells would reach out of it.
         let volume = TAU / 3.0 * (1.0 - cos_half) * (far3 - near3) / f64::from(spec.markers);
@@ -132,19 +147,25 @@ impl Cone {
         let (mut batch, mut near) = (Batch::default(), Vec::new());
         for stand in stands {
             let mut stream = stand.key.stream(Draw::Attractors);
-            let first = stream.below(self.pool.len() - self.markers);
+            let first = stream.below(self.pool.way.len() - self.markers);
             let (sin, cos) = ops::sin_cos(TAU * stream.uniform());
             let across = stand.heading.cross(stand.side);
             let (side, across) = (stand.side * cos + across * sin, across * cos - stand.side * sin);
             batch.turned.push((first, side, across));
-            let samples = self.samples(first);
+            let places = self.pool.place[first..first + self.markers].iter();
             if room.is_open(stand.at, self.far) {
                 let of = grid.turned(stand.at, [stand.heading, side, across]);
-                batch.cells.extend(samples.map(|s| of.cell(s.place)));
+                batch.cells.extend(places.map(|&at| of.cell(at)));
                 continue;
             }
-            batch.cells.extend(samples.map(|s| {
-                let p = stand.at + stand.heading * s.place.x + side * s.place.y + across * s.place.z;
+            let placed = |at: &DVec3| stand.at + stand.heading * at.x + side * at.y + across * at.z;
+            if room.is_plain() {
+                let cell = |p| if room.surrounds(p) { grid.cell(p) } else { NOWHERE };
+                batch.cells.extend(places.map(|at| cell(placed(at))));
+                continue;
+            }
+            batch.cells.extend(places.map(|at| {
+                let p = placed(at);
                 let guide = room.at(p, &mut near);
                 if room.is_guided() {
                     batch.guides.push(guide.unwrap_or(Guide { weight: 0.0, along: DVec3::ZERO }));
@@ -155,34 +176,46 @@ impl Cone {
         batch
     }
 
-    /// The samples of a bud.
-    fn samples(&self, first: usize) -> core::slice::Iter<'_, Sample> {
-        self.pool[first..first + self.markers].iter()
-    }
-
     /// What the markers of each bud sum up to, beside those of all others. The earlier a bud, the older.
     ///
     /// Markers of others in a bud's cone are found by its own: these are spread evenly over its room, so that the sum
     /// over them of what their cells hold estimates that over the cone. Cost: linear in markers.
-    pub(super) fn sums(&self, grid: &Grid, batches: &mut [Batch], headings: &[DVec3]) -> Vec<Sums> {
+    pub(super) fn sums(
+        &self,
+        grid: &Grid,
+        batches: &mut [Batch],
+        headings: &[DVec3],
+        scratch: &mut Scratch,
+    ) -> Vec<Sums> {
         let mut sums = Vec::with_capacity(headings.len());
-        let cells = grid.number(batches);
-        let mut held = vec![Held::default(); cells];
-        for batch in &*batches {
-            sums.extend((0..batch.turned.len()).map(|k| self.meet(batch, k, &mut held)));
+        let Scratch { tiles, held, younger } = scratch;
+        tiles.begin(grid, batches);
+        held.clear();
+        for batch in &mut *batches {
+            batch.rows.clear();
+            batch.rows.reserve(batch.cells.len());
+            for k in 0..batch.turned.len() {
+                let Batch { cells, rows, .. } = &mut *batch;
+                rows.extend(cells[k * self.markers..(k + 1) * self.markers].iter().map(|&c| tiles.row(c)));
+                held.resize(tiles.cells(), Held::default());
+                sums.push(self.meet(batch, k, held));
+            }
         }
-        drop(held);
-        let mut held = vec![0.0; cells];
-        let all = batches.iter().flat_map(|batch| (0..batch.turned.len()).map(move |k| (batch, k)));
-        let all: Vec<_> = all.zip(headings).collect();
-        for (sum, ((batch, k), heading)) in sums.iter_mut().zip(all).rev() {
-            let (_, side, across) = batch.turned[k];
-            let world = |v: DVec3| heading * v.x + side * v.y + across * v.z;
-            sum.push = world(sum.push + self.meet_younger(batch, k, &mut held)) * self.share;
-            sum.older *= self.share;
-            sum.pull = world(sum.pull);
-            for (g, _) in self.guides(batch, k) {
-                sum.pull += g.along * g.weight;
+        younger.clear();
+        younger.resize(tiles.cells(), 0.0);
+        let mut row = headings.len();
+        for batch in batches.iter().rev() {
+            for k in (0..batch.turned.len()).rev() {
+                row -= 1;
+                let (sum, heading) = (&mut sums[row], headings[row]);
+                let (_, side, across) = batch.turned[k];
+                let world = |v: DVec3| heading * v.x + side * v.y + across * v.z;
+                sum.push = world(sum.push + self.meet_younger(batch, k, younger)) * self.share;
+                sum.older *= self.share;
+                sum.pull = world(sum.pull);
+                for (g, _) in self.guides(batch, k) {
+                    sum.pull += g.along * g.weight;
+                }
             }
         }
         sums
@@ -197,18 +230,25 @@ impl Cone {
     /// A bud's markers that have room: way in its frame, weight, cell.
     #[inline]
     fn placed(&self, batch: &Batch, k: usize, mut f: impl FnMut(DVec3, f64, usize)) {
-        let of = k * self.markers..(k + 1) * self.markers;
-        let places = self.samples(batch.turned[k].0).zip(&batch.cells[of.clone()]);
-        #[expect(clippy::cast_possible_truncation, reason = "a place of a vector")]
-        match batch.guides.get(of) {
-            Some(guides) => {
-                for ((s, &c), g) in places.zip(guides).filter(|((_, c), _)| **c != NOWHERE) {
-                    f(s.way, g.weight, c as usize);
+        let (of, first) = (k * self.markers..(k + 1) * self.markers, batch.turned[k].0);
+        let own = first..first + self.markers;
+        let weights = match batch.guides.get(of.clone()) {
+            Some(guides) => Weights::Guided(guides),
+            None => Weights::Own(&self.pool.weight[own.clone()]),
+        };
+        let rows = &batch.rows[of];
+        let ways = &self.pool.way[own];
+        match weights {
+            Weights::Guided(guides) => {
+                for ((way, &row), g) in ways.iter().zip(rows).zip(guides).filter(|((_, r), _)| **r != NO_ROW)
+                {
+                    f(*way, g.weight, row as usize);
                 }
             }
-            None => {
-                for (s, &c) in places.filter(|(_, c)| **c != NOWHERE) {
-                    f(s.way, s.weight, c as usize);
+            Weights::Own(weights) => {
+                for ((way, &row), w) in ways.iter().zip(rows).zip(weights).filter(|((_, r), _)| **r != NO_ROW)
+                {
+                    f(*way, *w, row as usize);
                 }
             }
         }
@@ -218,15 +258,17 @@ impl Cone {
     fn meet(&self, batch: &Batch, k: usize, held: &mut [Held]) -> Sums {
         let mut sums = Sums::default();
         self.placed(batch, k, |way, weight, cell| {
+            let there = held[cell];
             sums.own += 1;
             sums.whole += weight;
             sums.pull += way * weight;
-            sums.push += way * held[cell].weight;
-            sums.older += held[cell].count;
+            sums.push += way * there.weight;
+            sums.older += there.count;
         });
         self.placed(batch, k, |_, weight, cell| {
-            held[cell].count += 1.0;
-            held[cell].weight += weight;
+            let there = &mut held[cell];
+            there.count += 1.0;
+            there.weight += weight;
         });
         sums
     }
@@ -238,6 +280,12 @@ impl Cone {
         self.placed(batch, k, |_, weight, cell| held[cell] += weight);
         push
     }
+}
+
+/// Of a bud's markers.
+enum Weights<'a> {
+    Own(&'a [f64]),
+    Guided(&'a [Guide]),
 }
 
 /// A bud's frame in a grid, in cells.
@@ -275,34 +323,59 @@ impl Grid {
         let tile = x.wrapping_add(nx.wrapping_mul(y.wrapping_add(ny.wrapping_mul(z))));
         (tile << TILE | inner) & (NOWHERE >> 1)
     }
+}
 
-    /// Numbers the tiles in which markers lie from 0, in the order in which buds come to them: most of the grid is empty,
-    /// and what buds beside one another look at lies together. How many cells there are then.
-    fn number(&self, batches: &mut [Batch]) -> usize {
+/// Numbers the tiles in which markers lie from 0, in the order in which buds come to them: most of the grid is empty, and
+/// what buds beside one another look at lies together.
+#[derive(Clone, Debug, Default)]
+struct Tiles {
+    /// Of each tile of the grid, or of each that is met, its number.
+    numbers: Vec<u32>,
+    /// Of a grid that is nearly empty, as of trees far apart: only its tiles that are met, in order.
+    met: Option<Vec<u64>>,
+    next: u32,
+}
+
+impl Tiles {
+    fn begin(&mut self, grid: &Grid, batches: &[Batch]) {
         let markers: usize = batches.iter().map(|b| b.cells.len()).sum();
-        let all = self.tiles.iter().try_fold(1_u64, |n, &side| n.checked_mul(side));
+        let all = grid.tiles.iter().try_fold(1_u64, |n, &side| n.checked_mul(side));
         let all = all.and_then(|n| usize::try_from(n).ok()).filter(|&n| n <= markers + 65_536);
-        let cells = || batches.iter().flat_map(|b| &b.cells).filter(|c| **c != NOWHERE);
-        // A grid that is nearly empty, as of trees far apart: only its tiles that are met.
-        let mut met: Vec<u64> = Vec::new();
-        if all.is_none() {
-            met = cells().map(|c| c >> TILE).collect();
+        self.met = all.is_none().then(|| {
+            let cells = batches.iter().flat_map(|b| &b.cells).filter(|c| **c != NOWHERE);
+            let mut met: Vec<u64> = cells.map(|c| c >> TILE).collect();
             base::sort_by_key(&mut met, |&tile| tile);
             met.dedup();
+            met
+        });
+        self.next = 0;
+        self.numbers.clear();
+        self.numbers.resize(all.unwrap_or_else(|| self.met.as_ref().map_or(0, Vec::len)), NO_ROW);
+    }
+
+    /// The row of a cell.
+    #[inline]
+    fn row(&mut self, cell: u64) -> u32 {
+        let tile = cell >> TILE;
+        #[expect(clippy::cast_possible_truncation, reason = "a place of a vector")]
+        let at = match &self.met {
+            None => tile as usize,
+            Some(met) => met.partition_point(|m| *m < tile),
+        };
+        // None of a marker that found no room: its tile is beyond all others.
+        let Some(number) = self.numbers.get_mut(at) else { return NO_ROW };
+        if *number == NO_ROW {
+            *number = self.next;
+            self.next += 1;
         }
-        let mut numbers = vec![u32::MAX; all.unwrap_or(met.len())];
-        let mut next = 0;
-        for cell in batches.iter_mut().flat_map(|b| &mut b.cells).filter(|c| **c != NOWHERE) {
-            let tile = *cell >> TILE;
-            let row = if all.is_some() { tile as usize } else { met.partition_point(|m| *m < tile) };
-            let Some(number) = numbers.get_mut(row) else { continue };
-            if *number == u32::MAX {
-                *number = next;
-                next += 1;
-            }
-            *cell = u64::from(*number) << TILE | (*cell & ((1 << TILE) - 1));
-        }
-        (next as usize) << TILE
+        #[expect(clippy::cast_possible_truncation, reason = "of the cells of a tile")]
+        let inner = (cell & ((1 << TILE) - 1)) as u32;
+        *number << TILE | inner
+    }
+
+    /// So many cells lie in tiles that were met.
+    const fn cells(&self) -> usize {
+        (self.next as usize) << TILE
     }
 }
 
@@ -318,9 +391,11 @@ mod tests {
         let near = spec.near * spec.internode_m;
         let placed = |k: usize| {
             let (_, side, across) = batch.turned[k];
-            cone.samples(batch.turned[k].0).map(move |s| {
-                let turned = stands[k].heading * s.place.x + side * s.place.y + across * s.place.z;
-                (stands[k].at + turned, s.weight)
+            let first = batch.turned[k].0;
+            (first..first + cone.markers).map(move |s| {
+                let place = cone.pool.place[s];
+                let turned = stands[k].heading * place.x + side * place.y + across * place.z;
+                (stands[k].at + turned, cone.pool.weight[s])
             })
         };
         let of = |a: usize| {
@@ -366,7 +441,7 @@ mod tests {
             let grid = cone.grid(stands.iter().map(|s| s.at));
             let mut batches = [cone.markers(stands.iter().copied(), &grid, &room)];
             let headings: Vec<DVec3> = stands.iter().map(|s| s.heading).collect();
-            let sums = cone.sums(&grid, &mut batches, &headings);
+            let sums = cone.sums(&grid, &mut batches, &headings, &mut Scratch::default());
             let truth = brute(&cone, &spec, &stands, &batches[0]);
             // The sum of differences by the sum of what is there; by chance, as many as there are markers decide.
             let share = |differ: f64, there: f64| differ / there;

@@ -13,7 +13,7 @@ use glam::DVec3;
 use self::spec::Numbers;
 use crate::colonize::{grow_bole, plant_roots};
 use crate::{GrowthError, JointId, Obstacles, Skeleton};
-use cone::{Cone, Stand, Sums};
+use cone::{Cone, Scratch, Stand, Sums};
 use room::Room;
 
 pub use self::spec::{BrushStroke, GuidedChange, GuidedSpec};
@@ -163,6 +163,9 @@ pub struct Growing {
     /// Joints that were there before.
     given: usize,
     buds: Vec<Bud>,
+    /// Those of them that live, in their order.
+    living: Vec<u32>,
+    scratch: Scratch,
     room: Room,
     /// As it is asked at first.
     asked: GuidedSpec,
@@ -273,10 +276,12 @@ impl Growing {
                 life: Life::Alive,
             }
         });
-        let buds = buds.collect();
+        let buds: Vec<Bud> = buds.collect();
         Self {
             is_main,
             given,
+            living: (0_u32..).zip(&buds).map(|(b, _)| b).collect(),
+            scratch: Scratch::default(),
             buds,
             skeleton,
             room,
@@ -425,9 +430,9 @@ impl Growing {
         &self.skeleton
     }
 
-    /// Buds that may grow on. Cost: linear in all buds there were.
-    pub fn living(&self) -> usize {
-        self.buds.iter().filter(|b| b.life == Life::Alive).count()
+    /// Buds that may grow on.
+    pub const fn living(&self) -> usize {
+        self.living.len()
     }
 
     /// At how many markers buds have looked so far: what growth costs.
@@ -455,14 +460,10 @@ impl Growing {
 
     /// One round; whether any bud is left that may still grow.
     fn grow(&mut self, round: u32, run: &Run<'_>) -> Result<bool, GrowthError> {
-        let awake: Vec<u32> = (0_u32..)
-            .zip(&self.buds)
-            .filter(|(_, b)| b.life == Life::Alive && b.wakes <= round)
-            .map(|(i, _)| i)
-            .collect();
-        let waiting = self.buds.iter().any(|b| b.life == Life::Alive && b.wakes > round);
+        let wakes = |b: &u32| self.buds[*b as usize].wakes <= round;
+        let awake: Vec<u32> = self.living.iter().copied().filter(wakes).collect();
         if awake.is_empty() {
-            return Ok(waiting);
+            return Ok(!self.living.is_empty());
         }
         let all = u64::from(self.spec.markers) * awake.len() as u64;
         run.budget.check(Counted::Points, all, TOO_MANY)?;
@@ -480,7 +481,7 @@ impl Growing {
         });
         run.cancel.check()?;
         let headings: Vec<DVec3> = awake.iter().map(|&b| self.buds[b as usize].heading).collect();
-        let sums = self.cone.sums(&grid, &mut batches, &headings);
+        let sums = self.cone.sums(&grid, &mut batches, &headings, &mut self.scratch);
         self.markers_made += sums.iter().map(|s| s.own).sum::<usize>();
         let looks: Vec<Look> = sums.iter().zip(&headings).map(|(s, h)| self.look(s, *h)).collect();
         let vigour = self.share(&awake, &looks);
@@ -492,7 +493,9 @@ impl Growing {
                 self.shoot(b as usize, look.direction, v, round + 1);
             }
         }
-        Ok(waiting || self.buds.iter().any(|b| b.life == Life::Alive))
+        let buds = &self.buds;
+        self.living.retain(|b| buds[*b as usize].life == Life::Alive);
+        Ok(!self.living.is_empty())
     }
 
     /// Direction and free space of a bud.
@@ -609,6 +612,7 @@ impl Growing {
             let tilt = self.spec.branch_angle_deg * (PI / 180.0) + jitter * stream.normal();
             let ((st, ct), (sa, ca)) = (ops::sin_cos(tilt), ops::sin_cos(turn));
             let heading = (tip.heading * ct + (tip.side * ca + across * sa) * st).normalize_or(tip.heading);
+            self.living.extend(u32::try_from(self.buds.len()));
             self.buds.push(Bud {
                 joint: tip.joint,
                 heading,

@@ -120,11 +120,23 @@ impl Room {
         Ok(())
     }
 
+    /// Whether the envelope alone decides where markers may be.
+    pub(super) fn is_plain(&self) -> bool {
+        self.tubes.is_none() && self.obstacles.is_empty()
+    }
+
+    /// Whether a point is in the envelope of a root.
+    #[inline]
+    pub(super) fn surrounds(&self, p: DVec3) -> bool {
+        match &self.region {
+            Some((region, roots)) => roots.iter().any(|r| region.contains(p - *r)),
+            None => true,
+        }
+    }
+
     /// What guides a marker at a point; `None` where none may be. Without strokes, weight 1 and no direction.
     pub(super) fn at(&self, p: DVec3, near: &mut Vec<usize>) -> Option<Guide> {
-        if let Some((region, roots)) = &self.region
-            && !roots.iter().any(|r| region.contains(p - *r))
-        {
+        if !self.surrounds(p) {
             return None;
         }
         if !self.obstacles.is_empty() && !self.obstacles.free(p) {

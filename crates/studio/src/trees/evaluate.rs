@@ -253,6 +253,15 @@ impl TreeEvaluator {
     /// # Errors
     /// [`TreeError`].
     pub fn at_level(&self, level: u32, run: &Run<'_>) -> Result<Option<Model>, TreeError> {
+        Ok(self.laid_out_at(level, run)?.map(|(model, _)| model))
+    }
+
+    /// As [`Self::at_level`], also with the coarser plant and what of it lies where in the model.
+    pub(crate) fn laid_out_at(
+        &self,
+        level: u32,
+        run: &Run<'_>,
+    ) -> Result<Option<(Model, (Plant, Layout))>, TreeError> {
         let (Some(raw), Some(plant), Some((from, _))) = (&self.grown, self.plant(), &self.model) else {
             return Ok(None);
         };
@@ -261,7 +270,8 @@ impl TreeEvaluator {
         let (mut copy, skin) = coarser(plant, fine, level);
         keep_out(&mut copy, &skin, plant, level, &obstacles);
         let mut barks = self.barks.clone();
-        Ok(Some(skinned(&copy, &(skin, look.clone(), leaf.clone()), &mut barks, run)?.0))
+        let (model, layout) = skinned(&copy, &(skin, look.clone(), leaf.clone()), &mut barks, run)?;
+        Ok(Some((model, (copy, layout))))
     }
 
     fn item(&self, spec: &TreeSpec, options: &TreeOptions, report: &Report) -> ItemReport {

@@ -4,7 +4,7 @@ use burgeon::glam::{DQuat, DVec3};
 use burgeon::plant::AxisId;
 
 use super::*;
-use crate::{GESTURES_SCHEMA, GestureRecord, GestureStep, ShapePointer, ShapeReach};
+use crate::{GESTURES_SCHEMA, GestureDeed, GestureRecord, GestureStep, ShapePointer, ShapeReach};
 
 /// Nodes of a branch and of all that it bears.
 fn nodes_of(s: &Workspace, axis: u32) -> Vec<[f64; 3]> {
@@ -116,9 +116,19 @@ fn a_gesture_is_shown_and_is_one_step_when_it_is_asked_for() {
     assert_eq!(look(&mut s)["item"]["digest"], before["item"]["digest"]);
 }
 
+/// The edit of a gesture is asked for, and seen.
+const KEPT: &str = r#"{"did":"keep"},{"did":"seen"}"#;
+
+/// A record, done again without looking on.
+fn replayed(s: &mut Workspace, record: &GestureRecord) -> Result<crate::Replayed, WorkspaceError> {
+    s.replay(record, &run(), &mut |_, _| ())
+}
+
 /// A branch is turned, one drawn in the air, one grown for six rounds with more vigour on the way, and one gesture has no end.
 fn recorded(x: f64, y: f64) -> String {
-    let step = |tool: &str, input: &str| format!(r#"{{"tool":{tool},"reach":{REACH},"input":{input}}}"#);
+    let step = |tool: &str, input: &str| {
+        format!(r#"{{"did":{{"hand":{{"tool":{tool},"reach":{REACH},"input":{input}}}}}}}"#)
+    };
     let tip = |x: f64, y: f64, z: f64| {
         at(x, y).replace(r#""pressure":1"#, &format!(r#""pressure":1,"tip":[{x},{y},{z}]"#))
     };
@@ -130,15 +140,18 @@ fn recorded(x: f64, y: f64) -> String {
         step(r#""rotate""#, &format!(r#"{{"down":{}}}"#, at(x, y))),
         step(r#""rotate""#, r#"{"twist":30}"#),
         step(r#""rotate""#, &format!(r#"{{"up":{}}}"#, at(x, y))),
+        KEPT.to_owned(),
         step(draw, &format!(r#"{{"down":{}}}"#, tip(0.0, 1.2, 0.0))),
         step(draw, &format!(r#"{{"move":[{},{}]}}"#, tip(0.3, 1.5, 0.2), tip(0.6, 1.9, 0.3))),
         step(draw, &format!(r#"{{"up":{}}}"#, tip(0.9, 2.1, 0.2))),
+        KEPT.to_owned(),
         step(&tool, &format!(r#"{{"down":{}}}"#, at(0.0, 1.0))),
     ];
     steps.extend((0..3).map(|_| step(&tool, r#""round""#)));
     steps.push(step(&tool, &format!(r#"{{"grow":{}}}"#, grow(2.5))));
     steps.extend((0..3).map(|_| step(&tool, r#""round""#)));
     steps.push(step(&tool, &format!(r#"{{"up":{}}}"#, at(0.0, 1.0))));
+    steps.push(KEPT.to_owned());
     steps.push(step(draw, &format!(r#"{{"down":{}}}"#, tip(0.0, 1.2, 0.0))));
     format!(r#"{{"schema":"{GESTURES_SCHEMA}","steps":[{}]}}"#, steps.join(","))
 }
@@ -148,14 +161,15 @@ fn a_record_of_gestures_makes_the_same_plant_again() {
     let (mut first, (x, y)) = bush();
     let text = recorded(x, y);
     let record = GestureRecord::read(text.as_bytes()).unwrap();
-    assert_eq!(first.replay(&record, &run()).unwrap(), 3);
+    assert_eq!(replayed(&mut first, &record).unwrap().edits, 3);
     let done = look(&mut first)["item"].clone();
     let told: Vec<bool> =
         done["edits"].as_array().unwrap().iter().map(|e| e["done"].as_bool().unwrap()).collect();
     assert_eq!(told, [true; 3]);
     let again = serde_json::to_string(&record).unwrap();
     let (mut second, _) = bush();
-    assert_eq!(second.replay(&GestureRecord::read(again.as_bytes()).unwrap(), &run()).unwrap(), 3);
+    let came = replayed(&mut second, &GestureRecord::read(again.as_bytes()).unwrap()).unwrap();
+    assert_eq!((came.edits, came.digest.as_deref()), (3, done["digest"].as_str()));
     assert_eq!(look(&mut second)["item"]["digest"], done["digest"]);
     // Each is a step of undo, and all undone is the first plant.
     for _ in 0..3 {
@@ -180,26 +194,39 @@ fn a_record_that_is_cut_off_or_hostile_says_so() {
     let far = at(1.0, 1.0);
     let many = vec![far.as_str(); 20_001].join(",");
     let long = format!(
-        r#"{{"schema":"{GESTURES_SCHEMA}","steps":[{{"tool":"rotate","reach":{REACH},"input":{{"move":[{many}]}}}}]}}"#
+        r#"{{"schema":"{GESTURES_SCHEMA}","steps":[{{"did":{{"hand":{{"tool":"rotate","reach":{REACH},"input":{{"move":[{many}]}}}}}}}}]}}"#
     );
     assert_eq!(code(long.as_bytes()), "record-long");
     // Steps in any order, with any numbers, are no fault of the tools.
     let (mut s, _) = bush();
     let mut record = GestureRecord::read(text.as_bytes()).unwrap();
     record.steps.reverse();
+    record.steps.retain(|step| step.did != GestureDeed::Keep);
     let wild = record.steps.iter().map(|step| {
-        let input = match step.input.clone() {
-            ShapeInput::Down(p) => ShapeInput::Down(ShapePointer { direction: [0.0; 3], ..p }),
-            ShapeInput::Up(p) => ShapeInput::Up(ShapePointer { tip: Some([1e300; 3]), ..p }),
-            other => other,
-        };
-        GestureStep { input, ..step.clone() }
+        let mut step = step.clone();
+        let GestureDeed::Hand(hand) = &mut step.did else { return step };
+        match &mut hand.input {
+            ShapeInput::Down(p) => *p = ShapePointer { direction: [0.0; 3], ..*p },
+            ShapeInput::Up(p) => *p = ShapePointer { tip: Some([1e300; 3]), ..*p },
+            _ => {}
+        }
+        step
     });
     let wild = GestureRecord { steps: wild.collect(), ..record.clone() };
-    for record in [record, wild] {
-        s.replay(&record, &run()).unwrap();
+    for record in [&record, &wild] {
+        replayed(&mut s, record).unwrap();
         assert!(look(&mut s)["error"].is_null());
     }
+    // An edit that no gesture made, a project that is none, a plant that is not there.
+    let refused =
+        |record: GestureRecord| Refusal::of(&replayed(&mut Workspace::default(), &record).unwrap_err()).code;
+    let keeps = vec![GestureStep { ms: 0, did: GestureDeed::Keep }];
+    assert_eq!(refused(GestureRecord { steps: keeps, ..GestureRecord::default() }), "record-keeps");
+    let project = |text: &str| GestureRecord { project: Some(text.into()), ..GestureRecord::default() };
+    assert_eq!(refused(project("n\u{f6}")), "record-project");
+    assert_ne!(refused(project("bm9uZQ==")), "record-project");
+    let plant = Some(PlantId(77));
+    assert_eq!(refused(GestureRecord { plant, ..GestureRecord::default() }), "plant-gone");
 }
 
 #[test]
@@ -215,7 +242,7 @@ fn a_copy_and_both_sides_of_a_mirror_are_done_again_from_a_record() {
         at(x, y).replace(r#""pressure":1"#, &format!(r#""pressure":1,"tip":[{x},{y},{z}]"#))
     };
     let step = |tool: &str, reach: &str, input: &str| {
-        format!(r#"{{"tool":{tool},"reach":{reach},"input":{input}}}"#)
+        format!(r#"{{"did":{{"hand":{{"tool":{tool},"reach":{reach},"input":{input}}}}}}}"#)
     };
     let draw = r#"{"sketch":{"twigs":1,"tilt_deg":0}}"#;
     let copy = r#""copy""#;
@@ -223,19 +250,21 @@ fn a_copy_and_both_sides_of_a_mirror_are_done_again_from_a_record() {
         step(copy, REACH, &format!(r#"{{"down":{}}}"#, at(x, y))),
         step(copy, REACH, &format!(r#"{{"move":[{}]}}"#, tip(0.1, 0.9, 0.1))),
         step(copy, REACH, &format!(r#"{{"up":{}}}"#, tip(0.0, 0.8, 0.0))),
+        KEPT.to_owned(),
         step(draw, &both, &format!(r#"{{"down":{}}}"#, tip(0.0, 1.2, 0.0))),
         step(draw, &both, &format!(r#"{{"move":[{}]}}"#, tip(0.4, 1.5, 0.2))),
         step(draw, &both, &format!(r#"{{"up":{}}}"#, tip(0.9, 1.9, 0.3))),
+        KEPT.to_owned(),
     ];
     let record = format!(r#"{{"schema":"{GESTURES_SCHEMA}","steps":[{}]}}"#, steps.join(","));
     let record = GestureRecord::read(record.as_bytes()).unwrap();
-    assert_eq!(first.replay(&record, &run()).unwrap(), 2);
+    assert_eq!(replayed(&mut first, &record).unwrap().edits, 2);
     let done = look(&mut first)["item"].clone();
     let told: Vec<&str> =
         done["edits"].as_array().unwrap().iter().map(|e| e["said"].as_str().unwrap()).collect();
     assert!(told.iter().all(|said| said.contains("grown")), "{told:?}");
     let (mut second, _) = bush();
-    assert_eq!(second.replay(&record, &run()).unwrap(), 2);
+    assert_eq!(replayed(&mut second, &record).unwrap().edits, 2);
     assert_eq!(look(&mut second)["item"]["digest"], done["digest"]);
     for _ in 0..2 {
         assert!(second.undo().is_some());
@@ -243,16 +272,19 @@ fn a_copy_and_both_sides_of_a_mirror_are_done_again_from_a_record() {
     assert_eq!(look(&mut second)["item"]["digest"], plain);
     // A mirror that is none is refused, and changes nothing.
     let flat = GestureRecord {
-        steps: record.steps[3..]
+        steps: record.steps[5..]
             .iter()
             .map(|s| {
-                let mirror = s.reach.mirror.map(|m| burgeon::shape::Mirror { normal: DVec3::ZERO, ..m });
-                GestureStep { reach: ShapeReach { mirror, ..s.reach }, ..s.clone() }
+                let mut step = s.clone();
+                let GestureDeed::Hand(hand) = &mut step.did else { return step };
+                let mirror = hand.reach.mirror.map(|m| burgeon::shape::Mirror { normal: DVec3::ZERO, ..m });
+                hand.reach = ShapeReach { mirror, ..hand.reach };
+                step
             })
             .collect(),
         ..record.clone()
     };
-    assert!(second.replay(&flat, &run()).is_err());
+    assert!(replayed(&mut second, &flat).is_err());
     second.let_go();
     assert_eq!(look(&mut second)["item"]["digest"], plain);
 }
@@ -281,4 +313,44 @@ fn what_grows_in_the_hand_says_how_old_and_how_dense_it_is() {
     s.ask(&format!(r#"{{"shape":[1,{{"add":{}}}]}}"#, up["commit"])).unwrap();
     let added = look(&mut s)["item"]["edits"][0]["changed"]["added"].as_u64().unwrap();
     assert!(added >= last["branches"].as_u64().unwrap(), "{added} {last}");
+}
+
+#[test]
+fn what_is_shown_stays_within_a_number_of_triangles_and_is_carried_as_it_is_shown() {
+    let (mut s, (x, y)) = bush();
+    let whole = look(&mut s);
+    let shown = |s: &Workspace, view: &Value| -> usize {
+        let parts = view["parts"].as_array().unwrap().len();
+        (0..parts).map(|part| s.indices(PlantId(1), part).len() / 3).sum()
+    };
+    let all = shown(&s, &whole);
+    s.set_most_triangles(Some(all as u64 / 2));
+    let fewer = look(&mut s);
+    assert!(fewer["fresh"] == true && fewer["mesh"] != whole["mesh"], "{} {}", fewer["fresh"], fewer["mesh"]);
+    let now = shown(&s, &fewer);
+    assert!(now <= all / 2 && now > all / 40, "{now} of {all}");
+    // The plant is the same one; what is shown again is not sent again.
+    assert_eq!(fewer["item"], whole["item"]);
+    let again = look(&mut s);
+    assert_eq!((&again["fresh"], &again["mesh"]), (&Value::Bool(false), &fewer["mesh"]));
+    // What the hand carries are triangles of what is shown.
+    let answer = hand(&mut s, r#""rotate""#, &format!(r#"{{"down":{}}}"#, at(x, y)));
+    let answer = match answer["carried"].is_null() {
+        true => hand(&mut s, r#""rotate""#, r#"{"twist":30}"#),
+        false => answer,
+    };
+    assert_eq!(answer["carried"]["mesh"], fewer["mesh"], "{answer}");
+    let rows: Vec<[u32; 3]> = s.held_rows().as_chunks().0.to_vec();
+    assert!(!rows.is_empty());
+    for [part, from, to] in rows {
+        assert!(from < to && to as usize <= s.indices(PlantId(1), part as usize).len() / 3);
+    }
+    // Seen where the hand is: as many triangles, others in their places.
+    let carried = s.seen().unwrap();
+    assert_eq!(carried.triangle_count(), now);
+    hand(&mut s, r#""rotate""#, r#""cancel""#);
+    assert_ne!(s.seen().unwrap(), carried);
+    s.set_most_triangles(None);
+    let back = look(&mut s);
+    assert_eq!((&back["mesh"], shown(&s, &back)), (&whole["mesh"], all));
 }

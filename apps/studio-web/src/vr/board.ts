@@ -1,0 +1,186 @@
+/** What the board at the wrist has on each of its pages: which keys, and what each does. */
+import type { Shaping } from '../shaping';
+import { t, type TextKey } from '../text';
+import { SHAPE_TOOLS, type ShapeTool } from '../tools';
+import type { ExportFormat } from '../wire';
+import type { HeadsetEvents } from './events';
+import type { ObstacleKind } from './placing';
+import type { Key } from './wrist';
+
+/** What the keys ask of the headset. */
+export interface Board {
+  page: 'tools' | 'more' | 'scene' | 'export';
+  /** What is on now. */
+  state(): {
+    placed: ObstacleKind | undefined;
+    isRecorded: boolean;
+    trueScale: boolean;
+    leftHanded: boolean;
+  };
+  say(text: string): void;
+  /** Something was taken back. */
+  undone(): void;
+  /** Works on another plant, or says which this is. */
+  tellPlant(by: -1 | 0 | 1): void;
+  place(kind: ObstacleKind): void;
+  /** Begins to write down what hands do, or ends it. */
+  writeDown(): void;
+  mirror: Key['act'];
+  brush(by: number): void;
+  resize(): void;
+  swapHands(): void;
+  /** So many steps higher. */
+  sit(by: 1 | -1): void;
+  leave(): void;
+  startLesson(): void;
+}
+
+const GROWTH_KEYS = ['vigour', 'apical', 'angle_deg', 'lift', 'apart'] as const;
+/** What a model is written as from within, in rows of keys. */
+const FORMATS = [
+  ['glb', 'usda'],
+  ['obj', 'ply'],
+  ['stl', 'mtg'],
+] as const satisfies readonly (readonly ExportFormat[])[];
+
+type Rows = readonly (readonly Key[])[];
+
+const key = (id: string, wide: number, act: Key['act'], on = false): Key => ({
+  id,
+  label: t(`vr.${id}` as TextKey),
+  wide,
+  on,
+  act,
+});
+
+/** The keys that the board has now, in rows. */
+export function rowsOf(board: Board, shaping: Shaping, events: HeadsetEvents): Rows {
+  // The trigger is taken while something grows: these alone are pressed, by another button.
+  if (shaping.isGrowing) return growthRows(board, shaping);
+  const rows = {
+    tools: () => toolRows(board, shaping, events),
+    more: () => moreRows(board, shaping, events),
+    scene: () => sceneRows(board, events),
+    export: () => exportRows(events),
+  }[board.page]();
+  const open = (page: 'more' | 'scene', act: () => void): Key =>
+    key(
+      page,
+      3,
+      () => {
+        board.page = board.page === page ? 'tools' : page;
+        act();
+      },
+      board.page === page,
+    );
+  return [...rows, [open('more', () => {}), open('scene', () => board.tellPlant(0))]];
+}
+
+function growthRows(board: Board, shaping: Shaping): Rows {
+  return GROWTH_KEYS.map((of) =>
+    ([-1, 1] as const).map(
+      (by): Key => ({
+        id: `${of}${by < 0 ? '-' : '+'}`,
+        label: `${t(`shape.grow.${of}`)} ${by < 0 ? '−' : '+'}`,
+        wide: 3,
+        act: () => {
+          shaping.turnGrowth(of, by);
+          board.say(shaping.growthText(of));
+        },
+      }),
+    ),
+  );
+}
+
+function toolRows(board: Board, shaping: Shaping, events: HeadsetEvents): Rows {
+  const now = board.state();
+  const tools = SHAPE_TOOLS.map(
+    ([word]: readonly [ShapeTool, string]): Key => ({
+      id: word,
+      label: t(`vr.tool.${word}` as TextKey),
+      wide: 2,
+      on: shaping.word === word,
+      act: () => {
+        shaping.take(word);
+        board.say(t(`shape.${word}` as TextKey));
+      },
+    }),
+  );
+  const undo = (): void => {
+    events.undo();
+    board.undone();
+  };
+  return [
+    tools.slice(0, 3),
+    tools.slice(3, 6),
+    tools.slice(6, 9),
+    tools.slice(9).map((one) => ({ ...one, wide: 3 })),
+    [
+      key('undo', 2, undo),
+      key('redo', 2, events.redo),
+      key('mirror', 2, (hand) => board.mirror(hand), shaping.isMirrored),
+    ],
+    ...(shaping.word === 'grow'
+      ? growthRows(board, shaping)
+      : [[key('smaller', 3, () => board.brush(1 / 1.25)), key('larger', 3, () => board.brush(1.25))]]),
+    [
+      key('scale', 3, () => board.resize(), now.trueScale),
+      key('left', 3, () => board.swapHands(), now.leftHanded),
+    ],
+    [
+      key('lower', 2, () => board.sit(-1)),
+      key('higher', 2, () => board.sit(1)),
+      key('leave', 2, () => board.leave()),
+    ],
+  ];
+}
+
+function moreRows(board: Board, shaping: Shaping, events: HeadsetEvents): Rows {
+  const species = (by: 1 | -1) => () => {
+    void events.species(by).then((name) => board.say(name ?? t('vr.species.none')));
+  };
+  return [
+    [key('before', 3, species(-1)), key('next', 3, species(1))],
+    [key('dice', 6, () => events.run('dice'))],
+    [key('grid', 3, () => events.run('guide-grid')), key('staff', 3, () => events.run('guide-staff'))],
+    [
+      key('plane', 3, () => void shaping.placePlane(undefined), shaping.plane !== undefined),
+      key('lesson', 3, () => board.startLesson()),
+    ],
+  ];
+}
+
+function sceneRows(board: Board, events: HeadsetEvents): Rows {
+  const now = board.state();
+  const clear = (): void => {
+    if (events.obstacles()) events.clear();
+    else board.say(t('vr.place.none'));
+  };
+  const formats = (): void => {
+    board.page = 'export';
+  };
+  return [
+    [key('plant.before', 3, () => board.tellPlant(-1)), key('plant.next', 3, () => board.tellPlant(1))],
+    [key('plant.add', 3, events.add), key('copy', 3, events.copy)],
+    [
+      key('ball', 3, () => board.place('ball'), now.placed === 'ball'),
+      key('box', 3, () => board.place('box'), now.placed === 'box'),
+    ],
+    [key('clear', 6, clear)],
+    [key('save', 3, () => events.run('save')), key('export', 3, formats)],
+    [key('record', 6, () => board.writeDown(), now.isRecorded)],
+  ];
+}
+
+function exportRows(events: HeadsetEvents): Rows {
+  return FORMATS.map((row) =>
+    row.map(
+      (format): Key => ({
+        id: `export.${format}`,
+        label: format.toUpperCase(),
+        wide: 3,
+        act: () => events.model(format),
+      }),
+    ),
+  );
+}

@@ -1,0 +1,37 @@
+/** What the headset asks of the page. */
+import type { ExportFormat, GestureRecord, Obstacle } from '../wire';
+
+export type Mode = 'immersive-vr' | 'immersive-ar';
+
+export interface HeadsetEvents {
+  undo(): void;
+  redo(): void;
+  /** Makes the plant another species, the next or the one before; what it is now, if it has any. */
+  species(by: 1 | -1): Promise<string | undefined>;
+  /** Another plant like the chosen one, beside it. */
+  copy(): void;
+  run(command: 'dice' | 'guide-grid' | 'guide-staff' | 'save'): void;
+  /** Writes the scene as a model. */
+  model(format: ExportFormat): void;
+  /** The document as a project file. */
+  project(): Promise<Uint8Array>;
+  /** The plant that is worked on, and the digest of what is seen of it. */
+  seen(): { plant: number | undefined; digest: string | undefined };
+  /** Hands a record to the browser. */
+  write(record: GestureRecord): void;
+  /** Moves an obstacle of the chosen plant, metres. */
+  shift(row: number, by: [number, number, number]): void;
+  /** Shows at most so many triangles of all plants, the largest coarser; 0: all. */
+  most(triangles: number): void;
+  /** Works on the next plant, the one before, or (0) this one; which it is then. */
+  select(by: -1 | 0 | 1): { name: string; number: number; count: number } | undefined;
+  /** Another plant of the same kind beside the others; it is worked on. */
+  add(): void;
+  /** How many obstacles the chosen plant has; undefined where it can have none. */
+  obstacles(): number | undefined;
+  obstruct(shape: Obstacle): void;
+  /** Takes the last obstacle away. */
+  clear(): void;
+  /** It was entered, or left. */
+  changed(on: boolean): void;
+}
