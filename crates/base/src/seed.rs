@@ -42,6 +42,8 @@ pub enum Draw {
     Wind = 15,
     /// Where copies of a plant stand, how they are turned and how large they are.
     Scatter = 16,
+    /// In what a tree differs from others of its kind.
+    Habit = 17,
 }
 
 /// A 64-bit seed from which independent streams and child seeds are derived.

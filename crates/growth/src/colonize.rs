@@ -7,6 +7,7 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::envelope::Crown;
 use crate::error::{GrowthError, usable};
 use crate::field::{Change, Field, NOBODY};
 use crate::{JointId, Obstacles, Skeleton, Tropism};
@@ -182,6 +183,33 @@ pub(crate) fn plant_roots(
         skeleton.push_root(at, root as u32);
     }
     Ok(skeleton)
+}
+
+/// Trunks and limbs along the lines that crowns drew, before anything else grows.
+pub(crate) fn grow_frame(
+    skeleton: Skeleton,
+    crowns: &[Crown],
+    roots: &[DVec3],
+    obstacles: &Obstacles,
+    step: f64,
+    run: &Run<'_>,
+) -> Result<Skeleton, GrowthError> {
+    let of = |(root, crown): (&DVec3, &Crown)| crown.lines.iter().map(|p| *root + *p).collect::<Vec<_>>();
+    let lines: Vec<DVec3> = roots.iter().zip(crowns.iter().cycle()).flat_map(of).collect();
+    if lines.is_empty() {
+        return Ok(skeleton);
+    }
+    // As narrow as lines can be followed: nobody may cut across to the next limb.
+    let spec = ColonizeSpec {
+        attraction_m: 2.4 * step,
+        kill_m: 1.05 * step,
+        step_m: Some(step),
+        ..ColonizeSpec::default()
+    };
+    let part = (0.0, 0.05 * crate::GROWN);
+    // What lies in obstacles is no news.
+    let mut told = Report::default();
+    Ok(colonize_part(skeleton, &lines, obstacles, &spec, part, run, &mut told)?.skeleton)
 }
 
 /// A bole from a root straight up, around obstacles, until it is so high; its top.

@@ -7,9 +7,10 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::colonize::{colonize_part, plant_roots};
+use crate::colonize::{colonize_part, grow_frame, plant_roots};
+use crate::envelope::crowns;
 use crate::error::GrowthError;
-use crate::{ColonizeSpec, Envelope, Fate, Obstacles, Skeleton, Tropism};
+use crate::{ColonizeSpec, Envelope, Fate, Obstacles, Skeleton, Tropism, VariationSpec};
 
 /// Trees after Yang et al. (2019). Lengths in metres; places relative to the root.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -247,30 +248,49 @@ pub fn compete(
     run: &Run<'_>,
     report: &mut Report,
 ) -> Result<Competed, GrowthError> {
+    compete_each(roots, obstacles, spec, &VariationSpec::default(), seed, run, report)
+}
+
+/// As [`compete`], by trees that differ.
+pub(crate) fn compete_each(
+    roots: &[DVec3],
+    obstacles: &Obstacles,
+    spec: &CompetitionSpec,
+    variation: &VariationSpec,
+    seed: Seed,
+    run: &Run<'_>,
+    report: &mut Report,
+) -> Result<Competed, GrowthError> {
     spec::check(spec)?;
     let all = u64::from(spec.points) * roots.len() as u64;
     run.budget.check(Counted::Points, all, "lower points or give fewer roots")?;
-    let crown = spec.envelope.prepare()?;
-    let first = spec.first_envelope.as_ref().map(Envelope::prepare).transpose()?;
+    let step = spec.step_m.unwrap_or(0.5 * spec.kill_m);
+    let all_crowns = |e: &Envelope| crowns(e, variation, roots.len(), step, seed);
+    let crown = all_crowns(&spec.envelope)?;
+    let first = spec.first_envelope.as_ref().map(all_crowns).transpose()?;
     let mut skeleton = plant_roots(roots, obstacles, run)?;
+    let lines = first.as_ref().unwrap_or(&crown);
+    skeleton = grow_frame(skeleton, lines, roots, obstacles, step, run)?;
     let mut cycles = Vec::new();
     let mut stem_age = 0;
     for cycle in 0..spec.lifespan {
         run.cancel.check()?;
         let at = seed.child(u64::from(cycle));
         let points = if cycle == 0 {
-            let region = first.as_ref().unwrap_or(&crown);
+            let regions = first.as_ref().unwrap_or(&crown);
             let hollow = if first.is_some() { 0.0 } else { spec.hollow };
             let mut points = Vec::with_capacity(roots.len() * spec.points as usize);
-            for (root, i) in roots.iter().zip(0_u64..) {
+            for ((root, i), own) in roots.iter().zip(0_u64..).zip(regions.iter().cycle()) {
                 let free = |p: DVec3| obstacles.free(*root + p);
-                let own = region.scatter(spec.points as usize, hollow, at.child(i), free)?;
+                let count = own.region.count(spec.points);
+                let own = own.region.scatter(count, hollow, at.child(i), free)?;
                 points.extend(own.into_iter().map(|p| *root + p));
             }
             points
         } else {
             // A point may lie in the crown of any tree: neighbours compete for what both can reach.
-            let inside = |p: DVec3| roots.iter().any(|r| crown.contains(p - *r)) && obstacles.free(p);
+            let own = || roots.iter().zip(crown.iter().cycle());
+            let inside = |p: DVec3| own().any(|(r, c)| c.region.contains(p - *r)) && obstacles.free(p);
             let chosen = choose(&skeleton, spec, stem_age, at);
             let all = u64::from(spec.points_per_joint) * chosen.len() as u64;
             run.budget.check(Counted::Points, all, "lower points_per_joint, joints_share or points")?;

@@ -2,6 +2,8 @@
 //!
 //! `Envelope -> Region -> attractors`
 
+use std::sync::Arc;
+
 use base::{Draw, Seed};
 use geom::{KdTree, contains};
 use glam::{DVec2, DVec3};
@@ -9,7 +11,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{FAR_M, GrowthError, usable, within};
+use crate::limbs::{Drawn, LimbsSpec};
 use crate::solid::Solid;
+use crate::variation::{Habit, VariationSpec};
 
 /// The space that a crown may fill. Metres, +Y up.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -96,6 +100,8 @@ pub enum Envelope {
         #[schemars(range(min = 1e-6, max = 1e6), extend("x-unit" = "m"))]
         reach_m: f64,
     },
+    /// Masses of foliage on limbs that each seed draws anew.
+    Limbs(LimbsSpec),
 }
 
 spec::schemas!(Envelope => crate::TreeSpec, "/$defs/Envelope");
@@ -120,9 +126,13 @@ impl Default for Envelope {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Region {
-    form: Form,
+    form: Arc<Form>,
     lo: DVec3,
     hi: DVec3,
+    /// The tree whose crown it is, where that differs from what was drawn up.
+    habit: Option<Habit>,
+    /// How much more room it has than what was drawn up.
+    more: f64,
 }
 
 #[derive(Clone, Debug)]
@@ -132,6 +142,49 @@ enum Form {
     Outline(Vec<DVec2>, f64, f64),
     Mesh(Solid),
     Points(KdTree, f64),
+    /// Flattened by the last number, in which the masses are balls.
+    Masses(KdTree, f64, f64),
+}
+
+/// The room of one tree, relative to its root.
+#[derive(Clone, Debug)]
+pub(crate) struct Crown {
+    pub(crate) region: Region,
+    /// Points along trunk and limbs, which it grows before all else.
+    pub(crate) lines: Vec<DVec3>,
+}
+
+/// The room of each root's tree: one for all where they do not differ. `step`: of growth.
+pub(crate) fn crowns(
+    envelope: &Envelope,
+    variation: &VariationSpec,
+    roots: usize,
+    step: f64,
+    seed: Seed,
+) -> Result<Vec<Crown>, GrowthError> {
+    if let Envelope::Limbs(limbs) = envelope {
+        spec::check(envelope)?;
+        check_profile(&limbs.profile)?;
+        let crown = |root| limbs_crown(limbs, &variation.habit(seed, root), step);
+        return Ok((0..roots as u64).map(crown).collect());
+    }
+    let region = envelope.prepare()?;
+    if variation.is_none() {
+        return Ok(vec![Crown { region, lines: Vec::new() }]);
+    }
+    let crown = |root| Crown { region: region.of(variation.habit(seed, root)), lines: Vec::new() };
+    Ok((0..roots as u64).map(crown).collect())
+}
+
+fn limbs_crown(limbs: &LimbsSpec, habit: &Habit, step: f64) -> Crown {
+    let Drawn { masses, lines } = limbs.draw(habit, step);
+    let (reach, flat) = (limbs.mass_m, limbs.flat);
+    let size = DVec3::new(reach, reach * flat, reach);
+    let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let (lo, hi) = masses.iter().fold(start, |(lo, hi), p| (lo.min(*p - size), hi.max(*p + size)));
+    let flattened: Vec<DVec3> = masses.iter().map(|p| p.with_y(p.y / flat)).collect();
+    let form = Arc::new(Form::Masses(KdTree::new(&flattened), reach, flat));
+    Crown { region: Region { form, lo, hi, habit: None, more: habit.volume() }, lines }
 }
 
 impl Envelope {
@@ -183,9 +236,15 @@ impl Envelope {
                 }
                 Form::Points(KdTree::new(&good), *reach_m)
             }
+            Self::Limbs(limbs) => {
+                check_profile(&limbs.profile)?;
+                // As the first seed draws it; growth asks for each tree's own.
+                let habit = VariationSpec::default().habit(Seed::new(0), 0);
+                return Ok(limbs_crown(limbs, &habit, limbs.mass_m).region);
+            }
         };
         let (lo, hi) = self.bounds(&form);
-        Ok(Region { form, lo, hi })
+        Ok(Region { form: Arc::new(form), lo, hi, habit: None, more: 1.0 })
     }
 
     fn bounds(&self, form: &Form) -> (DVec3, DVec3) {
@@ -209,7 +268,7 @@ impl Envelope {
                 let (lo, hi) = of(&mut points.iter().copied().filter(|&p| usable(p)));
                 (lo - *reach, hi + *reach)
             }
-            (Form::Points(..), _) => (DVec3::ZERO, DVec3::ZERO),
+            (Form::Points(..) | Form::Masses(..), _) => (DVec3::ZERO, DVec3::ZERO),
         }
     }
 }
@@ -233,12 +292,20 @@ fn check_profile(profile: &[DVec2]) -> Result<(), GrowthError> {
 }
 
 impl Region {
+    /// The same region as a tree has it that differs from what was drawn up.
+    pub(crate) fn of(&self, habit: Habit) -> Self {
+        let (lo, hi) = habit.around(self.lo, self.hi);
+        let more = habit.volume();
+        Self { form: Arc::clone(&self.form), lo, hi, habit: Some(habit), more }
+    }
+
     /// Whether a point lies in the envelope (points on its surface may go either way).
     pub fn contains(&self, p: DVec3) -> bool {
         if !(p.cmpge(self.lo).all() && p.cmple(self.hi).all()) {
             return false;
         }
-        match &self.form {
+        let p = self.habit.as_ref().map_or(p, |h| h.back(p));
+        match &*self.form {
             Form::Ellipsoid(centre, radii) => ((p - *centre) / *radii).length_squared() <= 1.0,
             Form::Revolution(base, profile) => {
                 let q = p - *base;
@@ -259,6 +326,7 @@ impl Region {
             }
             Form::Mesh(solid) => solid.inside(p),
             Form::Points(grid, reach) => grid.nearest(p, *reach).is_some(),
+            Form::Masses(grid, reach, flat) => grid.nearest(p.with_y(p.y / flat), *reach).is_some(),
         }
     }
 
@@ -269,7 +337,10 @@ impl Region {
         if !((p - radius).cmpge(self.lo).all() && (p + radius).cmple(self.hi).all()) {
             return false;
         }
-        match &self.form {
+        if self.habit.is_some() {
+            return false;
+        }
+        match &*self.form {
             Form::Ellipsoid(centre, radii) => {
                 ((p - *centre) / *radii).length() + radius / radii.min_element() <= 1.0
             }
@@ -287,7 +358,7 @@ impl Region {
                 };
                 profile.windows(2).all(fits)
             }
-            Form::Outline(..) | Form::Mesh(_) | Form::Points(..) => false,
+            Form::Outline(..) | Form::Mesh(_) | Form::Points(..) | Form::Masses(..) => false,
         }
     }
 
@@ -308,6 +379,13 @@ impl Region {
             y += step;
         }
         if y < self.hi.y { y } else { 0.0 }
+    }
+
+    /// So many points as make a region of a tree as dense as `count` make the one that was drawn up; at least 1.
+    pub(crate) fn count(&self, count: u32) -> usize {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few times a u32")]
+        let count = (f64::from(count) * self.more).round().max(1.0) as usize;
+        count
     }
 
     /// `count` points spread evenly at random in the envelope where `free` holds.

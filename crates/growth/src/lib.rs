@@ -5,6 +5,9 @@
 //! | module | owns |
 //! |---|---|
 //! | `envelope` | the space of a crown, attraction points scattered in it |
+//! | `limbs` | crowns of limbs and masses of foliage, drawn anew by each seed |
+//! | `variation` | how trees of one kind differ |
+//! | `life` | a tree as it was when it was younger |
 //! | `obstacle` | boxes, balls, cylinders, planes and meshes that growth goes around |
 //! | `beside` | courses of wood beside obstacles: room for bark |
 //! | `mesh_faults` | whether a mesh is closed, for warnings |
@@ -28,6 +31,8 @@ mod error;
 mod field;
 mod guided;
 mod leaves;
+mod life;
+mod limbs;
 mod look;
 mod lsystem;
 mod mesh_faults;
@@ -39,6 +44,7 @@ mod solid;
 mod spec;
 mod tree;
 mod tropism;
+mod variation;
 mod wood;
 
 pub use self::spec::{Method, TreeSpec};
@@ -50,6 +56,7 @@ pub use error::{GrowthError, LsystemError, MeshFault, RuleFault};
 pub use guided::{
     BrushStroke, Growing, GrowthStep, Guided, GuidedChange, GuidedSpec, StartBud, guide, guide_from,
 };
+pub use limbs::LimbsSpec;
 pub use leaves::{FoliageSpec, LeafCount, add_leaves};
 pub use look::{Bark, BladeForm, BladeSpec, BlossomSpec, Look};
 pub use lsystem::{LeafMark, Lsystem, LsystemTree, OAK_RULES, grow_lsystem};
@@ -59,6 +66,7 @@ pub use self_organize::{Light, Resource, SelfOrganized, SelfOrganizingSpec, self
 pub use skeleton::{JointId, Skeleton, SkeletonFault};
 pub use tree::{Grown, Tally, grow};
 pub use tropism::Tropism;
+pub use variation::VariationSpec;
 pub use wood::{Wood, WoodSpec, make_wood};
 
 /// The share of the work that is done, for people who wait, when the skeleton stands; the rest is wood, leaves and

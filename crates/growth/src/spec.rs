@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     BladeSpec, BlossomSpec, ColonizeSpec, CompetitionSpec, Envelope, FoliageSpec, GrowthError, GuidedSpec,
-    Light, Look, Obstacle, SelfOrganizingSpec, WoodSpec,
+    Light, Look, Obstacle, SelfOrganizingSpec, VariationSpec, WoodSpec,
 };
 
 /// How a tree grows.
@@ -81,9 +81,15 @@ pub struct TreeSpec {
     /// Distance that bark keeps from obstacles where there is room, metres, 0 to 1e6, default 0.05; leaves may touch.
     #[schemars(range(min = 0.0, max = 1e6), extend("x-unit" = "m"))]
     pub clearance_m: f64,
-    /// The trees as they were after so many rounds, years (self-organising) or rewriting steps (L-systems); default
-    /// none: to the end.
+    /// The trees as they were at this age, in years of [`years`](Self::years); where that is not given, after so many
+    /// rounds, years (self-organising) or rewriting steps (L-systems). Default none: to the end.
     pub age: Option<u32>,
+    /// How old the tree is that the method grows, years, 1 to 5000. Younger ages are then on the path of one life, with
+    /// the same branches, whatever the method. Self-organising trees have years of their own. Default none.
+    #[schemars(range(min = 1, max = 5000), extend("x-unit" = "a"))]
+    pub years: Option<u32>,
+    /// How trees of this kind differ from seed to seed. Default not at all in size and stance.
+    pub variation: VariationSpec,
     /// How they grow.
     pub method: Method,
     /// How skeletons become wood.
@@ -112,6 +118,8 @@ impl Default for TreeSpec {
             obstacles: Vec::new(),
             clearance_m: 0.05,
             age: None,
+            years: None,
+            variation: VariationSpec::default(),
             method: Method::Competition(CompetitionSpec::default()),
             wood: WoodSpec::default(),
             leaves: FoliageSpec::default(),
@@ -135,6 +143,8 @@ impl TreeSpec {
             obstacles,
             clearance_m,
             age,
+            years,
+            variation,
             method,
             wood,
             leaves,
@@ -146,6 +156,7 @@ impl TreeSpec {
         (name, clearance_m, age, bare) == (&other.name, &other.clearance_m, &other.age, &other.bare)
             && (roots, obstacles, method) == (&other.roots, &other.obstacles, &other.method)
             && (wood, leaves) == (&other.wood, &other.leaves)
+            && (years, variation) == (&other.years, &other.variation)
     }
 
     /// Fails if a number is out of its range, or if meshes, point clouds and roots are more than the budget allows.

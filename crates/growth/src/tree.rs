@@ -2,16 +2,24 @@
 //!
 //! `TreeSpec -> Skeleton (any method) -> wood -> leaves -> Plant`
 
-use base::{Counted, Report, Run, Seed};
+use base::{Counted, Draw, Report, Run, Seed, ops};
 use glam::DVec3;
 use plant::{Blade, NodeId, Plant};
 
-use crate::colonize::{colonize_part, plant_roots};
+use crate::colonize::{colonize_part, grow_frame, plant_roots};
+use crate::competition::compete_each;
+use crate::envelope::crowns;
+use crate::life::{grown_by, younger};
+use crate::variation::Habit;
+use crate::wood::{main_children, make_wood_of, pipes, radii, thickening};
 use crate::{
-    ColonizeSpec, Colonized, Cycle, Fate, GrowthError, LeafCount, LeafMark, Lsystem, Method, Obstacles,
-    SelfOrganizingSpec, Skeleton, TreeSpec, Wood, add_leaves, compete, grow_lsystem, guide, make_wood,
-    self_organize,
+    ColonizeSpec, Colonized, Cycle, Fate, FoliageSpec, GrowthError, JointId, LeafCount, LeafMark, Lsystem,
+    Method, Obstacles, SelfOrganizingSpec, Skeleton, TreeSpec, VariationSpec, Wood, WoodSpec, add_leaves,
+    grow_lsystem, guide, self_organize,
 };
+
+/// The key under which a seed draws the fates of limbs.
+const FATE: u64 = 0x0066_6174_6573;
 
 /// The shares of the work that are done, for people who wait, when it is wood, and when it has leaves; meshes are the
 /// rest. As of an oak.
@@ -27,7 +35,7 @@ pub struct Tally {
     pub consumed: usize,
     /// Of these, neither consumed nor lying in obstacles: no joint came near them.
     pub unreachable: usize,
-    /// Rounds, years or rewriting steps.
+    /// Years of a tree that has [`TreeSpec::years`]; else rounds, years or rewriting steps.
     pub iterations: u32,
     /// Life cycles of Yang et al. (2019); 1 for methods without.
     pub cycles: u32,
@@ -70,19 +78,23 @@ pub fn grow(
 ) -> Result<Grown, GrowthError> {
     spec.check(&run.budget)?;
     let obstacles = Obstacles::new(&spec.obstacles, spec.clearance_m)?;
-    let Bones { mut skeleton, marks, tally } = bones(spec, &obstacles, seed, run, report)?;
+    let mut bones = bones(spec, &obstacles, seed, run, report)?;
     run.cancel.reached(crate::GROWN);
-    let by_birth = !matches!(spec.method, Method::Lsystem { .. } | Method::SelfOrganizing(_));
-    if let Some(age) = spec.age.filter(|_| by_birth) {
-        skeleton = skeleton.at_age(age);
-    }
     let started = run.clock.now_ms();
     let mut wood_spec = spec.wood.clone();
     if let Method::SelfOrganizing(s) = &spec.method {
         // One exponent and one tip for the wood that growth kept account of.
         (wood_spec.pipe_exponent, wood_spec.tip_radius_m) = (s.pipe_exponent, s.tip_radius_m);
     }
-    let wood = make_wood(&skeleton, &wood_spec, &obstacles, run)?;
+    let thick = differ(spec, &wood_spec, &obstacles, seed, &mut bones)?;
+    take_limbs(&spec.variation, &wood_spec, seed, &mut bones);
+    age(spec, &wood_spec, &mut bones);
+    strip_twigs(&wood_spec, &mut bones);
+    let Bones { skeleton, marks, dead, mut tally } = bones;
+    if let Some(years) = spec.years.filter(|_| !matches!(spec.method, Method::SelfOrganizing(_))) {
+        tally.iterations = spec.age.map_or(years, |age| age.min(years));
+    }
+    let wood = make_wood_of(&skeleton, &wood_spec, &thick, &obstacles, run)?;
     tell_moved_feet(&skeleton, &wood, report);
     report.book("wood", run.clock.now_ms() - started);
     run.cancel.reached(WOODY);
@@ -97,11 +109,139 @@ pub fn grow(
         let places: Vec<(NodeId, LeafMark)> =
             marks.iter().filter_map(|m| Some((wood.node_of_joint[m.joint.index()]?, *m))).collect();
         let blade = blade.unwrap_or_else(|| leaf.blade());
-        leaves = add_leaves(&mut plant, leaf, blade, &places, &obstacles, seed, run, report)?;
+        // Shoots that are thicker by a factor bear leaves where they are thicker by that.
+        let mean = thick.iter().sum::<f64>() / thick.len().max(1) as f64;
+        let leaf = FoliageSpec { max_radius_m: (leaf.max_radius_m * mean).min(100.0), ..leaf.clone() };
+        leaves = add_leaves(&mut plant, &leaf, blade, &places, &obstacles, seed, run, report)?;
+        let gone = strip_leaves(&mut plant, &wood.node_of_joint, &dead);
+        (leaves.kept, leaves.fallen) = (leaves.kept - gone, leaves.fallen + gone);
     }
     run.cancel.reached(LEAFY);
     debug_assert_eq!(plant.validate().next(), None, "a grown plant is sound");
     Ok(Grown { plant, skeleton, tally, leaves })
+}
+
+/// Makes the trees differ whose methods do not draw up a crown of their own size, and takes the limbs that are lost;
+/// what the radii of each tree are multiplied by.
+fn differ(
+    spec: &TreeSpec,
+    wood: &WoodSpec,
+    obstacles: &Obstacles,
+    seed: Seed,
+    bones: &mut Bones,
+) -> Result<Vec<f64>, GrowthError> {
+    let variation = &spec.variation;
+    let thick = thickening(&bones.skeleton, wood)?;
+    if variation.is_none() {
+        return Ok(vec![thick]);
+    }
+    let habits: Vec<Habit> = (0..spec.roots.len() as u64).map(|root| variation.habit(seed, root)).collect();
+    // Envelopes have grown with the tree, and their pipes with them.
+    let drawn_up = matches!(spec.method, Method::Competition(_) | Method::Colonization { .. } | Method::Points { .. });
+    if !drawn_up {
+        let s = &mut bones.skeleton;
+        for (p, tree) in s.position.iter_mut().zip(&s.tree) {
+            let (root, habit) = (spec.roots[*tree as usize], &habits[*tree as usize]);
+            *p = root + habit.place(*p - root);
+        }
+        if !obstacles.is_empty() {
+            bones.cut_off(obstacles);
+        }
+    }
+    let factor = |habit: &Habit| {
+        let crown = if drawn_up { 1.0 } else { ops::powf(habit.volume(), 1.0 / wood.pipe_exponent) };
+        thick * habit.girth * crown
+    };
+    Ok(habits.iter().map(factor).collect())
+}
+
+/// Limbs that are lost go; those that are dead are marked.
+fn take_limbs(variation: &VariationSpec, wood: &WoodSpec, seed: Seed, bones: &mut Bones) {
+    if variation.lost <= 0.0 && variation.dead <= 0.0 {
+        return;
+    }
+    let n = bones.skeleton.len();
+    let (mut lost, mut dead) = (vec![false; n], vec![false; n]);
+    for (j, i) in limbs(&bones.skeleton, wood).into_iter().zip(0_u64..) {
+        let chance = |k: u64, p: f64| seed.child(FATE).child(i).child(k).stream(Draw::Habit).chance(p);
+        lost[j] = chance(0, variation.lost);
+        dead[j] = chance(1, variation.dead);
+    }
+    for j in 0..n {
+        dead[j] |= bones.skeleton.parent[j].is_some_and(|p| dead[p.index()]);
+    }
+    bones.dead = dead;
+    bones.keep(|j| !lost[j]);
+}
+
+/// The first joints of branches that leave a trunk and have between a 200th and a sixth of its wood.
+fn limbs(skeleton: &Skeleton, wood: &WoodSpec) -> Vec<usize> {
+    let main = main_children(skeleton, &radii(skeleton, wood));
+    let pipes = pipes(skeleton, wood.internode_share);
+    let mut trunk = vec![0.0; skeleton.len()];
+    let mut limbs = Vec::new();
+    for j in 0..skeleton.len() {
+        match skeleton.parent[j].map(JointId::index) {
+            None => trunk[j] = pipes[j],
+            Some(p) if main[p] == Some(JointId::new(j)) => trunk[j] = trunk[p],
+            Some(p) if (trunk[p] / 200.0..trunk[p] / 6.0).contains(&pipes[j]) => limbs.push(j),
+            Some(_) => {}
+        }
+    }
+    limbs
+}
+
+/// The tree as it was at its age.
+fn age(spec: &TreeSpec, wood: &WoodSpec, bones: &mut Bones) {
+    let Some(age) = spec.age else { return };
+    match (&spec.method, spec.years) {
+        // Light and rules without years were followed so far and no further.
+        (Method::SelfOrganizing(_), _) | (Method::Lsystem { .. }, None) => {}
+        (_, Some(years)) if age < years => {
+            let life = f64::from(age) / f64::from(years);
+            let (young, ids) = younger(&bones.skeleton, wood, life);
+            // Fronds and blades that are a part of the tree's own height grow with it.
+            if spec.leaves.length_m > 0.05 * bones.skeleton.size() {
+                bones.marks.iter_mut().for_each(|m| m.scale *= grown_by(life));
+            }
+            bones.become_of(young, &ids);
+        }
+        (_, Some(_)) => {}
+        (_, None) => {
+            let s = &bones.skeleton;
+            let (mut young, ids) = s.keep_mapped(|j| s.birth[j] <= age);
+            young.radius_m.fill(0.0);
+            bones.become_of(young, &ids);
+        }
+    }
+}
+
+/// Takes the fine twigs of dead limbs, which the wind breaks first; the rest stays as thick as it was.
+fn strip_twigs(wood: &WoodSpec, bones: &mut Bones) {
+    if !bones.dead.iter().any(|d| *d) {
+        return;
+    }
+    let (radius, pipes) = (radii(&bones.skeleton, wood), pipes(&bones.skeleton, wood.internode_share));
+    let dead = bones.dead.clone();
+    for (j, r) in bones.skeleton.radius_m.iter_mut().enumerate().filter(|(j, _)| dead[*j]) {
+        *r = radius[j];
+    }
+    bones.keep(|j| !dead[j] || pipes[j] >= 4.0);
+}
+
+/// Takes the leaves of dead limbs; how many.
+fn strip_leaves(plant: &mut Plant, node_of_joint: &[Option<NodeId>], dead: &[bool]) -> usize {
+    let mut bare = vec![false; plant.axes.len()];
+    for node in node_of_joint.iter().zip(dead).filter(|(_, d)| **d).filter_map(|(node, _)| *node) {
+        bare[plant.nodes.axis[node.index()].index()] = true;
+    }
+    if !bare.contains(&true) {
+        return 0;
+    }
+    let before = plant.organs.len();
+    let nodes = &plant.nodes;
+    plant.organs.retain(|o| o.bearer.is_none_or(|b| !bare[nodes.axis[b.index()].index()]));
+    before - plant.organs.len()
 }
 
 /// Warns of trunks that stand beside their roots, because an obstacle has no room for them there.
@@ -183,10 +323,41 @@ fn reached_some(
 struct Bones {
     skeleton: Skeleton,
     marks: Vec<LeafMark>,
+    /// Which joints are of dead limbs; may be empty.
+    dead: Vec<bool>,
     tally: Tally,
 }
 
 impl Bones {
+    fn new(skeleton: Skeleton, tally: Tally) -> Self {
+        Self { skeleton, marks: Vec::new(), dead: Vec::new(), tally }
+    }
+
+    /// Keeps the joints for which `stays` holds and what grows on them, with what they bear.
+    fn keep(&mut self, stays: impl Fn(usize) -> bool) {
+        let (skeleton, ids) = self.skeleton.keep_mapped(stays);
+        self.become_of(skeleton, &ids);
+    }
+
+    /// Takes the place of its skeleton; `ids`: where its joints are there.
+    fn become_of(&mut self, skeleton: Skeleton, ids: &[Option<JointId>]) {
+        self.skeleton = skeleton;
+        let marks = self.marks.iter();
+        self.marks = marks.filter_map(|m| Some(LeafMark { joint: ids[m.joint.index()]?, ..*m })).collect();
+        let kept = |(d, id): (&bool, &Option<JointId>)| id.is_some().then_some(*d);
+        self.dead = self.dead.iter().zip(ids).filter_map(kept).collect();
+    }
+
+    /// What lies in obstacles, or behind one.
+    fn cut_off(&mut self, obstacles: &Obstacles) {
+        let s = self.skeleton.clone();
+        self.keep(|j| {
+            s.parent[j].is_none_or(|p| {
+                obstacles.free(s.position[j]) && !obstacles.blocks(s.position[p.index()], s.position[j])
+            })
+        });
+    }
+
     fn colonized(grown: Colonized) -> Self {
         let count = |f: fn(&Fate) -> bool| grown.fates.iter().filter(|x| f(x)).count();
         let tally = Tally {
@@ -196,7 +367,7 @@ impl Bones {
             iterations: grown.rounds,
             cycles: 1,
         };
-        Self { skeleton: grown.skeleton, marks: Vec::new(), tally }
+        Self::new(grown.skeleton, tally)
     }
 }
 
@@ -213,11 +384,15 @@ fn bones(
             let all = u64::from(*points) * spec.roots.len() as u64;
             run.budget.check(Counted::Points, all, "lower points or give fewer roots")?;
             let roots = plant_roots(&spec.roots, obstacles, run)?;
-            let region = envelope.prepare()?;
+            spec::check(steps)?;
+            let step = steps.step_m.unwrap_or(0.5 * steps.kill_m);
+            let crowns = crowns(envelope, &spec.variation, spec.roots.len(), step, seed)?;
+            let roots = grow_frame(roots, &crowns, &spec.roots, obstacles, step, run)?;
             let mut attractors = Vec::new();
-            for (root, i) in spec.roots.iter().zip(0_u64..) {
+            for ((root, i), crown) in spec.roots.iter().zip(0_u64..).zip(crowns.iter().cycle()) {
                 let free = |p: DVec3| obstacles.free(*root + p);
-                let own = region.scatter(*points as usize, *hollow, seed.child(i), free)?;
+                let count = crown.region.count(*points);
+                let own = crown.region.scatter(count, *hollow, seed.child(i), free)?;
                 attractors.extend(own.into_iter().map(|p| *root + p));
             }
             let part = (0.0, crate::GROWN);
@@ -231,7 +406,7 @@ fn bones(
             Ok(Bones::colonized(grown))
         }
         Method::Competition(s) => {
-            let grown = compete(&spec.roots, obstacles, s, seed, run, report)?;
+            let grown = compete_each(&spec.roots, obstacles, s, &spec.variation, seed, run, report)?;
             let sum = |of: fn(&Cycle) -> usize| grown.cycles.iter().map(of).sum();
             let tally = Tally {
                 attractors: sum(|c| c.points),
@@ -240,7 +415,7 @@ fn bones(
                 iterations: grown.skeleton.age(),
                 cycles: s.lifespan,
             };
-            Ok(Bones { skeleton: grown.skeleton, marks: Vec::new(), tally })
+            Ok(Bones::new(grown.skeleton, tally))
         }
         Method::SelfOrganizing(s) => {
             // Younger trees still have the branches that older ones have shed.
@@ -248,34 +423,27 @@ fn bones(
             let s = SelfOrganizingSpec { years, ..s.clone() };
             let skeleton = self_organize(&spec.roots, obstacles, &s, seed, run, report)?.skeleton;
             let tally = Tally { iterations: years, cycles: 1, ..Tally::default() };
-            Ok(Bones { skeleton, marks: Vec::new(), tally })
+            Ok(Bones::new(skeleton, tally))
         }
         Method::Guided(s) => {
             let grown = guide(&spec.roots, obstacles, s, seed, run, report)?;
             // Its markers live for one round: none is consumed or left.
             let tally = Tally { iterations: grown.rounds, cycles: 1, ..Tally::default() };
-            Ok(Bones { skeleton: grown.skeleton, marks: Vec::new(), tally })
+            Ok(Bones::new(grown.skeleton, tally))
         }
         Method::Lsystem { rules, most_modules } => {
             plant_roots(&spec.roots, obstacles, run)?;
             let mut system = Lsystem::parse(rules)?;
-            system.steps = spec.age.map_or(system.steps, |age| age.min(system.steps));
+            // Of a tree with years, all steps make the whole, which is younger later on.
+            let last = spec.age.filter(|_| spec.years.is_none());
+            system.steps = last.map_or(system.steps, |age| age.min(system.steps));
             let tally = Tally { iterations: system.steps, cycles: 1, ..Tally::default() };
             let tree = grow_lsystem(&spec.roots, &system, *most_modules, seed, run, report)?;
-            if obstacles.is_empty() {
-                return Ok(Bones { skeleton: tree.skeleton, marks: tree.leaves, tally });
+            let mut bones = Bones { marks: tree.leaves, ..Bones::new(tree.skeleton, tally) };
+            if !obstacles.is_empty() {
+                bones.cut_off(obstacles);
             }
-            let s = &tree.skeleton;
-            let open = |j: usize| match s.parent[j] {
-                None => true,
-                Some(p) => {
-                    obstacles.free(s.position[j]) && !obstacles.blocks(s.position[p.index()], s.position[j])
-                }
-            };
-            let (skeleton, new_id) = s.keep_mapped(open);
-            let marks = tree.leaves.iter();
-            let marks = marks.filter_map(|m| Some(LeafMark { joint: new_id[m.joint.index()]?, ..*m }));
-            Ok(Bones { skeleton, marks: marks.collect(), tally })
+            Ok(bones)
         }
     }
 }

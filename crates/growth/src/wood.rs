@@ -27,8 +27,9 @@ pub struct WoodSpec {
     /// between forks; 0 is Eq 4 to the letter.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub internode_share: f64,
-    /// Radius at the foot of the thickest trunk, metres; what lies between it and the tips is stretched in
-    /// proportion. Default none: as the pipe model has it.
+    /// Radius at the foot of the thickest trunk when the tree is whole, metres: all radii, those of the tips and
+    /// [`FoliageSpec::max_radius_m`](crate::FoliageSpec::max_radius_m) too, are scaled to it, so that the pipe model
+    /// holds. Default none: as the pipe model has it.
     #[schemars(range(min = 1e-6, max = 100.0), extend("x-unit" = "m"))]
     pub trunk_radius_m: Option<f64>,
     /// Smooths courses to quadratic Bezier pieces that join with one tangent (Eq 3, C1 variant). Default true.
@@ -101,11 +102,35 @@ pub fn make_wood(
     obstacles: &Obstacles,
     run: &Run<'_>,
 ) -> Result<Wood, GrowthError> {
+    let thick = thickening(skeleton, spec)?;
+    make_wood_of(skeleton, spec, &[thick], obstacles, run)
+}
+
+/// What all radii are multiplied by, so that the thickest trunk is as thick as was asked for.
+///
+/// # Errors
+/// [`GrowthError::Range`].
+pub(crate) fn thickening(skeleton: &Skeleton, spec: &WoodSpec) -> Result<f64, GrowthError> {
     spec::check(spec)?;
-    if let Some(r) = spec.trunk_radius_m {
-        within("trunk_radius_m", r, spec.tip_radius_m, 100.0, "the tips' radius to 100 m")?;
+    let Some(wanted) = spec.trunk_radius_m else { return Ok(1.0) };
+    within("trunk_radius_m", wanted, spec.tip_radius_m, 100.0, "the tips' radius to 100 m")?;
+    let thickest = radii(skeleton, spec).into_iter().fold(0.0, f64::max);
+    Ok(if thickest > spec.tip_radius_m * 1.0001 { wanted / thickest } else { 1.0 })
+}
+
+/// As [`make_wood`], with what the radii of each tree are multiplied by (one number for all, or one for each).
+pub(crate) fn make_wood_of(
+    skeleton: &Skeleton,
+    spec: &WoodSpec,
+    thick: &[f64],
+    obstacles: &Obstacles,
+    run: &Run<'_>,
+) -> Result<Wood, GrowthError> {
+    spec::check(spec)?;
+    let mut radius = radii(skeleton, spec);
+    for (r, tree) in radius.iter_mut().zip(&skeleton.tree) {
+        *r *= thick.get(*tree as usize).or(thick.last()).copied().unwrap_or(1.0);
     }
-    let radius = radii(skeleton, spec);
     let relaxed = relax(skeleton, spec.relax, obstacles);
     let skeleton = &relaxed;
     run.cancel.check()?;
@@ -116,31 +141,32 @@ pub fn make_wood(
 }
 
 /// Eq 4 from the tips down; a radius that the skeleton brings along holds.
-fn radii(skeleton: &Skeleton, spec: &WoodSpec) -> Vec<f64> {
+pub(crate) fn radii(skeleton: &Skeleton, spec: &WoodSpec) -> Vec<f64> {
     let t = spec.pipe_exponent;
     let tip = ops::powf(spec.tip_radius_m, t);
+    let own = |j: usize| Some(skeleton.radius_m[j]).filter(|r| *r > 0.0).map(|r| ops::powf(r, t));
+    gathered(skeleton, tip, tip * spec.internode_share, own).into_iter().map(|p| ops::powf(p, 1.0 / t)).collect()
+}
+
+/// The pipes at each joint, in those of a tip, whatever radii the skeleton brings along.
+pub(crate) fn pipes(skeleton: &Skeleton, internode_share: f64) -> Vec<f64> {
+    gathered(skeleton, 1.0, internode_share, |_| None)
+}
+
+fn gathered(skeleton: &Skeleton, tip: f64, internode: f64, own: impl Fn(usize) -> Option<f64>) -> Vec<f64> {
     let mut pipes = vec![0.0; skeleton.len()];
     for j in (0..skeleton.len()).rev() {
         let is_tip = pipes[j] <= 0.0;
-        pipes[j] += if is_tip { tip } else { tip * spec.internode_share };
-        let own = skeleton.radius_m[j];
-        if own > 0.0 {
-            pipes[j] = ops::powf(own, t);
+        pipes[j] += if is_tip { tip } else { internode };
+        if let Some(own) = own(j) {
+            pipes[j] = own;
         }
         // The foot of a tree is as thick as what stands on it.
         if let Some(p) = skeleton.parent[j] {
             pipes[p.index()] += pipes[j];
         }
     }
-    let mut radius: Vec<f64> = pipes.iter().map(|p| ops::powf(*p, 1.0 / t)).collect();
-    let thickest = radius.iter().copied().fold(0.0, f64::max);
-    if let Some(wanted) = spec.trunk_radius_m.filter(|_| thickest > spec.tip_radius_m * 1.0001) {
-        let stretch = (wanted - spec.tip_radius_m) / (thickest - spec.tip_radius_m);
-        for r in &mut radius {
-            *r = (spec.tip_radius_m + (*r - spec.tip_radius_m) * stretch).max(0.1 * spec.tip_radius_m);
-        }
-    }
-    radius
+    pipes
 }
 
 /// Moves joints half-way to the ones they grew from, unless that leads into an obstacle.
@@ -160,7 +186,7 @@ fn relax(skeleton: &Skeleton, times: u32, obstacles: &Obstacles) -> Skeleton {
 }
 
 /// The child that continues each joint's axis.
-fn main_children(skeleton: &Skeleton, radius: &[f64]) -> Vec<Option<JointId>> {
+pub(crate) fn main_children(skeleton: &Skeleton, radius: &[f64]) -> Vec<Option<JointId>> {
     let mut main: Vec<Option<JointId>> = vec![None; skeleton.len()];
     let mut best = vec![f64::NEG_INFINITY; skeleton.len()];
     for (j, thickness) in radius.iter().enumerate() {
@@ -424,8 +450,11 @@ mod tests {
         let spec = WoodSpec { trunk_radius_m: Some(0.3), ..WoodSpec::default() };
         let p = make_wood(&s, &spec, &Obstacles::none(), &Run::plain()).expect("sound").plant;
         assert!((p.nodes.radius_m[0] - 0.3).abs() < 1e-9);
-        let thinnest = p.nodes.radius_m.iter().copied().fold(1.0, f64::min);
-        assert!((thinnest - 0.004).abs() < 1e-9, "{thinnest}");
+        // The pipe model holds all the same: every radius is larger by one factor.
+        let plain = make_wood(&s, &WoodSpec::default(), &Obstacles::none(), &Run::plain()).expect("sound").plant;
+        let factor = 0.3 / plain.nodes.radius_m[0];
+        let thinnest = |p: &Plant| p.nodes.radius_m.iter().copied().fold(1.0, f64::min);
+        assert!((thinnest(&p) - factor * thinnest(&plain)).abs() < 1e-9, "{factor}");
         let mut alone = Skeleton::default();
         alone.push_root(DVec3::ZERO, 0);
         let p = make_wood(&alone, &spec, &Obstacles::none(), &Run::plain()).expect("sound").plant;

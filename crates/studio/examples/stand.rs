@@ -1,0 +1,113 @@
+//! A stand of one kind of tree: how far its trees differ, and how each grows up.
+//!
+//! `cargo run --release --example stand -p burgeon -- SPEC [--seeds N] [--ages A,B,..] [--png SHEET.png [--at AGE]]`.
+//! SPEC is a preset or a TOML file. Prints means and coefficients of variation of height, diameter at breast height and
+//! crown area, and what one seed is at each age; with `--png` also nine seeds side by side.
+
+use burgeon::growth::{Grown, grow};
+use burgeon::render::{PictureSpec, contact_sheet, render};
+use burgeon::{Preset, Report, Run, Seed, TreeOptions, TreeSpec, make_tree, tree_blade};
+
+/// What a forester measures.
+struct Measures {
+    height_m: f64,
+    dbh_m: f64,
+    crown_m2: f64,
+    leaves: usize,
+    leaf_area: f64,
+}
+
+/// Of all trees of a plant together; the diameter is that of the thickest stem.
+fn measure(grown: &Grown) -> Measures {
+    let plant = &grown.plant;
+    let height_m = plant.nodes.position.iter().map(|p| p.y).fold(0.0, f64::max);
+    let mut dbh_m = 0.0_f64;
+    for axis in plant.axes.iter().filter(|a| a.bearer.is_none()) {
+        let rows: Vec<usize> = (axis.nodes.start as usize..axis.nodes.end as usize).collect();
+        for w in rows.windows(2) {
+            let (a, b) = (plant.nodes.position[w[0]].y, plant.nodes.position[w[1]].y);
+            if a <= 1.3 && b > 1.3 {
+                dbh_m = dbh_m.max(2.0 * plant.nodes.radius_m[w[0]]);
+            }
+        }
+    }
+    // A quarter of a metre: the grid on which crowns are mapped.
+    let cell = |v: f64| (v / 0.25).floor().to_bits();
+    let tips = plant.organs.iter().map(|o| o.frame.origin);
+    let cells: std::collections::BTreeSet<(u64, u64)> = tips.map(|p| (cell(p.x), cell(p.z))).collect();
+    let area = |o: &burgeon::plant::Organ| match &plant.shapes[o.shape.index()] {
+        burgeon::plant::Shape::Blade(b) => burgeon::geom::signed_area(&b.outline).abs() * o.scale * o.scale,
+        _ => 0.0,
+    };
+    let leaf_area = plant.organs.iter().map(area).sum();
+    Measures { height_m, dbh_m, crown_m2: cells.len() as f64 * 0.0625, leaves: plant.organs.len(), leaf_area }
+}
+
+fn told(values: &[f64]) -> String {
+    let n = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let sd = (values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / n).sqrt();
+    format!("{mean:.3} (cv {:.1} %)", 100.0 * sd / mean.max(1e-12))
+}
+
+fn one(spec: &TreeSpec, seed: u64) -> Result<Grown, String> {
+    let blade = tree_blade(&spec.blade);
+    grow(spec, Some(blade), Seed::new(seed), &Run::plain(), &mut Report::default()).map_err(|e| e.to_string())
+}
+
+fn sheet(spec: &TreeSpec, path: &str, count: u64, size: u32) -> Result<(), String> {
+    let mut pictures = Vec::new();
+    for seed in 1..=count {
+        let made = make_tree(spec, Seed::new(seed), &TreeOptions::default(), &Run::plain()).map_err(|e| e.to_string())?;
+        let picture = PictureSpec { width: size, height: size, supersample: 2, ..PictureSpec::default() };
+        pictures.push(render(&made.model, &picture, &Run::plain()).map_err(|e| e.to_string())?);
+    }
+    let columns = if count == 1 { 1 } else { 3 };
+    let sheet = contact_sheet(&pictures, columns);
+    let file = std::fs::File::create(path).map_err(|e| format!("{path}: {e}"))?;
+    burgeon::formats::write_png(sheet.width, sheet.height, &sheet.pixels, file).map_err(|e| e.to_string())
+}
+
+fn main() -> Result<(), String> {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let what = args.first().ok_or("give a preset or a TOML file")?;
+    let option = |name: &str| args.iter().position(|a| a == name).and_then(|i| args.get(i + 1)).cloned();
+    let number = |name: &str, or: u64| option(name).and_then(|v| v.parse().ok()).unwrap_or(or);
+    let spec: TreeSpec = match Preset::find(what) {
+        Some(preset) => preset.spec().map_err(|e| e.to_string())?,
+        None => {
+            let text = std::fs::read_to_string(what).map_err(|e| format!("{what}: {e}"))?;
+            burgeon::spec::from_toml(&text).map_err(|e| e.to_string())?
+        }
+    };
+    let seeds = number("--seeds", 0);
+    let mut rows: [Vec<f64>; 4] = Default::default();
+    for seed in 1..=seeds {
+        let m = measure(&one(&spec, seed)?);
+        for (row, value) in rows.iter_mut().zip([m.height_m, m.dbh_m, m.crown_m2, m.leaf_area / m.crown_m2.max(1e-9)]) {
+            row.push(value);
+        }
+    }
+    if seeds > 0 {
+        let [h, d, c, l] = rows.map(|r| told(&r));
+        println!("{what}: height {h} m, dbh {d} m, crown {c} m2, leaf area index {l}");
+    }
+    for age in option("--ages").unwrap_or_default().split(',').filter_map(|a| a.parse().ok()) {
+        let m = measure(&one(&TreeSpec { age: Some(age), ..spec.clone() }, 1)?);
+        println!(
+            "{what} at {age}: height {:.2} m, dbh {:.1} cm, crown {:.1} m2, leaves {} ({:.1} m2)",
+            m.height_m,
+            100.0 * m.dbh_m,
+            m.crown_m2,
+            m.leaves,
+            m.leaf_area
+        );
+    }
+    if let Some(path) = option("--png") {
+        let age = option("--at").and_then(|a| a.parse().ok());
+        #[expect(clippy::cast_possible_truncation, reason = "a size of pictures")]
+        let size = number("--size", 300) as u32;
+        sheet(&TreeSpec { age, ..spec }, &path, number("--pictures", 9), size)?;
+    }
+    Ok(())
+}
