@@ -5,6 +5,7 @@ mod glb_read;
 mod glb_write;
 mod gltf;
 mod gltf_bytes;
+mod gltf_look;
 mod obj_read;
 mod obj_write;
 mod picture;
