@@ -10,8 +10,8 @@ use plant::{Blade, OrganKind, Paint, Plant, PlantPaint, Shape, ShapeId};
 use crate::layout::{Layout, Piece};
 use crate::pictures::Pictures;
 use crate::texture::{
-    GREEN, LEAF_ROUGHNESS, LeafInks, Motif, PALE_GREEN, PALE_PETAL, Surface, any_blade, bark, leaf, paint_material,
-    painted_material, petal_inks, petals,
+    GREEN, LEAF_ROUGHNESS, LeafInks, Motif, PALE_GREEN, PALE_PETAL, Surface, any_blade, bark, leaf,
+    paint_material, painted_material, petal_inks, petals,
 };
 use crate::{BarkSpec, Cloth, PetalColor, SkinSpec, Venation, Wearer, Worn};
 
@@ -160,9 +160,13 @@ impl Slot {
     fn surface(self, spec: &SkinSpec, plant: &Plant, old: bool, executor: &dyn Executor) -> Option<Surface> {
         let size = spec.texture_size.clamp(64, 4096);
         let leaves = |inks: &LeafInks| {
-            let own = || plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf).find_map(|o| blade(plant, o.shape));
+            let own = || {
+                plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf).find_map(|o| blade(plant, o.shape))
+            };
             match spec.venation {
-                Some(venation) => leaf(venation, &own().cloned().unwrap_or_else(any_blade), inks, size, executor),
+                Some(venation) => {
+                    leaf(venation, &own().cloned().unwrap_or_else(any_blade), inks, size, executor)
+                }
                 None => leaf(Venation::Pinnate, &any_blade(), inks, size, executor),
             }
         };

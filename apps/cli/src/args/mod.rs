@@ -22,7 +22,7 @@ pub(crate) use leaf::{
 pub(crate) use presets::PresetsArgs;
 pub(crate) use shape::ShapeArgs;
 pub(crate) use shared::{
-    AxesArgs, CommonArgs, FormatWord, PictureArgs, PlantFormat, SkinArgs, UnitWord, UpWord,
+    AxesArgs, CommonArgs, FormatWord, PackWord, PictureArgs, PlantFormat, SkinArgs, UnitWord, UpWord,
 };
 pub(crate) use sketch::{ReadingArgs, SketchArgs, SurfaceArgs};
 

@@ -4,7 +4,7 @@ use base::Report;
 use glam::{DMat3, DMat4, DQuat, DVec3};
 use mesh::{MaterialId, Model, Part, TriMesh};
 
-use super::gltf::{FAN, Node, POINTS, Primitive, Root, STRIP, TRIANGLES};
+use super::gltf::{FAN, Material, Node, POINTS, Primitive, Root, STRIP, TRIANGLES};
 use super::gltf_bytes::{Bytes, Fault, broken, chunks, item, unsupported};
 use super::gltf_look::Pictures;
 use super::{MAX_ROWS, Names, Resolver, unit};
@@ -19,7 +19,8 @@ const MAX_OBJECTS: usize = 2_000_000;
 const MAX_DEPTH: usize = 1_000;
 
 /// Extensions that may be required and still leave the shape readable.
-const HARMLESS: [&str; 5] = [
+const HARMLESS: [&str; 6] = [
+    "EXT_meshopt_compression",
     "KHR_mesh_quantization",
     "KHR_texture_transform",
     "KHR_lights_punctual",
@@ -180,6 +181,9 @@ impl Reader<'_> {
                 self.skipped += 1;
                 continue;
             };
+            if let Some(m) = primitive.material.and_then(|m| root.materials.get(m as usize)) {
+                place_texture(&mut columns, m);
+            }
             apply(&mut columns, world);
             if columns.pivots.iter().flatten().any(|x| !x.is_finite()) {
                 columns.pivots.clear();
@@ -291,6 +295,23 @@ impl Reader<'_> {
             self.report.warn("gltf-wind-left-out", message);
         }
     }
+}
+
+/// Moves texture coordinates as the material's colour texture is moved (`KHR_texture_transform`, without its turn).
+fn place_texture(mesh: &mut TriMesh, material: &Material) {
+    let info = material.pbr_metallic_roughness.base_color_texture.as_ref();
+    let Some(transform) =
+        info.and_then(|i| i.extensions.as_ref()).and_then(|e| e.get("KHR_texture_transform"))
+    else {
+        return;
+    };
+    #[expect(clippy::cast_possible_truncation, reason = "texture coordinates are f32 by design")]
+    let pair = |key: &str, default: f32| {
+        let at = |k: usize| transform.get(key).and_then(|v| v.get(k)?.as_f64()).map_or(default, |x| x as f32);
+        [at(0), at(1)]
+    };
+    let (offset, scale) = (pair("offset", 0.0), pair("scale", 1.0));
+    mesh.uvs.iter_mut().for_each(|uv| *uv = [0, 1].map(|k| offset[k] + scale[k] * uv[k]));
 }
 
 /// Places a mesh in the world; a mirrored one is turned so that its triangles face outside again.

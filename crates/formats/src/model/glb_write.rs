@@ -5,17 +5,17 @@ use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
 use mesh::{Model, Standing, TriMesh};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::gltf::{
-    Accessor, Animation, Asset, Attributes, Buffer, Channel, FLOAT, Keys, Mesh, Node, POINTS,
-    Primitive, Root, Sampler, Scene, Target, U16, U32, View,
+    Accessor, Animation, Asset, Attributes, Buffer, Channel, FLOAT, Keys, Mesh, Node, POINTS, Primitive,
+    Root, Sampler, Scene, Target, U16, U32, View,
 };
 use super::{PngCache, check, share, unit};
 use crate::error::WriteError;
 
-const ARRAY_BUFFER: u32 = 34_962;
-const ELEMENT_ARRAY_BUFFER: u32 = 34_963;
+pub(super) const ARRAY_BUFFER: u32 = 34_962;
+pub(super) const ELEMENT_ARRAY_BUFFER: u32 = 34_963;
 const LINEAR: u32 = 9_729;
 const LINEAR_MIPMAP_LINEAR: u32 = 9_987;
 
@@ -148,25 +148,38 @@ pub(super) fn row(n: usize) -> Result<u32, WriteError> {
 
 pub(super) struct Writer {
     pub(super) root: Root,
-    bin: Vec<u8>,
+    pub(super) bin: Vec<u8>,
     /// The texture of each image.
     pub(super) images: Vec<Arc<mesh::Texture>>,
+    /// How they are encoded.
+    pub(super) encode: fn(&Arc<mesh::Texture>, &mut PngCache) -> Result<Encoded, WriteError>,
+    /// Of each material, how its textures are placed: an extension; empty for as they are.
+    pub(super) placed: Vec<Option<Value>>,
 }
 
+/// An image's bytes and their type.
+pub(super) type Encoded = (Arc<[u8]>, &'static str);
+
 impl Writer {
-    fn new(room: usize) -> Self {
+    pub(super) fn new(room: usize) -> Self {
         let asset = Asset {
             version: "2.0".into(),
             generator: Some(concat!("Burgeon ", env!("CARGO_PKG_VERSION")).into()),
             extras: Some(json!({ "unit": "metre", "up": "+Y" })),
         };
         let root = Root { asset, ..Root::default() };
-        Self { root, bin: Vec::with_capacity(room), images: Vec::new() }
+        Self {
+            root,
+            bin: Vec::with_capacity(room),
+            images: Vec::new(),
+            encode: |texture, cache| Ok((cache.png(texture)?, "image/png")),
+            placed: Vec::new(),
+        }
     }
 
-    fn finish(mut self, mut out: impl Write) -> Result<(), WriteError> {
-        if !self.bin.is_empty() {
-            self.root.buffers.push(Buffer { byte_length: self.bin.len() as u64, uri: None });
+    pub(super) fn finish(mut self, mut out: impl Write) -> Result<(), WriteError> {
+        if !self.bin.is_empty() && self.root.buffers.is_empty() {
+            self.root.buffers.push(Buffer { byte_length: self.bin.len() as u64, ..Buffer::default() });
         }
         if !self.images.is_empty() {
             let sampler = Sampler { mag_filter: Some(LINEAR), min_filter: Some(LINEAR_MIPMAP_LINEAR) };
@@ -197,7 +210,11 @@ impl Writer {
     }
 
     /// Makes a buffer view of what `fill` appends.
-    pub(super) fn view(&mut self, target: Option<u32>, fill: impl FnOnce(&mut Vec<u8>)) -> Result<u32, WriteError> {
+    pub(super) fn view(
+        &mut self,
+        target: Option<u32>,
+        fill: impl FnOnce(&mut Vec<u8>),
+    ) -> Result<u32, WriteError> {
         let start = self.bin.len();
         fill(&mut self.bin);
         let byte_length = (self.bin.len() - start) as u64;
@@ -231,7 +248,7 @@ impl Writer {
         row(self.root.accessors.len() - 1)
     }
 
-    fn indices(&mut self, mesh: &TriMesh) -> Result<u32, WriteError> {
+    pub(super) fn indices(&mut self, mesh: &TriMesh) -> Result<u32, WriteError> {
         // 65535 itself is the primitive restart value and may not be an index.
         let small = mesh.positions.len() < 65_536;
         let view = self.view(Some(ELEMENT_ARRAY_BUFFER), |bin| {
@@ -322,7 +339,7 @@ impl Writer {
     }
 
     /// The node under which all others are, and the scene that shows it.
-    fn root(&mut self, name: &str) {
+    pub(super) fn root(&mut self, name: &str) {
         let name = if name.is_empty() { "model" } else { name };
         self.root.nodes.push(Node { name: Some(name.to_owned()), ..Node::default() });
         self.root.scenes.push(Scene { name: Some(name.to_owned()), nodes: vec![0] });

@@ -245,5 +245,7 @@ schema! {
         byte_length: u64,
         #[serde(default, skip_serializing_if = "Option::is_none")]
         uri: Option<String>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        extensions: Option<Value>,
     }
 }

@@ -20,12 +20,15 @@ impl Writer {
     /// The row of the model's first material.
     pub(super) fn materials(&mut self, model: &Model, cache: &mut PngCache) -> Result<u32, WriteError> {
         let first = row(self.root.materials.len())?;
-        for material in &model.materials {
+        for (k, material) in model.materials.iter().enumerate() {
+            let placed = self.placed.get(k).cloned().flatten();
+            let put =
+                |info: Option<TextureInfo>| info.map(|i| TextureInfo { extensions: placed.clone(), ..i });
             let of = |map: &str| format!("{}-{map}", material.name);
             let maps = &material.maps;
-            let texture = self.texture(material.texture.as_ref(), &material.name, cache)?;
-            let normal = self.texture(maps.normal.as_ref(), &of("normal"), cache)?;
-            let orm = self.texture(maps.orm.as_ref(), &of("orm"), cache)?;
+            let texture = put(self.texture(material.texture.as_ref(), &material.name, cache)?);
+            let normal = put(self.texture(maps.normal.as_ref(), &of("normal"), cache)?);
+            let orm = put(self.texture(maps.orm.as_ref(), &of("orm"), cache)?);
             let extensions = self.through(material, cache)?;
             let [r, g, b] = material.base_color.map(share);
             self.root.materials.push(Material {
@@ -88,17 +91,15 @@ impl Writer {
         if let Some(known) = known {
             return Ok(Some(TextureInfo { index: row(known)?, ..TextureInfo::default() }));
         }
-        let png = cache.png(texture)?;
-        let view = self.view(None, |bin| bin.extend_from_slice(&png))?;
+        let (bytes, kind) = (self.encode)(texture, cache)?;
+        let view = self.view(None, |bin| bin.extend_from_slice(&bytes))?;
         self.root.images.push(Image {
             name: Some(name.to_owned()),
             buffer_view: Some(view),
-            mime_type: Some("image/png".into()),
+            mime_type: Some(kind.into()),
             uri: None,
         });
-        self.root
-            .textures
-            .push(Texture { sampler: Some(0), source: Some(row(self.root.images.len() - 1)?) });
+        self.root.textures.push(Texture { sampler: Some(0), source: Some(row(self.root.images.len() - 1)?) });
         self.images.push(Arc::clone(texture));
         Ok(Some(TextureInfo { index: row(self.images.len() - 1)?, ..TextureInfo::default() }))
     }

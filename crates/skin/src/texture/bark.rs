@@ -65,8 +65,7 @@ pub(crate) fn bark(kind: BarkKind, colour: Paint, size: u32, executor: &dyn Exec
     content.add("bark").add(&(kind as u32)).add(&colour).add(&size);
     Surface::kept(content, || {
         let mean = (kind != BarkKind::Birch).then_some(colour);
-        let sheet =
-            Sheet { size: (size, size), extent: (1.0, 1.0), depth: kind.depth(), tiles: true, mean };
+        let sheet = Sheet { size: (size, size), extent: (1.0, 1.0), depth: kind.depth(), tiles: true, mean };
         let paint = |at: &(dyn Fn(f64, f64) -> Spot + Sync)| surface(executor, &sheet, false, at);
         match kind {
             BarkKind::Furrowed => paint(&furrowed(colour)),
@@ -117,69 +116,71 @@ fn furrowed(colour: Paint) -> impl Fn(f64, f64) -> Spot + Sync {
         let ridge = ridges.at(x, y);
         // Some neighbours have grown together: the furrow between them is only a dent.
         let joined = ops::smoothstep(0.22, 0.34, ridge.border);
-        let width = 0.0085 * (1.0 + 0.55 * noise(u, v, (5, 3), 5)) * (0.35 + 0.65 * joined);
-        let wall = ops::smoothstep(0.1 * width, 2.3 * width, ridge.edge);
+        let width = 0.0115 * (1.0 + 0.60 * noise(u, v, (5, 3), 5)) * (0.35 + 0.65 * joined);
+        let wall = ops::smoothstep(0.0, 2.4 * width, ridge.edge);
         let crest = ops::smoothstep(0.0, 0.034, ridge.edge);
         let deep = (1.0 - wall) * (0.35 + 0.65 * joined);
         // Cracks break a ridge into blocks; most run across it.
         let block = blocks.at(x + 0.01 * jag, y + 0.012 * sway + 0.01 * jag);
-        let alive = ops::smoothstep(0.42, 0.55, block.border);
-        let crack = alive * (1.0 - ops::smoothstep(0.0008, 0.0048, block.edge)) * (0.4 + 0.6 * crest);
+        let alive = ops::smoothstep(0.56, 0.72, block.border);
+        let crack = alive * (1.0 - ops::smoothstep(0.0, 0.0068, block.edge)) * (0.3 + 0.7 * crest);
         let fibre = rough(u + 0.02 * sway, v, (44, 7), 6, 3);
         let grain = rough(u, v, (90, 60), 7, 2);
         let body = 0.70 + 0.10 * (block.own - 0.5) + 0.12 * (ridge.own - 0.5) + 0.14 * crest;
-        let height = body * (1.0 - 0.92 * deep) - 0.20 * crack + (0.10 * fibre + 0.07 * grain) * (1.0 - 0.6 * deep);
+        let height =
+            body * (1.0 - 0.92 * deep) - 0.15 * crack + (0.13 * fibre + 0.08 * grain) * (1.0 - 0.5 * deep);
         let lit = ops::smoothstep(0.15, 0.95, height);
         let crest_paint = weathered(colour, 0.55, 1.22 + 0.16 * (block.own - 0.5) + 0.10 * (ridge.own - 0.5));
         let wall_paint = weathered(colour, 1.15, 0.86);
-        let dark = weathered(colour, 1.0, 0.34);
+        let dark = shade(weathered(colour, 1.0, 0.40), 1.0 + 0.5 * grain + 0.4 * fibre);
         let paint = mix(wall_paint, crest_paint, lit + 0.35 * fibre);
         let paint = shade(paint, 1.0 + 0.22 * grain + 0.12 * fibre);
-        let paint = mix(mix(paint, dark, 0.92 * deep), dark, 0.7 * crack);
+        let paint = mix(mix(paint, dark, 0.90 * deep * deep.sqrt()), dark, 0.5 * crack);
         Spot { height, paint: lichen(paint, u, v, height, 0.30), rough: 0.94 - 0.05 * lit, through: 0.0 }
     }
 }
 
-/// Plates, each a pile of thin scales with ragged edges; cracks between, and shallow ones across.
+/// Plates, each a pile of thin scales that ends in ragged steps; furrows between, some of which have closed.
 fn plated(colour: Paint) -> impl Fn(f64, f64) -> Spot + Sync {
-    let plates = Plates::new((6, 4), 0.95, 21);
-    let parts = Plates::new((15, 12), 0.95, 22);
+    let plates = Plates::new((9, 4), 0.85, 21);
+    let parts = Plates::new((13, 14), 0.95, 22);
     move |u, v| {
-        let wander = (
-            noise(u, v, (5, 4), 1) + 0.5 * noise(u, v, (13, 11), 2),
-            noise(u, v, (5, 4), 3) + 0.5 * noise(u, v, (13, 11), 4),
+        let sway = (
+            noise(u, v, (4, 3), 1) + 0.6 * noise(u, v, (11, 8), 2),
+            noise(u, v, (4, 3), 3) + 0.6 * noise(u, v, (11, 8), 4),
         );
-        let ragged = rough(u, v, (34, 30), 5, 2);
-        let (x, y) = (u + 0.030 * wander.0 + 0.009 * ragged, v + 0.030 * wander.1 + 0.009 * ragged);
+        let ragged = rough(u, v, (26, 20), 5, 3);
+        let (x, y) = (u + 0.040 * sway.0 + 0.016 * ragged, v + 0.035 * sway.1 + 0.010 * ragged);
         let plate = plates.at(x, y);
-        let width = 0.013 * (1.0 + 0.5 * noise(u, v, (4, 3), 6)) * (0.45 + 0.55 * ops::smoothstep(0.1, 0.5, plate.border));
-        let wall = ops::smoothstep(0.2 * width, 1.9 * width, plate.edge);
-        let part = parts.at(x + 0.008 * ragged, y);
-        let alive = ops::smoothstep(0.50, 0.62, part.border);
-        let split = alive * (1.0 - ops::smoothstep(0.0012, 0.006, part.edge));
-        // Scales: the plate falls in thin steps towards its edges, and where scales have gone.
-        let lost = 0.62 * rough(u, v, (7, 6), 8, 4) + 0.30 * (part.own - 0.5) + 0.10 * ragged;
-        let pile = 5.0 * (0.62 + lost + 0.30 * ops::smoothstep(0.0, 0.055, plate.edge)).clamp(0.0, 1.2);
+        let open = ops::smoothstep(0.16, 0.42, plate.border + 0.25 * noise(u, v, (7, 5), 6));
+        let width = 0.015 * (1.0 + 0.6 * noise(u, v, (4, 3), 7)) * (0.18 + 0.82 * open);
+        let wall = ops::smoothstep(0.15 * width, 1.6 * width, plate.edge);
+        let part = parts.at(x, y);
+        let alive = ops::smoothstep(0.66, 0.78, part.border) * open;
+        let split = alive * (1.0 - ops::smoothstep(0.0, 0.006, part.edge));
+        // Scales end in steps along the edge of their plate, and some have fallen from its middle.
+        let broad = rough(u, v, (5, 4), 8, 3);
+        let scale = plate.edge + 0.034 * broad + 0.016 * (part.own - 0.5) + 0.010 * ragged;
+        let pile = 3.0 * ops::smoothstep(-0.014, 0.050, scale);
         let layer = pile.floor();
         let lip = pile - layer;
-        let step = layer + ops::smoothstep(0.0, 0.10, lip);
-        let grain = rough(u, v, (80, 64), 9, 2);
-        let top = 0.40 + 0.105 * step;
-        let height = top * wall + (0.10 + 0.10 * grain) * (1.0 - wall) - 0.14 * split + 0.035 * grain * wall;
-        // What a scale has left is fresh and orange; what has stood long is grey.
-        let fresh = ops::smoothstep(4.2, 2.2, layer) * 0.7 + 0.3 * part.own;
-        let tone = 0.96 + 0.10 * (part.own - 0.5) + 0.16 * (plate.own - 0.5);
-        let old = weathered(colour, 0.48, 1.04 * tone);
-        let new = [colour[0] * 1.16 * tone, colour[1] * 1.02 * tone, colour[2] * 0.86 * tone];
-        let paint = mix(old, new, fresh);
-        let paint = shade(paint, 1.0 + 0.14 * grain);
-        // Under a lip lies shade, and the lip itself is pale.
-        let under = 1.0 - ops::smoothstep(0.0, 0.14, lip);
-        let paint = shade(paint, 1.0 - 0.30 * under + 0.10 * ops::smoothstep(0.14, 0.3, lip) * (1.0 - lip));
-        let dark = weathered(colour, 0.9, 0.27);
-        let deep = (1.0 - wall).max(0.55 * split);
-        let paint = mix(paint, shade(dark, 1.0 + 0.5 * grain), 0.95 * deep);
-        Spot { height, paint, rough: 0.92 - 0.10 * fresh * wall, through: 0.0 }
+        let step = layer + ops::smoothstep(0.0, 0.35, lip);
+        let grain = rough(u, v, (64, 52), 9, 3);
+        let fibre = rough(u + 0.02 * sway.0, v, (38, 10), 10, 2);
+        let top = 0.36 + 0.14 * step + 0.05 * broad + 0.05 * fibre;
+        let floor = 0.10 + 0.10 * grain + 0.08 * fibre;
+        let height = top * wall + floor * (1.0 - wall) - 0.10 * split + 0.05 * grain;
+        // What has stood long is grey; what a scale has left is fresh and red.
+        let fresh = (0.34 - 0.20 * (step - 1.5) + 0.60 * broad + 0.35 * (part.own - 0.5)).clamp(0.0, 1.0);
+        let tone = 1.0 + 0.14 * (part.own - 0.5) + 0.16 * (plate.own - 0.5) + 0.22 * grain + 0.10 * fibre;
+        let old = weathered(colour, 0.42, 1.06 * tone);
+        let new = [colour[0] * 1.12 * tone, colour[1] * 0.98 * tone, colour[2] * 0.84 * tone];
+        let edge = 1.0 - ops::smoothstep(0.0, 0.30, lip);
+        let paint = shade(mix(old, new, fresh), 1.0 - 0.08 * edge);
+        let dark = shade(weathered(colour, 0.75, 0.36), 1.0 + 0.6 * grain + 0.3 * fibre);
+        let deep = (1.0 - wall) * (0.45 + 0.55 * open);
+        let paint = mix(paint, dark, (0.95 * deep).max(0.45 * split));
+        Spot { height, paint, rough: 0.93 - 0.10 * fresh * wall, through: 0.0 }
     }
 }
 
@@ -197,7 +198,8 @@ fn smooth(colour: Paint, u: f64, v: f64) -> Spot {
     let inside = 1.0 - ops::smoothstep(0.55, 0.9, eye);
     let pore = strokes((26.0 * u, 40.0 * v), (26, 40), 9, |n| (n < 0.12).then_some((0.42, 0.16)));
     let pore = 1.0 - ops::smoothstep(0.5, 1.0, pore);
-    let height = 0.5 + 0.20 * wrinkle + 0.18 * mottle + 0.05 * grain + 0.25 * brow - 0.2 * inside + 0.12 * pore;
+    let height =
+        0.5 + 0.20 * wrinkle + 0.18 * mottle + 0.05 * grain + 0.25 * brow - 0.2 * inside + 0.12 * pore;
     let paint = shade(colour, 1.0 + 0.20 * mottle + 0.10 * wrinkle + 0.07 * grain);
     let paint = mix(paint, weathered(colour, 0.45, 1.28), 0.45 * pale);
     let paint = shade(paint, 1.0 - 0.28 * inside - 0.20 * brow + 0.10 * pore);
@@ -210,9 +212,8 @@ fn birch(colour: Paint, u: f64, v: f64) -> Spot {
     const FRESH: Paint = [0.86, 0.70, 0.56];
     let wave = 0.006 * noise(u, v, (3, 4), 1) + 0.003 * noise(u, v, (9, 9), 2);
     let y = v + wave;
-    let pore = strokes((5.0 * u, 42.0 * y), (5, 42), 3, |n| {
-        (n < 0.42).then(|| (0.10 + 0.85 * n, 0.10 + 0.20 * n))
-    });
+    let pore =
+        strokes((5.0 * u, 42.0 * y), (5, 42), 3, |n| (n < 0.42).then(|| (0.10 + 0.85 * n, 0.10 + 0.20 * n)));
     let fine = strokes((14.0 * u, 90.0 * y), (14, 90), 4, |n| (n < 0.30).then_some((0.10 + 1.2 * n, 0.22)));
     let pore = (1.0 - ops::smoothstep(0.55, 1.0, pore)).max(0.55 * (1.0 - ops::smoothstep(0.4, 1.0, fine)));
     // Sheets: bands whose lower edge is torn; below it the paper has gone for a while.
@@ -234,7 +235,10 @@ fn birch(colour: Paint, u: f64, v: f64) -> Spot {
     let paint = mix(paint, [0.36, 0.30, 0.26], 0.88 * pore * (1.0 - cork));
     let grey = mix(DARK, [0.46, 0.43, 0.40], 0.45 + 0.5 * ragged);
     let paint = mix(paint, mix(grey, DARK, 0.85 * crack), cork);
-    let height = 0.42 - 0.10 * gone + 0.16 * lip + 0.10 * pore + 0.03 * tone
+    let height = 0.42 - 0.10 * gone
+        + 0.16 * lip
+        + 0.10 * pore
+        + 0.03 * tone
         + cork * (0.40 + 0.30 * ragged - 0.50 * crack);
     Spot { height, paint, rough: 0.62 + 0.32 * cork + 0.10 * gone, through: 0.0 }
 }
@@ -242,8 +246,13 @@ fn birch(colour: Paint, u: f64, v: f64) -> Spot {
 /// How far inside a rhomb of cork a place is, below 0 outside.
 fn rhombs(u: f64, v: f64, ragged: f64) -> f64 {
     // (u, v, half width, half height); a branch's scar has a chevron over it.
-    const AT: [(f64, f64, f64, f64); 5] =
-        [(0.22, 0.18, 0.13, 0.07), (0.71, 0.47, 0.17, 0.085), (0.36, 0.74, 0.08, 0.05), (0.90, 0.86, 0.10, 0.055), (0.55, 0.05, 0.05, 0.03)];
+    const AT: [(f64, f64, f64, f64); 5] = [
+        (0.22, 0.18, 0.13, 0.07),
+        (0.71, 0.47, 0.17, 0.085),
+        (0.36, 0.74, 0.08, 0.05),
+        (0.90, 0.86, 0.10, 0.055),
+        (0.55, 0.05, 0.05, 0.03),
+    ];
     let wrap = |d: f64| d - d.round();
     let inside = |&(x, y, a, b): &(f64, f64, f64, f64)| {
         1.0 - (wrap(u - x) / a).abs() - (wrap(v - y) / b).abs() + ragged
@@ -270,27 +279,33 @@ fn cherry(colour: Paint, u: f64, v: f64) -> Spot {
     let mottle = rough(u, v, (4, 4), 10, 3);
     let skin = shade(colour, 1.0 + 0.16 * streak + 0.20 * mottle);
     // Silvery where the outermost skin is thin.
-    let skin = mix(skin, weathered(colour, 0.35, 1.55), 0.30 * ops::smoothstep(0.0, 0.5, streak + 0.6 * mottle));
+    let skin =
+        mix(skin, weathered(colour, 0.35, 1.55), 0.30 * ops::smoothstep(0.0, 0.5, streak + 0.6 * mottle));
     let paint = mix(skin, [colour[0] * 1.30, colour[1] * 0.92, colour[2] * 0.72], 0.6 * gone);
     let paint = mix(paint, weathered(colour, 0.9, 1.62), 0.72 * cork * (1.0 - 0.35 * ragged.abs()));
     let paint = shade(paint, 1.0 - 0.30 * lip);
     let split = cork * (1.0 - ops::smoothstep(0.05, 0.20, pore));
     let paint = shade(paint, 1.0 - 0.45 * split);
-    let height = 0.38 + 0.42 * cork + 0.15 * cork * ragged - 0.22 * split - 0.10 * gone + 0.22 * lip + 0.05 * streak;
+    let height =
+        0.38 + 0.42 * cork + 0.15 * cork * ragged - 0.22 * split - 0.10 * gone + 0.22 * lip + 0.05 * streak;
     Spot { height, paint, rough: 0.46 + 0.44 * cork + 0.15 * gone, through: 0.0 }
 }
 
 /// Scars of leaves: rings with a lip, cracked along, fibres between.
 fn ringed(colour: Paint, u: f64, v: f64) -> Spot {
-    let y = 6.0 * v + 0.20 * noise(u, v, (3, 6), 1) + 0.10 * noise(u, v, (9, 12), 2) + 0.04 * rough(u, v, (30, 24), 3, 2);
+    let y = 6.0 * v
+        + 0.20 * noise(u, v, (3, 6), 1)
+        + 0.10 * noise(u, v, (9, 12), 2)
+        + 0.04 * rough(u, v, (30, 24), 3, 2);
     let phase = y - y.floor();
     // The scar swells, ends in a sharp edge, and a groove follows.
     let swell = ops::smoothstep(0.10, 0.86, phase) * (1.0 - ops::smoothstep(0.93, 1.0, phase));
     let groove = (1.0 - ops::smoothstep(0.0, 0.10, phase)).max(ops::smoothstep(0.96, 1.0, phase));
     let sway = 0.012 * noise(u, v, (6, 4), 4);
     let fibre = rough(u + sway, v, (56, 8), 5, 3);
-    let crack = 1.0 - ops::smoothstep(0.0, 0.16, noise(u + sway, v, (26, 5), 6).abs());
-    let crack = crack * ops::smoothstep(-0.1, 0.3, noise(u, v, (9, 8), 7));
+    let split =
+        strokes((34.0 * (u + sway), 9.0 * v), (34, 9), 6, |n| (n < 0.5).then_some((0.05 + 0.10 * n, 0.49)));
+    let crack = 0.8 * (1.0 - ops::smoothstep(0.4, 1.0, split));
     let grain = rough(u, v, (70, 60), 8, 2);
     let height = 0.34 + 0.40 * swell - 0.22 * groove - 0.22 * crack + 0.12 * fibre + 0.05 * grain;
     let paint = weathered(colour, 0.8 + 0.3 * noise(u, v, (4, 6), 9), 0.98 + 0.18 * swell);
@@ -320,12 +335,12 @@ fn twig(colour: Paint, u: f64, v: f64) -> Spot {
     let wrinkle = rough(u + sway, v, (12, 3), 2, 3);
     let mottle = rough(u, v, (4, 4), 3, 3);
     let grain = rough(u, v, (44, 30), 4, 2);
-    let pore = strokes((9.0 * u, 12.0 * v), (9, 12), 5, |n| (n < 0.45).then_some((0.20, 0.13 + 0.2 * n)));
+    let pore = strokes((9.0 * u, 12.0 * v), (9, 12), 5, |n| (n < 0.45).then_some((0.13, 0.07 + 0.14 * n)));
     let pore = 1.0 - ops::smoothstep(0.6, 1.0, pore);
     let ring = 1.0 - ops::smoothstep(0.0, 0.012, (v - 0.31 - 0.5 * sway).abs());
     let height = 0.45 + 0.42 * wrinkle + 0.10 * grain + 0.25 * pore + 0.16 * ring;
     let paint = shade(colour, 1.0 + 0.34 * wrinkle + 0.22 * mottle + 0.10 * grain);
-    let paint = mix(paint, weathered(colour, 0.6, 1.45), (0.65 * pore).max(0.25 * ring));
+    let paint = mix(paint, weathered(colour, 0.6, 1.45), (0.45 * pore).max(0.25 * ring));
     Spot { height, paint, rough: 0.74 + 0.12 * pore, through: 0.0 }
 }
 
@@ -351,10 +366,12 @@ mod tests {
             assert_eq!(all.len(), 4, "colour, normal, occlusion with roughness, height");
             for t in all {
                 let at = |x: u32, y: u32, k: usize| i32::from(t.pixels[4 * (y * 128 + x) as usize + k]);
-                let step = |x: u32| (0..128).map(|y| (at(x, y, 1) - at((x + 1) % 128, y, 1)).abs()).sum::<i32>();
+                let step =
+                    |x: u32| (0..128).map(|y| (at(x, y, 1) - at((x + 1) % 128, y, 1)).abs()).sum::<i32>();
                 let most = (0..127).map(step).max().unwrap_or(0);
                 assert!(step(127) <= most + 128, "{kind:?}: {} at the seam, {most} at most", step(127));
-                let step = |y: u32| (0..128).map(|x| (at(x, y, 1) - at(x, (y + 1) % 128, 1)).abs()).sum::<i32>();
+                let step =
+                    |y: u32| (0..128).map(|x| (at(x, y, 1) - at(x, (y + 1) % 128, 1)).abs()).sum::<i32>();
                 let most = (0..127).map(step).max().unwrap_or(0);
                 assert!(step(127) <= most + 128, "{kind:?}: {} at the end, {most} at most", step(127));
             }

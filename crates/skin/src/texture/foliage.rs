@@ -48,7 +48,13 @@ pub(crate) fn leaf(
     executor: &dyn Executor,
 ) -> Surface {
     let mut content = Digest::new();
-    content.add("leaf").add(&(venation as u32)).add(&size).add(&blade.outline).add(&blade.midrib).add(&blade.veins);
+    content
+        .add("leaf")
+        .add(&(venation as u32))
+        .add(&size)
+        .add(&blade.outline)
+        .add(&blade.midrib)
+        .add(&blade.veins);
     content.add(&inks.dark).add(&inks.light).add(&inks.vein);
     Surface::kept(content, || {
         let plan = Plan::new(venation, blade, executor);
@@ -153,7 +159,10 @@ impl Plan {
         match self.venation {
             // As they were drawn or measured.
             _ if !blade.veins.is_empty() => veins.extend(
-                blade.veins.iter().map(|v| Vein { points: v.clone(), width: (0.0058 * length, 0.0012 * length) }),
+                blade
+                    .veins
+                    .iter()
+                    .map(|v| Vein { points: v.clone(), width: (0.0058 * length, 0.0012 * length) }),
             ),
             Venation::Pinnate => {
                 let lobes = tips(blade, |p| p.x);
@@ -197,7 +206,8 @@ impl Plan {
             }
             let high = high.min(0.97 * length);
             let end = DVec2::new(side * 0.95 * self.half_at(high), high);
-            let points = curve(DVec2::new(0.0, start), DVec2::new(0.58 * end.x, ops::lerp(start, high, 0.40)), end);
+            let points =
+                curve(DVec2::new(0.0, start), DVec2::new(0.58 * end.x, ops::lerp(start, high, 0.40)), end);
             veins.push(Vein { points, width: (0.0058 * length, 0.0012 * length) });
         }
         // Lobes beside the stalk have veins of their own.
@@ -217,7 +227,11 @@ impl Plan {
             for side in [1.0, -1.0] {
                 let start = (tip.y - 0.62 * tip.x).max(0.02 * length);
                 let end = DVec2::new(0.96 * side * tip.x, tip.y - 0.02 * tip.x);
-                let points = curve(DVec2::new(0.0, start), DVec2::new(0.5 * end.x, ops::lerp(start, end.y, 0.44)), end);
+                let points = curve(
+                    DVec2::new(0.0, start),
+                    DVec2::new(0.5 * end.x, ops::lerp(start, end.y, 0.44)),
+                    end,
+                );
                 veins.push(Vein { points, width: (0.0064 * length, 0.0014 * length) });
             }
         }
@@ -236,10 +250,17 @@ impl Plan {
                 let start = at_share(&vein.points, share);
                 let way = along + side * DVec2::new(-along.y, along.x);
                 let reach = 0.34 * (1.0 - 0.55 * share);
-                let points = curve(start, start + 0.42 * reach * way + 0.03 * along, start + reach * (way + 0.35 * along));
+                let points = curve(
+                    start,
+                    start + 0.42 * reach * way + 0.03 * along,
+                    start + reach * (way + 0.35 * along),
+                );
                 let within = points.iter().take_while(|p| geom::contains(&blade.outline, **p)).count();
                 if within > 2 {
-                    more.push(Vein { points: points[..within].to_vec(), width: (0.0038 * length, 0.001 * length) });
+                    more.push(Vein {
+                        points: points[..within].to_vec(),
+                        width: (0.0038 * length, 0.001 * length),
+                    });
                 }
             }
         }
@@ -283,7 +304,10 @@ impl Plan {
         // Along a thick vein the blade is darker: it lies in its shade.
         let shadow = 1.0 - 0.13 * thick * (1.0 - ops::smoothstep(0.0, 0.018, off)) * (1.0 - vein);
         let paint = mix(mix(shade(lamina, shadow), inks.vein, 0.5 * net), inks.vein, 0.85 * side);
-        let height = 0.42 + 0.36 * swell + 0.05 * fine + 0.05 * mottle - 0.36 * side - 0.22 * cross * swell - 0.30 * rib;
+        let height = 0.42 + 0.36 * swell + 0.05 * fine + 0.05 * mottle
+            - 0.36 * side
+            - 0.22 * cross * swell
+            - 0.30 * rib;
         let rough = 0.60 + 0.10 * mottle + 0.12 * side + 0.10 * net + 0.04 * fine;
         let through = 0.96 - 0.78 * side - 0.35 * net + 0.08 * mottle;
         Spot { height, paint, rough: rough / f64::from(LEAF_ROUGHNESS), through }

@@ -4,8 +4,7 @@
 pub(crate) fn gradient(x: f64, y: f64, period: (i32, i32), salt: u32) -> f64 {
     let (ix, iy) = (floor(x), floor(y));
     let (u, v) = (x - f64::from(ix), y - f64::from(iy));
-    // Wrapped once per axis: four remainders a corner would cost more than the noise.
-    let (x0, y0) = (ix.rem_euclid(period.0), iy.rem_euclid(period.1));
+    let (x0, y0) = (wrap(ix, period.0), wrap(iy, period.1));
     let x1 = if x0 + 1 == period.0 { 0 } else { x0 + 1 };
     let y1 = if y0 + 1 == period.1 { 0 } else { y0 + 1 };
     let corner = |cx: i32, cy: i32, dx: f64, dy: f64| {
@@ -37,7 +36,7 @@ pub(crate) fn cells(x: f64, y: f64, period: (i32, i32), salt: u32) -> (f64, f64)
     let (mut first, mut second) = (9.0_f64, 9.0_f64);
     for dy in -1..=1 {
         for dx in -1..=1 {
-            let h = hash((ix + dx).rem_euclid(period.0), (iy + dy).rem_euclid(period.1), salt);
+            let h = hash(wrap(ix + dx, period.0), wrap(iy + dy, period.1), salt);
             let px = fx + f64::from(dx) + unit(h);
             let py = fy + f64::from(dy) + unit(h.wrapping_mul(0x9e37_79b9).rotate_left(13));
             let d = (px - x) * (px - x) + (py - y) * (py - y);
@@ -95,11 +94,11 @@ impl Plates {
         let mut near = [(0.0, 0.0, 0_u32, f64::MAX); 9];
         let (mut k, mut first) = (0, 0);
         for dy in -1..=1 {
-            let row = (j + dy).rem_euclid(self.grid.1);
+            let row = wrap(j + dy, self.grid.1);
             let shift = if row % 2 == 0 { 0.0 } else { 0.5 };
             let i = floor(x - shift);
             for dx in -1..=1 {
-                let column = (i + dx).rem_euclid(self.grid.0);
+                let column = wrap(i + dx, self.grid.0);
                 #[expect(clippy::cast_sign_loss, reason = "within the lattice")]
                 let (px, py, id) = self.points[(row * self.grid.0 + column) as usize];
                 let (dx, dy) = (f64::from(i + dx) + px - x, f64::from(j + dy) + py - y);
@@ -111,7 +110,8 @@ impl Plates {
             }
         }
         let (ox, oy, own, _) = near[first];
-        let (mut edge, mut border) = (f64::MAX, 0);
+        // The nearest border, its square distance as a fraction: one division for all.
+        let (mut edge, mut below, mut border) = (f64::MAX, 1.0, 0);
         for (k, &(px, py, id, _)) in near.iter().enumerate() {
             if k == first {
                 continue;
@@ -121,13 +121,12 @@ impl Plates {
             let off = 0.5 * ((px + ox) * ax + (py + oy) * ay);
             let (gx, gy) = (ax * nx, ay * ny);
             let slope = gx * gx + gy * gy;
-            let square = off * off / slope.max(1e-12);
-            if square < edge {
-                (edge, border) = (square, id ^ own);
+            if off * off * below < edge * slope {
+                (edge, below, border) = (off * off, slope, id ^ own);
             }
         }
         let number = |id: u32| unit(id.wrapping_mul(0x2c1b_3c6d) ^ (id >> 9));
-        Plate { own: number(own), border: number(border), edge: edge.sqrt() }
+        Plate { own: number(own), border: number(border), edge: (edge / below).sqrt() }
     }
 }
 
@@ -145,7 +144,7 @@ pub(crate) fn strokes(
     let mut nearest = f64::MAX;
     for dy in -1..=1 {
         for dx in -1..=1 {
-            let h = hash((ix + dx).rem_euclid(grid.0), (iy + dy).rem_euclid(grid.1), salt);
+            let h = hash(wrap(ix + dx, grid.0), wrap(iy + dy, grid.1), salt);
             let Some((length, thick)) = of(unit(h)) else { continue };
             let px = f64::from(ix + dx) + unit(h.wrapping_mul(0x9e37_79b9).rotate_left(7));
             let py = f64::from(iy + dy) + unit(h.wrapping_mul(0x85eb_ca6b).rotate_left(17));
@@ -166,6 +165,11 @@ fn floor(x: f64) -> i32 {
     #[expect(clippy::cast_possible_truncation, reason = "texture coordinates are small")]
     let toward_zero = x as i32;
     toward_zero - i32::from(f64::from(toward_zero) > x)
+}
+
+/// A cell within the tile. Most are already: a remainder costs more than the rest of the noise.
+fn wrap(k: i32, n: i32) -> i32 {
+    if (0..n).contains(&k) { k } else { k.rem_euclid(n) }
 }
 
 fn unit(h: u32) -> f64 {

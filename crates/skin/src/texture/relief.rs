@@ -236,11 +236,8 @@ impl Coarse {
         let place = |x: usize, pixels: usize, cells: usize| {
             let at = (x as f64 + 0.5) * cells as f64 / pixels as f64 - 0.5;
             let low = at.max(0.0) as usize;
-            let (low, share) = if at < 0.0 {
-                (if tiles { cells - 1 } else { 0 }, at + 1.0)
-            } else {
-                (low, at - low as f64)
-            };
+            let (low, share) =
+                if at < 0.0 { (if tiles { cells - 1 } else { 0 }, at + 1.0) } else { (low, at - low as f64) };
             let next = if low + 1 < cells {
                 low + 1
             } else if tiles {
@@ -252,9 +249,8 @@ impl Coarse {
         };
         let (x0, x1, tx) = place(x, size.0, self.size.0);
         let (y0, y1, ty) = place(y, size.1, self.size.1);
-        let row = |y: usize| {
-            base::ops::lerp(self.mean[y * self.size.0 + x0], self.mean[y * self.size.0 + x1], tx)
-        };
+        let row =
+            |y: usize| base::ops::lerp(self.mean[y * self.size.0 + x0], self.mean[y * self.size.0 + x1], tx);
         base::ops::lerp(row(y0), row(y1), ty)
     }
 }

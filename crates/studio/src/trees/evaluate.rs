@@ -328,11 +328,7 @@ fn skin_spec(spec: &TreeSpec, seed: Seed, options: &TreeOptions) -> SkinSpec {
     dressed(SkinSpec { seed, ..options.skin.clone() }, &spec.look, form)
 }
 
-fn skinned(
-    plant: &Plant,
-    (skin, look, leaf): &Skinned,
-    run: &Run<'_>,
-) -> Result<(Model, Layout), Stopped> {
+fn skinned(plant: &Plant, (skin, look, leaf): &Skinned, run: &Run<'_>) -> Result<(Model, Layout), Stopped> {
     let (mut model, layout) = skin::skin_laid_out(plant, skin, Pictures::default(), None, run)?;
     paint(look, &mut model);
     if let Some(leaf) = leaf {
