@@ -7,7 +7,7 @@ use burgeon::formats::{
 use burgeon::mesh::PointCloud;
 use burgeon::{ItemReport, Report, RunReport};
 
-use crate::args::ConvertArgs;
+use crate::args::{ConvertArgs, PackWord};
 use crate::failure::{Failure, Outcome};
 use crate::files::{self, Goal, Kind};
 use crate::machine::Machine;
@@ -80,6 +80,7 @@ fn model(
     machine: &Machine,
 ) -> Outcome<ItemReport> {
     let format = files::plan_model(outputs, &args.output)?;
+    args.given.only_if(format == ModelFormat::Glb, &["pack"], "models as .glb", "none is made")?;
     let read_axes = files::axes(args.in_up.or(args.axes.up), args.in_unit.unwrap_or(args.axes.unit));
     let (read, read_ms) = machine.timed(|| files::read_opened_model(&args.input, input, kind, &read_axes));
     let (model, _, mut warnings) = read?;
@@ -87,7 +88,8 @@ fn model(
     machine.cancel.check()?;
     let (written, write_ms) = machine.timed(|| {
         let axes = files::axes(args.axes.up, args.axes.unit);
-        let goal = Goal::new("-o", &args.output);
+        let packing = args.pack.map(PackWord::packing);
+        let goal = Goal { packing, ..Goal::new("-o", &args.output) };
         files::write_model(outputs, goal, &model, format, &axes, &mut PngCache::new())
     });
     warnings.extend(written?);
@@ -123,6 +125,7 @@ fn check_used(args: &ConvertArgs, kind: Kind) -> Outcome {
             "unit",
             "in_up",
             "in_unit",
+            "pack",
         ];
         return given.refuse(&others, "models", "a drawing is converted");
     };

@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use burgeon::document::{self, Document, DocumentPlant, MAX_PROJECT_BYTES};
 use burgeon::formats::{
-    CloudFormat, DrawingFormat, ExportSpec, FileStems, MAX_MODEL_BYTES, ModelFormat, PngCache, ReadDrawing,
-    obj_files, usd_files, warn_of_wind, write_glb_with, write_mtg,
+    CloudFormat, DrawingFormat, ExportSpec, FileStems, MAX_MODEL_BYTES, ModelFormat, Packing, PngCache,
+    ReadDrawing, obj_files, usd_files, warn_of_wind, write_glb_packed, write_glb_with, write_mtg,
 };
 use burgeon::mesh::{Model, PointCloud};
 use burgeon::plant::Plant;
@@ -372,11 +372,13 @@ pub(crate) struct Goal<'a> {
     pub(crate) path: &'a Path,
     /// One of a batch, by a name of [`crate::names`]: its textures are `NAME--MATERIAL.png`, which no other's file can be.
     pub(crate) of_many: bool,
+    /// How a .glb is packed.
+    pub(crate) packing: Option<Packing>,
 }
 
 impl<'a> Goal<'a> {
     pub(crate) const fn new(by: &'a str, path: &'a Path) -> Self {
-        Self { by, path, of_many: false }
+        Self { by, path, of_many: false, packing: None }
     }
 
     fn beside(&self, name: &str) -> PathBuf {
@@ -480,6 +482,10 @@ pub(crate) fn write_model(
     let name = stem(path);
     let textures = if goal.of_many { format!("{name}-") } else { name.clone() };
     match format {
+        ModelFormat::Glb if goal.packing.is_some() => {
+            let packing = goal.packing.unwrap_or(Packing::Quantized);
+            outputs.write(by, path, |out| write_glb_packed(model, packing, cache, out))?;
+        }
         ModelFormat::Glb if axes.is_default() => {
             outputs.write(by, path, |out| write_glb_with(model, cache, out))?;
         }

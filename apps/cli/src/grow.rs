@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use burgeon::formats::{CloudFormat, ExportSpec};
+use burgeon::formats::{CloudFormat, ExportSpec, ModelFormat};
 use burgeon::glam::DVec3;
 use burgeon::growth::{
     ColonizeSpec, CompetitionSpec, Envelope, GrowthError, GuidedSpec, Method, OAK_RULES, Obstacle,
@@ -67,7 +67,7 @@ pub(crate) fn grow(args: &GrowArgs) -> Outcome {
     }
     let mut items = vec![item];
     if let Some((path, format)) = args.output.as_deref().zip(format) {
-        let (goal, plant) = ((path, format), (&grown.plant, &model));
+        let (goal, plant) = ((path, format, args.surface.packing()), (&grown.plant, &model));
         levels::write(&mut outputs, goal, plant, &lods, &args.axes, &mut items, &machine)?;
     }
     if let Some(path) = &args.qsm {
@@ -104,6 +104,8 @@ fn check_used(args: &GrowArgs, format: Option<PlantFormat>) -> Outcome {
     given.check_picture(args.png.is_some(), &args.picture)?;
     given.check_surface(Seen::new(format, args.png.as_ref(), &args.common))?;
     let written = args.qsm.is_some() || format.is_some_and(|f| !f.fixed_axes());
+    let glb = format == Some(PlantFormat::Model(ModelFormat::Glb));
+    given.only_if(glb, &["pack"], "models as .glb", "none is made")?;
     let read = !args.growth.obstacle.is_empty() || args.points.attractors.is_some();
     given.check_axes(written || read || !args.points.root.is_empty())
 }

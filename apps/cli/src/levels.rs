@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use burgeon::ItemReport;
-use burgeon::formats::PngCache;
+use burgeon::formats::{Packing, PngCache};
 use burgeon::mesh::Model;
 use burgeon::plant::Plant;
 
@@ -18,7 +18,7 @@ use crate::picture;
 /// report; each copy gets an entry of its own after it.
 pub(crate) fn write(
     outputs: &mut Outputs,
-    (path, format): (&Path, PlantFormat),
+    (path, format, packing): (&Path, PlantFormat, Option<Packing>),
     (plant, model): (&Plant, &Model),
     lods: &[Model],
     axes: &AxesArgs,
@@ -30,7 +30,7 @@ pub(crate) fn write(
     let all = all.chain(lods.iter().zip(1..).map(|(m, level)| (m, "--lods", files::lod(path, level))));
     for (level, (model, by, path)) in all.enumerate() {
         machine.cancel.check()?;
-        let goal = Goal::new(by, &path);
+        let goal = Goal { packing, ..Goal::new(by, &path) };
         let (written, write_ms) =
             machine.timed(|| files::write_plant(outputs, goal, (plant, model), format, axes, &mut cache));
         let written = written?;

@@ -47,6 +47,7 @@ const OF_ONE_DRAWING: [&str; 21] = [
     "leaf_template",
     "detail",
     "sides",
+    "textures",
     "no_textures",
     "materials",
     "petals",

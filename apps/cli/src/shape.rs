@@ -4,7 +4,7 @@ use std::path::Path;
 
 use burgeon::bloom::FlowerSpec;
 use burgeon::document::{Document, PlantEdit};
-use burgeon::formats::read_drawings;
+use burgeon::formats::{ModelFormat, read_drawings};
 use burgeon::glam::DVec3;
 use burgeon::mesh::Model;
 use burgeon::plant::Plant;
@@ -79,7 +79,7 @@ pub(crate) fn shape(args: &ShapeArgs) -> Outcome {
     }
     let mut items = vec![item];
     if let Some((path, format)) = args.output.as_deref().zip(format) {
-        let goal = (path, format);
+        let goal = (path, format, args.surface.packing());
         levels::write(&mut outputs, goal, (&plant, &model), &lods, &args.axes, &mut items, &machine)?;
     }
     if let Some(png) = &args.png {
@@ -126,6 +126,8 @@ fn check_used(args: &ShapeArgs, format: Option<PlantFormat>) -> Outcome {
     }
     given.check_picture(args.png.is_some(), &args.picture)?;
     given.check_surface(Seen::new(format, args.png.as_ref(), &args.common))?;
+    let glb = format == Some(PlantFormat::Model(ModelFormat::Glb));
+    given.only_if(glb, &["pack"], "models as .glb", "none is made")?;
     given.check_axes(format.is_some_and(|f| !f.fixed_axes()))
 }
 
@@ -218,7 +220,11 @@ fn flower(
     machine: &Machine,
 ) -> Outcome<Shaped> {
     no_project(args, what)?;
-    args.given.refuse(&["no_textures"], "trees and drawings", "a flower has the colours of its species")?;
+    args.given.refuse(
+        &["textures", "no_textures"],
+        "trees and drawings",
+        "a flower has the colours of its species",
+    )?;
     let seed = Seed::new(args.seed.unwrap_or(1));
     let options = FlowerOptions { skin: skin_of(args)?, edits };
     let run = machine.run();

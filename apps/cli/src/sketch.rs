@@ -295,7 +295,7 @@ impl<'a> Job<'a> {
             }
             let Some((path, format)) = &target.plant else { return Ok(Vec::new()) };
             item.output = path.display().to_string();
-            let goal = Goal { by: "-o", path, of_many: target.of_many };
+            let goal = Goal { of_many: target.of_many, ..Goal::new("-o", path) };
             files::write_plant(outputs, goal, (&plant, &model), *format, &self.args.axes, cache)
         });
         item.warnings.extend(written?.iter().map(ToString::to_string));

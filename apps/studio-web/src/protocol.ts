@@ -5,6 +5,7 @@ import type {
   DocumentState,
   ExportRequest,
   ExportView,
+  MaterialView,
   OrganMaterial,
   PenStyle,
   PlantView,
@@ -14,6 +15,7 @@ import type {
   ShapeReach,
   StrokeClass,
   StrokeMode,
+  TextureView,
   ToolKind,
   Wearer,
 } from './wire';
@@ -137,9 +139,12 @@ export type FromWorker =
   | { kind: 'failed'; why: Refusal }
   | { kind: 'fault'; why: string };
 
+/** The pictures of a material: colour, normals, occlusion and roughness. */
+export function picturesOf({ texture, normal, orm }: MaterialView): TextureView[] {
+  return [texture, normal, orm].filter((t) => t !== null);
+}
+
 /** Numbers of the textures that these plants are shown with. */
 export function texturesOf(plants: readonly PlantView[]): Set<number> {
-  return new Set(
-    plants.flatMap((p) => p.materials.flatMap(({ texture }) => (texture ? [texture.number] : []))),
-  );
+  return new Set(plants.flatMap((p) => p.materials.flatMap(picturesOf).map((t) => t.number)));
 }

@@ -1070,6 +1070,14 @@ export type MaterialView = {
   masked: boolean;
   /** Its name in files. */
   name: string;
+  /** Normals of its relief, as glTF has them. */
+  normal: 
+    | TextureView
+    | null;
+  /** Red is occlusion; green is multiplied with the roughness. */
+  orm: 
+    | TextureView
+    | null;
   /** 0 to 1. */
   roughness: number;
   /** Its picture. */

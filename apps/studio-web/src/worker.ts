@@ -1,6 +1,6 @@
 /** The worker: owns the session, answers requests in order, and grows the plant when nothing else is to do. */
 import init, { studio_schema as studioSchema, StudioSession } from './wasm/burgeon_wasm.js';
-import { texturesOf } from './protocol';
+import { picturesOf, texturesOf } from './protocol';
 import type {
   ExportedArrays,
   FromWorker,
@@ -186,11 +186,10 @@ const QUIET: ReadonlySet<Request['kind']> = new Set([
 /** Textures of these materials that the page does not have. */
 function unsent(s: StudioSession, { materials }: PlantView): TexturePixels[] {
   const textures: TexturePixels[] = [];
-  for (const { texture } of materials) {
-    if (texture && !sent.has(texture.number)) {
-      sent.add(texture.number);
-      textures.push({ ...texture, pixels: s.texture(texture.number) });
-    }
+  for (const texture of materials.flatMap(picturesOf)) {
+    if (sent.has(texture.number)) continue;
+    sent.add(texture.number);
+    textures.push({ ...texture, pixels: s.texture(texture.number) });
   }
   return textures;
 }

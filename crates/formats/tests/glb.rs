@@ -173,3 +173,109 @@ fn one_plant_that_stands_where_it_was_made_is_written_as_its_model() {
     write_glb(&oak, &mut plain).expect("writes");
     assert!(scene == plain);
 }
+
+/// [`model`] with reliefs, wind, and bark whose texture repeats.
+fn carried() -> Model {
+    let mut m = model(24);
+    let picture = |c: [u8; 4]| Some(Arc::new(Texture { width: 32, height: 32, pixels: c.repeat(1024) }));
+    for material in &mut m.materials {
+        material.maps.normal = picture([128, 128, 255, 255]);
+        material.maps.orm = picture([255, 200, 0, 255]);
+        material.maps.through = picture([255, 255, 255, 90]);
+    }
+    m.materials[2].texture = picture([120, 90, 60, 255]);
+    let mesh = &mut m.parts[2].mesh;
+    mesh.uvs = mesh.positions.iter().map(|p| [3.0 * p[0], 7.5 * p[1] - 1.0]).collect();
+    for part in &mut m.parts {
+        part.mesh.wind = vec![[0.25, 0.5, 0.0, 1.0]; part.mesh.positions.len()];
+        part.mesh.pivots = vec![[0.5, 0.0, 0.25]; part.mesh.positions.len()];
+    }
+    m
+}
+
+fn read_back(glb: &[u8]) -> Model {
+    let mut report = base::Report::default();
+    let spec = formats::ExportSpec::default();
+    let read =
+        formats::read_model(glb, formats::ModelFormat::Glb, "x", &spec, &formats::no_files, &mut report);
+    assert!(report.warnings.is_empty(), "{:?}", report.warnings);
+    read.expect("reads")
+}
+
+#[test]
+fn reliefs_are_written_and_read_back() {
+    let m = carried();
+    let mut glb = Vec::new();
+    write_glb(&m, &mut glb).expect("writes");
+    let j = json_of(&glb);
+    let leaf = &j["materials"][0];
+    assert_eq!(leaf["occlusionTexture"], leaf["pbrMetallicRoughness"]["metallicRoughnessTexture"]);
+    let through = &leaf["extensions"]["KHR_materials_diffuse_transmission"];
+    assert_eq!(
+        (&through["diffuseTransmissionFactor"], through["diffuseTransmissionTexture"]["index"].is_u64()),
+        (&0.25.into(), true)
+    );
+    assert!(j["materials"][2].get("extensions").is_none(), "wood lets no light through");
+    assert_eq!(j["extensionsUsed"], serde_json::json!(["KHR_materials_diffuse_transmission"]));
+    assert!(j.get("extensionsRequired").is_none(), "plain where a viewer does not know it");
+    let back = read_back(&glb);
+    for (a, b) in m.materials.iter().zip(&back.materials) {
+        assert_eq!(
+            (&a.maps.normal, &a.maps.orm, a.translucency),
+            (&b.maps.normal, &b.maps.orm, b.translucency),
+            "{}",
+            a.name
+        );
+    }
+    assert_eq!(back.materials[0].maps.through, m.materials[0].maps.through);
+}
+
+#[test]
+fn packed_files_are_small_and_come_back_as_they_were() {
+    use formats::{Packing, write_glb_packed};
+    let m = carried();
+    let mut plain = Vec::new();
+    write_glb(&m, &mut plain).expect("writes");
+    for (packing, most) in [(Packing::Quantized, 0.75), (Packing::Compressed, 0.4)] {
+        let mut glb = Vec::new();
+        write_glb_packed(&m, packing, &mut PngCache::new(), &mut glb).expect("writes");
+        let mut again = Vec::new();
+        write_glb_packed(&m, packing, &mut PngCache::new(), &mut again).expect("writes");
+        assert_eq!(glb, again, "the same bytes");
+        let share = glb.len() as f64 / plain.len() as f64;
+        assert!(share < most, "{packing:?}: {share}");
+        let back = read_back(&glb);
+        assert_eq!(back.validate().collect::<Vec<_>>(), []);
+        for (a, b) in m.parts.iter().zip(&back.parts) {
+            assert_eq!(a.name, b.name);
+            let near = |x: &[f32], y: &[f32], off: f32| x.iter().zip(y).all(|(x, y)| (x - y).abs() <= off);
+            // Corner by corner: vertices may be in another order, and corners turned.
+            for (t, s) in a.mesh.triangles.iter().zip(&b.mesh.triangles) {
+                let same = |k: usize| {
+                    (0..3).all(|c| {
+                        let (i, j) = (t[c] as usize, s[(c + k) % 3] as usize);
+                        near(&a.mesh.positions[i], &b.mesh.positions[j], 2e-5)
+                            && near(&a.mesh.normals[i], &b.mesh.normals[j], 0.01)
+                            && near(&a.mesh.uvs[i], &b.mesh.uvs[j], 2e-4)
+                            && near(&a.mesh.wind[i], &b.mesh.wind[j], 1e-4)
+                            && near(&a.mesh.pivots[i], &b.mesh.pivots[j], 1e-5)
+                            && a.mesh.colors.get(i).is_none_or(|x| near(x, &b.mesh.colors[j], 0.003))
+                    })
+                };
+                assert!((0..3).any(same), "{packing:?} {}: {t:?} {s:?}", a.name);
+            }
+            assert_eq!(a.mesh.triangles.len(), b.mesh.triangles.len());
+        }
+        let cut = &glb[..glb.len() - glb.len() / 3];
+        let spec = formats::ExportSpec::default();
+        let read = formats::read_model(
+            cut,
+            formats::ModelFormat::Glb,
+            "x",
+            &spec,
+            &formats::no_files,
+            &mut base::Report::default(),
+        );
+        assert!(read.is_err(), "a file that was cut is an error");
+    }
+}

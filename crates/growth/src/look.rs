@@ -123,6 +123,8 @@ pub enum Bark {
     Plated,
     /// White paper with dark stripes across: birch.
     Birch,
+    /// Glossy bands with raised pores across, which peel: cherry.
+    Cherry,
     /// Rings that fallen leaves have left: palm.
     Ringed,
     /// Smooth and jointed: bamboo.

@@ -9,5 +9,5 @@ mod material;
 mod trimesh;
 
 pub use cloud::PointCloud;
-pub use material::{AlphaMode, Material, MaterialId, MaterialKind, Texture};
+pub use material::{AlphaMode, Maps, Material, MaterialId, MaterialKind, Texture};
 pub use trimesh::{Bounds, Fault, Model, Part, Standing, TriMesh};

@@ -61,6 +61,27 @@ pub struct Texture {
     pub pixels: Vec<u8>,
 }
 
+/// What a surface has beside its colour, each over the texture coordinates of the mesh. Default: none.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Maps {
+    /// Normals in the space of the tangent as glTF has them: red along u, green against v, blue outwards; the material's
+    /// tangents are those that MikkTSpace computes.
+    pub normal: Option<Arc<Texture>>,
+    /// Red: how much of the sky is seen (1 all). Green: multiplied with the roughness. Blue: 0, no metal.
+    pub orm: Option<Arc<Texture>>,
+    /// Grey: height of the relief, 0 its lowest and 255 its highest place.
+    pub height: Option<Arc<Texture>>,
+    /// Alpha: multiplied with the translucency.
+    pub through: Option<Arc<Texture>>,
+}
+
+impl Maps {
+    /// All that are there, in the order of the fields.
+    pub fn each(&self) -> impl Iterator<Item = &Arc<Texture>> {
+        [&self.normal, &self.orm, &self.height, &self.through].into_iter().flatten()
+    }
+}
+
 /// How alpha is read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AlphaMode {
@@ -82,10 +103,12 @@ pub struct Material {
     pub base_color: [f32; 3],
     /// 0 (mirror) to 1 (matt).
     pub roughness: f32,
-    /// Share of light that passes through a thin blade, 0 to 1 (used by pictures only).
+    /// Share of light that passes through a thin blade, 0 to 1.
     pub translucency: f32,
     /// Base colour texture.
     pub texture: Option<Arc<Texture>>,
+    /// Normals, occlusion and roughness, height, translucency.
+    pub maps: Maps,
     /// How the texture's alpha is read.
     pub alpha: AlphaMode,
     /// Seen from both sides (blades).
@@ -102,6 +125,7 @@ impl Material {
             roughness: 0.9,
             translucency: 0.0,
             texture: None,
+            maps: Maps::default(),
             alpha: AlphaMode::Opaque,
             double_sided: false,
         }

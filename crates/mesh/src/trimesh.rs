@@ -271,7 +271,7 @@ impl Model {
                 + size_of_val(&*m.pivots)
                 + size_of_val(&*m.triangles)
         };
-        let textures = self.materials.iter().filter_map(|m| m.texture.as_ref());
+        let textures = self.materials.iter().flat_map(|m| m.texture.iter().chain(m.maps.each()));
         self.parts.iter().map(|p| columns(&p.mesh)).sum::<usize>()
             + textures.map(|t| t.pixels.len()).sum::<usize>()
     }

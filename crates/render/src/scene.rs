@@ -21,6 +21,12 @@ pub(crate) struct Surface {
     /// Colour of light that has passed through, relative to `color`.
     pub(crate) through: DVec3,
     pub(crate) texture: Option<Arc<Pyramid>>,
+    /// Normals in the space of the tangent, each -1 to 1 as 0 to 1.
+    pub(crate) normals: Option<Arc<Pyramid>>,
+    /// Occlusion, and what the roughness is multiplied with.
+    pub(crate) orm: Option<Arc<Pyramid>>,
+    /// What the translucency is multiplied with, in alpha.
+    pub(crate) thin: Option<Arc<Pyramid>>,
     pub(crate) mask: bool,
 }
 
@@ -158,20 +164,22 @@ fn normals(mesh: &TriMesh, sound: &dyn Fn(&[u32; 3]) -> bool) -> Vec<DVec3> {
 fn surfaces(model: &Model) -> Vec<Surface> {
     // Parts often share one texture: each is prepared once.
     let mut ready: Vec<(*const mesh::Texture, Option<Arc<Pyramid>>)> = Vec::new();
+    let mut prepared = |texture: Option<&Arc<mesh::Texture>>, of: fn(&mesh::Texture) -> Option<Pyramid>| {
+        let texture = texture?;
+        let key = Arc::as_ptr(texture);
+        if let Some((_, found)) = ready.iter().find(|(k, _)| *k == key) {
+            return found.clone();
+        }
+        let pyramid = of(texture).map(Arc::new);
+        ready.push((key, pyramid.clone()));
+        pyramid
+    };
     let unit = |x: f32, default: f64| if x.is_finite() { f64::from(x).clamp(0.0, 1.0) } else { default };
     model
         .materials
         .iter()
         .map(|m| {
-            let texture = m.texture.as_ref().and_then(|texture| {
-                let key = Arc::as_ptr(texture);
-                if let Some((_, found)) = ready.iter().find(|(k, _)| *k == key) {
-                    return found.clone();
-                }
-                let pyramid = Pyramid::new(texture).map(Arc::new);
-                ready.push((key, pyramid.clone()));
-                pyramid
-            });
+            let texture = prepared(m.texture.as_ref(), Pyramid::new);
             Surface {
                 color: DVec3::from_array(m.base_color.map(|c| unit(c, 0.5))),
                 roughness: unit(m.roughness, 0.9).max(0.08),
@@ -182,6 +190,9 @@ fn surfaces(model: &Model) -> Vec<Surface> {
                 } else {
                     DVec3::splat(1.2)
                 },
+                normals: prepared(m.maps.normal.as_ref(), Pyramid::of_numbers),
+                orm: prepared(m.maps.orm.as_ref(), Pyramid::of_numbers),
+                thin: prepared(m.maps.through.as_ref(), Pyramid::of_numbers),
                 mask: m.alpha == AlphaMode::Mask && texture.is_some(),
                 texture,
             }

@@ -7,9 +7,9 @@ use crate::camera::Camera;
 use crate::light::{DepthMap, SUN, Sky, sunlit};
 use crate::picture::Picture;
 use crate::raster::{Bins, NONE, TILE, Visible, pattern};
-use crate::scene::Scene;
+use crate::scene::{Scene, Vertex};
 use crate::spec::{Background, PictureSpec};
-use crate::texture::{linear, srgb};
+use crate::texture::{Pyramid, linear, srgb};
 
 /// How much of the computed ground shadow is shown: full strength looks hard on a pale ground.
 const SHADOW_STRENGTH: f64 = 0.72;
@@ -128,23 +128,39 @@ impl Frame<'_> {
         let (mut front, mut rear) = (side(0), side(1));
         // The side that is seen decides, whatever the file says about winding.
         let facing = if face.dot(view) < 0.0 { -face } else { face };
-        if normal.dot(facing) < 0.0 {
+        let turned = normal.dot(facing) < 0.0;
+        if turned {
             normal = -normal;
             core::mem::swap(&mut front, &mut rear);
         }
         let mut color = surface.color * (a.color * w.x + b.color * w.y + c.color * w.z);
-        if let Some(texture) = &surface.texture {
-            let uv = a.uv * w.x + b.uv * w.y + c.uv * w.z;
-            let uv_area = (b.uv - a.uv).perp_dot(c.uv - a.uv).abs() * 0.5;
-            let texels = uv_area * texture.texel_count() / flat.pixel_area().max(1e-3);
+        let uv = a.uv * w.x + b.uv * w.y + c.uv * w.z;
+        let uv_area = (b.uv - a.uv).perp_dot(c.uv - a.uv).abs() * 0.5 / flat.pixel_area().max(1e-3);
+        let sample = |texture: &Pyramid| {
+            let texels = uv_area * texture.texel_count();
             let lod = if texels > 1.0 { 0.5 * ops::ln(texels) / core::f64::consts::LN_2 } else { 0.0 };
-            color *= texture.sample(uv, lod).0;
+            texture.sample(uv, lod)
+        };
+        if let Some(texture) = &surface.texture {
+            color *= sample(texture).0;
         }
+        if let Some(normals) = &surface.normals {
+            // What is a groove on one side is a ridge on the other.
+            let side = if turned { -1.0 } else { 1.0 };
+            let seen = sample(normals).0 * 2.0 - DVec3::ONE;
+            normal = relief(corners, normal, seen * DVec3::new(side, side, 1.0));
+        }
+        let (mut open, mut roughness) = (1.0, surface.roughness);
+        if let Some(orm) = &surface.orm {
+            let (orm, _) = sample(orm);
+            (open, roughness) = (orm.x, (roughness * orm.y).max(0.08));
+        }
+        front *= open;
         let color = color.min(DVec3::splat(0.95));
         let through = (color * surface.through).min(DVec3::splat(0.95));
-        let t = surface.translucency;
+        let t = surface.translucency * surface.thin.as_ref().map_or(1.0, |thin| sample(thin).1);
         let mut light = color * front * (1.0 - t) + through * rear * t;
-        let power = 2.0 / (surface.roughness * surface.roughness * surface.roughness * surface.roughness);
+        let power = 2.0 / (roughness * roughness * roughness * roughness);
         let power = power.clamp(1.0, 600.0);
         let (mut on, mut behind, mut gloss) = (0.0, 0.0, 0.0);
         let mean = self.sun.first().map_or(DVec3::Y, |m| m.toward);
@@ -199,6 +215,19 @@ impl Frame<'_> {
         let here = SUN * (level * lit) + self.sky.on_ground(p);
         DVec3::ONE.lerp((here / full).min(DVec3::ONE), SHADOW_STRENGTH)
     }
+}
+
+/// A normal of the relief: `local` is that of its map, and `normal` that of the side that is seen.
+fn relief([a, b, c]: [&Vertex; 3], normal: DVec3, local: DVec3) -> DVec3 {
+    let (ab, ac) = (b.at - a.at, c.at - a.at);
+    let (s, t) = (b.uv - a.uv, c.uv - a.uv);
+    let area = s.perp_dot(t);
+    // Where u runs and where the picture's up is on the triangle, in the plane of the normal.
+    let along_u = (ab * t.y - ac * s.y) * area.signum();
+    let along_v = (ac * s.x - ab * t.x) * area.signum();
+    let flat = |d: DVec3| (d - normal * normal.dot(d)).try_normalize();
+    let (Some(right), Some(down)) = (flat(along_u), flat(along_v)) else { return normal };
+    (right * local.x - down * local.y + normal * local.z.max(0.05)).normalize_or(normal)
 }
 
 // Linear up to 0.6, then a soft shoulder that reaches 1 at infinity: highlights keep their hue.

@@ -37,8 +37,17 @@ pub(crate) struct Pyramid {
 }
 
 impl Pyramid {
-    /// `None` for a texture without pixels or with too few bytes.
+    /// Of an sRGB picture. `None` for a texture without pixels or with too few bytes.
     pub(crate) fn new(texture: &mesh::Texture) -> Option<Self> {
+        Self::of(texture, linear)
+    }
+
+    /// Of numbers: normals, roughness.
+    pub(crate) fn of_numbers(texture: &mesh::Texture) -> Option<Self> {
+        Self::of(texture, |byte| f64::from(byte) / 255.0)
+    }
+
+    fn of(texture: &mesh::Texture, linear: fn(u8) -> f64) -> Option<Self> {
         let (width, height) = (texture.width as usize, texture.height as usize);
         let bytes = width.checked_mul(height)?.checked_mul(4)?;
         if bytes == 0 || texture.pixels.len() < bytes {

@@ -42,14 +42,14 @@ mod traced;
 mod tube;
 mod wind;
 
-pub use self::spec::{LeafMeshSpec, PetalColor, SkinSpec};
+pub use self::spec::{BarkSpec, LeafMeshSpec, PetalColor, SkinSpec};
 pub use blade::{BladeChart, blade_mesh};
 pub use layout::{Layout, Owner};
 pub use leaf::ShapeMesh;
 pub use material::{Cloth, MATERIALS, OrganMaterial, Pattern, StrokeWear, Wear, Wearer, Worn};
 pub use organs::KeptShapes;
 pub use pictures::Pictures;
-pub use texture::{LeafColours, swatch, vein_texture};
+pub use texture::{BarkKind, LeafColours, Venation, swatch, vein_texture};
 pub use traced::Traced;
 pub use tube::{TubeSpec, tube};
 
@@ -83,7 +83,7 @@ use crate::spec::Budget;
 /// foot lies inside its bearer, but for one or two branches in ten thousand: thin twigs that run along their bearer, or
 /// start on its fillet, may miss it by some millimetres.
 /// Cost: linear in axes and organs; about 70 ns a triangle. The first use of a kind of surface also paints its
-/// texture (up to about 30 ms). A shape's triangulation costs 0.6 us a triangle, once for all its organs.
+/// textures (bark of 512 pixels about 70 ms on one thread). A shape's triangulation costs 0.6 us a triangle, once for all its organs.
 ///
 /// # Errors
 /// [`Stopped`] when the caller's token says so, or when there would be more triangles than the budget allows.

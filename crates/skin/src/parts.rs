@@ -5,12 +5,15 @@ use std::sync::Arc;
 
 use base::Executor;
 use mesh::{AlphaMode, Material, MaterialId, MaterialKind, Model, Part, Texture, TriMesh};
-use plant::{Paint, Plant, PlantPaint, Shape};
+use plant::{Blade, OrganKind, Paint, Plant, PlantPaint, Shape, ShapeId};
 
 use crate::layout::{Layout, Piece};
 use crate::pictures::Pictures;
-use crate::texture::{Motif, paint_material, painted_material};
-use crate::{Cloth, PetalColor, SkinSpec, Wearer, Worn};
+use crate::texture::{
+    GREEN, LEAF_ROUGHNESS, LeafInks, Motif, PALE_GREEN, PALE_PETAL, Surface, any_blade, bark, leaf,
+    paint_material, painted_material, petal_inks, petals,
+};
+use crate::{BarkSpec, Cloth, PetalColor, SkinSpec, Venation, Wearer, Worn};
 
 /// What a part of the model is made of; one part and one material each, in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -133,23 +136,16 @@ impl Slot {
         (part.into(), material)
     }
 
-    /// What its texture shows; none for what has no texture of its own.
+    /// What its texture shows; none for what has no texture of its own, or one with relief.
     fn motif(self) -> Option<Motif> {
         Some(match self {
-            Self::Form(..) | Self::Veins | Self::Sepal(_) | Self::Worn(..) => return None,
+            Self::Form(..) | Self::Veins | Self::Sepal(_) | Self::Worn(..) | Self::Traced(_) => return None,
             Self::Stamen(coat) if coat != Coat::Natural => return None,
-            Self::Leaf(Coat::Own) | Self::Petal(Coat::Own, _) => return None,
+            Self::Bark | Self::YoungBark | Self::Leaf(_) | Self::Petal(..) => return None,
             // Florets of a disc are organs of their own.
             Self::Disc(Coat::Own | Coat::Tinted) => return None,
-            Self::Bark => Motif::Bark,
-            Self::YoungBark => Motif::YoungBark,
             Self::Stem => Motif::Stem,
             Self::Root => Motif::Root,
-            Self::Leaf(Coat::Natural) => Motif::Leaf,
-            // A photograph takes the place of this one.
-            Self::Leaf(_) | Self::Traced(_) => Motif::PaleLeaf,
-            Self::Petal(Coat::Natural, color) => Motif::Petal(color),
-            Self::Petal(..) => Motif::PalePetal,
             Self::Disc(Coat::Natural) => Motif::Disc,
             Self::Disc(_) => Motif::PaleDisc,
             Self::Fruit(Coat::Natural) => Motif::Fruit,
@@ -157,6 +153,34 @@ impl Slot {
             Self::Body => Motif::Body,
             Self::Stamen(_) => Motif::Stamen,
             Self::Thorn => Motif::Thorn,
+        })
+    }
+
+    /// Its colour with relief; none for what has none. `old`: the plant has old bark, so that young bark is of twigs.
+    fn surface(self, spec: &SkinSpec, plant: &Plant, old: bool, executor: &dyn Executor) -> Option<Surface> {
+        let size = spec.texture_size.clamp(64, 4096);
+        let leaves = |inks: &LeafInks| {
+            let own = || {
+                plant.organs.iter().filter(|o| o.kind == OrganKind::Leaf).find_map(|o| blade(plant, o.shape))
+            };
+            match spec.venation {
+                Some(venation) => {
+                    leaf(venation, &own().cloned().unwrap_or_else(any_blade), inks, size, executor)
+                }
+                None => leaf(Venation::Pinnate, &any_blade(), inks, size, executor),
+            }
+        };
+        Some(match self {
+            Self::Bark | Self::YoungBark => {
+                let twig = old && self == Self::YoungBark;
+                let (kind, colour) = spec.bark.unwrap_or_default().of(twig);
+                bark(kind, colour.srgb(), if twig { size / 2 } else { size }, executor)
+            }
+            Self::Leaf(Coat::Natural) => leaves(&GREEN),
+            Self::Leaf(Coat::Tinted | Coat::Drawn) => leaves(&PALE_GREEN),
+            Self::Petal(Coat::Natural, color) => petals(&petal_inks(color), size / 2, executor),
+            Self::Petal(Coat::Tinted | Coat::Drawn, _) => petals(&PALE_PETAL, size / 2, executor),
+            _ => return None,
         })
     }
 
@@ -188,8 +212,13 @@ impl Slot {
     }
 
     /// Its colour as the plant's maker knows it.
-    const fn known_color(self, paint: &PlantPaint) -> Option<[f32; 3]> {
+    fn known_color(self, paint: &PlantPaint, spec: &SkinSpec, old: bool) -> Option<[f32; 3]> {
         match self {
+            Self::Bark | Self::YoungBark if !spec.textures => {
+                #[expect(clippy::cast_possible_truncation, reason = "a colour")]
+                let plain = |b: BarkSpec| b.of(old && self == Self::YoungBark).1.linear().map(|x| x as f32);
+                spec.bark.map(plain)
+            }
             Self::Stem => paint.stem,
             Self::Veins => paint.veins,
             _ => None,
@@ -198,13 +227,13 @@ impl Slot {
 
     fn material(
         self,
-        spec: &SkinSpec,
-        pictures: Pictures<'_>,
-        paint: &PlantPaint,
+        (spec, pictures): (&SkinSpec, Pictures<'_>),
+        plant: &Plant,
+        old: bool,
         executor: &dyn Executor,
     ) -> Material {
         let textures = spec.textures.then_some(executor);
-        let (kind, known) = (self.kind(), self.known_color(paint));
+        let (kind, known) = (self.kind(), self.known_color(&plant.paint, spec, old));
         let mut m = Material::plain(self.names(&spec.worn).1, kind, [1.0; 3]);
         m.double_sided = matches!(kind, MaterialKind::Leaf | MaterialKind::Petal);
         if let Self::Worn(_, row) = self {
@@ -220,6 +249,7 @@ impl Slot {
             _ if known.is_some() => None,
             _ => textures.zip(self.motif()).map(|(executor, motif)| motif.texture(executor)),
         };
+        let relief = textures.and_then(|executor| self.surface(spec, plant, old, executor));
         if m.texture.is_none() {
             m.base_color = known.unwrap_or_else(|| self.plain_color());
         }
@@ -233,7 +263,20 @@ impl Slot {
             MaterialKind::Stamen | MaterialKind::Disc => (0.8, 0.0),
             _ => (0.95, 0.0),
         };
+        if let Some(Surface { color, maps }) = relief {
+            (m.texture, m.maps, m.base_color) = (Some(color), maps, [1.0; 3]);
+            // Of the rest the map decides.
+            m.roughness = if m.double_sided { LEAF_ROUGHNESS } else { 1.0 };
+        }
         m
+    }
+}
+
+/// The blade of a shape that is one.
+fn blade(plant: &Plant, shape: ShapeId) -> Option<&Blade> {
+    match plant.shapes.get(shape.index()) {
+        Some(Shape::Blade(blade)) => Some(blade),
+        _ => None,
     }
 }
 
@@ -282,6 +325,7 @@ pub(crate) fn model(
     meshes.retain(|(_, m, _)| !m.triangles.is_empty());
     // Stable: meshes of one slot keep their order.
     base::sort_by_key(&mut meshes, |(slot, ..)| *slot);
+    let old = meshes.iter().any(|(slot, ..)| *slot == Slot::Bark);
     let mut rest = meshes.as_slice();
     while let Some(&(slot, ref first, _)) = rest.first() {
         let n = rest.iter().take_while(|(s, ..)| *s == slot).count();
@@ -292,7 +336,7 @@ pub(crate) fn model(
             _ => joined(these),
         };
         let material = MaterialId::new(model.materials.len());
-        model.materials.push(slot.material(spec, pictures, &plant.paint, executor));
+        model.materials.push(slot.material((spec, pictures), plant, old, executor));
         layout.push(these.iter().flat_map(|(_, _, pieces)| pieces));
         model.parts.push(Part { name: slot.names(&spec.worn).0.into_owned(), material, mesh });
     }

@@ -5,8 +5,9 @@ use geom::{BallTubeSpec, EndCap, RingRule};
 use plant::{OrganKind, Plant};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use spec::Colour;
 
-use crate::Worn;
+use crate::{BarkKind, Venation, Worn};
 
 /// How a plant is given its surface. Saved with the document.
 ///
@@ -31,6 +32,17 @@ pub struct SkinSpec {
     pub leaf: LeafMeshSpec,
     /// Give materials procedural textures; without, they have plain colours. Default true.
     pub textures: bool,
+    /// Pixels of a side of the bark's textures and of the length of a leaf's, 64 to 4096. Chosen for an export, not saved.
+    /// Default 512.
+    #[serde(skip)]
+    pub texture_size: u32,
+    /// The bark of a tree. Saved with the tree, not here. Default none: furrowed, brown.
+    #[serde(skip)]
+    pub bark: Option<BarkSpec>,
+    /// How the veins of its leaves run, which then have a surface of their own form. Saved with the tree, not here. Default
+    /// none: pinnate, on a form that suits any.
+    #[serde(skip)]
+    pub venation: Option<Venation>,
     /// Colour of petals whose organs have no colour of their own; `None` picks one by seed and plant name.
     pub petals: Option<PetalColor>,
     /// Variation of hue and brightness from organ to organ, 0 (none) to 1 (default).
@@ -64,6 +76,9 @@ impl Default for SkinSpec {
             sides: 8,
             leaf: LeafMeshSpec::default(),
             textures: true,
+            texture_size: 512,
+            bark: None,
+            venation: None,
             petals: None,
             variation: 1.0,
             wind: false,
@@ -71,6 +86,35 @@ impl Default for SkinSpec {
             crowd: None,
             worn: Worn::default(),
             seed: Seed::default(),
+        }
+    }
+}
+
+/// The bark of a tree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BarkSpec {
+    /// What it is like.
+    pub kind: BarkKind,
+    /// Its colour on the whole; of birch that of its white.
+    pub colour: Colour,
+    /// The colour of twigs.
+    pub twig: Colour,
+}
+
+impl Default for BarkSpec {
+    fn default() -> Self {
+        Self { kind: BarkKind::Furrowed, colour: Colour([98, 81, 66]), twig: Colour([103, 88, 65]) }
+    }
+}
+
+impl BarkSpec {
+    /// Kind and colour of wood: `twig` of thin twigs beside old wood, else of trunk and limbs.
+    pub(crate) const fn of(self, twig: bool) -> (BarkKind, Colour) {
+        match (twig, self.kind) {
+            (false, kind) => (kind, self.colour),
+            // A bamboo's twigs are canes, too.
+            (true, BarkKind::Cane) => (BarkKind::Cane, self.twig),
+            (true, _) => (BarkKind::Twig, self.twig),
         }
     }
 }

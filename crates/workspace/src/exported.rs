@@ -1,9 +1,11 @@
 //! An export that is looked at before it is written: its meshes at one level of detail, and figures that were counted.
 
+use std::sync::Arc;
+
 use burgeon::Run;
 use burgeon::document::PlantId;
 use burgeon::formats::ModelFormat;
-use burgeon::mesh::{Model, TriMesh};
+use burgeon::mesh::{Material, Model, Texture, TriMesh};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -116,7 +118,7 @@ impl Workspace {
     ) -> Result<ExportView, WorkspaceError> {
         let mut textures = Vec::new();
         let models = looked.models.iter().flat_map(|m| &m.materials);
-        for texture in models.filter_map(|m| m.texture.as_ref()).filter(|_| !is_single(format)) {
+        for texture in models.flat_map(|m| pictures(m, format)) {
             if !textures.contains(&texture) {
                 textures.push(texture);
             }
@@ -157,6 +159,15 @@ impl Workspace {
     pub fn end_look(&mut self) {
         self.looked = None;
     }
+}
+
+/// The textures of a material that a file has.
+fn pictures(m: &Material, format: ModelFormat) -> impl Iterator<Item = &Arc<Texture>> {
+    let (glb, obj) = (format == ModelFormat::Glb, format == ModelFormat::Obj);
+    let height = m.maps.height.as_ref().filter(|_| obj);
+    let through = m.maps.through.as_ref().filter(|_| glb && m.double_sided && m.translucency > 0.0);
+    let all = [m.texture.as_ref(), m.maps.normal.as_ref(), m.maps.orm.as_ref(), height, through];
+    all.into_iter().flatten().filter(move |_| !is_single(format))
 }
 
 /// One mesh holds all, without textures.

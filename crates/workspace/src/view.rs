@@ -157,6 +157,16 @@ pub struct MaterialView {
     pub two_sided: bool,
     /// Its picture.
     pub texture: Option<TextureView>,
+    /// Normals of its relief, as glTF has them.
+    pub normal: Option<TextureView>,
+    /// Red is occlusion; green is multiplied with the roughness.
+    pub orm: Option<TextureView>,
+}
+
+impl MaterialView {
+    fn pictures(&self) -> impl Iterator<Item = TextureView> {
+        [self.texture, self.normal, self.orm].into_iter().flatten()
+    }
 }
 
 /// A picture by its number: pixels are asked for once.
@@ -184,9 +194,13 @@ impl Textures {
 
     /// Forgets all but those of these views.
     pub(crate) fn keep<'a>(&mut self, views: impl Iterator<Item = &'a PlantView>) {
-        let seen = views.flat_map(|v| &v.materials).filter_map(|m| Some(m.texture?.number));
+        let seen = views.flat_map(|v| &v.materials).flat_map(MaterialView::pictures).map(|t| t.number);
         let seen = set_of(seen);
         self.rows.retain(|(number, _)| seen.contains_key(number));
+    }
+
+    fn view(&mut self, texture: &Arc<Texture>) -> TextureView {
+        TextureView { number: self.number_of(texture), width: texture.width, height: texture.height }
     }
 
     fn number_of(&mut self, texture: &Arc<Texture>) -> u32 {
@@ -237,11 +251,9 @@ impl PlantView {
             translucency: m.translucency,
             masked: m.alpha == AlphaMode::Mask,
             two_sided: m.double_sided,
-            texture: m.texture.as_ref().map(|t| TextureView {
-                number: textures.number_of(t),
-                width: t.width,
-                height: t.height,
-            }),
+            texture: m.texture.as_ref().map(|t| textures.view(t)),
+            normal: m.maps.normal.as_ref().map(|t| textures.view(t)),
+            orm: m.maps.orm.as_ref().map(|t| textures.view(t)),
         });
         view.materials = materials.collect();
         view

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::given::Given;
-use super::shared::{AxesArgs, CommonArgs, PictureArgs, UnitWord, UpWord, seed};
+use super::shared::{AxesArgs, CommonArgs, PackWord, PictureArgs, UnitWord, UpWord, seed};
 
 #[derive(Args, Debug)]
 #[command(after_long_help = "Examples:
@@ -56,6 +56,10 @@ pub(crate) struct ConvertArgs {
     /// Unit of length in the input, where it differs from --unit.
     #[arg(long, value_enum, value_name = "UNIT", help_heading = "Geometry")]
     pub(crate) in_unit: Option<UnitWord>,
+    /// Make the .glb light: numbers in few bits and textures as JPEG, and with meshopt also compressed
+    /// (docs/exports.md).
+    #[arg(long, value_enum, value_name = "HOW")]
+    pub(crate) pack: Option<PackWord>,
     /// Also make a picture of a model.
     #[arg(long, value_name = "FILE.png")]
     pub(crate) png: Option<PathBuf>,

@@ -60,7 +60,7 @@ impl Given {
 
     /// The options of a plant's meshes, by what is made of them.
     pub(crate) fn check_surface(&self, seen: Seen) -> Outcome {
-        let colours = ["no_textures", "materials", "petals", "variation"];
+        let colours = ["textures", "no_textures", "materials", "petals", "variation"];
         let none = "neither a model nor a picture is made";
         self.only_if(seen.model.is_some() || seen.picture, &colours, "models and pictures", none)?;
         let counted = seen.model.is_some() || seen.picture || seen.report;

@@ -2,12 +2,13 @@
 
 use std::path::PathBuf;
 
+use burgeon::formats::Packing;
 use burgeon::glam::DVec3;
 use burgeon::growth::FoliageSpec;
 use clap::{Args, ValueEnum};
 
 use super::given::Given;
-use super::shared::{AxesArgs, CommonArgs, PictureArgs, SkinArgs, of, ranged, seed};
+use super::shared::{AxesArgs, CommonArgs, PackWord, PictureArgs, SkinArgs, of, ranged, seed};
 
 #[derive(Args, Debug)]
 #[command(after_long_help = GROW_EXAMPLES)]
@@ -109,6 +110,16 @@ pub(crate) struct TreeSurfaceArgs {
     /// Coarser copies to write beside the model (OUT-lod1, OUT-lod2, ...), 0 to 6.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=6))]
     pub(crate) lods: u32,
+    /// Make the .glb light: numbers in few bits and textures as JPEG, and with meshopt also compressed
+    /// (docs/exports.md).
+    #[arg(long, value_enum, value_name = "HOW")]
+    pub(crate) pack: Option<PackWord>,
+}
+
+impl TreeSurfaceArgs {
+    pub(crate) fn packing(&self) -> Option<Packing> {
+        self.pack.map(PackWord::packing)
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

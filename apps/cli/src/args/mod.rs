@@ -24,7 +24,7 @@ pub(crate) use presets::PresetsArgs;
 pub(crate) use replay::ReplayArgs;
 pub(crate) use shape::ShapeArgs;
 pub(crate) use shared::{
-    AxesArgs, CommonArgs, FormatWord, PictureArgs, PlantFormat, SkinArgs, UnitWord, UpWord,
+    AxesArgs, CommonArgs, FormatWord, PackWord, PictureArgs, PlantFormat, SkinArgs, UnitWord, UpWord,
 };
 pub(crate) use sketch::{ReadingArgs, SketchArgs, SurfaceArgs};
 

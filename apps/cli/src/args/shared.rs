@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use burgeon::formats::ModelFormat;
+use burgeon::formats::{ModelFormat, Packing};
 use burgeon::render::{Background, PictureSpec, View};
 use burgeon::skin::SkinSpec;
 use burgeon::spec::Spec;
@@ -50,7 +50,11 @@ pub(crate) struct SkinArgs {
     /// Sides of an ordinary branch, 3 to 24; thick branches get more [default: 8].
     #[arg(long, value_name = "N", value_parser = |s: &str| whole::<SkinSpec>(s, "sides"))]
     pub(crate) sides: Option<u32>,
-    /// Plain colours instead of textures.
+    /// Pixels of a side of the textures of bark, and of the length of those of leaves: 64 to 4096, or off [default: 512]
+    /// (docs/materials.md).
+    #[arg(long, value_name = "SIZE|off", value_parser = texture_size, conflicts_with = "no_textures")]
+    pub(crate) textures: Option<u32>,
+    /// Plain colours instead of textures, as --textures off.
     #[arg(long)]
     pub(crate) no_textures: bool,
     /// Materials of leaves, petals, sepals and single strokes, a TOML or JSON file (docs/materials.md): colours, patterns,
@@ -68,7 +72,8 @@ impl SkinArgs {
     pub(crate) fn set(&self, skin: &mut SkinSpec) {
         skin.detail = self.detail.unwrap_or(skin.detail);
         skin.sides = self.sides.unwrap_or(skin.sides);
-        skin.textures &= !self.no_textures;
+        skin.textures &= !self.no_textures && self.textures != Some(0);
+        skin.texture_size = self.textures.filter(|&size| size > 0).unwrap_or(skin.texture_size);
         skin.wind = self.wind;
     }
 
@@ -188,6 +193,33 @@ impl From<UnitWord> for Unit {
             UnitWord::Cm => Self::Centimetre,
             UnitWord::Mm => Self::Millimetre,
         }
+    }
+}
+
+/// How a GLB is packed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum PackWord {
+    /// Numbers in few bits (KHR_mesh_quantization): most programs read it, Blender among them
+    Quantized,
+    /// The same, compressed (EXT_meshopt_compression): for three.js, Babylon, Godot and others that have the decoder
+    Meshopt,
+}
+
+impl PackWord {
+    pub(crate) const fn packing(self) -> Packing {
+        match self {
+            Self::Quantized => Packing::Quantized,
+            Self::Meshopt => Packing::Compressed,
+        }
+    }
+}
+
+/// A size of textures; 0 for off.
+fn texture_size(text: &str) -> Result<u32, String> {
+    match text.parse() {
+        _ if text == "off" => Ok(0),
+        Ok(size @ 64..=4096) => Ok(size),
+        _ => Err("give 64 to 4096 pixels, or off".to_owned()),
     }
 }
 

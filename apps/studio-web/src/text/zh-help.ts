@@ -227,6 +227,7 @@ export const zhHelp: Readonly<Record<string, string>> = {
   'tree.Bark.smooth': '光滑不裂：水青冈、幼树、灌木。',
   'tree.Bark.plated': '大块鳞片，裂缝深色：松、悬铃木。',
   'tree.Bark.birch': '白色纸状，有深色横纹：桦。',
+  'tree.Bark.cherry': '光亮，有横向皮孔带，成条剥落：樱。',
   'tree.Bark.ringed': '落叶留下的环痕：棕榈。',
   'tree.Bark.cane': '光滑有节：竹。',
   'tree.BladeForm': '植物学上的叶形。',

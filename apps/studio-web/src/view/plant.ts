@@ -1,7 +1,7 @@
 /** The plant as three.js meshes, updated in place where only numbers changed. */
 import * as THREE from 'three';
 import type { PartArrays, Sent, TexturePixels } from '../protocol';
-import type { CarriedPose, MaterialView, ObstacleView, PlantView } from '../wire';
+import type { CarriedPose, MaterialView, ObstacleView, PlantView, TextureView } from '../wire';
 import { Carrying, type HeldRows } from './carry';
 
 /** Textures and materials of all plants. */
@@ -58,7 +58,8 @@ export class Looks {
       this.textures.delete(number);
     }
     for (const [key, material] of this.materials) {
-      if (!material.map || !gone.has(material.map)) continue;
+      const { map, normalMap, aoMap } = material;
+      if (![map, normalMap, aoMap].some((t) => t && gone.has(t))) continue;
       material.dispose();
       this.materials.delete(key);
     }
@@ -77,6 +78,19 @@ export class Looks {
     this.textures.set(number, texture);
   }
 
+  /** Normals, occlusion and roughness: numbers, no colours. */
+  private relief({ normal, orm }: MaterialView): THREE.MeshStandardMaterialParameters {
+    const numbers = (t: TextureView | null): THREE.DataTexture | null => {
+      const texture = t ? (this.textures.get(t.number) ?? null) : null;
+      if (texture) texture.colorSpace = THREE.NoColorSpace;
+      return texture;
+    };
+    const [normalMap, ormMap] = [numbers(normal), numbers(orm)];
+    // Textures begin at the top here, so that the map's green, which points up, points against v.
+    const normalScale = new THREE.Vector2(1, -1);
+    return { normalMap, normalScale, aoMap: ormMap, roughnessMap: ormMap };
+  }
+
   material(look: MaterialView, tinted: boolean): THREE.Material {
     const map = look.texture ? (this.textures.get(look.texture.number) ?? null) : null;
     const key = JSON.stringify([look, tinted]);
@@ -92,7 +106,12 @@ export class Looks {
     };
     const material = this.matt
       ? new THREE.MeshLambertMaterial(shown)
-      : new THREE.MeshStandardMaterial({ ...shown, roughness: look.roughness, metalness: 0 });
+      : new THREE.MeshStandardMaterial({
+          ...shown,
+          ...this.relief(look),
+          roughness: look.roughness,
+          metalness: 0,
+        });
     if (look.translucency > 0) {
       // Light through a thin blade: a little of its own colour shines from the shaded side.
       material.emissive.setRGB(1, 1, 1);

@@ -1,14 +1,13 @@
 //! glTF 2.0, binary or JSON -> Model, with node transforms applied.
 
-use std::sync::Arc;
-
 use base::Report;
 use glam::{DMat3, DMat4, DQuat, DVec3};
-use mesh::{AlphaMode, MaterialId, Model, Part, TriMesh};
+use mesh::{MaterialId, Model, Part, TriMesh};
 
 use super::gltf::{FAN, Material, Node, POINTS, Primitive, Root, STRIP, TRIANGLES};
-use super::gltf_bytes::{Bytes, Fault, broken, chunks, item, load_uri, unsupported};
-use super::{MAX_ROWS, Names, Resolver, kind_of, read_picture, unit};
+use super::gltf_bytes::{Bytes, Fault, broken, chunks, item, unsupported};
+use super::gltf_look::Pictures;
+use super::{MAX_ROWS, Names, Resolver, unit};
 use crate::ModelFormat;
 use crate::error::{FileFault, ModelError, Place};
 
@@ -18,11 +17,10 @@ const MAX_JSON: usize = 256 << 20;
 const MAX_OBJECTS: usize = 2_000_000;
 /// Deepest nesting of nodes.
 const MAX_DEPTH: usize = 1_000;
-/// Pixels of all textures together, in bytes.
-const MAX_TEXTURES: usize = 1 << 30;
 
 /// Extensions that may be required and still leave the shape readable.
-const HARMLESS: [&str; 5] = [
+const HARMLESS: [&str; 6] = [
+    "EXT_meshopt_compression",
     "KHR_mesh_quantization",
     "KHR_texture_transform",
     "KHR_lights_punctual",
@@ -67,6 +65,7 @@ pub(super) fn read(
             return Err(at(unsupported(Place::File, format!("the extension {extension}"))));
         }
     }
+    let materials = Pictures::new(&root, &bytes, resolve).materials();
     let mut reader = Reader {
         root: &root,
         bytes,
@@ -77,7 +76,14 @@ pub(super) fn read(
         default_material: None,
         skipped: 0,
     };
-    reader.materials(resolve);
+    for (material, lost) in materials {
+        if lost {
+            let message =
+                format!("the texture of material `{}` could not be read and was left out", material.name);
+            reader.report.warn("texture-missing", message);
+        }
+        reader.model.materials.push(material);
+    }
     reader.scene().map_err(at)?;
     Ok(reader.model)
 }
@@ -109,43 +115,6 @@ fn local_matrix(node: &Node) -> DMat4 {
 }
 
 impl Reader<'_> {
-    fn materials(&mut self, resolve: Resolver<'_>) {
-        let root = self.root;
-        let mut images: Vec<Option<Option<Arc<mesh::Texture>>>> = vec![None; root.images.len()];
-        let mut pixels = 0_usize;
-        let mut names = Names::default();
-        for (i, material) in root.materials.iter().enumerate() {
-            let info = material.pbr_metallic_roughness.base_color_texture.as_ref();
-            let source = info.and_then(|t| root.textures.get(t.index as usize)).and_then(|t| t.source);
-            let mut texture = None;
-            if let Some((slot, image)) = source.and_then(|s| {
-                let s = s as usize;
-                Some((images.get_mut(s)?, root.images.get(s)?))
-            }) {
-                texture = slot
-                    .get_or_insert_with(|| {
-                        let bytes = match (image.buffer_view, &image.uri) {
-                            (Some(view), _) => self.bytes.view(root, view).ok().map(|(b, _)| b.to_vec()),
-                            (None, Some(uri)) => load_uri(uri, resolve, &Place::File).ok(),
-                            (None, None) => None,
-                        };
-                        let picture =
-                            bytes.filter(|_| pixels < MAX_TEXTURES).and_then(|b| read_picture(&b))?;
-                        pixels = pixels.saturating_add(picture.pixels.len());
-                        Some(Arc::new(picture))
-                    })
-                    .clone();
-            }
-            let name = names.fresh(material.name.as_deref().unwrap_or_default(), "material");
-            if texture.is_none() && info.is_some() {
-                let message = format!("the texture of material `{name}` could not be read and was left out");
-                self.report.warn("texture-missing", message);
-            }
-            debug_assert_eq!(i, self.model.materials.len(), "materials keep their rows");
-            self.model.materials.push(self::material(material, name, texture));
-        }
-    }
-
     fn scene(&mut self) -> Result<(), Fault> {
         let root = self.root;
         let scene = root.scenes.get(root.scene.unwrap_or(0) as usize);
@@ -212,6 +181,9 @@ impl Reader<'_> {
                 self.skipped += 1;
                 continue;
             };
+            if let Some(m) = primitive.material.and_then(|m| root.materials.get(m as usize)) {
+                place_texture(&mut columns, m);
+            }
             apply(&mut columns, world);
             if columns.pivots.iter().flatten().any(|x| !x.is_finite()) {
                 columns.pivots.clear();
@@ -325,6 +297,23 @@ impl Reader<'_> {
     }
 }
 
+/// Moves texture coordinates as the material's colour texture is moved (`KHR_texture_transform`, without its turn).
+fn place_texture(mesh: &mut TriMesh, material: &Material) {
+    let info = material.pbr_metallic_roughness.base_color_texture.as_ref();
+    let Some(transform) =
+        info.and_then(|i| i.extensions.as_ref()).and_then(|e| e.get("KHR_texture_transform"))
+    else {
+        return;
+    };
+    #[expect(clippy::cast_possible_truncation, reason = "texture coordinates are f32 by design")]
+    let pair = |key: &str, default: f32| {
+        let at = |k: usize| transform.get(key).and_then(|v| v.get(k)?.as_f64()).map_or(default, |x| x as f32);
+        [at(0), at(1)]
+    };
+    let (offset, scale) = (pair("offset", 0.0), pair("scale", 1.0));
+    mesh.uvs.iter_mut().for_each(|uv| *uv = [0, 1].map(|k| offset[k] + scale[k] * uv[k]));
+}
+
 /// Places a mesh in the world; a mirrored one is turned so that its triangles face outside again.
 fn apply(mesh: &mut TriMesh, world: DMat4) {
     if world == DMat4::IDENTITY {
@@ -347,28 +336,5 @@ fn apply(mesh: &mut TriMesh, world: DMat4) {
     }
     if determinant < 0.0 {
         mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
-    }
-}
-
-fn material(m: &Material, name: String, texture: Option<Arc<mesh::Texture>>) -> mesh::Material {
-    let pbr = &m.pbr_metallic_roughness;
-    let extra = |key: &str| m.extras.as_ref().and_then(|e| e.get(key));
-    let [r, g, b, _] = pbr.base_color_factor.unwrap_or([1.0; 4]);
-    let kind = kind_of(extra("kind").and_then(|k| k.as_str()).unwrap_or(&name));
-    #[expect(clippy::cast_possible_truncation, reason = "a share between 0 and 1")]
-    let translucency = extra("translucency").and_then(serde_json::Value::as_f64).unwrap_or(0.0) as f32;
-    mesh::Material {
-        name,
-        kind,
-        base_color: [r, g, b],
-        roughness: pbr.roughness_factor.unwrap_or(1.0),
-        translucency: translucency.clamp(0.0, 1.0),
-        texture,
-        // Blended leaves are drawn with holes: sorting them is what nobody does well.
-        alpha: match m.alpha_mode.as_deref() {
-            None | Some("OPAQUE") => AlphaMode::Opaque,
-            Some(_) => AlphaMode::Mask,
-        },
-        double_sided: m.double_sided,
     }
 }

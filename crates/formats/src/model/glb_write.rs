@@ -4,18 +4,18 @@ use std::io::Write;
 use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
-use mesh::{AlphaMode, Model, Standing, TriMesh};
-use serde_json::json;
+use mesh::{Model, Standing, TriMesh};
+use serde_json::{Value, json};
 
 use super::gltf::{
-    Accessor, Animation, Asset, Attributes, Buffer, Channel, FLOAT, Image, Keys, Material, Mesh, Node,
-    POINTS, Pbr, Primitive, Root, Sampler, Scene, Target, Texture, TextureInfo, U16, U32, View,
+    Accessor, Animation, Asset, Attributes, Buffer, Channel, FLOAT, Keys, Mesh, Node, POINTS, Primitive,
+    Root, Sampler, Scene, Target, U16, U32, View,
 };
 use super::{PngCache, check, share, unit};
 use crate::error::WriteError;
 
-const ARRAY_BUFFER: u32 = 34_962;
-const ELEMENT_ARRAY_BUFFER: u32 = 34_963;
+pub(super) const ARRAY_BUFFER: u32 = 34_962;
+pub(super) const ELEMENT_ARRAY_BUFFER: u32 = 34_963;
 const LINEAR: u32 = 9_729;
 const LINEAR_MIPMAP_LINEAR: u32 = 9_987;
 
@@ -142,31 +142,44 @@ fn room(model: &Model) -> usize {
     48 * model.vertex_count() + 12 * model.triangle_count() + 1024
 }
 
-fn row(n: usize) -> Result<u32, WriteError> {
+pub(super) fn row(n: usize) -> Result<u32, WriteError> {
     u32::try_from(n).ok().ok_or(WriteError::TooLarge { what: "the number of parts", format: "glTF" })
 }
 
-struct Writer {
-    root: Root,
-    bin: Vec<u8>,
+pub(super) struct Writer {
+    pub(super) root: Root,
+    pub(super) bin: Vec<u8>,
     /// The texture of each image.
-    images: Vec<Arc<mesh::Texture>>,
+    pub(super) images: Vec<Arc<mesh::Texture>>,
+    /// How they are encoded.
+    pub(super) encode: fn(&Arc<mesh::Texture>, &mut PngCache) -> Result<Encoded, WriteError>,
+    /// Of each material, how its textures are placed: an extension; empty for as they are.
+    pub(super) placed: Vec<Option<Value>>,
 }
 
+/// An image's bytes and their type.
+pub(super) type Encoded = (Arc<[u8]>, &'static str);
+
 impl Writer {
-    fn new(room: usize) -> Self {
+    pub(super) fn new(room: usize) -> Self {
         let asset = Asset {
             version: "2.0".into(),
             generator: Some(concat!("Burgeon ", env!("CARGO_PKG_VERSION")).into()),
             extras: Some(json!({ "unit": "metre", "up": "+Y" })),
         };
         let root = Root { asset, ..Root::default() };
-        Self { root, bin: Vec::with_capacity(room), images: Vec::new() }
+        Self {
+            root,
+            bin: Vec::with_capacity(room),
+            images: Vec::new(),
+            encode: |texture, cache| Ok((cache.png(texture)?, "image/png")),
+            placed: Vec::new(),
+        }
     }
 
-    fn finish(mut self, mut out: impl Write) -> Result<(), WriteError> {
-        if !self.bin.is_empty() {
-            self.root.buffers.push(Buffer { byte_length: self.bin.len() as u64, uri: None });
+    pub(super) fn finish(mut self, mut out: impl Write) -> Result<(), WriteError> {
+        if !self.bin.is_empty() && self.root.buffers.is_empty() {
+            self.root.buffers.push(Buffer { byte_length: self.bin.len() as u64, ..Buffer::default() });
         }
         if !self.images.is_empty() {
             let sampler = Sampler { mag_filter: Some(LINEAR), min_filter: Some(LINEAR_MIPMAP_LINEAR) };
@@ -197,7 +210,11 @@ impl Writer {
     }
 
     /// Makes a buffer view of what `fill` appends.
-    fn view(&mut self, target: Option<u32>, fill: impl FnOnce(&mut Vec<u8>)) -> Result<u32, WriteError> {
+    pub(super) fn view(
+        &mut self,
+        target: Option<u32>,
+        fill: impl FnOnce(&mut Vec<u8>),
+    ) -> Result<u32, WriteError> {
         let start = self.bin.len();
         fill(&mut self.bin);
         let byte_length = (self.bin.len() - start) as u64;
@@ -231,7 +248,7 @@ impl Writer {
         row(self.root.accessors.len() - 1)
     }
 
-    fn indices(&mut self, mesh: &TriMesh) -> Result<u32, WriteError> {
+    pub(super) fn indices(&mut self, mesh: &TriMesh) -> Result<u32, WriteError> {
         // 65535 itself is the primitive restart value and may not be an index.
         let small = mesh.positions.len() < 65_536;
         let view = self.view(Some(ELEMENT_ARRAY_BUFFER), |bin| {
@@ -253,54 +270,11 @@ impl Writer {
         row(self.root.accessors.len() - 1)
     }
 
-    /// The row of the model's first material.
-    fn materials(&mut self, model: &Model, cache: &mut PngCache) -> Result<u32, WriteError> {
-        let first = row(self.root.materials.len())?;
-        for material in &model.materials {
-            let texture = match &material.texture {
-                None => None,
-                Some(texture) => {
-                    let known = self.images.iter().position(|t| Arc::ptr_eq(t, texture) || t == texture);
-                    let index = match known {
-                        Some(index) => index,
-                        None => {
-                            let png = cache.png(texture)?;
-                            let view = self.view(None, |bin| bin.extend_from_slice(&png))?;
-                            self.root.images.push(Image {
-                                name: Some(material.name.clone()),
-                                buffer_view: Some(view),
-                                mime_type: Some("image/png".into()),
-                                uri: None,
-                            });
-                            self.root.textures.push(Texture {
-                                sampler: Some(0),
-                                source: Some(row(self.root.images.len() - 1)?),
-                            });
-                            self.images.push(Arc::clone(texture));
-                            self.images.len() - 1
-                        }
-                    };
-                    Some(TextureInfo { index: row(index)? })
-                }
-            };
-            let [r, g, b] = material.base_color.map(share);
-            self.root.materials.push(Material {
-                name: Some(material.name.clone()),
-                pbr_metallic_roughness: Pbr {
-                    base_color_factor: Some([r, g, b, 1.0]),
-                    base_color_texture: texture,
-                    metallic_factor: Some(0.0),
-                    roughness_factor: Some(share(material.roughness)),
-                },
-                alpha_mode: (material.alpha == AlphaMode::Mask).then(|| "MASK".into()),
-                double_sided: material.double_sided,
-                extras: Some(json!({
-                    "kind": material.kind.word(),
-                    "translucency": share(material.translucency),
-                })),
-            });
+    /// Names an extension that the file has, once.
+    pub(super) fn uses(&mut self, extension: &str) {
+        if !self.root.extensions_used.iter().any(|e| e == extension) {
+            self.root.extensions_used.push(extension.to_owned());
         }
-        Ok(first)
     }
 
     /// What a key adds to positions, normals and, if `colored`, to vertex colours.
@@ -365,7 +339,7 @@ impl Writer {
     }
 
     /// The node under which all others are, and the scene that shows it.
-    fn root(&mut self, name: &str) {
+    pub(super) fn root(&mut self, name: &str) {
         let name = if name.is_empty() { "model" } else { name };
         self.root.nodes.push(Node { name: Some(name.to_owned()), ..Node::default() });
         self.root.scenes.push(Scene { name: Some(name.to_owned()), nodes: vec![0] });

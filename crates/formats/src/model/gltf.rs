@@ -160,9 +160,15 @@ schema! {
         #[serde(default)]
         pbr_metallic_roughness: Pbr,
         #[serde(skip_serializing_if = "Option::is_none")]
+        normal_texture: Option<TextureInfo>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        occlusion_texture: Option<TextureInfo>,
+        #[serde(skip_serializing_if = "Option::is_none")]
         alpha_mode: Option<String>,
         #[serde(default, skip_serializing_if = "is_false")]
         double_sided: bool,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        extensions: Option<Value>,
         #[serde(default, skip_serializing_if = "Option::is_none")]
         extras: Option<Value>,
     }
@@ -175,9 +181,13 @@ schema! {
         metallic_factor: Option<f32>,
         #[serde(skip_serializing_if = "Option::is_none")]
         roughness_factor: Option<f32>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        metallic_roughness_texture: Option<TextureInfo>,
     }
     struct TextureInfo {
         index: u32,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        extensions: Option<Value>,
     }
     struct Texture {
         #[serde(skip_serializing_if = "Option::is_none")]
@@ -235,5 +245,7 @@ schema! {
         byte_length: u64,
         #[serde(default, skip_serializing_if = "Option::is_none")]
         uri: Option<String>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        extensions: Option<Value>,
     }
 }

@@ -3,7 +3,9 @@
 use std::borrow::Cow;
 
 use super::Resolver;
-use super::gltf::{Accessor, FLOAT, I8, I16, Root, U8, U16, U32};
+use super::glb_pack::COMPRESSION;
+use super::gltf::{Accessor, FLOAT, I8, I16, Root, U8, U16, U32, View};
+use super::meshopt::{decode_attributes, decode_triangles};
 use crate::ModelFormat;
 use crate::error::{FileFault, ModelError, Place};
 
@@ -68,12 +70,24 @@ pub(super) fn chunks(bytes: &[u8], format: ModelFormat) -> Result<(&[u8], Option
 #[derive(Debug)]
 pub(super) struct Bytes<'a> {
     buffers: Vec<Cow<'a, [u8]>>,
+    /// What each compressed view holds; none of others.
+    unpacked: Vec<Option<Vec<u8>>>,
 }
+
+/// Bytes that compressed views may hold together.
+const MAX_UNPACKED: u64 = 1 << 30;
 
 impl<'a> Bytes<'a> {
     pub(super) fn load(root: &Root, bin: Option<&'a [u8]>, resolve: Resolver<'_>) -> Result<Self, Fault> {
         let mut buffers = Vec::with_capacity(root.buffers.len());
         for (i, buffer) in root.buffers.iter().enumerate() {
+            // A buffer for readers without the extension has nothing that its compressed views would need.
+            let marked =
+                buffer.extensions.as_ref().and_then(|e| e.get(COMPRESSION)?.get("fallback")?.as_bool());
+            if marked == Some(true) && buffer.uri.is_none() {
+                buffers.push(Cow::Borrowed(&[][..]));
+                continue;
+            }
             let data = match (&buffer.uri, bin) {
                 (None, Some(bin)) if i == 0 => Cow::Borrowed(bin),
                 (None, _) => return Err(broken(item("buffer", i), "it has no data")),
@@ -85,15 +99,54 @@ impl<'a> Bytes<'a> {
             }
             buffers.push(data);
         }
-        Ok(Self { buffers })
+        let mut bytes = Self { buffers, unpacked: Vec::new() };
+        let mut room = MAX_UNPACKED;
+        let views = root.buffer_views.iter().enumerate();
+        bytes.unpacked =
+            views.map(|(i, view)| bytes.unpack(i, view, &mut room)).collect::<Result<_, Fault>>()?;
+        Ok(bytes)
+    }
+
+    /// What a compressed view holds; none of one that is not compressed.
+    fn unpack(&self, index: usize, view: &View, room: &mut u64) -> Result<Option<Vec<u8>>, Fault> {
+        let Some(packed) = view.extensions.as_ref().and_then(|e| e.get(COMPRESSION)) else { return Ok(None) };
+        let place = || item("bufferView", index);
+        let number = |key: &str| packed.get(key).map_or(Some(0), serde_json::Value::as_u64);
+        let of = |key: &str| number(key).and_then(|n| usize::try_from(n).ok());
+        let word =
+            |key: &str, default: &str| packed.get(key).and_then(|v| v.as_str()).unwrap_or(default).to_owned();
+        let (mode, filter) = (word("mode", ""), word("filter", "NONE"));
+        let sizes = (of("buffer"), of("byteOffset"), of("byteLength"), of("byteStride"), of("count"));
+        let (Some(buffer), Some(from), Some(length), Some(stride), Some(count)) = sizes else {
+            return Err(broken(place(), "its compression has odd numbers"));
+        };
+        let stream = self.buffers.get(buffer).and_then(|b| b.get(from..from.checked_add(length)?));
+        let stream = stream.ok_or_else(|| broken(place(), "its stream reaches beyond its buffer"))?;
+        let whole = (count as u64).checked_mul(stride as u64).filter(|&whole| whole <= *room);
+        *room -= whole.ok_or_else(|| broken(place(), "it would hold too much"))?;
+        if filter != "NONE" {
+            return Err(unsupported(
+                place(),
+                format!("the filter {} of compressed data", base::quoted(&filter)),
+            ));
+        }
+        let held = match (mode.as_str(), stride) {
+            ("ATTRIBUTES", _) => decode_attributes(stream, count, stride),
+            ("TRIANGLES", 2 | 4) => decode_triangles(stream, count)
+                .map(|all| all.iter().flat_map(|i| i.to_le_bytes().into_iter().take(stride)).collect()),
+            _ => {
+                return Err(unsupported(place(), format!("compressed data of mode {}", base::quoted(&mode))));
+            }
+        };
+        held.map(Some).ok_or_else(|| broken(place(), "its compressed data is broken"))
     }
 
     /// The bytes of a buffer view, and its stride.
     pub(super) fn view(&self, root: &Root, index: u32) -> Result<(&[u8], Option<u64>), Fault> {
         let place = || item("bufferView", index);
         let view = root.buffer_views.get(index as usize).ok_or_else(|| broken(place(), "it is not there"))?;
-        if view.extensions.as_ref().is_some_and(|e| e.get("EXT_meshopt_compression").is_some()) {
-            return Err(unsupported(place(), "compressed data (EXT_meshopt_compression)"));
+        if let Some(Some(held)) = self.unpacked.get(index as usize) {
+            return Ok((held, view.byte_stride));
         }
         let buffer = self
             .buffers

@@ -1,10 +1,13 @@
 //! bytes <-> [`mesh::Model`].
 
 mod axes;
+mod glb_pack;
 mod glb_read;
 mod glb_write;
 mod gltf;
 mod gltf_bytes;
+mod gltf_look;
+mod meshopt;
 mod obj_read;
 mod obj_write;
 mod picture;
@@ -22,6 +25,7 @@ use glam::DVec3;
 use mesh::{MaterialKind, Model};
 
 pub use axes::ExportSpec;
+pub use glb_pack::{Packing, write_glb_packed};
 pub use glb_write::{Morph, write_glb, write_glb_morph, write_glb_scene, write_glb_with};
 pub use obj_write::{FileStems, ObjFiles, obj_files};
 pub use picture::{PngCache, read_picture, write_png};

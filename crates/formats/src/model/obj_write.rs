@@ -121,6 +121,20 @@ fn materials(model: &Model, textures: &mut TextureFiles<'_>) -> Result<Vec<u8>, 
                 writeln!(mtl, "map_d {name}")?;
             }
         }
+        let maps = [
+            ("norm", "normal", &m.maps.normal),
+            ("map_Pr", "orm", &m.maps.orm),
+            // A height as a share of the texture's width.
+            ("bump -bm 0.03", "height", &m.maps.height),
+        ];
+        for (word, what, map) in maps {
+            if let Some(map) = map {
+                // Of occlusion and roughness the second channel is the roughness.
+                let channel = if word == "map_Pr" { " -imfchan g" } else { "" };
+                let name = textures.name(map, &format!("{}-{what}", m.name))?;
+                writeln!(mtl, "{word}{channel} {name}")?;
+            }
+        }
         mtl.push(b'\n');
     }
     Ok(mtl)

@@ -26,7 +26,7 @@ pub struct UsdFiles {
 /// Guaranteed: `metersPerUnit`, `upAxis` and `defaultPrim` are always there; names are identifiers, each once among
 /// its siblings; a part is one `Mesh` (`Points` without triangles) without subdivision, with normals, `primvars:st`,
 /// `primvars:displayColor` and, where the model has them, `primvars:wind` and `primvars:pivot`; a material is one
-/// `UsdPreviewSurface`, cut out at one half where its texture has holes; the same model gives the same bytes.
+/// `UsdPreviewSurface` with its normals, occlusion and roughness, cut out at one half where its texture has holes; the same model gives the same bytes.
 /// Positions are written to a millionth of the largest, texture coordinates to five places, all else at vertices to four.
 /// Not guaranteed: that vertex colours tint textures, for which `UsdPreviewSurface` has no node: they are in
 /// `displayColor`, and colour materials without a texture. Kind and translucency are custom data of the material.
@@ -74,7 +74,11 @@ pub fn usd_files(model: &Model, stem: &str, spec: &ExportSpec) -> Result<UsdFile
             let tinted = m.texture.is_none() && users().any(|p| !p.mesh.colors.is_empty());
             let file = m.texture.as_ref().map(|t| textures.name(t, &m.name)).transpose()?;
             let path = format!("/{root}/{scope}/{}", among.fresh(&m.name, "material"));
-            Ok(Look { path, file, tinted, shown: shown(m) })
+            let mut map = |of: &Option<std::sync::Arc<mesh::Texture>>, what: &str| {
+                of.as_ref().map(|t| textures.name(t, &format!("{}-{what}", m.name))).transpose()
+            };
+            let (normal, orm) = (map(&m.maps.normal, "normal")?, map(&m.maps.orm, "orm")?);
+            Ok(Look { path, file, normal, orm, tinted, shown: shown(m) })
         })
         .collect::<Result<_, WriteError>>()?;
     writeln!(out, "    def Scope \"{scope}\"\n    {{")?;
@@ -96,6 +100,9 @@ struct Look {
     path: String,
     /// Its texture's file.
     file: Option<String>,
+    /// Those of its relief, and of occlusion and roughness.
+    normal: Option<String>,
+    orm: Option<String>,
     /// Vertex colours are its colour.
     tinted: bool,
     /// Linear colour that stands for it where materials are not shown.
@@ -133,27 +140,63 @@ fn material(out: &mut Vec<u8>, m: &Material, look: &Look) -> Result<(), WriteErr
         writeln!(out, "                float inputs:opacity.connect = <{path}/texture.outputs:a>")?;
         writeln!(out, "                float inputs:opacityThreshold = 0.5")?;
     }
-    writeln!(out, "                float inputs:roughness = {}", share(m.roughness))?;
+    if look.normal.is_some() {
+        writeln!(out, "                normal3f inputs:normal.connect = <{path}/normal.outputs:rgb>")?;
+    }
+    if look.orm.is_some() {
+        writeln!(out, "                float inputs:occlusion.connect = <{path}/orm.outputs:r>")?;
+        writeln!(out, "                float inputs:roughness.connect = <{path}/orm.outputs:g>")?;
+    } else {
+        writeln!(out, "                float inputs:roughness = {}", share(m.roughness))?;
+    }
     writeln!(out, "                token outputs:surface\n            }}")?;
+    if let Some(file) = &look.normal {
+        let numbers = "                float4 inputs:bias = (-1, -1, -1, 0)\n                float4 inputs:scale = (2, 2, 2, 1)";
+        picture(out, (path, "normal", file), (numbers, "raw"), &["float3 outputs:rgb"])?;
+    }
+    if let Some(file) = &look.orm {
+        let numbers = format!("                float4 inputs:scale = (1, {}, 1, 1)", share(m.roughness));
+        picture(out, (path, "orm", file), (&numbers, "raw"), &["float outputs:g", "float outputs:r"])?;
+    }
     if let Some(file) = &look.file {
-        writeln!(out, "\n            def Shader \"texture\"\n            {{")?;
-        writeln!(out, "                uniform token info:id = \"UsdUVTexture\"")?;
-        writeln!(out, "                asset inputs:file = @./{file}@")?;
-        writeln!(out, "                float4 inputs:scale = ({r}, {g}, {b}, 1)")?;
-        writeln!(out, "                token inputs:sourceColorSpace = \"sRGB\"")?;
-        writeln!(out, "                float2 inputs:st.connect = <{path}/place.outputs:result>")?;
-        writeln!(out, "                token inputs:wrapS = \"repeat\"")?;
-        writeln!(out, "                token inputs:wrapT = \"repeat\"")?;
-        if cut {
-            writeln!(out, "                float outputs:a")?;
-        }
-        writeln!(out, "                float3 outputs:rgb\n            }}\n")?;
+        let numbers = format!("                float4 inputs:scale = ({r}, {g}, {b}, 1)");
+        let outputs = ["float outputs:a", "float3 outputs:rgb"];
+        picture(
+            out,
+            (path, "texture", file),
+            (&numbers, "sRGB"),
+            if cut { &outputs } else { &outputs[1..] },
+        )?;
+    }
+    if look.file.is_some() || look.normal.is_some() || look.orm.is_some() {
+        writeln!(out)?;
         reader(out, "place", "float2", "st")?;
     } else if look.tinted {
         writeln!(out)?;
         reader(out, "tint", "float3", "displayColor")?;
     }
     Ok(writeln!(out, "        }}\n")?)
+}
+
+/// A node that reads a texture's file.
+fn picture(
+    out: &mut Vec<u8>,
+    (path, name, file): (&str, &str, &str),
+    (numbers, space): (&str, &str),
+    outputs: &[&str],
+) -> Result<(), WriteError> {
+    writeln!(out, "\n            def Shader \"{name}\"\n            {{")?;
+    writeln!(out, "                uniform token info:id = \"UsdUVTexture\"")?;
+    writeln!(out, "                asset inputs:file = @./{file}@")?;
+    writeln!(out, "{numbers}")?;
+    writeln!(out, "                token inputs:sourceColorSpace = \"{space}\"")?;
+    writeln!(out, "                float2 inputs:st.connect = <{path}/place.outputs:result>")?;
+    writeln!(out, "                token inputs:wrapS = \"repeat\"")?;
+    writeln!(out, "                token inputs:wrapT = \"repeat\"")?;
+    for output in outputs {
+        writeln!(out, "                {output}")?;
+    }
+    Ok(writeln!(out, "            }}")?)
 }
 
 /// A node that hands a column of the mesh on.

@@ -6,15 +6,15 @@ use crate::PetalColor;
 use base::ops;
 
 /// The colours of a leaf.
-pub(super) struct LeafInks {
+pub(crate) struct LeafInks {
     pub(super) dark: Paint,
     pub(super) light: Paint,
     pub(super) vein: Paint,
 }
 
-pub(super) const GREEN: LeafInks =
+pub(crate) const GREEN: LeafInks =
     LeafInks { dark: [0.190, 0.365, 0.105], light: [0.385, 0.565, 0.185], vein: [0.64, 0.73, 0.40] };
-pub(super) const PALE_GREEN: LeafInks =
+pub(crate) const PALE_GREEN: LeafInks =
     LeafInks { dark: [0.80, 0.82, 0.80], light: [0.98, 0.99, 0.97], vein: [1.0, 1.0, 1.0] };
 
 // Side veins on each side of the midrib.
@@ -48,14 +48,14 @@ pub(super) fn leaf(inks: &LeafInks, u: f64, v: f64) -> Paint {
 }
 
 /// The colours of a petal from root to tip, and of its veins.
-pub(super) struct PetalInks {
+pub(crate) struct PetalInks {
     root: Paint,
     middle: Paint,
     tip: Paint,
     vein: Paint,
 }
 
-pub(super) const PALE_PETAL: PetalInks = PetalInks {
+pub(crate) const PALE_PETAL: PetalInks = PetalInks {
     root: [1.0, 1.0, 0.96],
     middle: [0.97, 0.97, 0.97],
     tip: [0.90, 0.90, 0.90],
@@ -63,7 +63,7 @@ pub(super) const PALE_PETAL: PetalInks = PetalInks {
 };
 
 /// The palette of a petal colour.
-pub(super) const fn inks(color: PetalColor) -> PetalInks {
+pub(crate) const fn inks(color: PetalColor) -> PetalInks {
     let (root, middle, tip, vein) = match color {
         PetalColor::Pink => ([0.97, 0.90, 0.84], [0.95, 0.70, 0.75], [0.90, 0.45, 0.58], [0.78, 0.28, 0.46]),
         PetalColor::White => ([0.86, 0.90, 0.66], [0.97, 0.97, 0.93], [0.98, 0.97, 0.95], [0.86, 0.87, 0.80]),
@@ -85,8 +85,16 @@ pub(super) const fn inks(color: PetalColor) -> PetalInks {
     PetalInks { root, middle, tip, vein }
 }
 
-/// A petal whose colour deepens towards the tip, with fine veins that fan out from its root.
-pub(super) fn petal(inks: &PetalInks, u: f64, v: f64) -> Paint {
+impl PetalInks {
+    /// All of them.
+    pub(super) const fn each(&self) -> [Paint; 4] {
+        [self.root, self.middle, self.tip, self.vein]
+    }
+}
+
+/// A petal whose colour deepens towards the tip, with fine veins that fan out from its root; also how much of a vein there
+/// is, 0 to 1.
+pub(super) fn petal(inks: &PetalInks, u: f64, v: f64) -> (Paint, f64) {
     let (x, y) = (2.0 * u - 1.0, 1.0 - v);
     let mottle = octaves(4.0 * u, 6.0 * v, (4, 6), 3, 3);
     let along = y + 0.10 * mottle;
@@ -104,5 +112,5 @@ pub(super) fn petal(inks: &PetalInks, u: f64, v: f64) -> Paint {
     let veined = mix(body, inks.vein, 0.34 * coarse + 0.14 * fine);
     // Matter is thicker, so deeper in colour, along the middle of the lower half.
     let keel = line(x, 0.35) * (1.0 - y);
-    shade(mix(veined, inks.vein, 0.10 * keel), 1.0 + 0.05 * mottle)
+    (shade(mix(veined, inks.vein, 0.10 * keel), 1.0 + 0.05 * mottle), coarse.max(0.5 * fine))
 }

@@ -1,9 +1,12 @@
 //! Procedural textures: painted once, the same everywhere, shared by every model.
 
+mod bark;
 mod blades;
 mod bodies;
+mod foliage;
 mod noise;
 mod patterns;
+mod relief;
 mod tubes;
 mod veins;
 
@@ -12,13 +15,17 @@ use std::sync::{Arc, OnceLock};
 use base::{Executor, map_indexed};
 use mesh::Texture;
 
-use crate::PetalColor;
-
+pub use bark::BarkKind;
+pub use foliage::Venation;
 pub use patterns::swatch;
 pub use veins::{LeafColours, vein_texture};
 
+pub(crate) use bark::bark;
+pub(crate) use blades::{GREEN, LeafInks, PALE_GREEN, PALE_PETAL, inks as petal_inks};
 pub(crate) use bodies::{DISC_RADIUS, RECEPTACLE_AT};
+pub(crate) use foliage::{LEAF_ROUGHNESS, any_blade, leaf, petals};
 pub(crate) use patterns::{paint as paint_material, painted as painted_material};
+pub(crate) use relief::Surface;
 
 /// Height of the florets over the dome of a disc at a place of its unit circle, about -1 to 1.
 pub(crate) fn unevenness(x: f64, y: f64) -> f64 {
@@ -28,19 +35,11 @@ pub(crate) fn unevenness(x: f64, y: f64) -> f64 {
 /// An sRGB colour, each channel 0 to 1. Textures are mixed in sRGB, as paint is chosen by eye.
 pub(crate) type Paint = [f64; 3];
 
-/// A texture that this crate can paint.
+/// A texture of a small part that this crate can paint: a colour without relief.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Motif {
-    Bark,
-    YoungBark,
     Stem,
     Root,
-    Leaf,
-    /// A leaf without colour, to be multiplied with a drawn one.
-    PaleLeaf,
-    Petal(PetalColor),
-    /// A petal without colour, to be multiplied with a drawn one.
-    PalePetal,
     Disc,
     PaleDisc,
     Fruit,
@@ -51,49 +50,20 @@ pub(crate) enum Motif {
     Thorn,
 }
 
-const MOTIFS: usize = 14 + PetalColor::ALL.len();
+const MOTIFS: usize = 9;
 
 impl Motif {
-    fn slot(self) -> usize {
-        match self {
-            Self::Bark => 0,
-            Self::Stem => 1,
-            Self::Root => 2,
-            Self::Leaf => 3,
-            Self::PaleLeaf => 4,
-            Self::PalePetal => 5,
-            Self::Disc => 6,
-            Self::PaleDisc => 7,
-            Self::Fruit => 8,
-            Self::PaleFruit => 9,
-            Self::Body => 10,
-            Self::Stamen => 11,
-            Self::Thorn => 12,
-            Self::YoungBark => 13,
-            Self::Petal(color) => 14 + color as usize,
-        }
-    }
-
-    /// The texture, painted on first use (up to about 30 ms on one thread) and kept for the life of the process.
+    /// The texture, painted on first use (up to about 10 ms on one thread) and kept for the life of the process.
     pub(crate) fn texture(self, executor: &dyn Executor) -> Arc<Texture> {
         static PAINTED: [OnceLock<Arc<Texture>>; MOTIFS] = [const { OnceLock::new() }; MOTIFS];
-        PAINTED[self.slot()].get_or_init(|| Arc::new(self.paint(executor))).clone()
+        PAINTED[self as usize].get_or_init(|| Arc::new(self.paint(executor))).clone()
     }
 
     fn paint(self, executor: &dyn Executor) -> Texture {
         let canvas = |width, height, f: &Paints<'_>| canvas(executor, width, height, f);
         match self {
-            Self::Bark => canvas(256, 256, &tubes::bark),
-            Self::YoungBark => canvas(128, 128, &tubes::young_bark),
             Self::Stem => canvas(128, 128, &tubes::stem),
             Self::Root => canvas(128, 128, &tubes::root),
-            Self::Leaf => canvas(256, 512, &|u, v| blades::leaf(&blades::GREEN, u, v)),
-            Self::PaleLeaf => canvas(256, 512, &|u, v| blades::leaf(&blades::PALE_GREEN, u, v)),
-            Self::Petal(color) => {
-                let inks = blades::inks(color);
-                canvas(128, 256, &|u, v| blades::petal(&inks, u, v))
-            }
-            Self::PalePetal => canvas(128, 256, &|u, v| blades::petal(&blades::PALE_PETAL, u, v)),
             Self::Disc => bodies::disc(executor, 256, &bodies::YELLOW_DISC),
             Self::PaleDisc => bodies::disc(executor, 256, &bodies::PALE_DISC),
             Self::Fruit => canvas(128, 128, &|u, v| bodies::fruit(&bodies::RED_FRUIT, u, v)),
@@ -152,18 +122,14 @@ fn line(distance: f64, width: f64) -> f64 {
 mod tests {
     use super::*;
 
-    fn every() -> Vec<Motif> {
+    fn every() -> [Motif; MOTIFS] {
         use Motif as M;
-        let mut all =
-            vec![M::Bark, M::Stem, M::Root, M::Leaf, M::PaleLeaf, M::PalePetal, M::Disc, M::PaleDisc];
-        all.extend([M::YoungBark, M::Fruit, M::PaleFruit, M::Body, M::Stamen, M::Thorn]);
-        all.extend(PetalColor::ALL.map(M::Petal));
-        all
+        [M::Stem, M::Root, M::Disc, M::PaleDisc, M::Fruit, M::PaleFruit, M::Body, M::Stamen, M::Thorn]
     }
 
     #[test]
     fn every_motif_has_its_own_slot_and_is_whole() {
-        let mut slots: Vec<usize> = every().into_iter().map(Motif::slot).collect();
+        let mut slots: Vec<usize> = every().into_iter().map(|m| m as usize).collect();
         slots.sort_unstable();
         assert_eq!(slots, (0..MOTIFS).collect::<Vec<_>>());
         for motif in every() {
@@ -173,22 +139,5 @@ mod tests {
             let (low, high) = t.pixels.chunks(4).fold((255, 0), |(a, b), p| (p[1].min(a), p[1].max(b)));
             assert!(high - low > 10, "{motif:?} is not flat: {low}..{high}");
         }
-    }
-
-    #[test]
-    fn leaves_are_green_and_bark_tiles() {
-        let leaf = Motif::Leaf.texture(&base::Serial);
-        let green = leaf.pixels.chunks(4).filter(|p| p[1] > p[0] && p[1] > p[2]).count();
-        assert!(green * 100 > leaf.pixels.len() / 4 * 98, "{green}");
-        // Neighbours across the seam differ no more than neighbours elsewhere do at their most.
-        let bark = Motif::Bark.texture(&base::Serial);
-        let at = |x: u32, y: u32| i32::from(bark.pixels[4 * (y * bark.width + x) as usize]);
-        let (w, h) = (bark.width, bark.height);
-        let inside = (0..h).map(|y| (at(100, y) - at(101, y)).abs()).sum::<i32>();
-        let seam = (0..h).map(|y| (at(w - 1, y) - at(0, y)).abs()).sum::<i32>();
-        assert!(seam < 3 * inside + 300, "across {seam} against {inside}");
-        let inside = (0..w).map(|x| (at(x, 100) - at(x, 101)).abs()).sum::<i32>();
-        let seam = (0..w).map(|x| (at(x, h - 1) - at(x, 0)).abs()).sum::<i32>();
-        assert!(seam < 3 * inside + 300, "down {seam} against {inside}");
     }
 }

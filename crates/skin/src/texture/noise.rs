@@ -4,8 +4,7 @@
 pub(crate) fn gradient(x: f64, y: f64, period: (i32, i32), salt: u32) -> f64 {
     let (ix, iy) = (floor(x), floor(y));
     let (u, v) = (x - f64::from(ix), y - f64::from(iy));
-    // Wrapped once per axis: four remainders a corner would cost more than the noise.
-    let (x0, y0) = (ix.rem_euclid(period.0), iy.rem_euclid(period.1));
+    let (x0, y0) = (wrap(ix, period.0), wrap(iy, period.1));
     let x1 = if x0 + 1 == period.0 { 0 } else { x0 + 1 };
     let y1 = if y0 + 1 == period.1 { 0 } else { y0 + 1 };
     let corner = |cx: i32, cy: i32, dx: f64, dy: f64| {
@@ -37,7 +36,7 @@ pub(crate) fn cells(x: f64, y: f64, period: (i32, i32), salt: u32) -> (f64, f64)
     let (mut first, mut second) = (9.0_f64, 9.0_f64);
     for dy in -1..=1 {
         for dx in -1..=1 {
-            let h = hash((ix + dx).rem_euclid(period.0), (iy + dy).rem_euclid(period.1), salt);
+            let h = hash(wrap(ix + dx, period.0), wrap(iy + dy, period.1), salt);
             let px = fx + f64::from(dx) + unit(h);
             let py = fy + f64::from(dy) + unit(h.wrapping_mul(0x9e37_79b9).rotate_left(13));
             let d = (px - x) * (px - x) + (py - y) * (py - y);
@@ -52,6 +51,110 @@ pub(crate) fn cells(x: f64, y: f64, period: (i32, i32), salt: u32) -> (f64, f64)
     (first.sqrt(), second.sqrt())
 }
 
+/// Plates that cover a tile: the cells of points on a lattice whose every other row is moved by half a cell, as bricks are,
+/// so that drawn-out plates end in wedges between their neighbours.
+#[derive(Debug)]
+pub(crate) struct Plates {
+    grid: (i32, i32),
+    /// How far each point is from the corner of its cell, and its number.
+    points: Vec<(f64, f64, u32)>,
+}
+
+/// Where a place is among [`Plates`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Plate {
+    /// Of the plate, a number from 0 to 1.
+    pub(crate) own: f64,
+    /// Of the border that is nearest, the same from both of its sides.
+    pub(crate) border: f64,
+    /// Distance from that border, in widths of the tile.
+    pub(crate) edge: f64,
+}
+
+impl Plates {
+    /// `grid`: plates across and along, at least 3 each; along an even number. `jitter` 0 is a regular lattice.
+    pub(crate) fn new(grid: (i32, i32), jitter: f64, salt: u32) -> Self {
+        let cells = (0..grid.1).flat_map(|j| (0..grid.0).map(move |i| (i, j)));
+        let points = cells
+            .map(|(i, j)| {
+                let h = hash(i, j, salt);
+                let off = |h: u32| 0.5 + jitter * (unit(h) - 0.5);
+                let shift = if j % 2 == 0 { 0.0 } else { 0.5 };
+                (shift + off(h), off(h.wrapping_mul(0x9e37_79b9).rotate_left(13)), hash(j, i, salt ^ 0x55))
+            })
+            .collect();
+        Self { grid, points }
+    }
+
+    /// The plate at u and v, one turn of the tile each.
+    pub(crate) fn at(&self, u: f64, v: f64) -> Plate {
+        let (nx, ny) = (f64::from(self.grid.0), f64::from(self.grid.1));
+        let (x, y) = (u * nx, v * ny);
+        let j = floor(y);
+        let mut near = [(0.0, 0.0, 0_u32, f64::MAX); 9];
+        let (mut k, mut first) = (0, 0);
+        for dy in -1..=1 {
+            let row = wrap(j + dy, self.grid.1);
+            let shift = if row % 2 == 0 { 0.0 } else { 0.5 };
+            let i = floor(x - shift);
+            for dx in -1..=1 {
+                let column = wrap(i + dx, self.grid.0);
+                #[expect(clippy::cast_sign_loss, reason = "within the lattice")]
+                let (px, py, id) = self.points[(row * self.grid.0 + column) as usize];
+                let (dx, dy) = (f64::from(i + dx) + px - x, f64::from(j + dy) + py - y);
+                near[k] = (dx, dy, id, dx * dx + dy * dy);
+                if near[k].3 < near[first].3 {
+                    first = k;
+                }
+                k += 1;
+            }
+        }
+        let (ox, oy, own, _) = near[first];
+        // The nearest border, its square distance as a fraction: one division for all.
+        let (mut edge, mut below, mut border) = (f64::MAX, 1.0, 0);
+        for (k, &(px, py, id, _)) in near.iter().enumerate() {
+            if k == first {
+                continue;
+            }
+            // The line half way between both points; its distance as it is on the tile, where cells are not square.
+            let (ax, ay) = (px - ox, py - oy);
+            let off = 0.5 * ((px + ox) * ax + (py + oy) * ay);
+            let (gx, gy) = (ax * nx, ay * ny);
+            let slope = gx * gx + gy * gy;
+            if off * off * below < edge * slope {
+                (edge, below, border) = (off * off, slope, id ^ own);
+            }
+        }
+        let number = |id: u32| unit(id.wrapping_mul(0x2c1b_3c6d) ^ (id >> 9));
+        Plate { own: number(own), border: number(border), edge: (edge / below).sqrt() }
+    }
+}
+
+/// Short strokes across a tile, one in a cell at most: the distance from the nearest, 0 in its middle and 1 at its edge.
+///
+/// `of` gives of a cell's number (0 to 1) half of a stroke's length and of its thickness in cells, at most 1 and 0.5; none
+/// for a cell without a stroke.
+pub(crate) fn strokes(
+    (x, y): (f64, f64),
+    grid: (i32, i32),
+    salt: u32,
+    of: impl Fn(f64) -> Option<(f64, f64)>,
+) -> f64 {
+    let (ix, iy) = (floor(x), floor(y));
+    let mut nearest = f64::MAX;
+    for dy in -1..=1 {
+        for dx in -1..=1 {
+            let h = hash(wrap(ix + dx, grid.0), wrap(iy + dy, grid.1), salt);
+            let Some((length, thick)) = of(unit(h)) else { continue };
+            let px = f64::from(ix + dx) + unit(h.wrapping_mul(0x9e37_79b9).rotate_left(7));
+            let py = f64::from(iy + dy) + unit(h.wrapping_mul(0x85eb_ca6b).rotate_left(17));
+            let (a, b) = ((x - px) / length, (y - py) / thick);
+            nearest = nearest.min(a * a + b * b);
+        }
+    }
+    nearest.sqrt()
+}
+
 /// A number in \[0, 1) for an integer.
 pub(crate) fn random(k: i32, salt: u32) -> f64 {
     unit(hash(k, 77, salt))
@@ -62,6 +165,11 @@ fn floor(x: f64) -> i32 {
     #[expect(clippy::cast_possible_truncation, reason = "texture coordinates are small")]
     let toward_zero = x as i32;
     toward_zero - i32::from(f64::from(toward_zero) > x)
+}
+
+/// A cell within the tile. Most are already: a remainder costs more than the rest of the noise.
+fn wrap(k: i32, n: i32) -> i32 {
+    if (0..n).contains(&k) { k } else { k.rem_euclid(n) }
 }
 
 fn unit(h: u32) -> f64 {

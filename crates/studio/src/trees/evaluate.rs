@@ -4,13 +4,13 @@
 
 use base::{Report, Run, Seed, Stopped, Telling, Warning};
 use document::PlantEdit;
-use growth::{BlossomSpec, Grown, Look, Method, TreeSpec};
+use growth::{BladeForm, BlossomSpec, Grown, Look, Method, TreeSpec};
 use mesh::Model;
 use plant::{Blade, Plant};
 use skin::{Layout, Pictures, SkinSpec};
 
 use super::blossom::add_blossom;
-use super::look::{KeptBarks, paint, tint};
+use super::look::{dressed, paint, tint};
 use super::{Inside, OddMesh, TreeError, TreeOptions, coarser, keep_out, scale_to_height, tree_blade};
 use crate::report::{Counts, GrowthReport, ItemReport, TimingsMs};
 use crate::shaping::{EditReport, Shaper};
@@ -46,8 +46,6 @@ pub struct TreeEvaluator {
     inside: Option<Inside>,
     /// The model is of a plant that is no more: shown until there is another, in case an update is stopped.
     stale: bool,
-    /// Bark of the last model.
-    barks: KeptBarks,
     /// Times of what a look made already, of the update that follows it.
     begun: Report,
     done: Vec<&'static str>,
@@ -123,10 +121,10 @@ impl TreeEvaluator {
         self.begun = report;
         let plant = self.plant().filter(|p| p.organs.len() + p.nodes.position.len() > SMALL);
         let Some(plant) = plant.filter(|_| self.done.contains(&"structure")) else { return Ok(None) };
-        let (mut copy, skin) = coarser(plant, &skin_spec(seed, options), LOOK_LEVEL);
+        let (mut copy, skin) = coarser(plant, &skin_spec(spec, seed, options), LOOK_LEVEL);
         keep_out(&mut copy, &skin, plant, LOOK_LEVEL, &obstacles);
         let from = (SkinSpec { textures: false, ..skin }, spec.look.clone(), None);
-        Ok(Some(skinned(&copy, &from, &mut KeptBarks::default(), run)?.0))
+        Ok(Some(skinned(&copy, &from, run)?.0))
     }
 
     /// Everything but the meshes.
@@ -232,16 +230,14 @@ impl TreeEvaluator {
         report: &mut Report,
         run: &Run<'_>,
     ) -> Result<bool, TreeError> {
-        let from = (skin_spec(seed, options), spec.look.clone(), options.leaf.clone());
+        let from = (skin_spec(spec, seed, options), spec.look.clone(), options.leaf.clone());
         if !self.stale && self.model.as_ref().is_some_and(|(f, _)| *f == from) {
             return Ok(false);
         }
-        let mut barks = core::mem::take(&mut self.barks);
         let Some(plant) = self.plant() else { return Ok(false) };
         // What growth told is done.
         let telling = Telling::from(run.cancel.share().unwrap_or(0.0), run);
-        let model = report.stage("mesh", run.clock, |_| skinned(plant, &from, &mut barks, &telling.run()));
-        self.barks = barks;
+        let model = report.stage("mesh", run.clock, |_| skinned(plant, &from, &telling.run()));
         let (model, layout) = model?;
         (self.model, self.layout, self.stale) = (Some((from, model)), layout, false);
         self.done.push("mesh");
@@ -269,8 +265,7 @@ impl TreeEvaluator {
         let obstacles = growth::Obstacles::new(&spec.obstacles, spec.clearance_m)?;
         let (mut copy, skin) = coarser(plant, fine, level);
         keep_out(&mut copy, &skin, plant, level, &obstacles);
-        let mut barks = self.barks.clone();
-        let (model, layout) = skinned(&copy, &(skin, look.clone(), leaf.clone()), &mut barks, run)?;
+        let (model, layout) = skinned(&copy, &(skin, look.clone(), leaf.clone()), run)?;
         Ok(Some((model, (copy, layout))))
     }
 
@@ -337,18 +332,15 @@ impl TreeEvaluator {
     }
 }
 
-fn skin_spec(seed: Seed, options: &TreeOptions) -> SkinSpec {
-    SkinSpec { seed, ..options.skin.clone() }
+fn skin_spec(spec: &TreeSpec, seed: Seed, options: &TreeOptions) -> SkinSpec {
+    // A leaf of one's own has veins of its own, or those of most leaves.
+    let form = options.leaf.as_ref().map_or(spec.blade.form, |_| BladeForm::default());
+    dressed(SkinSpec { seed, ..options.skin.clone() }, &spec.look, form)
 }
 
-fn skinned(
-    plant: &Plant,
-    (skin, look, leaf): &Skinned,
-    barks: &mut KeptBarks,
-    run: &Run<'_>,
-) -> Result<(Model, Layout), Stopped> {
+fn skinned(plant: &Plant, (skin, look, leaf): &Skinned, run: &Run<'_>) -> Result<(Model, Layout), Stopped> {
     let (mut model, layout) = skin::skin_laid_out(plant, skin, Pictures::default(), None, run)?;
-    paint(look, &mut model, barks, run);
+    paint(look, &mut model);
     if let Some(leaf) = leaf {
         leaf.dress(&mut model, &skin.worn);
     }

@@ -1,0 +1,352 @@
+//! Model -> a GLB that is light to carry: columns in few bits, compressed, textures as JPEG.
+
+use std::io::Write;
+use std::sync::Arc;
+
+use glam::DVec3;
+use mesh::{Model, TriMesh};
+use serde_json::{Value, json};
+
+use super::glb_write::{Encoded, Writer, row};
+use super::gltf::{Accessor, Attributes, Buffer, I8, Mesh, Node, POINTS, Primitive, U8, U16, U32, View};
+use super::meshopt::{encode_attributes, encode_triangles};
+use super::{PngCache, check, share, unit};
+use crate::error::WriteError;
+
+const QUANTIZATION: &str = "KHR_mesh_quantization";
+const TRANSFORM: &str = "KHR_texture_transform";
+pub(super) const COMPRESSION: &str = "EXT_meshopt_compression";
+
+/// Of JPEG textures: differences are hardly seen beside the picture.
+const QUALITY: u8 = 88;
+
+/// What a packed file does without.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Packing {
+    /// Columns in few bits (`KHR_mesh_quantization`): positions to a 65,535th of the model's size, normals to a degree,
+    /// texture coordinates to a 65,535th of their range, colours to a 255th. Most programs read it.
+    Quantized,
+    /// Those, compressed (`EXT_meshopt_compression`), which a reader must know: three.js with its decoder, Babylon,
+    /// Godot, and Burgeon do; Blender does not.
+    Compressed,
+}
+
+/// Writes a model as [`super::write_glb`] does, packed, and textures without holes as JPEG. `_PIVOT` is in the
+/// coordinates of its node, as positions are.
+///
+/// Guaranteed: the same model gives the same bytes; vertices that no triangle uses are left out.
+/// Not guaranteed: the order of vertices; the order of a triangle's corners beyond their turn.
+///
+/// # Errors
+/// As [`super::write_glb`].
+pub fn write_glb_packed(
+    model: &Model,
+    packing: Packing,
+    cache: &mut PngCache,
+    out: impl Write,
+) -> Result<(), WriteError> {
+    check(model)?;
+    let mut w = Writer::new(16 * model.vertex_count() + 6 * model.triangle_count() + 1024);
+    w.encode = jpeg;
+    let frames: Vec<Frame> = (0..model.materials.len()).map(|m| Frame::of(model, m)).collect();
+    w.placed = frames.iter().map(Frame::transform).collect();
+    if w.placed.iter().any(Option::is_some) {
+        w.uses(TRANSFORM);
+        w.root.extensions_required.push(TRANSFORM.to_owned());
+    }
+    let first = w.materials(model, cache)?;
+    let mut packer = Packer { w, packing, fallback: 0 };
+    packer.needs(QUANTIZATION);
+    if packing == Packing::Compressed {
+        packer.needs(COMPRESSION);
+    }
+    packer.w.root(&model.name);
+    let bounds = model.bounds();
+    let size = if bounds.is_empty() { 1.0 } else { bounds.size().max_element().max(1e-9) };
+    let origin = if bounds.is_empty() { DVec3::ZERO } else { bounds.min };
+    for part in model.parts.iter().filter(|p| !p.mesh.positions.is_empty()) {
+        let mesh = used(&part.mesh);
+        let frame = &frames[part.material.index()];
+        let primitive = packer.primitive(&mesh, (origin, size), frame, first + part.material.raw())?;
+        let root = &mut packer.w.root;
+        root.meshes.push(Mesh {
+            name: Some(part.name.clone()),
+            primitives: vec![primitive],
+            weights: Vec::new(),
+        });
+        let at = row(root.nodes.len())?;
+        root.nodes.push(Node {
+            name: Some(part.name.clone()),
+            mesh: Some(row(root.meshes.len() - 1)?),
+            translation: Some(origin.to_array()),
+            scale: Some([size; 3]),
+            ..Node::default()
+        });
+        root.nodes[0].children.push(at);
+    }
+    packer.finish(out)
+}
+
+/// A texture as JPEG; one with holes, which JPEG cannot have, and one whose alpha is its matter, as PNG.
+fn jpeg(texture: &Arc<mesh::Texture>, cache: &mut PngCache) -> Result<Encoded, WriteError> {
+    let png = |cache: &mut PngCache| Ok((cache.png(texture)?, "image/png"));
+    let sides = (u16::try_from(texture.width), u16::try_from(texture.height));
+    let (Ok(width), Ok(height)) = sides else { return png(cache) };
+    if texture.pixels.chunks_exact(4).any(|p| p[3] != 255) {
+        return png(cache);
+    }
+    let mut bytes = Vec::new();
+    let encoder = jpeg_encoder::Encoder::new(&mut bytes, QUALITY);
+    let written = encoder.encode(&texture.pixels, width, height, jpeg_encoder::ColorType::Rgba);
+    written.map_err(|e| WriteError::Io(std::io::Error::other(e)))?;
+    Ok((bytes.into(), "image/jpeg"))
+}
+
+/// The part of the texture plane in which a material's coordinates lie.
+struct Frame {
+    low: [f32; 2],
+    size: [f32; 2],
+}
+
+impl Frame {
+    fn of(model: &Model, material: usize) -> Self {
+        let parts = model.parts.iter().filter(|p| p.material.index() == material);
+        let (mut low, mut high) = ([0.0_f32; 2], [1.0_f32; 2]);
+        for uv in parts.flat_map(|p| &p.mesh.uvs).filter(|uv| uv.iter().all(|x| x.is_finite())) {
+            for k in 0..2 {
+                (low[k], high[k]) = (low[k].min(uv[k]), high[k].max(uv[k]));
+            }
+        }
+        Self { low, size: [0, 1].map(|k| high[k] - low[k]) }
+    }
+
+    /// Puts coordinates from 0 to 1 back into the frame.
+    fn transform(&self) -> Option<Value> {
+        let plain = self.low == [0.0; 2] && self.size == [1.0; 2];
+        (!plain).then(|| json!({ TRANSFORM: { "offset": self.low, "scale": self.size } }))
+    }
+}
+
+/// The mesh with only the vertices that triangles use, in the order of their first use; of points all.
+fn used(mesh: &TriMesh) -> TriMesh {
+    if mesh.triangles.is_empty() {
+        return mesh.clone();
+    }
+    let mut new = vec![u32::MAX; mesh.positions.len()];
+    let mut order: Vec<usize> = Vec::with_capacity(mesh.positions.len());
+    let mut place = |old: u32| {
+        let at = &mut new[old as usize];
+        if *at == u32::MAX {
+            // As many as there were, which fit.
+            *at = u32::try_from(order.len()).unwrap_or(u32::MAX);
+            order.push(old as usize);
+        }
+        *at
+    };
+    let triangles = mesh.triangles.iter().map(|t| t.map(&mut place)).collect();
+    fn of<T: Copy>(column: &[T], order: &[usize]) -> Vec<T> {
+        order.iter().filter_map(|&i| column.get(i).copied()).collect()
+    }
+    TriMesh {
+        positions: of(&mesh.positions, &order),
+        normals: of(&mesh.normals, &order),
+        uvs: of(&mesh.uvs, &order),
+        colors: of(&mesh.colors, &order),
+        wind: of(&mesh.wind, &order),
+        pivots: of(&mesh.pivots, &order),
+        triangles,
+    }
+}
+
+/// 0 to 1 in sixteen bits.
+fn fine(x: f64) -> [u8; 2] {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 65,535")]
+    let n = (x.clamp(0.0, 1.0) * 65_535.0).round() as u16;
+    n.to_le_bytes()
+}
+
+struct Packer {
+    w: Writer,
+    packing: Packing,
+    /// Bytes that the file would have without compression.
+    fallback: usize,
+}
+
+/// How a column is laid out.
+struct Layout {
+    kind: u32,
+    shape: &'static str,
+    stride: usize,
+    bounds: Option<[Vec<f64>; 2]>,
+}
+
+impl Packer {
+    fn needs(&mut self, extension: &str) {
+        self.w.uses(extension);
+        self.w.root.extensions_required.push(extension.to_owned());
+    }
+
+    fn primitive(
+        &mut self,
+        mesh: &TriMesh,
+        (origin, size): (DVec3, f64),
+        frame: &Frame,
+        material: u32,
+    ) -> Result<Primitive, WriteError> {
+        let local = |p: [f32; 3]| (DVec3::from(p.map(f64::from)) - origin) / size;
+        let mut attributes =
+            Attributes { position: Some(self.positions(mesh, &local)?), ..Default::default() };
+        let column = |kind, shape, stride| Layout { kind, shape, stride, bounds: None };
+        if !mesh.normals.is_empty() {
+            #[expect(clippy::cast_possible_truncation, reason = "-127 to 127")]
+            let byte = |x: f32| ((x.clamp(-1.0, 1.0) * 127.0).round() as i8).to_le_bytes()[0];
+            let bytes = mesh.normals.iter().flat_map(|&n| {
+                let [x, y, z] = unit(n).map(byte);
+                [x, y, z, 0]
+            });
+            attributes.normal = Some(self.column(&bytes.collect::<Vec<u8>>(), column(I8, "VEC3", 4))?);
+        }
+        if !mesh.uvs.is_empty() {
+            let bytes = mesh.uvs.iter().flat_map(|uv| {
+                let [u, v] = [0, 1].map(|k| fine(f64::from((uv[k] - frame.low[k]) / frame.size[k])));
+                [u[0], u[1], v[0], v[1]]
+            });
+            attributes.uv = Some(self.column(&bytes.collect::<Vec<u8>>(), column(U16, "VEC2", 4))?);
+        }
+        if !mesh.colors.is_empty() {
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 255")]
+            let byte = |x: f32| (share(x) * 255.0).round() as u8;
+            let bytes = mesh.colors.iter().flat_map(|c| {
+                let [r, g, b] = c.map(byte);
+                [r, g, b, 255]
+            });
+            attributes.color = Some(self.column(&bytes.collect::<Vec<u8>>(), column(U8, "VEC4", 4))?);
+        }
+        if !mesh.wind.is_empty() {
+            let bytes = mesh.wind.iter().flatten().flat_map(|&x| fine(f64::from(x)));
+            attributes.wind = Some(self.column(&bytes.collect::<Vec<u8>>(), column(U16, "VEC4", 8))?);
+        }
+        if !mesh.pivots.is_empty() {
+            let bytes = mesh.pivots.iter().flat_map(|&p| local(p).as_vec3().to_array());
+            let bytes: Vec<u8> = bytes.flat_map(f32::to_le_bytes).collect();
+            attributes.pivot = Some(self.column(&bytes, column(super::gltf::FLOAT, "VEC3", 12))?);
+        }
+        let points = mesh.triangles.is_empty();
+        Ok(Primitive {
+            attributes,
+            indices: if points { None } else { Some(self.indices(mesh)?) },
+            material: Some(material),
+            mode: points.then_some(POINTS),
+            ..Primitive::default()
+        })
+    }
+
+    fn positions(&mut self, mesh: &TriMesh, local: &dyn Fn([f32; 3]) -> DVec3) -> Result<u32, WriteError> {
+        let (mut low, mut high) = ([u16::MAX; 3], [0_u16; 3]);
+        let bytes: Vec<u8> = (mesh.positions.iter())
+            .flat_map(|&p| {
+                let [x, y, z] = local(p).to_array().map(fine);
+                for (k, n) in [x, y, z].map(u16::from_le_bytes).into_iter().enumerate() {
+                    (low[k], high[k]) = (low[k].min(n), high[k].max(n));
+                }
+                [x[0], x[1], y[0], y[1], z[0], z[1], 0, 0]
+            })
+            .collect();
+        // Of normalised integers the integers themselves.
+        let bounds = [low, high].map(|b| b.map(f64::from).to_vec());
+        self.column(&bytes, Layout { kind: U16, shape: "VEC3", stride: 8, bounds: Some(bounds) })
+    }
+
+    fn column(&mut self, bytes: &[u8], layout: Layout) -> Result<u32, WriteError> {
+        let Layout { kind, shape, stride, bounds } = layout;
+        let view = match self.packing {
+            Packing::Quantized => {
+                let view =
+                    self.w.view(Some(super::glb_write::ARRAY_BUFFER), |bin| bin.extend_from_slice(bytes))?;
+                self.w.root.buffer_views[view as usize].byte_stride = Some(stride as u64);
+                view
+            }
+            Packing::Compressed => {
+                let stream = encode_attributes(bytes, stride);
+                self.compressed(&stream, bytes.len(), (stride, "ATTRIBUTES"))?
+            }
+        };
+        let [min, max] = bounds.map_or([None, None], |b| b.map(Some));
+        self.w.root.accessors.push(Accessor {
+            buffer_view: Some(view),
+            component_type: kind,
+            normalized: kind != super::gltf::FLOAT,
+            count: (bytes.len() / stride) as u64,
+            shape: shape.to_owned(),
+            min,
+            max,
+            ..Accessor::default()
+        });
+        row(self.w.root.accessors.len() - 1)
+    }
+
+    fn indices(&mut self, mesh: &TriMesh) -> Result<u32, WriteError> {
+        if self.packing == Packing::Quantized {
+            return self.w.indices(mesh);
+        }
+        let small = mesh.positions.len() < 65_536;
+        let stride = if small { 2 } else { 4 };
+        let stream = encode_triangles(&mesh.triangles);
+        let view = self.compressed(&stream, 3 * mesh.triangles.len() * stride, (stride, "TRIANGLES"))?;
+        self.w.root.accessors.push(Accessor {
+            buffer_view: Some(view),
+            component_type: if small { U16 } else { U32 },
+            count: 3 * mesh.triangles.len() as u64,
+            shape: "SCALAR".into(),
+            ..Accessor::default()
+        });
+        row(self.w.root.accessors.len() - 1)
+    }
+
+    /// A view of what a stream holds, which is `length` bytes.
+    fn compressed(
+        &mut self,
+        stream: &[u8],
+        length: usize,
+        (stride, mode): (usize, &str),
+    ) -> Result<u32, WriteError> {
+        let start = self.w.bin.len();
+        self.w.bin.extend_from_slice(stream);
+        self.w.bin.resize(self.w.bin.len().next_multiple_of(4), 0);
+        let indices = mode == "TRIANGLES";
+        self.w.root.buffer_views.push(View {
+            // The buffer of what is not there without the extension.
+            buffer: 1,
+            byte_offset: self.fallback as u64,
+            byte_length: length as u64,
+            byte_stride: (!indices).then_some(stride as u64),
+            target: Some(if indices {
+                super::glb_write::ELEMENT_ARRAY_BUFFER
+            } else {
+                super::glb_write::ARRAY_BUFFER
+            }),
+            extensions: Some(json!({ COMPRESSION: {
+                "buffer": 0,
+                "byteOffset": start,
+                "byteLength": stream.len(),
+                "byteStride": stride,
+                "count": length / stride,
+                "mode": mode,
+            } })),
+        });
+        self.fallback = (self.fallback + length).next_multiple_of(4);
+        row(self.w.root.buffer_views.len() - 1)
+    }
+
+    fn finish(mut self, out: impl Write) -> Result<(), WriteError> {
+        if self.fallback > 0 {
+            let length = self.w.bin.len() as u64;
+            let fallback = Some(json!({ COMPRESSION: { "fallback": true } }));
+            self.w.root.buffers = vec![
+                Buffer { byte_length: length, ..Buffer::default() },
+                Buffer { byte_length: self.fallback as u64, extensions: fallback, ..Buffer::default() },
+            ];
+        }
+        self.w.finish(out)
+    }
+}

@@ -1,0 +1,201 @@
+//! Materials and their textures, to glTF and back.
+
+use std::sync::Arc;
+
+use mesh::{AlphaMode, Maps, Model};
+use serde_json::{Value, json};
+
+use super::glb_write::{Writer, row};
+use super::gltf::{Image, Material, Pbr, Root, Texture, TextureInfo};
+use super::gltf_bytes::{Bytes, load_uri};
+use super::{Names, PngCache, Resolver, kind_of, read_picture, share};
+use crate::error::{Place, WriteError};
+
+/// Light that comes through a thin blade, as viewers know it that have the extension; to others it is opaque.
+const TRANSMISSION: &str = "KHR_materials_diffuse_transmission";
+/// Pixels of all textures together, in bytes.
+const MAX_TEXTURES: usize = 1 << 30;
+
+impl Writer {
+    /// The row of the model's first material.
+    pub(super) fn materials(&mut self, model: &Model, cache: &mut PngCache) -> Result<u32, WriteError> {
+        let first = row(self.root.materials.len())?;
+        for (k, material) in model.materials.iter().enumerate() {
+            let placed = self.placed.get(k).cloned().flatten();
+            let put =
+                |info: Option<TextureInfo>| info.map(|i| TextureInfo { extensions: placed.clone(), ..i });
+            let of = |map: &str| format!("{}-{map}", material.name);
+            let maps = &material.maps;
+            let texture = put(self.texture(material.texture.as_ref(), &material.name, cache)?);
+            let normal = put(self.texture(maps.normal.as_ref(), &of("normal"), cache)?);
+            let orm = put(self.texture(maps.orm.as_ref(), &of("orm"), cache)?);
+            let extensions = self.through(material, cache)?;
+            let [r, g, b] = material.base_color.map(share);
+            self.root.materials.push(Material {
+                name: Some(material.name.clone()),
+                pbr_metallic_roughness: Pbr {
+                    base_color_factor: Some([r, g, b, 1.0]),
+                    base_color_texture: texture,
+                    // Blue of the map is no metal, too.
+                    metallic_factor: Some(0.0),
+                    roughness_factor: Some(share(material.roughness)),
+                    metallic_roughness_texture: orm.clone(),
+                },
+                normal_texture: normal,
+                occlusion_texture: orm,
+                alpha_mode: (material.alpha == AlphaMode::Mask).then(|| "MASK".into()),
+                double_sided: material.double_sided,
+                extensions,
+                extras: Some(json!({
+                    "kind": material.kind.word(),
+                    "translucency": share(material.translucency),
+                })),
+            });
+        }
+        Ok(first)
+    }
+
+    fn through(
+        &mut self,
+        material: &mesh::Material,
+        cache: &mut PngCache,
+    ) -> Result<Option<Value>, WriteError> {
+        let share = share(material.translucency);
+        // Of a solid it would be the light in its depth, which is another extension's.
+        if share <= 0.0 || !material.double_sided {
+            return Ok(None);
+        }
+        let name = format!("{}-through", material.name);
+        let texture = self.texture(material.maps.through.as_ref(), &name, cache)?;
+        let mut look = json!({ "diffuseTransmissionFactor": share });
+        if let Some(texture) = texture {
+            look["diffuseTransmissionTexture"] = json!({ "index": texture.index });
+        }
+        // What comes through a leaf is its colour, yellower: red and green more than blue.
+        if material.kind == mesh::MaterialKind::Leaf {
+            look["diffuseTransmissionColorFactor"] = json!([1.0, 0.95, 0.55]);
+        }
+        self.uses(TRANSMISSION);
+        Ok(Some(json!({ TRANSMISSION: look })))
+    }
+
+    /// The texture's place in the file, in which equal ones are once.
+    fn texture(
+        &mut self,
+        texture: Option<&Arc<mesh::Texture>>,
+        name: &str,
+        cache: &mut PngCache,
+    ) -> Result<Option<TextureInfo>, WriteError> {
+        let Some(texture) = texture else { return Ok(None) };
+        let known = self.images.iter().position(|t| Arc::ptr_eq(t, texture) || t == texture);
+        if let Some(known) = known {
+            return Ok(Some(TextureInfo { index: row(known)?, ..TextureInfo::default() }));
+        }
+        let (bytes, kind) = (self.encode)(texture, cache)?;
+        let view = self.view(None, |bin| bin.extend_from_slice(&bytes))?;
+        self.root.images.push(Image {
+            name: Some(name.to_owned()),
+            buffer_view: Some(view),
+            mime_type: Some(kind.into()),
+            uri: None,
+        });
+        self.root.textures.push(Texture { sampler: Some(0), source: Some(row(self.root.images.len() - 1)?) });
+        self.images.push(Arc::clone(texture));
+        Ok(Some(TextureInfo { index: row(self.images.len() - 1)?, ..TextureInfo::default() }))
+    }
+}
+
+/// The pictures of a document, each read once.
+pub(super) struct Pictures<'a> {
+    root: &'a Root,
+    bytes: &'a Bytes<'a>,
+    resolve: Resolver<'a>,
+    read: Vec<Option<Option<Arc<mesh::Texture>>>>,
+    pixels: usize,
+}
+
+impl<'a> Pictures<'a> {
+    pub(super) fn new(root: &'a Root, bytes: &'a Bytes<'a>, resolve: Resolver<'a>) -> Self {
+        Self { root, bytes, resolve, read: vec![None; root.images.len()], pixels: 0 }
+    }
+
+    /// The picture that is named; none where nothing is, or where it cannot be read.
+    fn get(&mut self, info: Option<&TextureInfo>) -> Option<Arc<mesh::Texture>> {
+        let source = self.root.textures.get(info?.index as usize)?.source? as usize;
+        let image = self.root.images.get(source)?;
+        if let Some(known) = self.read.get(source)? {
+            return known.clone();
+        }
+        let bytes = match (image.buffer_view, &image.uri) {
+            (Some(view), _) => self.bytes.view(self.root, view).ok().map(|(b, _)| b.to_vec()),
+            (None, Some(uri)) => load_uri(uri, self.resolve, &Place::File).ok(),
+            (None, None) => None,
+        };
+        let picture = bytes.filter(|_| self.pixels < MAX_TEXTURES).and_then(|b| read_picture(&b));
+        self.pixels = self.pixels.saturating_add(picture.as_ref().map_or(0, |p| p.pixels.len()));
+        let picture = picture.map(Arc::new);
+        self.read[source] = Some(picture.clone());
+        picture
+    }
+
+    /// The materials by their rows, and for each whether a texture was left out.
+    pub(super) fn materials(&mut self) -> Vec<(mesh::Material, bool)> {
+        let mut names = Names::default();
+        let root = self.root;
+        let each = root.materials.iter().map(|m| {
+            let pbr = &m.pbr_metallic_roughness;
+            let look = m.extensions.as_ref().and_then(|e| e.get(TRANSMISSION));
+            let through: Option<TextureInfo> = look
+                .and_then(|l| l.get("diffuseTransmissionTexture")?.get("index")?.as_u64())
+                .and_then(|i| Some(TextureInfo { index: u32::try_from(i).ok()?, ..TextureInfo::default() }));
+            let texture = self.get(pbr.base_color_texture.as_ref());
+            let maps = Maps {
+                normal: self.get(m.normal_texture.as_ref()),
+                orm: self.orm(m),
+                height: None,
+                through: self.get(through.as_ref()),
+            };
+            let name = names.fresh(m.name.as_deref().unwrap_or_default(), "material");
+            let lost = texture.is_none() && pbr.base_color_texture.is_some();
+            (material(m, name, texture, maps), lost)
+        });
+        each.collect()
+    }
+
+    /// Occlusion and roughness in one picture; of roughness alone one without occlusion.
+    fn orm(&mut self, m: &Material) -> Option<Arc<mesh::Texture>> {
+        let rough = m.pbr_metallic_roughness.metallic_roughness_texture.as_ref();
+        let picture = self.get(rough)?;
+        if m.occlusion_texture.as_ref().is_some_and(|o| Some(o.index) == rough.map(|r| r.index)) {
+            return Some(picture);
+        }
+        let mut alone = (*picture).clone();
+        alone.pixels.chunks_exact_mut(4).for_each(|p| p[0] = 255);
+        Some(Arc::new(alone))
+    }
+}
+
+fn material(m: &Material, name: String, texture: Option<Arc<mesh::Texture>>, maps: Maps) -> mesh::Material {
+    let pbr = &m.pbr_metallic_roughness;
+    let extra = |key: &str| m.extras.as_ref().and_then(|e| e.get(key));
+    let [r, g, b, _] = pbr.base_color_factor.unwrap_or([1.0; 4]);
+    let kind = kind_of(extra("kind").and_then(|k| k.as_str()).unwrap_or(&name));
+    let factor = || m.extensions.as_ref()?.get(TRANSMISSION)?.get("diffuseTransmissionFactor");
+    #[expect(clippy::cast_possible_truncation, reason = "a share between 0 and 1")]
+    let translucency = extra("translucency").or_else(factor).and_then(Value::as_f64).unwrap_or(0.0) as f32;
+    mesh::Material {
+        name,
+        kind,
+        base_color: [r, g, b],
+        roughness: pbr.roughness_factor.unwrap_or(1.0),
+        translucency: translucency.clamp(0.0, 1.0),
+        texture,
+        maps,
+        // Blended leaves are drawn with holes: sorting them is what nobody does well.
+        alpha: match m.alpha_mode.as_deref() {
+            None | Some("OPAQUE") => AlphaMode::Opaque,
+            Some(_) => AlphaMode::Mask,
+        },
+        double_sided: m.double_sided,
+    }
+}

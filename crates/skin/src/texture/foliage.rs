@@ -1,0 +1,452 @@
+//! Leaves with the veins of their kind, and petals: colour, relief and what light comes through. u across with the midrib
+//! at one half, v from the tip (0) down to the root (1), as in [`BladeChart`].
+
+use base::{Digest, Executor, map_indexed, ops};
+use glam::DVec2;
+use plant::Blade;
+
+use super::blades::{LeafInks, PetalInks, petal};
+use super::noise::{Plates, gradient, octaves};
+use super::relief::{Sheet, Spot, Surface, surface};
+use super::{line, mix, shade};
+use crate::BladeChart;
+
+/// How the veins of a leaf run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum Venation {
+    /// A midrib with side veins, which end in the tips of lobes where there are any: oak, beech, lime.
+    #[default]
+    Pinnate,
+    /// One vein for each lobe from the end of the stalk: maple.
+    Palmate,
+    /// Side by side from root to tip: grasses, palms.
+    Parallel,
+    /// Of leaflets, each with a midrib of its own: ash, rose.
+    Compound,
+    /// None to be seen: needles and scales.
+    Needle,
+}
+
+impl Venation {
+    /// Every kind.
+    pub const ALL: [Self; 5] = [Self::Pinnate, Self::Palmate, Self::Parallel, Self::Compound, Self::Needle];
+}
+
+/// Roughness of the glossiest leaf material; those of a surface are shares of it.
+pub(crate) const LEAF_ROUGHNESS: f32 = 0.7;
+
+/// Height of a leaf's relief over its length.
+const DEPTH: f64 = 0.010;
+
+/// The surface of a leaf: `size` pixels from root to tip, 64 to 4096, and as wide as the blade is.
+pub(crate) fn leaf(
+    venation: Venation,
+    blade: &Blade,
+    inks: &LeafInks,
+    size: u32,
+    executor: &dyn Executor,
+) -> Surface {
+    let mut content = Digest::new();
+    content
+        .add("leaf")
+        .add(&(venation as u32))
+        .add(&size)
+        .add(&blade.outline)
+        .add(&blade.midrib)
+        .add(&blade.veins);
+    content.add(&inks.dark).add(&inks.light).add(&inks.vein);
+    Surface::kept(content, || {
+        let plan = Plan::new(venation, blade, executor);
+        let width = match plan.extent.x / plan.extent.y {
+            wide if wide > 0.7 => size,
+            wide if wide > 0.3 => size / 2,
+            _ => size / 4,
+        };
+        let sheet = Sheet {
+            size: (width, size),
+            extent: (plan.extent.x, plan.extent.y),
+            depth: DEPTH * plan.extent.y,
+            tiles: false,
+            mean: None,
+        };
+        surface(executor, &sheet, true, &|u, v| plan.spot(inks, u, v))
+    })
+}
+
+/// A blade for leaves whose own outline is not asked for: each drawn leaf has another, and all share one surface.
+pub(crate) fn any_blade() -> Blade {
+    let right = (1..12).map(|k| {
+        let t = f64::from(k) / 12.0;
+        DVec2::new(0.60 * (t * (1.0 - t)).sqrt(), t)
+    });
+    let mut outline = vec![DVec2::ZERO];
+    outline.extend(right.clone());
+    outline.push(DVec2::Y);
+    outline.extend(right.rev().map(|p| DVec2::new(-p.x, p.y)));
+    Blade {
+        outline,
+        midrib: vec![DVec2::ZERO, DVec2::Y],
+        veins: Vec::new(),
+        lift: plant::Lift::Flat,
+        relief: plant::Relief::default(),
+    }
+}
+
+/// A vein: its line, and half of its width at the beginning and at the end.
+struct Vein {
+    points: Vec<DVec2>,
+    width: (f64, f64),
+}
+
+/// Where the veins of a blade are.
+struct Plan {
+    venation: Venation,
+    chart: BladeChart,
+    /// Of the chart, in units of the blade.
+    extent: DVec2,
+    low: f64,
+    /// Half of the blade's width at even steps from its lowest place to its highest.
+    half: Vec<f64>,
+    fields: Fields,
+    net: Plates,
+}
+
+/// Distances from veins in the cells of a grid over the chart.
+struct Fields {
+    size: (usize, usize),
+    /// To the nearest thick or side vein in units of the blade's length, less its half width, and that width.
+    near: Vec<[f64; 2]>,
+}
+
+const STEPS: usize = 64;
+
+impl Plan {
+    fn new(venation: Venation, blade: &Blade, executor: &dyn Executor) -> Self {
+        let chart = BladeChart::new(blade);
+        let (from, to) = (chart.place(DVec2::new(0.0, 1.0)), chart.place(DVec2::new(1.0, 0.0)));
+        let middle = chart.place(DVec2::new(0.5, 1.0)).x;
+        let low = from.y;
+        let extent = DVec2::new(2.0 * (middle - from.x).abs(), to.y - from.y).max(DVec2::splat(1e-9));
+        let half = (0..=STEPS).map(|k| half_width(blade, low + extent.y * k as f64 / STEPS as f64)).collect();
+        let mut plan = Self {
+            venation,
+            chart,
+            extent,
+            low,
+            half,
+            fields: Fields { size: (1, 1), near: vec![[1.0, 0.001]] },
+            net: Plates::new((36, 36), 0.95, 71),
+        };
+        let veins = plan.veins(blade);
+        plan.fields = Fields::new(&plan, &veins, executor);
+        plan
+    }
+
+    /// Half of the width at a height.
+    fn half_at(&self, y: f64) -> f64 {
+        let at = ((y - self.low) / self.extent.y).clamp(0.0, 1.0) * STEPS as f64;
+        let k = (at as usize).min(STEPS - 1);
+        ops::lerp(self.half[k], self.half[k + 1], at - k as f64)
+    }
+
+    fn veins(&self, blade: &Blade) -> Vec<Vein> {
+        let length = self.extent.y;
+        if matches!(self.venation, Venation::Needle) || blade.midrib.len() < 2 {
+            return Vec::new();
+        }
+        let mut veins = vec![Vein { points: blade.midrib.clone(), width: (0.011 * length, 0.002 * length) }];
+        match self.venation {
+            // As they were drawn or measured.
+            _ if !blade.veins.is_empty() => veins.extend(
+                blade
+                    .veins
+                    .iter()
+                    .map(|v| Vein { points: v.clone(), width: (0.0058 * length, 0.0012 * length) }),
+            ),
+            Venation::Pinnate => {
+                let lobes = tips(blade, |p| p.x);
+                if lobes.len() >= 2 {
+                    self.to_tips(&lobes, &mut veins);
+                } else {
+                    self.feathered(&mut veins);
+                }
+            }
+            Venation::Compound => {
+                let leaflets = tips(blade, |p| p.x);
+                self.to_tips(&leaflets, &mut veins);
+                self.branched(blade, 1, 5, &mut veins);
+            }
+            Venation::Palmate => {
+                let lobes = tips(blade, |p| p.length());
+                for tip in lobes.into_iter().filter(|p| p.x > 0.05 * length) {
+                    for side in [1.0, -1.0] {
+                        let end = DVec2::new(0.95 * side * tip.x, 0.95 * tip.y);
+                        let points = curve(DVec2::ZERO, end * DVec2::new(0.52, 0.46), end);
+                        veins.push(Vein { points, width: (0.009 * length, 0.0016 * length) });
+                    }
+                }
+                self.branched(blade, 0, 6, &mut veins);
+            }
+            Venation::Parallel | Venation::Needle => {}
+        }
+        veins
+    }
+
+    /// Side veins that leave the midrib and arch to the margin, those of both sides half a step apart.
+    fn feathered(&self, veins: &mut Vec<Vein>) {
+        const EACH: u32 = 8;
+        let length = self.extent.y;
+        for k in 0..2 * EACH {
+            let side = if k % 2 == 0 { 1.0 } else { -1.0 };
+            let start = (0.03 + 0.84 * f64::from(k) / f64::from(2 * EACH)) * length;
+            let mut high = start;
+            for _ in 0..6 {
+                high = start + 0.85 * self.half_at(self.low.max(0.0) + high);
+            }
+            let high = high.min(0.97 * length);
+            let end = DVec2::new(side * 0.95 * self.half_at(high), high);
+            let points =
+                curve(DVec2::new(0.0, start), DVec2::new(0.58 * end.x, ops::lerp(start, high, 0.40)), end);
+            veins.push(Vein { points, width: (0.0058 * length, 0.0012 * length) });
+        }
+        // Lobes beside the stalk have veins of their own.
+        if self.low < -0.01 * length {
+            for side in [1.0, -1.0] {
+                let end = DVec2::new(0.85 * side * self.half_at(0.5 * self.low), 0.6 * self.low);
+                let points = curve(DVec2::ZERO, DVec2::new(0.6 * end.x, 0.1 * end.y), end);
+                veins.push(Vein { points, width: (0.006 * length, 0.0012 * length) });
+            }
+        }
+    }
+
+    /// Side veins to the tips of lobes, and thinner ones between.
+    fn to_tips(&self, tips: &[DVec2], veins: &mut Vec<Vein>) {
+        let length = self.extent.y;
+        for tip in tips {
+            for side in [1.0, -1.0] {
+                let start = (tip.y - 0.62 * tip.x).max(0.02 * length);
+                let end = DVec2::new(0.96 * side * tip.x, tip.y - 0.02 * tip.x);
+                let points = curve(
+                    DVec2::new(0.0, start),
+                    DVec2::new(0.5 * end.x, ops::lerp(start, end.y, 0.44)),
+                    end,
+                );
+                veins.push(Vein { points, width: (0.0064 * length, 0.0014 * length) });
+            }
+        }
+    }
+
+    /// Side veins of those from the `from`th on, as far as the blade reaches.
+    fn branched(&self, blade: &Blade, from: usize, each: u32, veins: &mut Vec<Vein>) {
+        let length = self.extent.y;
+        let mut more = Vec::new();
+        for vein in &veins[from..] {
+            let Some((&a, &b)) = vein.points.first().zip(vein.points.last()) else { continue };
+            let along = b - a;
+            for k in 0..2 * each {
+                let side = if k % 2 == 0 { 1.0 } else { -1.0 };
+                let share = 0.16 + 0.72 * f64::from(k) / f64::from(2 * each);
+                let start = at_share(&vein.points, share);
+                let way = along + side * DVec2::new(-along.y, along.x);
+                let reach = 0.34 * (1.0 - 0.55 * share);
+                let points = curve(
+                    start,
+                    start + 0.42 * reach * way + 0.03 * along,
+                    start + reach * (way + 0.35 * along),
+                );
+                let within = points.iter().take_while(|p| geom::contains(&blade.outline, **p)).count();
+                if within > 2 {
+                    more.push(Vein {
+                        points: points[..within].to_vec(),
+                        width: (0.0038 * length, 0.001 * length),
+                    });
+                }
+            }
+        }
+        veins.extend(more);
+    }
+
+    fn spot(&self, inks: &LeafInks, u: f64, v: f64) -> Spot {
+        let (x, y) = (2.0 * u - 1.0, 1.0 - v);
+        let mottle = octaves(5.0 * u, 8.0 * v, (5, 8), 7, 3);
+        let fine = gradient(61.0 * u, 83.0 * v, (61, 83), 8);
+        if self.venation == Venation::Needle {
+            // Streaks that fan out with the needles; light towards the tips, which are the youngest.
+            let fan = x / (0.35 + 0.65 * y);
+            let streak = gradient(14.0 * fan + 40.0, 3.0 * y, (97, 3), 9);
+            let paint = mix(inks.dark, inks.light, 0.30 + 0.35 * y + 0.30 * mottle + 0.18 * streak);
+            return Spot { height: 0.5 + 0.25 * streak, paint, rough: 0.78 + 0.1 * fine, through: 0.35 };
+        }
+        let wander = 0.004 * gradient(9.0 * u, 13.0 * v, (9, 13), 3);
+        let [off, width] = self.fields.at(u + wander, v + wander);
+        // On a vein, on the swelling beside it, and in the middle of a field between veins.
+        let vein = 1.0 - ops::smoothstep(0.0, 1.0, (off + width) / (1.25 * width));
+        let thick = (width / 0.009).min(1.0);
+        let swell = ops::smoothstep(0.0, 0.045, off);
+        let aspect = self.extent.x / self.extent.y;
+        let (mut cross, mut rib) = (0.0, 0.0);
+        if self.venation == Venation::Parallel {
+            let p = self.chart.place(DVec2::new(u, v));
+            let across = p.x / self.half_at(p.y).max(1e-9 * self.extent.y);
+            let phase = 9.0 * across;
+            rib = (1.0 - ops::smoothstep(0.06, 0.26, (phase - phase.round()).abs())) * (1.0 - vein);
+            let thin = 45.0 * across;
+            rib = rib.max(0.35 * (1.0 - ops::smoothstep(0.1, 0.4, (thin - thin.round()).abs())));
+        } else {
+            let plate = self.net.at(u * aspect + 0.006 * fine, v);
+            cross = (1.0 - ops::smoothstep(0.0007, 0.0034, plate.edge)) * (0.45 + 0.55 * plate.border);
+        }
+        let side = vein * (0.45 + 0.55 * thick);
+        let net = (0.30 * cross).max(0.42 * rib);
+        let lamina = 0.36 + 0.26 * swell + 0.70 * mottle + 0.10 * y + 0.06 * fine - 0.06 * cross;
+        let lamina = mix(inks.dark, inks.light, lamina);
+        // Along a thick vein the blade is darker: it lies in its shade.
+        let shadow = 1.0 - 0.13 * thick * (1.0 - ops::smoothstep(0.0, 0.018, off)) * (1.0 - vein);
+        let paint = mix(mix(shade(lamina, shadow), inks.vein, 0.5 * net), inks.vein, 0.85 * side);
+        let height = 0.42 + 0.36 * swell + 0.05 * fine + 0.05 * mottle
+            - 0.36 * side
+            - 0.22 * cross * swell
+            - 0.30 * rib;
+        let rough = 0.60 + 0.10 * mottle + 0.12 * side + 0.10 * net + 0.04 * fine;
+        let through = 0.96 - 0.78 * side - 0.35 * net + 0.08 * mottle;
+        Spot { height, paint, rough: rough / f64::from(LEAF_ROUGHNESS), through }
+    }
+}
+
+impl Fields {
+    fn new(plan: &Plan, veins: &[Vein], executor: &dyn Executor) -> Self {
+        if veins.is_empty() {
+            return Self { size: (1, 1), near: vec![[1.0, 0.001]] };
+        }
+        // As fine as the thinnest vein: between cells the distance is as good as linear.
+        let size = (160, 320);
+        let length = plan.extent.y;
+        let pieces: Vec<(DVec2, DVec2, f64, f64)> = veins
+            .iter()
+            .flat_map(|vein| {
+                let n = vein.points.len().max(2) - 1;
+                let width = move |k: usize| ops::lerp(vein.width.0, vein.width.1, k as f64 / n as f64);
+                vein.points.windows(2).enumerate().map(move |(k, w)| (w[0], w[1], width(k), width(k + 1)))
+            })
+            .collect();
+        let rows = map_indexed(executor, size.1, |j| {
+            let v = (j as f64 + 0.5) / size.1 as f64;
+            let mut row = Vec::with_capacity(size.0);
+            let y = plan.chart.place(DVec2::new(0.5, v)).y;
+            // Only what may be nearest: a vein further away along the blade than this is not.
+            let reach = 0.16 * length;
+            let (lows, highs) = (y - reach, y + reach);
+            let near: Vec<_> =
+                pieces.iter().filter(|(a, b, ..)| a.y.max(b.y) > lows && a.y.min(b.y) < highs).collect();
+            for i in 0..size.0 {
+                let p = plan.chart.place(DVec2::new((i as f64 + 0.5) / size.0 as f64, v));
+                let mut best = [1.0, 0.001];
+                for &&(a, b, wa, wb) in &near {
+                    let ab = b - a;
+                    let t = ((p - a).dot(ab) / ab.length_squared().max(1e-18)).clamp(0.0, 1.0);
+                    let width = ops::lerp(wa, wb, t);
+                    let off = (p.distance(a + ab * t) - width) / length;
+                    if off < best[0] {
+                        best = [off, width / length];
+                    }
+                }
+                row.push(best);
+            }
+            row
+        });
+        Self { size, near: rows.concat() }
+    }
+
+    fn at(&self, u: f64, v: f64) -> [f64; 2] {
+        let place = |x: f64, n: usize| {
+            let at = (x * n as f64 - 0.5).clamp(0.0, (n - 1) as f64);
+            let k = (at as usize).min(n.saturating_sub(2));
+            (k, (k + 1).min(n - 1), at - k as f64)
+        };
+        let (x0, x1, tx) = place(u, self.size.0);
+        let (y0, y1, ty) = place(v, self.size.1);
+        let at = |x: usize, y: usize| self.near[y * self.size.0 + x];
+        let between = |k: usize| {
+            let row = |y: usize| ops::lerp(at(x0, y)[k], at(x1, y)[k], tx);
+            ops::lerp(row(y0), row(y1), ty)
+        };
+        [between(0), between(1)]
+    }
+}
+
+/// Half of the blade's width at a height.
+fn half_width(blade: &Blade, y: f64) -> f64 {
+    let n = blade.outline.len();
+    let edges = (0..n).map(|i| (blade.outline[i], blade.outline[(i + 1) % n]));
+    let crossing = |(a, b): (DVec2, DVec2)| {
+        ((a.y <= y) != (b.y <= y)).then(|| ops::lerp(a.x, b.x, (y - a.y) / (b.y - a.y)).abs())
+    };
+    edges.filter_map(crossing).fold(0.0, f64::max)
+}
+
+/// Places of the right margin where `far` is larger than on both sides by a twentieth of the blade's width: tips of lobes,
+/// from the root on. The widest place of a blade without lobes is one, too.
+fn tips(blade: &Blade, far: fn(DVec2) -> f64) -> Vec<DVec2> {
+    let widest = blade.outline.iter().map(|p| p.x).fold(0.0, f64::max);
+    let least = 0.05 * widest;
+    let right: Vec<DVec2> = blade.outline.iter().copied().filter(|p| p.x >= 0.0).collect();
+    let mut tips: Vec<DVec2> = Vec::new();
+    let (mut best, mut low) = (None::<DVec2>, 0.0_f64);
+    for &p in &right {
+        let here = far(p);
+        match best {
+            Some(b) if here > far(b) => best = Some(p),
+            Some(b) if here < far(b) - least => {
+                tips.push(b);
+                (best, low) = (None, here);
+            }
+            None if here > low + least => best = Some(p),
+            None => low = low.min(here),
+            Some(_) => {}
+        }
+    }
+    tips
+}
+
+/// A curve from `a` to `b` that `pull` draws to itself.
+fn curve(a: DVec2, pull: DVec2, b: DVec2) -> Vec<DVec2> {
+    let at = |k: u32| {
+        let t = f64::from(k) / 12.0;
+        a * ((1.0 - t) * (1.0 - t)) + pull * (2.0 * t * (1.0 - t)) + b * (t * t)
+    };
+    (0..=12).map(at).collect()
+}
+
+/// The place at a share of the points of a line.
+fn at_share(points: &[DVec2], share: f64) -> DVec2 {
+    let last = points.len() - 1;
+    let at = share.clamp(0.0, 1.0) * last as f64;
+    let k = (at as usize).min(last.saturating_sub(1));
+    points[k].lerp(points[(k + 1).min(last)], at - k as f64)
+}
+
+/// The surface of a petal, twice as long as it is wide; `size` pixels long.
+pub(crate) fn petals(inks: &PetalInks, size: u32, executor: &dyn Executor) -> Surface {
+    let mut content = Digest::new();
+    content.add("petal").add(&size);
+    inks.each().iter().for_each(|ink| {
+        content.add(ink);
+    });
+    Surface::kept(content, || {
+        let sheet =
+            Sheet { size: (size / 2, size), extent: (0.6, 1.0), depth: 0.006, tiles: false, mean: None };
+        surface(executor, &sheet, true, &|u, v| {
+            let (paint, vein) = petal(inks, u, v);
+            // Cells of the skin stand up: velvet.
+            let skin = gradient(97.0 * u, 193.0 * v, (97, 193), 81);
+            let keel = line(2.0 * u - 1.0, 0.35) * v;
+            Spot {
+                height: 0.45 + 0.40 * vein + 0.04 * skin,
+                paint,
+                rough: (0.62 + 0.10 * vein + 0.05 * skin) / f64::from(LEAF_ROUGHNESS),
+                through: 0.95 - 0.45 * vein - 0.35 * keel,
+            }
+        })
+    })
+}
