@@ -651,7 +651,7 @@ fn flower(
             let made = made.map_err(failed)?;
             let lods = (1..=args.lods).map(|level| made.at_level(level, &machine.run()));
             let lods = lods.collect::<Result<_, _>>().map_err(failed)?;
-            let overlap = bloom::petal_overlap(&made.plant, None);
+            let overlap = bloom::part_overlap(&made.plant, None);
             Ok(Shown { plant: Some(made.plant), model: made.model, lods, overlap: Some(overlap) })
         }),
     };

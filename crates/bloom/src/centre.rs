@@ -1,179 +1,493 @@
-//! Stamens, pistil, disc and stalk of a flower at one day.
+//! Stamens, pistil, disc, fruit and what bears them, at one day.
 
-use base::{Draw, Seed, ops};
+use base::{Draw, ops};
 use glam::DVec3;
-use plant::{AxisKind, NodeId, OrganKind, Plant};
+use plant::OrganKind;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-use crate::flower::{FlowerSpec, Stamens, rad};
-use crate::organs::{Bed, Grid, Seat};
+use crate::flower::{FlowerSpec, rad};
+use crate::organs::{Bed, Grid};
+use crate::petal::{Nest, Times};
+use crate::whorl::Whorl;
+
+/// The stamens of a flower.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Stamens {
+    /// How many, 0 to 500.
+    #[schemars(range(min = 0, max = 500))]
+    pub count: u32,
+    /// Length of one in an open flower, metres.
+    #[schemars(range(min = 0.0, max = 5.0), extend("x-unit" = "m"))]
+    pub length_m: f64,
+    /// Angle by which they spread from the axis, degrees, 0 to 180.
+    #[schemars(range(min = 0.0, max = 180.0), extend("x-unit" = "deg"))]
+    pub spread_deg: f64,
+    /// Distance of their feet from the axis, metres, 0 to 0.2; 0, the default, for close round the pistil.
+    #[schemars(range(min = 0.0, max = 0.2), extend("x-unit" = "m"))]
+    pub foot_m: f64,
+    /// Linear colour of the filaments.
+    #[schemars(inner(range(min = 0.0, max = 1.0)), extend("x-unit" = "linear-colour"))]
+    pub filament_color: [f32; 3],
+    /// Linear colour of the anthers with their pollen.
+    #[schemars(inner(range(min = 0.0, max = 1.0)), extend("x-unit" = "linear-colour"))]
+    pub anther_color: [f32; 3],
+    /// Length of an anther as a share of the stamen, 0.02 to 0.9, default 0.17.
+    #[schemars(range(min = 0.02, max = 0.9))]
+    pub anther: f64,
+    /// They fall as the flower wilts, 0 not at all to 1 before the petals, default 0.
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub shed: f64,
+}
+
+impl Default for Stamens {
+    /// None.
+    fn default() -> Self {
+        Self {
+            count: 0,
+            length_m: 0.0,
+            spread_deg: 0.0,
+            foot_m: 0.0,
+            filament_color: [0.72, 0.78, 0.48],
+            anther_color: [0.74, 0.32, 0.04],
+            anther: 0.17,
+            shed: 0.0,
+        }
+    }
+}
+
+/// The disc of florets in the middle of a flower head.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Disc {
+    /// Florets, 10 to 1000, default 280.
+    #[schemars(range(min = 10, max = 1000))]
+    pub florets: u32,
+    /// Height of the dome as a share of its radius, 0 to 1.5, default 0.3.
+    #[schemars(range(min = 0.0, max = 1.5))]
+    pub dome: f64,
+    /// Linear colour of florets that are still closed.
+    #[schemars(inner(range(min = 0.0, max = 1.0)), extend("x-unit" = "linear-colour"))]
+    pub young_color: [f32; 3],
+    /// Linear colour of open florets with their pollen.
+    #[schemars(inner(range(min = 0.0, max = 1.0)), extend("x-unit" = "linear-colour"))]
+    pub open_color: [f32; 3],
+    /// Linear colour of what is under the florets and of withered ones.
+    #[schemars(inner(range(min = 0.0, max = 1.0)), extend("x-unit" = "linear-colour"))]
+    pub dry_color: [f32; 3],
+}
+
+impl Default for Disc {
+    /// That of a sunflower.
+    fn default() -> Self {
+        Self {
+            florets: 280,
+            dome: 0.3,
+            young_color: [0.115, 0.105, 0.022],
+            open_color: [0.50, 0.235, 0.018],
+            dry_color: [0.055, 0.030, 0.012],
+        }
+    }
+}
+
+/// The ovary and the fruit that grows of it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Fruit {
+    /// Length of the ripe fruit, metres; 0, the default, for none.
+    #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "m"))]
+    pub length_m: f64,
+    /// Its greatest width, metres, default 0.01.
+    #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "m"))]
+    pub width_m: f64,
+    /// Size of the ovary in full bloom as a share of the ripe fruit, 0.05 to 1, default 0.4.
+    #[schemars(range(min = 0.05, max = 1.0))]
+    pub ovary: f64,
+    /// Place of the greatest width, 0.2 to 0.8, default 0.5.
+    #[schemars(range(min = 0.2, max = 0.8))]
+    pub widest: f64,
+    /// Radius of a cap of stigmas on it, as a share of its own, 0 to 1.2, default 0.
+    #[schemars(range(min = 0.0, max = 1.2))]
+    pub cap: f64,
+    /// Ribs round it, 0 to 20, default 0.
+    #[schemars(range(min = 0, max = 20))]
+    pub ribs: u32,
+    /// It grows below petals and sepals (an inferior ovary, a hip). Default false.
+    pub below: bool,
+    /// Linear colour of the ovary.
+    #[schemars(inner(range(min = 0.0, max = 1.0)), extend("x-unit" = "linear-colour"))]
+    pub color: [f32; 3],
+    /// Linear colour of the ripe fruit.
+    #[schemars(inner(range(min = 0.0, max = 1.0)), extend("x-unit" = "linear-colour"))]
+    pub ripe_color: [f32; 3],
+}
+
+impl Default for Fruit {
+    /// None.
+    fn default() -> Self {
+        Self {
+            length_m: 0.0,
+            width_m: 0.01,
+            ovary: 0.4,
+            widest: 0.5,
+            cap: 0.0,
+            ribs: 0,
+            below: false,
+            color: [0.16, 0.3, 0.07],
+            ripe_color: [0.16, 0.3, 0.07],
+        }
+    }
+}
+
+/// Fruits with a parachute each, all round the head: a dandelion's clock.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Achenes {
+    /// How many, 0 to 400, default none.
+    #[schemars(range(min = 0, max = 400))]
+    pub count: u32,
+    /// From the head to the parachute, metres, default 0.016.
+    #[schemars(range(min = 0.0, max = 0.5), extend("x-unit" = "m"))]
+    pub length_m: f64,
+    /// Radius of the head that bears them, metres, default 0.004.
+    #[schemars(range(min = 0.0, max = 0.5), extend("x-unit" = "m"))]
+    pub head_m: f64,
+    /// Linear colour of the fruits.
+    #[schemars(inner(range(min = 0.0, max = 1.0)), extend("x-unit" = "linear-colour"))]
+    pub color: [f32; 3],
+}
+
+impl Default for Achenes {
+    /// None.
+    fn default() -> Self {
+        Self { count: 0, length_m: 0.016, head_m: 0.004, color: [0.16, 0.1, 0.04] }
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "colours are f32")]
+fn mix(a: [f32; 3], b: [f32; 3], t: f64) -> [f32; 3] {
+    [0, 1, 2].map(|q| a[q] + (b[q] - a[q]) * t as f32)
+}
+
+/// Fibres of a parachute: points of its rim, every second one drawn in.
+const PAPPUS: u32 = 28;
 
 impl FlowerSpec {
-    /// Stamens, pistil and disc: `g` is how far the flower has opened, `wilt` how far it has wilted, 0 to 1.
-    pub(crate) fn centre(&self, bed: &mut Bed<'_>, g: f64, wilt: f64) {
-        let heights = || self.whorls.iter().map(|w| w.insertion.height_m);
-        let (low, high) = (heights().fold(f64::INFINITY, f64::min), heights().fold(0.0, f64::max));
-        let base = if low.is_finite() { low } else { 0.0 };
+    /// Stamens, pistil, disc and fruit, within all that the nest holds.
+    pub(crate) fn centre(&self, bed: &mut Bed<'_>, times: &Times<'_>, nest: &Nest, rings: &[Whorl]) {
+        // On top of the receptacle.
+        let base = rings.iter().map(|w| w.insertion.height_m).fold(0.0, f64::max);
+        let (g, wilt) = (times.open, ops::smoothstep(0.0, 1.0, times.wilt));
         for k in 0..self.stamens.count {
-            self.stamen(bed, k, [g, wilt, base]);
+            self.stamen(bed, k, (times, base), nest);
+        }
+        let ovary = if self.fruit.below { 0.0 } else { self.fruit_size(times) };
+        let top = base + self.fruit.length_m * ovary;
+        if self.fruit.length_m > 0.0 && !self.fruit.below {
+            self.superior(bed, base, times);
         }
         if self.pistil_m > 0.0 {
-            pistil(bed, self.pistil_m * ops::lerp(0.5, 1.0, g), self.pistil_m, base, wilt);
+            let from = if ovary > 0.0 { top - 0.0004 } else { base };
+            let bare = self.fruit.length_m > 0.0;
+            self.pistil(bed, self.pistil_m * ops::lerp(0.5, 1.0, g), from, (bare, wilt));
         }
         if self.disc_m > 0.0 {
-            florets(bed, self.disc_m * ops::lerp(0.75, 1.0, g), high, [g, wilt]);
+            let fat = 0.8 / f64::from(self.disc.florets.max(10)).sqrt();
+            let radius = self.disc_m.min((1.0 - fat) * inner_radius(rings)) * ops::lerp(0.75, 1.0, g);
+            self.florets(bed, radius, base + 0.06 * radius, [g, wilt]);
+        }
+        for k in 0..self.achenes.count {
+            self.achene(bed, k, base, times);
         }
     }
 
-    /// A filament that bends outwards, and an anther across its end.
-    fn stamen(&self, bed: &mut Bed<'_>, k: u32, [g, wilt, base]: [f64; 3]) {
+    /// Distance of the feet of stamens from the axis: clear of the pistil, within the petals.
+    fn stamen_foot(&self) -> f64 {
+        let ovary = if self.fruit.below { 0.0 } else { 0.5 * self.fruit.width_m * self.fruit.ovary };
+        let pistil = if self.pistil_m > 0.0 { 2.0 * self.pistil_radius() } else { 0.0 };
+        let clear = 1.05 * ovary.max(pistil) + self.filament() * 1.6;
+        self.stamens.foot_m.max(clear).min(0.7 * self.petal_room())
+    }
+
+    fn filament(&self) -> f64 {
+        let crowd = (12.0 / f64::from(self.stamens.count.max(1))).clamp(0.25, 1.0);
+        (0.010 * self.stamens.length_m).clamp(0.0002, 0.0010).min(0.11 * self.petal_room()) * crowd
+    }
+
+    fn pistil_radius(&self) -> f64 {
+        let own = (0.016 * self.pistil_m).clamp(0.0005, 0.0022).min(0.2 * self.petal_room());
+        if self.pistil_radius_m > 0.0 { self.pistil_radius_m } else { own }
+    }
+
+    /// Radius of what is free within the feet of the petals.
+    fn petal_room(&self) -> f64 {
+        let inner = self.whorls.iter().map(|w| w.ring(w.rings.max(1) - 1).insertion.radius_m);
+        inner.fold(f64::INFINITY, f64::min).min(0.1)
+    }
+
+    /// A filament that bends outwards, and an anther at its end.
+    fn stamen(&self, bed: &mut Bed<'_>, k: u32, (times, base): (&Times<'_>, f64), nest: &Nest) {
         let seed = bed.seed.child(u64::from(k));
-        let Stamens { count, length_m: length, spread_deg: spread } = self.stamens;
-        let ring = f64::from(k) / f64::from(count.max(1));
-        let tilt = rad(spread * ops::lerp(0.25, 1.0, g) * ops::lerp(0.6, 1.0, ring) + 18.0 * wilt);
-        let long =
-            length * ops::lerp(0.45, 1.0, g) * seed.stream(Draw::Size).range(0.9, 1.0) * (1.0 - 0.2 * wilt);
+        let Stamens { count, length_m: length, spread_deg: spread, .. } = self.stamens;
+        let (g, wilt) = (times.open, ops::smoothstep(0.0, 1.0, times.wilt));
+        let many = count > 12;
+        let ring = (f64::from(k) + 0.5) / f64::from(count.max(1));
+        // They go one after another.
+        let gone = self.stamens.shed * (2.0 * times.life - 0.5 * seed.stream(Draw::Tint).uniform());
+        let left = (1.0 - 2.5 * gone.clamp(0.0, 0.4)).max(1e-3);
+        let lean = if many { ops::lerp(0.15, 1.0, ring.sqrt()) } else { 1.0 };
+        let tilt = rad(spread * ops::lerp(0.25, 1.0, g) * lean + 10.0 * wilt);
+        let long = length * ops::lerp(0.45, 1.0, g) * seed.stream(Draw::Size).range(0.93, 1.0) * left;
         // A few stamens stand in a ring, many in Vogel's spiral.
-        let turn = if count <= 12 { ops::TAU * ring } else { f64::from(k) * rad(137.507_8) };
+        let turn = if many { f64::from(k) * rad(137.507_8) } else { ops::TAU * (ring - 0.5 / f64::from(count)) };
         let (s, c) = ops::sin_cos(turn);
         let out = DVec3::new(c, 0.0, s);
-        let foot = DVec3::new(0.0015 * c, base, 0.0015 * s);
-        let at = |t: f64| {
-            // Steeper at its foot, leaning out towards its end.
-            let (sin, cos) = ops::sin_cos(tilt * (0.5 + 0.7 * t));
-            foot + (out * sin + DVec3::Y * cos) * (long * t)
+        let foot = self.stamen_foot();
+        let foot = if many { foot + (0.7 * self.petal_room() - foot).max(0.0) * ring.sqrt() } else { foot };
+        let thick = self.filament();
+        let mut at = DVec3::new(foot * c, base, foot * s);
+        let mut line = vec![at];
+        let mut direction = DVec3::Y;
+        for i in 0..6 {
+            let t = (f64::from(i) + 0.5) / 6.0;
+            // Steeper at its foot, leaning out towards its end; never out of what holds it.
+            let held = (nest.limit(long * t) - rad(ops::lerp(0.0, 5.0, t))).max(rad(-8.0));
+            let (sin, cos) = ops::sin_cos((tilt * (0.4 + 0.9 * t)).min(held));
+            direction = out * sin + DVec3::Y * cos;
+            at += direction * (long / 6.0);
+            line.push(at);
+        }
+        let radii: Vec<f64> = (0..=6).map(|i| thick * left * (1.0 - 0.5 * f64::from(i) / 6.0)).collect();
+        bed.strand(OrganKind::Stamen, &line, &radii, self.stamens.filament_color);
+        // No larger than there is room beside the next.
+        let head = (at.x * at.x + at.z * at.z).sqrt().max(foot);
+        let room = if many {
+            0.5 * head.max(0.5 * length * ops::sin(rad(spread) * ops::lerp(0.25, 1.0, g)))
+                * (ops::PI / f64::from(count)).sqrt()
+        } else {
+            0.5 * ops::TAU * head / f64::from(count.max(1))
         };
-        let thick = (0.010 * length).clamp(0.0002, 0.0010);
-        let line: Vec<DVec3> = (0..=6).map(|i| at(f64::from(i) / 6.0)).collect();
-        let radii: Vec<f64> = (0..=6).map(|i| thick * (1.0 - 0.5 * f64::from(i) / 6.0)).collect();
-        bed.strand(OrganKind::Stamen, &line, &radii, [0.72, 0.78, 0.48]);
-        let half = (0.085 * length).clamp(0.0009, 0.006) * ops::lerp(0.7, 1.0, g);
-        let across = (DVec3::Y.cross(out) + out * 0.25 + DVec3::Y * 0.2).try_normalize().unwrap_or(DVec3::X);
-        let tip = at(1.0);
-        let line: Vec<DVec3> = (0..=4).map(|i| tip + across * (half * (f64::from(i) / 2.0 - 1.0))).collect();
-        let fat = 0.24 * half + 0.8 * thick;
+        let half = (0.5 * self.stamens.anther * length).clamp(0.0004, 0.012).min(room * 0.9 + 0.35 * thick);
+        let half = half * ops::lerp(0.7, 1.0, g) * left;
+        let sideways = DVec3::Y.cross(out);
+        // In the bud along the filament; versatile in the open flower.
+        let swing = if many { 0.0 } else { g * g };
+        let across = (direction * (1.0 - swing) + sideways * swing).try_normalize().unwrap_or(DVec3::Y);
+        let middle = at + direction * (half * (1.0 - swing));
+        let line: Vec<DVec3> =
+            (0..=4).map(|i| middle + across * (half * (f64::from(i) / 2.0 - 1.0))).collect();
+        let fat = (0.3 * half + 0.5 * thick * left).min(0.4 * room + 0.2 * thick);
         // Open anthers are dusted with pollen; later they shrink and darken.
-        let [fresh, old] = [[0.74_f32, 0.32, 0.04], [0.22, 0.10, 0.03]];
-        #[expect(clippy::cast_possible_truncation, reason = "colours are f32")]
-        let w = wilt as f32;
-        let color = [0, 1, 2].map(|q| fresh[q] + (old[q] - fresh[q]) * w);
+        let color = mix(self.stamens.anther_color, [0.18, 0.09, 0.03], wilt);
         let radii = [0.25, 0.85, 1.0, 0.85, 0.25].map(|r| r * fat * (1.0 - 0.35 * wilt));
         bed.strand(OrganKind::Anther, &line, &radii, color);
     }
 
-    /// The stalk, bent towards where the head nods, and stalks of an umbel: what bears each flower.
-    pub(crate) fn stalks(&self, plant: &mut Plant, seat: &Seat, day: f64, seed: Seed) -> Vec<Option<NodeId>> {
-        let thick = self.whorls.first().map_or(0.002, |w| 0.03 * w.length_m + 0.001).max(0.28 * self.disc_m);
-        let slim = thick.min(0.006);
-        let mut stem = |bearer, line: &[DVec3], radius: f64, key: Seed| {
-            let line: Vec<DVec3> = line.iter().map(|&p| seat.at(p)).collect();
-            let id = plant.add_axis(AxisKind::Stem, bearer, key.number(), &line, None);
-            let first = plant.axis(id).nodes.start as usize;
-            plant.nodes.radius_m[first..].fill(radius);
-            plant.axis(id).node_ids().last()
-        };
-        let mut bearer = seat.bearer;
-        if self.stalk_m > 0.0 {
-            let end = if self.umbel > 1 { DVec3::Y * self.stalk_m } else { self.place(0, day).0 };
-            // Straight up at the foot; at the end half as steep as the head nods.
-            let (s, c) = ops::sin_cos(rad(if self.umbel > 1 { 0.0 } else { 0.8 * self.nod_deg }));
-            let foot = DVec3::Y * (0.55 * self.stalk_m);
-            let back = end - DVec3::new(0.0, c, s) * (0.22 * self.stalk_m);
-            let at = |t: f64| {
-                let (a, b, d) = (DVec3::ZERO.lerp(foot, t), foot.lerp(back, t), back.lerp(end, t));
-                a.lerp(b, t).lerp(b.lerp(d, t), t)
-            };
-            let line: Vec<DVec3> = (0..=12).map(|i| at(f64::from(i) / 12.0)).collect();
-            bearer = stem(bearer, &line, slim, seed);
-        }
-        if self.umbel <= 1 {
-            return vec![bearer];
-        }
-        let pedicel = |f: u32| {
-            let foot = DVec3::Y * self.stalk_m;
-            let place = self.place(f, day).0;
-            let middle = foot.lerp(place, 0.5) + DVec3::Y * 0.004;
-            stem(bearer, &[foot, middle, place], 0.5 * slim, seed.child(u64::from(f)))
-        };
-        (0..self.umbel).map(pedicel).collect()
+    /// How large the fruit is, as a share of the ripe one.
+    fn fruit_size(&self, times: &Times<'_>) -> f64 {
+        let young = self.fruit.ovary * ops::lerp(0.6, 1.0, times.open);
+        ops::lerp(young, 1.0, ops::smoothstep(0.1, 1.0, times.life.max(0.0)))
     }
 
-    /// What joins stalk and petals: from the stalk up along the feet of sepals and petals, and to the axis.
-    pub(crate) fn receptacle(&self, bed: &mut Bed<'_>) {
-        let wide = self.whorls.iter().map(|w| w.insertion.radius_m).fold(0.0, f64::max).max(self.disc_m);
-        let low = -0.6 * wide - 0.002;
-        let mut rings = vec![[0.08 * wide, low], [0.6 * wide, 0.45 * low]];
-        rings.extend(self.whorls.iter().map(|w| [1.01 * w.insertion.radius_m, w.insertion.height_m]));
-        let top = rings.last().map_or(0.0, |r| r[1]);
-        rings.push([0.02 * wide, top + 0.0004]);
+    fn fruit_color(&self, times: &Times<'_>) -> [f32; 3] {
+        mix(self.fruit.color, self.fruit.ripe_color, ops::smoothstep(0.45, 1.0, times.life.max(0.0)))
+    }
+
+    /// Radius of the fruit at a share of its length.
+    fn fruit_radius(&self, t: f64) -> f64 {
+        let w = self.fruit.widest.clamp(0.2, 0.8);
+        let x = if t < w { 1.0 - t / w } else { (t - w) / (1.0 - w) };
+        0.5 * self.fruit.width_m * (1.0 - 0.93 * x * x).max(0.0).sqrt()
+    }
+
+    /// A fruit inside of the petals, on the axis.
+    fn superior(&self, bed: &mut Bed<'_>, base: f64, times: &Times<'_>) {
+        let size = self.fruit_size(times);
+        let color = self.fruit_color(times);
+        let long = self.fruit.length_m * size;
+        let mut rings: Vec<[f64; 2]> = (0..=8)
+            .map(|i| {
+                let t = f64::from(i) / 8.0;
+                [size * self.fruit_radius(t), base + long * t]
+            })
+            .collect();
+        if self.fruit.cap > 0.0 {
+            // A cap of stigmas on top, as a poppy's.
+            let wide = 0.5 * self.fruit.width_m * size * self.fruit.cap;
+            let top = base + long;
+            let last = rings.len() - 1;
+            rings[last][0] = 0.7 * wide;
+            rings.extend([[wide, top + 0.02 * long], [wide, top + 0.06 * long], [0.3 * wide, top + 0.16 * long]]);
+        }
+        rings.push([1e-5, rings.last().map_or(base, |r| r[1]) + 0.01 * long]);
+        let columns = 24_u32;
         let last = (rings.len() - 1) as f64;
-        let mut bowl = Grid {
+        let mut grid = Grid {
             points: Vec::new(),
-            across: (0..=12).map(|k| f64::from(k) / 12.0).collect(),
+            across: (0..=columns).map(|k| f64::from(k) / f64::from(columns)).collect(),
             along: (0..rings.len()).map(|i| i as f64 / last).collect(),
             colors: Vec::new(),
         };
-        for [r, y] in rings {
-            for k in 0..=12 {
-                let (s, c) = ops::sin_cos(ops::TAU * f64::from(k) / 12.0);
+        for (i, [r, y]) in rings.iter().enumerate() {
+            for k in (0..=columns).rev() {
+                let turn = ops::TAU * f64::from(k) / f64::from(columns);
+                let (s, c) = ops::sin_cos(turn);
+                let rib = if self.fruit.ribs > 0 { ops::cos(turn * f64::from(self.fruit.ribs)) } else { 0.0 };
+                let r = r * (1.0 + 0.05 * rib);
+                grid.points.push(DVec3::new(r * c, *y, r * s));
+                let cap = i > 9 && self.fruit.cap > 0.0;
+                grid.colors.push(if cap { mix(color, [0.1, 0.07, 0.03], 0.6) } else { color });
+            }
+        }
+        bed.around(OrganKind::Fruit, DVec3::Y * base, grid);
+    }
+
+    /// What joins stalk and petals: from the stalk up along the feet of sepals and petals, and to the axis.
+    pub(crate) fn receptacle(&self, bed: &mut Bed<'_>, times: &Times<'_>, whorls: &[Whorl]) {
+        let wide = whorls.iter().map(|w| w.insertion.radius_m).fold(0.0, f64::max).max(self.disc_m);
+        let below = self.fruit.below && self.fruit.length_m > 0.0;
+        let mut low = -0.6 * wide - 0.002;
+        let mut rings = vec![[0.08 * wide, low], [0.6 * wide, 0.45 * low]];
+        if below {
+            let size = self.fruit_size(times);
+            low = -self.fruit.length_m * size;
+            // A hip or an inferior ovary hangs under what it bears.
+            let neck = whorls.iter().map(|w| w.insertion.height_m).fold(0.0, f64::min);
+            rings = (0..7)
+                .map(|i| {
+                    let t = f64::from(i) / 7.0;
+                    [size * self.fruit_radius(t), ops::lerp(low, neck - 0.0002, t)]
+                })
+                .collect();
+        }
+        let body = rings.len();
+        rings.extend(whorls.iter().map(|w| [1.01 * w.insertion.radius_m, w.insertion.height_m]));
+        let top = rings.last().map_or(0.0, |r| r[1]);
+        rings.push([0.02 * wide, top]);
+        let last = (rings.len() - 1) as f64;
+        let columns = if below { 20 } else { 12 };
+        let mut bowl = Grid {
+            points: Vec::new(),
+            across: (0..=columns).map(|k| f64::from(k) / f64::from(columns)).collect(),
+            along: (0..rings.len()).map(|i| i as f64 / last).collect(),
+            colors: Vec::new(),
+        };
+        let color = self.fruit_color(times);
+        for (i, [r, y]) in rings.into_iter().enumerate() {
+            for k in 0..=columns {
+                let (s, c) = ops::sin_cos(ops::TAU * f64::from(k) / f64::from(columns));
                 bowl.points.push(DVec3::new(r * c, y, r * s));
+                if below {
+                    bowl.colors.push(if i < body { color } else { self.stalk_color });
+                }
             }
         }
         bed.around(OrganKind::Pedicel, DVec3::Y * low, bowl);
     }
-}
 
-fn pistil(bed: &mut Bed<'_>, long: f64, full: f64, base: f64, wilt: f64) {
-    let thick = (0.016 * full).clamp(0.0005, 0.0022);
-    // Ovary, style, stigma.
-    let parts =
-        [(0.0, 1.6), (0.1, 2.0), (0.22, 1.1), (0.6, 0.8), (0.93, 0.9), (0.96, 2.0), (0.99, 2.2), (1.0, 1.2)];
-    let line = parts.map(|p| DVec3::new(0.0, base + p.0 * long, 0.0));
-    let radii = parts.map(|p| p.1 * thick);
-    #[expect(clippy::cast_possible_truncation, reason = "colours are f32")]
-    let w = 0.5 * wilt as f32;
-    bed.strand(OrganKind::Pistil, &line, &radii, [0.50, 0.64, 0.22].map(|x: f32| x * (1.0 - w)));
-}
+    /// Ovary, style and stigma; `bare`: without the ovary, which is the fruit.
+    fn pistil(&self, bed: &mut Bed<'_>, long: f64, base: f64, (bare, wilt): (bool, f64)) {
+        let thick = self.pistil_radius();
+        let [foot, ovary] = if bare { [0.8, 0.8] } else { [1.6, 2.0] };
+        let parts = [
+            (0.0, foot),
+            (0.1, ovary),
+            (0.22, 0.5 * (ovary + 0.2)),
+            (0.6, 0.8),
+            (0.93, 0.9),
+            (0.96, 2.0),
+            (0.99, 2.2),
+            (1.0, 1.2),
+        ];
+        let line = parts.map(|p| DVec3::new(0.0, base + p.0 * long, 0.0));
+        let radii = parts.map(|p| p.1 * thick);
+        let color = mix(self.pistil_color, [0.0; 3], 0.5 * wilt);
+        bed.strand(OrganKind::Pistil, &line, &radii, color);
+    }
 
-/// A dome of florets in Vogel's spiral (phyllotaxis of 137.5 degrees): they open, with pollen, from the rim inwards.
-fn florets(bed: &mut Bed<'_>, radius: f64, base: f64, [g, wilt]: [f64; 2]) {
-    let height = |share: f64| base + 0.30 * radius * (1.0 - share) - 0.001;
-    let mut floor = Grid {
-        points: Vec::new(),
-        across: (0..=24).map(|k| f64::from(k) / 24.0).collect(),
-        along: (0..=6).map(|i| f64::from(i) / 6.0).collect(),
-        colors: vec![[0.05, 0.035, 0.012]; 7 * 25],
-    };
-    for i in 0..=6 {
-        let r = f64::from(i) / 6.0;
-        let y = if i == 6 { base - 0.25 * radius } else { height(r * r) };
-        let r = radius * if i == 6 { 0.9 } else { r };
-        // Round the other way: a sheet's upper side has its columns from right to left.
-        for k in (0..=24).rev() {
-            let (s, c) = ops::sin_cos(ops::TAU * f64::from(k) / 24.0);
-            floor.points.push(DVec3::new(r * c, y, r * s));
+    /// A dome of florets in Vogel's spiral (phyllotaxis of 137.5 degrees): they open, with pollen, from the rim inwards.
+    fn florets(&self, bed: &mut Bed<'_>, radius: f64, base: f64, [g, wilt]: [f64; 2]) {
+        let look = &self.disc;
+        let height = |share: f64| base + look.dome * radius * (1.0 - share);
+        let mut floor = Grid {
+            points: Vec::new(),
+            across: (0..=24).map(|k| f64::from(k) / 24.0).collect(),
+            along: (0..=6).map(|i| f64::from(i) / 6.0).collect(),
+            colors: vec![look.dry_color.map(|x| 0.95 * x); 7 * 25],
+        };
+        for i in 0..=6 {
+            let r = f64::from(i) / 6.0;
+            let y = if i == 6 { base - 0.002 * radius } else { height(r * r) };
+            let r = radius * if i == 6 { 0.9 } else { r };
+            // Round the other way: a sheet's upper side has its columns from right to left.
+            for k in (0..=24).rev() {
+                let (s, c) = ops::sin_cos(ops::TAU * f64::from(k) / 24.0);
+                floor.points.push(DVec3::new(r * c, y, r * s));
+            }
+        }
+        bed.around(OrganKind::Disc, DVec3::Y * base, floor);
+        let count = look.florets.max(10);
+        let fat = 0.8 * radius * (1.0 / f64::from(count)).sqrt();
+        for k in 0..count {
+            let share = (f64::from(k) + 0.5) / f64::from(count);
+            let r = 0.97 * radius * share.sqrt();
+            let (s, c) = ops::sin_cos(f64::from(k) * rad(137.507_8));
+            let foot = DVec3::new(r * c, height(share), r * s);
+            // Blooming: the ring between the rim and where the opening has come.
+            let front = 1.0 - 0.75 * g * g;
+            let bloom = ops::smoothstep(front, front + 0.15, share) * (1.0 - wilt);
+            let long = radius * (0.08 + 0.05 * bloom);
+            let lean = 0.5 * share * g;
+            let up = DVec3::new(lean * c, 1.0, lean * s).normalize_or(DVec3::Y);
+            let young = mix(look.young_color, [0.10, 0.045, 0.012], 0.6 * share);
+            let color = mix(mix(young, look.open_color, 0.85 * bloom), look.dry_color, wilt);
+            let line = [0.0, 0.6, 1.0].map(|t| foot + up * (t * long));
+            bed.strand(OrganKind::Floret, &line, &[fat, fat, 0.45 * fat], color);
         }
     }
-    bed.around(OrganKind::Disc, DVec3::Y * base, floor);
-    let count = 280;
-    for k in 0..count {
-        let share = (f64::from(k) + 0.5) / f64::from(count);
-        let r = radius * share.sqrt();
+
+    /// One fruit and its parachute: closed until the fruit ripens.
+    fn achene(&self, bed: &mut Bed<'_>, k: u32, base: f64, times: &Times<'_>) {
+        let Achenes { count, length_m, head_m, color } = self.achenes;
+        let n = f64::from(count.max(1));
+        let grow = ops::smoothstep(0.15, 0.9, times.ripe).max(1e-3);
+        // Evenly over the sphere but for its foot, where the stalk is.
+        let y = 1.0 - 1.86 * (f64::from(k) + 0.5) / n;
+        let wide = (1.0 - y * y).max(0.0).sqrt();
         let (s, c) = ops::sin_cos(f64::from(k) * rad(137.507_8));
-        let foot = DVec3::new(r * c, height(share) - 0.001, r * s);
-        // Blooming: the ring between the rim and where the opening has come.
-        let front = 1.0 - 0.75 * g * g;
-        let bloom = ops::smoothstep(front, front + 0.15, share) * (1.0 - wilt);
-        let long = radius * (0.05 + 0.05 * bloom) + 0.0015;
-        let up = DVec3::new(0.5 * c * share, 1.0, 0.5 * s * share).normalize_or(DVec3::Y);
-        let [bud, pollen, dry] = [[0.115, 0.105, 0.022], [0.50, 0.235, 0.018], [0.055, 0.030, 0.012]];
-        let color = [0, 1, 2].map(|q| {
-            let young = ops::lerp(bud[q], [0.10, 0.045, 0.012][q], share);
-            #[expect(clippy::cast_possible_truncation, reason = "colours are f32")]
-            let x = ops::lerp(ops::lerp(young, pollen[q], 0.85 * bloom), dry[q], wilt) as f32;
-            x
-        });
-        let line = [0.0, 0.6, 1.0].map(|t| foot + up * (t * long));
-        let fat = 0.047 * radius;
-        bed.strand(OrganKind::Floret, &line, &[fat, fat, 0.45 * fat], color);
+        let out = DVec3::new(wide * c, y, wide * s);
+        // The head swells into a ball as bracts fold back.
+        let middle = DVec3::Y * (base + head_m * 0.6 * grow);
+        let head = head_m * ops::lerp(0.2, 1.0, grow);
+        let reach = length_m * grow;
+        let thin = 0.00012 * grow.max(0.05);
+        let line = [0.0, 0.06, 0.24, 0.3, 0.6, 1.0].map(|t| middle + out * (head + reach * t));
+        let radii = [1.0, 4.0, 4.0, 1.0, 0.8, 0.7].map(|r| r * thin);
+        bed.strand(OrganKind::Fruit, &line, &radii, color);
+        let sphere = head + reach;
+        // As wide as there is room beside the next.
+        let rim = 0.49 * sphere * (2.0 * ops::TAU * 0.93 / n).sqrt() * grow;
+        let (right, up) = out.any_orthonormal_pair();
+        let mut grid = Grid {
+            points: Vec::new(),
+            across: (0..=PAPPUS).map(|k| f64::from(k) / f64::from(PAPPUS)).collect(),
+            along: vec![0.0, 1.0],
+            colors: vec![[0.82, 0.82, 0.8]; 2 * (PAPPUS as usize + 1)],
+        };
+        for row in [0.04, 1.0] {
+            for j in (0..=PAPPUS).rev() {
+                let r = rim * if row < 0.5 { 0.04 } else if j.is_multiple_of(2) { 1.0 } else { 0.16 };
+                let (s, c) = ops::sin_cos(ops::TAU * f64::from(j) / f64::from(PAPPUS));
+                let rise = if row < 0.5 { 0.02 } else { 0.3 * r / rim.max(1e-9) };
+                grid.points.push(middle + out * (sphere + rim * rise) + right * (r * c) + up * (r * s));
+            }
+        }
+        bed.petal(OrganKind::Floret, grid);
     }
+}
+
+/// Radius of the innermost ring.
+fn inner_radius(rings: &[Whorl]) -> f64 {
+    rings.iter().map(|w| w.insertion.radius_m).fold(f64::INFINITY, f64::min)
 }

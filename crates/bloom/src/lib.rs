@@ -17,17 +17,22 @@
 //! | `pose` | [`settle`]: motion of plant and organs apart from growth |
 //! | `trial` | [`leave_one_out`]: the model against its rivals |
 //! | `motion` | [`Motion`]: the shape at any day |
-//! | `flower`, `centre`, `organs`, `species` | [`FlowerSpec`]: whole flowers that open and wilt, day -> `Plant` |
-//! | `overlap` | [`overlap_share`]: do petals pass through one another |
+//! | `flower`, `species` | [`FlowerSpec`]: whole flowers that open and wilt, day -> `Plant` |
+//! | `whorl`, `petal` | [`Whorl`]: rings of petals, nested within one another |
+//! | `centre` | [`Stamens`], [`Disc`], [`Fruit`], [`Achenes`] |
+//! | `cluster`, `foliage`, `organs` | [`Cluster`], [`Foliage`]: where flowers and leaves stand; petals on the ground |
+//! | `overlap` | [`part_overlap`]: do parts pass through one another |
 //! | `plot` | [`plot_svg`]: fits with their points |
 //! | `register` | [`register`]: the lattice that carries one scan into another |
 //! | `error` | [`compare`]: distances both ways |
 
 mod centre;
 mod clean;
+mod cluster;
 mod error;
 mod errors;
 mod flower;
+mod foliage;
 mod forms;
 mod kernel;
 mod lattice;
@@ -37,6 +42,7 @@ mod motion;
 mod obb;
 mod organs;
 mod overlap;
+mod petal;
 mod plot;
 mod pose;
 mod register;
@@ -44,11 +50,15 @@ mod segment;
 mod species;
 mod thin;
 mod trial;
+mod whorl;
 
+pub use centre::{Achenes, Disc, Fruit, Stamens};
 pub use clean::{CleanSpec, Cleaned, clean};
+pub use cluster::{Cluster, ClusterForm, Nods};
 pub use error::{Distances, ShapeError, compare};
 pub use errors::BloomError;
-pub use flower::{FlowerSpec, Insertion, PetalForm, PetalMesh, Stamens, Whorl};
+pub use flower::{FlowerSpec, PetalMesh};
+pub use foliage::Foliage;
 pub use forms::{Choice, Form, Series, SharedFit, choose, fit_shared};
 pub use lattice::{Lattice, Weights};
 pub use law::{GrowthLaw, LAW_SCHEMA, LawFault, LawSpec, Quantity, RegionLaw, Stage, fit_sizes, fit_stages};
@@ -56,10 +66,11 @@ pub use logistic::{Fit, FitError, Logistic, Offset, fit_law, fit_logistic};
 pub use motion::{Motion, MotionSpec, name_alike};
 pub use obb::Obb;
 pub use organs::Seat;
-pub use overlap::{overlap_share, petal_overlap};
+pub use overlap::{PartTriangle, crossed, overlap_share, part_overlap, part_triangles};
 pub use plot::plot_svg;
 pub use pose::{OrganStep, PoseStep, RigidMotion, Settled, settle};
 pub use register::{RegisterSpec, Registration, register};
 pub use segment::{Organ, SegmentSpec, match_organs, organ_at, organs, single_organ};
 pub use species::preset;
 pub use trial::{Rival, Trial, TrialRow, best_move, leave_one_out};
+pub use whorl::{Aestivation, Fate, Guide, Innermost, Insertion, PetalForm, Whorl};

@@ -37,6 +37,8 @@ pub(crate) struct Bed<'a> {
     pub bearer: Option<NodeId>,
     /// Its place and turn in the plant.
     pub place: (DVec3, DQuat),
+    /// Its size as a share: buds of a cluster that are younger than the first day are smaller.
+    pub size: f64,
     /// What keys of its organs come from.
     pub seed: Seed,
 }
@@ -51,7 +53,7 @@ pub(crate) struct Grid {
 
 impl Bed<'_> {
     pub(crate) fn at(&self, p: DVec3) -> DVec3 {
-        self.place.0 + self.place.1 * p
+        self.place.0 + self.place.1 * (p * self.size)
     }
 
     fn push(&mut self, kind: OrganKind, shape: Shape, frame: Frame, rgb: [f32; 3]) {
@@ -66,7 +68,12 @@ impl Bed<'_> {
     /// A petal: root in the first row, tip in the last.
     pub(crate) fn petal(&mut self, kind: OrganKind, grid: Grid) {
         let points = grid.points.iter().map(|&p| self.at(p)).collect();
-        let Grid { across, along, colors, .. } = grid;
+        self.loose_petal(kind, Grid { points, ..grid });
+    }
+
+    /// A petal whose points are those of the plant.
+    pub(crate) fn loose_petal(&mut self, kind: OrganKind, grid: Grid) {
+        let Grid { points, across, along, colors } = grid;
         let sheet = Sheet { points, across, along, colors, veins: Venation::default() };
         if let Some((sheet, frame)) = sheet.framed() {
             self.push(kind, Shape::Sheet(Arc::new(sheet)), frame, [1.0; 3]);
@@ -75,7 +82,7 @@ impl Bed<'_> {
 
     /// What lies around the flower's axis, in a frame that looks along it from `foot`.
     pub(crate) fn around(&mut self, kind: OrganKind, foot: DVec3, grid: Grid) {
-        let points = grid.points.iter().map(|&p| p - foot);
+        let points = grid.points.iter().map(|&p| (p - foot) * self.size);
         // Local z is the flower's y.
         let points = points.map(|p| DVec3::new(p.z, p.x, p.y)).collect();
         let Grid { across, along, colors, .. } = grid;
@@ -91,6 +98,7 @@ impl Bed<'_> {
         let (Some(&root), Some(&end)) = (line.first(), line.last()) else { return };
         let frame = Frame::looking(root, end - root, DVec3::Z);
         let path = line.iter().map(|&p| frame.localise(p)).collect();
-        self.push(kind, Shape::Strand { path, radius_m: radii.to_vec(), knob_m: 0.0 }, frame, rgb);
+        let radius_m = radii.iter().map(|r| r * self.size).collect();
+        self.push(kind, Shape::Strand { path, radius_m, knob_m: 0.0 }, frame, rgb);
     }
 }

@@ -1,7 +1,26 @@
-//! Do petals pass through one another? Triangles of different petals that cross.
+//! Do parts of a flower pass through one another? Triangles of different parts that cross.
 
+use base::ops;
 use glam::DVec3;
 use plant::{FlowerId, OrganKind, Plant, Shape};
+
+/// A triangle and the part that it belongs to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PartTriangle {
+    /// The part. Stem, stalks and receptacle are one, 0; so are a stamen and its anther, and the disc of a head.
+    pub part: u32,
+    /// The organ that it is of; none of a stem.
+    pub kind: Option<OrganKind>,
+    /// It is the foot of its part: there it grows out of the stem.
+    pub foot: bool,
+    /// Its corners, metres.
+    pub corners: [DVec3; 3],
+}
+
+/// The part that stem, stalks and receptacles are.
+const STEM: u32 = 0;
+/// Sides of a strand or stem as it is measured.
+const SIDES: u32 = 6;
 
 /// Share of triangles that cross a triangle of another group, 0 to 1; each comes with its group, the petal.
 ///
@@ -16,47 +35,147 @@ use plant::{FlowerId, OrganKind, Plant, Shape};
 /// assert_eq!(bloom::overlap_share(&[(0, a), (0, b)]), 0.0);
 /// ```
 pub fn overlap_share(rows: &[(u32, [DVec3; 3])]) -> f64 {
-    if rows.is_empty() {
-        return 0.0;
-    }
-    // Sweep along x: candidates are those whose boxes overlap.
-    let low = |t: &[DVec3; 3]| t[0].min(t[1]).min(t[2]);
-    let high = |t: &[DVec3; 3]| t[0].max(t[1]).max(t[2]);
-    let mut order: Vec<usize> = (0..rows.len()).collect();
-    base::sort_by(&mut order, |&a, &b| low(&rows[a].1).x.total_cmp(&low(&rows[b].1).x));
-    let mut crossed = vec![false; rows.len()];
-    let mut open: Vec<usize> = Vec::new();
-    for &i in &order {
-        let (a, b) = (low(&rows[i].1), high(&rows[i].1));
-        open.retain(|&k| high(&rows[k].1).x >= a.x);
-        for &k in &open {
-            if rows[k].0 == rows[i].0 || (crossed[i] && crossed[k]) {
-                continue;
-            }
-            let (c, d) = (low(&rows[k].1), high(&rows[k].1));
-            let apart = c.y > b.y || d.y < a.y || c.z > b.z || d.z < a.z;
-            if !apart && crosses(&rows[i].1, &rows[k].1) {
-                crossed[i] = true;
-                crossed[k] = true;
-            }
-        }
-        open.push(i);
-    }
-    crossed.iter().filter(|c| **c).count() as f64 / rows.len() as f64
+    let rows: Vec<PartTriangle> =
+        rows.iter().map(|&(part, corners)| PartTriangle { part: part + 1, kind: None, foot: false, corners }).collect();
+    share(&crossed(&rows))
 }
 
-/// Share of the triangles of petals and sepals that cross another one's; of one flower, or of all together.
-///
-/// Only sheets are looked at: petals as they are at a day.
-pub fn petal_overlap(plant: &Plant, flower: Option<FlowerId>) -> f64 {
-    let mut rows = Vec::new();
-    let petals = plant.organs.iter().filter(|o| matches!(o.kind, OrganKind::Petal | OrganKind::Sepal));
-    for (petal, organ) in (0..).zip(petals.filter(|o| flower.is_none() || o.flower == flower)) {
-        let Some(Shape::Sheet(sheet)) = plant.shapes.get(organ.shape.index()) else { continue };
-        let points: Vec<DVec3> = sheet.points.iter().map(|&p| organ.frame.place(p, organ.scale)).collect();
-        rows.extend(sheet.triangles().map(|t| (petal, t.map(|k| points[k]))));
+fn share(crossed: &[Option<usize>]) -> f64 {
+    crossed.iter().flatten().count() as f64 / crossed.len().max(1) as f64
+}
+
+/// For each triangle one of another part that it crosses, if any. The foot of a part may lie in the stem.
+pub fn crossed(rows: &[PartTriangle]) -> Vec<Option<usize>> {
+    let mut crossed = vec![None; rows.len()];
+    let low = |t: &[DVec3; 3]| t[0].min(t[1]).min(t[2]);
+    let high = |t: &[DVec3; 3]| t[0].max(t[1]).max(t[2]);
+    let boxes: Vec<(DVec3, DVec3)> = rows.iter().map(|r| (low(&r.corners), high(&r.corners))).collect();
+    let (bottom, top) = boxes
+        .iter()
+        .filter(|b| b.0.is_finite() && b.1.is_finite())
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x.0.y), b.max(x.1.y)));
+    // Slices of the height, and in each a sweep along x: candidates are those whose boxes overlap.
+    const SLICES: usize = 48;
+    let thick = ((top - bottom) / SLICES as f64).max(1e-12);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to SLICES")]
+    let slice = |y: f64| (((y - bottom) / thick).clamp(0.0, SLICES as f64) as usize).min(SLICES - 1);
+    let mut slices: Vec<Vec<usize>> = vec![Vec::new(); SLICES];
+    for (i, b) in boxes.iter().enumerate().filter(|(_, b)| b.0.is_finite() && b.1.is_finite()) {
+        slices[slice(b.0.y)..=slice(b.1.y)].iter_mut().for_each(|s| s.push(i));
     }
-    overlap_share(&rows)
+    for order in &mut slices {
+        base::sort_by(order, |&a, &b| boxes[a].0.x.total_cmp(&boxes[b].0.x));
+        let mut open: Vec<usize> = Vec::new();
+        for &i in order.iter() {
+            let (a, b) = boxes[i];
+            open.retain(|&k| boxes[k].1.x >= a.x);
+            for &k in &open {
+                let (p, q) = (&rows[i], &rows[k]);
+                let grown = (p.foot && q.part == STEM) || (q.foot && p.part == STEM);
+                if p.part == q.part || grown || (crossed[i].is_some() && crossed[k].is_some()) {
+                    continue;
+                }
+                let (c, d) = boxes[k];
+                let apart = c.y > b.y || d.y < a.y || c.z > b.z || d.z < a.z;
+                if !apart && crosses(&p.corners, &q.corners) {
+                    crossed[i] = Some(k);
+                    crossed[k] = Some(i);
+                }
+            }
+            open.push(i);
+        }
+    }
+    crossed
+}
+
+/// Share of the triangles of all parts that cross another part's; of one flower, or of the whole plant with its stems
+/// and leaves.
+pub fn part_overlap(plant: &Plant, flower: Option<FlowerId>) -> f64 {
+    share(&crossed(&part_triangles(plant, flower)))
+}
+
+/// The triangles of all parts: petals, sepals, stamens, pistil, disc, fruit, receptacle; without a flower given also
+/// leaves and stems. The same rows at every day of a flower.
+pub fn part_triangles(plant: &Plant, flower: Option<FlowerId>) -> Vec<PartTriangle> {
+    let mut rows = Vec::new();
+    let mut part = STEM;
+    let mut before: Option<(OrganKind, Option<FlowerId>)> = None;
+    for organ in plant.organs.iter().filter(|o| flower.is_none() || o.flower == flower) {
+        let kind = organ.kind;
+        let same = before.is_some_and(|(last, of)| of == organ.flower && joined(last, kind));
+        before = Some((kind, organ.flower));
+        let shape = plant.shapes.get(organ.shape.index());
+        let petiole = kind == OrganKind::Leaf && matches!(shape, Some(Shape::Strand { .. }));
+        if !same {
+            part += 1;
+        }
+        let own = if kind == OrganKind::Pedicel || petiole { STEM } else { part };
+        match shape {
+            Some(Shape::Sheet(sheet)) => {
+                let points: Vec<DVec3> =
+                    sheet.points.iter().map(|&p| organ.frame.place(p, organ.scale)).collect();
+                let first = 2 * (sheet.across.len() - 1);
+                rows.extend(sheet.triangles().enumerate().map(|(i, t)| PartTriangle {
+                    part: own,
+                    kind: Some(kind),
+                    foot: i < first,
+                    corners: t.map(|k| points[k]),
+                }));
+            }
+            Some(Shape::Strand { path, radius_m, .. }) => {
+                let line: Vec<DVec3> = path.iter().map(|&p| organ.frame.place(p, organ.scale)).collect();
+                let foot = !matches!(kind, OrganKind::Anther);
+                tube(&mut rows, (own, Some(kind)), &line, |k| radius_m[k] * organ.scale, foot);
+            }
+            _ => {}
+        }
+    }
+    if flower.is_none() {
+        for axis in &plant.axes {
+            let nodes = axis.nodes.start as usize..axis.nodes.end as usize;
+            let radii = &plant.nodes.radius_m[nodes.clone()];
+            tube(&mut rows, (STEM, None), &plant.nodes.position[nodes], |k| radii[k], false);
+        }
+    }
+    rows
+}
+
+/// Organs that come one after the other and are one part: an anther on its filament, a pistil on its ovary, florets on
+/// their disc, a parachute on its fruit.
+const fn joined(last: OrganKind, next: OrganKind) -> bool {
+    use OrganKind::{Anther, Disc, Floret, Fruit, Pistil, Stamen};
+    matches!((last, next), (Stamen, Anther) | (Fruit, Pistil) | (Disc | Floret, Floret) | (Fruit, Floret))
+}
+
+/// A strand as a tube of few sides.
+fn tube(
+    rows: &mut Vec<PartTriangle>,
+    (part, kind): (u32, Option<OrganKind>),
+    line: &[DVec3],
+    radius: impl Fn(usize) -> f64,
+    foot: bool,
+) {
+    let ring = |k: usize| -> Vec<DVec3> {
+        let (a, b) = (line[k.saturating_sub(1)], line[(k + 1).min(line.len() - 1)]);
+        let along = (b - a).try_normalize().unwrap_or(DVec3::Y);
+        let right = along.cross(DVec3::new(0.36, 0.48, 0.8)).try_normalize().unwrap_or(DVec3::X);
+        let up = along.cross(right);
+        let corner = |j: u32| {
+            let (s, c) = ops::sin_cos(ops::TAU * f64::from(j) / f64::from(SIDES));
+            line[k] + (right * c + up * s) * radius(k)
+        };
+        (0..SIDES).map(corner).collect()
+    };
+    let rings: Vec<Vec<DVec3>> = (0..line.len()).map(ring).collect();
+    for (k, pair) in rings.windows(2).enumerate() {
+        let (a, b) = (&pair[0], &pair[1]);
+        for j in 0..a.len() {
+            let next = (j + 1) % a.len();
+            for corners in [[a[j], b[j], a[next]], [a[next], b[j], b[next]]] {
+                rows.push(PartTriangle { part, kind, foot: foot && k == 0, corners });
+            }
+        }
+    }
 }
 
 /// An edge of one passes through the inside of the other.

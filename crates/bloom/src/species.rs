@@ -13,9 +13,25 @@ macro_rules! species {
     };
 }
 
-species!["rose", "lily", "tulip", "sunflower", "clivia"];
+species![
+    "rose",
+    "lily",
+    "tulip",
+    "sunflower",
+    "clivia",
+    "peony",
+    "magnolia",
+    "cherry",
+    "iris",
+    "daisy",
+    "poppy",
+    "morning-glory",
+    "orchid",
+    "dandelion",
+    "water-lily"
+];
 
-/// A flower by name: rose, lily, tulip, sunflower or clivia.
+/// A flower by name, one of [`FlowerSpec::PRESETS`].
 ///
 /// ```
 /// assert!(bloom::preset("lily").is_some() && bloom::preset("oak").is_none());
@@ -48,7 +64,7 @@ mod tests {
                     p.organs.iter().map(|o| (o.kind, o.bearer, o.flower, o.shape, o.key)).collect()
                 };
                 assert_eq!(kept(&flower), kept(&first), "{name}");
-                let share = crate::petal_overlap(&flower, None);
+                let share = crate::part_overlap(&flower, None);
                 println!("{name} day {day:.1}: {:.3} % of petal triangles cross", share * 100.0);
                 worst = worst.max(share);
             }

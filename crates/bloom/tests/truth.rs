@@ -121,7 +121,7 @@ fn laws_of_regions_open_a_petal_region_by_region() {
     let lily = preset("lily").unwrap();
     let points = |law: &GrowthLaw| {
         let plant = lily.at(3.0, law, Seed::new(1));
-        assert!(bloom::petal_overlap(&plant, None) <= 0.0, "no petal crosses another");
+        assert!(bloom::part_overlap(&plant, None) <= 0.0, "no petal crosses another");
         let first = plant.organs.iter().find(|o| o.kind == OrganKind::Petal).unwrap().clone();
         let Shape::Sheet(sheet) = &plant.shapes[first.shape.index()] else { panic!("a petal is a sheet") };
         sheet.points.iter().map(|&p| first.frame.place(p, first.scale)).collect::<Vec<DVec3>>()

@@ -142,7 +142,7 @@ impl OpeningPlant {
                 organ.flower = Some(placed.flower);
                 organ.source = placed.worn.filter(|_| organ.kind == OrganKind::Petal);
             }
-            overlap = overlap.max(bloom::petal_overlap(&plant, Some(placed.flower)));
+            overlap = overlap.max(bloom::part_overlap(&plant, Some(placed.flower)));
         }
         debug_assert_eq!(plant.validate().next(), None, "a sound plant");
         let (steady, kept) = (self.steady(), Some(&mut self.kept));

@@ -1,0 +1,386 @@
+//! One petal at one day: its profile, nested within those outside it, and the grid of points that follows.
+
+use base::{Draw, Seed, ops};
+use glam::DVec3;
+use plant::OrganKind;
+
+use crate::flower::{FlowerSpec, PetalMesh, rad};
+use crate::foliage::Ground;
+use crate::organs::{Bed, Grid};
+use crate::whorl::{Aestivation, Fate, Whorl};
+use crate::{GrowthLaw, Quantity};
+
+/// Of a closed bud, linear.
+const BUD: [f32; 3] = [0.27, 0.40, 0.09];
+/// Steps of a profile.
+const FINE: usize = 96;
+/// How long a petal falls, as a share of the wilting.
+const FALL: f64 = 0.05;
+
+/// Where a flower is in its life.
+pub(crate) struct Times<'a> {
+    law: &'a GrowthLaw,
+    /// Share of the opening, below 0 of a bud that is younger than the first day.
+    share: f64,
+    /// -1 the bud, 0 full bloom, 1 the end.
+    pub life: f64,
+    /// How far it has opened, wilted and ripened, 0 to 1.
+    pub open: f64,
+    pub wilt: f64,
+    pub ripe: f64,
+    ripening: f64,
+}
+
+impl<'a> Times<'a> {
+    pub(crate) fn new(spec: &FlowerSpec, law: &'a GrowthLaw, day: f64) -> Self {
+        let [opening, wilting] = [spec.opening_days, spec.wilting_days].map(|d| d.max(1e-6));
+        let share = day / opening;
+        let life = if day < opening { (share - 1.0).max(-1.0) } else { ((day - opening) / wilting).min(1.0) };
+        let times = Self {
+            law,
+            share,
+            life,
+            open: spec.opened(law, day),
+            wilt: 0.0,
+            ripe: 0.0,
+            ripening: spec.ripening.clamp(0.0, 0.9),
+        };
+        let [wilt, ripe] = times.late(life);
+        Self { wilt, ripe, ..times }
+    }
+
+    /// How far it has wilted and ripened at a moment of its life.
+    fn late(&self, life: f64) -> [f64; 2] {
+        let wilt = (life / (1.0 - self.ripening)).clamp(0.0, 1.0);
+        let ripe = ((life - 1.0 + self.ripening) / self.ripening.max(1e-9)).clamp(0.0, 1.0);
+        [wilt, if self.ripening > 0.0 { ripe } else { 0.0 }]
+    }
+}
+
+/// State of one petal at one day.
+#[derive(Clone, Copy)]
+pub(crate) struct State {
+    pub angle: [f64; 3],
+    length: f64,
+    width: f64,
+    /// How far it has opened and wilted, 0 to 1.
+    open: f64,
+    wilt: f64,
+    /// How far it has gone to the colour of age.
+    aged: f64,
+}
+
+fn blend3(a: [f64; 3], b: [f64; 3], g: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|k| ops::lerp(a[k], b[k], g[k]))
+}
+
+impl Whorl {
+    /// The state of a petal that opens later than the first of its ring by a share of the opening.
+    pub(crate) fn state(&self, times: &Times<'_>, later: f64) -> State {
+        self.state_at(times, later, times.life)
+    }
+
+    fn state_at(&self, times: &Times<'_>, later: f64, life: f64) -> State {
+        let law = times.law;
+        let share = if life < 0.0 { times.share.min(1.0 + life) } else { times.share };
+        // The law's own time is stretched to the opening; a petal with a delay starts later and ends with the others.
+        let delay = (self.delay + later).clamp(0.0, 0.9);
+        let share = ((share - delay) / (1.0 - delay)).clamp(0.0, 1.0);
+        let (span, now) = (law.span_days, share * law.span_days);
+        // Each part of a petal opens as its region moves; without laws of regions, as the organ grows.
+        let g = [0.15, 0.5, 0.85].map(|along| law.pace_at("petal", along, 0.0, span, now).clamp(0.0, 1.0));
+        let size = law.progress("petal", Quantity::Size, 0.5, 0.0, span, now).clamp(0.0, 1.0);
+        let [late, ripe] = times.late(life.max(0.0));
+        let wilt = ops::smoothstep(0.0, 1.0, late);
+        let open = blend3(self.bud_deg, self.open_deg, g);
+        let wilted = blend3(open, self.wilted_deg, [wilt; 3]);
+        let ripe = ops::smoothstep(0.0, 1.0, ripe) * self.ripens;
+        let young = if self.sepal { [0.82, 0.8] } else { [0.62, 0.55] };
+        let [short, narrow] = [0.24, 0.45].map(|x| 1.0 - x * self.shrivel * wilt);
+        State {
+            angle: blend3(wilted, self.ripe_deg, [ripe; 3]).map(rad),
+            // Sepals and bracts are nearly grown in the bud. Withered petals are about a quarter shorter and half as
+            // wide: they roll in and dry.
+            length: self.length_m * ops::lerp(young[0], 1.0, size) * short,
+            width: self.width_m * ops::lerp(young[1], 1.0, size) * narrow,
+            open: size,
+            wilt,
+            aged: ops::smoothstep(-0.15, 0.55, life) * self.aging,
+        }
+    }
+
+    /// The colour at a place: from base to tip, a little deeper along the middle; withering browns it from the
+    /// margin and the tip inwards.
+    #[expect(clippy::cast_possible_truncation, reason = "colours are f32")]
+    fn color(&self, u: f64, v: f64, state: &State) -> [f32; 3] {
+        let share = ops::smoothstep(0.0, 0.6, v) as f32;
+        let middle = (1.0 - 0.14 * (1.0 - u.abs()) * (1.0 - u.abs())) as f32;
+        let dry = if self.sepal { [0.17, 0.15, 0.045] } else { [0.14, 0.08, 0.033] };
+        // The margin is brown at half of the wilting, the middle at its end.
+        let inner = 1.0 - (v * v).max(u * u);
+        let withered = ops::smoothstep(0.0, 1.0, (1.9 * state.wilt - 0.9 * inner).clamp(0.0, 1.0));
+        // What shrivels little keeps its colour.
+        let withered = (withered * (0.35 + 0.65 * self.shrivel)) as f32;
+        // The bud greens from its base and along its middle, and the green goes as it opens.
+        let young = 1.0 - ops::smoothstep(0.0, 0.75, state.open);
+        let green = (self.green * young * (1.0 - 0.5 * v * v) * (1.0 - 0.25 * u * u)) as f32;
+        let (guide, aged) = (self.guide.at(u, v) as f32, state.aged as f32);
+        // Pink over green is grey: the tip's own colour comes when most of the green has gone.
+        let late = (1.0 - green) * (1.0 - green);
+        [0, 1, 2].map(|q| {
+            let fair = self.base_color[q] + (self.tip_color[q] - self.base_color[q]) * share * late;
+            let fair = fair + (self.aged_color[q] - fair) * aged;
+            let own = (fair + (self.guide.color[q] - fair) * guide) * middle;
+            let fresh = own + (BUD[q] - own) * green;
+            // Some of the petal's own colour stays.
+            fresh + (0.88 * dry[q] + 0.12 * fresh - fresh) * withered
+        })
+    }
+}
+
+/// Where rows and columns of a petal lie.
+pub(crate) struct Rows {
+    across: Vec<f64>,
+    along: Vec<f64>,
+}
+
+impl Rows {
+    pub(crate) fn new(mesh: PetalMesh) -> Self {
+        let (rows, columns) = (mesh.rows.max(2), mesh.columns.max(2));
+        let even = |n: u32| (0..=n).map(move |i| f64::from(i) / f64::from(n));
+        Self {
+            across: even(columns).collect(),
+            // Rows are closer towards the tip, where the outline turns.
+            along: even(rows).map(|t| 1.0 - ops::powf(1.0 - t, 1.6)).collect(),
+        }
+    }
+}
+
+/// How far out what lies outside has bent, by the way along it from its base: nothing inside bends farther.
+pub(crate) struct Nest {
+    /// Metres a step.
+    step: f64,
+    angle: [f64; FINE + 1],
+}
+
+impl Nest {
+    pub(crate) fn new(reach: f64) -> Self {
+        Self { step: reach.max(1e-6) / FINE as f64, angle: [f64::INFINITY; FINE + 1] }
+    }
+
+    /// The greatest angle to the axis at a way from the base, radians.
+    pub(crate) fn limit(&self, way: f64) -> f64 {
+        let at = (way / self.step).clamp(0.0, FINE as f64);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to FINE")]
+        let low = at.floor() as usize;
+        let (a, b) = (self.angle[low], self.angle[(low + 1).min(FINE)]);
+        if a.is_finite() && b.is_finite() { ops::lerp(a, b, at - low as f64) } else { a.min(b) }
+    }
+
+    /// Takes a profile in: what comes next lies inside it.
+    fn hold(&mut self, curve: &Curve) {
+        for (k, angle) in self.angle.iter_mut().enumerate() {
+            let way = k as f64 * self.step;
+            if way <= curve.length {
+                *angle = angle.min(curve.angle(way / curve.length.max(1e-9)));
+            }
+        }
+    }
+}
+
+/// The line that a petal follows in the half plane of its azimuth, by even steps.
+pub(crate) struct Curve {
+    length: f64,
+    /// Distance from the axis, height, and sine and cosine of the angle to the axis.
+    points: [[f64; 4]; FINE + 1],
+    angles: [f64; FINE + 1],
+}
+
+impl Curve {
+    fn new(whorl: &Whorl, state: &State, nest: &Nest) -> Self {
+        let [a, b, c] = state.angle;
+        // Angles between the three places by a parabola through them.
+        let bent = |v: f64| a * (1.0 - v) * (1.0 - 2.0 * v) + 4.0 * b * v * (1.0 - v) + c * v * (2.0 * v - 1.0);
+        let (mut radius, mut height) = (whorl.insertion.radius_m, whorl.insertion.height_m);
+        let least = radius.min(0.0012);
+        let step = state.length / FINE as f64;
+        let mut points = [[0.0; 4]; FINE + 1];
+        let mut angles = [0.0; FINE + 1];
+        for k in 0..=FINE {
+            let v = k as f64 / FINE as f64;
+            let angle = bent(v).min(nest.limit(v * state.length));
+            let (sin, cos) = ops::sin_cos(angle);
+            angles[k] = angle;
+            points[k] = [radius, height, sin, cos];
+            // A profile that comes to the axis runs up along it.
+            radius = (radius + sin * step).max(least);
+            height += cos * step;
+        }
+        Self { length: state.length, points, angles }
+    }
+
+    fn at(&self, v: f64) -> [f64; 4] {
+        let (low, t) = Self::row(v);
+        let (a, b) = (&self.points[low], &self.points[low + 1]);
+        [0, 1, 2, 3].map(|q| ops::lerp(a[q], b[q], t))
+    }
+
+    fn angle(&self, v: f64) -> f64 {
+        let (low, t) = Self::row(v);
+        ops::lerp(self.angles[low], self.angles[low + 1], t)
+    }
+
+    fn row(v: f64) -> (usize, f64) {
+        let at = v.clamp(0.0, 1.0) * FINE as f64;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to FINE - 1")]
+        let low = (at.floor() as usize).min(FINE - 1);
+        (low, at - low as f64)
+    }
+}
+
+impl FlowerSpec {
+    /// All petals of a ring, and their profile taken into the nest.
+    pub(crate) fn ring(
+        &self,
+        bed: &mut Bed<'_>,
+        kind: OrganKind,
+        ring: &Whorl,
+        (times, rows): (&Times<'_>, &Rows),
+        (nest, ground): (&mut Nest, &mut Ground),
+    ) {
+        let together = matches!(ring.aestivation, Aestivation::Contorted | Aestivation::Fused);
+        let n = ring.count.max(1);
+        let mut order: Vec<(u32, u32)> = (0..n).map(|k| (ring.rank(k), k)).collect();
+        order.sort_unstable();
+        if together {
+            order.iter_mut().zip(0..).for_each(|(row, k)| row.1 = k);
+        }
+        let size = (1.05 * ring.length_m.max(ring.width_m)) * bed.size;
+        if ring.fate == Fate::Drop {
+            ground.next_ring(n, size);
+        }
+        let mut shared: Option<(Curve, State, Vec<[f32; 3]>)> = None;
+        for &(rank, k) in &order {
+            let last = f64::from(n.max(2) - 1);
+            let later = if together { 0.0 } else { ring.succession * f64::from(rank) / last };
+            let seed = bed.seed.child(u64::from(k)).child(ring.length_m.to_bits());
+            let released = ring.falls + (0.9 - ring.falls) * 0.5 * f64::from(rank) / last
+                + 0.04 * seed.stream(Draw::Size).uniform();
+            let loose = ring.fate != Fate::Cling && times.life > released;
+            let alone = loose || (!together && ring.succession > 0.0);
+            if alone || shared.is_none() {
+                let life = if loose { released } else { times.life };
+                let mut state = ring.state_at(times, later, life);
+                let curve = Curve::new(ring, &state, nest);
+                if loose {
+                    state.wilt = (state.wilt + 0.6 * (times.life - released)).min(0.85);
+                } else {
+                    nest.hold(&curve);
+                }
+                let colors = Self::colors(ring, &state, rows);
+                if alone {
+                    let fallen = if loose { ((times.life - released) / FALL).min(1.0) } else { 0.0 };
+                    let grid = self.petal(ring, (&curve, &state, colors), rows, (k, rank));
+                    place(bed, kind, grid, (ring, k, fallen), ground, seed);
+                    continue;
+                }
+                shared = Some((curve, state, colors));
+            }
+            if let Some((curve, state, colors)) = &shared {
+                let grid = self.petal(ring, (curve, state, colors.clone()), rows, (k, rank));
+                bed.petal(kind, grid);
+            }
+        }
+    }
+
+    fn colors(ring: &Whorl, state: &State, rows: &Rows) -> Vec<[f32; 3]> {
+        let across = || rows.across.iter().map(|&t| 2.0 * t - 1.0);
+        rows.along.iter().flat_map(|&v| across().map(move |u| ring.color(u, v, state))).collect()
+    }
+
+    /// Height of the waves of margins, as a share of the petal's length: soft in bloom, crumpled when withered.
+    fn waves(azimuth: f64, v: f64, state: &State) -> f64 {
+        let soft = 0.010 * state.open * ops::sin(5.0 * azimuth + 2.0 * v) * (1.0 - state.wilt);
+        if state.wilt <= 0.0 {
+            return soft;
+        }
+        let crumpled = ops::sin(9.0 * azimuth + 7.0 * v) + 0.6 * ops::sin(16.0 * azimuth - 11.0 * v);
+        soft + 0.019 * state.wilt * crumpled
+    }
+
+    /// One petal in the flower's own coordinates.
+    fn petal(
+        &self,
+        whorl: &Whorl,
+        (curve, state, colors): (&Curve, &State, Vec<[f32; 3]>),
+        rows: &Rows,
+        (k, rank): (u32, u32),
+    ) -> Grid {
+        let mut points = Vec::with_capacity(colors.len());
+        let apart = whorl.apart();
+        let azimuth = rad(whorl.phase_deg) + apart * f64::from(k);
+        // A petal wraps the axis, but neither itself nor more than its next neighbours.
+        let widest = match whorl.aestivation {
+            Aestivation::Contorted => 0.85 * apart,
+            Aestivation::Imbricate => 1.15 * apart,
+            Aestivation::Valvate => 0.485 * apart,
+            Aestivation::Fused => 0.5 * apart,
+        };
+        let level = 0.5 * f64::from(whorl.count.max(1) - 1) - f64::from(rank);
+        let twist = rad(whorl.twist_deg) * (1.0 - state.open);
+        for (i, &row) in rows.along.iter().enumerate() {
+            let half = 0.5 * state.width * whorl.outline(row);
+            let fused = whorl.aestivation == Aestivation::Fused;
+            for (j, &t) in rows.across.iter().enumerate() {
+                let u = 2.0 * t - 1.0;
+                let mut v = whorl.place(u, row);
+                let mut broad = half;
+                if whorl.fringe > 0.0 {
+                    v -= 0.14 * whorl.fringe * row * row * row * f64::from((j % 2) as u32);
+                    broad *= 1.0 - 0.35 * whorl.fringe * row * f64::from((i % 2) as u32);
+                }
+                let [radius, height, s, c] = curve.at(v);
+                let spread = if fused { widest } else { (broad / radius.max(1e-4)).min(0.9 * ops::PI).min(widest) };
+                let angle = azimuth + u * spread + twist * v;
+                let (sin, cos) = ops::sin_cos(angle);
+                // Waves are those of the whole flower: petals that lie over one another wave together.
+                // Near the axis there is no room for them.
+                let room = state.length.min(4.0 * radius) * v * v * whorl.crumple;
+                let own = match whorl.aestivation {
+                    Aestivation::Contorted => whorl.lean_m * u,
+                    Aestivation::Imbricate => whorl.lean_m * level,
+                    _ => 0.0,
+                };
+                let cup = whorl.cup * half * u * u * v.min(0.3) / 0.3;
+                let lean = own - cup + room * Self::waves(angle, v, state);
+                let (r, y) = ((radius + lean * c).max(1e-5), height - lean * s);
+                points.push(DVec3::new(r * cos, y, r * sin));
+            }
+        }
+        Grid { points, across: rows.across.clone(), along: rows.along.clone(), colors }
+    }
+}
+
+/// A petal of its own: in the flower, on its way down, on the ground, or gone.
+fn place(
+    bed: &mut Bed<'_>,
+    kind: OrganKind,
+    mut grid: Grid,
+    (ring, k, fallen): (&Whorl, u32, f64),
+    ground: &Ground,
+    seed: Seed,
+) {
+    if fallen > 0.0 && ring.fate == Fate::Gone {
+        let columns = grid.across.len();
+        let root = grid.points[columns / 2];
+        let left = (1.0 - fallen).max(1e-3);
+        grid.points.iter_mut().for_each(|p| *p = root + (*p - root) * left);
+    }
+    if fallen > 0.0 && ring.fate == Fate::Drop {
+        grid.points.iter_mut().for_each(|p| *p = bed.at(*p));
+        ground.drop(&mut grid, ground.azimuth(k), fallen, seed);
+        bed.loose_petal(kind, grid);
+    } else {
+        bed.petal(kind, grid);
+    }
+}
