@@ -154,7 +154,10 @@ impl Rings {
         let above = self.above();
         let mut out: Vec<(u32, Vec<u32>)> = vec![];
         let mut work: std::collections::VecDeque<(u32, u32)> = std::collections::VecDeque::new();
-        let feet = (0_u32..).zip(&self.rings).filter(|(_, r)| r.below == NONE && r.alive);
+        // What stands beside the stem and goes nowhere is grass or a root.
+        let high = self.rings.iter().filter(|r| r.below == NONE).map(|r| r.reach).fold(0.0, f64::max);
+        let feet = (0_u32..).zip(&self.rings);
+        let feet = feet.filter(|(_, r)| r.below == NONE && r.alive && r.reach >= 0.25 * high);
         work.extend(feet.map(|(k, _)| (NONE, k)));
         while let Some((bearer, first)) = work.pop_front() {
             let mut run = vec![first];

@@ -69,7 +69,12 @@ fn along(points: &[DVec3], ways: &Ways, rings: &Rings, run: &[u32], noise: f64) 
             let far = flat.iter().map(|p| p.length()).fold(0.0, f64::max);
             let mut stream = Seed::new(u64::from(run[i])).stream(Draw::Sampling);
             let circle = fit_circle(&flat, noise, 1.5 * far, &mut stream)?;
-            let error = error_of(&circle, noise);
+            // A ring whose points scatter by much more or less than its circle is wide has another's points in it.
+            let flat = 0.29 * rings.band;
+            let wide = (ring.spread * ring.spread - flat * flat).max(0.0).sqrt().max(0.2 * ring.spread);
+            let ratio = circle.radius / wide;
+            let odd = if (0.6..1.6).contains(&ratio) { 0.0 } else { 0.3 * ops::ln(ratio).abs() };
+            let error = error_of(&circle, noise) + odd;
             let middle = ring.middle + u * circle.centre.x + v * circle.centre.y;
             Some(Measured { radius: circle.radius, error, middle, covered: circle.covered })
         })
@@ -122,29 +127,65 @@ impl Pipes {
         };
         let mut counts = base::LiteMap::<i64, f64>::new();
         sound.iter().for_each(|s| *counts.entry(octave(s.0)).or_default() += 1.0);
-        let mut fit = usual;
-        let mut width = 1.0;
-        for round in 0..20 {
+        let weight = |l: f64| {
+            let n = counts.get(&octave(l)).copied().unwrap_or(1.0);
+            1.0 / n.max(30.0).sqrt()
+        };
+        let mut fit = Self::start(&sound, &weight, usual);
+        for _ in 0..20 {
+            let width = 3.0 * fit.scatter;
             let mut sums = [0.0; 5];
             for &(l, r, e) in &sound {
                 let off = (r - fit.a - fit.b * l) / width;
-                let tukey = if round == 0 { 1.0 } else { (1.0 - off * off).max(0.0) };
-                let n = counts.get(&octave(l)).copied().unwrap_or(1.0);
-                let w = tukey * tukey / (0.05 * 0.05 + e * e) / n.max(4.0);
+                let tukey = (1.0 - off * off).max(0.0);
+                let w = tukey * tukey * weight(l) / (0.05 * 0.05 + e * e);
                 [w, w * l, w * l * l, w * r, w * l * r].iter().zip(&mut sums).for_each(|(x, s)| *s += x);
             }
             let [w, l, ll, r, lr] = sums;
             let det = w * ll - l * l;
-            let b = if det > 1e-9 * w * w { (w * lr - l * r) / det } else { usual.b };
+            let b = if det > 1e-9 * w * w { (w * lr - l * r) / det } else { fit.b };
             let b = b.clamp(0.25, 0.8);
             fit = Self { a: (r - b * l) / w.max(1e-300), b, ..fit };
-            let mut off: Vec<f64> = sound.iter().map(|(l, r, _)| (r - fit.a - fit.b * l).abs()).collect();
-            base::sort_numbers(&mut off);
-            // 1.48 medians are a standard deviation.
-            fit.scatter = (1.48 * off[off.len() / 2]).clamp(0.05, 0.6);
-            width = 4.0 * fit.scatter;
+            fit.scatter = fit.spread(&sound, &weight);
         }
         fit
+    }
+
+    /// Of many lines through two circles that which half of the circles are nearest to.
+    fn start(sound: &[(f64, f64, f64)], weight: &dyn Fn(f64) -> f64, usual: Self) -> Self {
+        let mut stream = Seed::new(sound.len() as u64).stream(Draw::Sampling);
+        let few: Vec<(f64, f64, f64)> = sound.iter().copied().step_by(sound.len() / 2000 + 1).collect();
+        let mut best = usual;
+        best.scatter = f64::INFINITY;
+        for _ in 0..300 {
+            let [p, q] = [0; 2].map(|_: u8| few[stream.below(few.len())]);
+            let b = (p.1 - q.1) / (p.0 - q.0);
+            if (p.0 - q.0).abs() < 1.0 || !(0.25..0.8).contains(&b) {
+                continue;
+            }
+            let line = Self { a: p.1 - b * p.0, b, ..usual };
+            let scatter = line.spread(&few, weight);
+            if scatter < best.scatter {
+                best = Self { scatter, ..line };
+            }
+        }
+        if best.scatter.is_finite() { best } else { usual }
+    }
+
+    /// Scatter about the line: 1.48 weighted medians are a standard deviation.
+    fn spread(&self, sound: &[(f64, f64, f64)], weight: &dyn Fn(f64) -> f64) -> f64 {
+        let mut off: Vec<(f64, f64)> = sound
+            .iter()
+            .map(|&(l, r, e)| ((r - self.a - self.b * l).abs(), weight(l) / (0.05 * 0.05 + e * e)))
+            .collect();
+        base::sort_by(&mut off, |a, b| a.0.total_cmp(&b.0));
+        let half = 0.5 * off.iter().map(|o| o.1).sum::<f64>();
+        let mut sum = 0.0;
+        let median = off.iter().find(|o| {
+            sum += o.1;
+            sum >= half
+        });
+        (1.48 * median.map_or(0.3, |m| m.0)).clamp(0.05, 0.6)
     }
 
     /// The logarithm of the radius below so much wood, metres.

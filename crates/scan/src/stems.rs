@@ -143,8 +143,11 @@ impl Stems {
     pub(crate) fn claim(&self, site: &Site<'_>, ways: &mut Ways, gap: f64) -> usize {
         let mut front = vec![];
         for (plant, k) in self.feet.iter().map(|k| (0, k)).chain((1..).zip(&self.others)) {
-            for &c in &k.cubes {
-                // From the ground up: the lowest cubes have the shortest way.
+            // From the lowest cubes up.
+            let over = |c: &u32| site.over(ways.means[*c as usize]);
+            let low = k.cubes.iter().map(over).fold(f64::INFINITY, f64::min) + 2.0 * ways.voxels.cell();
+            let seeds: Vec<u32> = k.cubes.iter().copied().filter(|c| over(c) < low).collect();
+            for c in seeds {
                 ways.way[c as usize] = site.over(ways.means[c as usize]).max(0.0);
                 ways.plant[c as usize] = plant;
                 front.push(c);
