@@ -1,9 +1,10 @@
 //! A raw scan -> the plant alone: stray points and the ground plane are taken out.
 
 use base::{Cancelled, Draw, Run, Seed};
+use geom::Voxels;
 use glam::DVec3;
 
-use crate::thin::{Voxels, extent, thin};
+use crate::thin::{extent, thin};
 
 /// What is taken out of a scan.
 #[derive(Clone, Copy, Debug, PartialEq)]

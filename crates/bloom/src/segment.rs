@@ -5,11 +5,10 @@
 
 use std::collections::BinaryHeap;
 
-use geom::KdTree;
+use geom::{KdTree, Voxels};
 use glam::DVec3;
 
 use crate::BloomError;
-use crate::thin::Voxels;
 
 /// One organ of a scan.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -216,7 +215,7 @@ impl Tree {
     fn new(ways: &Ways, _: &SegmentSpec) -> Self {
         let n = ways.way.len();
         let longest = ways.way.iter().copied().fold(0.0, f64::max);
-        let band = (3.0 * ways.voxels.cell).max(longest / 400.0).max(1e-12);
+        let band = (3.0 * ways.voxels.cell()).max(longest / 400.0).max(1e-12);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 400 bands")]
         let band_of = |c: usize| (ways.way[c] / band) as usize;
         let mut order: Vec<usize> = (0..n).collect();

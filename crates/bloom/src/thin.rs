@@ -3,115 +3,6 @@
 use geom::cubes;
 use glam::DVec3;
 
-/// Occupied cubes of a cloud, sorted, each with its points.
-#[derive(Clone, Debug)]
-pub(crate) struct Voxels {
-    /// Edge of a cube, metres.
-    pub(crate) cell: f64,
-    /// Places of the cubes: z, y, x.
-    pub(crate) keys: Vec<[i32; 3]>,
-    /// First row of each cube in `order`, and the number of rows at the end.
-    pub(crate) start: Vec<usize>,
-    /// Indices of points, cube by cube.
-    pub(crate) order: Vec<u32>,
-    /// First cube of each line of cubes along x, line (z, y) at `z * wide + y`.
-    lines: Vec<u32>,
-    wide: i32,
-}
-
-impl Voxels {
-    /// Cubes as fine as 1/256 of the cloud, or coarser until a cube holds `occupancy` points in the mean.
-    pub(crate) fn new(points: &[DVec3], occupancy: f64) -> Self {
-        let mut cell = (extent(points) / 256.0).max(1e-12);
-        loop {
-            let keyed = cubes(points, cell);
-            let cubes = count(&keyed);
-            if keyed.len() as f64 >= occupancy * cubes as f64 || cubes <= 8 {
-                return Self::of(&keyed, cell);
-            }
-            cell *= 1.3;
-        }
-    }
-
-    fn of(keyed: &[([i32; 3], u32)], cell: f64) -> Self {
-        let mut v = Self {
-            cell,
-            keys: vec![],
-            start: vec![],
-            order: Vec::with_capacity(keyed.len()),
-            lines: vec![],
-            wide: keyed.iter().map(|k| k.0[1]).max().unwrap_or(0) + 1,
-        };
-        for cube in keyed.chunk_by(|a, b| a.0 == b.0) {
-            let key = cube[0].0;
-            let line = v.line(key[0], key[1]);
-            #[expect(
-                clippy::cast_possible_truncation,
-                reason = "no more cubes than points, whose indices are u32"
-            )]
-            let row = v.keys.len() as u32;
-            // At most 257 x 257 lines: cubes are no finer than 1/256 of the cloud.
-            v.lines.resize(v.lines.len().max(line + 1), row);
-            v.keys.push(key);
-            v.start.push(v.order.len());
-            v.order.extend(cube.iter().map(|&(_, i)| i));
-        }
-        v.start.push(v.order.len());
-        v
-    }
-
-    #[expect(clippy::cast_sign_loss, reason = "z and y are not negative")]
-    fn line(&self, z: i32, y: i32) -> usize {
-        z as usize * self.wide as usize + y as usize
-    }
-
-    /// The cubes of a line along x.
-    fn cubes_of(&self, z: i32, y: i32) -> core::ops::Range<usize> {
-        if z < 0 || !(0..self.wide).contains(&y) {
-            return 0..0;
-        }
-        let line = self.line(z, y);
-        let Some(&first) = self.lines.get(line) else { return 0..0 };
-        first as usize..self.lines.get(line + 1).map_or(self.keys.len(), |&end| end as usize)
-    }
-
-    pub(crate) fn len(&self) -> usize {
-        self.keys.len()
-    }
-
-    /// Points of a cube.
-    pub(crate) fn rows(&self, cube: usize) -> &[u32] {
-        &self.order[self.start[cube]..self.start[cube + 1]]
-    }
-
-    /// Calls `f` with every occupied cube at most `reach` cubes away along each axis, itself too.
-    pub(crate) fn near(&self, cube: usize, reach: i32, mut f: impl FnMut(usize)) {
-        let [z, y, x] = self.keys[cube];
-        for dz in -reach..=reach {
-            for dy in -reach..=reach {
-                let line = self.cubes_of(z + dz, y + dy);
-                let first = line.start + self.keys[line.clone()].partition_point(|k| k[2] < x - reach);
-                for at in first..line.end {
-                    if self.keys[at][2] > x + reach {
-                        break;
-                    }
-                    f(at);
-                }
-            }
-        }
-    }
-
-    /// Mean of each cube's points.
-    pub(crate) fn means(&self, points: &[DVec3]) -> Vec<DVec3> {
-        (0..self.len())
-            .map(|c| {
-                let rows = self.rows(c);
-                rows.iter().map(|&i| points[i as usize]).sum::<DVec3>() / rows.len() as f64
-            })
-            .collect()
-    }
-}
-
 /// Edge of the box around the finite points, the longest.
 pub(crate) fn extent(points: &[DVec3]) -> f64 {
     let (low, high) = points
@@ -147,21 +38,6 @@ fn count(keyed: &[([i32; 3], u32)]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn near_finds_what_is_near() {
-        let mut s = base::Seed::new(5).stream(base::Draw::Test);
-        let points: Vec<DVec3> =
-            (0..3000).map(|_| DVec3::new(s.uniform(), s.uniform(), 0.1 * s.uniform())).collect();
-        let v = Voxels::new(&points, 2.0);
-        for c in (0..v.len()).step_by(7) {
-            let mut got = vec![];
-            v.near(c, 2, |k| got.push(k));
-            let far = |k: usize| (0..3).map(|a| (v.keys[k][a] - v.keys[c][a]).abs()).max();
-            let want: Vec<usize> = (0..v.len()).filter(|&k| far(k) <= Some(2)).collect();
-            assert_eq!(got, want, "cube {c}");
-        }
-    }
 
     #[test]
     fn a_dense_half_weighs_no_more_than_a_sparse_one() {

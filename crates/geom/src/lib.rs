@@ -14,7 +14,7 @@
 //! | `cluster` | mean shift |
 //! | `curve`, `frame` | smooth curves through points, frames along them |
 //! | `triangulate` | constrained Delaunay triangulation of a blade |
-//! | `kd`, `cubes` | neighbours; few points for many |
+//! | `kd`, `cubes`, `voxels` | neighbours; few points for many |
 //! | `hull3` | convex hulls in space |
 //! | `spline` | ball B-spline curves and their tubes, tensor-product surfaces (Wang et al. 2011) |
 
@@ -34,6 +34,7 @@ mod polyline;
 mod spline;
 mod triangulate;
 mod vector;
+mod voxels;
 mod wheel;
 
 pub use cluster::mean_shift;
@@ -60,4 +61,5 @@ pub use spline::{
     SplineError, SplineSurface, SurfacePoint, Tube, Weights, chord_parameters, subdivided,
 };
 pub use triangulate::{TriangulateError, Triangulation, triangulate_blade};
+pub use voxels::Voxels;
 pub use wheel::{Spoke, Wheel, wheels};

@@ -1,0 +1,40 @@
+//! What can go wrong here.
+
+use base::Cancelled;
+
+/// Why no tree was found in a cloud.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ScanTreeError {
+    /// Too few points.
+    #[error("the cloud has {0} usable points; a tree needs at least {1}: scan it more densely")]
+    TooFew(usize, usize),
+    /// The cloud is as large as no tree is.
+    #[error(
+        "the cloud is {0:.0} m high: no tree is. Say its unit with --unit mm or --unit cm, or cut the tree out of it"
+    )]
+    TooLarge(f64),
+    /// Nothing that stands on the ground goes up as a stem does.
+    #[error(
+        "nothing in the cloud stands on the ground and goes up as a stem does; check --up and --unit, or say where the \
+         stem stands with --at"
+    )]
+    NoStem,
+    /// No stem where the user says.
+    #[error("no stem stands within {1:.1} m of {0:?}; the nearest thing that stands on the ground is at {2:?}")]
+    NotThere([f64; 2], f64, [f64; 2]),
+    /// The user asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+base::coded!(ScanTreeError {
+    Self::TooFew(is, wanted) => "scan-tree-few" { is, wanted },
+    Self::TooLarge(height_m) => "scan-tree-large" { height_m },
+    Self::NoStem => "scan-tree-no-stem" {},
+    Self::NotThere(at, within_m, nearest) => "scan-tree-not-there" {
+        x = at[0], z = at[1], within_m, near_x = nearest[0], near_z = nearest[1]
+    },
+} wraps {
+    Self::Cancelled(e) => e, Cancelled;
+});

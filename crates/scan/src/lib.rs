@@ -1,0 +1,32 @@
+//! Whole trees and seedlings from laser scans.
+//!
+//! `points -> ground, noise -> stems -> ways along the surface -> level sets -> axes -> radii -> Plant`
+//!
+//! | module | owns |
+//! |---|---|
+//! | `ground` | [`Ground`]: the terrain below a tree |
+//! | `ways` | ways along the surface from the foot, across gaps |
+//! | `stems` | what stands on the ground: the tree, and what is left out |
+//! | `levels` | level sets of the ways: the skeleton |
+//! | `circle` | circles through noisy points |
+//! | `radii` | radii from circles, the pipe model where points are few |
+//! | `tree` | [`find_tree`]: the whole way |
+//! | `surface` | [`wood_gap`]: how far the wood of two plants is apart |
+//! | `scanner` | [`scan`]: what a scanner would see of a mesh, for trials |
+
+mod circle;
+mod error;
+mod ground;
+mod levels;
+mod radii;
+mod scanner;
+mod stems;
+mod surface;
+mod tree;
+mod ways;
+
+pub use error::ScanTreeError;
+pub use ground::Ground;
+pub use scanner::{ScannerSpec, scan};
+pub use surface::{Gap, wood_gap};
+pub use tree::{FoundTree, Tally, TreeScanSpec, find_tree};

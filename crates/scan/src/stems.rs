@@ -1,0 +1,219 @@
+//! What stands on the ground: the tree, other trees, people, walls.
+
+use base::Report;
+use glam::DVec3;
+
+use crate::ScanTreeError;
+use crate::ground::Ground;
+use crate::levels::Rings;
+use crate::tree::{Tally, TreeScanSpec};
+use crate::ways::{NONE, Ways};
+
+/// Where a tree stands: heights over the ground.
+pub(crate) struct Site<'a> {
+    ground: Option<&'a Ground>,
+    lowest: f64,
+    pub(crate) height: f64,
+    /// What touches the ground has points below this height.
+    contact: f64,
+}
+
+impl<'a> Site<'a> {
+    pub(crate) fn of(above: &[DVec3], ground: Option<&'a Ground>, height: f64, cell: f64) -> Self {
+        let lowest = lowest(above);
+        let thick = ground.map_or(0.0, |g| g.thickness_m.max(0.02));
+        let contact = thick + (0.02 * height).clamp(3.0 * cell, 0.3_f64.max(3.0 * cell));
+        Self { ground, lowest, height, contact }
+    }
+
+    pub(crate) fn over(&self, p: DVec3) -> f64 {
+        p.y - self.level(p)
+    }
+
+    fn level(&self, p: DVec3) -> f64 {
+        self.ground.map_or(self.lowest, |g| g.height(p))
+    }
+}
+
+/// The lowest point but for a few strays.
+fn lowest(points: &[DVec3]) -> f64 {
+    let mut heights: Vec<f64> = points.iter().step_by(points.len() / 100_000 + 1).map(|p| p.y).collect();
+    base::sort_numbers(&mut heights);
+    heights[heights.len() / 2000]
+}
+
+/// One thing that touches the ground.
+#[derive(Clone, Debug)]
+struct Contact {
+    cubes: Vec<u32>,
+    middle: DVec3,
+    /// Half of the longer side of its box, seen from above.
+    half: f64,
+    piece: u32,
+}
+
+/// What stands on the ground, the chosen tree first.
+pub(crate) struct Stems {
+    piece: Vec<u32>,
+    sizes: Vec<u32>,
+    /// Feet of the tree: several for a shrub.
+    feet: Vec<Contact>,
+    /// Other stems and things.
+    others: Vec<Contact>,
+}
+
+impl Stems {
+    pub(crate) fn find(ways: &Ways, site: &Site<'_>, spec: &TreeScanSpec) -> Result<Self, ScanTreeError> {
+        let (piece, sizes) = ways.pieces(2, |_| true);
+        let low = |c: usize| site.over(ways.means[c]) < site.contact;
+        let (contact_of, counts) = ways.pieces(2, low);
+        let mut contacts: Vec<Contact> = counts
+            .iter()
+            .map(|_| Contact { cubes: vec![], middle: DVec3::ZERO, half: 0.0, piece: NONE })
+            .collect();
+        for (c, &k) in (0_u32..).zip(&contact_of) {
+            if k != NONE {
+                contacts[k as usize].cubes.push(c);
+            }
+        }
+        for k in &mut contacts {
+            let places = || k.cubes.iter().map(|&c| ways.means[c as usize]);
+            k.middle = places().sum::<DVec3>() / k.cubes.len() as f64;
+            let (a, b) =
+                places().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), p| (a.min(p), b.max(p)));
+            k.half = 0.5 * (b - a).x.max((b - a).z);
+            k.piece = piece[k.cubes[0] as usize];
+        }
+        // How high each piece reaches, and which contact a loose piece above belongs to: the nearest below it.
+        let mut top = vec![0.0_f64; sizes.len()];
+        for (c, &p) in piece.iter().enumerate() {
+            top[p as usize] = top[p as usize].max(site.over(ways.means[c]));
+        }
+        let solid = |k: &Contact| k.half < (0.12 * site.height).max(0.05) && k.cubes.len() >= 3;
+        let mut score: Vec<f64> = contacts.iter().map(|k| f64::from(sizes[k.piece as usize])).collect();
+        add_loose(ways, &piece, &sizes, &contacts, &mut score, &solid);
+        for (s, k) in score.iter_mut().zip(&contacts) {
+            // What stays low is no tree; of feet of one piece the thicker one.
+            *s *= (top[k.piece as usize] / site.height).min(1.0) * (0.5 + k.half);
+            if !solid(k) {
+                *s = 0.0;
+            }
+        }
+        let best = match spec.at {
+            Some([x, z]) => {
+                let flat = |k: &Contact| ((k.middle.x - x) * (k.middle.x - x) + (k.middle.z - z) * (k.middle.z - z)).sqrt();
+                let rows = (0..contacts.len()).filter(|&i| score[i] > 0.0);
+                let near = rows.min_by(|&a, &b| flat(&contacts[a]).total_cmp(&flat(&contacts[b])));
+                let near = near.ok_or(ScanTreeError::NoStem)?;
+                let is = flat(&contacts[near]);
+                if is > spec.at_within_m {
+                    let m = contacts[near].middle;
+                    return Err(ScanTreeError::NotThere([x, z], spec.at_within_m, [m.x, m.z]));
+                }
+                // Of those about as near the best.
+                (0..contacts.len())
+                    .filter(|&i| score[i] > 0.0 && flat(&contacts[i]) < is + 0.3)
+                    .max_by(|&a, &b| score[a].total_cmp(&score[b]))
+            }
+            None => (0..contacts.len()).max_by(|&a, &b| score[a].total_cmp(&score[b]).then(b.cmp(&a))),
+        };
+        let best = best.filter(|&b| score[b] > 0.0).ok_or(ScanTreeError::NoStem)?;
+        let main = contacts[best].clone();
+        let (mut feet, mut others) = (vec![], vec![]);
+        for (i, k) in contacts.into_iter().enumerate() {
+            let away = (k.middle - main.middle).length();
+            let same = k.piece == main.piece;
+            let shrub = same && away < (0.12 * site.height).max(6.0 * main.half) && away < 1.5;
+            if i == best || (shrub && k.half > 0.4 * main.half) {
+                feet.push(k);
+            } else if same {
+                // A twig that hangs to the ground belongs to the tree; a stem as thick is another's.
+                if k.half > 0.5 * main.half && solid(&k) && away > 1.5 {
+                    others.push(k);
+                }
+            } else if k.cubes.len() >= 3 {
+                others.push(k);
+            }
+        }
+        Ok(Self { piece, sizes, feet, others })
+    }
+
+    /// Gives every cube to what it hangs together with: plant 0 is the tree. Gaps up to `gap` are bridged; returns how
+    /// many of the tree.
+    pub(crate) fn claim(&self, site: &Site<'_>, ways: &mut Ways, gap: f64) -> usize {
+        let mut front = vec![];
+        for (plant, k) in self.feet.iter().map(|k| (0, k)).chain((1..).zip(&self.others)) {
+            // From the lowest cubes up.
+            let over = |c: &u32| site.over(ways.means[*c as usize]);
+            let low = k.cubes.iter().map(over).fold(f64::INFINITY, f64::min) + 2.0 * ways.voxels.cell();
+            let seeds: Vec<u32> = k.cubes.iter().copied().filter(|c| over(c) < low).collect();
+            for c in seeds {
+                ways.way[c as usize] = site.over(ways.means[c as usize]).max(0.0);
+                ways.plant[c as usize] = plant;
+                front.push(c);
+            }
+        }
+        ways.spread(&front, |_| true);
+        // Dust stays where it is.
+        let sizes = &self.sizes;
+        let piece: Vec<u32> =
+            self.piece.iter().map(|&p| if sizes[p as usize] >= 4 { p } else { NONE }).collect();
+        ways.bridge(gap, &piece, |c| piece[c] != NONE)
+    }
+
+    pub(crate) fn tell(&self, ways: &Ways, report: &mut Report, tally: &mut Tally) {
+        let mut counts = vec![0; self.others.len() + 1];
+        for c in 0..ways.len() {
+            let n = ways.voxels.rows(c).len();
+            match ways.plant[c] {
+                NONE => tally.noise += n,
+                p => counts[p as usize] += n,
+            }
+        }
+        tally.others = counts[1..].iter().sum();
+        let large = counts[1..].iter().filter(|&&n| n * 50 > counts[0]).count();
+        tally.other_things = large;
+        let others = tally.others;
+        if large > 0 {
+            base::warn!(
+                report,
+                "scan-others",
+                { count = large, points = others },
+                "{large} other things stand on the ground (trees, people, walls; {others} points): they were left out; --at \
+                 X,Z says which stem is meant"
+            );
+        }
+    }
+
+    /// Where the tree stands: below its lowest ring, on the ground.
+    pub(crate) fn foot(&self, site: &Site<'_>, rings: &Rings) -> DVec3 {
+        let first = rings.rings.first().map_or(self.feet[0].middle, |r| r.middle);
+        DVec3::new(first.x, site.level(first), first.z)
+    }
+}
+
+/// Loose pieces count for the contact that is nearest seen from above.
+fn add_loose(
+    ways: &Ways,
+    piece: &[u32],
+    sizes: &[u32],
+    contacts: &[Contact],
+    score: &mut [f64],
+    solid: &dyn Fn(&Contact) -> bool,
+) {
+    let mut middle = vec![DVec3::ZERO; sizes.len()];
+    piece.iter().zip(&ways.means).for_each(|(&p, m)| middle[p as usize] += *m / f64::from(sizes[p as usize]));
+    let mut stands = vec![false; sizes.len()];
+    contacts.iter().for_each(|k| stands[k.piece as usize] = true);
+    let rows: Vec<usize> = (0..contacts.len()).filter(|&i| solid(&contacts[i])).collect();
+    let flat = |p: DVec3| DVec3::new(p.x, 0.0, p.z);
+    let places: Vec<DVec3> = rows.iter().map(|&i| flat(contacts[i].middle)).collect();
+    let tree = geom::KdTree::new(&places);
+    for (p, &m) in middle.iter().enumerate() {
+        if !stands[p] && sizes[p] >= 20 {
+            if let Some(k) = tree.nearest(flat(m), f64::INFINITY) {
+                score[rows[k]] += f64::from(sizes[p]);
+            }
+        }
+    }
+}

@@ -1,0 +1,344 @@
+//! A cloud with one tree or several -> the plant of one tree.
+
+use base::{Report, Run};
+use geom::Voxels;
+use glam::DVec3;
+use plant::{AxisKind, NodeId, Plant};
+
+use crate::ScanTreeError;
+use crate::ground::Ground;
+use crate::levels::Rings;
+use crate::radii::{Measured, Pipes, measure, smooth};
+use crate::stems::{Site, Stems};
+use crate::ways::{NONE, Ways};
+
+/// How a tree is sought in a cloud. Lengths in metres, +Y up.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TreeScanSpec {
+    /// Where the stem stands, x and z; default the largest thing that stands on the ground.
+    pub at: Option<[f64; 2]>,
+    /// How far from [`at`](Self::at) a stem may stand. Default 2.
+    pub at_within_m: f64,
+    /// Edge of the cubes that the cloud is seen in; default by the spacing of the points.
+    pub cell_m: Option<f64>,
+    /// Widest gap that is bridged; default by the height, at most 0.6.
+    pub gap_m: Option<f64>,
+    /// What a point of bark may be off. Default 0.006.
+    pub noise_m: f64,
+    /// Tell leaves from wood and leave them out. Default true.
+    pub leaves: bool,
+}
+
+impl Default for TreeScanSpec {
+    fn default() -> Self {
+        Self { at: None, at_within_m: 2.0, cell_m: None, gap_m: None, noise_m: 0.006, leaves: true }
+    }
+}
+
+/// What became of the points, and what was found.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Tally {
+    /// Usable points.
+    pub points: usize,
+    /// Of the ground.
+    pub ground: usize,
+    /// Strays, and pieces that nothing leads to.
+    pub noise: usize,
+    /// Of other things: other trees, people, walls.
+    pub others: usize,
+    /// Of leaves.
+    pub leaves: usize,
+    /// Of wood.
+    pub wood: usize,
+    /// Other things that stand on the ground.
+    pub other_things: usize,
+    /// Gaps that were bridged.
+    pub bridges: usize,
+    /// Edge of the cubes, metres.
+    pub cell_m: f64,
+    /// Rings of the skeleton, and those with a circle of their own.
+    pub rings: usize,
+    /// Rings with a circle.
+    pub circles: usize,
+    /// Exponent n of the pipe model `r^n ~ wood above`, as the circles have it.
+    pub pipe_exponent: f64,
+    /// Scatter of the circles about it, of the logarithm.
+    pub pipe_scatter: f64,
+}
+
+/// A tree that was found in a cloud.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FoundTree {
+    /// Its wood; it stands at the origin.
+    pub plant: Plant,
+    /// Where it stands in the cloud.
+    pub foot: DVec3,
+    /// The ground, where there is one.
+    pub ground: Option<Ground>,
+    /// What became of the points.
+    pub tally: Tally,
+}
+
+/// Least points of a tree.
+const FEWEST: usize = 200;
+/// Higher is no tree, metres: the highest is 116.
+const HIGHEST: f64 = 130.0;
+
+/// Finds a tree in a cloud: ground and noise go, other things go, ways from the foot make the skeleton, circles and the
+/// pipe model its radii.
+///
+/// Guaranteed: a plant without faults, radii that fall along every axis and are at most those of the bearer; the same
+/// bits for any executor. Not guaranteed: twigs that are thinner than the points are apart. Cost: n log n; 5 million
+/// points take some tens of seconds.
+///
+/// # Errors
+/// [`ScanTreeError`].
+pub fn find_tree(
+    points: &[DVec3],
+    spec: &TreeScanSpec,
+    run: &Run<'_>,
+    report: &mut Report,
+) -> Result<FoundTree, ScanTreeError> {
+    let all: Vec<DVec3> = points.iter().copied().filter(|p| p.abs().max_element() <= 1e9).collect();
+    if all.len() < FEWEST {
+        return Err(ScanTreeError::TooFew(all.len(), FEWEST));
+    }
+    let mut tally = Tally { points: all.len(), ..Tally::default() };
+    let ground = Ground::find(&all);
+    run.cancel.check()?;
+    let (above, height) = above_ground(&all, ground.as_ref());
+    if height > HIGHEST {
+        return Err(ScanTreeError::TooLarge(height));
+    }
+    tally.ground = all.len() - above.len();
+    if above.len() < FEWEST {
+        return Err(ScanTreeError::TooFew(above.len(), FEWEST));
+    }
+    let cell = spec.cell_m.unwrap_or_else(|| cell_of(&above, height));
+    let mut ways = Ways::new(&above, cell);
+    tally.cell_m = ways.voxels.cell();
+    run.cancel.check()?;
+    warn_of_ground(&all, ground.as_ref(), report);
+    let site = Site::of(&above, ground.as_ref(), height, cell);
+    let stems = Stems::find(&ways, &site, spec)?;
+    let gap = spec.gap_m.unwrap_or((0.04 * height).clamp(0.02 * height.min(5.0), 0.6)).max(4.0 * cell);
+    tally.bridges = stems.claim(&site, &mut ways, gap);
+    run.cancel.check()?;
+    stems.tell(&ways, report, &mut tally);
+    let mine = |c: usize| ways.plant[c] == 0 && ways.way[c].is_finite();
+    let mut rings = Rings::new(&ways, 2.5 * ways.voxels.cell(), mine);
+    run.cancel.check()?;
+    rings.prune(3.0);
+    tally.rings = rings.rings.iter().filter(|r| r.alive).count();
+    let axes = rings.axes();
+    let mut found = measure(&above, &ways, &rings, &axes, spec.noise_m, run);
+    run.cancel.check()?;
+    centre(&mut rings, &axes, &found);
+    // Along the new middles the sections are truer.
+    found = measure(&above, &ways, &rings, &axes, spec.noise_m, run);
+    run.cancel.check()?;
+    centre(&mut rings, &axes, &found);
+    tally.circles = found.iter().flatten().flatten().count();
+    for ring in rings.rings.iter().filter(|r| r.alive) {
+        tally.wood += ring.cubes.iter().map(|&c| ways.voxels.rows(c as usize).len()).sum::<usize>();
+    }
+    let foot = stems.foot(&site, &rings);
+    let (plant, pipes) = wood(&above, &ways, &rings, &axes, &found, foot);
+    (tally.pipe_exponent, tally.pipe_scatter) = (1.0 / pipes.b, pipes.scatter);
+    debug_assert_eq!(plant.validate().next(), None, "a found tree is sound");
+    Ok(FoundTree { plant, foot, ground, tally })
+}
+
+/// The points that are no ground, and the height of the highest over it: one in a thousand may be noise.
+fn above_ground(all: &[DVec3], ground: Option<&Ground>) -> (Vec<DVec3>, f64) {
+    let lowest = all.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+    let over = |p: &DVec3| p.y - ground.map_or(lowest, |g| g.height(*p));
+    let thick = ground.map_or(f64::NEG_INFINITY, |g| g.thickness_m.max(0.02));
+    let above: Vec<DVec3> = all.iter().copied().filter(|p| over(p) > thick).collect();
+    let mut heights: Vec<f64> = above.iter().step_by(above.len() / 100_000 + 1).map(over).collect();
+    base::sort_numbers(&mut heights);
+    let top = heights.len().saturating_sub(1 + heights.len() / 1000);
+    let height = heights.get(top).copied().unwrap_or(0.0);
+    (above, height)
+}
+
+/// Cubes with three points or more in the mean, as far as the size of the tree allows.
+fn cell_of(points: &[DVec3], height: f64) -> f64 {
+    let mut cell = height / 1200.0;
+    while cell < height / 150.0 {
+        let v = Voxels::with_cell(points, cell);
+        if points.len() as f64 >= 3.0 * v.len() as f64 && v.len() < 3_000_000 {
+            break;
+        }
+        cell *= 1.25;
+    }
+    cell
+}
+
+fn warn_of_ground(all: &[DVec3], ground: Option<&Ground>, report: &mut Report) {
+    if ground.is_some() {
+        return;
+    }
+    // A sample is enough to see whether the scan lies down.
+    let few: Vec<DVec3> = all.iter().copied().step_by(all.len() / 200_000 + 1).collect();
+    let ways: [(&str, fn(DVec3) -> DVec3); 5] = [
+        ("+Z", |p| DVec3::new(p.x, p.z, -p.y)),
+        ("-Z", |p| DVec3::new(p.x, -p.z, p.y)),
+        ("-Y", |p| DVec3::new(p.x, -p.y, -p.z)),
+        ("+X", |p| DVec3::new(-p.y, p.x, p.z)),
+        ("-X", |p| DVec3::new(p.y, -p.x, p.z)),
+    ];
+    for (name, turn) in ways {
+        let turned: Vec<DVec3> = few.iter().copied().map(turn).collect();
+        if Ground::find(&turned).is_some() {
+            base::warn!(
+                report,
+                "scan-lies-down",
+                { up = name },
+                "no ground lies across the up axis, but one does across {name} (with +Y up): the scan may lie down or be \
+                 upside down; check --up"
+            );
+            return;
+        }
+    }
+    report.warn(
+        "scan-no-ground",
+        "no ground was found below the tree: its lowest points were taken for its foot, so heights and the diameter at \
+         1.3 m count from there",
+    );
+}
+
+/// Moves the middles of rings to those of their circles, as far as these are sound.
+fn centre(rings: &mut Rings, axes: &[(u32, Vec<u32>)], found: &[Vec<Option<Measured>>]) {
+    for ((_, run), found) in axes.iter().zip(found) {
+        for (&k, m) in run.iter().zip(found) {
+            let ring = &mut rings.rings[k as usize];
+            let Some(m) = m.filter(|m| m.error < 0.25) else { continue };
+            let limit = 1.5 * ring.spread.max(m.radius.min(2.0 * ring.spread));
+            if m.middle.distance(ring.middle) < limit {
+                ring.middle = m.middle;
+            }
+        }
+    }
+}
+
+/// Axes with radii.
+fn wood(
+    points: &[DVec3],
+    ways: &Ways,
+    rings: &Rings,
+    axes: &[(u32, Vec<u32>)],
+    found: &[Vec<Option<Measured>>],
+    foot: DVec3,
+) -> (Plant, Pipes) {
+    let load = |k: u32| rings.rings[k as usize].load;
+    let rows: Vec<(f64, Measured)> = axes
+        .iter()
+        .zip(found)
+        .flat_map(|((_, run), found)| run.iter().zip(found))
+        .filter_map(|(&k, m)| Some((load(k), (*m)?)))
+        .collect();
+    let pipes = Pipes::fit(&rows);
+    let mut plant = Plant::default();
+    // Of each ring: its node, radius and offset from the pipe model.
+    let mut node_of: Vec<Option<NodeId>> = vec![None; rings.rings.len()];
+    let mut offset_of = vec![0.0; rings.rings.len()];
+    for (key, ((bearer, run), found)) in (0_u64..).zip(axes.iter().zip(found)) {
+        let loads: Vec<f64> = run.iter().map(|&k| load(k)).collect();
+        let below = (*bearer != NONE).then(|| offset_of[*bearer as usize]);
+        let mut found = found.clone();
+        if let Some(below) = Some(*bearer).filter(|b| *b != NONE) {
+            hide(&mut found, run, rings, &plant, node_of[below as usize]);
+        }
+        let (radii, offsets) = smooth(&loads, &found, &pipes, below, 0.06);
+        run.iter().zip(&offsets).for_each(|(&k, &o)| offset_of[k as usize] = o);
+        let course = course(points, ways, rings, run);
+        let bearer = (*bearer != NONE).then(|| node_of[*bearer as usize]).flatten();
+        let (mut line, mut thick) = (course, radii);
+        match bearer {
+            Some(node) => {
+                let most = plant.nodes.radius_m[node.index()];
+                thick.iter_mut().for_each(|r| *r = r.min(most));
+                line.insert(0, plant.nodes.position[node.index()]);
+                thick.insert(0, thick[0]);
+            }
+            None => {
+                // Down to the ground, below the first ring.
+                let first = line[0] - foot;
+                line.iter_mut().for_each(|p| *p -= foot);
+                if first.y > 1e-3 {
+                    line.insert(0, DVec3::new(first.x, 0.0, first.z));
+                    thick.insert(0, thick[0]);
+                }
+            }
+        }
+        if bearer.is_some() {
+            line[1..].iter_mut().for_each(|p| *p -= foot);
+        }
+        // The tip: one more node than there are rings.
+        while thick.len() < line.len() {
+            let last = thick[thick.len() - 1];
+            thick.push(0.7 * last);
+        }
+        if line.len() < 2 {
+            continue;
+        }
+        let axis = plant.add_axis(AxisKind::Branch, bearer, key, &line, None);
+        let rows = plant.axis(axis).nodes.clone();
+        let start = rows.start as usize;
+        plant.nodes.radius_m[start..rows.end as usize].copy_from_slice(&thick[..line.len()]);
+        let first = line.len() - run.len() - 1;
+        for (i, &k) in run.iter().enumerate() {
+            node_of[k as usize] = Some(NodeId::new(start + first + i));
+        }
+    }
+    (plant, pipes)
+}
+
+/// Circles within the wood that bears an axis are the bearer's.
+fn hide(
+    found: &mut [Option<Measured>],
+    run: &[u32],
+    rings: &Rings,
+    plant: &Plant,
+    bearer: Option<NodeId>,
+) {
+    let Some(bearer) = bearer else { return };
+    let radius = plant.nodes.radius_m[bearer.index()];
+    let from = rings.rings[rings.rings[run[0] as usize].below as usize].middle;
+    for (m, &k) in found.iter_mut().zip(run) {
+        let near = rings.rings[k as usize].middle.distance(from) < 1.3 * radius + rings.band;
+        if near || m.is_some_and(|m| m.radius > 1.05 * radius) {
+            *m = None;
+        }
+    }
+}
+
+/// Middles along an axis, a little smoothed, and its tip.
+fn course(points: &[DVec3], ways: &Ways, rings: &Rings, run: &[u32]) -> Vec<DVec3> {
+    let raw: Vec<DVec3> = run.iter().map(|&k| rings.rings[k as usize].middle).collect();
+    let mut line = raw.clone();
+    for i in 1..raw.len().saturating_sub(1) {
+        line[i] = (raw[i - 1] + raw[i] * 2.0 + raw[i + 1]) * 0.25;
+    }
+    let last = run[run.len() - 1];
+    let end = raw[raw.len() - 1];
+    let before = if raw.len() > 1 {
+        raw[raw.len().saturating_sub(4)]
+    } else {
+        let below = rings.rings[last as usize].below;
+        if below == NONE { end - DVec3::Y } else { rings.rings[below as usize].middle }
+    };
+    let along = (end - before).normalize_or(DVec3::Y);
+    // The farthest point of the last ring along the axis, but for a stray.
+    let mut ahead: Vec<f64> = rings.rings[last as usize]
+        .cubes
+        .iter()
+        .flat_map(|&c| ways.voxels.rows(c as usize))
+        .map(|&p| (points[p as usize] - end).dot(along))
+        .collect();
+    base::sort_numbers(&mut ahead);
+    let reach = ahead[ahead.len() - 1 - ahead.len() / 20].max(0.25 * rings.band);
+    line.push(end + along * reach);
+    line
+}

@@ -1,0 +1,154 @@
+//! Ways along the surface of a cloud from a foot, across gaps.
+
+use std::collections::BinaryHeap;
+
+use geom::{KdTree, Voxels};
+use glam::DVec3;
+
+/// No cube.
+pub(crate) const NONE: u32 = u32::MAX;
+
+/// Occupied cubes of a cloud with their way from the foot.
+#[derive(Clone, Debug)]
+pub(crate) struct Ways {
+    pub(crate) voxels: Voxels,
+    /// Mean of the points of each cube.
+    pub(crate) means: Vec<DVec3>,
+    /// Way from the foot; infinite where nothing leads.
+    pub(crate) way: Vec<f64>,
+    /// The cube before on the way.
+    pub(crate) parent: Vec<u32>,
+    /// The plant that each cube was reached by.
+    pub(crate) plant: Vec<u32>,
+}
+
+#[derive(PartialEq)]
+struct Step(f64, u32);
+impl Eq for Step {}
+impl PartialOrd for Step {
+    fn partial_cmp(&self, other: &Self) -> Option<core::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+impl Ord for Step {
+    fn cmp(&self, other: &Self) -> core::cmp::Ordering {
+        other.0.total_cmp(&self.0).then(other.1.cmp(&self.1))
+    }
+}
+
+impl Ways {
+    pub(crate) fn new(points: &[DVec3], cell: f64) -> Self {
+        let voxels = Voxels::with_cell(points, cell);
+        let means: Vec<DVec3> = (0..voxels.len())
+            .map(|c| {
+                let rows = voxels.rows(c);
+                rows.iter().map(|&i| points[i as usize]).sum::<DVec3>() / rows.len() as f64
+            })
+            .collect();
+        let n = means.len();
+        Self { voxels, means, way: vec![f64::INFINITY; n], parent: vec![NONE; n], plant: vec![NONE; n] }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.means.len()
+    }
+
+    /// The connected piece of each cube, and the number of cubes of each piece. Cubes for which `open` is false are in
+    /// none.
+    pub(crate) fn pieces(&self, reach: i32, open: impl Fn(usize) -> bool) -> (Vec<u32>, Vec<u32>) {
+        let mut piece = vec![NONE; self.len()];
+        let mut sizes: Vec<u32> = vec![];
+        let mut stack = vec![];
+        for first in 0..self.len() {
+            if piece[first] != NONE || !open(first) {
+                continue;
+            }
+            #[expect(clippy::cast_possible_truncation, reason = "fewer pieces than cubes, which are u32")]
+            let mark = sizes.len() as u32;
+            sizes.push(0);
+            piece[first] = mark;
+            stack.push(first);
+            while let Some(c) = stack.pop() {
+                sizes[mark as usize] += 1;
+                self.voxels.near(c, reach, |k| {
+                    if piece[k] == NONE && open(k) {
+                        piece[k] = mark;
+                        stack.push(k);
+                    }
+                });
+            }
+        }
+        (piece, sizes)
+    }
+
+    /// Shortest ways from cubes whose way is known (Dijkstra 1959), over cubes for which `open` is true.
+    pub(crate) fn spread(&mut self, from: &[u32], open: impl Fn(usize) -> bool) {
+        let mut heap: BinaryHeap<Step> = from.iter().map(|&c| Step(self.way[c as usize], c)).collect();
+        let mut near = Vec::new();
+        while let Some(Step(way, at)) = heap.pop() {
+            let c = at as usize;
+            if way > self.way[c] {
+                continue;
+            }
+            near.clear();
+            self.voxels.near(c, 2, |k| near.push(k));
+            for &k in &near {
+                if k == c || !open(k) {
+                    continue;
+                }
+                let next = way + self.means[c].distance(self.means[k]);
+                if next < self.way[k] {
+                    self.way[k] = next;
+                    self.parent[k] = at;
+                    self.plant[k] = self.plant[c];
+                    #[expect(clippy::cast_possible_truncation, reason = "cubes are u32")]
+                    heap.push(Step(next, k as u32));
+                }
+            }
+        }
+    }
+
+    /// Bridges gaps of at most `gap` from what is reached to the pieces that are not, the shortest of each piece at a
+    /// time, until none is left; the number of bridges.
+    pub(crate) fn bridge(&mut self, gap: f64, piece: &[u32], open: impl Fn(usize) -> bool) -> usize {
+        let mut bridges = 0;
+        // Each round reaches what is near; pieces behind pieces need several.
+        for _ in 0..24 {
+            let reached: Vec<u32> = self.rows(|w, c| w.way[c].is_finite() && open(c));
+            let lost: Vec<u32> = self.rows(|w, c| !w.way[c].is_finite() && open(c) && piece[c] != NONE);
+            if lost.is_empty() || reached.is_empty() {
+                break;
+            }
+            let places: Vec<DVec3> = reached.iter().map(|&c| self.means[c as usize]).collect();
+            let tree = KdTree::new(&places);
+            let mut best = base::LiteMap::<u32, (f64, u32, u32)>::new();
+            for &c in &lost {
+                let p = piece[c as usize];
+                let known = best.get(&p).map_or(gap, |b| b.0);
+                let Some(k) = tree.nearest(self.means[c as usize], known) else { continue };
+                let d = self.means[c as usize].distance(places[k]);
+                if best.get(&p).is_none_or(|b| d < b.0) {
+                    best.insert(p, (d, c, reached[k]));
+                }
+            }
+            if best.is_empty() {
+                break;
+            }
+            let mut front = vec![];
+            for (_, &(length, to, from)) in best.iter() {
+                self.way[to as usize] = self.way[from as usize] + length;
+                self.parent[to as usize] = from;
+                self.plant[to as usize] = self.plant[from as usize];
+                front.push(to);
+                bridges += 1;
+            }
+            self.spread(&front, &open);
+        }
+        bridges
+    }
+
+    #[expect(clippy::cast_possible_truncation, reason = "cubes are u32")]
+    fn rows(&self, wanted: impl Fn(&Self, usize) -> bool) -> Vec<u32> {
+        (0..self.len()).filter(|&c| wanted(self, c)).map(|c| c as u32).collect()
+    }
+}
