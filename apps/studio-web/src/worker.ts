@@ -274,6 +274,7 @@ function evaluate(): void {
     const fresh = all.filter((p) => p.fresh).map((p) => pack(s, p));
     had = new Set(all.flatMap(({ mesh }) => (mesh === null ? [] : [mesh])));
     tell({ kind: 'view', view, fresh }, fresh.flatMap(buffers));
+    setTimeout(measure, 0);
   } catch (e) {
     if (e instanceof WebAssembly.RuntimeError || e instanceof RangeError) fault(e);
     else {
@@ -281,6 +282,18 @@ function evaluate(): void {
       stale = why.code === 'cancelled';
       tell({ kind: 'failed', why });
     }
+  }
+}
+
+/** What the evaluation left for later, once nothing else is to do. */
+function measure(): void {
+  if (!session || stale || scheduled) return;
+  try {
+    const later = session.measure();
+    if (later) tell({ kind: 'view', view: JSON.parse(later), fresh: [] });
+  } catch (e) {
+    // What comes next is evaluated and measured anew.
+    if (e instanceof WebAssembly.RuntimeError || e instanceof RangeError) fault(e);
   }
 }
 

@@ -127,7 +127,9 @@ impl StudioSession {
     #[expect(clippy::new_without_default, reason = "called from JavaScript only")]
     pub fn new() -> Self {
         host::tell_of_panics();
-        Self(Workspace::default())
+        let mut workspace = Workspace::default();
+        workspace.measure_later(true);
+        Self(workspace)
     }
 
     /// See [`Workspace::open`]: `Opened` as JSON.
@@ -390,6 +392,14 @@ impl StudioSession {
     /// `cancelled`.
     pub fn evaluate(&mut self) -> Result<String, Refused> {
         to_json(&page_run(|run| self.0.evaluate(run))?)
+    }
+
+    /// What the last evaluation left for later: `SceneView` as JSON, empty if nothing. See [`Workspace::measure`].
+    ///
+    /// # Errors
+    /// `cancelled`.
+    pub fn measure(&mut self) -> Result<String, Refused> {
+        page_run(|run| self.0.measure(run))?.map_or_else(|| Ok(String::new()), |view| to_json(&view))
     }
 
     /// Three floats a vertex, metres.

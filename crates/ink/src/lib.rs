@@ -29,7 +29,7 @@ pub use classify::{
     FEW_CLEAR, HeldOut, StrokeFigures, StrokeModelTexts, StrokeRow, StrokeSource, cross_validate_strokes,
     held_out_strokes, read_stroke_table, train_strokes, write_stroke_table,
 };
-pub use clean::{Ink, InkMap, InkStroke, clean};
+pub use clean::{Ink, InkMap, InkStroke, clean, clean_again};
 pub use drawing::{Drawing, InkSample, Layer, Stroke, StrokeMode};
 pub use edit::{StrokePull, StrokeTurn, cut, joined, rubbed, smoothed};
 pub use subjects::Subjects;

@@ -76,7 +76,15 @@ impl First {
     fn of(asked: &Asked<'_>, ink: &Ink, classes: &[Classified]) -> Self {
         let mut said = Report::default();
         let reading = attempt(asked.off, None, ink, classes, &mut said);
-        let shares = kinds::shares(&kinds::kind_features(ink, classes, &reading));
+        let shares = if ink.strokes.len() > MOST_JUDGED {
+            // As it was read, and as nothing else.
+            kinds::Shares {
+                kinds: vec![Scored { kind: Kind::of(&reading), score: 1.0 }],
+                ..kinds::Shares::default()
+            }
+        } else {
+            kinds::shares(&kinds::kind_features(ink, classes, &reading))
+        };
         Self { reading, said, shares }
     }
 
@@ -120,6 +128,9 @@ pub const UNLIKE_A_PLANT: &str = "unlike-a-plant";
 const BUILT: f64 = 6.0;
 /// A drawing of more strokes is read once: nobody draws one plant with so many and means another kind.
 const MOST_STROKES: usize = 200;
+/// A drawing of more strokes is not compared with other kinds at all: the numbers of the whole would take two fifths of
+/// the time of each stroke that is added, and the model learnt from none so large.
+const MOST_JUDGED: usize = 1000;
 /// Readings that are told.
 const TOLD: usize = 3;
 

@@ -56,7 +56,8 @@ pub struct Evaluator {
     reading: Option<Kept<ReadFrom, Reading>>,
     /// Bodies of the contours of the last plant.
     bodies: KeptBodies,
-    plant: Option<Kept<PlantFrom, (Built, FidelityReport)>>,
+    /// With how true it is to the drawing; none where that is still to be measured.
+    plant: Option<Kept<PlantFrom, (Built, Option<FidelityReport>)>>,
     shaper: Shaper,
     /// The plant with its edits by hand; none where there are none.
     shaped: Option<Shaped>,
@@ -74,7 +75,12 @@ pub struct Evaluator {
     taken: Option<Taken>,
     /// See [`crate::SceneEvaluator::set_looking`].
     pub(crate) looking: bool,
+    /// See [`crate::SceneEvaluator::set_measuring_later`].
+    pub(crate) later: bool,
 }
+
+/// How true a plant of more strokes is to its drawing may be measured after the plant was seen.
+const MANY: usize = 512;
 
 /// What a drawing of one plant was read as.
 #[derive(Clone, Copy, Debug)]
@@ -159,7 +165,8 @@ impl Evaluator {
         let mut stages = Vec::new();
         if self.strokes.as_ref().is_none_or(|k| k.from.strokes != drawing.strokes) {
             let mut report = Report::default();
-            let ink = report.stage("preprocess", run.clock, |r| ink::clean(drawing, r));
+            let before = self.strokes.as_ref().map(|k| &k.value.0);
+            let ink = report.stage("preprocess", run.clock, |r| ink::clean_again(drawing, before, r));
             if ink.strokes.is_empty() {
                 return Err(MakeError::NoStrokes { name: drawing.name.clone(), strokes: count });
             }
@@ -260,9 +267,10 @@ impl Evaluator {
         let mut report = Report::default();
         let kept = &mut self.bodies;
         let mut built = sketch::build_again(&reading.value, spec, seed, kept, run, &mut report)?; // books `depth` itself
-        let wanted = !self.preview;
+        // Another leaf is not what was drawn: then it has to be measured before that.
+        let later = self.later && leaf.is_none() && strokes.value.0.strokes.len() > MANY;
+        let wanted = !self.preview && !later;
         let fidelity = wanted.then(|| sketch::fidelity(&built, &reading.value, &strokes.value.0, run).into());
-        let fidelity = fidelity.unwrap_or_default();
         run.cancel.check()?;
         // After the measure against the drawing: the user's leaf is not what was drawn.
         if let Some(leaf) = leaf {
@@ -277,6 +285,31 @@ impl Evaluator {
         let from = (spec.clone(), seed, name.to_owned(), leaf.clone());
         self.plant = Some(Self::keep(&mut self.done, stages, from, (built, fidelity), report));
         Ok(())
+    }
+
+    /// Measures how true the plant is to its drawing, where an update put that off; `None` where there is nothing left to
+    /// measure.
+    ///
+    /// # Errors
+    /// [`Cancelled`]; it is still to be measured then.
+    pub(crate) fn measure(&mut self, run: &Run<'_>) -> Result<Option<FidelityReport>, Cancelled> {
+        let (Some(strokes), Some(reading), Some(made)) = (&self.strokes, &self.reading, &mut self.plant)
+        else {
+            return Ok(None);
+        };
+        let (built, fidelity) = &mut made.value;
+        if self.preview || fidelity.is_some() {
+            return Ok(None);
+        }
+        let found = sketch::fidelity(built, &reading.value, &strokes.value.0, run).into();
+        run.cancel.check()?;
+        *fidelity = Some(found);
+        Ok(Some(found))
+    }
+
+    /// An update put off to measure how true the plant is to its drawing.
+    pub(crate) fn is_unmeasured(&self) -> bool {
+        !self.preview && self.plant.as_ref().is_some_and(|p| p.value.1.is_none())
     }
 
     /// Edits by hand, after the measure against the drawing: what a hand changed is not what was drawn.
@@ -385,7 +418,7 @@ impl Evaluator {
             strokes: reading.value.strokes.iter().map(stroke_report).collect(),
             counts,
             timings_ms: TimingsMs::from_report(&report),
-            fidelity: plant.value.1,
+            fidelity: plant.value.1.unwrap_or_default(),
             readings: ReadingReport::of(&reading.value),
             digest: if self.preview || self.looking { String::new() } else { shown.digest_hex() },
             edits: told.to_vec(),

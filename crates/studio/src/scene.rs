@@ -204,6 +204,7 @@ impl ScenePlant<'_> {
 pub struct SceneEvaluator {
     wind: bool,
     looking: bool,
+    later: bool,
     plants: base::LiteMap<PlantId, Kept>,
     /// The last number that was given to a model.
     revision: u64,
@@ -292,7 +293,7 @@ impl Kept {
     /// What a plant is made with, and whether it was left half-way the last time.
     ///
     /// Until an update has succeeded it is no result, not even of what was before.
-    fn begin(&mut self, plant: &DocumentPlant, looking: bool) -> (&mut Made, bool) {
+    fn begin(&mut self, plant: &DocumentPlant, (looking, later): (bool, bool)) -> (&mut Made, bool) {
         let word = plant.settings().maker.word();
         let made = Arc::make_mut(&mut self.made);
         if made.maker != word {
@@ -300,6 +301,7 @@ impl Kept {
             *made = Made { maker: word, ..Made::default() };
         }
         (made.sketch.looking, made.tree.looking) = (looking, looking);
+        made.sketch.later = later;
         let before = made.from.take();
         (made, before.is_none())
     }
@@ -317,6 +319,28 @@ impl SceneEvaluator {
         self.looking = looking;
     }
 
+    /// Whether how true a plant is to a drawing of very many strokes is left out of reports until [`Self::measure`] is asked,
+    /// because it takes as long as the plant. Default: no.
+    pub fn set_measuring_later(&mut self, later: bool) {
+        self.later = later;
+    }
+
+    /// Puts into the report of a plant what an update left for later. Whether there was something.
+    ///
+    /// # Errors
+    /// [`Cancelled`]; it is still left for later then.
+    pub fn measure(&mut self, id: PlantId, run: &Run<'_>) -> Result<bool, Cancelled> {
+        let Some(kept) = self.plants.get_mut(&id).filter(|k| k.made.sketch.is_unmeasured()) else {
+            return Ok(false);
+        };
+        let made = Arc::make_mut(&mut kept.made);
+        let found = made.sketch.measure(run)?;
+        if let Some(fidelity) = found {
+            made.item.fidelity = fidelity;
+        }
+        Ok(found.is_some())
+    }
+
     /// Brings one plant up to date; those whose leaf it bears too.
     ///
     /// # Errors
@@ -325,7 +349,7 @@ impl SceneEvaluator {
         let Some(plant) = document.plant(id) else { return Ok(()) };
         let Some(from) = self.wanted(plant, document, run)? else { return Ok(()) };
         let (next, kept) = (self.revision + 1, self.plants.entry(id).or_default());
-        let (made, anew) = kept.begin(plant, self.looking);
+        let (made, anew) = kept.begin(plant, (self.looking, self.later));
         let done = made.update(plant, from, anew, run)?;
         // A drawing in which nothing changed but how its photograph shows keeps its model.
         if !done.is_empty() {
@@ -350,7 +374,7 @@ impl SceneEvaluator {
         let Some(plant) = document.plant(id) else { return Ok(None) };
         let Maker::Tree(tree) = &plant.settings().maker else { return Ok(None) };
         let Some(from) = self.wanted(plant, document, run)? else { return Ok(None) };
-        let (made, _) = self.plants.entry(id).or_default().begin(plant, self.looking);
+        let (made, _) = self.plants.entry(id).or_default().begin(plant, (self.looking, self.later));
         Ok(made.tree.look(&tree_spec(tree), from.seed, &from.tree_options(tree), run)?)
     }
 

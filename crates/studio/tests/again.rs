@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use burgeon::formats::{DrawingFormat, read_drawings};
+use burgeon::glam::DVec2;
 use burgeon::ink::Drawing;
 use burgeon::{Evaluator, Run, Seed, SketchOptions};
 
@@ -41,4 +42,63 @@ fn a_drawing_that_changes_gives_what_a_fresh_start_gives() {
         options.skin.detail = 0.4;
         check(&moved, &options, "coarser");
     }
+}
+
+/// A turn, of the tangent of its half.
+fn turned(half: f64) -> DVec2 {
+    DVec2::new(1.0 - half * half, 2.0 * half) / (1.0 + half * half)
+}
+
+/// Blades, lines and rings of many sizes, side by side.
+fn many(count: u32) -> Drawing {
+    let step = turned(0.0807); // 39 of them are once round
+    let line = |s: u32| {
+        let at = 20.0 * DVec2::new(f64::from(s % 30), f64::from(s / 30));
+        let (turn, size) = (turned(0.3 * f64::from(s % 9)), 5.0 + f64::from(s % 5));
+        let mut round = DVec2::X;
+        let point = |i: u32| {
+            round = step.rotate(round);
+            let p = match s % 3 {
+                0 => DVec2::new(f64::from(i) / 39.0 - 0.5, 0.05 * round.y),
+                1 => DVec2::new(0.5, 0.2) * round,
+                _ => 0.4 * round,
+            };
+            at + size * turn.rotate(p)
+        };
+        (0..40).map(point).collect()
+    };
+    Drawing::from_polylines("many", &(0..count).map(line).collect::<Vec<Vec<DVec2>>>())
+}
+
+#[test]
+fn a_large_drawing_that_grows_gives_what_a_fresh_start_gives() {
+    let mut drawing = many(700);
+    let (mut kept, options, run) = (Evaluator::default(), SketchOptions::default(), Run::plain());
+    let mut check = |drawing: &Drawing, what: &str| {
+        let item = kept.update(drawing, &options, Seed::new(1), &run).expect("a plant");
+        let mut fresh = Evaluator::default();
+        let wanted = fresh.update(drawing, &options, Seed::new(1), &run).expect("a plant");
+        assert_eq!(item, wanted, "{what}");
+        assert!(kept.plant() == fresh.plant() && kept.model() == fresh.model(), "{what}");
+    };
+    check(&drawing, "whole");
+    let stroke = |from: DVec2, to: DVec2| {
+        let line: Vec<DVec2> = (0..=12).map(|i| from.lerp(to, f64::from(i) / 12.0)).collect();
+        Drawing::from_polylines("", &[line]).strokes.remove(0)
+    };
+    let at = DVec2::new(301.0, 227.0);
+    // The sixth is one of the next that tell of the whole.
+    for (k, to) in [(3.0, 4.0), (90.0, 170.0), (-2.0, 7.0), (11.0, 0.5), (-40.0, 60.0), (5.0, 5.0)]
+        .into_iter()
+        .enumerate()
+    {
+        drawing.strokes.push(stroke(at, at + DVec2::from(to)));
+        check(&drawing, &format!("stroke {k} more"));
+    }
+    drawing.strokes.push(stroke(at, at + DVec2::new(0.0, 900.0)));
+    check(&drawing, "one that makes the drawing larger");
+    drawing.strokes.remove(40);
+    check(&drawing, "without an early one");
+    drawing.strokes[80].samples.iter_mut().for_each(|s| s.at.x += 3.0);
+    check(&drawing, "one moved");
 }

@@ -74,6 +74,30 @@ impl Workspace {
         Ok(self.view())
     }
 
+    /// Whether [`Workspace::evaluate`] leaves it to [`Workspace::measure`] how true plants are to drawings of very many
+    /// strokes: they are seen in half of the time. Default: no.
+    pub fn measure_later(&mut self, later: bool) {
+        self.scene.set_measuring_later(later);
+    }
+
+    /// The view again, with what the last evaluation left for later; none where it left nothing.
+    ///
+    /// # Errors
+    /// [`WorkspaceError::Cancelled`]: it is still left for later.
+    pub fn measure(&mut self, run: &Run<'_>) -> Result<Option<SceneView>, WorkspaceError> {
+        if self.guest.is_some() || self.draft.is_some() || self.held.is_some() {
+            return Ok(None);
+        }
+        let plants = self.editor.document().plants().iter();
+        let shown: Vec<PlantId> = plants.filter(|p| !p.settings().hidden).map(DocumentPlant::id).collect();
+        let mut any = false;
+        for id in shown {
+            run.cancel.forget();
+            any |= self.scene.measure(id, run).map_err(|_cancelled| WorkspaceError::Cancelled)?;
+        }
+        Ok(any.then(|| self.view()))
+    }
+
     /// Trees that [`Workspace::evaluate`] is going to grow, much coarser, if they are large: they are seen long before the
     /// whole is there. Their columns can be asked for until the next evaluation, which grows nothing again.
     ///

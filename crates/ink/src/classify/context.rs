@@ -8,6 +8,7 @@ use base::{Executor, Run, map_indexed, ops};
 use geom::convex_hull;
 use glam::DVec2;
 
+use super::Classified;
 use super::features::{Shape, StrokeFeatures, shape, signed_area};
 use super::region::Region;
 use crate::Ink;
@@ -27,6 +28,16 @@ const PER_CELL: usize = 6;
 const LOOSE: f64 = 0.2;
 /// An end this near to a stroke touches it: four line widths of a felt pen.
 const TOUCH: f64 = 0.03;
+/// In a drawing of fewer strokes all of them tell of the whole.
+const ALL_TELL: usize = 512;
+
+/// How many strokes, from the first, tell what the whole drawing is like: most length, longest strokes, body, ranks.
+///
+/// In a large drawing it grows by steps of a sixteenth to a thirty-second, so that most strokes that are added are
+/// compared with what the strokes before them were compared with, and leave these as they are.
+const fn telling(strokes: usize) -> usize {
+    if strokes < ALL_TELL { strokes } else { strokes - strokes % (1 << (strokes.ilog2() - 4)) }
+}
 
 /// Measures every stroke of a drawing, on its own and among the others.
 ///
@@ -69,6 +80,8 @@ pub(super) fn features_again(
 pub struct KeptMeasures {
     strokes: Arc<Vec<KeptStroke>>,
     whole: Whole,
+    /// What each stroke measured when it was judged last, and what it was found to be.
+    pub(super) judged: Arc<Vec<(StrokeFeatures, Classified)>>,
     /// Those of one plant of several, which is known by its first stroke.
     plants: LiteMap<usize, Self>,
 }
@@ -248,29 +261,41 @@ impl Scene {
             None => measured.next(),
         });
         let (mut shapes, rows): (Vec<Arc<Shape>>, Vec<StrokeFeatures>) = all.unzip();
-        let order = by_length(&shapes);
-        enclose(&mut shapes, &order);
+        let m = telling(n);
+        // What tells of the whole may be as it was: then it says what it said.
+        let as_before =
+            n > COMPANIONS + 1 && telling(kept.strokes.len()) == m && known[..m].iter().all(Option::is_some);
+        let order = if as_before { Vec::new() } else { by_length(&shapes[..m]) };
+        enclose(&mut shapes, &order, m);
         let same = |(k, s): (&Option<&KeptStroke>, _)| k.is_some_and(|k| Arc::ptr_eq(&k.shape, s));
         let same: Vec<bool> = known.iter().zip(&shapes).map(same).collect();
         let low = shapes.iter().fold(DVec2::INFINITY, |a, s| a.min(s.min));
         let high = shapes.iter().fold(DVec2::NEG_INFINITY, |a, s| a.max(s.max));
         let size = if shapes.is_empty() { DVec2::ONE } else { (high - low).max(DVec2::splat(1e-6)) };
-        let total = shapes.iter().map(|s| s.length).sum();
-        let longest = shapes.iter().fold(0.0_f64, |a, s| a.max(s.length));
-        let amid = amid(&shapes, wanted);
-        let whole = Whole {
-            size,
-            body: body(&shapes, &order),
-            amid: if n > COMPANIONS + 1 { amid.first().cloned() } else { None },
-            longest: order.iter().copied().take(LONGEST).collect(),
-            grid: if n > COMPANIONS + 1 { grid(&shapes) } else { Grid::new() },
+        let total = shapes[..m].iter().map(|s| s.length).sum();
+        let longest = shapes[..m].iter().fold(0.0_f64, |a, s| a.max(s.length));
+        let grid = if n > COMPANIONS + 1 { grid(&shapes) } else { Grid::new() };
+        let (whole, amid) = if as_before {
+            let whole = Whole { size, grid, ..kept.whole.clone() };
+            let amid = whole.amid.iter().cloned().collect();
+            (whole, amid)
+        } else {
+            let amid = amid(&shapes[..m], &wanted[..m]);
+            let whole = Whole {
+                size,
+                body: body(&shapes, &order),
+                amid: if n > COMPANIONS + 1 { amid.first().cloned() } else { None },
+                longest: order.iter().copied().take(LONGEST).collect(),
+                grid,
+            };
+            (whole, amid)
         };
         let companions = companions(&shapes, &same, &whole, kept);
         Self { shapes, same, rows, companions, ink: total, longest, whole, amid }
     }
 
     fn rows(&self, wanted: &[bool], kept: &KeptMeasures, run: &Run<'_>) -> Rows {
-        let ranks = ranks(&self.shapes);
+        let ranks = ranks(&self.shapes, telling(self.shapes.len()));
         // Strokes of which neither they nor any of their companions changed.
         let settled = |i: usize| {
             let known = kept.strokes.get(i).filter(|k| self.same[i] && k.row.is_some())?;
@@ -338,16 +363,16 @@ impl Scene {
     /// Size, place and order in the drawing.
     fn place(&self, i: usize, rank: f64, f: &mut StrokeFeatures) {
         let s = &self.shapes[i];
-        let n = self.shapes.len();
+        let last = to_f64(telling(self.shapes.len()).saturating_sub(1));
         f.length = s.length;
         f.width = s.size().x / self.whole.size.x;
         f.height = s.size().y / self.whole.size.y;
         f.bottom = s.min.y / self.whole.size.y;
         f.ends_apart = (s.first().x - s.last().x).abs() / self.whole.size.x;
-        f.order = share(to_f64(i), to_f64(n.saturating_sub(1)));
+        f.order = share(to_f64(i), last).min(1.0);
         f.first = if i == 0 { 1.0 } else { 0.0 };
         f.rank = rank;
-        f.of_longest = share(s.length, self.longest);
+        f.of_longest = share(s.length, self.longest.max(s.length));
         f.of_ink = share(s.length, self.ink);
         let near = |k: Option<usize>| {
             k.and_then(|k| self.shapes.get(k))
@@ -529,11 +554,13 @@ impl Scene {
     }
 
     /// Statistics of the whole drawing, the same on every row.
-    fn whole(&self, told: &[Told], rows: &mut [StrokeFeatures]) {
-        let n = to_f64(rows.len());
-        if rows.is_empty() {
+    fn whole(&self, told: &[Told], all: &mut [StrokeFeatures]) {
+        if all.is_empty() {
             return;
         }
+        let telling = telling(all.len());
+        let (rows, told, shapes) = (&all[..telling], &told[..telling], &self.shapes[..telling]);
+        let n = to_f64(telling);
         let box_area = self.whole.size.x * self.whole.size.y;
         let mean = |g: &dyn Fn(&StrokeFeatures) -> f64| rows.iter().map(g).sum::<f64>() / n;
         let most = |g: &dyn Fn(&StrokeFeatures) -> f64| rows.iter().map(g).fold(0.0_f64, f64::max);
@@ -549,8 +576,8 @@ impl Scene {
             d_strokes: ops::ln(n) / 4.0,
             d_tall: self.whole.size.y / (self.whole.size.x + self.whole.size.y),
             d_ink: log1(self.ink),
-            d_round: to_f64(self.shapes.iter().filter(|s| s.encloses()).count()) / n,
-            d_largest: self.shapes.iter().fold(0.0_f64, |a, s| a.max(s.area)) / box_area,
+            d_round: to_f64(shapes.iter().filter(|s| s.encloses()).count()) / n,
+            d_largest: shapes.iter().fold(0.0_f64, |a, s| a.max(s.area)) / box_area,
             d_short: mean(&|f| if f.length < 0.1 { 1.0 } else { 0.0 }),
             d_pair: told.iter().fold(0.0_f64, |a, t| a.max(t.pair)),
             d_foot: self.band(0.0, 0.2),
@@ -563,7 +590,7 @@ impl Scene {
             d_body_bottom: self.whole.body.min.y / self.whole.size.y,
             ..StrokeFeatures::default()
         };
-        for f in rows {
+        for f in all {
             f.d_strokes = d.d_strokes;
             f.d_tall = d.d_tall;
             f.d_ink = d.d_ink;
@@ -584,8 +611,7 @@ impl Scene {
 
     /// Width of the ink between two shares of the drawing's height, over the drawing's width.
     fn band(&self, low: f64, high: f64) -> f64 {
-        let (a, b) = self
-            .shapes
+        let (a, b) = self.shapes[..telling(self.shapes.len())]
             .iter()
             .flat_map(|s| &s.points)
             .filter(|p| p.y >= low * self.whole.size.y && p.y <= high * self.whole.size.y)
@@ -622,9 +648,11 @@ fn amid(shapes: &[Arc<Shape>], wanted: &[bool]) -> Vec<Region> {
     regions
 }
 
-/// Fills in what the shapes enclose: of the longest ones only, so that very many strokes fit into memory.
-fn enclose(shapes: &mut [Arc<Shape>], order: &[usize]) {
-    for (rank, &i) in order.iter().enumerate() {
+/// Fills in what the shapes enclose: of the longest ones only, and of those that came after all that tell of the whole,
+/// so that very many strokes fit into memory.
+fn enclose(shapes: &mut [Arc<Shape>], order: &[usize], telling: usize) {
+    let later = (telling..shapes.len()).map(|i| (i - telling, i));
+    for (rank, i) in order.iter().copied().enumerate().chain(later) {
         let wanted = rank < MOST_REGIONS;
         if let Some(s) = shapes.get_mut(i).filter(|s| s.enclosed != wanted) {
             Arc::make_mut(s).enclose(wanted);
@@ -700,12 +728,13 @@ fn part_inside(s: &Shape, region: &Region, o: &Shape) -> f64 {
     to_f64(count) / to_f64(s.points.len().saturating_sub(EVERY / 2).div_ceil(EVERY).max(1))
 }
 
-/// Share of the strokes that are shorter, for each.
-fn ranks(shapes: &[Arc<Shape>]) -> Vec<f64> {
-    let mut sorted: Vec<f64> = shapes.iter().map(|s| s.length).collect();
+/// Share of the first `telling` strokes that are shorter, for each.
+fn ranks(shapes: &[Arc<Shape>], telling: usize) -> Vec<f64> {
+    let mut sorted: Vec<f64> = shapes[..telling].iter().map(|s| s.length).collect();
     base::sort_numbers(&mut sorted);
-    let others = to_f64(shapes.len().saturating_sub(1));
-    shapes.iter().map(|s| share(to_f64(sorted.partition_point(|&l| l < s.length)), others)).collect()
+    let others = to_f64(telling.saturating_sub(1));
+    let shorter = |l: f64| share(to_f64(sorted.partition_point(|&other| other < l)), others).min(1.0);
+    shapes.iter().map(|s| shorter(s.length)).collect()
 }
 
 /// Where a stroke is looked up.

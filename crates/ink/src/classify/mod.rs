@@ -7,7 +7,7 @@
 //! | the support vector machine | `svm`, `packed`, `model` |
 //! | the table it is trained from, and how good it is | `training` |
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 mod context;
 mod features;
@@ -98,7 +98,12 @@ fn judge(
     }
     let unknown = |i: usize| known.get(i).is_none_or(Option::is_none);
     let rows = context::features_again(ink, unknown, kept, run);
+    let before = core::mem::take(&mut kept.judged);
     let decide = |i: usize| {
+        // The same numbers are the same stroke.
+        if let Some((_, class)) = before.get(i).filter(|(row, _)| *row == rows[i]) {
+            return *class;
+        }
         // A test reads the models, so they are always there.
         let models = models.filter(|_| run.cancel.check().is_ok());
         models.map(|m| m.decide(&rows[i])).unwrap_or_default()
@@ -109,7 +114,17 @@ fn judge(
         let source = Source::Rule(LONE_LINE);
         return vec![Classified { class: StrokeClass::Axis, confidence: 1.0, source, ..decide(0) }];
     }
-    map_indexed(run.executor, rows.len(), |i| known.get(i).copied().flatten().unwrap_or_else(|| decide(i)))
+    let is_known = |i: usize| known.get(i).copied().flatten();
+    let classes = map_indexed(run.executor, rows.len(), |i| is_known(i).unwrap_or_else(|| decide(i)));
+    if run.cancel.check().is_ok() {
+        // A class that was known says nothing of today's numbers.
+        let judged = |(i, class): (usize, &Classified)| match is_known(i) {
+            Some(_) => before.get(i).copied().unwrap_or_default(),
+            None => (rows[i], *class),
+        };
+        kept.judged = Arc::new(classes.iter().enumerate().map(judged).collect());
+    }
+    classes
 }
 
 /// Every plant of a drawing by itself: what stands beside it says nothing about its strokes.

@@ -307,3 +307,27 @@ fn a_held_out_drawing_is_in_one_fold() {
     let drawings: std::collections::BTreeSet<&String> = rows.iter().map(|r| &r.drawing).collect();
     assert_eq!((held.len(), held.iter().copied().collect()), (drawings.len(), drawings));
 }
+
+#[test]
+fn a_stroke_more_leaves_most_of_a_large_drawing_as_it_measured() {
+    let ring = |k: u32| {
+        let at = DVec2::new(f64::from(k % 30), f64::from(k / 30));
+        let size = 0.2 + 0.01 * f64::from(k % 17);
+        let point = |i: u32| {
+            let (s, c) = ops::sin_cos(ops::TAU * f64::from(i) / 30.0);
+            at + size * DVec2::new(c, 0.3 * s)
+        };
+        (0..=30).map(point).collect::<Vec<DVec2>>()
+    };
+    let mut lines: Vec<Vec<DVec2>> = (0..710).map(ring).collect();
+    let measured = |lines: &[Vec<DVec2>]| {
+        let ink = clean(&Drawing::from_polylines("rings", lines), &mut Report::default());
+        features(&ink, &Run::plain())
+    };
+    let before = measured(&lines);
+    // Longer than all the others.
+    lines.push((0..=30).map(|i| DVec2::new(12.3, 9.4 + 0.15 * f64::from(i))).collect());
+    let after = measured(&lines);
+    let changed = before.iter().zip(&after).filter(|(a, b)| a != b).count();
+    assert!(changed > 2 && changed < 100, "{changed} of {}", before.len());
+}
