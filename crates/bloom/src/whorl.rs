@@ -318,6 +318,12 @@ impl Whorl {
         }
     }
 
+    /// The least azimuth between two neighbours, radians.
+    pub(crate) fn narrowest(&self) -> f64 {
+        let gap = ops::TAU - self.apart() * f64::from(self.count.max(1) - 1);
+        if gap > 0.0 { gap.min(self.apart()) } else { self.apart() }
+    }
+
     /// The place of petal `k` in the order in which they stand on the axis, outermost first.
     pub(crate) fn rank(&self, k: u32) -> u32 {
         let n = self.count.max(1);
