@@ -109,7 +109,7 @@ pub(crate) fn organs(out: &Path) -> Outcome<(PathBuf, Vec<PathBuf>)> {
     let mut c = prepare(&burgeon, &["bloom", "fit", "--quiet", "-o"]);
     c.arg(&law).arg(out.join("stages.toml"));
     finish(c)?;
-    let presets = tree_presets()?;
+    let presets = presets_in("crates/studio/presets")?;
     let mut all = Vec::new();
     for threads in ["1", "4"] {
         let mut digests = serde_json::Map::new();
@@ -142,8 +142,8 @@ pub(crate) fn organs(out: &Path) -> Outcome<(PathBuf, Vec<PathBuf>)> {
                 _ => digest_of(name, prepare(&burgeon, &["leaf"]).arg(path))?,
             }
         }
-        for species in ["rose", "lily", "tulip", "sunflower", "clivia"] {
-            digest_of(species.into(), prepare(&burgeon, &opening).arg(&glb).arg(species))?;
+        for species in presets_in("crates/bloom/presets")? {
+            digest_of(species.clone(), prepare(&burgeon, &opening).arg(&glb).arg(species))?;
         }
         let mut c = prepare(&burgeon, &opening);
         digest_of("stages".into(), c.arg(&glb).arg(out.join("stages.toml")).arg("--law").arg(&law))?;
@@ -164,8 +164,9 @@ pub(crate) fn organs(out: &Path) -> Outcome<(PathBuf, Vec<PathBuf>)> {
 }
 
 /// The keys of the presets of `burgeon grow`.
-fn tree_presets() -> Outcome<Vec<String>> {
-    let folder = repository().join("crates/studio/presets");
+/// The keys of the presets in a folder.
+fn presets_in(folder: &str) -> Outcome<Vec<String>> {
+    let folder = repository().join(folder);
     let entries = std::fs::read_dir(&folder).map_err(|e| format!("{}: {e}", shown(&folder)))?;
     let files = entries.filter_map(Result::ok).map(|e| e.path());
     let toml = files.filter(|p| p.extension().is_some_and(|e| e == "toml"));

@@ -380,13 +380,14 @@ fn make(args: &LeafArgs, machine: &Machine) -> Outcome<Product> {
 
 /// A leaf of chief veins, made from numbers or digitised.
 fn rays(args: &LeafArgs, leaf: ReadLeaf, rays: Rays, machine: &Machine) -> Outcome<Product> {
-    for options in [&SURFACE[..], &LOOK, &["margin_vein", "plant", "days"]] {
+    for options in [&SURFACE[..], &["texture", "margin_vein", "plant", "days"]] {
         args.given.refuse(options, "leaves of rows of marks", "this is one of chief veins")?;
     }
     let options = options(args, leaf.thickness)?;
     let made = burgeon::make_ray_leaf(&leaf.name, &rays, &options, &machine.run());
     let mut made = made.map_err(|e| failure(args, e))?;
     made.item.warnings.splice(0..0, leaf.warnings.iter().map(ToString::to_string));
+    let rays = options.spec.pose().apply_rays(&rays);
     Ok(Product { made, marks: Some(Measured::Rays(rays)), offset_m: None })
 }
 

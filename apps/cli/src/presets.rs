@@ -1,5 +1,6 @@
 //! `burgeon presets`: the species that come with the program.
 
+use burgeon::bloom::{self, FlowerSpec};
 use burgeon::{PRESETS, Preset, TreeSpec, method_word, tree_schema};
 use serde::Serialize;
 
@@ -12,8 +13,18 @@ use crate::{output, say};
 struct Row {
     preset: &'static str,
     species: String,
+    /// How it grows; `flower` of what `bloom run` opens.
     method: &'static str,
     about: String,
+}
+
+/// A flower that opens: what the first lines of its file say.
+fn flower(key: &'static str) -> Row {
+    let text = bloom::preset_text(key).unwrap_or_default();
+    let said: Vec<&str> = text.lines().map_while(|l| l.strip_prefix("# ")).collect();
+    let said = said.join(" ");
+    let about = said.split(". Lengths").next().unwrap_or_default();
+    Row { preset: key, species: key.into(), method: "flower", about: about.into() }
 }
 
 pub(crate) fn presets(args: &PresetsArgs) -> Outcome {
@@ -21,7 +32,8 @@ pub(crate) fn presets(args: &PresetsArgs) -> Outcome {
         say::data(text).map_err(|e| Failure::io(std::path::Path::new("standard output"), "written", &e))
     };
     let shown = args.show.as_deref().map(|key| {
-        Preset::find(key)
+        let tree = Preset::find(key).map(|p| p.toml);
+        tree.or_else(|| bloom::preset_text(key))
             .ok_or_else(|| Failure::Bad(format!("there is no preset `{key}`; `burgeon presets` lists them")))
     });
     let shown = shown.transpose()?;
@@ -31,7 +43,7 @@ pub(crate) fn presets(args: &PresetsArgs) -> Outcome {
         output::write_one("--schema", path, |file| Ok(writeln!(file, "{text}")?))?;
     }
     if let Some(preset) = shown {
-        return out(preset.toml.trim_end());
+        return out(preset.trim_end());
     }
     if args.schema.is_some() && !args.json {
         return Ok(());
@@ -42,7 +54,8 @@ pub(crate) fn presets(args: &PresetsArgs) -> Outcome {
         let method = method_word(&spec.method);
         Ok(Row { preset: preset.key, species: spec.species, method, about: spec.about })
     };
-    let rows = PRESETS.iter().map(row).collect::<Outcome<Vec<_>>>()?;
+    let mut rows = PRESETS.iter().map(row).collect::<Outcome<Vec<_>>>()?;
+    rows.extend(FlowerSpec::PRESETS.iter().map(|key| flower(key)));
     if args.json {
         let text = serde_json::to_string_pretty(&rows).map_err(|e| Failure::Bug(e.to_string()))?;
         return out(&text);

@@ -437,7 +437,18 @@ fn ctrl_c_leaves_nothing_behind() {
 fn presets_are_listed_shown_and_described() {
     let at = folder("grow-presets");
     let list = good(&at, &["presets"]);
-    for name in ["pine", "terminalia", "chinese-fir", "oak", "willow", "palm", "bamboo", "dead-oak"] {
+    for name in [
+        "pine",
+        "terminalia",
+        "chinese-fir",
+        "oak",
+        "willow",
+        "palm",
+        "bamboo",
+        "dead-oak",
+        "peony",
+        "dandelion",
+    ] {
         assert!(list.lines().any(|l| l.starts_with(name)), "{name} in {list}");
     }
     let toml = good(&at, &["presets", "--show", "hazel"]);

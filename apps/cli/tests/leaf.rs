@@ -218,7 +218,7 @@ fn chief_veins_that_start_together_make_a_leaf() {
     assert!(
         bad(&at, &["leaf", "--venation", "palmate", "--veins", "4", "-o", "x.glb"]).contains("odd number")
     );
-    assert!(bad(&at, &["leaf", "p.csv", "--curl", "0.3", "-o", "x.glb"]).contains("rows of marks"));
+    assert!(bad(&at, &["leaf", "p.csv", "--surface", "nurbs", "-o", "x.glb"]).contains("rows of marks"));
 }
 
 #[test]

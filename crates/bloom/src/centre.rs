@@ -171,7 +171,7 @@ fn mix(a: [f32; 3], b: [f32; 3], t: f64) -> [f32; 3] {
 }
 
 /// Fibres of a parachute: points of its rim, every second one drawn in.
-const PAPPUS: u32 = 28;
+const PAPPUS: u32 = 40;
 
 impl FlowerSpec {
     /// Stamens, pistil, disc and fruit, within all that the nest holds.
@@ -190,7 +190,8 @@ impl FlowerSpec {
         if self.pistil_m > 0.0 {
             let from = if ovary > 0.0 { top - 0.0004 } else { base };
             let bare = self.fruit.length_m > 0.0;
-            self.pistil(bed, self.pistil_m * ops::lerp(0.5, 1.0, g), from, (bare, wilt));
+            let left = 1.0 - self.pistil_shed * ops::smoothstep(0.5, 0.9, times.life);
+            self.pistil(bed, self.pistil_m * ops::lerp(0.5, 1.0, g) * left, from, (bare, wilt));
         }
         if self.disc_m > 0.0 {
             let fat = 0.8 / f64::from(self.disc.florets.max(10)).sqrt();
@@ -240,7 +241,8 @@ impl FlowerSpec {
         let tilt = rad(spread * ops::lerp(0.25, 1.0, g) * lean + 10.0 * wilt);
         let long = length * ops::lerp(0.45, 1.0, g) * seed.stream(Draw::Size).range(0.93, 1.0) * left;
         // A few stamens stand in a ring, many in Vogel's spiral.
-        let turn = if many { f64::from(k) * rad(137.507_8) } else { ops::TAU * (ring - 0.5 / f64::from(count)) };
+        let turn =
+            if many { f64::from(k) * rad(137.507_8) } else { ops::TAU * (ring - 0.5 / f64::from(count)) };
         let (s, c) = ops::sin_cos(turn);
         let out = DVec3::new(c, 0.0, s);
         let foot = self.stamen_foot();
@@ -268,8 +270,10 @@ impl FlowerSpec {
         } else {
             0.5 * ops::TAU * head / f64::from(count.max(1))
         };
-        let half = (0.5 * self.stamens.anther * length).clamp(0.0004, 0.012).min(room * 0.9 + 0.35 * thick);
-        let half = half * ops::lerp(0.7, 1.0, g) * left;
+        // Across its filament it needs more room than along it.
+        let broad = if many { f64::INFINITY } else { 0.7 * room };
+        let half = (0.5 * self.stamens.anther * length).clamp(0.0004, 0.012).min(broad);
+        let half = half * ops::lerp(if many { 0.4 } else { 0.7 }, 1.0, g) * left;
         let sideways = DVec3::Y.cross(out);
         // In the bud along the filament; versatile in the open flower.
         let swing = if many { 0.0 } else { g * g };
@@ -277,7 +281,7 @@ impl FlowerSpec {
         let middle = at + direction * (half * (1.0 - swing));
         let line: Vec<DVec3> =
             (0..=4).map(|i| middle + across * (half * (f64::from(i) / 2.0 - 1.0))).collect();
-        let fat = (0.3 * half + 0.5 * thick * left).min(0.4 * room + 0.2 * thick);
+        let fat = (0.36 * half + 0.5 * thick * left).min(if many { 0.42 } else { 0.35 } * room);
         // Open anthers are dusted with pollen; later they shrink and darken.
         let color = mix(self.stamens.anther_color, [0.18, 0.09, 0.03], wilt);
         let radii = [0.25, 0.85, 1.0, 0.85, 0.25].map(|r| r * fat * (1.0 - 0.35 * wilt));
@@ -287,7 +291,7 @@ impl FlowerSpec {
     /// How large the fruit is, as a share of the ripe one.
     fn fruit_size(&self, times: &Times<'_>) -> f64 {
         let young = self.fruit.ovary * ops::lerp(0.6, 1.0, times.open);
-        ops::lerp(young, 1.0, ops::smoothstep(0.1, 1.0, times.life.max(0.0)))
+        ops::lerp(young, 1.0, ops::smoothstep(0.3, 1.0, times.life.max(0.0)))
     }
 
     fn fruit_color(&self, times: &Times<'_>) -> [f32; 3] {
@@ -318,7 +322,11 @@ impl FlowerSpec {
             let top = base + long;
             let last = rings.len() - 1;
             rings[last][0] = 0.7 * wide;
-            rings.extend([[wide, top + 0.02 * long], [wide, top + 0.06 * long], [0.3 * wide, top + 0.16 * long]]);
+            rings.extend([
+                [wide, top + 0.02 * long],
+                [wide, top + 0.06 * long],
+                [0.3 * wide, top + 0.16 * long],
+            ]);
         }
         rings.push([1e-5, rings.last().map_or(base, |r| r[1]) + 0.01 * long]);
         let columns = 24_u32;
@@ -343,11 +351,16 @@ impl FlowerSpec {
         bed.around(OrganKind::Fruit, DVec3::Y * base, grid);
     }
 
+    /// How far the receptacle of a flower reaches below its foot; `wide`: the radius of its widest ring, metres.
+    pub fn receptacle_depth_m(wide: f64) -> f64 {
+        0.6 * wide + 0.002
+    }
+
     /// What joins stalk and petals: from the stalk up along the feet of sepals and petals, and to the axis.
     pub(crate) fn receptacle(&self, bed: &mut Bed<'_>, times: &Times<'_>, whorls: &[Whorl]) {
         let wide = whorls.iter().map(|w| w.insertion.radius_m).fold(0.0, f64::max).max(self.disc_m);
         let below = self.fruit.below && self.fruit.length_m > 0.0;
-        let mut low = -0.6 * wide - 0.002;
+        let mut low = -Self::receptacle_depth_m(wide);
         let mut rings = vec![[0.08 * wide, low], [0.6 * wide, 0.45 * low]];
         if below {
             let size = self.fruit_size(times);
@@ -401,7 +414,8 @@ impl FlowerSpec {
             (1.0, 1.2),
         ];
         let line = parts.map(|p| DVec3::new(0.0, base + p.0 * long, 0.0));
-        let radii = parts.map(|p| p.1 * thick);
+        let shorter = (long / self.pistil_m * 2.0).min(1.0);
+        let radii = parts.map(|p| p.1 * thick * shorter);
         let color = mix(self.pistil_color, [0.0; 3], 0.5 * wilt);
         bed.strand(OrganKind::Pistil, &line, &radii, color);
     }
@@ -451,33 +465,40 @@ impl FlowerSpec {
     fn achene(&self, bed: &mut Bed<'_>, k: u32, base: f64, times: &Times<'_>) {
         let Achenes { count, length_m, head_m, color } = self.achenes;
         let n = f64::from(count.max(1));
-        let grow = ops::smoothstep(0.15, 0.9, times.ripe).max(1e-3);
+        let grow = ops::smoothstep(0.5, 0.97, times.ripe).max(1e-3);
         // Evenly over the sphere but for its foot, where the stalk is.
-        let y = 1.0 - 1.86 * (f64::from(k) + 0.5) / n;
+        let y = 1.0 - 1.55 * (f64::from(k) + 0.5) / n;
         let wide = (1.0 - y * y).max(0.0).sqrt();
         let (s, c) = ops::sin_cos(f64::from(k) * rad(137.507_8));
         let out = DVec3::new(wide * c, y, wide * s);
         // The head swells into a ball as bracts fold back.
-        let middle = DVec3::Y * (base + head_m * 0.6 * grow);
-        let head = head_m * ops::lerp(0.2, 1.0, grow);
+        let middle = DVec3::Y * (base + 1.3 * head_m * (0.3 + 3.0 * grow).min(1.0));
+        let head = head_m * ops::lerp(0.01, 1.0, grow);
         let reach = length_m * grow;
-        let thin = 0.00012 * grow.max(0.05);
+        let thin = 0.00012 * grow;
         let line = [0.0, 0.06, 0.24, 0.3, 0.6, 1.0].map(|t| middle + out * (head + reach * t));
         let radii = [1.0, 4.0, 4.0, 1.0, 0.8, 0.7].map(|r| r * thin);
         bed.strand(OrganKind::Fruit, &line, &radii, color);
         let sphere = head + reach;
         // As wide as there is room beside the next.
-        let rim = 0.49 * sphere * (2.0 * ops::TAU * 0.93 / n).sqrt() * grow;
+        let rim = 0.49 * sphere * (ops::TAU * 1.55 / n).sqrt() * grow;
         let (right, up) = out.any_orthonormal_pair();
         let mut grid = Grid {
             points: Vec::new(),
             across: (0..=PAPPUS).map(|k| f64::from(k) / f64::from(PAPPUS)).collect(),
             along: vec![0.0, 1.0],
-            colors: vec![[0.82, 0.82, 0.8]; 2 * (PAPPUS as usize + 1)],
+            colors: vec![[0.92, 0.92, 0.9]; 2 * (PAPPUS as usize + 1)],
         };
         for row in [0.04, 1.0] {
             for j in (0..=PAPPUS).rev() {
-                let r = rim * if row < 0.5 { 0.04 } else if j.is_multiple_of(2) { 1.0 } else { 0.16 };
+                let r = rim
+                    * if row < 0.5 {
+                        0.04
+                    } else if j.is_multiple_of(2) {
+                        1.0
+                    } else {
+                        0.4
+                    };
                 let (s, c) = ops::sin_cos(ops::TAU * f64::from(j) / f64::from(PAPPUS));
                 let rise = if row < 0.5 { 0.02 } else { 0.3 * r / rim.max(1e-9) };
                 grid.points.push(middle + out * (sphere + rim * rise) + right * (r * c) + up * (r * s));

@@ -133,6 +133,9 @@ impl Stalk {
     }
 }
 
+/// Pieces of a stalk that stand straight at every day.
+const STILL: usize = 4;
+
 impl FlowerSpec {
     /// Place of flower `f` in the order in which the flowers of a cluster open, 0 to 1.
     fn turn_of(&self, f: u32) -> f64 {
@@ -217,12 +220,12 @@ impl FlowerSpec {
         }
     }
 
-    /// The stalk, bent towards where the head nods, and stalks of a cluster: what bears each flower.
-    pub(crate) fn stalks(
+    /// What stands still: the foot of the stalk, or all of it where nothing nods, and the axis of a cluster. Also what
+    /// bears each flower.
+    pub(crate) fn stems(
         &self,
         plant: &mut Plant,
         seat: &Seat,
-        day: f64,
         stalk: &Stalk,
         seed: Seed,
     ) -> Vec<Option<NodeId>> {
@@ -239,7 +242,8 @@ impl FlowerSpec {
         };
         let mut nodes = Vec::new();
         if self.stalk_m > 0.0 {
-            nodes = stem(seat.bearer, &stalk.line, [slim, slim], seed);
+            let still = if self.moves() { &stalk.line[..=STILL] } else { &stalk.line[..] };
+            nodes = stem(seat.bearer, still, [slim, slim], seed);
         }
         let bearer = nodes.last().copied().or(seat.bearer);
         if self.umbel <= 1 {
@@ -249,17 +253,30 @@ impl FlowerSpec {
         if self.cluster.form != ClusterForm::Umbel && self.cluster.axis_m > 0.0 {
             rachis = stem(bearer, &stalk.axis, [slim, 0.5 * slim], seed.child(1 << 20));
         }
-        let pedicel = |f: u32| {
-            let Place { centre, foot, .. } = self.place(f, day, stalk);
-            let middle = foot.lerp(centre, 0.5) + DVec3::Y * (0.06 * foot.distance(centre));
+        let below = |f: u32| {
+            let foot = self.place(f, 0.0, stalk).foot;
             // The nearest node below.
-            let below = rachis.iter().zip(&stalk.axis).rev().find(|(_, p)| p.y <= foot.y + 1e-9);
-            let (bearer, line) = match below {
-                Some((node, p)) => (Some(*node), [*p, middle, centre]),
-                None => (bearer, [foot, middle, centre]),
-            };
-            stem(bearer, &line, [0.5 * slim; 2], seed.child(u64::from(f))).last().copied()
+            rachis.iter().zip(&stalk.axis).rev().find(|(_, p)| p.y <= foot.y + 1e-9).map(|(node, _)| *node)
         };
-        (0..self.umbel).map(pedicel).collect()
+        (0..self.umbel).map(|f| below(f).or(bearer)).collect()
+    }
+
+    /// The head of a single stalk nods from day to day.
+    fn moves(&self) -> bool {
+        self.umbel <= 1 && self.nod_deg > 0.0
+    }
+
+    /// What moves with flower `f`: the bending part of a single stalk, or its own stalk in a cluster; and its radius.
+    pub(crate) fn own_stalk(&self, f: u32, day: f64, stalk: &Stalk) -> Option<(Vec<DVec3>, f64)> {
+        if self.umbel > 1 {
+            let Place { centre, foot, .. } = self.place(f, day, stalk);
+            // Rising from the axis, and straight to the flower.
+            let middle = foot.lerp(centre, 0.5) + DVec3::Y * (0.06 * foot.distance(centre));
+            let bow = |t: f64| foot.lerp(middle, t).lerp(middle.lerp(centre, t), t);
+            let line = (0..=6).map(|k| bow(f64::from(k) / 6.0)).collect();
+            return Some((line, 0.5 * stalk.radius));
+        }
+        let moving = self.moves() && self.stalk_m > 0.0;
+        moving.then(|| (stalk.line[STILL..].to_vec(), stalk.radius))
     }
 }

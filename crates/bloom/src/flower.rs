@@ -15,7 +15,7 @@ use crate::centre::{Achenes, Disc, Fruit, Stamens};
 use crate::cluster::{Cluster, Nods};
 use crate::foliage::{Foliage, Ground};
 use crate::organs::{Bed, Seat};
-use crate::petal::{Nest, Rows, Times};
+use crate::petal::{Falls, Nest, Rows, Times};
 use crate::whorl::{PetalForm, Whorl};
 use crate::{GrowthLaw, Quantity};
 
@@ -42,6 +42,9 @@ pub struct FlowerSpec {
     /// Radius of its style, metres, 0 to 0.05; 0, the default, for one that fits its length.
     #[schemars(range(min = 0.0, max = 0.05), extend("x-unit" = "m"))]
     pub pistil_radius_m: f64,
+    /// How much of the style falls as the fruit grows, 0 to 1, default 0.
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub pistil_shed: f64,
     /// Linear colour of the pistil.
     #[schemars(inner(range(min = 0.0, max = 1.0)), extend("x-unit" = "linear-colour"))]
     pub pistil_color: [f32; 3],
@@ -114,6 +117,7 @@ impl Default for FlowerSpec {
             stamens: Stamens::default(),
             pistil_m: 0.0,
             pistil_radius_m: 0.0,
+            pistil_shed: 0.0,
             pistil_color: [0.50, 0.64, 0.22],
             disc_m: 0.0,
             disc: Disc::default(),
@@ -181,11 +185,13 @@ impl FlowerSpec {
     /// As [`at`](Self::at), on a plant that there is already.
     pub fn add_to(&self, plant: &mut Plant, seat: &Seat, day: f64, law: &GrowthLaw, seed: Seed) {
         let stalk = self.stalk_at(self.own_day(0, day));
-        let bearers = self.stalks(plant, seat, day, &stalk, seed);
+        let bearers = self.stems(plant, seat, &stalk, seed);
         let reach = self.foliage(plant, seat, bearers.first().copied().flatten(), &stalk, seed);
         let mut ground = Ground::new(seat, reach);
-        let rings: Vec<Whorl> = self.whorls.iter().flat_map(|w| (0..w.rings.max(1)).map(|r| w.ring(r))).collect();
+        let rings: Vec<Whorl> =
+            self.whorls.iter().flat_map(|w| (0..w.rings.max(1)).map(|r| w.ring(r))).collect();
         let rows = Rows::new(self.mesh);
+        let falls = Falls::new(&rings);
         for (f, bearer) in (0..).zip(bearers) {
             let own = self.own_day(f, day);
             let times = Times::new(self, law, own);
@@ -194,20 +200,23 @@ impl FlowerSpec {
             let at = seat.at(place.centre);
             let (flower, axis) = (FlowerId::new(plant.flowers.len()), turn * DVec3::Y);
             let petals = || rings.iter().filter(|w| !w.sepal);
-            let half_angle = petals()
-                .next()
-                .map_or(0.0, |w| w.state(&times, 0.0).angle[1].clamp(0.0, ops::FRAC_PI_2));
+            let half_angle =
+                petals().next().map_or(0.0, |w| w.state(&times, 0.0).angle[1].clamp(0.0, ops::FRAC_PI_2));
             let whorls = u32::try_from(petals().count()).unwrap_or(u32::MAX);
             let axis = axis.normalize_or(DVec3::Y);
             plant.flowers.push(Flower { bearer, centre: at, axis, half_angle, whorls });
             let seed = seed.child(u64::from(f));
             let size = self.bud_size(own);
             let mut bed = Bed { plant: &mut *plant, flower, bearer, place: (at, turn), size, seed };
+            if let Some((line, radius)) = self.own_stalk(f, day, &stalk) {
+                let line: Vec<DVec3> = line.into_iter().map(|p| seat.at(p)).collect();
+                bed.stalk(&line, radius);
+            }
             self.receptacle(&mut bed, &times, &rings);
             let mut nest = Nest::new(self.reach());
-            for ring in &rings {
+            for (row, ring) in rings.iter().enumerate() {
                 let kind = if ring.sepal { OrganKind::Sepal } else { OrganKind::Petal };
-                self.ring(&mut bed, kind, ring, (&times, &rows), (&mut nest, &mut ground));
+                self.ring(&mut bed, kind, ring, (&times, &rows, (&falls, row)), (&mut nest, &mut ground));
             }
             self.centre(&mut bed, &times, &nest, &rings);
         }

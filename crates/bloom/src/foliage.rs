@@ -130,7 +130,8 @@ impl Way {
     /// Along the midrib by even steps: place and angle to the upright.
     fn line(&self, long: f64, steps: u32, [from, to]: [f64; 2]) -> Vec<(DVec3, f64)> {
         let [a, b, c] = self.angles;
-        let bent = |v: f64| a * (1.0 - v) * (1.0 - 2.0 * v) + 4.0 * b * v * (1.0 - v) + c * v * (2.0 * v - 1.0);
+        let bent =
+            |v: f64| a * (1.0 - v) * (1.0 - 2.0 * v) + 4.0 * b * v * (1.0 - v) + c * v * (2.0 * v - 1.0);
         let (sin_z, cos_z) = ops::sin_cos(self.azimuth);
         let mut at = self.root;
         let step = long / f64::from(steps);
@@ -207,7 +208,17 @@ impl Bough<'_> {
         let key = self.seed.child(self.plant.organs.len() as u64).number();
         let (kind, flower, paint) = (OrganKind::Leaf, None::<FlowerId>, Paint::Tinted(rgb));
         let bearer = self.bearer;
-        self.plant.organs.push(Organ { kind, bearer, flower, shape, frame, scale: 1.0, paint, key, source: None });
+        self.plant.organs.push(Organ {
+            kind,
+            bearer,
+            flower,
+            shape,
+            frame,
+            scale: 1.0,
+            paint,
+            key,
+            source: None,
+        });
     }
 
     fn sheet(&mut self, grid: Grid) {
@@ -249,16 +260,19 @@ impl Bough<'_> {
         self.sheet(kind.blade(&tip.line(long, ROWS, [share, 1.0]), way.azimuth, way.size));
         let pairs = (kind.leaflets - 1) / 2;
         for k in 0..pairs {
-            let t = 0.45 + 0.45 * f64::from(k) / f64::from(pairs.max(1));
+            let t = 0.4 + 0.42 * f64::from(k) / f64::from(pairs.max(2) - 1);
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 8")]
             let at = stalk[(t * 8.0) as usize].0;
             for side in [-1.0, 1.0] {
                 // Sideways and a little forwards, in the slope of the leaf.
                 let azimuth = way.azimuth + side * 1.15;
                 let (s, c) = ops::sin_cos(azimuth);
-                let root = at + DVec3::new(c, 0.0, s) * (1.3 * radius);
+                // On a stalk of its own, as wide as its foot.
+                let clear = (1.3 * radius).max(0.6 * kind.base * kind.width_m * way.size);
+                let root = at + DVec3::new(c, 0.0, s) * clear;
                 let flat = ops::lerp(ops::FRAC_PI_2, angle, 0.4);
-                let own = Way { root, azimuth, angles: [flat, flat + 0.1, flat + 0.35], size: way.size * 0.92 };
+                let own =
+                    Way { root, azimuth, angles: [flat, flat + 0.1, flat + 0.35], size: way.size * 0.92 };
                 self.sheet(kind.blade(&own.line(long * 0.92, ROWS, [0.0, 1.0]), azimuth, own.size));
             }
         }
@@ -275,12 +289,6 @@ impl FlowerSpec {
         stalk: &Stalk,
         seed: Seed,
     ) -> f64 {
-        // Leaves are borne by the stalk, not by a flower's own one.
-        let bearer = if self.stalk_m > 0.0 && self.umbel > 1 {
-            bearer.and_then(|b| plant.axes[plant.nodes.axis[b.index()].index()].bearer).or(bearer)
-        } else {
-            bearer
-        };
         let mut bough = Bough { plant, seat: *seat, bearer, seed: seed.child(0x1eaf), reach: 0.0 };
         for kind in &self.leaves {
             let nodes = kind.count.div_ceil(kind.at_node.max(1));
@@ -348,8 +356,8 @@ impl Ground {
     }
 
     /// Moves a petal on its way down; 1 is on the ground, with its upper side up.
-    /// `azimuth`: of the petal in its ring; it falls to its own side.
-    pub(crate) fn drop(&self, grid: &mut Grid, azimuth: f64, share: f64, seed: Seed) {
+    /// `from` and `azimuth`: the foot of the flower, and where on the ground its place is.
+    pub(crate) fn drop(&self, grid: &mut Grid, (from, azimuth): (DVec3, f64), share: f64, seed: Seed) {
         let columns = grid.across.len();
         let rows = grid.along.len();
         let (root, tip) = (grid.points[columns / 2], grid.points[(rows - 1) * columns + columns / 2]);
@@ -367,12 +375,9 @@ impl Ground {
         let lowest = grid.points.iter().map(|&p| (fall * (p - centre)).y).fold(f64::INFINITY, f64::min);
         let end = DVec3::new(place.x, self.seat.centre.y + 0.0006 - lowest, place.z);
         // Out of the flower first, then down.
-        let (out, down) = (ops::smoothstep(0.0, 0.75, share), share * share);
-        let at = DVec3::new(
-            ops::lerp(centre.x, end.x, out),
-            ops::lerp(centre.y, end.y, down),
-            ops::lerp(centre.z, end.z, out),
-        );
+        let away = DVec3::new(centre.x - from.x, 0.0, centre.z - from.z).normalize_or(DVec3::X);
+        let aside = centre + away * (1.3 * self.size);
+        let at = centre.lerp(aside, share).lerp(aside.lerp(end, share), share);
         let turned = turn::part(fall, ops::smoothstep(0.15, 0.9, share));
         for p in &mut grid.points {
             *p = at + turned * (*p - centre);

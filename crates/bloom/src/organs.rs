@@ -95,10 +95,19 @@ impl Bed<'_> {
     /// A strand through points of the flower's own coordinates, root first.
     pub(crate) fn strand(&mut self, kind: OrganKind, line: &[DVec3], radii: &[f64], rgb: [f32; 3]) {
         let line: Vec<DVec3> = line.iter().map(|&p| self.at(p)).collect();
+        let radii = radii.iter().map(|r| r * self.size).collect();
+        self.loose_strand(kind, &line, radii, rgb);
+    }
+
+    /// A stalk of one thickness through points of the plant.
+    pub(crate) fn stalk(&mut self, line: &[DVec3], radius: f64) {
+        self.loose_strand(OrganKind::Pedicel, line, vec![radius; line.len()], [1.0; 3]);
+    }
+
+    fn loose_strand(&mut self, kind: OrganKind, line: &[DVec3], radius_m: Vec<f64>, rgb: [f32; 3]) {
         let (Some(&root), Some(&end)) = (line.first(), line.last()) else { return };
         let frame = Frame::looking(root, end - root, DVec3::Z);
         let path = line.iter().map(|&p| frame.localise(p)).collect();
-        let radius_m = radii.iter().map(|r| r * self.size).collect();
         self.push(kind, Shape::Strand { path, radius_m, knob_m: 0.0 }, frame, rgb);
     }
 }

@@ -35,8 +35,10 @@ const SIDES: u32 = 6;
 /// assert_eq!(bloom::overlap_share(&[(0, a), (0, b)]), 0.0);
 /// ```
 pub fn overlap_share(rows: &[(u32, [DVec3; 3])]) -> f64 {
-    let rows: Vec<PartTriangle> =
-        rows.iter().map(|&(part, corners)| PartTriangle { part: part + 1, kind: None, foot: false, corners }).collect();
+    let rows: Vec<PartTriangle> = rows
+        .iter()
+        .map(|&(part, corners)| PartTriangle { part: part + 1, kind: None, foot: false, corners })
+        .collect();
     share(&crossed(&rows))
 }
 
@@ -55,7 +57,7 @@ pub fn crossed(rows: &[PartTriangle]) -> Vec<Option<usize>> {
         .filter(|b| b.0.is_finite() && b.1.is_finite())
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x.0.y), b.max(x.1.y)));
     // Slices of the height, and in each a sweep along x: candidates are those whose boxes overlap.
-    const SLICES: usize = 48;
+    const SLICES: usize = 160;
     let thick = ((top - bottom) / SLICES as f64).max(1e-12);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to SLICES")]
     let slice = |y: f64| (((y - bottom) / thick).clamp(0.0, SLICES as f64) as usize).min(SLICES - 1);

@@ -1,6 +1,6 @@
 //! One petal at one day: its profile, nested within those outside it, and the grid of points that follows.
 
-use base::{Draw, Seed, ops};
+use base::{Seed, ops};
 use glam::DVec3;
 use plant::OrganKind;
 
@@ -14,8 +14,43 @@ use crate::{GrowthLaw, Quantity};
 const BUD: [f32; 3] = [0.27, 0.40, 0.09];
 /// Steps of a profile.
 const FINE: usize = 96;
-/// How long a petal falls, as a share of the wilting.
-const FALL: f64 = 0.05;
+/// How long a petal falls at most, as a share of the wilting.
+const FALL: f64 = 0.03;
+
+/// When each petal of each ring falls, by its rank: one after another, none while another is on its way.
+pub(crate) struct Falls {
+    rings: Vec<Vec<f64>>,
+    /// How long one falls.
+    long: f64,
+}
+
+impl Falls {
+    pub(crate) fn new(rings: &[Whorl]) -> Self {
+        let mut times: Vec<(f64, usize, usize)> = Vec::new();
+        for (ring, whorl) in rings.iter().enumerate().filter(|(_, w)| w.fate != Fate::Cling) {
+            let last = f64::from(whorl.count.max(2) - 1);
+            let spread = 0.5 * (0.9 - whorl.falls);
+            let own = (0..whorl.count).map(|rank| whorl.falls + spread * f64::from(rank) / last);
+            times.extend(own.enumerate().map(|(rank, time)| (time, ring, rank)));
+        }
+        base::sort_by(&mut times, |a, b| a.0.total_cmp(&b.0));
+        let first = times.first().map_or(0.0, |t| t.0.max(0.0));
+        let gap = (1.1 * FALL).min((0.95 - first) / times.len().max(1) as f64);
+        let mut out: Vec<Vec<f64>> = rings.iter().map(|w| vec![1.0; w.count as usize]).collect();
+        let mut soonest = f64::NEG_INFINITY;
+        for row in &mut times {
+            row.0 = row.0.max(soonest);
+            soonest = row.0 + gap;
+        }
+        // All have fallen in the end.
+        let mut latest = 0.95;
+        for &(time, ring, rank) in times.iter().rev() {
+            out[ring][rank] = time.min(latest);
+            latest = out[ring][rank] - gap;
+        }
+        Self { rings: out, long: 0.95 * gap }
+    }
+}
 
 /// Where a flower is in its life.
 pub(crate) struct Times<'a> {
@@ -94,7 +129,7 @@ impl Whorl {
         let wilt = ops::smoothstep(0.0, 1.0, late);
         let open = blend3(self.bud_deg, self.open_deg, g);
         let wilted = blend3(open, self.wilted_deg, [wilt; 3]);
-        let ripe = ops::smoothstep(0.0, 1.0, ripe) * self.ripens;
+        let ripe = ops::smoothstep(0.0, 0.6, ripe) * self.ripens;
         let young = if self.sepal { [0.82, 0.8] } else { [0.62, 0.55] };
         let [short, narrow] = [0.24, 0.45].map(|x| 1.0 - x * self.shrivel * wilt);
         State {
@@ -200,7 +235,8 @@ impl Curve {
     fn new(whorl: &Whorl, state: &State, nest: &Nest) -> Self {
         let [a, b, c] = state.angle;
         // Angles between the three places by a parabola through them.
-        let bent = |v: f64| a * (1.0 - v) * (1.0 - 2.0 * v) + 4.0 * b * v * (1.0 - v) + c * v * (2.0 * v - 1.0);
+        let bent =
+            |v: f64| a * (1.0 - v) * (1.0 - 2.0 * v) + 4.0 * b * v * (1.0 - v) + c * v * (2.0 * v - 1.0);
         let (mut radius, mut height) = (whorl.insertion.radius_m, whorl.insertion.height_m);
         let least = radius.min(0.0012);
         let step = state.length / FINE as f64;
@@ -245,7 +281,7 @@ impl FlowerSpec {
         bed: &mut Bed<'_>,
         kind: OrganKind,
         ring: &Whorl,
-        (times, rows): (&Times<'_>, &Rows),
+        (times, rows, falls): (&Times<'_>, &Rows, (&Falls, usize)),
         (nest, ground): (&mut Nest, &mut Ground),
     ) {
         let together = matches!(ring.aestivation, Aestivation::Contorted | Aestivation::Fused);
@@ -264,22 +300,23 @@ impl FlowerSpec {
             let last = f64::from(n.max(2) - 1);
             let later = if together { 0.0 } else { ring.succession * f64::from(rank) / last };
             let seed = bed.seed.child(u64::from(k)).child(ring.length_m.to_bits());
-            let released = ring.falls + (0.9 - ring.falls) * 0.5 * f64::from(rank) / last
-                + 0.04 * seed.stream(Draw::Size).uniform();
+            let released = falls.0.rings[falls.1][rank as usize];
             let loose = ring.fate != Fate::Cling && times.life > released;
             let alone = loose || (!together && ring.succession > 0.0);
             if alone || shared.is_none() {
                 let life = if loose { released } else { times.life };
                 let mut state = ring.state_at(times, later, life);
                 let curve = Curve::new(ring, &state, nest);
+                let fallen = if loose { ((times.life - released) / falls.0.long).min(1.0) } else { 0.0 };
+                // What hangs loose still holds what lies inside it.
+                if fallen < 0.6 {
+                    nest.hold(&curve);
+                }
                 if loose {
                     state.wilt = (state.wilt + 0.6 * (times.life - released)).min(0.85);
-                } else {
-                    nest.hold(&curve);
                 }
                 let colors = Self::colors(ring, &state, rows);
                 if alone {
-                    let fallen = if loose { ((times.life - released) / FALL).min(1.0) } else { 0.0 };
                     let grid = self.petal(ring, (&curve, &state, colors), rows, (k, rank));
                     place(bed, kind, grid, (ring, k, fallen), ground, seed);
                     continue;
@@ -322,8 +359,8 @@ impl FlowerSpec {
         // A petal wraps the axis, but neither itself nor more than its next neighbours.
         let widest = match whorl.aestivation {
             Aestivation::Contorted => 0.85 * apart,
-            Aestivation::Imbricate => 1.15 * apart,
-            Aestivation::Valvate => 0.485 * apart,
+            Aestivation::Imbricate => 0.95 * apart,
+            Aestivation::Valvate => 0.485 * whorl.narrowest(),
             Aestivation::Fused => 0.5 * apart,
         };
         let level = 0.5 * f64::from(whorl.count.max(1) - 1) - f64::from(rank);
@@ -340,7 +377,8 @@ impl FlowerSpec {
                     broad *= 1.0 - 0.35 * whorl.fringe * row * f64::from((i % 2) as u32);
                 }
                 let [radius, height, s, c] = curve.at(v);
-                let spread = if fused { widest } else { (broad / radius.max(1e-4)).min(0.9 * ops::PI).min(widest) };
+                let spread =
+                    if fused { widest } else { (broad / radius.max(1e-4)).min(0.9 * ops::PI).min(widest) };
                 let angle = azimuth + u * spread + twist * v;
                 let (sin, cos) = ops::sin_cos(angle);
                 // Waves are those of the whole flower: petals that lie over one another wave together.
@@ -351,7 +389,7 @@ impl FlowerSpec {
                     Aestivation::Imbricate => whorl.lean_m * level,
                     _ => 0.0,
                 };
-                let cup = whorl.cup * half * u * u * v.min(0.3) / 0.3;
+                let cup = whorl.cup * state.open * half * u * u * v.min(0.3) / 0.3;
                 let lean = own - cup + room * Self::waves(angle, v, state);
                 let (r, y) = ((radius + lean * c).max(1e-5), height - lean * s);
                 points.push(DVec3::new(r * cos, y, r * sin));
@@ -373,12 +411,11 @@ fn place(
     if fallen > 0.0 && ring.fate == Fate::Gone {
         let columns = grid.across.len();
         let root = grid.points[columns / 2];
-        let left = (1.0 - fallen).max(1e-3);
-        grid.points.iter_mut().for_each(|p| *p = root + (*p - root) * left);
+        grid.points.iter_mut().for_each(|p| *p = root + (*p - root) * (1.0 - fallen));
     }
     if fallen > 0.0 && ring.fate == Fate::Drop {
         grid.points.iter_mut().for_each(|p| *p = bed.at(*p));
-        ground.drop(&mut grid, ground.azimuth(k), fallen, seed);
+        ground.drop(&mut grid, (bed.place.0, ground.azimuth(k)), fallen, seed);
         bed.loose_petal(kind, grid);
     } else {
         bed.petal(kind, grid);

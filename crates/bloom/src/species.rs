@@ -21,7 +21,7 @@ species![
     "clivia",
     "peony",
     "magnolia",
-    "cherry",
+    "cherry-blossom",
     "iris",
     "daisy",
     "poppy",
@@ -41,6 +41,12 @@ pub fn preset(name: &str) -> Option<FlowerSpec> {
     let spec = spec::from_toml(FILES[row]);
     debug_assert!(spec.is_ok(), "{name}: {spec:?}");
     spec.ok()
+}
+
+/// The file of a flower, as it comes with the program.
+pub fn preset_text(name: &str) -> Option<&'static str> {
+    let row = FlowerSpec::PRESETS.iter().position(|p| *p == name)?;
+    FILES.get(row).copied()
 }
 
 #[cfg(test)]

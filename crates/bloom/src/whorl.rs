@@ -318,14 +318,20 @@ impl Whorl {
         }
     }
 
+    /// The least azimuth between two neighbours, radians.
+    pub(crate) fn narrowest(&self) -> f64 {
+        let gap = ops::TAU - self.apart() * f64::from(self.count.max(1) - 1);
+        if gap > 0.0 { gap.min(self.apart()) } else { self.apart() }
+    }
+
     /// The place of petal `k` in the order in which they stand on the axis, outermost first.
     pub(crate) fn rank(&self, k: u32) -> u32 {
         let n = self.count.max(1);
         // Two fifths of a turn and its kin: the step nearest to the golden one that meets every petal.
         let golden = (f64::from(n) * 0.382).round();
-        let step = (1..n).filter(|&s| coprime(s, n)).min_by(|&a, &b| {
-            (f64::from(a) - golden).abs().total_cmp(&(f64::from(b) - golden).abs())
-        });
+        let step = (1..n)
+            .filter(|&s| coprime(s, n))
+            .min_by(|&a, &b| (f64::from(a) - golden).abs().total_cmp(&(f64::from(b) - golden).abs()));
         let step = step.unwrap_or(1);
         (0..n).find(|r| (r * step) % n == k % n).unwrap_or(0)
     }

@@ -91,9 +91,8 @@ pub fn scan(model: &Model, spec: &ScannerSpec, seed: Seed) -> (Vec<DVec3>, Vec<u
         }
         for row in 0..BAND {
             for column in 0..columns {
-                let around = |k: usize| {
-                    depth[(row * ACROSS + k / ACROSS) * wide + column * ACROSS + k % ACROSS]
-                };
+                let around =
+                    |k: usize| depth[(row * ACROSS + k / ACROSS) * wide + column * ACROSS + k % ACROSS];
                 let Some((range, part)) = echo(spec, around) else { continue };
                 let azimuth = low[0] + (column as f64 + 0.5) * spec.step;
                 let elevation = from + (row as f64 + 0.5) * spec.step;

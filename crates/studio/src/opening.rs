@@ -196,6 +196,41 @@ fn most_worn(organs: &[&Organ], skin: &SkinSpec) -> Option<u32> {
     row(of).and(of.source)
 }
 
+/// Petals round a middle from which on it is a disc of florets.
+const RAYS: u32 = 9;
+/// A flower whose axis points to the viewer by no more than this is seen from the side.
+const FACING: f64 = 0.35;
+
+/// A flower that was drawn from the side hides the petals behind those that are seen.
+///
+/// Up to four that are seen are a ring of three or more, and another ring stands within it (tulip, poppy, cross-bearer).
+/// Of more the two at the edges are seen once and all between them hide another.
+fn add_hidden(whorls: &mut Vec<Whorl>) {
+    let [seen] = whorls.as_mut_slice() else { return };
+    if seen.count >= 5 {
+        seen.count = (2 * seen.count - 2).min(200);
+        return;
+    }
+    if seen.count < 2 {
+        return;
+    }
+    seen.count = seen.count.max(3);
+    let half = 180.0 / f64::from(seen.count);
+    let inner = Whorl {
+        length_m: 0.97 * seen.length_m,
+        width_m: 0.97 * seen.width_m,
+        insertion: Insertion {
+            radius_m: 0.8 * seen.insertion.radius_m,
+            height_m: seen.insertion.height_m + 0.02 * seen.length_m,
+        },
+        open_deg: seen.open_deg.map(|a| 0.94 * a),
+        wilted_deg: seen.wilted_deg.map(|a| 0.9 * a),
+        phase_deg: seen.phase_deg + half,
+        ..*seen
+    };
+    whorls.push(inner);
+}
+
 /// The flower as data; none without petals.
 fn placed(
     plant: &Plant,
@@ -219,18 +254,19 @@ fn placed(
     base::sort_by(&mut blades, |a, b| b.0.total_cmp(&a.0));
     let rings = flower.whorls.clamp(1, count);
     let each = count.div_ceil(rings) as usize;
-    let disc = organs.iter().filter(|o| o.kind == OrganKind::Disc).find_map(|o| {
-        match plant.shapes.get(o.shape.index())? {
-            Shape::Dome { radius_m, .. } => Some(radius_m * o.scale),
-            _ => None,
-        }
+    // A disc of florets is what was drawn as one, or what many rays stand round; the middle of a lily is none.
+    let rays = count >= RAYS;
+    let discs = organs.iter().filter(|o| o.kind == OrganKind::Disc && (rays || o.source.is_some()));
+    let disc = discs.into_iter().find_map(|o| match plant.shapes.get(o.shape.index())? {
+        Shape::Dome { radius_m, .. } => Some(radius_m * o.scale),
+        _ => None,
     });
     let stamens = organs.iter().filter(|o| o.kind == OrganKind::Stamen).count();
     let longest = blades[0].0;
     let disc = disc.unwrap_or(0.0).min(0.6 * longest);
     // The cone's half angle, in degrees: at least as open as a cup, so that a drawn bud opens too.
     let open = (flower.half_angle * 180.0 / base::ops::PI).clamp(35.0, 88.0);
-    let whorls: Vec<Whorl> = blades
+    let mut whorls: Vec<Whorl> = blades
         .chunks(each)
         .enumerate()
         .filter_map(|(k, ring)| {
@@ -262,6 +298,10 @@ fn placed(
             })
         })
         .collect();
+    if flower.axis.normalize_or_zero().z.abs() <= FACING {
+        add_hidden(&mut whorls);
+    }
+    let wide = whorls.iter().map(|w| w.insertion.radius_m).fold(disc, f64::max);
     let spec = FlowerSpec {
         name: plant.name.clone(),
         whorls,
@@ -269,6 +309,7 @@ fn placed(
             count: u32::try_from(stamens).unwrap_or(0).min(40),
             length_m: 0.45 * longest,
             spread_deg: 18.0,
+            ..Stamens::default()
         },
         pistil_m: if stamens > 0 { 0.5 * longest } else { 0.0 },
         disc_m: disc,
@@ -277,8 +318,8 @@ fn placed(
         ..FlowerSpec::default()
     };
     let axis = flower.axis.try_normalize().unwrap_or(DVec3::Y);
-    // Off the end of the stem, which would show through the disc.
-    let centre = flower.centre + axis * (0.3 * disc);
+    // The receptacle sits on the end of the stem, which would show through the disc.
+    let centre = flower.centre + axis * FlowerSpec::receptacle_depth_m(wide);
     let seat = Seat { centre, turn: base::turn::between(DVec3::Y, axis), bearer: flower.bearer };
     Some(Placed { spec, flower: id, seat, worn: None })
 }

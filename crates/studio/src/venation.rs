@@ -23,6 +23,7 @@ pub fn make_ray_leaf(
     run: &Run<'_>,
 ) -> Result<MadePlant, LeafError> {
     let mut report = Report::default();
+    let rays = &options.spec.pose().apply_rays(rays);
     let leaf = report.stage("structure", run.clock, |_| {
         RayLeaf::new(rays, options.spec.thickness.unwrap_or_default()).map(|mut leaf| {
             leaf.add_side_veins(rays, options.side_veins as usize);
@@ -30,7 +31,7 @@ pub fn make_ray_leaf(
         })
     })?;
     run.cancel.check()?;
-    let colours = LeafColours::default();
+    let colours = LeafColours::default().wilted(options.spec.wilt);
     let [blade, vein] = [colours.blade, colours.vein].map(|c| c.map(crate::leaves::linear_of));
     // A fiftieth of the leaf: as far as the pale band beside a chief vein is seen; less where veins stand close.
     let apart = leaf.veins.windows(2).map(|w| {

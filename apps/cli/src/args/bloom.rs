@@ -20,7 +20,7 @@ pub(crate) enum BloomCommand {
     /// Make a plant's shape at any day, or the animation of all days
     ///
     /// Control points around each organ of the first shape move along the law to the last shape. START is a scan, a
-    /// model, a stages file (all its stages are met), a whole flower (rose, lily, tulip, sunflower, clivia), or a drawing of
+    /// model, a stages file (all its stages are met), a whole flower (`burgeon presets` lists them), or a drawing of
     /// flowers (.svg, .inkml, .json, .burgeon), which then open.
     Run(Box<BloomRunArgs>),
 }
@@ -89,8 +89,8 @@ pub(crate) struct BloomRunArgs {
     /// First: clap takes the values of the others away as it reads them.
     #[command(flatten)]
     pub(crate) given: Given,
-    /// First shape: a scan or a model; or a stages file (.toml); or rose, lily, tulip, sunflower, clivia, or a flower of
-    /// your own (.toml); or a drawing.
+    /// First shape: a scan or a model; or a stages file (.toml); or a flower of `burgeon presets` such as rose, or one
+    /// of your own (.toml); or a drawing.
     #[arg(value_name = "START")]
     pub(crate) start: String,
     /// The result: .glb (animation, or one shape with --day), .ply, .obj, .stl, .usda or .usdz (one shape), .mtg (the structure of a

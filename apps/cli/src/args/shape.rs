@@ -14,8 +14,8 @@ pub(crate) struct ShapeArgs {
     /// First: clap takes the values of the others away as it reads them.
     #[command(flatten)]
     pub(crate) given: Given,
-    /// A species of `burgeon presets`, a spec (.toml), a flower (rose, lily, tulip, sunflower, clivia, or your own .toml)
-    /// in full bloom, a drawing, or a project (.burgeon).
+    /// A species of `burgeon presets`, a spec (.toml), a flower (rose, lily and others, or your own .toml) in
+    /// full bloom, a drawing, or a project (.burgeon).
     #[arg(value_name = "PRESET|SPEC.toml|FLOWER|DRAWING", required_unless_present_any = ["template", "schema"])]
     pub(crate) what: Option<PathBuf>,
     /// The edits, a JSON file; --template prints one, docs/shaping.md explains it.
