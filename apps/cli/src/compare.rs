@@ -11,10 +11,10 @@ use burgeon::{
 use serde::Serialize;
 
 use crate::args::{CompareArgs, CompareWord};
+use crate::curve::{self, Curve};
 use crate::failure::{Failure, Outcome};
 use crate::machine::Machine;
 use crate::output::Outputs;
-use crate::curve::{self, Curve};
 use crate::{picture, report, say};
 
 impl CompareWord {

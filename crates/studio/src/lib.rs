@@ -54,8 +54,8 @@ pub use report::{
 };
 pub use scanned::make_leaf_from_scan;
 pub use scene::{
-    PlantLevel, SceneError, SceneEvaluator, ScenePlant, flower_schema, leaf_marks, leaf_schema, material_schema,
-    scene_model, standing, tree_settings, tree_spec,
+    PlantLevel, SceneError, SceneEvaluator, ScenePlant, flower_schema, leaf_marks, leaf_schema,
+    material_schema, scene_model, standing, tree_settings, tree_spec,
 };
 pub use shaping::{BranchRow, EditReport, branch_rows, edits_schema, edits_template};
 pub use shoot::{ShootSpec, make_shoot};

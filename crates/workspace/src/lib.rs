@@ -44,9 +44,7 @@ pub use export::{ExportFormat, ExportRequest, LengthUnit, NamedFile, Up, packed}
 pub use exported::{ExportView, ExportedPlant, PartFigures};
 pub use files::{FileKind, Opened};
 pub use kept::{KEPT_BYTES, SHOWN_BYTES};
-pub use record::{
-    GESTURES_SCHEMA, GestureDeed, GestureRecord, GestureStep, HandDeed, MOST_STEPS, Replayed,
-};
+pub use record::{GESTURES_SCHEMA, GestureDeed, GestureRecord, GestureStep, HandDeed, MOST_STEPS, Replayed};
 pub use scatter::{Ground, Scatter};
 pub use shaping::{CarriedPose, Grown, Picked, ShapeAnswer, ShapeInput, ShapePointer, ShapeReach, ShapeStep};
 pub use state::{

@@ -240,7 +240,8 @@ impl Cone {
         let ways = &self.pool.way[own];
         match weights {
             Weights::Guided(guides) => {
-                for ((way, &row), g) in ways.iter().zip(rows).zip(guides).filter(|((_, r), _)| **r != NO_ROW) {
+                for ((way, &row), g) in ways.iter().zip(rows).zip(guides).filter(|((_, r), _)| **r != NO_ROW)
+                {
                     f(*way, g.weight, row as usize);
                 }
             }

@@ -218,9 +218,8 @@ fn a_record_that_is_cut_off_or_hostile_says_so() {
         assert!(look(&mut s)["error"].is_null());
     }
     // An edit that no gesture made, a project that is none, a plant that is not there.
-    let refused = |record: GestureRecord| {
-        Refusal::of(&replayed(&mut Workspace::default(), &record).unwrap_err()).code
-    };
+    let refused =
+        |record: GestureRecord| Refusal::of(&replayed(&mut Workspace::default(), &record).unwrap_err()).code;
     let keeps = vec![GestureStep { ms: 0, did: GestureDeed::Keep }];
     assert_eq!(refused(GestureRecord { steps: keeps, ..GestureRecord::default() }), "record-keeps");
     let project = |text: &str| GestureRecord { project: Some(text.into()), ..GestureRecord::default() };
