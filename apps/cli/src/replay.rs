@@ -14,7 +14,7 @@ use crate::args::ReplayArgs;
 use crate::failure::{Failure, Outcome};
 use crate::machine::Machine;
 use crate::output::Outputs;
-use crate::{files, picture, project, report, say};
+use crate::{files, inputs, picture, project, report, say};
 
 /// Between two pictures of a film, hundredths of a second.
 const FRAME_CS: u16 = 12;
@@ -58,13 +58,13 @@ pub(crate) fn replay(args: &ReplayArgs) -> Outcome {
     if let Some(png) = &args.png {
         picture::check_name(png)?;
     }
-    let named_gif =
-        |path: &&std::path::PathBuf| !files::extension(path).is_some_and(|e| e.eq_ignore_ascii_case("gif"));
-    if let Some(film) = args.film.as_ref().filter(named_gif) {
+    if let Some(film) = &args.film
+        && !files::extension(film).is_some_and(|e| e.eq_ignore_ascii_case("gif"))
+    {
         return Err(Failure::at(film, "films are written as GIF; end the name with .gif"));
     }
     let path = args.record.as_path();
-    let bytes = std::fs::read(path).map_err(|e| Failure::io(path, "read", &e))?;
+    let bytes = inputs::bytes(path).map_err(|e| Failure::io(path, "read", &e))?;
     let record = GestureRecord::read(&bytes).map_err(|e| Failure::at(path, e))?;
     let mut workspace = Workspace::default();
     let mut film = args.film.as_ref().map(|_| Film::default());

@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import { chromium } from 'playwright-core';
 import { FLAGS } from './flags.mjs';
 import { grove } from './grove.mjs';
-import { core, headset } from './headset.mjs';
+import { headset } from './headset.mjs';
 import { journeys } from './journeys.mjs';
 import { keeping } from './keeping.mjs';
 import { materialJourneys } from './materials.mjs';
@@ -34,7 +34,6 @@ const all = [
   ...staging,
   ...grove,
   ...network,
-  ...core,
 ];
 // Two pictures a frame: minutes without a graphics card, so only when they are asked for.
 if (only?.startsWith('headset')) all.push(...headset);
