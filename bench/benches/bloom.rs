@@ -79,7 +79,7 @@ fn overlap_of_a_tulip(bencher: Bencher<'_, '_>) {
     let spec = preset("tulip").expect("a preset");
     let law = burgeon::bloom::GrowthLaw::logistic("tulip", 5.0, 1.0);
     let plant = spec.at(2.0, &law, burgeon::Seed::new(1));
-    bencher.bench_local(|| burgeon::bloom::petal_overlap(black_box(&plant), None));
+    bencher.bench_local(|| burgeon::bloom::part_overlap(black_box(&plant), None));
 }
 
 /// A blade of 10 rows of 7 marks: parameters, knots and controls of the bicubic surface through all of them.
