@@ -291,13 +291,53 @@ async function anybody({ page, url }) {
   await page.locator('.strip').waitFor();
   await look('tools');
   await page.keyboard.press('Escape');
-  for (const id of ['export', 'help', 'documents', 'stage', 'camera', 'film']) {
+  for (const id of ['export', 'help', 'documents', 'stage', 'camera', 'film', 'materials']) {
     await page.click(`#b-${id}`);
     await look(id);
     await page.keyboard.press('Escape');
     await page.waitForTimeout(200);
   }
+  await page.keyboard.press('Control+k');
+  await page.locator('.palette input').waitFor();
+  await look('the palette');
+  await page.keyboard.press('Escape');
 }
+
+/** On a phone whatever can be pressed is 44 pixels wide and high, and what the colours mean covers no button. */
+async function fingers({ page, url, shot }) {
+  await begin(page, url);
+  assert.ok(await page.evaluate(() => matchMedia('(pointer: coarse)').matches));
+  const look = async (where) => {
+    await page.waitForTimeout(300);
+    const small = await page.evaluate(() => {
+      const wanted = 'button, a, select, summary, input, [role=button], [role=option], [role=tab]';
+      const seen = (e) => e.getBoundingClientRect().width > 0 && getComputedStyle(e).visibility !== 'hidden';
+      // What stands in a label is pressed by it.
+      const target = (e) => (e.type === 'checkbox' ? (e.closest('label') ?? e) : e).getBoundingClientRect();
+      return [...document.querySelectorAll(wanted)]
+        .filter((e) => seen(e) && Math.min(target(e).width, target(e).height) < 43.5)
+        .map((e) => `${e.tagName} ${e.id || e.className} ${e.textContent.slice(0, 20)}`);
+    });
+    assert.deepEqual(small, [], where);
+  };
+  await look('an empty page');
+  await sample(page);
+  await look('a drawing');
+  await page.locator('.readings .chip').first().waitFor();
+  const [legend, readings] = await Promise.all(
+    ['.legend', '.readings'].map((q) => page.locator(q).boundingBox()),
+  );
+  assert.ok(legend.y >= readings.y + readings.height, 'the legend covers no reading');
+  await shot('grove-phone');
+  for (const key of ['t', 'c', 'o', 'Shift+L', 'Shift+M', 'Shift+O', 'Control+k', 'Control+e', 'Shift+S']) {
+    await page.keyboard.press(key);
+    await look(key);
+    await page.keyboard.press('Escape');
+    await page.waitForTimeout(200);
+  }
+}
+
+const PHONE = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 
 /** A large tree is seen before it is whole, and what is seen at the end is the whole. */
 async function seen({ page, url, shot }) {
@@ -325,4 +365,5 @@ export const grove = [
   ['grove: tools keep to themselves', tools, WIDE],
   ['grove: panels for people', panel, WIDE],
   ['grove: anybody can use it', anybody, WIDE],
+  ['grove: fingers on a phone', fingers, PHONE],
 ];

@@ -15,12 +15,13 @@ import type {
   ShapePointer,
   ShapeReach,
   ShapeStep,
-  ToolKind,
   ViewPlane,
 } from './wire';
 import { number, t, type TextKey } from './text';
-import { CLIMB_KEYS, SHAPE_TOOLS, type ShapeTool } from './tools';
-import { button, el, icon, type IconName } from './ui';
+import { SHAPE_TOOLS, type ShapeTool } from './tools';
+import { ToolSettings } from './toolsettings';
+import { type Hands, toolOptions } from './toolstrip';
+import { button, el, type IconName } from './ui';
 import { Overlay } from './view/overlay';
 import type { PlantView } from './view/view';
 
@@ -76,25 +77,8 @@ const TOOL_ICONS: Record<ShapeTool, IconName> = {
   leaves: 'leaf',
   grow: 'tree',
 };
-/** One step of a number, by a key of the wrist or a notch of the wheel; of the vigour, the share of it. */
-const GROWTH_STEPS: Record<keyof Growth, number> = {
-  vigour: 0.12,
-  apical: 0.04,
-  angle_deg: 5,
-  lift: 0.04,
-  apart: 0.2,
-};
 /** Between two rounds of what grows while it is held, ms. */
 const ROUND_MS = 130;
-/** Within these its numbers are set by hand. */
-const GROWTH = {
-  vigour: [0.5, 8],
-  apical: [0, 1],
-  angle_deg: [15, 110],
-  lift: [-0.6, 0.6],
-  apart: [0, 4],
-} as const satisfies Record<keyof Growth, readonly [number, number]>;
-
 export class Shaping {
   readonly element = el('div', { class: 'shaping' });
   readonly overlay: Overlay;
@@ -103,15 +87,7 @@ export class Shaping {
   private last: ShapeTool = 'rotate';
   private plant: PlantState | undefined;
   private seen: Seen | undefined;
-  /** Of each tool that has any: none takes over what another was set to. */
-  private settings = {
-    prune: { whole: false },
-    sketch: { twigs: 1, tilt_deg: 0 },
-    brush: { share: 0.07, density: 1 },
-    silhouette: { density: 1, trim: true } as { density: number; trim: boolean; plane?: ViewPlane },
-    leaves: { share: 0.07, more: false },
-    grow: { vigour: 2, apical: 0.54, angle_deg: 55, lift: 0.12, apart: 1 } as Growth,
-  };
+  private readonly settings = new ToolSettings();
   /** The plane of symmetry, in the coordinates of the plant. */
   private sides: Mirror | undefined;
   /** Has what is held grow on. */
@@ -266,234 +242,11 @@ export class Shaping {
       b.setAttribute('aria-pressed', String(word === this.tool));
       bar.append(b);
     }
-    this.element.replaceChildren(el('div', { class: 'options', role: 'status' }, ...this.options()), bar);
+    this.element.replaceChildren(
+      el('div', { class: 'options', role: 'status' }, ...toolOptions(this.tool, this.hands)),
+      bar,
+    );
     if (focused) document.getElementById(focused)?.focus();
-  }
-
-  private options(): HTMLElement[] {
-    const { settings: s } = this;
-    const hint = (key: TextKey): HTMLElement => el('span', { class: 'muted' }, t(key));
-    const chips = (
-      key: TextKey,
-      words: readonly [string, TextKey][],
-      now: string,
-      act: (word: string) => void,
-    ): HTMLElement =>
-      el(
-        'span',
-        { class: 'chips', role: 'group', 'aria-label': t(key) },
-        ...words.map(([word, text]) =>
-          el(
-            'button',
-            {
-              type: 'button',
-              class: 'chip',
-              id: `b-shape-${word}`,
-              'aria-pressed': String(word === now),
-              onclick: () => {
-                act(word);
-                this.showStrip();
-              },
-            },
-            t(text),
-          ),
-        ),
-      );
-    const slider = (
-      key: TextKey,
-      low: number,
-      high: number,
-      step: number,
-      value: number,
-      shown: (x: number) => string,
-      act: (x: number) => void,
-    ): HTMLElement => {
-      const output = el('output', {}, shown(value));
-      const input = el('input', {
-        type: 'range',
-        min: String(low),
-        max: String(high),
-        step: String(step),
-        'aria-label': t(key),
-        oninput: () => {
-          act(input.valueAsNumber);
-          output.textContent = shown(input.valueAsNumber);
-          this.showRing();
-        },
-        onchange: () => input.blur(),
-      });
-      input.value = String(value);
-      return el('label', {}, el('span', {}, t(key)), input, output);
-    };
-    const sides = (): HTMLElement =>
-      chips('shape.mirror', [['mirror', 'shape.mirror']], this.sides ? 'mirror' : '', () => {
-        void this.mirror(this.sides ? undefined : this.pointerAtMiddle()).then(() => this.showStrip());
-      });
-    const plain = (x: number): string => String(Math.round(x * 100) / 100);
-    const radius = (of: { share: number }): HTMLElement =>
-      slider(
-        'shape.radius',
-        Math.log(0.01),
-        Math.log(0.4),
-        0.01,
-        Math.log(of.share),
-        () => `${plain(this.radius)} m`,
-        (x) => {
-          of.share = Math.exp(x);
-          this.tellBrush();
-        },
-      );
-    switch (this.tool) {
-      case 'pick':
-        return [...(this.chosen ? this.chosenBox(this.chosen) : [hint('shape.pick.hint')]), this.climbBox()];
-      case 'rotate':
-        return [hint('shape.rotate.hint'), this.climbBox()];
-      case 'move':
-        return [hint('shape.move.hint'), this.climbBox()];
-      case 'prune':
-        return [
-          chips(
-            'shape.prune',
-            [
-              ['part', 'shape.prune.part'],
-              ['whole', 'shape.prune.whole'],
-            ],
-            s.prune.whole ? 'whole' : 'part',
-            (w) => {
-              s.prune.whole = w === 'whole';
-            },
-          ),
-          this.climbBox(),
-        ];
-      case 'copy':
-        return [hint('shape.copy.hint'), this.climbBox()];
-      case 'regrow':
-        return [hint('shape.regrow.hint'), this.climbBox()];
-      case 'sketch':
-        return [
-          slider('shape.twigs', 0, 4, 0.25, s.sketch.twigs, plain, (x) => {
-            s.sketch.twigs = x;
-          }),
-          slider(
-            'shape.tilt',
-            -75,
-            75,
-            5,
-            s.sketch.tilt_deg,
-            (x) => `${plain(x)}°`,
-            (x) => {
-              s.sketch.tilt_deg = x;
-            },
-          ),
-          sides(),
-        ];
-      case 'brush':
-        return [
-          radius(s.brush),
-          slider('shape.density', 0.25, 4, 0.25, s.brush.density, plain, (x) => {
-            s.brush.density = x;
-            this.tellBrush();
-          }),
-          sides(),
-        ];
-      case 'silhouette':
-        return [
-          slider('shape.density', 0.25, 4, 0.25, s.silhouette.density, plain, (x) => {
-            s.silhouette.density = x;
-          }),
-          chips('shape.silhouette', [['trim', 'shape.trim']], s.silhouette.trim ? 'trim' : '', () => {
-            s.silhouette.trim = !s.silhouette.trim;
-          }),
-        ];
-      case 'grow': {
-        const number = (of: keyof Growth, step: number): HTMLElement => {
-          const [low, high] = GROWTH[of];
-          return slider(`shape.grow.${of}`, low, high, step, s.grow[of], plain, (x) => {
-            s.grow[of] = x;
-          });
-        };
-        const grown = hint('shape.grow.hint');
-        grown.id = 'grown';
-        return [
-          grown,
-          number('vigour', 0.1),
-          number('apical', 0.02),
-          number('angle_deg', 5),
-          number('lift', 0.02),
-          number('apart', 0.1),
-          sides(),
-        ];
-      }
-      case 'leaves':
-        return [
-          chips(
-            'shape.leaves',
-            [
-              ['fewer', 'shape.leaves.fewer'],
-              ['more', 'shape.leaves.more'],
-            ],
-            s.leaves.more ? 'more' : 'fewer',
-            (w) => {
-              s.leaves.more = w === 'more';
-            },
-          ),
-          radius(s.leaves),
-        ];
-      default:
-        return [];
-    }
-  }
-
-  /** What is known of the branch that was pointed at, and what can be done with it. */
-  private chosenBox(p: NonNullable<ShapeAnswer['picked']>): HTMLElement[] {
-    const act = (text: TextKey, id: string, name: IconName, command: ShapeCommand): HTMLElement =>
-      el(
-        'button',
-        { type: 'button', class: 'chip', id, onclick: () => this.shapeChosen(command) },
-        icon(name),
-        t(text),
-      );
-    const axis = p.key;
-    return [
-      el('span', {}, t('shape.branch', branchWords(p))),
-      ...(axis
-        ? [
-            act('shape.prune', 'b-prune-chosen', 'prune', { add: { op: 'prune', axis, at: 0 } }),
-            act('shape.regrow', 'b-regrow-chosen', 'regrow', {
-              add: { op: 'regrow', axis, seed: (this.plant?.edits.length ?? 0) + 1 },
-            }),
-          ]
-        : []),
-    ];
-  }
-
-  /** From the twig to what bears it, and back. */
-  private climbBox(): HTMLElement {
-    const step = (id: string, key: TextKey, keys: string, by: 1 | -1, text: string): HTMLButtonElement =>
-      el(
-        'button',
-        {
-          type: 'button',
-          class: 'chip',
-          id,
-          title: `${t(`${key}.hint` as TextKey)}  (${keys})`,
-          onclick: () => this.climb(by),
-        },
-        text,
-      );
-    const [up, down] = [
-      step(
-        'b-shape-up',
-        'shape.up',
-        CLIMB_KEYS.up,
-        1,
-        `${t('shape.up')}${this.bearers > 0 ? ` +${this.bearers}` : ''}`,
-      ),
-      step('b-shape-down', 'shape.down', CLIMB_KEYS.down, -1, t('shape.down')),
-    ];
-    up.setAttribute('aria-pressed', String(this.bearers > 0));
-    down.disabled = this.bearers === 0;
-    return el('span', { class: 'chips', role: 'group', 'aria-label': t('shape.up.hint') }, up, down);
   }
 
   /** Means what bears the branch that was meant, or goes back towards the twig. */
@@ -580,27 +333,24 @@ export class Shaping {
       void this.send({ brush: { radius_m: this.radius, density: this.settings.brush.density } });
   }
 
-  private wire(): ToolKind {
-    const { settings: s, radius: radius_m } = this;
-    const word = this.once ?? this.tool;
-    switch (word) {
-      case undefined:
-        return 'pick';
-      case 'prune':
-        return { prune: { ...s.prune } };
-      case 'sketch':
-        return { sketch: { ...s.sketch } };
-      case 'brush':
-        return { brush: { radius_m, density: s.brush.density } };
-      case 'silhouette':
-        return { silhouette: { ...s.silhouette } };
-      case 'grow':
-        return { grow: { ...s.grow } };
-      case 'leaves':
-        return { leaves: { radius_m, keep: s.leaves.more ? 2 : 0.25 } };
-      default:
-        return word;
-    }
+  /** As the strip sees them. */
+  private get hands(): Hands {
+    const { settings, chosen, bearers, isMirrored, radius, plant } = this;
+    return {
+      settings,
+      chosen,
+      bearers,
+      isMirrored,
+      radius,
+      editCount: plant?.edits.length ?? 0,
+      turnMirror: () =>
+        void this.mirror(isMirrored ? undefined : this.pointerAtMiddle()).then(() => this.showStrip()),
+      tellBrush: () => this.tellBrush(),
+      showRing: () => this.showRing(),
+      climb: (by) => this.climb(by),
+      shapeChosen: (command) => this.shapeChosen(command),
+      renew: () => this.showStrip(),
+    };
   }
 
   // A hand in space -----------------------------------------------------------------------------------------------
@@ -622,20 +372,13 @@ export class Shaping {
 
   /** A number of growth more or less, by so many of its steps; it counts at once, also while something grows. */
   turnGrowth(of: keyof Growth, steps: number): void {
-    const { grow } = this.settings;
-    const [[low, high], step] = [GROWTH[of], GROWTH_STEPS[of]];
-    // Vigour by shares: it counts by how many times more.
-    const to = of === 'vigour' ? grow[of] * (1 + step) ** steps : grow[of] + step * steps;
-    grow[of] = Math.min(high, Math.max(low, to));
+    this.settings.turnGrowth(of, steps);
     this.turned = true;
   }
 
   /** Numbers of growth in words. */
   growthText(...of: (keyof Growth)[]): string {
-    const { grow } = this.settings;
-    const shown = (key: keyof Growth): string =>
-      key === 'angle_deg' ? `${Math.round(grow[key])}°` : String(Math.round(grow[key] * 100) / 100);
-    return of.map((key) => `${t(`shape.grow.${key}`)} ${shown(key)}`).join(' · ');
+    return this.settings.growthText(...of);
   }
 
   /** The plane on which outlines are drawn, if one was placed. */
@@ -872,7 +615,12 @@ export class Shaping {
       bearers: CLIMBS.has(this.once ?? this.tool) ? this.bearers : 0,
       ...(this.sides ? { mirror: this.sides } : {}),
     };
-    const request: Request = { kind: 'shape', tool: this.wire(), reach, input };
+    const request: Request = {
+      kind: 'shape',
+      tool: this.settings.wire(this.once ?? this.tool, this.radius),
+      reach,
+      input,
+    };
     const answered = this.line.then(() => this.ask(request));
     this.line = answered;
     return answered;
@@ -994,13 +742,4 @@ export class Shaping {
 export function grownText({ rounds, branches, per_metre }: NonNullable<ShapeAnswer['grown']>): string {
   const density = per_metre === null ? '–' : per_metre.toFixed(1);
   return t('shape.grown', { rounds, branches: number(branches), density });
-}
-
-/** What is said of a branch. */
-function branchWords(p: NonNullable<ShapeAnswer['picked']>): Record<string, string | number> {
-  return {
-    order: p.order,
-    length: String(Math.round(p.length_m * 100) / 100),
-    count: number(p.bears),
-  };
 }

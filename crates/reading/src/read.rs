@@ -78,7 +78,10 @@ impl First {
         let reading = attempt(asked.off, None, ink, classes, &mut said);
         let shares = if ink.strokes.len() > MOST_JUDGED {
             // As it was read, and as nothing else.
-            kinds::Shares { kinds: vec![Scored { kind: Kind::of(&reading), score: 1.0 }], ..kinds::Shares::default() }
+            kinds::Shares {
+                kinds: vec![Scored { kind: Kind::of(&reading), score: 1.0 }],
+                ..kinds::Shares::default()
+            }
         } else {
             kinds::shares(&kinds::kind_features(ink, classes, &reading))
         };

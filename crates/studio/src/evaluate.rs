@@ -293,7 +293,8 @@ impl Evaluator {
     /// # Errors
     /// [`Cancelled`]; it is still to be measured then.
     pub(crate) fn measure(&mut self, run: &Run<'_>) -> Result<Option<FidelityReport>, Cancelled> {
-        let (Some(strokes), Some(reading), Some(made)) = (&self.strokes, &self.reading, &mut self.plant) else {
+        let (Some(strokes), Some(reading), Some(made)) = (&self.strokes, &self.reading, &mut self.plant)
+        else {
             return Ok(None);
         };
         let (built, fidelity) = &mut made.value;

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use burgeon::formats::{DrawingFormat, read_drawings};
-use burgeon::ink::Drawing;
 use burgeon::glam::DVec2;
+use burgeon::ink::Drawing;
 use burgeon::{Evaluator, Run, Seed, SketchOptions};
 
 fn drawing(name: &str) -> Drawing {
@@ -88,7 +88,10 @@ fn a_large_drawing_that_grows_gives_what_a_fresh_start_gives() {
     };
     let at = DVec2::new(301.0, 227.0);
     // The sixth is one of the next that tell of the whole.
-    for (k, to) in [(3.0, 4.0), (90.0, 170.0), (-2.0, 7.0), (11.0, 0.5), (-40.0, 60.0), (5.0, 5.0)].into_iter().enumerate() {
+    for (k, to) in [(3.0, 4.0), (90.0, 170.0), (-2.0, 7.0), (11.0, 0.5), (-40.0, 60.0), (5.0, 5.0)]
+        .into_iter()
+        .enumerate()
+    {
         drawing.strokes.push(stroke(at, at + DVec2::from(to)));
         check(&drawing, &format!("stroke {k} more"));
     }

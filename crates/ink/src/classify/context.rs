@@ -262,8 +262,11 @@ impl Scene {
         });
         let (mut shapes, rows): (Vec<Arc<Shape>>, Vec<StrokeFeatures>) = all.unzip();
         let m = telling(n);
-        let order = by_length(&shapes[..m]);
-        enclose(&mut shapes, &order);
+        // What tells of the whole may be as it was: then it says what it said.
+        let as_before =
+            n > COMPANIONS + 1 && telling(kept.strokes.len()) == m && known[..m].iter().all(Option::is_some);
+        let order = if as_before { Vec::new() } else { by_length(&shapes[..m]) };
+        enclose(&mut shapes, &order, m);
         let same = |(k, s): (&Option<&KeptStroke>, _)| k.is_some_and(|k| Arc::ptr_eq(&k.shape, s));
         let same: Vec<bool> = known.iter().zip(&shapes).map(same).collect();
         let low = shapes.iter().fold(DVec2::INFINITY, |a, s| a.min(s.min));
@@ -271,13 +274,21 @@ impl Scene {
         let size = if shapes.is_empty() { DVec2::ONE } else { (high - low).max(DVec2::splat(1e-6)) };
         let total = shapes[..m].iter().map(|s| s.length).sum();
         let longest = shapes[..m].iter().fold(0.0_f64, |a, s| a.max(s.length));
-        let amid = amid(&shapes[..m], &wanted[..m]);
-        let whole = Whole {
-            size,
-            body: body(&shapes, &order),
-            amid: if n > COMPANIONS + 1 { amid.first().cloned() } else { None },
-            longest: order.iter().copied().take(LONGEST).collect(),
-            grid: if n > COMPANIONS + 1 { grid(&shapes) } else { Grid::new() },
+        let grid = if n > COMPANIONS + 1 { grid(&shapes) } else { Grid::new() };
+        let (whole, amid) = if as_before {
+            let whole = Whole { size, grid, ..kept.whole.clone() };
+            let amid = whole.amid.iter().cloned().collect();
+            (whole, amid)
+        } else {
+            let amid = amid(&shapes[..m], &wanted[..m]);
+            let whole = Whole {
+                size,
+                body: body(&shapes, &order),
+                amid: if n > COMPANIONS + 1 { amid.first().cloned() } else { None },
+                longest: order.iter().copied().take(LONGEST).collect(),
+                grid,
+            };
+            (whole, amid)
         };
         let companions = companions(&shapes, &same, &whole, kept);
         Self { shapes, same, rows, companions, ink: total, longest, whole, amid }
@@ -361,7 +372,7 @@ impl Scene {
         f.order = share(to_f64(i), last).min(1.0);
         f.first = if i == 0 { 1.0 } else { 0.0 };
         f.rank = rank;
-        f.of_longest = share(s.length, self.longest);
+        f.of_longest = share(s.length, self.longest.max(s.length));
         f.of_ink = share(s.length, self.ink);
         let near = |k: Option<usize>| {
             k.and_then(|k| self.shapes.get(k))
@@ -639,8 +650,8 @@ fn amid(shapes: &[Arc<Shape>], wanted: &[bool]) -> Vec<Region> {
 
 /// Fills in what the shapes enclose: of the longest ones only, and of those that came after all that tell of the whole,
 /// so that very many strokes fit into memory.
-fn enclose(shapes: &mut [Arc<Shape>], order: &[usize]) {
-    let later = (order.len()..shapes.len()).map(|i| (i - order.len(), i));
+fn enclose(shapes: &mut [Arc<Shape>], order: &[usize], telling: usize) {
+    let later = (telling..shapes.len()).map(|i| (i - telling, i));
     for (rank, i) in order.iter().copied().enumerate().chain(later) {
         let wanted = rank < MOST_REGIONS;
         if let Some(s) = shapes.get_mut(i).filter(|s| s.enclosed != wanted) {
