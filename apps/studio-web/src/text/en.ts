@@ -1026,6 +1026,8 @@ export const en = {
   'word.alder': 'alder',
   'word.cherry': 'cherry',
   'word.cypress': 'cypress',
+  'word.beech': 'beech',
+  'word.cedar': 'cedar',
   'word.grass': 'grass',
   'word.umbrella-pine': 'umbrella pine',
   'word.rose': 'rose',
