@@ -56,8 +56,8 @@ pub use error::{GrowthError, LsystemError, MeshFault, RuleFault};
 pub use guided::{
     BrushStroke, Growing, GrowthStep, Guided, GuidedChange, GuidedSpec, StartBud, guide, guide_from,
 };
-pub use limbs::LimbsSpec;
 pub use leaves::{FoliageSpec, LeafCount, add_leaves};
+pub use limbs::LimbsSpec;
 pub use look::{Bark, BladeForm, BladeSpec, BlossomSpec, Look};
 pub use lsystem::{LeafMark, Lsystem, LsystemTree, OAK_RULES, grow_lsystem};
 pub use mesh_faults::{open_edges, signed_volume};

@@ -55,7 +55,8 @@ pub(crate) fn younger(full: &Skeleton, wood: &WoodSpec, life: f64) -> (Skeleton,
     let share = grown_by(life);
     let longest = rest.iter().copied().fold(0.0, f64::max);
     // When each axis started, how long it will be, and where on it a joint is.
-    let (mut start, mut whole, mut along, mut birth) = (vec![0.0; n], rest.clone(), vec![0.0; n], vec![0.0; n]);
+    let (mut start, mut whole, mut along, mut birth) =
+        (vec![0.0; n], rest.clone(), vec![0.0; n], vec![0.0; n]);
     // What a joint is moved by, as the bole below it is not as long yet.
     let mut moved = vec![DVec3::ZERO; n];
     for j in 0..n {
@@ -165,7 +166,10 @@ mod tests {
             let (young, ids) = younger(&full, &wood, f64::from(i) / 12.0);
             assert_eq!(young.validate().count(), 0);
             assert!(young.len() >= last.0 && top(&young) >= last.1, "{i}: {} {}", young.len(), top(&young));
-            assert!(ids.iter().zip(&last.2).all(|(id, before)| id.is_some() || !before), "{i}: nothing is lost");
+            assert!(
+                ids.iter().zip(&last.2).all(|(id, before)| id.is_some() || !before),
+                "{i}: nothing is lost"
+            );
             last = (young.len(), top(&young), ids.iter().map(Option::is_some).collect());
         }
         assert_eq!(last.0, full.len());

@@ -108,7 +108,9 @@ impl Stem {
         // It leaves at an angle and soon rises.
         let aside = self.origin + self.aside * (1.0 - (1.0 - up) * (1.0 - up));
         let t = y / self.to.max(1e-9);
-        let swing = |a: f64, b: f64| ops::sin(5.0 * t + a) - ops::sin(a) + 0.5 * (ops::sin(11.0 * t + b) - ops::sin(b));
+        let swing = |a: f64, b: f64| {
+            ops::sin(5.0 * t + a) - ops::sin(a) + 0.5 * (ops::sin(11.0 * t + b) - ops::sin(b))
+        };
         let [a, b, c, d] = self.wave;
         DVec3::new(aside.x + self.waves * swing(a, b), y, aside.y + self.waves * swing(c, d))
     }
@@ -179,13 +181,20 @@ impl LimbsSpec {
     /// The trunk, and what it forks into.
     fn stems(&self, habit: &Habit, stream: &mut Stream) -> Vec<Stem> {
         let (high, widest) = (self.height(), self.profile.iter().map(|p| p.x).fold(0.0, f64::max));
-        let top = self.base_m + high * self.leader.max(0.02) - if self.leader > 0.95 { 0.3 * self.mass_m } else { 0.0 };
+        let top = self.base_m + high * self.leader.max(0.02)
+            - if self.leader > 0.95 { 0.3 * self.mass_m } else { 0.0 };
         let mut phase = || stream.range(0.0, ops::TAU);
         let wave = [phase(), phase(), phase(), phase()];
         let waves = 0.035 * self.crook * (self.base_m + high);
         let none = DVec2::ZERO;
-        let trunk =
-            |to: f64| Stem { from: 0.0, to, origin: none, aside: none, wave, waves: waves * to / top.max(1e-9) };
+        let trunk = |to: f64| Stem {
+            from: 0.0,
+            to,
+            origin: none,
+            aside: none,
+            wave,
+            waves: waves * to / top.max(1e-9),
+        };
         if !habit.forks {
             return vec![trunk(top)];
         }
@@ -244,7 +253,14 @@ impl LimbsSpec {
     }
 
     /// Masses from the end of a limb inwards, to its left and right in turn.
-    fn masses(&self, at: &dyn Fn(f64) -> DVec3, length: f64, side: DVec3, own: &mut Stream, masses: &mut Vec<DVec3>) {
+    fn masses(
+        &self,
+        at: &dyn Fn(f64) -> DVec3,
+        length: f64,
+        side: DVec3,
+        own: &mut Stream,
+        masses: &mut Vec<DVec3>,
+    ) {
         masses.push(at(1.0));
         let mut left = if own.chance(0.5) { 1.0 } else { -1.0 };
         let mut t = 1.0;
@@ -255,7 +271,8 @@ impl LimbsSpec {
             }
             left = -left;
             // As a branch of a limb is the longer the further its foot is from the end.
-            let aside = (left * self.mass_m * own.range(0.4, 1.0) * (1.0 + 0.8 * (1.0 - t))).clamp(-0.5 * length, 0.5 * length);
+            let aside = (left * self.mass_m * own.range(0.4, 1.0) * (1.0 + 0.8 * (1.0 - t)))
+                .clamp(-0.5 * length, 0.5 * length);
             masses.push(at(t) + side * aside + DVec3::Y * (self.mass_m * self.flat * own.range(-0.1, 0.5)));
         }
     }

@@ -137,7 +137,8 @@ fn differ(
     }
     let habits: Vec<Habit> = (0..spec.roots.len() as u64).map(|root| variation.habit(seed, root)).collect();
     // Envelopes have grown with the tree, and their pipes with them.
-    let drawn_up = matches!(spec.method, Method::Competition(_) | Method::Colonization { .. } | Method::Points { .. });
+    let drawn_up =
+        matches!(spec.method, Method::Competition(_) | Method::Colonization { .. } | Method::Points { .. });
     if !drawn_up {
         let s = &mut bones.skeleton;
         for (p, tree) in s.position.iter_mut().zip(&s.tree) {

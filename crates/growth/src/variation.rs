@@ -165,7 +165,10 @@ mod tests {
                 let p = lo + (hi - lo) * at;
                 let q = habit.place(p);
                 assert!(habit.back(q).distance(p) < 1e-9, "{p}");
-                assert!(q.cmpge(below - 1e-9).all() && q.cmple(above + 1e-9).all(), "{p} {q} {below} {above}");
+                assert!(
+                    q.cmpge(below - 1e-9).all() && q.cmple(above + 1e-9).all(),
+                    "{p} {q} {below} {above}"
+                );
             }
         }
     }

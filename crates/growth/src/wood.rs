@@ -145,7 +145,10 @@ pub(crate) fn radii(skeleton: &Skeleton, spec: &WoodSpec) -> Vec<f64> {
     let t = spec.pipe_exponent;
     let tip = ops::powf(spec.tip_radius_m, t);
     let own = |j: usize| Some(skeleton.radius_m[j]).filter(|r| *r > 0.0).map(|r| ops::powf(r, t));
-    gathered(skeleton, tip, tip * spec.internode_share, own).into_iter().map(|p| ops::powf(p, 1.0 / t)).collect()
+    gathered(skeleton, tip, tip * spec.internode_share, own)
+        .into_iter()
+        .map(|p| ops::powf(p, 1.0 / t))
+        .collect()
 }
 
 /// The pipes at each joint, in those of a tip, whatever radii the skeleton brings along.
@@ -451,7 +454,8 @@ mod tests {
         let p = make_wood(&s, &spec, &Obstacles::none(), &Run::plain()).expect("sound").plant;
         assert!((p.nodes.radius_m[0] - 0.3).abs() < 1e-9);
         // The pipe model holds all the same: every radius is larger by one factor.
-        let plain = make_wood(&s, &WoodSpec::default(), &Obstacles::none(), &Run::plain()).expect("sound").plant;
+        let plain =
+            make_wood(&s, &WoodSpec::default(), &Obstacles::none(), &Run::plain()).expect("sound").plant;
         let factor = 0.3 / plain.nodes.radius_m[0];
         let thinnest = |p: &Plant| p.nodes.radius_m.iter().copied().fold(1.0, f64::min);
         assert!((thinnest(&p) - factor * thinnest(&plain)).abs() < 1e-9, "{factor}");

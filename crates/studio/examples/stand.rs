@@ -58,7 +58,8 @@ fn one(spec: &TreeSpec, seed: u64) -> Result<Grown, String> {
 fn sheet(spec: &TreeSpec, path: &str, count: u64, size: u32) -> Result<(), String> {
     let mut pictures = Vec::new();
     for seed in 1..=count {
-        let made = make_tree(spec, Seed::new(seed), &TreeOptions::default(), &Run::plain()).map_err(|e| e.to_string())?;
+        let made = make_tree(spec, Seed::new(seed), &TreeOptions::default(), &Run::plain())
+            .map_err(|e| e.to_string())?;
         let picture = PictureSpec { width: size, height: size, supersample: 2, ..PictureSpec::default() };
         pictures.push(render(&made.model, &picture, &Run::plain()).map_err(|e| e.to_string())?);
     }
@@ -84,7 +85,9 @@ fn main() -> Result<(), String> {
     let mut rows: [Vec<f64>; 4] = Default::default();
     for seed in 1..=seeds {
         let m = measure(&one(&spec, seed)?);
-        for (row, value) in rows.iter_mut().zip([m.height_m, m.dbh_m, m.crown_m2, m.leaf_area / m.crown_m2.max(1e-9)]) {
+        for (row, value) in
+            rows.iter_mut().zip([m.height_m, m.dbh_m, m.crown_m2, m.leaf_area / m.crown_m2.max(1e-9)])
+        {
             row.push(value);
         }
     }

@@ -44,7 +44,8 @@ fn fork_exponent(grown: &Grown) -> f64 {
                 continue;
             }
             let sum = |t: f64| {
-                ops::powf(radius[i + 1] / below, t) + side.iter().map(|r| ops::powf(r / below, t)).sum::<f64>()
+                ops::powf(radius[i + 1] / below, t)
+                    + side.iter().map(|r| ops::powf(r / below, t)).sum::<f64>()
             };
             let (mut lo, mut hi) = (0.2, 12.0);
             for _ in 0..50 {
@@ -103,14 +104,18 @@ fn an_oak_of_ten_years_is_a_young_tree() {
 /// Coefficients of variation of the height and of the diameter that were measured among trees of one age and place, in
 /// percent: from the standard deviations of plots of 50-year-old birch, spruce and pine (Scientific Reports 9, 2019,
 /// PMC6825224, Table 1), widened to those of Scots pines of 30 to 38 years (Forests 14, 2023, 1779: 23 and 23).
-const MEASURED: [(&str, [f64; 2], [f64; 2]); 3] =
-    [("pine", [2.0, 23.0], [5.0, 23.0]), ("birch", [3.0, 10.5], [10.0, 19.5]), ("spruce", [4.7, 30.4], [8.0, 41.2])];
+const MEASURED: [(&str, [f64; 2], [f64; 2]); 3] = [
+    ("pine", [2.0, 23.0], [5.0, 23.0]),
+    ("birch", [3.0, 10.5], [10.0, 19.5]),
+    ("spruce", [4.7, 30.4], [8.0, 41.2]),
+];
 
 #[test]
 fn trees_of_one_kind_differ_as_they_do_in_a_wood() {
     for (key, high, thick) in MEASURED {
         let spec = Preset::find(key).expect("a preset").spec().expect("sound");
-        let trees: Vec<Grown> = (1..=40).map(|seed| tree(&TreeSpec { bare: true, ..spec.clone() }, seed)).collect();
+        let trees: Vec<Grown> =
+            (1..=40).map(|seed| tree(&TreeSpec { bare: true, ..spec.clone() }, seed)).collect();
         let cv = |of: &dyn Fn(&Grown) -> f64| {
             let values: Vec<f64> = trees.iter().map(of).collect();
             let mean = values.iter().sum::<f64>() / 40.0;
