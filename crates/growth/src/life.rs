@@ -122,9 +122,9 @@ fn boles(full: &Skeleton, main: &[Option<JointId>]) -> Vec<bool> {
     let mut on_bole = vec![false; n];
     // By joint: what leaves it to the side.
     let mut aside = vec![0_u32; n];
-    for j in 0..n {
+    for (j, wood) in above.iter().enumerate() {
         if let Some(p) = full.parent[j].map(JointId::index).filter(|&p| main[p] != Some(JointId::new(j))) {
-            aside[p] += above[j];
+            aside[p] += wood;
         }
     }
     for (root, whole) in (0..n).filter(|&j| full.parent[j].is_none()).map(|j| (j, above[j])) {

@@ -323,7 +323,10 @@ mod tests {
             for m in &drawn.masses {
                 let p = habit.back(*m);
                 let r = spec().radius(p.y - 2.0) + 0.6;
-                assert!(p.x.hypot(p.z) < 1.25 * r + 0.3 && p.y > 0.5 && p.y < 9.8, "{seed}: {p}");
+                assert!(
+                    DVec2::new(p.x, p.z).length() < 1.25 * r + 0.3 && p.y > 0.5 && p.y < 9.8,
+                    "{seed}: {p}"
+                );
             }
         }
     }

@@ -4,8 +4,12 @@
 //! SPEC is a preset or a TOML file. Prints means and coefficients of variation of height, diameter at breast height and
 //! crown area, and what one seed is at each age; with `--png` also nine seeds side by side.
 
+use burgeon::formats::write_png;
+use burgeon::geom::signed_area;
 use burgeon::growth::{Grown, grow};
+use burgeon::plant::{Organ, Shape};
 use burgeon::render::{PictureSpec, contact_sheet, render};
+use burgeon::spec::from_toml;
 use burgeon::{Preset, Report, Run, Seed, TreeOptions, TreeSpec, make_tree, tree_blade};
 
 /// What a forester measures.
@@ -35,8 +39,8 @@ fn measure(grown: &Grown) -> Measures {
     let cell = |v: f64| (v / 0.25).floor().to_bits();
     let tips = plant.organs.iter().map(|o| o.frame.origin);
     let cells: std::collections::BTreeSet<(u64, u64)> = tips.map(|p| (cell(p.x), cell(p.z))).collect();
-    let area = |o: &burgeon::plant::Organ| match &plant.shapes[o.shape.index()] {
-        burgeon::plant::Shape::Blade(b) => burgeon::geom::signed_area(&b.outline).abs() * o.scale * o.scale,
+    let area = |o: &Organ| match &plant.shapes[o.shape.index()] {
+        Shape::Blade(b) => signed_area(&b.outline).abs() * o.scale * o.scale,
         _ => 0.0,
     };
     let leaf_area = plant.organs.iter().map(area).sum();
@@ -66,7 +70,7 @@ fn sheet(spec: &TreeSpec, path: &str, count: u64, size: u32) -> Result<(), Strin
     let columns = if count == 1 { 1 } else { 3 };
     let sheet = contact_sheet(&pictures, columns);
     let file = std::fs::File::create(path).map_err(|e| format!("{path}: {e}"))?;
-    burgeon::formats::write_png(sheet.width, sheet.height, &sheet.pixels, file).map_err(|e| e.to_string())
+    write_png(sheet.width, sheet.height, &sheet.pixels, file).map_err(|e| e.to_string())
 }
 
 fn main() -> Result<(), String> {
@@ -78,7 +82,7 @@ fn main() -> Result<(), String> {
         Some(preset) => preset.spec().map_err(|e| e.to_string())?,
         None => {
             let text = std::fs::read_to_string(what).map_err(|e| format!("{what}: {e}"))?;
-            burgeon::spec::from_toml(&text).map_err(|e| e.to_string())?
+            from_toml(&text).map_err(|e| e.to_string())?
         }
     };
     let seeds = number("--seeds", 0);

@@ -1033,6 +1033,8 @@ export const en = {
   'word.alder': 'alder',
   'word.cherry': 'cherry',
   'word.cypress': 'cypress',
+  'word.beech': 'beech',
+  'word.cedar': 'cedar',
   'word.grass': 'grass',
   'word.umbrella-pine': 'umbrella pine',
   'word.rose': 'rose',

@@ -50,6 +50,8 @@ presets![
     "cherry",
     "rose",
     "grass",
+    "beech",
+    "cedar",
 ];
 
 impl Preset {

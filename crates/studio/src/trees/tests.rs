@@ -84,11 +84,12 @@ fn levels_of_detail_become_coarser_and_stay_sound() {
 /// Lengths of leaves, or of a pine's needles, in cm, as floras state them for leaves of normal shoots. B: Bean, Trees and
 /// Shrubs Hardy in the British Isles. S: Stace, New Flora of the British Isles. F: Flora of China. The blade without its
 /// stalk; of compound leaves the whole leaf.
-const LEAVES_CM: [(&str, f64, f64); 13] = [
+const LEAVES_CM: [(&str, f64, f64); 14] = [
     ("oak", 6.0, 14.0), // B, S: Quercus robur
     ("oak-colonization", 6.0, 14.0),
     ("oak-lsystem", 6.0, 14.0),
     ("lime", 3.0, 9.0),       // S: Tilia cordata
+    ("beech", 4.0, 10.0),     // S: Fagus sylvatica
     ("birch", 3.0, 7.0),      // S: Betula pendula
     ("alder", 3.0, 10.5),     // S: Alnus glutinosa
     ("hazel", 5.0, 12.0),     // S: Corylus avellana
