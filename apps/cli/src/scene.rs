@@ -29,7 +29,7 @@ pub(crate) fn of_file(path: &Path) -> Outcome<Option<Document>> {
 }
 
 /// Options that a scene's plants have settings for.
-const OF_ONE_DRAWING: [&str; 21] = [
+const OF_ONE_DRAWING: [&str; 22] = [
     "seed",
     "split",
     "spec",
