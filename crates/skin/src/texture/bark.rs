@@ -115,11 +115,12 @@ fn furrowed(colour: Paint) -> impl Fn(f64, f64) -> Spot + Sync {
         let (x, y) = (u + 0.024 * sway + 0.009 * jag, v + 0.03 * noise(u, v, (7, 5), 4));
         let ridge = ridges.at(x, y);
         // Some neighbours have grown together: the furrow between them is only a dent.
-        let joined = ops::smoothstep(0.22, 0.34, ridge.border);
-        let width = 0.0115 * (1.0 + 0.60 * noise(u, v, (5, 3), 5)) * (0.35 + 0.65 * joined);
+        // So have most that meet end to end: furrows run up the trunk.
+        let joined = ops::smoothstep(0.20, 0.34, ridge.border) * ops::smoothstep(0.62, 0.97, ridge.upright);
+        let width = 0.0115 * (1.0 + 0.60 * noise(u, v, (5, 3), 5)) * (0.25 + 0.75 * joined);
         let wall = ops::smoothstep(0.0, 2.4 * width, ridge.edge);
         let crest = ops::smoothstep(0.0, 0.034, ridge.edge);
-        let deep = (1.0 - wall) * (0.35 + 0.65 * joined);
+        let deep = (1.0 - wall) * (0.22 + 0.78 * joined);
         // Cracks break a ridge into blocks; most run across it.
         let block = blocks.at(x + 0.01 * jag, y + 0.012 * sway + 0.01 * jag);
         let alive = ops::smoothstep(0.56, 0.72, block.border);

@@ -69,6 +69,8 @@ pub(crate) struct Plate {
     pub(crate) border: f64,
     /// Distance from that border, in widths of the tile.
     pub(crate) edge: f64,
+    /// How upright that border is: 1 along v, 0 across it.
+    pub(crate) upright: f64,
 }
 
 impl Plates {
@@ -111,7 +113,7 @@ impl Plates {
         }
         let (ox, oy, own, _) = near[first];
         // The nearest border, its square distance as a fraction: one division for all.
-        let (mut edge, mut below, mut border) = (f64::MAX, 1.0, 0);
+        let (mut edge, mut below, mut border, mut upright) = (f64::MAX, 1.0, 0, 1.0);
         for (k, &(px, py, id, _)) in near.iter().enumerate() {
             if k == first {
                 continue;
@@ -122,11 +124,16 @@ impl Plates {
             let (gx, gy) = (ax * nx, ay * ny);
             let slope = gx * gx + gy * gy;
             if off * off * below < edge * slope {
-                (edge, below, border) = (off * off, slope, id ^ own);
+                (edge, below, border, upright) = (off * off, slope, id ^ own, gx * gx);
             }
         }
         let number = |id: u32| unit(id.wrapping_mul(0x2c1b_3c6d) ^ (id >> 9));
-        Plate { own: number(own), border: number(border), edge: (edge / below).sqrt() }
+        Plate {
+            own: number(own),
+            border: number(border),
+            edge: (edge / below).sqrt(),
+            upright: (upright / below).sqrt(),
+        }
     }
 }
 
