@@ -11,10 +11,10 @@ use burgeon::formats::{ExportSpec, write_cloud_ply, write_qsm};
 use burgeon::glam::DVec3;
 use burgeon::mesh::{Material, MaterialId, MaterialKind, Model, Part, PointCloud, TriMesh};
 use burgeon::plant::Plant;
+use burgeon::scan::{ScannerSpec, TreeScanSpec, find_tree, wood_gap};
 use burgeon::skin::{SkinSpec, skin};
 use burgeon::{Preset, TreeOptions, make_tree};
 use rayon::prelude::*;
-use scan::{ScannerSpec, TreeScanSpec, find_tree, wood_gap};
 
 struct Threads;
 impl Executor for Threads {
@@ -45,37 +45,6 @@ fn terrain(size: f64) -> TriMesh {
     mesh
 }
 
-/// Wood as round as it is: rings of 24 places whose polygon has the circle's area.
-fn round_wood(plant: &Plant) -> TriMesh {
-    const SIDES: u32 = 24;
-    let mut mesh = TriMesh::default();
-    let turn = ops::TAU / f64::from(SIDES);
-    let wider = (turn / ops::sin(turn)).sqrt();
-    for id in (0..plant.axes.len()).map(burgeon::plant::AxisId::new) {
-        let (line, radii) = (plant.axis_points(id), plant.axis_radii(id));
-        let frames = burgeon::geom::rotation_minimising_frames(line, None);
-        let first = mesh.positions.len() as u32;
-        for ((p, r), f) in line.iter().zip(radii).zip(&frames) {
-            for k in 0..SIDES {
-                let (sin, cos) = ops::sin_cos(turn * f64::from(k));
-                let q = *p + (f.normal * cos + f.binormal * sin) * (*r * wider);
-                mesh.positions.push([q.x as f32, q.y as f32, q.z as f32]);
-            }
-        }
-        let rings = line.len() as u32;
-        for i in 0..rings - 1 {
-            for k in 0..SIDES {
-                let (a, b) = (first + i * SIDES + k, first + i * SIDES + (k + 1) % SIDES);
-                mesh.triangles.push([a, b, b + SIDES]);
-                mesh.triangles.push([a, b + SIDES, a + SIDES]);
-            }
-        }
-        let last = first + (rings - 1) * SIDES;
-        mesh.triangles.extend((1..SIDES - 1).map(|k| [last, last + k, last + k + 1]));
-    }
-    mesh
-}
-
 fn scanned(plant: &Plant, positions: usize, seed: u64) -> Vec<DVec3> {
     let run = Run { executor: &Threads, ..Run::plain() };
     let spec = SkinSpec { textures: false, detail: 0.7, ..SkinSpec::default() };
@@ -86,8 +55,13 @@ fn scanned(plant: &Plant, positions: usize, seed: u64) -> Vec<DVec3> {
         let kind = model.materials[p.material.index()].kind;
         matches!(kind, MaterialKind::Bark | MaterialKind::YoungBark | MaterialKind::Stem | MaterialKind::Root)
     };
-    let mut scene = Model { parts: model.parts.iter().filter(|p| !is_wood(p)).cloned().collect(), ..Model::default() };
-    scene.parts.push(Part { name: "wood".into(), material: MaterialId::new(0), mesh: round_wood(plant) });
+    let mut scene =
+        Model { parts: model.parts.iter().filter(|p| !is_wood(p)).cloned().collect(), ..Model::default() };
+    scene.parts.push(Part {
+        name: "wood".into(),
+        material: MaterialId::new(0),
+        mesh: burgeon::scan::wood_mesh(plant),
+    });
     scene.materials.push(Material::plain("all", MaterialKind::Other, [0.5; 3]));
     let size = 0.5 * (high - low).x.max((high - low).z) + 1.0;
     scene.parts.push(Part { name: "ground".into(), material: MaterialId::new(0), mesh: terrain(size) });
@@ -98,7 +72,12 @@ fn scanned(plant: &Plant, positions: usize, seed: u64) -> Vec<DVec3> {
             let (sin, cos) = ops::sin_cos(ops::TAU * (k as f64 + 0.15) / positions as f64);
             let away = (0.8 * height).max(size + 2.0);
             let position = DVec3::new(away * cos, 1.7 + 0.05 * away * cos, away * sin);
-            scan::scan(&scene, &ScannerSpec { position, ..ScannerSpec::default() }, Seed::new(seed * 10 + k as u64)).0
+            burgeon::scan::scan(
+                &scene,
+                &ScannerSpec { position, ..ScannerSpec::default() },
+                Seed::new(seed * 10 + k as u64),
+            )
+            .0
         })
         .collect();
     clouds.concat()
@@ -148,19 +127,31 @@ fn trial(preset: &str, seed: u64, positions: usize, leaves: bool, save: Option<&
         found.tally.circles,
         found.tally.pipe_exponent,
         found.tally.pipe_scatter,
-        found.foot.x, found.foot.y, found.foot.z
+        found.foot.x,
+        found.foot.y,
+        found.foot.z
     );
     report.warnings.iter().for_each(|w| println!("  warning: {w}"));
     println!("  {:?}", found.tally);
     println!(
         "  volume {:.4} of {:.4} ({:+.1} %; cone {:+.1} %), height {:.2} of {:.2} ({:+.1} %), DBH {:.4} of {:.4} ({:+.1} %), length {:.0} of {:.0}",
-        b.wood_volume_m3, a.wood_volume_m3, off(b.wood_volume_m3, a.wood_volume_m3), off(cone, a.wood_volume_m3),
-        b.height_m, a.height_m, off(b.height_m, a.height_m),
-        b.dbh_m.unwrap_or(0.0), a.dbh_m.unwrap_or(0.0), off(b.dbh_m.unwrap_or(0.0), a.dbh_m.unwrap_or(1.0)),
-        b.length_m, a.length_m
+        b.wood_volume_m3,
+        a.wood_volume_m3,
+        off(b.wood_volume_m3, a.wood_volume_m3),
+        off(cone, a.wood_volume_m3),
+        b.height_m,
+        a.height_m,
+        off(b.height_m, a.height_m),
+        b.dbh_m.unwrap_or(0.0),
+        a.dbh_m.unwrap_or(0.0),
+        off(b.dbh_m.unwrap_or(0.0), a.dbh_m.unwrap_or(1.0)),
+        b.length_m,
+        a.length_m
     );
     for k in 0..a.orders.len().max(b.orders.len()).min(5) {
-        let get = |m: &burgeon::plant::Measures| m.orders.get(k).map_or((0, 0.0, 0.0), |o| (o.axes as usize, o.length_m, o.volume_m3));
+        let get = |m: &burgeon::plant::Measures| {
+            m.orders.get(k).map_or((0, 0.0, 0.0), |o| (o.axes as usize, o.length_m, o.volume_m3))
+        };
         let ((n, l, v), (tn, tl, tv)) = (get(&b), get(&a));
         println!("  order {k}: axes {n} of {tn}, length {l:.1} of {tl:.1}, volume {v:.4} of {tv:.4}");
     }
@@ -175,7 +166,13 @@ fn trial(preset: &str, seed: u64, positions: usize, leaves: bool, save: Option<&
         if let (Some(t), Some(b)) = (to, back) {
             println!(
                 "  surface (radius over {:.0} mm): truth to found mean {:.1} median {:.1} p95 {:.1} mm; found to truth {:.1} {:.1} {:.1}",
-                least * 1e3, t.mean * 1e3, t.median * 1e3, t.p95 * 1e3, b.mean * 1e3, b.median * 1e3, b.p95 * 1e3
+                least * 1e3,
+                t.mean * 1e3,
+                t.median * 1e3,
+                t.p95 * 1e3,
+                b.mean * 1e3,
+                b.median * 1e3,
+                b.p95 * 1e3
             );
         }
     }

@@ -29,6 +29,7 @@ mod presets;
 mod project;
 mod report;
 mod say;
+mod scan;
 mod scene;
 mod shape;
 mod sketch;
@@ -59,6 +60,7 @@ fn main() -> ExitCode {
         Command::Sketch(args) => sketch::sketch(&args),
         Command::Leaf(args) => leaf::leaf(&args),
         Command::Grow(args) => grow::grow(&args),
+        Command::Scan(args) => scan::scan(&args),
         Command::Shape(args) => shape::shape(&args),
         Command::Presets(args) => presets::presets(&args),
         Command::Compare(args) => compare::compare(&args),

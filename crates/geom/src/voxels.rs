@@ -36,7 +36,8 @@ impl Voxels {
     /// Cubes of edge `cell`, or larger ones where a box around the points has more than 2^24 lines of such cubes.
     pub fn with_cell(points: &[DVec3], cell: f64) -> Self {
         let finite = || points.iter().copied().filter(|p| p.is_finite());
-        let (low, high) = finite().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), p| (a.min(p), b.max(p)));
+        let (low, high) =
+            finite().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), p| (a.min(p), b.max(p)));
         let size = high - low;
         let mut cell = cell.max(1e-12);
         while (size.y / cell + 1.0) * (size.z / cell + 1.0) > 16_777_216.0 {

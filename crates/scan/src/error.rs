@@ -21,7 +21,9 @@ pub enum ScanTreeError {
     )]
     NoStem,
     /// No stem where the user says.
-    #[error("no stem stands within {1:.1} m of {0:?}; the nearest thing that stands on the ground is at {2:?}")]
+    #[error(
+        "no stem stands within {1:.1} m of {0:?}; the nearest thing that stands on the ground is at {2:?}"
+    )]
     NotThere([f64; 2], f64, [f64; 2]),
     /// The user asked to stop.
     #[error(transparent)]

@@ -24,9 +24,8 @@ impl Ground {
     ///
     /// Cost: linear.
     pub fn find(points: &[DVec3]) -> Option<Self> {
-        let (low, high) = points
-            .iter()
-            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), &p| (a.min(p), b.max(p)));
+        let (low, high) =
+            points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), &p| (a.min(p), b.max(p)));
         let size = high - low;
         let wide = size.x.max(size.z);
         if !(wide > 0.0 && wide.is_finite()) {
@@ -55,12 +54,8 @@ impl Ground {
             return None;
         }
         ground.fill(&lowest, &on, &trend, near);
-        let mut off: Vec<f64> = points
-            .iter()
-            .map(|p| p.y - ground.height(*p))
-            .filter(|h| h.abs() < near)
-            .map(f64::abs)
-            .collect();
+        let mut off: Vec<f64> =
+            points.iter().map(|p| p.y - ground.height(*p)).filter(|h| h.abs() < near).map(f64::abs).collect();
         if off.len() < 50 {
             return None;
         }
@@ -77,7 +72,8 @@ impl Ground {
     /// Height of the ground below a point.
     pub fn height(&self, p: DVec3) -> f64 {
         let at = [p.x, p.z];
-        let f = [0, 1].map(|k| ((at[k] - self.low[k]) / self.cell - 0.5).clamp(0.0, self.size[k] as f64 - 1.0));
+        let f =
+            [0, 1].map(|k| ((at[k] - self.low[k]) / self.cell - 0.5).clamp(0.0, self.size[k] as f64 - 1.0));
         let i = [0, 1].map(|k| index(f[k]).min(self.size[k].saturating_sub(2)));
         let t = [0, 1].map(|k| (f[k] - i[k] as f64).clamp(0.0, 1.0));
         let h = |dx: usize, dz: usize| {
@@ -191,7 +187,8 @@ impl Trend {
     }
 
     fn steep(&self) -> bool {
-        let slope = (self.factors[1] * self.factors[1] + self.factors[2] * self.factors[2]).sqrt() / self.scale;
+        let slope =
+            (self.factors[1] * self.factors[1] + self.factors[2] * self.factors[2]).sqrt() / self.scale;
         slope > 1.0
     }
 }

@@ -33,7 +33,11 @@ pub(crate) struct Rings {
 impl Rings {
     /// Cuts the cubes of one plant into bands of its ways.
     pub(crate) fn new(ways: &Ways, band: f64, mine: impl Fn(usize) -> bool) -> Self {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "ways are finite and short")]
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "ways are finite and short"
+        )]
         let band_of = |c: usize| (ways.way[c] / band) as u32;
         #[expect(clippy::cast_possible_truncation, reason = "cubes are u32")]
         let mut order: Vec<(u32, u32)> =
@@ -61,17 +65,17 @@ impl Rings {
                     }
                 });
             }
-            let lowest = cubes.iter().copied().min_by(|&a, &b| {
-                ways.way[a as usize].total_cmp(&ways.way[b as usize]).then(a.cmp(&b))
-            });
+            let lowest = cubes
+                .iter()
+                .copied()
+                .min_by(|&a, &b| ways.way[a as usize].total_cmp(&ways.way[b as usize]).then(a.cmp(&b)));
             let mut from = lowest.map_or(NONE, |c| ways.parent[c as usize]);
             while from != NONE && ring_of[from as usize] == mark {
                 from = ways.parent[from as usize];
             }
             let below = if from == NONE { NONE } else { ring_of[from as usize] };
             let middle = cubes.iter().map(|&c| ways.means[c as usize]).sum::<DVec3>() / cubes.len() as f64;
-            let square: f64 =
-                cubes.iter().map(|&c| ways.means[c as usize].distance_squared(middle)).sum();
+            let square: f64 = cubes.iter().map(|&c| ways.means[c as usize].distance_squared(middle)).sum();
             let spread = (square / cubes.len() as f64).sqrt();
             cubes.sort_unstable();
             let below = if below < mark { below } else { NONE };

@@ -232,8 +232,7 @@ pub(crate) fn smooth(
         let back = variance[i] / ahead_v[i + 1].max(1e-12);
         mean[i] += back * (mean[i + 1] - ahead[i + 1]);
     }
-    let mut logs: Vec<f64> =
-        (0..n).map(|i| pipes.log_radius(loads[i]) + mean[i]).collect();
+    let mut logs: Vec<f64> = (0..n).map(|i| pipes.log_radius(loads[i]) + mean[i]).collect();
     falling(&mut logs);
     (logs.into_iter().map(ops::exp).collect(), mean)
 }

@@ -101,7 +101,9 @@ impl Stems {
         }
         let best = match spec.at {
             Some([x, z]) => {
-                let flat = |k: &Contact| ((k.middle.x - x) * (k.middle.x - x) + (k.middle.z - z) * (k.middle.z - z)).sqrt();
+                let flat = |k: &Contact| {
+                    ((k.middle.x - x) * (k.middle.x - x) + (k.middle.z - z) * (k.middle.z - z)).sqrt()
+                };
                 let rows = (0..contacts.len()).filter(|&i| score[i] > 0.0);
                 let near = rows.min_by(|&a, &b| flat(&contacts[a]).total_cmp(&flat(&contacts[b])));
                 let near = near.ok_or(ScanTreeError::NoStem)?;

@@ -45,7 +45,12 @@ pub fn wood_gap(from: &Plant, to: &Plant, step: f64, least_radius_m: f64) -> Opt
         let row = (share * (all.len() - 1) as f64) as usize;
         all[row]
     };
-    Some(Gap { mean: all.iter().sum::<f64>() / all.len() as f64, median: at(0.5), p95: at(0.95), max: at(1.0) })
+    Some(Gap {
+        mean: all.iter().sum::<f64>() / all.len() as f64,
+        median: at(0.5),
+        p95: at(0.95),
+        max: at(1.0),
+    })
 }
 
 /// Places on the surface of wood, with their normals.
@@ -67,7 +72,8 @@ fn places(plant: &Plant, step: f64, least: f64) -> (Vec<DVec3>, Vec<DVec3>) {
                 let r = ops::lerp(radii[i], radii[i + 1], t);
                 let around = count(ops::TAU * r / step).max(4);
                 for j in 0..around {
-                    let (sin, cos) = ops::sin_cos(ops::TAU * (j as f64 + 0.5 * (k % 2) as f64) / around as f64);
+                    let (sin, cos) =
+                        ops::sin_cos(ops::TAU * (j as f64 + 0.5 * (k % 2) as f64) / around as f64);
                     let n = u * cos + v * sin;
                     points.push(a.lerp(b, t) + n * r);
                     normals.push(n);

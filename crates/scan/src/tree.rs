@@ -296,13 +296,7 @@ fn wood(
 }
 
 /// Circles within the wood that bears an axis are the bearer's.
-fn hide(
-    found: &mut [Option<Measured>],
-    run: &[u32],
-    rings: &Rings,
-    plant: &Plant,
-    bearer: Option<NodeId>,
-) {
+fn hide(found: &mut [Option<Measured>], run: &[u32], rings: &Rings, plant: &Plant, bearer: Option<NodeId>) {
     let Some(bearer) = bearer else { return };
     let radius = plant.nodes.radius_m[bearer.index()];
     let from = rings.rings[rings.rings[run[0] as usize].below as usize].middle;

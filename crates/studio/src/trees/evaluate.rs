@@ -85,7 +85,7 @@ const SMALL: usize = 4_000;
 const LOOK_LEVEL: u32 = 2;
 
 /// What a model is made from, besides its plant.
-type Skinned = (SkinSpec, Look, Option<LeafTemplate>);
+pub(super) type Skinned = (SkinSpec, Look, Option<LeafTemplate>);
 
 impl TreeEvaluator {
     /// Brings everything up to date and reports. [`TreeOptions::lods`] are left to [`super::make_tree`].
@@ -331,7 +331,7 @@ fn skin_spec(seed: Seed, options: &TreeOptions) -> SkinSpec {
     SkinSpec { seed, ..options.skin.clone() }
 }
 
-fn skinned(
+pub(super) fn skinned(
     plant: &Plant,
     (skin, look, leaf): &Skinned,
     barks: &mut KeptBarks,
