@@ -11,10 +11,10 @@ use burgeon::formats::{ExportSpec, write_cloud_ply, write_qsm};
 use burgeon::glam::DVec3;
 use burgeon::mesh::{Material, MaterialId, MaterialKind, Model, Part, PointCloud, TriMesh};
 use burgeon::plant::Plant;
+use burgeon::scan::{ScannerSpec, TreeScanSpec, find_tree, wood_gap};
 use burgeon::skin::{SkinSpec, skin};
 use burgeon::{Preset, TreeOptions, make_tree};
 use rayon::prelude::*;
-use scan::{ScannerSpec, TreeScanSpec, find_tree, wood_gap};
 
 struct Threads;
 impl Executor for Threads {
@@ -45,37 +45,6 @@ fn terrain(size: f64) -> TriMesh {
     mesh
 }
 
-/// Wood as round as it is: rings of 24 places whose polygon has the circle's area.
-fn round_wood(plant: &Plant) -> TriMesh {
-    const SIDES: u32 = 24;
-    let mut mesh = TriMesh::default();
-    let turn = ops::TAU / f64::from(SIDES);
-    let wider = (turn / ops::sin(turn)).sqrt();
-    for id in (0..plant.axes.len()).map(burgeon::plant::AxisId::new) {
-        let (line, radii) = (plant.axis_points(id), plant.axis_radii(id));
-        let frames = burgeon::geom::rotation_minimising_frames(line, None);
-        let first = mesh.positions.len() as u32;
-        for ((p, r), f) in line.iter().zip(radii).zip(&frames) {
-            for k in 0..SIDES {
-                let (sin, cos) = ops::sin_cos(turn * f64::from(k));
-                let q = *p + (f.normal * cos + f.binormal * sin) * (*r * wider);
-                mesh.positions.push([q.x as f32, q.y as f32, q.z as f32]);
-            }
-        }
-        let rings = line.len() as u32;
-        for i in 0..rings - 1 {
-            for k in 0..SIDES {
-                let (a, b) = (first + i * SIDES + k, first + i * SIDES + (k + 1) % SIDES);
-                mesh.triangles.push([a, b, b + SIDES]);
-                mesh.triangles.push([a, b + SIDES, a + SIDES]);
-            }
-        }
-        let last = first + (rings - 1) * SIDES;
-        mesh.triangles.extend((1..SIDES - 1).map(|k| [last, last + k, last + k + 1]));
-    }
-    mesh
-}
-
 fn scanned(plant: &Plant, positions: usize, seed: u64) -> Vec<DVec3> {
     let run = Run { executor: &Threads, ..Run::plain() };
     let spec = SkinSpec { textures: false, detail: 0.7, ..SkinSpec::default() };
@@ -88,7 +57,11 @@ fn scanned(plant: &Plant, positions: usize, seed: u64) -> Vec<DVec3> {
     };
     let mut scene =
         Model { parts: model.parts.iter().filter(|p| !is_wood(p)).cloned().collect(), ..Model::default() };
-    scene.parts.push(Part { name: "wood".into(), material: MaterialId::new(0), mesh: round_wood(plant) });
+    scene.parts.push(Part {
+        name: "wood".into(),
+        material: MaterialId::new(0),
+        mesh: burgeon::scan::wood_mesh(plant),
+    });
     scene.materials.push(Material::plain("all", MaterialKind::Other, [0.5; 3]));
     let size = 0.5 * (high - low).x.max((high - low).z) + 1.0;
     scene.parts.push(Part { name: "ground".into(), material: MaterialId::new(0), mesh: terrain(size) });
@@ -99,7 +72,7 @@ fn scanned(plant: &Plant, positions: usize, seed: u64) -> Vec<DVec3> {
             let (sin, cos) = ops::sin_cos(ops::TAU * (k as f64 + 0.15) / positions as f64);
             let away = (0.8 * height).max(size + 2.0);
             let position = DVec3::new(away * cos, 1.7 + 0.05 * away * cos, away * sin);
-            scan::scan(
+            burgeon::scan::scan(
                 &scene,
                 &ScannerSpec { position, ..ScannerSpec::default() },
                 Seed::new(seed * 10 + k as u64),

@@ -446,13 +446,24 @@ pub(crate) fn write_plant(
             write_model(outputs, goal, model, format, &axes(args.up, args.unit), cache)
         }
         PlantFormat::Mtg => {
-            let axes = field_axes(args);
-            outputs.write(goal.by, goal.path, |out| write_mtg(plant, &axes, out))?;
+            write_mtg_file(outputs, goal.by, goal.path, plant, args)?;
             let mut report = Report::default();
             warn_of_wind(model, "MTG", &mut report);
             Ok(report.warnings)
         }
     }
+}
+
+/// Writes a plant's structure, with +Z up unless `args` say otherwise.
+pub(crate) fn write_mtg_file(
+    outputs: &mut Outputs,
+    by: &str,
+    path: &Path,
+    plant: &Plant,
+    args: &AxesArgs,
+) -> Outcome {
+    let axes = field_axes(args);
+    outputs.write(by, path, |out| write_mtg(plant, &axes, out))
 }
 
 /// Writes a plant's cylinders, with +Z up unless `args` say otherwise.

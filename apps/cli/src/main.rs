@@ -32,6 +32,7 @@ mod project;
 mod replay;
 mod report;
 mod say;
+mod scan;
 mod scene;
 mod shape;
 mod sketch;
@@ -62,6 +63,7 @@ fn main() -> ExitCode {
         Command::Sketch(args) => sketch::sketch(&args),
         Command::Leaf(args) => leaf::leaf(&args),
         Command::Grow(args) => grow::grow(&args),
+        Command::Scan(args) => scan::scan(&args),
         Command::Shape(args) => shape::shape(&args),
         Command::Replay(args) => replay::replay(&args),
         Command::Presets(args) => presets::presets(&args),

@@ -27,6 +27,6 @@ mod ways;
 
 pub use error::ScanTreeError;
 pub use ground::Ground;
-pub use scanner::{ScannerSpec, scan};
+pub use scanner::{ScannerSpec, scan, wood_mesh};
 pub use surface::{Gap, wood_gap};
 pub use tree::{FoundTree, Tally, TreeScanSpec, find_tree};

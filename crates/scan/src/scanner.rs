@@ -3,6 +3,7 @@
 use base::{Draw, Seed, ops};
 use glam::DVec3;
 use mesh::{Model, TriMesh};
+use plant::{AxisId, Plant};
 
 /// A scanner at one position. Lengths in metres, angles in radians.
 #[derive(Clone, Debug, PartialEq)]
@@ -103,6 +104,40 @@ pub fn scan(model: &Model, spec: &ScannerSpec, seed: Seed) -> (Vec<DVec3>, Vec<u
         }
     }
     (points, parts)
+}
+
+/// The wood of a plant as round as it is, for trials: rings of 24 places whose polygon has the area of their circle.
+///
+/// Meshes that are made to be seen have fewer sides, inside the circle: a scanner would find them thinner.
+pub fn wood_mesh(plant: &Plant) -> TriMesh {
+    const SIDES: u32 = 24;
+    let mut mesh = TriMesh::default();
+    let turn = ops::TAU / f64::from(SIDES);
+    let wider = (turn / ops::sin(turn)).sqrt();
+    let mut first = 0_u32;
+    for id in (0..plant.axes.len()).map(AxisId::new) {
+        let (line, radii) = (plant.axis_points(id), plant.axis_radii(id));
+        let frames = geom::rotation_minimising_frames(line, None);
+        for ((p, r), f) in line.iter().zip(radii).zip(&frames) {
+            for k in 0..SIDES {
+                let (sin, cos) = ops::sin_cos(turn * f64::from(k));
+                let q = *p + (f.normal * cos + f.binormal * sin) * (*r * wider);
+                #[expect(clippy::cast_possible_truncation, reason = "a mesh")]
+                mesh.positions.push([q.x as f32, q.y as f32, q.z as f32]);
+            }
+        }
+        for _ in 1..line.len() {
+            for k in 0..SIDES {
+                let (a, b) = (first + k, first + (k + 1) % SIDES);
+                mesh.triangles.push([a, b, b + SIDES]);
+                mesh.triangles.push([a, b + SIDES, a + SIDES]);
+            }
+            first += SIDES;
+        }
+        mesh.triangles.extend((1..SIDES - 1).map(|k| [first, first + k, first + k + 1]));
+        first += SIDES;
+    }
+    mesh
 }
 
 /// The echo of a beam: mean range of what is near the nearest hit that is strong enough, and the part most rays met.

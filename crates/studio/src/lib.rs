@@ -67,9 +67,10 @@ pub use survey::{
 pub use template::{LeafTemplate, TemplateError};
 
 pub use trees::{
-    GUIDED_METHODS, MadeTree, NamedMesh, OAK_METHODS, PAPER_OAKS, PRESETS, PaperOak, Preset, TreeError,
-    TreeEvaluator, TreeOptions, TreeSize, coarser, guided_methods, make_tree, method_word, read_tree_spec,
-    scale_to_height, show_obstacles, tree_blade, tree_schema, tree_size,
+    GUIDED_METHODS, MadeTree, NamedMesh, OAK_METHODS, PAPER_OAKS, PRESETS, PaperOak, Preset, ScanTreeOptions,
+    ScannedTreeError, TreeError, TreeEvaluator, TreeOptions, TreeSize, coarser, guided_methods, make_tree,
+    make_tree_from_scan, method_word, read_tree_spec, scale_to_height, show_obstacles, tree_blade,
+    tree_schema, tree_size,
 };
 pub use venation::make_ray_leaf;
 
@@ -78,8 +79,8 @@ pub use growth::{Bark, BladeForm, BladeSpec, BlossomSpec, Look, TreeSpec};
 pub use spec::{Colour, Spec, SpecFault};
 
 pub use {
-    bloom, document, formats, geom, glam, growth, ink, leaf, mesh, plant, reading, render, shape, sketch,
-    skin, spec,
+    bloom, document, formats, geom, glam, growth, ink, leaf, mesh, plant, reading, render, scan, shape,
+    sketch, skin, spec,
 };
 
 /// The version that is written into reports and files.

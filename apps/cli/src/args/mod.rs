@@ -8,6 +8,7 @@ mod grow;
 mod leaf;
 mod presets;
 mod replay;
+mod scan;
 mod shape;
 mod shared;
 mod sketch;
@@ -22,6 +23,7 @@ pub(crate) use leaf::{
 };
 pub(crate) use presets::PresetsArgs;
 pub(crate) use replay::ReplayArgs;
+pub(crate) use scan::ScanArgs;
 pub(crate) use shape::ShapeArgs;
 pub(crate) use shared::{
     AxesArgs, CommonArgs, FormatWord, PackWord, PictureArgs, PlantFormat, SkinArgs, UnitWord, UpWord,
@@ -67,6 +69,11 @@ pub(crate) enum Command {
     /// Branches compete for space and light, around obstacles; leaves stay where light reaches. `burgeon presets`
     /// lists the species.
     Grow(Box<GrowArgs>),
+    /// Find a tree in a laser scan: wood as axes with radii, leaves by species
+    ///
+    /// Ground, noise and other things go; ways from the foot make the skeleton, circles and the pipe model its radii. The
+    /// result is a plant as all others are: meshes, structure, cylinders, measures.
+    Scan(Box<ScanArgs>),
     /// Edit a plant by hand: prune, turn, move, regrow, sketch or brush branches, fill a silhouette, thin leaves
     ///
     /// Works on a species, a spec, a drawing or a project. The edits stand in a JSON file; the rest of the plant stays

@@ -1,4 +1,4 @@
-//! LAS 1.0 to 1.4, point formats 0 to 10.
+//! LAS 1.0 to 1.4, point formats 0 to 10, with their colours; compressed (LAZ) with the feature `laz`.
 
 use super::{CloudFormat, MAX_POINTS, Sink, too_many};
 use crate::error::{CloudError, FileFault, Place};
@@ -43,7 +43,9 @@ pub(super) fn read(bytes: &[u8], sink: &mut Sink) -> Result<(), CloudError> {
     let header_size = b.u16(94)?;
     let data_at = b.u32(96)?;
     let [format] = b.get::<1>(104)?;
-    if format & 0x80 != 0 {
+    // The two highest bits say that it is compressed.
+    let (packed, format) = (format & 0xc0 != 0, format & 0x3f);
+    if packed && !cfg!(feature = "laz") {
         let fault = FileFault::unsupported("compressed LAS (LAZ)", "unpack it first, for example with PDAL");
         return Err(CloudError::new(CloudFormat::Las, Place::Byte(104), fault));
     }
@@ -90,23 +92,107 @@ pub(super) fn read(bytes: &[u8], sink: &mut Sink) -> Result<(), CloudError> {
     if data_at < 227.min(header_size) || data_at > bytes.len() {
         return Err(fail(96, format!("the points begin at byte {data_at} of {}", bytes.len())));
     }
-    let there = (bytes.len() - data_at) / record;
-    if count > there {
-        let inside = format!("the points: {count} are announced, {there} are there");
-        let fault = FileFault::Truncated { inside };
-        return Err(CloudError::new(CloudFormat::Las, Place::Byte(bytes.len() as u64), fault));
-    }
     if count > MAX_POINTS {
         return Err(too_many(CloudFormat::Las));
     }
-    for row in bytes[data_at..].chunks_exact(record).take(count) {
+    let colours = match format {
+        2 => Some(20),
+        3 | 5 => Some(28),
+        7 | 8 | 10 => Some(30),
+        _ => None,
+    };
+    let mut rows = Rows { scale, offset, colours, record, low: Some(vec![]) };
+    if packed {
+        #[cfg(feature = "laz")]
+        unpack(bytes, (data_at, header_size, b.u32(100)?), count, &mut rows, sink)?;
+    } else {
+        let there = (bytes.len() - data_at) / record;
+        if count > there {
+            let inside = format!("the points: {count} are announced, {there} are there");
+            let fault = FileFault::Truncated { inside };
+            return Err(CloudError::new(CloudFormat::Las, Place::Byte(bytes.len() as u64), fault));
+        }
+        for row in bytes[data_at..].chunks_exact(record).take(count) {
+            rows.take(row, sink)?;
+        }
+    }
+    if let Some(low) = rows.low {
+        // Two bytes a colour, of which some programs write the lower one only; or nothing.
+        sink.cloud.colors = if low.iter().all(|c| *c == [0; 3]) { vec![] } else { low };
+    }
+    Ok(())
+}
+
+/// How a record is read.
+struct Rows {
+    scale: [f64; 3],
+    offset: [f64; 3],
+    /// Where colours stand in a record.
+    colours: Option<usize>,
+    record: usize,
+    /// The lower bytes of colours, as long as no upper one is above 0.
+    low: Option<Vec<[u8; 3]>>,
+}
+
+impl Rows {
+    fn take(&mut self, row: &[u8], sink: &mut Sink) -> Result<(), CloudError> {
         let at = |k: usize| {
             let raw = [row[4 * k], row[4 * k + 1], row[4 * k + 2], row[4 * k + 3]];
-            f64::from(i32::from_le_bytes(raw)) * scale[k] + offset[k]
+            f64::from(i32::from_le_bytes(raw)) * self.scale[k] + self.offset[k]
         };
-        if !sink.push([at(0), at(1), at(2)], None) {
-            return Err(too_many(CloudFormat::Las));
+        let place = [at(0), at(1), at(2)];
+        let colour = self.colours.map(|c| [0, 2, 4].map(|k| row[c + k + 1]));
+        if let (Some(c), Some(low)) = (self.colours, &mut self.low) {
+            if colour == Some([0; 3]) {
+                low.push([0, 2, 4].map(|k| row[c + k]));
+            } else {
+                self.low = None;
+            }
         }
+        if sink.push(place, colour) { Ok(()) } else { Err(too_many(CloudFormat::Las)) }
+    }
+}
+
+/// Unpacks compressed points, one record at a time.
+#[cfg(feature = "laz")]
+fn unpack(
+    bytes: &[u8],
+    (data_at, mut at, records): (usize, usize, usize),
+    count: usize,
+    rows: &mut Rows,
+    sink: &mut Sink,
+) -> Result<(), CloudError> {
+    let broken = |what: String| fail(data_at, what);
+    let mut vlr = None;
+    // Records before the points: one of them says how they are packed.
+    for _ in 0..records {
+        let b = Bytes(bytes);
+        let user: [u8; 16] = b.get(at + 2)?;
+        let (id, length) = (b.u16(at + 18)?, b.u16(at + 20)?);
+        let data = bytes.get(at + 54..(at + 54).saturating_add(length));
+        if user.starts_with(b"laszip encoded") && id == 22204 {
+            let data = data.ok_or_else(|| fail(at, "the record of LASzip is cut off"))?;
+            vlr = Some(laz::LazVlr::read_from(data).map_err(|e| broken(e.to_string()))?);
+        }
+        at += 54 + length;
+    }
+    let vlr = vlr.ok_or_else(|| broken("it is compressed (LAZ), but no record says how".into()))?;
+    if vlr.items_size() != rows.record as u64 {
+        return Err(broken(format!(
+            "its records have {} bytes and {} packed ones",
+            rows.record,
+            vlr.items_size()
+        )));
+    }
+    let mut source = std::io::Cursor::new(bytes);
+    source.set_position(data_at as u64);
+    let mut unpacker = laz::LasZipDecompressor::new(source, vlr).map_err(|e| broken(e.to_string()))?;
+    let mut row = vec![0; rows.record];
+    for k in 0..count {
+        unpacker
+            .decompress_one(&mut row)
+            .map_err(|e| broken(format!("point {k} cannot be unpacked: {e}")))?;
+        rows.take(&row, sink)?;
     }
     Ok(())
 }

@@ -143,6 +143,55 @@ fn every_format_gives_the_same_two_points() {
     assert_eq!(points(&las(2, 0.25, 1.0, 2, &[[0, 4, 8], [-6, -3, 3996]]), Las), TWO);
 }
 
+/// Compressed by another program: laz-rs.
+#[cfg(feature = "laz")]
+#[test]
+fn compressed_las_gives_the_same_points() {
+    use std::io::Cursor;
+
+    let places: Vec<[i32; 3]> = (0..3000).map(|i| [7 * i, i * i % 977, -3 * i]).collect();
+    let plain = las(2, 0.25, 1.0, 2, &places);
+    let at = |k: usize| u32::from_le_bytes([plain[k], plain[k + 1], plain[k + 2], plain[k + 3]]) as usize;
+    let (head, data_at) = (usize::from(plain[94]) + 256 * usize::from(plain[95]), at(96));
+    let record = usize::from(plain[105]) + 256 * usize::from(plain[106]);
+    let items = laz::LazItemRecordBuilder::default_for_point_format_id(plain[104], 0).unwrap();
+    let vlr = laz::LazVlr::from_laz_items(items);
+    assert_eq!(vlr.items_size() as usize, record);
+    let mut said = Vec::new();
+    vlr.write_to(&mut said).unwrap();
+    let mut file = plain[..head].to_vec();
+    let mut name = [0; 16];
+    name[..14].copy_from_slice(b"laszip encoded");
+    file.extend_from_slice(&[0, 0]);
+    file.extend_from_slice(&name);
+    file.extend_from_slice(&22204_u16.to_le_bytes());
+    file.extend_from_slice(&u16::try_from(said.len()).unwrap().to_le_bytes());
+    file.extend_from_slice(&[0; 32]);
+    file.extend_from_slice(&said);
+    let start = u32::try_from(file.len()).unwrap();
+    file[96..100].copy_from_slice(&start.to_le_bytes());
+    file[100..104].copy_from_slice(&1_u32.to_le_bytes());
+    file[104] |= 0x80;
+    let mut cursor = Cursor::new(file);
+    cursor.set_position(u64::from(start));
+    let mut packer = laz::LasZipCompressor::new(&mut cursor, vlr).unwrap();
+    packer.compress_many(&plain[data_at..]).unwrap();
+    packer.done().unwrap();
+    drop(packer);
+    let file = cursor.into_inner();
+    assert!(file.len() < plain.len() / 2, "{} {}", file.len(), plain.len());
+    assert_eq!(points(&file, CloudFormat::Las), points(&plain, CloudFormat::Las));
+    // Cut off and broken: an error, never a panic.
+    for cut in (0..file.len()).step_by(97) {
+        let _ = read_cloud(&file[..cut], CloudFormat::Las, &ExportSpec::default(), &mut Report::default());
+    }
+    for k in (0..file.len()).step_by(53) {
+        let mut bad = file.clone();
+        bad[k] ^= 0x5a;
+        let _ = read_cloud(&bad[..], CloudFormat::Las, &ExportSpec::default(), &mut Report::default());
+    }
+}
+
 #[test]
 fn lzf_copies_repeat() {
     // "ab", then 6 bytes copied from 2 back: length code 4 (= 6 - 2).

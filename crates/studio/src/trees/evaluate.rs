@@ -83,7 +83,7 @@ const SMALL: usize = 4_000;
 const LOOK_LEVEL: u32 = 2;
 
 /// What a model is made from, besides its plant.
-type Skinned = (SkinSpec, Look, Option<LeafTemplate>);
+pub(super) type Skinned = (SkinSpec, Look, Option<LeafTemplate>);
 
 impl TreeEvaluator {
     /// Brings everything up to date and reports. [`TreeOptions::lods`] are left to [`super::make_tree`].
@@ -338,7 +338,11 @@ fn skin_spec(spec: &TreeSpec, seed: Seed, options: &TreeOptions) -> SkinSpec {
     dressed(SkinSpec { seed, ..options.skin.clone() }, &spec.look, form)
 }
 
-fn skinned(plant: &Plant, (skin, look, leaf): &Skinned, run: &Run<'_>) -> Result<(Model, Layout), Stopped> {
+pub(super) fn skinned(
+    plant: &Plant,
+    (skin, look, leaf): &Skinned,
+    run: &Run<'_>,
+) -> Result<(Model, Layout), Stopped> {
     let (mut model, layout) = skin::skin_laid_out(plant, skin, Pictures::default(), None, run)?;
     paint(look, &mut model);
     if let Some(leaf) = leaf {

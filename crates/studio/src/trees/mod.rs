@@ -8,6 +8,7 @@
 //! | `file` | TOML in; where in a text a fault is |
 //! | `blade`, `blossom`, `look` | forms of leaves; flowers in their place; colours and bark |
 //! | `presets` | the species that come with the program |
+//! | `scanned` | trees of laser scans |
 //! | `scenery` | obstacles in a picture |
 //! | `lod` | coarser copies for far away |
 //! | `compare` | one oak by three methods |
@@ -20,6 +21,7 @@ mod file;
 mod lod;
 mod look;
 mod presets;
+mod scanned;
 mod scenery;
 
 use base::{Cancelled, OverBudget, Report, Run, Seed, Stopped};
@@ -42,6 +44,7 @@ pub use file::{NamedMesh, read_tree_spec, tree_schema};
 pub use lod::coarser;
 use lod::keep_out;
 pub use presets::{PRESETS, Preset};
+pub use scanned::{ScanTreeOptions, ScannedTreeError, make_tree_from_scan};
 pub use scenery::show_obstacles;
 
 /// How a tree is meshed. Not saved with it.

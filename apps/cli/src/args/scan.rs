@@ -1,0 +1,68 @@
+//! `burgeon scan`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::given::Given;
+use super::grow::TreeSurfaceArgs;
+use super::shared::{AxesArgs, CommonArgs, PictureArgs, ranged, seed};
+
+#[derive(Args, Debug)]
+#[command(after_long_help = "Examples:
+  burgeon scan tree.laz -o tree.glb --qsm tree.csv --mtg tree.mtg --report tree.json
+  burgeon scan plot.las --at 12.5,3.0 -o tree.glb           the tree that stands there
+  burgeon scan tree.xyz --unit mm --leaves oak -o oak.glb --png oak.png
+  burgeon scan tree.ply --up y -o tree.glb")]
+pub(crate) struct ScanArgs {
+    /// First: clap takes the values of the others away as it reads them.
+    #[command(flatten)]
+    pub(crate) given: Given,
+    /// The scan: .laz, .las, .ply, .xyz, .txt, .pcd or .obj, with +Z up unless --up says otherwise.
+    #[arg(value_name = "SCAN")]
+    pub(crate) input: PathBuf,
+    /// The model (.glb, .obj, .ply, .stl, .usda or .usdz), or the structure (.mtg).
+    #[arg(long, short, value_name = "OUT", required_unless_present_any = ["png", "qsm", "mtg", "report", "json"])]
+    pub(crate) output: Option<PathBuf>,
+    /// Also write the wood as cylinders: a quantitative structure model, one a row, with `TreeQSM`'s column names.
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) qsm: Option<PathBuf>,
+    /// Also write the structure.
+    #[arg(long, value_name = "FILE.mtg")]
+    pub(crate) mtg: Option<PathBuf>,
+    /// Also make a picture.
+    #[arg(long, value_name = "FILE.png")]
+    pub(crate) png: Option<PathBuf>,
+    /// Leaves and bark of a species of `burgeon presets`, or of a spec (.toml) [default: a bare tree].
+    #[arg(long, value_name = "PRESET|SPEC.toml")]
+    pub(crate) leaves: Option<PathBuf>,
+    /// Where the stem stands on the ground, in the coordinates and the unit of the scan: the two that are not up, in their
+    /// order [default: the largest thing that stands on the ground].
+    #[arg(long, value_name = "A,B", allow_hyphen_values = true, value_parser = place)]
+    pub(crate) at: Option<[f64; 2]>,
+    /// Edge of the cubes that the cloud is seen in, metres, 0.001 to 1 [default: by the spacing of the points].
+    #[arg(long, value_name = "M", value_parser = |s: &str| ranged(s, 0.001, 1.0))]
+    pub(crate) cell: Option<f64>,
+    /// Widest gap that is bridged, metres, 0 to 5 [default: 4 % of the height, at most 0.6].
+    #[arg(long, value_name = "M", value_parser = |s: &str| ranged(s, 0.0, 5.0))]
+    pub(crate) gap: Option<f64>,
+    /// Seed of the leaves.
+    #[arg(long, value_name = "N", default_value_t = 1, allow_hyphen_values = true, value_parser = seed)]
+    pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) surface: TreeSurfaceArgs,
+    #[command(flatten)]
+    pub(crate) picture: PictureArgs,
+    #[command(flatten)]
+    pub(crate) axes: AxesArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+fn place(text: &str) -> Result<[f64; 2], String> {
+    let numbers: Vec<f64> = text.split(',').filter_map(|w| w.trim().parse().ok()).collect();
+    match numbers.as_slice() {
+        &[a, b] if text.split(',').count() == 2 && a.abs() <= 1e8 && b.abs() <= 1e8 => Ok([a, b]),
+        _ => Err("give two numbers within 1e8 such as 12.5,3".into()),
+    }
+}

@@ -1,0 +1,182 @@
+//! `burgeon scan`: a laser scan to a tree.
+
+use std::path::{Path, PathBuf};
+
+use burgeon::glam::DVec3;
+use burgeon::scan::TreeScanSpec;
+use burgeon::skin::SkinSpec;
+use burgeon::{Report, RunReport, ScanTreeOptions, ScannedTreeError, Seed, Stopped, make_tree_from_scan};
+use serde::Serialize;
+
+use crate::args::{PlantFormat, ScanArgs, Seen, UpWord};
+use crate::failure::{Failure, Outcome};
+use crate::machine::Machine;
+use crate::materials::Materials;
+use crate::origin::Origin;
+use crate::output::Outputs;
+use crate::{files, grow, levels, picture, report, say};
+
+/// What became of the points.
+#[derive(Debug, Serialize)]
+struct Tally {
+    points: u64,
+    ground: u64,
+    noise: u64,
+    others: u64,
+    wood: u64,
+    other_things: u64,
+    bridges: u64,
+    cell_m: f64,
+    rings: u64,
+    circles: u64,
+    pipe_exponent: f64,
+    pipe_scatter: f64,
+    /// Where the stem stood, in the axes of the scan, metres.
+    foot_m: [f64; 3],
+    /// Whether there was a ground.
+    ground_found: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct ScanRun {
+    #[serde(flatten)]
+    run: RunReport,
+    scan: Tally,
+}
+
+pub(crate) fn scan(args: &ScanArgs) -> Outcome {
+    let machine = Machine::new(&args.common);
+    let outputs = [
+        ("-o", args.output.as_ref()),
+        ("--png", args.png.as_ref()),
+        ("--qsm", args.qsm.as_ref()),
+        ("--mtg", args.mtg.as_ref()),
+        ("--report", args.common.report.as_ref()),
+    ];
+    let inputs = [Some(&args.input), args.leaves.as_ref(), args.surface.skin.materials.as_ref()];
+    let inputs: Vec<&PathBuf> = inputs.into_iter().flatten().collect();
+    let mut outputs = Outputs::new(&outputs, &inputs)?;
+    let plan = |path| files::plan_plant(&mut outputs, path, args.surface.lods);
+    let format = args.output.as_deref().map(plan).transpose()?;
+    if let Some(png) = &args.png {
+        picture::check_name(png)?;
+    }
+    args.given.check_picture(args.png.is_some(), &args.picture)?;
+    args.given.check_surface(Seen::new(format, args.png.as_ref(), &args.common))?;
+    let mut told = Report::default();
+    let leaves = args.leaves.as_deref().map(|what| grow::read_spec(what, &mut told)).transpose()?;
+    if leaves.as_ref().is_some_and(|l| l.bare || l.blade.file.is_some()) {
+        return Err(Failure::Bad("--leaves: this species bears no leaves of its own; name another".into()));
+    }
+    // Scanners write +Z up.
+    let axes = files::axes(args.axes.up.unwrap_or(UpWord::Z), args.axes.unit);
+    let opened = files::open_cloud(&args.input)?;
+    let (cloud, read_ms) = machine.timed(|| {
+        machine.with_progress("reading", |_| files::read_cloud(&args.input, opened, &axes, &mut told))
+    });
+    let mut points = cloud?.points;
+    outputs.check()?;
+    let mut origin = Origin::default();
+    origin.bring(&mut points, &axes, &mut told);
+    let at = args.at.map(|[a, b]| {
+        // The two coordinates that are not up.
+        let file = if matches!(args.axes.up, Some(UpWord::Y)) {
+            DVec3::new(a, 0.0, b)
+        } else {
+            DVec3::new(a, b, 0.0)
+        };
+        let p = origin.place(axes.inward(file));
+        [p.x, p.z]
+    });
+    let materials = args.surface.skin.materials.as_deref().map(Materials::read).transpose()?;
+    let options = ScanTreeOptions {
+        scan: TreeScanSpec { at, cell_m: args.cell, gap_m: args.gap, ..TreeScanSpec::default() },
+        leaves,
+        skin: SkinSpec { worn: materials.unwrap_or_default().worn(), ..args.surface.skin.spec() },
+    };
+    let (name, seed) = (files::stem(&args.input), Seed::new(args.seed));
+    let made = machine
+        .with_progress("scan", |_| make_tree_from_scan(&name, &points, &options, seed, &machine.run()));
+    let (mut made, found) = made.map_err(|e| failure(&args.input, e))?;
+    drop(points);
+    let lods = if matches!(format, Some(PlantFormat::Model(_))) { args.surface.lods } else { 0 };
+    let lods = (1..=lods).map(|level| made.at_level(level, &machine.run()));
+    let lods: Vec<_> = lods.collect::<Result<_, _>>().map_err(|e| failure(&args.input, e.into()))?;
+    let stood = origin.offset_m.unwrap_or_default() + found.foot;
+    made.item.warnings.splice(0..0, told.warnings.iter().map(ToString::to_string));
+    made.item.timings_ms.add_io(read_ms, 0.0);
+    let mut items = vec![made.item];
+    if let Some((path, format)) = args.output.as_deref().zip(format) {
+        let (goal, plant) = ((path, format), (&made.plant, &made.model));
+        levels::write(&mut outputs, goal, plant, &lods, &args.axes, &mut items, &machine)?;
+    }
+    if let Some(path) = &args.qsm {
+        files::write_qsm(&mut outputs, path, &made.plant, &args.axes)?;
+    }
+    if let Some(path) = &args.mtg {
+        files::write_mtg_file(&mut outputs, "--mtg", path, &made.plant, &args.axes)?;
+    }
+    if let Some(png) = &args.png {
+        let view = args.picture.spec(args.seed);
+        let drawn = machine
+            .with_progress("picture", |_| burgeon::render::render(&made.model, &view, &machine.run()))?;
+        picture::write(&mut outputs, "--png", png, &drawn)?;
+    }
+    items[0].timings_ms.total = machine.whole_ms();
+    let mut run = RunReport::new("scan", args.seed);
+    run.input.path = args.input.display().to_string();
+    run.input.offset_m = origin.told(&axes);
+    run.ok = 1;
+    run.items = items;
+    let t = &found.tally;
+    let metres = burgeon::formats::ExportSpec { up: axes.up, ..Default::default() };
+    let scan = Tally {
+        points: t.points as u64,
+        ground: t.ground as u64,
+        noise: t.noise as u64,
+        others: t.others as u64,
+        wood: t.wood as u64,
+        other_things: t.other_things as u64,
+        bridges: t.bridges as u64,
+        cell_m: t.cell_m,
+        rings: t.rings as u64,
+        circles: t.circles as u64,
+        pipe_exponent: t.pipe_exponent,
+        pipe_scatter: t.pipe_scatter,
+        foot_m: metres.place(stood),
+        ground_found: found.ground.is_some(),
+    };
+    let whole = ScanRun { run, scan };
+    report::finish(&whole, &args.common, outputs)?;
+    if !machine.quiet {
+        let run = &whole.run;
+        for item in &run.items {
+            item.warnings.iter().for_each(|w| say::warning(&format!("{}: {w}", item.name)));
+        }
+        say::line(&summary(&whole, args.png.as_deref()));
+        run.items[1..].iter().for_each(|i| say::line(&report::summary(i, None)));
+    }
+    Ok(())
+}
+
+fn summary(whole: &ScanRun, png: Option<&Path>) -> String {
+    let item = &whole.run.items[0];
+    let line = report::summary(item, png);
+    let Some(m) = &item.plant else { return line };
+    let dbh = m.dbh_m.map_or_else(String::new, |d| format!(", DBH {:.1} cm", 100.0 * d));
+    let found = format!(
+        ", {} points: {:.2} m high{dbh}, {:.4} m3 of wood, {:.0} m of branches; ",
+        say::grouped(whole.scan.points),
+        m.height_m,
+        m.wood_volume_m3,
+        m.length_m
+    );
+    line.replacen("; ", &found, 1)
+}
+
+fn failure(path: &Path, error: ScannedTreeError) -> Failure {
+    match error {
+        ScannedTreeError::Stopped(Stopped::Cancelled(_)) => Failure::Cancelled,
+        other => Failure::at(path, other),
+    }
+}

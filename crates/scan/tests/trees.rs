@@ -1,0 +1,213 @@
+//! Trees that are known, scanned by a virtual scanner and found again; and scans that are no good.
+
+use base::{Draw, Executor, Report, Run, Seed, ops};
+use glam::DVec3;
+use mesh::{Material, MaterialId, MaterialKind, Model, Part, TriMesh};
+use plant::{AxisKind, NodeId, Plant};
+use scan::{ScanTreeError, ScannerSpec, TreeScanSpec, find_tree, scan, wood_gap, wood_mesh};
+
+/// Jobs in the other order.
+struct Backwards;
+impl Executor for Backwards {
+    fn for_each(&self, n: usize, job: &(dyn Fn(usize) + Sync)) {
+        (0..n).rev().for_each(job);
+    }
+}
+
+/// A trunk of 6 m with ten boughs of a metre or two, each with three twigs. Radii follow the pipe model with n = 2.
+fn tree() -> Plant {
+    let mut p = Plant::default();
+    let mut s = Seed::new(4).stream(Draw::Test);
+    let line = |from: DVec3, way: DVec3, n: u32| -> Vec<DVec3> {
+        (0..=n).map(|i| from + way * (f64::from(i) / f64::from(n))).collect()
+    };
+    let trunk =
+        p.add_axis(AxisKind::Branch, None, 0, &line(DVec3::ZERO, DVec3::new(0.2, 6.0, 0.1), 40), None);
+    for k in 0..10_u64 {
+        let bearer = NodeId::new(12 + 2 * k as usize);
+        let (sin, cos) = ops::sin_cos(2.4 * k as f64);
+        let from = p.nodes.position[bearer.index()];
+        let way = DVec3::new(cos, 0.6, sin) * (1.8 - 0.1 * k as f64);
+        let bough = p.add_axis(AxisKind::Branch, Some(bearer), 1 + k, &line(from, way, 12), None);
+        let first = p.axis(bough).nodes.start as usize;
+        for t in 0..3 {
+            let node = NodeId::new(first + 4 + 3 * t);
+            let from = p.nodes.position[node.index()];
+            let side = DVec3::new(s.range(-1.0, 1.0), s.range(0.0, 1.0), s.range(-1.0, 1.0)).normalize();
+            p.add_axis(
+                AxisKind::Branch,
+                Some(node),
+                100 + 3 * k + t as u64,
+                &line(from, side * 0.5, 5),
+                None,
+            );
+        }
+    }
+    // Pipes: a unit for each tip, and a little for each internode.
+    let mut pipes = vec![0.0; p.nodes.position.len()];
+    for a in p.axes.iter().rev() {
+        let rows: Vec<usize> = a.node_ids().map(NodeId::index).collect();
+        let mut sum = 1.0;
+        for &r in rows.iter().rev() {
+            sum += 0.1 + pipes[r];
+            pipes[r] = sum;
+        }
+        if let Some(b) = a.bearer {
+            pipes[b.index()] += sum;
+        }
+    }
+    p.nodes.radius_m = pipes.iter().map(|n| 0.012 * n.sqrt()).collect();
+    p
+}
+
+fn grid(corner: DVec3, u: DVec3, v: DVec3, n: u32) -> TriMesh {
+    let mut mesh = TriMesh::default();
+    for i in 0..=n {
+        for j in 0..=n {
+            let p = corner + u * (f64::from(i) / f64::from(n)) + v * (f64::from(j) / f64::from(n));
+            mesh.positions.push(p.to_array().map(|c| c as f32));
+        }
+    }
+    let id = |i: u32, j: u32| i * (n + 1) + j;
+    let cells = (0..n).flat_map(|i| (0..n).map(move |j| (i, j)));
+    for (i, j) in cells {
+        mesh.triangles.push([id(i, j), id(i + 1, j), id(i + 1, j + 1)]);
+        mesh.triangles.push([id(i, j), id(i + 1, j + 1), id(i, j + 1)]);
+    }
+    mesh
+}
+
+/// Clouds of meshes from three places.
+fn cloud(meshes: &[TriMesh]) -> Vec<DVec3> {
+    let mut scene = Model::default();
+    scene.materials.push(Material::plain("all", MaterialKind::Other, [0.5; 3]));
+    for mesh in meshes {
+        scene.parts.push(Part { name: "part".into(), material: MaterialId::new(0), mesh: mesh.clone() });
+    }
+    (0..3_u64)
+        .flat_map(|k| {
+            let (sin, cos) = ops::sin_cos(ops::TAU * (k as f64 + 0.2) / 3.0);
+            let position = DVec3::new(6.0 * cos, 1.6, 6.0 * sin);
+            scan(&scene, &ScannerSpec { position, step: 1.5e-3, ..ScannerSpec::default() }, Seed::new(k)).0
+        })
+        .collect()
+}
+
+fn ground() -> TriMesh {
+    // A slope of 6 %.
+    grid(DVec3::new(-3.0, -0.18, -3.0), DVec3::new(6.0, 0.36, 0.0), DVec3::Z * 6.0, 40)
+}
+
+fn moved(mut p: Plant, by: DVec3) -> Plant {
+    p.nodes.position.iter_mut().for_each(|q| *q += by);
+    p
+}
+
+#[test]
+fn volume_height_and_diameter_come_back_and_the_cone_is_far_off() {
+    let truth = tree();
+    let points = cloud(&[wood_mesh(&truth), ground()]);
+    let mut report = Report::default();
+    let found = find_tree(&points, &TreeScanSpec::default(), &Run::plain(), &mut report).unwrap();
+    assert_eq!(found.plant.validate().count(), 0);
+    let (a, b) = (truth.measure(), found.plant.measure());
+    let near = |x: f64, y: f64| (x / y - 1.0).abs() < 0.05;
+    assert!(near(b.height_m, a.height_m), "{} {}", b.height_m, a.height_m);
+    assert!(near(b.dbh_m.unwrap(), a.dbh_m.unwrap()), "{:?} {:?}", b.dbh_m, a.dbh_m);
+    assert!(near(b.wood_volume_m3, a.wood_volume_m3), "{} {}", b.wood_volume_m3, a.wood_volume_m3);
+    // The trivial answer: a cone by allometry.
+    let cone = ops::PI / 4.0 * b.dbh_m.unwrap().powi(2) * b.height_m / 2.0;
+    let (ours, its) = (b.wood_volume_m3 - a.wood_volume_m3, cone - a.wood_volume_m3);
+    assert!(3.0 * ours.abs() < its.abs(), "{ours} {its}");
+    assert_eq!(b.orders[0].axes, 1);
+    assert_eq!(b.orders[1].axes, 10, "every bough");
+    let stands = moved(found.plant.clone(), found.foot);
+    for (from, to) in [(&truth, &stands), (&stands, &truth)] {
+        let gap = wood_gap(from, to, 0.02, 0.01).unwrap();
+        assert!(gap.median < 0.004 && gap.p95 < 0.04, "{gap:?}");
+    }
+    // The same bits, whoever does the work in whichever order.
+    let run = Run { executor: &Backwards, ..Run::plain() };
+    let again = find_tree(&points, &TreeScanSpec::default(), &run, &mut Report::default()).unwrap();
+    assert_eq!(again.plant.digest_hex(), found.plant.digest_hex());
+}
+
+#[test]
+fn half_of_the_points_change_little() {
+    let truth = tree();
+    let points = cloud(&[wood_mesh(&truth), ground()]);
+    let volume = |step: usize| {
+        let some: Vec<DVec3> = points.iter().copied().step_by(step).collect();
+        let found =
+            find_tree(&some, &TreeScanSpec::default(), &Run::plain(), &mut Report::default()).unwrap();
+        found.plant.measure().wood_volume_m3
+    };
+    let whole = volume(1);
+    assert!((volume(2) / whole - 1.0).abs() < 0.06, "{} {whole}", volume(2));
+}
+
+#[test]
+fn other_trees_walls_and_people_are_left_out() {
+    let truth = tree();
+    let other = moved(tree(), DVec3::new(3.2, 0.0, 1.0));
+    let wall = grid(DVec3::new(-4.0, -0.3, -4.0), DVec3::X * 8.0, DVec3::Y * 2.0, 20);
+    let mut person = Plant::default();
+    person.add_axis(
+        AxisKind::Stem,
+        None,
+        0,
+        &[DVec3::new(-2.0, -0.2, 1.0), DVec3::new(-2.0, 1.6, 1.0)],
+        None,
+    );
+    person.nodes.radius_m.fill(0.2);
+    let meshes = [wood_mesh(&truth), wood_mesh(&other), wall, wood_mesh(&person), ground()];
+    let points = cloud(&meshes);
+    for (at, wanted) in [([0.0, 0.0], DVec3::ZERO), ([3.2, 1.0], DVec3::new(3.2, 0.0, 1.0))] {
+        let mut report = Report::default();
+        let spec = TreeScanSpec { at: Some(at), ..TreeScanSpec::default() };
+        let found = find_tree(&points, &spec, &Run::plain(), &mut report).unwrap();
+        assert!((found.foot - wanted).with_y(0.0).length() < 0.1, "{:?}", found.foot);
+        assert!(report.warnings.iter().any(|w| w.code == "scan-others"), "{:?}", report.warnings);
+        let (a, b) = (truth.measure(), found.plant.measure());
+        assert!((b.dbh_m.unwrap() / a.dbh_m.unwrap() - 1.0).abs() < 0.05, "{:?} {:?}", b.dbh_m, a.dbh_m);
+    }
+    let spec = TreeScanSpec { at: Some([-9.0, -9.0]), ..TreeScanSpec::default() };
+    let fault = find_tree(&points, &spec, &Run::plain(), &mut Report::default());
+    assert!(matches!(fault, Err(ScanTreeError::NotThere(..))), "{fault:?}");
+}
+
+#[test]
+fn scans_that_are_no_good_say_so() {
+    let run = Run::plain();
+    let find = |points: &[DVec3]| {
+        let mut report = Report::default();
+        let found = find_tree(points, &TreeScanSpec::default(), &run, &mut report);
+        (found, report.warnings.iter().map(|w| w.code).collect::<Vec<_>>())
+    };
+    assert!(matches!(find(&[]).0, Err(ScanTreeError::TooFew(0, _))));
+    assert!(matches!(find(&[DVec3::Y; 10]).0, Err(ScanTreeError::TooFew(10, _))));
+    assert!(matches!(find(&[DVec3::NAN; 1000]).0, Err(ScanTreeError::TooFew(0, _))));
+    // All in one place, and on a line: no panic.
+    let _ = find(&[DVec3::ONE; 1000]);
+    let line: Vec<DVec3> = (0..1000).map(|i| DVec3::Y * f64::from(i) * 0.001).collect();
+    let _ = find(&line);
+    let truth = tree();
+    let points = cloud(&[wood_mesh(&truth), ground()]);
+    // Millimetres taken for metres.
+    let large: Vec<DVec3> = points.iter().map(|p| *p * 1000.0).collect();
+    assert!(matches!(find(&large).0, Err(ScanTreeError::TooLarge(_))));
+    // Lying down: the way up that there is, is told.
+    let lying: Vec<DVec3> = points.iter().map(|p| DVec3::new(p.x, -p.z, p.y)).collect();
+    assert!(find(&lying).1.contains(&"scan-lies-down"));
+    // Without a ground, and with points that are none.
+    let mut bare = cloud(&[wood_mesh(&truth)]);
+    bare.extend([DVec3::NAN, DVec3::INFINITY, DVec3::splat(1e300)]);
+    let (found, warnings) = find(&bare);
+    assert!(warnings.contains(&"scan-no-ground"), "{warnings:?}");
+    let found = found.unwrap().plant.measure();
+    assert!((found.height_m / truth.measure().height_m - 1.0).abs() < 0.05, "{}", found.height_m);
+    // A mirrored tree is a tree.
+    let mirrored: Vec<DVec3> = points.iter().map(|p| DVec3::new(-p.x, p.y, p.z)).collect();
+    let volume = find(&mirrored).0.unwrap().plant.measure().wood_volume_m3;
+    assert!((volume / truth.measure().wood_volume_m3 - 1.0).abs() < 0.05, "{volume}");
+}

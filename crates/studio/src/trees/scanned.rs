@@ -1,0 +1,103 @@
+//! Laser scans of trees -> trees.
+
+use base::{Cancelled, Report, Run, Seed, Stopped};
+use glam::DVec3;
+use growth::{GrowthError, Look, Obstacles, TreeSpec, add_leaves};
+use scan::{FoundTree, ScanTreeError, TreeScanSpec, find_tree};
+use skin::SkinSpec;
+
+use super::evaluate::skinned;
+use super::look::{KeptBarks, tint};
+use super::tree_blade;
+use crate::made::MadePlant;
+
+/// How a scan becomes a tree. Not saved with it.
+#[derive(Clone, Debug, Default)]
+pub struct ScanTreeOptions {
+    /// How the tree is sought.
+    pub scan: TreeScanSpec,
+    /// The species whose leaves, and colours of bark, it gets; default none: a bare tree.
+    pub leaves: Option<TreeSpec>,
+    /// Fineness, sides, textures.
+    pub skin: SkinSpec,
+}
+
+/// Why no tree came out of a scan.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ScannedTreeError {
+    /// There is none in it.
+    #[error(transparent)]
+    Scan(ScanTreeError),
+    /// The leaves of the species cannot be set.
+    #[error(transparent)]
+    Leaves(GrowthError),
+    /// The user asked to stop, or it would have been too much.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+}
+
+impl From<ScanTreeError> for ScannedTreeError {
+    fn from(e: ScanTreeError) -> Self {
+        match e {
+            ScanTreeError::Cancelled(c) => Self::Stopped(c.into()),
+            other => Self::Scan(other),
+        }
+    }
+}
+
+impl From<Cancelled> for ScannedTreeError {
+    fn from(c: Cancelled) -> Self {
+        Self::Stopped(c.into())
+    }
+}
+
+impl From<GrowthError> for ScannedTreeError {
+    fn from(e: GrowthError) -> Self {
+        match e {
+            GrowthError::Cancelled(c) => Self::Stopped(c.into()),
+            GrowthError::OverBudget(o) => Self::Stopped(o.into()),
+            other => Self::Leaves(other),
+        }
+    }
+}
+
+/// Finds the tree of a laser scan (metres, +Y up), gives it leaves of a species if asked for, and its surface.
+///
+/// The plant stands at the origin; [`FoundTree::foot`] is where it stood. The same points, options and seed give the
+/// same bits for any executor.
+///
+/// # Errors
+/// [`ScannedTreeError`].
+pub fn make_tree_from_scan(
+    name: &str,
+    points: &[DVec3],
+    options: &ScanTreeOptions,
+    seed: Seed,
+    run: &Run<'_>,
+) -> Result<(MadePlant, FoundTree), ScannedTreeError> {
+    let mut report = Report::default();
+    let found = report.stage("structure", run.clock, |r| find_tree(points, &options.scan, run, r))?;
+    let mut plant = found.plant.clone();
+    plant.name = name.into();
+    let look = options.leaves.as_ref().map_or_else(Look::default, |s| s.look.clone());
+    if let Some(species) = &options.leaves {
+        let mut foliage = species.leaves.clone();
+        // A scan's thinnest twigs are thicker than a species': leaves sit on what is thin here.
+        let mut tips: Vec<f64> =
+            plant.axes.iter().map(|a| plant.nodes.radius_m[a.nodes.end as usize - 1]).collect();
+        base::sort_numbers(&mut tips);
+        let thin = tips.get(tips.len() / 2).copied().unwrap_or(0.0);
+        foliage.max_radius_m = foliage.max_radius_m.max(2.0 * thin);
+        let blade = tree_blade(&species.blade);
+        let none = Obstacles::none();
+        add_leaves(&mut plant, &foliage, blade, &[], &none, seed, run, &mut report)?;
+        tint(&look, &mut plant, false, seed);
+    }
+    let from = (options.skin.clone(), look, None);
+    let mut barks = KeptBarks::default();
+    let model = report.stage("mesh", run.clock, |_| skinned(&plant, &from, &mut barks, run))?.0;
+    let mut made = MadePlant::new(plant, (model, options.skin.clone()), (vec![], &[]), &report);
+    made.item.plant = Some(made.plant.measure());
+    Ok((made, found))
+}
