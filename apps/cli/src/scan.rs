@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use burgeon::formats::ModelFormat;
 use burgeon::glam::DVec3;
 use burgeon::scan::TreeScanSpec;
 use burgeon::skin::SkinSpec;
@@ -63,6 +64,8 @@ pub(crate) fn scan(args: &ScanArgs) -> Outcome {
     }
     args.given.check_picture(args.png.is_some(), &args.picture)?;
     args.given.check_surface(Seen::new(format, args.png.as_ref(), &args.common))?;
+    let glb = format == Some(PlantFormat::Model(ModelFormat::Glb));
+    args.given.only_if(glb, &["pack"], "models as .glb", "none is made")?;
     let mut told = Report::default();
     let leaves = args.leaves.as_deref().map(|what| grow::read_spec(what, &mut told)).transpose()?;
     if leaves.as_ref().is_some_and(|l| l.bare || l.blade.file.is_some()) {
@@ -107,7 +110,8 @@ pub(crate) fn scan(args: &ScanArgs) -> Outcome {
     made.item.timings_ms.add_io(read_ms, 0.0);
     let mut items = vec![made.item];
     if let Some((path, format)) = args.output.as_deref().zip(format) {
-        let (goal, plant) = ((path, format), (&made.plant, &made.model));
+        let goal = (path, format, args.surface.packing());
+        let plant = (&made.plant, &made.model);
         levels::write(&mut outputs, goal, plant, &lods, &args.axes, &mut items, &machine)?;
     }
     if let Some(path) = &args.qsm {

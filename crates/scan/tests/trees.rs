@@ -44,7 +44,7 @@ fn tree() -> Plant {
         }
     }
     // Pipes: a unit for each tip, and a little for each internode.
-    let mut pipes = vec![0.0; p.nodes.position.len()];
+    let mut pipes = vec![0.0_f64; p.nodes.position.len()];
     for a in p.axes.iter().rev() {
         let rows: Vec<usize> = a.node_ids().map(NodeId::index).collect();
         let mut sum = 1.0;

@@ -2,12 +2,12 @@
 
 use base::{Cancelled, Report, Run, Seed, Stopped};
 use glam::DVec3;
-use growth::{GrowthError, Look, Obstacles, TreeSpec, add_leaves};
+use growth::{BladeForm, GrowthError, Look, Obstacles, TreeSpec, add_leaves};
 use scan::{FoundTree, ScanTreeError, TreeScanSpec, find_tree};
 use skin::SkinSpec;
 
 use super::evaluate::skinned;
-use super::look::{KeptBarks, tint};
+use super::look::{dressed, tint};
 use super::tree_blade;
 use crate::made::MadePlant;
 
@@ -94,10 +94,10 @@ pub fn make_tree_from_scan(
         add_leaves(&mut plant, &foliage, blade, &[], &none, seed, run, &mut report)?;
         tint(&look, &mut plant, false, seed);
     }
-    let from = (options.skin.clone(), look, None);
-    let mut barks = KeptBarks::default();
-    let model = report.stage("mesh", run.clock, |_| skinned(&plant, &from, &mut barks, run))?.0;
-    let mut made = MadePlant::new(plant, (model, options.skin.clone()), (vec![], &[]), &report);
+    let form = options.leaves.as_ref().map_or_else(BladeForm::default, |s| s.blade.form);
+    let from = (dressed(options.skin.clone(), &look, form), look, None);
+    let model = report.stage("mesh", run.clock, |_| skinned(&plant, &from, run))?;
+    let mut made = MadePlant::new(plant, (model, from.0), (vec![], &[]), &report);
     made.item.plant = Some(made.plant.measure());
     Ok((made, found))
 }
