@@ -13,9 +13,8 @@ use glam::DVec3;
 use crate::wood::{main_children, pipes, radii};
 use crate::{JointId, Skeleton, WoodSpec};
 
-/// Rate and shape of growth (Richards 1959): free-standing trees pass half of their height at a third of the life that
-/// brings them nine tenths of it.
-const RATE: f64 = 2.5;
+/// Rate and shape of growth (Richards 1959): half of the height is there at two fifths of the life that is looked at.
+const RATE: f64 = 1.6;
 const SHAPE: f64 = 1.35;
 /// The share of its remaining life that the shortest twig takes to its length.
 const AT_ONCE: f64 = 0.08;
@@ -73,7 +72,7 @@ pub(crate) fn younger(full: &Skeleton, wood: &WoodSpec, life: f64) -> (Skeleton,
             (start[j], whole[j], along[j]) = (birth[p], rest[j] + from(j), from(j));
         }
         // Twigs are as long as they will be after few years: shoots of a tree are of like length each year.
-        let span = (AT_ONCE + 1.2 * whole[j] / longest.max(1e-12)).min(1.0);
+        let span = (AT_ONCE + 2.0 * whole[j] / longest.max(1e-12)).min(1.0);
         birth[j] = start[j] + span * (1.0 - start[j]) * reached_at(along[j] / whole[j].max(1e-12));
     }
     let begun = |j: usize| {
@@ -103,8 +102,12 @@ fn thinner(full: &Skeleton, young: &mut Skeleton, ids: &[Option<JointId>], wood:
     let (all, now) = (pipes(full, wood.internode_share), pipes(young, wood.internode_share));
     for (j, id) in ids.iter().enumerate() {
         if let Some(id) = id {
-            let share = now[id.index()] / all[j].max(1e-12);
-            let r = full.radius_m[j] * ops::powf(share.min(1.0), 1.0 / wood.pipe_exponent);
+            // A tip is as thin as any, and the foot of the whole as thick as it is; between them, by its share of pipes.
+            let (all, now) = (all[j].max(1.0), now[id.index()].max(1.0));
+            let by_pipes = |pipes: f64| wood.tip_radius_m * ops::powf(pipes, 1.0 / wood.pipe_exponent);
+            let stout = full.radius_m[j].max(1e-9) / by_pipes(all);
+            let share = if all > 1.0 + 1e-9 { (ops::ln(now) / ops::ln(all)).min(1.0) } else { 1.0 };
+            let r = by_pipes(now) * ops::powf(stout, share);
             young.radius_m[id.index()] = r.min(full.radius_m[j]);
         }
     }
@@ -174,8 +177,8 @@ mod tests {
         }
         assert_eq!(last.0, full.len());
         assert!((last.1 - top(&full)).abs() < 1e-9);
-        // A third of its life makes about a half of its height, with limbs of its own.
+        // A third of its life makes about two fifths of its height, with limbs of its own.
         let (young, _) = younger(&full, &wood, 0.33);
-        assert!((0.4..0.65).contains(&(top(&young) / top(&full))) && young.len() > 30, "{}", young.len());
+        assert!((0.33..0.6).contains(&(top(&young) / top(&full))) && young.len() > 30, "{}", young.len());
     }
 }
