@@ -462,11 +462,11 @@ mod tests {
         let mut glb = Vec::new();
         write_glb_morph(&a, &morph, &mut glb).unwrap();
         let length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
-        let json: serde_json::Value = serde_json::from_slice(&glb[20..20 + length]).unwrap();
+        let json: Value = serde_json::from_slice(&glb[20..20 + length]).unwrap();
         let targets = json["meshes"][0]["primitives"][0]["targets"].as_array().unwrap();
         assert_eq!(targets.len(), 2);
         let accessor =
-            |index: &serde_json::Value| &json["accessors"][usize::try_from(index.as_u64().unwrap()).unwrap()];
+            |index: &Value| &json["accessors"][usize::try_from(index.as_u64().unwrap()).unwrap()];
         let max = |t: usize| accessor(&targets[t]["POSITION"])["max"][1].as_f64();
         assert_eq!((max(0), max(1)), (Some(1.0), Some(3.0)), "what a key adds");
         let colour = accessor(&targets[1]["COLOR_0"]);
@@ -504,9 +504,9 @@ mod tests {
         let mut glb = Vec::new();
         write_glb_morph(&bloom, &morph, &mut glb).unwrap();
         let length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
-        let json: serde_json::Value = serde_json::from_slice(&glb[20..20 + length]).unwrap();
-        let floats = |accessor: &serde_json::Value| -> Vec<f32> {
-            let of = |v: &serde_json::Value| usize::try_from(v.as_u64().unwrap_or(0)).unwrap();
+        let json: Value = serde_json::from_slice(&glb[20..20 + length]).unwrap();
+        let floats = |accessor: &Value| -> Vec<f32> {
+            let of = |v: &Value| usize::try_from(v.as_u64().unwrap_or(0)).unwrap();
             let accessor = &json["accessors"][of(accessor)];
             let view = &json["bufferViews"][of(&accessor["bufferView"])];
             let from = 20 + length + 8 + of(&view["byteOffset"]);
