@@ -13,7 +13,8 @@ pub(crate) fn run() -> Outcome {
     studio::build(&web::setup()?, true)?;
     let burgeon = built_burgeon()?;
     let system = output(prepare("rustc", &["-vV"]))?;
-    let system = system.lines().find_map(|l| l.strip_prefix("host: ")).ok_or("rustc names no host")?.to_owned();
+    let system =
+        system.lines().find_map(|l| l.strip_prefix("host: ")).ok_or("rustc names no host")?.to_owned();
     let name = format!("burgeon-{}-{system}", env!("CARGO_PKG_VERSION"));
     let out = target_dir().join("archives");
     let folder = out.join(&name);
