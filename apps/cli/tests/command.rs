@@ -517,7 +517,7 @@ fn shells_complete_every_command_and_each_has_its_manual_page() {
     let out = burgeon(&folder, &["completions", "csh"]);
     assert_eq!(out.status.code(), Some(2), "csh is no shell that is known");
     assert!(burgeon(&folder, &["man", "pages"]).status.success(), "pages");
-    let page = |name: &str| std::fs::read_to_string(folder.join("pages").join(name)).unwrap();
+    let page = |name: &str| fs::read_to_string(folder.join("pages").join(name)).unwrap();
     assert!(page("burgeon.1").contains("burgeon\\-sketch"), "the first page names the others");
     assert!(
         page("burgeon-sketch.1").contains(r"\-\-no\-textures"),

@@ -55,7 +55,7 @@ class Law:
         write_whole(folder, [(name, (json.dumps(self.to_dict(), indent=2) + "\n").encode())])
 
     def to_dict(self) -> "Dict[str, Any]":
-        """All of it: for each organ ``form``, ``k``, ``p0``, ``r``, ``r2``, ``standard_errors``, ``loo_rmse``, ..."""
+        """All of it: for each organ ``form``, ``K``, ``p0``, ``r``, ``r2``, ``standard_errors``, ``loo_rmse``, ..."""
         return json.loads(self._raw.json())
 
     @property

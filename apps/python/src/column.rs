@@ -1,4 +1,4 @@
-//! Memory of ours that NumPy shows: no copy, read-only, kept as long as an array looks at it.
+//! Memory of ours that `NumPy` shows: no copy, read-only, kept as long as an array looks at it.
 
 use std::any::Any;
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use pyo3::types::PyDict;
 /// What keeps the memory.
 pub(crate) type Owner = Arc<dyn Any + Send + Sync>;
 
-/// A row as NumPy's interface of arrays describes it: numbers in a row (1 for a plain one), and their type.
+/// A row as `NumPy`'s interface of arrays describes it: numbers in a row (1 for a plain one), and their type.
 pub(crate) trait Row: 'static {
     const WIDTH: usize;
     const TYPE: &'static str;

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `make` | what is asked for -> a document of one plant -> the plant; growth laws |
 //! | `plant`, `model` | what was made: tables, meshes, clouds, files, pictures |
-//! | `column` | memory of ours that NumPy shows without a copy |
+//! | `column` | memory of ours that `NumPy` shows without a copy |
 //! | `value` | what people write in Python -> JSON |
 //! | `compute` | threads, Ctrl-C, limits |
 //! | `fault` | errors with codes -> exceptions |

@@ -43,7 +43,7 @@ impl Asked<'_> {
     /// A spec with the fields that are asked for in the place of its own.
     fn spec<T: Spec>(&self, py: Python<'_>, base: &T) -> PyResult<T> {
         if self.fields.is_empty() {
-            return Ok(burgeon::spec::from_json(&burgeon::spec::to_json(base)).map_err(|e| refused(py, &e))?);
+            return burgeon::spec::from_json(&burgeon::spec::to_json(base)).map_err(|e| refused(py, &e));
         }
         put(py, base, json_of(self.fields.as_any(), "")?)
     }

@@ -8,7 +8,7 @@ use serde_json::{Map, Number, Value};
 /// Deeper than any spec is nested; a list that holds itself ends here.
 const DEEPEST: usize = 32;
 
-/// A value as JSON; arrays and numbers of NumPy are taken for lists and numbers. `path`: what it is called in messages.
+/// A value as JSON; arrays and numbers of `NumPy` are taken for lists and numbers. `path`: what it is called in messages.
 pub(crate) fn json_of(value: &Bound<'_, PyAny>, path: &str) -> PyResult<Value> {
     of(value, path, 0)
 }

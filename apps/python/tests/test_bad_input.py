@@ -52,7 +52,7 @@ def test_unknown_fields_say_which_is_meant():
         (lambda: bg.leaf(form={"length_m": 900}), "form.length_m must be"),
         (lambda: bg.bloom("rose", -3), "day must be 0 to 100"),
         (lambda: bg.sketch([]), "no usable stroke"),
-        (lambda: bg.sketch([[[0, 0], [1, 1]]], classes={4: "leaf"}), "there is no stroke 4"),
+        (lambda: bg.sketch([[[0, 0], [1, 1]]], classes={4: "blade"}), "there is no stroke 4"),
         (lambda: bg.sketch([[[0, 0], [1, 1]]], classes={0: "tail"}), "is no class"),
         (lambda: bg.sketch([np.zeros((3, 3))]), r"strokes\[0\] must be of shape \(points, 2\)"),
         (lambda: bg.sketch([[[0, 0], [np.inf, 1]]]), r"strokes\[0\]\[1\] must be finite"),

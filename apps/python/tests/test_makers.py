@@ -66,7 +66,7 @@ def test_strokes_are_a_drawing():
     plant = bg.sketch([stem, *leaves], seed=2)
     assert plant.maker == "sketch" and len(plant.axes) >= 1
     assert plant.digest == bg.sketch([s * [1, -1] for s in [stem, *leaves]], seed=2, y_up=False).digest
-    one = bg.sketch([stem, *leaves], classes={1: "leaf", 2: "leaf"})
+    one = bg.sketch([stem, *leaves], classes={1: "blade", 2: "blade"})
     assert sum(one.organs.part == bg.PARTS.index("leaf")) == 2
 
 
