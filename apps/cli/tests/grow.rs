@@ -448,7 +448,18 @@ fn ctrl_c_leaves_nothing_behind() {
 fn presets_are_listed_shown_and_described() {
     let at = folder("grow-presets");
     let (list, _) = good(&at, &["presets"]);
-    for name in ["pine", "terminalia", "chinese-fir", "oak", "willow", "palm", "bamboo", "dead-oak", "peony", "dandelion"] {
+    for name in [
+        "pine",
+        "terminalia",
+        "chinese-fir",
+        "oak",
+        "willow",
+        "palm",
+        "bamboo",
+        "dead-oak",
+        "peony",
+        "dandelion",
+    ] {
         assert!(list.lines().any(|l| l.starts_with(name)), "{name} in {list}");
     }
     let (toml, _) = good(&at, &["presets", "--show", "hazel"]);

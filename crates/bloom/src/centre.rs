@@ -241,7 +241,8 @@ impl FlowerSpec {
         let tilt = rad(spread * ops::lerp(0.25, 1.0, g) * lean + 10.0 * wilt);
         let long = length * ops::lerp(0.45, 1.0, g) * seed.stream(Draw::Size).range(0.93, 1.0) * left;
         // A few stamens stand in a ring, many in Vogel's spiral.
-        let turn = if many { f64::from(k) * rad(137.507_8) } else { ops::TAU * (ring - 0.5 / f64::from(count)) };
+        let turn =
+            if many { f64::from(k) * rad(137.507_8) } else { ops::TAU * (ring - 0.5 / f64::from(count)) };
         let (s, c) = ops::sin_cos(turn);
         let out = DVec3::new(c, 0.0, s);
         let foot = self.stamen_foot();
@@ -321,7 +322,11 @@ impl FlowerSpec {
             let top = base + long;
             let last = rings.len() - 1;
             rings[last][0] = 0.7 * wide;
-            rings.extend([[wide, top + 0.02 * long], [wide, top + 0.06 * long], [0.3 * wide, top + 0.16 * long]]);
+            rings.extend([
+                [wide, top + 0.02 * long],
+                [wide, top + 0.06 * long],
+                [0.3 * wide, top + 0.16 * long],
+            ]);
         }
         rings.push([1e-5, rings.last().map_or(base, |r| r[1]) + 0.01 * long]);
         let columns = 24_u32;
@@ -486,7 +491,14 @@ impl FlowerSpec {
         };
         for row in [0.04, 1.0] {
             for j in (0..=PAPPUS).rev() {
-                let r = rim * if row < 0.5 { 0.04 } else if j.is_multiple_of(2) { 1.0 } else { 0.4 };
+                let r = rim
+                    * if row < 0.5 {
+                        0.04
+                    } else if j.is_multiple_of(2) {
+                        1.0
+                    } else {
+                        0.4
+                    };
                 let (s, c) = ops::sin_cos(ops::TAU * f64::from(j) / f64::from(PAPPUS));
                 let rise = if row < 0.5 { 0.02 } else { 0.3 * r / rim.max(1e-9) };
                 grid.points.push(middle + out * (sphere + rim * rise) + right * (r * c) + up * (r * s));

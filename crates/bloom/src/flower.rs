@@ -188,7 +188,8 @@ impl FlowerSpec {
         let bearers = self.stems(plant, seat, &stalk, seed);
         let reach = self.foliage(plant, seat, bearers.first().copied().flatten(), &stalk, seed);
         let mut ground = Ground::new(seat, reach);
-        let rings: Vec<Whorl> = self.whorls.iter().flat_map(|w| (0..w.rings.max(1)).map(|r| w.ring(r))).collect();
+        let rings: Vec<Whorl> =
+            self.whorls.iter().flat_map(|w| (0..w.rings.max(1)).map(|r| w.ring(r))).collect();
         let rows = Rows::new(self.mesh);
         let falls = Falls::new(&rings);
         for (f, bearer) in (0..).zip(bearers) {
@@ -199,9 +200,8 @@ impl FlowerSpec {
             let at = seat.at(place.centre);
             let (flower, axis) = (FlowerId::new(plant.flowers.len()), turn * DVec3::Y);
             let petals = || rings.iter().filter(|w| !w.sepal);
-            let half_angle = petals()
-                .next()
-                .map_or(0.0, |w| w.state(&times, 0.0).angle[1].clamp(0.0, ops::FRAC_PI_2));
+            let half_angle =
+                petals().next().map_or(0.0, |w| w.state(&times, 0.0).angle[1].clamp(0.0, ops::FRAC_PI_2));
             let whorls = u32::try_from(petals().count()).unwrap_or(u32::MAX);
             let axis = axis.normalize_or(DVec3::Y);
             plant.flowers.push(Flower { bearer, centre: at, axis, half_angle, whorls });

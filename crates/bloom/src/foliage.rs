@@ -130,7 +130,8 @@ impl Way {
     /// Along the midrib by even steps: place and angle to the upright.
     fn line(&self, long: f64, steps: u32, [from, to]: [f64; 2]) -> Vec<(DVec3, f64)> {
         let [a, b, c] = self.angles;
-        let bent = |v: f64| a * (1.0 - v) * (1.0 - 2.0 * v) + 4.0 * b * v * (1.0 - v) + c * v * (2.0 * v - 1.0);
+        let bent =
+            |v: f64| a * (1.0 - v) * (1.0 - 2.0 * v) + 4.0 * b * v * (1.0 - v) + c * v * (2.0 * v - 1.0);
         let (sin_z, cos_z) = ops::sin_cos(self.azimuth);
         let mut at = self.root;
         let step = long / f64::from(steps);
@@ -207,7 +208,17 @@ impl Bough<'_> {
         let key = self.seed.child(self.plant.organs.len() as u64).number();
         let (kind, flower, paint) = (OrganKind::Leaf, None::<FlowerId>, Paint::Tinted(rgb));
         let bearer = self.bearer;
-        self.plant.organs.push(Organ { kind, bearer, flower, shape, frame, scale: 1.0, paint, key, source: None });
+        self.plant.organs.push(Organ {
+            kind,
+            bearer,
+            flower,
+            shape,
+            frame,
+            scale: 1.0,
+            paint,
+            key,
+            source: None,
+        });
     }
 
     fn sheet(&mut self, grid: Grid) {
@@ -260,7 +271,8 @@ impl Bough<'_> {
                 let clear = (1.3 * radius).max(0.6 * kind.base * kind.width_m * way.size);
                 let root = at + DVec3::new(c, 0.0, s) * clear;
                 let flat = ops::lerp(ops::FRAC_PI_2, angle, 0.4);
-                let own = Way { root, azimuth, angles: [flat, flat + 0.1, flat + 0.35], size: way.size * 0.92 };
+                let own =
+                    Way { root, azimuth, angles: [flat, flat + 0.1, flat + 0.35], size: way.size * 0.92 };
                 self.sheet(kind.blade(&own.line(long * 0.92, ROWS, [0.0, 1.0]), azimuth, own.size));
             }
         }

@@ -35,8 +35,10 @@ const SIDES: u32 = 6;
 /// assert_eq!(bloom::overlap_share(&[(0, a), (0, b)]), 0.0);
 /// ```
 pub fn overlap_share(rows: &[(u32, [DVec3; 3])]) -> f64 {
-    let rows: Vec<PartTriangle> =
-        rows.iter().map(|&(part, corners)| PartTriangle { part: part + 1, kind: None, foot: false, corners }).collect();
+    let rows: Vec<PartTriangle> = rows
+        .iter()
+        .map(|&(part, corners)| PartTriangle { part: part + 1, kind: None, foot: false, corners })
+        .collect();
     share(&crossed(&rows))
 }
 

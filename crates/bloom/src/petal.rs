@@ -235,7 +235,8 @@ impl Curve {
     fn new(whorl: &Whorl, state: &State, nest: &Nest) -> Self {
         let [a, b, c] = state.angle;
         // Angles between the three places by a parabola through them.
-        let bent = |v: f64| a * (1.0 - v) * (1.0 - 2.0 * v) + 4.0 * b * v * (1.0 - v) + c * v * (2.0 * v - 1.0);
+        let bent =
+            |v: f64| a * (1.0 - v) * (1.0 - 2.0 * v) + 4.0 * b * v * (1.0 - v) + c * v * (2.0 * v - 1.0);
         let (mut radius, mut height) = (whorl.insertion.radius_m, whorl.insertion.height_m);
         let least = radius.min(0.0012);
         let step = state.length / FINE as f64;
@@ -376,7 +377,8 @@ impl FlowerSpec {
                     broad *= 1.0 - 0.35 * whorl.fringe * row * f64::from((i % 2) as u32);
                 }
                 let [radius, height, s, c] = curve.at(v);
-                let spread = if fused { widest } else { (broad / radius.max(1e-4)).min(0.9 * ops::PI).min(widest) };
+                let spread =
+                    if fused { widest } else { (broad / radius.max(1e-4)).min(0.9 * ops::PI).min(widest) };
                 let angle = azimuth + u * spread + twist * v;
                 let (sin, cos) = ops::sin_cos(angle);
                 // Waves are those of the whole flower: petals that lie over one another wave together.

@@ -329,9 +329,9 @@ impl Whorl {
         let n = self.count.max(1);
         // Two fifths of a turn and its kin: the step nearest to the golden one that meets every petal.
         let golden = (f64::from(n) * 0.382).round();
-        let step = (1..n).filter(|&s| coprime(s, n)).min_by(|&a, &b| {
-            (f64::from(a) - golden).abs().total_cmp(&(f64::from(b) - golden).abs())
-        });
+        let step = (1..n)
+            .filter(|&s| coprime(s, n))
+            .min_by(|&a, &b| (f64::from(a) - golden).abs().total_cmp(&(f64::from(b) - golden).abs()));
         let step = step.unwrap_or(1);
         (0..n).find(|r| (r * step) % n == k % n).unwrap_or(0)
     }

@@ -67,14 +67,19 @@ fn petals_that_drop_lie_on_the_ground_in_the_end_and_none_on_another() {
         if !spec.whorls.iter().any(|w| w.fate == Fate::Drop && !w.sepal) {
             continue;
         }
-        let top = |plant: &Plant| corners(plant, OrganKind::Petal).into_iter().flatten().map(|p| p.y).fold(0.0, f64::max);
+        let top = |plant: &Plant| {
+            corners(plant, OrganKind::Petal).into_iter().flatten().map(|p| p.y).fold(0.0, f64::max)
+        };
         let lowest = |plant: &Plant| {
             corners(plant, OrganKind::Petal).into_iter().flatten().map(|p| p.y).fold(f64::INFINITY, f64::min)
         };
         let end = at(&spec, 1.0);
         assert!(top(&end) < 0.5 * spec.stalk_m, "{name}: {}", top(&end));
         assert!(lowest(&end) >= 0.0 && lowest(&end) < 0.002, "{name}: {}", lowest(&end));
-        assert!(lowest(&at(&spec, spec.opening_days / (spec.opening_days + spec.wilting_days))) > 0.03, "{name}");
+        assert!(
+            lowest(&at(&spec, spec.opening_days / (spec.opening_days + spec.wilting_days))) > 0.03,
+            "{name}"
+        );
     }
 }
 
@@ -83,7 +88,10 @@ fn flowers_of_a_cluster_open_one_after_another() {
     let spec = preset("orchid").unwrap();
     let flower = at(&spec, 0.35);
     let wide = |f: usize| {
-        let of = flower.organs.iter().filter(|o| o.kind == OrganKind::Petal && o.flower.is_some_and(|id| id.index() == f));
+        let of = flower
+            .organs
+            .iter()
+            .filter(|o| o.kind == OrganKind::Petal && o.flower.is_some_and(|id| id.index() == f));
         let points: Vec<DVec3> = of
             .flat_map(|o| match &flower.shapes[o.shape.index()] {
                 Shape::Sheet(s) => s.points.iter().map(|&p| o.frame.place(p, o.scale)).collect(),

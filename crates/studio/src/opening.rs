@@ -254,11 +254,9 @@ fn placed(
     // A disc of florets is what was drawn as one, or what many rays stand round; the middle of a lily is none.
     let rays = count >= RAYS;
     let discs = organs.iter().filter(|o| o.kind == OrganKind::Disc && (rays || o.source.is_some()));
-    let disc = discs.into_iter().find_map(|o| {
-        match plant.shapes.get(o.shape.index())? {
-            Shape::Dome { radius_m, .. } => Some(radius_m * o.scale),
-            _ => None,
-        }
+    let disc = discs.into_iter().find_map(|o| match plant.shapes.get(o.shape.index())? {
+        Shape::Dome { radius_m, .. } => Some(radius_m * o.scale),
+        _ => None,
     });
     let stamens = organs.iter().filter(|o| o.kind == OrganKind::Stamen).count();
     let longest = blades[0].0;
