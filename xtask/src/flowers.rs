@@ -7,12 +7,22 @@ use crate::shell::{Outcome, repository, say};
 use crate::workshop::{Workshop, picture};
 
 /// Species, days from bud to full bloom, and from there to wilted.
-const FLOWERS: [(&str, f64, f64); 5] = [
-    ("rose", 6.0, 4.0),
-    ("lily", 6.0, 4.0),
-    ("tulip", 5.0, 4.0),
+const FLOWERS: [(&str, f64, f64); 15] = [
+    ("rose", 6.0, 6.0),
+    ("lily", 6.0, 5.0),
+    ("tulip", 5.0, 5.0),
     ("sunflower", 8.0, 6.0),
-    ("clivia", 7.0, 5.0),
+    ("clivia", 9.0, 7.0),
+    ("peony", 6.0, 6.0),
+    ("magnolia", 7.0, 5.0),
+    ("cherry-blossom", 5.0, 5.0),
+    ("iris", 5.0, 4.0),
+    ("daisy", 4.0, 6.0),
+    ("poppy", 4.0, 4.0),
+    ("morning-glory", 2.0, 3.0),
+    ("orchid", 14.0, 14.0),
+    ("dandelion", 3.0, 9.0),
+    ("water-lily", 5.0, 5.0),
 ];
 
 struct Maker<'a>(&'a Workshop);
@@ -32,7 +42,7 @@ impl Maker<'_> {
         let png = self.0.folder.join(format!("{name}-{day:.2}-{}.png", more.len()));
         let (day, model) = (day.to_string(), self.0.path("flower.glb"));
         let shown = png.display().to_string();
-        let args = ["bloom", "run", name, "-o", &model, "--day", &day, "--png", &shown, "--size", "224x240"];
+        let args = ["bloom", "run", name, "-o", &model, "--day", &day, "--png", &shown, "--size", "176x196"];
         self.0.burgeon(&[&args, more].concat())?;
         Ok(png)
     }
@@ -40,7 +50,8 @@ impl Maker<'_> {
     fn flowers(&self) -> Outcome {
         let mut rows = Vec::new();
         for (name, opening, wilting) in FLOWERS {
-            let days = [0.0, 0.4 * opening, opening, opening + 0.5 * wilting, opening + wilting];
+            let late = [0.35, 0.7, 1.0].map(|t| opening + t * wilting);
+            let days = [&[0.0, 0.3 * opening, 0.6 * opening, opening][..], &late].concat();
             rows.push(days.iter().map(|&d| self.flower(name, d, &[])).collect::<Result<Vec<_>, _>>()?);
         }
         tiled(&rows, &picture("bloom-flowers.png"))

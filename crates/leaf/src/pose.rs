@@ -46,7 +46,7 @@ impl Pose {
         let line = marks.midrib();
         // Rows from the root up; the last of `line` is the tip.
         let rows: Vec<&FullRow> = marks.rows.iter().rev().collect();
-        let mut grid = Grid::of(rows.iter().map(|r| r.points.to_vec()).collect(), marks.tip);
+        let mut grid = Grid::of(rows.iter().map(|r| r.points.to_vec()).collect(), (marks.tip, true));
         for (i, row) in rows.iter().enumerate() {
             let step = line[i + 1] - line[i];
             let before = if i == 0 { step } else { line[i] - line[i - 1] };
@@ -93,28 +93,22 @@ impl Pose {
         let wide = wide.fold(0.0, f64::max).max(f64::MIN_POSITIVE);
         // Columns are rays, rows the marks from the base outwards.
         let rows = (0..marks).map(|m| rays.rays.iter().map(|r| r.points[m]).collect()).collect();
-        let mut grid = Grid::of(rows, end);
+        let mut grid = Grid::of(rows, (end, false));
         let bend = curl * FULL_CURL / wide;
         for p in &mut grid.points {
             let (d, h, y) = ((*p - root).dot(across), (*p - root).dot(up), (*p - root).dot(axis));
-            // On a cylinder about a line along the midrib: as far round it as it was across.
-            let turn = bend * d - d.signum() * wilt * 0.6 * FULL_FOLD;
-            let chord = if bend.abs() > 1e-9 {
-                let (s, c) = ops::sin_cos(bend * d);
-                [s / bend, (1.0 - c) / bend]
-            } else {
-                [d, 0.0]
-            };
-            let (s, c) = ops::sin_cos(-d.signum() * wilt * 0.6 * FULL_FOLD);
-            let [x, z] = [chord[0] * c - chord[1] * s, chord[0] * s + chord[1] * c];
-            let (ns, nc) = ops::sin_cos(turn);
-            *p = root + axis * y + across * (x - h * ns) + up * (z + h * nc);
+            // On a cylinder about a line along the midrib: as far round it as it was across. That stretches nothing.
+            let (s, c) = ops::sin_cos(bend * d);
+            let [x, z] = if bend.abs() > 1e-9 { [s / bend, (1.0 - c) / bend] } else { [d, 0.0] };
+            *p = root + axis * y + across * (x - h * s) + up * (z + h * c);
         }
-        grid.pin_column(middle);
-        grid.relax();
-        if wilt > 0.0 {
-            hang(&mut grid.points, &line, down, wilt);
+        // What lies off the plane of the leaf was stretched.
+        if curl != 0.0 {
             grid.relax();
+        }
+        if wilt > 0.0 {
+            // A bend along the midrib alone stretches nothing.
+            hang(&mut grid.points, &line, down, wilt);
         }
         for (m, row) in grid.points.chunks_exact(grid.columns).take(marks).enumerate() {
             for (ray, &p) in out.rays.iter_mut().zip(row) {
@@ -145,8 +139,8 @@ struct Grid {
 }
 
 impl Grid {
-    /// Rows of one length, and the tip behind them; the middle of each row and the tip stay where they are put.
-    fn of(rows: Vec<Vec<DVec3>>, tip: DVec3) -> Self {
+    /// Rows of one length, and the tip behind them, in which they end if they are joined; the middle of each row and the tip stay where they are put.
+    fn of(rows: Vec<Vec<DVec3>>, (tip, joined): (DVec3, bool)) -> Self {
         let columns = rows.first().map_or(1, Vec::len);
         let (n, middle) = (rows.len(), columns / 2);
         let mut points: Vec<DVec3> = rows.into_iter().flatten().collect();
@@ -171,17 +165,12 @@ impl Grid {
             chains.extend((0..middle).rev().map(|j| edge(at(j + 1), at(j))));
             chains.extend((middle + 1..columns).map(|j| edge(at(j - 1), at(j))));
         }
-        if n > 0 {
+        // Lobes end apart from one another.
+        if n > 0 && joined {
             edges.extend((0..columns).map(|j| edge((n - 1) * columns + j, last)));
         }
         let pinned = (0..=last).map(|k| k == last || k % columns == middle).collect();
         Self { columns, points, edges, chains, pinned }
-    }
-
-    /// Of chief veins the middle one is bent with the blade, and only the base stays.
-    fn pin_column(&mut self, middle: usize) {
-        let columns = self.columns;
-        self.pinned.iter_mut().enumerate().for_each(|(k, p)| *p = *p && k % columns == middle);
     }
 
     /// Brings distances between neighbours back to what they were, each pair in turn.
@@ -357,7 +346,7 @@ mod tests {
             for (curl, wilt) in [(0.4, 0.0), (1.0, 0.0), (-0.5, 0.0), (0.0, 0.5), (0.0, 1.0), (0.3, 0.7)] {
                 let after = area(&Pose { curl, wilt, ..Pose::default() }.apply(&marks));
                 let change = 100.0 * (after / before - 1.0);
-                println!("{form:?} curl {curl} wilt {wilt}: {change:+.2} %");
+                assert!(change.abs() < 2.0, "{form:?} curl {curl} wilt {wilt}: {change:+.2} %");
             }
         }
     }
@@ -375,7 +364,15 @@ mod tests {
             for (curl, wilt) in [(0.4, 0.0), (1.0, 0.0), (-0.5, 0.0), (0.0, 0.5), (0.0, 1.0)] {
                 let bent = Pose { curl, wilt, ..Pose::default() }.apply_rays(&rays);
                 let change = 100.0 * (area(&bent) / before - 1.0);
-                println!("{veins} veins, curl {curl} wilt {wilt}: {change:+.2} %");
+                // Drooping lobes do not lie in a plane: rolled up or hung all the way they stretch a little more.
+                let most = if curl > 0.9 || curl < 0.0 {
+                    3.5
+                } else if wilt > 0.9 {
+                    6.5
+                } else {
+                    2.0
+                };
+                assert!(change.abs() < most, "{veins} veins, curl {curl} wilt {wilt}: {change:+.2} %");
                 assert_ne!(bent, rays);
             }
         }

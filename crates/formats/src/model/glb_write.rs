@@ -465,8 +465,7 @@ mod tests {
         let json: Value = serde_json::from_slice(&glb[20..20 + length]).unwrap();
         let targets = json["meshes"][0]["primitives"][0]["targets"].as_array().unwrap();
         assert_eq!(targets.len(), 2);
-        let accessor =
-            |index: &Value| &json["accessors"][usize::try_from(index.as_u64().unwrap()).unwrap()];
+        let accessor = |index: &Value| &json["accessors"][usize::try_from(index.as_u64().unwrap()).unwrap()];
         let max = |t: usize| accessor(&targets[t]["POSITION"])["max"][1].as_f64();
         assert_eq!((max(0), max(1)), (Some(1.0), Some(3.0)), "what a key adds");
         let colour = accessor(&targets[1]["COLOR_0"]);
