@@ -118,7 +118,8 @@ fn trial(preset: &str, seed: u64, positions: usize, leaves: bool, save: Option<&
     let seconds = start.elapsed().as_secs_f64();
     let (a, b) = (plant.measure(), found.plant.measure());
     let off = |x: f64, y: f64| 100.0 * (x / y - 1.0);
-    let cone = ops::PI / 4.0 * b.dbh_m.unwrap_or(0.0).powi(2) * b.height_m * 0.5;
+    let dbh = b.dbh_m.unwrap_or(0.0);
+    let cone = ops::PI / 8.0 * dbh * dbh * b.height_m;
     println!(
         "{preset} {seed}: {} points, {seconds:.1} s, cell {:.1} mm, rings {} circles {}, n {:.2} +- {:.2}, foot {:.2} {:.2} {:.2}",
         points.len(),

@@ -47,7 +47,7 @@ impl Ground {
         }
         let trend = Trend::through(&ground, &lowest, &seen)?;
         // What a square's lowest point may be off: it is rough, and the trend does not know its bumps.
-        let near = (0.02 * wide).clamp(0.1 * cell, 0.3).min(0.1 * size.y);
+        let near = (0.02 * wide).min(0.3).max(0.1 * cell).min(0.1 * size.y);
         let on: Vec<usize> =
             seen.iter().copied().filter(|&c| (lowest[c] - trend.at(&ground, c)).abs() < near).collect();
         if on.len() * 3 < seen.len() || on.len() < 10 || trend.steep() {

@@ -189,7 +189,9 @@ impl Stems {
 
     /// Where the tree stands: below its lowest ring, on the ground.
     pub(crate) fn foot(&self, site: &Site<'_>, rings: &Rings) -> DVec3 {
-        let first = rings.rings.first().map_or(self.feet[0].middle, |r| r.middle);
+        let feet = rings.rings.iter().filter(|r| r.below == NONE && r.alive);
+        let stem = feet.max_by(|a, b| a.reach.total_cmp(&b.reach));
+        let first = stem.map_or(self.feet[0].middle, |r| r.middle);
         DVec3::new(first.x, site.level(first), first.z)
     }
 }

@@ -25,13 +25,11 @@ pub struct TreeScanSpec {
     pub gap_m: Option<f64>,
     /// What a point of bark may be off. Default 0.006.
     pub noise_m: f64,
-    /// Tell leaves from wood and leave them out. Default true.
-    pub leaves: bool,
 }
 
 impl Default for TreeScanSpec {
     fn default() -> Self {
-        Self { at: None, at_within_m: 2.0, cell_m: None, gap_m: None, noise_m: 0.006, leaves: true }
+        Self { at: None, at_within_m: 2.0, cell_m: None, gap_m: None, noise_m: 0.006 }
     }
 }
 
@@ -46,8 +44,6 @@ pub struct Tally {
     pub noise: usize,
     /// Of other things: other trees, people, walls.
     pub others: usize,
-    /// Of leaves.
-    pub leaves: usize,
     /// Of wood.
     pub wood: usize,
     /// Other things that stand on the ground.
