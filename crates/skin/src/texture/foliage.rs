@@ -450,3 +450,49 @@ pub(crate) fn petals(inks: &PetalInks, size: u32, executor: &dyn Executor) -> Su
         })
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::texture::GREEN;
+    use base::Serial;
+
+    #[test]
+    fn a_midrib_is_pale_and_thick_but_on_needles() {
+        for venation in Venation::ALL {
+            let s = leaf(venation, &any_blade(), &GREEN, 256, &Serial);
+            let (width, height) = (s.color.width, s.color.height);
+            let column = |t: &mesh::Texture, x: u32, k: usize| {
+                let sum = (height / 4..height * 3 / 4)
+                    .map(|y| u32::from(t.pixels[4 * (y * width + x) as usize + k]));
+                sum.sum::<u32>() / (height / 2)
+            };
+            let through = s.maps.through.as_ref().expect("a leaf is thin");
+            let (middle, beside) = (width / 2, width * 5 / 8);
+            let paler = column(&s.color, middle, 1) > column(&s.color, beside, 1) + 15;
+            let thicker = column(through, middle, 3) + 30 < column(through, beside, 3);
+            let veined = venation != Venation::Needle;
+            assert_eq!((paler, thicker), (veined, veined), "{venation:?}");
+        }
+    }
+
+    #[test]
+    fn side_veins_end_in_the_tips_of_lobes() {
+        let mut lobed = any_blade();
+        // Two lobes a side.
+        let right =
+            [(0.1, 0.05), (0.32, 0.3), (0.1, 0.42), (0.3, 0.66), (0.08, 0.8)].map(|(x, y)| DVec2::new(x, y));
+        lobed.outline = core::iter::once(DVec2::ZERO)
+            .chain(right)
+            .chain([DVec2::Y])
+            .chain(right.iter().rev().map(|p| DVec2::new(-p.x, p.y)))
+            .collect();
+        assert_eq!(tips(&lobed, |p| p.x), [DVec2::new(0.32, 0.3), DVec2::new(0.3, 0.66)]);
+        assert!(tips(&any_blade(), |p| p.x).len() < 2, "an ellipse has no lobes");
+        let plan = Plan::new(Venation::Pinnate, &lobed, &Serial);
+        let ends: Vec<DVec2> = plan.veins(&lobed).iter().filter_map(|v| v.points.last().copied()).collect();
+        for tip in [DVec2::new(0.32, 0.3), DVec2::new(-0.3, 0.66)] {
+            assert!(ends.iter().any(|e| e.distance(tip) < 0.03), "{tip} among {ends:?}");
+        }
+    }
+}
