@@ -65,7 +65,7 @@ pub struct Texture {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Maps {
     /// Normals in the space of the tangent as glTF has them: red along u, green against v, blue outwards; the material's
-    /// tangents are those that MikkTSpace computes.
+    /// tangents are those that `MikkTSpace` computes.
     pub normal: Option<Arc<Texture>>,
     /// Red: how much of the sky is seen (1 all). Green: multiplied with the roughness. Blue: 0, no metal.
     pub orm: Option<Arc<Texture>>,
