@@ -104,7 +104,9 @@ export const CODES = {
   "project-version": ["found"],
   "record": ["why"],
   "record-form": ["form"],
+  "record-keeps": [],
   "record-long": ["most"],
+  "record-project": [],
   "root-far": ["root"],
   "root-in-obstacle": ["root", "obstacle", "name"],
   "rule-call": ["name", "numbers"],
@@ -552,6 +554,69 @@ export type Front = {
   y: number;
 };
 
+/** What was done in a step. */
+export type GestureDeed =
+  | /** A hand with a tool. */
+  {
+    hand: HandDeed;
+  }
+  | /** The edit was asked for that the last gesture made. */
+  "keep"
+  | /** The plants were made again, and seen. */
+  "seen"
+  | /** Another plant was chosen. */
+  {
+    select: PlantId;
+  }
+  | /** A command. */
+  {
+    command: Command;
+  }
+  | /** What is more than one command, and where it put a plant. */
+  {
+    action: [Action, number | null];
+  }
+  | /** What is staged from here on is one step of undo of this name. */
+  {
+    begin: string;
+  }
+  | /** In the place of what was staged before. */
+  {
+    stage: Command;
+  }
+  | /** What was staged is done. */
+  "commit"
+  | /** What was staged is taken back. */
+  "abandon"
+  | /** The last step was taken back. */
+  "undo"
+  | /** It was done again. */
+  "redo";
+
+/** What hands did to the plants of a session, in its order. */
+export type GestureRecord = {
+  /** The digest of the plant that was worked on last, as it was seen then. */
+  digest?: string | null;
+  /** The plant that was worked on first. */
+  plant?: 
+    | PlantId
+    | null;
+  /** The project as the hands found it: a `.burgeon` file in base64. */
+  project?: string | null;
+  /** Always [`GESTURES_SCHEMA`]. */
+  schema: string;
+  /** The steps. */
+  steps: GestureStep[];
+};
+
+/** One step. */
+export type GestureStep = {
+  /** What. */
+  did: GestureDeed;
+  /** When, ms since the first. */
+  ms: number;
+};
+
 /** Places on the ground: x and z, metres. */
 export type Ground =
   | /** In a row along a line. */
@@ -656,6 +721,16 @@ export type GuidedChange = {
   strokes?: BrushStroke[] | null;
   /** Weight and light. */
   tropisms?: Tropism[] | null;
+};
+
+/** What a hand did with a tool. */
+export type HandDeed = {
+  /** What the hand did. */
+  input: ShapeInput;
+  /** How far beside a branch it still was meant. */
+  reach: ShapeReach;
+  /** The tool, as it was set. */
+  tool: ToolKind;
 };
 
 /** One edit of a plant by hand. */

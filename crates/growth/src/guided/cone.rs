@@ -357,7 +357,6 @@ impl Tiles {
     #[inline]
     fn row(&mut self, cell: u64) -> u32 {
         let tile = cell >> TILE;
-        #[expect(clippy::cast_possible_truncation, reason = "a place of a vector")]
         let at = match &self.met {
             None => tile as usize,
             Some(met) => met.partition_point(|m| *m < tile),
@@ -368,7 +367,6 @@ impl Tiles {
             *number = self.next;
             self.next += 1;
         }
-        #[expect(clippy::cast_possible_truncation, reason = "of the cells of a tile")]
         let inner = (cell & ((1 << TILE) - 1)) as u32;
         *number << TILE | inner
     }
