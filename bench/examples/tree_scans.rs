@@ -6,6 +6,8 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
+#![expect(clippy::print_stdout, reason = "this is a program for the terminal")]
+
 use base::{Executor, Report, Run, Seed, ops};
 use burgeon::formats::{ExportSpec, write_cloud_ply, write_qsm};
 use burgeon::glam::DVec3;
@@ -32,6 +34,7 @@ fn terrain(size: f64) -> TriMesh {
         for j in 0..=n {
             let (x, z) = (at(i), at(j));
             let y = 0.05 * x + 0.06 * ops::sin(1.3 * x) * ops::cos(0.9 * z);
+            #[expect(clippy::cast_possible_truncation, reason = "a mesh")]
             mesh.positions.push([x, y, z].map(|c| c as f32));
         }
     }
