@@ -3,10 +3,10 @@
 //!
 //! `cargo run --release -p burgeon-bench --example tree_scans -- [--leaves] [--positions N] [--save FOLDER] [PRESET SEED]...`
 
+#![expect(clippy::print_stdout, reason = "this is a program for the terminal")]
+
 use std::path::PathBuf;
 use std::time::Instant;
-
-#![expect(clippy::print_stdout, reason = "this is a program for the terminal")]
 
 use base::{Executor, Report, Run, Seed, ops};
 use burgeon::formats::{ExportSpec, write_cloud_ply, write_qsm};

@@ -22,8 +22,8 @@ fn tree() -> Plant {
         (0..=n).map(|i| from + way * (f64::from(i) / f64::from(n))).collect()
     };
     p.add_axis(AxisKind::Branch, None, 0, &line(DVec3::ZERO, DVec3::new(0.2, 6.0, 0.1), 40), None);
-    for k in 0..10_u64 {
-        let bearer = NodeId::new(12 + 2 * usize::try_from(k).unwrap());
+    for (k, row) in (0..10_u64).zip((12..).step_by(2)) {
+        let bearer = NodeId::new(row);
         let (sin, cos) = ops::sin_cos(2.4 * k as f64);
         let from = p.nodes.position[bearer.index()];
         let way = DVec3::new(cos, 0.6, sin) * (1.8 - 0.1 * k as f64);
