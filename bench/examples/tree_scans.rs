@@ -3,6 +3,8 @@
 //!
 //! `cargo run --release -p burgeon-bench --example tree_scans -- [--leaves] [--positions N] [--save FOLDER] [PRESET SEED]...`
 
+#![expect(clippy::print_stdout, reason = "this is a program for the terminal")]
+
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -32,6 +34,7 @@ fn terrain(size: f64) -> TriMesh {
         for j in 0..=n {
             let (x, z) = (at(i), at(j));
             let y = 0.05 * x + 0.06 * ops::sin(1.3 * x) * ops::cos(0.9 * z);
+            #[expect(clippy::cast_possible_truncation, reason = "a mesh")]
             mesh.positions.push([x, y, z].map(|c| c as f32));
         }
     }

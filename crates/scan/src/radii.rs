@@ -122,7 +122,7 @@ impl Pipes {
         // Twigs outnumber limbs: each octave of loads has the same weight.
         let octave = |l: f64| {
             #[expect(clippy::cast_possible_truncation, reason = "few octaves")]
-            let o = (l * 1.442_695).floor() as i64;
+            let o = (l / ops::ln(2.0)).floor() as i64;
             o
         };
         let mut counts = base::LiteMap::<i64, f64>::new();

@@ -166,6 +166,9 @@ const fn index(x: f64) -> usize {
     x as usize
 }
 
+/// Sine and cosine.
+type Turn = (f64, f64);
+
 /// A triangle as the scanner sees it.
 struct Facet {
     corner: DVec3,
@@ -203,13 +206,7 @@ impl Facet {
     }
 
     /// Fills the rays of a band that meet it (Moeller and Trumbore 1997).
-    fn draw(
-        &self,
-        origin: [f64; 2],
-        fine: f64,
-        (across, up): (&[(f64, f64)], &[(f64, f64)]),
-        depth: &mut [(f32, u32)],
-    ) {
+    fn draw(&self, origin: [f64; 2], fine: f64, (across, up): (&[Turn], &[Turn]), depth: &mut [(f32, u32)]) {
         let (wide, tall) = (across.len(), up.len());
         let first = |k: usize| index(((self.low[k] - origin[k]) / fine).max(0.0)).saturating_sub(ACROSS);
         let last = |k: usize, n: usize| (index(((self.high[k] - origin[k]) / fine).max(0.0)) + ACROSS).min(n);

@@ -214,10 +214,11 @@ fn add_loose(
     let places: Vec<DVec3> = rows.iter().map(|&i| flat(contacts[i].middle)).collect();
     let tree = geom::KdTree::new(&places);
     for (p, &m) in middle.iter().enumerate() {
-        if !stands[p] && sizes[p] >= 20 {
-            if let Some(k) = tree.nearest(flat(m), f64::INFINITY) {
-                score[rows[k]] += f64::from(sizes[p]);
-            }
+        if !stands[p]
+            && sizes[p] >= 20
+            && let Some(k) = tree.nearest(flat(m), f64::INFINITY)
+        {
+            score[rows[k]] += f64::from(sizes[p]);
         }
     }
 }

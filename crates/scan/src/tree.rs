@@ -171,13 +171,16 @@ fn cell_of(points: &[DVec3], height: f64) -> f64 {
     cell
 }
 
+/// Brings another axis up.
+type Turn = fn(DVec3) -> DVec3;
+
 fn warn_of_ground(all: &[DVec3], ground: Option<&Ground>, report: &mut Report) {
     if ground.is_some() {
         return;
     }
     // A sample is enough to see whether the scan lies down.
     let few: Vec<DVec3> = all.iter().copied().step_by(all.len() / 200_000 + 1).collect();
-    let ways: [(&str, fn(DVec3) -> DVec3); 5] = [
+    let ways: [(&str, Turn); 5] = [
         ("+Z", |p| DVec3::new(p.x, p.z, -p.y)),
         ("-Z", |p| DVec3::new(p.x, -p.z, p.y)),
         ("-Y", |p| DVec3::new(p.x, -p.y, -p.z)),

@@ -21,10 +21,9 @@ fn tree() -> Plant {
     let line = |from: DVec3, way: DVec3, n: u32| -> Vec<DVec3> {
         (0..=n).map(|i| from + way * (f64::from(i) / f64::from(n))).collect()
     };
-    let trunk =
-        p.add_axis(AxisKind::Branch, None, 0, &line(DVec3::ZERO, DVec3::new(0.2, 6.0, 0.1), 40), None);
-    for k in 0..10_u64 {
-        let bearer = NodeId::new(12 + 2 * k as usize);
+    p.add_axis(AxisKind::Branch, None, 0, &line(DVec3::ZERO, DVec3::new(0.2, 6.0, 0.1), 40), None);
+    for (k, row) in (0..10_u64).zip((12..).step_by(2)) {
+        let bearer = NodeId::new(row);
         let (sin, cos) = ops::sin_cos(2.4 * k as f64);
         let from = p.nodes.position[bearer.index()];
         let way = DVec3::new(cos, 0.6, sin) * (1.8 - 0.1 * k as f64);
@@ -65,6 +64,7 @@ fn grid(corner: DVec3, u: DVec3, v: DVec3, n: u32) -> TriMesh {
     for i in 0..=n {
         for j in 0..=n {
             let p = corner + u * (f64::from(i) / f64::from(n)) + v * (f64::from(j) / f64::from(n));
+            #[expect(clippy::cast_possible_truncation, reason = "a mesh")]
             mesh.positions.push(p.to_array().map(|c| c as f32));
         }
     }
