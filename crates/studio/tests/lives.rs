@@ -1,7 +1,8 @@
 //! Every species at five ages and from many seeds: what a forester would measure.
 
-use burgeon::base::ops;
+use base::ops;
 use burgeon::growth::{Grown, Method, grow};
+use burgeon::plant::Axis;
 use burgeon::{PRESETS, Preset, Report, Run, Seed, TreeSpec, tree_blade};
 
 fn tree(spec: &TreeSpec, seed: u64) -> Grown {
@@ -16,7 +17,7 @@ fn height(grown: &Grown) -> f64 {
 /// The thickest stem at breast height, or at its foot where it is lower than that.
 fn diameter(grown: &Grown) -> f64 {
     let plant = &grown.plant;
-    let of = |axis: &burgeon::plant::Axis| {
+    let of = |axis: &Axis| {
         let rows = axis.nodes.start as usize..axis.nodes.end as usize;
         let breast = rows.clone().find(|&i| plant.nodes.position[i].y >= 1.3).unwrap_or(rows.start);
         2.0 * plant.nodes.radius_m[breast]
