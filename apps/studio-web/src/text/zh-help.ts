@@ -283,7 +283,8 @@ export const zhHelp: Readonly<Record<string, string>> = {
   'leaf.ThicknessRule.radius': '公式所用的半径。',
   // Trees
   tree: '一种树：长在何处、是何样子。单位为米和度，+Y 向上；以 TOML 保存。',
-  'tree.Envelope.limbs': '由大枝承托叶团的树冠，其间可见天空。大枝的数量由此给定，位置由种子决定。米，+Y 向上，相对于根。',
+  'tree.Envelope.limbs':
+    '由大枝承托叶团的树冠，其间可见天空。大枝的数量由此给定，位置由种子决定。米，+Y 向上，相对于根。',
   'tree.Envelope.limbs.apart': '沿大枝从一个叶团到下一个的距离，以叶团半径计，0.3 至 6，默认 1.3。',
   'tree.Envelope.limbs.bare': '每条大枝自主干起不生叶团的比例，0 至 0.95，默认 0.4：被遮蔽的内部。',
   'tree.Envelope.limbs.base_m': '轮廓起点高出根的高度，0 至 1e6。',
@@ -305,7 +306,8 @@ export const zhHelp: Readonly<Record<string, string>> = {
   'tree.GuidedChange.round': '从哪一轮起采用，从 0 起，至多 1000。',
   'tree.GuidedChange.strokes': '从那时起引导生长的全部笔画。',
   'tree.GuidedChange.tropisms': '重力与光。',
-  'tree.VariationSpec': '同种树木随种子而异的程度：如在林中，而不是在图板上。全部默认 0。缩放的是木质与树冠，叶保持本种大小；每个根各自抽取。',
+  'tree.VariationSpec':
+    '同种树木随种子而异的程度：如在林中，而不是在图板上。全部默认 0。缩放的是木质与树冠，叶保持本种大小；每个根各自抽取。',
   'tree.VariationSpec.asymmetry': '树冠偏向一侧的比例的离散程度，0 至 0.4，默认 0。',
   'tree.VariationSpec.dead': '枯死的大枝比例：无叶、无细枝，0 至 0.9，默认 0。',
   'tree.VariationSpec.fork': '主干分叉的概率，0 至 1，默认 0。用于“大枝与叶团”的冠形；规则自行决定分叉。',
@@ -316,7 +318,8 @@ export const zhHelp: Readonly<Record<string, string>> = {
   'tree.VariationSpec.lost': '被风暴或遮阴整枝夺去的大枝比例，0 至 0.5，默认 0。',
   'tree.VariationSpec.width': '冠幅在随高度变化之外的变异系数，0 至 0.4，默认 0。',
   'tree.about': '一句话简介。',
-  'tree.age': '树在该树龄时的样子，以“整树树龄”的年计；未给整树树龄时，为若干轮、若干年（自组织）或若干次改写（L 系统）之后。默认不限：直到长成。',
+  'tree.age':
+    '树在该树龄时的样子，以“整树树龄”的年计；未给整树树龄时，为若干轮、若干年（自组织）或若干次改写（L 系统）之后。默认不限：直到长成。',
   'tree.bare': '完全无叶：枯树或冬态。默认否。',
   'tree.blade': '叶的形状。',
   'tree.blossom': '部分叶位上开花。默认无花。',
@@ -574,8 +577,10 @@ export const zhHelp: Readonly<Record<string, string>> = {
   'tree.WoodSpec.smooth': '把枝条平滑为切线相接的二次贝塞尔曲线（式 3，C1 变体）。默认是。',
   'tree.WoodSpec.thin_out': '不生枝的节点若略去后偏移小于半径的此比例，则略去，0 至 10，默认 0.25。',
   'tree.WoodSpec.tip_radius_m': '枝梢的半径，米，大于 0，默认 0.004。',
-  'tree.years': '生长方法长成的整棵树的树龄，年，1 至 5000。更小的树龄都在同一生命路径上，枝条相同，不论方法。自组织树木自有年数。默认无。',
-  'tree.WoodSpec.trunk_radius_m': '整棵树最粗树干基部的半径，米：所有半径（包括枝梢与着叶的最大半径）按同一比例缩放，管道模型因此成立。默认无：由管道模型决定。',
+  'tree.years':
+    '生长方法长成的整棵树的树龄，年，1 至 5000。更小的树龄都在同一生命路径上，枝条相同，不论方法。自组织树木自有年数。默认无。',
+  'tree.WoodSpec.trunk_radius_m':
+    '整棵树最粗树干基部的半径，米：所有半径（包括枝梢与着叶的最大半径）按同一比例缩放，管道模型因此成立。默认无：由管道模型决定。',
   // Species of trees
   'preset.pine': '论文中的欧洲赤松：光洁的橙色树干，针叶成束，树冠不规则',
   'preset.terminalia': '论文中的小叶榄仁：枝条平展成层，叶聚生如莲座',
