@@ -3,6 +3,7 @@
 //! | module | owns |
 //! |---|---|
 //! | `make` | what is asked for -> a document of one plant -> the plant; growth laws |
+//! | `held` | what was made, as long as anything looks at it |
 //! | `plant`, `model` | what was made: tables, meshes, clouds, files, pictures |
 //! | `column` | memory of ours that `NumPy` shows without a copy |
 //! | `value` | what people write in Python -> JSON |
@@ -14,6 +15,7 @@
 mod column;
 mod compute;
 mod fault;
+mod held;
 mod make;
 mod model;
 mod plant;

@@ -21,7 +21,8 @@ use pyo3::types::PyDict;
 use serde_json::Value;
 
 use crate::fault::{refused, unusable};
-use crate::plant::{Held, RawPlant};
+use crate::held::Held;
+use crate::plant::RawPlant;
 use crate::value::{json_of, merge};
 
 /// What all makers are asked for.
@@ -66,7 +67,7 @@ impl Asked<'_> {
     fn made(&self, py: Python<'_>, document: Document, id: PlantId, wind: bool) -> PyResult<RawPlant> {
         let mut scene = SceneEvaluator::default();
         scene.set_wind(wind);
-        Held::make(py, scene, document, id, self.budget)
+        Held::make(py, scene, document, id, self.budget).map(RawPlant)
     }
 
     /// The only plant of a document.
@@ -287,7 +288,7 @@ pub(crate) fn open_project(py: Python<'_>, bytes: &[u8], budget: f64) -> PyResul
     let seen = document.plants().iter().filter(|p| !p.settings().hidden);
     let ids: Vec<PlantId> = seen.map(burgeon::document::DocumentPlant::id).collect();
     ids.into_iter()
-        .map(|id| Held::make(py, SceneEvaluator::default(), document.clone(), id, budget))
+        .map(|id| Held::make(py, SceneEvaluator::default(), document.clone(), id, budget).map(RawPlant))
         .collect()
 }
 

@@ -13,7 +13,7 @@ use pyo3::types::{PyBytes, PyDict};
 use crate::column::{Column, Owner};
 use crate::compute::compute;
 use crate::fault::unusable;
-use crate::plant::Held;
+use crate::held::Held;
 
 /// Who keeps a model.
 #[derive(Clone)]

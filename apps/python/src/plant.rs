@@ -1,12 +1,10 @@
-//! A plant that was made: its tables, its files, and other plants that follow from it.
+//! A plant: its tables, its files, and other plants that follow from it.
 
 use std::sync::Arc;
 
-use burgeon::document::{Document, Editor, FlowerCommand, Maker, PlantId, SketchCommand};
-use burgeon::mesh::Model;
-use burgeon::plant::{Organ, Plant};
-use burgeon::skin::Layout;
-use burgeon::{SceneError, SceneEvaluator, ScenePlant, Seed, SurveySpec};
+use burgeon::document::{FlowerCommand, Maker, SketchCommand};
+use burgeon::plant::Organ;
+use burgeon::{SceneError, Seed, SurveySpec};
 use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -14,86 +12,13 @@ use pyo3::types::{PyBytes, PyDict};
 use crate::column::{Column, Owner};
 use crate::compute::compute;
 use crate::fault::{refused, unusable};
+use crate::held::Held;
 use crate::model::{RawModel, axes};
 use crate::value::json_of;
 
-/// A plant of a document and what was made of it. Nothing changes it: what follows from it is another.
-pub(crate) struct Held {
-    scene: SceneEvaluator,
-    document: Document,
-    id: PlantId,
-    budget: f64,
-}
-
-impl Held {
-    /// Makes the plant of a document.
-    pub(crate) fn make(
-        py: Python<'_>,
-        scene: SceneEvaluator,
-        document: Document,
-        id: PlantId,
-        budget: f64,
-    ) -> PyResult<RawPlant> {
-        if !(1.0..=1000.0).contains(&budget) {
-            return Err(PyValueError::new_err(format!("budget must be 1 to 1000, not {budget}")));
-        }
-        let mut held = Self { scene, document, id, budget };
-        let made = compute(py, budget, |run| held.scene.update(id, &held.document, run).map(|()| held))?;
-        let held = made.map_err(|e| refused(py, &e))?;
-        let there = held.scene.get(id).is_some_and(|p| p.plant.is_some() && p.owners.is_some());
-        if !there {
-            return Err(unusable(py, &"internal error, a bug in burgeon: no plant was made"));
-        }
-        Ok(RawPlant(Arc::new(held)))
-    }
-
-    fn shown(&self) -> Option<ScenePlant<'_>> {
-        self.scene.get(self.id)
-    }
-
-    pub(crate) fn model(&self) -> &Model {
-        static NONE: std::sync::OnceLock<Model> = std::sync::OnceLock::new();
-        self.shown().map_or_else(|| NONE.get_or_init(Model::default), |p| p.model)
-    }
-
-    fn plant(&self) -> &Plant {
-        static NONE: std::sync::OnceLock<Plant> = std::sync::OnceLock::new();
-        self.shown().and_then(|p| p.plant).unwrap_or_else(|| NONE.get_or_init(Plant::default))
-    }
-
-    fn layout(&self) -> &Layout {
-        static NONE: std::sync::OnceLock<Layout> = std::sync::OnceLock::new();
-        self.shown().and_then(|p| p.owners).unwrap_or_else(|| NONE.get_or_init(Layout::default))
-    }
-
-    fn seed(&self) -> Seed {
-        self.document.plant(self.id).map_or_else(Seed::default, |p| p.settings().seed)
-    }
-
-    fn maker(&self) -> Option<&Maker> {
-        Some(&self.document.plant(self.id)?.settings().maker)
-    }
-
-    /// The plant after more commands.
-    fn after(
-        &self,
-        py: Python<'_>,
-        commands: impl IntoIterator<Item = burgeon::document::Command>,
-    ) -> PyResult<RawPlant> {
-        let mut editor = Editor::new(self.document.clone());
-        for command in commands {
-            match editor.run(command) {
-                Ok(()) | Err(burgeon::document::CommandError::Nothing(_)) => {}
-                Err(e) => return Err(refused(py, &e)),
-            }
-        }
-        Self::make(py, self.scene.clone(), editor.document().clone(), self.id, self.budget)
-    }
-}
-
 /// A plant, which nothing changes.
 #[pyclass(frozen, module = "burgeon._burgeon")]
-pub(crate) struct RawPlant(Arc<Held>);
+pub(crate) struct RawPlant(pub(crate) Arc<Held>);
 
 fn of<T: Send + Sync + crate::column::Row>(values: impl Iterator<Item = T>) -> Column {
     Column::new(values.collect())
@@ -267,7 +192,8 @@ impl RawPlant {
             edit.check().map_err(|why| unusable(py, &format!("edits[{k}] ({}): {why}", edit.word())))?;
         }
         let id = self.0.id;
-        self.0.after(py, edits.into_iter().map(|e| burgeon::document::ShapeCommand::Add(Arc::new(e)).of(id)))
+        let edits = edits.into_iter().map(|e| burgeon::document::ShapeCommand::Add(Arc::new(e)).of(id));
+        self.0.after(py, edits).map(Self)
     }
 
     /// The plant at a day: of flowers, and of drawings whose flowers open.
@@ -281,7 +207,7 @@ impl RawPlant {
                 return Err(unusable(py, &line));
             }
         };
-        self.0.after(py, [command])
+        self.0.after(py, [command]).map(Self)
     }
 
     /// Days from bud to full bloom, and from there to wilted.

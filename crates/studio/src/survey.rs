@@ -342,14 +342,14 @@ mod tests {
             let at = DVec3::from_array(*p);
             if cloud.organ[k] == NOTHING {
                 on_axes += 1;
-                let axis = AxisId::new(cloud.axis[k] as usize);
+                let axis = AxisId::new(usize::try_from(cloud.axis[k]).expect("a row"));
                 let thick = plant.axis_radii(axis).iter().copied().fold(0.0, f64::max);
                 let away = plant.axis_points(axis).windows(2).map(|l| from_line(at, l[0], l[1]));
                 let away = away.fold(f64::INFINITY, f64::min).sqrt();
                 assert!(away <= 3.0 * thick + 0.03, "{away} m from an axis of {thick} m");
             } else {
                 on_leaves += 1;
-                let organ = &plant.organs[cloud.organ[k] as usize];
+                let organ = &plant.organs[usize::try_from(cloud.organ[k]).expect("a row")];
                 let reach = organ.scale * plant.shapes[organ.shape.index()].reach();
                 assert!(at.distance(organ.frame.origin) <= 1.5 * reach + 1e-3);
                 assert_eq!(cloud.part[k], 5);
