@@ -154,7 +154,7 @@ fn trial(preset: &str, seed: u64, positions: usize, leaves: bool, save: Option<&
     );
     for k in 0..a.orders.len().max(b.orders.len()).min(5) {
         let get = |m: &burgeon::plant::Measures| {
-            m.orders.get(k).map_or((0, 0.0, 0.0), |o| (o.axes as usize, o.length_m, o.volume_m3))
+            m.orders.get(k).map_or((0, 0.0, 0.0), |o| (o.axes, o.length_m, o.volume_m3))
         };
         let ((n, l, v), (tn, tl, tv)) = (get(&b), get(&a));
         println!("  order {k}: axes {n} of {tn}, length {l:.1} of {tl:.1}, volume {v:.4} of {tv:.4}");
@@ -207,8 +207,8 @@ fn main() {
     let count = cases.len();
     for (preset, seed) in cases {
         let row = trial(&preset, seed, positions, leaves, save.as_ref());
-        for k in 0..3 {
-            within[k] += usize::from((row.found[k] / row.truth[k] - 1.0).abs() <= 0.05);
+        for ((within, found), truth) in within.iter_mut().zip(row.found).zip(row.truth) {
+            *within += usize::from((found / truth - 1.0).abs() <= 0.05);
         }
     }
     println!("within 5 %: volume {} height {} DBH {} of {count}", within[0], within[1], within[2]);

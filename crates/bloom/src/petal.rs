@@ -27,16 +27,21 @@ pub(crate) struct Falls {
 impl Falls {
     pub(crate) fn new(rings: &[Whorl]) -> Self {
         let mut times: Vec<(f64, usize, usize)> = Vec::new();
+        let mut out: Vec<Vec<f64>> = rings.iter().map(|w| vec![1.0; w.count as usize]).collect();
         for (ring, whorl) in rings.iter().enumerate().filter(|(_, w)| w.fate != Fate::Cling) {
             let last = f64::from(whorl.count.max(2) - 1);
             let spread = 0.5 * (0.9 - whorl.falls);
             let own = (0..whorl.count).map(|rank| whorl.falls + spread * f64::from(rank) / last);
-            times.extend(own.enumerate().map(|(rank, time)| (time, ring, rank)));
+            if whorl.fate == Fate::Gone {
+                // Nothing is on its way that could meet another.
+                out[ring] = own.collect();
+            } else {
+                times.extend(own.enumerate().map(|(rank, time)| (time, ring, rank)));
+            }
         }
         base::sort_by(&mut times, |a, b| a.0.total_cmp(&b.0));
         let first = times.first().map_or(0.0, |t| t.0.max(0.0));
         let gap = (1.1 * FALL).min((0.95 - first) / times.len().max(1) as f64);
-        let mut out: Vec<Vec<f64>> = rings.iter().map(|w| vec![1.0; w.count as usize]).collect();
         let mut soonest = f64::NEG_INFINITY;
         for row in &mut times {
             row.0 = row.0.max(soonest);
@@ -373,8 +378,8 @@ impl FlowerSpec {
                 let mut v = whorl.place(u, row);
                 let mut broad = half;
                 if whorl.fringe > 0.0 {
-                    v -= 0.14 * whorl.fringe * row * row * row * f64::from((j % 2) as u32);
-                    broad *= 1.0 - 0.35 * whorl.fringe * row * f64::from((i % 2) as u32);
+                    v -= 0.14 * whorl.fringe * row * row * row * f64::from(u8::from(j % 2 == 1));
+                    broad *= 1.0 - 0.35 * whorl.fringe * row * f64::from(u8::from(i % 2 == 1));
                 }
                 let [radius, height, s, c] = curve.at(v);
                 let spread =

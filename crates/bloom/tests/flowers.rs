@@ -109,7 +109,7 @@ fn flowers_of_a_cluster_open_one_after_another() {
 #[test]
 fn petals_of_a_ring_open_one_after_another_and_a_fused_ring_stays_closed() {
     let ring = |aestivation, succession| FlowerSpec {
-        whorls: vec![Whorl { count: 5, aestivation, succession, ..Whorl::default() }],
+        whorls: vec![Whorl { count: 5, aestivation, succession, lean_m: 1e-4, ..Whorl::default() }],
         ..FlowerSpec::default()
     };
     let tips = |spec: &FlowerSpec| {

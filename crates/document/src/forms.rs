@@ -176,6 +176,7 @@ fn one() -> f64 {
 /// Tagged from outside: a tag inside would make the reader hold every point twice.
 #[derive(Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
+#[expect(clippy::large_enum_variant, reason = "one for each plant, and only while a file is read or written")]
 pub(crate) enum MakerV5 {
     Sketch(SketchV3),
     Tree(TreeV3),

@@ -365,7 +365,7 @@ mod tests {
                 let bent = Pose { curl, wilt, ..Pose::default() }.apply_rays(&rays);
                 let change = 100.0 * (area(&bent) / before - 1.0);
                 // Drooping lobes do not lie in a plane: rolled up or hung all the way they stretch a little more.
-                let most = if curl > 0.9 || curl < 0.0 {
+                let most = if !(0.0..=0.9).contains(&curl) {
                     3.5
                 } else if wilt > 0.9 {
                     6.5

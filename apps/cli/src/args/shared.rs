@@ -199,9 +199,9 @@ impl From<UnitWord> for Unit {
 /// How a GLB is packed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum PackWord {
-    /// Numbers in few bits (KHR_mesh_quantization): most programs read it, Blender among them
+    /// Numbers in few bits (`KHR_mesh_quantization`): most programs read it, Blender among them
     Quantized,
-    /// The same, compressed (EXT_meshopt_compression): for three.js, Babylon, Godot and others that have the decoder
+    /// The same, compressed (`EXT_meshopt_compression`): for three.js, Babylon, Godot and others that have the decoder
     Meshopt,
 }
 

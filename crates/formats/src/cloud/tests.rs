@@ -156,7 +156,7 @@ fn compressed_las_gives_the_same_points() {
     let record = usize::from(plain[105]) + 256 * usize::from(plain[106]);
     let items = laz::LazItemRecordBuilder::default_for_point_format_id(plain[104], 0).unwrap();
     let vlr = laz::LazVlr::from_laz_items(items);
-    assert_eq!(vlr.items_size() as usize, record);
+    assert_eq!(usize::try_from(vlr.items_size()).unwrap(), record);
     let mut said = Vec::new();
     vlr.write_to(&mut said).unwrap();
     let mut file = plain[..head].to_vec();

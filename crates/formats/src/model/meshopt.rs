@@ -198,7 +198,6 @@ impl Seen {
         let d = index.wrapping_sub(self.last);
         let mut v = (d << 1) ^ (if d >> 31 == 0 { 0 } else { u32::MAX });
         while v > 127 {
-            #[expect(clippy::cast_possible_truncation, reason = "seven bits")]
             data.push((v & 127) as u8 | 128);
             v >>= 7;
         }
@@ -398,7 +397,8 @@ mod tests {
     fn attributes_come_back_whatever_they_are() {
         for stride in [4, 8, 12, 20, 256] {
             for count in [0, 1, 15, 16, 17, 255, 256, 257, 1000] {
-                let smooth: Vec<u8> = (0..count * stride).map(|i| (i / stride / 7 % 256) as u8).collect();
+                let smooth: Vec<u8> =
+                    (0..count * stride).map(|i| u8::try_from(i / stride / 7 % 256).unwrap()).collect();
                 let rough: Vec<u8> = noise(count * stride).map(|x| (x & 255) as u8).collect();
                 for bytes in [smooth, rough] {
                     let stream = encode_attributes(&bytes, stride);

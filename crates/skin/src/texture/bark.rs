@@ -214,7 +214,7 @@ fn birch(colour: Paint, u: f64, v: f64) -> Spot {
     let wave = 0.006 * noise(u, v, (3, 4), 1) + 0.003 * noise(u, v, (9, 9), 2);
     let y = v + wave;
     let pore =
-        strokes((5.0 * u, 42.0 * y), (5, 42), 3, |n| (n < 0.42).then(|| (0.10 + 0.85 * n, 0.10 + 0.20 * n)));
+        strokes((5.0 * u, 42.0 * y), (5, 42), 3, |n| (n < 0.42).then_some((0.10 + 0.85 * n, 0.10 + 0.20 * n)));
     let fine = strokes((14.0 * u, 90.0 * y), (14, 90), 4, |n| (n < 0.30).then_some((0.10 + 1.2 * n, 0.22)));
     let pore = (1.0 - ops::smoothstep(0.55, 1.0, pore)).max(0.55 * (1.0 - ops::smoothstep(0.4, 1.0, fine)));
     // Sheets: bands whose lower edge is torn; below it the paper has gone for a while.
@@ -266,7 +266,7 @@ fn cherry(colour: Paint, u: f64, v: f64) -> Spot {
     let wave = 0.008 * noise(u, v, (3, 3), 1) + 0.004 * noise(u, v, (10, 8), 2);
     let y = v + wave;
     let ragged = rough(u, v, (40, 24), 3, 2);
-    let of = |n: f64| (n < 0.62).then(|| (0.18 + 1.25 * n, 0.16 + 0.26 * n));
+    let of = |n: f64| (n < 0.62).then_some((0.18 + 1.25 * n, 0.16 + 0.26 * n));
     let pore = strokes((6.0 * u + 0.06 * ragged, 22.0 * y + 0.12 * ragged), (6, 22), 4, of);
     let fine = strokes((18.0 * u, 60.0 * y), (18, 60), 5, |n| (n < 0.25).then_some((0.4, 0.25)));
     let cork = (1.0 - ops::smoothstep(0.55, 1.0, pore)).max(0.5 * (1.0 - ops::smoothstep(0.5, 1.0, fine)));

@@ -8,7 +8,7 @@ use plant::Blade;
 use super::blades::{LeafInks, PetalInks, petal};
 use super::noise::{Plates, gradient, octaves};
 use super::relief::{Sheet, Spot, Surface, surface};
-use super::{line, mix, shade};
+use super::{line, mix, shade, whole};
 use crate::BladeChart;
 
 /// How the veins of a leaf run.
@@ -146,7 +146,7 @@ impl Plan {
     /// Half of the width at a height.
     fn half_at(&self, y: f64) -> f64 {
         let at = ((y - self.low) / self.extent.y).clamp(0.0, 1.0) * STEPS as f64;
-        let k = (at as usize).min(STEPS - 1);
+        let k = whole(at).min(STEPS - 1);
         ops::lerp(self.half[k], self.half[k + 1], at - k as f64)
     }
 
@@ -361,7 +361,7 @@ impl Fields {
     fn at(&self, u: f64, v: f64) -> [f64; 2] {
         let place = |x: f64, n: usize| {
             let at = (x * n as f64 - 0.5).clamp(0.0, (n - 1) as f64);
-            let k = (at as usize).min(n.saturating_sub(2));
+            let k = whole(at).min(n.saturating_sub(2));
             (k, (k + 1).min(n - 1), at - k as f64)
         };
         let (x0, x1, tx) = place(u, self.size.0);
@@ -422,7 +422,7 @@ fn curve(a: DVec2, pull: DVec2, b: DVec2) -> Vec<DVec2> {
 fn at_share(points: &[DVec2], share: f64) -> DVec2 {
     let last = points.len() - 1;
     let at = share.clamp(0.0, 1.0) * last as f64;
-    let k = (at as usize).min(last.saturating_sub(1));
+    let k = whole(at).min(last.saturating_sub(1));
     points[k].lerp(points[(k + 1).min(last)], at - k as f64)
 }
 

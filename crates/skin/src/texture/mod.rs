@@ -98,6 +98,12 @@ fn canvas(executor: &dyn Executor, width: u32, height: u32, f: &Paints<'_>) -> T
     Texture { width, height, pixels: bands.concat() }
 }
 
+/// The whole part of a place that is not negative.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "among the pixels of a picture")]
+fn whole(at: f64) -> usize {
+    at as usize
+}
+
 fn byte(x: f64) -> u8 {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a byte's range")]
     let b = (x.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;

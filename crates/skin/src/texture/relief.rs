@@ -235,7 +235,7 @@ impl Coarse {
         #[expect(clippy::cast_precision_loss, reason = "pixels")]
         let place = |x: usize, pixels: usize, cells: usize| {
             let at = (x as f64 + 0.5) * cells as f64 / pixels as f64 - 0.5;
-            let low = at.max(0.0) as usize;
+            let low = super::whole(at.max(0.0));
             let (low, share) =
                 if at < 0.0 { (if tiles { cells - 1 } else { 0 }, at + 1.0) } else { (low, at - low as f64) };
             let next = if low + 1 < cells {
