@@ -167,7 +167,8 @@ impl Workspace {
         if let Some(plant) = record.plant {
             match self.select(plant) {
                 // A file numbers its plants anew: of one plant it is clear which is meant.
-                Err(WorkspaceError::PlantGone) if self.document().plants().len() == 1 => {}
+                Err(WorkspaceError::PlantGone)
+                    if record.project.is_some() && self.document().plants().len() == 1 => {}
                 other => other?,
             }
         }
