@@ -165,7 +165,12 @@ impl Workspace {
             self.open("record.burgeon", &project, 0, true)?;
         }
         if let Some(plant) = record.plant {
-            self.select(plant)?;
+            match self.select(plant) {
+                // A file numbers its plants anew: of one plant it is clear which is meant.
+                Err(WorkspaceError::PlantGone)
+                    if record.project.is_some() && self.document().plants().len() == 1 => {}
+                other => other?,
+            }
         }
         self.evaluate(run)?;
         let (mut made, mut edits) = (None, 0);

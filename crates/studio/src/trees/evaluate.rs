@@ -16,6 +16,9 @@ use crate::report::{Counts, GrowthReport, ItemReport, TimingsMs};
 use crate::shaping::{EditReport, Shaper};
 use crate::template::LeafTemplate;
 
+/// A model, and the plant that it is of with what of it lies where in the model.
+pub(crate) type LaidOut = (Model, (Plant, Layout));
+
 /// Makes trees of a description that changes: an update does again only what a change touches.
 ///
 /// An edit by hand, a colour or a finer mesh grows nothing. Guaranteed: the same result as from a fresh evaluator;
@@ -253,11 +256,7 @@ impl TreeEvaluator {
     }
 
     /// As [`Self::at_level`], also with the coarser plant and what of it lies where in the model.
-    pub(crate) fn laid_out_at(
-        &self,
-        level: u32,
-        run: &Run<'_>,
-    ) -> Result<Option<(Model, (Plant, Layout))>, TreeError> {
+    pub(crate) fn laid_out_at(&self, level: u32, run: &Run<'_>) -> Result<Option<LaidOut>, TreeError> {
         let (Some(raw), Some(plant), Some((from, _))) = (&self.grown, self.plant(), &self.model) else {
             return Ok(None);
         };
