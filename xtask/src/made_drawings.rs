@@ -51,7 +51,12 @@ pub(crate) fn shown(salt: u64) -> Vec<Shown> {
         for k in 0..TREES {
             let r = &mut stream(10 + number as u64, k);
             let crown = CROWNS[usize::try_from(k).unwrap_or(0) % CROWNS.len()];
-            all.push(Shown { set, lines: tree(r, trunk, crown, first), plants: vec![Kind::Tree], own: usize::MAX });
+            all.push(Shown {
+                set,
+                lines: tree(r, trunk, crown, first),
+                plants: vec![Kind::Tree],
+                own: usize::MAX,
+            });
         }
     }
     all
@@ -393,12 +398,7 @@ fn scene(r: &mut Stream) -> Shown {
         drawings.push(lines);
         plants.push(kind);
     }
-    Shown {
-        set: "a tree among bushes and grass",
-        lines: side_by_side(r, drawings),
-        plants,
-        own: usize::MAX,
-    }
+    Shown { set: "a tree among bushes and grass", lines: side_by_side(r, drawings), plants, own: usize::MAX }
 }
 
 /// A plant with the sun, a cloud, birds, a butterfly or a word beside it.
@@ -413,7 +413,11 @@ fn beside(r: &mut Stream) -> Shown {
         let side = if k == 1 { -side } else { side };
         let (thing, size, high) = match r.below(5) {
             0 => (kinds::sun(r), r.range(0.15, 0.3), r.range(0.75, 1.1)),
-            1 => (vec![ring(r, DVec2::ZERO, DVec2::new(0.5, 0.22), 7, 0.2)], r.range(0.2, 0.35), r.range(0.8, 1.1)),
+            1 => (
+                vec![ring(r, DVec2::ZERO, DVec2::new(0.5, 0.22), 7, 0.2)],
+                r.range(0.2, 0.35),
+                r.range(0.8, 1.1),
+            ),
             2 => (ways::birds(r), r.range(0.1, 0.25), r.range(0.7, 1.1)),
             3 => (ways::butterfly(r), r.range(0.1, 0.22), r.range(0.5, 0.9)),
             _ => (ways::written(r), r.range(0.25, 0.45), r.range(-0.2, -0.1)),

@@ -88,9 +88,9 @@ pub(crate) fn run(args: &[String]) -> Outcome {
     let held_out = rows(&choose, false);
     let path = repository().join("crates/reading/data/kinds.csv");
     let write = |text: String| fs::write(&path, text).map_err(|e| format!("{}: {e}", path.display()));
-    let text = model(learnt.clone(), held_out);
+    let first = model(learnt.clone(), held_out);
     if half {
-        return write(text);
+        return write(first);
     }
     // Made drawings are as many as one likes, and enough already.
     let people = choose.into_iter().filter(|d| matches!(d.origin, Origin::Public | Origin::Spg));

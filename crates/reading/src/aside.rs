@@ -117,7 +117,12 @@ fn words(boxes: &[(DVec2, DVec2)], out: &[bool], most: f64) -> Vec<Vec<usize>> {
 }
 
 /// Says which strokes were left out, and what becomes of them: nothing.
-pub(crate) fn tell(ink: &Ink, classes: &[Classified], rows: &[usize], report: &mut Report) -> Vec<StrokeReading> {
+pub(crate) fn tell(
+    ink: &Ink,
+    classes: &[Classified],
+    rows: &[usize],
+    report: &mut Report,
+) -> Vec<StrokeReading> {
     let count = rows.len();
     base::warn!(
         report,
@@ -188,7 +193,8 @@ mod tests {
 
     #[test]
     fn the_sun_and_a_cloud_are_left_out_and_the_tree_is_read() {
-        let cloud: Vec<DVec2> = ring(-8.0, 10.0, 1.6, 7.0).iter().map(|p| DVec2::new(p.x, 5.0 + 0.5 * p.y)).collect();
+        let cloud: Vec<DVec2> =
+            ring(-8.0, 10.0, 1.6, 7.0).iter().map(|p| DVec2::new(p.x, 5.0 + 0.5 * p.y)).collect();
         for beside in [sun(), vec![cloud]] {
             let lines = [tree(), beside].concat();
             let (reading, codes) = read(&lines, &[]);
@@ -203,7 +209,8 @@ mod tests {
         let lines = [tree(), sun()].concat();
         assert_eq!(left(&read(&lines, &[3]).0), [] as [usize; 0]);
         // Another tree beside it, smaller.
-        let small = tree().into_iter().map(|l| l.into_iter().map(|p| p * 0.5 + DVec2::new(9.0, 0.0)).collect());
+        let small =
+            tree().into_iter().map(|l| l.into_iter().map(|p| p * 0.5 + DVec2::new(9.0, 0.0)).collect());
         let lines = [tree(), small.collect()].concat();
         let (reading, codes) = read(&lines, &[]);
         assert_eq!((left(&reading).len(), reading.plants.len()), (0, 2));

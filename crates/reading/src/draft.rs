@@ -129,7 +129,8 @@ impl<'a> Draft<'a> {
         let whole = || vec![s.points.clone()];
         let pieces = self.legs.get(&stroke).cloned().unwrap_or_else(whole);
         let calm = |points: Vec<DVec2>| steady(&points).unwrap_or(points);
-        self.lines.extend(pieces.into_iter().map(|points| Line { points: calm(points), source: Some(s.index) }));
+        self.lines
+            .extend(pieces.into_iter().map(|points| Line { points: calm(points), source: Some(s.index) }));
     }
 
     pub(crate) fn set_organ(&mut self, source: Option<u32>, organ: OrganWord) {

@@ -209,7 +209,8 @@ impl Model {
         let mut lines = text.lines().filter(|l| !l.starts_with('#'));
         let words: Vec<&str> = lines.next()?.split(',').skip(3).collect();
         let (units, kinds): (Vec<&str>, Vec<&str>) = words.into_iter().partition(|w| w.starts_with(UNIT));
-        let column = |word: &&str| if *word == SEVERAL { Some(None) } else { Kind::from_word(word).map(Some) };
+        let column =
+            |word: &&str| if *word == SEVERAL { Some(None) } else { Kind::from_word(word).map(Some) };
         let kinds: Vec<Option<Kind>> = kinds.iter().map(column).collect::<Option<_>>()?;
         let mut row = |name: &str, length: usize| {
             let mut cells = lines.next()?.split(',');

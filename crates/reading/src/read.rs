@@ -6,8 +6,8 @@ use ink::{Classified, Ink, Source};
 use crate::draft::Draft;
 use crate::rules::GREEN_LEAVES;
 use crate::{
-    BESIDE_THE_PLANT, Kind, PlantReading, READ_AS, Reading, Scored, aside, attach, flowers, inertia, kinds, outlines, pressed, rules, several,
-    veins,
+    BESIDE_THE_PLANT, Kind, PlantReading, READ_AS, Reading, Scored, aside, attach, flowers, inertia, kinds,
+    outlines, pressed, rules, several, veins,
 };
 
 /// Understands a drawing.
@@ -199,12 +199,21 @@ fn one(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], first: First, repor
     if asked.kind.is_none() && no_plant > NO_PLANT {
         report.warn(UNLIKE_A_PLANT, "this looks like no plant; made the best plant of it");
     }
+    if asked.kind.is_none() {
+        kind = told_apart(kind, &scores);
+    }
     let readings = readings(kind, &scores);
     let strokes = ink.strokes.iter().map(|s| s.index).collect();
     let ends = ink.strokes.iter().flat_map(|s| &s.points).map(|p| p.y);
     let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)));
     reading.plants = vec![PlantReading { strokes, height: (high - low).max(0.0), kind, readings }];
     reading
+}
+
+/// A fruit and a root are built alike: the model says which of them it is.
+fn told_apart(kind: Kind, scores: &[Scored]) -> Kind {
+    let body = scores.iter().find(|s| s.kind.is_like(Kind::Fruit));
+    body.filter(|_| kind.is_like(Kind::Fruit)).map_or(kind, |s| s.kind)
 }
 
 /// How sure the classifier is of the strokes of a drawing, the mean over their length: 0 to 1.

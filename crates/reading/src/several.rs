@@ -4,7 +4,7 @@ use base::Report;
 use glam::DVec2;
 use ink::{Classified, Ink, InkMap, Source, StrokeClass};
 
-use crate::{aside, Attachment, BladeReading, OrganWord, Reading, StrokeReading};
+use crate::{Attachment, BladeReading, OrganWord, Reading, StrokeReading, aside};
 
 /// One piece of a drawing, as if it were the whole.
 pub(crate) struct Part {

@@ -48,7 +48,11 @@ fn smoothed(points: &[DVec2], length: f64) -> Vec<DVec2> {
     let n = points.len();
     let step = length / (n - 1) as f64;
     let spread = SPREAD * length;
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "three spreads are a few dozen steps")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "three spreads are a few dozen steps"
+    )]
     let reach = ((3.0 * spread / step) as usize).clamp(1, n - 1);
     let weights: Vec<f64> = (0..=reach)
         .map(|k| {
@@ -65,7 +69,9 @@ fn smoothed(points: &[DVec2], length: f64) -> Vec<DVec2> {
         let around = (1..=reach).map(|k| (before(i, k) + after(i, k)) * weights[k]);
         (points[i] * weights[0] + around.sum::<DVec2>()) / total
     };
-    (0..n).map(mean).collect()
+    let mut smooth: Vec<DVec2> = (0..n).map(mean).collect();
+    (smooth[0], smooth[n - 1]) = (points[0], points[n - 1]);
+    smooth
 }
 
 #[cfg(test)]
@@ -102,7 +108,9 @@ mod tests {
             let (drawn, scale) = stem(shake, wave);
             let calm = steady(&as_ink(&drawn, scale)).expect("the hand shakes");
             let calm: Vec<DVec2> = calm.into_iter().map(|p| p / scale).collect();
-            assert_eq!((calm[0], calm[calm.len() - 1]), (drawn[0], drawn[drawn.len() - 1]));
+            for (a, b) in [(calm.first(), drawn.first()), (calm.last(), drawn.last())] {
+                assert!(a.zip(b).is_some_and(|(a, b)| a.distance(*b) < 1e-9), "{a:?} {b:?}");
+            }
             let (before, after) = (farthest(&drawn), farthest(&calm));
             assert!(after < 0.4 * before && after < 1.0, "{shake} at {wave}: {before} left {after}");
         }
@@ -116,7 +124,12 @@ mod tests {
         let (waves, scale) = stem(25.0, 150.0);
         assert_eq!(steady(&as_ink(&waves, scale)), None);
         let zigzag: Vec<DVec2> = (0..=200)
-            .map(|k| DVec2::new(if (k / 10) % 2 == 0 { f64::from(k % 10) } else { f64::from(10 - k % 10) } * 0.01, f64::from(k) * 0.004))
+            .map(|k| {
+                DVec2::new(
+                    if (k / 10) % 2 == 0 { f64::from(k % 10) } else { f64::from(10 - k % 10) } * 0.01,
+                    f64::from(k) * 0.004,
+                )
+            })
             .collect();
         assert_eq!(steady(&zigzag), None);
         assert_eq!(steady(&[DVec2::ZERO, DVec2::X]), None);

@@ -160,7 +160,8 @@ fn press(plant: &mut Plant, reading: &Reading) {
     for i in 0..plant.axes.len() {
         let axis = &plant.axes[i];
         let rows = axis.nodes.start as usize..axis.nodes.end as usize;
-        let below = axis.bearer.map(|b| (plant.nodes.axis[b.index()].index(), plant.nodes.radius_m[b.index()]));
+        let below =
+            axis.bearer.map(|b| (plant.nodes.axis[b.index()].index(), plant.nodes.radius_m[b.index()]));
         let inherited = below.map_or(1.0, |(bearer, _)| by[bearer]);
         by[i] = axis.source.and_then(|s| pressed.get(&s).copied()).unwrap_or(inherited);
         let base = plant.nodes.radius_m.get(rows.start).copied().unwrap_or(0.0) * by[i];

@@ -291,7 +291,14 @@ fn one_line_tree(r: &mut Stream) -> Lines {
 }
 
 /// Branches from a place, and theirs.
-pub(super) fn branches(r: &mut Stream, from: DVec2, angle: f64, length: f64, depth: usize, lines: &mut Lines) {
+pub(super) fn branches(
+    r: &mut Stream,
+    from: DVec2,
+    angle: f64,
+    length: f64,
+    depth: usize,
+    lines: &mut Lines,
+) {
     let tip = from + direction(angle) * length;
     let bend = from.lerp(tip, 0.5) + direction(angle + 0.5 * PI) * (r.range(-0.15, 0.15) * length);
     lines.push(soft(&[from, bend, tip], r));

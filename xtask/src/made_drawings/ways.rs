@@ -23,8 +23,14 @@ pub(super) fn spears(r: &mut Stream) -> Lines {
         let wide = half * r.range(1.0, 1.8);
         let mut own = Lines::new();
         let top = match head {
-            0 => soft(&[v(-half, neck), v(-wide, neck + 0.1), v(0.0, 1.0), v(wide, neck + 0.1), v(half, neck)], r),
-            1 => pen(&[v(-half, neck), v(-wide, neck + 0.08), v(0.0, 1.0), v(wide, neck + 0.08), v(half, neck)], r),
+            0 => soft(
+                &[v(-half, neck), v(-wide, neck + 0.1), v(0.0, 1.0), v(wide, neck + 0.1), v(half, neck)],
+                r,
+            ),
+            1 => pen(
+                &[v(-half, neck), v(-wide, neck + 0.08), v(0.0, 1.0), v(wide, neck + 0.08), v(half, neck)],
+                r,
+            ),
             2 => {
                 let m = 3 + r.below(4);
                 let mut corners = vec![v(-half, neck)];
@@ -74,7 +80,9 @@ pub(super) fn bean(r: &mut Stream) -> Lines {
         let (half, bow) = (r.range(0.03, 0.08), r.range(0.05, 0.35));
         let knots = if r.chance(0.5) { 4.0 + r.below(4) as f64 } else { 0.0 };
         let at = |t: f64, s: f64| {
-            let thick = half * (4.0 * t * (1.0 - t)).max(0.0).powf(0.3) * (1.0 + 0.2 * ops::sin(knots * PI * t).abs());
+            let thick = half
+                * (4.0 * t * (1.0 - t)).max(0.0).powf(0.3)
+                * (1.0 + 0.2 * ops::sin(knots * PI * t).abs());
             v(t, bow * (4.0 * t * (1.0 - t)) + s * thick)
         };
         let side = |s: f64, r: &mut Stream| {
@@ -228,11 +236,22 @@ pub(super) fn ribbed(r: &mut Stream) -> Lines {
     for k in 0..n {
         let x = size.x * (k as f64 + 1.0) / (n as f64 + 1.0);
         for s in [-1.0, 1.0] {
-            lines.push(soft(&[v(0.0, 0.95 * size.y), v(s * x, 0.4 * size.y), v(s * x, -0.4 * size.y), v(0.0, -0.95 * size.y)], r));
+            lines.push(soft(
+                &[
+                    v(0.0, 0.95 * size.y),
+                    v(s * x, 0.4 * size.y),
+                    v(s * x, -0.4 * size.y),
+                    v(0.0, -0.95 * size.y),
+                ],
+                r,
+            ));
         }
     }
     if r.chance(0.8) {
-        lines.push(pen(&[v(-0.04, size.y), v(-0.03, size.y + 0.12), v(0.05, size.y + 0.12), v(0.04, size.y)], r));
+        lines.push(pen(
+            &[v(-0.04, size.y), v(-0.03, size.y + 0.12), v(0.05, size.y + 0.12), v(0.04, size.y)],
+            r,
+        ));
     }
     turned(r, lines, 0.2)
 }
@@ -253,7 +272,18 @@ pub(super) fn pointed_root(r: &mut Stream) -> Lines {
     let body = if r.chance(0.5) {
         pen(&[v(-half, tall), v(0.0, 0.0), v(half, tall), v(0.0, tall + 0.03), v(-half, tall)], r)
     } else {
-        soft(&[v(-0.7 * half, tall), v(-half, 0.8 * tall), v(0.0, 0.0), v(half, 0.8 * tall), v(0.7 * half, tall), v(0.0, tall + 0.02), v(-0.7 * half, tall)], r)
+        soft(
+            &[
+                v(-0.7 * half, tall),
+                v(-half, 0.8 * tall),
+                v(0.0, 0.0),
+                v(half, 0.8 * tall),
+                v(0.7 * half, tall),
+                v(0.0, tall + 0.02),
+                v(-0.7 * half, tall),
+            ],
+            r,
+        )
     };
     let mut lines = vec![body];
     if r.chance(0.8) {
@@ -273,7 +303,9 @@ fn palm_trunk(r: &mut Stream) -> (Lines, DVec2) {
     let top = v(r.range(-0.25, 0.25), r.range(0.5, 0.75));
     let (half, bow) = (r.range(0.015, 0.06), r.range(-0.15, 0.15));
     let middle = top * 0.5 + v(bow, 0.0);
-    let side = |s: f64, r: &mut Stream| soft(&[v(s * 1.5 * half, 0.0), middle + v(s * half, 0.0), top + v(s * 0.7 * half, 0.0)], r);
+    let side = |s: f64, r: &mut Stream| {
+        soft(&[v(s * 1.5 * half, 0.0), middle + v(s * half, 0.0), top + v(s * 0.7 * half, 0.0)], r)
+    };
     let mut lines = match r.below(3) {
         0 => vec![soft(&[v(0.0, 0.0), middle, top], r)],
         1 => vec![side(-1.0, r), side(1.0, r)],
@@ -375,7 +407,11 @@ pub(super) fn willow(r: &mut Stream) -> Lines {
 /// A crown of a spiral, of loose arcs or of hatching over a trunk.
 pub(super) fn loose_tree(r: &mut Stream) -> Lines {
     let (half, top) = (r.range(0.03, 0.1), r.range(0.3, 0.55));
-    let mut lines = if r.chance(0.7) { Vec::from(sides(r, half, top)) } else { vec![pen(&[v(0.0, 0.0), v(0.0, top)], r)] };
+    let mut lines = if r.chance(0.7) {
+        Vec::from(sides(r, half, top))
+    } else {
+        vec![pen(&[v(0.0, 0.0), v(0.0, top)], r)]
+    };
     let size = v(r.range(0.25, 0.42), r.range(0.2, 0.35));
     let centre = v(0.0, top + 0.8 * size.y);
     match r.below(4) {
@@ -459,7 +495,11 @@ pub(super) fn saguaro(r: &mut Stream) -> Lines {
         let y = r.range(0.25, 0.6);
         let out = s * (half + r.range(0.12, 0.25));
         let up = y + r.range(0.15, 0.4);
-        lines.push(tube(&[v(s * half, y), v(out, y), v(out, 0.5 * (y + up)), v(out, up)], half * r.range(0.5, 0.8), r));
+        lines.push(tube(
+            &[v(s * half, y), v(out, y), v(out, 0.5 * (y + up)), v(out, up)],
+            half * r.range(0.5, 0.8),
+            r,
+        ));
     }
     let thorns = if r.chance(0.6) { 4 + r.below(14) } else { 0 };
     for _ in 0..thorns {
@@ -481,7 +521,10 @@ fn foot_of(r: &mut Stream, lines: &mut Lines, half: f64) {
     match r.below(4) {
         0 => {
             let top = half * r.range(1.2, 2.0);
-            lines.push(pen(&[v(-top, 0.02), v(-0.7 * top, -0.3), v(0.7 * top, -0.3), v(top, 0.02), v(-top, 0.02)], r));
+            lines.push(pen(
+                &[v(-top, 0.02), v(-0.7 * top, -0.3), v(0.7 * top, -0.3), v(top, 0.02), v(-top, 0.02)],
+                r,
+            ));
         }
         1 => lines.push(pen(&[v(-0.4, 0.0), v(0.4, r.range(-0.02, 0.02))], r)),
         _ => {}
@@ -533,7 +576,16 @@ pub(super) fn other_flower(r: &mut Stream) -> Lines {
             for k in 0..n {
                 let (a, b) = (around(k), around(k + 1));
                 let out = (a + b).normalize_or_zero() * (disc + size);
-                head.push(soft(&[centre + a * disc, centre + a * disc + out * 0.6, centre + out * 1.1, centre + b * disc + out * 0.6, centre + b * disc], r));
+                head.push(soft(
+                    &[
+                        centre + a * disc,
+                        centre + a * disc + out * 0.6,
+                        centre + out * 1.1,
+                        centre + b * disc + out * 0.6,
+                        centre + b * disc,
+                    ],
+                    r,
+                ));
             }
         }
         1 => {
@@ -555,10 +607,13 @@ pub(super) fn other_flower(r: &mut Stream) -> Lines {
             // Loops in one stroke.
             let loops = f64::from(u32::try_from(n).unwrap_or(5));
             let line = (0..=160).map(|k| f64::from(k) / 160.0);
-            head.push(line.map(|t| {
-                let s = ops::sin(PI * loops * t);
-                centre + direction(TAU * t + 0.25 * ops::sin(TAU * loops * t)) * (disc + size * s * s)
-            }).collect());
+            head.push(
+                line.map(|t| {
+                    let s = ops::sin(PI * loops * t);
+                    centre + direction(TAU * t + 0.25 * ops::sin(TAU * loops * t)) * (disc + size * s * s)
+                })
+                .collect(),
+            );
             if r.chance(0.7) {
                 head.push(round(centre, DVec2::splat(disc), 0, 0.0, r));
             }
@@ -566,8 +621,26 @@ pub(super) fn other_flower(r: &mut Stream) -> Lines {
         4 => {
             // A bell.
             let half = size * r.range(0.7, 1.0);
-            head.push(soft(&[centre + v(-half, size), centre + v(-0.8 * half, -0.3 * size), centre + v(0.0, -size), centre + v(0.8 * half, -0.3 * size), centre + v(half, size)], r));
-            head.push(soft(&[centre + v(-half, size), centre + v(-0.3 * half, 0.5 * size), centre + v(0.0, size), centre + v(0.3 * half, 0.5 * size), centre + v(half, size)], r));
+            head.push(soft(
+                &[
+                    centre + v(-half, size),
+                    centre + v(-0.8 * half, -0.3 * size),
+                    centre + v(0.0, -size),
+                    centre + v(0.8 * half, -0.3 * size),
+                    centre + v(half, size),
+                ],
+                r,
+            ));
+            head.push(soft(
+                &[
+                    centre + v(-half, size),
+                    centre + v(-0.3 * half, 0.5 * size),
+                    centre + v(0.0, size),
+                    centre + v(0.3 * half, 0.5 * size),
+                    centre + v(half, size),
+                ],
+                r,
+            ));
         }
         _ => {
             head.push(round(centre, DVec2::splat(disc + size), n, 0.3, r));
@@ -578,13 +651,20 @@ pub(super) fn other_flower(r: &mut Stream) -> Lines {
             }
         }
     }
-    let stem = soft(&[centre - v(0.0, disc + 0.8 * size), v(0.5 * centre.x + r.range(-0.06, 0.06), 0.4), DVec2::ZERO], r);
+    let stem = soft(
+        &[centre - v(0.0, disc + 0.8 * size), v(0.5 * centre.x + r.range(-0.06, 0.06), 0.4), DVec2::ZERO],
+        r,
+    );
     let mut lines = if r.chance(0.5) { [vec![stem], head].concat() } else { [head, vec![stem]].concat() };
     for k in 0..r.below(4) {
         let s = if k % 2 == 0 { 1.0 } else { -1.0 };
         let way = v(s * r.range(0.12, 0.3), r.range(0.05, 0.25));
         let at = v(0.0, r.range(0.1, 0.4));
-        lines.push(if r.chance(0.7) { blade(r, at, way, 0.22 * way.length()) } else { soft(&[at, at + way * 0.6, at + way], r) });
+        lines.push(if r.chance(0.7) {
+            blade(r, at, way, 0.22 * way.length())
+        } else {
+            soft(&[at, at + way * 0.6, at + way], r)
+        });
     }
     lines
 }
@@ -593,7 +673,20 @@ pub(super) fn other_flower(r: &mut Stream) -> Lines {
 pub(super) fn vase(r: &mut Stream) -> Lines {
     let (neck, belly, tall) = (r.range(0.08, 0.2), r.range(0.15, 0.3), r.range(0.35, 0.6));
     let mut lines = match r.below(2) {
-        0 => vec![soft(&[v(-neck, 0.0), v(-neck, -0.2 * tall), v(-belly, -0.6 * tall), v(-0.6 * belly, -tall), v(0.6 * belly, -tall), v(belly, -0.6 * tall), v(neck, -0.2 * tall), v(neck, 0.0), v(-neck, 0.0)], r)],
+        0 => vec![soft(
+            &[
+                v(-neck, 0.0),
+                v(-neck, -0.2 * tall),
+                v(-belly, -0.6 * tall),
+                v(-0.6 * belly, -tall),
+                v(0.6 * belly, -tall),
+                v(belly, -0.6 * tall),
+                v(neck, -0.2 * tall),
+                v(neck, 0.0),
+                v(-neck, 0.0),
+            ],
+            r,
+        )],
         _ => vec![
             pen(&[v(-belly, 0.0), v(belly, 0.0)], r),
             pen(&[v(-belly, 0.0), v(-0.7 * belly, -tall), v(0.7 * belly, -tall), v(belly, 0.0)], r),
@@ -648,9 +741,34 @@ pub(super) fn tufts(r: &mut Stream) -> Lines {
 pub(super) fn other_leaf(r: &mut Stream) -> Lines {
     let half = r.range(0.22, 0.45);
     let mut lines = match r.below(3) {
-        0 => vec![soft(&[v(0.0, 0.1), v(-0.25, 0.0), v(-half, 0.25), v(-0.6 * half, 0.65), v(0.0, 1.0), v(0.6 * half, 0.65), v(half, 0.25), v(0.25, 0.0), v(0.0, 0.1)], r)],
+        0 => vec![soft(
+            &[
+                v(0.0, 0.1),
+                v(-0.25, 0.0),
+                v(-half, 0.25),
+                v(-0.6 * half, 0.65),
+                v(0.0, 1.0),
+                v(0.6 * half, 0.65),
+                v(half, 0.25),
+                v(0.25, 0.0),
+                v(0.0, 0.1),
+            ],
+            r,
+        )],
         1 => {
-            let mut line = soft(&[v(0.0, -0.3), v(0.0, 0.0), v(-half, 0.3), v(-half, 0.7), v(0.0, 1.0), v(half, 0.7), v(half, 0.3), v(0.0, 0.0)], r);
+            let mut line = soft(
+                &[
+                    v(0.0, -0.3),
+                    v(0.0, 0.0),
+                    v(-half, 0.3),
+                    v(-half, 0.7),
+                    v(0.0, 1.0),
+                    v(half, 0.7),
+                    v(half, 0.3),
+                    v(0.0, 0.0),
+                ],
+                r,
+            );
             if r.chance(0.5) {
                 line.extend(pen(&[v(0.0, 0.0), v(0.0, 0.85)], r));
             }
@@ -689,15 +807,13 @@ pub(super) fn other_bush(r: &mut Stream) -> Lines {
     let size = v(r.range(0.4, 0.6), r.range(0.22, 0.38));
     let mut lines = match r.below(3) {
         0 => vec![scribble(r, v(0.0, size.y), size)],
-        1 => {
-            (0..4 + r.below(4))
-                .map(|k| {
-                    let at = v(-0.5 + 0.22 * k as f64, r.range(0.08, 0.35));
-                    let from = r.range(-0.4, 0.2);
-                    arc(at, DVec2::splat(r.range(0.14, 0.22)), from, from + r.range(2.8, 4.2), 0, 0.0, r)
-                })
-                .collect()
-        }
+        1 => (0..4 + r.below(4))
+            .map(|k| {
+                let at = v(-0.5 + 0.22 * k as f64, r.range(0.08, 0.35));
+                let from = r.range(-0.4, 0.2);
+                arc(at, DVec2::splat(r.range(0.14, 0.22)), from, from + r.range(2.8, 4.2), 0, 0.0, r)
+            })
+            .collect(),
         _ => {
             let mut lines = vec![round(v(0.0, size.y), size, 9 + r.below(6), 0.18, r)];
             for _ in 0..r.below(7) {
@@ -738,7 +854,9 @@ pub(super) fn other_stem(r: &mut Stream) -> Lines {
                     let half = way.length() * r.range(0.15, 0.3);
                     blade(r, at, way, half)
                 }
-                1 => soft(&[at, at + way * 0.5 + v(0.0, 0.06), at + way, at + way * 0.5 - v(0.0, 0.04), at], r),
+                1 => {
+                    soft(&[at, at + way * 0.5 + v(0.0, 0.06), at + way, at + way * 0.5 - v(0.0, 0.04), at], r)
+                }
                 _ => {
                     let mut line = pen(&[at, at + way * 0.3], r);
                     line.extend(blade(r, at + way * 0.3, way * 0.7, way.length() * 0.15));
@@ -764,7 +882,17 @@ pub(super) fn other_mushroom(r: &mut Stream) -> Lines {
             1 => vec![pen(&[v(-half, low), v(0.0, top + 0.1), v(half, low), v(-half, low)], r)],
             _ => vec![round(v(0.0, low), v(half, 0.6 * (top - low)), 0, 0.0, r)],
         };
-        own.push(soft(&[v(-stem, low - 0.02), v(-0.9 * stem, 0.2), v(-1.3 * stem, 0.0), v(1.3 * stem, 0.0), v(0.9 * stem, 0.2), v(stem, low - 0.02)], r));
+        own.push(soft(
+            &[
+                v(-stem, low - 0.02),
+                v(-0.9 * stem, 0.2),
+                v(-1.3 * stem, 0.0),
+                v(1.3 * stem, 0.0),
+                v(0.9 * stem, 0.2),
+                v(stem, low - 0.02),
+            ],
+            r,
+        ));
         if r.chance(0.3) {
             for i in 0..5 {
                 let x = half * (f64::from(i) - 2.0) * 0.35;
@@ -785,7 +913,10 @@ pub(super) fn butterfly(r: &mut Stream) -> Lines {
         let upper = v(s * wide, r.range(0.25, 0.5));
         let lower = v(s * 0.7 * wide, -r.range(0.2, 0.45));
         if one {
-            lines.push(soft(&[v(0.0, 0.1), upper, v(s * 1.1 * wide, 0.0), v(s * 0.3 * wide, 0.0), lower, v(0.0, -0.1)], r));
+            lines.push(soft(
+                &[v(0.0, 0.1), upper, v(s * 1.1 * wide, 0.0), v(s * 0.3 * wide, 0.0), lower, v(0.0, -0.1)],
+                r,
+            ));
         } else {
             let (a, b) = (r.range(0.1, 0.2), r.range(0.08, 0.18));
             lines.push(blade(r, v(0.0, 0.08), upper, a));
@@ -798,7 +929,11 @@ pub(super) fn butterfly(r: &mut Stream) -> Lines {
             lines.push(round(upper * 0.6, DVec2::splat(0.05), 0, 0.0, r));
         }
     }
-    lines.push(if r.chance(0.5) { pen(&[v(0.0, 0.5 * tall), v(0.0, -0.5 * tall)], r) } else { round(DVec2::ZERO, v(0.05, 0.5 * tall), 0, 0.0, r) });
+    lines.push(if r.chance(0.5) {
+        pen(&[v(0.0, 0.5 * tall), v(0.0, -0.5 * tall)], r)
+    } else {
+        round(DVec2::ZERO, v(0.05, 0.5 * tall), 0, 0.0, r)
+    });
     turned(r, lines, 0.7)
 }
 
@@ -808,7 +943,14 @@ pub(super) fn birds(r: &mut Stream) -> Lines {
         .map(|k| {
             let (at, w) = (v(0.6 * k as f64, r.range(-0.3, 0.3)), r.range(0.15, 0.25));
             let up = w * r.range(0.3, 0.9);
-            let corners = [at + v(-w, 0.2 * up), at + v(-0.6 * w, up), at, at, at + v(0.6 * w, up), at + v(w, 0.2 * up)];
+            let corners = [
+                at + v(-w, 0.2 * up),
+                at + v(-0.6 * w, up),
+                at,
+                at,
+                at + v(0.6 * w, up),
+                at + v(w, 0.2 * up),
+            ];
             if r.chance(0.7) { soft(&corners, r) } else { pen(&[corners[1], at, corners[4]], r) }
         })
         .collect()
@@ -839,9 +981,22 @@ pub(super) fn written(r: &mut Stream) -> Lines {
         let tall = if r.chance(0.25) { 0.75 } else { 0.35 };
         match r.below(4) {
             0 => line.extend([v(x + 0.05, tall), v(x + 0.12, 0.0), v(x + 0.2, 0.32), v(x + 0.28, 0.0)]),
-            1 => line.extend([v(x + 0.22, 0.3), v(x + 0.08, 0.34), v(x + 0.03, 0.05), v(x + 0.2, 0.02), v(x + 0.24, 0.3), v(x + 0.28, 0.0)]),
+            1 => line.extend([
+                v(x + 0.22, 0.3),
+                v(x + 0.08, 0.34),
+                v(x + 0.03, 0.05),
+                v(x + 0.2, 0.02),
+                v(x + 0.24, 0.3),
+                v(x + 0.28, 0.0),
+            ]),
             2 => line.extend([v(x + 0.18, tall), v(x + 0.1, tall), v(x + 0.12, 0.0), v(x + 0.28, 0.05)]),
-            _ => line.extend([v(x + 0.06, 0.3), v(x + 0.1, 0.0), v(x + 0.2, 0.02), v(x + 0.24, 0.3), v(x + 0.28, 0.0)]),
+            _ => line.extend([
+                v(x + 0.06, 0.3),
+                v(x + 0.1, 0.0),
+                v(x + 0.2, 0.02),
+                v(x + 0.24, 0.3),
+                v(x + 0.28, 0.0),
+            ]),
         }
         if r.chance(0.25) && k + 1 < n {
             lines.push(soft(&line, r));

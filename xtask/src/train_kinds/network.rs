@@ -39,7 +39,8 @@ impl Network {
     pub(super) fn learn(examples: &[Example<'_>], columns: usize) -> Self {
         let numbers = examples.first().map_or(0, |e| e.0.len());
         let r = &mut Seed::new(20).stream(Draw::Template);
-        let mut chance = |n: usize, spread: f64| -> Vec<f64> { (0..n).map(|_| r.normal() * spread).collect() };
+        let mut chance =
+            |n: usize, spread: f64| -> Vec<f64> { (0..n).map(|_| r.normal() * spread).collect() };
         let mut net = Self {
             columns,
             direct: vec![0.0; numbers * columns],
@@ -57,9 +58,11 @@ impl Network {
         let steps = ROUNDS * examples.len() / BATCH;
         let mut moments = [&net.direct, &net.inner, &net.outer].map(|c| Moments::new(c.len()));
         for step in 0..steps {
-            let mut slope = Self::of(columns, [&net.direct, &net.inner, &net.outer].map(|c| vec![0.0; c.len()]));
+            let mut slope =
+                Self::of(columns, [&net.direct, &net.inner, &net.outer].map(|c| vec![0.0; c.len()]));
             for _ in 0..BATCH {
-                let at = sums.partition_point(|&s| s < r.uniform() * total).min(examples.len() - 1);
+                let drawn = r.uniform() * total;
+                let at = sums.partition_point(|&s| s < drawn).min(examples.len() - 1);
                 net.look(examples[at], r, &mut slope);
             }
             let rate = RATE * 0.5 * (1.0 + ops::cos(ops::PI * step as f64 / steps as f64));
