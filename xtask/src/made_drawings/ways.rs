@@ -81,7 +81,7 @@ pub(super) fn bean(r: &mut Stream) -> Lines {
         let knots = if r.chance(0.5) { 4.0 + r.below(4) as f64 } else { 0.0 };
         let at = |t: f64, s: f64| {
             let thick = half
-                * (4.0 * t * (1.0 - t)).max(0.0).powf(0.3)
+                * ops::powf((4.0 * t * (1.0 - t)).max(0.0), 0.3)
                 * (1.0 + 0.2 * ops::sin(knots * PI * t).abs());
             v(t, bow * (4.0 * t * (1.0 - t)) + s * thick)
         };
@@ -563,6 +563,33 @@ pub(super) fn round_cactus(r: &mut Stream) -> Lines {
     lines
 }
 
+/// An open bell and its rim.
+fn bell(r: &mut Stream, centre: DVec2, size: f64) -> Lines {
+    let mut head = Lines::new();
+    let half = size * r.range(0.7, 1.0);
+    head.push(soft(
+        &[
+            centre + v(-half, size),
+            centre + v(-0.8 * half, -0.3 * size),
+            centre + v(0.0, -size),
+            centre + v(0.8 * half, -0.3 * size),
+            centre + v(half, size),
+        ],
+        r,
+    ));
+    head.push(soft(
+        &[
+            centre + v(-half, size),
+            centre + v(-0.3 * half, 0.5 * size),
+            centre + v(0.0, size),
+            centre + v(0.3 * half, 0.5 * size),
+            centre + v(half, size),
+        ],
+        r,
+    ));
+    head
+}
+
 /// A head of open arcs, of lines or of a spiral on a stem.
 pub(super) fn other_flower(r: &mut Stream) -> Lines {
     let centre = v(r.range(-0.08, 0.08), r.range(0.7, 1.0));
@@ -619,28 +646,7 @@ pub(super) fn other_flower(r: &mut Stream) -> Lines {
             }
         }
         4 => {
-            // A bell.
-            let half = size * r.range(0.7, 1.0);
-            head.push(soft(
-                &[
-                    centre + v(-half, size),
-                    centre + v(-0.8 * half, -0.3 * size),
-                    centre + v(0.0, -size),
-                    centre + v(0.8 * half, -0.3 * size),
-                    centre + v(half, size),
-                ],
-                r,
-            ));
-            head.push(soft(
-                &[
-                    centre + v(-half, size),
-                    centre + v(-0.3 * half, 0.5 * size),
-                    centre + v(0.0, size),
-                    centre + v(0.3 * half, 0.5 * size),
-                    centre + v(half, size),
-                ],
-                r,
-            ));
+            head.extend(bell(r, centre, size));
         }
         _ => {
             head.push(round(centre, DVec2::splat(disc + size), n, 0.3, r));
