@@ -9,7 +9,6 @@ use ink::{Classified, Ink, Source, StrokeClass};
 
 use crate::kinds::Shares;
 use crate::near::bounds;
-use crate::several::Part;
 use crate::{Kind, OrganWord, StrokeReading};
 
 /// The rule that a stroke is of no plant.
@@ -37,9 +36,9 @@ pub(crate) struct Piece<'a> {
 }
 
 impl<'a> Piece<'a> {
-    pub(crate) fn new(part: &'a Part, shares: &'a Shares) -> Self {
-        let named = part.classes.iter().any(|c| c.source == Source::User);
-        Self { rows: &part.rows, shares, named }
+    pub(crate) fn new(rows: &'a [usize], classes: &[Classified], shares: &'a Shares) -> Self {
+        let named = classes.iter().any(|c| c.source == Source::User);
+        Self { rows, shares, named }
     }
 }
 

@@ -105,8 +105,11 @@ fn each(asked: &Asked<'_>, ink: &Ink, classes: &[Classified], report: &mut Repor
     let mut firsts: Vec<First> = parts.iter().map(|p| First::of(asked, &p.ink, &p.classes)).collect();
     let mut left = vec![false; parts.len()];
     if asked.leaves_out(ink) {
-        let pieces: Vec<aside::Piece<'_>> =
-            parts.iter().zip(&firsts).map(|(p, f)| aside::Piece::new(p, &f.shares)).collect();
+        let pieces: Vec<aside::Piece<'_>> = parts
+            .iter()
+            .zip(&firsts)
+            .map(|(p, f)| aside::Piece::new(&p.rows, &p.classes, &f.shares))
+            .collect();
         left = aside::beside(ink, &pieces, |rows| {
             let part = several::part(ink, classes, rows.to_vec());
             First::of(asked, &part.ink, &part.classes).shares.no_plant
